@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The configuration as the engine needs it: checked, with defaults filled in. Made from a .rio
+ * document (rio.h) by config_load(). Immutable after that; all strings belong to it.
+ */
+#ifndef CONFIG_CONFIG_H
+#define CONFIG_CONFIG_H
+
+#include "../libows/ows.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+struct config_item {
+	const char *name;
+	const char *path; /* normalised: leading "/", without "/uncached" and "/alarm" */
+	enum ows_type type;
+	bool output;
+	bool readable, writable; /* start values of _ReadEnable and _WriteEnable */
+	bool fresh;              /* Uncached, by flag or by path */
+	bool has_init, has_safe;
+	int64_t init_value, safe_value;         /* numbers, as in src/signal/value.h */
+	const char *init_text, *safe_text;      /* as written; for strings the value itself */
+	uint32_t per_factor;
+	int64_t stale_after_ns;                 /* 0: no limit */
+	bool alarm;
+	/* NULL: not defined, "": empty; Table 3.1 tells the two apart */
+	const char *latch_alarm, *por_alarm, *set_alarm, *reset_latch;
+	int line; /* of Item */
+};
+
+enum config_relation {
+	CONFIG_FIRST,
+	CONFIG_COMMA, /* another wire */
+	CONFIG_BAR,   /* another way to the wire of the target before it */
+};
+struct config_target {
+	const char *text; /* "localhost:4304"; never empty */
+	enum config_relation relation;
+};
+
+struct config {
+	const char *file;
+	struct config_target *targets;
+	unsigned target_count;
+	unsigned max_cons_alarms;
+	unsigned max_retries;
+	int64_t timeout_ns, period_ns, alarm_period_ns;
+	struct config_item *items;
+	unsigned item_count;
+};
+
+/* Collects what was found wrong; message is complete ("house.rio:12:26: error: ..."). */
+struct config_report {
+	void (*line)(void *ctx, bool is_error, const char *message);
+	void *ctx;
+	unsigned errors, warnings;
+};
+
+/*
+ * Read and check a file. Returns 0, -EINVAL when report->errors > 0 (*config is then NULL), or a
+ * negative errno of reading it (said through report too). Blocking (file).
+ */
+int config_load(const char *file, struct config_report *report, struct config **config);
+/* The same from memory; file is for messages. */
+int config_parse(const char *file, const char *text, size_t len, struct config_report *report,
+                 struct config **config);
+/* Replace the targets (owsd -t); each text may itself hold commas and bars. 0 or -EINVAL. */
+int config_set_targets(struct config *config, const char *const *texts, unsigned count,
+                       struct config_report *report);
+void config_free(struct config *config);
+/* What `owsd --check` prints: the configuration as understood. */
+void config_print(const struct config *config, FILE *out);
+
+#endif

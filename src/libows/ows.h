@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * libows: read and set the signals of owsd from a control program.
+ *
+ * Reading a value takes no system call, no lock and never waits, also when owsd dies in the middle
+ * of a write. A handle belongs to one thread at a time. C11, C++11 and later.
+ *
+ *     struct ows *h;
+ *     if (ows_open("OWS", OWS_READ, &h) == 0) {
+ *             int room = ows_find(h, "room1");
+ *             struct ows_value v;
+ *             if (ows_get(h, room, ows_now(), &v) == 0 && ows_good(v.quality))
+ *                     printf("%g\n", v.number);
+ *     }
+ *
+ * All functions return 0 (or the count or id that is said) or a negative errno; none sets errno.
+ * Times are nanoseconds of CLOCK_BOOTTIME, which counts suspend.
+ */
+#ifndef OWS_H
+#define OWS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* REXYGEN's type codes, as in the low nibble of IOType. */
+enum ows_type {
+	OWS_BOOL = 1,
+	OWS_BYTE = 2,   /* unsigned 8 bit */
+	OWS_SHORT = 3,  /* signed 16 bit */
+	OWS_LONG = 4,   /* signed 32 bit */
+	OWS_WORD = 5,   /* unsigned 16 bit */
+	OWS_DWORD = 6,  /* unsigned 32 bit */
+	OWS_FLOAT = 7,
+	OWS_DOUBLE = 8,
+	OWS_LARGE = 10, /* signed 64 bit */
+	OWS_STRING = 12,
+};
+
+/* The OPC quality byte QQSSSSLL. Good means that the two upper bits are set. */
+enum ows_quality {
+	OWS_Q_NO_PROPERTY = 0x04, /* no such property, or the type cannot hold it */
+	OWS_Q_NO_DEVICE = 0x08,   /* the device is absent */
+	OWS_Q_DEVICE = 0x0c,      /* device error: checksum, refused */
+	OWS_Q_SENSOR = 0x10,      /* power-fault reading of a thermometer (85, 127.94) */
+	OWS_Q_STALE = 0x14,       /* older than StaleAfter */
+	OWS_Q_TARGET = 0x18,      /* target down or timed out; owsd dead */
+	OWS_Q_SHORT = 0x19,       /* the wire is short */
+	OWS_Q_INITIAL = 0x20,     /* never read or written */
+	OWS_Q_DISABLED = 0x44,    /* reading disabled by _ReadEnable */
+	OWS_Q_RANGE = 0x54,       /* out of range */
+	OWS_Q_LOW = 0x55,         /* held at the type's lower limit */
+	OWS_Q_HIGH = 0x56,        /* held at the type's upper limit */
+	OWS_Q_CUT = 0x58,         /* text cut to the room in the layout */
+	OWS_Q_GOOD = 0xc0,
+};
+static inline int ows_good(uint8_t quality)
+{
+	return (quality & 0xc0) == 0xc0;
+}
+/* A few words on a quality ("good", "device absent"); never NULL. */
+const char *ows_quality_text(uint8_t quality);
+
+/* Bits of ows_value.detail. */
+#define OWS_DETAIL_SIMULATED 0x01 /* the value comes from a simulated target */
+#define OWS_DETAIL_CACHED    0x02 /* the target answered from a cache */
+
+struct ows;
+
+struct ows_value {
+	double number;       /* the value; an integer beyond 2^53 is rounded here, not in integer */
+	int64_t integer;     /* the value if type is not float, double or string */
+	int64_t measured_ns; /* time of measurement; 0: never */
+	int64_t tried_ns;    /* time of the last attempt; 0: never */
+	int64_t age_ns;      /* now - measured; before the first value: since owsd started */
+	int32_t err;         /* 0 or the negative errno of the last attempt */
+	uint32_t count;      /* updates since owsd started */
+	uint32_t applied;    /* outputs: stamp (see ows_set) of the last command confirmed on the bus */
+	uint32_t len;        /* strings: bytes */
+	uint8_t type;        /* enum ows_type */
+	uint8_t quality;     /* enum ows_quality, lowered by age and by a dead owsd */
+	uint8_t detail;      /* OWS_DETAIL_ bits */
+	uint8_t target;      /* index of the target that served it */
+};
+
+enum ows_mode {
+	OWS_READ,    /* map the image only */
+	OWS_CONTROL, /* the command segment too: may set outputs */
+};
+
+/*
+ * Open the instance (NULL: "OWS"). System calls, allocates. Free with ows_close().
+ * -ENOENT no owsd of that name has run; -EACCES no right (group owsd to look, owsd-control to
+ * set); -EPROTO not a segment of ours, or of another layout; -EPERM the segment belongs to a user
+ * who is neither root, nor owsd, nor the caller.
+ */
+int ows_open(const char *instance, enum ows_mode mode, struct ows **h);
+void ows_close(struct ows *h);
+
+/* The clock of all times here. */
+int64_t ows_now(void);
+
+/*
+ * Look a name up: a signal ("room1", "OWS__room1"), a driver signal ("_TRANSACTIONS") or an
+ * attribute ("room1_Age"). Returns an id >= 0, which stays right for the life of the handle, also
+ * over ows_reopen(), or -ENOENT. Allocates at the first use of a name.
+ */
+int ows_find(struct ows *h, const char *name);
+
+/*
+ * Get a value. No system call, no lock, bounded. now_ns: ows_now(), once per cycle is enough.
+ * -ESTALE: owsd was restarted or reloaded, call ows_reopen(); *value is filled all the same, never
+ * as good. -EAGAIN: no whole sample in 64 attempts (does not happen while writers are sane).
+ * -ENOENT: the id's name is not in the image any more. -EACCES: write-only name.
+ */
+int ows_get(struct ows *h, int id, int64_t now_ns, struct ows_value *value);
+/*
+ * The same with the text of the value, NUL-terminated, at most size bytes with the NUL.
+ * Numbers are printed as owsctl prints them. -ENOSPC: cut.
+ */
+int ows_get_text(struct ows *h, int id, int64_t now_ns, struct ows_value *value, char *text,
+                 size_t size);
+
+/*
+ * Command an output (or a writable attribute). The value goes out at the signal's next write
+ * turn, if it changed. At most one system call (none while the engine is awake).
+ * Returns 0; -ERANGE the type cannot hold the value, -EINVAL NaN or infinity, -EACCES not
+ * writable or the handle is OWS_READ, -EBUSY another program is just writing this string,
+ * -ESTALE as ows_get(). stamp, if not NULL, gets the number that `applied` will reach.
+ */
+int ows_set(struct ows *h, int id, double value, uint32_t *stamp);
+int ows_set_integer(struct ows *h, int id, int64_t value, uint32_t *stamp);
+int ows_set_text(struct ows *h, int id, const char *text, uint32_t *stamp);
+/* n values with one ring. Stops at the first error; returns how many were set, or the error. */
+int ows_set_many(struct ows *h, const int *ids, const double *values, int n);
+
+/*
+ * Say that this control program lives, and promise to say it again within period_ms. If it does
+ * not, the outputs it set last go to their SafeValue. No system call after the first call.
+ * -ENOSPC: the table of 32 clients is full.
+ */
+int ows_beat(struct ows *h, uint32_t period_ms);
+
+/*
+ * Sleep until something was published after *news was last seen, at most timeout_ns (negative: no
+ * limit). Start with *news = 0. Returns 1 news, 0 time is over, -ESTALE as ows_get(), -EINTR.
+ */
+int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns);
+
+/*
+ * Map the present segments after -ESTALE; ids stay right. System calls.
+ * -ENOENT: not there yet, try again in the next cycle (what is mapped stays readable).
+ */
+int ows_reopen(struct ows *h);
+
+/* The whole table: signals are 0 .. ows_count() - 1 in the order of the file; valid until
+ * ows_reopen(). */
+int ows_count(const struct ows *h);
+
+struct ows_info {
+	const char *name;
+	const char *path;   /* as configured, without /uncached */
+	uint8_t type;       /* enum ows_type */
+	uint8_t output;     /* 1 output, 0 input */
+	uint8_t fresh;      /* 1 read past the cache */
+	uint8_t alarm;      /* 1 alarm item */
+	uint32_t per_factor;
+	int64_t stale_after_ns; /* 0: no limit */
+};
+int ows_info(const struct ows *h, int signal, struct ows_info *info);
+/* The value of signal i (not an id of ows_find), else as ows_get(). */
+int ows_get_signal(struct ows *h, int signal, int64_t now_ns, struct ows_value *value);
+/*
+ * The first n values of the table into values; returns how many. Each value is whole in itself.
+ */
+int ows_snapshot(struct ows *h, int64_t now_ns, struct ows_value *values, int n);
+
+/* owsd itself. */
+struct ows_daemon {
+	int32_t pid;
+	uint32_t state;      /* 1 live, 2 retired, 3 stopped */
+	uint32_t generation; /* changes at each start or reload */
+	int64_t start_ns;
+	int64_t beat_age_ns; /* since the last heartbeat */
+	int64_t period_ns;
+	int alive;           /* state live and heart beating */
+};
+int ows_daemon(struct ows *h, int64_t now_ns, struct ows_daemon *daemon);
+
+/* Targets and counters, for tools. Return -ENOENT past the end. */
+struct ows_target {
+	const char *name;
+	uint32_t state; /* 0 down, 1 up, 2 suspended */
+	uint32_t reconnects;
+};
+int ows_target(struct ows *h, int index, struct ows_target *target);
+struct ows_counter {
+	const char *name;
+	int target; /* -1: of owsd itself */
+	uint64_t value;
+};
+int ows_counter(struct ows *h, int index, struct ows_counter *counter);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The command segment, owsd's side. owsd believes nothing it finds there: indices come from its own
+ * table, values are checked by the caller, strings by their check word. No system call in this
+ * file. One thread.
+ */
+#ifndef SHM_COMMANDS_H
+#define SHM_COMMANDS_H
+
+#include "layout.h"
+
+#include <stdbool.h>
+
+struct command_signal {
+	const char *name;
+	const char *path;
+	uint8_t type;
+};
+struct command_plan {
+	const struct command_signal *signals; /* without slot 0 */
+	uint32_t signal_count;
+	uint16_t text_cap; /* of every string signal, multiple of 4 */
+	uint32_t generation, start_id;
+	int32_t pid;
+};
+struct commands {
+	char *base;
+	uint32_t size;
+	/* owsd's own copy of what it needs to find its way: a consumer may overwrite the header */
+	uint32_t slot_off, slot_count, entry_off, dirty_off, dirty_words, client_off;
+	uint32_t text_cap;
+	uint32_t *text_off; /* for each slot, 0 if none; allocated by commands_build() */
+};
+
+size_t commands_size(const struct command_plan *plan);
+/* Lay out in zeroed, 64-byte-aligned memory. Returns 0 or -ENOMEM. */
+int commands_build(const struct command_plan *plan, void *memory, struct commands *commands);
+void commands_forget(struct commands *commands); /* frees what commands_build() allocated */
+
+/* One slot as found, copied in one go. */
+struct command {
+	int64_t value;
+	uint32_t stamp;  /* 0: never commanded */
+	uint32_t client; /* 0: nobody who beats; else index + 1, checked */
+	uint8_t read_enable, write_enable; /* 0 not commanded, 1 off, 2 on; checked */
+	uint32_t one_shot, dgn_reset;
+};
+void commands_load(const struct commands *commands, uint32_t slot, struct command *command);
+/*
+ * Text of a string slot into text (size text_cap + 1). Returns the length, -EBUSY while a consumer
+ * writes it, -EBADMSG when length or check word are wrong.
+ */
+int commands_text(const struct commands *commands, uint32_t slot, char *text);
+/* Free the claim of a writer that died in the middle; the engine calls it after a second. */
+void commands_unclaim(struct commands *commands, uint32_t slot);
+
+/* Next slot marked dirty at or after from, its mark taken away; -1: none. */
+int commands_next_dirty(struct commands *commands, uint32_t from);
+
+struct command_client {
+	uint32_t pid, beat, period_ms;
+};
+void commands_client(const struct commands *commands, unsigned client, struct command_client *c);
+void commands_drop_client(struct commands *commands, unsigned client);
+
+uint32_t *commands_bell(const struct commands *commands);
+void commands_awake(struct commands *commands, bool awake);
+void commands_state(struct commands *commands, enum ows_state state);
+
+/*
+ * Carry what was commanded from an older segment over to a new one, by name, type and path. old
+ * may be anything: it is checked before use. Returns how many slots were carried over, -EPROTO
+ * when old is no command segment of this layout.
+ */
+int commands_carry(struct commands *to, const void *old, size_t old_size);
+
+#endif

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The image, writer's side: build it in memory, publish into it. No system call in this file's
+ * functions: src/shm/segment.h makes the memory, tests use the heap. One thread.
+ */
+#ifndef SHM_IMAGE_H
+#define SHM_IMAGE_H
+
+#include "layout.h"
+
+#include <stdbool.h>
+
+/* What the image of a configuration contains; strings are copied. */
+struct image_signal {
+	const char *name;
+	const char *path;
+	uint8_t type;
+	uint8_t flags;      /* OWS_RECORD_ bits */
+	uint16_t text_cap;  /* strings */
+	uint32_t per_factor;
+	uint32_t line;
+	int64_t stale_after_ns;
+	bool has_init, has_safe;
+	int64_t init_value, safe_value;
+};
+struct image_counter {
+	const char *name;
+	uint32_t target; /* 0xffffffff: owsd */
+};
+struct image_plan {
+	const struct image_signal *signals; /* without record 0 */
+	uint32_t signal_count;
+	const char *const *targets;
+	uint32_t target_count;
+	const struct image_counter *counters;
+	uint32_t counter_count;
+	uint32_t generation, start_id;
+	int32_t pid;
+	int64_t start_ns, start_wall_ns, period_ns;
+};
+
+/* A built image: pointers into its memory. */
+struct image {
+	struct ows_image_header *header;
+	struct ows_record *records; /* [0] is owsd */
+	struct ows_target_entry *targets;
+	struct ows_counter_entry *counters;
+	char *base;
+};
+
+/* Bytes an image of this plan needs; 0 if that is more than 2 GiB. */
+size_t image_size(const struct image_plan *plan);
+/* Lay the plan out in zeroed, 64-byte-aligned memory of that size; state is BUILDING after it. */
+void image_build(const struct image_plan *plan, void *memory, struct image *image);
+
+/*
+ * Publish a new state of a record: both parts, and for strings len bytes of text. The check words
+ * are made here. Bounded, wait-free.
+ */
+void image_publish(struct image *image, uint32_t record, const struct ows_sample *sample,
+                   const struct ows_attrs *attrs, const char *text);
+void image_target(struct image *image, uint32_t target, uint32_t state, uint32_t reconnects);
+void image_counter(struct image *image, uint32_t counter, uint64_t total);
+/* Counts the news word; the caller wakes sleepers (segment_wake) when it has published enough. */
+void image_news(struct image *image);
+void image_state(struct image *image, enum ows_state state);
+
+#endif
