@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The link contract: a link moves bits on one 1-Wire wire. A master (one chip) owns 1 to 8 links.
+ *
+ * Blocking: each call is at most one bus operation and bounded; all waits go through the
+ * environment the master was created with. One thread: the native bus calls it. Errors travel in
+ * the return value, never in the data:
+ *   -ECOMM      the wire is short
+ *   -ETIMEDOUT  the master chip is stuck (busy for longer than any operation takes)
+ *   -EIO        the way to the chip failed once (refused byte, refused address)
+ *   -ENXIO      the chip was reset or changed under us: recover(LINK_CHIP_RESET)
+ *   -ENODEV     the adapter is gone: close the master
+ *   -ECANCELED  the host shuts down
+ */
+#ifndef HAL_LINK_H
+#define HAL_LINK_H
+
+#include "bus.h"
+
+enum link_after {
+	LINK_IDLE,
+	LINK_STRONG, /* strong pull-up from the last bit on, until the next call on this link */
+};
+enum link_speed { LINK_STANDARD, LINK_OVERDRIVE };
+
+/* The recovery ladder; the native bus climbs it and counts each step. */
+enum link_rung {
+	LINK_RETRY,
+	LINK_BUS_RESET,
+	LINK_CHIP_RESET,  /* device reset and configuration of the master chip */
+	LINK_POWER_CYCLE, /* the supply of the wire off and on; -EOPNOTSUPP without a line for it */
+	LINK_REOPEN,
+};
+
+/* Running totals; the bench and the statistics read them. */
+struct link_cost {
+	uint64_t wire_ns;   /* time the 1-Wire slots took by the data sheet */
+	uint64_t transfers; /* I2C transactions, START to STOP */
+	uint64_t bytes;     /* on the I2C bus, addresses included */
+	uint64_t syscalls;
+	uint64_t resets;    /* 1-Wire resets */
+};
+
+struct link;
+/* One ROM id found by a search, family first. Return not 0 to end the search. */
+typedef int link_found(void *ctx, const uint8_t rom[8]);
+
+struct link_ops {
+	const char *name;
+	/* 1 presence, 0 nobody there. */
+	int (*reset)(struct link *link);
+	int (*write)(struct link *link, const uint8_t *data, size_t n, enum link_after after);
+	int (*read)(struct link *link, uint8_t *data, size_t n);
+	/* One slot: 0 or 1 as read back; writing 1 is reading. */
+	int (*bit)(struct link *link, bool out, enum link_after after);
+	/*
+	 * Two read slots and one write slot. Returns bit 0: the id bit read, bit 1: its complement,
+	 * bit 2: the direction taken. NULL: made of bit().
+	 */
+	int (*triplet)(struct link *link, bool direction);
+	/* A whole search; NULL: made of reset, write and triplet (hal/native/search.h). */
+	int (*search)(struct link *link, bool alarm, link_found *found, void *ctx);
+	/* -EOPNOTSUPP. */
+	int (*speed)(struct link *link, enum link_speed speed);
+	int (*recover)(struct link *link, enum link_rung rung);
+	void (*cost)(const struct link *link, struct link_cost *cost);
+};
+
+/* First member of a backend's own struct. */
+struct link {
+	const struct link_ops *ops;
+	const struct bus_env *env;
+};
+
+struct link_master;
+struct link_master_ops {
+	const char *scheme; /* "i2c", "sim": the target's scheme */
+	const char *summary;
+	/* where: the target without its scheme. Allocates all, touches nothing. As bus_ops.create. */
+	int (*create)(const char *where, const struct bus_env *env, struct link_master **master,
+	              char *why, size_t why_size);
+	/*
+	 * Take the hardware. -EBUSY a kernel driver owns the chip, -EACCES, -ENODEV, -ENXIO no chip
+	 * answers; why gets what to do about it. May be called again after close().
+	 */
+	int (*open)(struct link_master *master, char *why, size_t why_size);
+	/* At the first lasting error, or the kernel cannot finish an unplugging. */
+	void (*close)(struct link_master *master);
+	unsigned (*channels)(struct link_master *master); /* known after open() */
+	struct link *(*channel)(struct link_master *master, unsigned n);
+	void (*destroy)(struct link_master *master);
+	bool simulated; /* its devices are not real: answers say BUS_DETAIL_SIMULATED */
+};
+struct link_master {
+	const struct link_master_ops *ops;
+	const struct bus_env *env;
+};
+
+#endif
