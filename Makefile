@@ -1,24 +1,41 @@
 # SPDX-License-Identifier: MIT
 # owsd: the makefile is the map of the program. Everything is built in $(B).
+#
+#   make run [TARGET=host:port]   the main job, on genuine owserver with fake devices
+#   make test                     unit and system tests (sets up what they need)
+#   make all unit system bench install uninstall clean
+#   make clang sanitize m32       the slower checks
 
 VERSION  := 0.1.0
+SOMAJOR  := 0
 B        ?= build
 PREFIX   ?= /usr/local
 DESTDIR  ?=
+LIBDIR   ?= $(PREFIX)/lib
+MANDIR   ?= $(PREFIX)/share/man
+DATADIR  ?= $(PREFIX)/share/owsd
 
 CC       := $(CROSS_COMPILE)$(if $(filter default,$(origin CC)),gcc,$(CC))
 CXX      := $(CROSS_COMPILE)$(if $(filter default,$(origin CXX)),g++,$(CXX))
 AR       := $(CROSS_COMPILE)$(if $(filter default,$(origin AR)),ar,$(AR))
+OBJCOPY  ?= $(CROSS_COMPILE)objcopy
 PKG_CONFIG ?= pkg-config
 
 WARN     := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes \
             -Wpointer-arith -Wcast-qual -Wwrite-strings -Wundef -Wvla -Wformat=2 \
             -Wno-missing-field-initializers
-HARDEN   := -fstack-protector-strong -D_FORTIFY_SOURCE=2 -fPIE
+CXXWARN  := -Wall -Wextra -Wpedantic -Wshadow -Wcast-qual -Wundef -Wvla -Wformat=2
+ifeq ($(WERROR),1)
+WARN     += -Werror
+CXXWARN  += -Werror
+endif
+HARDEN   := -fstack-protector-strong -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2 -fPIE
 CFLAGS   ?= -O2 -g
+CXXFLAGS ?= -O2 -g
 EXTRA_CFLAGS ?=
-ALL_CFLAGS = -std=c17 -D_GNU_SOURCE -D_FILE_OFFSET_BITS=64 -I. -DOWSD_VERSION='"$(VERSION)"' \
-             $(WARN) $(HARDEN) $(CFLAGS) $(EXTRA_CFLAGS)
+CPP_COMMON = -D_GNU_SOURCE -D_FILE_OFFSET_BITS=64 -I. -DOWSD_VERSION='"$(VERSION)"'
+ALL_CFLAGS = -std=c17 $(CPP_COMMON) $(WARN) $(HARDEN) $(CFLAGS) $(EXTRA_CFLAGS)
+ALL_CXXFLAGS = -std=c++11 $(CPP_COMMON) $(CXXWARN) $(HARDEN) $(CXXFLAGS) $(EXTRA_CFLAGS)
 ALL_LDFLAGS = -pie -Wl,-z,relro,-z,now $(LDFLAGS) $(EXTRA_CFLAGS)
 LIBS     := -lm -pthread
 
@@ -37,23 +54,201 @@ HAL      := $(wildcard hal/*.c) $(wildcard hal/*/*.c)
 OWSD     := $(wildcard src/*.c)
 LIBOWS   := $(wildcard src/libows/*.c)
 OWSCTL   := $(wildcard src/owsctl/*.c)
+# Programs over libows to start from
+EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py)
+PYTHON   := $(wildcard src/libows/ows.py)
+MAN      := $(wildcard docs/*.[1-8])
+# Tests
+UNIT_SRC := $(wildcard tests/unit/test_*.c)
+UNIT_AID := $(filter-out $(UNIT_SRC),$(wildcard tests/unit/*.c))
+BENCH    := $(wildcard tests/bench/*.c)
 # ---------------------------------------------------------------------------------------------
 
 CORE     := $(SIGNAL) $(CONFIG) $(SHM) $(ENGINE) $(HAL) $(LIBOWS) $(filter-out src/owsd.c,$(OWSD))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
-UNIT     := $(patsubst tests/unit/%.c,$(B)/unit/%,$(wildcard tests/unit/test_*.c))
+pic       = $(patsubst %.c,$(B)/pic/%.o,$(1))
+UNIT     := $(patsubst tests/unit/%.c,$(B)/unit/%,$(UNIT_SRC))
+BENCHES  := $(patsubst tests/bench/%.c,$(B)/bench/%,$(BENCH))
+SAMPLES  := $(patsubst docs/examples/%.c,$(B)/examples/%,$(filter %.c,$(EXAMPLES))) \
+            $(patsubst docs/examples/%.cpp,$(B)/examples/%,$(filter %.cpp,$(EXAMPLES)))
+PROGRAMS := $(if $(wildcard src/owsd.c),$(B)/owsd) $(if $(wildcard src/owsctl/owsctl.c),$(B)/owsctl)
+SO       := libows.so.$(VERSION)
+LIBRARY  := $(if $(LIBOWS),$(B)/$(SO) $(B)/libows.a $(B)/libows.pc)
 
-.PHONY: all unit clean
-all:
+.PHONY: all unit system test run bench install uninstall clean deps-build deps-run deps-test \
+        examples unit-programs clang sanitize asan tsan m32
+all: $(PROGRAMS) $(LIBRARY) $(B)/core.a
 
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
 	$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
 
-# Everything but main(): what the unit tests link
+# Everything but main(): what the programs and the unit tests link
 $(B)/core.a: $(call obj,$(CORE))
+	@mkdir -p $(@D)
 	@rm -f $@
 	$(AR) rcs $@ $^
+
+$(B)/owsd: $(B)/src/owsd.o $(B)/core.a
+	$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+
+$(B)/owsctl: $(call obj,$(OWSCTL)) $(B)/core.a
+	$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+
+# --- libows: exports ows_* and nothing else ---------------------------------------------------
+$(B)/pic/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) -fPIC -fno-semantic-interposition -MMD -MP -c -o $@ $<
+
+# What of the daemon's sources libows needs is drawn from here
+$(B)/pic/aid.a: $(call pic,$(SHM) $(SIGNAL))
+	@mkdir -p $(@D)
+	@rm -f $@
+	$(AR) rcs $@ $^
+
+$(B)/pic/libows.map:
+	@mkdir -p $(@D)
+	@echo '{ global: ows_*; local: *; };' > $@
+
+$(B)/$(SO): $(call pic,$(LIBOWS)) $(B)/pic/aid.a $(B)/pic/libows.map
+	$(CC) -shared -Wl,-soname,libows.so.$(SOMAJOR) -Wl,--version-script,$(B)/pic/libows.map \
+	    -Wl,-z,relro,-z,now $(if $(findstring sanitize,$(EXTRA_CFLAGS)),,-Wl,-z,defs) \
+	    $(LDFLAGS) $(EXTRA_CFLAGS) -o $@ $(filter %.o %.a,$^) $(LIBS)
+	@ln -sf $(SO) $(B)/libows.so.$(SOMAJOR)
+	@ln -sf $(SO) $(B)/libows.so
+
+$(B)/libows.a: $(call pic,$(LIBOWS)) $(B)/pic/aid.a
+	@rm -f $@
+	$(CC) $(filter -m%,$(EXTRA_CFLAGS)) -r -nostdlib -o $(B)/pic/libows-one.o $^
+	$(OBJCOPY) --wildcard --keep-global-symbol='ows_*' $(B)/pic/libows-one.o
+	$(AR) rcs $@ $(B)/pic/libows-one.o
+
+$(B)/libows.pc: Makefile
+	@mkdir -p $(@D)
+	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$${prefix}/include' '' \
+	    'Name: libows' 'Description: Signals of owsd, the 1-Wire daemon, in shared memory' \
+	    'Version: $(VERSION)' 'Libs: -L$${libdir} -lows' 'Libs.private: -lm -pthread' \
+	    'Cflags: -I$${includedir}' > $@
+
+# --- Examples ---------------------------------------------------------------------------------
+examples: $(SAMPLES)
+
+$(B)/examples/%: docs/examples/%.c $(B)/libows.a
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) -Isrc/libows $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+
+$(B)/examples/%: docs/examples/%.cpp $(B)/libows.a
+	@mkdir -p $(@D)
+	$(CXX) $(ALL_CXXFLAGS) -Isrc/libows $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+
+# --- Unit tests: Unity, one program for each file ---------------------------------------------
+UNITY    ?= build/unity
+UNITY_FLAGS := -isystem $(UNITY) -DUNITY_INCLUDE_DOUBLE -DUNITY_SUPPORT_64
+
+# One script makes all three files; the header stands for them. UNITY=DIR takes a copy of yours
+build/unity/unity.h: board/fetch-unity
+	sh board/fetch-unity build/unity
+	@touch $@
+
+$(B)/unit/unity.o: $(UNITY)/unity.h
+	@mkdir -p $(@D)
+	$(CC) -std=c17 $(CFLAGS) $(EXTRA_CFLAGS) $(UNITY_FLAGS) -fPIE -w -c -o $@ $(UNITY)/unity.c
+
+$(B)/unit/%.o: tests/unit/%.c $(UNITY)/unity.h
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) $(UNITY_FLAGS) -Itests/unit -MMD -MP -c -o $@ $<
+
+$(UNIT): %: %.o $(B)/unit/unity.o $(patsubst tests/unit/%.c,$(B)/unit/%.o,$(UNIT_AID)) $(B)/core.a
+	$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+
+unit-programs: $(UNIT)
+
+unit: all $(UNIT)
+	@sh tests/unit/run $(UNIT)
+
+.SECONDARY:
+
+# --- System tests, benches and the main job ---------------------------------------------------
+deps-build deps-run deps-test deps-check: deps-%:
+	@sh board/install-deps $*
+
+system: all examples
+	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/run
+
+# Tools may be missing before install-deps ran: so make is asked again after it
+test:
+	@sh board/install-deps build run test
+	@$(MAKE) --no-print-directory all
+	@sh tests/both $(MAKE) --no-print-directory
+
+run:
+	@sh board/install-deps build run
+	@$(MAKE) --no-print-directory all
+	@OWSD_BUILD=$(abspath $(B)) sh board/demo/run $(TARGET)
+
+$(B)/bench/%: tests/bench/%.c $(B)/core.a
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.c %.a,$^) $(LIBS)
+
+bench: all $(BENCHES)
+	@for b in $(BENCHES); do $$b || exit 1; done
+
+# --- Slower checks ----------------------------------------------------------------------------
+ASAN_FLAGS := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+TSAN_FLAGS := -fsanitize=thread -fno-omit-frame-pointer
+
+asan:
+	@$(MAKE) --no-print-directory B=build/asan all
+	@ASAN_OPTIONS=detect_leaks=1:abort_on_error=0 UBSAN_OPTIONS=print_stacktrace=1 \
+	    sh tests/both $(MAKE) --no-print-directory B=build/asan
+asan: export EXTRA_CFLAGS := $(ASAN_FLAGS)
+asan: export CFLAGS := -O1 -g
+
+tsan:
+	@$(MAKE) --no-print-directory B=build/tsan all
+	@TSAN_OPTIONS=halt_on_error=1 sh tests/both $(MAKE) --no-print-directory B=build/tsan
+tsan: export EXTRA_CFLAGS := $(TSAN_FLAGS)
+tsan: export CFLAGS := -O1 -g
+
+sanitize:
+	@$(MAKE) --no-print-directory asan
+	@$(MAKE) --no-print-directory tsan
+
+clang:
+	@$(MAKE) --no-print-directory B=build/clang CC=clang CXX=clang++ WERROR=1 all examples unit
+
+# 32 bits with 64-bit time: what breaks here breaks on a Raspberry Pi with a 32-bit system
+m32:
+	@$(MAKE) --no-print-directory B=build/m32 all unit
+m32: export EXTRA_CFLAGS := -m32 -D_TIME_BITS=64
+
+# --- Install ----------------------------------------------------------------------------------
+D := $(DESTDIR)
+install: all
+	install -d $(D)$(PREFIX)/bin $(D)$(PREFIX)/sbin $(D)$(PREFIX)/include $(D)$(LIBDIR)/pkgconfig \
+	    $(D)$(DATADIR)/examples
+	$(if $(wildcard src/owsd.c),install -m 755 $(B)/owsd $(D)$(PREFIX)/sbin/owsd)
+	$(if $(OWSCTL),install -m 755 $(B)/owsctl $(D)$(PREFIX)/bin/owsctl)
+	install -m 644 $(B)/$(SO) $(D)$(LIBDIR)/$(SO)
+	ln -sf $(SO) $(D)$(LIBDIR)/libows.so.$(SOMAJOR)
+	ln -sf $(SO) $(D)$(LIBDIR)/libows.so
+	install -m 644 $(B)/libows.a $(D)$(LIBDIR)/libows.a
+	install -m 644 $(B)/libows.pc $(D)$(LIBDIR)/pkgconfig/libows.pc
+	install -m 644 src/libows/ows.h $(D)$(PREFIX)/include/ows.h
+	install -m 644 src/shm/layout.h $(D)$(PREFIX)/include/ows_layout.h
+	$(if $(EXAMPLES),install -m 644 $(EXAMPLES) $(D)$(DATADIR)/examples)
+	$(if $(PYTHON),install -m 644 $(PYTHON) $(D)$(DATADIR))
+	@set -e; for m in $(MAN); do d=$(D)$(MANDIR)/man$${m##*.}; install -d $$d; \
+	    install -m 644 $$m $$d; done
+	$(if $(D),,-@ldconfig 2>/dev/null || true)
+
+uninstall:
+	rm -f $(D)$(PREFIX)/sbin/owsd $(D)$(PREFIX)/bin/owsctl $(D)$(LIBDIR)/$(SO) \
+	    $(D)$(LIBDIR)/libows.so.$(SOMAJOR) $(D)$(LIBDIR)/libows.so $(D)$(LIBDIR)/libows.a \
+	    $(D)$(LIBDIR)/pkgconfig/libows.pc $(D)$(PREFIX)/include/ows.h \
+	    $(D)$(PREFIX)/include/ows_layout.h
+	rm -f $(foreach m,$(MAN),$(D)$(MANDIR)/man$(patsubst .%,%,$(suffix $(m)))/$(notdir $(m)))
+	rm -rf $(D)$(DATADIR)
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
