@@ -1,0 +1,217 @@
+/* SPDX-License-Identifier: MIT */
+#include "log.h"
+
+#include <errno.h>
+#include <linux/futex.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#define LINES      256u /* a power of two */
+#define LINE_BYTES 255
+#define HOUR_NS    (3600 * INT64_C(1000000000))
+
+/*
+ * turn says whose the line is: in round r of the ring, r * LINES is the producers', r * LINES + 1
+ * the reader's. All zero is the empty ring, so untouched lines cost no memory.
+ */
+struct line {
+	uint32_t turn;
+	uint8_t level;
+	uint8_t len;
+	char text[LINE_BYTES + 1];
+};
+
+struct log {
+	uint32_t head; /* next to take by a producer */
+	uint32_t word;
+	uint32_t dropped;
+	uint32_t tail; /* the reader's alone */
+	uint32_t said; /* drops already told, the reader's alone */
+	enum log_level level;
+	struct line lines[LINES];
+};
+
+struct log *log_create(enum log_level level)
+{
+	struct log *log = calloc(1, sizeof(*log));
+
+	if (log)
+		log->level = level;
+	return log;
+}
+
+void log_destroy(struct log *log)
+{
+	free(log);
+}
+
+enum log_level log_level(const struct log *log)
+{
+	return log->level;
+}
+
+static struct line *claim(struct log *log, uint32_t *turn)
+{
+	uint32_t head = __atomic_load_n(&log->head, __ATOMIC_RELAXED);
+
+	for (;;) {
+		struct line *line = &log->lines[head % LINES];
+		uint32_t mine = head - head % LINES;
+		int32_t ahead = (int32_t)(__atomic_load_n(&line->turn, __ATOMIC_ACQUIRE) - mine);
+
+		if (ahead < 0)
+			return NULL;
+		if (ahead > 0) {
+			head = __atomic_load_n(&log->head, __ATOMIC_RELAXED);
+		} else if (__atomic_compare_exchange_n(&log->head, &head, head + 1, true,
+		                                       __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+			*turn = mine;
+			return line;
+		}
+	}
+}
+
+/* Control characters become '?'; a UTF-8 character that was cut at the end goes away. */
+static size_t clean(char *text, size_t len, bool cut)
+{
+	size_t start = len;
+
+	for (size_t i = 0; i < len; i++)
+		if ((unsigned char)text[i] < 0x20 || text[i] == 0x7f)
+			text[i] = '?';
+	if (!cut)
+		return len;
+	while (start > 0 && len - start < 3 && ((unsigned char)text[start - 1] & 0xc0) == 0x80)
+		start--;
+	if (start > 0 && (unsigned char)text[start - 1] >= 0xc0) {
+		unsigned char lead = (unsigned char)text[start - 1];
+		size_t want = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
+
+		if (len - (start - 1) < want)
+			return start - 1;
+	}
+	return len;
+}
+
+void log_put(struct log *log, enum log_level level, const char *format, ...)
+{
+	char text[LINE_BYTES + 1];
+	struct line *line;
+	uint32_t turn;
+	va_list args;
+	size_t len;
+	int made;
+
+	if (!log || level > log->level)
+		return;
+	va_start(args, format);
+	made = vsnprintf(text, sizeof(text), format, args);
+	va_end(args);
+	if (made < 0)
+		return;
+	len = made > LINE_BYTES ? LINE_BYTES : (size_t)made;
+	len = clean(text, len, made > LINE_BYTES);
+
+	line = claim(log, &turn);
+	if (!line) {
+		__atomic_fetch_add(&log->dropped, 1, __ATOMIC_RELAXED);
+		return;
+	}
+	line->level = (uint8_t)level;
+	line->len = (uint8_t)len;
+	memcpy(line->text, text, len);
+	__atomic_store_n(&line->turn, turn + 1, __ATOMIC_RELEASE);
+	__atomic_fetch_add(&log->word, 1, __ATOMIC_RELEASE);
+	syscall(SYS_futex, &log->word, FUTEX_WAKE, 1, NULL, NULL, 0);
+}
+
+int log_rate(struct log_rate *rate, int64_t now_ns)
+{
+	rate->seen++;
+	if (rate->seen < rate->next && now_ns - rate->last_ns < HOUR_NS)
+		return 0;
+	if (rate->next == 0)
+		rate->next = 1;
+	while (rate->next <= rate->seen)
+		rate->next *= 2;
+	rate->last_ns = now_ns;
+	return 1;
+}
+
+/* -EAGAIN: nothing was written, fd is full. Other failures lose the line: there is nobody to tell. */
+static int write_line(int fd, int prefix, int level, const char *text, size_t len)
+{
+	char out[LINE_BYTES + 8];
+	size_t size = 0, done = 0;
+
+	if (prefix) {
+		out[size++] = '<';
+		out[size++] = (char)('0' + level);
+		out[size++] = '>';
+	}
+	memcpy(out + size, text, len);
+	size += len;
+	out[size++] = '\n';
+	while (done < size) {
+		ssize_t n = write(fd, out + done, size - done);
+
+		if (n > 0)
+			done += (size_t)n;
+		else if (n < 0 && errno == EAGAIN && done == 0)
+			return -EAGAIN;
+		else if (n == 0 || errno != EINTR)
+			return -EIO;
+	}
+	return 0;
+}
+
+static void say_lost(struct log *log, int fd, int prefix)
+{
+	uint32_t dropped = __atomic_load_n(&log->dropped, __ATOMIC_RELAXED);
+	uint32_t lost = dropped - log->said;
+	char text[48];
+	int len;
+
+	if (lost == 0)
+		return;
+	len = snprintf(text, sizeof(text), "%u log line%s lost", (unsigned)lost,
+	               lost == 1 ? "" : "s");
+	if (write_line(fd, prefix, LOG_LEVEL_WARNING, text, (size_t)len) != -EAGAIN)
+		log->said = dropped;
+}
+
+int log_drain(struct log *log, int fd, int prefix)
+{
+	int count = 0;
+
+	/* One round at most: producers that never stop must not keep the supervisor here. */
+	while (count < (int)LINES) {
+		struct line *line = &log->lines[log->tail % LINES];
+		uint32_t turn = log->tail - log->tail % LINES;
+
+		if (__atomic_load_n(&line->turn, __ATOMIC_ACQUIRE) != turn + 1)
+			break;
+		if (write_line(fd, prefix, line->level, line->text, line->len) == -EAGAIN)
+			return count;
+		__atomic_store_n(&line->turn, turn + LINES, __ATOMIC_RELEASE);
+		log->tail++;
+		count++;
+	}
+	say_lost(log, fd, prefix);
+	return count;
+}
+
+uint32_t *log_word(struct log *log)
+{
+	return &log->word;
+}
+
+uint64_t log_dropped(const struct log *log)
+{
+	return __atomic_load_n(&log->dropped, __ATOMIC_RELAXED);
+}
