@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT */
+#include "attribute.h"
+
+#include <errno.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+const struct attribute_def attribute_table[ATTR_COUNT] = {
+	[ATTR_VALUE] = {"_Value", NULL, (enum ows_type)0, true, true, false},
+	[ATTR_DGNRESET] = {"_DGNRESET", NULL, OWS_BOOL, false, true, false},
+	[ATTR_TRANSACTIONS] = {"_TRANSACTIONS", NULL, OWS_LARGE, true, false, false},
+	[ATTR_READ_ENABLE] = {"_ReadEnable", "_RE", OWS_BOOL, true, true, false},
+	[ATTR_WRITE_ENABLE] = {"_WriteEnable", "_WE", OWS_BOOL, true, true, false},
+	[ATTR_WRITE_ONE_SHOT] = {"_WriteOneShot", "_WOS", OWS_BOOL, false, true, false},
+	[ATTR_ALARM] = {"_Alarm", NULL, OWS_BOOL, true, false, false},
+	[ATTR_PER_FACTOR] = {"_PerFactor", NULL, OWS_LARGE, true, false, false},
+	[ATTR_PER_COUNT] = {"_PerCount", NULL, OWS_LARGE, true, false, false},
+	[ATTR_PER_MAX] = {"_PerMax", NULL, OWS_LARGE, true, false, false},
+	[ATTR_PEND_COUNT] = {"_PendCount", NULL, OWS_LARGE, true, false, false},
+	[ATTR_PEND_LAST] = {"_PendLast", NULL, OWS_LARGE, true, false, false},
+	[ATTR_PEND_MAX] = {"_PendMax", NULL, OWS_LARGE, true, false, false},
+	[ATTR_PERIOD] = {"_Period", NULL, OWS_DOUBLE, true, false, false},
+	[ATTR_AGE] = {"_Age", NULL, OWS_DOUBLE, true, false, false},
+	[ATTR_AGE_MAX] = {"_AgeMax", NULL, OWS_DOUBLE, true, false, false},
+	[ATTR_DRIVER_DGNRESET] = {"_DGNRESET", NULL, OWS_BOOL, false, true, true},
+	[ATTR_DRIVER_TRANSACTIONS] = {"_TRANSACTIONS", NULL, OWS_LARGE, true, false, true},
+	[ATTR_DRIVER_RECONNECTS] = {"_RECONNECTS", NULL, OWS_LARGE, true, false, true},
+};
+
+static int driver_signal(const char *name)
+{
+	for (int i = 0; i < ATTR_COUNT; i++)
+		if (attribute_table[i].driver && !strcmp(attribute_table[i].name, name))
+			return i;
+	return -1;
+}
+
+static bool ends_with(const char *name, size_t len, const char *suffix, size_t *stem)
+{
+	size_t tail = suffix ? strlen(suffix) : 0;
+
+	if (!tail || tail >= len || memcmp(name + len - tail, suffix, tail))
+		return false;
+	*stem = len - tail;
+	return true;
+}
+
+/* The longest signal name followed by an attribute; its record, or -1. */
+static int split_lookup(const char *name, attribute_find *find, void *ctx,
+                        enum attribute *attribute)
+{
+	size_t len = strlen(name), stem, longest = 0;
+	int record = -1;
+
+	for (int i = 0; i < ATTR_COUNT; i++) {
+		const struct attribute_def *def = &attribute_table[i];
+		int found;
+
+		if (def->driver || (!ends_with(name, len, def->name, &stem) &&
+		                    !ends_with(name, len, def->brief, &stem)))
+			continue;
+		if (stem <= longest)
+			continue;
+		found = find(ctx, name, stem);
+		if (found < 0)
+			continue;
+		record = found;
+		longest = stem;
+		*attribute = (enum attribute)i;
+	}
+	return record;
+}
+
+int attribute_lookup(const char *prefix, const char *name, attribute_find *find, void *ctx,
+                     enum attribute *attribute)
+{
+	size_t skip = prefix ? strlen(prefix) : 0;
+	const char *forms[2] = {name, NULL}; /* as it is, and without PREFIX__ */
+	int record;
+
+	if (skip && !strncmp(name, prefix, skip) && name[skip] == '_' && name[skip + 1] == '_')
+		forms[1] = name + skip + 2;
+	for (int i = 0; i < 2; i++) {
+		if (!forms[i] || !*forms[i])
+			continue;
+		record = find(ctx, forms[i], strlen(forms[i]));
+		if (record >= 0) {
+			*attribute = ATTR_VALUE;
+			return record;
+		}
+	}
+	for (int i = 0; i < 2; i++) {
+		int driver = forms[i] ? driver_signal(forms[i]) : -1;
+
+		if (driver >= 0) {
+			*attribute = (enum attribute)driver;
+			return 0;
+		}
+	}
+	for (int i = 0; i < 2; i++) {
+		record = forms[i] ? split_lookup(forms[i], find, ctx, attribute) : -1;
+		if (record >= 0)
+			return record;
+	}
+	return -ENOENT;
+}
+
+/* One UTF-8 character; returns its bytes, 0 if it is none (too long a form, surrogate, cut). */
+static int utf8_decode(const unsigned char *p, uint32_t *code)
+{
+	static const struct {
+		unsigned char mask, lead;
+		uint32_t least;
+	} forms[] = {{0x80, 0x00, 0}, {0xe0, 0xc0, 0x80}, {0xf0, 0xe0, 0x800}, {0xf8, 0xf0, 0x10000}};
+
+	for (int n = 0; n < 4; n++) {
+		if ((p[0] & forms[n].mask) != forms[n].lead)
+			continue;
+		*code = p[0] & (unsigned char)~forms[n].mask;
+		for (int i = 1; i <= n; i++) {
+			if ((p[i] & 0xc0) != 0x80)
+				return 0;
+			*code = *code << 6 | (p[i] & 0x3f);
+		}
+		if (*code < forms[n].least || *code > 0x10ffff || (*code >> 11) == 0x1b)
+			return 0;
+		return n + 1;
+	}
+	return 0;
+}
+
+static bool between(uint32_t code, uint32_t first, uint32_t last)
+{
+	return code >= first && code <= last;
+}
+
+const char *signal_name_fault(const char *name)
+{
+	const unsigned char *p = (const unsigned char *)name;
+	uint32_t code;
+	int bytes;
+
+	if (!*name)
+		return "is empty";
+	if (strnlen(name, SIGNAL_NAME_MAX + 1) > SIGNAL_NAME_MAX)
+		return "is longer than 63 bytes";
+	for (; *p; p += bytes) {
+		bytes = utf8_decode(p, &code);
+		if (!bytes)
+			return "is not UTF-8";
+		if (code < 0x20 || between(code, 0x7f, 0x9f))
+			return "holds a control character";
+		if (code == ' ' || code == 0xa0 || code == 0x1680 || between(code, 0x2000, 0x200f) ||
+		    between(code, 0x2028, 0x202f) || between(code, 0x205f, 0x2064) ||
+		    code == 0x3000 || code == 0xfeff)
+			return "holds a blank or an invisible character";
+		if (code < 0x80 && strchr("/\"#{}", (int)code))
+			return "holds one of / \" # { }";
+	}
+	if (driver_signal(name) >= 0)
+		return "is the name of a driver signal";
+	return NULL;
+}
