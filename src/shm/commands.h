@@ -30,6 +30,8 @@ struct commands {
 	uint32_t slot_off, slot_count, entry_off, dirty_off, dirty_words, client_off;
 	uint32_t text_cap;
 	uint32_t *text_off; /* for each slot, 0 if none; allocated by commands_build() */
+	char *keep;         /* copy of what does not change: the header's first half, entries, names */
+	uint32_t keep_size;
 };
 
 size_t commands_size(const struct command_plan *plan);
@@ -65,13 +67,25 @@ void commands_drop_client(struct commands *commands, unsigned client);
 
 uint32_t *commands_bell(const struct commands *commands);
 void commands_awake(struct commands *commands, bool awake);
+/* Sequentially consistent: a consumer that did not see RETIRED after its set was in time. */
 void commands_state(struct commands *commands, enum ows_state state);
+/* The same for a segment that an earlier owsd left, of which nothing is known but its size. */
+void commands_retire(void *old, size_t old_size);
+
+/*
+ * Restore what only owsd may say there and a consumer overwrote: the header, or with all the
+ * entries and names too. Returns whether something was. Once a period is right for the header;
+ * all before an end, so that the next owsd can carry over.
+ */
+bool commands_mend(struct commands *commands, bool all);
 
 /*
  * Carry what was commanded from an older segment over to a new one, by name, type and path. old
- * may be anything: it is checked before use. Returns how many slots were carried over, -EPROTO
- * when old is no command segment of this layout.
+ * may be anything: it is checked before use. It must be retired before (commands_state() or
+ * commands_retire()), then no set is lost. After a restart _ReadEnable and _WriteEnable are not
+ * carried, after a reload they are. Returns how many slots were carried over, -EPROTO when old is
+ * no command segment of this layout.
  */
-int commands_carry(struct commands *to, const void *old, size_t old_size);
+int commands_carry(struct commands *to, const void *old, size_t old_size, bool restart);
 
 #endif

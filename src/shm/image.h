@@ -63,6 +63,9 @@ void image_target(struct image *image, uint32_t target, uint32_t state, uint32_t
 void image_counter(struct image *image, uint32_t counter, uint64_t total);
 /* Counts the news word; the caller wakes sleepers (segment_wake) when it has published enough. */
 void image_news(struct image *image);
+/* Counts the news word too. */
 void image_state(struct image *image, enum ows_state state);
+/* Retire an image that an earlier owsd left, of which nothing is known but its size. */
+void image_retire(void *old, size_t old_size);
 
 #endif

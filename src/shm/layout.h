@@ -235,6 +235,19 @@ static inline uint32_t ows_check(const uint32_t *word, size_t n)
 	return h;
 }
 
+/* The same for len bytes of text. */
+static inline uint32_t ows_check_bytes(const char *text, size_t len)
+{
+	uint32_t h = 0x9e3779b9u ^ (uint32_t)len;
+
+	for (size_t i = 0; i < len; i++) {
+		h ^= (uint8_t)text[i];
+		h *= 0x85ebca6bu;
+		h ^= h >> 15;
+	}
+	return h;
+}
+
 #ifdef __cplusplus
 #define OWS_STATIC_ASSERT(c) static_assert(c, #c)
 #else
