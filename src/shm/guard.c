@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: MIT */
+#include "guard.h"
+
+#include "segment.h"
+
+#include <errno.h>
+#include <stdint.h>
+#include <string.h>
+#include <sys/mman.h>
+
+/* base is 0 while the range is free or being set: the handler looks at it first. */
+static struct guard_range {
+	uintptr_t base;
+	size_t size;
+	int lost;
+} ranges[GUARD_MAX];
+static struct sigaction previous;
+static int installed;
+
+static struct guard_range *find(uintptr_t address)
+{
+	for (int i = 0; i < GUARD_MAX; i++) {
+		uintptr_t base = __atomic_load_n(&ranges[i].base, __ATOMIC_ACQUIRE);
+
+		if (base != 0 && address >= base && address - base < ranges[i].size)
+			return &ranges[i];
+	}
+	return NULL;
+}
+
+/* Back to what it was; the instruction faults again, or the signal is sent again. */
+static void pass_on(int number, siginfo_t *info, void *context)
+{
+	if (previous.sa_flags & SA_SIGINFO) {
+		previous.sa_sigaction(number, info, context);
+	} else if (previous.sa_handler != SIG_DFL && previous.sa_handler != SIG_IGN) {
+		previous.sa_handler(number);
+	} else {
+		struct sigaction by_default = {.sa_handler = SIG_DFL};
+
+		if (info->si_code <= 0 && previous.sa_handler == SIG_IGN)
+			return;
+		sigaction(number, &by_default, NULL);
+		if (info->si_code <= 0)
+			raise(number);
+	}
+}
+
+static void on_bus_error(int number, siginfo_t *info, void *context)
+{
+	struct guard_range *range = NULL;
+	int saved = errno;
+
+	if (info->si_code > 0)
+		range = find((uintptr_t)info->si_addr);
+	if (range != NULL && mmap((void *)range->base, range->size, PROT_READ | PROT_WRITE,
+	                          MAP_PRIVATE | MAP_FIXED | MAP_ANONYMOUS, -1, 0) != MAP_FAILED)
+		__atomic_store_n(&range->lost, 1, __ATOMIC_RELEASE);
+	else
+		pass_on(number, info, context);
+	errno = saved;
+}
+
+static int install(bool only_default)
+{
+	struct sigaction ours = {.sa_flags = SA_SIGINFO | SA_ONSTACK, .sa_sigaction = on_bus_error};
+
+	if (installed > 0)
+		return 0;
+	if (sigaction(SIGBUS, NULL, &previous) < 0)
+		return -errno;
+	if (only_default && ((previous.sa_flags & SA_SIGINFO) || previous.sa_handler != SIG_DFL))
+		return -EBUSY;
+	sigemptyset(&ours.sa_mask);
+	return sigaction(SIGBUS, &ours, NULL) < 0 ? -errno : 0;
+}
+
+/* Somebody may have put his own handler over ours; then it stays. */
+static void uninstall(void)
+{
+	struct sigaction now;
+
+	if (sigaction(SIGBUS, NULL, &now) == 0 && (now.sa_flags & SA_SIGINFO) &&
+	    now.sa_sigaction == on_bus_error)
+		sigaction(SIGBUS, &previous, NULL);
+}
+
+int guard_add(void *base, size_t size, bool only_default)
+{
+	int err;
+
+	for (int i = 0; i < GUARD_MAX; i++) {
+		if (ranges[i].base != 0)
+			continue;
+		err = install(only_default);
+		if (err)
+			return err;
+		installed++;
+		ranges[i].size = size;
+		ranges[i].lost = 0;
+		__atomic_store_n(&ranges[i].base, (uintptr_t)base, __ATOMIC_RELEASE);
+		return 0;
+	}
+	return -ENOSPC;
+}
+
+static struct guard_range *guarded(const void *base)
+{
+	for (int i = 0; base != NULL && i < GUARD_MAX; i++)
+		if (ranges[i].base == (uintptr_t)base)
+			return &ranges[i];
+	return NULL;
+}
+
+void guard_remove(const void *base)
+{
+	struct guard_range *range = guarded(base);
+
+	if (range == NULL)
+		return;
+	__atomic_store_n(&range->base, 0, __ATOMIC_RELEASE);
+	if (--installed == 0)
+		uninstall();
+}
+
+bool guard_lost(const void *base)
+{
+	struct guard_range *range = guarded(base);
+
+	return range != NULL && __atomic_load_n(&range->lost, __ATOMIC_ACQUIRE) != 0;
+}
+
+int segment_guard(struct segment *segment)
+{
+	return guard_add(segment->base, segment->size, false);
+}
+
+void segment_unguard(struct segment *segment)
+{
+	guard_remove(segment->base);
+}
+
+bool segment_lost(const struct segment *segment)
+{
+	return guard_lost(segment->base);
+}

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The guard of a range of memory that maps a file which others may truncate: a SIGBUS inside it
+ * maps private zero pages over the whole range, and the toucher goes on. Any other SIGBUS goes
+ * where it went before the first guard. Guards are set and taken away by one thread at a time.
+ */
+#ifndef SHM_GUARD_H
+#define SHM_GUARD_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define GUARD_MAX 4
+
+/* 0 or -ENOSPC when GUARD_MAX ranges are guarded. only_default: -EBUSY when the process has a
+ * SIGBUS handler of its own. */
+int guard_add(void *base, size_t size, bool only_default);
+void guard_remove(const void *base);
+bool guard_lost(const void *base);
+
+#endif

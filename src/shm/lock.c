@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The lock of an instance is a file of its own with mode 0600: on a file that others may read, any
+ * reader could hold a lock and so keep owsd from starting.
+ */
+#include "segment.h"
+
+#include "owner.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define LOCK_TRIES 16
+
+/*
+ * Byte 0 is the instance. Byte 1 is held while the pid is written and while a corpse's file is
+ * replaced, so that nobody takes a lock for a corpse's whose new owner has not yet put his pid.
+ */
+#define BYTE_INSTANCE 0
+#define BYTE_PID      1
+
+static int lock_bytes(int fd, short type, off_t start, off_t len)
+{
+	struct flock lock = {
+		.l_type = type,
+		.l_whence = SEEK_SET,
+		.l_start = start,
+		.l_len = len,
+	};
+
+	return fcntl(fd, F_OFD_SETLK, &lock) < 0 ? -errno : 0;
+}
+
+/* Opening without O_CREAT first: the kernel refuses O_CREAT on files of others even to root. */
+static int open_lock(const char *path)
+{
+	struct stat st;
+	int fd = open(path, O_RDWR | O_NOFOLLOW | O_CLOEXEC);
+
+	if (fd < 0 && errno == ENOENT) {
+		fd = open(path, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+		if (fd < 0 && errno == EEXIST)
+			return -EAGAIN;
+	}
+	if (fd < 0) {
+		int err = -errno;
+
+		if (err == -EACCES && lstat(path, &st) == 0 && st.st_uid != geteuid())
+			return -EPERM;
+		return err == -ELOOP ? -EPERM : err;
+	}
+	if (fstat(fd, &st) < 0 || !S_ISREG(st.st_mode) || !owner_trusted(st.st_uid)) {
+		close(fd);
+		return -EPERM;
+	}
+	return fd;
+}
+
+static bool still_there(int fd, const char *path)
+{
+	struct stat a, b;
+
+	return fstat(fd, &a) == 0 && lstat(path, &b) == 0 && a.st_ino == b.st_ino &&
+	       a.st_dev == b.st_dev;
+}
+
+static pid_t read_pid(int fd)
+{
+	char text[16];
+	ssize_t n = pread(fd, text, sizeof(text) - 1, 0);
+	long pid = 0;
+
+	for (ssize_t i = 0; i < n && text[i] >= '0' && text[i] <= '9' && pid < 100000000; i++)
+		pid = pid * 10 + (text[i] - '0');
+	return (pid_t)pid;
+}
+
+static int write_pid(int fd)
+{
+	char text[16];
+	int n = snprintf(text, sizeof(text), "%ld\n", (long)getpid());
+
+	if (ftruncate(fd, 0) < 0 || pwrite(fd, text, (size_t)n, 0) != n)
+		return errno ? -errno : -EIO;
+	return 0;
+}
+
+/* A process that was killed while one of its threads cannot leave the kernel. */
+static bool is_corpse(pid_t pid)
+{
+	char path[32], text[512], *end;
+	ssize_t n;
+	int fd;
+
+	snprintf(path, sizeof(path), "/proc/%ld/stat", (long)pid);
+	fd = open(path, O_RDONLY | O_CLOEXEC);
+	if (fd < 0)
+		return false;
+	n = read(fd, text, sizeof(text) - 1);
+	close(fd);
+	if (n <= 0)
+		return false;
+	text[n] = '\0';
+	end = strrchr(text, ')');
+	return end != NULL && (strncmp(end, ") Z", 3) == 0 || strncmp(end, ") X", 3) == 0);
+}
+
+/* The file that is locked by a corpse goes away; its descriptor keeps other replacers out. */
+static int replace(int fd, const char *path)
+{
+	if (lock_bytes(fd, F_WRLCK, BYTE_PID, 1) < 0 || !is_corpse(read_pid(fd)))
+		return -EBUSY;
+	if (still_there(fd, path) && unlink(path) < 0)
+		return -errno;
+	return 0;
+}
+
+int segment_lock(const char *instance, pid_t *pid, bool *stolen)
+{
+	char path[80];
+
+	*pid = 0;
+	*stolen = false;
+	if (!segment_name_ok(instance))
+		return -EINVAL;
+	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.lock", instance);
+	for (int i = 0; i < LOCK_TRIES; i++) {
+		int err, fd = open_lock(path);
+
+		if (fd == -EAGAIN)
+			continue;
+		if (fd < 0)
+			return fd;
+		err = lock_bytes(fd, F_WRLCK, BYTE_INSTANCE, 2);
+		if (err == 0 && still_there(fd, path)) {
+			err = write_pid(fd);
+			lock_bytes(fd, F_UNLCK, BYTE_PID, 1);
+			if (err == 0)
+				return fd;
+		} else if (err == -EAGAIN || err == -EACCES) {
+			*pid = read_pid(fd);
+			err = -EBUSY;
+			if (*pid > 0 && is_corpse(*pid)) {
+				err = replace(fd, path);
+				*stolen = err == 0;
+			}
+		}
+		close(fd);
+		if (err)
+			return err;
+	}
+	return -EBUSY;
+}

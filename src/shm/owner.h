@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT */
+/* Who may own a segment that we use. Blocking: reads the user database. */
+#ifndef SHM_OWNER_H
+#define SHM_OWNER_H
+
+#include <stdbool.h>
+#include <sys/types.h>
+
+/* root, owsd, or the caller. */
+bool owner_trusted(uid_t uid);
+/* The id of a group, false if there is none of that name. */
+bool owner_group(const char *name, gid_t *gid);
+
+#endif

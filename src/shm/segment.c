@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: MIT */
+#include "segment.h"
+
+#include "owner.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define SEGMENT_MIN 256
+#define SEGMENT_MAX 0x7fffffff
+
+static const struct segment_role {
+	const char *name, *group;
+	mode_t mode;
+} roles[] = {
+	[SEGMENT_IMAGE] = {"image", "owsd", 0640},
+	[SEGMENT_COMMAND] = {"command", "owsd-control", 0660},
+};
+
+bool segment_name_ok(const char *instance)
+{
+	size_t n = strlen(instance);
+
+	if (n == 0 || n > SEGMENT_NAME_MAX || instance[0] == '.')
+		return false;
+	return strspn(instance, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+	                        "0123456789-_.") == n;
+}
+
+/* shm_open() of glibc and musl means the same files, but has no rename. */
+static void final_path(const char *instance, enum segment_kind kind, char path[80])
+{
+	snprintf(path, 80, "/dev/shm/owsd.%s.%s", instance, roles[kind].name);
+}
+
+/*
+ * Where the group cannot be given the mode is 0600: the caller's own group may be anybody's.
+ * Returns 0 or a negative errno.
+ */
+static int give_to_group(int fd, const struct segment_role *role)
+{
+	gid_t gid;
+
+	if (owner_group(role->group, &gid) && fchown(fd, (uid_t)-1, gid) == 0)
+		return fchmod(fd, role->mode) < 0 ? -errno : 0;
+	return fchmod(fd, 0600) < 0 ? -errno : 0;
+}
+
+static int allocate(int fd, size_t size)
+{
+	int err;
+
+	do {
+		err = posix_fallocate(fd, 0, (off_t)size);
+	} while (err == EINTR);
+	return -err;
+}
+
+static int map(struct segment *segment)
+{
+	void *base = mmap(NULL, segment->size, PROT_READ | PROT_WRITE, MAP_SHARED, segment->fd, 0);
+
+	if (base == MAP_FAILED)
+		return -errno;
+	segment->base = base;
+	return 0;
+}
+
+int segment_create(const char *instance, enum segment_kind kind, size_t size,
+                   struct segment *segment)
+{
+	char path[80];
+	int err;
+
+	*segment = (struct segment){.fd = -1, .kind = kind, .size = size};
+	if (!segment_name_ok(instance) || size < SEGMENT_MIN || size > SEGMENT_MAX)
+		return -EINVAL;
+	final_path(instance, kind, path);
+	snprintf(segment->temporary, sizeof(segment->temporary), "%.70s.new", path);
+	/* The instance is locked: what is there is left from a start that was killed. */
+	if (unlink(segment->temporary) < 0 && errno != ENOENT)
+		return errno == EACCES ? -EPERM : -errno;
+	segment->fd = open(segment->temporary, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
+	                   0600);
+	if (segment->fd < 0)
+		return errno == EEXIST ? -EPERM : -errno;
+	err = allocate(segment->fd, size);
+	if (!err)
+		err = map(segment);
+	if (!err)
+		err = give_to_group(segment->fd, &roles[kind]);
+	if (err)
+		segment_close(segment);
+	return err;
+}
+
+int segment_show(const char *instance, struct segment *segment)
+{
+	char path[80];
+
+	final_path(instance, segment->kind, path);
+	if (rename(segment->temporary, path) < 0)
+		return errno == EACCES ? -EPERM : -errno;
+	segment->temporary[0] = '\0';
+	return 0;
+}
+
+int segment_open_old(const char *instance, enum segment_kind kind, struct segment *segment)
+{
+	struct stat st;
+	char path[80];
+	int err;
+
+	*segment = (struct segment){.fd = -1, .kind = kind};
+	if (!segment_name_ok(instance))
+		return -EINVAL;
+	final_path(instance, kind, path);
+	segment->fd = open(path, O_RDWR | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+	if (segment->fd < 0)
+		return errno == EACCES || errno == ELOOP ? -EPERM : -errno;
+	if (fstat(segment->fd, &st) < 0)
+		err = -errno;
+	else if (!S_ISREG(st.st_mode) || !owner_trusted(st.st_uid))
+		err = -EPERM;
+	else if (st.st_size < SEGMENT_MIN || st.st_size > SEGMENT_MAX)
+		err = -EPROTO;
+	else
+		err = 0;
+	if (!err) {
+		segment->size = (size_t)st.st_size;
+		err = map(segment);
+	}
+	if (err)
+		segment_close(segment);
+	return err;
+}
+
+void segment_close(struct segment *segment)
+{
+	segment_unguard(segment);
+	if (segment->base != NULL)
+		munmap(segment->base, segment->size);
+	if (segment->fd >= 0)
+		close(segment->fd);
+	if (segment->temporary[0] != '\0')
+		unlink(segment->temporary);
+	segment->base = NULL;
+	segment->fd = -1;
+	segment->temporary[0] = '\0';
+}
+
+int segment_remove(const char *instance, enum segment_kind kind)
+{
+	char path[80];
+
+	if (!segment_name_ok(instance))
+		return -EINVAL;
+	final_path(instance, kind, path);
+	return unlink(path) < 0 ? -errno : 0;
+}
