@@ -193,6 +193,8 @@ $(B)/bench/%: tests/bench/%.c $(B)/core.a
 bench: all $(BENCHES)
 	@for b in $(BENCHES); do $$b || exit 1; done
 
+include tests/kernel/kernel.mk
+
 # --- Slower checks ----------------------------------------------------------------------------
 ASAN_FLAGS := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 TSAN_FLAGS := -fsanitize=thread -fno-omit-frame-pointer
