@@ -1,0 +1,349 @@
+# SPDX-License-Identifier: MIT
+"""What a system test needs: owsd, owsctl and the genuine owserver, started and always ended.
+
+    import owsdtest
+
+    def test_a_temperature_arrives(scene):
+        server = scene.owserver(mock=["28"])
+        daemon = scene.owsd(owsdtest.rio(server.target, [
+            dict(Name="room", Path=server.devices()[0] + "/temperature", Type="double", IO="input"),
+        ]))
+        scene.until(lambda: scene.get(daemon, "room"), 10, "room is good")
+
+    if __name__ == "__main__":
+        owsdtest.main()
+
+Every function test_* is a case; its name is the sentence that is shown. A case fails by an
+exception (assert will do), and is skipped by owsdtest.skip("why"). Every wait has a deadline.
+"""
+
+import glob
+import itertools
+import os
+import pathlib
+import shutil
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+
+SOURCE = pathlib.Path(os.environ.get("OWSD_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
+BUILD = pathlib.Path(os.environ.get("OWSD_BUILD", SOURCE / "build"))
+OWSD = BUILD / "owsd"
+OWSCTL = BUILD / "owsctl"
+NOP, READ, WRITE, DIRALL = 1, 2, 3, 7
+_serial = itertools.count(1)
+
+
+class Skip(Exception):
+    pass
+
+
+class Late(AssertionError):
+    """A condition did not come true in time."""
+
+
+def skip(why):
+    raise Skip(why)
+
+
+def need(program):
+    assert program.exists(), f"{program} is not built"
+
+
+def until(condition, seconds, what="", step=0.02):
+    """Wait until condition() is true and return its value; fail after so many seconds."""
+    deadline = time.monotonic() + seconds
+    while True:
+        value = condition()
+        if value:
+            return value
+        if time.monotonic() >= deadline:
+            raise Late(f"not within {seconds:g} s: {what or condition}")
+        time.sleep(step)
+
+
+def free_port(host="127.0.0.1"):
+    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as s:
+        s.bind((host, 0))
+        return s.getsockname()[1]
+
+
+class raw(str):
+    """A value that rio() writes without quotes: raw("0x0018")."""
+
+
+def rio(target, items, **driver):
+    """The text of a configuration; items are dictionaries of keys. Text is quoted, numbers not."""
+    def value(v):
+        return str(v) if isinstance(v, (int, float, raw)) else f'"{v}"'
+
+    keys = {"Version": raw("1.00"), "TargetName": target, **driver, "ItemCount": len(items)}
+    lines = ["OwsDrv {"]
+    lines += [f"  {key:23} {value(v)}" for key, v in keys.items()]
+    for item in items:
+        lines.append("  Item {")
+        lines += [f"    {key:23} {value(v)}" for key, v in item.items()]
+        lines.append("  }")
+    return "\n".join(lines + ["}", ""])
+
+
+class Program:
+    """A process of ours with its output in a file."""
+
+    def __init__(self, scene, command, env=None):
+        self.command = [str(c) for c in command]
+        self.log_path = scene.path / f"log{next(_serial)}"
+        with open(self.log_path, "wb") as out:
+            self.process = subprocess.Popen(self.command, cwd=scene.path, stdin=subprocess.DEVNULL,
+                                            stdout=out, stderr=subprocess.STDOUT,
+                                            env=dict(os.environ, **(env or {})))
+        self.pid = self.process.pid
+        scene.programs.append(self)
+
+    def log(self):
+        return self.log_path.read_text(errors="replace")
+
+    def running(self):
+        return self.process.poll() is None
+
+    def signal(self, number):
+        self.process.send_signal(number)
+
+    def freeze(self):
+        self.signal(signal.SIGSTOP)
+
+    def thaw(self):
+        self.signal(signal.SIGCONT)
+
+    def wait(self, seconds=10):
+        """The exit status; fails if it does not end in time."""
+        try:
+            return self.process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            raise Late(f"{self.command[0]} did not end within {seconds:g} s") from None
+
+    def kill(self):
+        """SIGKILL; returns when it is gone."""
+        self.process.kill()
+        return self.wait()
+
+    def stop(self, seconds=10):
+        """SIGTERM; returns the exit status."""
+        self.thaw()
+        self.process.terminate()
+        return self.wait(seconds)
+
+
+class Owserver(Program):
+    """The genuine owserver with simulated devices on a port of its own."""
+
+    def __init__(self, scene, port, buses, host, options):
+        self.host, self.port, self.buses, self.options = host, port, buses, list(options)
+        self.target = f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
+        # In a file: owserver aborts when its command line exceeds about 480 bytes
+        conf = scene.file(f"owserver-{port}.conf",
+                          "".join(f"{kind} = {','.join(ids)}\n" for kind, ids in buses))
+        super().__init__(scene, [shutil.which("owserver"), "-c", conf, "-p", self.target,
+                                 "--foreground", *self.options])
+
+    def request(self, kind, path="", data=b"", size=8192, flags=0x10A, seconds=5):
+        """One request on a connection of its own: (ret, payload)."""
+        body = path.encode() + b"\0" + data if path else b""
+        with socket.create_connection((self.host, self.port), timeout=seconds) as s:
+            s.sendall(struct.pack(">6i", 0, len(body), kind, flags,
+                                  len(data) if kind == WRITE else size, 0) + body)
+            while True:
+                _, length, ret, _, _, _ = struct.unpack(">6i", self._exactly(s, 24))
+                if length >= 0:
+                    return ret, self._exactly(s, length)
+
+    @staticmethod
+    def _exactly(s, n):
+        data = b""
+        while len(data) < n:
+            more = s.recv(n - len(data))
+            if not more:
+                raise ConnectionError("owserver closed the connection")
+            data += more
+        return data
+
+    def answers(self):
+        try:
+            return self.request(NOP, seconds=1)[0] == 0
+        except OSError:
+            return False
+
+    def read(self, path):
+        ret, data = self.request(READ, path)
+        if ret < 0:
+            raise OSError(-ret, f"owserver: read {path}: {ret}")
+        return data.decode("latin-1").strip()
+
+    def write(self, path, value):
+        """Write; returns owserver's answer (a mock device takes also what it answers an error to)."""
+        return self.request(WRITE, path, str(value).encode("latin-1"))[0]
+
+    def devices(self, bus=None):
+        """Paths of all devices, or of those on bus number so and so, sorted. Tester ids are the same
+        in every run; fake and mock ids are if there is only one bus of these two kinds."""
+        ret, data = self.request(DIRALL, "/" if bus is None else f"/bus.{bus}")
+        if ret < 0:
+            raise OSError(-ret, f"owserver: dirall: {ret}")
+        names = (p.rsplit("/", 1)[1] for p in data.rstrip(b"\0").decode().split(",") if p)
+        return sorted("/" + n for n in names if len(n) == 15 and n[2] == ".")
+
+
+class Owsd(Program):
+    def __init__(self, scene, config, name, options, env):
+        self.name = name
+        self.config = config
+        self.notify = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        address = str(scene.path / f"n{next(_serial)}")
+        self.notify.bind(address)
+        super().__init__(scene, [OWSD, "-n", name, "-c", config, *options],
+                         {"NOTIFY_SOCKET": address, **(env or {})})
+
+    def ready(self, seconds=10):
+        """Wait until it says READY=1 to the service manager."""
+        deadline = time.monotonic() + seconds
+        self.notify.settimeout(0.05)
+        while True:
+            try:
+                if b"READY=1" in self.notify.recv(4096).split(b"\n"):
+                    return self
+            except socket.timeout:
+                pass
+            if not self.running():
+                raise AssertionError(f"owsd ended with status {self.process.returncode}")
+            if time.monotonic() > deadline:
+                raise Late(f"owsd not ready within {seconds:g} s")
+
+
+class Scene:
+    """One case's processes, files and instance names; leaving it ends and removes them all."""
+
+    until = staticmethod(until)
+
+    def __init__(self):
+        self.path = pathlib.Path(tempfile.mkdtemp(prefix="s"))
+        self.programs = []
+        self.names = []
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, _value, _trace):
+        for program in reversed(self.programs):
+            if program.running():
+                program.thaw()
+                program.process.terminate()
+        for program in reversed(self.programs):
+            try:
+                program.process.wait(5)
+            except subprocess.TimeoutExpired:
+                program.kill()
+        if kind is not None and not issubclass(kind, Skip):
+            for program in self.programs:
+                print(f"--- {' '.join(program.command)}: status {program.process.returncode}")
+                print("\n".join(program.log().splitlines()[-60:]))
+        for name in self.names:
+            for path in glob.glob(f"/dev/shm/*{name}*"):
+                try:
+                    os.unlink(path)
+                except OSError:
+                    pass
+        shutil.rmtree(self.path, ignore_errors=True)
+
+    def file(self, name, text):
+        path = self.path / name
+        path.write_text(text)
+        return path
+
+    def name(self):
+        """An instance name that nobody else uses."""
+        name = f"T{os.getpid()}x{next(_serial)}x"
+        self.names.append(name)
+        return name
+
+    def start(self, command, env=None):
+        """Any program that is to end with the case."""
+        return Program(self, command, env)
+
+    def owserver(self, fake=(), tester=(), mock=(), port=None, host="127.0.0.1", options=()):
+        """Start owserver with simulated buses in this order, and wait until it answers."""
+        if shutil.which("owserver") is None:
+            skip("owserver is not installed")
+        buses = [(kind, ids) for kind, ids in
+                 (("fake", fake), ("tester", tester), ("mock", mock)) if ids]
+        for _attempt in range(1 if port else 5):
+            server = Owserver(self, port or free_port(host), buses, host, options)
+            until(lambda: server.answers() or not server.running(), 10, "owserver answers")
+            if server.running():
+                return server
+        raise AssertionError("owserver did not start")
+
+    def again(self, server):
+        """The same owserver on the same port after it was ended."""
+        new = Owserver(self, server.port, server.buses, server.host, server.options)
+        until(lambda: new.answers() or not new.running(), 10, "owserver answers again")
+        assert new.running(), "owserver did not start again"
+        return new
+
+    def owsd(self, config, *options, name=None, env=None, ready=True):
+        """Start owsd with the text (or the path) of a configuration; ready unless said otherwise."""
+        need(OWSD)
+        name = name or self.name()
+        if isinstance(config, str):
+            config = self.file(f"{name}-{next(_serial)}.rio", config)
+        daemon = Owsd(self, config, name, options, env)
+        return daemon.ready() if ready else daemon
+
+    def owsd_once(self, *arguments, seconds=20):
+        """Run owsd to its end (--check, -V, a faulty file): returncode, stdout, stderr."""
+        need(OWSD)
+        return self._run([OWSD, *arguments], seconds)
+
+    def owsctl(self, daemon, *arguments, seconds=20):
+        """Run owsctl on an owsd (or an instance name, or None): returncode, stdout, stderr."""
+        need(OWSCTL)
+        name = daemon.name if isinstance(daemon, Owsd) else daemon
+        return self._run([OWSCTL, *(["-n", name] if name else []), *arguments], seconds)
+
+    def _run(self, command, seconds):
+        return subprocess.run([str(c) for c in command], cwd=self.path, text=True, timeout=seconds,
+                              stdin=subprocess.DEVNULL, capture_output=True)
+
+    def get(self, daemon, name):
+        """The text of a good value, else None."""
+        done = self.owsctl(daemon, "get", name)
+        return done.stdout.rstrip("\n") if done.returncode == 0 else None
+
+
+def main():
+    """Run the cases of the calling script, or those named on the command line."""
+    module = vars(sys.modules["__main__"])
+    cases = {n: f for n, f in module.items() if n.startswith("test_") and callable(f)}
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    passed = failed = skipped = 0
+    for case in sys.argv[1:] or cases:
+        started = time.monotonic()
+        try:
+            with Scene() as scene:
+                cases[case](scene)
+        except Skip as why:
+            skipped += 1
+            print(f"skip {case}: {why}")
+        except Exception:
+            failed += 1
+            print(f"FAIL {case}")
+            traceback.print_exc(file=sys.stdout)
+        else:
+            passed += 1
+            print(f"ok   {case} ({time.monotonic() - started:.1f} s)")
+    print(f"{passed} passed, {failed} failed" + (f", {skipped} skipped" if skipped else ""))
+    sys.exit(1 if failed else 0)

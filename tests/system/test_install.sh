@@ -1,0 +1,62 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# make install puts everything below DESTDIR, a program builds against it, uninstall removes it all
+set -eu
+
+root=$PWD/root
+unset MAKEFLAGS MFLAGS MAKELEVEL MAKEOVERRIDES
+on_copy() {
+	make -s -C "$OWSD_SOURCE" --no-print-directory B="$OWSD_BUILD" DESTDIR="$root" PREFIX=/usr "$@"
+}
+[ -e "$OWSD_BUILD/libows.so" ] || { echo "libows is not built"; exit 1; }
+on_copy install
+
+for f in lib/libows.so lib/libows.so.0 lib/libows.a lib/pkgconfig/libows.pc include/ows.h \
+	include/ows_layout.h; do
+	[ -s "$root/usr/$f" ] || { echo "missing: $f"; exit 1; }
+done
+
+# Only ows_* is offered, by both libraries
+nm -D --defined-only "$root/usr/lib/libows.so.0" | awk 'NF == 3 { sub(/@.*/, "", $3); print $3 }' >dynamic
+nm -g --defined-only "$root/usr/lib/libows.a" | awk 'NF == 3 { print $3 }' >static
+for list in dynamic static; do
+	[ -s $list ]
+	if grep -v '^ows_' $list; then
+		echo "the $list library exports the names above"
+		exit 1
+	fi
+done
+
+# The headers say everything they need, in C11, C17 and C++11
+cat >t.c <<'END'
+#include <ows.h>
+int main(void)
+{
+	struct ows *h;
+
+	return ows_open("no-such-instance", OWS_READ, &h) == 0;
+}
+END
+cat >l.c <<'END'
+#include <ows_layout.h>
+int main(void)
+{
+	return sizeof(struct ows_record) != 256;
+}
+END
+export PKG_CONFIG_PATH="$root/usr/lib/pkgconfig" PKG_CONFIG_SYSROOT_DIR="$root"
+flags="-Wall -Wextra -Werror ${EXTRA_CFLAGS:-} $(pkg-config --cflags --libs libows)"
+for compiler in 'gcc -std=c11 -x c' 'gcc -std=c17 -x c' 'g++ -std=c++11 -x c++'; do
+	# shellcheck disable=SC2086
+	$compiler t.c -x none -o t $flags
+	LD_LIBRARY_PATH=$root/usr/lib ./t
+	# shellcheck disable=SC2086
+	$compiler l.c -x none -o l $flags
+	LD_LIBRARY_PATH=$root/usr/lib ./l
+done
+
+on_copy uninstall
+if find "$root" ! -type d | grep .; then
+	echo "uninstall left the files above"
+	exit 1
+fi
