@@ -126,6 +126,19 @@ struct bus_counter {
 	uint64_t value;
 };
 
+/* The bus's thread adds, any thread reads. */
+static inline void bus_count(struct bus_counter *counter, uint64_t by)
+{
+	uint64_t value = __atomic_load_n(&counter->value, __ATOMIC_RELAXED);
+
+	__atomic_store_n(&counter->value, value + by, __ATOMIC_RELAXED);
+}
+
+static inline uint64_t bus_counted(const struct bus_counter *counter)
+{
+	return __atomic_load_n(&counter->value, __ATOMIC_RELAXED);
+}
+
 struct bus;
 
 struct bus_ops {
@@ -159,7 +172,7 @@ struct bus_ops {
 	int (*cancel)(struct bus *bus, uint32_t id);
 	/* Let go of the hardware (true), take it again (false). NULL: nothing to let go of. */
 	void (*suspend)(struct bus *bus, bool yes);
-	/* The running totals; *n gets their count. Any thread; single values are whole. NULL: none. */
+	/* The running totals, to be read with bus_counted(); *n gets their count. NULL: none. */
 	const struct bus_counter *(*counters)(struct bus *bus, size_t *n);
 };
 
@@ -174,10 +187,12 @@ struct bus {
 
 /* All backends of this build, NULL at the end. */
 extern const struct bus_ops *const bus_backends[];
+extern const struct bus_ops owserver_bus, null_bus, late_bus;
 
 /*
  * Find the backend of a target ("owserver:localhost:4304", "null:") and create the bus. Bare
- * `host`, `host:port` and `[v6]:port` mean owserver. Returns as bus_ops.create; -EPROTONOSUPPORT
+ * `host`, `host:port` and `[v6]:port` mean owserver, and so does an empty target (localhost). A
+ * word that is a scheme is one, with or without a colon. Returns as bus_ops.create; -EPROTONOSUPPORT
  * when no backend of this build has the scheme (why names those there are).
  */
 int bus_create(const char *target, const struct bus_env *env, struct bus **bus, char *why,
@@ -187,7 +202,10 @@ int bus_init(struct bus *bus, const struct bus_ops *ops, const struct bus_env *e
 void bus_destroy(struct bus *bus);
 unsigned bus_depth(const struct bus *bus);
 
-/* As the slots of the overlapping tier, for either tier. */
+/*
+ * As the slots of the overlapping tier, for either tier. Of the requests that wait, the simple
+ * tier begins the lowest prio first, and the oldest of these.
+ */
 int bus_submit(struct bus *bus, struct bus_req *req);
 int64_t bus_step(struct bus *bus, int64_t now);
 int bus_cancel(struct bus *bus, uint32_t id);

@@ -32,8 +32,12 @@ int worker_create(const char *target, const char *name, worker_bell *bell, void 
 int worker_start(struct worker *worker);
 struct bus *worker_bus(struct worker *worker);
 
-/* Engine thread only. -EAGAIN: queue full. */
+/* Engine thread only. 0, or -EAGAIN: queue full. */
 int worker_submit(struct worker *worker, struct bus_req *req);
+/*
+ * Engine thread only. Asks for the request to be taken out: 0 asked, or -EAGAIN. What came of it
+ * is told by the request's one answer: -ECANCELED, or what it would have been anyway.
+ */
 int worker_cancel(struct worker *worker, uint32_t id);
 /* Engine thread only: the next message, false when there is none. */
 bool worker_next(struct worker *worker, struct worker_message *message);
@@ -45,7 +49,11 @@ bool worker_next(struct worker *worker, struct worker_message *message);
 int worker_stop(struct worker *worker, int64_t timeout_ns);
 void worker_destroy(struct worker *worker);
 
-/* Messages that found the queue full and had to wait; requests still lent. Any thread. */
+/*
+ * Any thread. Messages that found the queue full and had to wait; events that were dropped because
+ * it stayed full. Answers are never dropped while the worker runs.
+ */
 uint64_t worker_stalls(const struct worker *worker);
+uint64_t worker_dropped(const struct worker *worker);
 
 #endif

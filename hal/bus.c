@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: MIT */
+#include "hal/bus.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct bus_ops *backend_of(const char *word, size_t len)
+{
+	for (const struct bus_ops *const *ops = bus_backends; *ops; ops++)
+		if (strlen((*ops)->scheme) == len && memcmp((*ops)->scheme, word, len) == 0)
+			return *ops;
+	return NULL;
+}
+
+static bool is_port(const char *text)
+{
+	unsigned long port = 0;
+	size_t len = strspn(text, "0123456789");
+
+	if (len == 0 || len > 5 || text[len])
+		return false;
+	port = strtoul(text, NULL, 10);
+	return port > 0 && port <= 65535;
+}
+
+static int no_backend(const char *target, size_t word_len, char *why, size_t why_size)
+{
+	char names[160] = "";
+	size_t used = 0;
+
+	for (const struct bus_ops *const *ops = bus_backends; *ops; ops++) {
+		int n = snprintf(names + used, sizeof(names) - used, " %s:", (*ops)->scheme);
+
+		if (n < 0 || (size_t)n >= sizeof(names) - used)
+			break;
+		used += (size_t)n;
+	}
+	snprintf(why, why_size,
+	         "'%.80s': '%.*s' is no way to a bus that is known here; there are%s, "
+	         "and HOST, HOST:PORT, [IPv6]:PORT for an owserver",
+	         target, (int)(word_len > 40 ? 40 : word_len), target, names);
+	return -EPROTONOSUPPORT;
+}
+
+int bus_create(const char *target, const struct bus_env *env, struct bus **bus, char *why,
+               size_t why_size)
+{
+	const char *colon = strchr(target, ':');
+	size_t word_len = colon ? (size_t)(colon - target) : strlen(target);
+	const struct bus_ops *ops = backend_of(target, word_len);
+	const char *where = colon ? colon + 1 : "";
+	int err;
+
+	if (why_size)
+		why[0] = '\0';
+	if (!ops) {
+		if (target[0] != '[' && colon && !is_port(where)) {
+			if (!strchr(where, ':') || word_len > 4)
+				return no_backend(target, word_len, why, why_size);
+			snprintf(why, why_size, "'%.80s': an IPv6 address is written in brackets, "
+			         "as in [::1]:4304", target);
+			return -EINVAL;
+		}
+		ops = backend_of("owserver", strlen("owserver"));
+		if (!ops)
+			return no_backend(target, word_len, why, why_size);
+		where = target;
+	}
+	err = ops->create(where, env, bus, why, why_size);
+	if (err == -ENOMEM)
+		snprintf(why, why_size, "'%.80s': out of memory", target);
+	return err;
+}
+
+int bus_init(struct bus *bus, const struct bus_ops *ops, const struct bus_env *env)
+{
+	assert(ops->depth >= 1 && ops->depth <= BUS_MAX_DEPTH);
+	assert(!ops->exec != !(ops->submit && ops->step));
+	*bus = (struct bus){ .ops = ops, .env = env };
+	if (!ops->exec)
+		return 0;
+	bus->queue = calloc(ops->depth, sizeof(*bus->queue));
+	return bus->queue ? 0 : -ENOMEM;
+}
+
+void bus_destroy(struct bus *bus)
+{
+	struct bus_req **queue;
+
+	if (!bus)
+		return;
+	queue = bus->queue;
+	bus->ops->destroy(bus);
+	free(queue);
+}
+
+unsigned bus_depth(const struct bus *bus)
+{
+	return bus->ops->depth;
+}
+
+static struct bus_req **slot(struct bus *bus, unsigned i)
+{
+	return &bus->queue[(bus->head + i) % bus->ops->depth];
+}
+
+static struct bus_req *take(struct bus *bus, unsigned i)
+{
+	struct bus_req *req = *slot(bus, i);
+
+	for (; i > 0; i--)
+		*slot(bus, i) = *slot(bus, i - 1);
+	bus->head = (bus->head + 1) % bus->ops->depth;
+	bus->count--;
+	return req;
+}
+
+static unsigned most_urgent(struct bus *bus)
+{
+	unsigned best = 0;
+
+	for (unsigned i = 1; i < bus->count; i++)
+		if ((*slot(bus, i))->prio < (*slot(bus, best))->prio)
+			best = i;
+	return best;
+}
+
+int bus_submit(struct bus *bus, struct bus_req *req)
+{
+	if (bus->ops->submit)
+		return bus->ops->submit(bus, req);
+	if (bus->count == bus->ops->depth)
+		return -EAGAIN;
+	*slot(bus, bus->count++) = req;
+	return 0;
+}
+
+static void exec_next(struct bus *bus)
+{
+	struct bus_req *req = take(bus, most_urgent(bus));
+	struct bus_answer answer = { .id = req->id };
+
+	if (bus->env->now(bus->env->ctx) >= req->deadline_ns)
+		answer.err = -ETIME;
+	else
+		bus->ops->exec(bus, req, &answer);
+	bus->env->answer(bus->env->ctx, &answer);
+}
+
+int64_t bus_step(struct bus *bus, int64_t now)
+{
+	int64_t next = INT64_MAX;
+
+	if (!bus->ops->exec)
+		return bus->ops->step(bus, now);
+	if (bus->ops->step)
+		next = bus->ops->step(bus, now);
+	if (bus->count == 0)
+		return next;
+	exec_next(bus);
+	return bus->count || bus->ops->step ? now : INT64_MAX;
+}
+
+int bus_cancel(struct bus *bus, uint32_t id)
+{
+	struct bus_answer answer = { .id = id, .err = -ECANCELED };
+
+	if (!bus->ops->exec)
+		return bus->ops->cancel ? bus->ops->cancel(bus, id) : -EBUSY;
+	for (unsigned i = 0; i < bus->count; i++) {
+		if ((*slot(bus, i))->id != id)
+			continue;
+		take(bus, i);
+		bus->env->answer(bus->env->ctx, &answer);
+		return 0;
+	}
+	return -ENOENT;
+}
+
+void bus_suspend(struct bus *bus, bool yes)
+{
+	if (bus->ops->suspend)
+		bus->ops->suspend(bus, yes);
+}
+
+const struct bus_counter *bus_counters(struct bus *bus, size_t *n)
+{
+	*n = 0;
+	return bus->ops->counters ? bus->ops->counters(bus, n) : NULL;
+}
