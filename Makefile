@@ -39,6 +39,11 @@ ALL_CXXFLAGS = -std=c++11 $(CPP_COMMON) $(CXXWARN) $(HARDEN) $(CXXFLAGS) $(EXTRA
 ALL_LDFLAGS = -pie -Wl,-z,relro,-z,now $(LDFLAGS) $(EXTRA_CFLAGS)
 LIBS     := -lm -pthread
 
+# V=1 shows the commands
+V        ?= 0
+Q        := $(if $(filter 1,$(V)),,@)
+show      = $(if $(Q),@echo "  $(1)	$@")
+
 # --- The roles -------------------------------------------------------------------------------
 # What a value is, and the names of section 3.3
 SIGNAL   := $(wildcard src/signal/*.c)
@@ -56,7 +61,7 @@ LIBOWS   := $(wildcard src/libows/*.c)
 OWSCTL   := $(wildcard src/owsctl/*.c)
 # Programs over libows to start from
 EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py)
-PYTHON   := $(wildcard src/libows/ows.py)
+PYTHON   := $(wildcard src/libows/*.py)
 MAN      := $(wildcard docs/*.[1-8])
 # Tests
 UNIT_SRC := $(wildcard tests/unit/test_*.c)
@@ -75,55 +80,64 @@ PROGRAMS := $(if $(wildcard src/owsd.c),$(B)/owsd) $(if $(wildcard src/owsctl/ow
 SO       := libows.so.$(VERSION)
 LIBRARY  := $(if $(LIBOWS),$(B)/$(SO) $(B)/libows.a $(B)/libows.pc)
 
-.PHONY: all unit system test run bench install uninstall clean deps-build deps-run deps-test \
-        examples unit-programs clang sanitize asan tsan m32
+.PHONY: all unit system test run bench install uninstall clean \
+        examples unit-programs benches clang sanitize asan tsan m32
 all: $(PROGRAMS) $(LIBRARY) $(B)/core.a
 
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
+	$(call show,CC)
+	$(Q)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
 
 # Everything but main(): what the programs and the unit tests link
 $(B)/core.a: $(call obj,$(CORE))
 	@mkdir -p $(@D)
 	@rm -f $@
-	$(AR) rcs $@ $^
+	$(call show,AR)
+	$(Q)$(AR) rcs $@ $^
 
 $(B)/owsd: $(B)/src/owsd.o $(B)/core.a
-	$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+	$(call show,LD)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
 $(B)/owsctl: $(call obj,$(OWSCTL)) $(B)/core.a
-	$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+	$(call show,LD)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
 # --- libows: exports ows_* and nothing else ---------------------------------------------------
 $(B)/pic/%.o: %.c
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -fPIC -fno-semantic-interposition -MMD -MP -c -o $@ $<
+	$(call show,CC)
+	$(Q)$(CC) $(ALL_CFLAGS) -fPIC -fno-semantic-interposition -MMD -MP -c -o $@ $<
 
 # What of the daemon's sources libows needs is drawn from here
 $(B)/pic/aid.a: $(call pic,$(SHM) $(SIGNAL))
 	@mkdir -p $(@D)
 	@rm -f $@
-	$(AR) rcs $@ $^
+	$(call show,AR)
+	$(Q)$(AR) rcs $@ $^
 
 $(B)/pic/libows.map:
 	@mkdir -p $(@D)
 	@echo '{ global: ows_*; local: *; };' > $@
 
 $(B)/$(SO): $(call pic,$(LIBOWS)) $(B)/pic/aid.a $(B)/pic/libows.map
-	$(CC) -shared -Wl,-soname,libows.so.$(SOMAJOR) -Wl,--version-script,$(B)/pic/libows.map \
+	$(call show,LD)
+	$(Q)$(CC) -shared -Wl,-soname,libows.so.$(SOMAJOR) -Wl,--version-script,$(B)/pic/libows.map \
 	    -Wl,-z,relro,-z,now $(if $(findstring sanitize,$(EXTRA_CFLAGS)),,-Wl,-z,defs) \
 	    $(LDFLAGS) $(EXTRA_CFLAGS) -o $@ $(filter %.o %.a,$^) $(LIBS)
 	@ln -sf $(SO) $(B)/libows.so.$(SOMAJOR)
 	@ln -sf $(SO) $(B)/libows.so
 
 $(B)/libows.a: $(call pic,$(LIBOWS)) $(B)/pic/aid.a
+	$(call show,AR)
 	@rm -f $@
-	$(CC) $(filter -m%,$(EXTRA_CFLAGS)) -r -nostdlib -o $(B)/pic/libows-one.o $^
-	$(OBJCOPY) --wildcard --keep-global-symbol='ows_*' $(B)/pic/libows-one.o
-	$(AR) rcs $@ $(B)/pic/libows-one.o
+	$(Q)$(CC) $(filter -m%,$(CFLAGS) $(EXTRA_CFLAGS)) -r -nostdlib -o $(B)/pic/libows-one.o $^
+	$(Q)$(OBJCOPY) --wildcard --keep-global-symbol='ows_*' $(B)/pic/libows-one.o
+	$(Q)$(AR) rcs $@ $(B)/pic/libows-one.o
 
-$(B)/libows.pc: Makefile
+# PREFIX may differ from one call to the next
+$(B)/libows.pc: FORCE
 	@mkdir -p $(@D)
 	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$${prefix}/include' '' \
 	    'Name: libows' 'Description: Signals of owsd, the 1-Wire daemon, in shared memory' \
@@ -135,11 +149,13 @@ examples: $(SAMPLES)
 
 $(B)/examples/%: docs/examples/%.c $(B)/libows.a
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -Isrc/libows $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+	$(call show,CC)
+	$(Q)$(CC) $(ALL_CFLAGS) -Isrc/libows $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
 $(B)/examples/%: docs/examples/%.cpp $(B)/libows.a
 	@mkdir -p $(@D)
-	$(CXX) $(ALL_CXXFLAGS) -Isrc/libows $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+	$(call show,CXX)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -Isrc/libows $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
 # --- Unit tests: Unity, one program for each file ---------------------------------------------
 UNITY    ?= build/unity
@@ -152,14 +168,17 @@ build/unity/unity.h: board/fetch-unity
 
 $(B)/unit/unity.o: $(UNITY)/unity.h
 	@mkdir -p $(@D)
-	$(CC) -std=c17 $(CFLAGS) $(EXTRA_CFLAGS) $(UNITY_FLAGS) -fPIE -w -c -o $@ $(UNITY)/unity.c
+	$(call show,CC)
+	$(Q)$(CC) -std=c17 $(CPP_COMMON) $(CFLAGS) $(EXTRA_CFLAGS) $(UNITY_FLAGS) -fPIE -w -c -o $@ $(UNITY)/unity.c
 
 $(B)/unit/%.o: tests/unit/%.c $(UNITY)/unity.h
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) $(UNITY_FLAGS) -Itests/unit -MMD -MP -c -o $@ $<
+	$(call show,CC)
+	$(Q)$(CC) $(ALL_CFLAGS) $(UNITY_FLAGS) -Itests/unit -MMD -MP -c -o $@ $<
 
 $(UNIT): %: %.o $(B)/unit/unity.o $(patsubst tests/unit/%.c,$(B)/unit/%.o,$(UNIT_AID)) $(B)/core.a
-	$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+	$(call show,LD)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
 unit-programs: $(UNIT)
 
@@ -169,9 +188,6 @@ unit: all $(UNIT)
 .SECONDARY:
 
 # --- System tests, benches and the main job ---------------------------------------------------
-deps-build deps-run deps-test deps-check: deps-%:
-	@sh board/install-deps $*
-
 system: all examples
 	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/run
 
@@ -184,13 +200,18 @@ test:
 run:
 	@sh board/install-deps build run
 	@$(MAKE) --no-print-directory all
-	@OWSD_BUILD=$(abspath $(B)) sh board/demo/run $(TARGET)
+	@exec env OWSD_BUILD=$(abspath $(B)) sh board/demo/run $(TARGET)
+
+benches: all $(BENCHES)
 
 $(B)/bench/%: tests/bench/%.c $(B)/core.a
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.c %.a,$^) $(LIBS)
+	$(call show,CC)
+	$(Q)$(CC) $(ALL_CFLAGS) $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.c %.a,$^) $(LIBS)
 
-bench: all $(BENCHES)
+bench:
+	@sh board/install-deps build bench
+	@$(MAKE) --no-print-directory benches
 	@for b in $(BENCHES); do $$b || exit 1; done
 
 include tests/kernel/kernel.mk
@@ -206,9 +227,11 @@ asan:
 asan: export EXTRA_CFLAGS := $(ASAN_FLAGS)
 asan: export CFLAGS := -O1 -g
 
+# Without the address space's randomness: some kernels give more of it than TSan can stand
 tsan:
 	@$(MAKE) --no-print-directory B=build/tsan all
-	@TSAN_OPTIONS=halt_on_error=1 sh tests/both $(MAKE) --no-print-directory B=build/tsan
+	@fixed=; setarch -R true 2>/dev/null && fixed='setarch -R'; TSAN_OPTIONS=halt_on_error=1 \
+	    $$fixed sh tests/both $(MAKE) --no-print-directory B=build/tsan
 tsan: export EXTRA_CFLAGS := $(TSAN_FLAGS)
 tsan: export CFLAGS := -O1 -g
 
@@ -221,7 +244,12 @@ clang:
 
 # 32 bits with 64-bit time: what breaks here breaks on a Raspberry Pi with a 32-bit system
 m32:
-	@$(MAKE) --no-print-directory B=build/m32 all unit
+	@if echo 'int main(void) { return 0; }' | $(CC) -m32 -x c -o /dev/null - 2>/dev/null; then \
+	    $(MAKE) --no-print-directory B=build/m32 all unit; \
+	else \
+	    echo "m32: $(CC) cannot link 32-bit programs here (package gcc-multilib)"; \
+	    echo '0 passed, 0 failed, 1 skipped'; \
+	fi
 m32: export EXTRA_CFLAGS := -m32 -D_TIME_BITS=64
 
 # --- Install ----------------------------------------------------------------------------------
@@ -253,6 +281,8 @@ uninstall:
 	rm -rf $(D)$(DATADIR)
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
+
+FORCE:
 
 clean:
 	rm -rf $(B)
