@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "log.h"
+#include "shm/segment.h"
 
 #include <errno.h>
-#include <linux/futex.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #define LINES      256u /* a power of two */
@@ -127,7 +126,7 @@ void log_put(struct log *log, enum log_level level, const char *format, ...)
 	memcpy(line->text, text, len);
 	__atomic_store_n(&line->turn, turn + 1, __ATOMIC_RELEASE);
 	__atomic_fetch_add(&log->word, 1, __ATOMIC_RELEASE);
-	syscall(SYS_futex, &log->word, FUTEX_WAKE, 1, NULL, NULL, 0);
+	segment_wake(&log->word, 1);
 }
 
 int log_rate(struct log_rate *rate, int64_t now_ns)
