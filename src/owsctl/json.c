@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: MIT */
+#include "json.h"
+#include "text.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+void json_open(struct json *json, FILE *out)
+{
+	json->out = out;
+	json->inner = false;
+}
+
+void json_end(struct json *json)
+{
+	putc('\n', json->out);
+	json->inner = false;
+}
+
+static void put_string(FILE *out, const char *text, size_t len)
+{
+	putc('"', out);
+	while (len > 0) {
+		const char *at = text;
+		int32_t c = text_next(&text, &len);
+
+		if (c < 0)
+			fputs("\xef\xbf\xbd", out);
+		else if (c == '"' || c == '\\')
+			fprintf(out, "\\%c", (char)c);
+		else if (c == '\n')
+			fputs("\\n", out);
+		else if (c < 0x20 || (c >= 0x7f && c < 0xa0))
+			fprintf(out, "\\u%04x", (unsigned)c);
+		else
+			fwrite(at, 1, (size_t)(text - at), out);
+	}
+	putc('"', out);
+}
+
+static void begin(struct json *json, const char *key)
+{
+	if (json->inner)
+		putc(',', json->out);
+	json->inner = true;
+	if (key) {
+		put_string(json->out, key, strlen(key));
+		putc(':', json->out);
+	}
+}
+
+void json_object(struct json *json, const char *key)
+{
+	begin(json, key);
+	putc('{', json->out);
+	json->inner = false;
+}
+
+void json_object_end(struct json *json)
+{
+	putc('}', json->out);
+	json->inner = true;
+}
+
+void json_array(struct json *json, const char *key)
+{
+	begin(json, key);
+	putc('[', json->out);
+	json->inner = false;
+}
+
+void json_array_end(struct json *json)
+{
+	putc(']', json->out);
+	json->inner = true;
+}
+
+void json_string(struct json *json, const char *key, const char *text)
+{
+	if (text)
+		json_bytes(json, key, text, strlen(text));
+	else
+		json_null(json, key);
+}
+
+void json_bytes(struct json *json, const char *key, const char *text, size_t len)
+{
+	begin(json, key);
+	put_string(json->out, text, len);
+}
+
+void json_int(struct json *json, const char *key, int64_t number)
+{
+	begin(json, key);
+	fprintf(json->out, "%" PRId64, number);
+}
+
+void json_uint(struct json *json, const char *key, uint64_t number)
+{
+	begin(json, key);
+	fprintf(json->out, "%" PRIu64, number);
+}
+
+void json_bool(struct json *json, const char *key, bool value)
+{
+	begin(json, key);
+	fputs(value ? "true" : "false", json->out);
+}
+
+void json_null(struct json *json, const char *key)
+{
+	begin(json, key);
+	fputs("null", json->out);
+}
+
+void json_seconds(struct json *json, const char *key, int64_t ns)
+{
+	int64_t ms = ns / 1000000;
+
+	begin(json, key);
+	fprintf(json->out, "%s%" PRId64 ".%03d", ms < 0 ? "-" : "", ms < 0 ? -(ms / 1000) : ms / 1000,
+	        (int)(ms < 0 ? -(ms % 1000) : ms % 1000));
+}
+
+static bool digits(const char **at)
+{
+	const char *first = *at;
+
+	while (**at >= '0' && **at <= '9')
+		(*at)++;
+	return *at > first;
+}
+
+static bool is_number(const char *at)
+{
+	const char *first;
+
+	if (*at == '-')
+		at++;
+	first = at;
+	if (!digits(&at) || (*first == '0' && at - first > 1))
+		return false;
+	if (*at == '.') {
+		at++;
+		if (!digits(&at))
+			return false;
+	}
+	if (*at == 'e' || *at == 'E') {
+		at++;
+		if (*at == '+' || *at == '-')
+			at++;
+		if (!digits(&at))
+			return false;
+	}
+	return *at == '\0';
+}
+
+void json_number(struct json *json, const char *key, const char *text)
+{
+	begin(json, key);
+	fputs(is_number(text) ? text : "null", json->out);
+}

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT */
+/* Columns of text, as wide as their cells, fitted into a terminal by leaving out and cutting. */
+#ifndef OWSCTL_TABLE_H
+#define OWSCTL_TABLE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define TABLE_COLUMNS 12
+
+struct table_column {
+	const char *title;
+	bool right;       /* aligned to the right */
+	unsigned drop;    /* left out in a narrow terminal, greatest first; 0: never */
+	unsigned most;    /* cut at that many columns; 0: no limit */
+};
+
+struct table {
+	const struct table_column *columns;
+	unsigned count;
+	unsigned least[TABLE_COLUMNS];   /* not narrower than that, if there is room; caller's */
+	unsigned natural[TABLE_COLUMNS]; /* before fitting */
+	unsigned width[TABLE_COLUMNS];
+	bool shown[TABLE_COLUMNS];
+	char **cells; /* rows * count */
+	size_t rows, room;
+};
+
+void table_init(struct table *table, const struct table_column *columns, unsigned count);
+void table_free(struct table *table);
+/* Add a row; cells are copied and cleaned. false: no memory. */
+bool table_add(struct table *table, const char *const *cells);
+/* Choose the widths; columns 0: no limit. */
+void table_fit(struct table *table, unsigned columns);
+/*
+ * A line, without newline and trailing blanks: row, or the titles for -1. Returns its length in
+ * bytes; it is cut to size.
+ */
+size_t table_line(const struct table *table, int row, char *line, size_t size);
+
+#endif

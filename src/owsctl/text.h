@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Text on a terminal: UTF-8 and how many columns it takes, in any locale, and what must not reach
+ * the terminal taken out.
+ */
+#ifndef OWSCTL_TEXT_H
+#define OWSCTL_TEXT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* The next character, *text and *len moved behind it; -1 for a byte that is not UTF-8. len > 0. */
+int32_t text_next(const char **text, size_t *len);
+
+/* Columns of a character: 0 combining, 2 wide, else 1. */
+unsigned text_columns_of(int32_t c);
+/* Columns of cleaned text. */
+unsigned text_columns(const char *text);
+
+/*
+ * Copy len bytes as far as they take at most columns columns and room bytes with the NUL: control
+ * characters and what is not UTF-8 become '?'. What does not fit ends in '~'. Returns the columns.
+ */
+unsigned text_clean(const char *text, size_t len, unsigned columns, char *out, size_t room);
+
+#endif

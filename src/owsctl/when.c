@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT */
+#include "when.h"
+#include "../libows/ows.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#define SECOND INT64_C(1000000000)
+
+struct when when_now(void)
+{
+	struct timespec wall;
+	struct when now;
+
+	clock_gettime(CLOCK_REALTIME, &wall);
+	now.wall = (int64_t)wall.tv_sec * SECOND + wall.tv_nsec;
+	now.boot = ows_now();
+	return now;
+}
+
+const char *when_iso(const struct when *now, int64_t boot_ns, char text[WHEN_TEXT])
+{
+	int64_t wall = now->wall - (now->boot - boot_ns);
+	time_t seconds = (time_t)(wall / SECOND);
+	struct tm local;
+	char day[24], zone[8];
+
+	if (wall < 0 || !localtime_r(&seconds, &local) ||
+	    !strftime(day, sizeof(day), "%Y-%m-%dT%H:%M:%S", &local) ||
+	    strftime(zone, sizeof(zone), "%z", &local) != 5)
+		return strcpy(text, "?");
+	snprintf(text, WHEN_TEXT, "%s.%03d%.3s:%.2s", day, (int)(wall % SECOND / 1000000), zone,
+	         zone + 3);
+	return text;
+}
+
+const char *when_span(int64_t ns, char text[WHEN_TEXT])
+{
+	int64_t s = ns / SECOND;
+
+	if (s < 0)
+		strcpy(text, "0.0s");
+	else if (s < 10)
+		snprintf(text, WHEN_TEXT, "%d.%ds", (int)s, (int)(ns % SECOND / (SECOND / 10)));
+	else if (s < 120)
+		snprintf(text, WHEN_TEXT, "%ds", (int)s);
+	else if (s < 120 * 60)
+		snprintf(text, WHEN_TEXT, "%dm", (int)(s / 60));
+	else if (s < 48 * 3600)
+		snprintf(text, WHEN_TEXT, "%dh", (int)(s / 3600));
+	else
+		snprintf(text, WHEN_TEXT, "%lldd", (long long)(s / 86400));
+	return text;
+}

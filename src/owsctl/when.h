@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT */
+/* Times as people and programs read them. */
+#ifndef OWSCTL_WHEN_H
+#define OWSCTL_WHEN_H
+
+#include <stdint.h>
+
+/* One moment on both clocks, ns. */
+struct when {
+	int64_t boot, wall;
+};
+struct when when_now(void);
+
+#define WHEN_TEXT 40
+/* boot_ns as local time by ISO 8601 with milliseconds and offset. Returns text. */
+const char *when_iso(const struct when *now, int64_t boot_ns, char text[WHEN_TEXT]);
+/* A time span in a few characters: "0.4s" "12s" "3m" "5h" "2d". Returns text. */
+const char *when_span(int64_t ns, char text[WHEN_TEXT]);
+
+#endif
