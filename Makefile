@@ -69,7 +69,8 @@ UNIT_AID := $(filter-out $(UNIT_SRC),$(wildcard tests/unit/*.c))
 BENCH    := $(wildcard tests/bench/*.c)
 # ---------------------------------------------------------------------------------------------
 
-CORE     := $(SIGNAL) $(CONFIG) $(SHM) $(ENGINE) $(HAL) $(LIBOWS) $(filter-out src/owsd.c,$(OWSD))
+CORE     := $(SIGNAL) $(CONFIG) $(SHM) $(ENGINE) $(HAL) $(LIBOWS) $(filter-out src/owsd.c,$(OWSD)) \
+            $(filter-out src/owsctl/owsctl.c,$(OWSCTL))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
 pic       = $(patsubst %.c,$(B)/pic/%.o,$(1))
 UNIT     := $(patsubst tests/unit/%.c,$(B)/unit/%,$(UNIT_SRC))
@@ -100,7 +101,7 @@ $(B)/owsd: $(B)/src/owsd.o $(B)/core.a
 	$(call show,LD)
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
-$(B)/owsctl: $(call obj,$(OWSCTL)) $(B)/core.a
+$(B)/owsctl: $(B)/src/owsctl/owsctl.o $(B)/core.a
 	$(call show,LD)
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 

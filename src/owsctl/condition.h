@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT */
+/* What `owsctl wait` waits for: a comparison of a value. */
+#ifndef OWSCTL_CONDITION_H
+#define OWSCTL_CONDITION_H
+
+#include "reading.h"
+
+enum condition_op {
+	CONDITION_EQ,
+	CONDITION_NE,
+	CONDITION_LT,
+	CONDITION_LE,
+	CONDITION_GT,
+	CONDITION_GE,
+};
+
+struct condition {
+	enum condition_op op;
+	const char *text;
+	bool whole;      /* the number is an integer, exact in integer */
+	int64_t integer;
+	double number;
+};
+
+/* "=" "==" "!=" "<" "<=" ">" ">="; -1: none of them. */
+int condition_op(const char *text);
+/*
+ * For values of that type. Numbers as in `owsctl set`, but no limits of the type; bool also on/off
+ * and the like. -EINVAL the text is no number, -EOPNOTSUPP strings know only = and !=.
+ */
+int condition_make(enum ows_type type, const char *op, const char *text,
+                   struct condition *condition);
+bool condition_holds(const struct condition *condition, const struct reading *reading);
+
+#endif

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: MIT */
+#include "names.h"
+#include "verbs.h"
+#include "when.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+__attribute__((format(printf, 1, 0)))
+static void say(const char *format, va_list args)
+{
+	fputs("owsctl: ", stderr);
+	vfprintf(stderr, format, args);
+	putc('\n', stderr);
+}
+
+int ctl_fail(const char *format, ...)
+{
+	va_list args;
+
+	va_start(args, format);
+	say(format, args);
+	va_end(args);
+	return CTL_FAILED;
+}
+
+int ctl_usage(const struct ctl *ctl, const char *format, ...)
+{
+	va_list args;
+
+	va_start(args, format);
+	say(format, args);
+	va_end(args);
+	fprintf(stderr, "usage: owsctl %s %s\n", ctl->verb->name, ctl->verb->usage);
+	return CTL_USAGE;
+}
+
+void ctl_options(void)
+{
+	optind = 0;
+}
+
+int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
+{
+	static const struct option longs[] = {
+		{"json", no_argument, NULL, 'J'},
+		{"help", no_argument, NULL, 'h'},
+		{0},
+	};
+	char all[32];
+	int c;
+
+	snprintf(all, sizeof(all), "+:h%s", options);
+	opterr = 0;
+	while ((c = getopt_long(argc, argv, all, longs, NULL)) == 'J')
+		ctl->json = true;
+	if (c == 'h') {
+		printf("usage: owsctl %s %s\n%s\n", ctl->verb->name, ctl->verb->usage,
+		       ctl->verb->brief);
+		exit(ctl_flush(CTL_DONE));
+	}
+	if (c == ':' || c == '?') {
+		const char *what = c == ':' ? "option without its argument" : "unknown option";
+
+		if (optopt)
+			ctl_usage(ctl, "%s: -%c", what, optopt);
+		else
+			ctl_usage(ctl, "%s: %s", what, argv[optind - 1]);
+		return '?';
+	}
+	return c;
+}
+
+bool ctl_seconds(const char *text, int64_t *ns)
+{
+	char *end;
+	double seconds = strtod(text, &end);
+
+	if (end == text || *end || !(seconds >= 0) || seconds > 366 * 86400.0)
+		return false;
+	*ns = (int64_t)(seconds * 1e9);
+	return true;
+}
+
+int ctl_open(const struct ctl *ctl, enum ows_mode mode, struct ows **h)
+{
+	const char *name = ctl->instance;
+	int err = ows_open(name, mode, h);
+
+	switch (-err) {
+	case 0:
+		return CTL_DONE;
+	case ENOENT:
+		return ctl_fail("no owsd of the name %s has run here (-n NAME chooses another)", name);
+	case EACCES:
+		return ctl_fail("no right to %s the signals of %s: that is for group %s",
+		                mode == OWS_READ ? "see" : "set", name,
+		                mode == OWS_READ ? "owsd" : "owsd-control");
+	case EPERM:
+		return ctl_fail("the shared memory of %s belongs to another user, neither root nor "
+		                "owsd: refused", name);
+	case EPROTO:
+		return ctl_fail("the shared memory of %s is of another version of owsd, or not of "
+		                "owsd", name);
+	case EINVAL:
+		return ctl_fail("%s cannot be the name of an instance", name);
+	}
+	return ctl_fail("cannot open the shared memory of %s: %s", name, strerror(-err));
+}
+
+bool ctl_alive(const struct ctl *ctl, struct ows *h, int64_t now_ns)
+{
+	struct ows_daemon daemon = {0};
+	char span[WHEN_TEXT];
+
+	ows_daemon(h, now_ns, &daemon);
+	if (daemon.alive)
+		return true;
+	if (daemon.state == 3)
+		ctl_fail("owsd %s was stopped; these are its last values", ctl->instance);
+	else
+		ctl_fail("owsd %s is not running: last heartbeat %s ago", ctl->instance,
+		         when_span(daemon.beat_age_ns, span));
+	return false;
+}
+
+void ctl_nap(void)
+{
+	const struct timespec nap = {.tv_nsec = 200000000};
+
+	nanosleep(&nap, NULL);
+}
+
+int ctl_unknown(struct ows *h, const char *name)
+{
+	char nearest[NAMES_MAX];
+
+	if (names_nearest(h, name, nearest))
+		return ctl_fail("there is no %s; did you mean %s?", name, nearest);
+	return ctl_fail("there is no %s", name);
+}
+
+int ctl_flush(int status)
+{
+	errno = 0;
+	if (fflush(stdout) == 0 && !ferror(stdout))
+		return status;
+	if (errno == EPIPE)
+		return status;
+	return ctl_fail("cannot write: %s", strerror(errno ? errno : EIO));
+}

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: MIT */
+#include "reading.h"
+#include "text.h"
+#include "verbs.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+/* Bytes from the bus go to a program as they are, and to a terminal without control characters. */
+static void print_text(const struct reading *reading)
+{
+	static char clean[READING_TEXT];
+
+	if (isatty(STDOUT_FILENO)) {
+		text_clean(reading->text, reading->len, READING_TEXT, clean, sizeof(clean));
+		puts(clean);
+	} else {
+		fwrite(reading->text, 1, reading->len, stdout);
+		putchar('\n');
+	}
+}
+
+static int worse(int a, int b)
+{
+	return a == CTL_FAILED || b == CTL_FAILED ? CTL_FAILED : a > b ? a : b;
+}
+
+static int get_one(struct ows *h, const char *name, struct reading *reading)
+{
+	char words[READING_WORDS];
+	int id = ows_find(h, name);
+
+	if (id == -ENOENT)
+		return ctl_unknown(h, name);
+	if (id < 0)
+		return ctl_fail("%s: %s", name, reading_error(id));
+	if (reading_get(h, id, ows_now(), reading) == -EACCES)
+		return ctl_fail("%s can only be set", name);
+	if (!reading_filled(reading))
+		return ctl_fail("%s: %s", name, reading_error(reading->err));
+	print_text(reading);
+	if (reading_good(reading))
+		return CTL_DONE;
+	/* In order with stdout where both go to one place. */
+	fflush(stdout);
+	ctl_fail("%s is not good: %s", name, reading_why(reading, words));
+	return CTL_NOT_GOOD;
+}
+
+static int get_json(struct json *json, struct ows *h, const char *name, struct reading *reading,
+                    const struct when *now)
+{
+	int id = ows_find(h, name), status = CTL_DONE;
+
+	json_object(json, NULL);
+	json_string(json, "name", name);
+	if (id < 0) {
+		json_null(json, "value");
+		json_bool(json, "good", false);
+		json_string(json, "error", id == -ENOENT ? "no such name" : reading_error(id));
+		status = id == -ENOENT ? ctl_unknown(h, name) : CTL_FAILED;
+	} else {
+		reading_get(h, id, now->boot, reading);
+		if (reading->err == -EACCES)
+			status = ctl_fail("%s can only be set", name);
+		else if (!reading_filled(reading))
+			status = CTL_FAILED;
+		else if (!reading_good(reading))
+			status = CTL_NOT_GOOD;
+		reading_json(json, h, reading, now);
+	}
+	json_object_end(json);
+	return status;
+}
+
+int verb_get(struct ctl *ctl, int argc, char **argv)
+{
+	static struct reading reading;
+	struct when now;
+	struct json json;
+	struct ows *h;
+	int status, worst = CTL_DONE;
+
+	ctl_options();
+	if (ctl_option(ctl, argc, argv, "") != -1)
+		return CTL_USAGE;
+	if (optind == argc)
+		return ctl_usage(ctl, "get what?");
+	status = ctl_open(ctl, OWS_READ, &h);
+	if (status)
+		return status;
+	now = when_now();
+	json_open(&json, stdout);
+	if (ctl->json)
+		json_array(&json, NULL);
+	for (int i = optind; i < argc; i++) {
+		status = ctl->json ? get_json(&json, h, argv[i], &reading, &now)
+		                   : get_one(h, argv[i], &reading);
+		worst = worse(worst, status);
+	}
+	if (ctl->json) {
+		json_array_end(&json);
+		json_end(&json);
+	}
+	ows_close(h);
+	return worst;
+}

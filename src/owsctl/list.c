@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: MIT */
+#include "rows.h"
+#include "table.h"
+#include "verbs.h"
+#include "../signal/value.h"
+
+#include <getopt.h>
+
+static const struct table_column columns[] = {
+	{"NAME"}, {"VALUE", .right = true, .most = 40}, {"QUALITY"}, {"AGE", .right = true},
+	{"TYPE"}, {"IO"}, {"TARGET"}, {"PATH"},
+};
+
+static bool add_row(struct table *table, struct ows *h, const struct row *row,
+                    const struct reading *reading)
+{
+	char value[128], words[READING_WORDS], span[WHEN_TEXT];
+	struct ows_target target = {.name = ""};
+	const char *cells[] = {
+		row->name,
+		value,
+		reading_quality(reading, words),
+		reading->value.measured_ns ? when_span(reading->value.age_ns, span) : "-",
+		value_type_name((enum ows_type)reading->value.type),
+		!row->path ? "" : row->output ? "out" : "in",
+		ows_target(h, reading->value.target, &target) == 0 ? target.name : "-",
+		row->path ? row->path : "",
+	};
+
+	reading_show(reading, value, sizeof(value));
+	return table_add(table, cells);
+}
+
+static bool print_table(struct ows *h, const struct rows *rows, struct reading *reading)
+{
+	struct table table;
+	char line[2048];
+	bool ok = true;
+
+	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
+	for (int i = 0; ok && i < rows->count; i++) {
+		reading_get(h, rows->row[i].id, ows_now(), reading);
+		ok = add_row(&table, h, &rows->row[i], reading);
+	}
+	table_fit(&table, 0);
+	for (int i = -1; ok && i < rows->count; i++) {
+		table_line(&table, i, line, sizeof(line));
+		puts(line);
+	}
+	table_free(&table);
+	return ok;
+}
+
+static void print_json(struct ows *h, const struct rows *rows, struct reading *reading)
+{
+	struct when now = when_now();
+	struct json json;
+
+	json_open(&json, stdout);
+	json_array(&json, NULL);
+	for (int i = 0; i < rows->count; i++) {
+		reading_get(h, rows->row[i].id, now.boot, reading);
+		json_object(&json, NULL);
+		row_json(&json, &rows->row[i]);
+		reading_json(&json, h, reading, &now);
+		json_object_end(&json);
+	}
+	json_array_end(&json);
+	json_end(&json);
+}
+
+int verb_list(struct ctl *ctl, int argc, char **argv)
+{
+	static struct reading reading;
+	int status, c, patterns;
+	struct rows rows;
+	struct ows *h;
+	bool driver = false, ok = true;
+
+	ctl_options();
+	while ((c = ctl_option(ctl, argc, argv, "a")) != -1) {
+		if (c != 'a')
+			return CTL_USAGE;
+		driver = true;
+	}
+	patterns = argc - optind;
+	status = ctl_open(ctl, OWS_READ, &h);
+	if (status)
+		return status;
+	if (rows_collect(h, argv + optind, patterns, driver, &rows) != 0) {
+		ows_close(h);
+		return ctl_fail("no memory");
+	}
+	ctl_alive(ctl, h, ows_now());
+	if (ctl->json)
+		print_json(h, &rows, &reading);
+	else
+		ok = print_table(h, &rows, &reading);
+	if (!ok)
+		status = ctl_fail("no memory");
+	else if (rows.count == 0 && patterns > 0)
+		status = ctl_fail("no signal matches");
+	rows_free(&rows);
+	ows_close(h);
+	return status;
+}

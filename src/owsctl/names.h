@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT */
+/* Names as the user writes them: what they stand for, patterns, and the nearest of the table. */
+#ifndef OWSCTL_NAMES_H
+#define OWSCTL_NAMES_H
+
+#include "../libows/ows.h"
+#include "../signal/attribute.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define NAMES_MAX (SIGNAL_NAME_MAX + 32)
+
+/* Signal (-1: the driver) and attribute of a name; -ENOENT. */
+int names_lookup(struct ows *h, const char *instance, const char *name, int *signal,
+                 enum attribute *attribute);
+
+/* Does one of count patterns (fnmatch) match, or is there none? */
+bool names_match(const char *name, char *const *patterns, int count);
+
+/* Single insertions, deletions, replacements and swaps of neighbours between two names. */
+unsigned names_distance(const char *a, const char *b);
+/* The name that was probably meant; false if none is near. */
+bool names_nearest(struct ows *h, const char *name, char nearest[NAMES_MAX]);
+
+#endif

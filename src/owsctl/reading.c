@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: MIT */
+#include "reading.h"
+#include "text.h"
+#include "../signal/value.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+int reading_get(struct ows *h, int id, int64_t now_ns, struct reading *reading)
+{
+	int err;
+
+	memset(&reading->value, 0, sizeof(reading->value));
+	reading->text[0] = '\0';
+	err = ows_get_text(h, id, now_ns, &reading->value, reading->text, sizeof(reading->text));
+	reading->err = err == -ENOSPC ? 0 : err;
+	reading->len = strlen(reading->text);
+	if (reading->value.type == OWS_STRING && reading->value.len > reading->len &&
+	    reading->value.len < sizeof(reading->text) && err == 0)
+		reading->len = reading->value.len;
+	return reading->err;
+}
+
+bool reading_filled(const struct reading *reading)
+{
+	return reading->err == 0 || reading->err == -ESTALE;
+}
+
+bool reading_good(const struct reading *reading)
+{
+	return reading->err == 0 && ows_good(reading->value.quality);
+}
+
+const char *reading_error(int err)
+{
+	switch (-err) {
+	case 0:
+		return "no error";
+	case ENODEV:
+		return "no such device there";
+	case ENOENT:
+		return "no such property";
+	case EBADMSG:
+		return "wrong checksum";
+	case ECOMM:
+		return "the wire is short";
+	case ERANGE:
+		return "reading of a sensor without power, or out of range";
+	case EILSEQ:
+		return "the answer is no value of this type";
+	case ETIME:
+		return "its turn did not come in time";
+	case ETIMEDOUT:
+		return "no answer in time";
+	case ECONNREFUSED:
+		return "the target refuses the connection";
+	case ECONNRESET:
+	case EPIPE:
+		return "the target closed the connection";
+	}
+	return strerror(-err);
+}
+
+const char *reading_quality(const struct reading *reading, char words[READING_WORDS])
+{
+	snprintf(words, READING_WORDS, "%s%s",
+	         reading_filled(reading) ? ows_quality_text(reading->value.quality)
+	                                 : reading_error(reading->err),
+	         reading->value.detail & OWS_DETAIL_SIMULATED ? ", simulated" : "");
+	return words;
+}
+
+const char *reading_why(const struct reading *reading, char words[READING_WORDS])
+{
+	const struct ows_value *value = &reading->value;
+	char span[WHEN_TEXT], error[80] = "";
+
+	if (!reading_filled(reading)) {
+		snprintf(words, READING_WORDS, "%s", reading_error(reading->err));
+		return words;
+	}
+	if (value->err)
+		snprintf(error, sizeof(error), " (%s)", reading_error(value->err));
+	if (value->measured_ns)
+		snprintf(words, READING_WORDS, "%s%s, measured %s ago",
+		         ows_quality_text(value->quality), error, when_span(value->age_ns, span));
+	else
+		snprintf(words, READING_WORDS, "%s%s, never measured",
+		         ows_quality_text(value->quality), error);
+	return words;
+}
+
+void reading_show(const struct reading *reading, char *out, size_t size)
+{
+	size_t len;
+
+	if (!reading_filled(reading)) {
+		snprintf(out, size, "-");
+	} else if (reading->value.type != OWS_STRING) {
+		snprintf(out, size, "%s", reading->text);
+	} else {
+		out[0] = '"';
+		text_clean(reading->text, reading->len, (unsigned)size - 3, out + 1, size - 2);
+		len = strlen(out);
+		memcpy(out + len, "\"", 2);
+	}
+}
+
+static void json_value(struct json *json, const struct reading *reading)
+{
+	switch ((enum ows_type)reading->value.type) {
+	case OWS_STRING:
+		json_bytes(json, "value", reading->text, reading->len);
+		return;
+	case OWS_BOOL:
+		json_bool(json, "value", reading->value.integer != 0);
+		return;
+	case OWS_BYTE:
+	case OWS_SHORT:
+	case OWS_LONG:
+	case OWS_WORD:
+	case OWS_DWORD:
+	case OWS_LARGE:
+		json_int(json, "value", reading->value.integer);
+		return;
+	case OWS_FLOAT:
+	case OWS_DOUBLE:
+		json_number(json, "value", reading->text);
+		return;
+	}
+	json_null(json, "value");
+}
+
+static void json_when(struct json *json, const char *key, const struct when *now, int64_t ns)
+{
+	char text[WHEN_TEXT];
+
+	json_string(json, key, ns ? when_iso(now, ns, text) : NULL);
+}
+
+void reading_json(struct json *json, struct ows *h, const struct reading *reading,
+                  const struct when *now)
+{
+	const struct ows_value *value = &reading->value;
+	struct ows_target target;
+
+	if (!reading_filled(reading)) {
+		json_null(json, "value");
+		json_bool(json, "good", false);
+		json_string(json, "error", reading_error(reading->err));
+		return;
+	}
+	json_value(json, reading);
+	json_string(json, "type", value_type_name((enum ows_type)value->type));
+	json_bool(json, "good", reading_good(reading));
+	json_string(json, "quality", ows_quality_text(value->quality));
+	json_int(json, "quality_code", value->quality);
+	json_seconds(json, "age", value->age_ns);
+	json_when(json, "measured", now, value->measured_ns);
+	json_when(json, "tried", now, value->tried_ns);
+	json_int(json, "err", value->err);
+	json_string(json, "error", value->err ? reading_error(value->err) : NULL);
+	json_uint(json, "count", value->count);
+	json_uint(json, "applied", value->applied);
+	json_string(json, "target",
+	            ows_target(h, value->target, &target) == 0 ? target.name : NULL);
+	json_bool(json, "simulated", value->detail & OWS_DETAIL_SIMULATED);
+	json_bool(json, "cached", value->detail & OWS_DETAIL_CACHED);
+}

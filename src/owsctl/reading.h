@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT */
+/* A value as owsctl shows it: with its text, and in words what is wrong with it. */
+#ifndef OWSCTL_READING_H
+#define OWSCTL_READING_H
+
+#include "json.h"
+#include "verbs.h"
+#include "when.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define READING_TEXT 65536 /* the longest text a layout can hold */
+
+struct reading {
+	struct ows_value value;
+	int err;    /* of ows_get_text(); the value is of use if 0 or -ESTALE */
+	size_t len; /* bytes of text */
+	char text[READING_TEXT];
+};
+
+/* Returns reading->err. */
+int reading_get(struct ows *h, int id, int64_t now_ns, struct reading *reading);
+bool reading_good(const struct reading *reading);
+/* What is there to be shown at all? */
+bool reading_filled(const struct reading *reading);
+
+#define READING_WORDS 160
+/* "good", "device absent", "good, simulated". Returns words. */
+const char *reading_quality(const struct reading *reading, char words[READING_WORDS]);
+/* Why it is not good, for a person. Returns words. */
+const char *reading_why(const struct reading *reading, char words[READING_WORDS]);
+const char *reading_error(int err);
+/* The value in a line or a table: strings quoted. Cut to size. */
+void reading_show(const struct reading *reading, char *out, size_t size);
+
+/* The members of a JSON object: value, quality and all that belongs to it. */
+void reading_json(struct json *json, struct ows *h, const struct reading *reading,
+                  const struct when *now);
+
+#endif

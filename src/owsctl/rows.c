@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT */
+#include "rows.h"
+#include "names.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int add(struct ows *h, struct rows *rows, const char *name, const struct ows_info *info)
+{
+	struct row *row = &rows->row[rows->count];
+
+	memset(row, 0, sizeof(*row));
+	row->id = ows_find(h, name);
+	row->name = strdup(name);
+	if (!row->name)
+		return -ENOMEM;
+	rows->count++;
+	if (!info)
+		return 0;
+	row->output = info->output;
+	row->fresh = info->fresh;
+	row->alarm = info->alarm;
+	row->path = strdup(info->path);
+	return row->path ? 0 : -ENOMEM;
+}
+
+int rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool driver,
+                 struct rows *rows)
+{
+	int err = 0, count = ows_count(h);
+
+	rows->count = 0;
+	rows->row = calloc((size_t)count + ATTR_COUNT, sizeof(*rows->row));
+	if (!rows->row)
+		return -ENOMEM;
+	for (int i = 0; driver && err == 0 && i < ATTR_COUNT; i++) {
+		const struct attribute_def *def = &attribute_table[i];
+
+		if (def->driver && def->readable && names_match(def->name, patterns, pattern_count))
+			err = add(h, rows, def->name, NULL);
+	}
+	for (int i = 0; err == 0 && i < count; i++) {
+		struct ows_info info;
+
+		if (ows_info(h, i, &info) == 0 &&
+		    names_match(info.name, patterns, pattern_count))
+			err = add(h, rows, info.name, &info);
+	}
+	if (err)
+		rows_free(rows);
+	return err;
+}
+
+void rows_free(struct rows *rows)
+{
+	for (int i = 0; i < rows->count; i++) {
+		free(rows->row[i].name);
+		free(rows->row[i].path);
+	}
+	free(rows->row);
+	rows->row = NULL;
+	rows->count = 0;
+}
+
+static uint64_t hash(const char *text, size_t len)
+{
+	uint64_t h = UINT64_C(0xcbf29ce484222325);
+
+	for (size_t i = 0; i < len; i++)
+		h = (h ^ (unsigned char)text[i]) * UINT64_C(0x100000001b3);
+	return h;
+}
+
+bool row_changed(struct row *row, const struct reading *reading)
+{
+	uint8_t quality = reading_filled(reading) ? reading->value.quality : 0;
+	int32_t err = reading_filled(reading) ? reading->value.err : reading->err;
+	uint64_t text_hash = hash(reading->text, reading->len);
+	bool changed = !row->seen || row->quality != quality || row->err != err ||
+	               row->text_hash != text_hash;
+
+	row->seen = true;
+	row->quality = quality;
+	row->err = err;
+	row->text_hash = text_hash;
+	return changed;
+}
+
+void row_json(struct json *json, const struct row *row)
+{
+	json_string(json, "name", row->name);
+	json_string(json, "path", row->path);
+	if (!row->path)
+		return;
+	json_string(json, "io", row->output ? "output" : "input");
+	json_bool(json, "uncached", row->fresh);
+	json_bool(json, "alarm", row->alarm);
+}

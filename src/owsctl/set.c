@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: MIT */
+#include "names.h"
+#include "reading.h"
+#include "verbs.h"
+#include "../signal/value.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct order {
+	const char *name;
+	const char *text;
+	int id;
+	enum attribute attribute;
+	enum ows_type type;
+	int64_t value; /* numbers */
+	uint32_t stamp;
+	bool confirmed;
+};
+
+static const char *range(enum ows_type type)
+{
+	switch (type) {
+	case OWS_BOOL:
+		return "0 or 1";
+	case OWS_BYTE:
+		return "0 to 255";
+	case OWS_SHORT:
+		return "-32768 to 32767";
+	case OWS_LONG:
+		return "-2147483648 to 2147483647";
+	case OWS_WORD:
+		return "0 to 65535";
+	case OWS_DWORD:
+		return "0 to 4294967295";
+	case OWS_FLOAT:
+		return "up to 3.4e38";
+	case OWS_DOUBLE:
+		return "up to 1.8e308";
+	case OWS_LARGE:
+		return "-9223372036854775808 to 9223372036854775807";
+	case OWS_STRING:
+		break;
+	}
+	return "text";
+}
+
+static bool is_edge(enum attribute attribute)
+{
+	return attribute_table[attribute].writable && !attribute_table[attribute].readable;
+}
+
+/* Everything that can be wrong is looked for before the first value is set. */
+static int prepare(const struct ctl *ctl, struct ows *h, struct order *order)
+{
+	const struct attribute_def *def;
+	struct ows_info info;
+	int signal, err;
+
+	if (names_lookup(h, ctl->instance, order->name, &signal, &order->attribute) != 0)
+		return ctl_unknown(h, order->name);
+	order->id = ows_find(h, order->name);
+	if (order->id < 0)
+		return ctl_fail("%s: %s", order->name, reading_error(order->id));
+	def = &attribute_table[order->attribute];
+	if (!def->writable)
+		return ctl_fail("%s cannot be set, only read", order->name);
+	order->type = def->type;
+	if (order->attribute == ATTR_VALUE) {
+		if (ows_info(h, signal, &info) != 0)
+			return ctl_fail("%s is not there any more", order->name);
+		order->type = (enum ows_type)info.type;
+	}
+	if (order->type == OWS_STRING)
+		return CTL_DONE;
+	err = value_parse(order->type, order->text, &order->value);
+	if (err == -ERANGE)
+		return ctl_fail("%s: %s is out of range for %s (%s)", order->name, order->text,
+		                value_type_name(order->type), range(order->type));
+	if (err)
+		return ctl_fail("%s: \"%s\" is no value for %s (%s)", order->name, order->text,
+		                value_type_name(order->type), range(order->type));
+	return CTL_DONE;
+}
+
+static int send(struct ows *h, struct order *order)
+{
+	int err;
+
+	if (order->type == OWS_STRING) {
+		err = ows_set_text(h, order->id, order->text, &order->stamp);
+	} else if (value_is_float(order->type)) {
+		err = ows_set(h, order->id, value_number(order->type, order->value),
+		              &order->stamp);
+	} else {
+		/* An edge is a change from 0, whatever this handle has seen before. */
+		if (is_edge(order->attribute))
+			ows_set_integer(h, order->id, 0, NULL);
+		err = ows_set_integer(h, order->id, order->value, &order->stamp);
+	}
+	switch (-err) {
+	case 0:
+	case ESTALE:
+		return CTL_DONE;
+	case EACCES:
+		return ctl_fail("%s is not writable: it is an input without Writable",
+		                order->name);
+	case ERANGE:
+		return ctl_fail("%s: %s is too long or out of range", order->name, order->text);
+	case EBUSY:
+		return ctl_fail("%s: another program is just setting it, try again", order->name);
+	}
+	return ctl_fail("%s: %s", order->name, reading_error(err));
+}
+
+/* Has the bus, or for the enables the engine, taken what was set? */
+static bool confirmed(struct ows *h, struct order *order, struct reading *reading)
+{
+	if (order->confirmed || is_edge(order->attribute))
+		return true;
+	if (reading_get(h, order->id, ows_now(), reading) != 0)
+		return false;
+	if (order->attribute == ATTR_VALUE)
+		order->confirmed = (int32_t)(reading->value.applied - order->stamp) >= 0;
+	else
+		order->confirmed = (reading->value.integer != 0) == (order->value != 0);
+	return order->confirmed;
+}
+
+static bool all_confirmed(struct ows *h, struct order *orders, int count, struct reading *reading)
+{
+	bool all = true;
+
+	for (int i = 0; i < count; i++)
+		all &= confirmed(h, &orders[i], reading);
+	return all;
+}
+
+static int await(struct ows *h, struct order *orders, int count, int64_t limit_ns,
+                 struct reading *reading)
+{
+	const int64_t slice = INT64_C(100000000);
+	int64_t end = ows_now() + limit_ns;
+	uint32_t news = 0;
+
+	while (!all_confirmed(h, orders, count, reading)) {
+		int64_t left = end - ows_now();
+
+		if (left <= 0)
+			return CTL_FAILED;
+		if (ows_wait(h, &news, left < slice ? left : slice) == -ESTALE) {
+			ctl_nap();
+			ows_reopen(h);
+		}
+	}
+	return CTL_DONE;
+}
+
+static bool write_disabled(struct ows *h, const struct order *order)
+{
+	char name[NAMES_MAX + 16];
+	struct ows_value value;
+	int id;
+
+	snprintf(name, sizeof(name), "%s_WriteEnable", order->name);
+	id = ows_find(h, name);
+	return id >= 0 && ows_get(h, id, ows_now(), &value) == 0 && value.integer == 0;
+}
+
+static void say_why(struct ows *h, const struct order *order, const char *seconds,
+                    struct reading *reading)
+{
+	char words[READING_WORDS];
+	struct ows_daemon daemon = {0};
+
+	ows_daemon(h, ows_now(), &daemon);
+	if (!daemon.alive)
+		ctl_fail("%s was not confirmed: owsd is not running", order->name);
+	else if (order->attribute == ATTR_VALUE && write_disabled(h, order))
+		ctl_fail("%s was not confirmed: writing is disabled (%s_WriteEnable is 0)",
+		         order->name, order->name);
+	else if (reading_get(h, order->id, ows_now(), reading) != 0 || !reading_good(reading) ||
+	         reading->value.err)
+		ctl_fail("%s was not confirmed: %s", order->name, reading_why(reading, words));
+	else
+		ctl_fail("%s was not confirmed within %s s: its turn has not come",
+		         order->name, seconds);
+}
+
+static void print_json(const struct order *orders, int count, bool waited)
+{
+	struct json json;
+
+	json_open(&json, stdout);
+	json_array(&json, NULL);
+	for (int i = 0; i < count; i++) {
+		json_object(&json, NULL);
+		json_string(&json, "name", orders[i].name);
+		json_string(&json, "set", orders[i].text);
+		if (waited && !is_edge(orders[i].attribute))
+			json_bool(&json, "confirmed", orders[i].confirmed);
+		else
+			json_null(&json, "confirmed");
+		json_object_end(&json);
+	}
+	json_array_end(&json);
+	json_end(&json);
+}
+
+static int set_all(struct ctl *ctl, struct ows *h, struct order *orders, int count,
+                   const char *seconds, int64_t limit_ns)
+{
+	static struct reading reading;
+	struct ows_daemon daemon = {0};
+	int status = CTL_DONE;
+
+	for (int i = 0; i < count; i++)
+		if (prepare(ctl, h, &orders[i]) != CTL_DONE)
+			status = CTL_FAILED;
+	for (int i = 0; i < count && status == CTL_DONE; i++)
+		status = send(h, &orders[i]);
+	if (status)
+		return status;
+	ows_daemon(h, ows_now(), &daemon);
+	if (!daemon.alive && !seconds)
+		ctl_fail("owsd is not running: what was set is kept for its next start");
+	if (seconds && await(h, orders, count, limit_ns, &reading) != CTL_DONE) {
+		status = CTL_FAILED;
+		for (int i = 0; i < count; i++)
+			if (!confirmed(h, &orders[i], &reading))
+				say_why(h, &orders[i], seconds, &reading);
+	}
+	if (ctl->json)
+		print_json(orders, count, seconds);
+	return status;
+}
+
+int verb_set(struct ctl *ctl, int argc, char **argv)
+{
+	const char *seconds = NULL;
+	struct order *orders;
+	int64_t limit_ns = 0;
+	int c, count, status;
+	struct ows *h;
+
+	ctl_options();
+	while ((c = ctl_option(ctl, argc, argv, "w:")) != -1) {
+		if (c != 'w')
+			return CTL_USAGE;
+		seconds = optarg;
+		if (!ctl_seconds(seconds, &limit_ns))
+			return ctl_usage(ctl, "-w wants a number of seconds, not %s", seconds);
+	}
+	count = (argc - optind) / 2;
+	if (argc == optind || (argc - optind) % 2)
+		return ctl_usage(ctl, argc == optind ? "set what?" : "%s needs a value",
+		                 argv[argc - 1]);
+	status = ctl_open(ctl, OWS_CONTROL, &h);
+	if (status)
+		return status;
+	orders = calloc((size_t)count, sizeof(*orders));
+	if (!orders) {
+		ows_close(h);
+		return ctl_fail("no memory");
+	}
+	for (int i = 0; i < count; i++) {
+		orders[i].name = argv[optind + 2 * i];
+		orders[i].text = argv[optind + 2 * i + 1];
+	}
+	status = set_all(ctl, h, orders, count, seconds, limit_ns);
+	free(orders);
+	ows_close(h);
+	return status;
+}

@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: MIT */
+#include "json.h"
+#include "verbs.h"
+#include "when.h"
+
+#include <getopt.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char *daemon_state(const struct ows_daemon *daemon)
+{
+	switch (daemon->state) {
+	case 1:
+		return daemon->alive ? "live" : "dead";
+	case 2:
+		return "retired";
+	case 3:
+		return "stopped";
+	}
+	return "unknown";
+}
+
+static const char *target_state(uint32_t state)
+{
+	static const char *const names[] = {"down", "up", "suspended"};
+
+	return state < 3 ? names[state] : "unknown";
+}
+
+/* Signals of the table that are not good. */
+static int not_good(struct ows *h, int64_t now_ns)
+{
+	struct ows_value value;
+	int count = 0;
+
+	for (int i = 0; i < ows_count(h); i++)
+		count += ows_get_signal(h, i, now_ns, &value) != 0 || !ows_good(value.quality);
+	return count;
+}
+
+static void print_json(const struct ctl *ctl, struct ows *h, const struct ows_daemon *daemon,
+                       const struct when *now)
+{
+	char text[WHEN_TEXT];
+	struct ows_target target;
+	struct ows_counter counter;
+	struct json json;
+
+	json_open(&json, stdout);
+	json_object(&json, NULL);
+	json_string(&json, "instance", ctl->instance);
+	json_object(&json, "daemon");
+	json_int(&json, "pid", daemon->pid);
+	json_string(&json, "state", daemon_state(daemon));
+	json_bool(&json, "alive", daemon->alive);
+	json_string(&json, "started", when_iso(now, daemon->start_ns, text));
+	json_seconds(&json, "uptime", now->boot - daemon->start_ns);
+	json_uint(&json, "generation", daemon->generation);
+	json_seconds(&json, "period", daemon->period_ns);
+	json_seconds(&json, "heartbeat_age", daemon->beat_age_ns);
+	json_object_end(&json);
+	json_int(&json, "signals", ows_count(h));
+	json_int(&json, "not_good", not_good(h, now->boot));
+	json_array(&json, "targets");
+	for (int i = 0; ows_target(h, i, &target) == 0; i++) {
+		json_object(&json, NULL);
+		json_string(&json, "name", target.name);
+		json_string(&json, "state", target_state(target.state));
+		json_uint(&json, "reconnects", target.reconnects);
+		json_object_end(&json);
+	}
+	json_array_end(&json);
+	json_array(&json, "counters");
+	for (int i = 0; ows_counter(h, i, &counter) == 0; i++) {
+		json_object(&json, NULL);
+		json_string(&json, "name", counter.name);
+		json_string(&json, "target",
+		            ows_target(h, counter.target, &target) == 0 ? target.name : NULL);
+		json_uint(&json, "value", counter.value);
+		json_object_end(&json);
+	}
+	json_array_end(&json);
+	json_object_end(&json);
+	json_end(&json);
+}
+
+static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_daemon *daemon,
+                       const struct when *now)
+{
+	char text[WHEN_TEXT], span[WHEN_TEXT];
+	struct ows_target target;
+	struct ows_counter counter;
+
+	printf("instance    %s\n", ctl->instance);
+	printf("owsd        pid %d, %s\n", (int)daemon->pid, daemon_state(daemon));
+	printf("started     %s, %s ago\n", when_iso(now, daemon->start_ns, text),
+	       when_span(now->boot - daemon->start_ns, span));
+	printf("generation  %u\n", (unsigned)daemon->generation);
+	printf("period      %g s\n", (double)daemon->period_ns / 1e9);
+	printf("heartbeat   %s ago\n", when_span(daemon->beat_age_ns, span));
+	printf("signals     %d, %d not good\n", ows_count(h), not_good(h, now->boot));
+	for (int i = 0; ows_target(h, i, &target) == 0; i++)
+		printf("target %-4d %s: %s, %u reconnect%s\n", i, target.name,
+		       target_state(target.state), (unsigned)target.reconnects,
+		       target.reconnects == 1 ? "" : "s");
+	for (int i = 0; ows_counter(h, i, &counter) == 0; i++) {
+		bool own = ows_target(h, counter.target, &target) != 0;
+
+		printf("%12" PRIu64 "  %s%s%s\n", counter.value, counter.name, own ? "" : " of ",
+		       own ? "" : target.name);
+	}
+}
+
+int verb_stats(struct ctl *ctl, int argc, char **argv)
+{
+	struct ows_daemon daemon = {0};
+	struct when now;
+	struct ows *h;
+	int status;
+
+	ctl_options();
+	if (ctl_option(ctl, argc, argv, "") != -1)
+		return CTL_USAGE;
+	if (optind < argc)
+		return ctl_usage(ctl, "stats takes no operands");
+	status = ctl_open(ctl, OWS_READ, &h);
+	if (status)
+		return status;
+	now = when_now();
+	ows_daemon(h, now.boot, &daemon);
+	if (ctl->json)
+		print_json(ctl, h, &daemon, &now);
+	else
+		print_text(ctl, h, &daemon, &now);
+	ows_close(h);
+	return CTL_DONE;
+}

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The verbs of owsctl and what all of them need. A verb gets the words after its name with its own
+ * name as argv[0], and returns the exit status.
+ */
+#ifndef OWSCTL_VERBS_H
+#define OWSCTL_VERBS_H
+
+#include "../libows/ows.h"
+
+#include <stdbool.h>
+
+enum ctl_status {
+	CTL_DONE = 0,
+	CTL_FAILED = 1,
+	CTL_USAGE = 2,
+	CTL_NOT_GOOD = 3, /* a value is not good */
+};
+
+struct verb;
+struct ctl {
+	const char *instance;
+	bool json;
+	const struct verb *verb; /* the one in work */
+};
+
+struct verb {
+	const char *name;
+	const char *usage; /* behind the name: "NAME..." */
+	const char *brief; /* one line for the list of verbs */
+	int (*run)(struct ctl *ctl, int argc, char **argv);
+};
+
+int verb_list(struct ctl *ctl, int argc, char **argv);
+int verb_get(struct ctl *ctl, int argc, char **argv);
+int verb_set(struct ctl *ctl, int argc, char **argv);
+int verb_watch(struct ctl *ctl, int argc, char **argv);
+int verb_wait(struct ctl *ctl, int argc, char **argv);
+int verb_stats(struct ctl *ctl, int argc, char **argv);
+
+/*
+ * The next option as getopt(), which stops at the first word that is none; --json is taken, -h
+ * prints the usage and ends the program. '?' : it was wrong and this has been said; return
+ * CTL_USAGE. Operands are argv[optind] and up once -1 was returned. ctl_options() starts anew.
+ */
+void ctl_options(void);
+int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options);
+
+/* Say what is wrong on stderr. */
+int ctl_usage(const struct ctl *ctl, const char *format, ...) /* returns CTL_USAGE */
+	__attribute__((format(printf, 2, 3)));
+int ctl_fail(const char *format, ...) /* returns CTL_FAILED */
+	__attribute__((format(printf, 1, 2)));
+
+/* A number of seconds, at most a year; false when text is none. */
+bool ctl_seconds(const char *text, int64_t *ns);
+
+/* Open the instance; CTL_DONE, or CTL_FAILED after having said why. */
+int ctl_open(const struct ctl *ctl, enum ows_mode mode, struct ows **h);
+/* "owsd is not running ..." on stderr when it is not; returns whether it runs. */
+bool ctl_alive(const struct ctl *ctl, struct ows *h, int64_t now_ns);
+/* Between two looks for a new owsd. */
+void ctl_nap(void);
+/* No such name: says so with the nearest there is; returns CTL_FAILED. */
+int ctl_unknown(struct ows *h, const char *name);
+/* stdout closed or full: CTL_FAILED after having said so, else status. A closed pipe is no error. */
+int ctl_flush(int status);
+
+#endif

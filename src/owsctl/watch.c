@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: MIT */
+#include "watch.h"
+#include "terminal.h"
+#include "verbs.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#define SHORTEST_SLEEP INT64_C(10000000)
+#define LONGEST_SLEEP  INT64_C(500000000) /* ages and a dead owsd are seen without news */
+
+bool watch_over(const struct watch *watch)
+{
+	return terminal_asked_to_end() || watch->left == 0 || ows_now() >= watch->end_ns;
+}
+
+static int restarted(struct watch *watch, const struct ows_daemon *daemon)
+{
+	watch->generation = daemon->generation;
+	watch->alive = daemon->alive;
+	watch->news = 0;
+	rows_free(&watch->rows);
+	if (rows_collect(watch->h, watch->patterns, watch->pattern_count, watch->driver,
+	                 &watch->rows) != 0)
+		return -ENOMEM;
+	return WATCH_RESTARTED;
+}
+
+/* News may come faster than anybody reads. */
+static void pause_until(int64_t until_ns)
+{
+	int64_t left = until_ns - ows_now();
+	const struct timespec pause = {.tv_nsec = (long)(left % 1000000000)};
+
+	if (left > 0)
+		nanosleep(&pause, NULL);
+}
+
+int watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns)
+{
+	struct ows_daemon daemon = {0};
+	int64_t now = ows_now();
+
+	if (timeout_ns > LONGEST_SLEEP)
+		timeout_ns = LONGEST_SLEEP;
+	if (timeout_ns > watch->end_ns - now)
+		timeout_ns = watch->end_ns - now;
+	if (timeout_ns > 0 && ows_wait(watch->h, &watch->news, timeout_ns) == -ESTALE) {
+		ctl_nap();
+		ows_reopen(watch->h);
+	}
+	pause_until(now + least_ns);
+	if (ows_daemon(watch->h, ows_now(), &daemon) != 0)
+		return WATCH_NOTHING;
+	if (daemon.generation != watch->generation)
+		return restarted(watch, &daemon);
+	if ((bool)daemon.alive == watch->alive)
+		return WATCH_NOTHING;
+	watch->alive = daemon.alive;
+	return daemon.alive ? WATCH_BACK : WATCH_LOST;
+}
+
+static void say_event(struct watch *watch, enum watch_event event)
+{
+	static const char *const words[] = {
+		[WATCH_RESTARTED] = "restarted", [WATCH_LOST] = "lost", [WATCH_BACK] = "back",
+	};
+	char text[WHEN_TEXT];
+	struct when now = when_now();
+	struct json json;
+
+	if (watch->ctl->json) {
+		json_open(&json, stdout);
+		json_object(&json, NULL);
+		json_string(&json, "time", when_iso(&now, now.boot, text));
+		json_string(&json, "event", words[event]);
+		json_uint(&json, "generation", watch->generation);
+		json_object_end(&json);
+		json_end(&json);
+		return;
+	}
+	switch (event) {
+	case WATCH_NOTHING:
+		return;
+	case WATCH_RESTARTED:
+		ctl_fail("owsd %s was started anew or has reloaded its file",
+		         watch->ctl->instance);
+		return;
+	case WATCH_LOST:
+		ctl_alive(watch->ctl, watch->h, ows_now());
+		return;
+	case WATCH_BACK:
+		ctl_fail("owsd %s is back", watch->ctl->instance);
+		return;
+	}
+}
+
+static void print_change(struct watch *watch, const struct row *row, const struct when *now)
+{
+	static char value[READING_TEXT + 3];
+	char text[WHEN_TEXT], words[READING_WORDS];
+	struct json json;
+
+	if (watch->ctl->json) {
+		json_open(&json, stdout);
+		json_object(&json, NULL);
+		json_string(&json, "time", when_iso(now, now->boot, text));
+		row_json(&json, row);
+		reading_json(&json, watch->h, watch->reading, now);
+		json_object_end(&json);
+		json_end(&json);
+		return;
+	}
+	reading_show(watch->reading, value, sizeof(value));
+	printf("%s %s %s %s\n", when_iso(now, now->boot, text), row->name, value,
+	       reading_quality(watch->reading, words));
+}
+
+static void print_changes(struct watch *watch)
+{
+	struct when now = when_now();
+
+	for (int i = 0; i < watch->rows.count && watch->left != 0; i++) {
+		struct row *row = &watch->rows.row[i];
+
+		reading_get(watch->h, row->id, now.boot, watch->reading);
+		if (!row_changed(row, watch->reading))
+			continue;
+		print_change(watch, row, &now);
+		if (watch->left > 0)
+			watch->left--;
+	}
+}
+
+static bool reader_gone(void)
+{
+	struct pollfd out = {.fd = STDOUT_FILENO};
+
+	return fflush(stdout) != 0 ||
+	       (poll(&out, 1, 0) > 0 && (out.revents & (POLLERR | POLLHUP | POLLNVAL)));
+}
+
+static int watch_lines(struct watch *watch)
+{
+	setvbuf(stdout, NULL, _IOLBF, 0);
+	if (!watch->alive)
+		say_event(watch, WATCH_LOST);
+	for (;;) {
+		int event;
+
+		print_changes(watch);
+		if (watch_over(watch) || reader_gone())
+			return CTL_DONE;
+		event = watch_sleep(watch, SHORTEST_SLEEP, LONGEST_SLEEP);
+		if (event < 0)
+			return ctl_fail("no memory");
+		if (event != WATCH_NOTHING)
+			say_event(watch, (enum watch_event)event);
+	}
+}
+
+static int begin(struct watch *watch, bool screen)
+{
+	struct ows_daemon daemon = {0};
+	int status;
+
+	ows_daemon(watch->h, ows_now(), &daemon);
+	if (restarted(watch, &daemon) < 0)
+		return ctl_fail("no memory");
+	if (watch->rows.count == 0 && watch->pattern_count > 0) {
+		rows_free(&watch->rows);
+		return ctl_fail("no signal matches");
+	}
+	terminal_catch_signals();
+	status = screen ? watch_screen(watch) : watch_lines(watch);
+	rows_free(&watch->rows);
+	return status;
+}
+
+static bool parse_count(const char *text, int64_t *count)
+{
+	char *end;
+
+	errno = 0;
+	*count = strtoll(text, &end, 10);
+	return end != text && !*end && !errno && *count > 0;
+}
+
+int verb_watch(struct ctl *ctl, int argc, char **argv)
+{
+	static struct reading reading;
+	struct watch watch = {.ctl = ctl, .left = -1, .end_ns = INT64_MAX, .reading = &reading};
+	bool screen = isatty(STDOUT_FILENO);
+	int64_t limit_ns = -1;
+	int c, status;
+
+	ctl_options();
+	while ((c = ctl_option(ctl, argc, argv, "alc:t:")) != -1) {
+		switch (c) {
+		case 'a':
+			watch.driver = true;
+			break;
+		case 'l':
+			screen = false;
+			break;
+		case 'c':
+			if (!parse_count(optarg, &watch.left))
+				return ctl_usage(ctl, "-c wants a number above 0, not %s", optarg);
+			break;
+		case 't':
+			if (!ctl_seconds(optarg, &limit_ns))
+				return ctl_usage(ctl, "-t wants a number of seconds, not %s",
+				                 optarg);
+			break;
+		default:
+			return CTL_USAGE;
+		}
+	}
+	watch.patterns = argv + optind;
+	watch.pattern_count = argc - optind;
+	status = ctl_open(ctl, OWS_READ, &watch.h);
+	if (status)
+		return status;
+	if (limit_ns >= 0)
+		watch.end_ns = ows_now() + limit_ns;
+	status = begin(&watch, screen && !ctl->json);
+	ows_close(watch.h);
+	return status;
+}

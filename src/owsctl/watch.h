@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT */
+/* What the live table and the plain lines of `owsctl watch` have in common. */
+#ifndef OWSCTL_WATCH_H
+#define OWSCTL_WATCH_H
+
+#include "rows.h"
+
+struct watch {
+	struct ctl *ctl;
+	struct ows *h;
+	char *const *patterns;
+	int pattern_count;
+	bool driver;
+	struct rows rows;
+	uint32_t news;
+	uint32_t generation;
+	bool alive;
+	int64_t left;   /* changes to show yet; negative: no limit */
+	int64_t end_ns; /* INT64_MAX: no limit */
+	struct reading *reading;
+};
+
+/* The table on the terminal until the end; exit status. */
+int watch_screen(struct watch *watch);
+
+enum watch_event {
+	WATCH_NOTHING,
+	WATCH_RESTARTED, /* rows were collected anew: all changed */
+	WATCH_LOST,      /* owsd stopped or does not beat */
+	WATCH_BACK,      /* it beats again */
+};
+/*
+ * Sleep until news, at least least_ns (below 1 s) and at most timeout_ns, and follow owsd over
+ * restarts. -ENOMEM, else an event.
+ */
+int watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns);
+/* Is it time to end? */
+bool watch_over(const struct watch *watch);
+
+#endif

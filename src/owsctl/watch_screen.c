@@ -1,0 +1,276 @@
+/* SPDX-License-Identifier: MIT */
+#include "table.h"
+#include "terminal.h"
+#include "text.h"
+#include "verbs.h"
+#include "watch.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define BETWEEN_KEYS     INT64_C(50000000)
+#define BETWEEN_PICTURES INT64_C(100000000)
+#define LONGEST_PICTURE  INT64_C(1000000000) /* ages count up without news */
+
+static const struct table_column columns[] = {
+	{"NAME"}, {"VALUE", .right = true, .most = 32}, {"QUALITY"}, {"AGE", .right = true, .drop = 1},
+	{"TARGET", .drop = 2}, {"PATH", .drop = 3},
+};
+#define COLUMNS (sizeof(columns) / sizeof(columns[0]))
+
+struct screen {
+	struct watch *watch;
+	unsigned lines, width;
+	int top; /* first row shown */
+	unsigned least[COLUMNS]; /* widths of the last picture, so that it does not jump */
+	int not_good;
+	const char *note; /* what happened last to owsd */
+};
+
+/* Rows that fit below the two head lines; one line is kept free when not all do. */
+static int room(const struct screen *screen)
+{
+	int lines = (int)screen->lines - 2;
+
+	if (screen->watch->rows.count > lines)
+		lines--;
+	return lines < 0 ? 0 : lines;
+}
+
+static void keep_top_in_range(struct screen *screen)
+{
+	int last = screen->watch->rows.count - room(screen);
+
+	if (screen->top > last)
+		screen->top = last;
+	if (screen->top < 0)
+		screen->top = 0;
+}
+
+static void put_line(FILE *out, const struct screen *screen, const char *style, const char *text)
+{
+	char cut[1024];
+
+	text_clean(text, strlen(text), screen->width, cut, sizeof(cut));
+	fprintf(out, "%s%s\033[0m\033[K", style, cut);
+}
+
+static void put_head(FILE *out, const struct screen *screen)
+{
+	struct watch *watch = screen->watch;
+	struct ows_daemon daemon = {0};
+	int64_t now = ows_now();
+	char text[256], span[WHEN_TEXT], clock[16] = "";
+	time_t wall = time(NULL);
+	struct tm local;
+
+	ows_daemon(watch->h, now, &daemon);
+	if (localtime_r(&wall, &local))
+		strftime(clock, sizeof(clock), "%H:%M:%S", &local);
+	if (daemon.alive)
+		snprintf(text, sizeof(text), "%s  %s  %d signals, %d not good  up %s%s%s",
+		         watch->ctl->instance, clock, watch->rows.count, screen->not_good,
+		         when_span(now - daemon.start_ns, span), *screen->note ? "  " : "",
+		         screen->note);
+	else if (daemon.state == 3)
+		snprintf(text, sizeof(text), "%s  %s  owsd was stopped", watch->ctl->instance, clock);
+	else
+		snprintf(text, sizeof(text), "%s  %s  owsd is not running: last heartbeat %s ago",
+		         watch->ctl->instance, clock, when_span(daemon.beat_age_ns, span));
+	put_line(out, screen, daemon.alive ? "" : "\033[7m", text);
+}
+
+static bool fill(struct screen *screen, struct table *table, bool *good)
+{
+	struct watch *watch = screen->watch;
+	int shown = room(screen);
+	int64_t now = ows_now();
+
+	screen->not_good = 0;
+	for (int i = 0; i < watch->rows.count; i++) {
+		struct row *row = &watch->rows.row[i];
+		char value[64], words[READING_WORDS], span[WHEN_TEXT];
+		struct ows_target target;
+		const struct reading *reading = watch->reading;
+
+		reading_get(watch->h, row->id, now, watch->reading);
+		screen->not_good += !reading_good(reading);
+		if (row_changed(row, reading) && watch->left > 0)
+			watch->left--;
+		if (i < screen->top || i >= screen->top + shown)
+			continue;
+		good[i - screen->top] = reading_good(reading);
+		reading_show(reading, value, sizeof(value));
+		if (!table_add(table, (const char *const[]){
+			    row->name, value, reading_quality(reading, words),
+			    reading->value.measured_ns ? when_span(reading->value.age_ns, span) : "-",
+			    ows_target(watch->h, reading->value.target, &target) == 0 ? target.name
+			                                                             : "-",
+			    row->path ? row->path : ""}))
+			return false;
+	}
+	return true;
+}
+
+static void put_rows(FILE *out, struct screen *screen, struct table *table, const bool *good)
+{
+	const bool colour = !getenv("NO_COLOR");
+	char line[2048], text[96];
+	int count = screen->watch->rows.count, last;
+
+	memcpy(table->least, screen->least, sizeof(screen->least));
+	table_fit(table, screen->width);
+	for (unsigned i = 0; i < COLUMNS; i++)
+		screen->least[i] = table->natural[i];
+	if (screen->lines > 1) {
+		table_line(table, -1, line, sizeof(line));
+		fputs("\r\n", out);
+		put_line(out, screen, "\033[1m", line);
+	}
+	for (int i = 0; i < (int)table->rows; i++) {
+		table_line(table, i, line, sizeof(line));
+		fputs("\r\n", out);
+		put_line(out, screen, !good[i] && colour ? "\033[31m" : "", line);
+	}
+	last = screen->top + (int)table->rows;
+	if (last - screen->top < count && screen->lines > 2) {
+		snprintf(text, sizeof(text), "%d to %d of %d; arrows and page keys, q ends",
+		         screen->top + (last > screen->top), last, count);
+		fputs("\r\n", out);
+		put_line(out, screen, "\033[2m", text);
+	}
+}
+
+/* One picture, written at once. 0, -ENOMEM, -EPIPE. */
+static int draw(struct screen *screen)
+{
+	char *text = NULL;
+	size_t len = 0;
+	FILE *out = open_memstream(&text, &len);
+	bool *good = calloc(screen->lines + 1, sizeof(*good));
+	struct table table;
+	int err = -ENOMEM;
+
+	table_init(&table, columns, COLUMNS);
+	keep_top_in_range(screen);
+	if (out && good && fill(screen, &table, good)) {
+		fputs("\033[H", out);
+		put_head(out, screen);
+		put_rows(out, screen, &table, good);
+		fputs("\033[J", out);
+		err = 0;
+	}
+	if (out && fclose(out) != 0)
+		err = -ENOMEM;
+	if (err == 0 && !terminal_write(text, len))
+		err = -EPIPE;
+	table_free(&table);
+	free(good);
+	free(text);
+	return err;
+}
+
+/* Returns false to end. */
+static bool on_key(struct screen *screen, enum terminal_key key)
+{
+	switch (key) {
+	case KEY_END:
+		return false;
+	case KEY_UP:
+		screen->top--;
+		break;
+	case KEY_DOWN:
+		screen->top++;
+		break;
+	case KEY_PAGE_UP:
+		screen->top -= room(screen);
+		break;
+	case KEY_PAGE_DOWN:
+		screen->top += room(screen);
+		break;
+	case KEY_FIRST:
+		screen->top = 0;
+		break;
+	case KEY_LAST:
+		screen->top = screen->watch->rows.count;
+		break;
+	case KEY_NONE:
+	case KEY_OTHER:
+		break;
+	}
+	keep_top_in_range(screen);
+	return true;
+}
+
+static void on_event(struct screen *screen, enum watch_event event)
+{
+	switch (event) {
+	case WATCH_NOTHING:
+		return;
+	case WATCH_RESTARTED:
+		memset(screen->least, 0, sizeof(screen->least));
+		screen->note = "owsd was started anew";
+		return;
+	case WATCH_LOST:
+		screen->note = "";
+		return;
+	case WATCH_BACK:
+		screen->note = "owsd is back";
+		return;
+	}
+}
+
+static int run(struct screen *screen)
+{
+	int64_t drawn = 0;
+	uint32_t news = 0;
+
+	for (;;) {
+		int64_t now;
+		bool pressed = false;
+		enum terminal_key key;
+		int event, err;
+
+		terminal_suspend_if_asked();
+		if (terminal_size(&screen->lines, &screen->width)) {
+			memset(screen->least, 0, sizeof(screen->least));
+			drawn = 0;
+		}
+		while ((key = terminal_key()) != KEY_NONE) {
+			pressed = true;
+			if (!on_key(screen, key))
+				return 0;
+		}
+		now = ows_now();
+		if (pressed || drawn == 0 || now - drawn >= LONGEST_PICTURE ||
+		    (news != screen->watch->news && now - drawn >= BETWEEN_PICTURES)) {
+			news = screen->watch->news;
+			err = draw(screen);
+			if (err)
+				return err == -EPIPE ? 0 : err;
+			drawn = now;
+		}
+		if (watch_over(screen->watch))
+			return 0;
+		event = watch_sleep(screen->watch, BETWEEN_KEYS, BETWEEN_KEYS);
+		if (event < 0)
+			return event;
+		if (event != WATCH_NOTHING) {
+			on_event(screen, (enum watch_event)event);
+			drawn = 0;
+		}
+	}
+}
+
+int watch_screen(struct watch *watch)
+{
+	struct screen screen = {.watch = watch, .note = ""};
+	int err;
+
+	terminal_open();
+	err = run(&screen);
+	terminal_close();
+	return err ? ctl_fail("no memory") : CTL_DONE;
+}
