@@ -263,8 +263,9 @@ uint32_t *commands_bell(const struct commands *commands)
 
 void commands_awake(struct commands *commands, bool awake)
 {
-	/* The exchange is a full barrier: what is looked at after it is newer than a ring skipped. */
-	__atomic_exchange_n(&header_of(commands)->awake, awake ? 1 : 0, __ATOMIC_SEQ_CST);
+	__atomic_store_n(&header_of(commands)->awake, awake ? 1 : 0, __ATOMIC_SEQ_CST);
+	/* Who saw the old flag and did not wake had marked before: looking now finds his mark. */
+	word_fence(__ATOMIC_SEQ_CST);
 }
 
 void commands_state(struct commands *commands, enum ows_state state)
@@ -272,15 +273,18 @@ void commands_state(struct commands *commands, enum ows_state state)
 	struct ows_command_header *keep = (void *)commands->keep;
 
 	keep->state = (uint32_t)state;
-	__atomic_exchange_n(&header_of(commands)->state, (uint32_t)state, __ATOMIC_SEQ_CST);
+	__atomic_store_n(&header_of(commands)->state, (uint32_t)state, __ATOMIC_SEQ_CST);
+	word_fence(__ATOMIC_SEQ_CST);
 }
 
 void commands_retire(void *old, size_t old_size)
 {
 	struct ows_command_header *h = old;
 
-	if (old_size >= sizeof(*h) && word_get(&h->magic) == OWS_COMMAND_MAGIC)
-		__atomic_exchange_n(&h->state, (uint32_t)OWS_STATE_RETIRED, __ATOMIC_SEQ_CST);
+	if (old_size < sizeof(*h) || word_get(&h->magic) != OWS_COMMAND_MAGIC)
+		return;
+	__atomic_store_n(&h->state, (uint32_t)OWS_STATE_RETIRED, __ATOMIC_SEQ_CST);
+	word_fence(__ATOMIC_SEQ_CST);
 }
 
 static bool mend_words(char *to, const char *keep, size_t size)

@@ -4,6 +4,7 @@
 #include "segment.h"
 
 #include <errno.h>
+#include <pthread.h>
 #include <stdint.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -16,6 +17,7 @@ static struct guard_range {
 } ranges[GUARD_MAX];
 static struct sigaction previous;
 static int installed;
+static pthread_mutex_t setting = PTHREAD_MUTEX_INITIALIZER;
 
 static struct guard_range *find(uintptr_t address)
 {
@@ -85,47 +87,49 @@ static void uninstall(void)
 		sigaction(SIGBUS, &previous, NULL);
 }
 
-int guard_add(void *base, size_t size, bool only_default)
+static struct guard_range *guarded(uintptr_t base)
 {
-	int err;
-
-	for (int i = 0; i < GUARD_MAX; i++) {
-		if (ranges[i].base != 0)
-			continue;
-		err = install(only_default);
-		if (err)
-			return err;
-		installed++;
-		ranges[i].size = size;
-		ranges[i].lost = 0;
-		__atomic_store_n(&ranges[i].base, (uintptr_t)base, __ATOMIC_RELEASE);
-		return 0;
-	}
-	return -ENOSPC;
-}
-
-static struct guard_range *guarded(const void *base)
-{
-	for (int i = 0; base != NULL && i < GUARD_MAX; i++)
-		if (ranges[i].base == (uintptr_t)base)
+	for (int i = 0; i < GUARD_MAX; i++)
+		if (__atomic_load_n(&ranges[i].base, __ATOMIC_ACQUIRE) == base)
 			return &ranges[i];
 	return NULL;
 }
 
+int guard_add(void *base, size_t size, bool only_default)
+{
+	struct guard_range *range;
+	int err;
+
+	pthread_mutex_lock(&setting);
+	range = guarded(0);
+	err = range != NULL ? install(only_default) : -ENOSPC;
+	if (!err) {
+		installed++;
+		range->size = size;
+		range->lost = 0;
+		__atomic_store_n(&range->base, (uintptr_t)base, __ATOMIC_RELEASE);
+	}
+	pthread_mutex_unlock(&setting);
+	return err;
+}
+
 void guard_remove(const void *base)
 {
-	struct guard_range *range = guarded(base);
+	struct guard_range *range;
 
-	if (range == NULL)
-		return;
-	__atomic_store_n(&range->base, 0, __ATOMIC_RELEASE);
-	if (--installed == 0)
-		uninstall();
+	pthread_mutex_lock(&setting);
+	range = base != NULL ? guarded((uintptr_t)base) : NULL;
+	if (range != NULL) {
+		__atomic_store_n(&range->base, 0, __ATOMIC_RELEASE);
+		if (--installed == 0)
+			uninstall();
+	}
+	pthread_mutex_unlock(&setting);
 }
 
 bool guard_lost(const void *base)
 {
-	struct guard_range *range = guarded(base);
+	struct guard_range *range = base != NULL ? guarded((uintptr_t)base) : NULL;
 
 	return range != NULL && __atomic_load_n(&range->lost, __ATOMIC_ACQUIRE) != 0;
 }

@@ -2,7 +2,7 @@
 /*
  * The guard of a range of memory that maps a file which others may truncate: a SIGBUS inside it
  * maps private zero pages over the whole range, and the toucher goes on. Any other SIGBUS goes
- * where it went before the first guard. Guards are set and taken away by one thread at a time.
+ * where it went before the first guard.
  */
 #ifndef SHM_GUARD_H
 #define SHM_GUARD_H

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: MIT */
+#include "handle.h"
+
+#include "../shm/reader.h"
+#include "../signal/value.h"
+
+#include <errno.h>
+#include <string.h>
+#include <time.h>
+
+int64_t ows_now(void)
+{
+	struct timespec ts;
+
+	clock_gettime(CLOCK_BOOTTIME, &ts);
+	return (int64_t)ts.tv_sec * 1000000000 + ts.tv_nsec;
+}
+
+int handle_state(const struct ows *h)
+{
+	uint32_t state = __atomic_load_n(&h->map.image->state, __ATOMIC_ACQUIRE);
+
+	return state == OWS_STATE_LIVE ? 0 : -ESTALE;
+}
+
+static bool find_alive(struct ows *h, int64_t now_ns)
+{
+	struct ows_sample daemon;
+
+	h->alive_now = now_ns;
+	h->alive = reader_sample(&h->map.records[0], &daemon) &&
+	           now_ns - daemon.measured_ns <= h->dead_after_ns;
+	return h->alive;
+}
+
+bool handle_alive(struct ows *h, int64_t now_ns)
+{
+	return now_ns == h->alive_now ? h->alive : find_alive(h, now_ns);
+}
+
+void value_fill(struct ows_value *value, const struct ows_sample *sample, uint8_t type)
+{
+	if (type == OWS_DOUBLE || type == OWS_FLOAT) {
+		memcpy(&value->number, &sample->value, sizeof(value->number));
+		value->integer = 0;
+	} else if (type == OWS_STRING) {
+		value->number = 0;
+		value->integer = 0;
+	} else {
+		value->number = (double)sample->value;
+		value->integer = sample->value;
+	}
+	value->measured_ns = sample->measured_ns;
+	value->tried_ns = sample->tried_ns;
+	value->err = sample->err;
+	value->count = sample->count;
+	value->applied = sample->applied;
+	value->len = sample->len;
+	value->type = type;
+	value->quality = sample->quality;
+	value->detail = sample->detail;
+	value->target = sample->target;
+}
+
+/* Age and the lowered quality; the return value of ows_get(). */
+static inline int finish(struct ows *h, int64_t stale_after_ns, int64_t now_ns,
+                         struct ows_value *value)
+{
+	int64_t since = value->measured_ns != 0 ? value->measured_ns : h->map.image->start_ns;
+	int err = handle_state(h);
+
+	value->age_ns = now_ns > since ? now_ns - since : 0;
+	if (ows_good(value->quality)) {
+		if (err || !handle_alive(h, now_ns))
+			value->quality = OWS_Q_TARGET;
+		else if (stale_after_ns > 0 && value->age_ns > stale_after_ns)
+			value->quality = OWS_Q_STALE;
+	}
+	return err;
+}
+
+static inline int get_record(struct ows *h, unsigned record, int64_t stale_after_ns,
+                             int64_t now_ns, struct ows_value *value)
+{
+	const struct ows_record *r = &h->map.records[record];
+	struct ows_sample sample;
+
+	if (!reader_sample(r, &sample)) {
+		*value = (struct ows_value){.type = r->type, .quality = OWS_Q_TARGET};
+		return -EAGAIN;
+	}
+	value_fill(value, &sample, r->type);
+	return finish(h, stale_after_ns, now_ns, value);
+}
+
+int ows_get(struct ows *h, int id, int64_t now_ns, struct ows_value *value)
+{
+	struct ows_id *e;
+
+	if ((unsigned)id >= h->id_count || h->ids[id].record < 0) {
+		*value = (struct ows_value){.quality = OWS_Q_NO_PROPERTY};
+		return -ENOENT;
+	}
+	e = &h->ids[id];
+	if (e->attribute != ATTR_VALUE)
+		return attribute_get(h, e, now_ns, value);
+	return get_record(h, (unsigned)e->record, e->stale_after_ns, now_ns, value);
+}
+
+int ows_get_signal(struct ows *h, int signal, int64_t now_ns, struct ows_value *value)
+{
+	if (signal < 0 || signal >= ows_count(h)) {
+		*value = (struct ows_value){.quality = OWS_Q_NO_PROPERTY};
+		return -ENOENT;
+	}
+	return get_record(h, (unsigned)signal + 1, h->map.infos[signal + 1].stale_after_ns, now_ns,
+	                  value);
+}
+
+int ows_snapshot(struct ows *h, int64_t now_ns, struct ows_value *values, int n)
+{
+	int count = ows_count(h);
+
+	if (n > count)
+		n = count;
+	for (int i = 0; i < n; i++)
+		ows_get_signal(h, i, now_ns, &values[i]);
+	return n > 0 ? n : 0;
+}
+
+static int print_number(const struct ows_value *value, char *text, size_t size)
+{
+	char room[VALUE_TEXT_MAX];
+	int64_t bits = value_is_float((enum ows_type)value->type) ? value_of_double(value->number)
+	                                                          : value->integer;
+	size_t n = (size_t)value_to_text((enum ows_type)value->type, bits, room);
+	int err = 0;
+
+	if (n >= size) {
+		n = size - 1;
+		err = -ENOSPC;
+	}
+	memcpy(text, room, n);
+	text[n] = '\0';
+	return err;
+}
+
+static int get_string(struct ows *h, const struct ows_id *e, int64_t now_ns,
+                      struct ows_value *value, char *text, size_t size)
+{
+	const struct ows_record *r = &h->map.records[e->record];
+	struct ows_sample sample;
+	int err;
+
+	if (!reader_text(h->map.base, r, &sample, text, size)) {
+		text[0] = '\0';
+		*value = (struct ows_value){.type = r->type, .quality = OWS_Q_TARGET};
+		return -EAGAIN;
+	}
+	value_fill(value, &sample, r->type);
+	err = finish(h, e->stale_after_ns, now_ns, value);
+	return !err && sample.len >= size ? -ENOSPC : err;
+}
+
+int ows_get_text(struct ows *h, int id, int64_t now_ns, struct ows_value *value, char *text,
+                 size_t size)
+{
+	struct ows_id *e;
+	int err, cut;
+
+	if (size == 0)
+		return -ENOSPC;
+	text[0] = '\0';
+	e = (unsigned)id < h->id_count ? &h->ids[id] : NULL;
+	if (e != NULL && e->record >= 0 && e->attribute == ATTR_VALUE &&
+	    h->map.records[e->record].type == OWS_STRING)
+		return get_string(h, e, now_ns, value, text, size);
+	err = ows_get(h, id, now_ns, value);
+	if (err && err != -ESTALE)
+		return err;
+	cut = print_number(value, text, size);
+	return err ? err : cut;
+}

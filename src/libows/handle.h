@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT */
+/* What a handle of libows is made of. Not installed. */
+#ifndef LIBOWS_HANDLE_H
+#define LIBOWS_HANDLE_H
+
+#include "ows.h"
+
+#include "../shm/layout.h"
+#include "../shm/segment.h"
+#include "../signal/attribute.h"
+
+#include <stdbool.h>
+
+/* The two segments of one generation. */
+struct ows_map {
+	const struct ows_image_header *image;
+	const struct ows_record *records;
+	const struct ows_info_entry *infos;
+	const struct ows_name_entry *names;
+	const char *base;
+	size_t image_size;
+	uint32_t count;
+
+	struct ows_command_header *command; /* NULL: OWS_READ */
+	struct ows_command_slot *slots;
+	struct ows_command_entry *entries;
+	struct ows_client *clients;
+	uint32_t *dirty;
+	char *command_base;
+	size_t command_size;
+	uint32_t text_cap;
+};
+
+/* What a handle remembers of a signal, over restarts; record 0 has the empty name. */
+struct ows_memory {
+	char *name;
+	uint32_t alarms_seen;
+	bool reset_level, shot_level; /* last level set of _DGNRESET and _WriteOneShot */
+};
+
+struct ows_id {
+	char *name;
+	int record; /* -1: not in this image */
+	enum attribute attribute;
+	unsigned memory;
+	int64_t stale_after_ns;
+};
+
+struct ows {
+	struct ows_map map;
+	struct ows_id *ids;
+	unsigned id_count, id_room;
+	struct ows_memory *memories;
+	unsigned memory_count, memory_room;
+
+	/* Whether owsd lives, found out once for each now_ns */
+	int64_t alive_now, dead_after_ns;
+	bool alive;
+
+	int client; /* index in the table of clients, -1 none */
+	uint32_t pid;
+	enum ows_mode mode;
+	char instance[SEGMENT_NAME_MAX + 1];
+};
+
+/* map.c */
+int map_open(const char *instance, enum ows_mode mode, struct ows_map *map);
+void map_close(struct ows_map *map);
+/* A string of the image; "" for an offset that is none. */
+const char *map_string(const struct ows_map *map, uint32_t off);
+const char *map_name(const struct ows_map *map, uint32_t record);
+/* Record of a signal's name, -1 if there is none. */
+int map_find(const struct ows_map *map, const char *name, size_t len);
+
+/* find.c */
+int find_resolve(struct ows *h, struct ows_id *id);
+void find_free(struct ows *h);
+
+/* get.c: is owsd alive, as far as its heartbeat says? */
+bool handle_alive(struct ows *h, int64_t now_ns);
+/* 0, or -ESTALE when the image is not the present one any more. */
+int handle_state(const struct ows *h);
+void value_fill(struct ows_value *value, const struct ows_sample *sample, uint8_t type);
+
+/* attribute.c: as ows_get(), of an id that is not the value itself. */
+int attribute_get(struct ows *h, struct ows_id *id, int64_t now_ns, struct ows_value *value);
+
+#endif

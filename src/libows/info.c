@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT */
+#include "handle.h"
+
+#include "../shm/reader.h"
+
+#include <errno.h>
+
+int ows_count(const struct ows *h)
+{
+	return (int)h->map.count - 1;
+}
+
+int ows_info(const struct ows *h, int signal, struct ows_info *info)
+{
+	const struct ows_info_entry *entry;
+	const struct ows_record *record;
+
+	if (signal < 0 || signal >= ows_count(h))
+		return -ENOENT;
+	entry = &h->map.infos[signal + 1];
+	record = &h->map.records[signal + 1];
+	*info = (struct ows_info){
+		.name = map_name(&h->map, (uint32_t)signal + 1),
+		.path = map_string(&h->map, entry->path_off),
+		.type = record->type,
+		.output = (record->flags & OWS_RECORD_OUTPUT) != 0,
+		.fresh = (record->flags & OWS_RECORD_FRESH) != 0,
+		.alarm = (record->flags & OWS_RECORD_ALARM) != 0,
+		.per_factor = entry->per_factor,
+		.stale_after_ns = entry->stale_after_ns,
+	};
+	return 0;
+}
+
+int ows_daemon(struct ows *h, int64_t now_ns, struct ows_daemon *daemon)
+{
+	const struct ows_image_header *image = h->map.image;
+	struct ows_sample beat;
+	int err = handle_state(h);
+
+	if (!reader_sample(&h->map.records[0], &beat))
+		return -EAGAIN;
+	*daemon = (struct ows_daemon){
+		.pid = image->pid,
+		.state = word_get(&image->state),
+		.generation = image->generation,
+		.start_ns = image->start_ns,
+		.beat_age_ns = now_ns > beat.measured_ns ? now_ns - beat.measured_ns : 0,
+		.period_ns = image->period_ns,
+		.alive = !err && handle_alive(h, now_ns),
+	};
+	return err;
+}
+
+int ows_target(struct ows *h, int index, struct ows_target *target)
+{
+	const struct ows_image_header *image = h->map.image;
+	const struct ows_target_entry *entry = (const void *)(h->map.base + image->target_off);
+
+	if (index < 0 || (uint32_t)index >= image->target_count)
+		return -ENOENT;
+	entry += index;
+	*target = (struct ows_target){
+		.name = entry->name,
+		.state = word_get(&entry->state),
+		.reconnects = word_get(&entry->reconnects),
+	};
+	return 0;
+}
+
+int ows_counter(struct ows *h, int index, struct ows_counter *counter)
+{
+	const struct ows_image_header *image = h->map.image;
+	const struct ows_counter_entry *entry = (const void *)(h->map.base + image->counter_off);
+
+	if (index < 0 || (uint32_t)index >= image->counter_count)
+		return -ENOENT;
+	entry += index;
+	*counter = (struct ows_counter){
+		.name = entry->name,
+		.target = (int)(int32_t)entry->target,
+		.value = (uint64_t)word_get(&entry->high) << 32 | word_get(&entry->low),
+	};
+	return 0;
+}
+
+const char *ows_quality_text(uint8_t quality)
+{
+	static const struct {
+		uint8_t quality;
+		const char *text;
+	} texts[] = {
+		{OWS_Q_NO_PROPERTY, "no such property"},
+		{OWS_Q_NO_DEVICE, "device absent"},
+		{OWS_Q_DEVICE, "device error"},
+		{OWS_Q_SENSOR, "sensor power fault"},
+		{OWS_Q_STALE, "stale"},
+		{OWS_Q_TARGET, "target down"},
+		{OWS_Q_SHORT, "wire short"},
+		{OWS_Q_INITIAL, "initial"},
+		{OWS_Q_DISABLED, "reading disabled"},
+		{OWS_Q_RANGE, "out of range"},
+		{OWS_Q_LOW, "at lower limit"},
+		{OWS_Q_HIGH, "at upper limit"},
+		{OWS_Q_CUT, "cut"},
+	};
+
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++)
+		if (texts[i].quality == quality)
+			return texts[i].text;
+	if (ows_good(quality))
+		return "good";
+	return (quality & 0xc0) == 0x40 ? "uncertain" : "bad";
+}

@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: MIT */
+#include "handle.h"
+
+#include "../shm/guard.h"
+#include "../shm/owner.h"
+#include "../shm/word.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static int map_file(const char *instance, const char *kind, bool write, void **base, size_t *size)
+{
+	char path[80];
+	struct stat st;
+	int fd, err = 0;
+
+	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.%s", instance, kind);
+	fd = open(path, (write ? O_RDWR : O_RDONLY) | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+	if (fd < 0)
+		return errno == ELOOP ? -EPERM : -errno;
+	if (fstat(fd, &st) < 0)
+		err = -errno;
+	else if (!S_ISREG(st.st_mode) || !owner_trusted(st.st_uid))
+		err = -EPERM;
+	else if (st.st_size < 256 || st.st_size > 0x7fffffff)
+		err = -EPROTO;
+	if (!err) {
+		*size = (size_t)st.st_size;
+		*base = mmap(NULL, *size, PROT_READ | (write ? PROT_WRITE : 0), MAP_SHARED, fd, 0);
+		if (*base == MAP_FAILED)
+			err = -errno;
+	}
+	close(fd);
+	return err;
+}
+
+/* count entries of size bytes at off lie inside, whole words. */
+static bool inside(size_t segment, uint32_t off, uint32_t count, uint32_t size)
+{
+	return off % 8 == 0 && off <= segment && (uint64_t)count * size <= segment - off;
+}
+
+static int check_image(struct ows_map *map)
+{
+	const struct ows_image_header *h = map->image;
+	size_t size = map->image_size;
+
+	if (h->magic != OWS_IMAGE_MAGIC || h->major != OWS_LAYOUT_MAJOR || h->size != size ||
+	    h->record_size != sizeof(struct ows_record) ||
+	    h->info_size != sizeof(struct ows_info_entry) ||
+	    h->target_size != sizeof(struct ows_target_entry) ||
+	    h->counter_size != sizeof(struct ows_counter_entry) || h->record_count == 0)
+		return -EPROTO;
+	if (!inside(size, h->record_off, h->record_count, h->record_size) ||
+	    !inside(size, h->info_off, h->record_count, h->info_size) ||
+	    !inside(size, h->name_off, h->record_count, sizeof(struct ows_name_entry)) ||
+	    !inside(size, h->target_off, h->target_count, h->target_size) ||
+	    !inside(size, h->counter_off, h->counter_count, h->counter_size) ||
+	    !inside(size, h->text_off, h->text_size, 1) ||
+	    !inside(size, h->pool_off, h->pool_size, 1) || h->pool_size == 0 ||
+	    map->base[h->pool_off + h->pool_size - 1] != '\0')
+		return -EPROTO;
+	map->records = (const void *)(map->base + h->record_off);
+	map->infos = (const void *)(map->base + h->info_off);
+	map->names = (const void *)(map->base + h->name_off);
+	map->count = h->record_count;
+	for (uint32_t i = 0; i < map->count; i++) {
+		const struct ows_record *r = &map->records[i];
+
+		if (r->text_cap != 0 &&
+		    (r->text_off < h->text_off ||
+		     r->text_off - h->text_off > h->text_size ||
+		     2u * r->text_cap > h->text_size - (r->text_off - h->text_off)))
+			return -EPROTO;
+		if (map->names[i].record >= map->count)
+			return -EPROTO;
+	}
+	return 0;
+}
+
+/* Anybody of the group may write it: every number is taken once and then checked. */
+static int check_command(struct ows_map *map)
+{
+	struct ows_command_header h;
+	size_t size = map->command_size;
+
+	words_load(&h, map->command_base, sizeof(h) / 4);
+	if (h.magic != OWS_COMMAND_MAGIC || h.major != OWS_LAYOUT_MAJOR || h.size != size ||
+	    h.slot_size != sizeof(struct ows_command_slot) ||
+	    h.entry_size != sizeof(struct ows_command_entry) ||
+	    h.client_size != sizeof(struct ows_client))
+		return -EPROTO;
+	/* Of another generation: owsd is just putting the new ones in place */
+	if (h.generation != map->image->generation || h.start_id != map->image->start_id)
+		return -ENOENT;
+	if (h.slot_count != map->count || h.dirty_words != (map->count + 31) / 32 ||
+	    !inside(size, h.slot_off, h.slot_count, h.slot_size) ||
+	    !inside(size, h.entry_off, h.slot_count, h.entry_size) ||
+	    !inside(size, h.dirty_off, h.dirty_words, 4) ||
+	    !inside(size, h.client_off, OWS_CLIENTS, h.client_size) || h.text_cap > 0xffff)
+		return -EPROTO;
+	map->command = (void *)map->command_base;
+	map->slots = (void *)(map->command_base + h.slot_off);
+	map->entries = (void *)(map->command_base + h.entry_off);
+	map->dirty = (void *)(map->command_base + h.dirty_off);
+	map->clients = (void *)(map->command_base + h.client_off);
+	map->text_cap = h.text_cap;
+	return 0;
+}
+
+int map_open(const char *instance, enum ows_mode mode, struct ows_map *map)
+{
+	void *base;
+	int err;
+
+	*map = (struct ows_map){0};
+	err = map_file(instance, "image", false, &base, &map->image_size);
+	if (err)
+		return err;
+	map->base = base;
+	map->image = base;
+	err = check_image(map);
+	if (!err && mode == OWS_CONTROL) {
+		err = map_file(instance, "command", true, &base, &map->command_size);
+		if (!err) {
+			map->command_base = base;
+			/* Without a guard all works too, unless somebody truncates the file */
+			guard_add(base, map->command_size, true);
+			err = check_command(map);
+		}
+	}
+	if (err)
+		map_close(map);
+	return err;
+}
+
+void map_close(struct ows_map *map)
+{
+	if (map->command_base != NULL) {
+		guard_remove(map->command_base);
+		munmap(map->command_base, map->command_size);
+	}
+	if (map->base != NULL)
+		munmap((void *)(uintptr_t)map->base, map->image_size);
+	*map = (struct ows_map){0};
+}
+
+const char *map_string(const struct ows_map *map, uint32_t off)
+{
+	const struct ows_image_header *h = map->image;
+
+	/* The pool ends with a NUL, so every offset into it is a string */
+	return off >= h->pool_off && off - h->pool_off < h->pool_size ? map->base + off : "";
+}
+
+const char *map_name(const struct ows_map *map, uint32_t record)
+{
+	return map_string(map, map->infos[record].name_off);
+}
+
+int map_find(const struct ows_map *map, const char *name, size_t len)
+{
+	uint32_t low = 0, high = map->count;
+
+	while (low < high) {
+		uint32_t middle = low + (high - low) / 2;
+		const char *there = map_string(map, map->names[middle].name_off);
+		int order = strncmp(there, name, len);
+
+		if (order == 0 && there[len] != '\0')
+			order = 1;
+		if (order == 0)
+			return map->names[middle].record != 0 ? (int)map->names[middle].record : -1;
+		if (order < 0)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return -1;
+}

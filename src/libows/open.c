@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT */
+#include "handle.h"
+
+#include "../shm/word.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define DEAD_LEAST_NS INT64_C(2000000000)
+
+static void take_map(struct ows *h, const struct ows_map *map)
+{
+	int64_t period = map->image->period_ns;
+
+	h->map = *map;
+	h->alive_now = INT64_MIN;
+	h->dead_after_ns = period > DEAD_LEAST_NS / 3 && period < INT64_MAX / 3 ? 3 * period
+	                                                                        : DEAD_LEAST_NS;
+}
+
+int ows_open(const char *instance, enum ows_mode mode, struct ows **handle)
+{
+	struct ows_map map;
+	struct ows *h;
+	int err;
+
+	*handle = NULL;
+	if (instance == NULL)
+		instance = "OWS";
+	if (!segment_name_ok(instance))
+		return -EINVAL;
+	err = map_open(instance, mode, &map);
+	if (err)
+		return err;
+	h = calloc(1, sizeof(*h));
+	if (h == NULL) {
+		map_close(&map);
+		return -ENOMEM;
+	}
+	memcpy(h->instance, instance, strlen(instance) + 1);
+	h->mode = mode;
+	h->client = -1;
+	h->pid = (uint32_t)getpid();
+	take_map(h, &map);
+	*handle = h;
+	return 0;
+}
+
+static void leave_client(struct ows *h)
+{
+	uint32_t pid = h->pid;
+
+	if (h->client >= 0)
+		__atomic_compare_exchange_n(&h->map.clients[h->client].pid, &pid, 0, false,
+		                            __ATOMIC_RELEASE, __ATOMIC_RELAXED);
+	h->client = -1;
+}
+
+void ows_close(struct ows *h)
+{
+	if (h == NULL)
+		return;
+	leave_client(h);
+	map_close(&h->map);
+	find_free(h);
+	free(h);
+}
+
+/* A map that says itself that it is the past is no better than the one at hand. */
+static bool is_present(const struct ows_map *map)
+{
+	if (word_get(&map->image->state) != OWS_STATE_LIVE)
+		return false;
+	return map->command == NULL || word_get(&map->command->state) == OWS_STATE_LIVE;
+}
+
+int ows_reopen(struct ows *h)
+{
+	struct ows_map map;
+	bool restarted;
+	int err = map_open(h->instance, h->mode, &map);
+
+	if (err == -EPROTO)
+		return h->mode == OWS_CONTROL ? -ENOENT : err;
+	if (err)
+		return err;
+	if (!is_present(&map)) {
+		map_close(&map);
+		return -ENOENT;
+	}
+	restarted = map.image->start_ns != h->map.image->start_ns;
+	map_close(&h->map);
+	take_map(h, &map);
+	for (unsigned i = 0; restarted && i < h->memory_count; i++)
+		h->memories[i].alarms_seen = 0;
+	for (unsigned i = 0; i < h->id_count; i++)
+		if (find_resolve(h, &h->ids[i]) == -ENOMEM)
+			err = -ENOMEM;
+	/* owsd carries the table of clients over; in another one we have no place yet */
+	if (h->client >= 0 && word_get(&map.clients[h->client].pid) != h->pid)
+		h->client = -1;
+	return err;
+}

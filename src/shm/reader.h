@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The reader's half of a record's protocol (layout.h). No system call, no lock, at most
+ * READER_TRIES rounds.
+ */
+#ifndef SHM_READER_H
+#define SHM_READER_H
+
+#include "layout.h"
+#include "word.h"
+
+#include <stdbool.h>
+
+#define READER_TRIES 64
+
+/* Begin a round: which slot to copy. */
+static inline const struct ows_slot *reader_begin(const struct ows_record *record, uint32_t *seq)
+{
+	*seq = __atomic_load_n(&record->seq, __ATOMIC_ACQUIRE);
+	return &record->slot[*seq >> 1 & 1];
+}
+
+/* After the copy: is it whole? */
+static inline bool reader_end(const struct ows_record *record, uint32_t seq)
+{
+	word_fence(__ATOMIC_ACQUIRE);
+	return word_get(&record->seq) - (seq & ~1u) <= 2;
+}
+
+static inline bool reader_sample(const struct ows_record *record, struct ows_sample *sample)
+{
+	for (int i = 0; i < READER_TRIES; i++) {
+		uint32_t seq;
+		const struct ows_slot *slot = reader_begin(record, &seq);
+
+		words_load(sample, &slot->sample, sizeof(*sample) / 4);
+		if (reader_end(record, seq))
+			return true;
+	}
+	return false;
+}
+
+static inline bool reader_slot(const struct ows_record *record, struct ows_slot *to)
+{
+	for (int i = 0; i < READER_TRIES; i++) {
+		uint32_t seq;
+		const struct ows_slot *slot = reader_begin(record, &seq);
+
+		words_load(to, slot, sizeof(*to) / 4);
+		if (reader_end(record, seq))
+			return true;
+	}
+	return false;
+}
+
+/* Copies at most size - 1 bytes of text and a NUL; base is the segment's. */
+bool reader_text(const char *base, const struct ows_record *record, struct ows_sample *sample,
+                 char *text, size_t size);
+
+#endif
