@@ -70,6 +70,8 @@ struct link_ops {
 struct link {
 	const struct link_ops *ops;
 	const struct bus_env *env;
+	/* Links with one number share a chip: a call on one ends the strong pull-up of another. */
+	unsigned chip;
 };
 
 struct link_master;
