@@ -104,6 +104,8 @@ int verb_get(struct ctl *ctl, int argc, char **argv)
 		json_array_end(&json);
 		json_end(&json);
 	}
+	if (worst != CTL_DONE)
+		ctl_alive(ctl, h, ows_now());
 	ows_close(h);
 	return worst;
 }

@@ -23,7 +23,7 @@ static bool add_row(struct table *table, struct ows *h, const struct row *row,
 		reading->value.measured_ns ? when_span(reading->value.age_ns, span) : "-",
 		value_type_name((enum ows_type)reading->value.type),
 		!row->path ? "" : row->output ? "out" : "in",
-		ows_target(h, reading->value.target, &target) == 0 ? target.name : "-",
+		row->path && ows_target(h, reading->value.target, &target) == 0 ? target.name : "-",
 		row->path ? row->path : "",
 	};
 

@@ -86,25 +86,34 @@ static int prepare(const struct ctl *ctl, struct ows *h, struct order *order)
 	return CTL_DONE;
 }
 
+static int put(struct ows *h, struct order *order)
+{
+	if (order->type == OWS_STRING)
+		return ows_set_text(h, order->id, order->text, &order->stamp);
+	if (value_is_float(order->type))
+		return ows_set(h, order->id, value_number(order->type, order->value),
+		               &order->stamp);
+	/* An edge is a change from 0, whatever this handle has seen before. */
+	if (is_edge(order->attribute))
+		ows_set_integer(h, order->id, 0, NULL);
+	return ows_set_integer(h, order->id, order->value, &order->stamp);
+}
+
 static int send(struct ows *h, struct order *order)
 {
-	int err;
+	int err = put(h, order);
 
-	if (order->type == OWS_STRING) {
-		err = ows_set_text(h, order->id, order->text, &order->stamp);
-	} else if (value_is_float(order->type)) {
-		err = ows_set(h, order->id, value_number(order->type, order->value),
-		              &order->stamp);
-	} else {
-		/* An edge is a change from 0, whatever this handle has seen before. */
-		if (is_edge(order->attribute))
-			ows_set_integer(h, order->id, 0, NULL);
-		err = ows_set_integer(h, order->id, order->value, &order->stamp);
+	/* owsd has just moved to new memory: say it there. */
+	for (int i = 0; err == -ESTALE && i < 10; i++) {
+		ctl_nap();
+		if (ows_reopen(h) == 0)
+			err = put(h, order);
 	}
 	switch (-err) {
 	case 0:
-	case ESTALE:
 		return CTL_DONE;
+	case ESTALE:
+		return ctl_fail("%s: owsd is just starting anew, try again", order->name);
 	case EACCES:
 		return ctl_fail("%s is not writable: it is an input without Writable",
 		                order->name);

@@ -43,8 +43,9 @@ static void pause_until(int64_t until_ns)
 
 int watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns)
 {
-	struct ows_daemon daemon = {0};
+	struct ows_daemon daemon;
 	int64_t now = ows_now();
+	int err;
 
 	if (timeout_ns > LONGEST_SLEEP)
 		timeout_ns = LONGEST_SLEEP;
@@ -55,7 +56,8 @@ int watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns)
 		ows_reopen(watch->h);
 	}
 	pause_until(now + least_ns);
-	if (ows_daemon(watch->h, ows_now(), &daemon) != 0)
+	err = ows_daemon(watch->h, ows_now(), &daemon);
+	if (err && err != -ESTALE)
 		return WATCH_NOTHING;
 	if (daemon.generation != watch->generation)
 		return restarted(watch, &daemon);

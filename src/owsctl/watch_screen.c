@@ -106,7 +106,7 @@ static bool fill(struct screen *screen, struct table *table, bool *good)
 		if (!table_add(table, (const char *const[]){
 			    row->name, value, reading_quality(reading, words),
 			    reading->value.measured_ns ? when_span(reading->value.age_ns, span) : "-",
-			    ows_target(watch->h, reading->value.target, &target) == 0 ? target.name
+			    row->path && ows_target(watch->h, reading->value.target, &target) == 0 ? target.name
 			                                                             : "-",
 			    row->path ? row->path : ""}))
 			return false;

@@ -1,35 +1,30 @@
 /* SPDX-License-Identifier: MIT */
+#include "instance.h"
+
 #include "src/owsctl/names.h"
 #include "unity.h"
 
 #include <errno.h>
 #include <string.h>
 
-/* libows with a table of three signals. */
-static const char *const names[] = {"room1", "relay_Age", "relay"};
-
-int ows_count(const struct ows *h)
-{
-	(void)h;
-	return 3;
-}
-
-int ows_info(const struct ows *h, int signal, struct ows_info *info)
-{
-	(void)h;
-	memset(info, 0, sizeof(*info));
-	if (signal < 0 || signal >= 3)
-		return -ENOENT;
-	info->name = names[signal];
-	return 0;
-}
+static const struct instance_signal signals[] = {
+	{"room1", "/28.1/temperature", OWS_DOUBLE, false, 0},
+	{"relay_Age", "/28.2/temperature", OWS_DOUBLE, false, 0},
+	{"relay", "/29.1/PIO.0", OWS_BOOL, true, 0},
+};
+static struct instance in;
+static struct ows *h;
 
 void setUp(void)
 {
+	instance_start(&in, "names", signals, 3);
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_READ, &h));
 }
 
 void tearDown(void)
 {
+	ows_close(h);
+	instance_end(&in);
 }
 
 static enum attribute attribute;
@@ -37,7 +32,7 @@ static int signal_found;
 
 static int lookup(const char *name)
 {
-	return names_lookup(NULL, "OWS", name, &signal_found, &attribute);
+	return names_lookup(h, "OWS", name, &signal_found, &attribute);
 }
 
 static void test_a_name_is_a_signal_with_and_without_prefix(void)
@@ -113,7 +108,7 @@ static void nearest_is(const char *expected, const char *name)
 {
 	char nearest[NAMES_MAX];
 
-	TEST_ASSERT_TRUE(names_nearest(NULL, name, nearest));
+	TEST_ASSERT_TRUE(names_nearest(h, name, nearest));
 	TEST_ASSERT_EQUAL_STRING(expected, nearest);
 }
 
@@ -130,10 +125,10 @@ static void test_a_name_that_is_far_from_all_has_no_nearest(void)
 	char nearest[NAMES_MAX];
 	char big[1000];
 
-	TEST_ASSERT_FALSE(names_nearest(NULL, "boiler", nearest));
+	TEST_ASSERT_FALSE(names_nearest(h, "boiler", nearest));
 	memset(big, 'x', sizeof(big) - 1);
 	big[sizeof(big) - 1] = '\0';
-	TEST_ASSERT_FALSE(names_nearest(NULL, big, nearest));
+	TEST_ASSERT_FALSE(names_nearest(h, big, nearest));
 }
 
 int main(void)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "src/libows/ows.h"
 #include "src/owsctl/when.h"
 #include "unity.h"
 
@@ -6,13 +7,6 @@
 #include <time.h>
 
 #define SECOND INT64_C(1000000000)
-
-/* libows' clock */
-int64_t ows_now(void);
-int64_t ows_now(void)
-{
-	return 5 * SECOND;
-}
 
 void setUp(void)
 {
@@ -60,10 +54,11 @@ static void test_a_time_that_cannot_be_is_a_question_mark(void)
 
 static void test_now_is_one_moment_on_both_clocks(void)
 {
+	int64_t before = ows_now();
 	struct when now = when_now();
 
-	TEST_ASSERT_EQUAL_INT64(5 * SECOND, now.boot);
-	TEST_ASSERT_TRUE(now.wall > 0);
+	TEST_ASSERT_TRUE(now.boot >= before && now.boot <= ows_now());
+	TEST_ASSERT_TRUE(now.wall > 1700000000 * SECOND);
 }
 
 static void test_spans_are_short(void)

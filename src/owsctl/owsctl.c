@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT */
+/* owsctl: look at the signals of owsd and set them. */
+#include "verbs.h"
+
+#include <getopt.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct verb verbs[] = {
+	{"list", "[-a] [PATTERN...]", "all signals with value, quality, age and path", verb_list},
+	{"get", "NAME...", "values alone, one line for each name", verb_get},
+	{"set", "[-w SECONDS] NAME VALUE [NAME VALUE]...", "set outputs and writable attributes",
+	 verb_set},
+	{"watch", "[-al] [-c COUNT] [-t SECONDS] [PATTERN...]", "follow values as they change",
+	 verb_watch},
+	{"wait", "[-t SECONDS] NAME [OP VALUE]", "sleep until a value changes or a condition holds",
+	 verb_wait},
+	{"stats", "", "owsd itself, its targets and counters", verb_stats},
+};
+#define VERBS (sizeof(verbs) / sizeof(verbs[0]))
+
+static void usage(FILE *out)
+{
+	fputs("usage: owsctl [-n NAME] [--json] VERB ...\n", out);
+	for (size_t i = 0; i < VERBS; i++)
+		fprintf(out, "  %-6s %-46s %s\n", verbs[i].name, verbs[i].usage, verbs[i].brief);
+	fputs("  -n NAME  instance, default OWS\n"
+	      "  --json   print JSON\n"
+	      "  -V -h    print the version; this help, with a verb in front: the verb's\n"
+	      "exit status: 0 done, 1 failed, 2 wrong usage, 3 a value is not good\n", out);
+}
+
+int main(int argc, char **argv)
+{
+	static const struct option longs[] = {
+		{"json", no_argument, NULL, 'J'},
+		{"help", no_argument, NULL, 'h'},
+		{"version", no_argument, NULL, 'V'},
+		{0},
+	};
+	struct ctl ctl = {.instance = "OWS"};
+	int c;
+
+	/* A reader of ours that leaves is seen as EPIPE. */
+	signal(SIGPIPE, SIG_IGN);
+	while ((c = getopt_long(argc, argv, "+n:Vh", longs, NULL)) != -1) {
+		switch (c) {
+		case 'n':
+			ctl.instance = optarg;
+			break;
+		case 'J':
+			ctl.json = true;
+			break;
+		case 'V':
+			puts("owsctl " OWSD_VERSION);
+			return ctl_flush(CTL_DONE);
+		case 'h':
+			usage(stdout);
+			return ctl_flush(CTL_DONE);
+		default:
+			usage(stderr);
+			return CTL_USAGE;
+		}
+	}
+	if (optind == argc) {
+		usage(stderr);
+		return CTL_USAGE;
+	}
+	for (size_t i = 0; i < VERBS; i++) {
+		if (strcmp(verbs[i].name, argv[optind]) == 0) {
+			ctl.verb = &verbs[i];
+			return ctl_flush(verbs[i].run(&ctl, argc - optind, argv + optind));
+		}
+	}
+	fprintf(stderr, "owsctl: there is no verb %s\n", argv[optind]);
+	usage(stderr);
+	return CTL_USAGE;
+}
