@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""make run: it shows live values, says that they are fake, and leaves nothing behind."""
+
+import glob
+import os
+import pty
+import select
+import signal
+import socket
+import time
+
+import owsdtest
+
+RUN = owsdtest.SOURCE / "board/demo/run"
+
+
+class Terminal:
+    """board/demo/run on a terminal of its own."""
+
+    def __init__(self, scene, *arguments):
+        for program in (owsdtest.OWSD, owsdtest.OWSCTL):
+            owsdtest.need(program)
+        self.name = scene.name()
+        self.port = owsdtest.free_port()
+        self.text = ""
+        self.status = None
+        self.pid, self.master = pty.fork()
+        if self.pid == 0:
+            os.environ.update(OWSERVER=f"127.0.0.1:{self.port}", NAME=self.name, TERM="vt100",
+                              OWSD_BUILD=str(owsdtest.BUILD))
+            os.execvp("sh", ["sh", str(RUN), *arguments])
+
+    def shows(self, what, seconds=20):
+        """Read until the terminal has shown what."""
+        deadline = time.monotonic() + seconds
+        while what not in self.text:
+            if time.monotonic() > deadline:
+                raise owsdtest.Late(f"{what!r} not within {seconds} s in:\n{self.text}")
+            if select.select([self.master], [], [], 0.1)[0]:
+                try:
+                    self.text += os.read(self.master, 65536).decode(errors="replace")
+                except OSError:
+                    raise AssertionError(f"ended without {what!r}:\n{self.text}") from None
+
+    def group(self):
+        """Processes of this terminal's session that live."""
+        found = []
+        for path in glob.glob("/proc/[0-9]*/stat"):
+            try:
+                with open(path, encoding="utf-8", errors="replace") as f:
+                    fields = f.read().rsplit(")", 1)[1].split()
+            except OSError:
+                continue
+            if int(fields[3]) == self.pid and fields[0] not in "ZX":
+                found.append(path)
+        return found
+
+    def ended(self):
+        if self.status is None:
+            pid, status = os.waitpid(self.pid, os.WNOHANG)
+            if pid:
+                self.status = status
+        return self.status is not None and not self.group()
+
+    def gone(self):
+        """Wait until all of it has ended, and see that nothing is left."""
+        try:
+            deadline = time.monotonic() + 10
+            while not self.ended():
+                if self.master is not None and select.select([self.master], [], [], 0.02)[0]:
+                    try:
+                        os.read(self.master, 65536)
+                    except OSError:
+                        time.sleep(0.02)
+                elif self.master is None:
+                    time.sleep(0.02)
+                assert time.monotonic() < deadline, f"still there: {self.group()}"
+        finally:
+            self.end()
+        with socket.socket() as s:
+            assert s.connect_ex(("127.0.0.1", self.port)) != 0, "owserver still answers"
+
+    def hang_up(self):
+        os.close(self.master)
+        self.master = None
+
+    def end(self):
+        for path in self.group():
+            os.kill(int(path.split("/")[2]), signal.SIGKILL)
+        if self.status is None:
+            os.waitpid(self.pid, 0)
+            self.status = -1
+
+
+def shown(scene, *arguments):
+    terminal = Terminal(scene, *arguments)
+    try:
+        terminal.shows("ALL VALUES ARE FAKE" if not arguments else "write nothing")
+        terminal.shows("Ctrl-C ends it all")
+        terminal.shows("room" if not arguments else "temperature")
+    except BaseException:
+        terminal.end()
+        raise
+    return terminal
+
+
+def nothing_in_memory(terminal):
+    assert not glob.glob(f"/dev/shm/*{terminal.name}*")
+
+
+def test_it_shows_values_and_ctrl_c_leaves_nothing_behind(scene):
+    terminal = shown(scene)
+    os.write(terminal.master, b"\x03")
+    terminal.gone()
+    nothing_in_memory(terminal)
+
+
+def test_sigterm_leaves_nothing_behind(scene):
+    terminal = shown(scene)
+    os.kill(terminal.pid, signal.SIGTERM)
+    terminal.gone()
+    nothing_in_memory(terminal)
+
+
+def test_a_closed_terminal_leaves_nothing_behind(scene):
+    terminal = shown(scene)
+    terminal.hang_up()
+    terminal.gone()
+    nothing_in_memory(terminal)
+
+
+def test_sigkill_leaves_no_process_behind(scene):
+    terminal = shown(scene)
+    os.kill(terminal.pid, signal.SIGKILL)
+    terminal.gone()
+
+
+def test_an_owserver_that_was_there_is_read_and_left_alone(scene):
+    server = scene.owserver(mock=["28", "26"], tester=["29"])
+    terminal = shown(scene, server.target)
+    os.write(terminal.master, b"\x03")
+    terminal.gone()
+    nothing_in_memory(terminal)
+    assert server.answers()
+
+
+def test_no_owserver_at_the_given_address_is_said(scene):
+    terminal = Terminal(scene, f"127.0.0.1:{owsdtest.free_port()}")
+    try:
+        terminal.shows("no owserver answers")
+    finally:
+        terminal.gone()
+    assert os.waitstatus_to_exitcode(terminal.status) == 1
+
+
+if __name__ == "__main__":
+    owsdtest.main()
