@@ -2,6 +2,7 @@
 #include "hal/bus.h"
 
 const struct bus_ops *const bus_backends[] = {
+	&owserver_bus,
 	&null_bus,
 	&late_bus,
 	NULL,

@@ -1,0 +1,279 @@
+/* SPDX-License-Identifier: MIT */
+#include "hal/owserver/connection.h"
+
+#include <errno.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#define DEFAULT_HOST "localhost"
+#define DEFAULT_PORT "4304"
+/* One address of several must not use up the time of the others. */
+#define ADDRESS_NS INT64_C(1000000000)
+
+static int set_part(char *out, size_t size, const char *from, size_t len)
+{
+	if (len == 0 || len >= size)
+		return -EINVAL;
+	memcpy(out, from, len);
+	out[len] = '\0';
+	return 0;
+}
+
+static int set_port(char *out, size_t size, const char *text)
+{
+	if (set_part(out, size, text, strlen(text)) || text[strspn(text, "0123456789")] ||
+	    strtoul(text, NULL, 10) < 1 || strtoul(text, NULL, 10) > 65535)
+		return -EINVAL;
+	return 0;
+}
+
+int connection_init(struct connection *connection, const struct bus_env *env, const char *where,
+                    char *why, size_t why_size)
+{
+	bool brackets = where[0] == '[';
+	const char *host = where + brackets;
+	size_t len = strcspn(host, brackets ? "]" : ":");
+	const char *rest = host + len + (brackets && host[len]);
+	int err = 0;
+
+	*connection = (struct connection){ .env = env, .fd = -1, .host = DEFAULT_HOST,
+	                                   .port = DEFAULT_PORT };
+	if (!*where)
+		return 0;
+	if (brackets && host[len] != ']')
+		err = -EINVAL;
+	if (!err)
+		err = set_part(connection->host, sizeof(connection->host), host, len);
+	if (!err && *rest)
+		err = *rest == ':' ? set_port(connection->port, sizeof(connection->port), rest + 1)
+		                   : -EINVAL;
+	if (err || strpbrk(connection->host, " \t/"))
+		err = -EINVAL;
+	if (err)
+		snprintf(why, why_size, "'%.80s': HOST, HOST:PORT or [IPv6]:PORT is expected, with "
+		         "a PORT from 1 to 65535", where);
+	return err;
+}
+
+static int resolve(struct connection *connection)
+{
+	const struct addrinfo hints = { .ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM,
+	                                .ai_flags = AI_NUMERICSERV };
+	int err = getaddrinfo(connection->host, connection->port, &hints, &connection->list);
+
+	connection->next = NULL;
+	snprintf(connection->peer, sizeof(connection->peer), "%.60s:%s", connection->host,
+	         connection->port);
+	if (!err) {
+		connection->next = connection->list;
+		return 0;
+	}
+	connection->list = NULL;
+	snprintf(connection->trouble, sizeof(connection->trouble), "'%.40s' has no address: %.40s",
+	         connection->host, gai_strerror(err));
+	return -EHOSTUNREACH;
+}
+
+static void forget_addresses(struct connection *connection)
+{
+	if (connection->list)
+		freeaddrinfo(connection->list);
+	connection->list = connection->next = NULL;
+}
+
+static void close_socket(struct connection *connection)
+{
+	if (connection->fd >= 0)
+		close(connection->fd);
+	connection->fd = -1;
+}
+
+static void note_peer(struct connection *connection, const struct addrinfo *address)
+{
+	char host[48], port[8];
+
+	if (getnameinfo(address->ai_addr, address->ai_addrlen, host, sizeof(host), port,
+	                sizeof(port), NI_NUMERICHOST | NI_NUMERICSERV))
+		return;
+	snprintf(connection->peer, sizeof(connection->peer),
+	         address->ai_family == AF_INET6 ? "[%s]:%s" : "%s:%s", host, port);
+}
+
+/* A port of this machine that nobody listens on may connect to itself. */
+static bool is_itself(int fd)
+{
+	struct sockaddr_storage here = { 0 }, there = { 0 };
+	socklen_t here_len = sizeof(here), there_len = sizeof(there);
+
+	return getsockname(fd, (struct sockaddr *)&here, &here_len) == 0 &&
+	       getpeername(fd, (struct sockaddr *)&there, &there_len) == 0 &&
+	       here_len == there_len && memcmp(&here, &there, here_len) == 0;
+}
+
+/* Start the next address whose connect does not fail at once. 0, or that no more are left. */
+static int try_next(struct connection *connection)
+{
+	const int on = 1;
+
+	close_socket(connection);
+	while (connection->next) {
+		const struct addrinfo *address = connection->next;
+
+		connection->next = address->ai_next;
+		note_peer(connection, address);
+		connection->fd = socket(address->ai_family,
+		                        SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+		if (connection->fd >= 0) {
+			connection->give_up_ns = INT64_MAX;
+			if (connection->next)
+				connection->give_up_ns =
+					connection->env->now(connection->env->ctx) + ADDRESS_NS;
+			setsockopt(connection->fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+			if (connect(connection->fd, address->ai_addr, address->ai_addrlen) == 0 ||
+			    errno == EINPROGRESS || errno == EINTR)
+				return 0;
+		}
+		connection->last_err = -errno;
+		close_socket(connection);
+	}
+	snprintf(connection->trouble, sizeof(connection->trouble), "%.60s: %.36s",
+	         connection->peer, strerror(-connection->last_err));
+	return connection->last_err;
+}
+
+int connection_begin(struct connection *connection)
+{
+	int err;
+
+	connection_close(connection);
+	err = resolve(connection);
+	if (!err)
+		err = try_next(connection);
+	if (err)
+		connection_close(connection);
+	return err;
+}
+
+static int outcome(const struct connection *connection)
+{
+	int err = 0;
+	socklen_t len = sizeof(err);
+
+	if (getsockopt(connection->fd, SOL_SOCKET, SO_ERROR, &err, &len))
+		return -errno;
+	if (!err && is_itself(connection->fd))
+		return -ECONNREFUSED;
+	return -err;
+}
+
+int connection_go_on(struct connection *connection, int64_t until_ns)
+{
+	const struct bus_env *env = connection->env;
+
+	for (;;) {
+		bool last = until_ns <= connection->give_up_ns;
+		int ready = env->wait(env->ctx, connection->fd, POLLOUT,
+		                      last ? until_ns : connection->give_up_ns);
+
+		if (ready < 0)
+			return ready;
+		if (ready == 0 && last)
+			return -EAGAIN;
+		connection->last_err = ready ? outcome(connection) : -ETIMEDOUT;
+		if (connection->last_err == 0) {
+			forget_addresses(connection);
+			return 0;
+		}
+		if (try_next(connection)) {
+			int err = connection->last_err;
+
+			connection_close(connection);
+			return err;
+		}
+	}
+}
+
+int connection_open(struct connection *connection, int64_t until_ns)
+{
+	int err = connection_begin(connection);
+
+	if (!err)
+		err = connection_go_on(connection, until_ns);
+	if (err == -EAGAIN) {
+		snprintf(connection->trouble, sizeof(connection->trouble), "%.60s: %.36s",
+		         connection->peer, strerror(ETIMEDOUT));
+		err = -ETIMEDOUT;
+	}
+	if (err)
+		connection_close(connection);
+	return err;
+}
+
+void connection_close(struct connection *connection)
+{
+	close_socket(connection);
+	forget_addresses(connection);
+}
+
+bool connection_is_open(const struct connection *connection)
+{
+	return connection->fd >= 0 && !connection->list;
+}
+
+bool connection_is_stale(const struct connection *connection)
+{
+	uint8_t byte;
+
+	return recv(connection->fd, &byte, 1, MSG_PEEK | MSG_DONTWAIT) >= 0 ||
+	       (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR);
+}
+
+int connection_send(struct connection *connection, const uint8_t *bytes, size_t n,
+                    int64_t until_ns, size_t *sent)
+{
+	const struct bus_env *env = connection->env;
+
+	*sent = 0;
+	while (*sent < n) {
+		ssize_t part = send(connection->fd, bytes + *sent, n - *sent,
+		                    MSG_NOSIGNAL | MSG_DONTWAIT);
+
+		if (part >= 0) {
+			*sent += (size_t)part;
+		} else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+			int ready = env->wait(env->ctx, connection->fd, POLLOUT, until_ns);
+
+			if (ready <= 0)
+				return ready ? ready : -ETIMEDOUT;
+		} else if (errno != EINTR) {
+			return -errno;
+		}
+	}
+	return 0;
+}
+
+int connection_receive(struct connection *connection, uint8_t *bytes, size_t room,
+                       int64_t until_ns)
+{
+	const struct bus_env *env = connection->env;
+
+	for (;;) {
+		int ready = env->wait(env->ctx, connection->fd, POLLIN, until_ns);
+		ssize_t n;
+
+		if (ready <= 0)
+			return ready ? ready : -ETIMEDOUT;
+		n = recv(connection->fd, bytes, room, MSG_DONTWAIT);
+		if (n >= 0)
+			return (int)n;
+		if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)
+			return -errno;
+	}
+}

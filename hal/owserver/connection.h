@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A TCP connection to one place. Nothing here blocks but through env->wait, up to the deadline
+ * given (and the resolver, which knows no deadline). The name is resolved at each connect, so a
+ * change of address is followed; all its addresses are tried in turn.
+ */
+#ifndef HAL_OWSERVER_CONNECTION_H
+#define HAL_OWSERVER_CONNECTION_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "hal/bus.h"
+
+struct addrinfo;
+
+struct connection {
+	const struct bus_env *env;
+	char host[254];
+	char port[6];
+	int fd;                       /* -1: closed */
+	struct addrinfo *list, *next; /* addresses while connecting; next is tried after this one */
+	int64_t give_up_ns;           /* this address is tried until then */
+	int last_err;                 /* why the last address failed */
+	char peer[80];                /* "127.0.0.1:4304", once connected or tried */
+	char trouble[100];            /* why connecting failed, as a sentence */
+};
+
+/* where: `host`, `host:port`, `[v6]`, `[v6]:port`; empty means localhost. 0, or -EINVAL and why. */
+int connection_init(struct connection *connection, const struct bus_env *env, const char *where,
+                    char *why, size_t why_size);
+/* Resolve and start to connect. 0, or negative errno with trouble set. */
+int connection_begin(struct connection *connection);
+/*
+ * Go on until connected (0) or until_ns (-EAGAIN). -ECANCELED: the host shuts down. Other errors:
+ * all addresses failed, trouble says how the last one did; nothing is left open.
+ */
+int connection_go_on(struct connection *connection, int64_t until_ns);
+/* Both of them; -ETIMEDOUT when not connected at until_ns. */
+int connection_open(struct connection *connection, int64_t until_ns);
+void connection_close(struct connection *connection);
+bool connection_is_open(const struct connection *connection);
+
+/* Closed by the peer, or bytes came that nobody asked for: do not use it for a request. */
+bool connection_is_stale(const struct connection *connection);
+/* 0, -ETIMEDOUT, -ECANCELED, or what the socket says; *sent is set in any case. */
+int connection_send(struct connection *connection, const uint8_t *bytes, size_t n,
+                    int64_t until_ns, size_t *sent);
+/* Bytes received (at least 1), 0 the peer closed, or as connection_send(). */
+int connection_receive(struct connection *connection, uint8_t *bytes, size_t room,
+                       int64_t until_ns);
+
+#endif

@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: MIT */
+#include "hal/owserver/listing.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "hal/owserver/path.h"
+
+#define KEEP_NS    INT64_C(10000000000)
+#define ID_LEN     15
+#define ADDRESS_LEN 16
+
+static const struct listing_name *known(const struct listing *listing, const char *alias,
+                                        size_t len, int64_t now)
+{
+	for (unsigned i = 0; i < LISTING_NAMES; i++) {
+		const struct listing_name *name = &listing->name[i];
+
+		if (now < name->until_ns && strlen(name->alias) == len &&
+		    memcmp(name->alias, alias, len) == 0)
+			return name;
+	}
+	return NULL;
+}
+
+/* "2867C6697351FFXX" to "28.67C6697351FF" */
+static bool id_of_address(const uint8_t *address, uint32_t len, char id[ID_LEN + 1])
+{
+	if (len != ADDRESS_LEN)
+		return false;
+	memcpy(id, address, 2);
+	id[2] = '.';
+	memcpy(id + 3, address + 2, 12);
+	id[ID_LEN] = '\0';
+	return path_is_rom_name(id, ID_LEN);
+}
+
+/* 0 and the id; 1 this is no alias; or what talk_exchange() says. */
+static int find_id(struct listing *listing, struct talk *talk, const char *alias, size_t len,
+                   int64_t deadline_ns, char id[ID_LEN + 1])
+{
+	const struct bus_env *env = talk->connection.env;
+	const struct listing_name *name = known(listing, alias, len, env->now(env->ctx));
+	struct listing_name *place = &listing->name[listing->next];
+	char path[FRAME_PATH_MAX + 1];
+	uint8_t address[ADDRESS_LEN];
+	struct talk_request request = { .type = FRAME_READ, .path = path, .size = ADDRESS_LEN,
+	                                .room = address, .limit = ADDRESS_LEN };
+	int err;
+
+	if (name) {
+		memcpy(id, name->id, ID_LEN + 1);
+		return 0;
+	}
+	if (len + sizeof("//address") > sizeof(path))
+		return 1;
+	snprintf(path, sizeof(path), "/%.*s/address", (int)len, alias);
+	err = talk_exchange(talk, &request, deadline_ns);
+	if (err)
+		return err;
+	if (talk->reader.header.type < 0 ||
+	    !id_of_address(address, (uint32_t)talk->reader.header.payload, id))
+		return 1;
+	if (len < sizeof(place->alias)) {
+		memcpy(place->alias, alias, len);
+		place->alias[len] = '\0';
+		memcpy(place->id, id, ID_LEN + 1);
+		place->until_ns = env->now(env->ctx) + KEEP_NS;
+		listing->next = (listing->next + 1) % LISTING_NAMES;
+	}
+	return 0;
+}
+
+static bool is_plain(const char *entry, size_t len)
+{
+	for (size_t i = 0; i < len; i++)
+		if ((unsigned char)entry[i] < ' ' || entry[i] == 0x7f)
+			return false;
+	return len > 0;
+}
+
+static int put(struct bus_req *req, uint32_t *used, const char *text, size_t len)
+{
+	if (len > req->len - *used)
+		return -EMSGSIZE;
+	memcpy(req->data + *used, text, len);
+	*used += (uint32_t)len;
+	return 0;
+}
+
+static int put_entry(struct listing *listing, struct talk *talk, struct bus_req *req,
+                     uint32_t *used, const char *entry, size_t len)
+{
+	struct path_part device;
+	char id[ID_LEN + 1];
+	int err = 1;
+
+	if (!is_plain(entry, len))
+		return 0;
+	if (path_device(entry, len, &device) && !path_is_rom_name(entry + device.at, device.len))
+		err = find_id(listing, talk, entry + device.at, device.len, req->deadline_ns, id);
+	if (err < 0)
+		return err;
+	if (err == 0) {
+		size_t rest = device.at + device.len;
+
+		err = put(req, used, entry, device.at);
+		if (!err)
+			err = put(req, used, id, ID_LEN);
+		if (!err)
+			err = put(req, used, entry + rest, len - rest);
+	} else {
+		err = put(req, used, entry, len);
+	}
+	return err ? err : put(req, used, "\n", 1);
+}
+
+int listing_read(struct listing *listing, struct talk *talk, struct bus_req *req, uint32_t *used)
+{
+	struct talk_request request = { .type = FRAME_DIRALL, .fresh = req->fresh,
+	                                .path = req->path, .room = listing->reply,
+	                                .limit = sizeof(listing->reply) };
+	const char *text = (const char *)listing->reply;
+	int err = talk_exchange(talk, &request, req->deadline_ns);
+	size_t len, at = 0;
+
+	*used = 0;
+	if (err)
+		return err;
+	if (talk->reader.header.type < 0)
+		return 1;
+	len = strnlen(text, (size_t)talk->reader.header.payload);
+	while (!err && at < len) {
+		const char *comma = memchr(text + at, ',', len - at);
+		size_t end = comma ? (size_t)(comma - text) : len;
+
+		err = put_entry(listing, talk, req, used, text + at, end - at);
+		at = end + 1;
+	}
+	return err;
+}

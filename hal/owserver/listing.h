@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What a DIRALL shows, with each device under its id. owserver shows a device that has an alias
+ * under the alias only; its `address` says who it is. The names asked for are kept for a while.
+ */
+#ifndef HAL_OWSERVER_LISTING_H
+#define HAL_OWSERVER_LISTING_H
+
+#include "hal/owserver/talk.h"
+
+#define LISTING_MAX   262144 /* 10 000 devices are 170 kB */
+#define LISTING_NAMES 32
+
+struct listing_name {
+	char alias[48];
+	char id[16];
+	int64_t until_ns; /* an alias may move to another device */
+};
+
+struct listing {
+	struct listing_name name[LISTING_NAMES];
+	unsigned next;
+	uint8_t reply[LISTING_MAX];
+};
+
+/*
+ * List req->path into req->data, each full path ended by '\n'. Returns 0 and *used; -EMSGSIZE: no
+ * room; 1: the server refused, talk->reader.header.type says why; or what talk_exchange() says.
+ */
+int listing_read(struct listing *listing, struct talk *talk, struct bus_req *req, uint32_t *used);
+
+#endif

@@ -1,0 +1,415 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The owserver bus: requests go to an owserver over one kept connection, one at a time. Target:
+ * `host`, `host:port`, `[v6]:port`, or the same behind `owserver:`.
+ *
+ * Down, it connects again with back-off for ever; a connection counts as up when a NOP was
+ * answered. Silence and loss take it down; a server that only was too slow (it sent keep-alives)
+ * stays up, on a new connection.
+ */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/owserver/listing.h"
+#include "hal/owserver/path.h"
+#include "hal/owserver/status.h"
+#include "hal/owserver/talk.h"
+
+#define MS          INT64_C(1000000)
+#define BACKOFF_MIN (200 * MS)
+#define BACKOFF_MAX (5000 * MS)
+/* Connecting and greeting together; a step waits for a slice of it, so that requests that come
+   meanwhile are told at once that the target is down. */
+#define GREETING_NS (5000 * MS)
+#define SLICE_NS    (50 * MS)
+/* An idle connection is looked at so often, to learn that the server went. */
+#define IDLE_NS     (1000 * MS)
+#define READ_MAX    65536
+
+enum state { DOWN, CONNECTING, GREETING, UP };
+
+enum own_counter { RECONNECTS = TALK_COUNTERS, COUNTERS };
+
+struct owserver {
+	struct bus bus;
+	enum state state;
+	int64_t retry_ns, backoff_ns, give_up_ns, look_ns;
+	bool was_up, is_down_told, suspended;
+	struct bus_event loss; /* to be told by the next step, if text is set */
+	struct bus_counter counter[COUNTERS];
+	struct talk talk;
+	struct listing listing;
+};
+
+static const char *const counter_names[COUNTERS] = {
+	[TALK_REQUESTS] = "requests",
+	[TALK_KEEPALIVES] = "keepalives",
+	[TALK_CONNECTIONS] = "connections",
+	[TALK_REFUSED] = "refused_persistence",
+	[TALK_STALE] = "stale_connection",
+	[TALK_GARBAGE] = "garbage",
+	[TALK_TIMEOUTS] = "timeouts",
+	[TALK_BYTES_IN] = "bytes_in",
+	[TALK_BYTES_OUT] = "bytes_out",
+	[RECONNECTS] = "reconnects",
+};
+
+static int owserver_create(const char *where, const struct bus_env *env, struct bus **bus,
+                           char *why, size_t why_size)
+{
+	struct owserver *server = calloc(1, sizeof(*server));
+	int err = server ? bus_init(&server->bus, &owserver_bus, env) : -ENOMEM;
+
+	if (err) {
+		free(server);
+		return err;
+	}
+	err = connection_init(&server->talk.connection, env, where, why, why_size);
+	if (err) {
+		bus_destroy(&server->bus);
+		return err;
+	}
+	for (unsigned i = 0; i < COUNTERS; i++)
+		server->counter[i].name = counter_names[i];
+	server->talk.counter = server->counter;
+	server->backoff_ns = BACKOFF_MIN;
+	*bus = &server->bus;
+	return 0;
+}
+
+static void owserver_destroy(struct bus *bus)
+{
+	struct owserver *server = (struct owserver *)bus;
+
+	connection_close(&server->talk.connection);
+	free(server);
+}
+
+static int64_t now_of(const struct owserver *server)
+{
+	return server->bus.env->now(server->bus.env->ctx);
+}
+
+/* The one way down. The event is told by the next step, so that it follows the answer. */
+static void go_down(struct owserver *server, int err, const char *text)
+{
+	connection_close(&server->talk.connection);
+	server->state = DOWN;
+	server->retry_ns = now_of(server) + server->backoff_ns;
+	server->backoff_ns *= 2;
+	if (server->backoff_ns > BACKOFF_MAX)
+		server->backoff_ns = BACKOFF_MAX;
+	if (server->is_down_told)
+		return;
+	server->is_down_told = true;
+	server->loss = (struct bus_event){ .news = BUS_DOWN, .err = err };
+	snprintf(server->loss.text, sizeof(server->loss.text), "%s", text);
+}
+
+static void go_up(struct owserver *server)
+{
+	struct bus_event event = { .news = BUS_UP };
+
+	if (server->was_up)
+		bus_count(&server->counter[RECONNECTS], 1);
+	server->state = UP;
+	server->was_up = true;
+	server->is_down_told = false;
+	server->look_ns = now_of(server) + IDLE_NS;
+	snprintf(event.text, sizeof(event.text), "connected to owserver at %s",
+	         server->talk.connection.peer);
+	server->bus.env->event(server->bus.env->ctx, &event);
+}
+
+static void tell_loss(struct owserver *server)
+{
+	if (!server->loss.text[0])
+		return;
+	server->bus.env->event(server->bus.env->ctx, &server->loss);
+	server->loss.text[0] = '\0';
+}
+
+/* --- Coming up, slice by slice --------------------------------------------------------------- */
+
+static void begin_connect(struct owserver *server)
+{
+	int err = connection_begin(&server->talk.connection);
+
+	server->give_up_ns = now_of(server) + GREETING_NS;
+	if (err)
+		go_down(server, -ECONNRESET, server->talk.connection.trouble);
+	else
+		server->state = CONNECTING;
+}
+
+static void out_of_time(struct owserver *server)
+{
+	char text[sizeof(server->loss.text)];
+
+	snprintf(text, sizeof(text), "%.70s: no answer", server->talk.connection.peer);
+	bus_count(&server->counter[TALK_TIMEOUTS], 1);
+	go_down(server, -ETIMEDOUT, text);
+}
+
+static int64_t slice_end(const struct owserver *server)
+{
+	int64_t end = now_of(server) + SLICE_NS;
+
+	return end < server->give_up_ns ? end : server->give_up_ns;
+}
+
+static void go_on_connecting(struct owserver *server)
+{
+	const struct talk_request nop = { .type = FRAME_NOP };
+	struct talk *talk = &server->talk;
+	int err = connection_go_on(&talk->connection, slice_end(server));
+
+	if (err == -EAGAIN || err == -ECANCELED) {
+		if (now_of(server) >= server->give_up_ns)
+			out_of_time(server);
+		return;
+	}
+	if (err) {
+		go_down(server, -ECONNRESET, talk->connection.trouble);
+		return;
+	}
+	bus_count(&server->counter[TALK_CONNECTIONS], 1);
+	server->state = GREETING;
+	talk->heard = false;
+	err = talk_send(talk, &nop, server->give_up_ns);
+	if (err)
+		go_down(server, err, talk->trouble);
+}
+
+static void go_on_greeting(struct owserver *server)
+{
+	int err = talk_receive(&server->talk, slice_end(server));
+
+	if (err == 0)
+		go_up(server);
+	else if (err != -EAGAIN)
+		go_down(server, err == -EINPROGRESS ? -ECONNRESET : err, server->talk.trouble);
+	else if (now_of(server) >= server->give_up_ns)
+		out_of_time(server);
+}
+
+/* A server that closed an idle connection is asked whether it is still there. */
+static void look_at_idle(struct owserver *server)
+{
+	struct talk *talk = &server->talk;
+	int err = 0;
+
+	server->look_ns = now_of(server) + IDLE_NS;
+	if (!connection_is_open(&talk->connection) || !connection_is_stale(&talk->connection))
+		return;
+	bus_count(&server->counter[TALK_STALE], 1);
+	err = connection_open(&talk->connection, server->look_ns);
+	if (err == -ECANCELED)
+		return;
+	if (err) {
+		go_down(server, err == -ETIMEDOUT ? err : -ECONNRESET, talk->connection.trouble);
+		return;
+	}
+	bus_count(&server->counter[TALK_CONNECTIONS], 1);
+	talk->used_ns = now_of(server);
+}
+
+static int64_t owserver_step(struct bus *bus, int64_t now)
+{
+	struct owserver *server = (struct owserver *)bus;
+
+	tell_loss(server);
+	if (server->suspended)
+		return INT64_MAX;
+	switch (server->state) {
+	case DOWN:
+		if (now >= server->retry_ns)
+			begin_connect(server);
+		break;
+	case CONNECTING:
+		go_on_connecting(server);
+		break;
+	case GREETING:
+		go_on_greeting(server);
+		break;
+	case UP:
+		if (now >= server->look_ns)
+			look_at_idle(server);
+		break;
+	}
+	tell_loss(server);
+	switch (server->state) {
+	case DOWN:
+		return server->retry_ns;
+	case CONNECTING:
+	case GREETING:
+		return now;
+	case UP:
+		return server->look_ns;
+	}
+	return INT64_MAX;
+}
+
+static void owserver_suspend(struct bus *bus, bool yes)
+{
+	struct owserver *server = (struct owserver *)bus;
+
+	server->suspended = yes;
+	if (!yes)
+		return;
+	connection_close(&server->talk.connection);
+	server->state = DOWN;
+	server->retry_ns = 0;
+}
+
+/* --- Requests --------------------------------------------------------------------------------- */
+
+/* PRESENT of the path's device, or of the path if it has none. 0, 1 absent, or as an exchange. */
+static int present(struct owserver *server, const struct bus_req *req, bool fresh)
+{
+	char path[FRAME_PATH_MAX + 1];
+	struct talk_request request = { .type = FRAME_PRESENT, .fresh = fresh, .path = path };
+	struct path_part device;
+	size_t len = strlen(req->path);
+	int err;
+
+	if (path_device(req->path, len, &device))
+		len = device.at + device.len;
+	if (len >= sizeof(path))
+		return -EMSGSIZE;
+	memcpy(path, req->path, len);
+	path[len] = '\0';
+	err = talk_exchange(&server->talk, &request, req->deadline_ns);
+	if (err)
+		return err;
+	return server->talk.reader.header.type < 0;
+}
+
+/* What a negative return code means; for -1 the server has to be asked whether the device is there. */
+static int refused(struct owserver *server, const struct bus_req *req)
+{
+	int err = status_of(server->talk.reader.header.type, (enum bus_op)req->op);
+	struct path_part device;
+
+	if (err != 1)
+		return err;
+	if (!path_device(req->path, strlen(req->path), &device))
+		return -ENOENT;
+	err = present(server, req, true);
+	return err == 1 ? -ENODEV : err == 0 ? -ENOENT : err;
+}
+
+static int do_read(struct owserver *server, struct bus_req *req, uint32_t *len)
+{
+	uint32_t room = req->len < READ_MAX ? req->len : READ_MAX;
+	struct talk_request request = { .type = FRAME_READ, .fresh = req->fresh, .path = req->path,
+	                                .size = (int32_t)room, .room = req->data, .limit = room };
+	const struct frame_header *reply = &server->talk.reader.header;
+	int err;
+
+	if (room == 0)
+		return -EMSGSIZE;
+	err = talk_exchange(&server->talk, &request, req->deadline_ns);
+	if (err)
+		return err;
+	if (reply->type < 0)
+		return refused(server, req);
+	if (reply->type > reply->payload) {
+		snprintf(server->talk.trouble, sizeof(server->talk.trouble),
+		         "%.60s: an answer shorter than it says", server->talk.connection.peer);
+		bus_count(&server->counter[TALK_GARBAGE], 1);
+		return -EPROTO;
+	}
+	*len = (uint32_t)reply->payload;
+	return 0;
+}
+
+static int do_write(struct owserver *server, struct bus_req *req, uint32_t *len)
+{
+	struct talk_request request = { .type = FRAME_WRITE, .path = req->path, .data = req->data,
+	                                .data_len = req->len };
+	const struct frame_header *reply = &server->talk.reader.header;
+	int err = talk_exchange(&server->talk, &request, req->deadline_ns);
+
+	if (err)
+		return err;
+	if (reply->type < 0)
+		return refused(server, req);
+	if (reply->size < 0 || (uint32_t)reply->size < req->len)
+		return -EIO;
+	*len = req->len;
+	return 0;
+}
+
+static int do_dir(struct owserver *server, struct bus_req *req, uint32_t *len)
+{
+	int err = listing_read(&server->listing, &server->talk, req, len);
+
+	return err == 1 ? refused(server, req) : err;
+}
+
+static int do_probe(struct owserver *server, struct bus_req *req)
+{
+	int err = present(server, req, req->fresh);
+
+	return err == 1 ? -ENODEV : err;
+}
+
+static int serve(struct owserver *server, struct bus_req *req, uint32_t *len)
+{
+	switch ((enum bus_op)req->op) {
+	case BUS_READ:
+		return do_read(server, req, len);
+	case BUS_WRITE:
+		return do_write(server, req, len);
+	case BUS_DIR:
+		return do_dir(server, req, len);
+	case BUS_PROBE:
+		return do_probe(server, req);
+	}
+	return -EOPNOTSUPP;
+}
+
+static void owserver_exec(struct bus *bus, struct bus_req *req, struct bus_answer *answer)
+{
+	struct owserver *server = (struct owserver *)bus;
+	int err;
+
+	answer->kind = BUS_TEXT;
+	if (server->state != UP) {
+		answer->err = -ENOTCONN;
+		return;
+	}
+	server->talk.heard = false;
+	err = serve(server, req, &answer->len);
+	if (err == -ECONNREFUSED)
+		err = -ECONNRESET;
+	if (err == -ECONNRESET || err == -ETIMEDOUT || err == -EPROTO)
+		go_down(server, err, server->talk.trouble);
+	else
+		server->backoff_ns = BACKOFF_MIN;
+	if (err)
+		answer->len = 0;
+	answer->err = err;
+	answer->measured_ns = now_of(server);
+}
+
+static const struct bus_counter *owserver_counters(struct bus *bus, size_t *n)
+{
+	*n = COUNTERS;
+	return ((struct owserver *)bus)->counter;
+}
+
+const struct bus_ops owserver_bus = {
+	.scheme = "owserver",
+	.summary = "an owserver of OWFS, over the network",
+	.depth = 1,
+	.create = owserver_create,
+	.destroy = owserver_destroy,
+	.exec = owserver_exec,
+	.step = owserver_step,
+	.suspend = owserver_suspend,
+	.counters = owserver_counters,
+};

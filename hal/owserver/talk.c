@@ -1,0 +1,180 @@
+/* SPDX-License-Identifier: MIT */
+#include "hal/owserver/talk.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A connection unused for so long is looked at before it is used. */
+#define LOOK_AFTER_NS INT64_C(50000000)
+
+static int64_t now(const struct talk *talk)
+{
+	return talk->connection.env->now(talk->connection.env->ctx);
+}
+
+static int fail(struct talk *talk, int err, const char *reason)
+{
+	snprintf(talk->trouble, sizeof(talk->trouble), "%.60s: %.48s", talk->connection.peer, reason);
+	connection_close(&talk->connection);
+	if (err == -EPROTO)
+		bus_count(&talk->counter[TALK_GARBAGE], 1);
+	return err;
+}
+
+static int fail_socket(struct talk *talk, int err)
+{
+	if (err == -ECANCELED)
+		return fail(talk, -EINPROGRESS, "shutting down");
+	return fail(talk, -ECONNRESET, strerror(-err));
+}
+
+static int time_is_over(struct talk *talk)
+{
+	bus_count(&talk->counter[TALK_TIMEOUTS], 1);
+	return talk->heard ? fail(talk, -EINPROGRESS, "no whole answer in time")
+	                   : fail(talk, -ETIMEDOUT, "no sign of life in time");
+}
+
+static int make_request(struct talk *talk, const struct talk_request *request)
+{
+	uint32_t flags = FRAME_PERSIST | (request->fresh ? FRAME_UNCACHED : 0);
+
+	return frame_request(talk->out, request->type, flags, request->size, request->path,
+	                     request->data, request->data_len);
+}
+
+static void expect_reply(struct talk *talk, const struct talk_request *request)
+{
+	if (request->room)
+		frame_begin(&talk->reader, request->room, request->limit);
+	else
+		frame_begin(&talk->reader, talk->scrap, sizeof(talk->scrap));
+}
+
+int talk_send(struct talk *talk, const struct talk_request *request, int64_t until_ns)
+{
+	int len = make_request(talk, request);
+	size_t sent;
+	int err;
+
+	if (len < 0)
+		return len;
+	expect_reply(talk, request);
+	err = connection_send(&talk->connection, talk->out, (size_t)len, until_ns, &sent);
+	bus_count(&talk->counter[TALK_BYTES_OUT], sent);
+	return err == -ETIMEDOUT ? time_is_over(talk) : err ? fail_socket(talk, err) : 0;
+}
+
+static int whole(struct talk *talk, size_t left_over)
+{
+	if (left_over)
+		return fail(talk, -EPROTO, "garbage after the answer");
+	talk->used_ns = now(talk);
+	if (!(talk->reader.header.flags & FRAME_PERSIST)) {
+		bus_count(&talk->counter[TALK_REFUSED], 1);
+		connection_close(&talk->connection);
+	}
+	return 0;
+}
+
+int talk_receive(struct talk *talk, int64_t until_ns)
+{
+	do {
+		int n = connection_receive(&talk->connection, talk->in, sizeof(talk->in), until_ns);
+		size_t at = 0;
+
+		if (n == -ETIMEDOUT)
+			return -EAGAIN;
+		if (n < 0)
+			return fail_socket(talk, n);
+		if (n == 0)
+			return fail(talk, -ECONNRESET, "closed by the server");
+		talk->heard = true;
+		bus_count(&talk->counter[TALK_BYTES_IN], (uint64_t)n);
+		while (at < (size_t)n) {
+			size_t used;
+			int state = frame_feed(&talk->reader, talk->in + at, (size_t)n - at, &used);
+
+			at += used;
+			if (state == FRAME_WHOLE)
+				return whole(talk, (size_t)n - at);
+			if (state == FRAME_ALIVE)
+				bus_count(&talk->counter[TALK_KEEPALIVES], 1);
+			else if (state == -EMSGSIZE)
+				return fail(talk, -EPROTO, "an answer longer than asked for");
+			else if (state < 0)
+				return fail(talk, -EPROTO, "this is no owserver");
+		}
+	} while (now(talk) < until_ns);
+	return -EAGAIN;
+}
+
+static int reopen(struct talk *talk, int64_t deadline_ns)
+{
+	int err = connection_open(&talk->connection, deadline_ns);
+
+	if (!err) {
+		bus_count(&talk->counter[TALK_CONNECTIONS], 1);
+		return 0;
+	}
+	if (err == -ECANCELED)
+		return fail_socket(talk, err);
+	if (err == -ETIMEDOUT)
+		bus_count(&talk->counter[TALK_TIMEOUTS], 1);
+	snprintf(talk->trouble, sizeof(talk->trouble), "%s", talk->connection.trouble);
+	return err == -ETIMEDOUT ? err : -ECONNREFUSED;
+}
+
+/* One attempt. *again: a kept connection was found closed, and to repeat does no harm. */
+static int attempt(struct talk *talk, const struct talk_request *request, size_t len,
+                   int64_t deadline_ns, bool *again)
+{
+	bool kept = connection_is_open(&talk->connection);
+	uint64_t in_before = talk->counter[TALK_BYTES_IN].value;
+	size_t sent;
+	int err;
+
+	*again = false;
+	if (kept && (request->type == FRAME_WRITE || now(talk) - talk->used_ns > LOOK_AFTER_NS) &&
+	    connection_is_stale(&talk->connection)) {
+		bus_count(&talk->counter[TALK_STALE], 1);
+		kept = false;
+		connection_close(&talk->connection);
+	}
+	if (!connection_is_open(&talk->connection)) {
+		err = reopen(talk, deadline_ns);
+		if (err)
+			return err;
+	}
+	expect_reply(talk, request);
+	err = connection_send(&talk->connection, talk->out, len, deadline_ns, &sent);
+	bus_count(&talk->counter[TALK_BYTES_OUT], sent);
+	if (err == -ETIMEDOUT)
+		return time_is_over(talk);
+	if (err) {
+		*again = kept && err != -ECANCELED && (sent == 0 || request->type != FRAME_WRITE);
+		return fail_socket(talk, err);
+	}
+	err = talk_receive(talk, deadline_ns);
+	*again = err == -ECONNRESET && kept && request->type != FRAME_WRITE &&
+	         in_before == talk->counter[TALK_BYTES_IN].value;
+	return err == -EAGAIN ? time_is_over(talk) : err;
+}
+
+int talk_exchange(struct talk *talk, const struct talk_request *request, int64_t deadline_ns)
+{
+	int len = make_request(talk, request);
+	bool again;
+	int err;
+
+	if (len < 0)
+		return len;
+	bus_count(&talk->counter[TALK_REQUESTS], 1);
+	err = attempt(talk, request, (size_t)len, deadline_ns, &again);
+	if (again) {
+		bus_count(&talk->counter[TALK_STALE], 1);
+		err = attempt(talk, request, (size_t)len, deadline_ns, &again);
+	}
+	return err;
+}

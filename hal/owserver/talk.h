@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Requests and replies of the owserver protocol over one kept connection.
+ *
+ * When a kept connection turns out to be closed before a byte of the answer came, as owserver does
+ * to idle ones, the request is repeated once on a new connection; a WRITE only if none of it was
+ * sent, because a write must not happen twice.
+ */
+#ifndef HAL_OWSERVER_TALK_H
+#define HAL_OWSERVER_TALK_H
+
+#include "hal/owserver/connection.h"
+#include "hal/owserver/frame.h"
+
+enum talk_counter {
+	TALK_REQUESTS,
+	TALK_KEEPALIVES,
+	TALK_CONNECTIONS,
+	TALK_REFUSED,
+	TALK_STALE,
+	TALK_GARBAGE,
+	TALK_TIMEOUTS,
+	TALK_BYTES_IN,
+	TALK_BYTES_OUT,
+	TALK_COUNTERS,
+};
+
+struct talk {
+	struct connection connection;
+	struct frame_reader reader; /* reader.header: the last reply */
+	int64_t used_ns;            /* when the last reply ended */
+	bool heard;                 /* bytes came since the caller cleared it */
+	char trouble[112];          /* why an exchange failed, as a sentence */
+	struct bus_counter *counter; /* by enum talk_counter */
+	uint8_t in[4096];
+	uint8_t out[FRAME_REQUEST_MAX];
+	uint8_t scrap[64];
+};
+
+struct talk_request {
+	enum frame_type type;
+	bool fresh;
+	const char *path;
+	int32_t size;        /* READ: bytes asked for */
+	const uint8_t *data; /* WRITE */
+	uint32_t data_len;
+	uint8_t *room; /* where the reply's data go; NULL: not wanted */
+	uint32_t limit;
+};
+
+/*
+ * Ask and wait for the reply. 0: talk->reader has it. Otherwise the connection is closed, trouble
+ * is set, and the result is
+ *   -EMSGSIZE     the path or the data are too long, nothing was sent (connection kept)
+ *   -ECONNREFUSED no connection
+ *   -ECONNRESET   closed by the peer
+ *   -EPROTO       garbage
+ *   -ETIMEDOUT    nothing heard until the deadline
+ *   -EINPROGRESS  heard, but no whole reply by then; or the host shuts down
+ */
+int talk_exchange(struct talk *talk, const struct talk_request *request, int64_t deadline_ns);
+
+/* The two halves, on an open connection. Errors of the second as above, and -EAGAIN: not yet. */
+int talk_send(struct talk *talk, const struct talk_request *request, int64_t until_ns);
+int talk_receive(struct talk *talk, int64_t until_ns);
+
+#endif

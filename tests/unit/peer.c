@@ -1,0 +1,288 @@
+/* SPDX-License-Identifier: MIT */
+#include "tests/unit/peer.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "hal/owserver/frame.h"
+#include "unity.h"
+
+static const struct {
+	uint32_t type;
+	const char *path, *text;
+} answers[] = {
+	{ FRAME_READ, "/28.67C6697351FF/temperature", "     21.0625" },
+	{ FRAME_READ, "/28.67C6697351FF/type", "DS18B20" },
+	{ FRAME_READ, "/28.67C6697351FF/locator", "" },
+	{ FRAME_READ, "/boiler/address", "2867C6697351FF38" },
+	{ FRAME_READ, "/29.000029D60100/strange", "?" },
+	{ FRAME_WRITE, "/29.000029D60100/PIO.BYTE", "" },
+	{ FRAME_PRESENT, "/28.67C6697351FF", "12345678" },
+	{ FRAME_PRESENT, "/29.000029D60100", "12345678" },
+	{ FRAME_DIRALL, "/", "/boiler,/29.000029D60100,/bus.0,/settings" },
+	{ FRAME_DIRALL, "/alarm", "/alarm/boiler" },
+	{ FRAME_DIRALL, "/28.67C6697351FF", "/boiler/address,/boiler/type" },
+	{ FRAME_DIRALL, "/odd", "/stranger,/bad\nentry,,/29.000029D60100" },
+};
+
+static void saw(unsigned *count)
+{
+	__atomic_add_fetch(count, 1, __ATOMIC_SEQ_CST);
+}
+
+unsigned peer_saw(const unsigned *count)
+{
+	return __atomic_load_n(count, __ATOMIC_SEQ_CST);
+}
+
+static int is_stopping(const struct peer *peer)
+{
+	return __atomic_load_n(&peer->stopping, __ATOMIC_SEQ_CST);
+}
+
+/* 1 readable, 0 time is over, -1 told to stop. */
+static int wait_readable(const struct peer *peer, int fd, int ms)
+{
+	struct pollfd poll_fd = { .fd = fd, .events = POLLIN };
+
+	for (int waited = 0; waited < ms; waited += 5) {
+		if (is_stopping(peer))
+			return -1;
+		if (poll(&poll_fd, 1, 5) > 0)
+			return 1;
+	}
+	return 0;
+}
+
+static int read_all(const struct peer *peer, int fd, uint8_t *bytes, size_t n)
+{
+	for (size_t got = 0; got < n;) {
+		ssize_t part;
+
+		if (wait_readable(peer, fd, 20000) <= 0)
+			return -1;
+		part = recv(fd, bytes + got, n - got, 0);
+		if (part <= 0)
+			return -1;
+		got += (size_t)part;
+	}
+	return 0;
+}
+
+static void until_gone(const struct peer *peer, int fd, const uint8_t *bytes, size_t n)
+{
+	uint8_t byte;
+
+	while (wait_readable(peer, fd, 10) == 0)
+		if (n && send(fd, bytes, n, MSG_NOSIGNAL) < 0)
+			return;
+	recv(fd, &byte, 1, 0);
+}
+
+static void send_all(int fd, const uint8_t *bytes, size_t n, size_t piece)
+{
+	for (size_t at = 0; at < n; at += piece) {
+		size_t part = n - at < piece ? n - at : piece;
+
+		if (send(fd, bytes + at, part, MSG_NOSIGNAL) < 0)
+			return;
+		if (piece < n)
+			usleep(300);
+	}
+}
+
+static size_t make_answer(uint8_t *out, const struct frame_header *request, const char *path)
+{
+	struct frame_header reply = { .flags = request->flags };
+	const char *text = NULL;
+
+	for (unsigned i = 0; i < sizeof(answers) / sizeof(answers[0]); i++)
+		if (answers[i].type == (uint32_t)request->type && strcmp(answers[i].path, path) == 0)
+			text = answers[i].text;
+	if (!text && request->type != FRAME_NOP) {
+		reply.type = strstr(path, "readonly") ? -95 : strstr(path, "directory") ? -21 : -1;
+	} else if (text) {
+		reply.payload = (int32_t)strlen(text);
+		reply.type = request->type == FRAME_READ ? reply.payload : 0;
+		reply.size = reply.payload;
+	}
+	if (reply.type >= 0 && request->type == FRAME_DIRALL)
+		reply.payload++;
+	if (request->type == FRAME_WRITE)
+		reply.size = request->size > 8 ? 8 : request->size;
+	frame_put_header(out, &reply);
+	if (text)
+		memcpy(out + FRAME_HEADER, text, strlen(text) + 1);
+	return FRAME_HEADER + (size_t)reply.payload;
+}
+
+static void change(uint8_t *answer, size_t word, uint32_t value)
+{
+	for (int i = 0; i < 4; i++)
+		answer[word * 4 + (size_t)i] = (uint8_t)(value >> (24 - 8 * i));
+}
+
+/* False: this connection has ended. */
+static int act(const struct peer *peer, int fd, char letter, uint8_t *answer, size_t len)
+{
+	const struct linger reset = { .l_onoff = 1 };
+	uint8_t alive[FRAME_HEADER] = { 0 };
+
+	change(alive, 1, UINT32_MAX);
+	switch (letter) {
+	case 'k':
+		for (int i = 0; i < 3; i++)
+			send_all(fd, alive, sizeof(alive), i == 1 ? 5 : sizeof(alive));
+		break;
+	case 'K':
+		until_gone(peer, fd, alive, sizeof(alive));
+		return 0;
+	case 'x':
+		return 0;
+	case 'R':
+		setsockopt(fd, SOL_SOCKET, SO_LINGER, &reset, sizeof(reset));
+		return 0;
+	case 'm':
+		send_all(fd, answer, len / 2, len);
+		return 0;
+	case 'd':
+		send_all(fd, answer, len / 2, len);
+		until_gone(peer, fd, NULL, 0);
+		return 0;
+	case 's':
+		until_gone(peer, fd, NULL, 0);
+		return 0;
+	case 'r':
+		answer[15] &= (uint8_t)~FRAME_PERSIST;
+		break;
+	case 'g':
+		memcpy(answer, "HTTP/1.1 400 Bad Request", FRAME_HEADER);
+		break;
+	case 'h':
+		change(answer, 1, 0x7fffffff);
+		break;
+	case 'n':
+		change(answer, 1, (uint32_t)-5);
+		break;
+	case 'v':
+		change(answer, 0, 0x20000);
+		break;
+	case 'w':
+		change(answer, 2, (uint32_t)len);
+		break;
+	case 't':
+		len += 3;
+		break;
+	case 'l':
+		len = FRAME_HEADER + 60000;
+		change(answer, 1, 60000);
+		break;
+	}
+	send_all(fd, answer, len, letter == 'f' ? 1 : 100000);
+	return letter != 'r' && letter != 'c';
+}
+
+static void serve(struct peer *peer, int fd)
+{
+	static uint8_t answer[100000], body[200000];
+	uint8_t head[FRAME_HEADER];
+	struct frame_header request;
+	char letter = 'a';
+	size_t len;
+
+	do {
+		if (read_all(peer, fd, head, sizeof(head)))
+			return;
+		frame_get_header(head, &request);
+		if (request.payload < 0 || request.payload >= (int32_t)sizeof(body) ||
+		    read_all(peer, fd, body, (size_t)request.payload))
+			return;
+		body[request.payload] = '\0';
+		memset(answer, 0, sizeof(answer));
+		len = make_answer(answer, &request, (char *)body);
+		if (request.type == FRAME_NOP) {
+			saw(&peer->greetings);
+			letter = 'a';
+		} else {
+			letter = *peer->plan ? *peer->plan++ : 'a';
+			peer->flags = request.flags;
+			peer->size = request.size;
+			snprintf(peer->path, sizeof(peer->path), "%.200s", (char *)body);
+			if (request.type == FRAME_WRITE)
+				saw(&peer->writes);
+			saw(&peer->requests);
+		}
+	} while (act(peer, fd, letter, answer, len));
+}
+
+static void *run(void *arg)
+{
+	struct peer *peer = arg;
+
+	while (!is_stopping(peer)) {
+		int fd;
+
+		if (wait_readable(peer, peer->listen_fd, 1000) <= 0)
+			continue;
+		fd = accept(peer->listen_fd, NULL, NULL);
+		if (fd < 0)
+			continue;
+		saw(&peer->connections);
+		serve(peer, fd);
+		close(fd);
+	}
+	return NULL;
+}
+
+static void begin(struct peer *peer)
+{
+	struct sockaddr_in in = { .sin_family = AF_INET, .sin_port = htons(peer->port),
+	                          .sin_addr.s_addr = htonl(INADDR_LOOPBACK) };
+	struct sockaddr_in6 in6 = { .sin6_family = AF_INET6, .sin6_port = htons(peer->port),
+	                            .sin6_addr = IN6ADDR_LOOPBACK_INIT };
+	struct sockaddr_storage here;
+	socklen_t len = sizeof(here);
+	const int on = 1;
+	int err;
+
+	peer->listen_fd = socket(peer->family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, peer->listen_fd);
+	setsockopt(peer->listen_fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
+	err = peer->family == AF_INET ? bind(peer->listen_fd, (struct sockaddr *)&in, sizeof(in))
+	                              : bind(peer->listen_fd, (struct sockaddr *)&in6, sizeof(in6));
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, err, strerror(errno));
+	TEST_ASSERT_EQUAL_INT(0, listen(peer->listen_fd, 8));
+	TEST_ASSERT_EQUAL_INT(0, getsockname(peer->listen_fd, (struct sockaddr *)&here, &len));
+	peer->port = ntohs(peer->family == AF_INET ? ((struct sockaddr_in *)&here)->sin_port
+	                                           : ((struct sockaddr_in6 *)&here)->sin6_port);
+	peer->stopping = 0;
+	TEST_ASSERT_EQUAL_INT(0, pthread_create(&peer->thread, NULL, run, peer));
+}
+
+void peer_start(struct peer *peer, int family, const char *plan)
+{
+	*peer = (struct peer){ .family = family, .plan = plan };
+	begin(peer);
+	snprintf(peer->target, sizeof(peer->target),
+	         family == AF_INET ? "127.0.0.1:%u" : "[::1]:%u", peer->port);
+}
+
+void peer_restart(struct peer *peer, const char *plan)
+{
+	peer->plan = plan;
+	begin(peer);
+}
+
+void peer_stop(struct peer *peer)
+{
+	__atomic_store_n(&peer->stopping, 1, __ATOMIC_SEQ_CST);
+	pthread_join(peer->thread, NULL);
+	close(peer->listen_fd);
+}
