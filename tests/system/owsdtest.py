@@ -95,6 +95,8 @@ def rio(target, items, **driver):
 class Program:
     """A process of ours with its output in a file."""
 
+    last_signal = signal.SIGTERM
+
     def __init__(self, scene, command, env=None):
         self.command = [str(c) for c in command]
         self.log_path = scene.path / f"log{next(_serial)}"
@@ -133,14 +135,17 @@ class Program:
         return self.wait()
 
     def stop(self, seconds=10):
-        """SIGTERM; returns the exit status."""
+        """SIGTERM (owserver: SIGKILL); returns the exit status."""
         self.thaw()
-        self.process.terminate()
+        self.signal(self.last_signal)
         return self.wait(seconds)
 
 
 class Owserver(Program):
     """The genuine owserver with simulated devices on a port of its own."""
+
+    # It does not always end at its first SIGTERM, and has nothing to save
+    last_signal = signal.SIGKILL
 
     def __init__(self, scene, port, buses, host, options):
         self.host, self.port, self.buses, self.options = host, port, buses, list(options)
@@ -241,7 +246,7 @@ class Scene:
         for program in reversed(self.programs):
             if program.running():
                 program.thaw()
-                program.process.terminate()
+                program.process.send_signal(program.last_signal)
         for program in reversed(self.programs):
             try:
                 program.process.wait(5)
