@@ -142,7 +142,7 @@ int log_rate(struct log_rate *rate, int64_t now_ns)
 	return 1;
 }
 
-/* -EAGAIN: nothing was written, fd is full. Other failures lose the line: there is nobody to tell. */
+/* -EAGAIN: fd is full, nothing was written. Other failures lose the line: nobody to tell. */
 static int write_line(int fd, int prefix, int level, const char *text, size_t len)
 {
 	char out[LINE_BYTES + 8];

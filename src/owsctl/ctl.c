@@ -5,11 +5,13 @@
 
 #include <errno.h>
 #include <getopt.h>
+#include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 __attribute__((format(printf, 1, 0)))
 static void say(const char *format, va_list args)
@@ -96,7 +98,8 @@ int ctl_open(const struct ctl *ctl, enum ows_mode mode, struct ows **h)
 	case 0:
 		return CTL_DONE;
 	case ENOENT:
-		return ctl_fail("no owsd of the name %s has run here (-n NAME chooses another)", name);
+		return ctl_fail("no owsd of the name %s has run here (-n NAME chooses another)",
+		                name);
 	case EACCES:
 		return ctl_fail("no right to %s the signals of %s: that is for group %s",
 		                mode == OWS_READ ? "see" : "set", name,
@@ -136,6 +139,20 @@ void ctl_nap(void)
 	nanosleep(&nap, NULL);
 }
 
+void ctl_sleep(struct ows *h, uint32_t *news, int64_t timeout_ns)
+{
+	struct ows_daemon daemon = {0};
+	int err = ows_wait(h, news, timeout_ns);
+
+	if (err == 0)
+		ows_daemon(h, ows_now(), &daemon);
+	if (err == -ESTALE || (err == 0 && !daemon.alive)) {
+		ctl_nap();
+		if (ows_reopen(h) == 0)
+			*news = 0;
+	}
+}
+
 int ctl_unknown(struct ows *h, const char *name)
 {
 	char nearest[NAMES_MAX];
@@ -145,12 +162,17 @@ int ctl_unknown(struct ows *h, const char *name)
 	return ctl_fail("there is no %s", name);
 }
 
+bool ctl_reader_gone(void)
+{
+	struct pollfd out = {.fd = STDOUT_FILENO};
+
+	return poll(&out, 1, 0) > 0 && (out.revents & (POLLERR | POLLHUP));
+}
+
 int ctl_flush(int status)
 {
 	errno = 0;
-	if (fflush(stdout) == 0 && !ferror(stdout))
-		return status;
-	if (errno == EPIPE)
+	if ((fflush(stdout) == 0 && !ferror(stdout)) || ctl_reader_gone())
 		return status;
 	return ctl_fail("cannot write: %s", strerror(errno ? errno : EIO));
 }

@@ -118,8 +118,10 @@ void json_seconds(struct json *json, const char *key, int64_t ns)
 	int64_t ms = ns / 1000000;
 
 	begin(json, key);
-	fprintf(json->out, "%s%" PRId64 ".%03d", ms < 0 ? "-" : "", ms < 0 ? -(ms / 1000) : ms / 1000,
-	        (int)(ms < 0 ? -(ms % 1000) : ms % 1000));
+	if (ms < 0)
+		putc('-', json->out);
+	fprintf(json->out, "%" PRIu64 ".%03u", (uint64_t)imaxabs(ms / 1000),
+	        (unsigned)imaxabs(ms % 1000));
 }
 
 static bool digits(const char **at)

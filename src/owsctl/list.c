@@ -14,21 +14,19 @@ static const struct table_column columns[] = {
 static bool add_row(struct table *table, struct ows *h, const struct row *row,
                     const struct reading *reading)
 {
-	char value[128], words[READING_WORDS], span[WHEN_TEXT];
-	struct ows_target target = {.name = ""};
-	const char *cells[] = {
-		row->name,
-		value,
-		reading_quality(reading, words),
-		reading->value.measured_ns ? when_span(reading->value.age_ns, span) : "-",
-		value_type_name((enum ows_type)reading->value.type),
-		!row->path ? "" : row->output ? "out" : "in",
-		row->path && ows_target(h, reading->value.target, &target) == 0 ? target.name : "-",
-		row->path ? row->path : "",
-	};
+	char value[128], words[READING_WORDS], span[WHEN_TEXT] = "-";
+	struct ows_target target = {.name = "-"};
 
 	reading_show(reading, value, sizeof(value));
-	return table_add(table, cells);
+	if (reading->value.measured_ns)
+		when_span(reading->value.age_ns, span);
+	if (row->path)
+		ows_target(h, reading->value.target, &target);
+	return table_add(table, (const char *const[]){
+		                        row->name, value, reading_quality(reading, words), span,
+		                        value_type_name((enum ows_type)reading->value.type),
+		                        !row->path ? "" : row->output ? "out" : "in",
+		                        target.name, row->path ? row->path : ""});
 }
 
 static bool print_table(struct ows *h, const struct rows *rows, struct reading *reading)

@@ -160,10 +160,7 @@ static int await(struct ows *h, struct order *orders, int count, int64_t limit_n
 
 		if (left <= 0)
 			return CTL_FAILED;
-		if (ows_wait(h, &news, left < slice ? left : slice) == -ESTALE) {
-			ctl_nap();
-			ows_reopen(h);
-		}
+		ctl_sleep(h, &news, left < slice ? left : slice);
 	}
 	return CTL_DONE;
 }

@@ -77,7 +77,8 @@ static unsigned widest(const struct table *table)
 	unsigned found = 0;
 
 	for (unsigned i = 1; i < table->count; i++)
-		if (table->shown[i] && (!table->shown[found] || table->width[i] > table->width[found]))
+		if (table->shown[i] &&
+		    (!table->shown[found] || table->width[i] > table->width[found]))
 			found = i;
 	return found;
 }

@@ -61,9 +61,13 @@ int ctl_open(const struct ctl *ctl, enum ows_mode mode, struct ows **h);
 bool ctl_alive(const struct ctl *ctl, struct ows *h, int64_t now_ns);
 /* Between two looks for a new owsd. */
 void ctl_nap(void);
+/* ows_wait(), and look for a new owsd where the present one is gone. */
+void ctl_sleep(struct ows *h, uint32_t *news, int64_t timeout_ns);
 /* No such name: says so with the nearest there is; returns CTL_FAILED. */
 int ctl_unknown(struct ows *h, const char *name);
-/* stdout closed or full: CTL_FAILED after having said so, else status. A closed pipe is no error. */
+/* Nobody reads stdout any more. */
+bool ctl_reader_gone(void);
+/* Write what is left; CTL_FAILED after having said why, else status. No reader is no error. */
 int ctl_flush(int status);
 
 #endif

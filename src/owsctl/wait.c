@@ -42,10 +42,7 @@ static bool sleep_until_it_came(struct waiting *waiting, int64_t limit_ns)
 
 		if (left <= 0)
 			return false;
-		if (ows_wait(waiting->h, &news, left < SLICE ? left : SLICE) == -ESTALE) {
-			ctl_nap();
-			ows_reopen(waiting->h);
-		}
+		ctl_sleep(waiting->h, &news, left < SLICE ? left : SLICE);
 	}
 	return true;
 }

@@ -5,7 +5,6 @@
 
 #include <errno.h>
 #include <getopt.h>
-#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -51,10 +50,8 @@ int watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns)
 		timeout_ns = LONGEST_SLEEP;
 	if (timeout_ns > watch->end_ns - now)
 		timeout_ns = watch->end_ns - now;
-	if (timeout_ns > 0 && ows_wait(watch->h, &watch->news, timeout_ns) == -ESTALE) {
-		ctl_nap();
-		ows_reopen(watch->h);
-	}
+	if (timeout_ns > 0)
+		ctl_sleep(watch->h, &watch->news, timeout_ns);
 	pause_until(now + least_ns);
 	err = ows_daemon(watch->h, ows_now(), &daemon);
 	if (err && err != -ESTALE)
@@ -139,14 +136,6 @@ static void print_changes(struct watch *watch)
 	}
 }
 
-static bool reader_gone(void)
-{
-	struct pollfd out = {.fd = STDOUT_FILENO};
-
-	return fflush(stdout) != 0 ||
-	       (poll(&out, 1, 0) > 0 && (out.revents & (POLLERR | POLLHUP | POLLNVAL)));
-}
-
 static int watch_lines(struct watch *watch)
 {
 	setvbuf(stdout, NULL, _IOLBF, 0);
@@ -156,7 +145,7 @@ static int watch_lines(struct watch *watch)
 		int event;
 
 		print_changes(watch);
-		if (watch_over(watch) || reader_gone())
+		if (watch_over(watch) || fflush(stdout) != 0 || ctl_reader_gone())
 			return CTL_DONE;
 		event = watch_sleep(watch, SHORTEST_SLEEP, LONGEST_SLEEP);
 		if (event < 0)

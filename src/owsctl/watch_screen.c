@@ -15,8 +15,12 @@
 #define LONGEST_PICTURE  INT64_C(1000000000) /* ages count up without news */
 
 static const struct table_column columns[] = {
-	{"NAME"}, {"VALUE", .right = true, .most = 32}, {"QUALITY"}, {"AGE", .right = true, .drop = 1},
-	{"TARGET", .drop = 2}, {"PATH", .drop = 3},
+	{"NAME"},
+	{"VALUE", .right = true, .most = 32},
+	{"QUALITY"},
+	{"AGE", .right = true, .drop = 1},
+	{"TARGET", .drop = 2},
+	{"PATH", .drop = 3},
 };
 #define COLUMNS (sizeof(columns) / sizeof(columns[0]))
 
@@ -75,11 +79,28 @@ static void put_head(FILE *out, const struct screen *screen)
 		         when_span(now - daemon.start_ns, span), *screen->note ? "  " : "",
 		         screen->note);
 	else if (daemon.state == 3)
-		snprintf(text, sizeof(text), "%s  %s  owsd was stopped", watch->ctl->instance, clock);
+		snprintf(text, sizeof(text), "%s  %s  owsd was stopped", watch->ctl->instance,
+		         clock);
 	else
 		snprintf(text, sizeof(text), "%s  %s  owsd is not running: last heartbeat %s ago",
 		         watch->ctl->instance, clock, when_span(daemon.beat_age_ns, span));
 	put_line(out, screen, daemon.alive ? "" : "\033[7m", text);
+}
+
+static bool add_row(struct watch *watch, struct table *table, const struct row *row)
+{
+	const struct reading *reading = watch->reading;
+	char value[64], words[READING_WORDS], span[WHEN_TEXT] = "-";
+	struct ows_target target = {.name = "-"};
+
+	reading_show(reading, value, sizeof(value));
+	if (reading->value.measured_ns)
+		when_span(reading->value.age_ns, span);
+	if (row->path)
+		ows_target(watch->h, reading->value.target, &target);
+	return table_add(table, (const char *const[]){row->name, value,
+	                                              reading_quality(reading, words), span,
+	                                              target.name, row->path ? row->path : ""});
 }
 
 static bool fill(struct screen *screen, struct table *table, bool *good)
@@ -91,24 +112,15 @@ static bool fill(struct screen *screen, struct table *table, bool *good)
 	screen->not_good = 0;
 	for (int i = 0; i < watch->rows.count; i++) {
 		struct row *row = &watch->rows.row[i];
-		char value[64], words[READING_WORDS], span[WHEN_TEXT];
-		struct ows_target target;
-		const struct reading *reading = watch->reading;
 
 		reading_get(watch->h, row->id, now, watch->reading);
-		screen->not_good += !reading_good(reading);
-		if (row_changed(row, reading) && watch->left > 0)
+		screen->not_good += !reading_good(watch->reading);
+		if (row_changed(row, watch->reading) && watch->left > 0)
 			watch->left--;
 		if (i < screen->top || i >= screen->top + shown)
 			continue;
-		good[i - screen->top] = reading_good(reading);
-		reading_show(reading, value, sizeof(value));
-		if (!table_add(table, (const char *const[]){
-			    row->name, value, reading_quality(reading, words),
-			    reading->value.measured_ns ? when_span(reading->value.age_ns, span) : "-",
-			    row->path && ows_target(watch->h, reading->value.target, &target) == 0 ? target.name
-			                                                             : "-",
-			    row->path ? row->path : ""}))
+		good[i - screen->top] = reading_good(watch->reading);
+		if (!add_row(watch, table, row))
 			return false;
 	}
 	return true;

@@ -77,7 +77,8 @@ static void test_utf8_goes_through(void)
 static void test_what_is_not_utf8_is_replaced(void)
 {
 	static const char *const wrong[] = {
-		"\xff", "\x80", "\xc3", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80",
+		"\xff", "\x80", "\xc3", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80",
+		"\xf4\x90\x80\x80",
 		"\xf8\x88\x80\x80\x80", "\xe2\x82",
 	};
 
