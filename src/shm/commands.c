@@ -209,6 +209,36 @@ int commands_text(const struct commands *commands, uint32_t slot, char *text)
 	return check == ows_check_bytes(text, len) ? (int)len : -EBADMSG;
 }
 
+int commands_put(struct commands *commands, uint32_t slot, int64_t value, const char *text,
+                 uint32_t len)
+{
+	struct ows_command_slot *s = slot_at(commands, slot);
+	struct ows_command_text *t;
+	uint32_t free_claim = 0;
+
+	word_set(&s->client, 0);
+	if (!text) {
+		words_store(&s->value, &value, sizeof(value) / 4);
+		return 0;
+	}
+	t = text_at(commands, slot);
+	if (!__atomic_compare_exchange_n(&t->claim, &free_claim, UINT32_MAX, false,
+	                                 __ATOMIC_ACQUIRE, __ATOMIC_RELAXED))
+		return -EBUSY;
+	if (len > commands->text_cap)
+		len = commands->text_cap;
+	for (uint32_t i = 0; i < len; i += 4) {
+		uint32_t word = 0;
+
+		memcpy(&word, text + i, len - i < 4 ? len - i : 4);
+		words_store((char *)(t + 1) + i, &word, 1);
+	}
+	word_set(&t->len, len);
+	word_set(&t->check, ows_check_bytes(text, len));
+	__atomic_store_n(&t->claim, 0, __ATOMIC_RELEASE);
+	return 0;
+}
+
 void commands_unclaim(struct commands *commands, uint32_t slot)
 {
 	__atomic_store_n(&text_at(commands, slot)->claim, 0, __ATOMIC_RELEASE);

@@ -53,6 +53,12 @@ void commands_load(const struct commands *commands, uint32_t slot, struct comman
  * writes it, -EBADMSG when length or check word are wrong.
  */
 int commands_text(const struct commands *commands, uint32_t slot, char *text);
+/*
+ * Put owsd's own value in the place of a commanded one (SafeValue), so that it stands over a
+ * restart. text and len for strings, else NULL; -EBUSY while a consumer writes the text.
+ */
+int commands_put(struct commands *commands, uint32_t slot, int64_t value, const char *text,
+                 uint32_t len);
 /* Free the claim of a writer that died in the middle; the engine calls it after a second. */
 void commands_unclaim(struct commands *commands, uint32_t slot);
 
