@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: MIT */
+#include "private.h"
+
+#include "../signal/value.h"
+
+#include <errno.h>
+#include <string.h>
+
+static void say_bad(struct engine *e, const struct signal *s, int err, uint8_t quality)
+{
+	log_warning(e->log, "%s (%s): %s%s%s", s->item->name, s->item->path,
+	            ows_quality_text(quality), err ? ": " : "", err ? strerror(-err) : "");
+}
+
+static void mark_absent(struct engine *e, const struct signal *s)
+{
+	if (s->device != TABLE_NO_DEVICE)
+		e->table.devices[s->device].absent = true;
+}
+
+/* An item error of a read or a write; returns the back-off, 0: its next turn. */
+static int64_t fail_item(struct engine *e, struct lane *lane, struct signal *s,
+                         struct retry *retry, int err)
+{
+	uint8_t quality = failure_quality(err);
+	int64_t wait_ns;
+
+	lane->counters.item_errors++;
+	s->sample.err = err;
+	if (!retry_fail(retry, e->config->max_retries, &wait_ns))
+		return 0;
+	if (err == -ENODEV)
+		mark_absent(e, s);
+	if (s->sample.quality != quality) {
+		s->sample.quality = quality;
+		say_bad(e, s, err, quality);
+	}
+	return wait_ns;
+}
+
+static void succeed(struct engine *e, struct lane *lane, struct signal *s, uint8_t quality,
+                    int64_t now_ns)
+{
+	struct device *d = s->device == TABLE_NO_DEVICE ? NULL : &e->table.devices[s->device];
+
+	if (!ows_good(s->sample.quality) && s->sample.quality != OWS_Q_INITIAL &&
+	    ows_good(quality))
+		log_info(e->log, "%s (%s): good again", s->item->name, s->item->path);
+	s->sample.quality = quality;
+	s->sample.err = 0;
+	s->sample.target = (uint8_t)lane->index;
+	if (d && d->absent)
+		engine_device_back(e, lane, d, now_ns);
+}
+
+/* The value of an answer into the sample; 0, or why it cannot be one. */
+static int take_answer(struct lane *lane, struct signal *s, const struct slot *slot,
+                       const struct bus_answer *answer, uint8_t *quality, int64_t now_ns)
+{
+	int64_t value;
+	int err;
+
+	if (answer->err)
+		return answer->err;
+	if (signal_is_string(s)) {
+		uint32_t len = answer->len < TABLE_TEXT_CAP ? answer->len : TABLE_TEXT_CAP;
+
+		*quality = answer->len > TABLE_TEXT_CAP ? OWS_Q_CUT : OWS_Q_GOOD;
+		memcpy(s->text, slot->data, len);
+		s->sample.len = len;
+		return 0;
+	}
+	if (answer->kind == BUS_NUMBER)
+		err = value_from_number(s->item->type, answer->number, &value, quality);
+	else
+		err = value_from_text(s->item->type, (const char *)slot->data, answer->len, &value,
+		                      quality);
+	if (err)
+		return err;
+	if (s->guarded && guard_refuses(&s->guard, value_number(s->item->type, value), now_ns)) {
+		lane->counters.power_faults++;
+		return -ERANGE;
+	}
+	s->sample.value = value;
+	return 0;
+}
+
+void engine_read_done(struct engine *e, struct lane *lane, const struct slot *slot,
+                      const struct bus_answer *answer, int64_t now_ns)
+{
+	struct signal *s = &e->table.signals[slot->row];
+	uint64_t begun = e->period - (uint64_t)s->attrs.pend_last;
+	uint8_t quality = OWS_Q_GOOD;
+	int64_t wait_ns;
+	int err;
+
+	if (!signal_reads(s)) /* disabled meanwhile */
+		return;
+	err = take_answer(lane, s, slot, answer, &quality, now_ns);
+	switch (failure_of(err)) {
+	case FAILURE_NONE:
+		lane->counters.reads++;
+		signal_update(s, e->period, answer->measured_ns ? answer->measured_ns : now_ns,
+		              e->start_ns);
+		s->sample.detail = answer->detail;
+		retry_clear(&s->read_retry);
+		succeed(e, lane, s, quality, now_ns);
+		engine_read_at(e, s, begun + s->item->per_factor);
+		break;
+	case FAILURE_ITEM:
+		wait_ns = fail_item(e, lane, s, &s->read_retry, err);
+		engine_read_at(e, s, e->period + (wait_ns ? engine_periods(e, wait_ns) : 1));
+		break;
+	case FAILURE_TARGET:
+		s->sample.err = err;
+		engine_read_at(e, s, e->period + 1);
+		break;
+	case FAILURE_VOID:
+		engine_read_at(e, s, e->period + 1);
+		break;
+	}
+}
+
+static void write_succeeded(struct engine *e, struct lane *lane, const struct slot *slot,
+                            const struct bus_answer *answer, int64_t now_ns)
+{
+	struct signal *s = &e->table.signals[slot->row];
+
+	lane->counters.writes++;
+	s->confirmed = true;
+	s->written = slot->value;
+	s->sample.value = slot->value;
+	s->sample.applied = slot->stamp;
+	s->sample.detail = answer->detail;
+	if (signal_is_string(s)) {
+		memcpy(s->written_text, slot->data, slot->req.len);
+		memcpy(s->text, slot->data, slot->req.len);
+		s->written_len = s->sample.len = slot->req.len;
+	}
+	signal_update(s, e->period, answer->measured_ns ? answer->measured_ns : now_ns, e->start_ns);
+	retry_clear(&s->write_retry);
+	succeed(e, lane, s, OWS_Q_GOOD, now_ns);
+	engine_write_check(e, s);
+}
+
+void engine_write_done(struct engine *e, struct lane *lane, const struct slot *slot,
+                       const struct bus_answer *answer, int64_t now_ns)
+{
+	struct signal *s = &e->table.signals[slot->row];
+	int64_t wait_ns;
+
+	switch (failure_of(answer->err)) {
+	case FAILURE_NONE:
+		write_succeeded(e, lane, slot, answer, now_ns);
+		return;
+	case FAILURE_ITEM:
+		s->confirmed = false;
+		wait_ns = fail_item(e, lane, s, &s->write_retry, answer->err);
+		engine_write_at(e, s, e->period + (wait_ns ? engine_periods(e, wait_ns) : 1));
+		break;
+	case FAILURE_TARGET:
+		s->confirmed = false;
+		s->sample.err = answer->err;
+		engine_write_check(e, s);
+		break;
+	case FAILURE_VOID:
+		s->confirmed = false;
+		engine_write_check(e, s);
+		break;
+	}
+}
+
+void engine_structure_done(struct engine *e, struct lane *lane, const struct slot *slot,
+                           const struct bus_answer *answer)
+{
+	const struct structure_check *check = &lane->structure.checks[slot->row];
+	struct structure_entry entry;
+
+	if (failure_of(answer->err) == FAILURE_TARGET) {
+		lane->structure.next = slot->row; /* from here on, when it is up again */
+		return;
+	}
+	if (answer->err || structure_parse((const char *)slot->data, answer->len, &entry))
+		return;
+	for (uint32_t i = 0; i < check->count; i++) {
+		struct signal *s = &e->table.signals[lane->structure.rows[check->first + i]];
+		const char *fault = structure_fault(&entry, s->item);
+
+		if (!fault)
+			continue;
+		s->sample.quality = OWS_Q_NO_PROPERTY;
+		s->sample.err = -EPROTOTYPE;
+		log_err(e->log, "%s (line %d): %s does not fit: %s", s->item->name, s->item->line,
+		        s->item->path, fault);
+		engine_publish(e, s);
+	}
+}
+
+void engine_lane_down(struct engine *e, struct lane *lane, int err, int64_t now_ns)
+{
+	(void)now_ns;
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		struct signal *s = &e->table.signals[row];
+
+		if (s->lane != lane->index || s->sample.quality == OWS_Q_DISABLED)
+			continue;
+		if (s->sample.quality != OWS_Q_TARGET)
+			s->held_quality = s->sample.quality;
+		s->sample.quality = OWS_Q_TARGET;
+		s->sample.err = err;
+		engine_publish(e, s);
+	}
+}
+
+void engine_lane_up(struct engine *e, struct lane *lane, int64_t now_ns)
+{
+	(void)now_ns;
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		struct signal *s = &e->table.signals[row];
+
+		if (s->lane != lane->index)
+			continue;
+		retry_clear(&s->read_retry);
+		retry_clear(&s->write_retry);
+		due_wheel_cancel(&e->wheel, row * 2 + 1);
+		engine_read_now(e, s);
+		engine_write_check(e, s);
+		/* what is not read again stands as it stood */
+		if (!signal_reads(s) && s->sample.quality == OWS_Q_TARGET) {
+			s->sample.quality = s->held_quality;
+			s->sample.err = 0;
+			engine_publish(e, s);
+		}
+	}
+}
+
+void engine_device_back(struct engine *e, struct lane *lane, struct device *device,
+                        int64_t now_ns)
+{
+	(void)now_ns;
+	device->absent = false;
+	lane->counters.device_returns++;
+	for (uint32_t i = 0; i < device->count; i++) {
+		struct signal *s = &e->table.signals[e->table.device_rows[device->first + i]];
+
+		if (s->lane != lane->index)
+			continue;
+		retry_clear(&s->read_retry);
+		retry_clear(&s->write_retry);
+		due_wheel_cancel(&e->wheel, engine_row(s) * 2 + 1);
+		s->confirmed = false;
+		engine_read_now(e, s);
+		engine_write_check(e, s);
+	}
+}

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: MIT */
+#include "private.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <stdlib.h>
+
+int engine_create(const struct engine_setup *setup, struct engine **engine)
+{
+	struct engine *e = calloc(1, sizeof(*e));
+	int err;
+
+	assert(setup->port_count > 0);
+	if (!e)
+		return -ENOMEM;
+	e->config = setup->config;
+	e->image = setup->image;
+	e->commands = setup->commands;
+	e->log = setup->log;
+	e->start_ns = setup->start_ns;
+	err = table_init(&e->table, e->config);
+	if (!err)
+		err = due_wheel_init(&e->wheel, e->table.count * 2, 0);
+	if (!err) {
+		e->lanes = calloc(setup->port_count, sizeof(*e->lanes));
+		err = e->lanes ? 0 : -ENOMEM;
+	}
+	for (unsigned i = 0; !err && i < setup->port_count; i++) {
+		err = lane_init(&e->lanes[i], e, &setup->ports[i], i);
+		if (!err)
+			e->lane_count++;
+	}
+	if (err) {
+		engine_destroy(e);
+		return err;
+	}
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		engine_read_now(e, &e->table.signals[row]);
+		engine_write_check(e, &e->table.signals[row]);
+	}
+	engine_intake_all(e, setup->start_ns);
+	for (uint32_t row = 0; row < e->table.count; row++)
+		engine_publish(e, &e->table.signals[row]);
+	for (unsigned i = 0; i < e->lane_count; i++)
+		engine_publish_target(e, &e->lanes[i]);
+	engine_publish_driver(e, setup->start_ns);
+	*engine = e;
+	return 0;
+}
+
+void engine_destroy(struct engine *e)
+{
+	if (!e)
+		return;
+	for (unsigned i = 0; i < e->lane_count; i++)
+		lane_free(&e->lanes[i]);
+	free(e->lanes);
+	if (e->wheel.wait)
+		due_wheel_free(&e->wheel);
+	table_free(&e->table);
+	free(e);
+}
+
+void engine_answer(struct engine *e, unsigned port, const struct bus_answer *answer,
+                   int64_t now_ns)
+{
+	assert(port < e->lane_count);
+	lane_answer(&e->lanes[port], answer, now_ns);
+}
+
+void engine_event(struct engine *e, unsigned port, const struct bus_event *event, int64_t now_ns)
+{
+	assert(port < e->lane_count);
+	lane_event(&e->lanes[port], event, now_ns);
+}
+
+int64_t engine_step(struct engine *e, int64_t now_ns)
+{
+	uint64_t before = e->period;
+	int64_t next;
+
+	e->counters.steps++;
+	engine_turn(e, now_ns);
+	engine_intake(e, now_ns);
+	if (e->period != before) {
+		engine_clients(e, now_ns);
+		engine_publish_counters(e);
+		engine_publish_driver(e, now_ns);
+	}
+	next = e->start_ns + (int64_t)(e->period + 1) * e->config->period_ns;
+	for (unsigned i = 0; i < e->lane_count; i++) {
+		int64_t timeout = lane_timeouts(&e->lanes[i], now_ns);
+
+		lane_fill(&e->lanes[i], now_ns);
+		if (timeout < next)
+			next = timeout;
+	}
+	return next;
+}
+
+bool engine_published(struct engine *e)
+{
+	bool published = e->published;
+
+	e->published = false;
+	return published;
+}
+
+void engine_take_commands(struct engine *e, struct commands *commands)
+{
+	e->commands = commands;
+	e->counters.lost_commands++;
+	for (unsigned i = 0; i < OWS_CLIENTS; i++)
+		e->clients[i].known = false;
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		struct signal *s = &e->table.signals[row];
+		struct command c;
+
+		commands_load(commands, s->record, &c);
+		s->stamp = c.stamp;
+		s->one_shots = c.one_shot;
+		s->dgn_resets = c.dgn_reset;
+	}
+	e->busy_count = 0;
+}

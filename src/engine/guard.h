@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Readings that mean a power fault: a thermometer that lost its supply answers 85 (its power-on
+ * scratchpad), one whose conversion starved 127.94. On every bus they must not pass as good.
+ */
+#ifndef ENGINE_GUARD_H
+#define ENGINE_GUARD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/*
+ * Is the path a temperature (degrees Celsius) of a DS18S20, DS1822, DS18B20, DS1825 or DS28EA00, or
+ * of a device known by its alias?
+ */
+bool guard_watches(const char *path);
+
+struct guard {
+	double last;     /* last reading that was believed */
+	int64_t last_ns; /* when; 0: none yet */
+};
+/*
+ * True if a reading means a power fault. 127.9375 always does. 85 does unless the room was near it
+ * when last measured (within 5 degrees, no longer ago than 60 s): a boiler passes 85 on its way.
+ */
+bool guard_refuses(struct guard *guard, double degrees, int64_t now_ns);
+
+#endif

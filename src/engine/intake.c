@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: MIT */
+#include "private.h"
+
+#include "../signal/value.h"
+
+#include <errno.h>
+#include <string.h>
+
+/* A writer that holds a string's claim for longer has died. */
+#define CLAIM_NS 1000000000LL
+
+static void refuse(struct engine *e, struct signal *s, int err)
+{
+	e->counters.refused_commands++;
+	s->sample.err = err;
+	log_warning(e->log, "%s: a value in the command segment was refused: %s", s->item->name,
+	            err == -ERANGE ? "the type cannot hold it" : "its text is damaged");
+}
+
+/* Look at a busy string again in the next step, for a second. */
+static void remember_busy(struct engine *e, uint32_t slot, int64_t now_ns)
+{
+	for (unsigned i = 0; i < e->busy_count; i++)
+		if (e->busy_slot[i] == slot)
+			return;
+	if (e->busy_count == sizeof(e->busy_slot) / sizeof(e->busy_slot[0]))
+		return;
+	e->busy_slot[e->busy_count] = slot;
+	e->busy_since_ns[e->busy_count++] = now_ns;
+}
+
+/* 0 taken, -EBUSY to be looked at again, other: refused. */
+static int take_text(struct engine *e, struct signal *s)
+{
+	char text[TABLE_TEXT_CAP + 1];
+	int len = commands_text(e->commands, s->record, text);
+
+	if (len < 0)
+		return len;
+	if (len > TABLE_TEXT_CAP)
+		return -EBADMSG;
+	memcpy(s->command_text, text, (size_t)len);
+	s->command_len = (uint32_t)len;
+	return 0;
+}
+
+static void take_value(struct engine *e, struct signal *s, const struct command *c, int64_t now_ns)
+{
+	int err = 0;
+
+	if (signal_is_string(s))
+		err = take_text(e, s);
+	else if (!value_holds(s->item->type, c->value))
+		err = -ERANGE;
+	if (err == -EBUSY) {
+		remember_busy(e, s->record, now_ns);
+		return;
+	}
+	s->stamp = c->stamp;
+	if (err) {
+		refuse(e, s, err);
+		return;
+	}
+	if (!signal_is_string(s))
+		s->command = c->value;
+	s->commanded = true;
+	s->safe = false;
+	s->client = c->client;
+	e->counters.commands++;
+	if (!signal_changed(s))
+		s->sample.applied = s->stamp;
+}
+
+static void enable(struct signal *s, uint8_t commanded, uint32_t flag)
+{
+	if (commanded == 2)
+		s->attrs.flags |= flag;
+	else if (commanded == 1)
+		s->attrs.flags &= ~flag;
+}
+
+static void take_enables(struct engine *e, struct signal *s, const struct command *c)
+{
+	bool read_before = signal_reads(s), write_before = signal_writes(s);
+
+	enable(s, c->read_enable, OWS_ATTR_READ_ENABLE);
+	enable(s, c->write_enable, OWS_ATTR_WRITE_ENABLE);
+	if (signal_reads(s) && !read_before) {
+		retry_clear(&s->read_retry);
+		engine_read_now(e, s);
+	} else if (!signal_reads(s) && read_before) {
+		engine_read_never(e, s);
+		if (!s->item->output)
+			s->sample.quality = OWS_Q_DISABLED;
+	}
+	if (signal_writes(s) != write_before) {
+		if (write_before)
+			engine_lane(e, s)->writers--;
+		else
+			engine_lane(e, s)->writers++;
+	}
+}
+
+void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
+{
+	struct command c;
+
+	commands_load(e->commands, s->record, &c);
+	if (c.stamp != s->stamp)
+		take_value(e, s, &c, now_ns);
+	take_enables(e, s, &c);
+	if (c.one_shot != s->one_shots) {
+		s->one_shots = c.one_shot;
+		s->one_shot = s->commanded;
+	}
+	if (c.dgn_reset != s->dgn_resets) {
+		s->dgn_resets = c.dgn_reset;
+		signal_reset_diagnostics(s, e->period, now_ns, e->start_ns);
+	}
+	engine_write_check(e, s);
+}
+
+static void take_driver(struct engine *e, int64_t now_ns)
+{
+	struct command c;
+
+	commands_load(e->commands, 0, &c);
+	if (c.dgn_reset == e->driver_resets)
+		return;
+	e->driver_resets = c.dgn_reset;
+	e->transactions = 0;
+	e->reconnects = 0;
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		signal_reset_diagnostics(&e->table.signals[row], e->period, now_ns, e->start_ns);
+		engine_publish(e, &e->table.signals[row]);
+	}
+	log_info(e->log, "diagnostics of all signals reset");
+}
+
+static void look_at(struct engine *e, uint32_t slot, int64_t now_ns)
+{
+	struct signal *s;
+
+	if (slot == 0) {
+		take_driver(e, now_ns);
+	} else if (slot <= e->table.count) {
+		s = &e->table.signals[slot - 1];
+		engine_intake_signal(e, s, now_ns);
+		engine_publish(e, s);
+	}
+}
+
+void engine_intake(struct engine *e, int64_t now_ns)
+{
+	unsigned busy = e->busy_count;
+	uint32_t from = 0;
+	int slot;
+
+	e->busy_count = 0;
+	for (unsigned i = 0; i < busy; i++) {
+		uint32_t again = e->busy_slot[i];
+		int64_t since = e->busy_since_ns[i];
+
+		if (now_ns - since > CLAIM_NS) {
+			commands_unclaim(e->commands, again);
+			log_warning(e->log, "%s: a program died while it set this text",
+			            e->table.signals[again - 1].item->name);
+		}
+		look_at(e, again, now_ns);
+		if (e->busy_count && e->busy_slot[e->busy_count - 1] == again)
+			e->busy_since_ns[e->busy_count - 1] = since;
+	}
+	while ((slot = commands_next_dirty(e->commands, from)) >= 0) {
+		look_at(e, (uint32_t)slot, now_ns);
+		from = (uint32_t)slot + 1;
+	}
+}
+
+void engine_intake_all(struct engine *e, int64_t now_ns)
+{
+	struct command c;
+
+	commands_load(e->commands, 0, &c);
+	e->driver_resets = c.dgn_reset;
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		struct signal *s = &e->table.signals[row];
+
+		commands_load(e->commands, s->record, &c);
+		s->one_shots = c.one_shot;
+		s->dgn_resets = c.dgn_reset;
+		s->stamp = 0;
+		engine_intake_signal(e, s, now_ns);
+	}
+}

@@ -1,0 +1,347 @@
+/* SPDX-License-Identifier: MIT */
+#include "private.h"
+
+#include "../signal/value.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+int lane_init(struct lane *lane, struct engine *engine, const struct engine_port *port,
+              unsigned index)
+{
+	*lane = (struct lane){ .engine = engine, .port = port, .index = index, .depth = port->depth };
+	lane->slots = calloc(lane->depth, sizeof(*lane->slots));
+	if (!lane->slots || due_set_init(&lane->inputs, engine->table.count) ||
+	    due_set_init(&lane->outputs, engine->table.count) ||
+	    structure_init(&lane->structure, &engine->table, index)) {
+		lane_free(lane);
+		return -ENOMEM;
+	}
+	for (uint32_t row = 0; row < engine->table.count; row++) {
+		const struct signal *s = &engine->table.signals[row];
+
+		lane->writers += s->lane == index && signal_writes(s);
+	}
+	return 0;
+}
+
+void lane_free(struct lane *lane)
+{
+	free(lane->slots);
+	due_set_free(&lane->inputs);
+	due_set_free(&lane->outputs);
+	structure_free(&lane->structure);
+}
+
+static struct slot *free_slot(struct lane *lane)
+{
+	for (unsigned i = 0; i < lane->depth; i++)
+		if (!lane->slots[i].lent)
+			return &lane->slots[i];
+	return NULL;
+}
+
+/* Give the slot's request to the bus. */
+static bool lend(struct lane *lane, struct slot *slot, int64_t now_ns)
+{
+	slot->turn++;
+	slot->req.id = (uint32_t)(slot - lane->slots) | (uint32_t)slot->turn << 16;
+	slot->req.deadline_ns = now_ns + lane->engine->config->timeout_ns;
+	slot->req.data = slot->data;
+	slot->begun_ns = now_ns;
+	slot->given_up = false;
+	if (lane->port->submit(lane->port->ctx, &slot->req))
+		return false;
+	slot->lent = true;
+	lane->lent++;
+	lane->counters.requests++;
+	return true;
+}
+
+static bool ask_structure(struct lane *lane, struct slot *slot, int64_t now_ns)
+{
+	const struct structure_check *check = &lane->structure.checks[lane->structure.next];
+
+	slot->purpose = FOR_STRUCTURE;
+	slot->row = lane->structure.next;
+	slot->req = (struct bus_req){
+		.op = BUS_READ, .prio = BUS_INPUT, .path = check->path, .len = sizeof(slot->data)
+	};
+	if (!lend(lane, slot, now_ns))
+		return false;
+	lane->structure.next++;
+	return true;
+}
+
+static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	struct signal *s = &e->table.signals[row];
+
+	slot->purpose = FOR_READ;
+	slot->row = row;
+	slot->req = (struct bus_req){
+		.op = BUS_READ,
+		.prio = BUS_INPUT,
+		.fresh = s->item->fresh,
+		.path = s->item->path,
+		.len = sizeof(slot->data),
+	};
+	if (!lend(lane, slot, now_ns))
+		return false;
+	due_set_take(&lane->inputs, row);
+	lane->writes_in_row = 0;
+	s->reading = true;
+	s->sample.tried_ns = now_ns;
+	signal_begin(s, e->period);
+	engine_publish(e, s);
+	return true;
+}
+
+static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	struct signal *s = &e->table.signals[row];
+
+	/* the value that counts is the one of this moment */
+	engine_intake_signal(e, s, now_ns);
+	if (!due_set_has(&lane->outputs, row)) {
+		engine_publish(e, s);
+		return true;
+	}
+	slot->purpose = FOR_WRITE;
+	slot->row = row;
+	slot->value = s->command;
+	slot->stamp = s->stamp;
+	slot->req = (struct bus_req){ .op = BUS_WRITE, .prio = BUS_OUTPUT, .path = s->item->path };
+	if (signal_is_string(s)) {
+		memcpy(slot->data, s->command_text, s->command_len);
+		slot->req.len = s->command_len;
+	} else {
+		char text[VALUE_TEXT_MAX];
+
+		slot->req.len = (uint32_t)value_to_text(s->item->type, s->command, text);
+		memcpy(slot->data, text, slot->req.len);
+	}
+	if (!lend(lane, slot, now_ns))
+		return false;
+	due_set_take(&lane->outputs, row);
+	lane->writes_in_row++;
+	lane->writes_in_work++;
+	s->writing = true;
+	s->one_shot = false;
+	s->forced = false;
+	s->sample.tried_ns = now_ns;
+	signal_begin(s, e->period);
+	engine_publish(e, s);
+	return true;
+}
+
+/* The order of a lane: what the bus is made of, one changed output, the next due input. */
+static bool ask_next(struct lane *lane, struct slot *slot, int64_t now_ns)
+{
+	int64_t output = lane->writes_in_work ? -1 : due_set_next(&lane->outputs);
+	int64_t input = due_set_next(&lane->inputs);
+
+	if (lane->structure.next < lane->structure.count)
+		return ask_structure(lane, slot, now_ns);
+	if (output >= 0 && (input < 0 || lane->writes_in_row < lane->writers))
+		return ask_write(lane, slot, (uint32_t)output, now_ns);
+	if (input >= 0)
+		return ask_read(lane, slot, (uint32_t)input, now_ns);
+	return false;
+}
+
+void lane_fill(struct lane *lane, int64_t now_ns)
+{
+	struct slot *slot;
+
+	while (lane->up && !lane->stuck && (slot = free_slot(lane)) != NULL)
+		if (!ask_next(lane, slot, now_ns))
+			break;
+}
+
+static struct slot *slot_of(struct lane *lane, uint32_t id)
+{
+	struct slot *slot;
+
+	if ((id & 0xffff) >= lane->depth)
+		return NULL;
+	slot = &lane->slots[id & 0xffff];
+	return slot->lent && slot->req.id == id ? slot : NULL;
+}
+
+/* The request's time as the table sees it is over: by an answer, or given up. */
+static void complete(struct lane *lane, struct slot *slot, const struct bus_answer *answer,
+                     int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	struct signal *s;
+
+	if (answer->err != -ETIME && answer->err != -ECANCELED)
+		e->transactions++;
+	switch (slot->purpose) {
+	case FOR_STRUCTURE:
+		engine_structure_done(e, lane, slot, answer);
+		break;
+	case FOR_READ:
+		s = &e->table.signals[slot->row];
+		s->reading = false;
+		signal_end(s, e->period);
+		engine_read_done(e, lane, slot, answer, now_ns);
+		engine_publish(e, s);
+		break;
+	case FOR_WRITE:
+		s = &e->table.signals[slot->row];
+		s->writing = false;
+		lane->writes_in_work--;
+		signal_end(s, e->period);
+		engine_write_done(e, lane, slot, answer, now_ns);
+		engine_publish(e, s);
+		break;
+	}
+}
+
+static void give_back(struct lane *lane, struct slot *slot)
+{
+	slot->lent = false;
+	lane->lent--;
+}
+
+void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now_ns)
+{
+	struct slot *slot = slot_of(lane, answer->id);
+	struct engine *e = lane->engine;
+
+	lane->heard_ns = now_ns;
+	if (!slot) {
+		lane->counters.unknown_answers++;
+		return;
+	}
+	give_back(lane, slot);
+	if (!slot->given_up) {
+		complete(lane, slot, answer, now_ns);
+	} else {
+		lane->counters.late_answers++;
+		if (slot->purpose == FOR_WRITE) {
+			/* it may have reached the relay after the engine moved on */
+			e->table.signals[slot->row].forced = true;
+			engine_write_check(e, &e->table.signals[slot->row]);
+		}
+	}
+	if (lane->stuck) {
+		lane->stuck = false;
+		log_notice(e->log, "%s: answers again", lane->port->target);
+		if (lane->up)
+			engine_lane_up(e, lane, now_ns);
+	}
+}
+
+static void go_up(struct lane *lane, const char *text, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+
+	if (lane->up)
+		return;
+	lane->up = true;
+	if (lane->was_up) {
+		lane->counters.reconnects++;
+		e->reconnects++;
+	}
+	log_notice(e->log, "%s: from down to up%s%s", lane->port->target, *text ? ": " : "", text);
+	lane->was_up = true;
+	engine_publish_target(e, lane);
+	engine_lane_up(e, lane, now_ns);
+}
+
+static void go_down(struct lane *lane, int err, const char *text, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+
+	log_warning(e->log, "%s: %s: %s", lane->port->target,
+	            lane->up ? "from up to down" : "down", *text ? text : strerror(-err));
+	lane->up = false;
+	lane->counters.target_failures++;
+	engine_publish_target(e, lane);
+	engine_lane_down(e, lane, err, now_ns);
+}
+
+static struct device *device_of(struct engine *e, const uint8_t rom[8])
+{
+	for (uint32_t i = 0; i < e->table.device_count; i++) {
+		struct device *d = &e->table.devices[i];
+
+		if (d->has_rom && memcmp(d->rom, rom, 8) == 0)
+			return d;
+	}
+	return NULL;
+}
+
+void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns)
+{
+	struct device *device;
+
+	lane->heard_ns = now_ns;
+	switch ((enum bus_news)event->news) {
+	case BUS_UP:
+		go_up(lane, event->text, now_ns);
+		break;
+	case BUS_DOWN:
+		go_down(lane, event->err, event->text, now_ns);
+		break;
+	case BUS_FOUND:
+	case BUS_POR:
+		device = device_of(lane->engine, event->rom);
+		if (device && (event->news == BUS_POR || device->absent))
+			engine_device_back(lane->engine, lane, device, now_ns);
+		break;
+	case BUS_LOST:
+		break;
+	case BUS_NOTE:
+		log_notice(lane->engine->log, "%s: %s", lane->port->target, event->text);
+		break;
+	}
+}
+
+/* The bus said nothing at all since the request began: it is stuck, not one device slow. */
+static void get_stuck(struct lane *lane, int64_t now_ns)
+{
+	lane->stuck = true;
+	log_err(lane->engine->log, "%s: no answer at all within Timeout", lane->port->target);
+	lane->counters.target_failures++;
+	engine_lane_down(lane->engine, lane, -ETIMEDOUT, now_ns);
+}
+
+int64_t lane_timeouts(struct lane *lane, int64_t now_ns)
+{
+	int64_t next = INT64_MAX;
+
+	if (!lane->lent)
+		return next;
+	for (unsigned i = 0; i < lane->depth; i++) {
+		struct slot *slot = &lane->slots[i];
+		int64_t end = slot->req.deadline_ns + LANE_GRACE_NS;
+		struct bus_answer answer = { .id = slot->req.id, .err = -EINPROGRESS };
+
+		if (!slot->lent || slot->given_up)
+			continue;
+		if (end > now_ns) {
+			if (end < next)
+				next = end;
+			continue;
+		}
+		slot->given_up = true;
+		lane->counters.given_up++;
+		if (lane->heard_ns <= slot->begun_ns) {
+			answer.err = -ETIMEDOUT;
+			complete(lane, slot, &answer, now_ns);
+			if (!lane->stuck)
+				get_stuck(lane, now_ns);
+		} else {
+			complete(lane, slot, &answer, now_ns);
+		}
+	}
+	return next;
+}

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A lane: the engine's side of one bus. It decides what is asked next, keeps what is lent, and
+ * turns answers into changes of the table. Private to the engine.
+ */
+#ifndef ENGINE_LANE_H
+#define ENGINE_LANE_H
+
+#include "due.h"
+#include "engine.h"
+#include "structure.h"
+#include "table.h"
+
+/* Room for one answer or one value to be written. */
+#define LANE_DATA (TABLE_TEXT_CAP + 64)
+/* How long after its deadline a request is given up that the bus did not answer at all. */
+#define LANE_GRACE_NS 250000000LL
+
+enum purpose { FOR_READ, FOR_WRITE, FOR_STRUCTURE };
+
+/* A request and its room. Its id is slot | turn << 16, so that a late answer is told apart. */
+struct slot {
+	struct bus_req req;
+	bool lent;     /* the bus has it */
+	bool given_up; /* its time is over; a late answer only frees the slot */
+	enum purpose purpose;
+	uint32_t row;  /* of the table, or of structure.checks */
+	uint16_t turn;
+	int64_t begun_ns;
+	int64_t value;  /* of a write */
+	uint32_t stamp; /* of the command written */
+	uint8_t data[LANE_DATA];
+};
+
+#define LANE_COUNTERS(X)                                                                           \
+	X(requests)       /* given to the bus */                                                   \
+	X(reads)          /* ended with success */                                                 \
+	X(writes)         /* ended with success */                                                 \
+	X(item_errors)                                                                             \
+	X(target_failures)                                                                         \
+	X(reconnects)                                                                              \
+	X(given_up)       /* the bus did not answer in time */                                     \
+	X(late_answers)   /* came after that */                                                    \
+	X(unknown_answers) /* nobody asked, or a second time */                                    \
+	X(power_faults)   /* 85 and 127.94 refused */                                              \
+	X(device_returns) /* devices that came back */
+
+struct lane {
+	struct engine *engine;
+	const struct engine_port *port;
+	unsigned index;
+	bool up, was_up, stuck;
+	int64_t heard_ns; /* last answer or event of the bus */
+
+	struct slot *slots;
+	unsigned depth, lent, writes_in_work;
+
+	struct due_set inputs, outputs; /* rows to read, rows to write */
+	uint32_t writers;       /* rows whose writing is enabled */
+	uint32_t writes_in_row; /* since the last read was begun */
+	struct structure structure;
+
+	struct {
+#define X(name) uint64_t name;
+		LANE_COUNTERS(X)
+#undef X
+	} counters;
+};
+
+int lane_init(struct lane *lane, struct engine *engine, const struct engine_port *port,
+              unsigned index);
+void lane_free(struct lane *lane);
+
+/* Submit as much as the order of the lane and the depth of its bus allow. */
+void lane_fill(struct lane *lane, int64_t now_ns);
+void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now_ns);
+void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns);
+/* Give requests up whose time is over; returns when the next one's is. */
+int64_t lane_timeouts(struct lane *lane, int64_t now_ns);
+
+#endif

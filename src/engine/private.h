@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: MIT */
+/* The engine's inside, shared by the files of this folder alone. */
+#ifndef ENGINE_PRIVATE_H
+#define ENGINE_PRIVATE_H
+
+#include "lane.h"
+
+#define ENGINE_COUNTERS(X)                                                                         \
+	X(periods)                                                                                 \
+	X(late_periods)     /* boundaries that were more than a period late */                     \
+	X(steps)                                                                                   \
+	X(commands)         /* values taken from the command segment */                            \
+	X(refused_commands) /* values no program should have put there */                          \
+	X(lost_clients)     /* control programs that stopped beating */                            \
+	X(safe_outputs)     /* outputs put to SafeValue */                                         \
+	X(lost_commands)    /* command segments that were taken away and made again */
+
+struct client {
+	bool known;
+	uint32_t pid, beat, period_ms;
+	int64_t heard_ns;
+};
+
+struct engine {
+	const struct config *config;
+	struct image *image;
+	struct commands *commands;
+	struct log *log;
+	int64_t start_ns;
+	uint64_t period; /* boundaries since start */
+	struct table table;
+	struct lane *lanes;
+	unsigned lane_count;
+	struct due_wheel wheel; /* row * 2: read, row * 2 + 1: write */
+	uint64_t transactions, reconnects;
+	bool published;
+	bool rung; /* the command segment has to be looked through */
+
+	/* strings a consumer was writing when they were looked at */
+	uint32_t busy_slot[8];
+	int64_t busy_since_ns[8];
+	unsigned busy_count;
+
+	struct client clients[OWS_CLIENTS];
+	uint32_t driver_resets;
+	struct {
+#define X(name) uint64_t name;
+		ENGINE_COUNTERS(X)
+#undef X
+	} counters;
+};
+
+static inline struct lane *engine_lane(struct engine *e, const struct signal *s)
+{
+	return &e->lanes[s->lane];
+}
+static inline uint32_t engine_row(const struct signal *s)
+{
+	return s->record - 1;
+}
+static inline uint64_t engine_periods(const struct engine *e, int64_t ns)
+{
+	return (uint64_t)((ns + e->config->period_ns - 1) / e->config->period_ns);
+}
+
+/* schedule.c: when rows are read and written */
+void engine_read_now(struct engine *e, struct signal *s);
+void engine_read_at(struct engine *e, struct signal *s, uint64_t period);
+void engine_read_never(struct engine *e, struct signal *s);
+void engine_write_at(struct engine *e, struct signal *s, uint64_t period);
+/* Put the row among those to be written, or take it away, by signal_changed(). */
+void engine_write_check(struct engine *e, struct signal *s);
+void engine_turn(struct engine *e, int64_t now_ns);
+
+/* publish.c */
+void engine_publish(struct engine *e, struct signal *s);
+void engine_publish_driver(struct engine *e, int64_t now_ns);
+void engine_publish_target(struct engine *e, const struct lane *lane);
+void engine_publish_counters(struct engine *e);
+
+/* intake.c: the command segment */
+void engine_intake(struct engine *e, int64_t now_ns);
+void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns);
+/* At start and after the segment was made again: everything that stands in it. */
+void engine_intake_all(struct engine *e, int64_t now_ns);
+
+/* clients.c: the heartbeats of control programs */
+void engine_clients(struct engine *e, int64_t now_ns);
+
+/* completion.c: what an answer changes */
+void engine_read_done(struct engine *e, struct lane *lane, const struct slot *slot,
+                      const struct bus_answer *answer, int64_t now_ns);
+void engine_write_done(struct engine *e, struct lane *lane, const struct slot *slot,
+                       const struct bus_answer *answer, int64_t now_ns);
+void engine_structure_done(struct engine *e, struct lane *lane, const struct slot *slot,
+                           const struct bus_answer *answer);
+/* All signals of the lane: the target was lost, came back. */
+void engine_lane_down(struct engine *e, struct lane *lane, int err, int64_t now_ns);
+void engine_lane_up(struct engine *e, struct lane *lane, int64_t now_ns);
+void engine_device_back(struct engine *e, struct lane *lane, struct device *device,
+                        int64_t now_ns);
+
+#endif

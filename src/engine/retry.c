@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT */
+#include "retry.h"
+
+#include "../libows/ows.h"
+
+#include <errno.h>
+
+enum failure failure_of(int err)
+{
+	switch (-err) {
+	case 0:
+		return FAILURE_NONE;
+	case ENOTCONN:
+	case ETIMEDOUT:
+	case ECONNRESET:
+	case EPROTO:
+		return FAILURE_TARGET;
+	case ETIME:
+	case ECANCELED:
+		return FAILURE_VOID;
+	default:
+		return FAILURE_ITEM;
+	}
+}
+
+uint8_t failure_quality(int err)
+{
+	switch (-err) {
+	case ENOENT:
+	case EACCES:
+	case EILSEQ:
+	case EPROTOTYPE:
+	case EMSGSIZE:
+	case EOPNOTSUPP:
+		return OWS_Q_NO_PROPERTY;
+	case ENODEV:
+		return OWS_Q_NO_DEVICE;
+	case ERANGE:
+		return OWS_Q_SENSOR;
+	case ECOMM:
+		return OWS_Q_SHORT;
+	case ENOTCONN:
+	case ETIMEDOUT:
+	case ECONNRESET:
+	case EPROTO:
+	case EINPROGRESS:
+	case ETIME:
+		return OWS_Q_TARGET;
+	default:
+		return OWS_Q_DEVICE;
+	}
+}
+
+bool retry_fail(struct retry *retry, unsigned max_retries, int64_t *wait_ns)
+{
+	int64_t wait;
+
+	if (retry->failures < UINT16_MAX)
+		retry->failures++;
+	*wait_ns = 0;
+	if (retry->failures <= max_retries)
+		return false;
+	wait = RETRY_FIRST_NS << retry->doublings;
+	if (wait >= RETRY_MAX_NS)
+		wait = RETRY_MAX_NS;
+	else
+		retry->doublings++;
+	*wait_ns = wait;
+	return true;
+}
+
+void retry_clear(struct retry *retry)
+{
+	*retry = (struct retry){ 0 };
+}

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: MIT */
+#include "private.h"
+
+void engine_read_now(struct engine *e, struct signal *s)
+{
+	if (s->reading || !signal_reads(s))
+		return;
+	due_wheel_cancel(&e->wheel, engine_row(s) * 2);
+	due_set_add(&engine_lane(e, s)->inputs, engine_row(s));
+}
+
+void engine_read_at(struct engine *e, struct signal *s, uint64_t period)
+{
+	if (!signal_reads(s))
+		return;
+	if (period <= e->period)
+		engine_read_now(e, s);
+	else
+		due_wheel_at(&e->wheel, engine_row(s) * 2, period);
+}
+
+void engine_read_never(struct engine *e, struct signal *s)
+{
+	due_wheel_cancel(&e->wheel, engine_row(s) * 2);
+	due_set_remove(&engine_lane(e, s)->inputs, engine_row(s));
+}
+
+void engine_write_at(struct engine *e, struct signal *s, uint64_t period)
+{
+	due_set_remove(&engine_lane(e, s)->outputs, engine_row(s));
+	due_wheel_at(&e->wheel, engine_row(s) * 2 + 1, period);
+}
+
+void engine_write_check(struct engine *e, struct signal *s)
+{
+	struct due_set *outputs = &engine_lane(e, s)->outputs;
+	uint32_t row = engine_row(s);
+
+	if (!signal_changed(s)) {
+		due_wheel_cancel(&e->wheel, row * 2 + 1);
+		due_set_remove(outputs, row);
+		retry_clear(&s->write_retry);
+	} else if (!s->writing && !e->wheel.wait[row * 2 + 1].waits) {
+		due_set_add(outputs, row);
+	}
+}
+
+static void ready(void *ctx, uint32_t entry)
+{
+	struct engine *e = ctx;
+	struct signal *s = &e->table.signals[entry / 2];
+
+	if (entry % 2)
+		engine_write_check(e, s);
+	else
+		engine_read_now(e, s);
+}
+
+void engine_turn(struct engine *e, int64_t now_ns)
+{
+	uint64_t period = (uint64_t)((now_ns - e->start_ns) / e->config->period_ns);
+
+	if (period <= e->period)
+		return;
+	if (period > e->period + 1)
+		e->counters.late_periods += period - e->period - 1;
+	e->counters.periods += period - e->period;
+	e->period = period;
+	due_wheel_turn(&e->wheel, period, ready, e);
+}

@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: MIT */
+#include "structure.h"
+
+#include "hal/path.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct wanted {
+	struct structure_check check;
+	uint32_t row;
+};
+
+static int compare_wanted(const void *a, const void *b)
+{
+	const struct wanted *x = a, *y = b;
+	int order = strcmp(x->check.path, y->check.path);
+
+	return order ? order : (x->row > y->row) - (x->row < y->row);
+}
+
+static bool check_path(const char *path, char *out, size_t size)
+{
+	struct path p;
+	int n;
+
+	if (path_split(path, strlen(path), &p) || !p.has_rom || !p.property.len)
+		return false;
+	n = snprintf(out, size, "/structure/%02X/%.*s", p.rom[0], (int)p.property.len,
+	             p.property.text);
+	return n > 0 && (size_t)n < size;
+}
+
+int structure_init(struct structure *structure, const struct table *table, unsigned lane)
+{
+	struct wanted *wanted = calloc((size_t)table->count + 1, sizeof(*wanted));
+	uint32_t n = 0;
+
+	*structure = (struct structure){ 0 };
+	structure->checks = calloc((size_t)table->count + 1, sizeof(*structure->checks));
+	structure->rows = calloc((size_t)table->count + 1, sizeof(*structure->rows));
+	if (!wanted || !structure->checks || !structure->rows) {
+		free(wanted);
+		structure_free(structure);
+		return -ENOMEM;
+	}
+	for (uint32_t row = 0; row < table->count; row++) {
+		if (table->signals[row].lane != lane)
+			continue;
+		if (!check_path(table->signals[row].item->path, wanted[n].check.path,
+		                sizeof(wanted[n].check.path)))
+			continue;
+		wanted[n++].row = row;
+	}
+	qsort(wanted, n, sizeof(*wanted), compare_wanted);
+	for (uint32_t i = 0; i < n; i++) {
+		if (i == 0 || strcmp(wanted[i - 1].check.path, wanted[i].check.path) != 0) {
+			structure->checks[structure->count] = wanted[i].check;
+			structure->checks[structure->count++].first = i;
+		}
+		structure->checks[structure->count - 1].count++;
+		structure->rows[i] = wanted[i].row;
+	}
+	free(wanted);
+	return 0;
+}
+
+void structure_free(struct structure *structure)
+{
+	free(structure->checks);
+	free(structure->rows);
+	*structure = (struct structure){ 0 };
+}
+
+int structure_parse(const char *text, size_t len, struct structure_entry *entry)
+{
+	char copy[64], *end;
+
+	if (len < 20 || len >= sizeof(copy))
+		return -EILSEQ;
+	memcpy(copy, text, len);
+	copy[len] = '\0';
+	if (copy[1] != ',' || !strchr("yiuftgpabdlDv", copy[0]))
+		return -EILSEQ;
+	entry->type = copy[0];
+	entry->index = strtol(copy + 2, &end, 10);
+	if (*end != ',')
+		return -EILSEQ;
+	strtol(end + 1, &end, 10);
+	if (*end != ',' || !strchr("rwo", end[1]) || !strchr("rwo", end[2]) || end[3] != ',')
+		return -EILSEQ;
+	entry->access[0] = end[1];
+	entry->access[1] = end[2];
+	entry->access[2] = '\0';
+	return 0;
+}
+
+const char *structure_fault(const struct structure_entry *entry, const struct config_item *item)
+{
+	if (entry->type == 'D')
+		return "it is a directory, not a property";
+	if (item->type != OWS_STRING && entry->index == -1)
+		return "it is a list (.ALL): Type has to be string";
+	if (item->type != OWS_STRING && strchr("abdl", entry->type))
+		return "it is text: Type has to be string";
+	if (item->output && strcmp(entry->access, "ro") == 0)
+		return "it is read-only: IO has to be input";
+	if (item->readable && strcmp(entry->access, "wo") == 0)
+		return "it is write-only: it cannot be read";
+	return NULL;
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Types are checked against /structure, once, when a target first comes up: a signal whose type
+ * cannot hold its property, or that writes what is read-only, is reported before its first value.
+ */
+#ifndef ENGINE_STRUCTURE_H
+#define ENGINE_STRUCTURE_H
+
+#include "table.h"
+
+struct structure_check {
+	char path[96];       /* "/structure/28/temperature12" */
+	uint32_t first, count; /* rows in structure.rows */
+};
+struct structure {
+	struct structure_check *checks;
+	uint32_t *rows;
+	uint32_t count;
+	uint32_t next; /* check to be asked next */
+};
+
+/* The checks that the rows of a lane need, each different path once. 0 or -ENOMEM. */
+int structure_init(struct structure *structure, const struct table *table, unsigned lane);
+void structure_free(struct structure *structure);
+
+/* "t,000000,000001,ro,000012,v," as parsed. */
+struct structure_entry {
+	char type;   /* y yes/no, i u integer, f t g p float, a b d l text, D directory */
+	long index;  /* -1: .ALL, -2: .BYTE */
+	char access[3]; /* "ro" "rw" "wo" "oo" */
+};
+/* 0 or -EILSEQ. */
+int structure_parse(const char *text, size_t len, struct structure_entry *entry);
+/* NULL if the signal can work on such a property, else why not. */
+const char *structure_fault(const struct structure_entry *entry, const struct config_item *item);
+
+#endif

@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: MIT */
+#include "table.h"
+
+#include "hal/path.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What tells devices apart: the ROM id, or the alias. */
+struct device_key {
+	uint8_t rom[8];
+	bool has_rom;
+	const char *alias;
+	size_t alias_len;
+	uint32_t row;
+};
+
+static int compare_keys(const void *a, const void *b)
+{
+	const struct device_key *x = a, *y = b;
+	size_t shorter;
+	int order;
+
+	if (x->has_rom != y->has_rom)
+		return x->has_rom ? -1 : 1;
+	if (x->has_rom) {
+		order = memcmp(x->rom, y->rom, sizeof(x->rom));
+	} else {
+		shorter = x->alias_len < y->alias_len ? x->alias_len : y->alias_len;
+		order = memcmp(x->alias, y->alias, shorter);
+		if (!order)
+			order = (x->alias_len > y->alias_len) - (x->alias_len < y->alias_len);
+	}
+	return order;
+}
+
+static int order_keys(const void *a, const void *b)
+{
+	const struct device_key *x = a, *y = b;
+	int order = compare_keys(a, b);
+
+	return order ? order : (x->row > y->row) - (x->row < y->row);
+}
+
+/* Group the rows by device. */
+static int find_devices(struct table *table)
+{
+	struct device_key *keys = calloc((size_t)table->count + 1, sizeof(*keys));
+	uint32_t n = 0;
+
+	if (!keys)
+		return -ENOMEM;
+	for (uint32_t row = 0; row < table->count; row++) {
+		const char *text = table->signals[row].item->path;
+		struct path path;
+
+		table->signals[row].device = TABLE_NO_DEVICE;
+
+		if (path_split(text, strlen(text), &path) || !path.device.len)
+			continue;
+		keys[n].has_rom = path.has_rom;
+		memcpy(keys[n].rom, path.rom, sizeof(keys[n].rom));
+		keys[n].alias = path.last.text;
+		keys[n].alias_len = path.last.len;
+		keys[n].row = row;
+		n++;
+	}
+	qsort(keys, n, sizeof(*keys), order_keys);
+	for (uint32_t i = 0; i < n; i++) {
+		struct device *d;
+
+		if (i == 0 || compare_keys(&keys[i - 1], &keys[i]) != 0) {
+			d = &table->devices[table->device_count++];
+			d->has_rom = keys[i].has_rom;
+			memcpy(d->rom, keys[i].rom, sizeof(d->rom));
+			d->first = i;
+		}
+		d = &table->devices[table->device_count - 1];
+		d->count++;
+		table->device_rows[i] = keys[i].row;
+		table->signals[keys[i].row].device = table->device_count - 1;
+	}
+	free(keys);
+	return 0;
+}
+
+static void init_signal(struct signal *s, const struct config_item *item, uint32_t row)
+{
+	s->item = item;
+	s->record = row + 1;
+	s->sample.quality = OWS_Q_INITIAL;
+	s->sample.target = 255;
+	s->attrs.flags = (item->readable ? OWS_ATTR_READ_ENABLE : 0) |
+	                 (item->writable ? OWS_ATTR_WRITE_ENABLE : 0);
+	s->guarded = item->type != OWS_STRING && guard_watches(item->path);
+	s->held_quality = OWS_Q_INITIAL;
+	if (!item->has_init)
+		return;
+	s->sample.value = item->init_value;
+	if (item->output) {
+		s->commanded = true;
+		s->command = item->init_value;
+	}
+	if (item->type == OWS_STRING) {
+		size_t len = strlen(item->init_text);
+
+		if (len > TABLE_TEXT_CAP)
+			len = TABLE_TEXT_CAP;
+		memcpy(s->text, item->init_text, len);
+		memcpy(s->command_text, item->init_text, len);
+		s->sample.len = s->command_len = (uint32_t)len;
+	}
+}
+
+int table_init(struct table *table, const struct config *config)
+{
+	uint32_t strings = 0;
+	char *text;
+
+	*table = (struct table){ .count = config->item_count };
+	for (uint32_t row = 0; row < table->count; row++)
+		strings += config->items[row].type == OWS_STRING;
+	table->signals = calloc((size_t)table->count + 1, sizeof(*table->signals));
+	table->devices = calloc((size_t)table->count + 1, sizeof(*table->devices));
+	table->device_rows = calloc((size_t)table->count + 1, sizeof(*table->device_rows));
+	table->texts = calloc((size_t)strings * 3 + 1, TABLE_TEXT_CAP);
+	if (!table->signals || !table->devices || !table->device_rows || !table->texts) {
+		table_free(table);
+		return -ENOMEM;
+	}
+	text = table->texts;
+	for (uint32_t row = 0; row < table->count; row++) {
+		struct signal *s = &table->signals[row];
+
+		if (config->items[row].type == OWS_STRING) {
+			s->text = text;
+			s->command_text = text + TABLE_TEXT_CAP;
+			s->written_text = text + 2 * TABLE_TEXT_CAP;
+			text += 3 * TABLE_TEXT_CAP;
+		}
+		init_signal(s, &config->items[row], row);
+	}
+	if (find_devices(table)) {
+		table_free(table);
+		return -ENOMEM;
+	}
+	return 0;
+}
+
+void table_free(struct table *table)
+{
+	free(table->signals);
+	free(table->devices);
+	free(table->device_rows);
+	free(table->texts);
+	*table = (struct table){ 0 };
+}
+
+void table_image_signal(const struct config_item *item, struct image_signal *signal)
+{
+	*signal = (struct image_signal){
+		.name = item->name,
+		.path = item->path,
+		.type = (uint8_t)item->type,
+		.flags = (uint8_t)((item->output ? OWS_RECORD_OUTPUT : 0) |
+		                   (item->fresh ? OWS_RECORD_FRESH : 0) |
+		                   (item->alarm ? OWS_RECORD_ALARM : 0)),
+		.text_cap = item->type == OWS_STRING ? TABLE_TEXT_CAP : 0,
+		.per_factor = item->per_factor,
+		.line = (uint32_t)item->line,
+		.stale_after_ns = item->stale_after_ns,
+		.has_init = item->has_init,
+		.has_safe = item->has_safe,
+		.init_value = item->init_value,
+		.safe_value = item->safe_value,
+	};
+}
+
+bool signal_changed(const struct signal *s)
+{
+	if (s->one_shot)
+		return s->commanded;
+	if (!s->commanded || !signal_writes(s))
+		return false;
+	if (!s->confirmed || s->forced)
+		return true;
+	if (signal_is_string(s))
+		return s->command_len != s->written_len ||
+		       memcmp(s->command_text, s->written_text, s->command_len) != 0;
+	return s->command != s->written;
+}
+
+void signal_begin(struct signal *s, uint64_t period)
+{
+	s->attrs.pend_base = (uint32_t)period;
+	s->attrs.flags |= OWS_ATTR_IN_WORK;
+}
+
+void signal_end(struct signal *s, uint64_t period)
+{
+	uint32_t waited = (uint32_t)period - s->attrs.pend_base;
+
+	s->attrs.transactions++;
+	s->attrs.pend_last = waited;
+	if (waited > s->attrs.pend_max)
+		s->attrs.pend_max = waited;
+	if (!s->reading && !s->writing)
+		s->attrs.flags &= ~(uint32_t)OWS_ATTR_IN_WORK;
+}
+
+void signal_update(struct signal *s, uint64_t period, int64_t measured_ns, int64_t start_ns)
+{
+	uint32_t waited = (uint32_t)period - s->attrs.per_base;
+	int64_t age = measured_ns - (s->sample.count ? s->sample.measured_ns : start_ns);
+
+	if (waited > s->attrs.per_max)
+		s->attrs.per_max = waited;
+	if (age > s->attrs.age_max_ns)
+		s->attrs.age_max_ns = age;
+	if (s->sample.count)
+		s->attrs.update_ns = age;
+	s->attrs.per_base = (uint32_t)period;
+	s->sample.measured_ns = measured_ns;
+	s->sample.count++;
+}
+
+void signal_reset_diagnostics(struct signal *s, uint64_t period, int64_t now_ns, int64_t start_ns)
+{
+	s->attrs.transactions = 0;
+	s->attrs.pend_last = 0;
+	s->attrs.per_max = (uint32_t)period - s->attrs.per_base;
+	s->attrs.pend_max =
+		s->attrs.flags & OWS_ATTR_IN_WORK ? (uint32_t)period - s->attrs.pend_base : 0;
+	s->attrs.age_max_ns = now_ns - (s->sample.count ? s->sample.measured_ns : start_ns);
+}

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The signal table: one row for each item of the file, in its order, with everything the engine
+ * knows of the signal. Allocated once. Row r is record r + 1 of the image.
+ */
+#ifndef ENGINE_TABLE_H
+#define ENGINE_TABLE_H
+
+#include "../config/config.h"
+#include "../shm/image.h"
+#include "guard.h"
+#include "retry.h"
+
+/* Room for the text of a string signal in the layout, bytes; a multiple of 4. */
+#define TABLE_TEXT_CAP 1024
+
+#define TABLE_NO_DEVICE UINT32_MAX
+
+struct signal {
+	const struct config_item *item;
+	uint32_t record;
+	uint32_t device; /* row of table.devices, or TABLE_NO_DEVICE */
+	unsigned lane;   /* which serves it */
+
+	struct ows_sample sample; /* as published */
+	struct ows_attrs attrs;
+	char *text; /* strings: published text, TABLE_TEXT_CAP bytes */
+	int64_t updated_ns;
+
+	/* reading */
+	bool reading;
+	struct retry read_retry;
+	bool guarded;
+	struct guard guard;
+
+	/* writing */
+	bool writing;
+	struct retry write_retry;
+	bool commanded;  /* there is something to write: by a program, or InitValue */
+	bool confirmed;  /* written holds what the bus has */
+	bool one_shot;   /* write once more, changed or not */
+	bool forced;     /* a write in doubt ended late: the present value goes out again */
+	bool safe;       /* put to SafeValue, its client stopped beating */
+	int64_t command, written;
+	char *command_text, *written_text; /* strings */
+	uint32_t command_len, written_len;
+	uint32_t client; /* 0: nobody who beats; else index + 1 */
+
+	/* what was last seen in the command segment */
+	uint32_t stamp, one_shots, dgn_resets;
+	uint8_t held_quality; /* of an output while its target is down */
+};
+
+struct device {
+	uint8_t rom[8];
+	bool has_rom;   /* false: an alias */
+	bool absent;    /* a signal of it went bad with "no such device" */
+	uint32_t first, count; /* rows in table.device_rows */
+};
+
+struct table {
+	struct signal *signals;
+	uint32_t count;
+	struct device *devices;
+	uint32_t device_count;
+	uint32_t *device_rows;
+	char *texts;
+};
+
+/* Makes a row of each item; nothing is due yet. 0 or -ENOMEM. */
+int table_init(struct table *table, const struct config *config);
+void table_free(struct table *table);
+
+/* What the image and the command segment of this configuration contain. */
+void table_image_signal(const struct config_item *item, struct image_signal *signal);
+
+static inline bool signal_is_string(const struct signal *s)
+{
+	return s->item->type == OWS_STRING;
+}
+static inline bool signal_reads(const struct signal *s)
+{
+	return s->attrs.flags & OWS_ATTR_READ_ENABLE;
+}
+static inline bool signal_writes(const struct signal *s)
+{
+	return s->attrs.flags & OWS_ATTR_WRITE_ENABLE;
+}
+/* Does its commanded value have to go out? */
+bool signal_changed(const struct signal *s);
+
+/* A request of this signal begins, ends; an update (value read or written) was made. */
+void signal_begin(struct signal *s, uint64_t period);
+void signal_end(struct signal *s, uint64_t period);
+void signal_update(struct signal *s, uint64_t period, int64_t measured_ns, int64_t start_ns);
+/* The edge of _DGNRESET. */
+void signal_reset_diagnostics(struct signal *s, uint64_t period, int64_t now_ns, int64_t start_ns);
+
+#endif
