@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The simulated network as an I2C adapter: transactions take the time that the bus's speed gives
+ * them, waited for through the environment (which on a virtual clock moves it).
+ */
+#ifndef HAL_SIM_ADAPTER_H
+#define HAL_SIM_ADAPTER_H
+
+#include "hal/bus.h"
+#include "hal/ds2482/i2c.h"
+#include "net.h"
+
+struct sim_adapter {
+	struct i2c_adapter adapter;
+	struct sim_net *net; /* lent */
+	const struct bus_env *env;
+	int64_t free_at; /* when the bus is free again */
+	bool open;
+};
+
+/* Limits and speed are the network's. Nothing is allocated. */
+void sim_adapter_init(struct sim_adapter *adapter, struct sim_net *net, const struct bus_env *env);
+
+#endif

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT */
+/* The slave families there are: one line here and one in families.c for each new file. */
+#ifndef HAL_SIM_FAMILIES_H
+#define HAL_SIM_FAMILIES_H
+
+#include "slave.h"
+
+extern const struct sim_family sim_ds18b20, sim_ds18s20, sim_ds1822, sim_ds1825, sim_ds28ea00;
+extern const struct sim_family sim_ds2401;
+
+#endif

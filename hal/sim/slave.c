@@ -1,0 +1,356 @@
+/* SPDX-License-Identifier: MIT */
+#include "slave.h"
+
+#include "crc.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* ROM commands: DS2408 data sheet, "1-Wire ROM function commands"; the same in all families. */
+enum {
+	ROM_READ = 0x33,
+	ROM_READ_OLD = 0x0F, /* DS2401, DS2405: the DS2400's code */
+	ROM_MATCH = 0x55,
+	ROM_SKIP = 0xCC,
+	ROM_SEARCH = 0xF0,
+	ROM_CONDITIONAL = 0xEC,
+	ROM_RESUME = 0xA5,
+	ROM_OVERDRIVE_SKIP = 0x3C,
+	ROM_OVERDRIVE_MATCH = 0x69,
+};
+
+struct sim_slave *sim_slave_create(const struct sim_family *family, const uint8_t id[6])
+{
+	struct sim_slave *slave = calloc(1, sizeof(*slave));
+
+	if (!slave)
+		return NULL;
+	slave->state = calloc(1, family->state_size ? family->state_size : 1);
+	if (!slave->state) {
+		free(slave);
+		return NULL;
+	}
+	slave->family = family;
+	slave->plugged = true;
+	slave->corrupt_bit = -1;
+	slave->rom[0] = family->code;
+	memcpy(slave->rom + 1, id, 6);
+	slave->rom[7] = sim_crc8(0, slave->rom, 7);
+	for (unsigned i = 0; family->inputs && family->inputs[i].name; i++) {
+		assert(i < SIM_MAX_INPUTS);
+		slave->input[i] = sim_constant(family->inputs[i].start);
+	}
+	if (family->create)
+		family->create(slave);
+	return slave;
+}
+
+void sim_slave_destroy(struct sim_slave *slave)
+{
+	if (!slave)
+		return;
+	free(slave->state);
+	free(slave);
+}
+
+const struct sim_family *sim_family_find(const char *name, uint8_t code)
+{
+	for (const struct sim_family *const *f = sim_families; *f; f++) {
+		if (name ? strcasecmp((*f)->name, name) == 0 : (*f)->code == code)
+			return *f;
+	}
+	return NULL;
+}
+
+int sim_slave_input(const struct sim_slave *slave, const char *name)
+{
+	const struct sim_input *inputs = slave->family->inputs;
+
+	for (int i = 0; inputs && inputs[i].name; i++) {
+		if (strcmp(inputs[i].name, name) == 0)
+			return i;
+	}
+	return -1;
+}
+
+double sim_input_at(const struct sim_slave *slave, unsigned input, int64_t t)
+{
+	return sim_curve_at(&slave->input[input], t);
+}
+
+void sim_receive(struct sim_slave *slave)
+{
+	slave->mode = SIM_RECEIVE;
+	slave->bits = 0;
+}
+
+void sim_send(struct sim_slave *slave, const uint8_t *data, size_t n)
+{
+	assert(n > 0 && n <= SIM_MAX_SEND);
+	memcpy(slave->send, data, n);
+	slave->mode = SIM_SEND;
+	slave->send_at = 0;
+	slave->send_count = (uint16_t)n;
+	slave->bits = 0;
+}
+
+void sim_send_byte(struct sim_slave *slave, uint8_t byte)
+{
+	sim_send(slave, &byte, 1);
+}
+
+void sim_send_bits(struct sim_slave *slave)
+{
+	slave->mode = SIM_BITS;
+	slave->bits = 0;
+}
+
+void sim_end(struct sim_slave *slave)
+{
+	slave->layer = SIM_ROM_IDLE;
+}
+
+void sim_slave_advance(struct sim_slave *slave, int64_t t)
+{
+	if (slave->family->advance)
+		slave->family->advance(slave, t);
+}
+
+void sim_slave_power_on(struct sim_slave *slave, int64_t t)
+{
+	slave->power_ons++;
+	slave->layer = SIM_ROM_IDLE;
+	slave->overdrive = slave->resumable = false;
+	if (slave->family->power_on)
+		slave->family->power_on(slave, t);
+}
+
+void sim_slave_reset(struct sim_slave *slave, bool overdrive, int64_t t)
+{
+	sim_slave_advance(slave, t);
+	if (overdrive && !slave->overdrive) {
+		slave->layer = SIM_ROM_IDLE;
+		return;
+	}
+	slave->overdrive = overdrive;
+	slave->layer = SIM_ROM_COMMAND;
+	sim_receive(slave);
+	if (slave->family->reset)
+		slave->family->reset(slave, t);
+}
+
+void sim_slave_strong(struct sim_slave *slave, bool on, int64_t t)
+{
+	sim_slave_advance(slave, t);
+	if (slave->strong == on)
+		return;
+	slave->strong = on;
+	if (slave->family->strong)
+		slave->family->strong(slave, on, t);
+}
+
+/* xorshift64*: the same numbers everywhere. */
+static double random_part(uint64_t *state)
+{
+	uint64_t x = *state ? *state : 88172645463325252u;
+
+	x ^= x >> 12;
+	x ^= x << 25;
+	x ^= x >> 27;
+	*state = x;
+	return (double)((x * 2685821657736338717u) >> 11) / 9007199254740992.0;
+}
+
+static void function_layer(struct sim_slave *slave)
+{
+	slave->layer = SIM_FUNCTION;
+	sim_receive(slave);
+	slave->calls++;
+	slave->corrupt_bit = -1;
+	if ((slave->corrupt_every && slave->calls % slave->corrupt_every == 0) ||
+	    (slave->corrupt_probability > 0 &&
+	     random_part(&slave->corrupt_random) < slave->corrupt_probability))
+		slave->corrupt_bit = (int)(random_part(&slave->corrupt_random) * 64);
+	if (!slave->family->received)
+		sim_end(slave);
+}
+
+static void begin_rom(struct sim_slave *slave, enum sim_layer layer)
+{
+	slave->layer = layer;
+	slave->rom_bit = slave->search_phase = 0;
+}
+
+static void rom_command(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	const struct sim_family *family = slave->family;
+	bool resumable = slave->resumable;
+
+	sim_end(slave);
+	slave->resumable = resumable && byte == ROM_RESUME;
+	switch (byte) {
+	case ROM_READ:
+		begin_rom(slave, SIM_ROM_READ);
+		break;
+	case ROM_READ_OLD:
+		if (family->code == 0x01 || family->code == 0x05)
+			begin_rom(slave, SIM_ROM_READ);
+		break;
+	case ROM_MATCH:
+		begin_rom(slave, SIM_ROM_MATCH);
+		break;
+	case ROM_SEARCH:
+		begin_rom(slave, SIM_ROM_SEARCH);
+		break;
+	case ROM_CONDITIONAL:
+		if (family->alarm && family->alarm(slave, t))
+			begin_rom(slave, SIM_ROM_SEARCH);
+		break;
+	case ROM_SKIP:
+		function_layer(slave);
+		break;
+	case ROM_RESUME:
+		if (family->resume && resumable)
+			function_layer(slave);
+		break;
+	case ROM_OVERDRIVE_SKIP:
+		if (family->overdrive) {
+			slave->overdrive = true;
+			function_layer(slave);
+		}
+		break;
+	case ROM_OVERDRIVE_MATCH:
+		if (family->overdrive) {
+			slave->overdrive = true;
+			begin_rom(slave, SIM_ROM_MATCH);
+		}
+		break;
+	}
+}
+
+static bool rom_bit(const struct sim_slave *slave)
+{
+	return slave->rom[slave->rom_bit / 8] >> (slave->rom_bit % 8) & 1;
+}
+
+/* One more bit of the ROM id agreed upon; true when that was the last. */
+static bool rom_step(struct sim_slave *slave, bool agreed)
+{
+	if (!agreed) {
+		sim_end(slave);
+		return false;
+	}
+	return ++slave->rom_bit == 64;
+}
+
+static void selected(struct sim_slave *slave, int64_t t)
+{
+	slave->resumable = slave->family->resume;
+	function_layer(slave);
+	if (slave->family->matched)
+		slave->family->matched(slave, t);
+}
+
+static bool next_sent_bit(struct sim_slave *slave)
+{
+	bool out = slave->send[slave->send_at] >> slave->bits & 1;
+
+	return slave->corrupt_bit == 0 ? !out : out;
+}
+
+bool sim_slave_output(struct sim_slave *slave, int64_t t)
+{
+	sim_slave_advance(slave, t);
+	switch (slave->layer) {
+	case SIM_ROM_IDLE:
+	case SIM_ROM_COMMAND:
+	case SIM_ROM_MATCH:
+		break;
+	case SIM_ROM_READ:
+		return rom_bit(slave);
+	case SIM_ROM_SEARCH:
+		if (slave->search_phase < 2)
+			return rom_bit(slave) ^ (slave->search_phase == 1);
+		break;
+	case SIM_FUNCTION:
+		switch (slave->mode) {
+		case SIM_RECEIVE:
+			break;
+		case SIM_SEND:
+			return next_sent_bit(slave);
+		case SIM_BITS:
+			return slave->family->bit(slave, t);
+		}
+		break;
+	}
+	return true;
+}
+
+static void sent_bit(struct sim_slave *slave, int64_t t)
+{
+	if (slave->corrupt_bit >= 0)
+		slave->corrupt_bit--;
+	if (++slave->bits < 8)
+		return;
+	slave->bits = 0;
+	if (++slave->send_at < slave->send_count)
+		return;
+	if (slave->family->drained)
+		slave->family->drained(slave, t);
+	if (slave->mode == SIM_SEND && slave->send_at >= slave->send_count)
+		sim_end(slave);
+}
+
+static void received_bit(struct sim_slave *slave, bool line, int64_t t)
+{
+	uint8_t byte = (uint8_t)(slave->shift >> 1 | (line ? 0x80 : 0));
+
+	slave->shift = byte;
+	if (++slave->bits < 8)
+		return;
+	slave->bits = 0;
+	if (slave->layer == SIM_ROM_COMMAND)
+		rom_command(slave, byte, t);
+	else
+		slave->family->received(slave, byte, t);
+}
+
+void sim_slave_slot(struct sim_slave *slave, bool line, int64_t t)
+{
+	switch (slave->layer) {
+	case SIM_ROM_IDLE:
+		break;
+	case SIM_ROM_COMMAND:
+		received_bit(slave, line, t);
+		break;
+	case SIM_ROM_READ:
+		if (rom_step(slave, true))
+			function_layer(slave);
+		break;
+	case SIM_ROM_MATCH:
+		if (rom_step(slave, line == rom_bit(slave)))
+			selected(slave, t);
+		break;
+	case SIM_ROM_SEARCH:
+		if (++slave->search_phase < 3)
+			break;
+		slave->search_phase = 0;
+		if (rom_step(slave, line == rom_bit(slave)))
+			selected(slave, t);
+		break;
+	case SIM_FUNCTION:
+		switch (slave->mode) {
+		case SIM_RECEIVE:
+			received_bit(slave, line, t);
+			break;
+		case SIM_SEND:
+			sent_bit(slave, t);
+			break;
+		case SIM_BITS:
+			break;
+		}
+		break;
+	}
+}

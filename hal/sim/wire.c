@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT */
+#include "wire.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+int sim_wire_add(struct sim_wire *wire, struct sim_slave *slave)
+{
+	size_t count = wire->count + 1;
+	struct sim_slave **slaves = realloc(wire->slaves, count * sizeof(struct sim_slave *));
+
+	if (!slaves)
+		return -ENOMEM;
+	wire->slaves = slaves;
+	slaves = realloc(wire->active, count * sizeof(struct sim_slave *));
+	if (!slaves)
+		return -ENOMEM;
+	wire->active = slaves;
+	wire->slaves[wire->count++] = slave;
+	return 0;
+}
+
+void sim_wire_clear(struct sim_wire *wire)
+{
+	for (size_t i = 0; i < wire->count; i++)
+		sim_slave_destroy(wire->slaves[i]);
+	free(wire->slaves);
+	free(wire->active);
+	*wire = (struct sim_wire){0};
+}
+
+static bool dead(const struct sim_wire *wire)
+{
+	return wire->shorted || wire->unpowered;
+}
+
+bool sim_wire_reset(struct sim_wire *wire, bool overdrive, int64_t t)
+{
+	wire->resets++;
+	wire->active_count = 0;
+	if (dead(wire))
+		return false;
+	for (size_t i = 0; i < wire->count; i++) {
+		struct sim_slave *slave = wire->slaves[i];
+
+		if (!slave->plugged)
+			continue;
+		sim_slave_reset(slave, overdrive, t);
+		if (slave->layer != SIM_ROM_IDLE)
+			wire->active[wire->active_count++] = slave;
+	}
+	return wire->active_count > 0;
+}
+
+bool sim_wire_slot(struct sim_wire *wire, bool out, bool overdrive, int64_t t)
+{
+	bool line = out;
+	size_t kept = 0;
+
+	wire->slots++;
+	if (dead(wire)) {
+		wire->active_count = 0;
+		return false;
+	}
+	for (size_t i = 0; i < wire->active_count; i++) {
+		struct sim_slave *slave = wire->active[i];
+
+		if (!slave->plugged || slave->overdrive != overdrive)
+			sim_end(slave);
+		line &= sim_slave_output(slave, t);
+	}
+	for (size_t i = 0; i < wire->active_count; i++) {
+		struct sim_slave *slave = wire->active[i];
+
+		sim_slave_slot(slave, line, t);
+		if (slave->layer != SIM_ROM_IDLE)
+			wire->active[kept++] = slave;
+	}
+	wire->active_count = kept;
+	return line;
+}
+
+bool sim_wire_level(const struct sim_wire *wire)
+{
+	return !dead(wire);
+}
+
+void sim_wire_strong(struct sim_wire *wire, bool on, int64_t t)
+{
+	if (wire->strong == on)
+		return;
+	wire->strong = on;
+	for (size_t i = 0; i < wire->count; i++) {
+		if (wire->slaves[i]->plugged)
+			sim_slave_strong(wire->slaves[i], on && !dead(wire), t);
+	}
+}
+
+void sim_wire_power(struct sim_wire *wire, bool on, int64_t t)
+{
+	if (wire->unpowered == !on)
+		return;
+	wire->unpowered = !on;
+	for (size_t i = 0; on && i < wire->count; i++) {
+		if (wire->slaves[i]->plugged && wire->slaves[i]->parasite)
+			sim_slave_power_on(wire->slaves[i], t);
+	}
+}
+
+void sim_wire_plug(struct sim_wire *wire, struct sim_slave *slave, bool in, int64_t t)
+{
+	if (slave->plugged == in)
+		return;
+	slave->plugged = in;
+	if (!in)
+		return;
+	slave->strong = wire->strong;
+	sim_slave_power_on(slave, t);
+}
