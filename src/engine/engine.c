@@ -18,7 +18,7 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 	e->commands = setup->commands;
 	e->log = setup->log;
 	e->start_ns = setup->start_ns;
-	err = table_init(&e->table, e->config);
+	err = signal_table_init(&e->table, e->config);
 	if (!err)
 		err = due_wheel_init(&e->wheel, e->table.count * 2, 0);
 	if (!err) {
@@ -57,7 +57,7 @@ void engine_destroy(struct engine *e)
 	free(e->lanes);
 	if (e->wheel.wait)
 		due_wheel_free(&e->wheel);
-	table_free(&e->table);
+	signal_table_free(&e->table);
 	free(e);
 }
 

@@ -113,7 +113,7 @@ static void init_signal(struct signal *s, const struct config_item *item, uint32
 	}
 }
 
-int table_init(struct table *table, const struct config *config)
+int signal_table_init(struct table *table, const struct config *config)
 {
 	uint32_t strings = 0;
 	char *text;
@@ -126,7 +126,7 @@ int table_init(struct table *table, const struct config *config)
 	table->device_rows = calloc((size_t)table->count + 1, sizeof(*table->device_rows));
 	table->texts = calloc((size_t)strings * 3 + 1, TABLE_TEXT_CAP);
 	if (!table->signals || !table->devices || !table->device_rows || !table->texts) {
-		table_free(table);
+		signal_table_free(table);
 		return -ENOMEM;
 	}
 	text = table->texts;
@@ -142,13 +142,13 @@ int table_init(struct table *table, const struct config *config)
 		init_signal(s, &config->items[row], row);
 	}
 	if (find_devices(table)) {
-		table_free(table);
+		signal_table_free(table);
 		return -ENOMEM;
 	}
 	return 0;
 }
 
-void table_free(struct table *table)
+void signal_table_free(struct table *table)
 {
 	free(table->signals);
 	free(table->devices);
@@ -157,7 +157,7 @@ void table_free(struct table *table)
 	*table = (struct table){ 0 };
 }
 
-void table_image_signal(const struct config_item *item, struct image_signal *signal)
+void signal_table_image(const struct config_item *item, struct image_signal *signal)
 {
 	*signal = (struct image_signal){
 		.name = item->name,

@@ -68,11 +68,11 @@ struct table {
 };
 
 /* Makes a row of each item; nothing is due yet. 0 or -ENOMEM. */
-int table_init(struct table *table, const struct config *config);
-void table_free(struct table *table);
+int signal_table_init(struct table *table, const struct config *config);
+void signal_table_free(struct table *table);
 
 /* What the image and the command segment of this configuration contain. */
-void table_image_signal(const struct config_item *item, struct image_signal *signal);
+void signal_table_image(const struct config_item *item, struct image_signal *signal);
 
 static inline bool signal_is_string(const struct signal *s)
 {

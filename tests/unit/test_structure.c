@@ -97,7 +97,7 @@ static void test_each_path_is_asked_once_for_all_its_signals(void)
 	struct structure structure;
 	struct table table;
 
-	TEST_ASSERT_EQUAL_INT(0, table_init(&table, &config));
+	TEST_ASSERT_EQUAL_INT(0, signal_table_init(&table, &config));
 	TEST_ASSERT_EQUAL_INT(0, structure_init(&structure, &table, 0));
 	TEST_ASSERT_EQUAL_UINT32(3, structure.count);
 	TEST_ASSERT_EQUAL_STRING("/structure/26/HIH4000/humidity", structure.checks[0].path);
@@ -107,7 +107,7 @@ static void test_each_path_is_asked_once_for_all_its_signals(void)
 	TEST_ASSERT_EQUAL_UINT32(2, structure.rows[structure.checks[1].first + 1]);
 	TEST_ASSERT_EQUAL_STRING("/structure/29/PIO.BYTE", structure.checks[2].path);
 	structure_free(&structure);
-	table_free(&table);
+	signal_table_free(&table);
 }
 
 int main(void)
