@@ -39,10 +39,11 @@ ALL_CXXFLAGS = -std=c++11 $(CPP_COMMON) $(CXXWARN) $(HARDEN) $(CXXFLAGS) $(EXTRA
 ALL_LDFLAGS = -pie -Wl,-z,relro,-z,now $(LDFLAGS) $(EXTRA_CFLAGS)
 LIBS     := -lm -pthread
 
-# V=1 shows the commands
+# V=1 shows the commands, -s nothing
 V        ?= 0
 Q        := $(if $(filter 1,$(V)),,@)
-show      = $(if $(Q),@echo "  $(1)	$@")
+quiet    := $(findstring s,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
+show      = $(if $(Q),$(if $(quiet),,@echo "  $(1)	$@"))
 
 # --- The roles -------------------------------------------------------------------------------
 # What a value is, and the names of section 3.3
@@ -82,7 +83,7 @@ SO       := libows.so.$(VERSION)
 LIBRARY  := $(if $(LIBOWS),$(B)/$(SO) $(B)/libows.a $(B)/libows.pc)
 
 .PHONY: all unit system test run bench install uninstall clean \
-        examples unit-programs benches clang sanitize asan tsan m32
+        examples unit-programs benches FORCE clang sanitize asan tsan m32
 all: $(PROGRAMS) $(LIBRARY) $(B)/core.a
 
 $(B)/%.o: %.c
@@ -185,8 +186,6 @@ unit-programs: $(UNIT)
 
 unit: all $(UNIT)
 	@sh tests/unit/run $(UNIT)
-
-.SECONDARY:
 
 # --- System tests, benches and the main job ---------------------------------------------------
 system: all examples

@@ -257,7 +257,7 @@ class Scene:
                 print(f"--- {' '.join(program.command)}: status {program.process.returncode}")
                 print("\n".join(program.log().splitlines()[-60:]))
         for name in self.names:
-            for path in glob.glob(f"/dev/shm/*{name}*"):
+            for path in glob.glob(f"/dev/shm/owsd.{name}.*"):
                 try:
                     os.unlink(path)
                 except OSError:

@@ -6,19 +6,19 @@ set -eu
 root=$PWD/root
 unset MAKEFLAGS MFLAGS MAKELEVEL MAKEOVERRIDES
 on_copy() {
-	make -s -C "$OWSD_SOURCE" --no-print-directory B="$OWSD_BUILD" DESTDIR="$root" PREFIX=/usr "$@"
+	make -s -C "$OWSD_SOURCE" --no-print-directory B="$OWSD_BUILD" DESTDIR="$root" PREFIX=/opt/owsd "$@"
 }
 [ -e "$OWSD_BUILD/libows.so" ] || { echo "libows is not built"; exit 1; }
 on_copy install
 
 for f in lib/libows.so lib/libows.so.0 lib/libows.a lib/pkgconfig/libows.pc include/ows.h \
 	include/ows_layout.h; do
-	[ -s "$root/usr/$f" ] || { echo "missing: $f"; exit 1; }
+	[ -s "$root/opt/owsd/$f" ] || { echo "missing: $f"; exit 1; }
 done
 
 # Only ows_* is offered, by both libraries
-nm -D --defined-only "$root/usr/lib/libows.so.0" | awk 'NF == 3 { sub(/@.*/, "", $3); print $3 }' >dynamic
-nm -g --defined-only "$root/usr/lib/libows.a" | awk 'NF == 3 { print $3 }' >static
+nm -D --defined-only "$root/opt/owsd/lib/libows.so.0" | awk 'NF == 3 { sub(/@.*/, "", $3); print $3 }' >dynamic
+nm -g --defined-only "$root/opt/owsd/lib/libows.a" | awk 'NF == 3 { print $3 }' >static
 for list in dynamic static; do
 	[ -s $list ]
 	if grep -v '^ows_' $list; then
@@ -44,15 +44,15 @@ int main(void)
 	return sizeof(struct ows_record) != 256;
 }
 END
-export PKG_CONFIG_PATH="$root/usr/lib/pkgconfig" PKG_CONFIG_SYSROOT_DIR="$root"
+export PKG_CONFIG_PATH="$root/opt/owsd/lib/pkgconfig" PKG_CONFIG_SYSROOT_DIR="$root"
 flags="-Wall -Wextra -Werror ${EXTRA_CFLAGS:-} $(pkg-config --cflags --libs libows)"
 for compiler in 'gcc -std=c11 -x c' 'gcc -std=c17 -x c' 'g++ -std=c++11 -x c++'; do
 	# shellcheck disable=SC2086
 	$compiler t.c -x none -o t $flags
-	LD_LIBRARY_PATH=$root/usr/lib ./t
+	LD_LIBRARY_PATH=$root/opt/owsd/lib ./t
 	# shellcheck disable=SC2086
 	$compiler l.c -x none -o l $flags
-	LD_LIBRARY_PATH=$root/usr/lib ./l
+	LD_LIBRARY_PATH=$root/opt/owsd/lib ./l
 done
 
 on_copy uninstall
