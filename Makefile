@@ -188,7 +188,14 @@ unit: all $(UNIT)
 	@sh tests/unit/run $(UNIT)
 
 # --- System tests, benches and the main job ---------------------------------------------------
-system: all examples
+# Programs that system tests command
+SYSTEM_AIDS := $(patsubst tests/system/%.c,$(B)/system/%,$(wildcard tests/system/*.c))
+
+$(B)/system/%: tests/system/%.c $(B)/core.a
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.c %.a,$^) $(LIBS)
+
+system: all examples $(SYSTEM_AIDS)
 	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/run
 
 # Tools may be missing before install-deps ran: so make is asked again after it

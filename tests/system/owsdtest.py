@@ -153,7 +153,8 @@ class Owserver(Program):
         # In a file: owserver aborts when its command line exceeds about 480 bytes
         conf = scene.file(f"owserver-{port}.conf",
                           "".join(f"{kind} = {','.join(ids)}\n" for kind, ids in buses))
-        super().__init__(scene, [shutil.which("owserver"), "-c", conf, "-p", self.target,
+        super().__init__(scene, [shutil.which("owserver"), "-c", conf, "-p",
+                                 f"{host}:{port}",  # it knows no brackets
                                  "--foreground", *self.options])
 
     def request(self, kind, path="", data=b"", size=8192, flags=0x10A, seconds=5):
