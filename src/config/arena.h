@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT */
+/* Memory that is taken piece by piece and given back at once. */
+#ifndef CONFIG_ARENA_H
+#define CONFIG_ARENA_H
+
+#include <stddef.h>
+
+struct arena_chunk;
+struct arena { /* all zero: empty */
+	struct arena_chunk *chunks;
+};
+
+/* Zeroed, aligned for any type. NULL: no memory. */
+void *arena_take(struct arena *arena, size_t size);
+/* len bytes of text and a NUL. */
+char *arena_text(struct arena *arena, const char *text, size_t len);
+void arena_free(struct arena *arena);
+
+#endif

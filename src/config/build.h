@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/* Between the files that make a struct config out of a document. */
+#ifndef CONFIG_BUILD_H
+#define CONFIG_BUILD_H
+
+#include "options.h"
+
+#define CONFIG_ITEMS_MAX   65535
+#define CONFIG_TARGETS_MAX 64
+
+/* What config_free() gets back from the struct config that is its member. */
+struct config_box {
+	struct arena arena;
+	struct config config;
+};
+
+struct build {
+	struct config_box *box;
+	struct config_report *report;
+	bool no_memory;
+};
+
+/* A copy in the arena; "" and no_memory if there is no room. */
+const char *build_keep(struct build *build, const char *text, size_t len);
+
+/* "a, b | c" behind the targets there are. Errors are said at place. */
+void targets_add(struct build *build, const char *text, struct place place);
+
+/* One Item block. */
+void item_build(struct build *build, const struct rio_node *block, struct config_item *item);
+/* What concerns items together: names. */
+void items_check(struct build *build, const struct place *names);
+
+#endif

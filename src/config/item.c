@@ -1,0 +1,308 @@
+/* SPDX-License-Identifier: MIT */
+#include "build.h"
+
+#include "../../hal/path.h"
+#include "../signal/attribute.h"
+#include "../signal/value.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define IO_TYPE_CODE     0x0fu
+#define IO_TYPE_INPUT    0x10u
+#define IO_TYPE_OUTPUT   0x20u
+#define IO_TYPE_UNCACHED 0x100u
+#define IO_TYPE_KNOWN    (IO_TYPE_CODE | IO_TYPE_INPUT | IO_TYPE_OUTPUT | IO_TYPE_UNCACHED)
+
+/* Where a key's value stands, or the item if the key is absent. */
+static struct place place_of(const struct option_value *value, const struct rio_node *block)
+{
+	return value->node ? value->node->value_at : block->at;
+}
+
+static void build_name(struct build *build, const struct rio_node *block,
+                       const struct option_value *values, struct config_item *item)
+{
+	const struct option_value *name = &values[OPT_NAME];
+	const char *fault;
+
+	item->name = build_keep(build, name->text, strlen(name->text));
+	if (!name->node) {
+		if (!block->broken)
+			report_error(build->report, block->at, "expected a Name in this Item");
+		return;
+	}
+	fault = name->given ? signal_name_fault(name->text) : NULL;
+	if (fault)
+		report_error(build->report, name->node->value_at, "the name \"%s\" %s", name->text,
+		             fault);
+}
+
+/* "/" bus.N, device and property, without the flags. */
+static const char *normalised(struct build *build, const char *text, size_t len,
+                              const struct path *path)
+{
+	const char *rest = path->device.len ? path->device.text : path->property.text;
+	char whole[PATH_LEN_MAX + 16], *p = whole;
+	size_t tail = (size_t)(text + len - rest);
+
+	if (path->bus >= 0)
+		p += snprintf(p, sizeof(whole), "/bus.%d", path->bus);
+	*p++ = '/';
+	memcpy(p, rest, tail);
+	return build_keep(build, whole, (size_t)(p - whole) + tail);
+}
+
+static void build_path(struct build *build, const struct rio_node *block,
+                       const struct option_value *values, struct config_item *item,
+                       struct path *path)
+{
+	const struct option_value *value = &values[OPT_PATH];
+	const char *text = value->text, *fault;
+	struct place place = place_of(value, block);
+
+	memset(path, 0, sizeof(*path));
+	item->path = "";
+	if (!value->given) {
+		if (!value->node && !block->broken)
+			report_error(build->report, block->at, "expected a Path in this Item");
+		return;
+	}
+	fault = path_split(text, strlen(text), path);
+	if (!fault && !path->property.len)
+		fault = path->device.len ? "has no property behind the device" : "has no property";
+	if (fault) {
+		report_error(build->report, place, "the path \"%s\" %s", text, fault);
+		return;
+	}
+	if (path->alarm)
+		report_warning(build->report, place,
+		               "the path \"%s\" is entered without /alarm, which is dropped; "
+		               "alarms are chosen by Alarm on",
+		               text);
+	item->path = normalised(build, text, strlen(text), path);
+	item->fresh = path->uncached;
+}
+
+/* The meaning of IOType, before the readable keys; false: its type is no type. */
+static bool take_io_type(struct build *build, const struct option_value *value,
+                         struct config_item *item)
+{
+	uint32_t bits = (uint32_t)value->number, unknown = bits & ~IO_TYPE_KNOWN;
+	int code = (int)(bits & IO_TYPE_CODE);
+
+	if (unknown)
+		report_warning(build->report, value->node->value_at,
+		               "IOType %s has the unknown bits 0x%04X, which are ignored",
+		               value->text, (unsigned)unknown);
+	item->output = bits & IO_TYPE_OUTPUT;
+	item->readable = !item->output || (bits & IO_TYPE_INPUT);
+	item->writable = item->output;
+	item->fresh |= (bits & IO_TYPE_UNCACHED) != 0;
+	if (!value_type_ok(code)) {
+		report_error(build->report, value->node->value_at,
+		             "IOType %s: %d is no type; expected 1 bool, 2 byte, 3 short, 4 long, "
+		             "5 word, 6 dword, 7 float, 8 double, 10 large or 12 string in the "
+		             "last hexadecimal digit",
+		             value->text, code);
+		return false;
+	}
+	item->type = (enum ows_type)code;
+	return true;
+}
+
+/* Returns whether the type is known, so that values can be judged by it. */
+static bool build_type(struct build *build, const struct rio_node *block,
+                       const struct option_value *values, struct config_item *item)
+{
+	const struct option_value *bits = &values[OPT_IO_TYPE], *type = &values[OPT_TYPE],
+	                          *io = &values[OPT_IO];
+	bool known = false;
+
+	if (bits->given) {
+		known = take_io_type(build, bits, item);
+	} else {
+		item->output = io->number != 0;
+		item->readable = !item->output;
+		item->writable = item->output;
+	}
+	if (type->given) {
+		if (known && item->type != (enum ows_type)(int)type->number)
+			report_error(build->report, type->node->value_at,
+			             "Type %s contradicts IOType %s in line %d, which says %s",
+			             type->text, bits->text, bits->node->at.line,
+			             value_type_name(item->type));
+		item->type = (enum ows_type)(int)type->number;
+		known = true;
+	} else if (!bits->node && !type->node && !block->broken) {
+		report_error(build->report, block->at, "expected a Type or an IOType in this Item");
+	}
+	if (bits->given && io->given && item->output != (io->number != 0))
+		report_error(build->report, io->node->value_at,
+		             "IO %s contradicts IOType %s in line %d, which says %s", io->text,
+		             bits->text, bits->node->at.line, item->output ? "output" : "input");
+	return known;
+}
+
+static void build_flags(struct build *build, const struct option_value *values,
+                        const struct path *path, struct config_item *item)
+{
+	const struct option_value *uncached = &values[OPT_UNCACHED];
+
+	if (values[OPT_READABLE].given)
+		item->readable = values[OPT_READABLE].number != 0;
+	if (values[OPT_WRITABLE].given)
+		item->writable = values[OPT_WRITABLE].number != 0;
+	if (uncached->given && !uncached->number && path->uncached)
+		report_error(build->report, uncached->node->value_at,
+		             "Uncached %s contradicts Path, which begins with /uncached",
+		             uncached->text);
+	if (uncached->given)
+		item->fresh = uncached->number != 0;
+	item->alarm = values[OPT_ALARM].number != 0;
+}
+
+/* InitValue or SafeValue of a number type; returns whether there is one. */
+static bool build_value(struct build *build, const struct option_value *value,
+                        const struct config_item *item, int64_t *number)
+{
+	int err;
+
+	if (!value->text[0])
+		return false;
+	err = value_parse(item->type, value->text, number);
+	if (!err)
+		return true;
+	if (err == -ERANGE)
+		report_error(build->report, value->node->value_at,
+		             "%s \"%s\": the type %s cannot hold it", value->node->key, value->text,
+		             value_type_name(item->type));
+	else
+		report_error(build->report, value->node->value_at, "%s \"%s\": expected %s (type %s)",
+		             value->node->key, value->text,
+		             item->type == OWS_BOOL           ? "0, 1, on, off, yes, no, true or false"
+		             : value_is_float(item->type) ? "a number with a decimal point"
+		                                              : "a whole number",
+		             value_type_name(item->type));
+	return false;
+}
+
+static void build_values(struct build *build, const struct option_value *values, bool known,
+                         struct config_item *item)
+{
+	const struct option_value *init = &values[OPT_INIT_VALUE], *safe = &values[OPT_SAFE_VALUE];
+
+	item->init_text = build_keep(build, init->text, strlen(init->text));
+	item->safe_text = build_keep(build, safe->text, strlen(safe->text));
+	if (item->type == OWS_STRING) {
+		item->has_init = *init->text != '\0';
+		item->has_safe = safe->given;
+	} else if (known) {
+		item->has_init = build_value(build, init, item, &item->init_value);
+		item->has_safe = build_value(build, safe, item, &item->safe_value);
+	}
+	if (item->has_safe && !item->output && !item->writable)
+		report_warning(build->report, safe->node->at,
+		               "SafeValue does nothing: this input is not Writable");
+	item->per_factor = (uint32_t)values[OPT_PER_FACTOR].number;
+	item->stale_after_ns = (int64_t)(values[OPT_STALE_AFTER].number * 1e9 + 0.5);
+}
+
+static const char *keep_if_given(struct build *build, const struct option_value *value)
+{
+	return value->given ? build_keep(build, value->text, strlen(value->text)) : NULL;
+}
+
+static void warn_without_equals(struct build *build, const struct option_value *value)
+{
+	if (value->given && *value->text && !strchr(value->text, '='))
+		report_warning(build->report, value->node->value_at,
+		               "%s \"%s\" has no '=': nothing is written; expected property=value",
+		               value->node->key, value->text);
+}
+
+/* Table 3.1: rows 3 and 10 leave for the next alarm when these are not defined. */
+static void build_alarm(struct build *build, const struct rio_node *block,
+                        const struct option_value *values, const struct path *path,
+                        struct config_item *item)
+{
+	struct place place = place_of(&values[OPT_ALARM], block);
+	bool latch_empty;
+
+	item->latch_alarm = keep_if_given(build, &values[OPT_LATCH_ALARM]);
+	item->por_alarm = keep_if_given(build, &values[OPT_POR_ALARM]);
+	item->set_alarm = keep_if_given(build, &values[OPT_SET_ALARM]);
+	item->reset_latch = keep_if_given(build, &values[OPT_RESET_LATCH]);
+	latch_empty = item->latch_alarm && !*item->latch_alarm;
+	if (!item->alarm)
+		return;
+	if (*item->path && !path->device.len)
+		report_error(build->report, place, "Alarm on: expected a device in the path \"%s\"",
+		             item->path);
+	if (!values[OPT_POR_ALARM].node)
+		report_warning(build->report, place,
+		               "this alarm can never do anything: PorAlarm is not defined; write "
+		               "PorAlarm \"por\", or PorAlarm \"\" if the device has no such property");
+	if (!values[OPT_LATCH_ALARM].node || latch_empty)
+		report_warning(build->report, place,
+		               "this alarm never reads anything: LatchAlarm is %s; write the "
+		               "device's latch such as LatchAlarm \"latch.BYTE\", or LatchAlarm "
+		               "\"present\" if it has none",
+		               latch_empty ? "empty" : "not defined");
+	warn_without_equals(build, &values[OPT_SET_ALARM]);
+	warn_without_equals(build, &values[OPT_RESET_LATCH]);
+}
+
+void item_build(struct build *build, const struct rio_node *block, struct config_item *item)
+{
+	struct option_value values[OPTION_COUNT_ALL];
+	struct path path;
+	bool known;
+
+	options_read(block, PLACE_ITEM, values, build->report);
+	item->line = block->at.line;
+	build_name(build, block, values, item);
+	build_path(build, block, values, item, &path);
+	known = build_type(build, block, values, item);
+	build_flags(build, values, &path, item);
+	build_values(build, values, known, item);
+	build_alarm(build, block, values, &path, item);
+}
+
+struct named {
+	const char *name;
+	unsigned index;
+};
+
+static int compare_named(const void *a, const void *b)
+{
+	const struct named *x = a, *y = b;
+	int order = strcmp(x->name, y->name);
+
+	return order ? order : (x->index > y->index) - (x->index < y->index);
+}
+
+void items_check(struct build *build, const struct place *names)
+{
+	const struct config *config = &build->box->config;
+	struct named *sorted = calloc(config->item_count + 1, sizeof(*sorted));
+
+	if (!sorted) {
+		build->no_memory = true;
+		return;
+	}
+	for (unsigned i = 0; i < config->item_count; i++)
+		sorted[i] = (struct named){config->items[i].name, i};
+	qsort(sorted, config->item_count, sizeof(*sorted), compare_named);
+	for (unsigned i = 1, first = 0; i < config->item_count; i++) {
+		if (strcmp(sorted[i].name, sorted[first].name))
+			first = i;
+		else if (*sorted[i].name)
+			report_error(build->report, names[sorted[i].index],
+			             "the name \"%s\" stands twice, first in line %d",
+			             sorted[i].name, names[sorted[first].index].line);
+	}
+	free(sorted);
+}

@@ -1,0 +1,296 @@
+/* SPDX-License-Identifier: MIT */
+#include "options.h"
+
+#include "../signal/value.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+#define DAY 86400.0
+
+const struct option_def option_table[OPTION_COUNT_ALL] = {
+	[OPT_VERSION] = {"Version", PLACE_DRIVER, OPTION_TEXT, .preset = "1.00",
+	                 .help = "version of the file format"},
+	[OPT_TARGET_NAME] = {"TargetName", PLACE_DRIVER, OPTION_TEXT, .preset = "localhost:4304",
+	                     .help = "where the devices are reached"},
+	[OPT_MAX_CONS_ALARMS] = {"MaxConsAlarms", PLACE_DRIVER, OPTION_COUNT, false, 0, 1000, "5",
+	                         "alarms served in a row before one write or read goes through"},
+	[OPT_MAX_REQUESTS] = {"MaxRequests", PLACE_DRIVER, OPTION_COUNT, false, 0, 1000, "1",
+	                      "requests at a time, in older files; counts as 1"},
+	[OPT_MAX_RETRIES] = {"MaxRetries", PLACE_DRIVER, OPTION_COUNT, false, 0, 100, "3",
+	                     "retries after an item error"},
+	[OPT_TIMEOUT] = {"Timeout", PLACE_DRIVER, OPTION_SECONDS, false, 0.001, DAY, "20",
+	                 "time limit of a request, seconds"},
+	[OPT_PERIOD] = {"Period", PLACE_DRIVER, OPTION_SECONDS, false, 0.001, 60, "0.1",
+	                "period of the driver, seconds"},
+	[OPT_ALARM_PERIOD] = {"AlarmPeriod", PLACE_DRIVER, OPTION_SECONDS, false, 0, DAY, "0.05",
+	                      "least time between two looks at /alarm, seconds"},
+	[OPT_ITEM_COUNT] = {"ItemCount", PLACE_DRIVER, OPTION_COUNT, false, 0, 1e9, NULL,
+	                    "number of items"},
+	[OPT_BUS] = {"Bus", PLACE_DRIVER, OPTION_BLOCK, true, .help = "options of one target"},
+	[OPT_ITEM] = {"Item", PLACE_DRIVER, OPTION_BLOCK, true, .help = "one signal"},
+
+	[OPT_NAME] = {"Name", PLACE_ITEM, OPTION_TEXT, .help = "name of the signal"},
+	[OPT_PATH] = {"Path", PLACE_ITEM, OPTION_TEXT, .help = "OWFS path of the property"},
+	[OPT_IO_TYPE] = {"IOType", PLACE_ITEM, OPTION_COUNT, false, 0, UINT32_MAX, NULL,
+	                 "type, direction and Uncached as bits"},
+	[OPT_TYPE] = {"Type", PLACE_ITEM, OPTION_TYPE, .help = "data type"},
+	[OPT_IO] = {"IO", PLACE_ITEM, OPTION_IO, .preset = "input",
+	            .help = "read cyclically, or written when changed"},
+	[OPT_READABLE] = {"Readable", PLACE_ITEM, OPTION_FLAG,
+	                  .help = "start value of _ReadEnable; on for inputs, off for outputs"},
+	[OPT_WRITABLE] = {"Writable", PLACE_ITEM, OPTION_FLAG,
+	                  .help = "start value of _WriteEnable; on for outputs, off for inputs"},
+	[OPT_UNCACHED] = {"Uncached", PLACE_ITEM, OPTION_FLAG, .preset = "off",
+	                  .help = "read past the cache"},
+	[OPT_INIT_VALUE] = {"InitValue", PLACE_ITEM, OPTION_TEXT, .preset = "",
+	                    .help = "value until the first read; outputs: written once at start"},
+	[OPT_SAFE_VALUE] = {"SafeValue", PLACE_ITEM, OPTION_TEXT,
+	                    .help = "written when the control program stops beating"},
+	[OPT_PER_FACTOR] = {"PerFactor", PLACE_ITEM, OPTION_COUNT, false, 1, 1e6, "1",
+	                    "read again no sooner than that many periods later"},
+	[OPT_STALE_AFTER] = {"StaleAfter", PLACE_ITEM, OPTION_SECONDS, false, 0, 365 * DAY, "0",
+	                     "age at which a value is no longer good, seconds; 0: never"},
+	[OPT_ALARM] = {"Alarm", PLACE_ITEM, OPTION_FLAG, .preset = "off",
+	               .help = "watch the device by its alarms"},
+	[OPT_LATCH_ALARM] = {"LatchAlarm", PLACE_ITEM, OPTION_TEXT,
+	                     .help = "property that says what changed"},
+	[OPT_POR_ALARM] = {"PorAlarm", PLACE_ITEM, OPTION_TEXT,
+	                   .help = "property that says that the device restarted"},
+	[OPT_SET_ALARM] = {"SetAlarm", PLACE_ITEM, OPTION_TEXT,
+	                   .help = "property=value that arms the alarm"},
+	[OPT_RESET_LATCH] = {"ResetLatch", PLACE_ITEM, OPTION_TEXT,
+	                     .help = "property=value that clears the latch"},
+
+	[OPT_BUS_TARGET] = {"Target", PLACE_BUS, OPTION_TEXT, .help = "the target it is for"},
+};
+
+static const char *const place_names[] = {"OwsDrv", "Item", "Bus"};
+
+int option_find(enum option_place place, const char *key)
+{
+	for (int i = 0; i < OPTION_COUNT_ALL; i++)
+		if (option_table[i].place == place && !strcmp(option_table[i].key, key))
+			return i;
+	return -1;
+}
+
+/* Letters to change, put in or leave out; case does not count. */
+static unsigned distance(const char *a, const char *b)
+{
+	unsigned row[RIO_KEY_MAX + 1];
+	size_t width = strlen(b);
+
+	for (size_t j = 0; j <= width; j++)
+		row[j] = (unsigned)j;
+	for (size_t i = 1; a[i - 1]; i++) {
+		unsigned diagonal = row[0];
+
+		row[0] = (unsigned)i;
+		for (size_t j = 1; j <= width; j++) {
+			bool same = tolower((unsigned char)a[i - 1]) ==
+			            tolower((unsigned char)b[j - 1]);
+			unsigned best = diagonal + !same;
+
+			diagonal = row[j];
+			if (row[j] + 1 < best)
+				best = row[j] + 1;
+			if (row[j - 1] + 1 < best)
+				best = row[j - 1] + 1;
+			row[j] = best;
+		}
+	}
+	return row[width];
+}
+
+const char *option_nearest(enum option_place place, const char *key)
+{
+	const char *nearest = NULL;
+	unsigned least = 0;
+
+	for (int i = 0; i < OPTION_COUNT_ALL; i++) {
+		const char *known = option_table[i].key;
+		unsigned d;
+
+		if (option_table[i].place != place)
+			continue;
+		d = distance(key, known);
+		if (d <= 1 + strlen(known) / 4 && (!nearest || d < least)) {
+			nearest = known;
+			least = d;
+		}
+	}
+	return nearest;
+}
+
+/* The real names of the alarm keys are not public: a value may tell that one of them was meant. */
+static bool looks_like_alarm(const struct rio_node *node)
+{
+	return node->kind == RIO_STRING &&
+	       (strncasecmp(node->value, "latch", 5) == 0 || strchr(node->value, '=') ||
+	        strcasecmp(node->value, "por") == 0 || strncasecmp(node->value, "por.", 4) == 0);
+}
+
+static void warn_unknown(const struct rio_node *node, enum option_place place,
+                         struct config_report *report)
+{
+	const char *nearest = option_nearest(place, node->key);
+
+	if (place == PLACE_ITEM && looks_like_alarm(node))
+		report_warning(report, node->at,
+		               "unknown key %s in %s is ignored; \"%s\" looks like part of an alarm: "
+		               "the keys are Alarm, LatchAlarm, PorAlarm, SetAlarm, ResetLatch",
+		               node->key, place_names[place], node->value);
+	else if (nearest)
+		report_warning(report, node->at, "unknown key %s in %s is ignored; is it %s?",
+		               node->key, place_names[place], nearest);
+	else
+		report_warning(report, node->at, "unknown key %s in %s is ignored", node->key,
+		               place_names[place]);
+}
+
+static bool parse_hex(const char *text, double *number)
+{
+	uint64_t sum = 0;
+
+	if (text[0] != '0' || (text[1] != 'x' && text[1] != 'X') || !text[2])
+		return false;
+	for (text += 2; *text; text++) {
+		if (!isxdigit((unsigned char)*text) || sum > UINT32_MAX)
+			return false;
+		sum = sum * 16 + (uint64_t)(isdigit((unsigned char)*text)
+		                                    ? *text - '0'
+		                                    : tolower((unsigned char)*text) - 'a' + 10);
+	}
+	*number = (double)sum;
+	return true;
+}
+
+static bool parse_number(const char *text, enum ows_type type, double *number)
+{
+	int64_t value;
+
+	if (value_parse(type, text, &value))
+		return false;
+	*number = value_number(type, value);
+	return true;
+}
+
+static bool parse_kind(const struct option_def *def, const char *text, double *number)
+{
+	int type;
+
+	switch (def->kind) {
+	case OPTION_TEXT:
+	case OPTION_BLOCK:
+		return true;
+	case OPTION_COUNT:
+		return (parse_hex(text, number) || parse_number(text, OWS_LARGE, number)) &&
+		       *number >= def->least && *number <= def->most;
+	case OPTION_SECONDS:
+		return parse_number(text, OWS_DOUBLE, number) && *number >= def->least &&
+		       *number <= def->most;
+	case OPTION_FLAG:
+		return parse_number(text, OWS_BOOL, number);
+	case OPTION_TYPE:
+		type = value_type_parse(text);
+		*number = type;
+		return type >= 0;
+	case OPTION_IO:
+		*number = !strcmp(text, "output");
+		return !strcmp(text, "output") || !strcmp(text, "input");
+	}
+	return false;
+}
+
+static void say_expected(const struct option_def *def, const struct rio_node *node,
+                         struct config_report *report)
+{
+	switch (def->kind) {
+	case OPTION_COUNT:
+		if (def->most == UINT32_MAX)
+			report_error(report, node->value_at,
+			             "%s \"%s\": expected a whole number such as 0x0018", def->key,
+			             node->value);
+		else
+			report_error(report, node->value_at,
+			             "%s \"%s\": expected a whole number from %.0f to %.0f", def->key,
+			             node->value, def->least, def->most);
+		break;
+	case OPTION_SECONDS:
+		report_error(report, node->value_at, "%s \"%s\": expected seconds from %g to %g",
+		             def->key, node->value, def->least, def->most);
+		break;
+	case OPTION_FLAG:
+		report_error(report, node->value_at, "%s \"%s\": expected on or off", def->key,
+		             node->value);
+		break;
+	case OPTION_TYPE:
+		report_error(report, node->value_at,
+		             "%s \"%s\": expected bool, byte, short, long, word, dword, float, "
+		             "double, large or string",
+		             def->key, node->value);
+		break;
+	case OPTION_IO:
+		report_error(report, node->value_at, "%s \"%s\": expected input or output", def->key,
+		             node->value);
+		break;
+	case OPTION_TEXT:
+	case OPTION_BLOCK:
+		break;
+	}
+}
+
+static void read_one(const struct rio_node *node, const struct option_def *def,
+                     struct option_value *value, struct config_report *report)
+{
+	double number = value->number;
+
+	if (value->node && !def->repeats) {
+		report_error(report, node->at, "%s stands twice, first in line %d", def->key,
+		             value->node->at.line);
+		return;
+	}
+	if (!value->node)
+		value->node = node;
+	if (node->broken && node->kind != RIO_BLOCK)
+		return;
+	if ((node->kind == RIO_BLOCK) != (def->kind == OPTION_BLOCK) || node->kind == RIO_LIST) {
+		report_error(report, node->value_at, "%s: expected %s", def->key,
+		             def->kind == OPTION_BLOCK ? "a block in { }" : "one value");
+		if (def->kind == OPTION_BLOCK)
+			value->node = NULL;
+		return;
+	}
+	if (def->kind == OPTION_BLOCK)
+		return;
+	if (!parse_kind(def, node->value, &number)) {
+		say_expected(def, node, report);
+		return;
+	}
+	value->text = node->value;
+	value->number = number;
+	value->given = true;
+}
+
+void options_read(const struct rio_node *block, enum option_place place,
+                  struct option_value *values, struct config_report *report)
+{
+	for (int i = 0; i < OPTION_COUNT_ALL; i++) {
+		const struct option_def *def = &option_table[i];
+
+		values[i] = (struct option_value){.text = ""};
+		if (def->preset)
+			parse_kind(def, def->preset, &values[i].number);
+	}
+	for (const struct rio_node *node = block->first; node; node = node->next) {
+		int option = option_find(place, node->key);
+
+		if (option >= 0)
+			read_one(node, &option_table[option], &values[option], report);
+		else if (*node->key)
+			warn_unknown(node, place, report);
+	}
+}

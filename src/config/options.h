@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * All keys of the configuration in one table: the reader takes types, limits and defaults from it,
+ * owsd --check and the edits their order, and a test lays the manual page beside it.
+ */
+#ifndef CONFIG_OPTIONS_H
+#define CONFIG_OPTIONS_H
+
+#include "arena.h"
+#include "config.h"
+#include "rio.h"
+
+enum option_place {
+	PLACE_DRIVER,
+	PLACE_ITEM,
+	PLACE_BUS,
+};
+
+enum option_kind {
+	OPTION_TEXT,
+	OPTION_COUNT,   /* whole number, decimal or 0x hexadecimal */
+	OPTION_SECONDS, /* decimal */
+	OPTION_FLAG,    /* on, off */
+	OPTION_TYPE,    /* a name of value_type_name() */
+	OPTION_IO,      /* input, output */
+	OPTION_BLOCK,
+};
+
+enum option {
+	OPT_VERSION,
+	OPT_TARGET_NAME,
+	OPT_MAX_CONS_ALARMS,
+	OPT_MAX_REQUESTS,
+	OPT_MAX_RETRIES,
+	OPT_TIMEOUT,
+	OPT_PERIOD,
+	OPT_ALARM_PERIOD,
+	OPT_ITEM_COUNT,
+	OPT_BUS,
+	OPT_ITEM,
+	/* of an item */
+	OPT_NAME,
+	OPT_PATH,
+	OPT_IO_TYPE,
+	OPT_TYPE,
+	OPT_IO,
+	OPT_READABLE,
+	OPT_WRITABLE,
+	OPT_UNCACHED,
+	OPT_INIT_VALUE,
+	OPT_SAFE_VALUE,
+	OPT_PER_FACTOR,
+	OPT_STALE_AFTER,
+	OPT_ALARM,
+	OPT_LATCH_ALARM,
+	OPT_POR_ALARM,
+	OPT_SET_ALARM,
+	OPT_RESET_LATCH,
+	/* of a Bus block */
+	OPT_BUS_TARGET,
+	OPTION_COUNT_ALL,
+};
+
+struct option_def {
+	const char *key;
+	enum option_place place;
+	enum option_kind kind;
+	bool repeats;       /* may stand more than once */
+	double least, most; /* counts and seconds */
+	const char *preset; /* the default as it would be written; NULL: none */
+	const char *help;   /* one line */
+};
+extern const struct option_def option_table[OPTION_COUNT_ALL];
+
+/* The option of that key, -1 if there is none. */
+int option_find(enum option_place place, const char *key);
+/* The nearest known key of the place, NULL if none is near. */
+const char *option_nearest(enum option_place place, const char *key);
+
+/* One key of a block as it was read. */
+struct option_value {
+	const struct rio_node *node; /* NULL: absent */
+	bool given;       /* present and valid; if not, number is the default */
+	const char *text; /* "" if not given */
+	double number;    /* counts, seconds, flags (0, 1), types, IO (1: output) */
+};
+
+/*
+ * Check the keys of a block against the table and put the values into values, which has
+ * OPTION_COUNT_ALL entries: unknown keys warn; keys that stand twice and values that cannot be
+ * are errors.
+ */
+void options_read(const struct rio_node *block, enum option_place place,
+                  struct option_value *values, struct config_report *report);
+
+#endif

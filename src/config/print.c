@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT */
+#include "options.h"
+#include "rio_write.h"
+
+#include "../signal/value.h"
+
+#include <stdarg.h>
+
+static void put_text(FILE *out, int indent, enum option option, const char *text)
+{
+	const char *key = option_table[option].key;
+	char *quoted = rio_quote(text, "\n");
+
+	fprintf(out, "%*s%-*s %s\n", indent, "", RIO_KEY_WIDTH - 1, key, quoted ? quoted : "\"\"");
+	rio_quote_free(quoted);
+}
+
+static void put_word(FILE *out, int indent, enum option option, const char *format, ...)
+	__attribute__((format(printf, 4, 5)));
+static void put_word(FILE *out, int indent, enum option option, const char *format, ...)
+{
+	va_list args;
+
+	fprintf(out, "%*s%-*s ", indent, "", RIO_KEY_WIDTH - 1, option_table[option].key);
+	va_start(args, format);
+	vfprintf(out, format, args);
+	va_end(args);
+	fputc('\n', out);
+}
+
+static void put_flag(FILE *out, int indent, enum option option, bool flag)
+{
+	put_word(out, indent, option, "%s", flag ? "on" : "off");
+}
+
+static void put_seconds(FILE *out, int indent, enum option option, int64_t ns)
+{
+	char text[VALUE_TEXT_MAX];
+
+	value_to_text(OWS_DOUBLE, value_of_double((double)ns / 1e9), text);
+	put_word(out, indent, option, "%s", text);
+}
+
+static void put_targets(FILE *out, const struct config *config)
+{
+	static const char *const relations[] = {
+		[CONFIG_FIRST] = "",
+		[CONFIG_COMMA] = ", ",
+		[CONFIG_BAR] = " | ",
+	};
+
+	fprintf(out, "  %-*s \"", RIO_KEY_WIDTH - 1, option_table[OPT_TARGET_NAME].key);
+	for (unsigned i = 0; i < config->target_count; i++) {
+		fputs(relations[config->targets[i].relation], out);
+		for (const char *p = config->targets[i].text; *p; p++) {
+			if (*p == '"' || *p == '\\')
+				fputc('\\', out);
+			fputc(*p, out);
+		}
+	}
+	fputs("\"\n", out);
+}
+
+static void put_item(FILE *out, const struct config_item *item)
+{
+	fprintf(out, "  %s {\n", option_table[OPT_ITEM].key);
+	put_text(out, 4, OPT_NAME, item->name);
+	put_text(out, 4, OPT_PATH, item->path);
+	put_word(out, 4, OPT_TYPE, "%s", value_type_name(item->type));
+	put_word(out, 4, OPT_IO, "%s", item->output ? "output" : "input");
+	put_flag(out, 4, OPT_READABLE, item->readable);
+	put_flag(out, 4, OPT_WRITABLE, item->writable);
+	put_flag(out, 4, OPT_UNCACHED, item->fresh);
+	put_text(out, 4, OPT_INIT_VALUE, item->init_text);
+	if (item->has_safe)
+		put_text(out, 4, OPT_SAFE_VALUE, item->safe_text);
+	put_word(out, 4, OPT_PER_FACTOR, "%u", (unsigned)item->per_factor);
+	put_seconds(out, 4, OPT_STALE_AFTER, item->stale_after_ns);
+	put_flag(out, 4, OPT_ALARM, item->alarm);
+	if (item->latch_alarm)
+		put_text(out, 4, OPT_LATCH_ALARM, item->latch_alarm);
+	if (item->por_alarm)
+		put_text(out, 4, OPT_POR_ALARM, item->por_alarm);
+	if (item->set_alarm)
+		put_text(out, 4, OPT_SET_ALARM, item->set_alarm);
+	if (item->reset_latch)
+		put_text(out, 4, OPT_RESET_LATCH, item->reset_latch);
+	fputs("  }\n", out);
+}
+
+void config_print(const struct config *config, FILE *out)
+{
+	fputs("OwsDrv {\n", out);
+	put_word(out, 2, OPT_VERSION, "%s", option_table[OPT_VERSION].preset);
+	put_targets(out, config);
+	put_word(out, 2, OPT_MAX_CONS_ALARMS, "%u", config->max_cons_alarms);
+	put_word(out, 2, OPT_MAX_RETRIES, "%u", config->max_retries);
+	put_seconds(out, 2, OPT_TIMEOUT, config->timeout_ns);
+	put_seconds(out, 2, OPT_PERIOD, config->period_ns);
+	put_seconds(out, 2, OPT_ALARM_PERIOD, config->alarm_period_ns);
+	put_word(out, 2, OPT_ITEM_COUNT, "%u", config->item_count);
+	for (unsigned i = 0; i < config->item_count; i++)
+		put_item(out, &config->items[i]);
+	fputs("}\n", out);
+}

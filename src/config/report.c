@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+#include "report.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+#define MESSAGE_MAX 512
+
+/* Values of the file are quoted in messages: nothing in them may steer a terminal. */
+static void make_printable(char *text)
+{
+	for (unsigned char *p = (unsigned char *)text; *p; p++)
+		if (*p < ' ' || *p == 0x7f)
+			*p = '?';
+}
+
+static void put(struct config_report *report, struct place place, bool is_error,
+                const char *format, va_list args) __attribute__((format(printf, 4, 0)));
+static void put(struct config_report *report, struct place place, bool is_error,
+                const char *format, va_list args)
+{
+	unsigned *count = is_error ? &report->errors : &report->warnings;
+	const char *kind = is_error ? "error" : "warning";
+	char message[MESSAGE_MAX];
+	int n = 0;
+
+	if (++*count > REPORT_MAX + 1 || !report->line)
+		return;
+	if (place.file && place.line)
+		n = snprintf(message, sizeof(message), "%.200s:%d:%d: ", place.file, place.line,
+		             place.column);
+	else if (place.file)
+		n = snprintf(message, sizeof(message), "%.200s: ", place.file);
+	n += snprintf(message + n, sizeof(message) - (size_t)n, "%s: ", kind);
+	if (*count > REPORT_MAX)
+		snprintf(message + n, sizeof(message) - (size_t)n,
+		         "more than %d %ss, the rest is not shown", REPORT_MAX, kind);
+	else
+		vsnprintf(message + n, sizeof(message) - (size_t)n, format, args);
+	make_printable(message);
+	report->line(report->ctx, is_error, message);
+}
+
+void report_error(struct config_report *report, struct place place, const char *format, ...)
+{
+	va_list args;
+
+	va_start(args, format);
+	put(report, place, true, format, args);
+	va_end(args);
+}
+
+void report_warning(struct config_report *report, struct place place, const char *format, ...)
+{
+	va_list args;
+
+	va_start(args, format);
+	put(report, place, false, format, args);
+	va_end(args);
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What is wrong with a file, said as "FILE:LINE:COLUMN: error: TEXT". The first 50 errors and the
+ * first 50 warnings are passed on, all are counted.
+ */
+#ifndef CONFIG_REPORT_H
+#define CONFIG_REPORT_H
+
+#include "config.h"
+
+#define REPORT_MAX 50
+
+struct place {
+	const char *file; /* NULL: the command line */
+	int line, column; /* from 1; column counts characters; line 0: the file as a whole */
+};
+
+void report_error(struct config_report *report, struct place place, const char *format, ...)
+	__attribute__((format(printf, 3, 4)));
+void report_warning(struct config_report *report, struct place place, const char *format, ...)
+	__attribute__((format(printf, 3, 4)));
+
+#endif

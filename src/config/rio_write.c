@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: MIT */
+#include "rio_write.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A text that grows; text NULL: no memory. */
+struct grow {
+	char *text;
+	size_t len, room;
+};
+
+static void grow_add(struct grow *grow, const char *text, size_t len)
+{
+	char *more;
+
+	if (!grow->text)
+		return;
+	if (grow->room - grow->len <= len) {
+		grow->room = (grow->len + len + 1) * 2;
+		more = realloc(grow->text, grow->room);
+		if (!more)
+			free(grow->text);
+		grow->text = more;
+		if (!more)
+			return;
+	}
+	memcpy(grow->text + grow->len, text, len);
+	grow->len += len;
+	grow->text[grow->len] = '\0';
+}
+
+static struct grow grow_make(void)
+{
+	return (struct grow){.text = calloc(1, 64), .room = 64};
+}
+
+char *rio_quote(const char *text, const char *line_end)
+{
+	struct grow out = grow_make();
+	size_t in_line = 0;
+
+	grow_add(&out, "\"", 1);
+	for (const char *p = text; *p; p++) {
+		bool begins_character = ((unsigned char)*p & 0xc0) != 0x80;
+
+		if (in_line >= RIO_WRAP && begins_character) {
+			grow_add(&out, "\"", 1);
+			grow_add(&out, line_end, strlen(line_end));
+			grow_add(&out, "\"", 1);
+			in_line = 0;
+		}
+		if (*p == '"' || *p == '\\')
+			grow_add(&out, "\\", 1);
+		grow_add(&out, p, 1);
+		in_line++;
+	}
+	grow_add(&out, "\"", 1);
+	return out.text;
+}
+
+void rio_quote_free(char *quoted)
+{
+	free(quoted);
+}
+
+int rio_splice(struct rio **rio, size_t begin, size_t end, const char *text)
+{
+	struct config_report silent = {0};
+	struct grow out = grow_make();
+	struct rio *made;
+	int err;
+
+	grow_add(&out, (*rio)->text, begin);
+	grow_add(&out, text, strlen(text));
+	grow_add(&out, (*rio)->text + end, (*rio)->len - end);
+	if (!out.text)
+		return -ENOMEM;
+	err = rio_parse((*rio)->root.at.file, out.text, out.len, &silent, &made);
+	free(out.text);
+	if (err)
+		return err;
+	rio_free(*rio);
+	*rio = made;
+	return 0;
+}
+
+static bool is_blank(char c)
+{
+	return c == ' ' || c == '\t' || c == '\r';
+}
+
+/* First byte of the line of offset. */
+static size_t line_begin(const struct rio *rio, size_t offset)
+{
+	while (offset && rio->text[offset - 1] != '\n')
+		offset--;
+	return offset;
+}
+
+/* The line's "\n", or the end of the text. */
+static size_t line_end_at(const struct rio *rio, size_t offset)
+{
+	while (offset < rio->len && rio->text[offset] != '\n')
+		offset++;
+	return offset;
+}
+
+static bool blank_between(const struct rio *rio, size_t begin, size_t end)
+{
+	while (begin < end && is_blank(rio->text[begin]))
+		begin++;
+	return begin == end;
+}
+
+/* Does the node begin its line? Then new ones get lines of their own. */
+static bool begins_line(const struct rio *rio, const struct rio_node *node)
+{
+	return blank_between(rio, line_begin(rio, node->begin), node->begin);
+}
+
+/* Behind the node and what stands behind it in its line: blanks or a comment, if nothing else. */
+static size_t behind_line(const struct rio *rio, const struct rio_node *node)
+{
+	size_t end = line_end_at(rio, node->end), p = node->end;
+
+	if (end > p && rio->text[end - 1] == '\r')
+		end--;
+	while (p < end && is_blank(rio->text[p]))
+		p++;
+	return p == end || rio->text[p] == '#' ? end : node->end;
+}
+
+static void add_indented(struct grow *out, const struct rio *rio, const char *indent,
+                         size_t indent_len, const char *lines)
+{
+	while (*lines) {
+		size_t len = strcspn(lines, "\n");
+
+		grow_add(out, rio->line_end, strlen(rio->line_end));
+		/* the rest of a wrapped string has no indentation */
+		if (*lines != '"')
+			grow_add(out, indent, indent_len);
+		grow_add(out, lines, len && lines[len - 1] == '\r' ? len - 1 : len);
+		lines += len + (lines[len] == '\n');
+	}
+}
+
+int rio_add(struct rio **rio, struct rio_node *block, const char *lines)
+{
+	const struct rio *old = *rio;
+	const struct rio_node *like = block->last ? block->last : block;
+	size_t begin = line_begin(old, like->begin), at;
+	struct grow out = grow_make();
+	int err;
+
+	if (block->last && !begins_line(old, block->last)) {
+		at = block->last->end;
+		grow_add(&out, " ", 1);
+		grow_add(&out, lines, strlen(lines));
+	} else {
+		struct grow indent = grow_make();
+
+		at = block->last ? behind_line(old, block->last) : block->value_begin;
+		if (blank_between(old, begin, like->begin))
+			grow_add(&indent, old->text + begin, like->begin - begin);
+		if (!block->last)
+			grow_add(&indent, "  ", 2);
+		if (indent.text)
+			add_indented(&out, old, indent.text, indent.len, lines);
+		if (!indent.text) {
+			free(out.text);
+			out.text = NULL;
+		}
+		/* a "}" that stood behind it in the same line goes to one of its own */
+		if (out.text && at < old->len && line_end_at(old, at) > block->value_end &&
+		    at <= block->value_end) {
+			grow_add(&out, old->line_end, strlen(old->line_end));
+			if (!block->last && indent.len >= 2)
+				grow_add(&out, indent.text, indent.len - 2);
+		}
+		free(indent.text);
+	}
+	err = out.text ? rio_splice(rio, at, at, out.text) : -ENOMEM;
+	free(out.text);
+	return err;
+}
+
+int rio_set(struct rio **rio, struct rio_node *block, const char *key, const char *value)
+{
+	const struct rio_node *node = rio_child(block, key);
+	struct grow line;
+	char padded[RIO_KEY_MAX + 2];
+	int err;
+
+	if (node)
+		return rio_splice(rio, node->value_begin, node->end, value);
+	line = grow_make();
+	snprintf(padded, sizeof(padded), "%-*s ", RIO_KEY_WIDTH - 1, key);
+	grow_add(&line, padded, strlen(padded));
+	grow_add(&line, value, strlen(value));
+	err = line.text ? rio_add(rio, block, line.text) : -ENOMEM;
+	free(line.text);
+	return err;
+}
+
+int rio_remove(struct rio **rio, struct rio_node *node)
+{
+	size_t begin = node->begin, end = node->end, line = line_begin(*rio, begin),
+	       rest = line_end_at(*rio, end);
+
+	if (blank_between(*rio, line, begin) && blank_between(*rio, end, rest)) {
+		begin = line;
+		end = rest + (rest < (*rio)->len);
+	} else {
+		while (begin > line && is_blank((*rio)->text[begin - 1]) && begin - 1 > line)
+			begin--;
+	}
+	return rio_splice(rio, begin, end, "");
+}

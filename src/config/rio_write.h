@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+/* Printing values and changing a document; what is not changed keeps every byte. */
+#ifndef CONFIG_RIO_WRITE_H
+#define CONFIG_RIO_WRITE_H
+
+#include "rio.h"
+
+#define RIO_KEY_WIDTH 24 /* REXYGEN puts values in this column behind the key's first letter */
+#define RIO_WRAP      50 /* a longer string goes on in a new one at the start of the next line */
+
+/* text as a quoted string, wrapped if it is long; NULL: no memory. Free with rio_quote_free(). */
+char *rio_quote(const char *text, const char *line_end);
+void rio_quote_free(char *quoted);
+
+/*
+ * Changes work on the text: they return a new document in *rio, the old one and all its nodes are
+ * gone. 0, -ENOMEM, or -EFBIG (the document is then the old one).
+ */
+/* Replace the bytes begin to end by text. */
+int rio_splice(struct rio **rio, size_t begin, size_t end, const char *text);
+/* Set or add a key. value is put as it is: quote strings first. */
+int rio_set(struct rio **rio, struct rio_node *block, const char *key, const char *value);
+/* Add lines behind the block's last child: `Key Value`, or a whole block. Indents every line. */
+int rio_add(struct rio **rio, struct rio_node *block, const char *lines);
+/* Take a node out, with its lines if nothing else stands on them. */
+int rio_remove(struct rio **rio, struct rio_node *node);
+
+#endif

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: MIT */
+#include "build.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#define DEFAULT_TARGET "localhost:4304"
+#define DEFAULT_PORT   "4304"
+#define TARGET_MAX     255
+
+/* Schemes and bare words that are no host; of owserver the scheme may be left out. */
+static const char *const schemes[] = {"i2c", "w1", "sim", "gpio", "null", "auto", NULL};
+
+static bool is_scheme(const char *text, size_t len)
+{
+	for (int i = 0; schemes[i]; i++)
+		if (strlen(schemes[i]) == len && !memcmp(schemes[i], text, len))
+			return true;
+	return false;
+}
+
+/*
+ * The one spelling by which two targets of an owserver are compared: "owserver:host:port"; others
+ * as they are.
+ */
+static void canonical(const char *text, char out[TARGET_MAX + 32])
+{
+	static const char prefix[] = "owserver:";
+	const char *colon, *host = text;
+
+	colon = strchr(text, ':');
+	if (!strncmp(text, prefix, strlen(prefix)))
+		host += strlen(prefix);
+	else if (is_scheme(text, colon ? (size_t)(colon - text) : strlen(text)) ||
+	         (strchr(text, '/') && *text != '['))
+		host = NULL;
+	if (!host) {
+		snprintf(out, TARGET_MAX + 32, "%s", text);
+		return;
+	}
+	colon = strrchr(host, ':');
+	if (*host == '[' && colon && strchr(colon, ']'))
+		colon = NULL;
+	snprintf(out, TARGET_MAX + 32, "%s%s%s", prefix, *host ? host : "localhost",
+	         colon ? "" : ":" DEFAULT_PORT);
+	for (char *p = out; *p; p++)
+		*p = (char)tolower((unsigned char)*p);
+}
+
+static bool same_target(const char *a, const char *b)
+{
+	char text_a[TARGET_MAX + 32], text_b[TARGET_MAX + 32];
+
+	canonical(a, text_a);
+	canonical(b, text_b);
+	return !strcmp(text_a, text_b);
+}
+
+static void target_add(struct build *build, const char *text, size_t len,
+                       enum config_relation relation, struct place place)
+{
+	struct config *config = &build->box->config;
+	struct config_target *target = &config->targets[config->target_count];
+
+	if (!len) {
+		report_error(build->report, place, "expected a target beside ',' or '|'");
+		return;
+	}
+	if (len > TARGET_MAX) {
+		report_error(build->report, place, "a target is longer than %d bytes", TARGET_MAX);
+		return;
+	}
+	if (config->target_count == CONFIG_TARGETS_MAX) {
+		report_error(build->report, place, "more than %d targets", CONFIG_TARGETS_MAX);
+		return;
+	}
+	target->text = build_keep(build, text, len);
+	target->relation = config->target_count ? relation : CONFIG_FIRST;
+	for (unsigned i = 0; i < config->target_count; i++)
+		if (same_target(config->targets[i].text, target->text)) {
+			report_error(build->report, place,
+			             "the target \"%s\" stands twice; the first is \"%s\"",
+			             target->text, config->targets[i].text);
+			return;
+		}
+	config->target_count++;
+}
+
+static bool is_blank(char c)
+{
+	return c == ' ' || c == '\t';
+}
+
+void targets_add(struct build *build, const char *text, struct place place)
+{
+	enum config_relation relation = CONFIG_COMMA;
+	const char *p = text;
+
+	if (!text[strspn(text, " \t")]) {
+		report_warning(build->report, place, "TargetName is empty: %s is taken",
+		               DEFAULT_TARGET);
+		p = DEFAULT_TARGET;
+	}
+	for (;;) {
+		size_t len = strcspn(p, ",|"), begin = 0, end = len;
+
+		while (begin < end && is_blank(p[begin]))
+			begin++;
+		while (end > begin && is_blank(p[end - 1]))
+			end--;
+		target_add(build, p + begin, end - begin, relation, place);
+		if (!p[len])
+			return;
+		relation = p[len] == ',' ? CONFIG_COMMA : CONFIG_BAR;
+		p += len + 1;
+	}
+}
