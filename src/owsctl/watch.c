@@ -101,23 +101,26 @@ static void say_event(struct watch *watch, enum watch_event event)
 
 static void print_change(struct watch *watch, const struct row *row, const struct when *now)
 {
-	static char value[READING_TEXT + 3];
+	const struct reading *reading = watch->reading;
 	char text[WHEN_TEXT], words[READING_WORDS];
 	struct json json;
 
+	json_open(&json, stdout);
 	if (watch->ctl->json) {
-		json_open(&json, stdout);
 		json_object(&json, NULL);
 		json_string(&json, "time", when_iso(now, now->boot, text));
 		row_json(&json, row);
-		reading_json(&json, watch->h, watch->reading, now);
+		reading_json(&json, watch->h, reading, now);
 		json_object_end(&json);
 		json_end(&json);
 		return;
 	}
-	reading_show(watch->reading, value, sizeof(value));
-	printf("%s %s %s %s\n", when_iso(now, now->boot, text), row->name, value,
-	       reading_quality(watch->reading, words));
+	printf("%s %s ", when_iso(now, now->boot, text), row->name);
+	if (reading_filled(reading) && reading->value.type == OWS_STRING)
+		json_bytes(&json, NULL, reading->text, reading->len);
+	else
+		fputs(reading_filled(reading) ? reading->text : "-", stdout);
+	printf(" %s\n", reading_quality(reading, words));
 }
 
 static void print_changes(struct watch *watch)
