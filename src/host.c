@@ -1,0 +1,371 @@
+/* SPDX-License-Identifier: MIT */
+#include "host.h"
+
+#include "hal/worker.h"
+#include "libows/ows.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#define ENGINE_STACK (128 * 1024)
+/* A bell rung without news must not spin the engine. */
+#define IDLE_RINGS 3
+#define IDLE_NS    1000000
+
+struct host {
+	const struct config *config;
+	struct log *log;
+	struct memory memory;
+	struct engine *engine;
+	struct engine_port *ports;
+	struct worker **workers;
+	unsigned worker_count;
+	unsigned *bus_counters; /* how many each worker's bus has */
+	unsigned own_counters;  /* index of the first one of the host itself */
+
+	pthread_t thread;
+	bool running;
+	uint32_t stop;
+	uint32_t *bell; /* in the command segment; replaced when that was lost */
+	int64_t renewed_ns;
+	uint64_t idle_rings, mended;
+};
+
+enum {
+	COUNTER_LOG_DROPPED,
+	COUNTER_IDLE_RINGS,
+	COUNTER_MENDED,
+	COUNTER_WORKER_STALLS,
+	HOST_COUNTERS,
+};
+static const char *const host_counters[HOST_COUNTERS] = {
+	[COUNTER_LOG_DROPPED] = "log_dropped",
+	[COUNTER_IDLE_RINGS] = "idle_rings",
+	[COUNTER_MENDED] = "mended_command_headers",
+	[COUNTER_WORKER_STALLS] = "worker_stalls",
+};
+
+static void ring(void *ctx)
+{
+	struct host *h = ctx;
+	uint32_t *bell = __atomic_load_n(&h->bell, __ATOMIC_ACQUIRE);
+
+	if (!bell)
+		return;
+	__atomic_fetch_add(bell, 1, __ATOMIC_SEQ_CST);
+	segment_wake(bell, 1);
+}
+
+static int submit(void *ctx, struct bus_req *req)
+{
+	return worker_submit(ctx, req);
+}
+
+static bool take_messages(struct host *h, int64_t now_ns)
+{
+	struct worker_message message;
+	bool any = false;
+
+	for (unsigned i = 0; i < h->worker_count; i++) {
+		/* bounded, so that one bus that talks without end does not keep the others out */
+		for (unsigned n = 0; n < 2 * BUS_MAX_DEPTH; n++) {
+			if (!worker_next(h->workers[i], &message))
+				break;
+			any = true;
+			if (message.is_event)
+				engine_event(h->engine, i, &message.event, now_ns);
+			else
+				engine_answer(h->engine, i, &message.answer, now_ns);
+		}
+	}
+	return any;
+}
+
+static void publish_counters(struct host *h)
+{
+	uint32_t index = engine_counter_count(h->worker_count);
+	uint64_t stalls = 0;
+
+	for (unsigned i = 0; i < h->worker_count; i++) {
+		size_t n;
+		const struct bus_counter *c = bus_counters(worker_bus(h->workers[i]), &n);
+
+		for (size_t k = 0; k < h->bus_counters[i]; k++)
+			image_counter(&h->memory.image, index++, c[k].value);
+		stalls += worker_stalls(h->workers[i]);
+	}
+	index = h->own_counters;
+	image_counter(&h->memory.image, index + COUNTER_LOG_DROPPED, log_dropped(h->log));
+	image_counter(&h->memory.image, index + COUNTER_IDLE_RINGS, h->idle_rings);
+	image_counter(&h->memory.image, index + COUNTER_MENDED, h->mended);
+	image_counter(&h->memory.image, index + COUNTER_WORKER_STALLS, stalls);
+}
+
+static void renew_commands(struct host *h, int64_t now_ns)
+{
+	int err;
+
+	if (now_ns - h->renewed_ns < 1000000000)
+		return;
+	h->renewed_ns = now_ns;
+	err = memory_renew_commands(&h->memory);
+	if (err) {
+		log_err(h->log, "the command segment was taken away and cannot be made again: %s",
+		        strerror(-err));
+		return;
+	}
+	log_warning(h->log, "a program took the command segment away: made again, empty");
+	engine_take_commands(h->engine, &h->memory.commands);
+	__atomic_store_n(&h->bell, commands_bell(&h->memory.commands), __ATOMIC_RELEASE);
+}
+
+static void sleep_until(struct host *h, uint32_t seen, int64_t until_ns)
+{
+	int64_t now_ns = ows_now();
+
+	if (until_ns <= now_ns)
+		return;
+	commands_awake(&h->memory.commands, false);
+	__atomic_thread_fence(__ATOMIC_SEQ_CST);
+	segment_wait(h->bell, seen, until_ns - now_ns);
+	commands_awake(&h->memory.commands, true);
+}
+
+static void *engine_main(void *ctx)
+{
+	struct host *h = ctx;
+	int64_t counted_ns = 0;
+	unsigned idle = 0;
+
+	while (!__atomic_load_n(&h->stop, __ATOMIC_ACQUIRE)) {
+		uint32_t seen = __atomic_load_n(h->bell, __ATOMIC_ACQUIRE);
+		int64_t now_ns = ows_now(), next_ns;
+		bool busy = take_messages(h, now_ns);
+
+		next_ns = engine_step(h->engine, now_ns);
+		if (now_ns - counted_ns >= h->config->period_ns) {
+			counted_ns = now_ns;
+			h->mended += commands_mend(&h->memory.commands, false);
+			publish_counters(h);
+			busy = true;
+		}
+		if (engine_published(h->engine)) {
+			busy = true;
+			image_news(&h->memory.image);
+			segment_wake(&h->memory.image.header->news, INT_MAX);
+		}
+		if (segment_lost(&h->memory.command_segment))
+			renew_commands(h, now_ns);
+		idle = busy ? 0 : idle + 1;
+		if (idle > IDLE_RINGS) {
+			static const uint32_t nobody = 0;
+
+			h->idle_rings++;
+			segment_wait(&nobody, 0, IDLE_NS);
+		}
+		sleep_until(h, seen, next_ns);
+	}
+	return NULL;
+}
+
+static int create_workers(struct host *h, char *why, size_t why_size)
+{
+	int err = 0;
+
+	h->workers = calloc(h->config->target_count, sizeof(*h->workers));
+	h->ports = calloc(h->config->target_count, sizeof(*h->ports));
+	h->bus_counters = calloc(h->config->target_count, sizeof(*h->bus_counters));
+	if (!h->workers || !h->ports || !h->bus_counters)
+		return -ENOMEM;
+	for (unsigned i = 0; i < h->config->target_count && !err; i++) {
+		const char *target = h->config->targets[i].text;
+		char reason[256] = "";
+		size_t n = 0;
+
+		err = worker_create(target, "owsd-bus", ring, h, &h->workers[i], reason,
+		                    sizeof(reason));
+		if (err) {
+			snprintf(why, why_size, "target %s: %s", target,
+			         *reason ? reason : strerror(-err));
+			break;
+		}
+		h->worker_count++;
+		bus_counters(worker_bus(h->workers[i]), &n);
+		h->bus_counters[i] = (unsigned)n;
+		h->ports[i] = (struct engine_port){
+			.target = target,
+			.depth = bus_depth(worker_bus(h->workers[i])),
+			.submit = submit,
+			.ctx = h->workers[i],
+		};
+	}
+	return err;
+}
+
+/* Engine's counters, then each bus's, then the host's own. */
+static int make_memory(struct host *h, const char *instance, char *why, size_t why_size)
+{
+	unsigned count = engine_counter_count(h->worker_count);
+	struct image_counter *plan;
+	int err;
+
+	h->own_counters = count;
+	for (unsigned i = 0; i < h->worker_count; i++)
+		h->own_counters += h->bus_counters[i];
+	plan = calloc(h->own_counters + HOST_COUNTERS, sizeof(*plan));
+	if (!plan)
+		return -ENOMEM;
+	engine_counter_plan(h->worker_count, plan);
+	for (unsigned i = 0; i < h->worker_count; i++) {
+		size_t n;
+		const struct bus_counter *c = bus_counters(worker_bus(h->workers[i]), &n);
+
+		for (size_t k = 0; k < h->bus_counters[i]; k++)
+			plan[count++] = (struct image_counter){ c[k].name, i };
+	}
+	for (unsigned i = 0; i < HOST_COUNTERS; i++)
+		plan[count++] = (struct image_counter){ host_counters[i], UINT32_MAX };
+	err = memory_make(&h->memory, instance, h->config, plan, count, h->log, why, why_size);
+	free(plan);
+	return err;
+}
+
+static int start_thread(struct host *h, int rt_priority, char *why, size_t why_size)
+{
+	struct sched_param param = { .sched_priority = rt_priority };
+	pthread_attr_t attr;
+	sigset_t all, before;
+	int err;
+
+	pthread_attr_init(&attr);
+	pthread_attr_setstacksize(&attr, ENGINE_STACK);
+	if (rt_priority) {
+		pthread_attr_setinheritsched(&attr, PTHREAD_EXPLICIT_SCHED);
+		pthread_attr_setschedpolicy(&attr, SCHED_FIFO);
+		pthread_attr_setschedparam(&attr, &param);
+		if (mlockall(MCL_CURRENT | MCL_FUTURE))
+			log_warning(h->log, "--rt: memory cannot be locked: %s", strerror(errno));
+	}
+	/* a synchronous SIGBUS is the guard's and cannot be held back */
+	sigfillset(&all);
+	sigdelset(&all, SIGBUS);
+	pthread_sigmask(SIG_SETMASK, &all, &before);
+	err = pthread_create(&h->thread, &attr, engine_main, h);
+	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	pthread_attr_destroy(&attr);
+	if (err) {
+		snprintf(why, why_size, "cannot start the engine's thread: %s%s", strerror(err),
+		         err == EPERM && rt_priority
+		                 ? " (--rt needs CAP_SYS_NICE or a limit RLIMIT_RTPRIO)"
+		                 : "");
+		return -err;
+	}
+	h->running = true;
+	pthread_setname_np(h->thread, "owsd-engine");
+	return 0;
+}
+
+static void free_host(struct host *h)
+{
+	engine_destroy(h->engine);
+	for (unsigned i = 0; i < h->worker_count; i++)
+		worker_destroy(h->workers[i]);
+	memory_end(&h->memory);
+	free(h->workers);
+	free(h->ports);
+	free(h->bus_counters);
+	free(h);
+}
+
+int host_start(const struct host_setup *setup, struct host **host, char *why, size_t why_size)
+{
+	struct engine_setup engine;
+	struct host *h = calloc(1, sizeof(*h));
+	int err;
+
+	snprintf(why, why_size, "%s", strerror(ENOMEM));
+	if (!h)
+		return -ENOMEM;
+	h->config = setup->config;
+	h->log = setup->log;
+	h->memory.image_segment.fd = h->memory.command_segment.fd = -1;
+	err = create_workers(h, why, why_size);
+	if (!err)
+		err = make_memory(h, setup->instance, why, why_size);
+	if (err)
+		goto fail;
+	engine = (struct engine_setup){
+		.config = h->config,
+		.ports = h->ports,
+		.port_count = h->worker_count,
+		.image = &h->memory.image,
+		.commands = &h->memory.commands,
+		.log = h->log,
+		.start_ns = h->memory.start_ns,
+	};
+	err = engine_create(&engine, &h->engine);
+	if (err)
+		goto fail;
+	err = memory_show(&h->memory, h->log);
+	if (err) {
+		snprintf(why, why_size, "cannot put the shared memory in place: %s",
+		         strerror(-err));
+		goto fail;
+	}
+	h->bell = commands_bell(&h->memory.commands);
+	err = start_thread(h, setup->rt_priority, why, why_size);
+	for (unsigned i = 0; !err && i < h->worker_count; i++) {
+		err = worker_start(h->workers[i]);
+		if (err) {
+			snprintf(why, why_size, "cannot start a worker: %s", strerror(-err));
+			host_stop(h, 1000000000);
+			return err;
+		}
+	}
+	if (err)
+		goto fail;
+	*host = h;
+	return 0;
+fail:
+	free_host(h);
+	return err;
+}
+
+int64_t host_beat(const struct host *host)
+{
+	const struct ows_record *r = &host->memory.image.records[0];
+	uint32_t seq = __atomic_load_n(&r->seq, __ATOMIC_ACQUIRE);
+
+	return r->slot[(seq >> 1) & 1].sample.measured_ns;
+}
+
+unsigned host_signals(const struct host *host)
+{
+	return host->config->item_count;
+}
+
+bool host_stop(struct host *h, int64_t timeout_ns)
+{
+	bool stuck = false;
+
+	__atomic_store_n(&h->stop, 1, __ATOMIC_RELEASE);
+	if (h->running) {
+		ring(h);
+		pthread_join(h->thread, NULL);
+	}
+	for (unsigned i = 0; i < h->worker_count; i++)
+		stuck |= worker_stop(h->workers[i], timeout_ns) != 0;
+	if (stuck) {
+		memory_end(&h->memory);
+		return false;
+	}
+	free_host(h);
+	return true;
+}

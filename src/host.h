@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The host: the engine's thread, the workers of its buses, and the one word that wakes it. The
+ * thread has no descriptor, sleeps on a futex and never blocks elsewhere.
+ */
+#ifndef HOST_H
+#define HOST_H
+
+#include "engine/engine.h"
+#include "memory.h"
+
+struct host;
+
+struct host_setup {
+	const struct config *config;
+	const char *instance;
+	struct log *log;
+	int rt_priority; /* 0: ordinary scheduling */
+};
+
+/*
+ * Create buses, shared memory and engine; start the threads. Returns 0 or a negative errno, the
+ * reason then stands in why.
+ */
+int host_start(const struct host_setup *setup, struct host **host, char *why, size_t why_size);
+
+/* Time of the engine's last heartbeat, ns of CLOCK_BOOTTIME. Any thread. */
+int64_t host_beat(const struct host *host);
+unsigned host_signals(const struct host *host);
+
+/*
+ * End in order: engine first, then the workers, at most timeout_ns each. Returns true when all
+ * threads ended and everything was freed; false when a worker is stuck in the kernel: all that
+ * others could wait for has been let go of, and the process has to _exit().
+ */
+bool host_stop(struct host *host, int64_t timeout_ns);
+
+#endif

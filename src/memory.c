@@ -1,0 +1,244 @@
+/* SPDX-License-Identifier: MIT */
+#include "memory.h"
+
+#include "engine/table.h"
+#include "libows/ows.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <time.h>
+#include <unistd.h>
+
+static int64_t wall_ns(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_REALTIME, &t);
+	return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+static uint32_t random_id(void)
+{
+	uint32_t id = 0;
+
+	if (getrandom(&id, sizeof(id), GRND_NONBLOCK) != (ssize_t)sizeof(id))
+		id = (uint32_t)wall_ns() ^ (uint32_t)getpid();
+	return id | 1;
+}
+
+/* The image of the owsd before, if there is one that can be told to retire. */
+static bool open_image_before(const char *instance, struct segment *before)
+{
+	const struct ows_image_header *h;
+
+	if (segment_open_old(instance, SEGMENT_IMAGE, before))
+		return false;
+	h = (const void *)before->base;
+	if (before->size >= sizeof(*h) && h->magic == OWS_IMAGE_MAGIC)
+		return true;
+	segment_close(before);
+	return false;
+}
+
+static int make_image(struct memory *m, const struct image_counter *counters,
+                      uint32_t counter_count)
+{
+	const struct config *config = m->config;
+	struct image_signal *signals = calloc((size_t)config->item_count + 1, sizeof(*signals));
+	const char **targets = calloc((size_t)config->target_count + 1, sizeof(*targets));
+	struct image_plan plan = {
+		.signals = signals,
+		.signal_count = config->item_count,
+		.targets = targets,
+		.target_count = config->target_count,
+		.counters = counters,
+		.counter_count = counter_count,
+		.generation = m->generation,
+		.start_id = m->start_id,
+		.pid = getpid(),
+		.start_ns = m->start_ns,
+		.start_wall_ns = wall_ns(),
+		.period_ns = config->period_ns,
+	};
+	size_t size;
+	int err = -ENOMEM;
+
+	if (signals && targets) {
+		for (unsigned i = 0; i < config->item_count; i++)
+			signal_table_image(&config->items[i], &signals[i]);
+		for (unsigned i = 0; i < config->target_count; i++)
+			targets[i] = config->targets[i].text;
+		size = image_size(&plan);
+		err = size ? segment_create(m->instance, SEGMENT_IMAGE, size, &m->image_segment)
+		           : -EFBIG;
+	}
+	if (!err)
+		image_build(&plan, m->image_segment.base, &m->image);
+	free(signals);
+	free(targets);
+	return err;
+}
+
+static int make_commands(struct memory *m)
+{
+	const struct config *config = m->config;
+	struct command_signal *signals = calloc((size_t)config->item_count + 1, sizeof(*signals));
+	struct command_plan plan = {
+		.signals = signals,
+		.signal_count = config->item_count,
+		.text_cap = TABLE_TEXT_CAP,
+		.generation = m->generation,
+		.start_id = m->start_id,
+		.pid = getpid(),
+	};
+	int err;
+
+	if (!signals)
+		return -ENOMEM;
+	for (unsigned i = 0; i < config->item_count; i++)
+		signals[i] = (struct command_signal){ .name = config->items[i].name,
+			                              .path = config->items[i].path,
+			                              .type = (uint8_t)config->items[i].type };
+	err = segment_create(m->instance, SEGMENT_COMMAND, commands_size(&plan),
+	                     &m->command_segment);
+	if (!err)
+		err = segment_guard(&m->command_segment);
+	if (!err)
+		err = commands_build(&plan, m->command_segment.base, &m->commands);
+	free(signals);
+	return err;
+}
+
+/* From the state RETIRED on a consumer's set fails there, so nothing is lost between the two. */
+static void carry(struct memory *m, struct log *log)
+{
+	struct segment before;
+	int carried, err;
+
+	err = segment_open_old(m->instance, SEGMENT_COMMAND, &before);
+	if (err) {
+		if (err != -ENOENT)
+			log_warning(log, "what was commanded before is not taken over: %s",
+			            strerror(-err));
+		return;
+	}
+	if (segment_guard(&before) == 0) {
+		commands_retire(before.base, before.size);
+		carried = commands_carry(&m->commands, before.base, before.size, true);
+		if (carried < 0)
+			log_warning(log, "what was commanded before is not taken over: the old "
+			                 "command segment is damaged");
+		else if (carried > 0)
+			log_info(log, "%d commanded values taken over", carried);
+	}
+	segment_close(&before);
+}
+
+static const char *hint(int err)
+{
+	switch (-err) {
+	case ENOSPC:
+		return ": /dev/shm is full";
+	case EPERM:
+		return ": a file of another user is in the way in /dev/shm";
+	default:
+		return "";
+	}
+}
+
+int memory_make(struct memory *m, const char *instance, const struct config *config,
+                const struct image_counter *counters, uint32_t counter_count, struct log *log,
+                char *why, size_t why_size)
+{
+	struct segment before;
+	int err;
+
+	*m = (struct memory){ .instance = instance, .config = config, .generation = 1 };
+	m->image_segment.fd = m->command_segment.fd = -1;
+	m->start_id = random_id();
+	m->start_ns = ows_now();
+	if (open_image_before(instance, &before)) {
+		m->generation = ((struct ows_image_header *)(void *)before.base)->generation + 1;
+		segment_close(&before);
+	}
+	err = make_image(m, counters, counter_count);
+	if (!err)
+		err = make_commands(m);
+	if (err) {
+		snprintf(why, why_size, "cannot make the shared memory: %s%s", strerror(-err),
+		         hint(err));
+		segment_close(&m->image_segment);
+		segment_close(&m->command_segment);
+		return err;
+	}
+	carry(m, log);
+	return 0;
+}
+
+int memory_show(struct memory *m, struct log *log)
+{
+	struct segment before;
+	bool had_before = open_image_before(m->instance, &before);
+	int err;
+
+	image_state(&m->image, OWS_STATE_LIVE);
+	commands_state(&m->commands, OWS_STATE_LIVE);
+	err = segment_show(m->instance, &m->command_segment);
+	if (!err)
+		err = segment_show(m->instance, &m->image_segment);
+	if (had_before) {
+		struct ows_image_header *h = (void *)before.base;
+		uint32_t state = __atomic_load_n(&h->state, __ATOMIC_RELAXED);
+
+		if (!err) {
+			if (state == OWS_STATE_LIVE)
+				log_notice(log, "taken over from owsd %d, which was killed",
+				           (int)h->pid);
+			__atomic_store_n(&h->state, (uint32_t)OWS_STATE_RETIRED, __ATOMIC_SEQ_CST);
+			__atomic_fetch_add(&h->news, 1, __ATOMIC_SEQ_CST);
+			segment_wake(&h->news, INT_MAX);
+		}
+		segment_close(&before);
+	}
+	return err;
+}
+
+int memory_renew_commands(struct memory *m)
+{
+	/* the old mapping is left: other threads may still ring its bell */
+	struct segment lost = m->command_segment;
+	struct commands lost_commands = m->commands;
+	int err;
+
+	segment_unguard(&m->command_segment);
+	err = make_commands(m);
+	if (err) {
+		m->command_segment = lost;
+		m->commands = lost_commands;
+		return err;
+	}
+	commands_forget(&lost_commands);
+	commands_state(&m->commands, OWS_STATE_LIVE);
+	err = segment_show(m->instance, &m->command_segment);
+	close(lost.fd);
+	return err;
+}
+
+void memory_end(struct memory *m)
+{
+	if (m->image.header) {
+		image_state(&m->image, OWS_STATE_STOPPED);
+		image_news(&m->image);
+		segment_wake(&m->image.header->news, INT_MAX);
+		commands_mend(&m->commands, true);
+		commands_state(&m->commands, OWS_STATE_STOPPED);
+		segment_remove(m->instance, SEGMENT_IMAGE);
+	}
+	segment_close(&m->image_segment);
+	segment_close(&m->command_segment);
+	commands_forget(&m->commands);
+}

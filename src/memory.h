@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The shared memory of an instance: both segments made from a configuration, what was commanded
+ * carried over from the owsd before, and the hand-over to consumers. Blocking: file-system calls.
+ */
+#ifndef MEMORY_H
+#define MEMORY_H
+
+#include "config/config.h"
+#include "log.h"
+#include "shm/commands.h"
+#include "shm/image.h"
+#include "shm/segment.h"
+
+struct memory {
+	const char *instance;
+	const struct config *config;
+	struct segment image_segment, command_segment;
+	struct image image;
+	struct commands commands;
+	uint32_t generation, start_id;
+	int64_t start_ns;
+};
+
+/*
+ * Make both segments, not yet visible to consumers; the caller holds the instance's lock and
+ * publishes the first values before memory_show(). counters: as in struct image_plan. Returns 0 or
+ * a negative errno, the reason then stands in why.
+ */
+int memory_make(struct memory *memory, const char *instance, const struct config *config,
+                const struct image_counter *counters, uint32_t counter_count, struct log *log,
+                char *why, size_t why_size);
+/* Put them in place of those of the owsd before, which are retired. 0 or a negative errno. */
+int memory_show(struct memory *memory, struct log *log);
+/*
+ * The command segment was truncated or unlinked by a consumer: make a new, empty one and show it.
+ * The old mapping stays, harmless. 0 or a negative errno.
+ */
+int memory_renew_commands(struct memory *memory);
+/* Say that owsd ends: the image's name goes, the command segment stays for the next start. */
+void memory_end(struct memory *memory);
+
+#endif

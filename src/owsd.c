@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: MIT */
+/* owsd: start-up, supervision and end. */
+#include "config/config.h"
+#include "hal/bus.h"
+#include "host.h"
+#include "libows/ows.h"
+#include "log.h"
+#include "notify.h"
+#include "shm/segment.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define DEFAULT_FILE  "/etc/owsd/owsd.rio"
+#define TARGETS_MAX   16
+#define STOP_NS       2000000000LL
+#define SUPERVISE_NS  500000000LL
+#define EXIT_RUN      1
+#define EXIT_USAGE    2
+
+struct options {
+	const char *file, *instance;
+	const char *targets[TARGETS_MAX];
+	unsigned target_count;
+	enum log_level level;
+	int rt_priority;
+	bool check;
+};
+
+static volatile sig_atomic_t stop_signal, hangup;
+static uint32_t *supervisor_word;
+
+static void on_signal(int number)
+{
+	if (number == SIGHUP)
+		hangup = 1;
+	else
+		stop_signal = number;
+	/* so that a wait that is just beginning returns at once */
+	if (supervisor_word)
+		__atomic_fetch_add(supervisor_word, 1, __ATOMIC_SEQ_CST);
+}
+
+static void usage(FILE *out)
+{
+	fputs("usage: owsd [-c FILE] [-n NAME] [-t TARGET]... [--check] [--rt PRIO] [-v] [-V] [-h]\n"
+	      "  -c, --config FILE   configuration (" DEFAULT_FILE ")\n"
+	      "  -n, --name NAME     instance: signal prefix and name of the segments (OWS)\n"
+	      "  -t, --target TARGET in place of TargetName; may be given several times\n"
+	      "      --check         print the configuration as understood, start nothing\n"
+	      "      --rt PRIO       engine thread with SCHED_FIFO priority 1 to 99\n"
+	      "  -v, --verbose       say more; twice: everything\n"
+	      "  -V, --version       version and backends\n"
+	      "  -h, --help          this text\n",
+	      out);
+}
+
+static void version(void)
+{
+	printf("owsd %s\n", OWSD_VERSION);
+	for (const struct bus_ops *const *b = bus_backends; *b; b++)
+		printf("  %-10s %s\n", (*b)->scheme, (*b)->summary);
+}
+
+/* -1: go on; else the exit status. */
+static int parse_options(int argc, char **argv, struct options *o)
+{
+	enum { OPT_CHECK = 256, OPT_RT };
+	static const struct option table[] = {
+		{ "config", required_argument, NULL, 'c' },
+		{ "name", required_argument, NULL, 'n' },
+		{ "target", required_argument, NULL, 't' },
+		{ "check", no_argument, NULL, OPT_CHECK },
+		{ "rt", required_argument, NULL, OPT_RT },
+		{ "verbose", no_argument, NULL, 'v' },
+		{ "version", no_argument, NULL, 'V' },
+		{ "help", no_argument, NULL, 'h' },
+		{ 0 },
+	};
+	char *end;
+	int c;
+
+	*o = (struct options){ .file = DEFAULT_FILE, .instance = "OWS", .level = LOG_LEVEL_NOTICE };
+	while ((c = getopt_long(argc, argv, "c:n:t:vVh", table, NULL)) != -1) {
+		switch (c) {
+		case 'c':
+			o->file = optarg;
+			break;
+		case 'n':
+			o->instance = optarg;
+			break;
+		case 't':
+			if (o->target_count == TARGETS_MAX) {
+				fprintf(stderr, "owsd: at most %d targets\n", TARGETS_MAX);
+				return EXIT_USAGE;
+			}
+			o->targets[o->target_count++] = optarg;
+			break;
+		case OPT_CHECK:
+			o->check = true;
+			break;
+		case OPT_RT:
+			o->rt_priority = (int)strtol(optarg, &end, 10);
+			if (*end || end == optarg || o->rt_priority < 1 || o->rt_priority > 99) {
+				fprintf(stderr, "owsd: --rt %s: a number from 1 to 99 expected\n",
+				        optarg);
+				return EXIT_USAGE;
+			}
+			break;
+		case 'v':
+			if (o->level < LOG_LEVEL_DEBUG)
+				o->level++;
+			break;
+		case 'V':
+			version();
+			return EXIT_SUCCESS;
+		case 'h':
+			usage(stdout);
+			return EXIT_SUCCESS;
+		default:
+			usage(stderr);
+			return EXIT_USAGE;
+		}
+	}
+	if (optind < argc) {
+		fprintf(stderr, "owsd: unexpected argument '%s' (a file is given with -c)\n",
+		        argv[optind]);
+		return EXIT_USAGE;
+	}
+	if (!segment_name_ok(o->instance)) {
+		fprintf(stderr,
+		        "owsd: instance name '%s': 1 to %d letters, digits, '-', '_', '.' expected, "
+		        "not first a dot\n",
+		        o->instance, SEGMENT_NAME_MAX);
+		return EXIT_USAGE;
+	}
+	return -1;
+}
+
+static void say(void *ctx, bool is_error, const char *message)
+{
+	(void)ctx;
+	(void)is_error;
+	fprintf(stderr, "%s\n", message);
+}
+
+static int load(const struct options *o, struct config **config)
+{
+	struct config_report report = { .line = say };
+	int err = config_load(o->file, &report, config);
+
+	if (err)
+		return err;
+	if (o->target_count)
+		err = config_set_targets(*config, o->targets, o->target_count, &report);
+	if (!err && (*config)->target_count > 1) {
+		fprintf(stderr, "owsd: %u targets given; this version serves one\n",
+		        (*config)->target_count);
+		err = -EINVAL;
+	}
+	if (!err)
+		return 0;
+	config_free(*config);
+	return err;
+}
+
+/* Does stderr go to the journal, which reads levels from "<4>" prefixes? */
+static int stderr_is_journal(void)
+{
+	const char *stream = getenv("JOURNAL_STREAM");
+	unsigned long long device, inode;
+	struct stat st;
+
+	return stream && sscanf(stream, "%llu:%llu", &device, &inode) == 2 &&
+	       fstat(STDERR_FILENO, &st) == 0 && st.st_dev == device && st.st_ino == inode;
+}
+
+static void catch_signals(void)
+{
+	struct sigaction action = { .sa_handler = on_signal };
+
+	sigemptyset(&action.sa_mask);
+	sigaction(SIGTERM, &action, NULL);
+	sigaction(SIGINT, &action, NULL);
+	sigaction(SIGHUP, &action, NULL);
+	action.sa_handler = SIG_IGN;
+	sigaction(SIGPIPE, &action, NULL);
+}
+
+/* Write the log, feed the watchdog while the engine's heart beats, until a signal ends it. */
+static void supervise(struct host *host, struct log *log, const struct notify *notify, int prefix)
+{
+	int64_t fed_ns = 0, last_beat_ns = 0, wait_ns = SUPERVISE_NS;
+
+	if (notify->watchdog_ns && notify->watchdog_ns / 4 < wait_ns)
+		wait_ns = notify->watchdog_ns / 4;
+	while (!stop_signal) {
+		uint32_t seen = __atomic_load_n(log_word(log), __ATOMIC_ACQUIRE);
+		int64_t now_ns = ows_now(), beat_ns = host_beat(host);
+
+		if (hangup) {
+			hangup = 0;
+			log_warning(log, "SIGHUP: this version does not reload; restart it");
+		}
+		if (beat_ns != last_beat_ns && now_ns - fed_ns >= notify->watchdog_ns / 4) {
+			last_beat_ns = beat_ns;
+			fed_ns = now_ns;
+			if (notify->watchdog_ns)
+				notify_send(notify, NOTIFY_WATCHDOG);
+		}
+		log_drain(log, STDERR_FILENO, prefix);
+		if (!stop_signal && !hangup)
+			segment_wait(log_word(log), seen, wait_ns);
+	}
+}
+
+static int run(const struct options *o, const struct config *config, struct log *log)
+{
+	struct host_setup setup = {
+		.config = config,
+		.instance = o->instance,
+		.log = log,
+		.rt_priority = o->rt_priority,
+	};
+	int prefix = stderr_is_journal();
+	struct notify notify;
+	struct host *host;
+	char why[512];
+	bool ended;
+
+	if (notify_open(&notify))
+		log_warning(log, "NOTIFY_SOCKET cannot be used");
+	if (host_start(&setup, &host, why, sizeof(why))) {
+		log_drain(log, STDERR_FILENO, prefix);
+		fprintf(stderr, "owsd: %s\n", why);
+		return EXIT_RUN;
+	}
+	log_notice(log, "owsd %s: instance %s, %u signals from %s, target %s", OWSD_VERSION,
+	           o->instance, config->item_count, o->file, config->targets[0].text);
+	notify_send(&notify, NOTIFY_READY);
+	notify_status(&notify, "%u signals, target %s", config->item_count,
+	              config->targets[0].text);
+	supervise(host, log, &notify, prefix);
+	log_notice(log, "owsd ends: %s", stop_signal == SIGTERM ? "SIGTERM" : "SIGINT");
+	notify_send(&notify, NOTIFY_STOPPING);
+	ended = host_stop(host, STOP_NS);
+	if (!ended)
+		log_err(log, "a bus is stuck in the kernel; owsd leaves it behind");
+	log_drain(log, STDERR_FILENO, prefix);
+	if (!ended)
+		_exit(EXIT_SUCCESS);
+	notify_close(&notify);
+	return EXIT_SUCCESS;
+}
+
+int main(int argc, char **argv)
+{
+	struct config *config;
+	struct options o;
+	struct log *log;
+	bool stolen = false;
+	pid_t owner = 0;
+	int status, lock;
+
+	status = parse_options(argc, argv, &o);
+	if (status >= 0)
+		return status;
+	if (load(&o, &config))
+		return EXIT_USAGE;
+	if (o.check) {
+		config_print(config, stdout);
+		config_free(config);
+		return fflush(stdout) || ferror(stdout) ? EXIT_RUN : EXIT_SUCCESS;
+	}
+	log = log_create(o.level);
+	if (!log)
+		return EXIT_RUN;
+	supervisor_word = log_word(log);
+	catch_signals();
+	lock = segment_lock(o.instance, &owner, &stolen);
+	if (lock == -EBUSY) {
+		fprintf(stderr,
+		        "owsd: instance %s is already served by process %d; end it or choose another "
+		        "name with -n\n",
+		        o.instance, (int)owner);
+		return EXIT_RUN;
+	}
+	if (lock < 0) {
+		fprintf(stderr, "owsd: cannot lock instance %s: %s%s\n", o.instance, strerror(-lock),
+		        lock == -EPERM ? " (a file of another user is in the way in /dev/shm)" : "");
+		return EXIT_RUN;
+	}
+	if (stolen)
+		log_warning(log, "the owsd before cannot die (stuck in the kernel): its lock is left");
+	status = run(&o, config, log);
+	close(lock);
+	config_free(config);
+	log_destroy(log);
+	return status;
+}
