@@ -67,7 +67,8 @@ MAN      := $(wildcard docs/*.[1-8])
 # Tests
 UNIT_SRC := $(wildcard tests/unit/test_*.c)
 UNIT_AID := $(filter-out $(UNIT_SRC),$(wildcard tests/unit/*.c))
-BENCH    := $(wildcard tests/bench/*.c)
+BENCH    := $(wildcard tests/bench/bench_*.c)
+BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c))
 # ---------------------------------------------------------------------------------------------
 
 CORE     := $(SIGNAL) $(CONFIG) $(SHM) $(ENGINE) $(HAL) $(LIBOWS) $(filter-out src/owsd.c,$(OWSD)) \
@@ -211,7 +212,7 @@ run:
 
 benches: all $(BENCHES)
 
-$(B)/bench/%: tests/bench/%.c $(B)/core.a
+$(B)/bench/%: tests/bench/%.c $(BENCH_AID) $(B)/core.a
 	@mkdir -p $(@D)
 	$(call show,CC)
 	$(Q)$(CC) $(ALL_CFLAGS) $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.c %.a,$^) $(LIBS)

@@ -1,0 +1,245 @@
+/* SPDX-License-Identifier: MIT */
+#include "aid.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <math.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#define FLAG_PERSIST 0x4
+#define TYPE_READ    2
+#define TYPE_DIRALL  7
+
+int64_t bench_now(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+bool bench_pin(int cpu)
+{
+	cpu_set_t set;
+
+	CPU_ZERO(&set);
+	CPU_SET((size_t)cpu, &set);
+	return sched_setaffinity(0, sizeof(set), &set) == 0;
+}
+
+int bench_cpus(void)
+{
+	return (int)sysconf(_SC_NPROCESSORS_ONLN);
+}
+
+void bench_line(const char *name, double value, const char *unit)
+{
+	printf("%s %.*f %s\n", name, fabs(value) < 100 ? 2 : 0, value, unit);
+	fflush(stdout);
+}
+
+void bench_note(const char *text)
+{
+	printf("# %s\n", text);
+	fflush(stdout);
+}
+
+static int compare(const void *a, const void *b)
+{
+	double x = *(const double *)a, y = *(const double *)b;
+
+	return (x > y) - (x < y);
+}
+
+double bench_percentile(double *values, size_t n, double p)
+{
+	size_t at = (size_t)((double)(n - 1) * p / 100.0 + 0.5);
+
+	qsort(values, n, sizeof(*values), compare);
+	return values[at];
+}
+
+int64_t bench_cpu_ns(pid_t pid)
+{
+	unsigned long user, system;
+	char path[64], line[1024], *end;
+	FILE *f;
+	size_t n;
+
+	snprintf(path, sizeof(path), "/proc/%d/stat", (int)pid);
+	f = fopen(path, "r");
+	if (!f)
+		return 0;
+	n = fread(line, 1, sizeof(line) - 1, f);
+	fclose(f);
+	line[n] = '\0';
+	end = strrchr(line, ')');
+	if (!end || sscanf(end + 2, "%*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu", &user,
+	                   &system) != 2)
+		return 0;
+	return (int64_t)(user + system) * (1000000000 / sysconf(_SC_CLK_TCK));
+}
+
+static int free_port(void)
+{
+	struct sockaddr_in a = { .sin_family = AF_INET };
+	socklen_t len = sizeof(a);
+	int fd = socket(AF_INET, SOCK_STREAM, 0), port = 0;
+
+	a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+	if (fd >= 0 && bind(fd, (void *)&a, sizeof(a)) == 0 &&
+	    getsockname(fd, (void *)&a, &len) == 0)
+		port = ntohs(a.sin_port);
+	close(fd);
+	return port;
+}
+
+int bench_socket(int port)
+{
+	struct sockaddr_in a = { .sin_family = AF_INET, .sin_port = htons((uint16_t)port) };
+	int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0), on = 1;
+
+	a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+	if (fd < 0)
+		return -1;
+	if (connect(fd, (void *)&a, sizeof(a))) {
+		close(fd);
+		return -1;
+	}
+	setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+	return fd;
+}
+
+static int ask(int fd, uint32_t type, const char *path, char *data, size_t size)
+{
+	char frame[24 + 256], answer[24];
+	uint32_t len = (uint32_t)strlen(path) + 1, word[6];
+	size_t have = 0;
+	ssize_t n;
+
+	word[0] = 0;
+	word[1] = htonl(len);
+	word[2] = htonl(type);
+	word[3] = htonl(FLAG_PERSIST | 0x100);
+	word[4] = htonl((uint32_t)size);
+	word[5] = 0;
+	memcpy(frame, word, 24);
+	memcpy(frame + 24, path, len);
+	if (send(fd, frame, 24 + len, MSG_NOSIGNAL) != (ssize_t)(24 + len))
+		return -1;
+	do {
+		if (recv(fd, answer, 24, MSG_WAITALL) != 24)
+			return -1;
+		memcpy(word, answer, 24);
+	} while ((int32_t)ntohl(word[1]) < 0);
+	if ((int32_t)ntohl(word[2]) < 0 || ntohl(word[1]) > size)
+		return -1;
+	len = ntohl(word[1]);
+	while (have < len) {
+		n = recv(fd, data + have, len - have, 0);
+		if (n <= 0)
+			return -1;
+		have += (size_t)n;
+	}
+	return (int)len;
+}
+
+int bench_read(int fd, const char *path, char *data, size_t size)
+{
+	return ask(fd, TYPE_READ, path, data, size);
+}
+
+static bool list_paths(struct bench_peer *peer)
+{
+	static char list[65536];
+	int fd = bench_socket(peer->port), n;
+	unsigned count = 0;
+	char *next = list, *entry;
+
+	if (fd < 0)
+		return false;
+	n = ask(fd, TYPE_DIRALL, "/", list, sizeof(list) - 1);
+	close(fd);
+	if (n <= 0)
+		return false;
+	list[n] = '\0';
+	while ((entry = strsep(&next, ",")) != NULL && count < peer->devices)
+		if (strncmp(entry, "/28.", 4) == 0)
+			snprintf(peer->paths[count++], 32, "%.16s/temperature", entry);
+	return count == peer->devices;
+}
+
+bool bench_peer_start(struct bench_peer *peer, unsigned devices, int cpu)
+{
+	char config[80], address[32];
+	FILE *f;
+
+	*peer = (struct bench_peer){ .devices = devices };
+	peer->paths = calloc(devices, sizeof(*peer->paths));
+	snprintf(peer->folder, sizeof(peer->folder), "/tmp/owsd-bench-XXXXXX");
+	if (!peer->paths || !mkdtemp(peer->folder))
+		return false;
+	snprintf(config, sizeof(config), "%s/owfs.conf", peer->folder);
+	peer->port = free_port();
+	snprintf(address, sizeof(address), "127.0.0.1:%d", peer->port);
+	f = fopen(config, "w");
+	if (!f)
+		return false;
+	fputs("fake = ", f);
+	for (unsigned i = 0; i < devices; i++)
+		fprintf(f, "%s28", i ? "," : "");
+	fputs("\n", f);
+	fclose(f);
+	peer->pid = fork();
+	if (peer->pid == 0) {
+		prctl(PR_SET_PDEATHSIG, SIGKILL);
+		if (cpu >= 0)
+			bench_pin(cpu);
+		execlp("owserver", "owserver", "-c", config, "-p", address, "--foreground",
+		       "--error_level", "0", (char *)NULL);
+		_exit(127);
+	}
+	for (int i = 0; i < 200; i++) {
+		int fd = bench_socket(peer->port);
+
+		if (fd >= 0) {
+			close(fd);
+			if (list_paths(peer))
+				return true;
+		}
+		if (waitpid(peer->pid, NULL, WNOHANG) == peer->pid) {
+			peer->pid = 0;
+			break;
+		}
+		usleep(20000);
+	}
+	bench_note("peer left out: the genuine owserver is not installed or did not start");
+	bench_peer_end(peer);
+	return false;
+}
+
+void bench_peer_end(struct bench_peer *peer)
+{
+	char config[80];
+
+	if (peer->pid > 0) {
+		kill(peer->pid, SIGKILL);
+		waitpid(peer->pid, NULL, 0);
+	}
+	snprintf(config, sizeof(config), "%s/owfs.conf", peer->folder);
+	unlink(config);
+	rmdir(peer->folder);
+	free(peer->paths);
+	*peer = (struct bench_peer){ 0 };
+}

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the benches share: time, placement, the line a figure is printed on, and the peer: the
+ * genuine owserver with fake thermometers, asked over a bare socket.
+ */
+#ifndef BENCH_AID_H
+#define BENCH_AID_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <sys/types.h>
+
+int64_t bench_now(void); /* ns, monotonic */
+/* Keep this thread on one CPU; false when the machine has no such CPU. */
+bool bench_pin(int cpu);
+int bench_cpus(void);
+/* "name value unit" */
+void bench_line(const char *name, double value, const char *unit);
+/* A line that is no figure: what was left out, and why. */
+void bench_note(const char *text);
+/* The p-th percentile (50: the median); sorts. */
+double bench_percentile(double *values, size_t n, double p);
+/* CPU time a process has used, ns (user and system, by the kernel's ticks). */
+int64_t bench_cpu_ns(pid_t pid);
+
+struct bench_peer {
+	pid_t pid;
+	int port;
+	unsigned devices;
+	char (*paths)[32]; /* "/28.xxx/temperature" */
+	char folder[64];
+};
+/* False: owserver is not installed or did not start; the reason was noted. */
+bool bench_peer_start(struct bench_peer *peer, unsigned devices, int cpu);
+void bench_peer_end(struct bench_peer *peer);
+
+/* A bare persistent connection: one request on its way at a time, nothing checked but the length. */
+int bench_socket(int port);
+/* Returns the length of the answer or -1. */
+int bench_read(int fd, const char *path, char *data, size_t size);
+
+#endif
