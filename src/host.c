@@ -212,28 +212,36 @@ static int create_workers(struct host *h, char *why, size_t why_size)
 /* Engine's counters, then each bus's, then the host's own. */
 static int make_memory(struct host *h, const char *instance, char *why, size_t why_size)
 {
-	unsigned count = engine_counter_count(h->worker_count);
+	unsigned count = engine_counter_count(h->worker_count), first = count;
 	struct image_counter *plan;
+	char (*names)[48];
 	int err;
 
 	h->own_counters = count;
 	for (unsigned i = 0; i < h->worker_count; i++)
 		h->own_counters += h->bus_counters[i];
 	plan = calloc(h->own_counters + HOST_COUNTERS, sizeof(*plan));
-	if (!plan)
+	names = calloc(h->own_counters - count + 1, sizeof(*names));
+	if (!plan || !names) {
+		free(plan);
+		free(names);
 		return -ENOMEM;
+	}
 	engine_counter_plan(h->worker_count, plan);
 	for (unsigned i = 0; i < h->worker_count; i++) {
 		size_t n;
 		const struct bus_counter *c = bus_counters(worker_bus(h->workers[i]), &n);
 
-		for (size_t k = 0; k < h->bus_counters[i]; k++)
-			plan[count++] = (struct image_counter){ c[k].name, i };
+		for (size_t k = 0; k < h->bus_counters[i]; k++, count++) {
+			snprintf(names[count - first], sizeof(*names), "bus_%s", c[k].name);
+			plan[count] = (struct image_counter){ names[count - first], i };
+		}
 	}
 	for (unsigned i = 0; i < HOST_COUNTERS; i++)
 		plan[count++] = (struct image_counter){ host_counters[i], UINT32_MAX };
 	err = memory_make(&h->memory, instance, h->config, plan, count, h->log, why, why_size);
 	free(plan);
+	free(names);
 	return err;
 }
 
