@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * From ows_set() in a control program to the request of an idle owsd at its owserver: a peer of our
+ * own takes the time when the write arrives, so one hop over loopback is in the figure.
+ */
+#include "aid.h"
+
+#include "src/libows/ows.h"
+
+#include <arpa/inet.h>
+#include <netinet/tcp.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#define SETS 500
+#define WRITE 3
+
+static int64_t arrived_ns;
+
+static void *serve(void *ctx)
+{
+	int listener = *(int *)ctx, on = 1;
+
+	for (;;) {
+		int fd = accept(listener, NULL, NULL);
+		uint32_t word[6];
+		char payload[512];
+
+		if (fd < 0)
+			return NULL;
+		setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+		while (recv(fd, word, sizeof(word), MSG_WAITALL) == sizeof(word)) {
+			int64_t now = bench_now();
+			uint32_t len = ntohl(word[1]), type = ntohl(word[2]);
+
+			if (len > sizeof(payload) ||
+			    (len && recv(fd, payload, len, MSG_WAITALL) != (ssize_t)len))
+				break;
+			word[1] = 0;
+			word[2] = type == 1 || type == WRITE ? 0 : htonl((uint32_t)-1);
+			if (send(fd, word, sizeof(word), MSG_NOSIGNAL) != sizeof(word))
+				break;
+			if (type == WRITE)
+				__atomic_store_n(&arrived_ns, now, __ATOMIC_RELEASE);
+		}
+		close(fd);
+	}
+}
+
+static pid_t start_owsd(const char *self, const char *folder, const char *instance, int port)
+{
+	char program[512], file[128];
+	const char *slash = strrchr(self, '/');
+	pid_t pid;
+	FILE *f;
+
+	snprintf(program, sizeof(program), "%.*s/../owsd", slash ? (int)(slash - self) : 1,
+	         slash ? self : ".");
+	snprintf(file, sizeof(file), "%s/bench.rio", folder);
+	f = fopen(file, "w");
+	if (!f)
+		return -1;
+	fprintf(f,
+	        "OwsDrv {\n  TargetName \"127.0.0.1:%d\"\n  Period 1\n  Item {\n    Name \"relay\"\n"
+	        "    Path \"/29.000029D60000/PIO.BYTE\"\n    Type long\n    IO output\n  }\n}\n",
+	        port);
+	fclose(f);
+	pid = fork();
+	if (pid == 0) {
+		prctl(PR_SET_PDEATHSIG, SIGKILL);
+		execl(program, program, "-c", file, "-n", instance, (char *)NULL);
+		_exit(127);
+	}
+	return pid;
+}
+
+int main(int argc, char **argv)
+{
+	static double us[SETS];
+	struct sockaddr_in a = { .sin_family = AF_INET };
+	socklen_t len = sizeof(a);
+	char folder[] = "/tmp/owsd-bench-XXXXXX", instance[32], path[128];
+	int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0), id = -1, done = 0;
+	struct ows *h = NULL;
+	pthread_t thread;
+	pid_t pid;
+
+	(void)argc;
+	a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+	if (bind(listener, (void *)&a, sizeof(a)) || listen(listener, 4) ||
+	    getsockname(listener, (void *)&a, &len) || !mkdtemp(folder))
+		return 1;
+	pthread_create(&thread, NULL, serve, &listener);
+	snprintf(instance, sizeof(instance), "bench-%d", (int)getpid());
+	pid = start_owsd(argv[0], folder, instance, ntohs(a.sin_port));
+	for (int i = 0; i < 200 && id < 0; i++) {
+		usleep(20000);
+		if (!h && ows_open(instance, OWS_CONTROL, &h))
+			h = NULL;
+		if (h)
+			id = ows_find(h, "relay");
+	}
+	usleep(200000);
+	for (int i = 0; id >= 0 && i < SETS; i++) {
+		int64_t begin;
+
+		usleep(1000 + (useconds_t)(i * 7919 % 9000));
+		__atomic_store_n(&arrived_ns, 0, __ATOMIC_RELEASE);
+		begin = bench_now();
+		if (ows_set_integer(h, id, i + 1, NULL))
+			break;
+		while (!__atomic_load_n(&arrived_ns, __ATOMIC_ACQUIRE) &&
+		       bench_now() - begin < 3000000000)
+			usleep(50);
+		if (!arrived_ns)
+			break;
+		us[done++] = (double)(arrived_ns - begin) / 1e3;
+	}
+	if (done == SETS) {
+		bench_line("set_to_wire", bench_percentile(us, SETS, 50), "us");
+		bench_line("set_to_wire.p99", bench_percentile(us, SETS, 99), "us");
+	} else {
+		fprintf(stderr, "set_to_wire: only %d of %d sets arrived\n", done, SETS);
+	}
+	ows_close(h);
+	kill(pid, SIGTERM);
+	waitpid(pid, NULL, 0);
+	snprintf(path, sizeof(path), "%s/bench.rio", folder);
+	unlink(path);
+	rmdir(folder);
+	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.command", instance);
+	unlink(path);
+	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.lock", instance);
+	unlink(path);
+	return done == SETS ? 0 : 1;
+}
