@@ -37,7 +37,7 @@ CPP_COMMON = -D_GNU_SOURCE -D_FILE_OFFSET_BITS=64 -I. -DOWSD_VERSION='"$(VERSION
 ALL_CFLAGS = -std=c17 $(CPP_COMMON) $(WARN) $(HARDEN) $(CFLAGS) $(EXTRA_CFLAGS)
 ALL_CXXFLAGS = -std=c++11 $(CPP_COMMON) $(CXXWARN) $(HARDEN) $(CXXFLAGS) $(EXTRA_CFLAGS)
 ALL_LDFLAGS = -pie -Wl,-z,relro,-z,now $(LDFLAGS) $(EXTRA_CFLAGS)
-LIBS     := -lm -pthread
+LIBS     := -Wl,--as-needed -lm -pthread
 
 # V=1 shows the commands, -s nothing
 V        ?= 0

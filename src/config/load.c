@@ -30,7 +30,7 @@ static void *build_take(struct build *build, size_t count, size_t size)
 
 static int64_t nanoseconds(double seconds)
 {
-	return (int64_t)llround(seconds * 1e9);
+	return (int64_t)(seconds * 1e9 + 0.5);
 }
 
 /* The one OwsDrv block of the file; NULL after having said what is there instead. */

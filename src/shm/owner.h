@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Who may own a segment that we use. Blocking: reads the user database. */
+/* Who may own a segment that we use. Blocking: reads /etc/passwd and /etc/group; one thread. */
 #ifndef SHM_OWNER_H
 #define SHM_OWNER_H
 

@@ -290,6 +290,18 @@ int value_from_text(enum ows_type type, const char *text, size_t len, int64_t *v
 	return 0;
 }
 
+/* To the nearest, half away from zero: round(), which is all we would need libm for. */
+static double rounded(double number)
+{
+	double whole, rest;
+
+	if (number <= -0x1p52 || number >= 0x1p52)
+		return number;
+	whole = (double)(int64_t)number;
+	rest = number - whole;
+	return rest >= 0.5 ? whole + 1 : rest <= -0.5 ? whole - 1 : whole;
+}
+
 int value_from_number(enum ows_type type, double number, int64_t *value, uint8_t *quality)
 {
 	int side = 0;
@@ -306,7 +318,7 @@ int value_from_number(enum ows_type type, double number, int64_t *value, uint8_t
 	} else if (type == OWS_BOOL) {
 		*value = number != 0;
 	} else {
-		number = round(number);
+		number = rounded(number);
 		/* the limit of large itself is no double: 2^63 is the first one outside */
 		if (number < (double)types[type].least) {
 			side = -1;
