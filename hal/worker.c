@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <poll.h>
 #include <pthread.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -177,6 +178,10 @@ static void take_orders(struct worker *worker)
 
 static void sleep_until(struct worker *worker, int64_t until_ns)
 {
+	/* On one CPU the engine, whom the bell woke, runs now; its next order saves a sleep. */
+	sched_yield();
+	if (ring_used(&worker->orders))
+		return;
 	__atomic_store_n(&worker->sleeping, 1, __ATOMIC_SEQ_CST);
 	if (!ring_used(&worker->orders) && !is_stopping(worker))
 		poll_once(worker, -1, 0, until_ns);

@@ -95,8 +95,9 @@ static int set_options(struct late_bus *late, const char *where, char *why, size
 		size_t len = strcspn(where, ";");
 
 		if (set_option(late, where, len)) {
-			snprintf(why, why_size, "'late:': '%.*s' is no option; there are seed, late, "
-			         "twice, never, up, down, each with =NUMBER",
+			snprintf(why, why_size,
+			         "'late:': '%.*s' is no option; there are seed, late, twice, "
+			         "never, up, down, each with =NUMBER",
 			         (int)(len > 40 ? 40 : len), where);
 			return -EINVAL;
 		}

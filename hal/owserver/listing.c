@@ -5,10 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/owserver/path.h"
+#include "hal/path.h"
 
-#define KEEP_NS    INT64_C(10000000000)
-#define ID_LEN     15
+#define KEEP_NS     INT64_C(10000000000)
 #define ADDRESS_LEN 16
 
 static const struct listing_name *known(const struct listing *listing, const char *alias,
@@ -24,21 +23,20 @@ static const struct listing_name *known(const struct listing *listing, const cha
 	return NULL;
 }
 
-/* "2867C6697351FFXX" to "28.67C6697351FF" */
-static bool id_of_address(const uint8_t *address, uint32_t len, char id[ID_LEN + 1])
+/* "2867C6697351FF68" to "28.67C6697351FF" */
+static bool id_of_address(const uint8_t *address, uint32_t len, char id[ROM_TEXT_MAX])
 {
-	if (len != ADDRESS_LEN)
+	uint8_t rom[ROM_LEN];
+
+	if (len != ADDRESS_LEN || rom_parse((const char *)address, len, rom))
 		return false;
-	memcpy(id, address, 2);
-	id[2] = '.';
-	memcpy(id + 3, address + 2, 12);
-	id[ID_LEN] = '\0';
-	return path_is_rom_name(id, ID_LEN);
+	rom_print(rom, ROM_F_I, id);
+	return true;
 }
 
 /* 0 and the id; 1 this is no alias; or what talk_exchange() says. */
 static int find_id(struct listing *listing, struct talk *talk, const char *alias, size_t len,
-                   int64_t deadline_ns, char id[ID_LEN + 1])
+                   int64_t deadline_ns, char id[ROM_TEXT_MAX])
 {
 	const struct bus_env *env = talk->connection.env;
 	const struct listing_name *name = known(listing, alias, len, env->now(env->ctx));
@@ -50,7 +48,7 @@ static int find_id(struct listing *listing, struct talk *talk, const char *alias
 	int err;
 
 	if (name) {
-		memcpy(id, name->id, ID_LEN + 1);
+		memcpy(id, name->id, sizeof(name->id));
 		return 0;
 	}
 	if (len + sizeof("//address") > sizeof(path))
@@ -65,19 +63,11 @@ static int find_id(struct listing *listing, struct talk *talk, const char *alias
 	if (len < sizeof(place->alias)) {
 		memcpy(place->alias, alias, len);
 		place->alias[len] = '\0';
-		memcpy(place->id, id, ID_LEN + 1);
+		memcpy(place->id, id, sizeof(place->id));
 		place->until_ns = env->now(env->ctx) + KEEP_NS;
 		listing->next = (listing->next + 1) % LISTING_NAMES;
 	}
 	return 0;
-}
-
-static bool is_plain(const char *entry, size_t len)
-{
-	for (size_t i = 0; i < len; i++)
-		if ((unsigned char)entry[i] < ' ' || entry[i] == 0x7f)
-			return false;
-	return len > 0;
 }
 
 static int put(struct bus_req *req, uint32_t *used, const char *text, size_t len)
@@ -92,24 +82,24 @@ static int put(struct bus_req *req, uint32_t *used, const char *text, size_t len
 static int put_entry(struct listing *listing, struct talk *talk, struct bus_req *req,
                      uint32_t *used, const char *entry, size_t len)
 {
-	struct path_part device;
-	char id[ID_LEN + 1];
+	struct path path;
+	char id[ROM_TEXT_MAX];
 	int err = 1;
 
-	if (!is_plain(entry, len))
+	if (len == 0 || path_split(entry, len, &path))
 		return 0;
-	if (path_device(entry, len, &device) && !path_is_rom_name(entry + device.at, device.len))
-		err = find_id(listing, talk, entry + device.at, device.len, req->deadline_ns, id);
+	if (path.last.len && !path.has_rom)
+		err = find_id(listing, talk, path.last.text, path.last.len, req->deadline_ns, id);
 	if (err < 0)
 		return err;
 	if (err == 0) {
-		size_t rest = device.at + device.len;
+		const char *rest = path.last.text + path.last.len;
 
-		err = put(req, used, entry, device.at);
+		err = put(req, used, entry, (size_t)(path.last.text - entry));
 		if (!err)
-			err = put(req, used, id, ID_LEN);
+			err = put(req, used, id, strlen(id));
 		if (!err)
-			err = put(req, used, entry + rest, len - rest);
+			err = put(req, used, rest, (size_t)(entry + len - rest));
 	} else {
 		err = put(req, used, entry, len);
 	}

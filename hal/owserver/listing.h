@@ -7,13 +7,14 @@
 #define HAL_OWSERVER_LISTING_H
 
 #include "hal/owserver/talk.h"
+#include "hal/path.h"
 
 #define LISTING_MAX   262144 /* 10 000 devices are 170 kB */
 #define LISTING_NAMES 32
 
 struct listing_name {
 	char alias[48];
-	char id[16];
+	char id[ROM_TEXT_MAX];
 	int64_t until_ns; /* an alias may move to another device */
 };
 

@@ -4,7 +4,7 @@
  * `host`, `host:port`, `[v6]:port`, or the same behind `owserver:`.
  *
  * Down, it connects again with back-off for ever; a connection counts as up when a NOP was
- * answered. Silence and loss take it down; a server that only was too slow (it sent keep-alives)
+ * answered and the server has said whether its devices are simulated. Silence and loss take it down; a server that only was too slow (it sent keep-alives)
  * stays up, on a new connection.
  */
 #include <errno.h>
@@ -13,9 +13,10 @@
 #include <string.h>
 
 #include "hal/owserver/listing.h"
-#include "hal/owserver/path.h"
+#include "hal/owserver/simulated.h"
 #include "hal/owserver/status.h"
 #include "hal/owserver/talk.h"
+#include "hal/path.h"
 
 #define MS          INT64_C(1000000)
 #define BACKOFF_MIN (200 * MS)
@@ -24,6 +25,7 @@
    meanwhile are told at once that the target is down. */
 #define GREETING_NS (5000 * MS)
 #define SLICE_NS    (50 * MS)
+#define NAMES_NS    (1000 * MS)
 /* An idle connection is looked at so often, to learn that the server went. */
 #define IDLE_NS     (1000 * MS)
 #define READ_MAX    65536
@@ -36,7 +38,7 @@ struct owserver {
 	struct bus bus;
 	enum state state;
 	int64_t retry_ns, backoff_ns, give_up_ns, look_ns;
-	bool was_up, is_down_told, suspended;
+	bool was_up, is_down_told, suspended, simulated;
 	struct bus_event loss; /* to be told by the next step, if text is set */
 	struct bus_counter counter[COUNTERS];
 	struct talk talk;
@@ -183,14 +185,22 @@ static void go_on_connecting(struct owserver *server)
 		go_down(server, err, talk->trouble);
 }
 
+/* The errors of an exchange that take the target down, as the contract names them. */
+static int as_loss(int err)
+{
+	return err == -ETIMEDOUT || err == -EPROTO ? err : -ECONNRESET;
+}
+
 static void go_on_greeting(struct owserver *server)
 {
 	int err = talk_receive(&server->talk, slice_end(server));
 
 	if (err == 0)
+		err = simulated_ask(&server->talk, now_of(server) + NAMES_NS, &server->simulated);
+	if (err == 0)
 		go_up(server);
 	else if (err != -EAGAIN)
-		go_down(server, err == -EINPROGRESS ? -ECONNRESET : err, server->talk.trouble);
+		go_down(server, as_loss(err), server->talk.trouble);
 	else if (now_of(server) >= server->give_up_ns)
 		out_of_time(server);
 }
@@ -271,12 +281,12 @@ static int present(struct owserver *server, const struct bus_req *req, bool fres
 {
 	char path[FRAME_PATH_MAX + 1];
 	struct talk_request request = { .type = FRAME_PRESENT, .fresh = fresh, .path = path };
-	struct path_part device;
 	size_t len = strlen(req->path);
+	struct path split;
 	int err;
 
-	if (path_device(req->path, len, &device))
-		len = device.at + device.len;
+	if (!path_split(req->path, len, &split) && split.last.len)
+		len = (size_t)(split.last.text + split.last.len - req->path);
 	if (len >= sizeof(path))
 		return -EMSGSIZE;
 	memcpy(path, req->path, len);
@@ -287,15 +297,15 @@ static int present(struct owserver *server, const struct bus_req *req, bool fres
 	return server->talk.reader.header.type < 0;
 }
 
-/* What a negative return code means; for -1 the server has to be asked whether the device is there. */
+/* What a negative return code means; -1: the server is asked whether the device is there. */
 static int refused(struct owserver *server, const struct bus_req *req)
 {
 	int err = status_of(server->talk.reader.header.type, (enum bus_op)req->op);
-	struct path_part device;
+	struct path split;
 
 	if (err != 1)
 		return err;
-	if (!path_device(req->path, strlen(req->path), &device))
+	if (path_split(req->path, strlen(req->path), &split) || !split.last.len)
 		return -ENOENT;
 	err = present(server, req, true);
 	return err == 1 ? -ENODEV : err == 0 ? -ENOENT : err;
@@ -378,6 +388,7 @@ static void owserver_exec(struct bus *bus, struct bus_req *req, struct bus_answe
 	int err;
 
 	answer->kind = BUS_TEXT;
+	answer->detail = server->simulated ? BUS_DETAIL_SIMULATED : 0;
 	if (server->state != UP) {
 		answer->err = -ENOTCONN;
 		return;

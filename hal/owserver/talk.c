@@ -15,7 +15,8 @@ static int64_t now(const struct talk *talk)
 
 static int fail(struct talk *talk, int err, const char *reason)
 {
-	snprintf(talk->trouble, sizeof(talk->trouble), "%.60s: %.48s", talk->connection.peer, reason);
+	snprintf(talk->trouble, sizeof(talk->trouble), "%.60s: %.48s", talk->connection.peer,
+	         reason);
 	connection_close(&talk->connection);
 	if (err == -EPROTO)
 		bus_count(&talk->counter[TALK_GARBAGE], 1);

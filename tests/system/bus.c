@@ -3,6 +3,7 @@
  * bus TARGET: a bus in its worker, at the command of a system test. One command a line:
  *   read PATH · fresh PATH · write PATH VALUE · dir PATH · probe PATH
  *                 "ok TEXT" (newlines of a listing as blanks) or "error NUMBER"
+ *   simulated PATH  reads: "ok yes" or "ok no"
  *   timeout MS    for the requests that follow; 5000 at first
  *   repeat N PATH reads: "ok" when all were good, else "error" and the first error
  *   up · down     waits up to 20 s for this news: "ok TEXT", "error" when it did not come
@@ -86,11 +87,11 @@ static void repeat(char *arguments)
 {
 	char *path = strchr(arguments, ' ');
 	unsigned long n = strtoul(arguments, NULL, 10);
-	int err = path ? 0 : -EINVAL;
+	struct bus_answer answer = { .err = path ? 0 : -EINVAL };
 
-	for (unsigned long i = 0; i < n && !err; i++)
-		err = ask(BUS_READ, false, path + 1, sizeof(data)).err;
-	printf(err ? "error %d\n" : "ok\n", -err);
+	for (unsigned long i = 0; i < n && !answer.err; i++)
+		answer = ask(BUS_READ, false, path + 1, sizeof(data));
+	print_answer(&answer, false);
 }
 
 static void await(enum bus_news what)
@@ -148,6 +149,12 @@ static void obey(char *line)
 	} else if (strcmp(line, "read") == 0 || strcmp(line, "fresh") == 0) {
 		answer = ask(BUS_READ, line[0] == 'f', rest, sizeof(data));
 		print_answer(&answer, true);
+	} else if (strcmp(line, "simulated") == 0) {
+		answer = ask(BUS_READ, false, rest, sizeof(data));
+		if (answer.err)
+			print_answer(&answer, false);
+		else
+			printf("ok %s\n", answer.detail & BUS_DETAIL_SIMULATED ? "yes" : "no");
 	} else if (strcmp(line, "dir") == 0) {
 		answer = ask(BUS_DIR, false, rest, sizeof(data));
 		print_answer(&answer, true);

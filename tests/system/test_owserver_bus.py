@@ -72,7 +72,8 @@ def test_genuine_values_directories_and_errors(scene):
     sensor, switch = server.devices()
     with Bus(scene, server.target) as bus:
         assert server.target in bus.ok("up")
-        assert bus.ok(f"read {sensor}/temperature") == server.read(sensor + "/temperature").rjust(12)
+        text = server.read(sensor + "/temperature")
+        assert bus.ok(f"read {sensor}/temperature") == text.rjust(12)
         assert bus.ok(f"fresh {sensor}/type") == "DS18B20"
         bus.ok(f"write {switch}/PIO.0 1")
         bus.ok(f"probe {sensor}")
@@ -89,6 +90,7 @@ def test_genuine_values_directories_and_errors(scene):
         bus.fails(f"dir {sensor}/temperature", errno.ENOENT)
         bus.fails(f"write {sensor}/temperature 1", errno.EACCES)
         bus.fails(f"write {sensor}/templow abc", errno.EINVAL)
+        assert bus.ok(f"simulated {sensor}/type") == "yes"
         assert bus.counted("connections") == 1
 
 
@@ -212,6 +214,7 @@ def test_every_garbage_takes_it_down_and_it_comes_back(scene):
             bus.ok("up")
             assert bus.ok(f"read {T}") == "     21.5", mode
         assert bus.counted("garbage") == 7
+        assert bus.ok(f"simulated {T}") == "no"
 
 
 def test_slow_with_keep_alives_is_served_and_too_slow_is_no_loss(scene):

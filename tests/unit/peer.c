@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,8 +22,9 @@ static const struct {
 	{ FRAME_READ, "/28.67C6697351FF/temperature", "     21.0625" },
 	{ FRAME_READ, "/28.67C6697351FF/type", "DS18B20" },
 	{ FRAME_READ, "/28.67C6697351FF/locator", "" },
-	{ FRAME_READ, "/boiler/address", "2867C6697351FF38" },
+	{ FRAME_READ, "/boiler/address", "2867C6697351FF68" },
 	{ FRAME_READ, "/29.000029D60100/strange", "?" },
+	{ FRAME_READ, "/bus.0/interface/settings/name", "Simulated-Peer" },
 	{ FRAME_WRITE, "/29.000029D60100/PIO.BYTE", "" },
 	{ FRAME_PRESENT, "/28.67C6697351FF", "12345678" },
 	{ FRAME_PRESENT, "/29.000029D60100", "12345678" },
@@ -189,6 +191,12 @@ static int act(const struct peer *peer, int fd, char letter, uint8_t *answer, si
 	return letter != 'r' && letter != 'c';
 }
 
+/* A NOP, or the question which buses there are. */
+static bool is_greeting(const struct frame_header *request, const char *path)
+{
+	return request->type == FRAME_NOP || strncmp(path, "/bus.", 5) == 0;
+}
+
 static void serve(struct peer *peer, int fd)
 {
 	static uint8_t answer[100000], body[200000];
@@ -207,7 +215,7 @@ static void serve(struct peer *peer, int fd)
 		body[request.payload] = '\0';
 		memset(answer, 0, sizeof(answer));
 		len = make_answer(answer, &request, (char *)body);
-		if (request.type == FRAME_NOP) {
+		if (is_greeting(&request, (char *)body)) {
 			saw(&peer->greetings);
 			letter = 'a';
 		} else {

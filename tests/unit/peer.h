@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * An owserver to test against: a thread on a loopback port that answers a few paths, and each
- * request (greetings are not counted) as the next letter of its plan says; 'a' when it is over.
+ * request (greetings, NOP and the names of
+ * its buses, are not counted) as the next letter of its plan says; 'a' when it is over.
  *   a answer             r answer, refuse persistence, close     c answer, then close
  *   k 3 keep-alives, then answer     K keep-alives every 10 ms until the client goes
  *   f answer byte by byte            t answer and 3 bytes more   l answer with more than asked for

@@ -20,7 +20,8 @@ void tearDown(void)
 	bus_destroy(bus);
 }
 
-static const struct bus_answer *ask(enum bus_op op, const char *path, const char *text, uint32_t len)
+static const struct bus_answer *ask(enum bus_op op, const char *path, const char *text,
+                                    uint32_t len)
 {
 	static uint32_t id;
 	struct bus_req req = { .id = ++id, .op = (uint8_t)op, .path = path, .data = data, .len = len,
