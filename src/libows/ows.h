@@ -24,6 +24,9 @@
 
 #ifdef __cplusplus
 extern "C" {
+/* ows_info, ows_daemon, ows_target and ows_counter are a struct and a function each */
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
 #endif
 
 /* REXYGEN's type codes, as in the low nibble of IOType. */
@@ -95,7 +98,12 @@ enum ows_mode {
  * Open the instance (NULL: "OWS"). System calls, allocates. Free with ows_close().
  * -ENOENT no owsd of that name has run; -EACCES no right (group owsd to look, owsd-control to
  * set); -EPROTO not a segment of ours, or of another layout; -EPERM the segment belongs to a user
- * who is neither root, nor owsd, nor the caller.
+ * who is neither root, nor owsd, nor the caller; -EINVAL no instance can have that name.
+ *
+ * Whoever may command may also truncate the command segment, and then touching it is a SIGBUS. If
+ * the process has no handler of its own for that when a handle is opened with OWS_CONTROL, one is
+ * put in until the last is closed, for up to four handles: sets then return -ESTALE. A SIGBUS from
+ * elsewhere does what it did before.
  */
 int ows_open(const char *instance, enum ows_mode mode, struct ows **h);
 void ows_close(struct ows *h);
@@ -129,7 +137,10 @@ int ows_get_text(struct ows *h, int id, int64_t now_ns, struct ows_value *value,
  * turn, if it changed. At most one system call (none while the engine is awake).
  * Returns 0; -ERANGE the type cannot hold the value, -EINVAL NaN or infinity, -EACCES not
  * writable or the handle is OWS_READ, -EBUSY another program is just writing this string,
- * -ESTALE as ows_get(). stamp, if not NULL, gets the number that `applied` will reach.
+ * -ESTALE: set it again after ows_reopen(). stamp, if not NULL, gets the number that `applied`
+ * will reach (0 for attributes). The flags _DGNRESET and _WriteOneShot act when this handle sets
+ * them from 0 to another value. After an orderly end of owsd sets go on without an error and are
+ * found at its next start.
  */
 int ows_set(struct ows *h, int id, double value, uint32_t *stamp);
 int ows_set_integer(struct ows *h, int id, int64_t value, uint32_t *stamp);
@@ -151,8 +162,10 @@ int ows_beat(struct ows *h, uint32_t period_ms);
 int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns);
 
 /*
- * Map the present segments after -ESTALE; ids stay right. System calls.
- * -ENOENT: not there yet, try again in the next cycle (what is mapped stays readable).
+ * Map the present segments after -ESTALE; ids stay right. System calls, allocates.
+ * -ENOENT: not there yet, try again in the next cycle (what is mapped stays readable). An owsd
+ * that was killed cannot say that it ended: its values turn bad by themselves, and the owsd after
+ * it says -ESTALE to all who still map the old image.
  */
 int ows_reopen(struct ows *h);
 
@@ -205,6 +218,7 @@ struct ows_counter {
 int ows_counter(struct ows *h, int index, struct ows_counter *counter);
 
 #ifdef __cplusplus
+#pragma GCC diagnostic pop
 }
 #endif
 

@@ -420,7 +420,8 @@ class Ows:
 
     def get(self, name, now=None):
         """The Value of a name. Never raises for a dead or restarted owsd: the value is not good
-        then, and stale() or alive() say why. KeyError: no such name; PermissionError: write-only."""
+        then, and stale() or alive() say why. KeyError: no such name; PermissionError: it is
+        write-only."""
         record, attribute = self.find(name)
         now = now or now_ns()
         info = self.table[record][0]

@@ -218,7 +218,8 @@ int commands_put(struct commands *commands, uint32_t slot, int64_t value, const 
 
 	word_set(&s->client, 0);
 	if (!text) {
-		words_store(&s->value, &value, sizeof(value) / 4);
+		/* One store: in two, a consumer's may come to lie between the halves */
+		__atomic_store_n((shm_double_word *)&s->value, (uint64_t)value, __ATOMIC_RELAXED);
 		return 0;
 	}
 	t = text_at(commands, slot);
