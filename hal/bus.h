@@ -69,6 +69,8 @@ struct bus_req {
  *   -ENODEV       no such device on this target
  *   -ENOENT       the device has no such property
  *   -EACCES       the property cannot be read, or cannot be written
+ *   -EISDIR       READ or WRITE of a directory
+ *   -ENOTDIR      DIR of a property
  *   -EINVAL       the target refused the value that was written
  *   -EBADMSG      checksum
  *   -ECOMM        the wire is short
