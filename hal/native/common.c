@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: MIT */
+/* The properties that every device has. All but present are known without asking it. */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/native/family.h"
+#include "hal/native/native.h"
+
+enum { ADDRESS, REVERSED_ADDRESS, ID, REVERSED_ID, FAMILY, CRC, LOCATOR, TYPE };
+
+static int put(struct txn *txn, const char *text, size_t len)
+{
+	if (len > txn->room)
+		return -EMSGSIZE;
+	memcpy(txn->data, text, len);
+	txn->len = len;
+	return 0;
+}
+
+static int put_hex(struct txn *txn, unsigned first, unsigned n, bool reversed)
+{
+	static const char hex[] = "0123456789ABCDEF";
+	char text[16];
+
+	for (unsigned i = 0; i < n; i++) {
+		uint8_t byte = txn->device->rom[reversed ? first + n - 1 - i : first + i];
+
+		text[2 * i] = hex[byte >> 4];
+		text[2 * i + 1] = hex[byte & 0xf];
+	}
+	return put(txn, text, 2 * (size_t)n);
+}
+
+static int read_identity(struct txn *txn)
+{
+	const char *type;
+
+	switch (txn->property->arg) {
+	case ADDRESS:
+		return put_hex(txn, 0, 8, false);
+	case REVERSED_ADDRESS:
+		return put_hex(txn, 0, 8, true);
+	case ID:
+		return put_hex(txn, 1, 6, false);
+	case REVERSED_ID:
+		return put_hex(txn, 1, 6, true);
+	case FAMILY:
+		return put_hex(txn, 0, 1, false);
+	case CRC:
+		return put_hex(txn, 7, 1, false);
+	case LOCATOR:
+		/* What OWFS says of a device without a LinkLocator; these are not asked for. */
+		return put(txn, "FFFFFFFFFFFFFFFF", 16);
+	case TYPE:
+		type = family_type(txn->device);
+		return put(txn, type, strlen(type));
+	}
+	return -EIO;
+}
+
+static int read_present(struct txn *txn)
+{
+	int there = txn_verify(txn, false);
+
+	if (there < 0)
+		return there;
+	txn->number[0] = there;
+	return 0;
+}
+
+static int read_alias(struct txn *txn)
+{
+	const char *alias = device_alias(&txn->native->table, txn->device);
+
+	return put(txn, alias, strlen(alias));
+}
+
+static int write_alias(struct txn *txn)
+{
+	return native_set_alias(txn->native, txn->device, (const char *)txn->data, txn->len);
+}
+
+#define IDENTITY(text, what, bytes)                                                       \
+	{.name = (text), .type = PROPERTY_ASCII, .life = LIFE_STATIC, .access = ACCESS_READ, \
+	 .offline = true, .size = (bytes), .arg = (what), .read = read_identity}
+
+static const struct property properties[] = {
+	IDENTITY("address", ADDRESS, 16),
+	{.name = "alias", .type = PROPERTY_ALIAS, .life = LIFE_STATIC, .access = ACCESS_BOTH,
+	 .offline = true, .read = read_alias, .write = write_alias},
+	IDENTITY("crc8", CRC, 2),
+	IDENTITY("family", FAMILY, 2),
+	IDENTITY("id", ID, 12),
+	IDENTITY("locator", LOCATOR, 16),
+	{.name = "present", .type = PROPERTY_YESNO, .life = LIFE_VOLATILE, .access = ACCESS_READ,
+	 .hidden = true, .read = read_present},
+	IDENTITY("r_address", REVERSED_ADDRESS, 16),
+	IDENTITY("r_id", REVERSED_ID, 12),
+	IDENTITY("r_locator", LOCATOR, 16),
+	IDENTITY("type", TYPE, 32),
+};
+
+const struct family family_common = {.type = "unknown", PROPERTIES(properties)};

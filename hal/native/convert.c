@@ -1,0 +1,354 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Who converts when. Thermometers that are due on a channel are gathered and get one Convert T
+ * with Skip ROM; the next waits until the results of the last have been read, as it would overwrite
+ * them. A parasitic one needs the strong pull-up for as long as it converts, which holds the
+ * channel; on a channel that has such a one, others are asked to convert one by one.
+ */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/native/native.h"
+#include "hal/native/thermometer.h"
+
+#define SKIP_ROM 0xcc
+#define GATHER_NS (3 * TXN_MS)
+#define GATHER_MAX_NS (3 * NATIVE_S)
+#define SIMULTANEOUS_NS (2 * NATIVE_S)
+
+static bool is_thermometer(const struct device *device, unsigned channel)
+{
+	return device->present && device->channel == channel && device->family->thermometer;
+}
+
+static unsigned wanted(const struct job *job)
+{
+	const struct device *device = job->txn.device;
+
+	return job->property->convert == CONVERT_TEMPRES ? device->stored : job->property->convert;
+}
+
+bool convert_right(const struct job *job)
+{
+	const struct device *device = job->txn.device;
+
+	/* Not known yet: most are right, and the reading will tell. */
+	return device->family->fixed || device->ignores || !device->resolution || !wanted(job) ||
+	       device->resolution == wanted(job);
+}
+
+/* Another job has this device between its preparation and its reading, at its resolution. */
+static bool taken(const struct native *native, const struct job *job)
+{
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		const struct job *other = &native->jobs[i];
+
+		if (other != job && other->req && other->txn.device == job->txn.device &&
+		    other->property && other->property->convert && other->begun &&
+		    (other->state == JOB_DUE || other->state == JOB_CONVERTING ||
+		     other->state == JOB_RUN))
+			return true;
+	}
+	return false;
+}
+
+static void become_due(struct native *native, struct job *job, int64_t now)
+{
+	struct channel *channel = &native->channel[job->txn.channel];
+
+	job->state = JOB_DUE;
+	if (!channel->due_ns)
+		channel->due_ns = now;
+}
+
+void convert_begin(struct native *native, struct job *job, int64_t now)
+{
+	struct device *device = job->txn.device;
+
+	/* A conversion of all that is under way or just over serves those who do not ask for more. */
+	if (!job->fresh && device->converted_ns && device->converted_ns + SIMULTANEOUS_NS > now &&
+	    convert_right(job)) {
+		job->ready_ns = device->converted_ns;
+		job->state = JOB_CONVERTING;
+		return;
+	}
+	job->state = JOB_PREPARE;
+	job->txn.phase = 0;
+	convert_prepare(native, job, now);
+}
+
+/* Read Power Supply of all at once: a one means that nobody is parasitic. */
+static int ask_all(struct native *native, struct job *job)
+{
+	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_READ_POWER};
+	struct channel *channel = &native->channel[job->txn.channel];
+	struct link *link = channel->link;
+	int err = link->ops->reset(link);
+
+	job->txn.on_wire = true;
+	if (err > 0)
+		err = link->ops->write(link, command, sizeof(command), LINK_IDLE);
+	else if (!err)
+		return -ENODEV;
+	if (!err)
+		err = link->ops->bit(link, true, LINK_IDLE);
+	if (err < 0) {
+		job->txn.link_error = err;
+		return err;
+	}
+	channel->power_asked = true;
+	channel->all_external = err;
+	for (unsigned i = 0; err && i < native->table.count; i++)
+		if (is_thermometer(&native->table.devices[i], job->txn.channel))
+			native->table.devices[i].power = POWER_EXTERNAL;
+	return TXN_MORE;
+}
+
+static int prepare(struct native *native, struct job *job)
+{
+	struct device *device = job->txn.device;
+
+	if (job->txn.phase == 0 && device->power == POWER_UNKNOWN) {
+		if (!native->channel[job->txn.channel].power_asked)
+			return ask_all(native, job);
+		int err = thermometer_ask_power(&job->txn);
+		return err < 0 ? err : TXN_MORE;
+	}
+	if (job->txn.phase == 0 && convert_right(job))
+		return 0;
+	int err = thermometer_prepare(&job->txn, wanted(job));
+	if (err == 0)
+		job->txn.phase = 0;
+	return err;
+}
+
+void convert_prepare(struct native *native, struct job *job, int64_t now)
+{
+	struct device *device = job->txn.device;
+
+	if (job->txn.phase == 0 && !convert_right(job) && taken(native, job)) {
+		/* Its turn comes when the other resolution has been read. */
+		job->txn.wake_ns = now + GATHER_NS;
+		job->waits = true;
+		return;
+	}
+	job->waits = false;
+	int err = prepare(native, job);
+
+	job_saw(native, job, err, now);
+	if (err < 0) {
+		job_failed(native, job, err);
+		return;
+	}
+	job->locks = err == TXN_MORE && job->txn.phase;
+	device->locked = job->locks;
+	if (err == 0)
+		become_due(native, job, now);
+}
+
+struct plan {
+	unsigned due;
+	bool reading;   /* results of the last conversion are not all read */
+	bool preparing; /* others will be due soon */
+	bool locked;    /* a chip on the channel is at work */
+	bool parasitic_due, parasitic;
+	int64_t due_ns, all_ns; /* how long those that are due convert, and all */
+};
+
+static struct plan look(const struct native *native, unsigned channel)
+{
+	struct plan plan = {0};
+	unsigned coming = UINT8_MAX, urgent = BUS_GUEST;
+
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		const struct job *job = &native->jobs[i];
+		const struct device *device = job->txn.device;
+
+		if (!job->req || !device || device->channel != channel || !job->property ||
+		    !job->property->convert || job->kind != JOB_PROPERTY)
+			continue;
+		plan.reading |= job->state == JOB_CONVERTING || job->state == JOB_RUN;
+		if (job->state == JOB_PREPARE || job->state == JOB_QUEUED)
+			coming = job->waits || job->req->prio > coming ? coming : job->req->prio;
+		if (job->state != JOB_DUE)
+			continue;
+		urgent = job->req->prio < urgent ? job->req->prio : urgent;
+		int64_t ns = thermometer_convert_ns(device);
+		plan.due++;
+		plan.parasitic_due |= device->power == POWER_PARASITE;
+		plan.due_ns = ns > plan.due_ns ? ns : plan.due_ns;
+	}
+	plan.preparing = coming <= urgent;
+	for (unsigned i = 0; plan.due && i < native->table.count; i++) {
+		const struct device *device = &native->table.devices[i];
+
+		if (device->channel == channel && device->locked)
+			plan.locked = true;
+		if (!is_thermometer(device, channel))
+			continue;
+		int64_t ns = thermometer_convert_ns(device);
+		plan.parasitic |= device->power != POWER_EXTERNAL;
+		plan.all_ns = ns > plan.all_ns ? ns : plan.all_ns;
+	}
+	return plan;
+}
+
+static int send_all(struct link *link, enum link_after after)
+{
+	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_CONVERT};
+	int err = link->ops->reset(link);
+
+	if (err <= 0)
+		return err ? err : -ENODEV;
+	return link->ops->write(link, command, sizeof(command), after);
+}
+
+/* All jobs that are due on the channel end with err, as if it had been theirs. */
+static void fail_due(struct native *native, unsigned channel, int err)
+{
+	bool recovered = false;
+
+	for (unsigned i = 0; i < NATIVE_DEPTH && native->up; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (!job->req || job->state != JOB_DUE || job->txn.channel != channel)
+			continue;
+		if (err == -ENODEV || err == -ECOMM || !recovered) {
+			job->txn.link_error = err == -ENODEV ? 0 : err;
+			job_failed(native, job, err);
+		} else {
+			job_restart(native, job);
+		}
+		recovered = true;
+	}
+}
+
+static void converting(struct native *native, unsigned n, int64_t now, int64_t longest)
+{
+	struct channel *channel = &native->channel[n];
+
+	channel->due_ns = 0;
+	channel->simultaneous_ns = now + longest;
+	for (unsigned i = 0; i < native->table.count; i++) {
+		struct device *device = &native->table.devices[i];
+
+		if (is_thermometer(device, n))
+			device->converted_ns = now + thermometer_convert_ns(device);
+	}
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (!job->req || job->state != JOB_DUE || job->txn.channel != n)
+			continue;
+		job->state = JOB_CONVERTING;
+		job->ready_ns = job->txn.device->converted_ns;
+	}
+}
+
+static int broadcast(struct native *native, unsigned n, bool strong, int64_t longest)
+{
+	struct link *link = native->channel[n].link;
+	int err = send_all(link, strong ? LINK_STRONG : LINK_IDLE);
+	int64_t now = native_now(native);
+
+	native_count(native, COUNT_TRANSACTIONS);
+	if (err < 0)
+		return err;
+	master_good(native, n);
+	native_count(native, COUNT_CONVERSIONS);
+	if (strong) {
+		native->hold_ns[link->chip % NATIVE_CHANNELS] = now + longest;
+		native->holder[link->chip % NATIVE_CHANNELS] = NULL;
+	}
+	converting(native, n, now, longest);
+	return 0;
+}
+
+/* One by one: the first that is due. */
+static void convert_one(struct native *native, unsigned n)
+{
+	static const uint8_t command = THERMOMETER_CONVERT;
+	struct job *first = NULL;
+
+	for (unsigned i = 0; i < NATIVE_DEPTH && !first; i++)
+		if (native->jobs[i].req && native->jobs[i].state == JOB_DUE &&
+		    native->jobs[i].txn.channel == n)
+			first = &native->jobs[i];
+	if (!first)
+		return;
+	struct device *device = first->txn.device;
+	int err = txn_command(&first->txn, &command, 1);
+	int64_t now = native_now(native);
+
+	job_saw(native, first, err, now);
+	if (err < 0) {
+		job_failed(native, first, err);
+		return;
+	}
+	native_count(native, COUNT_CONVERSIONS);
+	device->converted_ns = now + thermometer_convert_ns(device);
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (!job->req || job->state != JOB_DUE || job->txn.device != device)
+			continue;
+		job->state = JOB_CONVERTING;
+		job->ready_ns = device->converted_ns;
+	}
+}
+
+bool convert_step(struct native *native, int64_t now, int64_t *next)
+{
+	for (unsigned n = 0; n < native->channels; n++) {
+		struct channel *channel = &native->channel[n];
+
+		if (!channel->due_ns || native_held(native, n, NULL, now))
+			continue;
+		struct plan plan = look(native, n);
+		if (!plan.due) {
+			channel->due_ns = 0;
+			continue;
+		}
+		if (plan.preparing && channel->due_ns + GATHER_MAX_NS > now)
+			continue;
+		if (channel->due_ns + GATHER_NS > now) {
+			if (channel->due_ns + GATHER_NS < *next)
+				*next = channel->due_ns + GATHER_NS;
+			continue;
+		}
+		if (plan.parasitic && !plan.parasitic_due) {
+			convert_one(native, n);
+			return true;
+		}
+		if (plan.reading || plan.locked)
+			continue;
+		int err = broadcast(native, n, plan.parasitic_due,
+		                    plan.parasitic_due ? plan.all_ns : plan.due_ns);
+		if (err < 0)
+			fail_due(native, n, err);
+		return true;
+	}
+	return false;
+}
+
+void convert_all(struct native *native, struct job *job, int64_t now)
+{
+	unsigned n = job->channel;
+	bool parasitic = false;
+
+	(void)now;
+	for (unsigned i = 0; i < native->table.count; i++)
+		parasitic |= is_thermometer(&native->table.devices[i], n) &&
+		             native->table.devices[i].power != POWER_EXTERNAL;
+	int err = broadcast(native, n, parasitic, 750 * TXN_MS);
+	job->txn.channel = n;
+	if (err < 0 && err != -ENODEV) {
+		job->txn.link_error = err;
+		job_failed(native, job, err);
+		return;
+	}
+	if (job->bus < 0 && ++job->channel < native->channels)
+		return;
+	job->taken = job->req->len;
+	job_answer(native, job, 0);
+}

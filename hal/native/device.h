@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The device table of a native bus: every id that was ever seen, its channel, and what is known of
+ * the chip. Bounded; a device keeps its place while it is away, so that it is known again.
+ */
+#ifndef HAL_NATIVE_DEVICE_H
+#define HAL_NATIVE_DEVICE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define DEVICE_MAX 512
+#define DEVICE_ALIAS_MAX 256
+
+enum device_power {
+	POWER_UNKNOWN,
+	POWER_PARASITE,
+	POWER_EXTERNAL,
+};
+
+/* Does byte 6 of a thermometer's scratchpad follow the temperature, as in the genuine chip? */
+enum device_make {
+	MAKE_UNKNOWN,
+	MAKE_GENUINE,
+	MAKE_CLONE,
+};
+
+struct family;
+
+struct device {
+	const struct family *family;
+	uint8_t rom[8];
+	uint8_t channel;
+	bool present;
+	bool settled; /* was read or written since it came or restarted */
+	bool locked;      /* a job of several transactions is at work with it */
+	uint8_t missed;   /* full searches in a row that did not see it */
+	uint32_t seen;    /* number of the last full search that saw it */
+	uint32_t changes; /* grows when what is cached of it is void */
+	int64_t ok_ns;    /* last transaction that proved its presence; 0: never */
+
+	/* Thermometers. */
+	uint8_t power;      /* enum device_power */
+	uint8_t make;       /* enum device_make */
+	uint8_t resolution; /* 9 to 12 as read back; 0: not known */
+	uint8_t stored;     /* the resolution in its EEPROM: that before our first change; 0: not known */
+	uint8_t tempres;    /* resolution of `temperature`; 0: that which is stored */
+	bool ignores;       /* takes no other resolution (clones) */
+	int16_t raw;        /* last good reading, sixteenths of a degree */
+	int64_t raw_ns;     /* when; 0: none */
+	int64_t converted_ns; /* when its last conversion ends or ended; 0: none known */
+
+	/* Switches: the output byte that was last written and verified. */
+	uint8_t shadow;
+	bool shadow_known;
+
+	/* For the family's own use. */
+	uint8_t note[8];
+};
+
+struct device_table {
+	struct device *devices; /* DEVICE_MAX */
+	char (*aliases)[DEVICE_ALIAS_MAX + 1];
+	unsigned count;
+};
+
+int device_table_create(struct device_table *table);
+void device_table_destroy(struct device_table *table);
+struct device *device_find(struct device_table *table, const uint8_t rom[8]);
+/* By its first seven bytes; NULL: not in the table. */
+struct device *device_find_id(struct device_table *table, const uint8_t id[7]);
+/*
+ * The device's place, a new one if need be: of a full table that of a device that is away and has
+ * no alias. NULL: no place.
+ */
+struct device *device_add(struct device_table *table, const uint8_t rom[8], unsigned channel);
+/* What was known of the chip's state is void: it was away or has restarted. */
+void device_forget(struct device *device);
+char *device_alias(struct device_table *table, const struct device *device);
+struct device *device_by_alias(struct device_table *table, const char *name, size_t len);
+
+#endif

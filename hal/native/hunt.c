@@ -1,0 +1,366 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Searches. In the background each channel is searched for ever, one device a pass and only when
+ * nothing else is to do, or once a second when there always is. What two whole searches in a row
+ * did not see and no transaction heard is lost.
+ */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "hal/native/native.h"
+
+#define PASS_NS (NATIVE_S / 20)
+#define OVERDUE_NS NATIVE_S
+#define ROUND_NS (5 * NATIVE_S)
+#define AGAIN_NS (NATIVE_S / 2)
+#define MISSED_MAX 2
+#define TRIES 3
+#define FULL_EVERY 16 /* of so many alarm searches one looks for ids that are not known, too */
+
+void hunt_seen(struct device *device, int64_t now)
+{
+	device->ok_ns = now;
+	device->missed = 0;
+}
+
+void hunt_found(struct native *native, const uint8_t rom[8], unsigned n, int64_t now)
+{
+	struct device *device = device_find(&native->table, rom);
+	bool known = device && device->present && device->channel == n;
+
+	if (!known) {
+		device = device_add(&native->table, rom, n);
+		if (!device) {
+			native_event(native, BUS_NOTE, NULL, -ENOSPC,
+			             "more devices than the table holds: one is left out");
+			return;
+		}
+		device_forget(device);
+		device->present = true;
+		device->settled = false;
+		native->channel[n].power_asked = false;
+		native_count(native, COUNT_FOUND);
+		native_event(native, BUS_FOUND, rom, 0, "");
+	}
+	device->seen = native->channel[n].round;
+	hunt_seen(device, now);
+}
+
+void hunt_lost(struct native *native, struct device *device)
+{
+	if (!device->present)
+		return;
+	device->present = false;
+	device_forget(device);
+	native_count(native, COUNT_LOST);
+	native_event(native, BUS_LOST, device->rom, 0, "");
+}
+
+void hunt_restarted(struct native *native, struct device *device)
+{
+	bool settled = device->settled;
+
+	device_forget(device);
+	device->settled = false;
+	if (device->channel < native->channels)
+		native->channel[device->channel].power_asked = false;
+	if (!settled)
+		return;
+	native_count(native, COUNT_RESTARTED);
+	native_event(native, BUS_POR, device->rom, 0, "");
+}
+
+void hunt_reset(struct native *native, int64_t now)
+{
+	for (unsigned n = 0; n < native->channels; n++) {
+		native->channel[n].listed = false;
+		native->channel[n].searching = false;
+		native->channel[n].search_ns = now;
+	}
+}
+
+bool hunt_initial(const struct native *native)
+{
+	for (unsigned n = 0; n < native->channels; n++)
+		if (!native->channel[n].listed)
+			return true;
+	return false;
+}
+
+static void end_round(struct native *native, unsigned n, int64_t now)
+{
+	struct channel *channel = &native->channel[n];
+
+	channel->searching = false;
+	channel->listed = true;
+	channel->search_ns = now + ROUND_NS;
+	for (unsigned i = 0; !channel->dirty && i < native->table.count; i++) {
+		struct device *device = &native->table.devices[i];
+
+		if (!device->present || device->channel != n || device->seen == channel->round ||
+		    device->ok_ns >= channel->round_ns)
+			continue;
+		if (++device->missed >= MISSED_MAX)
+			hunt_lost(native, device);
+		else
+			channel->search_ns = now + AGAIN_NS;
+	}
+	if (channel->dirty)
+		channel->search_ns = now + AGAIN_NS;
+}
+
+static void told_short(struct native *native, unsigned n, bool is_short)
+{
+	struct channel *channel = &native->channel[n];
+	char text[48];
+
+	if (channel->is_short == is_short)
+		return;
+	channel->is_short = is_short;
+	snprintf(text, sizeof(text), is_short ? "bus.%u is short" : "bus.%u is not short any more", n);
+	native_event(native, BUS_NOTE, NULL, is_short ? -ECOMM : 0, text);
+}
+
+struct whole {
+	struct native *native;
+	struct job *job;
+	unsigned n;
+	int err;
+};
+
+static int whole_found(void *ctx, const uint8_t rom[8])
+{
+	struct whole *whole = ctx;
+	struct native *native = whole->native;
+
+	hunt_found(native, rom, whole->n, native_now(native));
+	if (whole->job)
+		whole->err = listing_add_device(native, whole->job, device_find(&native->table, rom));
+	return whole->err;
+}
+
+/* A link that can only search as a whole does so in one step. */
+static bool only_whole(const struct link *link)
+{
+	return link->ops->search && !link->ops->triplet && !link->ops->bit;
+}
+
+static int next_device(struct native *native, unsigned n, struct search *search, struct job *job)
+{
+	struct link *link = native->channel[n].link;
+	struct whole whole = {.native = native, .job = job, .n = n};
+
+	native_count(native, COUNT_SEARCHES);
+	native_count(native, COUNT_TRANSACTIONS);
+	if (!only_whole(link))
+		return search_next(search, link);
+	search->last = true;
+	int err = link->ops->search(link, search->command == ONEWIRE_ALARM_SEARCH, whole_found, &whole);
+	return whole.err ? whole.err : err < 0 ? err : 0;
+}
+
+static void pass(struct native *native, unsigned n, int64_t now)
+{
+	struct channel *channel = &native->channel[n];
+
+	if (!channel->searching) {
+		search_begin(&channel->search, false, 0);
+		channel->searching = true;
+		channel->dirty = false;
+		channel->round++;
+		channel->round_ns = now;
+	}
+	int found = next_device(native, n, &channel->search, NULL);
+	now = native_now(native);
+	if (found >= 0 || found == -EBADMSG) {
+		master_good(native, n);
+		told_short(native, n, false);
+	}
+	if (found > 0) {
+		hunt_found(native, channel->search.rom, n, now);
+		channel->search_ns = channel->listed ? now + PASS_NS : now;
+		if (channel->search.last)
+			end_round(native, n, now);
+		return;
+	}
+	channel->dirty = found < 0;
+	if (found == -EBADMSG)
+		native_count(native, COUNT_CHECKSUMS);
+	if (found == -ECOMM) {
+		native_count(native, COUNT_SHORTS);
+		channel->shorts++;
+		told_short(native, n, true);
+	} else if (found < 0 && found != -EBADMSG && !master_recover(native, n, found)) {
+		return;
+	}
+	end_round(native, n, now);
+}
+
+bool hunt_step(struct native *native, int64_t now, bool idle, int64_t *next)
+{
+	for (unsigned i = 0; i < native->channels; i++) {
+		unsigned n = (native->hunter + i) % native->channels;
+		struct channel *channel = &native->channel[n];
+		int64_t when = channel->search_ns + (idle ? 0 : OVERDUE_NS);
+
+		if (!channel->listed)
+			when = 0;
+		if (native_held(native, n, NULL, now))
+			when = native->hold_ns[channel->link->chip % NATIVE_CHANNELS];
+		if (when <= now) {
+			native->hunter = n + 1;
+			pass(native, n, now);
+			return true;
+		}
+		if (when < *next)
+			*next = when;
+	}
+	return false;
+}
+
+static void locate_end(struct native *native, struct job *job)
+{
+	if (job->txn.device)
+		hunt_lost(native, job->txn.device);
+	job_answer(native, job, -ENODEV);
+}
+
+void hunt_locate(struct native *native, struct job *job, int64_t now)
+{
+	struct channel *channel = &native->channel[job->channel];
+
+	native_count(native, COUNT_TRANSACTIONS);
+	int there = search_verify(channel->link, job->path.rom, false);
+	if (there < 0) {
+		bool known = job->verified;
+
+		job->txn.channel = job->channel;
+		job->txn.link_error = there;
+		if (there == -ECOMM && !known && job->bus < 0 && job->channel + 1u < native->channels) {
+			job->txn.link_error = 0;
+			job->channel++;
+			return;
+		}
+		job_failed(native, job, there);
+		return;
+	}
+	master_good(native, job->channel);
+	if (there) {
+		hunt_found(native, job->path.rom, job->channel, now);
+		job->txn.device = device_find(&native->table, job->path.rom);
+		job->state = JOB_QUEUED;
+		if (!job->txn.device)
+			job_answer(native, job, -ENODEV);
+		return;
+	}
+	if (job->verified) {
+		if (++job->tries >= TRIES)
+			locate_end(native, job);
+		return;
+	}
+	if (job->bus >= 0 || ++job->channel >= native->channels)
+		locate_end(native, job);
+}
+
+struct lone {
+	const struct native *native;
+	unsigned n;
+};
+
+static bool same_bits(const uint8_t a[8], const uint8_t b[8], unsigned bits)
+{
+	unsigned bytes = bits / 8;
+
+	if (memcmp(a, b, bytes) != 0)
+		return false;
+	return bits % 8 == 0 || ((a[bytes] ^ b[bytes]) & ((1 << bits % 8) - 1)) == 0;
+}
+
+static bool lone(void *ctx, const uint8_t prefix[8], unsigned bits, uint8_t rom[8])
+{
+	const struct lone *lone = ctx;
+	const struct device *only = NULL;
+
+	for (unsigned i = 0; i < lone->native->table.count; i++) {
+		const struct device *device = &lone->native->table.devices[i];
+
+		if (!device->present || device->channel != lone->n || !device->family->alarms ||
+		    !same_bits(device->rom, prefix, bits))
+			continue;
+		if (only)
+			return false;
+		only = device;
+	}
+	if (only)
+		memcpy(rom, only->rom, sizeof(only->rom));
+	return only;
+}
+
+/* On to the next family, the next channel, the end. */
+static void scan_on(struct native *native, struct job *job)
+{
+	job->searching = false;
+	job->tries = 0;
+	if (job->families[0] && ++job->family_i < sizeof(job->families) && job->families[job->family_i])
+		return;
+	job->family_i = 0;
+	if (job->bus < 0 && ++job->channel < native->channels)
+		return;
+	if (!job->heard) {
+		job_answer(native, job, -ECOMM);
+		return;
+	}
+	native_count(native, COUNT_DIRECTORIES);
+	job_answer(native, job, job->kind == JOB_SCAN ? listing_add_rest(native, job) : 0);
+}
+
+void hunt_scan(struct native *native, struct job *job, int64_t now)
+{
+	struct channel *channel = &native->channel[job->channel];
+	struct lone ctx = {.native = native, .n = job->channel};
+
+	if (!job->searching) {
+		search_begin(&job->search, job->kind == JOB_ALARM, job->families[job->family_i]);
+		job->searching = true;
+		job->mark = job->out;
+		if (job->kind == JOB_ALARM && channel->alarm_searches++ % FULL_EVERY)
+			job->search.lone = lone;
+	}
+	job->search.ctx = &ctx;
+	int found = next_device(native, job->channel, &job->search, job);
+	job->txn.channel = job->channel;
+	if (found >= 0) {
+		job->heard = true;
+		master_good(native, job->channel);
+	}
+	if (found > 0) {
+		hunt_found(native, job->search.rom, job->channel, now);
+		struct device *device = device_find(&native->table, job->search.rom);
+		int err = device ? listing_add_device(native, job, device) : 0;
+		if (err)
+			job_answer(native, job, err);
+		else if (job->search.last)
+			scan_on(native, job);
+		return;
+	}
+	if (found == 0) {
+		scan_on(native, job);
+		return;
+	}
+	job->out = job->mark;
+	job->searching = false;
+	if (found == -ECOMM && job->bus < 0) {
+		native_count(native, COUNT_SHORTS);
+		scan_on(native, job);
+	} else if (found == -EBADMSG) {
+		native_count(native, COUNT_CHECKSUMS);
+		if (++job->tries >= TRIES)
+			job_answer(native, job, found);
+	} else if (found == -EMSGSIZE) {
+		job_answer(native, job, found);
+	} else {
+		job->txn.link_error = found;
+		job_failed(native, job, found);
+	}
+}

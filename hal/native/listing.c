@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "hal/native/format.h"
+#include "hal/native/native.h"
+
+static int __attribute__((format(printf, 2, 3))) add(struct job *job, const char *format, ...)
+{
+	char line[PATH_LEN_MAX + 64];
+	va_list args;
+
+	va_start(args, format);
+	int n = vsnprintf(line, sizeof(line) - 1, format, args);
+	va_end(args);
+	if (n < 0 || (size_t)n >= sizeof(line) - 1)
+		return -EMSGSIZE;
+	line[n++] = '\n';
+	if ((size_t)n > job->req->len - job->out)
+		return -EMSGSIZE;
+	memcpy(job->req->data + job->out, line, (size_t)n);
+	job->out += (size_t)n;
+	return 0;
+}
+
+/* What stands before the entries: the path's flags, as they were written. */
+static int prefix_len(const struct job *job)
+{
+	const struct path *path = &job->path;
+	const char *text = job->req->path;
+
+	if (path->device.len)
+		return (int)(path->device.text - text);
+	if (path->property.len)
+		return (int)(path->property.text - text);
+	return (int)strlen(text);
+}
+
+static int add_below(struct job *job, const char *name)
+{
+	int n = prefix_len(job);
+	const char *text = job->req->path;
+
+	while (n > 0 && text[n - 1] == '/')
+		n--;
+	return add(job, "%s%.*s/%s", n && text[0] != '/' ? "/" : "", n, text, name);
+}
+
+int listing_add_device(struct native *native, struct job *job, const struct device *device)
+{
+	const char *alias = device_alias(&native->table, device);
+	char name[ROM_TEXT_MAX];
+
+	rom_print(device->rom, ROM_F_I, name);
+	return add_below(job, alias[0] ? alias : name);
+}
+
+int listing_add_rest(struct native *native, struct job *job)
+{
+	static const char *const in_root[] = {"uncached", "settings", "system", "statistics",
+	                                      "structure", "simultaneous", "alarm"};
+	static const char *const in_bus[] = {"interface", "simultaneous", "alarm"};
+	char name[16];
+	int err = 0;
+
+	if (job->path.alarm)
+		return 0;
+	if (job->bus >= 0) {
+		for (size_t i = 0; i < 3 && !err; i++)
+			err = add_below(job, in_bus[i]);
+		return err;
+	}
+	for (unsigned i = 0; i < native->channels && !err; i++) {
+		snprintf(name, sizeof(name), "bus.%u", i);
+		err = add_below(job, name);
+	}
+	for (size_t i = job->path.uncached; i < sizeof(in_root) / sizeof(in_root[0]) && !err; i++)
+		err = add_below(job, in_root[i]);
+	return err;
+}
+
+static int list_root(struct native *native, struct job *job)
+{
+	int err = 0;
+
+	for (unsigned i = 0; i < native->table.count && !err; i++) {
+		const struct device *device = &native->table.devices[i];
+
+		if (device->present && (job->bus < 0 || device->channel == job->bus))
+			err = listing_add_device(native, job, device);
+	}
+	return err ? err : listing_add_rest(native, job);
+}
+
+static int add_property(struct job *job, const char *path, const struct property *property)
+{
+	int first = property->array.index == INDEX_LETTERS ? 256 : 0;
+	char extension[8];
+	int err = 0;
+
+	if (property->array.index == INDEX_NONE)
+		return add(job, "%s%s", path, property->name);
+	if (property->type == PROPERTY_BITS)
+		err = add(job, "%s%s.BYTE", path, property->name);
+	if (!err)
+		err = add(job, "%s%s.ALL", path, property->name);
+	for (int i = 0; i < property->array.count && !err; i++) {
+		extension_print(property, first + i, extension);
+		err = add(job, "%s%s%s", path, property->name, extension);
+	}
+	return err;
+}
+
+/* The properties of a table below `directory` ("" or "errata"). */
+static int list_table(struct job *job, const struct family *family, const struct device *device,
+                      const char *path, const char *directory, size_t len)
+{
+	const struct property *property = NULL;
+	int err = 0;
+
+	while (!err && (property = family_next(family, device, property))) {
+		const char *rest = property->name;
+
+		if (property->hidden)
+			continue;
+		if (len && (strncmp(rest, directory, len) != 0 || rest[len] != '/'))
+			continue;
+		if (strchr(rest + (len ? len + 1 : 0), '/'))
+			continue;
+		err = add_property(job, path, property);
+	}
+	return err;
+}
+
+static int list_families(struct job *job)
+{
+	const struct family *family;
+	int err = 0;
+
+	for (unsigned n = 0; !err && (family = family_nth(n)); n++)
+		err = add(job, "/structure/%02X", family->code);
+	return err;
+}
+
+static int list_structure(struct job *job)
+{
+	struct path_slice below = job->path.property;
+	char path[PATH_LEN_MAX + 2];
+	size_t used = 0;
+
+	below.text += strlen("structure");
+	below.len -= strlen("structure");
+	if (!job->table)
+		return list_families(job);
+	structure_family(below.text + 1, below.len - 1, &used);
+	snprintf(path, sizeof(path), "/structure/%.*s/", (int)used, below.text + 1);
+	below.text += 1 + used;
+	below.len -= 1 + used;
+	if (below.len) {
+		below.text++;
+		below.len--;
+	}
+	return list_table(job, job->table, NULL, path, below.text, below.len);
+}
+
+int listing(struct native *native, struct job *job)
+{
+	struct path_slice name = job->path.property;
+	char path[PATH_LEN_MAX + 2];
+	const char *text = job->req->path;
+	int n;
+
+	if (!job->table && !name.len)
+		return list_root(native, job);
+	if (!job->path.device.len && name.len >= 9 && memcmp(name.text, "structure", 9) == 0)
+		return list_structure(job);
+	if (!job->path.device.len) {
+		/* The first word names the table, the rest is a directory of it. */
+		const char *slash = memchr(name.text, '/', name.len);
+		size_t word = slash ? (size_t)(slash - name.text) + 1 : name.len;
+
+		name.text += word;
+		name.len -= word;
+		n = (int)(name.text - text) - (slash ? 1 : 0);
+	} else {
+		n = (int)(job->path.device.text + job->path.device.len - text);
+	}
+	snprintf(path, sizeof(path), "%s%.*s/", text[0] == '/' ? "" : "/", n, text);
+	return list_table(job, job->table, job->txn.device, path, name.text, name.len);
+}

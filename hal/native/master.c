@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "hal/native/native.h"
+
+#define PAUSE_MIN_NS (NATIVE_S / 5)
+#define PAUSE_MAX_NS (5 * NATIVE_S)
+
+static void take_channels(struct native *native)
+{
+	native->channels = native->master->ops->channels(native->master);
+	if (native->channels > NATIVE_CHANNELS)
+		native->channels = NATIVE_CHANNELS;
+	for (unsigned i = 0; i < native->channels; i++) {
+		struct channel *channel = &native->channel[i];
+		struct channel fresh = {.link = native->master->ops->channel(native->master, i),
+		                        .round = channel->round,
+		                        .errors = channel->errors,
+		                        .shorts = channel->shorts};
+		*channel = fresh;
+	}
+	memset(native->hold_ns, 0, sizeof(native->hold_ns));
+	memset(native->holder, 0, sizeof(native->holder));
+}
+
+int64_t master_step(struct native *native, int64_t now)
+{
+	char why[100] = "";
+
+	if (now < native->open_ns)
+		return native->open_ns;
+	int err = native->master->ops->open(native->master, why, sizeof(why));
+	if (err) {
+		native->pause_ns = native->pause_ns ? native->pause_ns * 2 : PAUSE_MIN_NS;
+		if (native->pause_ns > PAUSE_MAX_NS)
+			native->pause_ns = PAUSE_MAX_NS;
+		native->open_ns = native_now(native) + native->pause_ns;
+		if (!native->told && err != -ECANCELED)
+			native_event(native, BUS_DOWN, NULL, err, why);
+		native->told = true;
+		return native->open_ns;
+	}
+	native->pause_ns = 0;
+	native->told = false;
+	native->up = true;
+	native->up_ns = native_now(native);
+	take_channels(native);
+	for (unsigned i = 0; i < native->table.count; i++)
+		device_forget(&native->table.devices[i]);
+	hunt_reset(native, native->up_ns);
+	native_event(native, BUS_UP, NULL, 0, "");
+	return native->up_ns;
+}
+
+void master_down(struct native *native, int err, const char *why)
+{
+	native->master->ops->close(native->master);
+	native->up = false;
+	native->open_ns = native_now(native) + PAUSE_MIN_NS;
+	native->pause_ns = PAUSE_MIN_NS;
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (job->req)
+			job_answer(native, job, job->begun ? -ECONNRESET : -ENOTCONN);
+	}
+	if (err) {
+		native_event(native, BUS_DOWN, NULL, err, why);
+		native->told = true;
+	}
+}
+
+/* Conversions that were under way are void. */
+static void convert_again(struct native *native)
+{
+	for (unsigned i = 0; i < native->table.count; i++)
+		native->table.devices[i].converted_ns = 0;
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
+		if (native->jobs[i].req && native->jobs[i].state == JOB_CONVERTING)
+			job_restart(native, &native->jobs[i]);
+}
+
+static bool reopen(struct native *native)
+{
+	char why[100] = "";
+
+	native->master->ops->close(native->master);
+	int err = native->master->ops->open(native->master, why, sizeof(why));
+	if (err) {
+		master_down(native, err, why);
+		return false;
+	}
+	take_channels(native);
+	hunt_reset(native, native_now(native));
+	return true;
+}
+
+static void power_cycled(struct native *native, unsigned channel)
+{
+	for (unsigned i = 0; i < native->table.count; i++) {
+		struct device *device = &native->table.devices[i];
+
+		if (device->present && device->channel == channel)
+			hunt_restarted(native, device);
+	}
+}
+
+static const enum native_count counts[] = {
+	[LINK_RETRY] = COUNT_RETRIES,
+	[LINK_BUS_RESET] = COUNT_BUS_RESETS,
+	[LINK_CHIP_RESET] = COUNT_CHIP_RESETS,
+	[LINK_POWER_CYCLE] = COUNT_POWER_CYCLES,
+	[LINK_REOPEN] = COUNT_REOPENS,
+};
+
+bool master_recover(struct native *native, unsigned n, int err)
+{
+	struct channel *channel = &native->channel[n];
+
+	native_count(native, COUNT_LINK_ERRORS);
+	channel->errors++;
+	if (err == -ENODEV || err == -ECANCELED) {
+		master_down(native, err, err == -ENODEV ? "the adapter is gone" : "shutting down");
+		return false;
+	}
+	if (err == -ENXIO && channel->rung < LINK_CHIP_RESET)
+		channel->rung = LINK_CHIP_RESET;
+	while (channel->rung <= LINK_POWER_CYCLE) {
+		enum link_rung rung = (enum link_rung)channel->rung++;
+		struct link *link = channel->link;
+		int done = rung == LINK_RETRY || !link->ops->recover ? 0 : link->ops->recover(link, rung);
+
+		if (done == -EOPNOTSUPP)
+			continue;
+		native_count(native, counts[rung]);
+		if (rung >= LINK_CHIP_RESET)
+			convert_again(native);
+		if (done == 0 && rung == LINK_POWER_CYCLE)
+			power_cycled(native, n);
+		if (done == 0 || done == -ECOMM)
+			return true;
+	}
+	if (channel->rung == LINK_REOPEN) {
+		native_count(native, COUNT_REOPENS);
+		if (!reopen(native))
+			return false;
+		convert_again(native);
+		channel->rung = LINK_REOPEN + 1;
+		return true;
+	}
+	master_down(native, err, "the master chip does not recover");
+	return false;
+}
+
+void master_good(struct native *native, unsigned channel)
+{
+	native->channel[channel].rung = LINK_RETRY;
+}

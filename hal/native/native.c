@@ -1,0 +1,298 @@
+/* SPDX-License-Identifier: MIT */
+#include "hal/native/native.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define VOLATILE_NS (2 * NATIVE_S)
+#define STABLE_NS (300 * NATIVE_S)
+
+static const char *const count_names[COUNTS] = {
+	[COUNT_RETRIES] = "retries",
+	[COUNT_BUS_RESETS] = "recover_bus_reset",
+	[COUNT_CHIP_RESETS] = "recover_chip_reset",
+	[COUNT_POWER_CYCLES] = "recover_power_cycle",
+	[COUNT_REOPENS] = "recover_reopen",
+	[COUNT_CHECKSUMS] = "checksum_errors",
+	[COUNT_SHORTS] = "shorts",
+	[COUNT_LINK_ERRORS] = "link_errors",
+	[COUNT_CONVERSIONS] = "conversions",
+	[COUNT_SEARCHES] = "search_passes",
+	[COUNT_TRANSACTIONS] = "wire_transactions",
+	[COUNT_READS] = "reads",
+	[COUNT_WRITES] = "writes",
+	[COUNT_DIRECTORIES] = "directories",
+	[COUNT_CACHE_HITS] = "cache_hits",
+	[COUNT_POWER_FAULTS] = "power_faults",
+	[COUNT_FOUND] = "devices_found",
+	[COUNT_LOST] = "devices_lost",
+	[COUNT_RESTARTED] = "devices_restarted",
+	[COUNT_WIRE_US] = "wire_us",
+	[COUNT_I2C_TRANSFERS] = "i2c_transfers",
+	[COUNT_SYSCALLS] = "syscalls",
+};
+
+int native_create(const struct bus_ops *ops, const struct link_master_ops *master,
+                  const char *where, const struct bus_env *env, struct bus **bus, char *why,
+                  size_t why_size)
+{
+	struct native *native = calloc(1, sizeof(*native));
+	int err = -ENOMEM;
+
+	if (!native)
+		return err;
+	native->jobs = calloc(NATIVE_DEPTH, sizeof(*native->jobs));
+	if (!native->jobs || device_table_create(&native->table) || cache_create(&native->cache) ||
+	    bus_init(&native->bus, ops, env))
+		goto out;
+	err = master->create(where, env, &native->master, why, why_size);
+	if (err)
+		goto out;
+	native->volatile_ns = VOLATILE_NS;
+	native->stable_ns = STABLE_NS;
+	native->temperature_scale = 'C';
+	snprintf(native->pressure_scale, sizeof(native->pressure_scale), "mbar");
+	for (int i = 0; i < COUNTS; i++)
+		native->counters[i].name = count_names[i];
+	*bus = &native->bus;
+	return 0;
+out:
+	native_destroy(&native->bus);
+	free(native->bus.queue);
+	return err;
+}
+
+void native_destroy(struct bus *bus)
+{
+	struct native *native = (struct native *)bus;
+
+	if (native->master) {
+		if (native->up)
+			native->master->ops->close(native->master);
+		native->master->ops->destroy(native->master);
+	}
+	device_table_destroy(&native->table);
+	cache_destroy(&native->cache);
+	free(native->jobs);
+	free(native);
+}
+
+int64_t native_now(const struct native *native)
+{
+	return native->bus.env->now(native->bus.env->ctx);
+}
+
+void native_count(struct native *native, enum native_count what)
+{
+	__atomic_store_n(&native->count[what], native->count[what] + 1, __ATOMIC_RELAXED);
+}
+
+/* The reader gets copies of whole words: the names stay, the values are taken anew each time. */
+const struct bus_counter *native_counters(struct bus *bus, size_t *n)
+{
+	struct native *native = (struct native *)bus;
+
+	for (int i = 0; i < COUNTS; i++)
+		__atomic_store_n(&native->counters[i].value,
+		                 __atomic_load_n(&native->count[i], __ATOMIC_RELAXED),
+		                 __ATOMIC_RELAXED);
+	*n = COUNTS;
+	return native->counters;
+}
+
+void native_event(struct native *native, enum bus_news news, const uint8_t rom[8], int err,
+                  const char *text)
+{
+	struct bus_event event = {.news = (uint8_t)news, .err = err};
+
+	if (rom)
+		memcpy(event.rom, rom, sizeof(event.rom));
+	snprintf(event.text, sizeof(event.text), "%s", text);
+	native->bus.env->event(native->bus.env->ctx, &event);
+}
+
+bool native_held(const struct native *native, unsigned channel, const struct job *job, int64_t now)
+{
+	unsigned chip = native->channel[channel].link->chip % NATIVE_CHANNELS;
+
+	return native->hold_ns[chip] > now && (!job || native->holder[chip] != job);
+}
+
+int native_submit(struct bus *bus, struct bus_req *req)
+{
+	struct native *native = (struct native *)bus;
+
+	for (unsigned i = 0; native->lent < NATIVE_DEPTH && i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (job->req)
+			continue;
+		memset(job, 0, sizeof(*job));
+		job->req = req;
+		job->order = native->order++;
+		job->bus = -1;
+		native->lent++;
+		return 0;
+	}
+	return -EAGAIN;
+}
+
+int native_cancel(struct bus *bus, uint32_t id)
+{
+	struct native *native = (struct native *)bus;
+
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (!job->req || job->req->id != id)
+			continue;
+		if (job->begun)
+			return -EBUSY;
+		job_answer(native, job, -ECANCELED);
+		return 0;
+	}
+	return -ENOENT;
+}
+
+void native_suspend(struct bus *bus, bool yes)
+{
+	struct native *native = (struct native *)bus;
+
+	if (yes && native->up)
+		master_down(native, 0, "suspended");
+	native->suspended = yes;
+	native->open_ns = 0;
+}
+
+static void expire(struct native *native, int64_t now, int64_t *next)
+{
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (!job->req)
+			continue;
+		if (job->req->deadline_ns <= now)
+			job_answer(native, job, job->begun ? -EINPROGRESS : -ETIME);
+		else if (job->req->deadline_ns < *next)
+			*next = job->req->deadline_ns;
+	}
+}
+
+static bool goes_first(const struct job *a, const struct job *b)
+{
+	if (!b || a->req->prio != b->req->prio)
+		return !b || a->req->prio < b->req->prio;
+	return (int32_t)(a->order - b->order) < 0;
+}
+
+static struct job *pick(struct native *native, int64_t now, int64_t *next)
+{
+	struct job *best = NULL;
+
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (job->req && job->state == JOB_NEW)
+			job_look(native, job, now);
+		if (job->req && job_ready(native, job, now, next) && goes_first(job, best))
+			best = job;
+	}
+	return best;
+}
+
+static void refuse_all(struct native *native)
+{
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
+		if (native->jobs[i].req)
+			job_answer(native, &native->jobs[i], -ENOTCONN);
+}
+
+static void take_cost(struct native *native)
+{
+	struct link_cost sum = {0};
+
+	for (unsigned i = 0; i < native->channels; i++) {
+		struct link_cost one = {0};
+		struct link *link = native->channel[i].link;
+
+		if (!link->ops->cost)
+			continue;
+		link->ops->cost(link, &one);
+		sum.wire_ns += one.wire_ns;
+		sum.transfers += one.transfers;
+		sum.syscalls += one.syscalls;
+	}
+	__atomic_store_n(&native->count[COUNT_WIRE_US], sum.wire_ns / 1000, __ATOMIC_RELAXED);
+	__atomic_store_n(&native->count[COUNT_I2C_TRANSFERS], sum.transfers, __ATOMIC_RELAXED);
+	__atomic_store_n(&native->count[COUNT_SYSCALLS], sum.syscalls, __ATOMIC_RELAXED);
+}
+
+static int64_t step(struct native *native, int64_t now)
+{
+	int64_t next = INT64_MAX;
+
+	expire(native, now, &next);
+	struct job *job = hunt_initial(native) ? NULL : pick(native, now, &next);
+
+	if (job && job->req->prio <= BUS_OUTPUT) {
+		job_step(native, job, now);
+		return now;
+	}
+	if (hunt_step(native, now, !job, &next) || convert_step(native, now, &next))
+		return now;
+	if (job) {
+		job_step(native, job, now);
+		return now;
+	}
+	return next > now ? next : now;
+}
+
+int64_t native_step(struct bus *bus, int64_t now)
+{
+	struct native *native = (struct native *)bus;
+	int64_t next;
+
+	if (native->suspended) {
+		refuse_all(native);
+		return INT64_MAX;
+	}
+	if (!native->up) {
+		next = master_step(native, now);
+		if (!native->up)
+			refuse_all(native);
+		return next;
+	}
+	next = step(native, now);
+	if (native->up)
+		take_cost(native);
+	return next;
+}
+
+int native_set_alias(struct native *native, struct device *device, const char *text, size_t len)
+{
+	static const char *const words[] = {"uncached", "alarm", "settings", "system", "statistics",
+	                                    "structure", "simultaneous", "interface"};
+	char *alias = device_alias(&native->table, device);
+	uint8_t rom[8];
+
+	while (len && (text[len - 1] == '\n' || text[len - 1] == ' '))
+		len--;
+	if (len > DEVICE_ALIAS_MAX || rom_parse(text, len, rom) != -EINVAL)
+		return -EINVAL;
+	for (size_t i = 0; i < len; i++)
+		if (text[i] == '/' || (unsigned char)text[i] < ' ')
+			return -EINVAL;
+	if (len >= 4 && memcmp(text, "bus.", 4) == 0)
+		return -EINVAL;
+	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
+		if (strlen(words[i]) == len && memcmp(words[i], text, len) == 0)
+			return -EINVAL;
+	struct device *other = device_by_alias(&native->table, text, len);
+	if (other)
+		device_alias(&native->table, other)[0] = '\0';
+	memcpy(alias, text, len);
+	alias[len] = '\0';
+	return 0;
+}

@@ -1,0 +1,235 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The native bus: the OWFS namespace over the links of one master. The parts:
+ *
+ *   native.c   the bus contract: create, submit, step, cancel
+ *   master.c   open, lost, opened again; the recovery ladder
+ *   resolve.c  what a path means
+ *   job.c      one request on its way: property reads and writes, retries, answers
+ *   convert.c  who converts when: one Convert T for all thermometers due on a channel
+ *   hunt.c     searches: background, directories, alarms; devices lost and found
+ *   listing.c  directories
+ *   virtual.c  /statistics, /system, /settings, interface, simultaneous
+ *   structure.c  /structure
+ *
+ * All of it runs on the bus's thread; but the counters, which any thread may read.
+ */
+#ifndef HAL_NATIVE_NATIVE_H
+#define HAL_NATIVE_NATIVE_H
+
+#include "hal/link.h"
+#include "hal/native/cache.h"
+#include "hal/native/device.h"
+#include "hal/native/family.h"
+#include "hal/native/search.h"
+#include "hal/path.h"
+
+#define NATIVE_DEPTH 400
+#define NATIVE_CHANNELS 64
+#define NATIVE_S INT64_C(1000000000)
+
+enum native_count {
+	COUNT_RETRIES,
+	COUNT_BUS_RESETS,
+	COUNT_CHIP_RESETS,
+	COUNT_POWER_CYCLES,
+	COUNT_REOPENS,
+	COUNT_CHECKSUMS,
+	COUNT_SHORTS,
+	COUNT_LINK_ERRORS,
+	COUNT_CONVERSIONS,
+	COUNT_SEARCHES,
+	COUNT_TRANSACTIONS,
+	COUNT_READS,
+	COUNT_WRITES,
+	COUNT_DIRECTORIES,
+	COUNT_CACHE_HITS,
+	COUNT_POWER_FAULTS,
+	COUNT_FOUND,
+	COUNT_LOST,
+	COUNT_RESTARTED,
+	COUNT_WIRE_US,
+	COUNT_I2C_TRANSFERS,
+	COUNT_SYSCALLS,
+	COUNTS,
+};
+
+enum job_kind {
+	JOB_NONE,      /* a free slot */
+	JOB_PROPERTY,  /* read or write of a property */
+	JOB_PROBE,     /* is the device there? */
+	JOB_SCAN,      /* a fresh list of devices */
+	JOB_ALARM,     /* a list of the devices in alarm */
+	JOB_LISTING,   /* a list that needs no wire */
+	JOB_STRUCTURE, /* read in /structure */
+	JOB_CONVERT,   /* write to /simultaneous/temperature */
+};
+
+enum job_state {
+	JOB_NEW,        /* not looked at */
+	JOB_QUEUED,     /* not begun, or to be begun again */
+	JOB_LOCATE,     /* the device is not in the table: look for it channel by channel */
+	JOB_PREPARE,    /* thermometer: power supply and resolution */
+	JOB_DUE,        /* thermometer: waits for the next Convert T */
+	JOB_CONVERTING, /* ... which is under way until ready_ns */
+	JOB_RUN,        /* transactions */
+};
+
+struct job {
+	struct bus_req *req;
+	uint8_t kind, state;
+	bool begun, fresh, verified, locks;
+	bool waits; /* PREPARE: until another job has read its resolution */
+	unsigned element; /* of a separate array, when all of it is asked for */
+	uint8_t tries;   /* transactions that failed in a row */
+	uint8_t faults;  /* power-fault readings in a row */
+	uint8_t channel; /* which one is being searched */
+	int bus;         /* N of /bus.N, -1: all */
+	const struct family *table; /* of a path without device */
+	struct path path;
+	uint32_t order;  /* lower came earlier */
+	const struct property *property;
+	int extension;
+	int64_t ready_ns; /* CONVERTING */
+	size_t out;       /* bytes of the answer so far */
+	size_t taken;     /* WRITE: bytes used */
+	uint8_t families[8]; /* ALARM: only these; 0 behind the last */
+	uint8_t family_i;
+	bool merged;      /* WRITE of one element: the others have been read */
+	bool searching;
+	bool heard;       /* SCAN and ALARM: a channel answered */
+	size_t mark;      /* ... bytes of the answer before this channel */
+	struct search search;
+	struct txn txn;
+};
+
+struct channel {
+	struct link *link;
+	uint8_t rung;          /* the next of the recovery ladder */
+	uint8_t alarm_searches;
+	bool listed;           /* its devices have been searched for once */
+	bool power_asked;      /* all thermometers were asked for their supply at once */
+	bool all_external;     /* ... and none is parasitic */
+	bool is_short;
+	int64_t due_ns;        /* when the first thermometer became due; 0: none */
+	int64_t simultaneous_ns; /* end of the last conversion of all; 0: none */
+	int64_t search_ns;     /* next pass of the background search */
+	uint32_t round;        /* number of the background search */
+	int64_t round_ns;      /* when it began */
+	bool searching, dirty;
+	struct search search;
+	uint64_t errors, shorts, resets_failed;
+};
+
+struct native {
+	struct bus bus;
+	struct link_master *master;
+	bool up, suspended, told;
+	unsigned hunter; /* the channel whose turn to be searched is next */
+	unsigned channels;
+	struct channel channel[NATIVE_CHANNELS];
+	int64_t hold_ns[NATIVE_CHANNELS]; /* by chip: its strong pull-up is on until then */
+	struct job *holder[NATIVE_CHANNELS];
+	int64_t open_ns;  /* next try to open */
+	int64_t pause_ns; /* between tries */
+	int64_t up_ns;
+	uint32_t order;
+	struct device_table table;
+	struct cache cache;
+	struct job *jobs; /* NATIVE_DEPTH */
+	unsigned lent;
+	int64_t volatile_ns, stable_ns; /* how long cached values live */
+	char temperature_scale;
+	char pressure_scale[8];
+	uint64_t count[COUNTS]; /* written by one thread, whole for any */
+	struct bus_counter counters[COUNTS];
+	uint64_t cost_seen[3];
+};
+
+/*
+ * For a scheme's bus_ops.create: a native bus over this kind of master. All errors as
+ * bus_ops.create. The other slots are NATIVE_BUS_SLOTS.
+ */
+int native_create(const struct bus_ops *ops, const struct link_master_ops *master,
+                  const char *where, const struct bus_env *env, struct bus **bus, char *why,
+                  size_t why_size);
+void native_destroy(struct bus *bus);
+int native_submit(struct bus *bus, struct bus_req *req);
+int64_t native_step(struct bus *bus, int64_t now);
+int native_cancel(struct bus *bus, uint32_t id);
+void native_suspend(struct bus *bus, bool yes);
+const struct bus_counter *native_counters(struct bus *bus, size_t *n);
+#define NATIVE_BUS_SLOTS                                                                  \
+	.depth = NATIVE_DEPTH, .searches = true, .destroy = native_destroy,               \
+	.submit = native_submit, .step = native_step, .cancel = native_cancel,            \
+	.suspend = native_suspend, .counters = native_counters
+
+/* --- Shared between the parts --- */
+int64_t native_now(const struct native *native);
+void native_count(struct native *native, enum native_count what);
+void native_event(struct native *native, enum bus_news news, const uint8_t rom[8], int err,
+                  const char *text);
+int native_set_alias(struct native *native, struct device *device, const char *text, size_t len);
+bool native_held(const struct native *native, unsigned channel, const struct job *job, int64_t now);
+
+/* master.c */
+int64_t master_step(struct native *native, int64_t now); /* opens; when to try again */
+void master_down(struct native *native, int err, const char *why);
+/* After a link's error: one rung. False: the target is down now. */
+bool master_recover(struct native *native, unsigned channel, int err);
+void master_good(struct native *native, unsigned channel);
+
+/* resolve.c: fills the job from its path. 0 or the error to answer. */
+int resolve(struct native *native, struct job *job);
+
+/* job.c */
+void job_answer(struct native *native, struct job *job, int err);
+/* One transaction or less. */
+void job_step(struct native *native, struct job *job, int64_t now);
+/* What the path means, and the answer, if it needs no wire. */
+void job_look(struct native *native, struct job *job, int64_t now);
+/* A transaction of the job has ended with err (0: well): what the wire showed of link and device. */
+void job_saw(struct native *native, struct job *job, int err, int64_t now);
+/* It failed: again, or answer. */
+void job_failed(struct native *native, struct job *job, int err);
+/* May it do its next transaction now? If not, *next is lowered to when it may. */
+bool job_ready(const struct native *native, const struct job *job, int64_t now, int64_t *next);
+void job_restart(struct native *native, struct job *job);
+
+/* convert.c */
+void convert_begin(struct native *native, struct job *job, int64_t now);
+/* Is the chip, as far as is known, at the resolution that the job asks for? */
+bool convert_right(const struct job *job);
+void convert_prepare(struct native *native, struct job *job, int64_t now);
+/* Start a conversion where one is due. True: did a transaction. *next: when to look again. */
+bool convert_step(struct native *native, int64_t now, int64_t *next);
+void convert_all(struct native *native, struct job *job, int64_t now);
+
+/* hunt.c */
+void hunt_found(struct native *native, const uint8_t rom[8], unsigned channel, int64_t now);
+void hunt_lost(struct native *native, struct device *device);
+void hunt_restarted(struct native *native, struct device *device);
+void hunt_seen(struct device *device, int64_t now);
+void hunt_reset(struct native *native, int64_t now);
+/* One pass of a background search; true: did one. initial: at once, for the first list. */
+bool hunt_step(struct native *native, int64_t now, bool idle, int64_t *next);
+bool hunt_initial(const struct native *native);
+void hunt_locate(struct native *native, struct job *job, int64_t now);
+void hunt_scan(struct native *native, struct job *job, int64_t now);
+
+/* listing.c */
+/* A whole answer that needs no wire. 0 or the error. */
+int listing(struct native *native, struct job *job);
+/* One more device in an answer. */
+int listing_add_device(struct native *native, struct job *job, const struct device *device);
+/* What stands in / and /bus.N beside the devices. */
+int listing_add_rest(struct native *native, struct job *job);
+
+/* virtual.c: the table of names in /statistics and the like; NULL: none of that name. */
+const struct family *virtual_family(const char *name, size_t len);
+
+/* structure.c: reading a path in /structure. The text's length or an error. */
+int structure_read(const char *path, size_t len, char *text, size_t room);
+const struct family *structure_family(const char *path, size_t len, size_t *used);
+
+#endif

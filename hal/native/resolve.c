@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/native/format.h"
+#include "hal/native/native.h"
+
+static bool slice_starts(struct path_slice slice, const char *word)
+{
+	size_t n = strlen(word);
+
+	return slice.len >= n && memcmp(slice.text, word, n) == 0 &&
+	       (slice.len == n || slice.text[n] == '/');
+}
+
+/* Is `name` a directory of the table: does a property stand below it? */
+static bool is_directory(const struct family *family, const struct device *device, const char *name,
+                         size_t len)
+{
+	const struct property *property = NULL;
+
+	while ((property = family_next(family, device, property)))
+		if (strncmp(property->name, name, len) == 0 && property->name[len] == '/')
+			return true;
+	return false;
+}
+
+static int resolve_property(struct job *job, const struct family *family,
+                            const struct device *device, const char *name, size_t len)
+{
+	size_t name_len;
+	int extension = extension_split(name, len, &name_len);
+	const struct property *property = family_property(family, device, name, name_len);
+
+	if (!property && extension != EXTENSION_NONE) {
+		extension = EXTENSION_NONE;
+		property = family_property(family, device, name, len);
+		name_len = len;
+	}
+	bool directory = property ? property->type == PROPERTY_DIRECTORY
+	                          : is_directory(family, device, name, len);
+	if (!property && !directory)
+		return -ENOENT;
+	if (directory) {
+		if (job->req->op == BUS_READ || job->req->op == BUS_WRITE)
+			return -EISDIR;
+		job->kind = job->req->op == BUS_DIR ? JOB_LISTING : JOB_PROBE;
+		return 0;
+	}
+	if (!extension_fits(property, extension))
+		return -ENOENT;
+	job->property = property;
+	job->extension = extension;
+	if (job->req->op == BUS_DIR)
+		return -ENOTDIR;
+	if (job->req->op == BUS_PROBE) {
+		job->kind = JOB_PROBE;
+		return 0;
+	}
+	job->kind = JOB_PROPERTY;
+	if (!(property->access & (job->req->op == BUS_READ ? ACCESS_READ : ACCESS_WRITE)))
+		return -EACCES;
+	if (family->is_virtual && property->convert && job->req->op == BUS_WRITE)
+		job->kind = JOB_CONVERT;
+	return 0;
+}
+
+static int resolve_device(struct native *native, struct job *job)
+{
+	struct path *path = &job->path;
+	struct device *device, unknown = {0};
+
+	if (!path->has_rom) {
+		device = device_by_alias(&native->table, path->last.text, path->last.len);
+		if (!device)
+			return -ENODEV;
+		memcpy(path->rom, device->rom, sizeof(path->rom));
+		path->has_rom = true;
+	}
+	/* Devices behind a coupler are on a branch that is not switched on here. */
+	if (path->device.len != path->last.len)
+		return -ENODEV;
+	device = device_find(&native->table, path->rom);
+	if (!device) {
+		device = &unknown;
+		memcpy(device->rom, path->rom, sizeof(device->rom));
+		device->family = family_of(path->rom[0]);
+	} else if (job->bus >= 0 && device->present && device->channel != job->bus) {
+		return -ENODEV;
+	} else {
+		job->txn.device = device;
+	}
+	job->table = device->family;
+	if (path->property.len)
+		return resolve_property(job, device->family, device, path->property.text,
+		                        path->property.len);
+	if (job->req->op == BUS_READ || job->req->op == BUS_WRITE)
+		return -EISDIR;
+	job->kind = job->req->op == BUS_DIR ? JOB_LISTING : JOB_PROBE;
+	return 0;
+}
+
+static int hex(char c)
+{
+	if (c >= '0' && c <= '9')
+		return c - '0';
+	return c >= 'A' && c <= 'F' ? c - 'A' + 10 : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+}
+
+/* "/alarm/29,12": only the devices of these families. False: no such list. */
+static bool take_families(struct job *job)
+{
+	struct path_slice list = job->path.device;
+	size_t n = 0;
+
+	if (job->path.has_rom || job->path.property.len || list.len % 3 != 2)
+		return false;
+	for (size_t i = 0; i < list.len; i += 3, n++) {
+		int high = hex(list.text[i]), low = hex(list.text[i + 1]);
+
+		if (n == sizeof(job->families) || high < 0 || low < 0 || (high | low) == 0)
+			return false;
+		if (i + 2 < list.len && list.text[i + 2] != ',')
+			return false;
+		job->families[n] = (uint8_t)(high << 4 | low);
+	}
+	return true;
+}
+
+static int resolve_directory(struct job *job)
+{
+	if (job->req->op == BUS_PROBE) {
+		job->kind = JOB_LISTING;
+		return 0;
+	}
+	if (job->req->op != BUS_DIR)
+		return -EISDIR;
+	job->kind = job->path.alarm ? JOB_ALARM : job->fresh ? JOB_SCAN : JOB_LISTING;
+	return 0;
+}
+
+static int resolve_structure(struct job *job)
+{
+	struct path_slice below = job->path.property;
+	size_t used;
+
+	below.text += strlen("structure");
+	below.len -= strlen("structure");
+	if (job->req->op == BUS_READ)
+		job->kind = JOB_STRUCTURE;
+	else if (job->req->op == BUS_WRITE)
+		return -EACCES;
+	else
+		job->kind = JOB_LISTING;
+	if (below.len <= 1)
+		return job->req->op == BUS_READ ? -EISDIR : 0;
+	job->table = structure_family(below.text + 1, below.len - 1, &used);
+	if (!job->table)
+		return -ENOENT;
+	if (job->kind == JOB_STRUCTURE)
+		return 0;
+	if (used == below.len - 1)
+		return 0;
+	return is_directory(job->table, NULL, below.text + 1 + used + 1, below.len - 1 - used - 1)
+	               ? 0
+	               : -ENOTDIR;
+}
+
+static int resolve_virtual(struct job *job)
+{
+	struct path_slice name = job->path.property;
+	const char *slash = memchr(name.text, '/', name.len);
+	size_t len = slash ? (size_t)(slash - name.text) : name.len;
+
+	if (slice_starts(name, "structure"))
+		return resolve_structure(job);
+	if (slice_starts(name, "interface") && job->bus < 0)
+		return -ENOENT;
+	job->table = virtual_family(name.text, len);
+	if (!job->table)
+		return -ENOENT;
+	if (len == name.len) {
+		if (job->req->op == BUS_READ || job->req->op == BUS_WRITE)
+			return -EISDIR;
+		job->kind = JOB_LISTING;
+		return 0;
+	}
+	return resolve_property(job, job->table, NULL, slash + 1, name.len - len - 1);
+}
+
+int resolve(struct native *native, struct job *job)
+{
+	const char *text = job->req->path;
+
+	if (path_split(text, strlen(text), &job->path))
+		return -ENOENT;
+	job->fresh = job->req->fresh || job->path.uncached;
+	job->bus = job->path.bus;
+	if (job->bus >= (int)native->channels)
+		return -ENODEV;
+	if (job->path.alarm && job->req->op == BUS_DIR && job->path.device.len && take_families(job)) {
+		job->kind = JOB_ALARM;
+		return 0;
+	}
+	if (job->path.device.len)
+		return resolve_device(native, job);
+	if (job->path.property.len)
+		return resolve_virtual(job);
+	return resolve_directory(job);
+}

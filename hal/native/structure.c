@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT */
+/* /structure: what properties a family has, as owserver states them. */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "hal/native/format.h"
+#include "hal/native/native.h"
+
+const struct family *structure_family(const char *path, size_t len, size_t *used)
+{
+	const struct family *family;
+	char code[3];
+
+	*used = 2;
+	if (len < 2 || (len > 2 && path[2] != '/'))
+		return NULL;
+	for (unsigned n = 0; (family = family_nth(n)); n++) {
+		snprintf(code, sizeof(code), "%02X", family->code);
+		if (strncasecmp(code, path, 2) == 0)
+			return family;
+	}
+	return NULL;
+}
+
+static unsigned whole_size(const struct property *property, int extension)
+{
+	unsigned size = property_size(property), count = property->array.count;
+
+	if (extension == EXTENSION_BYTE)
+		return 12;
+	if (extension != EXTENSION_ALL)
+		return size;
+	return property->type == PROPERTY_BINARY ? size * count : size * count + count - 1;
+}
+
+int structure_read(const char *path, size_t len, char *text, size_t room)
+{
+	static const char *const access[] = {"oo", "ro", "wo", "rw"};
+	size_t used, name_len;
+	const struct family *family = structure_family(path, len, &used);
+
+	if (!family)
+		return -ENOENT;
+	if (used == len)
+		return -EISDIR;
+	path += used + 1;
+	len -= used + 1;
+	int extension = extension_split(path, len, &name_len);
+	const struct property *property = family_property(family, NULL, path, name_len);
+	if (!property || !extension_fits(property, extension))
+		return -ENOENT;
+	if (property->type == PROPERTY_DIRECTORY)
+		return -EISDIR;
+	char type = property->type == PROPERTY_BITS ? 'y' : (char)property->type;
+	int n = snprintf(text, room, "%c,%.6d,%.6d,%s,%.6u,%c,", type,
+	                 extension == EXTENSION_NONE ? 0 : extension < 0 ? extension : extension & 0xff,
+	                 property->array.count ? property->array.count : 1,
+	                 access[property->access & 3], whole_size(property, extension),
+	                 property->life);
+	return n < 0 || (size_t)n >= room ? -EMSGSIZE : n;
+}

@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: MIT */
+#include "hal/native/thermometer.h"
+
+#include <errno.h>
+#include <string.h>
+
+#define WRITE_SCRATCHPAD 0x4e
+#define READ_SCRATCHPAD 0xbe
+#define COPY_SCRATCHPAD 0x48
+#define COPY_NS (10 * TXN_MS)
+#define READ_TRIM_1 0x93
+#define READ_TRIM_2 0x68
+
+#define RAW_POWER_ON 0x0550
+#define RAW_BROKEN 0x07f8 /* 127.5 and above: no chip measures that */
+#define REMAIN_POWER_ON 0x0c
+#define NEAR_RAW (5 * 16)
+#define NEAR_NS (300 * 1000 * TXN_MS)
+
+int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9])
+{
+	static const uint8_t command = READ_SCRATCHPAD;
+	struct device *device = txn->device;
+	int err = txn_command(txn, &command, 1);
+
+	if (!err)
+		err = txn_read_crc8(txn, scratchpad, 9);
+	if (err || device->family->fixed)
+		return err;
+	uint8_t resolution = (uint8_t)(9 + (scratchpad[SP_CONFIG] >> 5 & 3));
+	if (device->resolution && device->resolution != resolution)
+		txn->restarted = true;
+	if (!device->stored)
+		device->stored = resolution;
+	device->resolution = resolution;
+	return 0;
+}
+
+int thermometer_raw(const struct device *device, const uint8_t scratchpad[9])
+{
+	int raw = (int16_t)(scratchpad[SP_LSB] | scratchpad[SP_MSB] << 8);
+
+	if (device->family->fixed) {
+		int per_degree = scratchpad[SP_PER_DEGREE];
+		int whole = raw >> 1;
+
+		if (!per_degree)
+			return raw * 8;
+		return whole * 16 - 4 + 16 * (per_degree - scratchpad[SP_REMAIN]) / per_degree;
+	}
+	return raw & ~((1 << (12 - (9 + (scratchpad[SP_CONFIG] >> 5 & 3)))) - 1);
+}
+
+/*
+ * The genuine chip's byte 6 is 16 less the last four bits of the temperature after a conversion,
+ * and 12 at power-on; many clones keep one value. Where the two agree nothing is learnt.
+ */
+static void learn_make(struct device *device, const uint8_t scratchpad[9])
+{
+	int low = scratchpad[SP_LSB] & 0xf;
+
+	if (device->family->fixed || device->resolution != 12 || low == 0 || low == 4)
+		return;
+	device->make = scratchpad[SP_REMAIN] == 16 - low ? MAKE_GENUINE : MAKE_CLONE;
+}
+
+int thermometer_guard(struct txn *txn, int raw, const uint8_t scratchpad[9], int64_t now)
+{
+	struct device *device = txn->device;
+
+	if (raw >= RAW_BROKEN)
+		return -ERANGE;
+	if (raw != RAW_POWER_ON)
+		return 0;
+	if (device->make == MAKE_GENUINE && scratchpad[SP_REMAIN] != REMAIN_POWER_ON)
+		return 0;
+	if (device->make != MAKE_GENUINE && device->raw_ns && now - device->raw_ns < NEAR_NS &&
+	    device->raw >= RAW_POWER_ON - NEAR_RAW)
+		return 0;
+	txn->restarted = scratchpad[SP_REMAIN] == REMAIN_POWER_ON;
+	return -ERANGE;
+}
+
+int64_t thermometer_convert_ns(const struct device *device)
+{
+	if (device->family->fixed || device->resolution < 9)
+		return 750 * TXN_MS;
+	return 750 * TXN_MS >> (12 - device->resolution);
+}
+
+static int write_scratchpad(struct txn *txn, const uint8_t scratchpad[9])
+{
+	uint8_t out[4] = {WRITE_SCRATCHPAD, scratchpad[SP_HIGH], scratchpad[SP_LOW],
+	                  scratchpad[SP_CONFIG]};
+
+	return txn_command(txn, out, txn->device->family->fixed ? 3 : 4);
+}
+
+static uint8_t config_for(uint8_t config, unsigned resolution)
+{
+	return (uint8_t)((config & ~0x60) | (resolution - 9) << 5);
+}
+
+int thermometer_prepare(struct txn *txn, unsigned resolution)
+{
+	struct device *device = txn->device;
+	uint8_t scratchpad[9];
+	int err;
+
+	switch (txn->phase) {
+	case 0:
+		err = thermometer_scratchpad(txn, txn->mem);
+		if (err || device->resolution == resolution)
+			return err;
+		txn->mem[SP_CONFIG] = config_for(txn->mem[SP_CONFIG], resolution);
+		txn->phase = 1;
+		return TXN_MORE;
+	case 1:
+		err = write_scratchpad(txn, txn->mem);
+		txn->phase = 2;
+		return err ? err : TXN_MORE;
+	default:
+		device->resolution = 0;
+		err = thermometer_scratchpad(txn, scratchpad);
+		device->ignores = !err && device->resolution != resolution;
+		return err;
+	}
+}
+
+int thermometer_read_temperature(struct txn *txn)
+{
+	struct device *device = txn->device;
+	uint8_t scratchpad[9];
+	int err = thermometer_scratchpad(txn, scratchpad);
+
+	if (err)
+		return err;
+	int64_t now = txn_now(txn);
+	int raw = thermometer_raw(device, scratchpad);
+	err = thermometer_guard(txn, raw, scratchpad, now);
+	if (err)
+		return err;
+	learn_make(device, scratchpad);
+	device->raw = (int16_t)raw;
+	device->raw_ns = now;
+	if (device->converted_ns && device->converted_ns < now)
+		txn->measured_ns = device->converted_ns;
+	txn->number[0] = raw / 16.0;
+	return 0;
+}
+
+int thermometer_read_limit(struct txn *txn)
+{
+	uint8_t scratchpad[9];
+	int err = thermometer_scratchpad(txn, scratchpad);
+
+	if (!err)
+		txn->number[0] = (int8_t)scratchpad[txn->property->arg];
+	return err;
+}
+
+/*
+ * The user's setting goes to the EEPROM, so that it outlives the chip's power, and with it the
+ * resolution that was there, not the one that a conversion asked for. What is there already is not
+ * written again: the EEPROM wears out.
+ */
+static int store(struct txn *txn)
+{
+	static const uint8_t copy = COPY_SCRATCHPAD;
+	struct device *device = txn->device;
+	uint8_t scratchpad[9];
+	int err;
+
+	switch (txn->phase) {
+	case 1:
+		err = write_scratchpad(txn, txn->mem);
+		txn->phase = 2;
+		return err ? err : TXN_MORE;
+	case 2:
+		device->resolution = 0;
+		err = thermometer_scratchpad(txn, scratchpad);
+		if (err)
+			return err;
+		if (memcmp(scratchpad + SP_HIGH, txn->mem + SP_HIGH, device->family->fixed ? 2 : 3))
+			return -EINVAL;
+		txn->phase = 3;
+		return TXN_MORE;
+	case 3:
+		err = txn_command_strong(txn, &copy, 1, COPY_NS);
+		txn->phase = 4;
+		return err;
+	default:
+		device->stored = device->resolution;
+		return 0;
+	}
+}
+
+int thermometer_write_limit(struct txn *txn)
+{
+	double value = txn->number[0];
+	int err;
+
+	if (txn->phase)
+		return store(txn);
+	if (!(value > -128.5 && value < 127.5))
+		return -EINVAL;
+	int limit = (int)(value < 0 ? value - 0.5 : value + 0.5);
+	err = thermometer_scratchpad(txn, txn->mem);
+	if (err || (int8_t)txn->mem[txn->property->arg] == limit)
+		return err;
+	txn->mem[txn->property->arg] = (uint8_t)limit;
+	if (!txn->device->family->fixed)
+		txn->mem[SP_CONFIG] = config_for(txn->mem[SP_CONFIG], txn->device->stored);
+	txn->phase = 1;
+	return TXN_MORE;
+}
+
+int thermometer_read_tempres(struct txn *txn)
+{
+	uint8_t scratchpad[9];
+	int err = thermometer_scratchpad(txn, scratchpad);
+
+	txn->number[0] = txn->device->stored;
+	return err;
+}
+
+int thermometer_write_tempres(struct txn *txn)
+{
+	int err;
+
+	if (txn->phase)
+		return store(txn);
+	if (!(txn->number[0] >= 9 && txn->number[0] <= 12))
+		return -EINVAL;
+	unsigned resolution = (unsigned)txn->number[0];
+	err = thermometer_scratchpad(txn, txn->mem);
+	if (err || txn->device->stored == resolution)
+		return err;
+	txn->mem[SP_CONFIG] = config_for(txn->mem[SP_CONFIG], resolution);
+	txn->phase = 1;
+	return TXN_MORE;
+}
+
+int thermometer_ask_power(struct txn *txn)
+{
+	static const uint8_t command = THERMOMETER_READ_POWER;
+	int bit = txn_command(txn, &command, 1);
+
+	if (!bit)
+		bit = txn_bit(txn);
+	if (bit >= 0)
+		txn->device->power = bit ? POWER_EXTERNAL : POWER_PARASITE;
+	return bit;
+}
+
+/* A one is also what one hears of a chip that is not there: the scratchpad proves that it is. */
+int thermometer_read_power(struct txn *txn)
+{
+	uint8_t scratchpad[9];
+	int bit;
+
+	if (txn->phase) {
+		txn->number[0] = 1;
+		return thermometer_scratchpad(txn, scratchpad);
+	}
+	bit = thermometer_ask_power(txn);
+	txn->number[0] = 0;
+	txn->phase = 1;
+	return bit > 0 ? TXN_MORE : bit;
+}
+
+int thermometer_read_scratchpad(struct txn *txn)
+{
+	txn->len = 9;
+	return thermometer_scratchpad(txn, txn->data);
+}
+
+/* Of the dies that OWFS tells apart only the last is still around: B6 and B7 left the market
+ * before 2001. */
+int thermometer_read_die(struct txn *txn)
+{
+	memcpy(txn->data, "C2", 2);
+	txn->len = 2;
+	return 0;
+}
+
+int thermometer_read_trim(struct txn *txn)
+{
+	static const uint8_t commands[] = {READ_TRIM_1, READ_TRIM_2};
+	int err = txn_command(txn, &commands[txn->phase], 1);
+
+	if (!err)
+		err = txn_read(txn, &txn->mem[txn->phase], 1);
+	txn->silent = false;
+	if (err || txn->phase++ == 0)
+		return err ? err : TXN_MORE;
+	txn->number[0] = txn->mem[0] | txn->mem[1] << 8;
+	return 0;
+}
+
+/* Only the B7 die has a trim value to repair. */
+int thermometer_refuse_trim(struct txn *txn)
+{
+	(void)txn;
+	return -EINVAL;
+}
+
+int thermometer_read_trim_valid(struct txn *txn)
+{
+	txn->number[0] = 1;
+	return 0;
+}
+
+int thermometer_read_trim_blanket(struct txn *txn)
+{
+	txn->number[0] = 0;
+	return 0;
+}

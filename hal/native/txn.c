@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: MIT */
+#include "hal/native/txn.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <string.h>
+
+#include "hal/native/crc.h"
+#include "hal/native/search.h"
+#include "hal/path.h"
+
+#define MATCH_ROM 0x55
+#define BYTES_MAX 64
+
+int64_t txn_now(const struct txn *txn)
+{
+	return txn->link->env->now(txn->link->env->ctx);
+}
+
+int txn_wait(struct txn *txn, int64_t ns)
+{
+	txn->wake_ns = txn_now(txn) + ns;
+	return TXN_MORE;
+}
+
+static int of_link(struct txn *txn, int result)
+{
+	txn->on_wire = true;
+	if (result < 0)
+		txn->link_error = result;
+	return result;
+}
+
+static int command(struct txn *txn, const uint8_t *bytes, size_t n, enum link_after after)
+{
+	uint8_t out[9 + BYTES_MAX] = {MATCH_ROM};
+
+	assert(n <= BYTES_MAX);
+	int present = of_link(txn, txn->link->ops->reset(txn->link));
+	if (present < 0)
+		return present;
+	if (!present) {
+		txn->silent = true;
+		return -ENODEV;
+	}
+	memcpy(out + 1, txn->device->rom, 8);
+	memcpy(out + 9, bytes, n);
+	return of_link(txn, txn->link->ops->write(txn->link, out, 9 + n, after));
+}
+
+static int hold(struct txn *txn, int err, int64_t ns)
+{
+	if (err < 0)
+		return err;
+	txn->strong = true;
+	return txn_wait(txn, ns);
+}
+
+int txn_command(struct txn *txn, const uint8_t *bytes, size_t n)
+{
+	return command(txn, bytes, n, LINK_IDLE);
+}
+
+int txn_command_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
+{
+	return hold(txn, command(txn, bytes, n, LINK_STRONG), ns);
+}
+
+int txn_write(struct txn *txn, const uint8_t *bytes, size_t n)
+{
+	return of_link(txn, txn->link->ops->write(txn->link, bytes, n, LINK_IDLE));
+}
+
+int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
+{
+	return hold(txn, of_link(txn, txn->link->ops->write(txn->link, bytes, n, LINK_STRONG)), ns);
+}
+
+int txn_read(struct txn *txn, uint8_t *bytes, size_t n)
+{
+	int err = of_link(txn, txn->link->ops->read(txn->link, bytes, n));
+
+	if (err < 0)
+		return err;
+	txn->silent = true;
+	for (size_t i = 0; i < n && txn->silent; i++)
+		txn->silent = bytes[i] == 0xff;
+	txn->heard |= !txn->silent;
+	return 0;
+}
+
+int txn_bit(struct txn *txn)
+{
+	return of_link(txn, txn->link->ops->bit(txn->link, true, LINK_IDLE));
+}
+
+int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n)
+{
+	int err = txn_read(txn, bytes, n);
+	bool zeros = true;
+
+	if (err < 0)
+		return err;
+	for (size_t i = 0; i < n && zeros; i++)
+		zeros = bytes[i] == 0;
+	return zeros || rom_crc8(bytes, n) ? -EBADMSG : 0;
+}
+
+int txn_read_crc16(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t *bytes, size_t n)
+{
+	uint8_t in[BYTES_MAX + 2];
+
+	assert(n <= BYTES_MAX);
+	int err = txn_read(txn, in, n + 2);
+	if (err < 0)
+		return err;
+	uint16_t crc = onewire_crc16(onewire_crc16(0, head, head_n), in, n);
+	if (!onewire_crc16_matches(crc, in + n))
+		return -EBADMSG;
+	memcpy(bytes, in, n);
+	return 0;
+}
+
+int txn_verify(struct txn *txn, bool alarm)
+{
+	int there = of_link(txn, search_verify(txn->link, txn->device->rom, alarm));
+
+	txn->heard |= there > 0;
+	return there;
+}
