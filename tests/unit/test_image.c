@@ -199,6 +199,14 @@ static void test_texts_of_two_states_stand_apart(void)
 	TEST_ASSERT_EQUAL_MEMORY("12345678", image.base + image.records[2].text_off + 8, 8);
 }
 
+static void test_check_words_are_those_of_the_documentation(void)
+{
+	static const uint32_t words[] = {1, 2, 3};
+
+	TEST_ASSERT_EQUAL_HEX32(0x2e68fe0d, ows_check(words, 3));
+	TEST_ASSERT_EQUAL_HEX32(0xe1147a2b, ows_check_bytes("owsd", 4));
+}
+
 static void test_retiring_rubbish_touches_nothing(void)
 {
 	char rubbish[512];
@@ -225,6 +233,7 @@ int main(void)
 	RUN_TEST(test_the_sequence_word_wraps);
 	RUN_TEST(test_a_write_broken_off_anywhere_leaves_the_older_state_whole);
 	RUN_TEST(test_texts_of_two_states_stand_apart);
+	RUN_TEST(test_check_words_are_those_of_the_documentation);
 	RUN_TEST(test_retiring_rubbish_touches_nothing);
 	return UNITY_END();
 }
