@@ -1,114 +1,125 @@
 /* SPDX-License-Identifier: MIT */
-/* The families' tables against owserver's own /structure, of which data/ has an extract. */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "src/engine/structure.h"
 
-#include "hal/native/family.h"
-#include "hal/native/format.h"
-#include "hal/native/native.h"
 #include "unity.h"
 
-enum { FAMILY, NAME, TYPE, ARRAY, ACCESS, SIZE, LIFE, VISIBILITY, RAW, COLUMNS };
+#include <errno.h>
+#include <string.h>
 
-static unsigned rows_of[256];
+void setUp(void) {}
+void tearDown(void) {}
 
-void setUp(void)
+static int parse(const char *text, struct structure_entry *entry)
 {
+	return structure_parse(text, strlen(text), entry);
 }
 
-void tearDown(void)
+static const char *fault(const char *text, enum ows_type type, bool output)
 {
+	struct config_item item = { .type = type, .output = output, .readable = !output };
+	struct structure_entry entry;
+
+	TEST_ASSERT_EQUAL_INT(0, parse(text, &entry));
+	return structure_fault(&entry, &item);
 }
 
-static void split(char *line, char *column[COLUMNS])
+/* All texts are the genuine owserver's. */
+static void test_entries_of_the_genuine_owserver_parse(void)
 {
-	line[strcspn(line, "\n")] = '\0';
-	for (int i = 0; i < COLUMNS; i++) {
-		column[i] = line;
-		line += strcspn(line, "\t");
-		if (*line)
-			*line++ = '\0';
-	}
+	struct structure_entry entry;
+
+	TEST_ASSERT_EQUAL_INT(0, parse("t,000000,000001,ro,000012,v,", &entry));
+	TEST_ASSERT_EQUAL_INT('t', entry.type);
+	TEST_ASSERT_EQUAL_INT(0, entry.index);
+	TEST_ASSERT_EQUAL_STRING("ro", entry.access);
+	TEST_ASSERT_EQUAL_INT(0, parse("y,-000002,000008,rw,000012,s,", &entry));
+	TEST_ASSERT_EQUAL_INT(-2, entry.index);
+	TEST_ASSERT_EQUAL_STRING("rw", entry.access);
 }
 
-static void check_array(const struct property *property, const char *array, const char *name)
+static void test_anything_else_is_refused(void)
 {
-	char text[40] = "-";
+	static const char *const bad[] = {
+		"", "t", "t,000000", "28.551DDF030000", "t,000000,000001,xx,000012,v,",
+		"?,000000,000001,ro,000012,v,", "t;000000;000001;ro;000012;v;",
+		"t,00000000000000000000000000000000000000000000000000000000000000000,1,ro,1,v,",
+	};
+	struct structure_entry entry;
 
-	if (property->array.index != INDEX_NONE)
-		snprintf(text, sizeof(text), "%u:%s:%s", property->array.count,
-		         property->array.index == INDEX_LETTERS ? "letters" : "numbers",
-		         property->array.aggregate ? "aggregate" : "separate");
-	TEST_ASSERT_EQUAL_STRING_MESSAGE(array, text, name);
+	for (unsigned i = 0; i < sizeof(bad) / sizeof(bad[0]); i++)
+		TEST_ASSERT_EQUAL_INT_MESSAGE(-EILSEQ, parse(bad[i], &entry), bad[i]);
 }
 
-static void check_row(char *column[COLUMNS])
+static void test_a_temperature_fits_a_double_and_a_long(void)
 {
-	unsigned code = (unsigned)strtoul(column[FAMILY], NULL, 16);
-	const struct family *family = family_of((uint8_t)code);
-	char name[100], text[64];
-
-	if (family == &family_common)
-		return;
-	rows_of[code]++;
-	snprintf(name, sizeof(name), "%s/%s", column[FAMILY], column[NAME]);
-	const struct property *property =
-		family_property(family, NULL, column[NAME], strlen(column[NAME]));
-	TEST_ASSERT_NOT_NULL_MESSAGE(property, name);
-	bool directory = property->type == PROPERTY_DIRECTORY;
-	TEST_ASSERT_EQUAL_CHAR_MESSAGE(column[TYPE][0],
-	                               property->type == PROPERTY_BITS ? 'y' : property->type, name);
-	check_array(property, column[ARRAY], name);
-	TEST_ASSERT_EQUAL_INT_MESSAGE(strcmp(column[VISIBILITY], "hidden") == 0, property->hidden,
-	                              name);
-	TEST_ASSERT_EQUAL_INT_MESSAGE(strncmp(column[VISIBILITY], "VISIBLE", 7) == 0,
-	                              property->visible != NULL, name);
-	if (directory)
-		return;
-	const char *extension = property->array.index == INDEX_NONE      ? ""
-	                        : property->array.index == INDEX_LETTERS ? ".A"
-	                                                                 : ".0";
-	snprintf(name, sizeof(name), "%s/%s%s", column[FAMILY], column[NAME], extension);
-	int n = structure_read(name, strlen(name), text, sizeof(text));
-	TEST_ASSERT_GREATER_THAN_INT_MESSAGE(0, n, name);
-	TEST_ASSERT_EQUAL_STRING_MESSAGE(column[RAW], text, name);
-	TEST_ASSERT_TRUE_MESSAGE(!(property->access & ACCESS_READ) || property->read, name);
-	TEST_ASSERT_TRUE_MESSAGE(!(property->access & ACCESS_WRITE) || property->write, name);
+	TEST_ASSERT_NULL(fault("t,000000,000001,ro,000012,v,", OWS_DOUBLE, false));
+	TEST_ASSERT_NULL(fault("t,000000,000001,ro,000012,v,", OWS_LONG, false));
 }
 
-static void test_every_family_has_the_properties_that_owserver_states(void)
+static void test_text_does_not_fit_a_number(void)
 {
-	FILE *file = fopen("tests/unit/data/owfs-structure.tsv", "r");
-	char line[400], *column[COLUMNS];
-
-	TEST_ASSERT_NOT_NULL(file);
-	TEST_ASSERT_NOT_NULL(fgets(line, sizeof(line), file));
-	while (fgets(line, sizeof(line), file)) {
-		split(line, column);
-		check_row(column);
-	}
-	fclose(file);
+	TEST_ASSERT_NOT_NULL(fault("a,000000,000001,ro,000032,f,", OWS_DOUBLE, false));
+	TEST_ASSERT_NOT_NULL(fault("b,000000,000001,ro,000009,v,", OWS_LONG, false));
+	TEST_ASSERT_NOT_NULL(fault("d,000000,000001,rw,000024,v,", OWS_DOUBLE, false));
+	TEST_ASSERT_NULL(fault("a,000000,000001,ro,000032,f,", OWS_STRING, false));
 }
 
-static void test_no_family_has_a_property_more(void)
+static void test_a_list_needs_a_string(void)
 {
-	const struct family *family;
+	TEST_ASSERT_NOT_NULL(fault("y,-000001,000008,rw,000015,s,", OWS_BYTE, false));
+	TEST_ASSERT_NULL(fault("y,-000001,000008,rw,000015,s,", OWS_STRING, false));
+	TEST_ASSERT_NULL(fault("y,-000002,000008,rw,000012,s,", OWS_BYTE, false));
+}
 
-	for (unsigned n = 0; (family = family_nth(n)); n++) {
-		const struct property *property = NULL;
-		unsigned count = 0;
+static void test_an_output_needs_a_property_that_can_be_written(void)
+{
+	TEST_ASSERT_NOT_NULL(fault("y,-000002,000008,ro,000012,v,", OWS_BYTE, true));
+	TEST_ASSERT_NULL(fault("y,-000002,000008,rw,000012,s,", OWS_BYTE, true));
+	TEST_ASSERT_NULL(fault("y,000000,000001,wo,000001,s,", OWS_BOOL, true));
+}
 
-		while ((property = family_next(family, NULL, property)))
-			count++;
-		TEST_ASSERT_EQUAL_UINT_MESSAGE(rows_of[family->code], count, family->type);
-	}
+static void test_an_input_needs_a_property_that_can_be_read(void)
+{
+	TEST_ASSERT_NOT_NULL(fault("y,000000,000001,wo,000001,s,", OWS_BOOL, false));
+}
+
+static void test_each_path_is_asked_once_for_all_its_signals(void)
+{
+	struct config_item items[] = {
+		{ .name = "a", .path = "/28.551DDF030000/temperature12", .type = OWS_DOUBLE },
+		{ .name = "b", .path = "/29.B89115000000/PIO.BYTE", .type = OWS_BYTE },
+		{ .name = "c", .path = "/28.063BC8040000/temperature12", .type = OWS_DOUBLE },
+		{ .name = "d", .path = "/boiler/temperature", .type = OWS_DOUBLE },
+		{ .name = "e", .path = "/26.0CBEEA010000/HIH4000/humidity", .type = OWS_DOUBLE },
+		{ .name = "f", .path = "/simultaneous/temperature", .type = OWS_BOOL },
+	};
+	struct config config = { .items = items, .item_count = 6 };
+	struct structure structure;
+	struct table table;
+
+	TEST_ASSERT_EQUAL_INT(0, signal_table_init(&table, &config));
+	TEST_ASSERT_EQUAL_INT(0, structure_init(&structure, &table, 0));
+	TEST_ASSERT_EQUAL_UINT32(3, structure.count);
+	TEST_ASSERT_EQUAL_STRING("/structure/26/HIH4000/humidity", structure.checks[0].path);
+	TEST_ASSERT_EQUAL_STRING("/structure/28/temperature12", structure.checks[1].path);
+	TEST_ASSERT_EQUAL_UINT32(2, structure.checks[1].count);
+	TEST_ASSERT_EQUAL_UINT32(0, structure.rows[structure.checks[1].first]);
+	TEST_ASSERT_EQUAL_UINT32(2, structure.rows[structure.checks[1].first + 1]);
+	TEST_ASSERT_EQUAL_STRING("/structure/29/PIO.BYTE", structure.checks[2].path);
+	structure_free(&structure);
+	signal_table_free(&table);
 }
 
 int main(void)
 {
 	UNITY_BEGIN();
-	RUN_TEST(test_every_family_has_the_properties_that_owserver_states);
-	RUN_TEST(test_no_family_has_a_property_more);
+	RUN_TEST(test_entries_of_the_genuine_owserver_parse);
+	RUN_TEST(test_anything_else_is_refused);
+	RUN_TEST(test_a_temperature_fits_a_double_and_a_long);
+	RUN_TEST(test_text_does_not_fit_a_number);
+	RUN_TEST(test_a_list_needs_a_string);
+	RUN_TEST(test_an_output_needs_a_property_that_can_be_written);
+	RUN_TEST(test_an_input_needs_a_property_that_can_be_read);
+	RUN_TEST(test_each_path_is_asked_once_for_all_its_signals);
 	return UNITY_END();
 }
