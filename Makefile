@@ -39,6 +39,15 @@ ALL_CXXFLAGS = -std=c++11 $(CPP_COMMON) $(CXXWARN) $(HARDEN) $(CXXFLAGS) $(EXTRA
 ALL_LDFLAGS = -pie -Wl,-z,relro,-z,now $(LDFLAGS) $(EXTRA_CFLAGS)
 LIBS     := -Wl,--as-needed -lm -pthread
 
+# I2C adapters, where libi2c is there for this compiler; LIBI2C=0 leaves it out
+LIBI2C   ?= $(shell printf '\043include <stdint.h>\n\043include <i2c/smbus.h>\nint main(void) { return i2c_smbus_read_byte(0); }\n' | \
+              $(CC) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -x c -o /dev/null - -li2c 2>/dev/null && echo 1)
+LIBI2C   := $(LIBI2C)
+ifeq ($(LIBI2C),1)
+CPP_COMMON += -DOWSD_LIBI2C
+LIBS     += -li2c
+endif
+
 # V=1 shows the commands, -s nothing
 V        ?= 0
 Q        := $(if $(filter 1,$(V)),,@)

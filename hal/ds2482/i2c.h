@@ -46,6 +46,7 @@ enum i2c_combine {
 };
 struct i2c_adapter {
 	const struct i2c_adapter_ops *ops;
+	/* At most this; the kernel does not tell, so the driver tries it and may lower it. */
 	enum i2c_combine combine;
 	unsigned max_messages; /* in one transfer; 42 with i2c-dev */
 	uint32_t hz;           /* bus speed if known, else 0 */

@@ -400,7 +400,7 @@ bool sim_chip_write(struct sim_chip *chip, uint8_t byte, int64_t t)
 		chip->parameter = true;
 	} else {
 		taken = take_parameter(chip, byte, t);
-		/* The port's parameters may follow each other, nothing else may. */
+		/* DS2484, "Adjust 1-Wire Port": parameters may follow each other; nothing else may. */
 		if (chip->command != ADJUST_PORT || !adjustable(chip))
 			chip->command = 0;
 	}

@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Other parts live at 0x18 to 0x1F too (thermometers, accelerometers) and would take a second
+ * byte for the value of a register. So a chip has to prove itself by single-byte commands first.
+ */
+#include "chip.h"
+
+#include <errno.h>
+
+#define SETTLE_NS INT64_C(1000000) /* a device reset takes 0.5 us */
+#define BUSY_NS   INT64_C(5000000)
+#define TRIES     2
+
+static bool just_reset(int status)
+{
+	return status >= 0 && (status & ~DS2482_LL) == DS2482_RST;
+}
+
+static int device_reset(struct ds2482_chip *chip)
+{
+	int err = ds2482_write1(chip, DS2482_DEVICE_RESET);
+
+	if (!err)
+		err = ds2482_wait_until(chip->master, ds2482_now(chip->master) + SETTLE_NS);
+	if (err)
+		return err;
+	chip->channel = chip->config = 0;
+	chip->free_at = 0;
+	return ds2482_read1(chip);
+}
+
+/* After a 1-Wire reset: first busy perhaps, then idle, and never the bits of other commands. */
+static int prove(struct ds2482_chip *chip)
+{
+	int64_t until = ds2482_now(chip->master) + BUSY_NS;
+	int status = ds2482_write1(chip, DS2482_RESET);
+
+	if (status)
+		return status;
+	do {
+		int err;
+
+		status = ds2482_read1(chip);
+		if (status < 0)
+			return status;
+		if ((status & (DS2482_SBR | DS2482_TSB | DS2482_DIR)) || !(status & DS2482_RST))
+			return -ENXIO;
+		if (!(status & DS2482_1WB))
+			return 0;
+		err = ds2482_wait_until(chip->master, ds2482_now(chip->master) + SETTLE_NS / 4);
+		if (err)
+			return err;
+	} while (ds2482_now(chip->master) < until);
+	return -ETIMEDOUT;
+}
+
+static int find_part(struct ds2482_chip *chip)
+{
+	if (ds2482_write2(chip, DS2482_READ_POINTER, DS2482_AT_CHANNEL) == 0)
+		chip->part = DS2482_800;
+	else if (ds2482_write2(chip, DS2482_READ_POINTER, DS2482_AT_PORT) == 0)
+		chip->part = DS2482_ADJUSTABLE;
+	else
+		chip->part = DS2482_100;
+	chip->channels = chip->part == DS2482_800 ? 8 : 1;
+	return 0;
+}
+
+static bool passing(int err)
+{
+	return err == -EIO || err == -ENXIO;
+}
+
+int ds2482_detect(struct ds2482_chip *chip)
+{
+	int status = -ENXIO;
+
+	for (unsigned i = 0; i < TRIES && passing(status); i++)
+		status = device_reset(chip);
+	if (status < 0)
+		return status;
+	if (!just_reset(status) || !just_reset(ds2482_read1(chip)))
+		return -ENXIO;
+	status = prove(chip);
+	if (status)
+		return status;
+	status = device_reset(chip);
+	if (!just_reset(status))
+		return status < 0 ? status : -ENXIO;
+	return find_part(chip);
+}
+
+int ds2482_configure(struct ds2482_chip *chip, uint8_t config)
+{
+	uint8_t with_complement = (uint8_t)(config | (~config & 15) << 4);
+	int err = ds2482_wait_until(chip->master, chip->free_at);
+	int back;
+
+	if (err)
+		return err;
+	back = ds2482_write_read(chip, DS2482_WRITE_CONFIG, with_complement);
+	if (back < 0)
+		return ds2482_diagnose(chip, back);
+	if (back != config) {
+		chip->lost = true;
+		return -ENXIO;
+	}
+	chip->config = config;
+	return 0;
+}
+
+int ds2482_setup(struct ds2482_chip *chip)
+{
+	int status = -EIO, err;
+
+	for (unsigned i = 0; i < TRIES && passing(status); i++)
+		status = device_reset(chip);
+	if (status < 0)
+		return passing(status) ? -EIO : status;
+	if (status & DS2482_1WB)
+		return -ETIMEDOUT;
+	if (!just_reset(status))
+		return -EIO;
+	chip->lost = false;
+	err = ds2482_learn(chip);
+	if (err)
+		return err;
+	return ds2482_configure(chip, chip->master->active_pullup ? DS2482_APU : 0);
+}
+
+/* Written codes and those read back, by the data sheet's table. */
+static int select_channel(struct ds2482_chip *chip, uint8_t channel)
+{
+	static const uint8_t readback[8] = {0xB8, 0xB1, 0xAA, 0xA3, 0x9C, 0x95, 0x8E, 0x87};
+	int err = ds2482_wait_until(chip->master, chip->free_at);
+	int back;
+
+	if (err)
+		return err;
+	back = ds2482_write_read(chip, DS2482_CHANNEL, (uint8_t)((15 - channel) << 4 | channel));
+	if (back < 0)
+		return ds2482_diagnose(chip, back);
+	if (back != readback[channel]) {
+		chip->lost = true;
+		return -ENXIO;
+	}
+	chip->channel = channel;
+	return 0;
+}
+
+int ds2482_select(struct ds2482_link *link)
+{
+	struct ds2482_chip *chip = link->chip;
+	uint8_t config = chip->config;
+	int err = 0;
+
+	if (!chip->master->adapter)
+		return -ENODEV;
+	if (chip->lost)
+		return -ENXIO;
+	config &= (uint8_t)~(DS2482_1WS | DS2482_SPU);
+	if (link->speed == LINK_OVERDRIVE)
+		config |= DS2482_1WS;
+	/* A strong pull-up belongs to the channel it was given to; the chip ends it by itself. */
+	if (chip->channel != link->number) {
+		err = select_channel(chip, link->number);
+		if (!err && (chip->config & DS2482_SPU))
+			err = ds2482_configure(chip, config);
+	}
+	if (!err && ((chip->config ^ config) & DS2482_1WS))
+		err = ds2482_configure(chip, config);
+	return err;
+}

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The DS2482 driver: link masters over struct i2c_adapter. One master has all chips of an adapter
+ * that the target names, one link for each channel of each.
+ */
+#ifndef HAL_DS2482_DS2482_H
+#define HAL_DS2482_DS2482_H
+
+#include "codes.h"
+#include "hal/link.h"
+#include "i2c.h"
+
+#define DS2482_FIRST_ADDRESS 0x18
+#define DS2482_ADDRESSES     8
+
+enum ds2482_part {
+	DS2482_100, /* or a -101: they do not differ on the bus */
+	DS2482_800,
+	DS2482_ADJUSTABLE, /* DS2483, DS2484 */
+};
+
+struct ds2482_chip;
+struct ds2482_link {
+	struct link link; /* first */
+	struct ds2482_chip *chip;
+	uint8_t number;
+	enum link_speed speed;
+	struct link_cost cost; /* wire_ns and resets; the rest is the adapter's */
+};
+
+struct ds2482_master;
+struct ds2482_chip {
+	struct ds2482_master *master;
+	uint8_t address;
+	enum ds2482_part part;
+	unsigned channels;
+	bool lost;         /* reset or changed under us: nothing goes before a chip reset */
+	uint8_t channel;   /* the current one */
+	uint8_t config;    /* as the chip has it */
+	int64_t free_at;   /* env time by which the last operation has ended at the latest */
+	struct ds2482_link link[8];
+};
+
+/* Where a master's adapter comes from. */
+struct ds2482_source {
+	/* As link_master_ops.open. */
+	int (*open)(void *ctx, const struct bus_env *env, struct i2c_adapter **adapter, char *why,
+	            size_t why_size);
+	void (*destroy)(void *ctx);
+	const char *name; /* "/dev/i2c-1", for messages */
+	void *ctx;
+};
+
+struct ds2482_master {
+	struct link_master master; /* first */
+	struct ds2482_source source;
+	struct i2c_adapter *adapter; /* NULL while closed */
+	int address, channel;        /* only this one; -1 all */
+	bool active_pullup;
+	int64_t byte_ns; /* shortest time of one I2C byte, measured; 0 unknown */
+	unsigned count;
+	struct ds2482_chip chip[DS2482_ADDRESSES];
+	/* The cost before the adapter was opened again. */
+	uint64_t transfers, bytes, syscalls;
+};
+
+/*
+ * Make a master; it owns source.ctx from then on. where is ":0x18.3", ":0x18" or "" (all chips).
+ * 0, -EINVAL with the reason in why, -ENOMEM.
+ */
+int ds2482_create(const struct link_master_ops *ops, const struct bus_env *env,
+                  const struct ds2482_source *source, const char *where,
+                  struct link_master **master, char *why, size_t why_size);
+/* The slots of link_master_ops but create. */
+int ds2482_open(struct link_master *master, char *why, size_t why_size);
+void ds2482_close(struct link_master *master);
+unsigned ds2482_channels(struct link_master *master);
+struct link *ds2482_channel(struct link_master *master, unsigned n);
+void ds2482_destroy(struct link_master *master);
+
+/* Scheme "i2c": over hal/ds2482/i2c_dev.h. */
+extern const struct link_master_ops ds2482_i2c_master;
+
+#endif

@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: MIT */
+#include "i2c_dev.h"
+
+#include <errno.h>
+#include <stdbool.h>
+
+#ifdef OWSD_LIBI2C
+
+#include <fcntl.h>
+#include <i2c/smbus.h>
+#include <linux/i2c-dev.h>
+#include <linux/i2c.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+/* In units of 10 ms: an I2C transaction of ours takes 20 ms at the most. */
+#define TIMEOUT_10MS 10
+
+struct i2c_dev {
+	struct i2c_adapter adapter; /* first */
+	int fd;
+	int address; /* that the descriptor is set to; -1 none */
+};
+
+/* Adapters' drivers name a refusal as they like. */
+static int plain(int err, bool first)
+{
+	switch (err) {
+	case ENODEV:
+	case ESHUTDOWN:
+	case EBADF:
+		return -ENODEV;
+	case EREMOTEIO:
+		return first ? -ENXIO : -EIO;
+	case ENXIO:
+		return -ENXIO;
+	case EBUSY:
+		return -EBUSY;
+	case ETIMEDOUT:
+		return -ETIMEDOUT;
+	case EOPNOTSUPP:
+	case EINVAL:
+		return -EOPNOTSUPP;
+	default:
+		return -EIO;
+	}
+}
+
+static int transfer(struct i2c_adapter *base, uint8_t address, struct i2c_message *messages,
+                    size_t n)
+{
+	struct i2c_dev *dev = (struct i2c_dev *)base;
+	struct i2c_msg msgs[I2C_RDWR_IOCTL_MAX_MSGS];
+	struct i2c_rdwr_ioctl_data data = {.msgs = msgs, .nmsgs = (uint32_t)n};
+
+	if (n == 0 || n > base->max_messages || base->combine == I2C_SMBUS_ONLY)
+		return -EOPNOTSUPP;
+	base->transfers++;
+	base->syscalls++;
+	for (size_t i = 0; i < n; i++) {
+		bool read = messages[i].flags & I2C_MESSAGE_READ;
+
+		msgs[i] = (struct i2c_msg){.addr = address, .flags = read ? I2C_M_RD : 0,
+		                           .len = messages[i].len, .buf = messages[i].data};
+		base->bytes += messages[i].len + 1u;
+	}
+	return ioctl(dev->fd, I2C_RDWR, &data) < 0 ? plain(errno, false) : 0;
+}
+
+static int set_address(struct i2c_dev *dev, uint8_t address)
+{
+	if (dev->address == address)
+		return 0;
+	dev->adapter.syscalls++;
+	if (ioctl(dev->fd, I2C_SLAVE, (long)address) < 0)
+		return plain(errno, true);
+	dev->address = address;
+	return 0;
+}
+
+static void count(struct i2c_dev *dev, unsigned bytes)
+{
+	dev->adapter.transfers++;
+	dev->adapter.syscalls++;
+	dev->adapter.bytes += bytes;
+}
+
+static int write_byte(struct i2c_adapter *base, uint8_t address, uint8_t command)
+{
+	struct i2c_dev *dev = (struct i2c_dev *)base;
+	int err = set_address(dev, address);
+
+	if (err)
+		return err;
+	count(dev, 2);
+	return i2c_smbus_write_byte(dev->fd, command) < 0 ? plain(errno, true) : 0;
+}
+
+static int write_byte_data(struct i2c_adapter *base, uint8_t address, uint8_t command, uint8_t data)
+{
+	struct i2c_dev *dev = (struct i2c_dev *)base;
+	int err = set_address(dev, address);
+
+	if (err)
+		return err;
+	count(dev, 3);
+	return i2c_smbus_write_byte_data(dev->fd, command, data) < 0 ? plain(errno, false) : 0;
+}
+
+static int read_byte(struct i2c_adapter *base, uint8_t address)
+{
+	struct i2c_dev *dev = (struct i2c_dev *)base;
+	int byte = set_address(dev, address);
+
+	if (byte)
+		return byte;
+	count(dev, 2);
+	byte = i2c_smbus_read_byte(dev->fd);
+	return byte < 0 ? plain(errno, true) : byte;
+}
+
+static int claim(struct i2c_adapter *base, uint8_t address)
+{
+	return set_address((struct i2c_dev *)base, address);
+}
+
+static void close_dev(struct i2c_adapter *base)
+{
+	struct i2c_dev *dev = (struct i2c_dev *)base;
+
+	close(dev->fd);
+	free(dev);
+}
+
+static const struct i2c_adapter_ops i2c_dev_ops = {
+	.transfer = transfer,
+	.write_byte = write_byte,
+	.write_byte_data = write_byte_data,
+	.read_byte = read_byte,
+	.claim = claim,
+	.close = close_dev,
+};
+
+int i2c_dev_open(const char *path, struct i2c_adapter **adapter)
+{
+	struct i2c_dev *dev = calloc(1, sizeof(*dev));
+	unsigned long functions = 0;
+	int err;
+
+	if (!dev)
+		return -ENOMEM;
+	dev->fd = open(path, O_RDWR | O_CLOEXEC);
+	if (dev->fd < 0) {
+		err = -errno;
+		free(dev);
+		return err;
+	}
+	dev->address = -1;
+	dev->adapter.ops = &i2c_dev_ops;
+	dev->adapter.max_messages = I2C_RDWR_IOCTL_MAX_MSGS;
+	(void)ioctl(dev->fd, I2C_TIMEOUT, (long)TIMEOUT_10MS);
+	if (ioctl(dev->fd, I2C_FUNCS, &functions) == 0 && (functions & I2C_FUNC_I2C))
+		dev->adapter.combine = I2C_ANY;
+	*adapter = &dev->adapter;
+	return 0;
+}
+
+#else
+
+int i2c_dev_open(const char *path, struct i2c_adapter **adapter)
+{
+	(void)path, (void)adapter;
+	return -EOPNOTSUPP;
+}
+
+#endif

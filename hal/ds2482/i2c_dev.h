@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT */
+/* The kernel's I2C adapters, /dev/i2c-N, through libi2c (SMBus calls) and I2C_RDWR. */
+#ifndef HAL_DS2482_I2C_DEV_H
+#define HAL_DS2482_I2C_DEV_H
+
+#include "i2c.h"
+
+/* Allocates. 0; -ENOMEM; -EOPNOTSUPP built without libi2c; -errno of opening the device. */
+int i2c_dev_open(const char *path, struct i2c_adapter **adapter);
+
+#endif

@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: MIT */
+#include "chip.h"
+
+#include <errno.h>
+
+#define MEASURE_BYTES 64
+#define MOST_MESSAGES 42
+
+int64_t ds2482_now(const struct ds2482_master *master)
+{
+	const struct bus_env *env = master->master.env;
+
+	return env->now(env->ctx);
+}
+
+int ds2482_wait_until(const struct ds2482_master *master, int64_t t)
+{
+	const struct bus_env *env = master->master.env;
+	int err;
+
+	if (ds2482_now(master) >= t)
+		return 0;
+	err = env->wait(env->ctx, -1, 0, t);
+	return err < 0 ? err : 0;
+}
+
+bool ds2482_combines(const struct ds2482_chip *chip)
+{
+	return chip->master->adapter->combine != I2C_SMBUS_ONLY && chip->master->byte_ns > 0;
+}
+
+int ds2482_write1(struct ds2482_chip *chip, uint8_t command)
+{
+	struct i2c_adapter *adapter = chip->master->adapter;
+
+	return adapter->ops->write_byte(adapter, chip->address, command);
+}
+
+int ds2482_write2(struct ds2482_chip *chip, uint8_t command, uint8_t parameter)
+{
+	struct i2c_adapter *adapter = chip->master->adapter;
+
+	return adapter->ops->write_byte_data(adapter, chip->address, command, parameter);
+}
+
+int ds2482_read1(struct ds2482_chip *chip)
+{
+	struct i2c_adapter *adapter = chip->master->adapter;
+
+	return adapter->ops->read_byte(adapter, chip->address);
+}
+
+int ds2482_write_read(struct ds2482_chip *chip, uint8_t command, uint8_t parameter)
+{
+	struct i2c_adapter *adapter = chip->master->adapter;
+	uint8_t out[2] = {command, parameter}, in = 0;
+	struct i2c_message messages[2] = {
+		{.len = 2, .data = out},
+		{.flags = I2C_MESSAGE_READ, .len = 1, .data = &in},
+	};
+	int err;
+
+	if (adapter->combine == I2C_SMBUS_ONLY) {
+		err = ds2482_write2(chip, command, parameter);
+		return err ? err : ds2482_read1(chip);
+	}
+	err = adapter->ops->transfer(adapter, chip->address, messages, 2);
+	return err ? err : in;
+}
+
+/*
+ * The rate that an adapter states is not always its rate (core clocks change), and reading too
+ * few bytes would read too early. The call's own time makes a byte seem longer than it is: the
+ * difference of two lengths is free of it.
+ */
+static int measure(struct ds2482_chip *chip)
+{
+	struct ds2482_master *master = chip->master;
+	struct i2c_adapter *adapter = master->adapter;
+	uint8_t in[1 + MEASURE_BYTES];
+	struct i2c_message message = {.flags = I2C_MESSAGE_READ, .data = in};
+	int64_t shortest[2] = {INT64_MAX, INT64_MAX};
+
+	master->byte_ns = 0;
+	if (adapter->combine == I2C_SMBUS_ONLY)
+		return 0;
+	for (unsigned i = 0; i < 6; i++) {
+		int64_t begun = ds2482_now(master), took;
+		int err;
+
+		message.len = i & 1 ? sizeof(in) : 1;
+		err = adapter->ops->transfer(adapter, chip->address, &message, 1);
+		if (err)
+			return err;
+		took = ds2482_now(master) - begun;
+		if (took < shortest[i & 1])
+			shortest[i & 1] = took;
+	}
+	/* 2 % are for the measurement's error. Nothing comes faster than 1 MHz. */
+	master->byte_ns = (shortest[1] - shortest[0]) / MEASURE_BYTES * 98 / 100;
+	if (master->byte_ns < 9000)
+		master->byte_ns = 9000;
+	return 0;
+}
+
+/* Messages that change nothing; with -EOPNOTSUPP the adapter cannot. */
+static int attempt(struct ds2482_chip *chip, size_t writes, size_t reads)
+{
+	struct i2c_adapter *adapter = chip->master->adapter;
+	uint8_t out[2] = {DS2482_READ_POINTER, DS2482_AT_STATUS}, in;
+	struct i2c_message messages[MOST_MESSAGES];
+	size_t n = 0;
+
+	while (writes-- > 0)
+		messages[n++] = (struct i2c_message){.len = 2, .data = out};
+	while (reads-- > 0)
+		messages[n++] = (struct i2c_message){
+			.flags = I2C_MESSAGE_READ, .len = 1, .data = &in};
+	return adapter->ops->transfer(adapter, chip->address, messages, n);
+}
+
+int ds2482_learn(struct ds2482_chip *chip)
+{
+	struct i2c_adapter *adapter = chip->master->adapter;
+	unsigned room = adapter->max_messages;
+	int err = 0;
+
+	if (room > MOST_MESSAGES)
+		room = MOST_MESSAGES;
+	if (adapter->combine == I2C_ANY) {
+		err = attempt(chip, 0, room);
+		if (err == -EOPNOTSUPP)
+			adapter->combine = I2C_ONE_READ_LAST;
+	}
+	if (adapter->combine == I2C_ONE_READ_LAST) {
+		err = attempt(chip, 2, 1);
+		if (err == -EOPNOTSUPP) {
+			adapter->combine = I2C_SMBUS_ONLY;
+			err = 0;
+		}
+	}
+	return err ? err : measure(chip);
+}

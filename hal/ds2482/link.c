@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: MIT */
+/* One channel of a chip as a link. */
+#include "chip.h"
+
+#include <errno.h>
+
+/* How long a wire is without supply so that all slaves forget what they knew. */
+#define POWER_OFF_NS INT64_C(500000000)
+#define POWER_ON_NS  INT64_C(10000000)
+
+static struct ds2482_link *self(struct link *link)
+{
+	return (struct ds2482_link *)link;
+}
+
+/* ns of n slots at the most. */
+static long slots(const struct ds2482_link *link, unsigned n)
+{
+	return (long)n * ds2482_slot_max_ns[link->speed];
+}
+
+static void spent(struct ds2482_link *link, size_t n)
+{
+	link->cost.wire_ns += n * (uint64_t)ds2482_slot_ns[link->speed];
+}
+
+/* The strong pull-up ends by itself with the next 1-Wire command, and its bit goes with it. */
+static void began(struct ds2482_chip *chip)
+{
+	chip->config &= (uint8_t)~DS2482_SPU;
+}
+
+/* SPU is to be on before the operation after whose last bit it feeds the wire. */
+static int arm(struct ds2482_chip *chip)
+{
+	return ds2482_configure(chip, chip->config | DS2482_SPU);
+}
+
+static int link_reset(struct link *base)
+{
+	struct ds2482_link *link = self(base);
+	int status = ds2482_select(link);
+
+	if (status < 0)
+		return status;
+	status = ds2482_run(link->chip, DS2482_RESET, DS2482_NO_PARAMETER,
+	                    ds2482_reset_max_ns[link->speed]);
+	if (status < 0)
+		return status;
+	began(link->chip);
+	link->cost.resets++;
+	link->cost.wire_ns += (uint64_t)ds2482_reset_ns[link->speed];
+	if (status & DS2482_SD)
+		return -ECOMM;
+	if (status & DS2482_PPD)
+		return 1;
+	return status & DS2482_LL ? 0 : -ECOMM;
+}
+
+static int link_write(struct link *base, const uint8_t *data, size_t n, enum link_after after)
+{
+	struct ds2482_link *link = self(base);
+	size_t before = after == LINK_STRONG && n > 0 ? n - 1 : n;
+	int err = ds2482_select(link);
+
+	if (!err && before > 0) {
+		err = ds2482_write_block(link->chip, data, before, slots(link, 8));
+		began(link->chip);
+	}
+	if (!err && before < n) {
+		err = arm(link->chip);
+		if (!err)
+			err = ds2482_write_block(link->chip, data + before, 1, slots(link, 8));
+	}
+	if (!err)
+		spent(link, 8 * n);
+	return err;
+}
+
+static int link_read(struct link *base, uint8_t *data, size_t n)
+{
+	struct ds2482_link *link = self(base);
+	int err = ds2482_select(link);
+
+	if (!err && n > 0)
+		err = ds2482_read_block(link->chip, data, n, slots(link, 8));
+	if (err)
+		return err;
+	began(link->chip);
+	spent(link, 8 * n);
+	return 0;
+}
+
+static int link_bit(struct link *base, bool out, enum link_after after)
+{
+	struct ds2482_link *link = self(base);
+	int status = ds2482_select(link);
+
+	if (status == 0 && after == LINK_STRONG)
+		status = arm(link->chip);
+	if (status == 0)
+		status = ds2482_run(link->chip, DS2482_BIT, out ? 0x80 : 0, slots(link, 1));
+	if (status < 0)
+		return status;
+	if (after != LINK_STRONG)
+		began(link->chip);
+	spent(link, 1);
+	return status & DS2482_SBR ? 1 : 0;
+}
+
+static int link_triplet(struct link *base, bool direction)
+{
+	struct ds2482_link *link = self(base);
+	int status = ds2482_select(link);
+
+	if (status < 0)
+		return status;
+	status = ds2482_run(link->chip, DS2482_TRIPLET, direction ? 0x80 : 0, slots(link, 3));
+	if (status < 0)
+		return status;
+	began(link->chip);
+	spent(link, 3);
+	return (status & DS2482_SBR ? 1 : 0) | (status & DS2482_TSB ? 2 : 0) |
+	       (status & DS2482_DIR ? 4 : 0);
+}
+
+static int link_speed(struct link *base, enum link_speed speed)
+{
+	self(base)->speed = speed;
+	return ds2482_select(self(base));
+}
+
+static int power_cycle(struct ds2482_link *link)
+{
+	struct ds2482_chip *chip = link->chip;
+	int err;
+
+	if (chip->part != DS2482_ADJUSTABLE)
+		return -EOPNOTSUPP;
+	err = ds2482_select(link);
+	if (!err)
+		err = ds2482_configure(chip, (chip->config & DS2482_APU) | DS2482_PDN);
+	if (!err)
+		err = ds2482_wait_until(chip->master, ds2482_now(chip->master) + POWER_OFF_NS);
+	if (!err)
+		err = ds2482_configure(chip, chip->config & DS2482_APU);
+	if (!err)
+		err = ds2482_wait_until(chip->master, ds2482_now(chip->master) + POWER_ON_NS);
+	return err;
+}
+
+static int reopen(struct ds2482_link *link)
+{
+	struct ds2482_master *master = link->chip->master;
+	uint8_t address[DS2482_ADDRESSES];
+	unsigned count = master->count;
+	char why[160];
+	int err;
+
+	for (unsigned i = 0; i < count; i++)
+		address[i] = master->chip[i].address;
+	ds2482_close(&master->master);
+	err = ds2482_open(&master->master, why, sizeof(why));
+	if (err)
+		return err;
+	/* The links that others hold are to be the same ones afterwards. */
+	for (unsigned i = 0; i < count; i++) {
+		if (i >= master->count || master->chip[i].address != address[i])
+			err = -ENXIO;
+	}
+	if (err)
+		ds2482_close(&master->master);
+	return err;
+}
+
+static int link_recover(struct link *base, enum link_rung rung)
+{
+	struct ds2482_link *link = self(base);
+	struct ds2482_chip *chip = link->chip;
+	int err;
+
+	if (!chip->master->adapter && rung != LINK_REOPEN)
+		return -ENODEV;
+	switch (rung) {
+	case LINK_RETRY:
+		/* No error is what it is to find: -EIO says that the chip answers and is well. */
+		err = ds2482_diagnose(chip, -EIO);
+		if (err == -EIO)
+			err = ds2482_write_read(chip, DS2482_READ_POINTER, DS2482_AT_STATUS);
+		return err < 0 ? err : 0;
+	case LINK_BUS_RESET:
+		link->speed = LINK_STANDARD;
+		err = link_reset(base);
+		return err < 0 ? err : 0;
+	case LINK_CHIP_RESET:
+		for (unsigned i = 0; i < chip->channels; i++)
+			chip->link[i].speed = LINK_STANDARD;
+		return ds2482_setup(chip);
+	case LINK_POWER_CYCLE:
+		return power_cycle(link);
+	case LINK_REOPEN:
+		return reopen(link);
+	}
+	return -EINVAL;
+}
+
+static void link_cost(const struct link *base, struct link_cost *cost)
+{
+	const struct ds2482_link *link = (const struct ds2482_link *)base;
+	const struct ds2482_master *master = link->chip->master;
+
+	*cost = link->cost;
+	cost->transfers = master->transfers;
+	cost->bytes = master->bytes;
+	cost->syscalls = master->syscalls;
+	if (master->adapter) {
+		cost->transfers += master->adapter->transfers;
+		cost->bytes += master->adapter->bytes;
+		cost->syscalls += master->adapter->syscalls;
+	}
+}
+
+static const struct link_ops link_ops = {
+	.name = "DS2482",
+	.reset = link_reset,
+	.write = link_write,
+	.read = link_read,
+	.bit = link_bit,
+	.triplet = link_triplet,
+	.speed = link_speed,
+	.recover = link_recover,
+	.cost = link_cost,
+};
+
+void ds2482_link_init(struct ds2482_chip *chip, unsigned number)
+{
+	chip->link[number] = (struct ds2482_link){
+		.link = {.ops = &link_ops, .env = chip->master->master.env},
+		.chip = chip,
+		.number = (uint8_t)number,
+		.cost = chip->link[number].cost,
+	};
+}

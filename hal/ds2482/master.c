@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: MIT */
+#include "chip.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int parse_where(struct ds2482_master *master, const char *where, char *why, size_t why_size)
+{
+	char *end;
+
+	master->address = master->channel = -1;
+	if (!*where)
+		return 0;
+	if (*where != ':')
+		goto wrong;
+	master->address = (int)strtol(where + 1, &end, 16);
+	if (end == where + 1 || master->address < DS2482_FIRST_ADDRESS ||
+	    master->address >= DS2482_FIRST_ADDRESS + DS2482_ADDRESSES)
+		goto wrong;
+	if (!*end)
+		return 0;
+	if (*end != '.' || end[1] < '0' || end[1] > '7' || end[2])
+		goto wrong;
+	master->channel = end[1] - '0';
+	return 0;
+wrong:
+	snprintf(why, why_size,
+	         "\"%s\": expected \":0x18\" to \":0x1f\", with \".0\" to \".7\" for one channel",
+	         where);
+	return -EINVAL;
+}
+
+int ds2482_create(const struct link_master_ops *ops, const struct bus_env *env,
+                  const struct ds2482_source *source, const char *where,
+                  struct link_master **out, char *why, size_t why_size)
+{
+	struct ds2482_master *master = calloc(1, sizeof(*master));
+	int err;
+
+	if (!master) {
+		source->destroy(source->ctx);
+		return -ENOMEM;
+	}
+	master->master.ops = ops;
+	master->master.env = env;
+	master->source = *source;
+	master->active_pullup = true;
+	err = parse_where(master, where, why, why_size);
+	if (err) {
+		ds2482_destroy(&master->master);
+		return err;
+	}
+	*out = &master->master;
+	return 0;
+}
+
+static void close_adapter(struct ds2482_master *master)
+{
+	struct i2c_adapter *adapter = master->adapter;
+
+	if (!adapter)
+		return;
+	master->transfers += adapter->transfers;
+	master->bytes += adapter->bytes;
+	master->syscalls += adapter->syscalls;
+	master->adapter = NULL;
+	adapter->ops->close(adapter);
+}
+
+static void explain(const struct ds2482_master *master, int err, int address, char *why,
+                    size_t size)
+{
+	const char *name = master->source.name;
+
+	switch (err) {
+	case -EBUSY:
+		snprintf(why, size,
+		         "the chip at 0x%02x on %s is in the hands of a kernel driver: use the "
+		         "target \"w1\", or take it away from the driver ds2482",
+		         (unsigned)address, name);
+		break;
+	case -ENXIO:
+		if (address >= 0)
+			snprintf(why, size, "no DS2482 answers at 0x%02x on %s: look at its supply, "
+			         "SDA, SCL and address pins", (unsigned)address, name);
+		else
+			snprintf(why, size, "no DS2482 answers at 0x18 to 0x1f on %s: look at its "
+			         "supply, SDA and SCL", name);
+		break;
+	case -ENODEV:
+		snprintf(why, size, "the adapter %s is gone", name);
+		break;
+	case -ETIMEDOUT:
+		snprintf(why, size, "%s is stuck: is SDA or SCL held low?", name);
+		break;
+	default:
+		snprintf(why, size, "%s: %s", name, strerror(-err));
+		break;
+	}
+}
+
+/* Find and set up the chip at address. */
+static int take_chip(struct ds2482_master *master, uint8_t address)
+{
+	struct ds2482_chip *chip = &master->chip[master->count];
+	int err = master->adapter->ops->claim(master->adapter, address);
+
+	chip->master = master;
+	chip->address = address;
+	if (!err)
+		err = ds2482_detect(chip);
+	if (!err)
+		err = ds2482_setup(chip);
+	if (err)
+		return err;
+	for (unsigned i = 0; i < chip->channels; i++)
+		ds2482_link_init(chip, i);
+	master->count++;
+	return 0;
+}
+
+static int take_all(struct ds2482_master *master, char *why, size_t why_size)
+{
+	int worst = -ENXIO, at = -1;
+
+	for (int i = 0; i < DS2482_ADDRESSES; i++) {
+		int address = DS2482_FIRST_ADDRESS + i;
+		int err = take_chip(master, (uint8_t)address);
+
+		if (err == -ENODEV || err == -ECANCELED) {
+			explain(master, err, address, why, why_size);
+			return err;
+		}
+		if (err && err != -ENXIO && err != -EIO) {
+			worst = err;
+			at = address;
+		}
+	}
+	if (master->count > 0)
+		return 0;
+	explain(master, worst, at, why, why_size);
+	return worst;
+}
+
+int ds2482_open(struct link_master *base, char *why, size_t why_size)
+{
+	struct ds2482_master *master = (struct ds2482_master *)base;
+	int err = master->source.open(master->source.ctx, base->env, &master->adapter, why,
+	                              why_size);
+
+	if (err)
+		return err;
+	master->count = 0;
+	if (master->address < 0) {
+		err = take_all(master, why, why_size);
+	} else {
+		err = take_chip(master, (uint8_t)master->address);
+		if (err)
+			explain(master, err, master->address, why, why_size);
+	}
+	if (!err && master->channel >= (int)master->chip[0].channels) {
+		snprintf(why, why_size, "the chip at 0x%02x on %s has one channel only",
+		         master->chip[0].address, master->source.name);
+		err = -ENXIO;
+	}
+	if (err)
+		close_adapter(master);
+	return err;
+}
+
+void ds2482_close(struct link_master *base)
+{
+	close_adapter((struct ds2482_master *)base);
+}
+
+unsigned ds2482_channels(struct link_master *base)
+{
+	struct ds2482_master *master = (struct ds2482_master *)base;
+	unsigned channels = 0;
+
+	if (master->channel >= 0)
+		return master->count > 0;
+	for (unsigned i = 0; i < master->count; i++)
+		channels += master->chip[i].channels;
+	return channels;
+}
+
+struct link *ds2482_channel(struct link_master *base, unsigned n)
+{
+	struct ds2482_master *master = (struct ds2482_master *)base;
+
+	if (n >= ds2482_channels(base))
+		return NULL;
+	if (master->channel >= 0)
+		return &master->chip[0].link[master->channel].link;
+	for (unsigned i = 0; i < master->count; i++) {
+		if (n < master->chip[i].channels)
+			return &master->chip[i].link[n].link;
+		n -= master->chip[i].channels;
+	}
+	return NULL;
+}
+
+void ds2482_destroy(struct link_master *base)
+{
+	struct ds2482_master *master = (struct ds2482_master *)base;
+
+	close_adapter(master);
+	master->source.destroy(master->source.ctx);
+	free(master);
+}

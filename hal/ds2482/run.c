@@ -1,0 +1,293 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * 1-Wire operations in few I2C transactions. Waiting for an operation's end inside a transaction
+ * means to read on: the chip repeats the register it points to, and a byte takes a known time. So
+ * the number of bytes is the waiting time, and the last of them is the answer.
+ *
+ * Slow buses take 90 us a byte, too coarse a step: there, where writes are transactions of their
+ * own, each begins so early after a timed wait that its command byte arrives just when the
+ * operation before has ended at the latest.
+ */
+#include "chip.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <string.h>
+
+/* Reading on pays from here on (a byte of at most 45 us, 200 kHz). */
+#define FAST_BYTE_NS 45000
+#define MAX_BYTES    180
+#define MAX_MESSAGES 42
+#define STUCK_NS     INT64_C(10000000)
+#define POLL_NS      INT64_C(200000)
+
+/* Bytes to read so that the last begins max_ns after the command, given what lies between. */
+static unsigned reading_on(const struct ds2482_chip *chip, long max_ns, unsigned between)
+{
+	int64_t byte = chip->master->byte_ns;
+	int64_t n = 1 + (max_ns - between * byte + byte - 1) / byte;
+
+	if (max_ns <= between * byte)
+		return 1;
+	return n > MAX_BYTES ? MAX_BYTES : (unsigned)n;
+}
+
+static int transfer(struct ds2482_chip *chip, struct i2c_message *messages, size_t n)
+{
+	struct i2c_adapter *adapter = chip->master->adapter;
+
+	return adapter->ops->transfer(adapter, chip->address, messages, n);
+}
+
+static int wait_idle(struct ds2482_chip *chip, int status)
+{
+	struct ds2482_master *master = chip->master;
+	int64_t stuck = ds2482_now(master) + STUCK_NS;
+
+	while (status >= 0 && (status & DS2482_1WB)) {
+		int err;
+
+		if (ds2482_now(master) >= stuck)
+			return -ETIMEDOUT;
+		err = ds2482_wait_until(master, ds2482_now(master) + POLL_NS);
+		if (err)
+			return err;
+		status = ds2482_read1(chip);
+	}
+	return status;
+}
+
+int ds2482_diagnose(struct ds2482_chip *chip, int err)
+{
+	int status;
+
+	if (err == -ENODEV || err == -ECANCELED || err == -ETIMEDOUT)
+		return err;
+	if (chip->lost)
+		return -ENXIO;
+	status = ds2482_write2(chip, DS2482_READ_POINTER, DS2482_AT_STATUS);
+	if (status == 0)
+		status = wait_idle(chip, ds2482_read1(chip));
+	if (status == -ETIMEDOUT || status == -ENODEV || status == -ECANCELED)
+		return status;
+	if (status >= 0 && (status & DS2482_RST)) {
+		chip->lost = true;
+		return -ENXIO;
+	}
+	return -EIO;
+}
+
+/* The last status of an operation, or what went wrong. */
+static int judge(struct ds2482_chip *chip, int status)
+{
+	status = wait_idle(chip, status);
+	if (status < 0)
+		return ds2482_diagnose(chip, status);
+	chip->free_at = 0;
+	if (status & DS2482_RST) {
+		chip->lost = true;
+		return -ENXIO;
+	}
+	return status;
+}
+
+static int wait_free(struct ds2482_chip *chip, int64_t ahead)
+{
+	return ds2482_wait_until(chip->master, chip->free_at - ahead);
+}
+
+static void ends_within(struct ds2482_chip *chip, long max_ns)
+{
+	chip->free_at = ds2482_now(chip->master) + max_ns;
+}
+
+static int start(struct ds2482_chip *chip, uint8_t command, int parameter)
+{
+	return parameter < 0 ? ds2482_write1(chip, command)
+	                     : ds2482_write2(chip, command, (uint8_t)parameter);
+}
+
+int ds2482_run(struct ds2482_chip *chip, uint8_t command, int parameter, long max_ns)
+{
+	uint8_t out[2] = {command, (uint8_t)parameter}, in[MAX_BYTES];
+	struct i2c_message messages[2] = {
+		{.len = parameter < 0 ? 1 : 2, .data = out},
+		{.flags = I2C_MESSAGE_READ, .data = in},
+	};
+	int err = wait_free(chip, 0);
+
+	if (err)
+		return err;
+	if (ds2482_combines(chip)) {
+		messages[1].len = (uint16_t)reading_on(chip, max_ns, 1);
+		err = transfer(chip, messages, 2);
+		return err ? ds2482_diagnose(chip, err) : judge(chip, in[messages[1].len - 1]);
+	}
+	err = start(chip, command, parameter);
+	if (err)
+		return ds2482_diagnose(chip, err);
+	ends_within(chip, max_ns);
+	err = wait_free(chip, 0);
+	return err ? err : judge(chip, ds2482_read1(chip));
+}
+
+/* --- Writing ----------------------------------------------------------------------------------- */
+
+/*
+ * Two bytes of the next write go by before its command is looked at, so only the last byte is
+ * waited for to its end (with last), and only then the status says something.
+ */
+static int write_combined(struct ds2482_chip *chip, const uint8_t *data, size_t n, long max_ns,
+                          bool last)
+{
+	struct i2c_message messages[MAX_MESSAGES];
+	uint8_t out[MAX_MESSAGES / 2][2], in[MAX_BYTES];
+	unsigned between = reading_on(chip, max_ns, 4), end = reading_on(chip, max_ns, 1);
+	int err;
+
+	assert(n <= MAX_MESSAGES / 2);
+	for (size_t i = 0; i < n; i++) {
+		bool whole = last && i + 1 == n;
+
+		out[i][0] = DS2482_WRITE;
+		out[i][1] = data[i];
+		messages[2 * i] = (struct i2c_message){.len = 2, .data = out[i]};
+		messages[2 * i + 1] =
+			(struct i2c_message){.flags = I2C_MESSAGE_READ,
+			                     .len = (uint16_t)(whole ? end : between),
+			                     .data = in};
+	}
+	err = transfer(chip, messages, 2 * n);
+	if (err)
+		return ds2482_diagnose(chip, err);
+	return last ? judge(chip, in[end - 1]) : 0;
+}
+
+/* Nothing is read: that the chip takes the next command says that it is idle. */
+static int write_timed(struct ds2482_chip *chip, uint8_t byte, long max_ns)
+{
+	int64_t ahead = chip->master->byte_ns > 0 ? 2 * chip->master->byte_ns : 0;
+	int err = wait_free(chip, ahead);
+
+	if (err)
+		return err;
+	err = ds2482_write2(chip, DS2482_WRITE, byte);
+	if (err)
+		return ds2482_diagnose(chip, err);
+	ends_within(chip, max_ns);
+	return 0;
+}
+
+static size_t batch(const struct ds2482_chip *chip, unsigned messages_each)
+{
+	const struct i2c_adapter *adapter = chip->master->adapter;
+	unsigned room = adapter->max_messages < MAX_MESSAGES ? adapter->max_messages : MAX_MESSAGES;
+
+	return adapter->combine == I2C_ANY && room > messages_each ? room / messages_each : 1;
+}
+
+int ds2482_write_block(struct ds2482_chip *chip, const uint8_t *data, size_t n, long max_ns)
+{
+	bool combined = ds2482_combines(chip), fast = chip->master->byte_ns <= FAST_BYTE_NS;
+	size_t most = batch(chip, 2);
+	int err = 0;
+
+	if (!combined || (!fast && most == 1)) {
+		while (n-- > 0 && err >= 0)
+			err = write_timed(chip, *data++, max_ns);
+		return err;
+	}
+	err = wait_free(chip, 0);
+	while (n > 0 && err >= 0) {
+		size_t now = n < most ? n : most;
+
+		err = write_combined(chip, data, now, max_ns, now == n);
+		data += now;
+		n -= now;
+	}
+	return err < 0 ? err : 0;
+}
+
+/* --- Reading ----------------------------------------------------------------------------------- */
+
+/*
+ * The pointer may be set while the operation runs, so it is the data register that is read on.
+ * With check, the status is read behind it: was the chip idle, and is it still the one set up?
+ */
+static int read_combined(struct ds2482_chip *chip, uint8_t *data, size_t n, long max_ns, bool check)
+{
+	static const uint8_t read = DS2482_READ;
+	static const uint8_t at_data[2] = {DS2482_READ_POINTER, DS2482_AT_DATA};
+	static const uint8_t at_status[2] = {DS2482_READ_POINTER, DS2482_AT_STATUS};
+	struct i2c_message messages[MAX_MESSAGES];
+	uint8_t out[3][2], in[MAX_MESSAGES / 3][MAX_BYTES], status = 0;
+	unsigned wait = reading_on(chip, max_ns, 4);
+	size_t count = 0;
+	int err;
+
+	assert(3 * n + 2 <= MAX_MESSAGES);
+	out[0][0] = read;
+	memcpy(out[1], at_data, 2);
+	memcpy(out[2], at_status, 2);
+	for (size_t i = 0; i < n; i++) {
+		messages[count++] = (struct i2c_message){.len = 1, .data = out[0]};
+		messages[count++] = (struct i2c_message){.len = 2, .data = out[1]};
+		messages[count++] = (struct i2c_message){
+			.flags = I2C_MESSAGE_READ, .len = (uint16_t)wait, .data = in[i]};
+	}
+	if (check) {
+		messages[count++] = (struct i2c_message){.len = 2, .data = out[2]};
+		messages[count++] = (struct i2c_message){
+			.flags = I2C_MESSAGE_READ, .len = 1, .data = &status};
+	}
+	err = transfer(chip, messages, count);
+	if (err)
+		return ds2482_diagnose(chip, err);
+	for (size_t i = 0; i < n; i++)
+		data[i] = in[i][wait - 1];
+	return status & (DS2482_1WB | DS2482_RST) ? ds2482_diagnose(chip, -EIO) : 0;
+}
+
+static int read_timed(struct ds2482_chip *chip, uint8_t *byte, long max_ns)
+{
+	int status = ds2482_run(chip, DS2482_READ, DS2482_NO_PARAMETER, max_ns);
+
+	if (status < 0)
+		return status;
+	status = ds2482_write_read(chip, DS2482_READ_POINTER, DS2482_AT_DATA);
+	if (status < 0)
+		return ds2482_diagnose(chip, status);
+	*byte = (uint8_t)status;
+	return 0;
+}
+
+int ds2482_read_block(struct ds2482_chip *chip, uint8_t *data, size_t n, long max_ns)
+{
+	size_t most = (MAX_MESSAGES - 2) / 3;
+	bool any = batch(chip, 3) > 1;
+	int err = 0, status;
+
+	if (!ds2482_combines(chip)) {
+		while (n-- > 0 && err == 0)
+			err = read_timed(chip, data++, max_ns);
+		return err;
+	}
+	if (any && chip->master->adapter->max_messages < MAX_MESSAGES)
+		most = (chip->master->adapter->max_messages - 2) / 3;
+	if (!any || most == 0)
+		most = 1;
+	err = wait_free(chip, 0);
+	while (n > 0 && err == 0) {
+		size_t now = n < most ? n : most;
+
+		err = read_combined(chip, data, now, max_ns, any);
+		data += now;
+		n -= now;
+	}
+	if (err || any)
+		return err;
+	status = ds2482_write_read(chip, DS2482_READ_POINTER, DS2482_AT_STATUS);
+	if (status < 0 || (status & (DS2482_1WB | DS2482_RST)))
+		return ds2482_diagnose(chip, status < 0 ? status : -EIO);
+	return 0;
+}

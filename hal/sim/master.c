@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: MIT */
+#include "master.h"
+
+#include "adapter.h"
+#include "hal/ds2482/ds2482.h"
+#include "scenario.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct simulation {
+	struct sim_net net;
+	struct sim_adapter adapter;
+	char name[];
+};
+
+static int open_adapter(void *ctx, const struct bus_env *env, struct i2c_adapter **adapter,
+                        char *why, size_t why_size)
+{
+	struct simulation *simulation = ctx;
+
+	sim_net_run(&simulation->net, env->now(env->ctx));
+	if (!simulation->net.plugged) {
+		snprintf(why, why_size, "the simulated adapter of %s is unplugged",
+		         simulation->name);
+		return -ENODEV;
+	}
+	sim_adapter_init(&simulation->adapter, &simulation->net, env);
+	*adapter = &simulation->adapter.adapter;
+	return 0;
+}
+
+static void destroy_simulation(void *ctx)
+{
+	struct simulation *simulation = ctx;
+
+	sim_net_clear(&simulation->net);
+	free(simulation);
+}
+
+/* A file name may have colons: only ":0x.." at its end is a chip. */
+static const char *behind_file(const char *where)
+{
+	const char *chip = strrchr(where, ':');
+
+	return chip && strncmp(chip, ":0x", 3) == 0 ? chip : where + strlen(where);
+}
+
+static int create(const char *where, const struct bus_env *env, struct link_master **master,
+                  char *why, size_t why_size)
+{
+	const char *chip = behind_file(where);
+	size_t len = (size_t)(chip - where);
+	struct simulation *simulation = calloc(1, sizeof(*simulation) + len + 1);
+	struct ds2482_source source = {
+		.open = open_adapter, .destroy = destroy_simulation, .ctx = simulation};
+	int err;
+
+	if (!simulation)
+		return -ENOMEM;
+	memcpy(simulation->name, where, len);
+	source.name = simulation->name;
+	err = sim_scenario_read(simulation->name, &simulation->net, why, why_size);
+	if (err) {
+		free(simulation);
+		return err == -ENOMEM ? err : -EINVAL;
+	}
+	return ds2482_create(&sim_master, env, &source, chip, master, why, why_size);
+}
+
+struct sim_net *sim_master_net(struct link_master *master)
+{
+	struct ds2482_master *driver = (struct ds2482_master *)master;
+
+	return &((struct simulation *)driver->source.ctx)->net;
+}
+
+const struct link_master_ops sim_master = {
+	.scheme = "sim",
+	.summary = "a simulated DS2482 with its devices, from a scenario file",
+	.create = create,
+	.open = ds2482_open,
+	.close = ds2482_close,
+	.channels = ds2482_channels,
+	.channel = ds2482_channel,
+	.destroy = ds2482_destroy,
+	.simulated = true,
+};

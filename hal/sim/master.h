@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT */
+/* Scheme "sim": the DS2482 driver over a simulated network, `sim:FILE`, `sim:FILE:0x18.3`. */
+#ifndef HAL_SIM_MASTER_H
+#define HAL_SIM_MASTER_H
+
+#include "hal/link.h"
+#include "net.h"
+
+extern const struct link_master_ops sim_master;
+
+/* The network below a master of scheme "sim", for tests and benches. */
+struct sim_net *sim_master_net(struct link_master *master);
+
+#endif

@@ -1,0 +1,528 @@
+/* SPDX-License-Identifier: MIT */
+/* The driver over the simulated chip, in virtual time. */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/ds2482/ds2482.h"
+#include "hal/sim/adapter.h"
+#include "hal/sim/crc.h"
+#include "hal/sim/scenario.h"
+#include "tests/unit/host.h"
+#include "unity.h"
+
+static struct host host;
+static struct sim_net net;
+static struct sim_adapter adapter;
+static struct link_master *master;
+static struct link *wire;
+static unsigned closes;
+static char why[200];
+
+void setUp(void)
+{
+	host_init_virtual(&host);
+	closes = 0;
+}
+
+void tearDown(void)
+{
+	if (master)
+		master->ops->destroy(master);
+	master = NULL;
+	sim_net_clear(&net);
+}
+
+static int open_adapter(void *ctx, const struct bus_env *env, struct i2c_adapter **out, char *text,
+                        size_t size)
+{
+	(void)ctx, (void)text, (void)size;
+	sim_net_run(&net, env->now(env->ctx));
+	if (!net.plugged)
+		return -ENODEV;
+	sim_adapter_init(&adapter, &net, env);
+	*out = &adapter.adapter;
+	return 0;
+}
+
+static void forget(void *ctx)
+{
+	(void)ctx;
+	closes++;
+}
+
+static const struct link_master_ops ops = {
+	.scheme = "test",
+	.open = ds2482_open,
+	.close = ds2482_close,
+	.channels = ds2482_channels,
+	.channel = ds2482_channel,
+	.destroy = ds2482_destroy,
+};
+
+static int try_open(const char *scenario, const char *where)
+{
+	const struct ds2482_source source = {open_adapter, forget, "test", NULL};
+	int err = sim_scenario_parse("test", scenario, &net, why, sizeof(why));
+
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, err, why);
+	TEST_ASSERT_EQUAL_INT(0, ds2482_create(&ops, &host.env, &source, where, &master, why,
+	                                       sizeof(why)));
+	return master->ops->open(master, why, sizeof(why));
+}
+
+static void start(const char *scenario)
+{
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, try_open(scenario, ""), why);
+	wire = master->ops->channel(master, 0);
+}
+
+static void event(const char *text)
+{
+	TEST_ASSERT_EQUAL_INT_MESSAGE(
+		0, sim_scenario_event(&net, text, host.now, why, sizeof(why)), why);
+}
+
+/* Reset, Match ROM, Read Scratchpad and its nine bytes. */
+static int read_scratchpad(const char *name, uint8_t scratchpad[9])
+{
+	uint8_t out[10] = {0x55};
+	int err = wire->ops->reset(wire);
+
+	if (err < 0)
+		return err;
+	memcpy(out + 1, sim_net_slave(&net, name)->rom, 8);
+	out[9] = 0xBE;
+	err = wire->ops->write(wire, out, 10, LINK_IDLE);
+	return err ? err : wire->ops->read(wire, scratchpad, 9);
+}
+
+static void check_scratchpad(void)
+{
+	static const uint8_t expect[5] = {0x50, 0x05, 75, 70, 0x7F};
+	uint8_t scratchpad[9];
+
+	TEST_ASSERT_EQUAL_INT(0, read_scratchpad("t", scratchpad));
+	TEST_ASSERT_EQUAL_HEX8_ARRAY(expect, scratchpad, 5);
+	TEST_ASSERT_EQUAL_HEX8(0, sim_crc8(0, scratchpad, 9));
+}
+
+#define KINDS 8
+static const char *const kinds[KINDS] = {
+	"i2c speed 400 combine any\nchip DS2482-100 0x18\nDS18B20 28.000000000001 as t",
+	"i2c speed 400 combine one-read\nchip DS2482-100 0x18\nDS18B20 28.000000000001 as t",
+	"i2c speed 100 combine any\nchip DS2482-100 0x18\nDS18B20 28.000000000001 as t",
+	"i2c speed 100 combine one-read\nchip DS2482-100 0x18\nDS18B20 28.000000000001 as t",
+	"i2c speed 100 combine smbus\nchip DS2482-100 0x18\nDS18B20 28.000000000001 as t",
+	"i2c speed 400 combine smbus\nchip DS2482-100 0x18\nDS18B20 28.000000000001 as t",
+	"i2c speed 400 combine any messages 5\nchip DS2484 0x18\nDS18B20 28.000000000001 as t",
+	"i2c speed 50 combine one-read\nchip DS2482-800 0x1f\nDS18B20 28.000000000001 as t",
+};
+
+static void test_a_scratchpad_is_read_over_every_kind_of_adapter(void)
+{
+	for (unsigned i = 0; i < KINDS; i++) {
+		start(kinds[i]);
+		for (unsigned n = 0; n < 3; n++)
+			check_scratchpad();
+		tearDown();
+	}
+}
+
+static void test_slow_and_fast_chips_within_the_data_sheets_limits_are_waited_for(void)
+{
+	for (unsigned i = 0; i < 6; i++) {
+		for (int percent = 95; percent <= 105; percent += 5) {
+			start(kinds[i]);
+			net.chip[0].percent = percent;
+			check_scratchpad();
+			tearDown();
+		}
+	}
+}
+
+static void test_a_scratchpad_takes_few_transactions(void)
+{
+	static const unsigned most[4] = {3, 21, 3, 21};
+
+	for (unsigned i = 0; i < 4; i++) {
+		struct link_cost before, after;
+
+		start(kinds[i]);
+		wire->ops->cost(wire, &before);
+		check_scratchpad();
+		wire->ops->cost(wire, &after);
+		TEST_ASSERT_LESS_OR_EQUAL_UINT64(most[i], after.transfers - before.transfers);
+		TEST_ASSERT_EQUAL_UINT64(1, after.resets - before.resets);
+		TEST_ASSERT_EQUAL_UINT64(1184000 + 19 * 8 * 69300, after.wire_ns - before.wire_ns);
+		tearDown();
+	}
+}
+
+static void test_most_of_the_time_is_the_wires(void)
+{
+	static const double most[4] = {1.22, 1.22, 1.57, 1.53};
+
+	for (unsigned i = 0; i < 4; i++) {
+		struct link_cost before, after;
+		int64_t begun;
+		char text[80];
+		double ratio;
+
+		start(kinds[i]);
+		wire->ops->cost(wire, &before);
+		begun = host.now;
+		check_scratchpad();
+		wire->ops->cost(wire, &after);
+		ratio = (double)(host.now - begun) / (double)(after.wire_ns - before.wire_ns);
+		snprintf(text, sizeof(text), "kind %u: %.3f", i, ratio);
+		TEST_ASSERT_TRUE_MESSAGE(ratio <= most[i], text);
+		tearDown();
+	}
+}
+
+static void test_presence_nobody_and_a_short_are_told_apart(void)
+{
+	for (unsigned i = 0; i < KINDS; i++) {
+		start(kinds[i]);
+		TEST_ASSERT_EQUAL_INT(1, wire->ops->reset(wire));
+		event("unplug t");
+		TEST_ASSERT_EQUAL_INT(0, wire->ops->reset(wire));
+		event(i == 7 ? "short 0x1f" : "short 0x18");
+		TEST_ASSERT_EQUAL_INT(-ECOMM, wire->ops->reset(wire));
+		event(i == 7 ? "end short 0x1f" : "end short 0x18");
+		event("plug t");
+		TEST_ASSERT_EQUAL_INT(1, wire->ops->reset(wire));
+		check_scratchpad();
+		tearDown();
+	}
+}
+
+static void test_triplets_and_bits_read_the_wire(void)
+{
+	const uint8_t search = 0xF0;
+
+	start(kinds[1]);
+	TEST_ASSERT_EQUAL_INT(1, wire->ops->reset(wire));
+	TEST_ASSERT_EQUAL_INT(0, wire->ops->write(wire, &search, 1, LINK_IDLE));
+	for (unsigned i = 0; i < 8; i++) /* 28h, least bit first */
+		TEST_ASSERT_EQUAL_INT(0x28 >> i & 1 ? 1 | 4 : 2, wire->ops->triplet(wire, i & 1));
+	TEST_ASSERT_EQUAL_INT(0, wire->ops->bit(wire, true, LINK_IDLE)); /* 0, and its complement */
+	TEST_ASSERT_EQUAL_INT(1, wire->ops->bit(wire, true, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(0, wire->ops->bit(wire, false, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(1, wire->ops->reset(wire));
+	TEST_ASSERT_EQUAL_INT(3 | 4, wire->ops->triplet(wire, false)); /* nobody */
+}
+
+static void test_the_strong_pullup_feeds_a_parasite_until_the_next_call(void)
+{
+	static const uint8_t convert[2] = {0xCC, 0x44};
+
+	for (unsigned i = 0; i < KINDS; i++) {
+		struct sim_slave *slave;
+		uint8_t scratchpad[9];
+
+		start(kinds[i]);
+		slave = sim_net_slave(&net, "t");
+		slave->parasite = true;
+		slave->input[0] = sim_constant(25.0625);
+		for (unsigned n = 0; n < 2; n++) {
+			TEST_ASSERT_EQUAL_INT(1, wire->ops->reset(wire));
+			TEST_ASSERT_EQUAL_INT(0, wire->ops->write(wire, convert, 2, LINK_STRONG));
+			host.now += 760 * HOST_MS;
+			TEST_ASSERT_EQUAL_INT(0, read_scratchpad("t", scratchpad));
+			TEST_ASSERT_EQUAL_HEX8(0x91, scratchpad[0]);
+		}
+		TEST_ASSERT_EQUAL_UINT64(1, slave->power_ons);
+		tearDown();
+	}
+}
+
+static void test_each_channel_of_an_800_is_its_own_wire(void)
+{
+	start("chip DS2482-800 0x1a\nchannel 0\nDS2401 01.000000000001\n"
+	      "channel 6\nDS18B20 28.000000000001 as t");
+	TEST_ASSERT_EQUAL_UINT(8, master->ops->channels(master));
+	for (unsigned i = 0; i < 8; i++) {
+		wire = master->ops->channel(master, i);
+		TEST_ASSERT_EQUAL_INT(i == 0 || i == 6, wire->ops->reset(wire));
+	}
+	wire = master->ops->channel(master, 6);
+	check_scratchpad();
+}
+
+static void test_one_chip_or_one_channel_is_opened_when_it_is_named(void)
+{
+	static const char *const two = "chip DS2482-100 0x18\nchip DS2482-800 0x1c\nchannel 3\n"
+	                               "DS18B20 28.000000000001 as t";
+
+	start(two);
+	TEST_ASSERT_EQUAL_UINT(9, master->ops->channels(master));
+	tearDown();
+	TEST_ASSERT_EQUAL_INT(0, try_open(two, ":0x1c"));
+	TEST_ASSERT_EQUAL_UINT(8, master->ops->channels(master));
+	tearDown();
+	TEST_ASSERT_EQUAL_INT(0, try_open(two, ":0x1c.3"));
+	TEST_ASSERT_EQUAL_UINT(1, master->ops->channels(master));
+	wire = master->ops->channel(master, 0);
+	check_scratchpad();
+	TEST_ASSERT_NULL(master->ops->channel(master, 1));
+	tearDown();
+	TEST_ASSERT_EQUAL_INT(-ENXIO, try_open(two, ":0x18.3"));
+	TEST_ASSERT_NOT_NULL(strstr(why, "one channel"));
+	tearDown();
+	TEST_ASSERT_EQUAL_INT(-ENXIO, try_open(two, ":0x1a"));
+	TEST_ASSERT_NOT_NULL(strstr(why, "no DS2482 answers at 0x1a"));
+}
+
+static void test_a_where_that_is_none_is_refused(void)
+{
+	static const char *const wrong[] = {":", ":0x17", ":0x20", ":0x18.8", ":0x18.", ":0x18.1x",
+	                                    "0x18", ":x"};
+	const struct ds2482_source source = {open_adapter, forget, "test", NULL};
+
+	for (unsigned i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++)
+		TEST_ASSERT_EQUAL_INT(-EINVAL, ds2482_create(&ops, &host.env, &source, wrong[i],
+		                                             &master, why, sizeof(why)));
+	TEST_ASSERT_EQUAL_UINT(sizeof(wrong) / sizeof(wrong[0]), closes);
+}
+
+/* A part that takes everything and answers with its own registers, as an MCP9808 does. */
+static unsigned second_bytes;
+
+static int other_write_byte(struct i2c_adapter *base, uint8_t address, uint8_t command)
+{
+	(void)base, (void)address, (void)command;
+	return 0;
+}
+
+static int other_write_byte_data(struct i2c_adapter *base, uint8_t address, uint8_t command,
+                                 uint8_t data)
+{
+	(void)base, (void)address, (void)command, (void)data;
+	second_bytes++;
+	return 0;
+}
+
+static int other_transfer(struct i2c_adapter *base, uint8_t address, struct i2c_message *messages,
+                          size_t n)
+{
+	(void)base, (void)address;
+	for (size_t i = 0; i < n; i++)
+		second_bytes += !(messages[i].flags & I2C_MESSAGE_READ) && messages[i].len > 1;
+	return 0;
+}
+
+static uint8_t other_value;
+static int other_read_byte(struct i2c_adapter *base, uint8_t address)
+{
+	(void)base, (void)address;
+	return other_value;
+}
+
+static int other_claim(struct i2c_adapter *base, uint8_t address)
+{
+	(void)base, (void)address;
+	return 0;
+}
+
+static void other_close(struct i2c_adapter *base)
+{
+	(void)base;
+}
+
+static const struct i2c_adapter_ops other_ops = {
+	.transfer = other_transfer,
+	.write_byte = other_write_byte,
+	.write_byte_data = other_write_byte_data,
+	.read_byte = other_read_byte,
+	.claim = other_claim,
+	.close = other_close,
+};
+static struct i2c_adapter other = {.ops = &other_ops, .combine = I2C_ANY, .max_messages = 42};
+
+static int open_other(void *ctx, const struct bus_env *env, struct i2c_adapter **out, char *text,
+                      size_t size)
+{
+	(void)ctx, (void)env, (void)text, (void)size;
+	*out = &other;
+	return 0;
+}
+
+static void test_other_parts_never_get_a_second_byte(void)
+{
+	const struct ds2482_source source = {open_other, forget, "test", NULL};
+
+	second_bytes = 0;
+	for (unsigned value = 0; value < 256; value++) {
+		if ((value & 0xE1) == 0 && (value & DS2482_RST))
+			continue; /* would be a DS2482 by all that can be seen */
+		other_value = (uint8_t)value;
+		TEST_ASSERT_EQUAL_INT(0, ds2482_create(&ops, &host.env, &source, "", &master, why,
+		                                       sizeof(why)));
+		TEST_ASSERT_EQUAL_INT(-ENXIO, master->ops->open(master, why, sizeof(why)));
+		master->ops->destroy(master);
+		master = NULL;
+	}
+	TEST_ASSERT_EQUAL_UINT(0, second_bytes);
+}
+
+static void test_a_chip_that_restarted_is_noticed_and_set_up_again(void)
+{
+	for (unsigned i = 0; i < 6; i++) {
+		uint8_t scratchpad[9];
+		int err = 0;
+
+		start(kinds[i]);
+		check_scratchpad();
+		event("reset 0x18");
+		TEST_ASSERT_EQUAL_INT(-ENXIO, read_scratchpad("t", scratchpad));
+		TEST_ASSERT_EQUAL_INT(-ENXIO, wire->ops->reset(wire));
+		TEST_ASSERT_EQUAL_INT(0, wire->ops->recover(wire, LINK_CHIP_RESET));
+		TEST_ASSERT_EQUAL_HEX8(SIM_APU, net.chip[0].config);
+		check_scratchpad();
+		/* And in the middle of a call. */
+		TEST_ASSERT_EQUAL_INT(1, wire->ops->reset(wire));
+		TEST_ASSERT_EQUAL_INT(0, sim_net_add_event(&net, &(struct sim_event){
+		                                .what = SIM_CHIP_RESET,
+		                                .at_ns = net.time + 2000000}));
+		err = wire->ops->read(wire, scratchpad, 9);
+		TEST_ASSERT_EQUAL_INT(-ENXIO, err);
+		tearDown();
+	}
+}
+
+static void test_a_stuck_chip_is_an_error_in_time_and_a_reset_frees_it(void)
+{
+	for (unsigned i = 0; i < 6; i++) {
+		int64_t begun;
+
+		start(kinds[i]);
+		event("stick 0x18");
+		begun = host.now;
+		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, wire->ops->reset(wire));
+		TEST_ASSERT_LESS_THAN_INT64(50 * HOST_MS, host.now - begun);
+		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, wire->ops->recover(wire, LINK_RETRY));
+		TEST_ASSERT_EQUAL_INT(0, wire->ops->recover(wire, LINK_CHIP_RESET));
+		check_scratchpad();
+		event("jam 0x18");
+		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, wire->ops->reset(wire));
+		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, wire->ops->recover(wire, LINK_CHIP_RESET));
+		event("end jam 0x18");
+		TEST_ASSERT_EQUAL_INT(0, wire->ops->recover(wire, LINK_CHIP_RESET));
+		check_scratchpad();
+		tearDown();
+	}
+}
+
+static void test_a_refused_call_is_an_error_and_the_next_one_works(void)
+{
+	for (unsigned i = 0; i < 6; i++) {
+		uint8_t scratchpad[9];
+
+		start(kinds[i]);
+		event("refuse 0x18 for 1ms");
+		TEST_ASSERT_EQUAL_INT(-EIO, wire->ops->reset(wire));
+		host.now += 5 * HOST_MS;
+		TEST_ASSERT_EQUAL_INT(0, wire->ops->recover(wire, LINK_RETRY));
+		check_scratchpad();
+		event("refuse-data 0x18 each 15");
+		TEST_ASSERT_EQUAL_INT(-EIO, read_scratchpad("t", scratchpad));
+		event("end refuse-data 0x18");
+		TEST_ASSERT_EQUAL_INT(0, wire->ops->recover(wire, LINK_RETRY));
+		check_scratchpad();
+		tearDown();
+	}
+}
+
+static void test_an_adapter_that_is_gone_comes_back_by_opening_it_again(void)
+{
+	uint8_t scratchpad[9];
+	struct link_cost before, after;
+
+	start(kinds[1]);
+	check_scratchpad();
+	wire->ops->cost(wire, &before);
+	event("remove adapter for 2s");
+	TEST_ASSERT_EQUAL_INT(-ENODEV, read_scratchpad("t", scratchpad));
+	master->ops->close(master);
+	TEST_ASSERT_EQUAL_INT(-ENODEV, wire->ops->reset(wire));
+	TEST_ASSERT_EQUAL_INT(-ENODEV, wire->ops->recover(wire, LINK_REOPEN));
+	host.now += 3 * HOST_S;
+	TEST_ASSERT_EQUAL_INT(0, wire->ops->recover(wire, LINK_REOPEN));
+	check_scratchpad();
+	wire->ops->cost(wire, &after);
+	TEST_ASSERT_GREATER_THAN_UINT64(before.transfers, after.transfers);
+	TEST_ASSERT_GREATER_THAN_UINT64(before.wire_ns, after.wire_ns);
+}
+
+static void test_only_a_part_with_a_supply_switch_cycles_the_power(void)
+{
+	start(kinds[1]);
+	TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP, wire->ops->recover(wire, LINK_POWER_CYCLE));
+	tearDown();
+	start(kinds[6]);
+	sim_net_slave(&net, "t")->parasite = true;
+	TEST_ASSERT_EQUAL_INT(0, wire->ops->recover(wire, LINK_POWER_CYCLE));
+	TEST_ASSERT_EQUAL_UINT64(2, sim_net_slave(&net, "t")->power_ons);
+	check_scratchpad();
+}
+
+static void test_overdrive_is_the_links_own(void)
+{
+	const uint8_t skip = 0x3C, read = 0xBE;
+	uint8_t scratchpad[9];
+
+	start("i2c speed 400 combine any\nchip DS2482-100 0x18\nDS28EA00 42.000000000001 as t");
+	TEST_ASSERT_EQUAL_INT(1, wire->ops->reset(wire));
+	TEST_ASSERT_EQUAL_INT(0, wire->ops->write(wire, &skip, 1, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(0, wire->ops->speed(wire, LINK_OVERDRIVE));
+	TEST_ASSERT_EQUAL_HEX8(SIM_1WS | SIM_APU, net.chip[0].config);
+	TEST_ASSERT_EQUAL_INT(0, wire->ops->write(wire, &read, 1, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(0, wire->ops->read(wire, scratchpad, 9));
+	TEST_ASSERT_EQUAL_HEX8(0, sim_crc8(0, scratchpad, 9));
+	TEST_ASSERT_EQUAL_HEX8(75, scratchpad[2]);
+	TEST_ASSERT_EQUAL_INT(1, wire->ops->reset(wire));
+	TEST_ASSERT_EQUAL_INT(0, wire->ops->recover(wire, LINK_BUS_RESET));
+	TEST_ASSERT_EQUAL_HEX8(SIM_APU, net.chip[0].config);
+	check_scratchpad();
+}
+
+static void test_a_shutdown_ends_every_call(void)
+{
+	for (unsigned i = 0; i < KINDS; i++) {
+		uint8_t byte = 0;
+
+		start(kinds[i]);
+		host.shutdown = true;
+		TEST_ASSERT_EQUAL_INT(-ECANCELED, wire->ops->reset(wire));
+		TEST_ASSERT_EQUAL_INT(-ECANCELED, wire->ops->write(wire, &byte, 1, LINK_IDLE));
+		TEST_ASSERT_EQUAL_INT(-ECANCELED, wire->ops->read(wire, &byte, 1));
+		TEST_ASSERT_EQUAL_INT(-ECANCELED, wire->ops->triplet(wire, false));
+		host.shutdown = false;
+		tearDown();
+	}
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_scratchpad_is_read_over_every_kind_of_adapter);
+	RUN_TEST(test_slow_and_fast_chips_within_the_data_sheets_limits_are_waited_for);
+	RUN_TEST(test_a_scratchpad_takes_few_transactions);
+	RUN_TEST(test_most_of_the_time_is_the_wires);
+	RUN_TEST(test_presence_nobody_and_a_short_are_told_apart);
+	RUN_TEST(test_triplets_and_bits_read_the_wire);
+	RUN_TEST(test_the_strong_pullup_feeds_a_parasite_until_the_next_call);
+	RUN_TEST(test_each_channel_of_an_800_is_its_own_wire);
+	RUN_TEST(test_one_chip_or_one_channel_is_opened_when_it_is_named);
+	RUN_TEST(test_a_where_that_is_none_is_refused);
+	RUN_TEST(test_other_parts_never_get_a_second_byte);
+	RUN_TEST(test_a_chip_that_restarted_is_noticed_and_set_up_again);
+	RUN_TEST(test_a_stuck_chip_is_an_error_in_time_and_a_reset_frees_it);
+	RUN_TEST(test_a_refused_call_is_an_error_and_the_next_one_works);
+	RUN_TEST(test_an_adapter_that_is_gone_comes_back_by_opening_it_again);
+	RUN_TEST(test_only_a_part_with_a_supply_switch_cycles_the_power);
+	RUN_TEST(test_overdrive_is_the_links_own);
+	RUN_TEST(test_a_shutdown_ends_every_call);
+	return UNITY_END();
+}
