@@ -66,7 +66,10 @@ static int resolve(struct connection *connection)
 {
 	const struct addrinfo hints = { .ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM,
 	                                .ai_flags = AI_NUMERICSERV };
-	int err = getaddrinfo(connection->host, connection->port, &hints, &connection->list);
+	/* The loopback addresses come without loading any name service. */
+	bool is_local = strcmp(connection->host, DEFAULT_HOST) == 0;
+	int err = getaddrinfo(is_local ? NULL : connection->host, connection->port, &hints,
+	                      &connection->list);
 
 	connection->next = NULL;
 	snprintf(connection->peer, sizeof(connection->peer), "%.60s:%s", connection->host,
