@@ -52,7 +52,7 @@ struct frame_reader {
 	struct frame_header header; /* valid when a frame is whole */
 	uint8_t *data;              /* header.payload bytes, lent by the caller */
 	uint32_t limit;             /* the most data it takes */
-	uint32_t got, end;          /* bytes of the frame that came; of the whole frame, 0 unknown */
+	uint32_t got, end;          /* bytes that came; of the whole frame, 0 unknown */
 };
 
 enum frame_state {

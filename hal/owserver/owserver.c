@@ -4,8 +4,8 @@
  * `host`, `host:port`, `[v6]:port`, or the same behind `owserver:`.
  *
  * Down, it connects again with back-off for ever; a connection counts as up when a NOP was
- * answered and the server has said whether its devices are simulated. Silence and loss take it down; a server that only was too slow (it sent keep-alives)
- * stays up, on a new connection.
+ * answered and the server has said whether its devices are simulated. Silence and loss take it
+ * down; a server that only was too slow (it sent keep-alives) stays up, on a new connection.
  */
 #include <errno.h>
 #include <stdio.h>

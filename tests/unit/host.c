@@ -109,8 +109,9 @@ struct bus *host_bus(struct host *host, const char *target)
 {
 	struct bus *bus = NULL;
 	char why[200] = "";
+	int err = bus_create(target, &host->env, &bus, why, sizeof(why));
 
-	TEST_ASSERT_EQUAL_INT_MESSAGE(0, bus_create(target, &host->env, &bus, why, sizeof(why)), why);
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, err, why);
 	TEST_ASSERT_NOT_NULL(bus);
 	return bus;
 }

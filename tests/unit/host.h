@@ -16,7 +16,7 @@ struct host {
 	struct bus_env env;
 	int64_t now;   /* of the virtual clock */
 	bool shutdown; /* waits return -ECANCELED */
-	/* Virtual clock: called before a wait on fd; returns when it becomes ready, or INT64_MAX. */
+	/* Virtual clock: when fd becomes ready; INT64_MAX never. Called before a wait on fd. */
 	int64_t (*ready)(void *ctx, int fd, short events);
 	void *ready_ctx;
 	unsigned answers, events, waits;

@@ -106,7 +106,8 @@ static size_t make_answer(uint8_t *out, const struct frame_header *request, cons
 	const char *text = NULL;
 
 	for (unsigned i = 0; i < sizeof(answers) / sizeof(answers[0]); i++)
-		if (answers[i].type == (uint32_t)request->type && strcmp(answers[i].path, path) == 0)
+		if (answers[i].type == (uint32_t)request->type &&
+		    strcmp(answers[i].path, path) == 0)
 			text = answers[i].text;
 	if (!text && request->type != FRAME_NOP) {
 		reply.type = strstr(path, "readonly") ? -95 : strstr(path, "directory") ? -21 : -1;

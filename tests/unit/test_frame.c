@@ -125,7 +125,8 @@ static void test_a_reply_is_read_from_any_split_into_fragments(void)
 		memset(data, 0xee, sizeof(data));
 		frame_begin(&reader, data, sizeof(data) / 2);
 		TEST_ASSERT_EQUAL_INT(FRAME_MORE, feed(read_reply, cut));
-		TEST_ASSERT_EQUAL_INT(FRAME_WHOLE, feed(read_reply + cut, sizeof(read_reply) - cut));
+		TEST_ASSERT_EQUAL_INT(FRAME_WHOLE,
+		                      feed(read_reply + cut, sizeof(read_reply) - cut));
 		TEST_ASSERT_EQUAL_INT32(12, reader.header.payload);
 		TEST_ASSERT_EQUAL_MEMORY("           4", data, 12);
 		TEST_ASSERT_EQUAL_UINT8(0xee, data[12]);
@@ -162,7 +163,8 @@ static void test_what_follows_a_frame_is_left(void)
 	TEST_ASSERT_EQUAL_INT(FRAME_WHOLE, frame_feed(&reader, bytes, sizeof(bytes), &used));
 	TEST_ASSERT_EQUAL_size_t(sizeof(read_reply), used);
 	frame_begin(&reader, data, sizeof(data) / 2);
-	TEST_ASSERT_EQUAL_INT(FRAME_ALIVE, frame_feed(&reader, keep_alive, sizeof(keep_alive), &used));
+	TEST_ASSERT_EQUAL_INT(FRAME_ALIVE,
+	                      frame_feed(&reader, keep_alive, sizeof(keep_alive), &used));
 	TEST_ASSERT_EQUAL_size_t(sizeof(keep_alive), used);
 }
 

@@ -27,7 +27,8 @@ void tearDown(void)
 static int submit(uint32_t id, const char *path)
 {
 	req[id] = (struct bus_req){ .id = id, .op = BUS_READ, .path = path, .data = data[id],
-	                            .len = sizeof(data[id]), .deadline_ns = host.now + 20 * HOST_S };
+	                            .len = sizeof(data[id]),
+	                            .deadline_ns = host.now + 20 * HOST_S };
 	return bus_submit(bus, &req[id]);
 }
 

@@ -24,8 +24,8 @@ static const struct bus_answer *ask(enum bus_op op, const char *path, const char
                                     uint32_t len)
 {
 	static uint32_t id;
-	struct bus_req req = { .id = ++id, .op = (uint8_t)op, .path = path, .data = data, .len = len,
-	                       .deadline_ns = INT64_MAX };
+	struct bus_req req = { .id = ++id, .op = (uint8_t)op, .path = path, .data = data,
+	                       .len = len, .deadline_ns = INT64_MAX };
 
 	if (text)
 		memcpy(data, text, len);
@@ -79,7 +79,7 @@ static void test_nothing_is_in_alarm(void)
 
 static void test_device_and_property_are_missed_by_different_errors(void)
 {
-	TEST_ASSERT_EQUAL_INT(-ENODEV, ask(BUS_READ, "/28.FFFFFFFFFFFF/temperature", NULL, 64)->err);
+	TEST_ASSERT_EQUAL_INT(-ENODEV, ask(BUS_READ, "/28.FFFFFFFFFFFF/type", NULL, 64)->err);
 	TEST_ASSERT_EQUAL_INT(-ENOENT, ask(BUS_READ, "/28.000000000001/colour", NULL, 64)->err);
 	TEST_ASSERT_EQUAL_INT(-ENODEV, ask(BUS_PROBE, "/28.FFFFFFFFFFFF", NULL, 0)->err);
 	TEST_ASSERT_EQUAL_INT(0, ask(BUS_PROBE, "/28.000000000001/temperature", NULL, 0)->err);

@@ -120,7 +120,7 @@ static void comes_up(void)
 	TEST_ASSERT_EQUAL_UINT8_MESSAGE(BUS_UP, event->news, event->text);
 }
 
-/* --- What it does ------------------------------------------------------------------------------ */
+/* --- What it does ---------------------------------------------------------------------------- */
 
 static void test_it_greets_before_it_is_up_and_says_where_it_is(void)
 {
@@ -187,7 +187,7 @@ static void test_a_write_that_was_cut_is_an_error(void)
 static void test_device_and_property_are_missed_by_different_errors(void)
 {
 	start("");
-	TEST_ASSERT_EQUAL_INT(-ENODEV, ask(BUS_READ, "/28.AABBCCDDEEFF/temperature", NULL, 64)->err);
+	TEST_ASSERT_EQUAL_INT(-ENODEV, ask(BUS_READ, "/28.AABBCCDDEEFF/type", NULL, 64)->err);
 	TEST_ASSERT_EQUAL_INT(-ENOENT, ask(BUS_READ, "/28.67C6697351FF/colour", NULL, 64)->err);
 	TEST_ASSERT_EQUAL_INT(-ENOENT, ask(BUS_READ, "/settings/colour", NULL, 64)->err);
 	TEST_ASSERT_EQUAL_INT(-ENODEV, ask(BUS_WRITE, "/28.AABBCCDDEEFF/PIO", "1", 1)->err);
@@ -271,7 +271,7 @@ static void test_a_name_is_resolved_and_all_its_addresses_are_tried(void)
 	TEST_ASSERT_EQUAL_INT(0, read_temperature());
 }
 
-/* --- What goes wrong --------------------------------------------------------------------------- */
+/* --- What goes wrong ------------------------------------------------------------------------- */
 
 static void test_a_reply_in_single_bytes_is_read(void)
 {
@@ -524,7 +524,8 @@ static void test_any_mixture_of_faults_ends_in_one_answer_each_and_no_leak(void)
 		                         err == -ECONNRESET || err == -EPROTO || err == -ENOTCONN ||
 		                         err == -ETIME, plan);
 		if (err == -ENOTCONN)
-			host_run_events(&host, bus, host.events + 1, host_now(&host) + 500 * HOST_MS);
+			host_run_events(&host, bus, host.events + 1,
+			                host_now(&host) + 500 * HOST_MS);
 	}
 	TEST_ASSERT_LESS_OR_EQUAL_UINT_MESSAGE(open_before + 1, descriptors(), plan);
 }

@@ -104,9 +104,9 @@ static void take_until(unsigned n)
 static void start(const char *target)
 {
 	char why[200] = "";
+	int err = worker_create(target, "bus-under-test-1", bell, &rung, &worker, why, sizeof(why));
 
-	TEST_ASSERT_EQUAL_INT_MESSAGE(
-		0, worker_create(target, "bus-under-test-1", bell, &rung, &worker, why, sizeof(why)), why);
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, err, why);
 	TEST_ASSERT_EQUAL_INT(0, worker_start(worker));
 }
 
@@ -300,7 +300,8 @@ static void test_a_worker_that_never_ran_is_destroyed(void)
 {
 	char why[200] = "";
 
-	TEST_ASSERT_EQUAL_INT(0, worker_create("null:", "x", NULL, NULL, &worker, why, sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(0, worker_create("null:", "x", NULL, NULL, &worker, why,
+	                                       sizeof(why)));
 	TEST_ASSERT_EQUAL_INT(0, worker_stop(worker, 0));
 }
 
