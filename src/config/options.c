@@ -220,7 +220,7 @@ static void say_expected(const struct option_def *def, const struct rio_node *no
 			             node->value, def->least, def->most);
 		break;
 	case OPTION_SECONDS:
-		report_error(report, node->value_at, "%s \"%s\": expected seconds from %g to %g",
+		report_error(report, node->value_at, "%s \"%s\": expected seconds from %.10g to %.10g",
 		             def->key, node->value, def->least, def->most);
 		break;
 	case OPTION_FLAG:

@@ -148,60 +148,82 @@ static void add_indented(struct grow *out, const struct rio *rio, const char *in
 	}
 }
 
-int rio_add(struct rio **rio, struct rio_node *block, const char *lines)
+/*
+ * The lines behind after, indented as it is; after NULL: first in the block, deeper than that. They
+ * are for the place from at to end.
+ */
+static char *lines_behind(const struct rio *rio, const struct rio_node *block,
+                          const struct rio_node *after, const char *lines, size_t *at,
+                          size_t *end)
 {
-	const struct rio *old = *rio;
-	const struct rio_node *like = block->last ? block->last : block;
-	size_t begin = line_begin(old, like->begin), at;
-	struct grow out = grow_make();
+	const struct rio_node *like = after ? after : block;
+	size_t begin = line_begin(rio, like->begin);
+	struct grow indent = grow_make(), out = grow_make();
+
+	*at = *end = after ? behind_line(rio, after) : block->value_begin;
+	if (blank_between(rio, begin, like->begin))
+		grow_add(&indent, rio->text + begin, like->begin - begin);
+	if (!after)
+		grow_add(&indent, "  ", 2);
+	if (indent.text)
+		add_indented(&out, rio, indent.text, indent.len, lines);
+	/* what stands behind it in the same line goes to one of its own */
+	if (indent.text && !blank_between(rio, *at, line_end_at(rio, *at))) {
+		grow_add(&out, rio->line_end, strlen(rio->line_end));
+		grow_add(&out, indent.text, indent.len >= 2 ? indent.len - 2 : 0);
+		while (is_blank(rio->text[*end]))
+			++*end;
+	}
+	if (!indent.text) {
+		free(out.text);
+		out.text = NULL;
+	}
+	free(indent.text);
+	return out.text;
+}
+
+static int add_behind(struct rio **rio, const struct rio_node *block,
+                      const struct rio_node *after, const char *lines)
+{
+	struct grow out;
+	size_t at, end;
 	int err;
 
-	if (block->last && !begins_line(old, block->last)) {
-		at = block->last->end;
+	if (!after || begins_line(*rio, after)) {
+		out.text = lines_behind(*rio, block, after, lines, &at, &end);
+	} else {
+		at = end = after->end;
+		out = grow_make();
 		grow_add(&out, " ", 1);
 		grow_add(&out, lines, strlen(lines));
-	} else {
-		struct grow indent = grow_make();
-
-		at = block->last ? behind_line(old, block->last) : block->value_begin;
-		if (blank_between(old, begin, like->begin))
-			grow_add(&indent, old->text + begin, like->begin - begin);
-		if (!block->last)
-			grow_add(&indent, "  ", 2);
-		if (indent.text)
-			add_indented(&out, old, indent.text, indent.len, lines);
-		if (!indent.text) {
-			free(out.text);
-			out.text = NULL;
-		}
-		/* a "}" that stood behind it in the same line goes to one of its own */
-		if (out.text && at < old->len && line_end_at(old, at) > block->value_end &&
-		    at <= block->value_end) {
-			grow_add(&out, old->line_end, strlen(old->line_end));
-			if (!block->last && indent.len >= 2)
-				grow_add(&out, indent.text, indent.len - 2);
-		}
-		free(indent.text);
 	}
-	err = out.text ? rio_splice(rio, at, at, out.text) : -ENOMEM;
+	err = out.text ? rio_splice(rio, at, end, out.text) : -ENOMEM;
 	free(out.text);
 	return err;
 }
 
+int rio_add(struct rio **rio, struct rio_node *block, const char *lines)
+{
+	return add_behind(rio, block, block->last, lines);
+}
+
 int rio_set(struct rio **rio, struct rio_node *block, const char *key, const char *value)
 {
-	const struct rio_node *node = rio_child(block, key);
+	const struct rio_node *node = rio_child(block, key), *after = NULL;
 	struct grow line;
 	char padded[RIO_KEY_MAX + 2];
 	int err;
 
 	if (node)
 		return rio_splice(rio, node->value_begin, node->end, value);
+	for (node = block->first; node; node = node->next)
+		if (node->kind != RIO_BLOCK)
+			after = node;
 	line = grow_make();
 	snprintf(padded, sizeof(padded), "%-*s ", RIO_KEY_WIDTH - 1, key);
 	grow_add(&line, padded, strlen(padded));
 	grow_add(&line, value, strlen(value));
-	err = line.text ? rio_add(rio, block, line.text) : -ENOMEM;
+	err = line.text ? add_behind(rio, block, after, line.text) : -ENOMEM;
 	free(line.text);
 	return err;
 }

@@ -18,7 +18,7 @@ void rio_quote_free(char *quoted);
  */
 /* Replace the bytes begin to end by text. */
 int rio_splice(struct rio **rio, size_t begin, size_t end, const char *text);
-/* Set or add a key. value is put as it is: quote strings first. */
+/* Set a key, or add it behind the other values of the block. value is put as it is: quote strings first. */
 int rio_set(struct rio **rio, struct rio_node *block, const char *key, const char *value);
 /* Add lines behind the block's last child: `Key Value`, or a whole block. Indents every line. */
 int rio_add(struct rio **rio, struct rio_node *block, const char *lines);

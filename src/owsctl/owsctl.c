@@ -17,6 +17,8 @@ static const struct verb verbs[] = {
 	{"wait", "[-t SECONDS] NAME [OP VALUE]", "sleep until a value changes or a condition holds",
 	 verb_wait},
 	{"stats", "", "owsd itself, its targets and counters", verb_stats},
+	{"config", "FILE list | add | set | unset | remove ...", "look at a configuration and edit it",
+	 verb_config},
 };
 #define VERBS (sizeof(verbs) / sizeof(verbs[0]))
 

@@ -37,6 +37,7 @@ int verb_set(struct ctl *ctl, int argc, char **argv);
 int verb_watch(struct ctl *ctl, int argc, char **argv);
 int verb_wait(struct ctl *ctl, int argc, char **argv);
 int verb_stats(struct ctl *ctl, int argc, char **argv);
+int verb_config(struct ctl *ctl, int argc, char **argv);
 
 /*
  * The next option as getopt(), which stops at the first word that is none; --json is taken, -h

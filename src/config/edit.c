@@ -1,0 +1,317 @@
+/* SPDX-License-Identifier: MIT */
+#include "edit.h"
+
+#include "options.h"
+#include "replace.h"
+#include "rio_write.h"
+
+#include "../signal/value.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define DRIVER "OwsDrv"
+
+const char edit_empty[] = "OwsDrv {\n"
+                          "  Version                 1.00\n"
+                          "  TargetName              \"localhost:4304\"\n"
+                          "  MaxConsAlarms           5\n"
+                          "  MaxRetries              3\n"
+                          "  Timeout                 20\n"
+                          "  ItemCount               0\n"
+                          "}\n";
+
+/* What is edited is named by the command line, not by a place in the file. */
+static const struct place command_line;
+
+static struct rio_node *find_driver(const struct rio *rio)
+{
+	struct rio_node *node = rio_child(&rio->root, DRIVER);
+
+	return node && node->kind == RIO_BLOCK ? node : NULL;
+}
+
+static struct rio_node *find_item(const struct rio *rio, const char *name)
+{
+	struct rio_node *driver = find_driver(rio);
+	struct rio_node *item = driver ? rio_child(driver, option_table[OPT_ITEM].key) : NULL;
+
+	for (; item; item = rio_next(item)) {
+		const struct rio_node *found = rio_child(item, option_table[OPT_NAME].key);
+
+		if (item->kind == RIO_BLOCK && found && !strcmp(found->value, name))
+			return item;
+	}
+	return NULL;
+}
+
+/* The block that name stands for; says so if there is none. */
+static struct rio_node *find_block(const struct rio *rio, const char *name,
+                                   enum option_place *place, struct config_report *report)
+{
+	struct rio_node *block = find_item(rio, name);
+
+	*place = PLACE_ITEM;
+	if (block)
+		return block;
+	if (!strcmp(name, DRIVER)) {
+		*place = PLACE_DRIVER;
+		block = find_driver(rio);
+	}
+	if (!block)
+		report_error(report, command_line, "there is no item \"%s\"", name);
+	return block;
+}
+
+static bool has_control(const char *text)
+{
+	for (; *text; text++)
+		if (((unsigned char)*text < ' ' && *text != '\t') || *text == 0x7f)
+			return true;
+	return false;
+}
+
+static bool is_plain_word(const char *text)
+{
+	return *text && !text[strcspn(text, " \t\r\n{}[]\"#\\")];
+}
+
+/* The key and value of "KEY=VALUE", checked against the table; the key is cut off in place. */
+static int split_setting(char *setting, enum option_place place, enum option *option,
+                         const char **value, struct config_report *report)
+{
+	char *equals = strchr(setting, '=');
+	const char *nearest;
+	int found;
+
+	if (!equals) {
+		report_error(report, command_line, "\"%s\": expected KEY=VALUE", setting);
+		return -EINVAL;
+	}
+	*equals = '\0';
+	*value = equals + 1;
+	found = option_find(place, setting);
+	if (found >= 0 && option_table[found].kind == OPTION_BLOCK) {
+		report_error(report, command_line, "%s is a block and has no value", setting);
+		return -EINVAL;
+	}
+	if (found < 0) {
+		nearest = option_nearest(place, setting);
+		report_error(report, command_line, "there is no key %s%s%s%s", setting,
+		             nearest ? "; is it " : "", nearest ? nearest : "",
+		             nearest ? "?" : "");
+		return -EINVAL;
+	}
+	if (has_control(*value)) {
+		report_error(report, command_line, "%s: control characters are not allowed", setting);
+		return -EINVAL;
+	}
+	*option = (enum option)found;
+	return 0;
+}
+
+/* IOType with Type, IO or Uncached put into it; false if the setting is not one of these. */
+static bool change_bits(enum option option, const char *value, unsigned long *bits)
+{
+	int type;
+	int64_t flag;
+
+	if (option == OPT_TYPE) {
+		type = value_type_parse(value);
+		if (type < 0)
+			return false;
+		*bits = (*bits & ~0x0ful) | (unsigned long)type;
+		return true;
+	}
+	if (option == OPT_IO) {
+		if (!strcmp(value, "output"))
+			*bits = (*bits & ~0x10ul) | 0x20;
+		else if (!strcmp(value, "input"))
+			*bits = (*bits & ~0x20ul) | 0x10;
+		else
+			return false;
+		return true;
+	}
+	if (option != OPT_UNCACHED || value_parse(OWS_BOOL, value, &flag))
+		return false;
+	*bits = (*bits & ~0x100ul) | (flag ? 0x100 : 0);
+	return true;
+}
+
+static int put_value(struct rio **rio, struct rio_node *block, enum option option,
+                     const char *value)
+{
+	const char *key = option_table[option].key;
+	const struct rio_node *old = rio_child(block, key);
+	bool as_word = old ? old->kind == RIO_WORD : option_table[option].kind != OPTION_TEXT;
+	char *quoted;
+	int err;
+
+	if (as_word && is_plain_word(value))
+		return rio_set(rio, block, key, value);
+	quoted = rio_quote(value, (*rio)->line_end);
+	err = quoted ? rio_set(rio, block, key, quoted) : -ENOMEM;
+	rio_quote_free(quoted);
+	return err;
+}
+
+static int apply(struct rio **rio, struct rio_node *block, enum option option, const char *value)
+{
+	const struct rio_node *io_type = rio_child(block, option_table[OPT_IO_TYPE].key);
+	unsigned long bits;
+	char text[24], *end;
+
+	if (io_type && !rio_child(block, option_table[option].key)) {
+		bits = strtoul(io_type->value, &end, 0);
+		if (!*end && change_bits(option, value, &bits)) {
+			snprintf(text, sizeof(text), "0x%04lX", bits);
+			return put_value(rio, block, OPT_IO_TYPE, text);
+		}
+	}
+	return put_value(rio, block, option, value);
+}
+
+int edit_set(struct rio **rio, const char *name, const char *const *settings, unsigned count,
+             struct config_report *report)
+{
+	char current[RIO_VALUE_MAX + 1];
+	int err = 0;
+
+	if (strlen(name) >= sizeof(current)) {
+		report_error(report, command_line, "there is no item \"%s\"", name);
+		return -EINVAL;
+	}
+	strcpy(current, name);
+	for (unsigned i = 0; i < count && !err; i++) {
+		enum option_place place;
+		struct rio_node *block = find_block(*rio, current, &place, report);
+		char *setting = block ? strdup(settings[i]) : NULL;
+		const char *value;
+		enum option option;
+
+		if (!setting)
+			return block ? -ENOMEM : -EINVAL;
+		err = split_setting(setting, place, &option, &value, report);
+		if (!err)
+			err = apply(rio, block, option, value);
+		/* it goes by its new name from here on */
+		if (!err && option == OPT_NAME)
+			snprintf(current, sizeof(current), "%s", value);
+		free(setting);
+	}
+	return err;
+}
+
+int edit_unset(struct rio **rio, const char *name, const char *const *keys, unsigned count,
+               struct config_report *report)
+{
+	int err = 0;
+
+	for (unsigned i = 0; i < count && !err; i++) {
+		enum option_place place;
+		struct rio_node *block = find_block(*rio, name, &place, report);
+		struct rio_node *node = block ? rio_child(block, keys[i]) : NULL;
+
+		if (!block)
+			return -EINVAL;
+		if (!node || node->kind == RIO_BLOCK) {
+			report_error(report, command_line, "\"%s\" has no key %s", name, keys[i]);
+			return -EINVAL;
+		}
+		err = rio_remove(rio, node);
+	}
+	return err;
+}
+
+static int count_again(struct rio **rio)
+{
+	struct rio_node *driver = find_driver(*rio);
+	unsigned items = 0;
+	char text[16];
+
+	if (!rio_child(driver, option_table[OPT_ITEM_COUNT].key))
+		return 0;
+	for (const struct rio_node *node = driver->first; node; node = node->next)
+		items += node->kind == RIO_BLOCK && !strcmp(node->key, option_table[OPT_ITEM].key);
+	snprintf(text, sizeof(text), "%u", items);
+	return put_value(rio, driver, OPT_ITEM_COUNT, text);
+}
+
+static char *item_text(const char *name, const char *path)
+{
+	char *quoted_name = rio_quote(name, "\n"), *quoted_path = rio_quote(path, "\n"), *text = NULL;
+
+	if (quoted_name && quoted_path &&
+	    asprintf(&text,
+	             "%s {\n"
+	             "  %-*s %s\n"
+	             "  %-*s %s\n"
+	             "  %-*s 0x0018\n"
+	             "  %-*s \"\"\n"
+	             "}",
+	             option_table[OPT_ITEM].key, RIO_KEY_WIDTH - 1, option_table[OPT_NAME].key,
+	             quoted_name, RIO_KEY_WIDTH - 1, option_table[OPT_PATH].key, quoted_path,
+	             RIO_KEY_WIDTH - 1, option_table[OPT_IO_TYPE].key, RIO_KEY_WIDTH - 1,
+	             option_table[OPT_INIT_VALUE].key) < 0)
+		text = NULL;
+	rio_quote_free(quoted_name);
+	rio_quote_free(quoted_path);
+	return text;
+}
+
+int edit_add(struct rio **rio, const char *name, const char *path, const char *const *settings,
+             unsigned count, struct config_report *report)
+{
+	struct rio_node *driver = find_driver(*rio);
+	char *text;
+	int err;
+
+	if (!driver) {
+		report_error(report, command_line, "the file has no block " DRIVER);
+		return -EINVAL;
+	}
+	if (find_item(*rio, name)) {
+		report_error(report, command_line, "there is an item \"%s\" already", name);
+		return -EINVAL;
+	}
+	if (has_control(name) || has_control(path)) {
+		report_error(report, command_line, "control characters are not allowed");
+		return -EINVAL;
+	}
+	text = item_text(name, path);
+	err = text ? rio_add(rio, driver, text) : -ENOMEM;
+	free(text);
+	if (!err && count)
+		err = edit_set(rio, name, settings, count, report);
+	return err ? err : count_again(rio);
+}
+
+int edit_remove(struct rio **rio, const char *name, struct config_report *report)
+{
+	struct rio_node *item = find_item(*rio, name);
+	int err;
+
+	if (!item) {
+		report_error(report, command_line, "there is no item \"%s\"", name);
+		return -EINVAL;
+	}
+	err = rio_remove(rio, item);
+	return err ? err : count_again(rio);
+}
+
+int edit_commit(const struct rio *rio, const char *file, struct config_report *report)
+{
+	struct config *config;
+	int err = config_parse(file, rio->text, rio->len, report, &config);
+
+	if (err)
+		return err;
+	config_free(config);
+	err = replace_file(file, rio->text, rio->len);
+	if (err)
+		report_error(report, (struct place){file, 0, 0}, "cannot be replaced: %s",
+		             strerror(-err));
+	return err;
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Editing a configuration as the manual's dialog does (figures 3.1 and 3.2), key by key, over the
+ * document: comments, order and spelling of everything else stay.
+ *
+ * Settings are "KEY=VALUE". Type, IO and Uncached go into the bits of IOType where an item has
+ * that. What is wrong is said through report. Returns 0, -EINVAL (said), -ENOMEM or -EFBIG.
+ */
+#ifndef CONFIG_EDIT_H
+#define CONFIG_EDIT_H
+
+#include "rio.h"
+
+/* A new item at the end; an input of type double unless the settings say otherwise. */
+int edit_add(struct rio **rio, const char *name, const char *path, const char *const *settings,
+             unsigned count, struct config_report *report);
+/* Change an item, or the driver's own keys: name "OwsDrv". */
+int edit_set(struct rio **rio, const char *name, const char *const *settings, unsigned count,
+             struct config_report *report);
+/* Take keys out, so that they are not defined. */
+int edit_unset(struct rio **rio, const char *name, const char *const *keys, unsigned count,
+               struct config_report *report);
+int edit_remove(struct rio **rio, const char *name, struct config_report *report);
+
+/* The text of a configuration without items. */
+extern const char edit_empty[];
+
+/*
+ * Check the document, then put it in the place of file in one step: a temporary file beside it,
+ * with the same owner and mode, written out and renamed. A symbolic link stays and its target is
+ * replaced. Whatever fails, the old file is untouched. 0, -EINVAL (check, said) or a negative
+ * errno (said). Blocking.
+ */
+int edit_commit(const struct rio *rio, const char *file, struct config_report *report);
+
+#endif

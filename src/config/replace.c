@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT */
+#include "replace.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define SUFFIX ".XXXXXX"
+
+static int write_all(int fd, const char *text, size_t len)
+{
+	while (len) {
+		ssize_t n = write(fd, text, len);
+
+		if (n < 0 && errno == EINTR)
+			continue;
+		if (n < 0)
+			return -errno;
+		text += n;
+		len -= (size_t)n;
+	}
+	return 0;
+}
+
+/* The owner first: changing it takes set-id bits away. */
+static int take_over(int fd, const struct stat *old)
+{
+	struct stat made;
+
+	if (fstat(fd, &made))
+		return -errno;
+	if ((made.st_uid != old->st_uid || made.st_gid != old->st_gid) &&
+	    fchown(fd, old->st_uid, old->st_gid))
+		return -errno;
+	return fchmod(fd, old->st_mode & 07777) ? -errno : 0;
+}
+
+static int mode_of_new_file(int fd)
+{
+	mode_t mask = umask(0);
+
+	umask(mask);
+	return fchmod(fd, 0666 & ~mask) ? -errno : 0;
+}
+
+static int fill(int fd, const struct stat *old, const char *text, size_t len)
+{
+	int err = old ? take_over(fd, old) : mode_of_new_file(fd);
+
+	if (!err)
+		err = write_all(fd, text, len);
+	if (!err && fsync(fd))
+		err = -errno;
+	return err;
+}
+
+/* The rename itself has to reach the disk too; file systems that cannot do that are no error. */
+static void sync_directory(char *path)
+{
+	char *slash = strrchr(path, '/');
+	int fd;
+
+	if (slash && slash != path)
+		*slash = '\0';
+	fd = open(slash ? (slash == path ? "/" : path) : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	if (fd < 0)
+		return;
+	fsync(fd);
+	close(fd);
+}
+
+static int replace_path(char *path, const struct stat *old, const char *text, size_t len)
+{
+	char temporary[PATH_MAX + sizeof(SUFFIX)];
+	int fd, err;
+
+	snprintf(temporary, sizeof(temporary), "%s" SUFFIX, path);
+	fd = mkostemp(temporary, O_CLOEXEC);
+	if (fd < 0)
+		return -errno;
+	err = fill(fd, old, text, len);
+	if (close(fd) && !err)
+		err = -errno;
+	if (!err && rename(temporary, path))
+		err = -errno;
+	if (err)
+		unlink(temporary);
+	else
+		sync_directory(path);
+	return err;
+}
+
+int replace_file(const char *file, const char *text, size_t len)
+{
+	char path[PATH_MAX];
+	struct stat old;
+
+	if (!realpath(file, path)) {
+		/* a link to nowhere is not for us to make */
+		if (errno != ENOENT || !lstat(file, &old))
+			return -errno;
+		if (strlen(file) >= sizeof(path))
+			return -ENAMETOOLONG;
+		strcpy(path, file);
+		return replace_path(path, NULL, text, len);
+	}
+	if (stat(path, &old))
+		return -errno;
+	if (!S_ISREG(old.st_mode))
+		return S_ISDIR(old.st_mode) ? -EISDIR : -EINVAL;
+	return replace_path(path, &old, text, len);
+}

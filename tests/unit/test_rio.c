@@ -1,0 +1,426 @@
+/* SPDX-License-Identifier: MIT */
+#include "src/config/rio.h"
+#include "src/config/rio_write.h"
+
+#include "unity.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static struct config_report report;
+static char said[8192];
+static struct rio *rio;
+
+static void note(void *ctx, bool is_error, const char *message)
+{
+	size_t used = strlen(said);
+
+	(void)ctx;
+	(void)is_error;
+	snprintf(said + used, sizeof(said) - used, "%s\n", message);
+}
+
+void setUp(void)
+{
+	report = (struct config_report){.line = note};
+	said[0] = '\0';
+	rio = NULL;
+}
+
+void tearDown(void)
+{
+	rio_free(rio);
+}
+
+static void parse_bytes(const char *text, size_t len)
+{
+	rio_free(rio);
+	TEST_ASSERT_EQUAL_INT(0, rio_parse("f", text, len, &report, &rio));
+}
+
+static struct rio_node *parse(const char *text)
+{
+	parse_bytes(text, strlen(text));
+	TEST_ASSERT_EQUAL_STRING("", said);
+	return &rio->root;
+}
+
+static void expect_text(const char *text)
+{
+	TEST_ASSERT_EQUAL_size_t(strlen(text), rio->len);
+	TEST_ASSERT_EQUAL_STRING(text, rio->text);
+}
+
+static void expect_value(const struct rio_node *block, const char *key, enum rio_kind kind,
+                         const char *value)
+{
+	const struct rio_node *node = rio_child(block, key);
+
+	TEST_ASSERT_NOT_NULL_MESSAGE(node, key);
+	TEST_ASSERT_EQUAL_INT_MESSAGE(kind, node->kind, key);
+	TEST_ASSERT_EQUAL_STRING_MESSAGE(value, node->value, key);
+}
+
+static void test_values_of_every_kind_are_read(void)
+{
+	struct rio_node *root = parse("A { W 0x0118\n N -4.7 S \"a b\" L [ 0 \"]\" 0 ]\n E \"\" B { } }");
+	struct rio_node *a = rio_child(root, "A");
+
+	expect_value(root, "A", RIO_BLOCK, "");
+	expect_value(a, "W", RIO_WORD, "0x0118");
+	expect_value(a, "N", RIO_WORD, "-4.7");
+	expect_value(a, "S", RIO_STRING, "a b");
+	expect_value(a, "L", RIO_LIST, "[ 0 \"]\" 0 ]");
+	expect_value(a, "E", RIO_STRING, "");
+	expect_value(a, "B", RIO_BLOCK, "");
+	TEST_ASSERT_NULL(rio_child(a, "C"));
+	TEST_ASSERT_EQUAL_PTR(a, a->first->parent);
+}
+
+static void test_adjacent_strings_are_one(void)
+{
+	struct rio_node *root = parse("P \"abc\"\n\"def\" \"ghi\"\n# no part\n\"jkl\"\nQ \"x\"");
+
+	expect_value(root, "P", RIO_STRING, "abcdefghijkl");
+	expect_value(root, "Q", RIO_STRING, "x");
+	TEST_ASSERT_EQUAL_INT(5, rio_child(root, "Q")->at.line);
+}
+
+static void test_a_string_may_begin_in_the_line_behind_its_key(void)
+{
+	expect_value(parse("P\n  \"abc\"\n"), "P", RIO_STRING, "abc");
+}
+
+static void test_backslashes_escape_quotes_and_themselves_only(void)
+{
+	expect_value(parse("P \"a\\\"b\\\\c\\n\""), "P", RIO_STRING, "a\"b\\c\\n");
+}
+
+static void test_comments_and_commented_keys_are_skipped(void)
+{
+	struct rio_node *root = parse("#Comment1 \"not { this\"\n#\"continued\"\n#GUID 7dbe\n"
+	                              "A { # behind {\n  X \"#\" # no comment in a string\n#}\n}\n#");
+
+	expect_value(rio_child(root, "A"), "X", RIO_STRING, "#");
+	TEST_ASSERT_NULL(root->first->next);
+}
+
+static void test_lines_and_columns_are_those_of_an_editor(void)
+{
+	struct rio_node *root = parse("A {\r\n\tKey \"\xc3\xa4\"  Next 1 }\r\n");
+	struct rio_node *a = rio_child(root, "A");
+
+	TEST_ASSERT_EQUAL_INT(1, a->at.line);
+	TEST_ASSERT_EQUAL_INT(3, a->value_at.column);
+	TEST_ASSERT_EQUAL_INT(2, a->first->at.line);
+	TEST_ASSERT_EQUAL_INT(2, a->first->at.column);
+	TEST_ASSERT_EQUAL_INT(6, a->first->value_at.column);
+	TEST_ASSERT_EQUAL_INT(11, a->last->at.column);
+	TEST_ASSERT_EQUAL_INT(16, a->last->value_at.column);
+}
+
+static void test_a_byte_order_mark_is_no_part_of_the_first_key(void)
+{
+	struct rio_node *root = parse("\xef\xbb\xbf" "A 1");
+
+	expect_value(root, "A", RIO_WORD, "1");
+	TEST_ASSERT_EQUAL_INT(1, root->first->at.column);
+	TEST_ASSERT_EQUAL_size_t(3, root->first->begin);
+}
+
+static void test_empty_texts_are_documents_without_keys(void)
+{
+	TEST_ASSERT_NULL(parse("")->first);
+	TEST_ASSERT_NULL(parse("\n\r\n \t# x")->first);
+}
+
+static void test_syntax_errors_say_place_and_expectation(void)
+{
+	static const struct {
+		const char *text, *said;
+	} cases[] = {
+		{"A {", "f:1:4: error: expected '}' to end A of line 1\n"},
+		{"A {\n B {\n }\n", "f:4:1: error: expected '}' to end A of line 1\n"},
+		{"A { } }", "f:1:7: error: expected a key, found '}'\n"},
+		{"A {\n  Key\n  B 1\n}", "f:2:6: error: expected a value behind Key\n"},
+		{"A { Key }", "f:1:8: error: expected a value behind Key\n"},
+		{"Key", "f:1:4: error: expected a value behind Key\n"},
+		{"Key \"abc\nB 1", "f:1:5: error: expected '\"' at the end of the string, found the end "
+	                           "of the line\n"},
+		{"Key \"abc", "f:1:5: error: expected '\"' at the end of the string, found the end of "
+	                      "the file\n"},
+		{"Key [ 1 2 }", "f:1:5: error: expected ']' at the end of the list\n"
+	                        "f:1:11: error: expected a key, found '}'\n"},
+		{"{ A 1 }", "f:1:1: error: expected a key before '{'\n"},
+		{"A { B 1 2 }", "f:1:9: error: expected a key or '}', found '2'\n"
+	                        "f:1:12: error: expected '}' to end A of line 1\n"},
+		{"A { \"x\" }\n}", "f:1:5: error: expected a key or '}', found '\"'\n"},
+		{"A 1\rB 2", "f:1:4: error: expected a key, found the byte 0x0D\n"},
+		{"\xc3\xa4 1", "f:1:1: error: expected a key\n"},
+		{"A \"x\x01y\x02\"", "f:1:5: error: a control character (byte 0x01) is not allowed\n"},
+		{"A \"x\"\nB \"y\nC 1\nD \"z\n",
+	         "f:2:3: error: expected '\"' at the end of the string, found the end of the line\n"
+	         "f:4:3: error: expected '\"' at the end of the string, found the end of the line\n"},
+	};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		said[0] = '\0';
+		report.errors = 0;
+		parse_bytes(cases[i].text, strlen(cases[i].text));
+		TEST_ASSERT_EQUAL_STRING_MESSAGE(cases[i].said, said, cases[i].text);
+		TEST_ASSERT_TRUE(report.errors > 0);
+	}
+}
+
+static void test_a_nul_byte_is_refused_wherever_it_is(void)
+{
+	static const char texts[][12] = {"A\0 1", "A 1\0", "A \"\0\"", "\0A 1", "A [\0 ]", "A {\0}"};
+
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++) {
+		unsigned before = report.errors;
+
+		parse_bytes(texts[i], sizeof(texts[i]));
+		TEST_ASSERT_TRUE(report.errors > before);
+	}
+}
+
+static void test_limits_are_refused_plainly(void)
+{
+	char deep[3 * (RIO_DEPTH_MAX + 2) + 1] = "", longer[RIO_VALUE_MAX + 100];
+
+	for (int i = 0; i < RIO_DEPTH_MAX + 2; i++)
+		strcat(deep, "A {");
+	parse_bytes(deep, strlen(deep));
+	TEST_ASSERT_EQUAL_STRING("f:1:51: error: blocks are nested deeper than 16\n", said);
+	said[0] = '\0';
+	memset(longer, 'x', sizeof(longer));
+	parse_bytes(longer, sizeof(longer));
+	TEST_ASSERT_NOT_NULL(strstr(said, "f:1:1: error: the key is longer than 63 bytes\n"));
+	said[0] = '\0';
+	memcpy(longer, "K ", 2);
+	parse_bytes(longer, sizeof(longer));
+	TEST_ASSERT_EQUAL_STRING("f:1:3: error: the value of K is longer than 4096 bytes\n", said);
+	parse_bytes(longer, RIO_VALUE_MAX + 2);
+	TEST_ASSERT_EQUAL_size_t(RIO_VALUE_MAX, strlen(rio->root.first->value));
+}
+
+static void test_a_text_beyond_the_size_limit_is_refused_unread(void)
+{
+	struct rio *none;
+
+	TEST_ASSERT_EQUAL_INT(-EFBIG,
+	                      rio_parse("f", "", (size_t)RIO_FILE_MAX + 1, &report, &none));
+	TEST_ASSERT_EQUAL_STRING("f: error: longer than 16777216 bytes\n", said);
+	TEST_ASSERT_NULL(none);
+}
+
+static void test_errors_are_reported_fifty_at_most_and_all_counted(void)
+{
+	char text[401];
+	unsigned lines = 0;
+
+	for (int i = 0; i < 200; i++)
+		memcpy(text + 2 * i, "}\n", 2);
+	parse_bytes(text, 400);
+	for (const char *p = said; *p; p++)
+		lines += *p == '\n';
+	TEST_ASSERT_EQUAL_UINT(200, report.errors);
+	TEST_ASSERT_EQUAL_UINT(REPORT_MAX + 1, lines);
+	TEST_ASSERT_NOT_NULL(strstr(said, "f:51:1: error: more than 50 errors, the rest is not shown"));
+}
+
+static void test_genuine_files_come_back_byte_for_byte(void)
+{
+	static const char *const files[] = {
+		"tests/unit/data/emo_1wr4di4.rio", "tests/unit/data/rpimulti_1wire.rio",
+		"tests/unit/data/temperature_logger.rio", "tests/unit/data/unica_u1wtvs.rio"};
+
+	for (size_t i = 0; i < sizeof(files) / sizeof(files[0]); i++) {
+		struct rio_node *driver, *version;
+		char *text;
+		size_t len;
+
+		TEST_ASSERT_EQUAL_INT(0, rio_read(files[i], &report, &text, &len));
+		parse_bytes(text, len);
+		TEST_ASSERT_EQUAL_STRING("", said);
+		TEST_ASSERT_EQUAL_size_t(len, rio->len);
+		TEST_ASSERT_EQUAL_MEMORY(text, rio->text, len);
+		/* an edit that sets what is there changes nothing either */
+		driver = rio_child(&rio->root, "OwsDrv");
+		version = rio_child(driver, "Version");
+		TEST_ASSERT_EQUAL_STRING("1.00", version->value);
+		TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, driver, "Version", "1.00"));
+		TEST_ASSERT_EQUAL_size_t(len, rio->len);
+		TEST_ASSERT_EQUAL_MEMORY(text, rio->text, len);
+		free(text);
+	}
+}
+
+static void test_a_file_that_cannot_be_read_is_said(void)
+{
+	size_t len;
+	char *text;
+
+	TEST_ASSERT_EQUAL_INT(-ENOENT, rio_read("tests/unit/data/none.rio", &report, &text, &len));
+	TEST_ASSERT_EQUAL_STRING(
+		"tests/unit/data/none.rio: error: cannot be read: No such file or directory\n", said);
+	TEST_ASSERT_EQUAL_INT(-EISDIR, rio_read("tests/unit", &report, &text, &len));
+	TEST_ASSERT_NULL(text);
+}
+
+static void test_random_bytes_are_survived(void)
+{
+	static const char alphabet[] = "{}[]\"\"##\\ \n\n\r\tAbc01_.\0\xef\xbb\xbf{ Item { Name \"x\" }";
+	const unsigned seed = 4711;
+	char text[400], message[32];
+
+	srand(seed);
+	snprintf(message, sizeof(message), "seed %u", seed);
+	report.line = NULL;
+	for (int i = 0; i < 4000; i++) {
+		size_t len = 1 + (size_t)rand() % (sizeof(text) - 1);
+
+		for (size_t j = 0; j < len; j++)
+			text[j] = alphabet[(size_t)rand() % sizeof(alphabet)];
+		parse_bytes(text, len);
+		TEST_ASSERT_EQUAL_MEMORY_MESSAGE(text, rio->text, len, message);
+		for (const struct rio_node *n = rio->root.first; n; n = n->next) {
+			TEST_ASSERT_TRUE_MESSAGE(n->begin <= n->value_begin, message);
+			TEST_ASSERT_TRUE_MESSAGE(n->value_begin <= n->value_end, message);
+			TEST_ASSERT_TRUE_MESSAGE(n->value_end <= n->end && n->end <= len, message);
+			if (n->next)
+				TEST_ASSERT_TRUE_MESSAGE(n->end <= n->next->begin, message);
+		}
+	}
+}
+
+static void test_a_changed_value_changes_nothing_else(void)
+{
+	struct rio_node *a = rio_child(parse("# top\r\nA {\r\n\tX   1  # one\r\n  Y \"two\"\r\n}"), "A");
+
+	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, a, "X", "22"));
+	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, rio_child(&rio->root, "A"), "Y", "\"2\""));
+	expect_text("# top\r\nA {\r\n\tX   22  # one\r\n  Y \"2\"\r\n}");
+}
+
+static void test_a_new_key_goes_behind_the_values_with_their_indent_and_line_end(void)
+{
+	struct rio_node *a = rio_child(parse("A {\r\n   X 1 # one\r\n   B { Z 1 }\r\n}\r\n"), "A");
+
+	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, a, "New", "7"));
+	expect_text("A {\r\n   X 1 # one\r\n   New                     7\r\n   B { Z 1 }\r\n}\r\n");
+	TEST_ASSERT_EQUAL_INT(
+		0, rio_set(&rio, rio_child(rio_child(&rio->root, "A"), "B"), "Q", "2"));
+	expect_text("A {\r\n   X 1 # one\r\n   New                     7\r\n"
+	            "   B { Z 1 Q                       2 }\r\n}\r\n");
+}
+
+static void test_an_empty_block_opens_for_its_first_key(void)
+{
+	static const char *const empty[] = {"A { }", "A {\n}", "A {}"};
+
+	for (size_t i = 0; i < sizeof(empty) / sizeof(empty[0]); i++) {
+		struct rio_node *a = rio_child(parse(empty[i]), "A");
+
+		TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, a, "K", "1"));
+		expect_value(rio_child(&rio->root, "A"), "K", RIO_WORD, "1");
+		TEST_ASSERT_EQUAL_CHAR('}', rio->text[rio->len - 1]);
+		TEST_ASSERT_EQUAL_CHAR('\n', rio->text[rio->len - 2]);
+	}
+}
+
+static void test_a_key_added_behind_a_block_whose_end_shares_its_line_stays_inside(void)
+{
+	struct rio_node *a = rio_child(parse("A {\n  X 1 }"), "A");
+
+	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, a, "Y", "2"));
+	expect_value(rio_child(&rio->root, "A"), "Y", RIO_WORD, "2");
+	TEST_ASSERT_NULL(rio_child(&rio->root, "Y"));
+}
+
+static void test_a_removed_block_takes_its_lines_along_and_leaves_comments(void)
+{
+	struct rio_node *a =
+		rio_child(parse("A {\n  # first\n  B {\n    X 1\n  }\n  # second\n  C { Y 2 }\n}\n"), "A");
+
+	TEST_ASSERT_EQUAL_INT(0, rio_remove(&rio, rio_child(a, "B")));
+	expect_text("A {\n  # first\n  # second\n  C { Y 2 }\n}\n");
+	a = rio_child(&rio->root, "A");
+	TEST_ASSERT_EQUAL_INT(0, rio_remove(&rio, rio_child(a, "C")->first));
+	expect_text("A {\n  # first\n  # second\n  C { }\n}\n");
+}
+
+static void test_strings_are_wrapped_only_when_long_and_read_back(void)
+{
+	char text[1000], *quoted;
+	uint32_t state = 12345;
+
+	quoted = rio_quote("12345678901234567890123456789012345678901234567890", "\n");
+	TEST_ASSERT_NULL(strchr(quoted, '\n'));
+	rio_quote_free(quoted);
+	quoted = rio_quote("123456789012345678901234567890123456789012345678901", "\r\n");
+	TEST_ASSERT_EQUAL_STRING(
+		"\"12345678901234567890123456789012345678901234567890\"\r\n\"1\"", quoted);
+	rio_quote_free(quoted);
+	for (size_t len = 0; len < 300; len++) {
+		char document[2000];
+
+		for (size_t i = 0; i < len; i++) {
+			state = state * 1664525 + 1013904223;
+			text[i] = "ab\"\\ #{}/.="[(state >> 16) % 11];
+		}
+		text[len] = '\0';
+		quoted = rio_quote(text, "\n");
+		snprintf(document, sizeof(document), "K %s", quoted);
+		expect_value(parse(document), "K", RIO_STRING, text);
+		rio_quote_free(quoted);
+	}
+}
+
+static void test_a_character_of_several_bytes_is_not_cut_by_wrapping(void)
+{
+	char text[100];
+	char *quoted, *end;
+
+	memset(text, 'x', sizeof(text));
+	memcpy(text + 49, "\xe2\x82\xac", 4);
+	quoted = rio_quote(text, "\n");
+	end = strchr(quoted, '\n');
+	TEST_ASSERT_NULL(end);
+	rio_quote_free(quoted);
+	memcpy(text + 49, "\xe2\x82\xac" "y", 5);
+	quoted = rio_quote(text, "\n");
+	TEST_ASSERT_NOT_NULL(strstr(quoted, "\xe2\x82\xac\"\n\"y\""));
+	rio_quote_free(quoted);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_values_of_every_kind_are_read);
+	RUN_TEST(test_adjacent_strings_are_one);
+	RUN_TEST(test_a_string_may_begin_in_the_line_behind_its_key);
+	RUN_TEST(test_backslashes_escape_quotes_and_themselves_only);
+	RUN_TEST(test_comments_and_commented_keys_are_skipped);
+	RUN_TEST(test_lines_and_columns_are_those_of_an_editor);
+	RUN_TEST(test_a_byte_order_mark_is_no_part_of_the_first_key);
+	RUN_TEST(test_empty_texts_are_documents_without_keys);
+	RUN_TEST(test_syntax_errors_say_place_and_expectation);
+	RUN_TEST(test_a_nul_byte_is_refused_wherever_it_is);
+	RUN_TEST(test_limits_are_refused_plainly);
+	RUN_TEST(test_a_text_beyond_the_size_limit_is_refused_unread);
+	RUN_TEST(test_errors_are_reported_fifty_at_most_and_all_counted);
+	RUN_TEST(test_genuine_files_come_back_byte_for_byte);
+	RUN_TEST(test_a_file_that_cannot_be_read_is_said);
+	RUN_TEST(test_random_bytes_are_survived);
+	RUN_TEST(test_a_changed_value_changes_nothing_else);
+	RUN_TEST(test_a_new_key_goes_behind_the_values_with_their_indent_and_line_end);
+	RUN_TEST(test_an_empty_block_opens_for_its_first_key);
+	RUN_TEST(test_a_key_added_behind_a_block_whose_end_shares_its_line_stays_inside);
+	RUN_TEST(test_a_removed_block_takes_its_lines_along_and_leaves_comments);
+	RUN_TEST(test_strings_are_wrapped_only_when_long_and_read_back);
+	RUN_TEST(test_a_character_of_several_bytes_is_not_cut_by_wrapping);
+	return UNITY_END();
+}
