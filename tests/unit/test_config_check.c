@@ -48,7 +48,7 @@ static int parse(const char *text)
 
 static int parse_driver(const char *keys)
 {
-	char text[2048];
+	char text[4096];
 
 	snprintf(text, sizeof(text), "OwsDrv {\n%s\n}\n", keys);
 	return parse(text);
