@@ -5,6 +5,7 @@
 #   make test                     unit and system tests (sets up what they need)
 #   make all unit system bench install uninstall clean
 #   make clang sanitize m32       the slower checks
+#   make test-kernel              Debian's own kernel and owserver on the simulated chip, in QEMU
 
 VERSION  := 0.1.0
 SOMAJOR  := 0

@@ -18,8 +18,10 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include "tests/kernel/lines.h"
+
 enum { TYPE_READ = 2, TYPE_WRITE = 3, TYPE_DIRALL = 7 };
-enum { FLAGS = 0x10a, ROOM = 65536, PATH_ROOM = 512, TIMEOUT_S = 60, DEEPEST = 4 };
+enum { FLAGS = 0x10a, ROOM = 65536, TIMEOUT_S = 60, DEEPEST = 4 };
 enum { WORD_PAYLOAD = 1, WORD_TYPE = 2, WORD_FLAGS = 3, WORD_SIZE = 4, WORDS = 6 };
 #define RET_IS_DIRECTORY (-21)
 #define RET_NO_SERVER    (-1000)
@@ -48,7 +50,7 @@ static int answer(int fd, char *data, size_t *len)
 	return (int32_t)ntohl(words[WORD_TYPE]);
 }
 
-static int ask(unsigned type, const char *path, const char *value, size_t value_len, char *data,
+static int ask(unsigned type, const char *path, const uint8_t *value, size_t value_len, char *data,
                size_t *len)
 {
 	static const struct timeval timeout = {.tv_sec = TIMEOUT_S};
@@ -75,18 +77,6 @@ static int ask(unsigned type, const char *path, const char *value, size_t value_
 	return ret;
 }
 
-static void print_escaped(const char *data, size_t len)
-{
-	for (size_t i = 0; i < len; i++) {
-		unsigned char c = (unsigned char)data[i];
-
-		if (c < ' ' || c > '~' || c == '\\')
-			printf("\\x%02x", c);
-		else
-			putchar(c);
-	}
-}
-
 static int read_property(const char *path)
 {
 	char data[ROOM];
@@ -95,13 +85,7 @@ static int read_property(const char *path)
 
 	if (ret == RET_IS_DIRECTORY)
 		return ret;
-	printf("%s\t", path);
-	if (ret < 0)
-		printf("ret=%d", ret);
-	else
-		print_escaped(data, len);
-	putchar('\n');
-	fflush(stdout);
+	lines_answer(path, ret, data, len);
 	return ret;
 }
 
@@ -139,50 +123,17 @@ static int dir(const char *path)
 	return 0;
 }
 
-static size_t unescape(char *text)
+static void read_path(const char *path)
 {
-	size_t n = 0;
-
-	for (const char *p = text; *p; n++) {
-		if (p[0] == '\\' && p[1] == 'x' && p[2] && p[3]) {
-			const char digits[3] = {p[2], p[3], '\0'};
-
-			text[n] = (char)strtoul(digits, NULL, 16);
-			p += 4;
-		} else {
-			text[n] = *p++;
-		}
-	}
-	return n;
+	read_property(path);
 }
 
-static void write_property(char *line)
+static void write_property(const char *path, const uint8_t *value, size_t len)
 {
-	char data[ROOM], *value = strchr(line, ' ');
-	size_t len;
+	char data[ROOM];
+	size_t got;
 
-	if (!value)
-		return;
-	*value++ = '\0';
-	len = unescape(value);
-	printf("%s\tret=%d\n", line, ask(TYPE_WRITE, line, value, len, data, &len));
-	fflush(stdout);
-}
-
-static int each_line(bool writing)
-{
-	char line[PATH_ROOM];
-
-	while (fgets(line, sizeof(line), stdin)) {
-		line[strcspn(line, "\n")] = '\0';
-		if (!line[0] || line[0] == '#')
-			continue;
-		if (writing)
-			write_property(line);
-		else
-			read_property(line);
-	}
-	return 0;
+	lines_written(path, ask(TYPE_WRITE, path, value, len, data, &got));
 }
 
 int main(int argc, char **argv)
@@ -191,13 +142,16 @@ int main(int argc, char **argv)
 	int failed = 0;
 
 	port = argc > 2 ? (uint16_t)strtoul(argv[1], NULL, 10) : 0;
-	if (!strcmp(verb, "read") || !strcmp(verb, "write"))
-		return each_line(!strcmp(verb, "write"));
-	if (strcmp(verb, "dir") != 0 && strcmp(verb, "walk") != 0) {
+	if (strcmp(verb, "read") == 0) {
+		lines_of_paths(read_path);
+	} else if (strcmp(verb, "write") == 0) {
+		lines_of_values(write_property);
+	} else if (strcmp(verb, "dir") == 0 || strcmp(verb, "walk") == 0) {
+		for (int i = 3; i < argc; i++)
+			failed |= strcmp(verb, "dir") == 0 ? dir(argv[i]) : walk(argv[i], 0);
+	} else {
 		fputs("usage: owdump PORT dir|walk|read|write [PATH...]\n", stderr);
-		return 2;
+		failed = 2;
 	}
-	for (int i = 3; i < argc; i++)
-		failed |= !strcmp(verb, "dir") ? dir(argv[i]) : walk(argv[i], 0);
 	return failed;
 }

@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What one of our own buses says, in owdump's words, so that the two can be compared: one line for
+ * each property, its path, a tab, and the text, escaped, or "ret=-N". /uncached before a path asks
+ * past every cache.
+ *
+ *   busdump TARGET dir PATH...   the entries of each directory
+ *   busdump TARGET read          the paths on standard input
+ *   busdump TARGET write         "PATH VALUE" lines on standard input; \xNN is a byte of VALUE
+ */
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "hal/bus.h"
+#include "tests/kernel/lines.h"
+
+enum { ROOM = 65536 };
+#define SECOND INT64_C(1000000000)
+#define PATIENCE (30 * SECOND)
+
+static struct bus *bus;
+static struct bus_answer last;
+static bool answered, up;
+
+static int64_t now(void *ctx)
+{
+	struct timespec time;
+
+	(void)ctx;
+	clock_gettime(CLOCK_BOOTTIME, &time);
+	return (int64_t)time.tv_sec * SECOND + time.tv_nsec;
+}
+
+static int wait_until(void *ctx, int fd, short events, int64_t until_ns)
+{
+	struct pollfd poll_fd = {.fd = fd, .events = events};
+	int64_t left = until_ns - now(ctx);
+	struct timespec timeout;
+
+	if (left < 0)
+		left = 0;
+	timeout = (struct timespec){.tv_sec = left / SECOND, .tv_nsec = left % SECOND};
+	return ppoll(&poll_fd, fd >= 0, &timeout, NULL) > 0;
+}
+
+static void take_answer(void *ctx, const struct bus_answer *answer)
+{
+	(void)ctx;
+	last = *answer;
+	answered = true;
+}
+
+static void take_event(void *ctx, const struct bus_event *event)
+{
+	(void)ctx;
+	if (event->news == BUS_UP || event->news == BUS_DOWN)
+		up = event->news == BUS_UP;
+	if (event->news == BUS_DOWN || event->news == BUS_NOTE)
+		fprintf(stderr, "busdump: %s\n", event->text);
+}
+
+static const struct bus_env env = {
+	.now = now, .wait = wait_until, .answer = take_answer, .event = take_event};
+
+static void run_until(const bool *flag, int64_t until_ns)
+{
+	while (!*flag && now(NULL) < until_ns) {
+		int64_t again = bus_step(bus, now(NULL));
+
+		if (!*flag)
+			wait_until(NULL, -1, 0, again < until_ns ? again : until_ns);
+	}
+}
+
+static int ask(enum bus_op op, const char *path, uint8_t *data, uint32_t len)
+{
+	static const char uncached[] = "/uncached";
+	bool fresh = strncmp(path, uncached, sizeof(uncached) - 1) == 0;
+	struct bus_req request = {
+		.op = (uint8_t)op,
+		.prio = BUS_GUEST,
+		.fresh = fresh,
+		.deadline_ns = now(NULL) + PATIENCE,
+		.path = fresh ? path + sizeof(uncached) - 1 : path,
+		.len = len,
+		.data = data,
+	};
+	int err;
+
+	answered = false;
+	err = bus_submit(bus, &request);
+	if (err)
+		return err;
+	run_until(&answered, request.deadline_ns + PATIENCE);
+	if (!answered) {
+		fprintf(stderr, "busdump: %s: no answer\n", path);
+		exit(1);
+	}
+	return last.err ? last.err : (int)last.len;
+}
+
+static void read_property(const char *path)
+{
+	static uint8_t data[ROOM];
+	int ret = ask(BUS_READ, path, data, sizeof(data));
+
+	lines_answer(path, ret, data, ret < 0 ? 0 : (size_t)ret);
+}
+
+static void write_property(const char *path, const uint8_t *value, size_t len)
+{
+	static uint8_t data[ROOM];
+
+	memcpy(data, value, len);
+	lines_written(path, ask(BUS_WRITE, path, data, (uint32_t)len));
+}
+
+static void dir(const char *path)
+{
+	static uint8_t data[ROOM];
+	int ret = ask(BUS_DIR, path, data, sizeof(data));
+
+	if (ret < 0)
+		printf("%s\tret=%d\n", path, ret);
+	else
+		fwrite(data, 1, (size_t)ret, stdout);
+}
+
+int main(int argc, char **argv)
+{
+	const char *verb = argc > 2 ? argv[2] : "";
+	char why[256] = "";
+
+	if (strcmp(verb, "dir") != 0 && strcmp(verb, "read") != 0 && strcmp(verb, "write") != 0) {
+		fputs("usage: busdump TARGET dir|read|write [PATH...]\n", stderr);
+		return 2;
+	}
+	if (bus_create(argv[1], &env, &bus, why, sizeof(why))) {
+		fprintf(stderr, "busdump: %s: %s\n", argv[1], why);
+		return 1;
+	}
+	run_until(&up, now(NULL) + PATIENCE);
+	if (!up) {
+		fprintf(stderr, "busdump: %s is not up\n", argv[1]);
+		return 1;
+	}
+	if (strcmp(verb, "read") == 0)
+		lines_of_paths(read_property);
+	if (strcmp(verb, "write") == 0)
+		lines_of_values(write_property);
+	for (int i = 3; i < argc; i++)
+		dir(argv[i]);
+	bus_destroy(bus);
+	return 0;
+}

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: MIT
+# The kernel's own drivers bind to the simulated chips and read what house.sim says.
+. /rig/lib.sh
+
+W1=/sys/bus/w1/devices
+
+# FAMILY NUMBER: the kernel's name of house.sim's device; it prints the six id bytes as one number
+name() {
+	echo "$(echo $1 | tr A-F a-f)-$(echo $1 | tr A-F a-f)00${2}c2b1a0"
+}
+
+text() {
+	cat "$W1/$1" 2>/dev/null
+}
+
+# FILE: its bytes in hex, without blanks
+hex() {
+	od -An -v -t x1 "$W1/$1" 2>/dev/null | tr -d ' \n'
+}
+
+# FILE OCTAL: one byte into it
+put() {
+	printf "\\$2" >"$W1/$1"
+}
+
+driver_of() {
+	basename "$(readlink "$1/driver")"
+}
+
+# The bytes of house.sim's device lines between two chip lines
+devices_of() {
+	awk -v chip=$1 '$1 == "chip" { on = $3 == chip } on && /^DS[0-9A-Z]+ +[0-9A-F][0-9A-F]\./' \
+		/rig/house.sim | wc -l
+}
+
+all_found() {
+	[ "$(ls $W1 | grep -c '^[0-9a-f]*-')" = "$1" ]
+}
+
+plug house.sim
+for module in wire ds2482 w1_therm w1_smem w1_ds2405 w1_ds2406 w1_ds2408 w1_ds2413 w1_ds2423 \
+	w1_ds2430 w1_ds2431 w1_ds2433 w1_ds2438; do
+	modprobe $module 2>/dev/null || skip "module $module" "this kernel has none"
+done
+
+new=/sys/bus/i2c/devices/i2c-0/new_device
+echo ds2482 0x18 >$new
+same "ds2482 binds to the DS2482-100" ds2482 "$(driver_of /sys/bus/i2c/devices/0-0018)"
+same "with one 1-Wire master" 1 "$(ls -d $W1/w1_bus_master* | wc -l)"
+within 30 all_found $(devices_of 0x18)
+same "its search finds every device" $(devices_of 0x18) "$(ls $W1 | grep -c '^[0-9a-f]*-')"
+echo ds2482 0x1b >$new
+same "ds2482 binds to the DS2482-800" ds2482 "$(driver_of /sys/bus/i2c/devices/0-001b)"
+same "with eight more masters" 9 "$(ls -d $W1/w1_bus_master* | wc -l)"
+all=$(($(devices_of 0x18) + $(devices_of 0x1b)))
+within 30 all_found $all
+for master in $W1/w1_bus_master*; do
+	echo 0 >$master/w1_master_search
+done
+same "and each channel's devices" $all "$(ls $W1 | grep -c '^[0-9a-f]*-')"
+for master in 2:1 5:2 9:1 3:0; do
+	same "channel $((${master%:*} - 2)) has its own" ${master#*:} \
+		"$(cat $W1/w1_bus_master${master%:*}/w1_master_slave_count)"
+done
+
+# Thermometers: millidegrees, resolution, supply
+for line in 28:00:21062:12:1 28:01:-10125:12:0 28:02:124500:9:1 22:00:30500:12:1 3B:00:62:12:1 \
+	42:00:-500:12:1 28:03:11000:12:1 28:04:12500:12:1 28:05:13750:12:0; do
+	IFS=: read -r family number value resolution power <<-END
+		$line
+	END
+	device=$(name $family $number)
+	same "w1_therm reads $device" $value "$(text $device/temperature)"
+	same "w1_therm sees the resolution of $device" $resolution "$(text $device/resolution)"
+	same "w1_therm sees the supply of $device" $power "$(text $device/ext_power)"
+done
+near "w1_therm reads the DS18S20 with its remainder" 25400 65 "$(text $(name 10 00)/temperature)"
+near "and below zero, fed by the wire" -7300 65 "$(text $(name 10 01)/temperature)"
+device=$(name 28 00)
+echo 10 >$W1/$device/resolution
+same "w1_therm sets a resolution" 10 "$(text $device/resolution)"
+same "which cuts the value" 21000 "$(text $device/temperature)"
+echo "-5 30" >$W1/$device/alarms
+same "w1_therm sets the alarm limits" "-5 30" "$(text $device/alarms)"
+same "w1_slave's checksum is good" YES "$(text $device/w1_slave | sed -n '1s/.* //p')"
+# Not on a bus with other families: there the kernel refuses
+echo trigger >$W1/w1_bus_master5/therm_bulk_read
+bulk_done() {
+	[ "$(text w1_bus_master5/therm_bulk_read)" = 1 ]
+}
+does "w1_therm converts all of a channel at once" within 5 bulk_done
+same "and reads them afterwards" 12500 "$(text $(name 28 04)/temperature)"
+near "the DS18S20 too" 55000 65 "$(text $(name 10 02)/temperature)"
+finish

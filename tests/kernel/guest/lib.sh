@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: MIT
+# For the guest's scripts: results, the simulated adapter, waiting. Sourced by all of them.
+
+failed=0
+
+ok() {
+	echo "ok - $1"
+}
+
+not_ok() {
+	echo "not ok - $1: $2"
+	failed=1
+}
+
+skip() {
+	echo "skip - $1: $2"
+}
+
+# NAME EXPECTED ACTUAL
+same() {
+	if [ "$2" = "$3" ]; then ok "$1"; else not_ok "$1" "expected '$2', have '$3'"; fi
+}
+
+# NAME EXPECTED TOLERANCE ACTUAL
+near() {
+	if awk -v a="$4" -v e="$2" -v t="$3" \
+		'BEGIN { exit !(a ~ /^ *-?[0-9.]+ *$/ && a - e <= t && e - a <= t) }'; then
+		ok "$1"
+	else
+		not_ok "$1" "expected $2 within $3, have '$4'"
+	fi
+}
+
+# NAME COMMAND...: the command succeeds
+does() {
+	name=$1
+	shift
+	if "$@" >/tmp/said 2>&1; then ok "$name"; else not_ok "$name" "$(tail -n 1 /tmp/said)"; fi
+}
+
+# SECONDS COMMAND...: until it succeeds, tried ten times a second; false when time is over
+within() {
+	tries=$(($1 * 10))
+	shift
+	until "$@" >/dev/null 2>&1; do
+		tries=$((tries - 1))
+		[ $tries -gt 0 ] || return 1
+		usleep 100000
+	done
+}
+
+finish() {
+	exit $failed
+}
+
+# SCENARIO: plug the adapter in and wait for /dev/i2c-0; without it nothing can be judged
+plug() {
+	modprobe vhci-hcd && modprobe i2c-tiny-usb && modprobe i2c-dev
+	simchip /rig/$1 >>/tmp/log/simchip 2>&1 &
+	simchip_pid=$!
+	within 10 simchip -c stats && within 10 test -c /dev/i2c-0 && return
+	not_ok "the simulated adapter is plugged in" "no /dev/i2c-0"
+	finish
+}
+
+# Pull it out; whoever has the device open keeps its name alive.
+unplug() {
+	kill $simchip_pid
+	wait $simchip_pid 2>/dev/null
+}
+
+# COMMAND...: to the simulated chips
+sim() {
+	simchip -c "$@" 2>&1
+}
