@@ -214,18 +214,18 @@ int memory_renew_commands(struct memory *m)
 	struct commands lost_commands = m->commands;
 	int err;
 
-	segment_unguard(&m->command_segment);
 	err = make_commands(m);
 	if (err) {
 		m->command_segment = lost;
 		m->commands = lost_commands;
 		return err;
 	}
+	/* if not all of it is gone, its consumers learn so that they have to open the new one */
+	commands_state(&lost_commands, OWS_STATE_RETIRED);
 	commands_forget(&lost_commands);
+	segment_abandon(&lost);
 	commands_state(&m->commands, OWS_STATE_LIVE);
-	err = segment_show(m->instance, &m->command_segment);
-	close(lost.fd);
-	return err;
+	return segment_show(m->instance, &m->command_segment);
 }
 
 void memory_end(struct memory *m)

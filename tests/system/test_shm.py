@@ -1,0 +1,209 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Consumers beside owsd: it is killed, stopped and restarted under them, and they misbehave."""
+
+import glob
+import os
+import random
+import subprocess
+import sys
+import time
+
+import owsdtest
+
+sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
+import ows  # noqa: E402
+
+def start(scene):
+    """owsd on an owserver whose devices keep what is written to them; its configuration too."""
+    server = scene.owserver(mock=["28.000000000001"])
+    sensor = server.devices()[0]
+    server.write(sensor + "/temperature", "21")
+    config = owsdtest.rio(server.target, [
+        dict(Name="room", Path=sensor + "/temperature", Type="double", IO="input"),
+        dict(Name="relays", Path=sensor + "/templow", Type="byte", IO="output"),
+        dict(Name="back", Path=sensor + "/templow", Type="byte", IO="input"),
+    ], Period=0.02)
+    daemon = scene.owsd(config)
+    daemon.restore = lambda: server.write(sensor + "/temperature", "21")
+    return daemon, config
+
+
+def good(signals, name):
+    value = signals.get(name)
+    return value if value.good else None
+
+
+def reopened(signals):
+    try:
+        signals.reopen()
+        return True
+    except OSError:
+        return False
+
+
+def command_file(name):
+    return f"/dev/shm/owsd.{name}.command"
+
+
+def test_a_reader_of_a_killed_owsd_sees_whole_samples_that_age_and_the_next_owsd(scene):
+    daemon, config = start(scene)
+    with ows.Ows(daemon.name) as signals:
+        scene.until(lambda: good(signals, "room"), 10, "room is good")
+        name, first = daemon.name, signals.get("room")
+        for _ in range(10):
+            deadline = time.monotonic() + random.uniform(0.01, 0.06)
+            while time.monotonic() < deadline:
+                assert signals.get("room").value == 21
+            daemon.kill()
+            dead = signals.get("room")  # raises if no whole sample is there
+            assert dead.value == 21 and not signals.stale()
+            assert signals.get("room").age > dead.age
+            daemon = scene.owsd(config, name=name)
+            assert signals.stale() and not signals.get("room").good
+            scene.until(lambda: reopened(signals), 10, "the new image is there")
+            scene.until(lambda: good(signals, "room"), 10, "room is good again")
+        daemon.kill()
+        scene.until(lambda: signals.get("room").quality == ows.Q_TARGET, 10, "owsd seems dead")
+        assert signals.get("room").value == first.value
+        assert signals.get("_TRANSACTIONS").quality == ows.Q_TARGET
+
+
+def test_an_orderly_end_leaves_the_commands_for_the_next_start(scene):
+    daemon, config = start(scene)
+    with ows.Ows(daemon.name, control=True) as signals:
+        signals.set("relays", 5)
+        scene.until(lambda: good(signals, "back") and signals.get("back").value == 5, 10, "is 5")
+        assert daemon.stop() == 0
+        assert signals.stale() and not signals.get("room").good
+        assert not os.path.exists(f"/dev/shm/owsd.{daemon.name}.image")
+        signals.set("relays", 6)
+        scene.owsd(config, name=daemon.name)
+        scene.until(lambda: reopened(signals), 10, "the new image is there")
+        scene.until(lambda: signals.get("back").value == 6, 10, "is 6")
+
+
+def test_a_killed_owsds_commands_are_carried_over(scene):
+    daemon, config = start(scene)
+    with ows.Ows(daemon.name, control=True) as signals:
+        signals.set("relays", 9)
+        daemon.kill()
+        scene.owsd(config, name=daemon.name)
+        with ows.Ows(daemon.name) as reader:
+            scene.until(lambda: reader.get("back").value == 9, 10, "is 9")
+        try:
+            signals.set("relays", 1)
+            raise AssertionError("the old segment took a set")
+        except ows.Stale:
+            pass
+
+
+def test_truncation_harms_neither_owsd_nor_other_consumers(scene):
+    daemon, _ = start(scene)
+    other = scene.start([owsdtest.BUILD / "examples/control", "room", "relays", "30", "0",
+                         daemon.name])
+    with ows.Ows(daemon.name) as signals:
+        scene.until(lambda: signals.get("back").value == 1, 10, "the controller heats")
+        for size in (0, 256, 1 << 20):
+            before = os.stat(command_file(daemon.name)).st_ino
+            os.truncate(command_file(daemon.name), size)
+            scene.until(lambda: os.stat(command_file(daemon.name)).st_ino != before or
+                        not daemon.running(), 10, "a new command segment")
+            assert daemon.running() and other.running()
+            with ows.Ows(daemon.name, control=True) as again:
+                stamp = again.set("relays", 77)
+
+                def controlled():
+                    value = again.get("relays")
+                    return value.applied > stamp and value.value == 1
+                scene.until(controlled, 10, "owsd took this set and one of the controller's after")
+        scene.until(lambda: good(signals, "room"), 10, "room is good")
+        assert daemon.running() and other.running()
+
+
+def test_rubbish_in_the_command_segment_harms_nothing(scene):
+    seed = int(os.environ.get("SEED", time.time_ns() & 0xFFFFFF))
+    print("seed", seed)
+    rng = random.Random(seed)
+    daemon, config = start(scene)
+    with ows.Ows(daemon.name) as signals:
+        scene.until(lambda: good(signals, "room"), 10, "room is good")
+        with open(command_file(daemon.name), "r+b", buffering=0) as command:
+            size = os.path.getsize(command_file(daemon.name))
+            for _ in range(400):
+                at = rng.randrange(0, size, 4)
+                data = rng.randbytes(min(rng.choice([4, 4, 64, 1024]), size - at))
+                os.pwrite(command.fileno(), data, at)
+                time.sleep(0.002)
+            assert daemon.running() and signals.alive()
+            os.pwrite(command.fileno(), rng.randbytes(128), 0)
+
+        def sane():
+            try:
+                with ows.Ows(daemon.name, control=True) as control:
+                    # What rubbish may do is what its writer has the right to
+                    for name in ("room", "back"):
+                        control.set(name + "_RE", 1)
+                        control.set(name + "_WE", 0)
+                    control.set("relays_WE", 1)
+                    control.set("relays", 3)
+                    return True
+            except OSError:
+                return False
+        scene.until(sane, 10, "the header is mended and takes a set")
+        scene.until(lambda: signals.get("back").value == 3, 10, "is 3")
+        daemon.restore()
+        scene.until(lambda: good(signals, "room") and signals.get("room").value == 21, 20,
+                    "room is read on")
+
+
+def test_a_bell_rung_without_end_does_not_stop_the_inputs(scene):
+    daemon, _ = start(scene)
+    code = ("import ows, sys\ns = ows.Ows(sys.argv[1], control=True)\n"
+            "while True: s._ring(0)")
+    scene.start([sys.executable, "-c", code, daemon.name],
+                {"PYTHONPATH": str(owsdtest.SOURCE / "src/libows")})
+    with ows.Ows(daemon.name) as signals:
+        scene.until(lambda: good(signals, "room"), 10, "room is good")
+        before = signals.get("room").count
+        scene.until(lambda: signals.get("room").count > before + 5, 10, "room is read on")
+        assert signals.alive()
+
+
+def test_the_reader_example_prints_every_signal(scene):
+    daemon, config = start(scene)
+    with ows.Ows(daemon.name) as signals:
+        scene.until(lambda: good(signals, "room"), 10, "room is good")
+    done = scene._run([owsdtest.BUILD / "examples/reader", daemon.name, "1"], 20)
+    assert done.returncode == 0, done.stderr
+    for name in ("room", "relays", "back"):
+        assert name in done.stdout, done.stdout
+    assert "21" in done.stdout and "good" in done.stdout
+
+
+def test_ows_py_is_a_program_too(scene):
+    daemon, _ = start(scene)
+    program = [sys.executable, owsdtest.SOURCE / "src/libows/ows.py", "-n", daemon.name]
+
+    def run(*arguments):
+        return subprocess.run([str(p) for p in program] + list(arguments), text=True, timeout=20,
+                              capture_output=True)
+    scene.until(lambda: "\tgood\t" in run("room").stdout, 10, "room is good")
+    assert run("room").stdout.startswith("room\t21.0\tgood\t")
+    assert len(run().stdout.splitlines()) == 3
+    assert run("relays", "4").returncode == 0
+    scene.until(lambda: run("back").stdout.startswith("back\t4\t"), 10, "is 4")
+    assert run("nobody").returncode == 1
+    assert run("relays", "400").returncode == 1
+    assert run("-x").returncode == 2
+
+
+def test_nothing_is_left_in_shared_memory_but_the_commands(scene):
+    daemon, config = start(scene)
+    assert daemon.stop() == 0
+    left = sorted(p.rsplit(".", 1)[1] for p in glob.glob(f"/dev/shm/owsd.{daemon.name}.*"))
+    assert left in (["command"], ["command", "lock"]), left
+
+
+if __name__ == "__main__":
+    owsdtest.main()
