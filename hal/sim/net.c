@@ -110,7 +110,7 @@ static void apply(struct sim_net *net, const struct sim_event *event, int64_t t)
 		sim_wire_plug(wire, slave, event->on, t);
 		break;
 	case SIM_BROWNOUT:
-		sim_slave_power_on(slave, t);
+		sim_slave_brownout(slave, t);
 		break;
 	case SIM_CORRUPT:
 		slave->corrupt_every = event->on ? event->each : 0;

@@ -127,6 +127,12 @@ void sim_slave_power_on(struct sim_slave *slave, int64_t t)
 		slave->family->power_on(slave, t);
 }
 
+void sim_slave_brownout(struct sim_slave *slave, int64_t t)
+{
+	sim_slave_advance(slave, t);
+	sim_slave_power_on(slave, t);
+}
+
 void sim_slave_reset(struct sim_slave *slave, bool overdrive, int64_t t)
 {
 	sim_slave_advance(slave, t);

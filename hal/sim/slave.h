@@ -97,6 +97,8 @@ const struct sim_family *sim_family_find(const char *name, uint8_t code);
 extern const struct sim_family *const sim_families[];
 
 void sim_slave_power_on(struct sim_slave *slave, int64_t t);
+/* The supply breaks down and comes back: what was done by t stays done. */
+void sim_slave_brownout(struct sim_slave *slave, int64_t t);
 void sim_slave_reset(struct sim_slave *slave, bool overdrive, int64_t t);
 /* The slot's begin: does the slave leave the line alone (true), or pull it low? */
 bool sim_slave_output(struct sim_slave *slave, int64_t t);

@@ -103,7 +103,7 @@ void sim_wire_power(struct sim_wire *wire, bool on, int64_t t)
 	wire->unpowered = !on;
 	for (size_t i = 0; on && i < wire->count; i++) {
 		if (wire->slaves[i]->plugged && wire->slaves[i]->parasite)
-			sim_slave_power_on(wire->slaves[i], t);
+			sim_slave_brownout(wire->slaves[i], t);
 	}
 }
 
@@ -112,8 +112,10 @@ void sim_wire_plug(struct sim_wire *wire, struct sim_slave *slave, bool in, int6
 	if (slave->plugged == in)
 		return;
 	slave->plugged = in;
-	if (!in)
+	if (!in) {
+		sim_slave_advance(slave, t);
 		return;
+	}
 	slave->strong = wire->strong;
 	sim_slave_power_on(slave, t);
 }
