@@ -33,7 +33,9 @@ struct host {
 	pthread_t thread;
 	bool running;
 	uint32_t stop;
-	uint32_t *bell; /* in the command segment; replaced when that was lost */
+	struct commands *commands; /* as the engine uses them */
+	struct commands *renewed;  /* made by the supervisor, for the engine to take */
+	uint32_t *bell;            /* in the command segment */
 	int64_t renewed_ns;
 	uint64_t idle_rings, mended;
 };
@@ -108,22 +110,34 @@ static void publish_counters(struct host *h)
 	image_counter(&h->memory.image, index + COUNTER_WORKER_STALLS, stalls);
 }
 
-static void renew_commands(struct host *h, int64_t now_ns)
+/* The bell goes first: who rings the old one is heard at the next period. */
+static void take_renewed(struct host *h)
 {
+	struct commands *renewed = __atomic_exchange_n(&h->renewed, NULL, __ATOMIC_ACQ_REL);
+
+	if (!renewed)
+		return;
+	__atomic_store_n(&h->bell, commands_bell(renewed), __ATOMIC_RELEASE);
+	h->commands = renewed;
+	engine_take_commands(h->engine, renewed);
+}
+
+void host_tend(struct host *h)
+{
+	int64_t now_ns = ows_now();
+	struct commands *renewed;
 	int err;
 
-	if (now_ns - h->renewed_ns < 1000000000)
+	if (now_ns - h->renewed_ns < 1000000000 || !memory_commands_lost(&h->memory))
 		return;
 	h->renewed_ns = now_ns;
-	err = memory_renew_commands(&h->memory);
-	if (err) {
+	renewed = memory_renew_commands(&h->memory, &err);
+	if (renewed)
+		__atomic_store_n(&h->renewed, renewed, __ATOMIC_RELEASE);
+	else
 		log_err(h->log, "the command segment was taken away and cannot be made again: %s",
 		        strerror(-err));
-		return;
-	}
-	log_warning(h->log, "a program took the command segment away: made again, empty");
-	engine_take_commands(h->engine, &h->memory.commands);
-	__atomic_store_n(&h->bell, commands_bell(&h->memory.commands), __ATOMIC_RELEASE);
+	ring(h);
 }
 
 static void sleep_until(struct host *h, uint32_t seen, int64_t until_ns)
@@ -132,10 +146,10 @@ static void sleep_until(struct host *h, uint32_t seen, int64_t until_ns)
 
 	if (until_ns <= now_ns)
 		return;
-	commands_awake(&h->memory.commands, false);
+	commands_awake(h->commands, false);
 	__atomic_thread_fence(__ATOMIC_SEQ_CST);
 	segment_wait(h->bell, seen, until_ns - now_ns);
-	commands_awake(&h->memory.commands, true);
+	commands_awake(h->commands, true);
 }
 
 static void *engine_main(void *ctx)
@@ -152,7 +166,7 @@ static void *engine_main(void *ctx)
 		next_ns = engine_step(h->engine, now_ns);
 		if (now_ns - counted_ns >= h->config->period_ns) {
 			counted_ns = now_ns;
-			h->mended += commands_mend(&h->memory.commands, false);
+			h->mended += commands_mend(h->commands, false);
 			publish_counters(h);
 			busy = true;
 		}
@@ -161,8 +175,7 @@ static void *engine_main(void *ctx)
 			image_news(&h->memory.image);
 			segment_wake(&h->memory.image.header->news, INT_MAX);
 		}
-		if (segment_lost(&h->memory.command_segment))
-			renew_commands(h, now_ns);
+		take_renewed(h);
 		idle = busy ? 0 : idle + 1;
 		if (idle > IDLE_RINGS) {
 			static const uint32_t nobody = 0;
@@ -303,18 +316,18 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 		return -ENOMEM;
 	h->config = setup->config;
 	h->log = setup->log;
-	h->memory.image_segment.fd = h->memory.command_segment.fd = -1;
 	err = create_workers(h, why, why_size);
 	if (!err)
 		err = make_memory(h, setup->instance, why, why_size);
 	if (err)
 		goto fail;
+	h->commands = memory_commands(&h->memory);
 	engine = (struct engine_setup){
 		.config = h->config,
 		.ports = h->ports,
 		.port_count = h->worker_count,
 		.image = &h->memory.image,
-		.commands = &h->memory.commands,
+		.commands = h->commands,
 		.log = h->log,
 		.start_ns = h->memory.start_ns,
 	};
@@ -327,7 +340,7 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 		         strerror(-err));
 		goto fail;
 	}
-	h->bell = commands_bell(&h->memory.commands);
+	h->bell = commands_bell(h->commands);
 	err = start_thread(h, setup->rt_priority, why, why_size);
 	for (unsigned i = 0; !err && i < h->worker_count; i++) {
 		err = worker_start(h->workers[i]);

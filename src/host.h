@@ -24,6 +24,12 @@ struct host_setup {
  */
 int host_start(const struct host_setup *setup, struct host **host, char *why, size_t why_size);
 
+/*
+ * What must not be done on the engine's thread: look after the shared memory. The supervisor calls
+ * it now and then.
+ */
+void host_tend(struct host *host);
+
 /* Time of the engine's last heartbeat, ns of CLOCK_BOOTTIME. Any thread. */
 int64_t host_beat(const struct host *host);
 unsigned host_signals(const struct host *host);

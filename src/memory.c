@@ -10,8 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/random.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
+
+#define COMMANDS (sizeof(((struct memory *)0)->commands) / sizeof(struct memory_commands))
 
 static int64_t wall_ns(void)
 {
@@ -83,7 +86,7 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 	return err;
 }
 
-static int make_commands(struct memory *m)
+static int make_commands(struct memory *m, struct memory_commands *to)
 {
 	const struct config *config = m->config;
 	struct command_signal *signals = calloc((size_t)config->item_count + 1, sizeof(*signals));
@@ -103,12 +106,11 @@ static int make_commands(struct memory *m)
 		signals[i] = (struct command_signal){ .name = config->items[i].name,
 			                              .path = config->items[i].path,
 			                              .type = (uint8_t)config->items[i].type };
-	err = segment_create(m->instance, SEGMENT_COMMAND, commands_size(&plan),
-	                     &m->command_segment);
+	err = segment_create(m->instance, SEGMENT_COMMAND, commands_size(&plan), &to->segment);
 	if (!err)
-		err = segment_guard(&m->command_segment);
+		err = segment_guard(&to->segment);
 	if (!err)
-		err = commands_build(&plan, m->command_segment.base, &m->commands);
+		err = commands_build(&plan, to->segment.base, &to->commands);
 	free(signals);
 	return err;
 }
@@ -128,7 +130,7 @@ static void carry(struct memory *m, struct log *log)
 	}
 	if (segment_guard(&before) == 0) {
 		commands_retire(before.base, before.size);
-		carried = commands_carry(&m->commands, before.base, before.size, true);
+		carried = commands_carry(memory_commands(m), before.base, before.size, true);
 		if (carried < 0)
 			log_warning(log, "what was commanded before is not taken over: the old "
 			                 "command segment is damaged");
@@ -158,7 +160,9 @@ int memory_make(struct memory *m, const char *instance, const struct config *con
 	int err;
 
 	*m = (struct memory){ .instance = instance, .config = config, .generation = 1 };
-	m->image_segment.fd = m->command_segment.fd = -1;
+	m->image_segment.fd = -1;
+	for (unsigned i = 0; i < COMMANDS; i++)
+		m->commands[i].segment.fd = -1;
 	m->start_id = random_id();
 	m->start_ns = ows_now();
 	if (open_image_before(instance, &before)) {
@@ -167,12 +171,12 @@ int memory_make(struct memory *m, const char *instance, const struct config *con
 	}
 	err = make_image(m, counters, counter_count);
 	if (!err)
-		err = make_commands(m);
+		err = make_commands(m, &m->commands[0]);
 	if (err) {
 		snprintf(why, why_size, "cannot make the shared memory: %s%s", strerror(-err),
 		         hint(err));
 		segment_close(&m->image_segment);
-		segment_close(&m->command_segment);
+		segment_close(&m->commands[0].segment);
 		return err;
 	}
 	carry(m, log);
@@ -186,8 +190,8 @@ int memory_show(struct memory *m, struct log *log)
 	int err;
 
 	image_state(&m->image, OWS_STATE_LIVE);
-	commands_state(&m->commands, OWS_STATE_LIVE);
-	err = segment_show(m->instance, &m->command_segment);
+	commands_state(memory_commands(m), OWS_STATE_LIVE);
+	err = segment_show(m->instance, &m->commands[m->current].segment);
 	if (!err)
 		err = segment_show(m->instance, &m->image_segment);
 	if (had_before) {
@@ -207,25 +211,44 @@ int memory_show(struct memory *m, struct log *log)
 	return err;
 }
 
-int memory_renew_commands(struct memory *m)
+struct commands *memory_commands(struct memory *m)
 {
-	/* the old mapping is left: other threads may still ring its bell */
-	struct segment lost = m->command_segment;
-	struct commands lost_commands = m->commands;
-	int err;
+	return &m->commands[m->current].commands;
+}
 
-	err = make_commands(m);
-	if (err) {
-		m->command_segment = lost;
-		m->commands = lost_commands;
-		return err;
+bool memory_commands_lost(const struct memory *m)
+{
+	const struct segment *segment = &m->commands[m->current].segment;
+	struct stat st;
+
+	return segment_lost(segment) || fstat(segment->fd, &st) < 0 || st.st_nlink == 0;
+}
+
+static void let_go(struct memory_commands *c)
+{
+	segment_close(&c->segment);
+	commands_forget(&c->commands);
+}
+
+struct commands *memory_renew_commands(struct memory *m, int *err)
+{
+	unsigned next = (m->current + 1) % COMMANDS;
+	struct memory_commands *to = &m->commands[next];
+
+	let_go(to);
+	*err = make_commands(m, to);
+	if (!*err) {
+		commands_state(&to->commands, OWS_STATE_LIVE);
+		*err = segment_show(m->instance, &to->segment);
+	}
+	if (*err) {
+		let_go(to);
+		return NULL;
 	}
 	/* if not all of it is gone, its consumers learn so that they have to open the new one */
-	commands_state(&lost_commands, OWS_STATE_RETIRED);
-	commands_forget(&lost_commands);
-	segment_abandon(&lost);
-	commands_state(&m->commands, OWS_STATE_LIVE);
-	return segment_show(m->instance, &m->command_segment);
+	commands_state(memory_commands(m), OWS_STATE_RETIRED);
+	m->current = next;
+	return &to->commands;
 }
 
 void memory_end(struct memory *m)
@@ -234,11 +257,11 @@ void memory_end(struct memory *m)
 		image_state(&m->image, OWS_STATE_STOPPED);
 		image_news(&m->image);
 		segment_wake(&m->image.header->news, INT_MAX);
-		commands_mend(&m->commands, true);
-		commands_state(&m->commands, OWS_STATE_STOPPED);
+		commands_mend(memory_commands(m), true);
+		commands_state(memory_commands(m), OWS_STATE_STOPPED);
 		segment_remove(m->instance, SEGMENT_IMAGE);
 	}
 	segment_close(&m->image_segment);
-	segment_close(&m->command_segment);
-	commands_forget(&m->commands);
+	for (unsigned i = 0; i < COMMANDS; i++)
+		let_go(&m->commands[i]);
 }

@@ -15,9 +15,14 @@
 struct memory {
 	const char *instance;
 	const struct config *config;
-	struct segment image_segment, command_segment;
+	struct segment image_segment;
 	struct image image;
-	struct commands commands;
+	/* the one in use, and those before it that a consumer took away */
+	struct memory_commands {
+		struct segment segment;
+		struct commands commands;
+	} commands[3];
+	unsigned current;
 	uint32_t generation, start_id;
 	int64_t start_ns;
 };
@@ -32,11 +37,15 @@ int memory_make(struct memory *memory, const char *instance, const struct config
                 char *why, size_t why_size);
 /* Put them in place of those of the owsd before, which are retired. 0 or a negative errno. */
 int memory_show(struct memory *memory, struct log *log);
+/* The commands in use. */
+struct commands *memory_commands(struct memory *memory);
+/* Did a consumer truncate or unlink the command segment? A system call or two. */
+bool memory_commands_lost(const struct memory *memory);
 /*
- * The command segment was truncated or unlinked by a consumer: make a new, empty one and show it.
- * The old mapping stays, harmless. 0 or a negative errno.
+ * Make a new, empty command segment, show it and return its commands; NULL and *err if that fails.
+ * The mapping before it stays until the call after the next, so that others can let go of it.
  */
-int memory_renew_commands(struct memory *memory);
+struct commands *memory_renew_commands(struct memory *memory, int *err);
 /* Say that owsd ends: the image's name goes, the command segment stays for the next start. */
 void memory_end(struct memory *memory);
 

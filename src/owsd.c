@@ -214,6 +214,7 @@ static void supervise(struct host *host, struct log *log, const struct notify *n
 			if (notify->watchdog_ns)
 				notify_send(notify, NOTIFY_WATCHDOG);
 		}
+		host_tend(host);
 		log_drain(log, STDERR_FILENO, prefix);
 		if (!stop_signal && !hangup)
 			segment_wait(log_word(log), seen, wait_ns);

@@ -31,20 +31,34 @@ static int of_link(struct txn *txn, int result)
 	return result;
 }
 
+static int reset(struct txn *txn)
+{
+	int present = of_link(txn, txn->link->ops->reset(txn->link));
+
+	if (present)
+		return present < 0 ? present : 0;
+	txn->silent = true;
+	return -ENODEV;
+}
+
+int txn_raw(struct txn *txn, const uint8_t *bytes, size_t n)
+{
+	int err = reset(txn);
+
+	return err ? err : txn_write(txn, bytes, n);
+}
+
 static int command(struct txn *txn, const uint8_t *bytes, size_t n, enum link_after after)
 {
 	uint8_t out[9 + BYTES_MAX] = {MATCH_ROM};
 
 	assert(n <= BYTES_MAX);
-	int present = of_link(txn, txn->link->ops->reset(txn->link));
-	if (present < 0)
-		return present;
-	if (!present) {
-		txn->silent = true;
-		return -ENODEV;
-	}
+	int err = reset(txn);
+	if (err)
+		return err;
 	memcpy(out + 1, txn->device->rom, 8);
-	memcpy(out + 9, bytes, n);
+	if (n)
+		memcpy(out + 9, bytes, n);
 	return of_link(txn, txn->link->ops->write(txn->link, out, 9 + n, after));
 }
 

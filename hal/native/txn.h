@@ -38,7 +38,7 @@ struct txn {
 	int64_t measured_ns; /* read: when the chip took the value; 0: now */
 
 	/* From call to call. */
-	uint8_t phase;
+	unsigned phase;
 	uint8_t mem[48];
 	double real[4];
 	int64_t wake_ns; /* not to be called before */
@@ -63,6 +63,8 @@ int txn_command(struct txn *txn, const uint8_t *bytes, size_t n);
  * again when the pull-up has ended.
  */
 int txn_command_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns);
+/* Reset and n bytes, without selecting the device. */
+int txn_raw(struct txn *txn, const uint8_t *bytes, size_t n);
 int txn_write(struct txn *txn, const uint8_t *bytes, size_t n);
 /* As txn_command_strong(). */
 int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns);

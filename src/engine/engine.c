@@ -114,12 +114,17 @@ void engine_take_commands(struct engine *e, struct commands *commands)
 		e->clients[i].known = false;
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
-		struct command c;
 
-		commands_load(commands, s->record, &c);
-		s->stamp = c.stamp;
-		s->one_shots = c.one_shot;
-		s->dgn_resets = c.dgn_reset;
+		s->one_shots = 0;
+		s->dgn_resets = 0;
+		s->client = 0;
+		/* what was commanded stands: here, and for the owsd after this one */
+		if (s->stamp)
+			commands_put(commands, s->record, s->stamp, s->command,
+			             signal_is_string(s) ? s->command_text : NULL,
+			             s->command_len);
 	}
+	e->driver_resets = 0;
 	e->busy_count = 0;
+	log_warning(e->log, "a program took the command segment away: made again");
 }

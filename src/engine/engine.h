@@ -54,7 +54,7 @@ int64_t engine_step(struct engine *engine, int64_t now_ns);
 /* Was anything published since the last call? The host then wakes those who wait for news. */
 bool engine_published(struct engine *engine);
 
-/* The command segment was lost and made again (empty): go on with this one. */
+/* The command segment was lost and made again, empty: go on with this one. */
 void engine_take_commands(struct engine *engine, struct commands *commands);
 
 /*

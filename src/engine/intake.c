@@ -111,7 +111,8 @@ void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
 	take_enables(e, s, &c);
 	if (c.one_shot != s->one_shots) {
 		s->one_shots = c.one_shot;
-		s->one_shot = s->commanded;
+		/* an input that nobody made writable stays one */
+		s->one_shot = s->commanded && (s->item->output || signal_writes(s));
 	}
 	if (c.dgn_reset != s->dgn_resets) {
 		s->dgn_resets = c.dgn_reset;

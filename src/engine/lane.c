@@ -253,6 +253,7 @@ static void go_up(struct lane *lane, const char *text, int64_t now_ns)
 	log_notice(e->log, "%s: from down to up%s%s", lane->port->target, *text ? ": " : "", text);
 	lane->was_up = true;
 	engine_publish_target(e, lane);
+	engine_publish_driver(e, now_ns);
 	engine_lane_up(e, lane, now_ns);
 }
 

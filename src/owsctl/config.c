@@ -208,7 +208,7 @@ int verb_config(struct ctl *ctl, int argc, char **argv)
 	int words;
 
 	ctl_options();
-	if (ctl_option(ctl, argc, argv, "") != -1)
+	if (ctl_option(ctl, argc, argv, "+") != -1)
 		return CTL_USAGE;
 	file = argv[optind];
 	if (argc - optind < 2)

@@ -57,7 +57,8 @@ int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
 	char all[32];
 	int c;
 
-	snprintf(all, sizeof(all), "+:h%s", options);
+	snprintf(all, sizeof(all), "%s:h%s", *options == '+' ? "+" : "",
+	         options + (*options == '+'));
 	opterr = 0;
 	while ((c = getopt_long(argc, argv, all, longs, NULL)) == 'J')
 		ctl->json = true;

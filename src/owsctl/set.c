@@ -253,7 +253,7 @@ int verb_set(struct ctl *ctl, int argc, char **argv)
 	struct ows *h;
 
 	ctl_options();
-	while ((c = ctl_option(ctl, argc, argv, "w:")) != -1) {
+	while ((c = ctl_option(ctl, argc, argv, "+w:")) != -1) {
 		if (c != 'w')
 			return CTL_USAGE;
 		seconds = optarg;

@@ -87,7 +87,8 @@ void terminal_open(void)
 
 void terminal_close(void)
 {
-	static const char leave[] = "\033[?7h\033[?25h\033[?1049l";
+	/* Empty first: a terminal that was resized meanwhile may keep lines of the picture. */
+	static const char leave[] = "\033[H\033[J\033[?7h\033[?25h\033[?1049l";
 
 	if (!terminal.open)
 		return;

@@ -40,9 +40,10 @@ int verb_stats(struct ctl *ctl, int argc, char **argv);
 int verb_config(struct ctl *ctl, int argc, char **argv);
 
 /*
- * The next option as getopt(), which stops at the first word that is none; --json is taken, -h
- * prints the usage and ends the program. '?' : it was wrong and this has been said; return
- * CTL_USAGE. Operands are argv[optind] and up once -1 was returned. ctl_options() starts anew.
+ * The next option as getopt(); options that begin with '+' stop at the first word that is none.
+ * --json is taken, -h prints the usage and ends the program. '?' : it was wrong and this has been
+ * said; return CTL_USAGE. Operands are argv[optind] and up once -1 was returned. ctl_options()
+ * starts anew.
  */
 void ctl_options(void);
 int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options);

@@ -106,7 +106,7 @@ static int parse_limit(struct ctl *ctl, int argc, char **argv, int64_t *limit_ns
 	int c;
 
 	ctl_options();
-	while ((c = ctl_option(ctl, argc, argv, "t:")) != -1) {
+	while ((c = ctl_option(ctl, argc, argv, "+t:")) != -1) {
 		if (c != 't')
 			return CTL_USAGE;
 		if (!ctl_seconds(optarg, limit_ns))

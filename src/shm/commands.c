@@ -209,8 +209,8 @@ int commands_text(const struct commands *commands, uint32_t slot, char *text)
 	return check == ows_check_bytes(text, len) ? (int)len : -EBADMSG;
 }
 
-int commands_put(struct commands *commands, uint32_t slot, int64_t value, const char *text,
-                 uint32_t len)
+int commands_put(struct commands *commands, uint32_t slot, uint32_t stamp, int64_t value,
+                 const char *text, uint32_t len)
 {
 	struct ows_command_slot *s = slot_at(commands, slot);
 	struct ows_command_text *t;
@@ -237,6 +237,7 @@ int commands_put(struct commands *commands, uint32_t slot, int64_t value, const 
 	word_set(&t->len, len);
 	word_set(&t->check, ows_check_bytes(text, len));
 	__atomic_store_n(&t->claim, 0, __ATOMIC_RELEASE);
+	__atomic_store_n(&s->stamp, stamp, __ATOMIC_RELEASE);
 	return 0;
 }
 

@@ -54,11 +54,12 @@ void commands_load(const struct commands *commands, uint32_t slot, struct comman
  */
 int commands_text(const struct commands *commands, uint32_t slot, char *text);
 /*
- * Put owsd's own value in the place of a commanded one (SafeValue), so that it stands over a
- * restart. text and len for strings, else NULL; -EBUSY while a consumer writes the text.
+ * Put a value that owsd knows better in the place of a commanded one, so that it stands over a
+ * restart: SafeValue, or in a segment made anew what was commanded in the one before. text and len
+ * for strings, else NULL; -EBUSY while a consumer writes the text.
  */
-int commands_put(struct commands *commands, uint32_t slot, int64_t value, const char *text,
-                 uint32_t len);
+int commands_put(struct commands *commands, uint32_t slot, uint32_t stamp, int64_t value,
+                 const char *text, uint32_t len);
 /* Free the claim of a writer that died in the middle; the engine calls it after a second. */
 void commands_unclaim(struct commands *commands, uint32_t slot);
 

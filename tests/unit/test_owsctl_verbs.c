@@ -152,7 +152,7 @@ static void test_no_instance_is_told(void)
 
 static void test_json_of_get_is_an_array_with_exact_integers(void)
 {
-	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_get, "get --json room1 count label nobody"));
+	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_get, "get room1 count label nobody --json"));
 	TEST_ASSERT_EQUAL_STRING_LEN("[{\"name\":\"room1\",\"value\":21.5,\"type\":\"double\","
 	                             "\"good\":true,\"quality\":\"good\",\"quality_code\":192,",
 	                             out, 80);

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT */
+/* DS2413: two switches. */
+#include "hal/native/pio.h"
+
+#define WRITE_PIO 0x5a
+
+static const struct property properties[] = {
+	PIO_BITS("PIO", ACCESS_BOTH, WRITE_PIO, pio_read_output, pio_write_output),
+	{.name = "piostate", .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE, .hidden = true,
+	 .access = ACCESS_BOTH, .arg = WRITE_PIO, .read = pio_read_state, .write = pio_write_state},
+	PIO_BITS("sensed", ACCESS_READ, 0, pio_read_pin, NULL),
+};
+
+const struct family family_3a = {.code = 0x3a, .type = "DS2413", PROPERTIES(properties)};

@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: MIT */
+#include "hal/native/memory.h"
+
+#include <errno.h>
+#include <string.h>
+
+#include "hal/native/crc.h"
+
+#define READ_MEMORY 0xf0
+#define WRITE_SCRATCHPAD 0x0f
+#define READ_SCRATCHPAD 0xaa
+#define CHUNK 32
+#define ROW_MAX 32
+
+/*
+ * These memories have no checksum of their own: each chunk is read twice, and has to be the same.
+ * txn->mem[] holds what was read first.
+ */
+static int read_chunk(struct txn *txn, unsigned address, unsigned n)
+{
+	uint8_t command[] = {READ_MEMORY, (uint8_t)address, (uint8_t)(address >> 8)};
+	uint8_t again[CHUNK];
+	int err = txn_command(txn, command, sizeof(command));
+
+	if (!err)
+		err = txn_read(txn, again, n);
+	if (err)
+		return err;
+	if (txn->phase % 2 == 0) {
+		memcpy(txn->mem, again, n);
+		return TXN_MORE;
+	}
+	return memcmp(txn->mem, again, n) == 0 ? 0 : -EBADMSG;
+}
+
+static int read_range(struct txn *txn, unsigned address, unsigned n)
+{
+	unsigned at = txn->phase / 2 * CHUNK;
+	unsigned part = n - at < CHUNK ? n - at : CHUNK;
+	int err = read_chunk(txn, address + at, part);
+
+	if (err < 0)
+		return err;
+	if (txn->phase++ % 2 == 0)
+		return TXN_MORE;
+	memcpy(txn->data + at, txn->mem, part);
+	txn->len = at + part;
+	return txn->len < n ? TXN_MORE : 0;
+}
+
+int memory_read(struct txn *txn, const struct memory *memory)
+{
+	return read_range(txn, 0, memory->size);
+}
+
+int memory_read_page(struct txn *txn, const struct memory *memory)
+{
+	return read_range(txn, (unsigned)txn->element * memory->page, memory->page);
+}
+
+static int write_row(struct txn *txn, const struct memory *memory, unsigned address,
+                     const uint8_t *row)
+{
+	uint8_t command[3 + ROW_MAX] = {WRITE_SCRATCHPAD, (uint8_t)address, (uint8_t)(address >> 8)};
+	uint8_t crc[2];
+	int err;
+
+	memcpy(command + 3, row, memory->row);
+	err = txn_command(txn, command, 3u + memory->row);
+	/* The checksum comes when the scratchpad was filled to its end. */
+	if (err || !memory->checks)
+		return err;
+	err = txn_read(txn, crc, sizeof(crc));
+	if (err)
+		return err;
+	return onewire_crc16_matches(onewire_crc16(0, command, 3u + memory->row), crc) ? 0 : -EBADMSG;
+}
+
+/* What the scratchpad holds; the ending offset goes to mem[0]. */
+static int verify_row(struct txn *txn, const struct memory *memory, unsigned address,
+                      const uint8_t *row)
+{
+	static const uint8_t command = READ_SCRATCHPAD;
+	uint8_t in[3 + ROW_MAX];
+	size_t n = 3u + memory->row;
+	int err = txn_command(txn, &command, 1);
+
+	if (!err)
+		err = memory->checks ? txn_read_crc16(txn, &command, 1, in, n) : txn_read(txn, in, n);
+	if (err)
+		return err;
+	if (in[0] != (uint8_t)address || in[1] != (uint8_t)(address >> 8) ||
+	    memcmp(in + 3, row, memory->row) != 0)
+		return -EBADMSG;
+	txn->mem[0] = in[2];
+	return 0;
+}
+
+static int copy_row(struct txn *txn, const struct memory *memory, unsigned address)
+{
+	uint8_t command[] = {memory->copy, (uint8_t)address, (uint8_t)(address >> 8), txn->mem[0]};
+
+	if (memory->strong)
+		return txn_command_strong(txn, command, sizeof(command), memory->copy_ns);
+	int err = txn_command(txn, command, sizeof(command));
+	return err ? err : txn_wait(txn, memory->copy_ns);
+}
+
+/*
+ * Row by row: read what is there, put the new bytes in, and write if it differs, for an EEPROM
+ * wears out. Five calls a row; mem[8..] holds the row.
+ */
+static int write_range(struct txn *txn, const struct memory *memory, unsigned address, unsigned n)
+{
+	enum { READ, WRITE, VERIFY, COPY, CHECK, STEPS };
+	unsigned row = memory->row, first = address / row * row;
+	unsigned here = first + txn->phase / STEPS * row;
+	unsigned from = here < address ? address : here;
+	unsigned to = here + row < address + n ? here + row : address + n;
+	uint8_t command[] = {READ_MEMORY, (uint8_t)here, (uint8_t)(here >> 8)}, *bytes = txn->mem + 8;
+	uint8_t in[ROW_MAX];
+	int err = 0;
+
+	if (n == 0)
+		return 0;
+	switch (txn->phase % STEPS) {
+	case READ:
+	case CHECK:
+		err = txn_command(txn, command, sizeof(command));
+		if (!err)
+			err = txn_read(txn, in, row);
+		txn->silent = false;
+		break;
+	case WRITE:
+		err = write_row(txn, memory, here, bytes);
+		break;
+	case VERIFY:
+		err = verify_row(txn, memory, here, bytes);
+		break;
+	case COPY:
+		err = copy_row(txn, memory, here);
+		break;
+	}
+	if (err < 0)
+		return err;
+	if (txn->phase % STEPS == CHECK && memcmp(in, bytes, row) != 0)
+		return -EIO;
+	if (txn->phase % STEPS == READ) {
+		memcpy(bytes, in, row);
+		memcpy(bytes + (from - here), txn->data + (from - address), to - from);
+		if (memcmp(bytes, in, row) == 0)
+			txn->phase += CHECK;
+	}
+	txn->phase++;
+	return to == address + n && txn->phase % STEPS == 0 ? 0 : TXN_MORE;
+}
+
+int memory_write(struct txn *txn, const struct memory *memory)
+{
+	return write_range(txn, memory, 0, (unsigned)txn->len);
+}
+
+int memory_write_page(struct txn *txn, const struct memory *memory)
+{
+	return write_range(txn, memory, (unsigned)txn->element * memory->page, (unsigned)txn->len);
+}

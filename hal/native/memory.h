@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Memories of 1-Wire chips that are read with F0h and written through a scratchpad (0Fh, AAh), a
+ * page or a part of it per call.
+ */
+#ifndef HAL_NATIVE_MEMORY_H
+#define HAL_NATIVE_MEMORY_H
+
+#include "hal/native/family.h"
+
+struct memory {
+	uint16_t size;    /* bytes */
+	uint8_t page;     /* of the property */
+	uint8_t row;      /* bytes of the scratchpad */
+	uint8_t copy;     /* the command that copies it */
+	bool checks;      /* CRC16 behind writing and reading the scratchpad */
+	bool strong;      /* the copy needs the strong pull-up */
+	int64_t copy_ns;
+};
+
+/* The whole memory, and page txn->element of it. Write: from its beginning, txn->len bytes. */
+int memory_read(struct txn *txn, const struct memory *memory);
+int memory_read_page(struct txn *txn, const struct memory *memory);
+int memory_write(struct txn *txn, const struct memory *memory);
+int memory_write_page(struct txn *txn, const struct memory *memory);
+
+#define MEMORY_WHOLE(bytes, reads, writes)                                                \
+	{.name = "memory", .type = PROPERTY_BINARY, .life = LIFE_VOLATILE,                  \
+	 .access = ACCESS_BOTH, .size = (bytes), .read = (reads), .write = (writes)}
+#define MEMORY_PAGES(pages, bytes, reads, writes)                                         \
+	PROPERTY_DIR("pages"),                                                              \
+	{.name = "pages/page", .type = PROPERTY_BINARY, .life = LIFE_VOLATILE,              \
+	 .access = ACCESS_BOTH, .array = {(pages), INDEX_NUMBERS, false}, .size = (bytes),  \
+	 .read = (reads), .write = (writes)}
+
+#endif

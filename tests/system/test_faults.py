@@ -1,0 +1,250 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""What a target, a consumer or the system can do to owsd, and that it survives it."""
+
+import json
+import mmap
+import os
+import random
+import sys
+import time
+
+import owsdtest
+import peer
+from owsdtest import raw, until
+
+ROOM = "/28.AABBCCDDEE00/temperature"
+HALL = "/28.AABBCCDDEE01/temperature"
+RELAY = "/29.AABBCCDDEE02/PIO.BYTE"
+
+
+def lying_peer():
+    return peer.Peer({ROOM: "       21.5", HALL: "      19.25", RELAY: "           0"})
+
+
+def house(server, timeout=1, **driver):
+    return owsdtest.rio(server.target, [
+        dict(Name="room", Path=ROOM, Type=raw("double"), IO=raw("input")),
+        dict(Name="hall", Path=HALL, Type=raw("double"), IO=raw("input")),
+        dict(Name="relay", Path=RELAY, Type=raw("byte"), IO=raw("output")),
+    ], Timeout=timeout, Period=0.05, MaxRetries=1, AlarmPeriod=0.05, **driver)
+
+
+def signals(scene, daemon):
+    done = scene.owsctl(daemon, "--json", "list")
+    assert done.returncode == 0, done.stderr
+    return {s["name"]: s for s in json.loads(done.stdout)}
+
+
+def qualities(scene, daemon):
+    s = signals(scene, daemon)
+    return s["room"]["quality_code"], s["hall"]["quality_code"]
+
+
+def good(scene, daemon):
+    return qualities(scene, daemon) == (0xC0, 0xC0)
+
+
+def descriptors(daemon):
+    return len(os.listdir(f"/proc/{daemon.pid}/fd"))
+
+
+def counter(scene, daemon, name):
+    stats = json.loads(scene.owsctl(daemon, "--json", "stats").stdout)
+    return next(c["value"] for c in stats["counters"] if c["name"] == name)
+
+
+def test_every_way_of_losing_the_target_is_survived(scene):
+    """Bad within Timeout, the value kept, good again by itself, no descriptor more."""
+    with lying_peer() as server:
+        daemon = scene.owsd(house(server))
+        until(lambda: good(scene, daemon), 5, "good at first")
+        before = descriptors(daemon)
+        for mode in ("kill", "close", "reset", "garbage", "negative", "huge", "version",
+                     "endless", "wrong", "hang", "stall", "accept_close", "dead"):
+            if mode in ("accept_close", "dead"):
+                server.plan.append("close")  # they are about new connections
+            server.mode = mode
+            until(lambda: qualities(scene, daemon)[0] != 0xC0, 10, f"{mode}: bad")
+            assert signals(scene, daemon)["room"]["value"] == 21.5, mode
+            server.mode = "normal"
+            until(lambda: good(scene, daemon), 15, f"{mode}: good again")
+            until(lambda: descriptors(daemon) == before, 2, f"{mode}: descriptors {before}")
+        assert daemon.running()
+
+
+def test_silence_is_a_failure_of_the_target_and_turns_all_bad_at_once(scene):
+    with lying_peer() as server:
+        daemon = scene.owsd(house(server))
+        until(lambda: good(scene, daemon), 5)
+        server.mode = "hang"
+        until(lambda: 0x18 in qualities(scene, daemon), 5, "bad")
+        assert qualities(scene, daemon) == (0x18, 0x18)
+        assert signals(scene, daemon)["relay"]["quality_code"] in (0x18, 0x20)
+
+
+def test_a_slow_answer_with_keep_alives_is_an_error_of_that_signal_only(scene):
+    with lying_peer() as server:
+        daemon = scene.owsd(house(server, timeout=1))
+        until(lambda: good(scene, daemon), 5)
+        server.slow_paths = {ROOM}
+        answer = server.plan
+        deadline = time.monotonic() + 20
+        while qualities(scene, daemon)[0] == 0xC0 and time.monotonic() < deadline:
+            # the next request is slow if it is the room's
+            if len(server.requests) and server.requests[-1].path == HALL and not answer:
+                answer.append("alive")
+            time.sleep(0.01)
+            q = qualities(scene, daemon)
+            if q[0] != 0xC0:
+                break
+        assert qualities(scene, daemon)[0] == 0x18
+        assert signals(scene, daemon)["hall"]["count"] > 0
+        assert counter(scene, daemon, "target_failures") == 0, "the target itself never failed"
+        answer.clear()
+        until(lambda: good(scene, daemon), 10, "good again")
+
+
+def test_a_refused_persistence_costs_speed_and_nothing_else(scene):
+    with lying_peer() as server:
+        server.mode = "refuse"
+        daemon = scene.owsd(house(server))
+        until(lambda: good(scene, daemon), 5)
+        time.sleep(0.5)
+        assert good(scene, daemon)
+        assert counter(scene, daemon, "target_failures") == 0
+
+
+def test_fragments_and_trailing_bytes_are_read_right(scene):
+    with lying_peer() as server:
+        server.mode = "fragments"
+        daemon = scene.owsd(house(server, timeout=5))
+        until(lambda: good(scene, daemon), 10)
+        assert signals(scene, daemon)["hall"]["value"] == 19.25
+
+
+def test_a_write_is_neither_lost_nor_repeated_when_the_target_goes(scene):
+    with lying_peer() as server:
+        daemon = scene.owsd(house(server))
+        until(lambda: good(scene, daemon), 5)
+        server.down()
+        until(lambda: 0x18 in qualities(scene, daemon), 5)
+        assert scene.owsctl(daemon, "set", "relay", "5").returncode == 0
+        server.up()
+        until(lambda: server.writes, 15, "written after the return")
+        time.sleep(0.5)
+        assert [w for w in server.writes] == [(RELAY, b"5")], server.writes
+
+
+def test_the_genuine_owserver_killed_hanging_and_started_again(scene):
+    server = scene.owserver(mock=["28", "29"])
+    path = next(d for d in server.devices(0) if d.startswith("/28.")) + "/temperature"
+    config = owsdtest.rio(server.target, [
+        dict(Name="room", Path=path, Type=raw("double"), IO=raw("input"))], Timeout=1, Period=0.02)
+    daemon = scene.owsd(config)
+    until(lambda: scene.get(daemon, "room"), 5)
+    before = descriptors(daemon)
+    for _ in range(5):
+        server.kill()
+        until(lambda: scene.owsctl(daemon, "get", "room").returncode == 3, 5, "bad")
+        server = scene.again(server)
+        until(lambda: scene.get(daemon, "room"), 15, "good again")
+    server.freeze()
+    until(lambda: scene.owsctl(daemon, "get", "room").returncode == 3, 5, "hanging: bad")
+    server.thaw()
+    until(lambda: scene.get(daemon, "room"), 15, "good again")
+    reconnects = int(scene.get(daemon, "_RECONNECTS"))
+    assert reconnects == 6, (reconnects, daemon.log())
+    assert descriptors(daemon) == before
+
+
+def segment(daemon, kind):
+    return f"/dev/shm/owsd.{daemon.name}.{kind}"
+
+
+def test_a_consumer_that_truncates_the_command_segment_harms_nobody(scene):
+    with lying_peer() as server:
+        daemon = scene.owsd(house(server))
+        until(lambda: good(scene, daemon), 5)
+        for size in (0, 100, 5000):
+            inode = os.stat(segment(daemon, "command")).st_ino
+            os.truncate(segment(daemon, "command"), size)
+            until(lambda: os.stat(segment(daemon, "command")).st_ino != inode, 10,
+                  "a new command segment")
+            assert daemon.running()
+            until(lambda: good(scene, daemon), 5)
+            until(lambda: scene.owsctl(daemon, "set", "relay", str(size % 100 + 1)).returncode == 0,
+                  5, "sets work")
+            until(lambda: (RELAY, str(size % 100 + 1).encode()) in server.writes, 5, "and arrive")
+
+
+def test_rubbish_in_the_command_segment_harms_nobody(scene):
+    seed = random.randrange(1 << 32)
+    print("seed", seed)
+    rng = random.Random(seed)
+    with lying_peer() as server:
+        daemon = scene.owsd(house(server))
+        until(lambda: good(scene, daemon), 5)
+        with open(segment(daemon, "command"), "r+b") as f, mmap.mmap(f.fileno(), 0) as m:
+            for _ in range(200):
+                at = rng.randrange(len(m))
+                n = min(rng.choice((1, 4, 64, 4096)), len(m) - at)
+                m[at:at + n] = rng.randbytes(n)
+                time.sleep(0.005)
+        assert daemon.running()
+        # what rubbish can still command is what its type can hold
+        for path, data in server.writes:
+            assert path == RELAY and 0 <= int(data) <= 255, (path, data)
+        until(lambda: good(scene, daemon), 5, "inputs live")
+        # and the next one takes over what it finds without falling over it
+        daemon.kill()
+        again = scene.owsd(daemon.config, name=daemon.name)
+        until(lambda: good(scene, again), 10)
+
+
+def test_readers_of_a_killed_owsd_see_whole_samples_that_grow_old(scene):
+    sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
+    import ows
+    with lying_peer() as server:
+        daemon = scene.owsd(house(server).replace("Period                  0.05",
+                                                  "Period                  0.001"))
+        until(lambda: good(scene, daemon), 5)
+        h = ows.Ows(daemon.name)
+        for _ in range(1000):
+            assert h.get("room").value == 21.5
+        daemon.kill()
+        first = h.get("room")
+        assert first.value == 21.5
+        time.sleep(0.1)
+        later = h.get("room")
+        assert later.value == 21.5
+        assert later.age > first.age
+        until(lambda: (h.get("room").quality & 0xC0) != 0xC0, 5, "not good any more")
+
+
+def test_a_full_dev_shm_is_refused_at_start_with_a_reason(scene):
+    items = [dict(Name=f"s{i}", Path=f"/28.AABBCCDD{i:04X}/temperature", Type=raw("double"),
+                  IO=raw("input")) for i in range(9000)]
+    file = scene.file("many.rio", owsdtest.rio("127.0.0.1:1", items))
+    name = scene.name()
+    done = scene._run(["unshare", "-rm", "sh", "-c",
+                       f"mount -t tmpfs -o size=1m tmpfs /dev/shm && exec {owsdtest.OWSD} "
+                       f"-n {name} -c {file}"], 20)
+    if "unshare" in done.stderr and "full" not in done.stderr:
+        owsdtest.skip("no user namespaces: " + done.stderr.strip())
+    assert done.returncode == 1, done
+    assert "/dev/shm is full" in done.stderr, done.stderr
+
+
+def test_a_file_of_somebody_else_in_the_way_is_named(scene):
+    name = scene.name()
+    os.makedirs(f"/dev/shm/owsd.{name}.lock")
+    try:
+        done = scene.owsd_once("-n", name, "-c", scene.file("a.rio", "OwsDrv {\n}\n"))
+        assert done.returncode == 1 and name in done.stderr, done
+    finally:
+        os.rmdir(f"/dev/shm/owsd.{name}.lock")
+
+
+if __name__ == "__main__":
+    owsdtest.main()

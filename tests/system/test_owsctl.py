@@ -1,0 +1,217 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""owsctl on a running owsd: what it prints, how it ends, and what it does to a terminal."""
+
+import fcntl
+import json
+import os
+import pty
+import re
+import select
+import signal
+import struct
+import subprocess
+import termios
+import time
+
+import owsdtest
+
+
+def house(scene, **driver):
+    """owserver with a thermometer and a switch, and an owsd on it."""
+    server = scene.owserver(mock=["28", "05"])
+    room, relay = (next(d for d in server.devices() if d.startswith(f"/{family}."))
+                   for family in ("28", "05"))
+    server.write(room + "/temperature", 21.5)
+    text = owsdtest.rio(server.target, [
+        dict(Name="room", Path=room + "/temperature", Type="double", IO="input"),
+        dict(Name="relay", Path=relay + "/PIO", Type="bool", IO="output"),
+        dict(Name="nobody", Path="/28.0102030405FF/temperature", Type="double", IO="input"),
+    ], Period=0.05, **driver)
+    daemon = scene.owsd(text)
+    scene.until(lambda: scene.get(daemon, "room") == "21.5", 15, "the temperature arrives")
+    return server, daemon, room, relay
+
+
+def owsctl(scene, daemon, *arguments, **options):
+    """owsctl that goes on running, its lines read from a pipe."""
+    process = subprocess.Popen([owsdtest.OWSCTL, "-n", daemon.name, *arguments], text=True,
+                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, **options)
+    os.set_blocking(process.stdout.fileno(), False)
+    os.set_blocking(process.stderr.fileno(), False)
+    return process
+
+
+class Lines:
+    """All that a process has written so far."""
+
+    def __init__(self, stream):
+        self.fd = stream.fileno()
+        self.text = ""
+
+    def until(self, pattern, seconds=10):
+        def look():
+            try:
+                self.text += os.read(self.fd, 65536).decode()
+            except BlockingIOError:
+                pass
+            return re.search(pattern, self.text, re.M)
+        return owsdtest.until(look, seconds, f"{pattern} in {self.text[-500:]}")
+
+
+def test_a_value_that_is_not_good_is_shown_with_its_reason(scene):
+    _, daemon, _, _ = house(scene, MaxRetries=0)
+    done = owsdtest.until(lambda: (d := scene.owsctl(daemon, "get", "room", "nobody"))
+                          .returncode == 3 and "absent" in d.stderr and d, 15, "nobody is absent")
+    assert done.stdout == "21.5\n0\n"
+    assert "nobody is not good: device absent" in done.stderr
+
+
+def test_an_output_is_confirmed_on_the_bus(scene):
+    server, daemon, _, relay = house(scene)
+    for value, word in (("1", "on"), ("0", "off")):
+        done = scene.owsctl(daemon, "set", "-w", "10", "relay", word)
+        assert (done.returncode, done.stderr) == (0, "")
+        assert server.read(relay + "/PIO") == value
+
+
+def test_wait_sees_the_temperature_rise(scene):
+    server, daemon, room, _ = house(scene)
+    waiting = owsctl(scene, daemon, "wait", "room", ">", "25", "-t", "15")
+    time.sleep(0.2)
+    assert waiting.poll() is None
+    server.write(room + "/temperature", 25.5)
+    assert waiting.wait(15) == 0
+    assert waiting.stdout.read() == "25.5\n"
+
+
+def test_json_is_json(scene):
+    _, daemon, _, _ = house(scene)
+    table = json.loads(scene.owsctl(daemon, "list", "-a", "--json").stdout)
+    assert [s["name"] for s in table if s["path"]] == ["room", "relay", "nobody"]
+    room = next(s for s in table if s["name"] == "room")
+    assert room["value"] == 21.5 and room["good"] and 0 <= room["age"] < 30
+    stats = json.loads(scene.owsctl(daemon, "--json", "stats").stdout)
+    assert stats["daemon"]["alive"] and stats["daemon"]["pid"] == daemon.pid
+    assert stats["signals"] == 3 and stats["targets"][0]["state"] == "up"
+
+
+def test_watch_prints_changes_and_follows_a_killed_owsd(scene):
+    server, daemon, room, _ = house(scene)
+    watch = owsctl(scene, daemon, "watch", "room")
+    lines, said = Lines(watch.stdout), Lines(watch.stderr)
+    lines.until(r"^\S+ room 21.5 good, simulated$")
+    server.write(room + "/temperature", 22.5)
+    lines.until(r"^\S+ room 22.5 good, simulated$")
+    daemon.kill()
+    said.until("is not running: last heartbeat")
+    lines.until(r"^\S+ room 22.5 target down, simulated$")
+    scene.owsd(daemon.config, name=daemon.name)
+    said.until("was started anew")
+    lines.until(r"target down.*\n(.*\n)*\S+ room 22.5 good, simulated$", 20)
+    watch.terminate()
+    assert watch.wait(5) == 0
+
+
+def test_watch_ends_quietly_with_its_reader(scene):
+    _, daemon, _, _ = house(scene)
+    watch = owsctl(scene, daemon, "watch")
+    said = Lines(watch.stderr)
+    Lines(watch.stdout).until("room")
+    watch.stdout.close()
+    assert watch.wait(10) == 0
+    try:
+        said.until("anything", 0)
+    except owsdtest.Late:
+        pass
+    assert said.text == ""
+
+
+def test_an_owsd_that_is_gone_keeps_what_is_set(scene):
+    server, daemon, _, relay = house(scene)
+    daemon.kill()
+    owsdtest.until(lambda: scene.owsctl(daemon, "get", "room").returncode == 3, 10, "not good")
+    done = scene.owsctl(daemon, "set", "relay", "1")
+    assert done.returncode == 0 and "kept for its next start" in done.stderr
+    scene.owsd(daemon.config, name=daemon.name)
+    owsdtest.until(lambda: server.read(relay + "/PIO") == "1", 15, "the relay is on")
+
+
+class Terminal:
+    """owsctl on a terminal of our own; screen() is its present picture, line by line."""
+
+    def __init__(self, daemon, lines, columns, *arguments):
+        self.pid, self.fd = pty.fork()
+        if self.pid == 0:
+            os.execv(owsdtest.OWSCTL, [str(owsdtest.OWSCTL), "-n", daemon.name, *arguments])
+        self.before = termios.tcgetattr(self.fd)
+        self.output = b""
+        self.resize(lines, columns)
+
+    def resize(self, lines, columns):
+        self.columns = columns
+        fcntl.ioctl(self.fd, termios.TIOCSWINSZ, struct.pack("4H", lines, columns, 0, 0))
+
+    def read(self):
+        while select.select([self.fd], [], [], 0.02)[0]:
+            try:
+                self.output += os.read(self.fd, 65536)
+            except OSError:
+                return
+
+    def screen(self):
+        self.read()
+        pictures = self.output.split(b"\x1b[H")[1:]
+        whole = [p.split(b"\x1b[J")[0] for p in pictures if b"\x1b[J" in p]
+        text = re.sub(r"\x1b\[[0-9;]*[mK]", "", whole[-1].decode()) if whole else ""
+        return text.replace("\r", "").split("\n")
+
+    def until(self, condition, what):
+        return owsdtest.until(lambda: condition(self.screen()), 10, what)
+
+    def end(self):
+        """Exit status, and is the terminal as it was?"""
+        def gone():
+            self.read()
+            pid, status = os.waitpid(self.pid, os.WNOHANG)
+            return pid and (os.waitstatus_to_exitcode(status),)
+        status, = owsdtest.until(gone, 10, "owsctl ends")
+        restored = (termios.tcgetattr(self.fd)[3] == self.before[3]
+                    and self.output.endswith(b"\x1b[?1049l"))
+        return status, restored
+
+
+def test_the_live_table_follows_values_and_keys(scene):
+    server, daemon, room, _ = house(scene)
+    terminal = Terminal(daemon, 24, 100, "watch")
+    terminal.until(lambda s: any(re.match(r"room +21.5 +good", line) for line in s), "room")
+    server.write(room + "/temperature", 23.5)
+    terminal.until(lambda s: any(re.match(r"room +23.5 +good", line) for line in s), "a change")
+    os.write(terminal.fd, b"q")
+    assert terminal.end() == (0, True)
+
+
+def test_the_live_table_fits_small_terminals_and_scrolls(scene):
+    _, daemon, _, _ = house(scene)
+    terminal = Terminal(daemon, 4, 30, "watch", "-a")
+    terminal.until(lambda s: len(s) == 4 and s[3].startswith("1 to 1 of 5"), "the first row")
+    assert all(len(line) <= 30 for line in terminal.screen()), terminal.screen()
+    os.write(terminal.fd, b"\x1b[B\x1b[B")
+    terminal.until(lambda s: s[-1].startswith("3 to 3 of 5") and s[2].startswith("room"), "room")
+    terminal.resize(20, 90)
+    terminal.until(lambda s: len(s) == 7, "all rows after the terminal grew")
+    os.write(terminal.fd, b"\x03")
+    assert terminal.end() == (0, True)
+
+
+def test_a_terminal_is_given_back_on_sigterm(scene):
+    _, daemon, _, _ = house(scene)
+    terminal = Terminal(daemon, 10, 60, "watch")
+    terminal.until(lambda s: len(s) > 3, "a picture")
+    os.kill(terminal.pid, signal.SIGTERM)
+    assert terminal.end() == (0, True)
+
+
+if __name__ == "__main__":
+    owsdtest.main()
