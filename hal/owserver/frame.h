@@ -23,7 +23,6 @@ enum frame_type {
 	FRAME_DIRALL = 7,
 };
 
-#define FRAME_BUS_LIST UINT32_C(0x02) /* the root shows more than devices */
 #define FRAME_PERSIST  UINT32_C(0x04) /* keep the connection; cleared in the reply: refused */
 #define FRAME_UNCACHED UINT32_C(0x20)
 

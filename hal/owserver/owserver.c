@@ -223,7 +223,6 @@ static void look_at_idle(struct owserver *server)
 		return;
 	}
 	bus_count(&server->counter[TALK_CONNECTIONS], 1);
-	talk->used_ns = now_of(server);
 }
 
 static int64_t owserver_step(struct bus *bus, int64_t now)

@@ -5,9 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A connection unused for so long is looked at before it is used. */
-#define LOOK_AFTER_NS INT64_C(50000000)
-
 static int64_t now(const struct talk *talk)
 {
 	return talk->connection.env->now(talk->connection.env->ctx);
@@ -71,7 +68,6 @@ static int whole(struct talk *talk, size_t left_over)
 {
 	if (left_over)
 		return fail(talk, -EPROTO, "garbage after the answer");
-	talk->used_ns = now(talk);
 	if (!(talk->reader.header.flags & FRAME_PERSIST)) {
 		bus_count(&talk->counter[TALK_REFUSED], 1);
 		connection_close(&talk->connection);
@@ -137,8 +133,8 @@ static int attempt(struct talk *talk, const struct talk_request *request, size_t
 	int err;
 
 	*again = false;
-	if (kept && (request->type == FRAME_WRITE || now(talk) - talk->used_ns > LOOK_AFTER_NS) &&
-	    connection_is_stale(&talk->connection)) {
+	/* Closed while idle; or an answer nobody asked for, which must not pass for the next one. */
+	if (kept && connection_is_stale(&talk->connection)) {
 		bus_count(&talk->counter[TALK_STALE], 1);
 		kept = false;
 		connection_close(&talk->connection);

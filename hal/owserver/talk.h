@@ -28,7 +28,6 @@ enum talk_counter {
 struct talk {
 	struct connection connection;
 	struct frame_reader reader; /* reader.header: the last reply */
-	int64_t used_ns;            /* when the last reply ended */
 	bool heard;                 /* bytes came since the caller cleared it */
 	char trouble[112];          /* why an exchange failed, as a sentence */
 	struct bus_counter *counter; /* by enum talk_counter */

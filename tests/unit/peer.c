@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 #include <errno.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -147,6 +148,10 @@ static int act(const struct peer *peer, int fd, char letter, uint8_t *answer, si
 	case 'K':
 		until_gone(peer, fd, alive, sizeof(alive));
 		return 0;
+	case 'D':
+		send_all(fd, answer, len, len);
+		usleep(2000);
+		break;
 	case 'x':
 		return 0;
 	case 'R':
@@ -234,6 +239,7 @@ static void serve(struct peer *peer, int fd)
 static void *run(void *arg)
 {
 	struct peer *peer = arg;
+	const int on = 1;
 
 	while (!is_stopping(peer)) {
 		int fd;
@@ -243,6 +249,7 @@ static void *run(void *arg)
 		fd = accept(peer->listen_fd, NULL, NULL);
 		if (fd < 0)
 			continue;
+		setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
 		saw(&peer->connections);
 		serve(peer, fd);
 		close(fd);

@@ -7,6 +7,7 @@
  *   k 3 keep-alives, then answer     K keep-alives every 10 ms until the client goes
  *   f answer byte by byte            t answer and 3 bytes more   l answer with more than asked for
  *   x close instead of an answer     R reset instead             m half of an answer, then close
+ *   D answer, and again 2 ms later
  *   s silence until the client goes  d half of an answer, then silence
  *   g garbage     h payload 2 GB     n payload -5     v version 0x20000     w less than it says
  */

@@ -360,6 +360,17 @@ static void test_a_read_that_met_a_closing_server_is_repeated_once(void)
 	goes_down_with(-ECONNRESET, "closed");
 }
 
+static void test_an_answer_that_came_twice_does_not_pass_for_the_next(void)
+{
+	start("aD");
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+	host_run(&host, bus, host_now(&host) + 20 * HOST_MS);
+	TEST_ASSERT_EQUAL_INT(0, ask(BUS_READ, "/28.67C6697351FF/type", NULL, 64)->err);
+	TEST_ASSERT_EQUAL_MEMORY("DS18B20", data, 7);
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_DOWN));
+}
+
 static void test_a_write_that_was_sent_is_never_repeated(void)
 {
 	start("ax");
@@ -556,6 +567,7 @@ int main(void)
 	RUN_TEST(test_refused_persistence_is_no_failure);
 	RUN_TEST(test_a_connection_closed_while_idle_is_replaced_unseen);
 	RUN_TEST(test_a_read_that_met_a_closing_server_is_repeated_once);
+	RUN_TEST(test_an_answer_that_came_twice_does_not_pass_for_the_next);
 	RUN_TEST(test_a_write_that_was_sent_is_never_repeated);
 	RUN_TEST(test_a_server_lost_in_the_middle_of_an_answer_is_down);
 	RUN_TEST(test_the_answer_comes_before_the_news_of_the_loss);
