@@ -13,7 +13,7 @@ bool reader_text(const char *base, const struct ows_record *record, struct ows_s
 		                   (size_t)(seq >> 1 & 1) * record->text_cap;
 		size_t len;
 
-		words_load(sample, &slot->sample, sizeof(*sample) / 4);
+		words_load_aligned(sample, &slot->sample, sizeof(*sample) / 4);
 		len = sample->len < record->text_cap ? sample->len : record->text_cap;
 		if (len >= size)
 			len = size - 1;

@@ -33,7 +33,7 @@ static inline bool reader_sample(const struct ows_record *record, struct ows_sam
 		uint32_t seq;
 		const struct ows_slot *slot = reader_begin(record, &seq);
 
-		words_load(sample, &slot->sample, sizeof(*sample) / 4);
+		words_load_aligned(sample, &slot->sample, sizeof(*sample) / 4);
 		if (reader_end(record, seq))
 			return true;
 	}
@@ -46,7 +46,7 @@ static inline bool reader_slot(const struct ows_record *record, struct ows_slot 
 		uint32_t seq;
 		const struct ows_slot *slot = reader_begin(record, &seq);
 
-		words_load(to, slot, sizeof(*to) / 4);
+		words_load_aligned(to, slot, sizeof(*to) / 4);
 		if (reader_end(record, seq))
 			return true;
 	}

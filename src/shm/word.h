@@ -54,6 +54,23 @@ static inline void words_load(void *to, const void *from, size_t n)
 		t[i] = __atomic_load_n(&f[i], WORD_LOAD);
 }
 
+/*
+ * The same of n words, even and aligned to 8, in half as many loads where the processor has 64-bit
+ * ones: what is put together from two stores is slow to read back at once.
+ */
+static inline void words_load_aligned(void *to, const void *from, size_t n)
+{
+#if __SIZEOF_LONG__ == 8
+	const shm_double_word *f = (const shm_double_word *)from;
+	shm_double_word *t = (shm_double_word *)to;
+
+	for (size_t i = 0; i < n / 2; i++)
+		t[i] = __atomic_load_n(&f[i], WORD_LOAD);
+#else
+	words_load(to, from, n);
+#endif
+}
+
 /* to is shared. */
 static inline void words_store(void *to, const void *from, size_t n)
 {
