@@ -45,6 +45,7 @@ enum {
 	COUNTER_IDLE_RINGS,
 	COUNTER_MENDED,
 	COUNTER_WORKER_STALLS,
+	COUNTER_DROPPED_EVENTS,
 	HOST_COUNTERS,
 };
 static const char *const host_counters[HOST_COUNTERS] = {
@@ -52,6 +53,7 @@ static const char *const host_counters[HOST_COUNTERS] = {
 	[COUNTER_IDLE_RINGS] = "idle_rings",
 	[COUNTER_MENDED] = "mended_command_headers",
 	[COUNTER_WORKER_STALLS] = "worker_stalls",
+	[COUNTER_DROPPED_EVENTS] = "dropped_events",
 };
 
 static void ring(void *ctx)
@@ -93,21 +95,23 @@ static bool take_messages(struct host *h, int64_t now_ns)
 static void publish_counters(struct host *h)
 {
 	uint32_t index = engine_counter_count(h->worker_count);
-	uint64_t stalls = 0;
+	uint64_t stalls = 0, dropped = 0;
 
 	for (unsigned i = 0; i < h->worker_count; i++) {
 		size_t n;
 		const struct bus_counter *c = bus_counters(worker_bus(h->workers[i]), &n);
 
 		for (size_t k = 0; k < h->bus_counters[i]; k++)
-			image_counter(&h->memory.image, index++, c[k].value);
+			image_counter(&h->memory.image, index++, bus_counted(&c[k]));
 		stalls += worker_stalls(h->workers[i]);
+		dropped += worker_dropped(h->workers[i]);
 	}
 	index = h->own_counters;
 	image_counter(&h->memory.image, index + COUNTER_LOG_DROPPED, log_dropped(h->log));
 	image_counter(&h->memory.image, index + COUNTER_IDLE_RINGS, h->idle_rings);
 	image_counter(&h->memory.image, index + COUNTER_MENDED, h->mended);
 	image_counter(&h->memory.image, index + COUNTER_WORKER_STALLS, stalls);
+	image_counter(&h->memory.image, index + COUNTER_DROPPED_EVENTS, dropped);
 }
 
 /* The bell goes first: who rings the old one is heard at the next period. */
