@@ -58,7 +58,7 @@ for master in $W1/w1_bus_master*; do
 	echo 0 >$master/w1_master_search
 done
 same "and each channel's devices" $all "$(ls $W1 | grep -c '^[0-9a-f]*-')"
-for master in 2:1 5:2 9:1 3:0; do
+for master in 2:1 5:2 7:4 9:1 3:0; do
 	same "channel $((${master%:*} - 2)) has its own" ${master#*:} \
 		"$(cat $W1/w1_bus_master${master%:*}/w1_master_slave_count)"
 done
@@ -83,12 +83,31 @@ same "which cuts the value" 21000 "$(text $device/temperature)"
 echo "-5 30" >$W1/$device/alarms
 same "w1_therm sets the alarm limits" "-5 30" "$(text $device/alarms)"
 same "w1_slave's checksum is good" YES "$(text $device/w1_slave | sed -n '1s/.* //p')"
-# Not on a bus with other families: there the kernel refuses
-echo trigger >$W1/w1_bus_master5/therm_bulk_read
 bulk_done() {
-	[ "$(text w1_bus_master5/therm_bulk_read)" = 1 ]
+	[ "$(text w1_bus_master1/therm_bulk_read)" = 1 ]
 }
-does "w1_therm converts all of a channel at once" within 5 bulk_done
-same "and reads them afterwards" 12500 "$(text $(name 28 04)/temperature)"
-near "the DS18S20 too" 55000 65 "$(text $(name 10 02)/temperature)"
+echo trigger >$W1/w1_bus_master1/therm_bulk_read
+does "w1_therm converts all of a wire at once" within 5 bulk_done
+same "and reads them afterwards" -10125 "$(text $(name 28 01)/temperature)"
+near "the DS18S20 too" 25400 65 "$(text $(name 10 00)/temperature)"
+
+# Switches; some kernels give a DS2413's whole byte, some its lower half
+device=$(name 29 00)
+same "w1_ds2408 reads the pins" bd "$(hex $device/state)"
+same "its outputs are off after power-on" ff "$(hex $device/output)"
+same "its status tells the power-on and the supply" 88 "$(hex $device/status_control)"
+does "w1_ds2408 writes the outputs" put $device/output 253
+same "and reads them back" ab "$(hex $device/output)"
+same "the pins are low where an output or the outside pulls" a9 "$(hex $device/state)"
+device=$(name 3A 00)
+same "w1_ds2413 reads pins and latches" b "$(hex $device/state | cut -c 2)"
+does "w1_ds2413 writes the outputs" put $device/output 376
+same "and the pin follows" 8 "$(hex $device/state | cut -c 2)"
+
+# DS2438: hundredths of a volt, 1/256 degrees
+device=$(name 26 00)
+same "w1_ds2438 reads the supply" 500 "$(text $device/vdd)"
+same "w1_ds2438 reads the input" 230 "$(text $device/vad)"
+same "w1_ds2438 reads the temperature" 5760 "$(text $device/temperature)"
+same "w1_ds2438 reads page 0" 8 "$(hex $device/page0 | awk '{ print length($0) / 2 }')"
 finish
