@@ -9,7 +9,6 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 /* base is 0 while the range is free or being set: the handler looks at it first. */
 static struct guard_range {
@@ -153,14 +152,4 @@ bool segment_lost(const struct segment *segment)
 	if (guard_lost(segment->base))
 		return true;
 	return fstat(segment->fd, &st) == 0 && (size_t)st.st_size != segment->size;
-}
-
-void segment_abandon(struct segment *segment)
-{
-	if (mmap(segment->base, segment->size, PROT_READ | PROT_WRITE,
-	         MAP_PRIVATE | MAP_FIXED | MAP_ANONYMOUS, -1, 0) != MAP_FAILED)
-		segment_unguard(segment);
-	close(segment->fd);
-	segment->base = NULL;
-	segment->fd = -1;
 }

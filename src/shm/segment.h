@@ -64,10 +64,5 @@ int segment_guard(struct segment *segment);
 void segment_unguard(struct segment *segment);
 /* True once the file was truncated, whether or not its memory was touched since. */
 bool segment_lost(const struct segment *segment);
-/*
- * Let go of a lost segment whose memory other threads may still touch: private zero pages take its
- * place and stay mapped, file and guard go.
- */
-void segment_abandon(struct segment *segment);
 
 #endif

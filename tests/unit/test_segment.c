@@ -286,21 +286,6 @@ static void test_a_segment_that_lost_less_than_a_page_is_lost(void)
 	TEST_ASSERT_TRUE(segment_lost(&segment));
 }
 
-static void test_an_abandoned_segment_may_still_be_touched(void)
-{
-	char *base = segment.base;
-
-	TEST_ASSERT_EQUAL(0, segment_guard(&segment));
-	memset(base, 7, SIZE);
-	TEST_ASSERT_EQUAL(0, ftruncate(segment.fd, 0));
-	segment_abandon(&segment);
-	TEST_ASSERT_EQUAL(-1, segment.fd);
-	TEST_ASSERT_EQUAL(0, base[SIZE - 1]);
-	memset(base, 1, SIZE);
-	TEST_ASSERT_EQUAL(0, segment_wake((void *)base, 1));
-	munmap(base, SIZE);
-}
-
 static void test_four_segments_have_guards_and_a_fifth_has_none(void)
 {
 	struct segment more[4];
@@ -437,7 +422,6 @@ int main(void)
 	RUN_TEST(test_a_wait_on_truncated_memory_says_so);
 	RUN_TEST(test_a_guarded_segment_survives_truncation);
 	RUN_TEST(test_a_segment_that_lost_less_than_a_page_is_lost);
-	RUN_TEST(test_an_abandoned_segment_may_still_be_touched);
 	RUN_TEST(test_four_segments_have_guards_and_a_fifth_has_none);
 	RUN_TEST(test_memory_that_cannot_be_had_is_an_error_now);
 	RUN_TEST(test_a_bus_error_elsewhere_still_kills);
