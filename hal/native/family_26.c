@@ -1,0 +1,355 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * DS2438 (data sheet 19-5099): temperature, two voltages, a current, a clock. What stands on
+ * boards with this chip (humidity, pressure, light) is computed in sensors_26.c.
+ */
+#include "hal/native/ds2438.h"
+
+#include <errno.h>
+#include <string.h>
+
+#define RECALL 0xb8
+#define READ_SCRATCHPAD 0xbe
+#define WRITE_SCRATCHPAD 0x4e
+#define COPY_SCRATCHPAD 0x48
+#define CONVERT_T 0x44
+#define CONVERT_V 0xb4
+#define CONVERT_NS (10 * TXN_MS)
+#define COPY_NS (10 * TXN_MS)
+#define CURRENT_NS (28 * TXN_MS) /* 36.41 measurements a second */
+
+int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8])
+{
+	uint8_t recall[] = {RECALL, (uint8_t)page}, read[] = {READ_SCRATCHPAD, (uint8_t)page}, in[9];
+	int err = txn_command(txn, recall, sizeof(recall));
+
+	if (!err)
+		err = txn_command(txn, read, sizeof(read));
+	if (!err)
+		err = txn_read_crc8(txn, in, sizeof(in));
+	if (!err)
+		memcpy(bytes, in, 8);
+	return err;
+}
+
+/* Steps 0 to 2 of *step; 0 when the page is written. */
+static int write_page(struct txn *txn, unsigned page, const uint8_t *bytes, unsigned n,
+                      uint8_t *step)
+{
+	uint8_t command[10] = {WRITE_SCRATCHPAD, (uint8_t)page}, in[9];
+	uint8_t verify[] = {READ_SCRATCHPAD, (uint8_t)page}, copy[] = {COPY_SCRATCHPAD, (uint8_t)page};
+	int err;
+
+	switch ((*step)++) {
+	case 0:
+		memcpy(command + 2, bytes, n);
+		err = txn_command(txn, command, 2 + n);
+		if (!err)
+			err = txn_command(txn, verify, sizeof(verify));
+		if (!err)
+			err = txn_read_crc8(txn, in, sizeof(in));
+		if (err)
+			return err;
+		/* The upper half of the status byte is the chip's own. */
+		if (page == 0 ? (in[0] ^ bytes[0]) & 0x0f : memcmp(in, bytes, n) != 0)
+			return -EBADMSG;
+		return TXN_MORE;
+	case 1:
+		err = txn_command(txn, copy, sizeof(copy));
+		return err ? err : txn_wait(txn, COPY_NS);
+	default:
+		*step = 0;
+		return 0;
+	}
+}
+
+/* Set the configuration's bits of mask; 0 when they are. mem[0]: its step, mem[1]: the byte. */
+static int configure(struct txn *txn, uint8_t mask, uint8_t bits, uint8_t *before)
+{
+	uint8_t bytes[8];
+
+	if (txn->mem[0] == 0) {
+		int err = ds2438_read(txn, 0, bytes);
+
+		if (err)
+			return err;
+		if (before)
+			*before = bytes[0];
+		if ((bytes[0] & mask) == bits)
+			return 0;
+		txn->mem[1] = (uint8_t)((bytes[0] & 0x0f & ~mask) | bits);
+		txn->mem[0] = 1;
+		return TXN_MORE;
+	}
+	uint8_t step = (uint8_t)(txn->mem[0] - 1);
+	int err = write_page(txn, 0, &txn->mem[1], 1, &step);
+	txn->mem[0] = err > 0 ? (uint8_t)(step + 1) : 0;
+	return err;
+}
+
+static int16_t word(const uint8_t *bytes)
+{
+	return (int16_t)(bytes[0] | bytes[1] << 8);
+}
+
+static int convert(struct txn *txn, uint8_t command)
+{
+	int err = txn_command(txn, &command, 1);
+
+	return err ? err : txn_wait(txn, CONVERT_NS);
+}
+
+static int measure_temperature(struct txn *txn, double *value)
+{
+	uint8_t bytes[8];
+
+	if (txn->phase % DS2438_STEPS == 0) {
+		txn->phase++;
+		return convert(txn, CONVERT_T);
+	}
+	int err = ds2438_read(txn, 0, bytes);
+	*value = (word(bytes + 1) >> 3) / 32.0;
+	return err;
+}
+
+static int measure_voltage(struct txn *txn, uint8_t select, double *value)
+{
+	uint8_t bytes[8];
+	int err;
+
+	switch (txn->phase % DS2438_STEPS) {
+	case 0:
+		err = configure(txn, DS2438_AD, select, NULL);
+		txn->phase += err == 0;
+		return err < 0 ? err : TXN_MORE;
+	case 1:
+		txn->phase++;
+		return convert(txn, CONVERT_V);
+	default:
+		err = ds2438_read(txn, 0, bytes);
+		if (!err && (bytes[0] & DS2438_AD) != select)
+			err = -EIO;
+		*value = (word(bytes + 3) & 0x3ff) / 100.0;
+		return err;
+	}
+}
+
+/* The current's measurement is switched on for this reading where it is off. mem[2]: it was on. */
+static int measure_current(struct txn *txn, double *value)
+{
+	uint8_t bytes[8];
+	int err;
+
+	switch (txn->phase % DS2438_STEPS) {
+	case 0:
+		err = configure(txn, DS2438_IAD, DS2438_IAD, txn->mem[0] ? NULL : &txn->mem[2]);
+		if (err)
+			return err < 0 ? err : TXN_MORE;
+		txn->phase++;
+		return txn->mem[2] & DS2438_IAD ? TXN_MORE : txn_wait(txn, CURRENT_NS);
+	case 1:
+		err = ds2438_read(txn, 0, bytes);
+		if (err)
+			return err;
+		txn->real[3] = word(bytes + 5) * 0.0002441;
+		txn->phase++;
+		return TXN_MORE;
+	default:
+		*value = txn->real[3];
+		return txn->mem[2] & DS2438_IAD ? 0 : configure(txn, DS2438_IAD, 0, NULL);
+	}
+}
+
+int ds2438_measure(struct txn *txn, unsigned what)
+{
+	static const unsigned order[] = {DS2438_TEMPERATURE, DS2438_VDD, DS2438_VAD, DS2438_VIS};
+	unsigned stage = txn->phase / DS2438_STEPS;
+	int err;
+
+	while (stage < 4 && !(what & order[stage]))
+		stage++;
+	if (stage == 4)
+		return 0;
+	if (txn->phase / DS2438_STEPS != stage)
+		txn->phase = stage * DS2438_STEPS;
+	switch (order[stage]) {
+	case DS2438_TEMPERATURE:
+		err = measure_temperature(txn, &txn->real[0]);
+		break;
+	case DS2438_VDD:
+		err = measure_voltage(txn, DS2438_AD, &txn->real[1]);
+		break;
+	case DS2438_VAD:
+		err = measure_voltage(txn, 0, &txn->real[2]);
+		break;
+	default:
+		err = measure_current(txn, &txn->real[3]);
+	}
+	if (err)
+		return err;
+	txn->phase = (stage + 1) * DS2438_STEPS;
+	while (++stage < 4)
+		if (what & order[stage])
+			return TXN_MORE;
+	return 0;
+}
+
+static int read_measured(struct txn *txn)
+{
+	unsigned what = (unsigned)txn->property->arg;
+	int err = ds2438_measure(txn, what);
+
+	txn->number[0] = txn->real[what == DS2438_TEMPERATURE ? 0
+	                           : what == DS2438_VDD     ? 1
+	                           : what == DS2438_VAD     ? 2
+	                                                    : 3];
+	return err;
+}
+
+static int read_latest(struct txn *txn)
+{
+	uint8_t bytes[8];
+	int err = ds2438_read(txn, 0, bytes);
+
+	txn->number[0] = (word(bytes + 1) >> 3) / 32.0;
+	return err;
+}
+
+static int read_flag(struct txn *txn)
+{
+	uint8_t bytes[8];
+	int err = ds2438_read(txn, 0, bytes);
+
+	txn->number[0] = (bytes[0] & txn->property->arg) != 0;
+	return err;
+}
+
+static int write_flag(struct txn *txn)
+{
+	uint8_t bit = (uint8_t)txn->property->arg;
+
+	return configure(txn, bit, txn->number[0] != 0 ? bit : 0, NULL);
+}
+
+int ds2438_patch(struct txn *txn, unsigned page, unsigned at, const uint8_t *bytes, unsigned n)
+{
+	uint8_t *step = &txn->mem[3], *whole = &txn->mem[8], before[8];
+
+	if (txn->phase == 0) {
+		int err = ds2438_read(txn, page, whole);
+
+		memcpy(before, whole, 8);
+		memcpy(whole + at, bytes, n);
+		txn->phase = 1;
+		*step = 0;
+		return err ? err : memcmp(before, whole, 8) == 0 ? 0 : TXN_MORE;
+	}
+	return write_page(txn, page, whole, 8, step);
+}
+
+/* arg: page * 8 + byte. */
+static int read_time(struct txn *txn)
+{
+	uint8_t page[8];
+	unsigned at = (unsigned)txn->property->arg % 8;
+	int err = ds2438_read(txn, (unsigned)txn->property->arg / 8, page);
+
+	txn->number[0] = (double)(page[at] | page[at + 1] << 8 | page[at + 2] << 16 |
+	                          (uint32_t)page[at + 3] << 24);
+	return err;
+}
+
+static int write_time(struct txn *txn)
+{
+	uint32_t time = (uint32_t)txn->number[0];
+	uint8_t bytes[] = {(uint8_t)time, (uint8_t)(time >> 8), (uint8_t)(time >> 16),
+	                   (uint8_t)(time >> 24)};
+	unsigned arg = (unsigned)txn->property->arg;
+
+	return ds2438_patch(txn, arg / 8, arg % 8, bytes, sizeof(bytes));
+}
+
+/* In the upper 13 bits of two bytes. */
+static int read_offset(struct txn *txn)
+{
+	uint8_t page[8];
+	int err = ds2438_read(txn, 1, page);
+
+	txn->number[0] = (double)(uint32_t)(word(page + 5) >> 3);
+	return err;
+}
+
+/* The chip takes it only while it does not measure the current. mem[2]: as it was. */
+static int write_offset(struct txn *txn)
+{
+	int value = (int32_t)(uint32_t)txn->number[0];
+	int err;
+
+	if (value < -256 || value > 255)
+		return -EINVAL;
+	uint16_t stored = (uint16_t)(value * 8);
+	uint8_t bytes[] = {(uint8_t)stored, (uint8_t)(stored >> 8)};
+	switch (txn->mem[4]) {
+	case 0:
+		err = configure(txn, DS2438_IAD, 0, txn->mem[0] ? NULL : &txn->mem[2]);
+		txn->phase = 0;
+		break;
+	case 1:
+		err = ds2438_patch(txn, 1, 5, bytes, sizeof(bytes));
+		txn->phase = 1;
+		break;
+	default:
+		return txn->mem[2] & DS2438_IAD ? configure(txn, DS2438_IAD, DS2438_IAD, NULL) : 0;
+	}
+	txn->mem[4] += err == 0;
+	return err < 0 ? err : TXN_MORE;
+}
+
+static int read_page(struct txn *txn)
+{
+	txn->len = 8;
+	return ds2438_read(txn, (unsigned)txn->element, txn->data);
+}
+
+static int put_page(struct txn *txn)
+{
+	return ds2438_patch(txn, (unsigned)txn->element, 0, txn->data, (unsigned)txn->len);
+}
+
+#define MEASURED(text, kind, what)                                                        \
+	{.name = (text), .type = (kind), .life = LIFE_VOLATILE, .access = ACCESS_READ,      \
+	 .arg = (what), .read = read_measured}
+#define FLAG(text, bit)                                                                   \
+	{.name = (text), .type = PROPERTY_YESNO, .life = LIFE_STABLE, .access = ACCESS_BOTH, \
+	 .arg = (bit), .read = read_flag, .write = write_flag}
+#define TIME(text, kind, life_, page, at)                                                 \
+	{.name = (text), .type = (kind), .life = (life_), .access = ACCESS_BOTH,            \
+	 .arg = (page) * 8 + (at), .read = read_time, .write = write_time}
+
+static const struct property properties[] = {
+	DS2438_SENSORS,
+	FLAG("CA", DS2438_CA),
+	FLAG("EE", DS2438_EE),
+	FLAG("IAD", DS2438_IAD),
+	MEASURED("VAD", PROPERTY_FLOAT, DS2438_VAD),
+	MEASURED("VDD", PROPERTY_FLOAT, DS2438_VDD),
+	TIME("date", PROPERTY_DATE, LIFE_VOLATILE, 1, 0),
+	PROPERTY_DIR("disconnect"),
+	TIME("disconnect/date", PROPERTY_DATE, LIFE_VOLATILE, 2, 0),
+	TIME("disconnect/udate", PROPERTY_UNSIGNED, LIFE_VOLATILE, 2, 0),
+	PROPERTY_DIR("endcharge"),
+	TIME("endcharge/date", PROPERTY_DATE, LIFE_VOLATILE, 2, 4),
+	TIME("endcharge/udate", PROPERTY_UNSIGNED, LIFE_VOLATILE, 2, 4),
+	{.name = "latesttemp", .type = PROPERTY_TEMPERATURE, .life = LIFE_VOLATILE,
+	 .access = ACCESS_READ, .read = read_latest},
+	{.name = "offset", .type = PROPERTY_UNSIGNED, .life = LIFE_STABLE, .access = ACCESS_BOTH,
+	 .read = read_offset, .write = write_offset},
+	PROPERTY_DIR("pages"),
+	{.name = "pages/page", .type = PROPERTY_BINARY, .life = LIFE_STABLE, .access = ACCESS_BOTH,
+	 .array = {8, INDEX_NUMBERS, false}, .size = 8, .read = read_page, .write = put_page},
+	MEASURED("temperature", PROPERTY_TEMPERATURE, DS2438_TEMPERATURE),
+	TIME("udate", PROPERTY_UNSIGNED, LIFE_SECOND, 1, 0),
+	MEASURED("vis", PROPERTY_FLOAT, DS2438_VIS),
+};
+
+const struct family family_26 = {.code = 0x26, .type = "DS2438", PROPERTIES(properties)};

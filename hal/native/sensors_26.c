@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: MIT */
+/* Sensors on boards with a DS2438, from the data sheets of the sensors. */
+#include "hal/native/ds2438.h"
+
+#include <errno.h>
+#include <string.h>
+
+/* The Hobby Boards' settings stand in page 3 from byte 2 on, as 16 bits each; all ones: default. */
+#define SETTING_PAGE 3
+#define SHUNT_OHM 390.0
+
+static const struct {
+	uint8_t at;
+	double unit, standard;
+} settings[] = {
+	[B1_GAIN] = {2, 0.01, 34.249},
+	[B1_OFFSET] = {4, 0.1, 904.7},
+	[S3_GAIN] = {6, 0.01, 105.26}, /* SFH203P: 9.5 nA/lx */
+};
+
+static double relative_humidity(int sensor, double celsius, double supply, double volt)
+{
+	double ratio = volt / supply, compensation = 1.0546 - 0.00216 * celsius;
+
+	switch ((enum sensor_humidity)sensor) {
+	case HIH3600:
+	case HIH4000:
+	case DATANAB:
+		return (ratio - 0.16) / 0.0062 / compensation;
+	case HIH5030:
+		return (ratio - 0.1515) / 0.00636 / compensation;
+	case HTM1735:
+		return 38.92 * volt - 42.017;
+	}
+	return 0;
+}
+
+int sensor_read_humidity(struct txn *txn)
+{
+	int sensor = txn->property->arg;
+	unsigned what = sensor == HTM1735 ? DS2438_VAD : DS2438_TEMPERATURE | DS2438_VDD | DS2438_VAD;
+	int err = ds2438_measure(txn, what);
+
+	if (err)
+		return err;
+	if (sensor != HTM1735 && txn->real[1] <= 0)
+		return -EIO;
+	txn->number[0] = relative_humidity(sensor, txn->real[0], txn->real[1], txn->real[2]);
+	return 0;
+}
+
+static double setting(const uint8_t page[8], int which)
+{
+	unsigned raw = page[settings[which].at] | (unsigned)page[settings[which].at + 1] << 8;
+
+	return raw == 0 || raw == 0xffff ? settings[which].standard
+	                                 : (int16_t)raw * settings[which].unit;
+}
+
+int sensor_read_setting(struct txn *txn)
+{
+	uint8_t page[8];
+	int err = ds2438_read(txn, SETTING_PAGE, page);
+
+	if (!err)
+		txn->number[0] = setting(page, txn->property->arg);
+	return err;
+}
+
+int sensor_write_setting(struct txn *txn)
+{
+	int which = txn->property->arg;
+	double scaled = txn->number[0] / settings[which].unit;
+
+	if (!(scaled > -32768 && scaled < 32767))
+		return -EINVAL;
+	int16_t raw = (int16_t)(scaled < 0 ? scaled - 0.5 : scaled + 0.5);
+	uint8_t bytes[] = {(uint8_t)raw, (uint8_t)((uint16_t)raw >> 8)};
+	return ds2438_patch(txn, SETTING_PAGE, settings[which].at, bytes, sizeof(bytes));
+}
+
+/* The settings' page comes last, behind the measurement's phases. */
+static int with_settings(struct txn *txn, unsigned what, uint8_t page[8])
+{
+	if (txn->phase < 4 * DS2438_STEPS) {
+		int err = ds2438_measure(txn, what);
+
+		if (err)
+			return err;
+		txn->phase = 4 * DS2438_STEPS;
+		return TXN_MORE;
+	}
+	return ds2438_read(txn, SETTING_PAGE, page);
+}
+
+int sensor_read_pressure(struct txn *txn)
+{
+	uint8_t page[8];
+	int err = with_settings(txn, DS2438_VAD, page);
+
+	if (!err)
+		txn->number[0] = txn->real[2] * setting(page, B1_GAIN) + setting(page, B1_OFFSET);
+	return err;
+}
+
+int sensor_read_light(struct txn *txn)
+{
+	uint8_t page[8];
+	int err = with_settings(txn, DS2438_VIS, page);
+
+	if (err)
+		return err;
+	double microampere = txn->real[3] / SHUNT_OHM * 1e6;
+	double lux = microampere * setting(page, S3_GAIN);
+	txn->number[0] = txn->property->arg ? (lux < 0 ? 0 : lux) : microampere;
+	return 0;
+}
+
+int sensor_read_type(struct txn *txn)
+{
+	static const char *const types[] = {"MS-T", "MS-TH", "MS-TV", "MS-TL", "MS-TC", "MS-TW"};
+	const char *type = "";
+	uint8_t page[8];
+	int err = ds2438_read(txn, SETTING_PAGE, page);
+
+	if (err)
+		return err;
+	if (page[0] >= 0x18 && page[0] < 0x18 + sizeof(types) / sizeof(types[0]))
+		type = types[page[0] - 0x18];
+	txn->len = strlen(type);
+	if (txn->len > txn->room)
+		return -EMSGSIZE;
+	memcpy(txn->data, type, txn->len);
+	return 0;
+}
+
+/* How such a board marks itself is not documented. */
+bool sensor_is_datanab(const struct device *device)
+{
+	(void)device;
+	return false;
+}
+
+int sensor_reset_datanab(struct txn *txn)
+{
+	(void)txn;
+	return -EOPNOTSUPP;
+}
