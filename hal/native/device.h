@@ -47,6 +47,7 @@ struct device {
 	uint8_t stored;     /* the resolution in its EEPROM: that before our first change; 0: not known */
 	uint8_t tempres;    /* resolution of `temperature`; 0: that which is stored */
 	bool ignores;       /* takes no other resolution (clones) */
+	bool only_12;       /* has one resolution, and no bits that say so */
 	int16_t raw;        /* last good reading, sixteenths of a degree */
 	int64_t raw_ns;     /* when; 0: none */
 	int64_t converted_ns; /* when its last conversion ends or ended; 0: none known */

@@ -4,8 +4,9 @@
 #include <string.h>
 
 static const struct family *const families[] = {
-	&family_01, &family_05, &family_10, &family_14, &family_1d, &family_22, &family_23,
-	&family_26, &family_28, &family_29, &family_2d, &family_3a, &family_42,
+	&family_01, &family_05, &family_10, &family_12, &family_14, &family_1d, &family_20,
+	&family_22, &family_23,
+	&family_26, &family_28, &family_29, &family_2d, &family_3a, &family_3b, &family_42,
 };
 #define FAMILIES (sizeof(families) / sizeof(families[0]))
 

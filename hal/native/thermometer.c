@@ -25,7 +25,7 @@ int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9])
 
 	if (!err)
 		err = txn_read_crc8(txn, scratchpad, 9);
-	if (err || device->family->fixed)
+	if (err || device->family->fixed || device->only_12)
 		return err;
 	uint8_t resolution = (uint8_t)(9 + (scratchpad[SP_CONFIG] >> 5 & 3));
 	if (device->resolution && device->resolution != resolution)
@@ -48,7 +48,9 @@ int thermometer_raw(const struct device *device, const uint8_t scratchpad[9])
 			return raw * 8;
 		return whole * 16 - 4 + 16 * (per_degree - scratchpad[SP_REMAIN]) / per_degree;
 	}
-	return raw & ~((1 << (12 - (9 + (scratchpad[SP_CONFIG] >> 5 & 3)))) - 1);
+	if (device->only_12)
+		return raw;
+	return raw & ~((1 << (3 - (scratchpad[SP_CONFIG] >> 5 & 3))) - 1);
 }
 
 /*

@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * DS1825, MAX31826, MAX31850 and MAX31851 have one family code. The scratchpad tells them apart:
+ * the MAX31850's configuration byte begins with 1111, the MAX31826 has no limits (bytes 2 and 3
+ * are all ones).
+ */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/native/thermometer.h"
+
+#define CHIP note[0]
+enum { UNKNOWN, DS1825, MAX31826, MAX31850 };
+
+#define READ_MEMORY 0xf0
+#define WRITE_SCRATCHPAD_2 0x0f
+#define READ_SCRATCHPAD_2 0xaa
+#define COPY_SCRATCHPAD_2 0x55
+#define COPY_KEY 0xa5
+#define COPY_NS (25 * TXN_MS)
+#define PAGE 8
+
+static int scratchpad(struct txn *txn, uint8_t bytes[9])
+{
+	int err = thermometer_scratchpad(txn, bytes);
+
+	if (err)
+		return err;
+	if (bytes[SP_CONFIG] >> 4 == 0xf)
+		txn->device->CHIP = MAX31850;
+	else if (bytes[SP_HIGH] == 0xff && bytes[SP_LOW] == 0xff)
+		txn->device->CHIP = MAX31826;
+	else
+		txn->device->CHIP = DS1825;
+	/* Those have one resolution. */
+	if (txn->device->CHIP != DS1825) {
+		txn->device->ignores = txn->device->only_12 = true;
+		txn->device->resolution = 12;
+		txn->device->stored = 12;
+	}
+	return 0;
+}
+
+static bool is_ds1825(const struct device *device)
+{
+	return device->CHIP == UNKNOWN || device->CHIP == DS1825;
+}
+
+static bool is_max31826(const struct device *device)
+{
+	return device->CHIP == MAX31826;
+}
+
+static bool is_max31850(const struct device *device)
+{
+	return device->CHIP == MAX31850;
+}
+
+static const char *type_of(const struct device *device)
+{
+	static const char *const types[] = {"DS1825", "DS1825", "MAX31826", "MAX31850"};
+
+	return types[device->CHIP];
+}
+
+/* The MAX31850's own temperature is the cold junction's, in the upper 12 bits of bytes 2 and 3. */
+static int read_temperature(struct txn *txn)
+{
+	uint8_t bytes[9];
+
+	if (txn->device->CHIP == UNKNOWN && txn->phase == 0) {
+		txn->phase = 1;
+		int err = scratchpad(txn, bytes);
+		return err ? err : TXN_MORE;
+	}
+	if (txn->device->CHIP != MAX31850)
+		return thermometer_read_temperature(txn);
+	int err = scratchpad(txn, bytes);
+	txn->number[0] = ((int16_t)(bytes[2] | bytes[3] << 8) >> 4) / 16.0;
+	return err;
+}
+
+static int read_thermocouple(struct txn *txn)
+{
+	uint8_t bytes[9];
+	int err = scratchpad(txn, bytes);
+
+	txn->number[0] = ((int16_t)(bytes[0] | bytes[1] << 8) >> 2) / 4.0;
+	return err;
+}
+
+/* arg: byte and bit. */
+static int read_fault(struct txn *txn)
+{
+	uint8_t bytes[9];
+	int err = scratchpad(txn, bytes);
+
+	txn->number[0] = (bytes[txn->property->arg >> 8] & txn->property->arg & 0xff) != 0;
+	return err;
+}
+
+static int read_flags(struct txn *txn)
+{
+	uint8_t bytes[9];
+	int err = scratchpad(txn, bytes);
+
+	txn->number[0] = (bytes[0] & 1) << 3 | (bytes[2] & 7);
+	return err;
+}
+
+static int read_location(struct txn *txn)
+{
+	uint8_t bytes[9];
+	int err = scratchpad(txn, bytes);
+
+	txn->number[0] = bytes[SP_CONFIG] & 0x0f;
+	return err;
+}
+
+static int get_page(struct txn *txn, unsigned address, uint8_t *bytes)
+{
+	uint8_t command[] = {READ_MEMORY, (uint8_t)address};
+	int err = txn_command(txn, command, sizeof(command));
+
+	return err ? err : txn_read(txn, bytes, PAGE);
+}
+
+static int read_page(struct txn *txn)
+{
+	int err = get_page(txn, (unsigned)txn->element * PAGE, txn->phase ? txn->data : txn->mem);
+
+	if (err || txn->phase++ == 0)
+		return err ? err : TXN_MORE;
+	txn->len = PAGE;
+	return memcmp(txn->data, txn->mem, PAGE) == 0 ? 0 : -EBADMSG;
+}
+
+static int read_memory(struct txn *txn)
+{
+	unsigned at = txn->phase / 2 * PAGE;
+	int err = get_page(txn, at, txn->phase % 2 ? txn->data + at : txn->mem);
+
+	if (err)
+		return err;
+	if (txn->phase++ % 2 == 0)
+		return TXN_MORE;
+	if (memcmp(txn->data + at, txn->mem, PAGE) != 0)
+		return -EBADMSG;
+	txn->len = at + PAGE;
+	return txn->len < 128 ? TXN_MORE : 0;
+}
+
+/* A page: read, write the second scratchpad, read it back, copy, read again. */
+static int put_page(struct txn *txn, unsigned address, const uint8_t *bytes, size_t n)
+{
+	uint8_t command[2 + PAGE] = {WRITE_SCRATCHPAD_2, (uint8_t)address}, in[PAGE];
+	uint8_t verify[] = {READ_SCRATCHPAD_2, (uint8_t)address};
+	static const uint8_t copy[] = {COPY_SCRATCHPAD_2, COPY_KEY};
+	int err;
+
+	switch (txn->phase++ % 5) {
+	case 0:
+		err = get_page(txn, address, in);
+		memcpy(txn->mem, in, PAGE);
+		memcpy(txn->mem, bytes, n);
+		txn->silent = false;
+		if (err || memcmp(txn->mem, in, PAGE) != 0)
+			return err ? err : TXN_MORE;
+		txn->phase += 4;
+		return 0;
+	case 1:
+		memcpy(command + 2, txn->mem, PAGE);
+		err = txn_command(txn, command, sizeof(command));
+		return err ? err : TXN_MORE;
+	case 2:
+		err = txn_command(txn, verify, sizeof(verify));
+		if (!err)
+			err = txn_read(txn, in, PAGE);
+		return err ? err : memcmp(in, txn->mem, PAGE) == 0 ? TXN_MORE : -EBADMSG;
+	case 3:
+		return txn_command_strong(txn, copy, sizeof(copy), COPY_NS);
+	default:
+		err = get_page(txn, address, in);
+		return err ? err : memcmp(in, txn->mem, PAGE) == 0 ? 0 : -EIO;
+	}
+}
+
+static int write_page(struct txn *txn)
+{
+	return put_page(txn, (unsigned)txn->element * PAGE, txn->data, txn->len);
+}
+
+static int write_memory(struct txn *txn)
+{
+	size_t at = txn->phase / 5 * PAGE;
+	size_t n = txn->len - at < PAGE ? txn->len - at : PAGE;
+
+	if (txn->len == 0)
+		return 0;
+	int err = put_page(txn, (unsigned)at, txn->data + at, n);
+	return err ? err : at + n < txn->len ? TXN_MORE : 0;
+}
+
+#define TEMPERATURE(text, resolution, when)                                               \
+	{.name = (text), .type = PROPERTY_TEMPERATURE, .life = LIFE_VOLATILE,               \
+	 .access = ACCESS_READ, .convert = (resolution), .visible = (when),                 \
+	 .read = read_temperature}
+#define FAULT(text, byte, bit)                                                            \
+	{.name = (text), .type = PROPERTY_YESNO, .life = LIFE_VOLATILE, .access = ACCESS_READ, \
+	 .arg = (byte) << 8 | (bit), .convert = CONVERT_TEMPRES, .visible = is_max31850,    \
+	 .read = read_fault}
+#define LIMIT(text, where)                                                                \
+	{.name = (text), .type = PROPERTY_TEMPERATURE, .life = LIFE_STABLE,                 \
+	 .access = ACCESS_BOTH, .arg = (where), .visible = is_ds1825,                       \
+	 .read = thermometer_read_limit, .write = thermometer_write_limit}
+
+static const struct property properties[] = {
+	TEMPERATURE("fasttemp", 9, is_ds1825),
+	FAULT("fault", 0, 1),
+	{.name = "flagfield", .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE, .hidden = true,
+	 .access = ACCESS_READ, .read = read_flags},
+	FAULT("ground_short", 2, 2),
+	TEMPERATURE("latesttemp", 0, NULL),
+	{.name = "memory", .type = PROPERTY_BINARY, .life = LIFE_VOLATILE, .access = ACCESS_BOTH,
+	 .size = 128, .visible = is_max31826, .read = read_memory, .write = write_memory},
+	FAULT("open_circuit", 2, 1),
+	{.name = "pages", .type = PROPERTY_DIRECTORY, .life = LIFE_STATIC, .visible = is_max31826},
+	{.name = "pages/page", .type = PROPERTY_BINARY, .life = LIFE_VOLATILE,
+	 .access = ACCESS_BOTH, .array = {16, INDEX_NUMBERS, false}, .size = PAGE,
+	 .visible = is_max31826, .read = read_page, .write = write_page},
+	THERMOMETER_POWER,
+	{.name = "prog_addr", .type = PROPERTY_UNSIGNED, .life = LIFE_STABLE, .access = ACCESS_READ,
+	 .read = read_location},
+	THERMOMETER_SCRATCHPAD,
+	TEMPERATURE("temperature", CONVERT_TEMPRES, NULL),
+	TEMPERATURE("temperature10", 10, is_ds1825),
+	TEMPERATURE("temperature11", 11, is_ds1825),
+	TEMPERATURE("temperature12", 12, NULL),
+	TEMPERATURE("temperature9", 9, is_ds1825),
+	LIMIT("temphigh", SP_HIGH),
+	LIMIT("templow", SP_LOW),
+	THERMOMETER_TEMPRES,
+	{.name = "thermocouple", .type = PROPERTY_TEMPERATURE, .life = LIFE_VOLATILE,
+	 .access = ACCESS_READ, .convert = CONVERT_TEMPRES, .visible = is_max31850,
+	 .read = read_thermocouple},
+	FAULT("vdd_short", 2, 4),
+};
+
+const struct family family_3b = {
+	.code = 0x3b, .thermometer = true, .alarms = true, .type = "DS1825", .type_of = type_of,
+	PROPERTIES(properties),
+};
