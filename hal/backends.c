@@ -3,6 +3,8 @@
 
 const struct bus_ops *const bus_backends[] = {
 	&owserver_bus,
+	&i2c_bus,
+	&sim_bus,
 	&null_bus,
 	&late_bus,
 	NULL,

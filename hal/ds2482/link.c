@@ -235,7 +235,9 @@ static const struct link_ops link_ops = {
 void ds2482_link_init(struct ds2482_chip *chip, unsigned number)
 {
 	chip->link[number] = (struct ds2482_link){
-		.link = {.ops = &link_ops, .env = chip->master->master.env},
+		.link = {.ops = &link_ops,
+		         .env = chip->master->master.env,
+		         .chip = (unsigned)(chip - chip->master->chip)},
 		.chip = chip,
 		.number = (uint8_t)number,
 		.cost = chip->link[number].cost,

@@ -25,6 +25,9 @@ int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9])
 
 	if (!err)
 		err = txn_read_crc8(txn, scratchpad, 9);
+	/* Nothing but zeros has a right checksum, and no such chip. */
+	if (!err && scratchpad[SP_CONFIG] == 0 && scratchpad[SP_PER_DEGREE] == 0)
+		err = -EBADMSG;
 	if (err || device->family->fixed || device->only_12)
 		return err;
 	uint8_t resolution = (uint8_t)(9 + (scratchpad[SP_CONFIG] >> 5 & 3));

@@ -111,13 +111,10 @@ int txn_bit(struct txn *txn)
 int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n)
 {
 	int err = txn_read(txn, bytes, n);
-	bool zeros = true;
 
 	if (err < 0)
 		return err;
-	for (size_t i = 0; i < n && zeros; i++)
-		zeros = bytes[i] == 0;
-	return zeros || rom_crc8(bytes, n) ? -EBADMSG : 0;
+	return rom_crc8(bytes, n) ? -EBADMSG : 0;
 }
 
 int txn_read_crc16(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t *bytes, size_t n)
