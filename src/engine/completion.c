@@ -140,6 +140,7 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	signal_update(s, e->period, answer->measured_ns ? answer->measured_ns : now_ns, e->start_ns);
 	retry_clear(&s->write_retry);
 	succeed(e, lane, s, OWS_Q_GOOD, now_ns);
+	signal_settle(s);
 	engine_write_check(e, s);
 }
 

@@ -67,8 +67,6 @@ static void take_value(struct engine *e, struct signal *s, const struct command 
 	s->safe = false;
 	s->client = c->client;
 	e->counters.commands++;
-	if (!signal_changed(s))
-		s->sample.applied = s->stamp;
 }
 
 static void enable(struct signal *s, uint8_t commanded, uint32_t flag)
@@ -118,6 +116,7 @@ void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
 		s->dgn_resets = c.dgn_reset;
 		signal_reset_diagnostics(s, e->period, now_ns, e->start_ns);
 	}
+	signal_settle(s);
 	engine_write_check(e, s);
 }
 

@@ -191,6 +191,12 @@ bool signal_changed(const struct signal *s)
 	return s->command != s->written;
 }
 
+void signal_settle(struct signal *s)
+{
+	if (s->commanded && signal_writes(s) && !s->writing && !signal_changed(s))
+		s->sample.applied = s->stamp;
+}
+
 void signal_begin(struct signal *s, uint64_t period)
 {
 	s->attrs.pend_base = (uint32_t)period;

@@ -89,6 +89,9 @@ static inline bool signal_writes(const struct signal *s)
 /* Does its commanded value have to go out? */
 bool signal_changed(const struct signal *s);
 
+/* Is the last command what the bus has? Then it is confirmed. */
+void signal_settle(struct signal *s);
+
 /* A request of this signal begins, ends; an update (value read or written) was made. */
 void signal_begin(struct signal *s, uint64_t period);
 void signal_end(struct signal *s, uint64_t period);

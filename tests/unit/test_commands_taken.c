@@ -133,6 +133,43 @@ static void test_writing_disabled_keeps_what_was_set_until_it_is_enabled(void)
 	TEST_ASSERT_EQUAL_STRING("9", scene_at(&s, PIO));
 }
 
+static void test_a_command_is_not_confirmed_while_writing_is_disabled(void)
+{
+	one_of_each();
+	scene_slot(&s, 2)->write_enable = 1;
+	scene_set(&s, 2, 9);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(0, scene_sample(&s, 2).applied);
+	scene_slot(&s, 2)->write_enable = 2;
+	scene_ring(&s, 2);
+	scene_run(&s, 100 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_sample(&s, 2).applied);
+	/* back to what the bus has, while disabled: enabling leaves nothing to write */
+	scene_slot(&s, 2)->write_enable = 1;
+	scene_set(&s, 2, 9);
+	scene_run(&s, 100 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_sample(&s, 2).applied);
+	scene_slot(&s, 2)->write_enable = 2;
+	scene_ring(&s, 2);
+	scene_run(&s, 100 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT32(2, scene_sample(&s, 2).applied);
+	TEST_ASSERT_EQUAL_UINT(1, s.writes);
+}
+
+static void test_the_same_value_set_again_during_its_write_is_confirmed_with_it(void)
+{
+	one_of_each();
+	s.latency_ns = 50 * SCENE_MS;
+	scene_set(&s, 2, 9);
+	scene_run(&s, 10 * SCENE_MS);
+	scene_set(&s, 2, 9);
+	scene_run(&s, 10 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT32(0, scene_sample(&s, 2).applied);
+	scene_run(&s, 200 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT32(2, scene_sample(&s, 2).applied);
+	TEST_ASSERT_EQUAL_UINT(1, s.writes);
+}
+
 static void test_one_shot_writes_once_changed_or_not_enabled_or_not(void)
 {
 	one_of_each();
@@ -309,6 +346,8 @@ int main(void)
 	RUN_TEST(test_a_text_whose_writer_died_is_freed_after_a_second);
 	RUN_TEST(test_reading_disabled_keeps_the_value_and_says_so);
 	RUN_TEST(test_writing_disabled_keeps_what_was_set_until_it_is_enabled);
+	RUN_TEST(test_a_command_is_not_confirmed_while_writing_is_disabled);
+	RUN_TEST(test_the_same_value_set_again_during_its_write_is_confirmed_with_it);
 	RUN_TEST(test_one_shot_writes_once_changed_or_not_enabled_or_not);
 	RUN_TEST(test_diagnostics_are_reset_and_the_value_stays);
 	RUN_TEST(test_the_driver_reset_clears_its_counters_and_every_signal);
