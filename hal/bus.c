@@ -150,12 +150,24 @@ static void exec_next(struct bus *bus)
 	bus->env->answer(bus->env->ctx, &answer);
 }
 
+/* A bus that has no step cannot be down. */
+static void tell_up(struct bus *bus)
+{
+	const struct bus_event up = { .news = BUS_UP };
+
+	if (bus->told_up || bus->ops->step)
+		return;
+	bus->told_up = true;
+	bus->env->event(bus->env->ctx, &up);
+}
+
 int64_t bus_step(struct bus *bus, int64_t now)
 {
 	int64_t next = INT64_MAX;
 
 	if (!bus->ops->exec)
 		return bus->ops->step(bus, now);
+	tell_up(bus);
 	if (bus->ops->step)
 		next = bus->ops->step(bus, now);
 	if (bus->count == 0)

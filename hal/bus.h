@@ -167,7 +167,8 @@ struct bus_ops {
 	/*
 	 * One bounded piece of work, connecting and searching included; answers and events are given
 	 * from inside. Returns when it wants to be called again (INT64_MAX: at the next submit).
-	 * A simple bus may have one too: it is called before each exec and when nothing is to do.
+	 * A simple bus may have one too, which then tells BUS_UP and BUS_DOWN: it is called before each
+	 * exec and when nothing is to do. Without one a simple bus is up from the start.
 	 */
 	int64_t (*step)(struct bus *bus, int64_t now);
 	/* 0: taken out, answered -ECANCELED. -EBUSY: already on its way. -ENOENT: not here. */
@@ -185,6 +186,7 @@ struct bus {
 	const struct bus_env *env;
 	struct bus_req **queue; /* simple tier: requests not yet begun */
 	unsigned head, count;
+	bool told_up; /* simple tier without step: it is up from its first step on */
 };
 
 /* All backends of this build, NULL at the end. */

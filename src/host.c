@@ -151,7 +151,6 @@ static void sleep_until(struct host *h, uint32_t seen, int64_t until_ns)
 	if (until_ns <= now_ns)
 		return;
 	commands_awake(h->commands, false);
-	__atomic_thread_fence(__ATOMIC_SEQ_CST);
 	segment_wait(h->bell, seen, until_ns - now_ns);
 	commands_awake(h->commands, true);
 }

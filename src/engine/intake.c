@@ -9,10 +9,12 @@
 /* A writer that holds a string's claim for longer has died. */
 #define CLAIM_NS 1000000000LL
 
-static void refuse(struct engine *e, struct signal *s, int err)
+static void refuse(struct engine *e, struct signal *s, int err, int64_t now_ns)
 {
 	e->counters.refused_commands++;
 	s->sample.err = err;
+	if (!log_rate(&e->refused, now_ns))
+		return;
 	log_warning(e->log, "%s: a value in the command segment was refused: %s", s->item->name,
 	            err == -ERANGE ? "the type cannot hold it" : "its text is damaged");
 }
@@ -58,7 +60,7 @@ static void take_value(struct engine *e, struct signal *s, const struct command 
 	}
 	s->stamp = c->stamp;
 	if (err) {
-		refuse(e, s, err);
+		refuse(e, s, err, now_ns);
 		return;
 	}
 	if (!signal_is_string(s))

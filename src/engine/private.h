@@ -43,6 +43,7 @@ struct engine {
 
 	struct client clients[OWS_CLIENTS];
 	uint32_t driver_resets;
+	struct log_rate refused;
 	struct {
 #define X(name) uint64_t name;
 		ENGINE_COUNTERS(X)

@@ -235,6 +235,22 @@ static void test_the_queue_holds_any_mix_of_submit_step_and_cancel(void)
 		TEST_ASSERT_LESS_OR_EQUAL_UINT_MESSAGE(1, host_answers(&host, i), "seed 20260");
 }
 
+static void test_a_simple_bus_without_step_is_up_from_its_first_step_and_says_so_once(void)
+{
+	make(&note);
+	for (int i = 0; i < 3; i++)
+		bus_step(bus, host.env.now(host.env.ctx));
+	TEST_ASSERT_EQUAL_UINT(1, host.events);
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_UP));
+}
+
+static void test_a_simple_bus_with_a_step_tells_itself_whether_it_is_up(void)
+{
+	make(&note_stepping);
+	bus_step(bus, host.env.now(host.env.ctx));
+	TEST_ASSERT_EQUAL_UINT(0, host.events);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -251,5 +267,7 @@ int main(void)
 	RUN_TEST(test_a_cancelled_request_is_answered_once_and_never_begun);
 	RUN_TEST(test_a_simple_bus_with_step_is_stepped_before_each_request_and_when_idle);
 	RUN_TEST(test_the_queue_holds_any_mix_of_submit_step_and_cancel);
+	RUN_TEST(test_a_simple_bus_without_step_is_up_from_its_first_step_and_says_so_once);
+	RUN_TEST(test_a_simple_bus_with_a_step_tells_itself_whether_it_is_up);
 	return UNITY_END();
 }
