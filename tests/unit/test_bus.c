@@ -106,7 +106,7 @@ static void test_a_host_named_like_a_scheme_is_said_in_full(void)
 
 static void test_an_unknown_scheme_is_refused_with_the_names_there_are(void)
 {
-	is_refused("usb:/dev/x", -EPROTONOSUPPORT, "owserver: null: late:");
+	is_refused("usb:/dev/x", -EPROTONOSUPPORT, "null: late:");
 	is_refused("usb:", -EPROTONOSUPPORT, "'usb'");
 	is_refused("host:99999", -EPROTONOSUPPORT, "HOST:PORT");
 	is_refused("host:0", -EPROTONOSUPPORT, "HOST:PORT");
