@@ -204,7 +204,8 @@ SYSTEM_AIDS := $(patsubst tests/system/%.c,$(B)/system/%,$(wildcard tests/system
 
 $(B)/system/%: tests/system/%.c $(B)/core.a
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.c %.a,$^) $(LIBS)
+	$(call show,CC)
+	$(Q)$(CC) $(ALL_CFLAGS) $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.c %.a,$^) $(LIBS)
 
 system: all examples $(SYSTEM_AIDS)
 	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/run
@@ -236,7 +237,8 @@ include tests/kernel/kernel.mk
 
 # --- Slower checks ----------------------------------------------------------------------------
 ASAN_FLAGS := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
-TSAN_FLAGS := -fsanitize=thread -fno-omit-frame-pointer
+# TSan does not know fences, and gcc says so at each
+TSAN_FLAGS := -fsanitize=thread -fno-omit-frame-pointer -Wno-tsan
 
 asan:
 	@$(MAKE) --no-print-directory B=build/asan all

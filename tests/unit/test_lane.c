@@ -81,7 +81,7 @@ static void test_all_due_inputs_go_at_once_to_a_bus_that_takes_them(void)
 static void test_at_most_one_write_is_in_work(void)
 {
 	for (int i = 0; i < 4; i++)
-		scene_output(&s, "abcd" + i, PIO, OWS_BYTE)->has_init = true;
+		scene_output(&s, &"abcd"[i], PIO, OWS_BYTE)->has_init = true;
 	scene_put(&s, PIO, "0", 0);
 	s.depth = 8;
 	scene_start(&s);
