@@ -260,7 +260,8 @@ static void *write_on(void *arg)
 	int64_t n = 1;
 
 	while (!__atomic_load_n(&done, __ATOMIC_ACQUIRE)) {
-		struct ows_sample sample = {.value = ++n, .measured_ns = n, .count = (uint32_t)n};
+		n++;
+		struct ows_sample sample = {.value = n, .measured_ns = n, .count = (uint32_t)n};
 		struct ows_attrs attrs = {.transactions = (uint64_t)n};
 
 		image_publish(&in.image, DEEP, &sample, &attrs, NULL);
