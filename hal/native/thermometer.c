@@ -82,7 +82,8 @@ int thermometer_guard(struct txn *txn, int raw, const uint8_t scratchpad[9], int
 	if (device->make != MAKE_GENUINE && device->raw_ns && now - device->raw_ns < NEAR_NS &&
 	    device->raw >= RAW_POWER_ON - NEAR_RAW)
 		return 0;
-	txn->restarted = scratchpad[SP_REMAIN] == REMAIN_POWER_ON;
+	txn->restarted = scratchpad[SP_REMAIN] == REMAIN_POWER_ON &&
+	                 (device->raw_ns || device->converted_ns);
 	return -ERANGE;
 }
 
