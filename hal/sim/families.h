@@ -6,6 +6,9 @@
 #include "slave.h"
 
 extern const struct sim_family sim_ds18b20, sim_ds18s20, sim_ds1822, sim_ds1825, sim_ds28ea00;
-extern const struct sim_family sim_ds2401, sim_ds2408, sim_ds2413, sim_ds2438;
+extern const struct sim_family sim_ds2405, sim_ds2406, sim_ds2408, sim_ds2413;
+extern const struct sim_family sim_ds2438, sim_ds2450;
+extern const struct sim_family sim_ds2423, sim_ds2430a, sim_ds2431, sim_ds2433;
+extern const struct sim_family sim_ds2401;
 
 #endif

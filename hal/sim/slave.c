@@ -251,12 +251,12 @@ static bool rom_step(struct sim_slave *slave, bool agreed)
 	return ++slave->rom_bit == 64;
 }
 
-static void selected(struct sim_slave *slave, int64_t t)
+static void selected(struct sim_slave *slave, bool match, int64_t t)
 {
 	slave->resumable = slave->family->resume;
 	function_layer(slave);
-	if (slave->family->matched)
-		slave->family->matched(slave, t);
+	if (slave->family->selected)
+		slave->family->selected(slave, match, t);
 }
 
 static bool next_sent_bit(struct sim_slave *slave)
@@ -337,14 +337,14 @@ void sim_slave_slot(struct sim_slave *slave, bool line, int64_t t)
 		break;
 	case SIM_ROM_MATCH:
 		if (rom_step(slave, line == rom_bit(slave)))
-			selected(slave, t);
+			selected(slave, true, t);
 		break;
 	case SIM_ROM_SEARCH:
 		if (++slave->search_phase < 3)
 			break;
 		slave->search_phase = 0;
 		if (rom_step(slave, line == rom_bit(slave)))
-			selected(slave, t);
+			selected(slave, false, t);
 		break;
 	case SIM_FUNCTION:
 		switch (slave->mode) {

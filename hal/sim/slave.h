@@ -31,8 +31,8 @@ struct sim_family {
 	void (*create)(struct sim_slave *slave); /* contents of the memories as from the factory */
 	void (*power_on)(struct sim_slave *slave, int64_t t);
 	void (*reset)(struct sim_slave *slave, int64_t t); /* 1-Wire reset */
-	/* Matched alone (Match ROM); it is then in the function layer. */
-	void (*matched)(struct sim_slave *slave, int64_t t);
+	/* Selected alone, by a Match ROM or at the end of a search: in the function layer. */
+	void (*selected)(struct sim_slave *slave, bool match, int64_t t);
 	bool (*alarm)(struct sim_slave *slave, int64_t t); /* answers a conditional search? */
 	/* A whole byte from the master. The answer is set up with the calls below. */
 	void (*received)(struct sim_slave *slave, uint8_t byte, int64_t t);
