@@ -11,325 +11,6 @@
 #define TRIES_LINK 6
 #define PROBE_AGE_NS (2 * NATIVE_S)
 
-static void unlock(struct native *native, struct job *job)
-{
-	for (unsigned chip = 0; chip < NATIVE_CHANNELS; chip++)
-		if (native->holder[chip] == job)
-			native->holder[chip] = NULL;
-	if (job->locks && job->txn.device)
-		job->txn.device->locked = false;
-	job->locks = false;
-}
-
-void job_answer(struct native *native, struct job *job, int err)
-{
-	struct bus_answer answer = {.id = job->req->id, .err = err, .kind = BUS_TEXT,
-	                            .measured_ns = native_now(native)};
-
-	unlock(native, job);
-	if (native->master->ops->simulated)
-		answer.detail |= BUS_DETAIL_SIMULATED;
-	if (!err && job->req->op == BUS_WRITE)
-		answer.len = (uint32_t)job->taken;
-	else if (!err)
-		answer.len = (uint32_t)job->out;
-	if (!err && job->req->op == BUS_READ) {
-		const struct property *property = job->property;
-
-		if (job->txn.measured_ns)
-			answer.measured_ns = job->txn.measured_ns;
-		if (property && property->type == PROPERTY_BINARY)
-			answer.kind = BUS_BYTES;
-		if (property && format_is_number(property, job->extension)) {
-			answer.kind = BUS_NUMBER;
-			answer.number = format_as_number(property, job->extension, &job->txn);
-		}
-	}
-	job->req = NULL;
-	native->lent--;
-	native->bus.env->answer(native->bus.env->ctx, &answer);
-}
-
-static void answer_cached(struct native *native, struct job *job, const struct cache_entry *entry)
-{
-	struct bus_answer answer = {.id = job->req->id, .kind = entry->kind, .len = entry->len,
-	                            .detail = BUS_DETAIL_CACHED, .measured_ns = entry->measured_ns,
-	                            .number = entry->number};
-
-	if (entry->len > job->req->len) {
-		job_answer(native, job, -EMSGSIZE);
-		return;
-	}
-	if (native->master->ops->simulated)
-		answer.detail |= BUS_DETAIL_SIMULATED;
-	memcpy(job->req->data, entry->text, entry->len);
-	native_count(native, COUNT_CACHE_HITS);
-	job->req = NULL;
-	native->lent--;
-	native->bus.env->answer(native->bus.env->ctx, &answer);
-}
-
-static int64_t life_ns(const struct native *native, const struct property *property)
-{
-	switch ((enum property_life)property->life) {
-	case LIFE_STATIC:
-	case LIFE_STABLE:
-		return native->stable_ns;
-	case LIFE_VOLATILE:
-		return native->volatile_ns;
-	case LIFE_SECOND:
-		return NATIVE_S;
-	}
-	return 0;
-}
-
-static void keep(struct native *native, struct job *job)
-{
-	const struct property *property = job->property;
-	int64_t measured = job->txn.measured_ns ? job->txn.measured_ns : native_now(native);
-
-	if (!job->txn.device || property->offline || job->out > CACHE_TEXT_MAX)
-		return;
-	struct cache_entry *entry =
-		cache_add(&native->cache, job->txn.device, property, job->extension);
-	entry->measured_ns = measured;
-	entry->until_ns = measured + life_ns(native, property);
-	entry->kind = property->type == PROPERTY_BINARY ? BUS_BYTES : BUS_TEXT;
-	if (format_is_number(property, job->extension)) {
-		entry->kind = BUS_NUMBER;
-		entry->number = format_as_number(property, job->extension, &job->txn);
-	}
-	entry->len = (uint8_t)job->out;
-	memcpy(entry->text, job->req->data, job->out);
-}
-
-static bool is_all(const struct job *job)
-{
-	return job->extension == EXTENSION_ALL && !job->property->array.aggregate &&
-	       job->property->type != PROPERTY_BITS;
-}
-
-/* Make the txn ready for the next element, from its beginning. */
-static void txn_begin(struct native *native, struct job *job)
-{
-	struct txn *txn = &job->txn;
-	struct device *device = txn->device;
-	unsigned n = device ? device->channel : job->bus >= 0 ? (unsigned)job->bus : 0;
-
-	memset(txn, 0, sizeof(*txn));
-	txn->native = native;
-	txn->device = device;
-	txn->channel = n;
-	txn->link = native->channel[n].link;
-	txn->property = job->property;
-	txn->element = is_all(job) ? (int)job->element
-	                           : job->extension >= 0 ? job->extension & 0xff : 0;
-	if (job->req->op == BUS_READ) {
-		txn->data = job->req->data + job->out;
-		txn->room = job->req->len - job->out;
-	}
-}
-
-void job_restart(struct native *native, struct job *job)
-{
-	unlock(native, job);
-	job->state = JOB_QUEUED;
-	job->merged = false;
-	job->txn.wake_ns = 0;
-}
-
-static bool is_text(const struct property *property)
-{
-	return property->type == PROPERTY_ASCII || property->type == PROPERTY_BINARY ||
-	       property->type == PROPERTY_ALIAS;
-}
-
-/* One element more of the answer; true: there are others. */
-static int add_element(struct job *job)
-{
-	struct txn *txn = &job->txn;
-	const struct property *property = job->property;
-	bool all = is_all(job);
-
-	if (is_text(property)) {
-		if (txn->len > txn->room)
-			return -EMSGSIZE;
-		job->out += txn->len;
-	} else {
-		int n = format_value(property, all ? EXTENSION_NONE : job->extension, txn,
-		                     (char *)job->req->data + job->out, job->req->len - job->out);
-		if (n < 0)
-			return n;
-		job->out += (size_t)n;
-	}
-	if (!all || ++job->element == property->array.count)
-		return 0;
-	if (property->type != PROPERTY_BINARY) {
-		if (job->out == job->req->len)
-			return -EMSGSIZE;
-		job->req->data[job->out++] = ',';
-	}
-	return 1;
-}
-
-static void read_done(struct native *native, struct job *job)
-{
-	int more = add_element(job);
-
-	if (more < 0) {
-		job_answer(native, job, more);
-		return;
-	}
-	job->tries = 0;
-	if (job->txn.device)
-		job->txn.device->settled |= !job->property->offline;
-	if (more) {
-		txn_begin(native, job);
-		return;
-	}
-	keep(native, job);
-	job_answer(native, job, 0);
-}
-
-/* The part of the request that is for this element. */
-static int take_value(struct job *job)
-{
-	struct txn *txn = &job->txn;
-	const struct property *property = job->property;
-	const char *text = (const char *)job->req->data;
-	size_t len = job->req->len, size = property_size(property);
-	bool all = is_all(job);
-
-	if (is_text(property)) {
-		size_t skip = all ? job->element * size : 0;
-
-		if (skip > len)
-			skip = len;
-		txn->data = job->req->data + skip;
-		txn->len = len - skip < size ? len - skip : size;
-		txn->room = txn->len;
-		return 0;
-	}
-	if (all) {
-		if (list_count(text, len) != property->array.count ||
-		    !list_part(text, len, job->element, &text, &len))
-			return -EINVAL;
-		return parse_value(property, EXTENSION_NONE, text, len, txn);
-	}
-	return parse_value(property, job->extension, text, len, txn);
-}
-
-static void write_done(struct native *native, struct job *job)
-{
-	bool text = is_text(job->property);
-
-	if (job->txn.device && !job->property->offline) {
-		job->txn.device->changes++;
-		job->txn.device->settled = true;
-	}
-	job->taken = text ? job->taken + job->txn.len : job->req->len;
-	job->tries = 0;
-	if (is_all(job) && ++job->element < job->property->array.count &&
-	    (!text || job->taken < job->req->len)) {
-		txn_begin(native, job);
-		return;
-	}
-	job_answer(native, job, 0);
-}
-
-/* One element of an aggregate is written: the others are read first. */
-static bool needs_merge(const struct job *job)
-{
-	return job->req->op == BUS_WRITE && !job->merged && job->extension >= 0 &&
-	       job->property->array.count > 1 && job->property->read &&
-	       (job->property->array.aggregate || job->property->type == PROPERTY_BITS);
-}
-
-static int run_function(struct job *job)
-{
-	struct txn *txn = &job->txn;
-
-	if (job->req->op == BUS_READ)
-		return txn->property->type == PROPERTY_BINARY && txn->room < property_size(job->property)
-		               ? -EMSGSIZE
-		               : job->property->read(txn);
-	if (needs_merge(job))
-		return job->property->read(txn);
-	if (txn->phase == 0) {
-		int err = take_value(job);
-
-		if (err)
-			return err;
-	}
-	return job->property->write(txn);
-}
-
-void job_saw(struct native *native, struct job *job, int err, int64_t now)
-{
-	struct txn *txn = &job->txn;
-
-	if (!txn->on_wire)
-		return;
-	txn->on_wire = false;
-	native_count(native, COUNT_TRANSACTIONS);
-	if (!txn->link_error)
-		master_good(native, txn->channel);
-	if (txn->restarted && txn->device)
-		hunt_restarted(native, txn->device);
-	txn->restarted = false;
-	if (txn->heard && err != -EBADMSG && txn->device)
-		hunt_seen(txn->device, now);
-	txn->heard = false;
-}
-
-static void hold(struct native *native, struct job *job)
-{
-	unsigned chip = job->txn.link->chip % NATIVE_CHANNELS;
-
-	if (!job->txn.strong)
-		return;
-	job->txn.strong = false;
-	native->hold_ns[chip] = job->txn.wake_ns;
-	native->holder[chip] = job;
-}
-
-static void run_property(struct native *native, struct job *job, int64_t now)
-{
-	struct txn *txn = &job->txn;
-	int err = run_function(job);
-
-	job_saw(native, job, err, now);
-	if (err < 0) {
-		job_failed(native, job, err);
-		return;
-	}
-	if (err == TXN_MORE) {
-		hold(native, job);
-		if (txn->device && !job->locks) {
-			job->locks = true;
-			txn->device->locked = true;
-		}
-		return;
-	}
-	unlock(native, job);
-	if (job->property->convert && !convert_right(job)) {
-		/* It converted at another resolution than was thought. */
-		job->txn.device->converted_ns = 0;
-		job_restart(native, job);
-		return;
-	}
-	if (needs_merge(job)) {
-		job->merged = true;
-		txn->phase = 0;
-		txn->wake_ns = 0;
-		return;
-	}
-	if (job->req->op == BUS_READ)
-		read_done(native, job);
-	else
-		write_done(native, job);
-}
-
 static void failed_on_link(struct native *native, struct job *job, int err)
 {
 	unsigned channel = job->txn.channel;
@@ -423,7 +104,7 @@ static void look_read(struct native *native, struct job *job, int64_t now)
 		return;
 	entry = cache_find(&native->cache, job->txn.device, job->property, job->extension, now);
 	if (entry)
-		answer_cached(native, job, entry);
+		job_answer_cached(native, job, entry);
 }
 
 static void look_structure(struct native *native, struct job *job)
@@ -492,8 +173,8 @@ void job_look(struct native *native, struct job *job, int64_t now)
 		    (job->path.device.len && away(native, job->txn.device)))
 			return;
 		while (job->req) {
-			txn_begin(native, job);
-			run_property(native, job, now);
+			job_txn(native, job);
+			job_run_property(native, job, now);
 		}
 	}
 }
@@ -554,7 +235,7 @@ bool job_ready(const struct native *native, const struct job *job, int64_t now, 
 
 static void run_probe(struct native *native, struct job *job, int64_t now)
 {
-	txn_begin(native, job);
+	job_txn(native, job);
 	int there = txn_verify(&job->txn, false);
 
 	job_saw(native, job, there > 0 ? 0 : -ENODEV, now);
@@ -582,13 +263,13 @@ static void begin_property(struct native *native, struct job *job, int64_t now)
 		run_probe(native, job, now);
 		return;
 	}
-	txn_begin(native, job);
+	job_txn(native, job);
 	if (job->property->convert && job->req->op == BUS_READ) {
 		convert_begin(native, job, now);
 		return;
 	}
 	job->state = JOB_RUN;
-	run_property(native, job, now);
+	job_run_property(native, job, now);
 }
 
 void job_step(struct native *native, struct job *job, int64_t now)
@@ -614,9 +295,9 @@ void job_step(struct native *native, struct job *job, int64_t now)
 		return;
 	case JOB_CONVERTING:
 		job->state = JOB_RUN;
-		run_property(native, job, now);
+		job_run_property(native, job, now);
 		return;
 	case JOB_RUN:
-		run_property(native, job, now);
+		job_run_property(native, job, now);
 	}
 }

@@ -5,7 +5,9 @@
  *   native.c   the bus contract: create, submit, step, cancel
  *   master.c   open, lost, opened again; the recovery ladder
  *   resolve.c  what a path means
- *   job.c      one request on its way: property reads and writes, retries, answers
+ *   job.c      one request on its way: what it waits for, its next step, what follows a failure
+ *   exchange.c properties read and written
+ *   answer.c   answers, and the cache
  *   convert.c  who converts when: one Convert T for all thermometers due on a channel
  *   hunt.c     searches: background, directories, alarms; devices lost and found
  *   listing.c  directories
@@ -182,19 +184,30 @@ void master_good(struct native *native, unsigned channel);
 /* resolve.c: fills the job from its path. 0 or the error to answer. */
 int resolve(struct native *native, struct job *job);
 
-/* job.c */
+/* answer.c */
 void job_answer(struct native *native, struct job *job, int err);
+void job_answer_cached(struct native *native, struct job *job, const struct cache_entry *entry);
+void job_keep(struct native *native, struct job *job);
+/* Let go of device and pull-up. */
+void job_unlock(struct native *native, struct job *job);
+void job_restart(struct native *native, struct job *job);
+
+/* exchange.c */
+/* Make the txn ready for the next element, from its beginning. */
+void job_txn(struct native *native, struct job *job);
+void job_run_property(struct native *native, struct job *job, int64_t now);
+/* A transaction of the job has ended with err (0: well): what the wire showed of link and device. */
+void job_saw(struct native *native, struct job *job, int err, int64_t now);
+
+/* job.c */
 /* One transaction or less. */
 void job_step(struct native *native, struct job *job, int64_t now);
 /* What the path means, and the answer, if it needs no wire. */
 void job_look(struct native *native, struct job *job, int64_t now);
-/* A transaction of the job has ended with err (0: well): what the wire showed of link and device. */
-void job_saw(struct native *native, struct job *job, int err, int64_t now);
 /* It failed: again, or answer. */
 void job_failed(struct native *native, struct job *job, int err);
 /* May it do its next transaction now? If not, *next is lowered to when it may. */
 bool job_ready(const struct native *native, const struct job *job, int64_t now, int64_t *next);
-void job_restart(struct native *native, struct job *job);
 
 /* convert.c */
 void convert_begin(struct native *native, struct job *job, int64_t now);

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT */
+/* How a request ends: its answer, what the cache keeps of it, what it lets go of. */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/native/format.h"
+#include "hal/native/native.h"
+
+void job_unlock(struct native *native, struct job *job)
+{
+	for (unsigned chip = 0; chip < NATIVE_CHANNELS; chip++)
+		if (native->holder[chip] == job)
+			native->holder[chip] = NULL;
+	if (job->locks && job->txn.device)
+		job->txn.device->locked = false;
+	job->locks = false;
+}
+
+void job_answer(struct native *native, struct job *job, int err)
+{
+	struct bus_answer answer = {.id = job->req->id, .err = err, .kind = BUS_TEXT,
+	                            .measured_ns = native_now(native)};
+
+	job_unlock(native, job);
+	if (native->master->ops->simulated)
+		answer.detail |= BUS_DETAIL_SIMULATED;
+	if (!err && job->req->op == BUS_WRITE)
+		answer.len = (uint32_t)job->taken;
+	else if (!err)
+		answer.len = (uint32_t)job->out;
+	if (!err && job->req->op == BUS_READ) {
+		const struct property *property = job->property;
+
+		if (job->txn.measured_ns)
+			answer.measured_ns = job->txn.measured_ns;
+		if (property && property->type == PROPERTY_BINARY)
+			answer.kind = BUS_BYTES;
+		if (property && format_is_number(property, job->extension)) {
+			answer.kind = BUS_NUMBER;
+			answer.number = format_as_number(property, job->extension, &job->txn);
+		}
+	}
+	job->req = NULL;
+	native->lent--;
+	native->bus.env->answer(native->bus.env->ctx, &answer);
+}
+
+void job_answer_cached(struct native *native, struct job *job, const struct cache_entry *entry)
+{
+	struct bus_answer answer = {.id = job->req->id, .kind = entry->kind, .len = entry->len,
+	                            .detail = BUS_DETAIL_CACHED, .measured_ns = entry->measured_ns,
+	                            .number = entry->number};
+
+	if (entry->len > job->req->len) {
+		job_answer(native, job, -EMSGSIZE);
+		return;
+	}
+	if (native->master->ops->simulated)
+		answer.detail |= BUS_DETAIL_SIMULATED;
+	memcpy(job->req->data, entry->text, entry->len);
+	native_count(native, COUNT_CACHE_HITS);
+	job->req = NULL;
+	native->lent--;
+	native->bus.env->answer(native->bus.env->ctx, &answer);
+}
+
+static int64_t life_ns(const struct native *native, const struct property *property)
+{
+	switch ((enum property_life)property->life) {
+	case LIFE_STATIC:
+	case LIFE_STABLE:
+		return native->stable_ns;
+	case LIFE_VOLATILE:
+		return native->volatile_ns;
+	case LIFE_SECOND:
+		return NATIVE_S;
+	}
+	return 0;
+}
+
+void job_keep(struct native *native, struct job *job)
+{
+	const struct property *property = job->property;
+	int64_t measured = job->txn.measured_ns ? job->txn.measured_ns : native_now(native);
+
+	if (!job->txn.device || property->offline || job->out > CACHE_TEXT_MAX)
+		return;
+	struct cache_entry *entry =
+		cache_add(&native->cache, job->txn.device, property, job->extension);
+	entry->measured_ns = measured;
+	entry->until_ns = measured + life_ns(native, property);
+	entry->kind = property->type == PROPERTY_BINARY ? BUS_BYTES : BUS_TEXT;
+	if (format_is_number(property, job->extension)) {
+		entry->kind = BUS_NUMBER;
+		entry->number = format_as_number(property, job->extension, &job->txn);
+	}
+	entry->len = (uint8_t)job->out;
+	memcpy(entry->text, job->req->data, job->out);
+}
+
+void job_restart(struct native *native, struct job *job)
+{
+	job_unlock(native, job);
+	job->state = JOB_QUEUED;
+	job->merged = false;
+	job->txn.wake_ns = 0;
+}

@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: MIT */
+/* A property is read or written: element by element, transaction by transaction. */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/native/format.h"
+#include "hal/native/native.h"
+
+static bool is_all(const struct job *job)
+{
+	return job->extension == EXTENSION_ALL && !job->property->array.aggregate &&
+	       job->property->type != PROPERTY_BITS;
+}
+
+void job_txn(struct native *native, struct job *job)
+{
+	struct txn *txn = &job->txn;
+	struct device *device = txn->device;
+	unsigned n = device ? device->channel : job->bus >= 0 ? (unsigned)job->bus : 0;
+
+	memset(txn, 0, sizeof(*txn));
+	txn->native = native;
+	txn->device = device;
+	txn->channel = n;
+	txn->link = native->channel[n].link;
+	txn->property = job->property;
+	txn->element = is_all(job) ? (int)job->element
+	                           : job->extension >= 0 ? job->extension & 0xff : 0;
+	if (job->req->op == BUS_READ) {
+		txn->data = job->req->data + job->out;
+		txn->room = job->req->len - job->out;
+	}
+}
+
+static bool is_text(const struct property *property)
+{
+	return property->type == PROPERTY_ASCII || property->type == PROPERTY_BINARY ||
+	       property->type == PROPERTY_ALIAS;
+}
+
+/* One element more of the answer; true: there are others. */
+static int add_element(struct job *job)
+{
+	struct txn *txn = &job->txn;
+	const struct property *property = job->property;
+	bool all = is_all(job);
+
+	if (is_text(property)) {
+		if (txn->len > txn->room)
+			return -EMSGSIZE;
+		job->out += txn->len;
+	} else {
+		int n = format_value(property, all ? EXTENSION_NONE : job->extension, txn,
+		                     (char *)job->req->data + job->out, job->req->len - job->out);
+		if (n < 0)
+			return n;
+		job->out += (size_t)n;
+	}
+	if (!all || ++job->element == property->array.count)
+		return 0;
+	if (property->type != PROPERTY_BINARY) {
+		if (job->out == job->req->len)
+			return -EMSGSIZE;
+		job->req->data[job->out++] = ',';
+	}
+	return 1;
+}
+
+static void read_done(struct native *native, struct job *job)
+{
+	int more = add_element(job);
+
+	if (more < 0) {
+		job_answer(native, job, more);
+		return;
+	}
+	job->tries = 0;
+	if (job->txn.device)
+		job->txn.device->settled |= !job->property->offline;
+	if (more) {
+		job_txn(native, job);
+		return;
+	}
+	job_keep(native, job);
+	job_answer(native, job, 0);
+}
+
+/* The part of the request that is for this element. */
+static int take_value(struct job *job)
+{
+	struct txn *txn = &job->txn;
+	const struct property *property = job->property;
+	const char *text = (const char *)job->req->data;
+	size_t len = job->req->len, size = property_size(property);
+	bool all = is_all(job);
+
+	if (is_text(property)) {
+		size_t skip = all ? job->element * size : 0;
+
+		if (skip > len)
+			skip = len;
+		txn->data = job->req->data + skip;
+		txn->len = len - skip < size ? len - skip : size;
+		txn->room = txn->len;
+		return 0;
+	}
+	if (all) {
+		if (list_count(text, len) != property->array.count ||
+		    !list_part(text, len, job->element, &text, &len))
+			return -EINVAL;
+		return parse_value(property, EXTENSION_NONE, text, len, txn);
+	}
+	return parse_value(property, job->extension, text, len, txn);
+}
+
+static void write_done(struct native *native, struct job *job)
+{
+	bool text = is_text(job->property);
+
+	if (job->txn.device && !job->property->offline) {
+		job->txn.device->changes++;
+		job->txn.device->settled = true;
+	}
+	job->taken = text ? job->taken + job->txn.len : job->req->len;
+	job->tries = 0;
+	if (is_all(job) && ++job->element < job->property->array.count &&
+	    (!text || job->taken < job->req->len)) {
+		job_txn(native, job);
+		return;
+	}
+	job_answer(native, job, 0);
+}
+
+/* One element of an aggregate is written: the others are read first. */
+static bool needs_merge(const struct job *job)
+{
+	return job->req->op == BUS_WRITE && !job->merged && job->extension >= 0 &&
+	       job->property->array.count > 1 && job->property->read &&
+	       (job->property->array.aggregate || job->property->type == PROPERTY_BITS);
+}
+
+static int run_function(struct job *job)
+{
+	struct txn *txn = &job->txn;
+
+	if (job->req->op == BUS_READ)
+		return txn->property->type == PROPERTY_BINARY && txn->room < property_size(job->property)
+		               ? -EMSGSIZE
+		               : job->property->read(txn);
+	if (needs_merge(job))
+		return job->property->read(txn);
+	if (txn->phase == 0) {
+		int err = take_value(job);
+
+		if (err)
+			return err;
+	}
+	return job->property->write(txn);
+}
+
+void job_saw(struct native *native, struct job *job, int err, int64_t now)
+{
+	struct txn *txn = &job->txn;
+
+	if (!txn->on_wire)
+		return;
+	txn->on_wire = false;
+	native_count(native, COUNT_TRANSACTIONS);
+	if (!txn->link_error)
+		master_good(native, txn->channel);
+	if (txn->restarted && txn->device)
+		hunt_restarted(native, txn->device);
+	txn->restarted = false;
+	if (txn->heard && err != -EBADMSG && txn->device)
+		hunt_seen(txn->device, now);
+	txn->heard = false;
+}
+
+static void hold(struct native *native, struct job *job)
+{
+	unsigned chip = job->txn.link->chip % NATIVE_CHANNELS;
+
+	if (!job->txn.strong)
+		return;
+	job->txn.strong = false;
+	native->hold_ns[chip] = job->txn.wake_ns;
+	native->holder[chip] = job;
+}
+
+void job_run_property(struct native *native, struct job *job, int64_t now)
+{
+	struct txn *txn = &job->txn;
+	int err = run_function(job);
+
+	job_saw(native, job, err, now);
+	if (err < 0) {
+		job_failed(native, job, err);
+		return;
+	}
+	if (err == TXN_MORE) {
+		hold(native, job);
+		if (txn->device && !job->locks) {
+			job->locks = true;
+			txn->device->locked = true;
+		}
+		return;
+	}
+	job_unlock(native, job);
+	if (job->property->convert && !convert_right(job)) {
+		/* It converted at another resolution than was thought. */
+		job->txn.device->converted_ns = 0;
+		job_restart(native, job);
+		return;
+	}
+	if (needs_merge(job)) {
+		job->merged = true;
+		txn->phase = 0;
+		txn->wake_ns = 0;
+		return;
+	}
+	if (job->req->op == BUS_READ)
+		read_done(native, job);
+	else
+		write_done(native, job);
+}
