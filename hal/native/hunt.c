@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Searches. In the background each channel is searched for ever, one device a pass and only when
- * nothing else is to do, or once a second when there always is. What two whole searches in a row
- * did not see and no transaction heard is lost.
+ * Searches. In the background each channel is searched for ever, one device a pass, when nothing
+ * else is to do and nothing will be before the pass is over; where there always is something, one
+ * pass a second. What two whole searches in a row did not see and no transaction heard is lost.
  */
 #include <errno.h>
 #include <stdio.h>
@@ -10,7 +10,8 @@
 
 #include "hal/native/native.h"
 
-#define PASS_NS (NATIVE_S / 20)
+#define PASS_NS (NATIVE_S / 10)
+#define PASS_SHARE 8 /* passes take one part in so many of the time */
 #define OVERDUE_NS NATIVE_S
 #define ROUND_NS (5 * NATIVE_S)
 #define AGAIN_NS (NATIVE_S / 2)
@@ -179,7 +180,7 @@ static void pass(struct native *native, unsigned n, int64_t now)
 	}
 	if (found > 0) {
 		hunt_found(native, channel->search.rom, n, now);
-		channel->search_ns = channel->listed ? now + PASS_NS : now;
+		channel->search_ns = now;
 		if (channel->search.last)
 			end_round(native, n, now);
 		return;
@@ -197,25 +198,39 @@ static void pass(struct native *native, unsigned n, int64_t now)
 	end_round(native, n, now);
 }
 
+static void timed_pass(struct native *native, unsigned n, int64_t now)
+{
+	int64_t pause;
+
+	native->hunter = n + 1;
+	pass(native, n, now);
+	native->pass_ns = native_now(native) - now;
+	pause = native->pass_ns * (PASS_SHARE - 1);
+	native->hunt_ns = native_now(native) + (pause > PASS_NS ? pause : PASS_NS);
+}
+
 bool hunt_step(struct native *native, int64_t now, bool idle, int64_t *next)
 {
+	int64_t least = native->hunt_ns + (idle && *next - now > native->pass_ns ? 0 : OVERDUE_NS);
+	int64_t first = INT64_MAX;
+
 	for (unsigned i = 0; i < native->channels; i++) {
 		unsigned n = (native->hunter + i) % native->channels;
 		struct channel *channel = &native->channel[n];
-		int64_t when = channel->search_ns + (idle ? 0 : OVERDUE_NS);
+		int64_t when = channel->search_ns > least ? channel->search_ns : least;
 
 		if (!channel->listed)
 			when = 0;
 		if (native_held(native, n, NULL, now))
 			when = native->hold_ns[channel->link->chip % NATIVE_CHANNELS];
 		if (when <= now) {
-			native->hunter = n + 1;
-			pass(native, n, now);
+			timed_pass(native, n, now);
 			return true;
 		}
-		if (when < *next)
-			*next = when;
+		first = when < first ? when : first;
 	}
+	if (first < *next)
+		*next = first;
 	return false;
 }
 
