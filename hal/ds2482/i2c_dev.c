@@ -157,11 +157,17 @@ int i2c_dev_open(const char *path, struct i2c_adapter **adapter)
 		free(dev);
 		return err;
 	}
+	if (ioctl(dev->fd, I2C_FUNCS, &functions) < 0) {
+		err = -errno;
+		close(dev->fd);
+		free(dev);
+		return err;
+	}
 	dev->address = -1;
 	dev->adapter.ops = &i2c_dev_ops;
 	dev->adapter.max_messages = I2C_RDWR_IOCTL_MAX_MSGS;
 	(void)ioctl(dev->fd, I2C_TIMEOUT, (long)TIMEOUT_10MS);
-	if (ioctl(dev->fd, I2C_FUNCS, &functions) == 0 && (functions & I2C_FUNC_I2C))
+	if (functions & I2C_FUNC_I2C)
 		dev->adapter.combine = I2C_ANY;
 	*adapter = &dev->adapter;
 	return 0;

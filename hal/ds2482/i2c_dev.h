@@ -5,7 +5,10 @@
 
 #include "i2c.h"
 
-/* Allocates. 0; -ENOMEM; -EOPNOTSUPP built without libi2c; -errno of opening the device. */
+/*
+ * Allocates. 0; -ENOMEM; -EOPNOTSUPP built without libi2c; -ENOTTY no I2C adapter; -errno of
+ * opening the device.
+ */
 int i2c_dev_open(const char *path, struct i2c_adapter **adapter);
 
 #endif

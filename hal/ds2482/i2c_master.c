@@ -27,13 +27,16 @@ static int open_adapter(void *ctx, const struct bus_env *env, struct i2c_adapter
 	case -ENOENT:
 	case -ENXIO:
 	case -ENODEV:
-		snprintf(why, why_size, "there is no %s: I2C has to be switched on (Raspberry Pi: "
-		         "dtparam=i2c_arm=on) and the module i2c-dev loaded", path);
+		snprintf(why, why_size, "no %s: switch I2C on (Raspberry Pi: dtparam=i2c_arm=on), "
+		         "load the module i2c-dev", path);
 		err = -ENODEV;
 		break;
 	case -EOPNOTSUPP:
 		snprintf(why, why_size, "this owsd was built without libi2c and cannot open %s",
 		         path);
+		break;
+	case -ENOTTY:
+		snprintf(why, why_size, "%s is no I2C adapter", path);
 		break;
 	default:
 		snprintf(why, why_size, "%s: %s", path, strerror(-err));

@@ -77,14 +77,13 @@ static void explain(const struct ds2482_master *master, int err, int address, ch
 	switch (err) {
 	case -EBUSY:
 		snprintf(why, size,
-		         "the chip at 0x%02x on %s is in the hands of a kernel driver: use the "
-		         "target \"w1\", or take it away from the driver ds2482",
+		         "0x%02x on %s belongs to a kernel driver: use target w1, or unbind ds2482",
 		         (unsigned)address, name);
 		break;
 	case -ENXIO:
 		if (address >= 0)
-			snprintf(why, size, "no DS2482 answers at 0x%02x on %s: look at its supply, "
-			         "SDA, SCL and address pins", (unsigned)address, name);
+			snprintf(why, size, "no DS2482 answers at 0x%02x on %s: look at supply, "
+			         "SDA, SCL, address pins", (unsigned)address, name);
 		else
 			snprintf(why, size, "no DS2482 answers at 0x18 to 0x1f on %s: look at its "
 			         "supply, SDA and SCL", name);

@@ -503,6 +503,99 @@ static void test_a_shutdown_ends_every_call(void)
 	}
 }
 
+/* On a channel that is not the one a restarted chip has, with somebody else on that one. */
+static void harass(const char *i2c, uint32_t seed)
+{
+	static const enum sim_what faults[] = {SIM_CHIP_RESET, SIM_STICK, SIM_JAM, SIM_REFUSE,
+	                                       SIM_REFUSE_DATA, SIM_CHIP_SLEEP};
+	unsigned good = 0, bad = 0;
+	uint32_t first = seed;
+	char text[200];
+
+	snprintf(text, sizeof(text), "%s\nchip DS2482-800 0x18\nDS18B20 28.000000000002 as other\n"
+	         "channel 5\nDS18B20 28.000000000001 as t", i2c);
+	start(text);
+	wire = master->ops->channel(master, 5);
+	for (unsigned round = 0; round < 300; round++) {
+		static const uint8_t expect[5] = {0x50, 0x05, 75, 70, 0x7F};
+		struct sim_event event = {.at_ns = net.time, .on = true};
+		uint8_t scratchpad[9];
+		int err;
+
+		seed = seed * 1664525 + 1013904223;
+		event.what = faults[(seed >> 8) % 6];
+		event.at_ns += (seed >> 12) % 25000000;
+		event.each = 1 + (seed >> 16) % 9;
+		TEST_ASSERT_EQUAL_INT(0, sim_net_add_event(&net, &event));
+		event.on = false;
+		event.at_ns += (seed >> 4) % 7000000;
+		if (event.what != SIM_CHIP_RESET)
+			TEST_ASSERT_EQUAL_INT(0, sim_net_add_event(&net, &event));
+		snprintf(text, sizeof(text), "seed %u, round %u, fault %d", first, round, event.what);
+		err = read_scratchpad("t", scratchpad);
+		if (err == 0) {
+			TEST_ASSERT_EQUAL_HEX8_ARRAY_MESSAGE(expect, scratchpad, 5, text);
+			good++;
+			continue;
+		}
+		TEST_ASSERT_TRUE_MESSAGE(err == -EIO || err == -ENXIO || err == -ETIMEDOUT, text);
+		bad++;
+		for (unsigned i = 0; i < 10 && wire->ops->recover(wire, LINK_CHIP_RESET); i++)
+			host.now += 10 * HOST_MS;
+	}
+	host.now += 100 * HOST_MS;
+	TEST_ASSERT_EQUAL_INT(0, wire->ops->recover(wire, LINK_CHIP_RESET));
+	check_scratchpad();
+	TEST_ASSERT_GREATER_THAN_UINT(20, good);
+	TEST_ASSERT_GREATER_THAN_UINT(20, bad);
+	tearDown();
+}
+
+static void test_whatever_happens_data_without_an_error_are_right(void)
+{
+	for (uint32_t seed = 1; seed <= 5; seed++) {
+		harass("i2c speed 400 combine any", seed);
+		harass("i2c speed 400 combine one-read", seed);
+		harass("i2c speed 100 combine any", seed);
+		harass("i2c speed 100 combine one-read", seed);
+		harass("i2c speed 100 combine smbus", seed);
+	}
+}
+
+static void test_an_adapter_that_cannot_be_opened_says_what_to_do(void)
+{
+	static const struct {
+		const char *where;
+		int err;
+		const char *why;
+	} table[] = {
+		{"/dev/i2c-no-such", -ENODEV, "no /dev/i2c-no-such: switch I2C on"},
+		{"/dev/null:0x18.3", -ENOTTY, "/dev/null is no I2C adapter"},
+	};
+
+	for (unsigned i = 0; i < 2; i++) {
+		int err;
+
+		TEST_ASSERT_EQUAL_INT(0, ds2482_i2c_master.create(table[i].where, &host.env, &master,
+		                                                  why, sizeof(why)));
+		err = master->ops->open(master, why, sizeof(why));
+		if (err == -EOPNOTSUPP) {
+			TEST_ASSERT_NOT_NULL(strstr(why, "built without libi2c"));
+		} else {
+			TEST_ASSERT_EQUAL_INT(table[i].err, err);
+			TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, table[i].why), why);
+		}
+		TEST_ASSERT_EQUAL_UINT(0, master->ops->channels(master));
+		master->ops->destroy(master);
+		master = NULL;
+	}
+	TEST_ASSERT_EQUAL_INT(-EINVAL, ds2482_i2c_master.create("i2c-1", &host.env, &master, why,
+	                                                        sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, ds2482_i2c_master.create("/dev/i2c-1:0x40", &host.env,
+	                                                        &master, why, sizeof(why)));
+	TEST_ASSERT_NULL(master);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -524,5 +617,7 @@ int main(void)
 	RUN_TEST(test_only_a_part_with_a_supply_switch_cycles_the_power);
 	RUN_TEST(test_overdrive_is_the_links_own);
 	RUN_TEST(test_a_shutdown_ends_every_call);
+	RUN_TEST(test_an_adapter_that_cannot_be_opened_says_what_to_do);
+	RUN_TEST(test_whatever_happens_data_without_an_error_are_right);
 	return UNITY_END();
 }
