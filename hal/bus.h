@@ -20,7 +20,8 @@
 enum bus_op {
 	BUS_READ,
 	BUS_WRITE,
-	BUS_DIR,   /* answer: full paths, each ended by '\n' */
+	BUS_DIR,   /* answer: full paths, each ended by '\n'. A bus that searches also takes
+	              "/alarm/29,12": only these families, which is quicker */
 	BUS_PROBE, /* cheapest proof that the path's device is there; no data */
 };
 

@@ -197,6 +197,119 @@ static void test_a_ds2438_measures_and_keeps_time(void)
 	reads("B1-R1-A/pressure", "       904.7");
 }
 
+static void test_a_ds2405_is_not_turned_over_by_looking(void)
+{
+	start("DS2405");
+	reads("PIO", "0");
+	reads("sensed", "1");
+	writes("PIO", "1");
+	reads("PIO", "1");
+	reads("sensed", "0");
+	writes("PIO", "1");
+	reads("PIO", "1");
+	writes("PIO", "0");
+	reads("PIO", "0");
+	writes("PIO", "0");
+	reads("PIO", "0");
+	sim_wire_plug(&wire_net.wire[0], slave, false, wire_time());
+	refuses(-ENODEV, BUS_READ, "PIO", NULL);
+	sim_wire_plug(&wire_net.wire[0], slave, true, wire_time());
+}
+
+static void test_a_ds2406_switches_and_alarms(void)
+{
+	start("DS2406");
+	reads("channels", "           2");
+	reads("PIO.BYTE", "           0");
+	writes("PIO.A", "1");
+	reads("PIO.BYTE", "           1");
+	reads("flipflop.BYTE", "           2");
+	reads("sensed.BYTE", "           2");
+	writes("PIO.BYTE", "0");
+	reads("PIO.ALL", "0,0");
+	writes("latch.BYTE", "0");
+	reads("latch.BYTE", "           0");
+	writes("set_alarm", "311");
+	reads("set_alarm", "         311");
+	reads("PIO.BYTE", "           0");
+	refuses(-EOPNOTSUPP, BUS_WRITE, "memory", "x");
+	TEST_ASSERT_EQUAL_UINT(128, go(BUS_READ, "memory", NULL)->len);
+	TEST_ASSERT_EQUAL_UINT(32, go(BUS_READ, "pages/page.3", NULL)->len);
+}
+
+static void memory_of(const char *chip, unsigned size, unsigned page)
+{
+	char text[600];
+
+	start(chip);
+	for (unsigned i = 0; i < sizeof(text) - 1; i++)
+		text[i] = (char)('a' + i * 7 % 26);
+	text[sizeof(text) - 1] = '\0';
+	TEST_ASSERT_EQUAL_INT(0, go(BUS_WRITE, "memory", text)->err);
+	TEST_ASSERT_EQUAL_UINT(size, host.answer[0].len);
+	TEST_ASSERT_EQUAL_UINT(size, go(BUS_READ, "memory", NULL)->len);
+	TEST_ASSERT_EQUAL_INT(0, host.answer[0].err);
+	TEST_ASSERT_EQUAL_MEMORY(text, data, size);
+	writes("memory", "hello");
+	TEST_ASSERT_EQUAL_UINT(size, go(BUS_READ, "memory", NULL)->len);
+	TEST_ASSERT_EQUAL_MEMORY("hello", data, 5);
+	TEST_ASSERT_EQUAL_MEMORY(text + 5, data + 5, size - 5);
+	if (!page)
+		return;
+	writes("pages/page.1", "0123456789");
+	TEST_ASSERT_EQUAL_UINT(page, go(BUS_READ, "pages/page.1", NULL)->len);
+	TEST_ASSERT_EQUAL_MEMORY("0123456789", data, 10);
+	TEST_ASSERT_EQUAL_MEMORY(text + page + 10, data + 10, page - 10);
+}
+
+static void test_memories_are_written_and_read(void)
+{
+	memory_of("DS2431", 128, 32);
+	tearDown();
+	memory_of("DS2433", 512, 32);
+	tearDown();
+	memory_of("DS2430A", 32, 0);
+	reads("status", "         255");
+	tearDown();
+	memory_of("DS2423", 512, 32);
+}
+
+static void test_a_ds2423_counts(void)
+{
+	start("DS2423");
+	reads("counter.ALL", "           0,           0");
+	reads("counters.A", "           0");
+	reads("mincount", "           0");
+	reads("pages/count.14", "           0");
+}
+
+static void test_a_ds2450_converts_and_switches(void)
+{
+	start("DS2450");
+	wire_set(slave, "volt.A", 2.5);
+	writes("power", "1");
+	reads("power", "1");
+	go(BUS_READ, "volt.ALL", NULL);
+	TEST_ASSERT_EQUAL_INT(0, host.answer[0].err);
+	TEST_ASSERT_EQUAL_UINT(51, host.answer[0].len);
+	TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.5, go(BUS_READ, "volt.A", NULL)->number);
+	writes("PIO.B", "1");
+	reads("PIO.ALL", "0,1,0,0");
+	writes("PIO.B", "0");
+	reads("PIO.B", "0");
+	writes("set_alarm/volthigh.C", "2.56");
+	reads("set_alarm/volthigh.C", "        2.56");
+	writes("set_alarm/high.ALL", "0,0,0,0");
+	writes("set_alarm/high.C", "1");
+	reads("set_alarm/high.ALL", "0,0,1,0");
+	writes("set_alarm/unset", "0");
+	TEST_ASSERT_EQUAL_UINT(32, go(BUS_READ, "memory", NULL)->len);
+	TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "8bit/volt2.A", NULL)->err);
+	TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "CO2/ppm", NULL)->err);
+	writes("power", "0");
+	TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "volt.A", NULL)->err);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -207,5 +320,10 @@ int main(void)
 	RUN_TEST(test_a_ds1825_has_its_place);
 	RUN_TEST(test_a_ds18s20_resolves_sixteenths);
 	RUN_TEST(test_a_ds2438_measures_and_keeps_time);
+	RUN_TEST(test_a_ds2405_is_not_turned_over_by_looking);
+	RUN_TEST(test_a_ds2406_switches_and_alarms);
+	RUN_TEST(test_memories_are_written_and_read);
+	RUN_TEST(test_a_ds2423_counts);
+	RUN_TEST(test_a_ds2450_converts_and_switches);
 	return UNITY_END();
 }
