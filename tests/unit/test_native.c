@@ -397,6 +397,117 @@ static void test_settings_and_statistics_have_their_names(void)
 	expect(true, "/bus.0/interface/settings/name", "test wire");
 }
 
+static void test_an_alarm_waits_for_one_transaction_and_not_for_a_scan(void)
+{
+	struct sim_slave *slave[20];
+
+	wire_init(&host, 1, 1);
+	for (unsigned i = 0; i < 20; i++)
+		slave[i] = wire_add(0, "DS18B20", i + 1);
+	start();
+	host_run(&host, bus, host.now + 2 * HOST_S);
+	for (unsigned i = 0; i < 20; i++)
+		ask(BUS_READ, BUS_INPUT, true, of(slave[i], "temperature"), NULL);
+	while (host.answers < 5)
+		host_run_answers(&host, bus, 5, host.now + 2 * HOST_S);
+	int64_t begun = host.now;
+	uint32_t id = ask(BUS_READ, BUS_ALARM, true, of(slave[19], "power"), NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_LESS_THAN_INT64(begun + 40 * HOST_MS, host.now);
+	TEST_ASSERT_LESS_THAN_UINT(10, host.answers);
+}
+
+static void test_a_chip_that_takes_no_resolution_is_read_all_the_same(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, "fixed", 1));
+	wire_set(slave, "temperature", 21.0625);
+	start();
+	expect(true, of(slave, "temperature9"), "     21.0625");
+	expect(true, of(slave, "temperature"), "     21.0625");
+	TEST_ASSERT_EQUAL_INT(-EINVAL, result(BUS_WRITE, of(slave, "tempres"), "10"));
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_POR));
+}
+
+static void test_one_device_serves_two_resolutions_at_once(void)
+{
+	static const char *const names[] = {"temperature9", "temperature12", "temperature10",
+	                                    "temperature", "temperature12"};
+	static const double values[] = {21, 21.0625, 21, 21.0625, 21.0625};
+	uint32_t id[5];
+
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	wire_set(slave, "temperature", 21.0625);
+	start();
+	for (int i = 0; i < 5; i++)
+		id[i] = ask(BUS_READ, BUS_INPUT, true, of(slave, names[i]), NULL);
+	for (int i = 0; i < 5; i++) {
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id[i])->err);
+		TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(values[i], answer_to(id[i])->number, names[i]);
+	}
+}
+
+static void test_a_request_that_was_not_begun_can_be_taken_back(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	start();
+	host_run(&host, bus, host.now + HOST_S);
+	uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(slave, "power"), NULL);
+	TEST_ASSERT_EQUAL_INT(0, bus_cancel(bus, id));
+	TEST_ASSERT_EQUAL_INT(-ECANCELED, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_INT(-ENOENT, bus_cancel(bus, id));
+	id = ask(BUS_READ, BUS_INPUT, true, of(slave, "temperature"), NULL);
+	host_run(&host, bus, host.now + 100 * HOST_MS);
+	TEST_ASSERT_EQUAL_INT(-EBUSY, bus_cancel(bus, id));
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	id = ask(BUS_READ, BUS_INPUT, true, of(slave, "temperature"), NULL);
+	req[id].deadline_ns = host.now;
+	TEST_ASSERT_EQUAL_INT(-ETIME, answer_to(id)->err);
+	id = ask(BUS_READ, BUS_INPUT, true, of(slave, "temperature"), NULL);
+	req[id].deadline_ns = host.now + 300 * HOST_MS;
+	TEST_ASSERT_EQUAL_INT(-EINPROGRESS, answer_to(id)->err);
+}
+
+static void test_a_suspended_bus_lets_go_and_comes_back(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	start();
+	host_run(&host, bus, host.now + HOST_S);
+	bus_suspend(bus, true);
+	TEST_ASSERT_EQUAL_UINT(1, wire_net.closes);
+	TEST_ASSERT_EQUAL_INT(-ENOTCONN, result(BUS_READ, of(slave, "power"), NULL));
+	bus_suspend(bus, false);
+	host_run(&host, bus, host.now + HOST_S);
+	TEST_ASSERT_EQUAL_UINT(2, host_events(&host, BUS_UP));
+	expect(true, of(slave, "power"), "1");
+}
+
+static void test_a_target_that_does_not_open_is_tried_again_for_ever(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	wire_net.open_error = -ENXIO;
+	bus = wire_open();
+	host_run(&host, bus, host.now + 60 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_DOWN));
+	TEST_ASSERT_EQUAL_STRING("no such chip", host.event[0].text);
+	TEST_ASSERT_EQUAL_INT(-ENOTCONN, result(BUS_READ, of(slave, "power"), NULL));
+	TEST_ASSERT_GREATER_THAN_UINT(10, wire_net.opens);
+	TEST_ASSERT_LESS_THAN_UINT(30, wire_net.opens);
+	wire_net.open_error = 0;
+	host_run(&host, bus, host.now + 6 * HOST_S);
+	expect(true, of(slave, "power"), "1");
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -416,5 +527,11 @@ int main(void)
 	RUN_TEST(test_an_alias_names_the_device);
 	RUN_TEST(test_structure_states_the_properties);
 	RUN_TEST(test_settings_and_statistics_have_their_names);
+	RUN_TEST(test_an_alarm_waits_for_one_transaction_and_not_for_a_scan);
+	RUN_TEST(test_a_chip_that_takes_no_resolution_is_read_all_the_same);
+	RUN_TEST(test_one_device_serves_two_resolutions_at_once);
+	RUN_TEST(test_a_request_that_was_not_begun_can_be_taken_back);
+	RUN_TEST(test_a_suspended_bus_lets_go_and_comes_back);
+	RUN_TEST(test_a_target_that_does_not_open_is_tried_again_for_ever);
 	return UNITY_END();
 }
