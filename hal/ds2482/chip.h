@@ -27,6 +27,8 @@ bool ds2482_combines(const struct ds2482_chip *chip);
  * for reading on instead of waiting. The chip is to be one for certain, and idle.
  */
 int ds2482_learn(struct ds2482_chip *chip);
+/* The chip was still busy where reading on should have ended: bytes come faster than measured. */
+void ds2482_was_early(struct ds2482_master *master);
 
 /* --- run.c --- */
 #define DS2482_NO_PARAMETER (-1)

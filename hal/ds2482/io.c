@@ -4,6 +4,8 @@
 #include <errno.h>
 
 #define MEASURE_BYTES 64
+#define MEASURE_TIMES 12
+#define LEAST_NS      9000 /* 1 MHz; nothing comes faster */
 #define MOST_MESSAGES 42
 
 int64_t ds2482_now(const struct ds2482_master *master)
@@ -84,7 +86,7 @@ static int measure(struct ds2482_chip *chip)
 	master->byte_ns = 0;
 	if (adapter->combine == I2C_SMBUS_ONLY)
 		return 0;
-	for (unsigned i = 0; i < 6; i++) {
+	for (unsigned i = 0; i < MEASURE_TIMES; i++) {
 		int64_t begun = ds2482_now(master), took;
 		int err;
 
@@ -96,11 +98,19 @@ static int measure(struct ds2482_chip *chip)
 		if (took < shortest[i & 1])
 			shortest[i & 1] = took;
 	}
-	/* 2 % are for the measurement's error. Nothing comes faster than 1 MHz. */
+	/* 2 % are for the measurement's error. */
 	master->byte_ns = (shortest[1] - shortest[0]) / MEASURE_BYTES * 98 / 100;
-	if (master->byte_ns < 9000)
-		master->byte_ns = 9000;
+	if (master->byte_ns < LEAST_NS)
+		master->byte_ns = LEAST_NS;
 	return 0;
+}
+
+void ds2482_was_early(struct ds2482_master *master)
+{
+	if (master->byte_ns > 0)
+		master->byte_ns = master->byte_ns * 9 / 10;
+	if (master->byte_ns > 0 && master->byte_ns < LEAST_NS)
+		master->byte_ns = LEAST_NS;
 }
 
 /* Messages that change nothing; with -EOPNOTSUPP the adapter cannot. */

@@ -67,7 +67,11 @@ int ds2482_diagnose(struct ds2482_chip *chip, int err)
 		return -ENXIO;
 	status = ds2482_write2(chip, DS2482_READ_POINTER, DS2482_AT_STATUS);
 	if (status == 0)
-		status = wait_idle(chip, ds2482_read1(chip));
+		status = ds2482_read1(chip);
+	if (status >= 0 && (status & DS2482_1WB))
+		ds2482_was_early(chip->master);
+	if (status >= 0)
+		status = wait_idle(chip, status);
 	if (status == -ETIMEDOUT || status == -ENODEV || status == -ECANCELED)
 		return status;
 	if (status >= 0 && (status & DS2482_RST)) {
@@ -80,6 +84,8 @@ int ds2482_diagnose(struct ds2482_chip *chip, int err)
 /* The last status of an operation, or what went wrong. */
 static int judge(struct ds2482_chip *chip, int status)
 {
+	if (status >= 0 && (status & DS2482_1WB))
+		ds2482_was_early(chip->master);
 	status = wait_idle(chip, status);
 	if (status < 0)
 		return ds2482_diagnose(chip, status);

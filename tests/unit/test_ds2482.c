@@ -562,6 +562,28 @@ static void test_whatever_happens_data_without_an_error_are_right(void)
 	}
 }
 
+static void test_a_bus_that_became_faster_is_learned_from_what_comes_too_early(void)
+{
+	for (unsigned i = 0; i < 4; i++) {
+		unsigned errors = 0;
+
+		start(kinds[i]);
+		net.hz *= 2; /* a core clock that changed */
+		for (unsigned n = 0; n < 30; n++) {
+			uint8_t scratchpad[9];
+			int err = read_scratchpad("t", scratchpad);
+
+			TEST_ASSERT_TRUE(err == 0 || err == -EIO);
+			errors += err != 0;
+			if (!err)
+				TEST_ASSERT_EQUAL_HEX8(0, sim_crc8(0, scratchpad, 9));
+		}
+		TEST_ASSERT_LESS_THAN_UINT(20, errors);
+		check_scratchpad();
+		tearDown();
+	}
+}
+
 static void test_an_adapter_that_cannot_be_opened_says_what_to_do(void)
 {
 	static const struct {
@@ -617,6 +639,7 @@ int main(void)
 	RUN_TEST(test_only_a_part_with_a_supply_switch_cycles_the_power);
 	RUN_TEST(test_overdrive_is_the_links_own);
 	RUN_TEST(test_a_shutdown_ends_every_call);
+	RUN_TEST(test_a_bus_that_became_faster_is_learned_from_what_comes_too_early);
 	RUN_TEST(test_an_adapter_that_cannot_be_opened_says_what_to_do);
 	RUN_TEST(test_whatever_happens_data_without_an_error_are_right);
 	return UNITY_END();
