@@ -297,6 +297,33 @@ static void convert_one(struct native *native, unsigned n)
 	}
 }
 
+/*
+ * Ask one thermometer for its supply that nobody asked yet: the broadcast was answered with a zero,
+ * by a parasitic one or by another chip to which the command means something else. Who does not
+ * answer counts as parasitic. False: all are known.
+ */
+static bool ask_one(struct native *native, unsigned n)
+{
+	for (unsigned i = 0; i < native->table.count; i++) {
+		struct device *device = &native->table.devices[i];
+		struct txn txn = {.native = native, .link = native->channel[n].link, .channel = n,
+		                  .device = device};
+
+		if (!is_thermometer(device, n) || device->power != POWER_UNKNOWN)
+			continue;
+		int bit = thermometer_ask_power(&txn);
+		native_count(native, COUNT_TRANSACTIONS);
+		if (bit < 0)
+			device->power = POWER_PARASITE;
+		if (bit >= 0 || txn.link_error == 0)
+			master_good(native, n);
+		else if (txn.link_error != -ECOMM)
+			master_recover(native, n, txn.link_error);
+		return true;
+	}
+	return false;
+}
+
 bool convert_step(struct native *native, int64_t now, int64_t *next)
 {
 	for (unsigned n = 0; n < native->channels; n++) {
@@ -316,6 +343,8 @@ bool convert_step(struct native *native, int64_t now, int64_t *next)
 				*next = channel->due_ns + GATHER_NS;
 			continue;
 		}
+		if (plan.parasitic && ask_one(native, n))
+			return true;
 		if (plan.parasitic && !plan.parasitic_due) {
 			convert_one(native, n);
 			return true;

@@ -166,6 +166,23 @@ static void test_one_convert_serves_all_that_are_due(void)
 	TEST_ASSERT_LESS_THAN_INT64(begun + 1100 * HOST_MS, host.now);
 }
 
+static void test_a_chip_that_takes_the_question_otherwise_does_not_divide_the_conversion(void)
+{
+	struct sim_slave *slave[5];
+	uint32_t id[5];
+
+	wire_init(&host, 1, 1);
+	for (unsigned i = 0; i < 5; i++)
+		slave[i] = wire_add(0, "DS18B20", i + 1);
+	wire_add(0, "DS2438", 9);
+	start();
+	for (unsigned i = 0; i < 4; i++)
+		id[i] = ask(BUS_READ, BUS_INPUT, true, of(slave[i], "temperature"), NULL);
+	for (unsigned i = 0; i < 4; i++)
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id[i])->err);
+	TEST_ASSERT_EQUAL_UINT(1, wire_net.convert_count);
+}
+
 static void test_parasites_get_the_strong_pull_up_for_the_whole_conversion(void)
 {
 	wire_init(&host, 1, 1);
@@ -514,6 +531,7 @@ int main(void)
 	RUN_TEST(test_a_thermometer_is_found_and_read);
 	RUN_TEST(test_the_listing_has_devices_and_directories);
 	RUN_TEST(test_one_convert_serves_all_that_are_due);
+	RUN_TEST(test_a_chip_that_takes_the_question_otherwise_does_not_divide_the_conversion);
 	RUN_TEST(test_parasites_get_the_strong_pull_up_for_the_whole_conversion);
 	RUN_TEST(test_a_short_is_told_and_gone_again);
 	RUN_TEST(test_a_device_that_leaves_is_lost_and_found_again);
