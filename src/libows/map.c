@@ -61,6 +61,8 @@ static int check_image(struct ows_map *map)
 	    !inside(size, h->name_off, h->record_count, sizeof(struct ows_name_entry)) ||
 	    !inside(size, h->target_off, h->target_count, h->target_size) ||
 	    !inside(size, h->counter_off, h->counter_count, h->counter_size) ||
+	    !inside(size, h->alarm_off, h->alarm_count, h->alarm_size) ||
+	    (h->alarm_count != 0 && h->alarm_size != sizeof(struct ows_alarm_entry)) ||
 	    !inside(size, h->text_off, h->text_size, 1) ||
 	    !inside(size, h->pool_off, h->pool_size, 1) || h->pool_size == 0 ||
 	    map->base[h->pool_off + h->pool_size - 1] != '\0')

@@ -24,7 +24,7 @@
 
 #ifdef __cplusplus
 extern "C" {
-/* ows_info, ows_daemon, ows_target and ows_counter are a struct and a function each */
+/* ows_info, ows_daemon, ows_target, ows_counter and ows_alarm are a struct and a function each */
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wshadow"
 #endif
@@ -216,6 +216,46 @@ struct ows_counter {
 	uint64_t value;
 };
 int ows_counter(struct ows *h, int index, struct ows_counter *counter);
+
+/*
+ * The journal of alarms since owsd started: entries count from 0; the last 256 are kept. A device
+ * alarm says what its latch showed; a limit alarm is one of the signal's own limits (owsd.rio(5)).
+ */
+enum ows_alarm_kind {
+	OWS_ALARM_DEVICE = 1, /* the device's own alarm */
+	OWS_ALARM_POR,        /* the device lost its power */
+	OWS_ALARM_HH,         /* limits: above LimitHH */
+	OWS_ALARM_H,
+	OWS_ALARM_L,
+	OWS_ALARM_LL,         /* below LimitLL */
+	OWS_ALARM_STALE,
+	OWS_ALARM_BAD,
+};
+enum ows_alarm_event {
+	OWS_ALARM_RAISED = 1,
+	OWS_ALARM_RETURNED,
+	OWS_ALARM_ACKNOWLEDGED,
+};
+/* A few words on a kind, an event ("high", "raised"); never NULL. */
+const char *ows_alarm_kind_text(uint8_t kind);
+const char *ows_alarm_event_text(uint8_t event);
+
+struct ows_alarm {
+	int signal;          /* as in ows_info() */
+	int64_t occurred_ns;
+	double before, after;             /* value before and after, if there is one */
+	int64_t before_integer, after_integer; /* likewise, if type is not float or double */
+	uint8_t type;        /* enum ows_type, of the signal */
+	uint8_t has_before, has_after;
+	uint8_t kind;        /* enum ows_alarm_kind */
+	uint8_t event;       /* enum ows_alarm_event */
+	uint8_t quality;     /* of the signal at that moment */
+	char latch[24];      /* NUL-terminated; "" for other than device alarms */
+};
+/* How many were ever entered. */
+uint32_t ows_alarm_count(struct ows *h);
+/* -ENOENT: not yet entered, or no longer kept; -EAGAIN: owsd died while writing it. */
+int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm);
 
 #ifdef __cplusplus
 #pragma GCC diagnostic pop

@@ -73,21 +73,23 @@ DRIVER = {"_DGNRESET": (BOOL, False, True), "_TRANSACTIONS": (LARGE, True, False
 
 # One slot: the sample's 48 bytes and the attributes' 72
 SAMPLE = struct.Struct("<8sqqiBBBBIIII")
-ATTRS = struct.Struct("<QqqqIIIIIII8xI")
+ATTRS = struct.Struct("<QqqqIIIIIIIBB6xI")
 Attrs = collections.namedtuple("Attrs", "transactions update_ns age_max_ns commanded per_base "
-                               "per_max pend_base pend_last pend_max alarms flags check")
+                               "per_max pend_base pend_last pend_max alarms flags limit_state "
+                               "limit_condition check")
 Header = collections.namedtuple(
-    "Header", "magic major minor size generation state pid start_id start_ns start_wall_ns "
-    "period_ns record_off record_size record_count info_off info_size name_off target_off "
+    "Header", "magic major minor size generation state pid start_id alarm_off start_ns "
+    "start_wall_ns period_ns alarm_size alarm_count record_off record_size record_count info_off info_size name_off target_off "
     "target_size target_count counter_off counter_size counter_count pool_off pool_size text_off "
     "text_size")
-HEADER = struct.Struct("<IHHIIIiI4xqqq8xIIIIIIIIIIIIIIII")
+HEADER = struct.Struct("<IHHIIIiIIqqqIIIIIIIIIIIIIIIIII")
+ALARM_ENTRY = struct.Struct("<IIq8s8sBBBB20sII")
 CommandHeader = collections.namedtuple(
     "CommandHeader", "magic major minor size generation state pid start_id slot_off slot_size "
     "slot_count entry_off entry_size dirty_off dirty_words client_off client_size pool_off "
     "pool_size text_off text_size text_cap")
 COMMAND_HEADER = struct.Struct("<IHHIIIiIIIIIIIIIIIIIII")
-STATE_OFF, NEWS_OFF, BELL_OFF = 16, 128, 128
+STATE_OFF, NEWS_OFF, ALARM_HEAD_OFF, BELL_OFF = 16, 128, 132, 128
 
 
 class Stale(OSError):
@@ -105,6 +107,13 @@ class Value(collections.namedtuple("Value", "value type quality detail target er
     def good(self):
         return self.quality & 0xC0 == 0xC0
 
+
+ALARM_KINDS = ["none", "device", "power-on reset", "high high", "high", "low", "low low", "stale",
+               "bad"]
+ALARM_EVENTS = ["unknown", "raised", "returned", "acknowledged"]
+# before and after: None where there is no value; kind and event: words
+AlarmEntry = collections.namedtuple("AlarmEntry", "number name occurred_ns before after kind event "
+                                    "quality latch")
 
 Info = collections.namedtuple("Info", "name path type output fresh alarm per_factor "
                               "stale_after_ns")
@@ -287,12 +296,14 @@ class Ows:
         header = Header(*HEADER.unpack_from(image.memory))
         if (header.magic, header.major, header.size) != (IMAGE_MAGIC, MAJOR, image.size) or \
            (header.record_size, header.info_size) != (RECORD_SIZE, INFO_SIZE) or \
-           header.record_count == 0:
+           header.record_count == 0 or header.alarm_count and \
+           header.alarm_size != ALARM_ENTRY.size:
             raise broken()
         for offset, count, size in ((header.record_off, header.record_count, RECORD_SIZE),
                                     (header.info_off, header.record_count, INFO_SIZE),
                                     (header.pool_off, header.pool_size, 1),
-                                    (header.text_off, header.text_size, 1)):
+                                    (header.text_off, header.text_size, 1),
+                                    (header.alarm_off, header.alarm_count, ALARM_ENTRY.size)):
             image.inside(offset, count, size)
         return header
 
@@ -476,6 +487,39 @@ class Ows:
             "_Age": age_ns / 1e9,
             "_AgeMax": max(attrs.age_max_ns, age_ns) / 1e9,
         }[attribute]
+
+    def alarms(self, since=0):
+        """The journal of alarms from number `since` on, as far as it is kept: AlarmEntry by
+        AlarmEntry. The number after the last is where to go on."""
+        h = self.header
+        head = self.image.word(ALARM_HEAD_OFF)
+        first = max(since, head - h.alarm_count)
+        for number in range(first, head):
+            entry = self._alarm(number)
+            if entry is not None:
+                yield entry
+
+    def _alarm(self, number):
+        h, memory = self.header, self.image.memory
+        at = h.alarm_off + number % h.alarm_count * ALARM_ENTRY.size
+        for _ in range(WHOLE_TRIES):
+            raw = memory[at:at + ALARM_ENTRY.size]
+            words = struct.unpack("<16I", raw)
+            if words[0] % 2 == 0 and check(words[1:15]) == words[15]:
+                break
+        else:
+            return None
+        (_, record, occurred, before, after, kind, event, quality, flags, latch, there,
+         _) = ALARM_ENTRY.unpack(raw)
+        if there != number or not 0 < record < len(self.table):
+            return None
+        info = self.table[record][0]
+        return AlarmEntry(number, info.name, occurred,
+                          decode(info.type, before) if flags & 1 else None,
+                          decode(info.type, after) if flags & 2 else None,
+                          ALARM_KINDS[kind] if kind < len(ALARM_KINDS) else "none",
+                          ALARM_EVENTS[event] if event < len(ALARM_EVENTS) else "unknown",
+                          quality, latch.rstrip(b"\0").decode(errors="replace"))
 
     def wait(self, news=0, seconds=math.inf):
         """Sleep until something was published after `news`; returns the new number to hand in next

@@ -10,10 +10,11 @@
 #define IMAGE_MAX 0x7fffffffu
 #define SAMPLE_WORDS (sizeof(struct ows_sample) / 4)
 #define ATTRS_WORDS  (sizeof(struct ows_attrs) / 4)
+#define ALARM_WORDS  (sizeof(struct ows_alarm_entry) / 4)
 
 /* Where the areas are, in the order in which they lie. */
 struct image_areas {
-	uint64_t record, info, name, target, counter, text, pool, end;
+	uint64_t record, info, name, target, counter, alarm, text, pool, end;
 };
 
 static uint64_t align64(uint64_t offset)
@@ -48,7 +49,8 @@ static void find_areas(const struct image_plan *plan, struct image_areas *a)
 	a->name = a->info + records * sizeof(struct ows_info_entry);
 	a->target = align64(a->name + records * sizeof(struct ows_name_entry));
 	a->counter = a->target + (uint64_t)plan->target_count * sizeof(struct ows_target_entry);
-	a->text = a->counter + (uint64_t)plan->counter_count * sizeof(struct ows_counter_entry);
+	a->alarm = a->counter + (uint64_t)plan->counter_count * sizeof(struct ows_counter_entry);
+	a->text = a->alarm + OWS_ALARMS * sizeof(struct ows_alarm_entry);
 	a->pool = align64(a->text + text_bytes(plan));
 	a->end = align64(a->pool + pool_bytes(plan));
 }
@@ -146,6 +148,9 @@ static void fill_header(const struct image_plan *plan, const struct image_areas 
 		.counter_off = (uint32_t)a->counter,
 		.counter_size = sizeof(struct ows_counter_entry),
 		.counter_count = plan->counter_count,
+		.alarm_off = (uint32_t)a->alarm,
+		.alarm_size = sizeof(struct ows_alarm_entry),
+		.alarm_count = OWS_ALARMS,
 		.pool_off = (uint32_t)a->pool,
 		.pool_size = (uint32_t)(a->end - a->pool),
 		.text_off = (uint32_t)a->text,
@@ -167,6 +172,7 @@ void image_build(const struct image_plan *plan, void *memory, struct image *imag
 	image->records = (void *)(image->base + a.record);
 	image->targets = (void *)(image->base + a.target);
 	image->counters = (void *)(image->base + a.counter);
+	image->alarms = (void *)(image->base + a.alarm);
 	infos = (void *)(image->base + a.info);
 	names = (void *)(image->base + a.name);
 	fill_header(plan, &a, image->header);
@@ -240,6 +246,41 @@ void image_publish(struct image *image, uint32_t record, const struct ows_sample
 		store_text(image->base + r->text_off + (size_t)(n & 1) * r->text_cap, text,
 		           sample->len);
 	__atomic_store_n(&r->seq, 2 * n, __ATOMIC_RELEASE);
+}
+
+/* Write an entry but for its seq, which a reader watches. */
+static void write_alarm(struct ows_alarm_entry *to, struct ows_alarm_entry *entry)
+{
+	uint32_t seq = word_get(&to->seq);
+
+	entry->check = ows_check(&entry->record, ALARM_WORDS - 2);
+	word_set(&to->seq, seq + 1);
+	word_fence(__ATOMIC_RELEASE);
+	words_store(&to->record, &entry->record, ALARM_WORDS - 1);
+	__atomic_store_n(&to->seq, seq + 2, __ATOMIC_RELEASE);
+}
+
+uint32_t image_alarm(struct image *image, const struct ows_alarm_entry *entry)
+{
+	struct ows_alarm_entry whole = *entry;
+	uint32_t number = word_get(&image->header->alarm_head);
+
+	assert(entry->record < image->header->record_count);
+	whole.number = number;
+	write_alarm(&image->alarms[number % OWS_ALARMS], &whole);
+	__atomic_store_n(&image->header->alarm_head, number + 1, __ATOMIC_RELEASE);
+	return number;
+}
+
+void image_alarm_after(struct image *image, uint32_t number, int64_t after)
+{
+	struct ows_alarm_entry *entry = &image->alarms[number % OWS_ALARMS], whole = *entry;
+
+	if (word_get(&image->header->alarm_head) - 1 - number >= OWS_ALARMS)
+		return;
+	whole.after = after;
+	whole.flags |= OWS_ALARM_AFTER;
+	write_alarm(entry, &whole);
 }
 
 void image_target(struct image *image, uint32_t target, uint32_t state, uint32_t reconnects)

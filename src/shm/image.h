@@ -45,6 +45,7 @@ struct image {
 	struct ows_record *records; /* [0] is owsd */
 	struct ows_target_entry *targets;
 	struct ows_counter_entry *counters;
+	struct ows_alarm_entry *alarms;
 	char *base;
 };
 
@@ -59,6 +60,12 @@ void image_build(const struct image_plan *plan, void *memory, struct image *imag
  */
 void image_publish(struct image *image, uint32_t record, const struct ows_sample *sample,
                    const struct ows_attrs *attrs, const char *text);
+/*
+ * Enter an alarm into the journal; seq, number and check are made here. Returns its number, by
+ * which the value after may be added as long as the ring holds it; later that does nothing.
+ */
+uint32_t image_alarm(struct image *image, const struct ows_alarm_entry *entry);
+void image_alarm_after(struct image *image, uint32_t number, int64_t after);
 void image_target(struct image *image, uint32_t target, uint32_t state, uint32_t reconnects);
 void image_counter(struct image *image, uint32_t counter, uint64_t total);
 /* Counts the news word; the caller wakes sleepers (segment_wake) when it has published enough. */

@@ -11,6 +11,7 @@
  *
  * History
  *   1.0  first layout
+ *   1.1  image: a journal of alarms; in the attributes the state of limit alarms and two flags
  */
 #ifndef OWS_LAYOUT_H
 #define OWS_LAYOUT_H
@@ -19,7 +20,7 @@
 #include <stdint.h>
 
 #define OWS_LAYOUT_MAJOR 1
-#define OWS_LAYOUT_MINOR 0
+#define OWS_LAYOUT_MINOR 1
 
 #define OWS_IMAGE_MAGIC   0x4953574fu /* "OWSI" */
 #define OWS_COMMAND_MAGIC 0x4353574fu /* "OWSC" */
@@ -62,13 +63,19 @@ struct ows_attrs { /* 72 bytes, 18 words */
 	uint32_t pend_max;   /* but for the running one */
 	uint32_t alarms;     /* occurrences since start */
 	uint32_t flags;      /* OWS_ATTR_ bits */
-	uint32_t spare[2];
+	uint8_t limit_state; /* enum ows_limit_state; 0: normal, or without limit alarms */
+	uint8_t limit_condition; /* enum ows_alarm_kind of the limit alarm; 0 none */
+	uint8_t spare0[2];
+	uint32_t spare1;
 	uint32_t check;      /* ows_check() of the seventeen words before */
 };
 #define OWS_ATTR_READ_ENABLE  0x01
 #define OWS_ATTR_WRITE_ENABLE 0x02
 #define OWS_ATTR_IN_WORK      0x04
 #define OWS_ATTR_COMMANDED    0x08
+#define OWS_ATTR_ALARM_POLLED 0x10 /* alarm item read as an ordinary input: no alarm search there */
+#define OWS_ATTR_ALARM_STANDS 0x20 /* the device's alarm stands */
+#define OWS_ATTR_LIMITS       0x40 /* it has limit alarms */
 
 struct ows_slot { /* 120 bytes */
 	struct ows_sample sample;
@@ -135,6 +142,30 @@ struct ows_counter_entry { /* 64 bytes */
 	uint32_t low, high; /* of the 64-bit total; for display, the two may be of different moments */
 };
 
+/*
+ * The journal of alarms: a ring of alarm_count entries; entry number n, from 0 at owsd's start, is
+ * at place n % alarm_count. Writer: seq + 1 (odd); release fence; the rest; seq + 1 (release); for
+ * a new entry then alarm_head. A value after comes later, in the same way. Reader: copy as long as
+ * seq is odd or changed; the entry is the one wanted if its number is.
+ */
+#define OWS_ALARMS 256
+struct ows_alarm_entry { /* 64 bytes, 16 words */
+	uint32_t seq;
+	uint32_t record;
+	int64_t occurred_ns; /* CLOCK_BOOTTIME */
+	int64_t before;      /* as in sample.value, if OWS_ALARM_BEFORE */
+	int64_t after;       /* likewise, if OWS_ALARM_AFTER */
+	uint8_t kind;        /* enum ows_alarm_kind */
+	uint8_t event;       /* enum ows_alarm_event */
+	uint8_t quality;     /* of the signal at that moment */
+	uint8_t flags;       /* OWS_ALARM_ bits */
+	char latch[20];      /* device alarms: text of the latch, filled up with NUL */
+	uint32_t number;
+	uint32_t check;      /* ows_check() of the fourteen words record .. number */
+};
+#define OWS_ALARM_BEFORE 0x01
+#define OWS_ALARM_AFTER  0x02
+
 struct ows_image_header { /* 256 bytes: four lines of 64 */
 	uint32_t magic;
 	uint16_t major, minor;
@@ -143,11 +174,11 @@ struct ows_image_header { /* 256 bytes: four lines of 64 */
 	uint32_t state;       /* enum ows_state; the one word here that changes */
 	int32_t pid;
 	uint32_t start_id;    /* random, the same for both segments of a generation */
-	uint32_t spare0;
+	uint32_t alarm_off;   /* journal of alarms; 0 in 1.0 */
 	int64_t start_ns;     /* CLOCK_BOOTTIME of owsd's start */
 	int64_t start_wall_ns; /* CLOCK_REALTIME of the same moment, for display */
 	int64_t period_ns;
-	uint32_t spare1[2];
+	uint32_t alarm_size, alarm_count;
 
 	uint32_t record_off, record_size, record_count; /* count includes record 0 */
 	uint32_t info_off, info_size;
@@ -158,7 +189,8 @@ struct ows_image_header { /* 256 bytes: four lines of 64 */
 	uint32_t text_off, text_size; /* texts of string signals */
 
 	uint32_t news;        /* counts published states; futex word */
-	uint32_t spare2[15];
+	uint32_t alarm_head;  /* number of alarms ever entered */
+	uint32_t spare2[14];
 
 	uint32_t spare3[16];
 };
@@ -264,6 +296,8 @@ OWS_STATIC_ASSERT(sizeof(struct ows_info_entry) == 64);
 OWS_STATIC_ASSERT(sizeof(struct ows_name_entry) == 8);
 OWS_STATIC_ASSERT(sizeof(struct ows_target_entry) == 128);
 OWS_STATIC_ASSERT(sizeof(struct ows_counter_entry) == 64);
+OWS_STATIC_ASSERT(sizeof(struct ows_alarm_entry) == 64);
+OWS_STATIC_ASSERT(offsetof(struct ows_alarm_entry, latch) == 36);
 OWS_STATIC_ASSERT(sizeof(struct ows_image_header) == 256);
 OWS_STATIC_ASSERT(offsetof(struct ows_image_header, record_off) == 64);
 OWS_STATIC_ASSERT(offsetof(struct ows_image_header, news) == 128);

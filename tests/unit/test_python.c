@@ -289,10 +289,46 @@ static void test_python_sees_whole_samples_beside_a_busy_writer(void)
 	pthread_join(thread, NULL);
 }
 
+static void test_python_reads_the_journal_of_alarms(void)
+{
+	struct ows_alarm_entry entry = {
+		.record = ROOM,
+		.occurred_ns = 5,
+		.before = value_of_double(21.5),
+		.kind = OWS_ALARM_HH,
+		.event = OWS_ALARM_RAISED,
+		.quality = OWS_Q_GOOD,
+		.flags = OWS_ALARM_BEFORE,
+	};
+
+	for (int i = 0; i < OWS_ALARMS + 1; i++)
+		image_alarm(&in.image, &entry);
+	entry = (struct ows_alarm_entry){
+		.record = RELAY,
+		.occurred_ns = 6,
+		.kind = OWS_ALARM_DEVICE,
+		.event = OWS_ALARM_RETURNED,
+		.latch = "1,0",
+	};
+	image_alarm_after(&in.image, image_alarm(&in.image, &entry), 1);
+	in.image.alarms[5].seq++;
+	expect("s = ows.Ows(name)\n"
+	       "all = list(s.alarms())\n"
+	       "print(len(all), all[0].number, 5 in [a.number for a in all])\n"
+	       "print(*all[0][1:])\n"
+	       "print(*[list(a) for a in s.alarms(257)])\n"
+	       "print(list(s.alarms(258)))\n",
+	       "255 2 False\n"
+	       "room1 5 21.5 None high high raised 192 \n"
+	       "[257, 'relay', 6, None, True, 'device', 'returned', 0, '1,0']\n"
+	       "[]\n");
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_python_reads_what_c_wrote);
+	RUN_TEST(test_python_reads_the_journal_of_alarms);
 	RUN_TEST(test_python_looks_names_up_as_c_does);
 	RUN_TEST(test_python_lowers_quality_as_c_does);
 	RUN_TEST(test_python_computes_attributes_as_c_does);

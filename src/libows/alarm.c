@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: MIT */
+/* The journal of alarms. */
+#include "handle.h"
+
+#include "../shm/reader.h"
+#include "../signal/value.h"
+
+#include <errno.h>
+#include <string.h>
+
+#define WORDS (sizeof(struct ows_alarm_entry) / 4)
+
+static bool read_entry(const struct ows_alarm_entry *from, struct ows_alarm_entry *entry)
+{
+	for (int i = 0; i < READER_TRIES; i++) {
+		uint32_t seq = __atomic_load_n(&from->seq, __ATOMIC_ACQUIRE);
+
+		words_load_aligned(entry, from, WORDS);
+		word_fence(__ATOMIC_ACQUIRE);
+		if (seq % 2 == 0 && word_get(&from->seq) == seq)
+			return true;
+	}
+	return false;
+}
+
+uint32_t ows_alarm_count(struct ows *h)
+{
+	return __atomic_load_n(&h->map.image->alarm_head, __ATOMIC_ACQUIRE);
+}
+
+static void fill(uint8_t type, int64_t value, double *number, int64_t *integer)
+{
+	*number = value_number((enum ows_type)type, value);
+	*integer = value_is_float((enum ows_type)type) ? 0 : value;
+}
+
+int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
+{
+	const struct ows_image_header *image = h->map.image;
+	const struct ows_alarm_entry *entries = (const void *)(h->map.base + image->alarm_off);
+	struct ows_alarm_entry e;
+
+	if (ows_alarm_count(h) - 1 - number >= image->alarm_count)
+		return -ENOENT;
+	if (!read_entry(&entries[number % image->alarm_count], &e))
+		return -EAGAIN;
+	if (e.number != number || e.record == 0 || e.record >= h->map.count)
+		return -ENOENT;
+	*alarm = (struct ows_alarm){
+		.signal = (int)e.record - 1,
+		.occurred_ns = e.occurred_ns,
+		.type = h->map.records[e.record].type,
+		.has_before = (e.flags & OWS_ALARM_BEFORE) != 0,
+		.has_after = (e.flags & OWS_ALARM_AFTER) != 0,
+		.kind = e.kind,
+		.event = e.event,
+		.quality = e.quality,
+	};
+	if (alarm->has_before)
+		fill(alarm->type, e.before, &alarm->before, &alarm->before_integer);
+	if (alarm->has_after)
+		fill(alarm->type, e.after, &alarm->after, &alarm->after_integer);
+	memcpy(alarm->latch, e.latch, sizeof(e.latch));
+	return 0;
+}
+
+const char *ows_alarm_kind_text(uint8_t kind)
+{
+	static const char *const texts[] = {
+		[OWS_ALARM_DEVICE] = "device",
+		[OWS_ALARM_POR] = "power-on reset",
+		[OWS_ALARM_HH] = "high high",
+		[OWS_ALARM_H] = "high",
+		[OWS_ALARM_L] = "low",
+		[OWS_ALARM_LL] = "low low",
+		[OWS_ALARM_STALE] = "stale",
+		[OWS_ALARM_BAD] = "bad",
+	};
+
+	return kind < sizeof(texts) / sizeof(texts[0]) && texts[kind] ? texts[kind] : "none";
+}
+
+const char *ows_alarm_event_text(uint8_t event)
+{
+	static const char *const texts[] = {
+		[OWS_ALARM_RAISED] = "raised",
+		[OWS_ALARM_RETURNED] = "returned",
+		[OWS_ALARM_ACKNOWLEDGED] = "acknowledged",
+	};
+
+	return event < sizeof(texts) / sizeof(texts[0]) && texts[event] ? texts[event] : "unknown";
+}
