@@ -33,18 +33,17 @@ near() {
 
 # NAME COMMAND...: the command succeeds
 does() {
-	name=$1
+	local what=$1
 	shift
-	if "$@" >/tmp/said 2>&1; then ok "$name"; else not_ok "$name" "$(tail -n 1 /tmp/said)"; fi
+	if "$@" >/tmp/said 2>&1; then ok "$what"; else not_ok "$what" "$(tail -n 1 /tmp/said)"; fi
 }
 
 # SECONDS COMMAND...: until it succeeds, tried ten times a second; false when time is over
 within() {
-	tries=$(($1 * 10))
+	local end=$(($(date +%s) + $1))
 	shift
 	until "$@" >/dev/null 2>&1; do
-		tries=$((tries - 1))
-		[ $tries -gt 0 ] || return 1
+		[ "$(date +%s)" -le $end ] || return 1
 		usleep 100000
 	done
 }

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: MIT
+# Faults happen to the chip and its devices under a running owsd: the signal says so in time, comes
+# back when the fault is over, with the value of that moment, and is never good with a false one.
+. /rig/lib.sh
+
+told_within=30
+back_within=60
+
+get() {
+	owsctl get $1 2>/tmp/reason
+}
+
+bad() {
+	get $1 >/tmp/value
+	[ $? -eq 3 ]
+}
+
+reads() {
+	[ "$(get $1)" = "$2" ] && get $1 >/tmp/value
+}
+
+# Each look at the thermometer gets a value of its own, so that an old one cannot pass for it
+warm=20
+next_value() {
+	warm=$((warm + 1))
+	sim set warm temperature $warm
+}
+
+all_good() {
+	get cold && get pins && get relays
+}
+
+# NAME SIGNAL COMMAND...: a fault that lasts until it is ended
+lasting() {
+	local name=$1 signal=$2
+	shift 2
+	sim "$@"
+	does "$name: the signal says so" within $told_within bad $signal
+	sed 's/^/# /' /tmp/reason
+	sim end "$@"
+	next_value
+	does "$name: it is over" within $back_within reads warm $warm
+	does "$name: and the others are good again" within $back_within all_good
+}
+
+# NAME COMMAND...: a fault that owsd itself gets rid of
+passing() {
+	local name=$1
+	shift
+	sim "$@"
+	next_value
+	does "$name: owsd recovers by itself" within $back_within reads warm $warm
+}
+
+plug faults.sim
+owsd -c /rig/faults.rio >/tmp/log/owsd 2>&1 &
+owsd=$!
+does "the first value is there" within 20 reads warm 20
+owsctl watch >/tmp/log/watch 2>&1 &
+does "and that of the one fed by the wire" within 20 reads cold -10.125
+does "and the inputs" within 20 reads pins 253
+owsctl set relays 5
+does "an output is written" within 20 reads pins 248
+
+lasting "part removed" warm unplug warm
+lasting "checksum error" warm corrupt warm each 1
+lasting "short" warm short 0x18
+lasting "address refused" warm refuse 0x18
+lasting "data refused" warm refuse-data 0x18
+lasting "busy whatever the host does" warm jam 0x18
+lasting "adapter unplugged" warm remove adapter
+passing "now and then a checksum error" corrupt warm each 3 for 5s
+passing "now and then an address refused" refuse 0x18 each 20 for 5s
+passing "chip reset" reset 0x18
+passing "stuck busy bit" stick 0x18
+sim brownout board
+sim set board pin.1 1
+does "outputs are written again after a restart of their device" within $back_within reads pins 250
+
+does "owsd lives" kill -0 $owsd
+same "no false value was ever good" "" "$(awk '
+	$4 != "good" { next }
+	$2 == "warm" && $3 !~ /^(2[0-9]|3[01])$/ { print }
+	$2 == "cold" && $3 != "-10.125" { print }' /tmp/log/watch)"
+owsctl stats | sed 's/^/# /'
+finish
