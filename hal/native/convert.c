@@ -65,7 +65,7 @@ void convert_begin(struct native *native, struct job *job, int64_t now)
 {
 	struct device *device = job->txn.device;
 
-	/* A conversion of all that is under way or just over serves those who do not ask for more. */
+	/* Who does not insist is served by a conversion that is under way or just over. */
 	if (!job->fresh && device->converted_ns && device->converted_ns + SIMULTANEOUS_NS > now &&
 	    convert_right(job)) {
 		job->ready_ns = device->converted_ns;

@@ -143,10 +143,12 @@ static int run_function(struct job *job)
 {
 	struct txn *txn = &job->txn;
 
+	bool binary = job->property->type == PROPERTY_BINARY;
+
+	if (job->req->op == BUS_READ && binary && txn->room < property_size(job->property))
+		return -EMSGSIZE;
 	if (job->req->op == BUS_READ)
-		return txn->property->type == PROPERTY_BINARY && txn->room < property_size(job->property)
-		               ? -EMSGSIZE
-		               : job->property->read(txn);
+		return job->property->read(txn);
 	if (needs_merge(job))
 		return job->property->read(txn);
 	if (txn->phase == 0) {

@@ -20,7 +20,8 @@
 
 int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8])
 {
-	uint8_t recall[] = {RECALL, (uint8_t)page}, read[] = {READ_SCRATCHPAD, (uint8_t)page}, in[9];
+	uint8_t recall[] = {RECALL, (uint8_t)page}, read[] = {READ_SCRATCHPAD, (uint8_t)page};
+	uint8_t in[9];
 	int err = txn_command(txn, recall, sizeof(recall));
 
 	if (!err)
@@ -37,7 +38,8 @@ static int write_page(struct txn *txn, unsigned page, const uint8_t *bytes, unsi
                       uint8_t *step)
 {
 	uint8_t command[10] = {WRITE_SCRATCHPAD, (uint8_t)page}, in[9];
-	uint8_t verify[] = {READ_SCRATCHPAD, (uint8_t)page}, copy[] = {COPY_SCRATCHPAD, (uint8_t)page};
+	uint8_t verify[] = {READ_SCRATCHPAD, (uint8_t)page};
+	uint8_t copy[] = {COPY_SCRATCHPAD, (uint8_t)page};
 	int err;
 
 	switch ((*step)++) {

@@ -19,5 +19,6 @@ static const struct property properties[] = {
 };
 
 const struct family family_28 = {
-	.code = 0x28, .thermometer = true, .alarms = true, .type = "DS18B20", PROPERTIES(properties),
+	.code = 0x28, .thermometer = true, .alarms = true, .type = "DS18B20",
+	PROPERTIES(properties),
 };

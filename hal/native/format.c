@@ -97,7 +97,8 @@ int format_number(uint8_t type, double number, char *text, size_t room)
 	case PROPERTY_BITS:
 		return put(number != 0 ? "1" : "0", 1, text, room);
 	case PROPERTY_UNSIGNED:
-		return put(out, snprintf(out, sizeof(out), "%12lu", (unsigned long)number), text, room);
+		return put(out, snprintf(out, sizeof(out), "%12lu", (unsigned long)number), text,
+		           room);
 	case PROPERTY_INTEGER:
 		return put(out, snprintf(out, sizeof(out), "%12ld", (long)number), text, room);
 	case PROPERTY_DATE:
@@ -133,7 +134,8 @@ int format_value(const struct property *property, int extension, const struct tx
 	if (extension == EXTENSION_BYTE)
 		return format_number(PROPERTY_UNSIGNED, txn->bits, text, room);
 	if (extension != EXTENSION_ALL)
-		return format_number(property->type, element_of(property, extension, txn), text, room);
+		return format_number(property->type, element_of(property, extension, txn), text,
+		                     room);
 	for (int i = 0; i < property->array.count; i++) {
 		if (i && used == room)
 			return -EMSGSIZE;
@@ -237,7 +239,8 @@ static int parse_number(uint8_t type, const char *text, size_t len, double *numb
 	case PROPERTY_UNSIGNED:
 	case PROPERTY_INTEGER: {
 		long long value = strtoll(copy, &end, 10);
-		*number = type == PROPERTY_UNSIGNED ? (double)(uint32_t)value : (double)(int32_t)value;
+		*number = type == PROPERTY_UNSIGNED ? (double)(uint32_t)value
+		                                    : (double)(int32_t)value;
 		if (value > UINT32_MAX || value < INT32_MIN)
 			return -EINVAL;
 		break;
@@ -286,7 +289,8 @@ int parse_value(const struct property *property, int extension, const char *text
 	if (extension != EXTENSION_ALL) {
 		err = parse_number(property->type, text, len, &number);
 		if (!err)
-			set_element(property, extension == EXTENSION_NONE ? 0 : extension, number, txn);
+			set_element(property, extension == EXTENSION_NONE ? 0 : extension, number,
+			            txn);
 		return err;
 	}
 	if (list_count(text, len) != property->array.count)

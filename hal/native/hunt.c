@@ -119,7 +119,8 @@ static void told_short(struct native *native, unsigned n, bool is_short)
 	if (channel->is_short == is_short)
 		return;
 	channel->is_short = is_short;
-	snprintf(text, sizeof(text), is_short ? "bus.%u is short" : "bus.%u is not short any more", n);
+	snprintf(text, sizeof(text), "bus.%u is %sshort%s", n, is_short ? "" : "not ",
+	         is_short ? "" : " any more");
 	native_event(native, BUS_NOTE, NULL, is_short ? -ECOMM : 0, text);
 }
 
@@ -137,7 +138,8 @@ static int whole_found(void *ctx, const uint8_t rom[8])
 
 	hunt_found(native, rom, whole->n, native_now(native));
 	if (whole->job)
-		whole->err = listing_add_device(native, whole->job, device_find(&native->table, rom));
+		whole->err = listing_add_device(native, whole->job,
+		                                device_find(&native->table, rom));
 	return whole->err;
 }
 
@@ -157,7 +159,8 @@ static int next_device(struct native *native, unsigned n, struct search *search,
 	if (!only_whole(link))
 		return search_next(search, link);
 	search->last = true;
-	int err = link->ops->search(link, search->command == ONEWIRE_ALARM_SEARCH, whole_found, &whole);
+	bool alarm = search->command == ONEWIRE_ALARM_SEARCH;
+	int err = link->ops->search(link, alarm, whole_found, &whole);
 	return whole.err ? whole.err : err < 0 ? err : 0;
 }
 
@@ -252,7 +255,8 @@ void hunt_locate(struct native *native, struct job *job, int64_t now)
 
 		job->txn.channel = job->channel;
 		job->txn.link_error = there;
-		if (there == -ECOMM && !known && job->bus < 0 && job->channel + 1u < native->channels) {
+		if (there == -ECOMM && !known && job->bus < 0 &&
+		    job->channel + 1u < native->channels) {
 			job->txn.link_error = 0;
 			job->channel++;
 			return;
@@ -317,7 +321,8 @@ static void scan_on(struct native *native, struct job *job)
 {
 	job->searching = false;
 	job->tries = 0;
-	if (job->families[0] && ++job->family_i < sizeof(job->families) && job->families[job->family_i])
+	if (job->families[0] && ++job->family_i < sizeof(job->families) &&
+	    job->families[job->family_i])
 		return;
 	job->family_i = 0;
 	if (job->bus < 0 && ++job->channel < native->channels)

@@ -222,7 +222,8 @@ bool job_ready(const struct native *native, const struct job *job, int64_t now, 
 		break;
 	}
 	if (channel < native->channels && native_held(native, channel, job, now)) {
-		int64_t held = native->hold_ns[native->channel[channel].link->chip % NATIVE_CHANNELS];
+		unsigned chip = native->channel[channel].link->chip % NATIVE_CHANNELS;
+		int64_t held = native->hold_ns[chip];
 
 		when = held > when ? held : when;
 	}

@@ -130,7 +130,8 @@ bool master_recover(struct native *native, unsigned n, int err)
 	while (channel->rung <= LINK_POWER_CYCLE) {
 		enum link_rung rung = (enum link_rung)channel->rung++;
 		struct link *link = channel->link;
-		int done = rung == LINK_RETRY || !link->ops->recover ? 0 : link->ops->recover(link, rung);
+		bool skip = rung == LINK_RETRY || !link->ops->recover;
+		int done = skip ? 0 : link->ops->recover(link, rung);
 
 		if (done == -EOPNOTSUPP)
 			continue;

@@ -61,7 +61,8 @@ int memory_read_page(struct txn *txn, const struct memory *memory)
 static int write_row(struct txn *txn, const struct memory *memory, unsigned address,
                      const uint8_t *row)
 {
-	uint8_t command[3 + ROW_MAX] = {WRITE_SCRATCHPAD, (uint8_t)address, (uint8_t)(address >> 8)};
+	uint8_t command[3 + ROW_MAX] = {WRITE_SCRATCHPAD, (uint8_t)address,
+	                                (uint8_t)(address >> 8)};
 	uint8_t crc[2];
 	int err;
 
@@ -73,7 +74,8 @@ static int write_row(struct txn *txn, const struct memory *memory, unsigned addr
 	err = txn_read(txn, crc, sizeof(crc));
 	if (err)
 		return err;
-	return onewire_crc16_matches(onewire_crc16(0, command, 3u + memory->row), crc) ? 0 : -EBADMSG;
+	uint16_t sum = onewire_crc16(0, command, 3u + memory->row);
+	return onewire_crc16_matches(sum, crc) ? 0 : -EBADMSG;
 }
 
 /* What the scratchpad holds; the ending offset goes to mem[0]. */
@@ -86,7 +88,8 @@ static int verify_row(struct txn *txn, const struct memory *memory, unsigned add
 	int err = txn_command(txn, &command, 1);
 
 	if (!err)
-		err = memory->checks ? txn_read_crc16(txn, &command, 1, in, n) : txn_read(txn, in, n);
+		err = memory->checks ? txn_read_crc16(txn, &command, 1, in, n)
+		                     : txn_read(txn, in, n);
 	if (err)
 		return err;
 	if (in[0] != (uint8_t)address || in[1] != (uint8_t)(address >> 8) ||
@@ -117,7 +120,8 @@ static int write_range(struct txn *txn, const struct memory *memory, unsigned ad
 	unsigned here = first + txn->phase / STEPS * row;
 	unsigned from = here < address ? address : here;
 	unsigned to = here + row < address + n ? here + row : address + n;
-	uint8_t command[] = {READ_MEMORY, (uint8_t)here, (uint8_t)(here >> 8)}, *bytes = txn->mem + 8;
+	uint8_t command[] = {READ_MEMORY, (uint8_t)here, (uint8_t)(here >> 8)};
+	uint8_t *bytes = txn->mem + 8;
 	uint8_t in[ROW_MAX];
 	int err = 0;
 

@@ -60,7 +60,6 @@ int native_create(const struct bus_ops *ops, const struct link_master_ops *maste
 	return 0;
 out:
 	native_destroy(&native->bus);
-	free(native->bus.queue);
 	return err;
 }
 

@@ -132,7 +132,7 @@ struct native {
 	struct channel channel[NATIVE_CHANNELS];
 	int64_t hold_ns[NATIVE_CHANNELS]; /* by chip: its strong pull-up is on until then */
 	struct job *holder[NATIVE_CHANNELS];
-	int64_t hunt_ns, pass_ns; /* background search: the next pass at the earliest; the last took */
+	int64_t hunt_ns, pass_ns; /* background search: its next pass; what the last took */
 	int64_t open_ns;  /* next try to open */
 	int64_t pause_ns; /* between tries */
 	int64_t up_ns;
@@ -197,7 +197,7 @@ void job_restart(struct native *native, struct job *job);
 /* Make the txn ready for the next element, from its beginning. */
 void job_txn(struct native *native, struct job *job);
 void job_run_property(struct native *native, struct job *job, int64_t now);
-/* A transaction of the job has ended with err (0: well): what the wire showed of link and device. */
+/* A transaction of the job has ended with err (0: well): what it showed of link and device. */
 void job_saw(struct native *native, struct job *job, int err, int64_t now);
 
 /* job.c */

@@ -198,7 +198,8 @@ int resolve(struct native *native, struct job *job)
 	job->bus = job->path.bus;
 	if (job->bus >= (int)native->channels)
 		return -ENODEV;
-	if (job->path.alarm && job->req->op == BUS_DIR && job->path.device.len && take_families(job)) {
+	if (job->path.alarm && job->req->op == BUS_DIR && job->path.device.len &&
+	    take_families(job)) {
 		job->kind = JOB_ALARM;
 		return 0;
 	}

@@ -38,7 +38,7 @@ static double relative_humidity(int sensor, double celsius, double supply, doubl
 int sensor_read_humidity(struct txn *txn)
 {
 	int sensor = txn->property->arg;
-	unsigned what = sensor == HTM1735 ? DS2438_VAD : DS2438_TEMPERATURE | DS2438_VDD | DS2438_VAD;
+	unsigned what = DS2438_VAD | (sensor == HTM1735 ? 0 : DS2438_TEMPERATURE | DS2438_VDD);
 	int err = ds2438_measure(txn, what);
 
 	if (err)

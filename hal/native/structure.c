@@ -54,7 +54,9 @@ int structure_read(const char *path, size_t len, char *text, size_t room)
 		return -EISDIR;
 	char type = property->type == PROPERTY_BITS ? 'y' : (char)property->type;
 	int n = snprintf(text, room, "%c,%.6d,%.6d,%s,%.6u,%c,", type,
-	                 extension == EXTENSION_NONE ? 0 : extension < 0 ? extension : extension & 0xff,
+	                 extension == EXTENSION_NONE ? 0
+	                 : extension < 0             ? extension
+	                                             : extension & 0xff,
 	                 property->array.count ? property->array.count : 1,
 	                 access[property->access & 3], whole_size(property, extension),
 	                 property->life);

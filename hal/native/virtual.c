@@ -85,8 +85,7 @@ static int write_scale(struct txn *txn)
 	}
 	for (size_t i = 0; i < sizeof(pressure) / sizeof(pressure[0]); i++)
 		if (strlen(pressure[i]) == txn->len && !memcmp(pressure[i], txn->data, txn->len)) {
-			snprintf(txn->native->pressure_scale, sizeof(txn->native->pressure_scale), "%s",
-			         pressure[i]);
+			memcpy(txn->native->pressure_scale, pressure[i], txn->len + 1);
 			return 0;
 		}
 	return -EINVAL;
@@ -142,7 +141,8 @@ static int read_bus_time(struct txn *txn)
 
 	if (txn->link && txn->link->ops->cost)
 		txn->link->ops->cost(txn->link, &cost);
-	txn->number[0] = txn->property->arg ? (double)(uint32_t)cost.resets : (double)cost.wire_ns / 1e9;
+	txn->number[0] = txn->property->arg ? (double)(uint32_t)cost.resets
+	                                    : (double)cost.wire_ns / 1e9;
 	return 0;
 }
 

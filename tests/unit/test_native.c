@@ -525,6 +525,18 @@ static void test_a_target_that_does_not_open_is_tried_again_for_ever(void)
 	expect(true, of(slave, "power"), "1");
 }
 
+static void test_a_target_without_its_file_is_refused_with_the_reason(void)
+{
+	struct bus *none = NULL;
+	char why[200] = "";
+
+	wire_init(&host, 1, 1);
+	TEST_ASSERT_LESS_THAN_INT(0, bus_create("sim:/nowhere/at/all", &host.env, &none, why,
+	                                        sizeof(why)));
+	TEST_ASSERT_NULL(none);
+	TEST_ASSERT_NOT_NULL(strstr(why, "/nowhere/at/all"));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -551,5 +563,6 @@ int main(void)
 	RUN_TEST(test_a_request_that_was_not_begun_can_be_taken_back);
 	RUN_TEST(test_a_suspended_bus_lets_go_and_comes_back);
 	RUN_TEST(test_a_target_that_does_not_open_is_tried_again_for_ever);
+	RUN_TEST(test_a_target_without_its_file_is_refused_with_the_reason);
 	return UNITY_END();
 }
