@@ -41,17 +41,22 @@ static int64_t now(void *ctx)
 	return (int64_t)time.tv_sec * 1000000000 + time.tv_nsec;
 }
 
-/* A USB request costs about what the I2C message would: waiting for it too would count it twice. */
-static int no_wait(void *ctx, int fd, short events, int64_t until_ns)
+/*
+ * A message is answered when its last bit is through. A model whose clock ran ahead of the kernel's
+ * would cut short what a driver waits for by that one: a conversion under strong pull-up.
+ */
+static int wait_until(void *ctx, int fd, short events, int64_t until_ns)
 {
+	struct timespec until = {.tv_sec = until_ns / 1000000000, .tv_nsec = until_ns % 1000000000};
+
 	(void)ctx;
 	(void)fd;
 	(void)events;
-	(void)until_ns;
+	clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL);
 	return 0;
 }
 
-static const struct bus_env real_time = {.now = now, .wait = no_wait};
+static const struct bus_env real_time = {.now = now, .wait = wait_until};
 
 static int message(void *ctx, uint8_t address, bool read, uint8_t *data, size_t len)
 {
