@@ -236,9 +236,12 @@ bench:
 include tests/kernel/kernel.mk
 
 # --- Slower checks ----------------------------------------------------------------------------
-ASAN_FLAGS := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+# What gcc guesses of values is worse in code that a sanitizer has changed; the plain build is asked
+GUESSES  := -Wno-maybe-uninitialized -Wno-format-truncation
+ASAN_FLAGS := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer \
+              $(GUESSES)
 # TSan does not know fences, and gcc says so at each
-TSAN_FLAGS := -fsanitize=thread -fno-omit-frame-pointer -Wno-tsan
+TSAN_FLAGS := -fsanitize=thread -fno-omit-frame-pointer -Wno-tsan $(GUESSES)
 
 asan:
 	@$(MAKE) --no-print-directory B=build/asan all
