@@ -34,8 +34,13 @@ struct i2c_adapter_ops {
 	int (*write_byte_data)(struct i2c_adapter *adapter, uint8_t address, uint8_t command,
 	                       uint8_t data);
 	int (*read_byte)(struct i2c_adapter *adapter, uint8_t address);
-	/* Is the address free for us? -EBUSY a kernel driver has it. */
+	/*
+	 * Is the address free for us? From then on it is ours. -EBUSY a kernel driver has it;
+	 * -EADDRINUSE another target has, of the process adapter->holder.
+	 */
 	int (*claim)(struct i2c_adapter *adapter, uint8_t address);
+	/* The address is not ours any more, as after close(). NULL: claims hold nobody off. */
+	void (*release)(struct i2c_adapter *adapter, uint8_t address);
 	void (*close)(struct i2c_adapter *adapter);
 };
 
@@ -51,6 +56,7 @@ struct i2c_adapter {
 	unsigned max_messages; /* in one transfer; 42 with i2c-dev */
 	uint32_t hz;           /* bus speed if known, else 0 */
 	uint64_t transfers, bytes, syscalls; /* counted by the adapter */
+	int holder; /* process that a claim was refused for; 0 not known */
 };
 
 #endif

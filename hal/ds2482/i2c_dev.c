@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "i2c_dev.h"
 
+#include "chip_lock.h"
+
 #include <errno.h>
 #include <stdbool.h>
 
@@ -123,7 +125,15 @@ static int read_byte(struct i2c_adapter *base, uint8_t address)
 
 static int claim(struct i2c_adapter *base, uint8_t address)
 {
-	return set_address((struct i2c_dev *)base, address);
+	struct i2c_dev *dev = (struct i2c_dev *)base;
+	int err = set_address(dev, address);
+
+	return err ? err : chip_lock(dev->fd, address, &base->holder);
+}
+
+static void release(struct i2c_adapter *base, uint8_t address)
+{
+	chip_unlock(((struct i2c_dev *)base)->fd, address);
 }
 
 static void close_dev(struct i2c_adapter *base)
@@ -140,6 +150,7 @@ static const struct i2c_adapter_ops i2c_dev_ops = {
 	.write_byte_data = write_byte_data,
 	.read_byte = read_byte,
 	.claim = claim,
+	.release = release,
 	.close = close_dev,
 };
 

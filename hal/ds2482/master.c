@@ -69,12 +69,39 @@ static void close_adapter(struct ds2482_master *master)
 	adapter->ops->close(adapter);
 }
 
+/* "owsd (process 4711)" */
+static void name_holder(int pid, char *text, size_t size)
+{
+	char path[32], name[32] = "";
+	FILE *file;
+
+	if (pid <= 0) {
+		snprintf(text, size, "another target or process");
+		return;
+	}
+	snprintf(path, sizeof(path), "/proc/%d/comm", pid);
+	file = fopen(path, "re");
+	if (file) {
+		if (!fgets(name, sizeof(name), file))
+			name[0] = '\0';
+		fclose(file);
+	}
+	name[strcspn(name, "\n")] = '\0';
+	snprintf(text, size, "%s%sprocess %d%s", name, name[0] ? " (" : "", pid, name[0] ? ")" : "");
+}
+
 static void explain(const struct ds2482_master *master, int err, int address, char *why,
                     size_t size)
 {
 	const char *name = master->source.name;
+	char holder[64];
 
 	switch (err) {
+	case -EADDRINUSE:
+		name_holder(master->adapter->holder, holder, sizeof(holder));
+		snprintf(why, size, "the chip at 0x%02x on %s is in use by %s", (unsigned)address,
+		         name, holder);
+		break;
 	case -EBUSY:
 		snprintf(why, size,
 		         "0x%02x on %s belongs to a kernel driver: use target w1, or unbind ds2482",
@@ -104,16 +131,21 @@ static void explain(const struct ds2482_master *master, int err, int address, ch
 static int take_chip(struct ds2482_master *master, uint8_t address)
 {
 	struct ds2482_chip *chip = &master->chip[master->count];
-	int err = master->adapter->ops->claim(master->adapter, address);
+	struct i2c_adapter *adapter = master->adapter;
+	int err = adapter->ops->claim(adapter, address);
 
-	chip->master = master;
-	chip->address = address;
-	if (!err)
-		err = ds2482_detect(chip);
-	if (!err)
-		err = ds2482_setup(chip);
 	if (err)
 		return err;
+	chip->master = master;
+	chip->address = address;
+	err = ds2482_detect(chip);
+	if (!err)
+		err = ds2482_setup(chip);
+	if (err) {
+		if (adapter->ops->release)
+			adapter->ops->release(adapter, address);
+		return err;
+	}
 	for (unsigned i = 0; i < chip->channels; i++)
 		ds2482_link_init(chip, i);
 	master->count++;

@@ -2,6 +2,7 @@
 /* The driver over the simulated chip, in virtual time. */
 #include <errno.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "hal/ds2482/ds2482.h"
 #include "hal/sim/adapter.h"
@@ -366,6 +367,40 @@ static void test_other_parts_never_get_a_second_byte(void)
 	TEST_ASSERT_EQUAL_UINT(0, second_bytes);
 }
 
+static int held_claim(struct i2c_adapter *base, uint8_t address)
+{
+	base->holder = getpid();
+	return address == 0x1a ? -EADDRINUSE : 0;
+}
+
+static unsigned released;
+static void count_release(struct i2c_adapter *base, uint8_t address)
+{
+	(void)base;
+	TEST_ASSERT_NOT_EQUAL_UINT(0x1a, address);
+	released++;
+}
+
+static void test_a_chip_of_another_process_is_left_alone_and_said(void)
+{
+	const struct ds2482_source source = {open_other, forget, "test", NULL};
+	struct i2c_adapter_ops held_ops = other_ops;
+
+	held_ops.claim = held_claim;
+	held_ops.release = count_release;
+	other.ops = &held_ops;
+	other_value = 0xff;
+	released = 0;
+	TEST_ASSERT_EQUAL_INT(0, ds2482_create(&ops, &host.env, &source, "", &master, why,
+	                                       sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(-EADDRINUSE, master->ops->open(master, why, sizeof(why)));
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, "0x1a on test is in use by test_ds2482 (process"),
+	                             why);
+	/* where nothing was found nobody is held off */
+	TEST_ASSERT_EQUAL_UINT(DS2482_ADDRESSES - 1, released);
+	other.ops = &other_ops;
+}
+
 static void test_a_chip_that_restarted_is_noticed_and_set_up_again(void)
 {
 	for (unsigned i = 0; i < 6; i++) {
@@ -632,6 +667,7 @@ int main(void)
 	RUN_TEST(test_one_chip_or_one_channel_is_opened_when_it_is_named);
 	RUN_TEST(test_a_where_that_is_none_is_refused);
 	RUN_TEST(test_other_parts_never_get_a_second_byte);
+	RUN_TEST(test_a_chip_of_another_process_is_left_alone_and_said);
 	RUN_TEST(test_a_chip_that_restarted_is_noticed_and_set_up_again);
 	RUN_TEST(test_a_stuck_chip_is_an_error_in_time_and_a_reset_frees_it);
 	RUN_TEST(test_a_refused_call_is_an_error_and_the_next_one_works);
