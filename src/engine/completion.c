@@ -6,6 +6,9 @@
 #include <errno.h>
 #include <string.h>
 
+/* How often an alarm item without PerFactor is read though no alarm came. */
+#define ALARM_ITEM_NS 60000000000LL
+
 static void say_bad(struct engine *e, const struct signal *s, int err, uint8_t quality)
 {
 	log_warning(e->log, "%s (%s): %s%s%s", s->item->name, s->item->path,
@@ -85,18 +88,14 @@ static int take_answer(struct lane *lane, struct signal *s, const struct slot *s
 	return 0;
 }
 
-void engine_read_done(struct engine *e, struct lane *lane, const struct slot *slot,
-                      const struct bus_answer *answer, int64_t now_ns)
+int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
+                        const struct slot *slot, const struct bus_answer *answer, int64_t now_ns,
+                        int64_t *wait_ns)
 {
-	struct signal *s = &e->table.signals[slot->row];
-	uint64_t begun = e->period - (uint64_t)s->attrs.pend_last;
 	uint8_t quality = OWS_Q_GOOD;
-	int64_t wait_ns;
-	int err;
+	int err = take_answer(lane, s, slot, answer, &quality, now_ns);
 
-	if (!signal_reads(s)) /* disabled meanwhile */
-		return;
-	err = take_answer(lane, s, slot, answer, &quality, now_ns);
+	*wait_ns = 0;
 	switch (failure_of(err)) {
 	case FAILURE_NONE:
 		lane->counters.reads++;
@@ -105,20 +104,48 @@ void engine_read_done(struct engine *e, struct lane *lane, const struct slot *sl
 		s->sample.detail = answer->detail;
 		retry_clear(&s->read_retry);
 		succeed(e, lane, s, quality, now_ns);
-		engine_read_at(e, s, begun + s->item->per_factor);
 		break;
 	case FAILURE_ITEM:
-		wait_ns = fail_item(e, lane, s, &s->read_retry, err);
-		engine_read_at(e, s, e->period + (wait_ns ? engine_periods(e, wait_ns) : 1));
+		*wait_ns = fail_item(e, lane, s, &s->read_retry, err);
 		break;
 	case FAILURE_TARGET:
 		s->sample.err = err;
-		engine_read_at(e, s, e->period + 1);
 		break;
 	case FAILURE_VOID:
-		engine_read_at(e, s, e->period + 1);
 		break;
 	}
+	return err;
+}
+
+/* An alarm item is read when it has something to say, and now and then to see that it lives. */
+static uint64_t reads_apart(struct engine *e, struct lane *lane, const struct signal *s)
+{
+	if (s->item->alarm && alarm_serves(&lane->alarm) && s->item->per_factor == 1)
+		return engine_periods(e, ALARM_ITEM_NS);
+	return s->item->per_factor;
+}
+
+void engine_read_done(struct engine *e, struct lane *lane, const struct slot *slot,
+                      const struct bus_answer *answer, int64_t now_ns)
+{
+	struct signal *s = &e->table.signals[slot->row];
+	uint64_t begun = e->period - (uint64_t)s->attrs.pend_last;
+	int64_t wait_ns;
+
+	if (!signal_reads(s)) /* disabled meanwhile */
+		return;
+	if (engine_take_reading(e, lane, s, slot, answer, now_ns, &wait_ns) == 0)
+		engine_read_at(e, s, begun + reads_apart(e, lane, s));
+	else
+		engine_read_at(e, s, e->period + (wait_ns ? engine_periods(e, wait_ns) : 1));
+}
+
+void engine_alarm_failed(struct engine *e, struct lane *lane, const struct alarm_item *item, int err)
+{
+	struct signal *s = &e->table.signals[item->row];
+
+	if (failure_of(err) == FAILURE_ITEM)
+		fail_item(e, lane, s, &s->read_retry, err);
 }
 
 static void write_succeeded(struct engine *e, struct lane *lane, const struct slot *slot,
@@ -200,6 +227,7 @@ void engine_structure_done(struct engine *e, struct lane *lane, const struct slo
 void engine_lane_down(struct engine *e, struct lane *lane, int err, int64_t now_ns)
 {
 	(void)now_ns;
+	alarm_restart(&lane->alarm);
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
@@ -249,6 +277,7 @@ void engine_device_back(struct engine *e, struct lane *lane, struct device *devi
 		retry_clear(&s->read_retry);
 		retry_clear(&s->write_retry);
 		due_wheel_cancel(&e->wheel, engine_row(s) * 2 + 1);
+		alarm_rearm(&lane->alarm, s->device);
 		s->confirmed = false;
 		engine_read_now(e, s);
 		engine_write_check(e, s);

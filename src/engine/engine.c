@@ -90,10 +90,14 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 	next = e->start_ns + (int64_t)(e->period + 1) * e->config->period_ns;
 	for (unsigned i = 0; i < e->lane_count; i++) {
 		int64_t timeout = lane_timeouts(&e->lanes[i], now_ns);
+		int64_t alarm;
 
 		lane_fill(&e->lanes[i], now_ns);
 		if (timeout < next)
 			next = timeout;
+		alarm = lane_wake(&e->lanes[i]);
+		if (alarm < next)
+			next = alarm;
 	}
 	return next;
 }

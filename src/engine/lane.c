@@ -15,7 +15,8 @@ int lane_init(struct lane *lane, struct engine *engine, const struct engine_port
 	lane->slots = calloc(lane->depth, sizeof(*lane->slots));
 	if (!lane->slots || due_set_init(&lane->inputs, engine->table.count) ||
 	    due_set_init(&lane->outputs, engine->table.count) ||
-	    structure_init(&lane->structure, &engine->table, index)) {
+	    structure_init(&lane->structure, &engine->table, index) ||
+	    alarm_init(&lane->alarm, &engine->table, index, engine->start_ns)) {
 		lane_free(lane);
 		return -ENOMEM;
 	}
@@ -33,6 +34,7 @@ void lane_free(struct lane *lane)
 	due_set_free(&lane->inputs);
 	due_set_free(&lane->outputs);
 	structure_free(&lane->structure);
+	alarm_free(&lane->alarm);
 }
 
 static struct slot *free_slot(struct lane *lane)
@@ -50,6 +52,10 @@ static bool lend(struct lane *lane, struct slot *slot, int64_t now_ns)
 	slot->req.id = (uint32_t)(slot - lane->slots) | (uint32_t)slot->turn << 16;
 	slot->req.deadline_ns = now_ns + lane->engine->config->timeout_ns;
 	slot->req.data = slot->data;
+	if (slot->req.op == BUS_DIR) {
+		slot->req.data = (uint8_t *)lane->alarm.list;
+		slot->req.len = ALARM_LIST;
+	}
 	slot->begun_ns = now_ns;
 	slot->given_up = false;
 	if (lane->port->submit(lane->port->ctx, &slot->req))
@@ -139,14 +145,55 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 	return true;
 }
 
-/* The order of a lane: what the bus is made of, one changed output, the next due input. */
+/* True: the alarm machine has given the slot's request to the bus, or has none to give now. */
+static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	struct alarm_request *r = &lane->alarm_request;
+	struct signal *s;
+
+	/* one that was given up is still lent: its path and room are not ours yet */
+	if (lane->alarm_slot || lane->writes_in_work ||
+	    !alarm_run(&lane->alarm, lane, r, now_ns))
+		return false;
+	slot->purpose = FOR_ALARM;
+	slot->row = r->row;
+	slot->req = (struct bus_req){ .op = (uint8_t)r->op, .prio = BUS_ALARM, .fresh = true,
+		                      .path = r->path, .len = sizeof(slot->data) };
+	if (r->op == BUS_WRITE) {
+		memcpy(slot->data, r->data, r->len);
+		slot->req.len = r->len;
+	}
+	if (r->row != TABLE_NO_ROW) {
+		slot->value = e->table.signals[r->row].item->init_value;
+		slot->stamp = e->table.signals[r->row].sample.applied;
+	}
+	if (!lend(lane, slot, now_ns))
+		return false;
+	lane->alarm_slot = slot;
+	alarm_started(&lane->alarm, lane, now_ns);
+	if (r->row == TABLE_NO_ROW)
+		return true;
+	s = &e->table.signals[r->row];
+	s->alarming = true;
+	s->sample.tried_ns = now_ns;
+	signal_begin(s, e->period);
+	engine_publish(e, s);
+	return true;
+}
+
+/* The order of a lane: what the bus is made of, alarms, one changed output, the next due input. */
 static bool ask_next(struct lane *lane, struct slot *slot, int64_t now_ns)
 {
-	int64_t output = lane->writes_in_work ? -1 : due_set_next(&lane->outputs);
-	int64_t input = due_set_next(&lane->inputs);
+	int64_t output, input;
 
 	if (lane->structure.next < lane->structure.count)
 		return ask_structure(lane, slot, now_ns);
+	if (ask_alarm(lane, slot, now_ns))
+		return true;
+	output = lane->writes_in_work || alarm_holds(&lane->alarm) ? -1
+	                                                          : due_set_next(&lane->outputs);
+	input = due_set_next(&lane->inputs);
 	if (output >= 0 && (input < 0 || lane->writes_in_row < lane->writers))
 		return ask_write(lane, slot, (uint32_t)output, now_ns);
 	if (input >= 0)
@@ -161,6 +208,13 @@ void lane_fill(struct lane *lane, int64_t now_ns)
 	while (lane->up && !lane->stuck && (slot = free_slot(lane)) != NULL)
 		if (!ask_next(lane, slot, now_ns))
 			break;
+}
+
+int64_t lane_wake(const struct lane *lane)
+{
+	if (!lane->up || lane->stuck || lane->lent == lane->depth)
+		return INT64_MAX;
+	return alarm_wake(&lane->alarm);
 }
 
 static struct slot *slot_of(struct lane *lane, uint32_t id)
@@ -192,6 +246,7 @@ static void complete(struct lane *lane, struct slot *slot, const struct bus_answ
 		signal_end(s, e->period);
 		engine_read_done(e, lane, slot, answer, now_ns);
 		engine_publish(e, s);
+		alarm_passed(&lane->alarm);
 		break;
 	case FOR_WRITE:
 		s = &e->table.signals[slot->row];
@@ -199,6 +254,18 @@ static void complete(struct lane *lane, struct slot *slot, const struct bus_answ
 		lane->writes_in_work--;
 		signal_end(s, e->period);
 		engine_write_done(e, lane, slot, answer, now_ns);
+		engine_publish(e, s);
+		alarm_passed(&lane->alarm);
+		break;
+	case FOR_ALARM:
+		if (slot->row == TABLE_NO_ROW) {
+			alarm_answered(&lane->alarm, lane, slot, answer, now_ns);
+			break;
+		}
+		s = &e->table.signals[slot->row];
+		s->alarming = false;
+		signal_end(s, e->period);
+		alarm_answered(&lane->alarm, lane, slot, answer, now_ns);
 		engine_publish(e, s);
 		break;
 	}
@@ -208,6 +275,8 @@ static void give_back(struct lane *lane, struct slot *slot)
 {
 	slot->lent = false;
 	lane->lent--;
+	if (lane->alarm_slot == slot)
+		lane->alarm_slot = NULL;
 }
 
 void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now_ns)

@@ -6,6 +6,7 @@
 #ifndef ENGINE_LANE_H
 #define ENGINE_LANE_H
 
+#include "alarm.h"
 #include "due.h"
 #include "engine.h"
 #include "structure.h"
@@ -16,7 +17,7 @@
 /* How long after its deadline a request is given up that the bus did not answer at all. */
 #define LANE_GRACE_NS 250000000LL
 
-enum purpose { FOR_READ, FOR_WRITE, FOR_STRUCTURE };
+enum purpose { FOR_READ, FOR_WRITE, FOR_STRUCTURE, FOR_ALARM };
 
 /* A request and its room. Its id is slot | turn << 16, so that a late answer is told apart. */
 struct slot {
@@ -43,7 +44,10 @@ struct slot {
 	X(late_answers)   /* came after that */                                                    \
 	X(unknown_answers) /* nobody asked, or a second time */                                    \
 	X(power_faults)   /* 85 and 127.94 refused */                                              \
-	X(device_returns) /* devices that came back */
+	X(device_returns) /* devices that came back */                                             \
+	X(alarm_lists)    /* readings of /alarm */                                                 \
+	X(alarms)         /* occurrences */                                                        \
+	X(power_on_resets)
 
 struct lane {
 	struct engine *engine;
@@ -60,6 +64,10 @@ struct lane {
 	uint32_t writes_in_row; /* since the last read was begun */
 	struct structure structure;
 
+	struct alarm_machine alarm;
+	struct alarm_request alarm_request; /* of alarm_slot; immutable while that is lent */
+	struct slot *alarm_slot;
+
 	struct {
 #define X(name) uint64_t name;
 		LANE_COUNTERS(X)
@@ -73,6 +81,8 @@ void lane_free(struct lane *lane);
 
 /* Submit as much as the order of the lane and the depth of its bus allow. */
 void lane_fill(struct lane *lane, int64_t now_ns);
+/* When it wants to be filled again though nothing ended; INT64_MAX: not before. */
+int64_t lane_wake(const struct lane *lane);
 void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now_ns);
 void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns);
 /* Give requests up whose time is over; returns when the next one's is. */

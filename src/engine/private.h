@@ -95,6 +95,26 @@ void engine_write_done(struct engine *e, struct lane *lane, const struct slot *s
                        const struct bus_answer *answer, int64_t now_ns);
 void engine_structure_done(struct engine *e, struct lane *lane, const struct slot *slot,
                            const struct bus_answer *answer);
+/* The value of a read into the table; 0, or why it cannot be one (counted as item error). */
+int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
+                        const struct slot *slot, const struct bus_answer *answer, int64_t now_ns,
+                        int64_t *wait_ns);
+
+/* alarm_effect.c: what the alarm machine changes in the table */
+void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item *item,
+                         int64_t now_ns);
+void engine_alarm_ended(struct engine *e, struct alarm_item *item);
+/* The value read under an alarm; 0 or the item error. */
+int engine_alarm_value(struct engine *e, struct lane *lane, struct alarm_item *item,
+                       const struct slot *slot, const struct bus_answer *answer, int64_t now_ns);
+/* A request for this item failed. */
+void engine_alarm_failed(struct engine *e, struct lane *lane, const struct alarm_item *item,
+                         int err);
+/* The device's por was read non-zero: its outputs are not what was written. */
+void engine_power_on_reset(struct engine *e, struct lane *lane, const struct alarm_item *item);
+/* The bus has no alarm search: the items are ordinary inputs. */
+void engine_alarm_polls(struct engine *e, struct alarm_machine *m);
+
 /* All signals of the lane: the target was lost, came back. */
 void engine_lane_down(struct engine *e, struct lane *lane, int err, int64_t now_ns);
 void engine_lane_up(struct engine *e, struct lane *lane, int64_t now_ns);

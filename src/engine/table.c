@@ -211,7 +211,7 @@ void signal_end(struct signal *s, uint64_t period)
 	s->attrs.pend_last = waited;
 	if (waited > s->attrs.pend_max)
 		s->attrs.pend_max = waited;
-	if (!s->reading && !s->writing)
+	if (!s->reading && !s->writing && !s->alarming)
 		s->attrs.flags &= ~(uint32_t)OWS_ATTR_IN_WORK;
 }
 

@@ -33,6 +33,8 @@ struct signal {
 	bool guarded;
 	struct guard guard;
 
+	bool alarming; /* a request of the alarm machine counts for it */
+
 	/* writing */
 	bool writing;
 	struct retry write_retry;

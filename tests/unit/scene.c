@@ -39,8 +39,11 @@ struct config_item *scene_output(struct scene *s, const char *name, const char *
 	return item;
 }
 
+/* What stands under /alarm is the same property; the list of it is one of its own. */
 static struct scene_property *find(struct scene *s, const char *path)
 {
+	if (strncmp(path, "/alarm/", 7) == 0)
+		path += 6;
 	for (unsigned i = 0; i < s->property_count; i++)
 		if (strcmp(s->properties[i].path, path) == 0)
 			return &s->properties[i];
@@ -103,6 +106,10 @@ static int submit(void *ctx, struct bus_req *req)
 		return -EAGAIN;
 	if (structure) {
 		s->structure_reads++;
+	} else if (req->op == BUS_DIR) {
+		s->lists++;
+		if (s->trace_lists)
+			note(s, 'D', req->path, text);
 	} else if (req->op == BUS_WRITE) {
 		s->writes++;
 		snprintf(text, sizeof(text), "%.*s", (int)req->len, (const char *)req->data);
@@ -216,9 +223,13 @@ static void deliver(struct scene *s, unsigned index)
 
 	s->pending[index] = s->pending[--s->pending_count];
 	if (!p) {
-		scene_answer(s, req->id, -ENOENT, NULL, req);
+		scene_answer(s, req->id, req->op == BUS_DIR ? -EOPNOTSUPP : -ENOENT, NULL, req);
 		return;
 	}
+	if (s->on_read && req->op != BUS_WRITE)
+		s->on_read(s, req->path);
+	if (req->op == BUS_WRITE && !p->err && s->on_write)
+		s->on_write(s, req->path, (const char *)req->data, req->len);
 	if (req->op == BUS_WRITE && !p->err)
 		snprintf(p->text, sizeof(p->text), "%.*s", (int)req->len, (const char *)req->data);
 	scene_answer(s, req->id, p->err, p->text, req);

@@ -54,7 +54,11 @@ struct scene {
 	unsigned swallowed_count;
 
 	char trace[16384];       /* "R /path\n" (r: fresh), "W /path=text\n" */
-	unsigned reads, writes, structure_reads;
+	unsigned reads, writes, structure_reads, lists;
+	bool trace_lists;        /* "D /alarm" too */
+	/* what else happens to the devices when something is read or written; may use scene_put() */
+	void (*on_write)(struct scene *scene, const char *path, const char *data, uint32_t len);
+	void (*on_read)(struct scene *scene, const char *path);
 };
 
 /* Fill in an item with the defaults of the file; the pointers must live. */
@@ -62,7 +66,10 @@ struct config_item *scene_input(struct scene *scene, const char *name, const cha
                                 enum ows_type type);
 struct config_item *scene_output(struct scene *scene, const char *name, const char *path,
                                  enum ows_type type);
-/* What the bus answers at path. err 0: text. Replaces. */
+/*
+ * What the bus answers at path. err 0: text. Replaces. "/alarm" is the list of the devices in alarm,
+ * each path ended by '\n'; without it the bus has no alarm search.
+ */
 void scene_put(struct scene *scene, const char *path, const char *text, int err);
 const char *scene_at(struct scene *scene, const char *path);
 
