@@ -218,6 +218,7 @@ static int create_workers(struct host *h, char *why, size_t why_size)
 		h->ports[i] = (struct engine_port){
 			.target = target,
 			.depth = bus_depth(worker_bus(h->workers[i])),
+			.searches = worker_bus(h->workers[i])->ops->searches,
 			.submit = submit,
 			.ctx = h->workers[i],
 		};

@@ -260,7 +260,9 @@ static bool ask_in_state(struct alarm_machine *m, struct lane *lane, struct alar
 			return true;
 		if (now_ns < m->list_ns)
 			return false;
-		*r = (struct alarm_request){ .op = BUS_DIR, .path = "/alarm", .row = TABLE_NO_ROW };
+		r->op = BUS_DIR;
+		r->row = TABLE_NO_ROW;
+		memcpy(r->path, m->list_path, sizeof(m->list_path));
 		return true;
 	case ALARM_POR_READ:
 		ask(r, BUS_READ, "", i, i->strings.por, "");

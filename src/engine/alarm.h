@@ -70,6 +70,7 @@ struct alarm_machine {
 	int64_t list_ns;       /* earliest time of the next list */
 	int64_t wait_ns;       /* doubles while lists fail */
 	char *list;            /* ALARM_LIST bytes */
+	char list_path[128];   /* "/alarm", or "/alarm/29,12" */
 	uint8_t families[32];
 	unsigned family_count;
 	unsigned strangers;    /* listed devices without alarm item that were logged */
@@ -80,7 +81,8 @@ struct engine;
 struct lane;
 
 /* 0 or -ENOMEM. */
-int alarm_init(struct alarm_machine *m, const struct table *table, unsigned lane, int64_t now_ns);
+int alarm_init(struct alarm_machine *m, const struct table *table, unsigned lane, bool searches,
+               int64_t now_ns);
 void alarm_free(struct alarm_machine *m);
 
 /* Does the lane hold writes back for it? */

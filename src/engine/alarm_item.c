@@ -65,7 +65,20 @@ static void add_family(struct alarm_machine *m, const struct table *table, uint3
 	m->family_count++;
 }
 
-int alarm_init(struct alarm_machine *m, const struct table *table, unsigned lane, int64_t now_ns)
+/* A thermometer with its factory limits is always in alarm: the search need not go there. */
+static void name_list(struct alarm_machine *m, bool searches)
+{
+	size_t used = (size_t)snprintf(m->list_path, sizeof(m->list_path), "/alarm");
+
+	if (!searches || m->family_count > sizeof(m->families))
+		return;
+	for (unsigned i = 0; i < m->family_count; i++)
+		used += (size_t)snprintf(m->list_path + used, sizeof(m->list_path) - used, "%c%02X",
+		                         i ? ',' : '/', m->families[i]);
+}
+
+int alarm_init(struct alarm_machine *m, const struct table *table, unsigned lane, bool searches,
+               int64_t now_ns)
 {
 	uint32_t count = 0;
 
@@ -96,8 +109,7 @@ int alarm_init(struct alarm_machine *m, const struct table *table, unsigned lane
 		add_family(m, table, s->device);
 		m->count++;
 	}
-	if (m->family_count > sizeof(m->families))
-		m->family_count = 0;
+	name_list(m, searches);
 	m->state = alarm_next(NOT_USED, FACT_ITEMS)->next;
 	return 0;
 }

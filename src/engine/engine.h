@@ -17,6 +17,7 @@
 struct engine_port {
 	const char *target; /* for the log; lives as long as the engine */
 	unsigned depth;     /* requests it takes before an answer */
+	bool searches;      /* its list of /alarm can be kept to families: "/alarm/29,12" */
 	/* 0 or -EAGAIN; never blocks. The request is lent until its answer. */
 	int (*submit)(void *ctx, struct bus_req *req);
 	void *ctx;

@@ -16,7 +16,7 @@ int lane_init(struct lane *lane, struct engine *engine, const struct engine_port
 	if (!lane->slots || due_set_init(&lane->inputs, engine->table.count) ||
 	    due_set_init(&lane->outputs, engine->table.count) ||
 	    structure_init(&lane->structure, &engine->table, index) ||
-	    alarm_init(&lane->alarm, &engine->table, index, engine->start_ns)) {
+	    alarm_init(&lane->alarm, &engine->table, index, port->searches, engine->start_ns)) {
 		lane_free(lane);
 		return -ENOMEM;
 	}

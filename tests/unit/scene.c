@@ -187,7 +187,8 @@ void scene_start(struct scene *s)
 	s->command_memory = aligned_alloc(64, (size + 63) / 64 * 64);
 	memset(s->command_memory, 0, size);
 	TEST_ASSERT_EQUAL_INT(0, commands_build(&s->command_plan, s->command_memory, &s->commands));
-	s->port = (struct engine_port){ .target = "scene", .depth = s->depth, .submit = submit,
+	s->port = (struct engine_port){ .target = "scene", .depth = s->depth, .searches = s->searches,
+		                        .submit = submit,
 		                        .ctx = s };
 	TEST_ASSERT_EQUAL_INT(0, engine_create(&setup, &s->engine));
 }
@@ -219,7 +220,7 @@ void scene_answer(struct scene *s, uint32_t id, int err, const char *text, struc
 static void deliver(struct scene *s, unsigned index)
 {
 	struct bus_req *req = s->pending[index].req;
-	struct scene_property *p = find(s, req->path);
+	struct scene_property *p = find(s, req->op == BUS_DIR ? "/alarm" : req->path);
 
 	s->pending[index] = s->pending[--s->pending_count];
 	if (!p) {

@@ -45,6 +45,7 @@ struct scene {
 	int64_t now_ns;
 
 	unsigned depth;          /* set before scene_start(); 1 */
+	bool searches;           /* likewise */
 	int64_t latency_ns;      /* of each answer; 1 ms */
 	bool mute;               /* the bus answers nothing */
 	bool refuses;            /* submit says -EAGAIN */

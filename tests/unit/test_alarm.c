@@ -293,6 +293,20 @@ static void test_a_bus_without_alarm_search_has_its_items_read_as_inputs(void)
 	TEST_ASSERT_GREATER_THAN(8, scene_sample(&s, 1).count);
 }
 
+static void test_a_bus_that_searches_is_asked_for_the_families_of_the_items_only(void)
+{
+	s.searches = s.trace_lists = true;
+	figure_3_3();
+	alarm_item("second", E "/sensed.BYTE", "latch.BYTE", "", NULL, "latch.BYTE=0");
+	alarm_item("t", T_TEMP, "present", "", "temphigh=30", "")->type = OWS_DOUBLE;
+	device("0", "0");
+	scene_start(&s);
+	scene_up(&s);
+	scene_run(&s, 200 * SCENE_MS);
+	TEST_ASSERT_NOT_NULL(strstr(s.trace, "D /alarm/29,28\n"));
+	TEST_ASSERT_NULL(strstr(s.trace, "D /alarm\n"));
+}
+
 static void test_a_list_that_fails_is_asked_for_ever_more_rarely(void)
 {
 	figure_3_3();
@@ -502,6 +516,7 @@ int main(void)
 	RUN_TEST(test_after_max_cons_alarms_one_other_request_goes_through);
 	RUN_TEST(test_a_storm_of_alarms_starves_neither_reads_nor_writes);
 	RUN_TEST(test_a_bus_without_alarm_search_has_its_items_read_as_inputs);
+	RUN_TEST(test_a_bus_that_searches_is_asked_for_the_families_of_the_items_only);
 	RUN_TEST(test_a_list_that_fails_is_asked_for_ever_more_rarely);
 	RUN_TEST(test_a_device_that_fails_is_left_for_the_next_alarm);
 	RUN_TEST(test_a_device_that_vanishes_in_any_state_does_not_stop_the_machine);
