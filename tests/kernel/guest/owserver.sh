@@ -61,7 +61,8 @@ if ! busdump i2c:/dev/i2c-0 dir /uncached >/tmp/ours.dir 2>/tmp/log/busdump; the
 	finish
 fi
 ok "owsd's own bus opens the adapter"
-same "and finds the same devices" "$(cat /tmp/devices)" "$(devices </tmp/ours.dir)"
+same "and finds the same devices" "$(cat /tmp/devices)" \
+	"$(sed 's|^|/uncached|' /tmp/ours.dir | devices)"
 busdump i2c:/dev/i2c-0 read </tmp/paths >/tmp/ours 2>>/tmp/log/busdump
 awk -v what="read" -f /rig/compare.awk /tmp/theirs /tmp/ours || failed=1
 busdump i2c:/dev/i2c-0 write </rig/writes.txt >/tmp/ours.writes 2>>/tmp/log/busdump
