@@ -245,7 +245,7 @@ TSAN_FLAGS := -fsanitize=thread -fno-omit-frame-pointer -Wno-tsan $(GUESSES)
 
 asan:
 	@$(MAKE) --no-print-directory B=build/asan all
-	@ASAN_OPTIONS=detect_leaks=1:abort_on_error=0 UBSAN_OPTIONS=print_stacktrace=1 \
+	@ASAN_OPTIONS=detect_leaks=1:abort_on_error=0:handle_sigbus=0 UBSAN_OPTIONS=print_stacktrace=1 \
 	    sh tests/both $(MAKE) --no-print-directory B=build/asan
 asan: export EXTRA_CFLAGS := $(ASAN_FLAGS)
 asan: export CFLAGS := -O1 -g

@@ -3,6 +3,7 @@
 
 #include "hal/worker.h"
 #include "libows/ows.h"
+#include "shm/reader.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -365,10 +366,9 @@ fail:
 
 int64_t host_beat(const struct host *host)
 {
-	const struct ows_record *r = &host->memory.image.records[0];
-	uint32_t seq = __atomic_load_n(&r->seq, __ATOMIC_ACQUIRE);
+	struct ows_sample sample;
 
-	return r->slot[(seq >> 1) & 1].sample.measured_ns;
+	return reader_sample(&host->memory.image.records[0], &sample) ? sample.measured_ns : 0;
 }
 
 unsigned host_signals(const struct host *host)

@@ -56,8 +56,8 @@ static void wait_in_bell(int64_t length)
 
 static void bell(void *ctx)
 {
-	TEST_ASSERT_EQUAL_PTR(&rung, ctx);
-	__atomic_add_fetch(&rung, 1, __ATOMIC_SEQ_CST);
+	/* not the thread for an assertion of Unity's */
+	__atomic_add_fetch((int *)ctx, 1, __ATOMIC_SEQ_CST);
 	switch (at_bell) {
 	case RING:
 		break;
