@@ -28,6 +28,9 @@ void targets_add(struct build *build, const char *text, struct place place);
 
 /* One Item block. */
 void item_build(struct build *build, const struct rio_node *block, struct config_item *item);
+/* Its limit alarms, when its type is known. */
+void limits_build(struct build *build, const struct option_value *values,
+                  struct config_item *item);
 /* What concerns items together: names. */
 void items_check(struct build *build, const struct place *names);
 

@@ -11,6 +11,22 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+enum config_limit {
+	CONFIG_LIMIT_LL,
+	CONFIG_LIMIT_L,
+	CONFIG_LIMIT_H,
+	CONFIG_LIMIT_HH,
+	CONFIG_LIMITS,
+};
+/* Limit alarms of a signal; not of strings. */
+struct config_limits {
+	bool any; /* at least one limit is given: only then there are limit alarms */
+	bool has[CONFIG_LIMITS];
+	double limit[CONFIG_LIMITS]; /* rising, as far as given */
+	double hysteresis;           /* not negative */
+	int64_t on_delay_ns, off_delay_ns;
+};
+
 struct config_item {
 	const char *name;
 	const char *path; /* normalised: leading "/", without "/uncached" and "/alarm" */
@@ -26,6 +42,7 @@ struct config_item {
 	bool alarm;
 	/* NULL: not defined, "": empty; Table 3.1 tells the two apart */
 	const char *latch_alarm, *por_alarm, *set_alarm, *reset_latch;
+	struct config_limits limits;
 	int line; /* of Item */
 };
 

@@ -269,6 +269,7 @@ void item_build(struct build *build, const struct rio_node *block, struct config
 	build_flags(build, values, &path, item);
 	build_values(build, values, known, item);
 	build_alarm(build, block, values, &path, item);
+	limits_build(build, values, item);
 }
 
 struct named {

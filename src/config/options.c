@@ -4,6 +4,7 @@
 #include "../signal/value.h"
 
 #include <ctype.h>
+#include <float.h>
 #include <math.h>
 #include <string.h>
 #include <strings.h>
@@ -63,6 +64,20 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 	                   .help = "property=value that arms the alarm"},
 	[OPT_RESET_LATCH] = {"ResetLatch", PLACE_ITEM, OPTION_TEXT,
 	                     .help = "property=value that clears the latch"},
+	[OPT_LIMIT_HH] = {"LimitHH", PLACE_ITEM, OPTION_NUMBER, false, -DBL_MAX, DBL_MAX, NULL,
+	                  "alarm at or above that value, higher than LimitH"},
+	[OPT_LIMIT_H] = {"LimitH", PLACE_ITEM, OPTION_NUMBER, false, -DBL_MAX, DBL_MAX, NULL,
+	                 "alarm at or above that value"},
+	[OPT_LIMIT_L] = {"LimitL", PLACE_ITEM, OPTION_NUMBER, false, -DBL_MAX, DBL_MAX, NULL,
+	                 "alarm at or below that value"},
+	[OPT_LIMIT_LL] = {"LimitLL", PLACE_ITEM, OPTION_NUMBER, false, -DBL_MAX, DBL_MAX, NULL,
+	                  "alarm at or below that value, lower than LimitL"},
+	[OPT_HYSTERESIS] = {"Hysteresis", PLACE_ITEM, OPTION_NUMBER, false, 0, DBL_MAX, "0",
+	                    "how far a value returns inside a limit before its alarm ends"},
+	[OPT_ON_DELAY] = {"OnDelay", PLACE_ITEM, OPTION_SECONDS, false, 0, DAY, "0",
+	                  "how long a limit alarm's condition stands before it is raised, seconds"},
+	[OPT_OFF_DELAY] = {"OffDelay", PLACE_ITEM, OPTION_SECONDS, false, 0, DAY, "0",
+	                   "how long it is gone before the alarm returns, seconds"},
 
 	[OPT_BUS_TARGET] = {"Target", PLACE_BUS, OPTION_TEXT, .help = "the target it is for"},
 };
@@ -190,6 +205,7 @@ static bool parse_kind(const struct option_def *def, const char *text, double *n
 		return (parse_hex(text, number) || parse_number(text, OWS_LARGE, number)) &&
 		       *number >= def->least && *number <= def->most;
 	case OPTION_SECONDS:
+	case OPTION_NUMBER:
 		return parse_number(text, OWS_DOUBLE, number) && *number >= def->least &&
 		       *number <= def->most;
 	case OPTION_FLAG:
@@ -222,6 +238,10 @@ static void say_expected(const struct option_def *def, const struct rio_node *no
 	case OPTION_SECONDS:
 		report_error(report, node->value_at, "%s \"%s\": expected seconds from %.10g to %.10g",
 		             def->key, node->value, def->least, def->most);
+		break;
+	case OPTION_NUMBER:
+		report_error(report, node->value_at, "%s \"%s\": expected a number%s", def->key,
+		             node->value, def->least < 0 ? "" : ", not negative");
 		break;
 	case OPTION_FLAG:
 		report_error(report, node->value_at, "%s \"%s\": expected on or off", def->key,

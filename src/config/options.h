@@ -20,6 +20,7 @@ enum option_kind {
 	OPTION_TEXT,
 	OPTION_COUNT,   /* whole number, decimal or 0x hexadecimal */
 	OPTION_SECONDS, /* decimal */
+	OPTION_NUMBER,  /* decimal, not less than least */
 	OPTION_FLAG,    /* on, off */
 	OPTION_TYPE,    /* a name of value_type_name() */
 	OPTION_IO,      /* input, output */
@@ -56,6 +57,13 @@ enum option {
 	OPT_POR_ALARM,
 	OPT_SET_ALARM,
 	OPT_RESET_LATCH,
+	OPT_LIMIT_HH,
+	OPT_LIMIT_H,
+	OPT_LIMIT_L,
+	OPT_LIMIT_LL,
+	OPT_HYSTERESIS,
+	OPT_ON_DELAY,
+	OPT_OFF_DELAY,
 	/* of a Bus block */
 	OPT_BUS_TARGET,
 	OPTION_COUNT_ALL,
@@ -66,7 +74,7 @@ struct option_def {
 	enum option_place place;
 	enum option_kind kind;
 	bool repeats;       /* may stand more than once */
-	double least, most; /* counts and seconds */
+	double least, most; /* counts, seconds and numbers */
 	const char *preset; /* the default as it would be written; NULL: none */
 	const char *help;   /* one line */
 };
@@ -82,7 +90,7 @@ struct option_value {
 	const struct rio_node *node; /* NULL: absent */
 	bool given;       /* present and valid; if not, number is the default */
 	const char *text; /* "" if not given */
-	double number;    /* counts, seconds, flags (0, 1), types, IO (1: output) */
+	double number;    /* counts, seconds, numbers, flags (0, 1), types, IO (1: output) */
 };
 
 /*

@@ -41,6 +41,33 @@ static void put_seconds(FILE *out, int indent, enum option option, int64_t ns)
 	put_word(out, indent, option, "%s", text);
 }
 
+static void put_number(FILE *out, int indent, enum option option, double number)
+{
+	char text[VALUE_TEXT_MAX];
+
+	value_to_text(OWS_DOUBLE, value_of_double(number), text);
+	put_word(out, indent, option, "%s", text);
+}
+
+static void put_limits(FILE *out, const struct config_limits *limits)
+{
+	static const enum option options[CONFIG_LIMITS] = {
+		[CONFIG_LIMIT_LL] = OPT_LIMIT_LL,
+		[CONFIG_LIMIT_L] = OPT_LIMIT_L,
+		[CONFIG_LIMIT_H] = OPT_LIMIT_H,
+		[CONFIG_LIMIT_HH] = OPT_LIMIT_HH,
+	};
+
+	for (int i = CONFIG_LIMITS - 1; i >= 0; i--)
+		if (limits->has[i])
+			put_number(out, 4, options[i], limits->limit[i]);
+	if (!limits->any)
+		return;
+	put_number(out, 4, OPT_HYSTERESIS, limits->hysteresis);
+	put_seconds(out, 4, OPT_ON_DELAY, limits->on_delay_ns);
+	put_seconds(out, 4, OPT_OFF_DELAY, limits->off_delay_ns);
+}
+
 static void put_targets(FILE *out, const struct config *config)
 {
 	static const char *const relations[] = {
@@ -85,6 +112,7 @@ static void put_item(FILE *out, const struct config_item *item)
 		put_text(out, 4, OPT_SET_ALARM, item->set_alarm);
 	if (item->reset_latch)
 		put_text(out, 4, OPT_RESET_LATCH, item->reset_latch);
+	put_limits(out, &item->limits);
 	fputs("  }\n", out);
 }
 

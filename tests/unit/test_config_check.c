@@ -284,6 +284,66 @@ static void test_wrong_items_are_errors_with_what_was_expected(void)
 	expect_errors(cases, COUNT(cases), parse_item);
 }
 
+static void test_wrong_limits_are_errors_with_what_was_expected(void)
+{
+#define NUMBER "Name x Path /a/b Type double\n"
+	static const struct line cases[] = {
+		{NUMBER "LimitH hot", "f:4:8: error: LimitH \"hot\": expected a number\n"},
+		{NUMBER "LimitH nan", "f:4:8: error: LimitH \"nan\": expected a number\n"},
+		{NUMBER "LimitL 1 LimitH 1",
+	         "f:4:17: error: LimitH \"1\": expected more than LimitL, which is 1 in line 4\n"},
+		{NUMBER "LimitHH 5\nLimitLL 7",
+	         "f:4:9: error: LimitHH \"5\": expected more than LimitLL, which is 7 in line 5\n"},
+		{NUMBER "LimitH 3 LimitHH 2 LimitL 4 LimitLL 5",
+	         "f:4:27: error: LimitL \"4\": expected more than LimitLL, which is 5 in line 4\n"
+	         "f:4:8: error: LimitH \"3\": expected more than LimitL, which is 4 in line 4\n"
+	         "f:4:18: error: LimitHH \"2\": expected more than LimitH, which is 3 in line 4\n"},
+		{NUMBER "LimitH 3 Hysteresis -0.1",
+	         "f:4:21: error: Hysteresis \"-0.1\": expected a number, not negative\n"},
+		{NUMBER "LimitL 1 LimitH 3 Hysteresis 2",
+	         "f:4:30: error: Hysteresis \"2\": expected less than the 2 between LimitL and "
+	         "LimitH\n"},
+		{NUMBER "LimitLL 1 LimitHH 3 Hysteresis 2.5",
+	         "f:4:32: error: Hysteresis \"2.5\": expected less than the 2 between LimitLL and "
+	         "LimitHH\n"},
+		{NUMBER "LimitH 3 OnDelay -1",
+	         "f:4:18: error: OnDelay \"-1\": expected seconds from 0 to 86400\n"},
+		{NUMBER "LimitH 3 OffDelay 86401",
+	         "f:4:19: error: OffDelay \"86401\": expected seconds from 0 to 86400\n"},
+		{"Name x Path /a/b Type string\nLimitH 3",
+	         "f:4:1: error: LimitH: a string has no limits\n"},
+	};
+
+	expect_errors(cases, COUNT(cases), parse_item);
+}
+
+static void test_limits_make_limit_alarms(void)
+{
+	static const struct line cases[] = {
+		{NUMBER "Hysteresis 1 OffDelay 2",
+	         "f:4:1: warning: Hysteresis does nothing: this Item has no limit\n"
+	         "f:4:14: warning: OffDelay does nothing: this Item has no limit\n"},
+		{NUMBER "", ""},
+	};
+	const struct config_limits *limits;
+
+	expect_warnings(cases, COUNT(cases), parse_item);
+	TEST_ASSERT_FALSE(config->items[0].limits.any);
+	TEST_ASSERT_EQUAL_INT(0, parse_item(NUMBER "LimitLL -10 LimitH 30.5 Hysteresis 0.5 OnDelay 2 "
+	                                           "OffDelay 0.25"));
+	limits = &config->items[0].limits;
+	TEST_ASSERT_TRUE(limits->any);
+	TEST_ASSERT_TRUE(limits->has[CONFIG_LIMIT_LL]);
+	TEST_ASSERT_FALSE(limits->has[CONFIG_LIMIT_L]);
+	TEST_ASSERT_TRUE(limits->has[CONFIG_LIMIT_H]);
+	TEST_ASSERT_FALSE(limits->has[CONFIG_LIMIT_HH]);
+	TEST_ASSERT_EQUAL_DOUBLE(-10, limits->limit[CONFIG_LIMIT_LL]);
+	TEST_ASSERT_EQUAL_DOUBLE(30.5, limits->limit[CONFIG_LIMIT_H]);
+	TEST_ASSERT_EQUAL_DOUBLE(0.5, limits->hysteresis);
+	TEST_ASSERT_EQUAL_INT64(2000000000, limits->on_delay_ns);
+	TEST_ASSERT_EQUAL_INT64(250000000, limits->off_delay_ns);
+}
+
 static void test_three_items_of_one_name_all_name_the_first(void)
 {
 	parse_driver("Item { Name x Path a/b Type bool }\nItem { Name y Path a/b Type bool }\n"
@@ -481,6 +541,8 @@ int main(void)
 	RUN_TEST(test_a_comma_separates_two_wires_and_a_bar_two_ways);
 	RUN_TEST(test_targets_of_the_command_line_replace_those_of_the_file);
 	RUN_TEST(test_wrong_items_are_errors_with_what_was_expected);
+	RUN_TEST(test_wrong_limits_are_errors_with_what_was_expected);
+	RUN_TEST(test_limits_make_limit_alarms);
 	RUN_TEST(test_three_items_of_one_name_all_name_the_first);
 	RUN_TEST(test_items_that_can_be_understood_are_only_warned_about);
 	RUN_TEST(test_an_alarm_that_can_do_nothing_is_told_what_to_write);

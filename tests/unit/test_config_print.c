@@ -74,6 +74,14 @@ static void equal_items(const struct config_item *a, const struct config_item *b
 	equal_text(a->por_alarm, b->por_alarm);
 	equal_text(a->set_alarm, b->set_alarm);
 	equal_text(a->reset_latch, b->reset_latch);
+	TEST_ASSERT_EQUAL(a->limits.any, b->limits.any);
+	for (int i = 0; i < CONFIG_LIMITS; i++) {
+		TEST_ASSERT_EQUAL(a->limits.has[i], b->limits.has[i]);
+		TEST_ASSERT_EQUAL_DOUBLE(a->limits.limit[i], b->limits.limit[i]);
+	}
+	TEST_ASSERT_EQUAL_DOUBLE(a->limits.hysteresis, b->limits.hysteresis);
+	TEST_ASSERT_EQUAL_INT64(a->limits.on_delay_ns, b->limits.on_delay_ns);
+	TEST_ASSERT_EQUAL_INT64(a->limits.off_delay_ns, b->limits.off_delay_ns);
 }
 
 static void survives(const char *text, size_t len)
@@ -111,6 +119,8 @@ static void test_every_key_survives_being_printed_and_read(void)
 		"Item { Name \"r\" Path \"uncached/bus.1/29.B89115000000/sensed.BYTE\" IOType 0x0012\n"
 		"Alarm on PorAlarm \"por\" LatchAlarm \"latch.BYTE\" SetAlarm \"set_alarm=1\"\n"
 		"ResetLatch \"\" PerFactor 1000000 StaleAfter 0.123456789 }\n"
+		"Item { Name \"l\" Path \"a/d\" Type double LimitLL -1e-3 LimitL 0 LimitH 1.7\n"
+		"LimitHH 1e300 Hysteresis 0.1 OnDelay 0.5 OffDelay 86400 }\n"
 		"Item { Name \"o\" Path \"/a/b\" Type float IO output Readable on Writable off\n"
 		"InitValue \"1e-3\" SafeValue \" .5 \" }\n"
 		"Item { Name \"t\" Path \"/a/c\" Type string IO output InitValue \"say \\\"x\\\" in a text "
