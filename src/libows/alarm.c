@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The journal of alarms. */
+/* The journal of alarms, and how the alarms of a signal stand. */
 #include "handle.h"
 
 #include "../shm/reader.h"
@@ -62,6 +62,40 @@ int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
 		fill(alarm->type, e.after, &alarm->after, &alarm->after_integer);
 	memcpy(alarm->latch, e.latch, sizeof(e.latch));
 	return 0;
+}
+
+int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state)
+{
+	const struct ows_attrs *a;
+	struct ows_slot slot;
+
+	if ((unsigned)id >= h->id_count || h->ids[id].record <= 0)
+		return -ENOENT;
+	if (!reader_slot(&h->map.records[h->ids[id].record], &slot))
+		return -EAGAIN;
+	a = &slot.attrs;
+	*state = (struct ows_alarm_state){
+		.occurrences = a->alarms,
+		.item = (h->map.records[h->ids[id].record].flags & OWS_RECORD_ALARM) != 0,
+		.stands = (a->flags & OWS_ATTR_ALARM_STANDS) != 0,
+		.polled = (a->flags & OWS_ATTR_ALARM_POLLED) != 0,
+		.limits = (a->flags & OWS_ATTR_LIMITS) != 0,
+		.limit_state = a->limit_state,
+		.limit_kind = a->limit_condition,
+	};
+	return handle_state(h);
+}
+
+const char *ows_limit_state_text(uint8_t state)
+{
+	static const char *const texts[] = {
+		[OWS_LIMIT_NORMAL] = "normal",
+		[OWS_LIMIT_UNACKNOWLEDGED] = "unacknowledged",
+		[OWS_LIMIT_ACKNOWLEDGED] = "acknowledged",
+		[OWS_LIMIT_RETURNED] = "returned to normal unacknowledged",
+	};
+
+	return state < sizeof(texts) / sizeof(texts[0]) ? texts[state] : "unknown";
 }
 
 const char *ows_alarm_kind_text(uint8_t kind)

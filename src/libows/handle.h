@@ -26,6 +26,7 @@ struct ows_map {
 	struct ows_command_entry *entries;
 	struct ows_client *clients;
 	uint32_t *dirty;
+	uint32_t *acks; /* NULL: a layout without */
 	char *command_base;
 	size_t command_size;
 	uint32_t text_cap;

@@ -104,13 +104,16 @@ static int check_command(struct ows_map *map)
 	    !inside(size, h.slot_off, h.slot_count, h.slot_size) ||
 	    !inside(size, h.entry_off, h.slot_count, h.entry_size) ||
 	    !inside(size, h.dirty_off, h.dirty_words, 4) ||
-	    !inside(size, h.client_off, OWS_CLIENTS, h.client_size) || h.text_cap > 0xffff)
+	    !inside(size, h.client_off, OWS_CLIENTS, h.client_size) ||
+	    !inside(size, h.ack_off, h.slot_count, 4) || h.text_cap > 0xffff)
 		return -EPROTO;
 	map->command = (void *)map->command_base;
 	map->slots = (void *)(map->command_base + h.slot_off);
 	map->entries = (void *)(map->command_base + h.entry_off);
 	map->dirty = (void *)(map->command_base + h.dirty_off);
 	map->clients = (void *)(map->command_base + h.client_off);
+	if (h.ack_off != 0)
+		map->acks = (void *)(map->command_base + h.ack_off);
 	map->text_cap = h.text_cap;
 	return 0;
 }

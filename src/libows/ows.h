@@ -252,6 +252,33 @@ struct ows_alarm {
 	uint8_t quality;     /* of the signal at that moment */
 	char latch[24];      /* NUL-terminated; "" for other than device alarms */
 };
+/* States of a limit alarm, as in ISA-18.2. */
+enum ows_limit_state {
+	OWS_LIMIT_NORMAL = 0,
+	OWS_LIMIT_UNACKNOWLEDGED = 1,
+	OWS_LIMIT_ACKNOWLEDGED = 2,
+	OWS_LIMIT_RETURNED = 3, /* to normal, not acknowledged */
+};
+const char *ows_limit_state_text(uint8_t state);
+
+/* How the alarms of a signal stand now. */
+struct ows_alarm_state {
+	uint32_t occurrences; /* of the device's alarm, since owsd started */
+	uint8_t item;         /* 1: an alarm item */
+	uint8_t stands;       /* 1: the device's alarm stands */
+	uint8_t polled;       /* 1: its bus has no alarm search, the item is read as an input */
+	uint8_t limits;       /* 1: it has limit alarms */
+	uint8_t limit_state;  /* enum ows_limit_state */
+	uint8_t limit_kind;   /* enum ows_alarm_kind of the limit alarm; 0: none */
+};
+/* Of the signal of an id of ows_find(). Errors as ows_get(); *state is filled with -ESTALE too. */
+int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state);
+/*
+ * Acknowledge the limit alarm of a signal; nothing happens if none is unacknowledged. Errors as
+ * ows_set(); -EOPNOTSUPP: owsd is of a version without limit alarms.
+ */
+int ows_acknowledge(struct ows *h, int id);
+
 /* How many were ever entered. */
 uint32_t ows_alarm_count(struct ows *h);
 /* -ENOENT: not yet entered, or no longer kept; -EAGAIN: owsd died while writing it. */

@@ -47,6 +47,7 @@ RECORD_SIZE, INFO_SIZE, SLOT_SIZE, ENTRY_SIZE, CLIENT_SIZE, CLIENTS = 256, 64, 3
 WHOLE_TRIES = 64
 OUTPUT, FRESH, ALARM = 1, 2, 4
 READ_ENABLE, WRITE_ENABLE, IN_WORK = 1, 2, 4
+ALARM_POLLED, ALARM_STANDS, LIMITS = 16, 32, 64
 
 # name, short form, type, readable, writable; _Value has the type of its signal
 ATTRIBUTES = [
@@ -87,8 +88,8 @@ ALARM_ENTRY = struct.Struct("<IIq8s8sBBBB20sII")
 CommandHeader = collections.namedtuple(
     "CommandHeader", "magic major minor size generation state pid start_id slot_off slot_size "
     "slot_count entry_off entry_size dirty_off dirty_words client_off client_size pool_off "
-    "pool_size text_off text_size text_cap")
-COMMAND_HEADER = struct.Struct("<IHHIIIiIIIIIIIIIIIIIII")
+    "pool_size text_off text_size text_cap ack_off")
+COMMAND_HEADER = struct.Struct("<IHHIIIiIIIIIIIIIIIIIIII")
 STATE_OFF, NEWS_OFF, ALARM_HEAD_OFF, BELL_OFF = 16, 128, 132, 128
 
 
@@ -110,10 +111,16 @@ class Value(collections.namedtuple("Value", "value type quality detail target er
 
 ALARM_KINDS = ["none", "device", "power-on reset", "high high", "high", "low", "low low", "stale",
                "bad"]
+LIMIT_STATES = ["normal", "unacknowledged", "acknowledged", "returned to normal unacknowledged"]
 ALARM_EVENTS = ["unknown", "raised", "returned", "acknowledged"]
 # before and after: None where there is no value; kind and event: words
 AlarmEntry = collections.namedtuple("AlarmEntry", "number name occurred_ns before after kind event "
                                     "quality latch")
+
+# How the alarms of a signal stand: occurrences of the device's alarm since owsd started, whether it
+# stands, whether the item is read as an input for want of an alarm search; limit alarms in words
+AlarmState = collections.namedtuple("AlarmState", "occurrences stands polled limits limit_state "
+                                    "limit_kind")
 
 Info = collections.namedtuple("Info", "name path type output fresh alarm per_factor "
                               "stale_after_ns")
@@ -320,6 +327,7 @@ class Ows:
         for offset, count, size in ((h.slot_off, h.slot_count, SLOT_SIZE),
                                     (h.entry_off, h.slot_count, ENTRY_SIZE),
                                     (h.dirty_off, (h.slot_count + 31) // 32, 4),
+                                    (h.ack_off, h.slot_count, 4),
                                     (h.client_off, CLIENTS, CLIENT_SIZE)):
             command.inside(offset, count, size)
         return h
@@ -517,9 +525,19 @@ class Ows:
         return AlarmEntry(number, info.name, occurred,
                           decode(info.type, before) if flags & 1 else None,
                           decode(info.type, after) if flags & 2 else None,
-                          ALARM_KINDS[kind] if kind < len(ALARM_KINDS) else "none",
-                          ALARM_EVENTS[event] if event < len(ALARM_EVENTS) else "unknown",
+                          word(ALARM_KINDS, kind, "none"), word(ALARM_EVENTS, event, "unknown"),
                           quality, latch.rstrip(b"\0").decode(errors="replace"))
+
+    def alarm_state(self, name):
+        """The AlarmState of a signal: how its device's alarm and its limit alarm stand."""
+        record, _ = self.find(name)
+        if record == 0:
+            raise KeyError(name)
+        attrs = self._slot(record)[1]
+        return AlarmState(attrs.alarms, bool(attrs.flags & ALARM_STANDS),
+                          bool(attrs.flags & ALARM_POLLED), bool(attrs.flags & LIMITS),
+                          word(LIMIT_STATES, attrs.limit_state, "unknown"),
+                          word(ALARM_KINDS, attrs.limit_condition, "none"))
 
     def wait(self, news=0, seconds=math.inf):
         """Sleep until something was published after `news`; returns the new number to hand in next
@@ -552,6 +570,20 @@ class Ows:
             self._set_flag(record, attribute, slot, name, bool(value))
         self._ring(record)
         return stamp
+
+    def acknowledge(self, name):
+        """Acknowledge the limit alarm of a signal; nothing happens if none is unacknowledged."""
+        record, _ = self.find(name)
+        if record == 0:
+            raise KeyError(name)
+        if self.command is None:
+            raise PermissionError(errno.EACCES, "opened without control", name)
+        if not self.command_header.ack_off:
+            raise OSError(errno.EOPNOTSUPP, "owsd is of a version without limit alarms")
+        self._there()
+        at = (self.command_header.ack_off >> 2) + record
+        self.command.words[at] = self.command.words[at] + 1 & 0xFFFFFFFF
+        self._ring(record)
 
     def _there(self):
         """Another consumer may have truncated the file, and touching it then is a fatal signal."""
@@ -640,6 +672,10 @@ class Ows:
         self._set_client_word(4, self._client_word(4) + 1)
         if self.command.word(STATE_OFF) not in (LIVE, STOPPED):
             raise Stale
+
+
+def word(words, number, other):
+    return words[number] if number < len(words) else other
 
 
 def periods(now, base):

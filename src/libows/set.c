@@ -226,6 +226,22 @@ int ows_set_text(struct ows *h, int id, const char *text, uint32_t *stamp)
 	return ring(h);
 }
 
+int ows_acknowledge(struct ows *h, int id)
+{
+	const struct ows_id *e;
+
+	if ((unsigned)id >= h->id_count || h->ids[id].record <= 0)
+		return -ENOENT;
+	e = &h->ids[id];
+	if (h->map.command == NULL)
+		return -EACCES;
+	if (h->map.acks == NULL)
+		return -EOPNOTSUPP;
+	__atomic_fetch_add(&h->map.acks[e->record], 1, __ATOMIC_RELEASE);
+	mark(h, e);
+	return ring(h);
+}
+
 static int take_client(struct ows *h)
 {
 	for (int i = 0; i < OWS_CLIENTS; i++) {

@@ -14,7 +14,7 @@
 
 /* Where the areas are, in the order in which they lie. */
 struct command_areas {
-	uint64_t entry, pool, pool_end, dirty, client, slot, text, end;
+	uint64_t entry, pool, pool_end, dirty, client, slot, ack, text, end;
 	uint32_t dirty_words;
 };
 
@@ -43,7 +43,8 @@ static void find_areas(const struct command_plan *plan, struct command_areas *a)
 	a->dirty = align64(a->pool_end);
 	a->client = align64(a->dirty + 4 * (uint64_t)a->dirty_words);
 	a->slot = a->client + OWS_CLIENTS * sizeof(struct ows_client);
-	a->text = align64(a->slot + slots * sizeof(struct ows_command_slot));
+	a->ack = a->slot + slots * sizeof(struct ows_command_slot);
+	a->text = align64(a->ack + 4 * slots);
 	a->end = align64(a->text + texts * (sizeof(struct ows_command_text) + plan->text_cap));
 }
 
@@ -81,6 +82,7 @@ static void fill_header(const struct command_plan *plan, const struct command_ar
 		.text_off = (uint32_t)a->text,
 		.text_size = (uint32_t)(a->end - a->text),
 		.text_cap = plan->text_cap,
+		.ack_off = (uint32_t)a->ack,
 	};
 }
 
@@ -112,6 +114,7 @@ int commands_build(const struct command_plan *plan, void *memory, struct command
 		.dirty_off = (uint32_t)a.dirty,
 		.dirty_words = a.dirty_words,
 		.client_off = (uint32_t)a.client,
+		.ack_off = (uint32_t)a.ack,
 		.text_cap = plan->text_cap,
 		.keep_size = (uint32_t)a.pool_end,
 	};
@@ -176,6 +179,7 @@ static uint8_t checked_enable(uint32_t word)
 void commands_load(const struct commands *commands, uint32_t slot, struct command *command)
 {
 	struct ows_command_slot *s = slot_at(commands, slot);
+	const uint32_t *acks = (const void *)(commands->base + commands->ack_off);
 	uint32_t client;
 
 	/* The stamp is counted after the value was stored: the value is at least as new. */
@@ -187,6 +191,7 @@ void commands_load(const struct commands *commands, uint32_t slot, struct comman
 	command->write_enable = checked_enable(word_get(&s->write_enable));
 	command->one_shot = word_get(&s->one_shot);
 	command->dgn_reset = word_get(&s->dgn_reset);
+	command->acknowledged = word_get(&acks[slot]);
 }
 
 int commands_text(const struct commands *commands, uint32_t slot, char *text)

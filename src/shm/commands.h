@@ -27,7 +27,7 @@ struct commands {
 	char *base;
 	uint32_t size;
 	/* owsd's own copy of what it needs to find its way: a consumer may overwrite the header */
-	uint32_t slot_off, slot_count, entry_off, dirty_off, dirty_words, client_off;
+	uint32_t slot_off, slot_count, entry_off, dirty_off, dirty_words, client_off, ack_off;
 	uint32_t text_cap;
 	uint32_t *text_off; /* for each slot, 0 if none; allocated by commands_build() */
 	char *keep;         /* copy of what does not change: the header's first half, entries, names */
@@ -46,6 +46,7 @@ struct command {
 	uint32_t client; /* 0: nobody who beats; else index + 1, checked */
 	uint8_t read_enable, write_enable; /* 0 not commanded, 1 off, 2 on; checked */
 	uint32_t one_shot, dgn_reset;
+	uint32_t acknowledged; /* counts */
 };
 void commands_load(const struct commands *commands, uint32_t slot, struct command *command);
 /*

@@ -11,7 +11,8 @@
  *
  * History
  *   1.0  first layout
- *   1.1  image: a journal of alarms; in the attributes the state of limit alarms and two flags
+ *   1.1  image: a journal of alarms; in the attributes the state of limit alarms and three flags;
+ *        commands: words of acknowledgement
  */
 #ifndef OWS_LAYOUT_H
 #define OWS_LAYOUT_H
@@ -245,7 +246,8 @@ struct ows_command_header { /* 256 bytes */
 
 	uint32_t pool_off, pool_size;
 	uint32_t text_off, text_size, text_cap;
-	uint32_t spare1[11];
+	uint32_t ack_off;  /* one word for each slot: counts acknowledgements; 0 in 1.0 */
+	uint32_t spare1[10];
 
 	uint32_t bell;     /* the engine's futex word: fetch_add 1, wake one */
 	uint32_t awake;    /* not 0: the engine works and will look before it sleeps, no wake needed */

@@ -324,11 +324,35 @@ static void test_python_reads_the_journal_of_alarms(void)
 	       "[]\n");
 }
 
+static void test_c_finds_what_python_acknowledged(void)
+{
+	struct ows_sample sample = {.quality = OWS_Q_GOOD};
+	struct ows_attrs attrs = {
+		.alarms = 3,
+		.flags = OWS_ATTR_LIMITS | OWS_ATTR_ALARM_STANDS,
+		.limit_state = OWS_LIMIT_RETURNED,
+		.limit_condition = OWS_ALARM_LL,
+	};
+	struct command command;
+
+	image_publish(&in.image, ROOM, &sample, &attrs, NULL);
+	expect("s = ows.Ows(name, control=True)\n"
+	       "print(*s.alarm_state(\"room1\"), sep=\",\")\n"
+	       "s.acknowledge(\"room1\")\n"
+	       "print(error(s.acknowledge, \"_TRANSACTIONS\"),"
+	       " error(ows.Ows(name).acknowledge, \"room1\"))",
+	       "3,True,False,True,returned to normal unacknowledged,low low\n"
+	       "KeyError PermissionError\n");
+	commands_load(&in.commands, ROOM, &command);
+	TEST_ASSERT_EQUAL(1, command.acknowledged);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_python_reads_what_c_wrote);
 	RUN_TEST(test_python_reads_the_journal_of_alarms);
+	RUN_TEST(test_c_finds_what_python_acknowledged);
 	RUN_TEST(test_python_looks_names_up_as_c_does);
 	RUN_TEST(test_python_lowers_quality_as_c_does);
 	RUN_TEST(test_python_computes_attributes_as_c_does);
