@@ -18,9 +18,12 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 	e->commands = setup->commands;
 	e->log = setup->log;
 	e->start_ns = setup->start_ns;
+	e->now_ns = setup->start_ns;
 	err = signal_table_init(&e->table, e->config);
 	if (!err)
 		err = due_wheel_init(&e->wheel, e->table.count * 2, 0);
+	if (!err)
+		err = due_wheel_init(&e->limit_wheel, e->table.count, 0);
 	if (!err) {
 		e->lanes = calloc(setup->port_count, sizeof(*e->lanes));
 		err = e->lanes ? 0 : -ENOMEM;
@@ -57,6 +60,8 @@ void engine_destroy(struct engine *e)
 	free(e->lanes);
 	if (e->wheel.wait)
 		due_wheel_free(&e->wheel);
+	if (e->limit_wheel.wait)
+		due_wheel_free(&e->limit_wheel);
 	signal_table_free(&e->table);
 	free(e);
 }
@@ -65,12 +70,14 @@ void engine_answer(struct engine *e, unsigned port, const struct bus_answer *ans
                    int64_t now_ns)
 {
 	assert(port < e->lane_count);
+	e->now_ns = now_ns;
 	lane_answer(&e->lanes[port], answer, now_ns);
 }
 
 void engine_event(struct engine *e, unsigned port, const struct bus_event *event, int64_t now_ns)
 {
 	assert(port < e->lane_count);
+	e->now_ns = now_ns;
 	lane_event(&e->lanes[port], event, now_ns);
 }
 
@@ -79,6 +86,7 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 	uint64_t before = e->period;
 	int64_t next;
 
+	e->now_ns = now_ns;
 	e->counters.steps++;
 	engine_turn(e, now_ns);
 	engine_intake(e, now_ns);
@@ -121,6 +129,7 @@ void engine_take_commands(struct engine *e, struct commands *commands)
 
 		s->one_shots = 0;
 		s->dgn_resets = 0;
+		s->acknowledged = 0;
 		s->client = 0;
 		/* what was commanded stands: here, and for the owsd after this one */
 		if (s->stamp)

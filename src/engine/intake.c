@@ -118,6 +118,10 @@ void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
 		s->dgn_resets = c.dgn_reset;
 		signal_reset_diagnostics(s, e->period, now_ns, e->start_ns);
 	}
+	if (c.acknowledged != s->acknowledged) {
+		s->acknowledged = c.acknowledged;
+		engine_limits_acknowledge(e, s);
+	}
 	signal_settle(s);
 	engine_write_check(e, s);
 }
@@ -190,6 +194,7 @@ void engine_intake_all(struct engine *e, int64_t now_ns)
 		commands_load(e->commands, s->record, &c);
 		s->one_shots = c.one_shot;
 		s->dgn_resets = c.dgn_reset;
+		s->acknowledged = c.acknowledged;
 		s->stamp = 0;
 		engine_intake_signal(e, s, now_ns);
 	}

@@ -32,6 +32,8 @@ struct engine {
 	struct lane *lanes;
 	unsigned lane_count;
 	struct due_wheel wheel; /* row * 2: read, row * 2 + 1: write */
+	struct due_wheel limit_wheel; /* rows whose limit alarms change by time alone */
+	int64_t now_ns;         /* of the call in work */
 	uint64_t transactions, reconnects;
 	bool published;
 	bool rung; /* the command segment has to be looked through */
@@ -73,7 +75,11 @@ void engine_write_at(struct engine *e, struct signal *s, uint64_t period);
 void engine_write_check(struct engine *e, struct signal *s);
 void engine_turn(struct engine *e, int64_t now_ns);
 
-/* publish.c */
+/* limits.c: bring the limit alarms of a signal to the present; acknowledge them */
+void engine_limits(struct engine *e, struct signal *s);
+void engine_limits_acknowledge(struct engine *e, struct signal *s);
+
+/* publish.c; brings the limit alarms to the present too */
 void engine_publish(struct engine *e, struct signal *s);
 void engine_publish_driver(struct engine *e, int64_t now_ns);
 void engine_publish_target(struct engine *e, const struct lane *lane);

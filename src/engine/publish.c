@@ -5,6 +5,7 @@
 
 void engine_publish(struct engine *e, struct signal *s)
 {
+	engine_limits(e, s);
 	s->sample.flags = (s->commanded && signal_writes(s) && signal_changed(s)
 	                           ? OWS_SAMPLE_PENDING
 	                           : 0) |

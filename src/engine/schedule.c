@@ -56,6 +56,13 @@ static void ready(void *ctx, uint32_t entry)
 		engine_read_now(e, s);
 }
 
+static void limit_ready(void *ctx, uint32_t row)
+{
+	struct engine *e = ctx;
+
+	engine_publish(e, &e->table.signals[row]);
+}
+
 void engine_turn(struct engine *e, int64_t now_ns)
 {
 	uint64_t period = (uint64_t)((now_ns - e->start_ns) / e->config->period_ns);
@@ -67,4 +74,5 @@ void engine_turn(struct engine *e, int64_t now_ns)
 	e->counters.periods += period - e->period;
 	e->period = period;
 	due_wheel_turn(&e->wheel, period, ready, e);
+	due_wheel_turn(&e->limit_wheel, period, limit_ready, e);
 }

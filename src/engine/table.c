@@ -92,7 +92,8 @@ static void init_signal(struct signal *s, const struct config_item *item, uint32
 	s->sample.quality = OWS_Q_INITIAL;
 	s->sample.target = 255;
 	s->attrs.flags = (item->readable ? OWS_ATTR_READ_ENABLE : 0) |
-	                 (item->writable ? OWS_ATTR_WRITE_ENABLE : 0);
+	                 (item->writable ? OWS_ATTR_WRITE_ENABLE : 0) |
+	                 (item->limits.any ? OWS_ATTR_LIMITS : 0);
 	s->guarded = item->type != OWS_STRING && guard_watches(item->path);
 	s->held_quality = OWS_Q_INITIAL;
 	if (!item->has_init)

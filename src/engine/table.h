@@ -7,8 +7,10 @@
 #define ENGINE_TABLE_H
 
 #include "../config/config.h"
+#include "../log.h"
 #include "../shm/image.h"
 #include "guard.h"
+#include "limit.h"
 #include "retry.h"
 
 /* Room for the text of a string signal in the layout, bytes; a multiple of 4. */
@@ -49,8 +51,14 @@ struct signal {
 	uint32_t client; /* 0: nobody who beats; else index + 1 */
 
 	/* what was last seen in the command segment */
-	uint32_t stamp, one_shots, dgn_resets;
+	uint32_t stamp, one_shots, dgn_resets, acknowledged;
 	uint8_t held_quality; /* of an output while its target is down */
+
+	/* limit alarms */
+	struct limit limit;
+	struct log_rate limit_log;
+	int64_t limit_value[2]; /* of the update before the last, of the last */
+	uint32_t limit_count;   /* sample.count of the last */
 };
 
 struct device {

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT */
+/* Limit alarms in the engine: what is known of a signal goes in, journal and attributes come out. */
+#include "private.h"
+
+#include "../signal/value.h"
+
+static void enter(struct engine *e, const struct signal *s, uint8_t kind, uint8_t event)
+{
+	struct ows_alarm_entry entry = {
+		.record = s->record,
+		.occurred_ns = e->now_ns,
+		.kind = kind,
+		.event = event,
+		.quality = s->sample.quality,
+	};
+
+	if (event != OWS_ALARM_ACKNOWLEDGED && s->limit_count) {
+		entry.after = s->limit_value[1];
+		entry.flags |= OWS_ALARM_AFTER;
+	}
+	if (event != OWS_ALARM_ACKNOWLEDGED && s->limit_count > 1) {
+		entry.before = s->limit_value[0];
+		entry.flags |= OWS_ALARM_BEFORE;
+	}
+	image_alarm(e->image, &entry);
+	e->published = true;
+}
+
+static void enter_raised(struct engine *e, struct signal *s, uint8_t kind)
+{
+	enter(e, s, kind, OWS_ALARM_RAISED);
+	if (log_rate(&s->limit_log, e->now_ns))
+		log_warning(e->log, "%s: alarm: %s", s->item->name, ows_alarm_kind_text(kind));
+}
+
+static void show(struct signal *s)
+{
+	s->attrs.limit_state = (uint8_t)s->limit.state;
+	s->attrs.limit_condition = s->limit.kind;
+}
+
+static void take_value(struct signal *s)
+{
+	if (s->sample.count == s->limit_count)
+		return;
+	s->limit_count = s->sample.count;
+	s->limit_value[0] = s->limit_value[1];
+	s->limit_value[1] = s->sample.value;
+}
+
+void engine_limits(struct engine *e, struct signal *s)
+{
+	const struct config_limits *limits = &s->item->limits;
+	int64_t stale_at = INT64_MAX, next;
+	struct limit_reading reading;
+	struct limit_news news;
+
+	if (!limits->any)
+		return;
+	if (s->sample.quality == OWS_Q_DISABLED) {
+		due_wheel_cancel(&e->limit_wheel, engine_row(s));
+		return;
+	}
+	take_value(s);
+	if (s->item->stale_after_ns)
+		stale_at = s->item->stale_after_ns + 1 +
+		           (s->sample.measured_ns ? s->sample.measured_ns : e->start_ns);
+	reading = (struct limit_reading){
+		.value = value_number(s->item->type, s->sample.value),
+		.bad = (s->sample.quality & 0xc0) == 0 && s->sample.quality != OWS_Q_INITIAL,
+		.unknown = s->sample.quality == OWS_Q_INITIAL,
+	};
+	reading.stale = !reading.bad && e->now_ns >= stale_at;
+	next = limit_evaluate(&s->limit, limits, &reading, e->now_ns, &news);
+	if (news.returned)
+		enter(e, s, news.returned, OWS_ALARM_RETURNED);
+	if (news.raised)
+		enter_raised(e, s, news.raised);
+	show(s);
+	if (!reading.bad && !reading.stale && stale_at < next)
+		next = stale_at;
+	if (next == INT64_MAX)
+		due_wheel_cancel(&e->limit_wheel, engine_row(s));
+	else
+		due_wheel_at(&e->limit_wheel, engine_row(s), engine_periods(e, next - e->start_ns));
+}
+
+void engine_limits_acknowledge(struct engine *e, struct signal *s)
+{
+	uint8_t kind = limit_acknowledge(&s->limit);
+
+	if (!kind)
+		return;
+	enter(e, s, kind, OWS_ALARM_ACKNOWLEDGED);
+	show(s);
+}
