@@ -3,15 +3,18 @@
 #include "shm/segment.h"
 
 #include <errno.h>
+#include <poll.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #define LINES      256u /* a power of two */
 #define LINE_BYTES 255
+#define FINISH_MS  200
 #define HOUR_NS    (3600 * INT64_C(1000000000))
 
 /*
@@ -142,6 +145,17 @@ int log_rate(struct log_rate *rate, int64_t now_ns)
 	return 1;
 }
 
+/*
+ * stderr may be shared, so it is not ours to make non-blocking. A pipe that is writable takes a
+ * line, which is shorter than PIPE_BUF, whole.
+ */
+static bool takes_line(int fd)
+{
+	struct pollfd poll_fd = {.fd = fd, .events = POLLOUT};
+
+	return fd < 0 || poll(&poll_fd, 1, 0) > 0;
+}
+
 /* -EAGAIN: fd is full, nothing was written. Other failures lose the line: nobody to tell. */
 static int write_line(int fd, int prefix, int level, const char *text, size_t len)
 {
@@ -157,7 +171,11 @@ static int write_line(int fd, int prefix, int level, const char *text, size_t le
 	size += len;
 	out[size++] = '\n';
 	while (done < size) {
-		ssize_t n = write(fd, out + done, size - done);
+		ssize_t n;
+
+		if (!takes_line(fd))
+			return done ? -EIO : -EAGAIN;
+		n = write(fd, out + done, size - done);
 
 		if (n > 0)
 			done += (size_t)n;
@@ -184,6 +202,14 @@ static void say_lost(struct log *log, int fd, int prefix)
 		log->said = dropped;
 }
 
+static bool has_lines(const struct log *log)
+{
+	const struct line *line = &log->lines[log->tail % LINES];
+	uint32_t turn = log->tail - log->tail % LINES;
+
+	return __atomic_load_n(&line->turn, __ATOMIC_ACQUIRE) == turn + 1;
+}
+
 int log_drain(struct log *log, int fd, int prefix)
 {
 	int count = 0;
@@ -193,7 +219,7 @@ int log_drain(struct log *log, int fd, int prefix)
 		struct line *line = &log->lines[log->tail % LINES];
 		uint32_t turn = log->tail - log->tail % LINES;
 
-		if (__atomic_load_n(&line->turn, __ATOMIC_ACQUIRE) != turn + 1)
+		if (!has_lines(log))
 			break;
 		if (write_line(fd, prefix, line->level, line->text, line->len) == -EAGAIN)
 			return count;
@@ -203,6 +229,27 @@ int log_drain(struct log *log, int fd, int prefix)
 	}
 	say_lost(log, fd, prefix);
 	return count;
+}
+
+static int64_t clock_ms(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (int64_t)t.tv_sec * 1000 + t.tv_nsec / 1000000;
+}
+
+void log_finish(struct log *log, int fd, int prefix)
+{
+	struct pollfd poll_fd = {.fd = fd, .events = POLLOUT};
+	int64_t end_ms = clock_ms() + FINISH_MS, left_ms = FINISH_MS;
+
+	log_drain(log, fd, prefix);
+	while (has_lines(log) && left_ms > 0) {
+		poll(&poll_fd, 1, (int)left_ms);
+		log_drain(log, fd, prefix);
+		left_ms = end_ms - clock_ms();
+	}
 }
 
 uint32_t *log_word(struct log *log)

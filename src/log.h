@@ -45,8 +45,13 @@ struct log_rate {
 };
 int log_rate(struct log_rate *rate, int64_t now_ns);
 
-/* Supervisor only: write all lines to fd ("<4>" levels if prefix). Returns how many. */
+/*
+ * Supervisor only: write the lines to fd ("<4>" levels if prefix) as long as it takes them without
+ * blocking; the others stay. Returns how many.
+ */
 int log_drain(struct log *log, int fd, int prefix);
+/* The last lines: try for at most 200 ms. */
+void log_finish(struct log *log, int fd, int prefix);
 /* The futex word that each line counts up; for the supervisor's wait. */
 uint32_t *log_word(struct log *log);
 uint64_t log_dropped(const struct log *log);

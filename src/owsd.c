@@ -238,7 +238,7 @@ static int run(const struct options *o, const struct config *config, struct log 
 	if (notify_open(&notify))
 		log_warning(log, "NOTIFY_SOCKET cannot be used");
 	if (host_start(&setup, &host, why, sizeof(why))) {
-		log_drain(log, STDERR_FILENO, prefix);
+		log_finish(log, STDERR_FILENO, prefix);
 		fprintf(stderr, "owsd: %s\n", why);
 		return EXIT_RUN;
 	}
@@ -253,7 +253,7 @@ static int run(const struct options *o, const struct config *config, struct log 
 	ended = host_stop(host, STOP_NS);
 	if (!ended)
 		log_err(log, "a bus is stuck in the kernel; owsd leaves it behind");
-	log_drain(log, STDERR_FILENO, prefix);
+	log_finish(log, STDERR_FILENO, prefix);
 	if (!ended)
 		_exit(EXIT_SUCCESS);
 	notify_close(&notify);

@@ -167,6 +167,29 @@ static void test_a_full_descriptor_keeps_the_lines(void)
 	TEST_ASSERT_EQUAL(100, lines);
 }
 
+static void test_a_full_pipe_that_blocks_keeps_the_lines_and_does_not_block(void)
+{
+	char fill[4096];
+	int lines = 0;
+
+	memset(fill, '.', sizeof(fill));
+	while (write(pipe_fd[1], fill, sizeof(fill)) > 0)
+		;
+	TEST_ASSERT_EQUAL(0, fcntl(pipe_fd[1], F_SETFL, 0));
+	for (int i = 0; i < 300; i++)
+		log_put(log_under_test, LOG_LEVEL_ERR, "kept");
+	alarm(10);
+	TEST_ASSERT_EQUAL(0, log_drain(log_under_test, pipe_fd[1], 0));
+	log_finish(log_under_test, pipe_fd[1], 0);
+	written();
+	TEST_ASSERT_EQUAL(256, log_drain(log_under_test, pipe_fd[1], 0));
+	alarm(0);
+	for (const char *at = written(); (at = strstr(at, "kept\n")); at += 5)
+		lines++;
+	TEST_ASSERT_EQUAL(256, lines);
+	TEST_ASSERT_NOT_NULL(strstr(text, "44 log lines lost"));
+}
+
 static void test_a_closed_descriptor_loses_the_lines_and_ends(void)
 {
 	log_put(log_under_test, LOG_LEVEL_ERR, "gone");
@@ -264,6 +287,7 @@ int main(void)
 	RUN_TEST(test_lines_that_find_the_ring_full_are_counted_and_said_once);
 	RUN_TEST(test_the_ring_goes_round_many_times);
 	RUN_TEST(test_a_full_descriptor_keeps_the_lines);
+	RUN_TEST(test_a_full_pipe_that_blocks_keeps_the_lines_and_does_not_block);
 	RUN_TEST(test_a_closed_descriptor_loses_the_lines_and_ends);
 	RUN_TEST(test_several_threads_lose_nothing_unsaid);
 	RUN_TEST(test_a_repeated_line_is_said_at_powers_of_two);

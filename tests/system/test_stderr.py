@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""A stderr that nobody reads holds owsd up in nothing."""
+
+import fcntl
+import os
+import signal
+import subprocess
+import time
+
+import owsdtest
+
+
+def full_pipe():
+    """Both ends of a pipe that is full; the writing one blocks, as a shell's does."""
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    try:
+        while os.write(writer, b"." * 4096):
+            pass
+    except BlockingIOError:
+        pass
+    os.set_blocking(writer, True)
+    return reader, writer
+
+
+def start(scene, writer):
+    owsdtest.need(owsdtest.OWSD)
+    name = scene.name()
+    target = f"127.0.0.1:{owsdtest.free_port()}"  # nobody there: owsd says so
+    config = scene.file("full.rio", owsdtest.rio(target, [
+        dict(Name="room", Path="/28.000000000001/temperature", Type="double", IO="input")]))
+    command = [owsdtest.OWSD, "-v", "-v", "-n", name, "-c", config]
+    return name, subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=writer)
+
+
+def test_a_full_stderr_does_not_keep_owsd_from_ending(scene):
+    reader, writer = full_pipe()
+    name, process = start(scene, writer)
+    try:
+        owsdtest.until(lambda: os.path.exists(f"/dev/shm/owsd.{name}.image"), 10, "image is made")
+        owsdtest.until(lambda: scene.owsctl(name, "get", "room").returncode == 3, 10, "it runs")
+        time.sleep(0.5)  # its supervisor has had lines to write
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(5) == 0
+    finally:
+        process.kill()
+        process.wait()
+        os.close(reader)
+        os.close(writer)
+
+
+def test_lines_come_when_a_full_stderr_is_read_again(scene):
+    reader, writer = full_pipe()
+    name, process = start(scene, writer)
+    try:
+        owsdtest.until(lambda: os.path.exists(f"/dev/shm/owsd.{name}.image"), 10, "image is made")
+        os.set_blocking(reader, False)
+        text = b""
+
+        def said():
+            nonlocal text
+            try:
+                text += os.read(reader, 65536)
+            except BlockingIOError:
+                pass
+            return b"instance" in text
+
+        owsdtest.until(said, 10, "the first line")
+        # others may share it: it has to block as it did
+        assert not fcntl.fcntl(writer, fcntl.F_GETFL) & os.O_NONBLOCK
+    finally:
+        process.kill()
+        process.wait()
+        os.close(reader)
+        os.close(writer)
+
+
+if __name__ == "__main__":
+    owsdtest.main()
