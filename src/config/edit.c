@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #define DRIVER "OwsDrv"
 
@@ -173,11 +174,28 @@ static int apply(struct rio **rio, struct rio_node *block, enum option option, c
 	return put_value(rio, block, option, value);
 }
 
+/* Which of two values of one key was meant nobody can know. */
+static int check_once(const char *const *settings, unsigned count, struct config_report *report)
+{
+	for (unsigned i = 1; i < count; i++) {
+		size_t len = strcspn(settings[i], "=");
+
+		for (unsigned k = 0; k < i; k++)
+			if (strcspn(settings[k], "=") == len &&
+			    !memcmp(settings[i], settings[k], len)) {
+				report_error(report, command_line, "%.*s is given twice", (int)len,
+				             settings[i]);
+				return -EINVAL;
+			}
+	}
+	return 0;
+}
+
 int edit_set(struct rio **rio, const char *name, const char *const *settings, unsigned count,
              struct config_report *report)
 {
 	char current[RIO_VALUE_MAX + 1];
-	int err = 0;
+	int err = check_once(settings, count, report);
 
 	if (strlen(name) >= sizeof(current)) {
 		report_error(report, command_line, "there is no item \"%s\"", name);
@@ -301,6 +319,25 @@ int edit_remove(struct rio **rio, const char *name, struct config_report *report
 	return err ? err : count_again(rio);
 }
 
+int edit_lock(const char *file, struct config_report *report)
+{
+	const struct place place = {file, 0, 0};
+	int fd = replace_lock(file);
+
+	if (fd == -EBUSY)
+		report_error(report, place, "another program has been editing here for 5 s");
+	else if (fd < 0)
+		report_error(report, place, "its directory cannot be locked: %s", strerror(-fd));
+	return fd;
+}
+
+static bool is_dangling(const char *file)
+{
+	struct stat st;
+
+	return !lstat(file, &st) && S_ISLNK(st.st_mode) && stat(file, &st) && errno == ENOENT;
+}
+
 int edit_commit(const struct rio *rio, const char *file, struct config_report *report)
 {
 	struct config *config;
@@ -310,7 +347,10 @@ int edit_commit(const struct rio *rio, const char *file, struct config_report *r
 		return err;
 	config_free(config);
 	err = replace_file(file, rio->text, rio->len);
-	if (err)
+	if (err == -ENOENT && is_dangling(file))
+		report_error(report, (struct place){file, 0, 0},
+		             "is a symbolic link to a file that is not there");
+	else if (err)
 		report_error(report, (struct place){file, 0, 0}, "cannot be replaced: %s",
 		             strerror(-err));
 	return err;

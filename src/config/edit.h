@@ -26,6 +26,12 @@ int edit_remove(struct rio **rio, const char *name, struct config_report *report
 extern const char edit_empty[];
 
 /*
+ * Keep other edits away from file, from before it is read until it is committed: a descriptor to be
+ * closed then, or a negative errno (said). Blocking, for five seconds at most.
+ */
+int edit_lock(const char *file, struct config_report *report);
+
+/*
  * Check the document, then put it in the place of file in one step: a temporary file beside it,
  * with the same owner and mode, written out and renamed. A symbolic link stays and its target is
  * replaced. Whatever fails, the old file is untouched. 0, -EINVAL (check, said) or a negative

@@ -7,10 +7,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
-#define SUFFIX ".XXXXXX"
+#define SUFFIX      ".XXXXXX"
+#define LOCK_TRIES  250
+#define LOCK_PAUSE  20000000 /* ns: five seconds in all */
 
 static int write_all(int fd, const char *text, size_t len)
 {
@@ -59,15 +63,22 @@ static int fill(int fd, const struct stat *old, const char *text, size_t len)
 	return err;
 }
 
-/* The rename itself has to reach the disk too; file systems that cannot do that are no error. */
-static void sync_directory(char *path)
+/* The directory of path, which is cut for it. */
+static int open_directory(char *path)
 {
 	char *slash = strrchr(path, '/');
-	int fd;
 
 	if (slash && slash != path)
 		*slash = '\0';
-	fd = open(slash ? (slash == path ? "/" : path) : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	return open(slash ? (slash == path ? "/" : path) : ".",
+	            O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+}
+
+/* The rename itself has to reach the disk too; file systems that cannot do that are no error. */
+static void sync_directory(char *path)
+{
+	int fd = open_directory(path);
+
 	if (fd < 0)
 		return;
 	fsync(fd);
@@ -114,4 +125,33 @@ int replace_file(const char *file, const char *text, size_t len)
 	if (!S_ISREG(old.st_mode))
 		return S_ISDIR(old.st_mode) ? -EISDIR : -EINVAL;
 	return replace_path(path, &old, text, len);
+}
+
+int replace_lock(const char *file)
+{
+	const struct timespec pause = {.tv_nsec = LOCK_PAUSE};
+	char path[PATH_MAX];
+	int fd, err;
+
+	if (!realpath(file, path)) {
+		if (errno != ENOENT)
+			return -errno;
+		if (strlen(file) >= sizeof(path))
+			return -ENAMETOOLONG;
+		strcpy(path, file);
+	}
+	/* The directory stays when the file in it is replaced, and is there before the file is */
+	fd = open_directory(path);
+	if (fd < 0)
+		return -errno;
+	for (int i = 0; flock(fd, LOCK_EX | LOCK_NB); i++) {
+		err = errno;
+		if ((err == EWOULDBLOCK || err == EINTR) && i < LOCK_TRIES) {
+			nanosleep(&pause, NULL);
+			continue;
+		}
+		close(fd);
+		return err == EWOULDBLOCK ? -EBUSY : -err;
+	}
+	return fd;
 }

@@ -11,4 +11,10 @@
  */
 int replace_file(const char *file, const char *text, size_t len);
 
+/*
+ * Keep others who ask for it from replacing file, which need not be there, until the descriptor
+ * that is returned is closed; -EBUSY when another has it for five seconds, or a negative errno.
+ */
+int replace_lock(const char *file);
+
 #endif

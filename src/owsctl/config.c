@@ -173,8 +173,11 @@ static int change(const char *file, const char *action, char **words, unsigned c
 {
 	struct config_report report = {.line = say};
 	struct rio *rio;
-	int err = open_document(file, !strcmp(action, "add"), &report, &rio);
+	int lock = edit_lock(file, &report), err;
 
+	if (lock < 0)
+		return CTL_FAILED;
+	err = open_document(file, !strcmp(action, "add"), &report, &rio);
 	if (!err && !strcmp(action, "add"))
 		err = edit_add(&rio, words[0], words[1], words_of(words + 2), count - 2, &report);
 	else if (!err && !strcmp(action, "set"))
@@ -187,6 +190,7 @@ static int change(const char *file, const char *action, char **words, unsigned c
 	if (!err)
 		err = edit_commit(rio, file, &report);
 	rio_free(rio);
+	close(lock);
 	if (err == -EFBIG && !report.errors)
 		return ctl_fail("%s would be longer than %u bytes", file, RIO_FILE_MAX);
 	return status_of(err);
