@@ -15,18 +15,24 @@ static const struct bus_ops *backend_of(const char *word, size_t len)
 	return NULL;
 }
 
-static bool is_port(const char *text)
+/* Is WORD:REST meant as HOST:PORT, however wrong the port is? */
+static bool is_host_and_port(const char *target, const char *colon)
 {
-	unsigned long port = 0;
-	size_t len = strspn(text, "0123456789");
+	const char *rest = colon + 1 + strspn(colon + 1, " \t+-");
+	size_t len = (size_t)(colon - target);
 
-	if (len == 0 || len > 5 || text[len])
-		return false;
-	port = strtoul(text, NULL, 10);
-	return port > 0 && port <= 65535;
+	return len == 0 || (*rest >= '0' && *rest <= '9') || memchr(target, '.', len) ||
+	       (len == 9 && memcmp(target, "localhost", len) == 0);
 }
 
-static int no_backend(const char *target, size_t word_len, char *why, size_t why_size)
+/* An IPv6 address without its brackets. */
+static bool is_bare_ipv6(const char *target, const char *colon)
+{
+	return strchr(colon + 1, ':') &&
+	       target[strspn(target, "0123456789abcdefABCDEF:.")] == '\0';
+}
+
+static int no_backend(const char *word, size_t word_len, char *why, size_t why_size)
 {
 	char names[160] = "";
 	size_t used = 0;
@@ -39,9 +45,9 @@ static int no_backend(const char *target, size_t word_len, char *why, size_t why
 		used += (size_t)n;
 	}
 	snprintf(why, why_size,
-	         "'%.80s': '%.*s' is no way to a bus that is known here; there are%s, "
+	         "'%.*s' is no way to a bus that is known here; there are%s, "
 	         "and HOST, HOST:PORT, [IPv6]:PORT for an owserver",
-	         target, (int)(word_len > 40 ? 40 : word_len), target, names);
+	         (int)(word_len > 40 ? 40 : word_len), word, names);
 	return -EPROTONOSUPPORT;
 }
 
@@ -57,13 +63,13 @@ int bus_create(const char *target, const struct bus_env *env, struct bus **bus, 
 	if (why_size)
 		why[0] = '\0';
 	if (!ops) {
-		if (target[0] != '[' && colon && !is_port(where)) {
-			if (!strchr(where, ':') || word_len > 4)
-				return no_backend(target, word_len, why, why_size);
-			snprintf(why, why_size, "'%.80s': an IPv6 address is written in brackets, "
-			         "as in [::1]:4304", target);
+		if (target[0] != '[' && colon && is_bare_ipv6(target, colon)) {
+			snprintf(why, why_size,
+			         "an IPv6 address is written in brackets, as in [::1]:4304");
 			return -EINVAL;
 		}
+		if (target[0] != '[' && colon && !is_host_and_port(target, colon))
+			return no_backend(target, word_len, why, why_size);
 		ops = backend_of("owserver", strlen("owserver"));
 		if (!ops)
 			return no_backend(target, word_len, why, why_size);
@@ -71,7 +77,7 @@ int bus_create(const char *target, const struct bus_env *env, struct bus **bus, 
 	}
 	err = ops->create(where, env, bus, why, why_size);
 	if (err == -ENOMEM)
-		snprintf(why, why_size, "'%.80s': out of memory", target);
+		snprintf(why, why_size, "out of memory");
 	return err;
 }
 

@@ -198,7 +198,8 @@ extern const struct bus_ops owserver_bus, i2c_bus, sim_bus, null_bus, late_bus;
  * Find the backend of a target ("owserver:localhost:4304", "null:") and create the bus. Bare
  * `host`, `host:port` and `[v6]:port` mean owserver, and so does an empty target (localhost). A
  * word that is a scheme is one, with or without a colon. Returns as bus_ops.create; -EPROTONOSUPPORT
- * when no backend of this build has the scheme (why names those there are).
+ * when no backend of this build has the scheme (why names those there are). why is to stand behind
+ * the target, which it does not repeat.
  */
 int bus_create(const char *target, const struct bus_env *env, struct bus **bus, char *why,
                size_t why_size);

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* owsd: start-up, supervision and end. */
-#include "config/config.h"
+#include "config/report.h"
 #include "hal/bus.h"
 #include "host.h"
 #include "libows/ows.h"
 #include "log.h"
 #include "notify.h"
 #include "shm/segment.h"
+#include "target.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -150,6 +151,18 @@ static void say(void *ctx, bool is_error, const char *message)
 	fprintf(stderr, "%s\n", message);
 }
 
+static int check_target(const struct config *config, struct config_report *report)
+{
+	const struct config_target *target = &config->targets[0];
+	struct place place = {target->line ? config->file : NULL, target->line, target->column};
+	char why[256];
+	int err = target_check(target->text, why, sizeof(why));
+
+	if (err)
+		report_error(report, place, "target \"%s\": %s", target->text, why);
+	return err;
+}
+
 static int load(const struct options *o, struct config **config)
 {
 	struct config_report report = { .line = say };
@@ -159,11 +172,10 @@ static int load(const struct options *o, struct config **config)
 		return err;
 	if (o->target_count)
 		err = config_set_targets(*config, o->targets, o->target_count, &report);
-	if (!err && (*config)->target_count > 1) {
-		fprintf(stderr, "owsd: %u targets given; this version serves one\n",
-		        (*config)->target_count);
+	if (!err && !config_one_target(*config, &report, true))
 		err = -EINVAL;
-	}
+	if (!err)
+		err = check_target(*config, &report);
 	if (!err)
 		return 0;
 	config_free(*config);

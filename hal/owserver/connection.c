@@ -41,6 +41,7 @@ int connection_init(struct connection *connection, const struct bus_env *env, co
 	const char *host = where + brackets;
 	size_t len = strcspn(host, brackets ? "]" : ":");
 	const char *rest = host + len + (brackets && host[len]);
+	bool bad_port = false;
 	int err = 0;
 
 	*connection = (struct connection){ .env = env, .fd = -1, .host = DEFAULT_HOST,
@@ -51,14 +52,16 @@ int connection_init(struct connection *connection, const struct bus_env *env, co
 		err = -EINVAL;
 	if (!err)
 		err = set_part(connection->host, sizeof(connection->host), host, len);
-	if (!err && *rest)
-		err = *rest == ':' ? set_port(connection->port, sizeof(connection->port), rest + 1)
-		                   : -EINVAL;
-	if (err || strpbrk(connection->host, " \t/"))
+	if (!err && (!len || strpbrk(connection->host, " \t/") || (*rest && *rest != ':')))
 		err = -EINVAL;
-	if (err)
-		snprintf(why, why_size, "'%.80s': HOST, HOST:PORT or [IPv6]:PORT is expected, with "
-		         "a PORT from 1 to 65535", where);
+	if (!err && *rest) {
+		err = set_port(connection->port, sizeof(connection->port), rest + 1);
+		bad_port = err != 0;
+	}
+	if (bad_port)
+		snprintf(why, why_size, "the port '%.40s' is no number from 1 to 65535", rest + 1);
+	else if (err)
+		snprintf(why, why_size, "HOST, HOST:PORT or [IPv6]:PORT is expected");
 	return err;
 }
 

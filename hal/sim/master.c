@@ -60,6 +60,11 @@ static int create(const char *where, const struct bus_env *env, struct link_mast
 
 	if (!simulation)
 		return -ENOMEM;
+	if (!len) {
+		snprintf(why, why_size, "expected a file, as in sim:house.sim");
+		free(simulation);
+		return -EINVAL;
+	}
 	memcpy(simulation->name, where, len);
 	source.name = simulation->name;
 	err = sim_scenario_read(simulation->name, &simulation->net, why, why_size);

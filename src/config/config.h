@@ -54,6 +54,7 @@ enum config_relation {
 struct config_target {
 	const char *text; /* "localhost:4304"; never empty */
 	enum config_relation relation;
+	int line, column; /* of TargetName's value; 0: not of the file */
 };
 
 struct config {
@@ -85,6 +86,11 @@ int config_parse(const char *file, const char *text, size_t len, struct config_r
 /* Replace the targets (owsd -t); each text may itself hold commas and bars. 0 or -EINVAL. */
 int config_set_targets(struct config *config, const char *const *texts, unsigned count,
                        struct config_report *report);
+/*
+ * This version serves one target: say so where there are more, as an error or as a warning. Returns
+ * whether there is one only.
+ */
+bool config_one_target(const struct config *config, struct config_report *report, bool is_error);
 void config_free(struct config *config);
 /* What `owsd --check` prints: the configuration as understood. */
 void config_print(const struct config *config, FILE *out);

@@ -85,6 +85,11 @@ static void target_add(struct build *build, const char *text, size_t len,
 			             target->text, config->targets[i].text);
 			return;
 		}
+	target->line = place.line;
+	target->column = place.column;
+	if (!strcmp(target->text, "owserver:"))
+		report_warning(build->report, place, "owserver: names no host: %s is taken",
+		               DEFAULT_TARGET);
 	config->target_count++;
 }
 
@@ -116,4 +121,16 @@ void targets_add(struct build *build, const char *text, struct place place)
 		relation = p[len] == ',' ? CONFIG_COMMA : CONFIG_BAR;
 		p += len + 1;
 	}
+}
+
+bool config_one_target(const struct config *config, struct config_report *report, bool is_error)
+{
+	const struct config_target *target = &config->targets[0];
+	struct place place = {target->line ? config->file : NULL, target->line, target->column};
+
+	if (config->target_count == 1)
+		return true;
+	(is_error ? report_error : report_warning)(
+		report, place, "%u targets; this version of owsd serves one", config->target_count);
+	return false;
 }

@@ -56,5 +56,49 @@ def test_a_link_to_nowhere_is_named(scene):
     assert os.listdir(scene.path) == ["link.rio"]
 
 
+ITEM = dict(Name="x", Path="/28.000000000001/temperature", Type="double", IO="input")
+
+
+def test_what_cannot_be_a_target_is_refused_by_check_and_start(scene):
+    wrong = {
+        ":": "HOST", "::1": "brackets", "[::1": "HOST", "127.0.0.1:70000": "the port '70000'",
+        "127.0.0.1:26000x": "the port '26000x'", "127.0.0.1:": "the port ''",
+        "localhost:0": "the port '0'", "localhost: 26000": "the port ' 26000'",
+        "foo:bar": "'foo'", "owserver:w1:99999": "the port '99999'", "null:x": "null:",
+        "sim:nowhere.sim": "nowhere.sim", "sim:": "file", "i2c:": "adapter",
+    }
+    for target, reason in wrong.items():
+        path = scene.file("wrong.rio", owsdtest.rio(target, [ITEM]))
+        for arguments in (["--check", "-c", path], ["-n", scene.name(), "-c", path]):
+            done = scene.owsd_once(*arguments)
+            assert done.returncode == 2, (target, done)
+            assert done.stdout == "", (target, done)
+            assert "wrong.rio:3:27: error: target \"" + target + "\": " in done.stderr, done.stderr
+            assert reason in done.stderr, (target, done.stderr)
+    path = scene.file("right.rio", owsdtest.rio("null:", [ITEM]))
+    done = scene.owsd_once("--check", "-c", path, "-t", "127.0.0.1:70000")
+    assert done.returncode == 2 and done.stderr.startswith("error: target"), done
+    assert scene.owsd_once("--check", "-c", path).returncode == 0
+
+
+def test_more_than_one_target_is_refused_where_it_stands(scene):
+    path = scene.file("two.rio", owsdtest.rio("localhost:4304 | null:", [ITEM]))
+    for arguments in (["--check", "-c", path], ["-n", scene.name(), "-c", path]):
+        done = scene.owsd_once(*arguments)
+        assert done.returncode == 2, done
+        assert "two.rio:3:27: error: 2 targets; this version of owsd serves one" in done.stderr
+    assert scene.owsd_once("--check", "-c", path, "-t", "null:").returncode == 0
+    done = scene.owsctl(None, "config", path, "list")
+    assert done.returncode == 0, done
+    assert "two.rio:3:27: warning: 2 targets; this version" in done.stderr, done.stderr
+
+
+def test_owserver_without_a_host_is_warned_of(scene):
+    path = scene.file("bare.rio", owsdtest.rio("owserver:", [ITEM]))
+    done = scene.owsd_once("--check", "-c", path)
+    assert done.returncode == 0, done
+    assert "bare.rio:3:27: warning: owserver: names no host" in done.stderr, done.stderr
+
+
 if __name__ == "__main__":
     owsdtest.main()

@@ -108,8 +108,29 @@ static void test_an_unknown_scheme_is_refused_with_the_names_there_are(void)
 {
 	is_refused("usb:/dev/x", -EPROTONOSUPPORT, "null: late:");
 	is_refused("usb:", -EPROTONOSUPPORT, "'usb'");
-	is_refused("host:99999", -EPROTONOSUPPORT, "HOST:PORT");
-	is_refused("host:0", -EPROTONOSUPPORT, "HOST:PORT");
+	is_refused("foo:bar:baz", -EPROTONOSUPPORT, "'foo'");
+}
+
+static void test_a_wrong_port_is_called_that(void)
+{
+	static const char *const wrong[] = {
+		"host:99999",      "host:0",     "127.0.0.1:70000", "127.0.0.1:26000x",
+		"127.0.0.1:",      "localhost:", "localhost:0",     "localhost: 26000",
+		"owserver:w1:99999", "10.0.0.1:-1", "[::1]:x",
+	};
+
+	for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++)
+		is_refused(wrong[i], -EINVAL, "the port '");
+}
+
+static void test_a_host_has_to_be_one(void)
+{
+	is_refused(":", -EINVAL, "HOST");
+	is_refused(":4304", -EINVAL, "HOST");
+	is_refused("[]:4304", -EINVAL, "HOST");
+	is_refused("[::1", -EINVAL, "HOST");
+	is_refused("[::1]4304", -EINVAL, "HOST");
+	is_refused("/dev/i2c-1", -EINVAL, "HOST");
 }
 
 static void test_a_bare_ipv6_address_is_told_to_use_brackets(void)
@@ -121,6 +142,7 @@ static void test_a_bare_ipv6_address_is_told_to_use_brackets(void)
 static void test_a_wrong_rest_is_refused_with_the_reason(void)
 {
 	is_refused("null:x", -EINVAL, "null:");
+	is_refused("sim:", -EINVAL, "file");
 	is_refused("late:speed=3", -EINVAL, "speed=3");
 	is_refused("late:twice=101", -EINVAL, "twice");
 }
@@ -258,6 +280,8 @@ int main(void)
 	RUN_TEST(test_a_scheme_chooses_its_backend);
 	RUN_TEST(test_a_host_named_like_a_scheme_is_said_in_full);
 	RUN_TEST(test_an_unknown_scheme_is_refused_with_the_names_there_are);
+	RUN_TEST(test_a_wrong_port_is_called_that);
+	RUN_TEST(test_a_host_has_to_be_one);
 	RUN_TEST(test_a_bare_ipv6_address_is_told_to_use_brackets);
 	RUN_TEST(test_a_wrong_rest_is_refused_with_the_reason);
 	RUN_TEST(test_a_simple_bus_takes_as_many_as_its_depth);
