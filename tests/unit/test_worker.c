@@ -110,6 +110,21 @@ static void start(const char *target)
 	TEST_ASSERT_EQUAL_INT(0, worker_start(worker));
 }
 
+/* Come up in peace: the null bus tells that it is up. From then on the bell does as told. */
+static void start_null(int what)
+{
+	int64_t until = boottime() + 20 * S;
+
+	start("null:");
+	while (!n_events && boottime() < until) {
+		take();
+		nap();
+	}
+	TEST_ASSERT_EQUAL_UINT(1, n_events);
+	__atomic_store_n(&rung, 0, __ATOMIC_SEQ_CST);
+	at_bell = what;
+}
+
 static int submit(uint32_t id, const char *path)
 {
 	req[id] = (struct bus_req){ .id = id, .op = BUS_READ, .path = path, .data = data[id],
@@ -225,8 +240,7 @@ static void test_a_full_queue_says_so(void)
 {
 	int refused = 0;
 
-	at_bell = BLOCK;
-	start("null:");
+	start_null(BLOCK);
 	submit(0, TEMPERATURE);
 	while (!__atomic_load_n(&rung, __ATOMIC_SEQ_CST))
 		nap();
@@ -239,8 +253,7 @@ static void test_a_full_queue_says_so(void)
 
 static void test_a_stuck_thread_is_told_and_can_end_later(void)
 {
-	at_bell = BLOCK;
-	start("null:");
+	start_null(BLOCK);
 	submit(0, TEMPERATURE);
 	while (!__atomic_load_n(&rung, __ATOMIC_SEQ_CST))
 		nap();
@@ -251,8 +264,7 @@ static void test_a_stuck_thread_is_told_and_can_end_later(void)
 
 static void test_a_submit_does_not_end_the_wait_for_a_reply(void)
 {
-	at_bell = WAIT_SHORT;
-	start("null:");
+	start_null(WAIT_SHORT);
 	submit(0, TEMPERATURE);
 	while (!__atomic_load_n(&rung, __ATOMIC_SEQ_CST))
 		nap();
@@ -264,8 +276,7 @@ static void test_a_submit_does_not_end_the_wait_for_a_reply(void)
 
 static void test_shutdown_ends_the_wait_for_a_reply(void)
 {
-	at_bell = WAIT_LONG;
-	start("null:");
+	start_null(WAIT_LONG);
 	submit(0, TEMPERATURE);
 	while (!__atomic_load_n(&rung, __ATOMIC_SEQ_CST))
 		nap();
@@ -275,8 +286,7 @@ static void test_shutdown_ends_the_wait_for_a_reply(void)
 
 static void test_the_thread_has_its_name_and_takes_no_signal(void)
 {
-	at_bell = LOOK;
-	start("null:");
+	start_null(LOOK);
 	submit(0, TEMPERATURE);
 	take_until(1);
 	TEST_ASSERT_EQUAL_INT(0, worker_stop(worker, 20 * S));
