@@ -19,6 +19,8 @@
 /* A bell rung without news must not spin the engine. */
 #define IDLE_RINGS 3
 #define IDLE_NS    1000000
+/* How often the loss of the image is said. */
+#define IMAGE_LOST_NS 60000000000LL
 
 struct host {
 	const struct config *config;
@@ -37,7 +39,7 @@ struct host {
 	struct commands *commands; /* as the engine uses them */
 	struct commands *renewed;  /* made by the supervisor, for the engine to take */
 	uint32_t *bell;            /* in the command segment */
-	int64_t renewed_ns;
+	int64_t renewed_ns, image_lost_ns;
 	uint64_t idle_rings, mended;
 };
 
@@ -127,12 +129,26 @@ static void take_renewed(struct host *h)
 	engine_take_commands(h->engine, renewed);
 }
 
+/* An image of the same values under the name would need all readers to open it: a restart's work. */
+static void look_for_image(struct host *h, int64_t now_ns)
+{
+	if ((h->image_lost_ns && now_ns - h->image_lost_ns < IMAGE_LOST_NS) ||
+	    !memory_image_lost(&h->memory))
+		return;
+	h->image_lost_ns = now_ns;
+	log_err(h->log,
+	        "/dev/shm/owsd.%s.image was removed and programs that start now do not find it: "
+	        "restart owsd (of an ordinary user, logind's RemoveIPC= removes it at log-out)",
+	        h->memory.instance);
+}
+
 void host_tend(struct host *h)
 {
 	int64_t now_ns = ows_now();
 	struct commands *renewed;
 	int err;
 
+	look_for_image(h, now_ns);
 	if (now_ns - h->renewed_ns < 1000000000 || !memory_commands_lost(&h->memory))
 		return;
 	h->renewed_ns = now_ns;

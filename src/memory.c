@@ -224,6 +224,13 @@ bool memory_commands_lost(const struct memory *m)
 	return segment_lost(segment) || fstat(segment->fd, &st) < 0 || st.st_nlink == 0;
 }
 
+bool memory_image_lost(const struct memory *m)
+{
+	struct stat st;
+
+	return fstat(m->image_segment.fd, &st) == 0 && st.st_nlink == 0;
+}
+
 static void let_go(struct memory_commands *c)
 {
 	segment_close(&c->segment);
@@ -259,7 +266,6 @@ void memory_end(struct memory *m)
 		segment_wake(&m->image.header->news, INT_MAX);
 		commands_mend(memory_commands(m), true);
 		commands_state(memory_commands(m), OWS_STATE_STOPPED);
-		segment_remove(m->instance, SEGMENT_IMAGE);
 	}
 	segment_close(&m->image_segment);
 	for (unsigned i = 0; i < COMMANDS; i++)

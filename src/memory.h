@@ -46,7 +46,9 @@ bool memory_commands_lost(const struct memory *memory);
  * The mapping before it stays until the call after the next, so that others can let go of it.
  */
 struct commands *memory_renew_commands(struct memory *memory, int *err);
-/* Say that owsd ends: the image's name goes, the command segment stays for the next start. */
+/* Was the image unlinked, so that nobody can find it any more? A system call. */
+bool memory_image_lost(const struct memory *memory);
+/* Say that owsd ends: both segments stay, for the last values and for the next start. */
 void memory_end(struct memory *memory);
 
 #endif

@@ -76,11 +76,40 @@ def test_an_orderly_end_leaves_the_commands_for_the_next_start(scene):
         scene.until(lambda: good(signals, "back") and signals.get("back").value == 5, 10, "is 5")
         assert daemon.stop() == 0
         assert signals.stale() and not signals.get("room").good
-        assert not os.path.exists(f"/dev/shm/owsd.{daemon.name}.image")
         signals.set("relays", 6)
         scene.owsd(config, name=daemon.name)
         scene.until(lambda: reopened(signals), 10, "the new image is there")
         scene.until(lambda: signals.get("back").value == 6, 10, "is 6")
+
+
+def test_after_an_orderly_end_all_can_be_looked_at_and_set(scene):
+    daemon, config = start(scene)
+    scene.until(lambda: scene.get(daemon, "room"), 10, "room is good")
+    value = scene.get(daemon, "room")
+    assert daemon.stop() == 0
+    got = scene.owsctl(daemon, "get", "room")
+    assert (got.returncode, got.stdout) == (3, value + "\n"), got
+    listed = scene.owsctl(daemon, "list")
+    assert "room" in listed.stdout and "target down" in listed.stdout, listed
+    assert "was stopped" in listed.stderr, listed
+    stats = scene.owsctl(daemon, "stats")
+    assert "stopped" in stats.stdout, stats
+    done = scene.owsctl(daemon, "set", "relays", "7")
+    assert done.returncode == 0 and "kept for its next start" in done.stderr, done
+    with ows.Ows(daemon.name) as signals:  # opened after the end
+        assert signals.get("room").quality == ows.Q_TARGET and signals.stale()
+    scene.owsd(config, name=daemon.name)
+    scene.until(lambda: scene.get(daemon, "back") == "7", 10, "is 7")
+
+
+def test_a_removed_image_is_told(scene):
+    daemon, _ = start(scene)
+    os.unlink(f"/dev/shm/owsd.{daemon.name}.image")
+    scene.until(lambda: "restart owsd" in daemon.log(), 10, "it says what to do")
+    assert f"/dev/shm/owsd.{daemon.name}.image was removed" in daemon.log()
+    time.sleep(1.5)
+    assert daemon.log().count("was removed") == 1
+    assert daemon.stop() == 0
 
 
 def test_a_killed_owsds_commands_are_carried_over(scene):
@@ -198,11 +227,11 @@ def test_ows_py_is_a_program_too(scene):
     assert run("-x").returncode == 2
 
 
-def test_nothing_is_left_in_shared_memory_but_the_commands(scene):
+def test_both_segments_and_nothing_else_stay_in_shared_memory(scene):
     daemon, config = start(scene)
     assert daemon.stop() == 0
     left = sorted(p.rsplit(".", 1)[1] for p in glob.glob(f"/dev/shm/owsd.{daemon.name}.*"))
-    assert left in (["command"], ["command", "lock"]), left
+    assert left in (["command", "image"], ["command", "image", "lock"]), left
 
 
 if __name__ == "__main__":
