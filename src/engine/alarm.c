@@ -445,7 +445,8 @@ static void mark_listed(struct alarm_machine *m, struct lane *lane, const char *
 	         entry);
 }
 
-static void take_list(struct alarm_machine *m, struct lane *lane, const char *list, size_t len)
+static void take_list(struct alarm_machine *m, struct lane *lane, const char *list, size_t len,
+                      int64_t now_ns)
 {
 	m->cycle++;
 	lane->counters.alarm_lists++;
@@ -464,7 +465,7 @@ static void take_list(struct alarm_machine *m, struct lane *lane, const char *li
 	}
 	for (uint32_t k = 0; k < m->count; k++)
 		if (!m->items[k].listed && m->items[k].stands)
-			engine_alarm_ended(lane->engine, &m->items[k]);
+			engine_alarm_ended(lane->engine, &m->items[k], now_ns);
 }
 
 static void list_failed(struct alarm_machine *m, struct lane *lane, int err, int64_t now_ns)
@@ -543,7 +544,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 	switch (m->state) {
 	case ALARM_DIR:
 		if (!err)
-			take_list(m, lane, data, answer->len);
+			take_list(m, lane, data, answer->len, now_ns);
 		else
 			list_failed(m, lane, err, now_ns);
 		break;
@@ -555,7 +556,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 		i->por_cycle = m->cycle;
 		i->por_set = set;
 		if (set)
-			engine_power_on_reset(e, lane, i);
+			engine_power_on_reset(e, lane, i, now_ns);
 		return FACT_DONE | (set ? FACT_NON_ZERO : 0);
 	case ALARM_SET_WAIT:
 		if (!err) {
@@ -589,7 +590,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 	case ALARM_LATCH_RESET_WAIT:
 		if (!err) {
 			i->reset_cycle = m->cycle;
-			engine_alarm_ended(e, i);
+			engine_alarm_ended(e, i, now_ns);
 		}
 		break;
 	case NOT_USED:

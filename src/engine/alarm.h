@@ -39,7 +39,8 @@ struct alarm_item {
 	uint32_t collect_cycle;
 	bool por_set, latch_set;
 	char latch_text[24];
-	uint32_t journal; /* number of its entry that waits for the value after, 0: none */
+	uint32_t journal;  /* number of its entry that waits for the value after */
+	bool wants_after;
 };
 
 /* What the machine wants to be asked. */

@@ -4,26 +4,56 @@
 
 #include <string.h>
 
+static struct ows_alarm_entry entry_of(const struct signal *s, enum ows_alarm_kind kind,
+                                       enum ows_alarm_event event, int64_t now_ns)
+{
+	struct ows_alarm_entry entry = {
+		.record = s->record,
+		.occurred_ns = now_ns,
+		.kind = (uint8_t)kind,
+		.event = (uint8_t)event,
+		.quality = s->sample.quality,
+	};
+
+	if (s->sample.count && !signal_is_string(s)) {
+		entry.before = s->sample.value;
+		entry.flags = OWS_ALARM_BEFORE;
+	}
+	return entry;
+}
+
 void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item *item,
                          int64_t now_ns)
 {
 	struct signal *s = &e->table.signals[item->row];
+	struct ows_alarm_entry entry;
 
-	(void)now_ns;
 	if (item->stands)
 		return;
 	item->stands = true;
 	s->attrs.alarms++;
+	s->attrs.flags |= OWS_ATTR_ALARM_STANDS;
 	lane->counters.alarms++;
+	entry = entry_of(s, OWS_ALARM_DEVICE, OWS_ALARM_RAISED, now_ns);
+	memcpy(entry.latch, item->latch_text, strnlen(item->latch_text, sizeof(entry.latch)));
+	item->journal = image_alarm(e->image, &entry);
+	item->wants_after = true;
 	log_info(e->log, "%s: alarm, %s is %s", s->item->name, item->strings.latch,
 	         item->latch_text);
 	engine_publish(e, s);
 }
 
-void engine_alarm_ended(struct engine *e, struct alarm_item *item)
+void engine_alarm_ended(struct engine *e, struct alarm_item *item, int64_t now_ns)
 {
+	struct signal *s = &e->table.signals[item->row];
+	struct ows_alarm_entry entry = entry_of(s, OWS_ALARM_DEVICE, OWS_ALARM_RETURNED, now_ns);
+
+	if (!item->stands)
+		return;
 	item->stands = false;
-	engine_publish(e, &e->table.signals[item->row]);
+	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_STANDS;
+	image_alarm(e->image, &entry);
+	engine_publish(e, s);
 }
 
 int engine_alarm_value(struct engine *e, struct lane *lane, struct alarm_item *item,
@@ -36,14 +66,22 @@ int engine_alarm_value(struct engine *e, struct lane *lane, struct alarm_item *i
 	if (!signal_reads(s))
 		return 0;
 	err = engine_take_reading(e, lane, s, slot, answer, now_ns, &wait_ns);
+	if (!err && item->wants_after && !signal_is_string(s)) {
+		image_alarm_after(e->image, item->journal, s->sample.value);
+		item->wants_after = false;
+	}
 	engine_publish(e, s);
 	return err;
 }
 
-void engine_power_on_reset(struct engine *e, struct lane *lane, const struct alarm_item *item)
+void engine_power_on_reset(struct engine *e, struct lane *lane, const struct alarm_item *item,
+                           int64_t now_ns)
 {
 	const struct device *d = &e->table.devices[item->device];
+	struct ows_alarm_entry entry = entry_of(&e->table.signals[item->row], OWS_ALARM_POR,
+	                                        OWS_ALARM_RAISED, now_ns);
 
+	image_alarm(e->image, &entry);
 	lane->counters.power_on_resets++;
 	log_notice(e->log, "%s: the device has restarted", item->strings.path);
 	for (uint32_t k = 0; k < d->count; k++) {
@@ -61,6 +99,7 @@ void engine_alarm_polls(struct engine *e, struct alarm_machine *m)
 	for (uint32_t k = 0; k < m->count; k++) {
 		struct signal *s = &e->table.signals[m->items[k].row];
 
+		s->attrs.flags |= OWS_ATTR_ALARM_POLLED;
 		engine_read_at(e, s, e->period + 1);
 		engine_publish(e, s);
 	}

@@ -109,7 +109,7 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 /* alarm_effect.c: what the alarm machine changes in the table */
 void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item *item,
                          int64_t now_ns);
-void engine_alarm_ended(struct engine *e, struct alarm_item *item);
+void engine_alarm_ended(struct engine *e, struct alarm_item *item, int64_t now_ns);
 /* The value read under an alarm; 0 or the item error. */
 int engine_alarm_value(struct engine *e, struct lane *lane, struct alarm_item *item,
                        const struct slot *slot, const struct bus_answer *answer, int64_t now_ns);
@@ -117,7 +117,8 @@ int engine_alarm_value(struct engine *e, struct lane *lane, struct alarm_item *i
 void engine_alarm_failed(struct engine *e, struct lane *lane, const struct alarm_item *item,
                          int err);
 /* The device's por was read non-zero: its outputs are not what was written. */
-void engine_power_on_reset(struct engine *e, struct lane *lane, const struct alarm_item *item);
+void engine_power_on_reset(struct engine *e, struct lane *lane, const struct alarm_item *item,
+                           int64_t now_ns);
 /* The bus has no alarm search: the items are ordinary inputs. */
 void engine_alarm_polls(struct engine *e, struct alarm_machine *m);
 

@@ -105,6 +105,37 @@ static void test_an_alarm_is_read_reset_and_read_once_more(void)
 	TEST_ASSERT_EQUAL_UINT32(1, scene_attrs(&s, 1).alarms);
 }
 
+static void test_an_alarm_stands_in_the_journal_with_the_values_before_and_after(void)
+{
+	const struct ows_alarm_entry *entry;
+
+	figure_3_3();
+	device("0", "0");
+	begin();
+	entry = s.image.alarms;
+	scene_put(&s, D "/sensed.BYTE", "254", 0);
+	scene_put(&s, D "/latch.BYTE", "1", 0);
+	scene_run(&s, 200 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_DEVICE, entry[0].kind);
+	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_RAISED, entry[0].event);
+	TEST_ASSERT_EQUAL_UINT32(1, entry[0].record);
+	TEST_ASSERT_EQUAL_INT64(255, entry[0].before);
+	TEST_ASSERT_EQUAL_INT64(254, entry[0].after);
+	TEST_ASSERT_EQUAL_STRING("1", entry[0].latch);
+	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_RETURNED, entry[1].event);
+	TEST_ASSERT_BITS_LOW(OWS_ATTR_ALARM_STANDS, scene_attrs(&s, 1).flags);
+}
+
+static void test_a_power_on_reset_stands_in_the_journal(void)
+{
+	figure_3_3();
+	device("0", "0");
+	begin();
+	scene_put(&s, D "/por", "1", 0);
+	scene_run(&s, 200 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_POR, s.image.alarms[0].kind);
+}
+
 static void test_without_an_alarm_only_the_list_is_read(void)
 {
 	figure_3_3();
@@ -290,6 +321,7 @@ static void test_a_bus_without_alarm_search_has_its_items_read_as_inputs(void)
 	scene_up(&s);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_UINT(1, s.lists);
+	TEST_ASSERT_BITS_HIGH(OWS_ATTR_ALARM_POLLED, scene_attrs(&s, 1).flags);
 	TEST_ASSERT_GREATER_THAN(8, scene_sample(&s, 1).count);
 }
 
@@ -506,6 +538,8 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_an_alarm_is_read_reset_and_read_once_more);
+	RUN_TEST(test_an_alarm_stands_in_the_journal_with_the_values_before_and_after);
+	RUN_TEST(test_a_power_on_reset_stands_in_the_journal);
 	RUN_TEST(test_without_an_alarm_only_the_list_is_read);
 	RUN_TEST(test_after_a_power_on_reset_everything_is_set_up_again);
 	RUN_TEST(test_all_outputs_below_the_device_get_their_init_value_in_order);
