@@ -285,7 +285,9 @@ int worker_start(struct worker *worker)
 	if (err)
 		return -err;
 	err = pthread_attr_setstacksize(&attr, STACK_SIZE);
+	/* a fault of the thread's own: where it is blocked the kernel kills, handler or not */
 	sigfillset(&all);
+	sigdelset(&all, SIGBUS);
 	if (!err)
 		err = pthread_sigmask(SIG_SETMASK, &all, &before);
 	if (!err) {

@@ -296,6 +296,17 @@ static void test_the_thread_has_its_name_and_takes_no_signal(void)
 	TEST_ASSERT_EQUAL_INT(1, sigismember(&bell_mask, SIGUSR1));
 }
 
+/* The bell may lie in a file that somebody truncated: the kernel kills who blocks that SIGBUS. */
+static void test_the_thread_lets_faults_of_its_own_through(void)
+{
+	at_bell = LOOK;
+	start("null:");
+	submit(0, TEMPERATURE);
+	take_until(1);
+	TEST_ASSERT_EQUAL_INT(0, worker_stop(worker, 20 * S));
+	TEST_ASSERT_EQUAL_INT(0, sigismember(&bell_mask, SIGBUS));
+}
+
 static void test_a_bad_target_is_refused_with_the_reason(void)
 {
 	char why[200] = "";
@@ -329,6 +340,7 @@ int main(void)
 	RUN_TEST(test_a_submit_does_not_end_the_wait_for_a_reply);
 	RUN_TEST(test_shutdown_ends_the_wait_for_a_reply);
 	RUN_TEST(test_the_thread_has_its_name_and_takes_no_signal);
+	RUN_TEST(test_the_thread_lets_faults_of_its_own_through);
 	RUN_TEST(test_a_bad_target_is_refused_with_the_reason);
 	RUN_TEST(test_a_worker_that_never_ran_is_destroyed);
 	return UNITY_END();
