@@ -19,6 +19,8 @@
 /* A bell rung without news must not spin the engine. */
 #define IDLE_RINGS 3
 #define IDLE_NS    1000000
+/* A consumer that takes the command segment away again and again has one made once a second. */
+#define TEND_NS    1000000000
 /* How often the loss of the image is said. */
 #define IMAGE_LOST_NS 60000000000LL
 
@@ -38,8 +40,10 @@ struct host {
 	uint32_t stop;
 	struct commands *commands; /* as the engine uses them */
 	struct commands *renewed;  /* made by the supervisor, for the engine to take */
+	bool unseen;               /* consumers have not been shown it yet */
 	uint32_t *bell;            /* in the command segment */
-	int64_t renewed_ns, image_lost_ns;
+	int64_t tend_ns;           /* not sooner */
+	int64_t image_lost_ns;
 	uint64_t idle_rings, mended;
 };
 
@@ -118,15 +122,39 @@ static void publish_counters(struct host *h)
 }
 
 /* The bell goes first: who rings the old one is heard at the next period. */
-static void take_renewed(struct host *h)
+static void take_renewed(struct host *h, int64_t now_ns)
 {
-	struct commands *renewed = __atomic_exchange_n(&h->renewed, NULL, __ATOMIC_ACQ_REL);
+	struct commands *renewed = __atomic_load_n(&h->renewed, __ATOMIC_ACQUIRE);
 
 	if (!renewed)
 		return;
 	__atomic_store_n(&h->bell, commands_bell(renewed), __ATOMIC_RELEASE);
 	h->commands = renewed;
-	engine_take_commands(h->engine, renewed);
+	engine_take_commands(h->engine, renewed, now_ns);
+	__atomic_store_n(&h->renewed, NULL, __ATOMIC_RELEASE);
+}
+
+static int show_renewed(struct host *h)
+{
+	int err = memory_show_commands(&h->memory);
+
+	if (!err)
+		h->unseen = false;
+	return err;
+}
+
+static int renew_commands(struct host *h)
+{
+	struct commands *renewed;
+	int err = 0;
+
+	renewed = memory_renew_commands(&h->memory, &err);
+	if (!renewed)
+		return err;
+	h->unseen = true;
+	__atomic_store_n(&h->renewed, renewed, __ATOMIC_RELEASE);
+	ring(h);
+	return 0;
 }
 
 /* An image of the same values under the name would need all readers to open it: a restart's work. */
@@ -145,20 +173,23 @@ static void look_for_image(struct host *h, int64_t now_ns)
 void host_tend(struct host *h)
 {
 	int64_t now_ns = ows_now();
-	struct commands *renewed;
-	int err;
+	int err = 0;
 
 	look_for_image(h, now_ns);
-	if (now_ns - h->renewed_ns < 1000000000 || !memory_commands_lost(&h->memory))
+	if (__atomic_load_n(&h->renewed, __ATOMIC_ACQUIRE)) /* the engine has not filled it yet */
 		return;
-	h->renewed_ns = now_ns;
-	renewed = memory_renew_commands(&h->memory, &err);
-	if (renewed)
-		__atomic_store_n(&h->renewed, renewed, __ATOMIC_RELEASE);
-	else
+	if (now_ns < h->tend_ns)
+		return;
+	if (h->unseen) {
+		err = show_renewed(h);
+		h->tend_ns = now_ns + TEND_NS;
+	} else if (memory_commands_lost(&h->memory)) {
+		err = renew_commands(h);
+		h->tend_ns = err ? now_ns + TEND_NS : 0;
+	}
+	if (err)
 		log_err(h->log, "the command segment was taken away and cannot be made again: %s",
 		        strerror(-err));
-	ring(h);
 }
 
 static void sleep_until(struct host *h, uint32_t seen, int64_t until_ns)
@@ -195,7 +226,7 @@ static void *engine_main(void *ctx)
 			image_news(&h->memory.image);
 			segment_wake(&h->memory.image.header->news, INT_MAX);
 		}
-		take_renewed(h);
+		take_renewed(h, now_ns);
 		idle = busy ? 0 : idle + 1;
 		if (idle > IDLE_RINGS) {
 			static const uint32_t nobody = 0;

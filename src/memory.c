@@ -244,10 +244,6 @@ struct commands *memory_renew_commands(struct memory *m, int *err)
 
 	let_go(to);
 	*err = make_commands(m, to);
-	if (!*err) {
-		commands_state(&to->commands, OWS_STATE_LIVE);
-		*err = segment_show(m->instance, &to->segment);
-	}
 	if (*err) {
 		let_go(to);
 		return NULL;
@@ -256,6 +252,12 @@ struct commands *memory_renew_commands(struct memory *m, int *err)
 	commands_state(memory_commands(m), OWS_STATE_RETIRED);
 	m->current = next;
 	return &to->commands;
+}
+
+int memory_show_commands(struct memory *m)
+{
+	commands_state(memory_commands(m), OWS_STATE_LIVE);
+	return segment_show(m->instance, &m->commands[m->current].segment);
 }
 
 void memory_end(struct memory *m)

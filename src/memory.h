@@ -42,10 +42,13 @@ struct commands *memory_commands(struct memory *memory);
 /* Did a consumer truncate or unlink the command segment? A system call or two. */
 bool memory_commands_lost(const struct memory *memory);
 /*
- * Make a new, empty command segment, show it and return its commands; NULL and *err if that fails.
- * The mapping before it stays until the call after the next, so that others can let go of it.
+ * Make a new, empty command segment, not yet visible to consumers, and return its commands; NULL
+ * and *err if that fails. The one before is retired; its mapping stays until the call after the
+ * next, so that others can let go of it.
  */
 struct commands *memory_renew_commands(struct memory *memory, int *err);
+/* Put the new command segment in its place, filled. 0 or a negative errno. */
+int memory_show_commands(struct memory *memory);
 /* Was the image unlinked, so that nobody can find it any more? A system call. */
 bool memory_image_lost(const struct memory *memory);
 /* Say that owsd ends: both segments stay, for the last values and for the next start. */

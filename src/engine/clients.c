@@ -16,7 +16,7 @@ static void put_safe(struct engine *e, struct signal *s)
 		memcpy(s->command_text, s->item->safe_text, len);
 		s->command_len = (uint32_t)len;
 	}
-	commands_put(e->commands, s->record, s->stamp, s->command,
+	commands_put(e->commands, s->record, s->command,
 	             signal_is_string(s) ? s->command_text : NULL, s->command_len);
 	e->counters.safe_outputs++;
 	engine_write_check(e, s);

@@ -118,8 +118,9 @@ bool engine_published(struct engine *e)
 	return published;
 }
 
-void engine_take_commands(struct engine *e, struct commands *commands)
+void engine_take_commands(struct engine *e, struct commands *commands, int64_t now_ns)
 {
+	engine_intake(e, now_ns);
 	e->commands = commands;
 	e->counters.lost_commands++;
 	for (unsigned i = 0; i < OWS_CLIENTS; i++)
@@ -132,10 +133,11 @@ void engine_take_commands(struct engine *e, struct commands *commands)
 		s->acknowledged = 0;
 		s->client = 0;
 		/* what was commanded stands: here, and for the owsd after this one */
-		if (s->stamp)
-			commands_put(commands, s->record, s->stamp, s->command,
-			             signal_is_string(s) ? s->command_text : NULL,
-			             s->command_len);
+		if (!s->stamp)
+			continue;
+		commands_put(commands, s->record, s->command,
+		             signal_is_string(s) ? s->command_text : NULL, s->command_len);
+		commands_stamp(commands, s->record, s->stamp);
 	}
 	e->driver_resets = 0;
 	e->busy_count = 0;

@@ -55,8 +55,11 @@ int64_t engine_step(struct engine *engine, int64_t now_ns);
 /* Was anything published since the last call? The host then wakes those who wait for news. */
 bool engine_published(struct engine *engine);
 
-/* The command segment was lost and made again, empty: go on with this one. */
-void engine_take_commands(struct engine *engine, struct commands *commands);
+/*
+ * The command segment was lost and made again: look into the old one for the last time and go on
+ * with this one, which is empty and which no consumer has seen yet. What was commanded goes in.
+ */
+void engine_take_commands(struct engine *engine, struct commands *commands, int64_t now_ns);
 
 /*
  * Counters: the engine's own first, then LANE_COUNTERS for each port; the image is planned with

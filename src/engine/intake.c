@@ -106,15 +106,16 @@ void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
 	struct command c;
 
 	commands_load(e->commands, s->record, &c);
-	if (c.stamp != s->stamp)
+	/* 0 is no command: a segment that a consumer truncated is all 0 */
+	if (c.stamp && c.stamp != s->stamp)
 		take_value(e, s, &c, now_ns);
 	take_enables(e, s, &c);
-	if (c.one_shot != s->one_shots) {
+	if (c.one_shot && c.one_shot != s->one_shots) {
 		s->one_shots = c.one_shot;
 		/* an input that nobody made writable stays one */
 		s->one_shot = s->commanded && (s->item->output || signal_writes(s));
 	}
-	if (c.dgn_reset != s->dgn_resets) {
+	if (c.dgn_reset && c.dgn_reset != s->dgn_resets) {
 		s->dgn_resets = c.dgn_reset;
 		signal_reset_diagnostics(s, e->period, now_ns, e->start_ns);
 	}
@@ -131,7 +132,7 @@ static void take_driver(struct engine *e, int64_t now_ns)
 	struct command c;
 
 	commands_load(e->commands, 0, &c);
-	if (c.dgn_reset == e->driver_resets)
+	if (!c.dgn_reset || c.dgn_reset == e->driver_resets)
 		return;
 	e->driver_resets = c.dgn_reset;
 	e->transactions = 0;

@@ -214,8 +214,8 @@ int commands_text(const struct commands *commands, uint32_t slot, char *text)
 	return check == ows_check_bytes(text, len) ? (int)len : -EBADMSG;
 }
 
-int commands_put(struct commands *commands, uint32_t slot, uint32_t stamp, int64_t value,
-                 const char *text, uint32_t len)
+int commands_put(struct commands *commands, uint32_t slot, int64_t value, const char *text,
+                 uint32_t len)
 {
 	struct ows_command_slot *s = slot_at(commands, slot);
 	struct ows_command_text *t;
@@ -242,8 +242,12 @@ int commands_put(struct commands *commands, uint32_t slot, uint32_t stamp, int64
 	word_set(&t->len, len);
 	word_set(&t->check, ows_check_bytes(text, len));
 	__atomic_store_n(&t->claim, 0, __ATOMIC_RELEASE);
-	__atomic_store_n(&s->stamp, stamp, __ATOMIC_RELEASE);
 	return 0;
+}
+
+void commands_stamp(struct commands *commands, uint32_t slot, uint32_t stamp)
+{
+	__atomic_store_n(&slot_at(commands, slot)->stamp, stamp, __ATOMIC_RELEASE);
 }
 
 void commands_unclaim(struct commands *commands, uint32_t slot)
@@ -309,7 +313,7 @@ void commands_state(struct commands *commands, enum ows_state state)
 {
 	struct ows_command_header *keep = (void *)commands->keep;
 
-	keep->state = (uint32_t)state;
+	word_set(&keep->state, (uint32_t)state);
 	__atomic_store_n(&header_of(commands)->state, (uint32_t)state, __ATOMIC_SEQ_CST);
 	word_fence(__ATOMIC_SEQ_CST);
 }
@@ -333,9 +337,12 @@ static bool mend_words(char *to, const char *keep, size_t size)
 		size_t n = size - i < 4 ? size - i : 4;
 
 		words_load(&was, to + i, 1);
-		memcpy(&is, keep + i, n);
-		if (n < 4)
+		if (n == 4) {
+			words_load(&is, keep + i, 1); /* the state may just be changing */
+		} else {
+			memcpy(&is, keep + i, n);
 			memcpy((char *)&is + n, (const char *)&was + n, 4 - n);
+		}
 		if (was != is) {
 			words_store(to + i, &is, 1);
 			mended = true;

@@ -57,10 +57,12 @@ int commands_text(const struct commands *commands, uint32_t slot, char *text);
 /*
  * Put a value that owsd knows better in the place of a commanded one, so that it stands over a
  * restart: SafeValue, or in a segment made anew what was commanded in the one before. text and len
- * for strings, else NULL; -EBUSY while a consumer writes the text.
+ * for strings, else NULL; -EBUSY while a consumer writes the text. The stamp is the consumers'.
  */
-int commands_put(struct commands *commands, uint32_t slot, uint32_t stamp, int64_t value,
-                 const char *text, uint32_t len);
+int commands_put(struct commands *commands, uint32_t slot, int64_t value, const char *text,
+                 uint32_t len);
+/* The stamp of a slot, in a segment that no consumer has seen yet. */
+void commands_stamp(struct commands *commands, uint32_t slot, uint32_t stamp);
 /* Free the claim of a writer that died in the middle; the engine calls it after a second. */
 void commands_unclaim(struct commands *commands, uint32_t slot);
 

@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static struct scene s;
@@ -303,6 +304,67 @@ static void test_a_safe_output_stays_safe_over_a_restart(void)
 	TEST_ASSERT_EQUAL_UINT32(0, c.client);
 }
 
+/* As the guard leaves it: private pages of zeros. */
+static void test_a_truncated_segment_commands_nothing(void)
+{
+	one_of_each();
+	scene_set(&s, 2, 3);
+	scene_slot(&s, 2)->one_shot = 7;
+	scene_slot(&s, 2)->dgn_reset = 7;
+	scene_run(&s, 300 * SCENE_MS);
+	TEST_ASSERT_EQUAL_STRING("3", scene_at(&s, PIO));
+	scene_clear_trace(&s);
+	memset(scene_slot(&s, 0), 0, 3 * sizeof(struct ows_command_slot));
+	scene_ring(&s, 0);
+	scene_ring(&s, 2);
+	scene_run(&s, SCENE_S);
+	scene_down(&s, -ECONNRESET);
+	scene_up(&s);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
+	TEST_ASSERT_EQUAL_INT64(3, scene_attrs(&s, 2).commanded);
+	TEST_ASSERT_GREATER_THAN_UINT64(0, scene_attrs(&s, 2).transactions);
+}
+
+static void test_a_segment_made_again_holds_what_was_commanded(void)
+{
+	void *memory;
+	size_t size;
+	static struct commands again;
+	struct command c;
+
+	scene_output(&s, "out", PIO, OWS_BYTE);
+	scene_output(&s, "text", "/29.B89115000000/memory", OWS_STRING);
+	scene_put(&s, PIO, "0", 0);
+	scene_put(&s, "/29.B89115000000/memory", "", 0);
+	scene_start(&s);
+	scene_up(&s);
+	scene_set(&s, 1, 3);
+	scene_set_text(&s, 2, "on");
+	scene_run(&s, SCENE_S);
+	scene_set(&s, 1, 5); /* nobody has looked yet */
+	size = commands_size(&s.command_plan);
+	memory = aligned_alloc(64, (size + 63) / 64 * 64);
+	memset(memory, 0, size);
+	TEST_ASSERT_EQUAL_INT(0, commands_build(&s.command_plan, memory, &again));
+	engine_take_commands(s.engine, &again, s.now_ns);
+	commands_forget(&s.commands);
+	free(s.command_memory);
+	s.command_memory = memory;
+	s.commands = again;
+	commands_load(&s.commands, 1, &c);
+	TEST_ASSERT_EQUAL_INT64(5, c.value);
+	TEST_ASSERT_EQUAL_UINT32(2, c.stamp);
+	commands_load(&s.commands, 2, &c);
+	TEST_ASSERT_EQUAL_UINT32(1, c.stamp);
+	scene_clear_trace(&s);
+	scene_set(&s, 1, 6);
+	scene_set_text(&s, 2, "off");
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("6", scene_at(&s, PIO));
+	TEST_ASSERT_EQUAL_STRING("off", scene_at(&s, "/29.B89115000000/memory"));
+}
+
 static void test_per_count_and_pend_count_are_counted_in_periods(void)
 {
 	scene_input(&s, "t1", T1, OWS_DOUBLE);
@@ -354,6 +416,8 @@ int main(void)
 	RUN_TEST(test_a_program_that_stops_beating_leaves_its_outputs_safe);
 	RUN_TEST(test_a_program_that_says_good_bye_leaves_its_outputs_as_they_are);
 	RUN_TEST(test_a_safe_output_stays_safe_over_a_restart);
+	RUN_TEST(test_a_truncated_segment_commands_nothing);
+	RUN_TEST(test_a_segment_made_again_holds_what_was_commanded);
 	RUN_TEST(test_per_count_and_pend_count_are_counted_in_periods);
 	RUN_TEST(test_transactions_count_requests_that_ended);
 	return UNITY_END();
