@@ -175,8 +175,7 @@ int memory_make(struct memory *m, const char *instance, const struct config *con
 	if (err) {
 		snprintf(why, why_size, "cannot make the shared memory: %s%s", strerror(-err),
 		         hint(err));
-		segment_close(&m->image_segment);
-		segment_close(&m->commands[0].segment);
+		memory_end(m);
 		return err;
 	}
 	carry(m, log);
@@ -194,6 +193,7 @@ int memory_show(struct memory *m, struct log *log)
 	err = segment_show(m->instance, &m->commands[m->current].segment);
 	if (!err)
 		err = segment_show(m->instance, &m->image_segment);
+	m->shown = !err;
 	if (had_before) {
 		struct ows_image_header *h = (void *)before.base;
 		uint32_t state = __atomic_load_n(&h->state, __ATOMIC_RELAXED);
@@ -262,13 +262,15 @@ int memory_show_commands(struct memory *m)
 
 void memory_end(struct memory *m)
 {
-	if (m->image.header) {
+	if (!m->instance)
+		return;
+	if (m->shown) {
 		image_state(&m->image, OWS_STATE_STOPPED);
-		image_news(&m->image);
 		segment_wake(&m->image.header->news, INT_MAX);
 		commands_mend(memory_commands(m), true);
 		commands_state(memory_commands(m), OWS_STATE_STOPPED);
 	}
+	m->shown = false;
 	segment_close(&m->image_segment);
 	for (unsigned i = 0; i < COMMANDS; i++)
 		let_go(&m->commands[i]);

@@ -23,6 +23,7 @@ struct memory {
 		struct commands commands;
 	} commands[3];
 	unsigned current;
+	bool shown; /* consumers see the image */
 	uint32_t generation, start_id;
 	int64_t start_ns;
 };
@@ -51,7 +52,10 @@ struct commands *memory_renew_commands(struct memory *memory, int *err);
 int memory_show_commands(struct memory *memory);
 /* Was the image unlinked, so that nobody can find it any more? A system call. */
 bool memory_image_lost(const struct memory *memory);
-/* Say that owsd ends: both segments stay, for the last values and for the next start. */
+/*
+ * Say that owsd ends: both segments stay, for the last values and for the next start. What was never
+ * shown goes without a word, what was never made (all zero) is left alone. May be called again.
+ */
 void memory_end(struct memory *memory);
 
 #endif
