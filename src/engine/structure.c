@@ -74,6 +74,12 @@ void structure_free(struct structure *structure)
 	*structure = (struct structure){ 0 };
 }
 
+/* strchr() would find the NUL at the end too. */
+static bool one_of(const char *set, char c)
+{
+	return c && strchr(set, c);
+}
+
 int structure_parse(const char *text, size_t len, struct structure_entry *entry)
 {
 	char copy[64], *end;
@@ -82,14 +88,14 @@ int structure_parse(const char *text, size_t len, struct structure_entry *entry)
 		return -EILSEQ;
 	memcpy(copy, text, len);
 	copy[len] = '\0';
-	if (copy[1] != ',' || !strchr("yiuftgpabdlDv", copy[0]))
+	if (copy[1] != ',' || !one_of("yiuftgpabdlDv", copy[0]))
 		return -EILSEQ;
 	entry->type = copy[0];
 	entry->index = strtol(copy + 2, &end, 10);
 	if (*end != ',')
 		return -EILSEQ;
 	strtol(end + 1, &end, 10);
-	if (*end != ',' || !strchr("rwo", end[1]) || !strchr("rwo", end[2]) || end[3] != ',')
+	if (*end != ',' || !one_of("rwo", end[1]) || !one_of("rwo", end[2]) || end[3] != ',')
 		return -EILSEQ;
 	entry->access[0] = end[1];
 	entry->access[1] = end[2];

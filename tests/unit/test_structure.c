@@ -50,6 +50,27 @@ static void test_anything_else_is_refused(void)
 		TEST_ASSERT_EQUAL_INT_MESSAGE(-EILSEQ, parse(bad[i], &entry), bad[i]);
 }
 
+/* A field that is missing at the very end, and NULs in the middle, as only a liar sends them. */
+static void test_an_entry_with_nuls_or_cut_off_is_refused(void)
+{
+	static const char whole[] = "t,000000,000001,ro,000012,v,";
+	struct structure_entry entry;
+	char bad[64];
+
+	for (size_t len = 0; len < sizeof(bad); len++) {
+		memset(bad, '0', sizeof(bad));
+		memcpy(bad, "t,000000,", 9);
+		if (len > 9)
+			bad[len - 1] = ',';
+		TEST_ASSERT_EQUAL_INT(-EILSEQ, structure_parse(bad, len, &entry));
+	}
+	for (size_t i = 0; i < 19; i++) {
+		memcpy(bad, whole, sizeof(whole));
+		bad[i] = '\0';
+		TEST_ASSERT_EQUAL_INT(-EILSEQ, structure_parse(bad, sizeof(whole) - 1, &entry));
+	}
+}
+
 static void test_a_temperature_fits_a_double_and_a_long(void)
 {
 	TEST_ASSERT_NULL(fault("t,000000,000001,ro,000012,v,", OWS_DOUBLE, false));
@@ -115,6 +136,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_entries_of_the_genuine_owserver_parse);
 	RUN_TEST(test_anything_else_is_refused);
+	RUN_TEST(test_an_entry_with_nuls_or_cut_off_is_refused);
 	RUN_TEST(test_a_temperature_fits_a_double_and_a_long);
 	RUN_TEST(test_text_does_not_fit_a_number);
 	RUN_TEST(test_a_list_needs_a_string);
