@@ -23,6 +23,15 @@ static void put_safe(struct engine *e, struct signal *s)
 	engine_publish(e, s);
 }
 
+/* It ended in order: its outputs stay as they are, whoever comes to sit in its place. */
+static void forget(struct engine *e, unsigned client)
+{
+	for (uint32_t row = 0; row < e->table.count; row++)
+		if (e->table.signals[row].client == client + 1)
+			e->table.signals[row].client = 0;
+	e->clients[client] = (struct client){ 0 };
+}
+
 static void lose(struct engine *e, unsigned client)
 {
 	unsigned safe = 0;
@@ -53,8 +62,8 @@ void engine_clients(struct engine *e, int64_t now_ns)
 
 		commands_client(e->commands, i, &c);
 		if (!c.pid) {
-			/* it ended in order: its outputs stay as they are */
-			*known = (struct client){ 0 };
+			if (known->known)
+				forget(e, i);
 			continue;
 		}
 		if (!known->known || known->pid != c.pid || known->beat != c.beat) {

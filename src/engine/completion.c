@@ -100,7 +100,7 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 	case FAILURE_NONE:
 		lane->counters.reads++;
 		signal_update(s, e->period, answer->measured_ns ? answer->measured_ns : now_ns,
-		              e->start_ns);
+		              now_ns, e->start_ns);
 		s->sample.detail = answer->detail;
 		retry_clear(&s->read_retry);
 		succeed(e, lane, s, quality, now_ns);
@@ -129,13 +129,12 @@ void engine_read_done(struct engine *e, struct lane *lane, const struct slot *sl
                       const struct bus_answer *answer, int64_t now_ns)
 {
 	struct signal *s = &e->table.signals[slot->row];
-	uint64_t begun = e->period - (uint64_t)s->attrs.pend_last;
 	int64_t wait_ns;
 
 	if (!signal_reads(s)) /* disabled meanwhile */
 		return;
 	if (engine_take_reading(e, lane, s, slot, answer, now_ns, &wait_ns) == 0)
-		engine_read_at(e, s, begun + reads_apart(e, lane, s));
+		engine_read_at(e, s, slot->begun + reads_apart(e, lane, s));
 	else
 		engine_read_at(e, s, e->period + (wait_ns ? engine_periods(e, wait_ns) : 1));
 }
@@ -154,6 +153,8 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	struct signal *s = &e->table.signals[slot->row];
 
 	lane->counters.writes++;
+	/* first, for a device that comes back forgets what was written, but for this */
+	succeed(e, lane, s, OWS_Q_GOOD, now_ns);
 	s->confirmed = true;
 	s->written = slot->value;
 	s->sample.value = slot->value;
@@ -164,9 +165,9 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 		memcpy(s->text, slot->data, slot->req.len);
 		s->written_len = s->sample.len = slot->req.len;
 	}
-	signal_update(s, e->period, answer->measured_ns ? answer->measured_ns : now_ns, e->start_ns);
+	signal_update(s, e->period, answer->measured_ns ? answer->measured_ns : now_ns, now_ns,
+	              e->start_ns);
 	retry_clear(&s->write_retry);
-	succeed(e, lane, s, OWS_Q_GOOD, now_ns);
 	signal_settle(s);
 	engine_write_check(e, s);
 }
@@ -177,22 +178,23 @@ void engine_write_done(struct engine *e, struct lane *lane, const struct slot *s
 	struct signal *s = &e->table.signals[slot->row];
 	int64_t wait_ns;
 
+	if (answer->err) {
+		s->confirmed = false;
+		s->one_shot |= slot->one_shot;
+	}
 	switch (failure_of(answer->err)) {
 	case FAILURE_NONE:
 		write_succeeded(e, lane, slot, answer, now_ns);
 		return;
 	case FAILURE_ITEM:
-		s->confirmed = false;
 		wait_ns = fail_item(e, lane, s, &s->write_retry, answer->err);
 		engine_write_at(e, s, e->period + (wait_ns ? engine_periods(e, wait_ns) : 1));
 		break;
 	case FAILURE_TARGET:
-		s->confirmed = false;
 		s->sample.err = answer->err;
 		engine_write_check(e, s);
 		break;
 	case FAILURE_VOID:
-		s->confirmed = false;
 		engine_write_check(e, s);
 		break;
 	}
@@ -205,7 +207,9 @@ void engine_structure_done(struct engine *e, struct lane *lane, const struct slo
 	struct structure_entry entry;
 
 	if (failure_of(answer->err) == FAILURE_TARGET) {
-		lane->structure.next = slot->row; /* from here on, when it is up again */
+		/* from here on, when it is up again */
+		if (slot->row < lane->structure.next)
+			lane->structure.next = slot->row;
 		return;
 	}
 	if (answer->err || structure_parse((const char *)slot->data, answer->len, &entry))
@@ -231,10 +235,14 @@ void engine_lane_down(struct engine *e, struct lane *lane, int err, int64_t now_
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
-		if (s->lane != lane->index || s->sample.quality == OWS_Q_DISABLED)
+		if (s->lane != lane->index ||
+		    (s->sample.quality == OWS_Q_DISABLED && !signal_reads(s)))
 			continue;
-		if (s->sample.quality != OWS_Q_TARGET)
+		if (!s->held) {
+			s->held = true;
 			s->held_quality = s->sample.quality;
+			s->held_err = s->sample.err;
+		}
 		s->sample.quality = OWS_Q_TARGET;
 		s->sample.err = err;
 		engine_publish(e, s);
@@ -255,11 +263,12 @@ void engine_lane_up(struct engine *e, struct lane *lane, int64_t now_ns)
 		engine_read_now(e, s);
 		engine_write_check(e, s);
 		/* what is not read again stands as it stood */
-		if (!signal_reads(s) && s->sample.quality == OWS_Q_TARGET) {
+		if (s->held && !signal_reads(s) && s->sample.quality == OWS_Q_TARGET) {
 			s->sample.quality = s->held_quality;
-			s->sample.err = 0;
+			s->sample.err = s->held_err;
 			engine_publish(e, s);
 		}
+		s->held = false;
 	}
 }
 

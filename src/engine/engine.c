@@ -101,6 +101,9 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 		int64_t alarm;
 
 		lane_fill(&e->lanes[i], now_ns);
+		/* what was lent just now included */
+		if (e->lanes[i].lent && now_ns + e->config->timeout_ns + LANE_GRACE_NS < timeout)
+			timeout = now_ns + e->config->timeout_ns + LANE_GRACE_NS;
 		if (timeout < next)
 			next = timeout;
 		alarm = lane_wake(&e->lanes[i]);

@@ -46,6 +46,17 @@ static int take_text(struct engine *e, struct signal *s)
 	return 0;
 }
 
+/* A program that said good-bye beats no more, and its outputs stay as they are. */
+static uint32_t client_of(struct engine *e, const struct command *c)
+{
+	struct command_client client;
+
+	if (!c->client)
+		return 0;
+	commands_client(e->commands, c->client - 1, &client);
+	return client.pid ? c->client : 0;
+}
+
 static void take_value(struct engine *e, struct signal *s, const struct command *c, int64_t now_ns)
 {
 	int err = 0;
@@ -65,9 +76,10 @@ static void take_value(struct engine *e, struct signal *s, const struct command 
 	}
 	if (!signal_is_string(s))
 		s->command = c->value;
+	s->command_stamp = c->stamp;
 	s->commanded = true;
 	s->safe = false;
-	s->client = c->client;
+	s->client = client_of(e, c);
 	e->counters.commands++;
 }
 

@@ -57,6 +57,7 @@ static bool lend(struct lane *lane, struct slot *slot, int64_t now_ns)
 		slot->req.len = ALARM_LIST;
 	}
 	slot->begun_ns = now_ns;
+	slot->begun = lane->engine->period;
 	slot->given_up = false;
 	if (lane->port->submit(lane->port->ctx, &slot->req))
 		return false;
@@ -120,7 +121,8 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 	slot->purpose = FOR_WRITE;
 	slot->row = row;
 	slot->value = s->command;
-	slot->stamp = s->stamp;
+	slot->stamp = s->command_stamp;
+	slot->one_shot = s->one_shot;
 	slot->req = (struct bus_req){ .op = BUS_WRITE, .prio = BUS_OUTPUT, .path = s->item->path };
 	if (signal_is_string(s)) {
 		memcpy(slot->data, s->command_text, s->command_len);
@@ -194,7 +196,9 @@ static bool ask_next(struct lane *lane, struct slot *slot, int64_t now_ns)
 	output = lane->writes_in_work || alarm_holds(&lane->alarm) ? -1
 	                                                          : due_set_next(&lane->outputs);
 	input = due_set_next(&lane->inputs);
-	if (output >= 0 && (input < 0 || lane->writes_in_row < lane->writers))
+	/* a one-shot needs no writer, and has to come in its turn all the same */
+	if (output >= 0 &&
+	    (input < 0 || lane->writes_in_row < (lane->writers ? lane->writers : 1)))
 		return ask_write(lane, slot, (uint32_t)output, now_ns);
 	if (input >= 0)
 		return ask_read(lane, slot, (uint32_t)input, now_ns);
@@ -231,11 +235,11 @@ static struct slot *slot_of(struct lane *lane, uint32_t id)
 static void complete(struct lane *lane, struct slot *slot, const struct bus_answer *answer,
                      int64_t now_ns)
 {
+	bool counts = failure_of(answer->err) != FAILURE_VOID;
 	struct engine *e = lane->engine;
 	struct signal *s;
 
-	if (answer->err != -ETIME && answer->err != -ECANCELED)
-		e->transactions++;
+	e->transactions += counts;
 	switch (slot->purpose) {
 	case FOR_STRUCTURE:
 		engine_structure_done(e, lane, slot, answer);
@@ -243,7 +247,8 @@ static void complete(struct lane *lane, struct slot *slot, const struct bus_answ
 	case FOR_READ:
 		s = &e->table.signals[slot->row];
 		s->reading = false;
-		signal_end(s, e->period);
+		s->attrs.transactions += counts;
+		signal_end(s, e->period, slot->begun);
 		engine_read_done(e, lane, slot, answer, now_ns);
 		engine_publish(e, s);
 		alarm_passed(&lane->alarm);
@@ -252,7 +257,8 @@ static void complete(struct lane *lane, struct slot *slot, const struct bus_answ
 		s = &e->table.signals[slot->row];
 		s->writing = false;
 		lane->writes_in_work--;
-		signal_end(s, e->period);
+		s->attrs.transactions += counts;
+		signal_end(s, e->period, slot->begun);
 		engine_write_done(e, lane, slot, answer, now_ns);
 		engine_publish(e, s);
 		alarm_passed(&lane->alarm);
@@ -264,7 +270,8 @@ static void complete(struct lane *lane, struct slot *slot, const struct bus_answ
 		}
 		s = &e->table.signals[slot->row];
 		s->alarming = false;
-		signal_end(s, e->period);
+		s->attrs.transactions += counts;
+		signal_end(s, e->period, slot->begun);
 		alarm_answered(&lane->alarm, lane, slot, answer, now_ns);
 		engine_publish(e, s);
 		break;
@@ -368,6 +375,10 @@ void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns
 			engine_device_back(lane->engine, lane, device, now_ns);
 		break;
 	case BUS_LOST:
+		/* its signals go bad by their own failures; what comes back may have restarted */
+		device = device_of(lane->engine, event->rom);
+		if (device)
+			device->absent = true;
 		break;
 	case BUS_NOTE:
 		log_notice(lane->engine->log, "%s: %s", lane->port->target, event->text);
@@ -375,7 +386,10 @@ void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns
 	}
 }
 
-/* The bus said nothing at all since the request began: it is stuck, not one device slow. */
+/*
+ * The bus said nothing at all since the request began, or all it takes was given up: it is stuck,
+ * not one device slow.
+ */
 static void get_stuck(struct lane *lane, int64_t now_ns)
 {
 	lane->stuck = true;
@@ -387,6 +401,8 @@ static void get_stuck(struct lane *lane, int64_t now_ns)
 int64_t lane_timeouts(struct lane *lane, int64_t now_ns)
 {
 	int64_t next = INT64_MAX;
+	bool silent = false;
+	unsigned lost = 0;
 
 	if (!lane->lent)
 		return next;
@@ -395,23 +411,27 @@ int64_t lane_timeouts(struct lane *lane, int64_t now_ns)
 		int64_t end = slot->req.deadline_ns + LANE_GRACE_NS;
 		struct bus_answer answer = { .id = slot->req.id, .err = -EINPROGRESS };
 
-		if (!slot->lent || slot->given_up)
+		if (!slot->lent)
 			continue;
+		if (slot->given_up) {
+			lost++;
+			continue;
+		}
 		if (end > now_ns) {
 			if (end < next)
 				next = end;
 			continue;
 		}
 		slot->given_up = true;
+		lost++;
 		lane->counters.given_up++;
 		if (lane->heard_ns <= slot->begun_ns) {
 			answer.err = -ETIMEDOUT;
-			complete(lane, slot, &answer, now_ns);
-			if (!lane->stuck)
-				get_stuck(lane, now_ns);
-		} else {
-			complete(lane, slot, &answer, now_ns);
+			silent = true;
 		}
+		complete(lane, slot, &answer, now_ns);
 	}
+	if (!lane->stuck && (silent || lost == lane->depth))
+		get_stuck(lane, now_ns);
 	return next;
 }

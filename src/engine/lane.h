@@ -28,8 +28,10 @@ struct slot {
 	uint32_t row;  /* of the table, or of structure.checks */
 	uint16_t turn;
 	int64_t begun_ns;
+	uint64_t begun; /* in this period */
 	int64_t value;  /* of a write */
 	uint32_t stamp; /* of the command written */
+	bool one_shot;  /* the write was that of _WriteOneShot */
 	uint8_t data[LANE_DATA];
 };
 

@@ -28,6 +28,8 @@ uint8_t failure_quality(int err)
 	switch (-err) {
 	case ENOENT:
 	case EACCES:
+	case EISDIR:
+	case ENOTDIR:
 	case EILSEQ:
 	case EPROTOTYPE:
 	case EMSGSIZE:

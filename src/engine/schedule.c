@@ -13,10 +13,12 @@ void engine_read_at(struct engine *e, struct signal *s, uint64_t period)
 {
 	if (!signal_reads(s))
 		return;
-	if (period <= e->period)
+	if (period <= e->period) {
 		engine_read_now(e, s);
-	else
-		due_wheel_at(&e->wheel, engine_row(s) * 2, period);
+		return;
+	}
+	due_set_remove(&engine_lane(e, s)->inputs, engine_row(s));
+	due_wheel_at(&e->wheel, engine_row(s) * 2, period);
 }
 
 void engine_read_never(struct engine *e, struct signal *s)

@@ -95,7 +95,6 @@ static void init_signal(struct signal *s, const struct config_item *item, uint32
 	                 (item->writable ? OWS_ATTR_WRITE_ENABLE : 0) |
 	                 (item->limits.any ? OWS_ATTR_LIMITS : 0);
 	s->guarded = item->type != OWS_STRING && guard_watches(item->path);
-	s->held_quality = OWS_Q_INITIAL;
 	if (!item->has_init)
 		return;
 	s->sample.value = item->init_value;
@@ -178,12 +177,8 @@ void signal_table_image(const struct config_item *item, struct image_signal *sig
 	};
 }
 
-bool signal_changed(const struct signal *s)
+static bool differs(const struct signal *s)
 {
-	if (s->one_shot)
-		return s->commanded;
-	if (!s->commanded || !signal_writes(s))
-		return false;
 	if (!s->confirmed || s->forced)
 		return true;
 	if (signal_is_string(s))
@@ -192,10 +187,15 @@ bool signal_changed(const struct signal *s)
 	return s->command != s->written;
 }
 
+bool signal_changed(const struct signal *s)
+{
+	return s->commanded && (s->one_shot || (signal_writes(s) && differs(s)));
+}
+
 void signal_settle(struct signal *s)
 {
 	if (s->commanded && signal_writes(s) && !s->writing && !signal_changed(s))
-		s->sample.applied = s->stamp;
+		s->sample.applied = s->command_stamp;
 }
 
 void signal_begin(struct signal *s, uint64_t period)
@@ -204,11 +204,10 @@ void signal_begin(struct signal *s, uint64_t period)
 	s->attrs.flags |= OWS_ATTR_IN_WORK;
 }
 
-void signal_end(struct signal *s, uint64_t period)
+void signal_end(struct signal *s, uint64_t period, uint64_t begun)
 {
-	uint32_t waited = (uint32_t)period - s->attrs.pend_base;
+	uint32_t waited = (uint32_t)(period - begun);
 
-	s->attrs.transactions++;
 	s->attrs.pend_last = waited;
 	if (waited > s->attrs.pend_max)
 		s->attrs.pend_max = waited;
@@ -216,17 +215,19 @@ void signal_end(struct signal *s, uint64_t period)
 		s->attrs.flags &= ~(uint32_t)OWS_ATTR_IN_WORK;
 }
 
-void signal_update(struct signal *s, uint64_t period, int64_t measured_ns, int64_t start_ns)
+void signal_update(struct signal *s, uint64_t period, int64_t measured_ns, int64_t now_ns,
+                   int64_t start_ns)
 {
 	uint32_t waited = (uint32_t)period - s->attrs.per_base;
-	int64_t age = measured_ns - (s->sample.count ? s->sample.measured_ns : start_ns);
+	int64_t age = now_ns - (s->sample.count ? s->sample.measured_ns : start_ns);
 
 	if (waited > s->attrs.per_max)
 		s->attrs.per_max = waited;
 	if (age > s->attrs.age_max_ns)
 		s->attrs.age_max_ns = age;
 	if (s->sample.count)
-		s->attrs.update_ns = age;
+		s->attrs.update_ns = now_ns - s->updated_ns;
+	s->updated_ns = now_ns;
 	s->attrs.per_base = (uint32_t)period;
 	s->sample.measured_ns = measured_ns;
 	s->sample.count++;

@@ -46,13 +46,18 @@ struct signal {
 	bool forced;     /* a write in doubt ended late: the present value goes out again */
 	bool safe;       /* put to SafeValue, its client stopped beating */
 	int64_t command, written;
+	uint32_t command_stamp; /* of command; stamp may be that of a refused one */
 	char *command_text, *written_text; /* strings */
 	uint32_t command_len, written_len;
 	uint32_t client; /* 0: nobody who beats; else index + 1 */
 
 	/* what was last seen in the command segment */
 	uint32_t stamp, one_shots, dgn_resets, acknowledged;
-	uint8_t held_quality; /* of an output while its target is down */
+
+	/* as it stood when its target was lost */
+	bool held;
+	uint8_t held_quality;
+	int32_t held_err;
 
 	/* limit alarms */
 	struct limit limit;
@@ -98,14 +103,14 @@ static inline bool signal_writes(const struct signal *s)
 }
 /* Does its commanded value have to go out? */
 bool signal_changed(const struct signal *s);
-
 /* Is the last command what the bus has? Then it is confirmed. */
 void signal_settle(struct signal *s);
 
 /* A request of this signal begins, ends; an update (value read or written) was made. */
 void signal_begin(struct signal *s, uint64_t period);
-void signal_end(struct signal *s, uint64_t period);
-void signal_update(struct signal *s, uint64_t period, int64_t measured_ns, int64_t start_ns);
+void signal_end(struct signal *s, uint64_t period, uint64_t begun);
+void signal_update(struct signal *s, uint64_t period, int64_t measured_ns, int64_t now_ns,
+                   int64_t start_ns);
 /* The edge of _DGNRESET. */
 void signal_reset_diagnostics(struct signal *s, uint64_t period, int64_t now_ns, int64_t start_ns);
 

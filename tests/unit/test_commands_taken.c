@@ -386,6 +386,29 @@ static void test_per_count_and_pend_count_are_counted_in_periods(void)
 	TEST_ASSERT_EQUAL_INT64(100 * SCENE_MS, scene_attrs(&s, 1).update_ns);
 }
 
+/* A bus with a cache gives the same measurement twice. */
+static void test_age_and_period_are_of_the_updates_though_the_measurement_is_old(void)
+{
+	int64_t measured;
+
+	scene_input(&s, "t1", T1, OWS_DOUBLE);
+	s.mute = true;
+	scene_start(&s);
+	scene_up(&s);
+	measured = s.now_ns;
+	for (int i = 0; i < 3; i++) {
+		struct bus_answer answer = { .measured_ns = measured, .kind = BUS_NUMBER };
+
+		scene_run(&s, 400 * SCENE_MS);
+		TEST_ASSERT_EQUAL_UINT(1, s.swallowed_count);
+		answer.id = s.swallowed[0]->id;
+		s.swallowed_count = 0;
+		engine_answer(s.engine, 0, &answer, s.now_ns);
+	}
+	TEST_ASSERT_EQUAL_INT64(400 * SCENE_MS, scene_attrs(&s, 1).update_ns);
+	TEST_ASSERT_EQUAL_INT64(1200 * SCENE_MS, scene_attrs(&s, 1).age_max_ns);
+}
+
 static void test_transactions_count_requests_that_ended(void)
 {
 	one_of_each();
@@ -419,6 +442,7 @@ int main(void)
 	RUN_TEST(test_a_truncated_segment_commands_nothing);
 	RUN_TEST(test_a_segment_made_again_holds_what_was_commanded);
 	RUN_TEST(test_per_count_and_pend_count_are_counted_in_periods);
+	RUN_TEST(test_age_and_period_are_of_the_updates_though_the_measurement_is_old);
 	RUN_TEST(test_transactions_count_requests_that_ended);
 	return UNITY_END();
 }

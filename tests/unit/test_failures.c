@@ -302,6 +302,35 @@ static void test_one_request_without_answer_spoils_only_its_signal_on_a_bus_that
 	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "target_failures"));
 }
 
+static void test_a_bus_that_only_talks_and_keeps_all_it_was_given_is_stuck_too(void)
+{
+	struct bus_event note = { .news = BUS_NOTE };
+
+	two_thermometers();
+	s.mute = true;
+	scene_run(&s, SCENE_S);
+	engine_event(s.engine, 0, &note, s.now_ns);
+	scene_run(&s, 21 * SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, scene_sample(&s, 2).quality);
+	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "target_failures"));
+}
+
+static void test_a_timeout_shorter_than_the_period_is_kept(void)
+{
+	s.config.period_ns = 60 * SCENE_S;
+	s.config.timeout_ns = SCENE_S;
+	scene_input(&s, "t1", T1, OWS_DOUBLE);
+	scene_input(&s, "t2", T2, OWS_DOUBLE);
+	scene_put(&s, T1, "21.5", 0);
+	scene_start(&s);
+	scene_up(&s);
+	s.mute = true; /* the first is on its way and is answered */
+	scene_run(&s, 2 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(1, s.swallowed_count);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, scene_sample(&s, 2).quality);
+}
+
 static void test_a_write_in_doubt_that_ends_late_is_followed_by_the_present_value(void)
 {
 	scene_output(&s, "out", PIO, OWS_BYTE);
@@ -381,6 +410,8 @@ int main(void)
 	RUN_TEST(test_85_degrees_out_of_nothing_is_never_published);
 	RUN_TEST(test_a_bus_that_never_answers_is_given_up_and_its_signals_go_bad);
 	RUN_TEST(test_one_request_without_answer_spoils_only_its_signal_on_a_bus_that_lives);
+	RUN_TEST(test_a_bus_that_only_talks_and_keeps_all_it_was_given_is_stuck_too);
+	RUN_TEST(test_a_timeout_shorter_than_the_period_is_kept);
 	RUN_TEST(test_a_write_in_doubt_that_ends_late_is_followed_by_the_present_value);
 	RUN_TEST(test_answers_that_nobody_asked_for_are_counted_and_ignored);
 	RUN_TEST(test_a_second_answer_to_one_request_changes_nothing);
