@@ -435,6 +435,8 @@ bool host_stop(struct host *h, int64_t timeout_ns)
 	for (unsigned i = 0; i < h->worker_count; i++)
 		stuck |= worker_stop(h->workers[i], timeout_ns) != 0;
 	if (stuck) {
+		/* who comes back from the kernel now rings no more */
+		__atomic_store_n(&h->bell, NULL, __ATOMIC_RELEASE);
 		memory_end(&h->memory);
 		return false;
 	}

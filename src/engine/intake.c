@@ -131,7 +131,7 @@ void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
 		s->dgn_resets = c.dgn_reset;
 		signal_reset_diagnostics(s, e->period, now_ns, e->start_ns);
 	}
-	if (c.acknowledged != s->acknowledged) {
+	if (c.acknowledged && c.acknowledged != s->acknowledged) {
 		s->acknowledged = c.acknowledged;
 		engine_limits_acknowledge(e, s);
 	}
