@@ -189,6 +189,14 @@ static bool build_value(struct build *build, const struct option_value *value,
 	return false;
 }
 
+static void check_string(struct build *build, const struct option_value *value)
+{
+	if (strlen(value->text) > VALUE_STRING_MAX)
+		report_error(build->report, value->node->value_at,
+		             "%s: a string is at most %d bytes long", value->node->key,
+		             VALUE_STRING_MAX);
+}
+
 static void build_values(struct build *build, const struct option_value *values, bool known,
                          struct config_item *item)
 {
@@ -197,6 +205,8 @@ static void build_values(struct build *build, const struct option_value *values,
 	item->init_text = build_keep(build, init->text, strlen(init->text));
 	item->safe_text = build_keep(build, safe->text, strlen(safe->text));
 	if (item->type == OWS_STRING) {
+		check_string(build, init);
+		check_string(build, safe);
 		item->has_init = *init->text != '\0';
 		item->has_safe = safe->given;
 	} else if (known) {

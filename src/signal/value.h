@@ -11,6 +11,8 @@
 
 #include <stdbool.h>
 
+/* Bytes of a string signal, without NUL; a multiple of 4. */
+#define VALUE_STRING_MAX 1024
 /* Enough for the text of any number, with NUL. */
 #define VALUE_TEXT_MAX 32
 

@@ -508,6 +508,20 @@ static void test_start_values_are_typed_and_an_empty_one_is_none(void)
 	TEST_ASSERT_EQUAL_STRING("", config->items[0].safe_text);
 }
 
+static void test_a_start_value_longer_than_a_string_is_an_error(void)
+{
+	char keys[1200] = "Name a\nPath /28.000000000001/x\nType string\nInitValue \"";
+	size_t begin = strlen(keys);
+
+	memset(keys + begin, 'x', 1024);
+	strcpy(keys + begin + 1024, "\"");
+	TEST_ASSERT_EQUAL_INT(0, parse_item(keys));
+	TEST_ASSERT_EQUAL_size_t(1024, strlen(config->items[0].init_text));
+	strcpy(keys + begin + 1024, "x\"");
+	TEST_ASSERT_EQUAL_INT(-EINVAL, parse_item(keys));
+	TEST_ASSERT_NOT_NULL(strstr(said, "1024"));
+}
+
 static void test_all_errors_of_a_file_are_said_in_one_go(void)
 {
 	TEST_ASSERT_EQUAL_INT(-EINVAL, parse("OwsDrv {\n Timeout x\n Period 0\n Item { Name \"a b\"\n"
@@ -550,6 +564,7 @@ int main(void)
 	RUN_TEST(test_the_bits_of_io_type_and_the_keys_that_override_them);
 	RUN_TEST(test_paths_lose_their_flags_and_gain_a_slash);
 	RUN_TEST(test_start_values_are_typed_and_an_empty_one_is_none);
+	RUN_TEST(test_a_start_value_longer_than_a_string_is_an_error);
 	RUN_TEST(test_all_errors_of_a_file_are_said_in_one_go);
 	RUN_TEST(test_bytes_of_the_file_cannot_steer_the_terminal);
 	RUN_TEST(test_a_file_that_is_not_there_is_said);
