@@ -85,6 +85,7 @@ static int parse_options(int argc, char **argv, struct options *o)
 		{ 0 },
 	};
 	char *end;
+	long priority;
 	int c;
 
 	*o = (struct options){ .file = DEFAULT_FILE, .instance = "OWS", .level = LOG_LEVEL_NOTICE };
@@ -107,12 +108,13 @@ static int parse_options(int argc, char **argv, struct options *o)
 			o->check = true;
 			break;
 		case OPT_RT:
-			o->rt_priority = (int)strtol(optarg, &end, 10);
-			if (*end || end == optarg || o->rt_priority < 1 || o->rt_priority > 99) {
+			priority = strtol(optarg, &end, 10);
+			if (*end || end == optarg || priority < 1 || priority > 99) {
 				fprintf(stderr, "owsd: --rt %s: a number from 1 to 99 expected\n",
 				        optarg);
 				return EXIT_USAGE;
 			}
+			o->rt_priority = (int)priority;
 			break;
 		case 'v':
 			if (o->level < LOG_LEVEL_DEBUG)
@@ -206,25 +208,26 @@ static void catch_signals(void)
 }
 
 /* Write the log, feed the watchdog while the engine's heart beats, until a signal ends it. */
-static void supervise(struct host *host, struct log *log, const struct notify *notify, int prefix)
+static void supervise(struct host *host, struct log *log, const struct notify *notify, int prefix,
+                      int64_t period_ns)
 {
-	int64_t fed_ns = 0, last_beat_ns = 0, wait_ns = SUPERVISE_NS;
+	int64_t fed_ns = 0, wait_ns = SUPERVISE_NS;
 
 	if (notify->watchdog_ns && notify->watchdog_ns / 4 < wait_ns)
 		wait_ns = notify->watchdog_ns / 4;
 	while (!stop_signal) {
 		uint32_t seen = __atomic_load_n(log_word(log), __ATOMIC_ACQUIRE);
-		int64_t now_ns = ows_now(), beat_ns = host_beat(host);
+		int64_t now_ns = ows_now();
 
 		if (hangup) {
 			hangup = 0;
 			log_warning(log, "SIGHUP: this version does not reload; restart it");
 		}
-		if (beat_ns != last_beat_ns && now_ns - fed_ns >= notify->watchdog_ns / 4) {
-			last_beat_ns = beat_ns;
+		/* the heart beats once a period, which may be longer than the watchdog's time */
+		if (notify->watchdog_ns && now_ns - fed_ns >= notify->watchdog_ns / 4 &&
+		    now_ns - host_beat(host) <= 2 * period_ns + notify->watchdog_ns / 4) {
 			fed_ns = now_ns;
-			if (notify->watchdog_ns)
-				notify_send(notify, NOTIFY_WATCHDOG);
+			notify_send(notify, NOTIFY_WATCHDOG);
 		}
 		host_tend(host);
 		log_drain(log, STDERR_FILENO, prefix);
@@ -259,7 +262,7 @@ static int run(const struct options *o, const struct config *config, struct log 
 	notify_send(&notify, NOTIFY_READY);
 	notify_status(&notify, "%u signals, target %s", config->item_count,
 	              config->targets[0].text);
-	supervise(host, log, &notify, prefix);
+	supervise(host, log, &notify, prefix, config->period_ns);
 	log_notice(log, "owsd ends: %s", stop_signal == SIGTERM ? "SIGTERM" : "SIGINT");
 	notify_send(&notify, NOTIFY_STOPPING);
 	ended = host_stop(host, STOP_NS);

@@ -202,6 +202,22 @@ def test_rubbish_in_the_command_segment_harms_nobody(scene):
         until(lambda: good(scene, again), 10)
 
 
+def test_a_period_longer_than_the_watchdogs_time_starves_no_watchdog(scene):
+    with lying_peer() as server:
+        text = owsdtest.rio(server.target, [
+            dict(Name="room", Path=ROOM, Type=raw("double"), IO=raw("input"))], Period=30)
+        daemon = scene.owsd(text, env={"WATCHDOG_USEC": "400000"})
+        fed = []
+
+        def often():
+            try:
+                fed.append(b"WATCHDOG=1" in daemon.notify.recv(4096))
+            except OSError:
+                pass
+            return sum(fed) >= 5
+        until(often, 10, "the watchdog is fed")
+
+
 def test_readers_of_a_killed_owsd_see_whole_samples_that_grow_old(scene):
     sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
     import ows
