@@ -6,7 +6,8 @@
 int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns)
 {
 	const uint32_t *word = &h->map.image->news;
-	int64_t until = timeout_ns < 0 ? -1 : ows_now() + timeout_ns;
+	int64_t now_ns = ows_now();
+	int64_t until = timeout_ns < 0 || timeout_ns > INT64_MAX - now_ns ? -1 : now_ns + timeout_ns;
 
 	for (;;) {
 		uint32_t seen = __atomic_load_n(word, __ATOMIC_ACQUIRE);

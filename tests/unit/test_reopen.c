@@ -146,7 +146,7 @@ static void test_a_sleeper_wakes_for_news_and_for_retirement(void)
 	TEST_ASSERT_EQUAL(1, ows_wait(h, &news, 60 * INSTANCE_S));
 	pthread_join(thread, NULL);
 	TEST_ASSERT_EQUAL(0, pthread_create(&thread, NULL, publish_later, &in));
-	TEST_ASSERT_EQUAL(-ESTALE, ows_wait(h, &news, -1));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_wait(h, &news, INT64_MAX)); /* no limit either */
 	pthread_join(thread, NULL);
 }
 
