@@ -9,12 +9,13 @@
 #include "../config/config.h"
 #include "../log.h"
 #include "../shm/image.h"
+#include "../signal/value.h"
 #include "guard.h"
 #include "limit.h"
 #include "retry.h"
 
 /* Room for the text of a string signal in the layout, bytes; a multiple of 4. */
-#define TABLE_TEXT_CAP 1024
+#define TABLE_TEXT_CAP VALUE_STRING_MAX
 
 #define TABLE_NO_DEVICE UINT32_MAX
 
