@@ -69,11 +69,11 @@ static void test_a_device_lists_its_properties(void)
 	TEST_ASSERT_EQUAL_MEMORY(expected, data, strlen(expected));
 }
 
-static void test_nothing_is_in_alarm(void)
+static void test_it_says_that_it_has_no_alarm_search(void)
 {
 	const struct bus_answer *answer = ask(BUS_DIR, "/alarm", NULL, sizeof(data));
 
-	TEST_ASSERT_EQUAL_INT(0, answer->err);
+	TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP, answer->err);
 	TEST_ASSERT_EQUAL_UINT32(0, answer->len);
 }
 
@@ -110,7 +110,7 @@ int main(void)
 	RUN_TEST(test_a_read_gives_what_was_written);
 	RUN_TEST(test_the_root_lists_each_device_once);
 	RUN_TEST(test_a_device_lists_its_properties);
-	RUN_TEST(test_nothing_is_in_alarm);
+	RUN_TEST(test_it_says_that_it_has_no_alarm_search);
 	RUN_TEST(test_device_and_property_are_missed_by_different_errors);
 	RUN_TEST(test_too_little_room_is_an_error_and_writes_nothing);
 	RUN_TEST(test_a_value_longer_than_its_place_is_refused);
