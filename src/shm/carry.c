@@ -11,6 +11,9 @@
 #include <errno.h>
 #include <string.h>
 
+/* More than any configuration has: each may be looked at for each signal of ours. */
+#define SLOTS_MAX 65536
+
 struct old_segment {
 	const char *base;
 	uint32_t size;
@@ -33,7 +36,7 @@ static int open_old(const void *memory, size_t size, struct old_segment *old)
 	if (h.magic != OWS_COMMAND_MAGIC || h.major != OWS_LAYOUT_MAJOR ||
 	    h.slot_size != sizeof(struct ows_command_slot) ||
 	    h.entry_size != sizeof(struct ows_command_entry) ||
-	    h.client_size != sizeof(struct ows_client))
+	    h.client_size != sizeof(struct ows_client) || h.slot_count > SLOTS_MAX)
 		return -EPROTO;
 	*old = (struct old_segment){
 		.base = memory,

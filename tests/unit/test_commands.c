@@ -249,11 +249,22 @@ static void test_texts_are_carried_if_they_are_whole(void)
 
 static void test_no_command_segment_carries_nothing(void)
 {
-	char rubbish[1024] = {0};
+	/* room for more slots than there can be */
+	const size_t size = 0x10010 * 48 + 65536;
+	char rubbish[1024] = {0}, *large = calloc(1, size);
+	struct ows_command_header *h = (void *)large;
 
+	TEST_ASSERT_NOT_NULL(large);
+	memcpy(large, from.base, sizeof(*h));
+	h->entry_off = h->slot_off + 0x10010 * 32;
 	TEST_ASSERT_EQUAL(-EPROTO, commands_carry(&to, rubbish, sizeof(rubbish), true));
 	TEST_ASSERT_EQUAL(-EPROTO, commands_carry(&to, from.base, 100, true));
 	TEST_ASSERT_EQUAL(-EPROTO, commands_carry(&to, from.base, from.size / 2, true));
+	h->slot_count = 0x10001;
+	TEST_ASSERT_EQUAL(-EPROTO, commands_carry(&to, large, size, true));
+	h->slot_count = 0x10000;
+	TEST_ASSERT_EQUAL(0, commands_carry(&to, large, size, true));
+	free(large);
 	((struct ows_command_header *)(void *)from.base)->major++;
 	TEST_ASSERT_EQUAL(-EPROTO, commands_carry(&to, from.base, from.size, true));
 }
