@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Limit alarms in the engine: what is known of a signal goes in, journal and attributes come out. */
+/* Limit alarms in the engine: what is known of a signal goes in, journal and state come out. */
 #include "private.h"
 
 #include "../signal/value.h"

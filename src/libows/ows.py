@@ -80,9 +80,9 @@ Attrs = collections.namedtuple("Attrs", "transactions update_ns age_max_ns comma
                                "limit_condition check")
 Header = collections.namedtuple(
     "Header", "magic major minor size generation state pid start_id alarm_off start_ns "
-    "start_wall_ns period_ns alarm_size alarm_count record_off record_size record_count info_off info_size name_off target_off "
-    "target_size target_count counter_off counter_size counter_count pool_off pool_size text_off "
-    "text_size")
+    "start_wall_ns period_ns alarm_size alarm_count record_off record_size record_count info_off "
+    "info_size name_off target_off target_size target_count counter_off counter_size "
+    "counter_count pool_off pool_size text_off text_size")
 HEADER = struct.Struct("<IHHIIIiIIqqqIIIIIIIIIIIIIIIIII")
 ALARM_ENTRY = struct.Struct("<IIq8s8sBBBB20sII")
 CommandHeader = collections.namedtuple(

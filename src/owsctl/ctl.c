@@ -51,6 +51,7 @@ int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
 {
 	static const struct option longs[] = {
 		{"json", no_argument, NULL, 'J'},
+		{"all", no_argument, NULL, 'a'},
 		{"help", no_argument, NULL, 'h'},
 		{0},
 	};
@@ -66,6 +67,10 @@ int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
 		printf("usage: owsctl %s %s\n%s\n", ctl->verb->name, ctl->verb->usage,
 		       ctl->verb->brief);
 		exit(ctl_flush(CTL_DONE));
+	}
+	if (c == 'a' && !strchr(options, 'a')) {
+		optopt = 0;
+		c = '?';
 	}
 	if (c == ':' || c == '?') {
 		const char *what = c == ':' ? "option without its argument" : "unknown option";

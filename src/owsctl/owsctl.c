@@ -16,6 +16,8 @@ static const struct verb verbs[] = {
 	 verb_watch},
 	{"wait", "[-t SECONDS] NAME [OP VALUE]", "sleep until a value changes or a condition holds",
 	 verb_wait},
+	{"alarms", "[PATTERN...] | history ... | ack NAME... | -a",
+	 "alarms that stand, and those since the start", verb_alarms},
 	{"stats", "", "owsd itself, its targets and counters", verb_stats},
 	{"config", "FILE list | add | set | unset | remove ...", "look at a configuration and edit it",
 	 verb_config},

@@ -36,12 +36,13 @@ int verb_get(struct ctl *ctl, int argc, char **argv);
 int verb_set(struct ctl *ctl, int argc, char **argv);
 int verb_watch(struct ctl *ctl, int argc, char **argv);
 int verb_wait(struct ctl *ctl, int argc, char **argv);
+int verb_alarms(struct ctl *ctl, int argc, char **argv);
 int verb_stats(struct ctl *ctl, int argc, char **argv);
 int verb_config(struct ctl *ctl, int argc, char **argv);
 
 /*
  * The next option as getopt(); options that begin with '+' stop at the first word that is none.
- * --json is taken, -h prints the usage and ends the program. '?' : it was wrong and this has been
+ * --json is taken, --all means -a where there is one, -h prints the usage and ends the program. '?' : it was wrong and this has been
  * said; return CTL_USAGE. Operands are argv[optind] and up once -1 was returned. ctl_options()
  * starts anew.
  */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The verbs on an instance without owsd: what they print, and their exit status. */
+#include "caught.h"
 #include "instance.h"
 
 #include "src/owsctl/verbs.h"
@@ -23,53 +24,6 @@ static const struct instance_signal signals[] = {
 #define COUNT 5
 
 static struct instance in;
-static struct ctl ctl;
-static const struct verb verb = {.name = "verb", .usage = "OPERANDS", .brief = "tested"};
-static char *out, *err;
-
-static char *whole(FILE *file)
-{
-	long size;
-	char *text;
-
-	fflush(file);
-	size = ftell(file);
-	text = calloc(1, (size_t)size + 1);
-	TEST_ASSERT_NOT_NULL(text);
-	rewind(file);
-	TEST_ASSERT_EQUAL_size_t((size_t)size, fread(text, 1, (size_t)size, file));
-	return text;
-}
-
-/* Run a verb with stdout and stderr caught in out and err. */
-static int run(int (*function)(struct ctl *, int, char **), const char *words)
-{
-	FILE *files[2] = {tmpfile(), tmpfile()};
-	int saved[2] = {dup(STDOUT_FILENO), dup(STDERR_FILENO)}, status, argc = 0;
-	char *argv[16], *copy = strdup(words);
-
-	TEST_ASSERT_TRUE(files[0] && files[1] && copy);
-	for (char *word = strtok(copy, " "); word && argc < 15; word = strtok(NULL, " "))
-		argv[argc++] = word;
-	argv[argc] = NULL;
-	ctl.json = false;
-	fflush(stdout);
-	dup2(fileno(files[0]), STDOUT_FILENO);
-	dup2(fileno(files[1]), STDERR_FILENO);
-	status = ctl_flush(function(&ctl, argc, argv));
-	dup2(saved[0], STDOUT_FILENO);
-	dup2(saved[1], STDERR_FILENO);
-	free(out);
-	free(err);
-	for (int i = 0; i < 2; i++) {
-		fseek(files[i], 0, SEEK_END);
-		*(i ? &err : &out) = whole(files[i]);
-		fclose(files[i]);
-		close(saved[i]);
-	}
-	free(copy);
-	return status;
-}
 
 void setUp(void)
 {
@@ -80,20 +34,13 @@ void setUp(void)
 	instance_put(&in, 2, 1, now);
 	instance_put(&in, 3, INT64_C(9007199254740993), now);
 	instance_put_text(&in, 4, "a \"b\"\n", now);
-	ctl = (struct ctl){.instance = in.name, .verb = &verb};
+	caught_begin(in.name);
 }
 
 void tearDown(void)
 {
 	instance_end(&in);
-	free(out);
-	free(err);
-	out = err = NULL;
-}
-
-static void holds(const char *text, const char *part)
-{
-	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, part), text);
+	caught_end();
 }
 
 static void test_get_prints_the_values_alone(void)
@@ -145,7 +92,7 @@ static void test_get_without_a_name_is_wrong_usage(void)
 
 static void test_no_instance_is_told(void)
 {
-	ctl.instance = "nobody.runs.this";
+	caught_ctl.instance = "nobody.runs.this";
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_get, "get room1"));
 	holds(err, "no owsd of the name nobody.runs.this");
 }

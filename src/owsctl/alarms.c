@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: MIT */
+#include "alarms.h"
+#include "names.h"
+#include "rows.h"
+#include "table.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <string.h>
+
+/* One line of the live table. */
+struct alarm {
+	const char *name;
+	const char *kind, *state;
+	int64_t since_ns; /* 0: not known */
+	uint32_t occurrences;
+	bool device, polled;
+};
+
+struct live {
+	struct ows *h;
+	struct when now;
+	struct reading *reading;
+	struct table *table; /* NULL: JSON */
+	struct json json;
+	bool ok;
+};
+
+static const struct table_column columns[] = {
+	{"NAME"}, {"ALARM"}, {"STATE"}, {"SINCE", .right = true}, {"VALUE", .right = true, .most = 40},
+	{"QUALITY"},
+};
+#define COLUMNS (sizeof(columns) / sizeof(columns[0]))
+
+/* When the present alarm of a signal was raised, as far as the journal goes back. */
+static int64_t raised(struct ows *h, int signal, bool device, uint8_t kind)
+{
+	struct ows_alarm alarm;
+	int err;
+
+	for (uint32_t number = ows_alarm_count(h); number-- > 0;) {
+		err = ows_alarm(h, number, &alarm);
+		if (err == -ENOENT)
+			break;
+		if (err || alarm.signal != signal || alarm.event != OWS_ALARM_RAISED)
+			continue;
+		if (device ? alarm.kind <= OWS_ALARM_POR : alarm.kind == kind)
+			return alarm.occurred_ns;
+	}
+	return 0;
+}
+
+static void add_row(struct live *live, const struct alarm *alarm)
+{
+	char value[128], words[READING_WORDS], span[WHEN_TEXT] = "-";
+
+	reading_show(live->reading, value, sizeof(value));
+	if (alarm->since_ns)
+		when_span(live->now.boot - alarm->since_ns, span);
+	if (!table_add(live->table, (const char *const[]){
+					    alarm->name, alarm->kind, alarm->state, span, value,
+					    reading_quality(live->reading, words)}))
+		live->ok = false;
+}
+
+static void add_json(struct live *live, const struct alarm *alarm)
+{
+	struct json *json = &live->json;
+	char text[WHEN_TEXT];
+
+	json_object(json, NULL);
+	json_string(json, "name", alarm->name);
+	json_string(json, "alarm", alarm->kind);
+	json_string(json, "state", alarm->state);
+	json_bool(json, "device", alarm->device);
+	json_bool(json, "polled", alarm->polled);
+	json_string(json, "since",
+	            alarm->since_ns ? when_iso(&live->now, alarm->since_ns, text) : NULL);
+	if (alarm->device)
+		json_uint(json, "occurrences", alarm->occurrences);
+	reading_json(json, live->h, live->reading, &live->now);
+	json_object_end(json);
+}
+
+static void add(struct live *live, const struct alarm *alarm)
+{
+	if (live->table)
+		add_row(live, alarm);
+	else
+		add_json(live, alarm);
+}
+
+static void look_at(struct live *live, int signal, const struct row *row)
+{
+	struct ows_alarm_state state = {0};
+	struct alarm alarm = {.name = row->name};
+
+	if (ows_alarm_state(live->h, row->id, &state) == -EAGAIN)
+		return;
+	reading_get(live->h, row->id, live->now.boot, live->reading);
+	if (state.stands || state.polled) {
+		alarm.kind = ows_alarm_kind_text(OWS_ALARM_DEVICE);
+		alarm.state = state.stands ? "stands" : "no alarm search there: read as an input";
+		alarm.device = true;
+		alarm.polled = state.polled;
+		alarm.occurrences = state.occurrences;
+		if (state.stands)
+			alarm.since_ns = raised(live->h, signal, true, 0);
+		add(live, &alarm);
+	}
+	if (state.limit_state != OWS_LIMIT_NORMAL) {
+		alarm = (struct alarm){
+			.name = row->name,
+			.kind = ows_alarm_kind_text(state.limit_kind),
+			.state = ows_limit_state_text(state.limit_state),
+			.since_ns = raised(live->h, signal, false, state.limit_kind),
+		};
+		add(live, &alarm);
+	}
+}
+
+/* rows: all of the table, in its order. */
+static bool show(struct ows *h, const struct rows *rows, bool json, char *const *patterns,
+                 int pattern_count)
+{
+	static struct reading reading;
+	struct table table;
+	struct live live = {.h = h, .now = when_now(), .reading = &reading, .ok = true};
+	char line[2048];
+
+	table_init(&table, columns, COLUMNS);
+	if (json) {
+		json_open(&live.json, stdout);
+		json_array(&live.json, NULL);
+	} else {
+		live.table = &table;
+	}
+	for (int i = 0; live.ok && i < rows->count; i++)
+		if (names_match(rows->row[i].name, patterns, pattern_count))
+			look_at(&live, i, &rows->row[i]);
+	if (json) {
+		json_array_end(&live.json);
+		json_end(&live.json);
+	}
+	table_fit(&table, 0);
+	for (int i = -1; !json && live.ok && i < (int)table.rows; i++) {
+		table_line(&table, i, line, sizeof(line));
+		puts(line);
+	}
+	table_free(&table);
+	return live.ok;
+}
+
+int alarms_live(struct ctl *ctl, int argc, char **argv)
+{
+	struct rows rows;
+	struct ows *h;
+	int status;
+
+	ctl_options();
+	if (ctl_option(ctl, argc, argv, "") != -1)
+		return CTL_USAGE;
+	status = ctl_open(ctl, OWS_READ, &h);
+	if (status)
+		return status;
+	if (rows_collect(h, NULL, 0, false, &rows) != 0) {
+		ows_close(h);
+		return ctl_fail("no memory");
+	}
+	ctl_alive(ctl, h, ows_now());
+	if (!show(h, &rows, ctl->json, argv + optind, argc - optind))
+		status = ctl_fail("no memory");
+	rows_free(&rows);
+	ows_close(h);
+	return status;
+}
+
+int verb_alarms(struct ctl *ctl, int argc, char **argv)
+{
+	static const struct {
+		const char *word;
+		int (*run)(struct ctl *ctl, int argc, char **argv);
+	} words[] = {{"history", alarms_history}, {"ack", alarms_ack}};
+
+	for (size_t i = 0; argc > 1 && i < sizeof(words) / sizeof(words[0]); i++)
+		if (strcmp(argv[1], words[i].word) == 0)
+			return words[i].run(ctl, argc - 1, argv + 1);
+	return alarms_live(ctl, argc, argv);
+}

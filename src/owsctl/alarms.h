@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: MIT */
+/* What the words behind `owsctl alarms` do; argv[0] is the word. */
+#ifndef OWSCTL_ALARMS_H
+#define OWSCTL_ALARMS_H
+
+#include "verbs.h"
+
+int alarms_live(struct ctl *ctl, int argc, char **argv);
+int alarms_history(struct ctl *ctl, int argc, char **argv);
+int alarms_ack(struct ctl *ctl, int argc, char **argv);
+
+#endif

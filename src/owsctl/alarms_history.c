@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: MIT */
+#include "alarms.h"
+#include "json.h"
+#include "names.h"
+#include "table.h"
+#include "when.h"
+#include "../signal/value.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdio.h>
+
+static const struct table_column columns[] = {
+	{"TIME"}, {"NAME"}, {"ALARM"}, {"EVENT"}, {"BEFORE", .right = true}, {"AFTER", .right = true},
+	{"QUALITY"}, {"LATCH"},
+};
+
+static const char *value_text(const struct ows_alarm *alarm, bool after, char text[VALUE_TEXT_MAX])
+{
+	enum ows_type type = (enum ows_type)alarm->type;
+	double number = after ? alarm->after : alarm->before;
+	int64_t integer = after ? alarm->after_integer : alarm->before_integer;
+
+	if (!(after ? alarm->has_after : alarm->has_before) || type == OWS_STRING)
+		return NULL;
+	value_to_text(type, value_is_float(type) ? value_of_double(number) : integer, text);
+	return text;
+}
+
+static bool add_row(struct table *table, const struct when *now, const char *name,
+                    const struct ows_alarm *alarm)
+{
+	char before[VALUE_TEXT_MAX], after[VALUE_TEXT_MAX], time[WHEN_TEXT];
+	const char *left = value_text(alarm, false, before);
+	const char *right = value_text(alarm, true, after);
+
+	return table_add(table, (const char *const[]){
+					when_iso(now, alarm->occurred_ns, time), name,
+					ows_alarm_kind_text(alarm->kind),
+					ows_alarm_event_text(alarm->event), left ? left : "-",
+					right ? right : "-", ows_quality_text(alarm->quality),
+					alarm->latch});
+}
+
+static void json_value(struct json *json, const char *key, const char *text)
+{
+	if (text)
+		json_number(json, key, text);
+	else
+		json_null(json, key);
+}
+
+static void add_json(struct json *json, const struct when *now, uint32_t number, const char *name,
+                     const struct ows_alarm *alarm)
+{
+	char text[VALUE_TEXT_MAX], time[WHEN_TEXT];
+
+	json_object(json, NULL);
+	json_uint(json, "number", number);
+	json_string(json, "time", when_iso(now, alarm->occurred_ns, time));
+	json_string(json, "name", name);
+	json_string(json, "alarm", ows_alarm_kind_text(alarm->kind));
+	json_string(json, "event", ows_alarm_event_text(alarm->event));
+	json_value(json, "before", value_text(alarm, false, text));
+	json_value(json, "after", value_text(alarm, true, text));
+	json_string(json, "quality", ows_quality_text(alarm->quality));
+	json_string(json, "latch", *alarm->latch ? alarm->latch : NULL);
+	json_object_end(json);
+}
+
+/* All entries that are kept, the oldest first, into the table or the document. */
+static bool walk(struct ows *h, char *const *patterns, int count, struct table *table,
+                 struct json *json)
+{
+	uint32_t head = ows_alarm_count(h), first = head;
+	struct when now = when_now();
+	struct ows_alarm alarm;
+	struct ows_info info;
+	bool ok = true;
+
+	while (ows_alarm(h, first - 1, &alarm) != -ENOENT)
+		first--;
+	for (uint32_t number = first; ok && number != head; number++) {
+		if (ows_alarm(h, number, &alarm) != 0 || ows_info(h, alarm.signal, &info) != 0 ||
+		    !names_match(info.name, patterns, count))
+			continue;
+		if (table)
+			ok = add_row(table, &now, info.name, &alarm);
+		else
+			add_json(json, &now, number, info.name, &alarm);
+	}
+	return ok;
+}
+
+static bool print_table(struct ows *h, char *const *patterns, int count)
+{
+	struct table table;
+	char line[2048];
+	bool ok;
+
+	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
+	ok = walk(h, patterns, count, &table, NULL);
+	table_fit(&table, 0);
+	for (int i = -1; ok && i < (int)table.rows; i++) {
+		table_line(&table, i, line, sizeof(line));
+		puts(line);
+	}
+	table_free(&table);
+	return ok;
+}
+
+static void print_json(struct ows *h, char *const *patterns, int count)
+{
+	struct json json;
+
+	json_open(&json, stdout);
+	json_array(&json, NULL);
+	walk(h, patterns, count, NULL, &json);
+	json_array_end(&json);
+	json_end(&json);
+}
+
+int alarms_history(struct ctl *ctl, int argc, char **argv)
+{
+	struct ows *h;
+	int status;
+
+	ctl_options();
+	if (ctl_option(ctl, argc, argv, "") != -1)
+		return CTL_USAGE;
+	status = ctl_open(ctl, OWS_READ, &h);
+	if (status)
+		return status;
+	ctl_alive(ctl, h, ows_now());
+	if (ctl->json)
+		print_json(h, argv + optind, argc - optind);
+	else if (!print_table(h, argv + optind, argc - optind))
+		status = ctl_fail("no memory");
+	ows_close(h);
+	return status;
+}
