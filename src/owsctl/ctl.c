@@ -53,22 +53,28 @@ int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
 		{"json", no_argument, NULL, 'J'},
 		{"all", no_argument, NULL, 'a'},
 		{"help", no_argument, NULL, 'h'},
+		{"rio", no_argument, NULL, 'r'},
 		{0},
 	};
 	char all[32];
 	int c;
 
-	snprintf(all, sizeof(all), "%s:h%s", *options == '+' ? "+" : "",
-	         options + (*options == '+'));
+	snprintf(all, sizeof(all), "%s:h%s%s", *options == '+' ? "+" : "",
+	         ctl->verb->opens ? "t:" : "", options + (*options == '+'));
 	opterr = 0;
-	while ((c = getopt_long(argc, argv, all, longs, NULL)) == 'J')
-		ctl->json = true;
+	while ((c = getopt_long(argc, argv, all, longs, NULL)) == 'J' ||
+	       (c == 't' && ctl->verb->opens)) {
+		if (c == 'J')
+			ctl->json = true;
+		else
+			ctl->target = optarg;
+	}
 	if (c == 'h') {
 		printf("usage: owsctl %s %s\n%s\n", ctl->verb->name, ctl->verb->usage,
 		       ctl->verb->brief);
 		exit(ctl_flush(CTL_DONE));
 	}
-	if (c == 'a' && !strchr(options, 'a')) {
+	if ((c == 'a' || c == 'r') && !strchr(options, c)) {
 		optopt = 0;
 		c = '?';
 	}

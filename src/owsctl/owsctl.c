@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* owsctl: look at the signals of owsd and set them. */
+/* owsctl: look at the signals of owsd and set them; look at devices without owsd. */
 #include "verbs.h"
 
 #include <getopt.h>
@@ -21,17 +21,26 @@ static const struct verb verbs[] = {
 	{"stats", "", "owsd itself, its targets and counters", verb_stats},
 	{"config", "FILE list | add | set | unset | remove ...", "look at a configuration and edit it",
 	 verb_config},
+	{"dir", "[-t TARGET] [-w SECONDS] [PATH]", "what is in a directory of a target", verb_dir,
+	 .opens = true},
+	{"read", "[-t TARGET] [-w SECONDS] PATH...", "properties of devices, one line for each",
+	 verb_read, .opens = true},
+	{"write", "[-t TARGET] [-w SECONDS] PATH VALUE", "write a property of a device", verb_write,
+	 .opens = true},
+	{"scan", "[-t TARGET] [-w SECONDS] [--rio] [-i]", "the devices that are there, or a "
+	 "configuration for them", verb_scan, .opens = true},
 };
 #define VERBS (sizeof(verbs) / sizeof(verbs[0]))
 
 static void usage(FILE *out)
 {
-	fputs("usage: owsctl [-n NAME] [--json] VERB ...\n", out);
+	fputs("usage: owsctl [-n NAME | -t TARGET] [--json] VERB ...\n", out);
 	for (size_t i = 0; i < VERBS; i++)
 		fprintf(out, "  %-6s %-46s %s\n", verbs[i].name, verbs[i].usage, verbs[i].brief);
-	fputs("  -n NAME  instance, default OWS\n"
-	      "  --json   print JSON\n"
-	      "  -V -h    print the version; this help, with a verb in front: the verb's\n"
+	fputs("  -n NAME    instance, default OWS\n"
+	      "  -t TARGET  what dir, read, write and scan open, default localhost:4304 (owserver)\n"
+	      "  --json     print JSON\n"
+	      "  -V -h      print the version; this help, with a verb in front: the verb's\n"
 	      "exit status: 0 done, 1 failed, 2 wrong usage, 3 a value is not good\n", out);
 }
 
@@ -48,10 +57,13 @@ int main(int argc, char **argv)
 
 	/* A reader of ours that leaves is seen as EPIPE. */
 	signal(SIGPIPE, SIG_IGN);
-	while ((c = getopt_long(argc, argv, "+n:Vh", longs, NULL)) != -1) {
+	while ((c = getopt_long(argc, argv, "+n:t:Vh", longs, NULL)) != -1) {
 		switch (c) {
 		case 'n':
 			ctl.instance = optarg;
+			break;
+		case 't':
+			ctl.target = optarg;
 			break;
 		case 'J':
 			ctl.json = true;
@@ -74,6 +86,9 @@ int main(int argc, char **argv)
 	for (size_t i = 0; i < VERBS; i++) {
 		if (strcmp(verbs[i].name, argv[optind]) == 0) {
 			ctl.verb = &verbs[i];
+			if (ctl.target && !verbs[i].opens)
+				return ctl_usage(&ctl, "-t TARGET is for dir, read, write and scan; "
+				                 "%s looks at a running owsd", verbs[i].name);
 			return ctl_flush(verbs[i].run(&ctl, argc - optind, argv + optind));
 		}
 	}

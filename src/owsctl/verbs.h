@@ -20,6 +20,7 @@ enum ctl_status {
 struct verb;
 struct ctl {
 	const char *instance;
+	const char *target; /* -t; NULL: none given */
 	bool json;
 	const struct verb *verb; /* the one in work */
 };
@@ -29,6 +30,7 @@ struct verb {
 	const char *usage; /* behind the name: "NAME..." */
 	const char *brief; /* one line for the list of verbs */
 	int (*run)(struct ctl *ctl, int argc, char **argv);
+	bool opens; /* a target itself, without owsd: knows -t */
 };
 
 int verb_list(struct ctl *ctl, int argc, char **argv);
@@ -39,12 +41,16 @@ int verb_wait(struct ctl *ctl, int argc, char **argv);
 int verb_alarms(struct ctl *ctl, int argc, char **argv);
 int verb_stats(struct ctl *ctl, int argc, char **argv);
 int verb_config(struct ctl *ctl, int argc, char **argv);
+int verb_dir(struct ctl *ctl, int argc, char **argv);
+int verb_read(struct ctl *ctl, int argc, char **argv);
+int verb_write(struct ctl *ctl, int argc, char **argv);
+int verb_scan(struct ctl *ctl, int argc, char **argv);
 
 /*
  * The next option as getopt(); options that begin with '+' stop at the first word that is none.
- * --json is taken, --all means -a where there is one, -h prints the usage and ends the program. '?' : it was wrong and this has been
- * said; return CTL_USAGE. Operands are argv[optind] and up once -1 was returned. ctl_options()
- * starts anew.
+ * --json is taken, and -t by verbs that open a target; --all means -a where there is one; -h prints
+ * the usage and ends the program. '?' : it was wrong and this has been said; return CTL_USAGE.
+ * Operands are argv[optind] and up once -1 was returned. ctl_options() starts anew.
  */
 void ctl_options(void);
 int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options);

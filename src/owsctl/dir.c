@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT */
+#include "json.h"
+#include "open.h"
+#include "text.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LISTING_MAX (256u * 1024)
+
+static void print(const struct ctl *ctl, char *text, const char *before)
+{
+	static char clean[4096], path[4096 + 16];
+	struct json json;
+	char *rest;
+
+	json_open(&json, stdout);
+	if (ctl->json)
+		json_array(&json, NULL);
+	for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+		/* owserver says it, our own buses do not */
+		bool said = strncmp(line, "/uncached/", 10) == 0;
+
+		if (*before && !strcmp(line, before))
+			continue;
+		text_clean(line, strlen(line), sizeof(clean), clean, sizeof(clean));
+		snprintf(path, sizeof(path), "%s%s", said ? "" : before, clean);
+		if (ctl->json)
+			json_string(&json, NULL, path);
+		else
+			puts(path);
+	}
+	if (ctl->json) {
+		json_array_end(&json);
+		json_end(&json);
+	}
+}
+
+int verb_dir(struct ctl *ctl, int argc, char **argv)
+{
+	int64_t timeout_ns = OPEN_TIMEOUT_NS;
+	struct target target;
+	char path[256];
+	bool fresh;
+	char *text;
+	struct ask ask = {.req = {.op = BUS_DIR, .prio = BUS_GUEST, .path = path}};
+	int status;
+
+	ctl_options();
+	if (target_option(ctl, argc, argv, "", &timeout_ns) != -1)
+		return CTL_USAGE;
+	if (argc - optind > 1)
+		return ctl_usage(ctl, "one directory at a time");
+	if (!target_path(optind < argc ? argv[optind] : "/", path, &fresh))
+		return ctl_usage(ctl, "the path is longer than %d bytes", 255);
+	status = target_open(ctl, timeout_ns, &target);
+	if (status)
+		return status;
+	text = malloc(LISTING_MAX + 1);
+	if (!text) {
+		target_close(&target);
+		return ctl_fail("no memory");
+	}
+	ask.req.fresh = fresh;
+	ask.req.data = (uint8_t *)text;
+	ask.req.len = LISTING_MAX;
+	if (target_ask_one(&target, &ask)) {
+		status = ctl_fail("%s: %s", path, ask.answer.err == -ENOENT
+		                                          ? "no such directory"
+		                                          : target_error(ask.answer.err));
+	} else {
+		text[ask.answer.len] = '\0';
+		print(ctl, text, fresh ? "/uncached" : "");
+	}
+	target_close(&target);
+	free(text);
+	return status;
+}

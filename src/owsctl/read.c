@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: MIT */
+#include "json.h"
+#include "open.h"
+#include "text.h"
+
+#include <getopt.h>
+#include <unistd.h>
+
+#define TEXT_MAX 65536
+
+static char text[TEXT_MAX + 1];
+
+/* Bytes go to a program as they are, and to a terminal without control characters. */
+static void print_text(size_t len)
+{
+	static char clean[TEXT_MAX * 2];
+
+	if (isatty(STDOUT_FILENO)) {
+		text_clean(text, len, TEXT_MAX, clean, sizeof(clean));
+		puts(clean);
+	} else {
+		fwrite(text, 1, len, stdout);
+		putchar('\n');
+	}
+}
+
+static void print_json(struct json *json, const char *path, const struct bus_answer *answer,
+                       size_t len)
+{
+	json_object(json, NULL);
+	json_string(json, "path", path);
+	text[len] = '\0';
+	if (answer->err)
+		json_null(json, "value");
+	else if (target_is_number(text, len))
+		json_number(json, "value", text);
+	else
+		json_bytes(json, "value", text, len);
+	if (answer->err)
+		json_string(json, "error", target_error(answer->err));
+	json_bool(json, "simulated", answer->detail & BUS_DETAIL_SIMULATED);
+	json_bool(json, "cached", answer->detail & BUS_DETAIL_CACHED);
+	json_object_end(json);
+}
+
+static int read_one(const struct ctl *ctl, struct json *json, struct target *target,
+                    const char *given)
+{
+	char path[256];
+	bool fresh;
+	struct ask ask = {.req = {.op = BUS_READ, .prio = BUS_GUEST, .path = path,
+	                          .data = (uint8_t *)text, .len = TEXT_MAX}};
+	size_t len = 0;
+	int err;
+
+	if (!target_path(given, path, &fresh))
+		return ctl_fail("%s: the path is longer than %d bytes", given, 255);
+	ask.req.fresh = fresh;
+	err = target_ask_one(target, &ask);
+	if (!err)
+		len = target_unpad(text, ask.answer.len);
+	if (ctl->json)
+		print_json(json, given, &ask.answer, len);
+	else if (!err)
+		print_text(len);
+	if (!err)
+		return CTL_DONE;
+	/* In order with stdout where both go to one place. */
+	if (!ctl->json)
+		fflush(stdout);
+	return ctl_fail("%s: %s", given, target_error(err));
+}
+
+int verb_read(struct ctl *ctl, int argc, char **argv)
+{
+	int64_t timeout_ns = OPEN_TIMEOUT_NS;
+	struct target target;
+	struct json json;
+	int status;
+
+	ctl_options();
+	if (target_option(ctl, argc, argv, "", &timeout_ns) != -1)
+		return CTL_USAGE;
+	if (optind == argc)
+		return ctl_usage(ctl, "read what?");
+	status = target_open(ctl, timeout_ns, &target);
+	if (status)
+		return status;
+	json_open(&json, stdout);
+	if (ctl->json)
+		json_array(&json, NULL);
+	for (int i = optind; i < argc; i++)
+		if (read_one(ctl, &json, &target, argv[i]))
+			status = CTL_FAILED;
+	if (ctl->json) {
+		json_array_end(&json);
+		json_end(&json);
+	}
+	target_close(&target);
+	return status;
+}

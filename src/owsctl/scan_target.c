@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: MIT */
+#include "scan.h"
+#include "text.h"
+
+#include "../../hal/path.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LISTING_MAX (256u * 1024)
+#define BUSES_MAX   256
+
+/* What is asked of a device beside the properties of its kind. */
+enum { ASK_TYPE, ASK_ALIAS, ASK_PROPERTIES, ASKS = ASK_PROPERTIES + SCAN_PROPERTIES };
+
+struct question {
+	char path[80];
+	char text[128];
+};
+
+static int by_path(const void *a, const void *b)
+{
+	const struct scan_device *x = a, *y = b;
+
+	return strcmp(x->path, y->path);
+}
+
+/* The listing of path in text (LISTING_MAX + 1 bytes); the error. */
+static int list(struct target *target, const char *path, bool fresh, char *text)
+{
+	struct ask ask = {.req = {.op = BUS_DIR, .prio = BUS_GUEST, .path = path, .fresh = fresh,
+	                          .data = (uint8_t *)text, .len = LISTING_MAX}};
+	int err = target_ask_one(target, &ask);
+
+	text[err ? 0 : ask.answer.len] = '\0';
+	return err;
+}
+
+/* The device of a line; false if it shows none. */
+static bool device_of(const char *line, struct scan_device *device)
+{
+	char rom[ROM_TEXT_MAX];
+	struct path path;
+
+	if (path_split(line, strlen(line), &path) || !path.has_rom || path.property.len)
+		return false;
+	rom_print(path.rom, ROM_F_I, rom);
+	*device = (struct scan_device){.family = path.rom[0]};
+	snprintf(device->path, sizeof(device->path), "/%s", rom);
+	device->kind = scan_kind_of(device->family);
+	return true;
+}
+
+static int find(struct target *target, struct scan *scan, char *text)
+{
+	struct scan_device *more, device;
+	unsigned kept = 0;
+	char *rest;
+	int err = list(target, "/", true, text);
+
+	if (err)
+		return ctl_fail("%s: %s", target->name, target_error(err));
+	for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+		if (!device_of(line, &device))
+			continue;
+		more = realloc(scan->device, (scan->count + 1) * sizeof(*more));
+		if (!more)
+			return ctl_fail("no memory");
+		scan->device = more;
+		scan->device[scan->count++] = device;
+	}
+	if (!scan->count)
+		return CTL_DONE;
+	qsort(scan->device, scan->count, sizeof(device), by_path);
+	for (unsigned i = 1; i < scan->count; i++)
+		if (by_path(&scan->device[kept], &scan->device[i]))
+			scan->device[++kept] = scan->device[i];
+	scan->count = kept + 1;
+	return CTL_DONE;
+}
+
+/* Which bus each is on; buses are numbered without gaps. */
+static void locate(struct target *target, struct scan *scan, char *text)
+{
+	char path[16], *rest;
+
+	for (unsigned bus = 0; scan->count && bus < BUSES_MAX; bus++) {
+		snprintf(path, sizeof(path), "/bus.%u", bus);
+		if (list(target, path, false, text))
+			return;
+		for (char *line = strtok_r(text, "\n", &rest); line;
+		     line = strtok_r(NULL, "\n", &rest)) {
+			struct scan_device key, *found;
+
+			if (!device_of(line, &key))
+				continue;
+			found = bsearch(&key, scan->device, scan->count, sizeof(key), by_path);
+			if (found)
+				snprintf(found->location, sizeof(found->location), "%s", path + 1);
+		}
+	}
+}
+
+static const char *property_of(const struct scan_device *device, unsigned ask)
+{
+	if (ask == ASK_TYPE)
+		return "type";
+	if (ask == ASK_ALIAS)
+		return "alias";
+	return device->kind ? device->kind->property[ask - ASK_PROPERTIES].name : NULL;
+}
+
+static void take(struct scan_device *device, unsigned n, struct ask *ask, char *text)
+{
+	struct scan_value *value;
+	size_t len = ask->answer.err ? 0 : target_unpad(text, ask->answer.len);
+
+	if (n == ASK_TYPE) {
+		device->simulated = ask->answer.detail & BUS_DETAIL_SIMULATED;
+		text_clean(text, len, sizeof(device->type), device->type, sizeof(device->type));
+	} else if (n == ASK_ALIAS) {
+		text_clean(text, len, sizeof(device->alias), device->alias, sizeof(device->alias));
+	} else {
+		value = &device->value[n - ASK_PROPERTIES];
+		value->err = ask->answer.err;
+		text_clean(text, len, sizeof(value->text), value->text, sizeof(value->text));
+	}
+}
+
+/* All questions at once: so all thermometers convert at the same time where the bus can do that. */
+static int look(struct target *target, struct scan *scan)
+{
+	size_t room = (size_t)scan->count * ASKS;
+	struct question *questions = calloc(room + 1, sizeof(*questions));
+	struct ask *asks = calloc(room + 1, sizeof(*asks));
+	unsigned count = 0;
+
+	if (!questions || !asks) {
+		free(questions);
+		free(asks);
+		return ctl_fail("no memory");
+	}
+	for (unsigned i = 0; i < room; i++) {
+		struct scan_device *device = &scan->device[i / ASKS];
+		const char *name = property_of(device, i % ASKS);
+		struct question *question = &questions[count];
+
+		if (!name)
+			continue;
+		snprintf(question->path, sizeof(question->path), "%s/%s", device->path, name);
+		asks[count++].req = (struct bus_req){
+			.op = BUS_READ, .prio = BUS_GUEST, .path = question->path,
+			.fresh = i % ASKS >= ASK_PROPERTIES &&
+			         device->kind->property[i % ASKS - ASK_PROPERTIES].output,
+			.data = (uint8_t *)question->text, .len = sizeof(question->text)};
+	}
+	target_ask(target, asks, count);
+	count = 0;
+	for (unsigned i = 0; i < room; i++)
+		if (property_of(&scan->device[i / ASKS], i % ASKS)) {
+			take(&scan->device[i / ASKS], i % ASKS, &asks[count], questions[count].text);
+			count++;
+		}
+	/* A dead target is not stepped again, so nothing is written to what is still lent to it. */
+	free(questions);
+	free(asks);
+	return target->dead ? ctl_fail("%s does not answer any more", target->name) : CTL_DONE;
+}
+
+int scan_target(struct target *target, struct scan *scan)
+{
+	char *text = malloc(LISTING_MAX + 1);
+	int status;
+
+	*scan = (struct scan){0};
+	if (!text)
+		return ctl_fail("no memory");
+	status = find(target, scan, text);
+	if (!status)
+		locate(target, scan, text);
+	if (!status)
+		status = look(target, scan);
+	free(text);
+	return status;
+}
+
+void scan_free(struct scan *scan)
+{
+	free(scan->device);
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+#include "open.h"
+
+#include <getopt.h>
+#include <string.h>
+
+int verb_write(struct ctl *ctl, int argc, char **argv)
+{
+	int64_t timeout_ns = OPEN_TIMEOUT_NS;
+	struct target target;
+	char path[256];
+	bool fresh;
+	struct ask ask = {.req = {.op = BUS_WRITE, .prio = BUS_OUTPUT, .path = path}};
+	int status;
+
+	/* A value may begin with "-". */
+	ctl_options();
+	if (target_option(ctl, argc, argv, "+", &timeout_ns) != -1)
+		return CTL_USAGE;
+	if (argc - optind != 2)
+		return ctl_usage(ctl, "expected a path and a value");
+	if (!target_path(argv[optind], path, &fresh))
+		return ctl_usage(ctl, "the path is longer than %d bytes", 255);
+	status = target_open(ctl, timeout_ns, &target);
+	if (status)
+		return status;
+	ask.req.fresh = fresh;
+	ask.req.data = (uint8_t *)argv[optind + 1];
+	ask.req.len = (uint32_t)strlen(argv[optind + 1]);
+	if (target_ask_one(&target, &ask))
+		status = ctl_fail("%s: %s", argv[optind], target_error(ask.answer.err));
+	target_close(&target);
+	return status;
+}

@@ -1,0 +1,238 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""owsctl -t TARGET dir, read, write, scan: on simulated chips and on the genuine owserver."""
+
+import json
+import re
+import subprocess
+
+import owsdtest
+
+DEVICES = """
+DS18B20 28.67C6697351FF as a temperature 21.5
+DS18B20 28.4AEC29CDBAAB as b temperature -5.0625
+DS18S20 10.0000000000C1 as c temperature 12.5
+DS2408 29.000029D60000 as d
+DS2413 3A.000000000001 as e
+DS2438 26.F2FBE3467CC2 as f temperature 22 vdd 5 vad 2.3
+DS2401 01.000000000001 as g
+"""
+
+
+def sim(scene, devices=DEVICES):
+    text = "i2c speed 400 combine any\nchip DS2482-100 0x18\n" + devices
+    return f"sim:{scene.file('wire.sim', text)}"
+
+
+def ctl(scene, target, *words, status=0):
+    done = scene.owsctl(None, "-t", target, *words, seconds=60)
+    assert done.returncode == status, (words, done)
+    return done
+
+
+def lines(scene, target, *words):
+    return ctl(scene, target, *words).stdout.splitlines()
+
+
+def test_dir_lists_paths_one_on_a_line(scene):
+    target = sim(scene)
+    found = lines(scene, target, "dir")
+    assert "/28.67C6697351FF" in found and "/bus.0" in found
+    assert sorted(found) == sorted(json.loads(ctl(scene, target, "--json", "dir", "/").stdout))
+    assert "/29.000029D60000/PIO.BYTE" in lines(scene, target, "dir", "29.000029D60000")
+    uncached = lines(scene, target, "dir", "/uncached")
+    assert "/uncached/28.67C6697351FF" in uncached
+    assert all(re.fullmatch(r"/uncached/[^/]+", path) for path in uncached), uncached
+    assert "/uncached/uncached" not in uncached
+
+
+def test_dir_of_an_owserver_is_that_of_owdir(scene):
+    server = scene.owserver(mock=["28", "26"], tester=["29"])
+    for path in ("/", "/uncached", server.devices()[0], "/bus.0"):
+        done = subprocess.run(["owdir", "-s", server.target, path], text=True, timeout=20,
+                              capture_output=True, check=True)
+        listed = done.stdout.split()
+        if path in ("/", "/uncached"):  # the root shows the devices alone
+            listed = [line for line in listed if re.search(r"/..\.[0-9A-F]{12}$", line)]
+        assert sorted(lines(scene, server.target, "dir", path)) == sorted(listed), path
+
+
+def test_read_prints_what_owread_prints_but_its_padding(scene):
+    server = scene.owserver(tester=["29", "26"])  # their values are computed from the id
+    listed = [path for device in server.devices()
+              for path in lines(scene, server.target, "dir", device)]
+
+    def texts():
+        found = {}
+        for path in listed:
+            try:
+                found[path] = server.request(owsdtest.READ, path)[1].decode()
+            except (OSError, UnicodeDecodeError):
+                pass
+        return found
+
+    before = texts()
+    read = json.loads(scene.owsctl(None, "-t", server.target, "--json", "read", *before).stdout)
+    after = texts()
+    compared = 0
+    for path, row in zip(before, read):
+        text = before[path]
+        if not text or row["value"] is None or after.get(path) != text:
+            continue
+        if all(len(part) == 12 for part in text.split(",")):
+            text = text.replace(" ", "")
+        if isinstance(row["value"], str):
+            assert row["value"] == text, (path, row, text)
+        else:
+            assert row["value"] == float(text), (path, row, text)
+        compared += 1
+    assert compared > 30, (compared, len(read))
+    path = next(path for path in before if path.endswith("/PIO.BYTE"))
+    done = subprocess.run(["owread", "-s", server.target, path], text=True, timeout=20,
+                          capture_output=True, check=True)
+    assert len(done.stdout) == 12
+    assert ctl(scene, server.target, "read", path).stdout == done.stdout.strip() + "\n"
+
+
+def test_read_of_our_own_bus_agrees_with_owserver(scene):
+    server = scene.owserver(mock=["28"])
+    device = server.devices()[0]
+    target = sim(scene, f"DS18B20 {device[1:]} as t temperature -5.0625\n")
+
+    def texts(target, *names):
+        return ctl(scene, target, "read", *(f"{device}/{name}" for name in names)).stdout
+
+    for name in ("temperature", "temphigh"):
+        text = texts(target, name)
+        server.write(f"{device}/{name}", text.strip())
+        assert texts(server.target, name) == text, name
+    same = ("type", "family", "id", "address", "crc8", "r_id", "r_address", "alias")
+    assert texts(target, *same) == texts(server.target, *same)
+    for path in (device + "/nothing", "/28.0000000000FF/temperature"):
+        errors = {ctl(scene, t, "read", path, status=1).stderr for t in (target, server.target)}
+        assert len(errors) == 1, errors
+
+
+def test_read_takes_several_paths_and_goes_on_after_an_error(scene):
+    target = sim(scene)
+    paths = ["/28.67C6697351FF/temperature12", "/28.67C6697351FF/none", "/29.000029D60000/PIO.ALL"]
+    done = ctl(scene, target, "read", *paths, status=1)
+    assert done.stdout == "21.5\n0,0,0,0,0,0,0,0\n"
+    assert done.stderr == "owsctl: /28.67C6697351FF/none: no such property\n"
+    first, second, third = json.loads(ctl(scene, target, "--json", "read", *paths, status=1).stdout)
+    assert first == dict(path=paths[0], value=21.5, simulated=True, cached=False)
+    assert second["value"] is None and second["error"] == "no such property"
+    assert third["value"] == "0,0,0,0,0,0,0,0"
+
+
+def test_write_writes(scene):
+    server = scene.owserver(mock=["28"])
+    path = server.devices()[0] + "/temphigh"
+    for value in ("30", "-12"):
+        assert ctl(scene, server.target, "write", path, value).stdout == ""
+        assert ctl(scene, server.target, "read", path).stdout == value + "\n"
+    target = sim(scene)
+    ctl(scene, target, "write", "/29.000029D60000/PIO.BYTE", "5")
+    done = ctl(scene, target, "write", "/29.000029D60000/PIO.BYTE", "five", status=1)
+    assert "refuses this value" in done.stderr
+    assert ctl(scene, target, "write", "/29.000029D60000/type", "x", status=1).stderr
+
+
+def test_scan_shows_every_device_with_its_values(scene):
+    target = sim(scene)
+    table = lines(scene, target, "scan")
+    assert len(table) == 8 and table[0].split()[:2] == ["PATH", "FAMILY"]
+    found = {d["path"]: d for d in json.loads(ctl(scene, target, "--json", "scan").stdout)}
+    assert len(found) == 7
+    assert all(d["bus"] == "bus.0" and d["simulated"] for d in found.values())
+    assert found["/28.4AEC29CDBAAB"]["values"] == {"temperature12": -5.0625}
+    assert found["/28.4AEC29CDBAAB"]["alarm"] is True
+    assert found["/10.0000000000C1"]["values"] == {"temperature": 12.5}
+    assert found["/26.F2FBE3467CC2"]["type"] == "DS2438"
+    assert set(found["/26.F2FBE3467CC2"]["values"]) == {"temperature", "humidity", "VDD", "VAD"}
+    assert found["/01.000000000001"] == dict(path="/01.000000000001", family="01", type="DS2401",
+                                             alias=None, bus="bus.0", alarm=False, simulated=True,
+                                             values={"present": 1})
+
+
+def runs(scene, text):
+    """owsd takes the configuration without a word, and all its signals become good."""
+    file = scene.file("found.rio", text)
+    check = scene.owsd_once("--check", "-c", file)
+    assert check.returncode == 0 and check.stderr == "", check
+    daemon = scene.owsd(file)
+
+    def rows():
+        listed = json.loads(scene.owsctl(daemon, "--json", "list").stdout)
+        return listed if all(row["good"] for row in listed) else None
+
+    return {row["name"]: row for row in scene.until(rows, 30, "all signals are good")}
+
+
+def test_the_configuration_of_a_scan_runs_on_simulated_chips(scene):
+    rows = runs(scene, ctl(scene, sim(scene), "scan", "--rio").stdout)
+    assert len(rows) == 12
+    assert rows["inputs1"]["type"] == "byte" and rows["outputs1"]["io"] == "output"
+    assert {rows[f"temperature{i}"]["value"] for i in range(1, 5)} == {21.5, -5.0625, 12.5, 22}
+
+
+def test_the_configuration_of_a_scan_runs_on_owserver_and_changes_no_output(scene):
+    server = scene.owserver(mock=["28", "26"], tester=["29"])
+    path = next(d for d in server.devices() if d.startswith("/29")) + "/PIO.BYTE"
+    before = server.read(path)
+    assert before != "0"
+    rows = runs(scene, ctl(scene, server.target, "scan", "--rio").stdout)
+    assert str(rows["outputs1"]["value"]) == before == server.read(path)
+    inputs = ctl(scene, server.target, "scan", "--rio", "-i").stdout
+    assert '"output"' not in inputs and "inputs1" in inputs
+
+
+def test_an_alias_names_the_signals(scene):
+    server = scene.owserver(mock=["28", "26"])
+    battery, thermometer = server.devices()
+    server.write(thermometer + "/alias", "living")
+    server.write(battery + "/alias", "air")
+    found = json.loads(ctl(scene, server.target, "--json", "scan").stdout)
+    assert {d["alias"]: d["path"] for d in found} == {"living": thermometer, "air": battery}
+    rows = runs(scene, ctl(scene, server.target, "scan", "--rio").stdout)
+    assert set(rows) == {"living", "air_temperature", "air_humidity", "air_vdd", "air_vad"}
+
+
+def test_what_is_wrong_is_said_with_its_status(scene):
+    target = sim(scene)
+    nobody = f"127.0.0.1:{owsdtest.free_port()}"
+    for words, status, what in (
+            (("-t", nobody, "dir"), 1, "Connection refused"),
+            (("-t", "sim:/nowhere.sim", "scan"), 2, "/nowhere.sim"),
+            (("-t", "i2c:/dev/i2c-nowhere", "scan"), 1, "/dev/i2c-nowhere"),
+            (("-t", "none:", "dir"), 2, "no way to a bus"),
+            (("-t", target, "list"), 2, "-t TARGET is for dir"),
+            (("-t", target, "read"), 2, "read what?"),
+            (("-t", target, "read", "/" + "x" * 300), 1, "longer than 255"),
+            (("-t", target, "write", "/x"), 2, "a path and a value"),
+            (("-t", target, "scan", "-i"), 2, "goes with --rio"),
+            (("-t", target, "--json", "scan", "--rio"), 2, "no JSON"),
+            (("-t", target, "dir", "-w", "soon"), 2, "no number of seconds"),
+            (("-t", target, "dir", "/28.0000000000FF"), 1, "no such device"),
+            (("list", "--rio"), 2, "unknown option")):
+        done = scene.owsctl(None, *words)
+        assert done.returncode == status and what in done.stderr, (words, done)
+        assert not done.stdout, (words, done)
+
+
+def test_a_silent_target_is_given_up_in_time(scene):
+    server = scene.owserver(mock=["28"])
+    server.freeze()
+    done = scene.owsctl(None, "dir", "-t", server.target, "-w", "0.5", seconds=10)
+    assert done.returncode == 1 and "no answer in time" in done.stderr, done
+
+
+def test_an_empty_wire_has_no_configuration(scene):
+    target = sim(scene, "")
+    assert len(lines(scene, target, "scan")) == 1
+    done = ctl(scene, target, "scan", "--rio", status=1)
+    assert "no device" in done.stderr and done.stdout == ""
+
+
+if __name__ == "__main__":
+    owsdtest.main()
