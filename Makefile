@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 # owsd: the makefile is the map of the program. Everything is built in $(B).
 #
-#   make run [TARGET=host:port]   the main job, on genuine owserver with fake devices
+#   make run                      the main job, on a simulated house; no root, nothing else needed
+#   make run TARGET=...           the same on localhost:4304, i2c:/dev/i2c-1, ...; only reads.
+#                                 owserver: on the genuine one, with simulated devices if need be
 #   make test                     unit and system tests (sets up what they need)
 #   make all unit system bench install uninstall clean
 #   make clang sanitize m32       the slower checks
@@ -216,10 +218,15 @@ test:
 	@$(MAKE) --no-print-directory all
 	@sh tests/both $(MAKE) --no-print-directory
 
+# A compiler is enough for the simulation
 run:
-	@sh board/install-deps build run
+ifneq ($(TARGET),)
+	@sh board/install-deps build $(if $(filter owserver,$(TARGET)),run)
+else
+	@command -v $(firstword $(CC)) >/dev/null || sh board/install-deps build
+endif
 	@$(MAKE) --no-print-directory all
-	@exec env OWSD_BUILD=$(abspath $(B)) sh board/demo/run $(TARGET)
+	@exec env OWSD_BUILD=$(abspath $(B)) sh board/demo/run '$(TARGET)'
 
 benches: all $(BENCHES)
 

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""make run: it shows live values, says that they are fake, and leaves nothing behind."""
+"""make run: it shows live values, says which are simulated, and leaves nothing behind."""
 
 import glob
+import json
 import os
 import pty
 import select
+import shutil
 import signal
 import socket
 import time
@@ -96,12 +98,11 @@ class Terminal:
             self.status = -1
 
 
-def shown(scene, *arguments):
+def shown(scene, *arguments, says=("ALL VALUES ARE SIMULATED",), row="living"):
     terminal = Terminal(scene, *arguments)
     try:
-        terminal.shows("ALL VALUES ARE FAKE" if not arguments else "write nothing")
-        terminal.shows("Ctrl-C ends it all")
-        terminal.shows("room" if not arguments else "temperature")
+        for what in (*says, "Ctrl-C ends it all", row):
+            terminal.shows(what)
     except BaseException:
         terminal.end()
         raise
@@ -139,22 +140,64 @@ def test_sigkill_leaves_no_process_behind(scene):
     terminal.gone()
 
 
+def test_it_needs_no_owserver_and_shows_good_values_marked_as_simulated(scene):
+    terminal = shown(scene)
+    try:
+        rows = {}
+
+        def all_are_good():
+            listed = scene.owsctl(terminal.name, "--json", "list").stdout
+            rows.update((row["name"], row) for row in json.loads(listed or "[]"))
+            return rows and all(row["good"] for row in rows.values())
+
+        scene.until(all_are_good, 20, f"all are good: {rows}")
+        assert all(row["simulated"] for row in rows.values()), rows
+        assert len(rows) >= 10
+        assert scene.owsctl(terminal.name, "set", "-w", "5", "light", "on").returncode == 0
+    finally:
+        os.write(terminal.master, b"\x03")
+        terminal.gone()
+
+
+def test_an_owserver_with_simulated_devices_is_started_and_ended(scene):
+    if shutil.which("owserver") is None:
+        owsdtest.skip("owserver is not installed")
+    terminal = shown(scene, "owserver", row="valve")
+    os.write(terminal.master, b"\x03")
+    terminal.gone()
+    nothing_in_memory(terminal)
+
+
 def test_an_owserver_that_was_there_is_read_and_left_alone(scene):
     server = scene.owserver(mock=["28", "26"], tester=["29"])
-    terminal = shown(scene, server.target)
+    terminal = shown(scene, server.target, says=("write nothing", "VALUES ARE SIMULATED"),
+                     row="temperature1")
+    listed = json.loads(scene.owsctl(terminal.name, "--json", "list").stdout)
+    assert {row["io"] for row in listed} == {"input"}, listed
     os.write(terminal.master, b"\x03")
     terminal.gone()
     nothing_in_memory(terminal)
     assert server.answers()
 
 
-def test_no_owserver_at_the_given_address_is_said(scene):
-    terminal = Terminal(scene, f"127.0.0.1:{owsdtest.free_port()}")
-    try:
-        terminal.shows("no owserver answers")
-    finally:
-        terminal.gone()
-    assert os.waitstatus_to_exitcode(terminal.status) == 1
+def test_a_simulated_target_of_ones_own_is_scanned(scene):
+    scenario = scene.file("own.sim", "i2c speed 400 combine any\nchip DS2482-100 0x18\n"
+                                     "DS18B20 28.0000000000B1 as boiler temperature 60\n")
+    terminal = shown(scene, f"sim:{scenario}", says=("write nothing", "VALUES ARE SIMULATED"),
+                     row="temperature1")
+    os.write(terminal.master, b"\x03")
+    terminal.gone()
+
+
+def test_a_target_that_does_not_answer_is_said(scene):
+    for target, what in ((f"127.0.0.1:{owsdtest.free_port()}", "Connection refused"),
+                         ("i2c:/dev/i2c-nowhere", "/dev/i2c-nowhere")):
+        terminal = Terminal(scene, target)
+        try:
+            terminal.shows(what)
+        finally:
+            terminal.gone()
+        assert os.waitstatus_to_exitcode(terminal.status) == 1
 
 
 if __name__ == "__main__":
