@@ -21,16 +21,15 @@ static void mark_absent(struct engine *e, const struct signal *s)
 		e->table.devices[s->device].absent = true;
 }
 
-/* An item error of a read or a write; returns the back-off, 0: its next turn. */
-static int64_t fail_item(struct engine *e, struct lane *lane, struct signal *s,
-                         struct retry *retry, int err)
+/* An item error of a read; returns the back-off, 0: its next turn. */
+static int64_t fail_read(struct engine *e, struct lane *lane, struct signal *s, int err)
 {
 	uint8_t quality = failure_quality(err);
 	int64_t wait_ns;
 
 	lane->counters.item_errors++;
 	s->sample.err = err;
-	if (!retry_fail(retry, e->config->max_retries, &wait_ns))
+	if (!retry_fail(&s->read_retry, e->config->max_retries, &wait_ns))
 		return 0;
 	if (err == -ENODEV)
 		mark_absent(e, s);
@@ -38,6 +37,27 @@ static int64_t fail_item(struct engine *e, struct lane *lane, struct signal *s,
 		s->sample.quality = quality;
 		say_bad(e, s, err, quality);
 	}
+	return wait_ns;
+}
+
+/* Of a write. It says nothing of a value that is read. */
+static int64_t fail_write(struct engine *e, struct lane *lane, struct signal *s, int err)
+{
+	uint8_t quality = failure_quality(err);
+	int64_t wait_ns;
+
+	lane->counters.item_errors++;
+	s->write_err = err;
+	if (!retry_fail(&s->write_retry, e->config->max_retries, &wait_ns))
+		return 0;
+	if (err == -ENODEV)
+		mark_absent(e, s);
+	if (s->write_retry.failures == e->config->max_retries + 1)
+		log_warning(e->log, "%s (%s): cannot be written%s%s: %s", s->item->name,
+		            s->item->path, err == -EACCES ? "" : ": ",
+		            err == -EACCES ? "" : ows_quality_text(quality), strerror(-err));
+	if (!signal_reads(s))
+		s->sample.quality = quality;
 	return wait_ns;
 }
 
@@ -106,7 +126,7 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 		succeed(e, lane, s, quality, now_ns);
 		break;
 	case FAILURE_ITEM:
-		*wait_ns = fail_item(e, lane, s, &s->read_retry, err);
+		*wait_ns = fail_read(e, lane, s, err);
 		break;
 	case FAILURE_TARGET:
 		s->sample.err = err;
@@ -144,7 +164,7 @@ void engine_alarm_failed(struct engine *e, struct lane *lane, const struct alarm
 	struct signal *s = &e->table.signals[item->row];
 
 	if (failure_of(err) == FAILURE_ITEM)
-		fail_item(e, lane, s, &s->read_retry, err);
+		fail_read(e, lane, s, err);
 }
 
 static void write_succeeded(struct engine *e, struct lane *lane, const struct slot *slot,
@@ -153,6 +173,8 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	struct signal *s = &e->table.signals[slot->row];
 
 	lane->counters.writes++;
+	if (s->write_retry.failures > e->config->max_retries && signal_reads(s))
+		log_info(e->log, "%s (%s): written again", s->item->name, s->item->path);
 	/* first, for a device that comes back forgets what was written, but for this */
 	succeed(e, lane, s, OWS_Q_GOOD, now_ns);
 	s->confirmed = true;
@@ -168,6 +190,7 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	signal_update(s, e->period, answer->measured_ns ? answer->measured_ns : now_ns, now_ns,
 	              e->start_ns);
 	retry_clear(&s->write_retry);
+	s->write_err = 0;
 	signal_settle(s);
 	engine_write_check(e, s);
 }
@@ -187,7 +210,7 @@ void engine_write_done(struct engine *e, struct lane *lane, const struct slot *s
 		write_succeeded(e, lane, slot, answer, now_ns);
 		return;
 	case FAILURE_ITEM:
-		wait_ns = fail_item(e, lane, s, &s->write_retry, answer->err);
+		wait_ns = fail_write(e, lane, s, answer->err);
 		engine_write_at(e, s, e->period + (wait_ns ? engine_periods(e, wait_ns) : 1));
 		break;
 	case FAILURE_TARGET:

@@ -12,7 +12,7 @@
 static void refuse(struct engine *e, struct signal *s, int err, int64_t now_ns)
 {
 	e->counters.refused_commands++;
-	s->sample.err = err;
+	s->write_err = err;
 	if (!log_rate(&e->refused, now_ns))
 		return;
 	log_warning(e->log, "%s: a value in the command segment was refused: %s", s->item->name,
@@ -106,10 +106,12 @@ static void take_enables(struct engine *e, struct signal *s, const struct comman
 			s->sample.quality = OWS_Q_DISABLED;
 	}
 	if (signal_writes(s) != write_before) {
-		if (write_before)
+		if (write_before) {
+			s->write_err = 0;
 			engine_lane(e, s)->writers--;
-		else
+		} else {
 			engine_lane(e, s)->writers++;
+		}
 	}
 }
 

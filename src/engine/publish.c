@@ -5,6 +5,8 @@
 
 void engine_publish(struct engine *e, struct signal *s)
 {
+	struct ows_sample sample;
+
 	engine_limits(e, s);
 	s->sample.flags = (s->commanded && signal_writes(s) && signal_changed(s)
 	                           ? OWS_SAMPLE_PENDING
@@ -13,7 +15,10 @@ void engine_publish(struct engine *e, struct signal *s)
 	s->attrs.commanded = s->command;
 	if (s->commanded)
 		s->attrs.flags |= OWS_ATTR_COMMANDED;
-	image_publish(e->image, s->record, &s->sample, &s->attrs, s->text);
+	sample = s->sample;
+	if (!sample.err)
+		sample.err = s->write_err;
+	image_publish(e->image, s->record, &sample, &s->attrs, s->text);
 	e->published = true;
 }
 

@@ -46,6 +46,7 @@ struct signal {
 	bool one_shot;   /* write once more, changed or not */
 	bool forced;     /* a write in doubt ended late: the present value goes out again */
 	bool safe;       /* put to SafeValue, its client stopped beating */
+	int write_err;   /* of the last write, until one succeeds or writing is disabled */
 	int64_t command, written;
 	uint32_t command_stamp; /* of command; stamp may be that of a refused one */
 	char *command_text, *written_text; /* strings */

@@ -79,7 +79,7 @@ struct ows_value {
 	int64_t measured_ns; /* time of measurement; 0: never */
 	int64_t tried_ns;    /* time of the last attempt; 0: never */
 	int64_t age_ns;      /* now - measured; before the first value: since owsd started */
-	int32_t err;         /* 0 or the negative errno of the last attempt */
+	int32_t err;         /* 0 or negative errno: of the last reading, else of the last writing */
 	uint32_t count;      /* updates since owsd started */
 	uint32_t applied;    /* outputs: stamp (see ows_set) of the last command confirmed on the bus */
 	uint32_t len;        /* strings: bytes */

@@ -176,6 +176,17 @@ static bool write_disabled(struct ows *h, const struct order *order)
 	return id >= 0 && ows_get(h, id, ows_now(), &value) == 0 && value.integer == 0;
 }
 
+/* Of a signal that is read with success, the error is the write's. */
+static const char *why_not(const struct reading *reading, char words[READING_WORDS])
+{
+	if (!reading_good(reading) || !reading->value.err)
+		return reading_why(reading, words);
+	if (reading->value.err == -EACCES)
+		return "it cannot be written";
+	snprintf(words, READING_WORDS, "writing it fails: %s", reading_error(reading->value.err));
+	return words;
+}
+
 static void say_why(struct ows *h, const struct order *order, const char *seconds,
                     struct reading *reading)
 {
@@ -190,7 +201,7 @@ static void say_why(struct ows *h, const struct order *order, const char *second
 		         order->name, order->name);
 	else if (reading_get(h, order->id, ows_now(), reading) != 0 || !reading_good(reading) ||
 	         reading->value.err)
-		ctl_fail("%s was not confirmed: %s", order->name, reading_why(reading, words));
+		ctl_fail("%s was not confirmed: %s", order->name, why_not(reading, words));
 	else
 		ctl_fail("%s was not confirmed within %s s: its turn has not come",
 		         order->name, seconds);

@@ -38,7 +38,7 @@ struct ows_sample { /* 48 bytes, 12 words */
 	int64_t value;       /* bits of a double for float and double, else the integer */
 	int64_t measured_ns; /* CLOCK_BOOTTIME; 0: never */
 	int64_t tried_ns;    /* last attempt; 0: never */
-	int32_t err;         /* 0 or negative errno of the last attempt */
+	int32_t err;         /* 0 or negative errno: of the last reading, else of the last writing */
 	uint8_t quality;     /* enum ows_quality */
 	uint8_t detail;      /* OWS_DETAIL_ bits */
 	uint8_t target;      /* index in the target area; 255 none */

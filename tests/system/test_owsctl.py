@@ -192,6 +192,20 @@ def test_the_live_table_follows_values_and_keys(scene):
     assert terminal.end() == (0, True)
 
 
+def test_a_set_that_cannot_be_written_is_told_though_the_value_is_good(scene):
+    server = scene.owserver(fake=["28"])
+    sensor = server.devices()[0]
+    daemon = scene.owsd(owsdtest.rio(server.target, [
+        dict(Name="room", Path=sensor + "/temperature", Type="double", IO="input",
+             Writable=owsdtest.raw("on"))], Period=0.02))
+    scene.until(lambda: scene.get(daemon, "room"), 10, "room is good")
+    done = scene.owsctl(daemon, "set", "-w", "2", "room", "5")
+    assert done.returncode == 1, done
+    assert done.stderr == "owsctl: room was not confirmed: it cannot be written\n", done.stderr
+    assert scene.get(daemon, "room"), "it is read as before"
+    assert "cannot be written" in daemon.log()
+
+
 def test_the_live_table_fits_small_terminals_and_scrolls(scene):
     _, daemon, _, _ = house(scene)
     terminal = Terminal(daemon, 4, 30, "watch", "-a")

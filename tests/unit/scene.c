@@ -63,6 +63,11 @@ void scene_put(struct scene *s, const char *path, const char *text, int err)
 	snprintf(p->text, sizeof(p->text), "%s", text ? text : "");
 }
 
+void scene_refuse_writes(struct scene *s, const char *path, int err)
+{
+	find(s, path)->write_err = err;
+}
+
 const char *scene_at(struct scene *s, const char *path)
 {
 	struct scene_property *p = find(s, path);
@@ -225,6 +230,10 @@ static void deliver(struct scene *s, unsigned index)
 	s->pending[index] = s->pending[--s->pending_count];
 	if (!p) {
 		scene_answer(s, req->id, req->op == BUS_DIR ? -EOPNOTSUPP : -ENOENT, NULL, req);
+		return;
+	}
+	if (req->op == BUS_WRITE && p->write_err) {
+		scene_answer(s, req->id, p->write_err, NULL, req);
 		return;
 	}
 	if (s->on_read && req->op != BUS_WRITE)

@@ -22,6 +22,7 @@ struct scene_property {
 	const char *path;
 	char text[128];
 	int err; /* not 0: answered instead */
+	int write_err; /* likewise, to writes */
 };
 
 struct scene_pending {
@@ -72,6 +73,8 @@ struct config_item *scene_output(struct scene *scene, const char *name, const ch
  * each path ended by '\n'; without it the bus has no alarm search.
  */
 void scene_put(struct scene *scene, const char *path, const char *text, int err);
+/* Writes there fail with err, reads do not; 0: they do not any more. */
+void scene_refuse_writes(struct scene *scene, const char *path, int err);
 const char *scene_at(struct scene *scene, const char *path);
 
 void scene_init(struct scene *scene);

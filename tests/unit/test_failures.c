@@ -221,6 +221,54 @@ static void test_a_write_that_failed_is_tried_again_until_it_succeeds_and_then_n
 	TEST_ASSERT_EQUAL_UINT32(1, scene_sample(&s, 1).applied);
 }
 
+static void test_a_write_that_fails_does_not_make_a_value_bad_that_is_read(void)
+{
+	struct config_item *item = scene_output(&s, "out", PIO, OWS_BYTE);
+
+	item->readable = true;
+	scene_put(&s, PIO, "3", 0);
+	scene_start(&s);
+	scene_up(&s);
+	scene_run(&s, 500 * SCENE_MS);
+	scene_refuse_writes(&s, PIO, -EACCES);
+	scene_set(&s, 1, 6);
+	for (int i = 0; i < 20; i++) {
+		scene_run(&s, 100 * SCENE_MS);
+		TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+		TEST_ASSERT_EQUAL_INT32(-EACCES, scene_sample(&s, 1).err);
+		TEST_ASSERT_BITS_HIGH(OWS_SAMPLE_PENDING, scene_sample(&s, 1).flags);
+		TEST_ASSERT_EQUAL_INT64(3, scene_sample(&s, 1).value);
+	}
+	scene_refuse_writes(&s, PIO, 0);
+	scene_run(&s, 20 * SCENE_S);
+	TEST_ASSERT_EQUAL_INT64(6, scene_sample(&s, 1).value);
+	TEST_ASSERT_EQUAL_INT32(0, scene_sample(&s, 1).err);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+	TEST_ASSERT_BITS_LOW(OWS_SAMPLE_PENDING, scene_sample(&s, 1).flags);
+}
+
+static void test_the_error_of_a_read_goes_before_that_of_a_write(void)
+{
+	struct config_item *item = scene_output(&s, "out", PIO, OWS_BYTE);
+
+	item->readable = true;
+	scene_put(&s, PIO, "3", 0);
+	scene_refuse_writes(&s, PIO, -EACCES);
+	scene_start(&s);
+	scene_up(&s);
+	scene_set(&s, 1, 6);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_INT32(-EACCES, scene_sample(&s, 1).err);
+	scene_put(&s, PIO, "3", -EBADMSG);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_INT32(-EBADMSG, scene_sample(&s, 1).err);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_DEVICE, scene_sample(&s, 1).quality);
+	scene_put(&s, PIO, "3", 0);
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_INT32(-EACCES, scene_sample(&s, 1).err);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+}
+
 static void test_an_answer_that_is_no_number_is_an_item_error(void)
 {
 	static const char *const bad[] = { "", "   ", "abc", "12abc", "nan", "INF", "1,2" };
@@ -405,6 +453,8 @@ int main(void)
 	RUN_TEST(test_a_written_output_stands_as_it_stood_when_the_target_returns);
 	RUN_TEST(test_a_command_given_while_the_target_is_down_goes_out_when_it_returns);
 	RUN_TEST(test_a_write_that_failed_is_tried_again_until_it_succeeds_and_then_no_more);
+	RUN_TEST(test_a_write_that_fails_does_not_make_a_value_bad_that_is_read);
+	RUN_TEST(test_the_error_of_a_read_goes_before_that_of_a_write);
 	RUN_TEST(test_an_answer_that_is_no_number_is_an_item_error);
 	RUN_TEST(test_a_value_outside_the_type_is_held_at_the_limit_and_says_so);
 	RUN_TEST(test_85_degrees_out_of_nothing_is_never_published);
