@@ -80,7 +80,7 @@ MAN      := $(wildcard docs/*.[1-8])
 UNIT_SRC := $(wildcard tests/unit/test_*.c)
 UNIT_AID := $(filter-out $(UNIT_SRC),$(wildcard tests/unit/*.c))
 BENCH    := $(wildcard tests/bench/bench_*.c)
-BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c))
+BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/plant.c tests/unit/plant_net.c
 # ---------------------------------------------------------------------------------------------
 
 CORE     := $(SIGNAL) $(CONFIG) $(SHM) $(ENGINE) $(HAL) $(LIBOWS) $(filter-out src/owsd.c,$(OWSD)) \

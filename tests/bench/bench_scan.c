@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A full fresh scan of DS18B20s on the simulated DS2482, on the simulator's clock: no figure here
+ * depends on the machine. All thermometers are asked for at once, as the engine does; the time is
+ * that to the last answer, the mean of several scans with the background search going on.
+ *
+ * The limit is what the protocol cannot avoid, by the times that the data sheets call typical:
+ *   reset      1184 us = tRSTL 600 + tRSTH 584   DS2482-100 rev. 19-4930, DS2482-800 19-4932
+ *   time slot  69.3 us = tSLOT                    the same
+ *   conversion 750 ms  = tCONV at 12 bits         DS18B20 19-7487
+ * Convert T is a reset and 2 bytes for each channel; a reading is a reset, Match ROM with its 8
+ * bytes, the command and 9 bytes: 19 bytes. One conversion, because all channels convert at once.
+ */
+#include "aid.h"
+
+#include "hal/bus.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define RESET_NS   1184000.0
+#define SLOT_NS    69300.0
+#define CONVERT_NS 750e6
+#define MS         INT64_C(1000000)
+#define S          INT64_C(1000000000)
+#define MOST       100
+#define SCANS      8
+
+struct place {
+	struct bus_env env;
+	struct bus *bus;
+	char file[32];
+	int64_t now;
+	uint64_t waits; /* those of the simulated adapter included */
+	unsigned answers, failures, channels, thermometers;
+	bool up;
+	struct bus_req req[MOST];
+	uint8_t data[MOST][64];
+	char path[MOST][64];
+};
+
+static int64_t place_now(void *ctx)
+{
+	return ((struct place *)ctx)->now;
+}
+
+static int place_wait(void *ctx, int fd, short events, int64_t until_ns)
+{
+	struct place *p = ctx;
+
+	(void)fd;
+	(void)events;
+	p->waits++;
+	if (until_ns > p->now)
+		p->now = until_ns;
+	return 0;
+}
+
+static void place_answer(void *ctx, const struct bus_answer *answer)
+{
+	struct place *p = ctx;
+
+	p->answers++;
+	p->failures += answer->err != 0;
+}
+
+static void place_event(void *ctx, const struct bus_event *event)
+{
+	struct place *p = ctx;
+
+	p->up |= event->news == BUS_UP;
+}
+
+static void run(struct place *p, unsigned answers, int64_t until_ns)
+{
+	while (p->answers < answers && p->now < until_ns) {
+		int64_t next = bus_step(p->bus, p->now);
+
+		if (next > until_ns)
+			next = until_ns;
+		if (p->answers < answers && next > p->now)
+			p->now = next;
+	}
+}
+
+static void describe(FILE *f, unsigned thermometers, unsigned channels, int khz, const char *combine)
+{
+	fprintf(f, "i2c speed %d combine %s\nchip DS2482-%d 0x18\n", khz, combine,
+	        channels > 1 ? 800 : 100);
+	for (unsigned i = 0; i < thermometers; i++) {
+		if (i % (thermometers / channels) == 0)
+			fprintf(f, "channel %u\n", i / (thermometers / channels));
+		/* Ids differ in all bits, as those of a real delivery do. */
+		fprintf(f, "DS18B20 28.%08X%04X as t%u temperature %u\n", (i + 1) * 2654435761u, i,
+		        i, i % 60);
+	}
+}
+
+static void begin(struct place *p, unsigned thermometers, unsigned channels, int khz,
+                  const char *combine)
+{
+	char target[48], why[200] = "";
+	int fd;
+	FILE *f;
+
+	memset(p, 0, sizeof(*p));
+	p->now = 1000 * S;
+	p->channels = channels;
+	p->thermometers = thermometers;
+	p->env = (struct bus_env){ .ctx = p, .now = place_now, .wait = place_wait,
+		                   .answer = place_answer, .event = place_event };
+	snprintf(p->file, sizeof(p->file), "/tmp/owsd-bench-XXXXXX");
+	fd = mkstemp(p->file);
+	f = fd < 0 ? NULL : fdopen(fd, "w");
+	if (!f)
+		exit(1);
+	describe(f, thermometers, channels, khz, combine);
+	fclose(f);
+	snprintf(target, sizeof(target), "sim:%s", p->file);
+	if (bus_create(target, &p->env, &p->bus, why, sizeof(why))) {
+		fprintf(stderr, "scan: %s\n", why);
+		exit(1);
+	}
+	unlink(p->file);
+	run(p, 1, p->now + 60 * S);
+}
+
+static uint64_t counter(struct place *p, const char *name)
+{
+	size_t n;
+	const struct bus_counter *counters = bus_counters(p->bus, &n);
+
+	for (size_t i = 0; i < n; i++)
+		if (strcmp(counters[i].name, name) == 0)
+			return counters[i].value;
+	exit(1);
+}
+
+static void ask(struct place *p, unsigned i, const char *property)
+{
+	snprintf(p->path[i], sizeof(p->path[i]), "/28.%08X%04X/%s", (i + 1) * 2654435761u, i,
+	         property);
+	p->req[i] = (struct bus_req){ .id = i, .op = BUS_READ, .prio = BUS_INPUT, .fresh = true,
+		                      .deadline_ns = p->now + 20 * S, .path = p->path[i],
+		                      .len = sizeof(p->data[i]), .data = p->data[i] };
+	if (bus_submit(p->bus, &p->req[i]))
+		exit(1);
+}
+
+static double scan(struct place *p)
+{
+	int64_t begun = p->now;
+
+	p->answers = 0;
+	for (unsigned i = 0; i < p->thermometers; i++)
+		ask(p, i, "temperature12");
+	run(p, p->thermometers, p->now + 60 * S);
+	if (p->failures || p->answers < p->thermometers) {
+		fprintf(stderr, "scan: %u of %u answered, %u failed\n", p->answers, p->thermometers,
+		        p->failures);
+		exit(1);
+	}
+	return (double)(p->now - begun);
+}
+
+static double limit(const struct place *p)
+{
+	return p->channels * (RESET_NS + 2 * 8 * SLOT_NS) + CONVERT_NS +
+	       p->thermometers * (RESET_NS + 19 * 8 * SLOT_NS);
+}
+
+/* Cost of one reading of a scratchpad: the median, as a background search may come between. */
+static void scratchpad(struct place *p, const char *name)
+{
+	double transfers[SCANS], calls[SCANS];
+	char line[64];
+
+	for (int i = 0; i < SCANS; i++) {
+		uint64_t before = counter(p, "i2c_transfers"), waits = p->waits;
+		uint64_t system = counter(p, "syscalls");
+
+		p->answers = 0;
+		ask(p, 0, "scratchpad");
+		run(p, 1, p->now + 20 * S);
+		transfers[i] = (double)(counter(p, "i2c_transfers") - before);
+		/* The simulated adapter waits once a transfer where the kernel does it for us. */
+		calls[i] = (double)(counter(p, "syscalls") - system) +
+		           ((double)(p->waits - waits) - transfers[i]);
+	}
+	snprintf(line, sizeof(line), "scan.%s.transfers", name);
+	bench_line(line, bench_percentile(transfers, SCANS, 50), "per_scratchpad");
+	snprintf(line, sizeof(line), "scan.%s.syscalls", name);
+	bench_line(line, bench_percentile(calls, SCANS, 50), "per_scratchpad");
+}
+
+static void measure(unsigned thermometers, unsigned channels, int khz, const char *combine,
+                    bool cost)
+{
+	static struct place p;
+	double sum = 0;
+	char name[40], line[64];
+
+	begin(&p, thermometers, channels, khz, combine);
+	scan(&p); /* supply and resolution are asked for once */
+	for (int i = 0; i < SCANS; i++) {
+		sum += scan(&p);
+		run(&p, UINT32_MAX, p.now + 137 * MS * (i + 1));
+	}
+	snprintf(name, sizeof(name), "%u%s.%dkHz%s", thermometers, channels > 1 ? "on8" : "", khz,
+	         strcmp(combine, "any") == 0 ? "" : ".one-read");
+	snprintf(line, sizeof(line), "scan.%s.seconds", name);
+	bench_line(line, sum / SCANS / 1e9, "s");
+	snprintf(line, sizeof(line), "scan.%s.over_limit", name);
+	bench_line(line, sum / SCANS / limit(&p), "ratio");
+	if (cost)
+		scratchpad(&p, name);
+	bus_destroy(p.bus);
+}
+
+int main(void)
+{
+	static const struct {
+		unsigned thermometers, channels;
+	} nets[] = { { 1, 1 }, { 10, 1 }, { 50, 1 }, { 100, 1 }, { 80, 8 } };
+	static const char *const combines[] = { "any", "one-read" };
+	static const int speeds[] = { 400, 100 };
+
+	for (unsigned s = 0; s < 2; s++)
+		for (unsigned c = 0; c < 2; c++)
+			for (unsigned i = 0; i < sizeof(nets) / sizeof(nets[0]); i++)
+				measure(nets[i].thermometers, nets[i].channels, speeds[s],
+				        combines[c], nets[i].thermometers == 50);
+	return 0;
+}
