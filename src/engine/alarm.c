@@ -12,6 +12,7 @@
 #include <string.h>
 
 #define LIST_WAIT_MAX 60000000000LL
+#define BYPASS_NS 20000000LL
 
 static struct signal *signal_of(struct engine *e, const struct alarm_item *item)
 {
@@ -144,18 +145,24 @@ static uint32_t process_facts(struct alarm_machine *m, struct engine *e)
 	return FACT_CYCLE_END;
 }
 
-static uint32_t bypass_facts(const struct alarm_machine *m, const struct lane *lane)
+/*
+ * What an overlapping bus has may wait for a conversion and leave the wire idle; the alarms do not
+ * wait for that. A bus that could do something else has begun it by then.
+ */
+static uint32_t bypass_facts(struct alarm_machine *m, const struct lane *lane, int64_t now_ns)
 {
 	bool pending = lane->inputs.count || lane->outputs.count || lane->writes_in_work ||
 	               lane->lent > (m->in_work ? 1u : 0u);
 
-	if (!m->passed && pending)
+	if (!m->bypass_ns)
+		m->bypass_ns = now_ns + BYPASS_NS;
+	if (!m->passed && pending && now_ns < m->bypass_ns)
 		return 0;
 	return FACT_PASSED | (m->position >= 0 ? FACT_POS : 0);
 }
 
 /* What is known of the state before its request is made. */
-static uint32_t facts_before(struct alarm_machine *m, struct lane *lane)
+static uint32_t facts_before(struct alarm_machine *m, struct lane *lane, int64_t now_ns)
 {
 	struct engine *e = lane->engine;
 	const struct alarm_item *i = current(m), *known;
@@ -164,7 +171,7 @@ static uint32_t facts_before(struct alarm_machine *m, struct lane *lane)
 	case ALARM_PROCESS:
 		return process_facts(m, e);
 	case ALARM_BYPASS:
-		return bypass_facts(m, lane);
+		return bypass_facts(m, lane, now_ns);
 	case ALARM_POR_READ:
 		known = por_known(m, i);
 		return defined(i->strings.por, i->strings.por) | (known ? FACT_KNOWN : 0) |
@@ -311,6 +318,7 @@ static void enter(struct alarm_machine *m, struct lane *lane, const struct alarm
 	m->state = row->next;
 	if (m->state == ALARM_BYPASS) {
 		m->passed = false;
+		m->bypass_ns = 0;
 		m->in_a_row = 0;
 	}
 }
@@ -322,7 +330,7 @@ bool alarm_run(struct alarm_machine *m, struct lane *lane, struct alarm_request 
 
 	/* a cycle without requests ends in INIT or ALARM_BYPASS: bounded */
 	while (m->state != NOT_USED && !m->in_work) {
-		uint32_t facts = m->collecting >= 0 ? 0 : facts_before(m, lane);
+		uint32_t facts = m->collecting >= 0 ? 0 : facts_before(m, lane, now_ns);
 
 		row = facts ? alarm_next(m->state, facts) : NULL;
 		if (!row)
@@ -677,7 +685,9 @@ bool alarm_serves(const struct alarm_machine *m)
 
 int64_t alarm_wake(const struct alarm_machine *m)
 {
-	return m->state == INIT && !m->in_work ? m->list_ns : INT64_MAX;
+	if (m->in_work)
+		return INT64_MAX;
+	return m->state == INIT ? m->list_ns : m->state == ALARM_BYPASS ? m->bypass_ns : INT64_MAX;
 }
 
 void alarm_restart(struct alarm_machine *m)

@@ -64,6 +64,7 @@ struct alarm_machine {
 	bool polls;            /* the bus has no alarm search */
 	bool in_work;          /* a request of the machine is with the bus */
 	bool passed;           /* since BYPASS was entered */
+	int64_t bypass_ns;     /* when it ends at the latest; 0: just entered */
 	int64_t arming;        /* item whose SetAlarm is compared, -1 none */
 	bool arm_writes;
 	int64_t collecting;    /* item whose latch is read ahead of a reset, -1 none */

@@ -85,7 +85,8 @@ static void run(struct place *p, unsigned answers, int64_t until_ns)
 	}
 }
 
-static void describe(FILE *f, unsigned thermometers, unsigned channels, int khz, const char *combine)
+static void describe(FILE *f, unsigned thermometers, unsigned channels, int khz,
+                     const char *combine)
 {
 	fprintf(f, "i2c speed %d combine %s\nchip DS2482-%d 0x18\n", khz, combine,
 	        channels > 1 ? 800 : 100);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The way from a bus to its simulation: apart, because engine and native bus both have a `device`. */
+/* From a bus to its simulation: apart, because engine and native bus both have a `device`. */
 #include "hal/native/native.h"
 #include "hal/sim/master.h"
 #include "tests/unit/plant.h"

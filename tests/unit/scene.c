@@ -100,6 +100,13 @@ static void note(struct scene *s, char what, const char *path, const char *text)
 	         what == 'W' ? "=" : "", text);
 }
 
+static int64_t latency_of(const struct scene *s, const char *path, bool structure)
+{
+	if (structure)
+		return 0;
+	return s->slow && strcmp(path, s->slow) == 0 ? s->slow_ns : s->latency_ns;
+}
+
 static int submit(void *ctx, struct bus_req *req)
 {
 	struct scene *s = ctx;
@@ -128,7 +135,7 @@ static int submit(void *ctx, struct bus_req *req)
 		return 0;
 	}
 	s->pending[s->pending_count++] =
-		(struct scene_pending){ req, s->now_ns + (structure ? 0 : s->latency_ns) };
+		(struct scene_pending){ req, s->now_ns + latency_of(s, req->path, structure) };
 	for (unsigned i = 0; i < s->pending_count; i++)
 		values += strncmp(s->pending[i].req->path, "/structure/", 11) != 0;
 	if (values > s->most_pending)

@@ -48,6 +48,8 @@ struct scene {
 	unsigned depth;          /* set before scene_start(); 1 */
 	bool searches;           /* likewise */
 	int64_t latency_ns;      /* of each answer; 1 ms */
+	const char *slow;        /* but of this path: slow_ns */
+	int64_t slow_ns;
 	bool mute;               /* the bus answers nothing */
 	bool refuses;            /* submit says -EAGAIN */
 	struct scene_pending pending[SCENE_DEPTH];

@@ -291,6 +291,28 @@ static void test_after_max_cons_alarms_one_other_request_goes_through(void)
 	TEST_ASSERT_NOT_NULL(strstr(s.trace, "r " D "/sensed.BYTE\nR "));
 }
 
+static void test_an_alarm_does_not_wait_for_a_conversion(void)
+{
+	static const char *const values[] = { "254", "253", "252", "251", "250", "249" };
+
+	s.depth = 4;
+	s.slow = T_TEMP;
+	s.slow_ns = 750 * SCENE_MS;
+	figure_3_3();
+	scene_input(&s, "t", T_TEMP, OWS_DOUBLE);
+	device("0", "0");
+	scene_put(&s, T_TEMP, "21", 0);
+	begin();
+	for (unsigned i = 0; i < sizeof(values) / sizeof(values[0]); i++) {
+		scene_put(&s, D "/sensed.BYTE", values[i], 0);
+		scene_put(&s, D "/latch.BYTE", "1", 0);
+		scene_run(&s, 120 * SCENE_MS);
+		TEST_ASSERT_EQUAL_INT64(254 - i, scene_sample(&s, 1).value);
+		TEST_ASSERT_EQUAL_UINT32(i + 1, scene_attrs(&s, 1).alarms);
+	}
+	TEST_ASSERT_GREATER_THAN(0, scene_sample(&s, 2).count);
+}
+
 static void test_a_storm_of_alarms_starves_neither_reads_nor_writes(void)
 {
 	figure_3_3();
@@ -548,6 +570,7 @@ int main(void)
 	RUN_TEST(test_a_level_alarm_gives_one_event_and_not_one_a_cycle);
 	RUN_TEST(test_two_items_of_one_device_lose_nothing_to_each_others_reset);
 	RUN_TEST(test_after_max_cons_alarms_one_other_request_goes_through);
+	RUN_TEST(test_an_alarm_does_not_wait_for_a_conversion);
 	RUN_TEST(test_a_storm_of_alarms_starves_neither_reads_nor_writes);
 	RUN_TEST(test_a_bus_without_alarm_search_has_its_items_read_as_inputs);
 	RUN_TEST(test_a_bus_that_searches_is_asked_for_the_families_of_the_items_only);
