@@ -6,6 +6,8 @@
 #include "hal/native/format.h"
 #include "hal/native/native.h"
 
+#define FOLLOW_NS 500000
+
 void job_unlock(struct native *native, struct job *job)
 {
 	for (unsigned chip = 0; chip < NATIVE_CHANNELS; chip++)
@@ -40,6 +42,9 @@ void job_answer(struct native *native, struct job *job, int err)
 			answer.number = format_as_number(property, job->extension, &job->txn);
 		}
 	}
+	/* Behind an empty list nothing follows. */
+	if (job->req->prio == BUS_ALARM && (job->req->op != BUS_DIR || job->out))
+		native->follow_ns = native_now(native) + FOLLOW_NS;
 	job->req = NULL;
 	native->lent--;
 	native->bus.env->answer(native->bus.env->ctx, &answer);

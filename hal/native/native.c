@@ -228,6 +228,17 @@ static void take_cost(struct native *native)
 	__atomic_store_n(&native->count[COUNT_SYSCALLS], sum.syscalls, __ATOMIC_RELAXED);
 }
 
+/*
+ * Who got an alarm's answer asks for the next thing at once, but he has to be woken first. A
+ * transaction begun meanwhile would make each step of the alarm wait for it.
+ */
+static bool follows(struct native *native, const struct job *job, int64_t now)
+{
+	if (now >= native->follow_ns || (job && job->req->prio == BUS_ALARM))
+		native->follow_ns = 0;
+	return native->follow_ns;
+}
+
 static int64_t step(struct native *native, int64_t now)
 {
 	int64_t next = INT64_MAX;
@@ -235,6 +246,8 @@ static int64_t step(struct native *native, int64_t now)
 	expire(native, now, &next);
 	struct job *job = hunt_initial(native) ? NULL : pick(native, now, &next);
 
+	if (follows(native, job, now))
+		return native->follow_ns;
 	if (job && job->req->prio <= BUS_OUTPUT) {
 		job_step(native, job, now);
 		return now;

@@ -132,6 +132,7 @@ struct native {
 	struct channel channel[NATIVE_CHANNELS];
 	int64_t hold_ns[NATIVE_CHANNELS]; /* by chip: its strong pull-up is on until then */
 	struct job *holder[NATIVE_CHANNELS];
+	int64_t follow_ns; /* until then an alarm's next request is waited for; 0: it is not */
 	int64_t hunt_ns, pass_ns; /* background search: its next pass; what the last took */
 	int64_t open_ns;  /* next try to open */
 	int64_t pause_ns; /* between tries */

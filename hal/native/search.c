@@ -86,6 +86,11 @@ int search_next(struct search *search, struct link *link)
 			return position == 1 ? 0 : -EBADMSG;
 		}
 		bool taken = bits >> 2 & 1;
+		if (position <= 8 && search->family &&
+		    taken != (search->family >> (position - 1) & 1)) {
+			search->last = true;
+			return 0;
+		}
 		if ((bits & 3) == 0 && !taken)
 			untried = position;
 		set_rom_bit(rom, position, taken);

@@ -371,6 +371,61 @@ static void test_alarms_list_the_devices_in_alarm(void)
 	TEST_ASSERT_EQUAL_STRING("", (char *)data[id]);
 }
 
+static void test_an_alarm_search_goes_no_further_than_its_family(void)
+{
+	static const char *const chips[] = {"DS18B20", "DS1822", "DS2406", "DS18S20"};
+	uint64_t resets, slots;
+
+	for (unsigned n = 0; n < 4; n++) {
+		wire_init(&host, 1, 1);
+		/* With the limits of the factory it is in alarm once it has converted. */
+		struct sim_slave *slave = wire_add(0, chips[n], 1);
+
+		wire_add(0, "DS2408", 2);
+		start();
+		if (strcmp(chips[n], "DS2406") != 0)
+			TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(slave, "temperature"), NULL));
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, "/29.02005DDF0300/por", "0"));
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, "/29.02005DDF0300/latch.BYTE", "0"));
+		resets = wire_net.wire[0].resets;
+		slots = wire_net.wire[0].slots;
+		uint32_t id = ask(BUS_DIR, BUS_ALARM, true, "/alarm/29", NULL);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		TEST_ASSERT_EQUAL_STRING("", (char *)data[id]);
+		TEST_ASSERT_EQUAL_UINT64(1, wire_net.wire[0].resets - resets);
+		TEST_ASSERT_LESS_OR_EQUAL_UINT64(8 + 8 * 3, wire_net.wire[0].slots - slots);
+		tearDown();
+		setUp();
+	}
+}
+
+static void test_an_alarm_s_next_request_is_waited_for(void)
+{
+	struct sim_slave *slave[6], *board;
+	int64_t begun;
+
+	wire_init(&host, 1, 1);
+	for (unsigned i = 0; i < 6; i++)
+		slave[i] = wire_add(0, "DS18B20", i + 1);
+	board = wire_add(0, "DS2408", 9);
+	start();
+	host_run(&host, bus, host.now + 2 * HOST_S);
+	for (unsigned i = 0; i < 6; i++)
+		ask(BUS_READ, BUS_INPUT, true, of(slave[i], "scratchpad"), NULL);
+	for (unsigned i = 0; i < 3; i++) {
+		uint32_t id = ask(BUS_READ, BUS_ALARM, true, of(board, "sensed.BYTE"), NULL);
+
+		begun = host.now;
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		/* A thread hears of the answer a little later; the others are not begun meanwhile. */
+		TEST_ASSERT_EQUAL_UINT(i + 1, host.answers);
+		host_run(&host, bus, host.now + HOST_MS / 5);
+		TEST_ASSERT_LESS_THAN_INT64(begun + 18 * HOST_MS, host.now);
+	}
+	/* Nobody asks: they go on. */
+	TEST_ASSERT_TRUE(host_run_answers(&host, bus, 9, host.now + 130 * HOST_MS));
+}
+
 static void test_an_alias_names_the_device(void)
 {
 	wire_init(&host, 1, 1);
@@ -554,6 +609,8 @@ int main(void)
 	RUN_TEST(test_the_power_on_value_is_never_good);
 	RUN_TEST(test_the_ladder_is_climbed_until_the_chip_answers);
 	RUN_TEST(test_alarms_list_the_devices_in_alarm);
+	RUN_TEST(test_an_alarm_search_goes_no_further_than_its_family);
+	RUN_TEST(test_an_alarm_s_next_request_is_waited_for);
 	RUN_TEST(test_an_alias_names_the_device);
 	RUN_TEST(test_structure_states_the_properties);
 	RUN_TEST(test_settings_and_statistics_have_their_names);
