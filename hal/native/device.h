@@ -58,6 +58,8 @@ struct device {
 
 	/* For the family's own use. */
 	uint8_t note[8];
+	uint8_t registers[8]; /* as read for a visit of the alarm machine */
+	int64_t registers_ns; /* when; 0: not */
 };
 
 struct device_table {

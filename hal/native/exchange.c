@@ -24,6 +24,7 @@ void job_txn(struct native *native, struct job *job)
 	txn->channel = n;
 	txn->link = native->channel[n].link;
 	txn->property = job->property;
+	txn->visit = job->req->prio == BUS_ALARM;
 	txn->element = is_all(job) ? (int)job->element
 	                           : job->extension >= 0 ? job->extension & 0xff : 0;
 	if (job->req->op == BUS_READ) {

@@ -12,6 +12,8 @@
 #define RESET_LATCHES 0xc3
 #define CONFIRMED 0xaa
 
+#define VISIT_NS (2 * TXN_MS)
+
 /* The registers from 0x88 on. */
 enum { PIN, OUTPUT, ACTIVITY, MASK, POLARITY, CONTROL, REGISTERS = 8 };
 
@@ -41,11 +43,33 @@ static int registers(struct txn *txn, uint8_t value[REGISTERS])
 	return 0;
 }
 
+/*
+ * The power-on flag and the latches that a visit of the alarm machine asks for one after the other
+ * are read once. No write fits in between, as it would take longer.
+ */
+static int visited(struct txn *txn, uint8_t value[REGISTERS])
+{
+	struct device *device = txn->device;
+	int err;
+
+	if (!txn->visit)
+		return registers(txn, value);
+	if (device->registers_ns && txn_now(txn) - device->registers_ns < VISIT_NS) {
+		memcpy(value, device->registers, REGISTERS);
+		device->registers_ns = 0;
+		return 0;
+	}
+	err = registers(txn, value);
+	memcpy(device->registers, value, REGISTERS);
+	device->registers_ns = err ? 0 : txn_now(txn);
+	return err;
+}
+
 /* An output bit of 1 does not conduct. */
 static int read_bits(struct txn *txn)
 {
 	uint8_t value[REGISTERS];
-	int err = registers(txn, value);
+	int err = txn->property->arg == ACTIVITY ? visited(txn, value) : registers(txn, value);
 
 	txn->bits = value[txn->property->arg];
 	if (txn->property->arg == OUTPUT)
@@ -56,7 +80,7 @@ static int read_bits(struct txn *txn)
 static int read_flag(struct txn *txn)
 {
 	uint8_t value[REGISTERS];
-	int err = registers(txn, value);
+	int err = txn->property->arg == CONTROL_POR ? visited(txn, value) : registers(txn, value);
 
 	txn->number[0] = (value[CONTROL] & txn->property->arg) != 0;
 	return err;

@@ -17,7 +17,7 @@
 #define AGAIN_NS (NATIVE_S / 2)
 #define MISSED_MAX 2
 #define TRIES 3
-#define FULL_EVERY 16 /* of so many alarm searches one looks for ids that are not known, too */
+#define FULL_EVERY 16 /* alarm searches in a row: one looks for ids that are not known, too */
 
 void hunt_seen(struct device *device, int64_t now)
 {
@@ -331,6 +331,9 @@ static void scan_on(struct native *native, struct job *job)
 		job_answer(native, job, -ECOMM);
 		return;
 	}
+	/* One that is not known would have been taken for a known one, and go on being found. */
+	for (unsigned n = 0; job->kind == JOB_ALARM && !job->out && n < native->channels; n++)
+		native->channel[n].alarm_searches = 0;
 	native_count(native, COUNT_DIRECTORIES);
 	job_answer(native, job, job->kind == JOB_SCAN ? listing_add_rest(native, job) : 0);
 }
@@ -344,7 +347,7 @@ void hunt_scan(struct native *native, struct job *job, int64_t now)
 		search_begin(&job->search, job->kind == JOB_ALARM, job->families[job->family_i]);
 		job->searching = true;
 		job->mark = job->out;
-		if (job->kind == JOB_ALARM && channel->alarm_searches++ % FULL_EVERY)
+		if (job->kind == JOB_ALARM && ++channel->alarm_searches % FULL_EVERY)
 			job->search.lone = lone;
 	}
 	job->search.ctx = &ctx;

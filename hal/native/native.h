@@ -108,7 +108,7 @@ struct job {
 struct channel {
 	struct link *link;
 	uint8_t rung;          /* the next of the recovery ladder */
-	uint8_t alarm_searches;
+	uint8_t alarm_searches; /* since a list of the alarms was empty */
 	bool listed;           /* its devices have been searched for once */
 	bool power_asked;      /* all thermometers were asked for their supply at once */
 	bool all_external;     /* ... and none is parasitic */

@@ -26,6 +26,7 @@ struct txn {
 	struct link *link;
 	struct device *device;
 	const struct property *property;
+	bool visit; /* of the alarm machine: readings that follow each other may be one */
 	unsigned channel;
 
 	/* The value: read fills it, write finds it here. */

@@ -426,6 +426,37 @@ static void test_an_alarm_s_next_request_is_waited_for(void)
 	TEST_ASSERT_TRUE(host_run_answers(&host, bus, 9, host.now + 130 * HOST_MS));
 }
 
+static void test_one_register_read_serves_por_and_latch_of_a_visit(void)
+{
+	struct sim_slave *board;
+	uint64_t resets;
+	uint32_t id;
+
+	wire_init(&host, 1, 1);
+	board = wire_add(0, "DS2408", 1);
+	start();
+	host_run(&host, bus, host.now + 2 * HOST_S);
+	for (unsigned i = 0; i < 3; i++) {
+		wire_set(board, "pin.0", i & 1);
+		resets = wire_net.wire[0].resets;
+		id = ask(BUS_READ, BUS_ALARM, true, of(board, "por"), NULL);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		id = ask(BUS_READ, BUS_ALARM, true, of(board, "latch.BYTE"), NULL);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		TEST_ASSERT_EQUAL_STRING("           1", (char *)data[id]);
+		TEST_ASSERT_EQUAL_UINT64(1, wire_net.wire[0].resets - resets);
+		/* The value itself is always read. */
+		id = ask(BUS_READ, BUS_ALARM, true, of(board, "sensed.BYTE"), NULL);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		TEST_ASSERT_EQUAL_UINT64(2, wire_net.wire[0].resets - resets);
+		id = ask(BUS_WRITE, BUS_ALARM, true, of(board, "latch.BYTE"), "0");
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		id = ask(BUS_READ, BUS_ALARM, true, of(board, "latch.BYTE"), NULL);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		TEST_ASSERT_EQUAL_STRING("           0", (char *)data[id]);
+	}
+}
+
 static void test_an_alias_names_the_device(void)
 {
 	wire_init(&host, 1, 1);
@@ -611,6 +642,7 @@ int main(void)
 	RUN_TEST(test_alarms_list_the_devices_in_alarm);
 	RUN_TEST(test_an_alarm_search_goes_no_further_than_its_family);
 	RUN_TEST(test_an_alarm_s_next_request_is_waited_for);
+	RUN_TEST(test_one_register_read_serves_por_and_latch_of_a_visit);
 	RUN_TEST(test_an_alias_names_the_device);
 	RUN_TEST(test_structure_states_the_properties);
 	RUN_TEST(test_settings_and_statistics_have_their_names);
