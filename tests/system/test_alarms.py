@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Alarms on simulated devices: limits, history, acknowledgement, and the examples of the manual."""
+
+import json
+import re
+
+import owsdtest
+
+EXAMPLES = re.findall(r"^```\n(OwsDrv \{.*?)^```$",
+                      (owsdtest.SOURCE / "docs/alarms.md").read_text(), re.M | re.S)
+CHIP = "i2c speed 400\nchip DS2482-100 0x18\n"
+
+
+def alarms(scene, daemon, *words):
+    done = scene.owsctl(daemon, "--json", "alarms", *words)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def history(scene, daemon, name):
+    return [(a["alarm"], a["event"]) for a in alarms(scene, daemon, "history", name)]
+
+
+def start(scene, network, text, *options):
+    net = scene.file("net.sim", CHIP + network)
+    return scene.owsd(text, "-t", f"sim:{net}", *options)
+
+
+def freezer(scene, curve, **keys):
+    return start(scene, f"DS18B20 28.000000000004 temperature {curve}\n",
+                 owsdtest.rio("", [dict(Name="freezer", Path="/28.000000000004/temperature9",
+                                        Type="double", Uncached="on", **keys)], Period=0.05))
+
+
+def test_a_limit_alarm_lives_from_raised_to_acknowledged(scene):
+    daemon = freezer(scene, "steps 0:20 3s:31", LimitH=30, LimitHH=40)
+    assert alarms(scene, daemon) == []
+    alarm, = scene.until(lambda: alarms(scene, daemon), 15, "the alarm is raised")
+    assert (alarm["name"], alarm["alarm"], alarm["state"]) == ("freezer", "high", "unacknowledged")
+    assert alarm["value"] == 31 and alarm["since"] and not alarm["device"]
+    done = scene.owsctl(daemon, "alarms", "ack", "freezer")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert alarms(scene, daemon)[0]["state"] == "acknowledged"
+    first, second = alarms(scene, daemon, "history")
+    assert (first["event"], first["before"], first["after"]) == ("raised", 20, 31)
+    assert (second["event"], second["before"]) == ("acknowledged", None)
+    assert "freezer: alarm: high" in daemon.log()
+
+
+def test_an_alarm_that_returns_waits_to_be_acknowledged(scene):
+    daemon = freezer(scene, "steps 0:20 2s:45 5s:20", LimitH=30, LimitHH=40)
+    scene.until(lambda: ("high high", "returned") in history(scene, daemon, "freezer"), 20,
+                "the alarm returns")
+    assert alarms(scene, daemon)[0]["state"] == "returned to normal unacknowledged"
+    assert scene.owsctl(daemon, "alarms", "ack", "--all").returncode == 0
+    assert alarms(scene, daemon) == []
+    assert history(scene, daemon, "freezer") == [
+        ("high high", "raised"), ("high high", "returned"), ("high high", "acknowledged")]
+
+
+def test_a_thermometer_unplugged_is_a_bad_alarm(scene):
+    daemon = freezer(scene, "20\nat 3s unplug 28.000000000004", LimitH=30)
+    alarm, = scene.until(lambda: alarms(scene, daemon), 20, "the alarm is raised")
+    assert (alarm["alarm"], alarm["good"]) == ("bad", False)
+
+
+def test_alarms_are_waited_for(scene):
+    """ows_wait() is woken by an alarm as by a value."""
+    daemon = freezer(scene, "steps 0:20 3s:31", LimitH=30)
+    done = scene.owsctl(daemon, "wait", "freezer", ">", "30", "-t", "15")
+    assert done.returncode == 0, done.stderr
+    assert history(scene, daemon, "freezer") == [("high", "raised")]
+
+
+def test_every_example_of_the_manual_is_a_configuration_without_faults(scene):
+    assert len(EXAMPLES) == 7
+    for number, text in enumerate(EXAMPLES):
+        done = scene.owsd_once("-c", scene.file(f"example{number}.rio", text), "--check")
+        assert (done.returncode, done.stderr) == (0, ""), (text, done.stderr)
+
+
+def example(scene, name, network, told):
+    """The example with that signal on a simulated network; waits until an alarm of it is entered of
+    which told() is true."""
+    text = next(t for t in EXAMPLES if f'"{name}"' in t)
+    daemon = start(scene, network, text)
+    scene.until(lambda: [a for a in alarms(scene, daemon, "history", name)
+                         if (a["alarm"], a["event"]) == ("device", "raised")
+                         and a["after"] is not None and told(a)],
+                20, f"{name} raises its alarm")
+    return daemon
+
+
+def is_cleared(scene, daemon, name):
+    scene.until(lambda: ("device", "returned") in history(scene, daemon, name), 10,
+                "its latch is cleared")
+
+
+def test_the_ds2408_of_the_manual_tells_a_short_press(scene):
+    daemon = example(scene, "buttons", "DS2408 29.000000000001 pin.4 steps 0:1 3s:0 3.02s:1\n",
+                     lambda a: int(a["latch"]) == 16 and a["before"] == a["after"])
+    is_cleared(scene, daemon, "buttons")
+
+
+def test_the_ds2406_of_the_manual_tells_a_short_press(scene):
+    daemon = example(scene, "doorbell", "DS2406 12.000000000002 pin.A steps 0:1 3s:0 3.02s:1\n",
+                     lambda a: a["latch"] == "1" and a["before"] == a["after"])
+    is_cleared(scene, daemon, "doorbell")
+
+
+def test_the_ds2450_of_the_manual_tells_a_voltage_too_high(scene):
+    example(scene, "tank", "DS2450 20.000000000003 volt.A steps 0:2 4s:4.5\n",
+            lambda a: a["after"] > 4)
+
+
+def test_the_thermometer_of_the_manual_tells_a_high_temperature(scene):
+    daemon = example(scene, "boiler",
+                     "DS18B20 28.000000000004 temperature steps 0:20 5s:35\n",
+                     lambda a: a["after"] == 35)
+    assert [a["state"] for a in alarms(scene, daemon)] == ["stands"]
+
+
+def test_the_ds28ea00_of_the_manual_tells_a_high_temperature(scene):
+    example(scene, "pipe", "DS28EA00 42.000000000005 temperature steps 0:20 5s:35\n",
+            lambda a: a["after"] == 35)
+
+
+def test_the_ds2405_of_the_manual_tells_that_it_is_on(scene):
+    text = next(t for t in EXAMPLES if '"valve"' in t)
+    daemon = start(scene, "DS2405 05.000000000006\n", text)
+    scene.until(lambda: scene.get(daemon, "valve") == "0", 10, "the valve is written")
+    assert scene.owsctl(daemon, "set", "-w", "10", "valve", "1").returncode == 0
+    scene.until(lambda: [a["state"] for a in alarms(scene, daemon)] == ["stands"], 10, "it is on")
+    assert scene.owsctl(daemon, "set", "-w", "10", "valve", "0").returncode == 0
+    scene.until(lambda: alarms(scene, daemon) == [], 10, "it is off")
+
+
+def test_an_item_on_a_bus_without_alarm_search_is_shown(scene):
+    daemon = scene.owsd(EXAMPLES[0], "-t", "null:")
+    alarm, = scene.until(lambda: alarms(scene, daemon), 10, "it is shown")
+    assert alarm["polled"] and "read as an input" in alarm["state"]
+
+
+if __name__ == "__main__":
+    owsdtest.main()
