@@ -286,6 +286,15 @@ static void give_back(struct lane *lane, struct slot *slot)
 		lane->alarm_slot = NULL;
 }
 
+/* A write of the write step, or of InitValue by the alarm machine. */
+static bool writes_output(const struct engine *e, const struct slot *slot)
+{
+	if (slot->purpose == FOR_ALARM)
+		return slot->req.op == BUS_WRITE && slot->row != TABLE_NO_ROW &&
+		       strcmp(slot->req.path, e->table.signals[slot->row].item->path) == 0;
+	return slot->purpose == FOR_WRITE;
+}
+
 void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now_ns)
 {
 	struct slot *slot = slot_of(lane, answer->id);
@@ -301,7 +310,7 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now
 		complete(lane, slot, answer, now_ns);
 	} else {
 		lane->counters.late_answers++;
-		if (slot->purpose == FOR_WRITE) {
+		if (writes_output(e, slot)) {
 			/* it may have reached the relay after the engine moved on */
 			e->table.signals[slot->row].forced = true;
 			engine_write_check(e, &e->table.signals[slot->row]);

@@ -225,6 +225,41 @@ static void test_numbers_are_compared_as_numbers_when_arming(void)
 	TEST_ASSERT_EQUAL_UINT(0, s.writes);
 }
 
+static void mute_at_init(struct scene *scene, const char *path, const char *data, uint32_t len)
+{
+	(void)data;
+	(void)len;
+	if (strstr(path, "/set_alarm"))
+		scene->mute = true; /* the next request, InitValue, is not answered */
+}
+
+static void test_an_init_value_in_doubt_is_followed_by_the_present_value(void)
+{
+	struct config_item *out;
+
+	figure_3_3();
+	out = scene_output(&s, "relays", D "/PIO.BYTE", OWS_BYTE);
+	out->has_init = true;
+	out->init_value = 3;
+	device("0", "0");
+	begin();
+	scene_set(&s, 2, 7);
+	scene_run(&s, 200 * SCENE_MS);
+	s.on_write = mute_at_init;
+	scene_put(&s, D "/por", "1", 0);
+	scene_run(&s, 25 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(1, s.swallowed_count);
+	s.mute = false;
+	s.on_write = NULL;
+	scene_put(&s, D "/por", "0", 0);
+	scene_put(&s, D "/PIO.BYTE", "3", 0);
+	scene_clear_trace(&s);
+	scene_answer(&s, s.swallowed[0]->id, 0, NULL, s.swallowed[0]);
+	s.swallowed_count = 0;
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("7", scene_at(&s, D "/PIO.BYTE"));
+}
+
 static void test_a_level_alarm_gives_one_event_and_not_one_a_cycle(void)
 {
 	alarm_item("t", T_TEMP, "present", "", "temphigh=30", "")->type = OWS_DOUBLE;
@@ -567,6 +602,7 @@ int main(void)
 	RUN_TEST(test_all_outputs_below_the_device_get_their_init_value_in_order);
 	RUN_TEST(test_the_alarm_condition_is_armed_at_start_if_it_differs);
 	RUN_TEST(test_numbers_are_compared_as_numbers_when_arming);
+	RUN_TEST(test_an_init_value_in_doubt_is_followed_by_the_present_value);
 	RUN_TEST(test_a_level_alarm_gives_one_event_and_not_one_a_cycle);
 	RUN_TEST(test_two_items_of_one_device_lose_nothing_to_each_others_reset);
 	RUN_TEST(test_after_max_cons_alarms_one_other_request_goes_through);
