@@ -52,6 +52,12 @@ passing() {
 	does "$name: owsd recovers by itself" within $back_within reads warm $warm
 }
 
+# The chip is in the hands of that program, and whoever asks is told so
+refused_by() {
+	! owsctl -t i2c:/dev/i2c-0 read /28.A0B1C2000028/type >/tmp/refusal 2>&1 &&
+		grep "0x18 on /dev/i2c-0 is in use by $1 (process $owsd)" /tmp/refusal
+}
+
 plug faults.sim
 owsd -c /rig/faults.rio >/tmp/log/owsd 2>&1 &
 owsd=$!
@@ -62,6 +68,7 @@ does "and the inputs" within 20 reads pins 253
 owsctl set relays 5
 does "an output is written" within 20 reads pins 248
 
+does "a second master is refused" refused_by owsd
 lasting "part removed" warm unplug warm
 lasting "checksum error" warm corrupt warm each 1
 lasting "short" warm short 0x18
@@ -83,4 +90,8 @@ same "no false value was ever good" "" "$(awk '
 	$2 == "warm" && $3 !~ /^(2[0-9]|3[01])$/ { print }
 	$2 == "cold" && $3 != "-10.125" { print }' /tmp/log/watch)"
 owsctl stats | sed 's/^/# /'
+kill $owsd
+wait $owsd
+does "once owsd has ended the chip is free" owsctl -t i2c:/dev/i2c-0 scan
+sed 's/^/# /' /tmp/said
 finish
