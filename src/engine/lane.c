@@ -12,13 +12,19 @@ int lane_init(struct lane *lane, struct engine *engine, const struct engine_port
               unsigned index)
 {
 	*lane = (struct lane){ .engine = engine, .port = port, .index = index, .depth = port->depth };
+	lane->look_ns = INT64_MAX;
 	lane->slots = calloc(lane->depth, sizeof(*lane->slots));
-	if (!lane->slots || due_set_init(&lane->inputs, engine->table.count) ||
+	lane->free = calloc(lane->depth, sizeof(*lane->free));
+	if (!lane->slots || !lane->free || due_set_init(&lane->inputs, engine->table.count) ||
 	    due_set_init(&lane->outputs, engine->table.count) ||
 	    structure_init(&lane->structure, &engine->table, index) ||
 	    alarm_init(&lane->alarm, &engine->table, index, port->searches, engine->start_ns)) {
 		lane_free(lane);
 		return -ENOMEM;
+	}
+	while (lane->free_count < lane->depth) {
+		lane->free[lane->free_count] = (uint16_t)(lane->depth - 1 - lane->free_count);
+		lane->free_count++;
 	}
 	for (uint32_t row = 0; row < engine->table.count; row++) {
 		const struct signal *s = &engine->table.signals[row];
@@ -31,6 +37,7 @@ int lane_init(struct lane *lane, struct engine *engine, const struct engine_port
 void lane_free(struct lane *lane)
 {
 	free(lane->slots);
+	free(lane->free);
 	due_set_free(&lane->inputs);
 	due_set_free(&lane->outputs);
 	structure_free(&lane->structure);
@@ -39,10 +46,7 @@ void lane_free(struct lane *lane)
 
 static struct slot *free_slot(struct lane *lane)
 {
-	for (unsigned i = 0; i < lane->depth; i++)
-		if (!lane->slots[i].lent)
-			return &lane->slots[i];
-	return NULL;
+	return lane->free_count ? &lane->slots[lane->free[lane->free_count - 1]] : NULL;
 }
 
 /* Give the slot's request to the bus. */
@@ -63,6 +67,9 @@ static bool lend(struct lane *lane, struct slot *slot, int64_t now_ns)
 		return false;
 	slot->lent = true;
 	lane->lent++;
+	lane->free_count--; /* it was the one on top */
+	if (slot->req.deadline_ns + LANE_GRACE_NS < lane->look_ns)
+		lane->look_ns = slot->req.deadline_ns + LANE_GRACE_NS;
 	lane->counters.requests++;
 	return true;
 }
@@ -282,6 +289,7 @@ static void give_back(struct lane *lane, struct slot *slot)
 {
 	slot->lent = false;
 	lane->lent--;
+	lane->free[lane->free_count++] = (uint16_t)(slot - lane->slots);
 	if (lane->alarm_slot == slot)
 		lane->alarm_slot = NULL;
 }
@@ -415,6 +423,8 @@ int64_t lane_timeouts(struct lane *lane, int64_t now_ns)
 
 	if (!lane->lent)
 		return next;
+	if (now_ns < lane->look_ns)
+		return lane->look_ns;
 	for (unsigned i = 0; i < lane->depth; i++) {
 		struct slot *slot = &lane->slots[i];
 		int64_t end = slot->req.deadline_ns + LANE_GRACE_NS;
@@ -440,6 +450,7 @@ int64_t lane_timeouts(struct lane *lane, int64_t now_ns)
 		}
 		complete(lane, slot, &answer, now_ns);
 	}
+	lane->look_ns = next;
 	if (!lane->stuck && (silent || lost == lane->depth))
 		get_stuck(lane, now_ns);
 	return next;

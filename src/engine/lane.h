@@ -59,6 +59,9 @@ struct lane {
 	int64_t heard_ns; /* last answer or event of the bus */
 
 	struct slot *slots;
+	uint16_t *free;     /* slots that are not lent */
+	unsigned free_count;
+	int64_t look_ns;    /* no request's time is over before */
 	unsigned depth, lent, writes_in_work;
 
 	struct due_set inputs, outputs; /* rows to read, rows to write */
