@@ -34,7 +34,7 @@ static const struct table_column columns[] = {
 #define COLUMNS (sizeof(columns) / sizeof(columns[0]))
 
 /* When the present alarm of a signal was raised, as far as the journal goes back. */
-static int64_t raised(struct ows *h, int signal, bool device, uint8_t kind)
+static int64_t raised(struct ows *h, int signal, uint8_t kind)
 {
 	struct ows_alarm alarm;
 	int err;
@@ -45,7 +45,7 @@ static int64_t raised(struct ows *h, int signal, bool device, uint8_t kind)
 			break;
 		if (err || alarm.signal != signal || alarm.event != OWS_ALARM_RAISED)
 			continue;
-		if (device ? alarm.kind <= OWS_ALARM_POR : alarm.kind == kind)
+		if (alarm.kind == kind)
 			return alarm.occurred_ns;
 	}
 	return 0;
@@ -106,7 +106,7 @@ static void look_at(struct live *live, int signal, const struct row *row)
 		alarm.polled = state.polled;
 		alarm.occurrences = state.occurrences;
 		if (state.stands)
-			alarm.since_ns = raised(live->h, signal, true, 0);
+			alarm.since_ns = raised(live->h, signal, OWS_ALARM_DEVICE);
 		add(live, &alarm);
 	}
 	if (state.limit_state != OWS_LIMIT_NORMAL) {
@@ -114,7 +114,7 @@ static void look_at(struct live *live, int signal, const struct row *row)
 			.name = row->name,
 			.kind = ows_alarm_kind_text(state.limit_kind),
 			.state = ows_limit_state_text(state.limit_state),
-			.since_ns = raised(live->h, signal, false, state.limit_kind),
+			.since_ns = raised(live->h, signal, state.limit_kind),
 		};
 		add(live, &alarm);
 	}

@@ -6,6 +6,7 @@
 #include "unity.h"
 
 #include <errno.h>
+#include <pthread.h>
 #include <string.h>
 
 static const struct instance_signal signals[] = {
@@ -163,6 +164,43 @@ static void test_an_entry_broken_off_is_not_shown(void)
 	TEST_ASSERT_EQUAL(0, ows_alarm(h, 1, &alarm));
 }
 
+static int done;
+
+static void *write_on(void *arg)
+{
+	for (int64_t n = 0; !__atomic_load_n(&done, __ATOMIC_ACQUIRE); n++) {
+		struct ows_alarm_entry entry = door_alarm(n);
+
+		entry.occurred_ns = n;
+		image_alarm_after(&in.image, image_alarm(&in.image, &entry), n);
+	}
+	return arg;
+}
+
+static void test_entries_are_whole_beside_a_busy_writer(void)
+{
+	struct ows_alarm alarm;
+	unsigned seen = 0;
+	pthread_t thread;
+
+	done = 0;
+	TEST_ASSERT_EQUAL(0, pthread_create(&thread, NULL, write_on, NULL));
+	for (int i = 0; i < 10000000 && seen < 20000; i++) {
+		uint32_t number = ows_alarm_count(h) - 1 - (uint32_t)i % 300;
+
+		if (ows_alarm(h, number, &alarm) != 0)
+			continue;
+		seen++;
+		TEST_ASSERT_EQUAL_INT64(number, alarm.occurred_ns);
+		TEST_ASSERT_EQUAL_INT64(number, alarm.before_integer);
+		if (alarm.has_after)
+			TEST_ASSERT_EQUAL_INT64(number, alarm.after_integer);
+	}
+	__atomic_store_n(&done, 1, __ATOMIC_RELEASE);
+	pthread_join(thread, NULL);
+	TEST_ASSERT_EQUAL(20000, seen);
+}
+
 static void test_an_entry_carries_its_check_word(void)
 {
 	struct ows_alarm_entry entry = door_alarm(5);
@@ -217,6 +255,7 @@ int main(void)
 	RUN_TEST(test_a_value_for_an_entry_no_longer_kept_changes_nothing);
 	RUN_TEST(test_numbers_go_on_where_they_wrap);
 	RUN_TEST(test_an_entry_broken_off_is_not_shown);
+	RUN_TEST(test_entries_are_whole_beside_a_busy_writer);
 	RUN_TEST(test_an_entry_carries_its_check_word);
 	RUN_TEST(test_an_image_of_the_first_layout_has_no_journal);
 	RUN_TEST(test_a_journal_outside_the_segment_is_refused);

@@ -116,7 +116,9 @@ static void test_areas_do_not_overlap(void)
 	TEST_ASSERT_EQUAL(h->info_off + 3 * 64, h->name_off);
 	TEST_ASSERT_GREATER_OR_EQUAL(h->name_off + 3 * 8, h->target_off);
 	TEST_ASSERT_GREATER_OR_EQUAL(h->target_off + 128, h->counter_off);
-	TEST_ASSERT_GREATER_OR_EQUAL(h->counter_off + 64, h->text_off);
+	TEST_ASSERT_GREATER_OR_EQUAL(h->counter_off + 64, h->alarm_off);
+	TEST_ASSERT_EQUAL(OWS_ALARMS, h->alarm_count);
+	TEST_ASSERT_GREATER_OR_EQUAL(h->alarm_off + OWS_ALARMS * 64, h->text_off);
 	TEST_ASSERT_EQUAL(2 * 4 + 2 * 12, h->text_size);
 	TEST_ASSERT_EQUAL(image.records[1].text_off + 8, image.records[2].text_off);
 	TEST_ASSERT_GREATER_OR_EQUAL(h->text_off + h->text_size, h->pool_off);

@@ -80,6 +80,7 @@ static void test_alarms_that_stand_are_shown_with_the_time_they_were_raised(void
 	enter(ROOM, OWS_ALARM_H, OWS_ALARM_RAISED, 9999);
 	enter(ROOM, OWS_ALARM_H, OWS_ALARM_RAISED, 300);
 	enter(DOOR, OWS_ALARM_DEVICE, OWS_ALARM_RAISED, 60);
+	enter(DOOR, OWS_ALARM_POR, OWS_ALARM_RAISED, 20);
 	enter(ROOM, OWS_ALARM_HH, OWS_ALARM_RETURNED, 5);
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms"));
 	TEST_ASSERT_EQUAL_STRING("NAME   ALARM   STATE           SINCE  VALUE  QUALITY\n"
