@@ -18,6 +18,14 @@ void job_unlock(struct native *native, struct job *job)
 	job->locks = false;
 }
 
+static void give(struct native *native, struct job *job, const struct bus_answer *answer)
+{
+	tally_end(native, job, answer);
+	job->req = NULL;
+	native->lent--;
+	native->bus.env->answer(native->bus.env->ctx, answer);
+}
+
 void job_answer(struct native *native, struct job *job, int err)
 {
 	struct bus_answer answer = {.id = job->req->id, .err = err, .kind = BUS_TEXT,
@@ -45,9 +53,7 @@ void job_answer(struct native *native, struct job *job, int err)
 	/* Behind an empty list nothing follows. */
 	if (job->req->prio == BUS_ALARM && (job->req->op != BUS_DIR || job->out))
 		native->follow_ns = native_now(native) + FOLLOW_NS;
-	job->req = NULL;
-	native->lent--;
-	native->bus.env->answer(native->bus.env->ctx, &answer);
+	give(native, job, &answer);
 }
 
 void job_answer_cached(struct native *native, struct job *job, const struct cache_entry *entry)
@@ -64,9 +70,7 @@ void job_answer_cached(struct native *native, struct job *job, const struct cach
 		answer.detail |= BUS_DETAIL_SIMULATED;
 	memcpy(job->req->data, entry->text, entry->len);
 	native_count(native, COUNT_CACHE_HITS);
-	job->req = NULL;
-	native->lent--;
-	native->bus.env->answer(native->bus.env->ctx, &answer);
+	give(native, job, &answer);
 }
 
 static int64_t life_ns(const struct native *native, const struct property *property)

@@ -42,12 +42,17 @@ const struct cache_entry *cache_find(struct cache *cache, const struct device *d
 	struct cache_entry *entry = set_of(cache, device, property, extension);
 
 	cache->tries++;
-	for (int way = 0; way < WAYS; way++, entry++)
-		if (is(entry, device, property, extension) && entry->changes == device->changes &&
-		    now < entry->until_ns) {
-			cache->hits++;
-			return entry;
+	for (int way = 0; way < WAYS; way++, entry++) {
+		if (!is(entry, device, property, extension))
+			continue;
+		if (entry->changes != device->changes || now >= entry->until_ns) {
+			cache->expired++;
+			return NULL;
 		}
+		cache->hits++;
+		cache->hit_bytes += entry->len;
+		return entry;
+	}
 	return NULL;
 }
 
@@ -65,6 +70,8 @@ struct cache_entry *cache_add(struct cache *cache, const struct device *device,
 			best = &set[way];
 	}
 	cache->added++;
+	cache->held += !best->device;
+	cache->deleted += best->device && !is(best, device, property, extension);
 	best->device = device;
 	best->property = property;
 	best->extension = extension;

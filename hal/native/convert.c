@@ -8,6 +8,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/native/ds2450.h"
 #include "hal/native/native.h"
 #include "hal/native/thermometer.h"
 
@@ -228,7 +229,7 @@ static void converting(struct native *native, unsigned n, int64_t now, int64_t l
 	struct channel *channel = &native->channel[n];
 
 	channel->due_ns = 0;
-	channel->simultaneous_ns = now + longest;
+	channel->simultaneous_ns[SIMULTANEOUS_TEMPERATURE] = now + longest;
 	for (unsigned i = 0; i < native->table.count; i++) {
 		struct device *device = &native->table.devices[i];
 
@@ -360,19 +361,67 @@ bool convert_step(struct native *native, int64_t now, int64_t *next)
 	return false;
 }
 
-void convert_all(struct native *native, struct job *job, int64_t now)
+/* All DS2450 of a channel at once. Their checksum is one: they were told the same. */
+static int convert_voltage(struct native *native, unsigned n)
 {
-	unsigned n = job->channel;
+	static const uint8_t skip = SKIP_ROM, command[] = {DS2450_CONVERT, 0x0f, 0x00};
+	struct channel *channel = &native->channel[n];
+	struct txn txn = {.native = native, .link = channel->link, .channel = n};
+	uint8_t none;
+	int err = txn_raw(&txn, &skip, 1);
+
+	if (!err)
+		err = txn_write(&txn, command, sizeof(command));
+	if (!err)
+		err = txn_read_crc16(&txn, command, sizeof(command), &none, 0);
+	/* One more slot arms the pull-up, for those without a supply. */
+	if (!err)
+		err = channel->link->ops->bit(channel->link, true, LINK_STRONG);
+	native_count(native, COUNT_TRANSACTIONS);
+	if (err < 0)
+		return txn.link_error ? txn.link_error : err;
+	master_good(native, n);
+	int64_t end = native_now(native) + DS2450_CONVERT_NS;
+	channel->simultaneous_ns[SIMULTANEOUS_VOLTAGE] = end;
+	native->hold_ns[channel->link->chip % NATIVE_CHANNELS] = end;
+	native->holder[channel->link->chip % NATIVE_CHANNELS] = NULL;
+	return 0;
+}
+
+static int convert_temperature(struct native *native, unsigned n)
+{
 	bool parasitic = false;
 
-	(void)now;
 	for (unsigned i = 0; i < native->table.count; i++)
 		parasitic |= is_thermometer(&native->table.devices[i], n) &&
 		             native->table.devices[i].power != POWER_EXTERNAL;
-	int err = broadcast(native, n, parasitic, 750 * TXN_MS);
+	return broadcast(native, n, parasitic, 750 * TXN_MS);
+}
+
+static bool has_family(const struct native *native, unsigned n, const struct family *family)
+{
+	for (unsigned i = 0; i < native->table.count; i++) {
+		const struct device *device = &native->table.devices[i];
+
+		if (device->present && device->channel == n && device->family == family)
+			return true;
+	}
+	return false;
+}
+
+void convert_all(struct native *native, struct job *job, int64_t now)
+{
+	unsigned n = job->channel;
+	int err;
+
+	(void)now;
+	if (job->property->arg == SIMULTANEOUS_TEMPERATURE)
+		err = convert_temperature(native, n);
+	else
+		err = has_family(native, n, &family_20) ? convert_voltage(native, n) : 0;
 	job->txn.channel = n;
 	if (err < 0 && err != -ENODEV) {
-		job->txn.link_error = err;
+		job->txn.link_error = err == -EBADMSG ? 0 : err;
 		job_failed(native, job, err);
 		return;
 	}

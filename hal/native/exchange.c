@@ -169,6 +169,7 @@ void job_saw(struct native *native, struct job *job, int err, int64_t now)
 		return;
 	txn->on_wire = false;
 	native_count(native, COUNT_TRANSACTIONS);
+	native->channel[txn->channel].transactions++;
 	if (!txn->link_error)
 		master_good(native, txn->channel);
 	if (txn->restarted && txn->device)
@@ -209,7 +210,7 @@ void job_run_property(struct native *native, struct job *job, int64_t now)
 		return;
 	}
 	job_unlock(native, job);
-	if (job->property->convert && !convert_right(job)) {
+	if (txn->device && job->property->convert && !convert_right(job)) {
 		/* It converted at another resolution than was thought. */
 		job->txn.device->converted_ns = 0;
 		job_restart(native, job);

@@ -3,13 +3,11 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/native/ds2450.h"
 #include "hal/native/family.h"
 
 #define READ_MEMORY 0xaa
 #define WRITE_MEMORY 0x55
-#define CONVERT 0x3c
-/* Four channels of 16 bits at 80 us, and 160 us. */
-#define CONVERT_NS (6 * TXN_MS)
 
 enum { RESULTS, CONTROL, LIMITS, CALIBRATION }; /* pages of 8 bytes */
 #define SUPPLY_AT 0x1c
@@ -95,7 +93,7 @@ static int take_results(struct txn *txn)
 
 static int start_conversion(struct txn *txn, bool powered)
 {
-	static const uint8_t command[] = {CONVERT, 0x0f, 0x00};
+	static const uint8_t command[] = {DS2450_CONVERT, 0x0f, 0x00};
 	uint8_t none;
 	int err = txn_command(txn, command, sizeof(command));
 
@@ -104,7 +102,7 @@ static int start_conversion(struct txn *txn, bool powered)
 	if (err)
 		return err;
 	if (powered)
-		return txn_wait(txn, CONVERT_NS);
+		return txn_wait(txn, DS2450_CONVERT_NS);
 	/* The CRC's last slot is over: the pull-up is armed with one more. */
 	err = txn->link->ops->bit(txn->link, true, LINK_STRONG);
 	if (err < 0) {
@@ -112,7 +110,7 @@ static int start_conversion(struct txn *txn, bool powered)
 		return err;
 	}
 	txn->strong = true;
-	return txn_wait(txn, CONVERT_NS);
+	return txn_wait(txn, DS2450_CONVERT_NS);
 }
 
 static int convert(struct txn *txn, int arg)

@@ -9,7 +9,6 @@
 #define TRIES_SHORT 2
 #define TRIES_DEVICE 2
 #define TRIES_LINK 6
-#define PROBE_AGE_NS (2 * NATIVE_S)
 
 static void failed_on_link(struct native *native, struct job *job, int err)
 {
@@ -49,6 +48,8 @@ static void look_for(struct native *native, struct job *job, int err)
 
 void job_failed(struct native *native, struct job *job, int err)
 {
+	if (job->failures < UINT8_MAX)
+		job->failures++;
 	if (job->txn.link_error) {
 		failed_on_link(native, job, job->txn.link_error);
 		return;
@@ -56,6 +57,7 @@ void job_failed(struct native *native, struct job *job, int err)
 	switch (err) {
 	case -EBADMSG:
 		native_count(native, COUNT_CHECKSUMS);
+		native->channel[job->txn.channel].checksums++;
 		if (++job->tries < TRIES_CHECKSUM)
 			job_restart(native, job);
 		else if (job->txn.silent && job->txn.device)
@@ -161,7 +163,7 @@ void job_look(struct native *native, struct job *job, int64_t now)
 		if (job->path.device.len == 0)
 			job_answer(native, job, 0);
 		else if (!job->fresh && !away(native, job->txn.device) &&
-		         job->txn.device->ok_ns + PROBE_AGE_NS > now && job->txn.device->ok_ns)
+		         job->txn.device->ok_ns + native->presence_ns > now && job->txn.device->ok_ns)
 			job_answer(native, job, 0);
 		return;
 	case JOB_PROPERTY:

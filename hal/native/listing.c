@@ -50,7 +50,7 @@ static int add_below(struct job *job, const char *name)
 
 int listing_add_device(struct native *native, struct job *job, const struct device *device)
 {
-	const char *alias = device_alias(&native->table, device);
+	const char *alias = native->unaliased ? "" : device_alias(&native->table, device);
 	char name[ROM_TEXT_MAX];
 
 	rom_print(device->rom, ROM_F_I, name);

@@ -18,7 +18,9 @@ static void take_channels(struct native *native)
 		struct channel fresh = {.link = native->master->ops->channel(native->master, i),
 		                        .round = channel->round,
 		                        .errors = channel->errors,
-		                        .shorts = channel->shorts};
+		                        .shorts = channel->shorts,
+		                        .checksums = channel->checksums,
+		                        .transactions = channel->transactions};
 		*channel = fresh;
 	}
 	memset(native->hold_ns, 0, sizeof(native->hold_ns));

@@ -8,6 +8,7 @@
 
 #define VOLATILE_NS (2 * NATIVE_S)
 #define STABLE_NS (300 * NATIVE_S)
+#define PRESENCE_NS (2 * NATIVE_S)
 
 static const char *const count_names[COUNTS] = {
 	[COUNT_RETRIES] = "retries",
@@ -52,6 +53,8 @@ int native_create(const struct bus_ops *ops, const struct link_master_ops *maste
 		goto out;
 	native->volatile_ns = VOLATILE_NS;
 	native->stable_ns = STABLE_NS;
+	native->presence_ns = PRESENCE_NS;
+	snprintf(native->where, sizeof(native->where), "%s:%s", ops->scheme, where);
 	native->temperature_scale = 'C';
 	snprintf(native->pressure_scale, sizeof(native->pressure_scale), "mbar");
 	for (int i = 0; i < COUNTS; i++)
@@ -133,6 +136,7 @@ int native_submit(struct bus *bus, struct bus_req *req)
 		job->order = native->order++;
 		job->bus = -1;
 		native->lent++;
+		tally_begin(native, job);
 		return 0;
 	}
 	return -EAGAIN;

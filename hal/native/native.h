@@ -11,7 +11,9 @@
  *   convert.c  who converts when: one Convert T for all thermometers due on a channel
  *   hunt.c     searches: background, directories, alarms; devices lost and found
  *   listing.c  directories
- *   virtual.c  /statistics, /system, /settings, interface, simultaneous
+ *   virtual.c  the directories that belong to no device: simultaneous, interface, system
+ *   settings.c /settings
+ *   statistics.c  /statistics, and how requests are counted for it
  *   structure.c  /structure
  *
  * All of it runs on the bus's thread; but the counters, which any thread may read.
@@ -64,7 +66,7 @@ enum job_kind {
 	JOB_ALARM,     /* a list of the devices in alarm */
 	JOB_LISTING,   /* a list that needs no wire */
 	JOB_STRUCTURE, /* read in /structure */
-	JOB_CONVERT,   /* write to /simultaneous/temperature */
+	JOB_CONVERT,   /* write to /simultaneous/temperature or voltage */
 };
 
 enum job_state {
@@ -85,11 +87,13 @@ struct job {
 	unsigned element; /* of a separate array, when all of it is asked for */
 	uint8_t tries;   /* transactions that failed in a row */
 	uint8_t faults;  /* power-fault readings in a row */
+	uint8_t failures; /* how often it was begun again after an error */
 	uint8_t channel; /* which one is being searched */
 	int bus;         /* N of /bus.N, -1: all */
 	const struct family *table; /* of a path without device */
 	struct path path;
 	uint32_t order;  /* lower came earlier */
+	int64_t since_ns;
 	const struct property *property;
 	int extension;
 	int64_t ready_ns; /* CONVERTING */
@@ -105,6 +109,8 @@ struct job {
 	struct txn txn;
 };
 
+enum native_simultaneous { SIMULTANEOUS_TEMPERATURE, SIMULTANEOUS_VOLTAGE, SIMULTANEOUS };
+
 struct channel {
 	struct link *link;
 	uint8_t rung;          /* the next of the recovery ladder */
@@ -114,14 +120,27 @@ struct channel {
 	bool all_external;     /* ... and none is parasitic */
 	bool is_short;
 	int64_t due_ns;        /* when the first thermometer became due; 0: none */
-	int64_t simultaneous_ns; /* end of the last conversion of all; 0: none */
+	/* End of the last conversion of all; 0: none. */
+	int64_t simultaneous_ns[SIMULTANEOUS];
 	int64_t search_ns;     /* next pass of the background search */
 	uint32_t round;        /* number of the background search */
 	int64_t round_ns;      /* when it began */
 	bool searching, dirty;
 	struct search search;
-	uint64_t errors, shorts, resets_failed;
+	uint64_t errors, shorts, checksums, transactions;
 };
+
+/* What /statistics tells of the requests of one kind. */
+enum tally_kind { TALLY_READ, TALLY_WRITE, TALLY_DIRECTORY, TALLY_OVERALL, TALLIES };
+
+struct tally {
+	uint64_t calls, success, bytes;
+	uint64_t tries[3];      /* taken up a first, a second, a third time */
+	uint64_t now, max, sum; /* under way; the most; summed up at each call */
+	uint64_t entries[2], lists[2]; /* DIR: of the root and its like, of devices */
+};
+
+#define NATIVE_WHERE_MAX 128
 
 struct native {
 	struct bus bus;
@@ -142,7 +161,13 @@ struct native {
 	struct cache cache;
 	struct job *jobs; /* NATIVE_DEPTH */
 	unsigned lent;
+	char where[NATIVE_WHERE_MAX];
 	int64_t volatile_ns, stable_ns; /* how long cached values live */
+	int64_t presence_ns; /* how long a device that answered is present without being asked */
+	bool uncached;  /* no request is answered from what is kept */
+	bool unaliased; /* listings show ids, not aliases */
+	struct tally tally[TALLIES];
+	int64_t delay_ns; /* the longest that a request took */
 	char temperature_scale;
 	char pressure_scale[8];
 	uint64_t count[COUNTS]; /* written by one thread, whole for any */
@@ -242,6 +267,11 @@ int listing_add_rest(struct native *native, struct job *job);
 
 /* virtual.c: the table of names in /statistics and the like; NULL: none of that name. */
 const struct family *virtual_family(const char *name, size_t len);
+extern const struct family virtual_settings, virtual_statistics;
+
+/* statistics.c: a request was taken, and is answered with so many bytes (those of a read cached). */
+void tally_begin(struct native *native, struct job *job);
+void tally_end(struct native *native, struct job *job, const struct bus_answer *answer);
 
 /* structure.c: reading a path in /structure. The text's length or an error. */
 int structure_read(const char *path, size_t len, char *text, size_t room);

@@ -194,7 +194,7 @@ int resolve(struct native *native, struct job *job)
 
 	if (path_split(text, strlen(text), &job->path))
 		return -ENOENT;
-	job->fresh = job->req->fresh || job->path.uncached;
+	job->fresh = job->req->fresh || job->path.uncached || native->uncached;
 	job->bus = job->path.bus;
 	if (job->bus >= (int)native->channels)
 		return -ENODEV;

@@ -485,21 +485,6 @@ static void test_structure_states_the_properties(void)
 	                         (char *)data[id]);
 }
 
-static void test_settings_and_statistics_have_their_names(void)
-{
-	wire_init(&host, 1, 1);
-	start();
-	expect(true, "/settings/units/temperature_scale", "C");
-	expect(true, "/settings/units/pressure_scale", "mbar");
-	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, "/settings/units/temperature_scale", "F"));
-	expect(true, "/settings/units/temperature_scale", "F");
-	expect(true, "/settings/timeout/volatile", "           2");
-	TEST_ASSERT_EQUAL_INT(-EINVAL, result(BUS_WRITE, "/settings/units/pressure_scale", "x"));
-	TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, "/statistics/read/calls", NULL));
-	TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, "/system/process/pid", NULL));
-	expect(true, "/bus.0/interface/settings/name", "test wire");
-}
-
 static void test_an_alarm_waits_for_one_transaction_and_not_for_a_scan(void)
 {
 	struct sim_slave *slave[20];
@@ -645,7 +630,6 @@ int main(void)
 	RUN_TEST(test_one_register_read_serves_por_and_latch_of_a_visit);
 	RUN_TEST(test_an_alias_names_the_device);
 	RUN_TEST(test_structure_states_the_properties);
-	RUN_TEST(test_settings_and_statistics_have_their_names);
 	RUN_TEST(test_an_alarm_waits_for_one_transaction_and_not_for_a_scan);
 	RUN_TEST(test_a_chip_that_takes_no_resolution_is_read_all_the_same);
 	RUN_TEST(test_one_device_serves_two_resolutions_at_once);

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT */
+/* /settings: what can be changed while the bus runs. */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "hal/native/native.h"
+#include "hal/native/virtual.h"
+
+enum { STABLE, VOLATILE, PRESENCE };
+enum { UNCACHED, UNALIASED };
+
+static int read_scale(struct txn *txn)
+{
+	char text[2] = {txn->native->temperature_scale, '\0'};
+
+	return virtual_put(txn, txn->property->arg ? txn->native->pressure_scale : text);
+}
+
+/*
+ * As in owserver the setting is what a client gets that states no scale of its own. The bus itself
+ * answers in degrees Celsius and mbar always.
+ */
+static int write_scale(struct txn *txn)
+{
+	static const char *const pressure[] = {"mbar", "atm", "mmHg", "inHg", "psi", "Pa"};
+
+	if (!txn->property->arg) {
+		if (txn->len == 0 || !strchr("CFKR", txn->data[0]) || !txn->data[0])
+			return -EINVAL;
+		txn->native->temperature_scale = (char)txn->data[0];
+		return 0;
+	}
+	for (size_t i = 0; i < sizeof(pressure) / sizeof(pressure[0]); i++)
+		if (strlen(pressure[i]) == txn->len && !memcmp(pressure[i], txn->data, txn->len)) {
+			memcpy(txn->native->pressure_scale, pressure[i], txn->len + 1);
+			return 0;
+		}
+	return -EINVAL;
+}
+
+static int64_t *timeout_of(struct txn *txn)
+{
+	struct native *native = txn->native;
+	int64_t *const values[] = {&native->stable_ns, &native->volatile_ns, &native->presence_ns};
+
+	return values[txn->property->arg];
+}
+
+static int read_timeout(struct txn *txn)
+{
+	txn->number[0] = (double)(*timeout_of(txn) / NATIVE_S);
+	return 0;
+}
+
+static int write_timeout(struct txn *txn)
+{
+	if (txn->number[0] > 1e6)
+		return -EINVAL;
+	*timeout_of(txn) = (int64_t)txn->number[0] * NATIVE_S;
+	return 0;
+}
+
+static bool *flag_of(struct txn *txn)
+{
+	return txn->property->arg == UNCACHED ? &txn->native->uncached : &txn->native->unaliased;
+}
+
+static int read_flag(struct txn *txn)
+{
+	txn->number[0] = *flag_of(txn);
+	return 0;
+}
+
+static int write_flag(struct txn *txn)
+{
+	*flag_of(txn) = txn->number[0] != 0;
+	return 0;
+}
+
+/* One line for each alias: the whole id, '=', the alias. */
+static int read_aliases(struct txn *txn)
+{
+	const struct device_table *table = &txn->native->table;
+	char line[16 + 1 + DEVICE_ALIAS_MAX + 2 + 1];
+
+	for (unsigned i = 0; i < table->count; i++) {
+		const struct device *device = &table->devices[i];
+		const char *alias = device_alias(&txn->native->table, device);
+		size_t len = 0;
+
+		if (!alias[0])
+			continue;
+		for (int byte = 0; byte < 8; byte++, len += 2)
+			snprintf(line + len, sizeof(line) - len, "%02X", device->rom[byte]);
+		len += (size_t)snprintf(line + len, sizeof(line) - len, "=%s\r\n", alias);
+		if (len > txn->room - txn->len)
+			return -EMSGSIZE;
+		memcpy(txn->data + txn->len, line, len);
+		txn->len += len;
+	}
+	return 0;
+}
+
+#define TIMEOUT(text, which)                                                              \
+	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, which, read_timeout,     \
+	        write_timeout)
+/* Of masters and servers that this bus has not. */
+#define NO_TIMEOUT(text)                                                                  \
+	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_READ, 0, virtual_zero, NULL)
+#define FLAG(text, which)                                                                 \
+	VIRTUAL(text, PROPERTY_YESNO, LIFE_STATIC, ACCESS_BOTH, which, read_flag, write_flag)
+#define SCALE(text, bytes, which)                                                         \
+	{.name = (text), .type = PROPERTY_ASCII, .life = LIFE_STATIC, .access = ACCESS_BOTH, \
+	 .offline = true, .size = (bytes), .arg = (which), .read = read_scale,              \
+	 .write = write_scale}
+
+static const struct property properties[] = {
+	PROPERTY_DIR("alias"),
+	VIRTUAL_TEXT("alias/list", UINT16_MAX, read_aliases),
+	FLAG("alias/unaliased", UNALIASED),
+	PROPERTY_DIR("timeout"),
+	NO_TIMEOUT("timeout/directory"),
+	NO_TIMEOUT("timeout/ftp"),
+	NO_TIMEOUT("timeout/ha7"),
+	NO_TIMEOUT("timeout/network"),
+	TIMEOUT("timeout/presence", PRESENCE),
+	NO_TIMEOUT("timeout/serial"),
+	NO_TIMEOUT("timeout/server"),
+	TIMEOUT("timeout/stable", STABLE),
+	FLAG("timeout/uncached", UNCACHED),
+	NO_TIMEOUT("timeout/usb"),
+	TIMEOUT("timeout/volatile", VOLATILE),
+	NO_TIMEOUT("timeout/w1"),
+	PROPERTY_DIR("units"),
+	SCALE("units/pressure_scale", 12, 1),
+	SCALE("units/temperature_scale", 1, 0),
+};
+
+const struct family virtual_settings = {.is_virtual = true, PROPERTIES(properties)};
