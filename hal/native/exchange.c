@@ -92,7 +92,8 @@ static int take_value(struct job *job)
 	struct txn *txn = &job->txn;
 	const struct property *property = job->property;
 	const char *text = (const char *)job->req->data;
-	size_t len = job->req->len, size = property_size(property);
+	size_t len = job->req->len;
+	size_t size = property->takes ? property->takes : property_size(property);
 	bool all = is_all(job);
 
 	if (is_text(property)) {
@@ -151,7 +152,7 @@ static int run_function(struct job *job)
 	if (job->req->op == BUS_READ)
 		return job->property->read(txn);
 	if (needs_merge(job))
-		return job->property->read(txn);
+		return job->property->merge ? job->property->merge(txn) : job->property->read(txn);
 	if (txn->phase == 0) {
 		int err = take_value(job);
 

@@ -55,6 +55,9 @@ struct property {
 	bool (*visible)(const struct device *device); /* NULL: always; else no such property */
 	int (*read)(struct txn *txn);
 	int (*write)(struct txn *txn);
+	/* What the other elements are when one is written; NULL: what read says. */
+	int (*merge)(struct txn *txn);
+	uint16_t takes; /* bytes of binary that a write may have; 0: size */
 };
 
 struct family {
@@ -66,7 +69,7 @@ struct family {
 	const char *type; /* "DS18B20" */
 	/* NULL: type. Some families hold several chips. */
 	const char *(*type_of)(const struct device *device);
-	const struct property *properties; /* sorted by name, the hidden ones too */
+	const struct property *properties; /* in any order, the hidden ones too */
 	unsigned count;
 };
 

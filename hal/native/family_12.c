@@ -164,7 +164,7 @@ static int refuse(struct txn *txn)
 static int not_there(struct txn *txn)
 {
 	(void)txn;
-	return -EIO;
+	return -ENOENT;
 }
 
 static bool never(const struct device *device)

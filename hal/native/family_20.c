@@ -75,9 +75,15 @@ static int load_page(struct txn *txn, unsigned page)
 	return err ? err : TXN_MORE;
 }
 
+/* Results are fractions of the range; limits are steps of 20 or 10 mV. */
 static double volts(unsigned raw, int arg)
 {
-	return raw * (arg & HALF_RANGE ? 2.56 : 5.12) / 65536;
+	return raw * (arg & HALF_RANGE ? 2.56 : 5.12) / 65535;
+}
+
+static double limit_unit(int arg)
+{
+	return arg & HALF_RANGE ? 0.01 : 0.02;
 }
 
 static int take_results(struct txn *txn)
@@ -179,12 +185,13 @@ static int write_bit(struct txn *txn)
 	return make_page(txn, CONTROL, want);
 }
 
+/* As owserver has it, and against its manual: 0 conducts, 1 does not, enabled or not. */
 static int read_pio(struct txn *txn)
 {
 	uint8_t bytes[8];
 	int err = read_page(txn, CONTROL, bytes);
 
-	txn->number[0] = (bytes[2 * txn->element] & (OUTPUT_ENABLE | OUTPUT_OFF)) == OUTPUT_ENABLE;
+	txn->number[0] = (bytes[2 * txn->element] & (OUTPUT_ENABLE | OUTPUT_OFF)) != OUTPUT_ENABLE;
 	return err;
 }
 
@@ -197,7 +204,7 @@ static int write_pio(struct txn *txn)
 		return err;
 	memcpy(want, txn->mem + 8, 8);
 	want[at] = (uint8_t)((want[at] & 0x0f) | OUTPUT_ENABLE |
-	                     (txn->number[0] != 0 ? 0 : OUTPUT_OFF));
+	                     (txn->number[0] != 0 ? OUTPUT_OFF : 0));
 	return make_page(txn, CONTROL, want);
 }
 
@@ -221,13 +228,13 @@ static int read_limit(struct txn *txn)
 	int err = read_page(txn, LIMITS, bytes);
 	int at = 2 * txn->element + (txn->property->arg & HIGH_LIMIT ? 1 : 0);
 
-	txn->number[0] = volts((unsigned)bytes[at] << 8, txn->property->arg);
+	txn->number[0] = bytes[at] * limit_unit(txn->property->arg);
 	return err;
 }
 
 static int write_limit(struct txn *txn)
 {
-	double unit = volts(256, txn->property->arg), steps = txn->number[0] / unit + 0.5;
+	double unit = limit_unit(txn->property->arg), steps = txn->number[0] / unit + 0.5;
 	int at = 2 * txn->element + (txn->property->arg & HIGH_LIMIT ? 1 : 0);
 	uint8_t want[8];
 	int err;
@@ -304,7 +311,7 @@ static int put_memory(struct txn *txn)
 	return 8 * ++txn->phase >= txn->len ? 0 : TXN_MORE;
 }
 
-/* A K30 sensor on a DS2450: A has the concentration as 1 V per 1000 ppm, B and D its supplies. */
+/* A K30 sensor on a DS2450: A has 1 V per 1000 ppm, B is its reference of 3.2 V, D its supply. */
 enum { CO2_PPM, CO2_STATUS, CO2_SUPPLY };
 
 static int read_co2(struct txn *txn)
@@ -318,7 +325,7 @@ static int read_co2(struct txn *txn)
 		txn->number[0] = (double)(unsigned)(txn->number[0] * 1000);
 		break;
 	case CO2_STATUS << 8:
-		txn->number[0] = txn->number[1];
+		txn->number[0] = txn->number[1] > 3.0 && txn->number[1] < 3.4;
 		break;
 	default:
 		txn->number[0] = txn->number[3] > 4.5;

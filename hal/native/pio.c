@@ -47,20 +47,20 @@ int pio_read_pin(struct txn *txn)
 	return status < 0 ? status : 0;
 }
 
-int pio_read_latch(struct txn *txn)
+int pio_read_low(struct txn *txn)
 {
-	int status = read_status(txn);
+	int err = pio_read_pin(txn);
 
-	txn->bits = (uint32_t)((status >> 1 & 1) | (status >> 2 & 2));
-	return status < 0 ? status : 0;
+	txn->bits ^= 3;
+	return err;
 }
 
 int pio_read_output(struct txn *txn)
 {
-	int err = pio_read_latch(txn);
+	int status = read_status(txn);
 
-	txn->bits ^= 3;
-	return err;
+	txn->bits = (uint32_t)((status >> 1 & 1) | (status >> 2 & 2)) ^ 3;
+	return status < 0 ? status : 0;
 }
 
 /* The byte and its complement, the confirmation, the status; then read back by itself. */
@@ -87,11 +87,6 @@ static int write_latches(struct txn *txn, unsigned latch)
 int pio_write_output(struct txn *txn)
 {
 	return write_latches(txn, ~txn->bits & 3);
-}
-
-int pio_write_latch(struct txn *txn)
-{
-	return write_latches(txn, txn->bits & 3);
 }
 
 int pio_write_state(struct txn *txn)

@@ -8,10 +8,9 @@
 /* One status nibble: pin and output latch of A, then of B; a latch of 1 does not conduct. */
 int pio_read_output(struct txn *txn);  /* PIO: 1 conducts */
 int pio_read_pin(struct txn *txn);     /* sensed */
-int pio_read_latch(struct txn *txn);   /* the output latches as they are */
+int pio_read_low(struct txn *txn);     /* sensed, 1 is low */
 int pio_read_state(struct txn *txn);   /* the nibble */
 int pio_write_output(struct txn *txn); /* arg: the family's write command */
-int pio_write_latch(struct txn *txn);
 int pio_write_state(struct txn *txn);
 
 #define PIO_BITS(text, access_, command, reads, writes)                                   \

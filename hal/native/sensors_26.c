@@ -5,7 +5,10 @@
 #include <errno.h>
 #include <string.h>
 
-/* The Hobby Boards' settings stand in page 3 from byte 2 on, as 16 bits each; all ones: default. */
+/*
+ * The Hobby Boards' settings stand in page 3, 16 bits each. Not set: 46 mV/mbar and 904.7 mbar, and
+ * a SFH203P of 9.5 nA/lx.
+ */
 #define SETTING_PAGE 3
 #define SHUNT_OHM 390.0
 
@@ -13,24 +16,26 @@ static const struct {
 	uint8_t at;
 	double unit, standard;
 } settings[] = {
-	[B1_GAIN] = {2, 0.01, 34.249},
-	[B1_OFFSET] = {4, 0.1, 904.7},
-	[S3_GAIN] = {6, 0.01, 105.26}, /* SFH203P: 9.5 nA/lx */
+	[S3_GAIN] = {2, 0.1, 1 / 0.0095},
+	[B1_GAIN] = {4, 0.001, 1 / 0.046},
+	[B1_OFFSET] = {6, 0.05, 904.7},
 };
 
+/* HIH3600 stands for the HIH-3610 with 0.8 V at 0 %RH whatever the supply; the others follow it. */
 static double relative_humidity(int sensor, double celsius, double supply, double volt)
 {
 	double ratio = volt / supply, compensation = 1.0546 - 0.00216 * celsius;
 
 	switch ((enum sensor_humidity)sensor) {
 	case HIH3600:
+		return (volt - 0.8) / supply / 0.0062 / compensation;
 	case HIH4000:
 	case DATANAB:
 		return (ratio - 0.16) / 0.0062 / compensation;
 	case HIH5030:
 		return (ratio - 0.1515) / 0.00636 / compensation;
 	case HTM1735:
-		return 38.92 * volt - 42.017;
+		return 38.92 * volt - 41.98;
 	}
 	return 0;
 }
@@ -112,21 +117,23 @@ int sensor_read_light(struct txn *txn)
 		return err;
 	double microampere = txn->real[3] / SHUNT_OHM * 1e6;
 	double lux = microampere * setting(page, S3_GAIN);
-	txn->number[0] = txn->property->arg ? (lux < 0 ? 0 : lux) : microampere;
+	txn->number[0] = txn->property->arg ? (lux < 1 ? 1 : lux) : microampere;
 	return 0;
 }
 
 int sensor_read_type(struct txn *txn)
 {
-	static const char *const types[] = {"MS-T", "MS-TH", "MS-TV", "MS-TL", "MS-TC", "MS-TW"};
-	const char *type = "";
+	static const char *const types[] = {"MS-TH", "MS-TV", "MS-TL", "MS-TC", "MS-TW"};
+	const char *type = "unknown";
 	uint8_t page[8];
 	int err = ds2438_read(txn, SETTING_PAGE, page);
 
 	if (err)
 		return err;
-	if (page[0] >= 0x18 && page[0] < 0x18 + sizeof(types) / sizeof(types[0]))
-		type = types[page[0] - 0x18];
+	if (page[0] == 0)
+		type = "MS-T";
+	else if (page[0] >= 0x19 && page[0] < 0x19 + sizeof(types) / sizeof(types[0]))
+		type = types[page[0] - 0x19];
 	txn->len = strlen(type);
 	if (txn->len > txn->room)
 		return -EMSGSIZE;

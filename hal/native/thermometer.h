@@ -76,4 +76,14 @@ int thermometer_read_trim_blanket(struct txn *txn);
 	{.name = "errata/trimvalid", .type = PROPERTY_YESNO, .life = LIFE_VOLATILE,       \
 	 .access = ACCESS_READ, .read = thermometer_read_trim_valid}
 
+/* What DS18B20, DS1822 and DS28EA00 have alike. */
+#define THERMOMETER_PROPERTIES                                                           \
+	THERMOMETER_TEMPERATURE("fasttemp", 9), THERMOMETER_LATEST, THERMOMETER_POWER,    \
+	THERMOMETER_TEMPERATURE("temperature", CONVERT_TEMPRES),                          \
+	THERMOMETER_TEMPERATURE("temperature10", 10),                                     \
+	THERMOMETER_TEMPERATURE("temperature11", 11),                                     \
+	THERMOMETER_TEMPERATURE("temperature12", 12),                                     \
+	THERMOMETER_TEMPERATURE("temperature9", 9), THERMOMETER_LIMIT("temphigh", SP_HIGH), \
+	THERMOMETER_LIMIT("templow", SP_LOW), THERMOMETER_TEMPRES
+
 #endif

@@ -144,7 +144,14 @@ static void test_a_ds28ea00_measures_and_switches(void)
 	reads("temperature", "        33.5");
 	writes("PIO.A", "1");
 	reads("PIO.BYTE", "           1");
-	reads("latch.BYTE", "           2");
+	reads("latch.BYTE", "           1");
+	reads("sensed.BYTE", "           2");
+	wire_set(slave, "pin.B", 0);
+	reads("PIO.BYTE", "           3");
+	reads("latch.BYTE", "           1");
+	writes("PIO.A", "0");
+	reads("PIO.BYTE", "           2");
+	reads("latch.BYTE", "           0");
 	reads("temperature9", "        33.5");
 }
 
@@ -192,9 +199,41 @@ static void test_a_ds2438_measures_and_keeps_time(void)
 	refuses(-EINVAL, BUS_WRITE, "offset", "1000");
 	writes("pages/page.4", "abcdefgh");
 	reads("pages/page.4", "abcdefgh");
-	writes("B1-R1-A/gain", "30.5");
-	reads("B1-R1-A/gain", "        30.5");
-	reads("B1-R1-A/pressure", "       904.7");
+}
+
+/* The texts are owserver's own for the same network. */
+static void test_sensors_on_a_ds2438_say_what_owserver_says(void)
+{
+	start("DS2438");
+	wire_set(slave, "temperature", 60);
+	wire_set(slave, "vdd", 5.2);
+	wire_set(slave, "vad", 3.9);
+	wire_set(slave, "vsens", 10);
+	reads("humidity", "      103.95");
+	reads("HIH3600/humidity", "      103.95");
+	reads("HIH4000/humidity", "     102.877");
+	reads("HIH5030/humidity", "     101.734");
+	reads("HTM1735/humidity", "     109.808");
+	reads("B1-R1-A/gain", "     21.7391");
+	reads("B1-R1-A/offset", "       904.7");
+	reads("S3-R1-A/gain", "     105.263");
+	reads("S3-R1-A/current", "     25.6618");
+	reads("S3-R1-A/illuminance", "     2701.24");
+	reads("MultiSensor/type", "MS-T");
+	writes("pages/page.3", "\x1b\x01\x64\x01\x58\x02\x7b\x01");
+	reads("MultiSensor/type", "MS-TL");
+	reads("B1-R1-A/gain", "         0.6");
+	writes("B1-R1-A/gain", "12.34");
+	writes("B1-R1-A/offset", "-56.7");
+	writes("S3-R1-A/gain", "8.9");
+	reads("B1-R1-A/gain", "       12.34");
+	reads("B1-R1-A/offset", "       -56.7");
+	reads("B1-R1-A/pressure", "      -8.574");
+	reads("S3-R1-A/illuminance", "      228.39");
+	wire_set(slave, "vsens", -3);
+	reads("S3-R1-A/illuminance", "           1");
+	writes("pages/page.3", "\x1f");
+	reads("MultiSensor/type", "unknown");
 }
 
 static void test_a_ds2405_is_not_turned_over_by_looking(void)
@@ -233,6 +272,8 @@ static void test_a_ds2406_switches_and_alarms(void)
 	reads("set_alarm", "         311");
 	reads("PIO.BYTE", "           0");
 	refuses(-EOPNOTSUPP, BUS_WRITE, "memory", "x");
+	refuses(-ENOENT, BUS_READ, "TAI8570/pressure", NULL);
+	refuses(-ENOENT, BUS_READ, "T8A/volt.0", NULL);
 	TEST_ASSERT_EQUAL_UINT(128, go(BUS_READ, "memory", NULL)->len);
 	TEST_ASSERT_EQUAL_UINT(32, go(BUS_READ, "pages/page.3", NULL)->len);
 }
@@ -293,10 +334,12 @@ static void test_a_ds2450_converts_and_switches(void)
 	TEST_ASSERT_EQUAL_INT(0, host.answer[0].err);
 	TEST_ASSERT_EQUAL_UINT(51, host.answer[0].len);
 	TEST_ASSERT_DOUBLE_WITHIN(0.01, 2.5, go(BUS_READ, "volt.A", NULL)->number);
-	writes("PIO.B", "1");
-	reads("PIO.ALL", "0,1,0,0");
+	reads("PIO.ALL", "1,1,1,1");
 	writes("PIO.B", "0");
-	reads("PIO.B", "0");
+	reads("PIO.ALL", "1,0,1,1");
+	writes("PIO.B", "1");
+	reads("PIO.B", "1");
+	reads("set_alarm/volthigh.C", "         5.1");
 	writes("set_alarm/volthigh.C", "2.56");
 	reads("set_alarm/volthigh.C", "        2.56");
 	writes("set_alarm/high.ALL", "0,0,0,0");
@@ -305,7 +348,11 @@ static void test_a_ds2450_converts_and_switches(void)
 	writes("set_alarm/unset", "0");
 	TEST_ASSERT_EQUAL_UINT(32, go(BUS_READ, "memory", NULL)->len);
 	TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "8bit/volt2.A", NULL)->err);
-	TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "CO2/ppm", NULL)->err);
+	wire_set(slave, "volt.B", 3.2);
+	wire_set(slave, "volt.D", 3);
+	TEST_ASSERT_DOUBLE_WITHIN(20, 2500, go(BUS_READ, "CO2/ppm", NULL)->number);
+	reads("CO2/status", "           1");
+	reads("CO2/Vdd", "0");
 	writes("power", "0");
 	TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "volt.A", NULL)->err);
 }
@@ -320,6 +367,7 @@ int main(void)
 	RUN_TEST(test_a_ds1825_has_its_place);
 	RUN_TEST(test_a_ds18s20_resolves_sixteenths);
 	RUN_TEST(test_a_ds2438_measures_and_keeps_time);
+	RUN_TEST(test_sensors_on_a_ds2438_say_what_owserver_says);
 	RUN_TEST(test_a_ds2405_is_not_turned_over_by_looking);
 	RUN_TEST(test_a_ds2406_switches_and_alarms);
 	RUN_TEST(test_memories_are_written_and_read);
