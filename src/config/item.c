@@ -170,8 +170,6 @@ static bool build_value(struct build *build, const struct option_value *value,
 {
 	int err;
 
-	if (!value->text[0])
-		return false;
 	err = value_parse(item->type, value->text, number);
 	if (!err)
 		return true;
@@ -210,8 +208,8 @@ static void build_values(struct build *build, const struct option_value *values,
 		item->has_init = *init->text != '\0';
 		item->has_safe = safe->given;
 	} else if (known) {
-		item->has_init = build_value(build, init, item, &item->init_value);
-		item->has_safe = build_value(build, safe, item, &item->safe_value);
+		item->has_init = *init->text && build_value(build, init, item, &item->init_value);
+		item->has_safe = safe->given && build_value(build, safe, item, &item->safe_value);
 	}
 	if (item->has_safe && !item->output && !item->writable)
 		report_warning(build->report, safe->node->at,

@@ -80,6 +80,9 @@ static int prepare(const struct ctl *ctl, struct ows *h, struct order *order)
 	if (err == -ERANGE)
 		return ctl_fail("%s: %s is out of range for %s (%s)", order->name, order->text,
 		                value_type_name(order->type), range(order->type));
+	if (err && value_parse(OWS_DOUBLE, order->text, &order->value) == 0)
+		return ctl_fail("%s: %s is no whole number, as %s wants it (%s)", order->name,
+		                order->text, value_type_name(order->type), range(order->type));
 	if (err)
 		return ctl_fail("%s: \"%s\" is no value for %s (%s)", order->name, order->text,
 		                value_type_name(order->type), range(order->type));
@@ -115,7 +118,7 @@ static int send(struct ows *h, struct order *order)
 	case ESTALE:
 		return ctl_fail("%s: owsd is just starting anew, try again", order->name);
 	case EACCES:
-		return ctl_fail("%s is not writable: it is an input without Writable",
+		return ctl_fail("%s is not writable: it is an input, and its _WriteEnable is 0",
 		                order->name);
 	case ERANGE:
 		return ctl_fail("%s: %s is too long or out of range", order->name, order->text);

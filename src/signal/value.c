@@ -411,8 +411,10 @@ int value_parse(enum ows_type type, const char *text, int64_t *value)
 		*value = value_of_double(number);
 		return 0;
 	}
-	if (decimal_integer(&d, type, &parsed, &exact) || !exact)
+	if (decimal_integer(&d, type, &parsed, &exact))
 		return -ERANGE;
+	if (!exact)
+		return -EINVAL;
 	*value = parsed;
 	return 0;
 }

@@ -43,7 +43,8 @@ bool value_holds(enum ows_type type, int64_t value);
 
 /*
  * InitValue, SafeValue and `owsctl set`: decimal point, bool also on/off yes/no true/false; exact,
- * nothing is clamped or rounded to an integer. -ERANGE, -EINVAL. Not for strings.
+ * nothing is clamped or rounded to an integer. -ERANGE the type cannot hold it, -EINVAL no number,
+ * or no whole one. Not for strings.
  */
 int value_parse(enum ows_type type, const char *text, int64_t *value);
 

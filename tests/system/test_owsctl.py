@@ -206,6 +206,23 @@ def test_a_set_that_cannot_be_written_is_told_though_the_value_is_good(scene):
     assert "cannot be written" in daemon.log()
 
 
+def test_a_value_that_cannot_be_set_is_told_why(scene):
+    sensor = "/28.000000000001"
+    daemon = scene.owsd(owsdtest.rio("null:", [
+        dict(Name="room", Path=sensor + "/temperature", Type="double", IO="input"),
+        dict(Name="relay", Path="/29.000000000002/PIO.BYTE", Type="byte", IO="output")]))
+    for words, reason in (
+            (("relay", "1.5"), "relay: 1.5 is no whole number, as byte wants it (0 to 255)"),
+            (("relay", "on"), 'relay: "on" is no value for byte (0 to 255)'),
+            (("relay", "256"), "relay: 256 is out of range for byte (0 to 255)"),
+            (("room", "5"), "room is not writable: it is an input, and its _WriteEnable is 0")):
+        done = scene.owsctl(daemon, "set", *words)
+        assert done.returncode == 1 and done.stderr == f"owsctl: {reason}\n", (words, done)
+    assert scene.owsctl(daemon, "set", "-w", "5", "room_WE", "on").returncode == 0
+    assert scene.owsctl(daemon, "set", "-w", "5", "room", "5").returncode == 0
+    scene.until(lambda: scene.get(daemon, "room") == "5", 5, "is 5")
+
+
 def test_the_live_table_fits_small_terminals_and_scrolls(scene):
     _, daemon, _, _ = house(scene)
     terminal = Terminal(daemon, 4, 30, "watch", "-a")
