@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "log.h"
+#include "printable.h"
 #include "shm/segment.h"
 
 #include <errno.h>
@@ -81,11 +82,8 @@ static struct line *claim(struct log *log, uint32_t *turn)
 /* Control characters become '?'; a UTF-8 character that was cut at the end goes away. */
 static size_t clean(char *text, size_t len, bool cut)
 {
-	size_t start = len;
+	size_t start = len = printable(text, len);
 
-	for (size_t i = 0; i < len; i++)
-		if ((unsigned char)text[i] < 0x20 || text[i] == 0x7f)
-			text[i] = '?';
 	if (!cut)
 		return len;
 	while (start > 0 && len - start < 3 && ((unsigned char)text[start - 1] & 0xc0) == 0x80)

@@ -6,12 +6,14 @@
 #include "libows/ows.h"
 #include "log.h"
 #include "notify.h"
+#include "printable.h"
 #include "shm/segment.h"
 #include "target.h"
 
 #include <errno.h>
 #include <getopt.h>
 #include <signal.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,6 +50,20 @@ static void on_signal(int number)
 		__atomic_fetch_add(supervisor_word, 1, __ATOMIC_SEQ_CST);
 }
 
+/* Names come from outside: nothing in them may steer a terminal. */
+static void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
+static void complain(const char *format, ...)
+{
+	char text[1024];
+	va_list args;
+
+	va_start(args, format);
+	vsnprintf(text, sizeof(text), format, args);
+	va_end(args);
+	text[printable(text, strlen(text))] = '\0';
+	fprintf(stderr, "owsd: %s\n", text);
+}
+
 static void usage(FILE *out)
 {
 	fputs("usage: owsd [-c FILE] [-n NAME] [-t TARGET]... [--check] [--rt PRIO] [-v] [-V] [-h]\n"
@@ -67,6 +83,16 @@ static void version(void)
 	printf("owsd %s\n", OWSD_VERSION);
 	for (const struct bus_ops *const *b = bus_backends; *b; b++)
 		printf("  %-10s %s\n", (*b)->scheme, (*b)->summary);
+}
+
+/* The exit status of what only prints. */
+static int finish_output(void)
+{
+	errno = 0;
+	if (fflush(stdout) == 0 && !ferror(stdout))
+		return EXIT_SUCCESS;
+	complain("cannot write: %s", strerror(errno ? errno : EIO));
+	return EXIT_RUN;
 }
 
 /* -1: go on; else the exit status. */
@@ -99,7 +125,7 @@ static int parse_options(int argc, char **argv, struct options *o)
 			break;
 		case 't':
 			if (o->target_count == TARGETS_MAX) {
-				fprintf(stderr, "owsd: at most %d targets\n", TARGETS_MAX);
+				complain("at most %d targets", TARGETS_MAX);
 				return EXIT_USAGE;
 			}
 			o->targets[o->target_count++] = optarg;
@@ -110,8 +136,7 @@ static int parse_options(int argc, char **argv, struct options *o)
 		case OPT_RT:
 			priority = strtol(optarg, &end, 10);
 			if (*end || end == optarg || priority < 1 || priority > 99) {
-				fprintf(stderr, "owsd: --rt %s: a number from 1 to 99 expected\n",
-				        optarg);
+				complain("--rt %s: a number from 1 to 99 expected", optarg);
 				return EXIT_USAGE;
 			}
 			o->rt_priority = (int)priority;
@@ -122,25 +147,23 @@ static int parse_options(int argc, char **argv, struct options *o)
 			break;
 		case 'V':
 			version();
-			return EXIT_SUCCESS;
+			return finish_output();
 		case 'h':
 			usage(stdout);
-			return EXIT_SUCCESS;
+			return finish_output();
 		default:
 			usage(stderr);
 			return EXIT_USAGE;
 		}
 	}
 	if (optind < argc) {
-		fprintf(stderr, "owsd: unexpected argument '%s' (a file is given with -c)\n",
-		        argv[optind]);
+		complain("unexpected argument '%s' (a file is given with -c)", argv[optind]);
 		return EXIT_USAGE;
 	}
 	if (!segment_name_ok(o->instance)) {
-		fprintf(stderr,
-		        "owsd: instance name '%s': 1 to %d letters, digits, '-', '_', '.' expected, "
-		        "not first a dot\n",
-		        o->instance, SEGMENT_NAME_MAX);
+		complain("instance name '%s': 1 to %d letters, digits, '-', '_', '.' expected, "
+		         "not first a dot",
+		         o->instance, SEGMENT_NAME_MAX);
 		return EXIT_USAGE;
 	}
 	return -1;
@@ -254,7 +277,7 @@ static int run(const struct options *o, const struct config *config, struct log 
 		log_warning(log, "NOTIFY_SOCKET cannot be used");
 	if (host_start(&setup, &host, why, sizeof(why))) {
 		log_finish(log, STDERR_FILENO, prefix);
-		fprintf(stderr, "owsd: %s\n", why);
+		complain("%s", why);
 		return EXIT_RUN;
 	}
 	log_notice(log, "owsd %s: instance %s, %u signals from %s, target %s", OWSD_VERSION,
@@ -284,6 +307,8 @@ int main(int argc, char **argv)
 	pid_t owner = 0;
 	int status, lock;
 
+	/* a file that may not grow is an error of the write like another */
+	signal(SIGXFSZ, SIG_IGN);
 	status = parse_options(argc, argv, &o);
 	if (status >= 0)
 		return status;
@@ -292,7 +317,7 @@ int main(int argc, char **argv)
 	if (o.check) {
 		config_print(config, stdout);
 		config_free(config);
-		return fflush(stdout) || ferror(stdout) ? EXIT_RUN : EXIT_SUCCESS;
+		return finish_output();
 	}
 	log = log_create(o.level);
 	if (!log)
@@ -301,15 +326,14 @@ int main(int argc, char **argv)
 	catch_signals();
 	lock = segment_lock(o.instance, &owner, &stolen);
 	if (lock == -EBUSY) {
-		fprintf(stderr,
-		        "owsd: instance %s is already served by process %d; end it or choose another "
-		        "name with -n\n",
-		        o.instance, (int)owner);
+		complain("instance %s is already served by process %d; end it or choose another "
+		         "name with -n",
+		         o.instance, (int)owner);
 		return EXIT_RUN;
 	}
 	if (lock < 0) {
-		fprintf(stderr, "owsd: cannot lock instance %s: %s%s\n", o.instance, strerror(-lock),
-		        lock == -EPERM ? " (a file of another user is in the way in /dev/shm)" : "");
+		complain("cannot lock instance %s: %s%s", o.instance, strerror(-lock),
+		         lock == -EPERM ? " (a file of another user is in the way in /dev/shm)" : "");
 		return EXIT_RUN;
 	}
 	if (stolen)

@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "report.h"
 
+#include "../printable.h"
+
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 #define MESSAGE_MAX 512
-
-/* Values of the file are quoted in messages: nothing in them may steer a terminal. */
-static void make_printable(char *text)
-{
-	for (unsigned char *p = (unsigned char *)text; *p; p++)
-		if (*p < ' ' || *p == 0x7f)
-			*p = '?';
-}
 
 static void put(struct config_report *report, struct place place, bool is_error,
                 const char *format, va_list args) __attribute__((format(printf, 4, 0)));
@@ -37,7 +32,8 @@ static void put(struct config_report *report, struct place place, bool is_error,
 		         "more than %d %ss, the rest is not shown", REPORT_MAX, kind);
 	else
 		vsnprintf(message + n, sizeof(message) - (size_t)n, format, args);
-	make_printable(message);
+	/* values of the file are quoted in it */
+	message[printable(message, strlen(message))] = '\0';
 	report->line(report->ctx, is_error, message);
 }
 

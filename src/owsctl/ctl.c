@@ -2,6 +2,7 @@
 #include "names.h"
 #include "verbs.h"
 #include "when.h"
+#include "../printable.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -16,9 +17,11 @@
 __attribute__((format(printf, 1, 0)))
 static void say(const char *format, va_list args)
 {
-	fputs("owsctl: ", stderr);
-	vfprintf(stderr, format, args);
-	putc('\n', stderr);
+	char text[4096];
+
+	vsnprintf(text, sizeof(text), format, args);
+	text[printable(text, strlen(text))] = '\0';
+	fprintf(stderr, "owsctl: %s\n", text);
 }
 
 int ctl_fail(const char *format, ...)
@@ -181,10 +184,20 @@ bool ctl_reader_gone(void)
 	return poll(&out, 1, 0) > 0 && (out.revents & (POLLERR | POLLHUP));
 }
 
+static int output_errno;
+
+bool ctl_flush_lines(void)
+{
+	int err = fflush(stdout) == 0 ? 0 : errno;
+
+	if (!output_errno)
+		output_errno = err;
+	return !err && !ferror(stdout);
+}
+
 int ctl_flush(int status)
 {
-	errno = 0;
-	if ((fflush(stdout) == 0 && !ferror(stdout)) || ctl_reader_gone())
+	if (ctl_flush_lines() || ctl_reader_gone())
 		return status;
-	return ctl_fail("cannot write: %s", strerror(errno ? errno : EIO));
+	return ctl_fail("cannot write: %s", strerror(output_errno ? output_errno : EIO));
 }

@@ -44,7 +44,7 @@ static int get_one(struct ows *h, const char *name, struct reading *reading)
 	if (reading_good(reading))
 		return CTL_DONE;
 	/* In order with stdout where both go to one place. */
-	fflush(stdout);
+	ctl_flush_lines();
 	ctl_fail("%s is not good: %s", name, reading_why(reading, words));
 	return CTL_NOT_GOOD;
 }

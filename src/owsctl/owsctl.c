@@ -57,6 +57,8 @@ int main(int argc, char **argv)
 
 	/* A reader of ours that leaves is seen as EPIPE. */
 	signal(SIGPIPE, SIG_IGN);
+	/* And a file that may not grow as EFBIG. */
+	signal(SIGXFSZ, SIG_IGN);
 	while ((c = getopt_long(argc, argv, "+n:t:Vh", longs, NULL)) != -1) {
 		switch (c) {
 		case 'n':
@@ -92,7 +94,7 @@ int main(int argc, char **argv)
 			return ctl_flush(verbs[i].run(&ctl, argc - optind, argv + optind));
 		}
 	}
-	fprintf(stderr, "owsctl: there is no verb %s\n", argv[optind]);
+	ctl_fail("there is no verb %s", argv[optind]);
 	usage(stderr);
 	return CTL_USAGE;
 }

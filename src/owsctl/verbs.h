@@ -78,5 +78,7 @@ int ctl_unknown(struct ows *h, const char *name);
 bool ctl_reader_gone(void);
 /* Write what is left; CTL_FAILED after having said why, else status. No reader is no error. */
 int ctl_flush(int status);
+/* What is printed so far, at once; false: it cannot be written, which ctl_flush() will say. */
+bool ctl_flush_lines(void);
 
 #endif

@@ -141,14 +141,15 @@ static void print_changes(struct watch *watch)
 
 static int watch_lines(struct watch *watch)
 {
-	setvbuf(stdout, NULL, _IOLBF, 0);
+	/* Written round by round, so that the reason of a failure is known. */
+	setvbuf(stdout, NULL, _IOFBF, BUFSIZ);
 	if (!watch->alive)
 		say_event(watch, WATCH_LOST);
 	for (;;) {
 		int event;
 
 		print_changes(watch);
-		if (watch_over(watch) || fflush(stdout) != 0 || ctl_reader_gone())
+		if (watch_over(watch) || !ctl_flush_lines() || ctl_reader_gone())
 			return CTL_DONE;
 		event = watch_sleep(watch, SHORTEST_SLEEP, LONGEST_SLEEP);
 		if (event < 0)

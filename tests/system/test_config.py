@@ -100,5 +100,44 @@ def test_owserver_without_a_host_is_warned_of(scene):
     assert "bare.rio:3:27: warning: owserver: names no host" in done.stderr, done.stderr
 
 
+def test_what_cannot_be_printed_is_an_error(scene):
+    path = scene.file("right.rio", owsdtest.rio("null:", [ITEM]))
+    daemon = scene.owsd(owsdtest.rio("null:", [ITEM]))
+    owsd, owsctl = str(owsdtest.OWSD), [str(owsdtest.OWSCTL), "-n", daemon.name]
+    for command in ([owsd, "--check", "-c", str(path)], [owsd, "-V"], [owsd, "-h"],
+                    [*owsctl, "list"], [*owsctl, "watch"], [*owsctl, "get", "_RECONNECTS"]):
+        with open("/dev/full", "wb") as full:
+            done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True,
+                                  stdin=subprocess.DEVNULL, timeout=20, check=False)
+        assert done.returncode == 1, (command, done)
+        assert "cannot write: No space left on device" in done.stderr, (command, done.stderr)
+
+
+def test_a_file_that_may_not_grow_is_an_error_and_no_end_by_signal(scene):
+    path = scene.file("right.rio", owsdtest.rio("null:", [
+        dict(ITEM, Name=f"x{i}") for i in range(100)]))
+    for command in ([owsdtest.OWSD, "--check", "-c", path],
+                    [owsdtest.OWSCTL, "config", path, "list"]):
+        out = scene.path / "out"
+        done = subprocess.run(["sh", "-c", 'ulimit -f 1; exec "$@" >out', "sh",
+                               *map(str, command)], cwd=scene.path, stderr=subprocess.PIPE,
+                              text=True, stdin=subprocess.DEVNULL, timeout=20, check=False)
+        assert done.returncode == 1, (command, done)
+        assert "cannot write: File too large" in done.stderr, (command, done.stderr)
+        out.unlink()
+
+
+def test_messages_do_not_steer_the_terminal(scene):
+    daemon = scene.owsd(owsdtest.rio("null:", [ITEM]))
+    evil = "a\x1b[31m\u202e\x9b"
+    for done in (scene.owsctl(daemon, "get", evil), scene.owsctl(daemon, "set", evil, "1"),
+                 scene.owsctl(daemon, evil), scene.owsctl(evil, "list"),
+                 scene.owsctl(None, "config", scene.path / "a.rio", "remove", evil),
+                 scene.owsd_once("-n", evil), scene.owsd_once(evil),
+                 scene.owsd_once("-c", scene.path / evil)):
+        assert done.returncode in (1, 2), done
+        assert done.stderr and not set(done.stderr) & set("\x1b\u202e\x9b"), ascii(done.stderr)
+
+
 if __name__ == "__main__":
     owsdtest.main()
