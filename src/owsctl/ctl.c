@@ -170,8 +170,12 @@ void ctl_sleep(struct ows *h, uint32_t *news, int64_t timeout_ns)
 
 int ctl_unknown(struct ows *h, const char *name)
 {
+	const char *rest = strstr(name, "__");
 	char nearest[NAMES_MAX];
 
+	if (rest && rest != name && ows_find(h, rest + 2) >= 0)
+		return ctl_fail("there is no %s: its prefix is of another instance; did you mean "
+		                "%s, or -n %.*s?", name, rest + 2, (int)(rest - name), name);
 	if (names_nearest(h, name, nearest))
 		return ctl_fail("there is no %s; did you mean %s?", name, nearest);
 	return ctl_fail("there is no %s", name);

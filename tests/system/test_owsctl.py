@@ -211,6 +211,8 @@ def test_a_value_that_cannot_be_set_is_told_why(scene):
     daemon = scene.owsd(owsdtest.rio("null:", [
         dict(Name="room", Path=sensor + "/temperature", Type="double", IO="input"),
         dict(Name="relay", Path="/29.000000000002/PIO.BYTE", Type="byte", IO="output")]))
+    done = scene.owsctl(daemon, "get", "OTHER__room")
+    assert done.returncode == 1 and "did you mean room, or -n OTHER?" in done.stderr, done
     for words, reason in (
             (("relay", "1.5"), "relay: 1.5 is no whole number, as byte wants it (0 to 255)"),
             (("relay", "on"), 'relay: "on" is no value for byte (0 to 255)'),
