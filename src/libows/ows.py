@@ -378,6 +378,8 @@ class Ows:
     def find(self, name):
         """(record, attribute) of a name: a signal's, a driver signal's, or one with an attribute.
         Raises KeyError."""
+        if not isinstance(name, str):
+            raise TypeError(f"a name is text, not {name!r}")
         prefix = self.instance + "__"
         forms = [name] + ([name[len(prefix):]] if name.startswith(prefix) else [])
         for form in forms:
@@ -556,7 +558,8 @@ class Ows:
 
     def set(self, name, value):
         """Command an output or a writable attribute. Returns the stamp that Value.applied will
-        reach (attributes: 0). ValueError: the type cannot hold it; PermissionError: not writable;
+        reach (attributes: 0). TypeError: text where a number is expected, or the other way
+        round; ValueError: the type cannot hold it; PermissionError: not writable;
         BlockingIOError: another program is just writing this text; Stale."""
         record, attribute = self.find(name)
         if self.command is None:
@@ -567,6 +570,7 @@ class Ows:
             stamp = self._set_signal(record, slot, name, value)
         else:
             stamp = 0
+            need_number(value)
             self._set_flag(record, attribute, slot, name, bool(value))
         self._ring(record)
         return stamp
@@ -597,7 +601,9 @@ class Ows:
         if not writable:
             raise PermissionError(errno.EACCES, "not writable", name)
         if info.type == STRING:
-            self._set_text(record, str(value).encode())
+            if not isinstance(value, str):
+                raise TypeError(f"{name} is a string and takes text, not {value!r}")
+            self._set_text(record, value.encode())
         else:
             self.command.doubles[slot >> 3] = encode(info.type, value)
         words[slot + 12 >> 2] = 0 if self.client is None else self.client + 1
@@ -691,8 +697,14 @@ def decode(kind, raw):
     return bool(number) if kind == BOOL else number
 
 
+def need_number(value):
+    if isinstance(value, (str, bytes, bytearray)) or not hasattr(value, "__float__"):
+        raise TypeError(f"a number is expected, not {value!r}")
+
+
 def encode(kind, value):
     """The 64 bits of a value, as an unsigned integer."""
+    need_number(value)
     if kind in (FLOAT, DOUBLE):
         value = float(value)
         if not math.isfinite(value):

@@ -227,6 +227,23 @@ def test_ows_py_is_a_program_too(scene):
     assert run("-x").returncode == 2
 
 
+def test_ows_py_tells_text_from_numbers(scene):
+    daemon = scene.owsd(owsdtest.rio("null:", [
+        dict(Name="relay", Path="/29.000000000002/PIO.BYTE", Type="byte", IO="output"),
+        dict(Name="text", Path="/29.000000000002/text", Type="string", IO="output")]))
+    with ows.Ows(daemon.name, control=True) as signals:
+        for name, value in (("relay", "1"), ("relay", None), ("relay", b"1"), (None, 1),
+                            ("relay_WE", "0"), ("text", 1), ("text", b"x"), ("text", None)):
+            try:
+                signals.set(name, value)
+            except TypeError:
+                continue
+            raise AssertionError(f"{name!r} took {value!r}")
+        assert signals.set("relay", True) == 1
+        assert signals.set("relay", 2.0) == 2
+        assert signals.set("text", "x") == 1
+
+
 def test_both_segments_and_nothing_else_stay_in_shared_memory(scene):
     daemon, config = start(scene)
     assert daemon.stop() == 0
