@@ -96,21 +96,30 @@ static int leave_test_mode(struct txn *txn)
 	return txn_raw(txn, bytes, sizeof(bytes));
 }
 
-static int write_output(struct txn *txn, uint8_t byte)
+/* Each byte is confirmed, and then its effect on the pins told, before the next. */
+int ds2408_put(struct txn *txn, const uint8_t *bytes, unsigned n)
 {
-	uint8_t command[] = {WRITE_OUTPUT, byte, (uint8_t)~byte}, answer[2];
-	int err = txn_command(txn, command, sizeof(command));
+	uint8_t command[] = {WRITE_OUTPUT, 0, 0}, answer[2];
+	int err = 0;
 
-	if (!err)
-		err = txn_read(txn, answer, sizeof(answer));
-	if (err)
-		return err;
-	if (answer[0] == CONFIRMED)
-		return 0;
-	bool silent = txn->silent;
-	err = leave_test_mode(txn);
-	txn->silent = silent;
-	return err ? err : silent ? -EBADMSG : -EIO;
+	txn->device->shadow_known = false;
+	for (unsigned i = 0; i < n; i++) {
+		command[1] = bytes[i];
+		command[2] = (uint8_t)~bytes[i];
+		err = i ? txn_write(txn, command + 1, 2)
+		        : txn_command(txn, command, sizeof(command));
+		if (!err)
+			err = txn_read(txn, answer, sizeof(answer));
+		if (err)
+			return err;
+		if (answer[0] == CONFIRMED)
+			continue;
+		bool silent = txn->silent;
+		err = leave_test_mode(txn);
+		txn->silent = silent;
+		return err ? err : silent ? -EBADMSG : -EIO;
+	}
+	return 0;
 }
 
 static int write_pio(struct txn *txn)
@@ -119,7 +128,7 @@ static int write_pio(struct txn *txn)
 	int err;
 
 	if (txn->phase == 0) {
-		err = write_output(txn, byte);
+		err = ds2408_put(txn, &byte, 1);
 		txn->mem[0] = byte;
 		txn->phase = 1;
 		return err ? err : TXN_MORE;
@@ -215,6 +224,23 @@ static int write_flag(struct txn *txn)
 	if (txn->number[0] != 0)
 		control |= bit;
 	return write_condition(txn, txn->mem[MASK], txn->mem[POLARITY], control);
+}
+
+int ds2408_strobe(struct txn *txn)
+{
+	uint8_t value[REGISTERS];
+
+	if (txn->phase == 0) {
+		int err = registers(txn, value);
+
+		if (err || value[CONTROL] & CONTROL_STROBE)
+			return err;
+		memcpy(txn->mem, value, sizeof(value));
+		txn->phase = 1;
+		return TXN_MORE;
+	}
+	return write_condition(txn, txn->mem[MASK], txn->mem[POLARITY],
+	                       (uint8_t)((txn->mem[CONTROL] & 0x0f) | CONTROL_STROBE));
 }
 
 static int write_test_mode(struct txn *txn)

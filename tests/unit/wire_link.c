@@ -93,6 +93,8 @@ static int wire_write(struct link *link, const uint8_t *data, size_t n, enum lin
 	for (size_t i = 0; i < n; i++)
 		for (int bit = 0; bit < 8; bit++)
 			slot(link, data[i] >> bit & 1);
+	if (wire_net.sent)
+		wire_net.sent(data, n);
 	after_call(link, after);
 	return 0;
 }

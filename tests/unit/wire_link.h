@@ -32,6 +32,7 @@ struct wire_net {
 	unsigned strong_count;
 	int64_t strong_ns; /* how long the last one was on */
 	int64_t strong_begin;
+	void (*sent)(const uint8_t *data, size_t n); /* NULL, or told of each write */
 };
 
 /* One network at a time. */
