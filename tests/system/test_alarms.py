@@ -34,8 +34,7 @@ def freezer(scene, curve, **keys):
 
 
 def test_a_limit_alarm_lives_from_raised_to_acknowledged(scene):
-    daemon = freezer(scene, "steps 0:20 3s:31", LimitH=30, LimitHH=40)
-    assert alarms(scene, daemon) == []
+    daemon = freezer(scene, "steps 0:20 5s:31", LimitH=30, LimitHH=40)
     alarm, = scene.until(lambda: alarms(scene, daemon), 15, "the alarm is raised")
     assert (alarm["name"], alarm["alarm"], alarm["state"]) == ("freezer", "high", "unacknowledged")
     assert alarm["value"] == 31 and alarm["since"] and not alarm["device"]
@@ -49,7 +48,7 @@ def test_a_limit_alarm_lives_from_raised_to_acknowledged(scene):
 
 
 def test_an_alarm_that_returns_waits_to_be_acknowledged(scene):
-    daemon = freezer(scene, "steps 0:20 2s:45 5s:20", LimitH=30, LimitHH=40)
+    daemon = freezer(scene, "steps 0:20 3s:45 9s:20", LimitH=30, LimitHH=40)
     scene.until(lambda: ("high high", "returned") in history(scene, daemon, "freezer"), 20,
                 "the alarm returns")
     assert alarms(scene, daemon)[0]["state"] == "returned to normal unacknowledged"
@@ -67,7 +66,7 @@ def test_a_thermometer_unplugged_is_a_bad_alarm(scene):
 
 def test_alarms_are_waited_for(scene):
     """ows_wait() is woken by an alarm as by a value."""
-    daemon = freezer(scene, "steps 0:20 3s:31", LimitH=30)
+    daemon = freezer(scene, "steps 0:20 5s:31", LimitH=30)
     done = scene.owsctl(daemon, "wait", "freezer", ">", "30", "-t", "15")
     assert done.returncode == 0, done.stderr
     assert history(scene, daemon, "freezer") == [("high", "raised")]
@@ -98,13 +97,13 @@ def is_cleared(scene, daemon, name):
 
 
 def test_the_ds2408_of_the_manual_tells_a_short_press(scene):
-    daemon = example(scene, "buttons", "DS2408 29.000000000001 pin.4 steps 0:1 3s:0 3.02s:1\n",
+    daemon = example(scene, "buttons", "DS2408 29.000000000001 pin.4 steps 0:1 3s:0 3.02s:1 repeat 4s\n",
                      lambda a: int(a["latch"]) == 16 and a["before"] == a["after"])
     is_cleared(scene, daemon, "buttons")
 
 
 def test_the_ds2406_of_the_manual_tells_a_short_press(scene):
-    daemon = example(scene, "doorbell", "DS2406 12.000000000002 pin.A steps 0:1 3s:0 3.02s:1\n",
+    daemon = example(scene, "doorbell", "DS2406 12.000000000002 pin.A steps 0:1 3s:0 3.02s:1 repeat 4s\n",
                      lambda a: a["latch"] == "1" and a["before"] == a["after"])
     is_cleared(scene, daemon, "doorbell")
 
