@@ -18,44 +18,54 @@
 #define COPY_NS (10 * TXN_MS)
 #define CURRENT_NS (28 * TXN_MS) /* 36.41 measurements a second */
 
+static int read_scratchpad(struct txn *txn, unsigned page, uint8_t in[9])
+{
+	uint8_t command[] = {READ_SCRATCHPAD, (uint8_t)page};
+	int err = txn_command(txn, command, sizeof(command));
+
+	return err ? err : txn_read_crc8(txn, in, 9);
+}
+
 int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8])
 {
-	uint8_t recall[] = {RECALL, (uint8_t)page}, read[] = {READ_SCRATCHPAD, (uint8_t)page};
-	uint8_t in[9];
+	uint8_t recall[] = {RECALL, (uint8_t)page}, in[9];
 	int err = txn_command(txn, recall, sizeof(recall));
 
 	if (!err)
-		err = txn_command(txn, read, sizeof(read));
-	if (!err)
-		err = txn_read_crc8(txn, in, sizeof(in));
+		err = read_scratchpad(txn, page, in);
 	if (!err)
 		memcpy(bytes, in, 8);
 	return err;
+}
+
+static int write_scratchpad(struct txn *txn, unsigned page, const uint8_t *bytes, unsigned n)
+{
+	uint8_t command[10] = {WRITE_SCRATCHPAD, (uint8_t)page}, in[9];
+	int err;
+
+	memcpy(command + 2, bytes, n);
+	err = txn_command(txn, command, 2 + n);
+	if (!err)
+		err = read_scratchpad(txn, page, in);
+	if (err)
+		return err;
+	/* The upper half of the status byte is the chip's own. */
+	if (page == 0 ? (in[0] ^ bytes[0]) & 0x0f : memcmp(in, bytes, n) != 0)
+		return -EBADMSG;
+	return 0;
 }
 
 /* Steps 0 to 2 of *step; 0 when the page is written. */
 static int write_page(struct txn *txn, unsigned page, const uint8_t *bytes, unsigned n,
                       uint8_t *step)
 {
-	uint8_t command[10] = {WRITE_SCRATCHPAD, (uint8_t)page}, in[9];
-	uint8_t verify[] = {READ_SCRATCHPAD, (uint8_t)page};
 	uint8_t copy[] = {COPY_SCRATCHPAD, (uint8_t)page};
 	int err;
 
 	switch ((*step)++) {
 	case 0:
-		memcpy(command + 2, bytes, n);
-		err = txn_command(txn, command, 2 + n);
-		if (!err)
-			err = txn_command(txn, verify, sizeof(verify));
-		if (!err)
-			err = txn_read_crc8(txn, in, sizeof(in));
-		if (err)
-			return err;
-		/* The upper half of the status byte is the chip's own. */
-		if (page == 0 ? (in[0] ^ bytes[0]) & 0x0f : memcmp(in, bytes, n) != 0)
-			return -EBADMSG;
-		return TXN_MORE;
+		err = write_scratchpad(txn, page, bytes, n);
+		return err ? err : TXN_MORE;
 	case 1:
 		err = txn_command(txn, copy, sizeof(copy));
 		return err ? err : txn_wait(txn, COPY_NS);
@@ -114,23 +124,34 @@ static int measure_temperature(struct txn *txn, double *value)
 	return err;
 }
 
+/*
+ * The scratchpad's configuration is the one in force. The memory keeps what it has, which spares
+ * its EEPROM, and the recall behind the conversion puts it in force again.
+ */
 static int measure_voltage(struct txn *txn, uint8_t select, double *value)
 {
-	uint8_t bytes[8];
+	uint8_t bytes[9];
 	int err;
 
 	switch (txn->phase % DS2438_STEPS) {
 	case 0:
-		err = configure(txn, DS2438_AD, select, NULL);
-		txn->phase += err == 0;
-		return err < 0 ? err : TXN_MORE;
+		err = ds2438_read(txn, 0, bytes);
+		txn->mem[1] = (bytes[0] & 0x0f) ^ DS2438_AD;
+		txn->phase += !err && (bytes[0] & DS2438_AD) == select ? 2 : 1;
+		return err ? err : TXN_MORE;
 	case 1:
+		err = write_scratchpad(txn, 0, &txn->mem[1], 1);
+		txn->phase++;
+		return err ? err : TXN_MORE;
+	case 2:
 		txn->phase++;
 		return convert(txn, CONVERT_V);
 	default:
-		err = ds2438_read(txn, 0, bytes);
+		err = read_scratchpad(txn, 0, bytes);
 		if (!err && (bytes[0] & DS2438_AD) != select)
 			err = -EIO;
+		if (!err)
+			err = ds2438_read(txn, 0, bytes);
 		*value = (word(bytes + 3) & 0x3ff) / 100.0;
 		return err;
 	}
@@ -164,7 +185,7 @@ static int measure_current(struct txn *txn, double *value)
 
 int ds2438_measure(struct txn *txn, unsigned what)
 {
-	static const unsigned order[] = {DS2438_TEMPERATURE, DS2438_VDD, DS2438_VAD, DS2438_VIS};
+	static const unsigned order[] = {DS2438_TEMPERATURE, DS2438_VAD, DS2438_VDD, DS2438_VIS};
 	unsigned stage = txn->phase / DS2438_STEPS;
 	int err;
 

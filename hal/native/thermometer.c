@@ -10,6 +10,8 @@
 #define COPY_NS (10 * TXN_MS)
 #define READ_TRIM_1 0x93
 #define READ_TRIM_2 0x68
+#define TRIM_BLANKET 0x9d
+#define TRIM_SECOND 0xbb
 
 #define RAW_POWER_ON 0x0550
 #define RAW_BROKEN 0x07f8 /* 127.5 and above: no chip measures that */
@@ -290,7 +292,8 @@ int thermometer_read_die(struct txn *txn)
 	return 0;
 }
 
-int thermometer_read_trim(struct txn *txn)
+/* The two bytes of the factory's trim; a chip that does not know the commands leaves ones. */
+static int read_trim(struct txn *txn)
 {
 	static const uint8_t commands[] = {READ_TRIM_1, READ_TRIM_2};
 	int err = txn_command(txn, &commands[txn->phase], 1);
@@ -300,8 +303,15 @@ int thermometer_read_trim(struct txn *txn)
 	txn->silent = false;
 	if (err || txn->phase++ == 0)
 		return err ? err : TXN_MORE;
-	txn->number[0] = txn->mem[0] | txn->mem[1] << 8;
 	return 0;
+}
+
+int thermometer_read_trim(struct txn *txn)
+{
+	int err = read_trim(txn);
+
+	txn->number[0] = txn->mem[0] | txn->mem[1] << 8;
+	return err;
 }
 
 /* Only the B7 die has a trim value to repair. */
@@ -313,12 +323,16 @@ int thermometer_refuse_trim(struct txn *txn)
 
 int thermometer_read_trim_valid(struct txn *txn)
 {
-	txn->number[0] = 1;
-	return 0;
+	int err = read_trim(txn), low = txn->mem[0] & 7;
+
+	txn->number[0] = (low == 3 || low == 5) && txn->mem[1] == TRIM_SECOND;
+	return err;
 }
 
 int thermometer_read_trim_blanket(struct txn *txn)
 {
-	txn->number[0] = 0;
-	return 0;
+	int err = read_trim(txn);
+
+	txn->number[0] = txn->mem[0] == TRIM_BLANKET && txn->mem[1] == TRIM_SECOND;
+	return err;
 }

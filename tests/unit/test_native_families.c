@@ -179,12 +179,25 @@ static void test_a_ds18s20_resolves_sixteenths(void)
 	}
 }
 
+static void test_a_trim_that_no_chip_told_is_not_valid(void)
+{
+	start("DS18S20");
+	reads("errata/trim", "       65535");
+	reads("errata/trimvalid", "0");
+	reads("errata/trimblanket", "0");
+}
+
 static void test_a_ds2438_measures_and_keeps_time(void)
 {
 	start("DS2438");
 	reads("VDD", "           5");
 	reads("VAD", "           0");
 	reads("temperature", "          20");
+	TEST_ASSERT_EQUAL_UINT(8, go(BUS_READ, "pages/page.0", NULL)->len);
+	TEST_ASSERT_EQUAL_HEX8_MESSAGE(0x0f, data[0], "the stored configuration is as it was");
+	reads("MultiSensor/type", "MS-T");
+	reads("B1-R1-A/gain", "     21.7391");
+	reads("S3-R1-A/gain", "     105.263");
 	writes("udate", "1000000000");
 	const struct bus_answer *answer = go(BUS_READ, "udate", NULL);
 	TEST_ASSERT_EQUAL_INT(0, answer->err);
@@ -366,6 +379,7 @@ int main(void)
 	RUN_TEST(test_a_ds28ea00_measures_and_switches);
 	RUN_TEST(test_a_ds1825_has_its_place);
 	RUN_TEST(test_a_ds18s20_resolves_sixteenths);
+	RUN_TEST(test_a_trim_that_no_chip_told_is_not_valid);
 	RUN_TEST(test_a_ds2438_measures_and_keeps_time);
 	RUN_TEST(test_sensors_on_a_ds2438_say_what_owserver_says);
 	RUN_TEST(test_a_ds2405_is_not_turned_over_by_looking);
