@@ -88,7 +88,13 @@ struct link_master_ops {
 	int (*open)(struct link_master *master, char *why, size_t why_size);
 	/* At the first lasting error, or the kernel cannot finish an unplugging. */
 	void (*close)(struct link_master *master);
-	unsigned (*channels)(struct link_master *master); /* known after open() */
+	/*
+	 * Optional. Take chips that belong here and could not be taken at open(): their channels come
+	 * behind those that are there. 1: some are still missing, why names one; 0: none is. -ENODEV,
+	 * -ECANCELED.
+	 */
+	int (*grow)(struct link_master *master, char *why, size_t why_size);
+	unsigned (*channels)(struct link_master *master); /* known after open() and grow() */
 	struct link *(*channel)(struct link_master *master, unsigned n);
 	void (*destroy)(struct link_master *master);
 	bool simulated; /* its devices are not real: answers say BUS_DETAIL_SIMULATED */

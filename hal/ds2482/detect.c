@@ -29,17 +29,22 @@ static int device_reset(struct ds2482_chip *chip)
 	return ds2482_read1(chip);
 }
 
-/* After a 1-Wire reset: first busy perhaps, then idle, and never the bits of other commands. */
+/*
+ * After a 1-Wire reset: first busy perhaps, then idle, and never the bits of other commands. Only a
+ * status that was read after the deadline tells that it stays busy: we may not have run meanwhile.
+ */
 static int prove(struct ds2482_chip *chip)
 {
-	int64_t until = ds2482_now(chip->master) + BUSY_NS;
 	int status = ds2482_write1(chip, DS2482_RESET);
+	int64_t until = ds2482_now(chip->master) + BUSY_NS;
+	bool late;
 
 	if (status)
 		return status;
 	do {
 		int err;
 
+		late = ds2482_now(chip->master) >= until;
 		status = ds2482_read1(chip);
 		if (status < 0)
 			return status;
@@ -50,7 +55,7 @@ static int prove(struct ds2482_chip *chip)
 		err = ds2482_wait_until(chip->master, ds2482_now(chip->master) + SETTLE_NS / 4);
 		if (err)
 			return err;
-	} while (ds2482_now(chip->master) < until);
+	} while (!late);
 	return -ETIMEDOUT;
 }
 

@@ -60,6 +60,10 @@ struct ds2482_master {
 	int64_t byte_ns; /* shortest time of one I2C byte, measured; 0 unknown */
 	unsigned count;
 	struct ds2482_chip chip[DS2482_ADDRESSES];
+	/* The addresses where chips were taken, ever, in that order; and those now missing. */
+	unsigned known;
+	uint8_t order[DS2482_ADDRESSES];
+	bool missing[DS2482_ADDRESSES];
 	/* The cost before the adapter was opened again. */
 	uint64_t transfers, bytes, syscalls;
 };
@@ -73,6 +77,7 @@ int ds2482_create(const struct link_master_ops *ops, const struct bus_env *env,
                   struct link_master **master, char *why, size_t why_size);
 /* The slots of link_master_ops but create. */
 int ds2482_open(struct link_master *master, char *why, size_t why_size);
+int ds2482_grow(struct link_master *master, char *why, size_t why_size);
 void ds2482_close(struct link_master *master);
 unsigned ds2482_channels(struct link_master *master);
 struct link *ds2482_channel(struct link_master *master, unsigned n);

@@ -71,6 +71,7 @@ const struct link_master_ops ds2482_i2c_master = {
 	.summary = "DS2482-100, -101, -800, DS2483, DS2484 on an I2C adapter",
 	.create = create,
 	.open = ds2482_open,
+	.grow = ds2482_grow,
 	.close = ds2482_close,
 	.channels = ds2482_channels,
 	.channel = ds2482_channel,

@@ -152,15 +152,48 @@ static int take_chip(struct ds2482_master *master, uint8_t address)
 	return 0;
 }
 
+static bool is_known(const struct ds2482_master *master, uint8_t address)
+{
+	return memchr(master->order, address, master->known) != NULL;
+}
+
+static bool ends_all(int err)
+{
+	return err == -ENODEV || err == -ECANCELED;
+}
+
+/*
+ * As take_chip(), and notes what is missing: a chip that was here once, or one that did not fail as
+ * an address without a chip does.
+ */
+static int try_chip(struct ds2482_master *master, uint8_t address)
+{
+	int err = take_chip(master, address);
+
+	if (ends_all(err))
+		return err;
+	if (!err && !is_known(master, address))
+		master->order[master->known++] = address;
+	master->missing[address - DS2482_FIRST_ADDRESS] =
+		err && (is_known(master, address) || (err != -ENXIO && err != -EIO));
+	return err;
+}
+
+/* Known ones first and in their order: an adapter opened again has its channels where they were. */
 static int take_all(struct ds2482_master *master, char *why, size_t why_size)
 {
 	int worst = -ENXIO, at = -1;
+	unsigned known = master->known;
 
-	for (int i = 0; i < DS2482_ADDRESSES; i++) {
-		int address = DS2482_FIRST_ADDRESS + i;
-		int err = take_chip(master, (uint8_t)address);
+	for (unsigned i = 0; i < known + DS2482_ADDRESSES; i++) {
+		uint8_t address = i < known ? master->order[i]
+		                            : (uint8_t)(DS2482_FIRST_ADDRESS + i - known);
+		int err;
 
-		if (err == -ENODEV || err == -ECANCELED) {
+		if (i >= known && memchr(master->order, address, known))
+			continue;
+		err = try_chip(master, address);
+		if (ends_all(err)) {
 			explain(master, err, address, why, why_size);
 			return err;
 		}
@@ -173,6 +206,29 @@ static int take_all(struct ds2482_master *master, char *why, size_t why_size)
 		return 0;
 	explain(master, worst, at, why, why_size);
 	return worst;
+}
+
+int ds2482_grow(struct link_master *base, char *why, size_t why_size)
+{
+	struct ds2482_master *master = (struct ds2482_master *)base;
+	int64_t byte_ns = master->byte_ns;
+	int left = 0;
+
+	for (int i = 0; master->address < 0 && i < DS2482_ADDRESSES; i++) {
+		int address = DS2482_FIRST_ADDRESS + i, err;
+
+		if (!master->missing[i])
+			continue;
+		err = try_chip(master, (uint8_t)address);
+		if (!err)
+			continue;
+		master->byte_ns = byte_ns;
+		explain(master, err, address, why, why_size);
+		if (ends_all(err))
+			return err;
+		left = 1;
+	}
+	return left;
 }
 
 int ds2482_open(struct link_master *base, char *why, size_t why_size)

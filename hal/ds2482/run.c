@@ -39,19 +39,22 @@ static int transfer(struct ds2482_chip *chip, struct i2c_message *messages, size
 	return adapter->ops->transfer(adapter, chip->address, messages, n);
 }
 
+/* Only a status that was read after the deadline tells: we may not have run meanwhile. */
 static int wait_idle(struct ds2482_chip *chip, int status)
 {
 	struct ds2482_master *master = chip->master;
 	int64_t stuck = ds2482_now(master) + STUCK_NS;
+	bool late = false;
 
 	while (status >= 0 && (status & DS2482_1WB)) {
 		int err;
 
-		if (ds2482_now(master) >= stuck)
+		if (late)
 			return -ETIMEDOUT;
 		err = ds2482_wait_until(master, ds2482_now(master) + POLL_NS);
 		if (err)
 			return err;
+		late = ds2482_now(master) >= stuck;
 		status = ds2482_read1(chip);
 	}
 	return status;

@@ -7,13 +7,15 @@
 
 #define PAUSE_MIN_NS (NATIVE_S / 5)
 #define PAUSE_MAX_NS (5 * NATIVE_S)
+#define GROW_NS (10 * NATIVE_S)
 
-static void take_channels(struct native *native)
+/* From the first on; those before are known. */
+static void take_channels(struct native *native, unsigned first)
 {
 	native->channels = native->master->ops->channels(native->master);
 	if (native->channels > NATIVE_CHANNELS)
 		native->channels = NATIVE_CHANNELS;
-	for (unsigned i = 0; i < native->channels; i++) {
+	for (unsigned i = first; i < native->channels; i++) {
 		struct channel *channel = &native->channel[i];
 		struct channel fresh = {.link = native->master->ops->channel(native->master, i),
 		                        .round = channel->round,
@@ -23,8 +25,43 @@ static void take_channels(struct native *native)
 		                        .transactions = channel->transactions};
 		*channel = fresh;
 	}
+}
+
+static void take_all_channels(struct native *native)
+{
+	take_channels(native, 0);
 	memset(native->hold_ns, 0, sizeof(native->hold_ns));
 	memset(native->holder, 0, sizeof(native->holder));
+	native->grow_ns = native->master->ops->grow ? native_now(native) : INT64_MAX;
+	native->grow_told = false;
+	/* A chip that is missing now has taken its channels with it. */
+	for (unsigned i = 0; i < native->table.count; i++)
+		if (native->table.devices[i].channel >= native->channels)
+			hunt_lost(native, &native->table.devices[i]);
+}
+
+void master_grow(struct native *native, int64_t now, int64_t *next)
+{
+	unsigned before = native->channels;
+	char why[100] = "";
+
+	if (now >= native->grow_ns) {
+		int left = native->master->ops->grow(native->master, why, sizeof(why));
+
+		if (left < 0) {
+			master_down(native, left, why);
+			return;
+		}
+		native->grow_ns = left ? native_now(native) + GROW_NS : INT64_MAX;
+		take_channels(native, before);
+		for (unsigned n = before; n < native->channels; n++)
+			native->channel[n].search_ns = now;
+		if (left && !native->grow_told)
+			native_event(native, BUS_NOTE, NULL, -ENXIO, why);
+		native->grow_told = left;
+	}
+	if (native->grow_ns < *next)
+		*next = native->grow_ns;
 }
 
 int64_t master_step(struct native *native, int64_t now)
@@ -48,7 +85,7 @@ int64_t master_step(struct native *native, int64_t now)
 	native->told = false;
 	native->up = true;
 	native->up_ns = native_now(native);
-	take_channels(native);
+	take_all_channels(native);
 	for (unsigned i = 0; i < native->table.count; i++)
 		device_forget(&native->table.devices[i]);
 	hunt_reset(native, native->up_ns);
@@ -94,7 +131,7 @@ static bool reopen(struct native *native)
 		master_down(native, err, why);
 		return false;
 	}
-	take_channels(native);
+	take_all_channels(native);
 	hunt_reset(native, native_now(native));
 	return true;
 }

@@ -247,6 +247,9 @@ static int64_t step(struct native *native, int64_t now)
 {
 	int64_t next = INT64_MAX;
 
+	master_grow(native, now, &next);
+	if (!native->up)
+		return now;
 	expire(native, now, &next);
 	struct job *job = hunt_initial(native) ? NULL : pick(native, now, &next);
 

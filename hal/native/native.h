@@ -156,6 +156,8 @@ struct native {
 	int64_t open_ns;  /* next try to open */
 	int64_t pause_ns; /* between tries */
 	int64_t up_ns;
+	int64_t grow_ns; /* next look for chips that were missing; INT64_MAX: none was */
+	bool grow_told;
 	uint32_t order;
 	struct device_table table;
 	struct cache cache;
@@ -207,6 +209,8 @@ void master_down(struct native *native, int err, const char *why);
 /* After a link's error: one rung. False: the target is down now. */
 bool master_recover(struct native *native, unsigned channel, int err);
 void master_good(struct native *native, unsigned channel);
+/* Now and then: take chips that were missing. *next as elsewhere. */
+void master_grow(struct native *native, int64_t now, int64_t *next);
 
 /* resolve.c: fills the job from its path. 0 or the error to answer. */
 int resolve(struct native *native, struct job *job);

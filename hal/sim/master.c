@@ -87,6 +87,7 @@ const struct link_master_ops sim_master = {
 	.summary = "a simulated DS2482 with its devices, from a scenario file",
 	.create = create,
 	.open = ds2482_open,
+	.grow = ds2482_grow,
 	.close = ds2482_close,
 	.channels = ds2482_channels,
 	.channel = ds2482_channel,

@@ -54,6 +54,7 @@ static void forget(void *ctx)
 static const struct link_master_ops ops = {
 	.scheme = "test",
 	.open = ds2482_open,
+	.grow = ds2482_grow,
 	.close = ds2482_close,
 	.channels = ds2482_channels,
 	.channel = ds2482_channel,
@@ -449,6 +450,62 @@ static void test_a_stuck_chip_is_an_error_in_time_and_a_reset_frees_it(void)
 	}
 }
 
+/* Now and then the process does not run for longer than any operation takes. */
+static int (*wait_in_time)(void *ctx, int fd, short events, int64_t until_ns);
+static uint32_t gaps;
+
+static int wait_with_gaps(void *ctx, int fd, short events, int64_t until_ns)
+{
+	int ret = wait_in_time(ctx, fd, events, until_ns);
+
+	gaps = gaps * 1664525 + 1013904223;
+	if ((gaps >> 16) % 4 == 0)
+		host.now += 40 * HOST_MS;
+	return ret;
+}
+
+static void test_a_process_that_was_not_scheduled_takes_no_chip_for_stuck(void)
+{
+	for (unsigned i = 0; i < KINDS; i++) {
+		for (uint32_t seed = 1; seed <= 20; seed++) {
+			char text[40];
+
+			host_init_virtual(&host);
+			wait_in_time = host.env.wait;
+			host.env.wait = wait_with_gaps;
+			gaps = seed;
+			snprintf(text, sizeof(text), "kind %u, seed %u", i, seed);
+			TEST_ASSERT_EQUAL_INT_MESSAGE(0, try_open(kinds[i], ""), text);
+			wire = master->ops->channel(master, 0);
+			for (unsigned n = 0; n < 5; n++)
+				TEST_ASSERT_EQUAL_INT_MESSAGE(1, wire->ops->reset(wire), text);
+			tearDown();
+		}
+	}
+}
+
+static void test_a_missing_chip_is_taken_when_it_is_there_again(void)
+{
+	start("chip DS2482-800 0x18\nchannel 5\nDS2401 01.000000000001\n"
+	      "chip DS2482-100 0x1c\nDS18B20 28.000000000001 as t");
+	TEST_ASSERT_EQUAL_UINT(9, master->ops->channels(master));
+	TEST_ASSERT_EQUAL_INT(0, master->ops->grow(master, why, sizeof(why)));
+	event("refuse 0x18");
+	master->ops->close(master);
+	TEST_ASSERT_EQUAL_INT(0, master->ops->open(master, why, sizeof(why)));
+	TEST_ASSERT_EQUAL_UINT(1, master->ops->channels(master));
+	TEST_ASSERT_EQUAL_INT(1, master->ops->grow(master, why, sizeof(why)));
+	TEST_ASSERT_NOT_NULL(strstr(why, "0x18"));
+	wire = master->ops->channel(master, 0);
+	check_scratchpad();
+	event("end refuse 0x18");
+	TEST_ASSERT_EQUAL_INT(0, master->ops->grow(master, why, sizeof(why)));
+	TEST_ASSERT_EQUAL_UINT(9, master->ops->channels(master));
+	check_scratchpad();
+	wire = master->ops->channel(master, 6);
+	TEST_ASSERT_EQUAL_INT(1, wire->ops->reset(wire));
+}
+
 static void test_a_refused_call_is_an_error_and_the_next_one_works(void)
 {
 	for (unsigned i = 0; i < 6; i++) {
@@ -670,6 +727,8 @@ int main(void)
 	RUN_TEST(test_a_chip_of_another_process_is_left_alone_and_said);
 	RUN_TEST(test_a_chip_that_restarted_is_noticed_and_set_up_again);
 	RUN_TEST(test_a_stuck_chip_is_an_error_in_time_and_a_reset_frees_it);
+	RUN_TEST(test_a_process_that_was_not_scheduled_takes_no_chip_for_stuck);
+	RUN_TEST(test_a_missing_chip_is_taken_when_it_is_there_again);
 	RUN_TEST(test_a_refused_call_is_an_error_and_the_next_one_works);
 	RUN_TEST(test_an_adapter_that_is_gone_comes_back_by_opening_it_again);
 	RUN_TEST(test_only_a_part_with_a_supply_switch_cycles_the_power);

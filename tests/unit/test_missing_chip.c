@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: MIT */
+/* The native bus on an adapter with two chips, one of which is late. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "tests/unit/host.h"
+#include "unity.h"
+
+static struct host host;
+static struct bus *bus;
+static char file[] = "/tmp/owsd-test-XXXXXX";
+
+/* Gone after 20 s; when it is back, the first chip does not answer for a while. */
+static const char scenario[] = "chip DS2482-800 0x18\n"
+			       "channel 5\n"
+			       "DS18B20 28.A0B1C2000028 temperature 20\n"
+			       "chip DS2482-100 0x1c\n"
+			       "DS18B20 28.A0B1C2010028 temperature 30\n"
+			       "at 20s remove adapter for 1s\n"
+			       "at 20.5s refuse 0x18 for 15s\n";
+
+void setUp(void)
+{
+	char target[64];
+	int fd = mkstemp(file);
+
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, fd);
+	TEST_ASSERT_EQUAL_INT(sizeof(scenario) - 1, write(fd, scenario, sizeof(scenario) - 1));
+	close(fd);
+	host_init_virtual(&host);
+	snprintf(target, sizeof(target), "sim:%s", file);
+	bus = host_bus(&host, target);
+}
+
+void tearDown(void)
+{
+	bus_destroy(bus);
+	unlink(file);
+}
+
+static int ask(const char *path, char *text, uint32_t room)
+{
+	struct bus_req req = {.id = 1, .op = BUS_READ, .prio = BUS_OUTPUT, .fresh = true,
+	                      .path = path, .data = (uint8_t *)text, .len = room - 1,
+	                      .deadline_ns = host.now + 5 * HOST_S};
+
+	host.answers = 0;
+	TEST_ASSERT_EQUAL_INT(0, bus_submit(bus, &req));
+	TEST_ASSERT_TRUE(host_run_answers(&host, bus, 1, host.now + 6 * HOST_S));
+	text[host.answer[0].err ? 0 : host.answer[0].len] = '\0';
+	return host.answer[0].err;
+}
+
+static void test_a_late_chip_comes_back_without_the_other_going(void)
+{
+	char text[64];
+	unsigned downs, ups;
+
+	host_run(&host, bus, host.now + 5 * HOST_S);
+	TEST_ASSERT_EQUAL_INT(0, ask("/28.A0B1C2000028/temperature", text, sizeof(text)));
+	TEST_ASSERT_EQUAL_STRING("          20", text);
+	host_run(&host, bus, host.now + 20 * HOST_S);
+	TEST_ASSERT_EQUAL_INT(0, ask("/28.A0B1C2010028/temperature", text, sizeof(text)));
+	TEST_ASSERT_LESS_THAN_INT(0, ask("/28.A0B1C2000028/temperature", text, sizeof(text)));
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_NOTE));
+	for (unsigned i = 0; i < host.events; i++)
+		if (host.event[i].news == BUS_NOTE)
+			TEST_ASSERT_NOT_NULL(strstr(host.event[i].text, "0x18"));
+	downs = host_events(&host, BUS_DOWN);
+	ups = host_events(&host, BUS_UP);
+	host_run(&host, bus, host.now + 30 * HOST_S);
+	TEST_ASSERT_EQUAL_INT(0, ask("/28.A0B1C2000028/temperature", text, sizeof(text)));
+	TEST_ASSERT_EQUAL_STRING("          20", text);
+	TEST_ASSERT_EQUAL_INT(0, ask("/28.A0B1C2010028/temperature", text, sizeof(text)));
+	TEST_ASSERT_EQUAL_STRING("          30", text);
+	TEST_ASSERT_EQUAL_UINT(downs, host_events(&host, BUS_DOWN));
+	TEST_ASSERT_EQUAL_UINT(ups, host_events(&host, BUS_UP));
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_late_chip_comes_back_without_the_other_going);
+	return UNITY_END();
+}
