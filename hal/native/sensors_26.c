@@ -6,7 +6,7 @@
 #include <string.h>
 
 /*
- * The Hobby Boards' settings stand in page 3, 16 bits each. Not set: 46 mV/mbar and 904.7 mbar, and
+ * The Hobby Boards' settings stand in page 3, 16 bits each. 0 is not set: 46 mV/mbar and 904.7 mbar, and
  * a SFH203P of 9.5 nA/lx.
  */
 #define SETTING_PAGE 3
@@ -14,11 +14,12 @@
 
 static const struct {
 	uint8_t at;
+	bool is_signed;
 	double unit, standard;
 } settings[] = {
-	[S3_GAIN] = {2, 0.1, 1 / 0.0095},
-	[B1_GAIN] = {4, 0.001, 1 / 0.046},
-	[B1_OFFSET] = {6, 0.05, 904.7},
+	[S3_GAIN] = {2, false, 0.1, 1 / 0.0095},
+	[B1_GAIN] = {4, false, 0.001, 1 / 0.046},
+	[B1_OFFSET] = {6, true, 0.05, 904.7},
 };
 
 /* HIH3600 stands for the HIH-3610 with 0.8 V at 0 %RH whatever the supply; the others follow it. */
@@ -58,8 +59,9 @@ static double setting(const uint8_t page[8], int which)
 {
 	unsigned raw = page[settings[which].at] | (unsigned)page[settings[which].at + 1] << 8;
 
-	return raw == 0 || raw == 0xffff ? settings[which].standard
-	                                 : (int16_t)raw * settings[which].unit;
+	if (raw == 0)
+		return settings[which].standard;
+	return (settings[which].is_signed ? (int16_t)raw : (int)raw) * settings[which].unit;
 }
 
 int sensor_read_setting(struct txn *txn)
@@ -77,7 +79,7 @@ int sensor_write_setting(struct txn *txn)
 	int which = txn->property->arg;
 	double scaled = txn->number[0] / settings[which].unit;
 
-	if (!(scaled > -32768 && scaled < 32767))
+	if (!(scaled > (settings[which].is_signed ? -32768.5 : -0.5) && scaled < 32767.5))
 		return -EINVAL;
 	int16_t raw = (int16_t)(scaled < 0 ? scaled - 0.5 : scaled + 0.5);
 	uint8_t bytes[] = {(uint8_t)raw, (uint8_t)((uint16_t)raw >> 8)};

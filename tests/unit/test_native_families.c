@@ -245,6 +245,12 @@ static void test_sensors_on_a_ds2438_say_what_owserver_says(void)
 	reads("S3-R1-A/illuminance", "      228.39");
 	wire_set(slave, "vsens", -3);
 	reads("S3-R1-A/illuminance", "           1");
+	writes("pages/page.3", "\x01\x01\xff\xff\xff\xff\xff\xff");
+	reads("S3-R1-A/gain", "      6553.5");
+	reads("B1-R1-A/gain", "      65.535");
+	reads("B1-R1-A/offset", "       -0.05");
+	refuses(-EINVAL, BUS_WRITE, "S3-R1-A/gain", "3277");
+	refuses(-EINVAL, BUS_WRITE, "B1-R1-A/gain", "-1");
 	writes("pages/page.3", "\x1f");
 	reads("MultiSensor/type", "unknown");
 }
