@@ -64,7 +64,7 @@ static void measure(struct sim_slave *slave, unsigned channel, int64_t t)
 {
 	struct ds2450 *s = state(slave);
 	uint8_t *control = &s->memory[CONTROL + 2 * channel], *limit = &s->memory[LIMITS + 2 * channel];
-	double range = control[1] & IR ? 5.1 : 2.55;
+	double range = control[1] & IR ? 5.12 : 2.56;
 	double part = floor(sim_input_at(slave, channel, t) / range * 65536);
 	unsigned raw = part < 0 ? 0 : part > 65535 ? 65535 : (unsigned)part;
 

@@ -172,10 +172,10 @@ static void test_a_ds2450_starts_as_its_memory_map_says(void)
 static void test_a_ds2450_converts_in_range_and_resolution(void)
 {
 	slave = hand_plug(&hand, &sim_ds2450, 1);
-	slave->input[1] = sim_constant(1.275);
-	slave->input[2] = sim_constant(1.275);
+	slave->input[1] = sim_constant(1.28);
+	slave->input[2] = sim_constant(1.28);
 	write_byte(0x0A, 0x00); /* B: 16 bits */
-	write_byte(0x0D, 0x01); /* C: 8 bits of 5.10 V */
+	write_byte(0x0D, 0x01); /* C: 8 bits of 5.12 V */
 	convert(0x06);
 	read_page(0);
 	TEST_ASSERT_EQUAL_HEX16(0, out[3] | out[4] << 8);
