@@ -32,7 +32,7 @@ kernel-programs: all $(RIG_OURS)
 rig = tests/kernel/boot --time $(KERNEL_TIME) $(RIG_OURS:%=--program %) $(RIG_PEERS:%=--program %) \
           $(RIG_GUEST:%=--file %) $(1)
 
-test-kernel: SUITES ?= detect kernel owserver faults
+test-kernel: SUITES ?= detect kernel owserver faults daemon
 test-kernel:
 	@sh board/install-deps build kernel
 	@$(MAKE) --no-print-directory kernel-programs
