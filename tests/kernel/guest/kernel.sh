@@ -58,7 +58,7 @@ for master in $W1/w1_bus_master*; do
 	echo 0 >$master/w1_master_search
 done
 same "and each channel's devices" $all "$(ls $W1 | grep -c '^[0-9a-f]*-')"
-for master in 2:1 5:2 7:4 9:1 3:0; do
+for master in 2:1 3:2 4:2 5:2 6:3 7:4 8:0 9:1; do
 	same "channel $((${master%:*} - 2)) has its own" ${master#*:} \
 		"$(cat $W1/w1_bus_master${master%:*}/w1_master_slave_count)"
 done
@@ -103,6 +103,44 @@ device=$(name 3A 00)
 same "w1_ds2413 reads pins and latches" b "$(hex $device/state | cut -c 2)"
 does "w1_ds2413 writes the outputs" put $device/output 376
 same "and the pin follows" 8 "$(hex $device/state | cut -c 2)"
+
+device=$(name 12 00)
+same "w1_ds2406 reads the outputs" 33 "$(hex $device/state)"
+does "w1_ds2406 writes the outputs" put $device/output 062
+same "and reads them back" 32 "$(hex $device/state)"
+device=$(name 05 00)
+same "w1_ds2405 reads the output" 1 "$(text $device/output)"
+same "w1_ds2405 reads the pin" 1 "$(text $device/state)"
+printf 0 >$W1/$device/output
+same "w1_ds2405 switches the output" 0 "$(text $device/output)"
+same "and the pin follows" 0 "$(text $device/state)"
+
+# Counters: the kernel reads four pages, the last two count
+device=$(name 1D 00)
+same "w1_ds2423 reads the counters" "1234 70000 " \
+	"$(text $device/w1_slave | sed -n 's/.*crc=YES c=//p' | tail -n 2 | tr '\n' ' ')"
+for edge in 0 1 0 1 0; do
+	sim set meter pin.A $edge
+done
+same "and counts falling edges" 1237 \
+	"$(text $device/w1_slave | sed -n 's/.*crc=YES c=//p' | tail -n 2 | head -n 1)"
+
+# Memory: whole size, text that house.sim put there, eight bytes written and read back
+for line in 2D:128:32:48656c6c6f 23:512:480:6c617374 14:32:8:3a2d29; do
+	IFS=: read -r family size at bytes <<-END
+		$line
+	END
+	device=$(name $family 00)
+	if [ ! -e $W1/$device/eeprom ]; then
+		skip "the kernel reads all of $device" "this kernel has no driver for it"
+		continue
+	fi
+	same "the kernel reads all of $device" $size "$(cat $W1/$device/eeprom | wc -c)"
+	same "and what is at $at" $bytes \
+		"$(hex $device/eeprom | cut -c $((2 * at + 1))-$((2 * at + ${#bytes})))"
+	printf 'new text' | dd of=$W1/$device/eeprom bs=8 seek=2 conv=notrunc 2>/dev/null
+	same "it writes to $device" 6e65772074657874 "$(hex $device/eeprom | cut -c 33-48)"
+done
 
 # DS2438: hundredths of a volt, 1/256 degrees
 device=$(name 26 00)
