@@ -6,8 +6,8 @@
 #include <string.h>
 
 /*
- * The Hobby Boards' settings stand in page 3, 16 bits each. 0 is not set: 46 mV/mbar and 904.7 mbar, and
- * a SFH203P of 9.5 nA/lx.
+ * The Hobby Boards' settings stand in page 3, 16 bits each. 0 is not set: 46 mV/mbar and 904.7
+ * mbar, and a SFH203P of 9.5 nA/lx.
  */
 #define SETTING_PAGE 3
 #define SHUNT_OHM 390.0
