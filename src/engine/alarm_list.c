@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: MIT */
+/* The list of devices in alarm. */
+#include "alarm_known.h"
+
+#include "hal/path.h"
+#include "private.h"
+
+#include <errno.h>
+#include <string.h>
+
+#define LIST_WAIT_MAX 60000000000LL
+
+static void mark_listed(struct alarm_machine *m, struct lane *lane, const char *entry, size_t len)
+{
+	struct engine *e = lane->engine;
+	struct path path;
+	bool ours = false;
+
+	if (path_split(entry, len, &path) || !path.device.len)
+		return;
+	for (uint32_t k = 0; k < m->count; k++) {
+		const struct device *d = &e->table.devices[m->items[k].device];
+		struct path own;
+
+		if (path.has_rom && d->has_rom) {
+			if (memcmp(path.rom, d->rom, sizeof(d->rom)))
+				continue;
+		} else {
+			const char *text = m->items[k].strings.path;
+
+			if (path_split(text, strlen(text), &own) ||
+			    !path_same_device(&path, &own))
+				continue;
+		}
+		m->items[k].listed = ours = true;
+	}
+	if (ours || !path.has_rom)
+		return;
+	for (unsigned k = 0; k < m->strangers; k++)
+		if (memcmp(m->stranger[k], path.rom, 8) == 0)
+			return;
+	if (m->strangers == sizeof(m->stranger) / sizeof(m->stranger[0]))
+		return;
+	memcpy(m->stranger[m->strangers++], path.rom, 8);
+	log_info(e->log, "%s: %.*s is in alarm and has no alarm item", lane->port->target, (int)len,
+	         entry);
+}
+
+void alarm_take_list(struct alarm_machine *m, struct lane *lane, const char *list, size_t len,
+                      int64_t now_ns)
+{
+	m->cycle++;
+	lane->counters.alarm_lists++;
+	m->wait_ns = 0;
+	for (uint32_t k = 0; k < m->count; k++)
+		m->items[k].listed = false;
+	while (len) {
+		const char *end = memchr(list, '\n', len);
+		size_t n = end ? (size_t)(end - list) : len;
+
+		mark_listed(m, lane, list, n);
+		if (!end)
+			break;
+		len -= n + 1;
+		list = end + 1;
+	}
+	for (uint32_t k = 0; k < m->count; k++)
+		if (!m->items[k].listed && m->items[k].stands)
+			engine_alarm_ended(lane->engine, &m->items[k], now_ns);
+}
+
+void alarm_list_failed(struct alarm_machine *m, struct lane *lane, int err, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+
+	if (err == -EOPNOTSUPP) {
+		log_notice(e->log, "%s: no alarm search: alarm items are read as ordinary inputs",
+		           lane->port->target);
+		m->polls = true;
+		m->state = NOT_USED;
+		engine_alarm_polls(e, m);
+		return;
+	}
+	m->wait_ns = m->wait_ns ? m->wait_ns * 2 : e->config->alarm_period_ns;
+	if (m->wait_ns > LIST_WAIT_MAX)
+		m->wait_ns = LIST_WAIT_MAX;
+	m->list_ns = now_ns + m->wait_ns;
+	m->position = -1;
+}

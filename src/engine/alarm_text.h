@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+/* Texts of latches, flags and alarm conditions. Pure functions. */
+#ifndef ENGINE_ALARM_TEXT_H
+#define ENGINE_ALARM_TEXT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* 1, 0, or -EILSEQ: blanks trimmed; a list is non-zero if one entry is; also yes/no, on/off. */
+int alarm_non_zero(const char *text, size_t len);
+/* Without leading blanks, cut at size - 1 and NUL-terminated. */
+void alarm_trim(char *to, size_t size, const char *text, size_t len);
+/* Does the chip say what SetAlarm wants? Numbers are compared as numbers. */
+bool alarm_as_set(const char *text, size_t len, const char *value);
+
+#endif
