@@ -82,6 +82,7 @@ void engine_power_on_reset(struct engine *e, struct lane *lane, const struct ala
 	                                        OWS_ALARM_RAISED, now_ns);
 
 	image_alarm(e->image, &entry);
+	e->published = true;
 	lane->counters.power_on_resets++;
 	log_notice(e->log, "%s: the device has restarted", item->strings.path);
 	for (uint32_t k = 0; k < d->count; k++) {
