@@ -71,6 +71,9 @@ static int link_write(struct link *base, const uint8_t *data, size_t n, enum lin
 		err = arm(link->chip);
 		if (!err)
 			err = ds2482_write_block(link->chip, data + before, 1, slots(link, 8));
+		/* What the pull-up feeds begins with the byte's last slot, and so does its time. */
+		if (!err)
+			err = ds2482_wait_until(link->chip->master, link->chip->free_at);
 	}
 	if (!err)
 		spent(link, 8 * n);
