@@ -225,6 +225,9 @@ int64_t lane_wake(const struct lane *lane)
 {
 	if (!lane->up || lane->stuck || lane->lent == lane->depth)
 		return INT64_MAX;
+	/* the end of these wakes it */
+	if (lane->alarm_slot || lane->writes_in_work)
+		return INT64_MAX;
 	return alarm_wake(&lane->alarm);
 }
 

@@ -348,6 +348,24 @@ static void test_an_alarm_does_not_wait_for_a_conversion(void)
 	TEST_ASSERT_GREATER_THAN(0, scene_sample(&s, 2).count);
 }
 
+static void test_the_engine_sleeps_while_a_write_holds_the_alarms_up(void)
+{
+	uint64_t steps;
+
+	s.depth = 4;
+	s.slow = D "/PIO.BYTE";
+	s.slow_ns = SCENE_S;
+	figure_3_3();
+	scene_output(&s, "relays", D "/PIO.BYTE", OWS_BYTE);
+	device("0", "0");
+	begin();
+	steps = scene_counter(&s, "steps");
+	scene_set(&s, 2, 1);
+	scene_run(&s, 900 * SCENE_MS);
+	/* Nine periods, and a list or two before them. */
+	TEST_ASSERT_LESS_THAN_UINT64(steps + 30, scene_counter(&s, "steps"));
+}
+
 static void test_a_storm_of_alarms_starves_neither_reads_nor_writes(void)
 {
 	figure_3_3();
@@ -607,6 +625,7 @@ int main(void)
 	RUN_TEST(test_two_items_of_one_device_lose_nothing_to_each_others_reset);
 	RUN_TEST(test_after_max_cons_alarms_one_other_request_goes_through);
 	RUN_TEST(test_an_alarm_does_not_wait_for_a_conversion);
+	RUN_TEST(test_the_engine_sleeps_while_a_write_holds_the_alarms_up);
 	RUN_TEST(test_a_storm_of_alarms_starves_neither_reads_nor_writes);
 	RUN_TEST(test_a_bus_without_alarm_search_has_its_items_read_as_inputs);
 	RUN_TEST(test_a_bus_that_searches_is_asked_for_the_families_of_the_items_only);
