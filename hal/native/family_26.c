@@ -111,6 +111,20 @@ static int convert(struct txn *txn, uint8_t command)
 	return err ? err : txn_wait(txn, CONVERT_NS);
 }
 
+/*
+ * A chip whose supply broke down while it measured has zero in its registers, and they have a right
+ * checksum: so a zero is measured once more. mem[8] and up: that it was, for each quantity.
+ */
+static bool doubtful(struct txn *txn, int raw)
+{
+	uint8_t *again = &txn->mem[8 + txn->phase / DS2438_STEPS];
+
+	if (raw || *again)
+		return false;
+	*again = 1;
+	return true;
+}
+
 static int measure_temperature(struct txn *txn, double *value)
 {
 	uint8_t bytes[8];
@@ -120,6 +134,10 @@ static int measure_temperature(struct txn *txn, double *value)
 		return convert(txn, CONVERT_T);
 	}
 	int err = ds2438_read(txn, 0, bytes);
+	if (!err && doubtful(txn, word(bytes + 1))) {
+		txn->phase--;
+		return TXN_MORE;
+	}
 	*value = (word(bytes + 1) >> 3) / 32.0;
 	return err;
 }
@@ -152,6 +170,10 @@ static int measure_voltage(struct txn *txn, uint8_t select, double *value)
 			err = -EIO;
 		if (!err)
 			err = ds2438_read(txn, 0, bytes);
+		if (!err && doubtful(txn, word(bytes + 3) & 0x3ff)) {
+			txn->phase -= txn->phase % DS2438_STEPS;
+			return TXN_MORE;
+		}
 		*value = (word(bytes + 3) & 0x3ff) / 100.0;
 		return err;
 	}

@@ -131,6 +131,9 @@ static void latch_temperature(struct sim_slave *slave, int64_t t)
 		raw = whole * 2 + ((shifted & 15) >= 8);
 	} else {
 		raw &= ~((1 << (12 - resolution(slave))) - 1);
+		/* The data sheet reserves the byte; the genuine chip does this, clones do not. */
+		if (!s->fixed)
+			s->scratchpad[6] = (uint8_t)(16 - (raw & 15));
 	}
 	s->scratchpad[0] = (uint8_t)raw;
 	s->scratchpad[1] = (uint8_t)(raw >> 8);

@@ -300,11 +300,47 @@ static void test_a_cached_value_keeps_its_time(void)
 	expect(false, of(slave, "temperature"), "          30");
 }
 
+static void test_a_monitor_that_restarts_while_it_measures_is_measured_again(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS2438", 1);
+
+	wire_set(slave, "temperature", 20.5);
+	start();
+	host_run(&host, bus, host.now + HOST_S);
+	for (unsigned ms = 0; ms < 45; ms++) {
+		uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(slave, "temperature"), NULL);
+
+		host_run(&host, bus, host.now + ms * HOST_MS);
+		sim_slave_brownout(slave, wire_time());
+		if (answer_to(id)->err == 0)
+			TEST_ASSERT_EQUAL_DOUBLE(20.5, answer_to(id)->number);
+	}
+	wire_set(slave, "temperature", 0);
+	expect(true, of(slave, "temperature"), "           0");
+}
+
+static void test_the_power_on_value_of_the_genuine_chip_is_known_from_the_temperature(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	wire_set(slave, "temperature", 84.5);
+	start();
+	expect(true, of(slave, "temperature"), "        84.5");
+	wire_set(slave, "temperature", 85);
+	expect(true, of(slave, "temperature"), "          85");
+	sim_slave_power_on(slave, wire_time());
+	TEST_ASSERT_EQUAL_INT(-ERANGE, result(BUS_READ, of(slave, "latesttemp"), NULL));
+}
+
+/* Of a clone, whose byte 6 tells nothing. */
 static void test_the_power_on_value_is_never_good(void)
 {
 	wire_init(&host, 1, 1);
 	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
 
+	TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, "fixed", 1));
 	wire_set(slave, "temperature", 20.5);
 	start();
 	TEST_ASSERT_EQUAL_INT(-ERANGE, result(BUS_READ, of(slave, "latesttemp"), NULL));
@@ -622,6 +658,8 @@ int main(void)
 	RUN_TEST(test_errors_are_those_of_the_contract);
 	RUN_TEST(test_limits_are_stored_with_the_resolution_that_was_there);
 	RUN_TEST(test_a_cached_value_keeps_its_time);
+	RUN_TEST(test_a_monitor_that_restarts_while_it_measures_is_measured_again);
+	RUN_TEST(test_the_power_on_value_of_the_genuine_chip_is_known_from_the_temperature);
 	RUN_TEST(test_the_power_on_value_is_never_good);
 	RUN_TEST(test_the_ladder_is_climbed_until_the_chip_answers);
 	RUN_TEST(test_alarms_list_the_devices_in_alarm);
