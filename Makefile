@@ -5,7 +5,7 @@
 #   make run TARGET=...           the same on localhost:4304, i2c:/dev/i2c-1, ...; only reads.
 #                                 owserver: on the genuine one, with simulated devices if need be
 #   make test                     unit and system tests (sets up what they need)
-#   make all unit system bench install uninstall clean
+#   make all unit soak system bench install uninstall clean
 #   make clang sanitize m32       the slower checks
 #   make test-kernel              Debian's own kernel and owserver on the simulated chip, in QEMU
 
@@ -95,7 +95,7 @@ PROGRAMS := $(if $(wildcard src/owsd.c),$(B)/owsd) $(if $(wildcard src/owsctl/ow
 SO       := libows.so.$(VERSION)
 LIBRARY  := $(if $(LIBOWS),$(B)/$(SO) $(B)/libows.a $(B)/libows.pc)
 
-.PHONY: all unit system test run bench install uninstall clean \
+.PHONY: all unit soak system test run bench install uninstall clean \
         examples unit-programs benches FORCE clang sanitize asan tsan m32
 all: $(PROGRAMS) $(LIBRARY) $(B)/core.a
 
@@ -199,6 +199,10 @@ unit-programs: $(UNIT)
 
 unit: all $(UNIT)
 	@sh tests/unit/run $(UNIT)
+
+# A week of faults in virtual time: HOURS=168 SEED=1
+soak: all $(B)/unit/test_week
+	@$(B)/unit/test_week $(or $(HOURS),168) $(SEED)
 
 # --- System tests, benches and the main job ---------------------------------------------------
 # Programs that system tests command

@@ -38,8 +38,16 @@ int sim_net_add_slave(struct sim_net *net, unsigned chip, unsigned channel, stru
 
 int sim_net_add_event(struct sim_net *net, const struct sim_event *event)
 {
-	struct sim_event *events = realloc(net->event, (net->events + 1) * sizeof(*events));
+	struct sim_event *events;
 
+	/* The place of one that is over: a simulation of weeks has many. */
+	for (size_t i = 0; i < net->events; i++) {
+		if (net->event[i].done) {
+			net->event[i] = *event;
+			return 0;
+		}
+	}
+	events = realloc(net->event, (net->events + 1) * sizeof(*events));
 	if (!events)
 		return -ENOMEM;
 	net->event = events;

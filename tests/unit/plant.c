@@ -34,6 +34,7 @@ static int submit(void *ctx, struct bus_req *req)
 static void run_engine(struct plant *p)
 {
 	p->engine_ns = engine_step(p->engine, p->now);
+	p->engine_steps++;
 	if (p->engine_ns <= p->now)
 		p->engine_ns = p->now + 1;
 	if (engine_published(p->engine) && p->published)

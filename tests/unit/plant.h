@@ -42,6 +42,7 @@ struct plant {
 	struct commands commands;
 	void *image_memory, *command_memory;
 	int64_t engine_ns; /* when it wants to run */
+	uint64_t engine_steps;
 	struct plant_message message[PLANT_MESSAGES];
 	unsigned message_head, message_count;
 	struct bus_req *order[PLANT_MESSAGES];
