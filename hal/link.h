@@ -42,6 +42,7 @@ struct link_cost {
 };
 
 struct link;
+struct link_files;
 /* One ROM id found by a search, family first. Return not 0 to end the search. */
 typedef int link_found(void *ctx, const uint8_t rom[8]);
 
@@ -72,6 +73,11 @@ struct link {
 	const struct bus_env *env;
 	/* Links with one number share a chip: a call on one ends the strong pull-up of another. */
 	unsigned chip;
+	/*
+	 * NULL: a wire. Else a driver speaks 1-Wire and gives files (hal/native/files.h): an error is
+	 * the device's, not the link's, and a conversion is over when its command returns.
+	 */
+	const struct link_files *files;
 };
 
 struct link_master;

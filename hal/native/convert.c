@@ -224,6 +224,12 @@ static void fail_due(struct native *native, unsigned channel, int err)
 	}
 }
 
+/* How long after the command: a driver behind files has waited for the end itself. */
+static int64_t convert_ns(const struct link *link, const struct device *device)
+{
+	return link->files ? 0 : thermometer_convert_ns(device);
+}
+
 static void converting(struct native *native, unsigned n, int64_t now, int64_t longest)
 {
 	struct channel *channel = &native->channel[n];
@@ -234,7 +240,7 @@ static void converting(struct native *native, unsigned n, int64_t now, int64_t l
 		struct device *device = &native->table.devices[i];
 
 		if (is_thermometer(device, n))
-			device->converted_ns = now + thermometer_convert_ns(device);
+			device->converted_ns = now + convert_ns(channel->link, device);
 	}
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
@@ -257,7 +263,9 @@ static int broadcast(struct native *native, unsigned n, bool strong, int64_t lon
 		return err;
 	master_good(native, n);
 	native_count(native, COUNT_CONVERSIONS);
-	if (strong) {
+	if (link->files)
+		longest = 0;
+	if (strong && longest) {
 		native->hold_ns[link->chip % NATIVE_CHANNELS] = now + longest;
 		native->holder[link->chip % NATIVE_CHANNELS] = NULL;
 	}
@@ -287,7 +295,7 @@ static void convert_one(struct native *native, unsigned n)
 		return;
 	}
 	native_count(native, COUNT_CONVERSIONS);
-	device->converted_ns = now + thermometer_convert_ns(device);
+	device->converted_ns = now + convert_ns(native->channel[n].link, device);
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
 

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/native/files.h"
 #include "hal/native/format.h"
 #include "hal/native/native.h"
 
@@ -10,6 +11,28 @@ static bool is_all(const struct job *job)
 {
 	return job->extension == EXTENSION_ALL && !job->property->array.aggregate &&
 	       job->property->type != PROPERTY_BITS;
+}
+
+static int no_file(struct txn *txn)
+{
+	(void)txn;
+	return -ENOENT;
+}
+
+static void take_functions(struct job *job)
+{
+	struct txn *txn = &job->txn;
+	const struct link_files *files = txn->link ? txn->link->files : NULL;
+
+	if (!job->property)
+		return;
+	txn->read = job->property->read;
+	txn->write = job->property->write;
+	if (!files || !txn->device || job->property->offline)
+		return;
+	if (files->property(txn->link, txn->device, job->property,
+	                    is_all(job) ? txn->element : job->extension, &txn->read, &txn->write))
+		txn->read = txn->write = no_file;
 }
 
 void job_txn(struct native *native, struct job *job)
@@ -31,6 +54,7 @@ void job_txn(struct native *native, struct job *job)
 		txn->data = job->req->data + job->out;
 		txn->room = job->req->len - job->out;
 	}
+	take_functions(job);
 }
 
 static bool is_text(const struct property *property)
@@ -150,16 +174,18 @@ static int run_function(struct job *job)
 	if (job->req->op == BUS_READ && binary && txn->room < property_size(job->property))
 		return -EMSGSIZE;
 	if (job->req->op == BUS_READ)
-		return job->property->read(txn);
+		return txn->read(txn);
 	if (needs_merge(job))
-		return job->property->merge ? job->property->merge(txn) : job->property->read(txn);
+		return txn->read == job->property->read && job->property->merge
+		               ? job->property->merge(txn)
+		               : txn->read(txn);
 	if (txn->phase == 0) {
 		int err = take_value(job);
 
 		if (err)
 			return err;
 	}
-	return job->property->write(txn);
+	return txn->write(txn);
 }
 
 void job_saw(struct native *native, struct job *job, int err, int64_t now)

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/native/files.h"
 #include "hal/native/native.h"
 
 #define PASS_NS (NATIVE_S / 10)
@@ -156,11 +157,13 @@ static int next_device(struct native *native, unsigned n, struct search *search,
 
 	native_count(native, COUNT_SEARCHES);
 	native_count(native, COUNT_TRANSACTIONS);
-	if (!only_whole(link))
+	if (!link->files && !only_whole(link))
 		return search_next(search, link);
 	search->last = true;
 	bool alarm = search->command == ONEWIRE_ALARM_SEARCH;
-	int err = link->ops->search(link, alarm, whole_found, &whole);
+	int err = link->files
+	                  ? link->files->search(link, alarm, search->family, whole_found, &whole)
+	                  : link->ops->search(link, alarm, whole_found, &whole);
 	return whole.err ? whole.err : err < 0 ? err : 0;
 }
 
@@ -380,7 +383,7 @@ void hunt_scan(struct native *native, struct job *job, int64_t now)
 		native_count(native, COUNT_CHECKSUMS);
 		if (++job->tries >= TRIES)
 			job_answer(native, job, found);
-	} else if (found == -EMSGSIZE) {
+	} else if (found == -EMSGSIZE || found == -EOPNOTSUPP) {
 		job_answer(native, job, found);
 	} else {
 		job->txn.link_error = found;

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/native/files.h"
 #include "hal/native/format.h"
 #include "hal/native/native.h"
 
@@ -94,28 +95,41 @@ static int list_root(struct native *native, struct job *job)
 	return err ? err : listing_add_rest(native, job);
 }
 
-static int add_property(struct job *job, const char *path, const struct property *property)
+/* Has a link that gives files one for this? */
+static bool has_file(struct native *native, const struct device *device,
+                     const struct property *property, int extension)
+{
+	struct link *link = device && native->channels > device->channel
+	                            ? native->channel[device->channel].link : NULL;
+	property_function *read = NULL, *write = NULL;
+
+	return !link || !link->files || property->offline ||
+	       link->files->property(link, device, property, extension, &read, &write) == 0;
+}
+
+static int add_property(struct native *native, struct job *job, const struct device *device,
+                        const char *path, const struct property *property)
 {
 	int first = property->array.index == INDEX_LETTERS ? 256 : 0;
-	char extension[8];
+	int last = property->array.index == INDEX_NONE ? EXTENSION_NONE
+	                                               : first + property->array.count - 1;
+	char text[8];
 	int err = 0;
 
-	if (property->array.index == INDEX_NONE)
-		return add(job, "%s%s", path, property->name);
-	if (property->type == PROPERTY_BITS)
-		err = add(job, "%s%s.BYTE", path, property->name);
-	if (!err)
-		err = add(job, "%s%s.ALL", path, property->name);
-	for (int i = 0; i < property->array.count && !err; i++) {
-		extension_print(property, first + i, extension);
-		err = add(job, "%s%s%s", path, property->name, extension);
+	for (int extension = EXTENSION_NONE; extension <= last && !err; extension++) {
+		if (!extension_fits(property, extension) ||
+		    !has_file(native, device, property, extension))
+			continue;
+		extension_print(property, extension, text);
+		err = add(job, "%s%s%s", path, property->name, text);
 	}
 	return err;
 }
 
 /* The properties of a table below `directory` ("" or "errata"). */
-static int list_table(struct job *job, const struct family *family, const struct device *device,
-                      const char *path, const char *directory, size_t len)
+static int list_table(struct native *native, struct job *job, const struct family *family,
+                      const struct device *device, const char *path, const char *directory,
+                      size_t len)
 {
 	const struct property *property = NULL;
 	int err = 0;
@@ -129,7 +143,7 @@ static int list_table(struct job *job, const struct family *family, const struct
 			continue;
 		if (strchr(rest + (len ? len + 1 : 0), '/'))
 			continue;
-		err = add_property(job, path, property);
+		err = add_property(native, job, device, path, property);
 	}
 	return err;
 }
@@ -144,7 +158,7 @@ static int list_families(struct job *job)
 	return err;
 }
 
-static int list_structure(struct job *job)
+static int list_structure(struct native *native, struct job *job)
 {
 	struct path_slice below = job->path.property;
 	char path[PATH_LEN_MAX + 2];
@@ -162,7 +176,7 @@ static int list_structure(struct job *job)
 		below.text++;
 		below.len--;
 	}
-	return list_table(job, job->table, NULL, path, below.text, below.len);
+	return list_table(native, job, job->table, NULL, path, below.text, below.len);
 }
 
 int listing(struct native *native, struct job *job)
@@ -175,7 +189,7 @@ int listing(struct native *native, struct job *job)
 	if (!job->table && !name.len)
 		return list_root(native, job);
 	if (!job->path.device.len && name.len >= 9 && memcmp(name.text, "structure", 9) == 0)
-		return list_structure(job);
+		return list_structure(native, job);
 	if (!job->path.device.len) {
 		/* The first word names the table, the rest is a directory of it. */
 		const char *slash = memchr(name.text, '/', name.len);
@@ -188,5 +202,5 @@ int listing(struct native *native, struct job *job)
 		n = (int)(job->path.device.text + job->path.device.len - text);
 	}
 	snprintf(path, sizeof(path), "%s%.*s/", text[0] == '/' ? "" : "/", n, text);
-	return list_table(job, job->table, job->txn.device, path, name.text, name.len);
+	return list_table(native, job, job->table, job->txn.device, path, name.text, name.len);
 }

@@ -26,7 +26,7 @@ int txn_wait(struct txn *txn, int64_t ns)
 static int of_link(struct txn *txn, int result)
 {
 	txn->on_wire = true;
-	if (result < 0)
+	if (result < 0 && !txn->link->files)
 		txn->link_error = result;
 	return result;
 }

@@ -28,6 +28,9 @@ struct txn {
 	const struct property *property;
 	bool visit; /* of the alarm machine: readings that follow each other may be one */
 	unsigned channel;
+	/* Those of the property, or what the link has in their place (hal/native/files.h). */
+	int (*read)(struct txn *txn);
+	int (*write)(struct txn *txn);
 
 	/* The value: read fills it, write finds it here. */
 	int element;                /* of an array whose elements are separate; else 0 */
