@@ -192,7 +192,7 @@ struct bus {
 
 /* All backends of this build, NULL at the end. */
 extern const struct bus_ops *const bus_backends[];
-extern const struct bus_ops owserver_bus, i2c_bus, sim_bus, null_bus, late_bus;
+extern const struct bus_ops owserver_bus, i2c_bus, sim_bus, null_bus, late_bus, w1_bus;
 
 /*
  * Find the backend of a target ("owserver:localhost:4304", "null:") and create the bus. Bare
