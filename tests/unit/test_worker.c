@@ -25,7 +25,8 @@ static struct bus_answer last[REQUESTS];
 static int rung;
 
 /* What the bell does on the worker's thread, besides ringing. */
-static enum { RING, BLOCK, WAIT_SHORT, WAIT_LONG, LOOK } at_bell;
+enum { RING, BLOCK, WAIT_SHORT, WAIT_LONG, LOOK };
+static int at_bell;
 static int released, bell_result;
 static int64_t bell_waited;
 static sigset_t bell_mask;
@@ -49,16 +50,19 @@ static void wait_in_bell(int64_t length)
 	const struct bus_env *env = worker_bus(worker)->env;
 	int64_t begun = env->now(env->ctx);
 
-	at_bell = RING;
+	__atomic_store_n(&at_bell, RING, __ATOMIC_SEQ_CST);
 	bell_result = env->wait(env->ctx, -1, 0, begun + length);
 	bell_waited = env->now(env->ctx) - begun;
 }
 
 static void bell(void *ctx)
 {
+	/* looked at before it counts: who saw it count may tell the next ring something else */
+	int what = __atomic_load_n(&at_bell, __ATOMIC_SEQ_CST);
+
 	/* not the thread for an assertion of Unity's */
 	__atomic_add_fetch((int *)ctx, 1, __ATOMIC_SEQ_CST);
-	switch (at_bell) {
+	switch (what) {
 	case RING:
 		break;
 	case BLOCK:
@@ -116,13 +120,13 @@ static void start_null(int what)
 	int64_t until = boottime() + 20 * S;
 
 	start("null:");
-	while (!n_events && boottime() < until) {
+	while ((!n_events || !__atomic_load_n(&rung, __ATOMIC_SEQ_CST)) && boottime() < until) {
 		take();
 		nap();
 	}
 	TEST_ASSERT_EQUAL_UINT(1, n_events);
 	__atomic_store_n(&rung, 0, __ATOMIC_SEQ_CST);
-	at_bell = what;
+	__atomic_store_n(&at_bell, what, __ATOMIC_SEQ_CST);
 }
 
 static int submit(uint32_t id, const char *path)
