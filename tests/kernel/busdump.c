@@ -7,6 +7,8 @@
  *   busdump TARGET dir PATH...   the entries of each directory
  *   busdump TARGET read          the paths on standard input
  *   busdump TARGET write         "PATH VALUE" lines on standard input; \xNN is a byte of VALUE
+ *   busdump TARGET rounds PATH...   for each line on standard input all paths at once, as the engine
+ *                                   asks for what is due; then a line "round"
  */
 #include <poll.h>
 #include <stdio.h>
@@ -24,6 +26,13 @@ enum { ROOM = 65536 };
 static struct bus *bus;
 static struct bus_answer last;
 static bool answered, up;
+
+/* Of a round. */
+enum { ROUND_MAX = 100, VALUE_ROOM = 64 };
+static struct bus_req round_req[ROUND_MAX];
+static uint8_t round_data[ROUND_MAX][VALUE_ROOM];
+static int round_ret[ROUND_MAX];
+static int round_left;
 
 static int64_t now(void *ctx)
 {
@@ -49,6 +58,11 @@ static int wait_until(void *ctx, int fd, short events, int64_t until_ns)
 static void take_answer(void *ctx, const struct bus_answer *answer)
 {
 	(void)ctx;
+	if (round_left) {
+		round_ret[answer->id] = answer->err ? answer->err : (int)answer->len;
+		answered = --round_left == 0;
+		return;
+	}
 	last = *answer;
 	answered = true;
 }
@@ -75,11 +89,12 @@ static void run_until(const bool *flag, int64_t until_ns)
 	}
 }
 
-static int ask(enum bus_op op, const char *path, uint8_t *data, uint32_t len)
+static struct bus_req make_request(enum bus_op op, const char *path, uint8_t *data, uint32_t len)
 {
 	static const char uncached[] = "/uncached";
 	bool fresh = strncmp(path, uncached, sizeof(uncached) - 1) == 0;
-	struct bus_req request = {
+
+	return (struct bus_req){
 		.op = (uint8_t)op,
 		.prio = BUS_GUEST,
 		.fresh = fresh,
@@ -88,6 +103,11 @@ static int ask(enum bus_op op, const char *path, uint8_t *data, uint32_t len)
 		.len = len,
 		.data = data,
 	};
+}
+
+static int ask(enum bus_op op, const char *path, uint8_t *data, uint32_t len)
+{
+	struct bus_req request = make_request(op, path, data, len);
 	int err;
 
 	answered = false;
@@ -129,13 +149,47 @@ static void dir(const char *path)
 		fwrite(data, 1, (size_t)ret, stdout);
 }
 
+static void one_round(char **paths, int n)
+{
+	answered = false;
+	round_left = n;
+	for (int i = 0; i < n; i++) {
+		round_req[i] = make_request(BUS_READ, paths[i], round_data[i], VALUE_ROOM);
+		round_req[i].id = (uint32_t)i;
+		round_req[i].prio = BUS_INPUT;
+		if (bus_submit(bus, &round_req[i])) {
+			fprintf(stderr, "busdump: %s: not taken\n", paths[i]);
+			exit(1);
+		}
+	}
+	run_until(&answered, now(NULL) + 2 * PATIENCE);
+	if (round_left) {
+		fprintf(stderr, "busdump: %d of %d answers are missing\n", round_left, n);
+		exit(1);
+	}
+	for (int i = 0; i < n; i++)
+		lines_answer(paths[i], round_ret[i], round_data[i],
+		             round_ret[i] < 0 ? 0 : (size_t)round_ret[i]);
+	puts("round");
+	fflush(stdout);
+}
+
+static void rounds(char **paths, int n)
+{
+	char line[16];
+
+	while (n > 0 && n <= ROUND_MAX && fgets(line, sizeof(line), stdin))
+		one_round(paths, n);
+}
+
 int main(int argc, char **argv)
 {
 	const char *verb = argc > 2 ? argv[2] : "";
 	char why[256] = "";
 
-	if (strcmp(verb, "dir") != 0 && strcmp(verb, "read") != 0 && strcmp(verb, "write") != 0) {
-		fputs("usage: busdump TARGET dir|read|write [PATH...]\n", stderr);
+	if (strcmp(verb, "dir") != 0 && strcmp(verb, "read") != 0 && strcmp(verb, "write") != 0 &&
+	    strcmp(verb, "rounds") != 0) {
+		fputs("usage: busdump TARGET dir|read|write|rounds [PATH...]\n", stderr);
 		return 2;
 	}
 	if (bus_create(argv[1], &env, &bus, why, sizeof(why))) {
@@ -151,7 +205,9 @@ int main(int argc, char **argv)
 		lines_of_paths(read_property);
 	if (strcmp(verb, "write") == 0)
 		lines_of_values(write_property);
-	for (int i = 3; i < argc; i++)
+	if (strcmp(verb, "rounds") == 0)
+		rounds(argv + 3, argc - 3);
+	for (int i = 3; i < argc && strcmp(verb, "dir") == 0; i++)
 		dir(argv[i]);
 	bus_destroy(bus);
 	return 0;
