@@ -28,12 +28,27 @@ enum { RESULTS, CONTROL, LIMITS, CALIBRATION }; /* pages of 8 bytes */
 #define HALF_RANGE 2
 #define HIGH_LIMIT 4
 
+/* note[0]: no channel's power-on flag is set. */
+
+static bool power_on_flags(const uint8_t control[8])
+{
+	return (control[1] | control[3] | control[5] | control[7]) & POR;
+}
+
 static int read_page(struct txn *txn, unsigned page, uint8_t bytes[8])
 {
 	uint8_t command[] = {READ_MEMORY, (uint8_t)(page * 8), 0x00};
+	struct device *device = txn->device;
 	int err = txn_command(txn, command, sizeof(command));
 
-	return err ? err : txn_read_crc16(txn, command, sizeof(command), bytes, 8);
+	if (!err)
+		err = txn_read_crc16(txn, command, sizeof(command), bytes, 8);
+	if (err || page != CONTROL)
+		return err;
+	if (power_on_flags(bytes) && device->note[0])
+		txn->restarted = true;
+	device->note[0] = !power_on_flags(bytes);
+	return 0;
 }
 
 static int write_byte(struct txn *txn, unsigned address, uint8_t byte)
@@ -61,9 +76,19 @@ static int make_page(struct txn *txn, unsigned page, const uint8_t want[8])
 			continue;
 		int err = write_byte(txn, page * 8 + i, want[i]);
 		have[i] = want[i];
+		if (page == CONTROL && !err)
+			txn->device->note[0] = !power_on_flags(have);
 		return err ? err : TXN_MORE;
 	}
 	return 0;
+}
+
+/* Settings that are written end what the power-on flags tell. */
+static int make_control(struct txn *txn, uint8_t want[8])
+{
+	for (int i = 1; i < 8; i += 2)
+		want[i] = (uint8_t)(want[i] & ~POR);
+	return make_page(txn, CONTROL, want);
 }
 
 static int load_page(struct txn *txn, unsigned page)
@@ -95,6 +120,18 @@ static int take_results(struct txn *txn)
 		txn->number[i] = volts(bytes[2 * i] | (unsigned)bytes[2 * i + 1] << 8,
 		                       txn->property->arg);
 	return err;
+}
+
+/* The power-on flags, too, bring a device into the alarm search: a visit looks at them. */
+static int read_latest(struct txn *txn)
+{
+	uint8_t bytes[8];
+
+	if (!txn->visit || txn->phase)
+		return take_results(txn);
+	int err = read_page(txn, CONTROL, bytes);
+	txn->phase = 1;
+	return err ? err : TXN_MORE;
 }
 
 static int start_conversion(struct txn *txn, bool powered)
@@ -142,7 +179,7 @@ static int convert(struct txn *txn, int arg)
 			want[i + 1] = (uint8_t)((txn->mem[8 + i + 1] & ~RANGE_HIGH) |
 			                        (arg & HALF_RANGE ? 0 : RANGE_HIGH));
 		}
-		err = make_page(txn, CONTROL, want);
+		err = make_control(txn, want);
 		if (err)
 			return err;
 		txn->phase = 2;
@@ -182,7 +219,7 @@ static int write_bit(struct txn *txn)
 		return err;
 	memcpy(want, txn->mem + 8, 8);
 	want[at] = (uint8_t)(txn->number[0] != 0 ? want[at] | bit : want[at] & ~bit);
-	return make_page(txn, CONTROL, want);
+	return make_control(txn, want);
 }
 
 /* As owserver has it, and against its manual: 0 conducts, 1 does not, enabled or not. */
@@ -205,7 +242,7 @@ static int write_pio(struct txn *txn)
 	memcpy(want, txn->mem + 8, 8);
 	want[at] = (uint8_t)((want[at] & 0x0f) | OUTPUT_ENABLE |
 	                     (txn->number[0] != 0 ? OUTPUT_OFF : 0));
-	return make_page(txn, CONTROL, want);
+	return make_control(txn, want);
 }
 
 /* The power-on flags of all channels. */
@@ -349,8 +386,8 @@ static int read_co2(struct txn *txn)
 
 static const struct property properties[] = {
 	PROPERTY_DIR("8bit"),
-	VOLT("8bit/latestvolt", EIGHT_BIT, take_results),
-	VOLT("8bit/latestvolt2", EIGHT_BIT | HALF_RANGE, take_results),
+	VOLT("8bit/latestvolt", EIGHT_BIT, read_latest),
+	VOLT("8bit/latestvolt2", EIGHT_BIT | HALF_RANGE, read_latest),
 	VOLT("8bit/volt", EIGHT_BIT, read_volt),
 	VOLT("8bit/volt2", EIGHT_BIT | HALF_RANGE, read_volt),
 	PROPERTY_DIR("CO2"),
@@ -362,8 +399,8 @@ static const struct property properties[] = {
 	PROPERTY_DIR("alarm"),
 	FLAG("alarm/high", LIFE_VOLATILE, AT(1, FLAG_HIGH)),
 	FLAG("alarm/low", LIFE_VOLATILE, AT(1, FLAG_LOW)),
-	VOLT("latestvolt", 0, take_results),
-	VOLT("latestvolt2", HALF_RANGE, take_results),
+	VOLT("latestvolt", 0, read_latest),
+	VOLT("latestvolt2", HALF_RANGE, read_latest),
 	{.name = "memory", .type = PROPERTY_BINARY, .life = LIFE_VOLATILE, .access = ACCESS_BOTH,
 	 .size = 32, .read = get_memory, .write = put_memory},
 	PROPERTY_DIR("pages"),

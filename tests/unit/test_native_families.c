@@ -376,6 +376,66 @@ static void test_a_ds2450_converts_and_switches(void)
 	TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "volt.A", NULL)->err);
 }
 
+static bool listed_in_alarm(void)
+{
+	char name[ROM_TEXT_MAX];
+
+	rom_print(slave->rom, ROM_F_I, name);
+	req = (struct bus_req){.id = next_id++, .op = BUS_DIR, .prio = BUS_ALARM, .fresh = true,
+	                       .path = "/alarm", .data = data, .len = sizeof(data) - 1,
+	                       .deadline_ns = host.now + 20 * HOST_S};
+	host.answers = 0;
+	TEST_ASSERT_EQUAL_INT(0, bus_submit(bus, &req));
+	TEST_ASSERT_TRUE(host_run_answers(&host, bus, 1, host.now + 21 * HOST_S));
+	TEST_ASSERT_EQUAL_INT(0, host.answer[0].err);
+	data[host.answer[0].len] = '\0';
+	return strstr((char *)data, name);
+}
+
+static void arm_a_ds2450(void)
+{
+	writes("power", "1");
+	writes("set_alarm/volthigh.A", "2");
+	writes("set_alarm/high.A", "1");
+	TEST_ASSERT_FALSE(listed_in_alarm());
+	TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "volt.A", NULL)->err);
+	TEST_ASSERT_TRUE_MESSAGE(listed_in_alarm(), "the voltage is above its limit");
+}
+
+static void test_a_ds2450_that_restarts_is_told_once_and_alarms_again(void)
+{
+	start("DS2450");
+	wire_set(slave, "volt.A", 3);
+	arm_a_ds2450();
+	for (unsigned i = 1; i <= 3; i++) {
+		sim_slave_brownout(slave, wire_time());
+		TEST_ASSERT_TRUE_MESSAGE(listed_in_alarm(), "the power-on flags are set");
+		reads("alarm/high.A", "0");
+		TEST_ASSERT_EQUAL_UINT(i, host_events(&host, BUS_POR));
+		reads("PIO.ALL", "1,1,1,1");
+		reads("alarm/high.A", "0");
+		TEST_ASSERT_EQUAL_UINT(i, host_events(&host, BUS_POR));
+		arm_a_ds2450();
+		TEST_ASSERT_EQUAL_UINT(i, host_events(&host, BUS_POR));
+	}
+}
+
+static void test_a_conversion_tells_that_a_ds2450_has_restarted(void)
+{
+	start("DS2450");
+	TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "volt.A", NULL)->err);
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_POR));
+	for (unsigned i = 1; i <= 2; i++) {
+		sim_slave_brownout(slave, wire_time());
+		TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "volt.A", NULL)->err);
+		TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "volt.A", NULL)->err);
+		TEST_ASSERT_EQUAL_UINT(i, host_events(&host, BUS_POR));
+	}
+	writes("set_alarm/unset", "1");
+	TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "volt.A", NULL)->err);
+	TEST_ASSERT_EQUAL_UINT_MESSAGE(2, host_events(&host, BUS_POR), "we set the flags");
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -393,5 +453,7 @@ int main(void)
 	RUN_TEST(test_memories_are_written_and_read);
 	RUN_TEST(test_a_ds2423_counts);
 	RUN_TEST(test_a_ds2450_converts_and_switches);
+	RUN_TEST(test_a_ds2450_that_restarts_is_told_once_and_alarms_again);
+	RUN_TEST(test_a_conversion_tells_that_a_ds2450_has_restarted);
 	return UNITY_END();
 }
