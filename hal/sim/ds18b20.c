@@ -333,6 +333,8 @@ static int option(struct sim_slave *slave, const char *name, double value)
 	struct sim_thermometer *s = state(slave);
 	long whole = lround(value);
 
+	if (value != (double)whole)
+		return -ERANGE;
 	if (strcmp(name, "resolution") == 0 && !is_s20(slave)) {
 		if (whole < 9 || whole > 12)
 			return -ERANGE;
@@ -358,14 +360,14 @@ static int option(struct sim_slave *slave, const char *name, double value)
 }
 
 static const struct sim_input inputs[] = {
-	[SIM_TEMPERATURE] = {"temperature", 20},
-	{NULL},
+	[SIM_TEMPERATURE] = SIM_TEMPERATURE_INPUT,
+	{0},
 };
 static const struct sim_input ea00_inputs[] = {
-	[SIM_TEMPERATURE] = {"temperature", 20},
-	[SIM_PIN_A] = {"pin.A", 1},
-	[SIM_PIN_B] = {"pin.B", 1},
-	{NULL},
+	[SIM_TEMPERATURE] = SIM_TEMPERATURE_INPUT,
+	[SIM_PIN_A] = SIM_PIN("pin.A"),
+	[SIM_PIN_B] = SIM_PIN("pin.B"),
+	{0},
 };
 
 #define THERMOMETER(part, family, ...)                                                             \

@@ -51,7 +51,7 @@ static void received(struct sim_slave *slave, uint8_t byte, int64_t t)
 	sim_end(slave);
 }
 
-static const struct sim_input inputs[] = {{"pin", 1}, {NULL}};
+static const struct sim_input inputs[] = {SIM_PIN("pin"), {0}};
 
 const struct sim_family sim_ds2405 = {
 	.name = "DS2405",

@@ -273,7 +273,7 @@ static uint8_t *memory(struct sim_slave *slave, size_t *size)
 	return state(slave)->memory;
 }
 
-static const struct sim_input inputs[] = {{"pin.A", 1}, {"pin.B", 1}, {NULL}};
+static const struct sim_input inputs[] = {SIM_PIN("pin.A"), SIM_PIN("pin.B"), {0}};
 
 const struct sim_family sim_ds2406 = {
 	.name = "DS2406",

@@ -253,8 +253,8 @@ static void drained(struct sim_slave *slave, int64_t t)
 }
 
 static const struct sim_input inputs[] = {
-	{"pin.0", 1}, {"pin.1", 1}, {"pin.2", 1}, {"pin.3", 1}, {"pin.4", 1},
-	{"pin.5", 1}, {"pin.6", 1}, {"pin.7", 1}, {NULL},
+	SIM_PIN("pin.0"), SIM_PIN("pin.1"), SIM_PIN("pin.2"), SIM_PIN("pin.3"), SIM_PIN("pin.4"),
+	SIM_PIN("pin.5"), SIM_PIN("pin.6"), SIM_PIN("pin.7"), {0},
 };
 
 const struct sim_family sim_ds2408 = {

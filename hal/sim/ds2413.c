@@ -84,7 +84,7 @@ static void drained(struct sim_slave *slave, int64_t t)
 	}
 }
 
-static const struct sim_input inputs[] = {{"pin.A", 1}, {"pin.B", 1}, {NULL}};
+static const struct sim_input inputs[] = {SIM_PIN("pin.A"), SIM_PIN("pin.B"), {0}};
 
 const struct sim_family sim_ds2413 = {
 	.name = "DS2413",

@@ -131,7 +131,7 @@ static int option(struct sim_slave *slave, const char *name, double value)
 	return 0;
 }
 
-static const struct sim_input inputs[] = {{"pin.A", 1}, {"pin.B", 1}, {NULL}};
+static const struct sim_input inputs[] = {SIM_PIN("pin.A"), SIM_PIN("pin.B"), {0}};
 
 const struct sim_family sim_ds2423 = {
 	.name = "DS2423",

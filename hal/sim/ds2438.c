@@ -245,11 +245,11 @@ static uint8_t *memory(struct sim_slave *slave, size_t *size)
 }
 
 static const struct sim_input inputs[] = {
-	[TEMPERATURE] = {"temperature", 20},
-	[VDD] = {"vdd", 5},
-	[VAD] = {"vad", 0},
-	[VSENS] = {"vsens", 0},
-	{NULL},
+	[TEMPERATURE] = SIM_TEMPERATURE_INPUT,
+	[VDD] = {.name = "vdd", .start = 5, .least = 2.4, .most = 10},
+	[VAD] = {.name = "vad"},
+	[VSENS] = {.name = "vsens"},
+	{0},
 };
 
 const struct sim_family sim_ds2438 = {

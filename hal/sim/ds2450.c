@@ -238,7 +238,7 @@ static void drained(struct sim_slave *slave, int64_t t)
 
 
 static const struct sim_input inputs[] = {
-	{"volt.A", 0}, {"volt.B", 0}, {"volt.C", 0}, {"volt.D", 0}, {NULL}};
+	{.name = "volt.A"}, {.name = "volt.B"}, {.name = "volt.C"}, {.name = "volt.D"}, {0}};
 
 const struct sim_family sim_ds2450 = {
 	.name = "DS2450",

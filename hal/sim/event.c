@@ -86,7 +86,7 @@ static void input(const struct sim_net *net, struct words *words, struct sim_eve
 		return;
 	}
 	event->input = (unsigned)found;
-	event->curve = words_curve(words);
+	event->curve = words_curve(words, &event->slave->family->inputs[found]);
 }
 
 static const struct {

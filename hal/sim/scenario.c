@@ -7,16 +7,20 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #define MAX_FILE 1000000
 
 struct scenario {
 	struct sim_net *net;
 	unsigned channel; /* that devices go to */
+	bool adapter; /* its line was there */
 	bool nomem;
 };
 
@@ -30,6 +34,9 @@ static void i2c_line(struct scenario *scenario, struct words *words)
 	             {"any", SIM_ANY_MESSAGES}};
 	struct sim_net *net = scenario->net;
 
+	if (scenario->adapter)
+		words_fail(words, "there is an i2c line already");
+	scenario->adapter = true;
 	while (words_next(words)) {
 		if (strcmp(words->word, "speed") == 0) {
 			net->hz = (uint32_t)(words_number(words, "the speed in kHz", 1, 1000) *
@@ -129,7 +136,7 @@ static void properties(struct sim_slave *slave, struct words *words)
 		int err;
 
 		if (input >= 0) {
-			slave->input[input] = words_curve(words);
+			slave->input[input] = words_curve(words, &slave->family->inputs[input]);
 			continue;
 		}
 		if (strcmp(words->word, "parasite") == 0) {
@@ -182,6 +189,19 @@ static void add_device(struct scenario *scenario, const struct sim_family *famil
 	properties(slave, words);
 }
 
+static bool on_wires(const struct sim_chip *chip, const uint8_t rom[ROM_LEN])
+{
+	for (unsigned channel = 0; channel < chip->channels; channel++) {
+		const struct sim_wire *wire = &chip->wire[channel];
+
+		for (size_t i = 0; i < wire->count; i++) {
+			if (memcmp(wire->slaves[i]->rom, rom, ROM_LEN) == 0)
+				return true;
+		}
+	}
+	return false;
+}
+
 static void device_line(struct scenario *scenario, const struct sim_family *family,
                         struct words *words)
 {
@@ -207,7 +227,8 @@ static void device_line(struct scenario *scenario, const struct sim_family *fami
 		return;
 	}
 	rom_print(rom, ROM_F_I, text);
-	if (sim_net_slave(scenario->net, text)) {
+	if (sim_net_slave(scenario->net, text) ||
+	    on_wires(&scenario->net->chip[scenario->net->chips - 1], rom)) {
 		words_fail(words, "there is a device %s already", text);
 		return;
 	}
@@ -218,9 +239,15 @@ static void at_line(struct scenario *scenario, struct words *words)
 {
 	struct sim_event event[2] = {{0}};
 	int64_t at = words_time(words, "a time");
-	int64_t every = words_take(words, "every") ? words_time(words, "the repetition") : 0;
-	unsigned n = event_parse(scenario->net, words, event);
+	int64_t every = 0;
+	unsigned n;
 
+	if (words_take(words, "every")) {
+		every = words_time(words, "the repetition");
+		if (every < 1000)
+			words_fail(words, "the repetition is 1us at least");
+	}
+	n = event_parse(scenario->net, words, event);
 	for (unsigned i = 0; i < n && !words->failed; i++) {
 		event[i].at_ns += at;
 		event[i].every_ns = every;
@@ -278,31 +305,53 @@ int sim_scenario_parse(const char *name, const char *text, struct sim_net *net, 
 	return scenario.nomem ? -ENOMEM : -EINVAL;
 }
 
+/* The file's text, to be freed; NULL: *err and why. What is no regular file might never end. */
+static char *read_text(const char *file, char *why, size_t why_size, int *err)
+{
+	int fd = open(file, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+	char *text = NULL;
+	struct stat st;
+	size_t len = 0;
+	ssize_t n = 1;
+
+	*err = fd < 0 || fstat(fd, &st) ? -errno : S_ISREG(st.st_mode) ? 0 : -EINVAL;
+	if (*err) {
+		snprintf(why, why_size, "%s: %s", file,
+		         *err == -EINVAL ? "not a regular file" : strerror(-*err));
+	} else {
+		text = malloc(MAX_FILE + 2);
+		*err = text ? 0 : -ENOMEM;
+	}
+	while (text && n > 0 && len <= MAX_FILE) {
+		n = read(fd, text + len, MAX_FILE + 1 - len);
+		len += n > 0 ? (size_t)n : 0;
+	}
+	if (fd >= 0)
+		close(fd);
+	if (!text)
+		return NULL;
+	text[len] = '\0';
+	if (n >= 0 && len <= MAX_FILE && strlen(text) == len)
+		return text;
+	*err = n < 0 ? -EIO : len > MAX_FILE ? -EFBIG : -EINVAL;
+	if (n < 0)
+		snprintf(why, why_size, "%s: cannot be read", file);
+	else if (len > MAX_FILE)
+		snprintf(why, why_size, "%s: longer than %d bytes", file, MAX_FILE);
+	else
+		snprintf(why, why_size, "%s: has a zero byte, is no text", file);
+	free(text);
+	return NULL;
+}
+
 int sim_scenario_read(const char *file, struct sim_net *net, char *why, size_t why_size)
 {
-	FILE *stream = fopen(file, "r");
-	char *text;
-	size_t len;
 	int err;
+	char *text = read_text(file, why, why_size, &err);
 
-	if (!stream) {
-		err = -errno;
-		snprintf(why, why_size, "%s: %s", file, strerror(errno));
+	if (!text)
 		return err;
-	}
-	text = malloc(MAX_FILE + 1);
-	if (!text) {
-		fclose(stream);
-		return -ENOMEM;
-	}
-	len = fread(text, 1, MAX_FILE, stream);
-	text[len] = '\0';
-	err = ferror(stream) ? -EIO : 0;
-	fclose(stream);
-	if (err)
-		snprintf(why, why_size, "%s: cannot be read", file);
-	else
-		err = sim_scenario_parse(file, text, net, why, why_size);
+	err = sim_scenario_parse(file, text, net, why, why_size);
 	free(text);
 	return err;
 }

@@ -18,7 +18,12 @@ struct sim_slave;
 struct sim_input {
 	const char *name;
 	double start; /* its value unless the scenario gives another */
+	bool pin;     /* is 0 or 1 */
+	double least, most; /* both 0: no bounds */
 };
+
+#define SIM_PIN(text)         {.name = (text), .start = 1, .pin = true}
+#define SIM_TEMPERATURE_INPUT {.name = "temperature", .start = 20, .least = -55, .most = 125}
 
 struct sim_family {
 	const char *name; /* "DS18B20" */

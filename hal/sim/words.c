@@ -186,7 +186,18 @@ static int64_t period(struct words *words)
 	return ns;
 }
 
-static void steps(struct words *words, struct sim_curve *curve)
+static void check(struct words *words, const struct sim_input *input, double value)
+{
+	bool bounded = input->least < input->most;
+
+	if (input->pin && value != 0 && value != 1)
+		words_fail(words, "%g: %s is 0 or 1", value, input->name);
+	else if (bounded && (value < input->least || value > input->most))
+		words_fail(words, "%g: %s goes from %g to %g", value, input->name, input->least,
+		           input->most);
+}
+
+static void steps(struct words *words, const struct sim_input *input, struct sim_curve *curve)
 {
 	while (words_number_ahead(words) && words_next(words)) {
 		struct sim_step *step = &curve->step[curve->steps];
@@ -209,6 +220,7 @@ static void steps(struct words *words, struct sim_curve *curve)
 			words_fail(words, "steps begin at 0 and go up in time");
 			return;
 		}
+		check(words, input, step->value);
 		curve->steps++;
 	}
 	if (curve->steps == 0) {
@@ -221,7 +233,7 @@ static void steps(struct words *words, struct sim_curve *curve)
 	}
 }
 
-struct sim_curve words_curve(struct words *words)
+struct sim_curve words_curve(struct words *words, const struct sim_input *input)
 {
 	static const struct {
 		const char *name;
@@ -241,14 +253,20 @@ struct sim_curve words_curve(struct words *words)
 			return curve;
 		}
 		curve.shape = shapes[i].shape;
+		if (input->pin && (curve.shape == SIM_RAMP || curve.shape == SIM_SINE))
+			words_fail(words, "\"%s\": %s is 0 or 1: expected square or steps",
+			           words->word, input->name);
 	}
 	if (curve.shape == SIM_STEPS) {
-		steps(words, &curve);
+		steps(words, input, &curve);
 		return curve;
 	}
 	curve.a = words_number(words, "a value", -1e9, 1e9);
+	check(words, input, curve.a);
 	if (curve.shape != SIM_CONSTANT) {
 		curve.b = words_number(words, "a value", -1e9, 1e9);
+		check(words, input, curve.shape == SIM_SINE ? curve.a - curve.b : curve.b);
+		check(words, input, curve.shape == SIM_SINE ? curve.a + curve.b : curve.b);
 		curve.span_ns = period(words);
 	}
 	return curve;

@@ -3,7 +3,7 @@
 #ifndef HAL_SIM_WORDS_H
 #define HAL_SIM_WORDS_H
 
-#include "curve.h"
+#include "slave.h"
 
 #include <stdbool.h>
 
@@ -34,6 +34,7 @@ void words_end(struct words *words);
 /* Each reads one word; what says in the error what was expected. */
 double words_number(struct words *words, const char *what, double least, double most);
 int64_t words_time(struct words *words, const char *what); /* "90s", "1.5h", in ns */
-struct sim_curve words_curve(struct words *words);
+/* What the input does; every value of it is one that the input can have. */
+struct sim_curve words_curve(struct words *words, const struct sim_input *input);
 
 #endif

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "hal/sim/master.h"
 #include "hal/sim/scenario.h"
@@ -70,6 +73,40 @@ static void test_a_wrong_line_is_named_with_its_column(void)
 		{"chip DS2482-100 0x18\nat 5s reset 0x18 for 5s", "s:2:18: \"for\" is too much here"},
 		{"i2c speed 2000", "s:1:11: 2000: the speed in kHz goes from 1 to 1000"},
 		{"i2c combine some", "s:1:13: \"some\": expected any"},
+		{"chip DS2482-100 0x18\nDS18B20 28.000000000001 as a\nDS18B20 28.000000000001 as b",
+		 "s:3:9: there is a device 28.000000000001 already"},
+		{"chip DS2482-800 0x18\nDS2401 01.000000000001 as a\nchannel 3\nDS2401 01.000000000001 as b",
+		 "s:4:8: there is a device 01.000000000001 already"},
+		{"chip DS2482-100 0x18\nat 5s every 0s short 0x18",
+		 "s:2:13: the repetition is 1us at least"},
+		{"chip DS2482-100 0x18\nDS18B20 28.000000000001 temperature 125.5",
+		 "s:2:37: 125.5: temperature goes from -55 to 125"},
+		{"chip DS2482-100 0x18\nDS18B20 28.000000000001 temperature ramp 5 -56 1m",
+		 "s:2:44: -56: temperature goes from -55"},
+		{"chip DS2482-100 0x18\nDS18B20 28.000000000001 temperature sine 100 26 1m",
+		 "s:2:46: 126: temperature goes from -55"},
+		{"chip DS2482-100 0x18\nDS18B20 28.000000000001 temperature sine 100 -26 1m",
+		 "s:2:46: 126: temperature goes from -55"},
+		{"chip DS2482-100 0x18\nDS18B20 28.000000000001 temperature steps 0:5 5s:500",
+		 "s:2:47: 500: temperature goes from -55"},
+		{"chip DS2482-100 0x18\nDS18B20 28.000000000001 as t\nat 5s set t temperature 126",
+		 "s:3:25: 126: temperature goes from -55"},
+		{"chip DS2482-100 0x18\nDS18B20 28.000000000001 resolution 8",
+		 "s:2:36: 8 is out of the range of resolution"},
+		{"chip DS2482-100 0x18\nDS18B20 28.000000000001 resolution 10.5",
+		 "s:2:36: 10.5 is out of the range of resolution"},
+		{"chip DS2482-100 0x18\nDS2408 29.000000000001 pin.7 2",
+		 "s:2:30: 2: pin.7 is 0 or 1"},
+		{"chip DS2482-100 0x18\nDS2408 29.000000000001 pin.7 square 0 0.5 1s",
+		 "s:2:39: 0.5: pin.7 is 0 or 1"},
+		{"chip DS2482-100 0x18\nDS2405 05.000000000001 pin sine 0 1 1s",
+		 "s:2:28: \"sine\": pin is 0 or 1"},
+		{"chip DS2482-100 0x18\nDS2438 26.000000000001 vdd 2.3",
+		 "s:2:28: 2.3: vdd goes from 2.4 to 10"},
+		{"chip DS2482-100 0x18\nDS2438 26.000000000001 vdd 10.5",
+		 "s:2:28: 10.5: vdd goes from 2.4 to 10"},
+		{"i2c speed 100\n i2c speed 400",
+		 "s:2:2: there is an i2c line already"},
 	};
 
 	for (unsigned i = 0; i < sizeof(table) / sizeof(table[0]); i++) {
@@ -79,6 +116,48 @@ static void test_a_wrong_line_is_named_with_its_column(void)
 		why[strlen(table[i].why)] = '\0';
 		TEST_ASSERT_EQUAL_STRING(table[i].why, why);
 	}
+}
+
+static void refuses_file(int err, const char *file, const char *text)
+{
+	TEST_ASSERT_EQUAL_INT_MESSAGE(err, sim_scenario_read(file, &net, why, sizeof(why)), text);
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, text), why);
+}
+
+static void fill_file(const char *file, size_t size, const char *end, size_t end_size)
+{
+	FILE *stream = fopen(file, "w");
+
+	TEST_ASSERT_NOT_NULL(stream);
+	fputs("chip DS2482-100 0x18\n", stream);
+	for (size_t i = 21 + end_size; i < size; i++)
+		fputc('\n', stream);
+	fwrite(end, 1, end_size, stream);
+	TEST_ASSERT_EQUAL_INT(0, fclose(stream));
+}
+
+static void test_what_is_no_whole_text_file_is_refused(void)
+{
+	char dir[] = "/tmp/scenario-XXXXXX", file[64], fifo[64];
+
+	TEST_ASSERT_NOT_NULL(mkdtemp(dir));
+	snprintf(file, sizeof(file), "%s/a.sim", dir);
+	snprintf(fifo, sizeof(fifo), "%s/fifo", dir);
+	TEST_ASSERT_EQUAL_INT(0, mkfifo(fifo, 0600));
+	refuses_file(-ENOENT, file, "No such file");
+	refuses_file(-EINVAL, dir, "not a regular file");
+	refuses_file(-EINVAL, fifo, "not a regular file");
+	fill_file(file, 1000001, "", 0);
+	refuses_file(-EFBIG, file, "longer than 1000000 bytes");
+	fill_file(file, 100, "\0\n", 2);
+	refuses_file(-EINVAL, file, "zero byte");
+	fill_file(file, 1000000, "\nwrong", 6);
+	refuses_file(-EINVAL, file, "\"wrong\": expected i2c");
+	fill_file(file, 1000000, "", 0);
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, sim_scenario_read(file, &net, why, sizeof(why)), why);
+	unlink(file);
+	unlink(fifo);
+	rmdir(dir);
 }
 
 static void test_a_scenario_says_adapter_chips_wires_and_devices(void)
@@ -225,6 +304,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_wrong_line_is_named_with_its_column);
+	RUN_TEST(test_what_is_no_whole_text_file_is_refused);
 	RUN_TEST(test_a_scenario_says_adapter_chips_wires_and_devices);
 	RUN_TEST(test_curves_are_what_they_say);
 	RUN_TEST(test_events_happen_at_their_time_again_and_for_as_long_as_they_say);
