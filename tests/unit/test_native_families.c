@@ -420,6 +420,29 @@ static void test_a_ds2450_that_restarts_is_told_once_and_alarms_again(void)
 	}
 }
 
+static void test_a_visit_after_an_alarm_looks_for_a_restart_of_a_ds2450(void)
+{
+	char name[ROM_TEXT_MAX];
+
+	start("DS2450");
+	wire_set(slave, "volt.A", 3);
+	arm_a_ds2450();
+	sim_slave_brownout(slave, wire_time());
+	TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "latestvolt.A", NULL)->err);
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_POR));
+	rom_print(slave->rom, ROM_F_I, name);
+	snprintf(path, sizeof(path), "/%s/latestvolt.A", name);
+	req.id = next_id++;
+	req.prio = BUS_ALARM;
+	req.len = sizeof(data) - 1;
+	req.deadline_ns = host.now + 20 * HOST_S;
+	host.answers = 0;
+	TEST_ASSERT_EQUAL_INT(0, bus_submit(bus, &req));
+	TEST_ASSERT_TRUE(host_run_answers(&host, bus, 1, host.now + 21 * HOST_S));
+	TEST_ASSERT_EQUAL_INT(0, host.answer[0].err);
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_POR));
+}
+
 static void test_a_conversion_tells_that_a_ds2450_has_restarted(void)
 {
 	start("DS2450");
@@ -454,6 +477,7 @@ int main(void)
 	RUN_TEST(test_a_ds2423_counts);
 	RUN_TEST(test_a_ds2450_converts_and_switches);
 	RUN_TEST(test_a_ds2450_that_restarts_is_told_once_and_alarms_again);
+	RUN_TEST(test_a_visit_after_an_alarm_looks_for_a_restart_of_a_ds2450);
 	RUN_TEST(test_a_conversion_tells_that_a_ds2450_has_restarted);
 	return UNITY_END();
 }
