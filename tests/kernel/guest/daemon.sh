@@ -54,7 +54,7 @@ same "a DS18S20" 25.375 "$(get old)"
 same "one on channel 7" 13.75 "$(get far)"
 same "a voltage of a DS2438" 2.3 "$(get volt)"
 same "a counter" 70000 "$(get count)"
-same "a voltage of a DS2450" 3.75 "$(get analog)"
+near "a voltage of a DS2450" 3.75 0.001 "$(get analog)"
 owsctl set relays 5
 does "an output switches its pin" within $told_within reads pins 184
 
