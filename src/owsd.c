@@ -69,7 +69,7 @@ static void usage(FILE *out)
 	fputs("usage: owsd [-c FILE] [-n NAME] [-t TARGET]... [--check] [--rt PRIO] [-v] [-V] [-h]\n"
 	      "  -c, --config FILE   configuration (" DEFAULT_FILE ")\n"
 	      "  -n, --name NAME     instance: signal prefix and name of the segments (OWS)\n"
-	      "  -t, --target TARGET in place of TargetName; may be given several times\n"
+	      "  -t, --target TARGET in place of TargetName (this version serves one)\n"
 	      "      --check         print the configuration as understood, start nothing\n"
 	      "      --rt PRIO       engine thread with SCHED_FIFO priority 1 to 99\n"
 	      "  -v, --verbose       say more; twice: everything\n"
