@@ -46,6 +46,9 @@ enum bus_news {
 	BUS_LOST,  /* the device rom went */
 	BUS_POR,   /* the device rom was seen to have restarted */
 	BUS_NOTE,  /* text for the log, nothing changes */
+	BUS_RELEASED, /* asked to suspend, the bus has let go of its hardware */
+	BUS_BACK,  /* suspended, it sees that its target is there again, without having touched the
+	              wire; told once per change */
 };
 
 /*
@@ -174,7 +177,11 @@ struct bus_ops {
 	int64_t (*step)(struct bus *bus, int64_t now);
 	/* 0: taken out, answered -ECANCELED. -EBUSY: already on its way. -ENOENT: not here. */
 	int (*cancel)(struct bus *bus, uint32_t id);
-	/* Let go of the hardware (true), take it again (false). NULL: nothing to let go of. */
+	/*
+	 * Let go of the hardware (true): BUS_RELEASED follows, and until it is taken again requests
+	 * are answered -ENOTCONN. Take it again (false): BUS_UP or BUS_DOWN follows. NULL: nothing to
+	 * let go of.
+	 */
 	void (*suspend)(struct bus *bus, bool yes);
 	/* The running totals, to be read with bus_counted(); *n gets their count. NULL: none. */
 	const struct bus_counter *(*counters)(struct bus *bus, size_t *n);

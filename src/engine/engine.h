@@ -21,6 +21,13 @@ struct engine_port {
 	/* 0 or -EAGAIN; never blocks. The request is lent until its answer. */
 	int (*submit)(void *ctx, struct bus_req *req);
 	void *ctx;
+	/*
+	 * Ways to one wire (a bar) have the same number; groups are numbered in the order in which they
+	 * are written, and their ways stand in it too. All but the first way of a group start suspended.
+	 */
+	unsigned group;
+	/* bus_ops.suspend; never blocks. NULL: nothing to let go of. */
+	void (*suspend)(void *ctx, bool yes);
 };
 
 struct engine_setup {

@@ -400,6 +400,9 @@ void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns
 		if (device)
 			device->absent = true;
 		break;
+	case BUS_RELEASED:
+	case BUS_BACK:
+		break;
 	case BUS_NOTE:
 		log_notice(lane->engine->log, "%s: %s", lane->port->target, event->text);
 		break;
