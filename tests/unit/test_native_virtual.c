@@ -3,99 +3,17 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/native/native.h"
-#include "hal/path.h"
-#include "tests/unit/wire_link.h"
+#include "tests/unit/native_scene.h"
 #include "unity.h"
-
-static struct host host;
-static struct bus *bus;
-static struct bus_req req[256];
-static uint8_t data[256][4096];
-static char path[256][128];
-static uint32_t next_id;
 
 void setUp(void)
 {
-	host_init_virtual(&host);
-	next_id = 0;
+	native_begin();
 }
 
 void tearDown(void)
 {
-	bus_destroy(bus);
-	bus = NULL;
-	wire_clear();
-}
-
-static void start(void)
-{
-	bus = wire_open();
-	TEST_ASSERT_TRUE(host_run_events(&host, bus, 1, host.now + HOST_S));
-	TEST_ASSERT_EQUAL_UINT8(BUS_UP, host.event[0].news);
-}
-
-static uint32_t ask(enum bus_op op, enum bus_prio prio, bool fresh, const char *what,
-                    const char *text)
-{
-	uint32_t id = next_id++;
-
-	snprintf(path[id], sizeof(path[id]), "%s", what);
-	req[id] = (struct bus_req){.id = id, .op = (uint8_t)op, .prio = (uint8_t)prio, .fresh = fresh,
-	                           .path = path[id], .data = data[id], .len = sizeof(data[id]),
-	                           .deadline_ns = host.now + 20 * HOST_S};
-	memset(data[id], 0, sizeof(data[id]));
-	if (op == BUS_WRITE) {
-		req[id].len = (uint32_t)strlen(text);
-		memcpy(data[id], text, strlen(text));
-	}
-	TEST_ASSERT_EQUAL_INT(0, bus_submit(bus, &req[id]));
-	return id;
-}
-
-static const struct bus_answer *answer_to(uint32_t id)
-{
-	int64_t until = host.now + 21 * HOST_S;
-
-	while (!host_answer(&host, id) && host.now < until)
-		host_run_answers(&host, bus, host.answers + 1, until);
-	TEST_ASSERT_EQUAL_UINT(1, host_answers(&host, id));
-	return host_answer(&host, id);
-}
-
-static void expect(bool fresh, const char *what, const char *text)
-{
-	uint32_t id = ask(BUS_READ, BUS_INPUT, fresh, what, NULL);
-
-	TEST_ASSERT_EQUAL_INT_MESSAGE(0, answer_to(id)->err, what);
-	TEST_ASSERT_EQUAL_STRING_MESSAGE(text, (char *)data[id], what);
-	TEST_ASSERT_EQUAL_UINT_MESSAGE(strlen(text), answer_to(id)->len, what);
-}
-
-static int result(enum bus_op op, const char *what, const char *text)
-{
-	return answer_to(ask(op, BUS_INPUT, true, what, text))->err;
-}
-
-static const char *name_of(const struct sim_slave *slave)
-{
-	static char names[4][40];
-	static unsigned turn;
-	char *name = names[turn++ % 4];
-
-	name[0] = '/';
-	rom_print(slave->rom, ROM_F_I, name + 1);
-	return name;
-}
-
-static const char *of(const struct sim_slave *slave, const char *property)
-{
-	static char paths[4][100];
-	static unsigned turn;
-	char *text = paths[turn++ % 4];
-
-	snprintf(text, 100, "%s/%s", name_of(slave), property);
-	return text;
+	native_end();
 }
 
 static void test_settings_and_system_have_their_names(void)
@@ -150,8 +68,7 @@ static void test_every_virtual_property_that_is_listed_can_be_read(void)
 	while (left) {
 		char at[100], *line, *rest;
 
-		next_id = 0;
-		host.answers = 0;
+		forget();
 		snprintf(at, sizeof(at), "%s", todo[--left]);
 		uint32_t id = ask(BUS_DIR, BUS_INPUT, true, at, NULL);
 		if (answer_to(id)->err == -ENOTDIR) {
