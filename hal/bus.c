@@ -7,6 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* How often a suspended bus looks whether its target is there again. */
+#define LOOK_NS INT64_C(3000000000)
+
 static const struct bus_ops *backend_of(const char *word, size_t len)
 {
 	for (const struct bus_ops *const *ops = bus_backends; *ops; ops++)
@@ -62,6 +65,10 @@ int bus_create(const char *target, const struct bus_env *env, struct bus **bus, 
 
 	if (why_size)
 		why[0] = '\0';
+	if (strcmp(target, "auto") == 0) {
+		snprintf(why, why_size, "stands for several targets: name one of them");
+		return -EINVAL;
+	}
 	if (!ops) {
 		if (target[0] != '[' && colon && is_bare_ipv6(target, colon)) {
 			snprintf(why, why_size,
@@ -85,6 +92,7 @@ int bus_init(struct bus *bus, const struct bus_ops *ops, const struct bus_env *e
 {
 	assert(ops->depth >= 1 && ops->depth <= BUS_MAX_DEPTH);
 	assert(!ops->exec != !(ops->submit && ops->step));
+	assert(ops->exec || ops->suspend);
 	*bus = (struct bus){ .ops = ops, .env = env };
 	if (!ops->exec)
 		return 0;
@@ -156,21 +164,62 @@ static void exec_next(struct bus *bus)
 	bus->env->answer(bus->env->ctx, &answer);
 }
 
+static void tell(struct bus *bus, enum bus_news news)
+{
+	const struct bus_event event = { .news = (uint8_t)news };
+
+	bus->env->event(bus->env->ctx, &event);
+}
+
 /* A bus that has no step cannot be down. */
 static void tell_up(struct bus *bus)
 {
-	const struct bus_event up = { .news = BUS_UP };
-
 	if (bus->told_up || bus->ops->step)
 		return;
 	bus->told_up = true;
-	bus->env->event(bus->env->ctx, &up);
+	tell(bus, BUS_UP);
+}
+
+static void refuse_all(struct bus *bus)
+{
+	while (bus->count) {
+		struct bus_answer answer = { .id = take(bus, 0)->id, .err = -ENOTCONN };
+
+		bus->env->answer(bus->env->ctx, &answer);
+	}
+}
+
+static int64_t look(struct bus *bus, int64_t now)
+{
+	int there;
+
+	if (now < bus->look_ns)
+		return bus->look_ns;
+	there = bus->ops->there ? bus->ops->there(bus) : 1;
+	if (there == -EAGAIN)
+		return now;
+	if (there > 0 && !bus->there)
+		tell(bus, BUS_BACK);
+	bus->there = there > 0;
+	bus->look_ns = bus->env->now(bus->env->ctx) + LOOK_NS;
+	return bus->look_ns;
+}
+
+static int64_t step_suspended(struct bus *bus, int64_t now)
+{
+	if (bus->ops->exec)
+		refuse_all(bus);
+	else
+		bus->ops->step(bus, now);
+	return look(bus, now);
 }
 
 int64_t bus_step(struct bus *bus, int64_t now)
 {
 	int64_t next = INT64_MAX;
 
+	if (bus->suspended)
+		return step_suspended(bus, now);
 	if (!bus->ops->exec)
 		return bus->ops->step(bus, now);
 	tell_up(bus);
@@ -200,8 +249,19 @@ int bus_cancel(struct bus *bus, uint32_t id)
 
 void bus_suspend(struct bus *bus, bool yes)
 {
+	if (bus->suspended == yes)
+		return;
+	bus->suspended = yes;
 	if (bus->ops->suspend)
 		bus->ops->suspend(bus, yes);
+	bus->told_up = false;
+	if (!yes)
+		return;
+	if (bus->ops->exec)
+		refuse_all(bus);
+	tell(bus, BUS_RELEASED);
+	bus->there = false;
+	bus->look_ns = 0;
 }
 
 const struct bus_counter *bus_counters(struct bus *bus, size_t *n)

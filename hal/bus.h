@@ -103,11 +103,12 @@ struct bus_answer {
 #define BUS_DETAIL_SIMULATED 0x01 /* the device is not real */
 #define BUS_DETAIL_CACHED    0x02 /* from a cache: measured_ns is older than the answer */
 
+#define BUS_EVENT_TEXT 140
 struct bus_event {
 	uint8_t news; /* enum bus_news */
 	uint8_t rom[8];
 	int32_t err;
-	char text[116];
+	char text[BUS_EVENT_TEXT];
 };
 
 /* What the host gives a backend: all that a backend may use to wait or to tell. */
@@ -178,11 +179,18 @@ struct bus_ops {
 	/* 0: taken out, answered -ECANCELED. -EBUSY: already on its way. -ENOENT: not here. */
 	int (*cancel)(struct bus *bus, uint32_t id);
 	/*
-	 * Let go of the hardware (true): BUS_RELEASED follows, and until it is taken again requests
-	 * are answered -ENOTCONN. Take it again (false): BUS_UP or BUS_DOWN follows. NULL: nothing to
-	 * let go of.
+	 * Let go of the hardware (true), which is done when it returns; take it again (false): the
+	 * steps that follow tell BUS_UP or BUS_DOWN. Meanwhile there is no exec, and submit and step of
+	 * an overlapping bus answer -ENOTCONN. NULL, for a simple bus: nothing to let go of.
 	 */
 	void (*suspend)(struct bus *bus, bool yes);
+	/*
+	 * Suspended: is the target there, as far as can be seen without touching the wire? 1, 0, or
+	 * -EAGAIN: it is still looking and wants to be called again. As bounded as a step. A target
+	 * that failed although it was to be seen is there again only when what is seen has changed.
+	 * NULL: always.
+	 */
+	int (*there)(struct bus *bus);
 	/* The running totals, to be read with bus_counted(); *n gets their count. NULL: none. */
 	const struct bus_counter *(*counters)(struct bus *bus, size_t *n);
 };
@@ -195,6 +203,9 @@ struct bus {
 	struct bus_req **queue; /* simple tier: requests not yet begun */
 	unsigned head, count;
 	bool told_up; /* simple tier without step: it is up from its first step on */
+	bool suspended;
+	bool there;      /* suspended: BUS_BACK was told */
+	int64_t look_ns; /* ... and when the target is looked for again */
 };
 
 /* All backends of this build, NULL at the end. */
@@ -222,6 +233,11 @@ unsigned bus_depth(const struct bus *bus);
 int bus_submit(struct bus *bus, struct bus_req *req);
 int64_t bus_step(struct bus *bus, int64_t now);
 int bus_cancel(struct bus *bus, uint32_t id);
+/*
+ * Let go of the hardware: BUS_RELEASED is told before it returns. From then on requests are
+ * answered -ENOTCONN and nothing touches the wire; bus_step() looks for the target every few
+ * seconds and tells BUS_BACK once when it comes. false: take the hardware again; BUS_UP or BUS_DOWN follows.
+ */
 void bus_suspend(struct bus *bus, bool yes);
 const struct bus_counter *bus_counters(struct bus *bus, size_t *n);
 

@@ -95,8 +95,15 @@ struct link_master_ops {
 	/* At the first lasting error, or the kernel cannot finish an unplugging. */
 	void (*close)(struct link_master *master);
 	/*
+	 * Closed: does it look as if open() could work? 1 or 0, never touching the hardware. *mark
+	 * differs where something else is seen than before (a device file made anew, a driver bound or
+	 * unbound). NULL: that cannot be seen.
+	 */
+	int (*there)(struct link_master *master, uint64_t *mark);
+	/*
 	 * Optional. Take chips that belong here and could not be taken at open(): their channels come
-	 * behind those that are there. 1: some are still missing, why names one; 0: none is. -ENODEV,
+	 * behind those that are there. 1: some are still missing, or may yet come, and why names one
+	 * that is; 0: none is. -ENODEV,
 	 * -ECANCELED.
 	 */
 	int (*grow)(struct link_master *master, char *why, size_t why_size);

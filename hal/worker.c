@@ -46,6 +46,8 @@ struct worker {
 	int wake_fd;
 	uint32_t sleeping; /* the thread waits for orders: wake it */
 	uint32_t stopping;
+	/* Turns of bus_suspend() asked for and done: odd ones suspend, even ones take again. */
+	uint32_t turns_asked, turns_done;
 
 	bool started;
 	pthread_t thread;
@@ -176,6 +178,19 @@ static void take_orders(struct worker *worker)
 	}
 }
 
+static bool has_turn(const struct worker *worker)
+{
+	return __atomic_load_n(&worker->turns_asked, __ATOMIC_SEQ_CST) != worker->turns_done;
+}
+
+static void take_turns(struct worker *worker)
+{
+	while (has_turn(worker)) {
+		worker->turns_done++;
+		bus_suspend(worker->bus, worker->turns_done & 1);
+	}
+}
+
 static void sleep_until(struct worker *worker, int64_t until_ns)
 {
 	/* On one CPU the engine, whom the bell woke, runs now; its next order saves a sleep. */
@@ -183,7 +198,7 @@ static void sleep_until(struct worker *worker, int64_t until_ns)
 	if (ring_used(&worker->orders))
 		return;
 	__atomic_store_n(&worker->sleeping, 1, __ATOMIC_SEQ_CST);
-	if (!ring_used(&worker->orders) && !is_stopping(worker))
+	if (!ring_used(&worker->orders) && !has_turn(worker) && !is_stopping(worker))
 		poll_once(worker, -1, 0, until_ns);
 	__atomic_store_n(&worker->sleeping, 0, __ATOMIC_SEQ_CST);
 }
@@ -198,6 +213,7 @@ static void *run(void *arg)
 		int64_t next;
 
 		take_orders(worker);
+		take_turns(worker);
 		left = ring_used(&worker->orders);
 		next = bus_step(worker->bus, clock_ns(CLOCK_BOOTTIME));
 		/* Orders that the bus had no room for wait for its next step. */
@@ -324,6 +340,16 @@ int worker_submit(struct worker *worker, struct bus_req *req)
 int worker_cancel(struct worker *worker, uint32_t id)
 {
 	return give_order(worker, &(struct order){ .id = id }, worker->orders.size);
+}
+
+void worker_suspend(struct worker *worker, bool yes)
+{
+	uint32_t turns = worker->turns_asked;
+
+	if ((turns & 1) == yes)
+		return;
+	__atomic_store_n(&worker->turns_asked, turns + 1, __ATOMIC_SEQ_CST);
+	wake(worker);
 }
 
 bool worker_next(struct worker *worker, struct worker_message *message)

@@ -39,6 +39,12 @@ int worker_submit(struct worker *worker, struct bus_req *req);
  * is told by the request's one answer: -ECANCELED, or what it would have been anyway.
  */
 int worker_cancel(struct worker *worker, uint32_t id);
+/*
+ * Engine thread only, or before worker_start() for a bus that starts suspended: bus_suspend() on
+ * the worker's thread, in the order asked for. Never blocks and cannot fail; a worker that is stuck
+ * in the kernel carries it out when it comes back.
+ */
+void worker_suspend(struct worker *worker, bool yes);
 /* Engine thread only: the next message, false when there is none. */
 bool worker_next(struct worker *worker, struct worker_message *message);
 

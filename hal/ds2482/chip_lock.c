@@ -47,3 +47,10 @@ void chip_unlock(int fd, uint8_t address)
 	(void)fcntl(fd, F_SETLK, &name);
 	(void)fcntl(fd, F_OFD_SETLK, &lock);
 }
+
+bool chip_locked(int fd, uint8_t address)
+{
+	struct flock lock = at(F_WRLCK, address);
+
+	return fcntl(fd, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+}

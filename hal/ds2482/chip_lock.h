@@ -7,6 +7,7 @@
 #ifndef HAL_DS2482_CHIP_LOCK_H
 #define HAL_DS2482_CHIP_LOCK_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /*
@@ -15,5 +16,7 @@
  */
 int chip_lock(int fd, uint8_t address, int *holder);
 void chip_unlock(int fd, uint8_t address);
+/* Would chip_lock() find it taken? */
+bool chip_locked(int fd, uint8_t address);
 
 #endif

@@ -46,6 +46,13 @@ struct ds2482_source {
 	/* As link_master_ops.open. */
 	int (*open)(void *ctx, const struct bus_env *env, struct i2c_adapter **adapter, char *why,
 	            size_t why_size);
+	/*
+	 * As link_master_ops.there, of the chips whose bits are set (bit 0: 0x18); 0: which ones are
+	 * meant is not known. NULL: that cannot be seen.
+	 */
+	int (*there)(void *ctx, const struct bus_env *env, uint8_t chips, uint64_t *mark);
+	/* What to do about a chip that a kernel driver has. NULL: there are no such drivers. */
+	void (*explain)(void *ctx, uint8_t address, char *why, size_t why_size);
 	void (*destroy)(void *ctx);
 	const char *name; /* "/dev/i2c-1", for messages */
 	void *ctx;
@@ -79,6 +86,7 @@ int ds2482_create(const struct link_master_ops *ops, const struct bus_env *env,
 int ds2482_open(struct link_master *master, char *why, size_t why_size);
 int ds2482_grow(struct link_master *master, char *why, size_t why_size);
 void ds2482_close(struct link_master *master);
+int ds2482_there(struct link_master *master, uint64_t *mark);
 unsigned ds2482_channels(struct link_master *master);
 struct link *ds2482_channel(struct link_master *master, unsigned n);
 void ds2482_destroy(struct link_master *master);

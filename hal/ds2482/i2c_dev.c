@@ -126,8 +126,10 @@ static int read_byte(struct i2c_adapter *base, uint8_t address)
 static int claim(struct i2c_adapter *base, uint8_t address)
 {
 	struct i2c_dev *dev = (struct i2c_dev *)base;
-	int err = set_address(dev, address);
+	int err;
 
+	dev->address = -1; /* the kernel is asked anew */
+	err = set_address(dev, address);
 	return err ? err : chip_lock(dev->fd, address, &base->holder);
 }
 

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Scheme "i2c": `i2c:/dev/i2c-1`, `i2c:/dev/i2c-1:0x18`, `i2c:/dev/i2c-1:0x18.3`. */
+/* Scheme "i2c": `i2c:/dev/i2c-1`, `i2c:/dev/i2c-1:0x18`, `i2c:/dev/i2c-1:0x18.3`, `i2c:auto`. */
 #include "ds2482.h"
+#include "every.h"
 #include "i2c_dev.h"
+#include "look.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -45,19 +47,62 @@ static int open_adapter(void *ctx, const struct bus_env *env, struct i2c_adapter
 	return err;
 }
 
+static void explain(void *ctx, uint8_t address, char *why, size_t why_size)
+{
+	char driver[32], client[24];
+
+	i2c_driver(ctx, I2C_SYS_ROOT, address, driver, sizeof(driver), client, sizeof(client));
+	if (driver[0])
+		snprintf(why, why_size,
+		         "0x%02x on %s is claimed by the kernel's %s driver: use target w1, or "
+		         "echo %s > /sys/bus/i2c/drivers/%s/unbind",
+		         (unsigned)address, (const char *)ctx, driver, client, driver);
+	else
+		snprintf(why, why_size,
+		         "0x%02x on %s is claimed by a kernel driver: use target w1, or unbind it",
+		         (unsigned)address, (const char *)ctx);
+}
+
+static int there(void *ctx, const struct bus_env *env, uint8_t chips, uint64_t *mark)
+{
+	(void)env;
+	return i2c_look(ctx, I2C_SYS_ROOT, chips, mark);
+}
+
+static unsigned list_adapters(void *ctx, unsigned *numbers, unsigned max)
+{
+	(void)ctx;
+	return i2c_list(I2C_DEV_ROOT, numbers, max);
+}
+
+static int make_adapter(void *ctx, unsigned number, const struct bus_env *env,
+                        struct link_master **master)
+{
+	char where[32], why[100];
+
+	(void)ctx;
+	snprintf(where, sizeof(where), I2C_DEV_ROOT "/i2c-%u", number);
+	return ds2482_i2c_master.create(where, env, master, why, sizeof(why));
+}
+
 static int create(const char *where, const struct bus_env *env, struct link_master **master,
                   char *why, size_t why_size)
 {
 	size_t len = strcspn(where, ":");
-	struct ds2482_source source = {.open = open_adapter, .destroy = free};
-	char *path = malloc(len + 1);
+	struct ds2482_source source = {
+		.open = open_adapter, .there = there, .explain = explain, .destroy = free};
+	static const struct every_source every = {.list = list_adapters, .make = make_adapter};
+	char *path;
 
+	if (strcmp(where, "auto") == 0)
+		return every_create(env, &every, master);
+	path = malloc(len + 1);
 	if (!path)
 		return -ENOMEM;
 	memcpy(path, where, len);
 	path[len] = '\0';
 	if (path[0] != '/') {
-		snprintf(why, why_size, "\"%s\": expected an adapter, as /dev/i2c-1", where);
+		snprintf(why, why_size, "\"%s\": expected auto, or an adapter as /dev/i2c-1", where);
 		free(path);
 		return -EINVAL;
 	}
@@ -73,6 +118,7 @@ const struct link_master_ops ds2482_i2c_master = {
 	.open = ds2482_open,
 	.grow = ds2482_grow,
 	.close = ds2482_close,
+	.there = ds2482_there,
 	.channels = ds2482_channels,
 	.channel = ds2482_channel,
 	.destroy = ds2482_destroy,

@@ -198,7 +198,9 @@ static int link_recover(struct link *base, enum link_rung rung)
 	case LINK_CHIP_RESET:
 		for (unsigned i = 0; i < chip->channels; i++)
 			chip->link[i].speed = LINK_STANDARD;
-		return ds2482_setup(chip);
+		/* A kernel driver may have taken it, and then this is what its reset looks like. */
+		err = chip->master->adapter->ops->claim(chip->master->adapter, chip->address);
+		return err ? err : ds2482_setup(chip);
 	case LINK_POWER_CYCLE:
 		return power_cycle(link);
 	case LINK_REOPEN:

@@ -103,9 +103,10 @@ static void explain(const struct ds2482_master *master, int err, int address, ch
 		         name, holder);
 		break;
 	case -EBUSY:
-		snprintf(why, size,
-		         "0x%02x on %s belongs to a kernel driver: use target w1, or unbind ds2482",
-		         (unsigned)address, name);
+		if (master->source.explain)
+			master->source.explain(master->source.ctx, (uint8_t)address, why, size);
+		else
+			snprintf(why, size, "a driver has 0x%02x on %s", (unsigned)address, name);
 		break;
 	case -ENXIO:
 		if (address >= 0)
@@ -260,6 +261,21 @@ int ds2482_open(struct link_master *base, char *why, size_t why_size)
 void ds2482_close(struct link_master *base)
 {
 	close_adapter((struct ds2482_master *)base);
+}
+
+int ds2482_there(struct link_master *base, uint64_t *mark)
+{
+	struct ds2482_master *master = (struct ds2482_master *)base;
+	unsigned chips = 0;
+
+	if (!master->source.there)
+		return 1;
+	if (master->address >= 0)
+		chips = 1u << (master->address - DS2482_FIRST_ADDRESS);
+	for (unsigned i = 0; master->address < 0 && i < DS2482_ADDRESSES; i++)
+		if (master->missing[i] || is_known(master, (uint8_t)(DS2482_FIRST_ADDRESS + i)))
+			chips |= 1u << i;
+	return master->source.there(master->source.ctx, base->env, (uint8_t)chips, mark);
 }
 
 unsigned ds2482_channels(struct link_master *base)

@@ -43,7 +43,7 @@ static void take_all_channels(struct native *native)
 void master_grow(struct native *native, int64_t now, int64_t *next)
 {
 	unsigned before = native->channels;
-	char why[100] = "";
+	char why[BUS_EVENT_TEXT] = "";
 
 	if (now >= native->grow_ns) {
 		int left = native->master->ops->grow(native->master, why, sizeof(why));
@@ -56,9 +56,9 @@ void master_grow(struct native *native, int64_t now, int64_t *next)
 		take_channels(native, before);
 		for (unsigned n = before; n < native->channels; n++)
 			native->channel[n].search_ns = now;
-		if (left && !native->grow_told)
+		if (*why && left && !native->grow_told)
 			native_event(native, BUS_NOTE, NULL, -ENXIO, why);
-		native->grow_told = left;
+		native->grow_told = left && *why;
 	}
 	if (native->grow_ns < *next)
 		*next = native->grow_ns;
@@ -66,11 +66,12 @@ void master_grow(struct native *native, int64_t now, int64_t *next)
 
 int64_t master_step(struct native *native, int64_t now)
 {
-	char why[100] = "";
+	char why[BUS_EVENT_TEXT] = "";
 
 	if (now < native->open_ns)
 		return native->open_ns;
 	int err = native->master->ops->open(native->master, why, sizeof(why));
+	native->down_err = err;
 	if (err) {
 		native->pause_ns = native->pause_ns ? native->pause_ns * 2 : PAUSE_MIN_NS;
 		if (native->pause_ns > PAUSE_MAX_NS)
@@ -97,6 +98,7 @@ void master_down(struct native *native, int err, const char *why)
 {
 	native->master->ops->close(native->master);
 	native->up = false;
+	native->down_err = err;
 	native->open_ns = native_now(native) + PAUSE_MIN_NS;
 	native->pause_ns = PAUSE_MIN_NS;
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
@@ -123,7 +125,7 @@ static void convert_again(struct native *native)
 
 static bool reopen(struct native *native)
 {
-	char why[100] = "";
+	char why[BUS_EVENT_TEXT] = "";
 
 	native->master->ops->close(native->master);
 	int err = native->master->ops->open(native->master, why, sizeof(why));
@@ -174,6 +176,8 @@ bool master_recover(struct native *native, unsigned n, int err)
 
 		if (done == -EOPNOTSUPP)
 			continue;
+		if (done == -EBUSY) /* no longer ours: opening it says whose it is */
+			channel->rung = LINK_REOPEN;
 		native_count(native, counts[rung]);
 		if (rung >= LINK_CHIP_RESET)
 			convert_again(native);

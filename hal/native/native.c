@@ -159,14 +159,46 @@ int native_cancel(struct bus *bus, uint32_t id)
 	return -ENOENT;
 }
 
+static int see(struct native *native, uint64_t *mark)
+{
+	*mark = 0;
+	return native->master->ops->there ? native->master->ops->there(native->master, mark) : 1;
+}
+
+static void refuse_all(struct native *native)
+{
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
+		if (native->jobs[i].req)
+			job_answer(native, &native->jobs[i], -ENOTCONN);
+}
+
+/*
+ * What is to be seen of a master may be there while the chip behind it is not: then nothing but a
+ * change of it is a reason to try again.
+ */
 void native_suspend(struct bus *bus, bool yes)
 {
 	struct native *native = (struct native *)bus;
 
 	if (yes && native->up)
 		master_down(native, 0, "suspended");
-	native->suspended = yes;
-	native->open_ns = 0;
+	if (yes) {
+		refuse_all(native);
+		native->failed = native->down_err && see(native, &native->failed_mark) > 0;
+	}
+	native->told = false;
+	native->open_ns = native->pause_ns = 0;
+}
+
+int native_there(struct bus *bus)
+{
+	struct native *native = (struct native *)bus;
+	uint64_t mark;
+	int there = see(native, &mark);
+
+	if (there <= 0 || mark != native->failed_mark)
+		native->failed = false;
+	return there > 0 && !native->failed;
 }
 
 static void expire(struct native *native, int64_t now, int64_t *next)
@@ -203,13 +235,6 @@ static struct job *pick(struct native *native, int64_t now, int64_t *next)
 			best = job;
 	}
 	return best;
-}
-
-static void refuse_all(struct native *native)
-{
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
-		if (native->jobs[i].req)
-			job_answer(native, &native->jobs[i], -ENOTCONN);
 }
 
 static void take_cost(struct native *native)
@@ -273,7 +298,7 @@ int64_t native_step(struct bus *bus, int64_t now)
 	struct native *native = (struct native *)bus;
 	int64_t next;
 
-	if (native->suspended) {
+	if (bus->suspended) {
 		refuse_all(native);
 		return INT64_MAX;
 	}

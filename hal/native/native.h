@@ -145,7 +145,10 @@ struct tally {
 struct native {
 	struct bus bus;
 	struct link_master *master;
-	bool up, suspended, told;
+	bool up, told;
+	int down_err; /* why it is down; 0: it was not opened, or let go of in order */
+	bool failed;  /* suspended: it failed with what is to be seen of it at that time */
+	uint64_t failed_mark;
 	unsigned hunter; /* the channel whose turn to be searched is next */
 	unsigned channels;
 	struct channel channel[NATIVE_CHANNELS];
@@ -189,11 +192,12 @@ int native_submit(struct bus *bus, struct bus_req *req);
 int64_t native_step(struct bus *bus, int64_t now);
 int native_cancel(struct bus *bus, uint32_t id);
 void native_suspend(struct bus *bus, bool yes);
+int native_there(struct bus *bus);
 const struct bus_counter *native_counters(struct bus *bus, size_t *n);
 #define NATIVE_BUS_SLOTS                                                                  \
 	.depth = NATIVE_DEPTH, .searches = true, .destroy = native_destroy,               \
 	.submit = native_submit, .step = native_step, .cancel = native_cancel,            \
-	.suspend = native_suspend, .counters = native_counters
+	.suspend = native_suspend, .there = native_there, .counters = native_counters
 
 /* --- Shared between the parts --- */
 int64_t native_now(const struct native *native);

@@ -50,7 +50,7 @@ struct late_bus {
 	struct bus *table;
 	uint32_t option[OPTIONS];
 	uint32_t random;
-	bool up;
+	bool up, is_told;
 	int64_t turn_ns; /* when the target goes or comes */
 	struct late_slot slot[LATE_DEPTH];
 	struct late_echo echo[LATE_ECHOES];
@@ -183,7 +183,7 @@ static void give(struct late_bus *late, struct late_slot *slot, int64_t now)
 		real.path += strlen("/twice");
 	else if (is_below(&real, "/late"))
 		real.path += strlen("/late");
-	if (!late->up)
+	if (!late->up || late->bus.suspended)
 		answer.err = -ENOTCONN;
 	else if (now >= real.deadline_ns)
 		answer.err = -ETIME;
@@ -197,13 +197,19 @@ static void give(struct late_bus *late, struct late_slot *slot, int64_t now)
 
 static void turn(struct late_bus *late, int64_t now)
 {
-	struct bus_event event = { .news = late->up ? BUS_DOWN : BUS_UP,
-	                           .err = late->up ? -ECONNRESET : 0 };
-
 	late->up = !late->up;
+	late->is_told = false;
 	late->turn_ns = INT64_MAX;
 	if (late->option[UP])
 		late->turn_ns = now + (int64_t)late->option[late->up ? UP : DOWN] * MS;
+}
+
+static void tell(struct late_bus *late)
+{
+	struct bus_event event = { .news = late->up ? BUS_UP : BUS_DOWN,
+	                           .err = late->up ? 0 : -ECONNRESET };
+
+	late->is_told = true;
 	snprintf(event.text, sizeof(event.text), "late: the target %s",
 	         late->up ? "is there" : "went away");
 	late->bus.env->event(late->bus.env->ctx, &event);
@@ -216,6 +222,8 @@ static int64_t late_step(struct bus *bus, int64_t now)
 
 	if (now >= late->turn_ns)
 		turn(late, now);
+	if (!late->is_told && !bus->suspended)
+		tell(late);
 	next = late->turn_ns;
 	for (unsigned i = 0; i < LATE_DEPTH; i++) {
 		struct late_slot *slot = &late->slot[i];
@@ -259,6 +267,22 @@ static int late_cancel(struct bus *bus, uint32_t id)
 	return -ENOENT;
 }
 
+/* What was lent is answered now, but for what is never answered. */
+static void late_suspend(struct bus *bus, bool yes)
+{
+	struct late_bus *late = (struct late_bus *)bus;
+
+	late->is_told = false;
+	for (unsigned i = 0; yes && i < LATE_DEPTH; i++)
+		if (late->slot[i].req && !late->slot[i].never)
+			give(late, &late->slot[i], bus->env->now(bus->env->ctx));
+}
+
+static int late_there(struct bus *bus)
+{
+	return ((struct late_bus *)bus)->up;
+}
+
 const struct bus_ops late_bus = {
 	.scheme = "late",
 	.summary = "the null bus with answers late, out of order, twice and never",
@@ -268,4 +292,6 @@ const struct bus_ops late_bus = {
 	.submit = late_submit,
 	.step = late_step,
 	.cancel = late_cancel,
+	.suspend = late_suspend,
+	.there = late_there,
 };

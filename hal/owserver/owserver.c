@@ -38,7 +38,7 @@ struct owserver {
 	struct bus bus;
 	enum state state;
 	int64_t retry_ns, backoff_ns, give_up_ns, look_ns;
-	bool was_up, is_down_told, suspended, simulated;
+	bool was_up, is_down_told, simulated;
 	struct bus_event loss; /* to be told by the next step, if text is set */
 	struct bus_counter counter[COUNTERS];
 	struct talk talk;
@@ -103,7 +103,7 @@ static void go_down(struct owserver *server, int err, const char *text)
 	server->backoff_ns *= 2;
 	if (server->backoff_ns > BACKOFF_MAX)
 		server->backoff_ns = BACKOFF_MAX;
-	if (server->is_down_told)
+	if (server->is_down_told || server->bus.suspended)
 		return;
 	server->is_down_told = true;
 	server->loss = (struct bus_event){ .news = BUS_DOWN, .err = err };
@@ -195,6 +195,10 @@ static void go_on_greeting(struct owserver *server)
 {
 	int err = talk_receive(&server->talk, slice_end(server));
 
+	if (err == 0 && server->bus.suspended) {
+		server->state = UP;
+		return;
+	}
 	if (err == 0)
 		err = simulated_ask(&server->talk, now_of(server) + NAMES_NS, &server->simulated);
 	if (err == 0)
@@ -230,8 +234,6 @@ static int64_t owserver_step(struct bus *bus, int64_t now)
 	struct owserver *server = (struct owserver *)bus;
 
 	tell_loss(server);
-	if (server->suspended)
-		return INT64_MAX;
 	switch (server->state) {
 	case DOWN:
 		if (now >= server->retry_ns)
@@ -265,12 +267,45 @@ static void owserver_suspend(struct bus *bus, bool yes)
 {
 	struct owserver *server = (struct owserver *)bus;
 
-	server->suspended = yes;
-	if (!yes)
-		return;
+	if (yes)
+		tell_loss(server);
 	connection_close(&server->talk.connection);
 	server->state = DOWN;
 	server->retry_ns = 0;
+	server->backoff_ns = BACKOFF_MIN;
+	server->was_up = server->is_down_told = false;
+}
+
+/* A NOP is answered without a look at the wire, and not by a server that hangs. */
+static int owserver_there(struct bus *bus)
+{
+	struct owserver *server = (struct owserver *)bus;
+
+	switch (server->state) {
+	case DOWN:
+		begin_connect(server);
+		break;
+	case CONNECTING:
+		go_on_connecting(server);
+		break;
+	case GREETING:
+		go_on_greeting(server);
+		break;
+	case UP:
+		break;
+	}
+	switch (server->state) {
+	case DOWN:
+		return 0;
+	case CONNECTING:
+	case GREETING:
+		return -EAGAIN;
+	case UP:
+		break;
+	}
+	connection_close(&server->talk.connection);
+	server->state = DOWN;
+	return 1;
 }
 
 /* --- Requests --------------------------------------------------------------------------------- */
@@ -421,5 +456,6 @@ const struct bus_ops owserver_bus = {
 	.exec = owserver_exec,
 	.step = owserver_step,
 	.suspend = owserver_suspend,
+	.there = owserver_there,
 	.counters = owserver_counters,
 };

@@ -32,6 +32,15 @@ static int open_adapter(void *ctx, const struct bus_env *env, struct i2c_adapter
 	return 0;
 }
 
+static int there(void *ctx, const struct bus_env *env, uint8_t chips, uint64_t *mark)
+{
+	struct simulation *simulation = ctx;
+
+	(void)chips, (void)mark;
+	sim_net_run(&simulation->net, env->now(env->ctx));
+	return simulation->net.plugged;
+}
+
 static void destroy_simulation(void *ctx)
 {
 	struct simulation *simulation = ctx;
@@ -55,7 +64,8 @@ static int create(const char *where, const struct bus_env *env, struct link_mast
 	size_t len = (size_t)(chip - where);
 	struct simulation *simulation = calloc(1, sizeof(*simulation) + len + 1);
 	struct ds2482_source source = {
-		.open = open_adapter, .destroy = destroy_simulation, .ctx = simulation};
+		.open = open_adapter, .there = there, .destroy = destroy_simulation,
+		.ctx = simulation};
 	int err;
 
 	if (!simulation)
@@ -89,6 +99,7 @@ const struct link_master_ops sim_master = {
 	.open = ds2482_open,
 	.grow = ds2482_grow,
 	.close = ds2482_close,
+	.there = ds2482_there,
 	.channels = ds2482_channels,
 	.channel = ds2482_channel,
 	.destroy = ds2482_destroy,

@@ -44,5 +44,6 @@ const struct bus_ops w1_bus = {
 	.step = step,
 	.cancel = native_cancel,
 	.suspend = native_suspend,
+	.there = native_there,
 	.counters = native_counters,
 };

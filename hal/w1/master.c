@@ -126,6 +126,22 @@ static void close_masters(struct link_master *base)
 	((struct w1_master *)base)->count = 0;
 }
 
+/* Directories say what is there without a look at any wire. */
+static int there(struct link_master *base, uint64_t *mark)
+{
+	const struct w1_master *master = (const struct w1_master *)base;
+	unsigned first = master->only ? master->only : 1;
+	unsigned last = master->only ? master->only : W1_MASTERS;
+	char name[24];
+
+	for (unsigned n = first; n <= last; n++) {
+		w1_master_name(n, name);
+		if (w1_exists(master, name, ""))
+			*mark |= UINT64_C(1) << n % 64;
+	}
+	return *mark != 0;
+}
+
 static unsigned channels(struct link_master *base)
 {
 	return ((struct w1_master *)base)->count;
@@ -218,6 +234,7 @@ const struct link_master_ops w1_master = {
 	.create = create,
 	.open = open_masters,
 	.close = close_masters,
+	.there = there,
 	.channels = channels,
 	.channel = channel,
 	.destroy = destroy,

@@ -63,7 +63,8 @@ static const struct link_master_ops ops = {
 
 static int try_open(const char *scenario, const char *where)
 {
-	const struct ds2482_source source = {open_adapter, forget, "test", NULL};
+	const struct ds2482_source source = {
+		.open = open_adapter, .destroy = forget, .name = "test"};
 	int err = sim_scenario_parse("test", scenario, &net, why, sizeof(why));
 
 	TEST_ASSERT_EQUAL_INT_MESSAGE(0, err, why);
@@ -281,7 +282,8 @@ static void test_a_where_that_is_none_is_refused(void)
 {
 	static const char *const wrong[] = {":", ":0x17", ":0x20", ":0x18.8", ":0x18.", ":0x18.1x",
 	                                    "0x18", ":x"};
-	const struct ds2482_source source = {open_adapter, forget, "test", NULL};
+	const struct ds2482_source source = {
+		.open = open_adapter, .destroy = forget, .name = "test"};
 
 	for (unsigned i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++)
 		TEST_ASSERT_EQUAL_INT(-EINVAL, ds2482_create(&ops, &host.env, &source, wrong[i],
@@ -353,7 +355,8 @@ static int open_other(void *ctx, const struct bus_env *env, struct i2c_adapter *
 
 static void test_other_parts_never_get_a_second_byte(void)
 {
-	const struct ds2482_source source = {open_other, forget, "test", NULL};
+	const struct ds2482_source source = {
+		.open = open_other, .destroy = forget, .name = "test"};
 
 	second_bytes = 0;
 	for (unsigned value = 0; value < 256; value++) {
@@ -385,7 +388,8 @@ static void count_release(struct i2c_adapter *base, uint8_t address)
 
 static void test_a_chip_of_another_process_is_left_alone_and_said(void)
 {
-	const struct ds2482_source source = {open_other, forget, "test", NULL};
+	const struct ds2482_source source = {
+		.open = open_other, .destroy = forget, .name = "test"};
 	struct i2c_adapter_ops held_ops = other_ops;
 
 	held_ops.claim = held_claim;
@@ -401,6 +405,28 @@ static void test_a_chip_of_another_process_is_left_alone_and_said(void)
 	/* where nothing was found nobody is held off */
 	TEST_ASSERT_EQUAL_UINT(DS2482_ADDRESSES - 1, released);
 	other.ops = &other_ops;
+}
+
+static int driver_claim(struct i2c_adapter *base, uint8_t address)
+{
+	(void)base, (void)address;
+	return -EBUSY;
+}
+
+/* What looks like a restart may be a kernel driver that was bound to it: hands off. */
+static void test_a_chip_that_a_driver_took_is_not_reset(void)
+{
+	static struct i2c_adapter_ops taken;
+
+	start("chip DS2482-100 0x18\nDS18B20 28.A0B1C2000028 as t temperature 20\n");
+	event("reset 0x18");
+	TEST_ASSERT_EQUAL_INT(-ENXIO, wire->ops->reset(wire));
+	taken = *adapter.adapter.ops;
+	taken.claim = driver_claim;
+	adapter.adapter.ops = &taken;
+	uint64_t transfers = adapter.adapter.transfers;
+	TEST_ASSERT_EQUAL_INT(-EBUSY, wire->ops->recover(wire, LINK_CHIP_RESET));
+	TEST_ASSERT_EQUAL_UINT64(transfers, adapter.adapter.transfers);
 }
 
 static void test_a_chip_that_restarted_is_noticed_and_set_up_again(void)
@@ -726,6 +752,7 @@ int main(void)
 	RUN_TEST(test_a_where_that_is_none_is_refused);
 	RUN_TEST(test_other_parts_never_get_a_second_byte);
 	RUN_TEST(test_a_chip_of_another_process_is_left_alone_and_said);
+	RUN_TEST(test_a_chip_that_a_driver_took_is_not_reset);
 	RUN_TEST(test_a_chip_that_restarted_is_noticed_and_set_up_again);
 	RUN_TEST(test_a_stuck_chip_is_an_error_in_time_and_a_reset_frees_it);
 	RUN_TEST(test_a_process_that_was_not_scheduled_takes_no_chip_for_stuck);

@@ -2,10 +2,12 @@
 /* The owserver bus against a peer on loopback. Deadlines are short where one has to pass. */
 #include <dirent.h>
 #include <errno.h>
+#include <netinet/in.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include "tests/unit/host.h"
 #include "tests/unit/peer.h"
@@ -514,6 +516,50 @@ static void test_a_suspended_bus_lets_go_of_the_connection(void)
 	TEST_ASSERT_EQUAL_INT(0, read_temperature());
 }
 
+static unsigned backs_within(int64_t time_ns)
+{
+	host_run(&host, bus, host_now(&host) + time_ns);
+	return host_events(&host, BUS_BACK);
+}
+
+static void test_a_suspended_bus_sees_when_the_server_is_back(void)
+{
+	unsigned open_before;
+
+	start("");
+	stop_peer();
+	bus_suspend(bus, true);
+	open_before = descriptors();
+	TEST_ASSERT_EQUAL_UINT(0, backs_within(300 * HOST_MS));
+	peer_restart(&peer, "");
+	is_peer_up = true;
+	TEST_ASSERT_TRUE(host_run_events(&host, bus, host.events + 1, host_now(&host) + PATIENCE));
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_BACK));
+	TEST_ASSERT_EQUAL_UINT(0, peer_saw(&peer.requests));
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_DOWN));
+	stop_peer();
+	TEST_ASSERT_EQUAL_UINT(open_before, descriptors());
+}
+
+static void test_a_server_that_hangs_is_not_back(void)
+{
+	int fd = socket(AF_INET, SOCK_STREAM, 0);
+	struct sockaddr_in address = { .sin_family = AF_INET,
+	                               .sin_addr.s_addr = htonl(INADDR_LOOPBACK) };
+	socklen_t len = sizeof(address);
+	char target[32];
+
+	TEST_ASSERT_EQUAL_INT(0, bind(fd, (struct sockaddr *)&address, len));
+	TEST_ASSERT_EQUAL_INT(0, listen(fd, 4));
+	TEST_ASSERT_EQUAL_INT(0, getsockname(fd, (struct sockaddr *)&address, &len));
+	snprintf(target, sizeof(target), "127.0.0.1:%d", ntohs(address.sin_port));
+	bus = host_bus(&host, target);
+	bus_suspend(bus, true);
+	TEST_ASSERT_EQUAL_UINT(0, backs_within(400 * HOST_MS));
+	TEST_ASSERT_EQUAL_INT(-ENOTCONN, read_temperature());
+	close(fd);
+}
+
 static void test_any_mixture_of_faults_ends_in_one_answer_each_and_no_leak(void)
 {
 	static const char letters[] = "aaaafkrcxRmdshgnvwlt";
@@ -578,6 +624,8 @@ int main(void)
 	RUN_TEST(test_an_unknown_name_says_so);
 	RUN_TEST(test_shutdown_ends_a_request_at_once);
 	RUN_TEST(test_a_suspended_bus_lets_go_of_the_connection);
+	RUN_TEST(test_a_suspended_bus_sees_when_the_server_is_back);
+	RUN_TEST(test_a_server_that_hangs_is_not_back);
 	RUN_TEST(test_any_mixture_of_faults_ends_in_one_answer_each_and_no_leak);
 	return UNITY_END();
 }

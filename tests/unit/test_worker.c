@@ -21,6 +21,7 @@ static struct worker *worker;
 static struct bus_req req[REQUESTS];
 static uint8_t data[REQUESTS][32];
 static unsigned answers[REQUESTS], n_answers, n_events;
+static uint8_t news[64];
 static struct bus_answer last[REQUESTS];
 static int rung;
 
@@ -88,7 +89,7 @@ static void take(void)
 
 	while (worker_next(worker, &message)) {
 		if (message.is_event) {
-			n_events++;
+			news[n_events++ % sizeof(news)] = message.event.news;
 			continue;
 		}
 		TEST_ASSERT_LESS_THAN_UINT32(REQUESTS, message.answer.id);
@@ -311,6 +312,49 @@ static void test_the_thread_lets_faults_of_its_own_through(void)
 	TEST_ASSERT_EQUAL_INT(0, sigismember(&bell_mask, SIGBUS));
 }
 
+static void take_events_until(unsigned n)
+{
+	for (int64_t until = boottime() + 20 * S; n_events < n && boottime() < until; nap())
+		take();
+	TEST_ASSERT_GREATER_OR_EQUAL_UINT(n, n_events);
+}
+
+static void test_each_turn_of_a_suspension_is_carried_out_in_order(void)
+{
+	start_null(RING);
+	for (unsigned i = 0; i < 3; i++) {
+		worker_suspend(worker, true);
+		worker_suspend(worker, true); /* that is what it does */
+		worker_suspend(worker, false);
+	}
+	worker_suspend(worker, true);
+	TEST_ASSERT_EQUAL_INT(0, submit(1, TEMPERATURE));
+	take_until(1);
+	TEST_ASSERT_EQUAL_INT(-ENOTCONN, last[1].err);
+	worker_suspend(worker, false);
+	take_events_until(6); /* up, four times released, up, and what lies between them */
+	TEST_ASSERT_EQUAL_INT(0, submit(2, TEMPERATURE));
+	take_until(2);
+	TEST_ASSERT_EQUAL_INT(0, last[2].err);
+	TEST_ASSERT_EQUAL_UINT8(BUS_UP, news[n_events - 1]);
+}
+
+static void test_a_worker_may_start_suspended(void)
+{
+	char why[200] = "";
+
+	TEST_ASSERT_EQUAL_INT(0, worker_create("null:", "x", bell, &rung, &worker, why,
+	                                       sizeof(why)));
+	worker_suspend(worker, true);
+	TEST_ASSERT_EQUAL_INT(0, worker_start(worker));
+	take_events_until(2);
+	TEST_ASSERT_EQUAL_UINT8(BUS_RELEASED, news[0]);
+	TEST_ASSERT_EQUAL_UINT8(BUS_BACK, news[1]);
+	worker_suspend(worker, false);
+	take_events_until(3);
+	TEST_ASSERT_EQUAL_UINT8(BUS_UP, news[2]);
+}
+
 static void test_a_bad_target_is_refused_with_the_reason(void)
 {
 	char why[200] = "";
@@ -345,6 +389,8 @@ int main(void)
 	RUN_TEST(test_shutdown_ends_the_wait_for_a_reply);
 	RUN_TEST(test_the_thread_has_its_name_and_takes_no_signal);
 	RUN_TEST(test_the_thread_lets_faults_of_its_own_through);
+	RUN_TEST(test_each_turn_of_a_suspension_is_carried_out_in_order);
+	RUN_TEST(test_a_worker_may_start_suspended);
 	RUN_TEST(test_a_bad_target_is_refused_with_the_reason);
 	RUN_TEST(test_a_worker_that_never_ran_is_destroyed);
 	return UNITY_END();

@@ -40,7 +40,7 @@ echo ds2482 0x18 >$i2c/new_device
 echo ds2482 0x1b >$i2c/new_device
 run_owsd
 does "a chip that a kernel driver owns is said plainly" within $told_within \
-	said "0x1[8b] on /dev/i2c-0 belongs to a kernel driver: use target w1, or unbind ds2482"
+	said "0x1[8b] on /dev/i2c-0 is claimed by the kernel's ds2482 driver: use target w1, or echo 0-001[8b] > /sys/bus/i2c/drivers/ds2482/unbind"
 does "and the signals are not good" within $told_within bad warm
 echo 0x18 >$i2c/delete_device
 does "a chip that the driver let go of is served" within $back_within reads warm 21.0625

@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: MIT */
+#include "every.h"
+
+#include "ds2482.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define LINKS 64 /* as many as a native bus takes */
+
+struct every_adapter {
+	unsigned number;
+	struct link_master *master;
+	bool open;
+	uint64_t failed_mark; /* what was seen of it when it was opened in vain */
+};
+
+struct every_master {
+	struct link_master master; /* first */
+	struct every_source source;
+	struct every_adapter adapter[EVERY_ADAPTERS];
+	unsigned count;
+	struct link *link[LINKS];
+	unsigned links;
+};
+
+static struct every_adapter *adapter_of(struct every_master *every, unsigned number)
+{
+	struct every_adapter *adapter = &every->adapter[every->count];
+
+	for (unsigned i = 0; i < every->count; i++)
+		if (every->adapter[i].number == number)
+			return &every->adapter[i];
+	if (every->count == EVERY_ADAPTERS)
+		return NULL;
+	*adapter = (struct every_adapter){.number = number};
+	if (every->source.make(every->source.ctx, number, every->master.env, &adapter->master))
+		return NULL;
+	every->count++;
+	return adapter;
+}
+
+/* Links that are not known yet, behind those that are. Each chip has a number of its own. */
+static void take_links(struct every_master *every, const struct every_adapter *adapter)
+{
+	unsigned n = adapter->master->ops->channels(adapter->master);
+
+	for (unsigned i = 0; i < n; i++) {
+		struct link *link = adapter->master->ops->channel(adapter->master, i);
+		unsigned at = 0;
+
+		while (at < every->links && every->link[at] != link)
+			at++;
+		if (at < every->links || every->links == LINKS)
+			continue;
+		link->chip = (unsigned)(adapter - every->adapter) * DS2482_ADDRESSES +
+		             link->chip % DS2482_ADDRESSES;
+		every->link[every->links++] = link;
+	}
+}
+
+static int open_one(struct every_master *every, struct every_adapter *adapter, char *why,
+                    size_t why_size)
+{
+	int err = adapter->master->ops->open(adapter->master, why, why_size);
+
+	adapter->open = !err;
+	adapter->failed_mark = 0;
+	if (err)
+		(void)adapter->master->ops->there(adapter->master, &adapter->failed_mark);
+	else
+		take_links(every, adapter);
+	return err;
+}
+
+static void every_close(struct link_master *base)
+{
+	struct every_master *every = (struct every_master *)base;
+
+	for (unsigned i = 0; i < every->count; i++) {
+		if (every->adapter[i].open)
+			every->adapter[i].master->ops->close(every->adapter[i].master);
+		every->adapter[i].open = false;
+	}
+	every->links = 0;
+}
+
+/* A reason that says more than that there is no chip. */
+static bool is_telling(int err)
+{
+	return err != -ENXIO && err != -EIO && err != -ENODEV;
+}
+
+static int every_open(struct link_master *base, char *why, size_t why_size)
+{
+	struct every_master *every = (struct every_master *)base;
+	unsigned number[EVERY_ADAPTERS], n;
+	char reason[128];
+	int worst = -ENXIO;
+
+	n = every->source.list(every->source.ctx, number, EVERY_ADAPTERS);
+	if (!n) {
+		snprintf(why, why_size, "no /dev/i2c-*: switch I2C on (Raspberry Pi: "
+		         "dtparam=i2c_arm=on), load the module i2c-dev");
+		return -ENODEV;
+	}
+	snprintf(why, why_size, "no DS2482 answers at 0x18 to 0x1f on any of %u I2C adapters", n);
+	for (unsigned i = 0; i < n; i++) {
+		struct every_adapter *adapter = adapter_of(every, number[i]);
+		int err = adapter ? open_one(every, adapter, reason, sizeof(reason)) : -ENOMEM;
+
+		if (err == -ECANCELED || err == -ENOMEM) {
+			every_close(base);
+			return err;
+		}
+		if (!err || !is_telling(err) || is_telling(worst))
+			continue;
+		worst = err;
+		snprintf(why, why_size, "%s", reason);
+	}
+	return every->links ? 0 : worst;
+}
+
+static int grow_one(struct every_master *every, struct every_adapter *adapter, char *why,
+                    size_t why_size)
+{
+	uint64_t mark = 0;
+	int left;
+
+	if (adapter->open) {
+		left = adapter->master->ops->grow(adapter->master, why, why_size);
+		if (left >= 0)
+			take_links(every, adapter);
+		return left;
+	}
+	if (adapter->master->ops->there(adapter->master, &mark) <= 0 ||
+	    mark == adapter->failed_mark)
+		return 0;
+	left = open_one(every, adapter, why, why_size);
+	why[0] = '\0';
+	return left == -ECANCELED ? left : 0;
+}
+
+/* There may always come an adapter more. */
+static int every_grow(struct link_master *base, char *why, size_t why_size)
+{
+	struct every_master *every = (struct every_master *)base;
+	unsigned number[EVERY_ADAPTERS];
+	unsigned n = every->source.list(every->source.ctx, number, EVERY_ADAPTERS);
+	char reason[128] = "";
+
+	why[0] = '\0';
+	for (unsigned i = 0; i < n; i++) {
+		struct every_adapter *adapter = adapter_of(every, number[i]);
+		int left = adapter ? grow_one(every, adapter, reason, sizeof(reason)) : 0;
+
+		if (left)
+			snprintf(why, why_size, "%s", reason);
+		if (left < 0)
+			return left;
+	}
+	return 1;
+}
+
+static int every_there(struct link_master *base, uint64_t *mark)
+{
+	struct every_master *every = (struct every_master *)base;
+	unsigned number[EVERY_ADAPTERS];
+	unsigned n = every->source.list(every->source.ctx, number, EVERY_ADAPTERS);
+	int there = 0;
+
+	for (unsigned i = 0; i < n; i++) {
+		struct every_adapter *adapter = adapter_of(every, number[i]);
+
+		if (adapter)
+			there |= adapter->master->ops->there(adapter->master, mark);
+		*mark = (*mark ^ number[i]) * 31;
+	}
+	return there > 0;
+}
+
+static unsigned every_channels(struct link_master *base)
+{
+	return ((struct every_master *)base)->links;
+}
+
+static struct link *every_channel(struct link_master *base, unsigned n)
+{
+	struct every_master *every = (struct every_master *)base;
+
+	return n < every->links ? every->link[n] : NULL;
+}
+
+static void every_destroy(struct link_master *base)
+{
+	struct every_master *every = (struct every_master *)base;
+
+	for (unsigned i = 0; i < every->count; i++)
+		every->adapter[i].master->ops->destroy(every->adapter[i].master);
+	free(every);
+}
+
+static const struct link_master_ops every_ops = {
+	.scheme = "i2c",
+	.summary = "every DS2482 there is",
+	.open = every_open,
+	.grow = every_grow,
+	.close = every_close,
+	.there = every_there,
+	.channels = every_channels,
+	.channel = every_channel,
+	.destroy = every_destroy,
+};
+
+int every_create(const struct bus_env *env, const struct every_source *source,
+                 struct link_master **master)
+{
+	struct every_master *every = calloc(1, sizeof(*every));
+
+	if (!every)
+		return -ENOMEM;
+	every->master = (struct link_master){.ops = &every_ops, .env = env};
+	every->source = *source;
+	*master = &every->master;
+	return 0;
+}
