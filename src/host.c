@@ -79,6 +79,11 @@ static int submit(void *ctx, struct bus_req *req)
 	return worker_submit(ctx, req);
 }
 
+static void suspend(void *ctx, bool yes)
+{
+	worker_suspend(ctx, yes);
+}
+
 static bool take_messages(struct host *h, int64_t now_ns)
 {
 	struct worker_message message;
@@ -239,6 +244,7 @@ static void *engine_main(void *ctx)
 	return NULL;
 }
 
+/* Of several ways to one wire the first is open at the start. */
 static int create_workers(struct host *h, char *why, size_t why_size)
 {
 	int err = 0;
@@ -249,11 +255,13 @@ static int create_workers(struct host *h, char *why, size_t why_size)
 	if (!h->workers || !h->ports || !h->bus_counters)
 		return -ENOMEM;
 	for (unsigned i = 0; i < h->config->target_count && !err; i++) {
-		const char *target = h->config->targets[i].text;
-		char reason[256] = "";
+		const struct config_target *planned = &h->config->targets[i];
+		const char *target = planned->text;
+		char reason[256] = "", name[24];
 		size_t n = 0;
 
-		err = worker_create(target, "owsd-bus", ring, h, &h->workers[i], reason,
+		snprintf(name, sizeof(name), "owsd-bus%u", i);
+		err = worker_create(target, name, ring, h, &h->workers[i], reason,
 		                    sizeof(reason));
 		if (err) {
 			snprintf(why, why_size, "target %s: %s", target,
@@ -263,12 +271,16 @@ static int create_workers(struct host *h, char *why, size_t why_size)
 		h->worker_count++;
 		bus_counters(worker_bus(h->workers[i]), &n);
 		h->bus_counters[i] = (unsigned)n;
+		if (planned->relation == CONFIG_BAR)
+			worker_suspend(h->workers[i], true);
 		h->ports[i] = (struct engine_port){
 			.target = target,
 			.depth = bus_depth(worker_bus(h->workers[i])),
 			.searches = worker_bus(h->workers[i])->ops->searches,
 			.submit = submit,
 			.ctx = h->workers[i],
+			.group = planned->group,
+			.suspend = suspend,
 		};
 	}
 	return err;

@@ -52,12 +52,14 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 {
 	const struct config *config = m->config;
 	struct image_signal *signals = calloc((size_t)config->item_count + 1, sizeof(*signals));
-	const char **targets = calloc((size_t)config->target_count + 1, sizeof(*targets));
+	const char *targets[CONFIG_TARGETS_MAX];
+	uint32_t groups[CONFIG_TARGETS_MAX];
 	struct image_plan plan = {
 		.signals = signals,
 		.signal_count = config->item_count,
 		.targets = targets,
 		.target_count = config->target_count,
+		.groups = groups,
 		.counters = counters,
 		.counter_count = counter_count,
 		.generation = m->generation,
@@ -70,11 +72,13 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 	size_t size;
 	int err = -ENOMEM;
 
-	if (signals && targets) {
+	if (signals) {
 		for (unsigned i = 0; i < config->item_count; i++)
 			signal_table_image(&config->items[i], &signals[i]);
-		for (unsigned i = 0; i < config->target_count; i++)
+		for (unsigned i = 0; i < config->target_count; i++) {
 			targets[i] = config->targets[i].text;
+			groups[i] = config->targets[i].group;
+		}
 		size = image_size(&plan);
 		err = size ? segment_create(m->instance, SEGMENT_IMAGE, size, &m->image_segment)
 		           : -EFBIG;
@@ -82,7 +86,6 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 	if (!err)
 		image_build(&plan, m->image_segment.base, &m->image);
 	free(signals);
-	free(targets);
 	return err;
 }
 

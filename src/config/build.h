@@ -5,8 +5,7 @@
 
 #include "options.h"
 
-#define CONFIG_ITEMS_MAX   65535
-#define CONFIG_TARGETS_MAX 64
+#define CONFIG_ITEMS_MAX 65535
 
 /* What config_free() gets back from the struct config that is its member. */
 struct config_box {

@@ -51,9 +51,12 @@ enum config_relation {
 	CONFIG_COMMA, /* another wire */
 	CONFIG_BAR,   /* another way to the wire of the target before it */
 };
+#define CONFIG_TARGETS_MAX 16
+/* "auto" stands for its ways: an owserver here, else every DS2482, else the kernel's masters. */
 struct config_target {
 	const char *text; /* "localhost:4304"; never empty */
 	enum config_relation relation;
+	unsigned group; /* of the wire: counts the commas */
 	int line, column; /* of TargetName's value; 0: not of the file */
 };
 

@@ -10,8 +10,12 @@
 #define DEFAULT_PORT   "4304"
 #define TARGET_MAX     255
 
+#define AUTO           "auto"
+static const char *const auto_ways[] = {DEFAULT_TARGET, "i2c:auto", "w1"};
+#define AUTO_WAYS (unsigned)(sizeof(auto_ways) / sizeof(auto_ways[0]))
+
 /* Schemes and bare words that are no host; of owserver the scheme may be left out. */
-static const char *const schemes[] = {"i2c", "w1", "sim", "gpio", "null", "auto", NULL};
+static const char *const schemes[] = {"i2c", "w1", "sim", "gpio", "null", "late", NULL};
 
 static bool is_scheme(const char *text, size_t len)
 {
@@ -73,11 +77,17 @@ static void target_add(struct build *build, const char *text, size_t len,
 		return;
 	}
 	if (config->target_count == CONFIG_TARGETS_MAX) {
-		report_error(build->report, place, "more than %d targets", CONFIG_TARGETS_MAX);
+		report_error(build->report, place,
+		             "\"%.*s\" is one too many: owsd serves at most %d targets, ways "
+		             "behind a bar and the %u of auto counted",
+		             (int)len, text, CONFIG_TARGETS_MAX, AUTO_WAYS);
 		return;
 	}
 	target->text = build_keep(build, text, len);
 	target->relation = config->target_count ? relation : CONFIG_FIRST;
+	target->group = 0;
+	if (config->target_count)
+		target->group = target[-1].group + (relation == CONFIG_COMMA);
 	for (unsigned i = 0; i < config->target_count; i++)
 		if (same_target(config->targets[i].text, target->text)) {
 			report_error(build->report, place,
@@ -91,6 +101,21 @@ static void target_add(struct build *build, const char *text, size_t len,
 		report_warning(build->report, place, "owserver: names no host: %s is taken",
 		               DEFAULT_TARGET);
 	config->target_count++;
+}
+
+/* auto is a bar like any other, and --check shows it. */
+static void add_member(struct build *build, const char *text, size_t len,
+                       enum config_relation relation, struct place place)
+{
+	unsigned errors = build->report->errors;
+
+	if (len != strlen(AUTO) || memcmp(text, AUTO, len) != 0) {
+		target_add(build, text, len, relation, place);
+		return;
+	}
+	for (unsigned i = 0; i < AUTO_WAYS && build->report->errors == errors; i++)
+		target_add(build, auto_ways[i], strlen(auto_ways[i]), i ? CONFIG_BAR : relation,
+		           place);
 }
 
 static bool is_blank(char c)
@@ -115,7 +140,7 @@ void targets_add(struct build *build, const char *text, struct place place)
 			begin++;
 		while (end > begin && is_blank(p[end - 1]))
 			end--;
-		target_add(build, p + begin, end - begin, relation, place);
+		add_member(build, p + begin, end - begin, relation, place);
 		if (!p[len])
 			return;
 		relation = p[len] == ',' ? CONFIG_COMMA : CONFIG_BAR;

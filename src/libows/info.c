@@ -64,6 +64,9 @@ int ows_target(struct ows *h, int index, struct ows_target *target)
 		.name = entry->name,
 		.state = word_get(&entry->state),
 		.reconnects = word_get(&entry->reconnects),
+		/* Before 1.2 there was one target. */
+		.group = entry->group,
+		.moves = word_get(&entry->moves),
 	};
 	return 0;
 }

@@ -206,8 +206,10 @@ int ows_daemon(struct ows *h, int64_t now_ns, struct ows_daemon *daemon);
 /* Targets and counters, for tools. Return -ENOENT past the end. */
 struct ows_target {
 	const char *name;
-	uint32_t state; /* 0 down, 1 up, 2 suspended */
+	uint32_t state; /* 0 down, 1 up, 2 suspended: a way that is kept closed */
 	uint32_t reconnects;
+	uint32_t group; /* ways to one wire have the same */
+	uint32_t moves; /* signals that came from another target */
 };
 int ows_target(struct ows *h, int index, struct ows_target *target);
 struct ows_counter {

@@ -122,6 +122,12 @@ AlarmEntry = collections.namedtuple("AlarmEntry", "number name occurred_ns befor
 AlarmState = collections.namedtuple("AlarmState", "occurrences stands polled limits limit_state "
                                     "limit_kind")
 
+# A way to devices; ways to one wire have the same group, all but one of them suspended; moves:
+# signals that came from another target. The index is what Value.target says
+Target = collections.namedtuple("Target", "index name state reconnects group moves")
+TARGET = struct.Struct("<104sIIII8x")
+TARGET_STATES = ["down", "up", "suspended"]
+
 Info = collections.namedtuple("Info", "name path type output fresh alarm per_factor "
                               "stale_after_ns")
 
@@ -302,7 +308,8 @@ class Ows:
     def _check_image(image):
         header = Header(*HEADER.unpack_from(image.memory))
         if (header.magic, header.major, header.size) != (IMAGE_MAGIC, MAJOR, image.size) or \
-           (header.record_size, header.info_size) != (RECORD_SIZE, INFO_SIZE) or \
+           (header.record_size, header.info_size, header.target_size) != \
+           (RECORD_SIZE, INFO_SIZE, TARGET.size) or \
            header.record_count == 0 or header.alarm_count and \
            header.alarm_size != ALARM_ENTRY.size:
             raise broken()
@@ -310,6 +317,7 @@ class Ows:
                                     (header.info_off, header.record_count, INFO_SIZE),
                                     (header.pool_off, header.pool_size, 1),
                                     (header.text_off, header.text_size, 1),
+                                    (header.target_off, header.target_count, TARGET.size),
                                     (header.alarm_off, header.alarm_count, ALARM_ENTRY.size)):
             image.inside(offset, count, size)
         return header
@@ -540,6 +548,15 @@ class Ows:
                           bool(attrs.flags & ALARM_POLLED), bool(attrs.flags & LIMITS),
                           word(LIMIT_STATES, attrs.limit_state, "unknown"),
                           word(ALARM_KINDS, attrs.limit_condition, "none"))
+
+    def targets(self):
+        """All targets: Target by Target."""
+        h = self.header
+        for index in range(h.target_count):
+            name, state, reconnects, group, moves = TARGET.unpack_from(
+                self.image.memory, h.target_off + index * TARGET.size)
+            yield Target(index, name.split(b"\0")[0].decode(errors="replace"),
+                         word(TARGET_STATES, state, "unknown"), reconnects, group, moves)
 
     def wait(self, news=0, seconds=math.inf):
         """Sleep until something was published after `news`; returns the new number to hand in next

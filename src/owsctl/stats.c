@@ -39,14 +39,40 @@ static int not_good(struct ows *h, int64_t now_ns)
 	return count;
 }
 
+/* How many signals each target serves now. */
+#define TARGETS 255
+static void count_served(struct ows *h, int64_t now_ns, unsigned served[TARGETS + 1])
+{
+	struct ows_value value;
+
+	memset(served, 0, (TARGETS + 1) * sizeof(*served));
+	for (int i = 0; i < ows_count(h); i++)
+		if (ows_get_signal(h, i, now_ns, &value) == 0 && value.target < TARGETS)
+			served[value.target]++;
+}
+
+static void print_target(int index, const struct ows_target *target, bool several, unsigned served)
+{
+	printf("target %-4d %s: %s, %u reconnect%s", index, target->name,
+	       target_state(target->state), (unsigned)target->reconnects,
+	       target->reconnects == 1 ? "" : "s");
+	if (several)
+		printf(", wire %u, %u signal%s, %u move%s here", (unsigned)target->group, served,
+		       served == 1 ? "" : "s", (unsigned)target->moves,
+		       target->moves == 1 ? "" : "s");
+	putchar('\n');
+}
+
 static void print_json(const struct ctl *ctl, struct ows *h, const struct ows_daemon *daemon,
                        const struct when *now)
 {
 	char text[WHEN_TEXT];
+	unsigned served[TARGETS + 1];
 	struct ows_target target;
 	struct ows_counter counter;
 	struct json json;
 
+	count_served(h, now->boot, served);
 	json_open(&json, stdout);
 	json_object(&json, NULL);
 	json_string(&json, "instance", ctl->instance);
@@ -63,11 +89,14 @@ static void print_json(const struct ctl *ctl, struct ows *h, const struct ows_da
 	json_int(&json, "signals", ows_count(h));
 	json_int(&json, "not_good", not_good(h, now->boot));
 	json_array(&json, "targets");
-	for (int i = 0; ows_target(h, i, &target) == 0; i++) {
+	for (int i = 0; i < TARGETS && ows_target(h, i, &target) == 0; i++) {
 		json_object(&json, NULL);
 		json_string(&json, "name", target.name);
 		json_string(&json, "state", target_state(target.state));
 		json_uint(&json, "reconnects", target.reconnects);
+		json_uint(&json, "wire", target.group);
+		json_uint(&json, "signals", served[i]);
+		json_uint(&json, "moves", target.moves);
 		json_object_end(&json);
 	}
 	json_array_end(&json);
@@ -89,9 +118,12 @@ static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_da
                        const struct when *now)
 {
 	char text[WHEN_TEXT], span[WHEN_TEXT];
+	unsigned served[TARGETS + 1];
+	bool several;
 	struct ows_target target;
 	struct ows_counter counter;
 
+	count_served(h, now->boot, served);
 	printf("instance    %s\n", ctl->instance);
 	printf("owsd        pid %d, %s\n", (int)daemon->pid, daemon_state(daemon));
 	printf("started     %s, %s ago\n", when_iso(now, daemon->start_ns, text),
@@ -100,10 +132,9 @@ static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_da
 	printf("period      %g s\n", (double)daemon->period_ns / 1e9);
 	printf("heartbeat   %s ago\n", when_span(daemon->beat_age_ns, span));
 	printf("signals     %d, %d not good\n", ows_count(h), not_good(h, now->boot));
-	for (int i = 0; ows_target(h, i, &target) == 0; i++)
-		printf("target %-4d %s: %s, %u reconnect%s\n", i, target.name,
-		       target_state(target.state), (unsigned)target.reconnects,
-		       target.reconnects == 1 ? "" : "s");
+	several = ows_target(h, 1, &target) == 0;
+	for (int i = 0; i < TARGETS && ows_target(h, i, &target) == 0; i++)
+		print_target(i, &target, several, served[i]);
 	for (int i = 0; ows_counter(h, i, &counter) == 0; i++) {
 		bool own = ows_target(h, counter.target, &target) != 0;
 

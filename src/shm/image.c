@@ -206,9 +206,11 @@ void image_build(const struct image_plan *plan, void *memory, struct image *imag
 		names[i + 1].record = i + 1;
 	}
 	sort_names(image->base, names, plan->signal_count + 1);
-	for (uint32_t i = 0; i < plan->target_count; i++)
+	for (uint32_t i = 0; i < plan->target_count; i++) {
 		copy_name(image->targets[i].name, sizeof(image->targets[i].name),
 		          plan->targets[i]);
+		image->targets[i].group = plan->groups ? plan->groups[i] : i;
+	}
 	for (uint32_t i = 0; i < plan->counter_count; i++) {
 		copy_name(image->counters[i].name, sizeof(image->counters[i].name),
 		          plan->counters[i].name);
@@ -288,6 +290,12 @@ void image_target(struct image *image, uint32_t target, uint32_t state, uint32_t
 	assert(target < image->header->target_count);
 	word_set(&image->targets[target].state, state);
 	word_set(&image->targets[target].reconnects, reconnects);
+}
+
+void image_moves(struct image *image, uint32_t target, uint32_t moves)
+{
+	assert(target < image->header->target_count);
+	word_set(&image->targets[target].moves, moves);
 }
 
 void image_counter(struct image *image, uint32_t counter, uint64_t total)

@@ -32,6 +32,7 @@ struct image_plan {
 	uint32_t signal_count;
 	const char *const *targets;
 	uint32_t target_count;
+	const uint32_t *groups; /* of the targets; NULL: each is a wire of its own */
 	const struct image_counter *counters;
 	uint32_t counter_count;
 	uint32_t generation, start_id;
@@ -67,6 +68,7 @@ void image_publish(struct image *image, uint32_t record, const struct ows_sample
 uint32_t image_alarm(struct image *image, const struct ows_alarm_entry *entry);
 void image_alarm_after(struct image *image, uint32_t number, int64_t after);
 void image_target(struct image *image, uint32_t target, uint32_t state, uint32_t reconnects);
+void image_moves(struct image *image, uint32_t target, uint32_t moves);
 void image_counter(struct image *image, uint32_t counter, uint64_t total);
 /* Counts the news word; the caller wakes sleepers (segment_wake) when it has published enough. */
 void image_news(struct image *image);

@@ -13,6 +13,7 @@
  *   1.0  first layout
  *   1.1  image: a journal of alarms; in the attributes the state of limit alarms and three flags;
  *        commands: words of acknowledgement
+ *   1.2  image: group and moves of a target, which were 0
  */
 #ifndef OWS_LAYOUT_H
 #define OWS_LAYOUT_H
@@ -21,7 +22,7 @@
 #include <stdint.h>
 
 #define OWS_LAYOUT_MAJOR 1
-#define OWS_LAYOUT_MINOR 1
+#define OWS_LAYOUT_MINOR 2
 
 #define OWS_IMAGE_MAGIC   0x4953574fu /* "OWSI" */
 #define OWS_COMMAND_MAGIC 0x4353574fu /* "OWSC" */
@@ -133,7 +134,9 @@ struct ows_target_entry { /* 128 bytes */
 	char name[104];      /* NUL-terminated */
 	uint32_t state;      /* 0 down, 1 up, 2 suspended */
 	uint32_t reconnects;
-	uint32_t spare[4];
+	uint32_t group;      /* ways to one wire have the same; constant */
+	uint32_t moves;      /* signals that came from another target */
+	uint32_t spare[2];
 };
 
 struct ows_counter_entry { /* 64 bytes */

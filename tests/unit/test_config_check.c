@@ -199,6 +199,37 @@ static void test_a_comma_separates_two_wires_and_a_bar_two_ways(void)
 	TEST_ASSERT_EQUAL_INT(CONFIG_COMMA, config->targets[3].relation);
 }
 
+static void test_auto_is_a_bar_of_three_ways(void)
+{
+	TEST_ASSERT_EQUAL_INT(0, parse_driver("TargetName \"sim:a, auto | far:4304\""));
+	TEST_ASSERT_EQUAL_UINT(5, config->target_count);
+	TEST_ASSERT_EQUAL_STRING("localhost:4304", config->targets[1].text);
+	TEST_ASSERT_EQUAL_STRING("i2c:auto", config->targets[2].text);
+	TEST_ASSERT_EQUAL_STRING("w1", config->targets[3].text);
+	TEST_ASSERT_EQUAL_INT(CONFIG_COMMA, config->targets[1].relation);
+	for (int i = 2; i < 5; i++)
+		TEST_ASSERT_EQUAL_INT(CONFIG_BAR, config->targets[i].relation);
+	TEST_ASSERT_EQUAL_INT(0, parse_driver("TargetName \"auto\""));
+	TEST_ASSERT_EQUAL_INT(CONFIG_FIRST, config->targets[0].relation);
+	TEST_ASSERT_EQUAL_UINT(3, config->target_count);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, parse_driver("TargetName \"auto, w1\""));
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "the target \"w1\" stands twice"), said);
+}
+
+static void test_more_than_sixteen_targets_are_refused(void)
+{
+	char line[200] = "TargetName \"h1";
+
+	for (int i = 2; i <= CONFIG_TARGETS_MAX; i++)
+		snprintf(line + strlen(line), sizeof(line) - strlen(line), ",h%d", i);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, parse_driver(strcat(line, "|one.more\"")));
+	TEST_ASSERT_EQUAL_STRING("f:2:12: error: \"one.more\" is one too many: owsd serves at most "
+	                         "16 targets, ways behind a bar and the 3 of auto counted\n", said);
+	strcpy(strrchr(line, '|'), "\"");
+	TEST_ASSERT_EQUAL_INT(0, parse_driver(line));
+	TEST_ASSERT_EQUAL_UINT(16, config->target_count);
+}
+
 static void test_targets_of_the_command_line_replace_those_of_the_file(void)
 {
 	static const char *const good[] = {"a | b", "c"}, *const bad[] = {"a", "a:4304"};
@@ -555,6 +586,8 @@ int main(void)
 	RUN_TEST(test_wrong_driver_values_are_errors_with_what_was_expected);
 	RUN_TEST(test_what_can_be_understood_is_only_warned_about);
 	RUN_TEST(test_a_comma_separates_two_wires_and_a_bar_two_ways);
+	RUN_TEST(test_auto_is_a_bar_of_three_ways);
+	RUN_TEST(test_more_than_sixteen_targets_are_refused);
 	RUN_TEST(test_targets_of_the_command_line_replace_those_of_the_file);
 	RUN_TEST(test_wrong_items_are_errors_with_what_was_expected);
 	RUN_TEST(test_wrong_limits_are_errors_with_what_was_expected);

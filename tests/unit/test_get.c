@@ -234,6 +234,11 @@ static void test_targets_and_counters_end_with_enoent(void)
 	TEST_ASSERT_EQUAL_STRING("w1", t.name);
 	TEST_ASSERT_EQUAL(1, t.state);
 	TEST_ASSERT_EQUAL(9, t.reconnects);
+	TEST_ASSERT_EQUAL(1, t.group);
+	TEST_ASSERT_EQUAL(0, t.moves);
+	image_moves(&in.image, 1, 5);
+	TEST_ASSERT_EQUAL(0, ows_target(h, 1, &t));
+	TEST_ASSERT_EQUAL(5, t.moves);
 	TEST_ASSERT_EQUAL(-ENOENT, ows_target(h, 2, &t));
 	TEST_ASSERT_EQUAL(0, ows_counter(h, 1, &c));
 	TEST_ASSERT_EQUAL_UINT64(UINT64_C(0x100000002), c.value);

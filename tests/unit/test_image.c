@@ -106,7 +106,8 @@ static void test_areas_do_not_overlap(void)
 	};
 	static const char *const targets[] = {"t"};
 	static const struct image_counter counters[] = {{"c", 0}};
-	static const struct image_plan plan = {signals, 2, targets, 1, counters, 1, .period_ns = 1};
+	static const struct image_plan plan = {signals, 2, targets, 1, NULL, counters, 1,
+	                                       .period_ns = 1};
 	const struct ows_image_header *h;
 
 	build(&plan);

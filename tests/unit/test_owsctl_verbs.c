@@ -292,7 +292,7 @@ static void test_stats_show_owsd_targets_and_counters(void)
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_stats, "stats"));
 	holds(out, ", live\n");
 	holds(out, "signals     5, 1 not good\n");
-	holds(out, "localhost:4304: up, 2 reconnects\n");
+	holds(out, "localhost:4304: up, 2 reconnects, wire 0, ");
 	holds(out, "  5000000000  keepalives of localhost:4304\n");
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_stats, "stats --json"));
 	holds(out, "\"counters\":[{\"name\":\"alarms\",\"target\":null,\"value\":0},"

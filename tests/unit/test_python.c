@@ -91,6 +91,16 @@ static void test_python_reads_what_c_wrote(void)
 	       "room1_Age 55.0 True 7\n");
 }
 
+static void test_python_names_the_targets(void)
+{
+	image_target(&in.image, 0, 2, 3);
+	image_moves(&in.image, 1, 5);
+	instance_put_double(&in, ROOM, 21.5, ows_now());
+	expect("s = ows.Ows(name)\nfor t in s.targets(): print(*t)\n"
+	       "print(list(s.targets())[s.get(s.names()[0]).target].name)",
+	       "0 localhost:4304 suspended 3 0 0\n1 w1 down 0 1 5\nw1\n");
+}
+
 static void test_python_looks_names_up_as_c_does(void)
 {
 	static const char *const names[] = {
@@ -355,6 +365,7 @@ int main(void)
 	RUN_TEST(test_python_reads_what_c_wrote);
 	RUN_TEST(test_python_reads_the_journal_of_alarms);
 	RUN_TEST(test_c_finds_what_python_acknowledged);
+	RUN_TEST(test_python_names_the_targets);
 	RUN_TEST(test_python_looks_names_up_as_c_does);
 	RUN_TEST(test_python_lowers_quality_as_c_does);
 	RUN_TEST(test_python_computes_attributes_as_c_does);
