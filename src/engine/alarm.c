@@ -36,7 +36,7 @@ static uint32_t process_facts(struct alarm_machine *m, struct engine *e)
 	if (m->in_a_row >= e->config->max_cons_alarms)
 		return FACT_MAX_CONS;
 	while (++m->position < (int64_t)m->count)
-		if (m->items[m->position].listed) {
+		if (m->items[m->position]->listed) {
 			m->in_a_row++;
 			return FACT_NEXT_ITEM;
 		}
@@ -139,12 +139,12 @@ static bool ask_arm(struct alarm_machine *m, struct alarm_request *r)
 	const struct alarm_strings *s;
 
 	for (uint32_t k = 0; m->arming < 0 && k < m->count; k++)
-		if (m->items[k].to_arm)
+		if (m->items[k]->to_arm)
 			m->arming = k;
 	if (m->arming < 0)
 		return false;
-	s = &m->items[m->arming].strings;
-	ask(r, m->arm_writes ? BUS_WRITE : BUS_READ, "", &m->items[m->arming], s->set,
+	s = &m->items[m->arming]->strings;
+	ask(r, m->arm_writes ? BUS_WRITE : BUS_READ, "", m->items[m->arming], s->set,
 	    m->arm_writes ? s->set_value : "");
 	return true;
 }
@@ -155,7 +155,7 @@ static bool ask_in_state(struct alarm_machine *m, struct lane *lane, struct alar
 	struct alarm_item *i = alarm_current(m);
 
 	if (m->collecting >= 0) {
-		i = &m->items[m->collecting];
+		i = m->items[m->collecting];
 		ask(r, BUS_READ, "", i, i->strings.latch, "");
 		return true;
 	}
@@ -166,6 +166,8 @@ static bool ask_in_state(struct alarm_machine *m, struct lane *lane, struct alar
 			return true;
 		if (now_ns < m->list_ns)
 			return false;
+		if (!m->named)
+			alarm_name_list(m, &lane->engine->table);
 		r->op = BUS_DIR;
 		r->row = TABLE_NO_ROW;
 		memcpy(r->path, m->list_path, sizeof(m->list_path));
@@ -271,7 +273,7 @@ void alarm_started(struct alarm_machine *m, struct lane *lane, int64_t now_ns)
 
 static void armed(struct alarm_machine *m, const struct bus_answer *answer, const char *data)
 {
-	struct alarm_item *i = &m->items[m->arming];
+	struct alarm_item *i = m->items[m->arming];
 
 	if (failure_of(answer->err) == FAILURE_TARGET) {
 		m->arming = -1;
@@ -409,7 +411,7 @@ void alarm_answered(struct alarm_machine *m, struct lane *lane, const struct slo
 		return;
 	}
 	if (m->collecting >= 0) {
-		struct alarm_item *other = &m->items[m->collecting];
+		struct alarm_item *other = m->items[m->collecting];
 
 		/* what cannot be read now is asked for again by its own item */
 		other->collect_cycle = m->cycle;
@@ -463,11 +465,7 @@ void alarm_restart(struct alarm_machine *m)
 
 void alarm_rearm(struct alarm_machine *m, uint32_t device)
 {
-	for (uint32_t k = 0; k < m->count; k++) {
-		const struct alarm_strings *s = &m->items[k].strings;
-
-		if (m->items[k].device == device && s->set && *s->set && s->set_value &&
-		    *s->set_value)
-			m->items[k].to_arm = true;
-	}
+	for (uint32_t k = 0; k < m->count; k++)
+		if (m->items[k]->device == device)
+			m->items[k]->to_arm = alarm_arms(m->items[k]);
 }

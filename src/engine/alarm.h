@@ -55,8 +55,9 @@ struct alarm_request {
 
 struct alarm_machine {
 	enum alarm_state state;
-	struct alarm_item *items;
+	struct alarm_item **items; /* which this lane serves now, in the order of the table */
 	uint32_t count;
+	bool searches;         /* the list can be kept to families */
 	int64_t position;      /* iAlarmPos */
 	int64_t init_position; /* iAlarmInitPos */
 	uint32_t cycle;
@@ -72,7 +73,8 @@ struct alarm_machine {
 	int64_t list_ns;       /* earliest time of the next list */
 	int64_t wait_ns;       /* doubles while lists fail */
 	char *list;            /* ALARM_LIST bytes */
-	char list_path[128];   /* "/alarm", or "/alarm/29,12" */
+	char list_path[128];   /* "/alarm", or "/alarm/29,12"; if named */
+	bool named;
 	uint8_t families[32];
 	unsigned family_count;
 	unsigned strangers;    /* listed devices without alarm item that were logged */
@@ -82,10 +84,24 @@ struct alarm_machine {
 struct engine;
 struct lane;
 
-/* 0 or -ENOMEM. */
-int alarm_init(struct alarm_machine *m, const struct table *table, unsigned lane, bool searches,
-               int64_t now_ns);
+/* All alarm items of the table; the caller frees them. 0 or -ENOMEM. */
+int alarm_items_init(const struct table *table, struct alarm_item **items, uint32_t *count);
+
+/* Has it a SetAlarm that can be compared with the chip? */
+bool alarm_arms(const struct alarm_item *item);
+
+/* Room for that many items; it has none yet. 0 or -ENOMEM. */
+int alarm_init(struct alarm_machine *m, uint32_t room, bool searches);
 void alarm_free(struct alarm_machine *m);
+/* The lane serves the item from now on: it starts at ALARM_POR_READ, its SetAlarm is compared. */
+void alarm_take_item(struct alarm_machine *m, struct alarm_item *item, int64_t now_ns);
+/*
+ * The lane does not serve it any more: if the machine worked on it, it goes on with the next alarm.
+ * True: the answer to what the machine asked last is of no interest any more.
+ */
+bool alarm_drop_item(struct alarm_machine *m, struct alarm_item *item);
+/* Make list_path of the families of its items. */
+void alarm_name_list(struct alarm_machine *m, const struct table *table);
 
 /* Does the lane hold writes back for it? */
 bool alarm_holds(const struct alarm_machine *m);

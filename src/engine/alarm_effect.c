@@ -98,7 +98,7 @@ void engine_power_on_reset(struct engine *e, struct lane *lane, const struct ala
 void engine_alarm_polls(struct engine *e, struct alarm_machine *m)
 {
 	for (uint32_t k = 0; k < m->count; k++) {
-		struct signal *s = &e->table.signals[m->items[k].row];
+		struct signal *s = &e->table.signals[m->items[k]->row];
 
 		s->attrs.flags |= OWS_ATTR_ALARM_POLLED;
 		engine_read_at(e, s, e->period + 1);

@@ -49,6 +49,40 @@ void alarm_split(const struct config_item *item, struct alarm_strings *s)
 	split_pair(item->reset_latch, s->reset_text, &s->reset, &s->reset_value);
 }
 
+bool alarm_arms(const struct alarm_item *item)
+{
+	const struct alarm_strings *s = &item->strings;
+
+	return s->set && *s->set && s->set_value && *s->set_value;
+}
+
+int alarm_items_init(const struct table *table, struct alarm_item **items, uint32_t *count)
+{
+	*items = NULL;
+	*count = 0;
+	for (uint32_t row = 0; row < table->count; row++)
+		*count += table->signals[row].item->alarm &&
+		          table->signals[row].device != TABLE_NO_DEVICE;
+	if (!*count)
+		return 0;
+	*items = calloc(*count, sizeof(**items));
+	if (!*items)
+		return -ENOMEM;
+	*count = 0;
+	for (uint32_t row = 0; row < table->count; row++) {
+		const struct signal *s = &table->signals[row];
+		struct alarm_item *item = &(*items)[*count];
+
+		if (!s->item->alarm || s->device == TABLE_NO_DEVICE)
+			continue;
+		item->row = row;
+		item->device = s->device;
+		alarm_split(s->item, &item->strings);
+		++*count;
+	}
+	return 0;
+}
+
 static void add_family(struct alarm_machine *m, const struct table *table, uint32_t device)
 {
 	const struct device *d = &table->devices[device];
@@ -66,52 +100,33 @@ static void add_family(struct alarm_machine *m, const struct table *table, uint3
 }
 
 /* A thermometer with its factory limits is always in alarm: the search need not go there. */
-static void name_list(struct alarm_machine *m, bool searches)
+void alarm_name_list(struct alarm_machine *m, const struct table *table)
 {
 	size_t used = (size_t)snprintf(m->list_path, sizeof(m->list_path), "/alarm");
 
-	if (!searches || m->family_count > sizeof(m->families))
+	m->named = true;
+	m->family_count = 0;
+	for (uint32_t k = 0; k < m->count; k++)
+		add_family(m, table, m->items[k]->device);
+	if (!m->searches || m->family_count > sizeof(m->families))
 		return;
 	for (unsigned i = 0; i < m->family_count; i++)
 		used += (size_t)snprintf(m->list_path + used, sizeof(m->list_path) - used, "%c%02X",
 		                         i ? ',' : '/', m->families[i]);
 }
 
-int alarm_init(struct alarm_machine *m, const struct table *table, unsigned lane, bool searches,
-               int64_t now_ns)
+int alarm_init(struct alarm_machine *m, uint32_t room, bool searches)
 {
-	uint32_t count = 0;
-
 	*m = (struct alarm_machine){ .state = NOT_USED, .position = -1, .init_position = -1,
-		                     .arming = -1, .collecting = -1, .list_ns = now_ns };
-	for (uint32_t row = 0; row < table->count; row++)
-		count += table->signals[row].lane == lane && table->signals[row].item->alarm &&
-		         table->signals[row].device != TABLE_NO_DEVICE;
-	if (!count)
+		                     .arming = -1, .collecting = -1, .searches = searches };
+	if (!room)
 		return 0;
-	m->items = calloc(count, sizeof(*m->items));
+	m->items = calloc(room, sizeof(*m->items));
 	m->list = calloc(1, ALARM_LIST);
-	if (!m->items || !m->list) {
-		alarm_free(m);
-		return -ENOMEM;
-	}
-	for (uint32_t row = 0; row < table->count; row++) {
-		const struct signal *s = &table->signals[row];
-		struct alarm_item *item = &m->items[m->count];
-
-		if (s->lane != lane || !s->item->alarm || s->device == TABLE_NO_DEVICE)
-			continue;
-		item->row = row;
-		item->device = s->device;
-		alarm_split(s->item, &item->strings);
-		item->to_arm = item->strings.set && *item->strings.set &&
-		               item->strings.set_value && *item->strings.set_value;
-		add_family(m, table, s->device);
-		m->count++;
-	}
-	name_list(m, searches);
-	m->state = alarm_next(NOT_USED, FACT_ITEMS)->next;
-	return 0;
+	if (m->items && m->list)
+		return 0;
+	alarm_free(m);
+	return -ENOMEM;
 }
 
 void alarm_free(struct alarm_machine *m)
@@ -121,4 +136,63 @@ void alarm_free(struct alarm_machine *m)
 	m->items = NULL;
 	m->list = NULL;
 	m->count = 0;
+}
+
+void alarm_take_item(struct alarm_machine *m, struct alarm_item *item, int64_t now_ns)
+{
+	uint32_t at = m->count;
+
+	while (at > 0 && m->items[at - 1]->row > item->row)
+		at--;
+	memmove(&m->items[at + 1], &m->items[at], (m->count - at) * sizeof(*m->items));
+	m->items[at] = item;
+	m->count++;
+	m->position += m->position >= (int64_t)at;
+	m->arming += m->arming >= (int64_t)at;
+	m->collecting += m->collecting >= (int64_t)at;
+	item->listed = false;
+	item->to_arm = alarm_arms(item);
+	item->por_cycle = item->latch_cycle = item->set_cycle = item->init_cycle = 0;
+	item->por_reset_cycle = item->reset_cycle = item->collect_cycle = 0;
+	m->named = false;
+	if (m->state != NOT_USED || m->polls)
+		return;
+	m->state = alarm_next(NOT_USED, FACT_ITEMS)->next;
+	if (m->list_ns < now_ns)
+		m->list_ns = now_ns;
+}
+
+bool alarm_drop_item(struct alarm_machine *m, struct alarm_item *item)
+{
+	bool current, arming, asked = m->in_work;
+	int64_t at = 0;
+
+	while (at < (int64_t)m->count && m->items[at] != item)
+		at++;
+	if (at == (int64_t)m->count)
+		return false;
+	current = at == m->position;
+	arming = at == m->arming;
+	if (arming || (m->collecting >= 0 && (current || at == m->collecting))) {
+		m->arming = m->collecting = -1;
+		m->arm_writes = false;
+	}
+	m->count--;
+	memmove(&m->items[at], &m->items[at + 1],
+	        (m->count - (uint32_t)at) * sizeof(*m->items));
+	/* the next alarm is the one behind the present place */
+	m->position -= m->position >= at;
+	m->arming -= m->arming > at;
+	m->collecting -= m->collecting > at;
+	if (current && m->state != ALARM_BYPASS)
+		m->state = ALARM_PROCESS;
+	if (current)
+		m->init_position = -1;
+	m->named = false;
+	if (!m->count)
+		m->state = NOT_USED;
+	if (!asked || !(arming || current || !m->count))
+		return false;
+	m->in_work = false;
+	return true;
 }

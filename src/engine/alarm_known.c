@@ -12,7 +12,7 @@ struct signal *alarm_signal(struct engine *e, const struct alarm_item *item)
 
 struct alarm_item *alarm_current(struct alarm_machine *m)
 {
-	return m->position < 0 ? NULL : &m->items[m->position];
+	return m->position < 0 ? NULL : m->items[m->position];
 }
 
 /* The same device in the same cycle: what was done there need not be done again. */
@@ -24,9 +24,9 @@ static bool same(const char *a, const char *b)
 const struct alarm_item *alarm_por_known(const struct alarm_machine *m, const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k].device == i->device && m->items[k].por_cycle == m->cycle &&
-		    same(m->items[k].strings.por, i->strings.por))
-			return &m->items[k];
+		if (m->items[k]->device == i->device && m->items[k]->por_cycle == m->cycle &&
+		    same(m->items[k]->strings.por, i->strings.por))
+			return m->items[k];
 	return NULL;
 }
 
@@ -34,18 +34,18 @@ const struct alarm_item *alarm_latch_known(const struct alarm_machine *m,
                                             const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k].device == i->device && m->items[k].latch_cycle == m->cycle &&
-		    same(m->items[k].strings.latch, i->strings.latch))
-			return &m->items[k];
+		if (m->items[k]->device == i->device && m->items[k]->latch_cycle == m->cycle &&
+		    same(m->items[k]->strings.latch, i->strings.latch))
+			return m->items[k];
 	return NULL;
 }
 
 bool alarm_set_known(const struct alarm_machine *m, const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k].device == i->device && m->items[k].set_cycle == m->cycle &&
-		    same(m->items[k].strings.set, i->strings.set) &&
-		    same(m->items[k].strings.set_value, i->strings.set_value))
+		if (m->items[k]->device == i->device && m->items[k]->set_cycle == m->cycle &&
+		    same(m->items[k]->strings.set, i->strings.set) &&
+		    same(m->items[k]->strings.set_value, i->strings.set_value))
 			return true;
 	return false;
 }
@@ -53,8 +53,8 @@ bool alarm_set_known(const struct alarm_machine *m, const struct alarm_item *i)
 bool alarm_por_reset_known(const struct alarm_machine *m, const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k].device == i->device && m->items[k].por_reset_cycle == m->cycle &&
-		    same(m->items[k].strings.por, i->strings.por))
+		if (m->items[k]->device == i->device && m->items[k]->por_reset_cycle == m->cycle &&
+		    same(m->items[k]->strings.por, i->strings.por))
 			return true;
 	return false;
 }
@@ -62,7 +62,7 @@ bool alarm_por_reset_known(const struct alarm_machine *m, const struct alarm_ite
 bool alarm_init_known(const struct alarm_machine *m, const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k].device == i->device && m->items[k].init_cycle == m->cycle)
+		if (m->items[k]->device == i->device && m->items[k]->init_cycle == m->cycle)
 			return true;
 	return false;
 }
@@ -70,9 +70,9 @@ bool alarm_init_known(const struct alarm_machine *m, const struct alarm_item *i)
 bool alarm_reset_known(const struct alarm_machine *m, const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k].device == i->device && m->items[k].reset_cycle == m->cycle &&
-		    same(m->items[k].strings.reset, i->strings.reset) &&
-		    same(m->items[k].strings.reset_value, i->strings.reset_value))
+		if (m->items[k]->device == i->device && m->items[k]->reset_cycle == m->cycle &&
+		    same(m->items[k]->strings.reset, i->strings.reset) &&
+		    same(m->items[k]->strings.reset_value, i->strings.reset_value))
 			return true;
 	return false;
 }
@@ -81,7 +81,7 @@ bool alarm_reset_known(const struct alarm_machine *m, const struct alarm_item *i
 int64_t alarm_to_collect(const struct alarm_machine *m, const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++) {
-		const struct alarm_item *other = &m->items[k];
+		const struct alarm_item *other = m->items[k];
 
 		if (other != i && other->device == i->device && other->strings.latch &&
 		    *other->strings.latch && !same(other->strings.latch, i->strings.latch) &&
@@ -99,7 +99,7 @@ int64_t alarm_next_init(struct engine *e, struct alarm_machine *m)
 		const struct signal *s = &e->table.signals[row];
 
 		if ((int64_t)row > m->init_position && s->item->output && s->item->has_init &&
-		    signal_writes(s) && s->lane == e->table.signals[alarm_current(m)->row].lane)
+		    signal_writes(s) && !s->doubts && s->lane == e->table.signals[alarm_current(m)->row].lane)
 			return row;
 	}
 	return -1;

@@ -19,20 +19,20 @@ static void mark_listed(struct alarm_machine *m, struct lane *lane, const char *
 	if (path_split(entry, len, &path) || !path.device.len)
 		return;
 	for (uint32_t k = 0; k < m->count; k++) {
-		const struct device *d = &e->table.devices[m->items[k].device];
+		const struct device *d = &e->table.devices[m->items[k]->device];
 		struct path own;
 
 		if (path.has_rom && d->has_rom) {
 			if (memcmp(path.rom, d->rom, sizeof(d->rom)))
 				continue;
 		} else {
-			const char *text = m->items[k].strings.path;
+			const char *text = m->items[k]->strings.path;
 
 			if (path_split(text, strlen(text), &own) ||
 			    !path_same_device(&path, &own))
 				continue;
 		}
-		m->items[k].listed = ours = true;
+		m->items[k]->listed = ours = true;
 	}
 	if (ours || !path.has_rom)
 		return;
@@ -53,7 +53,7 @@ void alarm_take_list(struct alarm_machine *m, struct lane *lane, const char *lis
 	lane->counters.alarm_lists++;
 	m->wait_ns = 0;
 	for (uint32_t k = 0; k < m->count; k++)
-		m->items[k].listed = false;
+		m->items[k]->listed = false;
 	while (len) {
 		const char *end = memchr(list, '\n', len);
 		size_t n = end ? (size_t)(end - list) : len;
@@ -65,8 +65,8 @@ void alarm_take_list(struct alarm_machine *m, struct lane *lane, const char *lis
 		list = end + 1;
 	}
 	for (uint32_t k = 0; k < m->count; k++)
-		if (!m->items[k].listed && m->items[k].stands)
-			engine_alarm_ended(lane->engine, &m->items[k], now_ns);
+		if (!m->items[k]->listed && m->items[k]->stands)
+			engine_alarm_ended(lane->engine, m->items[k], now_ns);
 }
 
 void alarm_list_failed(struct alarm_machine *m, struct lane *lane, int err, int64_t now_ns)

@@ -15,10 +15,12 @@ static void say_bad(struct engine *e, const struct signal *s, int err, uint8_t q
 	            ows_quality_text(quality), err ? ": " : "", err ? strerror(-err) : "");
 }
 
-static void mark_absent(struct engine *e, const struct signal *s)
+static void mark_absent(struct engine *e, struct lane *lane, const struct signal *s)
 {
-	if (s->device != TABLE_NO_DEVICE)
-		e->table.devices[s->device].absent = true;
+	if (s->device == TABLE_NO_DEVICE)
+		return;
+	e->table.devices[s->device].absent = true;
+	engine_place(e, lane, s->device, ROUTE_ABSENT);
 }
 
 /* An item error of a read; returns the back-off, 0: its next turn. */
@@ -32,7 +34,7 @@ static int64_t fail_read(struct engine *e, struct lane *lane, struct signal *s, 
 	if (!retry_fail(&s->read_retry, e->config->max_retries, &wait_ns))
 		return 0;
 	if (err == -ENODEV)
-		mark_absent(e, s);
+		mark_absent(e, lane, s);
 	if (s->sample.quality != quality) {
 		s->sample.quality = quality;
 		say_bad(e, s, err, quality);
@@ -51,7 +53,7 @@ static int64_t fail_write(struct engine *e, struct lane *lane, struct signal *s,
 	if (!retry_fail(&s->write_retry, e->config->max_retries, &wait_ns))
 		return 0;
 	if (err == -ENODEV)
-		mark_absent(e, s);
+		mark_absent(e, lane, s);
 	if (s->write_retry.failures == e->config->max_retries + 1)
 		log_warning(e->log, "%s (%s): cannot be written%s%s: %s", s->item->name,
 		            s->item->path, err == -EACCES ? "" : ": ",
@@ -67,11 +69,12 @@ static void succeed(struct engine *e, struct lane *lane, struct signal *s, uint8
 	struct device *d = s->device == TABLE_NO_DEVICE ? NULL : &e->table.devices[s->device];
 
 	if (!ows_good(s->sample.quality) && s->sample.quality != OWS_Q_INITIAL &&
-	    ows_good(quality))
+	    s->sample.quality != OWS_Q_LAST_USABLE && ows_good(quality))
 		log_info(e->log, "%s (%s): good again", s->item->name, s->item->path);
 	s->sample.quality = quality;
 	s->sample.err = 0;
 	s->sample.target = (uint8_t)lane->index;
+	engine_place(e, lane, s->device, ROUTE_PRESENT);
 	if (d && d->absent)
 		engine_device_back(e, lane, d, now_ns);
 }
@@ -226,22 +229,20 @@ void engine_write_done(struct engine *e, struct lane *lane, const struct slot *s
 void engine_structure_done(struct engine *e, struct lane *lane, const struct slot *slot,
                            const struct bus_answer *answer)
 {
-	const struct structure_check *check = &lane->structure.checks[slot->row];
+	const struct structure_check *check = &e->structure.checks[slot->row];
 	struct structure_entry entry;
 
 	if (failure_of(answer->err) == FAILURE_TARGET) {
-		/* from here on, when it is up again */
-		if (slot->row < lane->structure.next)
-			lane->structure.next = slot->row;
+		due_set_add(&lane->checks, slot->row);
 		return;
 	}
 	if (answer->err || structure_parse((const char *)slot->data, answer->len, &entry))
 		return;
 	for (uint32_t i = 0; i < check->count; i++) {
-		struct signal *s = &e->table.signals[lane->structure.rows[check->first + i]];
+		struct signal *s = &e->table.signals[e->structure.rows[check->first + i]];
 		const char *fault = structure_fault(&entry, s->item);
 
-		if (!fault)
+		if (!fault || s->lane != lane->index)
 			continue;
 		s->sample.quality = OWS_Q_NO_PROPERTY;
 		s->sample.err = -EPROTOTYPE;
@@ -258,8 +259,8 @@ void engine_lane_down(struct engine *e, struct lane *lane, int err, int64_t now_
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
-		if (s->lane != lane->index ||
-		    (s->sample.quality == OWS_Q_DISABLED && !signal_reads(s)))
+		if (s->lane != lane->index || (s->sample.quality == OWS_Q_DISABLED &&
+		                               !s->item->output && !signal_reads(s)))
 			continue;
 		if (!s->held) {
 			s->held = true;

@@ -28,15 +28,27 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 		e->lanes = calloc(setup->port_count, sizeof(*e->lanes));
 		err = e->lanes ? 0 : -ENOMEM;
 	}
+	if (!err)
+		err = structure_init(&e->structure, &e->table);
+	if (!err)
+		err = alarm_items_init(&e->table, &e->alarm_items, &e->alarm_count);
 	for (unsigned i = 0; !err && i < setup->port_count; i++) {
 		err = lane_init(&e->lanes[i], e, &setup->ports[i], i);
 		if (!err)
 			e->lane_count++;
 	}
+	if (!err)
+		err = engine_groups_init(e, setup);
+	if (!err)
+		err = engine_places_init(e);
 	if (err) {
 		engine_destroy(e);
 		return err;
 	}
+	for (uint32_t row = 0; row < e->table.count; row++)
+		lane_take_row(&e->lanes[0], row);
+	for (uint32_t i = 0; i < e->alarm_count; i++)
+		alarm_take_item(&e->lanes[0].alarm, &e->alarm_items[i], setup->start_ns);
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		engine_read_now(e, &e->table.signals[row]);
 		engine_write_check(e, &e->table.signals[row]);
@@ -58,6 +70,10 @@ void engine_destroy(struct engine *e)
 	for (unsigned i = 0; i < e->lane_count; i++)
 		lane_free(&e->lanes[i]);
 	free(e->lanes);
+	engine_groups_free(e);
+	engine_places_free(e);
+	structure_free(&e->structure);
+	free(e->alarm_items);
 	if (e->wheel.wait)
 		due_wheel_free(&e->wheel);
 	if (e->limit_wheel.wait)
@@ -72,6 +88,7 @@ void engine_answer(struct engine *e, unsigned port, const struct bus_answer *ans
 	assert(port < e->lane_count);
 	e->now_ns = now_ns;
 	lane_answer(&e->lanes[port], answer, now_ns);
+	engine_places_turn(e, now_ns);
 }
 
 void engine_event(struct engine *e, unsigned port, const struct bus_event *event, int64_t now_ns)
@@ -79,12 +96,13 @@ void engine_event(struct engine *e, unsigned port, const struct bus_event *event
 	assert(port < e->lane_count);
 	e->now_ns = now_ns;
 	lane_event(&e->lanes[port], event, now_ns);
+	engine_places_turn(e, now_ns);
 }
 
 int64_t engine_step(struct engine *e, int64_t now_ns)
 {
 	uint64_t before = e->period;
-	int64_t next;
+	int64_t next, groups;
 
 	e->now_ns = now_ns;
 	e->counters.steps++;
@@ -96,10 +114,14 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 		engine_publish_driver(e, now_ns);
 	}
 	next = e->start_ns + (int64_t)(e->period + 1) * e->config->period_ns;
+	groups = engine_groups_turn(e, now_ns);
+	if (groups < next)
+		next = groups;
 	for (unsigned i = 0; i < e->lane_count; i++) {
 		int64_t timeout = lane_timeouts(&e->lanes[i], now_ns);
 		int64_t alarm;
 
+		engine_places_turn(e, now_ns);
 		lane_fill(&e->lanes[i], now_ns);
 		/* what was lent just now included */
 		if (e->lanes[i].lent && now_ns + e->config->timeout_ns + LANE_GRACE_NS < timeout)

@@ -8,6 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Between two looks for devices that are not there: the signals that are come first. */
+#define PROBE_APART_NS 200000000LL
+
 int lane_init(struct lane *lane, struct engine *engine, const struct engine_port *port,
               unsigned index)
 {
@@ -17,19 +20,15 @@ int lane_init(struct lane *lane, struct engine *engine, const struct engine_port
 	lane->free = calloc(lane->depth, sizeof(*lane->free));
 	if (!lane->slots || !lane->free || due_set_init(&lane->inputs, engine->table.count) ||
 	    due_set_init(&lane->outputs, engine->table.count) ||
-	    structure_init(&lane->structure, &engine->table, index) ||
-	    alarm_init(&lane->alarm, &engine->table, index, port->searches, engine->start_ns)) {
+	    due_set_init(&lane->checks, engine->structure.count) ||
+	    due_set_init(&lane->probes, engine->table.device_count) ||
+	    alarm_init(&lane->alarm, engine->alarm_count, port->searches)) {
 		lane_free(lane);
 		return -ENOMEM;
 	}
 	while (lane->free_count < lane->depth) {
 		lane->free[lane->free_count] = (uint16_t)(lane->depth - 1 - lane->free_count);
 		lane->free_count++;
-	}
-	for (uint32_t row = 0; row < engine->table.count; row++) {
-		const struct signal *s = &engine->table.signals[row];
-
-		lane->writers += s->lane == index && signal_writes(s);
 	}
 	return 0;
 }
@@ -40,8 +39,27 @@ void lane_free(struct lane *lane)
 	free(lane->free);
 	due_set_free(&lane->inputs);
 	due_set_free(&lane->outputs);
-	structure_free(&lane->structure);
+	due_set_free(&lane->checks);
+	due_set_free(&lane->probes);
 	alarm_free(&lane->alarm);
+}
+
+void lane_take_row(struct lane *lane, uint32_t row)
+{
+	struct engine *e = lane->engine;
+	struct signal *s = &e->table.signals[row];
+
+	s->lane = lane->index;
+	lane->writers += signal_writes(s);
+	if (e->structure.check_of[row] != STRUCTURE_NONE)
+		due_set_add(&lane->checks, e->structure.check_of[row]);
+}
+
+void lane_drop_row(struct lane *lane, uint32_t row)
+{
+	due_set_remove(&lane->inputs, row);
+	due_set_remove(&lane->outputs, row);
+	lane->writers -= signal_writes(&lane->engine->table.signals[row]);
 }
 
 static struct slot *free_slot(struct lane *lane)
@@ -62,7 +80,7 @@ static bool lend(struct lane *lane, struct slot *slot, int64_t now_ns)
 	}
 	slot->begun_ns = now_ns;
 	slot->begun = lane->engine->period;
-	slot->given_up = false;
+	slot->given_up = slot->moved = false;
 	if (lane->port->submit(lane->port->ctx, &slot->req))
 		return false;
 	slot->lent = true;
@@ -74,18 +92,49 @@ static bool lend(struct lane *lane, struct slot *slot, int64_t now_ns)
 	return true;
 }
 
-static bool ask_structure(struct lane *lane, struct slot *slot, int64_t now_ns)
+/* The next check that a signal of this lane needs; -1: none. */
+static int64_t next_check(struct lane *lane)
 {
-	const struct structure_check *check = &lane->structure.checks[lane->structure.next];
+	const struct structure *st = &lane->engine->structure;
+	int64_t next;
 
+	while ((next = due_set_next(&lane->checks)) >= 0) {
+		const struct structure_check *check = &st->checks[next];
+
+		for (uint32_t i = 0; i < check->count; i++)
+			if (lane->engine->table.signals[st->rows[check->first + i]].lane ==
+			    lane->index)
+				return next;
+		due_set_take(&lane->checks, (uint32_t)next);
+	}
+	return -1;
+}
+
+static bool ask_structure(struct lane *lane, struct slot *slot, uint32_t check, int64_t now_ns)
+{
 	slot->purpose = FOR_STRUCTURE;
-	slot->row = lane->structure.next;
-	slot->req = (struct bus_req){
-		.op = BUS_READ, .prio = BUS_INPUT, .path = check->path, .len = sizeof(slot->data)
-	};
+	slot->row = check;
+	slot->req = (struct bus_req){ .op = BUS_READ,
+		                      .prio = BUS_INPUT,
+		                      .path = lane->engine->structure.checks[check].path,
+		                      .len = sizeof(slot->data) };
 	if (!lend(lane, slot, now_ns))
 		return false;
-	lane->structure.next++;
+	due_set_take(&lane->checks, check);
+	return true;
+}
+
+static bool ask_probe(struct lane *lane, struct slot *slot, int64_t now_ns)
+{
+	if (lane->probing || now_ns < lane->probe_ns ||
+	    !engine_probe_next(lane->engine, lane, slot, now_ns))
+		return false;
+	if (!lend(lane, slot, now_ns))
+		return false;
+	due_set_take(&lane->probes, slot->row);
+	lane->probing = true;
+	lane->probe_ns = now_ns + PROBE_APART_NS;
+	lane->counters.probes++;
 	return true;
 }
 
@@ -194,11 +243,11 @@ static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
 /* The order of a lane: what the bus is made of, alarms, one changed output, the next due input. */
 static bool ask_next(struct lane *lane, struct slot *slot, int64_t now_ns)
 {
-	int64_t output, input;
+	int64_t output, input, check = next_check(lane);
 
-	if (lane->structure.next < lane->structure.count)
-		return ask_structure(lane, slot, now_ns);
-	if (ask_alarm(lane, slot, now_ns))
+	if (check >= 0)
+		return ask_structure(lane, slot, (uint32_t)check, now_ns);
+	if (ask_alarm(lane, slot, now_ns) || ask_probe(lane, slot, now_ns))
 		return true;
 	output = lane->writes_in_work || alarm_holds(&lane->alarm) ? -1
 	                                                          : due_set_next(&lane->outputs);
@@ -223,12 +272,16 @@ void lane_fill(struct lane *lane, int64_t now_ns)
 
 int64_t lane_wake(const struct lane *lane)
 {
+	int64_t alarm, probe;
+
 	if (!lane->up || lane->stuck || lane->lent == lane->depth)
 		return INT64_MAX;
+	probe = lane->probes.count && !lane->probing ? lane->probe_ns : INT64_MAX;
 	/* the end of these wakes it */
 	if (lane->alarm_slot || lane->writes_in_work)
-		return INT64_MAX;
-	return alarm_wake(&lane->alarm);
+		return probe;
+	alarm = alarm_wake(&lane->alarm);
+	return probe < alarm ? probe : alarm;
 }
 
 static struct slot *slot_of(struct lane *lane, uint32_t id)
@@ -253,6 +306,9 @@ static void complete(struct lane *lane, struct slot *slot, const struct bus_answ
 	switch (slot->purpose) {
 	case FOR_STRUCTURE:
 		engine_structure_done(e, lane, slot, answer);
+		break;
+	case FOR_PROBE:
+		engine_probe_done(e, lane, slot, answer, now_ns);
 		break;
 	case FOR_READ:
 		s = &e->table.signals[slot->row];
@@ -298,12 +354,102 @@ static void give_back(struct lane *lane, struct slot *slot)
 }
 
 /* A write of the write step, or of InitValue by the alarm machine. */
-static bool writes_output(const struct engine *e, const struct slot *slot)
+bool lane_writes_output(const struct lane *lane, const struct slot *slot)
 {
+	const struct engine *e = lane->engine;
+
 	if (slot->purpose == FOR_ALARM)
 		return slot->req.op == BUS_WRITE && slot->row != TABLE_NO_ROW &&
 		       strcmp(slot->req.path, e->table.signals[slot->row].item->path) == 0;
 	return slot->purpose == FOR_WRITE;
+}
+
+bool lane_in_doubt(const struct lane *lane, const struct slot *slot)
+{
+	struct engine *e = lane->engine;
+
+	return slot->lent && (slot->given_up || slot->moved) && lane_writes_output(lane, slot) &&
+	       e->table.signals[slot->row].lane != lane->index &&
+	       !engine_way(e, lane)->released;
+}
+
+/* It may have reached the relay after the engine moved on. */
+static void end_doubt(struct engine *e, const struct slot *slot)
+{
+	struct signal *s = &e->table.signals[slot->row];
+
+	s->forced = true;
+	s->doubts = 0; /* but for what is still lent */
+	engine_doubts(e);
+	engine_write_check(e, s);
+	engine_publish(e, s);
+}
+
+static void answers_again(struct lane *lane, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	struct route_way *way = engine_way(e, lane);
+
+	lane->stuck = false;
+	log_notice(e->log, "%s: answers again", lane->port->target);
+	if (!lane->up)
+		return;
+	way->failed = false;
+	way->up = true;
+	way->up_ns = now_ns;
+	engine_lane_up(e, lane, now_ns);
+	engine_group_check(e, lane->port->group, now_ns);
+}
+
+static void disown(struct lane *lane, struct slot *slot)
+{
+	struct engine *e = lane->engine;
+	struct signal *s;
+
+	slot->moved = true;
+	if (slot->row == TABLE_NO_ROW)
+		return;
+	s = &e->table.signals[slot->row];
+	switch (slot->purpose) {
+	case FOR_READ:
+		s->reading = false;
+		break;
+	case FOR_WRITE:
+		s->writing = false;
+		s->one_shot |= slot->one_shot;
+		break;
+	case FOR_ALARM:
+		s->alarming = false;
+		break;
+	case FOR_STRUCTURE:
+	case FOR_PROBE:
+		return;
+	}
+	signal_end(s, e->period, slot->begun);
+}
+
+void lane_disown(struct lane *lane, bool all)
+{
+	for (unsigned i = 0; i < lane->depth; i++) {
+		struct slot *slot = &lane->slots[i];
+
+		if (!slot->lent || slot->given_up || slot->moved ||
+		    slot->purpose == FOR_STRUCTURE || slot->purpose == FOR_PROBE)
+			continue;
+		if (all || (slot->row != TABLE_NO_ROW &&
+		            lane->engine->table.signals[slot->row].lane != lane->index))
+			disown(lane, slot);
+	}
+}
+
+void lane_forget_probes(struct lane *lane)
+{
+	int64_t device;
+
+	while ((device = due_set_next(&lane->probes)) >= 0) {
+		due_set_take(&lane->probes, (uint32_t)device);
+		lane->engine->table.devices[device].probing = false;
+	}
 }
 
 void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now_ns)
@@ -317,31 +463,29 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now
 		return;
 	}
 	give_back(lane, slot);
-	if (!slot->given_up) {
+	if (!slot->given_up && !slot->moved) {
 		complete(lane, slot, answer, now_ns);
 	} else {
-		lane->counters.late_answers++;
-		if (writes_output(e, slot)) {
-			/* it may have reached the relay after the engine moved on */
-			e->table.signals[slot->row].forced = true;
-			engine_write_check(e, &e->table.signals[slot->row]);
-		}
+		lane->counters.late_answers += slot->given_up;
+		if (!slot->given_up && slot->purpose == FOR_WRITE)
+			lane->writes_in_work--;
+		if (lane_writes_output(lane, slot))
+			end_doubt(e, slot);
 	}
-	if (lane->stuck) {
-		lane->stuck = false;
-		log_notice(e->log, "%s: answers again", lane->port->target);
-		if (lane->up)
-			engine_lane_up(e, lane, now_ns);
-	}
+	if (lane->stuck)
+		answers_again(lane, now_ns);
 }
 
-static void go_up(struct lane *lane, const char *text, int64_t now_ns)
+void lane_up(struct lane *lane, const char *text, int64_t now_ns)
 {
 	struct engine *e = lane->engine;
 
 	if (lane->up)
 		return;
 	lane->up = true;
+	engine_way(e, lane)->up = true;
+	engine_way(e, lane)->failed = lane->stuck;
+	engine_way(e, lane)->up_ns = now_ns;
 	if (lane->was_up) {
 		lane->counters.reconnects++;
 		e->reconnects++;
@@ -351,6 +495,22 @@ static void go_up(struct lane *lane, const char *text, int64_t now_ns)
 	engine_publish_target(e, lane);
 	engine_publish_driver(e, now_ns);
 	engine_lane_up(e, lane, now_ns);
+	engine_group_check(e, lane->port->group, now_ns);
+}
+
+/* Whatever another target does not take over goes bad. */
+static void fail(struct lane *lane, int err, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	struct route_way *way = engine_way(e, lane);
+
+	if (!way->failed)
+		way->failed_ns = now_ns;
+	way->failed = true;
+	way->up = false;
+	lane_forget_probes(lane);
+	engine_group_check(e, lane->port->group, now_ns);
+	engine_lane_down(e, lane, err, now_ns);
 }
 
 static void go_down(struct lane *lane, int err, const char *text, int64_t now_ns)
@@ -362,46 +522,110 @@ static void go_down(struct lane *lane, int err, const char *text, int64_t now_ns
 	lane->up = false;
 	lane->counters.target_failures++;
 	engine_publish_target(e, lane);
-	engine_lane_down(e, lane, err, now_ns);
+	fail(lane, err, now_ns);
 }
 
-static struct device *device_of(struct engine *e, const uint8_t rom[8])
+static int compare_rom(const void *rom, const void *device)
 {
-	for (uint32_t i = 0; i < e->table.device_count; i++) {
-		struct device *d = &e->table.devices[i];
+	return memcmp(rom, ((const struct device *)device)->rom, 8);
+}
 
-		if (d->has_rom && memcmp(d->rom, rom, 8) == 0)
-			return d;
+/* Those with a ROM id stand first, in its order. */
+static uint32_t device_of(struct engine *e, const uint8_t rom[8])
+{
+	const struct device *d;
+	uint32_t roms = 0;
+
+	for (uint32_t low = 0, high = e->table.device_count; low < high;) {
+		uint32_t middle = low + (high - low) / 2;
+
+		if (e->table.devices[middle].has_rom)
+			low = middle + 1;
+		else
+			high = middle;
+		roms = low;
 	}
-	return NULL;
+	d = bsearch(rom, e->table.devices, roms, sizeof(*d), compare_rom);
+	return d ? (uint32_t)(d - e->table.devices) : TABLE_NO_DEVICE;
+}
+
+static void device_event(struct lane *lane, const struct bus_event *event, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	uint32_t index = device_of(e, event->rom);
+	struct device *device;
+
+	if (index == TABLE_NO_DEVICE)
+		return;
+	device = &e->table.devices[index];
+	if (event->news == BUS_FOUND)
+		engine_place_found(e, lane, index);
+	if (engine_open_lane(e, device->group) != lane) {
+		if (event->news == BUS_LOST)
+			engine_place(e, lane, index, ROUTE_ABSENT);
+	} else if (event->news == BUS_LOST) {
+		/* its signals go bad by their own failures; what comes back may have restarted */
+		device->absent = true;
+		engine_place(e, lane, index, ROUTE_ABSENT);
+	} else if (event->news == BUS_POR || device->absent) {
+		engine_device_back(e, lane, device, now_ns);
+	}
+}
+
+static void said_up(struct lane *lane, const struct bus_event *event, int64_t now_ns)
+{
+	struct route_way *way = engine_way(lane->engine, lane);
+
+	lane->said_up = true;
+	if (lane->open) {
+		lane_up(lane, event->text, now_ns);
+	} else if (!lane->port->suspend && !way->back) { /* it cannot say so otherwise */
+		way->back = true;
+		way->back_ns = now_ns;
+	}
+}
+
+/* What a way says that was asked to let go is of no interest, but for these two. */
+static void suspended_event(struct lane *lane, const struct bus_event *event, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	struct route_way *way = engine_way(e, lane);
+
+	if (lane->open)
+		return;
+	if (event->news == BUS_BACK) {
+		way->back = true;
+		way->back_ns = now_ns;
+		log_info(e->log, "%s: is there again", lane->port->target);
+	} else if (!way->released) {
+		way->released = true;
+		engine_publish_target(e, lane);
+		engine_doubts(e);
+	}
+	engine_group_check(e, lane->port->group, now_ns);
 }
 
 void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns)
 {
-	struct device *device;
-
 	lane->heard_ns = now_ns;
 	switch ((enum bus_news)event->news) {
 	case BUS_UP:
-		go_up(lane, event->text, now_ns);
+		said_up(lane, event, now_ns);
 		break;
 	case BUS_DOWN:
-		go_down(lane, event->err, event->text, now_ns);
+		lane->said_up = false;
+		if (lane->open)
+			go_down(lane, event->err, event->text, now_ns);
 		break;
 	case BUS_FOUND:
 	case BUS_POR:
-		device = device_of(lane->engine, event->rom);
-		if (device && (event->news == BUS_POR || device->absent))
-			engine_device_back(lane->engine, lane, device, now_ns);
-		break;
 	case BUS_LOST:
-		/* its signals go bad by their own failures; what comes back may have restarted */
-		device = device_of(lane->engine, event->rom);
-		if (device)
-			device->absent = true;
+		if (lane->open)
+			device_event(lane, event, now_ns);
 		break;
 	case BUS_RELEASED:
 	case BUS_BACK:
+		suspended_event(lane, event, now_ns);
 		break;
 	case BUS_NOTE:
 		log_notice(lane->engine->log, "%s: %s", lane->port->target, event->text);
@@ -416,9 +640,11 @@ void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns
 static void get_stuck(struct lane *lane, int64_t now_ns)
 {
 	lane->stuck = true;
+	if (!lane->open)
+		return;
 	log_err(lane->engine->log, "%s: no answer at all within Timeout", lane->port->target);
 	lane->counters.target_failures++;
-	engine_lane_down(lane->engine, lane, -ETIMEDOUT, now_ns);
+	fail(lane, -ETIMEDOUT, now_ns);
 }
 
 int64_t lane_timeouts(struct lane *lane, int64_t now_ns)
@@ -454,7 +680,10 @@ int64_t lane_timeouts(struct lane *lane, int64_t now_ns)
 			answer.err = -ETIMEDOUT;
 			silent = true;
 		}
-		complete(lane, slot, &answer, now_ns);
+		if (!slot->moved)
+			complete(lane, slot, &answer, now_ns);
+		else if (slot->purpose == FOR_WRITE)
+			lane->writes_in_work--;
 	}
 	lane->look_ns = next;
 	if (!lane->stuck && (silent || lost == lane->depth))

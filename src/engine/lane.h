@@ -9,6 +9,7 @@
 #include "alarm.h"
 #include "due.h"
 #include "engine.h"
+#include "route.h"
 #include "structure.h"
 #include "table.h"
 
@@ -17,15 +18,16 @@
 /* How long after its deadline a request is given up that the bus did not answer at all. */
 #define LANE_GRACE_NS 250000000LL
 
-enum purpose { FOR_READ, FOR_WRITE, FOR_STRUCTURE, FOR_ALARM };
+enum purpose { FOR_READ, FOR_WRITE, FOR_STRUCTURE, FOR_ALARM, FOR_PROBE };
 
 /* A request and its room. Its id is slot | turn << 16, so that a late answer is told apart. */
 struct slot {
 	struct bus_req req;
 	bool lent;     /* the bus has it */
 	bool given_up; /* its time is over; a late answer only frees the slot */
+	bool moved;    /* another lane serves its signal now; likewise */
 	enum purpose purpose;
-	uint32_t row;  /* of the table, or of structure.checks */
+	uint32_t row;  /* of the table, of structure.checks (FOR_STRUCTURE), a device (FOR_PROBE) */
 	uint16_t turn;
 	int64_t begun_ns;
 	uint64_t begun; /* in this period */
@@ -49,13 +51,19 @@ struct slot {
 	X(device_returns) /* devices that came back */                                             \
 	X(alarm_lists)    /* readings of /alarm */                                                 \
 	X(alarms)         /* occurrences */                                                        \
-	X(power_on_resets)
+	X(power_on_resets)                                                                         \
+	X(moves_in)       /* signals that came from another target */                              \
+	X(moves_out)      /* signals that went to another target */                                \
+	X(probes)         /* looks for a device that another target does not have */               \
+	X(not_released)   /* the next way was opened before this one had let go */
 
 struct lane {
 	struct engine *engine;
 	const struct engine_port *port;
 	unsigned index;
 	bool up, was_up, stuck;
+	bool open;          /* it is the one way of its group that is open */
+	bool said_up;       /* what the bus said last, asked or not */
 	int64_t heard_ns; /* last answer or event of the bus */
 
 	struct slot *slots;
@@ -67,7 +75,12 @@ struct lane {
 	struct due_set inputs, outputs; /* rows to read, rows to write */
 	uint32_t writers;       /* rows whose writing is enabled */
 	uint32_t writes_in_row; /* since the last read was begun */
-	struct structure structure;
+	struct due_set checks; /* of the engine's structure: to be asked here */
+
+	struct due_set probes; /* devices to be looked for here */
+	bool probing;          /* one of them is with the bus; probe_path is its */
+	int64_t probe_ns;      /* earliest time of the next */
+	char probe_path[ALARM_TEXT];
 
 	struct alarm_machine alarm;
 	struct alarm_request alarm_request; /* of alarm_slot; immutable while that is lent */
@@ -83,6 +96,22 @@ struct lane {
 int lane_init(struct lane *lane, struct engine *engine, const struct engine_port *port,
               unsigned index);
 void lane_free(struct lane *lane);
+
+/* The row is served here from now on, no longer: rows that are due, writers, checks of its type. */
+void lane_take_row(struct lane *lane, uint32_t row);
+void lane_drop_row(struct lane *lane, uint32_t row);
+/*
+ * Requests in flight whose signals another lane serves now (all: every one of them) count for
+ * nothing but their slots any more.
+ */
+void lane_disown(struct lane *lane, bool all);
+/* A write of the write step, or of InitValue by the alarm machine. */
+bool lane_writes_output(const struct lane *lane, const struct slot *slot);
+/* A write whose signal another lane serves, and which may still reach the device. */
+bool lane_in_doubt(const struct lane *lane, const struct slot *slot);
+void lane_forget_probes(struct lane *lane);
+/* The target of an open lane went up; the bus said so now or before. */
+void lane_up(struct lane *lane, const char *text, int64_t now_ns);
 
 /* Submit as much as the order of the lane and the depth of its bus allow. */
 void lane_fill(struct lane *lane, int64_t now_ns);

@@ -21,6 +21,13 @@ struct client {
 	int64_t heard_ns;
 };
 
+/* The ways to one wire; lanes[first ..] in the order in which they are written. */
+struct group {
+	unsigned first;
+	struct route_bar bar;
+	struct route_way *ways;
+};
+
 struct engine {
 	const struct config *config;
 	struct image *image;
@@ -29,10 +36,20 @@ struct engine {
 	int64_t start_ns;
 	uint64_t period; /* boundaries since start */
 	struct table table;
+	struct structure structure;
+	struct alarm_item *alarm_items; /* all of the table, in its order */
+	uint32_t alarm_count;
 	struct lane *lanes;
 	unsigned lane_count;
+	struct group *groups;
+	struct route_group *states; /* of the groups */
+	unsigned group_count;
+	struct route_way *ways;
+	struct route_place *places; /* device * group_count + group; NULL: one group */
+	struct due_set routes;      /* devices of which something became known, as in route_wheel */
 	struct due_wheel wheel; /* row * 2: read, row * 2 + 1: write */
 	struct due_wheel limit_wheel; /* rows whose limit alarms change by time alone */
+	struct due_wheel route_wheel; /* devices to be routed again, the one of no device behind them */
 	int64_t now_ns;         /* of the call in work */
 	uint64_t transactions, reconnects;
 	bool published;
@@ -121,6 +138,54 @@ void engine_power_on_reset(struct engine *e, struct lane *lane, const struct ala
                            int64_t now_ns);
 /* The bus has no alarm search: the items are ordinary inputs. */
 void engine_alarm_polls(struct engine *e, struct alarm_machine *m);
+
+/* group.c: which way of a group is open */
+int engine_groups_init(struct engine *e, const struct engine_setup *setup); /* 0 or -ENOMEM */
+void engine_groups_free(struct engine *e);
+/* A fact of the lane changed: take the steps that follow. */
+void engine_group_check(struct engine *e, unsigned group, int64_t now_ns);
+/* The same for all, by time; returns when to be called again. */
+int64_t engine_groups_turn(struct engine *e, int64_t now_ns);
+static inline struct group *engine_group(struct engine *e, const struct lane *lane)
+{
+	return &e->groups[lane->port->group];
+}
+static inline struct route_way *engine_way(struct engine *e, const struct lane *lane)
+{
+	return &e->ways[lane->index];
+}
+/* The lane that is open, or will be. */
+static inline struct lane *engine_open_lane(struct engine *e, unsigned group)
+{
+	return &e->lanes[e->groups[group].first + e->groups[group].bar.open];
+}
+
+/* place.c: which group serves a device */
+int engine_places_init(struct engine *e);
+void engine_places_free(struct engine *e);
+/* What an answer or the search of a bus says of a device; TABLE_NO_DEVICE is ignored. */
+void engine_place(struct engine *e, const struct lane *lane, uint32_t device,
+                  enum route_presence presence);
+/* A bus has found the device: what is known of it elsewhere is old. */
+void engine_place_found(struct engine *e, const struct lane *lane, uint32_t device);
+/* A group has gone up or down: every device may be concerned. */
+void engine_places_check(struct engine *e);
+/* Route the devices of which something became known. Not from inside an answer's work. */
+void engine_places_turn(struct engine *e, int64_t now_ns);
+/* The next device to be looked for on this lane goes into the slot's request; false: none. */
+bool engine_probe_next(struct engine *e, struct lane *lane, struct slot *slot, int64_t now_ns);
+void engine_probe_done(struct engine *e, struct lane *lane, const struct slot *slot,
+                       const struct bus_answer *answer, int64_t now_ns);
+
+/* move.c: the only place where a signal's lane changes */
+/* All signals of the device, TABLE_NO_DEVICE's too (devices[device_count]). */
+void engine_move_device(struct engine *e, struct device *device, struct lane *to, const char *why,
+                        int64_t now_ns);
+/* All signals of the lane; it is not open any more. */
+void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, const char *why,
+                      int64_t now_ns);
+/* Writes in doubt ended, or their bus let go: who waits for that? */
+void engine_doubts(struct engine *e);
 
 /* All signals of the lane: the target was lost, came back. */
 void engine_lane_down(struct engine *e, struct lane *lane, int err, int64_t now_ns);

@@ -43,7 +43,10 @@ void engine_publish_driver(struct engine *e, int64_t now_ns)
 
 void engine_publish_target(struct engine *e, const struct lane *lane)
 {
-	image_target(e->image, lane->index, lane->up, (uint32_t)lane->counters.reconnects);
+	uint32_t state = lane->up ? 1 : engine_way(e, lane)->released ? 2 : 0;
+
+	image_target(e->image, lane->index, state, (uint32_t)lane->counters.reconnects);
+	image_moves(e->image, lane->index, (uint32_t)lane->counters.moves_in);
 	e->published = true;
 }
 

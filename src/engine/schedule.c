@@ -42,6 +42,8 @@ void engine_write_check(struct engine *e, struct signal *s)
 		due_wheel_cancel(&e->wheel, row * 2 + 1);
 		due_set_remove(outputs, row);
 		retry_clear(&s->write_retry);
+	} else if (s->doubts) {
+		due_set_remove(outputs, row);
 	} else if (!s->writing && !e->wheel.wait[row * 2 + 1].waits) {
 		due_set_add(outputs, row);
 	}

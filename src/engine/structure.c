@@ -33,7 +33,7 @@ static bool check_path(const char *path, char *out, size_t size)
 	return n > 0 && (size_t)n < size;
 }
 
-int structure_init(struct structure *structure, const struct table *table, unsigned lane)
+int structure_init(struct structure *structure, const struct table *table)
 {
 	struct wanted *wanted = calloc((size_t)table->count + 1, sizeof(*wanted));
 	uint32_t n = 0;
@@ -41,14 +41,14 @@ int structure_init(struct structure *structure, const struct table *table, unsig
 	*structure = (struct structure){ 0 };
 	structure->checks = calloc((size_t)table->count + 1, sizeof(*structure->checks));
 	structure->rows = calloc((size_t)table->count + 1, sizeof(*structure->rows));
-	if (!wanted || !structure->checks || !structure->rows) {
+	structure->check_of = calloc((size_t)table->count + 1, sizeof(*structure->check_of));
+	if (!wanted || !structure->checks || !structure->rows || !structure->check_of) {
 		free(wanted);
 		structure_free(structure);
 		return -ENOMEM;
 	}
 	for (uint32_t row = 0; row < table->count; row++) {
-		if (table->signals[row].lane != lane)
-			continue;
+		structure->check_of[row] = STRUCTURE_NONE;
 		if (!check_path(table->signals[row].item->path, wanted[n].check.path,
 		                sizeof(wanted[n].check.path)))
 			continue;
@@ -62,6 +62,7 @@ int structure_init(struct structure *structure, const struct table *table, unsig
 		}
 		structure->checks[structure->count - 1].count++;
 		structure->rows[i] = wanted[i].row;
+		structure->check_of[wanted[i].row] = structure->count - 1;
 	}
 	free(wanted);
 	return 0;
@@ -71,6 +72,7 @@ void structure_free(struct structure *structure)
 {
 	free(structure->checks);
 	free(structure->rows);
+	free(structure->check_of);
 	*structure = (struct structure){ 0 };
 }
 

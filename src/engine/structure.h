@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Types are checked against /structure, once, when a target first comes up: a signal whose type
+ * Types are checked against /structure, once, when a target comes to serve a signal: one whose type
  * cannot hold its property, or that writes what is read-only, is reported before its first value.
  */
 #ifndef ENGINE_STRUCTURE_H
@@ -15,12 +15,13 @@ struct structure_check {
 struct structure {
 	struct structure_check *checks;
 	uint32_t *rows;
+	uint32_t *check_of; /* by row of the table; STRUCTURE_NONE: it needs none */
 	uint32_t count;
-	uint32_t next; /* check to be asked next */
 };
+#define STRUCTURE_NONE UINT32_MAX
 
-/* The checks that the rows of a lane need, each different path once. 0 or -ENOMEM. */
-int structure_init(struct structure *structure, const struct table *table, unsigned lane);
+/* The checks that the rows need, each different path once. 0 or -ENOMEM. */
+int structure_init(struct structure *structure, const struct table *table);
 void structure_free(struct structure *structure);
 
 /* "t,000000,000001,ro,000012,v," as parsed. */

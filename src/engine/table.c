@@ -81,6 +81,12 @@ static int find_devices(struct table *table)
 		table->device_rows[i] = keys[i].row;
 		table->signals[keys[i].row].device = table->device_count - 1;
 	}
+	table->devices[table->device_count].first = n;
+	for (uint32_t row = 0; row < table->count; row++)
+		if (table->signals[row].device == TABLE_NO_DEVICE)
+			table->device_rows[n++] = row;
+	table->devices[table->device_count].count =
+		n - table->devices[table->device_count].first;
 	free(keys);
 	return 0;
 }

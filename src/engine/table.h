@@ -52,6 +52,7 @@ struct signal {
 	char *command_text, *written_text; /* strings */
 	uint32_t command_len, written_len;
 	uint32_t client; /* 0: nobody who beats; else index + 1 */
+	uint16_t doubts; /* writes that may still reach it over other targets: it is not written */
 
 	/* what was last seen in the command segment */
 	uint32_t stamp, one_shots, dgn_resets, acknowledged;
@@ -73,12 +74,20 @@ struct device {
 	bool has_rom;   /* false: an alias */
 	bool absent;    /* a signal of it went bad with "no such device" */
 	uint32_t first, count; /* rows in table.device_rows */
+
+	/* where it is served, and looked for (place.c) */
+	unsigned group;
+	int64_t moved_ns;
+	bool probing;     /* queued or with a bus */
+	unsigned probed;  /* the last group it was looked for on */
+	unsigned probe_doublings;
+	int64_t probe_ns; /* not before; 0: it need not be looked for */
 };
 
 struct table {
 	struct signal *signals;
 	uint32_t count;
-	struct device *devices;
+	struct device *devices; /* one more than device_count: the rows without a device */
 	uint32_t device_count;
 	uint32_t *device_rows;
 	char *texts;

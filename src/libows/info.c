@@ -101,7 +101,7 @@ const char *ows_quality_text(uint8_t quality)
 		{OWS_Q_TARGET, "target down"},
 		{OWS_Q_SHORT, "wire short"},
 		{OWS_Q_INITIAL, "initial"},
-		{OWS_Q_DISABLED, "reading disabled"},
+		{OWS_Q_LAST_USABLE, "last usable value"},
 		{OWS_Q_RANGE, "out of range"},
 		{OWS_Q_LOW, "at lower limit"},
 		{OWS_Q_HIGH, "at upper limit"},

@@ -53,7 +53,8 @@ enum ows_quality {
 	OWS_Q_TARGET = 0x18,      /* target down or timed out; owsd dead */
 	OWS_Q_SHORT = 0x19,       /* the wire is short */
 	OWS_Q_INITIAL = 0x20,     /* never read or written */
-	OWS_Q_DISABLED = 0x44,    /* reading disabled by _ReadEnable */
+	OWS_Q_LAST_USABLE = 0x44, /* moved to another target, which has not answered yet */
+	OWS_Q_DISABLED = 0x44,    /* reading disabled by _ReadEnable: likewise the last usable value */
 	OWS_Q_RANGE = 0x54,       /* out of range */
 	OWS_Q_LOW = 0x55,         /* held at the type's lower limit */
 	OWS_Q_HIGH = 0x56,        /* held at the type's upper limit */

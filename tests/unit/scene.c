@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene.h"
 
+#include "hal/path.h"
 #include "src/signal/value.h"
 #include "unity.h"
 
@@ -40,49 +41,89 @@ struct config_item *scene_output(struct scene *s, const char *name, const char *
 }
 
 /* What stands under /alarm is the same property; the list of it is one of its own. */
-static struct scene_property *find(struct scene *s, const char *path)
+static struct scene_property *find(struct scene *s, unsigned wire, const char *path)
 {
 	if (strncmp(path, "/alarm/", 7) == 0)
 		path += 6;
 	for (unsigned i = 0; i < s->property_count; i++)
-		if (strcmp(s->properties[i].path, path) == 0)
+		if (s->properties[i].wire == wire && strcmp(s->properties[i].path, path) == 0)
 			return &s->properties[i];
 	return NULL;
 }
 
-void scene_put(struct scene *s, const char *path, const char *text, int err)
+static bool below(const char *path, const char *device, size_t len)
 {
-	struct scene_property *p = find(s, path);
+	return strncmp(path, device, len) == 0 && (path[len] == '/' || !path[len]);
+}
+
+static bool has_device(struct scene *s, unsigned wire, const char *path)
+{
+	size_t len = strcspn(path + 1, "/") + 1;
+
+	for (unsigned i = 0; i < s->property_count; i++)
+		if (s->properties[i].wire == wire && below(s->properties[i].path, path, len))
+			return true;
+	return false;
+}
+
+void scene_put_on(struct scene *s, unsigned wire, const char *path, const char *text, int err)
+{
+	struct scene_property *p = find(s, wire, path);
 
 	if (!p) {
 		TEST_ASSERT_LESS_THAN(SCENE_ITEMS * 2, s->property_count);
 		p = &s->properties[s->property_count++];
 		p->path = path;
+		p->wire = wire;
 	}
 	p->err = err;
 	snprintf(p->text, sizeof(p->text), "%s", text ? text : "");
 }
 
+void scene_put(struct scene *s, const char *path, const char *text, int err)
+{
+	scene_put_on(s, 0, path, text, err);
+}
+
+void scene_plug(struct scene *s, const char *path, unsigned wire)
+{
+	for (unsigned i = 0; i < s->property_count; i++)
+		if (below(s->properties[i].path, path, strlen(path)))
+			s->properties[i].wire = wire;
+}
+
 void scene_refuse_writes(struct scene *s, const char *path, int err)
 {
-	find(s, path)->write_err = err;
+	find(s, 0, path)->write_err = err;
 }
 
 const char *scene_at(struct scene *s, const char *path)
 {
-	struct scene_property *p = find(s, path);
+	for (unsigned i = 0; i < s->property_count; i++)
+		if (strcmp(s->properties[i].path, path) == 0)
+			return s->properties[i].text;
+	return NULL;
+}
 
-	return p ? p->text : NULL;
+struct scene_bus *scene_bus(struct scene *s, const char *name, unsigned wire)
+{
+	struct scene_bus *bus = &s->bus[s->bus_count];
+
+	TEST_ASSERT_LESS_THAN(SCENE_BUSES, s->bus_count);
+	*bus = (struct scene_bus){ .scene = s, .name = name, .wire = wire, .depth = 1 };
+	bus->latency_ns = bus->turn_ns = SCENE_MS;
+	bus->when_ns = INT64_MAX;
+	s->targets[s->bus_count].text = name;
+	s->config.target_count = ++s->bus_count;
+	return bus;
 }
 
 void scene_init(struct scene *s)
 {
-	*s = (struct scene){ .now_ns = 1000 * SCENE_S, .depth = 1, .latency_ns = SCENE_MS };
-	s->target.text = "scene";
+	*s = (struct scene){ .now_ns = 1000 * SCENE_S };
 	s->config = (struct config){
 		.file = "scene.rio",
-		.targets = &s->target,
-		.target_count = 1,
+		.targets = s->targets,
 		.max_cons_alarms = 5,
 		.max_retries = 3,
 		.timeout_ns = 20 * SCENE_S,
@@ -90,89 +131,114 @@ void scene_init(struct scene *s)
 		.alarm_period_ns = 50 * SCENE_MS,
 		.items = s->items,
 	};
+	scene_bus(s, "scene", 0);
 }
 
-static void note(struct scene *s, char what, const char *path, const char *text)
+static void note(struct scene_bus *bus, char what, const char *path, const char *text)
 {
+	struct scene *s = bus->scene;
 	size_t used = strlen(s->trace);
+	char number[16] = "";
 
-	snprintf(s->trace + used, sizeof(s->trace) - used, "%c %s%s%s\n", what, path,
+	if (s->no_trace)
+		return;
+	if (bus != s->bus)
+		snprintf(number, sizeof(number), "%d: ", (int)(bus - s->bus));
+	snprintf(s->trace + used, sizeof(s->trace) - used, "%s%c %s%s%s\n", number, what, path,
 	         what == 'W' ? "=" : "", text);
 }
 
-static int64_t latency_of(const struct scene *s, const char *path, bool structure)
+static int64_t latency_of(const struct scene_bus *bus, const char *path, bool structure)
 {
 	if (structure)
 		return 0;
-	return s->slow && strcmp(path, s->slow) == 0 ? s->slow_ns : s->latency_ns;
+	return bus->slow && strcmp(path, bus->slow) == 0 ? bus->slow_ns : bus->latency_ns;
 }
 
 static int submit(void *ctx, struct bus_req *req)
 {
-	struct scene *s = ctx;
+	struct scene_bus *bus = ctx;
+	struct scene *s = bus->scene;
 	bool structure = strncmp(req->path, "/structure/", 11) == 0;
 	char text[128] = "";
 	unsigned values = 0;
 
-	if (s->refuses || s->pending_count + s->swallowed_count == s->depth)
+	TEST_ASSERT_FALSE_MESSAGE(bus->holds && (bus->released || bus->asked),
+	                          "asked though it was to let go");
+	if (bus->refuses || bus->pending_count + bus->swallowed_count == bus->depth)
 		return -EAGAIN;
 	if (structure) {
 		s->structure_reads++;
 	} else if (req->op == BUS_DIR) {
 		s->lists++;
+		bus->lists++;
 		if (s->trace_lists)
-			note(s, 'D', req->path, text);
+			note(bus, 'D', req->path, text);
 	} else if (req->op == BUS_WRITE) {
 		s->writes++;
+		bus->writes++;
 		snprintf(text, sizeof(text), "%.*s", (int)req->len, (const char *)req->data);
-		note(s, 'W', req->path, text);
+		note(bus, 'W', req->path, text);
+	} else if (req->op == BUS_PROBE) {
+		bus->probes++;
 	} else {
 		s->reads++;
-		note(s, req->fresh ? 'r' : 'R', req->path, text);
+		bus->reads++;
+		note(bus, req->fresh ? 'r' : 'R', req->path, text);
 	}
-	if (s->mute && !structure) {
-		s->swallowed[s->swallowed_count++] = req;
+	if (bus->mute && !structure) {
+		bus->swallowed[bus->swallowed_count++] = req;
 		return 0;
 	}
-	s->pending[s->pending_count++] =
-		(struct scene_pending){ req, s->now_ns + latency_of(s, req->path, structure) };
-	for (unsigned i = 0; i < s->pending_count; i++)
-		values += strncmp(s->pending[i].req->path, "/structure/", 11) != 0;
-	if (values > s->most_pending)
-		s->most_pending = values;
+	bus->pending[bus->pending_count++] =
+		(struct scene_pending){ req, s->now_ns + latency_of(bus, req->path, structure) };
+	for (unsigned i = 0; i < bus->pending_count; i++)
+		values += strncmp(bus->pending[i].req->path, "/structure/", 11) != 0;
+	if (values > bus->most_pending)
+		bus->most_pending = values;
 	return 0;
 }
 
-void scene_start(struct scene *s)
+static void suspend(void *ctx, bool yes)
+{
+	struct scene_bus *bus = ctx;
+
+	bus->asked = true;
+	TEST_ASSERT_TRUE_MESSAGE(yes || bus->released || bus->mute,
+	                         "opened and has not let go before");
+	bus->when_ns = bus->scene->now_ns + bus->turn_ns;
+	for (unsigned i = 0; !yes && i < bus->scene->bus_count; i++) {
+		const struct scene_bus *other = &bus->scene->bus[i];
+
+		if (other != bus && other->wire == bus->wire && !other->mute)
+			TEST_ASSERT_TRUE_MESSAGE(other->released, "two masters on one wire");
+	}
+}
+
+static void make_memory(struct scene *s)
 {
 	static struct image_signal signals[SCENE_ITEMS];
 	static struct command_signal names[SCENE_ITEMS];
-	static struct image_counter counters[64];
-	const char *targets[1] = { "scene" };
+	static struct image_counter counters[256];
+	const char *targets[SCENE_BUSES];
 	struct image_plan plan = {
 		.signals = signals,
 		.signal_count = s->config.item_count,
 		.targets = targets,
-		.target_count = 1,
+		.target_count = s->bus_count,
 		.counters = counters,
-		.counter_count = engine_counter_count(1),
+		.counter_count = engine_counter_count(s->bus_count),
 		.generation = 1,
 		.start_id = 7,
 		.pid = 1,
 		.start_ns = s->now_ns,
 		.period_ns = s->config.period_ns,
 	};
-	struct engine_setup setup = {
-		.config = &s->config,
-		.ports = &s->port,
-		.port_count = 1,
-		.image = &s->image,
-		.commands = &s->commands,
-		.start_ns = s->now_ns,
-	};
 	size_t size;
 
-	engine_counter_plan(1, counters);
+	for (unsigned i = 0; i < s->bus_count; i++)
+		targets[i] = s->bus[i].name;
+	engine_counter_plan(s->bus_count, counters);
 	for (unsigned i = 0; i < s->config.item_count; i++) {
 		const struct config_item *item = &s->items[i];
 
@@ -199,77 +265,220 @@ void scene_start(struct scene *s)
 	s->command_memory = aligned_alloc(64, (size + 63) / 64 * 64);
 	memset(s->command_memory, 0, size);
 	TEST_ASSERT_EQUAL_INT(0, commands_build(&s->command_plan, s->command_memory, &s->commands));
-	s->port = (struct engine_port){ .target = "scene", .depth = s->depth, .searches = s->searches,
-		                        .submit = submit,
-		                        .ctx = s };
+}
+
+void scene_start(struct scene *s)
+{
+	struct engine_setup setup = {
+		.config = &s->config,
+		.ports = s->ports,
+		.port_count = s->bus_count,
+		.image = &s->image,
+		.commands = &s->commands,
+		.log = s->log,
+		.start_ns = s->now_ns,
+	};
+
+	make_memory(s);
+	for (unsigned i = 0; i < s->bus_count; i++) {
+		struct scene_bus *bus = &s->bus[i];
+		bool first = i == 0 || s->bus[i - 1].wire != bus->wire;
+
+		s->ports[i] = (struct engine_port){ .target = bus->name,
+			                            .depth = bus->depth,
+			                            .searches = bus->searches,
+			                            .submit = submit,
+			                            .ctx = bus,
+			                            .group = bus->wire,
+			                            .suspend = bus->holds ? suspend : NULL };
+		bus->released = !first;
+		if (bus->holds && first) { /* it opens from the start */
+			bus->released = bus->asked = true;
+			bus->when_ns = s->now_ns + bus->turn_ns;
+		}
+	}
 	TEST_ASSERT_EQUAL_INT(0, engine_create(&setup, &s->engine));
 }
 
-void scene_down(struct scene *s, int err)
-{
-	struct bus_event event = { .news = BUS_DOWN, .err = err };
-
-	while (s->pending_count) {
-		struct bus_req *req = s->pending[--s->pending_count].req;
-
-		scene_answer(s, req->id, err, NULL, req);
-	}
-	engine_event(s->engine, 0, &event, s->now_ns);
-}
-
-void scene_answer(struct scene *s, uint32_t id, int err, const char *text, struct bus_req *req)
+void scene_answer_on(struct scene *s, unsigned bus, uint32_t id, int err, const char *text,
+                     struct bus_req *req)
 {
 	struct bus_answer answer = { .id = id, .err = err, .measured_ns = s->now_ns };
 
-	if (!err && text && req && req->op != BUS_WRITE) {
+	if (!err && text && req && (req->op == BUS_READ || req->op == BUS_DIR)) {
 		answer.len = (uint32_t)strlen(text);
 		TEST_ASSERT_LESS_OR_EQUAL(req->len, answer.len);
 		memcpy(req->data, text, answer.len);
 	}
-	engine_answer(s->engine, 0, &answer, s->now_ns);
+	engine_answer(s->engine, bus, &answer, s->now_ns);
 }
 
-static void deliver(struct scene *s, unsigned index)
+void scene_answer(struct scene *s, uint32_t id, int err, const char *text, struct bus_req *req)
 {
-	struct bus_req *req = s->pending[index].req;
-	struct scene_property *p = find(s, req->op == BUS_DIR ? "/alarm" : req->path);
+	scene_answer_on(s, 0, id, err, text, req);
+}
 
-	s->pending[index] = s->pending[--s->pending_count];
-	if (!p) {
-		scene_answer(s, req->id, req->op == BUS_DIR ? -EOPNOTSUPP : -ENOENT, NULL, req);
+static void fail_pending(struct scene_bus *bus, int err)
+{
+	while (bus->pending_count) {
+		struct bus_req *req = bus->pending[--bus->pending_count].req;
+
+		scene_answer_on(bus->scene, (unsigned)(bus - bus->scene->bus), req->id, err, NULL,
+		                req);
+	}
+}
+
+static void tell(struct scene *s, unsigned bus, enum bus_news news, int err)
+{
+	struct bus_event event = { .news = (uint8_t)news, .err = err };
+
+	engine_event(s->engine, bus, &event, s->now_ns);
+}
+
+void scene_down_on(struct scene *s, unsigned bus, int err)
+{
+	fail_pending(&s->bus[bus], err);
+	tell(s, bus, BUS_DOWN, err);
+}
+
+void scene_down(struct scene *s, int err)
+{
+	scene_down_on(s, 0, err);
+}
+
+void scene_tell(struct scene *s, unsigned bus, enum bus_news news, const char *path)
+{
+	struct bus_event event = { .news = (uint8_t)news };
+	struct path split;
+
+	TEST_ASSERT_EQUAL_INT(0, path_split(path, strlen(path), &split));
+	memcpy(event.rom, split.rom, sizeof(event.rom));
+	engine_event(s->engine, bus, &event, s->now_ns);
+}
+
+static void deliver(struct scene_bus *bus, unsigned index)
+{
+	struct scene *s = bus->scene;
+	unsigned number = (unsigned)(bus - s->bus);
+	struct bus_req *req = bus->pending[index].req;
+	struct scene_property *p =
+		find(s, bus->wire, req->op == BUS_DIR ? "/alarm" : req->path);
+	int err = req->op == BUS_DIR ? -EOPNOTSUPP : -ENOENT;
+
+	bus->pending[index] = bus->pending[--bus->pending_count];
+	if (req->op != BUS_DIR && s->bus_count > 1 && !has_device(s, bus->wire, req->path))
+		err = -ENODEV;
+	if (req->op == BUS_PROBE)
+		err = has_device(s, bus->wire, req->path) ? 0 : -ENODEV;
+	if (!p || req->op == BUS_PROBE) {
+		scene_answer_on(s, number, req->id, err, NULL, req);
 		return;
 	}
 	if (req->op == BUS_WRITE && p->write_err) {
-		scene_answer(s, req->id, p->write_err, NULL, req);
+		scene_answer_on(s, number, req->id, p->write_err, NULL, req);
 		return;
 	}
+	if (s->on_done)
+		s->on_done(bus, req);
 	if (s->on_read && req->op != BUS_WRITE)
 		s->on_read(s, req->path);
 	if (req->op == BUS_WRITE && !p->err && s->on_write)
 		s->on_write(s, req->path, (const char *)req->data, req->len);
 	if (req->op == BUS_WRITE && !p->err)
 		snprintf(p->text, sizeof(p->text), "%.*s", (int)req->len, (const char *)req->data);
-	scene_answer(s, req->id, p->err, p->text, req);
+	scene_answer_on(s, number, req->id, p->err, p->text, req);
 }
 
-static bool deliver_structure(struct scene *s)
+static bool deliver_structure(struct scene_bus *bus)
 {
-	for (unsigned i = 0; i < s->pending_count; i++)
-		if (strncmp(s->pending[i].req->path, "/structure/", 11) == 0) {
-			deliver(s, i);
+	for (unsigned i = 0; i < bus->pending_count; i++)
+		if (strncmp(bus->pending[i].req->path, "/structure/", 11) == 0) {
+			deliver(bus, i);
 			return true;
 		}
 	return false;
 }
 
-void scene_up(struct scene *s)
+void scene_up_on(struct scene *s, unsigned bus)
 {
-	struct bus_event event = { .news = BUS_UP };
-
-	engine_event(s->engine, 0, &event, s->now_ns);
+	tell(s, bus, BUS_UP, 0);
 	do {
 		engine_step(s->engine, s->now_ns);
-	} while (deliver_structure(s));
+	} while (deliver_structure(&s->bus[bus]));
+}
+
+void scene_up(struct scene *s)
+{
+	scene_up_on(s, 0);
+}
+
+void scene_reach(struct scene *s, unsigned number, bool there)
+{
+	struct scene_bus *bus = &s->bus[number];
+
+	if (bus->there == there)
+		return;
+	bus->there = there;
+	if (!s->engine || bus->mute)
+		return;
+	if (bus->released) {
+		if (there && !bus->asked)
+			tell(s, number, BUS_BACK, 0);
+	} else if (there) {
+		tell(s, number, BUS_UP, 0);
+	} else {
+		scene_down_on(s, number, -ENOTCONN);
+	}
+}
+
+/* It has let go, or is open. */
+static void turn(struct scene_bus *bus)
+{
+	struct scene *s = bus->scene;
+	unsigned number = (unsigned)(bus - s->bus);
+
+	if (bus->mute) { /* it cannot */
+		bus->when_ns = s->now_ns + SCENE_S;
+		return;
+	}
+	bus->when_ns = INT64_MAX;
+	bus->asked = false;
+	if (!bus->released) {
+		fail_pending(bus, -ENOTCONN);
+		bus->released = true;
+		tell(s, number, BUS_RELEASED, 0);
+		if (bus->there)
+			tell(s, number, BUS_BACK, 0);
+		return;
+	}
+	bus->released = false;
+	bus->opened++;
+	tell(s, number, bus->there ? BUS_UP : BUS_DOWN, bus->there ? 0 : -ENOENT);
+}
+
+/* The soonest of what the buses do next, not after *until; false: nothing. */
+static bool next_of_buses(struct scene *s, int64_t *until, struct scene_bus **which, int *pending)
+{
+	bool any = false;
+
+	for (unsigned b = 0; b < s->bus_count; b++) {
+		struct scene_bus *bus = &s->bus[b];
+
+		for (unsigned i = 0; i < bus->pending_count; i++)
+			if (bus->pending[i].when_ns <= *until) {
+				*until = bus->pending[i].when_ns;
+				*which = bus;
+				*pending = (int)i;
+				any = true;
+			}
+		if (bus->when_ns <= *until && bus->when_ns != INT64_MAX) {
+			*until = bus->when_ns;
+			*which = bus;
+			*pending = -1;
+			any = true;
+		}
+	}
+	return any;
 }
 
 void scene_run(struct scene *s, int64_t ns)
@@ -278,19 +487,18 @@ void scene_run(struct scene *s, int64_t ns)
 
 	for (;;) {
 		int64_t next = engine_step(s->engine, s->now_ns);
-		int soonest = -1;
+		struct scene_bus *bus = NULL;
+		int pending = -1;
+		bool any = next_of_buses(s, &next, &bus, &pending);
 
-		for (unsigned i = 0; i < s->pending_count; i++)
-			if (s->pending[i].when_ns <= next) {
-				next = s->pending[i].when_ns;
-				soonest = (int)i;
-			}
-		TEST_ASSERT_TRUE_MESSAGE(next > s->now_ns || soonest >= 0, "the engine spins");
+		TEST_ASSERT_TRUE_MESSAGE(next > s->now_ns || any, "the engine spins");
 		if (next > end)
 			break;
 		s->now_ns = next;
-		if (soonest >= 0)
-			deliver(s, (unsigned)soonest);
+		if (any && pending >= 0)
+			deliver(bus, (unsigned)pending);
+		else if (any)
+			turn(bus);
 	}
 	s->now_ns = end;
 }
@@ -389,14 +597,25 @@ double scene_number(struct scene *s, unsigned record)
 	return value_number(s->items[record - 1].type, scene_sample(s, record).value);
 }
 
-uint64_t scene_counter(struct scene *s, const char *name)
+uint64_t scene_counter_of(struct scene *s, unsigned bus, const char *name)
 {
-	struct image_counter plan[64];
+	struct image_counter plan[256];
 
-	engine_counter_plan(1, plan);
-	for (unsigned i = 0; i < engine_counter_count(1); i++)
-		if (strcmp(plan[i].name, name) == 0)
+	engine_counter_plan(s->bus_count, plan);
+	for (unsigned i = 0; i < engine_counter_count(s->bus_count); i++)
+		if (strcmp(plan[i].name, name) == 0 &&
+		    (plan[i].target == bus || plan[i].target == UINT32_MAX))
 			return engine_counter(s->engine, i);
 	TEST_FAIL_MESSAGE("no such counter");
 	return 0;
+}
+
+uint64_t scene_counter(struct scene *s, const char *name)
+{
+	return scene_counter_of(s, 0, name);
+}
+
+uint32_t scene_target_state(struct scene *s, unsigned bus)
+{
+	return s->image.targets[bus].state;
 }

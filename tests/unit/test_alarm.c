@@ -230,7 +230,7 @@ static void mute_at_init(struct scene *scene, const char *path, const char *data
 	(void)data;
 	(void)len;
 	if (strstr(path, "/set_alarm"))
-		scene->mute = true; /* the next request, InitValue, is not answered */
+		scene->bus[0].mute = true; /* the next request, InitValue, is not answered */
 }
 
 static void test_an_init_value_in_doubt_is_followed_by_the_present_value(void)
@@ -248,14 +248,14 @@ static void test_an_init_value_in_doubt_is_followed_by_the_present_value(void)
 	s.on_write = mute_at_init;
 	scene_put(&s, D "/por", "1", 0);
 	scene_run(&s, 25 * SCENE_S);
-	TEST_ASSERT_EQUAL_UINT(1, s.swallowed_count);
-	s.mute = false;
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].swallowed_count);
+	s.bus[0].mute = false;
 	s.on_write = NULL;
 	scene_put(&s, D "/por", "0", 0);
 	scene_put(&s, D "/PIO.BYTE", "3", 0);
 	scene_clear_trace(&s);
-	scene_answer(&s, s.swallowed[0]->id, 0, NULL, s.swallowed[0]);
-	s.swallowed_count = 0;
+	scene_answer(&s, s.bus[0].swallowed[0]->id, 0, NULL, s.bus[0].swallowed[0]);
+	s.bus[0].swallowed_count = 0;
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_STRING("7", scene_at(&s, D "/PIO.BYTE"));
 }
@@ -317,7 +317,7 @@ static void test_after_max_cons_alarms_one_other_request_goes_through(void)
 	scene_put(&s, E "/sensed.BYTE", "1", 0);
 	scene_put(&s, E "/latch.BYTE", "1", 0);
 	scene_put(&s, T_TEMP, "21", 0);
-	s.latency_ns = 30 * SCENE_MS;
+	s.bus[0].latency_ns = 30 * SCENE_MS;
 	scene_start(&s);
 	s.on_read = on_read;
 	scene_up(&s);
@@ -330,9 +330,9 @@ static void test_an_alarm_does_not_wait_for_a_conversion(void)
 {
 	static const char *const values[] = { "254", "253", "252", "251", "250", "249" };
 
-	s.depth = 4;
-	s.slow = T_TEMP;
-	s.slow_ns = 750 * SCENE_MS;
+	s.bus[0].depth = 4;
+	s.bus[0].slow = T_TEMP;
+	s.bus[0].slow_ns = 750 * SCENE_MS;
 	figure_3_3();
 	scene_input(&s, "t", T_TEMP, OWS_DOUBLE);
 	device("0", "0");
@@ -352,9 +352,9 @@ static void test_the_engine_sleeps_while_a_write_holds_the_alarms_up(void)
 {
 	uint64_t steps;
 
-	s.depth = 4;
-	s.slow = D "/PIO.BYTE";
-	s.slow_ns = SCENE_S;
+	s.bus[0].depth = 4;
+	s.bus[0].slow = D "/PIO.BYTE";
+	s.bus[0].slow_ns = SCENE_S;
 	figure_3_3();
 	scene_output(&s, "relays", D "/PIO.BYTE", OWS_BYTE);
 	device("0", "0");
@@ -402,7 +402,7 @@ static void test_a_bus_without_alarm_search_has_its_items_read_as_inputs(void)
 
 static void test_a_bus_that_searches_is_asked_for_the_families_of_the_items_only(void)
 {
-	s.searches = s.trace_lists = true;
+	s.bus[0].searches = s.trace_lists = true;
 	figure_3_3();
 	alarm_item("second", E "/sensed.BYTE", "latch.BYTE", "", NULL, "latch.BYTE=0");
 	alarm_item("t", T_TEMP, "present", "", "temphigh=30", "")->type = OWS_DOUBLE;
@@ -502,7 +502,7 @@ static void test_a_lost_target_begins_the_machine_anew(void)
 	figure_3_3();
 	device("0", "0");
 	begin();
-	s.latency_ns = 20 * SCENE_MS;
+	s.bus[0].latency_ns = 20 * SCENE_MS;
 	scene_put(&s, D "/latch.BYTE", "1", 0);
 	scene_run(&s, 90 * SCENE_MS);
 	scene_down(&s, -ECONNRESET);

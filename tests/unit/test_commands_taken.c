@@ -160,7 +160,7 @@ static void test_a_command_is_not_confirmed_while_writing_is_disabled(void)
 static void test_the_same_value_set_again_during_its_write_is_confirmed_with_it(void)
 {
 	one_of_each();
-	s.latency_ns = 50 * SCENE_MS;
+	s.bus[0].latency_ns = 50 * SCENE_MS;
 	scene_set(&s, 2, 9);
 	scene_run(&s, 10 * SCENE_MS);
 	scene_set(&s, 2, 9);
@@ -369,7 +369,7 @@ static void test_per_count_and_pend_count_are_counted_in_periods(void)
 {
 	scene_input(&s, "t1", T1, OWS_DOUBLE);
 	scene_put(&s, T1, "1", 0);
-	s.latency_ns = 350 * SCENE_MS;
+	s.bus[0].latency_ns = 350 * SCENE_MS;
 	scene_start(&s);
 	scene_up(&s);
 	scene_run(&s, 320 * SCENE_MS);
@@ -379,7 +379,7 @@ static void test_per_count_and_pend_count_are_counted_in_periods(void)
 	TEST_ASSERT_EQUAL_UINT32(3, scene_attrs(&s, 1).pend_last);
 	TEST_ASSERT_EQUAL_UINT32(3, scene_attrs(&s, 1).pend_max);
 	TEST_ASSERT_EQUAL_UINT32(3, scene_attrs(&s, 1).per_base);
-	s.latency_ns = 10 * SCENE_MS;
+	s.bus[0].latency_ns = 10 * SCENE_MS;
 	scene_run(&s, 2 * SCENE_S);
 	TEST_ASSERT_EQUAL_UINT32(0, scene_attrs(&s, 1).pend_last);
 	TEST_ASSERT_GREATER_OR_EQUAL_UINT32(3, scene_attrs(&s, 1).pend_max);
@@ -392,7 +392,7 @@ static void test_age_and_period_are_of_the_updates_though_the_measurement_is_old
 	int64_t measured;
 
 	scene_input(&s, "t1", T1, OWS_DOUBLE);
-	s.mute = true;
+	s.bus[0].mute = true;
 	scene_start(&s);
 	scene_up(&s);
 	measured = s.now_ns;
@@ -400,9 +400,9 @@ static void test_age_and_period_are_of_the_updates_though_the_measurement_is_old
 		struct bus_answer answer = { .measured_ns = measured, .kind = BUS_NUMBER };
 
 		scene_run(&s, 400 * SCENE_MS);
-		TEST_ASSERT_EQUAL_UINT(1, s.swallowed_count);
-		answer.id = s.swallowed[0]->id;
-		s.swallowed_count = 0;
+		TEST_ASSERT_EQUAL_UINT(1, s.bus[0].swallowed_count);
+		answer.id = s.bus[0].swallowed[0]->id;
+		s.bus[0].swallowed_count = 0;
 		engine_answer(s.engine, 0, &answer, s.now_ns);
 	}
 	TEST_ASSERT_EQUAL_INT64(400 * SCENE_MS, scene_attrs(&s, 1).update_ns);

@@ -316,17 +316,17 @@ static void test_85_degrees_out_of_nothing_is_never_published(void)
 static void test_a_bus_that_never_answers_is_given_up_and_its_signals_go_bad(void)
 {
 	two_thermometers();
-	s.mute = true;
+	s.bus[0].mute = true;
 	scene_run(&s, 20 * SCENE_S);
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, scene_sample(&s, 1).quality);
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, scene_sample(&s, 2).quality);
-	TEST_ASSERT_EQUAL_UINT(1, s.swallowed_count);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].swallowed_count);
 	/* and comes back with its late answer */
-	s.mute = false;
-	scene_answer(&s, s.swallowed[0]->id, 0, "1", s.swallowed[0]);
-	s.swallowed_count = 0;
+	s.bus[0].mute = false;
+	scene_answer(&s, s.bus[0].swallowed[0]->id, 0, "1", s.bus[0].swallowed[0]);
+	s.bus[0].swallowed_count = 0;
 	scene_run(&s, 50 * SCENE_MS);
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
 	TEST_ASSERT_EQUAL_DOUBLE(21.5, scene_number(&s, 1));
@@ -335,14 +335,14 @@ static void test_a_bus_that_never_answers_is_given_up_and_its_signals_go_bad(voi
 
 static void test_one_request_without_answer_spoils_only_its_signal_on_a_bus_that_lives(void)
 {
-	s.depth = 4;
+	s.bus[0].depth = 4;
 	two_thermometers();
-	s.mute = true;
+	s.bus[0].mute = true;
 	scene_run(&s, 100 * SCENE_MS);
-	TEST_ASSERT_EQUAL_UINT(2, s.swallowed_count);
-	s.mute = false;
-	scene_answer(&s, s.swallowed[1]->id, 0, "5", s.swallowed[1]);
-	s.swallowed_count = 1;
+	TEST_ASSERT_EQUAL_UINT(2, s.bus[0].swallowed_count);
+	s.bus[0].mute = false;
+	scene_answer(&s, s.bus[0].swallowed[1]->id, 0, "5", s.bus[0].swallowed[1]);
+	s.bus[0].swallowed_count = 1;
 	scene_run(&s, 22 * SCENE_S);
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 2).quality);
 	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "given_up"));
@@ -355,7 +355,7 @@ static void test_a_bus_that_only_talks_and_keeps_all_it_was_given_is_stuck_too(v
 	struct bus_event note = { .news = BUS_NOTE };
 
 	two_thermometers();
-	s.mute = true;
+	s.bus[0].mute = true;
 	scene_run(&s, SCENE_S);
 	engine_event(s.engine, 0, &note, s.now_ns);
 	scene_run(&s, 21 * SCENE_S);
@@ -373,9 +373,9 @@ static void test_a_timeout_shorter_than_the_period_is_kept(void)
 	scene_put(&s, T1, "21.5", 0);
 	scene_start(&s);
 	scene_up(&s);
-	s.mute = true; /* the first is on its way and is answered */
+	s.bus[0].mute = true; /* the first is on its way and is answered */
 	scene_run(&s, 2 * SCENE_S);
-	TEST_ASSERT_EQUAL_UINT(1, s.swallowed_count);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].swallowed_count);
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, scene_sample(&s, 2).quality);
 }
 
@@ -385,15 +385,15 @@ static void test_a_write_in_doubt_that_ends_late_is_followed_by_the_present_valu
 	scene_put(&s, PIO, "0", 0);
 	scene_start(&s);
 	scene_up(&s);
-	s.mute = true;
+	s.bus[0].mute = true;
 	scene_set(&s, 1, 1);
 	scene_run(&s, 21 * SCENE_S);
-	s.mute = false;
+	s.bus[0].mute = false;
 	scene_set(&s, 1, 2);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_STRING("W " PIO "=1\n", s.trace);
-	scene_answer(&s, s.swallowed[0]->id, 0, NULL, s.swallowed[0]);
-	s.swallowed_count = 0;
+	scene_answer(&s, s.bus[0].swallowed[0]->id, 0, NULL, s.bus[0].swallowed[0]);
+	s.bus[0].swallowed_count = 0;
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_STRING("W " PIO "=1\nW " PIO "=2\n", s.trace);
 }
@@ -417,11 +417,11 @@ static void test_a_second_answer_to_one_request_changes_nothing(void)
 	struct bus_req *req;
 
 	two_thermometers();
-	s.mute = true;
+	s.bus[0].mute = true;
 	scene_run(&s, 100 * SCENE_MS);
-	req = s.swallowed[0];
-	s.mute = false;
-	s.swallowed_count = 0;
+	req = s.bus[0].swallowed[0];
+	s.bus[0].mute = false;
+	s.bus[0].swallowed_count = 0;
 	scene_answer(&s, req->id, 0, "30", req);
 	TEST_ASSERT_EQUAL_DOUBLE(30, scene_number(&s, 1));
 	scene_answer(&s, req->id, -EIO, NULL, req);

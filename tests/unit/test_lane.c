@@ -50,7 +50,7 @@ static void test_inputs_are_read_in_the_order_of_the_file_once_a_period(void)
 static void test_the_cycle_goes_on_where_it_stopped_when_a_period_is_too_short(void)
 {
 	three_thermometers();
-	s.latency_ns = 70 * SCENE_MS;
+	s.bus[0].latency_ns = 70 * SCENE_MS;
 	scene_start(&s);
 	scene_up(&s);
 	scene_run(&s, 6 * 70 * SCENE_MS);
@@ -65,17 +65,17 @@ static void test_one_request_at_a_time_goes_to_a_bus_of_depth_one(void)
 	scene_start(&s);
 	scene_up(&s);
 	scene_run(&s, SCENE_S);
-	TEST_ASSERT_EQUAL_UINT(1, s.most_pending);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].most_pending);
 }
 
 static void test_all_due_inputs_go_at_once_to_a_bus_that_takes_them(void)
 {
 	three_thermometers();
-	s.depth = 8;
+	s.bus[0].depth = 8;
 	scene_start(&s);
 	scene_up(&s);
 	scene_run(&s, SCENE_S);
-	TEST_ASSERT_EQUAL_UINT(3, s.most_pending);
+	TEST_ASSERT_EQUAL_UINT(3, s.bus[0].most_pending);
 }
 
 static void test_at_most_one_write_is_in_work(void)
@@ -83,11 +83,11 @@ static void test_at_most_one_write_is_in_work(void)
 	for (int i = 0; i < 4; i++)
 		scene_output(&s, &"abcd"[i], PIO, OWS_BYTE)->has_init = true;
 	scene_put(&s, PIO, "0", 0);
-	s.depth = 8;
+	s.bus[0].depth = 8;
 	scene_start(&s);
 	scene_up(&s);
 	scene_run(&s, SCENE_S);
-	TEST_ASSERT_EQUAL_UINT(1, s.most_pending);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].most_pending);
 	TEST_ASSERT_EQUAL_UINT(4, s.writes);
 }
 
@@ -203,7 +203,7 @@ static void test_the_value_of_the_moment_counts_and_back_is_no_change(void)
 	scene_set(&s, 2, 1);
 	scene_run(&s, 150 * SCENE_MS);
 	scene_clear_trace(&s);
-	s.latency_ns = 50 * SCENE_MS;
+	s.bus[0].latency_ns = 50 * SCENE_MS;
 	scene_run(&s, 60 * SCENE_MS); /* a read is in work */
 	scene_set(&s, 2, 2);
 	engine_step(s.engine, s.now_ns);
@@ -234,7 +234,7 @@ static void test_inputs_are_read_though_outputs_change_all_the_time(void)
 	scene_put(&s, T1, "1", 0);
 	scene_put(&s, PIO, "0", 0);
 	scene_put(&s, PIO2, "0", 0);
-	s.latency_ns = 40 * SCENE_MS;
+	s.bus[0].latency_ns = 40 * SCENE_MS;
 	scene_start(&s);
 	scene_up(&s);
 	for (int i = 0; i < 1000; i++) {
@@ -300,11 +300,11 @@ static void test_texts_are_read_written_and_cut_where_they_are_too_long(void)
 static void test_a_bus_that_takes_nothing_is_asked_again_later(void)
 {
 	three_thermometers();
-	s.refuses = true;
+	s.bus[0].refuses = true;
 	scene_start(&s);
 	scene_up(&s);
 	scene_run(&s, SCENE_S);
-	s.refuses = false;
+	s.bus[0].refuses = false;
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_GREATER_THAN(20, s.reads);
 }

@@ -45,7 +45,7 @@ static void shoot_once(unsigned record)
 static void test_a_value_is_not_applied_while_another_is_on_its_way(void)
 {
 	one_output();
-	s.latency_ns = 50 * SCENE_MS;
+	s.bus[0].latency_ns = 50 * SCENE_MS;
 	scene_set(&s, 1, 3);
 	scene_run(&s, SCENE_S);
 	scene_set(&s, 1, 4);
@@ -94,7 +94,7 @@ static void test_a_one_shot_comes_in_its_turn_though_inputs_are_always_due(void)
 	scene_output(&s, "out", PIO, OWS_BYTE);
 	scene_put(&s, T1, "21.5", 0);
 	scene_put(&s, PIO, "0", 0);
-	s.latency_ns = 250 * SCENE_MS; /* more than a period: the input is due again at once */
+	s.bus[0].latency_ns = 250 * SCENE_MS; /* more than a period: the input is due again at once */
 	scene_start(&s);
 	scene_up(&s);
 	disable_writing(2);

@@ -119,7 +119,7 @@ static void test_each_path_is_asked_once_for_all_its_signals(void)
 	struct table table;
 
 	TEST_ASSERT_EQUAL_INT(0, signal_table_init(&table, &config));
-	TEST_ASSERT_EQUAL_INT(0, structure_init(&structure, &table, 0));
+	TEST_ASSERT_EQUAL_INT(0, structure_init(&structure, &table));
 	TEST_ASSERT_EQUAL_UINT32(3, structure.count);
 	TEST_ASSERT_EQUAL_STRING("/structure/26/HIH4000/humidity", structure.checks[0].path);
 	TEST_ASSERT_EQUAL_STRING("/structure/28/temperature12", structure.checks[1].path);

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The only place where a signal's lane changes. A value from before the move is never shown as good,
+ * what was written is forgotten, and what is still with the old bus counts for nothing any more.
+ */
+#include "alarm_known.h"
+#include "private.h"
+
+#include <errno.h>
+
+#include <string.h>
+
+/* Old values are the last usable ones at best; what was bad stays so until something is read. */
+static void degrade(struct signal *s)
+{
+	if (s->held && !signal_reads(s)) {
+		s->sample.quality = s->held_quality;
+		s->sample.err = s->held_err;
+	}
+	s->held = false;
+	if ((s->sample.quality & 0xc0) == 0 || s->sample.quality == OWS_Q_LAST_USABLE)
+		return;
+	s->sample.quality = OWS_Q_LAST_USABLE;
+	s->sample.err = 0;
+}
+
+static void move(struct engine *e, struct signal *s, struct lane *to)
+{
+	struct lane *from = engine_lane(e, s);
+	uint32_t row = engine_row(s);
+
+	lane_drop_row(from, row);
+	from->counters.moves_out++;
+	due_wheel_cancel(&e->wheel, row * 2);
+	due_wheel_cancel(&e->wheel, row * 2 + 1);
+	retry_clear(&s->read_retry);
+	retry_clear(&s->write_retry);
+	s->write_err = 0;
+	s->confirmed = false;
+	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_POLLED;
+	s->sample.target = (uint8_t)to->index;
+	degrade(s);
+	lane_take_row(to, row);
+	to->counters.moves_in++;
+}
+
+/* Once the old lane has disowned what it had of it. */
+static void go_on(struct engine *e, struct signal *s)
+{
+	if (s->doubts) {
+		s->write_err = -EINPROGRESS;
+		log_warning(e->log, "%s (%s): a write is in doubt: not written until it has ended",
+		            s->item->name, s->item->path);
+	}
+	engine_read_now(e, s);
+	engine_write_check(e, s);
+	engine_publish(e, s);
+}
+
+static void move_alarms(struct engine *e, struct lane *from, struct lane *to, uint32_t device,
+                        int64_t now_ns)
+{
+	for (uint32_t i = 0; i < e->alarm_count; i++) {
+		struct alarm_item *item = &e->alarm_items[i];
+
+		if (item->device != device)
+			continue;
+		if (alarm_drop_item(&from->alarm, item) && from->alarm_slot)
+			from->alarm_slot->moved = true;
+		alarm_take_item(&to->alarm, item, now_ns);
+		if (to->alarm.polls)
+			alarm_signal(e, item)->attrs.flags |= OWS_ATTR_ALARM_POLLED;
+	}
+}
+
+static bool has_alarms(const struct engine *e, const struct device *d)
+{
+	for (uint32_t k = 0; k < d->count; k++)
+		if (e->table.signals[e->table.device_rows[d->first + k]].item->alarm)
+			return true;
+	return false;
+}
+
+static void say(struct engine *e, const struct device *d, const struct lane *from,
+                const struct lane *to, const char *why)
+{
+	const struct signal *s = &e->table.signals[e->table.device_rows[d->first]];
+
+	log_notice(e->log, "%s%s (%u signals): from %s to %s: %s", s->item->path,
+	           d->count > 1 ? " ..." : "", d->count, from->port->target, to->port->target,
+	           why);
+}
+
+void engine_move_device(struct engine *e, struct device *d, struct lane *to, const char *why,
+                        int64_t now_ns)
+{
+	const uint32_t *rows = &e->table.device_rows[d->first];
+	struct lane *from = engine_lane(e, &e->table.signals[rows[0]]);
+
+	say(e, d, from, to, why);
+	d->absent = false;
+	for (uint32_t k = 0; k < d->count; k++)
+		move(e, &e->table.signals[rows[k]], to);
+	if (has_alarms(e, d))
+		move_alarms(e, from, to, (uint32_t)(d - e->table.devices), now_ns);
+	lane_disown(from, false);
+	engine_publish_target(e, to);
+	engine_doubts(e);
+	for (uint32_t k = 0; k < d->count; k++)
+		go_on(e, &e->table.signals[rows[k]]);
+}
+
+void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, const char *why,
+                      int64_t now_ns)
+{
+	uint32_t moved = 0;
+
+	for (uint32_t i = 0; i <= e->table.device_count; i++) {
+		struct device *d = &e->table.devices[i];
+
+		if (!d->count || d->group != from->port->group)
+			continue;
+		d->absent = false;
+		for (uint32_t k = 0; k < d->count; k++)
+			move(e, &e->table.signals[e->table.device_rows[d->first + k]], to);
+		if (has_alarms(e, d))
+			move_alarms(e, from, to, i, now_ns);
+		moved += d->count;
+	}
+	log_notice(e->log, "%u signals: from %s to %s: %s", moved, from->port->target,
+	           to->port->target, why);
+	lane_forget_probes(from);
+	lane_disown(from, true);
+	alarm_restart(&from->alarm);
+	engine_publish_target(e, to);
+	engine_doubts(e);
+	for (uint32_t row = 0; row < e->table.count; row++)
+		if (e->table.signals[row].lane == to->index)
+			go_on(e, &e->table.signals[row]);
+}
+
+/* The slots that are lent say all: few, and looked through only when something moved or ended. */
+void engine_doubts(struct engine *e)
+{
+	for (int pass = 0; pass < 3; pass++)
+		for (unsigned i = 0; i < e->lane_count; i++)
+			for (unsigned k = 0; k < e->lanes[i].depth; k++) {
+				const struct slot *slot = &e->lanes[i].slots[k];
+				struct signal *s;
+
+				if (!slot->lent || !lane_writes_output(&e->lanes[i], slot))
+					continue;
+				s = &e->table.signals[slot->row];
+				if (pass == 0)
+					s->doubts = 0;
+				else if (pass == 1)
+					s->doubts += lane_in_doubt(&e->lanes[i], slot);
+				else if (!s->doubts)
+					engine_write_check(e, s);
+			}
+}
