@@ -75,6 +75,11 @@ int bus_create(const char *target, const struct bus_env *env, struct bus **bus, 
 			         "an IPv6 address is written in brackets, as in [::1]:4304");
 			return -EINVAL;
 		}
+		if (target[0] == '/') {
+			snprintf(why, why_size, "a path has its way in front: i2c:/dev/i2c-1, "
+			         "owserver:/SOCKET");
+			return -EINVAL;
+		}
 		if (target[0] != '[' && colon && !is_host_and_port(target, colon))
 			return no_backend(target, word_len, why, why_size);
 		ops = backend_of("owserver", strlen("owserver"));

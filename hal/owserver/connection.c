@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #define DEFAULT_HOST "localhost"
@@ -34,6 +35,16 @@ static int set_port(char *out, size_t size, const char *text)
 	return 0;
 }
 
+static int set_path(struct connection *connection, const char *path, char *why, size_t why_size)
+{
+	if (strlen(path) >= sizeof(((struct sockaddr_un *)NULL)->sun_path)) {
+		snprintf(why, why_size, "the path of a socket has at most %zu bytes",
+		         sizeof(((struct sockaddr_un *)NULL)->sun_path) - 1);
+		return -EINVAL;
+	}
+	return set_part(connection->host, sizeof(connection->host), path, strlen(path));
+}
+
 int connection_init(struct connection *connection, const struct bus_env *env, const char *where,
                     char *why, size_t why_size)
 {
@@ -48,6 +59,8 @@ int connection_init(struct connection *connection, const struct bus_env *env, co
 	                                   .port = DEFAULT_PORT };
 	if (!*where)
 		return 0;
+	if (*where == '/')
+		return set_path(connection, where, why, why_size);
 	if (brackets && host[len] != ']')
 		err = -EINVAL;
 	if (!err)
@@ -61,7 +74,7 @@ int connection_init(struct connection *connection, const struct bus_env *env, co
 	if (bad_port)
 		snprintf(why, why_size, "the port '%.40s' is no number from 1 to 65535", rest + 1);
 	else if (err)
-		snprintf(why, why_size, "HOST, HOST:PORT or [IPv6]:PORT is expected");
+		snprintf(why, why_size, "HOST, HOST:PORT, [IPv6]:PORT or /SOCKET is expected");
 	return err;
 }
 
@@ -154,11 +167,36 @@ static int try_next(struct connection *connection)
 	return connection->last_err;
 }
 
+/* A unix socket connects at once or not at all. */
+static int begin_local(struct connection *connection)
+{
+	struct sockaddr_un address = {.sun_family = AF_UNIX};
+
+	memcpy(address.sun_path, connection->host, strlen(connection->host));
+	snprintf(connection->peer, sizeof(connection->peer), "%.79s", connection->host);
+	connection->give_up_ns = INT64_MAX;
+	connection->fd = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+	if (connection->fd >= 0 &&
+	    connect(connection->fd, (struct sockaddr *)&address, sizeof(address)) == 0)
+		return 0;
+	/* a full queue; told as no server, because -EAGAIN says to go on */
+	connection->last_err = errno == EAGAIN ? -ECONNREFUSED : -errno;
+	snprintf(connection->trouble, sizeof(connection->trouble), "%.60s: %.36s", connection->peer,
+	         strerror(-connection->last_err));
+	return connection->last_err;
+}
+
 int connection_begin(struct connection *connection)
 {
 	int err;
 
 	connection_close(connection);
+	if (connection->host[0] == '/') {
+		err = begin_local(connection);
+		if (err)
+			connection_close(connection);
+		return err;
+	}
 	err = resolve(connection);
 	if (!err)
 		err = try_next(connection);

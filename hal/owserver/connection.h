@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A TCP connection to one place. Nothing here blocks but through env->wait, up to the deadline
+ * A connection to one place, by TCP or on a unix socket. Nothing here blocks but through env->wait, up to the deadline
  * given (and the resolver, which knows no deadline). The name is resolved at each connect, so a
  * change of address is followed; all its addresses are tried in turn.
  */
@@ -17,7 +17,7 @@ struct addrinfo;
 
 struct connection {
 	const struct bus_env *env;
-	char host[254];
+	char host[254]; /* with a slash in front: a unix socket */
 	char port[6];
 	int fd;                       /* -1: closed */
 	struct addrinfo *list, *next; /* addresses while connecting; next is tried after this one */
@@ -27,7 +27,10 @@ struct connection {
 	char trouble[100];            /* why connecting failed, as a sentence */
 };
 
-/* where: `host`, `host:port`, `[v6]`, `[v6]:port`; empty means localhost. 0, or -EINVAL and why. */
+/*
+ * where: `host`, `host:port`, `[v6]`, `[v6]:port`, or the path of a unix socket from the root;
+ * empty means localhost. 0, or -EINVAL and why.
+ */
 int connection_init(struct connection *connection, const struct bus_env *env, const char *where,
                     char *why, size_t why_size);
 /* Resolve and start to connect. 0, or negative errno with trouble set. */

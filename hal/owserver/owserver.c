@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The owserver bus: requests go to an owserver over one kept connection, one at a time. Target:
- * `host`, `host:port`, `[v6]:port`, or the same behind `owserver:`.
+ * `host`, `host:port`, `[v6]:port`, or the same behind `owserver:`; `owserver:/path` is a unix
+ * socket, as that of an owsd.
  *
  * Down, it connects again with back-off for ever; a connection counts as up when a NOP was
  * answered and the server has said whether its devices are simulated. Silence and loss take it

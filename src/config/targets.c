@@ -40,7 +40,7 @@ static void canonical(const char *text, char out[TARGET_MAX + 32])
 	else if (is_scheme(text, colon ? (size_t)(colon - text) : strlen(text)) ||
 	         (strchr(text, '/') && *text != '['))
 		host = NULL;
-	if (!host) {
+	if (!host || *host == '/') {
 		snprintf(out, TARGET_MAX + 32, "%s", text);
 		return;
 	}

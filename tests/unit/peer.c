@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include "hal/owserver/frame.h"
@@ -263,6 +264,7 @@ static void begin(struct peer *peer)
 	                          .sin_addr.s_addr = htonl(INADDR_LOOPBACK) };
 	struct sockaddr_in6 in6 = { .sin6_family = AF_INET6, .sin6_port = htons(peer->port),
 	                            .sin6_addr = IN6ADDR_LOOPBACK_INIT };
+	struct sockaddr_un local = { .sun_family = AF_UNIX };
 	struct sockaddr_storage here;
 	socklen_t len = sizeof(here);
 	const int on = 1;
@@ -271,13 +273,22 @@ static void begin(struct peer *peer)
 	peer->listen_fd = socket(peer->family, SOCK_STREAM | SOCK_CLOEXEC, 0);
 	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, peer->listen_fd);
 	setsockopt(peer->listen_fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
-	err = peer->family == AF_INET ? bind(peer->listen_fd, (struct sockaddr *)&in, sizeof(in))
-	                              : bind(peer->listen_fd, (struct sockaddr *)&in6, sizeof(in6));
+	if (peer->family == AF_UNIX) {
+		snprintf(local.sun_path, sizeof(local.sun_path), "%s", peer->path_of_socket);
+		unlink(local.sun_path);
+		err = bind(peer->listen_fd, (struct sockaddr *)&local, sizeof(local));
+	} else {
+		err = peer->family == AF_INET
+		              ? bind(peer->listen_fd, (struct sockaddr *)&in, sizeof(in))
+		              : bind(peer->listen_fd, (struct sockaddr *)&in6, sizeof(in6));
+	}
 	TEST_ASSERT_EQUAL_INT_MESSAGE(0, err, strerror(errno));
 	TEST_ASSERT_EQUAL_INT(0, listen(peer->listen_fd, 8));
 	TEST_ASSERT_EQUAL_INT(0, getsockname(peer->listen_fd, (struct sockaddr *)&here, &len));
-	peer->port = ntohs(peer->family == AF_INET ? ((struct sockaddr_in *)&here)->sin_port
-	                                           : ((struct sockaddr_in6 *)&here)->sin6_port);
+	if (peer->family == AF_INET)
+		peer->port = ntohs(((struct sockaddr_in *)&here)->sin_port);
+	else if (peer->family == AF_INET6)
+		peer->port = ntohs(((struct sockaddr_in6 *)&here)->sin6_port);
 	peer->stopping = 0;
 	TEST_ASSERT_EQUAL_INT(0, pthread_create(&peer->thread, NULL, run, peer));
 }
@@ -285,7 +296,13 @@ static void begin(struct peer *peer)
 void peer_start(struct peer *peer, int family, const char *plan)
 {
 	*peer = (struct peer){ .family = family, .plan = plan };
+	snprintf(peer->path_of_socket, sizeof(peer->path_of_socket), "/tmp/owsd-unit-%d.sock",
+	         (int)getpid());
 	begin(peer);
+	if (family == AF_UNIX) {
+		snprintf(peer->target, sizeof(peer->target), "owserver:%s", peer->path_of_socket);
+		return;
+	}
 	snprintf(peer->target, sizeof(peer->target),
 	         family == AF_INET ? "127.0.0.1:%u" : "[::1]:%u", peer->port);
 }
@@ -301,4 +318,6 @@ void peer_stop(struct peer *peer)
 	__atomic_store_n(&peer->stopping, 1, __ATOMIC_SEQ_CST);
 	pthread_join(peer->thread, NULL);
 	close(peer->listen_fd);
+	if (peer->family == AF_UNIX)
+		unlink(peer->path_of_socket);
 }

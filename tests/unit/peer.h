@@ -20,8 +20,9 @@
 struct peer {
 	int listen_fd, family;
 	uint16_t port;
+	char path_of_socket[40];
 	const char *plan;
-	char target[40];
+	char target[80];
 	pthread_t thread;
 	int stopping;
 	/* What it saw; read with peer_saw(). */
@@ -31,7 +32,7 @@ struct peer {
 	char path[256];
 };
 
-/* family AF_INET or AF_INET6; plan is kept. Fails the test when there is no port. */
+/* family AF_INET, AF_INET6 or AF_UNIX; plan is kept. Fails the test when there is no port. */
 void peer_start(struct peer *peer, int family, const char *plan);
 void peer_stop(struct peer *peer);
 /* Begin again on the same port after peer_stop(). */

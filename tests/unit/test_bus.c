@@ -96,6 +96,7 @@ static void test_a_scheme_chooses_its_backend(void)
 	becomes("null", "null");
 	becomes("late:seed=3", "late");
 	becomes("owserver:localhost:4304", "owserver");
+	becomes("owserver:/run/owsd/OWS.sock", "owserver");
 }
 
 static void test_a_host_named_like_a_scheme_is_said_in_full(void)
@@ -130,7 +131,7 @@ static void test_a_host_has_to_be_one(void)
 	is_refused("[]:4304", -EINVAL, "HOST");
 	is_refused("[::1", -EINVAL, "HOST");
 	is_refused("[::1]4304", -EINVAL, "HOST");
-	is_refused("/dev/i2c-1", -EINVAL, "HOST");
+	is_refused("/dev/i2c-1", -EINVAL, "i2c:/dev/i2c-1");
 }
 
 static void test_a_bare_ipv6_address_is_told_to_use_brackets(void)

@@ -261,6 +261,34 @@ static void test_ipv6_is_served(void)
 	TEST_ASSERT_NOT_NULL(strstr(host.event[0].text, "[::1]"));
 }
 
+static void test_a_unix_socket_is_served_and_come_back_to(void)
+{
+	start_as(AF_UNIX, "");
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+	TEST_ASSERT_NOT_NULL(strstr(host.event[0].text, peer.path_of_socket));
+	peer_stop(&peer);
+	goes_down_with(-ECONNRESET, peer.path_of_socket);
+	host_run_events(&host, bus, host.events + 1, host_now(&host) + 500 * HOST_MS);
+	peer_restart(&peer, "");
+	comes_up();
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+}
+
+static void test_the_path_of_a_socket_has_its_limit(void)
+{
+	char target[200] = "owserver:/";
+	struct bus *none = NULL;
+	char why[200];
+
+	memset(target + 10, 'x', 107);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, bus_create(target, &host.env, &none, why, sizeof(why)));
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, "107 bytes"), why);
+	TEST_ASSERT_NULL(none);
+	target[10 + 106] = '\0';
+	TEST_ASSERT_EQUAL_INT(0, bus_create(target, &host.env, &none, why, sizeof(why)));
+	bus_destroy(none);
+}
+
 static void test_a_name_is_resolved_and_all_its_addresses_are_tried(void)
 {
 	char target[40];
@@ -604,6 +632,8 @@ int main(void)
 	RUN_TEST(test_a_listing_longer_than_the_room_is_an_error);
 	RUN_TEST(test_a_path_too_long_to_send_is_an_error_of_this_request);
 	RUN_TEST(test_ipv6_is_served);
+	RUN_TEST(test_a_unix_socket_is_served_and_come_back_to);
+	RUN_TEST(test_the_path_of_a_socket_has_its_limit);
 	RUN_TEST(test_a_name_is_resolved_and_all_its_addresses_are_tried);
 	RUN_TEST(test_a_reply_in_single_bytes_is_read);
 	RUN_TEST(test_keep_alives_are_passed_over);
