@@ -176,6 +176,40 @@ def test_the_configuration_of_a_scan_runs_on_simulated_chips(scene):
     assert {rows[f"temperature{i}"]["value"] for i in range(1, 5)} == {21.5, -5.0625, 12.5, 22}
 
 
+EVERY_FAMILY = """
+DS18S20 10.0000000000C1 temperature 12.5
+DS18B20 28.000000000001 temperature 21.5
+DS1822 22.000000000002 temperature 19
+DS1825 3B.000000000003 temperature 18
+DS28EA00 42.000000000004 temperature 17
+DS2401 01.000000000005
+DS2405 05.000000000006
+DS2406 12.000000000007
+DS2408 29.000000000008
+DS2413 3A.000000000009
+DS2423 1D.00000000000A count.A 7
+DS2430A 14.00000000000B
+DS2431 2D.00000000000C
+DS2433 23.00000000000D
+DS2438 26.00000000000E temperature 22 vdd 5 vad 2.3
+DS2450 20.00000000000F volt.A 1.5
+"""
+
+
+def test_every_family_has_its_place_in_the_configuration_of_a_scan(scene):
+    rows = runs(scene, ctl(scene, sim(scene, EVERY_FAMILY), "scan", "--rio").stdout)
+    devices = {line.split()[1] for line in EVERY_FAMILY.splitlines() if line}
+    assert {row["path"].split("/")[1] for row in rows.values()} == devices
+    named = {row["path"][1:3]: name for name, row in sorted(rows.items(), reverse=True)}
+    for family, start, kind in (("10", "temperature", "double"), ("42", "temperature", "double"),
+                                ("14", "present", "bool"), ("2D", "present", "bool"),
+                                ("23", "present", "bool"), ("05", "contact", "bool"),
+                                ("1D", "counter_a", "dword"), ("20", "volt_a", "double"),
+                                ("29", "inputs", "byte"), ("26", "humidity", "double")):
+        assert named[family].startswith(start) and rows[named[family]]["type"] == kind, named
+    assert rows["counter_a1"]["value"] == 7 and rows["present1"]["value"] is True
+
+
 def test_the_configuration_of_a_scan_runs_on_owserver_and_changes_no_output(scene):
     server = scene.owserver(mock=["28", "26"], tester=["29"])
     path = next(d for d in server.devices() if d.startswith("/29")) + "/PIO.BYTE"
