@@ -73,9 +73,11 @@ static void take_event(void *ctx, const struct bus_event *event)
 static void step(struct target *target, int64_t until_ns)
 {
 	unsigned answered = target->answered;
+	bool known = target->up || target->down;
 	int64_t next = bus_step(target->bus, boottime(NULL));
 
-	if (target->answered != answered)
+	/* There is news: whoever waits for it looks first. */
+	if (target->answered != answered || known != (target->up || target->down))
 		return;
 	if (next > until_ns)
 		next = until_ns;
