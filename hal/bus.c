@@ -105,6 +105,22 @@ int bus_init(struct bus *bus, const struct bus_ops *ops, const struct bus_env *e
 	return bus->queue ? 0 : -ENOMEM;
 }
 
+int bus_option(struct bus *bus, const char *key, const char *text, char *why, size_t why_size)
+{
+	int err = -ENOENT;
+
+	if (why_size)
+		why[0] = '\0';
+	if (bus->ops->option)
+		err = bus->ops->option(bus, key, text, why, why_size);
+	if (err == -ENOENT)
+		snprintf(why, why_size, "a target of scheme %s has no option %s", bus->ops->scheme,
+		         key);
+	else if (err == -ENOMEM)
+		snprintf(why, why_size, "out of memory");
+	return err;
+}
+
 void bus_destroy(struct bus *bus)
 {
 	struct bus_req **queue;

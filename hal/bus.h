@@ -79,6 +79,7 @@ struct bus_req {
  *   -EBADMSG      checksum
  *   -ECOMM        the wire is short
  *   -ERANGE       a reading that means power fault (85, 127.94)
+ *   -EBUSY        somebody else has it (a GPIO line)
  *   -EIO          any other device error
  *   -EMSGSIZE     the answer is longer than the room
  *   -EOPNOTSUPP   this bus has no such operation (DIR of /alarm on some)
@@ -163,6 +164,13 @@ struct bus_ops {
 	              size_t why_size);
 	/* Let go of everything; no answers are given for what is still lent. */
 	void (*destroy)(struct bus *bus);
+	/*
+	 * One option of the target's Bus block, before the first step; touches no hardware. 0;
+	 * -ENOENT this bus has no such option; -EINVAL with the reason in why; -ENOMEM. NULL: it has
+	 * none.
+	 */
+	int (*option)(struct bus *bus, const char *key, const char *text, char *why,
+	              size_t why_size);
 
 	/* Simple tier: do one request, blocking, ended by req->deadline_ns; fills answer but its id. */
 	void (*exec)(struct bus *bus, struct bus_req *req, struct bus_answer *answer);
@@ -210,7 +218,7 @@ struct bus {
 
 /* All backends of this build, NULL at the end. */
 extern const struct bus_ops *const bus_backends[];
-extern const struct bus_ops owserver_bus, i2c_bus, sim_bus, null_bus, late_bus, w1_bus;
+extern const struct bus_ops owserver_bus, i2c_bus, sim_bus, null_bus, late_bus, w1_bus, gpio_bus;
 
 /*
  * Find the backend of a target ("owserver:localhost:4304", "null:") and create the bus. Bare
@@ -221,6 +229,8 @@ extern const struct bus_ops owserver_bus, i2c_bus, sim_bus, null_bus, late_bus, 
  */
 int bus_create(const char *target, const struct bus_env *env, struct bus **bus, char *why,
                size_t why_size);
+/* As bus_ops.option, with a reason for each error. */
+int bus_option(struct bus *bus, const char *key, const char *text, char *why, size_t why_size);
 /* For backends' create(): fill the shared part. Returns 0 or -ENOMEM. */
 int bus_init(struct bus *bus, const struct bus_ops *ops, const struct bus_env *env);
 void bus_destroy(struct bus *bus);

@@ -87,6 +87,9 @@ struct link_master_ops {
 	/* where: the target without its scheme. Allocates all, touches nothing. As bus_ops.create. */
 	int (*create)(const char *where, const struct bus_env *env, struct link_master **master,
 	              char *why, size_t why_size);
+	/* Optional, as bus_ops.option. */
+	int (*option)(struct link_master *master, const char *key, const char *text, char *why,
+	              size_t why_size);
 	/*
 	 * Take the hardware. -EBUSY a kernel driver owns the chip, -EACCES, -ENODEV, -ENXIO no chip
 	 * answers; why gets what to do about it. May be called again after close().
@@ -115,6 +118,7 @@ struct link_master_ops {
 struct link_master {
 	const struct link_master_ops *ops;
 	const struct bus_env *env;
+	bool one_supply; /* the power cycle of one link is one of all */
 };
 
 #endif

@@ -2,8 +2,10 @@
 #include "host.h"
 
 #include "hal/worker.h"
+#include "indicator.h"
 #include "libows/ows.h"
 #include "shm/reader.h"
+#include "target.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -35,6 +37,7 @@ struct host {
 	unsigned *bus_counters; /* how many each worker's bus has */
 	unsigned own_counters;  /* index of the first one of the host itself */
 
+	struct indicator *indicator;
 	pthread_t thread;
 	bool running;
 	uint32_t stop;
@@ -269,6 +272,12 @@ static int create_workers(struct host *h, char *why, size_t why_size)
 			break;
 		}
 		h->worker_count++;
+		err = target_options(worker_bus(h->workers[i]), h->config, target, reason,
+		                     sizeof(reason));
+		if (err) {
+			snprintf(why, why_size, "target %s: %s", target, reason);
+			break;
+		}
 		bus_counters(worker_bus(h->workers[i]), &n);
 		h->bus_counters[i] = (unsigned)n;
 		if (planned->relation == CONFIG_BAR)
@@ -359,6 +368,7 @@ static int start_thread(struct host *h, int rt_priority, char *why, size_t why_s
 
 static void free_host(struct host *h)
 {
+	indicator_destroy(h->indicator);
 	engine_destroy(h->engine);
 	for (unsigned i = 0; i < h->worker_count; i++)
 		worker_destroy(h->workers[i]);
@@ -416,6 +426,14 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 	}
 	if (err)
 		goto fail;
+	err = indicator_create(h->config, &h->memory.image, h->log, &h->indicator);
+	if (!err)
+		err = indicator_start(h->indicator);
+	if (err) {
+		snprintf(why, why_size, "cannot start a thread: %s", strerror(-err));
+		host_stop(h, 1000000000);
+		return err;
+	}
 	*host = h;
 	return 0;
 fail:
@@ -444,6 +462,7 @@ bool host_stop(struct host *h, int64_t timeout_ns)
 		ring(h);
 		pthread_join(h->thread, NULL);
 	}
+	stuck = !indicator_stop(h->indicator, timeout_ns);
 	for (unsigned i = 0; i < h->worker_count; i++)
 		stuck |= worker_stop(h->workers[i], timeout_ns) != 0;
 	if (stuck) {

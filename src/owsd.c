@@ -2,6 +2,7 @@
 /* owsd: start-up, supervision and end. */
 #include "config/report.h"
 #include "hal/bus.h"
+#include "hal/gpio/line.h"
 #include "host.h"
 #include "libows/ows.h"
 #include "log.h"
@@ -83,6 +84,15 @@ static void version(void)
 	printf("owsd %s\n", OWSD_VERSION);
 	for (const struct bus_ops *const *b = bus_backends; *b; b++)
 		printf("  %-10s %s\n", (*b)->scheme, (*b)->summary);
+#ifdef OWSD_LIBI2C
+	printf("with libi2c\n");
+#else
+	printf("without libi2c: no target i2c\n");
+#endif
+	if (gpio_library)
+		printf("with libgpiod %s\n", gpio_library->version());
+	else
+		printf("without libgpiod: no target gpio, no GPIO lines\n");
 }
 
 /* The exit status of what only prints. */
@@ -202,7 +212,11 @@ static int load(const struct options *o, struct config **config)
 	if (!err)
 		err = check_target(*config, &report);
 	if (!err)
+		err = target_check_options(*config, &report);
+	if (!err) {
+		config_check_buses(*config, &report);
 		return 0;
+	}
 	config_free(*config);
 	return err;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Inside the driver: single I2C calls to a chip (io.c), whole 1-Wire operations (run.c), finding
- * and setting up a chip (detect.c), the links (link.c).
+ * and setting up a chip (detect.c), the links (link.c), GPIO lines beside the chips (power.c).
  *
  * Errors as hal/link.h, but io.c gives those of hal/ds2482/i2c.h.
  */
@@ -48,6 +48,18 @@ int ds2482_setup(struct ds2482_chip *chip);
 int ds2482_configure(struct ds2482_chip *chip, uint8_t config);
 /* Make the link's channel and speed the chip's. */
 int ds2482_select(struct ds2482_link *link);
+
+/* --- power.c --- */
+/* How long a wire is without supply so that all slaves forget what they knew. */
+#define DS2482_POWER_OFF_NS INT64_C(500000000)
+#define DS2482_POWER_ON_NS  INT64_C(10000000)
+/* Supply on and chips awake, as far as there are lines for it. Errors as gpio_output_take(). */
+int ds2482_power_on(struct ds2482_master *master, char *why, size_t why_size);
+/* The chips go to sleep; the supply stays on. */
+void ds2482_rest(struct ds2482_master *master);
+void ds2482_power_release(struct ds2482_master *master);
+/* The supply off and on, then all chips are set up. -EOPNOTSUPP: no line for it. */
+int ds2482_power_cycle(struct ds2482_master *master);
 
 /* --- link.c --- */
 void ds2482_link_init(struct ds2482_chip *chip, unsigned number);

@@ -7,6 +7,7 @@
 #define HAL_DS2482_DS2482_H
 
 #include "codes.h"
+#include "hal/gpio/line.h"
 #include "hal/link.h"
 #include "i2c.h"
 
@@ -71,6 +72,9 @@ struct ds2482_master {
 	unsigned known;
 	uint8_t order[DS2482_ADDRESSES];
 	bool missing[DS2482_ADDRESSES];
+	/* The supply of the wire, and the SLPZ pins; their chip's name is "" where there is none. */
+	struct gpio_output power, sleep;
+	int64_t power_off_ns;
 	/* The cost before the adapter was opened again. */
 	uint64_t transfers, bytes, syscalls;
 };
@@ -83,6 +87,8 @@ int ds2482_create(const struct link_master_ops *ops, const struct bus_env *env,
                   const struct ds2482_source *source, const char *where,
                   struct link_master **master, char *why, size_t why_size);
 /* The slots of link_master_ops but create. */
+int ds2482_option(struct link_master *master, const char *key, const char *text, char *why,
+                  size_t why_size);
 int ds2482_open(struct link_master *master, char *why, size_t why_size);
 int ds2482_grow(struct link_master *master, char *why, size_t why_size);
 void ds2482_close(struct link_master *master);

@@ -115,6 +115,7 @@ const struct link_master_ops ds2482_i2c_master = {
 	.scheme = "i2c",
 	.summary = "DS2482-100, -101, -800, DS2483, DS2484 on an I2C adapter",
 	.create = create,
+	.option = ds2482_option,
 	.open = ds2482_open,
 	.grow = ds2482_grow,
 	.close = ds2482_close,

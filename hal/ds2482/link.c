@@ -4,10 +4,6 @@
 
 #include <errno.h>
 
-/* How long a wire is without supply so that all slaves forget what they knew. */
-#define POWER_OFF_NS INT64_C(500000000)
-#define POWER_ON_NS  INT64_C(10000000)
-
 static struct ds2482_link *self(struct link *link)
 {
 	return (struct ds2482_link *)link;
@@ -136,19 +132,19 @@ static int link_speed(struct link *base, enum link_speed speed)
 static int power_cycle(struct ds2482_link *link)
 {
 	struct ds2482_chip *chip = link->chip;
-	int err;
+	int err = ds2482_power_cycle(chip->master);
 
-	if (chip->part != DS2482_ADJUSTABLE)
-		return -EOPNOTSUPP;
+	if (err != -EOPNOTSUPP || chip->part != DS2482_ADJUSTABLE)
+		return err;
 	err = ds2482_select(link);
 	if (!err)
 		err = ds2482_configure(chip, (chip->config & DS2482_APU) | DS2482_PDN);
 	if (!err)
-		err = ds2482_wait_until(chip->master, ds2482_now(chip->master) + POWER_OFF_NS);
+		err = ds2482_wait_until(chip->master, ds2482_now(chip->master) + DS2482_POWER_OFF_NS);
 	if (!err)
 		err = ds2482_configure(chip, chip->config & DS2482_APU);
 	if (!err)
-		err = ds2482_wait_until(chip->master, ds2482_now(chip->master) + POWER_ON_NS);
+		err = ds2482_wait_until(chip->master, ds2482_now(chip->master) + DS2482_POWER_ON_NS);
 	return err;
 }
 

@@ -47,6 +47,7 @@ int ds2482_create(const struct link_master_ops *ops, const struct bus_env *env,
 	master->master.env = env;
 	master->source = *source;
 	master->active_pullup = true;
+	master->power_off_ns = DS2482_POWER_OFF_NS;
 	err = parse_where(master, where, why, why_size);
 	if (err) {
 		ds2482_destroy(&master->master);
@@ -235,9 +236,11 @@ int ds2482_grow(struct link_master *base, char *why, size_t why_size)
 int ds2482_open(struct link_master *base, char *why, size_t why_size)
 {
 	struct ds2482_master *master = (struct ds2482_master *)base;
-	int err = master->source.open(master->source.ctx, base->env, &master->adapter, why,
-	                              why_size);
+	int err = ds2482_power_on(master, why, why_size);
 
+	if (!err)
+		err = master->source.open(master->source.ctx, base->env, &master->adapter, why,
+		                          why_size);
 	if (err)
 		return err;
 	master->count = 0;
@@ -261,6 +264,7 @@ int ds2482_open(struct link_master *base, char *why, size_t why_size)
 void ds2482_close(struct link_master *base)
 {
 	close_adapter((struct ds2482_master *)base);
+	ds2482_rest((struct ds2482_master *)base);
 }
 
 int ds2482_there(struct link_master *base, uint64_t *mark)
@@ -311,6 +315,7 @@ void ds2482_destroy(struct link_master *base)
 	struct ds2482_master *master = (struct ds2482_master *)base;
 
 	close_adapter(master);
+	ds2482_power_release(master);
 	master->source.destroy(master->source.ctx);
 	free(master);
 }

@@ -143,7 +143,8 @@ static void power_cycled(struct native *native, unsigned channel)
 	for (unsigned i = 0; i < native->table.count; i++) {
 		struct device *device = &native->table.devices[i];
 
-		if (device->present && device->channel == channel)
+		if (device->present &&
+		    (device->channel == channel || native->master->one_supply))
 			hunt_restarted(native, device);
 	}
 }

@@ -81,6 +81,13 @@ void native_destroy(struct bus *bus)
 	free(native);
 }
 
+int native_option(struct bus *bus, const char *key, const char *text, char *why, size_t why_size)
+{
+	struct link_master *master = ((struct native *)bus)->master;
+
+	return master->ops->option ? master->ops->option(master, key, text, why, why_size) : -ENOENT;
+}
+
 int64_t native_now(const struct native *native)
 {
 	return native->bus.env->now(native->bus.env->ctx);

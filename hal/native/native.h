@@ -188,6 +188,9 @@ int native_create(const struct bus_ops *ops, const struct link_master_ops *maste
                   const char *where, const struct bus_env *env, struct bus **bus, char *why,
                   size_t why_size);
 void native_destroy(struct bus *bus);
+/* bus_ops.option: what the link master has. */
+int native_option(struct bus *bus, const char *key, const char *text, char *why,
+                  size_t why_size);
 int native_submit(struct bus *bus, struct bus_req *req);
 int64_t native_step(struct bus *bus, int64_t now);
 int native_cancel(struct bus *bus, uint32_t id);
@@ -196,8 +199,9 @@ int native_there(struct bus *bus);
 const struct bus_counter *native_counters(struct bus *bus, size_t *n);
 #define NATIVE_BUS_SLOTS                                                                  \
 	.depth = NATIVE_DEPTH, .searches = true, .destroy = native_destroy,               \
-	.submit = native_submit, .step = native_step, .cancel = native_cancel,            \
-	.suspend = native_suspend, .there = native_there, .counters = native_counters
+	.option = native_option, .submit = native_submit, .step = native_step,            \
+	.cancel = native_cancel, .suspend = native_suspend, .there = native_there,        \
+	.counters = native_counters
 
 /* --- Shared between the parts --- */
 int64_t native_now(const struct native *native);

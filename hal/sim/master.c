@@ -96,6 +96,7 @@ const struct link_master_ops sim_master = {
 	.scheme = "sim",
 	.summary = "a simulated DS2482 with its devices, from a scenario file",
 	.create = create,
+	.option = ds2482_option,
 	.open = ds2482_open,
 	.grow = ds2482_grow,
 	.close = ds2482_close,

@@ -22,6 +22,15 @@ struct build {
 /* A copy in the arena; "" and no_memory if there is no room. */
 const char *build_keep(struct build *build, const char *text, size_t len);
 
+/* Zeroed room for count elements and one more; NULL and no_memory if there is none. */
+void *build_take(struct build *build, size_t count, size_t size);
+
+/* Do they mean the same target? */
+bool target_same(const char *a, const char *b);
+
+/* All Bus blocks of the driver's block. */
+void buses_build(struct build *build, const struct rio_node *driver);
+
 /* "a, b | c" behind the targets there are. Errors are said at place. */
 void targets_add(struct build *build, const char *text, struct place place);
 

@@ -60,6 +60,18 @@ struct config_target {
 	int line, column; /* of TargetName's value; 0: not of the file */
 };
 
+/* One option of a Bus block, and where its value stands. */
+struct config_option {
+	const char *key, *text;
+	int line, column;
+};
+struct config_bus {
+	const char *target; /* as written */
+	struct config_option *options;
+	unsigned option_count;
+	int line, column; /* of target */
+};
+
 struct config {
 	const char *file;
 	struct config_target *targets;
@@ -67,6 +79,9 @@ struct config {
 	unsigned max_cons_alarms;
 	unsigned max_retries;
 	int64_t timeout_ns, period_ns, alarm_period_ns;
+	const char *alarm_line, *heartbeat_line; /* NULL: none */
+	struct config_bus *buses;
+	unsigned bus_count;
 	struct config_item *items;
 	unsigned item_count;
 };
@@ -94,6 +109,10 @@ int config_set_targets(struct config *config, const char *const *texts, unsigned
  * whether there is one only.
  */
 bool config_one_target(const struct config *config, struct config_report *report, bool is_error);
+/* The Bus block of a target, however it is spelt; NULL: it has none. */
+const struct config_bus *config_bus(const struct config *config, const char *target);
+/* Warn of Bus blocks whose target is none of those that are served. */
+void config_check_buses(const struct config *config, struct config_report *report);
 void config_free(struct config *config);
 /* What `owsd --check` prints: the configuration as understood. */
 void config_print(const struct config *config, FILE *out);

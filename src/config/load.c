@@ -19,7 +19,7 @@ const char *build_keep(struct build *build, const char *text, size_t len)
 	return copy ? copy : "";
 }
 
-static void *build_take(struct build *build, size_t count, size_t size)
+void *build_take(struct build *build, size_t count, size_t size)
 {
 	void *memory = arena_take(&build->box->arena, (count + 1) * size);
 
@@ -65,13 +65,11 @@ static const struct rio_node *find_driver(const struct rio *rio, const char *fil
 	return driver;
 }
 
-static void check_bus(struct build *build, const struct rio_node *block)
+static const char *build_line(struct build *build, const struct option_value *value)
 {
-	struct option_value values[OPTION_COUNT_ALL];
-
-	options_read(block, PLACE_BUS, values, build->report);
-	if (!values[OPT_BUS_TARGET].node && !block->broken)
-		report_error(build->report, block->at, "expected a Target in this Bus");
+	return value->given && *value->text
+	               ? build_keep(build, value->text, strlen(value->text))
+	               : NULL;
 }
 
 static void build_driver(struct build *build, const struct option_value *values)
@@ -106,6 +104,8 @@ static void build_driver(struct build *build, const struct option_value *values)
 	     value_number(OWS_DOUBLE, version) != 1))
 		report_warning(build->report, values[OPT_VERSION].node->value_at,
 		               "Version %s: only 1.00 is known", values[OPT_VERSION].text);
+	config->alarm_line = build_line(build, &values[OPT_ALARM_LINE]);
+	config->heartbeat_line = build_line(build, &values[OPT_HEARTBEAT_LINE]);
 	if (target->given)
 		targets_add(build, target->text, target->node->value_at);
 	else if (!target->node)
@@ -149,9 +149,7 @@ static void build_items(struct build *build, const struct rio_node *driver,
 	for (const struct rio_node *node = driver->first; node; node = node->next) {
 		if (node->kind != RIO_BLOCK)
 			continue;
-		if (!strcmp(node->key, option_table[OPT_BUS].key)) {
-			check_bus(build, node);
-		} else if (!strcmp(node->key, option_table[OPT_ITEM].key)) {
+		if (!strcmp(node->key, option_table[OPT_ITEM].key)) {
 			names[config->item_count] = name_place(node);
 			item_build(build, node, &config->items[config->item_count++]);
 		}
@@ -176,6 +174,7 @@ static void build_config(struct build *build, const struct rio *rio, const char 
 		return;
 	options_read(driver, PLACE_DRIVER, values, build->report);
 	build_driver(build, values);
+	buses_build(build, driver);
 	build_items(build, driver, &values[OPT_ITEM_COUNT]);
 }
 

@@ -30,6 +30,10 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 	                      "least time between two looks at /alarm, seconds"},
 	[OPT_ITEM_COUNT] = {"ItemCount", PLACE_DRIVER, OPTION_COUNT, false, 0, 1e9, NULL,
 	                    "number of items"},
+	[OPT_ALARM_LINE] = {"AlarmLine", PLACE_DRIVER, OPTION_TEXT,
+	                    .help = "GPIO line that is on while there is an alarm"},
+	[OPT_HEARTBEAT_LINE] = {"HeartbeatLine", PLACE_DRIVER, OPTION_TEXT,
+	                        .help = "GPIO line that blinks while owsd is well"},
 	[OPT_BUS] = {"Bus", PLACE_DRIVER, OPTION_BLOCK, true, .help = "options of one target"},
 	[OPT_ITEM] = {"Item", PLACE_DRIVER, OPTION_BLOCK, true, .help = "one signal"},
 
@@ -80,6 +84,20 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 	                   "how long it is gone before the alarm returns, seconds"},
 
 	[OPT_BUS_TARGET] = {"Target", PLACE_BUS, OPTION_TEXT, .help = "the target it is for"},
+	[OPT_BUS_POWER_LINE] = {"PowerLine", PLACE_BUS, OPTION_TEXT,
+	                        .help = "GPIO line that switches the supply of the wire"},
+	[OPT_BUS_POWER_OFF_MS] = {"PowerOffMs", PLACE_BUS, OPTION_COUNT, false, 1, 60000, "500",
+	                          "how long the supply is off, milliseconds"},
+	[OPT_BUS_SLEEP_LINE] = {"SleepLine", PLACE_BUS, OPTION_TEXT,
+	                        .help = "GPIO line at the SLPZ pin of the chips"},
+	[OPT_BUS_ACTIVE_LOW] = {"ActiveLow", PLACE_BUS, OPTION_TEXT,
+	                        .help = "lines that are 1 when low"},
+	[OPT_BUS_PULL_UP] = {"PullUp", PLACE_BUS, OPTION_TEXT, .help = "lines with pull-up"},
+	[OPT_BUS_PULL_DOWN] = {"PullDown", PLACE_BUS, OPTION_TEXT, .help = "lines with pull-down"},
+	[OPT_BUS_OPEN_DRAIN] = {"OpenDrain", PLACE_BUS, OPTION_TEXT,
+	                        .help = "outputs that only pull low"},
+	[OPT_BUS_OPEN_SOURCE] = {"OpenSource", PLACE_BUS, OPTION_TEXT,
+	                         .help = "outputs that only drive high"},
 };
 
 static const char *const place_names[] = {"OwsDrv", "Item", "Bus"};

@@ -6,13 +6,17 @@
 
 #include <stdarg.h>
 
-static void put_text(FILE *out, int indent, enum option option, const char *text)
+static void put_plain(FILE *out, int indent, const char *key, const char *text)
 {
-	const char *key = option_table[option].key;
 	char *quoted = rio_quote(text, "\n");
 
 	fprintf(out, "%*s%-*s %s\n", indent, "", RIO_KEY_WIDTH - 1, key, quoted ? quoted : "\"\"");
 	rio_quote_free(quoted);
+}
+
+static void put_text(FILE *out, int indent, enum option option, const char *text)
+{
+	put_plain(out, indent, option_table[option].key, text);
 }
 
 static void put_word(FILE *out, int indent, enum option option, const char *format, ...)
@@ -88,6 +92,15 @@ static void put_targets(FILE *out, const struct config *config)
 	fputs("\"\n", out);
 }
 
+static void put_bus(FILE *out, const struct config_bus *bus)
+{
+	fprintf(out, "  %s {\n", option_table[OPT_BUS].key);
+	put_plain(out, 4, option_table[OPT_BUS_TARGET].key, bus->target);
+	for (unsigned i = 0; i < bus->option_count; i++)
+		put_plain(out, 4, bus->options[i].key, bus->options[i].text);
+	fputs("  }\n", out);
+}
+
 static void put_item(FILE *out, const struct config_item *item)
 {
 	fprintf(out, "  %s {\n", option_table[OPT_ITEM].key);
@@ -126,6 +139,12 @@ void config_print(const struct config *config, FILE *out)
 	put_seconds(out, 2, OPT_TIMEOUT, config->timeout_ns);
 	put_seconds(out, 2, OPT_PERIOD, config->period_ns);
 	put_seconds(out, 2, OPT_ALARM_PERIOD, config->alarm_period_ns);
+	if (config->alarm_line)
+		put_text(out, 2, OPT_ALARM_LINE, config->alarm_line);
+	if (config->heartbeat_line)
+		put_text(out, 2, OPT_HEARTBEAT_LINE, config->heartbeat_line);
+	for (unsigned i = 0; i < config->bus_count; i++)
+		put_bus(out, &config->buses[i]);
 	put_word(out, 2, OPT_ITEM_COUNT, "%u", config->item_count);
 	for (unsigned i = 0; i < config->item_count; i++)
 		put_item(out, &config->items[i]);

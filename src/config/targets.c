@@ -53,7 +53,7 @@ static void canonical(const char *text, char out[TARGET_MAX + 32])
 		*p = (char)tolower((unsigned char)*p);
 }
 
-static bool same_target(const char *a, const char *b)
+bool target_same(const char *a, const char *b)
 {
 	char text_a[TARGET_MAX + 32], text_b[TARGET_MAX + 32];
 
@@ -89,7 +89,7 @@ static void target_add(struct build *build, const char *text, size_t len,
 	if (config->target_count)
 		target->group = target[-1].group + (relation == CONFIG_COMMA);
 	for (unsigned i = 0; i < config->target_count; i++)
-		if (same_target(config->targets[i].text, target->text)) {
+		if (target_same(config->targets[i].text, target->text)) {
 			report_error(build->report, place,
 			             "the target \"%s\" stands twice; the first is \"%s\"",
 			             target->text, config->targets[i].text);

@@ -147,9 +147,36 @@ static void test_wrong_driver_values_are_errors_with_what_was_expected(void)
 		{"TargetName \"[::1] | [::1]:4304\"",
 	         "f:2:12: error: the target \"[::1]:4304\" stands twice; the first is \"[::1]\"\n"},
 		{"Bus { }", "f:2:1: error: expected a Target in this Bus\n"},
+		{"Bus { Target \"\" }", "f:2:1: error: expected a Target in this Bus\n"},
+		{"Bus { Target w1 }\nBus { Target \"w1\" }",
+	         "f:3:14: error: there is a Bus for \"w1\" already\n"},
+		{"Bus { Target \"i2c:/dev/i2c-1\" PowerOffMs 0 }",
+	         "f:2:42: error: PowerOffMs \"0\": expected a whole number from 1 to 60000\n"},
 	};
 
 	expect_errors(cases, COUNT(cases), parse_driver);
+}
+
+static void test_a_target_finds_its_bus_however_it_is_spelt(void)
+{
+	const struct config_bus *bus;
+
+	parse_driver("TargetName \"LocalHost | i2c:/dev/i2c-1\" AlarmLine \"gpiochip0/5\"\n"
+	             "Bus { Target \"i2c:/dev/i2c-1\" SleepLine \"c/3\" PowerLine \"c/2\" }\n"
+	             "Bus { Target \"localhost:4304\" }");
+	TEST_ASSERT_NOT_NULL(config);
+	bus = config_bus(config, "i2c:/dev/i2c-1");
+	TEST_ASSERT_EQUAL_PTR(&config->buses[0], bus);
+	TEST_ASSERT_EQUAL_UINT(2, bus->option_count);
+	TEST_ASSERT_EQUAL_STRING("PowerLine", bus->options[0].key);
+	TEST_ASSERT_EQUAL_STRING("c/2", bus->options[0].text);
+	TEST_ASSERT_EQUAL_INT(3, bus->options[0].line);
+	TEST_ASSERT_EQUAL_STRING("SleepLine", bus->options[1].key);
+	TEST_ASSERT_EQUAL_PTR(&config->buses[1], config_bus(config, "LocalHost"));
+	TEST_ASSERT_EQUAL_UINT(0, config->buses[1].option_count);
+	TEST_ASSERT_NULL(config_bus(config, "i2c:/dev/i2c-2"));
+	TEST_ASSERT_EQUAL_STRING("gpiochip0/5", config->alarm_line);
+	TEST_ASSERT_NULL(config->heartbeat_line);
 }
 
 static void test_what_can_be_understood_is_only_warned_about(void)
@@ -584,6 +611,7 @@ int main(void)
 	RUN_TEST(test_defaults_are_those_of_the_manual);
 	RUN_TEST(test_a_file_of_something_else_is_refused);
 	RUN_TEST(test_wrong_driver_values_are_errors_with_what_was_expected);
+	RUN_TEST(test_a_target_finds_its_bus_however_it_is_spelt);
 	RUN_TEST(test_what_can_be_understood_is_only_warned_about);
 	RUN_TEST(test_a_comma_separates_two_wires_and_a_bar_two_ways);
 	RUN_TEST(test_auto_is_a_bar_of_three_ways);

@@ -1,0 +1,299 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The bus "gpio": the lines of one GPIO chip. `gpio:gpiochip0`, `gpio:/dev/gpiochip0`,
+ * `gpio:pinctrl-bcm2711`; paths /gpio/17 and /gpio/NAME. hal/gpio/lines.c has what a line does.
+ *
+ * The contract has no way to say that a path has news, so an edge waits in the kernel, with its
+ * time, until its line is read: at the latest one period later.
+ */
+#include "hal/gpio/lines.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SECOND INT64_C(1000000000)
+#define AGAIN_NS (SECOND / 2)
+#define LOOK_NS (5 * SECOND)
+#define DEPTH 64
+
+static const char *const names[GPIO_COUNTS] = {
+	[GPIO_EDGES] = "edges",
+	[GPIO_PULSES] = "pulses",
+	[GPIO_EDGES_UNSEEN] = "edges_unseen",
+	[GPIO_REFUSED] = "lines_refused",
+	[GPIO_OPENS] = "chip_opened",
+};
+
+static int64_t now_of(const struct gpio_bus *gpio)
+{
+	return gpio->bus.env->now(gpio->bus.env->ctx);
+}
+
+static void tell(struct gpio_bus *gpio, enum bus_news news, int err, const char *text)
+{
+	struct bus_event event = {.news = (uint8_t)news, .err = err};
+
+	snprintf(event.text, sizeof(event.text), "%s", text);
+	gpio->bus.env->event(gpio->bus.env->ctx, &event);
+}
+
+static void gpio_destroy(struct bus *bus)
+{
+	struct gpio_bus *gpio = (struct gpio_bus *)bus;
+
+	lines_release(gpio);
+	gpio_close(gpio->chip);
+	for (int i = 0; i < GPIO_OPTIONS; i++)
+		free(gpio->option[i]);
+	free(gpio->line);
+	free(gpio);
+}
+
+static int create(const char *where, const struct bus_env *env, struct bus **bus, char *why,
+                  size_t why_size)
+{
+	struct gpio_bus *gpio;
+
+	if (!gpio_api()) {
+		snprintf(why, why_size, "this owsd was built without libgpiod");
+		return -EINVAL;
+	}
+	if (!*where || strlen(where) >= sizeof(gpio->where)) {
+		snprintf(why, why_size, "expected a GPIO chip, as gpio:gpiochip0");
+		return -EINVAL;
+	}
+	gpio = calloc(1, sizeof(*gpio));
+	if (!gpio || bus_init(&gpio->bus, &gpio_bus, env)) {
+		free(gpio);
+		return -ENOMEM;
+	}
+	strcpy(gpio->where, where);
+	for (int i = 0; i < GPIO_COUNTS; i++)
+		gpio->count[i].name = names[i];
+	*bus = &gpio->bus;
+	return 0;
+}
+
+static void down(struct gpio_bus *gpio, int err, const char *why)
+{
+	lines_release(gpio);
+	gpio_close(gpio->chip);
+	gpio->chip = NULL;
+	gpio->next_ns = now_of(gpio) + AGAIN_NS;
+	if (!gpio->told)
+		tell(gpio, BUS_DOWN, err, why);
+	gpio->told = true;
+}
+
+static int open_chip(struct gpio_bus *gpio, char *why, size_t why_size)
+{
+	int err = gpio_open(gpio->where, &gpio->chip, why, why_size);
+
+	if (err)
+		return err;
+	err = lines_create(gpio, why, why_size);
+	if (!err)
+		return 0;
+	if (err == -ENOMEM)
+		snprintf(why, why_size, "out of memory");
+	gpio_close(gpio->chip);
+	gpio->chip = NULL;
+	return err;
+}
+
+/* Nobody may be reading: a chip that was unplugged is noticed all the same. */
+static int64_t step(struct bus *bus, int64_t now)
+{
+	struct gpio_bus *gpio = (struct gpio_bus *)bus;
+	struct gpio_info info;
+	char why[100] = "";
+	int err;
+
+	if (gpio->suspended)
+		return INT64_MAX;
+	if (now < gpio->next_ns)
+		return gpio->next_ns;
+	if (gpio->chip) {
+		unsigned i = 0;
+
+		/* of a line that we have nothing is asked */
+		while (i + 1 < gpio->lines && gpio->line[i].held)
+			i++;
+		if (gpio_api()->info(gpio->chip, i, &info) == -ENODEV)
+			down(gpio, -ENODEV, "the chip is gone");
+		else
+			gpio->next_ns = now + LOOK_NS;
+		return gpio->next_ns;
+	}
+	err = open_chip(gpio, why, sizeof(why));
+	if (err) {
+		down(gpio, err, why);
+		return gpio->next_ns;
+	}
+	gpio->told = false;
+	gpio->next_ns = now + LOOK_NS;
+	bus_count(&gpio->count[GPIO_OPENS], 1);
+	tell(gpio, BUS_UP, 0, "");
+	return gpio->next_ns;
+}
+
+/* The line of a path: its number, -1 the chip itself, -2 the root, or an error. */
+#define IS_CHIP (-1)
+#define IS_ROOT (-2)
+static int line_of(const struct gpio_bus *gpio, const char *path, int *line)
+{
+	const char *name = strrchr(gpio->where, '/');
+	const char *own = name ? name + 1 : gpio->where;
+	size_t len;
+
+	*line = IS_ROOT;
+	path += *path == '/';
+	if (!*path)
+		return 0;
+	len = strcspn(path, "/");
+	if (!(len == strlen(GPIO_DEVICE) && memcmp(path, GPIO_DEVICE, len) == 0) &&
+	    !(len == strlen(own) && memcmp(path, own, len) == 0))
+		return -ENODEV;
+	*line = IS_CHIP;
+	path += len + (path[len] == '/');
+	if (!*path)
+		return 0;
+	if (strchr(path, '/'))
+		return -ENOENT;
+	*line = lines_find(gpio, path);
+	return *line < 0 ? -ENOENT : 0;
+}
+
+static int list(const struct gpio_bus *gpio, int line, struct bus_req *req, uint32_t *used)
+{
+	if (line >= 0)
+		return -ENOTDIR;
+	for (unsigned i = 0; i < (line == IS_ROOT ? 1 : gpio->lines); i++) {
+		char path[32];
+		int n = line == IS_ROOT ? snprintf(path, sizeof(path), "/" GPIO_DEVICE "\n")
+		                        : snprintf(path, sizeof(path), "/" GPIO_DEVICE "/%u\n", i);
+
+		if (*used + (uint32_t)n > req->len)
+			return -EMSGSIZE;
+		memcpy(req->data + *used, path, (size_t)n);
+		*used += (uint32_t)n;
+	}
+	return 0;
+}
+
+static int parse_value(const struct bus_req *req, bool *value)
+{
+	static const struct {
+		const char *text;
+		bool value;
+	} words[] = {{"0", false}, {"1", true},     {"off", false},
+	             {"on", true}, {"no", false}, {"yes", true}};
+	const char *text = (const char *)req->data;
+	uint32_t len = req->len;
+
+	while (len > 0 && (text[len - 1] == '\n' || text[len - 1] == ' '))
+		len--;
+	while (len > 0 && *text == ' ')
+		text++, len--;
+	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
+		if (strlen(words[i].text) == len && memcmp(words[i].text, text, len) == 0) {
+			*value = words[i].value;
+			return 0;
+		}
+	return -EINVAL;
+}
+
+static int access_line(struct gpio_bus *gpio, int line, struct bus_req *req,
+                       struct bus_answer *answer, char *why, size_t why_size)
+{
+	bool guest = req->prio == BUS_GUEST, value;
+	int err;
+
+	if (line < 0)
+		return -EISDIR;
+	if (req->op == BUS_READ) {
+		if (req->len < 1)
+			return -EMSGSIZE;
+		err = line_read(gpio, (unsigned)line, guest, &value, &answer->measured_ns, why,
+		                why_size);
+		if (err)
+			return err;
+		req->data[0] = value ? '1' : '0';
+		answer->len = 1;
+		answer->kind = BUS_NUMBER;
+		answer->number = value;
+		return 0;
+	}
+	err = parse_value(req, &value);
+	if (!err)
+		err = line_write(gpio, (unsigned)line, guest, value, why, why_size);
+	if (!err)
+		answer->len = req->len;
+	return err;
+}
+
+static void exec(struct bus *bus, struct bus_req *req, struct bus_answer *answer)
+{
+	struct gpio_bus *gpio = (struct gpio_bus *)bus;
+	char why[100] = "";
+	int line;
+
+	answer->kind = BUS_TEXT;
+	answer->measured_ns = now_of(gpio);
+	if (!gpio->chip) {
+		answer->err = -ENOTCONN;
+		return;
+	}
+	if (req->op == BUS_DIR && strncmp(req->path, "/alarm", strlen("/alarm")) == 0) {
+		answer->err = -EOPNOTSUPP;
+		return;
+	}
+	answer->err = line_of(gpio, req->path, &line);
+	if (answer->err || req->op == BUS_PROBE)
+		return;
+	if (req->op == BUS_DIR) {
+		answer->err = list(gpio, line, req, &answer->len);
+		return;
+	}
+	answer->err = access_line(gpio, line, req, answer, why, sizeof(why));
+	if (answer->err == -ENODEV || answer->err == -ENXIO) {
+		down(gpio, -ENODEV, "the chip is gone");
+		answer->err = -ECONNRESET;
+	} else if (*why) {
+		tell(gpio, BUS_NOTE, answer->err, why);
+	}
+}
+
+static void suspend(struct bus *bus, bool yes)
+{
+	struct gpio_bus *gpio = (struct gpio_bus *)bus;
+
+	gpio->suspended = yes;
+	gpio->next_ns = 0;
+	if (!yes)
+		return;
+	lines_release(gpio);
+	gpio_close(gpio->chip);
+	gpio->chip = NULL;
+}
+
+static const struct bus_counter *counters(struct bus *bus, size_t *n)
+{
+	*n = GPIO_COUNTS;
+	return ((struct gpio_bus *)bus)->count;
+}
+
+const struct bus_ops gpio_bus = {
+	.scheme = "gpio",
+	.summary = "lines of a GPIO chip",
+	.depth = DEPTH,
+	.create = create,
+	.destroy = gpio_destroy,
+	.option = lines_option,
+	.exec = exec,
+	.step = step,
+	.suspend = suspend,
+	.counters = counters,
+};

@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: MIT */
+/* libgpiod 1.6 */
+#include "hal/gpio/line.h"
+
+#if defined(OWSD_LIBGPIOD) && OWSD_LIBGPIOD == 1
+#include <errno.h>
+#include <gpiod.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#define SECOND INT64_C(1000000000)
+
+struct gpio_chip {
+	struct gpiod_chip *chip;
+};
+struct gpio_line {
+	struct gpiod_line *line;
+	bool edges;
+};
+
+static int failed(void)
+{
+	return errno ? -errno : -EIO;
+}
+
+static int open_chip(const char *path, struct gpio_chip **out)
+{
+	struct gpio_chip *chip = malloc(sizeof(*chip));
+
+	if (!chip)
+		return -ENOMEM;
+	errno = 0;
+	chip->chip = gpiod_chip_open(path);
+	if (!chip->chip) {
+		int err = failed();
+
+		free(chip);
+		return err;
+	}
+	*out = chip;
+	return 0;
+}
+
+static void close_chip(struct gpio_chip *chip)
+{
+	gpiod_chip_close(chip->chip);
+	free(chip);
+}
+
+static const char *label(struct gpio_chip *chip)
+{
+	return gpiod_chip_label(chip->chip);
+}
+
+static unsigned lines(struct gpio_chip *chip)
+{
+	return gpiod_chip_num_lines(chip->chip);
+}
+
+static int info(struct gpio_chip *chip, unsigned offset, struct gpio_info *info)
+{
+	struct gpiod_line *line;
+	const char *name, *consumer;
+
+	errno = 0;
+	line = gpiod_chip_get_line(chip->chip, offset);
+	/* It may be held, and then what is known of it is what was known before. */
+	if (!line || (!gpiod_line_is_requested(line) && gpiod_line_update(line)))
+		return failed();
+	name = gpiod_line_name(line);
+	consumer = gpiod_line_consumer(line);
+	snprintf(info->name, sizeof(info->name), "%s", name ? name : "");
+	snprintf(info->consumer, sizeof(info->consumer), "%s", consumer ? consumer : "");
+	info->used = gpiod_line_is_used(line);
+	info->output = gpiod_line_direction(line) == GPIOD_LINE_DIRECTION_OUTPUT;
+	return 0;
+}
+
+static int flags_of(const struct gpio_setup *setup)
+{
+	static const int bias[] = {
+		[GPIO_BIAS_AS_IT_IS] = 0,
+		[GPIO_PULL_UP] = GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_UP,
+		[GPIO_PULL_DOWN] = GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN,
+	};
+	static const int drive[] = {
+		[GPIO_PUSH_PULL] = 0,
+		[GPIO_OPEN_DRAIN] = GPIOD_LINE_REQUEST_FLAG_OPEN_DRAIN,
+		[GPIO_OPEN_SOURCE] = GPIOD_LINE_REQUEST_FLAG_OPEN_SOURCE,
+	};
+	int flags = setup->active_low ? GPIOD_LINE_REQUEST_FLAG_ACTIVE_LOW : 0;
+
+	if (setup->direction == GPIO_AS_IT_IS)
+		return flags; /* the kernel refuses the others without a direction */
+	flags |= bias[setup->bias];
+	return setup->direction == GPIO_OUTPUT ? flags | drive[setup->drive] : flags;
+}
+
+static int request(struct gpio_chip *chip, unsigned offset, const struct gpio_setup *setup,
+                   const char *consumer, struct gpio_line **out)
+{
+	static const int types[] = {
+		[GPIO_AS_IT_IS] = GPIOD_LINE_REQUEST_DIRECTION_AS_IS,
+		[GPIO_INPUT] = GPIOD_LINE_REQUEST_EVENT_BOTH_EDGES,
+		[GPIO_OUTPUT] = GPIOD_LINE_REQUEST_DIRECTION_OUTPUT,
+	};
+	struct gpiod_line_request_config config = {
+		.consumer = consumer,
+		.request_type = types[setup->direction],
+		.flags = flags_of(setup),
+	};
+	struct gpio_line *line = malloc(sizeof(*line));
+	int err;
+
+	if (!line)
+		return -ENOMEM;
+	errno = 0;
+	line->edges = setup->direction == GPIO_INPUT;
+	line->line = gpiod_chip_get_line(chip->chip, offset);
+	err = line->line ? gpiod_line_request(line->line, &config, setup->value) : -1;
+	/* A line without an interrupt can be read all the same. */
+	if (err && line->line && line->edges && errno != EBUSY && errno != EPERM && errno != ENODEV) {
+		line->edges = false;
+		config.request_type = GPIOD_LINE_REQUEST_DIRECTION_INPUT;
+		errno = 0;
+		err = gpiod_line_request(line->line, &config, 0);
+	}
+	if (err) {
+		err = failed();
+		free(line);
+		return err;
+	}
+	*out = line;
+	return 0;
+}
+
+static int set(struct gpio_line *line, bool value)
+{
+	errno = 0;
+	return gpiod_line_set_value(line->line, value) ? failed() : 0;
+}
+
+static int get(struct gpio_line *line)
+{
+	int value;
+
+	errno = 0;
+	value = gpiod_line_get_value(line->line);
+	return value < 0 ? failed() : value;
+}
+
+static int fd(struct gpio_line *line)
+{
+	return line->edges ? gpiod_line_event_get_fd(line->line) : -1;
+}
+
+/* Its times are of CLOCK_MONOTONIC (kernel 5.7 and later), which stands still in suspend. */
+static int64_t boottime(const struct timespec *ts)
+{
+	struct timespec boot, mono;
+
+	clock_gettime(CLOCK_BOOTTIME, &boot);
+	clock_gettime(CLOCK_MONOTONIC, &mono);
+	return ((int64_t)ts->tv_sec + boot.tv_sec - mono.tv_sec) * SECOND + ts->tv_nsec +
+	       boot.tv_nsec - mono.tv_nsec;
+}
+
+static int edge(struct gpio_line *line, struct gpio_edge *edge)
+{
+	struct pollfd ready = {.fd = fd(line), .events = POLLIN};
+	struct gpiod_line_event event;
+
+	if (!line->edges || poll(&ready, 1, 0) <= 0)
+		return 0;
+	errno = 0;
+	if (!(ready.revents & POLLIN) || gpiod_line_event_read_fd(ready.fd, &event))
+		return ready.revents & POLLIN ? failed() : -ENODEV;
+	edge->at_ns = boottime(&event.ts);
+	edge->value = event.event_type == GPIOD_LINE_EVENT_RISING_EDGE;
+	return 1;
+}
+
+static void release(struct gpio_line *line)
+{
+	gpiod_line_release(line->line);
+	free(line);
+}
+
+static const struct gpio_api library = {
+	.version = gpiod_version_string,
+	.open = open_chip,
+	.close = close_chip,
+	.label = label,
+	.lines = lines,
+	.info = info,
+	.request = request,
+	.set = set,
+	.get = get,
+	.edge = edge,
+	.fd = fd,
+	.release = release,
+};
+const struct gpio_api *const gpio_library = &library;
+#elif !defined(OWSD_LIBGPIOD)
+const struct gpio_api *const gpio_library;
+#endif

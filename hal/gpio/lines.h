@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+/* Inside the bus "gpio": the chip's lines, and what is remembered of each. */
+#ifndef HAL_GPIO_LINES_H
+#define HAL_GPIO_LINES_H
+
+#include "hal/bus.h"
+#include "hal/gpio/line.h"
+
+#define GPIO_DEVICE "gpio" /* of /gpio/17 */
+
+enum gpio_option {
+	GPIO_OPTION_ACTIVE_LOW,
+	GPIO_OPTION_PULL_UP,
+	GPIO_OPTION_PULL_DOWN,
+	GPIO_OPTION_OPEN_DRAIN,
+	GPIO_OPTION_OPEN_SOURCE,
+	GPIO_OPTIONS,
+};
+
+enum gpio_count {
+	GPIO_EDGES,        /* all that came */
+	GPIO_PULSES,       /* shorter than the time between two reads, and shown */
+	GPIO_EDGES_UNSEEN, /* between two reads, and not shown */
+	GPIO_REFUSED,      /* requests of lines that the kernel refused */
+	GPIO_OPENS,
+	GPIO_COUNTS,
+};
+
+struct line_state {
+	struct gpio_line *held;  /* NULL: not requested */
+	struct gpio_setup setup; /* as requested, or to be */
+	bool told;               /* why it cannot be had */
+	char name[GPIO_NAME_MAX];
+	/* Of an input: what was answered last, and when the level after that began; 0: unknown. */
+	bool shown;
+	int64_t since_ns;
+};
+
+struct gpio_bus {
+	struct bus bus; /* first */
+	char where[GPIO_NAME_MAX];
+	char *option[GPIO_OPTIONS]; /* lists of lines, as written; NULL: none */
+	struct gpio_chip *chip;     /* NULL: down */
+	unsigned lines;
+	struct line_state *line;
+	bool told, suspended;
+	int64_t next_ns;
+	struct bus_counter count[GPIO_COUNTS];
+};
+
+/* bus_ops.option */
+int lines_option(struct bus *bus, const char *key, const char *text, char *why, size_t why_size);
+/* The lines of the chip that was opened, as the options have them. 0; -EINVAL and why; -ENOMEM. */
+int lines_create(struct gpio_bus *gpio, char *why, size_t why_size);
+void lines_release(struct gpio_bus *gpio);
+/* By number or name; -ENOENT. */
+int lines_find(const struct gpio_bus *gpio, const char *text);
+
+/*
+ * A guest only looks: his reading requests no line for good and takes no edge, and he may set
+ * what is an output already. Errors as struct bus_answer, -ENODEV: the chip is gone. why gets
+ * what the log is to be told, once for each line, else stays "".
+ */
+int line_read(struct gpio_bus *gpio, unsigned line, bool guest, bool *value, int64_t *measured_ns,
+              char *why, size_t why_size);
+int line_write(struct gpio_bus *gpio, unsigned line, bool guest, bool value, char *why,
+               size_t why_size);
+
+#endif

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: MIT */
+/* The Bus blocks. What an option means is the backend's: here is only what its value looks like. */
+#include "build.h"
+
+#include <string.h>
+
+static void keep_option(struct build *build, struct config_bus *bus, enum option option,
+                        const struct option_value *value)
+{
+	bus->options[bus->option_count++] = (struct config_option){
+		.key = option_table[option].key,
+		.text = build_keep(build, value->text, strlen(value->text)),
+		.line = value->node->value_at.line,
+		.column = value->node->value_at.column,
+	};
+}
+
+static void bus_build(struct build *build, const struct rio_node *block)
+{
+	struct config *config = &build->box->config;
+	struct config_bus *bus = &config->buses[config->bus_count];
+	struct option_value values[OPTION_COUNT_ALL];
+	const struct option_value *target = &values[OPT_BUS_TARGET];
+
+	options_read(block, PLACE_BUS, values, build->report);
+	if (!target->given || !*target->text) {
+		if (!block->broken && (!target->node || target->given))
+			report_error(build->report, block->at, "expected a Target in this Bus");
+		return;
+	}
+	if (config_bus(config, target->text)) {
+		report_error(build->report, target->node->value_at,
+		             "there is a Bus for \"%s\" already", target->text);
+		return;
+	}
+	bus->target = build_keep(build, target->text, strlen(target->text));
+	bus->line = target->node->value_at.line;
+	bus->column = target->node->value_at.column;
+	bus->options = build_take(build, OPTION_COUNT_ALL - OPT_BUS_TARGET, sizeof(*bus->options));
+	for (int i = OPT_BUS_TARGET + 1; bus->options && i < OPTION_COUNT_ALL; i++)
+		if (values[i].given)
+			keep_option(build, bus, (enum option)i, &values[i]);
+	config->bus_count++;
+}
+
+static bool is_bus(const struct rio_node *node)
+{
+	return node->kind == RIO_BLOCK && !strcmp(node->key, option_table[OPT_BUS].key);
+}
+
+void buses_build(struct build *build, const struct rio_node *driver)
+{
+	struct config *config = &build->box->config;
+	unsigned count = 0;
+
+	for (const struct rio_node *node = driver->first; node; node = node->next)
+		count += is_bus(node);
+	config->buses = build_take(build, count, sizeof(*config->buses));
+	for (const struct rio_node *node = driver->first; node && config->buses; node = node->next)
+		if (is_bus(node))
+			bus_build(build, node);
+}
+
+const struct config_bus *config_bus(const struct config *config, const char *target)
+{
+	for (unsigned i = 0; i < config->bus_count; i++)
+		if (target_same(config->buses[i].target, target))
+			return &config->buses[i];
+	return NULL;
+}
+
+/* What an auto target stands for is not known here. */
+static bool is_served(const struct config *config, const char *target)
+{
+	for (unsigned i = 0; i < config->target_count; i++)
+		if (target_same(config->targets[i].text, target) ||
+		    !strncmp(config->targets[i].text, "auto", 4))
+			return true;
+	return false;
+}
+
+void config_check_buses(const struct config *config, struct config_report *report)
+{
+	for (unsigned i = 0; i < config->bus_count; i++) {
+		const struct config_bus *bus = &config->buses[i];
+
+		if (!is_served(config, bus->target))
+			report_warning(report, (struct place){config->file, bus->line, bus->column},
+			               "no target is \"%s\": this Bus is for nothing", bus->target);
+	}
+}
