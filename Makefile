@@ -79,6 +79,8 @@ CONFIG   := $(wildcard src/config/*.c)
 SHM      := $(wildcard src/shm/*.c)
 # The signal table and its lanes: no I/O in here
 ENGINE   := $(wildcard src/engine/*.c)
+# The owserver protocol, served to clients
+SERVE    := $(wildcard src/serve/*.c)
 # Ways to a device: the contract, its host, and one folder for each backend
 HAL      := $(wildcard hal/*.c) $(wildcard hal/*/*.c)
 # The programs and the consumers' library
@@ -96,7 +98,7 @@ BENCH    := $(wildcard tests/bench/bench_*.c)
 BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/plant.c tests/unit/plant_net.c
 # ---------------------------------------------------------------------------------------------
 
-CORE     := $(SIGNAL) $(CONFIG) $(SHM) $(ENGINE) $(HAL) $(LIBOWS) $(filter-out src/owsd.c,$(OWSD)) \
+CORE     := $(SIGNAL) $(CONFIG) $(SHM) $(ENGINE) $(SERVE) $(HAL) $(LIBOWS) $(filter-out src/owsd.c,$(OWSD)) \
             $(filter-out src/owsctl/owsctl.c,$(OWSCTL))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
 pic       = $(patsubst %.c,$(B)/pic/%.o,$(1))

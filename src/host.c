@@ -4,6 +4,7 @@
 #include "hal/worker.h"
 #include "indicator.h"
 #include "libows/ows.h"
+#include "serve/serve.h"
 #include "shm/reader.h"
 #include "target.h"
 
@@ -35,7 +36,8 @@ struct host {
 	struct worker **workers;
 	unsigned worker_count;
 	unsigned *bus_counters; /* how many each worker's bus has */
-	unsigned own_counters;  /* index of the first one of the host itself */
+	unsigned own_counters;  /* index of the first one of the host itself, then the server's */
+	struct serve *serve;    /* NULL: the owserver protocol is not served */
 
 	struct indicator *indicator;
 	pthread_t thread;
@@ -107,6 +109,15 @@ static bool take_messages(struct host *h, int64_t now_ns)
 	return any;
 }
 
+static void publish_serve_counters(struct host *h, uint32_t index)
+{
+	size_t n;
+	const struct bus_counter *c = serve_counters(h->serve, &n);
+
+	for (size_t i = 0; i < n; i++)
+		image_counter(&h->memory.image, index++, bus_counted(&c[i]));
+}
+
 static void publish_counters(struct host *h)
 {
 	uint32_t index = engine_counter_count(h->worker_count);
@@ -127,6 +138,8 @@ static void publish_counters(struct host *h)
 	image_counter(&h->memory.image, index + COUNTER_MENDED, h->mended);
 	image_counter(&h->memory.image, index + COUNTER_WORKER_STALLS, stalls);
 	image_counter(&h->memory.image, index + COUNTER_DROPPED_EVENTS, dropped);
+	if (h->serve)
+		publish_serve_counters(h, index + HOST_COUNTERS);
 }
 
 /* The bell goes first: who rings the old one is heard at the next period. */
@@ -299,14 +312,18 @@ static int create_workers(struct host *h, char *why, size_t why_size)
 static int make_memory(struct host *h, const char *instance, char *why, size_t why_size)
 {
 	unsigned count = engine_counter_count(h->worker_count), first = count;
+	const struct bus_counter *serve = NULL;
 	struct image_counter *plan;
 	char (*names)[48];
+	size_t serve_count = 0;
 	int err;
 
 	h->own_counters = count;
 	for (unsigned i = 0; i < h->worker_count; i++)
 		h->own_counters += h->bus_counters[i];
-	plan = calloc(h->own_counters + HOST_COUNTERS, sizeof(*plan));
+	if (h->serve)
+		serve = serve_counters(h->serve, &serve_count);
+	plan = calloc(h->own_counters + HOST_COUNTERS + serve_count, sizeof(*plan));
 	names = calloc(h->own_counters - count + 1, sizeof(*names));
 	if (!plan || !names) {
 		free(plan);
@@ -325,6 +342,8 @@ static int make_memory(struct host *h, const char *instance, char *why, size_t w
 	}
 	for (unsigned i = 0; i < HOST_COUNTERS; i++)
 		plan[count++] = (struct image_counter){ host_counters[i], UINT32_MAX };
+	for (size_t i = 0; i < serve_count; i++)
+		plan[count++] = (struct image_counter){ serve[i].name, UINT32_MAX };
 	err = memory_make(&h->memory, instance, h->config, plan, count, h->log, why, why_size);
 	free(plan);
 	free(names);
@@ -368,15 +387,34 @@ static int start_thread(struct host *h, int rt_priority, char *why, size_t why_s
 
 static void free_host(struct host *h)
 {
+	serve_stop(h->serve);
 	indicator_destroy(h->indicator);
 	engine_destroy(h->engine);
 	for (unsigned i = 0; i < h->worker_count; i++)
 		worker_destroy(h->workers[i]);
+	serve_destroy(h->serve);
 	memory_end(&h->memory);
 	free(h->workers);
 	free(h->ports);
 	free(h->bus_counters);
 	free(h);
+}
+
+static int create_serve(struct host *h, const char *instance, char *why, size_t why_size)
+{
+	const struct config_serve *config = &h->config->serve;
+	const struct serve_setup setup = {
+		.config = h->config, .instance = instance, .log = h->log, .ring = ring, .ring_ctx = h,
+	};
+
+	if (!config->address_count && !config->socket)
+		return 0;
+	if (serve_is_open(config))
+		log_warning(h->log,
+		            "the owserver protocol is served beyond this machine and lets %s write: "
+		            "see ListenAllow and ListenReadOnly",
+		            config->peer_count ? "all of ListenAllow" : "everybody");
+	return serve_create(&setup, &h->serve, why, why_size);
 }
 
 int host_start(const struct host_setup *setup, struct host **host, char *why, size_t why_size)
@@ -392,6 +430,8 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 	h->log = setup->log;
 	err = create_workers(h, why, why_size);
 	if (!err)
+		err = create_serve(h, setup->instance, why, why_size);
+	if (!err)
 		err = make_memory(h, setup->instance, why, why_size);
 	if (err)
 		goto fail;
@@ -403,6 +443,7 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 		.image = &h->memory.image,
 		.commands = h->commands,
 		.log = h->log,
+		.guests = h->serve ? serve_guests(h->serve) : NULL,
 		.start_ns = h->memory.start_ns,
 	};
 	err = engine_create(&engine, &h->engine);
@@ -426,6 +467,13 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 	}
 	if (err)
 		goto fail;
+	if (h->serve)
+		err = serve_start(h->serve, &h->memory.image);
+	if (err) {
+		snprintf(why, why_size, "cannot serve the owserver protocol: %s", strerror(-err));
+		host_stop(h, 1000000000);
+		return err;
+	}
 	err = indicator_create(h->config, &h->memory.image, h->log, &h->indicator);
 	if (!err)
 		err = indicator_start(h->indicator);
@@ -457,6 +505,8 @@ bool host_stop(struct host *h, int64_t timeout_ns)
 {
 	bool stuck = false;
 
+	/* first what others could wait for: ports and clients */
+	serve_stop(h->serve);
 	__atomic_store_n(&h->stop, 1, __ATOMIC_RELEASE);
 	if (h->running) {
 		ring(h);

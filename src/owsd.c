@@ -23,6 +23,7 @@
 
 #define DEFAULT_FILE  "/etc/owsd/owsd.rio"
 #define TARGETS_MAX   16
+#define LISTENS_MAX   16
 #define STOP_NS       2000000000LL
 #define SUPERVISE_NS  500000000LL
 #define EXIT_RUN      1
@@ -32,6 +33,8 @@ struct options {
 	const char *file, *instance;
 	const char *targets[TARGETS_MAX];
 	unsigned target_count;
+	const char *listens[LISTENS_MAX];
+	unsigned listen_count;
 	enum log_level level;
 	int rt_priority;
 	bool check;
@@ -67,10 +70,13 @@ static void complain(const char *format, ...)
 
 static void usage(FILE *out)
 {
-	fputs("usage: owsd [-c FILE] [-n NAME] [-t TARGET]... [--check] [--rt PRIO] [-v] [-V] [-h]\n"
+	fputs("usage: owsd [-c FILE] [-n NAME] [-t TARGET]... [-l [HOST:]PORT]...\n"
+	      "            [--check] [--rt PRIO] [-v] [-V] [-h]\n"
 	      "  -c, --config FILE   configuration (" DEFAULT_FILE ")\n"
 	      "  -n, --name NAME     instance: signal prefix and name of the segments (OWS)\n"
 	      "  -t, --target TARGET in place of TargetName (this version serves one)\n"
+	      "  -l, --listen ADDRESS in place of Listen: serve the owserver protocol at PORT of this\n"
+	      "                      machine alone, or at HOST:PORT\n"
 	      "      --check         print the configuration as understood, start nothing\n"
 	      "      --rt PRIO       engine thread with SCHED_FIFO priority 1 to 99\n"
 	      "  -v, --verbose       say more; twice: everything\n"
@@ -113,6 +119,7 @@ static int parse_options(int argc, char **argv, struct options *o)
 		{ "config", required_argument, NULL, 'c' },
 		{ "name", required_argument, NULL, 'n' },
 		{ "target", required_argument, NULL, 't' },
+		{ "listen", required_argument, NULL, 'l' },
 		{ "check", no_argument, NULL, OPT_CHECK },
 		{ "rt", required_argument, NULL, OPT_RT },
 		{ "verbose", no_argument, NULL, 'v' },
@@ -125,7 +132,7 @@ static int parse_options(int argc, char **argv, struct options *o)
 	int c;
 
 	*o = (struct options){ .file = DEFAULT_FILE, .instance = "OWS", .level = LOG_LEVEL_NOTICE };
-	while ((c = getopt_long(argc, argv, "c:n:t:vVh", table, NULL)) != -1) {
+	while ((c = getopt_long(argc, argv, "c:n:t:l:vVh", table, NULL)) != -1) {
 		switch (c) {
 		case 'c':
 			o->file = optarg;
@@ -139,6 +146,13 @@ static int parse_options(int argc, char **argv, struct options *o)
 				return EXIT_USAGE;
 			}
 			o->targets[o->target_count++] = optarg;
+			break;
+		case 'l':
+			if (o->listen_count == LISTENS_MAX) {
+				complain("at most %d addresses to listen at", LISTENS_MAX);
+				return EXIT_USAGE;
+			}
+			o->listens[o->listen_count++] = optarg;
 			break;
 		case OPT_CHECK:
 			o->check = true;
@@ -207,6 +221,8 @@ static int load(const struct options *o, struct config **config)
 		return err;
 	if (o->target_count)
 		err = config_set_targets(*config, o->targets, o->target_count, &report);
+	if (!err && o->listen_count)
+		err = config_set_listens(*config, o->listens, o->listen_count, &report);
 	if (!err && !config_one_target(*config, &report, true))
 		err = -EINVAL;
 	if (!err)

@@ -5,12 +5,6 @@
 #include <stdbool.h>
 #include <string.h>
 
-/* Of the version word: sent by an owserver, and then the number of tokens behind the data. */
-#define VERSION_SERVER UINT32_C(0x10000)
-#define VERSION_TOKENS UINT32_C(0x0ffff)
-#define TOKEN_SIZE     16
-#define TOKENS_MAX     64
-
 static void put_word(uint8_t *at, uint32_t word)
 {
 	at[0] = (uint8_t)(word >> 24);
@@ -73,12 +67,12 @@ void frame_begin(struct frame_reader *reader, uint8_t *data, uint32_t limit)
 static int check_header(struct frame_reader *reader)
 {
 	struct frame_header *header = &reader->header;
-	uint32_t tokens = header->version & VERSION_TOKENS;
+	uint32_t tokens = header->version & FRAME_TOKENS;
 
 	frame_get_header(reader->head, header);
-	tokens = header->version & VERSION_TOKENS;
-	if (header->version & ~(VERSION_SERVER | VERSION_TOKENS) || tokens > TOKENS_MAX ||
-	    (tokens && !(header->version & VERSION_SERVER)))
+	tokens = header->version & FRAME_TOKENS;
+	if (header->version & ~(FRAME_SERVER | FRAME_TOKENS) || tokens > FRAME_TOKENS_MAX ||
+	    (tokens && !(header->version & FRAME_SERVER)))
 		return -EPROTO;
 	if (header->payload < -1)
 		return -EPROTO;
@@ -86,7 +80,7 @@ static int check_header(struct frame_reader *reader)
 		return FRAME_ALIVE;
 	if ((uint32_t)header->payload > reader->limit)
 		return -EMSGSIZE;
-	reader->end = FRAME_HEADER + (uint32_t)header->payload + tokens * TOKEN_SIZE;
+	reader->end = FRAME_HEADER + (uint32_t)header->payload + tokens * FRAME_TOKEN_SIZE;
 	return FRAME_MORE;
 }
 

@@ -19,12 +19,28 @@ enum frame_type {
 	FRAME_NOP = 1,
 	FRAME_READ = 2,
 	FRAME_WRITE = 3,
+	FRAME_DIR = 4, /* a reply for each entry, and an empty one */
 	FRAME_PRESENT = 6,
 	FRAME_DIRALL = 7,
+	FRAME_GET = 8, /* READ or DIRALL, by what is there */
+	FRAME_DIRALLSLASH = 9, /* directories end with '/' */
+	FRAME_GETSLASH = 10,
 };
 
+#define FRAME_BUS_LIST UINT32_C(0x02) /* list bus.N, settings and the like in the root */
 #define FRAME_PERSIST  UINT32_C(0x04) /* keep the connection; cleared in the reply: refused */
 #define FRAME_UNCACHED UINT32_C(0x20)
+#define FRAME_TRIM     UINT32_C(0x40) /* numbers without padding */
+/* Scales and the format of device names, as numbers. */
+#define FRAME_TEMPERATURE(flags) ((flags) >> 16 & 3)
+#define FRAME_PRESSURE(flags)    ((flags) >> 18 & 7)
+#define FRAME_FORMAT(flags)      ((flags) >> 24)
+
+/* Of the version word: sent by an owserver, and then the number of tokens behind the data. */
+#define FRAME_SERVER     UINT32_C(0x10000)
+#define FRAME_TOKENS     UINT32_C(0x0ffff)
+#define FRAME_TOKEN_SIZE 16
+#define FRAME_TOKENS_MAX 64
 
 struct frame_header {
 	uint32_t version;

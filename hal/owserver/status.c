@@ -17,8 +17,8 @@ static const struct {
 	{ 29, -ENODEV },
 	{ 41, -ENODEV },
 	{ 70, -ENODEV },
-	{ 20, -ENOENT }, /* a directory asked of a property */
-	{ 21, -ENOENT }, /* a value asked of a directory */
+	{ 20, -ENOTDIR },
+	{ 21, -EISDIR },
 	{ 27, -ENOENT },
 	{ 32, -ENOENT },
 	{ 33, -ENOENT },

@@ -36,7 +36,8 @@ static int time_is_over(struct talk *talk)
 
 static int make_request(struct talk *talk, const struct talk_request *request)
 {
-	uint32_t flags = FRAME_PERSIST | (request->fresh ? FRAME_UNCACHED : 0);
+	uint32_t flags = FRAME_PERSIST | (request->fresh ? FRAME_UNCACHED : 0) |
+	                 (request->type == FRAME_DIRALL ? FRAME_BUS_LIST : 0);
 
 	return frame_request(talk->out, request->type, flags, request->size, request->path,
 	                     request->data, request->data_len);

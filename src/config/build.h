@@ -34,6 +34,11 @@ void buses_build(struct build *build, const struct rio_node *driver);
 /* "a, b | c" behind the targets there are. Errors are said at place. */
 void targets_add(struct build *build, const char *text, struct place place);
 
+/* Where the owserver protocol is served, and to whom. */
+void serve_build(struct build *build, const struct option_value *values);
+/* The addresses of owsd -l in their place. 0 or -EINVAL. */
+int serve_listens(struct build *build, const char *const *texts, unsigned count);
+
 /* One Item block. */
 void item_build(struct build *build, const struct rio_node *block, struct config_item *item);
 /* Its limit alarms, when its type is known. */

@@ -8,6 +8,8 @@
 
 #include "../libows/ows.h"
 
+#include "listen.h"
+
 #include <stdbool.h>
 #include <stdio.h>
 
@@ -72,6 +74,16 @@ struct config_bus {
 	int line, column; /* of target */
 };
 
+/* The served owserver protocol. */
+struct config_serve {
+	struct listen_address addresses[LISTEN_MAX];
+	unsigned address_count; /* 0: not served on the network */
+	struct listen_peers peers[LISTEN_PEERS_MAX];
+	unsigned peer_count; /* 0: everybody who reaches an address; loopback always may */
+	const char *socket;  /* path of a unix socket; NULL: none */
+	bool read_only;
+};
+
 struct config {
 	const char *file;
 	struct config_target *targets;
@@ -84,6 +96,7 @@ struct config {
 	unsigned bus_count;
 	struct config_item *items;
 	unsigned item_count;
+	struct config_serve serve;
 };
 
 /* Collects what was found wrong; message is complete ("house.rio:12:26: error: ..."). */
@@ -103,6 +116,9 @@ int config_parse(const char *file, const char *text, size_t len, struct config_r
                  struct config **config);
 /* Replace the targets (owsd -t); each text may itself hold commas and bars. 0 or -EINVAL. */
 int config_set_targets(struct config *config, const char *const *texts, unsigned count,
+                       struct config_report *report);
+/* Replace where the owserver protocol is served (owsd -l). 0 or -EINVAL. */
+int config_set_listens(struct config *config, const char *const *texts, unsigned count,
                        struct config_report *report);
 /*
  * This version serves one target: say so where there are more, as an error or as a warning. Returns

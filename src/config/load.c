@@ -106,6 +106,7 @@ static void build_driver(struct build *build, const struct option_value *values)
 		               "Version %s: only 1.00 is known", values[OPT_VERSION].text);
 	config->alarm_line = build_line(build, &values[OPT_ALARM_LINE]);
 	config->heartbeat_line = build_line(build, &values[OPT_HEARTBEAT_LINE]);
+	serve_build(build, values);
 	if (target->given)
 		targets_add(build, target->text, target->node->value_at);
 	else if (!target->node)
@@ -243,6 +244,14 @@ int config_set_targets(struct config *config, const char *const *texts, unsigned
 	config->targets = old;
 	config->target_count = old_count;
 	return build.no_memory ? -ENOMEM : -EINVAL;
+}
+
+int config_set_listens(struct config *config, const char *const *texts, unsigned count,
+                       struct config_report *report)
+{
+	struct build build = {.box = box_of(config), .report = report};
+
+	return serve_listens(&build, texts, count);
 }
 
 void config_free(struct config *config)

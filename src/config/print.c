@@ -101,6 +101,39 @@ static void put_bus(FILE *out, const struct config_bus *bus)
 	fputs("  }\n", out);
 }
 
+static void put_peers(FILE *out, const struct config_serve *serve)
+{
+	fprintf(out, "  %-*s \"", RIO_KEY_WIDTH - 1, option_table[OPT_LISTEN_ALLOW].key);
+	for (unsigned i = 0; i < serve->peer_count; i++) {
+		char text[LISTEN_TEXT_MAX];
+
+		listen_peers_print(&serve->peers[i], text);
+		fprintf(out, "%s%s", i ? ", " : "", text);
+	}
+	fputs("\"\n", out);
+}
+
+static void put_serve(FILE *out, const struct config_serve *serve)
+{
+	if (!serve->address_count && !serve->socket)
+		return;
+	if (serve->address_count)
+		fprintf(out, "  %-*s \"", RIO_KEY_WIDTH - 1, option_table[OPT_LISTEN].key);
+	for (unsigned i = 0; i < serve->address_count; i++) {
+		char text[LISTEN_TEXT_MAX];
+
+		listen_print(&serve->addresses[i], text);
+		fprintf(out, "%s%s", i ? ", " : "", text);
+	}
+	if (serve->address_count)
+		fputs("\"\n", out);
+	if (serve->socket)
+		put_text(out, 2, OPT_LISTEN_SOCKET, serve->socket);
+	if (serve->peer_count)
+		put_peers(out, serve);
+	put_flag(out, 2, OPT_LISTEN_READ_ONLY, serve->read_only);
+}
+
 static void put_item(FILE *out, const struct config_item *item)
 {
 	fprintf(out, "  %s {\n", option_table[OPT_ITEM].key);
@@ -139,6 +172,7 @@ void config_print(const struct config *config, FILE *out)
 	put_seconds(out, 2, OPT_TIMEOUT, config->timeout_ns);
 	put_seconds(out, 2, OPT_PERIOD, config->period_ns);
 	put_seconds(out, 2, OPT_ALARM_PERIOD, config->alarm_period_ns);
+	put_serve(out, &config->serve);
 	if (config->alarm_line)
 		put_text(out, 2, OPT_ALARM_LINE, config->alarm_line);
 	if (config->heartbeat_line)

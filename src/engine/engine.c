@@ -17,6 +17,7 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 	e->image = setup->image;
 	e->commands = setup->commands;
 	e->log = setup->log;
+	e->guests = setup->guests;
 	e->start_ns = setup->start_ns;
 	e->now_ns = setup->start_ns;
 	err = signal_table_init(&e->table, e->config);
@@ -108,6 +109,7 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 	e->counters.steps++;
 	engine_turn(e, now_ns);
 	engine_intake(e, now_ns);
+	engine_guests_take(e, now_ns);
 	if (e->period != before) {
 		engine_clients(e, now_ns);
 		engine_publish_counters(e);

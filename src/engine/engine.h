@@ -13,6 +13,8 @@
 #include "../shm/image.h"
 #include "hal/bus.h"
 
+#include "guest.h"
+
 /* One target, as the engine reaches it. */
 struct engine_port {
 	const char *target; /* for the log; lives as long as the engine */
@@ -37,6 +39,7 @@ struct engine_setup {
 	struct image *image;
 	struct commands *commands;
 	struct log *log;     /* NULL: silent */
+	const struct engine_guests *guests; /* NULL: none; lives as long as the engine */
 	int64_t start_ns;
 };
 

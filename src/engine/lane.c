@@ -67,14 +67,14 @@ static struct slot *free_slot(struct lane *lane)
 	return lane->free_count ? &lane->slots[lane->free[lane->free_count - 1]] : NULL;
 }
 
-/* Give the slot's request to the bus. */
-static bool lend(struct lane *lane, struct slot *slot, int64_t now_ns)
+bool lane_lend(struct lane *lane, struct slot *slot, int64_t now_ns)
 {
 	slot->turn++;
 	slot->req.id = (uint32_t)(slot - lane->slots) | (uint32_t)slot->turn << 16;
 	slot->req.deadline_ns = now_ns + lane->engine->config->timeout_ns;
-	slot->req.data = slot->data;
-	if (slot->req.op == BUS_DIR) {
+	if (slot->purpose != FOR_GUEST)
+		slot->req.data = slot->data;
+	if (slot->req.op == BUS_DIR && slot->purpose == FOR_ALARM) {
 		slot->req.data = (uint8_t *)lane->alarm.list;
 		slot->req.len = ALARM_LIST;
 	}
@@ -118,7 +118,7 @@ static bool ask_structure(struct lane *lane, struct slot *slot, uint32_t check, 
 		                      .prio = BUS_INPUT,
 		                      .path = lane->engine->structure.checks[check].path,
 		                      .len = sizeof(slot->data) };
-	if (!lend(lane, slot, now_ns))
+	if (!lane_lend(lane, slot, now_ns))
 		return false;
 	due_set_take(&lane->checks, check);
 	return true;
@@ -129,7 +129,7 @@ static bool ask_probe(struct lane *lane, struct slot *slot, int64_t now_ns)
 	if (lane->probing || now_ns < lane->probe_ns ||
 	    !engine_probe_next(lane->engine, lane, slot, now_ns))
 		return false;
-	if (!lend(lane, slot, now_ns))
+	if (!lane_lend(lane, slot, now_ns))
 		return false;
 	due_set_take(&lane->probes, slot->row);
 	lane->probing = true;
@@ -152,9 +152,10 @@ static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t
 		.path = s->item->path,
 		.len = sizeof(slot->data),
 	};
-	if (!lend(lane, slot, now_ns))
+	if (!lane_lend(lane, slot, now_ns))
 		return false;
 	due_set_take(&lane->inputs, row);
+	guest_passed(lane);
 	lane->writes_in_row = 0;
 	s->reading = true;
 	s->sample.tried_ns = now_ns;
@@ -189,9 +190,10 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 		slot->req.len = (uint32_t)value_to_text(s->item->type, s->command, text);
 		memcpy(slot->data, text, slot->req.len);
 	}
-	if (!lend(lane, slot, now_ns))
+	if (!lane_lend(lane, slot, now_ns))
 		return false;
 	due_set_take(&lane->outputs, row);
+	guest_passed(lane);
 	lane->writes_in_row++;
 	lane->writes_in_work++;
 	s->writing = true;
@@ -226,7 +228,7 @@ static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
 		slot->value = e->table.signals[r->row].item->init_value;
 		slot->stamp = e->table.signals[r->row].sample.applied;
 	}
-	if (!lend(lane, slot, now_ns))
+	if (!lane_lend(lane, slot, now_ns))
 		return false;
 	lane->alarm_slot = slot;
 	alarm_started(&lane->alarm, lane, now_ns);
@@ -240,7 +242,10 @@ static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
 	return true;
 }
 
-/* The order of a lane: what the bus is made of, alarms, one changed output, the next due input. */
+/*
+ * The order of a lane: what the bus is made of, alarms, one changed output, the next due input,
+ * guests.
+ */
 static bool ask_next(struct lane *lane, struct slot *slot, int64_t now_ns)
 {
 	int64_t output, input, check = next_check(lane);
@@ -252,6 +257,8 @@ static bool ask_next(struct lane *lane, struct slot *slot, int64_t now_ns)
 	output = lane->writes_in_work || alarm_holds(&lane->alarm) ? -1
 	                                                          : due_set_next(&lane->outputs);
 	input = due_set_next(&lane->inputs);
+	if (guest_turn(lane, output >= 0 || input >= 0))
+		return guest_ask(lane, slot, now_ns);
 	/* a one-shot needs no writer, and has to come in its turn all the same */
 	if (output >= 0 &&
 	    (input < 0 || lane->writes_in_row < (lane->writers ? lane->writers : 1)))
@@ -302,8 +309,14 @@ static void complete(struct lane *lane, struct slot *slot, const struct bus_answ
 	struct engine *e = lane->engine;
 	struct signal *s;
 
+	if (slot->purpose == FOR_GUEST) {
+		engine_guest_done(e, lane, slot, answer);
+		return;
+	}
 	e->transactions += counts;
 	switch (slot->purpose) {
+	case FOR_GUEST:
+		break;
 	case FOR_STRUCTURE:
 		engine_structure_done(e, lane, slot, answer);
 		break;
@@ -423,6 +436,7 @@ static void disown(struct lane *lane, struct slot *slot)
 		break;
 	case FOR_STRUCTURE:
 	case FOR_PROBE:
+	case FOR_GUEST:
 		return;
 	}
 	signal_end(s, e->period, slot->begun);
@@ -434,7 +448,8 @@ void lane_disown(struct lane *lane, bool all)
 		struct slot *slot = &lane->slots[i];
 
 		if (!slot->lent || slot->given_up || slot->moved ||
-		    slot->purpose == FOR_STRUCTURE || slot->purpose == FOR_PROBE)
+		    slot->purpose == FOR_STRUCTURE || slot->purpose == FOR_PROBE ||
+		    slot->purpose == FOR_GUEST)
 			continue;
 		if (all || (slot->row != TABLE_NO_ROW &&
 		            lane->engine->table.signals[slot->row].lane != lane->index))
@@ -469,7 +484,9 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now
 		lane->counters.late_answers += slot->given_up;
 		if (!slot->given_up && slot->purpose == FOR_WRITE)
 			lane->writes_in_work--;
-		if (lane_writes_output(lane, slot))
+		if (slot->purpose == FOR_GUEST)
+			engine_guest_gone(e, slot);
+		else if (lane_writes_output(lane, slot))
 			end_doubt(e, slot);
 	}
 	if (lane->stuck)

@@ -9,6 +9,7 @@
 #include "alarm.h"
 #include "due.h"
 #include "engine.h"
+#include "guest.h"
 #include "route.h"
 #include "structure.h"
 #include "table.h"
@@ -18,7 +19,7 @@
 /* How long after its deadline a request is given up that the bus did not answer at all. */
 #define LANE_GRACE_NS 250000000LL
 
-enum purpose { FOR_READ, FOR_WRITE, FOR_STRUCTURE, FOR_ALARM, FOR_PROBE };
+enum purpose { FOR_READ, FOR_WRITE, FOR_STRUCTURE, FOR_ALARM, FOR_PROBE, FOR_GUEST };
 
 /* A request and its room. Its id is slot | turn << 16, so that a late answer is told apart. */
 struct slot {
@@ -34,6 +35,8 @@ struct slot {
 	int64_t value;  /* of a write */
 	uint32_t stamp; /* of the command written */
 	bool one_shot;  /* the write was that of _WriteOneShot */
+	bool pressing;  /* the guest that goes as an input */
+	struct engine_guest *guest; /* path and data are his */
 	uint8_t data[LANE_DATA];
 };
 
@@ -55,7 +58,9 @@ struct slot {
 	X(moves_in)       /* signals that came from another target */                              \
 	X(moves_out)      /* signals that went to another target */                                \
 	X(probes)         /* looks for a device that another target does not have */               \
-	X(not_released)   /* the next way was opened before this one had let go */
+	X(not_released)   /* the next way was opened before this one had let go */                 \
+	X(guests)         /* requests of clients of the served protocol, given to the bus */       \
+	X(guest_errors)
 
 struct lane {
 	struct engine *engine;
@@ -87,6 +92,13 @@ struct lane {
 	struct slot *alarm_slot;
 
 	struct {
+		struct engine_guest *first, *last; /* who wait */
+		unsigned lent;
+		unsigned passed; /* requests of the table since one of them */
+		bool pressing;   /* one who goes as an input is with the bus */
+	} guests;
+
+	struct {
 #define X(name) uint64_t name;
 		LANE_COUNTERS(X)
 #undef X
@@ -115,11 +127,21 @@ void lane_up(struct lane *lane, const char *text, int64_t now_ns);
 
 /* Submit as much as the order of the lane and the depth of its bus allow. */
 void lane_fill(struct lane *lane, int64_t now_ns);
+/* Give the slot's request to the bus; false: it takes none now. */
+bool lane_lend(struct lane *lane, struct slot *slot, int64_t now_ns);
 /* When it wants to be filled again though nothing ended; INT64_MAX: not before. */
 int64_t lane_wake(const struct lane *lane);
 void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now_ns);
 void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns);
 /* Give requests up whose time is over; returns when the next one's is. */
 int64_t lane_timeouts(struct lane *lane, int64_t now_ns);
+
+/*
+ * guest.c. Is it a guest's turn, where the table has something to ask too (others), or not? Ask for
+ * the first. A request of the table went before them.
+ */
+bool guest_turn(const struct lane *lane, bool others);
+bool guest_ask(struct lane *lane, struct slot *slot, int64_t now_ns);
+void guest_passed(struct lane *lane);
 
 #endif

@@ -40,6 +40,7 @@ struct engine {
 	struct alarm_item *alarm_items; /* all of the table, in its order */
 	uint32_t alarm_count;
 	struct lane *lanes;
+	const struct engine_guests *guests; /* NULL: none */
 	unsigned lane_count;
 	struct group *groups;
 	struct route_group *states; /* of the groups */
@@ -186,6 +187,12 @@ void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, cons
                       int64_t now_ns);
 /* Writes in doubt ended, or their bus let go: who waits for that? */
 void engine_doubts(struct engine *e);
+
+/* guest.c: take those who wait in; an answer for one; what one who was given up had lent is back */
+void engine_guests_take(struct engine *e, int64_t now_ns);
+void engine_guest_done(struct engine *e, struct lane *lane, struct slot *slot,
+                       const struct bus_answer *answer);
+void engine_guest_gone(struct engine *e, struct slot *slot);
 
 /* All signals of the lane: the target was lost, came back. */
 void engine_lane_down(struct engine *e, struct lane *lane, int err, int64_t now_ns);

@@ -93,18 +93,20 @@ static inline int get_record(struct ows *h, unsigned record, int64_t stale_after
 	return finish(h, stale_after_ns, now_ns, value);
 }
 
+static int get(struct ows *h, struct ows_id *e, int64_t now_ns, struct ows_value *value)
+{
+	if (e->attribute != ATTR_VALUE)
+		return attribute_get(h, e, now_ns, value);
+	return get_record(h, (unsigned)e->record, e->stale_after_ns, now_ns, value);
+}
+
 int ows_get(struct ows *h, int id, int64_t now_ns, struct ows_value *value)
 {
-	struct ows_id *e;
-
 	if ((unsigned)id >= h->id_count || h->ids[id].record < 0) {
 		*value = (struct ows_value){.quality = OWS_Q_NO_PROPERTY};
 		return -ENOENT;
 	}
-	e = &h->ids[id];
-	if (e->attribute != ATTR_VALUE)
-		return attribute_get(h, e, now_ns, value);
-	return get_record(h, (unsigned)e->record, e->stale_after_ns, now_ns, value);
+	return get(h, &h->ids[id], now_ns, value);
 }
 
 int ows_get_signal(struct ows *h, int signal, int64_t now_ns, struct ows_value *value)
@@ -162,22 +164,27 @@ static int get_string(struct ows *h, const struct ows_id *e, int64_t now_ns,
 	return !err && sample.len >= size ? -ENOSPC : err;
 }
 
-int ows_get_text(struct ows *h, int id, int64_t now_ns, struct ows_value *value, char *text,
-                 size_t size)
+int handle_get_text(struct ows *h, struct ows_id *e, int64_t now_ns, struct ows_value *value,
+                    char *text, size_t size)
 {
-	struct ows_id *e;
 	int err, cut;
 
-	if (size == 0)
-		return -ENOSPC;
-	text[0] = '\0';
-	e = (unsigned)id < h->id_count ? &h->ids[id] : NULL;
-	if (e != NULL && e->record >= 0 && e->attribute == ATTR_VALUE &&
-	    h->map.records[e->record].type == OWS_STRING)
+	if (e->attribute == ATTR_VALUE && h->map.records[e->record].type == OWS_STRING)
 		return get_string(h, e, now_ns, value, text, size);
-	err = ows_get(h, id, now_ns, value);
+	err = get(h, e, now_ns, value);
 	if (err && err != -ESTALE)
 		return err;
 	cut = print_number(value, text, size);
 	return err ? err : cut;
+}
+
+int ows_get_text(struct ows *h, int id, int64_t now_ns, struct ows_value *value, char *text,
+                 size_t size)
+{
+	if (size == 0)
+		return -ENOSPC;
+	text[0] = '\0';
+	if ((unsigned)id >= h->id_count || h->ids[id].record < 0)
+		return ows_get(h, id, now_ns, value);
+	return handle_get_text(h, &h->ids[id], now_ns, value, text, size);
 }

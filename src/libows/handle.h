@@ -83,6 +83,13 @@ bool handle_alive(struct ows *h, int64_t now_ns);
 int handle_state(const struct ows *h);
 void value_fill(struct ows_value *value, const struct ows_sample *sample, uint8_t type);
 
+/* As ows_get_text(), of an id that need not be one of the handle; size is not 0. */
+int handle_get_text(struct ows *h, struct ows_id *id, int64_t now_ns, struct ows_value *value,
+                    char *text, size_t size);
+
+/* set.c: as ows_set_text(), of an id that need not be one of the handle. */
+int handle_set_text(struct ows *h, const struct ows_id *id, const char *text, uint32_t *stamp);
+
 /* attribute.c: as ows_get(), of an id that is not the value itself. */
 int attribute_get(struct ows *h, struct ows_id *id, int64_t now_ns, struct ows_value *value);
 

@@ -62,14 +62,19 @@ static bool takes_sets(const struct ows *h, const struct ows_id *id)
 	return word_get(&r->slot[seq >> 1 & 1].attrs.flags) & OWS_ATTR_WRITE_ENABLE;
 }
 
+static int check(const struct ows *h, const struct ows_id *e)
+{
+	if (h->map.command == NULL || !attribute_table[e->attribute].writable)
+		return -EACCES;
+	return e->attribute != ATTR_VALUE || takes_sets(h, e) ? 0 : -EACCES;
+}
+
 static int check_id(const struct ows *h, int id, const struct ows_id **e)
 {
 	if ((unsigned)id >= h->id_count || h->ids[id].record < 0)
 		return -ENOENT;
 	*e = &h->ids[id];
-	if (h->map.command == NULL || !attribute_table[(*e)->attribute].writable)
-		return -EACCES;
-	return (*e)->attribute != ATTR_VALUE || takes_sets(h, *e) ? 0 : -EACCES;
+	return check(h, *e);
 }
 
 static enum ows_type type_of(const struct ows *h, const struct ows_id *id)
@@ -209,11 +214,10 @@ static int set_string(const struct ows *h, const struct ows_id *id, const char *
 	return ring(h);
 }
 
-int ows_set_text(struct ows *h, int id, const char *text, uint32_t *stamp)
+int handle_set_text(struct ows *h, const struct ows_id *e, const char *text, uint32_t *stamp)
 {
-	const struct ows_id *e;
 	int64_t value;
-	int err = check_id(h, id, &e);
+	int err = check(h, e);
 
 	if (err)
 		return err;
@@ -224,6 +228,14 @@ int ows_set_text(struct ows *h, int id, const char *text, uint32_t *stamp)
 		return err;
 	put(h, e, value, stamp);
 	return ring(h);
+}
+
+int ows_set_text(struct ows *h, int id, const char *text, uint32_t *stamp)
+{
+	const struct ows_id *e;
+	int err = check_id(h, id, &e);
+
+	return err ? err : handle_set_text(h, e, text, stamp);
 }
 
 int ows_acknowledge(struct ows *h, int id)

@@ -194,7 +194,7 @@ static void test_device_and_property_are_missed_by_different_errors(void)
 	TEST_ASSERT_EQUAL_INT(-ENOENT, ask(BUS_READ, "/settings/colour", NULL, 64)->err);
 	TEST_ASSERT_EQUAL_INT(-ENODEV, ask(BUS_WRITE, "/28.AABBCCDDEEFF/PIO", "1", 1)->err);
 	TEST_ASSERT_EQUAL_INT(-EACCES, ask(BUS_WRITE, "/28.67C6697351FF/readonly", "1", 1)->err);
-	TEST_ASSERT_EQUAL_INT(-ENOENT, ask(BUS_READ, "/28.67C6697351FF/directory", NULL, 64)->err);
+	TEST_ASSERT_EQUAL_INT(-EISDIR, ask(BUS_READ, "/28.67C6697351FF/directory", NULL, 64)->err);
 	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_DOWN));
 }
 

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT */
+/* The keys Listen... of the driver block. */
+#include "build.h"
+
+#include <errno.h>
+#include <string.h>
+
+#define SOCKET_PATH_MAX 107
+
+/* The next part of a comma list, without blanks; false: there is none. */
+static bool next_part(const char **text, const char **part, size_t *len)
+{
+	size_t n;
+
+	if (!*text)
+		return false;
+	*text += strspn(*text, " \t");
+	n = strcspn(*text, ",");
+	*part = *text;
+	*text = (*text)[n] ? *text + n + 1 : NULL;
+	while (n && ((*part)[n - 1] == ' ' || (*part)[n - 1] == '\t'))
+		n--;
+	*len = n;
+	return true;
+}
+
+static bool same_address(const struct listen_address *a, const struct listen_address *b)
+{
+	return a->is_v6 == b->is_v6 && a->port && a->port == b->port &&
+	       !memcmp(a->bytes, b->bytes, sizeof(a->bytes));
+}
+
+static void add_address(struct build *build, const struct listen_address *address,
+                        const char *part, size_t len, struct place place)
+{
+	struct config_serve *serve = &build->box->config.serve;
+
+	for (unsigned i = 0; i < serve->address_count; i++)
+		if (same_address(&serve->addresses[i], address)) {
+			report_error(build->report, place, "Listen \"%.*s\": stands twice", (int)len,
+			             part);
+			return;
+		}
+	if (serve->address_count == LISTEN_MAX) {
+		report_error(build->report, place, "Listen: more than %d addresses", LISTEN_MAX);
+		return;
+	}
+	serve->addresses[serve->address_count++] = *address;
+}
+
+static void add_listens(struct build *build, const char *text, struct place place)
+{
+	struct listen_address addresses[2];
+	const char *part, *why = "";
+	size_t len;
+
+	while (next_part(&text, &part, &len)) {
+		int n = listen_parse(part, len, addresses, &why);
+
+		if (n < 0)
+			report_error(build->report, place, "Listen \"%.*s\": %s", (int)len, part, why);
+		for (int i = 0; i < n; i++)
+			add_address(build, &addresses[i], part, len, place);
+	}
+}
+
+static void add_peers(struct build *build, const struct option_value *allow)
+{
+	struct config_serve *serve = &build->box->config.serve;
+	const char *text = allow->text, *part, *why = "";
+	size_t len;
+
+	while (next_part(&text, &part, &len)) {
+		if (serve->peer_count == LISTEN_PEERS_MAX) {
+			report_error(build->report, allow->node->value_at,
+			             "ListenAllow: more than %d entries", LISTEN_PEERS_MAX);
+			return;
+		}
+		if (listen_peers_parse(part, len, &serve->peers[serve->peer_count], &why))
+			report_error(build->report, allow->node->value_at, "ListenAllow \"%.*s\": %s",
+			             (int)len, part, why);
+		else
+			serve->peer_count++;
+	}
+}
+
+void serve_build(struct build *build, const struct option_value *values)
+{
+	struct config_serve *serve = &build->box->config.serve;
+	const struct option_value *socket = &values[OPT_LISTEN_SOCKET];
+
+	if (values[OPT_LISTEN].given && *values[OPT_LISTEN].text)
+		add_listens(build, values[OPT_LISTEN].text, values[OPT_LISTEN].node->value_at);
+	if (values[OPT_LISTEN_ALLOW].given)
+		add_peers(build, &values[OPT_LISTEN_ALLOW]);
+	serve->read_only = values[OPT_LISTEN_READ_ONLY].number != 0;
+	if (!socket->given || !*socket->text)
+		return;
+	if (socket->text[0] != '/' || strlen(socket->text) > SOCKET_PATH_MAX)
+		report_error(build->report, socket->node->value_at,
+		             "ListenSocket \"%s\": expected a path from the root, at most %d bytes",
+		             socket->text, SOCKET_PATH_MAX);
+	serve->socket = build_keep(build, socket->text, strlen(socket->text));
+}
+
+int serve_listens(struct build *build, const char *const *texts, unsigned count)
+{
+	unsigned before = build->report->errors;
+
+	build->box->config.serve.address_count = 0;
+	for (unsigned i = 0; i < count; i++)
+		add_listens(build, texts[i], (struct place){0});
+	return build->report->errors == before ? 0 : -EINVAL;
+}

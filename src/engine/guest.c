@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: MIT */
+#include "private.h"
+
+#include "hal/path.h"
+
+#include <errno.h>
+#include <string.h>
+
+/* Requests of the table that go before a guest who waits, where there are always some. */
+#define GUEST_PASSED 4
+#define GUESTS_LENT  64
+
+static void answer(struct engine *e, struct engine_guest *g)
+{
+	e->guests->answered(e->guests->ctx, g);
+}
+
+static void enqueue(struct lane *lane, struct engine_guest *g)
+{
+	g->next = NULL;
+	g->at = lane->index;
+	if (lane->guests.last)
+		lane->guests.last->next = g;
+	else
+		lane->guests.first = g;
+	lane->guests.last = g;
+}
+
+static struct engine_guest *dequeue(struct lane *lane)
+{
+	struct engine_guest *g = lane->guests.first;
+
+	lane->guests.first = g->next;
+	if (!g->next)
+		lane->guests.last = NULL;
+	return g;
+}
+
+/* The more telling of two errors: a property that is missing, a device, a target. */
+static int more_telling(int a, int b)
+{
+	static const int order[] = { -ENOTCONN, -ENODEV, -ENOENT };
+	int at_a = -1, at_b = -1;
+
+	for (int i = 0; i < 3; i++) {
+		at_a = order[i] == a ? i : at_a;
+		at_b = order[i] == b ? i : at_b;
+	}
+	return at_b > at_a || a == 0 ? b : a;
+}
+
+/* May another lane have what this one has not? Nothing was done there. */
+static bool goes_on(const struct engine_guest *g, int err)
+{
+	return g->lane == GUEST_ANY_LANE && (err == -ENODEV || err == -ENOENT || err == -ENOTCONN);
+}
+
+/* The next lane that is asked; false: there is none. */
+static bool next_lane(struct engine *e, struct engine_guest *g)
+{
+	unsigned at = g->at;
+
+	/* behind the first, which the table may have chosen, in their order */
+	for (unsigned i = at == g->served ? 0 : at + 1; i < e->lane_count; i++) {
+		if (i == g->served)
+			continue;
+		enqueue(&e->lanes[i], g);
+		return true;
+	}
+	return false;
+}
+
+static void failed(struct engine *e, struct engine_guest *g, int err)
+{
+	g->best_err = more_telling(g->best_err, err);
+	if (goes_on(g, err) && next_lane(e, g))
+		return;
+	g->answer = (struct bus_answer){ .err = g->best_err };
+	answer(e, g);
+}
+
+/* The lane that serves the device of the path, if the table knows it. */
+static unsigned lane_of(struct engine *e, const char *path)
+{
+	struct path split;
+
+	if (path_split(path, strlen(path), &split) || !split.has_rom)
+		return 0;
+	for (uint32_t i = 0; i < e->table.device_count; i++) {
+		const struct device *d = &e->table.devices[i];
+
+		if (d->has_rom && memcmp(d->rom, split.rom, ROM_LEN) == 0)
+			return e->table.signals[e->table.device_rows[d->first]].lane;
+	}
+	return 0;
+}
+
+static void flush(struct engine *e, struct lane *lane, int64_t now_ns)
+{
+	struct engine_guest *g = lane->guests.first;
+
+	lane->guests.first = lane->guests.last = NULL;
+	while (g) {
+		struct engine_guest *next = g->next;
+
+		if (!lane->up || lane->stuck)
+			failed(e, g, -ENOTCONN);
+		else if (now_ns >= g->until_ns)
+			failed(e, g, -ETIME);
+		else
+			enqueue(lane, g);
+		g = next;
+	}
+}
+
+void engine_guests_take(struct engine *e, int64_t now_ns)
+{
+	struct engine_guest *g;
+
+	if (!e->guests)
+		return;
+	while ((g = e->guests->take(e->guests->ctx)) != NULL) {
+		g->until_ns = now_ns + e->config->timeout_ns;
+		g->lent = false;
+		g->best_err = 0;
+		g->served = g->lane == GUEST_ANY_LANE ? lane_of(e, g->path) : (unsigned)g->lane;
+		if (g->served < e->lane_count) {
+			enqueue(&e->lanes[g->served], g);
+		} else {
+			g->answer = (struct bus_answer){ .err = -ENODEV };
+			answer(e, g);
+		}
+	}
+	/* in order: what a lane has not is asked of a later one, or of an earlier one next time */
+	for (unsigned i = 0; i < e->lane_count; i++)
+		if (e->lanes[i].guests.first)
+			flush(e, &e->lanes[i], now_ns);
+}
+
+static unsigned most_lent(const struct lane *lane)
+{
+	unsigned most = lane->depth / 4;
+
+	return most == 0 ? 1 : most > GUESTS_LENT ? GUESTS_LENT : most;
+}
+
+bool guest_turn(const struct lane *lane, bool others)
+{
+	return lane->guests.first && lane->guests.lent < most_lent(lane) &&
+	       (!others || lane->guests.passed >= GUEST_PASSED);
+}
+
+void guest_passed(struct lane *lane)
+{
+	if (lane->guests.first)
+		lane->guests.passed++;
+}
+
+/*
+ * A bus may always have something to do that is more urgent than a guest: so the oldest of those
+ * who are with it is no less urgent than an input.
+ */
+bool guest_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
+{
+	struct engine_guest *g = lane->guests.first;
+
+	slot->purpose = FOR_GUEST;
+	slot->row = TABLE_NO_ROW;
+	slot->guest = g;
+	slot->pressing = !lane->guests.pressing;
+	slot->req = (struct bus_req){ .op = g->op, .fresh = g->fresh, .path = g->path,
+		                      .prio = slot->pressing ? BUS_INPUT : BUS_GUEST,
+		                      .len = g->len, .data = g->data };
+	if (!lane_lend(lane, slot, now_ns))
+		return false;
+	dequeue(lane);
+	lane->guests.pressing |= slot->pressing;
+	lane->guests.passed = 0;
+	lane->guests.lent++;
+	lane->counters.guests++;
+	return true;
+}
+
+static const char *stem_end(struct path_slice property)
+{
+	const char *end = property.text + property.len, *p = end;
+
+	while (p > property.text && p[-1] != '.' && p[-1] != '/')
+		p--;
+	return p > property.text && p[-1] == '.' ? p - 1 : end;
+}
+
+/* Do both write the same latch: PIO.0, PIO.BYTE? */
+static bool overlap(const struct path *a, const char *path)
+{
+	struct path b;
+	size_t len;
+
+	if (path_split(path, strlen(path), &b) || !path_same_device(a, &b))
+		return false;
+	len = (size_t)(stem_end(a->property) - a->property.text);
+	return len == (size_t)(stem_end(b.property) - b.property.text) &&
+	       memcmp(a->property.text, b.property.text, len) == 0;
+}
+
+/* The control program owns its outputs: what a guest wrote over one is written over again. */
+static void restore_outputs(struct engine *e, const char *path)
+{
+	struct path split;
+
+	if (path_split(path, strlen(path), &split) || !split.last.len)
+		return;
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		struct signal *s = &e->table.signals[row];
+
+		if (!s->commanded || !signal_writes(s) || !overlap(&split, s->item->path))
+			continue;
+		s->forced = true;
+		engine_write_check(e, s);
+		engine_publish(e, s);
+	}
+}
+
+void engine_guest_done(struct engine *e, struct lane *lane, struct slot *slot,
+                       const struct bus_answer *a)
+{
+	struct engine_guest *g = slot->guest;
+	bool lent = slot->lent;
+
+	lane->guests.lent--;
+	if (slot->pressing)
+		lane->guests.pressing = false;
+	if (g->op == BUS_WRITE && (!a->err || failure_of(a->err) == FAILURE_TARGET ||
+	                           a->err == -EINPROGRESS))
+		restore_outputs(e, g->path);
+	if (a->err)
+		lane->counters.guest_errors++;
+	if (lent) {
+		g->answer = *a;
+		g->lent = true;
+		answer(e, g);
+		return;
+	}
+	slot->guest = NULL;
+	if (a->err && goes_on(g, a->err)) {
+		failed(e, g, a->err);
+		return;
+	}
+	g->answer = *a;
+	g->served = lane->index;
+	answer(e, g);
+}
+
+void engine_guest_gone(struct engine *e, struct slot *slot)
+{
+	struct engine_guest *g = slot->guest;
+
+	slot->guest = NULL;
+	e->guests->released(e->guests->ctx, g);
+}

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Guests: requests that do not come from the table but from clients of the served owserver
+ * protocol. They go out behind alarms, outputs and inputs, a bounded number at a time for each
+ * lane, and are never starved by them.
+ */
+#ifndef ENGINE_GUEST_H
+#define ENGINE_GUEST_H
+
+#include "hal/bus.h"
+
+/* No certain lane: the one that serves the path's device; unknown devices: one after another. */
+#define GUEST_ANY_LANE (-1)
+
+/*
+ * A request of a guest. The engine has it from take() until answered(), and where that says lent,
+ * until released(); the guest does not touch it or what it points to meanwhile.
+ */
+struct engine_guest {
+	uint8_t op; /* enum bus_op */
+	bool fresh;
+	int lane;   /* or GUEST_ANY_LANE */
+	const char *path;
+	uint8_t *data; /* as in struct bus_req */
+	uint32_t len;
+
+	struct bus_answer answer; /* its id says nothing */
+	unsigned served;          /* index of the lane that answered */
+	bool lent;                /* given up, the bus still has path and data */
+
+	/* the engine's */
+	struct engine_guest *next;
+	int64_t until_ns;
+	unsigned at;
+	int32_t best_err; /* of the lanes asked so far */
+};
+
+/* The engine's way to its guests. The functions never block; they are called on its thread. */
+struct engine_guests {
+	struct engine_guest *(*take)(void *ctx); /* NULL: nobody waits */
+	void (*answered)(void *ctx, struct engine_guest *guest);
+	void (*released)(void *ctx, struct engine_guest *guest);
+	void *ctx;
+};
+
+#endif

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * /bus.N over several targets: each bus of each target has one number for the life of owsd, in the
+ * order of the targets as far as they are up when clients first ask.
+ */
+#ifndef SERVE_BUSES_H
+#define SERVE_BUSES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define BUSES_MAX 256
+
+struct buses {
+	unsigned count;
+	struct {
+		uint8_t target;
+		uint16_t number; /* as that target counts */
+	} bus[BUSES_MAX];
+};
+
+/* The number of a target's bus, given now if need be; -1: there are too many. */
+int buses_number(struct buses *buses, unsigned target, unsigned number);
+/* N of a name "bus.N", -1: it is none. */
+int buses_parse(const char *name, unsigned len);
+
+#endif

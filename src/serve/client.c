@@ -1,0 +1,375 @@
+/* SPDX-License-Identifier: MIT */
+/* Connections: bytes in, bytes out, time limits. What a request means is not known here. */
+#include "server.h"
+
+#include "hal/owserver/frame.h"
+
+#include <errno.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#define FIRST_READ AREA_ANSWER
+
+static const uint8_t alive_frame[FRAME_HEADER] = { [4] = 0xff, 0xff, 0xff, 0xff };
+
+static unsigned index_of(const struct serve *s, const struct client *c)
+{
+	return (unsigned)(c - s->clients);
+}
+
+void client_ready(struct serve *s, struct client *c)
+{
+	if (c->queued)
+		return;
+	c->queued = true;
+	s->round[(s->round_at + s->round_count++) % SERVER_CLIENTS] = (uint16_t)index_of(s, c);
+}
+
+static int64_t limit_of(const struct client *c)
+{
+	switch ((enum client_state)c->state) {
+	case CLIENT_FREE:
+	case CLIENT_LEFT:
+		return INT64_MAX;
+	case CLIENT_READING:
+		return c->since_ns + (c->have || !c->served ? REQUEST_NS : IDLE_NS);
+	case CLIENT_WORKING:
+	case CLIENT_QUEUED:
+		return c->tick_ns + KEEPALIVE_NS;
+	case CLIENT_APPLYING:
+		return c->tick_ns + KEEPALIVE_NS;
+	case CLIENT_SENDING:
+		return c->tick_ns + SEND_NS < c->since_ns + ANSWER_NS ? c->tick_ns + SEND_NS
+		                                                      : c->since_ns + ANSWER_NS;
+	}
+	return INT64_MAX;
+}
+
+void client_enter(struct serve *s, struct client *c, enum client_state state)
+{
+	c->state = (uint8_t)state;
+	c->since_ns = c->tick_ns = s->now_ns;
+	if (limit_of(c) < s->look_ns)
+		s->look_ns = limit_of(c);
+}
+
+struct client *client_open(struct serve *s, int fd, bool network)
+{
+	struct epoll_event event = { .events = EPOLLIN | EPOLLOUT | EPOLLRDHUP | EPOLLET };
+	unsigned index = s->free[s->free_count - 1];
+	struct client *c = &s->clients[index];
+	bool queued = c->queued;
+
+	event.data.u32 = index;
+	if (epoll_ctl(s->epoll_fd, EPOLL_CTL_ADD, fd, &event) < 0)
+		return NULL;
+	s->free_count--;
+	if (index >= s->used)
+		s->used = index + 1;
+	memset(c, 0, offsetof(struct client, request));
+	c->queued = queued;
+	c->fd = fd;
+	c->network = network;
+	c->need = FRAME_HEADER;
+	c->area = s->areas + (size_t)index * AREA_SIZE;
+	c->out_len = c->out_at = 0;
+	c->directory = NULL;
+	client_enter(s, c, CLIENT_READING);
+	count(s, COUNT_clients, 1);
+	return c;
+}
+
+static void put_free(struct serve *s, struct client *c)
+{
+	c->state = CLIENT_FREE;
+	s->free[s->free_count++] = (uint16_t)index_of(s, c);
+}
+
+void client_close(struct serve *s, struct client *c)
+{
+	bool engine_has_it = c->state == CLIENT_WORKING || c->lent;
+
+	if (c->fd < 0)
+		return;
+	close(c->fd);
+	c->fd = -1;
+	s->accepting = true;
+	count(s, COUNT_clients, (uint64_t)-1);
+	if (c->state == CLIENT_QUEUED)
+		s->queued--;
+	if (!engine_has_it && c->directory) {
+		work_release(s, c->directory);
+		c->directory = NULL;
+	}
+	if (engine_has_it)
+		c->state = CLIENT_LEFT;
+	else
+		put_free(s, c);
+}
+
+void client_back(struct serve *s, struct client *c)
+{
+	c->lent = false;
+	if (c->state != CLIENT_WORKING && c->directory) {
+		work_release(s, c->directory);
+		c->directory = NULL;
+	}
+	if (c->state == CLIENT_LEFT)
+		put_free(s, c);
+	else
+		client_ready(s, c);
+}
+
+bool client_evict(struct serve *s)
+{
+	struct client *oldest = NULL;
+
+	for (unsigned i = 0; i < s->used; i++) {
+		struct client *c = &s->clients[i];
+
+		if (c->state == CLIENT_READING && !c->have && !c->lent &&
+		    (!oldest || c->since_ns < oldest->since_ns))
+			oldest = c;
+	}
+	if (!oldest || s->now_ns - oldest->since_ns < EVICT_NS)
+		return false;
+	client_close(s, oldest);
+	count(s, COUNT_evicted, 1);
+	return true;
+}
+
+void client_event(struct serve *s, struct client *c, uint32_t events)
+{
+	if (c->fd < 0)
+		return;
+	if (events & (EPOLLERR | EPOLLHUP)) {
+		client_close(s, c);
+		return;
+	}
+	if (events & (EPOLLIN | EPOLLRDHUP))
+		c->readable = true;
+	if (c->state == CLIENT_SENDING ? events & EPOLLOUT : c->state == CLIENT_READING && c->readable)
+		client_ready(s, c);
+}
+
+/* --- Out -------------------------------------------------------------------------------------- */
+
+uint8_t *client_room(struct client *c)
+{
+	size_t at = c->have > AREA_ANSWER ? (c->have + 63) & ~(size_t)63 : AREA_ANSWER;
+
+	return c->area + at + FRAME_HEADER;
+}
+
+/* Bytes sent, 0: none now, -1: the client has left. */
+static ssize_t push(struct serve *s, struct client *c, const uint8_t *bytes, size_t len)
+{
+	ssize_t n;
+
+	do
+		n = send(c->fd, bytes, len, MSG_NOSIGNAL | MSG_DONTWAIT);
+	while (n < 0 && errno == EINTR);
+	if (n < 0)
+		return errno == EAGAIN || errno == EWOULDBLOCK ? 0 : -1;
+	count(s, COUNT_bytes_out, (uint64_t)n);
+	return n;
+}
+
+/* Of a keep-alive that was begun, the rest. False: not yet, or the client has left. */
+static bool push_alive(struct serve *s, struct client *c)
+{
+	ssize_t n;
+
+	if (!c->alive_left)
+		return true;
+	n = push(s, c, alive_frame + FRAME_HEADER - c->alive_left, c->alive_left);
+	if (n < 0)
+		client_close(s, c);
+	if (n <= 0)
+		return false;
+	c->alive_left = (uint8_t)(c->alive_left - n);
+	return c->alive_left == 0;
+}
+
+static void send_alive(struct serve *s, struct client *c)
+{
+	c->tick_ns = s->now_ns;
+	if (!c->alive_left) {
+		c->alive_left = FRAME_HEADER;
+		count(s, COUNT_keepalives, 1);
+	}
+	push_alive(s, c);
+}
+
+/* Its pages beyond the first are given back. */
+static void trim(struct client *c)
+{
+	if (c->have > AREA_ANSWER || c->out_len > 4096 - AREA_ANSWER)
+		madvise(c->area + 4096, AREA_SIZE - 4096, MADV_DONTNEED);
+}
+
+/* The answer is out: the bytes behind its request are the next one. */
+static void next_request(struct serve *s, struct client *c)
+{
+	work_end(s, c);
+	c->served++;
+	if (!(c->request.flags & FRAME_PERSIST)) {
+		trim(c);
+		client_close(s, c);
+		return;
+	}
+	c->have -= c->length;
+	if (c->have)
+		memmove(c->area, c->area + c->length, c->have);
+	trim(c);
+	c->out_len = 0;
+	c->need = FRAME_HEADER;
+	client_enter(s, c, CLIENT_READING);
+	if (c->have || c->readable)
+		client_ready(s, c);
+}
+
+static void go_on_sending(struct serve *s, struct client *c)
+{
+	ssize_t n;
+
+	if (!push_alive(s, c))
+		return;
+	n = push(s, c, c->out + c->out_at, c->out_len - c->out_at);
+	if (n < 0) {
+		client_close(s, c);
+		return;
+	}
+	c->out_at += (uint32_t)n;
+	if (n)
+		c->tick_ns = s->now_ns;
+	if (c->out_at == c->out_len)
+		next_request(s, c);
+	/* the rest when the kernel says so */
+}
+
+void client_send(struct serve *s, struct client *c, const uint8_t *bytes, uint32_t len)
+{
+	c->out = bytes;
+	c->out_len = len;
+	c->out_at = 0;
+	client_enter(s, c, CLIENT_SENDING);
+	go_on_sending(s, c);
+}
+
+/* --- In --------------------------------------------------------------------------------------- */
+
+/* As much as is there, up to the end of the request at hand. False: the client has left. */
+static bool receive(struct serve *s, struct client *c)
+{
+	size_t room = (c->need > FIRST_READ ? c->need : FIRST_READ) - c->have;
+	ssize_t n;
+
+	do
+		n = recv(c->fd, c->area + c->have, room, MSG_DONTWAIT);
+	while (n < 0 && errno == EINTR);
+	if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
+		c->readable = false;
+		return true;
+	}
+	if (n <= 0)
+		return false;
+	if ((size_t)n < room)
+		c->readable = false;
+	if (!c->have)
+		client_enter(s, c, CLIENT_READING);
+	c->have += (size_t)n;
+	count(s, COUNT_bytes_in, (uint64_t)n);
+	return true;
+}
+
+static void read_request(struct serve *s, struct client *c)
+{
+	int state;
+
+	if (c->lent) /* a bus still has what is in the area */
+		return;
+	state = request_parse(c->area, c->have, &c->request, &c->length);
+	if (state == 0 && c->readable) {
+		c->need = c->length;
+		if (!receive(s, c)) {
+			client_close(s, c);
+			return;
+		}
+		state = request_parse(c->area, c->have, &c->request, &c->length);
+	}
+	if (state < 0) {
+		count(s, COUNT_garbage, 1);
+		client_close(s, c);
+	} else if (state == 0) {
+		c->need = c->length;
+		if (c->readable)
+			client_ready(s, c);
+	} else {
+		count(s, COUNT_requests, 1);
+		work_begin(s, c);
+	}
+}
+
+void client_turn(struct serve *s, struct client *c)
+{
+	switch ((enum client_state)c->state) {
+	case CLIENT_FREE:
+	case CLIENT_LEFT:
+	case CLIENT_WORKING:
+	case CLIENT_QUEUED:
+	case CLIENT_APPLYING:
+		return;
+	case CLIENT_READING:
+		read_request(s, c);
+		return;
+	case CLIENT_SENDING:
+		go_on_sending(s, c);
+		return;
+	}
+}
+
+/* --- Time limits ------------------------------------------------------------------------------ */
+
+static void look(struct serve *s, struct client *c)
+{
+	if (s->now_ns < limit_of(c))
+		return;
+	switch ((enum client_state)c->state) {
+	case CLIENT_FREE:
+	case CLIENT_LEFT:
+		return;
+	case CLIENT_WORKING:
+	case CLIENT_QUEUED:
+	case CLIENT_APPLYING:
+		send_alive(s, c);
+		return;
+	case CLIENT_READING:
+	case CLIENT_SENDING:
+		count(s, COUNT_timeouts, 1);
+		client_close(s, c);
+		return;
+	}
+}
+
+void clients_look(struct serve *s)
+{
+	int64_t next = INT64_MAX;
+
+	for (unsigned i = 0; i < s->used; i++) {
+		struct client *c = &s->clients[i];
+
+		if (c->state == CLIENT_APPLYING) {
+			work_applying(s, c);
+			if (c->state == CLIENT_APPLYING && s->now_ns + APPLY_LOOK_NS < next)
+				next = s->now_ns + APPLY_LOOK_NS;
+		}
+		look(s, c);
+		if (limit_of(c) < next)
+			next = limit_of(c);
+	}
+	s->look_ns = next;
+}

@@ -1,0 +1,266 @@
+/* SPDX-License-Identifier: MIT */
+#include "directory.h"
+
+#include "hal/owserver/frame.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+/* What stands in the root beside devices and buses, in the order of owserver. */
+static const char *const in_root[] = { "uncached", "settings", "system", "statistics", "structure",
+	                               "simultaneous", "alarm", "signals", NULL };
+#define IN_UNCACHED 1 /* from there in /uncached */
+
+/* What the protocol tells of the families in a list: as owserver answers it for each. */
+enum {
+	FLAG_RESUME = 0x0001,
+	FLAG_ALARM = 0x0002,
+	FLAG_OVERDRIVE = 0x0004,
+	FLAG_CHAIN = 0x2000,
+	FLAG_VOLT = 0x4000,
+	FLAG_TEMPERATURE = 0x8000,
+};
+static const struct {
+	uint16_t flags;
+	uint8_t families[20];
+} family_flags[] = {
+	{ FLAG_RESUME, { 0x18, 0x1c, 0x29, 0x2c, 0x2d, 0x37, 0x3a, 0x41, 0x43, 0xed, 0xfc } },
+	{ FLAG_ALARM, { 0x04, 0x05, 0x10, 0x12, 0x1c, 0x20, 0x21, 0x22, 0x28, 0x29, 0x2c, 0x35, 0x3b,
+	                0x41, 0x42, 0x7e, 0xdd, 0xfc, 0xff } },
+	{ FLAG_OVERDRIVE, { 0x0a, 0x0c, 0x0f, 0x18, 0x1a, 0x1c, 0x1d, 0x20, 0x21, 0x23, 0x29, 0x2c,
+	                    0x2d, 0x37, 0x3a, 0x41, 0x43, 0x8f } },
+	{ FLAG_CHAIN, { 0x42 } },
+	{ FLAG_VOLT, { 0x1e, 0x20, 0x26, 0xa6 } },
+	{ FLAG_TEMPERATURE, { 0x10, 0x1e, 0x21, 0x22, 0x26, 0x28, 0x3b, 0x41, 0x42, 0x7e, 0xa6,
+	                      0xfe } },
+};
+
+static uint32_t flags_of(uint8_t family)
+{
+	uint32_t flags = 0;
+
+	for (size_t i = 0; i < sizeof(family_flags) / sizeof(family_flags[0]); i++)
+		if (memchr(family_flags[i].families, family, sizeof(family_flags[i].families)))
+			flags |= family_flags[i].flags;
+	return flags;
+}
+
+void directory_begin(struct directory *directory)
+{
+	directory->len = directory->count = directory->flags = directory->mark = directory->out_len = 0;
+}
+
+uint8_t *directory_room(struct directory *directory, uint32_t *room)
+{
+	*room = DIRECTORY_RAW - directory->len;
+	return (uint8_t *)directory->raw + directory->len;
+}
+
+static uint32_t hash(const char *name, size_t len)
+{
+	uint32_t h = 2166136261u;
+
+	for (size_t i = 0; i < len; i++)
+		h = (h ^ (uint8_t)name[i]) * 16777619u;
+	return h ^ h >> 15;
+}
+
+/* True: it was there already. Names of the first target are put in when a second one comes. */
+static bool seen(struct directory *directory, uint32_t at, size_t len)
+{
+	const char *name = directory->raw + at;
+	uint32_t h = hash(name, len);
+
+	for (unsigned i = 0; i < 64; i++) {
+		uint32_t *slot = &directory->seen[(h + i) % DIRECTORY_SEEN];
+
+		if (!*slot) {
+			*slot = at + 1;
+			return false;
+		}
+		if (strncmp(directory->raw + *slot - 1, name, len) == 0 &&
+		    directory->raw[*slot - 1 + len] == '\n')
+			return true;
+	}
+	return false;
+}
+
+static void remember_first(struct directory *directory)
+{
+	uint32_t at = 0;
+
+	memset(directory->seen, 0, sizeof(directory->seen));
+	while (at < directory->len) {
+		const char *end = memchr(directory->raw + at, '\n', directory->len - at);
+		size_t len = (size_t)(end - (directory->raw + at));
+
+		seen(directory, at, len);
+		at += (uint32_t)len + 1;
+	}
+}
+
+static bool is_in_root(const char *name, size_t len)
+{
+	for (int i = 0; in_root[i]; i++)
+		if (strlen(in_root[i]) == len && memcmp(in_root[i], name, len) == 0)
+			return true;
+	return false;
+}
+
+/* Of the root only devices: all else is there whatever the targets say. */
+static bool keeps(const struct node *node, struct buses *buses, unsigned target, const char *name,
+                  size_t len)
+{
+	int number = buses_parse(name, (unsigned)len);
+
+	if (len == 0)
+		return false;
+	if (!node->root)
+		return true;
+	if (number >= 0)
+		buses_number(buses, target, (unsigned)number);
+	return number < 0 && !is_in_root(name, len);
+}
+
+void directory_take(struct directory *directory, const struct node *node, struct buses *buses,
+                  unsigned target, uint32_t len)
+{
+	char *from = directory->raw + directory->len, *end = from + len;
+	bool others = directory->len != 0;
+
+	if (others && directory->mark == 0)
+		remember_first(directory);
+	directory->mark = directory->len;
+	while (from < end) {
+		char *stop = memchr(from, '\n', (size_t)(end - from)), *name;
+		uint32_t at = directory->len;
+		size_t n;
+
+		if (!stop)
+			break;
+		for (name = stop; name > from && name[-1] != '/'; name--)
+			;
+		n = (size_t)(stop - name);
+		if (keeps(node, buses, target, name, n)) {
+			memmove(directory->raw + at, name, n + 1);
+			if (!others || !seen(directory, at, n)) {
+				directory->len += (uint32_t)n + 1;
+				directory->count++;
+			}
+		}
+		from = stop + 1;
+	}
+}
+
+bool directory_add(struct directory *directory, const char *name, size_t len)
+{
+	if (len + 1 > DIRECTORY_RAW - directory->len)
+		return false;
+	memcpy(directory->raw + directory->len, name, len);
+	directory->raw[directory->len + len] = '\n';
+	directory->len += (uint32_t)len + 1;
+	directory->count++;
+	return true;
+}
+
+/* --- The answer ------------------------------------------------------------------------------- */
+
+static bool put(struct directory *directory, const void *bytes, size_t len)
+{
+	if (len > DIRECTORY_OUT - directory->out_len)
+		return false;
+	memcpy(directory->out + directory->out_len, bytes, len);
+	directory->out_len += (uint32_t)len;
+	return true;
+}
+
+static bool put_header(struct directory *directory, const struct directory_form *form, uint32_t payload,
+                       uint32_t size, uint32_t flags)
+{
+	struct frame_header h = { .payload = (int32_t)payload, .flags = form->flags,
+		                  .size = (int32_t)size, .offset = (int32_t)flags };
+	uint8_t bytes[FRAME_HEADER];
+
+	frame_put_header(bytes, &h);
+	return put(directory, bytes, sizeof(bytes));
+}
+
+/* A device's name in the format asked for; others as they are. */
+static size_t as_asked(struct directory *directory, const struct directory_form *form, const char **name,
+                       size_t len, char text[ROM_TEXT_MAX])
+{
+	uint32_t format = FRAME_FORMAT(form->flags);
+	uint8_t rom[ROM_LEN];
+
+	if (!form->node->devices || rom_parse(*name, len, rom))
+		return len;
+	directory->flags |= flags_of(rom[0]);
+	*name = text;
+	return (size_t)rom_print(rom, format > ROM_FIC ? ROM_F_I : (enum rom_format)format, text);
+}
+
+static bool put_entry(struct directory *directory, const struct directory_form *form, const char *name,
+                      size_t len)
+{
+	bool slash = form->slash && node_is_directory(form->node, name, len);
+	bool root = form->prefix_len && form->prefix[0] != '/';
+	char text[ROM_TEXT_MAX];
+	uint32_t size;
+
+	len = as_asked(directory, form, &name, len, text);
+	size = (uint32_t)(root + form->prefix_len + 1 + len + slash);
+	if (form->frames && !put_header(directory, form, size + 1, size, 0))
+		return false;
+	return put(directory, "/", root) && put(directory, form->prefix, form->prefix_len) && put(directory, "/", 1) &&
+	       put(directory, name, len) && put(directory, "/", slash) &&
+	       put(directory, form->frames ? "" : ",", 1);
+}
+
+/* Room for the header of a DIRALL, which says what is behind it. */
+static bool begin(struct directory *directory, const struct directory_form *form)
+{
+	return form->frames || put_header(directory, form, 0, 0, 0);
+}
+
+static bool end(struct directory *directory, const struct directory_form *form)
+{
+	uint32_t len = directory->out_len, payload = len - FRAME_HEADER;
+	bool ok;
+
+	if (form->frames)
+		return put_header(directory, form, 0, 0, directory->flags);
+	if (payload)
+		directory->out[len - 1] = '\0'; /* in place of the last comma */
+	directory->out_len = 0;
+	ok = put_header(directory, form, payload, payload ? payload - 1 : 0, directory->flags);
+	directory->out_len = len;
+	return ok;
+}
+
+int directory_form(struct directory *directory, const struct directory_form *form)
+{
+	bool ok;
+	uint32_t at = 0;
+
+	directory->out_len = directory->flags = 0;
+	ok = begin(directory, form);
+	while (ok && at < directory->len) {
+		const char *name = directory->raw + at;
+		const char *stop = memchr(name, '\n', directory->len - at);
+
+		ok = put_entry(directory, form, name, (size_t)(stop - name));
+		at += (uint32_t)(stop - name) + 1;
+	}
+	return ok && end(directory, form) ? 0 : -EMSGSIZE;
+}
+
+void directory_add_rest(struct directory *directory, const struct node *node, const struct buses *buses)
+{
+	char name[16];
+
+	for (unsigned i = 0; i < buses->count; i++)
+		directory_add(directory, name, (size_t)snprintf(name, sizeof(name), "bus.%u", i));
+	for (int i = node->uncached ? IN_UNCACHED : 0; in_root[i]; i++)
+		directory_add(directory, in_root[i], strlen(in_root[i]));
+}

@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: MIT */
+#include "guests.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+static struct engine_guest *take(void *ctx)
+{
+	struct guests *g = ctx;
+	struct engine_guest *guest;
+
+	if (!ring_used(&g->there))
+		return NULL;
+	guest = g->asked[ring_take_at(&g->there)];
+	ring_did_take(&g->there);
+	return guest;
+}
+
+void guests_wake(struct guests *g)
+{
+	uint64_t one = 1;
+	ssize_t n;
+
+	do
+		n = write(g->wake_fd, &one, sizeof(one));
+	while (n < 0 && errno == EINTR);
+}
+
+/* There is room for two messages of each request that can be under way. */
+static void tell(struct guests *g, struct engine_guest *guest, bool released)
+{
+	g->told[ring_put_at(&g->back)] = (struct guests_message){ guest, released };
+	ring_did_put(&g->back);
+	if (__atomic_exchange_n(&g->sleeping, 0, __ATOMIC_SEQ_CST))
+		guests_wake(g);
+}
+
+static void answered(void *ctx, struct engine_guest *guest)
+{
+	tell(ctx, guest, false);
+}
+
+static void released(void *ctx, struct engine_guest *guest)
+{
+	tell(ctx, guest, true);
+}
+
+int guests_create(struct guests *g, unsigned most, void (*ring)(void *ctx), void *ring_ctx)
+{
+	*g = (struct guests){ .ring = ring, .ring_ctx = ring_ctx };
+	g->port = (struct engine_guests){ take, answered, released, g };
+	g->there.size = ring_size(most);
+	g->back.size = ring_size(2 * most);
+	g->asked = calloc(g->there.size, sizeof(*g->asked));
+	g->told = calloc(g->back.size, sizeof(*g->told));
+	g->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	if (g->wake_fd < 0)
+		return -errno;
+	return g->asked && g->told ? 0 : -ENOMEM;
+}
+
+void guests_destroy(struct guests *g)
+{
+	free(g->asked);
+	free(g->told);
+	if (g->wake_fd >= 0)
+		close(g->wake_fd);
+}
+
+void guests_ask(struct guests *g, struct engine_guest *guest)
+{
+	g->asked[ring_put_at(&g->there)] = guest;
+	ring_did_put(&g->there);
+	g->ring(g->ring_ctx);
+}
+
+bool guests_next(struct guests *g, struct guests_message *message)
+{
+	if (!ring_used(&g->back))
+		return false;
+	*message = g->told[ring_take_at(&g->back)];
+	ring_did_take(&g->back);
+	return true;
+}
+
+bool guests_sleep(struct guests *g)
+{
+	__atomic_store_n(&g->sleeping, 1, __ATOMIC_SEQ_CST);
+	if (!ring_used(&g->back))
+		return true;
+	__atomic_store_n(&g->sleeping, 0, __ATOMIC_SEQ_CST);
+	return false;
+}
+
+void guests_awake(struct guests *g)
+{
+	__atomic_store_n(&g->sleeping, 0, __ATOMIC_SEQ_CST);
+}

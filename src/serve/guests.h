@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The two bounded queues between the server's thread and the engine's: requests there, answers
+ * back. Neither side blocks; the engine rings an eventfd, and only while the server sleeps.
+ */
+#ifndef SERVE_GUESTS_H
+#define SERVE_GUESTS_H
+
+#include "../engine/guest.h"
+#include "hal/ring.h"
+
+struct guests_message {
+	struct engine_guest *guest;
+	bool released; /* what was lent is back; else it is answered */
+};
+
+struct guests {
+	struct engine_guests port; /* for the engine */
+	struct ring there, back;
+	struct engine_guest **asked;
+	struct guests_message *told;
+	uint32_t sleeping;
+	int wake_fd;
+	void (*ring)(void *ctx);
+	void *ring_ctx;
+};
+
+/* Room for most requests at a time. ring wakes the engine. 0 or a negative errno. */
+int guests_create(struct guests *guests, unsigned most, void (*ring)(void *ctx), void *ring_ctx);
+void guests_destroy(struct guests *guests);
+
+/* The server's side. */
+void guests_ask(struct guests *guests, struct engine_guest *guest);
+bool guests_next(struct guests *guests, struct guests_message *message);
+/*
+ * Before and after a wait for wake_fd, which is watched by its edges and so never read. False: there
+ * is something already.
+ */
+bool guests_sleep(struct guests *guests);
+void guests_awake(struct guests *guests);
+/* Wake the server, from any thread. */
+void guests_wake(struct guests *guests);
+
+#endif

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: MIT */
+#include "kept.h"
+
+#include "../shm/reader.h"
+#include "../signal/value.h"
+#include "hal/native/format.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define VOLATILE_NS INT64_C(2000000000)
+#define SECOND_NS   INT64_C(1000000000)
+#define STATIC_NS   INT64_C(300000000000)
+
+#define SETS     512
+#define WAYS     4
+#define PATH_MAX_KEPT 88
+
+struct entry {
+	int64_t until_ns; /* 0: free */
+	uint8_t path_len, device_len;
+	uint8_t len;
+	char path[PATH_MAX_KEPT];
+	uint8_t text[KEPT_TEXT_MAX];
+};
+
+struct kept {
+	const struct image *image;
+	const struct config *config;
+	uint32_t *index; /* hash of paths: item + 1 */
+	uint32_t index_size;
+	struct entry entries[SETS * WAYS];
+};
+
+static uint32_t hash(const char *text, size_t len)
+{
+	uint32_t h = 2166136261u;
+
+	for (size_t i = 0; i < len; i++)
+		h = (h ^ (uint8_t)text[i]) * 16777619u;
+	return h ^ h >> 15;
+}
+
+/* As clients' paths are compared. */
+static bool canonical(const char *path, struct node *node)
+{
+	node_parse(path, strlen(path), node);
+	return node->kind == NODE_TARGET && node->bus < 0;
+}
+
+static void index_item(struct kept *kept, uint32_t item)
+{
+	struct node node;
+	uint32_t at;
+
+	if (!canonical(kept->config->items[item].path, &node))
+		return;
+	at = hash(node.path, strlen(node.path));
+	while (kept->index[at % kept->index_size])
+		at++;
+	kept->index[at % kept->index_size] = item + 1;
+}
+
+struct kept *kept_create(const struct config *config, const struct image *image)
+{
+	struct kept *kept = calloc(1, sizeof(*kept));
+
+	if (!kept)
+		return NULL;
+	kept->config = config;
+	kept->image = image;
+	kept->index_size = 2 * config->item_count + 1;
+	kept->index = calloc(kept->index_size, sizeof(*kept->index));
+	if (!kept->index) {
+		free(kept);
+		return NULL;
+	}
+	for (uint32_t i = 0; i < config->item_count; i++)
+		index_item(kept, i);
+	return kept;
+}
+
+void kept_destroy(struct kept *kept)
+{
+	if (!kept)
+		return;
+	free(kept->index);
+	free(kept);
+}
+
+int kept_signal(const struct kept *kept, const char *path, bool output)
+{
+	uint32_t at = hash(path, strlen(path)), slot;
+	struct node node;
+
+	while ((slot = kept->index[at % kept->index_size]) != 0) {
+		const struct config_item *item = &kept->config->items[slot - 1];
+
+		at++;
+		if (item->output == output && canonical(item->path, &node) &&
+		    strcmp(node.path, path) == 0)
+			return (int)slot;
+	}
+	return -1;
+}
+
+/* Does the signal hold the property's value as it is? */
+static bool holds(enum ows_type type, char property)
+{
+	switch (property) {
+	case 'f':
+	case 't':
+	case 'p':
+		return type == OWS_DOUBLE || type == OWS_FLOAT;
+	case 'u':
+	case 'i':
+		return type != OWS_STRING && type != OWS_FLOAT && type != OWS_BOOL;
+	case 'y':
+		return type != OWS_STRING;
+	default:
+		return false;
+	}
+}
+
+static int64_t life_ns(char life)
+{
+	return life == LIFE_STATIC ? STATIC_NS : life == LIFE_SECOND ? SECOND_NS : VOLATILE_NS;
+}
+
+static int find_signal(struct kept *kept, const struct node *node, int64_t now_ns, char *text,
+                       size_t room)
+{
+	int record = kept_signal(kept, node->path, false);
+	struct ows_sample sample;
+	enum ows_type type;
+
+	if (record < 0)
+		return -ENOENT;
+	type = (enum ows_type)kept->image->records[record].type;
+	if (!holds(type, node->type) ||
+	    !reader_sample(&kept->image->records[record], &sample) ||
+	    sample.quality != OWS_Q_GOOD || !sample.measured_ns ||
+	    now_ns - sample.measured_ns > life_ns(node->life))
+		return -ENOENT;
+	return format_number((uint8_t)node->type, value_number(type, sample.value), text, room);
+}
+
+static struct entry *set_of(struct kept *kept, const char *path, size_t len)
+{
+	return &kept->entries[hash(path, len) % SETS * WAYS];
+}
+
+static bool is(const struct entry *entry, const char *path, size_t len)
+{
+	return entry->until_ns && entry->path_len == len && memcmp(entry->path, path, len) == 0;
+}
+
+int kept_find(struct kept *kept, const struct node *node, int64_t now_ns, char *text, size_t room)
+{
+	size_t len = strlen(node->path);
+	struct entry *entry = set_of(kept, node->path, len);
+	int n;
+
+	if (!node->has_device || node->bus >= 0 || !node->type)
+		return -ENOENT;
+	n = find_signal(kept, node, now_ns, text, room);
+	if (n >= 0)
+		return n;
+	for (int way = 0; way < WAYS; way++, entry++) {
+		if (!is(entry, node->path, len))
+			continue;
+		if (now_ns >= entry->until_ns || entry->len > room)
+			return -ENOENT;
+		memcpy(text, entry->text, entry->len);
+		return entry->len;
+	}
+	return -ENOENT;
+}
+
+void kept_add(struct kept *kept, const struct node *node, int64_t measured_ns, const uint8_t *text,
+              size_t len)
+{
+	size_t path_len = strlen(node->path);
+	struct entry *set, *best;
+
+	/* what an alias means may change; of an unknown property nobody knows how long it is true */
+	if (!node->has_rom || node->bus >= 0 || !node->type || path_len > PATH_MAX_KEPT ||
+	    len > KEPT_TEXT_MAX || strcmp(node->path + node->device_len, "/present") == 0 ||
+	    node->type == PROPERTY_ALIAS)
+		return;
+	best = set = set_of(kept, node->path, path_len);
+	for (int way = 0; way < WAYS; way++) {
+		if (is(&set[way], node->path, path_len)) {
+			best = &set[way];
+			break;
+		}
+		if (set[way].until_ns < best->until_ns)
+			best = &set[way];
+	}
+	best->until_ns = measured_ns + life_ns(node->life);
+	best->path_len = (uint8_t)path_len;
+	best->device_len = (uint8_t)node->device_len;
+	best->len = (uint8_t)len;
+	memcpy(best->path, node->path, path_len);
+	memcpy(best->text, text, len);
+}
+
+/* Behind an alias it may be any. */
+void kept_forget(struct kept *kept, const struct node *node)
+{
+	for (unsigned i = 0; i < SETS * WAYS; i++) {
+		struct entry *entry = &kept->entries[i];
+
+		if (!node->has_rom || (entry->device_len == node->device_len &&
+		                       memcmp(entry->path, node->path, node->device_len) == 0))
+			entry->until_ns = 0;
+	}
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Reads that need no bus: properties that are inputs of the table and were read lately, and what
+ * clients asked for lately. The times are those of owserver's cache, but shorter where the control
+ * program may have changed what is kept: 2 s, 300 s for what never changes.
+ */
+#ifndef SERVE_KEPT_H
+#define SERVE_KEPT_H
+
+#include "../config/config.h"
+#include "../shm/image.h"
+#include "node.h"
+
+#define KEPT_TEXT_MAX 104
+
+struct kept;
+
+/* Allocates. NULL: no memory. */
+struct kept *kept_create(const struct config *config, const struct image *image);
+void kept_destroy(struct kept *kept);
+
+/* The text, as a bus would give it, or -ENOENT. Returns the length. */
+int kept_find(struct kept *kept, const struct node *node, int64_t now_ns, char *text, size_t room);
+/* Keep what a bus has answered, as long as it is worth it. */
+void kept_add(struct kept *kept, const struct node *node, int64_t measured_ns, const uint8_t *text,
+              size_t len);
+/* Something of this device was written, or may have been. */
+void kept_forget(struct kept *kept, const struct node *node);
+
+/* The signal (record of the image) whose path is this, as output or as input; -1: none. */
+int kept_signal(const struct kept *kept, const char *path, bool output);
+
+#endif

@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: MIT */
+#include "server.h"
+
+#include "../shm/owner.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#define BACKLOG 128
+/* Connections that are taken in a row, before clients have their turn again. */
+#define ACCEPTS 16
+
+union address {
+	struct sockaddr any;
+	struct sockaddr_in v4;
+	struct sockaddr_in6 v6;
+	struct sockaddr_un local;
+};
+
+static socklen_t fill(const struct listen_address *from, union address *to)
+{
+	memset(to, 0, sizeof(*to));
+	if (from->is_v6) {
+		to->v6.sin6_family = AF_INET6;
+		to->v6.sin6_port = htons(from->port);
+		memcpy(&to->v6.sin6_addr, from->bytes, 16);
+		return sizeof(to->v6);
+	}
+	to->v4.sin_family = AF_INET;
+	to->v4.sin_port = htons(from->port);
+	memcpy(&to->v4.sin_addr, from->bytes, 4);
+	return sizeof(to->v4);
+}
+
+static int add(struct serve *s, int fd, bool network)
+{
+	struct epoll_event event = { .events = EPOLLIN | EPOLLET };
+
+	event.data.u32 = SERVER_CLIENTS + 1 + s->listener_count;
+	if (listen(fd, BACKLOG) < 0 ||
+	    epoll_ctl(s->epoll_fd, EPOLL_CTL_ADD, fd, &event) < 0)
+		return -errno;
+	s->listeners[s->listener_count].fd = fd;
+	s->listeners[s->listener_count++].network = network;
+	return 0;
+}
+
+static const char *say_bind(int err, const char *text)
+{
+	(void)text;
+	switch (-err) {
+	case EADDRINUSE:
+		return " (an owserver or another owsd? end it or choose another port with Listen or -l)";
+	case EACCES:
+		return " (ports below 1024 are root's)";
+	case EADDRNOTAVAIL:
+		return " (not an address of this machine)";
+	default:
+		return "";
+	}
+}
+
+static int open_network(struct serve *s, const struct listen_address *address)
+{
+	union address to;
+	socklen_t len = fill(address, &to);
+	int fd = socket(to.any.sa_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), one = 1;
+	int err;
+
+	if (fd < 0)
+		return -errno;
+	setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &one, sizeof(one));
+	if (address->is_v6)
+		setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &one, sizeof(one));
+	/* accepted sockets have it from here */
+	setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &one, sizeof(one));
+	setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &one, sizeof(one));
+	err = bind(fd, &to.any, len) < 0 ? -errno : add(s, fd, true);
+	if (err)
+		close(fd);
+	return err;
+}
+
+/* A socket that somebody listens at is his; what an owsd left that was killed is removed. */
+static int remove_old(const union address *to)
+{
+	struct stat st;
+	int fd, err;
+
+	if (lstat(to->local.sun_path, &st) < 0)
+		return errno == ENOENT ? 0 : -errno;
+	if (!S_ISSOCK(st.st_mode))
+		return -EEXIST;
+	fd = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+	if (fd < 0)
+		return -errno;
+	err = connect(fd, &to->any, sizeof(to->local)) < 0 ? errno : 0;
+	close(fd);
+	if (err != ECONNREFUSED)
+		return -EADDRINUSE;
+	return unlink(to->local.sun_path) < 0 ? -errno : 0;
+}
+
+/* Who may command outputs may use it: it carries writes. */
+static int give_rights(const char *path)
+{
+	gid_t gid;
+
+	if (owner_group("owsd-control", &gid) && chown(path, (uid_t)-1, gid) == 0)
+		return chmod(path, 0660) < 0 ? -errno : 0;
+	return chmod(path, 0600) < 0 ? -errno : 0;
+}
+
+static int open_local(struct serve *s, const char *path)
+{
+	union address to = { .local = { .sun_family = AF_UNIX } };
+	mode_t mask;
+	int fd, err;
+
+	snprintf(to.local.sun_path, sizeof(to.local.sun_path), "%s", path);
+	err = remove_old(&to);
+	if (err)
+		return err;
+	fd = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+	if (fd < 0)
+		return -errno;
+	mask = umask(0177);
+	err = bind(fd, &to.any, sizeof(to.local)) < 0 ? -errno : 0;
+	umask(mask);
+	if (!err)
+		err = give_rights(path);
+	if (!err)
+		err = add(s, fd, false);
+	if (err)
+		close(fd);
+	return err;
+}
+
+/* The kernel may have no IPv6: then the other loopback address serves. */
+static bool may_miss(const struct serve *s, const struct listen_address *address, int err)
+{
+	return address->is_v6 && listen_is_loopback(address) && s->listener_count &&
+	       (err == -EAFNOSUPPORT || err == -EADDRNOTAVAIL);
+}
+
+int listeners_open(struct serve *s, char *why, size_t why_size)
+{
+	const struct config_serve *config = &s->config->serve;
+	char text[LISTEN_TEXT_MAX];
+	int err;
+
+	for (unsigned i = 0; i < config->address_count; i++) {
+		err = open_network(s, &config->addresses[i]);
+		if (!err || may_miss(s, &config->addresses[i], err))
+			continue;
+		listen_print(&config->addresses[i], text);
+		snprintf(why, why_size, "cannot listen at %s: %s%s", text, strerror(-err),
+		         say_bind(err, text));
+		return err;
+	}
+	if (!config->socket)
+		return 0;
+	err = open_local(s, config->socket);
+	if (err)
+		snprintf(why, why_size, "cannot listen at %s: %s%s", config->socket, strerror(-err),
+		         err == -EADDRINUSE ? " (somebody serves it)"
+		         : err == -EEXIST   ? " and is no socket"
+		                            : "");
+	return err;
+}
+
+void listeners_close(struct serve *s)
+{
+	for (unsigned i = 0; i < s->listener_count; i++) {
+		close(s->listeners[i].fd);
+		if (!s->listeners[i].network)
+			unlink(s->config->serve.socket);
+	}
+	s->listener_count = 0;
+}
+
+static bool is_allowed(struct serve *s, const union address *from)
+{
+	const struct config_serve *config = &s->config->serve;
+	struct listen_address peer = { .is_v6 = from->any.sa_family == AF_INET6 };
+
+	if (!config->peer_count)
+		return true;
+	if (peer.is_v6)
+		memcpy(peer.bytes, &from->v6.sin6_addr, 16);
+	else
+		memcpy(peer.bytes, &from->v4.sin_addr, 4);
+	return listen_is_loopback(&peer) ||
+	       listen_peers_have(config->peers, config->peer_count, peer.is_v6, peer.bytes);
+}
+
+static void refuse(struct serve *s, int fd, enum serve_counter what, struct log_rate *rate,
+                   const char *reason)
+{
+	close(fd);
+	count(s, what, 1);
+	if (log_rate(rate, s->now_ns))
+		log_warning(s->log, "a client of the owserver protocol was refused: %s", reason);
+}
+
+static void take(struct serve *s, int fd, bool network, const union address *from)
+{
+	if (network && !is_allowed(s, from)) {
+		refuse(s, fd, COUNT_refused_peers, &s->peer_rate, "not in ListenAllow");
+		return;
+	}
+	if (!s->free_count && !client_evict(s)) {
+		refuse(s, fd, COUNT_refused_full, &s->full_rate, "there are too many");
+		return;
+	}
+	if (!client_open(s, fd, network)) {
+		close(fd);
+		return;
+	}
+	count(s, COUNT_connections, 1);
+}
+
+bool listeners_accept(struct serve *s)
+{
+	bool any = false;
+
+	for (unsigned i = 0; i < s->listener_count; i++) {
+		for (int n = 0; n < ACCEPTS; n++) {
+			union address from = { .any = { .sa_family = AF_UNSPEC } };
+			socklen_t len = sizeof(from);
+			int fd = accept4(s->listeners[i].fd, &from.any, &len,
+			                 SOCK_NONBLOCK | SOCK_CLOEXEC);
+
+			if (fd < 0 && (errno == EAGAIN || errno == EMFILE || errno == ENFILE))
+				break;
+			any = true;
+			if (fd >= 0)
+				take(s, fd, s->listeners[i].network, &from);
+		}
+	}
+	return any;
+}

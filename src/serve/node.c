@@ -1,0 +1,217 @@
+/* SPDX-License-Identifier: MIT */
+#include "node.h"
+
+#include "hal/native/format.h"
+#include "hal/native/native.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool is(const char *text, size_t len, const char *word)
+{
+	return strlen(word) == len && memcmp(text, word, len) == 0;
+}
+
+static bool starts(const char *text, size_t len, const char *word)
+{
+	size_t n = strlen(word);
+
+	return len >= n && memcmp(text, word, n) == 0 && (len == n || text[n] == '/');
+}
+
+static void find_property(struct node *node, const struct family *family, const char *name,
+                          size_t len)
+{
+	const struct property *property;
+	size_t stem;
+
+	if (extension_split(name, len, &stem) == EXTENSION_NONE)
+		stem = len;
+	property = family_property(family, NULL, name, stem);
+	if (!property && stem != len)
+		property = family_property(family, NULL, name, len);
+	if (!property)
+		return;
+	node->type = property->type == PROPERTY_BITS ? 'y' : (char)property->type;
+	node->life = (char)property->life;
+	if (extension_split(name, len, &stem) == EXTENSION_BYTE)
+		node->type = 'u';
+}
+
+static void take_code(struct node *node, const char *name, size_t len)
+{
+	node->kind = NODE_NONE;
+	if (len == 0)
+		node->kind = NODE_CODES;
+	if (len < 7 || memcmp(name, "/text.", 6) != 0)
+		return;
+	name += 6;
+	len -= 6;
+	node->code = is(name, len, "ALL") ? -1 : 0;
+	for (size_t i = 0; i < len && node->code >= 0; i++) {
+		if (name[i] < '0' || name[i] > '9' || len > 3)
+			return;
+		node->code = node->code * 10 + (name[i] - '0');
+	}
+	if (node->code <= 210)
+		node->kind = NODE_CODE;
+}
+
+static void take_virtual(struct node *node, const struct path *split)
+{
+	static const char codes[] = "settings/return_codes";
+	const char *text = split->property.text, *slash;
+	size_t len = split->property.len, word;
+
+	node->every = node->bus < 0;
+	if (starts(text, len, codes) && node->bus < 0) {
+		take_code(node, text + sizeof(codes) - 1, len - (sizeof(codes) - 1));
+		return;
+	}
+	slash = memchr(text, '/', len);
+	word = slash ? (size_t)(slash - text) : len;
+	if (slash && virtual_family(text, word))
+		find_property(node, virtual_family(text, word), slash + 1, len - word - 1);
+}
+
+static void print_path(struct node *node, const struct path *split)
+{
+	const char *alarm = split->alarm && !split->device.len ? "/alarm" : "";
+	struct path_slice device = split->device;
+	char id[ROM_TEXT_MAX];
+	int n;
+
+	if (split->has_rom && split->device.len == split->last.len) {
+		device.len = (size_t)rom_print(split->rom, ROM_F_I, id);
+		device.text = id;
+	}
+	n = snprintf(node->path, sizeof(node->path), "%s%s%.*s", alarm, device.len ? "/" : "",
+	             (int)device.len, device.len ? device.text : "");
+	node->device_len = (uint16_t)n;
+	snprintf(node->path + n, sizeof(node->path) - (size_t)n, "%s%.*s",
+	         split->property.len ? "/" : "", (int)split->property.len,
+	         split->property.len ? split->property.text : "");
+	if (!node->path[0])
+		memcpy(node->path, "/", 2);
+}
+
+void node_parse(const char *path, size_t len, struct node *node)
+{
+	struct path split;
+
+	memset(node, 0, offsetof(struct node, path));
+	node->path[0] = '\0';
+	node->bus = -1;
+	if (len > 1 && path[len - 1] == '/') {
+		node->slash = true;
+		len--;
+	}
+	if (path_split(path, len, &split))
+		return;
+	node->kind = NODE_TARGET;
+	node->fresh = node->uncached = split.uncached;
+	node->bus = split.bus;
+	node->has_device = split.device.len != 0;
+	node->has_rom = split.has_rom;
+	memcpy(node->rom, split.rom, ROM_LEN);
+	print_path(node, &split);
+	if (node->has_device && starts(split.device.text, split.device.len, "signals")) {
+		node->kind = split.bus >= 0 || split.alarm ? NODE_NONE
+		             : split.property.len          ? NODE_SIGNAL
+		                                           : NODE_SIGNALS;
+		node->name = node->path + sizeof("/signals");
+	} else if (node->has_device) {
+		if (node->has_rom && split.property.len)
+			find_property(node, family_of(split.rom[0]), split.property.text,
+			              split.property.len);
+	} else if (split.property.len) {
+		take_virtual(node, &split);
+	} else {
+		node->devices = true;
+		node->root = split.bus < 0 && !split.alarm;
+		node->every = split.bus < 0;
+	}
+}
+
+/* Of devices of families that hal/native does not know: the names that are directories only. */
+static const char *const subdirectories[] = {
+	"8bit", "910", "911", "B1-R1-A", "CO2", "DA5534", "DA5540", "DATANAB", "EDS0064",
+	"EDS0065", "EDS0066", "EDS0067", "EDS0068", "EDS0070", "EDS0071", "EDS0072", "EDS0080",
+	"EDS0082", "EDS0083", "EDS0085", "EDS0090", "HIH3600", "HIH4000", "HIH5030", "HTM1735",
+	"LCD_H", "LCD_M", "LED", "MultiSensor", "S3-R1-A", "T8A", "TAI8570", "TH", "WS603",
+	"about", "analog", "automation_engine", "aux", "barometer", "calibrate", "calibration",
+	"cat9554", "comparator", "disconnect", "eeprom", "endcharge", "errata", "generic",
+	"histogram", "hub", "iic", "lcd", "log", "main", "mission", "moisture", "multitemp",
+	"output", "overtemp", "pages", "pwm1", "pwm2", "readonly", "relay", "sdcard", "serial",
+	"set_password", "subkey0", "subkey1", "subkey2", "system", "timers", "typeB", "typeE",
+	"typeJ", "typeK", "typeN", "typeR", "typeS", "typeT", "undertemp", "use_password",
+	"user_registers", NULL,
+};
+
+/* The same in what belongs to no device. */
+static const char *const virtual_subdirectories[] = {
+	"bus", "device", "directory", "DS1WM", "external", "ha5", "i2c", "internal", "K1WM", "link",
+	"overall", "PBM", "persistent", "primary", "read", "search_errors", "secondary", "serial",
+	"simulated", "usb", "write", NULL,
+};
+
+static bool is_named(const char *const *names, const char *name, size_t len)
+{
+	for (; *names; names++)
+		if (is(name, len, *names))
+			return true;
+	return false;
+}
+
+/* /structure/28: as devices of the family have it. */
+static bool is_of_structure(const struct node *directory, const char *name, size_t len)
+{
+	static const char above[] = "/structure/";
+	const char *code = directory->path + sizeof(above) - 1;
+	const struct property *property;
+	char path[NODE_PATH_MAX];
+	int n;
+
+	if (strncmp(directory->path, above, sizeof(above) - 1) != 0 || strlen(code) < 2)
+		return false;
+	n = snprintf(path, sizeof(path), "%s%s%.*s", code[2] ? code + 3 : "", code[2] ? "/" : "",
+	             (int)len, name);
+	if (n >= (int)sizeof(path))
+		return false;
+	property = family_property(family_of((uint8_t)strtoul(code, NULL, 16)), NULL, path,
+	                           (size_t)n);
+	return property ? property->type == PROPERTY_DIRECTORY
+	                : is_named(subdirectories, name, len);
+}
+
+static bool is_subdirectory(const struct node *directory, const char *name, size_t len)
+{
+	struct node child;
+	char path[NODE_PATH_MAX];
+	int n = snprintf(path, sizeof(path), "%s/%.*s", directory->path, (int)len, name);
+
+	if (n >= (int)sizeof(path))
+		return false;
+	node_parse(path, (size_t)n, &child);
+	if (child.type)
+		return child.type == PROPERTY_DIRECTORY;
+	if (directory->has_device)
+		return is_named(subdirectories, name, len);
+	return is_of_structure(directory, name, len) ||
+	       (strncmp(directory->path, "/structure", 10) != 0 &&
+	        is_named(virtual_subdirectories, name, len));
+}
+
+bool node_is_directory(const struct node *directory, const char *name, size_t len)
+{
+	const char *path = directory->path + 1;
+
+	if (directory->kind != NODE_TARGET)
+		return false;
+	if (directory->devices)
+		return true;
+	if (!directory->has_device && !strchr(path, '/'))
+		return strcmp(path, "simultaneous") != 0;
+	return is_subdirectory(directory, name, len);
+}

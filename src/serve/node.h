@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What a path of a client means: a part of the targets' namespace, a signal, a return code. Pure
+ * functions.
+ *
+ *     [/uncached|/alarm|/bus.N]... device/property      what the targets have
+ *     /signals/room1_Age                                the table
+ *     /settings/return_codes/text.5
+ */
+#ifndef SERVE_NODE_H
+#define SERVE_NODE_H
+
+#include "hal/native/family.h"
+#include "hal/path.h"
+
+#define NODE_PATH_MAX (PATH_LEN_MAX + 32)
+
+enum node_kind {
+	NODE_NONE,    /* nothing can be there */
+	NODE_TARGET,  /* what the targets have */
+	NODE_SIGNALS, /* the directory of the signals */
+	NODE_SIGNAL,
+	NODE_CODES,   /* the directory of the return codes */
+	NODE_CODE,
+};
+
+struct node {
+	uint8_t kind;
+	bool fresh;
+	bool uncached; /* by its path */
+	bool devices;  /* a directory of devices: the root, /alarm, those of a bus */
+	bool root;     /* ... and of all else: / or /uncached */
+	bool every;    /* each target has its part of it */
+	bool slash;    /* the path ended with one, as only that of a directory may */
+	int bus;       /* N of bus.N as clients count them, -1: none */
+	bool has_device, has_rom;
+	uint8_t rom[ROM_LEN];
+	char type;     /* of the property: a letter of /structure, 0 not known */
+	char life;     /* likewise */
+	int code;      /* NODE_CODE: which, -1 all */
+	const char *name; /* NODE_SIGNAL: of the signal or attribute, up to the end of the path */
+	uint16_t device_len; /* bytes of path up to and with the device */
+	char path[NODE_PATH_MAX]; /* for a target: without uncached and bus.N, ids as 28.551DDF030000 */
+};
+
+void node_parse(const char *path, size_t len, struct node *node);
+/* Is this name, an entry of the directory, itself one? */
+bool node_is_directory(const struct node *directory, const char *name, size_t len);
+
+#endif

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A request of the owserver protocol as it stands in a buffer. Pure functions over hostile bytes:
+ * nothing is trusted but what was checked here.
+ */
+#ifndef SERVE_REQUEST_H
+#define SERVE_REQUEST_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* The longest frame that is taken: header, path, data, and the tokens of an owserver. */
+#define REQUEST_PAYLOAD_MAX (1024 + 65536)
+#define REQUEST_MAX (24 + REQUEST_PAYLOAD_MAX + 64 * 16)
+
+struct request {
+	int32_t type; /* as sent; enum frame_type if it is one */
+	uint32_t flags;
+	int32_t size, offset;
+	uint32_t payload;
+	const char *path; /* path_len bytes, without NUL */
+	uint32_t path_len;
+	const uint8_t *data; /* WRITE */
+	uint32_t data_len;
+};
+
+/*
+ * Look at `have` bytes. Returns 0: more are needed, *length says how many in all (24 while that is
+ * not known); 1: *request is whole and points into bytes, *length are its bytes; -EPROTO: this is
+ * no request, -EMSGSIZE: too long. After an error the connection cannot be used any more.
+ */
+int request_parse(const uint8_t *bytes, size_t have, struct request *request, size_t *length);
+
+#endif

@@ -1,0 +1,266 @@
+/* SPDX-License-Identifier: MIT */
+#include "server.h"
+
+#include "../libows/ows.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#define STACK_SIZE (128 * 1024)
+#define EVENTS     64
+#define WAKE_EVENT SERVER_CLIENTS
+
+static const char *const counter_names[SERVE_COUNTER_COUNT] = {
+#define X(name) "served_" #name,
+	SERVE_COUNTERS(X)
+#undef X
+};
+
+/* Address space of which only what is touched becomes memory. */
+static void *reserve(size_t size)
+{
+	void *p = mmap(NULL, size, PROT_READ | PROT_WRITE,
+	               MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+
+	return p == MAP_FAILED ? NULL : p;
+}
+
+static int allocate(struct serve *s)
+{
+	s->areas = reserve((size_t)SERVER_CLIENTS * AREA_SIZE);
+	s->directories = reserve(SERVER_DIRECTORIES * sizeof(*s->directories));
+	s->clients = reserve(SERVER_CLIENTS * sizeof(*s->clients));
+	s->free = calloc(SERVER_CLIENTS, sizeof(*s->free));
+	s->round = calloc(SERVER_CLIENTS, sizeof(*s->round));
+	if (!s->areas || !s->directories || !s->clients || !s->free || !s->round)
+		return -ENOMEM;
+	while (s->free_count < SERVER_CLIENTS) {
+		s->free[s->free_count] = (uint16_t)(SERVER_CLIENTS - 1 - s->free_count);
+		s->free_count++;
+	}
+	for (int i = 0; i < SERVE_COUNTER_COUNT; i++)
+		s->counters[i].name = counter_names[i];
+	return guests_create(&s->guests, SERVER_CLIENTS, s->guests.ring, s->guests.ring_ctx);
+}
+
+bool serve_is_open(const struct config_serve *config)
+{
+	for (unsigned i = 0; i < config->address_count; i++)
+		if (!listen_is_loopback(&config->addresses[i]))
+			return !config->read_only;
+	return false;
+}
+
+int serve_create(const struct serve_setup *setup, struct serve **serve, char *why,
+                 size_t why_size)
+{
+	struct epoll_event event = { .events = EPOLLIN | EPOLLET, .data.u32 = WAKE_EVENT };
+	struct serve *s = calloc(1, sizeof(*s));
+	int err = -ENOMEM;
+
+	snprintf(why, why_size, "%s", strerror(ENOMEM));
+	if (!s)
+		return err;
+	s->config = setup->config;
+	s->instance = setup->instance;
+	s->log = setup->log;
+	s->guests.ring = setup->ring;
+	s->guests.ring_ctx = setup->ring_ctx;
+	s->guests.wake_fd = -1;
+	s->epoll_fd = epoll_create1(EPOLL_CLOEXEC);
+	err = s->epoll_fd < 0 ? -errno : allocate(s);
+	if (!err && epoll_ctl(s->epoll_fd, EPOLL_CTL_ADD, s->guests.wake_fd, &event) < 0)
+		err = -errno;
+	if (err)
+		snprintf(why, why_size, "cannot serve the owserver protocol: %s", strerror(-err));
+	else
+		err = listeners_open(s, why, why_size);
+	if (err) {
+		serve_destroy(s);
+		return err;
+	}
+	*serve = s;
+	return 0;
+}
+
+const struct engine_guests *serve_guests(struct serve *s)
+{
+	return &s->guests.port;
+}
+
+const struct bus_counter *serve_counters(const struct serve *s, size_t *n)
+{
+	*n = SERVE_COUNTER_COUNT;
+	return s->counters;
+}
+
+/* --- The thread ------------------------------------------------------------------------------- */
+
+static void take_events(struct serve *s, const struct epoll_event *events, int n)
+{
+	for (int i = 0; i < n; i++) {
+		uint32_t who = events[i].data.u32;
+
+		if (who < SERVER_CLIENTS)
+			client_event(s, &s->clients[who], events[i].events);
+		else if (who > WAKE_EVENT)
+			s->accepting = true;
+	}
+}
+
+static struct client *client_of(struct engine_guest *guest)
+{
+	return (struct client *)(void *)((char *)guest - offsetof(struct client, guest));
+}
+
+static void take_answers(struct serve *s)
+{
+	struct guests_message message;
+
+	while (guests_next(&s->guests, &message)) {
+		struct client *c = client_of(message.guest);
+
+		if (message.released) {
+			client_back(s, c);
+			continue;
+		}
+		c->lent = message.guest->lent;
+		if (c->state == CLIENT_WORKING)
+			work_answered(s, c);
+		else if (!c->lent)
+			client_back(s, c);
+	}
+}
+
+static void serve_round(struct serve *s)
+{
+	unsigned n = s->round_count;
+
+	while (n--) {
+		struct client *c = &s->clients[s->round[s->round_at]];
+
+		s->round_at = (s->round_at + 1) % SERVER_CLIENTS;
+		s->round_count--;
+		c->queued = false;
+		client_turn(s, c);
+	}
+}
+
+static int wait_ms(const struct serve *s)
+{
+	int64_t left = s->look_ns - ows_now();
+
+	if (s->round_count || s->accepting || left <= 0)
+		return 0;
+	return left > INT64_C(1000000) * 60000 ? 60000 : (int)((left + 999999) / 1000000);
+}
+
+static void *run(void *arg)
+{
+	struct epoll_event events[EVENTS];
+	struct serve *s = arg;
+
+	while (!__atomic_load_n(&s->stop, __ATOMIC_ACQUIRE)) {
+		int wait = wait_ms(s), n;
+
+		if (wait && !guests_sleep(&s->guests))
+			wait = 0;
+		n = epoll_wait(s->epoll_fd, events, EVENTS, wait);
+		if (wait)
+			guests_awake(&s->guests);
+		s->now_ns = ows_now();
+		take_events(s, events, n);
+		take_answers(s);
+		if (s->accepting)
+			s->accepting = listeners_accept(s);
+		serve_round(s);
+		if (s->now_ns >= s->look_ns)
+			clients_look(s);
+	}
+	return NULL;
+}
+
+/* Real-time memory locking is the engine's; what the server reserves would all become memory. */
+static void unlock(void *p, size_t size)
+{
+	if (munlock(p, size) == 0)
+		madvise(p, size, MADV_DONTNEED);
+}
+
+int serve_start(struct serve *s, const struct image *image)
+{
+	sigset_t all, before;
+	pthread_attr_t attr;
+	int err;
+
+	s->image = image;
+	s->now_ns = ows_now();
+	s->look_ns = INT64_MAX;
+	s->kept = kept_create(s->config, image);
+	err = s->kept ? signals_open(s->instance, &s->signals) : -ENOMEM;
+	if (err)
+		return err;
+	unlock(s->areas, (size_t)SERVER_CLIENTS * AREA_SIZE);
+	unlock(s->directories, SERVER_DIRECTORIES * sizeof(*s->directories));
+	unlock(s->clients, SERVER_CLIENTS * sizeof(*s->clients));
+	err = pthread_attr_init(&attr);
+	if (err)
+		return -err;
+	pthread_attr_setstacksize(&attr, STACK_SIZE);
+	/* a synchronous SIGBUS is the guard's and cannot be held back */
+	sigfillset(&all);
+	sigdelset(&all, SIGBUS);
+	pthread_sigmask(SIG_SETMASK, &all, &before);
+	err = pthread_create(&s->thread, &attr, run, s);
+	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	pthread_attr_destroy(&attr);
+	if (err)
+		return -err;
+	s->running = true;
+	pthread_setname_np(s->thread, "owsd-serve");
+	return 0;
+}
+
+void serve_stop(struct serve *s)
+{
+	if (!s)
+		return;
+	__atomic_store_n(&s->stop, 1, __ATOMIC_RELEASE);
+	if (s->running) {
+		guests_wake(&s->guests);
+		pthread_join(s->thread, NULL);
+		s->running = false;
+	}
+	listeners_close(s);
+	for (unsigned i = 0; i < s->used; i++)
+		if (s->clients[i].state != CLIENT_FREE && s->clients[i].fd >= 0)
+			close(s->clients[i].fd);
+	s->used = 0;
+}
+
+void serve_destroy(struct serve *s)
+{
+	if (!s)
+		return;
+	serve_stop(s);
+	if (s->epoll_fd >= 0)
+		close(s->epoll_fd);
+	guests_destroy(&s->guests);
+	kept_destroy(s->kept);
+	signals_close(s->signals);
+	if (s->areas)
+		munmap(s->areas, (size_t)SERVER_CLIENTS * AREA_SIZE);
+	if (s->directories)
+		munmap(s->directories, SERVER_DIRECTORIES * sizeof(*s->directories));
+	if (s->clients)
+		munmap(s->clients, SERVER_CLIENTS * sizeof(*s->clients));
+	free(s->free);
+	free(s->round);
+	free(s);
+}

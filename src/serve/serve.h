@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The server of the owserver protocol: a thread of its own between clients that nobody trusts and
+ * the engine. It answers what it can from the shared memory and from what was read lately, and
+ * hands the rest to the engine as requests of guests (engine/guest.h). It allocates nothing after
+ * serve_start().
+ */
+#ifndef SERVE_SERVE_H
+#define SERVE_SERVE_H
+
+#include "../config/config.h"
+#include "../engine/guest.h"
+#include "../log.h"
+#include "../shm/image.h"
+#include "hal/bus.h"
+
+struct serve;
+
+struct serve_setup {
+	const struct config *config;
+	const char *instance;
+	struct log *log;
+	void (*ring)(void *ctx); /* wakes the engine; any thread */
+	void *ring_ctx;
+};
+
+/*
+ * Take the addresses and allocate. 0, or a negative errno (-EADDRINUSE), the reason then stands in
+ * why. config asks for at least one address or a socket.
+ */
+int serve_create(const struct serve_setup *setup, struct serve **serve, char *why,
+                 size_t why_size);
+const struct engine_guests *serve_guests(struct serve *serve);
+/* Start the thread; the image is in place and lives as long. 0 or a negative errno. */
+int serve_start(struct serve *serve, const struct image *image);
+/* End the thread; clients are closed. */
+void serve_stop(struct serve *serve);
+/* When nobody writes to what guests have lent any more. */
+void serve_destroy(struct serve *serve);
+
+/* Any thread. */
+const struct bus_counter *serve_counters(const struct serve *serve, size_t *n);
+
+/* Is it served to others than this machine, with writing allowed? */
+bool serve_is_open(const struct config_serve *config);
+
+#endif

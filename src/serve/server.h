@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: MIT */
+/* The inside of the server, shared by the files of this folder. */
+#ifndef SERVE_SERVER_H
+#define SERVE_SERVER_H
+
+#include "code.h"
+#include "guests.h"
+#include "kept.h"
+#include "directory.h"
+#include "request.h"
+#include "serve.h"
+#include "signals.h"
+
+#include <pthread.h>
+
+#define SERVER_CLIENTS  512
+#define SERVER_DIRECTORIES 4
+#define SERVER_LISTENERS (LISTEN_MAX + 1)
+
+/* Time limits, as the genuine owserver has them. */
+#define REQUEST_NS    INT64_C(10000000000)  /* from the first byte, or the connection, to the end */
+#define IDLE_NS       INT64_C(600000000000) /* of a connection that asked to be kept */
+#define EVICT_NS      INT64_C(10000000000)  /* idle for so long, it goes when another needs room */
+#define KEEPALIVE_NS  INT64_C(1000000000)
+#define SEND_NS       INT64_C(10000000000)  /* that no byte of an answer is taken */
+#define ANSWER_NS     INT64_C(60000000000)  /* for the whole of an answer */
+#define APPLY_NS      INT64_C(10000000000)  /* until a commanded output is confirmed */
+#define APPLY_LOOK_NS INT64_C(10000000)
+
+/*
+ * What a connection's bytes are put in: the request, and behind it what is sent. Pages of it that
+ * are not touched cost nothing.
+ */
+#define AREA_ANSWER 2048 /* where the answer begins, at least */
+#define AREA_SIZE   (72 * 1024 + 65536)
+#define READ_ROOM   65536
+
+enum client_state {
+	CLIENT_FREE,
+	CLIENT_READING, /* waits for a request, or for the rest of one */
+	CLIENT_WORKING, /* the engine has its request */
+	CLIENT_QUEUED,  /* waits for a directory to be free */
+	CLIENT_APPLYING, /* waits for its command to reach the bus */
+	CLIENT_SENDING,
+	CLIENT_LEFT,    /* gone, but the engine or a bus still has what is its */
+};
+
+/* What the engine was asked for, and so what comes next. */
+enum client_step {
+	STEP_READ,
+	STEP_WRITE,
+	STEP_WRITE_EACH, /* to one target after another */
+	STEP_DIR,
+	STEP_BUSES,      /* a look at the root, to learn what bus.N is */
+	STEP_PROBE,
+	STEP_REFUSE,     /* a directory cannot be read or written: is it there at all? */
+	STEP_ADDRESS,    /* of an alias */
+	STEP_FAMILY,     /* of an alias */
+	STEP_STRUCTURE,  /* the type of a property that is not known here */
+};
+
+struct client {
+	int fd;
+	uint8_t state, step;
+	bool readable, ended; /* as far as the kernel has said; no more bytes come */
+	bool queued;          /* in the round */
+	bool network;         /* not a unix socket */
+	bool is_get, lent, hung_up, once_more;
+	uint8_t alive_left;   /* bytes of a keep-alive that was begun */
+	unsigned target;      /* of several that are asked in turn */
+	int32_t worst;        /* of those asked so far; 1: none answered yet */
+	int64_t since_ns;     /* of the state; READING: of the first byte */
+	int64_t tick_ns;      /* of the last progress, or the last keep-alive */
+	uint64_t served;      /* requests */
+
+	size_t have, need, length; /* bytes in area; of the request in it: as far as known, its end */
+	struct request request;
+	struct node node;
+	char path[NODE_PATH_MAX + 16]; /* as the engine was given it */
+	struct engine_guest guest;
+	uint32_t value_len;   /* READ: of what is in the room for the answer */
+	int64_t value_ns;
+	struct signals_command command;
+	struct directory *directory;
+	const uint8_t *out;   /* what is sent */
+	uint32_t out_len, out_at;
+	uint8_t *area;
+};
+
+#define SERVE_COUNTERS(X)                                                                          \
+	X(connections)    /* accepted */                                                           \
+	X(clients)        /* now */                                                                \
+	X(requests)                                                                                \
+	X(errors)         /* answered with an error */                                             \
+	X(kept_answers)   /* reads that needed no bus */                                           \
+	X(bus_requests)   /* handed to the engine */                                               \
+	X(keepalives)                                                                              \
+	X(refused_full)   /* no room for another client */                                         \
+	X(refused_peers)  /* not in ListenAllow */                                                 \
+	X(refused_writes) /* in read-only mode */                                                  \
+	X(evicted)        /* idle, closed to make room */                                          \
+	X(garbage)        /* no requests */                                                        \
+	X(timeouts)       /* half requests, answers nobody took, idle connections */               \
+	X(bytes_in)                                                                                \
+	X(bytes_out)
+
+enum serve_counter {
+#define X(name) COUNT_##name,
+	SERVE_COUNTERS(X)
+#undef X
+	SERVE_COUNTER_COUNT,
+};
+
+struct serve {
+	const struct config *config;
+	const struct image *image;
+	const char *instance;
+	struct log *log;
+	struct guests guests;
+	struct kept *kept;
+	struct signals *signals;
+	struct buses buses;
+	bool buses_known;
+
+	struct {
+		int fd;
+		bool network;
+	} listeners[SERVER_LISTENERS];
+	unsigned listener_count;
+	bool accepting; /* more connections may wait */
+	int epoll_fd;
+
+	pthread_t thread;
+	bool running;
+	uint32_t stop;
+	int64_t now_ns;
+	int64_t look_ns; /* no time limit of a client ends before */
+
+	uint8_t *areas;
+	struct directory *directories;
+	struct client *clients;
+	uint16_t *free;
+	unsigned free_count, used; /* used: the highest ever in use + 1 */
+	uint16_t *round;           /* clients that have something to do, in turn */
+	unsigned round_at, round_count;
+	unsigned queued;           /* clients that wait for a directory */
+	struct log_rate full_rate, peer_rate;
+	struct bus_counter counters[SERVE_COUNTER_COUNT];
+};
+
+static inline void count(struct serve *s, enum serve_counter what, uint64_t by)
+{
+	bus_count(&s->counters[what], by);
+}
+
+/* listener.c: 0 or a negative errno with the reason in why */
+int listeners_open(struct serve *s, char *why, size_t why_size);
+void listeners_close(struct serve *s);
+/* Take in some of those who wait; false: nobody waits any more. */
+bool listeners_accept(struct serve *s);
+
+/* client.c: connections, bytes and their time limits */
+struct client *client_open(struct serve *s, int fd, bool network);
+void client_close(struct serve *s, struct client *c);
+/* What a bus still had of it is back. */
+void client_back(struct serve *s, struct client *c);
+void client_event(struct serve *s, struct client *c, uint32_t events);
+/* Its turn in the round: at most one request. */
+void client_turn(struct serve *s, struct client *c);
+/* To be looked at in the round. */
+void client_ready(struct serve *s, struct client *c);
+/* Look at all time limits; sets s->look_ns. */
+void clients_look(struct serve *s);
+/* In the state from now on; the next time limit counts from here. */
+void client_enter(struct serve *s, struct client *c, enum client_state state);
+/* The longest idle one that may go for another; false: none. */
+bool client_evict(struct serve *s);
+/* What is sent from now on. */
+void client_send(struct serve *s, struct client *c, const uint8_t *bytes, uint32_t len);
+/* Where the data of an answer go, behind room for its header. */
+uint8_t *client_room(struct client *c);
+
+/* work.c: from a request to its answer */
+void work_begin(struct serve *s, struct client *c);
+/* The engine has answered. */
+void work_answered(struct serve *s, struct client *c);
+/* A directory is free. */
+void work_directory(struct serve *s, struct client *c, struct directory *directory);
+/* Look whether the command has been carried out. */
+void work_applying(struct serve *s, struct client *c);
+/* The answer is on its way, or nobody waits for it. */
+void work_end(struct serve *s, struct client *c);
+void work_release(struct serve *s, struct directory *directory);
+
+#endif

@@ -1,0 +1,209 @@
+/* SPDX-License-Identifier: MIT */
+#include "signals.h"
+
+#include "../libows/handle.h"
+#include "../shm/reader.h"
+#include "../signal/value.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct signals {
+	struct ows *h;
+	bool may_set;
+};
+
+int signals_open(const char *instance, struct signals **out)
+{
+	struct signals *signals = calloc(1, sizeof(*signals));
+	int err = signals ? ows_open(instance, OWS_CONTROL, &signals->h) : -ENOMEM;
+
+	if (!err) {
+		signals->may_set = true;
+	} else if (signals) {
+		err = ows_open(instance, OWS_READ, &signals->h);
+	}
+	/* the one place for what a handle remembers: clients come and go, so it is reset each time */
+	if (!err && ows_find(signals->h, "_DGNRESET") < 0)
+		err = -ENOMEM;
+	if (err) {
+		signals_close(signals);
+		return err;
+	}
+	*out = signals;
+	return 0;
+}
+
+void signals_close(struct signals *signals)
+{
+	if (!signals)
+		return;
+	ows_close(signals->h);
+	free(signals);
+}
+
+static int find_name(void *ctx, const char *name, size_t len)
+{
+	return map_find(ctx, name, len);
+}
+
+static int look_up(struct signals *signals, const char *name, struct ows_id *id)
+{
+	struct ows *h = signals->h;
+	int record = attribute_lookup(h->instance, name, find_name, &h->map, &id->attribute);
+
+	if (record < 0)
+		return -ENOENT;
+	id->name = NULL;
+	id->record = record;
+	id->memory = 0;
+	id->stale_after_ns = h->map.infos[record].stale_after_ns;
+	h->memories[0].alarms_seen = 0;
+	h->memories[0].reset_level = h->memories[0].shot_level = false;
+	return 0;
+}
+
+bool signals_has(struct signals *signals, const char *name)
+{
+	struct ows_id id;
+
+	return look_up(signals, name, &id) == 0;
+}
+
+/* Who has no memory of his own gets the count. */
+static int read_alarms(struct ows *h, const struct ows_id *id, char *text, size_t room)
+{
+	char number[VALUE_TEXT_MAX];
+	struct ows_slot slot;
+	int n;
+
+	if (!reader_slot(&h->map.records[id->record], &slot))
+		return -EIO;
+	n = value_to_text(OWS_LARGE, slot.attrs.alarms, number);
+	if ((size_t)n > room)
+		return -EMSGSIZE;
+	memcpy(text, number, (size_t)n);
+	return n;
+}
+
+int signals_read(struct signals *signals, const char *name, int64_t now_ns, char *text,
+                 size_t room)
+{
+	struct ows_value value;
+	struct ows_id id;
+	int err = look_up(signals, name, &id);
+
+	if (err)
+		return err;
+	if (id.attribute == ATTR_ALARM)
+		return read_alarms(signals->h, &id, text, room);
+	err = handle_get_text(signals->h, &id, now_ns, &value, text, room);
+	if (err == -EACCES)
+		return err;
+	if (err == -ENOSPC)
+		return -EMSGSIZE;
+	if (err || !ows_good(value.quality))
+		return -EIO;
+	return value.type == OWS_STRING ? (int)value.len : (int)strlen(text);
+}
+
+/* Blanks and the end of a line, as a shell puts it there, do not belong to a number. */
+static int take_text(const char *text, size_t len, bool is_string, char out[VALUE_STRING_MAX + 1])
+{
+	if (memchr(text, '\0', len))
+		return -EINVAL;
+	while (!is_string && len && strchr(" \t\r\n", text[len - 1]))
+		len--;
+	while (!is_string && len && *text == ' ') {
+		text++;
+		len--;
+	}
+	if (len > VALUE_STRING_MAX)
+		return -EDOM;
+	memcpy(out, text, len);
+	out[len] = '\0';
+	return 0;
+}
+
+/* As in the wire's direction an output that is disabled is one that cannot be written now. */
+static bool takes_commands(const struct ows *h, const struct ows_id *id)
+{
+	struct ows_slot slot;
+
+	return id->attribute != ATTR_VALUE ||
+	       (reader_slot(&h->map.records[id->record], &slot) &&
+	        slot.attrs.flags & OWS_ATTR_WRITE_ENABLE);
+}
+
+static int set(struct signals *signals, struct ows_id *id, int64_t now_ns, const char *text,
+               size_t len, struct signals_command *command)
+{
+	struct ows *h = signals->h;
+	char copy[VALUE_STRING_MAX + 1];
+	uint32_t stamp = 0;
+	int err = take_text(text, len,
+	                    id->attribute == ATTR_VALUE &&
+	                            h->map.records[id->record].type == OWS_STRING,
+	                    copy);
+
+	*command = (struct signals_command){ 0 };
+	if (err)
+		return err;
+	if (!signals->may_set || !takes_commands(h, id))
+		return -EACCES;
+	err = handle_set_text(h, id, copy, &stamp);
+	if (err == -ESTALE && ows_reopen(h) == 0)
+		err = handle_set_text(h, id, copy, &stamp);
+	if (err == -ERANGE)
+		return -EDOM;
+	if (err)
+		return err == -EINVAL || err == -EACCES ? err : -EIO;
+	if (id->attribute == ATTR_VALUE)
+		*command = (struct signals_command){ (unsigned)id->record, stamp, now_ns };
+	return 0;
+}
+
+int signals_write(struct signals *signals, const char *name, int64_t now_ns, const char *text,
+                  size_t len, struct signals_command *command)
+{
+	struct ows_id id;
+	int err = look_up(signals, name, &id);
+
+	return err ? err : set(signals, &id, now_ns, text, len, command);
+}
+
+int signals_write_record(struct signals *signals, unsigned record, int64_t now_ns,
+                         const char *text, size_t len, struct signals_command *command)
+{
+	struct ows_id id = { .record = (int)record, .attribute = ATTR_VALUE };
+
+	return set(signals, &id, now_ns, text, len, command);
+}
+
+int signals_applied(struct signals *signals, const struct signals_command *command)
+{
+	struct ows_sample sample;
+
+	if (!reader_sample(&signals->h->map.records[command->record], &sample))
+		return -EAGAIN;
+	if ((int32_t)(sample.applied - command->stamp) >= 0 && sample.applied)
+		return 0;
+	if (sample.err && sample.tried_ns >= command->since_ns)
+		return sample.err;
+	return -EAGAIN;
+}
+
+bool signals_list(struct signals *signals, struct directory *directory)
+{
+	const struct ows_map *map = &signals->h->map;
+
+	for (uint32_t record = 1; record < map->count; record++) {
+		const char *name = map_name(map, record);
+
+		/* a comma parts the entries of a list */
+		if (!strchr(name, ',') && !directory_add(directory, name, strlen(name)))
+			return false;
+	}
+	return true;
+}

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The table as clients of the protocol see it, in /signals: read and commanded as any consumer of
+ * the shared memory does. A value that is not good is an error and no value.
+ */
+#ifndef SERVE_SIGNALS_H
+#define SERVE_SIGNALS_H
+
+#include "directory.h"
+
+#include "../libows/ows.h"
+
+struct signals;
+
+/*
+ * Open the segments of this instance, which are in place. Without command segment (*why says why)
+ * nothing can be written. Allocates; nothing below does. 0 or a negative errno.
+ */
+int signals_open(const char *instance, struct signals **signals);
+void signals_close(struct signals *signals);
+
+/* Does this name stand for a signal or an attribute? */
+bool signals_has(struct signals *signals, const char *name);
+/*
+ * The text of a signal or attribute. Its length; -ENOENT no such name, -EACCES not readable, -EIO
+ * not good.
+ */
+int signals_read(struct signals *signals, const char *name, int64_t now_ns, char *text,
+                 size_t room);
+
+/* A command that is on its way. */
+struct signals_command {
+	unsigned record; /* 0: nothing to wait for */
+	uint32_t stamp;
+	int64_t since_ns;
+};
+/*
+ * Command a signal or attribute. 0; -ENOENT, -EACCES, -EINVAL no value of its type, -EDOM its type
+ * cannot hold it, -EIO.
+ */
+int signals_write(struct signals *signals, const char *name, int64_t now_ns, const char *text,
+                  size_t len, struct signals_command *command);
+/* The same for the signal of a record. */
+int signals_write_record(struct signals *signals, unsigned record, int64_t now_ns,
+                         const char *text, size_t len, struct signals_command *command);
+/* -EAGAIN: not yet on the bus; 0 it is; else why it could not be written. */
+int signals_applied(struct signals *signals, const struct signals_command *command);
+
+/* All names that a list can hold. False: no room. */
+bool signals_list(struct signals *signals, struct directory *directory);
+
+#endif

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: MIT */
+#include "units.h"
+
+#include "hal/owserver/frame.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A scale as a straight line: client = bus * factor + offset. */
+struct scale {
+	double factor, offset;
+};
+
+/* C, F, K, R */
+static const struct scale temperatures[] = {
+	{ 1, 0 }, { 1.8, 32 }, { 1, 273.15 }, { 1.8, 32 + 459.67 },
+};
+/* mbar, atm, mmHg, inHg, psi, Pa. One mmHg is 133.322387415 Pa, a psi 6894.757293168 Pa. */
+static const double pressures[] = {
+	1, 100 / 101325.0, 100 / 133.322387415, 100 / (25.4 * 133.322387415),
+	100 / 6894.757293168, 100, 1, 1,
+};
+
+static struct scale scale_of(char type, uint32_t flags)
+{
+	struct scale scale = { 1, 0 };
+
+	if (type == 't' || type == 'g')
+		scale = temperatures[FRAME_TEMPERATURE(flags)];
+	else if (type == 'p')
+		scale.factor = pressures[FRAME_PRESSURE(flags)];
+	if (type == 'g') /* a difference */
+		scale.offset = 0;
+	return scale;
+}
+
+static bool is_number(char type)
+{
+	return type && strchr("ifutgp", type);
+}
+
+bool units_asked(uint32_t flags)
+{
+	return FRAME_TEMPERATURE(flags) || pressures[FRAME_PRESSURE(flags)] != 1;
+}
+
+bool units_convert(char type, uint32_t flags)
+{
+	struct scale scale = scale_of(type, flags);
+
+	return scale.factor != 1 || scale.offset != 0;
+}
+
+/* One element; the blanks of its padding do not count. */
+static int parse(const char *text, size_t len, double *number)
+{
+	char copy[64], *end;
+
+	while (len && *text == ' ') {
+		text++;
+		len--;
+	}
+	if (len == 0 || len >= sizeof(copy))
+		return -EINVAL;
+	memcpy(copy, text, len);
+	copy[len] = '\0';
+	*number = strtod(copy, &end);
+	return end == copy ? -EINVAL : 0;
+}
+
+static size_t element(const char *text, size_t len)
+{
+	const char *comma = memchr(text, ',', len);
+
+	return comma ? (size_t)(comma - text) : len;
+}
+
+/* Elements of from into to; both may be of different length. */
+static int each(const struct scale *scale, bool back, const char *from, size_t len, char *to,
+                size_t room)
+{
+	size_t used = 0, at = 0;
+
+	for (;;) {
+		size_t n = element(from + at, len - at);
+		double number;
+		int put;
+
+		if (parse(from + at, n, &number))
+			return -EINVAL;
+		number = back ? (number - scale->offset) / scale->factor
+		              : number * scale->factor + scale->offset;
+		put = snprintf(to + used, room - used, back ? "%.9G" : "%12G", number);
+		if (put < 0 || (size_t)put + 1 >= room - used)
+			return -EMSGSIZE;
+		used += (size_t)put;
+		at += n;
+		if (at == len)
+			return (int)used;
+		to[used++] = ',';
+		at++;
+	}
+}
+
+static size_t trim(char *text, size_t len)
+{
+	size_t used = 0;
+	bool begins = true;
+
+	for (size_t i = 0; i < len; i++) {
+		if (begins && text[i] == ' ')
+			continue;
+		begins = text[i] == ',';
+		text[used++] = text[i];
+	}
+	return used;
+}
+
+/* Of a property that is not known: is it surely a padded number? */
+static bool looks_padded(const char *text, size_t len)
+{
+	return len == 12 && text[0] == ' ' && text[len - 1] >= '0' && text[len - 1] <= '9' &&
+	       strspn(text, " +-.0123456789E") >= len;
+}
+
+int units_show(char type, uint32_t flags, char *text, size_t len, size_t room)
+{
+	char out[1024];
+	int n;
+
+	if (len && units_convert(type, flags)) {
+		struct scale scale = scale_of(type, flags);
+
+		n = each(&scale, false, text, len, out, sizeof(out));
+		if (n < 0)
+			return n == -EINVAL ? -EIO : n;
+		if ((size_t)n > room)
+			return -EMSGSIZE;
+		memcpy(text, out, (size_t)n);
+		len = (size_t)n;
+	}
+	if (flags & FRAME_TRIM && (is_number(type) || (!type && looks_padded(text, len))))
+		len = trim(text, len);
+	return (int)len;
+}
+
+int units_take(char type, uint32_t flags, const char *text, size_t len, char *out, size_t room)
+{
+	struct scale scale = scale_of(type, flags);
+
+	if (len == 0)
+		return -EINVAL;
+	return each(&scale, true, text, len, out, room);
+}
