@@ -49,7 +49,7 @@ def table(target, items, **driver):
     """Inputs by name: path; a name that ends with _out is a byte output."""
     rows = [dict(Name=name, Path=path, Type=raw("byte"), IO=raw("output"))
             if name.endswith("_out") else
-            dict(Name=name, Path=path, Type=raw("double"), IO=raw("input"), Uncached=raw("on"))
+            dict(Name=name, Path=path, Type=raw("double"), IO=raw("input"))
             for name, path in items.items()]
     return owsdtest.rio(target, rows, **{"Timeout": 2, "Period": 0.05, "MaxRetries": 1, **driver})
 
@@ -89,19 +89,19 @@ def test_targets_of_the_command_line_are_wires_with_ways(scene):
 
 
 def bar(scene):
-    """A genuine owserver and a simulated wire with the same ids, as ways to one wire."""
-    server = scene.owserver(mock=["28", "29"])
-    room, relay = server.devices()
-    server.write(room + "/temperature", 17.5)
-    other = wire(scene, "other.sim", f"DS18B20 {room[1:]} temperature 23.5", f"DS2408 {relay[1:]}")
+    """A genuine owserver and a simulated wire with the same id, as ways to one wire."""
+    server = scene.owserver(mock=["28"])
+    device = server.devices()[0]
+    server.write(device + "/temperature", 17.5)
+    other = wire(scene, "other.sim", f"DS18B20 {device[1:]} temperature 23.5")
     daemon = scene.owsd(table(f"{server.target} | {other}", {
-        "room": room + "/temperature", "relay_out": relay + "/PIO.BYTE",
-        "pins": relay + "/sensed.BYTE"}))
+        "room": device + "/temperature", "limit_out": device + "/temphigh",
+        "limit": device + "/temphigh"}))
     until(lambda: served(scene, daemon, "room", server.target) == 17.5, 10, "by owserver")
-    assert scene.owsctl(daemon, "set", "-w", "10", "relay_out", "5").returncode == 0
-    assert server.read(relay + "/PIO.BYTE") == "5"
+    assert scene.owsctl(daemon, "set", "-w", "10", "limit_out", "45").returncode == 0
+    assert server.read(device + "/temphigh") == "45"
     assert states(scene, daemon) == ["up", "suspended"]
-    return server, other, daemon, relay
+    return server, other, daemon, device
 
 
 class Watch(threading.Thread):
@@ -129,39 +129,40 @@ class Watch(threading.Thread):
         return self.seen
 
 
-def returns_and_was_counted(scene, daemon, server, other, relay, watch):
+def returns_and_was_counted(scene, daemon, server, other, device, watch):
     until(lambda: served(scene, daemon, "room", server.target) == 17.5, 60, "back on owserver")
-    until(lambda: server.read(relay + "/PIO.BYTE") == "6", 10, "the output is written there again")
+    until(lambda: server.read(device + "/temphigh") == "46", 10, "the output is written there again")
     assert states(scene, daemon) == ["up", "suspended"]
     # each value with its own target, and never the one with the other's
     assert watch.end() == [(17.5, server.target), (23.5, other), (17.5, server.target)], watch.seen
     assert watch.bad, "the value from before the move was not good in between"
     shown = targets(scene, daemon)
     assert shown[other]["moves"] == 3 and shown[server.target]["moves"] == 3, shown
-    assert [n in daemon.log() for n in (f"{server.target}: down", "is there again")] == [True] * 2
+    for said in (f"from {server.target} to {other}: ", f"from {other} to {server.target}: "):
+        assert said in daemon.log(), said
 
 
 def test_a_way_that_is_killed_is_left_and_taken_again(scene):
-    server, other, daemon, relay = bar(scene)
+    server, other, daemon, device = bar(scene)
     watch = Watch(scene, daemon, "room")
     server.kill()
     until(lambda: served(scene, daemon, "room", other) == 23.5, 20, "the other way")
-    until(lambda: served(scene, daemon, "pins", other) == 0xFA, 10, "the output went with it")
+    until(lambda: served(scene, daemon, "limit", other) == 45, 10, "the output went with it")
     assert states(scene, daemon) == ["suspended", "up"]
-    assert scene.owsctl(daemon, "set", "-w", "10", "relay_out", "6").returncode == 0
+    assert scene.owsctl(daemon, "set", "-w", "10", "limit_out", "46").returncode == 0
     again = scene.again(server)
-    again.write(f"{listed(scene, daemon)['room']['path']}", 17.5)
-    returns_and_was_counted(scene, daemon, again, other, relay, watch)
+    again.write(device + "/temperature", 17.5)
+    returns_and_was_counted(scene, daemon, again, other, device, watch)
 
 
 def test_a_way_that_hangs_is_left_and_taken_again(scene):
-    server, other, daemon, relay = bar(scene)
+    server, other, daemon, device = bar(scene)
     watch = Watch(scene, daemon, "room")
     server.freeze()
     until(lambda: served(scene, daemon, "room", other) == 23.5, 30, "the other way")
-    assert scene.owsctl(daemon, "set", "-w", "10", "relay_out", "6").returncode == 0
+    assert scene.owsctl(daemon, "set", "-w", "10", "limit_out", "46").returncode == 0
     server.thaw()
-    returns_and_was_counted(scene, daemon, server, other, relay, watch)
+    returns_and_was_counted(scene, daemon, server, other, device, watch)
 
 
 def test_a_target_that_hangs_stalls_no_other(scene):
