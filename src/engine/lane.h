@@ -135,6 +135,9 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now
 void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns);
 /* Give requests up whose time is over; returns when the next one's is. */
 int64_t lane_timeouts(struct lane *lane, int64_t now_ns);
+/* No answer at all; answers again. */
+void lane_stuck(struct lane *lane, int64_t now_ns);
+void lane_unstuck(struct lane *lane, int64_t now_ns);
 
 /*
  * guest.c. Is it a guest's turn, where the table has something to ask too (others), or not? Ask for

@@ -18,9 +18,10 @@ static void degrade(struct signal *s)
 		s->sample.err = s->held_err;
 	}
 	s->held = false;
-	if ((s->sample.quality & 0xc0) == 0 || s->sample.quality == OWS_Q_LAST_USABLE)
+	if (s->sample.quality & 0xc0)
+		s->sample.quality = OWS_Q_LAST_USABLE;
+	else if (s->sample.quality != OWS_Q_INITIAL)
 		return;
-	s->sample.quality = OWS_Q_LAST_USABLE;
 	s->sample.err = 0;
 }
 

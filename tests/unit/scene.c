@@ -2,6 +2,7 @@
 #include "scene.h"
 
 #include "hal/path.h"
+#include "src/engine/route.h"
 #include "src/signal/value.h"
 #include "unity.h"
 
@@ -204,14 +205,17 @@ static void suspend(void *ctx, bool yes)
 	struct scene_bus *bus = ctx;
 
 	bus->asked = true;
-	TEST_ASSERT_TRUE_MESSAGE(yes || bus->released || bus->mute,
-	                         "opened and has not let go before");
+	bus->wanted = !yes;
+	bus->asked_ns = bus->scene->now_ns;
+	TEST_ASSERT_TRUE_MESSAGE(yes || bus->released, "opened and has not let go before");
 	bus->when_ns = bus->scene->now_ns + bus->turn_ns;
 	for (unsigned i = 0; !yes && i < bus->scene->bus_count; i++) {
 		const struct scene_bus *other = &bus->scene->bus[i];
 
-		if (other != bus && other->wire == bus->wire && !other->mute)
-			TEST_ASSERT_TRUE_MESSAGE(other->released, "two masters on one wire");
+		if (other != bus && other->wire == bus->wire && !other->released)
+			TEST_ASSERT_TRUE_MESSAGE(bus->scene->now_ns - other->asked_ns >=
+			                                 ROUTE_RELEASE_NS,
+			                         "two masters on one wire");
 	}
 }
 
@@ -293,7 +297,7 @@ void scene_start(struct scene *s)
 			                            .suspend = bus->holds ? suspend : NULL };
 		bus->released = !first;
 		if (bus->holds && first) { /* it opens from the start */
-			bus->released = bus->asked = true;
+			bus->released = bus->asked = bus->wanted = true;
 			bus->when_ns = s->now_ns + bus->turn_ns;
 		}
 	}
@@ -443,7 +447,7 @@ static void turn(struct scene_bus *bus)
 	}
 	bus->when_ns = INT64_MAX;
 	bus->asked = false;
-	if (!bus->released) {
+	if (!bus->wanted) {
 		fail_pending(bus, -ENOTCONN);
 		bus->released = true;
 		tell(s, number, BUS_RELEASED, 0);

@@ -57,7 +57,8 @@ struct scene_bus {
 	/* of a bus that holds hardware */
 	bool there;              /* its target: set by scene_reach(); told when it is opened */
 	bool released;           /* it has let go, or was never opened */
-	bool asked;              /* to let go; or, while released, to open */
+	bool asked, wanted;      /* to let go or to open, and it has not done so yet; which of them */
+	int64_t asked_ns;
 	int64_t turn_ns;         /* it takes to do so; 1 ms */
 	int64_t when_ns;         /* it will have done so; INT64_MAX: nothing was asked */
 	unsigned opened;

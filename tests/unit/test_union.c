@@ -4,6 +4,7 @@
 #include "unity.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 
 static struct scene s;
@@ -392,6 +393,61 @@ static void test_a_write_in_flight_during_a_move_is_made_good_in_its_turn(void)
 	TEST_ASSERT_EQUAL_UINT(1, s.bus[1].writes);
 }
 
+static void test_a_single_write_that_was_on_its_way_is_asked_of_the_new_target(void)
+{
+	struct config_item *pio = scene_output(&s, "pio", PIO, OWS_BYTE);
+
+	pio->writable = false;
+	scene_put_on(&s, 0, PIO, "0", 0);
+	both_up();
+	s.bus[0].latency_ns = 300 * SCENE_MS;
+	scene_set(&s, 1, 4);
+	scene_run(&s, 100 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
+	scene_slot(&s, 1)->one_shot++;
+	scene_ring(&s, 1);
+	scene_run(&s, 100 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].writes);
+	scene_plug(&s, D3, 1);
+	scene_tell(&s, 0, BUS_LOST, D3);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("4", scene_at(&s, PIO));
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[1].writes);
+}
+
+/* One input after as many writes as the target has outputs: those that went count no more. */
+static void test_inputs_are_not_starved_by_outputs_that_came(void)
+{
+	static char path[6][32], name[6][8];
+
+	for (unsigned i = 0; i < 6; i++) {
+		snprintf(path[i], sizeof(path[i]), D3 "/PIO.%u", i);
+		snprintf(name[i], sizeof(name[i]), "pio%u", i);
+		scene_output(&s, name[i], path[i], OWS_BYTE);
+		scene_put_on(&s, 0, path[i], "0", 0);
+	}
+	scene_input(&s, "t2", T2, OWS_DOUBLE);
+	scene_input(&s, "t1", T1, OWS_DOUBLE);
+	scene_put_on(&s, 1, T2, "1", 0);
+	scene_put_on(&s, 0, T1, "1", 0);
+	both_up();
+	scene_run(&s, SCENE_S);
+	scene_plug(&s, D3, 1);
+	scene_tell(&s, 0, BUS_LOST, D3);
+	s.bus[1].latency_ns = 50 * SCENE_MS;
+	s.bus[1].reads = s.bus[1].writes = 0;
+	for (unsigned i = 0; i < 200; i++) {
+		for (unsigned k = 1; k <= 6; k++)
+			scene_set(&s, k, i);
+		scene_run(&s, 10 * SCENE_MS);
+	}
+	TEST_ASSERT_UINT_WITHIN(3, 34, s.bus[1].writes);
+	TEST_ASSERT_UINT_WITHIN(2, 6, s.bus[1].reads);
+	/* and the target they came from serves what is left as if they had never been there */
+	TEST_ASSERT_EQUAL_UINT8(0, scene_sample(&s, 8).target);
+	TEST_ASSERT_TRUE(ows_good(scene_sample(&s, 8).quality));
+}
+
 /* --- Faults of one, and the others ------------------------------------------------------------ */
 
 static void test_a_stuck_target_delays_no_other(void)
@@ -517,6 +573,8 @@ int main(void)
 	RUN_TEST(test_a_safe_value_follows_the_device);
 	RUN_TEST(test_a_write_in_doubt_holds_the_other_target_back_and_is_made_good);
 	RUN_TEST(test_a_write_in_flight_during_a_move_is_made_good_in_its_turn);
+	RUN_TEST(test_a_single_write_that_was_on_its_way_is_asked_of_the_new_target);
+	RUN_TEST(test_inputs_are_not_starved_by_outputs_that_came);
 	RUN_TEST(test_a_stuck_target_delays_no_other);
 	RUN_TEST(test_a_target_without_alarm_items_is_not_asked_for_alarms);
 	RUN_TEST(test_an_alarm_item_is_armed_and_served_where_its_device_is_now);
