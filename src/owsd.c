@@ -22,7 +22,6 @@
 #include <unistd.h>
 
 #define DEFAULT_FILE  "/etc/owsd/owsd.rio"
-#define TARGETS_MAX   16
 #define LISTENS_MAX   16
 #define STOP_NS       2000000000LL
 #define SUPERVISE_NS  500000000LL
@@ -31,7 +30,7 @@
 
 struct options {
 	const char *file, *instance;
-	const char *targets[TARGETS_MAX];
+	const char *targets[CONFIG_TARGETS_MAX];
 	unsigned target_count;
 	const char *listens[LISTENS_MAX];
 	unsigned listen_count;
@@ -74,7 +73,7 @@ static void usage(FILE *out)
 	      "            [--check] [--rt PRIO] [-v] [-V] [-h]\n"
 	      "  -c, --config FILE   configuration (" DEFAULT_FILE ")\n"
 	      "  -n, --name NAME     instance: signal prefix and name of the segments (OWS)\n"
-	      "  -t, --target TARGET in place of TargetName (this version serves one)\n"
+	      "  -t, --target TARGET in place of TargetName; again for another wire\n"
 	      "  -l, --listen ADDRESS in place of Listen: serve the owserver protocol at PORT of this\n"
 	      "                      machine alone, or at HOST:PORT\n"
 	      "      --check         print the configuration as understood, start nothing\n"
@@ -141,8 +140,8 @@ static int parse_options(int argc, char **argv, struct options *o)
 			o->instance = optarg;
 			break;
 		case 't':
-			if (o->target_count == TARGETS_MAX) {
-				complain("at most %d targets", TARGETS_MAX);
+			if (o->target_count == CONFIG_TARGETS_MAX) {
+				complain("-t %s: at most %d targets", optarg, CONFIG_TARGETS_MAX);
 				return EXIT_USAGE;
 			}
 			o->targets[o->target_count++] = optarg;
@@ -200,9 +199,9 @@ static void say(void *ctx, bool is_error, const char *message)
 	fprintf(stderr, "%s\n", message);
 }
 
-static int check_target(const struct config *config, struct config_report *report)
+static int check_target(const struct config *config, const struct config_target *target,
+                        struct config_report *report)
 {
-	const struct config_target *target = &config->targets[0];
 	struct place place = {target->line ? config->file : NULL, target->line, target->column};
 	char why[256];
 	int err = target_check(target->text, why, sizeof(why));
@@ -223,10 +222,8 @@ static int load(const struct options *o, struct config **config)
 		err = config_set_targets(*config, o->targets, o->target_count, &report);
 	if (!err && o->listen_count)
 		err = config_set_listens(*config, o->listens, o->listen_count, &report);
-	if (!err && !config_one_target(*config, &report, true))
-		err = -EINVAL;
-	if (!err)
-		err = check_target(*config, &report);
+	for (unsigned i = 0; !err && i < (*config)->target_count; i++)
+		err = check_target(*config, &(*config)->targets[i], &report);
 	if (!err)
 		err = target_check_options(*config, &report);
 	if (!err) {
@@ -289,6 +286,27 @@ static void supervise(struct host *host, struct log *log, const struct notify *n
 	}
 }
 
+/* As in the file; what does not fit is counted. */
+static void name_targets(const struct config *config, char *text, size_t size)
+{
+	size_t used = 0;
+
+	for (unsigned i = 0; i < config->target_count; i++) {
+		const struct config_target *target = &config->targets[i];
+		const char *before = target->relation == CONFIG_FIRST   ? ""
+		                     : target->relation == CONFIG_COMMA ? ", "
+		                                                        : " | ";
+		int n = snprintf(text + used, size - used, "%s%s", before, target->text);
+
+		if (n < 0 || (size_t)n + 24 >= size - used) {
+			snprintf(text + used, size - used, "%s%u%s", i ? " and " : "",
+			         config->target_count - i, i ? " more" : " of them");
+			return;
+		}
+		used += (size_t)n;
+	}
+}
+
 static int run(const struct options *o, const struct config *config, struct log *log)
 {
 	struct host_setup setup = {
@@ -300,7 +318,7 @@ static int run(const struct options *o, const struct config *config, struct log 
 	int prefix = stderr_is_journal();
 	struct notify notify;
 	struct host *host;
-	char why[512];
+	char why[512], targets[160];
 	bool ended;
 
 	if (notify_open(&notify))
@@ -310,11 +328,11 @@ static int run(const struct options *o, const struct config *config, struct log 
 		complain("%s", why);
 		return EXIT_RUN;
 	}
+	name_targets(config, targets, sizeof(targets));
 	log_notice(log, "owsd %s: instance %s, %u signals from %s, target %s", OWSD_VERSION,
-	           o->instance, config->item_count, o->file, config->targets[0].text);
+	           o->instance, config->item_count, o->file, targets);
 	notify_send(&notify, NOTIFY_READY);
-	notify_status(&notify, "%u signals, target %s", config->item_count,
-	              config->targets[0].text);
+	notify_status(&notify, "%u signals, target %s", config->item_count, targets);
 	supervise(host, log, &notify, prefix, config->period_ns);
 	log_notice(log, "owsd ends: %s", stop_signal == SIGTERM ? "SIGTERM" : "SIGINT");
 	notify_send(&notify, NOTIFY_STOPPING);

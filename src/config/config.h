@@ -120,11 +120,6 @@ int config_set_targets(struct config *config, const char *const *texts, unsigned
 /* Replace where the owserver protocol is served (owsd -l). 0 or -EINVAL. */
 int config_set_listens(struct config *config, const char *const *texts, unsigned count,
                        struct config_report *report);
-/*
- * This version serves one target: say so where there are more, as an error or as a warning. Returns
- * whether there is one only.
- */
-bool config_one_target(const struct config *config, struct config_report *report, bool is_error);
 /* The Bus block of a target, however it is spelt; NULL: it has none. */
 const struct config_bus *config_bus(const struct config *config, const char *target);
 /* Warn of Bus blocks whose target is none of those that are served. */

@@ -345,7 +345,6 @@ int edit_commit(const struct rio *rio, const char *file, struct config_report *r
 
 	if (err)
 		return err;
-	config_one_target(config, report, false);
 	config_free(config);
 	err = replace_file(file, rio->text, rio->len);
 	if (err == -ENOENT && is_dangling(file))

@@ -147,15 +147,3 @@ void targets_add(struct build *build, const char *text, struct place place)
 		p += len + 1;
 	}
 }
-
-bool config_one_target(const struct config *config, struct config_report *report, bool is_error)
-{
-	const struct config_target *target = &config->targets[0];
-	struct place place = {target->line ? config->file : NULL, target->line, target->column};
-
-	if (config->target_count == 1)
-		return true;
-	(is_error ? report_error : report_warning)(
-		report, place, "%u targets; this version of owsd serves one", config->target_count);
-	return false;
-}

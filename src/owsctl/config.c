@@ -136,7 +136,6 @@ static int list(struct ctl *ctl, const char *file)
 
 	if (err)
 		return err == -ENOMEM ? CTL_FAILED : status_of(err);
-	config_one_target(config, &report, false);
 	if (ctl->json)
 		print_json(config);
 	else if (!print_table(config))

@@ -81,16 +81,17 @@ def test_what_cannot_be_a_target_is_refused_by_check_and_start(scene):
     assert scene.owsd_once("--check", "-c", path).returncode == 0
 
 
-def test_more_than_one_target_is_refused_where_it_stands(scene):
-    path = scene.file("two.rio", owsdtest.rio("localhost:4304 | null:", [ITEM]))
+def test_each_of_several_targets_is_checked(scene):
+    path = scene.file("two.rio", owsdtest.rio("localhost:4304 | null:x", [ITEM]))
     for arguments in (["--check", "-c", path], ["-n", scene.name(), "-c", path]):
         done = scene.owsd_once(*arguments)
         assert done.returncode == 2, done
-        assert "two.rio:3:27: error: 2 targets; this version of owsd serves one" in done.stderr
-    assert scene.owsd_once("--check", "-c", path, "-t", "null:").returncode == 0
-    done = scene.owsctl(None, "config", path, "list")
+        assert 'two.rio:3:27: error: target "null:x": nothing may follow' in done.stderr, done
+    done = scene.owsd_once("--check", "-c", path, "-t", "null:, auto", "-t", "far:4304")
     assert done.returncode == 0, done
-    assert "two.rio:3:27: warning: 2 targets; this version" in done.stderr, done.stderr
+    assert '"null:, localhost:4304 | i2c:auto | w1, far:4304"' in done.stdout, done.stdout
+    done = scene.owsd_once("--check", "-c", path, "-t", ",".join(f"h{i}" for i in range(17)))
+    assert done.returncode == 2 and "at most 16 targets" in done.stderr, done
 
 
 def test_owserver_without_a_host_is_warned_of(scene):

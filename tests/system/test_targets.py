@@ -1,0 +1,212 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Several targets: different wires in one table, several ways to one wire, and auto."""
+
+import json
+import os
+import socket
+import threading
+import time
+
+import owsdtest
+import peer
+from owsdtest import raw, until
+
+GOOD = 0xC0
+ONE, TWO, BOTH = "/28.A0B1C2000001", "/28.A0B1C2000002", "/28.A0B1C2000003"
+RELAY = "/29.A0B1C2000004"
+
+
+def listed(scene, daemon):
+    done = scene.owsctl(daemon, "--json", "list")
+    assert done.returncode == 0, done.stderr
+    return {s["name"]: s for s in json.loads(done.stdout)}
+
+
+def served(scene, daemon, name, target):
+    """The value of the signal if it is good and from the target."""
+    s = listed(scene, daemon)[name]
+    return s["value"] if s["good"] and s["target"] == target else None
+
+
+def targets(scene, daemon):
+    done = scene.owsctl(daemon, "--json", "stats")
+    assert done.returncode == 0, done.stderr
+    return {t["name"]: t for t in json.loads(done.stdout)["targets"]}
+
+
+def states(scene, daemon):
+    return [t["state"] for t in targets(scene, daemon).values()]
+
+
+def wire(scene, name, *devices):
+    """A simulated wire as a target."""
+    lines = ["chip DS2482-100 0x18", *devices]
+    return f"sim:{scene.file(name, chr(10).join(lines) + chr(10))}"
+
+
+def table(target, items, **driver):
+    """Inputs by name: path; a name that ends with _out is a byte output."""
+    rows = [dict(Name=name, Path=path, Type=raw("byte"), IO=raw("output"))
+            if name.endswith("_out") else
+            dict(Name=name, Path=path, Type=raw("double"), IO=raw("input"))
+            for name, path in items.items()]
+    return owsdtest.rio(target, rows, **{"Timeout": 2, "Period": 0.05, "MaxRetries": 1, **driver})
+
+
+def test_two_wires_are_one_table(scene):
+    a = wire(scene, "a.sim", "DS18B20 28.A0B1C2000001 temperature 21",
+             "DS18B20 28.A0B1C2000003 temperature 23")
+    b = wire(scene, "b.sim", "DS18B20 28.A0B1C2000002 temperature 22",
+             "DS18B20 28.A0B1C2000003 temperature 33", "DS2408 29.A0B1C2000004")
+    daemon = scene.owsd(table(f"{a}, {b}", {
+        "one": ONE + "/temperature", "two": TWO + "/temperature", "both": BOTH + "/temperature",
+        "relay_out": RELAY + "/PIO.BYTE", "pins": RELAY + "/sensed.BYTE"}))
+    until(lambda: served(scene, daemon, "one", a) == 21, 10, "the first wire's")
+    until(lambda: served(scene, daemon, "two", b) == 22, 20, "the second wire's")
+    until(lambda: served(scene, daemon, "both", a) == 23, 10, "the first that has it")
+    assert scene.owsctl(daemon, "set", "-w", "15", "relay_out", "5").returncode == 0
+    until(lambda: served(scene, daemon, "pins", b) == 0xFA, 10, "an output of the second wire")
+    shown = targets(scene, daemon)
+    assert [shown[t]["wire"] for t in (a, b)] == [0, 1], shown
+    assert states(scene, daemon) == ["up", "up"]
+    until(lambda: [targets(scene, daemon)[t]["signals"] for t in (a, b)] == [2, 3], 10)
+    threads = {open(f"/proc/{daemon.pid}/task/{t}/comm").read().strip()
+               for t in os.listdir(f"/proc/{daemon.pid}/task")}
+    assert {"owsd-engine", "owsd-bus0", "owsd-bus1"} <= threads, threads
+    assert scene.owsctl(daemon, "stats").stdout.count("search_passes of sim:") == 2
+
+
+def test_targets_of_the_command_line_are_wires_with_ways(scene):
+    a = wire(scene, "a.sim", "DS18B20 28.A0B1C2000001 temperature 21")
+    b = wire(scene, "b.sim", "DS18B20 28.A0B1C2000002 temperature 22")
+    config = table("null:", {"one": ONE + "/temperature", "two": TWO + "/temperature"})
+    daemon = scene.owsd(config, "-t", f"127.0.0.1:{owsdtest.free_port()} | {a}", "-t", b)
+    until(lambda: served(scene, daemon, "one", a) == 21, 15, "the second way of the first wire")
+    until(lambda: served(scene, daemon, "two", b) == 22, 15, "the second wire")
+    assert sorted(states(scene, daemon)) == ["suspended", "up", "up"]
+    assert [t["wire"] for t in targets(scene, daemon).values()] == [0, 0, 1]
+
+
+def bar(scene):
+    """A genuine owserver and a simulated wire with the same id, as ways to one wire."""
+    server = scene.owserver(mock=["28"])
+    device = server.devices()[0]
+    server.write(device + "/temperature", 17.5)
+    other = wire(scene, "other.sim", f"DS18B20 {device[1:]} temperature 23.5")
+    daemon = scene.owsd(table(f"{server.target} | {other}", {
+        "room": device + "/temperature", "limit_out": device + "/temphigh",
+        "limit": device + "/temphigh"}))
+    until(lambda: served(scene, daemon, "room", server.target) == 17.5, 10, "by owserver")
+    assert scene.owsctl(daemon, "set", "-w", "10", "limit_out", "45").returncode == 0
+    assert server.read(device + "/temphigh") == "45"
+    assert states(scene, daemon) == ["up", "suspended"]
+    return server, other, daemon, device
+
+
+class Watch(threading.Thread):
+    """Sees every state of a signal that is shown as good: (value, target)."""
+
+    def __init__(self, scene, daemon, name):
+        super().__init__(daemon=True)
+        self.scene, self.owsd, self.signal = scene, daemon, name
+        self.seen, self.bad, self.ended = [], 0, threading.Event()
+        self.start()
+
+    def run(self):
+        while not self.ended.is_set():
+            s = listed(self.scene, self.owsd)[self.signal]
+            here = (s["value"], s["target"])
+            if not s["good"]:
+                self.bad += 1
+            elif not self.seen or self.seen[-1] != here:
+                self.seen.append(here)
+            time.sleep(0.02)
+
+    def end(self):
+        self.ended.set()
+        self.join(20)
+        return self.seen
+
+
+def returns_and_was_counted(scene, daemon, server, other, device, watch):
+    until(lambda: served(scene, daemon, "room", server.target) == 17.5, 60, "back on owserver")
+    until(lambda: server.read(device + "/temphigh") == "46", 10, "the output is written there again")
+    assert states(scene, daemon) == ["up", "suspended"]
+    # each value with its own target, and never the one with the other's
+    assert watch.end() == [(17.5, server.target), (23.5, other), (17.5, server.target)], watch.seen
+    assert watch.bad, "the value from before the move was not good in between"
+    shown = targets(scene, daemon)
+    assert shown[other]["moves"] == 3 and shown[server.target]["moves"] == 3, shown
+    for said in (f"from {server.target} to {other}: ", f"from {other} to {server.target}: "):
+        assert said in daemon.log(), said
+
+
+def test_a_way_that_is_killed_is_left_and_taken_again(scene):
+    server, other, daemon, device = bar(scene)
+    watch = Watch(scene, daemon, "room")
+    server.kill()
+    until(lambda: served(scene, daemon, "room", other) == 23.5, 20, "the other way")
+    until(lambda: served(scene, daemon, "limit", other) == 45, 10, "the output went with it")
+    assert states(scene, daemon) == ["suspended", "up"]
+    assert scene.owsctl(daemon, "set", "-w", "10", "limit_out", "46").returncode == 0
+    again = scene.again(server)
+    again.write(device + "/temperature", 17.5)
+    returns_and_was_counted(scene, daemon, again, other, device, watch)
+
+
+def test_a_way_that_hangs_is_left_and_taken_again(scene):
+    server, other, daemon, device = bar(scene)
+    watch = Watch(scene, daemon, "room")
+    server.freeze()
+    until(lambda: served(scene, daemon, "room", other) == 23.5, 30, "the other way")
+    assert scene.owsctl(daemon, "set", "-w", "10", "limit_out", "46").returncode == 0
+    server.thaw()
+    returns_and_was_counted(scene, daemon, server, other, device, watch)
+
+
+def test_a_target_that_hangs_stalls_no_other(scene):
+    b = wire(scene, "b.sim", "DS2408 29.A0B1C2000004")
+    with peer.Peer({ONE + "/temperature": "      21.5"}) as server:
+        daemon = scene.owsd(table(f"{server.target}, {b}", {
+            "one": ONE + "/temperature", "pins": RELAY + "/sensed.BYTE"}, Timeout=30))
+        until(lambda: served(scene, daemon, "one", server.target) == 21.5, 10)
+        until(lambda: served(scene, daemon, "pins", b) == 255, 10)
+        server.mode = "hang"
+        until(lambda: server.requests and server.requests[-1].path == ONE + "/temperature", 5)
+        for _ in range(3):
+            before = listed(scene, daemon)["pins"]["count"]
+            until(lambda: listed(scene, daemon)["pins"]["count"] > before + 5, 10, "goes on")
+        assert listed(scene, daemon)["pins"]["good"]
+        daemon.stop()
+
+
+def port_is_free(port):
+    with socket.socket() as s:
+        s.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            s.bind(("127.0.0.1", port))
+        except OSError:
+            return False
+    return True
+
+
+def test_auto_says_what_is_missing_and_takes_what_comes(scene):
+    if not port_is_free(4304):
+        owsdtest.skip("something listens at port 4304 of this machine")
+    if os.path.exists("/sys/bus/w1/devices/w1_bus_master1"):
+        owsdtest.skip("the kernel has a 1-Wire master")
+    other = scene.owserver(mock=["28"])  # for the id
+    room = other.devices()[0]
+    other.kill()
+    daemon = scene.owsd(table("null:", {"room": room + "/temperature"}), "-t", "auto")
+    for what in ("localhost:4304: down", "i2c:auto: down", "w1: down", "no 1-Wire master"):
+        until(lambda: what in daemon.log(), 20, what)
+    assert scene.get(daemon, "room") is None
+    again = scene.owserver(mock=["28"], port=4304)
+    again.write(room + "/temperature", 19.25)
+    until(lambda: served(scene, daemon, "room", "localhost:4304") == 19.25, 90, "found")
+
+
+if __name__ == "__main__":
+    owsdtest.main()
