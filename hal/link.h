@@ -10,6 +10,8 @@
  *   -EIO        the way to the chip failed once (refused byte, refused address)
  *   -ENXIO      the chip was reset or changed under us: recover(LINK_CHIP_RESET)
  *   -ENODEV     the adapter is gone: close the master
+ *   -EHOSTDOWN  nobody answered the reset, said late (see flush)
+ *   -EOPNOTSUPP this link cannot: the strong pull-up, the slot, a write behind a read
  *   -ECANCELED  the host shuts down
  */
 #ifndef HAL_LINK_H
@@ -59,8 +61,24 @@ struct link_ops {
 	 * bit 2: the direction taken. NULL: made of bit().
 	 */
 	int (*triplet)(struct link *link, bool direction);
-	/* A whole search; NULL: made of reset, write and triplet (hal/native/search.h). */
-	int (*search)(struct link *link, bool alarm, link_found *found, void *ctx);
+	/*
+	 * A whole search, of one family or (0) of all: 0, what found returned, or an error. NULL: made
+	 * of reset, write and triplet (hal/native/search.h).
+	 */
+	int (*search)(struct link *link, bool alarm, uint8_t family, link_found *found, void *ctx);
+	/*
+	 * Is rom there (alarm: and in alarm)? 1, 0 or an error. Leaves it selected: the next bit() is
+	 * its next slot. NULL: made as search.
+	 */
+	int (*verify)(struct link *link, const uint8_t rom[8], bool alarm);
+	/*
+	 * For links that share their wire, and hold it for one request at a time: such a one keeps what
+	 * is written until something is read, so that a transaction is one request. reset() says 1
+	 * then, and read(), bit() or flush() say -EHOSTDOWN if nobody was there; a write() behind a
+	 * read() of the same transaction would be a request of its own and is refused. This sends what
+	 * is kept, and so does the next reset(); 0 or an error. NULL: nothing is ever kept.
+	 */
+	int (*flush)(struct link *link);
 	/* -EOPNOTSUPP. */
 	int (*speed)(struct link *link, enum link_speed speed);
 	int (*recover)(struct link *link, enum link_rung rung);
@@ -78,6 +96,11 @@ struct link {
 	 * the device's, not the link's, and a conversion is over when its command returns.
 	 */
 	const struct link_files *files;
+	/*
+	 * There is no strong pull-up: LINK_STRONG is refused. EEPROMs are then written by the wire's
+	 * resistor, thermometers fed by the wire do not convert.
+	 */
+	bool passive;
 };
 
 struct link_master;

@@ -93,6 +93,8 @@ static int ask_all(struct native *native, struct job *job)
 		return -ENODEV;
 	if (!err)
 		err = link->ops->bit(link, true, LINK_IDLE);
+	if (err == -EHOSTDOWN)
+		return -ENODEV;
 	if (err < 0) {
 		job->txn.link_error = err;
 		return err;
@@ -134,7 +136,7 @@ void convert_prepare(struct native *native, struct job *job, int64_t now)
 		return;
 	}
 	job->waits = false;
-	int err = prepare(native, job);
+	int err = txn_end(&job->txn, prepare(native, job));
 
 	job_saw(native, job, err, now);
 	if (err < 0) {
@@ -201,7 +203,10 @@ static int send_all(struct link *link, enum link_after after)
 
 	if (err <= 0)
 		return err ? err : -ENODEV;
-	return link->ops->write(link, command, sizeof(command), after);
+	err = link->ops->write(link, command, sizeof(command), after);
+	if (!err && link->ops->flush)
+		err = link->ops->flush(link);
+	return err == -EHOSTDOWN ? -ENODEV : err;
 }
 
 /* All jobs that are due on the channel end with err, as if it had been theirs. */
@@ -286,7 +291,11 @@ static void convert_one(struct native *native, unsigned n)
 	if (!first)
 		return;
 	struct device *device = first->txn.device;
-	int err = txn_command(&first->txn, &command, 1);
+	if (first->txn.link->passive && device->power != POWER_EXTERNAL) {
+		job_failed(native, first, -EOPNOTSUPP);
+		return;
+	}
+	int err = txn_end(&first->txn, txn_command(&first->txn, &command, 1));
 	int64_t now = native_now(native);
 
 	job_saw(native, first, err, now);
@@ -354,7 +363,7 @@ bool convert_step(struct native *native, int64_t now, int64_t *next)
 		}
 		if (plan.parasitic && ask_one(native, n))
 			return true;
-		if (plan.parasitic && !plan.parasitic_due) {
+		if (plan.parasitic && (!plan.parasitic_due || channel->link->passive)) {
 			convert_one(native, n);
 			return true;
 		}
@@ -429,7 +438,7 @@ void convert_all(struct native *native, struct job *job, int64_t now)
 		err = has_family(native, n, &family_20) ? convert_voltage(native, n) : 0;
 	job->txn.channel = n;
 	if (err < 0 && err != -ENODEV) {
-		job->txn.link_error = err == -EBADMSG ? 0 : err;
+		job->txn.link_error = err == -EBADMSG || err == -EOPNOTSUPP ? 0 : err;
 		job_failed(native, job, err);
 		return;
 	}

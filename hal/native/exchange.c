@@ -221,7 +221,7 @@ static void hold(struct native *native, struct job *job)
 void job_run_property(struct native *native, struct job *job, int64_t now)
 {
 	struct txn *txn = &job->txn;
-	int err = run_function(job);
+	int err = txn_end(txn, run_function(job));
 
 	job_saw(native, job, err, now);
 	if (err < 0) {

@@ -95,7 +95,6 @@ static int read_status(struct txn *txn, uint8_t *status)
 /* Change the status byte's bits of mask: read, write, read back. */
 static int change_status(struct txn *txn, uint8_t mask, uint8_t bits)
 {
-	static const uint8_t trigger = 0xff;
 	uint8_t command[] = {WRITE_STATUS, 0x07, 0x00, 0}, status = 0;
 	int err;
 
@@ -110,8 +109,9 @@ static int change_status(struct txn *txn, uint8_t mask, uint8_t bits)
 		err = txn_command(txn, command, sizeof(command));
 		if (!err)
 			err = txn_read_crc16(txn, command, sizeof(command), &status, 0);
+		/* Eight slots more make it take effect. */
 		if (!err)
-			err = txn_write(txn, &trigger, 1);
+			err = txn_read(txn, &status, 1);
 		return err ? err : TXN_MORE;
 	default:
 		err = read_status(txn, &status);

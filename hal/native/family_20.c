@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/native/crc.h"
 #include "hal/native/ds2450.h"
 #include "hal/native/family.h"
 
@@ -53,14 +54,16 @@ static int read_page(struct txn *txn, unsigned page, uint8_t bytes[8])
 
 static int write_byte(struct txn *txn, unsigned address, uint8_t byte)
 {
-	uint8_t command[] = {WRITE_MEMORY, (uint8_t)address, 0x00, byte}, none, back;
+	uint8_t command[] = {WRITE_MEMORY, (uint8_t)address, 0x00, byte}, in[3];
 	int err = txn_command(txn, command, sizeof(command));
 
 	if (!err)
-		err = txn_read_crc16(txn, command, sizeof(command), &none, 0);
-	if (!err)
-		err = txn_read(txn, &back, 1);
-	return err ? err : back == byte ? 0 : -EIO;
+		err = txn_read(txn, in, sizeof(in));
+	if (err)
+		return err;
+	if (!onewire_crc16_matches(onewire_crc16(0, command, sizeof(command)), in))
+		return -EBADMSG;
+	return in[2] == byte ? 0 : -EIO;
 }
 
 /*

@@ -96,7 +96,10 @@ static int leave_test_mode(struct txn *txn)
 	return txn_raw(txn, bytes, sizeof(bytes));
 }
 
-/* Each byte is confirmed, and then its effect on the pins told, before the next. */
+/*
+ * Each byte is confirmed, and then its effect on the pins told, before the next. Where a link does
+ * not take a write behind a read, each has a transaction of its own.
+ */
 int ds2408_put(struct txn *txn, const uint8_t *bytes, unsigned n)
 {
 	uint8_t command[] = {WRITE_OUTPUT, 0, 0}, answer[2];
@@ -106,8 +109,9 @@ int ds2408_put(struct txn *txn, const uint8_t *bytes, unsigned n)
 	for (unsigned i = 0; i < n; i++) {
 		command[1] = bytes[i];
 		command[2] = (uint8_t)~bytes[i];
-		err = i ? txn_write(txn, command + 1, 2)
-		        : txn_command(txn, command, sizeof(command));
+		err = i ? txn_write(txn, command + 1, 2) : -EOPNOTSUPP;
+		if (err == -EOPNOTSUPP)
+			err = txn_command(txn, command, sizeof(command));
 		if (!err)
 			err = txn_read(txn, answer, sizeof(answer));
 		if (err)

@@ -147,7 +147,7 @@ static int whole_found(void *ctx, const uint8_t rom[8])
 /* A link that can only search as a whole does so in one step. */
 static bool only_whole(const struct link *link)
 {
-	return link->ops->search && !link->ops->triplet && !link->ops->bit;
+	return link->ops->search && !link->ops->triplet;
 }
 
 static int next_device(struct native *native, unsigned n, struct search *search, struct job *job)
@@ -163,7 +163,7 @@ static int next_device(struct native *native, unsigned n, struct search *search,
 	bool alarm = search->command == ONEWIRE_ALARM_SEARCH;
 	int err = link->files
 	                  ? link->files->search(link, alarm, search->family, whole_found, &whole)
-	                  : link->ops->search(link, alarm, whole_found, &whole);
+	                  : link->ops->search(link, alarm, search->family, whole_found, &whole);
 	return whole.err ? whole.err : err < 0 ? err : 0;
 }
 

@@ -136,6 +136,8 @@ int search_verify(struct link *link, const uint8_t rom[8], bool alarm)
 {
 	if (link->files)
 		return verify_listed(link, rom, alarm);
+	if (link->ops->verify)
+		return link->ops->verify(link, rom, alarm);
 
 	int present = start(link, alarm ? ONEWIRE_ALARM_SEARCH : ONEWIRE_SEARCH);
 

@@ -194,6 +194,11 @@ static int store(struct txn *txn)
 		txn->phase = 3;
 		return TXN_MORE;
 	case 3:
+		/* Without a strong pull-up it matters who feeds the chip. */
+		if (txn->link->passive && device->power == POWER_UNKNOWN) {
+			err = thermometer_ask_power(txn);
+			return err < 0 ? err : TXN_MORE;
+		}
 		err = txn_command_strong(txn, &copy, 1, COPY_NS);
 		txn->phase = 4;
 		return err;

@@ -17,18 +17,34 @@ int64_t txn_now(const struct txn *txn)
 	return txn->link->env->now(txn->link->env->ctx);
 }
 
-int txn_wait(struct txn *txn, int64_t ns)
-{
-	txn->wake_ns = txn_now(txn) + ns;
-	return TXN_MORE;
-}
-
 static int of_link(struct txn *txn, int result)
 {
 	txn->on_wire = true;
-	if (result < 0 && !txn->link->files)
+	if (result == -EHOSTDOWN) {
+		txn->silent = true;
+		return -ENODEV;
+	}
+	if (result < 0 && result != -EOPNOTSUPP && !txn->link->files)
 		txn->link_error = result;
 	return result;
+}
+
+int txn_end(struct txn *txn, int err)
+{
+	if (!txn->on_wire || !txn->link->ops->flush)
+		return err;
+	int sent = of_link(txn, txn->link->ops->flush(txn->link));
+	return sent < 0 && err >= 0 ? sent : err;
+}
+
+int txn_wait(struct txn *txn, int64_t ns)
+{
+	int err = txn_end(txn, 0);
+
+	if (err)
+		return err;
+	txn->wake_ns = txn_now(txn) + ns;
+	return TXN_MORE;
 }
 
 static int reset(struct txn *txn)
@@ -62,11 +78,20 @@ static int command(struct txn *txn, const uint8_t *bytes, size_t n, enum link_af
 	return of_link(txn, txn->link->ops->write(txn->link, out, 9 + n, after));
 }
 
+/* The strong pull-up, or what takes its place. */
+static int pull(const struct txn *txn, enum link_after *after)
+{
+	*after = txn->link->passive ? LINK_IDLE : LINK_STRONG;
+	return txn->link->passive && txn->device && txn->device->power == POWER_PARASITE
+	               ? -EOPNOTSUPP
+	               : 0;
+}
+
 static int hold(struct txn *txn, int err, int64_t ns)
 {
 	if (err < 0)
 		return err;
-	txn->strong = true;
+	txn->strong = !txn->link->passive;
 	return txn_wait(txn, ns);
 }
 
@@ -77,7 +102,10 @@ int txn_command(struct txn *txn, const uint8_t *bytes, size_t n)
 
 int txn_command_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
 {
-	return hold(txn, command(txn, bytes, n, LINK_STRONG), ns);
+	enum link_after after;
+	int err = pull(txn, &after);
+
+	return err ? err : hold(txn, command(txn, bytes, n, after), ns);
 }
 
 int txn_write(struct txn *txn, const uint8_t *bytes, size_t n)
@@ -87,7 +115,12 @@ int txn_write(struct txn *txn, const uint8_t *bytes, size_t n)
 
 int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
 {
-	return hold(txn, of_link(txn, txn->link->ops->write(txn->link, bytes, n, LINK_STRONG)), ns);
+	enum link_after after;
+	int err = pull(txn, &after);
+
+	if (err)
+		return err;
+	return hold(txn, of_link(txn, txn->link->ops->write(txn->link, bytes, n, after)), ns);
 }
 
 int txn_read(struct txn *txn, uint8_t *bytes, size_t n)

@@ -57,14 +57,15 @@ struct txn {
 };
 
 int64_t txn_now(const struct txn *txn);
-/* Returns TXN_MORE: to be called again ns later. */
+/* Sends what is written so far; then returns TXN_MORE: to be called again ns later. */
 int txn_wait(struct txn *txn, int64_t ns);
 
 /* Reset, match ROM, and n bytes. -ENODEV nobody there. */
 int txn_command(struct txn *txn, const uint8_t *bytes, size_t n);
 /*
  * The same with the strong pull-up after the last bit, for ns. Returns TXN_MORE: to be called
- * again when the pull-up has ended.
+ * again when the pull-up has ended. On a link that has none: without it, but -EOPNOTSUPP for a
+ * thermometer that is known to be fed by the wire.
  */
 int txn_command_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns);
 /* Reset and n bytes, without selecting the device. */
@@ -81,6 +82,11 @@ int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n);
  * n bytes and two of CRC16 (not kept), which covers head (what was sent) and them. -EBADMSG.
  */
 int txn_read_crc16(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t *bytes, size_t n);
+/*
+ * Behind each call of a property function: what a link keeps back is sent (link_ops.flush). err is
+ * what the function returned, and so is this, unless sending failed.
+ */
+int txn_end(struct txn *txn, int err);
 /* Is the device there (found by search, alarm search)? Leaves it selected. 1, 0 or an error. */
 int txn_verify(struct txn *txn, bool alarm);
 

@@ -80,7 +80,7 @@ static int read_simultaneous(struct txn *txn)
 /* A presence pulse, whosever. */
 static int read_present(struct txn *txn)
 {
-	int err = txn_raw(txn, NULL, 0);
+	int err = txn_end(txn, txn_raw(txn, NULL, 0));
 
 	txn->number[0] = err == 0;
 	return err == -ENODEV ? 0 : err;
