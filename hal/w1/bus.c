@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-#include "hal/w1/w1.h"
+#include "hal/w1/netlink.h"
 
 #define LOOK_NS (5 * NATIVE_S)
 
 static int create(const char *where, const struct bus_env *env, struct bus **bus, char *why,
                   size_t why_size)
 {
+	if (w1_is_netlink(where))
+		return w1_netlink_bus.create(where, env, bus, why, why_size);
 	return native_create(&w1_bus, &w1_master, where, env, bus, why, why_size);
 }
 

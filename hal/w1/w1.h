@@ -12,6 +12,8 @@
  *   rw.c thermometer.c ds2438.c ds2413.c   ... family by family
  *   switches.c memory.c   properties that are attributes themselves
  *   alarm.c    what the conditional search would find
+ *
+ * The target "w1:netlink" is in netlink.h.
  */
 #ifndef HAL_W1_W1_H
 #define HAL_W1_W1_H
