@@ -38,6 +38,7 @@ struct ds2482_chip {
 	bool lost;         /* reset or changed under us: nothing goes before a chip reset */
 	uint8_t channel;   /* the current one */
 	uint8_t config;    /* as the chip has it */
+	int64_t claim_ns;  /* env time of the next look whether the chip is still ours */
 	int64_t free_at;   /* env time by which the last operation has ended at the latest */
 	struct ds2482_link link[8];
 };

@@ -4,6 +4,8 @@
 
 #include <errno.h>
 
+#define CLAIM_NS INT64_C(250000000)
+
 static struct ds2482_link *self(struct link *link)
 {
 	return (struct ds2482_link *)link;
@@ -32,10 +34,27 @@ static int arm(struct ds2482_chip *chip)
 	return ds2482_configure(chip, chip->config | DS2482_SPU);
 }
 
+/*
+ * A driver of the kernel may be bound to the chip while we work it. The chip would not tell: that
+ * driver's reset and configuration leave it as ours do. The kernel does, if it is asked.
+ */
+static bool is_ours(struct ds2482_chip *chip)
+{
+	struct i2c_adapter *adapter = chip->master->adapter;
+	int64_t now = ds2482_now(chip->master);
+
+	if (!adapter || now < chip->claim_ns)
+		return true;
+	chip->claim_ns = now + CLAIM_NS;
+	if (adapter->ops->claim(adapter, chip->address) == -EBUSY)
+		chip->lost = true;
+	return !chip->lost;
+}
+
 static int link_reset(struct link *base)
 {
 	struct ds2482_link *link = self(base);
-	int status = ds2482_select(link);
+	int status = is_ours(link->chip) ? ds2482_select(link) : -ENXIO;
 
 	if (status < 0)
 		return status;

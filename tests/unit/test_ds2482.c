@@ -413,17 +413,36 @@ static int driver_claim(struct i2c_adapter *base, uint8_t address)
 	return -EBUSY;
 }
 
-/* What looks like a restart may be a kernel driver that was bound to it: hands off. */
-static void test_a_chip_that_a_driver_took_is_not_reset(void)
+static void driver_takes_it(void)
 {
 	static struct i2c_adapter_ops taken;
 
-	start("chip DS2482-100 0x18\nDS18B20 28.A0B1C2000028 as t temperature 20\n");
-	event("reset 0x18");
-	TEST_ASSERT_EQUAL_INT(-ENXIO, wire->ops->reset(wire));
 	taken = *adapter.adapter.ops;
 	taken.claim = driver_claim;
 	adapter.adapter.ops = &taken;
+}
+
+/* Its reset and configuration leave the chip as ours do. */
+static void test_a_chip_that_a_driver_took_is_left_alone_soon(void)
+{
+	start("chip DS2482-100 0x18\nDS18B20 28.A0B1C2000028 as t temperature 20\n");
+	check_scratchpad();
+	driver_takes_it();
+	host.now += HOST_S;
+	uint64_t transfers = adapter.adapter.transfers;
+	TEST_ASSERT_EQUAL_INT(-ENXIO, wire->ops->reset(wire));
+	TEST_ASSERT_EQUAL_INT(-EBUSY, wire->ops->recover(wire, LINK_CHIP_RESET));
+	TEST_ASSERT_EQUAL_INT(-ENXIO, wire->ops->reset(wire));
+	TEST_ASSERT_EQUAL_UINT64(transfers, adapter.adapter.transfers);
+}
+
+/* What looks like a restart may be a kernel driver that was bound to it: hands off. */
+static void test_a_chip_that_a_driver_took_is_not_reset(void)
+{
+	start("chip DS2482-100 0x18\nDS18B20 28.A0B1C2000028 as t temperature 20\n");
+	event("reset 0x18");
+	TEST_ASSERT_EQUAL_INT(-ENXIO, wire->ops->reset(wire));
+	driver_takes_it();
 	uint64_t transfers = adapter.adapter.transfers;
 	TEST_ASSERT_EQUAL_INT(-EBUSY, wire->ops->recover(wire, LINK_CHIP_RESET));
 	TEST_ASSERT_EQUAL_UINT64(transfers, adapter.adapter.transfers);
@@ -752,6 +771,7 @@ int main(void)
 	RUN_TEST(test_a_where_that_is_none_is_refused);
 	RUN_TEST(test_other_parts_never_get_a_second_byte);
 	RUN_TEST(test_a_chip_of_another_process_is_left_alone_and_said);
+	RUN_TEST(test_a_chip_that_a_driver_took_is_left_alone_soon);
 	RUN_TEST(test_a_chip_that_a_driver_took_is_not_reset);
 	RUN_TEST(test_a_chip_that_restarted_is_noticed_and_set_up_again);
 	RUN_TEST(test_a_stuck_chip_is_an_error_in_time_and_a_reset_frees_it);

@@ -27,7 +27,11 @@ start_server() {
 	server=$!
 }
 
-# NAME VALUE: set, and seen at the pins of the board, by whatever way
+answers() {
+	owdump 4304 dir / | grep -q '^/28'
+}
+
+# NAME VALUE TARGET: set, and seen at the pins of the board, by whatever way
 switches() {
 	owsctl set relays $2 || return 1
 	does "$1" within $moved_within served pins $((255 - $2)) "$3"
@@ -38,6 +42,7 @@ for module in wire ds2482 w1_therm w1_ds2408; do
 	modprobe $module
 done
 start_server
+does "owserver serves the simulated network" within 30 answers
 owsd -c /rig/ways.rio -t "localhost:4304 | i2c:/dev/i2c-0:0x18 | w1" >>/tmp/log/owsd 2>&1 &
 owsd=$!
 does "the first way serves" within $moved_within served warm 20.5 localhost:4304
@@ -58,7 +63,7 @@ sim set warm temperature 22.5
 echo ds2482 0x18 >$sys/devices/i2c-0/new_device
 does "a kernel driver that takes the chip gets it" within $moved_within served warm 22.5 w1
 does "which is said with what to do" \
-	said "0x18 on /dev/i2c-0:*.* is claimed by the kernel's ds2482 driver: use target w1, or echo 0-0018 > /sys/bus/i2c/drivers/ds2482/unbind"
+	said "0x18 on /dev/i2c-0 is claimed by the kernel's ds2482 driver: use target w1, or echo 0-0018 > /sys/bus/i2c/drivers/ds2482/unbind"
 does "with the output as it was" within $moved_within served pins 253 w1
 switches "and switches it" 4 w1
 same "the adapter is closed" "" "$(ls -l /proc/$owsd/fd | grep i2c)"
@@ -87,7 +92,10 @@ wait $server 2>/dev/null
 owsd -c /rig/ways.rio -t auto >>/tmp/log/owsd 2>&1 &
 owsd=$!
 does "auto finds the chip" within $moved_within served warm 25.5 i2c:auto
-echo 0-0018 >$sys/drivers/ds2482/bind
+bind() {
+	echo 0-0018 >$sys/drivers/ds2482/bind
+}
+within $moved_within bind
 does "or the driver that has it" within $moved_within served warm 25.5 w1
 kill $owsd
 wait $owsd
