@@ -222,6 +222,8 @@ static int load(const struct options *o, struct config **config)
 		err = config_set_targets(*config, o->targets, o->target_count, &report);
 	if (!err && o->listen_count)
 		err = config_set_listens(*config, o->listens, o->listen_count, &report);
+	if (!err)
+		err = config_check_own(*config, &report);
 	for (unsigned i = 0; !err && i < (*config)->target_count; i++)
 		err = check_target(*config, &(*config)->targets[i], &report);
 	if (!err)

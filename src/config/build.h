@@ -25,6 +25,13 @@ const char *build_keep(struct build *build, const char *text, size_t len);
 /* Zeroed room for count elements and one more; NULL and no_memory if there is none. */
 void *build_take(struct build *build, size_t count, size_t size);
 
+/*
+ * The one spelling by which targets of an owserver are compared: "owserver:host:port"; others as
+ * they are.
+ */
+#define TARGET_MAX 255
+#define TARGET_CANONICAL (TARGET_MAX + 32)
+void target_canonical(const char *text, char out[TARGET_CANONICAL]);
 /* Do they mean the same target? */
 bool target_same(const char *a, const char *b);
 

@@ -59,6 +59,7 @@ struct config_target {
 	const char *text; /* "localhost:4304"; never empty */
 	enum config_relation relation;
 	unsigned group; /* of the wire: counts the commas */
+	bool automatic; /* one of the ways of auto */
 	int line, column; /* of TargetName's value; 0: not of the file */
 };
 
@@ -120,6 +121,11 @@ int config_set_targets(struct config *config, const char *const *texts, unsigned
 /* Replace where the owserver protocol is served (owsd -l). 0 or -EINVAL. */
 int config_set_listens(struct config *config, const char *const *texts, unsigned count,
                        struct config_report *report);
+/*
+ * A target that leads back to this owsd's own server is an error; of auto it is left out, with a
+ * warning. 0 or -EINVAL.
+ */
+int config_check_own(struct config *config, struct config_report *report);
 /* The Bus block of a target, however it is spelt; NULL: it has none. */
 const struct config_bus *config_bus(const struct config *config, const char *target);
 /* Warn of Bus blocks whose target is none of those that are served. */

@@ -8,7 +8,6 @@
 
 #define DEFAULT_TARGET "localhost:4304"
 #define DEFAULT_PORT   "4304"
-#define TARGET_MAX     255
 
 #define AUTO           "auto"
 static const char *const auto_ways[] = {DEFAULT_TARGET, "i2c:auto", "w1"};
@@ -25,11 +24,7 @@ static bool is_scheme(const char *text, size_t len)
 	return false;
 }
 
-/*
- * The one spelling by which two targets of an owserver are compared: "owserver:host:port"; others
- * as they are.
- */
-static void canonical(const char *text, char out[TARGET_MAX + 32])
+void target_canonical(const char *text, char out[TARGET_CANONICAL])
 {
 	static const char prefix[] = "owserver:";
 	const char *colon, *host = text;
@@ -41,13 +36,13 @@ static void canonical(const char *text, char out[TARGET_MAX + 32])
 	         (strchr(text, '/') && *text != '['))
 		host = NULL;
 	if (!host || *host == '/') {
-		snprintf(out, TARGET_MAX + 32, "%s", text);
+		snprintf(out, TARGET_CANONICAL, "%s", text);
 		return;
 	}
 	colon = strrchr(host, ':');
 	if (*host == '[' && colon && strchr(colon, ']'))
 		colon = NULL;
-	snprintf(out, TARGET_MAX + 32, "%s%s%s", prefix, *host ? host : "localhost",
+	snprintf(out, TARGET_CANONICAL, "%s%s%s", prefix, *host ? host : "localhost",
 	         colon ? "" : ":" DEFAULT_PORT);
 	for (char *p = out; *p; p++)
 		*p = (char)tolower((unsigned char)*p);
@@ -55,10 +50,10 @@ static void canonical(const char *text, char out[TARGET_MAX + 32])
 
 bool target_same(const char *a, const char *b)
 {
-	char text_a[TARGET_MAX + 32], text_b[TARGET_MAX + 32];
+	char text_a[TARGET_CANONICAL], text_b[TARGET_CANONICAL];
 
-	canonical(a, text_a);
-	canonical(b, text_b);
+	target_canonical(a, text_a);
+	target_canonical(b, text_b);
 	return !strcmp(text_a, text_b);
 }
 
@@ -85,6 +80,7 @@ static void target_add(struct build *build, const char *text, size_t len,
 	}
 	target->text = build_keep(build, text, len);
 	target->relation = config->target_count ? relation : CONFIG_FIRST;
+	target->automatic = false;
 	target->group = 0;
 	if (config->target_count)
 		target->group = target[-1].group + (relation == CONFIG_COMMA);
@@ -107,15 +103,19 @@ static void target_add(struct build *build, const char *text, size_t len,
 static void add_member(struct build *build, const char *text, size_t len,
                        enum config_relation relation, struct place place)
 {
+	struct config *config = &build->box->config;
 	unsigned errors = build->report->errors;
 
 	if (len != strlen(AUTO) || memcmp(text, AUTO, len) != 0) {
 		target_add(build, text, len, relation, place);
 		return;
 	}
-	for (unsigned i = 0; i < AUTO_WAYS && build->report->errors == errors; i++)
+	for (unsigned i = 0; i < AUTO_WAYS && build->report->errors == errors; i++) {
 		target_add(build, auto_ways[i], strlen(auto_ways[i]), i ? CONFIG_BAR : relation,
 		           place);
+		if (build->report->errors == errors)
+			config->targets[config->target_count - 1].automatic = true;
+	}
 }
 
 static bool is_blank(char c)

@@ -243,6 +243,49 @@ static void test_auto_is_a_bar_of_three_ways(void)
 	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "the target \"w1\" stands twice"), said);
 }
 
+static int own(const char *listen, const char *target)
+{
+	char keys[300];
+
+	snprintf(keys, sizeof(keys), "Listen \"%s\"\nTargetName \"%s\"", listen, target);
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, parse_driver(keys), said);
+	said[0] = '\0';
+	return config_check_own(config, &report);
+}
+
+static void test_a_target_that_leads_back_to_owsd_is_refused(void)
+{
+	static const char *const back[][2] = {
+		{"4304", "localhost"}, {"4304", "127.0.0.1:4304"}, {"4304", "[::1]"},
+		{"0.0.0.0:4310", "localhost:4310"}, {"[::]:4310", "owserver:localhost:4310"},
+		{"192.168.1.5:4304", "192.168.1.5"},
+	};
+	static const char *const good[][2] = {
+		{"4305", "localhost"}, {"192.168.1.5:4304", "localhost"}, {"4304", "far:4304"},
+		{"0.0.0.0:4304", "192.168.1.6"}, {"4304", "null:"}, {"0.0.0.0:4310", "[::1]:4310"},
+	};
+
+	for (size_t i = 0; i < sizeof(back) / sizeof(back[0]); i++) {
+		TEST_ASSERT_EQUAL_INT_MESSAGE(-EINVAL, own(back[i][0], back[i][1]), back[i][1]);
+		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "is where this owsd listens"), said);
+	}
+	for (size_t i = 0; i < sizeof(good) / sizeof(good[0]); i++)
+		TEST_ASSERT_EQUAL_INT_MESSAGE(0, own(good[i][0], good[i][1]), said);
+}
+
+static void test_auto_leaves_out_what_leads_back_to_owsd(void)
+{
+	TEST_ASSERT_EQUAL_INT(0, own("4304", "auto, far"));
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "warning: auto looks for no owserver"), said);
+	TEST_ASSERT_EQUAL_UINT(3, config->target_count);
+	TEST_ASSERT_EQUAL_STRING("i2c:auto", config->targets[0].text);
+	TEST_ASSERT_EQUAL_INT(CONFIG_FIRST, config->targets[0].relation);
+	TEST_ASSERT_EQUAL_INT(CONFIG_BAR, config->targets[1].relation);
+	TEST_ASSERT_EQUAL_INT(CONFIG_COMMA, config->targets[2].relation);
+	TEST_ASSERT_EQUAL_UINT(0, config->targets[1].group);
+	TEST_ASSERT_EQUAL_UINT(1, config->targets[2].group);
+}
+
 static void test_more_than_sixteen_targets_are_refused(void)
 {
 	char line[200] = "TargetName \"h1";
@@ -615,6 +658,8 @@ int main(void)
 	RUN_TEST(test_what_can_be_understood_is_only_warned_about);
 	RUN_TEST(test_a_comma_separates_two_wires_and_a_bar_two_ways);
 	RUN_TEST(test_auto_is_a_bar_of_three_ways);
+	RUN_TEST(test_a_target_that_leads_back_to_owsd_is_refused);
+	RUN_TEST(test_auto_leaves_out_what_leads_back_to_owsd);
 	RUN_TEST(test_more_than_sixteen_targets_are_refused);
 	RUN_TEST(test_targets_of_the_command_line_replace_those_of_the_file);
 	RUN_TEST(test_wrong_items_are_errors_with_what_was_expected);
