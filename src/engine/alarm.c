@@ -308,7 +308,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 {
 	struct engine *e = lane->engine;
 	struct alarm_item *i = alarm_current(m);
-	const char *data = m->state == ALARM_DIR ? m->list : (const char *)slot->data;
+	const char *data = m->state == ALARM_DIR ? lane->list : (const char *)slot->data;
 	int err = answer->err, set;
 
 	switch (m->state) {

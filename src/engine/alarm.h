@@ -72,7 +72,6 @@ struct alarm_machine {
 	uint32_t held;         /* the facts that wait for the end of that */
 	int64_t list_ns;       /* earliest time of the next list */
 	int64_t wait_ns;       /* doubles while lists fail */
-	char *list;            /* ALARM_LIST bytes */
 	char list_path[128];   /* "/alarm", or "/alarm/29,12"; if named */
 	bool named;
 	uint8_t families[32];

@@ -122,19 +122,13 @@ int alarm_init(struct alarm_machine *m, uint32_t room, bool searches)
 	if (!room)
 		return 0;
 	m->items = calloc(room, sizeof(*m->items));
-	m->list = calloc(1, ALARM_LIST);
-	if (m->items && m->list)
-		return 0;
-	alarm_free(m);
-	return -ENOMEM;
+	return m->items ? 0 : -ENOMEM;
 }
 
 void alarm_free(struct alarm_machine *m)
 {
 	free(m->items);
-	free(m->list);
 	m->items = NULL;
-	m->list = NULL;
 	m->count = 0;
 }
 

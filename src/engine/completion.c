@@ -123,7 +123,7 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 	case FAILURE_NONE:
 		lane->counters.reads++;
 		signal_update(s, e->period, answer->measured_ns ? answer->measured_ns : now_ns,
-		              now_ns, e->start_ns);
+		              now_ns);
 		s->sample.detail = answer->detail;
 		retry_clear(&s->read_retry);
 		succeed(e, lane, s, quality, now_ns);
@@ -190,8 +190,7 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 		memcpy(s->text, slot->data, slot->req.len);
 		s->written_len = s->sample.len = slot->req.len;
 	}
-	signal_update(s, e->period, answer->measured_ns ? answer->measured_ns : now_ns, now_ns,
-	              e->start_ns);
+	signal_update(s, e->period, answer->measured_ns ? answer->measured_ns : now_ns, now_ns);
 	retry_clear(&s->write_retry);
 	s->write_err = 0;
 	signal_settle(s);

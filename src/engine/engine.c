@@ -46,8 +46,10 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 		engine_destroy(e);
 		return err;
 	}
-	for (uint32_t row = 0; row < e->table.count; row++)
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		e->table.signals[row].known_ns = setup->start_ns;
 		lane_take_row(&e->lanes[0], row);
+	}
 	for (uint32_t i = 0; i < e->alarm_count; i++)
 		alarm_take_item(&e->lanes[0].alarm, &e->alarm_items[i], setup->start_ns);
 	for (uint32_t row = 0; row < e->table.count; row++) {

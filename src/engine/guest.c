@@ -258,3 +258,49 @@ void engine_guest_gone(struct engine *e, struct slot *slot)
 	slot->guest = NULL;
 	e->guests->released(e->guests->ctx, g);
 }
+
+void guests_adopt(struct lane *lane, struct lane *before)
+{
+	lane->guests = before->guests;
+	memset(&before->guests, 0, sizeof(before->guests));
+	for (struct engine_guest *g = lane->guests.first; g; g = g->next)
+		g->at = g->served = lane->index;
+	for (unsigned i = 0; i < lane->depth; i++) {
+		const struct slot *slot = &lane->slots[i];
+
+		if (slot->lent && slot->purpose == FOR_GUEST)
+			slot->guest->at = slot->guest->served = lane->index;
+	}
+}
+
+void guests_refuse(struct lane *lane)
+{
+	const struct bus_answer down = { .err = -ENOTCONN };
+
+	while (lane->guests.first) {
+		struct engine_guest *g = dequeue(lane);
+
+		g->answer = down;
+		answer(lane->engine, g);
+	}
+	for (unsigned i = 0; i < lane->depth; i++) {
+		struct slot *slot = &lane->slots[i];
+
+		if (!slot->lent || slot->purpose != FOR_GUEST || slot->given_up)
+			continue;
+		slot->given_up = true;
+		engine_guest_done(lane->engine, lane, slot, &down);
+	}
+}
+
+void guests_release(struct lane *lane)
+{
+	for (unsigned i = 0; i < lane->depth; i++) {
+		struct slot *slot = &lane->slots[i];
+
+		if (!slot->lent || slot->purpose != FOR_GUEST)
+			continue;
+		slot->lent = false;
+		engine_guest_gone(lane->engine, slot);
+	}
+}

@@ -131,7 +131,7 @@ void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
 	}
 	if (c.dgn_reset && c.dgn_reset != s->dgn_resets) {
 		s->dgn_resets = c.dgn_reset;
-		signal_reset_diagnostics(s, e->period, now_ns, e->start_ns);
+		signal_reset_diagnostics(s, e->period, now_ns);
 	}
 	if (c.acknowledged && c.acknowledged != s->acknowledged) {
 		s->acknowledged = c.acknowledged;
@@ -152,7 +152,7 @@ static void take_driver(struct engine *e, int64_t now_ns)
 	e->transactions = 0;
 	e->reconnects = 0;
 	for (uint32_t row = 0; row < e->table.count; row++) {
-		signal_reset_diagnostics(&e->table.signals[row], e->period, now_ns, e->start_ns);
+		signal_reset_diagnostics(&e->table.signals[row], e->period, now_ns);
 		engine_publish(e, &e->table.signals[row]);
 	}
 	log_info(e->log, "diagnostics of all signals reset");

@@ -18,7 +18,8 @@ int lane_init(struct lane *lane, struct engine *engine, const struct engine_port
 	lane->look_ns = INT64_MAX;
 	lane->slots = calloc(lane->depth, sizeof(*lane->slots));
 	lane->free = calloc(lane->depth, sizeof(*lane->free));
-	if (!lane->slots || !lane->free || due_set_init(&lane->inputs, engine->table.count) ||
+	lane->list = calloc(1, ALARM_LIST);
+	if (!lane->slots || !lane->free || !lane->list || due_set_init(&lane->inputs, engine->table.count) ||
 	    due_set_init(&lane->outputs, engine->table.count) ||
 	    due_set_init(&lane->checks, engine->structure.count) ||
 	    due_set_init(&lane->probes, engine->table.device_count) ||
@@ -37,6 +38,7 @@ void lane_free(struct lane *lane)
 {
 	free(lane->slots);
 	free(lane->free);
+	free(lane->list);
 	due_set_free(&lane->inputs);
 	due_set_free(&lane->outputs);
 	due_set_free(&lane->checks);
@@ -67,15 +69,29 @@ static struct slot *free_slot(struct lane *lane)
 	return lane->free_count ? &lane->slots[lane->free[lane->free_count - 1]] : NULL;
 }
 
+/* What is lent stands for itself: the table may change meanwhile. */
+static void own(struct slot *slot)
+{
+	size_t len;
+
+	slot->req.data = slot->data;
+	if (slot->req.path == slot->path)
+		return;
+	len = strnlen(slot->req.path, sizeof(slot->path) - 1);
+	memcpy(slot->path, slot->req.path, len);
+	slot->path[len] = '\0';
+	slot->req.path = slot->path;
+}
+
 bool lane_lend(struct lane *lane, struct slot *slot, int64_t now_ns)
 {
 	slot->turn++;
 	slot->req.id = (uint32_t)(slot - lane->slots) | (uint32_t)slot->turn << 16;
 	slot->req.deadline_ns = now_ns + lane->engine->config->timeout_ns;
 	if (slot->purpose != FOR_GUEST)
-		slot->req.data = slot->data;
+		own(slot);
 	if (slot->req.op == BUS_DIR && slot->purpose == FOR_ALARM) {
-		slot->req.data = (uint8_t *)lane->alarm.list;
+		slot->req.data = (uint8_t *)lane->list;
 		slot->req.len = ALARM_LIST;
 	}
 	slot->begun_ns = now_ns;
@@ -212,7 +228,7 @@ static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
 	struct alarm_request *r = &lane->alarm_request;
 	struct signal *s;
 
-	/* one that was given up is still lent: its path and room are not ours yet */
+	/* one that was given up is still lent: the room for a list is not ours yet */
 	if (lane->alarm_slot || lane->writes_in_work ||
 	    !alarm_run(&lane->alarm, lane, r, now_ns))
 		return false;

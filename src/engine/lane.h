@@ -16,6 +16,8 @@
 
 /* Room for one answer or one value to be written. */
 #define LANE_DATA (TABLE_TEXT_CAP + 64)
+/* Room for the path of a request; the longest is one of the alarm machine. */
+#define LANE_PATH (2 * ALARM_TEXT + 16)
 /* How long after its deadline a request is given up that the bus did not answer at all. */
 #define LANE_GRACE_NS 250000000LL
 
@@ -38,6 +40,7 @@ struct slot {
 	bool pressing;  /* the guest that goes as an input */
 	struct engine_guest *guest; /* path and data are his */
 	uint8_t data[LANE_DATA];
+	char path[LANE_PATH]; /* of req: what is lent stands for itself, also over a reload */
 };
 
 #define LANE_COUNTERS(X)                                                                           \
@@ -83,13 +86,13 @@ struct lane {
 	struct due_set checks; /* of the engine's structure: to be asked here */
 
 	struct due_set probes; /* devices to be looked for here */
-	bool probing;          /* one of them is with the bus; probe_path is its */
+	bool probing;          /* one of them is with the bus */
 	int64_t probe_ns;      /* earliest time of the next */
-	char probe_path[ALARM_TEXT];
 
 	struct alarm_machine alarm;
-	struct alarm_request alarm_request; /* of alarm_slot; immutable while that is lent */
+	struct alarm_request alarm_request; /* the next, or that of alarm_slot */
 	struct slot *alarm_slot;
+	char *list; /* ALARM_LIST bytes: lent with a request for the list of /alarm */
 
 	struct {
 		struct engine_guest *first, *last; /* who wait */
@@ -112,6 +115,12 @@ void lane_free(struct lane *lane);
 /* The row is served here from now on, no longer: rows that are due, writers, checks of its type. */
 void lane_take_row(struct lane *lane, uint32_t row);
 void lane_drop_row(struct lane *lane, uint32_t row);
+/*
+ * A reload: this lane, which was never filled, goes on where `before` of another engine stands. What
+ * is lent comes over and counts for nothing but its slots, and for outputs that it may still reach:
+ * successors[row] is that row here, TABLE_NO_ROW: it has none.
+ */
+void lane_adopt(struct lane *lane, struct lane *before, const uint32_t *successors);
 /*
  * Requests in flight whose signals another lane serves now (all: every one of them) count for
  * nothing but their slots any more.
@@ -146,5 +155,12 @@ void lane_unstuck(struct lane *lane, int64_t now_ns);
 bool guest_turn(const struct lane *lane, bool others);
 bool guest_ask(struct lane *lane, struct slot *slot, int64_t now_ns);
 void guest_passed(struct lane *lane);
+/*
+ * A reload: who waits, or has something lent, goes on in a lane that has taken the slots over; is
+ * told that its target is down; gets back what it had lent to buses that have ended.
+ */
+void guests_adopt(struct lane *lane, struct lane *before);
+void guests_refuse(struct lane *lane);
+void guests_release(struct lane *lane);
 
 #endif

@@ -2,6 +2,7 @@
 /* What is lent to a bus, until its answer comes or its time is over. */
 #include "private.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <string.h>
 
@@ -85,8 +86,10 @@ bool lane_writes_output(const struct lane *lane, const struct slot *slot)
 {
 	const struct engine *e = lane->engine;
 
+	if (slot->row == TABLE_NO_ROW)
+		return false;
 	if (slot->purpose == FOR_ALARM)
-		return slot->req.op == BUS_WRITE && slot->row != TABLE_NO_ROW &&
+		return slot->req.op == BUS_WRITE &&
 		       strcmp(slot->req.path, e->table.signals[slot->row].item->path) == 0;
 	return slot->purpose == FOR_WRITE;
 }
@@ -163,6 +166,49 @@ void lane_forget_probes(struct lane *lane)
 		due_set_take(&lane->probes, (uint32_t)device);
 		lane->engine->table.devices[device].probing = false;
 	}
+}
+
+static void come_over(struct slot *slot, const uint32_t *successors)
+{
+	bool of_row = slot->purpose == FOR_READ || slot->purpose == FOR_WRITE ||
+	              (slot->purpose == FOR_ALARM && slot->row != TABLE_NO_ROW);
+
+	if (slot->purpose == FOR_GUEST)
+		return;
+	slot->moved = true;
+	slot->row = of_row ? successors[slot->row] : TABLE_NO_ROW;
+}
+
+void lane_adopt(struct lane *lane, struct lane *before, const uint32_t *successors)
+{
+	struct lane own = *lane;
+
+	assert(lane->depth == before->depth && !lane->lent);
+	for (unsigned i = 0; i < before->depth; i++)
+		if (before->slots[i].lent)
+			come_over(&before->slots[i], successors);
+	lane->up = before->up;
+	lane->was_up = before->was_up;
+	lane->stuck = before->stuck;
+	lane->open = before->open;
+	lane->said_up = before->said_up;
+	lane->heard_ns = before->heard_ns;
+	lane->slots = before->slots;
+	lane->free = before->free;
+	lane->free_count = before->free_count;
+	lane->look_ns = before->look_ns;
+	lane->lent = before->lent;
+	lane->writes_in_work = before->writes_in_work;
+	lane->list = before->list;
+	lane->alarm_slot = before->alarm_slot;
+	lane->counters = before->counters;
+	before->slots = own.slots;
+	before->free = own.free;
+	before->free_count = own.free_count;
+	before->lent = before->writes_in_work = 0;
+	before->list = own.list;
+	before->alarm_slot = NULL;
+	guests_adopt(lane, before);
 }
 
 void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now_ns)

@@ -64,7 +64,7 @@ void engine_limits(struct engine *e, struct signal *s)
 	take_value(s);
 	if (s->item->stale_after_ns)
 		stale_at = s->item->stale_after_ns + 1 +
-		           (s->sample.measured_ns ? s->sample.measured_ns : e->start_ns);
+		           (s->sample.measured_ns ? s->sample.measured_ns : s->known_ns);
 	reading = (struct limit_reading){
 		.value = value_number(s->item->type, s->sample.value),
 		.bad = (s->sample.quality & 0xc0) == 0 && s->sample.quality != OWS_Q_INITIAL,

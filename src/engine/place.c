@@ -174,14 +174,14 @@ bool engine_probe_next(struct engine *e, struct lane *lane, struct slot *slot, i
 	text = e->table.signals[e->table.device_rows[d->first]].item->path;
 	if (path_split(text, strlen(text), &path))
 		return false;
-	snprintf(lane->probe_path, sizeof(lane->probe_path), "%.*s",
+	snprintf(slot->path, sizeof(slot->path), "%.*s",
 	         (int)(path.device.text + path.device.len - text), text);
 	slot->purpose = FOR_PROBE;
 	slot->row = (uint32_t)device;
 	slot->req = (struct bus_req){ .op = BUS_PROBE,
 		                      .prio = BUS_INPUT,
 		                      .fresh = true,
-		                      .path = lane->probe_path,
+		                      .path = slot->path,
 		                      .len = sizeof(slot->data) };
 	return true;
 }

@@ -13,7 +13,8 @@
 	X(refused_commands) /* values no program should have put there */                          \
 	X(lost_clients)     /* control programs that stopped beating */                            \
 	X(safe_outputs)     /* outputs put to SafeValue */                                         \
-	X(lost_commands)    /* command segments that were taken away and made again */
+	X(lost_commands)    /* command segments that were taken away and made again */            \
+	X(reloads)          /* changed configurations that were taken over */
 
 struct client {
 	bool known;

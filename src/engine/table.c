@@ -221,11 +221,10 @@ void signal_end(struct signal *s, uint64_t period, uint64_t begun)
 		s->attrs.flags &= ~(uint32_t)OWS_ATTR_IN_WORK;
 }
 
-void signal_update(struct signal *s, uint64_t period, int64_t measured_ns, int64_t now_ns,
-                   int64_t start_ns)
+void signal_update(struct signal *s, uint64_t period, int64_t measured_ns, int64_t now_ns)
 {
 	uint32_t waited = (uint32_t)period - s->attrs.per_base;
-	int64_t age = now_ns - (s->sample.count ? s->sample.measured_ns : start_ns);
+	int64_t age = now_ns - (s->sample.count ? s->sample.measured_ns : s->known_ns);
 
 	if (waited > s->attrs.per_max)
 		s->attrs.per_max = waited;
@@ -239,12 +238,12 @@ void signal_update(struct signal *s, uint64_t period, int64_t measured_ns, int64
 	s->sample.count++;
 }
 
-void signal_reset_diagnostics(struct signal *s, uint64_t period, int64_t now_ns, int64_t start_ns)
+void signal_reset_diagnostics(struct signal *s, uint64_t period, int64_t now_ns)
 {
 	s->attrs.transactions = 0;
 	s->attrs.pend_last = 0;
 	s->attrs.per_max = (uint32_t)period - s->attrs.per_base;
 	s->attrs.pend_max =
 		s->attrs.flags & OWS_ATTR_IN_WORK ? (uint32_t)period - s->attrs.pend_base : 0;
-	s->attrs.age_max_ns = now_ns - (s->sample.count ? s->sample.measured_ns : start_ns);
+	s->attrs.age_max_ns = now_ns - (s->sample.count ? s->sample.measured_ns : s->known_ns);
 }

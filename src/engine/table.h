@@ -28,6 +28,7 @@ struct signal {
 	struct ows_sample sample; /* as published */
 	struct ows_attrs attrs;
 	char *text; /* strings: published text, TABLE_TEXT_CAP bytes */
+	int64_t known_ns; /* since when it is in the table */
 	int64_t updated_ns;
 
 	/* reading */
@@ -120,9 +121,8 @@ void signal_settle(struct signal *s);
 /* A request of this signal begins, ends; an update (value read or written) was made. */
 void signal_begin(struct signal *s, uint64_t period);
 void signal_end(struct signal *s, uint64_t period, uint64_t begun);
-void signal_update(struct signal *s, uint64_t period, int64_t measured_ns, int64_t now_ns,
-                   int64_t start_ns);
+void signal_update(struct signal *s, uint64_t period, int64_t measured_ns, int64_t now_ns);
 /* The edge of _DGNRESET. */
-void signal_reset_diagnostics(struct signal *s, uint64_t period, int64_t now_ns, int64_t start_ns);
+void signal_reset_diagnostics(struct signal *s, uint64_t period, int64_t now_ns);
 
 #endif

@@ -172,3 +172,32 @@ int commands_carry(struct commands *to, const void *memory, size_t size, bool re
 	}
 	return carried;
 }
+
+static uint32_t *ack_at(const struct commands *commands, uint32_t slot)
+{
+	return (uint32_t *)(void *)(commands->base + commands->ack_off) + slot;
+}
+
+void commands_carry_rows(struct commands *to, const struct commands *from, const uint32_t *rows)
+{
+	const struct old_segment old = {
+		.base = from->base,
+		.size = from->size,
+		.slot_off = from->slot_off,
+		.entry_off = from->entry_off,
+		.count = from->slot_count,
+		.text_cap = from->text_cap,
+		.client_off = from->client_off,
+	};
+
+	carry_clients(to, &old);
+	carry_slot(to, 0, &old, 0, 0, false);
+	for (uint32_t i = 1; i < to->slot_count; i++) {
+		uint32_t slot = rows[i - 1] + 1;
+
+		if (rows[i - 1] == UINT32_MAX)
+			continue;
+		carry_slot(to, i, &old, slot, from->text_off[slot], false);
+		*ack_at(to, i) = __atomic_load_n(ack_at(from, slot), __ATOMIC_RELAXED);
+	}
+}

@@ -98,4 +98,10 @@ bool commands_mend(struct commands *commands, bool all);
  */
 int commands_carry(struct commands *to, const void *old, size_t old_size, bool restart);
 
+/*
+ * The same from a segment of this process into one that no consumer has seen, after a reload: rows[i]
+ * is the slot - 1 from which slot i + 1 is carried, 0xffffffff: from none.
+ */
+void commands_carry_rows(struct commands *to, const struct commands *from, const uint32_t *rows);
+
 #endif

@@ -285,6 +285,22 @@ void image_alarm_after(struct image *image, uint32_t number, int64_t after)
 	write_alarm(entry, &whole);
 }
 
+void image_carry_alarms(struct image *image, const struct image *before, const uint32_t *records)
+{
+	uint32_t head = word_get(&before->header->alarm_head);
+
+	for (uint32_t n = head > OWS_ALARMS ? head - OWS_ALARMS : 0; n != head; n++) {
+		struct ows_alarm_entry entry = before->alarms[n % OWS_ALARMS];
+
+		if (entry.number != n || !entry.record ||
+		    records[entry.record - 1] == UINT32_MAX)
+			continue;
+		entry.record = records[entry.record - 1] + 1;
+		write_alarm(&image->alarms[n % OWS_ALARMS], &entry);
+	}
+	word_set(&image->header->alarm_head, head);
+}
+
 void image_target(struct image *image, uint32_t target, uint32_t state, uint32_t reconnects)
 {
 	assert(target < image->header->target_count);

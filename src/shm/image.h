@@ -67,6 +67,11 @@ void image_publish(struct image *image, uint32_t record, const struct ows_sample
  */
 uint32_t image_alarm(struct image *image, const struct ows_alarm_entry *entry);
 void image_alarm_after(struct image *image, uint32_t number, int64_t after);
+/*
+ * The journal of an image before this one goes on in it, with its numbers: what was record r is now
+ * records[r - 1] + 1, or if that is 0xffffffff gone, and so are its entries.
+ */
+void image_carry_alarms(struct image *image, const struct image *before, const uint32_t *records);
 void image_target(struct image *image, uint32_t target, uint32_t state, uint32_t reconnects);
 void image_moves(struct image *image, uint32_t target, uint32_t moves);
 void image_counter(struct image *image, uint32_t counter, uint64_t total);

@@ -2,6 +2,7 @@
 #include "scene.h"
 
 #include "hal/path.h"
+#include "src/engine/adopt.h"
 #include "src/engine/route.h"
 #include "src/signal/value.h"
 #include "unity.h"
@@ -114,6 +115,8 @@ struct scene_bus *scene_bus(struct scene *s, const char *name, unsigned wire)
 	*bus = (struct scene_bus){ .scene = s, .name = name, .wire = wire, .depth = 1 };
 	bus->latency_ns = bus->turn_ns = SCENE_MS;
 	bus->when_ns = INT64_MAX;
+	bus->port = s->bus_count;
+	s->targets[s->bus_count].group = wire;
 	s->targets[s->bus_count].text = name;
 	s->config.target_count = ++s->bus_count;
 	return bus;
@@ -219,7 +222,8 @@ static void suspend(void *ctx, bool yes)
 	}
 }
 
-static void make_memory(struct scene *s)
+static void make_memory(struct scene *s, const struct config *config, struct image *image,
+                        struct commands *commands)
 {
 	static struct image_signal signals[SCENE_ITEMS];
 	static struct command_signal names[SCENE_ITEMS];
@@ -227,24 +231,24 @@ static void make_memory(struct scene *s)
 	const char *targets[SCENE_BUSES];
 	struct image_plan plan = {
 		.signals = signals,
-		.signal_count = s->config.item_count,
+		.signal_count = config->item_count,
 		.targets = targets,
-		.target_count = s->bus_count,
+		.target_count = config->target_count,
 		.counters = counters,
-		.counter_count = engine_counter_count(s->bus_count),
+		.counter_count = engine_counter_count(config->target_count),
 		.generation = 1,
 		.start_id = 7,
 		.pid = 1,
 		.start_ns = s->now_ns,
-		.period_ns = s->config.period_ns,
+		.period_ns = config->period_ns,
 	};
 	size_t size;
 
-	for (unsigned i = 0; i < s->bus_count; i++)
-		targets[i] = s->bus[i].name;
-	engine_counter_plan(s->bus_count, counters);
-	for (unsigned i = 0; i < s->config.item_count; i++) {
-		const struct config_item *item = &s->items[i];
+	for (unsigned i = 0; i < config->target_count; i++)
+		targets[i] = config->targets[i].text;
+	engine_counter_plan(config->target_count, counters);
+	for (unsigned i = 0; i < config->item_count; i++) {
+		const struct config_item *item = &config->items[i];
 
 		signals[i] = (struct image_signal){
 			.name = item->name,
@@ -258,9 +262,9 @@ static void make_memory(struct scene *s)
 	size = image_size(&plan);
 	s->image_memory = aligned_alloc(64, (size + 63) / 64 * 64);
 	memset(s->image_memory, 0, size);
-	image_build(&plan, s->image_memory, &s->image);
+	image_build(&plan, s->image_memory, image);
 	s->command_plan = (struct command_plan){ .signals = names,
-		                                 .signal_count = s->config.item_count,
+		                                 .signal_count = config->item_count,
 		                                 .text_cap = 1024,
 		                                 .generation = 1,
 		                                 .start_id = 7,
@@ -268,40 +272,105 @@ static void make_memory(struct scene *s)
 	size = commands_size(&s->command_plan);
 	s->command_memory = aligned_alloc(64, (size + 63) / 64 * 64);
 	memset(s->command_memory, 0, size);
-	TEST_ASSERT_EQUAL_INT(0, commands_build(&s->command_plan, s->command_memory, &s->commands));
+	TEST_ASSERT_EQUAL_INT(0, commands_build(&s->command_plan, s->command_memory, commands));
+}
+
+static struct scene_bus *bus_named(struct scene *s, const char *name)
+{
+	for (unsigned i = 0; i < s->bus_count; i++)
+		if (strcmp(s->bus[i].name, name) == 0)
+			return &s->bus[i];
+	TEST_FAIL_MESSAGE("no bus of that name");
+	return NULL;
+}
+
+static struct engine *make_engine(struct scene *s, const struct config *config,
+                                  struct engine_port *ports, struct image *image,
+                                  struct commands *commands)
+{
+	struct engine_setup setup = {
+		.config = config,
+		.ports = ports,
+		.port_count = config->target_count,
+		.image = image,
+		.commands = commands,
+		.log = s->log,
+		.start_ns = s->now_ns,
+	};
+	struct engine *engine;
+
+	make_memory(s, config, image, commands);
+	for (unsigned i = 0; i < config->target_count; i++) {
+		struct scene_bus *bus = bus_named(s, config->targets[i].text);
+
+		ports[i] = (struct engine_port){ .target = bus->name,
+			                         .depth = bus->depth,
+			                         .searches = bus->searches,
+			                         .submit = submit,
+			                         .ctx = bus,
+			                         .group = config->targets[i].group,
+			                         .suspend = bus->holds ? suspend : NULL };
+	}
+	TEST_ASSERT_EQUAL_INT(0, engine_create(&setup, &engine));
+	return engine;
 }
 
 void scene_start(struct scene *s)
 {
-	struct engine_setup setup = {
-		.config = &s->config,
-		.ports = s->ports,
-		.port_count = s->bus_count,
-		.image = &s->image,
-		.commands = &s->commands,
-		.log = s->log,
-		.start_ns = s->now_ns,
-	};
-
-	make_memory(s);
 	for (unsigned i = 0; i < s->bus_count; i++) {
 		struct scene_bus *bus = &s->bus[i];
 		bool first = i == 0 || s->bus[i - 1].wire != bus->wire;
 
-		s->ports[i] = (struct engine_port){ .target = bus->name,
-			                            .depth = bus->depth,
-			                            .searches = bus->searches,
-			                            .submit = submit,
-			                            .ctx = bus,
-			                            .group = bus->wire,
-			                            .suspend = bus->holds ? suspend : NULL };
 		bus->released = !first;
 		if (bus->holds && first) { /* it opens from the start */
 			bus->released = bus->asked = bus->wanted = true;
 			bus->when_ns = s->now_ns + bus->turn_ns;
 		}
 	}
-	TEST_ASSERT_EQUAL_INT(0, engine_create(&setup, &s->engine));
+	s->engine = make_engine(s, &s->config, s->ports, &s->image, &s->commands);
+}
+
+static bool stays(const struct config *config, const struct scene_bus *bus)
+{
+	for (unsigned i = 0; i < config->target_count; i++)
+		if (strcmp(config->targets[i].text, bus->name) == 0)
+			return true;
+	return false;
+}
+
+void scene_reload(struct scene *s, void (*change)(struct config *))
+{
+	struct scene_part *before = s->part, *part = calloc(1, sizeof(*part));
+	void *image_memory = s->image_memory, *command_memory = s->command_memory;
+	struct commands commands = s->commands;
+	struct engine *engine = s->engine;
+	const struct config *config = before ? &before->config : &s->config;
+	struct adoption plan;
+
+	part->config = *config;
+	part->config.items = part->items;
+	part->config.targets = part->targets;
+	memcpy(part->items, config->items, sizeof(part->items));
+	memcpy(part->targets, config->targets, sizeof(part->targets));
+	change(&part->config);
+	s->engine = make_engine(s, &part->config, part->ports, &part->image, &part->commands);
+	TEST_ASSERT_EQUAL_INT(0, adoption_plan(&plan, &part->config, config));
+	engine_adopt(s->engine, engine, &plan, s->now_ns);
+	for (unsigned i = 0; i < s->bus_count; i++)
+		if (s->bus[i].port < config->target_count && !stays(&part->config, &s->bus[i]))
+			s->bus[i].pending_count = 0; /* it was ended */
+	for (unsigned i = 0; i < part->config.target_count; i++)
+		bus_named(s, part->config.targets[i].text)->port = i;
+	engine_destroy(engine);
+	adoption_free(&plan);
+	commands_forget(&commands);
+	free(image_memory);
+	free(command_memory);
+	free(before);
+	s->part = part;
+	s->image = part->image;
+	s->commands = part->commands;
+	memcpy(s->items, part->items, sizeof(s->items));
 }
 
 void scene_answer_on(struct scene *s, unsigned bus, uint32_t id, int err, const char *text,
@@ -314,7 +383,7 @@ void scene_answer_on(struct scene *s, unsigned bus, uint32_t id, int err, const 
 		TEST_ASSERT_LESS_OR_EQUAL(req->len, answer.len);
 		memcpy(req->data, text, answer.len);
 	}
-	engine_answer(s->engine, bus, &answer, s->now_ns);
+	engine_answer(s->engine, s->bus[bus].port, &answer, s->now_ns);
 }
 
 void scene_answer(struct scene *s, uint32_t id, int err, const char *text, struct bus_req *req)
@@ -336,7 +405,7 @@ static void tell(struct scene *s, unsigned bus, enum bus_news news, int err)
 {
 	struct bus_event event = { .news = (uint8_t)news, .err = err };
 
-	engine_event(s->engine, bus, &event, s->now_ns);
+	engine_event(s->engine, s->bus[bus].port, &event, s->now_ns);
 }
 
 void scene_down_on(struct scene *s, unsigned bus, int err)
@@ -357,7 +426,7 @@ void scene_tell(struct scene *s, unsigned bus, enum bus_news news, const char *p
 
 	TEST_ASSERT_EQUAL_INT(0, path_split(path, strlen(path), &split));
 	memcpy(event.rom, split.rom, sizeof(event.rom));
-	engine_event(s->engine, bus, &event, s->now_ns);
+	engine_event(s->engine, s->bus[bus].port, &event, s->now_ns);
 }
 
 static void deliver(struct scene_bus *bus, unsigned index)
@@ -519,6 +588,8 @@ void scene_end(struct scene *s)
 	commands_forget(&s->commands);
 	free(s->image_memory);
 	free(s->command_memory);
+	free(s->part);
+	s->part = NULL;
 	s->engine = NULL;
 }
 

@@ -39,6 +39,7 @@ struct scene_pending {
 struct scene_bus {
 	struct scene *scene;
 	const char *name;
+	unsigned port;           /* the engine's number of it */
 	unsigned wire;
 	unsigned depth;          /* set before scene_start(); 1 */
 	bool searches;           /* likewise */
@@ -64,6 +65,16 @@ struct scene_bus {
 	unsigned opened;
 };
 
+/* What belongs to one engine. */
+struct scene_part {
+	struct config config;
+	struct config_item items[SCENE_ITEMS];
+	struct config_target targets[SCENE_BUSES];
+	struct engine_port ports[SCENE_BUSES];
+	struct image image;
+	struct commands commands;
+};
+
 struct scene {
 	struct config config;
 	struct config_item items[SCENE_ITEMS];
@@ -73,6 +84,7 @@ struct scene {
 
 	struct engine *engine;
 	struct engine_port ports[SCENE_BUSES];
+	struct scene_part *part; /* what the engine of a reload stands on; NULL: this here */
 	struct scene_bus bus[SCENE_BUSES];
 	unsigned bus_count;
 	struct log *log;         /* set before scene_start(); NULL */
@@ -120,6 +132,11 @@ void scene_reach(struct scene *scene, unsigned bus, bool there);
 void scene_tell(struct scene *scene, unsigned bus, enum bus_news news, const char *path);
 /* Make memory and engine; the target is down until scene_up(). */
 void scene_start(struct scene *scene);
+/*
+ * A reload: change() edits items, targets (by the names of buses, their count and order as it likes)
+ * and the rest of the configuration. What the buses have is left as it is, and the trace goes on.
+ */
+void scene_reload(struct scene *scene, void (*change)(struct config *));
 /* The types are checked at once, in no time; the requests after that take theirs. */
 void scene_up(struct scene *scene);
 void scene_down(struct scene *scene, int err);
