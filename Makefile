@@ -212,6 +212,8 @@ $(UNIT): %: %.o $(B)/unit/unity.o $(patsubst tests/unit/%.c,$(B)/unit/%.o,$(UNIT
 
 unit-programs: $(UNIT)
 
+# RUNNER runs programs of another architecture: RUNNER=qemu-aarch64-static
+unit: export RUNNER := $(RUNNER)
 unit: all $(UNIT)
 	@sh tests/unit/run $(UNIT)
 

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The driver over the simulated chip, in virtual time. */
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include "hal/ds2482/ds2482.h"
@@ -391,7 +393,11 @@ static void test_a_chip_of_another_process_is_left_alone_and_said(void)
 	const struct ds2482_source source = {
 		.open = open_other, .destroy = forget, .name = "test"};
 	struct i2c_adapter_ops held_ops = other_ops;
+	char name[16] = "", holder[80];
 
+	/* an emulator runs us under its own name */
+	TEST_ASSERT_EQUAL_INT(0, prctl(PR_GET_NAME, name));
+	snprintf(holder, sizeof(holder), "0x1a on test is in use by %s (process", name);
 	held_ops.claim = held_claim;
 	held_ops.release = count_release;
 	other.ops = &held_ops;
@@ -400,8 +406,7 @@ static void test_a_chip_of_another_process_is_left_alone_and_said(void)
 	TEST_ASSERT_EQUAL_INT(0, ds2482_create(&ops, &host.env, &source, "", &master, why,
 	                                       sizeof(why)));
 	TEST_ASSERT_EQUAL_INT(-EADDRINUSE, master->ops->open(master, why, sizeof(why)));
-	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, "0x1a on test is in use by test_ds2482 (process"),
-	                             why);
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, holder), why);
 	/* where nothing was found nobody is held off */
 	TEST_ASSERT_EQUAL_UINT(DS2482_ADDRESSES - 1, released);
 	other.ops = &other_ops;
@@ -722,38 +727,47 @@ static void test_a_bus_that_became_faster_is_learned_from_what_comes_too_early(v
 	}
 }
 
+/* Opening it fails; what it says is kept. */
+static int open_refused(const char *where)
+{
+	int err;
+
+	TEST_ASSERT_EQUAL_INT(0, ds2482_i2c_master.create(where, &host.env, &master, why,
+	                                                  sizeof(why)));
+	err = master->ops->open(master, why, sizeof(why));
+	TEST_ASSERT_EQUAL_UINT(0, master->ops->channels(master));
+	master->ops->destroy(master);
+	master = NULL;
+	if (err == -EOPNOTSUPP)
+		TEST_ASSERT_NOT_NULL(strstr(why, "built without libi2c"));
+	return err;
+}
+
 static void test_an_adapter_that_cannot_be_opened_says_what_to_do(void)
 {
-	static const struct {
-		const char *where;
-		int err;
-		const char *why;
-	} table[] = {
-		{"/dev/i2c-no-such", -ENODEV, "no /dev/i2c-no-such: switch I2C on"},
-		{"/dev/null:0x18.3", -ENOTTY, "/dev/null is no I2C adapter"},
-	};
+	int err = open_refused("/dev/i2c-no-such");
 
-	for (unsigned i = 0; i < 2; i++) {
-		int err;
-
-		TEST_ASSERT_EQUAL_INT(0, ds2482_i2c_master.create(table[i].where, &host.env, &master,
-		                                                  why, sizeof(why)));
-		err = master->ops->open(master, why, sizeof(why));
-		if (err == -EOPNOTSUPP) {
-			TEST_ASSERT_NOT_NULL(strstr(why, "built without libi2c"));
-		} else {
-			TEST_ASSERT_EQUAL_INT(table[i].err, err);
-			TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, table[i].why), why);
-		}
-		TEST_ASSERT_EQUAL_UINT(0, master->ops->channels(master));
-		master->ops->destroy(master);
-		master = NULL;
+	if (err != -EOPNOTSUPP) {
+		TEST_ASSERT_EQUAL_INT(-ENODEV, err);
+		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, "no /dev/i2c-no-such: switch I2C on"), why);
 	}
 	TEST_ASSERT_EQUAL_INT(-EINVAL, ds2482_i2c_master.create("i2c-1", &host.env, &master, why,
 	                                                        sizeof(why)));
 	TEST_ASSERT_EQUAL_INT(-EINVAL, ds2482_i2c_master.create("/dev/i2c-1:0x40", &host.env,
 	                                                        &master, why, sizeof(why)));
 	TEST_ASSERT_NULL(master);
+}
+
+static void test_a_file_that_is_no_adapter_is_told(void)
+{
+	int err = open_refused("/dev/null:0x18.3");
+
+	if (err == -ENOSYS)
+		TEST_IGNORE_MESSAGE("this emulator passes no ioctl of I2C on");
+	if (err == -EOPNOTSUPP)
+		return;
+	TEST_ASSERT_EQUAL_INT(-ENOTTY, err);
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, "/dev/null is no I2C adapter"), why);
 }
 
 int main(void)
@@ -784,6 +798,7 @@ int main(void)
 	RUN_TEST(test_a_shutdown_ends_every_call);
 	RUN_TEST(test_a_bus_that_became_faster_is_learned_from_what_comes_too_early);
 	RUN_TEST(test_an_adapter_that_cannot_be_opened_says_what_to_do);
+	RUN_TEST(test_a_file_that_is_no_adapter_is_told);
 	RUN_TEST(test_whatever_happens_data_without_an_error_are_right);
 	return UNITY_END();
 }
