@@ -21,7 +21,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define DEFAULT_FILE  "/etc/owsd/owsd.rio"
+#define DEFAULT_DIR   "/etc/owsd"
 #define LISTENS_MAX   16
 #define STOP_NS       2000000000LL
 #define SUPERVISE_NS  500000000LL
@@ -30,6 +30,7 @@
 
 struct options {
 	const char *file, *instance;
+	char default_file[sizeof(DEFAULT_DIR "/.rio") + SEGMENT_NAME_MAX];
 	const char *targets[CONFIG_TARGETS_MAX];
 	unsigned target_count;
 	const char *listens[LISTENS_MAX];
@@ -71,7 +72,7 @@ static void usage(FILE *out)
 {
 	fputs("usage: owsd [-c FILE] [-n NAME] [-t TARGET]... [-l [HOST:]PORT]...\n"
 	      "            [--check] [--rt PRIO] [-v] [-V] [-h]\n"
-	      "  -c, --config FILE   configuration (" DEFAULT_FILE ")\n"
+	      "  -c, --config FILE   configuration (" DEFAULT_DIR "/NAME.rio)\n"
 	      "  -n, --name NAME     instance: signal prefix and name of the segments (OWS)\n"
 	      "  -t, --target TARGET in place of TargetName; again for another wire\n"
 	      "  -l, --listen ADDRESS in place of Listen: serve the owserver protocol at PORT of this\n"
@@ -130,7 +131,7 @@ static int parse_options(int argc, char **argv, struct options *o)
 	long priority;
 	int c;
 
-	*o = (struct options){ .file = DEFAULT_FILE, .instance = "OWS", .level = LOG_LEVEL_NOTICE };
+	*o = (struct options){ .instance = "OWS", .level = LOG_LEVEL_NOTICE };
 	while ((c = getopt_long(argc, argv, "c:n:t:l:vVh", table, NULL)) != -1) {
 		switch (c) {
 		case 'c':
@@ -188,6 +189,11 @@ static int parse_options(int argc, char **argv, struct options *o)
 		         "not first a dot",
 		         o->instance, SEGMENT_NAME_MAX);
 		return EXIT_USAGE;
+	}
+	if (!o->file) {
+		snprintf(o->default_file, sizeof(o->default_file), DEFAULT_DIR "/%s.rio",
+		         o->instance);
+		o->file = o->default_file;
 	}
 	return -1;
 }
