@@ -8,6 +8,8 @@
 #   make all unit soak system bench install uninstall clean
 #   make clang sanitize m32       the slower checks
 #   make test-kernel              Debian's own kernel and owserver on the simulated chip, in QEMU
+#   make deb ARCH=arm64           Debian packages in build/deb; SUITE=trixie for another Debian
+#   make test-package             packages of three architectures, lintian, install to purge
 
 VERSION  := 0.1.0
 SOMAJOR  := 0
@@ -110,7 +112,8 @@ PROGRAMS := $(if $(wildcard src/owsd.c),$(B)/owsd) $(if $(wildcard src/owsctl/ow
 SO       := libows.so.$(VERSION)
 LIBRARY  := $(if $(LIBOWS),$(B)/$(SO) $(B)/libows.a $(B)/libows.pc)
 
-.PHONY: all unit soak system test run bench install uninstall clean \
+.PHONY: all unit soak system test run bench install uninstall install-service uninstall-service \
+        deb test-package clean \
         examples unit-programs benches FORCE clang sanitize asan tsan m32
 all: $(PROGRAMS) $(LIBRARY) $(B)/core.a
 
@@ -331,6 +334,34 @@ uninstall:
 	    $(D)$(PREFIX)/include/ows_layout.h
 	rm -f $(foreach m,$(MAN),$(D)$(MANDIR)/man$(patsubst .%,%,$(suffix $(m)))/$(notdir $(m)))
 	rm -rf $(D)$(DATADIR)
+
+# The service for a systemd that looks below PREFIX, as it does in /usr and /usr/local; what has to
+# be done once is said
+SERVICE   := systemd/system/owsd@.service systemd/system/owsd.service sysusers.d/owsd.conf \
+             tmpfiles.d/owsd.conf modules-load.d/owsd.conf udev/rules.d/60-owsd.rules
+install-service:
+	install -d $(addprefix $(D)$(PREFIX)/lib/,$(sort $(dir $(SERVICE)))) $(D)/etc/owsd
+	sed 's,@SBINDIR@,$(PREFIX)/sbin,' board/systemd/owsd@.service >$(D)$(PREFIX)/lib/systemd/system/owsd@.service
+	install -m 644 board/systemd/owsd.service $(D)$(PREFIX)/lib/systemd/system/owsd.service
+	install -m 644 board/systemd/sysusers.conf $(D)$(PREFIX)/lib/sysusers.d/owsd.conf
+	install -m 644 board/systemd/tmpfiles.conf $(D)$(PREFIX)/lib/tmpfiles.d/owsd.conf
+	install -m 644 board/systemd/modules-load.conf $(D)$(PREFIX)/lib/modules-load.d/owsd.conf
+	install -m 644 board/udev/owsd.rules $(D)$(PREFIX)/lib/udev/rules.d/60-owsd.rules
+	[ -e $(D)/etc/owsd/OWS.rio ] || install -m 644 board/debian/OWS.rio $(D)/etc/owsd/OWS.rio
+	@echo 'now: systemd-sysusers; modprobe i2c-dev; udevadm trigger; systemctl daemon-reload;'
+	@echo '     systemctl enable --now owsd      (its configuration: /etc/owsd/OWS.rio)'
+
+uninstall-service:
+	rm -f $(addprefix $(D)$(PREFIX)/lib/,$(SERVICE))
+
+# --- Packages ---------------------------------------------------------------------------------
+# One architecture or several, for this Debian or another: ARCH='arm64 armhf' SUITE=trixie
+deb:
+	@sh board/make-deb $(if $(SUITE),--suite $(SUITE)) $(ARCH)
+
+test-package:
+	@sh board/install-deps chroot
+	@sh tests/package/run $(if $(SUITE),--suite $(SUITE)) $(ARCH)
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 

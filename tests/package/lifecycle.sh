@@ -1,0 +1,104 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# In a clean Debian without a running systemd: the packages beside this script are installed, used,
+# upgraded while they run, removed, installed again and purged. Changes the whole system.
+set -u
+cd "$(dirname "$0")"
+. ./lib.sh
+# The runlevel of a system that runs: without one invoke-rc.d starts nothing
+export DEBIAN_FRONTEND=noninteractive LC_ALL=C RUNLEVEL=2 PREVLEVEL=N
+apt='apt-get -q -y --no-install-recommends -o APT::Sandbox::User=root -o DPkg::Lock::Timeout=60'
+rm -f /usr/sbin/policy-rc.d
+
+# everything DIR: what is on the disk, less what the package system itself remembers
+everything() {
+	find / -xdev \( -path /proc -o -path /sys -o -path /tmp -o -path /run -o -path "$PWD" -o -path /root \
+		-o -path /var/lib/dpkg -o -path /var/lib/apt -o -path /var/cache -o -path /var/log \
+		-o -path /var/lib/systemd \) -prune -o -print | grep -v -x -E \
+		'/etc/(passwd|group|shadow|gshadow|subuid|subgid)-?|/etc/ld.so.cache|/etc/\.pwd\.lock' | sort
+}
+pid() { cat "/run/owsd.OWS.pid" 2>/dev/null; }
+mode() { stat -c '%a %U %G' "$1"; }
+member() { useradd -M -N -g nogroup ${2:+-G "$2"} "$1"; }
+as_user() { user=$1 && shift && setpriv --reuid "$user" --regid nogroup --init-groups "$@"; }
+refused() { ! "$@"; }
+
+# The libraries first, so that what is compared is ours
+libraries=$(dpkg-deb -f owsd_*.deb Depends | tr ',' '\n' | sed -n 's/^ *\(lib[a-z0-9.+-]*\).*/\1/p' |
+	grep -v '^libows\|^libc6$' | tr '\n' ' ')
+does "what it needs is in the system's archive ($libraries)" \
+	sh -c "apt-get -q update && $apt install $libraries"
+everything >/tmp/before
+
+does 'the packages are installed' $apt install ./libows0_*.deb ./libows-dev_*.deb \
+	./python3-ows_*.deb ./owsd_*.deb
+version=$(dpkg-query -W -f '${Version}' owsd)
+same 'their user is in the groups that it needs' 'gpio i2c owsd owsd-control' \
+	"$(id -nG owsd | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/ $//')"
+same 'who cannot log in' /usr/sbin/nologin "$(getent passwd owsd | cut -d: -f7)"
+same 'owsd says its version' "owsd ${version%+*}" "$(owsd --version | head -n 1)"
+does 'and that it has I2C' sh -c 'owsd --version | grep -q "^ *i2c "'
+same 'there is a configuration' '644 root root' "$(mode /etc/owsd/OWS.rio)"
+does 'that owsd takes' owsd --check
+does 'and serves at once' within 10 service owsd status
+does 'a service for systemd is enabled' test -L /etc/systemd/system/owsd.service.wants/owsd@OWS.service
+
+cp house.sim /etc/owsd/house.sim
+sed 's,sim:board/demo/house.sim,sim:/etc/owsd/house.sim,' house.rio >/etc/owsd/OWS.rio
+cp /etc/owsd/OWS.rio /tmp/OWS.rio
+does 'a restart takes another configuration' service owsd restart
+does 'with values' within 20 owsctl get boiler
+same 'it runs as its user' owsd "$(ps -o user= -p "$(pid)" | tr -d ' ')"
+same 'who may look is a group' '640 owsd owsd' "$(mode /dev/shm/owsd.OWS.image)"
+same 'who may act is another' '660 owsd owsd-control' "$(mode /dev/shm/owsd.OWS.command)"
+member looker owsd
+member actor owsd,owsd-control
+member stranger ''
+does 'a member of the first reads' as_user looker owsctl get boiler
+does 'but does not set' refused as_user looker owsctl set pump 1
+does 'a member of both sets' as_user actor owsctl set pump 1
+does 'others do not even read' refused as_user stranger owsctl get boiler
+does 'the output is there' within 20 reads pump 1
+does 'Python reads it' python3 -c 'import ows
+with ows.Ows() as signals:
+    assert signals.get("pump").value == 1 and signals.get("pump").good'
+
+newer ./owsd_*.deb "$version+next" /tmp/next
+before=$(pid)
+does 'an upgrade while it runs' $apt install /tmp/next/owsd_*.deb
+does 'starts it anew' within 10 service owsd status
+does 'as another process' test "$(pid)" != "$before"
+does 'with what was commanded' within 20 reads pump 1
+does 'and the configuration as it was' cmp /etc/owsd/OWS.rio /tmp/OWS.rio
+
+echo 'OwsDrv { Period wrong }' >/etc/owsd/OWS.rio
+newer ./owsd_*.deb "$version+next2" /tmp/next2
+does 'an upgrade with a broken configuration ends' $apt install /tmp/next2/owsd_*.deb
+does 'and owsd is not there' refused service owsd status
+service owsd start >/tmp/broken 2>&1
+does 'but says where it is broken' grep -q '/etc/owsd/OWS.rio:1:' /tmp/broken
+cp /tmp/OWS.rio /etc/owsd/OWS.rio
+does 'mended, it starts' service owsd start
+does 'still with what was commanded' within 20 reads pump 1
+
+does 'the package is removed' $apt remove owsd
+does 'nothing runs' refused pgrep -x owsd
+does 'the configuration stays' cmp /etc/owsd/OWS.rio /tmp/OWS.rio
+does 'the user too' getent passwd owsd
+does 'installed again' $apt install --allow-downgrades ./owsd_*.deb
+does 'it has what was commanded' within 20 reads pump 1
+rm /etc/owsd/OWS.rio
+does 'and again' $apt install --reinstall ./owsd_*.deb
+does 'a configuration that was deleted stays deleted' test ! -e /etc/owsd/OWS.rio
+
+cp /tmp/OWS.rio /etc/owsd/OWS.rio
+cp /tmp/OWS.rio /etc/owsd/HOUSE.rio
+service owsd restart
+does 'all are purged' $apt purge owsd libows0 libows-dev python3-ows
+does 'nothing runs' refused pgrep -x owsd
+same 'no segment stays' '' "$(find /dev/shm -name 'owsd.*')"
+does 'what its owner has made does' test -e /etc/owsd/HOUSE.rio
+rm -r /etc/owsd
+everything >/tmp/after
+same 'nothing else stays' '' "$(diff /tmp/before /tmp/after)"
