@@ -10,6 +10,7 @@
 #   make test-kernel              Debian's own kernel and owserver on the simulated chip, in QEMU
 #   make deb ARCH=arm64           Debian packages in build/deb; SUITE=trixie for another Debian
 #   make test-package             packages of three architectures, lintian, install to purge
+#   make test-gpio                GPIO lines of an arm64 guest, with libgpiod 1.6 and 2.x
 
 VERSION  := 0.1.0
 SOMAJOR  := 0

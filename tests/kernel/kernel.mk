@@ -11,7 +11,7 @@ RIG_PEERS    = $(foreach p,owserver i2cdetect i2cget i2cset i2ctransfer,\
                  $(shell PATH="$$PATH:/usr/sbin" command -v $(p)))
 RIG_GUEST   := $(filter-out %/init,$(wildcard tests/kernel/guest/*))
 
-.PHONY: test-kernel bench-kernel kernel-programs
+.PHONY: test-kernel bench-kernel kernel-programs test-gpio gpio-libraries gpio-programs
 
 $(B)/unit/test_usbip: $(B)/tests/kernel/usbip.o
 $(B)/unit/test_tiny_usb: $(B)/tests/kernel/tiny_usb.o
@@ -44,3 +44,49 @@ bench-kernel:
 	@sh board/install-deps build kernel
 	@$(MAKE) --no-print-directory kernel-programs
 	@$(call rig,bench)
+
+# --- GPIO: an arm64 guest, whose chip is a PL061, with libgpiod 1.6 and 2.x -------------------
+# Both generations of libgpiod, unpacked from Debian's packages; their library names differ, so
+# one guest has both. libgpiod is all that differs between the two owsd.
+ARM64    := build/arm64
+GPIOD_1  := $(abspath build/gpiod-1-arm64)
+GPIOD_2  := $(abspath build/gpiod-2-arm64)
+GPIOD_LIB := usr/lib/aarch64-linux-gnu
+ARM64_MAKE = $(MAKE) --no-print-directory B=$(ARM64) CC='$(if $(filter ccache,$(CC)),ccache )aarch64-linux-gnu-gcc' \
+    AR=aarch64-linux-gnu-ar LIBI2C=0 LIBGPIOD=1 LIBGPIOD_CFLAGS='-isystem $(GPIOD_1)/usr/include' \
+    LIBGPIOD_LIBS='-L$(GPIOD_1)/$(GPIOD_LIB) -lgpiod'
+
+$(GPIOD_1)/usr/include/gpiod.h: board/fetch-debs
+	@sh board/fetch-debs -x bookworm arm64 $(GPIOD_1) libgpiod-dev libgpiod2
+	@touch $@
+$(GPIOD_2)/usr/include/gpiod.h: board/fetch-debs
+	@sh board/fetch-debs -x trixie arm64 $(GPIOD_2) libgpiod-dev libgpiod3
+	@touch $@
+
+# In build/arm64 only: owsd with the other library in place of the archive's
+$(B)/gpiod-2/library.o: hal/gpio/library_v2.c
+	@mkdir -p $(@D)
+	$(call show,CC)
+	$(Q)$(CC) -isystem $(GPIOD_2)/usr/include $(ALL_CFLAGS) -UOWSD_LIBGPIOD -DOWSD_LIBGPIOD=2 -MMD -MP -c -o $@ $<
+$(B)/gpiod-2/%: $(B)/src/%.o $(B)/gpiod-2/library.o $(B)/core.a
+	$(call show,LD)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ -L$(GPIOD_2)/$(GPIOD_LIB) $(LIBS)
+$(B)/owsd-gpiod-1: $(B)/owsd
+	@ln -f $< $@
+$(B)/owsd-gpiod-2: $(B)/gpiod-2/owsd
+	@ln -f $< $@
+
+gpio-libraries: $(GPIOD_1)/usr/include/gpiod.h $(GPIOD_2)/usr/include/gpiod.h
+
+GPIO_PROGRAMS := $(addprefix $(ARM64)/,owsd-gpiod-1 owsd-gpiod-2 owsctl)
+gpio-programs: gpio-libraries
+	@+$(ARM64_MAKE) $(GPIO_PROGRAMS)
+
+# A compiler or packages that cannot be had are skips with OR_SKIP=1; what does not compile is not
+test-gpio:
+	@sh board/install-deps build arm64 $(if $(OR_SKIP),|| true)
+	@$(if $(OR_SKIP),! command -v aarch64-linux-gnu-gcc >/dev/null || ! $(MAKE) --no-print-directory gpio-libraries ||) \
+	    $(MAKE) --no-print-directory gpio-programs
+	@tests/kernel/boot --arch arm64 --time $(KERNEL_TIME) $(if $(OR_SKIP),--or-skip) \
+	    --libraries $(GPIOD_1)/$(GPIOD_LIB) --libraries $(GPIOD_2)/$(GPIOD_LIB) \
+	    $(GPIO_PROGRAMS:%=--program %) $(RIG_GUEST:%=--file %) gpio

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+"""The machines of the rig: which QEMU, whose kernel, where programs find their libraries.
+
+A machine boots a kernel and an initramfs, has its console on one serial port and the results on
+another (port), and knows how a program of its architecture is packed.
+"""
+import lzma
+import os
+import re
+import subprocess
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+FETCH = os.path.join(HERE, "../../board/fetch-debs")
+
+
+class CannotRun(Exception):
+    pass
+
+
+def give_up(why):
+    raise CannotRun(why)
+
+
+def output(*command, cwd=None):
+    try:
+        return subprocess.run(command, check=True, cwd=cwd, stdout=subprocess.PIPE, text=True).stdout
+    except (OSError, subprocess.CalledProcessError) as err:
+        give_up(f"{' '.join(command)}: {err}")
+
+
+class Machine:
+    name = qemu = console = port = ""
+    arguments = serial = ()
+    append = ""
+    install = "board/install-deps kernel"
+    modules = """vhci-hcd i2c-tiny-usb i2c-dev wire ds2482 w1_therm w1_smem w1_ds2405 w1_ds2406
+    w1_ds2408 w1_ds2413 w1_ds2423 w1_ds2430 w1_ds2431 w1_ds2433 w1_ds2438""".split()
+
+    def kernel_package(self, cache):
+        """Name and version of the package that Debian's meta package stands for."""
+        raise NotImplementedError
+
+    def fetch_kernel(self, package, version, folder):
+        """Download it into folder."""
+        raise NotImplementedError
+
+    def unpack_kernel(self, vmlinuz, target):
+        """What QEMU is to start, out of the package's file."""
+        raise NotImplementedError
+
+    def busybox(self, folder):
+        """A static busybox of this architecture, and its applets as far as we can ask it."""
+        raise NotImplementedError
+
+    def libraries(self, program, folders):
+        """(file, name in the guest) of all libraries that the program needs."""
+        raise NotImplementedError
+
+
+class Amd64(Machine):
+    name = "amd64"
+    qemu = "qemu-system-x86_64"
+    console, port = "ttyS0", "ttyS1"
+    arguments = ("-cpu", "max", "-smp", "1", "-m", "1024", "-M", "q35")
+    serial = ("-serial", "stdio")
+    append = "mitigations=off tsc=reliable"
+
+    def kernel_package(self, cache):
+        if output("dpkg", "--print-architecture").strip() != "amd64":
+            give_up("needs an amd64 system")
+        depends = re.search(r"Depends: (linux-image-\S+)", output("apt-cache", "depends",
+                                                                   "linux-image-amd64"))
+        if not depends:
+            give_up("apt knows no linux-image-amd64: run apt-get update")
+        show = output("apt-cache", "show", "--no-all-versions", depends[1])
+        return depends[1], re.search(r"^Version: (\S+)", show, re.M)[1]
+
+    def fetch_kernel(self, package, version, folder):
+        output("apt-get", "-q", "download", f"{package}={version}", cwd=folder)
+
+    def unpack_kernel(self, vmlinuz, target):
+        """The ELF inside has a PVH entry: QEMU starts it without the slow unpacking in the guest."""
+        with open(vmlinuz, "rb") as file:
+            image = file.read()
+        start = image.find(b"\xfd7zXZ\x00")
+        data = lzma.LZMADecompressor().decompress(image[start:]) if start >= 0 else image
+        with open(target, "wb") as file:
+            file.write(data)
+
+    def busybox(self, folder):
+        path = "/bin/busybox"
+        if not os.path.exists(path):
+            give_up(f"needs busybox-static: {self.install}")
+        return path, [name for name in output(path, "--list").split() if name != "busybox"]
+
+    def libraries(self, program, folders):
+        ldd = subprocess.run(["ldd", program], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                             text=True, check=False).stdout
+        return [(path, path) for path in re.findall(r"(/\S+) \(0x", ldd)]
+
+
+class Arm64(Machine):
+    """-M virt: a PL061 is its GPIO chip, whose line 3 is the power key."""
+    name = "arm64"
+    qemu = "qemu-system-aarch64"
+    console, port = "ttyAMA0", "ttyS0"
+    # the second UART of virt is the secure world's: results go over PCI
+    arguments = ("-cpu", "cortex-a57", "-smp", "1", "-m", "512", "-M", "virt")
+    serial = ("-chardev", "stdio,id=results,signal=off", "-device", "pci-serial,chardev=results")
+    install = "board/install-deps arm64"
+    modules = Machine.modules + ["gpio-sim"]
+    meta = "linux-image-arm64"
+    # libc6-arm64-cross
+    sysroot = "/usr/aarch64-linux-gnu/lib"
+
+    def kernel_package(self, cache):
+        folder = os.path.join(cache, "arm64")
+        os.makedirs(folder, exist_ok=True)
+        metas = [name for name in os.listdir(folder) if name.startswith(self.meta + "_")]
+        if not metas:
+            output(FETCH, "-", "arm64", folder, self.meta)
+            metas = [name for name in os.listdir(folder) if name.startswith(self.meta + "_")]
+        depends = output("dpkg-deb", "-f", os.path.join(folder, sorted(metas)[-1]), "Depends")
+        found = re.search(r"(linux-image-\S+) \(= (\S+)\)", depends)
+        return found[1], found[2]
+
+    def fetch_kernel(self, package, version, folder):
+        output(FETCH, "-", "arm64", folder, package)
+
+    def unpack_kernel(self, vmlinuz, target):
+        with open(vmlinuz, "rb") as file, open(target, "wb") as plain:
+            plain.write(file.read())
+
+    def busybox(self, folder):
+        root = os.path.join(folder, "busybox")
+        path = os.path.join(root, "bin/busybox")
+        if not os.path.exists(path):
+            output(FETCH, "-x", "-", "arm64", root, "busybox-static")
+        return path, ["sh"]  # init has it make the others
+
+    def needed(self, program):
+        return re.findall(r"\(NEEDED\).*\[(.*)\]", output("readelf", "-d", program))
+
+    def libraries(self, program, folders):
+        found, names = {}, self.needed(program)
+        if names:
+            names.append("ld-linux-aarch64.so.1")
+        for name in names:
+            if name in found:
+                continue
+            paths = [os.path.join(folder, name) for folder in (*folders, self.sysroot)]
+            path = next((path for path in paths if os.path.exists(path)), None)
+            if not path:
+                give_up(f"{program} needs {name}, which is not in {' '.join(folders)}")
+            found[name] = os.path.realpath(path)
+            names += self.needed(path)
+        return [(path, "/lib/" + name) for name, path in found.items()]
+
+
+MACHINES = {machine.name: machine for machine in (Amd64(), Arm64())}
