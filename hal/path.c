@@ -173,7 +173,7 @@ static bool take_flag(struct path_slice part, struct path *path)
 		path->alarm = true;
 	else if (bus >= 0)
 		path->bus = bus;
-	else
+	else if (!slice_is(part, "text") && !slice_is(part, "json"))
 		return false;
 	return true;
 }

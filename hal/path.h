@@ -3,8 +3,9 @@
  * OWFS paths and device ids. Nothing here allocates, blocks or keeps state; a split path points
  * into the text that was split.
  *
- *     [/uncached][/alarm][/bus.N]/device/property
+ *     [/uncached][/alarm][/bus.N][/text]/device/property
  *
+ * owhttpd puts text or json in front, which mean nothing here.
  * The leading "/" may be absent. The device is a ROM id in one of the six formats of OWFS or an
  * alias; behind a DS2409 coupler it has several components (/1F.x/main/28.y). The property may
  * have directories (HIH4000/humidity).

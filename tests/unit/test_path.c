@@ -194,6 +194,11 @@ static void test_flags_are_taken_in_any_order_and_only_before_the_device(void)
 	TEST_ASSERT_TRUE(path.uncached);
 	TEST_ASSERT_FALSE(path.alarm);
 	TEST_ASSERT_EQUAL_INT(12, path.bus);
+	path = split("/text/uncached/json/bus.1/28.551DDF030000/text");
+	TEST_ASSERT_TRUE(path.uncached);
+	TEST_ASSERT_EQUAL_INT(1, path.bus);
+	slice_equals("28.551DDF030000", path.device, "the forms of owhttpd");
+	slice_equals("text", path.property, "a property");
 	path = split("/29.B89115000000/alarm");
 	TEST_ASSERT_FALSE(path.alarm);
 	TEST_ASSERT_EQUAL_INT(-1, path.bus);
