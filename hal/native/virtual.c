@@ -105,7 +105,12 @@ static int read_single(struct txn *txn)
 
 static int read_name(struct txn *txn)
 {
-	return virtual_put(txn, txn->link ? txn->link->ops->name : "");
+	char name[64];
+
+	/* By this word a client of an owserver learns that nothing behind it is real. */
+	snprintf(name, sizeof(name), "%s%s", txn->native->master->ops->simulated ? "Simulated-" : "",
+	         txn->link ? txn->link->ops->name : "");
+	return virtual_put(txn, name);
 }
 
 static int read_address(struct txn *txn)

@@ -38,7 +38,7 @@ static void test_settings_and_system_have_their_names(void)
 	expect(true, "/system/connections/count_current_buses", "           1");
 	expect(true, "/system/process/pidfile", "");
 	TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, "/system/process/pid", NULL));
-	expect(true, "/bus.0/interface/settings/name", "test wire");
+	expect(true, "/bus.0/interface/settings/name", "Simulated-test wire");
 	expect(true, "/bus.0/interface/settings/overdrive", "0");
 	TEST_ASSERT_EQUAL_INT(-ENOENT, result(BUS_READ, "/interface/settings/name", NULL));
 }
