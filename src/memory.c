@@ -47,6 +47,28 @@ static bool open_image_before(const char *instance, struct segment *before)
 	return false;
 }
 
+/* The way to the served protocol: the socket, else an address of this machine; NULL: none. */
+static const char *served_target(const struct config_serve *serve, char *text, size_t size)
+{
+	static const uint8_t loopback[2][16] = {{127, 0, 0, 1}, {[15] = 1}};
+	static const uint8_t any[16] = {0};
+	struct listen_address address;
+	char where[LISTEN_TEXT_MAX];
+
+	if (serve->socket) {
+		snprintf(text, size, "owserver:%s", serve->socket);
+		return text;
+	}
+	if (!serve->address_count || !serve->addresses[0].port)
+		return NULL;
+	address = serve->addresses[0];
+	if (!memcmp(address.bytes, any, sizeof(any)))
+		memcpy(address.bytes, loopback[address.is_v6], sizeof(any));
+	listen_print(&address, where);
+	snprintf(text, size, "%s", where);
+	return text;
+}
+
 static int make_image(struct memory *m, const struct image_counter *counters,
                       uint32_t counter_count)
 {
@@ -54,9 +76,11 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 	struct image_signal *signals = calloc((size_t)config->item_count + 1, sizeof(*signals));
 	const char *targets[CONFIG_TARGETS_MAX];
 	uint32_t groups[CONFIG_TARGETS_MAX];
+	char served[160];
 	struct image_plan plan = {
 		.signals = signals,
 		.signal_count = config->item_count,
+		.served = served_target(&config->serve, served, sizeof(served)),
 		.targets = targets,
 		.target_count = config->target_count,
 		.groups = groups,

@@ -52,6 +52,13 @@ int ows_daemon(struct ows *h, int64_t now_ns, struct ows_daemon *daemon)
 	return err;
 }
 
+const char *ows_served(const struct ows *h)
+{
+	uint32_t off = h->map.image->served_off;
+
+	return off ? map_string(&h->map, off) : NULL;
+}
+
 int ows_target(struct ows *h, int index, struct ows_target *target)
 {
 	const struct ows_image_header *image = h->map.image;

@@ -204,6 +204,12 @@ struct ows_daemon {
 };
 int ows_daemon(struct ows *h, int64_t now_ns, struct ows_daemon *daemon);
 
+/*
+ * The target that reaches the owserver protocol which owsd serves, as "127.0.0.1:4304" or
+ * "owserver:/run/owsd/OWS.sock"; NULL: it serves none. Valid until ows_reopen().
+ */
+const char *ows_served(const struct ows *h);
+
 /* Targets and counters, for tools. Return -ENOENT past the end. */
 struct ows_target {
 	const char *name;

@@ -87,12 +87,17 @@ static void step(struct target *target, int64_t until_ns)
 
 int target_open(const struct ctl *ctl, int64_t timeout_ns, struct target *target)
 {
-	const char *name = ctl->target ? ctl->target : OPEN_DEFAULT_TARGET;
 	int64_t until = boottime(NULL) + timeout_ns;
+	const char *name = ctl->target;
 	char why[200] = "";
 	int err;
 
-	*target = (struct target){.name = name, .timeout_ns = timeout_ns};
+	*target = (struct target){.timeout_ns = timeout_ns};
+	if (!name && served_find(ctl, &target->served))
+		return CTL_FAILED;
+	if (!name)
+		name = target->served.target[0] ? target->served.target : OPEN_DEFAULT_TARGET;
+	target->name = name;
 	target->env = (struct bus_env){.ctx = target, .now = boottime, .wait = wait_fd,
 	                               .answer = take_answer, .event = take_event};
 	err = bus_create(name, &target->env, &target->bus, why, sizeof(why));
@@ -105,7 +110,11 @@ int target_open(const struct ctl *ctl, int64_t timeout_ns, struct target *target
 	if (target->up)
 		return CTL_DONE;
 	ctl_fail("cannot open %s: %s%s", name, target->down ? target->loss.text : "no answer in time",
-	         ctl->target ? "" : " (-t TARGET names another target)");
+	         ctl->target                ? ""
+	         : !target->served.runs     ? " (-t TARGET names another target)"
+	         : target->served.target[0] ? ""
+	                                    : " (and the owsd that runs here serves no clients: "
+	                                      "ListenSocket in its configuration lets it)");
 	target_close(target);
 	return CTL_FAILED;
 }

@@ -7,6 +7,7 @@
 #define OWSCTL_OPEN_H
 
 #include "../../hal/bus.h"
+#include "served.h"
 #include "verbs.h"
 
 #define OPEN_DEFAULT_TARGET "localhost:4304"
@@ -14,6 +15,7 @@
 
 struct target {
 	const char *name; /* as given */
+	struct served served; /* none was given: of the instance */
 	int64_t timeout_ns; /* for opening, and for each request */
 	struct bus *bus;
 	struct bus_env env;
@@ -31,7 +33,7 @@ struct ask {
 	struct bus_answer answer;
 };
 
-/* Open ctl->target. CTL_DONE; or the status, after having said why. */
+/* Open ctl->target, or what stands in for it. CTL_DONE; or the status, after having said why. */
 int target_open(const struct ctl *ctl, int64_t timeout_ns, struct target *target);
 void target_close(struct target *target);
 

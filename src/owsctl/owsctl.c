@@ -38,7 +38,8 @@ static void usage(FILE *out)
 	for (size_t i = 0; i < VERBS; i++)
 		fprintf(out, "  %-6s %-46s %s\n", verbs[i].name, verbs[i].usage, verbs[i].brief);
 	fputs("  -n NAME    instance, default OWS\n"
-	      "  -t TARGET  what dir, read, write and scan open, default localhost:4304 (owserver)\n"
+	      "  -t TARGET  what dir, read, write and scan open; default: the instance where it\n"
+	      "             serves them, else localhost:4304 (owserver)\n"
 	      "  --json     print JSON\n"
 	      "  -V -h      print the version; this help, with a verb in front: the verb's\n"
 	      "exit status: 0 done, 1 failed, 2 wrong usage, 3 a value is not good\n", out);
@@ -63,6 +64,7 @@ int main(int argc, char **argv)
 		switch (c) {
 		case 'n':
 			ctl.instance = optarg;
+			ctl.named = true;
 			break;
 		case 't':
 			ctl.target = optarg;

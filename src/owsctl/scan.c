@@ -146,7 +146,9 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 		return status;
 	status = scan_target(&target, &scan);
 	if (!status && rio)
-		status = scan_rio(&scan, target.name, inputs_only);
+		status = target.served.target[0]
+		                 ? scan_rio(&scan, target.served.targets, true, inputs_only)
+		                 : scan_rio(&scan, target.name, false, inputs_only);
 	else if (!status && ctl->json)
 		print_json(&scan);
 	else if (!status && !print_table(&scan))

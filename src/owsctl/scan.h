@@ -52,9 +52,9 @@ int scan_target(struct target *target, struct scan *scan);
 void scan_free(struct scan *scan);
 
 /*
- * Print a configuration with that TargetName; without outputs if inputs_only. CTL_DONE, or
+ * Print a configuration with that TargetName, which may be several; without outputs if inputs_only. CTL_DONE, or
  * CTL_FAILED after having said why; then nothing was printed.
  */
-int scan_rio(const struct scan *scan, const char *target, bool inputs_only);
+int scan_rio(const struct scan *scan, const char *target, bool several, bool inputs_only);
 
 #endif

@@ -114,15 +114,16 @@ static int fill(struct rio **rio, struct names *names, const struct scan *scan, 
 	return err ? err : rio_set(rio, driver_of(*rio), "ItemCount", count);
 }
 
-static bool is_one_target(const char *target)
+/* Several targets, where an owsd has them, stand as in TargetName; of one, the name holds none. */
+static bool can_stand(const char *target, bool several)
 {
 	for (const char *p = target; *p; p++)
 		if ((unsigned char)*p < ' ')
 			return false;
-	return !strpbrk(target, ",|");
+	return several || !strpbrk(target, ",|");
 }
 
-int scan_rio(const struct scan *scan, const char *target, bool inputs_only)
+int scan_rio(const struct scan *scan, const char *target, bool several, bool inputs_only)
 {
 	struct config_report silent = {0};
 	struct names names = {.name = calloc((size_t)scan->count * SCAN_PROPERTIES + 1,
@@ -130,7 +131,7 @@ int scan_rio(const struct scan *scan, const char *target, bool inputs_only)
 	struct rio *rio = NULL;
 	int err = names.name ? 0 : -ENOMEM, status = CTL_DONE;
 
-	if (!is_one_target(target)) {
+	if (!can_stand(target, several)) {
 		free(names.name);
 		return ctl_fail("%s cannot be a TargetName: it holds \",\", \"|\" or a control character",
 		                target);

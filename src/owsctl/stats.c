@@ -88,6 +88,7 @@ static void print_json(const struct ctl *ctl, struct ows *h, const struct ows_da
 	json_object_end(&json);
 	json_int(&json, "signals", ows_count(h));
 	json_int(&json, "not_good", not_good(h, now->boot));
+	json_string(&json, "served", ows_served(h));
 	json_array(&json, "targets");
 	for (int i = 0; i < TARGETS && ows_target(h, i, &target) == 0; i++) {
 		json_object(&json, NULL);
@@ -132,6 +133,8 @@ static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_da
 	printf("period      %g s\n", (double)daemon->period_ns / 1e9);
 	printf("heartbeat   %s ago\n", when_span(daemon->beat_age_ns, span));
 	printf("signals     %d, %d not good\n", ows_count(h), not_good(h, now->boot));
+	if (ows_served(h))
+		printf("served      %s\n", ows_served(h));
 	several = ows_target(h, 1, &target) == 0;
 	for (int i = 0; i < TARGETS && ows_target(h, i, &target) == 0; i++)
 		print_target(i, &target, several, served[i]);

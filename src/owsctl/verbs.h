@@ -20,6 +20,7 @@ enum ctl_status {
 struct verb;
 struct ctl {
 	const char *instance;
+	bool named; /* -n: the instance was given */
 	const char *target; /* -t; NULL: none given */
 	bool json;
 	const struct verb *verb; /* the one in work */

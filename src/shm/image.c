@@ -28,6 +28,8 @@ static uint64_t pool_bytes(const struct image_plan *plan)
 
 	for (uint32_t i = 0; i < plan->signal_count; i++)
 		n += strlen(plan->signals[i].name) + 1 + strlen(plan->signals[i].path) + 1;
+	if (plan->served)
+		n += strlen(plan->served) + 1;
 	return n;
 }
 
@@ -180,6 +182,8 @@ void image_build(const struct image_plan *plan, void *memory, struct image *imag
 	pool = a.pool;
 	text = a.text;
 	add_string(image->base, &pool, "");
+	if (plan->served)
+		image->header->served_off = add_string(image->base, &pool, plan->served);
 	image->records[0].type = OWS_LARGE;
 	infos[0].name_off = infos[0].path_off = names[0].name_off = (uint32_t)a.pool;
 	for (uint32_t i = 0; i < plan->signal_count; i++) {

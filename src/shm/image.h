@@ -35,6 +35,7 @@ struct image_plan {
 	const uint32_t *groups; /* of the targets; NULL: each is a wire of its own */
 	const struct image_counter *counters;
 	uint32_t counter_count;
+	const char *served; /* the target that reaches the served protocol; NULL: none */
 	uint32_t generation, start_id;
 	int32_t pid;
 	int64_t start_ns, start_wall_ns, period_ns;

@@ -13,7 +13,8 @@
  *   1.0  first layout
  *   1.1  image: a journal of alarms; in the attributes the state of limit alarms and three flags;
  *        commands: words of acknowledgement
- *   1.2  image: group and moves of a target, which were 0
+ *   1.2  image: group and moves of a target, and where the owserver protocol is served, which
+ *        were 0
  */
 #ifndef OWS_LAYOUT_H
 #define OWS_LAYOUT_H
@@ -194,7 +195,8 @@ struct ows_image_header { /* 256 bytes: four lines of 64 */
 
 	uint32_t news;        /* counts published states; futex word */
 	uint32_t alarm_head;  /* number of alarms ever entered */
-	uint32_t spare2[14];
+	uint32_t served_off;  /* the target that reaches the served protocol, in the pool; 0 none */
+	uint32_t spare2[13];
 
 	uint32_t spare3[16];
 };

@@ -24,6 +24,7 @@ void instance_make(struct instance *in, const char *name, uint32_t generation, i
 		.target_count = 2,
 		.counters = counters,
 		.counter_count = 2,
+		.served = "owserver:/run/owsd/T.sock",
 		.generation = generation,
 		.start_id = 0x1000 + generation,
 		.pid = (int32_t)getpid(),

@@ -248,6 +248,15 @@ static void test_targets_and_counters_end_with_enoent(void)
 	TEST_ASSERT_EQUAL(-ENOENT, ows_counter(h, 2, &c));
 }
 
+static void test_where_it_is_served_is_told_and_so_is_an_image_without(void)
+{
+	TEST_ASSERT_EQUAL_STRING("owserver:/run/owsd/T.sock", ows_served(h));
+	in.image.header->served_off = 0;
+	TEST_ASSERT_NULL(ows_served(h));
+	in.image.header->served_off = 0xfffffff0u;
+	TEST_ASSERT_EQUAL_STRING("", ows_served(h));
+}
+
 static void test_every_quality_has_words(void)
 {
 	for (unsigned q = 0; q < 256; q++)
@@ -278,6 +287,7 @@ int main(void)
 	RUN_TEST(test_info_says_what_is_configured);
 	RUN_TEST(test_the_daemon_is_alive_while_its_heart_beats);
 	RUN_TEST(test_targets_and_counters_end_with_enoent);
+	RUN_TEST(test_where_it_is_served_is_told_and_so_is_an_image_without);
 	RUN_TEST(test_every_quality_has_words);
 	return UNITY_END();
 }

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT */
+#include "served.h"
+#include "when.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+/* As in TargetName: a bar between ways to one wire, a comma between wires. */
+static void copy_targets(struct ows *h, char *out, size_t size)
+{
+	struct ows_target target;
+	uint32_t group = 0;
+	size_t used = 0;
+
+	for (int i = 0; ows_target(h, i, &target) == 0; i++) {
+		const char *between = !used ? "" : target.group == group ? " | " : ", ";
+		int n = snprintf(out + used, size - used, "%s%s", between, target.name);
+
+		if (n < 0 || (size_t)n >= size - used)
+			break;
+		used += (size_t)n;
+		group = target.group;
+	}
+	out[used] = '\0';
+}
+
+int served_find(const struct ctl *ctl, struct served *served)
+{
+	struct ows_daemon daemon = {0};
+	const char *where;
+	struct ows *h;
+	int err;
+
+	*served = (struct served){0};
+	err = ows_open(ctl->instance, OWS_READ, &h);
+	/* Nobody asked for an owsd, and there is none: that of owserver is meant. */
+	if (err == -ENOENT && !ctl->named)
+		return CTL_DONE;
+	if (err)
+		return ctl_open(ctl, OWS_READ, &h); /* it says why */
+	ows_daemon(h, when_now().boot, &daemon);
+	served->runs = daemon.alive;
+	where = ows_served(h);
+	if (served->runs && where)
+		snprintf(served->target, sizeof(served->target), "%s", where);
+	copy_targets(h, served->targets, sizeof(served->targets));
+	ows_close(h);
+	if (ctl->named && !served->runs)
+		return ctl_fail("owsd %s is not running", ctl->instance);
+	if (ctl->named && !served->target[0])
+		return ctl_fail("owsd %s serves no clients: ListenSocket in its configuration or its "
+		                "option -l lets it", ctl->instance);
+	return CTL_DONE;
+}
