@@ -228,6 +228,7 @@ soak: all $(B)/unit/test_week
 # --- System tests, benches and the main job ---------------------------------------------------
 # Programs that system tests command
 SYSTEM_AIDS := $(patsubst tests/system/%.c,$(B)/system/%,$(wildcard tests/system/*.c))
+$(B)/system/ownet: LIBS += $(if $(wildcard /usr/include/ownetapi.h),-lownet)
 
 $(B)/system/%: tests/system/%.c $(B)/core.a
 	@mkdir -p $(@D)
