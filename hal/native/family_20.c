@@ -150,13 +150,7 @@ static int start_conversion(struct txn *txn, bool powered)
 	if (powered)
 		return txn_wait(txn, DS2450_CONVERT_NS);
 	/* The CRC's last slot is over: the pull-up is armed with one more. */
-	err = txn->link->ops->bit(txn->link, true, LINK_STRONG);
-	if (err < 0) {
-		txn->link_error = err;
-		return err;
-	}
-	txn->strong = true;
-	return txn_wait(txn, DS2450_CONVERT_NS);
+	return txn_bit_strong(txn, DS2450_CONVERT_NS);
 }
 
 static int convert(struct txn *txn, int arg)

@@ -141,6 +141,11 @@ int txn_bit(struct txn *txn)
 	return of_link(txn, txn->link->ops->bit(txn->link, true, LINK_IDLE));
 }
 
+int txn_bit_strong(struct txn *txn, int64_t ns)
+{
+	return hold(txn, of_link(txn, txn->link->ops->bit(txn->link, true, LINK_STRONG)), ns);
+}
+
 int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n)
 {
 	int err = txn_read(txn, bytes, n);

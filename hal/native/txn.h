@@ -76,6 +76,8 @@ int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns
 int txn_read(struct txn *txn, uint8_t *bytes, size_t n);
 /* One read slot: 0 or 1. */
 int txn_bit(struct txn *txn);
+/* One read slot with the strong pull-up behind it; as txn_command_strong(). */
+int txn_bit_strong(struct txn *txn, int64_t ns);
 /* n bytes, the last of which is the CRC8 of those before. -EBADMSG. */
 int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n);
 /*

@@ -201,6 +201,18 @@ static void test_thermometers_fed_by_the_wire_are_refused_and_others_not(void)
 	TEST_ASSERT_EQUAL_UINT64(0, ((struct native *)nl.bus)->count[COUNT_LINK_ERRORS]);
 }
 
+static void test_a_converter_without_supply_is_refused(void)
+{
+	nl_masters(1);
+	struct sim_slave *slave = wire_add(0, "DS2450", 1);
+	nl_start();
+	TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP, nl_read(slave, "volt.A"));
+	TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP, nl_ask(BUS_WRITE, "/simultaneous/voltage", "1")->err);
+	TEST_ASSERT_EQUAL_INT(0, nl_write(slave, "power", "1"));
+	TEST_ASSERT_EQUAL_INT(0, nl_read(slave, "volt.A"));
+	TEST_ASSERT_EQUAL_UINT64(0, ((struct native *)nl.bus)->count[COUNT_LINK_ERRORS]);
+}
+
 /* --- Alarms --- */
 
 static void test_nobody_in_alarm_costs_one_short_request(void)
@@ -276,6 +288,7 @@ int main(void)
 	RUN_TEST(test_outputs_and_settings_reach_their_chips);
 	RUN_TEST(test_a_display_takes_its_bytes_one_by_one);
 	RUN_TEST(test_thermometers_fed_by_the_wire_are_refused_and_others_not);
+	RUN_TEST(test_a_converter_without_supply_is_refused);
 	RUN_TEST(test_nobody_in_alarm_costs_one_short_request);
 	RUN_TEST(test_random_alarms_are_all_found);
 	RUN_TEST(test_an_unknown_device_in_alarm_is_found_and_read);

@@ -80,6 +80,43 @@ static void test_replies_that_make_no_sense_are_an_error(void)
 	nl_reads(warm, "temperature", "     21.0625");
 }
 
+static void test_a_changed_byte_makes_no_false_value(void)
+{
+	unsigned right = 0;
+
+	nl_masters(1);
+	struct sim_slave *warm = nl_thermometer(0, 1, 21.0625);
+	nl_start();
+	nl_reads(warm, "temperature", "     21.0625");
+	w1_core.seed = 1;
+	for (int i = 0; i < 400; i++) {
+		w1_core.scrambles = 1;
+		int err = nl_read(warm, "latesttemp");
+		if (!err)
+			TEST_ASSERT_EQUAL_STRING("     21.0625", (char *)nl.data);
+		right += !err;
+		w1_core.scrambles = 0;
+		if (err)
+			host_run(&nl.host, nl.bus, nl.host.now + 10 * HOST_S);
+		nl.host.events = 0;
+	}
+	TEST_ASSERT_GREATER_THAN_UINT(350, right);
+}
+
+static void test_a_socket_that_ends_is_opened_again(void)
+{
+	nl_masters(1);
+	struct sim_slave *warm = nl_thermometer(0, 1, 21.0625);
+	nl_start();
+	nl_reads(warm, "temperature", "     21.0625");
+	unsigned sockets = w1_core.sockets;
+	TEST_ASSERT_EQUAL_INT(0, shutdown(w1_core.fd, SHUT_RDWR));
+	nl_read(warm, "temperature");
+	host_run(&nl.host, nl.bus, nl.host.now + 30 * HOST_S);
+	TEST_ASSERT_GREATER_THAN_UINT(sockets, w1_core.sockets);
+	nl_reads(warm, "temperature", "     21.0625");
+}
+
 static void test_a_module_that_is_unloaded_takes_the_target_down(void)
 {
 	nl_masters(1);
@@ -243,6 +280,8 @@ int main(void)
 	RUN_TEST(test_a_lost_reply_is_asked_for_again);
 	RUN_TEST(test_a_late_reply_is_not_taken_for_another);
 	RUN_TEST(test_replies_that_make_no_sense_are_an_error);
+	RUN_TEST(test_a_changed_byte_makes_no_false_value);
+	RUN_TEST(test_a_socket_that_ends_is_opened_again);
 	RUN_TEST(test_a_module_that_is_unloaded_takes_the_target_down);
 	RUN_TEST(test_one_of_two_masters_that_goes_leaves_the_other);
 	RUN_TEST(test_a_master_that_comes_later_is_one_more_bus);

@@ -62,13 +62,26 @@ static uint32_t get32(const uint8_t *at)
 static void put(const void *bytes, size_t n)
 {
 	TEST_ASSERT_LESS_OR_EQUAL_size_t(sizeof(reply), reply_n + n);
-	memcpy(reply + reply_n, bytes, n);
+	if (n)
+		memcpy(reply + reply_n, bytes, n);
 	reply_n += n;
 }
 
 static void transmit(const uint8_t *bytes, size_t n)
 {
 	TEST_ASSERT_EQUAL_INT((int)n, (int)send(w1_core.fd, bytes, n, MSG_NOSIGNAL));
+}
+
+static unsigned random_number(void)
+{
+	w1_core.seed = w1_core.seed * 1103515245 + 12345;
+	return w1_core.seed >> 8;
+}
+
+static void scramble(void)
+{
+	w1_core.scrambles--;
+	reply[random_number() % reply_n] ^= (uint8_t)(1 + random_number() % 255);
 }
 
 static void finish(void)
@@ -90,6 +103,8 @@ static void finish(void)
 		memcpy(reply, &head, sizeof(head));
 		transmit(reply, reply_n - 3);
 	} else {
+		if (w1_core.scrambles)
+			scramble();
 		if (w1_core.kept_n)
 			transmit(w1_core.kept, w1_core.kept_n);
 		w1_core.kept_n = 0;

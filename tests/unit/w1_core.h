@@ -20,6 +20,8 @@ struct w1_core {
 	unsigned silent;    /* so many requests are carried out and not answered */
 	unsigned late;      /* so many answers come behind that to the next request */
 	unsigned garbage;   /* so many answers are cut short */
+	unsigned scrambles; /* so many answers have one byte changed, by the numbers of seed */
+	unsigned seed;
 	unsigned refuses;   /* so many requests are answered by a status EINVAL alone */
 	unsigned requests, searches, alarm_searches, sockets;
 	unsigned commands[8]; /* how many of each code */
