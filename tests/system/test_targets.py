@@ -112,6 +112,7 @@ class Watch(threading.Thread):
         self.scene, self.owsd, self.signal = scene, daemon, name
         self.seen, self.bad, self.ended = [], 0, threading.Event()
         self.start()
+        until(lambda: self.seen, 20, "the first value is seen")
 
     def run(self):
         while not self.ended.is_set():
