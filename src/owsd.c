@@ -13,6 +13,9 @@
 
 #include <errno.h>
 #include <getopt.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -363,6 +366,10 @@ int main(int argc, char **argv)
 	pid_t owner = 0;
 	int status, lock;
 
+#ifdef __GLIBC__
+	/* What is used little of a large block stays zero pages. Else the limit rises by itself */
+	mallopt(M_MMAP_THRESHOLD, 64 * 1024);
+#endif
 	/* a file that may not grow is an error of the write like another */
 	signal(SIGXFSZ, SIG_IGN);
 	status = parse_options(argc, argv, &o);
