@@ -48,6 +48,10 @@ static void leave(struct engine *e, struct group *g, const struct route_step *st
 	struct lane *to = &e->lanes[g->first + step->way];
 
 	route_bar_took(&g->bar, g->ways, step, now_ns);
+	if (g->bar.failures <= g->bar.count)
+		g->quiet = false;
+	else if (g->bar.failures % g->bar.count == 1)
+		g->quiet = !log_rate(&g->rounds, now_ns);
 	from->open = from->up = from->was_up = false;
 	*engine_way(e, from) = (struct route_way){ .released = false };
 	engine_move_lane(e, from, to, step->why, now_ns);

@@ -13,6 +13,7 @@ void lane_up(struct lane *lane, const char *text, int64_t now_ns)
 	if (lane->up)
 		return;
 	lane->up = true;
+	engine_group(e, lane)->quiet = false;
 	engine_way(e, lane)->up = true;
 	engine_way(e, lane)->failed = lane->stuck;
 	engine_way(e, lane)->up_ns = now_ns;
@@ -47,8 +48,9 @@ static void go_down(struct lane *lane, int err, const char *text, int64_t now_ns
 {
 	struct engine *e = lane->engine;
 
-	log_warning(e->log, "%s: %s: %s", lane->port->target,
-	            lane->up ? "from up to down" : "down", *text ? text : strerror(-err));
+	log_at(e->log, engine_group(e, lane)->quiet ? LOG_LEVEL_DEBUG : LOG_LEVEL_WARNING,
+	       "%s: %s: %s", lane->port->target, lane->up ? "from up to down" : "down",
+	       *text ? text : strerror(-err));
 	lane->up = false;
 	lane->counters.target_failures++;
 	engine_publish_target(e, lane);

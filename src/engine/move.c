@@ -128,8 +128,8 @@ void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, cons
 			move_alarms(e, from, to, i, now_ns);
 		moved += d->count;
 	}
-	log_notice(e->log, "%u signals: from %s to %s: %s", moved, from->port->target,
-	           to->port->target, why);
+	log_at(e->log, engine_group(e, to)->quiet ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,
+	       "%u signals: from %s to %s: %s", moved, from->port->target, to->port->target, why);
 	lane_forget_probes(from);
 	lane_disown(from, true);
 	alarm_restart(&from->alarm);

@@ -27,6 +27,8 @@ struct group {
 	unsigned first;
 	struct route_bar bar;
 	struct route_way *ways;
+	bool quiet; /* all ways have failed in turn, again: that is said now and then only */
+	struct log_rate rounds;
 };
 
 struct engine {

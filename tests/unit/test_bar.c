@@ -4,6 +4,7 @@
 #include "unity.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 
 static struct scene s;
@@ -205,6 +206,33 @@ static void test_when_all_are_down_they_are_tried_in_turn_less_and_less_often(vo
 	expect(1, OWS_Q_GOOD, 2);
 }
 
+static void test_ways_that_fail_for_hours_are_told_now_and_then(void)
+{
+	struct log *log = log_create(LOG_LEVEL_NOTICE);
+	FILE *out = tmpfile();
+	unsigned lines = 0;
+
+	TEST_ASSERT_NOT_NULL(log);
+	TEST_ASSERT_NOT_NULL(out);
+	s.log = log;
+	reach(false, false, false);
+	scene_start(&s);
+	for (unsigned minutes = 0; minutes < 600; minutes++) {
+		scene_run(&s, 60 * SCENE_S);
+		log_drain(log, fileno(out), 0);
+	}
+	TEST_ASSERT_EQUAL_UINT64(0, log_dropped(log));
+	rewind(out);
+	for (int c = fgetc(out); c != EOF; c = fgetc(out))
+		lines += c == '\n';
+	/* the first round, the next ones, and then each hour: three downs and three moves */
+	TEST_ASSERT_UINT_WITHIN(90, 120, lines);
+	fclose(out);
+	scene_end(&s);
+	log_destroy(log);
+	setUp();
+}
+
 static void test_a_way_that_is_stuck_is_left_for_the_next(void)
 {
 	reach(true, true, true);
@@ -370,6 +398,7 @@ int main(void)
 	RUN_TEST(test_a_return_that_fails_goes_to_the_way_that_worked_and_is_tried_less_often);
 	RUN_TEST(test_a_way_that_comes_and_goes_does_not_make_the_table_flap);
 	RUN_TEST(test_when_all_are_down_they_are_tried_in_turn_less_and_less_often);
+	RUN_TEST(test_ways_that_fail_for_hours_are_told_now_and_then);
 	RUN_TEST(test_a_way_that_is_stuck_is_left_for_the_next);
 	RUN_TEST(test_a_way_that_says_nothing_when_it_is_opened_is_passed_over);
 	RUN_TEST(test_a_write_in_doubt_on_a_stuck_way_waits_for_its_end);
