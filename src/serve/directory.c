@@ -164,6 +164,21 @@ bool directory_add(struct directory *directory, const char *name, size_t len)
 	return true;
 }
 
+void directory_add_once(struct directory *directory, const char *name)
+{
+	size_t len = strlen(name);
+
+	for (uint32_t at = 0; at < directory->len; at++) {
+		const char *there = directory->raw + at;
+		const char *end = memchr(there, '\n', directory->len - at);
+
+		if ((size_t)(end - there) == len && memcmp(there, name, len) == 0)
+			return;
+		at = (uint32_t)(end - directory->raw);
+	}
+	directory_add(directory, name, len);
+}
+
 /* --- The answer ------------------------------------------------------------------------------- */
 
 static bool put(struct directory *directory, const void *bytes, size_t len)

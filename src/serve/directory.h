@@ -38,6 +38,8 @@ void directory_take(struct directory *directory, const struct node *node, struct
 /* One name; false: no room. */
 bool directory_add(struct directory *directory, const char *name, size_t len);
 
+void directory_add_once(struct directory *directory, const char *name);
+
 /* What stands in the root beside the devices. */
 void directory_add_rest(struct directory *directory, const struct node *node,
                       const struct buses *buses);

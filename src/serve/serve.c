@@ -152,11 +152,11 @@ static void serve_round(struct serve *s)
 	}
 }
 
-static int wait_ms(const struct serve *s)
+static int wait_ms(struct serve *s)
 {
 	int64_t left = s->look_ns - ows_now();
 
-	if (s->round_count || s->accepting || left <= 0)
+	if (s->round_count || s->accepting || left <= 0 || work_waits(s))
 		return 0;
 	return left > INT64_C(1000000) * 60000 ? 60000 : (int)((left + 999999) / 1000000);
 }
@@ -180,6 +180,7 @@ static void *run(void *arg)
 		if (s->accepting)
 			s->accepting = listeners_accept(s);
 		serve_round(s);
+		work_queue(s);
 		if (s->now_ns >= s->look_ns)
 			clients_look(s);
 	}

@@ -184,8 +184,9 @@ uint8_t *client_room(struct client *c);
 void work_begin(struct serve *s, struct client *c);
 /* The engine has answered. */
 void work_answered(struct serve *s, struct client *c);
-/* A directory is free. */
-void work_directory(struct serve *s, struct client *c, struct directory *directory);
+/* Clients that wait for a directory: is one free? Let some go on. */
+bool work_waits(struct serve *s);
+void work_queue(struct serve *s);
 /* Look whether the command has been carried out. */
 void work_applying(struct serve *s, struct client *c);
 /* The answer is on its way, or nobody waits for it. */

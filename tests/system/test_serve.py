@@ -207,5 +207,234 @@ def test_writes_are_those_of_the_genuine_owserver(scene):
         same(server, port, WRITE, t + "/templow", b"50", flags=0x10A | scale << 16)
 
 
+
+def value(answer):
+    ret, _, size, _, data = answer
+    assert ret == size == len(data), answer
+    return data.decode()
+
+
+def stat(scene, daemon, name):
+    for line in scene.owsctl(daemon, "stats").stdout.splitlines():
+        if line.split()[-1:] == [name]:
+            return int(line.split()[0])
+    raise AssertionError(f"no counter {name}")
+
+
+def test_signals_are_a_directory(scene):
+    daemon, port = house(scene)
+    table = scene.owsctl(daemon, "list").stdout
+    listed = names(ask(port, DIRALL, "/signals"))
+    assert "/signals/boiler" in listed and "/signals/pump" in listed, listed
+    assert all(name.split("/")[2] in table for name in listed)
+    assert names(ask(port, DIRALL, "/uncached/signals"))[0].startswith("/uncached/signals/")
+    until(lambda: scene.get(daemon, "cellar"), 5, "cellar is good")
+    assert value(ask(port, READ, "/signals/cellar")) == scene.get(daemon, "cellar")
+    assert float(value(ask(port, READ, "/signals/cellar_Age"))) < 10
+    assert int(value(ask(port, READ, "/signals/_TRANSACTIONS"))) > 0
+    assert value(ask(port, READ, f"/signals/{daemon.name}__cellar")) == "12.5"
+    assert ask(port, READ, "/signals/nobody")[0] == -1
+    assert ask(port, READ, "/signals")[0] == -21
+    assert ask(port, DIRALL, "/signals/cellar")[0] == -20
+    assert ask(port, READ, "/signals/cellar_WriteOneShot")[0] == -95
+    assert ask(port, PRESENT, "/signals/cellar")[4] == bytes(8)
+    assert ask(port, PRESENT, "/signals/nobody")[0] == -1
+    # a signal has no unit, whatever scale a client wants
+    assert value(ask(port, READ, "/signals/cellar", flags=0x1010A)) == "12.5"
+
+
+def test_a_signal_that_is_not_good_is_an_error_and_no_value(scene):
+    folder = owsdtest.SOURCE / "board/demo"
+    _, port = served(scene, owsdtest.rio(f"sim:{folder}/house.sim", [
+        dict(Name="gone", Path="/28.AABBCCDDEEFF/temperature", Type="double", IO="input",
+             InitValue="20"),
+        dict(Name="cellar", Path="/10.0000000000C1/temperature", Type="double", IO="input"),
+    ], MaxRetries=0))
+    until(lambda: ask(port, READ, "/signals/cellar")[0] > 0, 10)
+    assert ask(port, READ, "/signals/gone")[0] == -5
+    assert float(value(ask(port, READ, "/signals/gone_Age"))) > 0
+
+
+def test_outputs_are_commanded_as_signals_and_by_their_paths(scene):
+    daemon, port = house(scene)
+    relay = "/29.000000000001/PIO.1"
+    for path, text, state in (("/signals/pump", b"1", "1"), (relay, b"0", "0"),
+                              ("/signals/pump", b"on\n", "1"), (relay, b"0\n", "0")):
+        assert ask(port, WRITE, path, text)[:1] == (0,), path
+        # the answer comes when the bus has it
+        assert scene.get(daemon, "pump") == state
+        assert value(ask(port, READ, "/uncached" + relay)) == state
+    assert ask(port, WRITE, "/signals/boiler", b"1")[0] == -95
+    assert ask(port, WRITE, "/signals/pump", b"many")[0] == -22
+    assert ask(port, WRITE, "/signals/pump", b"7")[0] == -34
+    assert ask(port, WRITE, "/signals/nobody", b"7")[0] == -1
+
+
+def test_what_a_client_writes_over_an_output_is_written_over_again(scene):
+    daemon, port = house(scene)
+    assert ask(port, WRITE, "/signals/pump", b"1")[0] == 0
+    assert ask(port, WRITE, "/29.000000000001/PIO.BYTE", b"0")[0] == 0
+    until(lambda: value(ask(port, READ, "/uncached/29.000000000001/PIO.1")) == "1", 5)
+    assert scene.get(daemon, "pump") == "1"
+
+
+def test_inputs_are_answered_from_the_table(scene):
+    daemon, port = house(scene)
+    before, bus = stat(scene, daemon, "served_kept_answers"), stat(scene, daemon, "served_bus_requests")
+    for _ in range(5):
+        until(lambda: scene.get(daemon, "cellar"), 5)
+        assert value(ask(port, READ, "/10.0000000000C1/temperature")) == "        12.5"
+        assert value(ask(port, READ, "/10.0000000000C1/temperature", flags=0x1014A)) == "54.5"
+    until(lambda: stat(scene, daemon, "served_kept_answers") >= before + 10, 5)
+    assert stat(scene, daemon, "served_bus_requests") == bus
+
+
+def test_a_slow_answer_is_announced_by_keep_alives(scene):
+    _, port = house(scene)
+    with Link(port) as link:
+        link.send(READ, "/uncached/28.0000000000A3/temperature12", flags=0x10E)
+        link.send(NOP, None, flags=0x10E)
+        frames = [link.frame() for _ in range(2)]
+        while frames[-1] is None or frames[-1][4]:
+            frames.append(link.frame())
+    # two conversions of 750 ms with the strong pull-up are more than a second
+    answers = [f for f in frames if f]
+    assert len(answers) == 2 and len(answers[0][4]) == 12, frames
+    assert frames[-1][0] == 0
+
+
+def test_a_connection_is_kept_and_may_be_used_in_advance(scene):
+    server, _, port = beside(scene)
+    paths = [d + "/type" for d in server.devices()] * 20
+    with Link(port) as link:
+        for path in paths:
+            link.send(READ, path, flags=0x10E)
+        for path in paths:
+            ret, flags, _, _, data = link.answer()
+            assert ret > 0 and flags & PERSIST, path
+            assert data.startswith(b"DS"), data
+        link.send(NOP, None, flags=0x10A)
+        assert link.answer()[0] == 0
+        try:
+            link.frame()
+            raise AssertionError("the connection was not closed")
+        except EOFError:
+            pass
+
+
+def test_read_only_refuses_every_write(scene):
+    folder = owsdtest.SOURCE / "board/demo"
+    config = (folder / "house.rio").read_text().replace("OwsDrv {", "OwsDrv {\n  ListenReadOnly on", 1)
+    daemon, port = served(scene, config, "-t", f"sim:{folder}/house.sim")
+    for path in ("/signals/pump", "/29.000000000001/PIO.1", "/28.0000000000B1/templow",
+                 "/settings/timeout/volatile", "/simultaneous/temperature"):
+        assert ask(port, WRITE, path, b"1")[0] == -30, path
+    until(lambda: stat(scene, daemon, "served_refused_writes") == 5, 5)
+
+
+def test_a_unix_socket_serves_too_and_belongs_to_those_who_may_command(scene):
+    path = str(scene.path / "owserver.sock")
+    folder = owsdtest.SOURCE / "board/demo"
+    config = (folder / "house.rio").read_text().replace(
+        "OwsDrv {", f'OwsDrv {{\n  ListenSocket "{path}"', 1)
+    daemon = scene.owsd(config, "-t", f"sim:{folder}/house.sim")
+    assert os.stat(path).st_mode & 0o777 in (0o600, 0o660)
+    with Link(0, path=path) as link:
+        link.send(READ, "/settings/return_codes/text.0")
+        assert link.answer()[4] == b"good"
+    assert daemon.stop() == 0
+    assert not os.path.exists(path)
+
+
+def test_a_killed_owsd_leaves_no_socket_in_the_way(scene):
+    path = str(scene.path / "owserver.sock")
+    config = scene.file("a.rio", owsdtest.rio("null:", []).replace(
+        "OwsDrv {", f'OwsDrv {{\n  ListenSocket "{path}"', 1))
+    scene.owsd(config).kill()
+    assert os.path.exists(path)
+    scene.owsd(config)
+    done = scene.owsd_once("-n", scene.name(), "-c", config)
+    assert done.returncode == 1 and "somebody serves it" in done.stderr, done.stderr
+
+
+def test_a_port_in_use_is_said(scene):
+    server = scene.owserver(tester=["28"])
+    done = scene.owsd_once("-n", scene.name(), "-c", scene.file("a.rio", owsdtest.rio("null:", [])),
+                           "-l", str(server.port))
+    assert done.returncode == 1, done
+    assert f"cannot listen at 127.0.0.1:{server.port}: Address already in use" in done.stderr
+
+
+def test_wrong_addresses_are_refused_with_their_place(scene):
+    for key, text, what in (("Listen", "here:4304", "expected an address of this machine"),
+                            ("Listen", "4304, 4304", "stands twice"),
+                            ("Listen", "70000", "expected"),
+                            ("ListenAllow", "10.0.0.0/33", "expected an address or a range"),
+                            ("ListenSocket", "a.sock", "expected a path from the root")):
+        config = scene.file("a.rio", owsdtest.rio("null:", [], **{key: text}))
+        done = scene.owsd_once("--check", "-c", config)
+        assert done.returncode == 2 and what in done.stderr and "a.rio:4:" in done.stderr, done
+
+
+def test_it_is_served_to_this_machine_alone_unless_asked(scene):
+    daemon, port = served(scene, owsdtest.rio("null:", []))
+    assert ask(port, NOP, None)[0] == 0
+    with Link(port, host="::1") as link:
+        link.send(NOP, None)
+        assert link.answer()[0] == 0
+    assert "beyond this machine" not in daemon.log()
+    listening = {line.split()[1].split(":")[0]
+                 for line in open("/proc/net/tcp", encoding="ascii")
+                 if line.split()[1].endswith(f":{port:04X}") and line.split()[3] == "0A"}
+    assert listening == {"0100007F"}, listening
+    port = owsdtest.free_port()
+    daemon = scene.owsd(owsdtest.rio("null:", []), "-l", f"0.0.0.0:{port}")
+    assert ask(port, NOP, None)[0] == 0
+    assert "beyond this machine and lets everybody write" in daemon.log()
+
+
+def test_several_targets_are_one_network(scene):
+    server = scene.owserver(tester=["28", "29"])
+    other = scene.owserver(tester=["26"])
+    folder = owsdtest.SOURCE / "board/demo"
+    daemon, port = served(scene, owsdtest.rio(
+        f"{server.target}, sim:{folder}/house.sim, {other.target}", []))
+    everything = ["/28.0000000000B1", *other.devices(), *server.devices()]
+    until(lambda: set(everything) <= set(names(ask(port, DIRALL, "/", flags=0x108))), 10)
+    listed = names(ask(port, DIRALL, "/"))
+    assert len(listed) == len(set(listed)), listed
+    assert [n for n in listed if n.startswith("/bus")] == ["/bus.0", "/bus.1", "/bus.2"], listed
+    for path in everything:
+        assert ask(port, READ, path + "/type")[0] > 0, path
+        assert ask(port, PRESENT, path)[0] == 0, path
+    held = {n: next(b for b in range(3) if f"/bus.{b}{n}" in names(ask(port, DIRALL, f"/bus.{b}")))
+            for n in everything}
+    assert len(set(held.values())) == 3, held
+    for path, bus in held.items():
+        assert ask(port, READ, f"/bus.{bus}{path}/type")[0] > 0
+    assert ask(port, READ, "/28.AABBCCDDEEFF/type")[0] == -1
+    assert ask(port, READ, "/bus.3/28.AABBCCDDEEFF/type")[0] == -1
+    assert "/structure/28" in names(ask(port, DIRALL, "/structure"))
+    assert ask(port, WRITE, "/simultaneous/temperature", b"1")[0] == 0
+
+
+def test_a_target_that_is_down_is_an_error_at_once(scene):
+    _, port = served(scene, owsdtest.rio(f"127.0.0.1:{owsdtest.free_port()}", []))
+    assert ask(port, READ, "/28.AABBCCDDEEFF/type")[0] == -5
+    assert ask(port, DIRALL, "/")[0] == -5
+
+
+def test_it_ends_at_once_with_idle_clients(scene):
+    daemon, port = served(scene, owsdtest.rio("null:", []))
+    links = [Link(port) for _ in range(20)]
+    for link in links[:10]:
+        link.send(NOP, None, flags=0x10E)
+        assert link.answer()[0] == 0
+    assert daemon.stop(5) == 0
+    for link in links:
+        assert link.socket.recv(1) == b""
+        link.socket.close()
+
+
 if __name__ == "__main__":
     owsdtest.main()

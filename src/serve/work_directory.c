@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: MIT */
+/* DIR and its kin: names from the targets, or from here, on their way to a client. */
+#include "work.h"
+
+#include "hal/owserver/frame.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+static void ask_target(struct serve *s, struct client *c);
+static void form_directory(struct serve *s, struct client *c)
+{
+	struct directory_form form = {
+		.node = &c->node, .prefix = c->request.path, .prefix_len = c->request.path_len,
+		.flags = c->request.flags, .frames = c->request.type == FRAME_DIR,
+		.slash = c->request.type == FRAME_DIRALLSLASH || c->request.type == FRAME_GETSLASH,
+	};
+	int err;
+
+	while (form.prefix_len && form.prefix[form.prefix_len - 1] == '/')
+		form.prefix_len--;
+	if (c->node.root && c->request.flags & FRAME_BUS_LIST)
+		directory_add_rest(c->directory, &c->node, &s->buses);
+	/* which are served here, whether the targets have them or not */
+	if (strcmp(c->node.path, "/settings") == 0)
+		directory_add_once(c->directory, "return_codes");
+	err = directory_form(c->directory, &form);
+	if (err)
+		answer_error(s, c, err);
+	else
+		client_send(s, c, c->directory->out, c->directory->out_len);
+}
+
+static void listed(struct serve *s, struct client *c)
+{
+	if (c->step == STEP_BUSES) {
+		s->buses_known = true;
+		work_release(s, c->directory);
+		c->directory = NULL;
+		work_go_on(s, c);
+	} else if (c->worst < 0) {
+		answer_error(s, c, c->worst);
+	} else {
+		form_directory(s, c);
+	}
+}
+
+static void ask_target(struct serve *s, struct client *c)
+{
+	bool buses = c->step == STEP_BUSES, every = buses || c->node.every;
+	int lane = GUEST_ANY_LANE;
+	uint32_t room;
+	uint8_t *to;
+
+	if (every) {
+		work_next_target(s, c);
+		if (c->target >= work_targets(s)) {
+			if (c->worst == WORK_NOT_YET)
+				c->worst = -ENOTCONN;
+			listed(s, c);
+			return;
+		}
+		lane = (int)c->target;
+		snprintf(c->path, sizeof(c->path), "%s", buses ? "/" : c->node.path);
+	} else {
+		lane = work_path(s, c);
+	}
+	to = directory_room(c->directory, &room);
+	work_ask(s, c, buses ? STEP_BUSES : STEP_DIR, BUS_DIR, lane, to, room);
+}
+
+static void begin_directory(struct serve *s, struct client *c, struct directory *directory)
+{
+	c->directory = directory;
+	directory->used = true;
+	directory_begin(directory);
+	c->target = 0;
+	c->worst = WORK_NOT_YET;
+	if (c->node.kind == NODE_SIGNALS && c->step != STEP_BUSES) {
+		c->worst = signals_list(s->signals, directory) ? 0 : -EMSGSIZE;
+		listed(s, c);
+		return;
+	}
+	if (c->node.kind == NODE_CODES && c->step != STEP_BUSES) {
+		char name[16];
+
+		directory_add(directory, "text.ALL", 8);
+		for (unsigned i = 0; i < CODE_COUNT; i++)
+			directory_add(directory, name, (size_t)snprintf(name, sizeof(name), "text.%u", i));
+		c->worst = 0;
+		listed(s, c);
+		return;
+	}
+	ask_target(s, c);
+}
+
+void work_release(struct serve *s, struct directory *directory)
+{
+	(void)s;
+	directory->used = false;
+}
+
+static struct directory *free_directory(struct serve *s)
+{
+	for (int i = 0; i < SERVER_DIRECTORIES; i++)
+		if (!s->directories[i].used)
+			return &s->directories[i];
+	return NULL;
+}
+
+bool work_waits(struct serve *s)
+{
+	return s->queued && free_directory(s);
+}
+
+/* The one who has waited longest. */
+static struct client *first_queued(struct serve *s)
+{
+	struct client *first = NULL;
+
+	for (unsigned i = 0; i < s->used; i++) {
+		struct client *c = &s->clients[i];
+
+		if (c->state == CLIENT_QUEUED && (!first || c->since_ns < first->since_ns))
+			first = c;
+	}
+	return first;
+}
+
+void work_queue(struct serve *s)
+{
+	for (int i = 0; i < SERVER_DIRECTORIES && work_waits(s); i++) {
+		struct client *c = first_queued(s);
+
+		s->queued--;
+		c->state = CLIENT_READING; /* until its work says otherwise, now */
+		begin_directory(s, c, free_directory(s));
+	}
+}
+
+void work_want_directory(struct serve *s, struct client *c, enum client_step step)
+{
+	struct directory *directory = s->queued ? NULL : free_directory(s);
+
+	c->step = (uint8_t)step;
+	if (directory) {
+		begin_directory(s, c, directory);
+		return;
+	}
+	s->queued++;
+	client_enter(s, c, CLIENT_QUEUED);
+}
+
+void work_listed(struct serve *s, struct client *c, int err)
+{
+	bool buses = c->step == STEP_BUSES, every = buses || c->node.every;
+	struct node root = { .root = true };
+
+	if (!err)
+		directory_take(c->directory, buses ? &root : &c->node, &s->buses, c->guest.served,
+		             c->guest.answer.len);
+	if (err == -ENOTDIR && c->node.slash)
+		err = -ENOENT;
+	/* of several one that knows the directory is enough */
+	if (!err || c->worst == WORK_NOT_YET || (c->worst < 0 && err != -ENOENT && err != -ENOTCONN))
+		c->worst = !err || c->worst == 0 ? 0 : err;
+	if (every && !c->lent) {
+		c->target++;
+		ask_target(s, c);
+		return;
+	}
+	listed(s, c);
+}

@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: MIT */
+/* READ: from what is known here, or from a bus, in the units of the client. */
+#include "work.h"
+
+#include "units.h"
+
+#include "hal/owserver/frame.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+/* The largest READ that a client may ask for. */
+#define READ_MOST 100050
+
+/* The value is in the room as the bus gave it: into the client's units, and out. */
+static void show(struct serve *s, struct client *c)
+{
+	int n = units_show(c->node.type, c->request.flags, (char *)client_room(c), c->value_len,
+	                   READ_ROOM);
+
+	if (n < 0)
+		answer_error(s, c, n);
+	else
+		answer_value(s, c, (uint32_t)n);
+}
+
+/* A scale was asked for, and whether the value has one is not known: ask what it is. */
+bool work_ask_type(struct serve *s, struct client *c)
+{
+	const struct node *node = &c->node;
+	uint8_t *room = c->request.type == FRAME_WRITE ? client_room(c)
+	                                               : client_room(c) + c->value_len;
+
+	if (node->type || !node->has_device || !units_asked(c->request.flags))
+		return false;
+	if (!node->has_rom) {
+		work_device_path(c, "/family");
+		work_ask(s, c, STEP_FAMILY, BUS_READ, GUEST_ANY_LANE, room, 64);
+		return true;
+	}
+	snprintf(c->path, sizeof(c->path), "/structure/%02X%s", node->rom[0],
+	         node->path + node->device_len);
+	work_ask(s, c, STEP_STRUCTURE, BUS_READ, GUEST_ANY_LANE, room, 64);
+	return true;
+}
+
+void work_read_answered(struct serve *s, struct client *c, int err)
+{
+	if (err) {
+		if (c->is_get && (err == -EISDIR || err == -ENOENT))
+			work_want_directory(s, c, STEP_DIR);
+		else
+			answer_error(s, c, err);
+		return;
+	}
+	c->value_len = c->guest.answer.len;
+	kept_add(s->kept, &c->node, c->guest.answer.measured_ns, client_room(c), c->value_len);
+	if (!work_ask_type(s, c))
+		show(s, c);
+}
+
+static void read_target(struct serve *s, struct client *c)
+{
+	int n = -ENOENT;
+
+	if (!c->node.fresh && !(c->request.flags & FRAME_UNCACHED))
+		n = kept_find(s->kept, &c->node, s->now_ns, (char *)client_room(c), READ_ROOM);
+	if (n >= 0) {
+		count(s, COUNT_kept_answers, 1);
+		c->value_len = (uint32_t)n;
+		show(s, c);
+		return;
+	}
+	work_ask(s, c, STEP_READ, BUS_READ, work_path(s, c), client_room(c), READ_ROOM);
+}
+
+static void read_here(struct serve *s, struct client *c)
+{
+	char *room = (char *)client_room(c);
+	int n;
+
+	if (c->node.kind == NODE_SIGNAL) {
+		n = signals_read(s->signals, c->node.name, s->now_ns, room, READ_ROOM);
+	} else if (c->node.code < 0) {
+		n = code_texts(room, READ_ROOM);
+	} else {
+		n = snprintf(room, READ_ROOM, "%s", code_text((unsigned)c->node.code));
+	}
+	if (n < 0)
+		answer_error(s, c, n);
+	else
+		answer_value(s, c, (uint32_t)n);
+}
+
+void work_refuse_directory(struct serve *s, struct client *c)
+{
+	if (c->node.has_device && c->node.kind == NODE_TARGET)
+		work_ask(s, c, STEP_REFUSE, BUS_PROBE, work_path(s, c), NULL, 0);
+	else
+		answer_error(s, c, -EISDIR);
+}
+
+void work_read(struct serve *s, struct client *c)
+{
+	if (c->request.size <= 0 || c->request.size > READ_MOST) {
+		answer_code(s, c, CODE_BAD_SIZE);
+		return;
+	}
+	if (c->node.kind == NODE_SIGNAL || c->node.kind == NODE_CODE)
+		read_here(s, c);
+	else if (work_is_directory(&c->node))
+		work_refuse_directory(s, c);
+	else
+		read_target(s, c);
+}
+
+void work_typed(struct serve *s, struct client *c, int err)
+{
+	const uint8_t *text = c->guest.data;
+	uint8_t rom[ROM_LEN] = { 0 };
+	char path[NODE_PATH_MAX];
+
+	if (err) {
+		answer_error(s, c, err);
+		return;
+	}
+	if (c->step == STEP_STRUCTURE) {
+		c->node.type = c->guest.answer.len ? (char)text[0] : 'a';
+	} else {
+		/* as a device of that family would be */
+		for (int i = 0; i < 2 && c->guest.answer.len == 2; i++)
+			rom[0] = (uint8_t)(rom[0] * 16 + (text[i] & 0xf) + (text[i] >= 'A' ? 9 : 0));
+		if (rom[0]) {
+			struct node like;
+			char id[ROM_TEXT_MAX];
+
+			rom_print(rom, ROM_F_I, id);
+			snprintf(path, sizeof(path), "/%s%s", id, c->node.path + c->node.device_len);
+			node_parse(path, strlen(path), &like);
+			c->node.type = like.type;
+			c->node.has_rom = true;
+			memcpy(c->node.rom, rom, ROM_LEN);
+			if (!like.type && work_ask_type(s, c))
+				return;
+		}
+	}
+	if (!c->node.type)
+		answer_error(s, c, -EIO);
+	else if (c->request.type == FRAME_WRITE)
+		work_write_target(s, c);
+	else
+		show(s, c);
+}

@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: MIT */
+/* WRITE: to a device, to all targets, or as a command to the table. */
+#include "work.h"
+
+#include "units.h"
+
+#include "hal/owserver/frame.h"
+
+#include <errno.h>
+
+void work_write_target(struct serve *s, struct client *c)
+{
+	uint8_t *data = (uint8_t *)(uintptr_t)c->request.data;
+	uint32_t len = c->request.data_len;
+	int lane;
+
+	kept_forget(s->kept, &c->node);
+	if (units_convert(c->node.type, c->request.flags)) {
+		int n = units_take(c->node.type, c->request.flags, (const char *)data, len,
+		                   (char *)client_room(c), READ_ROOM);
+
+		if (n < 0) {
+			answer_error(s, c, n);
+			return;
+		}
+		data = client_room(c);
+		len = (uint32_t)n;
+	}
+	lane = work_path(s, c);
+	if (!c->node.every) {
+		work_ask(s, c, STEP_WRITE, BUS_WRITE, lane, data, len);
+		return;
+	}
+	work_next_target(s, c);
+	if (c->target < work_targets(s))
+		work_ask(s, c, STEP_WRITE_EACH, BUS_WRITE, (int)c->target, data, len);
+	else
+		answer_error(s, c, c->worst == WORK_NOT_YET ? -ENOTCONN : c->worst);
+}
+
+/* An output of the table: its control program commands it, and so does this client. */
+static void command(struct serve *s, struct client *c, int record)
+{
+	const char *text = (const char *)c->request.data;
+	uint32_t len = c->request.data_len;
+	char *room = (char *)client_room(c);
+	int err = 0;
+
+	if (record >= 0 && units_convert(c->node.type, c->request.flags)) {
+		err = units_take(c->node.type, c->request.flags, text, len, room, READ_ROOM);
+		len = err < 0 ? 0 : (uint32_t)err;
+		text = room;
+	}
+	if (err >= 0)
+		err = record >= 0 ? signals_write_record(s->signals, (unsigned)record, s->now_ns, text,
+		                                         len, &c->command)
+		                  : signals_write(s->signals, c->node.name, s->now_ns, text, len,
+		                                  &c->command);
+	if (err)
+		answer_error(s, c, err);
+	else if (!c->command.record)
+		answer_written(s, c, c->request.data_len);
+	else
+		client_enter(s, c, CLIENT_APPLYING);
+	if (c->state == CLIENT_APPLYING)
+		work_applying(s, c);
+}
+
+void work_applying(struct serve *s, struct client *c)
+{
+	int err = signals_applied(s->signals, &c->command);
+
+	if (err == 0) {
+		kept_forget(s->kept, &c->node);
+		answer_written(s, c, c->request.data_len);
+	} else if (err != -EAGAIN || s->now_ns - c->since_ns >= APPLY_NS) {
+		answer_error(s, c, err == -EAGAIN ? -EIO : err);
+	} else if (s->now_ns + APPLY_LOOK_NS < s->look_ns) {
+		s->look_ns = s->now_ns + APPLY_LOOK_NS;
+	}
+}
+
+void work_write(struct serve *s, struct client *c)
+{
+	const struct node *node = &c->node;
+	int record;
+
+	if (s->config->serve.read_only) {
+		count(s, COUNT_refused_writes, 1);
+		answer_error(s, c, -EROFS);
+		return;
+	}
+	if (!c->request.data || (uint32_t)c->request.size > c->request.data_len) {
+		answer_code(s, c, CODE_NO_SUCH_PATH);
+		return;
+	}
+	c->request.data_len = (uint32_t)c->request.size;
+	if (work_is_directory(node)) {
+		work_refuse_directory(s, c);
+	} else if (node->kind == NODE_CODE || c->request.offset != 0) {
+		answer_error(s, c, -EACCES);
+	} else if (node->kind == NODE_SIGNAL) {
+		command(s, c, -1);
+	} else {
+		record = node->bus < 0 ? kept_signal(s->kept, node->path, true) : -1;
+		if (record >= 0)
+			command(s, c, record);
+		else if (!work_ask_type(s, c))
+			work_write_target(s, c);
+	}
+}
+
+void work_written(struct serve *s, struct client *c, int err)
+{
+	kept_forget(s->kept, &c->node);
+	if (c->step == STEP_WRITE_EACH) {
+		if (c->worst == WORK_NOT_YET || !err)
+			c->worst = err;
+		c->target++;
+		if (!c->lent && c->target < work_targets(s)) {
+			work_write_target(s, c);
+			return;
+		}
+		err = c->worst;
+	}
+	if (err)
+		answer_error(s, c, err);
+	else
+		answer_written(s, c, units_convert(c->node.type, c->request.flags)
+		                            ? c->request.data_len
+		                            : c->guest.answer.len);
+}
