@@ -13,7 +13,7 @@
 #define SECOND_NS   INT64_C(1000000000)
 #define STATIC_NS   INT64_C(300000000000)
 
-#define SETS     512
+#define SETS     256
 #define WAYS     4
 #define PATH_MAX_KEPT 88
 

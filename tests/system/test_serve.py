@@ -216,7 +216,7 @@ def value(answer):
 
 def stat(scene, daemon, name):
     for line in scene.owsctl(daemon, "stats").stdout.splitlines():
-        if line.split()[-1:] == [name]:
+        if line.split()[1:2] == [name]:
             return int(line.split()[0])
     raise AssertionError(f"no counter {name}")
 
@@ -400,7 +400,8 @@ def test_several_targets_are_one_network(scene):
     daemon, port = served(scene, owsdtest.rio(
         f"{server.target}, sim:{folder}/house.sim, {other.target}", []))
     everything = ["/28.0000000000B1", *other.devices(), *server.devices()]
-    until(lambda: set(everything) <= set(names(ask(port, DIRALL, "/", flags=0x108))), 10)
+    until(lambda: all(path.encode() in ask(port, DIRALL, "/", flags=0x108)[4]
+                      for path in everything), 10, "all targets are up")
     listed = names(ask(port, DIRALL, "/"))
     assert len(listed) == len(set(listed)), listed
     assert [n for n in listed if n.startswith("/bus")] == ["/bus.0", "/bus.1", "/bus.2"], listed
