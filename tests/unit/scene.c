@@ -295,6 +295,7 @@ static struct engine *make_engine(struct scene *s, const struct config *config,
 		.image = image,
 		.commands = commands,
 		.log = s->log,
+		.guests = s->guests,
 		.start_ns = s->now_ns,
 	};
 	struct engine *engine;

@@ -88,6 +88,7 @@ struct scene {
 	struct scene_bus bus[SCENE_BUSES];
 	unsigned bus_count;
 	struct log *log;         /* set before scene_start(); NULL */
+	const struct engine_guests *guests; /* likewise */
 	struct image image;
 	struct commands commands;
 	struct command_plan command_plan;
