@@ -91,7 +91,7 @@ int64_t bench_cpu_ns(pid_t pid)
 	return (int64_t)(user + system) * (1000000000 / sysconf(_SC_CLK_TCK));
 }
 
-static int free_port(void)
+int bench_port(void)
 {
 	struct sockaddr_in a = { .sin_family = AF_INET };
 	socklen_t len = sizeof(a);
@@ -121,12 +121,10 @@ int bench_socket(int port)
 	return fd;
 }
 
-static int ask(int fd, uint32_t type, const char *path, char *data, size_t size)
+static bool request(int fd, uint32_t type, const char *path, size_t size)
 {
-	char frame[24 + 256], answer[24];
+	char frame[24 + 256];
 	uint32_t len = (uint32_t)strlen(path) + 1, word[6];
-	size_t have = 0;
-	ssize_t n;
 
 	word[0] = 0;
 	word[1] = htonl(len);
@@ -136,8 +134,21 @@ static int ask(int fd, uint32_t type, const char *path, char *data, size_t size)
 	word[5] = 0;
 	memcpy(frame, word, 24);
 	memcpy(frame + 24, path, len);
-	if (send(fd, frame, 24 + len, MSG_NOSIGNAL) != (ssize_t)(24 + len))
-		return -1;
+	return send(fd, frame, 24 + len, MSG_NOSIGNAL) == (ssize_t)(24 + len);
+}
+
+bool bench_send(int fd, const char *path)
+{
+	return request(fd, TYPE_READ, path, 64);
+}
+
+int bench_receive(int fd, char *data, size_t size)
+{
+	char answer[24];
+	uint32_t len, word[6];
+	size_t have = 0;
+	ssize_t n;
+
 	do {
 		if (recv(fd, answer, 24, MSG_WAITALL) != 24)
 			return -1;
@@ -153,6 +164,11 @@ static int ask(int fd, uint32_t type, const char *path, char *data, size_t size)
 		have += (size_t)n;
 	}
 	return (int)len;
+}
+
+static int ask(int fd, uint32_t type, const char *path, char *data, size_t size)
+{
+	return request(fd, type, path, size) ? bench_receive(fd, data, size) : -1;
 }
 
 int bench_read(int fd, const char *path, char *data, size_t size)
@@ -191,7 +207,7 @@ bool bench_peer_start(struct bench_peer *peer, unsigned devices, int cpu)
 	if (!peer->paths || !mkdtemp(peer->folder))
 		return false;
 	snprintf(config, sizeof(config), "%s/owfs.conf", peer->folder);
-	peer->port = free_port();
+	peer->port = bench_port();
 	snprintf(address, sizeof(address), "127.0.0.1:%d", peer->port);
 	f = fopen(config, "w");
 	if (!f)
@@ -206,8 +222,10 @@ bool bench_peer_start(struct bench_peer *peer, unsigned devices, int cpu)
 		prctl(PR_SET_PDEATHSIG, SIGKILL);
 		if (cpu >= 0)
 			bench_pin(cpu);
+		/* by itself it keeps 20 connections at most */
 		execlp("owserver", "owserver", "-c", config, "-p", address, "--foreground",
-		       "--error_level", "0", (char *)NULL);
+		       "--error_level", "0", "--clients_persistent_low=100",
+		       "--clients_persistent_high=200", (char *)NULL);
 		_exit(127);
 	}
 	for (int i = 0; i < 200; i++) {

@@ -39,5 +39,10 @@ void bench_peer_end(struct bench_peer *peer);
 int bench_socket(int port);
 /* Returns the length of the answer or -1. */
 int bench_read(int fd, const char *path, char *data, size_t size);
+/* Its two halves. */
+bool bench_send(int fd, const char *path);
+int bench_receive(int fd, char *data, size_t size);
+/* A port that is free now. */
+int bench_port(void);
 
 #endif
