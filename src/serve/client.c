@@ -149,6 +149,7 @@ void client_event(struct serve *s, struct client *c, uint32_t events)
 		client_close(s, c);
 		return;
 	}
+	c->ended |= (events & EPOLLRDHUP) != 0;
 	if (events & (EPOLLIN | EPOLLRDHUP))
 		c->readable = true;
 	if (c->state == CLIENT_SENDING ? events & EPOLLOUT : c->state == CLIENT_READING && c->readable)
@@ -162,6 +163,11 @@ uint8_t *client_room(struct client *c)
 	size_t at = c->have > AREA_ANSWER ? (c->have + 63) & ~(size_t)63 : AREA_ANSWER;
 
 	return c->area + at + FRAME_HEADER;
+}
+
+uint32_t client_room_size(struct client *c)
+{
+	return (uint32_t)(c->area + AREA_SIZE - client_room(c));
 }
 
 /* Bytes sent, 0: none now, -1: the client has left. */
@@ -277,7 +283,8 @@ static bool receive(struct serve *s, struct client *c)
 	}
 	if (n <= 0)
 		return false;
-	if ((size_t)n < room)
+	/* the end behind these bytes has no event of its own */
+	if ((size_t)n < room && !c->ended)
 		c->readable = false;
 	if (!c->have)
 		client_enter(s, c, CLIENT_READING);

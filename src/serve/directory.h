@@ -10,9 +10,9 @@
 #include "buses.h"
 #include "node.h"
 
-#define DIRECTORY_RAW  (512 * 1024)
-#define DIRECTORY_OUT  (1536 * 1024)
-#define DIRECTORY_SEEN 65536
+#define DIRECTORY_RAW  (256 * 1024)
+#define DIRECTORY_OUT  (768 * 1024)
+#define DIRECTORY_SEEN 32768
 
 struct directory {
 	bool used;

@@ -11,7 +11,7 @@
 
 /* The longest frame that is taken: header, path, data, and the tokens of an owserver. */
 #define REQUEST_PAYLOAD_MAX (1024 + 65536)
-#define REQUEST_MAX (24 + REQUEST_PAYLOAD_MAX + 64 * 16)
+#define REQUEST_MAX (24 + REQUEST_PAYLOAD_MAX + 64 * 16) /* 67 608 */
 
 struct request {
 	int32_t type; /* as sent; enum frame_type if it is one */

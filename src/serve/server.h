@@ -32,8 +32,7 @@
  * are not touched cost nothing.
  */
 #define AREA_ANSWER 2048 /* where the answer begins, at least */
-#define AREA_SIZE   (72 * 1024 + 65536)
-#define READ_ROOM   65536
+#define AREA_SIZE   (72 * 1024)
 
 enum client_state {
 	CLIENT_FREE,
@@ -179,6 +178,7 @@ bool client_evict(struct serve *s);
 void client_send(struct serve *s, struct client *c, const uint8_t *bytes, uint32_t len);
 /* Where the data of an answer go, behind room for its header. */
 uint8_t *client_room(struct client *c);
+uint32_t client_room_size(struct client *c);
 
 /* work.c: from a request to its answer */
 void work_begin(struct serve *s, struct client *c);

@@ -12,12 +12,13 @@
 
 /* The largest READ that a client may ask for. */
 #define READ_MOST 100050
+#define LONG_VALUE 4096
 
 /* The value is in the room as the bus gave it: into the client's units, and out. */
 static void show(struct serve *s, struct client *c)
 {
 	int n = units_show(c->node.type, c->request.flags, (char *)client_room(c), c->value_len,
-	                   READ_ROOM);
+	                   client_room_size(c));
 
 	if (n < 0)
 		answer_error(s, c, n);
@@ -56,7 +57,10 @@ void work_read_answered(struct serve *s, struct client *c, int err)
 	}
 	c->value_len = c->guest.answer.len;
 	kept_add(s->kept, &c->node, c->guest.answer.measured_ns, client_room(c), c->value_len);
-	if (!work_ask_type(s, c))
+	/* no property with a scale is so long; behind the value is room for the type */
+	if (c->value_len > LONG_VALUE && !c->node.type && units_asked(c->request.flags))
+		answer_error(s, c, -EMSGSIZE);
+	else if (!work_ask_type(s, c))
 		show(s, c);
 }
 
@@ -65,14 +69,14 @@ static void read_target(struct serve *s, struct client *c)
 	int n = -ENOENT;
 
 	if (!c->node.fresh && !(c->request.flags & FRAME_UNCACHED))
-		n = kept_find(s->kept, &c->node, s->now_ns, (char *)client_room(c), READ_ROOM);
+		n = kept_find(s->kept, &c->node, s->now_ns, (char *)client_room(c), client_room_size(c));
 	if (n >= 0) {
 		count(s, COUNT_kept_answers, 1);
 		c->value_len = (uint32_t)n;
 		show(s, c);
 		return;
 	}
-	work_ask(s, c, STEP_READ, BUS_READ, work_path(s, c), client_room(c), READ_ROOM);
+	work_ask(s, c, STEP_READ, BUS_READ, work_path(s, c), client_room(c), client_room_size(c));
 }
 
 static void read_here(struct serve *s, struct client *c)
@@ -81,11 +85,11 @@ static void read_here(struct serve *s, struct client *c)
 	int n;
 
 	if (c->node.kind == NODE_SIGNAL) {
-		n = signals_read(s->signals, c->node.name, s->now_ns, room, READ_ROOM);
+		n = signals_read(s->signals, c->node.name, s->now_ns, room, client_room_size(c));
 	} else if (c->node.code < 0) {
-		n = code_texts(room, READ_ROOM);
+		n = code_texts(room, client_room_size(c));
 	} else {
-		n = snprintf(room, READ_ROOM, "%s", code_text((unsigned)c->node.code));
+		n = snprintf(room, client_room_size(c), "%s", code_text((unsigned)c->node.code));
 	}
 	if (n < 0)
 		answer_error(s, c, n);

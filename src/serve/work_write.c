@@ -17,7 +17,7 @@ void work_write_target(struct serve *s, struct client *c)
 	kept_forget(s->kept, &c->node);
 	if (units_convert(c->node.type, c->request.flags)) {
 		int n = units_take(c->node.type, c->request.flags, (const char *)data, len,
-		                   (char *)client_room(c), READ_ROOM);
+		                   (char *)client_room(c), client_room_size(c));
 
 		if (n < 0) {
 			answer_error(s, c, n);
@@ -47,7 +47,7 @@ static void command(struct serve *s, struct client *c, int record)
 	int err = 0;
 
 	if (record >= 0 && units_convert(c->node.type, c->request.flags)) {
-		err = units_take(c->node.type, c->request.flags, text, len, room, READ_ROOM);
+		err = units_take(c->node.type, c->request.flags, text, len, room, client_room_size(c));
 		len = err < 0 ? 0 : (uint32_t)err;
 		text = room;
 	}
