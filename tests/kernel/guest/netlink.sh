@@ -87,12 +87,6 @@ same "a thermometer fed by the wire is refused" "ret=-95" \
 busdump w1:netlink dir $(yes /alarm | head -n 15) >/tmp/said 2>&1
 same "15 conditional searches do not make the kernel forget a device" 10 "$(slaves)"
 
-echo 0 >$W1/w1_bus_master2/w1_master_search
-echo 28-280004c2b1a0 >$W1/w1_bus_master2/w1_master_remove
-same "a device can be taken off the kernel's list" 9 "$(slaves)"
-busdump w1:netlink/w1_bus_master2 dir / >/tmp/said 2>&1
-same "and our search tells the kernel of it" 10 "$(slaves)"
-
 # The connector asks for no right to send, on this kernel; only one network namespace has it
 other=/uncached/28.A0B1C2040028/templow
 echo $other >/tmp/path
