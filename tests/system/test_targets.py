@@ -115,7 +115,9 @@ class Watch(threading.Thread):
         until(lambda: self.seen, 20, "the first value is seen")
 
     def run(self):
-        while not self.ended.is_set():
+        last = False
+        while not last:
+            last = self.ended.is_set()  # and once more after that
             s = listed(self.scene, self.owsd)[self.signal]
             here = (s["value"], s["target"])
             if not s["good"]:

@@ -145,17 +145,18 @@ static void unmute(unsigned b)
 	while (bus->swallowed_count) {
 		struct bus_req *req = bus->swallowed[--bus->swallowed_count];
 		unsigned d = device_of(req->path);
+		bool done = any(2);
 		char text[32];
 
 		if (req->op == BUS_WRITE && d < DEVICES && strcmp(req->path, output[d]) == 0 &&
-		    any(2)) {
+		    done) {
 			snprintf(text, sizeof(text), "%.*s", (int)req->len, (const char *)req->data);
 			for (unsigned p = 0; p < s.property_count; p++)
 				if (strcmp(s.properties[p].path, output[d]) == 0)
 					strcpy(s.properties[p].text, text);
 		}
 		snprintf(text, sizeof(text), "%u", ++reading * BUSES + b);
-		scene_answer_on(&s, b, req->id, any(2) ? 0 : -EIO, text, req);
+		scene_answer_on(&s, b, req->id, done && any(2) ? 0 : -EIO, text, req);
 	}
 	bus->there = !there;
 	scene_reach(&s, b, there);
