@@ -160,6 +160,8 @@ struct plan {
 
 static struct plan look(const struct native *native, unsigned channel)
 {
+	/* A driver behind files sees to those that are fed by the wire. */
+	bool feeds = native->channel[channel].link->files;
 	struct plan plan = {0};
 	unsigned coming = UINT8_MAX, urgent = BUS_GUEST;
 
@@ -178,7 +180,7 @@ static struct plan look(const struct native *native, unsigned channel)
 		urgent = job->req->prio < urgent ? job->req->prio : urgent;
 		int64_t ns = thermometer_convert_ns(device);
 		plan.due++;
-		plan.parasitic_due |= device->power == POWER_PARASITE;
+		plan.parasitic_due |= !feeds && device->power == POWER_PARASITE;
 		plan.due_ns = ns > plan.due_ns ? ns : plan.due_ns;
 	}
 	plan.preparing = coming <= urgent;
@@ -190,7 +192,7 @@ static struct plan look(const struct native *native, unsigned channel)
 		if (!is_thermometer(device, channel))
 			continue;
 		int64_t ns = thermometer_convert_ns(device);
-		plan.parasitic |= device->power != POWER_EXTERNAL;
+		plan.parasitic |= !feeds && device->power != POWER_EXTERNAL;
 		plan.all_ns = ns > plan.all_ns ? ns : plan.all_ns;
 	}
 	return plan;
