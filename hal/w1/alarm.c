@@ -24,12 +24,18 @@ static int64_t now_of(const struct w1_master *master)
 	return master->master.env->now(master->master.env->ctx);
 }
 
+bool w1_alarm_converts(const struct w1_master *master, const struct w1_slave *slave)
+{
+	return family_of(slave->rom[0])->thermometer &&
+	       (!slave->known || now_of(master) - slave->read_ns > OLD_NS);
+}
+
 /* The chip compares whole degrees, after each conversion. */
 static int thermometer(struct w1_master *master, struct w1_slave *slave)
 {
 	uint8_t *pad = slave->scratchpad;
 
-	if (!slave->known || now_of(master) - slave->read_ns > OLD_NS) {
+	if (w1_alarm_converts(master, slave)) {
 		uint8_t fresh[9];
 		int err = w1_scratchpad(master, slave, fresh);
 

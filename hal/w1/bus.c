@@ -2,6 +2,7 @@
 #include "hal/w1/netlink.h"
 
 #define LOOK_NS (5 * NATIVE_S)
+#define UEVENTS_NS (NATIVE_S / 4)
 
 static int create(const char *where, const struct bus_env *env, struct bus **bus, char *why,
                   size_t why_size)
@@ -11,12 +12,23 @@ static int create(const char *where, const struct bus_env *env, struct bus **bus
 	return native_create(&w1_bus, &w1_master, where, env, bus, why, why_size);
 }
 
-/* A master that comes while others serve is one channel more; one that goes has no slaves. */
-static void look(struct native *native, int64_t now)
+/* A list that has changed is read at once. */
+static void take_uevents(struct native *native, struct w1_master *master, int64_t now)
 {
-	struct w1_master *master = (struct w1_master *)native->master;
+	if (now < master->uevents_ns)
+		return;
+	master->uevents_ns = now + UEVENTS_NS;
+	if (!w1_uevents_taken(master))
+		return;
+	master->look_ns = now;
+	for (unsigned n = 0; n < native->channels; n++)
+		native->channel[n].search_ns = now;
+}
 
-	if (!native->up || now < master->look_ns)
+/* A master that comes while others serve is one channel more; one that goes has no slaves. */
+static void look(struct native *native, struct w1_master *master, int64_t now)
+{
+	if (now < master->look_ns)
 		return;
 	master->look_ns = now + LOOK_NS;
 	w1_look_for_masters(master);
@@ -30,9 +42,16 @@ static int64_t step(struct bus *bus, int64_t now)
 	struct native *native = (struct native *)bus;
 	struct w1_master *master = (struct w1_master *)native->master;
 
-	look(native, now);
+	if (native->up) {
+		take_uevents(native, master, now);
+		look(native, master, now);
+	}
 	int64_t next = native_step(bus, now);
-	return native->up && master->look_ns < next ? master->look_ns : next;
+	if (native->up && master->look_ns < next)
+		next = master->look_ns;
+	if (native->up && master->uevents >= 0 && master->uevents_ns < next)
+		next = master->uevents_ns;
+	return next;
 }
 
 const struct bus_ops w1_bus = {

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "hal/w1/w1.h"
@@ -32,6 +33,16 @@ void w1_note(struct w1_master *master, int err, const char *text)
 	master->master.env->event(master->master.env->ctx, &event);
 }
 
+/* Drivers have attributes that can only be read, whoever one is. */
+static bool may_be_written(const struct w1_master *master, const char *directory, const char *name)
+{
+	char path[PATH_MAX_HERE];
+	struct stat file;
+
+	path_of(master, directory, name, path);
+	return stat(path, &file) == 0 && file.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH);
+}
+
 static int meaning(struct w1_master *master, const char *directory, const char *name, int error)
 {
 	char text[116];
@@ -45,6 +56,8 @@ static int meaning(struct w1_master *master, const char *directory, const char *
 	case EACCES:
 	case EPERM:
 	case EROFS:
+		if (!may_be_written(master, directory, name))
+			return -EACCES;
 		if (!master->told_rights) {
 			snprintf(text, sizeof(text),
 			         "no right to open %s/%s: run as root, or see docs/w1.md for udev",
@@ -57,8 +70,8 @@ static int meaning(struct w1_master *master, const char *directory, const char *
 	return -EIO;
 }
 
-int w1_read(struct w1_master *master, const char *directory, const char *name, void *data,
-            size_t room)
+static int read_at(struct w1_master *master, const char *directory, const char *name, unsigned at,
+                   void *data, size_t room)
 {
 	char path[PATH_MAX_HERE];
 	size_t used = 0;
@@ -68,6 +81,8 @@ int w1_read(struct w1_master *master, const char *directory, const char *name, v
 	int fd = open(path, O_RDONLY | O_CLOEXEC);
 	if (fd < 0)
 		return meaning(master, directory, name, errno);
+	if (at && lseek(fd, (off_t)at, SEEK_SET) < 0)
+		n = -1;
 	/* Not behind room: the switches' files refuse a second read behind their one byte. */
 	while (used < room && n > 0) {
 		n = read(fd, (char *)data + used, room - used);
@@ -78,8 +93,8 @@ int w1_read(struct w1_master *master, const char *directory, const char *name, v
 	return err ? err : (int)used;
 }
 
-int w1_write(struct w1_master *master, const char *directory, const char *name, const void *data,
-             size_t n)
+static int write_at(struct w1_master *master, const char *directory, const char *name, unsigned at,
+                    const void *data, size_t n)
 {
 	char path[PATH_MAX_HERE];
 	int err = 0;
@@ -88,7 +103,7 @@ int w1_write(struct w1_master *master, const char *directory, const char *name, 
 	int fd = open(path, O_WRONLY | O_CLOEXEC);
 	if (fd < 0)
 		return meaning(master, directory, name, errno);
-	ssize_t done = write(fd, data, n);
+	ssize_t done = at && lseek(fd, (off_t)at, SEEK_SET) < 0 ? -1 : write(fd, data, n);
 	if (done < 0)
 		err = errno == EINVAL || errno == ERANGE ? -EINVAL
 		                                         : meaning(master, directory, name, errno);
@@ -98,13 +113,31 @@ int w1_write(struct w1_master *master, const char *directory, const char *name, 
 	return err;
 }
 
-int w1_slave_read(struct w1_master *master, const uint8_t rom[8], const char *name, void *data,
-                  size_t room)
+int w1_read(struct w1_master *master, const char *directory, const char *name, void *data,
+            size_t room)
+{
+	return read_at(master, directory, name, 0, data, room);
+}
+
+int w1_write(struct w1_master *master, const char *directory, const char *name, const void *data,
+             size_t n)
+{
+	return write_at(master, directory, name, 0, data, n);
+}
+
+int w1_slave_read_at(struct w1_master *master, const uint8_t rom[8], const char *name, unsigned at,
+                     void *data, size_t room)
 {
 	char directory[W1_NAME_MAX];
 
 	w1_name(rom, directory);
-	return w1_read(master, directory, name, data, room);
+	return read_at(master, directory, name, at, data, room);
+}
+
+int w1_slave_read(struct w1_master *master, const uint8_t rom[8], const char *name, void *data,
+                  size_t room)
+{
+	return w1_slave_read_at(master, rom, name, 0, data, room);
 }
 
 int w1_slave_text(struct w1_master *master, const uint8_t rom[8], const char *name)
@@ -126,13 +159,19 @@ int w1_slave_number(struct w1_master *master, const uint8_t rom[8], const char *
 	return end == master->text ? -EIO : 0;
 }
 
-int w1_slave_write(struct w1_master *master, const uint8_t rom[8], const char *name,
-                   const void *data, size_t n)
+int w1_slave_write_at(struct w1_master *master, const uint8_t rom[8], const char *name, unsigned at,
+                      const void *data, size_t n)
 {
 	char directory[W1_NAME_MAX];
 
 	w1_name(rom, directory);
-	return w1_write(master, directory, name, data, n);
+	return write_at(master, directory, name, at, data, n);
+}
+
+int w1_slave_write(struct w1_master *master, const uint8_t rom[8], const char *name,
+                   const void *data, size_t n)
+{
+	return w1_slave_write_at(master, rom, name, 0, data, n);
 }
 
 bool w1_slave_has(const struct w1_master *master, const uint8_t rom[8], const char *name)

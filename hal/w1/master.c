@@ -66,12 +66,14 @@ static int create(const char *where, const struct bus_env *env, struct link_mast
 		return err;
 	}
 	master->master = (struct link_master){.ops = &w1_master, .env = env};
+	master->uevents = -1;
 	*out = &master->master;
 	return 0;
 }
 
 static void destroy(struct link_master *base)
 {
+	w1_uevents_close((struct w1_master *)base);
 	free(base);
 }
 
@@ -111,6 +113,8 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 	master->count = 0;
 	master->slave_count = 0;
 	master->told_rights = false;
+	if (strcmp(master->root, W1_ROOT) == 0)
+		w1_uevents_open(master);
 	if (w1_look_for_masters(master))
 		return 0;
 	if (master->only)
@@ -123,7 +127,10 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 
 static void close_masters(struct link_master *base)
 {
-	((struct w1_master *)base)->count = 0;
+	struct w1_master *master = (struct w1_master *)base;
+
+	master->count = 0;
+	w1_uevents_close(master);
 }
 
 /* Directories say what is there without a look at any wire. */
@@ -191,37 +198,61 @@ static int read_list(struct w1_link *link)
 	return n;
 }
 
+/* The next slave of the list, of one family or (0) of all; NULL: no more. */
+static struct w1_slave *next_slave(struct w1_link *link, uint8_t family, char **line, char *end)
+{
+	uint8_t rom[8];
+
+	while (*line < end) {
+		char *stop = memchr(*line, '\n', (size_t)(end - *line));
+		size_t len = (size_t)((stop ? stop : end) - *line);
+		bool is_rom = w1_name_parse(*line, len, rom);
+
+		*line += len + 1;
+		if (!is_rom || (family && rom[0] != family))
+			continue;
+		struct w1_slave *slave = w1_slave_of(link->master, rom);
+		slave->channel = (uint8_t)(link - link->master->links);
+		return slave;
+	}
+	return NULL;
+}
+
+/* Thermometers whose alarm is asked for convert at once, too, if there are several. */
+static void convert_for_alarms(struct w1_link *link, uint8_t family, char *end)
+{
+	char *line = link->master->lists;
+	struct w1_slave *slave;
+	unsigned count = 0;
+
+	while ((slave = next_slave(link, family, &line, end)))
+		count += w1_alarm_converts(link->master, slave);
+	if (count > 1)
+		w1_convert_all(link);
+}
+
 static int search(struct link *base, bool alarm, uint8_t family, link_found *found, void *ctx)
 {
 	struct w1_link *link = (struct w1_link *)base;
 	struct w1_master *master = link->master;
-	int n = read_list(link), err;
+	int n = read_list(link), err = 0;
 	bool told = false, hidden = false;
+	char *line = master->lists;
+	struct w1_slave *slave;
 
 	if (n < 0)
 		return n;
-	char *end = master->lists + n;
-	for (char *line = master->lists; line < end;) {
-		char *stop = memchr(line, '\n', (size_t)(end - line));
-		size_t len = (size_t)((stop ? stop : end) - line);
-		uint8_t rom[8];
-		bool is_rom = w1_name_parse(line, len, rom);
+	if (alarm)
+		convert_for_alarms(link, family, line + n);
+	while (!err && (slave = next_slave(link, family, &line, master->lists + n))) {
+		int in = alarm ? w1_in_alarm(master, slave) : 1;
 
-		line += len + 1;
-		if (!is_rom || (family && rom[0] != family))
-			continue;
-		struct w1_slave *slave = w1_slave_of(master, rom);
-		slave->channel = (uint8_t)(link - master->links);
-		err = alarm ? w1_in_alarm(master, slave) : 1;
-		hidden |= err == -EOPNOTSUPP && family_of(rom[0])->alarms;
-		told |= err >= 0;
-		if (err == 1)
-			err = found(ctx, rom);
-		else
-			err = 0;
-		if (err)
-			return err;
+		hidden |= in == -EOPNOTSUPP && family_of(slave->rom[0])->alarms;
+		told |= in >= 0;
+		err = in == 1 ? found(ctx, slave->rom) : 0;
 	}
+	if (err)
+		return err;
 	/* A list that leaves out those of which nothing can be told would hide their alarms. */
 	return hidden && (family || !told) ? -EOPNOTSUPP : 0;
 }

@@ -9,20 +9,32 @@
 #include "hal/w1/w1.h"
 
 #define EEPROM_MAX 512
+#define ROW_MAX 32
 
-/* The file as a whole, in master->text. */
-static int whole(struct txn *txn, unsigned size)
+/* What a chip writes at once: its scratchpad, or a page. */
+static unsigned row_of(const struct txn *txn)
 {
-	struct w1_master *master = w1_master_of(txn);
-	int n = w1_slave_read(master, txn->device->rom, "eeprom", master->text, size);
-
-	txn->on_wire = true;
-	return n < 0 ? n : (unsigned)n == size ? 0 : -EIO;
+	return txn->device->rom[0] == 0x2d ? 8 : ROW_MAX;
 }
 
-static unsigned size_of(const struct txn *txn)
+static int once(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
-	return txn->device->rom[0] == 0x14 ? 32 : txn->device->rom[0] == 0x2d ? 128 : EEPROM_MAX;
+	int got = w1_slave_read_at(w1_master_of(txn), txn->device->rom, "eeprom", at, bytes, n);
+
+	txn->on_wire = true;
+	return got < 0 ? got : (unsigned)got == n ? 0 : -EIO;
+}
+
+/* The driver of the DS2433 takes what comes; the others' read twice themselves. */
+static int part(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
+{
+	uint8_t again[EEPROM_MAX];
+	int err = once(txn, at, bytes, n);
+
+	if (err || txn->device->rom[0] != 0x23)
+		return err;
+	err = once(txn, at, again, n);
+	return err ? err : memcmp(bytes, again, n) == 0 ? 0 : -EBADMSG;
 }
 
 static unsigned start_of(const struct txn *txn)
@@ -32,42 +44,51 @@ static unsigned start_of(const struct txn *txn)
 
 static int read_eeprom(struct txn *txn)
 {
-	int err = whole(txn, size_of(txn));
-
-	if (err)
-		return err;
-	memcpy(txn->data, w1_master_of(txn)->text + start_of(txn), txn->property->size);
 	txn->len = txn->property->size;
-	return 0;
+	return part(txn, start_of(txn), txn->data, txn->property->size);
 }
 
-/* What is there already is not written: an EEPROM wears out. */
+/* Row by row, and none that holds the bytes already: an EEPROM wears out. */
+static int write_row(struct txn *txn, unsigned row, unsigned size)
+{
+	unsigned start = start_of(txn), end = start + (unsigned)txn->len;
+	uint8_t have[ROW_MAX], want[ROW_MAX];
+	int err = part(txn, row, have, size);
+
+	memcpy(want, have, size);
+	for (unsigned i = 0; i < size; i++)
+		if (row + i >= start && row + i < end)
+			want[i] = txn->data[row + i - start];
+	if (err || memcmp(have, want, size) == 0)
+		return err;
+	err = w1_slave_write_at(w1_master_of(txn), txn->device->rom, "eeprom", row, want, size);
+	if (!err)
+		err = part(txn, row, have, size);
+	return err ? err : memcmp(have, want, size) == 0 ? 0 : -EIO;
+}
+
+/* mem[0]: rows done. */
 static int write_eeprom(struct txn *txn)
 {
-	struct w1_master *master = w1_master_of(txn);
-	char *here = master->text + start_of(txn);
-	unsigned size = size_of(txn);
-	int err = whole(txn, size);
+	unsigned size = row_of(txn), start = start_of(txn), end = start + (unsigned)txn->len;
+	unsigned row = start - start % size + txn->mem[0]++ * size;
+	int err = row < end ? write_row(txn, row, size) : 0;
 
-	if (err)
-		return err;
-	if (memcmp(here, txn->data, txn->len) == 0)
-		return 0;
-	memcpy(here, txn->data, txn->len);
-	err = w1_slave_write(master, txn->device->rom, "eeprom", master->text, size);
-	if (!err)
-		err = whole(txn, size);
-	return err ? err : memcmp(here, txn->data, txn->len) == 0 ? 0 : -EIO;
+	return err || row + size >= end ? err : TXN_MORE;
+}
+
+static int read_lines(struct txn *txn)
+{
+	txn->on_wire = true;
+	return w1_slave_text(w1_master_of(txn), txn->device->rom, "w1_slave");
 }
 
 /* The driver's lines are of pages 12 to 15: 42 bytes, "crc=YES c=1234". */
-static int counter(struct txn *txn, unsigned page, double *count)
+static int counter(const char *line, unsigned page, double *count)
 {
-	struct w1_master *master = w1_master_of(txn);
-	int err = w1_slave_text(master, txn->device->rom, "w1_slave");
-	const char *line = master->text, *good, *number;
+	const char *good, *number;
+	int err = 0;
 
-	txn->on_wire = true;
 	for (unsigned i = 12; i < page && !err; i++) {
 		line = strchr(line, '\n');
 		err = line ? 0 : -EIO;
@@ -89,16 +110,23 @@ static int counter(struct txn *txn, unsigned page, double *count)
 
 static int read_counter(struct txn *txn)
 {
-	return counter(txn, (unsigned)(txn->property->arg + txn->element), &txn->number[0]);
+	int err = read_lines(txn);
+
+	return err ? err
+	           : counter(w1_master_of(txn)->text,
+	                     (unsigned)(txn->property->arg + txn->element), &txn->number[0]);
 }
 
 static int read_minimum(struct txn *txn)
 {
+	const char *text = w1_master_of(txn)->text;
 	double a = 0, b = 0;
-	int err = counter(txn, 14, &a);
+	int err = read_lines(txn);
 
 	if (!err)
-		err = counter(txn, 15, &b);
+		err = counter(text, 14, &a);
+	if (!err)
+		err = counter(text, 15, &b);
 	txn->number[0] = a < b ? a : b;
 	return err;
 }

@@ -5,7 +5,7 @@
 
 #include "hal/w1/w1.h"
 
-#define STROBE 0x04
+#define SETTINGS 0x07 /* bits of the DS2408's control register that are written */
 #define POR 0x08
 #define NEVER_SET 0x70 /* bits of the DS2408's control register */
 #define VCC 0x80
@@ -120,12 +120,21 @@ static int read_flag(struct txn *txn)
 	return err;
 }
 
-/* The driver compares with what it reads back, the supply's bit included. */
+/*
+ * The driver compares with what it reads back, the supply's bit included; where the compiler's char
+ * has a sign it finds that bit different and tells an error, though the chip took the value.
+ */
 static int put_control(struct txn *txn, uint8_t value)
 {
+	uint8_t now = 0;
+
 	if (!(value & POR))
 		txn->device->note[0] = 0;
-	return put_byte(txn, "status_control", value);
+	int err = put_byte(txn, "status_control", value);
+	if (err && err != -EIO)
+		return err;
+	err = control(txn, &now);
+	return err ? err : (now ^ value) & SETTINGS || now & ~value & POR ? -EIO : 0;
 }
 
 static int write_flag(struct txn *txn)

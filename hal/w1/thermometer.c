@@ -16,6 +16,7 @@
 #define WRITE_SCRATCHPAD 0x4e
 #define COPY_SCRATCHPAD 0x48
 #define OLD_NS (10 * NATIVE_S)
+#define REFUSED_NS (60 * NATIVE_S)
 
 static int64_t now_of(const struct w1_master *master)
 {
@@ -159,9 +160,13 @@ void w1_convert_all(struct w1_link *link)
 		if (master->slaves[i].channel == channel)
 			master->slaves[i].due = true;
 	w1_master_name(link->number, name);
-	/* Where it fails, or is not there, each converts when it is read. */
-	if (w1_exists(master, name, "therm_bulk_read"))
-		w1_write(master, name, "therm_bulk_read", trigger, sizeof(trigger));
+	/*
+	 * Where it fails, or is not there, each converts when it is read. The driver refuses it among
+	 * other chips, and tells its log each time.
+	 */
+	if (now_of(master) >= link->bulk_ns && w1_exists(master, name, "therm_bulk_read") &&
+	    w1_write(master, name, "therm_bulk_read", trigger, sizeof(trigger)))
+		link->bulk_ns = now_of(master) + REFUSED_NS;
 }
 
 static int put(struct w1_link *link, const char *file, const char *text)

@@ -12,6 +12,7 @@
  *   rw.c thermometer.c ds2438.c ds2413.c   ... family by family
  *   switches.c memory.c   properties that are attributes themselves
  *   alarm.c    what the conditional search would find
+ *   uevent.c   the kernel tells that slaves and masters come and go
  *
  * The target "w1:netlink" is in netlink.h.
  */
@@ -47,6 +48,7 @@ struct w1_link {
 	struct link link;
 	struct w1_master *master;
 	unsigned number; /* of w1_bus_masterN */
+	int64_t bulk_ns; /* therm_bulk_read was refused: not before */
 	/* Since the last reset: */
 	const struct w1_wire *wire;
 	struct w1_slave *slave;
@@ -65,6 +67,8 @@ struct w1_master {
 	unsigned slave_count;
 	bool told_rights;
 	int64_t look_ns; /* when to look for masters that came later */
+	int uevents;     /* socket; -1: none */
+	int64_t uevents_ns; /* when to look at it */
 	char text[W1_TEXT_MAX];  /* an attribute that is being looked at */
 	char lists[8 * W1_TEXT_MAX]; /* a list of slaves */
 };
@@ -96,6 +100,11 @@ bool w1_exists(const struct w1_master *master, const char *directory, const char
 /* The same of a slave. */
 int w1_slave_read(struct w1_master *master, const uint8_t rom[8], const char *name, void *data,
                   size_t room);
+/* The same from a byte of the file on. */
+int w1_slave_read_at(struct w1_master *master, const uint8_t rom[8], const char *name, unsigned at,
+                     void *data, size_t room);
+int w1_slave_write_at(struct w1_master *master, const uint8_t rom[8], const char *name, unsigned at,
+                      const void *data, size_t n);
 /* Text with NUL, in master->text; -EIO when it is empty: so the kernel tells a failed reading. */
 int w1_slave_text(struct w1_master *master, const uint8_t rom[8], const char *name);
 int w1_slave_number(struct w1_master *master, const uint8_t rom[8], const char *name, long *number);
@@ -149,7 +158,15 @@ int w1_scratchpad(struct w1_master *master, struct w1_slave *slave, uint8_t scra
 /* Convert all on the master's wire; returns when it is over. */
 void w1_convert_all(struct w1_link *link);
 
+/* uevent.c: without it (no such right, another name space) the lists are read now and then. */
+void w1_uevents_open(struct w1_master *master);
+void w1_uevents_close(struct w1_master *master);
+/* Takes what there is, never blocks. True: slaves or masters came or went, or some was missed. */
+bool w1_uevents_taken(struct w1_master *master);
+
 /* alarm.c: 1, 0, or an error; -EOPNOTSUPP it cannot be told. */
 int w1_in_alarm(struct w1_master *master, struct w1_slave *slave);
+/* A thermometer that converts when it is asked that: what is known of it is too old. */
+bool w1_alarm_converts(const struct w1_master *master, const struct w1_slave *slave);
 
 #endif

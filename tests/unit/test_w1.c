@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -320,6 +321,44 @@ static void test_slaves_that_come_and_go_are_told(void)
 	fails(-ENODEV, WARM_OW "/temperature");
 }
 
+/* A datagram as the kernel sends it, on another kind of socket. */
+static void uevent(int fd, const char *subsystem)
+{
+	char message[200];
+	int n = snprintf(message, sizeof(message), "add@/devices/w1_bus_master1/x%cACTION=add%c"
+	                 "SUBSYSTEM=%s%cSEQNUM=1", 0, 0, subsystem, 0);
+
+	TEST_ASSERT_EQUAL_INT(n + 1, send(fd, message, (size_t)n + 1, 0));
+}
+
+static void test_a_uevent_of_the_kernel_makes_it_look_at_once(void)
+{
+	int ends[2];
+
+	start();
+	host_run(&host, bus, host.now + HOST_S);
+	TEST_ASSERT_EQUAL_INT(0, socketpair(AF_UNIX, SOCK_DGRAM, 0, ends));
+	((struct w1_master *)((struct native *)bus)->master)->uevents = ends[0];
+	thermometer(WARM, 0x151);
+	uevent(ends[1], "usb");
+	uevent(ends[1], "w1_family");
+	host_run(&host, bus, host.now + HOST_S);
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_FOUND));
+	uevent(ends[1], "w1");
+	host_run(&host, bus, host.now + HOST_S);
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_FOUND));
+	gone(WARM);
+	uevent(ends[1], "w1");
+	host_run(&host, bus, host.now + 2 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_LOST));
+	text("w1_bus_master3", "w1_master_slaves", BOARD "\n");
+	byte(BOARD, "output", 0xff);
+	uevent(ends[1], "w1");
+	host_run(&host, bus, host.now + HOST_S);
+	TEST_ASSERT_EQUAL_UINT(2, host_events(&host, BUS_FOUND));
+	close(ends[1]);
+}
+
 static void test_a_slave_that_has_just_gone_is_no_device(void)
 {
 	thermometer(WARM, 0x151);
@@ -457,6 +496,40 @@ static void test_all_that_are_due_convert_at_once(void)
 	for (size_t i = 0; i < n; i++)
 		if (strcmp(counters[i].name, "conversions") == 0)
 			TEST_ASSERT_EQUAL_UINT64(1, bus_counted(&counters[i]));
+}
+
+static void test_a_refusal_to_convert_all_at_once_is_remembered(void)
+{
+	thermometer(WARM, 0x151);
+	text("w1_bus_master1", "therm_bulk_read", "0\n");
+	broken("w1_bus_master1", "therm_bulk_read");
+	start();
+	reads("     21.0625", WARM_OW "/temperature");
+	erase("w1_bus_master1/therm_bulk_read");
+	text("w1_bus_master1", "therm_bulk_read", "0\n");
+	reads("     21.0625", WARM_OW "/temperature");
+	TEST_ASSERT_EQUAL_STRING("0\n", now_in("w1_bus_master1", "therm_bulk_read"));
+	host_run(&host, bus, host.now + 61 * HOST_S);
+	reads("     21.0625", WARM_OW "/temperature");
+	TEST_ASSERT_EQUAL_STRING("trigger\n", now_in("w1_bus_master1", "therm_bulk_read"));
+}
+
+/* The driver feeds those that have no supply of their own. */
+static void test_one_that_the_wire_feeds_converts_with_the_others(void)
+{
+	thermometer(WARM, 0x151);
+	thermometer("28-0000000000a2", 0x10);
+	thermometer("28-0000000000a3", 0x20);
+	text("28-0000000000a3", "ext_power", "0\n");
+	text("w1_bus_master1", "therm_bulk_read", "0\n");
+	start();
+	reads("0", "/28.A30000000000/power");
+	reads("1", WARM_OW "/power");
+	uint32_t one = ask(BUS_READ, WARM_OW "/temperature", NULL, 0);
+	uint32_t two = ask(BUS_READ, "/28.A20000000000/temperature", NULL, 0);
+	TEST_ASSERT_EQUAL_INT(0, result(one));
+	TEST_ASSERT_EQUAL_INT(0, result(two));
+	TEST_ASSERT_EQUAL_STRING("trigger\n", now_in("w1_bus_master1", "therm_bulk_read"));
 }
 
 /* --- Switches --- */
@@ -653,6 +726,38 @@ static void test_eeproms_are_read_and_written(void)
 	fails(-EIO, chips[2].memory);
 }
 
+/* What is written to the file is as long as what is changed, so that no other row wears out. */
+static void test_an_eeprom_is_written_row_by_row(void)
+{
+	static const char name[] = "2d-000000000033";
+	char bytes[128], full[200];
+
+	memset(bytes, 'a', sizeof(bytes));
+	slave(name);
+	put(name, "eeprom", bytes, sizeof(bytes));
+	start();
+	TEST_ASSERT_EQUAL_INT(0, writes("/2D.330000000000/pages/page.1", "aaaaaaaaaaxa"));
+	TEST_ASSERT_EQUAL_STRING_LEN("aaxaa", now_in(name, "eeprom") + 40, 5);
+	/* Rows as they are need no right to write. */
+	snprintf(full, sizeof(full), "%s/%s/eeprom", root, name);
+	TEST_ASSERT_EQUAL_INT(0, chmod(full, 0444));
+	chmod(root, 0755);
+	uid_t user = geteuid();
+	if (user == 0)
+		TEST_ASSERT_EQUAL_INT(0, seteuid(65534));
+	int same = writes("/2D.330000000000/pages/page.1", "aaaaaaaaaaxa");
+	int other = writes("/2D.330000000000/pages/page.1", "aaaaaaaaaaxb");
+	if (user == 0)
+		TEST_ASSERT_EQUAL_INT(0, seteuid(0));
+	TEST_ASSERT_EQUAL_INT(0, same);
+	TEST_ASSERT_EQUAL_INT(-EACCES, other);
+	/* The last page of a file that is too short. */
+	TEST_ASSERT_EQUAL_INT(0, chmod(full, 0644));
+	put(name, "eeprom", bytes, 120);
+	reads("aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa", "/2D.330000000000/pages/page.0");
+	fails(-EIO, "/2D.330000000000/pages/page.3");
+}
+
 static void test_raw_access_serves_the_rest(void)
 {
 	static const char name[] = "23-000000000041";
@@ -714,6 +819,23 @@ static void test_a_thermometer_beyond_its_limits_is_in_alarm(void)
 	lists("/alarm" WARM_OW "\n/alarm/28.A20000000000\n", "/alarm/28");
 }
 
+static void test_thermometers_asked_for_their_alarm_convert_at_once(void)
+{
+	thermometer(WARM, 0x151);
+	text("w1_bus_master1", "therm_bulk_read", "0\n");
+	start();
+	lists("/alarm" WARM_OW "\n", "/alarm/28");
+	/* One alone is read. */
+	TEST_ASSERT_EQUAL_STRING("0\n", now_in("w1_bus_master1", "therm_bulk_read"));
+	thermometer("28-0000000000a2", 0x151);
+	host_run(&host, bus, host.now + 11 * HOST_S);
+	lists("/alarm" WARM_OW "\n/alarm/28.A20000000000\n", "/alarm/28");
+	TEST_ASSERT_EQUAL_STRING("trigger\n", now_in("w1_bus_master1", "therm_bulk_read"));
+	text("w1_bus_master1", "therm_bulk_read", "0\n");
+	lists("/alarm" WARM_OW "\n/alarm/28.A20000000000\n", "/alarm/28");
+	TEST_ASSERT_EQUAL_STRING("0\n", now_in("w1_bus_master1", "therm_bulk_read"));
+}
+
 static void test_a_ds2408_is_in_alarm_by_its_condition(void)
 {
 	static const struct {
@@ -766,9 +888,11 @@ static void test_who_may_not_write_is_told_how(void)
 	chmod(root, 0755);
 	char full[200];
 	snprintf(full, sizeof(full), "%s/" BOARD "/output", root);
-	chmod(full, 0444);
+	/* Neither the owner nor others; the group is root's own. */
+	mode_t mode = user == 0 ? 0644 : 0464;
+	chmod(full, mode);
 	snprintf(full, sizeof(full), "%s/" WARM "/alarms", root);
-	chmod(full, 0444);
+	chmod(full, mode);
 	start();
 	reads("         189", BOARD_OW "/sensed.BYTE");
 	if (user == 0)
@@ -783,6 +907,26 @@ static void test_who_may_not_write_is_told_how(void)
 	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_DOWN));
 }
 
+static void test_what_nobody_may_write_is_no_matter_of_rights(void)
+{
+	uid_t user = geteuid();
+	char full[200];
+
+	board(0xbd, 0x80);
+	chmod(root, 0755);
+	snprintf(full, sizeof(full), "%s/" BOARD "/cond_search_mask", root);
+	chmod(full, 0444);
+	start();
+	reads("        2223", BOARD_OW "/set_alarm");
+	if (user == 0)
+		TEST_ASSERT_EQUAL_INT(0, seteuid(65534));
+	int err = writes(BOARD_OW "/set_alarm", "222");
+	if (user == 0)
+		TEST_ASSERT_EQUAL_INT(0, seteuid(0));
+	TEST_ASSERT_EQUAL_INT(-EACCES, err);
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_NOTE));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -793,6 +937,7 @@ int main(void)
 	RUN_TEST(test_the_last_master_that_goes_takes_the_target_down);
 	RUN_TEST(test_a_master_that_comes_later_is_one_more_bus);
 	RUN_TEST(test_slaves_that_come_and_go_are_told);
+	RUN_TEST(test_a_uevent_of_the_kernel_makes_it_look_at_once);
 	RUN_TEST(test_a_slave_that_has_just_gone_is_no_device);
 	RUN_TEST(test_identity_needs_no_attribute);
 	RUN_TEST(test_a_thermometer_reads_as_elsewhere);
@@ -804,6 +949,8 @@ int main(void)
 	RUN_TEST(test_a_resolution_is_written_when_it_differs);
 	RUN_TEST(test_limits_are_written_and_saved);
 	RUN_TEST(test_all_that_are_due_convert_at_once);
+	RUN_TEST(test_a_refusal_to_convert_all_at_once_is_remembered);
+	RUN_TEST(test_one_that_the_wire_feeds_converts_with_the_others);
 	RUN_TEST(test_a_ds2408_reads_its_registers);
 	RUN_TEST(test_a_ds2408_is_written_and_read_back);
 	RUN_TEST(test_a_ds2408_that_restarted_is_told);
@@ -814,12 +961,15 @@ int main(void)
 	RUN_TEST(test_a_ds2438_measures);
 	RUN_TEST(test_a_ds2423_counts);
 	RUN_TEST(test_eeproms_are_read_and_written);
+	RUN_TEST(test_an_eeprom_is_written_row_by_row);
 	RUN_TEST(test_raw_access_serves_the_rest);
 	RUN_TEST(test_a_slave_without_driver_is_told_once);
 	RUN_TEST(test_a_directory_has_what_there_are_attributes_for);
 	RUN_TEST(test_a_thermometer_beyond_its_limits_is_in_alarm);
+	RUN_TEST(test_thermometers_asked_for_their_alarm_convert_at_once);
 	RUN_TEST(test_a_ds2408_is_in_alarm_by_its_condition);
 	RUN_TEST(test_where_nothing_tells_the_alarm_it_is_not_supported);
 	RUN_TEST(test_who_may_not_write_is_told_how);
+	RUN_TEST(test_what_nobody_may_write_is_no_matter_of_rights);
 	return UNITY_END();
 }
