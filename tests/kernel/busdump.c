@@ -7,8 +7,8 @@
  *   busdump TARGET dir PATH...   the entries of each directory
  *   busdump TARGET read          the paths on standard input
  *   busdump TARGET write         "PATH VALUE" lines on standard input; \xNN is a byte of VALUE
- *   busdump TARGET rounds PATH...   for each line on standard input all paths at once, as the engine
- *                                   asks for what is due; then a line "round"
+ *   busdump TARGET rounds PATH...   for each line on standard input all paths at once (100 at a time),
+ *                                   as the engine asks for what is due; then a line "round"
  */
 #include <poll.h>
 #include <stdio.h>
@@ -21,14 +21,14 @@
 
 enum { ROOM = 65536 };
 #define SECOND INT64_C(1000000000)
-#define PATIENCE (30 * SECOND)
+#define PATIENCE (100 * SECOND)
 
 static struct bus *bus;
 static struct bus_answer last;
 static bool answered, up;
 
 /* Of a round. */
-enum { ROUND_MAX = 100, VALUE_ROOM = 64 };
+enum { ROUND_MAX = 100, VALUE_ROOM = 600 };
 static struct bus_req round_req[ROUND_MAX];
 static uint8_t round_data[ROUND_MAX][VALUE_ROOM];
 static int round_ret[ROUND_MAX];
@@ -170,16 +170,18 @@ static void one_round(char **paths, int n)
 	for (int i = 0; i < n; i++)
 		lines_answer(paths[i], round_ret[i], round_data[i],
 		             round_ret[i] < 0 ? 0 : (size_t)round_ret[i]);
-	puts("round");
-	fflush(stdout);
 }
 
 static void rounds(char **paths, int n)
 {
 	char line[16];
 
-	while (n > 0 && n <= ROUND_MAX && fgets(line, sizeof(line), stdin))
-		one_round(paths, n);
+	while (n > 0 && fgets(line, sizeof(line), stdin)) {
+		for (int i = 0; i < n; i += ROUND_MAX)
+			one_round(paths + i, n - i < ROUND_MAX ? n - i : ROUND_MAX);
+		puts("round");
+		fflush(stdout);
+	}
 }
 
 int main(int argc, char **argv)

@@ -89,20 +89,31 @@ static int follow_plug(struct rig *rig)
 	return 0;
 }
 
+static uint64_t conversions_on(const struct sim_wire *wire)
+{
+	uint64_t sum = 0;
+
+	for (size_t i = 0; i < wire->count; i++)
+		sum += wire->slaves[i]->conversions;
+	return sum;
+}
+
 static void stats(const struct rig *rig, char *text, size_t size)
 {
-	unsigned long long resets = 0, slots = 0, wire_ns = 0;
+	unsigned long long resets = 0, slots = 0, wire_ns = 0, conversions = 0;
 
 	for (unsigned i = 0; i < rig->net.chips; i++) {
 		wire_ns += (unsigned long long)rig->net.chip[i].wire_ns;
 		for (unsigned n = 0; n < rig->net.chip[i].channels; n++) {
 			resets += rig->net.chip[i].wire[n].resets;
 			slots += rig->net.chip[i].wire[n].slots;
+			conversions += conversions_on(&rig->net.chip[i].wire[n]);
 		}
 	}
-	snprintf(text, size, "messages %llu\nbytes %llu\nresets %llu\nslots %llu\nwire_us %llu\n",
+	snprintf(text, size, "messages %llu\nbytes %llu\nresets %llu\nslots %llu\nwire_us %llu\nconversions %llu\n",
 	         (unsigned long long)rig->adapter.adapter.transfers,
-	         (unsigned long long)rig->adapter.adapter.bytes, resets, slots, wire_ns / 1000);
+	         (unsigned long long)rig->adapter.adapter.bytes, resets, slots, wire_ns / 1000,
+	         conversions);
 }
 
 static int command(void *ctx, const char *line, char *answer, size_t size)

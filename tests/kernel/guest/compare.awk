@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: MIT
 # Two outputs of owdump for the same paths, the peer's first: one result for each device whose
-# answers are all equal, one for each answer that is not. what names the comparison. Running clocks
+# answers are all equal, one for each answer that is not. what names the comparison, peer and ours
+# the two (owserver, owsd). Running clocks
 # (date, udate, and the four bytes behind them in page 1 of a DS2438) may differ by the seconds
 # between the two; any refusal equals any other; and where owserver tells 85 degrees of a thermometer
 # that never converted, owsd tells a power fault.
 BEGIN {
 	FS = "\t"
+	if (!peer)
+		peer = "owserver"
+	if (!ours)
+		ours = "owsd"
 	CLOCK["1"] = 0
 	CLOCK["ALL"] = 8
 	for (i = 32; i < 127; i++)
@@ -34,7 +39,7 @@ NR == FNR { theirs[$1] = $2; next }
 	else if (theirs[$1] ~ /^ *85$/ && $2 == "ret=-34")
 		good[id]++
 	else if (theirs[$1] != $2)
-		bad($1, "owserver '" theirs[$1] "', owsd '" $2 "'")
+		bad($1, peer " '" theirs[$1] "', " ours " '" $2 "'")
 	else
 		good[id]++
 	total[id]++
