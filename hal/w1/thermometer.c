@@ -149,6 +149,29 @@ static int scratchpad_now(struct w1_master *master, struct w1_slave *slave, uint
 	return settings ? read_settings(master, slave, scratchpad) : 0;
 }
 
+static long master_number(struct w1_link *link, const char *name, const char *file, long otherwise)
+{
+	char text[24] = "";
+	int n = w1_read(link->master, name, file, text, sizeof(text) - 1);
+
+	return n > 0 ? strtol(text, NULL, 10) : otherwise;
+}
+
+/*
+ * A slave that is no thermometer and is attached while all convert makes the driver (6.1) follow a
+ * null pointer: the kernel's thread dies and the wire with it. So not among others, and not before
+ * the first search is over; from then on only who plugs one in meets it.
+ */
+static bool converts_at_once(struct w1_link *link, const char *name)
+{
+	for (unsigned i = 0; i < link->master->slave_count; i++)
+		if (link->master->slaves[i].channel == link - link->master->links &&
+		    !family_of(link->master->slaves[i].rom[0])->thermometer)
+			return false;
+	return master_number(link, name, "w1_master_search", 0) == 0 ||
+	       master_number(link, name, "w1_master_attempts", 2) >= 2;
+}
+
 void w1_convert_all(struct w1_link *link)
 {
 	static const char trigger[8] = {'t', 'r', 'i', 'g', 'g', 'e', 'r', '\n'};
@@ -161,10 +184,11 @@ void w1_convert_all(struct w1_link *link)
 			master->slaves[i].due = true;
 	w1_master_name(link->number, name);
 	/*
-	 * Where it fails, or is not there, each converts when it is read. The driver refuses it among
-	 * other chips, and tells its log each time.
+	 * Where it fails, or is not there, each converts when it is read. What the driver refuses, it
+	 * tells its log.
 	 */
 	if (now_of(master) >= link->bulk_ns && w1_exists(master, name, "therm_bulk_read") &&
+	    converts_at_once(link, name) &&
 	    w1_write(master, name, "therm_bulk_read", trigger, sizeof(trigger)))
 		link->bulk_ns = now_of(master) + REFUSED_NS;
 }

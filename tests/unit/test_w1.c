@@ -514,6 +514,33 @@ static void test_a_refusal_to_convert_all_at_once_is_remembered(void)
 	TEST_ASSERT_EQUAL_STRING("trigger\n", now_in("w1_bus_master1", "therm_bulk_read"));
 }
 
+static bool triggered(void)
+{
+	bool yes = strcmp(now_in("w1_bus_master1", "therm_bulk_read"), "trigger\n") == 0;
+
+	text("w1_bus_master1", "therm_bulk_read", "0\n");
+	return yes;
+}
+
+/* The driver of 6.1 dies of a slave of another kind that is attached meanwhile. */
+static void test_all_convert_at_once_only_where_nothing_else_can_come(void)
+{
+	thermometer(WARM, 0x151);
+	text("w1_bus_master1", "therm_bulk_read", "0\n");
+	text("w1_bus_master1", "w1_master_search", "-1\n");
+	text("w1_bus_master1", "w1_master_attempts", "1\n");
+	start();
+	reads("     21.0625", WARM_OW "/temperature");
+	TEST_ASSERT_FALSE(triggered());
+	text("w1_bus_master1", "w1_master_attempts", "2\n");
+	reads("     21.0625", WARM_OW "/temperature");
+	TEST_ASSERT_TRUE(triggered());
+	slave("12-0000000000e1");
+	host_run(&host, bus, host.now + 12 * HOST_S);
+	reads("     21.0625", WARM_OW "/temperature");
+	TEST_ASSERT_FALSE(triggered());
+}
+
 /* The driver feeds those that have no supply of their own. */
 static void test_one_that_the_wire_feeds_converts_with_the_others(void)
 {
@@ -950,6 +977,7 @@ int main(void)
 	RUN_TEST(test_limits_are_written_and_saved);
 	RUN_TEST(test_all_that_are_due_convert_at_once);
 	RUN_TEST(test_a_refusal_to_convert_all_at_once_is_remembered);
+	RUN_TEST(test_all_convert_at_once_only_where_nothing_else_can_come);
 	RUN_TEST(test_one_that_the_wire_feeds_converts_with_the_others);
 	RUN_TEST(test_a_ds2408_reads_its_registers);
 	RUN_TEST(test_a_ds2408_is_written_and_read_back);
