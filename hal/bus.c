@@ -66,7 +66,7 @@ int bus_create(const char *target, const struct bus_env *env, struct bus **bus, 
 	if (why_size)
 		why[0] = '\0';
 	if (strcmp(target, "auto") == 0) {
-		snprintf(why, why_size, "stands for several targets: name one of them");
+		snprintf(why, why_size, "auto stands for several targets: name one of them");
 		return -EINVAL;
 	}
 	if (!ops) {
