@@ -10,7 +10,8 @@
 #   make test-kernel              Debian's own kernel and owserver on the simulated chip, in QEMU
 #   make deb ARCH=arm64           Debian packages in build/deb; SUITE=trixie for another Debian
 #   make test-package             packages of three architectures, lintian, install to purge
-#   make test-gpio                GPIO lines of an arm64 guest, with libgpiod 1.6 and 2.x
+#   make test-gpio                GPIO lines of an arm64 guest, with libgpiod 1.6 and 2.x;
+#                                 test-gpio-pi the same of a Raspberry Pi 3
 
 VERSION  := 0.1.0
 SOMAJOR  := 0

@@ -7,9 +7,11 @@ another (port), and knows how a program of its architecture is packed.
 import lzma
 import os
 import re
+import shutil
 import subprocess
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+DTB = "broadcom/bcm2837-rpi-3-b.dtb"
 FETCH = os.path.join(HERE, "../../board/fetch-debs")
 
 
@@ -47,6 +49,10 @@ class Machine:
     def unpack_kernel(self, vmlinuz, target):
         """What QEMU is to start, out of the package's file."""
         raise NotImplementedError
+
+    def kernel_arguments(self, kernel):
+        """What QEMU is told besides -kernel."""
+        return ()
 
     def busybox(self, folder):
         """A static busybox of this architecture, and its applets as far as we can ask it."""
@@ -128,8 +134,10 @@ class Arm64(Machine):
         output(FETCH, "-", "arm64", folder, package)
 
     def unpack_kernel(self, vmlinuz, target):
-        with open(vmlinuz, "rb") as file, open(target, "wb") as plain:
-            plain.write(file.read())
+        shutil.copyfile(vmlinuz, target)
+        boot, name = os.path.split(vmlinuz)
+        shutil.copyfile(os.path.join(boot, "../usr/lib", name.replace("vmlinuz", "linux-image"), DTB),
+                        target + ".dtb")
 
     def busybox(self, folder):
         root = os.path.join(folder, "busybox")
@@ -157,4 +165,15 @@ class Arm64(Machine):
         return [(path, "/lib/" + name) for name, path in found.items()]
 
 
-MACHINES = {machine.name: machine for machine in (Amd64(), Arm64())}
+class Raspi(Arm64):
+    """A Raspberry Pi 3 with Debian's kernel. It does not end by itself."""
+    name = "raspi3b"
+    port = "ttyS1"
+    arguments = ("-smp", "4", "-m", "1024", "-M", "raspi3b")
+    serial = ("-serial", "stdio")
+
+    def kernel_arguments(self, kernel):
+        return ("-dtb", kernel + ".dtb")
+
+
+MACHINES = {machine.name: machine for machine in (Amd64(), Arm64(), Raspi())}
