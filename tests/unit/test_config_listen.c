@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: MIT */
+#include "src/config/listen.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <string.h>
+#include <unity.h>
+
+static struct listen_address addresses[2];
+static const char *why;
+
+void setUp(void)
+{
+	why = "";
+}
+
+void tearDown(void)
+{
+}
+
+static int parse(const char *text)
+{
+	return listen_parse(text, strlen(text), addresses, &why);
+}
+
+static const char *printed(int i)
+{
+	static char text[LISTEN_TEXT_MAX];
+
+	listen_print(&addresses[i], text);
+	return text;
+}
+
+static void test_a_bare_port_and_localhost_are_both_loopback_addresses(void)
+{
+	static const char *const texts[] = { "4304", "localhost:4304", "localhost" };
+
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++) {
+		TEST_ASSERT_EQUAL_INT(2, parse(texts[i]));
+		TEST_ASSERT_EQUAL_STRING("127.0.0.1:4304", printed(0));
+		TEST_ASSERT_EQUAL_STRING("[::1]:4304", printed(1));
+		TEST_ASSERT_TRUE(listen_is_loopback(&addresses[0]));
+		TEST_ASSERT_TRUE(listen_is_loopback(&addresses[1]));
+	}
+}
+
+static void test_a_network_is_served_by_its_address_only(void)
+{
+	static const char *const texts[] = { "0.0.0.0:4304", "192.168.1.5:5000", "[::]:4304",
+		                             "[fd00::1]:80" };
+
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++) {
+		TEST_ASSERT_EQUAL_INT(1, parse(texts[i]));
+		TEST_ASSERT_EQUAL_STRING(texts[i], printed(0));
+		TEST_ASSERT_FALSE(listen_is_loopback(&addresses[0]));
+	}
+	TEST_ASSERT_EQUAL_INT(1, parse("127.1.2.3:1"));
+	TEST_ASSERT_TRUE(listen_is_loopback(&addresses[0]));
+}
+
+static void test_what_is_no_address_is_refused_with_a_reason(void)
+{
+	static const char *const texts[] = {
+		"", ":", ":4304", "70000", "here:4304", "1.2.3.4:", "1.2.3.4:x", "1.2.3.4:65536",
+		"::1:4304", "[::1]4304", "[::1", "[1.2.3.4]:4304", "1.2.3:4304", "-1", "4304 ", "[]:1",
+		"1.2.3.4.5.6.7.8.9.10.11.12.13.14.15.16.17.18.19.20.21:4304",
+	};
+
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++) {
+		TEST_ASSERT_EQUAL_INT_MESSAGE(-EINVAL, parse(texts[i]), texts[i]);
+		TEST_ASSERT_NOT_EQUAL('\0', *why);
+	}
+}
+
+static bool allows(const char *range, const char *peer)
+{
+	struct listen_peers peers;
+	bool is_v6 = strchr(peer, ':');
+	uint8_t bytes[16];
+
+	TEST_ASSERT_EQUAL_INT(0, listen_peers_parse(range, strlen(range), &peers, &why));
+	TEST_ASSERT_EQUAL_INT(1, inet_pton(is_v6 ? AF_INET6 : AF_INET, peer, bytes));
+	return listen_peers_have(&peers, 1, is_v6, bytes);
+}
+
+static void test_ranges_have_the_peers_inside_and_no_others(void)
+{
+	TEST_ASSERT_TRUE(allows("192.168.1.0/24", "192.168.1.255"));
+	TEST_ASSERT_FALSE(allows("192.168.1.0/24", "192.168.2.0"));
+	TEST_ASSERT_TRUE(allows("10.0.0.7", "10.0.0.7"));
+	TEST_ASSERT_FALSE(allows("10.0.0.7", "10.0.0.6"));
+	TEST_ASSERT_TRUE(allows("10.128.0.0/9", "10.255.0.1"));
+	TEST_ASSERT_FALSE(allows("10.128.0.0/9", "10.127.0.1"));
+	TEST_ASSERT_TRUE(allows("0.0.0.0/0", "1.2.3.4"));
+	TEST_ASSERT_FALSE(allows("0.0.0.0/0", "fd00::1"));
+	TEST_ASSERT_TRUE(allows("fd00::/8", "fdff::1"));
+	TEST_ASSERT_FALSE(allows("fd00::/8", "fe00::1"));
+	TEST_ASSERT_TRUE(allows("192.168.1.0/24", "::ffff:192.168.1.9"));
+}
+
+static void test_ranges_that_cannot_be_are_refused(void)
+{
+	static const char *const texts[] = { "", "10.0.0.0/33", "10.0.0.0/", "fd00::/129", "/8",
+		                             "name", "10.0.0.0/-1" };
+	struct listen_peers peers;
+
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++)
+		TEST_ASSERT_EQUAL_INT_MESSAGE(
+			-EINVAL, listen_peers_parse(texts[i], strlen(texts[i]), &peers, &why), texts[i]);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_bare_port_and_localhost_are_both_loopback_addresses);
+	RUN_TEST(test_a_network_is_served_by_its_address_only);
+	RUN_TEST(test_what_is_no_address_is_refused_with_a_reason);
+	RUN_TEST(test_ranges_have_the_peers_inside_and_no_others);
+	RUN_TEST(test_ranges_that_cannot_be_are_refused);
+	return UNITY_END();
+}
