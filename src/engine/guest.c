@@ -9,6 +9,7 @@
 /* Requests of the table that go before a guest who waits, where there are always some. */
 #define GUEST_PASSED 4
 #define GUESTS_LENT  64
+#define GUESTS_PRESSING 16
 
 static void answer(struct engine *e, struct engine_guest *g)
 {
@@ -137,9 +138,16 @@ void engine_guests_take(struct engine *e, int64_t now_ns)
 			flush(e, &e->lanes[i], now_ns);
 }
 
+static unsigned table_lent(const struct lane *lane)
+{
+	return lane->lent - lane->guests.lent;
+}
+
+/* A part of what the bus takes, and where the table is at work a part of what the bus has of it. */
 static unsigned most_lent(const struct lane *lane)
 {
-	unsigned most = lane->depth / 4;
+	unsigned own = table_lent(lane);
+	unsigned most = own ? own / GUEST_PASSED : lane->depth / 4;
 
 	return most == 0 ? 1 : most > GUESTS_LENT ? GUESTS_LENT : most;
 }
@@ -157,8 +165,8 @@ void guest_passed(struct lane *lane)
 }
 
 /*
- * A bus may always have something to do that is more urgent than a guest: so the oldest of those
- * who are with it is no less urgent than an input.
+ * A bus that the table keeps busy would never come to its guests: so those whom it is lent beside
+ * the table, which are few, are no less urgent than inputs, and some of those who find it idle.
  */
 bool guest_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
 {
@@ -167,14 +175,14 @@ bool guest_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
 	slot->purpose = FOR_GUEST;
 	slot->row = TABLE_NO_ROW;
 	slot->guest = g;
-	slot->pressing = !lane->guests.pressing;
+	slot->pressing = table_lent(lane) || lane->guests.pressing < GUESTS_PRESSING;
 	slot->req = (struct bus_req){ .op = g->op, .fresh = g->fresh, .path = g->path,
 		                      .prio = slot->pressing ? BUS_INPUT : BUS_GUEST,
 		                      .len = g->len, .data = g->data };
 	if (!lane_lend(lane, slot, now_ns))
 		return false;
 	dequeue(lane);
-	lane->guests.pressing |= slot->pressing;
+	lane->guests.pressing += slot->pressing;
 	lane->guests.passed = 0;
 	lane->guests.lent++;
 	lane->counters.guests++;
@@ -228,8 +236,7 @@ void engine_guest_done(struct engine *e, struct lane *lane, struct slot *slot,
 	bool lent = slot->lent;
 
 	lane->guests.lent--;
-	if (slot->pressing)
-		lane->guests.pressing = false;
+	lane->guests.pressing -= slot->pressing;
 	if (g->op == BUS_WRITE && (!a->err || failure_of(a->err) == FAILURE_TARGET ||
 	                           a->err == -EINPROGRESS))
 		restore_outputs(e, g->path);

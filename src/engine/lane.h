@@ -37,7 +37,7 @@ struct slot {
 	int64_t value;  /* of a write */
 	uint32_t stamp; /* of the command written */
 	bool one_shot;  /* the write was that of _WriteOneShot */
-	bool pressing;  /* the guest that goes as an input */
+	bool pressing;  /* a guest that goes as an input */
 	struct engine_guest *guest; /* path and data are his */
 	uint8_t data[LANE_DATA];
 	char path[LANE_PATH]; /* of req: what is lent stands for itself, also over a reload */
@@ -98,7 +98,7 @@ struct lane {
 		struct engine_guest *first, *last; /* who wait */
 		unsigned lent;
 		unsigned passed; /* requests of the table since one of them */
-		bool pressing;   /* one who goes as an input is with the bus */
+		unsigned pressing; /* of those lent, who go as inputs */
 	} guests;
 
 	struct {
