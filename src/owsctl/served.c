@@ -49,7 +49,7 @@ int served_find(const struct ctl *ctl, struct served *served)
 	if (ctl->named && !served->runs)
 		return ctl_fail("owsd %s is not running", ctl->instance);
 	if (ctl->named && !served->target[0])
-		return ctl_fail("owsd %s serves no clients: ListenSocket in its configuration or its "
-		                "option -l lets it", ctl->instance);
+		return ctl_fail("owsd %s serves no clients: ListenSocket in its configuration or "
+		                "its option -l lets it", ctl->instance);
 	return CTL_DONE;
 }

@@ -48,14 +48,16 @@ static void obey(OWNET_HANDLE h, char *verb, char *rest)
 	} else if (!strcmp(verb, "read")) {
 		ret = OWNET_read(h, rest, &text);
 		say(ret, text);
-	} else if (!strcmp(verb, "lread") && sscanf(rest, "%ld %ld %4095s", &size, &offset, path) == 3 &&
-	           size <= (long)sizeof(data)) {
+	} else if (!strcmp(verb, "lread") &&
+	           sscanf(rest, "%ld %ld %4095s", &size, &offset, path) == 3 &&
+	           size >= 0 && size <= (long)sizeof(data)) {
 		ret = OWNET_lread(h, path, data, (size_t)size, offset);
 		say(ret, data);
 	} else if (!strcmp(verb, "put") && sscanf(rest, "%4095s %4095s", word, path) == 2) {
 		n = bytes_of(word);
 		say(OWNET_put(h, path, data, n) < 0 ? -1 : 0, "");
-	} else if (!strcmp(verb, "lwrite") && sscanf(rest, "%ld %4095s %4095s", &offset, word, path) == 3) {
+	} else if (!strcmp(verb, "lwrite") &&
+	           sscanf(rest, "%ld %4095s %4095s", &offset, word, path) == 3) {
 		n = bytes_of(word);
 		say(OWNET_lwrite(h, path, data, n, offset) < 0 ? -1 : 0, "");
 	} else if (!strcmp(verb, "present")) {

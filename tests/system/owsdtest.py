@@ -17,6 +17,7 @@ Every function test_* is a case; its name is the sentence that is shown. A case 
 exception (assert will do), and is skipped by owsdtest.skip("why"). Every wait has a deadline.
 """
 
+import concurrent.futures
 import glob
 import itertools
 import os
@@ -330,26 +331,32 @@ class Scene:
         return done.stdout.rstrip("\n") if done.returncode == 0 else None
 
 
-def main():
-    """Run the cases of the calling script, or those named on the command line."""
+def _run_case(name, case):
+    """Its line is printed; returns what became of it: 0 passed, 1 failed, 2 skipped."""
+    started = time.monotonic()
+    try:
+        with Scene() as scene:
+            case(scene)
+    except Skip as why:
+        print(f"skip {name}: {why}")
+        return 2
+    except Exception:
+        print(f"FAIL {name}\n{traceback.format_exc()}", end="")
+        return 1
+    print(f"ok   {name} ({time.monotonic() - started:.1f} s)")
+    return 0
+
+
+def main(at_once=1):
+    """Run the cases of the calling script, or those named on the command line; so many at once,
+    where they mostly wait."""
     module = vars(sys.modules["__main__"])
     cases = {n: f for n, f in module.items() if n.startswith("test_") and callable(f)}
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
-    passed = failed = skipped = 0
-    for case in sys.argv[1:] or cases:
-        started = time.monotonic()
-        try:
-            with Scene() as scene:
-                cases[case](scene)
-        except Skip as why:
-            skipped += 1
-            print(f"skip {case}: {why}")
-        except Exception:
-            failed += 1
-            print(f"FAIL {case}")
-            traceback.print_exc(file=sys.stdout)
-        else:
-            passed += 1
-            print(f"ok   {case} ({time.monotonic() - started:.1f} s)")
+    names = sys.argv[1:] or list(cases)
+    with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
+        ends = [pool.submit(_run_case, n, cases[n]) for n in names if at_once > 1]
+        ended = [end.result() for end in ends] or [_run_case(n, cases[n]) for n in names]
+    passed, failed, skipped = (ended.count(what) for what in range(3))
     print(f"{passed} passed, {failed} failed" + (f", {skipped} skipped" if skipped else ""))
     sys.exit(1 if failed else 0)

@@ -235,7 +235,8 @@ def judged(scene, Kind, which):
             part()
     finally:
         client.close()
-    assert not judge.wrong, "\n".join([f"{len(judge.passed)} checks passed, wrong are"] + judge.wrong)
+    wrong = [f"{len(judge.passed)} checks passed, wrong are", *judge.wrong]
+    assert not judge.wrong, "\n".join(wrong)
 
 
 def case(Kind, which):
@@ -247,4 +248,4 @@ for _which in served.STARTS:
         globals()[f"test_{_kind.__name__}_of_{_which}".lower()] = case(_kind, _which)
 
 if __name__ == "__main__":
-    owsdtest.main()
+    owsdtest.main(at_once=8)

@@ -44,7 +44,7 @@ def many_descriptors(n):
 
 
 @contextlib.contextmanager
-def unharmed(scene, server, sanitized_factor=4):
+def unharmed(scene, server):
     """Whatever happens in here costs a bounded amount of memory and no period; afterwards owsd is
     there and answers."""
     daemon = server.program
@@ -55,8 +55,7 @@ def unharmed(scene, server, sanitized_factor=4):
     assert daemon.running(), daemon.process.returncode
     owsdtest.until(lambda: answer(server), 15, "it answers afterwards", step=0.1)
     assert counter(scene, daemon, "late_periods") == late
-    room = MEMORY_KB * (sanitized_factor if "asan" in str(owsdtest.BUILD) or
-                        "tsan" in str(owsdtest.BUILD) else 1)
+    room = MEMORY_KB * (4 if owsdtest.BUILD.name in ("asan", "tsan") else 1)
     assert after - before < room, f"{before} kB before, {after} kB after"
 
 
@@ -131,7 +130,8 @@ def test_1100_idle_clients_do_not_keep_others_out_for_long(scene):
                     pass  # plainly refused
             assert persist >= 16, persist
             answer(server)  # served or refused, but told so
-            owsdtest.until(lambda: answer(server) == b"DS18B20", 30, "a newcomer is served", step=0.2)
+            owsdtest.until(lambda: answer(server) == b"DS18B20", 30, "a newcomer is served",
+                           step=0.2)
         finally:
             close_all(sockets)
 
@@ -321,4 +321,4 @@ def test_it_listens_again_at_once_after_a_restart(scene):
 
 
 if __name__ == "__main__":
-    owsdtest.main()
+    owsdtest.main(at_once=4)

@@ -297,4 +297,4 @@ def test_a_slow_answer_is_announced_by_keep_alives(scene):
 
 
 if __name__ == "__main__":
-    owsdtest.main()
+    owsdtest.main(at_once=4)

@@ -123,4 +123,4 @@ def test_an_owsd_is_the_target_of_another(scene):
 
 
 if __name__ == "__main__":
-    owsdtest.main()
+    owsdtest.main(at_once=4)
