@@ -5,8 +5,8 @@
 #include "indicator.h"
 #include "libows/ows.h"
 #include "serve/serve.h"
+#include "serving.h"
 #include "shm/reader.h"
-#include "target.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -27,26 +27,29 @@
 /* How often the loss of the image is said. */
 #define IMAGE_LOST_NS 60000000000LL
 
+/* How long the supervisor looks whether the engine, the server have taken what it gave them. */
+#define LOOK_NS 1000000
+/* How long a bus that a reload ends may take. */
+#define END_NS 2000000000LL
+
 struct host {
-	const struct config *config;
+	struct serving *now; /* the engine's thread exchanges it, the supervisor alone else */
+	struct serving *next; /* of a reload, for the engine to take over */
+	const struct adoption *plan;
+	struct engine *ended; /* whose buses have ended, for the engine's thread to leave */
 	struct log *log;
-	struct memory memory;
-	struct engine *engine;
-	struct engine_port *ports;
-	struct worker **workers;
-	unsigned worker_count;
-	unsigned *bus_counters; /* how many each worker's bus has */
-	unsigned own_counters;  /* index of the first one of the host itself, then the server's */
-	struct serve *serve;    /* NULL: the owserver protocol is not served */
+	const char *instance;
+	struct serve *serve;  /* NULL: the owserver protocol is not served */
 
 	struct indicator *indicator;
 	pthread_t thread;
 	bool running;
+	bool left_behind; /* a bus that is stuck in the kernel, with all that it has lent */
 	uint32_t stop;
-	struct commands *commands; /* as the engine uses them */
 	struct commands *renewed;  /* made by the supervisor, for the engine to take */
 	bool unseen;               /* consumers have not been shown it yet */
 	uint32_t *bell;            /* in the command segment */
+	uint32_t ringing;          /* threads that have just looked where it is */
 	int64_t tend_ns;           /* not sooner */
 	int64_t image_lost_ns;
 	uint64_t idle_rings, mended;
@@ -71,39 +74,41 @@ static const char *const host_counters[HOST_COUNTERS] = {
 static void ring(void *ctx)
 {
 	struct host *h = ctx;
-	uint32_t *bell = __atomic_load_n(&h->bell, __ATOMIC_ACQUIRE);
+	uint32_t *bell;
 
-	if (!bell)
-		return;
-	__atomic_fetch_add(bell, 1, __ATOMIC_SEQ_CST);
-	segment_wake(bell, 1);
+	__atomic_fetch_add(&h->ringing, 1, __ATOMIC_SEQ_CST);
+	bell = __atomic_load_n(&h->bell, __ATOMIC_SEQ_CST);
+	if (bell) {
+		__atomic_fetch_add(bell, 1, __ATOMIC_SEQ_CST);
+		segment_wake(bell, 1);
+	}
+	__atomic_fetch_sub(&h->ringing, 1, __ATOMIC_SEQ_CST);
 }
 
-static int submit(void *ctx, struct bus_req *req)
+/* After the bell was exchanged: nobody has his hand on the one before any more. */
+static void wait_for_ringers(const struct host *h)
 {
-	return worker_submit(ctx, req);
+	static const uint32_t nobody = 0;
+
+	while (__atomic_load_n(&h->ringing, __ATOMIC_SEQ_CST))
+		segment_wait(&nobody, 0, LOOK_NS);
 }
 
-static void suspend(void *ctx, bool yes)
-{
-	worker_suspend(ctx, yes);
-}
-
-static bool take_messages(struct host *h, int64_t now_ns)
+static bool take_messages(struct serving *now, int64_t now_ns)
 {
 	struct worker_message message;
 	bool any = false;
 
-	for (unsigned i = 0; i < h->worker_count; i++) {
+	for (unsigned i = 0; i < now->worker_count; i++) {
 		/* bounded, so that one bus that talks without end does not keep the others out */
 		for (unsigned n = 0; n < 2 * BUS_MAX_DEPTH; n++) {
-			if (!worker_next(h->workers[i], &message))
+			if (!worker_next(now->workers[i], &message))
 				break;
 			any = true;
 			if (message.is_event)
-				engine_event(h->engine, i, &message.event, now_ns);
+				engine_event(now->engine, i, &message.event, now_ns);
 			else
-				engine_answer(h->engine, i, &message.answer, now_ns);
+				engine_answer(now->engine, i, &message.answer, now_ns);
 		}
 	}
 	return any;
@@ -115,29 +120,25 @@ static void publish_serve_counters(struct host *h, uint32_t index)
 	const struct bus_counter *c = serve_counters(h->serve, &n);
 
 	for (size_t i = 0; i < n; i++)
-		image_counter(&h->memory.image, index++, bus_counted(&c[i]));
+		image_counter(&h->now->memory.image, index++, bus_counted(&c[i]));
 }
 
 static void publish_counters(struct host *h)
 {
-	uint32_t index = engine_counter_count(h->worker_count);
+	struct image *image = &h->now->memory.image;
+	uint32_t index = h->now->own_counters;
 	uint64_t stalls = 0, dropped = 0;
 
-	for (unsigned i = 0; i < h->worker_count; i++) {
-		size_t n;
-		const struct bus_counter *c = bus_counters(worker_bus(h->workers[i]), &n);
-
-		for (size_t k = 0; k < h->bus_counters[i]; k++)
-			image_counter(&h->memory.image, index++, bus_counted(&c[k]));
-		stalls += worker_stalls(h->workers[i]);
-		dropped += worker_dropped(h->workers[i]);
+	serving_publish(h->now);
+	for (unsigned i = 0; i < h->now->worker_count; i++) {
+		stalls += worker_stalls(h->now->workers[i]);
+		dropped += worker_dropped(h->now->workers[i]);
 	}
-	index = h->own_counters;
-	image_counter(&h->memory.image, index + COUNTER_LOG_DROPPED, log_dropped(h->log));
-	image_counter(&h->memory.image, index + COUNTER_IDLE_RINGS, h->idle_rings);
-	image_counter(&h->memory.image, index + COUNTER_MENDED, h->mended);
-	image_counter(&h->memory.image, index + COUNTER_WORKER_STALLS, stalls);
-	image_counter(&h->memory.image, index + COUNTER_DROPPED_EVENTS, dropped);
+	image_counter(image, index + COUNTER_LOG_DROPPED, log_dropped(h->log));
+	image_counter(image, index + COUNTER_IDLE_RINGS, h->idle_rings);
+	image_counter(image, index + COUNTER_MENDED, h->mended);
+	image_counter(image, index + COUNTER_WORKER_STALLS, stalls);
+	image_counter(image, index + COUNTER_DROPPED_EVENTS, dropped);
 	if (h->serve)
 		publish_serve_counters(h, index + HOST_COUNTERS);
 }
@@ -150,14 +151,14 @@ static void take_renewed(struct host *h, int64_t now_ns)
 	if (!renewed)
 		return;
 	__atomic_store_n(&h->bell, commands_bell(renewed), __ATOMIC_RELEASE);
-	h->commands = renewed;
-	engine_take_commands(h->engine, renewed, now_ns);
+	h->now->commands = renewed;
+	engine_take_commands(h->now->engine, renewed, now_ns);
 	__atomic_store_n(&h->renewed, NULL, __ATOMIC_RELEASE);
 }
 
 static int show_renewed(struct host *h)
 {
-	int err = memory_show_commands(&h->memory);
+	int err = memory_show_commands(&h->now->memory);
 
 	if (!err)
 		h->unseen = false;
@@ -169,7 +170,7 @@ static int renew_commands(struct host *h)
 	struct commands *renewed;
 	int err = 0;
 
-	renewed = memory_renew_commands(&h->memory, &err);
+	renewed = memory_renew_commands(&h->now->memory, &err);
 	if (!renewed)
 		return err;
 	h->unseen = true;
@@ -182,13 +183,13 @@ static int renew_commands(struct host *h)
 static void look_for_image(struct host *h, int64_t now_ns)
 {
 	if ((h->image_lost_ns && now_ns - h->image_lost_ns < IMAGE_LOST_NS) ||
-	    !memory_image_lost(&h->memory))
+	    !memory_image_lost(&h->now->memory))
 		return;
 	h->image_lost_ns = now_ns;
 	log_err(h->log,
 	        "/dev/shm/owsd.%s.image was removed and programs that start now do not find it: "
 	        "restart owsd (of an ordinary user, logind's RemoveIPC= removes it at log-out)",
-	        h->memory.instance);
+	        h->instance);
 }
 
 void host_tend(struct host *h)
@@ -204,7 +205,7 @@ void host_tend(struct host *h)
 	if (h->unseen) {
 		err = show_renewed(h);
 		h->tend_ns = now_ns + TEND_NS;
-	} else if (memory_commands_lost(&h->memory)) {
+	} else if (memory_commands_lost(&h->now->memory)) {
 		err = renew_commands(h);
 		h->tend_ns = err ? now_ns + TEND_NS : 0;
 	}
@@ -213,15 +214,33 @@ void host_tend(struct host *h)
 		        strerror(-err));
 }
 
+/* What a reload has made takes over; what it has ended is left. */
+static void take_next(struct host *h, int64_t now_ns)
+{
+	struct serving *next = __atomic_load_n(&h->next, __ATOMIC_ACQUIRE);
+	struct engine *ended = __atomic_load_n(&h->ended, __ATOMIC_ACQUIRE);
+
+	if (next) {
+		engine_adopt(next->engine, h->now->engine, h->plan, now_ns);
+		__atomic_store_n(&h->bell, commands_bell(next->commands), __ATOMIC_SEQ_CST);
+		__atomic_store_n(&h->now, next, __ATOMIC_RELEASE);
+		__atomic_store_n(&h->next, NULL, __ATOMIC_RELEASE);
+	}
+	if (ended) {
+		engine_abandon(ended);
+		__atomic_store_n(&h->ended, NULL, __ATOMIC_RELEASE);
+	}
+}
+
 static void sleep_until(struct host *h, uint32_t seen, int64_t until_ns)
 {
 	int64_t now_ns = ows_now();
 
 	if (until_ns <= now_ns)
 		return;
-	commands_awake(h->commands, false);
+	commands_awake(h->now->commands, false);
 	segment_wait(h->bell, seen, until_ns - now_ns);
-	commands_awake(h->commands, true);
+	commands_awake(h->now->commands, true);
 }
 
 static void *engine_main(void *ctx)
@@ -231,23 +250,26 @@ static void *engine_main(void *ctx)
 	unsigned idle = 0;
 
 	while (!__atomic_load_n(&h->stop, __ATOMIC_ACQUIRE)) {
-		uint32_t seen = __atomic_load_n(h->bell, __ATOMIC_ACQUIRE);
+		uint32_t *bell = h->bell, seen = __atomic_load_n(bell, __ATOMIC_ACQUIRE);
 		int64_t now_ns = ows_now(), next_ns;
-		bool busy = take_messages(h, now_ns);
+		bool busy = take_messages(h->now, now_ns);
 
-		next_ns = engine_step(h->engine, now_ns);
-		if (now_ns - counted_ns >= h->config->period_ns) {
+		next_ns = engine_step(h->now->engine, now_ns);
+		if (now_ns - counted_ns >= h->now->config->period_ns) {
 			counted_ns = now_ns;
-			h->mended += commands_mend(h->commands, false);
+			h->mended += commands_mend(h->now->commands, false);
 			publish_counters(h);
 			busy = true;
 		}
-		if (engine_published(h->engine)) {
+		if (engine_published(h->now->engine)) {
 			busy = true;
-			image_news(&h->memory.image);
-			segment_wake(&h->memory.image.header->news, INT_MAX);
+			image_news(&h->now->memory.image);
+			segment_wake(&h->now->memory.image.header->news, INT_MAX);
 		}
 		take_renewed(h, now_ns);
+		take_next(h, now_ns);
+		if (bell != h->bell) /* another one: nothing is known of it yet */
+			continue;
 		idle = busy ? 0 : idle + 1;
 		if (idle > IDLE_RINGS) {
 			static const uint32_t nobody = 0;
@@ -258,96 +280,6 @@ static void *engine_main(void *ctx)
 		sleep_until(h, seen, next_ns);
 	}
 	return NULL;
-}
-
-/* Of several ways to one wire the first is open at the start. */
-static int create_workers(struct host *h, char *why, size_t why_size)
-{
-	int err = 0;
-
-	h->workers = calloc(h->config->target_count, sizeof(*h->workers));
-	h->ports = calloc(h->config->target_count, sizeof(*h->ports));
-	h->bus_counters = calloc(h->config->target_count, sizeof(*h->bus_counters));
-	if (!h->workers || !h->ports || !h->bus_counters)
-		return -ENOMEM;
-	for (unsigned i = 0; i < h->config->target_count && !err; i++) {
-		const struct config_target *planned = &h->config->targets[i];
-		const char *target = planned->text;
-		char reason[256] = "", name[24];
-		size_t n = 0;
-
-		snprintf(name, sizeof(name), "owsd-bus%u", i);
-		err = worker_create(target, name, ring, h, &h->workers[i], reason,
-		                    sizeof(reason));
-		if (err) {
-			snprintf(why, why_size, "target %s: %s", target,
-			         *reason ? reason : strerror(-err));
-			break;
-		}
-		h->worker_count++;
-		err = target_options(worker_bus(h->workers[i]), h->config, target, reason,
-		                     sizeof(reason));
-		if (err) {
-			snprintf(why, why_size, "target %s: %s", target, reason);
-			break;
-		}
-		bus_counters(worker_bus(h->workers[i]), &n);
-		h->bus_counters[i] = (unsigned)n;
-		if (planned->relation == CONFIG_BAR)
-			worker_suspend(h->workers[i], true);
-		h->ports[i] = (struct engine_port){
-			.target = target,
-			.depth = bus_depth(worker_bus(h->workers[i])),
-			.searches = worker_bus(h->workers[i])->ops->searches,
-			.submit = submit,
-			.ctx = h->workers[i],
-			.group = planned->group,
-			.suspend = suspend,
-		};
-	}
-	return err;
-}
-
-/* Engine's counters, then each bus's, then the host's own. */
-static int make_memory(struct host *h, const char *instance, char *why, size_t why_size)
-{
-	unsigned count = engine_counter_count(h->worker_count), first = count;
-	const struct bus_counter *serve = NULL;
-	struct image_counter *plan;
-	char (*names)[48];
-	size_t serve_count = 0;
-	int err;
-
-	h->own_counters = count;
-	for (unsigned i = 0; i < h->worker_count; i++)
-		h->own_counters += h->bus_counters[i];
-	if (h->serve)
-		serve = serve_counters(h->serve, &serve_count);
-	plan = calloc(h->own_counters + HOST_COUNTERS + serve_count, sizeof(*plan));
-	names = calloc(h->own_counters - count + 1, sizeof(*names));
-	if (!plan || !names) {
-		free(plan);
-		free(names);
-		return -ENOMEM;
-	}
-	engine_counter_plan(h->worker_count, plan);
-	for (unsigned i = 0; i < h->worker_count; i++) {
-		size_t n;
-		const struct bus_counter *c = bus_counters(worker_bus(h->workers[i]), &n);
-
-		for (size_t k = 0; k < h->bus_counters[i]; k++, count++) {
-			snprintf(names[count - first], sizeof(*names), "bus_%s", c[k].name);
-			plan[count] = (struct image_counter){ names[count - first], i };
-		}
-	}
-	for (unsigned i = 0; i < HOST_COUNTERS; i++)
-		plan[count++] = (struct image_counter){ host_counters[i], UINT32_MAX };
-	for (size_t i = 0; i < serve_count; i++)
-		plan[count++] = (struct image_counter){ serve[i].name, UINT32_MAX };
-	err = memory_make(&h->memory, instance, h->config, plan, count, h->log, why, why_size);
-	free(plan);
-	free(names);
-	return err;
 }
 
 static int start_thread(struct host *h, int rt_priority, char *why, size_t why_size)
@@ -385,100 +317,147 @@ static int start_thread(struct host *h, int rt_priority, char *why, size_t why_s
 	return 0;
 }
 
+/* What of the counters is of no bus: the host's own, then the server's. Freed by the caller. */
+static struct image_counter *plan_counters(const struct host *h, uint32_t *count)
+{
+	const struct bus_counter *serve = NULL;
+	struct image_counter *plan;
+	size_t n = 0;
+
+	if (h->serve)
+		serve = serve_counters(h->serve, &n);
+	plan = calloc(HOST_COUNTERS + n, sizeof(*plan));
+	*count = 0;
+	if (!plan)
+		return NULL;
+	for (unsigned i = 0; i < HOST_COUNTERS; i++)
+		plan[(*count)++] = (struct image_counter){ host_counters[i], UINT32_MAX };
+	for (size_t i = 0; i < n; i++)
+		plan[(*count)++] = (struct image_counter){ serve[i].name, UINT32_MAX };
+	return plan;
+}
+
+static int make_serving(struct host *h, struct config *config, const struct adoption *plan,
+                        struct serving **serving, char *why, size_t why_size)
+{
+	struct serving_setup setup = {
+		.config = config,
+		.instance = h->instance,
+		.log = h->log,
+		.ring = ring,
+		.ring_ctx = h,
+		.guests = h->serve ? serve_guests(h->serve) : NULL,
+		.before = h->now,
+		.plan = plan,
+	};
+	struct image_counter *counters = plan_counters(h, &setup.counter_count);
+	int err = -ENOMEM;
+
+	snprintf(why, why_size, "%s", strerror(ENOMEM));
+	*serving = calloc(1, sizeof(**serving));
+	setup.counters = counters;
+	if (counters && *serving)
+		err = serving_make(*serving, &setup, why, why_size);
+	free(counters);
+	if (!err)
+		return 0;
+	free(*serving);
+	*serving = NULL;
+	return err;
+}
+
 static void free_host(struct host *h)
 {
 	serve_stop(h->serve);
 	indicator_destroy(h->indicator);
-	engine_destroy(h->engine);
-	for (unsigned i = 0; i < h->worker_count; i++)
-		worker_destroy(h->workers[i]);
+	if (h->now)
+		serving_free(h->now);
 	serve_destroy(h->serve);
-	memory_end(&h->memory);
-	free(h->workers);
-	free(h->ports);
-	free(h->bus_counters);
+	free(h->now);
 	free(h);
 }
 
-static int create_serve(struct host *h, const char *instance, char *why, size_t why_size)
+static int create_serve(struct host *h, const struct config *config, char *why, size_t why_size)
 {
-	const struct config_serve *config = &h->config->serve;
 	const struct serve_setup setup = {
-		.config = h->config, .instance = instance, .log = h->log, .ring = ring, .ring_ctx = h,
+		.config = config, .instance = h->instance, .log = h->log, .ring = ring, .ring_ctx = h,
 	};
 
-	if (!config->address_count && !config->socket)
+	if (!config->serve.address_count && !config->serve.socket)
 		return 0;
-	if (serve_is_open(config))
+	if (serve_is_open(&config->serve))
 		log_warning(h->log,
 		            "the owserver protocol is served beyond this machine and lets %s write: "
 		            "see ListenAllow and ListenReadOnly",
-		            config->peer_count ? "all of ListenAllow" : "everybody");
+		            config->serve.peer_count ? "all of ListenAllow" : "everybody");
 	return serve_create(&setup, &h->serve, why, why_size);
+}
+
+static int start_indicator(struct host *h, char *why, size_t why_size)
+{
+	int err = indicator_create(h->now->config, &h->now->memory.image, h->log, &h->indicator);
+
+	if (!err)
+		err = indicator_start(h->indicator);
+	if (err)
+		snprintf(why, why_size, "cannot start a thread: %s", strerror(-err));
+	return err;
+}
+
+static int start_workers(struct serving *s, const struct adoption *plan, char *why,
+                         size_t why_size)
+{
+	for (unsigned i = 0; i < s->worker_count; i++) {
+		int err = plan && plan->ports[i] >= 0 ? 0 : worker_start(s->workers[i]);
+
+		if (err) {
+			snprintf(why, why_size, "cannot start a worker: %s", strerror(-err));
+			return err;
+		}
+	}
+	return 0;
 }
 
 int host_start(const struct host_setup *setup, struct host **host, char *why, size_t why_size)
 {
-	struct engine_setup engine;
 	struct host *h = calloc(1, sizeof(*h));
 	int err;
 
 	snprintf(why, why_size, "%s", strerror(ENOMEM));
-	if (!h)
+	if (!h) {
+		config_free(setup->config);
 		return -ENOMEM;
-	h->config = setup->config;
+	}
 	h->log = setup->log;
-	err = create_workers(h, why, why_size);
+	h->instance = setup->instance;
+	err = create_serve(h, setup->config, why, why_size);
 	if (!err)
-		err = create_serve(h, setup->instance, why, why_size);
-	if (!err)
-		err = make_memory(h, setup->instance, why, why_size);
-	if (err)
-		goto fail;
-	h->commands = memory_commands(&h->memory);
-	engine = (struct engine_setup){
-		.config = h->config,
-		.ports = h->ports,
-		.port_count = h->worker_count,
-		.image = &h->memory.image,
-		.commands = h->commands,
-		.log = h->log,
-		.guests = h->serve ? serve_guests(h->serve) : NULL,
-		.start_ns = h->memory.start_ns,
-	};
-	err = engine_create(&engine, &h->engine);
-	if (err)
-		goto fail;
-	err = memory_show(&h->memory, h->log);
+		err = make_serving(h, setup->config, NULL, &h->now, why, why_size);
+	if (err) {
+		config_free(setup->config);
+		free_host(h);
+		return err;
+	}
+	err = memory_show(&h->now->memory, h->log);
 	if (err) {
 		snprintf(why, why_size, "cannot put the shared memory in place: %s",
 		         strerror(-err));
 		goto fail;
 	}
-	h->bell = commands_bell(h->commands);
+	h->bell = commands_bell(h->now->commands);
 	err = start_thread(h, setup->rt_priority, why, why_size);
-	for (unsigned i = 0; !err && i < h->worker_count; i++) {
-		err = worker_start(h->workers[i]);
-		if (err) {
-			snprintf(why, why_size, "cannot start a worker: %s", strerror(-err));
-			host_stop(h, 1000000000);
-			return err;
-		}
-	}
 	if (err)
 		goto fail;
-	if (h->serve)
-		err = serve_start(h->serve, &h->memory.image);
-	if (err) {
-		snprintf(why, why_size, "cannot serve the owserver protocol: %s", strerror(-err));
-		host_stop(h, 1000000000);
-		return err;
+	err = start_workers(h->now, NULL, why, why_size);
+	if (!err && h->serve) {
+		err = serve_start(h->serve, &h->now->memory.image);
+		if (err)
+			snprintf(why, why_size, "cannot serve the owserver protocol: %s",
+			         strerror(-err));
 	}
-	err = indicator_create(h->config, &h->memory.image, h->log, &h->indicator);
 	if (!err)
-		err = indicator_start(h->indicator);
+		err = start_indicator(h, why, why_size);
 	if (err) {
-		snprintf(why, why_size, "cannot start a thread: %s", strerror(-err));
 		host_stop(h, 1000000000);
 		return err;
 	}
@@ -489,16 +468,124 @@ fail:
 	return err;
 }
 
+/* --- Reload ---------------------------------------------------------------------------------- */
+
+static void pause_until_null(void *word)
+{
+	static const uint32_t nobody = 0;
+
+	while (__atomic_load_n((void **)word, __ATOMIC_ACQUIRE))
+		segment_wait(&nobody, 0, LOOK_NS);
+}
+
+/* Those that did not stay; false: one of them does not end. */
+static bool end_workers(struct serving *before, const struct serving *now,
+                        const struct adoption *plan)
+{
+	bool ended = true;
+
+	for (unsigned i = 0; i < now->worker_count; i++)
+		if (plan->ports[i] >= 0)
+			before->taken[plan->ports[i]] = true;
+	for (unsigned i = 0; i < before->worker_count; i++)
+		if (!before->taken[i])
+			ended &= worker_stop(before->workers[i], END_NS) == 0;
+	return ended;
+}
+
+static void leave(struct host *h, struct serving *before, bool ended)
+{
+	if (!ended) {
+		h->left_behind = true;
+		log_err(h->log, "a bus that the reload ended is stuck in the kernel; "
+		                "owsd leaves it behind");
+		wait_for_ringers(h);
+		memory_replaced(&before->memory);
+		return;
+	}
+	__atomic_store_n(&h->ended, before->engine, __ATOMIC_RELEASE);
+	ring(h);
+	pause_until_null(&h->ended);
+	wait_for_ringers(h);
+	memory_replaced(&before->memory);
+	serving_free(before);
+	free(before);
+}
+
+static bool same_listeners(const struct config_serve *a, const struct config_serve *b)
+{
+	return a->address_count == b->address_count && a->peer_count == b->peer_count &&
+	       a->read_only == b->read_only && !a->socket == !b->socket &&
+	       (!a->socket || strcmp(a->socket, b->socket) == 0) &&
+	       memcmp(a->addresses, b->addresses, sizeof(a->addresses)) == 0 &&
+	       memcmp(a->peers, b->peers, sizeof(a->peers)) == 0;
+}
+
+/* The engine serves it from here on; nothing of what follows can refuse it any more. */
+static void exchange(struct host *h, struct serving *next, const struct adoption *plan)
+{
+	struct serving *before = h->now;
+	char why[256];
+	int err;
+
+	h->plan = plan;
+	__atomic_store_n(&h->next, next, __ATOMIC_RELEASE);
+	ring(h);
+	pause_until_null(&h->next);
+	h->plan = NULL;
+	err = memory_show(&next->memory, h->log);
+	if (err)
+		log_err(h->log, "cannot put the shared memory in place: %s", strerror(-err));
+	if (h->serve && serve_reload(h->serve, next->config, &next->memory.image, plan->ports))
+		log_err(h->log, "the served owserver protocol: %s", strerror(ENOMEM));
+	if (indicator_stop(h->indicator, END_NS))
+		indicator_destroy(h->indicator);
+	else
+		h->left_behind = true;
+	h->indicator = NULL;
+	leave(h, before, end_workers(before, next, plan));
+	if (start_workers(next, plan, why, sizeof(why)) || start_indicator(h, why, sizeof(why)))
+		log_err(h->log, "%s", why);
+}
+
+int host_reload(struct host *h, struct config *config, char *why, size_t why_size)
+{
+	struct adoption plan;
+	struct serving *next;
+	int err;
+
+	if (h->unseen || __atomic_load_n(&h->renewed, __ATOMIC_ACQUIRE))
+		return -EAGAIN;
+	if (!same_listeners(&config->serve, &h->now->config->serve)) {
+		snprintf(why, why_size, "what Listen, ListenSocket, ListenAllow and ListenReadOnly "
+		                        "say is changed by a restart only");
+		return -EBUSY;
+	}
+	snprintf(why, why_size, "%s", strerror(ENOMEM));
+	err = adoption_plan(&plan, config, h->now->config);
+	if (err)
+		return err;
+	err = make_serving(h, config, &plan, &next, why, why_size);
+	if (!err) {
+		log_notice(h->log, "reload: %u signals, %u of them go on; %u targets, %u of them",
+		           config->item_count, plan.kept_rows, config->target_count,
+		           plan.kept_ports);
+		exchange(h, next, &plan);
+	}
+	adoption_free(&plan);
+	return err;
+}
+
 int64_t host_beat(const struct host *host)
 {
 	struct ows_sample sample;
 
-	return reader_sample(&host->memory.image.records[0], &sample) ? sample.measured_ns : 0;
+	return reader_sample(&host->now->memory.image.records[0], &sample) ? sample.measured_ns : 0;
 }
 
-unsigned host_signals(const struct host *host)
+const struct config *host_config(const struct host *host)
 {
-	return host->config->item_count;
+	return host->now->config;
 }
 
 bool host_stop(struct host *h, int64_t timeout_ns)
@@ -512,13 +599,13 @@ bool host_stop(struct host *h, int64_t timeout_ns)
 		ring(h);
 		pthread_join(h->thread, NULL);
 	}
-	stuck = !indicator_stop(h->indicator, timeout_ns);
-	for (unsigned i = 0; i < h->worker_count; i++)
-		stuck |= worker_stop(h->workers[i], timeout_ns) != 0;
+	stuck = h->left_behind || !indicator_stop(h->indicator, timeout_ns);
+	for (unsigned i = 0; i < h->now->worker_count; i++)
+		stuck |= worker_stop(h->now->workers[i], timeout_ns) != 0;
 	if (stuck) {
 		/* who comes back from the kernel now rings no more */
 		__atomic_store_n(&h->bell, NULL, __ATOMIC_RELEASE);
-		memory_end(&h->memory);
+		memory_end(&h->now->memory);
 		return false;
 	}
 	free_host(h);

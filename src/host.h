@@ -12,7 +12,7 @@
 struct host;
 
 struct host_setup {
-	const struct config *config;
+	struct config *config; /* the host's from here on, also if it fails */
 	const char *instance;
 	struct log *log;
 	int rt_priority; /* 0: ordinary scheduling */
@@ -25,6 +25,14 @@ struct host_setup {
 int host_start(const struct host_setup *setup, struct host **host, char *why, size_t why_size);
 
 /*
+ * Serve another configuration without a gap: signals of the same name, path and type go on with
+ * value, quality, alarms and retries, targets with the same options stay open. Blocks until that is
+ * done. Returns 0 (config is the host's), -EAGAIN (try again soon), or a negative errno with the
+ * reason in why: all goes on as before.
+ */
+int host_reload(struct host *host, struct config *config, char *why, size_t why_size);
+
+/*
  * What must not be done on the engine's thread: look after the shared memory. The supervisor calls
  * it now and then.
  */
@@ -32,7 +40,8 @@ void host_tend(struct host *host);
 
 /* Time of the engine's last heartbeat, ns of CLOCK_BOOTTIME. Any thread. */
 int64_t host_beat(const struct host *host);
-unsigned host_signals(const struct host *host);
+/* The configuration that is served. */
+const struct config *host_config(const struct host *host);
 
 /*
  * End in order: engine first, then the workers, at most timeout_ns each. Returns true when all

@@ -90,7 +90,7 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 		.start_id = m->start_id,
 		.pid = getpid(),
 		.start_ns = m->start_ns,
-		.start_wall_ns = wall_ns(),
+		.start_wall_ns = m->start_wall_ns,
 		.period_ns = config->period_ns,
 	};
 	size_t size;
@@ -179,24 +179,26 @@ static const char *hint(int err)
 	}
 }
 
-int memory_make(struct memory *m, const char *instance, const struct config *config,
-                const struct image_counter *counters, uint32_t counter_count, struct log *log,
-                char *why, size_t why_size)
+int memory_make(struct memory *m, const struct memory_setup *setup, char *why, size_t why_size)
 {
 	struct segment before;
 	int err;
 
-	*m = (struct memory){ .instance = instance, .config = config, .generation = 1 };
+	*m = (struct memory){ .instance = setup->instance, .config = setup->config,
+		              .generation = 1 };
 	m->image_segment.fd = -1;
 	for (unsigned i = 0; i < COMMANDS; i++)
 		m->commands[i].segment.fd = -1;
 	m->start_id = random_id();
-	m->start_ns = ows_now();
-	if (open_image_before(instance, &before)) {
+	m->start_ns = setup->before ? setup->before->start_ns : ows_now();
+	m->start_wall_ns = setup->before ? setup->before->start_wall_ns : wall_ns();
+	if (setup->before) {
+		m->generation = setup->before->generation + 1;
+	} else if (open_image_before(m->instance, &before)) {
 		m->generation = ((struct ows_image_header *)(void *)before.base)->generation + 1;
 		segment_close(&before);
 	}
-	err = make_image(m, counters, counter_count);
+	err = make_image(m, setup->counters, setup->counter_count);
 	if (!err)
 		err = make_commands(m, &m->commands[0]);
 	if (err) {
@@ -205,7 +207,8 @@ int memory_make(struct memory *m, const char *instance, const struct config *con
 		memory_end(m);
 		return err;
 	}
-	carry(m, log);
+	if (!setup->before)
+		carry(m, setup->log);
 	return 0;
 }
 
@@ -226,7 +229,7 @@ int memory_show(struct memory *m, struct log *log)
 		uint32_t state = __atomic_load_n(&h->state, __ATOMIC_RELAXED);
 
 		if (!err) {
-			if (state == OWS_STATE_LIVE)
+			if (state == OWS_STATE_LIVE && h->pid != getpid())
 				log_notice(log, "taken over from owsd %d, which was killed",
 				           (int)h->pid);
 			__atomic_store_n(&h->state, (uint32_t)OWS_STATE_RETIRED, __ATOMIC_SEQ_CST);
@@ -285,6 +288,12 @@ int memory_show_commands(struct memory *m)
 {
 	commands_state(memory_commands(m), OWS_STATE_LIVE);
 	return segment_show(m->instance, &m->commands[m->current].segment);
+}
+
+void memory_replaced(struct memory *m)
+{
+	m->shown = false;
+	memory_end(m);
 }
 
 void memory_end(struct memory *m)

@@ -25,18 +25,26 @@ struct memory {
 	unsigned current;
 	bool shown; /* consumers see the image */
 	uint32_t generation, start_id;
-	int64_t start_ns;
+	int64_t start_ns, start_wall_ns; /* of owsd; a reload is no start */
 };
 
+struct memory_setup {
+	const char *instance;
+	const struct config *config;
+	const struct image_counter *counters; /* as in struct image_plan */
+	uint32_t counter_count;
+	struct log *log;
+	const struct memory *before; /* a reload: what is in use; NULL: a start */
+};
 /*
  * Make both segments, not yet visible to consumers; the caller holds the instance's lock and
- * publishes the first values before memory_show(). counters: as in struct image_plan. Returns 0 or
- * a negative errno, the reason then stands in why.
+ * publishes the first values before memory_show(). At a start what was commanded of the owsd before
+ * is carried over; at a reload that is the engine's work. Returns 0 or a negative errno, the reason
+ * then stands in why.
  */
-int memory_make(struct memory *memory, const char *instance, const struct config *config,
-                const struct image_counter *counters, uint32_t counter_count, struct log *log,
-                char *why, size_t why_size);
-/* Put them in place of those of the owsd before, which are retired. 0 or a negative errno. */
+int memory_make(struct memory *memory, const struct memory_setup *setup, char *why,
+                size_t why_size);
+/* Put them in place of those before, which are retired. 0 or a negative errno. */
 int memory_show(struct memory *memory, struct log *log);
 /* The commands in use. */
 struct commands *memory_commands(struct memory *memory);
@@ -52,6 +60,8 @@ struct commands *memory_renew_commands(struct memory *memory, int *err);
 int memory_show_commands(struct memory *memory);
 /* Was the image unlinked, so that nobody can find it any more? A system call. */
 bool memory_image_lost(const struct memory *memory);
+/* After a reload: these segments have been replaced, and go without a word. */
+void memory_replaced(struct memory *memory);
 /*
  * Say that owsd ends: both segments stay, for the last values and for the next start. What was never
  * shown goes without a word, what was never made (all zero) is left alone. May be called again.

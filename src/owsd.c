@@ -28,6 +28,7 @@
 #define LISTENS_MAX   16
 #define STOP_NS       2000000000LL
 #define SUPERVISE_NS  500000000LL
+#define AGAIN_NS      20000000LL /* a reload that has to wait */
 #define EXIT_RUN      1
 #define EXIT_USAGE    2
 
@@ -201,11 +202,15 @@ static int parse_options(int argc, char **argv, struct options *o)
 	return -1;
 }
 
+/* ctx: a log, or NULL */
 static void say(void *ctx, bool is_error, const char *message)
 {
-	(void)ctx;
-	(void)is_error;
-	fprintf(stderr, "%s\n", message);
+	if (!ctx)
+		fprintf(stderr, "%s\n", message);
+	else if (is_error)
+		log_err(ctx, "%s", message);
+	else
+		log_warning(ctx, "%s", message);
 }
 
 static int check_target(const struct config *config, const struct config_target *target,
@@ -220,9 +225,9 @@ static int check_target(const struct config *config, const struct config_target 
 	return err;
 }
 
-static int load(const struct options *o, struct config **config)
+static int load(const struct options *o, struct log *log, struct config **config)
 {
-	struct config_report report = { .line = say };
+	struct config_report report = { .line = say, .ctx = log };
 	int err = config_load(o->file, &report, config);
 
 	if (err)
@@ -268,35 +273,6 @@ static void catch_signals(void)
 	sigaction(SIGPIPE, &action, NULL);
 }
 
-/* Write the log, feed the watchdog while the engine's heart beats, until a signal ends it. */
-static void supervise(struct host *host, struct log *log, const struct notify *notify, int prefix,
-                      int64_t period_ns)
-{
-	int64_t fed_ns = 0, wait_ns = SUPERVISE_NS;
-
-	if (notify->watchdog_ns && notify->watchdog_ns / 4 < wait_ns)
-		wait_ns = notify->watchdog_ns / 4;
-	while (!stop_signal) {
-		uint32_t seen = __atomic_load_n(log_word(log), __ATOMIC_ACQUIRE);
-		int64_t now_ns = ows_now();
-
-		if (hangup) {
-			hangup = 0;
-			log_warning(log, "SIGHUP: this version does not reload; restart it");
-		}
-		/* the heart beats once a period, which may be longer than the watchdog's time */
-		if (notify->watchdog_ns && now_ns - fed_ns >= notify->watchdog_ns / 4 &&
-		    now_ns - host_beat(host) <= 2 * period_ns + notify->watchdog_ns / 4) {
-			fed_ns = now_ns;
-			notify_send(notify, NOTIFY_WATCHDOG);
-		}
-		host_tend(host);
-		log_drain(log, STDERR_FILENO, prefix);
-		if (!stop_signal && !hangup)
-			segment_wait(log_word(log), seen, wait_ns);
-	}
-}
-
 /* As in the file; what does not fit is counted. */
 static void name_targets(const struct config *config, char *text, size_t size)
 {
@@ -318,7 +294,78 @@ static void name_targets(const struct config *config, char *text, size_t size)
 	}
 }
 
-static int run(const struct options *o, const struct config *config, struct log *log)
+/* What the service manager and the log are told of what is served. */
+static void tell(const struct host *host, const struct options *o, struct log *log,
+                 const struct notify *notify)
+{
+	const struct config *config = host_config(host);
+	char targets[160];
+
+	name_targets(config, targets, sizeof(targets));
+	log_notice(log, "owsd %s: instance %s, %u signals from %s, target %s", OWSD_VERSION,
+	           o->instance, config->item_count, o->file, targets);
+	notify_send(notify, NOTIFY_READY);
+	notify_status(notify, "%u signals, target %s", config->item_count, targets);
+}
+
+/* A file that is refused changes nothing. False: to be tried again soon. */
+static bool reload(struct host *host, const struct options *o, struct log *log,
+                   const struct notify *notify)
+{
+	struct config *config;
+	char why[512];
+	int err;
+
+	notify_send(notify, NOTIFY_RELOADING);
+	if (load(o, log, &config)) {
+		log_err(log, "reload: %s is refused: all goes on as before", o->file);
+		notify_send(notify, NOTIFY_READY);
+		return true;
+	}
+	err = host_reload(host, config, why, sizeof(why));
+	if (err) {
+		config_free(config);
+		if (err != -EAGAIN)
+			log_err(log, "reload: %s: all goes on as before", why);
+		notify_send(notify, NOTIFY_READY);
+		return err != -EAGAIN;
+	}
+	tell(host, o, log, notify);
+	return true;
+}
+
+/* Write the log, feed the watchdog while the engine's heart beats, until a signal ends it. */
+static void supervise(struct host *host, const struct options *o, struct log *log,
+                      const struct notify *notify, int prefix)
+{
+	int64_t fed_ns = 0, wait_ns = SUPERVISE_NS;
+
+	if (notify->watchdog_ns && notify->watchdog_ns / 4 < wait_ns)
+		wait_ns = notify->watchdog_ns / 4;
+	while (!stop_signal) {
+		uint32_t seen = __atomic_load_n(log_word(log), __ATOMIC_ACQUIRE);
+		int64_t now_ns, period_ns;
+
+		if (hangup) {
+			hangup = 0;
+			hangup = !reload(host, o, log, notify);
+		}
+		now_ns = ows_now();
+		period_ns = host_config(host)->period_ns;
+		/* the heart beats once a period, which may be longer than the watchdog's time */
+		if (notify->watchdog_ns && now_ns - fed_ns >= notify->watchdog_ns / 4 &&
+		    now_ns - host_beat(host) <= 2 * period_ns + notify->watchdog_ns / 4) {
+			fed_ns = now_ns;
+			notify_send(notify, NOTIFY_WATCHDOG);
+		}
+		host_tend(host);
+		log_drain(log, STDERR_FILENO, prefix);
+		if (!stop_signal)
+			segment_wait(log_word(log), seen, hangup ? AGAIN_NS : wait_ns);
+	}
+}
+
+static int run(const struct options *o, struct config *config, struct log *log)
 {
 	struct host_setup setup = {
 		.config = config,
@@ -329,7 +376,7 @@ static int run(const struct options *o, const struct config *config, struct log 
 	int prefix = stderr_is_journal();
 	struct notify notify;
 	struct host *host;
-	char why[512], targets[160];
+	char why[512];
 	bool ended;
 
 	if (notify_open(&notify))
@@ -339,12 +386,8 @@ static int run(const struct options *o, const struct config *config, struct log 
 		complain("%s", why);
 		return EXIT_RUN;
 	}
-	name_targets(config, targets, sizeof(targets));
-	log_notice(log, "owsd %s: instance %s, %u signals from %s, target %s", OWSD_VERSION,
-	           o->instance, config->item_count, o->file, targets);
-	notify_send(&notify, NOTIFY_READY);
-	notify_status(&notify, "%u signals, target %s", config->item_count, targets);
-	supervise(host, log, &notify, prefix, config->period_ns);
+	tell(host, o, log, &notify);
+	supervise(host, o, log, &notify, prefix);
 	log_notice(log, "owsd ends: %s", stop_signal == SIGTERM ? "SIGTERM" : "SIGINT");
 	notify_send(&notify, NOTIFY_STOPPING);
 	ended = host_stop(host, STOP_NS);
@@ -375,7 +418,7 @@ int main(int argc, char **argv)
 	status = parse_options(argc, argv, &o);
 	if (status >= 0)
 		return status;
-	if (load(&o, &config))
+	if (load(&o, NULL, &config))
 		return EXIT_USAGE;
 	if (o.check) {
 		config_print(config, stdout);
@@ -403,7 +446,6 @@ int main(int argc, char **argv)
 		log_warning(log, "the owsd before cannot die (stuck in the kernel): its lock is left");
 	status = run(&o, config, log);
 	close(lock);
-	config_free(config);
 	log_destroy(log);
 	return status;
 }

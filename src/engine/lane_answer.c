@@ -171,12 +171,12 @@ void lane_forget_probes(struct lane *lane)
 static void come_over(struct slot *slot, const uint32_t *successors)
 {
 	bool of_row = slot->purpose == FOR_READ || slot->purpose == FOR_WRITE ||
-	              (slot->purpose == FOR_ALARM && slot->row != TABLE_NO_ROW);
+	              slot->purpose == FOR_ALARM;
 
 	if (slot->purpose == FOR_GUEST)
 		return;
 	slot->moved = true;
-	slot->row = of_row ? successors[slot->row] : TABLE_NO_ROW;
+	slot->row = of_row && slot->row != TABLE_NO_ROW ? successors[slot->row] : TABLE_NO_ROW;
 }
 
 void lane_adopt(struct lane *lane, struct lane *before, const uint32_t *successors)

@@ -23,6 +23,14 @@ int handle_state(const struct ows *h)
 	return state == OWS_STATE_LIVE ? 0 : -ESTALE;
 }
 
+/* owsd has ended, or not begun. */
+static bool stopped(const struct ows *h)
+{
+	uint32_t state = __atomic_load_n(&h->map.image->state, __ATOMIC_RELAXED);
+
+	return state != OWS_STATE_LIVE && state != OWS_STATE_RETIRED;
+}
+
 static bool find_alive(struct ows *h, int64_t now_ns)
 {
 	struct ows_sample daemon;
@@ -71,7 +79,8 @@ static inline int finish(struct ows *h, int64_t stale_after_ns, int64_t now_ns,
 
 	value->age_ns = now_ns > since ? now_ns - since : 0;
 	if (ows_good(value->quality)) {
-		if (err || !handle_alive(h, now_ns))
+		/* a retired image was exchanged for another: its last heartbeat says how old it is */
+		if (stopped(h) || !handle_alive(h, now_ns))
 			value->quality = OWS_Q_TARGET;
 		else if (stale_after_ns > 0 && value->age_ns > stale_after_ns)
 			value->quality = OWS_Q_STALE;

@@ -440,8 +440,11 @@ class Ows:
 
     def alive(self, now=None):
         """Is owsd there and its heart beating?"""
+        return self._state() == LIVE and self._beats(now or now_ns())
+
+    def _beats(self, now):
         sample, _, _ = self._slot(0)
-        return self._state() == LIVE and (now or now_ns()) - sample[1] <= self.dead_after_ns
+        return now - sample[1] <= self.dead_after_ns
 
     def stale(self):
         """True when reopen() is due."""
@@ -449,7 +452,8 @@ class Ows:
 
     def get(self, name, now=None):
         """The Value of a name. Never raises for a dead or restarted owsd: the value is not good
-        then, and stale() or alive() say why. KeyError: no such name; PermissionError: it is
+        then, and stale() or alive() say why. After a reload it stays good for the two seconds in
+        which reopen() is due. KeyError: no such name; PermissionError: it is
         write-only."""
         record, attribute = self.find(name)
         now = now or now_ns()
@@ -467,7 +471,8 @@ class Ows:
             kind = info.type
             value = text[:length].decode(errors="replace") if is_text else decode(kind, raw)
         if quality & 0xC0 == 0xC0:
-            if not self.alive(now):
+            # a retired image was exchanged for another: its last heartbeat says how old it is
+            if self._state() not in (LIVE, RETIRED) or not self._beats(now):
                 quality = Q_TARGET
             elif attribute == "_Value" and record and 0 < info.stale_after_ns < age:
                 quality = Q_STALE

@@ -15,6 +15,18 @@ int buses_number(struct buses *buses, unsigned target, unsigned number)
 	return (int)buses->count++;
 }
 
+void buses_renumber(struct buses *buses, const int *ports, unsigned count)
+{
+	for (unsigned i = 0; i < buses->count; i++) {
+		unsigned before = buses->bus[i].target;
+
+		buses->bus[i].target = BUSES_NO_TARGET;
+		for (unsigned k = 0; k < count; k++)
+			if (ports[k] == (int)before)
+				buses->bus[i].target = (uint8_t)k;
+	}
+}
+
 int buses_parse(const char *name, unsigned len)
 {
 	int number = 0;

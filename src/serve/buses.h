@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #define BUSES_MAX 256
+#define BUSES_NO_TARGET 255 /* it went; no target has this index */
 
 struct buses {
 	unsigned count;
@@ -21,6 +22,8 @@ struct buses {
 
 /* The number of a target's bus, given now if need be; -1: there are too many. */
 int buses_number(struct buses *buses, unsigned target, unsigned number);
+/* After a reload: target i is what ports[i] was, -1 a new one. Numbers stay, also of those that went. */
+void buses_renumber(struct buses *buses, const int *ports, unsigned count);
 /* N of a name "bus.N", -1: it is none. */
 int buses_parse(const char *name, unsigned len);
 

@@ -2,6 +2,7 @@
 #include "server.h"
 
 #include "../libows/ows.h"
+#include "../shm/segment.h"
 
 #include <errno.h>
 #include <sched.h>
@@ -14,6 +15,7 @@
 #include <unistd.h>
 
 #define STACK_SIZE (128 * 1024)
+#define TAKE_NS    1000000 /* between looks whether the thread has taken a reload */
 #define EVENTS     64
 #define WAKE_EVENT SERVER_CLIENTS
 
@@ -162,6 +164,22 @@ static int wait_ms(struct serve *s)
 	return left > INT64_C(1000000) * 60000 ? 60000 : (int)((left + 999999) / 1000000);
 }
 
+static void take_next(struct serve *s)
+{
+	struct serve_next *next = __atomic_load_n(&s->next, __ATOMIC_ACQUIRE);
+	struct kept *before = s->kept;
+
+	if (!next)
+		return;
+	s->config = next->config;
+	s->image = next->image;
+	s->kept = next->kept;
+	next->kept = before;
+	buses_renumber(&s->buses, next->ports, s->config->target_count);
+	s->buses_known = false;
+	__atomic_store_n(&s->next, NULL, __ATOMIC_RELEASE);
+}
+
 static void *run(void *arg)
 {
 	struct epoll_event events[EVENTS];
@@ -179,6 +197,7 @@ static void *run(void *arg)
 		if (wait)
 			guests_awake(&s->guests);
 		s->now_ns = ows_now();
+		take_next(s);
 		take_events(s, events, n);
 		take_answers(s);
 		if (s->accepting)
@@ -229,6 +248,23 @@ int serve_start(struct serve *s, const struct image *image)
 		return -err;
 	s->running = true;
 	pthread_setname_np(s->thread, "owsd-serve");
+	return 0;
+}
+
+int serve_reload(struct serve *s, const struct config *config, const struct image *image,
+                 const int *ports)
+{
+	struct serve_next next = { config, image, kept_create(config, image), ports };
+	static const uint32_t nobody = 0;
+
+	if (!next.kept)
+		return -ENOMEM;
+	__atomic_store_n(&s->next, &next, __ATOMIC_RELEASE);
+	while (__atomic_load_n(&s->next, __ATOMIC_ACQUIRE)) {
+		guests_wake(&s->guests);
+		segment_wait(&nobody, 0, TAKE_NS);
+	}
+	kept_destroy(next.kept);
 	return 0;
 }
 

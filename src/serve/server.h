@@ -117,6 +117,12 @@ struct serve {
 	struct log *log;
 	struct guests guests;
 	struct kept *kept;
+	struct serve_next { /* of a reload, for the thread to take */
+		const struct config *config;
+		const struct image *image;
+		struct kept *kept;
+		const int *ports;
+	} *next;
 	struct signals *signals;
 	struct buses buses;
 	bool buses_known;

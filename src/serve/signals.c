@@ -51,8 +51,12 @@ static int find_name(void *ctx, const char *name, size_t len)
 static int look_up(struct signals *signals, const char *name, struct ows_id *id)
 {
 	struct ows *h = signals->h;
-	int record = attribute_lookup(h->instance, name, find_name, &h->map, &id->attribute);
+	int record;
 
+	/* after a reload; while that is going on the old image is still the one that is right */
+	if (handle_state(h))
+		ows_reopen(h);
+	record = attribute_lookup(h->instance, name, find_name, &h->map, &id->attribute);
 	if (record < 0)
 		return -ENOENT;
 	id->name = NULL;
@@ -103,7 +107,7 @@ int signals_read(struct signals *signals, const char *name, int64_t now_ns, char
 		return err;
 	if (err == -ENOSPC)
 		return -EMSGSIZE;
-	if (err || !ows_good(value.quality))
+	if ((err && err != -ESTALE) || !ows_good(value.quality))
 		return -EIO;
 	return value.type == OWS_STRING ? (int)value.len : (int)strlen(text);
 }

@@ -60,7 +60,8 @@ def test_a_reader_of_a_killed_owsd_sees_whole_samples_that_age_and_the_next_owsd
             assert dead.value == 21 and not signals.stale()
             assert signals.get("room").age > dead.age
             daemon = scene.owsd(config, name=name)
-            assert signals.stale() and not signals.get("room").good
+            assert signals.stale()
+            assert not signals.get("room", now=ows.now_ns() + 5 * 10**9).good
             scene.until(lambda: reopened(signals), 10, "the new image is there")
             scene.until(lambda: good(signals, "room"), 10, "room is good again")
         daemon.kill()

@@ -138,6 +138,30 @@ static void test_a_request_in_flight_is_answered_to_its_room_and_asked_again(voi
 	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "late_answers"));
 }
 
+static void without_room(struct config *config)
+{
+	config->items[0] = *item_of(config, "pump");
+	config->item_count = 1;
+}
+
+static void test_a_request_of_a_signal_that_is_gone_outlives_several_reloads(void)
+{
+	house();
+	s.bus[0].latency_ns = 3 * SCENE_S;
+	scene_run(&s, 500 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].pending_count);
+	for (int i = 0; i < 5; i++) {
+		scene_reload(&s, without_room);
+		scene_run(&s, 100 * SCENE_MS);
+	}
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].pending_count);
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "unknown_answers"));
+	scene_set(&s, 1, 1);
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("1", scene_at(&s, "/29.066418000000/PIO.0"));
+}
+
 static void test_a_write_in_flight_ends_with_the_present_value(void)
 {
 	house();
@@ -449,6 +473,7 @@ int main(void)
 	RUN_TEST(test_signals_go_on_in_another_place_of_the_file);
 	RUN_TEST(test_what_was_commanded_just_before_is_written);
 	RUN_TEST(test_a_request_in_flight_is_answered_to_its_room_and_asked_again);
+	RUN_TEST(test_a_request_of_a_signal_that_is_gone_outlives_several_reloads);
 	RUN_TEST(test_a_write_in_flight_ends_with_the_present_value);
 	RUN_TEST(test_an_output_that_is_gone_is_left_as_it_is);
 	RUN_TEST(test_a_command_for_another_path_is_not_carried);

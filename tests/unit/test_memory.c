@@ -40,7 +40,8 @@ void tearDown(void)
 
 static int make(void)
 {
-	return memory_make(&memory, instance, &config, NULL, 0, NULL, why, sizeof(why));
+	return memory_make(&memory, &(struct memory_setup){ .instance = instance, .config = &config },
+	                   why, sizeof(why));
 }
 
 static void test_segments_are_seen_once_they_are_shown(void)

@@ -1,0 +1,208 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""SIGHUP: a changed file is served without a gap, a broken one changes nothing."""
+
+import os
+import signal
+import sys
+import time
+
+import owsdtest
+from owsdtest import raw, until
+
+sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
+import ows  # noqa: E402
+
+SENSOR, OTHER, RELAY = "/28.A0B1C2000001", "/28.A0B1C2000002", "/29.A0B1C2000004"
+
+
+def wire(scene, name, *devices):
+    return f"sim:{scene.file(name, chr(10).join(['chip DS2482-100 0x18', *devices]) + chr(10))}"
+
+
+def house(scene):
+    return wire(scene, "house.sim", "DS18B20 28.A0B1C2000001 temperature 21.5",
+                "DS18B20 28.A0B1C2000002 temperature 12", "DS2408 29.A0B1C2000004")
+
+
+def item(name, path, kind="double", io="input", **more):
+    return dict(Name=name, Path=path, Type=raw(kind), IO=raw(io), **more)
+
+
+ROOM = item("room", SENSOR + "/temperature")
+RELAYS = item("relays", RELAY + "/PIO.BYTE", "byte", "output")
+BACK = item("back", RELAY + "/sensed.BYTE", "byte")
+CELLAR = item("cellar", OTHER + "/temperature")
+
+
+def rio(target, *items, **driver):
+    return owsdtest.rio(target, items, **{"Period": 0.05, "Timeout": 3, "MaxRetries": 1, **driver})
+
+
+def reload(scene, daemon, text):
+    """Write the file anew and say so; returns what owsd has logged when it is done."""
+    before = len(daemon.log())
+    daemon.config.write_text(text)
+    daemon.signal(signal.SIGHUP)
+    daemon.ready()
+    until(lambda: "signals from" in daemon.log()[before:]
+          or "as before" in daemon.log()[before:], 10, "the log tells of it")
+    return daemon.log()[before:]
+
+
+def get(scene, daemon, name):
+    return scene.get(daemon, name)
+
+
+def start(scene, target=None, *items):
+    target = target or house(scene)
+    daemon = scene.owsd(rio(target, *(items or (ROOM, RELAYS, BACK))))
+    until(lambda: get(scene, daemon, "room") == "21.5", 10, "room is good")
+    return daemon, target
+
+
+def test_signals_that_stay_go_on_and_others_come_and_go(scene):
+    daemon, target = start(scene)
+    assert scene.owsctl(daemon, "set", "-w", "10", "relays", "5").returncode == 0
+    until(lambda: get(scene, daemon, "back") == "250", 10)
+    with ows.Ows(daemon.name) as signals:
+        before = signals.get("room")
+        text = reload(scene, daemon, rio(target, CELLAR, BACK, RELAYS, ROOM))
+        assert "4 signals, 3 of them go on; 1 targets, 1 of them" in text, text
+        signals.reopen()
+        after = signals.get("room")
+        assert after.good and after.value == 21.5 and after.count >= before.count
+        assert signals.get("relays").good
+    until(lambda: get(scene, daemon, "cellar") == "12", 10, "the new one is read")
+    assert get(scene, daemon, "back") == "250"
+    assert scene.owsctl(daemon, "set", "-w", "10", "relays", "6").returncode == 0
+    until(lambda: get(scene, daemon, "back") == "249", 10)
+    text = reload(scene, daemon, rio(target, ROOM))
+    done = scene.owsctl(daemon, "get", "cellar")
+    assert done.returncode != 0 and "cellar" in done.stderr, done
+    assert get(scene, daemon, "room") == "21.5"
+
+
+def test_a_broken_file_is_refused_and_all_goes_on(scene):
+    daemon, target = start(scene)
+    for bad, said in (("OwsDrv {\n", "error"), (rio("nonsense:x", ROOM), "nonsense"),
+                      (rio(target, ROOM, ROOM), "stands twice"),
+                      (rio(f"{target}, sim:/nowhere.sim", ROOM), "/nowhere.sim")):
+        text = reload(scene, daemon, bad)
+        assert "goes on as before" in text and said in text, text
+        assert get(scene, daemon, "room") == "21.5"
+    os.unlink(daemon.config)
+    daemon.signal(signal.SIGHUP)
+    until(lambda: daemon.log().count("goes on as before") == 5, 10)
+    assert daemon.running() and get(scene, daemon, "room") == "21.5"
+    daemon.config.write_text(rio(target, ROOM, CELLAR))
+    daemon.signal(signal.SIGHUP)
+    until(lambda: get(scene, daemon, "cellar") == "12", 10, "the mended file is taken")
+
+
+def test_a_reader_never_misses_a_good_value(scene):
+    daemon, target = start(scene)
+    texts = rio(target, ROOM, RELAYS), rio(target, CELLAR, ROOM, BACK)
+    bad = []
+    with ows.Ows(daemon.name) as signals:
+        def look():
+            if signals.stale():
+                try:
+                    signals.reopen()
+                except OSError:  # they are just being exchanged: the old one is right
+                    pass
+            value = signals.get("room")
+            if not value.good or value.value != 21.5:
+                bad.append(value)
+        for turn in range(20):
+            daemon.config.write_text(texts[turn % 2])
+            daemon.signal(signal.SIGHUP)
+            end = time.monotonic() + 0.2
+            while time.monotonic() < end:
+                look()
+        assert not bad, bad[:3]
+    until(lambda: daemon.log().count("them go on") >= 15, 10, "all of them were reloads")
+    stats = scene.owsctl(daemon, "stats").stdout
+    assert "reloads" in stats, stats
+
+
+def test_what_is_set_while_it_reloads_is_not_lost(scene):
+    daemon, target = start(scene)
+    texts = rio(target, ROOM, RELAYS, BACK), rio(target, BACK, RELAYS, CELLAR)
+    with ows.Ows(daemon.name, control=True) as signals:
+        for turn in range(30):
+            daemon.config.write_text(texts[turn % 2])
+            daemon.signal(signal.SIGHUP)
+            value = turn * 7 % 256
+
+            def put():
+                try:
+                    signals.set("relays", value)
+                    return True
+                except OSError:
+                    try:
+                        signals.reopen()
+                    except OSError:
+                        pass
+                    return False
+            until(put, 5, "set")
+            until(lambda: get(scene, daemon, "back") == str(255 - value), 10, f"turn {turn}")
+
+
+def test_a_target_that_changes_is_exchanged_and_its_outputs_written_there(scene):
+    daemon, _ = start(scene)
+    assert scene.owsctl(daemon, "set", "-w", "10", "relays", "5").returncode == 0
+    other = wire(scene, "other.sim", "DS18B20 28.A0B1C2000001 temperature 30",
+                 "DS2408 29.A0B1C2000004")
+    text = reload(scene, daemon, rio(other, ROOM, RELAYS, BACK))
+    assert "1 targets, 0 of them" in text, text
+    until(lambda: get(scene, daemon, "room") == "30", 10, "the other one's")
+    until(lambda: get(scene, daemon, "back") == "250", 10, "the output is written there")
+
+
+def test_a_wire_is_added_and_the_first_one_does_not_notice(scene):
+    daemon, target = start(scene)
+    other = wire(scene, "other.sim", "DS18B20 28.A0B1C2000009 temperature 30")
+    reload(scene, daemon, rio(f"{other}, {target}", ROOM, item("far", "/28.A0B1C2000009/temperature")))
+    assert get(scene, daemon, "room") == "21.5"
+    until(lambda: get(scene, daemon, "far") == "30", 10)
+    assert "from up to down" not in daemon.log()
+    reload(scene, daemon, rio(target, ROOM))
+    assert get(scene, daemon, "room") == "21.5"
+    assert daemon.stop() == 0
+
+
+def test_a_server_that_hangs_does_not_hold_a_reload(scene):
+    server = scene.owserver(tester=["28"])
+    sensor = server.devices()[0]
+    far = item("far", sensor + "/temperature")
+    target = house(scene)
+    daemon = scene.owsd(rio(f"{target}, {server.target}", ROOM, far))
+    until(lambda: get(scene, daemon, "far"), 15, "far is good")
+    server.freeze()
+    text = reload(scene, daemon, rio(target, ROOM))
+    assert "2 targets" not in text
+    until(lambda: get(scene, daemon, "room") == "21.5", 5)
+    assert daemon.stop() == 0
+
+
+def test_the_served_protocol_goes_on(scene):
+    port = owsdtest.free_port()
+    target = house(scene)
+    daemon = scene.owsd(rio(target, ROOM, Listen=str(port)))
+    until(lambda: get(scene, daemon, "room") == "21.5", 10, "room is good")
+    peer = owsdtest.Owserver.__new__(owsdtest.Owserver)
+    peer.host, peer.port = "127.0.0.1", port
+    assert float(peer.read("/signals/room")) == 21.5
+    reload(scene, daemon, rio(target, CELLAR, ROOM, Listen=str(port)))
+    assert float(peer.read("/signals/room")) == 21.5
+    until(lambda: get(scene, daemon, "cellar") == "12", 10)
+    assert float(peer.read("/signals/cellar")) == 12
+    assert float(peer.read(OTHER + "/temperature")) == 12
+    text = reload(scene, daemon, rio(target, ROOM, Listen=str(owsdtest.free_port())))
+    assert "restart" in text and "as before" in text, text
+    assert float(peer.read("/signals/cellar")) == 12
+
+
+if __name__ == "__main__":
+    owsdtest.main()
