@@ -10,6 +10,7 @@
 #   make test-kernel              Debian's own kernel and owserver on the simulated chip, in QEMU
 #   make deb ARCH=arm64           Debian packages in build/deb; SUITE=trixie for another Debian
 #   make test-package             packages of three architectures, lintian, install to purge
+#   make test-service             the service under systemd in QEMU, with the packages of make deb
 #   make test-gpio                GPIO lines of an arm64 guest, with libgpiod 1.6 and 2.x;
 #                                 test-gpio-pi the same of a Raspberry Pi 3
 
@@ -115,7 +116,7 @@ SO       := libows.so.$(VERSION)
 LIBRARY  := $(if $(LIBOWS),$(B)/$(SO) $(B)/libows.a $(B)/libows.pc)
 
 .PHONY: all unit soak system test run bench install uninstall install-service uninstall-service \
-        deb test-package clean \
+        deb test-package test-service clean \
         examples unit-programs benches FORCE clang sanitize asan tsan m32
 all: $(PROGRAMS) $(LIBRARY) $(B)/core.a
 
@@ -365,6 +366,13 @@ deb:
 test-package:
 	@sh board/install-deps chroot
 	@sh tests/package/run $(if $(SUITE),--suite $(SUITE)) $(ARCH)
+
+# The service under its own systemd in QEMU, with the packages of the last make deb
+test-service:
+	@sh board/install-deps build kernel chroot
+	@$(MAKE) --no-print-directory kernel-programs
+	@python3 tests/package/boot $(if $(SUITE),--suite $(SUITE)) $(if $(OR_SKIP),--or-skip) \
+	    --debs build/deb --program $(B)/kernel/simchip
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 

@@ -2,7 +2,11 @@
 # What the package tests share: one line for each check, as in tests/kernel.
 
 ok() { echo "ok - $1"; }
-not_ok() { echo "not ok - $1: $2"; }
+failed=0
+not_ok() {
+	echo "not ok - $1: $2"
+	failed=1
+}
 
 # does NAME COMMAND...: it succeeds
 does() {

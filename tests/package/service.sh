@@ -1,0 +1,96 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# In a guest that has booted with the packages: the service under its own systemd, with devices
+# behind a real /dev/i2c-0.
+exec </dev/null >/dev/ttyS1 2>&1
+stty -F /dev/ttyS1 raw -echo
+cd /root/test || exit 1
+. ./lib.sh
+export LC_ALL=C
+finish() {
+	[ $failed = 0 ] || journalctl -b -o short-monotonic --no-pager -n 80
+	echo "@@RIG-EXIT $1"
+	sleep 1
+	systemctl poweroff --force --force
+}
+trap 'finish 1' INT TERM
+house() { systemctl show -P "$1" owsd@HOUSE; }
+reads() { [ "$(owsctl -n HOUSE get "$1" 2>&1)" = "$2" ]; }
+active() { systemctl -q is-active "$1"; }
+refused() { ! "$@"; }
+# restarted PID: another one serves
+restarted() { now=$(house MainPID) && [ "$now" != 0 ] && [ "$now" != "$1" ] && active owsd@HOUSE; }
+got() { reads relays 5 && owsctl -n HOUSE get warm; }
+
+does 'the default instance comes up by itself, without a device' within 60 active owsd@OWS
+does 'and serves' within 10 owsctl list
+does 'its exposure is below 2.0' systemd-analyze security --threshold=20 --no-pager owsd@OWS
+
+# auto would take the chips that are to be another instance's
+sed -i 's,"auto","localhost:4304",' /etc/owsd/OWS.rio
+does 'it is sent elsewhere' systemctl restart owsd@OWS
+
+modprobe vhci-hcd && modprobe i2c-tiny-usb && modprobe i2c-dev
+./simchip house.sim >/tmp/simchip 2>&1 &
+does 'an adapter comes' within 20 test -c /dev/i2c-0
+does 'and belongs to its group' within 20 sh -c '[ "$(stat -c "%a %G" /dev/i2c-0)" = "660 i2c" ]'
+
+sed 's,"localhost:4304","i2c:/dev/i2c-0",' daemon.rio >/etc/owsd/HOUSE.rio
+does 'another instance is enabled' systemctl enable --now owsd@HOUSE
+same 'it is ready when systemctl returns' active "$(house ActiveState)"
+same 'it runs as its user' owsd "$(ps -o user= -p "$(house MainPID)" | tr -d ' ')"
+same 'without a capability' 0000000000000000 \
+	"$(sed -n 's/^CapBnd:[[:space:]]*//p' "/proc/$(house MainPID)/status")"
+does 'through its sandbox it reads the chip' within 60 reads warm 21.0625
+does 'and sets' owsctl -n HOUSE set relays 5
+does 'an output' within 30 got
+same 'it says what it does' 1 "$(systemctl status --no-pager owsd@HOUSE | grep -c 'Status: ".*signals')"
+
+pid=$(house MainPID)
+does 'it is told to reload' systemctl reload owsd@HOUSE
+sleep 2
+same 'and lives' "$pid" "$(house MainPID)"
+
+kill -9 "$pid"
+does 'killed, it is started again' within 30 restarted "$pid"
+does 'with what was commanded' within 60 got
+
+pid=$(house MainPID)
+kill -STOP "$pid"
+does 'stopped, the watchdog ends it and it is started again' within 60 restarted "$pid"
+does 'with what was commanded' within 60 got
+
+pid=$(house MainPID)
+python3 ./stop-thread "$pid" owsd-engine >/tmp/stopped 2>&1 &
+does "with only the engine's thread stopped, the same" within 60 restarted "$pid"
+does 'a thread was stopped' grep -q stopped /tmp/stopped
+does 'by the watchdog' sh -c 'journalctl -b -u owsd@HOUSE | grep -c "Watchdog timeout" | grep -qx 2'
+does 'with what was commanded' within 60 got
+
+pid=$(house MainPID)
+other=$(systemctl show -P MainPID owsd@OWS)
+does 'an upgrade while both run' dpkg -i next/owsd_*.deb
+does 'restarts the one' within 30 restarted "$pid"
+does 'and the other' within 30 sh -c "[ \$(systemctl show -P MainPID owsd@OWS) != $other ] && systemctl -q is-active owsd@OWS"
+does 'with what was commanded' within 60 got
+
+cp /etc/owsd/HOUSE.rio good.rio
+echo 'OwsDrv { Period wrong }' >/etc/owsd/HOUSE.rio
+does 'a broken configuration fails' refused systemctl restart owsd@HOUSE
+does 'and is told' sh -c 'journalctl -b -u owsd@HOUSE | grep -q /etc/owsd/HOUSE.rio:1:17'
+cp good.rio /etc/owsd/HOUSE.rio
+does 'mended, it comes up by itself' within 30 active owsd@HOUSE
+does 'with what was commanded' within 60 got
+
+does 'all are stopped as one' systemctl stop owsd
+does 'the one' refused active owsd@HOUSE
+does 'and the other' refused active owsd@OWS
+does 'and started' systemctl start owsd
+does 'both' within 20 systemctl -q is-active owsd@HOUSE owsd@OWS
+does 'the package is removed' dpkg -r owsd
+does 'nothing runs' refused pgrep -x owsd
+does 'and purged' dpkg -P owsd
+same 'no segment stays' '' "$(find /dev/shm -name 'owsd.*')"
+same 'nor what enabled it' '' "$(find /etc/systemd -name '*owsd*')"
+finish 0
