@@ -306,10 +306,12 @@ m32:
 	@if echo 'int main(void) { return 0; }' | $(CC) -m32 -x c -o /dev/null - 2>/dev/null; then \
 	    $(MAKE) --no-print-directory B=build/m32 all unit; \
 	else \
-	    echo "m32: $(CC) cannot link 32-bit programs here (package gcc-multilib)"; \
+	    echo "m32: $(CC) cannot link 32-bit programs here (package gcc-12-multilib)"; \
 	    echo '0 passed, 0 failed, 1 skipped'; \
 	fi
-m32: export EXTRA_CFLAGS := -m32 -msse2 -mfpmath=sse -D_TIME_BITS=64
+# The headers of the kernel are those of this machine; gcc-multilib would link them for -m32
+m32: export EXTRA_CFLAGS := -m32 -msse2 -mfpmath=sse -D_TIME_BITS=64 \
+            -idirafter /usr/include/$(shell $(CC) -print-multiarch)
 
 # --- Install ----------------------------------------------------------------------------------
 D := $(DESTDIR)
