@@ -80,6 +80,8 @@ show      = $(if $(Q),$(if $(quiet),,@echo "  $(1)	$@"))
 SIGNAL   := $(wildcard src/signal/*.c)
 # The .rio file
 CONFIG   := $(wildcard src/config/*.c)
+# Which board this is, and what is missing there
+BOARD    := $(wildcard src/board/*.c)
 # Shared memory, owsd's side
 SHM      := $(wildcard src/shm/*.c)
 # The signal table and its lanes: no I/O in here
@@ -103,7 +105,7 @@ BENCH    := $(wildcard tests/bench/bench_*.c)
 BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/plant.c tests/unit/plant_net.c
 # ---------------------------------------------------------------------------------------------
 
-CORE     := $(SIGNAL) $(CONFIG) $(SHM) $(ENGINE) $(SERVE) $(HAL) $(LIBOWS) $(filter-out src/owsd.c,$(OWSD)) \
+CORE     := $(SIGNAL) $(CONFIG) $(BOARD) $(SHM) $(ENGINE) $(SERVE) $(HAL) $(LIBOWS) $(filter-out src/owsd.c,$(OWSD)) \
             $(filter-out src/owsctl/owsctl.c,$(OWSCTL))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
 pic       = $(patsubst %.c,$(B)/pic/%.o,$(1))
@@ -317,7 +319,7 @@ m32: export EXTRA_CFLAGS := -m32 -msse2 -mfpmath=sse -D_TIME_BITS=64 \
 D := $(DESTDIR)
 install: all
 	install -d $(D)$(PREFIX)/bin $(D)$(PREFIX)/sbin $(D)$(PREFIX)/include $(D)$(LIBDIR)/pkgconfig \
-	    $(D)$(DATADIR)/examples
+	    $(D)$(DATADIR)/examples $(D)$(DATADIR)/boards
 	$(if $(wildcard src/owsd.c),install -m 755 $(B)/owsd $(D)$(PREFIX)/sbin/owsd)
 	$(if $(OWSCTL),install -m 755 $(B)/owsctl $(D)$(PREFIX)/bin/owsctl)
 	install -m 644 $(B)/$(SO) $(D)$(LIBDIR)/$(SO)
@@ -329,6 +331,7 @@ install: all
 	install -m 644 src/shm/layout.h $(D)$(PREFIX)/include/ows_layout.h
 	$(if $(EXAMPLES),install -m 644 $(EXAMPLES) $(D)$(DATADIR)/examples)
 	$(if $(PYTHON),install -m 644 $(PYTHON) $(D)$(DATADIR))
+	install -m 644 $(wildcard board/boards/*.board) $(D)$(DATADIR)/boards
 	@set -e; for m in $(MAN); do d=$(D)$(MANDIR)/man$${m##*.}; install -d $$d; \
 	    install -m 644 $$m $$d; done
 	$(if $(D),,-@ldconfig 2>/dev/null || true)

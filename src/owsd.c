@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* owsd: start-up, supervision and end. */
+#include "board/board.h"
 #include "config/report.h"
 #include "hal/bus.h"
 #include "hal/gpio/line.h"
@@ -41,7 +42,8 @@ struct options {
 	unsigned listen_count;
 	enum log_level level;
 	int rt_priority;
-	bool check;
+	bool check, board;
+	const char *board_id, *root;
 };
 
 static volatile sig_atomic_t stop_signal, hangup;
@@ -75,13 +77,15 @@ static void complain(const char *format, ...)
 static void usage(FILE *out)
 {
 	fputs("usage: owsd [-c FILE] [-n NAME] [-t TARGET]... [-l [HOST:]PORT]...\n"
-	      "            [--check] [--rt PRIO] [-v] [-V] [-h]\n"
+	      "            [--check] [--board[=ID]] [--rt PRIO] [-v] [-V] [-h]\n"
 	      "  -c, --config FILE   configuration (" DEFAULT_DIR "/NAME.rio)\n"
 	      "  -n, --name NAME     instance: signal prefix and name of the segments (OWS)\n"
 	      "  -t, --target TARGET in place of TargetName; again for another wire\n"
 	      "  -l, --listen ADDRESS in place of Listen: serve the owserver protocol at PORT of this\n"
 	      "                      machine alone, or at HOST:PORT\n"
 	      "      --check         print the configuration as understood, start nothing\n"
+	      "      --board[=ID]    say which board this is and what is missing there for a DS2482;\n"
+	      "                      ID: a board that does not tell; --root DIR: files below DIR\n"
 	      "      --rt PRIO       engine thread with SCHED_FIFO priority 1 to 99\n"
 	      "  -v, --verbose       say more; twice: everything\n"
 	      "  -V, --version       version and backends\n"
@@ -118,13 +122,15 @@ static int finish_output(void)
 /* -1: go on; else the exit status. */
 static int parse_options(int argc, char **argv, struct options *o)
 {
-	enum { OPT_CHECK = 256, OPT_RT };
+	enum { OPT_CHECK = 256, OPT_BOARD, OPT_ROOT, OPT_RT };
 	static const struct option table[] = {
 		{ "config", required_argument, NULL, 'c' },
 		{ "name", required_argument, NULL, 'n' },
 		{ "target", required_argument, NULL, 't' },
 		{ "listen", required_argument, NULL, 'l' },
 		{ "check", no_argument, NULL, OPT_CHECK },
+		{ "board", optional_argument, NULL, OPT_BOARD },
+		{ "root", required_argument, NULL, OPT_ROOT },
 		{ "rt", required_argument, NULL, OPT_RT },
 		{ "verbose", no_argument, NULL, 'v' },
 		{ "version", no_argument, NULL, 'V' },
@@ -161,6 +167,13 @@ static int parse_options(int argc, char **argv, struct options *o)
 		case OPT_CHECK:
 			o->check = true;
 			break;
+		case OPT_BOARD:
+			o->board = true;
+			o->board_id = optarg;
+			break;
+		case OPT_ROOT:
+			o->root = optarg;
+			break;
 		case OPT_RT:
 			priority = strtol(optarg, &end, 10);
 			if (*end || end == optarg || priority < 1 || priority > 99) {
@@ -188,6 +201,10 @@ static int parse_options(int argc, char **argv, struct options *o)
 		complain("unexpected argument '%s' (a file is given with -c)", argv[optind]);
 		return EXIT_USAGE;
 	}
+	if (o->root && !o->board) {
+		complain("--root goes with --board");
+		return EXIT_USAGE;
+	}
 	if (!segment_name_ok(o->instance)) {
 		complain("instance name '%s': 1 to %d letters, digits, '-', '_', '.' expected, "
 		         "not first a dot",
@@ -203,6 +220,22 @@ static int parse_options(int argc, char **argv, struct options *o)
 }
 
 /* ctx: a log, or NULL */
+static int tell_board(const struct options *o)
+{
+	struct board_report report;
+	char folder[400], why[800];
+	int status;
+
+	board_folder(folder, sizeof(folder));
+	if (board_look(o->root ? o->root : "", folder, o->board_id, &report, why, sizeof(why))) {
+		complain("%s", why);
+		return EXIT_USAGE;
+	}
+	board_print(&report, stdout);
+	status = finish_output();
+	return report.missing ? EXIT_RUN : status;
+}
+
 static void say(void *ctx, bool is_error, const char *message)
 {
 	if (!ctx)
@@ -418,6 +451,8 @@ int main(int argc, char **argv)
 	status = parse_options(argc, argv, &o);
 	if (status >= 0)
 		return status;
+	if (o.board)
+		return tell_board(&o);
 	if (load(&o, NULL, &config))
 		return EXIT_USAGE;
 	if (o.check) {

@@ -55,6 +55,8 @@ enum config_relation {
 };
 #define CONFIG_TARGETS_MAX 16
 /* "auto" stands for its ways: an owserver here, else every DS2482, else the kernel's masters. */
+#define CONFIG_AUTO_WAYS 3u
+extern const char *const config_auto_ways[CONFIG_AUTO_WAYS];
 struct config_target {
 	const char *text; /* "localhost:4304"; never empty */
 	enum config_relation relation;

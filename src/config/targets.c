@@ -10,8 +10,7 @@
 #define DEFAULT_PORT   "4304"
 
 #define AUTO           "auto"
-static const char *const auto_ways[] = {DEFAULT_TARGET, "i2c:auto", "w1"};
-#define AUTO_WAYS (unsigned)(sizeof(auto_ways) / sizeof(auto_ways[0]))
+const char *const config_auto_ways[CONFIG_AUTO_WAYS] = {DEFAULT_TARGET, "i2c:auto", "w1"};
 
 /* Schemes and bare words that are no host; of owserver the scheme may be left out. */
 static const char *const schemes[] = {"i2c", "w1", "sim", "gpio", "null", "late", NULL};
@@ -75,7 +74,7 @@ static void target_add(struct build *build, const char *text, size_t len,
 		report_error(build->report, place,
 		             "\"%.*s\" is one too many: owsd serves at most %d targets, ways "
 		             "behind a bar and the %u of auto counted",
-		             (int)len, text, CONFIG_TARGETS_MAX, AUTO_WAYS);
+		             (int)len, text, CONFIG_TARGETS_MAX, CONFIG_AUTO_WAYS);
 		return;
 	}
 	target->text = build_keep(build, text, len);
@@ -110,8 +109,8 @@ static void add_member(struct build *build, const char *text, size_t len,
 		target_add(build, text, len, relation, place);
 		return;
 	}
-	for (unsigned i = 0; i < AUTO_WAYS && build->report->errors == errors; i++) {
-		target_add(build, auto_ways[i], strlen(auto_ways[i]), i ? CONFIG_BAR : relation,
+	for (unsigned i = 0; i < CONFIG_AUTO_WAYS && build->report->errors == errors; i++) {
+		target_add(build, config_auto_ways[i], strlen(config_auto_ways[i]), i ? CONFIG_BAR : relation,
 		           place);
 		if (build->report->errors == errors)
 			config->targets[config->target_count - 1].automatic = true;

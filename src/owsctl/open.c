@@ -3,6 +3,8 @@
 
 #include "reading.h"
 
+#include "../config/config.h"
+
 #include <errno.h>
 #include <getopt.h>
 #include <poll.h>
@@ -85,12 +87,51 @@ static void step(struct target *target, int64_t until_ns)
 		wait_fd(NULL, -1, 0, next);
 }
 
+/* CTL_DONE; or the status, and why. */
+static int open_way(struct target *target, const char *name, int64_t until_ns, char *why,
+                    size_t why_size)
+{
+	int err = bus_create(name, &target->env, &target->bus, why, why_size);
+
+	target->up = target->down = false;
+	if (err) {
+		if (!why[0])
+			snprintf(why, why_size, "%s", strerror(-err));
+		return err == -ENOMEM ? CTL_FAILED : CTL_USAGE;
+	}
+	while (!target->up && !target->down && boottime(NULL) < until_ns)
+		step(target, until_ns);
+	if (target->up)
+		return CTL_DONE;
+	snprintf(why, why_size, "cannot open %s: %s", name,
+	         target->down ? target->loss.text : "no answer in time");
+	target_close(target);
+	return CTL_FAILED;
+}
+
+/* The first way that is open, as owsd does. */
+static int open_auto(struct target *target, int64_t until_ns, char *why, size_t why_size)
+{
+	size_t used = (size_t)snprintf(why, why_size, "auto finds nothing");
+
+	for (unsigned i = 0; i < CONFIG_AUTO_WAYS; i++) {
+		char reason[200] = "";
+		int n;
+
+		if (open_way(target, config_auto_ways[i], until_ns, reason, sizeof(reason)) == 0)
+			return CTL_DONE;
+		n = snprintf(why + used, why_size - used, "%s%s", i ? "; " : ": ", reason);
+		used = n < 0 || (size_t)n >= why_size - used ? why_size - 1 : used + (size_t)n;
+	}
+	return CTL_FAILED;
+}
+
 int target_open(const struct ctl *ctl, int64_t timeout_ns, struct target *target)
 {
 	int64_t until = boottime(NULL) + timeout_ns;
 	const char *name = ctl->target;
-	char why[200] = "";
-	int err;
+	char why[700] = "";
+	int status;
 
 	*target = (struct target){.timeout_ns = timeout_ns};
 	if (!name && served_find(ctl, &target->served))
@@ -100,23 +141,16 @@ int target_open(const struct ctl *ctl, int64_t timeout_ns, struct target *target
 	target->name = name;
 	target->env = (struct bus_env){.ctx = target, .now = boottime, .wait = wait_fd,
 	                               .answer = take_answer, .event = take_event};
-	err = bus_create(name, &target->env, &target->bus, why, sizeof(why));
-	if (err) {
-		ctl_fail("%s", why[0] ? why : strerror(-err));
-		return err == -ENOMEM ? CTL_FAILED : CTL_USAGE;
-	}
-	while (!target->up && !target->down && boottime(NULL) < until)
-		step(target, until);
-	if (target->up)
-		return CTL_DONE;
-	ctl_fail("cannot open %s: %s%s", name, target->down ? target->loss.text : "no answer in time",
-	         ctl->target                ? ""
-	         : !target->served.runs     ? " (-t TARGET names another target)"
-	         : target->served.target[0] ? ""
-	                                    : " (and the owsd that runs here serves no clients: "
-	                                      "ListenSocket in its configuration lets it)");
-	target_close(target);
-	return CTL_FAILED;
+	status = strcmp(name, "auto") ? open_way(target, name, until, why, sizeof(why))
+	                              : open_auto(target, until, why, sizeof(why));
+	if (status)
+		ctl_fail("%s%s", why,
+		         status == CTL_USAGE || ctl->target ? ""
+		         : !target->served.runs     ? " (-t TARGET names another target)"
+		         : target->served.target[0] ? ""
+		                                    : " (and the owsd that runs here serves no clients: "
+		                                      "ListenSocket in its configuration lets it)");
+	return status;
 }
 
 void target_close(struct target *target)

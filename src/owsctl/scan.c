@@ -142,9 +142,13 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 	if (rio ? ctl->json : inputs_only)
 		return ctl_usage(ctl, rio ? "--rio is no JSON" : "-i goes with --rio");
 	status = target_open(ctl, timeout_ns, &target);
-	if (status)
+	if (status) {
+		scan_board(target.name);
 		return status;
+	}
 	status = scan_target(&target, &scan);
+	if (!status && !scan.count)
+		scan_board(target.name);
 	if (!status && rio)
 		status = target.served.target[0]
 		                 ? scan_rio(&scan, target.served.targets, true, inputs_only)

@@ -50,6 +50,11 @@ const struct scan_kind *scan_kind_of(uint8_t family);
 /* Find all devices and read them. CTL_DONE, or CTL_FAILED after having said why. */
 int scan_target(struct target *target, struct scan *scan);
 void scan_free(struct scan *scan);
+/*
+ * Nothing was found: say on stderr which board this is and what is missing there. Of a target that
+ * is not this machine's hardware, nothing is said.
+ */
+void scan_board(const char *target);
 
 /*
  * Print a configuration with that TargetName, which may be several; without outputs if inputs_only. CTL_DONE, or

@@ -12,7 +12,7 @@ on_copy() {
 on_copy install
 
 for f in lib/libows.so lib/libows.so.0 lib/libows.a lib/pkgconfig/libows.pc include/ows.h \
-	include/ows_layout.h; do
+	include/ows_layout.h share/owsd/boards/raspberry-pi-4.board; do
 	[ -s "$root/opt/owsd/$f" ] || { echo "missing: $f"; exit 1; }
 done
 
@@ -54,6 +54,10 @@ for compiler in 'gcc -std=c11 -x c' 'gcc -std=c17 -x c' 'g++ -std=c++11 -x c++';
 	$compiler l.c -x none -o l $flags
 	LD_LIBRARY_PATH=$root/opt/owsd/lib ./l
 done
+
+# The data of boards is found beside the program
+env -u OWSD_BOARDS "$root/opt/owsd/sbin/owsd" --board=unipi-1.1 >board || [ $? = 1 ]
+grep -q 'UniPi 1.1' board
 
 on_copy uninstall
 if find "$root" ! -type d | grep .; then

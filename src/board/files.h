@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT */
+/* Inside src/board: files below a root. */
+#ifndef BOARD_FILES_H
+#define BOARD_FILES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define BOARD_PATH 512
+
+/* The path below the root. */
+void board_path(char *path, const char *root, const char *format, ...)
+	__attribute__((format(printf, 3, 4)));
+/* A text of the device tree, without the NUL at its end; "" where there is none. */
+void board_text(const char *root, const char *file, char *text, size_t size);
+/* A number of the device tree, or 0. */
+unsigned board_cell(const char *root, const char *file);
+bool board_there(const char *root, const char *file);
+/* The last part of where a link leads to; "" where there is none. */
+void board_link(const char *root, const char *file, char *name, size_t size);
+/* The firmware's config.txt as it is called on this system. */
+const char *board_config(const char *root);
+/* Has config.txt this line, as "dtparam=i2c_arm=on"? Several parameters may stand on one line. */
+bool board_configured(const char *root, const char *line);
+
+#endif

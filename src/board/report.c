@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: MIT */
+#include "report.h"
+
+#include "../printable.h"
+
+#include <stdarg.h>
+#include <string.h>
+
+static void clean(char *text)
+{
+	text[printable(text, strlen(text))] = '\0';
+}
+
+void report_add(struct board_report *report, enum board_kind kind, const char *format, ...)
+{
+	struct board_line *line = &report->line[report->count];
+	va_list args;
+
+	if (report->count == BOARD_LINES)
+		return;
+	report->count++;
+	line->kind = kind;
+	line->mend[0] = '\0';
+	va_start(args, format);
+	vsnprintf(line->text, sizeof(line->text), format, args);
+	va_end(args);
+	clean(line->text);
+	report->missing |= kind == BOARD_MISSING;
+}
+
+void report_mend(struct board_report *report, const char *format, ...)
+{
+	struct board_line *line = &report->line[report->count - 1];
+	va_list args;
+
+	va_start(args, format);
+	vsnprintf(line->mend, sizeof(line->mend), format, args);
+	va_end(args);
+	clean(line->mend);
+}
+
+static int rank(enum board_kind kind)
+{
+	switch (kind) {
+	case BOARD_FACT:
+		return 0;
+	case BOARD_MISSING:
+		return 1;
+	case BOARD_NOTE:
+		return 2;
+	}
+	return 2;
+}
+
+void report_sort(struct board_report *report)
+{
+	for (unsigned i = 1; i < report->count; i++)
+		for (unsigned at = i; at > 0; at--) {
+			struct board_line *line = &report->line[at], moved;
+
+			if (rank(line[-1].kind) <= rank(line->kind))
+				break;
+			moved = line[-1];
+			line[-1] = *line;
+			*line = moved;
+		}
+}
+
+void board_print(const struct board_report *report, FILE *out)
+{
+	for (unsigned i = 0; i < report->count; i++) {
+		const struct board_line *line = &report->line[i];
+
+		fprintf(out, "%s%s\n",
+		        line->kind == BOARD_MISSING ? "missing: "
+		        : line->kind == BOARD_NOTE  ? "note: "
+		                                    : "",
+		        line->text);
+		if (line->mend[0])
+			fprintf(out, "    %s\n", line->mend);
+	}
+}

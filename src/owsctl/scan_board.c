@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+#include "scan.h"
+
+#include "../board/board.h"
+
+#include <string.h>
+
+static bool is_hardware(const char *target)
+{
+	return target && (!strcmp(target, "auto") || !strncmp(target, "i2c:", 4) ||
+	                  !strcmp(target, "w1") || !strncmp(target, "w1:", 3));
+}
+
+void scan_board(const char *target)
+{
+	struct board_report report;
+	char folder[400], why[800];
+
+	if (!is_hardware(target))
+		return;
+	board_folder(folder, sizeof(folder));
+	if (board_look("", folder, NULL, &report, why, sizeof(why)) == 0)
+		board_print(&report, stderr);
+}
