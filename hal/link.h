@@ -34,13 +34,16 @@ enum link_rung {
 	LINK_REOPEN,
 };
 
-/* Running totals; the bench and the statistics read them. */
+/* Running totals of one link; the statistics read them. */
 struct link_cost {
-	uint64_t wire_ns;   /* time the 1-Wire slots took by the data sheet */
+	uint64_t wire_ns; /* time the 1-Wire slots took by the data sheet */
+	uint64_t resets;  /* 1-Wire resets */
+};
+/* Running totals of what the links of a master share. */
+struct link_master_cost {
 	uint64_t transfers; /* I2C transactions, START to STOP */
 	uint64_t bytes;     /* on the I2C bus, addresses included */
 	uint64_t syscalls;
-	uint64_t resets;    /* 1-Wire resets */
 };
 
 struct link;
@@ -135,6 +138,8 @@ struct link_master_ops {
 	int (*grow)(struct link_master *master, char *why, size_t why_size);
 	unsigned (*channels)(struct link_master *master); /* known after open() and grow() */
 	struct link *(*channel)(struct link_master *master, unsigned n);
+	/* Optional; also while closed. */
+	void (*cost)(const struct link_master *master, struct link_master_cost *cost);
 	void (*destroy)(struct link_master *master);
 	bool simulated; /* its devices are not real: answers say BUS_DETAIL_SIMULATED */
 };

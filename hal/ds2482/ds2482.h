@@ -26,7 +26,7 @@ struct ds2482_link {
 	struct ds2482_chip *chip;
 	uint8_t number;
 	enum link_speed speed;
-	struct link_cost cost; /* wire_ns and resets; the rest is the adapter's */
+	struct link_cost cost;
 };
 
 struct ds2482_master;
@@ -77,7 +77,7 @@ struct ds2482_master {
 	struct gpio_output power, sleep;
 	int64_t power_off_ns;
 	/* The cost before the adapter was opened again. */
-	uint64_t transfers, bytes, syscalls;
+	struct link_master_cost cost;
 };
 
 /*
@@ -96,6 +96,7 @@ void ds2482_close(struct link_master *master);
 int ds2482_there(struct link_master *master, uint64_t *mark);
 unsigned ds2482_channels(struct link_master *master);
 struct link *ds2482_channel(struct link_master *master, unsigned n);
+void ds2482_cost(const struct link_master *master, struct link_master_cost *cost);
 void ds2482_destroy(struct link_master *master);
 
 /* Scheme "i2c": over hal/ds2482/i2c_dev.h. */

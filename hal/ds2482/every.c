@@ -192,6 +192,22 @@ static struct link *every_channel(struct link_master *base, unsigned n)
 	return n < every->links ? every->link[n] : NULL;
 }
 
+static void every_cost(const struct link_master *base, struct link_master_cost *cost)
+{
+	const struct every_master *every = (const struct every_master *)base;
+
+	*cost = (struct link_master_cost){0};
+	for (unsigned i = 0; i < every->count; i++) {
+		const struct link_master *master = every->adapter[i].master;
+		struct link_master_cost one;
+
+		master->ops->cost(master, &one);
+		cost->transfers += one.transfers;
+		cost->bytes += one.bytes;
+		cost->syscalls += one.syscalls;
+	}
+}
+
 static void every_destroy(struct link_master *base)
 {
 	struct every_master *every = (struct every_master *)base;
@@ -210,6 +226,7 @@ static const struct link_master_ops every_ops = {
 	.there = every_there,
 	.channels = every_channels,
 	.channel = every_channel,
+	.cost = every_cost,
 	.destroy = every_destroy,
 };
 

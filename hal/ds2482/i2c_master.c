@@ -122,5 +122,6 @@ const struct link_master_ops ds2482_i2c_master = {
 	.there = ds2482_there,
 	.channels = ds2482_channels,
 	.channel = ds2482_channel,
+	.cost = ds2482_cost,
 	.destroy = ds2482_destroy,
 };

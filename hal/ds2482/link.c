@@ -226,18 +226,7 @@ static int link_recover(struct link *base, enum link_rung rung)
 
 static void link_cost(const struct link *base, struct link_cost *cost)
 {
-	const struct ds2482_link *link = (const struct ds2482_link *)base;
-	const struct ds2482_master *master = link->chip->master;
-
-	*cost = link->cost;
-	cost->transfers = master->transfers;
-	cost->bytes = master->bytes;
-	cost->syscalls = master->syscalls;
-	if (master->adapter) {
-		cost->transfers += master->adapter->transfers;
-		cost->bytes += master->adapter->bytes;
-		cost->syscalls += master->adapter->syscalls;
-	}
+	*cost = ((const struct ds2482_link *)base)->cost;
 }
 
 static const struct link_ops link_ops = {
@@ -252,12 +241,16 @@ static const struct link_ops link_ops = {
 	.cost = link_cost,
 };
 
+/* Opened again a link is the one it was: who gathers adapters has given its chip a number. */
 void ds2482_link_init(struct ds2482_chip *chip, unsigned number)
 {
+	const struct link *before = &chip->link[number].link;
+	unsigned own = (unsigned)(chip - chip->master->chip);
+
 	chip->link[number] = (struct ds2482_link){
 		.link = {.ops = &link_ops,
 		         .env = chip->master->master.env,
-		         .chip = (unsigned)(chip - chip->master->chip)},
+		         .chip = before->ops ? before->chip : own},
 		.chip = chip,
 		.number = (uint8_t)number,
 		.cost = chip->link[number].cost,

@@ -57,15 +57,25 @@ int ds2482_create(const struct link_master_ops *ops, const struct bus_env *env,
 	return 0;
 }
 
+void ds2482_cost(const struct link_master *base, struct link_master_cost *cost)
+{
+	const struct ds2482_master *master = (const struct ds2482_master *)base;
+
+	*cost = master->cost;
+	if (!master->adapter)
+		return;
+	cost->transfers += master->adapter->transfers;
+	cost->bytes += master->adapter->bytes;
+	cost->syscalls += master->adapter->syscalls;
+}
+
 static void close_adapter(struct ds2482_master *master)
 {
 	struct i2c_adapter *adapter = master->adapter;
 
 	if (!adapter)
 		return;
-	master->transfers += adapter->transfers;
-	master->bytes += adapter->bytes;
-	master->syscalls += adapter->syscalls;
+	ds2482_cost(&master->master, &master->cost);
 	master->adapter = NULL;
 	adapter->ops->close(adapter);
 }

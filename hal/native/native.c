@@ -246,22 +246,22 @@ static struct job *pick(struct native *native, int64_t now, int64_t *next)
 
 static void take_cost(struct native *native)
 {
-	struct link_cost sum = {0};
+	struct link_master_cost shared = {0};
+	uint64_t wire_ns = 0;
 
 	for (unsigned i = 0; i < native->channels; i++) {
 		struct link_cost one = {0};
 		struct link *link = native->channel[i].link;
 
-		if (!link->ops->cost)
-			continue;
-		link->ops->cost(link, &one);
-		sum.wire_ns += one.wire_ns;
-		sum.transfers += one.transfers;
-		sum.syscalls += one.syscalls;
+		if (link->ops->cost)
+			link->ops->cost(link, &one);
+		wire_ns += one.wire_ns;
 	}
-	__atomic_store_n(&native->count[COUNT_WIRE_US], sum.wire_ns / 1000, __ATOMIC_RELAXED);
-	__atomic_store_n(&native->count[COUNT_I2C_TRANSFERS], sum.transfers, __ATOMIC_RELAXED);
-	__atomic_store_n(&native->count[COUNT_SYSCALLS], sum.syscalls, __ATOMIC_RELAXED);
+	if (native->master->ops->cost)
+		native->master->ops->cost(native->master, &shared);
+	__atomic_store_n(&native->count[COUNT_WIRE_US], wire_ns / 1000, __ATOMIC_RELAXED);
+	__atomic_store_n(&native->count[COUNT_I2C_TRANSFERS], shared.transfers, __ATOMIC_RELAXED);
+	__atomic_store_n(&native->count[COUNT_SYSCALLS], shared.syscalls, __ATOMIC_RELAXED);
 }
 
 /*

@@ -103,6 +103,7 @@ const struct link_master_ops sim_master = {
 	.there = ds2482_there,
 	.channels = ds2482_channels,
 	.channel = ds2482_channel,
+	.cost = ds2482_cost,
 	.destroy = ds2482_destroy,
 	.simulated = true,
 };

@@ -127,11 +127,7 @@ static int recover(struct link *base, enum link_rung rung)
 
 static void cost(const struct link *base, struct link_cost *cost)
 {
-	const struct w1_netlink_link *link = (const struct w1_netlink_link *)base;
-
-	*cost = link->cost;
-	if (link == link->netlink->links)
-		cost->syscalls = link->netlink->talk.syscalls;
+	*cost = ((const struct w1_netlink_link *)base)->cost;
 }
 
 const struct link_ops w1_netlink_link_ops = {

@@ -202,6 +202,12 @@ static struct link *channel(struct link_master *base, unsigned n)
 	                        : &netlink->links[n].link;
 }
 
+static void cost(const struct link_master *base, struct link_master_cost *cost)
+{
+	*cost = (struct link_master_cost){
+		.syscalls = ((const struct w1_netlink *)base)->talk.syscalls};
+}
+
 const struct link_master_ops w1_netlink_master = {
 	.scheme = "w1",
 	.summary = "the kernel's 1-Wire masters, by netlink",
@@ -211,5 +217,6 @@ const struct link_master_ops w1_netlink_master = {
 	.there = there,
 	.channels = channels,
 	.channel = channel,
+	.cost = cost,
 	.destroy = destroy,
 };

@@ -72,6 +72,7 @@ static const struct link_master_ops place_ops = {
 	.there = ds2482_there,
 	.channels = ds2482_channels,
 	.channel = ds2482_channel,
+	.cost = ds2482_cost,
 	.destroy = ds2482_destroy,
 };
 
@@ -173,6 +174,34 @@ static void test_links_of_different_chips_have_different_numbers(void)
 			                                            every->ops->channel(every, k)->chip);
 }
 
+static void test_links_keep_their_numbers_when_an_adapter_is_opened_again(void)
+{
+	plug(0, "chip DS2482-100 0x18\n");
+	plug(2, "chip DS2482-100 0x18\n");
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, open_all(), why);
+	struct link *link = every->ops->channel(every, 1);
+	unsigned number = link->chip;
+	TEST_ASSERT_EQUAL_INT(0, link->ops->recover(link, LINK_REOPEN));
+	TEST_ASSERT_EQUAL_UINT(number, link->chip);
+	TEST_ASSERT_TRUE(link->chip != every->ops->channel(every, 0)->chip);
+}
+
+static void test_the_cost_is_that_of_all_adapters(void)
+{
+	struct link_master_cost cost;
+
+	plug(0, "chip DS2482-100 0x18\n");
+	plug(2, "chip DS2482-800 0x18\n");
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, open_all(), why);
+	for (unsigned i = 0; i < channels(); i++)
+		presence(i);
+	every->ops->cost(every, &cost);
+	TEST_ASSERT_GREATER_THAN_UINT64(0, place[0].adapter.adapter.transfers);
+	TEST_ASSERT_EQUAL_UINT64(place[0].adapter.adapter.transfers +
+	                                 place[2].adapter.adapter.transfers,
+	                         cost.transfers);
+}
+
 static void test_without_adapter_or_chip_it_says_what_is_missing(void)
 {
 	TEST_ASSERT_EQUAL_INT(-ENODEV, open_all());
@@ -241,6 +270,8 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_the_chips_of_all_adapters_are_one_row_of_links);
 	RUN_TEST(test_links_of_different_chips_have_different_numbers);
+	RUN_TEST(test_links_keep_their_numbers_when_an_adapter_is_opened_again);
+	RUN_TEST(test_the_cost_is_that_of_all_adapters);
 	RUN_TEST(test_without_adapter_or_chip_it_says_what_is_missing);
 	RUN_TEST(test_a_chip_that_a_driver_has_is_the_reason_given);
 	RUN_TEST(test_an_adapter_that_comes_later_is_taken_behind_the_others);

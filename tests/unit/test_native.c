@@ -123,6 +123,29 @@ static void test_a_request_that_was_not_begun_can_be_taken_back(void)
 	TEST_ASSERT_EQUAL_INT(-EINPROGRESS, answer_to(id)->err);
 }
 
+static uint64_t counted(const char *name)
+{
+	size_t n;
+	const struct bus_counter *counters = bus_counters(bus, &n);
+
+	for (size_t i = 0; i < n; i++)
+		if (strcmp(counters[i].name, name) == 0)
+			return bus_counted(&counters[i]);
+	TEST_FAIL_MESSAGE(name);
+	return 0;
+}
+
+static void test_what_channels_share_is_counted_once(void)
+{
+	wire_init(&host, 8, 1);
+	wire_net.shared = (struct link_master_cost){.transfers = 5, .syscalls = 7};
+	start();
+	host_run(&host, bus, host.now + HOST_S);
+	TEST_ASSERT_EQUAL_UINT64(wire_net.cost.wire_ns / 1000, counted("wire_us"));
+	TEST_ASSERT_EQUAL_UINT64(5, counted("i2c_transfers"));
+	TEST_ASSERT_EQUAL_UINT64(7, counted("syscalls"));
+}
+
 static void test_a_target_without_its_file_is_refused_with_the_reason(void)
 {
 	struct bus *none = NULL;
@@ -144,6 +167,7 @@ int main(void)
 	RUN_TEST(test_an_alias_names_the_device);
 	RUN_TEST(test_structure_states_the_properties);
 	RUN_TEST(test_a_request_that_was_not_begun_can_be_taken_back);
+	RUN_TEST(test_what_channels_share_is_counted_once);
 	RUN_TEST(test_a_target_without_its_file_is_refused_with_the_reason);
 	return UNITY_END();
 }

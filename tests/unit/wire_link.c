@@ -203,6 +203,12 @@ static struct link *master_channel(struct link_master *master, unsigned n)
 	return &links[n];
 }
 
+static void master_cost(const struct link_master *master, struct link_master_cost *cost)
+{
+	(void)master;
+	*cost = wire_net.shared;
+}
+
 static void master_destroy(struct link_master *master)
 {
 	free(master);
@@ -216,6 +222,7 @@ const struct link_master_ops wire_master = {
 	.close = master_close,
 	.channels = master_channels,
 	.channel = master_channel,
+	.cost = master_cost,
 	.destroy = master_destroy,
 	.simulated = true,
 };

@@ -16,7 +16,8 @@ struct wire_net {
 	struct host *host;
 	unsigned channels, chips; /* chips 1: all channels share one */
 	struct sim_wire wire[WIRE_CHANNELS];
-	struct link_cost cost;
+	struct link_cost cost;           /* of the first link */
+	struct link_master_cost shared;  /* by them all */
 	/* The next `fault_count` calls return `fault`; a recovery of fault_until or above ends it. */
 	int fault;
 	unsigned fault_count;
