@@ -35,7 +35,7 @@ static int64_t limit_of(const struct client *c)
 	case CLIENT_LEFT:
 		return INT64_MAX;
 	case CLIENT_READING:
-		return c->since_ns + (c->have || !c->served ? REQUEST_NS : IDLE_NS);
+		return c->since_ns + (c->have > c->past || !c->served ? REQUEST_NS : IDLE_NS);
 	case CLIENT_WORKING:
 	case CLIENT_QUEUED:
 		return c->tick_ns + KEEPALIVE_NS;
@@ -110,9 +110,25 @@ void client_close(struct serve *s, struct client *c)
 		put_free(s, c);
 }
 
+/* The bytes behind the answered request are the next one; pages that this has not are given back. */
+static void drop_past(struct client *c)
+{
+	bool large = c->have > AREA_ANSWER || c->out_len > 4096 - AREA_ANSWER;
+
+	c->have -= c->past;
+	if (c->have)
+		memmove(c->area, c->area + c->past, c->have);
+	if (large && c->have <= 4096)
+		madvise(c->area + 4096, AREA_SIZE - 4096, MADV_DONTNEED);
+	c->past = 0;
+	c->out_len = 0;
+}
+
 void client_back(struct serve *s, struct client *c)
 {
 	c->lent = false;
+	if (c->past)
+		drop_past(c);
 	if (c->state != CLIENT_WORKING && c->directory) {
 		work_release(s, c->directory);
 		c->directory = NULL;
@@ -210,28 +226,18 @@ static void send_alive(struct serve *s, struct client *c)
 	push_alive(s, c);
 }
 
-/* Its pages beyond the first are given back. */
-static void trim(struct client *c)
-{
-	if (c->have > AREA_ANSWER || c->out_len > 4096 - AREA_ANSWER)
-		madvise(c->area + 4096, AREA_SIZE - 4096, MADV_DONTNEED);
-}
-
-/* The answer is out: the bytes behind its request are the next one. */
+/* The answer is out. What a bus still has of the request stays as it is until that is back. */
 static void next_request(struct serve *s, struct client *c)
 {
 	work_end(s, c);
 	c->served++;
+	c->past = c->length;
+	if (!c->lent)
+		drop_past(c);
 	if (!(c->request.flags & FRAME_PERSIST)) {
-		trim(c);
 		client_close(s, c);
 		return;
 	}
-	c->have -= c->length;
-	if (c->have)
-		memmove(c->area, c->area + c->length, c->have);
-	trim(c);
-	c->out_len = 0;
 	c->need = FRAME_HEADER;
 	client_enter(s, c, CLIENT_READING);
 	if (c->have || c->readable)

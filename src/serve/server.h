@@ -73,6 +73,7 @@ struct client {
 	uint64_t served;      /* requests */
 
 	size_t have, need, length; /* bytes in area; of the request in it: as far as known, its end */
+	size_t past;               /* of the bytes in area: of an answered request that a bus still has */
 	struct request request;
 	struct node node;
 	char path[NODE_PATH_MAX + 16]; /* as the engine was given it */

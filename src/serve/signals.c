@@ -151,20 +151,18 @@ static int set(struct signals *signals, struct ows_id *id, int64_t now_ns, const
 	                            h->map.records[id->record].type == OWS_STRING,
 	                    copy);
 
-	*command = (struct signals_command){ 0 };
 	if (err)
 		return err;
 	if (!signals->may_set || !takes_commands(h, id))
 		return -EACCES;
 	err = handle_set_text(h, id, copy, &stamp);
-	if (err == -ESTALE && ows_reopen(h) == 0)
-		err = handle_set_text(h, id, copy, &stamp);
 	if (err == -ERANGE)
 		return -EDOM;
 	if (err)
-		return err == -EINVAL || err == -EACCES ? err : -EIO;
+		return err == -EINVAL || err == -EACCES || err == -ESTALE ? err : -EIO;
 	if (id->attribute == ATTR_VALUE)
-		*command = (struct signals_command){ (unsigned)id->record, stamp, now_ns };
+		*command = (struct signals_command){ (unsigned)id->record,
+			                             h->map.image->generation, stamp, now_ns };
 	return 0;
 }
 
@@ -174,21 +172,32 @@ int signals_write(struct signals *signals, const char *name, int64_t now_ns, con
 	struct ows_id id;
 	int err = look_up(signals, name, &id);
 
-	return err ? err : set(signals, &id, now_ns, text, len, command);
+	*command = (struct signals_command){ 0 };
+	if (!err)
+		err = set(signals, &id, now_ns, text, len, command);
+	if (err != -ESTALE)
+		return err;
+	/* a reload went between: the signal's record is another one now */
+	err = ows_reopen(signals->h) ? -EIO : look_up(signals, name, &id);
+	if (!err)
+		err = set(signals, &id, now_ns, text, len, command);
+	return err == -ESTALE ? -EIO : err;
 }
 
-int signals_write_record(struct signals *signals, unsigned record, int64_t now_ns,
-                         const char *text, size_t len, struct signals_command *command)
+int signals_applied(struct signals *signals, const char *name, struct signals_command *command)
 {
-	struct ows_id id = { .record = (int)record, .attribute = ATTR_VALUE };
-
-	return set(signals, &id, now_ns, text, len, command);
-}
-
-int signals_applied(struct signals *signals, const struct signals_command *command)
-{
+	struct ows *h = signals->h;
 	struct ows_sample sample;
+	struct ows_id id;
 
+	if (handle_state(h))
+		ows_reopen(h);
+	if (h->map.image->generation != command->generation) {
+		if (look_up(signals, name, &id) || id.attribute != ATTR_VALUE)
+			return -ENOENT;
+		command->record = (unsigned)id.record;
+		command->generation = h->map.image->generation;
+	}
 	if (!reader_sample(&signals->h->map.records[command->record], &sample))
 		return -EAGAIN;
 	if ((int32_t)(sample.applied - command->stamp) >= 0 && sample.applied)

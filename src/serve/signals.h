@@ -31,6 +31,7 @@ int signals_read(struct signals *signals, const char *name, int64_t now_ns, char
 /* A command that is on its way. */
 struct signals_command {
 	unsigned record; /* 0: nothing to wait for */
+	uint32_t generation; /* of the image that counts it so */
 	uint32_t stamp;
 	int64_t since_ns;
 };
@@ -40,11 +41,11 @@ struct signals_command {
  */
 int signals_write(struct signals *signals, const char *name, int64_t now_ns, const char *text,
                   size_t len, struct signals_command *command);
-/* The same for the signal of a record. */
-int signals_write_record(struct signals *signals, unsigned record, int64_t now_ns,
-                         const char *text, size_t len, struct signals_command *command);
-/* -EAGAIN: not yet on the bus; 0 it is; else why it could not be written. */
-int signals_applied(struct signals *signals, const struct signals_command *command);
+/*
+ * -EAGAIN: not yet on the bus; 0 it is; else why it could not be written. name as it was commanded:
+ * a reload may have given it another record, or (-ENOENT) none.
+ */
+int signals_applied(struct signals *signals, const char *name, struct signals_command *command);
 
 /* All names that a list can hold. False: no room. */
 bool signals_list(struct signals *signals, struct directory *directory);

@@ -157,6 +157,11 @@ void work_listed(struct serve *s, struct client *c, int err)
 	bool buses = c->step == STEP_BUSES, every = buses || c->node.every;
 	struct node root = { .root = true };
 
+	/* neither the room nor the request is free for anything else yet */
+	if (c->lent) {
+		answer_error(s, c, err);
+		return;
+	}
 	if (!err)
 		directory_take(c->directory, buses ? &root : &c->node, &s->buses, c->guest.served,
 		             c->guest.answer.len);
@@ -165,7 +170,7 @@ void work_listed(struct serve *s, struct client *c, int err)
 	/* of several one that knows the directory is enough */
 	if (!err || c->worst == WORK_NOT_YET || (c->worst < 0 && err != -ENOENT && err != -ENOTCONN))
 		c->worst = !err || c->worst == 0 ? 0 : err;
-	if (every && !c->lent) {
+	if (every) {
 		c->target++;
 		ask_target(s, c);
 		return;

@@ -38,24 +38,32 @@ void work_write_target(struct serve *s, struct client *c)
 		answer_error(s, c, c->worst == WORK_NOT_YET ? -ENOTCONN : c->worst);
 }
 
+/* The signal that is commanded: by its name, or the output at this path; NULL: there is none. */
+static const char *name_of(const struct serve *s, const struct node *node)
+{
+	int record;
+
+	if (node->kind == NODE_SIGNAL)
+		return node->name;
+	record = node->bus < 0 ? kept_signal(s->kept, node->path, true) : -1;
+	return record < 0 ? NULL : s->config->items[record - 1].name;
+}
+
 /* An output of the table: its control program commands it, and so does this client. */
-static void command(struct serve *s, struct client *c, int record)
+static void command(struct serve *s, struct client *c, const char *name)
 {
 	const char *text = (const char *)c->request.data;
 	uint32_t len = c->request.data_len;
 	char *room = (char *)client_room(c);
 	int err = 0;
 
-	if (record >= 0 && units_convert(c->node.type, c->request.flags)) {
+	if (c->node.kind != NODE_SIGNAL && units_convert(c->node.type, c->request.flags)) {
 		err = units_take(c->node.type, c->request.flags, text, len, room, client_room_size(c));
 		len = err < 0 ? 0 : (uint32_t)err;
 		text = room;
 	}
 	if (err >= 0)
-		err = record >= 0 ? signals_write_record(s->signals, (unsigned)record, s->now_ns, text,
-		                                         len, &c->command)
-		                  : signals_write(s->signals, c->node.name, s->now_ns, text, len,
-		                                  &c->command);
+		err = signals_write(s->signals, name, s->now_ns, text, len, &c->command);
 	if (err)
 		answer_error(s, c, err);
 	else if (!c->command.record)
@@ -68,7 +76,8 @@ static void command(struct serve *s, struct client *c, int record)
 
 void work_applying(struct serve *s, struct client *c)
 {
-	int err = signals_applied(s->signals, &c->command);
+	const char *name = name_of(s, &c->node);
+	int err = name ? signals_applied(s->signals, name, &c->command) : -ENOENT;
 
 	if (err == 0) {
 		kept_forget(s->kept, &c->node);
@@ -83,7 +92,7 @@ void work_applying(struct serve *s, struct client *c)
 void work_write(struct serve *s, struct client *c)
 {
 	const struct node *node = &c->node;
-	int record;
+	const char *name;
 
 	if (s->config->serve.read_only) {
 		count(s, COUNT_refused_writes, 1);
@@ -99,12 +108,10 @@ void work_write(struct serve *s, struct client *c)
 		work_refuse_directory(s, c);
 	} else if (node->kind == NODE_CODE || c->request.offset != 0) {
 		answer_error(s, c, -EACCES);
-	} else if (node->kind == NODE_SIGNAL) {
-		command(s, c, -1);
 	} else {
-		record = node->bus < 0 ? kept_signal(s->kept, node->path, true) : -1;
-		if (record >= 0)
-			command(s, c, record);
+		name = name_of(s, node);
+		if (name)
+			command(s, c, name);
 		else if (!work_ask_type(s, c))
 			work_write_target(s, c);
 	}
@@ -116,8 +123,13 @@ void work_written(struct serve *s, struct client *c, int err)
 	if (c->step == STEP_WRITE_EACH) {
 		if (c->worst == WORK_NOT_YET || !err)
 			c->worst = err;
+		/* what the targets behind it would have said is not known: no success */
+		if (c->lent) {
+			answer_error(s, c, err);
+			return;
+		}
 		c->target++;
-		if (!c->lent && c->target < work_targets(s)) {
+		if (c->target < work_targets(s)) {
 			work_write_target(s, c);
 			return;
 		}

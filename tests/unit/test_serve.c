@@ -18,12 +18,15 @@
 #define TYPE "/28.551DDF030000/type"
 #define FLAGS (FRAME_PERSIST | 0x100)
 
-static const struct instance_signal signals[] = {
-	{ .name = "room", .path = "/28.551DDF030000/temperature", .type = OWS_DOUBLE },
-};
-static struct config_item items[1];
+#define ROOM  { .name = "room", .path = "/28.551DDF030000/temperature", .type = OWS_DOUBLE }
+#define RELAY { .name = "relay", .path = "/29.551DDF030000/PIO.0", .type = OWS_BOOL, .output = true }
+#define FAN   { .name = "fan", .path = "/29.551DDF030000/PIO.1", .type = OWS_BOOL, .output = true }
+static const struct instance_signal signals[] = { ROOM, RELAY, FAN };
+/* after a reload */
+static const struct instance_signal other_signals[] = { FAN, ROOM, RELAY };
+static struct config_item items[3], other_items[3];
 static struct config_target target = { .text = "null:" };
-static struct config config;
+static struct config config, other_config;
 static struct instance in;
 static struct serve *serve;
 static const struct engine_guests *port;
@@ -49,20 +52,46 @@ static int connect_to_it(void)
 	return sock;
 }
 
+static void fill(struct config *to, struct config_item *its, const struct instance_signal *from)
+{
+	for (int i = 0; i < 3; i++)
+		its[i] = (struct config_item){ .name = from[i].name, .path = from[i].path,
+			                       .type = (enum ows_type)from[i].type,
+			                       .output = from[i].output };
+	*to = (struct config){ .targets = &target, .target_count = 1, .items = its,
+		               .item_count = 3, .serve.socket = path };
+}
+
+/* As the engine shows an output: enabled, and the last command that reached the bus. */
+static void show_output(uint32_t record, uint32_t applied)
+{
+	struct ows_sample sample = { .quality = OWS_Q_GOOD, .measured_ns = ows_now(),
+		                     .applied = applied };
+	struct ows_attrs attrs = { .flags = OWS_ATTR_WRITE_ENABLE };
+
+	image_publish(&in.image, record, &sample, &attrs, NULL);
+	image_news(&in.image);
+}
+
+static void target_is_up(void)
+{
+	__atomic_store_n(&in.image.targets[0].state, 1, __ATOMIC_RELAXED);
+}
+
 void setUp(void)
 {
 	struct serve_setup setup = { .config = &config, .ring = no_ring };
 	char name[24], why[128];
 
 	snprintf(name, sizeof(name), "serve-%d", (int)getpid());
-	instance_start(&in, name, signals, 1);
+	instance_start(&in, name, signals, 3);
+	show_output(2, 0);
+	show_output(3, 0);
 	strcpy(folder, "/tmp/owsd-serve-XXXXXX");
 	TEST_ASSERT_NOT_NULL(mkdtemp(folder));
 	snprintf(path, sizeof(path), "%s/s", folder);
-	items[0] = (struct config_item){ .name = "room", .path = signals[0].path,
-		                         .type = OWS_DOUBLE };
-	config = (struct config){ .targets = &target, .target_count = 1, .items = items,
-		                  .item_count = 1, .serve.socket = path };
+	fill(&config, items, signals);
+	fill(&other_config, other_items, other_signals);
 	setup.instance = in.name;
 	TEST_ASSERT_EQUAL_INT_MESSAGE(0, serve_create(&setup, &serve, why, sizeof(why)), why);
 	port = serve_guests(serve);
@@ -223,6 +252,116 @@ static void test_who_was_given_up_waits_for_his_room_before_the_next_request(voi
 	TEST_ASSERT_EQUAL_INT(0, reply.payload);
 }
 
+static void give_up(struct engine_guest *g)
+{
+	g->answer = (struct bus_answer){ .err = -ETIMEDOUT };
+	g->lent = true;
+	port->answered(port->ctx, g);
+}
+
+/* The bus may send it yet. */
+static void test_what_a_bus_still_has_to_write_stays_as_it_was(void)
+{
+	static const char text[] = "written late";
+	uint8_t frames[256];
+	struct engine_guest *g;
+	int n = frame_request(frames, FRAME_WRITE, FLAGS, sizeof(text), "/2D.551DDF030000/memory",
+	                      (const uint8_t *)text, sizeof(text));
+
+	for (int i = 0; i < 5; i++)
+		n += frame_request(frames + n, FRAME_NOP, FLAGS, 0, NULL, NULL, 0);
+	TEST_ASSERT_EQUAL_INT(n, send(fd, frames, (size_t)n, MSG_NOSIGNAL));
+	g = next_guest();
+	TEST_ASSERT_EQUAL_INT(BUS_WRITE, g->op);
+	give_up(g);
+	TEST_ASSERT_EQUAL_INT(-5, answer(fd));
+	TEST_ASSERT_TRUE(is_silent(fd));
+	TEST_ASSERT_EQUAL_UINT32(sizeof(text), g->len);
+	TEST_ASSERT_EQUAL_STRING(text, g->data);
+	port->released(port->ctx, g);
+	for (int i = 0; i < 5; i++)
+		TEST_ASSERT_EQUAL_INT(0, answer(fd));
+}
+
+static void test_the_room_of_a_look_for_buses_is_kept_until_it_is_back(void)
+{
+	struct engine_guest *g, *others[3];
+	int socks[4];
+
+	target_is_up();
+	ask(fd, FRAME_READ, "/bus.3/28.551DDF030000/type");
+	g = next_guest();
+	TEST_ASSERT_EQUAL_INT(BUS_DIR, g->op);
+	give_up(g);
+	TEST_ASSERT_EQUAL_INT(-5, answer(fd));
+	for (int i = 0; i < 4; i++) {
+		socks[i] = connect_to_it();
+		ask(socks[i], FRAME_DIRALL, "/28.551DDF030000");
+		if (i < 3)
+			others[i] = next_guest();
+	}
+	usleep(50000);
+	TEST_ASSERT_NULL(port->take(port->ctx));
+	port->released(port->ctx, g);
+	give(next_guest(), "/28.551DDF030000/id\n");
+	TEST_ASSERT_EQUAL_INT(0, answer(socks[3]));
+	for (int i = 0; i < 3; i++)
+		give(others[i], "/28.551DDF030000/id\n");
+	for (int i = 0; i < 4; i++)
+		close(socks[i]);
+}
+
+static void command(const char *what)
+{
+	uint8_t frame[128];
+	int n = frame_request(frame, FRAME_WRITE, FLAGS, 1, what, (const uint8_t *)"1", 1);
+
+	TEST_ASSERT_EQUAL_INT(n, send(fd, frame, (size_t)n, MSG_NOSIGNAL));
+}
+
+/* The stamp of a record's command, when there is one. */
+static uint32_t stamp_of(uint32_t record)
+{
+	struct command found = { .stamp = 0 };
+
+	for (int i = 0; i < 2000 && !found.stamp; i++) {
+		commands_load(&in.commands, record, &found);
+		if (!found.stamp)
+			usleep(1000);
+	}
+	TEST_ASSERT_NOT_EQUAL_UINT32(0, found.stamp);
+	return found.stamp;
+}
+
+static void test_a_command_is_waited_for_over_a_reload(void)
+{
+	static const int ports[] = { 0 };
+	uint32_t stamp;
+
+	command("/signals/relay");
+	stamp = stamp_of(2);
+	instance_reload(&in, other_signals, 3);
+	TEST_ASSERT_EQUAL_INT(0, serve_reload(serve, &other_config, &in.image, ports));
+	TEST_ASSERT_TRUE(is_silent(fd));
+	show_output(3, stamp);
+	TEST_ASSERT_EQUAL_INT(0, answer(fd));
+}
+
+/* Just then: the new image is shown, and the server has not been told yet. */
+static void test_a_path_means_its_own_output_in_the_middle_of_a_reload(void)
+{
+	struct command relay;
+
+	instance_reload(&in, other_signals, 3);
+	show_output(1, 0);
+	show_output(3, 0);
+	command("/29.551DDF030000/PIO.1");
+	show_output(1, stamp_of(1));
+	TEST_ASSERT_EQUAL_INT(0, answer(fd));
+	commands_load(&in.commands, 3, &relay);
+	TEST_ASSERT_EQUAL_UINT32(0, relay.stamp);
+}
+
 static void test_who_left_in_the_middle_makes_room_when_the_engine_is_done(void)
 {
 	struct engine_guest *lost, *lent;
@@ -284,6 +423,10 @@ int main(void)
 	RUN_TEST(test_an_input_of_the_table_is_answered_from_the_image);
 	RUN_TEST(test_one_request_of_a_client_is_worked_on_at_a_time);
 	RUN_TEST(test_who_was_given_up_waits_for_his_room_before_the_next_request);
+	RUN_TEST(test_what_a_bus_still_has_to_write_stays_as_it_was);
+	RUN_TEST(test_the_room_of_a_look_for_buses_is_kept_until_it_is_back);
+	RUN_TEST(test_a_command_is_waited_for_over_a_reload);
+	RUN_TEST(test_a_path_means_its_own_output_in_the_middle_of_a_reload);
 	RUN_TEST(test_who_left_in_the_middle_makes_room_when_the_engine_is_done);
 	RUN_TEST(test_directories_wait_for_each_other_when_all_rooms_are_taken);
 	return UNITY_END();
