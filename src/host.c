@@ -434,8 +434,8 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 	if (!err)
 		err = make_serving(h, setup->config, NULL, &h->now, why, why_size);
 	if (err) {
+		free_host(h); /* the server's socket has its path in the configuration */
 		config_free(setup->config);
-		free_host(h);
 		return err;
 	}
 	err = memory_show(&h->now->memory, h->log);
@@ -493,21 +493,27 @@ static bool end_workers(struct serving *before, const struct serving *now,
 	return ended;
 }
 
-static void leave(struct host *h, struct serving *before, bool ended)
+/* ended: its buses have; dark: the lamps that look at its image have. */
+static void leave(struct host *h, struct serving *before, bool ended, bool dark)
 {
-	if (!ended) {
-		h->left_behind = true;
+	if (ended) {
+		__atomic_store_n(&h->ended, before->engine, __ATOMIC_RELEASE);
+		ring(h);
+		pause_until_null(&h->ended);
+	} else {
 		log_err(h->log, "a bus that the reload ended is stuck in the kernel; "
 		                "owsd leaves it behind");
-		wait_for_ringers(h);
+	}
+	if (!dark)
+		log_err(h->log, "AlarmLine or HeartbeatLine is stuck in the kernel; "
+		                "owsd leaves it behind");
+	wait_for_ringers(h);
+	if (dark)
 		memory_replaced(&before->memory);
+	if (!ended || !dark) {
+		h->left_behind = true;
 		return;
 	}
-	__atomic_store_n(&h->ended, before->engine, __ATOMIC_RELEASE);
-	ring(h);
-	pause_until_null(&h->ended);
-	wait_for_ringers(h);
-	memory_replaced(&before->memory);
 	serving_free(before);
 	free(before);
 }
@@ -526,6 +532,7 @@ static void exchange(struct host *h, struct serving *next, const struct adoption
 {
 	struct serving *before = h->now;
 	char why[256];
+	bool dark;
 	int err;
 
 	h->plan = plan;
@@ -536,14 +543,13 @@ static void exchange(struct host *h, struct serving *next, const struct adoption
 	err = memory_show(&next->memory, h->log);
 	if (err)
 		log_err(h->log, "cannot put the shared memory in place: %s", strerror(-err));
-	if (h->serve && serve_reload(h->serve, next->config, &next->memory.image, plan->ports))
-		log_err(h->log, "the served owserver protocol: %s", strerror(ENOMEM));
-	if (indicator_stop(h->indicator, END_NS))
+	if (h->serve)
+		serve_reload(h->serve, next->config, &next->memory.image, plan->ports);
+	dark = indicator_stop(h->indicator, END_NS);
+	if (dark)
 		indicator_destroy(h->indicator);
-	else
-		h->left_behind = true;
 	h->indicator = NULL;
-	leave(h, before, end_workers(before, next, plan));
+	leave(h, before, end_workers(before, next, plan), dark);
 	if (start_workers(next, plan, why, sizeof(why)) || start_indicator(h, why, sizeof(why)))
 		log_err(h->log, "%s", why);
 }
@@ -562,6 +568,8 @@ int host_reload(struct host *h, struct config *config, char *why, size_t why_siz
 		return -EBUSY;
 	}
 	snprintf(why, why_size, "%s", strerror(ENOMEM));
+	if (h->serve && serve_prepare(h->serve, config))
+		return -ENOMEM;
 	err = adoption_plan(&plan, config, h->now->config);
 	if (err)
 		return err;
@@ -599,13 +607,12 @@ bool host_stop(struct host *h, int64_t timeout_ns)
 		ring(h);
 		pthread_join(h->thread, NULL);
 	}
-	stuck = h->left_behind || !indicator_stop(h->indicator, timeout_ns);
+	stuck = !indicator_stop(h->indicator, timeout_ns) || h->left_behind;
 	for (unsigned i = 0; i < h->now->worker_count; i++)
 		stuck |= worker_stop(h->now->workers[i], timeout_ns) != 0;
 	if (stuck) {
-		/* who comes back from the kernel now rings no more */
-		__atomic_store_n(&h->bell, NULL, __ATOMIC_RELEASE);
-		memory_end(&h->now->memory);
+		/* who comes back from the kernel now still rings in it, and looks at it */
+		memory_stop(&h->now->memory);
 		return false;
 	}
 	free_host(h);

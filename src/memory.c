@@ -296,17 +296,22 @@ void memory_replaced(struct memory *m)
 	memory_end(m);
 }
 
+void memory_stop(struct memory *m)
+{
+	if (!m->shown)
+		return;
+	image_state(&m->image, OWS_STATE_STOPPED);
+	segment_wake(&m->image.header->news, INT_MAX);
+	commands_mend(memory_commands(m), true);
+	commands_state(memory_commands(m), OWS_STATE_STOPPED);
+	m->shown = false;
+}
+
 void memory_end(struct memory *m)
 {
 	if (!m->instance)
 		return;
-	if (m->shown) {
-		image_state(&m->image, OWS_STATE_STOPPED);
-		segment_wake(&m->image.header->news, INT_MAX);
-		commands_mend(memory_commands(m), true);
-		commands_state(memory_commands(m), OWS_STATE_STOPPED);
-	}
-	m->shown = false;
+	memory_stop(m);
 	segment_close(&m->image_segment);
 	for (unsigned i = 0; i < COMMANDS; i++)
 		let_go(&m->commands[i]);

@@ -63,7 +63,12 @@ bool memory_image_lost(const struct memory *memory);
 /* After a reload: these segments have been replaced, and go without a word. */
 void memory_replaced(struct memory *memory);
 /*
- * Say that owsd ends: both segments stay, for the last values and for the next start. What was never
+ * Say that owsd ends, where memory was shown; it stays mapped for threads that do not end. May be
+ * called again.
+ */
+void memory_stop(struct memory *memory);
+/*
+ * The same, and unmap: both segments stay, for the last values and for the next start. What was never
  * shown goes without a word, what was never made (all zero) is left alone. May be called again.
  */
 void memory_end(struct memory *memory);

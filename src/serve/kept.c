@@ -26,7 +26,6 @@ struct entry {
 };
 
 struct kept {
-	const struct image *image;
 	const struct config *config;
 	uint32_t *index; /* hash of paths: item + 1 */
 	uint32_t index_size;
@@ -62,14 +61,13 @@ static void index_item(struct kept *kept, uint32_t item)
 	kept->index[at % kept->index_size] = item + 1;
 }
 
-struct kept *kept_create(const struct config *config, const struct image *image)
+struct kept *kept_create(const struct config *config)
 {
 	struct kept *kept = calloc(1, sizeof(*kept));
 
 	if (!kept)
 		return NULL;
 	kept->config = config;
-	kept->image = image;
 	kept->index_size = 2 * config->item_count + 1;
 	kept->index = calloc(kept->index_size, sizeof(*kept->index));
 	if (!kept->index) {
@@ -128,8 +126,8 @@ static int64_t life_ns(char life)
 	return life == LIFE_STATIC ? STATIC_NS : life == LIFE_SECOND ? SECOND_NS : VOLATILE_NS;
 }
 
-static int find_signal(struct kept *kept, const struct node *node, int64_t now_ns, char *text,
-                       size_t room)
+static int find_signal(const struct kept *kept, const struct image *image,
+                       const struct node *node, int64_t now_ns, char *text, size_t room)
 {
 	int record = kept_signal(kept, node->path, false);
 	struct ows_sample sample;
@@ -137,9 +135,9 @@ static int find_signal(struct kept *kept, const struct node *node, int64_t now_n
 
 	if (record < 0)
 		return -ENOENT;
-	type = (enum ows_type)kept->image->records[record].type;
+	type = (enum ows_type)image->records[record].type;
 	if (!holds(type, node->type) ||
-	    !reader_sample(&kept->image->records[record], &sample) ||
+	    !reader_sample(&image->records[record], &sample) ||
 	    sample.quality != OWS_Q_GOOD || !sample.measured_ns ||
 	    now_ns - sample.measured_ns > life_ns(node->life))
 		return -ENOENT;
@@ -156,7 +154,8 @@ static bool is(const struct entry *entry, const char *path, size_t len)
 	return entry->until_ns && entry->path_len == len && memcmp(entry->path, path, len) == 0;
 }
 
-int kept_find(struct kept *kept, const struct node *node, int64_t now_ns, char *text, size_t room)
+int kept_find(struct kept *kept, const struct image *image, const struct node *node, int64_t now_ns,
+              char *text, size_t room)
 {
 	size_t len = strlen(node->path);
 	struct entry *entry = set_of(kept, node->path, len);
@@ -164,7 +163,7 @@ int kept_find(struct kept *kept, const struct node *node, int64_t now_ns, char *
 
 	if (!node->has_device || node->bus >= 0 || !node->type)
 		return -ENOENT;
-	n = find_signal(kept, node, now_ns, text, room);
+	n = find_signal(kept, image, node, now_ns, text, room);
 	if (n >= 0)
 		return n;
 	for (int way = 0; way < WAYS; way++, entry++) {

@@ -16,11 +16,12 @@
 struct kept;
 
 /* Allocates. NULL: no memory. */
-struct kept *kept_create(const struct config *config, const struct image *image);
+struct kept *kept_create(const struct config *config);
 void kept_destroy(struct kept *kept);
 
-/* The text, as a bus would give it, or -ENOENT. Returns the length. */
-int kept_find(struct kept *kept, const struct node *node, int64_t now_ns, char *text, size_t room);
+/* The text, as a bus would give it, or -ENOENT. image is of the same config. Returns the length. */
+int kept_find(struct kept *kept, const struct image *image, const struct node *node, int64_t now_ns,
+              char *text, size_t room);
 /* Keep what a bus has answered, as long as it is worth it. */
 void kept_add(struct kept *kept, const struct node *node, int64_t measured_ns, const uint8_t *text,
               size_t len);

@@ -240,7 +240,9 @@ bool listeners_accept(struct serve *s)
 			int fd = accept4(s->listeners[i].fd, &from.any, &len,
 			                 SOCK_NONBLOCK | SOCK_CLOEXEC);
 
-			if (fd < 0 && (errno == EAGAIN || errno == EMFILE || errno == ENFILE))
+			/* who cannot be taken now waits until another one goes, or comes */
+			if (fd < 0 && (errno == EAGAIN || errno == EMFILE || errno == ENFILE ||
+			               errno == ENOBUFS || errno == ENOMEM))
 				break;
 			any = true;
 			if (fd >= 0)

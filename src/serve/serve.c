@@ -226,7 +226,7 @@ int serve_start(struct serve *s, const struct image *image)
 	s->image = image;
 	s->now_ns = ows_now();
 	s->look_ns = INT64_MAX;
-	s->kept = kept_create(s->config, image);
+	s->kept = kept_create(s->config);
 	err = s->kept ? signals_open(s->instance, &s->signals) : -ENOMEM;
 	if (err)
 		return err;
@@ -251,21 +251,26 @@ int serve_start(struct serve *s, const struct image *image)
 	return 0;
 }
 
-int serve_reload(struct serve *s, const struct config *config, const struct image *image,
-                 const int *ports)
+int serve_prepare(struct serve *s, const struct config *config)
 {
-	struct serve_next next = { config, image, kept_create(config, image), ports };
+	kept_destroy(s->prepared);
+	s->prepared = kept_create(config);
+	return s->prepared ? 0 : -ENOMEM;
+}
+
+void serve_reload(struct serve *s, const struct config *config, const struct image *image,
+                  const int *ports)
+{
+	struct serve_next next = { config, image, s->prepared, ports };
 	static const uint32_t nobody = 0;
 
-	if (!next.kept)
-		return -ENOMEM;
+	s->prepared = NULL;
 	__atomic_store_n(&s->next, &next, __ATOMIC_RELEASE);
 	while (__atomic_load_n(&s->next, __ATOMIC_ACQUIRE)) {
 		guests_wake(&s->guests);
 		segment_wait(&nobody, 0, TAKE_NS);
 	}
 	kept_destroy(next.kept);
-	return 0;
 }
 
 void serve_stop(struct serve *s)
@@ -294,6 +299,7 @@ void serve_destroy(struct serve *s)
 		close(s->epoll_fd);
 	guests_destroy(&s->guests);
 	kept_destroy(s->kept);
+	kept_destroy(s->prepared);
 	signals_close(s->signals);
 	if (s->areas)
 		munmap(s->areas, (size_t)SERVER_CLIENTS * AREA_SIZE);

@@ -33,12 +33,15 @@ int serve_create(const struct serve_setup *setup, struct serve **serve, char *wh
 const struct engine_guests *serve_guests(struct serve *serve);
 /* Start the thread; the image is in place and lives as long. 0 or a negative errno. */
 int serve_start(struct serve *serve, const struct image *image);
+/* Allocate what a reload needs, while it can still be refused. 0 or -ENOMEM. */
+int serve_prepare(struct serve *serve, const struct config *config);
 /*
- * The table and the targets are others from now on; ports[i] is what target i was before, -1: none.
- * What serve.config listens to is the same. Blocks until the thread has taken it. 0 or -ENOMEM.
+ * Once it is prepared: the table and the targets are others from now on; ports[i] is what target i
+ * was before, -1: none. What serve.config listens to is the same. Blocks until the thread has taken
+ * it; config and image live until the next reload or serve_destroy().
  */
-int serve_reload(struct serve *serve, const struct config *config, const struct image *image,
-                 const int *ports);
+void serve_reload(struct serve *serve, const struct config *config, const struct image *image,
+                  const int *ports);
 /* End the thread; clients are closed. */
 void serve_stop(struct serve *serve);
 /* When nobody writes to what guests have lent any more. */

@@ -117,7 +117,7 @@ struct serve {
 	const char *instance;
 	struct log *log;
 	struct guests guests;
-	struct kept *kept;
+	struct kept *kept, *prepared; /* for the next reload */
 	struct serve_next { /* of a reload, for the thread to take */
 		const struct config *config;
 		const struct image *image;

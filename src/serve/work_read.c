@@ -69,7 +69,8 @@ static void read_target(struct serve *s, struct client *c)
 	int n = -ENOENT;
 
 	if (!c->node.fresh && !(c->request.flags & FRAME_UNCACHED))
-		n = kept_find(s->kept, &c->node, s->now_ns, (char *)client_room(c), client_room_size(c));
+		n = kept_find(s->kept, s->image, &c->node, s->now_ns, (char *)client_room(c),
+		              client_room_size(c));
 	if (n >= 0) {
 		count(s, COUNT_kept_answers, 1);
 		c->value_len = (uint32_t)n;

@@ -341,7 +341,8 @@ static void test_a_command_is_waited_for_over_a_reload(void)
 	command("/signals/relay");
 	stamp = stamp_of(2);
 	instance_reload(&in, other_signals, 3);
-	TEST_ASSERT_EQUAL_INT(0, serve_reload(serve, &other_config, &in.image, ports));
+	TEST_ASSERT_EQUAL_INT(0, serve_prepare(serve, &other_config));
+	serve_reload(serve, &other_config, &in.image, ports);
 	TEST_ASSERT_TRUE(is_silent(fd));
 	show_output(3, stamp);
 	TEST_ASSERT_EQUAL_INT(0, answer(fd));
