@@ -13,6 +13,7 @@
 
 static void answer(struct engine *e, struct engine_guest *g)
 {
+	g->generation = e->image->header->generation;
 	e->guests->answered(e->guests->ctx, g);
 }
 
@@ -125,7 +126,9 @@ void engine_guests_take(struct engine *e, int64_t now_ns)
 		g->lent = false;
 		g->best_err = 0;
 		g->served = g->lane == GUEST_ANY_LANE ? lane_of(e, g->path) : (unsigned)g->lane;
-		if (g->served < e->lane_count) {
+		/* asked as a reload went on: its lane may be another target by now */
+		if (g->served < e->lane_count &&
+		    (g->lane == GUEST_ANY_LANE || g->generation == e->image->header->generation)) {
 			enqueue(&e->lanes[g->served], g);
 		} else {
 			g->answer = (struct bus_answer){ .err = -ENODEV };

@@ -63,6 +63,12 @@ void answer_written(struct serve *s, struct client *c, uint32_t taken)
 
 /* --- The engine ------------------------------------------------------------------------------- */
 
+/* Targets are counted now as they were when the engine was asked. */
+bool work_same_targets(const struct serve *s, const struct client *c)
+{
+	return c->guest.generation == s->image->header->generation;
+}
+
 unsigned work_targets(const struct serve *s)
 {
 	return s->config->target_count;
@@ -78,6 +84,7 @@ void work_ask(struct serve *s, struct client *c, enum client_step step, enum bus
 {
 	c->step = (uint8_t)step;
 	c->guest = (struct engine_guest){ .op = (uint8_t)op, .fresh = c->node.fresh, .lane = lane,
+		                          .generation = s->image->header->generation,
 		                          .path = c->path, .data = data, .len = len };
 	count(s, COUNT_bus_requests, 1);
 	if (c->state != CLIENT_WORKING)

@@ -25,6 +25,8 @@ void work_ask(struct serve *s, struct client *c, enum client_step step, enum bus
 int work_path(struct serve *s, struct client *c);
 /* c->path of a property of the node's device. */
 void work_device_path(struct client *c, const char *property);
+/* False: a reload went on while the engine had the request, and targets may have other numbers. */
+bool work_same_targets(const struct serve *s, const struct client *c);
 unsigned work_targets(const struct serve *s);
 /* Of what each target has its part of: c->target up to the next one that is up. */
 void work_next_target(struct serve *s, struct client *c);

@@ -162,6 +162,10 @@ void work_listed(struct serve *s, struct client *c, int err)
 		answer_error(s, c, err);
 		return;
 	}
+	if ((every || c->node.root) && !work_same_targets(s, c)) {
+		answer_error(s, c, -EIO);
+		return;
+	}
 	if (!err)
 		directory_take(c->directory, buses ? &root : &c->node, &s->buses, c->guest.served,
 		             c->guest.answer.len);

@@ -124,8 +124,8 @@ void work_written(struct serve *s, struct client *c, int err)
 		if (c->worst == WORK_NOT_YET || !err)
 			c->worst = err;
 		/* what the targets behind it would have said is not known: no success */
-		if (c->lent) {
-			answer_error(s, c, err);
+		if (c->lent || !work_same_targets(s, c)) {
+			answer_error(s, c, err ? err : -EIO);
 			return;
 		}
 		c->target++;

@@ -97,6 +97,24 @@ static void test_a_guest_of_a_target_that_is_down_is_told_at_once(void)
 	TEST_ASSERT_EQUAL_INT(-ENODEV, g->answer.err);
 }
 
+static void test_a_guest_whose_lane_was_counted_before_a_reload_is_not_served(void)
+{
+	struct engine_guest *g;
+
+	scene_put(&s, T1, "        21.5", 0);
+	scene_start(&s);
+	scene_up(&s);
+	g = ask(BUS_READ, 0, T1, NULL);
+	g->generation = s.image.header->generation + 1;
+	scene_run(&s, 10 * SCENE_MS);
+	TEST_ASSERT_EQUAL_INT(-ENODEV, g->answer.err);
+	TEST_ASSERT_EQUAL_UINT32(s.image.header->generation, g->generation);
+	g = ask(BUS_READ, 0, T1, NULL);
+	g->generation = s.image.header->generation;
+	scene_run(&s, 10 * SCENE_MS);
+	TEST_ASSERT_EQUAL_INT(0, g->answer.err);
+}
+
 /* Inputs that are always due, on a bus that takes one request at a time. */
 static void test_neither_the_table_nor_its_guests_are_starved(void)
 {
@@ -186,6 +204,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_guest_is_answered_with_what_the_bus_has);
 	RUN_TEST(test_a_guest_of_a_target_that_is_down_is_told_at_once);
+	RUN_TEST(test_a_guest_whose_lane_was_counted_before_a_reload_is_not_served);
 	RUN_TEST(test_neither_the_table_nor_its_guests_are_starved);
 	RUN_TEST(test_guests_take_a_part_of_a_deep_bus_only);
 	RUN_TEST(test_who_is_given_up_is_told_and_gets_his_room_back_later);

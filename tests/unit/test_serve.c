@@ -311,6 +311,21 @@ static void test_the_room_of_a_look_for_buses_is_kept_until_it_is_back(void)
 		close(socks[i]);
 }
 
+static void test_a_list_that_was_made_while_targets_changed_is_none(void)
+{
+	struct engine_guest *g;
+
+	target_is_up();
+	ask(fd, FRAME_DIRALL, "/");
+	g = next_guest();
+	g->generation++;
+	give(g, "/28.551DDF030000\n");
+	TEST_ASSERT_EQUAL_INT(-5, answer(fd));
+	ask(fd, FRAME_DIRALL, "/");
+	give(next_guest(), "/28.551DDF030000\n");
+	TEST_ASSERT_EQUAL_INT(0, answer(fd));
+}
+
 static void command(const char *what)
 {
 	uint8_t frame[128];
@@ -426,6 +441,7 @@ int main(void)
 	RUN_TEST(test_who_was_given_up_waits_for_his_room_before_the_next_request);
 	RUN_TEST(test_what_a_bus_still_has_to_write_stays_as_it_was);
 	RUN_TEST(test_the_room_of_a_look_for_buses_is_kept_until_it_is_back);
+	RUN_TEST(test_a_list_that_was_made_while_targets_changed_is_none);
 	RUN_TEST(test_a_command_is_waited_for_over_a_reload);
 	RUN_TEST(test_a_path_means_its_own_output_in_the_middle_of_a_reload);
 	RUN_TEST(test_who_left_in_the_middle_makes_room_when_the_engine_is_done);
