@@ -50,7 +50,8 @@ bool worker_next(struct worker *worker, struct worker_message *message);
 
 /*
  * Ask the thread to end: its waits return -ECANCELED. Returns 0 when it ended within timeout_ns,
- * -ETIMEDOUT when it is stuck (then worker_destroy() must not be called, the process ends).
+ * -ETIMEDOUT when it is stuck (then worker_destroy() must not be called, the process ends). May be
+ * called again to wait longer; with 0 it only asks.
  */
 int worker_stop(struct worker *worker, int64_t timeout_ns);
 void worker_destroy(struct worker *worker);

@@ -2,6 +2,7 @@
 #include "serving.h"
 
 #include "hal/worker.h"
+#include "libows/ows.h"
 #include "target.h"
 
 #include <errno.h>
@@ -177,6 +178,24 @@ void serving_publish(struct serving *s)
 		for (size_t k = 0; k < s->bus_counters[i]; k++)
 			image_counter(&s->memory.image, index++, bus_counted(&c[k]));
 	}
+}
+
+bool serving_stop(struct serving *s, int64_t timeout_ns)
+{
+	int64_t until_ns = ows_now() + timeout_ns;
+	bool ended = true;
+
+	/* all are asked before one is waited for */
+	for (unsigned i = 0; i < s->worker_count; i++)
+		if (!s->taken[i])
+			worker_stop(s->workers[i], 0);
+	for (unsigned i = 0; i < s->worker_count; i++) {
+		int64_t left_ns = until_ns - ows_now();
+
+		if (!s->taken[i])
+			ended &= worker_stop(s->workers[i], left_ns > 0 ? left_ns : 0) == 0;
+	}
+	return ended;
 }
 
 void serving_free(struct serving *s)

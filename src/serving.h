@@ -47,6 +47,8 @@ int serving_make(struct serving *serving, const struct serving_setup *setup, cha
                  size_t why_size);
 /* The counters of its buses into the image; the caller's stand behind them, from own_counters. */
 void serving_publish(struct serving *serving);
+/* End the workers that are not taken. Blocks; false: one did not end within timeout_ns. */
+bool serving_stop(struct serving *serving, int64_t timeout_ns);
 /* Ends nothing: workers that are not taken have ended. The configuration goes too. */
 void serving_free(struct serving *serving);
 
