@@ -197,6 +197,10 @@ static void take_signal(struct signal *s, const struct signal *was)
 	s->held = was->held;
 	s->held_quality = was->held_quality;
 	s->held_err = was->held_err;
+	if (signal_reads(was) && !signal_reads(s) && !before->output) {
+		s->sample.quality = OWS_Q_DISABLED;
+		s->held = false;
+	}
 	take_text(s->text, was->text);
 	if (item->output == before->output || was->command_stamp)
 		take_command(s, was);
@@ -205,6 +209,7 @@ static void take_signal(struct signal *s, const struct signal *was)
 		s->limit_log = was->limit_log;
 		memcpy(s->limit_value, was->limit_value, sizeof(s->limit_value));
 		s->limit_count = was->limit_count;
+		s->limit_values = was->limit_values;
 	} else if (!item->limits.any) {
 		s->attrs.limit_state = 0;
 		s->attrs.limit_condition = 0;

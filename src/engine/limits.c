@@ -14,11 +14,11 @@ static void enter(struct engine *e, const struct signal *s, uint8_t kind, uint8_
 		.quality = s->sample.quality,
 	};
 
-	if (event != OWS_ALARM_ACKNOWLEDGED && s->limit_count) {
+	if (event != OWS_ALARM_ACKNOWLEDGED && s->limit_values) {
 		entry.after = s->limit_value[1];
 		entry.flags |= OWS_ALARM_AFTER;
 	}
-	if (event != OWS_ALARM_ACKNOWLEDGED && s->limit_count > 1) {
+	if (event != OWS_ALARM_ACKNOWLEDGED && s->limit_values > 1) {
 		entry.before = s->limit_value[0];
 		entry.flags |= OWS_ALARM_BEFORE;
 	}
@@ -44,6 +44,8 @@ static void take_value(struct signal *s)
 	if (s->sample.count == s->limit_count)
 		return;
 	s->limit_count = s->sample.count;
+	if (s->limit_values < 2)
+		s->limit_values++;
 	s->limit_value[0] = s->limit_value[1];
 	s->limit_value[1] = s->sample.value;
 }

@@ -68,6 +68,7 @@ struct signal {
 	struct log_rate limit_log;
 	int64_t limit_value[2]; /* of the update before the last, of the last */
 	uint32_t limit_count;   /* sample.count of the last */
+	uint8_t limit_values;   /* how many of the two are known */
 };
 
 struct device {

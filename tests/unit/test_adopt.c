@@ -4,6 +4,7 @@
 
 #include "src/engine/adopt.h"
 #include "src/libows/ows.h"
+#include "src/signal/value.h"
 #include "unity.h"
 
 #include <errno.h>
@@ -274,6 +275,46 @@ static void test_a_new_signal_is_not_stale_from_its_first_moment(void)
 	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_STALE, scene_attrs(&s, 3).limit_condition);
 }
 
+static void room_not_read(struct config *config)
+{
+	item_of(config, "room")->readable = false;
+}
+
+static void room_read(struct config *config)
+{
+	item_of(config, "room")->readable = true;
+}
+
+static void test_a_signal_that_is_not_read_any_more_is_not_good(void)
+{
+	house();
+	scene_reload(&s, room_not_read);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_DISABLED, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_DOUBLE(21.5, value_number(OWS_DOUBLE, scene_sample(&s, 1).value));
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_DISABLED, scene_sample(&s, 1).quality);
+	scene_reload(&s, room_read);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+}
+
+static void room_has_a_limit(struct config *config)
+{
+	item_of(config, "room")->limits =
+		(struct config_limits){ .any = true, .has = { [CONFIG_LIMIT_H] = true },
+		                        .limit = { [CONFIG_LIMIT_H] = 20 } };
+}
+
+static void test_a_limit_that_is_new_knows_no_value_before_its_first(void)
+{
+	house();
+	scene_reload(&s, room_has_a_limit);
+	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_H, scene_attrs(&s, 1).limit_condition);
+	TEST_ASSERT_EQUAL_UINT32(1, s.image.header->alarm_head);
+	TEST_ASSERT_EQUAL_HEX8(OWS_ALARM_AFTER, s.image.alarms[0].flags);
+	TEST_ASSERT_EQUAL_DOUBLE(21.5, value_number(OWS_DOUBLE, s.image.alarms[0].after));
+}
+
 static void second_first(struct config *config)
 {
 	config->targets[0] = (struct config_target){ .text = "other", .group = 0 };
@@ -480,6 +521,8 @@ int main(void)
 	RUN_TEST(test_a_bad_signal_keeps_its_back_off);
 	RUN_TEST(test_the_count_of_periods_goes_on_when_their_length_changes);
 	RUN_TEST(test_a_new_signal_is_not_stale_from_its_first_moment);
+	RUN_TEST(test_a_signal_that_is_not_read_any_more_is_not_good);
+	RUN_TEST(test_a_limit_that_is_new_knows_no_value_before_its_first);
 	RUN_TEST(test_a_target_keeps_its_signals_when_it_is_named_second);
 	RUN_TEST(test_a_value_of_a_target_that_is_gone_is_not_good);
 	RUN_TEST(test_alarms_go_on_and_the_journal_with_them);
