@@ -24,11 +24,14 @@ struct host_setup {
  */
 int host_start(const struct host_setup *setup, struct host **host, char *why, size_t why_size);
 
+/* False while a command segment that was taken away is being made again. The supervisor asks. */
+bool host_may_reload(const struct host *host);
+
 /*
  * Serve another configuration without a gap: signals of the same name, path and type go on with
  * value, quality, alarms and retries, targets with the same options stay open. Blocks until that is
- * done. Returns 0 (config is the host's), -EAGAIN (try again soon), or a negative errno with the
- * reason in why: all goes on as before.
+ * done. Returns 0 (config is the host's), or a negative errno with the reason in why: all goes on
+ * as before. Only when host_may_reload().
  */
 int host_reload(struct host *host, struct config *config, char *why, size_t why_size);
 

@@ -93,14 +93,17 @@ static void exchange(struct host *h, struct serving *next, const struct adoption
 		log_err(h->log, "%s", why);
 }
 
+bool host_may_reload(const struct host *h)
+{
+	return !h->unseen && !__atomic_load_n(&h->renewed, __ATOMIC_ACQUIRE);
+}
+
 int host_reload(struct host *h, struct config *config, char *why, size_t why_size)
 {
 	struct adoption plan;
 	struct serving *next;
 	int err;
 
-	if (h->unseen || __atomic_load_n(&h->renewed, __ATOMIC_ACQUIRE))
-		return -EAGAIN;
 	if (!same_listeners(&config->serve, &h->now->config->serve)) {
 		snprintf(why, why_size, "what Listen, ListenSocket, ListenAllow and ListenReadOnly "
 		                        "say is changed by a restart only");

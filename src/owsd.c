@@ -337,34 +337,32 @@ static void tell(const struct host *host, const struct options *o, struct log *l
 	name_targets(config, targets, sizeof(targets));
 	log_notice(log, "owsd %s: instance %s, %u signals from %s, target %s", OWSD_VERSION,
 	           o->instance, config->item_count, o->file, targets);
-	notify_send(notify, NOTIFY_READY);
 	notify_status(notify, "%u signals, target %s", config->item_count, targets);
 }
 
-/* A file that is refused changes nothing. False: to be tried again soon. */
-static bool reload(struct host *host, const struct options *o, struct log *log,
+/* A file that is refused changes nothing. */
+static void reload(struct host *host, const struct options *o, struct log *log,
                    const struct notify *notify)
 {
 	struct config *config;
+	struct stat st;
 	char why[512];
-	int err;
 
-	notify_send(notify, NOTIFY_RELOADING);
+	/* a pipe would keep the supervisor from its work until somebody writes */
+	if (stat(o->file, &st) == 0 && !S_ISREG(st.st_mode)) {
+		log_err(log, "reload: %s is no regular file: all goes on as before", o->file);
+		return;
+	}
 	if (load(o, log, &config)) {
 		log_err(log, "reload: %s is refused: all goes on as before", o->file);
-		notify_send(notify, NOTIFY_READY);
-		return true;
+		return;
 	}
-	err = host_reload(host, config, why, sizeof(why));
-	if (err) {
+	if (host_reload(host, config, why, sizeof(why))) {
 		config_free(config);
-		if (err != -EAGAIN)
-			log_err(log, "reload: %s: all goes on as before", why);
-		notify_send(notify, NOTIFY_READY);
-		return err != -EAGAIN;
+		log_err(log, "reload: %s: all goes on as before", why);
+		return;
 	}
 	tell(host, o, log, notify);
-	return true;
 }
 
 /* Write the log, feed the watchdog while the engine's heart beats, until a signal ends it. */
@@ -379,9 +377,11 @@ static void supervise(struct host *host, const struct options *o, struct log *lo
 		uint32_t seen = __atomic_load_n(log_word(log), __ATOMIC_ACQUIRE);
 		int64_t now_ns, period_ns;
 
-		if (hangup) {
-			hangup = 0;
-			hangup = !reload(host, o, log, notify);
+		if (hangup && host_may_reload(host)) {
+			hangup = 0; /* one that comes from here on means a newer file */
+			notify_send(notify, NOTIFY_RELOADING);
+			reload(host, o, log, notify);
+			notify_send(notify, NOTIFY_READY);
 		}
 		now_ns = ows_now();
 		period_ns = host_config(host)->period_ns;
@@ -420,6 +420,7 @@ static int run(const struct options *o, struct config *config, struct log *log)
 		return EXIT_RUN;
 	}
 	tell(host, o, log, &notify);
+	notify_send(&notify, NOTIFY_READY);
 	supervise(host, o, log, &notify, prefix);
 	log_notice(log, "owsd ends: %s", stop_signal == SIGTERM ? "SIGTERM" : "SIGINT");
 	notify_send(&notify, NOTIFY_STOPPING);

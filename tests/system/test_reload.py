@@ -204,5 +204,59 @@ def test_the_served_protocol_goes_on(scene):
     assert float(peer.read("/signals/cellar")) == 12
 
 
+def test_a_file_that_changes_while_it_is_being_reloaded_is_read_again(scene):
+    daemon, target = start(scene)
+    many = [item(f"t{i}", SENSOR + "/temperature") for i in range(3000)]
+    with ows.Ows(daemon.name) as signals:
+        for turn in range(20):
+            daemon.config.write_text(rio(target, ROOM, *many))
+            daemon.signal(signal.SIGHUP)
+            time.sleep(0.004 * turn)
+            last = item(f"last{turn}", SENSOR + "/temperature")
+            # in one step, so that no half of it is refused
+            newer = scene.file("newer.rio", rio(target, ROOM, last))
+            os.replace(newer, daemon.config)
+            daemon.signal(signal.SIGHUP)
+
+            def taken():
+                try:
+                    if signals.stale():
+                        signals.reopen()
+                except OSError:  # they are just being exchanged
+                    pass
+                return last["Name"] in signals.names()
+            until(taken, 10, f"the newer file is served, {4 * turn} ms after the older one")
+
+
+def test_what_is_no_regular_file_is_not_waited_for(scene):
+    daemon, target = start(scene)
+    os.unlink(daemon.config)
+    os.mkfifo(daemon.config)
+    daemon.signal(signal.SIGHUP)
+    until(lambda: "no regular file: all goes on as before" in daemon.log(), 10)
+    os.unlink(daemon.config)
+    daemon.config.write_text(rio(target, ROOM, CELLAR))
+    daemon.signal(signal.SIGHUP)
+    until(lambda: get(scene, daemon, "cellar") == "12", 10, "the file is taken")
+
+
+def test_a_reload_that_has_to_wait_reads_the_file_once(scene):
+    daemon, target = start(scene)
+    way = f"/dev/shm/owsd.{daemon.name}.command"
+    text = rio(target, ROOM, CELLAR, Nonsense=raw("1"))
+    os.unlink(way)
+    os.mkdir(way)
+    try:
+        until(lambda: "cannot be made again" in daemon.log(), 10)
+        daemon.config.write_text(text)
+        daemon.signal(signal.SIGHUP)
+        time.sleep(0.5)
+        assert "unknown key Nonsense" not in daemon.log(), daemon.log()[-2000:]
+    finally:
+        os.rmdir(way)
+    until(lambda: get(scene, daemon, "cellar") == "12", 20, "then it is taken")
+    assert daemon.log().count("unknown key Nonsense") == 1, daemon.log()
+
+
 if __name__ == "__main__":
     owsdtest.main()
