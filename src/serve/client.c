@@ -38,7 +38,6 @@ static int64_t limit_of(const struct client *c)
 		return c->since_ns + (c->have > c->past || !c->served ? REQUEST_NS : IDLE_NS);
 	case CLIENT_WORKING:
 	case CLIENT_QUEUED:
-		return c->tick_ns + KEEPALIVE_NS;
 	case CLIENT_APPLYING:
 		return c->tick_ns + KEEPALIVE_NS;
 	case CLIENT_SENDING:

@@ -54,9 +54,8 @@ static int add(struct serve *s, int fd, bool network)
 	return 0;
 }
 
-static const char *say_bind(int err, const char *text)
+static const char *say_bind(int err)
 {
-	(void)text;
 	switch (-err) {
 	case EADDRINUSE:
 		return " (an owserver or another owsd? end it or choose another port with Listen or -l)";
@@ -164,7 +163,7 @@ int listeners_open(struct serve *s, char *why, size_t why_size)
 			continue;
 		listen_print(&config->addresses[i], text);
 		snprintf(why, why_size, "cannot listen at %s: %s%s", text, strerror(-err),
-		         say_bind(err, text));
+		         say_bind(err));
 		return err;
 	}
 	if (!config->socket)

@@ -176,7 +176,6 @@ static void take_next(struct serve *s)
 	s->kept = next->kept;
 	next->kept = before;
 	buses_renumber(&s->buses, next->ports, s->config->target_count);
-	s->buses_known = false;
 	__atomic_store_n(&s->next, NULL, __ATOMIC_RELEASE);
 }
 

@@ -126,7 +126,6 @@ struct serve {
 	} *next;
 	struct signals *signals;
 	struct buses buses;
-	bool buses_known;
 
 	struct {
 		int fd;

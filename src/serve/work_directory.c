@@ -35,7 +35,6 @@ static void form_directory(struct serve *s, struct client *c)
 static void listed(struct serve *s, struct client *c)
 {
 	if (c->step == STEP_BUSES) {
-		s->buses_known = true;
 		work_release(s, c->directory);
 		c->directory = NULL;
 		work_go_on(s, c);
