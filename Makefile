@@ -56,13 +56,16 @@ CPP_COMMON += -DOWSD_LIBI2C
 LIBS     += -li2c
 endif
 
-# GPIO lines, where libgpiod is there for this compiler: 1 the API of 1.6, 2 that of 2.x (pkg-config
-# tells which); LIBGPIOD=0 leaves it out
+# GPIO lines, where libgpiod is there for this compiler: 1 the API of 1.6, 2 that of 2.x. The compiler
+# is asked which, as pkg-config may speak of this machine's; LIBGPIOD=0 leaves it out
 LIBGPIOD_CFLAGS ?= $(shell $(PKG_CONFIG) --cflags libgpiod 2>/dev/null)
+LIBGPIOD_CFLAGS := $(LIBGPIOD_CFLAGS)
 LIBGPIOD_LIBS ?= $(or $(shell $(PKG_CONFIG) --libs libgpiod 2>/dev/null),-lgpiod)
-LIBGPIOD ?= $(shell printf '\043include <gpiod.h>\nint main(void) { gpiod_chip_close(0); return 0; }\n' | \
-              $(CC) $(CFLAGS) $(EXTRA_CFLAGS) $(LIBGPIOD_CFLAGS) $(LDFLAGS) -x c -o /dev/null - $(LIBGPIOD_LIBS) 2>/dev/null && \
-              if $(PKG_CONFIG) --atleast-version=2.0 libgpiod; then echo 2; else echo 1; fi)
+LIBGPIOD_LIBS := $(LIBGPIOD_LIBS)
+gpiod_has = $(shell printf '\043include <gpiod.h>\nint main(void) { return !$(1)(0); }\n' | \
+              $(CC) -Werror=implicit-function-declaration $(CFLAGS) $(EXTRA_CFLAGS) $(LIBGPIOD_CFLAGS) $(LDFLAGS) \
+              -x c -o /dev/null - $(LIBGPIOD_LIBS) 2>/dev/null && echo 1)
+LIBGPIOD ?= $(if $(call gpiod_has,gpiod_chip_get_info),2,$(call gpiod_has,gpiod_chip_name))
 LIBGPIOD := $(LIBGPIOD)
 ifneq ($(filter 1 2,$(LIBGPIOD)),)
 CPP_COMMON += -DOWSD_LIBGPIOD=$(LIBGPIOD) $(LIBGPIOD_CFLAGS)
