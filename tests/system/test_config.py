@@ -2,11 +2,22 @@
 # SPDX-License-Identifier: MIT
 """Configuration files: what is refused before anything starts, and edits that meet."""
 
+import ctypes
 import fcntl
 import os
+import platform
+import signal
+import struct
 import subprocess
+import time
 
 import owsdtest
+
+PTRACE_TRACEME, PTRACE_SYSCALL, PTRACE_SETOPTIONS, PTRACE_GET_SYSCALL_INFO = 0, 24, 0x4200, 0x420E
+PTRACE_O_TRACESYSGOOD = 1
+libc = ctypes.CDLL(None, use_errno=True)
+libc.ptrace.argtypes = [ctypes.c_long, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p]
+ITEM = dict(Name="x", Path="/28.000000000001/temperature", Type="double", IO="input")
 
 
 def test_edits_at_once_lose_nothing(scene):
@@ -37,6 +48,85 @@ def test_an_edit_waits_five_seconds_for_another_and_says_so(scene):
     assert "house.rio: error: another program has been editing here" in done.stderr, done.stderr
 
 
+def follow(command, stops=None):
+    """Run command from one entry into the kernel, or return from it, to the next: to its end, or
+    kill it at the stop of this number. Returns its exit status (None: killed) and the calls."""
+    pid = os.fork()
+    if pid == 0:
+        quiet = os.open(os.devnull, os.O_RDWR)
+        for fd in range(3):
+            os.dup2(quiet, fd)
+        # a leak checker is a tracer itself
+        os.environ["ASAN_OPTIONS"] = os.environ.get("ASAN_OPTIONS", "") + ":detect_leaks=0"
+        if libc.ptrace(PTRACE_TRACEME, 0, None, None) < 0:
+            os._exit(77)
+        os.execv(command[0], command)
+    info, calls = ctypes.create_string_buffer(88), []
+    while True:
+        _, status = os.waitpid(pid, 0)
+        if os.WIFEXITED(status) or os.WIFSIGNALED(status):
+            return os.waitstatus_to_exitcode(status), calls
+        if not calls:
+            libc.ptrace(PTRACE_SETOPTIONS, pid, None, PTRACE_O_TRACESYSGOOD)
+        libc.ptrace(PTRACE_GET_SYSCALL_INFO, pid, 88, info)
+        op, number = struct.unpack_from("B23xQ", info)
+        calls.append(number if op == 1 else None)
+        if len(calls) == stops:
+            os.kill(pid, signal.SIGKILL)
+            os.waitpid(pid, 0)
+            return None, calls
+        libc.ptrace(PTRACE_SYSCALL, pid, None, None)
+
+
+def edit_with(scene, path, stops=None):
+    path.write_text(owsdtest.rio("localhost", [ITEM]))
+    command = [str(owsdtest.OWSCTL), "config", str(path), "set", "x", "IO=output"]
+    status, calls = follow(command, stops)
+    if status == 77:
+        owsdtest.skip("may not trace here")
+    return status, calls
+
+
+def test_an_edit_that_is_killed_at_any_point_leaves_the_old_file_or_the_new_one(scene):
+    owsdtest.need(owsdtest.OWSCTL)
+    path = scene.path / "house.rio"
+    status, calls = edit_with(scene, path)
+    assert status == 0
+    new = path.read_text()
+    seen = []
+    deadline = time.monotonic() + 5
+    # From the end: where that is too slow, the calls that load the program are left out. A run that
+    # needs fewer calls than the first ends by itself, with the new file
+    for stops in range(len(calls) - 1, 0, -1):
+        edit_with(scene, path, stops)
+        now = path.read_text()
+        assert now in (new, owsdtest.rio("localhost", [ITEM])), f"killed at {stops}: {now!r}"
+        seen.append(now == new)
+        for left in scene.path.glob("house.rio.*"):
+            left.unlink()
+            seen.append(left)
+        if time.monotonic() > deadline:
+            break
+    # once new, and before that never
+    assert seen.count(True) > 1 and seen.count(False) > 1, seen
+    assert any(not isinstance(what, bool) for what in seen), "killed before the file was there"
+    order = [what for what in seen if isinstance(what, bool)]
+    assert order == sorted(order, reverse=True), "new, then old again"
+
+
+def test_an_edit_is_on_the_disk_before_it_takes_the_place_of_the_old_file(scene):
+    numbers = {"x86_64": (1, 74, (82, 264, 316)), "aarch64": (64, 82, (38, 276))}
+    if platform.machine() not in numbers:
+        owsdtest.skip(f"the numbers of calls on {platform.machine()} are not here")
+    write, fsync, renames = numbers[platform.machine()]
+    status, calls = edit_with(scene, scene.path / "house.rio")
+    assert status == 0
+    here = [number for number in calls if number in (write, fsync, *renames)]
+    rename = next(i for i, number in enumerate(here) if number in renames)
+    assert here[rename - 2:rename] == [write, fsync], here
+    assert here[rename + 1] == fsync, "the directory is not synced after it"
+
+
 def test_a_key_given_twice_is_refused(scene):
     path = scene.file("house.rio", owsdtest.rio("localhost", []))
     before = path.read_text()
@@ -55,8 +145,6 @@ def test_a_link_to_nowhere_is_named(scene):
     assert "link.rio: error: is a symbolic link to a file that is not there" in done.stderr
     assert os.listdir(scene.path) == ["link.rio"]
 
-
-ITEM = dict(Name="x", Path="/28.000000000001/temperature", Type="double", IO="input")
 
 
 def test_what_cannot_be_a_target_is_refused_by_check_and_start(scene):

@@ -252,6 +252,57 @@ def test_a_full_dev_shm_is_refused_at_start_with_a_reason(scene):
     assert "/dev/shm is full" in done.stderr, done.stderr
 
 
+def test_a_dev_shm_that_fills_up_between_two_starts_loses_nothing_that_was_commanded(scene):
+    wire = scene.file("house.sim", "chip DS2482-100 0x18\nDS2408 29.A0B1C2000004\n")
+    file = scene.file("house.rio", owsdtest.rio(f"sim:{wire}", [
+        dict(Name="relays", Path="/29.A0B1C2000004/PIO.BYTE", Type=raw("byte"), IO=raw("output")),
+    ]))
+    script = scene.file("script", """
+        mount -t tmpfs -o size=4m tmpfs /dev/shm || exit 77
+        trap 'kill -9 $pid 2>/dev/null' EXIT
+        trap 'exit 1' TERM
+        start() {
+            "$owsd" -n T -c "$1" >>log 2>&1 &
+            pid=$!
+        }
+        reads_5() {
+            for i in $(seq 200); do
+                [ "$("$owsctl" -n T get relays 2>&1)" != 5 ] || return 0
+                sleep 0.05
+            done
+            cat log
+            exit 2
+        }
+        start "$1"
+        for i in $(seq 200); do
+            "$owsctl" -n T set relays 5 2>/dev/null && break
+            sleep 0.05
+        done
+        reads_5
+        kill -9 $pid
+        wait $pid
+        for i in $(seq 200); do
+            "$owsctl" -n T get relays >/dev/null 2>&1 || break
+            sleep 0.05
+        done
+        cat /dev/zero >/dev/shm/filler 2>/dev/null
+        start "$1"
+        wait $pid
+        echo "full: status $?"
+        grep -o '/dev/shm is full' log
+        find /dev/shm -name '*.new'
+        rm /dev/shm/filler
+        start "$1"
+        reads_5
+        echo "again: 5"
+    """)
+    done = scene._run(["unshare", "-rm", "env", f"owsd={owsdtest.OWSD}", f"owsctl={owsdtest.OWSCTL}",
+                       "sh", script, file], 40)
+    if done.returncode == 77 or done.stderr.startswith("unshare"):
+        owsdtest.skip("no user namespaces: " + done.stderr.strip())
+    assert done.stdout == "full: status 1\n/dev/shm is full\nagain: 5\n", done
+
+
 def test_a_file_of_somebody_else_in_the_way_is_named(scene):
     name = scene.name()
     os.makedirs(f"/dev/shm/owsd.{name}.lock")
