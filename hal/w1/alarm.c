@@ -91,12 +91,20 @@ static int ds2405(struct w1_master *master, struct w1_slave *slave)
 	return err ? err : digit == '0';
 }
 
+/* A slave that is being attached or removed has no attributes; without a driver it has `rw`. */
+static int no_attribute(const struct w1_master *master, const struct w1_slave *slave)
+{
+	bool stays = w1_driver_of(master, slave->rom) || w1_slave_has(master, slave->rom, "rw");
+
+	return stays ? -EOPNOTSUPP : -ENODEV;
+}
+
 int w1_in_alarm(struct w1_master *master, struct w1_slave *slave)
 {
 	int err;
 
 	if (!w1_driver_of(master, slave->rom))
-		return -EOPNOTSUPP;
+		return no_attribute(master, slave);
 	if (family_of(slave->rom[0])->thermometer)
 		err = thermometer(master, slave);
 	else if (slave->rom[0] == 0x29)
@@ -105,5 +113,5 @@ int w1_in_alarm(struct w1_master *master, struct w1_slave *slave)
 		err = ds2405(master, slave);
 	else
 		return -EOPNOTSUPP;
-	return err == -ENOENT ? -EOPNOTSUPP : err;
+	return err == -ENOENT ? no_attribute(master, slave) : err;
 }

@@ -81,8 +81,8 @@ int w1_property(struct link *base, const struct device *device, const struct pro
 		w1_name(device->rom, name);
 		if (!w1_exists(master, name, ""))
 			return 0;
-		if (w1_slave_has(master, device->rom, "rw"))
-			return fits_rw(device) ? 0 : -ENOENT;
+		if (w1_slave_has(master, device->rom, "rw") && fits_rw(device))
+			return 0;
 		tell_driver(master, device->rom);
 		return -ENOENT;
 	}

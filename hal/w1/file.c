@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -180,4 +181,39 @@ bool w1_slave_has(const struct w1_master *master, const uint8_t rom[8], const ch
 
 	w1_name(rom, directory);
 	return w1_exists(master, directory, name);
+}
+
+static int compare_names(const void *a, const void *b)
+{
+	return memcmp(a, b, W1_NAME_MAX);
+}
+
+int w1_slaves(struct w1_master *master, const char *directory)
+{
+	char path[PATH_MAX_HERE], *buffer = master->text;
+	size_t used = 0;
+	uint8_t rom[8];
+	ssize_t n;
+
+	path_of(master, directory, "", path);
+	int fd = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	if (fd < 0)
+		return meaning(master, directory, "", errno);
+	while ((n = getdents64(fd, buffer, sizeof(master->text))) > 0) {
+		for (ssize_t at = 0; at < n;) {
+			const struct dirent64 *entry = (const void *)(buffer + at);
+
+			at += entry->d_reclen;
+			if (!w1_name_parse(entry->d_name, strlen(entry->d_name), rom) ||
+			    used + W1_NAME_MAX > sizeof(master->lists))
+				continue;
+			memcpy(master->lists + used, entry->d_name, W1_NAME_MAX - 1);
+			master->lists[used + W1_NAME_MAX - 1] = '\n';
+			used += W1_NAME_MAX;
+		}
+	}
+	int err = n < 0 ? meaning(master, directory, "", errno) : 0;
+	close(fd);
+	qsort(master->lists, used / W1_NAME_MAX, W1_NAME_MAX, compare_names);
+	return err ? err : (int)used;
 }

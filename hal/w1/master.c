@@ -192,7 +192,7 @@ static int read_list(struct w1_link *link)
 	char name[24];
 
 	w1_master_name(link->number, name);
-	int n = w1_read(master, name, "w1_master_slaves", master->lists, sizeof(master->lists) - 1);
+	int n = w1_slaves(master, name);
 	if (n == -ENODEV || n == -ENOENT)
 		return all_gone(master) ? -ENODEV : 0;
 	return n;

@@ -168,8 +168,9 @@ static bool converts_at_once(struct w1_link *link, const char *name)
 		if (link->master->slaves[i].channel == link - link->master->links &&
 		    !family_of(link->master->slaves[i].rom[0])->thermometer)
 			return false;
-	return master_number(link, name, "w1_master_search", 0) == 0 ||
-	       master_number(link, name, "w1_master_attempts", 2) >= 2;
+	/* No oftener than need be: who reads these while the master is removed hangs, and it too. */
+	link->searched = link->searched || master_number(link, name, "w1_master_attempts", 2) >= 2;
+	return link->searched || master_number(link, name, "w1_master_search", 0) == 0;
 }
 
 void w1_convert_all(struct w1_link *link)

@@ -49,6 +49,7 @@ struct w1_link {
 	struct w1_master *master;
 	unsigned number; /* of w1_bus_masterN */
 	int64_t bulk_ns; /* therm_bulk_read was refused: not before */
+	bool searched;   /* its first search is over */
 	/* Since the last reset: */
 	const struct w1_wire *wire;
 	struct w1_slave *slave;
@@ -69,7 +70,7 @@ struct w1_master {
 	int64_t look_ns; /* when to look for masters that came later */
 	int uevents;     /* socket; -1: none */
 	int64_t uevents_ns; /* when to look at it */
-	char text[W1_TEXT_MAX];  /* an attribute that is being looked at */
+	_Alignas(8) char text[W1_TEXT_MAX]; /* an attribute that is being looked at */
 	char lists[8 * W1_TEXT_MAX]; /* a list of slaves */
 };
 
@@ -111,6 +112,12 @@ int w1_slave_number(struct w1_master *master, const uint8_t rom[8], const char *
 int w1_slave_write(struct w1_master *master, const uint8_t rom[8], const char *name,
                    const void *data, size_t n);
 bool w1_slave_has(const struct w1_master *master, const uint8_t rom[8], const char *name);
+/*
+ * The slaves of a master, a line each, sorted, in master->lists; bytes or an error. From its
+ * directory: w1_master_slaves takes a mutex that a master being removed holds while it waits for
+ * who reads its attributes, and both hang for good.
+ */
+int w1_slaves(struct w1_master *master, const char *directory);
 /* A line for the log. */
 void w1_note(struct w1_master *master, int err, const char *text);
 

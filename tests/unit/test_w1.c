@@ -21,7 +21,7 @@
 
 static struct host host;
 static struct bus *bus;
-static char root[64], list[1024];
+static char root[64];
 static struct bus_req req[64];
 static uint8_t data[64][4096];
 static char path[64][96];
@@ -84,20 +84,30 @@ static const char *now_in(const char *directory, const char *name)
 	return content;
 }
 
+/* As in sysfs, a slave is a directory of its master, and another name leads there. */
+static void slave_of(const char *master, const char *name)
+{
+	char inner[80], outer[200];
+
+	text(master, "uevent", "");
+	snprintf(inner, sizeof(inner), "%s/%s", master, name);
+	text(inner, "name", name);
+	snprintf(outer, sizeof(outer), "%s/%s", root, name);
+	TEST_ASSERT_EQUAL_INT(0, symlink(inner, outer));
+}
+
 static void slave(const char *name)
 {
-	strcat(strcat(list, name), "\n");
-	text("w1_bus_master1", "w1_master_slaves", list);
-	text(name, "name", name);
+	slave_of("w1_bus_master1", name);
 }
 
 static void gone(const char *name)
 {
-	char *at = strstr(list, name);
+	char inner[80];
 
-	memmove(at, at + strlen(name) + 1, strlen(at + strlen(name) + 1) + 1);
-	text("w1_bus_master1", "w1_master_slaves", *list ? list : "not found.\n");
+	snprintf(inner, sizeof(inner), "w1_bus_master*/%s", name);
 	erase(name);
+	erase(inner);
 }
 
 static void scratchpad(const char *name, int raw, int high, int low, int config,
@@ -130,7 +140,6 @@ void setUp(void)
 {
 	host_init_virtual(&host);
 	next_id = 0;
-	list[0] = '\0';
 	snprintf(root, sizeof(root), "/tmp/owsd-w1-XXXXXX");
 	TEST_ASSERT_NOT_NULL(mkdtemp(root));
 }
@@ -146,8 +155,7 @@ static void start(void)
 {
 	char target[100];
 
-	if (!*list)
-		text("w1_bus_master1", "w1_master_slaves", "not found.\n");
+	text("w1_bus_master1", "uevent", "");
 	snprintf(target, sizeof(target), "w1:root=%s", root);
 	bus = host_bus(&host, target);
 	TEST_ASSERT_TRUE(host_run_events(&host, bus, 1, host.now + HOST_S));
@@ -299,7 +307,7 @@ static void test_a_master_that_comes_later_is_one_more_bus(void)
 	thermometer(WARM, 0x151);
 	start();
 	host_run(&host, bus, host.now + HOST_S);
-	text("w1_bus_master3", "w1_master_slaves", BOARD "\n");
+	slave_of("w1_bus_master3", BOARD);
 	byte(BOARD, "output", 0xff);
 	host_run(&host, bus, host.now + 12 * HOST_S);
 	TEST_ASSERT_EQUAL_UINT(2, host_events(&host, BUS_FOUND));
@@ -351,7 +359,7 @@ static void test_a_uevent_of_the_kernel_makes_it_look_at_once(void)
 	uevent(ends[1], "w1");
 	host_run(&host, bus, host.now + 2 * HOST_S);
 	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_LOST));
-	text("w1_bus_master3", "w1_master_slaves", BOARD "\n");
+	slave_of("w1_bus_master3", BOARD);
 	byte(BOARD, "output", 0xff);
 	uevent(ends[1], "w1");
 	host_run(&host, bus, host.now + HOST_S);
@@ -815,6 +823,15 @@ static void test_a_slave_without_driver_is_told_once(void)
 	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_NOTE));
 }
 
+static void test_a_thermometer_whose_driver_was_unloaded_is_told(void)
+{
+	slave(WARM);
+	text(WARM, "rw", "");
+	start();
+	fails(-ENOENT, WARM_OW "/temperature");
+	TEST_ASSERT_TRUE(told(BUS_NOTE, WARM ": no driver of the kernel has it"));
+}
+
 static void test_a_directory_has_what_there_are_attributes_for(void)
 {
 	slave("12-0000000000e1");
@@ -906,6 +923,15 @@ static void test_where_nothing_tells_the_alarm_it_is_not_supported(void)
 
 /* --- Rights --- */
 
+static void test_a_slave_that_is_just_being_removed_does_not_end_the_alarm_search(void)
+{
+	slave(BOARD);
+	start();
+	lists("", "/alarm/29");
+	text(BOARD, "rw", "");
+	TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP, result(ask(BUS_DIR, "/alarm/29", NULL, 0)));
+}
+
 static void test_who_may_not_write_is_told_how(void)
 {
 	uid_t user = geteuid();
@@ -992,11 +1018,13 @@ int main(void)
 	RUN_TEST(test_an_eeprom_is_written_row_by_row);
 	RUN_TEST(test_raw_access_serves_the_rest);
 	RUN_TEST(test_a_slave_without_driver_is_told_once);
+	RUN_TEST(test_a_thermometer_whose_driver_was_unloaded_is_told);
 	RUN_TEST(test_a_directory_has_what_there_are_attributes_for);
 	RUN_TEST(test_a_thermometer_beyond_its_limits_is_in_alarm);
 	RUN_TEST(test_thermometers_asked_for_their_alarm_convert_at_once);
 	RUN_TEST(test_a_ds2408_is_in_alarm_by_its_condition);
 	RUN_TEST(test_where_nothing_tells_the_alarm_it_is_not_supported);
+	RUN_TEST(test_a_slave_that_is_just_being_removed_does_not_end_the_alarm_search);
 	RUN_TEST(test_who_may_not_write_is_told_how);
 	RUN_TEST(test_what_nobody_may_write_is_no_matter_of_rights);
 	return UNITY_END();
