@@ -109,6 +109,12 @@ int target_check_options(const struct config *config, struct config_report *repo
 	int other = check_line(config, "HeartbeatLine", config->heartbeat_line, report);
 
 	err = err ? err : other;
+	if (!err && config->alarm_line && config->heartbeat_line &&
+	    strcmp(config->alarm_line, config->heartbeat_line) == 0) {
+		report_error(report, (struct place){config->file, 0, 0},
+		             "AlarmLine and HeartbeatLine are the same line");
+		err = -EINVAL;
+	}
 	for (unsigned i = 0; i < config->bus_count; i++) {
 		other = check_bus(config, &config->buses[i], report);
 		err = err ? err : other;

@@ -78,6 +78,9 @@ int listen_parse(const char *text, size_t len, struct listen_address addresses[2
 
 	if (port >= 0)
 		return loopback((uint16_t)port, addresses);
+	*why = "expected a port from 0 to 65535";
+	if (len && strspn(text, "0123456789") >= len)
+		return -EINVAL;
 	*why = "expected PORT, HOST:PORT or [IPv6]:PORT";
 	if (!split(text, len, &host, &host_len, &port_text) || !host_len)
 		return -EINVAL;

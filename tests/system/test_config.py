@@ -228,5 +228,11 @@ def test_messages_do_not_steer_the_terminal(scene):
         assert done.stderr and not set(done.stderr) & set("\x1b\u202e\x9b"), ascii(done.stderr)
 
 
+def test_one_line_cannot_be_two_lamps(scene):
+    text = owsdtest.rio("null:", [], AlarmLine="gpiochip0/4", HeartbeatLine="gpiochip0/4")
+    done = scene.owsd_once("--check", "-c", scene.file("lamps.rio", text))
+    assert done.returncode == 2 and "the same line" in done.stderr, done
+
+
 if __name__ == "__main__":
     owsdtest.main()

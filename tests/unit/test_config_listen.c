@@ -44,6 +44,14 @@ static void test_a_bare_port_and_localhost_are_both_loopback_addresses(void)
 	}
 }
 
+static void test_a_port_that_is_none_is_told_as_one(void)
+{
+	TEST_ASSERT_EQUAL_INT(-EINVAL, parse("99999"));
+	TEST_ASSERT_EQUAL_STRING("expected a port from 0 to 65535", why);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, parse(""));
+	TEST_ASSERT_EQUAL_STRING("expected PORT, HOST:PORT or [IPv6]:PORT", why);
+}
+
 static void test_a_network_is_served_by_its_address_only(void)
 {
 	static const char *const texts[] = { "0.0.0.0:4304", "192.168.1.5:5000", "[::]:4304",
@@ -113,6 +121,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_bare_port_and_localhost_are_both_loopback_addresses);
+	RUN_TEST(test_a_port_that_is_none_is_told_as_one);
 	RUN_TEST(test_a_network_is_served_by_its_address_only);
 	RUN_TEST(test_what_is_no_address_is_refused_with_a_reason);
 	RUN_TEST(test_ranges_have_the_peers_inside_and_no_others);
