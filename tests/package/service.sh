@@ -21,6 +21,7 @@ active() { systemctl -q is-active "$1"; }
 refused() { ! "$@"; }
 # restarted PID: another one serves
 restarted() { now=$(house MainPID) && [ "$now" != 0 ] && [ "$now" != "$1" ] && active owsd@HOUSE; }
+status_says() { systemctl status --no-pager -n 40 owsd@HOUSE | grep -q -F "$1"; }
 got() { reads relays 5 && owsctl -n HOUSE get warm; }
 
 does 'the default instance comes up by itself, without a device' within 60 active owsd@OWS
@@ -47,10 +48,47 @@ does 'and sets' owsctl -n HOUSE set relays 5
 does 'an output' within 30 got
 same 'it says what it does' 1 "$(systemctl status --no-pager owsd@HOUSE | grep -c 'Status: ".*signals')"
 
+# Inputs that the board holds low, and those of the relays that are on
+does 'and the chip has it' within 30 reads pins 184
+
 pid=$(house MainPID)
-does 'it is told to reload' systemctl reload owsd@HOUSE
-sleep 2
-same 'and lives' "$pid" "$(house MainPID)"
+cp /etc/owsd/HOUSE.rio good.rio
+sed -e 's/^\( *ItemCount *\).*/\111/' -e '$d' good.rio >more.rio
+cat >>more.rio <<'END'
+  Item {
+    Name                    "shed"
+    Path                    "/28.A0B1C2040028/temperature"
+    Type                    "double"
+    IO                      "input"
+  }
+}
+END
+cp more.rio /etc/owsd/HOUSE.rio
+does 'a changed file is loaded' systemctl reload owsd@HOUSE
+does 'the signal that is new is read' within 60 reads shed 12.5
+same 'by the same process' "$pid" "$(house MainPID)"
+does 'an old one goes on' reads warm 21.0625
+does 'the output too' reads relays 5
+does 'on the chip as well' reads pins 184
+does 'and can be set' owsctl -n HOUSE set -w 30 relays 4
+does 'which the chip does' within 30 reads pins 185
+does 'and back' owsctl -n HOUSE set -w 30 relays 5
+same 'systemctl says how many there are now' 1 \
+	"$(systemctl status --no-pager owsd@HOUSE | grep -c 'Status: "11 signals')"
+
+echo 'OwsDrv { Period wrong }' >/etc/owsd/HOUSE.rio
+does 'told to load a broken file, systemctl returns' timeout 20 systemctl reload owsd@HOUSE
+does 'its status says that it was refused' within 20 status_says 'is refused: all goes on as before'
+does 'and where it is broken' status_says '/etc/owsd/HOUSE.rio:1:17'
+same 'the same process goes on' "$pid" "$(house MainPID)"
+same 'as a service that is active' active "$(house ActiveState)"
+does 'with the old ones' reads warm 21.0625
+does 'and the one that was new' reads shed 12.5
+cp good.rio /etc/owsd/HOUSE.rio
+does 'all are told to load theirs, one mended and without the new one' systemctl reload owsd
+does 'it has' within 20 status_says 'Status: "10 signals'
+same 'in the same process' "$pid" "$(house MainPID)"
+does 'with the output as it was' reads relays 5
 
 kill -9 "$pid"
 does 'killed, it is started again' within 30 restarted "$pid"
@@ -64,7 +102,7 @@ does 'with what was commanded' within 60 got
 pid=$(house MainPID)
 python3 ./stop-thread "$pid" owsd-engine >/tmp/stopped 2>&1 &
 does "with only the engine's thread stopped, the same" within 60 restarted "$pid"
-does 'a thread was stopped' grep -q stopped /tmp/stopped
+does 'a thread was stopped' sh -c 'cat /tmp/stopped && grep -q ^stopped /tmp/stopped'
 does 'by the watchdog' sh -c 'journalctl -b -u owsd@HOUSE | grep -c "Watchdog timeout" | grep -qx 2'
 does 'with what was commanded' within 60 got
 
@@ -75,10 +113,9 @@ does 'restarts the one' within 30 restarted "$pid"
 does 'and the other' within 30 sh -c "[ \$(systemctl show -P MainPID owsd@OWS) != $other ] && systemctl -q is-active owsd@OWS"
 does 'with what was commanded' within 60 got
 
-cp /etc/owsd/HOUSE.rio good.rio
-echo 'OwsDrv { Period wrong }' >/etc/owsd/HOUSE.rio
+echo 'OwsDrv { Timeout wrong }' >/etc/owsd/HOUSE.rio
 does 'a broken configuration fails' refused systemctl restart owsd@HOUSE
-does 'and is told' sh -c 'journalctl -b -u owsd@HOUSE | grep -q /etc/owsd/HOUSE.rio:1:17'
+does 'and is told' sh -c 'journalctl -b -u owsd@HOUSE | grep -q /etc/owsd/HOUSE.rio:1:18'
 cp good.rio /etc/owsd/HOUSE.rio
 does 'mended, it comes up by itself' within 30 active owsd@HOUSE
 does 'with what was commanded' within 60 got
@@ -89,6 +126,11 @@ does 'and the other' refused active owsd@OWS
 does 'and started' systemctl start owsd
 does 'both' within 20 systemctl -q is-active owsd@HOUSE owsd@OWS
 does 'the package is removed' dpkg -r owsd
+does 'nothing runs' refused pgrep -x owsd
+does 'installed again, it comes up' dpkg -i next/owsd_*.deb
+does 'both of it' within 30 systemctl -q is-active owsd@HOUSE owsd@OWS
+does 'with what was commanded' within 60 got
+does 'removed again' dpkg -r owsd
 does 'nothing runs' refused pgrep -x owsd
 does 'and purged' dpkg -P owsd
 same 'no segment stays' '' "$(find /dev/shm -name 'owsd.*')"
