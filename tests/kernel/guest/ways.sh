@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# One wire and three ways to it: the genuine owserver, /dev/i2c-0, the kernel's drivers. Each is taken
-# away in turn; owsd takes the next, and the outputs go with it.
+# One wire and the ways to it: the genuine owserver, /dev/i2c-0, the kernel's drivers by files and by
+# netlink. Each is taken away in turn; owsd takes the next, and the outputs go with it.
 . /rig/lib.sh
 
 sys=/sys/bus/i2c
@@ -97,6 +97,23 @@ bind() {
 }
 within $moved_within bind
 does "or the driver that has it" within $moved_within served warm 25.5 w1
+kill $owsd
+wait $owsd
+
+sim set warm temperature 26.5
+owsd -c /rig/ways.rio -t "i2c:/dev/i2c-0:0x18 | w1:netlink" >>/tmp/log/owsd 2>&1 &
+owsd=$!
+does "the driver's master serves as a wire too" within $moved_within served warm 26.5 w1:netlink
+switches "and switches" 8 w1:netlink
+sim set warm temperature 27.5
+echo 0-0018 >$sys/drivers/ds2482/unbind
+does "until the driver lets go" within $moved_within served warm 27.5 i2c:/dev/i2c-0:0x18
+does "with the output as it was" within $moved_within served pins 247 i2c:/dev/i2c-0:0x18
+switches "which is switched" 16 i2c:/dev/i2c-0:0x18
+sim set warm temperature 28.5
+within $moved_within bind
+does "and when it takes the chip again" within $moved_within served warm 28.5 w1:netlink
+does "with the output as it was" within $moved_within served pins 239 w1:netlink
 kill $owsd
 wait $owsd
 finish
