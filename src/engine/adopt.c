@@ -55,6 +55,8 @@ static void take_group(struct engine *e, unsigned group, struct engine *old, uns
 
 	assert(g->bar.count == was->bar.count);
 	g->bar = was->bar;
+	g->quiet = was->quiet;
+	g->rounds = was->rounds;
 	e->states[group] = old->states[before];
 	for (unsigned w = 0; w < g->bar.count; w++) {
 		struct lane *from = &old->lanes[was->first + w];
