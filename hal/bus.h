@@ -65,7 +65,17 @@ struct bus_req {
 	const char *path;    /* "/28.551DDF030000/temperature12", without /uncached; immutable */
 	uint32_t len;        /* WRITE: bytes in data; READ and DIR: room in data */
 	uint8_t *data;
+	/*
+	 * For a target that is a server of the same protocol: the servers that the request came
+	 * through, this process last, BUS_TOKEN bytes for each. One who finds himself there has been
+	 * asked in a circle. NULL: nobody can come back to this process.
+	 */
+	const uint8_t *tokens;
+	uint32_t token_count; /* up to BUS_TOKENS_MAX */
 };
+
+#define BUS_TOKEN      16
+#define BUS_TOKENS_MAX 8
 
 /*
  * Exactly one for each request that was accepted. Values of err:

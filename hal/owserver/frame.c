@@ -57,6 +57,15 @@ int frame_request(uint8_t *out, enum frame_type type, uint32_t flags, int32_t si
 	return FRAME_HEADER + header.payload;
 }
 
+int frame_add_tokens(uint8_t *out, int len, const uint8_t *tokens, uint32_t count)
+{
+	if (!count)
+		return len;
+	put_word(out, FRAME_SERVER | count);
+	memcpy(out + len, tokens, (size_t)count * FRAME_TOKEN_SIZE);
+	return len + (int)(count * FRAME_TOKEN_SIZE);
+}
+
 void frame_begin(struct frame_reader *reader, uint8_t *data, uint32_t limit)
 {
 	reader->data = data;

@@ -41,6 +41,8 @@ enum frame_type {
 #define FRAME_TOKENS     UINT32_C(0x0ffff)
 #define FRAME_TOKEN_SIZE 16
 #define FRAME_TOKENS_MAX 64
+/* As many are sent at most; a chain of servers that long has no use. */
+#define FRAME_TOKENS_SENT 8
 
 struct frame_header {
 	uint32_t version;
@@ -60,6 +62,11 @@ void frame_get_header(const uint8_t bytes[FRAME_HEADER], struct frame_header *he
  */
 int frame_request(uint8_t *out, enum frame_type type, uint32_t flags, int32_t size,
                   const char *path, const uint8_t *data, uint32_t data_len);
+/*
+ * Put the tokens of count servers, up to FRAME_TOKENS_SENT, behind a request of len bytes; out has room
+ * for FRAME_TOKENS_SENT * FRAME_TOKEN_SIZE more. Returns the new length.
+ */
+int frame_add_tokens(uint8_t *out, int len, const uint8_t *tokens, uint32_t count);
 
 /* A reply, put together from fragments of any size. */
 struct frame_reader {

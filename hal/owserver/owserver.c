@@ -8,6 +8,7 @@
  * answered and the server has said whether its devices are simulated. Silence and loss take it
  * down; a server that only was too slow (it sent keep-alives) stays up, on a new connection.
  */
+#include <assert.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,6 +31,9 @@
 /* An idle connection is looked at so often, to learn that the server went. */
 #define IDLE_NS     (1000 * MS)
 #define READ_MAX    65536
+
+static_assert(BUS_TOKEN == FRAME_TOKEN_SIZE && BUS_TOKENS_MAX == FRAME_TOKENS_SENT,
+              "the tokens of a request are those of its frame");
 
 enum state { DOWN, CONNECTING, GREETING, UP };
 
@@ -429,7 +433,10 @@ static void owserver_exec(struct bus *bus, struct bus_req *req, struct bus_answe
 		return;
 	}
 	server->talk.heard = false;
+	server->talk.tokens = req->tokens;
+	server->talk.token_count = req->token_count;
 	err = serve(server, req, &answer->len);
+	server->talk.token_count = 0;
 	if (err == -ECONNREFUSED)
 		err = -ECONNRESET;
 	if (err == -ECONNRESET || err == -ETIMEDOUT || err == -EPROTO)

@@ -39,8 +39,10 @@ static int make_request(struct talk *talk, const struct talk_request *request)
 	uint32_t flags = FRAME_PERSIST | (request->fresh ? FRAME_UNCACHED : 0) |
 	                 (request->type == FRAME_DIRALL ? FRAME_BUS_LIST : 0);
 
-	return frame_request(talk->out, request->type, flags, request->size, request->path,
-	                     request->data, request->data_len);
+	int len = frame_request(talk->out, request->type, flags, request->size, request->path,
+	                        request->data, request->data_len);
+
+	return len < 0 ? len : frame_add_tokens(talk->out, len, talk->tokens, talk->token_count);
 }
 
 static void expect_reply(struct talk *talk, const struct talk_request *request)

@@ -31,8 +31,10 @@ struct talk {
 	bool heard;                 /* bytes came since the caller cleared it */
 	char trouble[112];          /* why an exchange failed, as a sentence */
 	struct bus_counter *counter; /* by enum talk_counter */
+	const uint8_t *tokens; /* go with each request: the servers it came through */
+	uint32_t token_count;
 	uint8_t in[4096];
-	uint8_t out[FRAME_REQUEST_MAX];
+	uint8_t out[FRAME_REQUEST_MAX + FRAME_TOKENS_SENT * FRAME_TOKEN_SIZE];
 	uint8_t scrap[64];
 };
 

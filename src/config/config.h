@@ -128,6 +128,8 @@ int config_set_listens(struct config *config, const char *const *texts, unsigned
  * warning. 0 or -EINVAL.
  */
 int config_check_own(struct config *config, struct config_report *report);
+/* Is a target a server of the owserver protocol? */
+bool config_has_servers(const struct config *config);
 /* The Bus block of a target, however it is spelt; NULL: it has none. */
 const struct config_bus *config_bus(const struct config *config, const char *target);
 /* Warn of Bus blocks whose target is none of those that are served. */

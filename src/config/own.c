@@ -46,6 +46,18 @@ static bool is_own(const struct config_serve *serve, const char *target)
 	return false;
 }
 
+bool config_has_servers(const struct config *config)
+{
+	char canonical[TARGET_CANONICAL];
+
+	for (unsigned i = 0; i < config->target_count; i++) {
+		target_canonical(config->targets[i].text, canonical);
+		if (strncmp(canonical, SCHEME, strlen(SCHEME)) == 0)
+			return true;
+	}
+	return false;
+}
+
 /* The next way takes its place in the row. */
 static void leave_out(struct config *config, unsigned i)
 {

@@ -10,6 +10,11 @@
 #define GUEST_PASSED 4
 #define GUESTS_LENT  64
 #define GUESTS_PRESSING 16
+/*
+ * How long one that came through another server waits for its turn: two servers that have each other
+ * as targets may wait for each other's only connection.
+ */
+#define GUEST_SERVER_NS INT64_C(2000000000)
 
 static void answer(struct engine *e, struct engine_guest *g)
 {
@@ -115,6 +120,14 @@ static void flush(struct engine *e, struct lane *lane, int64_t now_ns)
 	}
 }
 
+static int64_t patience_ns(const struct engine *e, const struct engine_guest *g)
+{
+	bool server = g->token_count > 1; /* ours is the last */
+
+	return server && e->config->timeout_ns > GUEST_SERVER_NS ? GUEST_SERVER_NS
+	                                                         : e->config->timeout_ns;
+}
+
 void engine_guests_take(struct engine *e, int64_t now_ns)
 {
 	struct engine_guest *g;
@@ -122,7 +135,7 @@ void engine_guests_take(struct engine *e, int64_t now_ns)
 	if (!e->guests)
 		return;
 	while ((g = e->guests->take(e->guests->ctx)) != NULL) {
-		g->until_ns = now_ns + e->config->timeout_ns;
+		g->until_ns = now_ns + patience_ns(e, g);
 		g->lent = false;
 		g->best_err = 0;
 		g->served = g->lane == GUEST_ANY_LANE ? lane_of(e, g->path) : (unsigned)g->lane;
@@ -181,7 +194,8 @@ bool guest_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
 	slot->pressing = table_lent(lane) || lane->guests.pressing < GUESTS_PRESSING;
 	slot->req = (struct bus_req){ .op = g->op, .fresh = g->fresh, .path = g->path,
 		                      .prio = slot->pressing ? BUS_INPUT : BUS_GUEST,
-		                      .len = g->len, .data = g->data };
+		                      .len = g->len, .data = g->data,
+		                      .tokens = g->tokens, .token_count = g->token_count };
 	if (!lane_lend(lane, slot, now_ns))
 		return false;
 	dequeue(lane);

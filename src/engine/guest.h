@@ -24,6 +24,8 @@ struct engine_guest {
 	const char *path;
 	uint8_t *data; /* as in struct bus_req */
 	uint32_t len;
+	const uint8_t *tokens; /* likewise; NULL: the guest is no server */
+	uint32_t token_count;
 
 	struct bus_answer answer; /* its id says nothing */
 	unsigned served;          /* index of the lane that answered */
@@ -42,6 +44,7 @@ struct engine_guests {
 	void (*answered)(void *ctx, struct engine_guest *guest);
 	void (*released)(void *ctx, struct engine_guest *guest);
 	void *ctx;
+	const uint8_t *token; /* of this server, BUS_TOKEN bytes: goes with the table's requests */
 };
 
 #endif

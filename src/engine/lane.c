@@ -90,6 +90,10 @@ bool lane_lend(struct lane *lane, struct slot *slot, int64_t now_ns)
 	slot->req.deadline_ns = now_ns + lane->engine->config->timeout_ns;
 	if (slot->purpose != FOR_GUEST)
 		own(slot);
+	if (!slot->req.tokens && lane->engine->guests && lane->engine->guests->token) {
+		slot->req.tokens = lane->engine->guests->token;
+		slot->req.token_count = 1;
+	}
 	if (slot->req.op == BUS_DIR && slot->purpose == FOR_ALARM) {
 		slot->req.data = (uint8_t *)lane->list;
 		slot->req.len = ALARM_LIST;

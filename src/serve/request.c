@@ -6,9 +6,14 @@
 #include <errno.h>
 #include <string.h>
 
+static uint32_t tokens_of(const struct frame_header *h)
+{
+	return h->version & FRAME_SERVER ? h->version & FRAME_TOKENS : 0;
+}
+
 static int check_header(const struct frame_header *h, size_t *length)
 {
-	uint32_t tokens = h->version & FRAME_SERVER ? h->version & FRAME_TOKENS : 0;
+	uint32_t tokens = tokens_of(h);
 
 	if (h->version & ~(FRAME_SERVER | FRAME_TOKENS) || tokens > FRAME_TOKENS_MAX ||
 	    h->payload < 0)
@@ -38,6 +43,7 @@ int request_parse(const uint8_t *bytes, size_t have, struct request *request, si
 		.type = h.type, .flags = h.flags, .size = h.size, .offset = h.offset,
 		.payload = (uint32_t)h.payload,
 		.path = (const char *)bytes + FRAME_HEADER, .path_len = (uint32_t)h.payload,
+		.tokens = bytes + FRAME_HEADER + h.payload, .token_count = tokens_of(&h),
 	};
 	nul = h.payload ? memchr(request->path, '\0', request->payload) : NULL;
 	if (nul) {

@@ -22,6 +22,8 @@ struct request {
 	uint32_t path_len;
 	const uint8_t *data; /* WRITE */
 	uint32_t data_len;
+	const uint8_t *tokens; /* of the servers that it came through, 16 bytes each */
+	uint32_t token_count;
 };
 
 /*

@@ -76,8 +76,12 @@ int serve_create(const struct serve_setup *setup, struct serve **serve, char *wh
 	s->guests.ring = setup->ring;
 	s->guests.ring_ctx = setup->ring_ctx;
 	s->guests.wake_fd = -1;
+	s->passes_on = config_has_servers(setup->config);
 	s->epoll_fd = epoll_create1(EPOLL_CLOEXEC);
 	err = s->epoll_fd < 0 ? -errno : allocate(s);
+	if (!err)
+		err = via_token(s->token);
+	s->guests.port.token = s->token;
 	if (!err && epoll_ctl(s->epoll_fd, EPOLL_CTL_ADD, s->guests.wake_fd, &event) < 0)
 		err = -errno;
 	if (err)
@@ -172,6 +176,7 @@ static void take_next(struct serve *s)
 	if (!next)
 		return;
 	s->config = next->config;
+	s->passes_on = config_has_servers(next->config);
 	s->image = next->image;
 	s->kept = next->kept;
 	next->kept = before;

@@ -10,6 +10,7 @@
 #include "request.h"
 #include "serve.h"
 #include "signals.h"
+#include "via.h"
 
 #include <pthread.h>
 
@@ -78,6 +79,7 @@ struct client {
 	struct node node;
 	char path[NODE_PATH_MAX + 16]; /* as the engine was given it */
 	struct engine_guest guest;
+	struct via via;
 	uint32_t value_len;   /* READ: of what is in the room for the answer */
 	int64_t value_ns;
 	struct signals_command command;
@@ -98,6 +100,7 @@ struct client {
 	X(refused_full)   /* no room for another client */                                         \
 	X(refused_peers)  /* not in ListenAllow */                                                 \
 	X(refused_writes) /* in read-only mode */                                                  \
+	X(came_round)     /* had been here before, by way of other servers */                      \
 	X(evicted)        /* idle, closed to make room */                                          \
 	X(garbage)        /* no requests */                                                        \
 	X(timeouts)       /* half requests, answers nobody took, idle connections */               \
@@ -126,6 +129,8 @@ struct serve {
 	} *next;
 	struct signals *signals;
 	struct buses buses;
+	uint8_t token[BUS_TOKEN];
+	bool passes_on; /* a target is a server, which may lead back here */
 
 	struct {
 		int fd;

@@ -75,6 +75,13 @@ bool signals_has(struct signals *signals, const char *name)
 	return look_up(signals, name, &id) == 0;
 }
 
+int signals_record(struct signals *signals, const char *name)
+{
+	struct ows_id id;
+
+	return look_up(signals, name, &id) ? -1 : id.record;
+}
+
 /* Who has no memory of his own gets the count. */
 static int read_alarms(struct ows *h, const struct ows_id *id, char *text, size_t room)
 {

@@ -21,6 +21,8 @@ void signals_close(struct signals *signals);
 
 /* Does this name stand for a signal or an attribute? */
 bool signals_has(struct signals *signals, const char *name);
+/* The record of the signal that it is or belongs to; -1: there is none. */
+int signals_record(struct signals *signals, const char *name);
 /*
  * The text of a signal or attribute. Its length; -ENOENT no such name, -EACCES not readable, -EIO
  * not good.

@@ -85,7 +85,8 @@ void work_ask(struct serve *s, struct client *c, enum client_step step, enum bus
 	c->step = (uint8_t)step;
 	c->guest = (struct engine_guest){ .op = (uint8_t)op, .fresh = c->node.fresh, .lane = lane,
 		                          .generation = s->image->header->generation,
-		                          .path = c->path, .data = data, .len = len };
+		                          .path = c->path, .data = data, .len = len,
+		                          .tokens = c->via.tokens, .token_count = c->via.count };
 	count(s, COUNT_bus_requests, 1);
 	if (c->state != CLIENT_WORKING)
 		client_enter(s, c, CLIENT_WORKING);
@@ -226,6 +227,19 @@ void work_go_on(struct serve *s, struct client *c)
 	answer_code(s, c, 0);
 }
 
+/* What this server has was asked for when the request was here first; behind it there is no more. */
+static void came_round(struct serve *s, struct client *c)
+{
+	bool lists = c->request.type != FRAME_READ && c->request.type != FRAME_WRITE &&
+	             c->request.type != FRAME_PRESENT;
+
+	count(s, COUNT_came_round, 1);
+	if (lists && (work_is_directory(&c->node) || c->node.slash))
+		answer_code(s, c, 0);
+	else
+		answer_error(s, c, -ENODEV);
+}
+
 static bool is_known(int32_t type)
 {
 	return type == FRAME_NOP || (type >= FRAME_READ && type <= FRAME_DIR) ||
@@ -253,6 +267,11 @@ void work_begin(struct serve *s, struct client *c)
 	}
 	node_parse(r->path, r->path_len, &c->node);
 	c->node.fresh |= (r->flags & FRAME_UNCACHED) != 0;
+	if (r->token_count && via_came_round(r->tokens, r->token_count, s->token)) {
+		came_round(s, c);
+		return;
+	}
+	via_pass(&c->via, r->tokens, r->token_count, s->token);
 	if (c->node.kind == NODE_NONE || (c->node.slash && !lists && !work_is_directory(&c->node)))
 		answer_error(s, c, -ENOENT);
 	else

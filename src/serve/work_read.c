@@ -68,7 +68,8 @@ static void read_target(struct serve *s, struct client *c)
 {
 	int n = -ENOENT;
 
-	if (!c->node.fresh && !(c->request.flags & FRAME_UNCACHED))
+	/* between servers in a circle, what one remembers of the other would never end */
+	if (!(s->passes_on && c->request.token_count) && !c->node.fresh && !(c->request.flags & FRAME_UNCACHED))
 		n = kept_find(s->kept, s->image, &c->node, s->now_ns, (char *)client_room(c),
 		              client_room_size(c));
 	if (n >= 0) {
@@ -80,12 +81,28 @@ static void read_target(struct serve *s, struct client *c)
 	work_ask(s, c, STEP_READ, BUS_READ, work_path(s, c), client_room(c), client_room_size(c));
 }
 
+/* A signal that is itself a signal of another owsd, asked for by a server: it may be one of that one. */
+static bool is_passed_on(const struct serve *s, const struct client *c)
+{
+	int record = c->request.token_count && s->passes_on
+	                     ? signals_record(s->signals, c->node.name) : -1;
+	struct node node;
+
+	if (record < 1 || (unsigned)record > s->config->item_count)
+		return false;
+	node_parse(s->config->items[record - 1].path,
+	           strlen(s->config->items[record - 1].path), &node);
+	return node.kind == NODE_SIGNAL;
+}
+
 static void read_here(struct serve *s, struct client *c)
 {
 	char *room = (char *)client_room(c);
 	int n;
 
-	if (c->node.kind == NODE_SIGNAL) {
+	if (c->node.kind == NODE_SIGNAL && is_passed_on(s, c)) {
+		n = -ELOOP;
+	} else if (c->node.kind == NODE_SIGNAL) {
 		n = signals_read(s->signals, c->node.name, s->now_ns, room, client_room_size(c));
 	} else if (c->node.code < 0) {
 		n = code_texts(room, client_room_size(c));
