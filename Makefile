@@ -99,6 +99,8 @@ LIBOWS   := $(wildcard src/libows/*.c)
 OWSCTL   := $(wildcard src/owsctl/*.c)
 # Programs over libows to start from
 EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py)
+# Those that another program builds or loads, a folder for each
+HOSTED   := $(patsubst docs/examples/%/,%,$(wildcard docs/examples/*/))
 PYTHON   := $(wildcard src/libows/*.py)
 MAN      := $(wildcard docs/*.[1-8])
 # Tests
@@ -333,6 +335,8 @@ install: all
 	install -m 644 src/libows/ows.h $(D)$(PREFIX)/include/ows.h
 	install -m 644 src/shm/layout.h $(D)$(PREFIX)/include/ows_layout.h
 	$(if $(EXAMPLES),install -m 644 $(EXAMPLES) $(D)$(DATADIR)/examples)
+	@set -e; for h in $(HOSTED); do d=$(D)$(DATADIR)/examples/$$h; install -d $$d; \
+	    install -m 644 docs/examples/$$h/* $$d; done
 	$(if $(PYTHON),install -m 644 $(PYTHON) $(D)$(DATADIR))
 	install -m 644 $(wildcard board/boards/*.board) $(D)$(DATADIR)/boards
 	@set -e; for m in $(MAN); do d=$(D)$(MANDIR)/man$${m##*.}; install -d $$d; \

@@ -12,7 +12,8 @@ on_copy() {
 on_copy install
 
 for f in lib/libows.so lib/libows.so.0 lib/libows.a lib/pkgconfig/libows.pc include/ows.h \
-	include/ows_layout.h share/owsd/boards/raspberry-pi-4.board; do
+	include/ows_layout.h share/owsd/boards/raspberry-pi-4.board \
+	share/owsd/examples/openplc/owsd.cpp share/owsd/examples/linuxcnc/owsd_hal.c; do
 	[ -s "$root/opt/owsd/$f" ] || { echo "missing: $f"; exit 1; }
 done
 

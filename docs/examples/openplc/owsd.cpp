@@ -1,0 +1,485 @@
+// SPDX-License-Identifier: MIT
+//
+// A hardware layer for the OpenPLC runtime: located variables of a PLC program that are signals of
+// owsd. docs/openplc.md says how to put it in. It is compiled against OpenPLC's own ladder.h, which
+// is under the GPL; this file alone is not.
+//
+// What is what stands in /etc/owsd/openplc.map, or the file that OWSD_OPENPLC_MAP names.
+#include <ows.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "ladder.h"
+
+namespace {
+
+enum class Kind { boolean, good, usint, sint, integer, uinteger, dint, udint, real, lint, lreal };
+
+struct KindName {
+	const char *name;
+	Kind kind;
+	char size; // of the variable: %IW0 has the size W
+};
+const KindName kinds[] = {
+	// The first of a size is what a variable has without a type
+	{ "bool", Kind::boolean, 'X' },  { "quality", Kind::good, 'X' },
+	{ "usint", Kind::usint, 'B' },   { "sint", Kind::sint, 'B' },
+	{ "int", Kind::integer, 'W' },   { "uint", Kind::uinteger, 'W' },
+	{ "dint", Kind::dint, 'D' },     { "udint", Kind::udint, 'D' },
+	{ "real", Kind::real, 'D' },     { "lint", Kind::lint, 'L' },
+	{ "lreal", Kind::lreal, 'L' },
+};
+
+struct Signal {
+	std::string name;
+	int id = -ENOENT;
+	bool good = false;
+	ows_value value = ows_value();
+	int told = 0; // the error that the log has already
+};
+
+// One line of the map
+struct Variable {
+	char area = 'I', size = 'X';
+	unsigned index = 0, bit = 0;
+	size_t signal = 0;
+	Kind kind = Kind::boolean;
+	double scale = 1, otherwise = 0;
+	bool has_otherwise = false;
+
+	std::string text() const
+	{
+		std::string name = std::string("%") + area + size + std::to_string(index);
+
+		return size == 'X' ? name + "." + std::to_string(bit) : name;
+	}
+};
+
+void say(const std::string &text)
+{
+	std::vector<char> line;
+
+	for (char c : "owsd: " + text + "\n")
+		line.push_back(c);
+	line.push_back('\0');
+	openplc_log(line.data());
+}
+
+// --- The map -----------------------------------------------------------------------------------
+
+class Map {
+public:
+	std::string instance = "OWS";
+	std::vector<Variable> variables;
+	std::vector<Signal> signals;
+
+	void read(const std::string &path)
+	{
+		std::ifstream file(path);
+		std::string line;
+		unsigned number = 0;
+
+		if (!file)
+			throw std::runtime_error(path + ": " + std::strerror(errno));
+		while (std::getline(file, line)) {
+			number++;
+			try {
+				take(line.substr(0, line.find('#')));
+			} catch (const std::exception &e) {
+				throw std::runtime_error(path + ":" + std::to_string(number) + ": " + e.what());
+			}
+		}
+	}
+
+private:
+	void take(const std::string &line)
+	{
+		std::istringstream words(line);
+		std::string location, name, word;
+		Variable v;
+
+		if (!(words >> location))
+			return;
+		if (!(words >> name))
+			throw std::runtime_error("'" + location + "' of which signal?");
+		if (location == "instance") {
+			instance = name;
+			return;
+		}
+		locate(location, v);
+		for (const KindName &k : kinds) {
+			if (k.size == v.size) {
+				v.kind = k.kind;
+				break;
+			}
+		}
+		while (words >> word)
+			option(word, words, v);
+		if (v.kind == Kind::good && v.area == 'Q')
+			throw std::runtime_error("a quality is an input: %IX");
+		for (const Variable &other : variables) {
+			if (other.text() == v.text())
+				throw std::runtime_error(v.text() + " is already there");
+		}
+		v.signal = signal(name);
+		variables.push_back(v);
+	}
+
+	static void locate(const std::string &text, Variable &v)
+	{
+		char tail = 0;
+		int n = std::sscanf(text.c_str(), "%%%c%c%u.%u%c", &v.area, &v.size, &v.index, &v.bit, &tail);
+
+		if (n < 3 || (v.area != 'I' && v.area != 'Q') || !std::strchr("XBWDL", v.size) ||
+		    n != (v.size == 'X' ? 4 : 3) || std::isdigit((unsigned char)text[3]) == 0)
+			throw std::runtime_error("'" + text + "' is no variable such as %IX0.0 %IW3 %QD1");
+		if (v.index >= BUFFER_SIZE || v.bit > 7)
+			throw std::runtime_error("'" + text + "' is beyond OpenPLC's " +
+			                         std::to_string(BUFFER_SIZE) + " variables of a kind");
+		if (v.area == 'Q' && v.size == 'L')
+			throw std::runtime_error("OpenPLC does not bind %QL to its outputs; take %QD or %QW");
+	}
+
+	static void option(const std::string &word, std::istringstream &words, Variable &v)
+	{
+		if (word == "scale") {
+			if (!(words >> v.scale) || v.scale == 0 || !std::isfinite(v.scale))
+				throw std::runtime_error("scale wants a number that is not 0");
+			return;
+		}
+		if (word == "else") {
+			if (!(words >> v.otherwise) || v.area == 'Q')
+				throw std::runtime_error("else wants a number, and stands with inputs");
+			v.has_otherwise = true;
+			return;
+		}
+		for (const KindName &k : kinds) {
+			if (word == k.name && k.size == v.size) {
+				v.kind = k.kind;
+				return;
+			}
+		}
+		throw std::runtime_error("'" + word + "' is neither scale, else, nor a type of %" + v.area +
+		                         v.size);
+	}
+
+	size_t signal(const std::string &name)
+	{
+		for (size_t i = 0; i < signals.size(); i++) {
+			if (signals[i].name == name)
+				return i;
+		}
+		signals.emplace_back();
+		signals.back().name = name;
+		return signals.size() - 1;
+	}
+};
+
+// --- The variables -------------------------------------------------------------------------------
+
+// A whole number into the variable, if it holds it
+template <typename T, typename Cell> bool put_whole(Cell *cell, double value)
+{
+	double whole = std::round(value);
+
+	// 2^63 and more: as doubles the limits themselves are not exact
+	if (!(whole >= (double)std::numeric_limits<T>::min() &&
+	      whole < (double)std::numeric_limits<T>::max() + 1.0))
+		return false;
+	*cell = (Cell)(T)whole;
+	return true;
+}
+
+template <typename T, typename Cell> bool put_float(Cell *cell, double value)
+{
+	T real = (T)value;
+
+	static_assert(sizeof(T) == sizeof(Cell), "the bits of the one are those of the other");
+	std::memcpy(cell, &real, sizeof(real));
+	return std::isfinite(real);
+}
+
+template <typename T, typename Cell> double get(const Cell *cell)
+{
+	T value;
+
+	static_assert(sizeof(T) == sizeof(Cell), "the bits of the one are those of the other");
+	std::memcpy(&value, cell, sizeof(value));
+	return (double)value;
+}
+
+// False: the variable cannot hold it, and keeps what it has
+bool put(const Variable &v, double value)
+{
+	const unsigned i = v.index;
+
+	switch (v.kind) {
+	case Kind::boolean:
+	case Kind::good:
+		*bool_input[i][v.bit] = value != 0;
+		return true;
+	case Kind::usint:
+		return put_whole<uint8_t>(byte_input[i], value);
+	case Kind::sint:
+		return put_whole<int8_t>(byte_input[i], value);
+	case Kind::integer:
+		return put_whole<int16_t>(int_input[i], value);
+	case Kind::uinteger:
+		return put_whole<uint16_t>(int_input[i], value);
+	case Kind::dint:
+		return put_whole<int32_t>(dint_input[i], value);
+	case Kind::udint:
+		return put_whole<uint32_t>(dint_input[i], value);
+	case Kind::real:
+		return put_float<float>(dint_input[i], value);
+	case Kind::lint:
+		return put_whole<int64_t>(lint_input[i], value);
+	case Kind::lreal:
+		return put_float<double>(lint_input[i], value);
+	}
+	return false;
+}
+
+double take(const Variable &v)
+{
+	const unsigned i = v.index;
+
+	switch (v.kind) {
+	case Kind::boolean:
+		return *bool_output[i][v.bit] != 0;
+	case Kind::usint:
+		return get<uint8_t>(byte_output[i]);
+	case Kind::sint:
+		return get<int8_t>(byte_output[i]);
+	case Kind::integer:
+		return get<int16_t>(int_output[i]);
+	case Kind::uinteger:
+		return get<uint16_t>(int_output[i]);
+	case Kind::dint:
+		return get<int32_t>(dint_output[i]);
+	case Kind::udint:
+		return get<uint32_t>(dint_output[i]);
+	case Kind::real:
+		return get<float>(dint_output[i]);
+	case Kind::good:
+	case Kind::lint:
+	case Kind::lreal:
+		break;
+	}
+	return 0;
+}
+
+// OpenPLC has no cell for a variable that the program does not have
+bool present(const Variable &v)
+{
+	const unsigned i = v.index;
+	const bool in = v.area == 'I';
+
+	switch (v.size) {
+	case 'X':
+		return (in ? bool_input : bool_output)[i][v.bit] != nullptr;
+	case 'B':
+		return (in ? byte_input : byte_output)[i] != nullptr;
+	case 'W':
+		return (in ? int_input : int_output)[i] != nullptr;
+	case 'D':
+		return (in ? dint_input : dint_output)[i] != nullptr;
+	}
+	return in && lint_input[i] != nullptr;
+}
+
+// --- The layer -----------------------------------------------------------------------------------
+
+class Layer {
+public:
+	void start()
+	{
+		const char *path = std::getenv("OWSD_OPENPLC_MAP");
+
+		map_.read(path ? path : "/etc/owsd/openplc.map");
+		for (const Variable &v : map_.variables)
+			outputs_ = outputs_ || v.area == 'Q';
+		say(std::to_string(map_.variables.size()) + " variables of instance " + map_.instance);
+	}
+
+	// A signal is read once, however many variables it has
+	void in()
+	{
+		int64_t now = ows_now();
+
+		look_for(now);
+		for (Signal &s : map_.signals) {
+			int err = handle_ ? ows_get(handle_, s.id, now, &s.value) : -ENOENT;
+
+			keep_up(err);
+			s.good = (err == 0 || err == -ESTALE) && ows_good(s.value.quality);
+		}
+		for (const Variable &v : map_.variables) {
+			if (v.area == 'I' && v.kind != Kind::good && present(v))
+				show(v, map_.signals[v.signal]);
+		}
+		for (const Variable &v : map_.variables) {
+			if (v.kind == Kind::good && present(v))
+				put(v, map_.signals[v.signal].good);
+		}
+	}
+
+	void out()
+	{
+		if (!handle_)
+			return;
+		for (const Variable &v : map_.variables) {
+			if (v.area == 'Q' && present(v))
+				set(v, take(v) / v.scale);
+		}
+		// Outputs go to their SafeValue where this stops
+		if (outputs_)
+			keep_up(ows_beat(handle_, beat_ms()));
+	}
+
+	void stop()
+	{
+		if (!handle_)
+			return;
+		// OpenPLC has set all outputs to 0 but these
+		for (const Variable &v : map_.variables) {
+			if (v.area == 'Q' && v.size == 'D')
+				set(v, 0);
+		}
+		ows_close(handle_);
+		handle_ = nullptr;
+	}
+
+private:
+	void look_for(int64_t now)
+	{
+		int err;
+
+		if (stale_ && handle_ && ows_reopen(handle_) == 0)
+			find();
+		stale_ = false;
+		if (handle_ || now < next_try_)
+			return;
+		next_try_ = now + 1000000000;
+		err = ows_open(map_.instance.c_str(), outputs_ ? OWS_CONTROL : OWS_READ, &handle_);
+		if (err) {
+			handle_ = nullptr;
+			if (err != told_)
+				say("instance " + map_.instance + ": " + std::strerror(-err) + "; trying again");
+			told_ = err;
+			return;
+		}
+		told_ = 0;
+		say("instance " + map_.instance + " is there");
+		find();
+	}
+
+	// Ids stay right over a restart or reload of owsd
+	void find()
+	{
+		for (Signal &s : map_.signals) {
+			if (s.id < 0)
+				s.id = ows_find(handle_, s.name.c_str());
+			if (s.id < 0)
+				say("no signal " + s.name + " in instance " + map_.instance);
+		}
+	}
+
+	// After a restart or reload of owsd; until it is back values are not good
+	void keep_up(int err)
+	{
+		if (err == -ESTALE)
+			stale_ = true;
+	}
+
+	void show(const Variable &v, Signal &s)
+	{
+		bool fits = true;
+
+		if (s.good)
+			fits = put(v, s.value.number * v.scale);
+		tell(s, fits ? 0 : -ERANGE, v);
+		s.good = s.good && fits;
+		if (!s.good && v.has_otherwise)
+			put(v, v.otherwise);
+	}
+
+	void set(const Variable &v, double value)
+	{
+		Signal &s = map_.signals[v.signal];
+		int err = s.id < 0 ? 0 : ows_set(handle_, s.id, value, nullptr);
+
+		keep_up(err);
+		tell(s, err == -ESTALE ? 0 : err, v);
+	}
+
+	void tell(Signal &s, int err, const Variable &v)
+	{
+		if (err && err != s.told)
+			say(v.text() + " " + s.name + ": " + std::strerror(-err));
+		s.told = err;
+	}
+
+	static uint32_t beat_ms()
+	{
+		unsigned long long three_cycles = common_ticktime__ * 3 / 1000000;
+
+		return three_cycles > 1000 ? (uint32_t)three_cycles : 1000;
+	}
+
+	Map map_;
+	ows *handle_ = nullptr;
+	int64_t next_try_ = 0;
+	int told_ = 0;
+	bool outputs_ = false, stale_ = false;
+};
+
+Layer layer;
+
+class Locked {
+public:
+	Locked() { pthread_mutex_lock(&bufferLock); }
+	~Locked() { pthread_mutex_unlock(&bufferLock); }
+};
+
+} // namespace
+
+// A PLC that does not know its variables is not to run
+void initializeHardware()
+{
+	try {
+		layer.start();
+	} catch (const std::exception &e) {
+		say(e.what());
+		std::exit(EXIT_FAILURE);
+	}
+}
+
+void finalizeHardware()
+{
+	layer.stop();
+}
+
+void updateBuffersIn()
+{
+	Locked lock;
+
+	layer.in();
+}
+
+void updateBuffersOut()
+{
+	Locked lock;
+
+	layer.out();
+}
