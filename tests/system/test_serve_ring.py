@@ -16,7 +16,7 @@ def item(name, device, **keys):
     return dict(Name=name, Path=f"/{device}/temperature", Type="double", IO="input", **keys)
 
 
-def ring(scene, wire, *others, names=("room",), devices=(ROOM,), between=None):
+def ring(scene, wire, *others, names=("room",), devices=(ROOM,), between=None, **driver):
     """Daemons of which each has the next as a target, the first the wire too; (daemon, port)."""
     ports = [owsdtest.free_port() for _ in range(2)]
     items = [item(n, d) for n, d in zip(names, devices)]
@@ -24,9 +24,9 @@ def ring(scene, wire, *others, names=("room",), devices=(ROOM,), between=None):
     if others:
         back = f"sim:{scene.file('b.sim', others[0])}, {back}"
     # an owserver does not start before what it leads to
-    second = scene.owsd(owsdtest.rio(back, items), "-l", str(ports[1]))
+    second = scene.owsd(owsdtest.rio(back, items, **driver), "-l", str(ports[1]))
     to_second = between(ports[1]) if between else f"localhost:{ports[1]}"
-    first = scene.owsd(owsdtest.rio(f"sim:{scene.file('a.sim', wire)}, {to_second}", items), "-l", str(ports[0]))
+    first = scene.owsd(owsdtest.rio(f"sim:{scene.file('a.sim', wire)}, {to_second}", items, **driver), "-l", str(ports[0]))
     return [(first, ports[0]), (second, ports[1])]
 
 
@@ -58,7 +58,7 @@ def lost_on_all(scene, pair):
 
 
 def test_a_value_does_not_outlive_its_device_in_a_ring(scene):
-    pair = ring(scene, WIRE.format(ROOM, 21.5) + "at 8s unplug one\n")
+    pair = ring(scene, WIRE.format(ROOM, 21.5) + "at 6s unplug one\n")
     lost_on_all(scene, pair)
     until(lambda: any(stat(scene, daemon, "served_came_round") for daemon, _ in pair), 30)
 
@@ -68,8 +68,8 @@ def test_a_ring_over_a_genuine_owserver_ends_too(scene):
         return scene.owserver(options=["-s", f"127.0.0.1:{port}",
                                         "--timeout_volatile=1", "--timeout_presence=1"]).target
 
-    lost_on_all(scene, ring(scene, WIRE.format(ROOM, 21.5) + "at 12s unplug one\n",
-                            between=between))
+    lost_on_all(scene, ring(scene, WIRE.format(ROOM, 21.5) + "at 8s unplug one\n",
+                            between=between, Timeout=4))
 
 
 def test_an_owsd_that_is_its_own_target_has_no_devices_of_itself(scene):
