@@ -124,7 +124,7 @@ LIBRARY  := $(if $(LIBOWS),$(B)/$(SO) $(B)/libows.a $(B)/libows.pc)
 
 .PHONY: all unit soak system test run bench install uninstall install-service uninstall-service \
         deb test-package test-service clean \
-        examples unit-programs benches FORCE clang sanitize asan tsan m32
+        examples unit-programs benches diagrams FORCE clang sanitize asan tsan m32
 all: $(PROGRAMS) $(LIBRARY) $(B)/core.a
 
 $(B)/%.o: %.c
@@ -319,6 +319,11 @@ m32:
 # The headers of the kernel are those of this machine; gcc-multilib would link them for -m32
 m32: export EXTRA_CFLAGS := -m32 -msse2 -mfpmath=sse -D_TIME_BITS=64 \
             -idirafter /usr/include/$(shell $(CC) -print-multiarch)
+
+# --- Diagrams: made of the program's own tables, and kept beside the pages that show them -------
+diagrams:
+	python3 docs/alarm-states.py >docs/img/alarm-states.svg.new
+	mv docs/img/alarm-states.svg.new docs/img/alarm-states.svg
 
 # --- Install ----------------------------------------------------------------------------------
 D := $(DESTDIR)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The examples for OpenPLC and LinuxCNC, compiled against stand-ins of their interfaces (openplc/ and
-linuxcnc/ beside this file) and run on an owsd with a simulated bus. The genuine ones are not here:
+"""The examples for OpenPLC and LinuxCNC, compiled against stand-ins of their interfaces (openplc/
+and linuxcnc/ beside this file) and run on an owsd with a simulated bus. The genuine are not here:
 docs/openplc.md and docs/linuxcnc.md say what was seen with them."""
 
 import os
@@ -312,7 +312,8 @@ def test_a_machine_goes_on_when_owsd_is_killed_and_when_it_is_back(scene):
           "nothing is good")
     assert hal.running() and hal.pin("room1") == 21.5
     daemon = scene.owsd(config, name=daemon.name)
-    until(lambda: hal.pin("room1.ok") and hal.pin("heater.ok") and hal.pin("alive"), 10, "good again")
+    until(lambda: hal.pin("room1.ok") and hal.pin("heater.ok") and hal.pin("alive"), 10,
+          "all is good again")
     wire(scene, daemon, 1)
 
 
