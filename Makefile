@@ -236,13 +236,20 @@ soak: all $(B)/unit/test_week
 
 # --- System tests, benches and the main job ---------------------------------------------------
 # Programs that system tests command
-SYSTEM_AIDS := $(patsubst tests/system/%.c,$(B)/system/%,$(wildcard tests/system/*.c))
+SYSTEM_AIDS := $(patsubst tests/system/%.c,$(B)/system/%,$(wildcard tests/system/*.c)) \
+               $(patsubst tests/system/preload/%.c,$(B)/system/%.so,$(wildcard tests/system/preload/*.c))
 $(B)/system/ownet: LIBS += $(if $(wildcard /usr/include/ownetapi.h),-lownet)
 
 $(B)/system/%: tests/system/%.c $(B)/core.a
 	@mkdir -p $(@D)
 	$(call show,CC)
 	$(Q)$(CC) $(ALL_CFLAGS) $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.c %.a,$^) $(LIBS)
+
+# For LD_PRELOAD: never with a sanitizer, whose own it would be
+$(B)/system/%.so: tests/system/preload/%.c
+	@mkdir -p $(@D)
+	$(call show,LD)
+	$(Q)$(CC) -std=c17 $(WARN) $(CFLAGS) -shared -fPIC -o $@ $< -ldl
 
 system: all examples $(SYSTEM_AIDS)
 	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/run

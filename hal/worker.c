@@ -315,6 +315,11 @@ int worker_start(struct worker *worker)
 	return -err;
 }
 
+bool worker_started(const struct worker *worker)
+{
+	return worker->started;
+}
+
 struct bus *worker_bus(struct worker *worker)
 {
 	return worker->bus;

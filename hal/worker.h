@@ -29,7 +29,9 @@ typedef void worker_bell(void *ctx);
  */
 int worker_create(const char *target, const char *name, worker_bell *bell, void *ctx,
                   struct worker **worker, char *why, size_t why_size);
+/* 0 or a negative errno; it may be tried again then. */
 int worker_start(struct worker *worker);
+bool worker_started(const struct worker *worker);
 struct bus *worker_bus(struct worker *worker);
 
 /* Engine thread only. 0, or -EAGAIN: queue full. */

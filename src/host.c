@@ -12,69 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A consumer that takes the command segment away again and again has one made once a second. */
-#define TEND_NS    1000000000
-/* How often the loss of the image is said. */
-#define IMAGE_LOST_NS 60000000000LL
-
-static int show_renewed(struct host *h)
-{
-	int err = memory_show_commands(&h->now->memory);
-
-	if (!err)
-		h->unseen = false;
-	return err;
-}
-
-static int renew_commands(struct host *h)
-{
-	struct commands *renewed;
-	int err = 0;
-
-	renewed = memory_renew_commands(&h->now->memory, &err);
-	if (!renewed)
-		return err;
-	h->unseen = true;
-	__atomic_store_n(&h->renewed, renewed, __ATOMIC_RELEASE);
-	host_ring(h);
-	return 0;
-}
-
-/* An image of the same values under the name would need all readers to open it: a restart's work. */
-static void look_for_image(struct host *h, int64_t now_ns)
-{
-	if ((h->image_lost_ns && now_ns - h->image_lost_ns < IMAGE_LOST_NS) ||
-	    !memory_image_lost(&h->now->memory))
-		return;
-	h->image_lost_ns = now_ns;
-	log_err(h->log,
-	        "/dev/shm/owsd.%s.image was removed and programs that start now do not find it: "
-	        "restart owsd (of an ordinary user, logind's RemoveIPC= removes it at log-out)",
-	        h->instance);
-}
-
-void host_tend(struct host *h)
-{
-	int64_t now_ns = ows_now();
-	int err = 0;
-
-	look_for_image(h, now_ns);
-	if (__atomic_load_n(&h->renewed, __ATOMIC_ACQUIRE)) /* the engine has not filled it yet */
-		return;
-	if (now_ns < h->tend_ns)
-		return;
-	if (h->unseen) {
-		err = show_renewed(h);
-		h->tend_ns = now_ns + TEND_NS;
-	} else if (memory_commands_lost(&h->now->memory)) {
-		err = renew_commands(h);
-		h->tend_ns = err ? now_ns + TEND_NS : 0;
-	}
-	if (err)
-		log_err(h->log, "the command segment was taken away and cannot be made again: %s",
-		        strerror(-err));
-}
-
 int host_make_serving(struct host *h, struct config *config, const struct adoption *plan,
                       struct serving **serving, char *why, size_t why_size)
 {
@@ -141,22 +78,28 @@ int host_start_indicator(struct host *h, char *why, size_t why_size)
 
 	if (!err)
 		err = indicator_start(h->indicator);
-	if (err)
-		snprintf(why, why_size, "cannot start a thread: %s", strerror(-err));
+	if (!err)
+		return 0;
+	snprintf(why, why_size, "cannot start the thread of AlarmLine and HeartbeatLine: %s",
+	         strerror(-err));
+	indicator_destroy(h->indicator);
+	h->indicator = NULL;
 	return err;
 }
 
-int host_start_workers(struct serving *s, const struct adoption *plan, char *why, size_t why_size)
+int host_start_workers(struct serving *s, char *why, size_t why_size)
 {
-	for (unsigned i = 0; i < s->worker_count; i++) {
-		int err = plan && plan->ports[i] >= 0 ? 0 : worker_start(s->workers[i]);
+	int first = 0;
 
-		if (err) {
-			snprintf(why, why_size, "cannot start a worker: %s", strerror(-err));
-			return err;
-		}
+	for (unsigned i = 0; i < s->worker_count; i++) {
+		int err = worker_started(s->workers[i]) ? 0 : worker_start(s->workers[i]);
+
+		if (err && !first)
+			snprintf(why, why_size, "cannot start the thread of target %s: %s",
+			         s->config->targets[i].text, strerror(-err));
+		first = first ? first : err;
 	}
-	return 0;
+	return first;
 }
 
 int host_start(const struct host_setup *setup, struct host **host, char *why, size_t why_size)
@@ -179,17 +122,14 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 		config_free(setup->config);
 		return err;
 	}
-	err = memory_show(&h->now->memory, h->log);
-	if (err) {
-		snprintf(why, why_size, "cannot put the shared memory in place: %s",
-		         strerror(-err));
+	err = memory_show(&h->now->memory, h->log, why, why_size);
+	if (err)
 		goto fail;
-	}
 	h->bell = commands_bell(h->now->commands);
 	err = host_start_engine(h, setup->rt_priority, why, why_size);
 	if (err)
 		goto fail;
-	err = host_start_workers(h->now, NULL, why, why_size);
+	err = host_start_workers(h->now, why, why_size);
 	if (!err && h->serve) {
 		err = serve_start(h->serve, &h->now->memory.image);
 		if (err)

@@ -26,6 +26,7 @@ enum {
 	COUNTER_MENDED,
 	COUNTER_WORKER_STALLS,
 	COUNTER_DROPPED_EVENTS,
+	COUNTER_UNMENDED,
 	HOST_COUNTERS,
 };
 static const char *const host_counters[HOST_COUNTERS] = {
@@ -34,6 +35,7 @@ static const char *const host_counters[HOST_COUNTERS] = {
 	[COUNTER_MENDED] = "mended_command_headers",
 	[COUNTER_WORKER_STALLS] = "worker_stalls",
 	[COUNTER_DROPPED_EVENTS] = "dropped_events",
+	[COUNTER_UNMENDED] = "unfinished_reload",
 };
 
 void host_ring(void *ctx)
@@ -103,6 +105,8 @@ static void publish_counters(struct host *h)
 	image_counter(image, index + COUNTER_MENDED, h->mended);
 	image_counter(image, index + COUNTER_WORKER_STALLS, stalls);
 	image_counter(image, index + COUNTER_DROPPED_EVENTS, dropped);
+	image_counter(image, index + COUNTER_UNMENDED,
+	              __atomic_load_n(&h->unmended, __ATOMIC_RELAXED));
 	if (h->serve)
 		publish_serve_counters(h, index + HOST_COUNTERS);
 }

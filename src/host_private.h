@@ -31,6 +31,11 @@ struct host {
 	uint32_t ringing;          /* threads that have just looked where it is */
 	int64_t tend_ns;           /* not sooner */
 	int64_t image_lost_ns;
+	/* of a reload: its image is not in place, threads of it do not run; how many of the two */
+	bool unshown, unstarted;
+	uint32_t unmended;
+	int64_t mend_ns; /* not sooner */
+	struct log_rate mend_rate;
 	uint64_t idle_rings, mended;
 };
 
@@ -46,8 +51,14 @@ struct image_counter *host_plan_counters(const struct host *host, uint32_t *coun
 /* host.c: 0 or a negative errno, the reason then stands in why; plan NULL: a start */
 int host_make_serving(struct host *host, struct config *config, const struct adoption *plan,
                       struct serving **serving, char *why, size_t why_size);
-int host_start_workers(struct serving *serving, const struct adoption *plan, char *why,
-                       size_t why_size);
+/* All that are not running; the first that cannot be started is the error. */
+int host_start_workers(struct serving *serving, char *why, size_t why_size);
 int host_start_indicator(struct host *host, char *why, size_t why_size);
+
+/*
+ * host_tend.c. What a reload could not do once the engine had taken it, and what is said and
+ * counted until it can; host_tend() calls it once a second.
+ */
+void host_mend(struct host *host);
 
 #endif

@@ -69,18 +69,16 @@ static bool same_listeners(const struct config_serve *a, const struct config_ser
 static void exchange(struct host *h, struct serving *next, const struct adoption *plan)
 {
 	struct serving *before = h->now;
-	char why[256];
 	bool dark;
-	int err;
 
 	h->plan = plan;
 	__atomic_store_n(&h->next, next, __ATOMIC_RELEASE);
 	host_ring(h);
 	pause_until_null(&h->next);
 	h->plan = NULL;
-	err = memory_show(&next->memory, h->log);
-	if (err)
-		log_err(h->log, "cannot put the shared memory in place: %s", strerror(-err));
+	h->unshown = true;
+	h->unstarted = false; /* before their hardware is let go of */
+	host_mend(h);
 	if (h->serve)
 		serve_reload(h->serve, next->config, &next->memory.image, plan->ports);
 	dark = indicator_stop(h->indicator, END_NS);
@@ -88,14 +86,13 @@ static void exchange(struct host *h, struct serving *next, const struct adoption
 		indicator_destroy(h->indicator);
 	h->indicator = NULL;
 	leave(h, before, end_workers(before, next, plan), dark);
-	if (host_start_workers(next, plan, why, sizeof(why)) ||
-	    host_start_indicator(h, why, sizeof(why)))
-		log_err(h->log, "%s", why);
+	h->unstarted = true;
+	host_mend(h);
 }
 
 bool host_may_reload(const struct host *h)
 {
-	return !h->unseen && !__atomic_load_n(&h->renewed, __ATOMIC_ACQUIRE);
+	return !h->unseen && !h->unshown && !__atomic_load_n(&h->renewed, __ATOMIC_ACQUIRE);
 }
 
 int host_reload(struct host *h, struct config *config, char *why, size_t why_size)

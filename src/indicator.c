@@ -12,7 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define MS       INT64_C(1000000)
 #define SECOND   (1000 * MS)
@@ -38,7 +37,7 @@ struct indicator {
 	struct lamp alarm_lamp, heartbeat_lamp;
 	pthread_t thread;
 	bool running;
-	uint32_t stop;
+	uint32_t stop, ended;
 };
 
 bool indicator_alarm(const struct image *image)
@@ -211,6 +210,8 @@ static void *run(void *ctx)
 		if (left_ns > 0)
 			segment_wait(&indicator->stop, 0, left_ns);
 	}
+	__atomic_store_n(&indicator->ended, 1, __ATOMIC_RELEASE);
+	segment_wake(&indicator->ended, 1);
 	return NULL;
 }
 
@@ -239,21 +240,20 @@ int indicator_start(struct indicator *indicator)
 
 bool indicator_stop(struct indicator *indicator, int64_t timeout_ns)
 {
-	struct timespec until;
+	int64_t until_ns = ows_now() + timeout_ns, left_ns = timeout_ns;
 
 	if (!indicator || !indicator->running)
 		return true;
 	__atomic_store_n(&indicator->stop, 1, __ATOMIC_RELEASE);
 	segment_wake(&indicator->stop, 1);
-	clock_gettime(CLOCK_REALTIME, &until);
-	until.tv_sec += timeout_ns / SECOND;
-	until.tv_nsec += timeout_ns % SECOND;
-	if (until.tv_nsec >= SECOND) {
-		until.tv_nsec -= SECOND;
-		until.tv_sec++;
+	/* pthread_timedjoin_np() would go by the wall clock, which may be set meanwhile */
+	while (!__atomic_load_n(&indicator->ended, __ATOMIC_ACQUIRE)) {
+		if (left_ns <= 0)
+			return false;
+		segment_wait(&indicator->ended, 0, left_ns);
+		left_ns = until_ns - ows_now();
 	}
-	if (pthread_timedjoin_np(indicator->thread, NULL, &until))
-		return false;
+	pthread_join(indicator->thread, NULL);
 	indicator->running = false;
 	return true;
 }

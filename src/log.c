@@ -154,7 +154,7 @@ static bool takes_line(int fd)
 	return fd < 0 || poll(&poll_fd, 1, 0) > 0;
 }
 
-/* -EAGAIN: fd is full, nothing was written. Other failures lose the line: nobody to tell. */
+/* -EAGAIN: fd is full, nothing was written. Other failures lose the line. */
 static int write_line(int fd, int prefix, int level, const char *text, size_t len)
 {
 	char out[LINE_BYTES + 8];
@@ -196,7 +196,7 @@ static void say_lost(struct log *log, int fd, int prefix)
 		return;
 	len = snprintf(text, sizeof(text), "%u log line%s lost", (unsigned)lost,
 	               lost == 1 ? "" : "s");
-	if (write_line(fd, prefix, LOG_LEVEL_WARNING, text, (size_t)len) != -EAGAIN)
+	if (write_line(fd, prefix, LOG_LEVEL_WARNING, text, (size_t)len) == 0)
 		log->said = dropped;
 }
 
@@ -216,11 +216,15 @@ int log_drain(struct log *log, int fd, int prefix)
 	while (count < (int)LINES) {
 		struct line *line = &log->lines[log->tail % LINES];
 		uint32_t turn = log->tail - log->tail % LINES;
+		int err;
 
 		if (!has_lines(log))
 			break;
-		if (write_line(fd, prefix, line->level, line->text, line->len) == -EAGAIN)
+		err = write_line(fd, prefix, line->level, line->text, line->len);
+		if (err == -EAGAIN)
 			return count;
+		if (err) /* a full disk, a reader that went: said when there is one again */
+			__atomic_fetch_add(&log->dropped, 1, __ATOMIC_RELAXED);
 		__atomic_store_n(&line->turn, turn + LINES, __ATOMIC_RELEASE);
 		log->tail++;
 		count++;

@@ -174,6 +174,8 @@ static const char *hint(int err)
 		return ": /dev/shm is full";
 	case EPERM:
 		return ": a file of another user is in the way in /dev/shm";
+	case EISDIR:
+		return ": a directory is in the way";
 	default:
 		return "";
 	}
@@ -212,7 +214,7 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 	return 0;
 }
 
-int memory_show(struct memory *m, struct log *log)
+int memory_show(struct memory *m, struct log *log, char *why, size_t why_size)
 {
 	struct segment before;
 	bool had_before = open_image_before(m->instance, &before);
@@ -223,6 +225,11 @@ int memory_show(struct memory *m, struct log *log)
 	err = segment_show(m->instance, &m->commands[m->current].segment);
 	if (!err)
 		err = segment_show(m->instance, &m->image_segment);
+	if (err)
+		snprintf(why, why_size,
+		         "no program sees the values: cannot put the shared memory in place in "
+		         "/dev/shm: %s%s",
+		         strerror(-err), hint(err));
 	m->shown = !err;
 	if (had_before) {
 		struct ows_image_header *h = (void *)before.base;

@@ -44,8 +44,11 @@ struct memory_setup {
  */
 int memory_make(struct memory *memory, const struct memory_setup *setup, char *why,
                 size_t why_size);
-/* Put them in place of those before, which are retired. 0 or a negative errno. */
-int memory_show(struct memory *memory, struct log *log);
+/*
+ * Put them in place of those before, which are retired. 0 or a negative errno, the reason then
+ * stands in why; may be called again then.
+ */
+int memory_show(struct memory *memory, struct log *log, char *why, size_t why_size);
 /* The commands in use. */
 struct commands *memory_commands(struct memory *memory);
 /* Did a consumer truncate or unlink the command segment? A system call or two. */

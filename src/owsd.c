@@ -10,6 +10,7 @@
 #include "notify.h"
 #include "printable.h"
 #include "shm/segment.h"
+#include "standard.h"
 #include "target.h"
 
 #include <errno.h>
@@ -447,6 +448,8 @@ int main(int argc, char **argv)
 	/* What is used little of a large block stays zero pages. Else the limit rises by itself */
 	mallopt(M_MMAP_THRESHOLD, 64 * 1024);
 #endif
+	if (standard_open()) /* then nothing can be told either */
+		return EXIT_RUN;
 	/* a file that may not grow is an error of the write like another */
 	signal(SIGXFSZ, SIG_IGN);
 	status = parse_options(argc, argv, &o);
@@ -462,8 +465,10 @@ int main(int argc, char **argv)
 		return finish_output();
 	}
 	log = log_create(o.level);
-	if (!log)
+	if (!log) {
+		complain("no memory for the log");
 		return EXIT_RUN;
+	}
 	supervisor_word = log_word(log);
 	catch_signals();
 	lock = segment_lock(o.instance, &owner, &stolen);

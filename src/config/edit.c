@@ -174,6 +174,17 @@ static int apply(struct rio **rio, struct rio_node *block, enum option option, c
 	return put_value(rio, block, option, value);
 }
 
+/* With an item of that name nobody could reach the driver's own keys any more. */
+static bool is_driver_name(const char *name, struct config_report *report)
+{
+	if (strcmp(name, DRIVER) != 0)
+		return false;
+	report_error(report, command_line,
+	             "no item can be named " DRIVER ": that stands for the driver itself, whose keys are "
+	             "changed by config FILE set " DRIVER " KEY=VALUE");
+	return true;
+}
+
 /* Which of two values of one key was meant nobody can know. */
 static int check_once(const char *const *settings, unsigned count, struct config_report *report)
 {
@@ -212,6 +223,8 @@ int edit_set(struct rio **rio, const char *name, const char *const *settings, un
 		if (!setting)
 			return block ? -ENOMEM : -EINVAL;
 		err = split_setting(setting, place, &option, &value, report);
+		if (!err && option == OPT_NAME && place == PLACE_ITEM && is_driver_name(value, report))
+			err = -EINVAL;
 		if (!err)
 			err = apply(rio, block, option, value);
 		/* it goes by its new name from here on */
@@ -290,6 +303,8 @@ int edit_add(struct rio **rio, const char *name, const char *path, const char *c
 		report_error(report, command_line, "the file has no block " DRIVER);
 		return -EINVAL;
 	}
+	if (is_driver_name(name, report))
+		return -EINVAL;
 	if (find_item(*rio, name)) {
 		report_error(report, command_line, "there is an item \"%s\" already", name);
 		return -EINVAL;

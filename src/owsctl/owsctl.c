@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl: look at the signals of owsd and set them; look at devices without owsd. */
+#include "../standard.h"
 #include "verbs.h"
 
 #include <getopt.h>
@@ -58,6 +59,8 @@ int main(int argc, char **argv)
 
 	/* A reader of ours that leaves is seen as EPIPE. */
 	signal(SIGPIPE, SIG_IGN);
+	if (standard_open())
+		return CTL_FAILED;
 	/* And a file that may not grow as EFBIG. */
 	signal(SIGXFSZ, SIG_IGN);
 	while ((c = getopt_long(argc, argv, "+n:t:Vh", longs, NULL)) != -1) {

@@ -79,12 +79,14 @@ static pid_t read_pid(int fd)
 	return (pid_t)pid;
 }
 
+/* The page that is there is written before anything is cut off: a full /dev/shm has no other. */
 static int write_pid(int fd)
 {
 	char text[16];
 	int n = snprintf(text, sizeof(text), "%ld\n", (long)getpid());
 
-	if (ftruncate(fd, 0) < 0 || pwrite(fd, text, (size_t)n, 0) != n)
+	errno = 0;
+	if (pwrite(fd, text, (size_t)n, 0) != n || ftruncate(fd, n) < 0)
 		return errno ? -errno : -EIO;
 	return 0;
 }
@@ -141,6 +143,7 @@ int segment_lock(const char *instance, pid_t *pid, bool *stolen)
 			lock_bytes(fd, F_UNLCK, BYTE_PID, 1);
 			if (err == 0)
 				return fd;
+			unlink(path); /* nobody's: who waits for it looks whether it is still there */
 		} else if (err == -EAGAIN || err == -EACCES) {
 			*pid = read_pid(fd);
 			err = -EBUSY;

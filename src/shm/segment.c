@@ -103,6 +103,8 @@ int segment_show(const char *instance, struct segment *segment)
 {
 	char path[80];
 
+	if (segment->temporary[0] == '\0')
+		return 0;
 	final_path(instance, segment->kind, path);
 	if (rename(segment->temporary, path) < 0)
 		return errno == EACCES ? -EPERM : -errno;

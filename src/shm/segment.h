@@ -40,7 +40,7 @@ struct segment {
  */
 int segment_create(const char *instance, enum segment_kind kind, size_t size,
                    struct segment *segment);
-/* Put it in place under its final name, in one step. */
+/* Put it in place under its final name, in one step; no more if it is there. */
 int segment_show(const char *instance, struct segment *segment);
 /* Map what an earlier owsd left (writable). -ENOENT none; -EPERM of another user. */
 int segment_open_old(const char *instance, enum segment_kind kind, struct segment *segment);

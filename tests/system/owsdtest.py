@@ -206,13 +206,13 @@ class Owserver(Program):
 
 
 class Owsd(Program):
-    def __init__(self, scene, config, name, options, env):
+    def __init__(self, scene, config, name, options, env, prefix):
         self.name = name
         self.config = config
         self.notify = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         address = str(scene.path / f"n{next(_serial)}")
         self.notify.bind(address)
-        super().__init__(scene, [OWSD, "-n", name, "-c", config, *options],
+        super().__init__(scene, [*prefix, OWSD, "-n", name, "-c", config, *options],
                          {"NOTIFY_SOCKET": address, **(env or {})})
 
     def ready(self, seconds=10):
@@ -301,13 +301,14 @@ class Scene:
         assert new.running(), "owserver did not start again"
         return new
 
-    def owsd(self, config, *options, name=None, env=None, ready=True):
-        """Start owsd with the text (or the path) of a configuration; ready unless said otherwise."""
+    def owsd(self, config, *options, name=None, env=None, ready=True, prefix=()):
+        """Start owsd with the text (or the path) of a configuration; ready unless said otherwise.
+        prefix: a program that becomes owsd, with its arguments."""
         need(OWSD)
         name = name or self.name()
         if isinstance(config, str):
             config = self.file(f"{name}-{next(_serial)}.rio", config)
-        daemon = Owsd(self, config, name, options, env)
+        daemon = Owsd(self, config, name, options, env, prefix)
         return daemon.ready() if ready else daemon
 
     def owsd_once(self, *arguments, seconds=20):

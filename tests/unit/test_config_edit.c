@@ -254,6 +254,8 @@ static void test_what_cannot_be_edited_is_said(void)
 	TEST_ASSERT_EQUAL_INT(-EINVAL, set("OwsDrv", "Item=3"));
 	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_remove(&rio, "none", &report));
 	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_add(&rio, "relay", "/a/b", NULL, 0, &report));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_add(&rio, "OwsDrv", "/a/b", NULL, 0, &report));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, set("relay", "Name=OwsDrv"));
 	TEST_ASSERT_EQUAL_STRING("error: there is no item \"none\"\n"
 	                         "error: there is no key Typ; is it Type?\n"
 	                         "error: there is no key Zebra\n"
@@ -261,7 +263,11 @@ static void test_what_cannot_be_edited_is_said(void)
 	                         "error: Name: control characters are not allowed\n"
 	                         "error: Item is a block and has no value\n"
 	                         "error: there is no item \"none\"\n"
-	                         "error: there is an item \"relay\" already\n",
+	                         "error: there is an item \"relay\" already\n"
+	                         "error: no item can be named OwsDrv: that stands for the driver itself, "
+	                         "whose keys are changed by config FILE set OwsDrv KEY=VALUE\n"
+	                         "error: no item can be named OwsDrv: that stands for the driver itself, "
+	                         "whose keys are changed by config FILE set OwsDrv KEY=VALUE\n",
 	                         said);
 	expect_text(genuine);
 }

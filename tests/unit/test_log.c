@@ -136,6 +136,22 @@ static void test_lines_that_find_the_ring_full_are_counted_and_said_once(void)
 	TEST_ASSERT_EQUAL_STRING("<3>after\n", written());
 }
 
+static void test_lines_that_a_full_disk_does_not_take_are_counted_and_said_later(void)
+{
+	int full = open("/dev/full", O_WRONLY);
+
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, full);
+	log_put(log_under_test, LOG_LEVEL_ERR, "one");
+	log_put(log_under_test, LOG_LEVEL_ERR, "two");
+	log_drain(log_under_test, full, 1);
+	log_drain(log_under_test, full, 1);
+	close(full);
+	TEST_ASSERT_EQUAL_UINT64(2, log_dropped(log_under_test));
+	log_put(log_under_test, LOG_LEVEL_ERR, "three");
+	log_drain(log_under_test, pipe_fd[1], 1);
+	TEST_ASSERT_EQUAL_STRING("<3>three\n<4>2 log lines lost\n", written());
+}
+
 static void test_the_ring_goes_round_many_times(void)
 {
 	char expected[16];
@@ -285,6 +301,7 @@ int main(void)
 	RUN_TEST(test_a_cut_leaves_no_half_character);
 	RUN_TEST(test_each_line_counts_the_word_up);
 	RUN_TEST(test_lines_that_find_the_ring_full_are_counted_and_said_once);
+	RUN_TEST(test_lines_that_a_full_disk_does_not_take_are_counted_and_said_later);
 	RUN_TEST(test_the_ring_goes_round_many_times);
 	RUN_TEST(test_a_full_descriptor_keeps_the_lines);
 	RUN_TEST(test_a_full_pipe_that_blocks_keeps_the_lines_and_does_not_block);

@@ -48,7 +48,7 @@ static void test_segments_are_seen_once_they_are_shown(void)
 {
 	TEST_ASSERT_EQUAL_INT(0, make());
 	TEST_ASSERT_EQUAL_INT(-1, access(file("image"), F_OK));
-	TEST_ASSERT_EQUAL_INT(0, memory_show(&memory, NULL));
+	TEST_ASSERT_EQUAL_INT(0, memory_show(&memory, NULL, why, sizeof(why)));
 	TEST_ASSERT_EQUAL_INT(0, access(file("image"), F_OK));
 	TEST_ASSERT_EQUAL_INT(0, access(file("command"), F_OK));
 	memory_end(&memory);
@@ -92,7 +92,7 @@ static void test_a_segment_made_again_is_seen_once_it_is_shown(void)
 	int err = 0;
 
 	TEST_ASSERT_EQUAL_INT(0, make());
-	TEST_ASSERT_EQUAL_INT(0, memory_show(&memory, NULL));
+	TEST_ASSERT_EQUAL_INT(0, memory_show(&memory, NULL, why, sizeof(why)));
 	TEST_ASSERT_EQUAL_INT(0, stat(file("command"), &before));
 	TEST_ASSERT_EQUAL_INT(0, truncate(path, 0));
 	TEST_ASSERT_TRUE(memory_commands_lost(&memory));

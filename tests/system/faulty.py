@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""Faults of the machine for owsd and owsctl: a library before theirs, a small house that is served.
+
+    faulty.env(scene, memory="17")        the 17th allocation fails; other faults: preload/faults.c
+    faulty.house(scene)                   a configuration over simulated chips
+"""
+
+import os
+import struct
+import subprocess
+
+import owsdtest
+from owsdtest import raw
+
+LIBRARY = owsdtest.BUILD / "system" / "faults.so"
+WIRE = """chip DS2482-100 0x18
+DS18B20 28.A0B1C2000001 as room temperature 21.5 resolution 9
+DS2408 29.A0B1C2000004 as board
+"""
+MORE = "chip DS2482-100 0x18\nDS18B20 28.A0B1C2000002 temperature 19.5 resolution 9\n"
+ROOM = dict(Name="room", Path="/28.A0B1C2000001/temperature9", Type=raw("double"), IO=raw("input"),
+            Uncached=raw("on"))
+HALL = dict(Name="hall", Path="/28.A0B1C2000002/temperature9", Type=raw("double"), IO=raw("input"),
+            Uncached=raw("on"))
+RELAYS = dict(Name="relays", Path="/29.A0B1C2000004/PIO.BYTE", Type=raw("byte"), IO=raw("output"))
+
+
+def house(scene, more=False, **driver):
+    """The text of a configuration; more: a second target, with the signal hall."""
+    wire = scene.file("house.sim", WIRE)
+    target = f"sim:{wire}"
+    items = [ROOM, RELAYS]
+    if more:
+        target += f", sim:{scene.file('more.sim', MORE)}"
+        items.append(HALL)
+    return owsdtest.rio(target, items, Period=0.05, MaxRetries=1, Timeout=5, **driver)
+
+
+def env(scene, **faults):
+    owsdtest.need(LIBRARY)
+    if b"__asan_init" in owsdtest.OWSD.read_bytes() or b"__tsan_init" in owsdtest.OWSD.read_bytes():
+        owsdtest.skip("the sanitizer has a library of its own before the program's")
+    mark = scene.path / "mark"
+    return {"LD_PRELOAD": str(LIBRARY), "FAULT_MARK": str(mark),
+            **{f"FAULT_{name.upper()}": str(value) for name, value in faults.items()}}
+
+
+def happened(scene):
+    """Since the last call."""
+    mark = scene.path / "mark"
+    try:
+        mark.unlink()
+    except FileNotFoundError:
+        return False
+    return True
+
+
+class Clock:
+    """How far CLOCK_REALTIME and CLOCK_BOOTTIME are ahead, for all that got its env()."""
+
+    def __init__(self, scene):
+        self.path = scene.path / "clock"
+        self.path.write_bytes(bytes(16))
+
+    def env(self, scene):
+        return env(scene, clock=self.path)
+
+    def jump(self, wall=0.0, boot=0.0):
+        now = struct.unpack("qq", self.path.read_bytes())
+        with open(self.path, "r+b", buffering=0) as file:
+            file.write(struct.pack("qq", now[0] + int(wall * 1e9), now[1] + int(boot * 1e9)))
+
+
+def ctl(scene, daemon, environment, *arguments):
+    """owsctl under the same faults."""
+    return subprocess.run([str(owsdtest.OWSCTL), "-n", daemon.name, *arguments], text=True, timeout=20,
+                          cwd=scene.path, stdin=subprocess.DEVNULL, capture_output=True,
+                          env=dict(os.environ, **environment))
+
+
+def leftovers(name):
+    """What stands in /dev/shm under this name, without it."""
+    return sorted(entry.split(".", 2)[2] for entry in os.listdir("/dev/shm")
+                  if entry.startswith(f"owsd.{name}."))
+
+
+def counters(scene, daemon):
+    """Of owsd itself."""
+    import json
+    stats = json.loads(scene.owsctl(daemon, "--json", "stats").stdout)
+    return {c["name"]: c["value"] for c in stats["counters"] if c["target"] is None}

@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Faults of the machine for a program that is started with this in LD_PRELOAD:
+ *
+ *   FAULT_MEMORY=N    the N-th allocation fails (malloc, calloc, realloc, mmap); N+: all from there
+ *   FAULT_THREAD=N    the N-th thread cannot be made; a path: none, while that file is there
+ *   FAULT_CLOCK=FILE  two 64-bit numbers: what CLOCK_REALTIME and CLOCK_BOOTTIME are ahead, in ns
+ *   FAULT_MARK=FILE   is made when one has happened
+ */
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <time.h>
+#include <unistd.h>
+
+extern void *__libc_malloc(size_t size);
+extern void *__libc_calloc(size_t count, size_t size);
+extern void *__libc_realloc(void *old, size_t size);
+
+static unsigned long memory_at, memory_count, thread_at, thread_count;
+static int memory_on;
+static const char *thread_file, *mark;
+static const volatile int64_t *ahead;
+static int (*next_thread)(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);
+static int (*next_clock)(clockid_t, struct timespec *);
+static void *(*next_mmap)(void *, size_t, int, int, int, off_t);
+
+__attribute__((constructor)) static void prepare(void)
+{
+	const char *text = getenv("FAULT_MEMORY"), *clock = getenv("FAULT_CLOCK");
+	char *end = NULL;
+	int fd;
+
+	*(void **)&next_thread = dlsym(RTLD_NEXT, "pthread_create");
+	*(void **)&next_clock = dlsym(RTLD_NEXT, "clock_gettime");
+	*(void **)&next_mmap = dlsym(RTLD_NEXT, "mmap");
+	mark = getenv("FAULT_MARK");
+	thread_file = getenv("FAULT_THREAD");
+	if (thread_file && *thread_file != '/')
+		thread_at = strtoul(thread_file, NULL, 10);
+	fd = clock ? open(clock, O_RDONLY | O_CLOEXEC) : -1;
+	if (fd >= 0) {
+		void *map = next_mmap(NULL, 2 * sizeof(int64_t), PROT_READ, MAP_SHARED, fd, 0);
+
+		ahead = map == MAP_FAILED ? NULL : map;
+		close(fd);
+	}
+	if (text) {
+		memory_count = 0;
+		memory_at = strtoul(text, &end, 10);
+		memory_on = *end == '+';
+	}
+}
+
+static int happens(void)
+{
+	int saved = errno, fd = mark ? open(mark, O_WRONLY | O_CREAT | O_CLOEXEC, 0600) : -1;
+
+	if (fd >= 0)
+		close(fd);
+	errno = saved;
+	return 1;
+}
+
+static int memory_fails(void)
+{
+	unsigned long n;
+
+	if (!memory_at)
+		return 0;
+	n = __atomic_add_fetch(&memory_count, 1, __ATOMIC_RELAXED);
+	return (n == memory_at || (memory_on && n > memory_at)) && happens();
+}
+
+void *malloc(size_t size)
+{
+	if (!memory_fails())
+		return __libc_malloc(size);
+	errno = ENOMEM;
+	return NULL;
+}
+
+void *calloc(size_t count, size_t size)
+{
+	if (!memory_fails())
+		return __libc_calloc(count, size);
+	errno = ENOMEM;
+	return NULL;
+}
+
+void *realloc(void *old, size_t size)
+{
+	if (!memory_fails())
+		return __libc_realloc(old, size);
+	errno = ENOMEM;
+	return NULL;
+}
+
+void *mmap(void *at, size_t size, int protection, int flags, int fd, off_t offset)
+{
+	if (!memory_fails())
+		return next_mmap(at, size, protection, flags, fd, offset);
+	errno = ENOMEM;
+	return MAP_FAILED;
+}
+
+int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*run)(void *), void *arg)
+{
+	int fails = 0;
+
+	if (thread_at)
+		fails = __atomic_add_fetch(&thread_count, 1, __ATOMIC_RELAXED) == thread_at;
+	else if (thread_file)
+		fails = access(thread_file, F_OK) == 0;
+	if (!fails)
+		return next_thread(thread, attributes, run, arg);
+	happens();
+	return EAGAIN;
+}
+
+int clock_gettime(clockid_t clock, struct timespec *now)
+{
+	int err = next_clock(clock, now);
+	int64_t ns = 0;
+
+	if (!err && ahead)
+		ns = clock == CLOCK_REALTIME ? ahead[0] : clock == CLOCK_BOOTTIME ? ahead[1] : 0;
+	ns += now->tv_nsec;
+	now->tv_sec += ns / 1000000000;
+	now->tv_nsec = ns % 1000000000;
+	if (now->tv_nsec < 0) {
+		now->tv_nsec += 1000000000;
+		now->tv_sec--;
+	}
+	return err;
+}
