@@ -7,11 +7,12 @@ KERNEL_TIME ?= 600
 RIG_FRONT   := $(B)/tests/kernel/vhci.o $(B)/tests/kernel/usbip.o $(B)/tests/kernel/tiny_usb.o \
                $(B)/tests/kernel/control.o
 RIG_OURS    := $(B)/kernel/simchip $(B)/kernel/owdump $(B)/kernel/busdump $(PROGRAMS)
+ENDURANCE   := $(B)/kernel/endurance
 RIG_PEERS    = $(foreach p,owserver i2cdetect i2cget i2cset i2ctransfer,\
                  $(shell PATH="$$PATH:/usr/sbin" command -v $(p)))
 RIG_GUEST   := $(filter-out %/init,$(wildcard tests/kernel/guest/*))
 
-.PHONY: test-kernel bench-kernel kernel-programs test-gpio test-gpio-pi gpio-libraries gpio-programs
+.PHONY: test-kernel bench-kernel endurance-kernel kernel-programs test-gpio test-gpio-pi gpio-libraries gpio-programs
 
 $(B)/unit/test_usbip: $(B)/tests/kernel/usbip.o
 $(B)/unit/test_tiny_usb: $(B)/tests/kernel/tiny_usb.o
@@ -25,6 +26,11 @@ $(B)/kernel/owdump: $(B)/tests/kernel/owdump.o $(B)/tests/kernel/lines.o
 	$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
 $(B)/kernel/busdump: $(B)/tests/kernel/busdump.o $(B)/tests/kernel/lines.o $(B)/core.a
+	@mkdir -p $(@D)
+	$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+
+$(ENDURANCE): $(patsubst %,$(B)/tests/kernel/%.o,endurance endurance_truth endurance_daemon \
+              endurance_reader control) $(B)/core.a
 	@mkdir -p $(@D)
 	$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
@@ -44,6 +50,16 @@ bench-kernel:
 	@sh board/install-deps build kernel
 	@$(MAKE) --no-print-directory kernel-programs
 	@$(call rig,bench)
+
+# owsd's life in real time: MINUTES=60 SEED=1. Its end is within two minutes of that
+MINUTES ?= 60
+endurance-kernel:
+	@sh board/install-deps build kernel $(if $(OR_SKIP),|| true)
+	@$(MAKE) --no-print-directory kernel-programs $(ENDURANCE)
+	@mkdir -p $(B)/kernel/minutes
+	@echo $(MINUTES) $(or $(SEED),1) >$(B)/kernel/minutes/endurance
+	@$(call rig,endurance) --program $(ENDURANCE) --file $(B)/kernel/minutes/endurance
+endurance-kernel: KERNEL_TIME = $(shell expr $(MINUTES) '*' 60 + 600)
 
 # --- GPIO: an arm64 guest, whose chip is a PL061, with libgpiod 1.6 and 2.x -------------------
 # Both generations of libgpiod, unpacked from Debian's packages; their library names differ, so

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A stretch of owsd's life on the rig, in real time: what the endurance program knows and checks.
+ * It tells the simulated chips what to measure, so it knows which values can be true.
+ */
+#ifndef TESTS_KERNEL_ENDURANCE_H
+#define TESTS_KERNEL_ENDURANCE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "src/libows/ows.h"
+
+#define SECOND INT64_C(1000000000)
+#define STALE_AFTER (30 * SECOND) /* of the items in endurance.rio */
+
+enum { WARM, COLD, FAR, AIR, PINS, INPUTS, RELAYS = INPUTS, SIGNALS };
+extern const char *const signal_names[SIGNALS];
+
+/* --- Results: lines as the rig counts them --- */
+void passed(const char *form, ...) __attribute__((format(printf, 1, 2)));
+void violated(const char *form, ...) __attribute__((format(printf, 1, 2)));
+void remark(const char *form, ...) __attribute__((format(printf, 1, 2)));
+
+/* --- What is true: which values the inputs had when --- */
+/* Tell the chip another value of that input; which, is its own matter. */
+void truth_change(int input);
+/* The pins that the control program drives low from now on. */
+void truth_relays(unsigned pins);
+/* Could it be measured between these moments? */
+bool truth_between(int input, double value, int64_t from_ns, int64_t until_ns);
+/* Is it what is there now? */
+bool truth_now(int input, double value);
+/* An event of the scenario language; false: refused. */
+bool sim_tell(const char *event);
+
+/* --- The daemon --- */
+void daemon_start(void);
+void daemon_signal(int number);
+/* After a signal that ends it: wait, at most 10 s. Its status as of waitpid(), -1: it does not end. */
+int daemon_end(void);
+/* Exchange its file for the other one and have it read. */
+void daemon_reload(void);
+bool daemon_lives(void);
+/* Resident memory in KiB and open descriptors; -1: cannot be told. */
+long daemon_memory(void);
+int daemon_descriptors(void);
+
+/* --- A client of the protocol that owsd serves: asks again and again, checks what it is told --- */
+void client_step(void);
+unsigned client_answers(void);
+
+/* --- The control program and reader --- */
+/* Wait for the table, at most 10 s. */
+bool reader_open(void);
+/* One look at all signals: every good value must be true. */
+void reader_look(void);
+/* All good, of now, and the output done. */
+bool reader_all_well(void);
+/* A signal that is good although nothing can be; -1: none. */
+int reader_any_good(void);
+void reader_set_relays(unsigned pins);
+/* What owsd counts is in order. */
+void reader_counters(void);
+uint64_t reader_looks(void);
+uint64_t reader_checked(void);
+/* Which signals are not good, and why. */
+void reader_explain(void);
+
+#endif

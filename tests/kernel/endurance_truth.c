@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT */
+#include "endurance.h"
+
+#include "control.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define KEPT 64 /* the last changes of each input */
+/* Values differ from one another for as long as any reading of them may be about */
+#define STEPS 400
+
+const char *const signal_names[SIGNALS] = {
+	[WARM] = "warm", [COLD] = "cold", [FAR] = "far", [AIR] = "air",
+	[PINS] = "pins", [RELAYS] = "relays",
+};
+
+struct change {
+	int64_t before_ns, after_ns; /* it came between these */
+	double value;
+};
+
+/* The upper four pins are inputs, the lower four outputs. */
+static struct change history[INPUTS][KEPT];
+static unsigned changes[INPUTS];
+static struct change outputs[KEPT];
+static unsigned output_changes;
+
+static void note(struct change *list, unsigned *count, double value, int64_t before_ns)
+{
+	list[*count % KEPT] = (struct change){before_ns, ows_now(), value};
+	(*count)++;
+}
+
+bool sim_tell(const char *event)
+{
+	char line[128];
+	char *words[1] = {line};
+
+	snprintf(line, sizeof(line), "%s", event);
+	return control_tell(1, words) == 0;
+}
+
+void truth_change(int input)
+{
+	unsigned step = changes[input];
+	int64_t before = ows_now();
+	double value;
+	char line[128];
+
+	if (input == PINS) {
+		value = (step * 7 + 5) % 16; /* of pins 4 to 7 */
+		for (unsigned pin = 0; pin < 4; pin++) {
+			snprintf(line, sizeof(line), "set board pin.%u %u", pin + 4,
+			         (unsigned)value >> pin & 1);
+			sim_tell(line);
+		}
+	} else {
+		value = -20 + input * 13.5 + step % STEPS * 0.125;
+		snprintf(line, sizeof(line), "set %s temperature %g", signal_names[input], value);
+		sim_tell(line);
+	}
+	note(history[input], &changes[input], value, before);
+}
+
+void truth_relays(unsigned pins)
+{
+	note(outputs, &output_changes, pins, ows_now());
+}
+
+/* Was it in force at some time between? The pins change one after another. */
+static bool in_force(const struct change *list, unsigned count, double value, int64_t from_ns,
+                     int64_t until_ns)
+{
+	for (unsigned i = count; i-- > 0 && count - i < KEPT;) {
+		const struct change *c = &list[i % KEPT];
+		int64_t ended = i + 1 < count ? list[(i + 1) % KEPT].after_ns : INT64_MAX;
+
+		if (c->value == value && c->before_ns <= until_ns && ended >= from_ns)
+			return true;
+	}
+	return false;
+}
+
+static bool changing(const struct change *list, unsigned count, int64_t from_ns, int64_t until_ns)
+{
+	for (unsigned i = count; i-- > 0 && count - i < KEPT;)
+		if (list[i % KEPT].before_ns <= until_ns && list[i % KEPT].after_ns >= from_ns)
+			return true;
+	return false;
+}
+
+bool truth_between(int input, double value, int64_t from_ns, int64_t until_ns)
+{
+	unsigned low = ~(unsigned)value & 0xf;
+
+	if (input != PINS)
+		return in_force(history[input], changes[input], value, from_ns, until_ns);
+	if (!changing(history[PINS], changes[PINS], from_ns, until_ns) &&
+	    !in_force(history[PINS], changes[PINS], (unsigned)value >> 4, from_ns, until_ns))
+		return false;
+	/* After a restart of the board no transistor conducts; a command may take its time */
+	return low == 0 || in_force(outputs, output_changes, low, from_ns - 60 * SECOND, until_ns);
+}
+
+bool truth_now(int input, double value)
+{
+	double there = history[input][(changes[input] - 1) % KEPT].value;
+
+	if (input != PINS)
+		return value == there;
+	return (unsigned)value >> 4 == (unsigned)there &&
+	       (~(unsigned)value & 0xf) == (unsigned)outputs[(output_changes - 1) % KEPT].value;
+}
