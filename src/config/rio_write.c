@@ -207,6 +207,20 @@ int rio_add(struct rio **rio, struct rio_node *block, const char *lines)
 	return add_behind(rio, block, block->last, lines);
 }
 
+/* A value that stands at its key without a blank, as =5 may, gets one. */
+static int replace_value(struct rio **rio, const struct rio_node *node, const char *value)
+{
+	struct grow out = grow_make();
+	int err;
+
+	if (node->value_begin == node->begin + strlen(node->key))
+		grow_add(&out, " ", 1);
+	grow_add(&out, value, strlen(value));
+	err = out.text ? rio_splice(rio, node->value_begin, node->end, out.text) : -ENOMEM;
+	free(out.text);
+	return err;
+}
+
 int rio_set(struct rio **rio, struct rio_node *block, const char *key, const char *value)
 {
 	const struct rio_node *node = rio_child(block, key), *after = NULL;
@@ -215,7 +229,7 @@ int rio_set(struct rio **rio, struct rio_node *block, const char *key, const cha
 	int err;
 
 	if (node)
-		return rio_splice(rio, node->value_begin, node->end, value);
+		return replace_value(rio, node, value);
 	for (node = block->first; node; node = node->next)
 		if (node->kind != RIO_BLOCK)
 			after = node;

@@ -305,6 +305,15 @@ static void test_a_changed_value_changes_nothing_else(void)
 	expect_text("# top\r\nA {\r\n\tX   22  # one\r\n  Y \"2\"\r\n}");
 }
 
+static void test_a_value_that_touches_its_key_does_not_become_a_part_of_it(void)
+{
+	parse("A { X=1 Y\"2\" }");
+	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, rio_child(&rio->root, "A"), "X", "22"));
+	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, rio_child(&rio->root, "A"), "Y", "3"));
+	expect_text("A { X 22 Y 3 }");
+	expect_value(rio_child(&rio->root, "A"), "X", RIO_WORD, "22");
+}
+
 static void test_a_new_key_goes_behind_the_values_with_their_indent_and_line_end(void)
 {
 	struct rio_node *a = rio_child(parse("A {\r\n   X 1 # one\r\n   B { Z 1 }\r\n}\r\n"), "A");
@@ -416,6 +425,7 @@ int main(void)
 	RUN_TEST(test_a_file_that_cannot_be_read_is_said);
 	RUN_TEST(test_random_bytes_are_survived);
 	RUN_TEST(test_a_changed_value_changes_nothing_else);
+	RUN_TEST(test_a_value_that_touches_its_key_does_not_become_a_part_of_it);
 	RUN_TEST(test_a_new_key_goes_behind_the_values_with_their_indent_and_line_end);
 	RUN_TEST(test_an_empty_block_opens_for_its_first_key);
 	RUN_TEST(test_a_key_added_behind_a_block_whose_end_shares_its_line_stays_inside);
