@@ -36,13 +36,11 @@ static void fill(uint8_t type, int64_t value, double *number, int64_t *integer)
 
 int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
 {
-	const struct ows_image_header *image = h->map.image;
-	const struct ows_alarm_entry *entries = (const void *)(h->map.base + image->alarm_off);
 	struct ows_alarm_entry e;
 
-	if (ows_alarm_count(h) - 1 - number >= image->alarm_count)
+	if (ows_alarm_count(h) - 1 - number >= h->map.alarm_count)
 		return -ENOENT;
-	if (!read_entry(&entries[number % image->alarm_count], &e))
+	if (!read_entry(&h->map.alarms[number % h->map.alarm_count], &e))
 		return -EAGAIN;
 	if (e.number != number || e.record == 0 || e.record >= h->map.count)
 		return -ENOENT;

@@ -93,7 +93,7 @@ int attribute_get(struct ows *h, struct ows_id *id, int64_t now_ns, struct ows_v
 		return -EAGAIN;
 	value_fill(value, &slot.sample, (uint8_t)def->type);
 	since = slot.sample.measured_ns != 0 ? slot.sample.measured_ns : h->map.image->start_ns;
-	value->age_ns = now_ns > since ? now_ns - since : 0;
+	value->age_ns = handle_age(now_ns, since);
 	result = compute(h, id, &slot, daemon.attrs.per_base, value->age_ns);
 	value->number = def->type == OWS_DOUBLE ? (double)result / NS_PER_S : (double)result;
 	value->integer = def->type == OWS_DOUBLE ? 0 : result;

@@ -37,7 +37,7 @@ static bool find_alive(struct ows *h, int64_t now_ns)
 
 	h->alive_now = now_ns;
 	h->alive = reader_sample(&h->map.records[0], &daemon) &&
-	           now_ns - daemon.measured_ns <= h->dead_after_ns;
+	           handle_age(now_ns, daemon.measured_ns) <= h->dead_after_ns;
 	return h->alive;
 }
 
@@ -77,7 +77,7 @@ static inline int finish(struct ows *h, int64_t stale_after_ns, int64_t now_ns,
 	int64_t since = value->measured_ns != 0 ? value->measured_ns : h->map.image->start_ns;
 	int err = handle_state(h);
 
-	value->age_ns = now_ns > since ? now_ns - since : 0;
+	value->age_ns = handle_age(now_ns, since);
 	if (ows_good(value->quality)) {
 		/* a retired image was exchanged for another: its last heartbeat says how old it is */
 		if (stopped(h) || !handle_alive(h, now_ns))
@@ -163,7 +163,7 @@ static int get_string(struct ows *h, const struct ows_id *e, int64_t now_ns,
 	struct ows_sample sample;
 	int err;
 
-	if (!reader_text(h->map.base, r, &sample, text, size)) {
+	if (!map_has_text(&h->map, r) || !reader_text(h->map.base, r, &sample, text, size)) {
 		text[0] = '\0';
 		*value = (struct ows_value){.type = r->type, .quality = OWS_Q_TARGET};
 		return -EAGAIN;

@@ -11,15 +11,22 @@
 
 #include <stdbool.h>
 
-/* The two segments of one generation. */
+/*
+ * The two segments of one generation. Where things are is taken once and checked, so that damage
+ * that comes later leads nowhere else.
+ */
 struct ows_map {
 	const struct ows_image_header *image;
 	const struct ows_record *records;
 	const struct ows_info_entry *infos;
 	const struct ows_name_entry *names;
+	const struct ows_target_entry *targets;
+	const struct ows_counter_entry *counters;
+	const struct ows_alarm_entry *alarms;
 	const char *base;
 	size_t image_size;
-	uint32_t count;
+	uint32_t count, target_count, counter_count, alarm_count;
+	uint32_t pool_off, pool_size, text_off, text_size;
 
 	struct ows_command_header *command; /* NULL: OWS_READ */
 	struct ows_command_slot *slots;
@@ -70,12 +77,24 @@ void map_close(struct ows_map *map);
 /* A string of the image; "" for an offset that is none. */
 const char *map_string(const struct ows_map *map, uint32_t off);
 const char *map_name(const struct ows_map *map, uint32_t record);
+/* Do the texts of a record lie where texts are? */
+bool map_has_text(const struct ows_map *map, const struct ows_record *record);
 /* Record of a signal's name, -1 if there is none. */
 int map_find(const struct ows_map *map, const char *name, size_t len);
 
 /* find.c */
 int find_resolve(struct ows *h, struct ows_id *id);
 void find_free(struct ows *h);
+
+/* From then to now; 0 for what is to come, and no overflow whatever the segment says. */
+static inline int64_t handle_age(int64_t now_ns, int64_t then_ns)
+{
+	int64_t age;
+
+	if (now_ns <= then_ns)
+		return 0;
+	return __builtin_sub_overflow(now_ns, then_ns, &age) ? INT64_MAX : age;
+}
 
 /* get.c: is owsd alive, as far as its heartbeat says? */
 bool handle_alive(struct ows *h, int64_t now_ns);

@@ -45,7 +45,7 @@ int ows_daemon(struct ows *h, int64_t now_ns, struct ows_daemon *daemon)
 		.state = word_get(&image->state),
 		.generation = image->generation,
 		.start_ns = image->start_ns,
-		.beat_age_ns = now_ns > beat.measured_ns ? now_ns - beat.measured_ns : 0,
+		.beat_age_ns = handle_age(now_ns, beat.measured_ns),
 		.period_ns = image->period_ns,
 		.alive = !err && handle_alive(h, now_ns),
 	};
@@ -61,12 +61,11 @@ const char *ows_served(const struct ows *h)
 
 int ows_target(struct ows *h, int index, struct ows_target *target)
 {
-	const struct ows_image_header *image = h->map.image;
-	const struct ows_target_entry *entry = (const void *)(h->map.base + image->target_off);
+	const struct ows_target_entry *entry;
 
-	if (index < 0 || (uint32_t)index >= image->target_count)
+	if (index < 0 || (uint32_t)index >= h->map.target_count)
 		return -ENOENT;
-	entry += index;
+	entry = &h->map.targets[index];
 	*target = (struct ows_target){
 		.name = entry->name,
 		.state = word_get(&entry->state),
@@ -80,12 +79,11 @@ int ows_target(struct ows *h, int index, struct ows_target *target)
 
 int ows_counter(struct ows *h, int index, struct ows_counter *counter)
 {
-	const struct ows_image_header *image = h->map.image;
-	const struct ows_counter_entry *entry = (const void *)(h->map.base + image->counter_off);
+	const struct ows_counter_entry *entry;
 
-	if (index < 0 || (uint32_t)index >= image->counter_count)
+	if (index < 0 || (uint32_t)index >= h->map.counter_count)
 		return -ENOENT;
-	entry += index;
+	entry = &h->map.counters[index];
 	*counter = (struct ows_counter){
 		.name = entry->name,
 		.target = (int)(int32_t)entry->target,

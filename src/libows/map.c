@@ -45,44 +45,74 @@ static bool inside(size_t segment, uint32_t off, uint32_t count, uint32_t size)
 	return off % 8 == 0 && off <= segment && (uint64_t)count * size <= segment - off;
 }
 
+/* Text of size bytes at most. */
+static bool ends(const char *text, size_t size)
+{
+	return memchr(text, '\0', size) != NULL;
+}
+
+bool map_has_text(const struct ows_map *map, const struct ows_record *record)
+{
+	uint32_t off = record->text_off, cap = record->text_cap;
+
+	return off % 4 == 0 && cap % 4 == 0 && off >= map->text_off &&
+	       off - map->text_off <= map->text_size &&
+	       2 * cap <= map->text_size - (off - map->text_off);
+}
+
+static bool entries_right(const struct ows_map *map)
+{
+	for (uint32_t i = 0; i < map->count; i++)
+		if ((map->records[i].text_cap != 0 && !map_has_text(map, &map->records[i])) ||
+		    map->names[i].record >= map->count)
+			return false;
+	for (uint32_t i = 0; i < map->target_count; i++)
+		if (!ends(map->targets[i].name, sizeof(map->targets[i].name)))
+			return false;
+	for (uint32_t i = 0; i < map->counter_count; i++)
+		if (!ends(map->counters[i].name, sizeof(map->counters[i].name)))
+			return false;
+	return true;
+}
+
 static int check_image(struct ows_map *map)
 {
-	const struct ows_image_header *h = map->image;
+	struct ows_image_header h;
 	size_t size = map->image_size;
 
-	if (h->magic != OWS_IMAGE_MAGIC || h->major != OWS_LAYOUT_MAJOR || h->size != size ||
-	    h->record_size != sizeof(struct ows_record) ||
-	    h->info_size != sizeof(struct ows_info_entry) ||
-	    h->target_size != sizeof(struct ows_target_entry) ||
-	    h->counter_size != sizeof(struct ows_counter_entry) || h->record_count == 0)
+	words_load(&h, map->base, sizeof(h) / 4);
+	if (h.magic != OWS_IMAGE_MAGIC || h.major != OWS_LAYOUT_MAJOR || h.size != size ||
+	    h.record_size != sizeof(struct ows_record) ||
+	    h.info_size != sizeof(struct ows_info_entry) ||
+	    h.target_size != sizeof(struct ows_target_entry) ||
+	    h.counter_size != sizeof(struct ows_counter_entry) || h.record_count == 0)
 		return -EPROTO;
-	if (!inside(size, h->record_off, h->record_count, h->record_size) ||
-	    !inside(size, h->info_off, h->record_count, h->info_size) ||
-	    !inside(size, h->name_off, h->record_count, sizeof(struct ows_name_entry)) ||
-	    !inside(size, h->target_off, h->target_count, h->target_size) ||
-	    !inside(size, h->counter_off, h->counter_count, h->counter_size) ||
-	    !inside(size, h->alarm_off, h->alarm_count, h->alarm_size) ||
-	    (h->alarm_count != 0 && h->alarm_size != sizeof(struct ows_alarm_entry)) ||
-	    !inside(size, h->text_off, h->text_size, 1) ||
-	    !inside(size, h->pool_off, h->pool_size, 1) || h->pool_size == 0 ||
-	    map->base[h->pool_off + h->pool_size - 1] != '\0')
+	if (!inside(size, h.record_off, h.record_count, h.record_size) ||
+	    !inside(size, h.info_off, h.record_count, h.info_size) ||
+	    !inside(size, h.name_off, h.record_count, sizeof(struct ows_name_entry)) ||
+	    !inside(size, h.target_off, h.target_count, h.target_size) ||
+	    !inside(size, h.counter_off, h.counter_count, h.counter_size) ||
+	    !inside(size, h.alarm_off, h.alarm_count, h.alarm_size) ||
+	    (h.alarm_count != 0 && h.alarm_size != sizeof(struct ows_alarm_entry)) ||
+	    !inside(size, h.text_off, h.text_size, 1) ||
+	    !inside(size, h.pool_off, h.pool_size, 1) || h.pool_size == 0 ||
+	    map->base[h.pool_off + h.pool_size - 1] != '\0')
 		return -EPROTO;
-	map->records = (const void *)(map->base + h->record_off);
-	map->infos = (const void *)(map->base + h->info_off);
-	map->names = (const void *)(map->base + h->name_off);
-	map->count = h->record_count;
-	for (uint32_t i = 0; i < map->count; i++) {
-		const struct ows_record *r = &map->records[i];
-
-		if (r->text_cap != 0 &&
-		    (r->text_off < h->text_off ||
-		     r->text_off - h->text_off > h->text_size ||
-		     2u * r->text_cap > h->text_size - (r->text_off - h->text_off)))
-			return -EPROTO;
-		if (map->names[i].record >= map->count)
-			return -EPROTO;
-	}
-	return 0;
+	map->records = (const void *)(map->base + h.record_off);
+	map->infos = (const void *)(map->base + h.info_off);
+	map->names = (const void *)(map->base + h.name_off);
+	map->targets = (const void *)(map->base + h.target_off);
+	map->counters = (const void *)(map->base + h.counter_off);
+	map->alarms = (const void *)(map->base + h.alarm_off);
+	map->count = h.record_count;
+	map->target_count = h.target_count;
+	map->counter_count = h.counter_count;
+	map->alarm_count = h.alarm_count;
+	map->pool_off = h.pool_off;
+	map->pool_size = h.pool_size;
+	map->text_off = h.text_off;
+	map->text_size = h.text_size;
+	return entries_right(map) ? 0 : -EPROTO;
 }
 
 /* Anybody of the group may write it: every number is taken once and then checked. */
@@ -157,10 +187,8 @@ void map_close(struct ows_map *map)
 
 const char *map_string(const struct ows_map *map, uint32_t off)
 {
-	const struct ows_image_header *h = map->image;
-
 	/* The pool ends with a NUL, so every offset into it is a string */
-	return off >= h->pool_off && off - h->pool_off < h->pool_size ? map->base + off : "";
+	return off >= map->pool_off && off - map->pool_off < map->pool_size ? map->base + off : "";
 }
 
 const char *map_name(const struct ows_map *map, uint32_t record)
@@ -179,8 +207,11 @@ int map_find(const struct ows_map *map, const char *name, size_t len)
 
 		if (order == 0 && there[len] != '\0')
 			order = 1;
-		if (order == 0)
-			return map->names[middle].record != 0 ? (int)map->names[middle].record : -1;
+		if (order == 0) {
+			uint32_t record = map->names[middle].record;
+
+			return record != 0 && record < map->count ? (int)record : -1;
+		}
 		if (order < 0)
 			low = middle + 1;
 		else
