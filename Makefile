@@ -7,6 +7,8 @@
 #   make test                     unit and system tests (sets up what they need)
 #   make all unit soak system bench install uninstall clean
 #   make clang sanitize m32       the slower checks
+#   make fuzz                     libFuzzer on what comes from outside; FUZZ=rio one of its targets,
+#                                 FUZZ_SECONDS=60 for each
 #   make test-kernel              Debian's own kernel and owserver on the simulated chip, in QEMU
 #   make deb ARCH=arm64           Debian packages in build/deb; SUITE=trixie for another Debian
 #   make test-package             packages of three architectures, lintian, install to purge
@@ -223,12 +225,12 @@ $(UNIT): %: %.o $(B)/unit/unity.o $(patsubst tests/unit/%.c,$(B)/unit/%.o,$(UNIT
 	$(call show,LD)
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
-unit-programs: $(UNIT)
+unit-programs: $(UNIT) replays
 
 # RUNNER runs programs of another architecture: RUNNER=qemu-aarch64-static
 unit: export RUNNER := $(RUNNER)
-unit: all $(UNIT)
-	@sh tests/unit/run $(UNIT)
+unit: all $(UNIT) replays
+	@sh tests/unit/run $(UNIT) $(REPLAYS)
 
 # A week of faults in virtual time: HOURS=168 SEED=1
 soak: all $(B)/unit/test_week
@@ -283,6 +285,7 @@ bench:
 	@for b in $(BENCHES); do $$b || exit 1; done
 
 include tests/kernel/kernel.mk
+include tests/fuzz/fuzz.mk
 
 # --- Slower checks ----------------------------------------------------------------------------
 # What gcc guesses of values is worse in code that a sanitizer has changed; the plain build is asked

@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT */
+#include "fuzz.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifndef __has_feature
+#define __has_feature(x) 0
+#endif
+#if defined(__SANITIZE_ADDRESS__) || __has_feature(address_sanitizer)
+#include <sanitizer/allocator_interface.h>
+#define WATCHED 1
+#else
+#define WATCHED 0
+#endif
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+#if WATCHED
+static bool counting;
+static size_t held, peak;
+
+static void taken(const volatile void *p, size_t size)
+{
+	(void)p;
+	if (!counting)
+		return;
+	held += size;
+	if (held > peak)
+		peak = held;
+}
+
+static void given_back(const volatile void *p)
+{
+	size_t size;
+
+	if (!counting || !p)
+		return;
+	size = __sanitizer_get_allocated_size((const void *)(uintptr_t)p);
+	held -= size < held ? size : held;
+}
+
+static void begin(void)
+{
+	static bool installed;
+
+	if (!installed)
+		__sanitizer_install_malloc_and_free_hooks(taken, given_back);
+	installed = true;
+	held = peak = 0;
+	counting = true;
+}
+
+static void end(size_t n)
+{
+	char text[96];
+
+	counting = false;
+	if (peak <= fuzz_memory(n))
+		return;
+	snprintf(text, sizeof(text), "%zu bytes of memory for an input of %zu", peak, n);
+	TEST_FAIL_MESSAGE(text);
+}
+#else
+static void begin(void)
+{
+}
+
+static void end(size_t n)
+{
+	(void)fuzz_memory(n);
+}
+#endif
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n)
+{
+	Unity.TestFile = "";
+	Unity.CurrentTestName = "fuzz_one";
+	Unity.CurrentTestFailed = 0;
+	if (TEST_PROTECT()) {
+		begin();
+		fuzz_one(bytes, n);
+		end(n);
+	}
+	if (Unity.CurrentTestFailed) {
+		putchar('\n');
+		fflush(stdout);
+		abort();
+	}
+	return 0;
+}
+
+uint8_t fuzz_byte(struct fuzz *fuzz)
+{
+	return fuzz->at < fuzz->end ? *fuzz->at++ : 0;
+}
+
+uint32_t fuzz_word(struct fuzz *fuzz)
+{
+	uint32_t word = 0;
+
+	for (int i = 0; i < 4; i++)
+		word |= (uint32_t)fuzz_byte(fuzz) << 8 * i;
+	return word;
+}
+
+int64_t fuzz_long(struct fuzz *fuzz)
+{
+	uint64_t low = fuzz_word(fuzz);
+
+	return (int64_t)((uint64_t)fuzz_word(fuzz) << 32 | low);
+}
+
+const uint8_t *fuzz_bytes(struct fuzz *fuzz, size_t most, size_t *n)
+{
+	const uint8_t *bytes;
+
+	*n = fuzz_byte(fuzz);
+	if (*n > most)
+		*n = most;
+	if (*n > fuzz_left(fuzz))
+		*n = fuzz_left(fuzz);
+	bytes = fuzz->at;
+	fuzz->at += *n;
+	return bytes;
+}
+
+const char *fuzz_line(struct fuzz *fuzz, char *room, size_t size)
+{
+	size_t n = 0;
+
+	while (fuzz->at < fuzz->end && *fuzz->at && *fuzz->at != '\n') {
+		if (n + 1 < size)
+			room[n++] = (char)*fuzz->at;
+		fuzz->at++;
+	}
+	fuzz->at += fuzz->at < fuzz->end;
+	room[n] = '\0';
+	return room;
+}

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: MIT
+# Fuzzing: each target is one file tests/fuzz/fuzz_*.c, linked twice: with clang's libFuzzer and the
+# address and undefined-behaviour sanitizers for make fuzz, and with replay.c for make unit, which
+# runs its seeds and found cases.
+#   FUZZ picks targets, FUZZ_SECONDS bounds each of them, FUZZ_JOBS run at once; FUZZ_CC is another
+#   clang; OR_SKIP=1 counts the targets as skipped where there is no libFuzzer.
+
+FUZZ_TARGETS := $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
+FUZZ         ?= $(FUZZ_TARGETS)
+FUZZ_SECONDS ?= 60
+FUZZ_JOBS    ?= $(shell nproc)
+FUZZ_CC      ?= $(if $(filter ccache,$(CC)),ccache )clang
+FUZZ_BUILD   := build/fuzz/programs
+REPLAYS      := $(FUZZ_TARGETS:%=$(B)/fuzz/replay_%)
+
+# What a target needs beside core.a, the functions of which it takes the place (__wrap_...), and
+# where its dictionary comes from: the words in quotes of these files
+FUZZ_WITH_owserver := fuzz/bus_host.o
+FUZZ_WITH_commands := unit/scene.o
+FUZZ_WITH_image    := fuzz/heap_instance.o fuzz/heap_map.o
+FUZZ_WITH_serve    := fuzz/heap_instance.o fuzz/heap_map.o
+FUZZ_WORDS_rio     := src/config/options.c src/config/targets.c src/signal/value.c hal/native/native.c
+FUZZ_WORDS_serve   := src/serve/node.c src/serve/directory.c src/signal/attribute.c hal/path.c
+
+.PHONY: fuzz replays
+
+# Debian's clang only recommends libFuzzer's runtime
+FUZZ_HAS = echo 'int LLVMFuzzerTestOneInput(void); int LLVMFuzzerTestOneInput(void) { return 0; }' | \
+    $(FUZZ_CC) -fsanitize=fuzzer,address -x c -o /dev/null - 2>/dev/null
+
+fuzz:
+	@$(FUZZ_HAS) || sh board/install-deps fuzz $(if $(OR_SKIP),|| true)
+	@$(FUZZ_HAS) || { \
+	    echo "fuzz: $(FUZZ_CC) cannot link -fsanitize=fuzzer here (package libclang-rt-dev, or libclang-rt-NN-dev of clang-NN)"; \
+	    $(if $(OR_SKIP),,exit 1;) }
+	@if $(FUZZ_HAS); then \
+	    $(MAKE) --no-print-directory B=$(FUZZ_BUILD) CC='$(FUZZ_CC)' CFLAGS='-O1 -g' \
+	        HARDEN='-U_FORTIFY_SOURCE -fPIE' EXTRA_CFLAGS='-fsanitize=fuzzer-no-link,address,undefined \
+	        -fno-sanitize-recover=all -fno-omit-frame-pointer' \
+	        $(FUZZ:%=$(FUZZ_BUILD)/fuzz/%) $(FUZZ:%=$(FUZZ_BUILD)/fuzz/%.dict) && \
+	    python3 tests/fuzz/run --seconds $(FUZZ_SECONDS) --jobs $(FUZZ_JOBS) \
+	        --programs $(FUZZ_BUILD)/fuzz $(FUZZ); \
+	else \
+	    echo '0 passed, 0 failed, $(words $(FUZZ)) skipped'; \
+	fi
+
+replays: $(REPLAYS)
+
+$(B)/fuzz/%.o: tests/fuzz/%.c $(UNITY)/unity.h
+	@mkdir -p $(@D)
+	$(call show,CC)
+	$(Q)$(CC) $(ALL_CFLAGS) $(UNITY_FLAGS) -MMD -MP -c -o $@ $<
+
+define fuzz_program
+$$(B)/fuzz/$(1): $$(B)/fuzz/fuzz_$(1).o $$(B)/fuzz/fuzz.o $$(FUZZ_WITH_$(1):%=$$(B)/%) $$(B)/unit/unity.o \
+    $$(B)/core.a
+	$$(call show,LD)
+	$$(Q)$$(CC) $$(ALL_LDFLAGS) -fsanitize=fuzzer $$(FUZZ_WRAP_$(1):%=-Wl,--wrap=%) -o $$@ $$^ $$(LIBS)
+
+$$(B)/fuzz/replay_$(1): $$(B)/fuzz/fuzz_$(1).o $$(B)/fuzz/fuzz.o $$(B)/fuzz/replay.o \
+    $$(FUZZ_WITH_$(1):%=$$(B)/%) $$(B)/unit/unity.o $$(B)/core.a
+	$$(call show,LD)
+	$$(Q)$$(CC) $$(ALL_LDFLAGS) $$(FUZZ_WRAP_$(1):%=-Wl,--wrap=%) -o $$@ $$^ $$(LIBS)
+
+$$(B)/fuzz/$(1).dict: $$(FUZZ_WORDS_$(1)) tests/fuzz/fuzz.mk
+	@mkdir -p $$(@D)
+	@cat /dev/null $$(FUZZ_WORDS_$(1)) | grep -o '"[A-Za-z0-9_./=-]\{2,24\}"' | sort -u >$$@ || true
+endef
+$(foreach t,$(FUZZ_TARGETS),$(eval $(call fuzz_program,$(t))))

@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * libows on segments that are damaged: before they are opened, and while they are mapped. The input
+ * is a list of patches and of calls. Nothing is read or written outside of the segments, and every
+ * text ends.
+ */
+#include "fuzz.h"
+
+#include "heap_instance.h"
+
+#include "src/libows/handle.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define STEPS 80
+
+static struct fuzz fuzz;
+static struct ows *h;
+static int64_t now_ns;
+static char *image, *command;
+static size_t image_size_now, command_size_now;
+
+size_t fuzz_memory(size_t n)
+{
+	(void)n;
+	return 1000000;
+}
+
+static char *copy(const char *from, size_t size)
+{
+	void *to = NULL;
+
+	TEST_ASSERT_EQUAL_INT(0, posix_memalign(&to, 64, size));
+	memcpy(to, from, size);
+	return to;
+}
+
+static void patch(char *base, size_t size)
+{
+	uint32_t off = fuzz_word(&fuzz) % (uint32_t)size;
+	size_t n;
+	const uint8_t *bytes = fuzz_bytes(&fuzz, 64, &n);
+
+	if (n > size - off)
+		n = size - off;
+	if (n)
+		memcpy(base + off, bytes, n);
+}
+
+/* A number of a header, an entry or a record: what is checked when it is opened. */
+static void set_number(char *base, size_t size)
+{
+	static const uint32_t numbers[] = {0, 1, 4, 8, 255, 256, 0x7fffffff, 0x80000000, 0xffffffff,
+	                                   0xfffffff8, 64, 128, 65535, 2};
+	uint32_t off = fuzz_word(&fuzz) % (uint32_t)(size - 3) & ~3u, number = 0;
+	uint8_t how = fuzz_byte(&fuzz);
+
+	memcpy(&number, base + off, 4);
+	if (how < sizeof(numbers) / sizeof(numbers[0]))
+		number = numbers[how];
+	else if (how == 100)
+		number = (uint32_t)size;
+	else if (how > 200)
+		number += (uint32_t)(int8_t)fuzz_byte(&fuzz);
+	else
+		number = fuzz_word(&fuzz);
+	memcpy(base + off, &number, 4);
+}
+
+/* Names do not change while they are mapped: each that ended does. */
+static void keep_ends(void)
+{
+	const struct ows_map *map = h ? &h->map : NULL;
+	size_t last;
+
+	if (!map)
+		return;
+	image[map->pool_off + map->pool_size - 1] = '\0';
+	for (uint32_t i = 0; i < map->target_count; i++) {
+		last = sizeof(map->targets[i].name) - 1;
+		image[&map->targets[i].name[last] - map->base] = '\0';
+	}
+	for (uint32_t i = 0; i < map->counter_count; i++) {
+		last = sizeof(map->counters[i].name) - 1;
+		image[&map->counters[i].name[last] - map->base] = '\0';
+	}
+}
+
+static void damage(uint8_t what)
+{
+	char *base = what & 8 ? command : image;
+	size_t size = what & 8 ? command_size_now : image_size_now;
+
+	if (what & 0x10)
+		patch(base, size);
+	else
+		set_number(base, what & 0x20 && size > 256 ? 256 : size);
+	keep_ends();
+}
+
+static const char *const names[] = {
+	"room", "relay", "label", "level", "OWS__count", "room_Age", "_TRANSACTIONS", "_DGNRESET",
+	"relay_WriteEnable", "label_Alarm", "relay_WOS", "count_PerMax", "room_PerFactor", "nobody",
+	"level_DGNRESET", "warm",
+};
+#define NAMES (sizeof(names) / sizeof(names[0]))
+
+static size_t ended(const char *text)
+{
+	return text ? strlen(text) : 0;
+}
+
+static void look_around(void)
+{
+	struct ows_target target;
+	struct ows_counter counter;
+	struct ows_daemon daemon;
+	struct ows_alarm alarm;
+	struct ows_info info;
+	int count = ows_count(h);
+
+	TEST_ASSERT_TRUE(count >= 0);
+	for (int i = 0; i < count && i < 64; i++)
+		if (ows_info(h, i, &info) == 0)
+			ended(info.name), ended(info.path);
+	for (int i = 0; i < 300 && ows_target(h, i, &target) == 0; i++)
+		ended(target.name);
+	for (int i = 0; i < 300 && ows_counter(h, i, &counter) == 0; i++)
+		ended(counter.name);
+	for (uint32_t i = 0; i < 4; i++)
+		if (ows_alarm(h, ows_alarm_count(h) - i, &alarm) == 0)
+			TEST_ASSERT_TRUE(alarm.signal >= 0 && alarm.signal < count);
+	ows_alarm(h, fuzz_word(&fuzz), &alarm);
+	ended(ows_served(h));
+	ows_daemon(h, now_ns, &daemon);
+}
+
+static void read_all(void)
+{
+	struct ows_value value, values[16];
+	struct ows_alarm_state state;
+	char *text = malloc(40);
+
+	TEST_ASSERT_NOT_NULL(text);
+	for (size_t i = 0; i < NAMES; i++) {
+		int id = ows_find(h, names[i]);
+		size_t size = 1 + i % 2 * 39;
+
+		if (id < 0)
+			continue;
+		ows_get(h, id, now_ns, &value);
+		ows_get_text(h, id, now_ns, &value, text, size);
+		TEST_ASSERT_NOT_NULL_MESSAGE(memchr(text, '\0', size), "a text without end");
+		ows_alarm_state(h, id, &state);
+	}
+	ows_snapshot(h, now_ns, values, 16);
+	ows_get_signal(h, (int)fuzz_byte(&fuzz), now_ns, &value);
+	free(text);
+}
+
+static void set_some(uint8_t what)
+{
+	int ids[3], id;
+	double doubles[3] = {1, 2, 3};
+	uint32_t stamp;
+
+	for (int i = 0; i < 3; i++)
+		ids[i] = ows_find(h, names[(what + (unsigned)i) % NAMES]);
+	id = ids[0];
+	ows_set(h, id, 3, &stamp);
+	ows_set_integer(h, id, -1, NULL);
+	ows_set_text(h, id, what & 0x10 ? "on" : "a text that is a little longer than most", &stamp);
+	ows_set_many(h, ids, doubles, 3);
+	ows_acknowledge(h, id);
+	ows_beat(h, 100);
+}
+
+static void happen(void)
+{
+	uint8_t what = fuzz_byte(&fuzz);
+
+	switch (what & 7) {
+	case 0:
+	case 1:
+	case 2:
+		damage(what);
+		break;
+	case 3:
+		look_around();
+		break;
+	case 4:
+		read_all();
+		break;
+	case 5:
+		set_some(what >> 3);
+		break;
+	case 6:
+		now_ns += (int64_t)fuzz_word(&fuzz) * 1000000;
+		break;
+	case 7:
+		ows_reopen(h);
+		break;
+	}
+}
+
+void fuzz_one(const uint8_t *bytes, size_t n)
+{
+	uint8_t before, mode;
+
+	fuzz = (struct fuzz){bytes, bytes + n};
+	before = fuzz_byte(&fuzz);
+	mode = fuzz_byte(&fuzz);
+	heap_instance_reset();
+	h = NULL;
+	now_ns = HEAP_START;
+	image_size_now = heap.image_size;
+	command_size_now = heap.command_size;
+	if (mode & 2)
+		image_size_now = 256 + fuzz_word(&fuzz) % (heap.image_size - 255);
+	image = copy(heap.image_memory, image_size_now);
+	command = copy(heap.command_memory, command_size_now);
+	heap_image_file = (struct heap_file){image, image_size_now};
+	heap_command_file = (struct heap_file){command, command_size_now};
+	/* it says of itself what the file is */
+	((struct ows_image_header *)(void *)image)->size = (uint32_t)image_size_now;
+	for (int i = 0; i < (before & 7); i++)
+		damage(fuzz_byte(&fuzz));
+	if (ows_open("OWS", mode & 1 ? OWS_CONTROL : OWS_READ, &h) == 0) {
+		read_all();
+		look_around();
+		for (int i = 0; i < STEPS && fuzz_left(&fuzz); i++)
+			happen();
+		ows_close(h);
+	}
+	free(image);
+	free(command);
+}

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: MIT */
+#include "heap_instance.h"
+
+#include "src/signal/value.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const struct command_signal heap_signals[HEAP_SIGNALS] = {
+	{"room", "/28.551DDF030000/temperature", OWS_DOUBLE},
+	{"relay", "/29.551DDF030000/PIO.0", OWS_BOOL},
+	{"count", "/1D.551DDF030000/counters.A", OWS_LARGE},
+	{"label", "/23.551DDF030000/memory", OWS_STRING},
+	{"level", "/29.551DDF030000/PIO.BYTE", OWS_BYTE},
+	{"warm", "/28.551DDF030000/temperature9", OWS_FLOAT},
+};
+static const bool is_output[HEAP_SIGNALS] = {false, true, false, true, true, false};
+struct heap_instance heap;
+static char *image_then, *command_then;
+
+static char *zeroed(size_t size)
+{
+	char *memory = aligned_alloc(64, (size + 63) / 64 * 64);
+
+	TEST_ASSERT_NOT_NULL(memory);
+	return memset(memory, 0, size);
+}
+
+void heap_beat(int64_t now_ns)
+{
+	struct ows_sample sample = {.measured_ns = now_ns, .quality = OWS_Q_GOOD};
+	struct ows_attrs attrs = {.transactions = 7};
+
+	image_publish(&heap.image, 0, &sample, &attrs, NULL);
+	image_news(&heap.image);
+}
+
+void heap_put(uint32_t record, int64_t value, const char *text, int64_t measured_ns,
+              uint32_t applied)
+{
+	struct ows_sample sample = {.value = value, .measured_ns = measured_ns,
+	                            .tried_ns = measured_ns, .quality = OWS_Q_GOOD, .count = 1,
+	                            .applied = applied, .len = text ? (uint32_t)strlen(text) : 0};
+	struct ows_attrs attrs = {.flags = OWS_ATTR_READ_ENABLE | OWS_ATTR_WRITE_ENABLE};
+
+	image_publish(&heap.image, record, &sample, &attrs, text);
+	image_news(&heap.image);
+}
+
+static void make(void)
+{
+	static const char *const targets[] = {"localhost:4304", "w1"};
+	static const struct image_counter counters[] = {{"alarms", 0xffffffffu}, {"keepalives", 0}};
+	struct image_signal signals[HEAP_SIGNALS];
+	struct image_plan image = {.signals = signals, .signal_count = HEAP_SIGNALS,
+	                           .targets = targets, .target_count = 2, .counters = counters,
+	                           .counter_count = 2, .served = "owserver:/run/owsd/T.sock",
+	                           .generation = 1, .start_id = 7, .pid = 1, .start_ns = HEAP_START,
+	                           .period_ns = 100000000};
+	struct command_plan commands = {.signals = heap_signals, .signal_count = HEAP_SIGNALS,
+	                                .text_cap = HEAP_TEXT, .generation = 1, .start_id = 7,
+	                                .pid = 1};
+	struct ows_alarm_entry alarm = {.record = 1, .occurred_ns = HEAP_START,
+	                                .kind = OWS_ALARM_H, .flags = OWS_ALARM_BEFORE};
+
+	for (unsigned i = 0; i < HEAP_SIGNALS; i++)
+		signals[i] = (struct image_signal){
+			.name = heap_signals[i].name, .path = heap_signals[i].path,
+			.type = heap_signals[i].type, .per_factor = i + 1,
+			.flags = is_output[i] ? OWS_RECORD_OUTPUT : 0,
+			.text_cap = heap_signals[i].type == OWS_STRING ? HEAP_TEXT : 0};
+	heap.image_size = image_size(&image);
+	heap.command_size = commands_size(&commands);
+	heap.image_memory = zeroed(heap.image_size);
+	heap.command_memory = zeroed(heap.command_size);
+	image_build(&image, heap.image_memory, &heap.image);
+	TEST_ASSERT_EQUAL_INT(0, commands_build(&commands, heap.command_memory, &heap.commands));
+	image_state(&heap.image, OWS_STATE_LIVE);
+	commands_state(&heap.commands, OWS_STATE_LIVE);
+	heap_beat(HEAP_START);
+	for (unsigned i = 0; i < HEAP_SIGNALS; i++)
+		heap_put(i + 1, heap_signals[i].type == OWS_DOUBLE || heap_signals[i].type == OWS_FLOAT
+		                        ? value_of_double(21.5)
+		                        : 1,
+		         heap_signals[i].type == OWS_STRING ? "boiler" : NULL, HEAP_START, 0);
+	image_alarm(&heap.image, &alarm);
+	for (unsigned i = 0; i < 2; i++)
+		image_target(&heap.image, i, 1, i);
+	image_then = memcpy(zeroed(heap.image_size), heap.image_memory, heap.image_size);
+	command_then = memcpy(zeroed(heap.command_size), heap.command_memory, heap.command_size);
+}
+
+void heap_instance_reset(void)
+{
+	if (!image_then)
+		make();
+	memcpy(heap.image_memory, image_then, heap.image_size);
+	memcpy(heap.command_memory, command_then, heap.command_size);
+	heap_image_file = (struct heap_file){heap.image_memory, heap.image_size};
+	heap_command_file = (struct heap_file){heap.command_memory, heap.command_size};
+}

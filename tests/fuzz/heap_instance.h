@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * An instance of owsd whose two segments lie on the heap, each exactly as long as it says, and
+ * libows' way to it: ows_open() maps what stands in heap_files, whatever the name.
+ */
+#ifndef TESTS_HEAP_INSTANCE_H
+#define TESTS_HEAP_INSTANCE_H
+
+#include "fuzz.h"
+
+#include "src/shm/commands.h"
+#include "src/shm/image.h"
+
+/* What ows_open() finds; base NULL: nothing. */
+struct heap_file {
+	char *base;
+	size_t size;
+};
+extern struct heap_file heap_image_file, heap_command_file;
+
+#define HEAP_TEXT    64
+#define HEAP_START   (INT64_C(1000) * 1000000000)
+#define HEAP_SIGNALS 6
+/* room (double), relay (bool, output), count (large), label (string, output), level (byte, output),
+   warm (float) */
+extern const struct command_signal heap_signals[HEAP_SIGNALS];
+
+struct heap_instance {
+	struct image image;
+	struct commands commands;
+	char *image_memory, *command_memory;
+	size_t image_size, command_size;
+};
+extern struct heap_instance heap;
+
+/* As it was made: live, with a heart that beat at HEAP_START, each signal good. Allocates once. */
+void heap_instance_reset(void);
+void heap_beat(int64_t now_ns);
+/* A good value of a record; text for the string, else NULL. */
+void heap_put(uint32_t record, int64_t value, const char *text, int64_t measured_ns,
+              uint32_t applied);
+
+#endif

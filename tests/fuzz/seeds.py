@@ -1,0 +1,176 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Writes tests/fuzz/seeds: short inputs that lead each target to what it is about. The formats are
+described at the top of each fuzz_*.c. Run it again after a change here, and commit what it wrote."""
+import pathlib
+import struct
+
+HERE = pathlib.Path(__file__).parent
+
+
+def put(target, name, content):
+    if isinstance(content, str):
+        content = content.encode()
+    folder = HERE / "seeds" / target
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / name).write_bytes(content)
+
+
+def rio():
+    data = HERE.parent / "unit" / "data"
+    driver = 'OwsDrv {\n  TargetName "%s"\n%s}\n'
+    item = '  Item {\n    Name "%s"\n    Path "%s"\n%s  }\n'
+    genuine = (data / "temperature_logger.rio").read_text()
+    edits = ('a new /28.000000000001/temperature Type=float PerFactor=3\ns new Name=newer\n'
+             's newer Uncached=on\nu newer InitValue\nr newer\ns OwsDrv Timeout=7 Period=0.2')
+    put("rio", "genuine", genuine[:1500] + "\0" + edits)
+    put("rio", "small", driver % ("localhost:4304", item % ("t", "/28.1/temperature12",
+                                                            "    IOType 0x0018\n")) + "\0" +
+        "s t IO=output Type=byte\ns t InitValue=3\nr t")
+    put("rio", "targets", driver % ("localhost:4304 | i2c:/dev/i2c-1 | w1, auto, sim:a\\\\b.sim", (
+        '  Bus { Target "i2c:/dev/i2c-1" PowerLine "GPIO4" PowerOffMs 500 ActiveLow on }\n'
+        '  Listen "4304, 192.168.1.1:4304, [::1]:1" ListenAllow "10.0.0.0/8, fd00::/8"\n'
+        '  ListenSocket "/run/owsd/s" ListenReadOnly on AlarmLine "GPIO5" HeartbeatLine "GPIO6"\n')))
+    put("rio", "alarm", driver % ("w1", item % ("a b", "/uncached/29.0123456789AB/PIO.0", (
+        '    Type bool IO output Readable on Writable on Alarm on LatchAlarm "latch.BYTE"\n'
+        '    PorAlarm "por" SetAlarm "set_alarm=133333333" ResetLatch "" SafeValue "off"\n'))))
+    put("rio", "limits", driver % ("w1", item % ("t", "/28.000000000001/t", (
+        '    Type double LimitLL -10 LimitL 0 LimitH 30.5 LimitHH 40 Hysteresis 0.5 OnDelay 2\n'
+        '    OffDelay 0.25 StaleAfter 2.5 PerFactor 7 InitValue "1e3"\n')))
+        + "\0s t LimitH=31\nu t LimitHH LimitLL\ns t InitValue=")
+    text = driver % ("w1", item % ("l", "/23.1/memory", (
+        '    IOType 0x013C InitValue "' + "long " * 11 + '"\n    "and longer" # why\n')))
+    put("rio", "large", text.replace("\n", "\r\n") + "\0s l InitValue=" + "x" * 120)
+    put("rio", "lists", 'OwsDrv { Example [ 0 1 "]" # a\n ] Item { Name "x" Path a/b Type bool } }\0'
+        's x Type=word\na y c/d\n')
+    put("rio", "broken", 'OwsDrv {\n Timeout x\n Item { Name "a b"\nPath "//" Type foo\n}\n Item {\n'
+        'Name "q\n}\n}\n{{}} [ ] "')
+
+
+def owserver():
+    connect = b"\0\0"                       # begin, go on
+    sent = b"\0"
+    all_of_it = b"\xff"                     # room of one receive
+
+    def reply(data=b"", status=0):
+        return sent + all_of_it + struct.pack("BbB", 0, status, len(data)) + data
+
+    greeting = connect + reply() + reply(b"Simulated.0") + reply(status=-2)
+    ask = struct.pack("BB", 0x20, 0x1b)      # READ, 256 bytes, 20 s
+    put("owserver", "read", greeting + ask + reply(b"     21.0625") + b"\0" + ask +
+        reply(status=-1) + reply(status=0) + b"\0")
+    put("owserver", "dir", greeting + b"\x06\x1c" + reply(b"/28.67C6697351FF,/alias,/bus.0") +
+        reply(b"2867C6697351FF68") + b"\1")
+    put("owserver", "write", greeting + b"\x11\x1a" + reply(status=0) + b"\0\x11\x1a" +
+        reply(status=-22) + b"\0\x13\x1a" + reply())
+    put("owserver", "alive", greeting + ask + sent + b"\xff\2\3\2\5\0\0\x04abcd\1")
+    put("owserver", "numbers", greeting + ask + sent + b"\xff\3\4abcd" +
+        struct.pack("<iIii", 4, 4, 4, 4) + b"\0" + ask + sent + b"\xff\3\4abcd" +
+        struct.pack("<iIii", 2**31 - 1, 0, 2**31 - 1, 0))
+    put("owserver", "closed", greeting + ask + sent + b"\xff\4" + connect + greeting + ask +
+        reply(b"1") + b"\1\xff\xff\0\xfe")
+    put("owserver", "tokens", greeting + ask + sent + b"\xff\6\4abcd\2" + b"\xff\1\x20" +
+        b"x" * 32)
+
+
+READ, WRITE, DIR, PRESENT, DIRALL, GET = 2, 3, 4, 6, 7, 8
+
+
+def serve():
+    def ask(kind, path, how=0, data=b"", client=0):
+        if isinstance(path, str):
+            path = bytes([len(path)]) + path.encode()
+            what = 0x80
+        else:
+            what, path = path, b""
+        return bytes([client << 6 | 1, kind, what, how]) + path + bytes([len(data)]) + data
+
+    def answer(text=b"", error=0):
+        return bytes([3, error, len(text)]) + text
+
+    def frame(kind, path, size=64, flags=0x104, version=0, offset=0, payload=None):
+        path += b"\0"
+        return struct.pack(">IiiIii", version, len(path) if payload is None else payload, kind,
+                           flags, size, offset) + path
+
+    def raw(data, client=0):
+        return bytes([client << 6, len(data)]) + data
+    drain, second, turned = b"\7", b"\x15", b"\x27\x3d"
+    put("serve", "read", ask(READ, 1) + drain + ask(READ, "/28.551DDF030000/type") +
+        answer(b"DS18B20") + drain + ask(READ, "/28.551DDF030000/type") + drain)
+    put("serve", "signals", ask(READ, 2) + drain + ask(DIRALL, 7) + drain + ask(DIR, 7) + drain +
+        ask(READ, "/signals/room_Age") + drain + ask(PRESENT, "/signals/_TRANSACTIONS") + drain)
+    put("serve", "write", ask(WRITE, 14, 0, b"1") + b"\x06\x12" + second + drain +
+        ask(WRITE, 10, 0, b"new label") + second + b"\x06\x13" + drain +
+        ask(WRITE, "/29.551DDF030000/PIO.1", 0, b"1") + answer() + drain)
+    put("serve", "directory", ask(DIRALL, 0) + answer(b"/28.551DDF030000\n/bus.0\n/bus.3\n") +
+        answer(b"/28.551DDF030000\n/29.551DDF030000\n/bus.0\n") + drain + ask(DIR, 4) +
+        answer(b"/bus.0/28.551DDF030000\n") + drain + ask(9, 12) +
+        answer(b"/28.551DDF030000/type\n/28.551DDF030000/errata\n") + drain)
+    put("serve", "alias", ask(PRESENT, "/kitchen") + answer() + answer(b"28551DDF030000FF") +
+        drain + ask(READ, 9, 0x10, b"") + b"\0\0\1\2" + answer(b"20") + answer(b"28") + drain)
+    put("serve", "scales", bytes([1, READ, 0x80, 0x10]) + struct.pack("<I", 0x00010104) + b"\x1c" +
+        b"/28.551DDF030000/temperature" + b"\0" + answer(b"     21.0625") + drain)
+    put("serve", "lent", ask(READ, 8) + bytes([3, 0x8a]) + drain + ask(READ, 1) + b"\3\0" + drain +
+        ask(DIRALL, 13) + bytes([3, 0x8c]) + raw(frame(READ, b"/signals/count")) + b"\3\0" + drain)
+    put("serve", "frames", raw(frame(READ, b"/signals/room") + frame(READ, b"/signals/count")[:30]) +
+        drain + raw(frame(READ, b"/signals/count")[30:]) + drain +
+        raw(frame(1, b"", payload=0)) + drain)
+    put("serve", "long", ask(WRITE, 8, 0x20, b"1") + answer() + drain + ask(WRITE, 3, 0xa0, b"1") +
+        b"\x25" + drain)
+    put("serve", "several", ask(READ, 8) + ask(DIRALL, 0, client=1) + ask(DIRALL, 0, client=2) +
+        ask(DIRALL, 0, client=3) + second + answer(b"1") + b"\xd6" + second + b"\x56" + answer() +
+        answer() + drain + turned)
+    put("serve", "codes", ask(READ, 6) + drain + ask(DIR, "/settings/return_codes/") + drain +
+        ask(GET, "/settings/return_codes/text.210") + ask(0xb, 0) + drain)
+
+
+def commands():
+    def number(item, value):
+        return bytes([item << 4 | 1]) + struct.pack("<qB", value, 0)
+
+    def real(item, value):
+        return bytes([item << 4 | 9]) + struct.pack("<bB", value, 1)
+
+    def text(item, value, how=0):
+        return bytes([item << 4 | 1, how, len(value)]) + value + (b"\0" if how & 4 else b"") + b"\0"
+
+    def overlay(off, content):
+        return b"\0" + struct.pack("<IB", off, len(content)) + content
+    step, second = b"\x16", b"\x26"
+    put("commands", "numbers", b"\0" + number(2, 9) + step + number(2, 256) + number(3, 1) + step +
+        real(6, 21) + number(6, 0x7ff8 << 48) + number(8, -40000) + second + number(9, 1 << 33) +
+        second)
+    put("commands", "texts", b"\1" + text(4, b"boiler") + step + text(4, b"", 1) + step +
+        text(5, b"a\0b", 3) + second + text(4, b"claimed", 4) + second + second)
+    put("commands", "flags", b"\0" + b"\x03\x01" + number(1, 5) + b"\x13\x08" + second + b"\x23\x10" +
+        b"\x03\x62" + second + b"\xa3\x20" + second)
+    put("commands", "beats", b"\0" + b"\x0c\5" + b"\x21" + struct.pack("<qB", 3, 1) + second +
+        b"\x0c\5" + second + second + b"\x04\0" + second)
+    put("commands", "header", b"\0" + overlay(0, b"\xff" * 64) + step + overlay(240, b"\xff" * 64) +
+        second + b"\x27" + second + b"\2\0\0\0")
+    put("commands", "bus", b"\4" + number(2, 7) + b"\x25\1" + second + b"\x25\4" + number(2, 8) +
+        second + b"\x0f" + number(3, 1) + b"\x17" + second)
+    put("commands", "cut", b"\3" + number(2, 7) + text(4, b"x") + step + struct.pack("<I", 400))
+
+
+def image():
+    def number(off, how, later=b"", command=False, header=True):
+        return bytes([command << 3 | header << 5]) + struct.pack("<IB", off, how) + later
+
+    reads, looks, sets, reopens = b"\4\0", b"\3\0\0\0\0", b"\5", b"\7"
+    put("image", "whole", b"\0\1" + looks + reads + sets + b"\x15" + b"\x95" + reads +
+        b"\6\x88\x13\0\0" + reads + reopens + looks)
+    put("image", "offsets", b"\7\0" + b"".join(number(64 + 4 * i, 8) for i in range(7)))
+    put("image", "counts", b"\3\1" + number(72, 255, b"\1") + number(100, 4) + number(136, 4) +
+        looks + reads)
+    put("image", "command", b"\2\1" + number(28, 6, command=True) + number(80, 4, command=True) +
+        sets)
+    put("image", "record", b"\0\1" + b"\x10" + struct.pack("<IB", 1280, 8) + b"\xff" * 8 + reads +
+        b"\x10" + struct.pack("<IB", 1280 + 8, 4) + b"\x09\0\xff\xff" + reads)
+    put("image", "short", b"\0\2" + struct.pack("<I", 3000) + reads)
+
+
+if __name__ == "__main__":
+    for target in (rio, owserver, serve, commands, image):
+        target()
