@@ -7,7 +7,7 @@ import re
 
 import owsdtest
 
-EXAMPLES = re.findall(r"^```\n(OwsDrv \{.*?)^```$",
+EXAMPLES = re.findall(r"^```rio\n(OwsDrv \{.*?)^```$",
                       (owsdtest.SOURCE / "docs/alarms.md").read_text(), re.M | re.S)
 CHIP = "i2c speed 400\nchip DS2482-100 0x18\n"
 

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: MIT
+"""The documentation as data: the blocks, commands, paths and links of a page.
+
+A block of a Markdown page names its language behind the three backticks; one without a language is
+an error of the page, as nobody knows what to do with it. In man pages it is what EXAMPLES has.
+"""
+
+import collections
+import re
+
+# file: the name by which the page calls it, as in "`first.c`:" before it, or None
+Block = collections.namedtuple("Block", "page line language text file")
+MAN_LANGUAGE = {"owsctl.1": "sh", "owsd.8": "sh", "owsd.rio.5": "rio", "libows.3": "c"}
+FENCE = re.compile(r"^( *)```(.*)$")
+
+
+def blocks(path):
+    """All blocks of a page, indented ones with the language None."""
+    if path.suffix != ".md":
+        return man_blocks(path)
+    return list(markdown_blocks(path.name, path.read_text().split("\n")))
+
+
+def markdown_blocks(page, lines):
+    at, blank, listed, file = 0, True, False, None
+    while at < len(lines):
+        line, begun = lines[at], at + 1
+        fence = FENCE.match(line)
+        if fence:
+            at += 1
+            while not lines[at].strip().startswith("```"):
+                at += 1
+            indent = len(fence[1])
+            yield Block(page, begun, fence[2].strip() or None,
+                        "".join(row[indent:] + "\n" for row in lines[begun:at]), file)
+        elif line.startswith("    ") and line.strip() and blank and not listed:
+            while at < len(lines) and (lines[at].startswith("    ") or not lines[at].strip()):
+                at += 1
+            yield Block(page, begun, None, "\n".join(lines[begun - 1:at]), None)
+            at -= 1
+        if line.strip():
+            named = re.search(r"`([\w./-]+\.\w+)`[^`]*:$", line)
+            file = named and named[1]
+            listed = bool(re.match(r"\s*([-*]|\d+\.) ", line)) or listed and line.startswith(" ")
+        blank = not line.strip()
+        at += 1
+
+
+def man_blocks(path):
+    text = path.read_text()
+    heading = re.search(r"^\.S[Hh] EXAMPLES$", text, re.M)
+    section = re.split(r"^\.S[Hh] ", text[heading.end():], maxsplit=1, flags=re.M)[0]
+    line = text[:heading.end()].count("\n") + 1
+    found = re.findall(r"^\.(?:nf|EX|Bd .*)\n(.*?)^\.(?:fi|EE|Ed)$", section, re.M | re.S)
+    return [Block(path.name, line, MAN_LANGUAGE[path.name], plain(t), None) for t in found]
+
+
+def plain(text):
+    """Roff without its escapes."""
+    return text.replace("\\-", "-").replace("\\e", "\\").replace("\\&", "")
+
+
+def prose(path):
+    """The page without its blocks: (line number, text)."""
+    inside = False
+    for number, line in enumerate(path.read_text().split("\n"), 1):
+        if FENCE.match(line):
+            inside = not inside
+        elif not inside:
+            yield number, line
+
+
+def inline(path):
+    """What stands in backticks in the prose."""
+    for number, line in prose(path):
+        for code in re.findall(r"`([^`]+)`", line):
+            yield number, code
+
+
+def links(path):
+    for number, line in prose(path):
+        for target in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"`[^`]*`", "", line)):
+            yield number, target
+
+
+def anchors(path):
+    """The anchors of a page's headings, as the hosting sites make them."""
+    found = set()
+    for _, line in prose(path):
+        heading = re.match(r"#+ (.*)$", line)
+        if heading:
+            title = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading[1]).lower()
+            found.add(re.sub(r"[^\w\- ]", "", title).strip().replace(" ", "-"))
+    return found

@@ -1,0 +1,215 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The programs that the documentation's commands find in place of the real ones (test_docs.py).
+
+owsd and owsctl are the real ones, with what a reader would have replaced: every target by a
+simulated network, the instance by the test's own, ports by free ones, and what never ends by
+something that does. What would change a machine, or needs hardware, is looked at only: it must be
+one of the uses written down here. STAGE is the directory, NAME the instance, SERVED the port.
+"""
+
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+SOURCE = pathlib.Path(os.environ.get("OWSD_SOURCE", HERE.parents[1]))
+BUILD = pathlib.Path(os.environ.get("OWSD_BUILD", SOURCE / "build"))
+STAGE, NAME = pathlib.Path(os.environ.get("STAGE", ".")), os.environ.get("NAME", "")
+SERVED = os.environ.get("SERVED", "")
+SIMULATED = f"sim:{STAGE}/stage.sim"
+HARDWARE = re.compile(r"^(i2c:(auto|/dev/i2c-\d(:0x[0-9a-f]{2}(\.\d)?)?)|w1(:.*)?|auto|gpio:.*)$")
+OURS = set(re.findall(r"^Package: (\S+)$", (SOURCE / "board/debian/control").read_text(), re.M))
+DEBIAN = {"owserver", "ow-shell", "libgpiod-dev", "i2c-tools", "python3-ows"} | OURS
+UNIT = r"(owsd(@\w+)?|owserver(\.socket|\.service)?)"
+GROUPS = "(i2c|gpio|owsd|owsd-control)"
+
+# What may be said to programs that are not run: the whole of their arguments
+LOOKED_AT = {
+    "systemctl": [rf"(status|start|stop|restart|reload|edit) {UNIT}( {UNIT})*",
+                  rf"(enable|disable)( --now)? {UNIT}( {UNIT})*", "daemon-reload"],
+    "journalctl": [rf"-u {UNIT}( -f| -e)?"],
+    "systemd-analyze": [rf"security {UNIT}"],
+    "adduser": [rf"\w+ {GROUPS}"],
+    "raspi-config": ["", "nonint do_i2c 0"],
+    "modprobe": ["i2c-dev", "ds2482", "w1-gpio", "w1_therm"],
+    "udevadm": ["trigger", "control --reload"],
+    "reboot": [""],
+    "i2cdetect": [r"-y \d"],
+    "gpiodetect": [""], "gpioinfo": [""], "lsusb": [""],
+    "rpi-image-gen": [r"build -S /path/to/owsd/board/image/rpi-image-gen -c owsd\.yaml"],
+}
+
+
+def fail(text):
+    print(f"{pathlib.Path(sys.argv[0]).name}: {text}", file=sys.stderr)
+    sys.exit(2)
+
+
+def run(command):
+    os.execv(command[0], [str(c) for c in command])
+
+
+def place(argument):
+    """A target of the documentation as one of the test."""
+    if HARDWARE.match(argument):
+        return SIMULATED
+    return re.sub(r"^(localhost|127\.0\.0\.1):4304$", f"127.0.0.1:{SERVED}", argument)
+
+
+def owsctl(arguments):
+    words = [place(a) for a in arguments]
+    if "-n" in words:
+        words[words.index("-n") + 1] = NAME
+    elif not {"-t", "config", "--help", "-h", "--version", "-V"} & set(words[:3]) or \
+            {"watch", "wait"} & set(words):
+        words[:0] = ["-n", NAME]
+    if "watch" in words:
+        words += ["-c", "2", "-t", "1"]
+    if "wait" in words and "-t" in words[words.index("wait"):]:
+        last = len(words) - 1 - words[::-1].index("-t")
+        words[last + 1] = str(min(5, int(words[last + 1])))
+    run([BUILD / "owsctl", *words])
+
+
+def owsd(arguments):
+    words = [place(a) for a in arguments]
+    if any(w.startswith("--board") for w in words):
+        run([BUILD / "owsd", *words, "--root", STAGE / "root"])
+    for option in ("-n", "-l"):
+        for at in (i + 1 for i, w in enumerate(words) if w == option):
+            words[at] = NAME + "d" if option == "-n" else f"127.0.0.1:{free_port()}"
+    if "-c" not in words:
+        words += ["-c", str(STAGE / "root/etc/owsd/OWS.rio")]
+    if {"--check", "-V", "--version", "-h", "--help"} & set(words):
+        run([BUILD / "owsd", *words])
+    if "-t" not in words:
+        words += ["-t", SIMULATED]
+    if "-n" not in words:
+        words += ["-n", NAME + "d"]
+    sys.exit(until_ready([str(BUILD / "owsd"), *words]))
+
+
+def free_port():
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        return s.getsockname()[1]
+
+
+def until_ready(command):
+    """Start owsd, wait until it says that it is ready, and end it."""
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as notify:
+        address = str(STAGE / f"notify{os.getpid()}")
+        notify.bind(address)
+        notify.settimeout(10)
+        daemon = subprocess.Popen(command, env=dict(os.environ, NOTIFY_SOCKET=address))
+        said = b""
+        deadline = time.monotonic() + 10
+        notify.settimeout(0.1)
+        while b"READY=1" not in said and daemon.poll() is None and time.monotonic() < deadline:
+            try:
+                said = notify.recv(4096)
+            except socket.timeout:
+                pass
+        daemon.send_signal(signal.SIGTERM)
+        status = daemon.wait(10)
+        return status if b"READY=1" in said else status or 1
+
+
+def sudo(arguments):
+    while arguments and re.match(r"\w+=", arguments[0]):
+        arguments = arguments[1:]
+    os.execvp(arguments[0], arguments)
+
+
+def make(arguments):
+    """Targets and variables have to be there; building is the business of other tests."""
+    text = (SOURCE / "Makefile").read_text() + (SOURCE / "tests/kernel/kernel.mk").read_text()
+    known = set(" ".join(re.findall(r"^([\w/. -]+):(?!=)", text, re.M)).split())
+    phony = re.search(r"^\.PHONY:((?:.*\\\n)*.*)$", text, re.M)[1]
+    known |= set(phony.replace("\\", " ").split())
+    for word in arguments:
+        variable = re.match(r"(\w+)=", word)
+        if variable and not re.search(rf"\$[({{]{variable[1]}[)}},]|^{variable[1]}\s*\??=", text, re.M):
+            fail(f"no variable {variable[1]}")
+        if not variable and not re.match(r"-[jks]\d*$", word) and word not in known:
+            fail(f"no target {word}")
+
+
+def apt(arguments):
+    if arguments[:1] != ["install"] or len(arguments) < 2:
+        fail("only install is known here")
+    for word in arguments[1:]:
+        package = re.match(r"(?:\./(?:build/deb/)?)?([a-z0-9-]+)(?:_\*\.deb)?$", word)
+        if not package or package[1] not in DEBIAN:
+            fail(f"no package {word}")
+
+
+def one_wire_shell(program, arguments):
+    """owdir, owread, owwrite: the genuine ones, at the port that the test serves."""
+    at = arguments.index("-s") if "-s" in arguments else None
+    if at is not None:
+        arguments = arguments[:at] + arguments[at + 2:]
+    run([f"/usr/bin/{program}", "-s", f"127.0.0.1:{SERVED}", *arguments])
+
+
+def owfs_program(program, arguments):
+    """owserver, owfs, owhttpd: not started, but their help has to know each option."""
+    if not shutil.which(program, path="/usr/bin"):
+        return
+    said = "".join(subprocess.run([f"/usr/bin/{program}", f"--help={part}"], capture_output=True,
+                                  text=True, check=False).stdout
+                   for part in ("device", "cache", "program", "job", "temperature"))
+    for option in (a.split("=")[0] for a in arguments if a.startswith("-")):
+        if not re.search(rf"(?<![\w-]){option}(?!\w)", said):
+            fail(f"no option {option}")
+
+
+def pkg_config(arguments):
+    if sorted(arguments) != ["--cflags", "--libs", "libows"]:
+        fail(f"not for libows: {arguments}")
+    extra = os.environ.get("EXTRA_CFLAGS", "")
+    print(f"-I{SOURCE}/src/libows -L{BUILD} -lows {extra}")
+
+
+def jq(arguments):
+    """Is it JSON that comes?"""
+    for line in sys.stdin:
+        json.loads(line)
+
+
+def man(arguments):
+    for page in arguments:
+        if page.isdigit() or (SOURCE / page).exists() or list((SOURCE / "docs").glob(page + ".?")):
+            continue
+        fail(f"no page {page}")
+
+
+RUN = {"owsctl": owsctl, "owsd": owsd, "sudo": sudo, "make": make, "apt": apt, "apt-get": apt,
+       "pkg-config": pkg_config, "jq": jq, "man": man}
+SHELL = ["owdir", "owread", "owwrite"]
+OWFS = ["owserver", "owfs", "owhttpd"]
+PROGRAMS = [*RUN, *SHELL, *OWFS, *LOOKED_AT]
+
+
+def main():
+    program, arguments = pathlib.Path(sys.argv[0]).name, sys.argv[1:]
+    if program in RUN:
+        RUN[program](arguments)
+    elif program in SHELL:
+        one_wire_shell(program, arguments)
+    elif program in OWFS:
+        owfs_program(program, arguments)
+    elif not any(re.fullmatch(use, " ".join(arguments)) for use in LOOKED_AT[program]):
+        fail(f"a use that nobody has looked at: {' '.join(arguments)}")
+
+
+if __name__ == "__main__":
+    main()

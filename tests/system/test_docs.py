@@ -1,0 +1,387 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""What the documentation says, done: each block of each page is run or checked by its language.
+
+sh, console  run by a shell that finds the programs of standin.py and a few harmless ones, and no
+             others; absolute paths lie below a root of the test's own. In a console block the
+             output is compared too: numbers and "..." stand for anything
+c, cpp       compiled without a warning; whole programs are run
+python       run
+rio, sim     read by owsd --check; by owsctl dir
+json         parsed
+conf         owfs.conf: keys that the genuine owserver knows
+udev         lines that board/udev has
+text         anything but commands
+
+Behind them stands an owsd on docs/stage.sim, with the names of docs/stage.rio. Besides: links lead
+somewhere, files that are named exist, and a command within a sentence has an option that exists.
+"""
+
+import json
+import os
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import textwrap
+
+import handbook
+import owsdtest
+import standin
+
+HERE = standin.HERE
+SOURCE = owsdtest.SOURCE
+HARMLESS = ("cat chmod cp cut diff env false grep head ls mkdir mv printf rm sed sleep sort "
+            "tail tee test timeout touch tr true wc").split()
+COMPILERS = {"cc": os.environ.get("CC", "gcc").split()[-1], "c++": "g++", "as": "as", "ld": "ld"}
+WARN = ["-Wall", "-Wextra", "-Werror", "-Wno-unused-variable", "-Wno-unused-but-set-variable",
+        "-Wno-unused-function", *os.environ.get("EXTRA_CFLAGS", "").split()]
+OF_THE_SYSTEM = re.compile(r"(?<![\w./:@$}-])/(boot|dev(?!/(?:null|shm))|etc|sys|usr|var)/")
+COMMAND = re.compile(r"(?:sudo +)?(%s)(?: |$)" % "|".join(re.escape(p) for p in standin.PROGRAMS))
+PAGES = sorted([SOURCE / n for n in ("README.md", "CONTRIBUTING.md", "SECURITY.md", "NEWS.md")
+                if (SOURCE / n).exists()] + list((SOURCE / "docs").glob("*.md")))
+MANUALS = sorted((SOURCE / "docs").glob("*.[1-8]"))
+
+
+class Stage:
+    """The place where a page is gone through from top to bottom."""
+
+    def __init__(self, scene):
+        self.scene, self.path, self.daemon = scene, scene.path, None
+        self.root, bin_dir = self.path / "root", self.path / "bin"
+        bin_dir.mkdir()
+        for program in standin.PROGRAMS:
+            (bin_dir / program).symlink_to(HERE / "standin.py")
+        for program in HARMLESS:
+            (bin_dir / program).symlink_to(shutil.which(program) or f"/bin/{program}")
+        (bin_dir / "python3").symlink_to(sys.executable)
+        for name, program in COMPILERS.items():
+            (bin_dir / name).symlink_to(shutil.which(program))
+        for name in ("docs", "board", "tests", "src", "hal", "Makefile"):
+            (self.path / name).symlink_to(SOURCE / name)
+        (self.path / "build").mkdir()
+        for name in ("owsd", "owsctl"):
+            (self.path / "build" / name).symlink_to(HERE / "standin.py")
+        (self.path / "build/libows.a").symlink_to(owsdtest.BUILD / "libows.a")
+        for name in ("stage.sim", "stage.rio"):
+            shutil.copy(HERE / "docs" / name, self.path)
+        for name in ("plant.rio", "house.rio", "ow_cfg.rio"):
+            shutil.copy(HERE / "docs" / "stage.rio", self.path / name)
+        for example in (SOURCE / "docs/examples").iterdir():
+            shutil.copy(example, self.path)
+        self._make_root()
+
+    def _make_root(self):
+        """A Raspberry Pi 4 with a DS2482 board, as far as files tell."""
+        files = {"proc/device-tree/model": b"Raspberry Pi 4 Model B Rev 1.1\0",
+                 "boot/firmware/config.txt": b"dtparam=i2c_arm=on\n", "dev/i2c-1": b"",
+                 "sys/bus/i2c/devices/i2c-1/of_node/clock-frequency": struct.pack(">I", 400000),
+                 "var/lib/owsd/firstboot.done": b"", "etc/default/owsd": b"",
+                 "sys/bus/i2c/drivers/ds2482/unbind": b"",
+                 "sys/bus/w1/devices/w1_bus_master1/w1_master_search": b"-1\n",
+                 "sys/bus/i2c/devices/i2c-1/delete_device": b""}
+        for name, content in files.items():
+            file = self.root / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(content)
+        for name in ("etc/owsd", "etc/udev/rules.d", "usr/share/owsd",
+                     "etc/systemd/system/owsd@OWS.service.d"):
+            (self.root / name).mkdir(parents=True, exist_ok=True)
+        for source, place in (("board/debian/OWS.rio", "etc/owsd/OWS.rio"),
+                              ("board/debian/OWS.rio", "usr/share/owsd/OWS.rio"),
+                              ("src/libows/ows.py", "usr/share/owsd/ows.py")):
+            shutil.copy(SOURCE / source, self.root / place)
+        shutil.copytree(SOURCE / "board/systemd/examples",
+                        self.root / "usr/share/doc/owsd/examples")
+
+    def owsd(self):
+        """The owsd behind the page; its values are there when this returns."""
+        if not self.daemon:
+            self.port = owsdtest.free_port()
+            self.daemon = self.scene.owsd(self.path / "stage.rio", "-l", f"127.0.0.1:{self.port}")
+            self.scene.names.append(self.daemon.name + "d")
+            self.scene.until(lambda: all(self.scene.get(self.daemon, n) for n in
+                                         ("room1", "freezer", "buttons")), 20, "values")
+        return self.daemon
+
+    def environment(self):
+        self.owsd()
+        return {"PATH": str(self.path / "bin"), "STAGE": str(self.path), "NAME": self.daemon.name,
+                "SERVED": str(self.port), "HOME": str(self.path), "USER": "user", "LANG": "C.UTF-8",
+                "OWSD_SOURCE": str(SOURCE), "OWSD_BUILD": str(owsdtest.BUILD),
+                "OWSD_BOARDS": str(SOURCE / "board/boards"), "TMPDIR": str(self.path),
+                "LD_LIBRARY_PATH": str(owsdtest.BUILD), "PYTHONPATH": str(SOURCE / "src/libows"), "PYTHONDONTWRITEBYTECODE": "1",
+                **{k: v for k, v in os.environ.items() if "SAN_OPTIONS" in k or k == "EXTRA_CFLAGS"}}
+
+    def own(self, text):
+        """Text with the instance and the absolute paths of this stage."""
+        self.owsd()
+        text = re.sub(r'\bOWS(?=__|")|(?<=/owsd\.)OWS(?=\.)', self.daemon.name, text)
+        return OF_THE_SYSTEM.sub(f"{self.root}/\\1/", text)
+
+    def run(self, command, seconds=20):
+        return subprocess.run([str(c) for c in command], cwd=self.path, text=True, timeout=seconds,
+                              stdin=subprocess.DEVNULL, capture_output=True,
+                              env=self.environment())
+
+    def program(self, command):
+        """A program of a page: it succeeds, or it goes on until it is ended, and complains of nothing."""
+        child = subprocess.Popen([str(c) for c in command], cwd=self.path, text=True,
+                                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                 stderr=subprocess.PIPE, env=self.environment())
+        try:
+            out, err = child.communicate(timeout=1.5)
+            assert child.returncode == 0, f"status {child.returncode}\n{out}{err}"
+        except subprocess.TimeoutExpired:
+            child.terminate()
+            out, err = child.communicate(timeout=10)
+        assert not err, err
+        return out
+
+
+# --- One function for each language ---------------------------------------------------------------
+
+def do_sh(stage, text):
+    done = stage.run(["/bin/sh", "-exc", stage.own(text)])
+    assert done.returncode == 0, f"status {done.returncode}\n{done.stdout}{done.stderr}"
+
+
+def do_console(stage, text):
+    commands = re.split(r"^\$ ", text, flags=re.M)
+    assert not commands[0].strip(), "a console block begins with a command: $ ..."
+    for command, _, expected in (c.partition("\n") for c in commands[1:]):
+        done = stage.run(["/bin/sh", "-exc", stage.own(command)])
+        assert done.returncode == 0, f"{command}: {done.returncode}\n{done.stdout}{done.stderr}"
+        assert like(expected, done.stdout), f"{command} says\n{done.stdout}and not\n{expected}"
+
+
+def like(expected, said):
+    """Numbers and ... stand for anything; nothing expected: the page does not show it."""
+    pattern = re.escape(re.sub(r"-?\d+(\.\d+)?", "\0", expected.strip()))
+    pattern = pattern.replace("\0", r"-?[\d.]+").replace(re.escape("..."), "(?s:.*)")
+    pattern = re.sub(r"(\\ |\\\n|\n)+", r"\\s+", pattern)
+    return not expected.strip() or re.fullmatch(pattern, said.strip())
+
+
+def compiled(stage, text, compiler, suffix, flags):
+    """The program that a block is, or None where it is a part of one."""
+    assert "..." not in re.sub(r"/\*.*?\*/|//.*|\"[^\"]*\"", "", text, flags=re.S), \
+        "words in place of code: make it whole"
+    unit_test = '"unity.h"' in text
+    whole = "main(" in text and not unit_test
+    if not re.search(r"^(#include|static |extern )|^\w[\w *]*\([^;{]*\)\n\{", text, re.M):
+        text = "void fragment(void);\nvoid fragment(void)\n{\n" + textwrap.indent(text, "\t") + "\n}\n"
+    if not whole and not unit_test:
+        text = "#include <errno.h>\n#include <stdio.h>\n#include <ows.h>\n" + text
+    source = stage.scene.file("snippet" + suffix, stage.own(text))
+    output = stage.path / "snippet"
+    library = [f"-L{owsdtest.BUILD}", "-lows"] if whole else ["-c"]
+    done = stage.run([compiler, *flags, *WARN, "-D_GNU_SOURCE", f"-I{SOURCE}/src/libows",
+                      f"-I{SOURCE}", "-isystem", HERE / "docs", source, *library, "-o", output])
+    assert done.returncode == 0, done.stderr
+    return output if whole else None
+
+
+def do_c(stage, text):
+    program = compiled(stage, text, shutil.which(COMPILERS["cc"]), ".c", ["-std=c17"])
+    if program:
+        stage.program([program])
+
+
+def do_cpp(stage, text):
+    program = compiled(stage, text, shutil.which("g++"), ".cpp", ["-std=c++17"])
+    if program:
+        stage.program([program])
+
+
+def do_python(stage, text):
+    stage.program([sys.executable, stage.scene.file("snippet.py", stage.own(text))])
+
+
+def do_rio(stage, text):
+    if not re.search(r"^OwsDrv", text, re.M):
+        target = re.search(r'Target +("[^"]+")', text)
+        text = (f"OwsDrv {{\n{'TargetName ' + target[1] if target else ''}\n"
+                f"{textwrap.indent(text, '  ')}}}\n")
+    done = stage.scene.owsd_once("--check", "-c", stage.scene.file("snippet.rio", text))
+    assert done.returncode == 0 and not done.stderr, done.stderr
+
+
+def do_sim(stage, text):
+    done = stage.scene.owsctl(None, "-t", f"sim:{stage.scene.file('snippet.sim', text)}", "dir", "/")
+    assert done.returncode == 0, done.stderr
+
+
+def do_json(_stage, text):
+    json.loads(text)
+
+
+def do_conf(_stage, text):
+    """owserver says nothing of a key that it does not know; its help says which it knows."""
+    if not shutil.which("owserver"):
+        return
+    known = {"server"}
+    for part in ("device", "cache", "program", "job", "temperature"):
+        done = subprocess.run(["owserver", "--help=" + part], capture_output=True, text=True,
+                              check=False)
+        known |= {k.lower() for k in re.findall(r"--?(\w+)", done.stdout + done.stderr)}
+    for line in filter(None, (row.split("#")[0].strip() for row in text.split("\n"))):
+        key = re.match(r"(?:!? *(?:server|http|ftp|owfs) *: *)?(\w+)", line)
+        assert key and key[1].lower() in known, f"owserver knows no {line}"
+
+
+def do_udev(_stage, text):
+    ours = (SOURCE / "board/udev/owsd.rules").read_text().split("\n")
+    for line in filter(None, text.split("\n")):
+        assert line.startswith("#") or line in ours, f"board/udev/owsd.rules has no {line}"
+
+
+def do_text(_stage, text):
+    for line in text.split("\n"):
+        assert not COMMAND.match(line.strip()), f"a command that nobody runs: {line.strip()}"
+
+
+LANGUAGES = {name[3:]: do for name, do in list(globals().items()) if name.startswith("do_")}
+
+
+def check_block(stage, block):
+    assert block.language, "a block without a language: put one of " + \
+        " ".join(LANGUAGES) + " behind three backticks"
+    assert block.language in LANGUAGES, f"no way to check {block.language}: say in test_docs.py how"
+    if block.file and "/" not in block.file:
+        stage.scene.file(block.file, stage.own(block.text))
+    LANGUAGES[block.language](stage, block.text)
+
+
+# --- What a page has besides blocks ---------------------------------------------------------------
+
+def check_link(page, target):
+    if re.match(r"\w+:", target):
+        return
+    file, _, anchor = target.partition("#")
+    path = page.parent / file if file else page
+    assert path.exists(), f"{target} leads nowhere"
+    assert not anchor or anchor in handbook.anchors(path), f"{target}: no such heading"
+
+
+def check_inline(stage, code, written):
+    """A file that is named has to exist, or the page has it; a command has to have its verb and
+    options."""
+    if re.match(r"(?:src|hal|tests|board|docs)/[\w./*-]+$", code) and code not in written:
+        assert list(SOURCE.glob(code.rstrip("/"))), f"no {code} in the source"
+    program, *words = code.split()
+    if program == "sudo" and words:
+        program, *words = words
+    if program in ("owsd", "owsctl") and words:
+        check_usage(program, words)
+    elif program in (*standin.LOOKED_AT, "make", "apt", "apt-get") and words[1:] and \
+            not re.search(r"[|<>&;]|\.\.\.", code):
+        done = stage.run(["/bin/sh", "-c", stage.own(code)])
+        assert done.returncode == 0, f"{code}: {done.stderr}"
+
+
+def check_usage(program, words):
+    """Placeholders may stand for values, as in `owsctl set NAME VALUE`: so the help is asked."""
+    verb = [w for before, w in zip(["", *words], words) if re.match(r"[a-z]+$", w) and
+            before not in ("-n", "-t")][:1] if program == "owsctl" else []
+    helps = [subprocess.run([owsdtest.BUILD / program, *v, "--help"], capture_output=True, text=True,
+                            check=False) for v in ([], verb)]
+    assert all(h.returncode == 0 for h in helps), helps[-1].stderr
+    said = " ".join(h.stdout for h in helps)
+    known = set(re.findall(r"(?<![\w-])--?[a-z]+", said, re.I))
+    known |= {f"-{c}" for group in re.findall(r"\[-(\w+)\]", said) for c in group}
+    for option in (w.split("=")[0] for w in words if w.startswith("-")):
+        assert option in known, f"{' '.join([program, *words])}: no option {option}"
+
+
+def go_through(scene, page):
+    """All faults of a page, so that they can be mended at once."""
+    stage, faults = Stage(scene), []
+
+    def attempt(line, do, *what):
+        try:
+            do(*what)
+        except (AssertionError, ValueError, subprocess.TimeoutExpired) as fault:
+            faults.append(f"{page.name}:{line}: {fault}")
+
+    for block in handbook.blocks(page):
+        attempt(block.line, check_block, stage, block)
+    if page.suffix == ".md":
+        written = {block.file for block in handbook.blocks(page)}
+        for line, target in handbook.links(page):
+            attempt(line, check_link, page, target)
+        for line, code in handbook.inline(page):
+            attempt(line, check_inline, stage, code, written)
+    return faults
+
+
+def case_of(page):
+    def case(scene):
+        faults = go_through(scene, page)
+        assert not faults, "\n" + "\n".join(faults)
+    return case
+
+
+for _page in PAGES + MANUALS:
+    globals()[f"test_{re.sub(r'[^a-z0-9]', '_', _page.name.lower())}_is_true"] = case_of(_page)
+
+
+def test_manual_pages_are_well_formed(_scene):
+    if not shutil.which("mandoc"):
+        owsdtest.skip("mandoc is not installed")
+    done = subprocess.run(["mandoc", "-T", "lint", "-W", "error", *map(str, MANUALS)],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_every_page_can_be_reached_from_the_readme(_scene):
+    linked = {target for _, target in handbook.links(SOURCE / "README.md")}
+    missing = [p.name for p in (SOURCE / "docs").glob("*.md") if f"docs/{p.name}" not in linked]
+    assert not missing, f"README.md leads not to {missing}"
+
+
+# What is wrong, and what is said of it
+PLANTED = [
+    ("```sh\nowsctl list --colour\n```", "unknown option: --colour"),
+    ("```sh\nowsctl show room1\n```", "owsctl: there is no verb show\nusage"),
+    ("```sh\nowsd -c plant.rio --daemon\n```", "'--daemon'"),
+    ("```sh\nowsctl get room99\n```", "there is no room99"),
+    ("```sh\napt-cache policy owsd\n```", "apt-cache: not found"),
+    ("```sh\nsudo apt install owsd-tools\n```", "no package owsd-tools"),
+    ("```sh\nsystemctl restart ows\n```", "restart ows"),
+    ("```sh\nmake tests\n```", "no target tests"),
+    ("```sh\nmake deb ARCHITECTURE=arm64\n```", "no variable ARCHITECTURE"),
+    ("```console\n$ owsctl get room1\nwarm\n```", "and not\nwarm"),
+    ("```c\nows_fetch(NULL, 1);\n```", "ows_fetch"),
+    ("```c\nint main(void)\n{\n\tchar c = \"text\";\n\n\treturn c;\n}\n```", "int-conversion"),
+    ("```c\nint main(void)\n{\n\treturn 3;\n}\n```", "status 3\n"),
+    ("```cpp\nint main()\n{\n\treturn nothing;\n}\n```", "nothing"),
+    ("```python\nimport ows\nows.Ows(\"OWS\").fetch(\"room1\")\n```", "attribute 'fetch'"),
+    ("```rio\nOwsDrv {\n  Target \"localhost\"\n}\n```", "unknown key Target"),
+    ("```sim\nchip DS9999 0x18\n```", "DS9999"),
+    ("```udev\nSUBSYSTEM==\"w1\"\n```", "has no SUBSYSTEM"),
+    ("```json\n{1}\n```", "property name"),
+    ("```text\nowsctl lst\n```", "nobody runs"),
+    ("```\nx\n```", "without a language"),
+    ("\n    owsctl list\n", "without a language"),
+    ("```perl\n1\n```", "no way to check perl"),
+    ("[here](nowhere.md)", "leads nowhere"),
+    ("# A heading\n\n[here](#no-heading)", "no such heading"),
+    ("as in `src/engine/nothing.c`", "nothing.c in the source"),
+    ("by `owsctl list --colour`", "owsctl list --colour: no option --colour"),
+    ("by `owsctl show NAME`", "no verb show"),
+    ("by `owsd --quiet`", "no option --quiet"),
+    ("by `sudo adduser USER wheel`", "USER wheel"),
+] + [("```conf\nserver: i2s = ALL\n```", "knows no server: i2s")] * bool(shutil.which("owserver"))
+
+
+def test_what_is_wrong_is_noticed(scene):
+    faults = go_through(scene, scene.file("planted.md", "\n\n".join(t for t, _ in PLANTED)))
+    for text, said in PLANTED:
+        assert any(said in fault for fault in faults), f"{text}: nothing about {said} in {faults}"
+    assert len(faults) == len(PLANTED), faults
+
+
+if __name__ == "__main__":
+    owsdtest.main(at_once=4)
