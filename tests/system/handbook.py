@@ -22,7 +22,7 @@ def blocks(path):
 
 
 def markdown_blocks(page, lines):
-    at, blank, listed, file = 0, True, False, None
+    at, blank, deep, file = 0, True, " " * 4, None  # deep: where an indented block begins
     while at < len(lines):
         line, begun = lines[at], at + 1
         fence = FENCE.match(line)
@@ -33,15 +33,17 @@ def markdown_blocks(page, lines):
             indent = len(fence[1])
             yield Block(page, begun, fence[2].strip() or None,
                         "".join(row[indent:] + "\n" for row in lines[begun:at]), file)
-        elif line.startswith("    ") and line.strip() and blank and not listed:
-            while at < len(lines) and (lines[at].startswith("    ") or not lines[at].strip()):
+        elif line.startswith(deep) and line.strip() and blank:
+            while at < len(lines) and (lines[at].startswith(deep) or not lines[at].strip()):
                 at += 1
             yield Block(page, begun, None, "\n".join(lines[begun - 1:at]), None)
             at -= 1
         if line.strip():
             named = re.search(r"`([\w./-]+\.\w+)`[^`]*:$", line)
             file = named and named[1]
-            listed = bool(re.match(r"\s*([-*]|\d+\.) ", line)) or listed and line.startswith(" ")
+            item = re.match(r"(\s*(?:[-*]|\d+\.) +)", line)
+            if item or not line.startswith(" "):
+                deep = " " * (4 + len(item[1]) if item else 4)
         blank = not line.strip()
         at += 1
 

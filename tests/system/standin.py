@@ -27,7 +27,8 @@ SERVED = os.environ.get("SERVED", "")
 SIMULATED = f"sim:{STAGE}/stage.sim"
 HARDWARE = re.compile(r"^(i2c:(auto|/dev/i2c-\d(:0x[0-9a-f]{2}(\.\d)?)?)|w1(:.*)?|auto|gpio:.*)$")
 OURS = set(re.findall(r"^Package: (\S+)$", (SOURCE / "board/debian/control").read_text(), re.M))
-DEBIAN = {"owserver", "ow-shell", "libgpiod-dev", "i2c-tools", "python3-ows"} | OURS
+DEBIAN = {"owserver", "ow-shell", "libgpiod-dev", "i2c-tools", "linuxcnc-uspace",
+          "linuxcnc-uspace-dev"} | OURS
 UNIT = r"(owsd(@\w+)?|owserver(\.socket|\.service)?)"
 GROUPS = "(i2c|gpio|owsd|owsd-control)"
 
@@ -44,6 +45,8 @@ LOOKED_AT = {
     "reboot": [""],
     "i2cdetect": [r"-y \d"],
     "gpiodetect": [""], "gpioinfo": [""], "lsusb": [""],
+    "halcompile": [r"--install --userspace --extra-link-args=-lows owsd_hal\.c"],
+    "halrun": [r"-I owsd\.hal"],
     "rpi-image-gen": [r"build -S /path/to/owsd/board/image/rpi-image-gen -c owsd\.yaml"],
 }
 
@@ -173,6 +176,9 @@ def owfs_program(program, arguments):
 
 
 def pkg_config(arguments):
+    if arguments == ["--variable=libdir", "libows"]:
+        print(BUILD)
+        return
     if sorted(arguments) != ["--cflags", "--libs", "libows"]:
         fail(f"not for libows: {arguments}")
     extra = os.environ.get("EXTRA_CFLAGS", "")

@@ -25,6 +25,7 @@ import struct
 import subprocess
 import sys
 import textwrap
+import xml.etree.ElementTree
 
 import handbook
 import owsdtest
@@ -32,9 +33,9 @@ import standin
 
 HERE = standin.HERE
 SOURCE = owsdtest.SOURCE
-HARMLESS = ("cat chmod cp cut diff env false grep head ls mkdir mv printf rm sed sleep sort "
+HARMLESS = ("cat chmod cp cut diff env false grep head install ls mkdir mv printf rm sed sleep sort "
             "tail tee test timeout touch tr true wc").split()
-COMPILERS = {"cc": os.environ.get("CC", "gcc").split()[-1], "c++": "g++", "as": "as", "ld": "ld"}
+COMPILERS = {"cc": os.environ.get("CC", "gcc").split()[-1], "c++": "g++", "as": "as", "ld": "ld", "ar": "ar"}
 WARN = ["-Wall", "-Wextra", "-Werror", "-Wno-unused-variable", "-Wno-unused-but-set-variable",
         "-Wno-unused-function", *os.environ.get("EXTRA_CFLAGS", "").split()]
 OF_THE_SYSTEM = re.compile(r"(?<![\w./:@$}-])/(boot|dev(?!/(?:null|shm))|etc|sys|usr|var)/")
@@ -47,7 +48,7 @@ MANUALS = sorted((SOURCE / "docs").glob("*.[1-8]"))
 class Stage:
     """The place where a page is gone through from top to bottom."""
 
-    def __init__(self, scene):
+    def __init__(self, scene, page):
         self.scene, self.path, self.daemon = scene, scene.path, None
         self.root, bin_dir = self.path / "root", self.path / "bin"
         bin_dir.mkdir()
@@ -68,9 +69,21 @@ class Stage:
             shutil.copy(HERE / "docs" / name, self.path)
         for name in ("plant.rio", "house.rio", "ow_cfg.rio"):
             shutil.copy(HERE / "docs" / "stage.rio", self.path / name)
-        for example in (SOURCE / "docs/examples").iterdir():
+        for example in (SOURCE / "docs/examples").glob("*.c*"):
             shutil.copy(example, self.path)
+        self._make_examples(page)
         self._make_root()
+
+    def _make_examples(self, page):
+        """A page that is called as a folder of the examples begins in that."""
+        for name in ("openplc", "linuxcnc"):
+            shutil.copytree(SOURCE / "docs/examples" / name, self.path / name)
+        self.cwd = self.path / page if page in ("openplc", "linuxcnc") else self.path
+        server = self.path / "openplc/OpenPLC_v3/webserver"
+        for folder in ("core", "st_files", "scripts"):
+            (server / folder).mkdir(parents=True)
+        for program in ("scripts/compile_program.sh", "core/openplc"):
+            (server / program).symlink_to("/bin/true")
 
     def _make_root(self):
         """A Raspberry Pi 4 with a DS2482 board, as far as files tell."""
@@ -121,13 +134,13 @@ class Stage:
         return OF_THE_SYSTEM.sub(f"{self.root}/\\1/", text)
 
     def run(self, command, seconds=20):
-        return subprocess.run([str(c) for c in command], cwd=self.path, text=True, timeout=seconds,
+        return subprocess.run([str(c) for c in command], cwd=self.cwd, text=True, timeout=seconds,
                               stdin=subprocess.DEVNULL, capture_output=True,
                               env=self.environment())
 
     def program(self, command):
         """A program of a page: it succeeds, or it goes on until it is ended, and complains of nothing."""
-        child = subprocess.Popen([str(c) for c in command], cwd=self.path, text=True,
+        child = subprocess.Popen([str(c) for c in command], cwd=self.cwd, text=True,
                                  stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                  stderr=subprocess.PIPE, env=self.environment())
         try:
@@ -143,7 +156,7 @@ class Stage:
 # --- One function for each language ---------------------------------------------------------------
 
 def do_sh(stage, text):
-    done = stage.run(["/bin/sh", "-exc", stage.own(text)])
+    done = stage.run(["/bin/sh", "-exc", stage.own(text) + "\nwait"])
     assert done.returncode == 0, f"status {done.returncode}\n{done.stdout}{done.stderr}"
 
 
@@ -297,7 +310,7 @@ def check_usage(program, words):
 
 def go_through(scene, page):
     """All faults of a page, so that they can be mended at once."""
-    stage, faults = Stage(scene), []
+    stage, faults = Stage(scene, page.stem), []
 
     def attempt(line, do, *what):
         try:
@@ -339,6 +352,15 @@ def test_every_page_can_be_reached_from_the_readme(_scene):
     linked = {target for _, target in handbook.links(SOURCE / "README.md")}
     missing = [p.name for p in (SOURCE / "docs").glob("*.md") if f"docs/{p.name}" not in linked]
     assert not missing, f"README.md leads not to {missing}"
+
+
+def test_the_picture_of_the_live_table_can_be_drawn_again(scene):
+    picture = scene.path / "table.svg"
+    subprocess.run([sys.executable, SOURCE / "docs/live-table.py", picture], check=True, timeout=60)
+    for svg in (picture, SOURCE / "docs/img/table.svg"):
+        texts = {t.text: t.get("fill") for t in xml.etree.ElementTree.parse(svg).iter() if t.text}
+        assert {"NAME", "boiler", "humidity", "pump"} <= set(texts), texts
+        assert texts["bedroom"] and not texts["living"], "the device that is gone is red"
 
 
 # What is wrong, and what is said of it

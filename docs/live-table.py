@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""make-table [FILE]: draw what `owsctl watch` shows on a terminal, as docs/img/table.svg or FILE.
+"""live-table.py [FILE]: draw what `owsctl watch` shows on a terminal, as docs/img/table.svg or FILE.
 
 A real run: owsd on the simulated house of board/demo, of which one thermometer is unplugged after
 a few seconds, and owsctl on a terminal of its own. `make all` comes first.
@@ -20,7 +20,7 @@ import termios
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-SOURCE = HERE.parents[1]
+SOURCE = HERE.parent
 BUILD = pathlib.Path(os.environ.get("OWSD_BUILD", SOURCE / "build")).resolve()
 COLUMNS, ROWS = 80, 20
 CELL, LINE, MARGIN, BAR = 8.4, 19, 18, 34
@@ -41,7 +41,7 @@ def record(folder):
         deadline = time.monotonic() + 10
         while subprocess.run([*ctl, "get", "key"], capture_output=True, check=False).returncode:
             if time.monotonic() > deadline:
-                sys.exit("make-table: owsd does not start")
+                sys.exit("live-table: owsd does not start")
             time.sleep(0.1)
         subprocess.run([*ctl, "set", "pump", "on"], check=True)
         return on_terminal([*ctl, "watch", "-t", "14"]).replace(name, "OWS")
@@ -101,7 +101,7 @@ def draw(lines):
     height = BAR + (len(lines) + 1) * LINE + MARGIN
     svg = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" '
            f'viewBox="0 0 {width:.0f} {height:.0f}" role="img">',
-           "<!-- SPDX-License-Identifier: MIT; made by docs/img/make-table -->",
+           "<!-- SPDX-License-Identifier: MIT; made by docs/live-table.py -->",
            "<title>owsctl watch: a table of signals with value, quality, age and target</title>",
            f'<rect x="0.5" y="0.5" width="{width - 1:.0f}" height="{height - 1:.0f}" rx="8" '
            f'fill="{PAPER}" stroke="#4a5563"/>',
@@ -124,7 +124,7 @@ def draw(lines):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         lines = last_screen(record(pathlib.Path(folder)))
-    file = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "table.svg"
+    file = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "img/table.svg"
     file.write_text(draw(lines))
 
 
