@@ -10,13 +10,15 @@
 #   make fuzz                     libFuzzer on what comes from outside; FUZZ=rio one of its targets,
 #                                 FUZZ_SECONDS=60 for each
 #   make test-kernel              Debian's own kernel and owserver on the simulated chip, in QEMU
+#   make dist                     the release as a tarball, of what is committed (docs/release.md)
+#   make test-dist                that tarball built and run without git and network
 #   make deb ARCH=arm64           Debian packages in build/deb; SUITE=trixie for another Debian
 #   make test-package             packages of three architectures, lintian, install to purge
 #   make test-service             the service under systemd in QEMU, with the packages of make deb
 #   make test-gpio                GPIO lines of an arm64 guest, with libgpiod 1.6 and 2.x;
 #                                 test-gpio-pi the same of a Raspberry Pi 3
 
-VERSION  := 0.1.0
+VERSION  := 0.9.0
 SOMAJOR  := 0
 B        ?= build
 PREFIX   ?= /usr/local
@@ -125,7 +127,7 @@ SO       := libows.so.$(VERSION)
 LIBRARY  := $(if $(LIBOWS),$(B)/$(SO) $(B)/libows.a $(B)/libows.pc)
 
 .PHONY: all unit soak system test run bench install uninstall install-service uninstall-service \
-        deb test-package test-service clean \
+        deb test-package test-service dist test-dist clean \
         examples unit-programs benches diagrams FORCE clang sanitize asan tsan m32
 all: $(PROGRAMS) $(LIBRARY) $(B)/core.a
 
@@ -133,6 +135,12 @@ $(B)/%.o: %.c
 	@mkdir -p $(@D)
 	$(call show,CC)
 	$(Q)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
+
+# What says the version is made again when the version changes
+$(call obj,src/owsd.c src/owsctl/owsctl.c hal/native/virtual.c) $(B)/unit/test_native_virtual.o: $(B)/version
+$(B)/version: FORCE
+	@mkdir -p $(@D)
+	@echo '$(VERSION)' | cmp -s - $@ || echo '$(VERSION)' >$@
 
 # Everything but main(): what the programs and the unit tests link
 $(B)/core.a: $(call obj,$(CORE))
@@ -400,6 +408,15 @@ test-service:
 	@$(MAKE) --no-print-directory kernel-programs
 	@python3 tests/package/boot $(if $(SUITE),--suite $(SUITE)) $(if $(OR_SKIP),--or-skip) \
 	    --debs build/deb --program $(B)/kernel/simchip
+
+# --- Release ----------------------------------------------------------------------------------
+dist:
+	@sh board/install-deps dist
+	@sh board/make-dist
+
+test-dist: build/unity/unity.h
+	@sh board/install-deps build dist
+	@sh tests/dist/run
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 

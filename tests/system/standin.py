@@ -34,6 +34,7 @@ GROUPS = "(i2c|gpio|owsd|owsd-control)"
 
 # What may be said to programs that are not run: the whole of their arguments
 LOOKED_AT = {
+    "git": [r"tag -a v\d+\.\d+\.\d+ -m owsd \d+\.\d+\.\d+"],
     "systemctl": [rf"(status|start|stop|restart|reload|edit) {UNIT}( {UNIT})*",
                   rf"(enable|disable)( --now)? {UNIT}( {UNIT})*", "daemon-reload"],
     "journalctl": [rf"-u {UNIT}( -f| -e)?"],
