@@ -135,7 +135,7 @@ def sudo(arguments):
 
 def make(arguments):
     """Targets and variables have to be there; building is the business of other tests."""
-    text = (SOURCE / "Makefile").read_text() + (SOURCE / "tests/kernel/kernel.mk").read_text()
+    text = "\n".join(p.read_text() for p in [SOURCE / "Makefile", *SOURCE.glob("tests/*/*.mk")])
     known = set(" ".join(re.findall(r"^([\w/. -]+):(?!=)", text, re.M)).split())
     phony = re.search(r"^\.PHONY:((?:.*\\\n)*.*)$", text, re.M)[1]
     known |= set(phony.replace("\\", " ").split())
@@ -157,10 +157,14 @@ def apt(arguments):
 
 
 def one_wire_shell(program, arguments):
-    """owdir, owread, owwrite: the genuine ones, at the port that the test serves."""
+    """owdir, owread, owwrite: the genuine ones, at the port that the test serves; where they are
+    not installed, owsctl speaks their protocol."""
     at = arguments.index("-s") if "-s" in arguments else None
     if at is not None:
         arguments = arguments[:at] + arguments[at + 2:]
+    if not shutil.which(program, path="/usr/bin"):
+        words = [a for a in arguments if not a.startswith("-")]
+        run([BUILD / "owsctl", "-t", f"127.0.0.1:{SERVED}", program[2:], *words])
     run([f"/usr/bin/{program}", "-s", f"127.0.0.1:{SERVED}", *arguments])
 
 
@@ -182,8 +186,13 @@ def pkg_config(arguments):
         return
     if sorted(arguments) != ["--cflags", "--libs", "libows"]:
         fail(f"not for libows: {arguments}")
-    extra = os.environ.get("EXTRA_CFLAGS", "")
-    print(f"-I{SOURCE}/src/libows -L{BUILD} -lows {extra}")
+    print(f"-I{SOURCE}/src/libows -L{BUILD} -lows")
+
+
+def compiler(name):
+    """The machine's, with the sanitizers that libows was built with."""
+    return lambda arguments: run([shutil.which(name, path="/usr/local/bin:/usr/bin:/bin"),
+                                  *arguments, *os.environ.get("EXTRA_CFLAGS", "").split()])
 
 
 def jq(arguments):
@@ -200,7 +209,7 @@ def man(arguments):
 
 
 RUN = {"owsctl": owsctl, "owsd": owsd, "sudo": sudo, "make": make, "apt": apt, "apt-get": apt,
-       "pkg-config": pkg_config, "jq": jq, "man": man}
+       "pkg-config": pkg_config, "jq": jq, "man": man, "cc": compiler("gcc"), "c++": compiler("g++")}
 SHELL = ["owdir", "owread", "owwrite"]
 OWFS = ["owserver", "owfs", "owhttpd"]
 PROGRAMS = [*RUN, *SHELL, *OWFS, *LOOKED_AT]
