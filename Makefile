@@ -418,7 +418,7 @@ test-dist: build/unity/unity.h
 	@sh board/install-deps build dist
 	@sh tests/dist/run
 
--include $(shell find $(B) -name '*.d' 2>/dev/null)
+-include $(shell find $(B) -type f -name '*.d' 2>/dev/null)
 
 FORCE:
 
