@@ -61,11 +61,26 @@ static const char *say_bind(int err)
 		return " (an owserver or another owsd? end it or choose another port with Listen or -l)";
 	case EACCES:
 		return " (ports below 1024 are root's)";
-	case EADDRNOTAVAIL:
-		return " (not an address of this machine)";
 	default:
 		return "";
 	}
+}
+
+/* The network may come long after the start, or never: signals do not wait for it. */
+static int bind_later(struct serve *s, int fd, const struct listen_address *address,
+                      const union address *to, socklen_t len)
+{
+	char text[LISTEN_TEXT_MAX];
+	int one = 1;
+
+	if (setsockopt(fd, address->is_v6 ? IPPROTO_IPV6 : IPPROTO_IP,
+	               address->is_v6 ? IPV6_FREEBIND : IP_FREEBIND, &one, sizeof(one)) < 0 ||
+	    bind(fd, &to->any, len) < 0)
+		return -errno;
+	listen_print(address, text);
+	log_warning(s->log, "Listen %s: not an address of this machine now; it is served when it comes",
+	            text);
+	return 0;
 }
 
 static int open_network(struct serve *s, const struct listen_address *address)
@@ -83,7 +98,11 @@ static int open_network(struct serve *s, const struct listen_address *address)
 	/* accepted sockets have it from here */
 	setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &one, sizeof(one));
 	setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &one, sizeof(one));
-	err = bind(fd, &to.any, len) < 0 ? -errno : add(s, fd, true);
+	err = bind(fd, &to.any, len) < 0 ? -errno : 0;
+	if (err == -EADDRNOTAVAIL && !listen_is_loopback(address))
+		err = bind_later(s, fd, address, &to, len);
+	if (!err)
+		err = add(s, fd, true);
 	if (err)
 		close(fd);
 	return err;

@@ -357,6 +357,17 @@ def test_a_killed_owsd_leaves_no_socket_in_the_way(scene):
     assert done.returncode == 1 and "somebody serves it" in done.stderr, done.stderr
 
 
+def test_signals_do_not_wait_for_an_address_that_is_not_there_yet(scene):
+    folder = owsdtest.SOURCE / "board/demo"
+    port = owsdtest.free_port()
+    config = (folder / "house.rio").read_text().replace(
+        "OwsDrv {", f'OwsDrv {{\n  Listen "{port}, 192.0.2.77:{port}, [2001:db8::77]:{port}"', 1)
+    daemon = scene.owsd(config, "-t", f"sim:{folder}/house.sim")
+    for address in (f"192.0.2.77:{port}", f"[2001:db8::77]:{port}"):
+        assert f"Listen {address}: not an address of this machine now" in daemon.log(), daemon.log()
+    assert ask(port, READ, "/settings/return_codes/text.0")[4] == b"good"
+
+
 def test_a_port_in_use_is_said(scene):
     server = scene.owserver(tester=["28"])
     done = scene.owsd_once("-n", scene.name(), "-c", scene.file("a.rio", owsdtest.rio("null:", [])),
