@@ -327,7 +327,7 @@ static int usage(void)
 int main(int argc, char **argv)
 {
 	struct options o = {.component = "owsd_hal", .prefix = "owsd", .period_ms = 50, .wait_s = 10};
-	struct ows *h = NULL;
+	static struct ows *h; /* to the end of the process, see below */
 	int option, comp, err;
 
 	while ((option = getopt(argc, argv, "n:c:p:w:")) != -1) {
@@ -353,7 +353,7 @@ int main(int argc, char **argv)
 	err = open_owsd(&o, &h);
 	if (!err)
 		err = serve(h, comp, &o);
-	/* owsd is not told of the end: outputs go to their SafeValue when the beat stops */
+	/* Not closed, so that owsd is not told: outputs go to their SafeValue when the beat stops */
 	hal_exit(comp);
 	return err ? 1 : 0;
 }

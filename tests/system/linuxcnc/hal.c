@@ -6,13 +6,18 @@
  *     show            all pins, "NAME TYPE DIR VALUE", then "end"
  *     setp NAME VALUE
  *     net NAME        the pin's pointer moves to another cell, as when it is linked with a signal
+ *
+ * Who is spoken to is another process over the same memory, as halcmd and the servo thread are.
  */
 #include <errno.h>
-#include <pthread.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <unistd.h>
 
 #include "hal.h"
 
@@ -33,11 +38,14 @@ struct pin {
 	union cell own, linked;
 };
 
-static struct pin pins[PINS];
-static int pin_count;
-static bool ready;
-static _Alignas(16) char memory[1 << 16];
-static long used;
+/* At the same place in both processes */
+static struct shared {
+	struct pin pins[PINS];
+	int count;
+	bool ready;
+	long used;
+	_Alignas(16) char memory[1 << 16];
+} *hal;
 
 static union cell *cell_of(const struct pin *pin)
 {
@@ -63,9 +71,9 @@ static void show(void)
 {
 	static const char *const types[] = {"", "bit", "float", "s32", "u32"};
 
-	for (int i = 0; i < pin_count; i++)
-		printf("%s %s %s %.17g\n", pins[i].name, types[pins[i].type],
-		       pins[i].dir == HAL_IN ? "in" : "out", number(&pins[i]));
+	for (const struct pin *pin = hal->pins; pin < hal->pins + hal->count; pin++)
+		printf("%s %s %s %.17g\n", pin->name, types[pin->type],
+		       pin->dir == HAL_IN ? "in" : "out", number(pin));
 	printf("end\n");
 	fflush(stdout);
 }
@@ -88,7 +96,7 @@ static void set(struct pin *pin, double value)
 	}
 }
 
-static void *obey(void *unused)
+static void obey(void)
 {
 	char line[256], verb[16], name[128];
 	double value;
@@ -98,44 +106,52 @@ static void *obey(void *unused)
 
 		if (n == 1 && !strcmp(verb, "show"))
 			show();
-		for (int i = 0; n > 1 && i < pin_count; i++) {
-			if (strcmp(pins[i].name, name))
+		for (struct pin *pin = hal->pins; n > 1 && pin < hal->pins + hal->count; pin++) {
+			if (strcmp(pin->name, name))
 				continue;
 			if (!strcmp(verb, "setp") && n == 3)
-				set(&pins[i], value);
+				set(pin, value);
 			if (!strcmp(verb, "net")) {
-				pins[i].linked = *cell_of(&pins[i]);
-				*pins[i].data = &pins[i].linked;
+				pin->linked = *cell_of(pin);
+				*pin->data = &pin->linked;
 			}
 		}
 	}
-	return unused;
 }
 
 int hal_init(const char *name)
 {
+	hal = mmap(NULL, sizeof(*hal), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+	if (hal == MAP_FAILED)
+		return -ENOMEM;
 	return *name && strlen(name) <= HAL_NAME_LEN ? 1 : -EINVAL;
 }
 
 void *hal_malloc(long size)
 {
-	char *room = memory + used;
+	char *room = hal->memory + hal->used;
 
-	if (size < 0 || used + size + 15 > (long)sizeof(memory))
+	if (size < 0 || hal->used + size + 15 > (long)sizeof(hal->memory))
 		return NULL;
-	used += (size + 15) / 16 * 16;
+	hal->used += (size + 15) / 16 * 16;
 	return room;
 }
 
 int hal_ready(int comp_id)
 {
-	pthread_t thread;
+	pid_t component = getpid(), child;
 
 	(void)comp_id;
-	ready = true;
+	hal->ready = true;
 	printf("ready\n");
 	fflush(stdout);
-	return -pthread_create(&thread, NULL, obey, NULL);
+	child = fork();
+	if (child)
+		return child < 0 ? -errno : 0;
+	prctl(PR_SET_PDEATHSIG, SIGKILL);
+	if (getppid() == component)
+		obey();
+	_exit(0);
 }
 
 int hal_exit(int comp_id)
@@ -148,22 +164,22 @@ int hal_exit(int comp_id)
 static int pin_new(hal_type_t type, hal_pin_dir_t dir, void **data, const char *format,
                    va_list args)
 {
-	struct pin *pin = &pins[pin_count];
+	struct pin *pin = &hal->pins[hal->count];
 	int n = vsnprintf(pin->name, sizeof(pin->name), format, args);
 
-	if (n < 1 || n > HAL_NAME_LEN || pin_count == PINS - 1 || ready)
+	if (n < 1 || n > HAL_NAME_LEN || hal->count == PINS - 1 || hal->ready)
 		return -EINVAL;
-	if ((char *)data < memory || (char *)data >= memory + used)
+	if ((char *)data < hal->memory || (char *)data >= hal->memory + hal->used)
 		return -EINVAL;
-	for (int i = 0; i < pin_count; i++) {
-		if (!strcmp(pins[i].name, pin->name))
+	for (int i = 0; i < hal->count; i++) {
+		if (!strcmp(hal->pins[i].name, pin->name))
 			return -EINVAL;
 	}
 	pin->type = type;
 	pin->dir = dir;
 	pin->data = data;
 	*data = &pin->own;
-	pin_count++;
+	hal->count++;
 	return 0;
 }
 
