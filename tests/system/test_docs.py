@@ -130,7 +130,7 @@ class Stage:
         text = re.sub(r'\bOWS(?=__|")|(?<=/owsd\.)OWS(?=\.)', self.daemon.name, text)
         return OF_THE_SYSTEM.sub(f"{self.root}/\\1/", text)
 
-    def run(self, command, seconds=20):
+    def run(self, command, seconds=60):
         return subprocess.run([str(c) for c in command], cwd=self.cwd, text=True, timeout=seconds,
                               stdin=subprocess.DEVNULL, capture_output=True,
                               env=self.environment())
@@ -352,6 +352,25 @@ def test_every_page_can_be_reached_from_the_readme(_scene):
     linked = {target for _, target in handbook.links(SOURCE / "README.md")}
     missing = [p.name for p in (SOURCE / "docs").glob("*.md") if f"docs/{p.name}" not in linked]
     assert not missing, f"README.md leads not to {missing}"
+
+
+def test_messages_that_are_explained_are_those_of_the_programs(_scene):
+    """What stands for %s differs, so pairs of words are looked for."""
+    files = [f for d in ("src", "hal") for f in (SOURCE / d).rglob("*.c")]
+    said = re.sub(r'"\s*\n\s*"', "", "\n".join(f.read_text() for f in files))
+    said = re.sub(r"(?<=[a-z])%s", "s", said)  # of a plural
+    explained = 0
+    for page in ("bring-up.md", "troubleshooting.md"):
+        for line, text in handbook.prose(SOURCE / "docs" / page):
+            first = text.split("|")[1] if re.match(r"\| (?!owserver)", text) else ""
+            for message in re.findall(r"`([^`]+)`", first):
+                words = message.split()
+                pairs = [f"{a} {b}" for a, b in zip(words, words[1:])
+                         if re.fullmatch(r"[a-z']+ [a-z']+[,:]?", f"{a} {b}")]
+                there = sum(pair in said for pair in pairs)
+                assert there >= 0.6 * len(pairs), f"{page}:{line}: no program says {message}"
+                explained += bool(pairs)
+    assert explained >= 20, explained
 
 
 def test_the_picture_of_the_live_table_can_be_drawn_again(scene):
