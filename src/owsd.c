@@ -448,8 +448,11 @@ int main(int argc, char **argv)
 	/* What is used little of a large block stays zero pages. Else the limit rises by itself */
 	mallopt(M_MMAP_THRESHOLD, 64 * 1024);
 #endif
-	if (standard_open()) /* then nothing can be told either */
+	status = standard_open();
+	if (status) {
+		complain("/dev/null: %s", strerror(-status));
 		return EXIT_RUN;
+	}
 	/* a file that may not grow is an error of the write like another */
 	signal(SIGXFSZ, SIG_IGN);
 	status = parse_options(argc, argv, &o);

@@ -12,7 +12,7 @@ int standard_open(void)
 	/* open() gives the lowest that is free */
 	do
 		fd = open("/dev/null", O_RDONLY);
-	while (fd >= 0 && fd <= STDERR_FILENO);
+	while ((fd >= 0 && fd <= STDERR_FILENO) || (fd < 0 && errno == EINTR));
 	if (fd < 0)
 		return -errno;
 	close(fd);

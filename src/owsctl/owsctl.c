@@ -59,8 +59,9 @@ int main(int argc, char **argv)
 
 	/* A reader of ours that leaves is seen as EPIPE. */
 	signal(SIGPIPE, SIG_IGN);
-	if (standard_open())
-		return CTL_FAILED;
+	c = standard_open();
+	if (c)
+		return ctl_fail("/dev/null: %s", strerror(-c));
 	/* And a file that may not grow as EFBIG. */
 	signal(SIGXFSZ, SIG_IGN);
 	while ((c = getopt_long(argc, argv, "+n:t:Vh", longs, NULL)) != -1) {
