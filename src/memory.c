@@ -3,6 +3,7 @@
 
 #include "engine/table.h"
 #include "libows/ows.h"
+#include "shm/owner.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -214,6 +215,25 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 	return 0;
 }
 
+static bool is_private(const struct segment *segment)
+{
+	struct stat st;
+
+	return fstat(segment->fd, &st) == 0 && (st.st_mode & S_IRWXG) == 0;
+}
+
+/* By hand they belong to the user, and that is meant; of the service nobody could use them. */
+static void say_private(const struct memory *m, struct log *log)
+{
+	bool image = is_private(&m->image_segment);
+
+	if ((image || is_private(&m->commands[m->current].segment)) && owner_is_service())
+		log_warning(log, "no other user can %s: the shared memory cannot be given to the group %s: "
+		                 "is there one, and is the user owsd in it?",
+		            image ? "look at the signals" : "set outputs",
+		            image ? "owsd" : "owsd-control");
+}
+
 int memory_show(struct memory *m, struct log *log, char *why, size_t why_size)
 {
 	struct segment before;
@@ -231,6 +251,8 @@ int memory_show(struct memory *m, struct log *log, char *why, size_t why_size)
 		         "/dev/shm: %s%s",
 		         strerror(-err), hint(err));
 	m->shown = !err;
+	if (!err)
+		say_private(m, log);
 	if (had_before) {
 		struct ows_image_header *h = (void *)before.base;
 		uint32_t state = __atomic_load_n(&h->state, __ATOMIC_RELAXED);

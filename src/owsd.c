@@ -483,7 +483,8 @@ int main(int argc, char **argv)
 	}
 	if (lock < 0) {
 		complain("cannot lock instance %s: %s%s", o.instance, strerror(-lock),
-		         lock == -EPERM    ? " (a file of another user is in the way in /dev/shm)"
+		         lock == -EPERM    ? " (a file of another user, or none that is plain, is in "
+		                             "the way in /dev/shm)"
 		         : lock == -ENOSPC ? " (/dev/shm is full)"
 		                           : "");
 		return EXIT_RUN;

@@ -51,7 +51,8 @@ static int open_lock(const char *path)
 
 		if (err == -EACCES && lstat(path, &st) == 0 && st.st_uid != geteuid())
 			return -EPERM;
-		return err == -ELOOP ? -EPERM : err;
+		/* a link, a directory, a socket */
+		return err == -ELOOP || err == -EISDIR || err == -ENXIO ? -EPERM : err;
 	}
 	if (fstat(fd, &st) < 0 || !S_ISREG(st.st_mode) || !owner_trusted(st.st_uid)) {
 		close(fd);

@@ -28,13 +28,21 @@ static bool user_id(const char *name, uid_t *uid)
 	return found;
 }
 
-bool owner_trusted(uid_t uid)
+static bool is_service(uid_t uid)
 {
 	uid_t owsd;
 
-	if (uid == 0 || uid == geteuid())
-		return true;
 	return user_id(OWNER_USER, &owsd) && uid == owsd;
+}
+
+bool owner_is_service(void)
+{
+	return is_service(geteuid());
+}
+
+bool owner_trusted(uid_t uid)
+{
+	return uid == 0 || uid == geteuid() || is_service(uid);
 }
 
 bool owner_group(const char *name, gid_t *gid)

@@ -8,6 +8,8 @@
 
 /* root, owsd, or the caller. */
 bool owner_trusted(uid_t uid);
+/* Is the caller the service's user, owsd? */
+bool owner_is_service(void);
 /* The id of a group, false if there is none of that name. */
 bool owner_group(const char *name, gid_t *gid);
 

@@ -44,7 +44,20 @@ same 'it runs as its user' owsd "$(ps -o user= -p "$(house MainPID)" | tr -d ' '
 same 'without a capability' 0000000000000000 \
 	"$(sed -n 's/^CapBnd:[[:space:]]*//p' "/proc/$(house MainPID)/status")"
 does 'through its sandbox it reads the chip' within 60 reads warm 21.0625
-does 'and sets' owsctl -n HOUSE set relays 5
+same 'who may look is a group, under its filter too' '640 owsd owsd' \
+	"$(stat -c '%a %U %G' /dev/shm/owsd.HOUSE.image)"
+same 'who may act is another' '660 owsd owsd-control' \
+	"$(stat -c '%a %U %G' /dev/shm/owsd.HOUSE.command)"
+# GROUP,... COMMAND...: as a user who is in these groups and nothing else
+as_one_of() {
+	groups=$(getent group $(echo "$1" | tr , ' ') | cut -d: -f3 | paste -s -d,)
+	shift
+	setpriv --reuid=4711 --regid=4711 --groups="$groups" --bounding-set=-all --no-new-privs "$@"
+}
+does 'one of the group owsd reads' as_one_of owsd owsctl -n HOUSE get warm
+does 'and does not set' refused as_one_of owsd owsctl -n HOUSE set relays 1
+does 'somebody else reads nothing' refused as_one_of games owsctl -n HOUSE get warm
+does 'one of owsd-control sets' as_one_of owsd,owsd-control owsctl -n HOUSE set relays 5
 does 'an output' within 30 got
 same 'it says what it does' 1 "$(systemctl status --no-pager owsd@HOUSE | grep -c 'Status: ".*signals')"
 

@@ -5,6 +5,7 @@
     faulty.house(scene)                   a configuration over simulated chips
 """
 
+import json
 import os
 import struct
 import subprocess
@@ -71,6 +72,20 @@ class Clock:
             file.write(struct.pack("qq", now[0] + int(wall * 1e9), now[1] + int(boot * 1e9)))
 
 
+class Traced(owsdtest.Owsd):
+    """owsd as the child of strace; signals go to owsd itself."""
+
+    @classmethod
+    def start(cls, scene, config, prefix, *options):
+        return cls(scene, config, scene.name(), options, None, prefix)
+
+    def signal(self, number):
+        with open(f"/proc/{self.pid}/task/{self.pid}/children", encoding="ascii") as file:
+            children = file.read().split()
+        if children:
+            subprocess.run(["kill", f"-{int(number)}", children[0]], check=False)
+
+
 def ctl(scene, daemon, environment, *arguments):
     """owsctl under the same faults."""
     return subprocess.run([str(owsdtest.OWSCTL), "-n", daemon.name, *arguments], text=True, timeout=20,
@@ -86,6 +101,5 @@ def leftovers(name):
 
 def counters(scene, daemon):
     """Of owsd itself."""
-    import json
     stats = json.loads(scene.owsctl(daemon, "--json", "stats").stdout)
     return {c["name"]: c["value"] for c in stats["counters"] if c["target"] is None}

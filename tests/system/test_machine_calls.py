@@ -71,29 +71,10 @@ def life(scene, daemon, config):
         true_or_bad(scene, daemon)
 
 
-def owsd_of(tracer):
-    """The child of strace that is owsd."""
-    with open(f"/proc/{tracer.pid}/task/{tracer.pid}/children", encoding="ascii") as file:
-        children = file.read().split()
-    return int(children[0]) if children else 0
-
-
-class Traced(owsdtest.Owsd):
-    """Signals go to owsd itself."""
-
-    def signal(self, number):
-        pid = owsd_of(self)
-        if pid:
-            subprocess.run(["kill", f"-{int(number)}", str(pid)], check=False)
-
-
 def start_traced(scene, *options):
     """owsd under strace from its beginning; not yet ready."""
-    name = scene.name()
     config = scene.file("house.rio", served(scene))
-    daemon = owsdtest.Owsd(scene, config, name, [], None, [strace(), "-f", "-qq", *options])
-    daemon.__class__ = Traced
-    return daemon, config
+    return faulty.Traced.start(scene, config, [strace(), "-f", "-qq", *options]), config
 
 
 def kinds(scene):

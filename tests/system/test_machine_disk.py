@@ -4,17 +4,15 @@
 
 import os
 import pathlib
-import shutil
 import signal
 import subprocess
-import sys
 
 import faulty
 import owsdtest
+import private
 from owsdtest import until
 
 SHM = pathlib.Path("/dev/shm")
-INSIDE = "OWSD_TEST_IN_NAMESPACE"
 
 
 def fill(scene, folder):
@@ -170,22 +168,5 @@ def flood(daemon):
     return False
 
 
-def main():
-    """The same again where /dev/shm is of our own."""
-    if os.environ.get(INSIDE):
-        owsdtest.main()
-    user = [] if os.geteuid() == 0 else ["-r"]
-    inside = [shutil.which("unshare") or "unshare", "-m", *user, "sh", "-c",
-              "mount -t tmpfs -o size=2m tmpfs /dev/shm && exec \"$@\"", "sh"]
-    try:
-        subprocess.run([*inside, "true"], check=True, capture_output=True)
-    except (OSError, subprocess.CalledProcessError) as why:
-        print(f"skip all: no mount namespace of one's own: {why}")
-        print("0 passed, 0 failed, 1 skipped")
-        sys.exit(0)
-    os.environ[INSIDE] = "1"
-    os.execv(inside[0], [*inside, sys.executable, *sys.argv])
-
-
 if __name__ == "__main__":
-    main()
+    private.main()

@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""owsd under the unit's own filter of system calls and addresses: all that it does it still does."""
+
+import collections
+import os
+import re
+import shutil
+import signal
+
+import faulty
+import owsdtest
+import private
+import sandbox
+from owsdtest import until
+
+CALL = re.compile(r"^(?:\d+ +)?(?:<\.\.\. )?(\w+)\(.*")
+
+
+def everything(scene, more=False):
+    """Every kind of target and of door that a configuration can have."""
+    port = scene.port = getattr(scene, "port", None) or owsdtest.free_port()
+    text = faulty.house(scene, more=more, ListenSocket=str(scene.path / "socket"),
+                        Listen=f"127.0.0.1:{port}", HeartbeatLine="nochip/3")
+    gone = owsdtest.free_port()
+    return text.replace('"sim:', f'"127.0.0.1:{gone}, i2c:/dev/i2c-199, w1, gpio:nochip, sim:', 1)
+
+
+def live(scene, *prefix):
+    """Start, values, commands, both doors, a reload, the end: what the log said."""
+    config = scene.file("house.rio", everything(scene))
+    daemon = faulty.Traced.start(scene, config, prefix, "-v") if prefix[0] == "strace" else \
+        scene.owsd(config, "-v", prefix=prefix, env={"WATCHDOG_USEC": "400000"})
+    until(lambda: scene.get(daemon, "room") == "21.5", 30, "room is good")
+    assert scene.owsctl(daemon, "set", "relays", "5").returncode == 0
+    until(lambda: scene.get(daemon, "relays") == "5", 30, "an output is written")
+    for door in (f"owserver:{scene.path}/socket", f"127.0.0.1:{scene.port}"):
+        for words in (("dir", "/"), ("read", "/uncached/28.A0B1C2000001/temperature9"),
+                      ("write", "/28.A0B1C2000001/temphigh", "60")):
+            done = scene.owsctl(None, "-t", door, *words)
+            assert done.returncode == 0, done
+    # a consumer takes the command segment away
+    command = f"/dev/shm/owsd.{daemon.name}.command"
+    inode = os.stat(command).st_ino
+    os.truncate(command, 100)
+    until(lambda: os.stat(command).st_ino != inode, 30, "it is made again")
+    config.write_text(everything(scene, more=True))
+    daemon.signal(signal.SIGHUP)
+    until(lambda: scene.get(daemon, "hall") == "19.5", 30, "the reload is done")
+    return daemon
+
+
+def test_under_the_units_filter_it_does_all_that_it_does(scene):
+    daemon = live(scene, *sandbox.command())
+    with open(f"/proc/{daemon.pid}/status", encoding="ascii") as status:
+        facts = dict(line.rstrip("\n").split(":\t", 1) for line in status if ":\t" in line)
+    assert facts["Seccomp"].strip() == "2" and facts["NoNewPrivs"].strip() == "1", facts
+    assert daemon.stop() == 0
+    assert "ot permitted" not in daemon.log(), daemon.log()
+
+
+def test_no_call_that_it_makes_is_forbidden(scene):
+    if not shutil.which("strace"):
+        owsdtest.skip("strace is not installed")
+    trace = scene.path / "trace"
+    allowed = sandbox.calls()
+    daemon = live(scene, "strace", "-f", "-qq", "-o", trace)
+    daemon.signal(signal.SIGTERM)
+    assert daemon.wait(20) == 0
+    made = collections.Counter(call[1] for call in map(CALL.match, trace.read_text(
+        errors="replace").splitlines()) if call)
+    assert len(made) > 30 and made["socket"] and made["clone3"] + made["clone"], made
+    forbidden = {name: n for name, n in made.items() if name not in allowed | {"execve"}}
+    assert not forbidden, f"owsd@.service forbids {forbidden}"
+    print(f"{len(made)} kinds of calls of {len(allowed)} that are allowed")
+
+
+def test_the_rules_hold(scene):
+    """The filter is no empty one: what it forbids fails, and so does a foreign address."""
+    tries = {"os.nice(1)": False, "os.chroot('/')": False, "os.sched_setscheduler(0, 1, os.sched_param(1))":
+             False, "socket.socket(socket.AF_PACKET, socket.SOCK_RAW)": False,
+             "socket.socket(socket.AF_INET, socket.SOCK_STREAM)": True, "os.getpid()": True}
+    for what, works in tries.items():
+        done = scene._run([*sandbox.command(), shutil.which("python3"), "-c",
+                           f"import os, socket\n{what}"], 30)
+        assert (done.returncode == 0) == works, (what, done)
+        assert works or "ermi" in done.stderr or "not supported" in done.stderr, (what, done)
+
+
+if __name__ == "__main__":
+    # with the groups there are more calls: the segments are given to them
+    private.main(users=True) if os.geteuid() == 0 else owsdtest.main()
