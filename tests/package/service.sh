@@ -50,6 +50,7 @@ same 'who may act is another' '660 owsd owsd-control' \
 	"$(stat -c '%a %U %G' /dev/shm/owsd.HOUSE.command)"
 # GROUP,... COMMAND...: as a user who is in these groups and nothing else
 as_one_of() {
+	# shellcheck disable=SC2046 # names of groups are words
 	groups=$(getent group $(echo "$1" | tr , ' ') | cut -d: -f3 | paste -s -d,)
 	shift
 	setpriv --reuid=4711 --regid=4711 --groups="$groups" --bounding-set=-all --no-new-privs "$@"
