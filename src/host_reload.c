@@ -58,11 +58,17 @@ static void leave(struct host *h, struct serving *before, bool ended, bool dark)
 
 static bool same_listeners(const struct config_serve *a, const struct config_serve *b)
 {
-	return a->address_count == b->address_count && a->peer_count == b->peer_count &&
-	       a->read_only == b->read_only && !a->socket == !b->socket &&
-	       (!a->socket || strcmp(a->socket, b->socket) == 0) &&
-	       memcmp(a->addresses, b->addresses, sizeof(a->addresses)) == 0 &&
-	       memcmp(a->peers, b->peers, sizeof(a->peers)) == 0;
+	if (a->address_count != b->address_count || a->peer_count != b->peer_count ||
+	    a->read_only != b->read_only || !a->socket != !b->socket ||
+	    (a->socket && strcmp(a->socket, b->socket) != 0))
+		return false;
+	for (unsigned i = 0; i < a->address_count; i++)
+		if (!listen_same(&a->addresses[i], &b->addresses[i]))
+			return false;
+	for (unsigned i = 0; i < a->peer_count; i++)
+		if (!listen_same_peers(&a->peers[i], &b->peers[i]))
+			return false;
+	return true;
 }
 
 /* The engine serves it from here on; nothing of what follows can refuse it any more. */

@@ -284,7 +284,7 @@ int ds2482_there(struct link_master *base, uint64_t *mark)
 
 	if (!master->source.there)
 		return 1;
-	if (master->address >= 0)
+	if (master->address >= DS2482_FIRST_ADDRESS)
 		chips = 1u << (master->address - DS2482_FIRST_ADDRESS);
 	for (unsigned i = 0; master->address < 0 && i < DS2482_ADDRESSES; i++)
 		if (master->missing[i] || is_known(master, (uint8_t)(DS2482_FIRST_ADDRESS + i)))

@@ -69,7 +69,7 @@ static int create(const char *where, const struct bus_env *env, struct bus **bus
 		free(gpio);
 		return -ENOMEM;
 	}
-	strcpy(gpio->where, where);
+	memcpy(gpio->where, where, strlen(where) + 1);
 	for (int i = 0; i < GPIO_COUNTS; i++)
 		gpio->count[i].name = names[i];
 	*bus = &gpio->bus;

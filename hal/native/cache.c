@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "hal/native/cache.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
 
@@ -69,6 +70,7 @@ struct cache_entry *cache_add(struct cache *cache, const struct device *device,
 		if (!set[way].device || set[way].until_ns < best->until_ns)
 			best = &set[way];
 	}
+	assert(device);
 	cache->added++;
 	cache->held += !best->device;
 	cache->deleted += best->device && !is(best, device, property, extension);

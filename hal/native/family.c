@@ -87,7 +87,6 @@ unsigned property_size(const struct property *property)
 {
 	switch ((enum property_type)property->type) {
 	case PROPERTY_DIRECTORY:
-		return property->size;
 	case PROPERTY_ASCII:
 	case PROPERTY_BINARY:
 		return property->size;

@@ -41,7 +41,8 @@ static int counter(struct txn *txn, unsigned page, uint32_t *count)
 
 	if (!err)
 		err = txn_read_crc16(txn, command, sizeof(command), in, sizeof(in));
-	*count = in[1] | in[2] << 8 | in[3] << 16 | (uint32_t)in[4] << 24;
+	if (!err)
+		*count = in[1] | in[2] << 8 | in[3] << 16 | (uint32_t)in[4] << 24;
 	return err;
 }
 

@@ -119,10 +119,12 @@ static int take_results(struct txn *txn)
 	uint8_t bytes[8];
 	int err = read_page(txn, RESULTS, bytes);
 
+	if (err)
+		return err;
 	for (int i = 0; i < 4; i++)
 		txn->number[i] = volts(bytes[2 * i] | (unsigned)bytes[2 * i + 1] << 8,
 		                       txn->property->arg);
-	return err;
+	return 0;
 }
 
 /* The power-on flags, too, bring a device into the alarm search: a visit looks at them. */
@@ -288,7 +290,8 @@ static int read_power(struct txn *txn)
 	uint8_t bytes[8];
 	int err = read_page(txn, CALIBRATION, bytes);
 
-	txn->number[0] = bytes[SUPPLY_AT % 8] == SUPPLY_ON;
+	if (!err)
+		txn->number[0] = bytes[SUPPLY_AT % 8] == SUPPLY_ON;
 	return err;
 }
 

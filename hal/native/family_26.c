@@ -134,12 +134,14 @@ static int measure_temperature(struct txn *txn, double *value)
 		return convert(txn, CONVERT_T);
 	}
 	int err = ds2438_read(txn, 0, bytes);
-	if (!err && doubtful(txn, word(bytes + 1))) {
+	if (err)
+		return err;
+	if (doubtful(txn, word(bytes + 1))) {
 		txn->phase--;
 		return TXN_MORE;
 	}
 	*value = (word(bytes + 1) >> 3) / 32.0;
-	return err;
+	return 0;
 }
 
 /*
@@ -154,9 +156,13 @@ static int measure_voltage(struct txn *txn, uint8_t select, double *value)
 	switch (txn->phase % DS2438_STEPS) {
 	case 0:
 		err = ds2438_read(txn, 0, bytes);
+		if (err) {
+			txn->phase++;
+			return err;
+		}
 		txn->mem[1] = (bytes[0] & 0x0f) ^ DS2438_AD;
-		txn->phase += !err && (bytes[0] & DS2438_AD) == select ? 2 : 1;
-		return err ? err : TXN_MORE;
+		txn->phase += (bytes[0] & DS2438_AD) == select ? 2 : 1;
+		return TXN_MORE;
 	case 1:
 		err = write_scratchpad(txn, 0, &txn->mem[1], 1);
 		txn->phase++;
@@ -170,12 +176,14 @@ static int measure_voltage(struct txn *txn, uint8_t select, double *value)
 			err = -EIO;
 		if (!err)
 			err = ds2438_read(txn, 0, bytes);
-		if (!err && doubtful(txn, word(bytes + 3) & 0x3ff)) {
+		if (err)
+			return err;
+		if (doubtful(txn, word(bytes + 3) & 0x3ff)) {
 			txn->phase -= txn->phase % DS2438_STEPS;
 			return TXN_MORE;
 		}
 		*value = (word(bytes + 3) & 0x3ff) / 100.0;
-		return err;
+		return 0;
 	}
 }
 
@@ -256,7 +264,8 @@ static int read_latest(struct txn *txn)
 	uint8_t bytes[8];
 	int err = ds2438_read(txn, 0, bytes);
 
-	txn->number[0] = (word(bytes + 1) >> 3) / 32.0;
+	if (!err)
+		txn->number[0] = (word(bytes + 1) >> 3) / 32.0;
 	return err;
 }
 
@@ -265,7 +274,8 @@ static int read_flag(struct txn *txn)
 	uint8_t bytes[8];
 	int err = ds2438_read(txn, 0, bytes);
 
-	txn->number[0] = (bytes[0] & txn->property->arg) != 0;
+	if (!err)
+		txn->number[0] = (bytes[0] & txn->property->arg) != 0;
 	return err;
 }
 
@@ -320,7 +330,8 @@ static int read_offset(struct txn *txn)
 	uint8_t page[8];
 	int err = ds2438_read(txn, 1, page);
 
-	txn->number[0] = (double)(uint32_t)(word(page + 5) >> 3);
+	if (!err)
+		txn->number[0] = (double)(uint32_t)(word(page + 5) >> 3);
 	return err;
 }
 

@@ -71,10 +71,12 @@ static int read_bits(struct txn *txn)
 	uint8_t value[REGISTERS];
 	int err = txn->property->arg == ACTIVITY ? visited(txn, value) : registers(txn, value);
 
+	if (err)
+		return err;
 	txn->bits = value[txn->property->arg];
 	if (txn->property->arg == OUTPUT)
 		txn->bits ^= 0xff;
-	return err;
+	return 0;
 }
 
 static int read_flag(struct txn *txn)
@@ -82,7 +84,8 @@ static int read_flag(struct txn *txn)
 	uint8_t value[REGISTERS];
 	int err = txn->property->arg == CONTROL_POR ? visited(txn, value) : registers(txn, value);
 
-	txn->number[0] = (value[CONTROL] & txn->property->arg) != 0;
+	if (!err)
+		txn->number[0] = (value[CONTROL] & txn->property->arg) != 0;
 	return err;
 }
 
@@ -179,15 +182,15 @@ static int write_condition(struct txn *txn, uint8_t mask, uint8_t polarity, uint
 static int read_alarm(struct txn *txn)
 {
 	uint8_t value[REGISTERS];
-	double digits, unit = 1;
+	uint32_t digits;
 	int err = registers(txn, value);
 
 	if (err)
 		return err;
-	digits = 0;
-	for (int i = 0; i < 8; i++, unit *= 10)
-		digits += unit * ((value[MASK] >> i & 1) * 2 + (value[POLARITY] >> i & 1));
-	txn->number[0] = digits + unit * (value[CONTROL] & 3);
+	digits = value[CONTROL] & 3;
+	for (int i = 7; i >= 0; i--)
+		digits = 10 * digits + (value[MASK] >> i & 1) * 2u + (value[POLARITY] >> i & 1);
+	txn->number[0] = digits;
 	return 0;
 }
 
@@ -199,9 +202,11 @@ static int write_alarm(struct txn *txn)
 	if (txn->phase == 0) {
 		int err = registers(txn, value);
 
+		if (err)
+			return err;
 		txn->mem[0] = value[CONTROL];
 		txn->phase = 1;
-		return err ? err : TXN_MORE;
+		return TXN_MORE;
 	}
 	for (int i = 0; i < 8; i++, digits /= 10) {
 		mask |= (uint8_t)((digits % 10 >> 1 & 1) << i);

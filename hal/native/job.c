@@ -160,10 +160,9 @@ void job_look(struct native *native, struct job *job, int64_t now)
 		job_answer(native, job, job->req->op == BUS_DIR ? listing(native, job) : 0);
 		return;
 	case JOB_PROBE:
-		if (job->path.device.len == 0)
-			job_answer(native, job, 0);
-		else if (!job->fresh && !away(native, job->txn.device) &&
-		         job->txn.device->ok_ns + native->presence_ns > now && job->txn.device->ok_ns)
+		if (job->path.device.len == 0 ||
+		    (!job->fresh && !away(native, job->txn.device) &&
+		     job->txn.device->ok_ns + native->presence_ns > now && job->txn.device->ok_ns))
 			job_answer(native, job, 0);
 		return;
 	case JOB_PROPERTY:

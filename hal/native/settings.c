@@ -49,7 +49,9 @@ static int64_t *timeout_of(struct txn *txn)
 
 static int read_timeout(struct txn *txn)
 {
-	txn->number[0] = (double)(*timeout_of(txn) / NATIVE_S);
+	int64_t seconds = *timeout_of(txn) / NATIVE_S;
+
+	txn->number[0] = (double)seconds;
 	return 0;
 }
 

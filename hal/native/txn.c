@@ -68,7 +68,7 @@ static int command(struct txn *txn, const uint8_t *bytes, size_t n, enum link_af
 {
 	uint8_t out[9 + BYTES_MAX] = {MATCH_ROM};
 
-	assert(n <= BYTES_MAX);
+	assert(n <= BYTES_MAX && txn->device);
 	int err = reset(txn);
 	if (err)
 		return err;

@@ -120,7 +120,9 @@ static int read_address(struct txn *txn)
 
 static int read_elapsed(struct txn *txn)
 {
-	txn->number[0] = (double)((native_now(txn->native) - txn->native->up_ns) / NATIVE_S);
+	int64_t seconds = (native_now(txn->native) - txn->native->up_ns) / NATIVE_S;
+
+	txn->number[0] = (double)seconds;
 	return 0;
 }
 

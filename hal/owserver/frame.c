@@ -76,7 +76,7 @@ void frame_begin(struct frame_reader *reader, uint8_t *data, uint32_t limit)
 static int check_header(struct frame_reader *reader)
 {
 	struct frame_header *header = &reader->header;
-	uint32_t tokens = header->version & FRAME_TOKENS;
+	uint32_t tokens;
 
 	frame_get_header(reader->head, header);
 	tokens = header->version & FRAME_TOKENS;

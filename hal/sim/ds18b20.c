@@ -214,7 +214,7 @@ static void send_pins(struct sim_slave *slave, int64_t t)
 		bool latch = s->latch >> i & 1;
 		bool pin = latch && sim_input_at(slave, SIM_PIN_A + i, t) >= 0.5;
 
-		pins |= (unsigned)(pin | latch << 1) << (2 * i);
+		pins |= ((pin ? 1u : 0) | (latch ? 2u : 0)) << (2 * i);
 	}
 	sim_send_byte(slave, (uint8_t)(pins | (~pins & 15) << 4));
 }

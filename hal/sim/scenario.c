@@ -113,17 +113,16 @@ static void fill_memory(struct sim_slave *slave, struct words *words)
 	}
 	at = (size_t)words_number(words, "the address", 0, (double)size - 1);
 	words_next(words);
-	for (const char *hex = words->word; *hex && !words->failed; hex += 2, at++) {
-		unsigned byte;
+	for (const char *hex = words->word; !words->failed && *hex; hex += 2, at++) {
+		const char digits[3] = {hex[0], hex[1]};
 
-		if (!isxdigit((unsigned char)hex[0]) || !isxdigit((unsigned char)hex[1]) ||
-		    sscanf(hex, "%2x", &byte) != 1)
+		if (!isxdigit((unsigned char)hex[0]) || !isxdigit((unsigned char)hex[1]))
 			words_fail(words, "\"%s\": expected bytes as hexadecimal digits",
 			           words->word);
 		else if (at >= size)
 			words_fail(words, "the memory ends at 0x%zx", size - 1);
 		else
-			memory[at] = (uint8_t)byte;
+			memory[at] = (uint8_t)strtoul(digits, NULL, 16);
 	}
 }
 

@@ -155,10 +155,11 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 	if (n)
 		return n;
 	n = has_no_slots() ? -EOPNOTSUPP : w1_talk_open(&netlink->talk);
-	if (!n)
+	if (!n) {
 		n = w1_talk_masters(&netlink->talk, numbers, W1_MASTERS);
-	if (n > 0)
-		add_links(netlink, numbers, (unsigned)n);
+		if (n > 0)
+			add_links(netlink, numbers, (unsigned)n);
+	}
 	if (netlink->count) {
 		netlink->told = false;
 		return 0;

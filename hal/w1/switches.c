@@ -162,12 +162,12 @@ static int condition(struct txn *txn, uint8_t *mask, uint8_t *polarity, uint8_t 
 static int read_alarm(struct txn *txn)
 {
 	uint8_t mask = 0, polarity = 0, status = 0;
-	double digits = 0, unit = 1;
 	int err = condition(txn, &mask, &polarity, &status);
+	uint32_t digits = status & 3;
 
-	for (int i = 0; i < 8; i++, unit *= 10)
-		digits += unit * ((mask >> i & 1) * 2 + (polarity >> i & 1));
-	txn->number[0] = digits + unit * (status & 3);
+	for (int i = 7; i >= 0; i--)
+		digits = 10 * digits + (mask >> i & 1) * 2u + (polarity >> i & 1);
+	txn->number[0] = digits;
 	return err;
 }
 

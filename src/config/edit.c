@@ -212,7 +212,7 @@ int edit_set(struct rio **rio, const char *name, const char *const *settings, un
 		report_error(report, command_line, "there is no item \"%s\"", name);
 		return -EINVAL;
 	}
-	strcpy(current, name);
+	memcpy(current, name, strlen(name) + 1);
 	for (unsigned i = 0; i < count && !err; i++) {
 		enum option_place place;
 		struct rio_node *block = find_block(*rio, current, &place, report);
@@ -262,7 +262,7 @@ static int count_again(struct rio **rio)
 	unsigned items = 0;
 	char text[16];
 
-	if (!rio_child(driver, option_table[OPT_ITEM_COUNT].key))
+	if (!driver || !rio_child(driver, option_table[OPT_ITEM_COUNT].key))
 		return 0;
 	for (const struct rio_node *node = driver->first; node; node = node->next)
 		items += node->kind == RIO_BLOCK && !strcmp(node->key, option_table[OPT_ITEM].key);

@@ -129,7 +129,7 @@ static bool build_type(struct build *build, const struct rio_node *block,
 		item->writable = item->output;
 	}
 	if (type->given) {
-		if (known && item->type != (enum ows_type)(int)type->number)
+		if (known && bits->node && item->type != (enum ows_type)(int)type->number)
 			report_error(build->report, type->node->value_at,
 			             "Type %s contradicts IOType %s in line %d, which says %s",
 			             type->text, bits->text, bits->node->at.line,
@@ -139,7 +139,7 @@ static bool build_type(struct build *build, const struct rio_node *block,
 	} else if (!bits->node && !type->node && !block->broken) {
 		report_error(build->report, block->at, "expected a Type or an IOType in this Item");
 	}
-	if (bits->given && io->given && item->output != (io->number != 0))
+	if (bits->node && bits->given && io->given && item->output != (io->number != 0))
 		report_error(build->report, io->node->value_at,
 		             "IO %s contradicts IOType %s in line %d, which says %s", io->text,
 		             bits->text, bits->node->at.line, item->output ? "output" : "input");

@@ -117,6 +117,18 @@ int listen_peers_parse(const char *text, size_t len, struct listen_peers *peers,
 	return 0;
 }
 
+bool listen_same(const struct listen_address *a, const struct listen_address *b)
+{
+	return a->is_v6 == b->is_v6 && a->port == b->port &&
+	       memcmp(a->bytes, b->bytes, sizeof(a->bytes)) == 0;
+}
+
+bool listen_same_peers(const struct listen_peers *a, const struct listen_peers *b)
+{
+	return a->is_v6 == b->is_v6 && a->bits == b->bits &&
+	       memcmp(a->bytes, b->bytes, sizeof(a->bytes)) == 0;
+}
+
 bool listen_is_loopback(const struct listen_address *address)
 {
 	static const uint8_t v6[16] = { [15] = 1 };

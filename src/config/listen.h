@@ -37,6 +37,8 @@ int listen_peers_parse(const char *text, size_t len, struct listen_peers *peers,
                        const char **why);
 
 bool listen_is_loopback(const struct listen_address *address);
+bool listen_same(const struct listen_address *a, const struct listen_address *b);
+bool listen_same_peers(const struct listen_peers *a, const struct listen_peers *b);
 /* IPv4 addresses in IPv6 form count as IPv4. */
 bool listen_peers_have(const struct listen_peers *peers, unsigned count, bool is_v6,
                        const uint8_t *bytes);

@@ -117,7 +117,7 @@ int replace_file(const char *file, const char *text, size_t len)
 			return -errno;
 		if (strlen(file) >= sizeof(path))
 			return -ENAMETOOLONG;
-		strcpy(path, file);
+		memcpy(path, file, strlen(file) + 1);
 		return replace_path(path, NULL, text, len);
 	}
 	if (stat(path, &old))
@@ -138,7 +138,7 @@ int replace_lock(const char *file)
 			return -errno;
 		if (strlen(file) >= sizeof(path))
 			return -ENAMETOOLONG;
-		strcpy(path, file);
+		memcpy(path, file, strlen(file) + 1);
 	}
 	/* The directory stays when the file in it is replaced, and is there before the file is */
 	fd = open_directory(path);

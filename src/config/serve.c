@@ -24,19 +24,13 @@ static bool next_part(const char **text, const char **part, size_t *len)
 	return true;
 }
 
-static bool same_address(const struct listen_address *a, const struct listen_address *b)
-{
-	return a->is_v6 == b->is_v6 && a->port && a->port == b->port &&
-	       !memcmp(a->bytes, b->bytes, sizeof(a->bytes));
-}
-
 static void add_address(struct build *build, const struct listen_address *address,
                         const char *part, size_t len, struct place place)
 {
 	struct config_serve *serve = &build->box->config.serve;
 
 	for (unsigned i = 0; i < serve->address_count; i++)
-		if (same_address(&serve->addresses[i], address)) {
+		if (address->port && listen_same(&serve->addresses[i], address)) {
 			report_error(build->report, place, "Listen \"%.*s\": stands twice", (int)len,
 			             part);
 			return;

@@ -90,16 +90,21 @@ int64_t alarm_to_collect(const struct alarm_machine *m, const struct alarm_item 
 	}
 	return -1;
 }
+
 int64_t alarm_next_init(struct engine *e, struct alarm_machine *m)
 {
-	const struct device *d = &e->table.devices[alarm_current(m)->device];
+	const struct alarm_item *current = alarm_current(m);
+	const struct device *d;
 
+	if (!current)
+		return -1;
+	d = &e->table.devices[current->device];
 	for (uint32_t k = 0; k < d->count; k++) {
 		uint32_t row = e->table.device_rows[d->first + k];
 		const struct signal *s = &e->table.signals[row];
 
 		if ((int64_t)row > m->init_position && s->item->output && s->item->has_init &&
-		    signal_writes(s) && !s->doubts && s->lane == e->table.signals[alarm_current(m)->row].lane)
+		    signal_writes(s) && !s->doubts && s->lane == e->table.signals[current->row].lane)
 			return row;
 	}
 	return -1;

@@ -222,7 +222,7 @@ bool target_path(const char *given, char path[256], bool *fresh)
 	if (*fresh)
 		memmove(path, path + len, strlen(path + len) + 1);
 	if (!*path)
-		strcpy(path, "/");
+		snprintf(path, 256, "/");
 	return true;
 }
 

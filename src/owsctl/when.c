@@ -29,8 +29,9 @@ const char *when_iso(const struct when *now, int64_t boot_ns, char text[WHEN_TEX
 	if (wall < 0 || !localtime_r(&seconds, &local) ||
 	    !strftime(day, sizeof(day), "%Y-%m-%dT%H:%M:%S", &local) ||
 	    strftime(zone, sizeof(zone), "%z", &local) != 5)
-		return strcpy(text, "?");
-	snprintf(text, WHEN_TEXT, "%s.%03d%.3s:%.2s", day, (int)(wall % SECOND / 1000000), zone,
+		snprintf(text, WHEN_TEXT, "?");
+	else
+		snprintf(text, WHEN_TEXT, "%s.%03d%.3s:%.2s", day, (int)(wall % SECOND / 1000000), zone,
 	         zone + 3);
 	return text;
 }
@@ -40,7 +41,7 @@ const char *when_span(int64_t ns, char text[WHEN_TEXT])
 	int64_t s = ns / SECOND;
 
 	if (s < 0)
-		strcpy(text, "0.0s");
+		snprintf(text, WHEN_TEXT, "0.0s");
 	else if (s < 10)
 		snprintf(text, WHEN_TEXT, "%d.%ds", (int)s, (int)(ns % SECOND / (SECOND / 10)));
 	else if (s < 120)

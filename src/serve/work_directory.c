@@ -129,12 +129,15 @@ static struct client *first_queued(struct serve *s)
 
 void work_queue(struct serve *s)
 {
-	for (int i = 0; i < SERVER_DIRECTORIES && work_waits(s); i++) {
-		struct client *c = first_queued(s);
+	for (int i = 0; i < SERVER_DIRECTORIES; i++) {
+		struct directory *directory = free_directory(s);
+		struct client *c = s->queued && directory ? first_queued(s) : NULL;
 
+		if (!c)
+			return;
 		s->queued--;
 		c->state = CLIENT_READING; /* until its work says otherwise, now */
-		begin_directory(s, c, free_directory(s));
+		begin_directory(s, c, directory);
 	}
 }
 

@@ -117,9 +117,38 @@ static void test_ranges_that_cannot_be_are_refused(void)
 			-EINVAL, listen_peers_parse(texts[i], strlen(texts[i]), &peers, &why), texts[i]);
 }
 
+/* What a compiler leaves between the members is not compared: a reload would open all anew. */
+static void test_the_same_address_is_the_same_whatever_lies_between_its_members(void)
+{
+	struct listen_address a[2], b[2];
+	struct listen_peers p, q;
+
+	memset(a, 0x55, sizeof(a));
+	memset(b, 0xaa, sizeof(b));
+	memset(&p, 0x55, sizeof(p));
+	memset(&q, 0xaa, sizeof(q));
+	TEST_ASSERT_EQUAL_INT(1, listen_parse("10.1.2.3:4304", 13, a, &why));
+	TEST_ASSERT_EQUAL_INT(1, listen_parse("10.1.2.3:4304", 13, b, &why));
+	TEST_ASSERT_EQUAL_INT(0, listen_peers_parse("10.1.0.0/16", 11, &p, &why));
+	TEST_ASSERT_EQUAL_INT(0, listen_peers_parse("10.1.0.0/16", 11, &q, &why));
+	TEST_ASSERT_TRUE(listen_same(a, b));
+	TEST_ASSERT_TRUE(listen_same_peers(&p, &q));
+	b->port++;
+	q.bits--;
+	TEST_ASSERT_FALSE(listen_same(a, b));
+	TEST_ASSERT_FALSE(listen_same_peers(&p, &q));
+	*b = *a;
+	q = p;
+	b->bytes[3]++;
+	q.bytes[1]++;
+	TEST_ASSERT_FALSE(listen_same(a, b));
+	TEST_ASSERT_FALSE(listen_same_peers(&p, &q));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
+	RUN_TEST(test_the_same_address_is_the_same_whatever_lies_between_its_members);
 	RUN_TEST(test_a_bare_port_and_localhost_are_both_loopback_addresses);
 	RUN_TEST(test_a_port_that_is_none_is_told_as_one);
 	RUN_TEST(test_a_network_is_served_by_its_address_only);
