@@ -9,6 +9,8 @@
 #   make clang sanitize m32       the slower checks
 #   make fuzz                     libFuzzer on what comes from outside; FUZZ=rio one of its targets,
 #                                 FUZZ_SECONDS=60 for each
+#   make analyze coverage         what gcc's analyzer, clang-tidy and cppcheck find (nothing is to
+#                                 be left); which lines and branches the tests reach
 #   make test-kernel              Debian's own kernel and owserver on the simulated chip, in QEMU
 #   make dist                     the release as a tarball, of what is committed (docs/release.md)
 #   make test-dist                that tarball built and run without git and network
@@ -129,7 +131,13 @@ LIBRARY  := $(if $(LIBOWS),$(B)/$(SO) $(B)/libows.a $(B)/libows.pc)
 .PHONY: all unit soak system test run bench install uninstall install-service uninstall-service \
         deb test-package test-service dist test-dist clean \
         examples unit-programs benches diagrams FORCE clang sanitize asan tsan m32
-all: $(PROGRAMS) $(LIBRARY) $(B)/core.a
+all: $(PROGRAMS) $(LIBRARY) $(B)/core.a $(B)/libraries
+
+# What was found, said when it is new; the tests hold the programs against it
+$(B)/libraries: FORCE
+	@mkdir -p $(@D)
+	@echo 'libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no)' >$@.new
+	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; $(if $(quiet),:,sed 's/^/  WITH	/' $@); fi
 
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
@@ -342,6 +350,8 @@ m32: export EXTRA_CFLAGS := -m32 -msse2 -mfpmath=sse -D_TIME_BITS=64 \
 diagrams:
 	python3 docs/alarm-states.py >docs/img/alarm-states.svg.new
 	mv docs/img/alarm-states.svg.new docs/img/alarm-states.svg
+
+include tests/analyze/analyze.mk
 
 # --- Install ----------------------------------------------------------------------------------
 D := $(DESTDIR)
