@@ -87,15 +87,14 @@ static int read_lines(struct txn *txn)
 static int counter(const char *line, unsigned page, double *count)
 {
 	const char *good, *number;
-	int err = 0;
+	char *end;
 
-	for (unsigned i = 12; i < page && !err; i++) {
+	for (unsigned i = 12; i < page; i++) {
 		line = strchr(line, '\n');
-		err = line ? 0 : -EIO;
-		line += !err;
+		if (!line)
+			return -EIO;
+		line++;
 	}
-	if (err)
-		return err;
 	size_t len = strcspn(line, "\n");
 	good = strstr(line, "crc=YES");
 	if (!good || (size_t)(good - line) > len)
@@ -104,8 +103,8 @@ static int counter(const char *line, unsigned page, double *count)
 	if (!number || (size_t)(number - line) > len)
 		return -EIO;
 	/* Printed with a sign. */
-	*count = (double)(uint32_t)strtoll(number + 3, NULL, 10);
-	return 0;
+	*count = (double)(uint32_t)strtoll(number + 3, &end, 10);
+	return end == number + 3 ? -EIO : 0;
 }
 
 static int read_counter(struct txn *txn)

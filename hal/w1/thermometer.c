@@ -17,6 +17,8 @@
 #define COPY_SCRATCHPAD 0x48
 #define OLD_NS (10 * NATIVE_S)
 #define REFUSED_NS (60 * NATIVE_S)
+/* Millidegrees that a scratchpad can hold, either way. */
+#define VALUE_MOST 128000
 
 static int64_t now_of(const struct w1_master *master)
 {
@@ -75,10 +77,12 @@ static int read_limits(struct w1_master *master, const uint8_t rom[8], uint8_t s
 	if (err)
 		return err;
 	long low = strtol(master->text, &end, 10);
-	if (end == master->text)
+	const char *behind = end;
+	long high = strtol(behind, &end, 10);
+	if (end == behind || low < INT8_MIN || low > INT8_MAX || high < INT8_MIN || high > INT8_MAX)
 		return -EIO;
 	scratchpad[SP_LOW] = (uint8_t)low;
-	scratchpad[SP_HIGH] = (uint8_t)strtol(end, NULL, 10);
+	scratchpad[SP_HIGH] = (uint8_t)high;
 	return 0;
 }
 
@@ -119,6 +123,8 @@ int w1_scratchpad(struct w1_master *master, struct w1_slave *slave, uint8_t scra
 		err = from_w1_slave(master->text, scratchpad);
 	} else if (err == -ENOENT) {
 		err = w1_slave_number(master, slave->rom, "temperature", &value);
+		if (!err && (value < -VALUE_MOST || value > VALUE_MOST))
+			err = -EIO;
 		if (!err)
 			from_value(slave, value, scratchpad);
 		if (!err) {

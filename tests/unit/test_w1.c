@@ -427,6 +427,23 @@ static void test_the_value_alone_is_brought_back_to_sixteenths(void)
 	reads("     -7.3125", "/10.C10000000000/temperature");
 }
 
+static void test_a_number_that_no_chip_can_have_is_a_failed_reading(void)
+{
+	slave(WARM);
+	text(WARM, "temperature", "99999999999999999999\n");
+	start();
+	fails(-EIO, WARM_OW "/temperature");
+	text(WARM, "temperature", "-2147483648\n");
+	fails(-EIO, WARM_OW "/temperature");
+	text(WARM, "temperature", "21062\n");
+	text(WARM, "alarms", "-10 700\n");
+	fails(-EIO, WARM_OW "/temphigh");
+	text(WARM, "alarms", "-10\n");
+	fails(-EIO, WARM_OW "/templow");
+	text(WARM, "alarms", "-10 70\n");
+	reads("         -10", WARM_OW "/templow");
+}
+
 static void test_an_empty_file_is_a_failed_reading(void)
 {
 	thermometer(WARM, 0x151);
@@ -725,6 +742,9 @@ static void test_a_ds2423_counts(void)
 	fails(-EBADMSG, "/1D.210000000000/counter.A");
 	text(name, "w1_slave", "Connection error");
 	fails(-EIO, "/1D.210000000000/counter.A");
+	text(name, "w1_slave", "crc=YES c=12\ncrc=YES c=13\ncrc=YES c=\n");
+	fails(-EIO, "/1D.210000000000/counter.A");
+	fails(-EIO, "/1D.210000000000/counter.B");
 }
 
 static void test_eeproms_are_read_and_written(void)
@@ -996,6 +1016,7 @@ int main(void)
 	RUN_TEST(test_a_thermometer_reads_as_elsewhere);
 	RUN_TEST(test_below_zero_too);
 	RUN_TEST(test_the_value_alone_is_brought_back_to_sixteenths);
+	RUN_TEST(test_a_number_that_no_chip_can_have_is_a_failed_reading);
 	RUN_TEST(test_an_empty_file_is_a_failed_reading);
 	RUN_TEST(test_a_wrong_checksum_is_told);
 	RUN_TEST(test_power_faults_are_never_good);
