@@ -8,18 +8,23 @@
 
 static const uint8_t v4_mapped[12] = { [10] = 0xff, [11] = 0xff };
 
+static bool has_digits_only(const char *text, size_t len)
+{
+	for (size_t i = 0; i < len; i++)
+		if (text[i] < '0' || text[i] > '9')
+			return false;
+	return len != 0;
+}
+
 /* All of the text a number up to most; -1. */
 static long number(const char *text, size_t len, long most)
 {
 	long value = 0;
 
-	if (len == 0 || len > 5)
+	if (len > 5 || !has_digits_only(text, len))
 		return -1;
-	for (size_t i = 0; i < len; i++) {
-		if (text[i] < '0' || text[i] > '9')
-			return -1;
+	for (size_t i = 0; i < len; i++)
 		value = value * 10 + (text[i] - '0');
-	}
 	return value <= most ? value : -1;
 }
 
@@ -79,7 +84,7 @@ int listen_parse(const char *text, size_t len, struct listen_address addresses[2
 	if (port >= 0)
 		return loopback((uint16_t)port, addresses);
 	*why = "expected a port from 0 to 65535";
-	if (len && strspn(text, "0123456789") >= len)
+	if (has_digits_only(text, len))
 		return -EINVAL;
 	*why = "expected PORT, HOST:PORT or [IPv6]:PORT";
 	if (!split(text, len, &host, &host_len, &port_text) || !host_len)
@@ -97,6 +102,18 @@ int listen_parse(const char *text, size_t len, struct listen_address addresses[2
 	return numeric(host, host_len, &addresses[0].is_v6, addresses[0].bytes) ? -EINVAL : 1;
 }
 
+/* As peers are looked up: an IPv4 range in IPv6 form would never have one. */
+static void as_v4(struct listen_peers *peers)
+{
+	if (!peers->is_v6 || peers->bits < 96 ||
+	    memcmp(peers->bytes, v4_mapped, sizeof(v4_mapped)) != 0)
+		return;
+	peers->is_v6 = false;
+	peers->bits -= 96;
+	memmove(peers->bytes, peers->bytes + sizeof(v4_mapped), 4);
+	memset(peers->bytes + 4, 0, 12);
+}
+
 int listen_peers_parse(const char *text, size_t len, struct listen_peers *peers,
                        const char **why)
 {
@@ -108,12 +125,11 @@ int listen_peers_parse(const char *text, size_t len, struct listen_peers *peers,
 	if (numeric(text, host_len, &peers->is_v6, peers->bytes))
 		return -EINVAL;
 	peers->bits = peers->is_v6 ? 128 : 32;
-	if (!slash)
-		return 0;
-	bits = number(slash + 1, len - host_len - 1, (long)peers->bits);
+	bits = slash ? number(slash + 1, len - host_len - 1, (long)peers->bits) : (long)peers->bits;
 	if (bits < 0)
 		return -EINVAL;
 	peers->bits = (unsigned)bits;
+	as_v4(peers);
 	return 0;
 }
 

@@ -3,6 +3,7 @@
 
 #include <arpa/inet.h>
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unity.h>
 
@@ -104,6 +105,22 @@ static void test_ranges_have_the_peers_inside_and_no_others(void)
 	TEST_ASSERT_TRUE(allows("fd00::/8", "fdff::1"));
 	TEST_ASSERT_FALSE(allows("fd00::/8", "fe00::1"));
 	TEST_ASSERT_TRUE(allows("192.168.1.0/24", "::ffff:192.168.1.9"));
+	TEST_ASSERT_TRUE(allows("::ffff:192.168.1.0/120", "192.168.1.9"));
+	TEST_ASSERT_TRUE(allows("::ffff:10.0.0.7", "::ffff:10.0.0.7"));
+	TEST_ASSERT_FALSE(allows("::ffff:10.0.0.7", "10.0.0.8"));
+	TEST_ASSERT_FALSE(allows("::ffff:10.0.0.0/104", "11.0.0.8"));
+}
+
+static void test_nothing_behind_the_text_is_looked_at(void)
+{
+	char text[] = {'4', '3', '0', '4', '4', '3'}, *copy = malloc(sizeof(text));
+
+	TEST_ASSERT_NOT_NULL(copy);
+	memcpy(copy, text, sizeof(text));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, listen_parse(copy, sizeof(text), addresses, &why));
+	TEST_ASSERT_EQUAL_INT(2, listen_parse(copy, 4, addresses, &why));
+	TEST_ASSERT_EQUAL_STRING("127.0.0.1:4304", printed(0));
+	free(copy);
 }
 
 static void test_ranges_that_cannot_be_are_refused(void)
@@ -154,6 +171,7 @@ int main(void)
 	RUN_TEST(test_a_network_is_served_by_its_address_only);
 	RUN_TEST(test_what_is_no_address_is_refused_with_a_reason);
 	RUN_TEST(test_ranges_have_the_peers_inside_and_no_others);
+	RUN_TEST(test_nothing_behind_the_text_is_looked_at);
 	RUN_TEST(test_ranges_that_cannot_be_are_refused);
 	return UNITY_END();
 }
