@@ -64,7 +64,9 @@ int main(int argc, char **argv)
 		return ctl_fail("/dev/null: %s", strerror(-c));
 	/* And a file that may not grow as EFBIG. */
 	signal(SIGXFSZ, SIG_IGN);
-	while ((c = getopt_long(argc, argv, "+n:t:Vh", longs, NULL)) != -1) {
+	/* getopt would say it with what stands there, which may steer the terminal. */
+	opterr = 0;
+	while ((c = getopt_long(argc, argv, "+:n:t:Vh", longs, NULL)) != -1) {
 		switch (c) {
 		case 'n':
 			ctl.instance = optarg;
@@ -82,7 +84,15 @@ int main(int argc, char **argv)
 		case 'h':
 			usage(stdout);
 			return ctl_flush(CTL_DONE);
+		case ':':
+			ctl_fail("option without its argument: -%c", optopt);
+			usage(stderr);
+			return CTL_USAGE;
 		default:
+			if (optopt)
+				ctl_fail("unknown option: -%c", optopt);
+			else
+				ctl_fail("unknown option: %s", argv[optind - 1]);
 			usage(stderr);
 			return CTL_USAGE;
 		}

@@ -182,6 +182,15 @@ class Terminal:
         return status, restored
 
 
+def test_what_is_said_of_a_wrong_option_cannot_steer_the_terminal(scene):
+    for words in (["-\x1b"], ["--\x1b[2J", "list"], ["-n"]):
+        run = subprocess.run([owsdtest.OWSCTL, *words], text=True, capture_output=True, check=False,
+                             timeout=10)
+        assert run.returncode == 2, run
+        assert "\x1b" not in run.stderr, run
+        assert run.stderr.startswith("owsctl: ") and "option" in run.stderr.splitlines()[0], run
+
+
 def test_the_live_table_follows_values_and_keys(scene):
     server, daemon, room, _ = house(scene)
     terminal = Terminal(daemon, 24, 100, "watch")
