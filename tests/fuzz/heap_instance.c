@@ -38,12 +38,13 @@ void heap_beat(int64_t now_ns)
 void heap_put(uint32_t record, int64_t value, const char *text, int64_t measured_ns,
               uint32_t applied)
 {
+	bool is_text = heap_signals[record - 1].type == OWS_STRING;
 	struct ows_sample sample = {.value = value, .measured_ns = measured_ns,
 	                            .tried_ns = measured_ns, .quality = OWS_Q_GOOD, .count = 1,
-	                            .applied = applied, .len = text ? (uint32_t)strlen(text) : 0};
+	                            .applied = applied, .len = is_text ? (uint32_t)strlen(text) : 0};
 	struct ows_attrs attrs = {.flags = OWS_ATTR_READ_ENABLE | OWS_ATTR_WRITE_ENABLE};
 
-	image_publish(&heap.image, record, &sample, &attrs, text);
+	image_publish(&heap.image, record, &sample, &attrs, is_text ? text : NULL);
 	image_news(&heap.image);
 }
 
@@ -82,7 +83,7 @@ static void make(void)
 		heap_put(i + 1, heap_signals[i].type == OWS_DOUBLE || heap_signals[i].type == OWS_FLOAT
 		                        ? value_of_double(21.5)
 		                        : 1,
-		         heap_signals[i].type == OWS_STRING ? "boiler" : NULL, HEAP_START, 0);
+		         "boiler", HEAP_START, 0);
 	image_alarm(&heap.image, &alarm);
 	for (unsigned i = 0; i < 2; i++)
 		image_target(&heap.image, i, 1, i);

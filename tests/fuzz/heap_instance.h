@@ -36,7 +36,7 @@ extern struct heap_instance heap;
 /* As it was made: live, with a heart that beat at HEAP_START, each signal good. Allocates once. */
 void heap_instance_reset(void);
 void heap_beat(int64_t now_ns);
-/* A good value of a record; text for the string, else NULL. */
+/* A good value of a record; of the string the text. */
 void heap_put(uint32_t record, int64_t value, const char *text, int64_t measured_ns,
               uint32_t applied);
 

@@ -171,6 +171,140 @@ def image():
     put("image", "short", b"\0\2" + struct.pack("<I", 3000) + reads)
 
 
+def w1():
+    """attributes and properties by their numbers, as fuzz_w1.c counts them"""
+    def crc8(data):
+        crc = 0
+        for byte in data:
+            for _ in range(8):
+                crc = crc >> 1 ^ (0x8c if (crc ^ byte) & 1 else 0)
+                byte >>= 1
+        return crc
+
+    def attribute(which, content, slave=0, fault=0):
+        return bytes([slave << 3, which, fault, len(content)]) + content
+
+    def everything(slave=0, most=60):
+        return b"".join(bytes([3 | slave << 3, n, 1 if n % 2 else 2]) for n in range(0, most, 3))
+
+    def pad(raw):
+        nine = bytes([raw & 255, raw >> 8 & 255, 0x4b, 0x46, 0x7f, 0xff, 0x0c, 0x10])
+        nine += bytes([crc8(nine)])
+        text = "".join(f"{byte:02x} " for byte in nine)
+        return f"{text}: crc={nine[8]:02x} YES\n{text}t=21500\n".encode()
+    head = b"\x10\0"                        # DS18B20 and DS18S20, no more names
+    lists, alarm, convert = b"\3\0\x60", b"\3\1\x60", b"\3\2\xa0\0011"
+    put("w1", "thermometers", head + attribute(0, pad(0x158)) + attribute(0, pad(0x32), 1) +
+        attribute(2, b"12\n") + attribute(3, b"10 70\n") + attribute(4, b"1\n") + lists +
+        everything(0) + everything(1) + alarm + convert)
+    put("w1", "temperature", head + attribute(1, b"21500\n") + attribute(1, b"-1250\n", 1) +
+        attribute(3, b"-10 20\n", 1) + everything(0) + everything(1) + alarm)
+    put("w1", "switches", b"\x65\0" + b"".join(
+        attribute(n, b"\xa5") for n in (7, 8, 9, 10, 11, 12)) + attribute(7, b"\x5a", 1) +
+        attribute(8, b"\1", 1) + everything(0) + everything(1) + alarm + b"\3\5\x82\00242")
+    put("w1", "memories", b"\xdc\0" + attribute(0x45, b"text") + attribute(0x45, b"\0\1", 1) +
+        everything(0, 20) + everything(1, 20) + b"\3\1\x80\005abcde")
+    put("w1", "counter", b"\xaa\0" + attribute(0, b"00 " * 32 + b": crc=NO c=1\n" * 4) +
+        everything(0, 30))
+    put("w1", "battery", b"\x99\0" + attribute(13, b"\x08\x80\x15\x32\x01\x12\0\0") +
+        attribute(14, b"\1\2\3\4\5\6\7\x08") + attribute(15, b"512\n") + attribute(16, b"-7\n") +
+        everything(0, 40))
+    put("w1", "others", b"\x7b\0" + attribute(8, b"x") + attribute(7, b"1", 1) +
+        attribute(8, b"0", 1) + everything(0, 30) + everything(1, 30) + b"\6\x11"
+        b"05-00000000000z\0a\0\0\x27\x2f\x37\1" + lists)
+    put("w1", "faults", head + bytes([0, 0x80, 1, 0]) + everything(0, 12) + bytes([0, 0x81, 2, 0]) +
+        bytes([0, 0xc5, 3, 2]) + b"ab" + everything(0, 12) + b"\7\0" + lists)
+
+
+def netlink():
+    def reply(kind, data=b"", status=None, more=b""):
+        head = bytes([kind | (0x40 if status is not None else 0)])
+        return head + (bytes([status]) if status is not None else b"") + bytes([len(data)]) + data + \
+            more
+    data, status_of_all, masters = 0x0d, 0x35, 0x05
+    two = reply(masters, struct.pack("<II", 1, 2)) + reply(masters)
+    thermometer = bytes.fromhex("28a1000000000000")[:7]
+    crc = 0
+    for byte in thermometer:
+        for _ in range(8):
+            crc = crc >> 1 ^ (0x8c if (crc ^ byte) & 1 else 0)
+            byte >>= 1
+    found = reply(data, thermometer + bytes([crc])) + reply(status_of_all)
+    touch = reply(0x15) + reply(status_of_all)
+    put("netlink", "search", b"\6\0" + two + b"\0" + found * 2 + b"\x0e" + found * 3)
+    put("netlink", "read", b"\6\0" + two + b"\0" + found + b"\0" + touch * 8 + b"\x10" + touch * 8)
+    put("netlink", "nobody", b"\6\0" + two + b"\0" + found + b"\0" + reply(0x35, status=255) * 6)
+    put("netlink", "damaged", b"\6\0" + two + b"\0" + reply(2, b"\1\2", more=b"\x10\x80\4\7") +
+        reply(3, thermometer, more=b"\5") + reply(1, b"\0" * 40) + reply(4, b"\1", more=b"\x35\1\1"))
+    put("netlink", "refused", b"\6\xff\6\0" + two)
+    put("netlink", "gone", b"\6\0" + two + b"\7" + b"\0" + found + b"\x0f\x0e" + found)
+
+
+def scenario():
+    chip = "chip DS2482-100 0x18\n"
+    put("scenario", "thermometer", chip + "DS18B20 28.000000000001 as kitchen temperature sine 20 5 1h "
+        "resolution 10 parasite\nDS18S20 10.000000000002 temperature ramp 20 30 10s\n"
+        "at 1s unplug kitchen for 500ms\n\0set kitchen temperature 30\nbrownout kitchen\n"
+        "corrupt kitchen each 2")
+    put("scenario", "chips", "i2c speed 400 messages 2 combine one-read\nchip DS2482-800 0x18 times 105\n"
+        "channel 7\nDS2408 29.000000000001 as board\nchip DS2484 0x1f\nDS2401 01.000000000001\n"
+        "at 100ms short 0x18.7 for 50ms\nat 200ms stick 0x1f\nat 1s every 1s reset 0x18\n"
+        "\0short 0x18.2 for 5s\nend short 0x18.2\nsleep 0x1f\njam 0x18 for 1s\n")
+    put("scenario", "memory", chip + "DS2431 2D.000000000001 memory 0 0011aabb\n"
+        "DS2438 26.000000000001 temperature steps 0:5 5s:6 vad 5 vdd 4.9\n"
+        "DS2423 1D.000000000001 pin.A square 0 1 2s count.B 7\nDS2450 20.000000000001 volt.C 3\n"
+        "DS2430A 14.000000000001 # why\n")
+    put("scenario", "refusals", chip + "DS2413 3A.000000000001 as s\nDS2406 12.000000000001\n"
+        "DS2405 05.000000000001\nat 0s refuse 0x18 each 3\nat 10ms every 2us corrupt s chance 0.5 seed 7\n"
+        "at 1s remove adapter for 1s\nat 50ms refuse-data 0x18 for 1ms\n\0sleep 0x18\n")
+    demo = (HERE.parent.parent / "board" / "demo" / "house.sim").read_text()
+    put("scenario", "house", demo[:3000].rpartition("\n")[0] + "\n")
+    put("scenario", "wrong", chip + "DS18B20 28.000000000001 temperature 500\n")
+
+
+def owsctl():
+    def call(name, line, behind=b""):
+        put("owsctl", name, "\n".join(line.split(" ")).encode() + b"\n\n" + behind)
+    call("list", "--json list -a room*")
+    call("get", "--json get room OWS__label relay_Age _TRANSACTIONS nobody rom")
+    call("set", "set -w 2 relay on level 300 label x")
+    call("set-json", "--json set -w 1 level 7 warm_WOS 1 relay_WriteEnable 0")
+    call("watch", "--json watch -c 9 -t 5 *")
+    call("watch-text", "watch -l room label")
+    call("wait", "wait -t 3 room >= 22.5")
+    call("wait-ever", "wait label = other --json")
+    call("alarms", "--json alarms")
+    call("history", "alarms history -t 1d -c 5 room")
+    call("ack", "alarms ack room -a")
+    call("stats", "--json stats")
+    rio = (b'OwsDrv {\n TargetName "w1"\n Item {\n  Name "t"\n  Path "/28.1/t"\n'
+           b'  IOType 0x0018\n }\n}\n')
+    call("config-list", "--json config f.rio list", rio)
+    call("config-add", "config f.rio add new /28.2/t Type=float LimitH=30", rio)
+    call("config-set", "config f.rio set t Name=u InitValue=3 Uncached=on", rio)
+    call("config-unset", "config f.rio unset t IOType", rio)
+    listing = b"\xf0\x06/x/y\n\n" + b"\x10\0" + b"\4\0"
+    call("dir", "dir -t fuzz: /28.A10000000000", b"\x10\x1a/28.A10000000000/alias\n/a/\n")
+    call("dir-json", "--json dir -t fuzz:", b"\xf0\0")
+    call("read", "--json read -t fuzz: /28.A10000000000/t uncached/x", b"\0\x0c        21.5\0\4\x1b[2J")
+    call("write", "write -t fuzz: -w 1 /29.B1/PIO.0 1", b"\0")
+    call("scan", "--json scan -t fuzz:", listing + b"\0\7DS18B20\0\7kitchen\0\4 1.5" * 8)
+    call("scan-rio", "scan -t fuzz: --rio", listing + b"\0\7DS18B20\0\7kitchen\0\4 1.5" * 8)
+    call("help", "watch -h")
+    call("wrong", "-x --js get -- -a")
+    put("owsctl", "none", b"")
+
+
+def values():
+    texts = ["0", "-32769", "4294967295", "-9223372036854775808", "1e-320", "0.1", "  21.0625", "on",
+             "340282356779733661637539395458142568448", "room1_Age", "OWS__room1_WriteEnable",
+             "_TRANSACTIONS", "28.551DDF030000", "2867C6697351FF68", "10.67C6697351FF.B8",
+             "/uncached/bus.12/28.551DDF030000/errata/die", "/1F.010203040506/main/alias/HIH4000/t",
+             "[::1]:4304", "localhost", "fd00::/8", "192.168.1.0/24", "::ffff:1.2.3.4:1"]
+    for i, text in enumerate(texts):
+        put("values", f"{i:02}", bytes([i % 11]) + text.encode())
+
+
 if __name__ == "__main__":
-    for target in (rio, owserver, serve, commands, image):
+    for target in (rio, owserver, serve, commands, image, w1, netlink, scenario, owsctl, values):
         target()
