@@ -126,6 +126,8 @@ void lane_adopt(struct lane *lane, struct lane *before, const uint32_t *successo
  * nothing but their slots any more.
  */
 void lane_disown(struct lane *lane, bool all);
+/* Likewise the request of the alarm machine, which begins anew. */
+void lane_disown_alarm(struct lane *lane);
 /* A write of the write step, or of InitValue by the alarm machine. */
 bool lane_writes_output(const struct lane *lane, const struct slot *slot);
 /* A write whose signal another lane serves, and which may still reach the device. */

@@ -158,6 +158,14 @@ void lane_disown(struct lane *lane, bool all)
 	}
 }
 
+void lane_disown_alarm(struct lane *lane)
+{
+	struct slot *slot = lane->alarm_slot;
+
+	if (slot && !slot->given_up && !slot->moved)
+		disown(lane, slot);
+}
+
 void lane_forget_probes(struct lane *lane)
 {
 	int64_t device;

@@ -40,6 +40,7 @@ static void fail(struct lane *lane, int err, int64_t now_ns)
 	way->failed = true;
 	way->up = false;
 	lane_forget_probes(lane);
+	lane_disown_alarm(lane);
 	engine_group_check(e, lane->port->group, now_ns);
 	engine_lane_down(e, lane, err, now_ns);
 }

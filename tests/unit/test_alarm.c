@@ -615,6 +615,42 @@ static void test_every_combination_of_defined_empty_and_not_defined(void)
 	}
 }
 
+/*
+ * A bus of two requests falls silent with both out. The older one takes the target down and the
+ * machine begins anew; the list that was asked for later is answered after that.
+ */
+static void test_a_list_that_comes_after_the_target_was_given_up_counts_for_nothing(void)
+{
+	s.bus[0].depth = 2;
+	figure_3_3();
+	scene_input(&s, "room", T_TEMP, OWS_DOUBLE);
+	device("0", "0");
+	scene_put(&s, "/alarm", "", 0);
+	scene_put(&s, T_TEMP, "21.5", 0);
+	scene_start(&s);
+	scene_up(&s);
+	for (unsigned round = 0; round < 20; round++) {
+		uint64_t failures = scene_counter(&s, "target_failures");
+		uint64_t lists = scene_counter(&s, "alarm_lists");
+
+		scene_run(&s, SCENE_S + (int64_t)round * 7 * SCENE_MS);
+		s.bus[0].mute = true;
+		while (scene_counter(&s, "target_failures") == failures)
+			scene_run(&s, SCENE_MS);
+		TEST_ASSERT_EQUAL_UINT(2, s.bus[0].swallowed_count);
+		TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, scene_sample(&s, 2).quality);
+		s.bus[0].mute = false;
+		while (s.bus[0].swallowed_count) {
+			struct bus_req *req = s.bus[0].swallowed[--s.bus[0].swallowed_count];
+
+			scene_answer(&s, req->id, 0, req->op == BUS_DIR ? "" : "21.5", req);
+		}
+		scene_run(&s, SCENE_S);
+		TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 2).quality);
+		TEST_ASSERT_GREATER_THAN_UINT64(lists + 5, scene_counter(&s, "alarm_lists"));
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -642,5 +678,6 @@ int main(void)
 	RUN_TEST(test_an_alarm_that_comes_during_its_handling_is_not_lost);
 	RUN_TEST(test_latches_of_every_spelling_are_understood);
 	RUN_TEST(test_every_combination_of_defined_empty_and_not_defined);
+	RUN_TEST(test_a_list_that_comes_after_the_target_was_given_up_counts_for_nothing);
 	return UNITY_END();
 }
