@@ -118,7 +118,6 @@ int w1_scratchpad(struct w1_master *master, struct w1_slave *slave, uint8_t scra
 	int err = w1_slave_text(master, slave->rom, "w1_slave");
 	long value;
 
-	slave->due = false;
 	if (!err) {
 		err = from_w1_slave(master->text, scratchpad);
 	} else if (err == -ENOENT) {
@@ -132,9 +131,11 @@ int w1_scratchpad(struct w1_master *master, struct w1_slave *slave, uint8_t scra
 			err = err == -ENOENT ? 0 : err;
 		}
 	}
+	/* What was to be converted still is: the value before it is not the one asked for. */
 	if (err)
 		return err;
 	memcpy(slave->scratchpad, scratchpad, 9);
+	slave->due = false;
 	slave->known = true;
 	slave->read_ns = now_of(master);
 	return 0;

@@ -466,6 +466,39 @@ static void test_a_wrong_checksum_is_told(void)
 	fails(-EIO, WARM_OW "/temperature");
 }
 
+static int on_link(struct link *link, uint8_t command, uint8_t *answer, size_t n)
+{
+	uint8_t out[10] = {0x55, 0x28, 0xa1};
+	int err;
+
+	out[8] = rom_crc8(out + 1, 7);
+	out[9] = command;
+	err = link->ops->reset(link);
+	if (err >= 0)
+		err = link->ops->write(link, out, sizeof(out), LINK_IDLE);
+	return err < 0 || !n ? err : link->ops->read(link, answer, n);
+}
+
+/* Whoever asks again, and not for a conversion, gets none of the values before it. */
+static void test_a_reading_that_failed_is_not_made_up_by_the_one_before(void)
+{
+	uint8_t pad[9];
+
+	thermometer(WARM, 0x151);
+	start();
+	struct link *link = &((struct w1_master *)((struct native *)bus)->master)->links[0].link;
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, on_link(link, 0x44, NULL, 0));
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, on_link(link, 0xbe, pad, sizeof(pad)));
+	TEST_ASSERT_EQUAL_HEX8(0x51, pad[0]);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, on_link(link, 0x44, NULL, 0));
+	text(WARM, "w1_slave", "");
+	TEST_ASSERT_EQUAL_INT(-EIO, on_link(link, 0xbe, pad, sizeof(pad)));
+	TEST_ASSERT_EQUAL_INT(-EIO, on_link(link, 0xbe, pad, sizeof(pad)));
+	scratchpad(WARM, 0x161, 75, 70, 0x7f, "YES");
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, on_link(link, 0xbe, pad, sizeof(pad)));
+	TEST_ASSERT_EQUAL_HEX8(0x61, pad[0]);
+}
+
 static void test_power_faults_are_never_good(void)
 {
 	thermometer(WARM, 0x550);
@@ -1019,6 +1052,7 @@ int main(void)
 	RUN_TEST(test_a_number_that_no_chip_can_have_is_a_failed_reading);
 	RUN_TEST(test_an_empty_file_is_a_failed_reading);
 	RUN_TEST(test_a_wrong_checksum_is_told);
+	RUN_TEST(test_a_reading_that_failed_is_not_made_up_by_the_one_before);
 	RUN_TEST(test_power_faults_are_never_good);
 	RUN_TEST(test_a_resolution_is_written_when_it_differs);
 	RUN_TEST(test_limits_are_written_and_saved);
