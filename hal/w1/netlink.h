@@ -110,6 +110,7 @@ struct w1_netlink {
 	struct w1_seen seen[DEVICE_MAX];
 	struct link_master *files; /* target w1's, in case netlink is refused */
 	bool refused, told;
+	bool answered; /* once at least */
 	int64_t look_ns; /* when to look for masters that came later */
 };
 

@@ -108,8 +108,11 @@ static bool has_no_slots(void)
 	return false;
 }
 
-/* Why netlink cannot serve here, now and later; NULL: it is a passing fault. */
-static const char *reason(int err)
+/*
+ * Why netlink cannot serve here, now and later; NULL: it is a passing fault, as is silence of a
+ * kernel that has answered before.
+ */
+static const char *reason(const struct w1_netlink *netlink, int err)
 {
 	switch (err) {
 	case -EPERM:
@@ -122,7 +125,8 @@ static const char *reason(int err)
 	case -ECONNREFUSED:
 		return "the connector is in another network namespace";
 	case -ETIMEDOUT:
-		return "this kernel's w1 does not answer there (CONFIG_W1_CON)";
+		return netlink->answered ? NULL
+		                         : "this kernel's w1 does not answer there (CONFIG_W1_CON)";
 	case -EOPNOTSUPP:
 		return "a driver here (ds1wm, omap_hdq) has no single slots";
 	default:
@@ -136,7 +140,7 @@ static int serve_files(struct w1_netlink *netlink, int err)
 
 	netlink->refused = true;
 	snprintf(event.text, sizeof(event.text), "netlink refused: %s; served by files as target w1",
-	         reason(err));
+	         reason(netlink, err));
 	if (!netlink->told)
 		netlink->master.env->event(netlink->master.env->ctx, &event);
 	netlink->told = true;
@@ -160,12 +164,13 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 		if (n > 0)
 			add_links(netlink, numbers, (unsigned)n);
 	}
+	netlink->answered |= n > 0;
 	if (netlink->count) {
 		netlink->told = false;
 		return 0;
 	}
 	w1_talk_close(&netlink->talk);
-	if (reason(n))
+	if (reason(netlink, n))
 		return serve_files(netlink, n);
 	snprintf(why, why_size, "netlink: %s", n < 0 ? strerror(-n) : "no such master any more");
 	return n < 0 ? n : -ENODEV;

@@ -241,6 +241,21 @@ static void test_files_serve_where_the_kernel_does_not_answer(void)
 	TEST_ASSERT_TRUE(nl_told(BUS_NOTE, "CONFIG_W1_CON"));
 }
 
+/* A kernel that has answered can: silence when the target is opened again is a passing fault. */
+static void test_a_kernel_that_has_answered_is_asked_again_by_netlink(void)
+{
+	nl_masters(1);
+	struct sim_slave *warm = nl_thermometer(0, 1, 21.0625);
+	nl_start();
+	nl_reads(warm, "temperature", "     21.0625");
+	bus_suspend(nl.bus, true);
+	w1_core.silent = 2;
+	bus_suspend(nl.bus, false);
+	host_run(&nl.host, nl.bus, nl.host.now + 60 * HOST_S);
+	TEST_ASSERT_FALSE(nl_told(BUS_NOTE, "served by files"));
+	nl_reads(warm, "temperature", "     21.0625");
+}
+
 static void test_without_a_master_the_target_is_down_until_one_comes(void)
 {
 	nl_masters(0);
@@ -289,6 +304,7 @@ int main(void)
 	RUN_TEST(test_files_serve_where_netlink_is_refused);
 	RUN_TEST(test_a_passing_fault_is_no_refusal);
 	RUN_TEST(test_files_serve_where_the_kernel_does_not_answer);
+	RUN_TEST(test_a_kernel_that_has_answered_is_asked_again_by_netlink);
 	RUN_TEST(test_without_a_master_the_target_is_down_until_one_comes);
 	RUN_TEST(test_a_target_is_followed_by_what_w1_takes);
 	return UNITY_END();
