@@ -247,7 +247,6 @@ static struct job *pick(struct native *native, int64_t now, int64_t *next)
 static void take_cost(struct native *native)
 {
 	struct link_master_cost shared = {0};
-	uint64_t wire_ns = 0;
 
 	for (unsigned i = 0; i < native->channels; i++) {
 		struct link_cost one = {0};
@@ -255,11 +254,14 @@ static void take_cost(struct native *native)
 
 		if (link->ops->cost)
 			link->ops->cost(link, &one);
-		wire_ns += one.wire_ns;
+		/* The master may open with fewer channels than before, or begin anew to count. */
+		native->wire_ns += one.wire_ns - (one.wire_ns < native->wire_seen_ns[i]
+		                                          ? 0 : native->wire_seen_ns[i]);
+		native->wire_seen_ns[i] = one.wire_ns;
 	}
 	if (native->master->ops->cost)
 		native->master->ops->cost(native->master, &shared);
-	__atomic_store_n(&native->count[COUNT_WIRE_US], wire_ns / 1000, __ATOMIC_RELAXED);
+	__atomic_store_n(&native->count[COUNT_WIRE_US], native->wire_ns / 1000, __ATOMIC_RELAXED);
 	__atomic_store_n(&native->count[COUNT_I2C_TRANSFERS], shared.transfers, __ATOMIC_RELAXED);
 	__atomic_store_n(&native->count[COUNT_SYSCALLS], shared.syscalls, __ATOMIC_RELAXED);
 }

@@ -10,7 +10,7 @@
 
 static struct host host;
 static struct bus *bus;
-static char file[] = "/tmp/owsd-test-XXXXXX";
+static char file[24];
 
 /* Gone after 20 s; when it is back, the first chip does not answer for a while. */
 static const char scenario[] = "chip DS2482-800 0x18\n"
@@ -24,8 +24,10 @@ static const char scenario[] = "chip DS2482-800 0x18\n"
 void setUp(void)
 {
 	char target[64];
-	int fd = mkstemp(file);
+	int fd;
 
+	strcpy(file, "/tmp/owsd-test-XXXXXX");
+	fd = mkstemp(file);
 	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, fd);
 	TEST_ASSERT_EQUAL_INT(sizeof(scenario) - 1, write(fd, scenario, sizeof(scenario) - 1));
 	close(fd);
@@ -37,6 +39,7 @@ void setUp(void)
 void tearDown(void)
 {
 	bus_destroy(bus);
+	bus = NULL;
 	unlink(file);
 }
 
@@ -79,9 +82,28 @@ static void test_a_late_chip_comes_back_without_the_other_going(void)
 	TEST_ASSERT_EQUAL_UINT(ups, host_events(&host, BUS_UP));
 }
 
+static void test_no_total_steps_back_while_a_chip_is_away(void)
+{
+	const struct bus_counter *counters;
+	uint64_t seen[64] = {0};
+	size_t n;
+
+	for (unsigned s = 0; s < 60; s++) {
+		host_run(&host, bus, host.now + HOST_S);
+		counters = bus_counters(bus, &n);
+		TEST_ASSERT_LESS_OR_EQUAL_size_t(64, n);
+		for (size_t i = 0; i < n; i++) {
+			TEST_ASSERT_GREATER_OR_EQUAL_UINT64_MESSAGE(
+				seen[i], bus_counted(&counters[i]), counters[i].name);
+			seen[i] = bus_counted(&counters[i]);
+		}
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
+	RUN_TEST(test_no_total_steps_back_while_a_chip_is_away);
 	RUN_TEST(test_a_late_chip_comes_back_without_the_other_going);
 	return UNITY_END();
 }
