@@ -78,6 +78,8 @@ CPP_COMMON += -DOWSD_LIBGPIOD=$(LIBGPIOD) $(LIBGPIOD_CFLAGS)
 LIBS     += $(LIBGPIOD_LIBS)
 endif
 
+comma    := ,
+
 # V=1 shows the commands, -s nothing
 V        ?= 0
 Q        := $(if $(filter 1,$(V)),,@)
@@ -112,6 +114,7 @@ MAN      := $(wildcard docs/*.[1-8])
 # Tests
 UNIT_SRC := $(wildcard tests/unit/test_*.c)
 UNIT_AID := $(filter-out $(UNIT_SRC),$(wildcard tests/unit/*.c))
+ENDURANCE := $(wildcard tests/endurance/*.c)
 BENCH    := $(wildcard tests/bench/bench_*.c)
 BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/plant.c tests/unit/plant_net.c
 # ---------------------------------------------------------------------------------------------
@@ -120,7 +123,7 @@ CORE     := $(SIGNAL) $(CONFIG) $(BOARD) $(SHM) $(ENGINE) $(SERVE) $(HAL) $(LIBO
             $(filter-out src/owsctl/owsctl.c,$(OWSCTL))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
 pic       = $(patsubst %.c,$(B)/pic/%.o,$(1))
-UNIT     := $(patsubst tests/unit/%.c,$(B)/unit/%,$(UNIT_SRC))
+UNIT     := $(patsubst tests/unit/%.c,$(B)/unit/%,$(UNIT_SRC)) $(B)/unit/test_endurance
 BENCHES  := $(patsubst tests/bench/%.c,$(B)/bench/%,$(BENCH))
 SAMPLES  := $(patsubst docs/examples/%.c,$(B)/examples/%,$(filter %.c,$(EXAMPLES))) \
             $(patsubst docs/examples/%.cpp,$(B)/examples/%,$(filter %.cpp,$(EXAMPLES)))
@@ -237,7 +240,22 @@ $(B)/unit/%.o: tests/unit/%.c $(UNITY)/unity.h
 	$(call show,CC)
 	$(Q)$(CC) $(ALL_CFLAGS) $(UNITY_FLAGS) -Itests/unit -MMD -MP -c -o $@ $<
 
-$(UNIT): %: %.o $(B)/unit/unity.o $(patsubst tests/unit/%.c,$(B)/unit/%.o,$(UNIT_AID)) $(B)/core.a
+$(filter-out %/test_endurance,$(UNIT)): %: %.o $(B)/unit/unity.o \
+    $(patsubst tests/unit/%.c,$(B)/unit/%.o,$(UNIT_AID)) $(B)/core.a
+	$(call show,LD)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+
+$(B)/unit/endurance/%.o: tests/endurance/%.c $(UNITY)/unity.h
+	@mkdir -p $(@D)
+	$(call show,CC)
+	$(Q)$(CC) $(ALL_CFLAGS) $(UNITY_FLAGS) -Itests/endurance -MMD -MP -c -o $@ $<
+
+# What the engine's thread allocates is counted, and the kernel's files are answered by the test
+ENDURANCE_WRAPS := malloc calloc realloc aligned_alloc strdup free open open64 read __read_chk write \
+                   close
+$(B)/unit/test_endurance: ALL_LDFLAGS += $(patsubst %,-Wl$(comma)--wrap=%,$(ENDURANCE_WRAPS))
+$(B)/unit/test_endurance: $(patsubst tests/endurance/%.c,$(B)/unit/endurance/%.o,$(ENDURANCE)) \
+    $(B)/unit/unity.o $(patsubst tests/unit/%.c,$(B)/unit/%.o,$(UNIT_AID)) $(B)/core.a
 	$(call show,LD)
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
 
@@ -248,9 +266,9 @@ unit: export RUNNER := $(RUNNER)
 unit: all $(UNIT) replays
 	@sh tests/unit/run $(UNIT) $(REPLAYS)
 
-# A week of faults in virtual time: HOURS=168 SEED=1
-soak: all $(B)/unit/test_week
-	@$(B)/unit/test_week $(or $(HOURS),168) $(SEED)
+# A month of faults in virtual time on every backend: HOURS=720 SEED=1, WORLD=native for one
+soak: all $(B)/unit/test_endurance
+	@$(B)/unit/test_endurance $(or $(HOURS),720) $(or $(SEED),1) $(WORLD)
 
 # --- System tests, benches and the main job ---------------------------------------------------
 # Programs that system tests command
