@@ -343,9 +343,11 @@ for _page in PAGES + MANUALS:
 def test_manual_pages_are_well_formed(_scene):
     if not shutil.which("mandoc"):
         owsdtest.skip("mandoc is not installed")
-    done = subprocess.run(["mandoc", "-T", "lint", "-W", "error", *map(str, MANUALS)],
+    done = subprocess.run(["mandoc", "-T", "lint", "-W", "warning", *map(str, MANUALS)],
                           capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
+    # Pages have no date: what they describe has a version
+    faults = [f for f in (done.stdout + done.stderr).splitlines() if "missing date" not in f]
+    assert not faults, faults
 
 
 def test_every_page_can_be_reached_from_the_readme(_scene):
