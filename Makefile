@@ -6,6 +6,7 @@
 #                                 owserver: on the genuine one, with simulated devices if need be
 #   make test                     unit and system tests (sets up what they need)
 #   make all unit soak system bench install uninstall clean
+#   make bench-page               make bench and bench-kernel into docs/performance.md, with plots
 #   make clang sanitize m32       the slower checks
 #   make fuzz                     libFuzzer on what comes from outside; FUZZ=rio one of its targets,
 #                                 FUZZ_SECONDS=60 for each
@@ -317,6 +318,12 @@ bench:
 	@sh board/install-deps build bench
 	@$(MAKE) --no-print-directory benches
 	@for b in $(BENCHES); do $$b || exit 1; done
+
+# make bench three times and make bench-kernel, to docs/performance.md; PAGE=--saved writes it anew
+bench-page:
+	@sh board/install-deps build bench kernel
+	@$(MAKE) --no-print-directory benches kernel-programs
+	@CC='$(CC)' python3 tests/bench/page --build $(B) $(PAGE)
 
 include tests/kernel/kernel.mk
 include tests/fuzz/fuzz.mk

@@ -70,6 +70,20 @@ double bench_percentile(double *values, size_t n, double p)
 	return values[at];
 }
 
+void bench_distribution(const char *name, double *values, size_t n, const char *unit)
+{
+	static const double points[] = { 0, 1, 10, 25, 50, 75, 90, 99, 99.9, 99.99, 100 };
+	char line[96];
+
+	for (size_t i = 0; i < sizeof(points) / sizeof(points[0]); i++) {
+		/* beyond 1 / n a percentile is the largest value only */
+		if (points[i] < 100 && (100 - points[i]) / 100 * (double)n < 1)
+			continue;
+		snprintf(line, sizeof(line), "%s.p%g", name, points[i]);
+		bench_line(line, bench_percentile(values, n, points[i]), unit);
+	}
+}
+
 int64_t bench_cpu_ns(pid_t pid)
 {
 	unsigned long user, system;

@@ -21,6 +21,8 @@ void bench_line(const char *name, double value, const char *unit);
 void bench_note(const char *text);
 /* The p-th percentile (50: the median); sorts. */
 double bench_percentile(double *values, size_t n, double p);
+/* "name.p99 value unit" and so on, from the least (p0) to the largest (p100). */
+void bench_distribution(const char *name, double *values, size_t n, const char *unit);
 /* CPU time a process has used, ns (user and system, by the kernel's ticks). */
 int64_t bench_cpu_ns(pid_t pid);
 

@@ -157,10 +157,8 @@ static void measure(const char *name, double alarm_period)
 		ms[i] = (double)(change.seen - change.at) / 1e6;
 	}
 	plant_end(&plant);
-	snprintf(line, sizeof(line), "input_latency.%s.p50", name);
-	bench_line(line, bench_percentile(ms, CHANGES, 50), "ms");
-	snprintf(line, sizeof(line), "input_latency.%s.p99", name);
-	bench_line(line, bench_percentile(ms, CHANGES, 99), "ms");
+	snprintf(line, sizeof(line), "input_latency.%s", name);
+	bench_distribution(line, ms, CHANGES, "ms");
 }
 
 int main(void)

@@ -224,7 +224,8 @@ int main(void)
 {
 	static const struct {
 		unsigned thermometers, channels;
-	} nets[] = { { 1, 1 }, { 10, 1 }, { 50, 1 }, { 100, 1 }, { 80, 8 } };
+	} nets[] = { { 1, 1 }, { 2, 1 }, { 5, 1 }, { 10, 1 }, { 20, 1 }, { 50, 1 }, { 100, 1 },
+		     { 80, 8 } };
 	static const char *const combines[] = { "any", "one-read" };
 	static const int speeds[] = { 400, 100 };
 

@@ -125,7 +125,7 @@ int main(int argc, char **argv)
 	}
 	if (done == SETS) {
 		bench_line("set_to_wire", bench_percentile(us, SETS, 50), "us");
-		bench_line("set_to_wire.p99", bench_percentile(us, SETS, 99), "us");
+		bench_distribution("set_to_wire", us, SETS, "us");
 	} else {
 		fprintf(stderr, "set_to_wire: only %d of %d sets arrived\n", done, SETS);
 	}

@@ -85,6 +85,26 @@ static double median_get_ns(struct ows *h)
 	return bench_percentile(per_get, BATCHES, 50);
 }
 
+/* One by one, the reading of the clock included; beside it the clock alone. */
+static void distribution(struct ows *h, bool get, const char *name)
+{
+	enum { GETS = 500000 };
+	static double ns[GETS];
+	int id = ows_find(h, "room");
+	struct ows_value v;
+	volatile double sum = 0;
+	int64_t stamp = ows_now();
+
+	for (int i = 0; i < GETS; i++) {
+		int64_t begin = bench_now();
+
+		if (get && ows_get(h, id, stamp, &v) == 0)
+			sum = sum + v.number;
+		ns[i] = (double)(bench_now() - begin);
+	}
+	bench_distribution(name, ns, GETS, "ns");
+}
+
 static double median_read_ns(void)
 {
 	enum { READS = 4000 };
@@ -107,6 +127,7 @@ static double median_read_ns(void)
 	}
 	close(fd);
 	bench_peer_end(&peer);
+	bench_distribution("shm_get.owserver_read", ns, READS, "ns");
 	return bench_percentile(ns, READS, 50);
 }
 
@@ -127,6 +148,8 @@ int main(void)
 	bench_pin(0);
 	pthread_create(&writer, NULL, write_all_the_time, NULL);
 	get = median_get_ns(h);
+	distribution(h, true, "shm_get.single");
+	distribution(h, false, "shm_get.clock");
 	__atomic_store_n(&stop, 1, __ATOMIC_RELAXED);
 	pthread_join(writer, NULL);
 	ows_close(h);

@@ -8,7 +8,8 @@
  *   busdump TARGET read          the paths on standard input
  *   busdump TARGET write         "PATH VALUE" lines on standard input; \xNN is a byte of VALUE
  *   busdump TARGET rounds PATH...   for each line on standard input all paths at once (100 at a time),
- *                                   as the engine asks for what is due; then a line "round"
+ *                                   as the engine asks for what is due; then a line "round". A line
+ *                                   that is a number asks for the first so many
  */
 #include <poll.h>
 #include <stdio.h>
@@ -177,8 +178,10 @@ static void rounds(char **paths, int n)
 	char line[16];
 
 	while (n > 0 && fgets(line, sizeof(line), stdin)) {
-		for (int i = 0; i < n; i += ROUND_MAX)
-			one_round(paths + i, n - i < ROUND_MAX ? n - i : ROUND_MAX);
+		int few = atoi(line), count = few > 0 && few < n ? few : n;
+
+		for (int i = 0; i < count; i += ROUND_MAX)
+			one_round(paths + i, count - i < ROUND_MAX ? count - i : ROUND_MAX);
 		puts("round");
 		fflush(stdout);
 	}

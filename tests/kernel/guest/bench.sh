@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-# The same 50 thermometers, all of them read anew, by every way there is: seconds, I2C transactions
+# Of 50 thermometers the first 1 to 50 read anew, by every way there is: seconds, I2C transactions
 # and bytes, and the time that the model's 1-Wire slots took. The temperatures change before each
 # row, so that no old value passes.
 . /rig/lib.sh
 
 SENSORS=50
+COUNTS='1 2 5 10 20 50'
 FEW=10
 PORT=4304
 W1=/sys/bus/w1/devices
@@ -27,14 +28,14 @@ awk -v n=$SENSORS 'BEGIN {
 	done </tmp/sensors
 } >/rig/bench.sim
 
-# Other temperatures than before, in steps that 12 bits resolve
+# COUNT: other temperatures than before for so many, in steps that 12 bits resolve
 change() {
 	rows=$((rows + 1))
-	while read -r number id _; do
-		value=$(awk -v i=$number -v r=$rows 'BEGIN { printf "%g", i / 2 + r + 0.0625 }')
+	head -n $1 /tmp/sensors | awk -v r=$rows '{ print $1, $2, $1 / 2 + r + 0.0625 }' >/tmp/changed
+	while read -r number id value; do
 		sim set t$number temperature $value
-		echo $id $value
-	done </tmp/sensors >/tmp/want
+	done </tmp/changed
+	cut -d ' ' -f 2- /tmp/changed >/tmp/want
 }
 
 uptime_s() {
@@ -76,8 +77,9 @@ paths() {
 }
 
 # --- owsd; waiting for its answers takes none of the guest's one processor
+# COUNT
 one_round() {
-	echo next >&3
+	echo $1 >&3
 	awk '/^round$/ { exit } { print }' <&4 | values
 }
 
@@ -88,12 +90,12 @@ by_owsd() {
 	local busdump=$!
 	exec 3>/tmp/next
 	sleep 4
-	change
-	row "owsd direct, the first scan of all" $SENSORS one_round
-	change
-	row "owsd direct" $SENSORS one_round
-	change
-	row "owsd direct, once more" $SENSORS one_round
+	change $SENSORS
+	row "owsd direct, the first scan of all" $SENSORS one_round $SENSORS
+	for count in $COUNTS; do
+		change $count
+		row "owsd direct" $count one_round $count
+	done
 	exec 3>&- 4>&-
 	wait $busdump
 }
@@ -107,20 +109,23 @@ uncached() {
 	paths temperature12 | head -n $FEW | owdump $PORT read | values
 }
 
+# COUNT
 simultaneous() {
 	echo "/simultaneous/temperature 1" | owdump $PORT write >/dev/null
 	usleep 800000
-	paths latesttemp | owdump $PORT read | values
+	paths latesttemp | head -n $1 | owdump $PORT read | values
 }
 
 by_owserver() {
 	owserver --i2c=/dev/i2c-0:ALL -p 127.0.0.1:$PORT --foreground >/tmp/log/owserver 2>&1 &
 	local server=$!
 	within 30 answers
-	change
+	change $FEW
 	row "owserver, /uncached temperature12" $FEW uncached
-	change
-	row "owserver, /simultaneous, 0.8 s, /uncached latesttemp" $SENSORS simultaneous
+	for count in $COUNTS; do
+		change $count
+		row "owserver, /simultaneous, 0.8 s, /uncached latesttemp" $count simultaneous $count
+	done
 	kill $server
 	wait $server 2>/dev/null
 }
@@ -130,21 +135,30 @@ all_found() {
 	[ "$(ls $W1 | grep -c '^28-')" = $SENSORS ]
 }
 
+# COUNT
 temperatures() {
-	cat $(awk -v w1=$W1 '{ print w1 "/" $3 "/temperature" }' /tmp/sensors) | paste /tmp/sensors - |
+	head -n $1 /tmp/sensors >/tmp/first
+	cat $(awk -v w1=$W1 '{ print w1 "/" $3 "/temperature" }' /tmp/first) | paste /tmp/first - |
 		awk '{ printf "%s %g\n", $2, sprintf("%.4f", $4 / 1000) }' >/tmp/have
+}
+
+# COUNT; it gives thousandths, cut off
+change_for_kernel() {
+	change $1
+	sed -i 's/\.\([0-9]\{3\}\)[0-9]*$/.\1/' /tmp/want
 }
 
 bulk_done() {
 	[ "$(cat $W1/w1_bus_master1/therm_bulk_read)" = 1 ]
 }
 
+# COUNT
 bulk() {
 	echo trigger >$W1/w1_bus_master1/therm_bulk_read
 	until bulk_done; do
 		usleep 20000
 	done
-	temperatures
+	temperatures $1
 }
 
 by_kernel() {
@@ -155,13 +169,14 @@ by_kernel() {
 	within 60 all_found
 	echo 0 >$W1/w1_bus_master1/w1_master_search
 	sleep 2
-	change
-	# It gives thousandths, cut off
-	sed -i 's/\.\([0-9]\{3\}\)[0-9]*$/.\1/' /tmp/want
-	row "kernel w1, therm_bulk_read, then each temperature" $SENSORS bulk
-	change
-	sed -i 's/\.\([0-9]\{3\}\)[0-9]*$/.\1/' /tmp/want
-	row "kernel w1, one by one" $SENSORS temperatures
+	for count in $COUNTS; do
+		change_for_kernel $count
+		row "kernel w1, therm_bulk_read, then each temperature" $count bulk $count
+	done
+	for count in $COUNTS; do
+		change_for_kernel $count
+		row "kernel w1, one by one" $count temperatures $count
+	done
 }
 
 plug bench.sim

@@ -1,0 +1,138 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""tests/bench/page: figures that were saved become tables and plots, and the prose stays."""
+
+import json
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+
+import owsdtest
+from owsdtest import SOURCE
+
+PAGE = SOURCE / "docs/performance.md"
+POINTS = (0, 1, 10, 25, 50, 75, 90, 99, 100)
+
+
+def some_output():
+    """What the benches print, with made-up figures."""
+    lines = ["# a note", "shm_get 9.00 ns", "set_to_wire 142 us", "owserver_reads 17400 reads/s",
+             "owserver_reads.cpu 10.40 us/read", "owserver_reads.bare_socket 18000 reads/s",
+             "owserver_reads.bare_socket.cpu 9.60 us/read", "rss 3024 KiB", "rss.owserver 5152 KiB",
+             "text_size 535 KiB", "cpu_idle 0.57 %", "cpu_idle.owserver 0.46 %", "limit.cache 1.40 ns",
+             "limit.memory 120 ns", "limit.wake 30.00 us", "shm_get.owserver_read 70000 ns",
+             "limit.loopback.pinned 73000 1/s", "limit.loopback.apart 20000 1/s",
+             "served_rss.64_clients 3432 KiB", "served_rss.64_clients.owserver 6564 KiB",
+             "served_late_periods 0.00 periods", "served_periods 900 periods"]
+    lines += [f"engine_step.{n} {n / 10 + 300:.0f} ns" for n in (10, 100, 1000, 10000)]
+    for name in ("shm_get.single", "shm_get.clock", "shm_get.owserver_read", "set_to_wire",
+                 "input_latency.alarm4", "input_latency.alarm10", "input_latency.cyclic"):
+        lines += [f"{name}.p{p} {10 + p:.2f} ns" for p in POINTS]
+    for net in (1, 2, 5, 10, 20, 50, 100, "80on8"):
+        for case in ("400kHz", "400kHz.one-read", "100kHz", "100kHz.one-read"):
+            lines += [f"scan.{net}.{case}.seconds 1.20 s", f"scan.{net}.{case}.over_limit 1.05 ratio",
+                      f"scan.{net}.{case}.transfers 3.00 per", f"scan.{net}.{case}.syscalls 3.00 per"]
+    for where in ("pinned", "apart"):
+        for n in (1, 16, 64):
+            for who in ("", ".owserver"):
+                lines += [f"served_reads.{where}.{n}{who} {1000 if who else 4000} 1/s",
+                          f"served_p50.{where}.{n}{who} 50.00 us", f"served_p99.{where}.{n}{who} 99.00 us"]
+    return "\n".join(lines)
+
+
+def some_rig():
+    rows = [f"# | {way:54} | {n:7} | {1 + n / 10:6.2f} | {n * 60:12} | {n * 200:9} | {n * 12:7} | {n:6} |"
+            for way in ("owsd direct, the first scan of all", "owsd direct",
+                        "owserver, /simultaneous, 0.8 s, /uncached latesttemp",
+                        "kernel w1, therm_bulk_read, then each temperature", "kernel w1, one by one")
+            for n in (1, 2, 5, 10, 20, 50)]
+    return "\n".join(["ok - something", "# | way | sensors |", *rows, "6 passed, 0 failed"])
+
+
+def saved(scene, load=0.1, kernel=True):
+    """A copy of the page and what it is written from."""
+    figures = scene.path / "bench-page"
+    figures.mkdir()
+    (figures / "made_up.1.txt").write_text(some_output())
+    if kernel:
+        (figures / "kernel.txt").write_text(some_rig())
+    (figures / "machine.json").write_text(json.dumps({
+        "commit": "abc1234", "cpu": "Some CPU", "cores": 2, "virtual": True, "kernel": "6.1",
+        "compiler": ["gcc 12"], "owserver": "3.2", "load": load, "runs": 3}))
+    (scene.path / "docs/img").mkdir(parents=True)
+    return shutil.copy(PAGE, scene.path / "docs/performance.md")
+
+
+def written(scene, page):
+    done = subprocess.run([sys.executable, SOURCE / "tests/bench/page", "--saved", "--build", scene.path,
+                           "--page", page], capture_output=True, text=True, timeout=60)
+    return done.returncode, done.stdout + done.stderr, page.read_text()
+
+
+def prose(text):
+    """What stands outside the marks, which nobody but a writer changes."""
+    kept, inside = [], False
+    for line in text.splitlines():
+        inside = inside and line != "<!-- end of figures -->"
+        if not inside:
+            kept.append(line)
+        inside = inside or line.startswith("<!-- figures ")
+    return kept
+
+
+def test_saved_figures_become_tables_and_the_prose_is_kept(scene):
+    page = saved(scene)
+    before = page.read_text()
+    status, said, after = written(scene, page)
+    assert status == 0, said
+    assert prose(after) == prose(before)
+    assert "Commit abc1234; Some CPU (virtual machine), 2 cores" in after
+    assert "| `rss`: resident with 100 signals | 3 024 KiB | 3 024 KiB | 3 024 KiB | owserver 5 152 KiB |  | 2 MiB: **missed** |" in after
+    assert "10 ns and 3 000 times: met" in after
+    assert "| 1, pinned | 4 000/s | 50.0, 99.0 us | 1 000/s | 50.0, 99.0 us | 4.0 | 73 000/s |" in after
+    assert "| owsd direct | 50 | 6.00 | 3000 | 10000 | 600 | 50 | 1.34 |" in after
+    assert "not quiet" not in after
+    again, _, same = written(scene, page)
+    assert again == 0 and same == after
+
+
+def test_plots_are_small_and_are_for_light_and_dark(scene):
+    status, said, _ = written(scene, saved(scene))
+    assert status == 0, said
+    files = sorted((scene.path / "docs/img").glob("*.svg"))
+    assert [f.name for f in files] == ["change.svg", "latency.svg", "scan.svg"]
+    for file in files:
+        assert file.stat().st_size < 60000, file
+        root = ET.parse(file).getroot()
+        lines = root.findall(".//{http://www.w3.org/2000/svg}polyline")
+        assert 3 <= len(lines) <= 6, f"{file.name}: {len(lines)} lines"
+        for line in lines:
+            for point in line.get("points").split():
+                x, y = map(float, point.split(","))
+                assert 0 < x < 760 and 0 < y < 380, f"{file.name}: {point}"
+        assert "prefers-color-scheme:dark" in file.read_text()
+
+
+def test_what_was_not_measured_stays_as_it_was_and_is_said(scene):
+    page = saved(scene, kernel=False)
+    before = page.read_text()
+    status, said, after = written(scene, page)
+    assert status == 1
+    assert "rig: owsd direct (make bench-kernel) was not measured" in said, said
+
+    def rig(text):
+        begun = text.index("<!-- figures rig -->")
+        return text[begun:text.index("<!-- end of figures -->", begun)]
+
+    assert rig(after) == rig(before)
+    assert "img/scan.svg" not in after and "img/latency.svg" in after
+
+
+def test_a_busy_machine_is_told_on_the_page(scene):
+    _, _, after = written(scene, saved(scene, load=7.5))
+    assert "**The machine was not quiet (load 7.5)" in after
+
+
+if __name__ == "__main__":
+    owsdtest.main()
