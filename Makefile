@@ -20,6 +20,7 @@
 #   make test-service             the service under systemd in QEMU, with the packages of make deb
 #   make test-gpio                GPIO lines of an arm64 guest, with libgpiod 1.6 and 2.x;
 #                                 test-gpio-pi the same of a Raspberry Pi 3
+#   make test-image               an image for a Raspberry Pi, booted in QEMU; CASES=main for half of it
 
 VERSION  := 0.9.0
 SOMAJOR  := 0
@@ -326,6 +327,7 @@ bench-page:
 	@CC='$(CC)' python3 tests/bench/page --build $(B) $(PAGE)
 
 include tests/kernel/kernel.mk
+include tests/image/image.mk
 include tests/fuzz/fuzz.mk
 
 # --- Slower checks ----------------------------------------------------------------------------

@@ -117,22 +117,23 @@ class Arm64(Machine):
     install = "board/install-deps arm64"
     modules = Machine.modules + ["gpio-sim"]
     meta = "linux-image-arm64"
+    suite = "-"  # of this machine
     # libc6-arm64-cross
     sysroot = "/usr/aarch64-linux-gnu/lib"
 
     def kernel_package(self, cache):
-        folder = os.path.join(cache, "arm64")
+        folder = os.path.join(cache, "arm64" if self.suite == "-" else f"arm64-{self.suite}")
         os.makedirs(folder, exist_ok=True)
         metas = [name for name in os.listdir(folder) if name.startswith(self.meta + "_")]
         if not metas:
-            output(FETCH, "-", "arm64", folder, self.meta)
+            output(FETCH, self.suite, "arm64", folder, self.meta)
             metas = [name for name in os.listdir(folder) if name.startswith(self.meta + "_")]
         depends = output("dpkg-deb", "-f", os.path.join(folder, sorted(metas)[-1]), "Depends")
         found = re.search(r"(linux-image-\S+) \(= (\S+)\)", depends)
         return found[1], found[2]
 
     def fetch_kernel(self, package, version, folder):
-        output(FETCH, "-", "arm64", folder, package)
+        output(FETCH, self.suite, "arm64", folder, package)
 
     def unpack_kernel(self, vmlinuz, target):
         shutil.copyfile(vmlinuz, target)

@@ -29,7 +29,7 @@ HARDWARE = re.compile(r"^(i2c:(auto|/dev/i2c-\d(:0x[0-9a-f]{2}(\.\d)?)?)|w1(:.*)
 OURS = set(re.findall(r"^Package: (\S+)$", (SOURCE / "board/debian/control").read_text(), re.M))
 DEBIAN = {"owserver", "ow-shell", "libgpiod-dev", "i2c-tools", "linuxcnc-uspace",
           "linuxcnc-uspace-dev"} | OURS
-UNIT = r"(owsd(@\w+)?|owserver(\.socket|\.service)?)"
+UNIT = r"(owsd(-firstboot|@\w+)?|owserver(\.socket|\.service)?)"
 GROUPS = "(i2c|gpio|owsd|owsd-control)"
 
 # What may be said to programs that are not run: the whole of their arguments

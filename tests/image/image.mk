@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: MIT
+# An image made with pi-gen's stage, in QEMU: two boots for each of the CASES, main and faults.
+# IMAGE_TIME bounds a boot, in seconds; OR_SKIP=1 counts as skipped what cannot run here.
+
+.PHONY: test-image
+
+IMAGE_SIMCHIP := build/image/programs/kernel/simchip
+IMAGE_TIME ?= 900
+
+test-image: CASES ?= main faults
+test-image:
+	@sh board/install-deps build arm64 image $(if $(OR_SKIP),|| true)
+	@$(MAKE) --no-print-directory B=build/image/programs AR=aarch64-linux-gnu-ar LIBI2C=0 LIBGPIOD=0 \
+	    CC='$(if $(filter ccache,$(CC)),ccache )$(ARM64_CC)' $(IMAGE_SIMCHIP) $(if $(OR_SKIP),|| true)
+	@python3 tests/image/boot --time $(IMAGE_TIME) $(if $(OR_SKIP),--or-skip) --debs build/deb \
+	    --build build/image --program $(IMAGE_SIMCHIP) --cc '$(ARM64_CC)' $(CASES)
