@@ -42,6 +42,7 @@ static void take_machine(struct alarm_machine *m, const struct alarm_machine *be
 {
 	m->cycle = before->cycle;
 	m->polls = before->polls;
+	m->told = before->told;
 	m->list_ns = before->list_ns;
 	m->wait_ns = before->wait_ns;
 	m->strangers = before->strangers;

@@ -63,6 +63,7 @@ struct alarm_machine {
 	uint32_t cycle;
 	unsigned in_a_row;     /* nCons */
 	bool polls;            /* the bus has no alarm search */
+	bool told;             /* the log knows */
 	bool in_work;          /* a request of the machine is with the bus */
 	bool passed;           /* since BYPASS was entered */
 	int64_t bypass_ns;     /* when it ends at the latest; 0: just entered */
@@ -123,6 +124,8 @@ void alarm_passed(struct alarm_machine *m);
 int64_t alarm_wake(const struct alarm_machine *m);
 /* The target was lost: from the beginning when it is back. */
 void alarm_restart(struct alarm_machine *m);
+/* The target is back, and may be another or have another driver: has it an alarm search now? */
+void alarm_ask_again(struct alarm_machine *m, struct lane *lane, int64_t now_ns);
 /* A device came back: its SetAlarm is compared again. */
 void alarm_rearm(struct alarm_machine *m, uint32_t device);
 

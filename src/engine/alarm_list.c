@@ -74,9 +74,10 @@ void alarm_list_failed(struct alarm_machine *m, struct lane *lane, int err, int6
 	struct engine *e = lane->engine;
 
 	if (err == -EOPNOTSUPP) {
-		log_notice(e->log, "%s: no alarm search: alarm items are read as ordinary inputs",
-		           lane->port->target);
-		m->polls = true;
+		log_at(e->log, m->told ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,
+		       "%s: no alarm search: alarm items are read as ordinary inputs",
+		       lane->port->target);
+		m->polls = m->told = true;
 		m->state = NOT_USED;
 		engine_alarm_polls(e, m);
 		return;
@@ -86,4 +87,20 @@ void alarm_list_failed(struct alarm_machine *m, struct lane *lane, int err, int6
 		m->wait_ns = LIST_WAIT_MAX;
 	m->list_ns = now_ns + m->wait_ns;
 	m->position = -1;
+}
+
+void alarm_ask_again(struct alarm_machine *m, struct lane *lane, int64_t now_ns)
+{
+	if (!m->polls)
+		return;
+	m->polls = false;
+	m->list_ns = now_ns;
+	if (m->count)
+		m->state = alarm_next(NOT_USED, FACT_ITEMS)->next;
+	for (uint32_t k = 0; k < m->count; k++) {
+		struct signal *s = alarm_signal(lane->engine, m->items[k]);
+
+		s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_POLLED;
+		engine_publish(lane->engine, s);
+	}
 }

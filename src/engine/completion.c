@@ -274,7 +274,7 @@ void engine_lane_down(struct engine *e, struct lane *lane, int err, int64_t now_
 
 void engine_lane_up(struct engine *e, struct lane *lane, int64_t now_ns)
 {
-	(void)now_ns;
+	alarm_ask_again(&lane->alarm, lane, now_ns);
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 

@@ -400,6 +400,33 @@ static void test_a_bus_without_alarm_search_has_its_items_read_as_inputs(void)
 	TEST_ASSERT_GREATER_THAN(8, scene_sample(&s, 1).count);
 }
 
+/* Once for each time that it comes back: it may be another one, or have another driver. */
+static void test_a_bus_without_alarm_search_is_asked_again_when_it_comes_back(void)
+{
+	figure_3_3();
+	scene_put(&s, D "/sensed.BYTE", "255", 0);
+	scene_put(&s, D "/set_alarm", "133333333", 0);
+	scene_start(&s);
+	scene_up(&s);
+	scene_run(&s, SCENE_S);
+	scene_down(&s, -ECONNRESET);
+	scene_up(&s);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(2, s.lists);
+	TEST_ASSERT_BITS_HIGH(OWS_ATTR_ALARM_POLLED, scene_attrs(&s, 1).flags);
+	scene_down(&s, -ECONNRESET);
+	device("0", "0");
+	judge_alarm();
+	scene_up(&s);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_GREATER_THAN_UINT(10, s.lists);
+	TEST_ASSERT_BITS_LOW(OWS_ATTR_ALARM_POLLED, scene_attrs(&s, 1).flags);
+	device("1", "0");
+	judge_alarm();
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_attrs(&s, 1).alarms);
+}
+
 static void test_a_bus_that_searches_is_asked_for_the_families_of_the_items_only(void)
 {
 	s.bus[0].searches = s.trace_lists = true;
@@ -670,6 +697,7 @@ int main(void)
 	RUN_TEST(test_the_engine_sleeps_while_a_write_holds_the_alarms_up);
 	RUN_TEST(test_a_storm_of_alarms_starves_neither_reads_nor_writes);
 	RUN_TEST(test_a_bus_without_alarm_search_has_its_items_read_as_inputs);
+	RUN_TEST(test_a_bus_without_alarm_search_is_asked_again_when_it_comes_back);
 	RUN_TEST(test_a_bus_that_searches_is_asked_for_the_families_of_the_items_only);
 	RUN_TEST(test_a_list_that_fails_is_asked_for_ever_more_rarely);
 	RUN_TEST(test_a_device_that_fails_is_left_for_the_next_alarm);
