@@ -8,6 +8,12 @@ int buses_number(struct buses *buses, unsigned target, unsigned number)
 	for (unsigned i = 0; i < buses->count; i++)
 		if (buses->bus[i].target == target && buses->bus[i].number == number)
 			return (int)i;
+	for (unsigned i = 0; buses->count == BUSES_MAX && i < BUSES_MAX; i++)
+		if (buses->bus[i].target == BUSES_NO_TARGET) {
+			buses->bus[i].target = (uint8_t)target;
+			buses->bus[i].number = (uint16_t)number;
+			return (int)i;
+		}
 	if (buses->count == BUSES_MAX)
 		return -1;
 	buses->bus[buses->count].target = (uint8_t)target;

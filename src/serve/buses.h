@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * /bus.N over several targets: each bus of each target has one number for the life of owsd, in the
- * order of the targets as far as they are up when clients first ask.
+ * order of the targets as far as they are up when clients first ask. When all numbers are given,
+ * those of targets that a reload took away are given again, the lowest first.
  */
 #ifndef SERVE_BUSES_H
 #define SERVE_BUSES_H
@@ -20,7 +21,7 @@ struct buses {
 	} bus[BUSES_MAX];
 };
 
-/* The number of a target's bus, given now if need be; -1: there are too many. */
+/* The number of a target's bus, given now if need be; -1: all are those of targets that are there. */
 int buses_number(struct buses *buses, unsigned target, unsigned number);
 /* After a reload: target i is what ports[i] was, -1 a new one. Numbers stay, also of those that went. */
 void buses_renumber(struct buses *buses, const int *ports, unsigned count);

@@ -75,6 +75,12 @@ static void test_buses_keep_their_numbers(void)
 	for (unsigned i = 2; i < BUSES_MAX; i++)
 		TEST_ASSERT_EQUAL_INT(i, buses_number(&buses, 0, i));
 	TEST_ASSERT_EQUAL_INT(-1, buses_number(&buses, 2, 0));
+	/* the second target goes, and its number with it: there is room for another */
+	buses_renumber(&buses, (const int[]){ 0 }, 1);
+	TEST_ASSERT_EQUAL_INT(1, buses_number(&buses, 0, 0));
+	TEST_ASSERT_EQUAL_INT(0, buses_number(&buses, 2, 0));
+	TEST_ASSERT_EQUAL_INT(0, buses_number(&buses, 2, 0));
+	TEST_ASSERT_EQUAL_INT(-1, buses_number(&buses, 2, 1));
 	TEST_ASSERT_EQUAL_INT(12, buses_parse("bus.12", 6));
 	TEST_ASSERT_EQUAL_INT(-1, buses_parse("bus.1x", 6));
 	TEST_ASSERT_EQUAL_INT(-1, buses_parse("bus.", 4));
