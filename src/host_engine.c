@@ -93,18 +93,13 @@ static void publish_counters(struct host *h)
 {
 	struct image *image = &h->now->memory.image;
 	uint32_t index = h->now->own_counters;
-	uint64_t stalls = 0, dropped = 0;
 
 	serving_publish(h->now);
-	for (unsigned i = 0; i < h->now->worker_count; i++) {
-		stalls += worker_stalls(h->now->workers[i]);
-		dropped += worker_dropped(h->now->workers[i]);
-	}
 	image_counter(image, index + COUNTER_LOG_DROPPED, log_dropped(h->log));
 	image_counter(image, index + COUNTER_IDLE_RINGS, h->idle_rings);
 	image_counter(image, index + COUNTER_MENDED, h->mended);
-	image_counter(image, index + COUNTER_WORKER_STALLS, stalls);
-	image_counter(image, index + COUNTER_DROPPED_EVENTS, dropped);
+	image_counter(image, index + COUNTER_WORKER_STALLS, serving_stalls(h->now));
+	image_counter(image, index + COUNTER_DROPPED_EVENTS, serving_dropped(h->now));
 	image_counter(image, index + COUNTER_UNMENDED,
 	              __atomic_load_n(&h->unmended, __ATOMIC_RELAXED));
 	if (h->serve)
@@ -132,6 +127,7 @@ static void take_next(struct host *h, int64_t now_ns)
 
 	if (next) {
 		engine_adopt(next->engine, h->now->engine, h->plan, now_ns);
+		serving_keep_counts(next, h->now, h->plan->ports);
 		__atomic_store_n(&h->bell, commands_bell(next->commands), __ATOMIC_SEQ_CST);
 		__atomic_store_n(&h->now, next, __ATOMIC_RELEASE);
 		__atomic_store_n(&h->next, NULL, __ATOMIC_RELEASE);

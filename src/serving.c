@@ -180,6 +180,40 @@ void serving_publish(struct serving *s)
 	}
 }
 
+uint64_t serving_stalls(const struct serving *s)
+{
+	uint64_t n = s->stalls_before;
+
+	for (unsigned i = 0; i < s->worker_count; i++)
+		n += worker_stalls(s->workers[i]);
+	return n;
+}
+
+uint64_t serving_dropped(const struct serving *s)
+{
+	uint64_t n = s->dropped_before;
+
+	for (unsigned i = 0; i < s->worker_count; i++)
+		n += worker_dropped(s->workers[i]);
+	return n;
+}
+
+void serving_keep_counts(struct serving *s, const struct serving *before, const int *ports)
+{
+	s->stalls_before = before->stalls_before;
+	s->dropped_before = before->dropped_before;
+	for (unsigned i = 0; i < before->worker_count; i++) {
+		bool stays = false;
+
+		for (unsigned k = 0; k < s->worker_count; k++)
+			stays |= ports[k] == (int)i;
+		if (stays)
+			continue;
+		s->stalls_before += worker_stalls(before->workers[i]);
+		s->dropped_before += worker_dropped(before->workers[i]);
+	}
+}
+
 bool serving_stop(struct serving *s, int64_t timeout_ns)
 {
 	int64_t until_ns = ows_now() + timeout_ns;

@@ -23,6 +23,7 @@ struct serving {
 	unsigned worker_count;
 	unsigned *bus_counters; /* how many each worker's bus has */
 	unsigned own_counters;  /* index of the first counter that is of no bus and of no lane */
+	uint64_t stalls_before, dropped_before; /* of workers that reloads have ended */
 };
 
 struct serving_setup {
@@ -47,6 +48,11 @@ int serving_make(struct serving *serving, const struct serving_setup *setup, cha
                  size_t why_size);
 /* The counters of its buses into the image; the caller's stand behind them, from own_counters. */
 void serving_publish(struct serving *serving);
+/* Of all workers, those that reloads have ended included: messages that had to wait, events dropped. */
+uint64_t serving_stalls(const struct serving *serving);
+uint64_t serving_dropped(const struct serving *serving);
+/* The engine's thread, at a reload: what the workers that do not stay have counted is kept. */
+void serving_keep_counts(struct serving *serving, const struct serving *before, const int *ports);
 /* End the workers that are not taken. Blocks; false: one did not end within timeout_ns. */
 bool serving_stop(struct serving *serving, int64_t timeout_ns);
 /* Ends nothing: workers that are not taken have ended. The configuration goes too. */
