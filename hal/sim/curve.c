@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "curve.h"
 
-#include <math.h>
-
-#define TWO_PI 6.28318530717958647692
+#define HALF_PI 1.57079632679489661923
+#define EXACT   9007199254740992.0 /* 2^53: up to here a double has every whole number */
 
 struct sim_curve sim_constant(double value)
 {
@@ -18,6 +17,33 @@ static int64_t phase(const struct sim_curve *curve, int64_t t)
 	if (since < 0)
 		return 0;
 	return curve->span_ns > 0 ? since % curve->span_ns : since;
+}
+
+/* Of so many turns, 0 to 1. Without libm, which would cost the daemon 300 KiB for this alone. */
+static double sine(double turns)
+{
+	int quarter = (int)(turns * 4);
+	double x = turns * 4 - quarter, square, term, sum;
+
+	if (quarter & 1)
+		x = 1 - x;
+	/* in the half of the quarter that is nearer to zero the sine's series, in the other the cosine's */
+	int n = x > 0.5 ? 0 : 1;
+	double angle = (n ? x : 1 - x) * HALF_PI;
+	square = angle * angle;
+	sum = term = n ? angle : 1;
+	for (; n < 15; n += 2) {
+		term *= -square / ((n + 1) * (n + 2));
+		sum += term;
+	}
+	return quarter & 2 ? -sum : sum;
+}
+
+int64_t sim_round(double value)
+{
+	if (value >= EXACT || value <= -EXACT)
+		return value > 0 ? (int64_t)EXACT : -(int64_t)EXACT;
+	return value == value ? (int64_t)(value < 0 ? value - 0.5 : value + 0.5) : 0;
 }
 
 static unsigned step_at(const struct sim_curve *curve, int64_t since)
@@ -45,7 +71,7 @@ double sim_curve_at(const struct sim_curve *curve, int64_t t)
 		return curve->a + (curve->b - curve->a) * part;
 	case SIM_SINE:
 		part = (double)phase(curve, t) / (double)curve->span_ns;
-		return curve->a + curve->b * sin(TWO_PI * part);
+		return curve->a + curve->b * sine(part);
 	case SIM_SQUARE:
 		return phase(curve, t) < curve->span_ns / 2 ? curve->a : curve->b;
 	case SIM_STEPS:

@@ -121,7 +121,7 @@ static void latch_temperature(struct sim_slave *slave, int64_t t)
 	int raw;
 
 	celsius = celsius < -55 ? -55 : celsius > 125 ? 125 : celsius;
-	raw = (int)lround(celsius * 16);
+	raw = (int)sim_round(celsius * 16);
 	set_alarm(slave, raw / 16.0);
 	if (is_s20(slave)) {
 		/* TEMPERATURE = TEMP_READ - 0.25 + (COUNT_PER_C - COUNT_REMAIN) / COUNT_PER_C */
@@ -331,7 +331,7 @@ static bool alarm(struct sim_slave *slave, int64_t t)
 static int option(struct sim_slave *slave, const char *name, double value)
 {
 	struct sim_thermometer *s = state(slave);
-	long whole = lround(value);
+	int64_t whole = sim_round(value);
 
 	if (value != (double)whole)
 		return -ERANGE;

@@ -5,7 +5,6 @@
 #include "crc.h"
 
 #include <errno.h>
-#include <math.h>
 #include <string.h>
 
 enum {
@@ -76,7 +75,7 @@ static void put16(uint8_t *at, int value)
 
 static int within(double value, int least, int most)
 {
-	long whole = lround(value);
+	int64_t whole = sim_round(value);
 
 	return whole < least ? least : whole > most ? most : (int)whole;
 }

@@ -2,7 +2,6 @@
 #include "words.h"
 
 #include <ctype.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -161,7 +160,7 @@ static bool parse_time(const char *word, int64_t *ns)
 		unit = 1;
 	if (unit <= 0 || value < 0 || value * unit > MAX_TIME_S)
 		return false;
-	*ns = (int64_t)llround(value * unit * 1e9);
+	*ns = sim_round(value * unit * 1e9);
 	return true;
 }
 
