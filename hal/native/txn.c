@@ -43,7 +43,9 @@ int txn_wait(struct txn *txn, int64_t ns)
 
 	if (err)
 		return err;
-	txn->wake_ns = txn_now(txn) + ns;
+	/* what the chip does now is read when owsd runs again: that may be long after */
+	txn->measured_ns = txn_now(txn);
+	txn->wake_ns = txn->measured_ns + ns;
 	return TXN_MORE;
 }
 

@@ -111,6 +111,18 @@ static int take_answer(struct lane *lane, struct signal *s, const struct slot *s
 	return 0;
 }
 
+/*
+ * An answer that was on its way while nobody ran may have been measured long before it was taken, and
+ * its bus could not know: then it is as old as its request.
+ */
+static int64_t time_of(const struct engine *e, const struct slot *slot,
+                       const struct bus_answer *answer, int64_t now_ns)
+{
+	int64_t measured_ns = answer->measured_ns ? answer->measured_ns : now_ns;
+
+	return slot->begun_ns < e->gap_ns && slot->begun_ns < measured_ns ? slot->begun_ns : measured_ns;
+}
+
 int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
                         const struct slot *slot, const struct bus_answer *answer, int64_t now_ns,
                         int64_t *wait_ns)
@@ -122,8 +134,7 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 	switch (failure_of(err)) {
 	case FAILURE_NONE:
 		lane->counters.reads++;
-		signal_update(s, e->period, answer->measured_ns ? answer->measured_ns : now_ns,
-		              now_ns);
+		signal_update(s, e->period, time_of(e, slot, answer, now_ns), now_ns);
 		s->sample.detail = answer->detail;
 		retry_clear(&s->read_retry);
 		succeed(e, lane, s, quality, now_ns);

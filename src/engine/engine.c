@@ -85,11 +85,21 @@ void engine_destroy(struct engine *e)
 	free(e);
 }
 
+/* So late nobody ran: the machine was suspended, or owsd stopped. */
+#define GAP_NS INT64_C(2000000000)
+
+static void begin(struct engine *e, int64_t now_ns)
+{
+	if (e->next_ns && now_ns - e->next_ns > GAP_NS)
+		e->gap_ns = now_ns;
+	e->now_ns = now_ns;
+}
+
 void engine_answer(struct engine *e, unsigned port, const struct bus_answer *answer,
                    int64_t now_ns)
 {
 	assert(port < e->lane_count);
-	e->now_ns = now_ns;
+	begin(e, now_ns);
 	lane_answer(&e->lanes[port], answer, now_ns);
 	engine_places_turn(e, now_ns);
 }
@@ -97,7 +107,7 @@ void engine_answer(struct engine *e, unsigned port, const struct bus_answer *ans
 void engine_event(struct engine *e, unsigned port, const struct bus_event *event, int64_t now_ns)
 {
 	assert(port < e->lane_count);
-	e->now_ns = now_ns;
+	begin(e, now_ns);
 	lane_event(&e->lanes[port], event, now_ns);
 	engine_places_turn(e, now_ns);
 }
@@ -107,7 +117,7 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 	uint64_t before = e->period;
 	int64_t next, groups;
 
-	e->now_ns = now_ns;
+	begin(e, now_ns);
 	e->counters.steps++;
 	engine_turn(e, now_ns);
 	engine_intake(e, now_ns);
@@ -136,6 +146,7 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 		if (alarm < next)
 			next = alarm;
 	}
+	e->next_ns = next;
 	return next;
 }
 

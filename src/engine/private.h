@@ -55,6 +55,8 @@ struct engine {
 	struct due_wheel limit_wheel; /* rows whose limit alarms change by time alone */
 	struct due_wheel route_wheel; /* devices to be routed again, the one of no device behind them */
 	int64_t now_ns;         /* of the call in work */
+	int64_t next_ns;        /* when engine_step() asked to be called again */
+	int64_t gap_ns;         /* end of the last time in which nobody ran; 0: none */
 	uint64_t transactions, reconnects;
 	bool published;
 	bool rung; /* the command segment has to be looked through */
