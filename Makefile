@@ -13,6 +13,7 @@
 #   make analyze coverage         what gcc's analyzer, clang-tidy and cppcheck find (nothing is to
 #                                 be left); which lines and branches the tests reach
 #   make test-kernel              Debian's own kernel and owserver on the simulated chip, in QEMU
+#   make endurance-kernel         the same for an hour with faults of everything; MINUTES=2 SEED=1
 #   make dist                     the release as a tarball, of what is committed (docs/release.md)
 #   make test-dist                that tarball built and run without git and network
 #   make deb ARCH=arm64           Debian packages in build/deb; SUITE=trixie for another Debian
