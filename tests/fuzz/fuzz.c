@@ -10,6 +10,7 @@
 #endif
 #if defined(__SANITIZE_ADDRESS__) || __has_feature(address_sanitizer)
 #include <sanitizer/allocator_interface.h>
+#include <sanitizer/asan_interface.h>
 #define WATCHED 1
 #else
 #define WATCHED 0
@@ -68,7 +69,20 @@ static void end(size_t n)
 	snprintf(text, sizeof(text), "%zu bytes of memory for an input of %zu", peak, n);
 	TEST_FAIL_MESSAGE(text);
 }
+
+void fuzz_forbid(const void *bytes, size_t n, bool yes)
+{
+	if (yes)
+		__asan_poison_memory_region(bytes, n);
+	else
+		__asan_unpoison_memory_region(bytes, n);
+}
 #else
+void fuzz_forbid(const void *bytes, size_t n, bool yes)
+{
+	(void)bytes, (void)n, (void)yes;
+}
+
 static void begin(void)
 {
 }

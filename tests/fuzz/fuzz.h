@@ -19,6 +19,9 @@ void fuzz_one(const uint8_t *bytes, size_t n);
 /* The most memory that an input of n bytes may have at a time; checked under the sanitizers. */
 size_t fuzz_memory(size_t n);
 
+/* Inside of a larger block of memory: who touches these bytes is caught, under the sanitizers. */
+void fuzz_forbid(const void *bytes, size_t n, bool yes);
+
 /* From main or LLVMFuzzerTestOneInput: one input, its memory watched; aborts when it fails. */
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n);
 

@@ -36,9 +36,23 @@ static char *copy(const char *from, size_t size)
 	return to;
 }
 
+/* Somewhere in the segment, or near where something of the image begins. */
+static uint32_t place(const char *base, size_t size)
+{
+	const struct ows_image_header *header = heap.image.header;
+	const uint32_t areas[] = {header->record_off, header->info_off, header->name_off,
+	                          header->target_off, header->counter_off, header->alarm_off,
+	                          header->pool_off, header->text_off};
+	uint32_t off = fuzz_word(&fuzz);
+
+	if (base == image && off >> 24)
+		off = areas[off >> 24 & 7] + (off & 0x3ff);
+	return off % (uint32_t)size;
+}
+
 static void patch(char *base, size_t size)
 {
-	uint32_t off = fuzz_word(&fuzz) % (uint32_t)size;
+	uint32_t off = place(base, size);
 	size_t n;
 	const uint8_t *bytes = fuzz_bytes(&fuzz, 64, &n);
 
@@ -53,7 +67,7 @@ static void set_number(char *base, size_t size)
 {
 	static const uint32_t numbers[] = {0, 1, 4, 8, 255, 256, 0x7fffffff, 0x80000000, 0xffffffff,
 	                                   0xfffffff8, 64, 128, 65535, 2};
-	uint32_t off = fuzz_word(&fuzz) % (uint32_t)(size - 3) & ~3u, number = 0;
+	uint32_t off = place(base, size - 3) & ~3u, number = 0;
 	uint8_t how = fuzz_byte(&fuzz);
 
 	memcpy(&number, base + off, 4);

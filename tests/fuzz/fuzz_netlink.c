@@ -93,13 +93,83 @@ static size_t make_reply(uint8_t what, uint8_t *out)
 	return n;
 }
 
+/* One connector message with one w1 message; *n is where it goes. */
+static void add_message(uint8_t *out, size_t *n, bool is_status, uint8_t status, uint8_t code,
+                        const uint8_t *data, size_t data_n)
+{
+	struct cn_msg connector;
+	uint8_t *at = out + *n;
+
+	if (data_n > DATAGRAM / 2 || *n + HEADS + 4 + data_n > 2 * DATAGRAM)
+		return;
+	memcpy(at, request + NLMSG_HDRLEN, HEADS - NLMSG_HDRLEN);
+	memcpy(&connector, at, sizeof(connector));
+	connector.ack = is_status ? connector.seq : connector.seq + 1;
+	connector.len = (uint16_t)(12 + 4 + data_n);
+	memcpy(at, &connector, sizeof(connector));
+	at += sizeof(connector);
+	at[1] = status;
+	put16(at + 2, (uint16_t)(4 + data_n));
+	at += 12;
+	at[0] = code;
+	at[1] = 0;
+	put16(at + 2, (uint16_t)data_n);
+	if (data_n)
+		memcpy(at + 4, data, data_n);
+	*n += sizeof(connector) + 12 + 4 + data_n;
+}
+
+/* To every command what it asks for, with bytes of the input, and one length that need not fit. */
+static size_t answer_all(uint8_t what, uint8_t *out)
+{
+	static uint8_t data[DATAGRAM];
+	size_t n = NLMSG_HDRLEN, given_n, at = HEADS;
+	const uint8_t *given = fuzz_bytes(&fuzz, 255, &given_n);
+	uint8_t odd = what & 0x40 ? fuzz_byte(&fuzz) : 0xff;
+
+	if (request_n < HEADS)
+		return 0;
+	for (unsigned i = 0; at + 4 <= request_n; i++) {
+		uint8_t code = request[at];
+		uint16_t len;
+		bool reads = code == W1_READ || code == W1_TOUCH || code == W1_SEARCH;
+
+		memcpy(&len, request + at + 2, 2);
+		if (len > request_n - at - 4)
+			break;
+		memset(data, 0xff, sizeof(data));
+		memcpy(data, request + at + 4, len);
+		if (given_n)
+			memcpy(data, given, code == W1_SEARCH || given_n < len ? given_n : len);
+		if (reads)
+			add_message(out, &n, false, 0, code, data,
+			            (code == W1_SEARCH ? given_n : len) +
+			                    ((odd & 15) == i ? (size_t)(odd >> 4) * 9 : 0));
+		add_message(out, &n, true, 0, code, NULL, 0);
+		at += 4u + len;
+	}
+	memcpy(out, request, NLMSG_HDRLEN);
+	memcpy(out, &(uint32_t){(uint32_t)n}, 4);
+	return n;
+}
+
+/* Behind the datagram nothing is read. */
+static void forbid_rest(size_t n)
+{
+	struct native *native = (struct native *)host.bus;
+	struct w1_talk *talk = &((struct w1_netlink *)native->master)->talk;
+
+	fuzz_forbid(talk->in, sizeof(talk->in), false);
+	fuzz_forbid(talk->in + n, sizeof(talk->in) - n, true);
+}
+
 /* True: a datagram came. */
 static bool reply(void)
 {
-	uint8_t out[DATAGRAM * 2], what = fuzz_byte(&fuzz);
+	static uint8_t out[DATAGRAM * 2];
+	uint8_t what = fuzz_byte(&fuzz), at, by;
 	size_t n = 0, part;
 	const uint8_t *data;
-	uint8_t at, by;
 
 	switch (what & 7) {
 	case 0: /* silence */
@@ -132,10 +202,15 @@ static bool reply(void)
 			memmove(out + part, out + part + NLMSG_HDRLEN, n - part);
 		memcpy(out, &(uint32_t){(uint32_t)n}, 4);
 		break;
-	default:
+	case 5:
 		n = make_reply(what, out);
 		break;
+	default:
+		n = answer_all(what, out);
+		break;
 	}
+	if (n)
+		forbid_rest(n);
 	return n && send(kernel, out, n, MSG_DONTWAIT | MSG_NOSIGNAL) == (ssize_t)n;
 }
 

@@ -69,6 +69,9 @@ int __wrap_segment_wait(const uint32_t *word, uint32_t seen, int64_t timeout_ns)
 	if (++waits == WAITS)
 		longjmp(out_of_it, 100);
 	now_ns += timeout_ns < 0 ? 1000000000 : timeout_ns;
+	/* all limits that can be given are over then */
+	if (waits == WAITS / 2)
+		now_ns += INT64_C(367) * 86400 * 1000000000;
 	if (waits % 3 == 0)
 		heap_put(1 + waits % HEAP_SIGNALS, (int64_t)waits / 9 % 2, "other", now_ns, waits);
 	if (waits % 7 == 0)

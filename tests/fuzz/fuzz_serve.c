@@ -185,6 +185,8 @@ static void take_guests(void)
 	struct engine_guest *guest;
 
 	while (guest_count < GUESTS && (guest = port->take(port->ctx)) != NULL) {
+		for (unsigned i = 0; i < guest_count; i++)
+			TEST_ASSERT_TRUE_MESSAGE(guests[i].guest != guest, "asked again while lent");
 		TEST_ASSERT_NOT_NULL(memchr(guest->path, '\0', NODE_PATH_MAX + 16));
 		TEST_ASSERT_TRUE(guest->lane == GUEST_ANY_LANE || (guest->lane >= 0 && guest->lane < 2));
 		guests[guest_count++] = (struct guest){.guest = guest};

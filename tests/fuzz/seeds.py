@@ -43,6 +43,9 @@ def rio():
     put("rio", "large", text.replace("\n", "\r\n") + "\0s l InitValue=" + "x" * 120)
     put("rio", "lists", 'OwsDrv { Example [ 0 1 "]" # a\n ] Item { Name "x" Path a/b Type bool } }\0'
         's x Type=word\na y c/d\n')
+    put("rio", "backslashes", driver % ("sim:a\\\\", item % ("l", "/23.1/memory", (
+        '    Type string IO output InitValue "a\\\\" SafeValue "\\\"\\\\\\\\"\n'))) +
+        "\0s l InitValue=\\")
     put("rio", "broken", 'OwsDrv {\n Timeout x\n Item { Name "a b"\nPath "//" Type foo\n}\n Item {\n'
         'Name "q\n}\n}\n{{}} [ ] "')
 
@@ -121,6 +124,8 @@ def serve():
     put("serve", "several", ask(READ, 8) + ask(DIRALL, 0, client=1) + ask(DIRALL, 0, client=2) +
         ask(DIRALL, 0, client=3) + second + answer(b"1") + b"\xd6" + second + b"\x56" + answer() +
         answer() + drain + turned)
+    put("serve", "left", ask(READ, 8) + bytes([3, 0x8a]) + b"\x16" + ask(READ, 8) + second +
+        b"\3\0" + answer(b"20") + drain)
     put("serve", "codes", ask(READ, 6) + drain + ask(DIR, "/settings/return_codes/") + drain +
         ask(GET, "/settings/return_codes/text.210") + ask(0xb, 0) + drain)
 
@@ -168,6 +173,7 @@ def image():
         sets)
     put("image", "record", b"\0\1" + b"\x10" + struct.pack("<IB", 1280, 8) + b"\xff" * 8 + reads +
         b"\x10" + struct.pack("<IB", 1280 + 8, 4) + b"\x09\0\xff\xff" + reads)
+    put("image", "alarm", b"\0\1" + b"\0" + struct.pack("<IB", 0x25000004, 8) + looks)
     put("image", "short", b"\0\2" + struct.pack("<I", 3000) + reads)
 
 
@@ -236,6 +242,11 @@ def netlink():
     put("netlink", "nobody", b"\6\0" + two + b"\0" + found + b"\0" + reply(0x35, status=255) * 6)
     put("netlink", "damaged", b"\6\0" + two + b"\0" + reply(2, b"\1\2", more=b"\x10\x80\4\7") +
         reply(3, thermometer, more=b"\5") + reply(1, b"\0" * 40) + reply(4, b"\1", more=b"\x35\1\1"))
+    every = reply(0x0e, thermometer + bytes([crc]))
+    put("netlink", "answers", b"\6\0" + two + b"\0" + found + b"\0" + (reply(0x0e) * 12 + b"\x10") * 3 +
+        b"\x0e" + every * 6)
+    put("netlink", "lengths", b"\6\0" + two + b"\0" + found + b"\0" + b"\x4e\0\x12" + b"\0" +
+        b"\x4e\0\x41" + b"\0" + b"\x4e\0\x10")
     put("netlink", "refused", b"\6\xff\6\0" + two)
     put("netlink", "gone", b"\6\0" + two + b"\7" + b"\0" + found + b"\x0f\x0e" + found)
 
@@ -259,6 +270,7 @@ def scenario():
         "at 1s remove adapter for 1s\nat 50ms refuse-data 0x18 for 1ms\n\0sleep 0x18\n")
     demo = (HERE.parent.parent / "board" / "demo" / "house.sim").read_text()
     put("scenario", "house", demo[:3000].rpartition("\n")[0] + "\n")
+    put("scenario", "full", chip + "DS2430A 14.000000000001 memory 31 aabb\n")
     put("scenario", "wrong", chip + "DS18B20 28.000000000001 temperature 500\n")
 
 
@@ -268,6 +280,7 @@ def owsctl():
     call("list", "--json list -a room*")
     call("get", "--json get room OWS__label relay_Age _TRANSACTIONS nobody rom")
     call("set", "set -w 2 relay on level 300 label x")
+    call("set-for-long", "--json set -w 17 warm_WOS 1 relay_WriteEnable 0")
     call("set-json", "--json set -w 1 level 7 warm_WOS 1 relay_WriteEnable 0")
     call("watch", "--json watch -c 9 -t 5 *")
     call("watch-text", "watch -l room label")
