@@ -269,7 +269,8 @@ unit: export RUNNER := $(RUNNER)
 unit: all $(UNIT) replays
 	@sh tests/unit/run $(UNIT) $(REPLAYS)
 
-# A month of faults in virtual time on every backend: HOURS=720 SEED=1, WORLD=native for one
+# A month of faults in virtual time on every backend, five minutes of a processor; HOURS=168 is a
+# week in one. SEED=1, WORLD=native for one of them
 soak: all $(B)/unit/test_endurance
 	@$(B)/unit/test_endurance $(or $(HOURS),720) $(or $(SEED),1) $(WORLD)
 

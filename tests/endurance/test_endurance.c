@@ -38,7 +38,8 @@ struct world {
 
 static const struct world *world;
 static unsigned hours;
-static uint32_t seed = 1, chosen_seed;
+static uint32_t seed = 1;
+static bool chosen;
 static const char *log_from;
 static char history[EVENTS][100];
 static uint64_t events, faults;
@@ -61,7 +62,10 @@ _Noreturn void world_fails(const char *what, const char *signal)
 	for (uint64_t i = events > EVENTS ? events - EVENTS : 0; i < events; i++)
 		printf(" %s;", history[i % EVENTS]);
 	printf("\nrepeat it: build/unit/test_endurance %u %u %s\n", hours, seed, world->name);
-	printf("\n-----------------------\n1 Tests 1 Failures 0 Ignored\nFAIL\n");
+	if (chosen)
+		printf("%u passed, 1 failed\n", (unsigned)Unity.NumberOfTests - 1);
+	else
+		printf("\n-----------------------\n1 Tests 1 Failures 0 Ignored\nFAIL\n");
 	fflush(stdout);
 	_Exit(1);
 }
@@ -496,7 +500,7 @@ static void live(const struct world *in)
 	char message[200];
 
 	world = in;
-	hours = chosen_seed ? hours : world->hours;
+	hours = chosen ? hours : world->hours;
 	begin();
 	end = station.start + hours * 3600 * FIELD_S;
 	live_until(station.start + 300 * FIELD_S);
@@ -560,14 +564,20 @@ static const struct {
 
 int main(int argc, char **argv)
 {
+	chosen = argc > 1;
 	if (argc > 1)
 		hours = (unsigned)strtoul(argv[1], NULL, 10);
-	if (argc > 1)
-		chosen_seed = seed = argc > 2 ? (uint32_t)strtoul(argv[2], NULL, 10) : 1;
+	if (argc > 2)
+		seed = (uint32_t)strtoul(argv[2], NULL, 10);
 	log_from = argc > 4 ? argv[4] : NULL;
 	UNITY_BEGIN();
 	for (unsigned i = 0; i < WORLDS; i++)
 		if (argc < 4 || strcmp(argv[3], tests[i].name) == 0)
 			UnityDefaultTestRun(tests[i].test, tests[i].name, __LINE__);
-	return UNITY_END();
+	UNITY_END();
+	if (argc > 1)
+		printf("%u passed, %u failed\n",
+		       (unsigned)(Unity.NumberOfTests - Unity.TestFailures),
+		       (unsigned)Unity.TestFailures);
+	return Unity.TestFailures || !Unity.NumberOfTests;
 }
