@@ -9,8 +9,12 @@
 #define __has_feature(x) 0
 #endif
 #if defined(__SANITIZE_ADDRESS__) || __has_feature(address_sanitizer)
-#include <sanitizer/allocator_interface.h>
-#include <sanitizer/asan_interface.h>
+/* Both compilers' sanitizers have these, not both have their header. */
+int __sanitizer_install_malloc_and_free_hooks(void (*taken)(const volatile void *, size_t),
+                                              void (*given_back)(const volatile void *));
+size_t __sanitizer_get_allocated_size(const volatile void *p);
+void __asan_poison_memory_region(const volatile void *p, size_t n);
+void __asan_unpoison_memory_region(const volatile void *p, size_t n);
 #define WATCHED 1
 #else
 #define WATCHED 0
@@ -44,7 +48,7 @@ static void given_back(const volatile void *p)
 
 	if (!counting || !p)
 		return;
-	size = __sanitizer_get_allocated_size((const void *)(uintptr_t)p);
+	size = __sanitizer_get_allocated_size(p);
 	held -= size < held ? size : held;
 }
 
