@@ -37,10 +37,16 @@ def house(scene, more=False, **driver):
     return owsdtest.rio(target, items, Period=0.05, MaxRetries=1, Timeout=5, **driver)
 
 
+def not_sanitized(why):
+    """A sanitizer is a part of the program that these tests are not about."""
+    program = owsdtest.OWSD.read_bytes()
+    if b"__asan_init" in program or b"__tsan_init" in program:
+        owsdtest.skip(why)
+
+
 def env(scene, **faults):
     owsdtest.need(LIBRARY)
-    if b"__asan_init" in owsdtest.OWSD.read_bytes() or b"__tsan_init" in owsdtest.OWSD.read_bytes():
-        owsdtest.skip("the sanitizer has a library of its own before the program's")
+    not_sanitized("the sanitizer has a library of its own before the program's")
     mark = scene.path / "mark"
     return {"LD_PRELOAD": str(LIBRARY), "FAULT_MARK": str(mark),
             **{f"FAULT_{name.upper()}": str(value) for name, value in faults.items()}}
