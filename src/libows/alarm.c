@@ -40,14 +40,14 @@ int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
 
 	if (ows_alarm_count(h) - 1 - number >= h->map.alarm_count)
 		return -ENOENT;
-	if (!read_entry(&h->map.alarms[number % h->map.alarm_count], &e))
+	if (!read_entry(map_alarm(&h->map, number), &e))
 		return -EAGAIN;
 	if (e.number != number || e.record == 0 || e.record >= h->map.count)
 		return -ENOENT;
 	*alarm = (struct ows_alarm){
 		.signal = (int)e.record - 1,
 		.occurred_ns = e.occurred_ns,
-		.type = h->map.records[e.record].type,
+		.type = map_record(&h->map, e.record)->type,
 		.has_before = (e.flags & OWS_ALARM_BEFORE) != 0,
 		.has_after = (e.flags & OWS_ALARM_AFTER) != 0,
 		.kind = e.kind,
@@ -64,17 +64,19 @@ int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
 
 int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state)
 {
+	const struct ows_record *r;
 	const struct ows_attrs *a;
 	struct ows_slot slot;
 
 	if ((unsigned)id >= h->id_count || h->ids[id].record <= 0)
 		return -ENOENT;
-	if (!reader_slot(&h->map.records[h->ids[id].record], &slot))
+	r = map_record(&h->map, (uint32_t)h->ids[id].record);
+	if (!reader_slot(r, &slot))
 		return -EAGAIN;
 	a = &slot.attrs;
 	*state = (struct ows_alarm_state){
 		.occurrences = a->alarms,
-		.item = (h->map.records[h->ids[id].record].flags & OWS_RECORD_ALARM) != 0,
+		.item = (r->flags & OWS_RECORD_ALARM) != 0,
 		.stands = (a->flags & OWS_ATTR_ALARM_STANDS) != 0,
 		.polled = (a->flags & OWS_ATTR_ALARM_POLLED) != 0,
 		.limits = (a->flags & OWS_ATTR_LIMITS) != 0,

@@ -50,7 +50,7 @@ static int64_t compute(struct ows *h, struct ows_id *id, const struct ows_slot *
 	case ATTR_ALARM:
 		return take_alarm(&h->memories[id->memory], a->alarms);
 	case ATTR_PER_FACTOR:
-		return h->map.infos[id->record].per_factor;
+		return map_info(&h->map, (uint32_t)id->record)->per_factor;
 	case ATTR_PER_COUNT:
 		return periods(period, a->per_base);
 	case ATTR_PER_MAX:
@@ -88,8 +88,8 @@ int attribute_get(struct ows *h, struct ows_id *id, int64_t now_ns, struct ows_v
 		value->quality = OWS_Q_NO_PROPERTY;
 		return -EACCES;
 	}
-	if (!reader_slot(&h->map.records[id->record], &slot) ||
-	    !reader_slot(&h->map.records[0], &daemon))
+	if (!reader_slot(map_record(&h->map, (uint32_t)id->record), &slot) ||
+	    !reader_slot(h->map.records, &daemon))
 		return -EAGAIN;
 	value_fill(value, &slot.sample, (uint8_t)def->type);
 	since = slot.sample.measured_ns != 0 ? slot.sample.measured_ns : h->map.image->start_ns;

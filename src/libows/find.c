@@ -55,7 +55,7 @@ int find_resolve(struct ows *h, struct ows_id *id)
 		id->record = -1;
 		return -ENOENT;
 	}
-	id->stale_after_ns = h->map.infos[id->record].stale_after_ns;
+	id->stale_after_ns = map_info(&h->map, (uint32_t)id->record)->stale_after_ns;
 	if (needs_memory(id->attribute)) {
 		int memory = find_memory(h, map_name(&h->map, (uint32_t)id->record));
 

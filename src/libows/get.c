@@ -36,7 +36,7 @@ static bool find_alive(struct ows *h, int64_t now_ns)
 	struct ows_sample daemon;
 
 	h->alive_now = now_ns;
-	h->alive = reader_sample(&h->map.records[0], &daemon) &&
+	h->alive = reader_sample(h->map.records, &daemon) &&
 	           handle_age(now_ns, daemon.measured_ns) <= h->dead_after_ns;
 	return h->alive;
 }
@@ -91,7 +91,7 @@ static inline int finish(struct ows *h, int64_t stale_after_ns, int64_t now_ns,
 static inline int get_record(struct ows *h, unsigned record, int64_t stale_after_ns,
                              int64_t now_ns, struct ows_value *value)
 {
-	const struct ows_record *r = &h->map.records[record];
+	const struct ows_record *r = map_record(&h->map, record);
 	struct ows_sample sample;
 
 	if (!reader_sample(r, &sample)) {
@@ -124,8 +124,8 @@ int ows_get_signal(struct ows *h, int signal, int64_t now_ns, struct ows_value *
 		*value = (struct ows_value){.quality = OWS_Q_NO_PROPERTY};
 		return -ENOENT;
 	}
-	return get_record(h, (unsigned)signal + 1, h->map.infos[signal + 1].stale_after_ns, now_ns,
-	                  value);
+	return get_record(h, (unsigned)signal + 1,
+	                  map_info(&h->map, (unsigned)signal + 1)->stale_after_ns, now_ns, value);
 }
 
 int ows_snapshot(struct ows *h, int64_t now_ns, struct ows_value *values, int n)
@@ -159,7 +159,7 @@ static int print_number(const struct ows_value *value, char *text, size_t size)
 static int get_string(struct ows *h, const struct ows_id *e, int64_t now_ns,
                       struct ows_value *value, char *text, size_t size)
 {
-	const struct ows_record *r = &h->map.records[e->record];
+	const struct ows_record *r = map_record(&h->map, (uint32_t)e->record);
 	struct ows_sample sample;
 	int err;
 
@@ -178,7 +178,7 @@ int handle_get_text(struct ows *h, struct ows_id *e, int64_t now_ns, struct ows_
 {
 	int err, cut;
 
-	if (e->attribute == ATTR_VALUE && h->map.records[e->record].type == OWS_STRING)
+	if (e->attribute == ATTR_VALUE && map_record(&h->map, (uint32_t)e->record)->type == OWS_STRING)
 		return get_string(h, e, now_ns, value, text, size);
 	err = get(h, e, now_ns, value);
 	if (err && err != -ESTALE)

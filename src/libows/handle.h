@@ -23,6 +23,8 @@ struct ows_map {
 	const struct ows_target_entry *targets;
 	const struct ows_counter_entry *counters;
 	const struct ows_alarm_entry *alarms;
+	/* Entries of a later minor version may be larger: they are found by map_record() and the like */
+	uint32_t record_size, info_size, target_size, counter_size, alarm_size;
 	const char *base;
 	size_t image_size;
 	uint32_t count, target_count, counter_count, alarm_count;
@@ -70,6 +72,33 @@ struct ows {
 	enum ows_mode mode;
 	char instance[SEGMENT_NAME_MAX + 1];
 };
+
+static inline const struct ows_record *map_record(const struct ows_map *map, uint32_t record)
+{
+	return (const void *)((const char *)map->records + (size_t)record * map->record_size);
+}
+
+static inline const struct ows_info_entry *map_info(const struct ows_map *map, uint32_t record)
+{
+	return (const void *)((const char *)map->infos + (size_t)record * map->info_size);
+}
+
+static inline const struct ows_target_entry *map_target(const struct ows_map *map, uint32_t target)
+{
+	return (const void *)((const char *)map->targets + (size_t)target * map->target_size);
+}
+
+static inline const struct ows_counter_entry *map_counter(const struct ows_map *map, uint32_t counter)
+{
+	return (const void *)((const char *)map->counters + (size_t)counter * map->counter_size);
+}
+
+/* Where alarm number n lies, if it is still there. */
+static inline const struct ows_alarm_entry *map_alarm(const struct ows_map *map, uint32_t number)
+{
+	return (const void *)((const char *)map->alarms +
+	                      (size_t)(number % map->alarm_count) * map->alarm_size);
+}
 
 /* map.c */
 int map_open(const char *instance, enum ows_mode mode, struct ows_map *map);

@@ -17,8 +17,8 @@ int ows_info(const struct ows *h, int signal, struct ows_info *info)
 
 	if (signal < 0 || signal >= ows_count(h))
 		return -ENOENT;
-	entry = &h->map.infos[signal + 1];
-	record = &h->map.records[signal + 1];
+	entry = map_info(&h->map, (uint32_t)signal + 1);
+	record = map_record(&h->map, (uint32_t)signal + 1);
 	*info = (struct ows_info){
 		.name = map_name(&h->map, (uint32_t)signal + 1),
 		.path = map_string(&h->map, entry->path_off),
@@ -38,7 +38,7 @@ int ows_daemon(struct ows *h, int64_t now_ns, struct ows_daemon *daemon)
 	struct ows_sample beat;
 	int err = handle_state(h);
 
-	if (!reader_sample(&h->map.records[0], &beat))
+	if (!reader_sample(h->map.records, &beat))
 		return -EAGAIN;
 	*daemon = (struct ows_daemon){
 		.pid = image->pid,
@@ -65,7 +65,7 @@ int ows_target(struct ows *h, int index, struct ows_target *target)
 
 	if (index < 0 || (uint32_t)index >= h->map.target_count)
 		return -ENOENT;
-	entry = &h->map.targets[index];
+	entry = map_target(&h->map, (uint32_t)index);
 	*target = (struct ows_target){
 		.name = entry->name,
 		.state = word_get(&entry->state),
@@ -83,7 +83,7 @@ int ows_counter(struct ows *h, int index, struct ows_counter *counter)
 
 	if (index < 0 || (uint32_t)index >= h->map.counter_count)
 		return -ENOENT;
-	entry = &h->map.counters[index];
+	entry = map_counter(&h->map, (uint32_t)index);
 	*counter = (struct ows_counter){
 		.name = entry->name,
 		.target = (int)(int32_t)entry->target,

@@ -60,17 +60,23 @@ bool map_has_text(const struct ows_map *map, const struct ows_record *record)
 	       2 * cap <= map->text_size - (off - map->text_off);
 }
 
+/* A later minor version may append to an entry, in steps that keep it aligned. */
+static bool holds(uint32_t there, size_t ours)
+{
+	return there >= ours && there % 8 == 0;
+}
+
 static bool entries_right(const struct ows_map *map)
 {
 	for (uint32_t i = 0; i < map->count; i++)
-		if ((map->records[i].text_cap != 0 && !map_has_text(map, &map->records[i])) ||
+		if ((map_record(map, i)->text_cap != 0 && !map_has_text(map, map_record(map, i))) ||
 		    map->names[i].record >= map->count)
 			return false;
 	for (uint32_t i = 0; i < map->target_count; i++)
-		if (!ends(map->targets[i].name, sizeof(map->targets[i].name)))
+		if (!ends(map_target(map, i)->name, sizeof(map->targets->name)))
 			return false;
 	for (uint32_t i = 0; i < map->counter_count; i++)
-		if (!ends(map->counters[i].name, sizeof(map->counters[i].name)))
+		if (!ends(map_counter(map, i)->name, sizeof(map->counters->name)))
 			return false;
 	return true;
 }
@@ -82,10 +88,10 @@ static int check_image(struct ows_map *map)
 
 	words_load(&h, map->base, sizeof(h) / 4);
 	if (h.magic != OWS_IMAGE_MAGIC || h.major != OWS_LAYOUT_MAJOR || h.size != size ||
-	    h.record_size != sizeof(struct ows_record) ||
-	    h.info_size != sizeof(struct ows_info_entry) ||
-	    h.target_size != sizeof(struct ows_target_entry) ||
-	    h.counter_size != sizeof(struct ows_counter_entry) || h.record_count == 0)
+	    !holds(h.record_size, sizeof(struct ows_record)) ||
+	    !holds(h.info_size, sizeof(struct ows_info_entry)) ||
+	    !holds(h.target_size, sizeof(struct ows_target_entry)) ||
+	    !holds(h.counter_size, sizeof(struct ows_counter_entry)) || h.record_count == 0)
 		return -EPROTO;
 	if (!inside(size, h.record_off, h.record_count, h.record_size) ||
 	    !inside(size, h.info_off, h.record_count, h.info_size) ||
@@ -93,7 +99,7 @@ static int check_image(struct ows_map *map)
 	    !inside(size, h.target_off, h.target_count, h.target_size) ||
 	    !inside(size, h.counter_off, h.counter_count, h.counter_size) ||
 	    !inside(size, h.alarm_off, h.alarm_count, h.alarm_size) ||
-	    (h.alarm_count != 0 && h.alarm_size != sizeof(struct ows_alarm_entry)) ||
+	    (h.alarm_count != 0 && !holds(h.alarm_size, sizeof(struct ows_alarm_entry))) ||
 	    !inside(size, h.text_off, h.text_size, 1) ||
 	    !inside(size, h.pool_off, h.pool_size, 1) || h.pool_size == 0 ||
 	    map->base[h.pool_off + h.pool_size - 1] != '\0')
@@ -104,6 +110,11 @@ static int check_image(struct ows_map *map)
 	map->targets = (const void *)(map->base + h.target_off);
 	map->counters = (const void *)(map->base + h.counter_off);
 	map->alarms = (const void *)(map->base + h.alarm_off);
+	map->record_size = h.record_size;
+	map->info_size = h.info_size;
+	map->target_size = h.target_size;
+	map->counter_size = h.counter_size;
+	map->alarm_size = h.alarm_size;
 	map->count = h.record_count;
 	map->target_count = h.target_count;
 	map->counter_count = h.counter_count;
@@ -194,7 +205,7 @@ const char *map_string(const struct ows_map *map, uint32_t off)
 
 const char *map_name(const struct ows_map *map, uint32_t record)
 {
-	return map_string(map, map->infos[record].name_off);
+	return map_string(map, map_info(map, record)->name_off);
 }
 
 int map_find(const struct ows_map *map, const char *name, size_t len)

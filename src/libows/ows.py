@@ -308,17 +308,20 @@ class Ows:
     def _check_image(image):
         header = Header(*HEADER.unpack_from(image.memory))
         if (header.magic, header.major, header.size) != (IMAGE_MAGIC, MAJOR, image.size) or \
-           (header.record_size, header.info_size, header.target_size) != \
-           (RECORD_SIZE, INFO_SIZE, TARGET.size) or \
-           header.record_count == 0 or header.alarm_count and \
-           header.alarm_size != ALARM_ENTRY.size:
+           header.record_count == 0:
             raise broken()
-        for offset, count, size in ((header.record_off, header.record_count, RECORD_SIZE),
-                                    (header.info_off, header.record_count, INFO_SIZE),
+        # A later minor version may have larger entries
+        for size, least in ((header.record_size, RECORD_SIZE), (header.info_size, INFO_SIZE),
+                            (header.target_size, TARGET.size),
+                            (header.alarm_size, ALARM_ENTRY.size if header.alarm_count else 0)):
+            if size < least or size % 8:
+                raise broken()
+        for offset, count, size in ((header.record_off, header.record_count, header.record_size),
+                                    (header.info_off, header.record_count, header.info_size),
                                     (header.pool_off, header.pool_size, 1),
                                     (header.text_off, header.text_size, 1),
-                                    (header.target_off, header.target_count, TARGET.size),
-                                    (header.alarm_off, header.alarm_count, ALARM_ENTRY.size)):
+                                    (header.target_off, header.target_count, header.target_size),
+                                    (header.alarm_off, header.alarm_count, header.alarm_size)):
             image.inside(offset, count, size)
         return header
 
@@ -346,9 +349,9 @@ class Ows:
         self.records, self.table = {}, []
         for record in range(h.record_count):
             name, path, factor, _, stale = struct.unpack_from(
-                "<IIIIq", image.memory, h.info_off + record * INFO_SIZE)
+                "<IIIIq", image.memory, h.info_off + record * h.info_size)
             text_off, kind, flags, text_cap = struct.unpack_from(
-                "<IBBH", image.memory, h.record_off + record * RECORD_SIZE + 4)
+                "<IBBH", image.memory, h.record_off + record * h.record_size + 4)
             if text_cap and not h.text_off <= text_off <= h.text_off + h.text_size - 2 * text_cap:
                 raise broken()
             name = image.string(name, h.pool_off, h.pool_size)
@@ -418,7 +421,7 @@ class Ows:
     def _slot(self, record, want_text=False):
         """A whole sample and its attributes, and the text if wanted, verified."""
         words, memory = self.image.words, self.image.memory
-        base = self.header.record_off + record * RECORD_SIZE
+        base = self.header.record_off + record * self.header.record_size
         _, text_off, text_cap = self.table[record]
         for _ in range(WHOLE_TRIES):
             seq = words[base >> 2]
@@ -524,7 +527,7 @@ class Ows:
 
     def _alarm(self, number):
         h, memory = self.header, self.image.memory
-        at = h.alarm_off + number % h.alarm_count * ALARM_ENTRY.size
+        at = h.alarm_off + number % h.alarm_count * h.alarm_size
         for _ in range(WHOLE_TRIES):
             raw = memory[at:at + ALARM_ENTRY.size]
             words = struct.unpack("<16I", raw)
@@ -559,7 +562,7 @@ class Ows:
         h = self.header
         for index in range(h.target_count):
             name, state, reconnects, group, moves = TARGET.unpack_from(
-                self.image.memory, h.target_off + index * TARGET.size)
+                self.image.memory, h.target_off + index * h.target_size)
             yield Target(index, name.split(b"\0")[0].decode(errors="replace"),
                          word(TARGET_STATES, state, "unknown"), reconnects, group, moves)
 

@@ -54,7 +54,7 @@ static uint32_t stamp_it(const struct ows *h, const struct ows_id *id)
 /* An output takes sets always, an input while its _WriteEnable is on. */
 static bool takes_sets(const struct ows *h, const struct ows_id *id)
 {
-	const struct ows_record *r = &h->map.records[id->record];
+	const struct ows_record *r = map_record(&h->map, (uint32_t)id->record);
 	uint32_t seq = __atomic_load_n(&r->seq, __ATOMIC_ACQUIRE);
 
 	if (r->flags & OWS_RECORD_OUTPUT || word_get(&slot_of(h, id)->write_enable) == ON)
@@ -79,7 +79,7 @@ static int check_id(const struct ows *h, int id, const struct ows_id **e)
 
 static enum ows_type type_of(const struct ows *h, const struct ows_id *id)
 {
-	return id->attribute == ATTR_VALUE ? (enum ows_type)h->map.records[id->record].type
+	return id->attribute == ATTR_VALUE ? (enum ows_type)map_record(&h->map, (uint32_t)id->record)->type
 	                                   : attribute_table[id->attribute].type;
 }
 
