@@ -12,6 +12,9 @@
 #                                 FUZZ_SECONDS=60 for each
 #   make analyze coverage         what gcc's analyzer, clang-tidy and cppcheck find (nothing is to
 #                                 be left); which lines and branches the tests reach
+#   make test-kill KILLS=10000    the writer of the shared memory killed at random points
+#   make hammer-arm64             the same readers and writer as arm64 code, in qemu
+#   make model                    the protocol of the shared memory, in a weak memory model
 #   make test-kernel              Debian's own kernel and owserver on the simulated chip, in QEMU
 #   make endurance-kernel         the same for an hour with faults of everything; MINUTES=2 SEED=1
 #   make dist                     the release as a tarball, of what is committed (docs/release.md)
@@ -329,6 +332,7 @@ bench-page:
 	@CC='$(CC)' python3 tests/bench/page --build $(B) $(PAGE)
 
 include tests/kernel/kernel.mk
+include tests/model/model.mk
 include tests/image/image.mk
 include tests/fuzz/fuzz.mk
 

@@ -114,9 +114,14 @@ static bool carry_text(struct commands *to, uint32_t slot, const struct old_segm
 static bool carry_slot(struct commands *to, uint32_t slot, const struct old_segment *old,
                        uint32_t from, uint32_t text_off, bool restart)
 {
+	const struct ows_command_slot *there = (const void *)(old->base + old->slot_off);
 	struct ows_command_slot was, *s;
 
-	words_load(&was, old->base + old->slot_off + (size_t)from * sizeof(was), sizeof(was) / 4);
+	there += from;
+	words_load(&was, there, sizeof(was) / 4);
+	/* A program may be setting it: as in commands_load(), no stamp before its value, no half */
+	was.stamp = __atomic_load_n(&there->stamp, __ATOMIC_ACQUIRE);
+	was.value = __atomic_load_n((const shm_double_word *)&there->value, __ATOMIC_RELAXED);
 	s = (void *)(to->base + to->slot_off + (size_t)slot * sizeof(*s));
 	s->one_shot = was.one_shot;
 	s->dgn_reset = was.dgn_reset;

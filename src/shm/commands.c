@@ -269,7 +269,7 @@ int commands_next_dirty(struct commands *commands, uint32_t from)
 		slot = w * 32 + (uint32_t)__builtin_ctz(bits);
 		if (slot >= commands->slot_count)
 			return -1;
-		__atomic_fetch_and(&words[w], ~(1u << slot % 32), __ATOMIC_ACQ_REL);
+		__atomic_fetch_and(&words[w], ~(1u << slot % 32), __ATOMIC_ACQUIRE);
 		return (int)slot;
 	}
 	return -1;

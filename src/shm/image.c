@@ -245,7 +245,8 @@ void image_publish(struct image *image, uint32_t record, const struct ows_sample
 	assert(sample->len <= r->text_cap);
 	whole.sample.check = ows_check((const void *)&whole.sample, SAMPLE_WORDS - 1);
 	whole.attrs.check = ows_check((const void *)&whole.attrs, ATTRS_WORDS - 1);
-	word_set(&r->seq, 2 * n - 1);
+	/* Who reads this number copies the slot before: it has to be there, whoever wrote it */
+	__atomic_store_n(&r->seq, 2 * n - 1, __ATOMIC_RELEASE);
 	word_fence(__ATOMIC_RELEASE);
 	words_store(slot, &whole, SAMPLE_WORDS + ATTRS_WORDS);
 	if (sample->len != 0)

@@ -86,7 +86,8 @@ struct ows_slot { /* 120 bytes */
 };
 
 /*
- * A signal. Writer of state n: seq = 2n - 1; release fence; write slot[n & 1]; seq = 2n (release).
+ * A signal. Writer of state n: seq = 2n - 1 (release); release fence; write slot[n & 1]; seq = 2n
+ * (release).
  * Reader: s = seq (acquire); copy slot[(s >> 1) & 1]; acquire fence; s2 = seq; the copy is whole if
  * s2 - (s & ~1) <= 2 (unsigned), else again. A writer killed anywhere leaves the older slot whole.
  */

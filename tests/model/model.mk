@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: MIT
+# That the shared memory is right: a model of it, its writer killed, readers as arm64 code.
+
+.PHONY: model test-kill hammer-arm64
+
+# The writer of the shared memory killed at random points: KILLS=10000, about a minute
+test-kill: export KILLS := $(or $(KILLS),10000)
+test-kill: all $(B)/unit/test_kill
+	@$(B)/unit/test_kill | tee $(B)/test-kill.log
+	@awk '/ Tests .* Failures /{ print $$1 - $$3, "passed,", $$3, "failed"; bad = $$3; n = 1 } END { exit bad || !n }' $(B)/test-kill.log
+
+# Readers beside a writer as arm64 code, in qemu's user mode: a few seconds beside the building
+HAMMER_MAKE = $(MAKE) --no-print-directory B=build/hammer CC='$(if $(filter ccache,$(CC)),ccache )$(ARM64_CC)' \
+    AR=aarch64-linux-gnu-ar LIBI2C=0 LIBGPIOD=0
+hammer-arm64:
+	@sh board/install-deps build hammer $(if $(OR_SKIP),|| true)
+	@+if command -v qemu-aarch64-static >/dev/null && \
+	    echo 'int main(void) { return 0; }' | $(ARM64_CC) -x c -o /dev/null - 2>/dev/null; then \
+	    $(HAMMER_MAKE) build/hammer/unit/test_torn && \
+	    RUNNER='qemu-aarch64-static -L /usr/aarch64-linux-gnu' sh tests/unit/run build/hammer/unit/test_torn; \
+	else \
+	    echo 'hammer-arm64: no compiler for arm64, or no qemu-aarch64-static'; \
+	    $(if $(OR_SKIP),echo '0 passed$(comma) 0 failed$(comma) 1 skipped',exit 1); \
+	fi
+
+# The same sources, with each access to shared memory a step of the model: within a minute
+MODEL     := $(wildcard tests/model/*.c)
+MODEL_CODE := src/shm/image.c src/shm/reader.c src/shm/commands.c src/shm/carry.c \
+             src/libows/get.c src/libows/set.c src/libows/wait.c src/libows/alarm.c
+MODEL_OWN := tests/model/weak.c tests/model/explore.c tests/model/main.c
+
+$(B)/model/%.o: %.c tests/model/access.h
+	@mkdir -p $(@D)
+	$(call show,CC)
+	$(Q)$(CC) $(ALL_CFLAGS) $(if $(filter $<,$(MODEL_OWN)),,-include tests/model/access.h) -MMD -MP -c -o $@ $<
+
+$(B)/model/model: $(patsubst %.c,$(B)/model/%.o,$(MODEL) $(MODEL_CODE)) $(B)/core.a
+	$(call show,LD)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+
+model: all $(B)/model/model
+	@$(B)/model/model
