@@ -7,6 +7,7 @@
 
 #include "src/shm/reader.h"
 #include "unity.h"
+#include "whole.h"
 
 #include <errno.h>
 #include <pthread.h>
@@ -40,62 +41,9 @@ void tearDown(void)
 	instance_end(&in);
 }
 
-/* Every field says the same number, so that a mixture shows. */
 static void publish(uint32_t record, uint32_t n)
 {
-	struct ows_sample sample = {
-		.value = n,
-		.measured_ns = n,
-		.tried_ns = n,
-		.err = (int32_t)n,
-		.quality = (uint8_t)n,
-		.detail = (uint8_t)n,
-		.target = (uint8_t)n,
-		.count = n,
-		.applied = n,
-	};
-	struct ows_attrs attrs = {
-		.transactions = n,
-		.update_ns = n,
-		.age_max_ns = n,
-		.commanded = n,
-		.per_base = n,
-		.alarms = n,
-	};
-	char text[INSTANCE_TEXT];
-
-	memset(text, 'a' + (char)(n % 26), sizeof(text));
-	if (record == TEXT)
-		sample.len = n % INSTANCE_TEXT;
-	image_publish(&in.image, record, &sample, &attrs, text);
-}
-
-static bool sample_whole(const struct ows_sample *s)
-{
-	return s->check == ows_check((const void *)s, 11) && s->value == s->count &&
-	       s->measured_ns == s->value && s->tried_ns == s->value &&
-	       (uint32_t)s->err == s->count && s->quality == (uint8_t)s->count &&
-	       s->target == s->quality && s->detail == s->quality && s->applied == s->count;
-}
-
-static bool slot_whole(const struct ows_slot *s)
-{
-	const struct ows_attrs *a = &s->attrs;
-
-	return sample_whole(&s->sample) && a->check == ows_check((const void *)a, 17) &&
-	       a->transactions == s->sample.count && a->update_ns == s->sample.value &&
-	       a->age_max_ns == a->update_ns && a->commanded == a->update_ns &&
-	       a->per_base == s->sample.count && a->alarms == s->sample.count;
-}
-
-static bool text_whole(const struct ows_sample *s, const char *text)
-{
-	if (!sample_whole(s) || s->len != s->count % INSTANCE_TEXT || strlen(text) != s->len)
-		return false;
-	for (uint32_t i = 0; i < s->len; i++)
-		if (text[i] != 'a' + (char)(s->count % 26))
-			return false;
-	return true;
+	whole_publish(&in.image, record, n, record == TEXT ? INSTANCE_TEXT : 0);
 }
 
 static void *write_on(void *arg)
@@ -127,7 +75,7 @@ static void *read_on(void *arg)
 
 		if (!reader_slot(&in.image.records[NUMBER], &slot))
 			r->gave_up++;
-		else if (!slot_whole(&slot))
+		else if (!whole_slot(&slot))
 			r->torn++;
 		else if (slot.sample.count < last)
 			r->back++;
@@ -135,12 +83,12 @@ static void *read_on(void *arg)
 			last = slot.sample.count;
 		if (!reader_sample(&in.image.records[NUMBER], &sample))
 			r->gave_up++;
-		else if (!sample_whole(&sample))
+		else if (!whole_sample(&sample))
 			r->torn++;
 		if (!reader_text(in.image.base, &in.image.records[TEXT], &sample, text,
 		                 sizeof(text)))
 			r->gave_up++;
-		else if (!text_whole(&sample, text))
+		else if (!whole_text(&sample, text, INSTANCE_TEXT))
 			r->torn++;
 	}
 	return NULL;
@@ -196,10 +144,10 @@ static uint32_t look_at_the_remains(struct ows *h)
 	int id = ows_find(h, "number");
 
 	TEST_ASSERT_TRUE(reader_slot(&in.image.records[NUMBER], &slot));
-	TEST_ASSERT_TRUE(slot_whole(&slot));
+	TEST_ASSERT_TRUE(whole_slot(&slot));
 	TEST_ASSERT_TRUE(reader_text(in.image.base, &in.image.records[TEXT], &sample, text,
 	                             sizeof(text)));
-	TEST_ASSERT_TRUE(text_whole(&sample, text));
+	TEST_ASSERT_TRUE(whole_text(&sample, text, INSTANCE_TEXT));
 	TEST_ASSERT_EQUAL(0, ows_get(h, id, in.start_ns + INSTANCE_S, &value));
 	TEST_ASSERT_EQUAL_INT64(slot.sample.value, value.integer);
 	TEST_ASSERT_EQUAL(0, ows_get(h, id, in.start_ns + 5 * INSTANCE_S, &later));
