@@ -203,10 +203,10 @@ static void nothing_starves(const struct item *item, uint32_t record, const stru
 
 static void nothing_spins(void)
 {
-	if (station.now - spin_ns < SPIN_NS)
-		return;
 	if (station.engine_steps - spin_steps > SPINS)
 		world_fails("the engine spins", "");
+	if (station.now - spin_ns < SPIN_NS)
+		return;
 	spin_ns = station.now;
 	spin_steps = station.engine_steps;
 }
