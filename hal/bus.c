@@ -252,22 +252,6 @@ int64_t bus_step(struct bus *bus, int64_t now)
 	return bus->count || bus->ops->step ? now : INT64_MAX;
 }
 
-int bus_cancel(struct bus *bus, uint32_t id)
-{
-	struct bus_answer answer = { .id = id, .err = -ECANCELED };
-
-	if (!bus->ops->exec)
-		return bus->ops->cancel ? bus->ops->cancel(bus, id) : -EBUSY;
-	for (unsigned i = 0; i < bus->count; i++) {
-		if ((*slot(bus, i))->id != id)
-			continue;
-		take(bus, i);
-		bus->env->answer(bus->env->ctx, &answer);
-		return 0;
-	}
-	return -ENOENT;
-}
-
 void bus_suspend(struct bus *bus, bool yes)
 {
 	if (bus->suspended == yes)

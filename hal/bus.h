@@ -4,8 +4,7 @@
  *
  * A backend is one `struct bus_ops`. The simple tier writes exec(), which blocks and does one
  * request at a time. The overlapping tier writes submit() and step(). Callers never see which it
- * is: they use bus_submit(), bus_step() and bus_cancel() below, which make the second out of the
- * first.
+ * is: they use bus_submit() and bus_step() below, which make the second out of the first.
  *
  * Times are nanoseconds of env->now() (CLOCK_BOOTTIME in production, a virtual clock in tests).
  * Errors are negative errno. A bus is used by one thread at a time, except where said.
@@ -95,7 +94,7 @@ struct bus_req {
  *   -EOPNOTSUPP   this bus has no such operation (DIR of /alarm on some)
  *   -ETIME        not begun before its deadline, no effect
  *   -EINPROGRESS  the target lives but had no answer by the deadline; a write is in doubt
- *   -ECANCELED    cancelled before it began
+ *   -ECANCELED    the host shuts down
  *   -ENOTCONN     the target is down; nothing was sent
  *   -ETIMEDOUT    the target fell silent; a BUS_DOWN follows; a write is in doubt
  *   -ECONNRESET   the target was lost on the way; a BUS_DOWN follows; a write is in doubt
@@ -194,8 +193,6 @@ struct bus_ops {
 	 * exec and when nothing is to do. Without one a simple bus is up from the start.
 	 */
 	int64_t (*step)(struct bus *bus, int64_t now);
-	/* 0: taken out, answered -ECANCELED. -EBUSY: already on its way. -ENOENT: not here. */
-	int (*cancel)(struct bus *bus, uint32_t id);
 	/*
 	 * Let go of the hardware (true), which is done when it returns; take it again (false): the
 	 * steps that follow tell BUS_UP or BUS_DOWN. Meanwhile there is no exec, and submit and step of
@@ -252,7 +249,6 @@ unsigned bus_depth(const struct bus *bus);
  */
 int bus_submit(struct bus *bus, struct bus_req *req);
 int64_t bus_step(struct bus *bus, int64_t now);
-int bus_cancel(struct bus *bus, uint32_t id);
 /*
  * Let go of the hardware: BUS_RELEASED is told before it returns. From then on requests are
  * answered -ENOTCONN and nothing touches the wire; bus_step() looks for the target every few

@@ -25,11 +25,6 @@
 #define EVENT_NAPS   200 /* then the event is dropped */
 #define EVENT_ROOM   24
 
-struct order {
-	struct bus_req *req; /* NULL: cancel id */
-	uint32_t id;
-};
-
 struct worker {
 	struct bus *bus;
 	struct bus_env env;
@@ -38,7 +33,7 @@ struct worker {
 	char name[16];
 
 	struct ring orders;
-	struct order *order;
+	struct bus_req **order;
 	struct ring messages;
 	struct worker_message *message;
 	struct bus_counter stalls, dropped;
@@ -168,11 +163,7 @@ static void env_event(void *ctx, const struct bus_event *event)
 static void take_orders(struct worker *worker)
 {
 	while (ring_used(&worker->orders)) {
-		struct order *order = &worker->order[ring_take_at(&worker->orders)];
-
-		if (!order->req)
-			bus_cancel(worker->bus, order->id);
-		else if (bus_submit(worker->bus, order->req))
+		if (bus_submit(worker->bus, worker->order[ring_take_at(&worker->orders)]))
 			return;
 		ring_did_take(&worker->orders);
 	}
@@ -273,7 +264,7 @@ int worker_create(const char *target, const char *name, worker_bell *bell, void 
 	err = bus_create(target, &worker->env, &worker->bus, why, why_size);
 	if (!err) {
 		depth = bus_depth(worker->bus);
-		worker->orders.size = ring_size(2 * depth);
+		worker->orders.size = ring_size(depth);
 		worker->messages.size = ring_size(2 * depth + EVENT_ROOM);
 		worker->order = calloc(worker->orders.size, sizeof(*worker->order));
 		worker->message = calloc(worker->messages.size, sizeof(*worker->message));
@@ -325,26 +316,15 @@ struct bus *worker_bus(struct worker *worker)
 	return worker->bus;
 }
 
-static int give_order(struct worker *worker, const struct order *order, uint32_t full)
+int worker_submit(struct worker *worker, struct bus_req *req)
 {
-	if (ring_used(&worker->orders) >= full)
+	if (ring_used(&worker->orders) >= bus_depth(worker->bus))
 		return -EAGAIN;
-	worker->order[ring_put_at(&worker->orders)] = *order;
+	worker->order[ring_put_at(&worker->orders)] = req;
 	ring_did_put(&worker->orders);
 	if (__atomic_exchange_n(&worker->sleeping, 0, __ATOMIC_SEQ_CST))
 		wake(worker);
 	return 0;
-}
-
-int worker_submit(struct worker *worker, struct bus_req *req)
-{
-	return give_order(worker, &(struct order){ .req = req, .id = req->id },
-	                  bus_depth(worker->bus));
-}
-
-int worker_cancel(struct worker *worker, uint32_t id)
-{
-	return give_order(worker, &(struct order){ .id = id }, worker->orders.size);
 }
 
 void worker_suspend(struct worker *worker, bool yes)

@@ -37,11 +37,6 @@ struct bus *worker_bus(struct worker *worker);
 /* Engine thread only. 0, or -EAGAIN: queue full. */
 int worker_submit(struct worker *worker, struct bus_req *req);
 /*
- * Engine thread only. Asks for the request to be taken out: 0 asked, or -EAGAIN. What came of it
- * is told by the request's one answer: -ECANCELED, or what it would have been anyway.
- */
-int worker_cancel(struct worker *worker, uint32_t id);
-/*
  * Engine thread only, or before worker_start() for a bus that starts suspended: bus_suspend() on
  * the worker's thread, in the order asked for. Never blocks and cannot fail; a worker that is stuck
  * in the kernel carries it out when it comes back.

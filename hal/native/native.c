@@ -149,23 +149,6 @@ int native_submit(struct bus *bus, struct bus_req *req)
 	return -EAGAIN;
 }
 
-int native_cancel(struct bus *bus, uint32_t id)
-{
-	struct native *native = (struct native *)bus;
-
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
-
-		if (!job->req || job->req->id != id)
-			continue;
-		if (job->begun)
-			return -EBUSY;
-		job_answer(native, job, -ECANCELED);
-		return 0;
-	}
-	return -ENOENT;
-}
-
 static int see(struct native *native, uint64_t *mark)
 {
 	*mark = 0;

@@ -2,7 +2,7 @@
 /*
  * The native bus: the OWFS namespace over the links of one master. The parts:
  *
- *   native.c   the bus contract: create, submit, step, cancel
+ *   native.c   the bus contract: create, submit, step, suspend
  *   master.c   open, lost, opened again; the recovery ladder
  *   resolve.c  what a path means
  *   job.c      one request on its way: what it waits for, its next step, what follows a failure
@@ -194,15 +194,13 @@ int native_option(struct bus *bus, const char *key, const char *text, char *why,
                   size_t why_size);
 int native_submit(struct bus *bus, struct bus_req *req);
 int64_t native_step(struct bus *bus, int64_t now);
-int native_cancel(struct bus *bus, uint32_t id);
 void native_suspend(struct bus *bus, bool yes);
 int native_there(struct bus *bus);
 const struct bus_counter *native_counters(struct bus *bus, size_t *n);
 #define NATIVE_BUS_SLOTS                                                                  \
 	.depth = NATIVE_DEPTH, .searches = true, .destroy = native_destroy,               \
 	.option = native_option, .submit = native_submit, .step = native_step,            \
-	.cancel = native_cancel, .suspend = native_suspend, .there = native_there,        \
-	.counters = native_counters
+	.suspend = native_suspend, .there = native_there, .counters = native_counters
 
 /* --- Shared between the parts --- */
 int64_t native_now(const struct native *native);

@@ -248,25 +248,6 @@ static int64_t late_step(struct bus *bus, int64_t now)
 	return next;
 }
 
-static int late_cancel(struct bus *bus, uint32_t id)
-{
-	struct late_bus *late = (struct late_bus *)bus;
-	struct bus_answer answer = { .id = id, .err = -ECANCELED };
-
-	for (unsigned i = 0; i < LATE_DEPTH; i++) {
-		struct late_slot *slot = &late->slot[i];
-
-		if (!slot->req || slot->req->id != id)
-			continue;
-		if (slot->never)
-			return -EBUSY;
-		slot->req = NULL;
-		bus->env->answer(bus->env->ctx, &answer);
-		return 0;
-	}
-	return -ENOENT;
-}
-
 /* What was lent is answered now, but for what is never answered. */
 static void late_suspend(struct bus *bus, bool yes)
 {
@@ -291,7 +272,6 @@ const struct bus_ops late_bus = {
 	.destroy = late_destroy,
 	.submit = late_submit,
 	.step = late_step,
-	.cancel = late_cancel,
 	.suspend = late_suspend,
 	.there = late_there,
 };

@@ -45,7 +45,6 @@ const struct bus_ops w1_netlink_bus = {
 	.destroy = native_destroy,
 	.submit = native_submit,
 	.step = step,
-	.cancel = native_cancel,
 	.suspend = native_suspend,
 	.there = native_there,
 	.counters = native_counters,

@@ -237,8 +237,6 @@ static void ask(void)
 
 	bus_host_ask(&host, op, paths[what >> 2 & 7], what & 0x20,
 	             op == BUS_WRITE ? value : NULL, rooms[how & 7], times[how >> 3 & 3]);
-	if (how & 0x20)
-		bus_cancel(host.bus, host.next_id - 1);
 	if ((how & 0xc0) == 0xc0)
 		bus_suspend(host.bus, what & 0x40);
 }

@@ -97,7 +97,6 @@ static void test_a_path_says_twice_never_or_late(void)
 	TEST_ASSERT_EQUAL_UINT(0, host_answers(&host, 2));
 	TEST_ASSERT_EQUAL_UINT(1, host_answers(&host, 3));
 	TEST_ASSERT_EQUAL_INT(0, host_answer(&host, 3)->err);
-	TEST_ASSERT_EQUAL_INT(-EBUSY, bus_cancel(bus, 2));
 }
 
 static void test_shares_of_twice_and_never_are_of_all_requests(void)
@@ -114,17 +113,6 @@ static void test_shares_of_twice_and_never_are_of_all_requests(void)
 		submit(id, TEMPERATURE);
 	host_run(&host, bus, host.now + HOST_S);
 	TEST_ASSERT_EQUAL_UINT(0, host.answers);
-}
-
-static void test_a_cancelled_request_is_given_back_at_once(void)
-{
-	start("late:");
-	submit(4, "/late" TEMPERATURE);
-	TEST_ASSERT_EQUAL_INT(0, bus_cancel(bus, 4));
-	TEST_ASSERT_EQUAL_INT(-ECANCELED, host_answer(&host, 4)->err);
-	TEST_ASSERT_EQUAL_INT(-ENOENT, bus_cancel(bus, 4));
-	host_run(&host, bus, host.now + 2 * HOST_S);
-	TEST_ASSERT_EQUAL_UINT(1, host.answers);
 }
 
 static void test_the_target_goes_and_comes_in_its_turn(void)
@@ -158,7 +146,6 @@ int main(void)
 	RUN_TEST(test_the_same_seed_gives_the_same_order);
 	RUN_TEST(test_a_path_says_twice_never_or_late);
 	RUN_TEST(test_shares_of_twice_and_never_are_of_all_requests);
-	RUN_TEST(test_a_cancelled_request_is_given_back_at_once);
 	RUN_TEST(test_the_target_goes_and_comes_in_its_turn);
 	RUN_TEST(test_a_request_not_begun_by_its_deadline_has_no_effect);
 	return UNITY_END();

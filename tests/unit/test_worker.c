@@ -231,16 +231,6 @@ static void test_events_are_dropped_and_counted_when_nobody_takes_them(void)
 	TEST_ASSERT_GREATER_THAN_UINT(0, n_events);
 }
 
-static void test_a_cancelled_request_comes_back(void)
-{
-	start("late:");
-	TEST_ASSERT_EQUAL_INT(0, submit(5, "/late" TEMPERATURE));
-	TEST_ASSERT_EQUAL_INT(0, worker_cancel(worker, 5));
-	take_until(1);
-	TEST_ASSERT_EQUAL_INT(-ECANCELED, last[5].err);
-	TEST_ASSERT_EQUAL_UINT(1, n_answers);
-}
-
 static void test_a_full_queue_says_so(void)
 {
 	int refused = 0;
@@ -382,7 +372,6 @@ int main(void)
 	RUN_TEST(test_late_and_double_answers_are_passed_on);
 	RUN_TEST(test_no_answer_is_lost_when_nobody_takes_them);
 	RUN_TEST(test_events_are_dropped_and_counted_when_nobody_takes_them);
-	RUN_TEST(test_a_cancelled_request_comes_back);
 	RUN_TEST(test_a_full_queue_says_so);
 	RUN_TEST(test_a_stuck_thread_is_told_and_can_end_later);
 	RUN_TEST(test_a_submit_does_not_end_the_wait_for_a_reply);
