@@ -29,6 +29,12 @@ struct lamp {
 	int lit;          /* as set; -1: unknown */
 };
 
+enum indicator_health {
+	INDICATOR_DEAD,  /* the engine's heart does not beat: dark */
+	INDICATOR_ALONE, /* it does, but no target is up: a flash every two seconds */
+	INDICATOR_WELL,  /* and one is: half a second on, half a second off */
+};
+
 struct indicator {
 	const struct image *image;
 	struct log *log;
@@ -40,7 +46,8 @@ struct indicator {
 	uint32_t stop, ended;
 };
 
-bool indicator_alarm(const struct image *image)
+/* Does any signal's alarm stand, or wait to be acknowledged? */
+static bool indicator_alarm(const struct image *image)
 {
 	for (uint32_t i = 1; i < image->header->record_count; i++) {
 		const struct ows_record *record = &image->records[i];
@@ -53,8 +60,8 @@ bool indicator_alarm(const struct image *image)
 	return false;
 }
 
-enum indicator_health indicator_health(const struct image *image, int64_t period_ns,
-                                       int64_t now_ns)
+static enum indicator_health indicator_health(const struct image *image, int64_t period_ns,
+                                              int64_t now_ns)
 {
 	struct ows_sample beat;
 
@@ -67,7 +74,8 @@ enum indicator_health indicator_health(const struct image *image, int64_t period
 	return INDICATOR_ALONE;
 }
 
-bool indicator_lit(enum indicator_health health, int64_t now_ns)
+/* Is the lamp on at that time? */
+static bool indicator_lit(enum indicator_health health, int64_t now_ns)
 {
 	switch (health) {
 	case INDICATOR_DEAD:

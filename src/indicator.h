@@ -11,12 +11,6 @@
 #include "log.h"
 #include "shm/image.h"
 
-enum indicator_health {
-	INDICATOR_DEAD,  /* the engine's heart does not beat: dark */
-	INDICATOR_ALONE, /* it does, but no target is up: a flash every two seconds */
-	INDICATOR_WELL,  /* and one is: half a second on, half a second off */
-};
-
 struct indicator;
 
 /* NULL and 0 when the configuration has neither line. -ENOMEM; -EINVAL a line is none. */
@@ -34,12 +28,5 @@ void indicator_destroy(struct indicator *indicator);
 int indicator_start(struct indicator *indicator);
 /* End it; false: it is stuck in the kernel, and indicator_destroy() must not be called. */
 bool indicator_stop(struct indicator *indicator, int64_t timeout_ns);
-
-/* Does any signal's alarm stand, or wait to be acknowledged? */
-bool indicator_alarm(const struct image *image);
-enum indicator_health indicator_health(const struct image *image, int64_t period_ns,
-                                       int64_t now_ns);
-/* Is the lamp on at that time? */
-bool indicator_lit(enum indicator_health health, int64_t now_ns);
 
 #endif

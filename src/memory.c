@@ -234,6 +234,17 @@ static void say_private(const struct memory *m, struct log *log)
 		            image ? "owsd" : "owsd-control");
 }
 
+static void retire(struct segment *before, struct log *log)
+{
+	struct ows_image_header *h = (void *)before->base;
+	uint32_t state = __atomic_load_n(&h->state, __ATOMIC_RELAXED);
+
+	if (state == OWS_STATE_LIVE && h->pid != getpid())
+		log_notice(log, "taken over from owsd %d, which was killed", (int)h->pid);
+	image_retire(before->base, before->size);
+	segment_wake(&h->news, INT_MAX);
+}
+
 int memory_show(struct memory *m, struct log *log, char *why, size_t why_size)
 {
 	struct segment before;
@@ -253,20 +264,10 @@ int memory_show(struct memory *m, struct log *log, char *why, size_t why_size)
 	m->shown = !err;
 	if (!err)
 		say_private(m, log);
-	if (had_before) {
-		struct ows_image_header *h = (void *)before.base;
-		uint32_t state = __atomic_load_n(&h->state, __ATOMIC_RELAXED);
-
-		if (!err) {
-			if (state == OWS_STATE_LIVE && h->pid != getpid())
-				log_notice(log, "taken over from owsd %d, which was killed",
-				           (int)h->pid);
-			__atomic_store_n(&h->state, (uint32_t)OWS_STATE_RETIRED, __ATOMIC_SEQ_CST);
-			__atomic_fetch_add(&h->news, 1, __ATOMIC_SEQ_CST);
-			segment_wake(&h->news, INT_MAX);
-		}
+	if (had_before && !err)
+		retire(&before, log);
+	if (had_before)
 		segment_close(&before);
-	}
 	return err;
 }
 

@@ -21,7 +21,8 @@ void device_table_destroy(struct device_table *table)
 	free(table->aliases);
 }
 
-struct device *device_find_id(struct device_table *table, const uint8_t id[7])
+/* By its first seven bytes; NULL: not in the table. */
+static struct device *device_find_id(struct device_table *table, const uint8_t id[7])
 {
 	for (unsigned i = 0; i < table->count; i++)
 		if (memcmp(table->devices[i].rom, id, 7) == 0)

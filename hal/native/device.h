@@ -71,8 +71,6 @@ struct device_table {
 int device_table_create(struct device_table *table);
 void device_table_destroy(struct device_table *table);
 struct device *device_find(struct device_table *table, const uint8_t rom[8]);
-/* By its first seven bytes; NULL: not in the table. */
-struct device *device_find_id(struct device_table *table, const uint8_t id[7]);
 /*
  * The device's place, a new one if need be: of a full table that of a device that is away and has
  * no alias. NULL: no place.

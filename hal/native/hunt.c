@@ -26,7 +26,7 @@ void hunt_seen(struct device *device, int64_t now)
 	device->missed = 0;
 }
 
-void hunt_found(struct native *native, const uint8_t rom[8], unsigned n, int64_t now)
+static void hunt_found(struct native *native, const uint8_t rom[8], unsigned n, int64_t now)
 {
 	struct device *device = device_find(&native->table, rom);
 	bool known = device && device->present && device->channel == n;

@@ -257,7 +257,6 @@ bool convert_step(struct native *native, int64_t now, int64_t *next);
 void convert_all(struct native *native, struct job *job, int64_t now);
 
 /* hunt.c */
-void hunt_found(struct native *native, const uint8_t rom[8], unsigned channel, int64_t now);
 void hunt_lost(struct native *native, struct device *device);
 void hunt_restarted(struct native *native, struct device *device);
 void hunt_seen(struct device *device, int64_t now);

@@ -41,7 +41,8 @@ int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9])
 	return 0;
 }
 
-int thermometer_raw(const struct device *device, const uint8_t scratchpad[9])
+/* Sixteenths of a degree at the resolution that the scratchpad states. */
+static int thermometer_raw(const struct device *device, const uint8_t scratchpad[9])
 {
 	int raw = (int16_t)(scratchpad[SP_LSB] | scratchpad[SP_MSB] << 8);
 
@@ -71,7 +72,11 @@ static void learn_make(struct device *device, const uint8_t scratchpad[9])
 	device->make = scratchpad[SP_REMAIN] == 16 - low ? MAKE_GENUINE : MAKE_CLONE;
 }
 
-int thermometer_guard(struct txn *txn, int raw, const uint8_t scratchpad[9], int64_t now)
+/*
+ * Is the reading one of a chip that had no power (85 at power-on, 127.94)? -ERANGE, and
+ * txn->restarted where the scratchpad proves it; else 0. now: when it was read.
+ */
+static int thermometer_guard(struct txn *txn, int raw, const uint8_t scratchpad[9], int64_t now)
 {
 	struct device *device = txn->device;
 

@@ -15,13 +15,6 @@ enum { SP_LSB, SP_MSB, SP_HIGH, SP_LOW, SP_CONFIG, SP_5, SP_REMAIN, SP_PER_DEGRE
 
 /* The scratchpad, CRC checked; what its configuration tells is noted in the device. */
 int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9]);
-/* Sixteenths of a degree at the resolution that the scratchpad states. */
-int thermometer_raw(const struct device *device, const uint8_t scratchpad[9]);
-/*
- * Is the reading one of a chip that had no power (85 at power-on, 127.94)? -ERANGE, and
- * txn->restarted where the scratchpad proves it; else 0. now: when it was read.
- */
-int thermometer_guard(struct txn *txn, int raw, const uint8_t scratchpad[9], int64_t now);
 /* A conversion's longest time at the device's present resolution. */
 int64_t thermometer_convert_ns(const struct device *device);
 /* Make the chip convert at this resolution; may take several calls. */

@@ -50,7 +50,8 @@ static unsigned resolution(const struct sim_slave *slave)
 	return is_s20(slave) || s->fixed ? 12 : 9u + (s->scratchpad[4] >> 5 & 3);
 }
 
-int64_t sim_thermometer_conversion(const struct sim_slave *slave)
+/* ns of a conversion at the resolution set. */
+static int64_t sim_thermometer_conversion(const struct sim_slave *slave)
 {
 	const struct sim_thermometer *s = slave->state;
 	/* tCONV: 93.75, 187.5, 375, 750 ms at most. */

@@ -22,7 +22,5 @@ struct sim_thermometer {
 	uint8_t latch;
 };
 
-/* ns of a conversion at the resolution set. */
-int64_t sim_thermometer_conversion(const struct sim_slave *slave);
 
 #endif

@@ -77,7 +77,8 @@ bool words_take(struct words *words, const char *word)
 	return words_next(words);
 }
 
-bool words_number_ahead(const struct words *words)
+/* Does the next word begin as a number does? It is not read. */
+static bool words_number_ahead(const struct words *words)
 {
 	const char *next = skip_blanks(words->next);
 

@@ -24,8 +24,6 @@ void words_init(struct words *words, const char *file, unsigned line, const char
 bool words_next(struct words *words);
 /* Is the next word this one? Then it is read. */
 bool words_take(struct words *words, const char *word);
-/* Does the next word begin as a number does? It is not read. */
-bool words_number_ahead(const struct words *words);
 /* "file:line:column: text", the column being that of the last word. */
 __attribute__((format(printf, 2, 3))) void words_fail(struct words *words, const char *format, ...);
 /* Nothing more may come. */

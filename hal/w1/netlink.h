@@ -128,8 +128,6 @@ unsigned w1_netlink_look(struct w1_netlink *netlink);
  * -EIO also a command that the kernel refused; else as w1_request_run.
  */
 int w1_netlink_run(struct w1_netlink_link *link, struct w1_request *request);
-/* The master did not know the link's number: -ENODEV if none of ours is left, else -EHOSTDOWN. */
-int w1_netlink_gone(struct w1_netlink *netlink);
 
 /* netlink_search.c: as the slots of link_ops. */
 int w1_netlink_verify(struct link *link, const uint8_t rom[8], bool alarm);

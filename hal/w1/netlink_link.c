@@ -13,7 +13,8 @@ static struct w1_netlink_link *self(struct link *link)
 	return (struct w1_netlink_link *)link;
 }
 
-int w1_netlink_gone(struct w1_netlink *netlink)
+/* The master did not know the link's number: -ENODEV if none of ours is left, else -EHOSTDOWN. */
+static int w1_netlink_gone(struct w1_netlink *netlink)
 {
 	uint32_t numbers[W1_MASTERS];
 	int n = w1_talk_masters(&netlink->talk, numbers, W1_MASTERS);

@@ -66,7 +66,8 @@ void rio_quote_free(char *quoted)
 	free(quoted);
 }
 
-int rio_splice(struct rio **rio, size_t begin, size_t end, const char *text)
+/* Replace the bytes begin to end by text. */
+static int rio_splice(struct rio **rio, size_t begin, size_t end, const char *text)
 {
 	struct config_report silent = {0};
 	struct grow out = grow_make();

@@ -16,8 +16,6 @@ void rio_quote_free(char *quoted);
  * Changes work on the text: they return a new document in *rio, the old one and all its nodes are
  * gone. 0, -ENOMEM, or -EFBIG (the document is then the old one).
  */
-/* Replace the bytes begin to end by text. */
-int rio_splice(struct rio **rio, size_t begin, size_t end, const char *text);
 /* Set a key, or add it behind the other values of the block. value is put as it is: quote strings first. */
 int rio_set(struct rio **rio, struct rio_node *block, const char *key, const char *value);
 /* Add lines behind the block's last child: `Key Value`, or a whole block. Indents every line. */

@@ -25,8 +25,6 @@ struct alarm_strings {
 	const char *set, *set_value;     /* sSet, sSetVal: into set_text */
 	const char *reset, *reset_value; /* sLatchRes, sLatchResVal: into reset_text */
 };
-/* Split what the item says. */
-void alarm_split(const struct config_item *item, struct alarm_strings *strings);
 
 struct alarm_item {
 	uint32_t row, device;

@@ -30,7 +30,8 @@ static void split_pair(const char *text, char *copy, const char **name, const ch
 	}
 }
 
-void alarm_split(const struct config_item *item, struct alarm_strings *s)
+/* Split what the item says. */
+static void alarm_split(const struct config_item *item, struct alarm_strings *s)
 {
 	struct path path;
 

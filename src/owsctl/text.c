@@ -38,7 +38,8 @@ static bool in(const struct range *ranges, size_t n, int32_t c)
 	return false;
 }
 
-unsigned text_columns_of(int32_t c)
+/* Columns of a character: 0 combining, 2 wide, else 1. */
+static unsigned text_columns_of(int32_t c)
 {
 	static const struct range none[] = {
 		{0x0300, 0x036f}, {0x0483, 0x0489}, {0x0591, 0x05bd}, {0x064b, 0x065f},

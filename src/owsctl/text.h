@@ -12,8 +12,6 @@
 /* The next character, *text and *len moved behind it; -1 for a byte that is not UTF-8. len > 0. */
 int32_t text_next(const char **text, size_t *len);
 
-/* Columns of a character: 0 combining, 2 wide, else 1. */
-unsigned text_columns_of(int32_t c);
 /* Columns of cleaned text. */
 unsigned text_columns(const char *text);
 

@@ -20,7 +20,8 @@ static unsigned index_of(const struct serve *s, const struct client *c)
 	return (unsigned)(c - s->clients);
 }
 
-void client_ready(struct serve *s, struct client *c)
+/* To be looked at in the round. */
+static void client_ready(struct serve *s, struct client *c)
 {
 	if (c->queued)
 		return;
@@ -87,7 +88,7 @@ static void put_free(struct serve *s, struct client *c)
 	s->free[s->free_count++] = (uint16_t)index_of(s, c);
 }
 
-void client_close(struct serve *s, struct client *c)
+static void client_close(struct serve *s, struct client *c)
 {
 	bool engine_has_it = c->state == CLIENT_WORKING || c->lent;
 

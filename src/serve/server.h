@@ -171,14 +171,11 @@ bool listeners_accept(struct serve *s);
 
 /* client.c: connections, bytes and their time limits */
 struct client *client_open(struct serve *s, int fd, bool network);
-void client_close(struct serve *s, struct client *c);
 /* What a bus still had of it is back. */
 void client_back(struct serve *s, struct client *c);
 void client_event(struct serve *s, struct client *c, uint32_t events);
 /* Its turn in the round: at most one request. */
 void client_turn(struct serve *s, struct client *c);
-/* To be looked at in the round. */
-void client_ready(struct serve *s, struct client *c);
 /* Look at all time limits; sets s->look_ns. */
 void clients_look(struct serve *s);
 /* In the state from now on; the next time limit counts from here. */

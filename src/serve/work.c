@@ -14,8 +14,9 @@
 
 /* --- Answers ---------------------------------------------------------------------------------- */
 
-void answer_data(struct serve *s, struct client *c, int32_t ret, uint32_t payload, uint32_t size,
-                  int32_t offset)
+/* payload bytes are in client_room(). */
+static void answer_data(struct serve *s, struct client *c, int32_t ret, uint32_t payload,
+                        uint32_t size, int32_t offset)
 {
 	struct frame_header h = { .payload = (int32_t)payload, .type = ret,
 		                  .flags = c->request.flags, .size = (int32_t)size,

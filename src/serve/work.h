@@ -8,9 +8,7 @@
 /* client.worst before any target has answered */
 #define WORK_NOT_YET 1
 
-/* Answers. payload bytes are in client_room(). */
-void answer_data(struct serve *s, struct client *c, int32_t ret, uint32_t payload, uint32_t size,
-                 int32_t offset);
+/* Answers. */
 void answer_code(struct serve *s, struct client *c, int32_t code);
 /* A negative errno. */
 void answer_error(struct serve *s, struct client *c, int err);

@@ -128,7 +128,7 @@ void guard_remove(const void *base)
 	pthread_mutex_unlock(&setting);
 }
 
-bool guard_lost(const void *base)
+static bool guard_lost(const void *base)
 {
 	struct guard_range *range = base != NULL ? guarded((uintptr_t)base) : NULL;
 

@@ -16,6 +16,5 @@
  * SIGBUS handler of its own. */
 int guard_add(void *base, size_t size, bool only_default);
 void guard_remove(const void *base);
-bool guard_lost(const void *base);
 
 #endif
