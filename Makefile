@@ -154,7 +154,7 @@ $(B)/%.o: %.c
 	$(Q)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
 
 # What says the version is made again when the version changes
-$(call obj,src/owsd.c src/owsctl/owsctl.c hal/native/virtual.c) $(B)/unit/test_native_virtual.o: $(B)/version
+$(call obj,src/owsd.c src/arguments.c src/owsctl/owsctl.c hal/native/virtual.c) $(B)/unit/test_native_virtual.o: $(B)/version
 $(B)/version: FORCE
 	@mkdir -p $(@D)
 	@echo '$(VERSION)' | cmp -s - $@ || echo '$(VERSION)' >$@

@@ -203,6 +203,24 @@ def test_bad_files_start_nothing_and_say_where(scene):
     assert scene.owsd_once("--rt", "0").returncode == 2
 
 
+def test_a_wrong_option_is_named_and_steers_no_terminal(scene):
+    for words, expected in ((("-x",), "unknown option: -x"),
+                            (("-vx",), "unknown option: -x"),
+                            (("--\x1b[2J",), "unknown option: --?[2J"),
+                            (("-\x1b",), "unknown option: -?"),
+                            (("--check=1",), "option takes no argument: --check=1"),
+                            (("--rt",), "option without its argument: --rt"),
+                            (("-c",), "option without its argument: -c"),
+                            (("house.rio",), "unexpected argument 'house.rio'"),
+                            (("--root", "/"), "--root goes with --board"),
+                            (("-t", "null:") * 17, "-t null:: at most"),
+                            (("-l", "4304") * 17, "-l 4304: at most")):
+        done = scene.owsd_once(*words)
+        assert done.returncode == 2, (words, done)
+        assert done.stderr.startswith(f"owsd: {expected}"), (words, done.stderr)
+        assert "\x1b" not in done.stderr, (words, done.stderr)
+
+
 def test_owsd_starts_while_owserver_is_down_and_finds_it_later(scene):
     server = scene.owserver(mock=["28", "29"])
     config = house(server)
