@@ -83,7 +83,7 @@ static bool entries_right(const struct ows_map *map)
 
 static int check_image(struct ows_map *map)
 {
-	struct ows_image_header h;
+	struct ows_image_header h = {0}; /* gcc's analyzer does not follow the loads */
 	size_t size = map->image_size;
 
 	words_load(&h, map->base, sizeof(h) / 4);
