@@ -24,7 +24,7 @@
 #   make test-service             the service under systemd in QEMU, with the packages of make deb
 #   make test-gpio                GPIO lines of an arm64 guest, with libgpiod 1.6 and 2.x;
 #                                 test-gpio-pi the same of a Raspberry Pi 3
-#   make test-image               an image for a Raspberry Pi, booted in QEMU; CASES=main for half of it
+#   make test-image               an image for a Raspberry Pi, booted in QEMU; CASES=main for less
 
 VERSION  := 0.9.0
 SOMAJOR  := 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# An image made with pi-gen's stage, in QEMU: two boots for each of the CASES, main and faults.
+# An image made with pi-gen's stage, in QEMU: the CASES: main (two boots), bare, full.
 # IMAGE_TIME bounds a boot, in seconds; OR_SKIP=1 counts as skipped what cannot run here.
 
 .PHONY: test-image
@@ -7,7 +7,7 @@
 IMAGE_SIMCHIP := build/image/programs/kernel/simchip
 IMAGE_TIME ?= 900
 
-test-image: CASES ?= main faults
+test-image: CASES ?= main bare full
 test-image:
 	@sh board/install-deps build arm64 image $(if $(OR_SKIP),|| true)
 	@$(MAKE) --no-print-directory B=build/image/programs AR=aarch64-linux-gnu-ar LIBI2C=0 LIBGPIOD=0 \

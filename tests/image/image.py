@@ -63,6 +63,8 @@ def ready():
     for tool in ("mmdebstrap", "mke2fs", "qemu-img", "qemu-aarch64-static", "unshare"):
         if not shutil.which(tool, path=os.environ["PATH"] + ":/usr/sbin:/sbin"):
             give_up(f"{tool} is missing: board/install-deps image")
+    if not output("sh", os.path.join(TOP, "board/apt-mirrors")).strip():
+        give_up("this machine's apt sources name no mirror")
     if os.path.exists(os.path.join(BINFMT, "qemu-aarch64")):
         return
     # What systemd-binfmt does at the start of a machine that has systemd
