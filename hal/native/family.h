@@ -40,6 +40,8 @@ enum property_index { INDEX_NONE, INDEX_NUMBERS, INDEX_LETTERS };
 /* convert: a fresh reading needs a conversion, at this resolution or that of tempres. */
 #define CONVERT_TEMPRES 1
 
+struct chip_memory;
+
 struct property {
 	const char *name; /* "temperature12", "errata/die" */
 	uint8_t type, life, access;
@@ -69,6 +71,7 @@ struct family {
 	const char *type; /* "DS18B20" */
 	/* NULL: type. Some families hold several chips. */
 	const char *(*type_of)(const struct device *device);
+	const struct chip_memory *memory; /* of the properties of memory.h; NULL: it has none */
 	const struct property *properties; /* in any order, the hidden ones too */
 	unsigned count;
 };

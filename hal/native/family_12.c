@@ -15,7 +15,7 @@
 #define INFO_SUPPLY 0x80
 #define STATUS_OUTPUTS 0x60 /* 1: does not conduct */
 
-static const struct memory memory = {.size = 128, .page = 32};
+static const struct chip_memory memory = {.size = 128, .page = 32};
 
 static int channel_info(struct txn *txn, uint8_t control, uint8_t *info)
 {
@@ -143,16 +143,6 @@ static int write_alarm(struct txn *txn)
 	                               (digits % 10 & 1)));
 }
 
-static int read_memory(struct txn *txn)
-{
-	return memory_read(txn, &memory);
-}
-
-static int read_page(struct txn *txn)
-{
-	return memory_read_page(txn, &memory);
-}
-
 /* EPROM takes pulses of 12 V, which no master here gives. */
 static int refuse(struct txn *txn)
 {
@@ -207,8 +197,8 @@ static const struct property properties[] = {
 	{.name = "infobyte", .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE, .hidden = true,
 	 .access = ACCESS_READ, .read = read_info},
 	BITS("latch", LIFE_VOLATILE, ACCESS_BOTH, 4, read_info_bits, write_latch),
-	MEMORY_WHOLE(128, read_memory, refuse),
-	MEMORY_PAGES(4, 32, read_page, refuse),
+	MEMORY_WHOLE(128, refuse),
+	MEMORY_PAGES(4, 32, refuse),
 	NUMBER("power", PROPERTY_YESNO, LIFE_VOLATILE, read_power),
 	BITS("sensed", LIFE_VOLATILE, ACCESS_READ, 2, read_info_bits, NULL),
 	{.name = "set_alarm", .type = PROPERTY_UNSIGNED, .life = LIFE_STABLE, .access = ACCESS_BOTH,
@@ -216,5 +206,5 @@ static const struct property properties[] = {
 };
 
 const struct family family_12 = {
-	.code = 0x12, .alarms = true, .type = "DS2406", PROPERTIES(properties),
+	.code = 0x12, .alarms = true, .type = "DS2406", .memory = &memory, PROPERTIES(properties),
 };

@@ -8,29 +8,9 @@
 #define READ_COUNTER 0xa5
 #define EXTERNAL_A 14
 
-static const struct memory memory = {
+static const struct chip_memory memory = {
 	.size = 512, .page = 32, .row = 32, .copy = 0x5a, .copy_ns = TXN_MS,
 };
-
-static int read_memory(struct txn *txn)
-{
-	return memory_read(txn, &memory);
-}
-
-static int write_memory(struct txn *txn)
-{
-	return memory_write(txn, &memory);
-}
-
-static int read_page(struct txn *txn)
-{
-	return memory_read_page(txn, &memory);
-}
-
-static int write_page(struct txn *txn)
-{
-	return memory_write_page(txn, &memory);
-}
 
 /* From the page's last byte on: that byte, 32 bits of counter, 32 of zero, and the CRC16. */
 static int counter(struct txn *txn, unsigned page, uint32_t *count)
@@ -85,11 +65,13 @@ static int write_minimum(struct txn *txn)
 static const struct property properties[] = {
 	COUNTERS("counter", 2, INDEX_LETTERS, EXTERNAL_A, false),
 	COUNTERS("counters", 2, INDEX_LETTERS, EXTERNAL_A, true),
-	MEMORY_WHOLE(512, read_memory, write_memory),
+	MEMORY_WHOLE(512, memory_write),
 	{.name = "mincount", .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE,
 	 .access = ACCESS_BOTH, .read = read_minimum, .write = write_minimum},
 	COUNTERS("pages/count", 16, INDEX_NUMBERS, 0, false),
-	MEMORY_PAGES(16, 32, read_page, write_page),
+	MEMORY_PAGES(16, 32, memory_write_page),
 };
 
-const struct family family_1d = {.code = 0x1d, .type = "DS2423", PROPERTIES(properties)};
+const struct family family_1d = {
+	.code = 0x1d, .type = "DS2423", .memory = &memory, PROPERTIES(properties),
+};

@@ -48,17 +48,24 @@ static int read_range(struct txn *txn, unsigned address, unsigned n)
 	return txn->len < n ? TXN_MORE : 0;
 }
 
-int memory_read(struct txn *txn, const struct memory *memory)
+static const struct chip_memory *memory_of(const struct txn *txn)
 {
-	return read_range(txn, 0, memory->size);
+	return txn->device->family->memory;
 }
 
-int memory_read_page(struct txn *txn, const struct memory *memory)
+int memory_read(struct txn *txn)
 {
+	return read_range(txn, 0, memory_of(txn)->size);
+}
+
+int memory_read_page(struct txn *txn)
+{
+	const struct chip_memory *memory = memory_of(txn);
+
 	return read_range(txn, (unsigned)txn->element * memory->page, memory->page);
 }
 
-static int write_row(struct txn *txn, const struct memory *memory, unsigned address,
+static int write_row(struct txn *txn, const struct chip_memory *memory, unsigned address,
                      const uint8_t *row)
 {
 	uint8_t command[3 + ROW_MAX] = {WRITE_SCRATCHPAD, (uint8_t)address,
@@ -79,7 +86,7 @@ static int write_row(struct txn *txn, const struct memory *memory, unsigned addr
 }
 
 /* What the scratchpad holds; the ending offset goes to mem[0]. */
-static int verify_row(struct txn *txn, const struct memory *memory, unsigned address,
+static int verify_row(struct txn *txn, const struct chip_memory *memory, unsigned address,
                       const uint8_t *row)
 {
 	static const uint8_t command = READ_SCRATCHPAD;
@@ -99,7 +106,7 @@ static int verify_row(struct txn *txn, const struct memory *memory, unsigned add
 	return 0;
 }
 
-static int copy_row(struct txn *txn, const struct memory *memory, unsigned address)
+static int copy_row(struct txn *txn, const struct chip_memory *memory, unsigned address)
 {
 	uint8_t command[] = {memory->copy, (uint8_t)address, (uint8_t)(address >> 8), txn->mem[0]};
 
@@ -113,7 +120,7 @@ static int copy_row(struct txn *txn, const struct memory *memory, unsigned addre
  * Row by row: read what is there, put the new bytes in, and write if it differs, for an EEPROM
  * wears out. Five calls a row; mem[8..] holds the row.
  */
-static int write_range(struct txn *txn, const struct memory *memory, unsigned address, unsigned n)
+static int write_range(struct txn *txn, const struct chip_memory *memory, unsigned address, unsigned n)
 {
 	enum { READ, WRITE, VERIFY, COPY, CHECK, STEPS };
 	unsigned row = memory->row, first = address / row * row;
@@ -159,12 +166,14 @@ static int write_range(struct txn *txn, const struct memory *memory, unsigned ad
 	return to == address + n && txn->phase % STEPS == 0 ? 0 : TXN_MORE;
 }
 
-int memory_write(struct txn *txn, const struct memory *memory)
+int memory_write(struct txn *txn)
 {
-	return write_range(txn, memory, 0, (unsigned)txn->len);
+	return write_range(txn, memory_of(txn), 0, (unsigned)txn->len);
 }
 
-int memory_write_page(struct txn *txn, const struct memory *memory)
+int memory_write_page(struct txn *txn)
 {
+	const struct chip_memory *memory = memory_of(txn);
+
 	return write_range(txn, memory, (unsigned)txn->element * memory->page, (unsigned)txn->len);
 }

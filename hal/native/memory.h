@@ -8,7 +8,7 @@
 
 #include "hal/native/family.h"
 
-struct memory {
+struct chip_memory {
 	uint16_t size;    /* bytes */
 	uint8_t page;     /* of the property */
 	uint8_t row;      /* bytes of the scratchpad */
@@ -18,19 +18,22 @@ struct memory {
 	int64_t copy_ns;
 };
 
-/* The whole memory, and page txn->element of it. Write: from its beginning, txn->len bytes. */
-int memory_read(struct txn *txn, const struct memory *memory);
-int memory_read_page(struct txn *txn, const struct memory *memory);
-int memory_write(struct txn *txn, const struct memory *memory);
-int memory_write_page(struct txn *txn, const struct memory *memory);
+/*
+ * The whole memory of the device's family, and page txn->element of it. Write: from its beginning,
+ * txn->len bytes.
+ */
+int memory_read(struct txn *txn);
+int memory_read_page(struct txn *txn);
+int memory_write(struct txn *txn);
+int memory_write_page(struct txn *txn);
 
-#define MEMORY_WHOLE(bytes, reads, writes)                                                \
+#define MEMORY_WHOLE(bytes, writes)                                                       \
 	{.name = "memory", .type = PROPERTY_BINARY, .life = LIFE_VOLATILE,                  \
-	 .access = ACCESS_BOTH, .size = (bytes), .read = (reads), .write = (writes)}
-#define MEMORY_PAGES(pages, bytes, reads, writes)                                         \
+	 .access = ACCESS_BOTH, .size = (bytes), .read = memory_read, .write = (writes)}
+#define MEMORY_PAGES(pages, bytes, writes)                                                \
 	PROPERTY_DIR("pages"),                                                              \
 	{.name = "pages/page", .type = PROPERTY_BINARY, .life = LIFE_VOLATILE,              \
 	 .access = ACCESS_BOTH, .array = {(pages), INDEX_NUMBERS, false}, .size = (bytes),  \
-	 .read = (reads), .write = (writes)}
+	 .read = memory_read_page, .write = (writes)}
 
 #endif
