@@ -252,7 +252,8 @@ int64_t bus_step(struct bus *bus, int64_t now);
 /*
  * Let go of the hardware: BUS_RELEASED is told before it returns. From then on requests are
  * answered -ENOTCONN and nothing touches the wire; bus_step() looks for the target every few
- * seconds and tells BUS_BACK once when it comes. false: take the hardware again; BUS_UP or BUS_DOWN follows.
+ * seconds and tells BUS_BACK once when it comes. false: take the hardware again; BUS_UP or
+ * BUS_DOWN follows.
  */
 void bus_suspend(struct bus *bus, bool yes);
 const struct bus_counter *bus_counters(struct bus *bus, size_t *n);

@@ -26,8 +26,8 @@ static void create(struct sim_slave *slave)
 
 #define EEPROM(part, family)                                                                       \
 	{                                                                                          \
-		.name = (part), .code = (family), .overdrive = true,                                   \
-		.resume = (family) == 0x2D, .state_size = sizeof(struct sim_scratchpad),             \
+		.name = (part), .code = (family), .overdrive = true,                               \
+		.resume = (family) == 0x2D, .state_size = sizeof(struct sim_scratchpad),           \
 		.create = create, .power_on = sim_scratchpad_power_on,                             \
 		.reset = sim_scratchpad_reset, .received = sim_scratchpad_received,                \
 		.drained = sim_scratchpad_drained, .bit = sim_scratchpad_bit,                      \

@@ -46,7 +46,8 @@ static int thermometer(struct w1_master *master, struct w1_slave *slave)
 	bool fixed = slave->rom[0] == 0x10;
 	if (!fixed && (raw >= BROKEN || (raw == POWER_ON && pad[SP_REMAIN] == REMAIN_POWER_ON)))
 		return 0;
-	int degrees = raw >= 0 ? raw >> (fixed ? 1 : 4) : -((-raw + (fixed ? 1 : 15)) >> (fixed ? 1 : 4));
+	int shift = fixed ? 1 : 4;
+	int degrees = raw >= 0 ? raw >> shift : -((-raw + (1 << shift) - 1) >> shift);
 	return degrees >= (int8_t)pad[SP_HIGH] || degrees <= (int8_t)pad[SP_LOW];
 }
 

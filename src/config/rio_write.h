@@ -16,7 +16,10 @@ void rio_quote_free(char *quoted);
  * Changes work on the text: they return a new document in *rio, the old one and all its nodes are
  * gone. 0, -ENOMEM, or -EFBIG (the document is then the old one).
  */
-/* Set a key, or add it behind the other values of the block. value is put as it is: quote strings first. */
+/*
+ * Set a key, or add it behind the other values of the block. value is put as it is: quote strings
+ * first.
+ */
 int rio_set(struct rio **rio, struct rio_node *block, const char *key, const char *value);
 /* Add lines behind the block's last child: `Key Value`, or a whole block. Indents every line. */
 int rio_add(struct rio **rio, struct rio_node *block, const char *lines);

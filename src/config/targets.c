@@ -110,8 +110,8 @@ static void add_member(struct build *build, const char *text, size_t len,
 		return;
 	}
 	for (unsigned i = 0; i < CONFIG_AUTO_WAYS && build->report->errors == errors; i++) {
-		target_add(build, config_auto_ways[i], strlen(config_auto_ways[i]), i ? CONFIG_BAR : relation,
-		           place);
+		target_add(build, config_auto_ways[i], strlen(config_auto_ways[i]),
+		           i ? CONFIG_BAR : relation, place);
 		if (build->report->errors == errors)
 			config->targets[config->target_count - 1].automatic = true;
 	}

@@ -19,7 +19,8 @@ int lane_init(struct lane *lane, struct engine *engine, const struct engine_port
 	lane->slots = calloc(lane->depth, sizeof(*lane->slots));
 	lane->free = calloc(lane->depth, sizeof(*lane->free));
 	lane->list = calloc(1, ALARM_LIST);
-	if (!lane->slots || !lane->free || !lane->list || due_set_init(&lane->inputs, engine->table.count) ||
+	if (!lane->slots || !lane->free || !lane->list ||
+	    due_set_init(&lane->inputs, engine->table.count) ||
 	    due_set_init(&lane->outputs, engine->table.count) ||
 	    due_set_init(&lane->checks, engine->structure.count) ||
 	    due_set_init(&lane->probes, engine->table.device_count) ||

@@ -57,8 +57,8 @@ void scan_free(struct scan *scan);
 void scan_board(const char *target);
 
 /*
- * Print a configuration with that TargetName, which may be several; without outputs if inputs_only. CTL_DONE, or
- * CTL_FAILED after having said why; then nothing was printed.
+ * Print a configuration with that TargetName, which may be several; without outputs if inputs_only.
+ * CTL_DONE, or CTL_FAILED after having said why; then nothing was printed.
  */
 int scan_rio(const struct scan *scan, const char *target, bool several, bool inputs_only);
 

@@ -31,8 +31,8 @@ const char *when_iso(const struct when *now, int64_t boot_ns, char text[WHEN_TEX
 	    strftime(zone, sizeof(zone), "%z", &local) != 5)
 		snprintf(text, WHEN_TEXT, "?");
 	else
-		snprintf(text, WHEN_TEXT, "%s.%03d%.3s:%.2s", day, (int)(wall % SECOND / 1000000), zone,
-	         zone + 3);
+		snprintf(text, WHEN_TEXT, "%s.%03d%.3s:%.2s", day, (int)(wall % SECOND / 1000000),
+		         zone, zone + 3);
 	return text;
 }
 

@@ -227,8 +227,8 @@ static bool put_entry(struct directory *directory, const struct directory_form *
 	size = (uint32_t)(root + form->prefix_len + 1 + len + slash);
 	if (form->frames && !put_header(directory, form, size + 1, size, 0))
 		return false;
-	return put(directory, "/", root) && put(directory, form->prefix, form->prefix_len) && put(directory, "/", 1) &&
-	       put(directory, name, len) && put(directory, "/", slash) &&
+	return put(directory, "/", root) && put(directory, form->prefix, form->prefix_len) &&
+	       put(directory, "/", 1) && put(directory, name, len) && put(directory, "/", slash) &&
 	       put(directory, form->frames ? "" : ",", 1);
 }
 

@@ -69,7 +69,8 @@ static void read_target(struct serve *s, struct client *c)
 	int n = -ENOENT;
 
 	/* between servers in a circle, what one remembers of the other would never end */
-	if (!(s->passes_on && c->request.token_count) && !c->node.fresh && !(c->request.flags & FRAME_UNCACHED))
+	if (!(s->passes_on && c->request.token_count) && !c->node.fresh &&
+	    !(c->request.flags & FRAME_UNCACHED))
 		n = kept_find(s->kept, s->image, &c->node, s->now_ns, (char *)client_room(c),
 		              client_room_size(c));
 	if (n >= 0) {
@@ -81,7 +82,7 @@ static void read_target(struct serve *s, struct client *c)
 	work_ask(s, c, STEP_READ, BUS_READ, work_path(s, c), client_room(c), client_room_size(c));
 }
 
-/* A signal that is itself a signal of another owsd, asked for by a server: it may be one of that one. */
+/* A signal of another owsd, asked for by a server: it may be one of that one. */
 static bool is_passed_on(const struct serve *s, const struct client *c)
 {
 	int record = c->request.token_count && s->passes_on
