@@ -4,6 +4,7 @@
 #include "board/board.h"
 #include "config/report.h"
 #include "host.h"
+#include "instance.h"
 #include "libows/ows.h"
 #include "log.h"
 #include "notify.h"
@@ -187,9 +188,12 @@ static void reload(struct host *host, const struct arguments *a, struct log *log
 	tell(host, a, log, notify);
 }
 
-/* Write the log, feed the watchdog while the engine's heart beats, until a signal ends it. */
-static void supervise(struct host *host, const struct arguments *a, struct log *log,
-                      const struct notify *notify, int prefix)
+/*
+ * Write the log, feed the watchdog while the engine's heart beats, until a signal ends it; or, and
+ * that is false, another owsd that has the instance.
+ */
+static bool supervise(struct host *host, const struct arguments *a, struct instance *instance,
+                      struct log *log, const struct notify *notify, int prefix)
 {
 	int64_t fed_ns = 0, wait_ns = SUPERVISE_NS;
 
@@ -213,14 +217,18 @@ static void supervise(struct host *host, const struct arguments *a, struct log *
 			fed_ns = now_ns;
 			notify_send(notify, NOTIFY_WATCHDOG);
 		}
+		if (!instance_keep(instance, log))
+			return false;
 		host_tend(host);
 		log_drain(log, STDERR_FILENO, prefix);
 		if (!stop_signal)
 			segment_wait(log_word(log), seen, hangup ? AGAIN_NS : wait_ns);
 	}
+	return true;
 }
 
-static int run(const struct arguments *a, struct config *config, struct log *log)
+static int run(const struct arguments *a, struct config *config, struct instance *instance,
+               struct log *log)
 {
 	struct host_setup setup = {
 		.config = config,
@@ -232,7 +240,7 @@ static int run(const struct arguments *a, struct config *config, struct log *log
 	struct notify notify;
 	struct host *host;
 	char why[512];
-	bool ended;
+	bool ended, ours;
 
 	if (notify_open(&notify))
 		log_warning(log, "NOTIFY_SOCKET cannot be used");
@@ -243,47 +251,30 @@ static int run(const struct arguments *a, struct config *config, struct log *log
 	}
 	tell(host, a, log, &notify);
 	notify_send(&notify, NOTIFY_READY);
-	supervise(host, a, log, &notify, prefix);
-	log_notice(log, "owsd ends: %s", stop_signal == SIGTERM ? "SIGTERM" : "SIGINT");
+	ours = supervise(host, a, instance, log, &notify, prefix);
+	log_notice(log, "owsd ends: %s",
+	           !ours                    ? "the instance is another's"
+	           : stop_signal == SIGTERM ? "SIGTERM"
+	                                    : "SIGINT");
 	notify_send(&notify, NOTIFY_STOPPING);
 	ended = host_stop(host, STOP_NS);
 	if (!ended)
 		log_err(log, "a bus is stuck in the kernel; owsd leaves it behind");
 	log_finish(log, STDERR_FILENO, prefix);
 	if (!ended)
-		_exit(EXIT_SUCCESS);
+		_exit(ours ? EXIT_SUCCESS : EXIT_RUN);
 	notify_close(&notify);
-	return EXIT_SUCCESS;
-}
-
-/* The lock; -1, and it is said why. */
-static int take_instance(const char *instance, bool *stolen)
-{
-	pid_t owner = 0;
-	int lock = segment_lock(instance, &owner, stolen);
-
-	if (lock >= 0)
-		return lock;
-	if (lock == -EBUSY)
-		complain("instance %s is already served by process %d; end it or choose another "
-		         "name with -n",
-		         instance, (int)owner);
-	else
-		complain("cannot lock instance %s: %s%s", instance, strerror(-lock),
-		         lock == -EPERM    ? " (a file of another user, or none that is plain, is in "
-		                             "the way in /dev/shm)"
-		         : lock == -ENOSPC ? " (/dev/shm is full)"
-		                           : "");
-	return -1;
+	return ours ? EXIT_SUCCESS : EXIT_RUN;
 }
 
 int main(int argc, char **argv)
 {
 	struct config *config;
 	struct arguments a;
+	struct instance instance;
 	struct log *log;
-	bool stolen = false;
-	int status, lock;
+	char why[256];
+	int status;
 
 #ifdef __GLIBC__
 	/* What is used little of a large block stays zero pages. Else the limit rises by itself */
@@ -315,13 +306,12 @@ int main(int argc, char **argv)
 	}
 	supervisor_word = log_word(log);
 	catch_signals();
-	lock = take_instance(a.instance, &stolen);
-	if (lock < 0)
+	if (instance_take(&instance, a.instance, log, why, sizeof(why))) {
+		complain("%s", why);
 		return EXIT_RUN;
-	if (stolen)
-		log_warning(log, "the owsd before cannot die (stuck in the kernel): its lock is left");
-	status = run(&a, config, log);
-	close(lock);
+	}
+	status = run(&a, config, &instance, log);
+	instance_leave(&instance);
 	log_destroy(log);
 	return status;
 }

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #define LOCK_TRIES 16
+#define PATH_ROOM  80
 
 /*
  * Byte 0 is the instance. Byte 1 is held while the pid is written and while a corpse's file is
@@ -122,15 +123,33 @@ static int replace(int fd, const char *path)
 	return 0;
 }
 
+static void lock_path(const char *instance, char path[PATH_ROOM])
+{
+	snprintf(path, PATH_ROOM, "/dev/shm/owsd.%s.lock", instance);
+}
+
+bool segment_lock_held(int lock, const char *instance)
+{
+	struct stat ours, there;
+	char path[PATH_ROOM];
+
+	lock_path(instance, path);
+	if (fstat(lock, &ours) < 0)
+		return true;
+	if (lstat(path, &there) < 0)
+		return errno != ENOENT;
+	return ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
+}
+
 int segment_lock(const char *instance, pid_t *pid, bool *stolen)
 {
-	char path[80];
+	char path[PATH_ROOM];
 
 	*pid = 0;
 	*stolen = false;
 	if (!segment_name_ok(instance))
 		return -EINVAL;
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.lock", instance);
+	lock_path(instance, path);
 	for (int i = 0; i < LOCK_TRIES; i++) {
 		int err, fd = open_lock(path);
 

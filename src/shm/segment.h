@@ -24,6 +24,8 @@ bool segment_name_ok(const char *instance);
  * process that cannot die while stuck in the kernel) is left behind and *stolen set.
  */
 int segment_lock(const char *instance, pid_t *pid, bool *stolen);
+/* False: the lock's file was removed or replaced. What cannot be looked at counts as there. */
+bool segment_lock_held(int lock, const char *instance);
 
 struct segment {
 	char *base;

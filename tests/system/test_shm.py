@@ -113,6 +113,38 @@ def test_a_removed_image_is_told(scene):
     assert daemon.stop() == 0
 
 
+def lock_file(name):
+    return f"/dev/shm/owsd.{name}.lock"
+
+
+def test_a_removed_lock_is_taken_again_and_keeps_others_out(scene):
+    daemon, config = start(scene)
+    os.unlink(lock_file(daemon.name))
+    scene.until(lambda: "lock was removed: made again" in daemon.log(), 10, "it is said")
+    other = scene.owsd(config, name=daemon.name, ready=False)
+    assert other.wait() == 1
+    assert f"already served by process {daemon.pid}" in other.log()
+    assert daemon.stop() == 0
+
+
+def test_of_two_owsd_of_one_instance_the_one_whose_lock_was_removed_ends(scene):
+    first, config = start(scene)
+    scene.until(lambda: scene.get(first, "room") == "21", 10, "is 21")
+    first.freeze()
+    os.unlink(lock_file(first.name))
+    second = scene.owsd(config, name=first.name)
+    first.thaw()
+    assert first.wait() == 1
+    assert f"process {second.pid} serves the instance now" in first.log()
+    scene.until(lambda: scene.get(second, "room") == "21", 10, "the other goes on")
+    with ows.Ows(second.name, control=True) as signals:
+        time.sleep(2.5)
+        signals.set("relays", 9)
+        scene.until(lambda: signals.get("back").value == 9, 10, "and takes commands")
+        assert not signals.stale()
+    assert second.stop() == 0
+
+
 def test_a_killed_owsds_commands_are_carried_over(scene):
     daemon, config = start(scene)
     with ows.Ows(daemon.name, control=True) as signals:

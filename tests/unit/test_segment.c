@@ -148,6 +148,28 @@ static void test_one_owsd_for_each_name(void)
 	close(second);
 }
 
+static void test_a_lock_whose_file_was_removed_or_replaced_is_not_held(void)
+{
+	char path[80];
+	bool stolen;
+	pid_t pid;
+	int first, second;
+
+	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.lock", name);
+	first = segment_lock(name, &pid, &stolen);
+	TEST_ASSERT_GREATER_OR_EQUAL(0, first);
+	TEST_ASSERT_TRUE(segment_lock_held(first, name));
+	TEST_ASSERT_TRUE_MESSAGE(segment_lock_held(-1, name), "a look that fails is no loss");
+	TEST_ASSERT_EQUAL(0, unlink(path));
+	TEST_ASSERT_FALSE(segment_lock_held(first, name));
+	second = segment_lock(name, &pid, &stolen);
+	TEST_ASSERT_GREATER_OR_EQUAL(0, second);
+	TEST_ASSERT_FALSE(segment_lock_held(first, name));
+	TEST_ASSERT_TRUE(segment_lock_held(second, name));
+	close(first);
+	close(second);
+}
+
 /* A leader that has gone while a thread of it lives on: a zombie that holds its locks. */
 static void *outlive(void *arg)
 {
@@ -415,6 +437,7 @@ int main(void)
 	RUN_TEST(test_an_old_segment_is_found_with_what_it_held);
 	RUN_TEST(test_a_link_or_pipe_in_the_way_is_not_opened);
 	RUN_TEST(test_one_owsd_for_each_name);
+	RUN_TEST(test_a_lock_whose_file_was_removed_or_replaced_is_not_held);
 	RUN_TEST(test_a_corpses_lock_is_left_behind);
 	RUN_TEST(test_a_dead_owners_lock_is_free);
 	RUN_TEST(test_a_wait_ends_in_time);

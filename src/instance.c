@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT */
+#include "instance.h"
+
+#include "libows/ows.h"
+#include "shm/segment.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#define LOOK_NS 1000000000
+
+static const char *hint(int err)
+{
+	switch (-err) {
+	case EPERM:
+		return " (a file of another user, or none that is plain, is in the way in /dev/shm)";
+	case ENOSPC:
+		return " (/dev/shm is full)";
+	default:
+		return "";
+	}
+}
+
+int instance_take(struct instance *instance, const char *name, struct log *log, char *why,
+                  size_t why_size)
+{
+	bool stolen = false;
+	pid_t owner = 0;
+	int lock = segment_lock(name, &owner, &stolen);
+
+	*instance = (struct instance){ .name = name, .lock = lock < 0 ? -1 : lock };
+	if (lock == -EBUSY)
+		snprintf(why, why_size, "instance %s is already served by process %d; end it or "
+		                        "choose another name with -n",
+		         name, (int)owner);
+	else if (lock < 0)
+		snprintf(why, why_size, "cannot lock instance %s: %s%s", name, strerror(-lock),
+		         hint(lock));
+	if (stolen)
+		log_warning(log, "the owsd before cannot die (stuck in the kernel): its lock is left");
+	return lock < 0 ? lock : 0;
+}
+
+bool instance_keep(struct instance *instance, struct log *log)
+{
+	int64_t now_ns = ows_now();
+	bool stolen;
+	pid_t owner = 0;
+	int lock;
+
+	if (now_ns < instance->look_ns)
+		return true;
+	instance->look_ns = now_ns + LOOK_NS;
+	if (segment_lock_held(instance->lock, instance->name))
+		return true;
+	lock = segment_lock(instance->name, &owner, &stolen);
+	if (lock >= 0) {
+		close(instance->lock);
+		instance->lock = lock;
+		instance->rate = (struct log_rate){0};
+		log_warning(log, "/dev/shm/owsd.%s.lock was removed: made again", instance->name);
+	} else if (lock == -EBUSY && owner != getpid()) {
+		log_err(log, "/dev/shm/owsd.%s.lock was removed, and process %d serves the instance now",
+		        instance->name, (int)owner);
+		return false;
+	} else if (log_rate(&instance->rate, now_ns)) {
+		log_err(log, "/dev/shm/owsd.%s.lock was removed and cannot be made again: %s%s",
+		        instance->name, strerror(-lock), hint(lock));
+	}
+	return true;
+}
+
+void instance_leave(struct instance *instance)
+{
+	if (instance->lock >= 0)
+		close(instance->lock);
+	instance->lock = -1;
+}
