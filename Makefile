@@ -35,6 +35,15 @@ LIBDIR   ?= $(PREFIX)/lib
 MANDIR   ?= $(PREFIX)/share/man
 DATADIR  ?= $(PREFIX)/share/owsd
 
+# make takes a name with a blank for two, and clean and uninstall would remove those two
+blank    := $() $()
+$(foreach v,CURDIR B PREFIX DESTDIR LIBDIR MANDIR DATADIR,$(if $(findstring $(blank),$($(v))),\
+    $(error $(v) is '$($(v))': a folder with a blank in its name cannot be used here)))
+$(foreach v,B DATADIR,$(if $($(v)),,$(error $(v) is empty: name a folder)))
+# and clean all that B has
+$(if $(filter $(abspath $(B))/%,$(CURDIR)/ $(patsubst %,$(CURDIR)/%/,src hal docs tests board)),\
+    $(error B is '$(B)': make clean would remove the source; name a folder of its own))
+
 CC       := $(CROSS_COMPILE)$(if $(filter default,$(origin CC)),gcc,$(CC))
 CXX      := $(CROSS_COMPILE)$(if $(filter default,$(origin CXX)),g++,$(CXX))
 AR       := $(CROSS_COMPILE)$(if $(filter default,$(origin AR)),ar,$(AR))

@@ -1,0 +1,51 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# make clean and make uninstall remove what make made and nothing else; odd folders are refused
+set -eu
+
+unset MAKEFLAGS MFLAGS MAKELEVEL MAKEOVERRIDES
+# The makefile alone: what goes wrong here may not cost the source
+copy() {
+	mkdir -p "$1/src"
+	into=$PWD/$1
+	(cd "$OWSD_SOURCE" && find Makefile tests -name Makefile -o -name '*.mk' | xargs -I '{}' cp --parents '{}' "$into")
+	echo kept >"$1/src/kept.txt"
+}
+# refused WORDS MAKE-ARGUMENTS: in the folder $tree
+refused() {
+	words=$1
+	shift
+	if make -C "$tree" --no-print-directory "$@" >log 2>&1; then
+		echo "make $* is not refused"
+		exit 1
+	fi
+	grep -q "$words" log || { cat log; echo "make $* does not say: $words"; exit 1; }
+}
+rm -rf tree
+copy tree
+tree=tree
+mkdir -p half half/share/owsd ' led/share/owsd'
+for of in half ' led'; do echo kept >"$of/kept.txt"; done
+
+refused 'with a blank' clean B="$PWD/half a folder"
+refused 'with a blank' uninstall PREFIX="$PWD/half a folder"
+refused 'with a blank' uninstall DESTDIR="$PWD/half a folder"
+export PREFIX=' led'
+refused 'with a blank' uninstall DESTDIR="$PWD/half"
+unset PREFIX
+refused 'is empty' clean B=
+refused 'is empty' uninstall DESTDIR="$PWD/half" DATADIR=
+for b in . .. "$PWD/tree" src ../tree/src; do
+	refused 'would remove the source' clean B="$b"
+done
+[ -s half/kept.txt ] && [ -s ' led/kept.txt' ] && [ -s tree/src/kept.txt ]
+
+copy 'a tree'
+tree='a tree'
+refused 'with a blank' all
+
+# and ordinary ones are not
+mkdir -p tree/build/x out
+make -s -C tree --no-print-directory clean
+make -s -C tree --no-print-directory clean B="$PWD/out"
+[ ! -e tree/build ] && [ ! -e out ] && [ -s tree/src/kept.txt ]
