@@ -66,7 +66,7 @@ struct rio_node *rio_next(const struct rio_node *node);
 
 /*
  * Read a whole file into *text (malloc, NUL behind *len bytes). Errors are said through report:
- * negative errno; -EFBIG as above. Blocking.
+ * negative errno; -EFBIG as above, -EILSEQ it is UTF-16. Blocking.
  */
 int rio_read(const char *file, struct config_report *report, char **text, size_t *len);
 

@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -46,6 +47,13 @@ static int read_all(int fd, char **text, size_t *len)
 	return 0;
 }
 
+/* As Windows saves what it calls Unicode; with a byte order mark or without. */
+static bool is_utf16(const char *text, size_t len)
+{
+	return len >= 2 && (!memcmp(text, "\xff\xfe", 2) || !memcmp(text, "\xfe\xff", 2) ||
+	                    !text[0] != !text[1]);
+}
+
 int rio_read(const char *file, struct config_report *report, char **text, size_t *len)
 {
 	int fd = open(file, O_RDONLY | O_CLOEXEC | O_NOCTTY), err;
@@ -60,6 +68,12 @@ int rio_read(const char *file, struct config_report *report, char **text, size_t
 		free(*text);
 		*text = NULL;
 		return -EFBIG;
+	}
+	if (!err && is_utf16(*text, *len)) {
+		report_error(report, (struct place){file, 0, 0}, "is UTF-16: save it as UTF-8");
+		free(*text);
+		*text = NULL;
+		return -EILSEQ;
 	}
 	if (err)
 		report_error(report, (struct place){file, 0, 0}, "cannot be read: %s",

@@ -145,6 +145,9 @@ const char *signal_name_fault(const char *name)
 		return "is empty";
 	if (strnlen(name, SIGNAL_NAME_MAX + 1) > SIGNAL_NAME_MAX)
 		return "is longer than 63 bytes";
+	/* served as /signals/NAME, and a file where owfs mounts that */
+	if (!strcmp(name, ".") || !strcmp(name, ".."))
+		return "cannot stand in a path";
 	for (; *p; p += bytes) {
 		bytes = utf8_decode(p, &code);
 		if (!bytes)

@@ -185,6 +185,8 @@ static void test_a_bad_name_is_refused_with_the_reason(void)
 		const char *name, *reason;
 	} bad[] = {
 		{"", "is empty"},
+		{".", "cannot stand in a path"},
+		{"..", "cannot stand in a path"},
 		{"two words", "holds a blank or an invisible character"},
 		{"nb\xc2\xa0sp", "holds a blank or an invisible character"},
 		{"\xef\xbb\xbf" "bom", "holds a blank or an invisible character"},

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static struct config_report report;
 static char said[8192];
@@ -258,6 +259,26 @@ static void test_genuine_files_come_back_byte_for_byte(void)
 	}
 }
 
+static void test_a_file_of_utf_16_is_refused_as_such(void)
+{
+	static const char texts[][4] = {{'\xff', '\xfe', 'O', '\0'}, {'\xfe', '\xff', '\0', 'O'},
+	                                {'O', '\0', 'w', '\0'}, {'\0', 'O', '\0', 'w'}};
+	char path[] = "/tmp/owsd-utf16-XXXXXX", *text;
+	int fd = mkstemp(path);
+	size_t len;
+
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, fd);
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++) {
+		said[0] = '\0';
+		TEST_ASSERT_EQUAL_INT(4, pwrite(fd, texts[i], 4, 0));
+		TEST_ASSERT_EQUAL_INT(-EILSEQ, rio_read(path, &report, &text, &len));
+		TEST_ASSERT_NULL(text);
+		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "is UTF-16: save it as UTF-8"), said);
+	}
+	close(fd);
+	unlink(path);
+}
+
 static void test_a_file_that_cannot_be_read_is_said(void)
 {
 	size_t len;
@@ -414,6 +435,7 @@ int main(void)
 	RUN_TEST(test_backslashes_escape_quotes_and_themselves_only);
 	RUN_TEST(test_comments_and_commented_keys_are_skipped);
 	RUN_TEST(test_lines_and_columns_are_those_of_an_editor);
+	RUN_TEST(test_a_file_of_utf_16_is_refused_as_such);
 	RUN_TEST(test_a_byte_order_mark_is_no_part_of_the_first_key);
 	RUN_TEST(test_empty_texts_are_documents_without_keys);
 	RUN_TEST(test_syntax_errors_say_place_and_expectation);
