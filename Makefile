@@ -67,6 +67,10 @@ ALL_CFLAGS = -std=c17 $(CPP_COMMON) $(WARN) $(HARDEN) $(CFLAGS) $(EXTRA_CFLAGS)
 ALL_CXXFLAGS = -std=c++11 $(CPP_COMMON) $(CXXWARN) $(HARDEN) $(CXXFLAGS) $(EXTRA_CFLAGS)
 ALL_LDFLAGS = -pie -Wl,-z,relro,-z,now $(LDFLAGS) $(EXTRA_CFLAGS)
 LIBS     := -Wl,--as-needed -lm -pthread
+# Debian's musl-gcc knows its own headers alone; those of the kernel are beside glibc's
+ifneq ($(findstring musl-gcc,$(CC)),)
+CPP_COMMON += -idirafter /usr/include -idirafter /usr/include/$(shell gcc -print-multiarch)
+endif
 
 # I2C adapters, where libi2c is there for this compiler; LIBI2C=0 leaves it out
 LIBI2C   ?= $(shell printf '\043include <stdint.h>\n\043include <i2c/smbus.h>\nint main(void) { return i2c_smbus_read_byte(0); }\n' | \

@@ -49,3 +49,10 @@ mkdir -p tree/build/x out
 make -s -C tree --no-print-directory clean
 make -s -C tree --no-print-directory clean B="$PWD/out"
 [ ! -e tree/build ] && [ ! -e out ] && [ -s tree/src/kept.txt ]
+
+# musl-gcc finds the headers of the kernel
+if command -v musl-gcc >/dev/null; then
+	make -s -C "$OWSD_SOURCE" --no-print-directory B="$PWD/musl" CC=musl-gcc LIBI2C=0 LIBGPIOD=0 \
+		"$PWD/musl/src/shm/futex.o"
+	[ -s musl/src/shm/futex.o ]
+fi
