@@ -292,8 +292,11 @@ int main(int argc, char **argv)
 		return status;
 	if (a.board)
 		return tell_board(&a);
-	if (load(&a, NULL, &config))
+	if (load(&a, NULL, &config)) {
+		if (a.file == a.default_file && access(a.file, F_OK) < 0)
+			complain("-c FILE names another; owsctl -t auto scan --rio makes one");
 		return EXIT_USAGE;
+	}
 	if (a.check) {
 		config_print(config, stdout);
 		config_free(config);

@@ -169,6 +169,14 @@ def test_what_cannot_be_a_target_is_refused_by_check_and_start(scene):
     assert scene.owsd_once("--check", "-c", path).returncode == 0
 
 
+def test_a_start_without_a_configuration_says_how_to_come_to_one(scene):
+    done = scene._run([owsdtest.OWSD, "-n", scene.name()], 20)
+    assert done.returncode == 2
+    assert "No such file or directory" in done.stderr and "scan --rio" in done.stderr, done.stderr
+    done = scene._run([owsdtest.OWSD, "-c", scene.path / "none.rio"], 20)
+    assert done.returncode == 2 and "scan --rio" not in done.stderr, done.stderr
+
+
 def test_each_of_several_targets_is_checked(scene):
     path = scene.file("two.rio", owsdtest.rio("localhost:4304 | null:x", [ITEM]))
     for arguments in (["--check", "-c", path], ["-n", scene.name(), "-c", path]):
