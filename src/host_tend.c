@@ -35,7 +35,7 @@ static int renew_commands(struct host *h)
 	return 0;
 }
 
-/* An image of the same values under the name would need all readers to open it: a restart's work. */
+/* An image of the same values under the name would need all readers to open it: a reload's work. */
 static void look_for_image(struct host *h, int64_t now_ns)
 {
 	if ((h->image_lost_ns && now_ns - h->image_lost_ns < IMAGE_LOST_NS) ||
@@ -44,7 +44,7 @@ static void look_for_image(struct host *h, int64_t now_ns)
 	h->image_lost_ns = now_ns;
 	log_err(h->log,
 	        "/dev/shm/owsd.%s.image was removed and programs that start now do not find it: "
-	        "restart owsd (of an ordinary user, logind's RemoveIPC= removes it at log-out)",
+	        "reload or restart owsd (of an ordinary user, logind's RemoveIPC= removes it at log-out)",
 	        h->instance);
 }
 

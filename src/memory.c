@@ -322,6 +322,11 @@ int memory_show_commands(struct memory *m)
 
 void memory_replaced(struct memory *m)
 {
+	/* one that was removed has not been retired by its name: its readers would wait for it for ever */
+	if (memory_image_lost(m)) {
+		image_retire(m->image_segment.base, m->image_segment.size);
+		segment_wake(&m->image.header->news, INT_MAX);
+	}
 	m->shown = false;
 	memory_end(m);
 }

@@ -5,6 +5,7 @@
 import glob
 import os
 import random
+import signal
 import subprocess
 import sys
 import time
@@ -110,6 +111,19 @@ def test_a_removed_image_is_told(scene):
     assert f"/dev/shm/owsd.{daemon.name}.image was removed" in daemon.log()
     time.sleep(1.5)
     assert daemon.log().count("was removed") == 1
+    assert daemon.stop() == 0
+
+
+def test_readers_of_a_removed_image_follow_a_reload(scene):
+    daemon, _ = start(scene)
+    with ows.Ows(daemon.name) as signals:
+        scene.until(lambda: good(signals, "room"), 10, "room is good")
+        os.unlink(f"/dev/shm/owsd.{daemon.name}.image")
+        scene.until(lambda: "reload or restart owsd" in daemon.log(), 10, "it says what to do")
+        daemon.signal(signal.SIGHUP)
+        scene.until(signals.stale, 10, "the removed one is retired")
+        scene.until(lambda: reopened(signals), 10, "there is another")
+        scene.until(lambda: good(signals, "room"), 10, "room is good")
     assert daemon.stop() == 0
 
 
