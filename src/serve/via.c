@@ -1,16 +1,26 @@
 /* SPDX-License-Identifier: MIT */
 #include "via.h"
 
-#include <errno.h>
 #include <string.h>
 #include <sys/random.h>
+#include <time.h>
+#include <unistd.h>
 
-int via_token(uint8_t token[BUS_TOKEN])
+void via_token(uint8_t token[BUS_TOKEN])
 {
+	struct timespec t;
+	uint64_t mix;
+
 	token[0] = 0;
-	if (getrandom(token + 1, BUS_TOKEN - 1, GRND_NONBLOCK) != BUS_TOKEN - 1)
-		return errno ? -errno : -EAGAIN;
-	return 0;
+	if (getrandom(token + 1, BUS_TOKEN - 1, GRND_NONBLOCK) == BUS_TOKEN - 1)
+		return;
+	/* early at boot; it is no secret, only nobody else's */
+	clock_gettime(CLOCK_REALTIME, &t);
+	mix = (uint64_t)t.tv_sec * 1000000007u + (uint64_t)t.tv_nsec;
+	for (int i = 1; i < BUS_TOKEN; i++) {
+		mix = mix * 6364136223846793005u + (uint64_t)getpid();
+		token[i] = (uint8_t)(mix >> 56);
+	}
 }
 
 bool via_came_round(const uint8_t *tokens, uint32_t count, const uint8_t token[BUS_TOKEN])

@@ -14,8 +14,8 @@ struct via {
 	uint32_t count; /* 0: the client is no server */
 };
 
-/* A token that no other server has. 0 or a negative errno. */
-int via_token(uint8_t token[BUS_TOKEN]);
+/* A token that no other server has. Never blocks. */
+void via_token(uint8_t token[BUS_TOKEN]);
 /* Did it come through this server before, or through more of them than can be told? */
 bool via_came_round(const uint8_t *tokens, uint32_t count, const uint8_t token[BUS_TOKEN]);
 /* What goes with it to a target; it has not come round. */

@@ -11,6 +11,8 @@
 
 #define SOCKET_PATH "/run/simchip"
 #define LINE_MAX_BYTES 1024
+/* A caller who has no processor for so long as who serves waits for him finds the line closed. */
+#define ATTEMPTS 50
 
 /* The first byte of an answer. */
 enum { DONE = '+', REFUSED = '-' };
@@ -59,27 +61,41 @@ void control_serve(int fd, control_command *command, void *ctx)
 	close(caller);
 }
 
+/* The bytes of the answer; 0: who serves had no patience and has done nothing; -1 for good. */
+static ssize_t ask(const char *line, size_t length, char *answer, size_t room)
+{
+	struct sockaddr_un address;
+	int fd = open_socket(&address);
+	ssize_t got = -1;
+
+	if (fd >= 0 && connect(fd, (struct sockaddr *)&address, sizeof(address)) == 0) {
+		if (send(fd, line, length, MSG_NOSIGNAL) == (ssize_t)length)
+			got = recv(fd, answer, room, 0);
+		if (got < 0 && (errno == EPIPE || errno == ECONNRESET))
+			got = 0;
+	}
+	if (got < 0)
+		perror("simchip");
+	if (fd >= 0)
+		close(fd);
+	return got;
+}
+
 int control_tell(int words, char **word)
 {
-	char line[LINE_MAX_BYTES] = "";
-	struct sockaddr_un address;
+	char line[LINE_MAX_BYTES] = "", answer[LINE_MAX_BYTES];
 	size_t used = 0;
-	ssize_t got;
-	int fd = open_socket(&address);
+	ssize_t got = 0;
 
 	for (int i = 0; i < words && used < sizeof(line); i++)
 		used += (size_t)snprintf(line + used, sizeof(line) - used, i ? " %s" : "%s", word[i]);
-	if (used >= sizeof(line) || fd < 0 ||
-	    connect(fd, (struct sockaddr *)&address, sizeof(address)) ||
-	    send(fd, line, used, MSG_NOSIGNAL) != (ssize_t)used) {
-		perror("simchip");
+	if (used >= sizeof(line))
 		return 1;
-	}
-	got = recv(fd, line, sizeof(line) - 1, 0);
-	close(fd);
+	for (int i = 0; i < ATTEMPTS && got == 0; i++)
+		got = ask(line, used, answer, sizeof(answer) - 1);
 	if (got < 1)
 		return 1;
-	line[got] = '\0';
-	fputs(line + 1, line[0] == DONE ? stdout : stderr);
-	return line[0] != DONE;
+	answer[got] = '\0';
+	fputs(answer + 1, answer[0] == DONE ? stdout : stderr);
+	return answer[0] != DONE;
 }

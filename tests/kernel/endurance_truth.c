@@ -45,6 +45,7 @@ void truth_change(int input)
 {
 	unsigned step = changes[input];
 	int64_t before = ows_now();
+	bool told = true;
 	double value;
 	char line[128];
 
@@ -53,13 +54,15 @@ void truth_change(int input)
 		for (unsigned pin = 0; pin < 4; pin++) {
 			snprintf(line, sizeof(line), "set board pin.%u %u", pin + 4,
 			         (unsigned)value >> pin & 1);
-			sim_tell(line);
+			told &= sim_tell(line);
 		}
 	} else {
 		value = -20 + input * 13.5 + step % STEPS * 0.125;
 		snprintf(line, sizeof(line), "set %s temperature %g", signal_names[input], value);
-		sim_tell(line);
+		told = sim_tell(line);
 	}
+	if (!told)
+		violated("the chip cannot be told another value of %s", signal_names[input]);
 	note(history[input], &changes[input], value, before);
 }
 

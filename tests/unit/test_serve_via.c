@@ -12,8 +12,8 @@ static struct via via;
 
 void setUp(void)
 {
-	TEST_ASSERT_EQUAL_INT(0, via_token(here));
-	TEST_ASSERT_EQUAL_INT(0, via_token(there));
+	via_token(here);
+	via_token(there);
 	memset(&via, 0, sizeof(via));
 }
 
