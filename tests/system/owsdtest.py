@@ -68,6 +68,11 @@ def until(condition, seconds, what="", step=0.02):
         time.sleep(step)
 
 
+def logged(daemon, text):
+    """The log is written beside the work: what was said stands there soon."""
+    until(lambda: text in daemon.log(), 10, f"{text!r} in the log:\n{daemon.log()}")
+
+
 def free_port(host="127.0.0.1"):
     with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as s:
         s.bind((host, 0))
@@ -212,6 +217,7 @@ class Owsd(Program):
         self.notify = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         address = str(scene.path / f"n{next(_serial)}")
         self.notify.bind(address)
+        os.chmod(address, 0o777)  # owsd may run as another user
         super().__init__(scene, [*prefix, OWSD, "-n", name, "-c", config, *options],
                          {"NOTIFY_SOCKET": address, **(env or {})})
 

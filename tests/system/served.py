@@ -150,7 +150,7 @@ def owsd_of(scene, target, *options, items=SIGNALS, **driver):
         owsdtest.until(lambda: server.answers() or not daemon.running(), 20, "owsd serves")
         if daemon.running():
             return server
-        assert "in use" in daemon.log(), daemon.log()
+        owsdtest.logged(daemon, "in use")
     raise AssertionError("no free port")
 
 

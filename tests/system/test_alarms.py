@@ -44,7 +44,7 @@ def test_a_limit_alarm_lives_from_raised_to_acknowledged(scene):
     first, second = alarms(scene, daemon, "history")
     assert (first["event"], first["before"], first["after"]) == ("raised", 20, 31)
     assert (second["event"], second["before"]) == ("acknowledged", None)
-    assert "freezer: alarm: high" in daemon.log()
+    owsdtest.logged(daemon, "freezer: alarm: high")
 
 
 def test_an_alarm_that_returns_waits_to_be_acknowledged(scene):

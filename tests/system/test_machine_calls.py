@@ -125,7 +125,7 @@ def start_and_end(scene, kind, before):
     try:
         daemon.ready(10)
     except owsdtest.Late:
-        assert "NOTIFY_SOCKET cannot be used" in daemon.log(), daemon.log()
+        owsdtest.logged(daemon, "NOTIFY_SOCKET cannot be used")
     except AssertionError as why:
         assert "ended with status" in str(why), why
         assert daemon.wait() in (1, 2) and daemon.log().strip(), (daemon.wait(), daemon.log())

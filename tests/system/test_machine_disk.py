@@ -43,7 +43,7 @@ def test_a_start_on_a_full_dev_shm_leaves_nothing_behind(scene):
     free = fill(scene, SHM)
     daemon = scene.owsd(faulty.house(scene), name=name, ready=False)
     assert daemon.wait() == 1
-    assert "/dev/shm is full" in daemon.log(), daemon.log()
+    owsdtest.logged(daemon, "/dev/shm is full")
     assert faulty.leftovers(name) == []
     free()
     room_is_good(scene, scene.owsd(daemon.config, name=name))
@@ -70,7 +70,7 @@ def test_a_reload_that_dev_shm_has_no_room_for_changes_nothing(scene):
     config.write_text(faulty.house(scene, more=True))
     daemon.signal(signal.SIGHUP)
     until(lambda: "all goes on as before" in daemon.log(), 10)
-    assert "/dev/shm is full" in daemon.log(), daemon.log()
+    owsdtest.logged(daemon, "/dev/shm is full")
     assert faulty.leftovers(daemon.name) == ["command", "image", "lock"]
     assert scene.owsctl(daemon, "set", "relays", "5").returncode == 0
     until(lambda: scene.get(daemon, "relays") == "5", 10, "outputs are written")
@@ -104,14 +104,15 @@ def test_a_reload_whose_image_cannot_be_put_in_place_is_said_and_done_later(scen
     config.write_text(faulty.house(scene, more=True))
     daemon.signal(signal.SIGHUP)
     until(lambda: "no program sees the values" in daemon.log(), 10, "it is said")
-    assert "a directory is in the way" in daemon.log() and "again every second" in daemon.log()
+    owsdtest.logged(daemon, "a directory is in the way")
+    owsdtest.logged(daemon, "again every second")
     until(lambda: daemon.log().count("no program sees") >= 2, 10, "and tried again")
     daemon.signal(signal.SIGHUP)  # has to wait
     image.rmdir()
     until(lambda: scene.get(daemon, "hall") == "19.5", 20, "the new table is there")
     until(lambda: daemon.log().count("reload:") == 2, 10, "and the reload that waited is done")
     until(lambda: faulty.counters(scene, daemon)["unfinished_reload"] == 0, 10)
-    assert "what the reload could not do at once is done" in daemon.log()
+    owsdtest.logged(daemon, "what the reload could not do at once is done")
     assert faulty.leftovers(daemon.name) == ["command", "image", "lock"]
     assert daemon.stop() == 0
 
@@ -121,7 +122,7 @@ def test_a_start_whose_image_cannot_be_put_in_place_is_refused_with_a_reason(sce
     (SHM / f"owsd.{name}.image").mkdir()
     daemon = scene.owsd(faulty.house(scene), name=name, ready=False)
     assert daemon.wait() == 1
-    assert "a directory is in the way" in daemon.log(), daemon.log()
+    owsdtest.logged(daemon, "a directory is in the way")
     (SHM / f"owsd.{name}.image").rmdir()
 
 

@@ -107,7 +107,7 @@ def test_a_signal_that_cannot_work_is_reported_at_start_and_the_others_live(scen
         return [values(scene, daemon)[n]["quality_code"] for n in ("text", "readonly", "typo", "absent")]
     until(lambda: quality() == [0x04, 0x04, 0x04, 0x08], 5, "each has its reason")
     for name in ("text", "readonly"):
-        assert f"{name} (line" in daemon.log(), daemon.log()
+        owsdtest.logged(daemon, f"{name} (line")
     assert scene.get(daemon, "good")
 
 
@@ -162,7 +162,7 @@ while True:
     until(lambda: server.read(path + "/temphigh") == "70", 10, "it controls")
     program.kill()
     until(lambda: server.read(path + "/temphigh") == "11", 5, "SafeValue is written")
-    assert "stopped beating" in daemon.log()
+    owsdtest.logged(daemon, "stopped beating")
 
 
 def test_two_owsd_of_one_name_do_not_meet(scene):
@@ -241,7 +241,7 @@ def test_ipv6_and_host_names_reach_owserver(scene):
     config = house(server).replace("127.0.0.1:", "localhost:")
     daemon = scene.owsd(config)
     until(lambda: scene.get(daemon, "room"), 5, "over a name")
-    assert f"localhost:{server.port}" in daemon.log()
+    owsdtest.logged(daemon, f"localhost:{server.port}")
 
 
 def test_memory_and_descriptors_stay_flat(scene):

@@ -364,7 +364,8 @@ def test_signals_do_not_wait_for_an_address_that_is_not_there_yet(scene):
         "OwsDrv {", f'OwsDrv {{\n  Listen "{port}, 192.0.2.77:{port}, [2001:db8::77]:{port}"', 1)
     daemon = scene.owsd(config, "-t", f"sim:{folder}/house.sim")
     for address in (f"192.0.2.77:{port}", f"[2001:db8::77]:{port}"):
-        assert f"Listen {address}: not an address of this machine now" in daemon.log(), daemon.log()
+        text = f"Listen {address}: not an address of this machine now"
+        until(lambda: text in daemon.log(), 10, text)
     assert ask(port, READ, "/settings/return_codes/text.0")[4] == b"good"
 
 
@@ -393,7 +394,7 @@ def test_it_is_served_to_this_machine_alone_unless_asked(scene):
     with Link(port, host="::1") as link:
         link.send(NOP, None)
         assert link.answer()[0] == 0
-    assert "beyond this machine" not in daemon.log()
+    assert "beyond this machine" not in daemon.log(), daemon.log()
     listening = {line.split()[1].split(":")[0]
                  for line in open("/proc/net/tcp", encoding="ascii")
                  if line.split()[1].endswith(f":{port:04X}") and line.split()[3] == "0A"}
@@ -401,7 +402,7 @@ def test_it_is_served_to_this_machine_alone_unless_asked(scene):
     port = owsdtest.free_port()
     daemon = scene.owsd(owsdtest.rio("null:", []), "-l", f"0.0.0.0:{port}")
     assert ask(port, NOP, None)[0] == 0
-    assert "beyond this machine and lets everybody write" in daemon.log()
+    owsdtest.logged(daemon, "beyond this machine and lets everybody write")
 
 
 def test_several_targets_are_one_network(scene):

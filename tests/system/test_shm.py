@@ -108,7 +108,7 @@ def test_a_removed_image_is_told(scene):
     daemon, _ = start(scene)
     os.unlink(f"/dev/shm/owsd.{daemon.name}.image")
     scene.until(lambda: "restart owsd" in daemon.log(), 10, "it says what to do")
-    assert f"/dev/shm/owsd.{daemon.name}.image was removed" in daemon.log()
+    owsdtest.logged(daemon, f"/dev/shm/owsd.{daemon.name}.image was removed")
     time.sleep(1.5)
     assert daemon.log().count("was removed") == 1
     assert daemon.stop() == 0
@@ -149,7 +149,7 @@ def test_of_two_owsd_of_one_instance_the_one_whose_lock_was_removed_ends(scene):
     second = scene.owsd(config, name=first.name)
     first.thaw()
     assert first.wait() == 1
-    assert f"process {second.pid} serves the instance now" in first.log()
+    owsdtest.logged(first, f"process {second.pid} serves the instance now")
     scene.until(lambda: scene.get(second, "room") == "21", 10, "the other goes on")
     with ows.Ows(second.name, control=True) as signals:
         time.sleep(2.5)

@@ -142,7 +142,7 @@ def returns_and_was_counted(scene, daemon, server, other, device, watch):
     shown = targets(scene, daemon)
     assert shown[other]["moves"] == 3 and shown[server.target]["moves"] == 3, shown
     for said in (f"from {server.target} to {other}: ", f"from {other} to {server.target}: "):
-        assert said in daemon.log(), said
+        owsdtest.logged(daemon, said)
 
 
 def test_a_way_that_is_killed_is_left_and_taken_again(scene):
