@@ -56,27 +56,27 @@ static bool is_utf16(const char *text, size_t len)
 
 int rio_read(const char *file, struct config_report *report, char **text, size_t *len)
 {
-	int fd = open(file, O_RDONLY | O_CLOEXEC | O_NOCTTY), err;
+	const struct place place = { file, 0, 0 };
+	int fd = open(file, O_RDONLY | O_CLOEXEC | O_NOCTTY);
+	int err = fd < 0 ? -errno : read_all(fd, text, len);
 
-	*text = NULL;
-	err = fd < 0 ? -errno : read_all(fd, text, len);
 	if (fd >= 0)
 		close(fd);
-	if (!err && *len > RIO_FILE_MAX) {
-		report_error(report, (struct place){file, 0, 0}, "longer than %u bytes",
-		             RIO_FILE_MAX);
+	if (err || fd < 0) {
+		report_error(report, place, "cannot be read: %s", strerror(-err));
+		*text = NULL;
+		return err;
+	}
+	if (*len > RIO_FILE_MAX) {
+		report_error(report, place, "longer than %u bytes", RIO_FILE_MAX);
+		err = -EFBIG;
+	} else if (is_utf16(*text, *len)) {
+		report_error(report, place, "is UTF-16: save it as UTF-8");
+		err = -EILSEQ;
+	}
+	if (err) {
 		free(*text);
 		*text = NULL;
-		return -EFBIG;
 	}
-	if (!err && is_utf16(*text, *len)) {
-		report_error(report, (struct place){file, 0, 0}, "is UTF-16: save it as UTF-8");
-		free(*text);
-		*text = NULL;
-		return -EILSEQ;
-	}
-	if (err)
-		report_error(report, (struct place){file, 0, 0}, "cannot be read: %s",
-		             strerror(-err));
 	return err;
 }
