@@ -13,5 +13,8 @@ does 'the output has its start value' within $patience reads outputs1 2
 does 'on the chip, too' within $patience reads inputs1 189
 echo '@@RIG-OUTSIDE /28.A0B1C2010028/temperature -10.125'
 echo '@@RIG-OUTSIDE /signals/temperature1 21.0625'
+# done in this order, so it has been asked when this has come
+echo '@@RIG-OUTSIDE-SET /signals/outputs1 6'
+does 'what is set from outside the chip has' within $patience reads inputs1 185
 same 'nothing has failed' '' "$(systemctl --failed --plain --no-legend)"
 finish
