@@ -142,12 +142,17 @@ class Terminal:
     """owsctl on a terminal of our own; screen() is its present picture, line by line."""
 
     def __init__(self, daemon, lines, columns, *arguments):
+        go, begin = os.pipe()
         self.pid, self.fd = pty.fork()
         if self.pid == 0:
+            os.read(go, 1)  # not before the terminal has been looked at
             os.execv(owsdtest.OWSCTL, [str(owsdtest.OWSCTL), "-n", daemon.name, *arguments])
         self.before = termios.tcgetattr(self.fd)
         self.output = b""
         self.resize(lines, columns)
+        os.write(begin, b"!")
+        os.close(go)
+        os.close(begin)
 
     def resize(self, lines, columns):
         self.columns = columns
@@ -177,6 +182,7 @@ class Terminal:
             pid, status = os.waitpid(self.pid, os.WNOHANG)
             return pid and (os.waitstatus_to_exitcode(status),)
         status, = owsdtest.until(gone, 10, "owsctl ends")
+        self.read()
         restored = (termios.tcgetattr(self.fd)[3] == self.before[3]
                     and self.output.endswith(b"\x1b[?1049l"))
         return status, restored
