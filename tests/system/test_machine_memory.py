@@ -149,6 +149,10 @@ def test_a_start_with_too_few_descriptors_is_refused_with_a_reason(scene):
     assert 3 < refused < 36, refused
 
 
+def open_files(daemon):
+    return [int(n) for n in os.listdir(f"/proc/{daemon.pid}/fd")]
+
+
 def ask(scene):
     """A client of the served protocol: what it is told, or None."""
     done = scene._run([owsdtest.OWSCTL, "-t", f"owserver:{scene.path}/socket", "read",
@@ -159,9 +163,12 @@ def ask(scene):
 def test_without_descriptors_it_serves_what_it_has_and_takes_clients_again_later(scene):
     config = scene.file("house.rio", faulty.house(scene, ListenSocket=str(scene.path / "socket")))
     daemon = scene.owsd(config)
+    until(lambda: scene.get(daemon, "room") == "21.5", 20)
+    alone = len(open_files(daemon))
     until(lambda: ask(scene) == "21.5", 20)
-    open_now = len(os.listdir(f"/proc/{daemon.pid}/fd"))
-    before = limit_descriptors(daemon, max(int(n) for n in os.listdir(f"/proc/{daemon.pid}/fd")) + 1)
+    # it sees that a client has gone after the client does
+    until(lambda: len(open_files(daemon)) == alone, 10, "the client's is closed")
+    before = limit_descriptors(daemon, max(open_files(daemon)) + 1)
     with concurrent.futures.ThreadPoolExecutor(1) as pool:
         waiting = pool.submit(ask, scene)
         count = int(scene.get(daemon, "_TRANSACTIONS"))
@@ -175,7 +182,7 @@ def test_without_descriptors_it_serves_what_it_has_and_takes_clients_again_later
         # who waited at the door is let in when somebody else comes
         until(lambda: ask(scene) == "21.5", 20, "clients are served again")
         assert waiting.result(20) == "21.5"
-    until(lambda: len(os.listdir(f"/proc/{daemon.pid}/fd")) == open_now, 10, "none is lost")
+    until(lambda: len(open_files(daemon)) == alone, 10, "none is lost")
     daemon.signal(signal.SIGHUP)
     until(lambda: scene.get(daemon, "hall") == "19.5", 20, "and the reload is done")
     assert daemon.stop() == 0
