@@ -22,6 +22,7 @@ import glob
 import itertools
 import os
 import pathlib
+import random
 import shutil
 import signal
 import socket
@@ -37,7 +38,10 @@ BUILD = pathlib.Path(os.environ.get("OWSD_BUILD", SOURCE / "build"))
 OWSD = BUILD / "owsd"
 OWSCTL = BUILD / "owsctl"
 NOP, READ, WRITE, DIRALL = 1, 2, 3, 7
+# What a busy machine, a sanitizer and other tests beside may make of the seconds that a wait names
+PATIENCE = 90
 _serial = itertools.count(1)
+_ports = []  # names that keep the ports for us, until we end
 
 
 class Skip(Exception):
@@ -57,26 +61,52 @@ def need(program):
 
 
 def until(condition, seconds, what="", step=0.02):
-    """Wait until condition() is true and return its value; fail after so many seconds."""
+    """Wait until condition() is true and return its value; fail after so many seconds, but not
+    before PATIENCE. what is said then: a text, or a function that makes it."""
+    seconds = max(seconds, PATIENCE)
     deadline = time.monotonic() + seconds
     while True:
+        late = time.monotonic() >= deadline
         value = condition()
         if value:
             return value
-        if time.monotonic() >= deadline:
-            raise Late(f"not within {seconds:g} s: {what or condition}")
+        if late:
+            raise Late(f"not within {seconds:g} s: {what() if callable(what) else what or condition}")
         time.sleep(step)
 
 
 def logged(daemon, text):
     """The log is written beside the work: what was said stands there soon."""
-    until(lambda: text in daemon.log(), 10, f"{text!r} in the log:\n{daemon.log()}")
+    until(lambda: text in daemon.log(), 10, lambda: f"{text!r} in the log:\n{daemon.log()}")
 
 
-def free_port(host="127.0.0.1"):
-    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as s:
-        s.bind((host, 0))
-        return s.getsockname()[1]
+def _unused(port):
+    """At no address of this machine somebody listens or has a connection there."""
+    both = socket.has_dualstack_ipv6()
+    with socket.socket(socket.AF_INET6 if both else socket.AF_INET) as s:
+        if both:
+            s.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 0)
+        try:
+            s.bind(("", port))
+        except OSError:
+            return False
+    return True
+
+
+def free_port():
+    """A port that is ours until this process ends: no other test is given it, nor is it one that the
+    kernel gives to those who do not care which."""
+    for port in random.sample(range(10240, 32768), 1000):
+        keep = socket.socket(socket.AF_UNIX)
+        try:
+            keep.bind(f"\0owsd.test.port.{port}")
+        except OSError:
+            keep.close()
+            continue
+        _ports.append(keep)
+        if _unused(port):
+            return port
+    raise AssertionError("no free port")
 
 
 class raw(str):
@@ -128,8 +158,9 @@ class Program:
     def thaw(self):
         self.signal(signal.SIGCONT)
 
-    def wait(self, seconds=10):
-        """The exit status; fails if it does not end in time."""
+    def wait(self, seconds=PATIENCE):
+        """The exit status; fails if it does not end in time, for which it has PATIENCE."""
+        seconds = max(seconds, PATIENCE)
         try:
             return self.process.wait(seconds)
         except subprocess.TimeoutExpired:
@@ -140,7 +171,7 @@ class Program:
         self.process.kill()
         return self.wait()
 
-    def stop(self, seconds=10):
+    def stop(self, seconds=PATIENCE):
         """SIGTERM (owserver: SIGKILL); returns the exit status."""
         self.thaw()
         self.signal(self.last_signal)
@@ -163,7 +194,7 @@ class Owserver(Program):
                                  f"{host}:{port}",  # it knows no brackets
                                  "--foreground", *self.options])
 
-    def request(self, kind, path="", data=b"", size=8192, flags=0x10A, seconds=5):
+    def request(self, kind, path="", data=b"", size=8192, flags=0x10A, seconds=60):
         """One request on a connection of its own: (ret, payload)."""
         body = path.encode() + b"\0" + data if path else b""
         with socket.create_connection((self.host, self.port), timeout=seconds) as s:
@@ -186,7 +217,7 @@ class Owserver(Program):
 
     def answers(self):
         try:
-            return self.request(NOP, seconds=1)[0] == 0
+            return self.request(NOP, seconds=5)[0] == 0
         except OSError:
             return False
 
@@ -221,8 +252,8 @@ class Owsd(Program):
         super().__init__(scene, [*prefix, OWSD, "-n", name, "-c", config, *options],
                          {"NOTIFY_SOCKET": address, **(env or {})})
 
-    def ready(self, seconds=10):
-        """Wait until it says READY=1 to the service manager."""
+    def ready(self, seconds=PATIENCE):
+        """Wait until it says READY=1 to the service manager, no longer than the seconds."""
         deadline = time.monotonic() + seconds
         self.notify.settimeout(0.05)
         while True:
@@ -257,7 +288,7 @@ class Scene:
                 program.process.send_signal(program.last_signal)
         for program in reversed(self.programs):
             try:
-                program.process.wait(5)
+                program.process.wait(20)
             except subprocess.TimeoutExpired:
                 program.kill()
         if kind is not None and not issubclass(kind, Skip):
@@ -294,7 +325,7 @@ class Scene:
         buses = [(kind, ids) for kind, ids in
                  (("fake", fake), ("tester", tester), ("mock", mock)) if ids]
         for _attempt in range(1 if port else 5):
-            server = Owserver(self, port or free_port(host), buses, host, options)
+            server = Owserver(self, port or free_port(), buses, host, options)
             until(lambda: server.answers() or not server.running(), 10, "owserver answers")
             if server.running():
                 return server
@@ -329,8 +360,8 @@ class Scene:
         return self._run([OWSCTL, *(["-n", name] if name else []), *arguments], seconds)
 
     def _run(self, command, seconds):
-        return subprocess.run([str(c) for c in command], cwd=self.path, text=True, timeout=seconds,
-                              stdin=subprocess.DEVNULL, capture_output=True)
+        return subprocess.run([str(c) for c in command], cwd=self.path, text=True,
+                              timeout=max(seconds, PATIENCE), stdin=subprocess.DEVNULL, capture_output=True)
 
     def get(self, daemon, name):
         """The text of a good value, else None."""
