@@ -309,8 +309,8 @@ class Scene:
         return path
 
     def name(self):
-        """An instance name that nobody else uses."""
-        name = f"T{os.getpid()}x{next(_serial)}x"
+        """An instance name that nobody uses, nor did who was killed and left something of it."""
+        name = f"T{os.getpid()}x{next(_serial)}x{os.urandom(2).hex()}"
         self.names.append(name)
         return name
 

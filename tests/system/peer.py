@@ -46,6 +46,8 @@ import sys
 import threading
 import time
 
+import owsdtest
+
 NOP, READ, WRITE, DIR, PRESENT, DIRALL = 1, 2, 3, 4, 6, 7
 PERSIST = 0x4
 KEEP_ALIVE = struct.pack(">6i", 0, -1, 0, 0, 0, 0)
@@ -64,7 +66,8 @@ class Gone(Exception):
 class Peer:
     def __init__(self, values=None, host="127.0.0.1", port=0):
         self.values = {p: _bytes(v) for p, v in (values or {}).items()}
-        self.host, self.port = host, port
+        # not one of the kernel's choice: it might give that to a client while we are down
+        self.host, self.port = host, port or owsdtest.free_port()
         self.alarms, self.readonly, self.refusals = set(), set(), {}
         self.plan = collections.deque()
         self.requests, self.connections = [], 0

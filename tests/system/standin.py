@@ -79,17 +79,18 @@ def owsctl(arguments):
         words += ["-c", "2", "-t", "1"]
     if "wait" in words and "-t" in words[words.index("wait"):]:
         last = len(words) - 1 - words[::-1].index("-t")
-        words[last + 1] = str(min(5, int(words[last + 1])))
+        words[last + 1] = str(min(60, int(words[last + 1])))
     run([BUILD / "owsctl", *words])
 
 
 def owsd(arguments):
+    import owsdtest  # only here: the other programs are to start quickly
     words = [place(a) for a in arguments]
     if any(w.startswith("--board") for w in words):
         run([BUILD / "owsd", *words, "--root", STAGE / "root"])
     for option in ("-n", "-l"):
         for at in (i + 1 for i, w in enumerate(words) if w == option):
-            words[at] = NAME + "d" if option == "-n" else f"127.0.0.1:{free_port()}"
+            words[at] = NAME + "d" if option == "-n" else f"127.0.0.1:{owsdtest.free_port()}"
     if "-c" not in words:
         words += ["-c", str(STAGE / "root/etc/owsd/OWS.rio")]
     if {"--check", "-V", "--version", "-h", "--help"} & set(words):
@@ -98,24 +99,17 @@ def owsd(arguments):
         words += ["-t", SIMULATED]
     if "-n" not in words:
         words += ["-n", NAME + "d"]
-    sys.exit(until_ready([str(BUILD / "owsd"), *words]))
+    sys.exit(until_ready([str(BUILD / "owsd"), *words], owsdtest.PATIENCE))
 
 
-def free_port():
-    with socket.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
-
-
-def until_ready(command):
+def until_ready(command, seconds):
     """Start owsd, wait until it says that it is ready, and end it."""
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as notify:
         address = str(STAGE / f"notify{os.getpid()}")
         notify.bind(address)
-        notify.settimeout(10)
         daemon = subprocess.Popen(command, env=dict(os.environ, NOTIFY_SOCKET=address))
         said = b""
-        deadline = time.monotonic() + 10
+        deadline = time.monotonic() + seconds
         notify.settimeout(0.1)
         while b"READY=1" not in said and daemon.poll() is None and time.monotonic() < deadline:
             try:
@@ -123,7 +117,7 @@ def until_ready(command):
             except socket.timeout:
                 pass
         daemon.send_signal(signal.SIGTERM)
-        status = daemon.wait(10)
+        status = daemon.wait(seconds)
         return status if b"READY=1" in said else status or 1
 
 
