@@ -57,6 +57,16 @@ def test_a_root_gets_i2c_at_400_khz_and_the_first_start(scene):
     assert everything(top) == before
 
 
+def test_a_line_for_another_board_is_not_taken_for_one_of_all(scene):
+    top = root(scene)
+    file = top / "boot/firmware/config.txt"
+    file.write_text(f"[pi4]\n{WANTED[0]}\n[all]\n{WANTED[1]}\n")
+    for _ in range(2):
+        assert sh(scene, IMAGE / "setup", top).returncode == 0
+        lines = file.read_text().splitlines()
+        assert lines.count(WANTED[0]) == 2 and lines.count(WANTED[1]) == 1, lines
+
+
 def test_the_overlay_of_gpio_4_comes_when_it_is_asked_for(scene):
     top = root(scene, "boot/config.txt")
     (top / "usr/lib/modules-load.d/owsd.conf").unlink()
@@ -85,6 +95,17 @@ def debs(scene, arch="arm64", mark="deb13"):
                  f"owsd_0.1.0+deb99_{arch}"):
         (folder / f"{name}.deb").write_text(name)
     return folder
+
+
+def test_of_several_versions_the_newest_packages_are_taken(scene):
+    folder = debs(scene)
+    for version in ("0.9.0", "0.10.0"):
+        for name in ("owsd", "libows0"):
+            (folder / f"{name}_{version}+deb13_arm64.deb").touch()
+        (folder / f"python3-ows_{version}+deb13_all.deb").touch()
+    done = sh(scene, IMAGE / "debs", folder, "arm64", "trixie")
+    assert done.returncode == 0 and done.stdout.count("_0.10.0+deb13") == 3, done
+    assert len(done.stdout.splitlines()) == 3, done
 
 
 def test_the_stage_of_pi_gen_installs_our_packages_and_sets_the_root_up(scene):
@@ -196,6 +217,19 @@ def test_a_file_that_was_changed_stays(scene):
     ran = first.run()
     assert ran.returncode == 0 and "stays" in ran.stderr and first.done(), ran
     assert first.file.read_text() == PACKAGED + "# mine\n"
+
+
+def test_a_file_that_comes_while_the_scan_goes_on_stays(scene):
+    """As an installer that is about its work at the first start, too, puts it there."""
+    for name, change in (("put", "echo '# mine' >"), ("removed", "rm ")):
+        first = First(scene, name=name)
+        first.tool("owsctl", f"{change}'{first.file}'; exec '{owsdtest.OWSCTL}' \"$@\"")
+        ran = first.run()
+        assert ran.returncode == 0 and "stays" in ran.stderr and first.done(), ran
+        if name == "put":
+            assert first.file.read_text() == "# mine\n" and first.left() == ["OWS.rio"]
+        else:
+            assert first.left() == []
 
 
 def test_with_nothing_found_nothing_is_written_and_the_next_start_looks_again(scene):
