@@ -201,6 +201,15 @@ def test_a_value_that_its_variable_cannot_hold_is_not_good(scene):
     assert plc.cell("I", "X", 0, 0) == 0 and plc.cell("I", "W") == 0
 
 
+def test_a_variable_that_cannot_hold_its_value_is_said_once_beside_one_that_can(scene):
+    daemon = scene.owsd(plant(scene, "-12.5"))
+    plc = Plc(scene, daemon, "%IB0 room1 usint\n%IW0 room1 scale 10\n%ID0 room1_PerCount\n")
+    until(lambda: "%IB0 room1: Numerical result" in plc.listen(), 10, "it says so")
+    counts = set()
+    until(lambda: counts.add(plc.cell("I", "D")) or len(counts) >= 2, 10, "cycles go on")
+    assert plc.listen().count("%IB0 room1: ") == 1, plc.listen()
+
+
 def test_a_plc_that_stops_switches_off_and_one_that_dies_leaves_the_safe_value(scene):
     daemon = scene.owsd(plant(scene))
     plc = Plc(scene, daemon, "%QX0.0 heater\n")
@@ -315,6 +324,26 @@ def test_a_machine_goes_on_when_owsd_is_killed_and_when_it_is_back(scene):
     until(lambda: hal.pin("room1.ok") and hal.pin("heater.ok") and hal.pin("alive"), 10,
           "all is good again")
     wire(scene, daemon, 1)
+
+
+def test_a_pin_whose_signal_has_another_type_after_a_reload_is_not_ok(scene):
+    config = scene.file("plant.rio", plant(scene))
+    daemon = scene.owsd(config)
+    config.write_text(config.read_text().replace('"double"', '"long"'))
+    daemon.signal(signal.SIGHUP)
+    until(lambda: scene.get(daemon, "room1") in ("21", "22"), 10, "the temperature is whole")
+    hal = Hal(scene, daemon, "room1", "wire")
+    hal.hear("ready")
+    until(lambda: hal.pin("room1.ok") == 1, 10, "the temperature is good")
+    before = hal.pins()["owsd.room1"]
+    assert before[0] == "s32" and before[2] in (21, 22)
+    config.write_text(config.read_text().replace('"long"', '"double"'))
+    daemon.signal(signal.SIGHUP)
+    until(lambda: scene.get(daemon, "room1") == "21.5", 10, "it has its half again")
+    until(lambda: "room1: " in hal.listen(), 10, f"it says so: {hal.pins()}")
+    until(lambda: hal.pin("wire.ok") == 1, 10, "the other one is")
+    pins = hal.pins()
+    assert pins["owsd.room1.ok"][2] == 0 and pins["owsd.room1"] == before, pins
 
 
 def test_outputs_go_to_their_safe_value_when_the_component_is_unloaded(scene):

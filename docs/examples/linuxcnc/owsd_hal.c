@@ -27,6 +27,7 @@
 
 #define MILLISECOND 1000000
 #define BEAT_MS 1000
+#define OTHER_TYPE (-EPROTOTYPE) /* of a signal, since a reload, than its pin has */
 
 union pin {
 	hal_bit_t *bit;
@@ -216,7 +217,10 @@ static int add_table(struct ows *h, struct row *rows, const struct options *o, i
 
 static void tell(struct row *row, int err)
 {
-	if (err && err != row->told)
+	if (err == OTHER_TYPE && err != row->told)
+		fprintf(stderr, "owsd_hal: %s: has another type than its pin now: load owsd_hal again\n",
+		        row->name);
+	else if (err && err != row->told)
 		say(row->name, err);
 	row->told = err;
 }
@@ -226,6 +230,7 @@ static bool update(struct ows *h, struct row *row, int64_t now)
 {
 	struct ows_value v;
 	bool stale = false, good;
+	hal_type_t type;
 	int err = 0;
 
 	if (row->output) {
@@ -241,6 +246,11 @@ static bool update(struct ows *h, struct row *row, int64_t now)
 		return stale;
 	}
 	good = good && ows_good(v.quality);
+	if (!row->output) {
+		err = type_of(v.type, &type) || type != row->type ? OTHER_TYPE : 0;
+		tell(row, err);
+		good = good && !err;
+	}
 	/* A reader never finds a bad value with ok */
 	if (!good)
 		*row->ok = 0;

@@ -45,7 +45,6 @@ struct Signal {
 	int id = -ENOENT;
 	bool good = false;
 	ows_value value = ows_value();
-	int told = 0; // the error that the log has already
 };
 
 // One line of the map
@@ -56,6 +55,7 @@ struct Variable {
 	Kind kind = Kind::boolean;
 	double scale = 1, otherwise = 0;
 	bool has_otherwise = false;
+	int told = 0; // the error that the log has already
 
 	std::string text() const
 	{
@@ -324,7 +324,7 @@ public:
 			keep_up(err);
 			s.good = (err == 0 || err == -ESTALE) && ows_good(s.value.quality);
 		}
-		for (const Variable &v : map_.variables) {
+		for (Variable &v : map_.variables) {
 			if (v.area == 'I' && v.kind != Kind::good && present(v))
 				show(v, map_.signals[v.signal]);
 		}
@@ -338,7 +338,7 @@ public:
 	{
 		if (!handle_)
 			return;
-		for (const Variable &v : map_.variables) {
+		for (Variable &v : map_.variables) {
 			if (v.area == 'Q' && present(v))
 				set(v, take(v) / v.scale);
 		}
@@ -352,7 +352,7 @@ public:
 		if (!handle_)
 			return;
 		// OpenPLC has set all outputs to 0 but these
-		for (const Variable &v : map_.variables) {
+		for (Variable &v : map_.variables) {
 			if (v.area == 'Q' && v.size == 'D')
 				set(v, 0);
 		}
@@ -402,32 +402,32 @@ private:
 			stale_ = true;
 	}
 
-	void show(const Variable &v, Signal &s)
+	void show(Variable &v, Signal &s)
 	{
 		bool fits = true;
 
 		if (s.good)
 			fits = put(v, s.value.number * v.scale);
-		tell(s, fits ? 0 : -ERANGE, v);
+		tell(v, s, fits ? 0 : -ERANGE);
 		s.good = s.good && fits;
 		if (!s.good && v.has_otherwise)
 			put(v, v.otherwise);
 	}
 
-	void set(const Variable &v, double value)
+	void set(Variable &v, double value)
 	{
-		Signal &s = map_.signals[v.signal];
+		const Signal &s = map_.signals[v.signal];
 		int err = s.id < 0 ? 0 : ows_set(handle_, s.id, value, nullptr);
 
 		keep_up(err);
-		tell(s, err == -ESTALE ? 0 : err, v);
+		tell(v, s, err == -ESTALE ? 0 : err);
 	}
 
-	void tell(Signal &s, int err, const Variable &v)
+	void tell(Variable &v, const Signal &s, int err)
 	{
-		if (err && err != s.told)
+		if (err && err != v.told)
 			say(v.text() + " " + s.name + ": " + std::strerror(-err));
-		s.told = err;
+		v.told = err;
 	}
 
 	static uint32_t beat_ms()
