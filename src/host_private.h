@@ -30,6 +30,7 @@ struct host {
 	uint32_t *bell;            /* in the command segment */
 	uint32_t ringing;          /* threads that have just looked where it is */
 	int64_t tend_ns;           /* not sooner */
+	struct log_rate tend_rate;
 	int64_t image_lost_ns;
 	/* of a reload: its image is not in place, threads of it do not run; how many of the two */
 	bool unshown, unstarted;

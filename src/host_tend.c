@@ -16,9 +16,11 @@ static int show_renewed(struct host *h)
 {
 	int err = memory_show_commands(&h->now->memory);
 
-	if (!err)
-		h->unseen = false;
-	return err;
+	if (err)
+		return err;
+	h->unseen = false;
+	h->tend_rate = (struct log_rate){0};
+	return 0;
 }
 
 static int renew_commands(struct host *h)
@@ -96,7 +98,9 @@ void host_tend(struct host *h)
 		err = renew_commands(h);
 		h->tend_ns = err ? now_ns + TEND_NS : 0;
 	}
-	if (err)
-		log_err(h->log, "the command segment was taken away and cannot be made again: %s",
+	if (err && log_rate(&h->tend_rate, now_ns))
+		log_err(h->log,
+		        "the command segment was taken away and cannot be made again: %s: "
+		        "it is tried again every second",
 		        strerror(-err));
 }

@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: MIT
 """A full disk and a full /dev/shm, each a small one in a mount namespace of this test."""
 
+import math
 import os
 import pathlib
 import signal
 import subprocess
+import time
 
 import faulty
 import owsdtest
@@ -85,10 +87,15 @@ def test_a_reload_that_dev_shm_has_no_room_for_changes_nothing(scene):
 def test_commands_that_are_taken_away_while_it_is_full_are_made_again_later(scene):
     daemon = scene.owsd(faulty.house(scene))
     room_is_good(scene, daemon)
+    since = time.monotonic()
     os.truncate(SHM / f"owsd.{daemon.name}.command", 0)
     free = fill(scene, SHM)
     until(lambda: "cannot be made again" in daemon.log(), 10, "it is said")
     room_is_good(scene, daemon)
+    time.sleep(6)
+    # once a second it is tried, and said the first, the second, the fourth time
+    said = daemon.log().count("cannot be made again")
+    assert 1 < said <= 2 + math.log2(time.monotonic() - since), daemon.log()
     free()
     until(lambda: scene.owsctl(daemon, "set", "relays", "6").returncode == 0, 10, "sets work again")
     until(lambda: scene.get(daemon, "relays") == "6", 10)
