@@ -83,18 +83,31 @@ static int bind_later(struct serve *s, int fd, const struct listen_address *addr
 	return 0;
 }
 
+/* [::] has those of IPv4 too, unless one of these has the port to itself. */
+static int is_v6_only(const struct config_serve *config, const struct listen_address *address)
+{
+	static const uint8_t any[16];
+
+	if (memcmp(address->bytes, any, sizeof(any)))
+		return 1;
+	for (unsigned i = 0; i < config->address_count; i++)
+		if (!config->addresses[i].is_v6 && config->addresses[i].port == address->port)
+			return 1;
+	return 0;
+}
+
 static int open_network(struct serve *s, const struct listen_address *address)
 {
 	union address to;
 	socklen_t len = fill(address, &to);
 	int fd = socket(to.any.sa_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), one = 1;
-	int err;
+	int only = is_v6_only(&s->config->serve, address), err;
 
 	if (fd < 0)
 		return -errno;
 	setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &one, sizeof(one));
 	if (address->is_v6)
-		setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &one, sizeof(one));
+		setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &only, sizeof(only));
 	/* accepted sockets have it from here */
 	setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &one, sizeof(one));
 	setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &one, sizeof(one));
@@ -213,10 +226,14 @@ static bool is_allowed(struct serve *s, const union address *from)
 
 	if (!config->peer_count)
 		return true;
-	if (peer.is_v6)
+	if (peer.is_v6 && IN6_IS_ADDR_V4MAPPED(&from->v6.sin6_addr)) {
+		peer.is_v6 = false;
+		memcpy(peer.bytes, from->v6.sin6_addr.s6_addr + 12, 4);
+	} else if (peer.is_v6) {
 		memcpy(peer.bytes, &from->v6.sin6_addr, 16);
-	else
+	} else {
 		memcpy(peer.bytes, &from->v4.sin_addr, 4);
+	}
 	return listen_is_loopback(&peer) ||
 	       listen_peers_have(config->peers, config->peer_count, peer.is_v6, peer.bytes);
 }

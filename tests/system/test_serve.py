@@ -405,6 +405,19 @@ def test_it_is_served_to_this_machine_alone_unless_asked(scene):
     owsdtest.logged(daemon, "beyond this machine and lets everybody write")
 
 
+def test_all_addresses_are_those_of_ipv4_too(scene):
+    def reached(port, host):
+        with Link(port, host=host) as link:
+            link.send(NOP, None)
+            return link.answer()[0] == 0
+
+    for listen in (["[::]"], ["0.0.0.0", "[::]"], ["127.0.0.1", "[::]"]):
+        port = owsdtest.free_port()
+        options = [word for host in listen for word in ("-l", f"{host}:{port}")]
+        scene.owsd(owsdtest.rio("null:", [], ListenAllow="192.0.2.0/24"), *options)
+        assert reached(port, "127.0.0.1") and reached(port, "::1"), listen
+
+
 def test_several_targets_are_one_network(scene):
     server = scene.owserver(tester=["28", "29"])
     other = scene.owserver(tester=["26"])
