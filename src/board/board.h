@@ -27,6 +27,7 @@ struct board_report {
 	struct board_line line[BOARD_LINES]; /* facts, then what is missing, then notes */
 	unsigned count;
 	bool missing;
+	bool full; /* the line that was added last found no place */
 };
 
 /* The folder of the board data: $OWSD_BOARDS, else beside this program. */

@@ -82,7 +82,7 @@ bool board_configured(const char *root, const char *line)
 	const char *equals = strchr(line, '=');
 	size_t key = equals ? (size_t)(equals - line) + 1 : 0;
 	char path[BOARD_PATH], text[256];
-	bool found = false;
+	bool found = false, all = true;
 	FILE *in;
 
 	board_path(path, root, "%s", board_config(root));
@@ -90,7 +90,10 @@ bool board_configured(const char *root, const char *line)
 	while (in && !found && fgets(text, sizeof(text), in)) {
 		char *at = text + strspn(text, " \t"), *rest, *word;
 
-		if (strncmp(at, line, key))
+		/* below a filter such as [pi4] a line is not for every board */
+		if (*at == '[')
+			all = !strncmp(at, "[all]", 5);
+		if (!all || strncmp(at, line, key))
 			continue;
 		for (word = strtok_r(at + key, ", \t\r\n", &rest); word && !found;
 		     word = strtok_r(NULL, ", \t\r\n", &rest))

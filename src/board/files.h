@@ -20,7 +20,10 @@ bool board_there(const char *root, const char *file);
 void board_link(const char *root, const char *file, char *name, size_t size);
 /* The firmware's config.txt as it is called on this system. */
 const char *board_config(const char *root);
-/* Has config.txt this line, as "dtparam=i2c_arm=on"? Several parameters may stand on one line. */
+/*
+ * Has config.txt this line for every board, as "dtparam=i2c_arm=on"? Several parameters may stand on
+ * one line.
+ */
 bool board_configured(const char *root, const char *line);
 
 #endif

@@ -87,14 +87,11 @@ static void tell_adapter(const struct scene *scene, unsigned number)
 
 	snprintf(file, sizeof(file), "/sys/bus/i2c/devices/i2c-%u/of_node/clock-frequency", number);
 	hz = board_cell(scene->root, file);
-	report_add(scene->report, BOARD_FACT, "I2C: /dev/i2c-%u", number);
-	if (hz) {
-		char *text = scene->report->line[scene->report->count - 1].text;
-		size_t len = strlen(text);
-
-		snprintf(text + len, sizeof(scene->report->line[0].text) - len, " at %u kHz",
-		         hz / 1000);
-	}
+	if (hz)
+		report_add(scene->report, BOARD_FACT, "I2C: /dev/i2c-%u at %u kHz", number,
+		           hz / 1000);
+	else
+		report_add(scene->report, BOARD_FACT, "I2C: /dev/i2c-%u", number);
 	if (!scene->board || !hz || hz / 1000 >= scene->board->khz)
 		return;
 	report_add(scene->report, BOARD_NOTE, "I2C runs at %u kHz; a DS2482 takes %u, and its "

@@ -16,7 +16,9 @@ void report_add(struct board_report *report, enum board_kind kind, const char *f
 	struct board_line *line = &report->line[report->count];
 	va_list args;
 
-	if (report->count == BOARD_LINES)
+	report->missing |= kind == BOARD_MISSING;
+	report->full = report->count == BOARD_LINES;
+	if (report->full)
 		return;
 	report->count++;
 	line->kind = kind;
@@ -25,7 +27,6 @@ void report_add(struct board_report *report, enum board_kind kind, const char *f
 	vsnprintf(line->text, sizeof(line->text), format, args);
 	va_end(args);
 	clean(line->text);
-	report->missing |= kind == BOARD_MISSING;
 }
 
 void report_mend(struct board_report *report, const char *format, ...)
@@ -33,6 +34,8 @@ void report_mend(struct board_report *report, const char *format, ...)
 	struct board_line *line = &report->line[report->count - 1];
 	va_list args;
 
+	if (report->full)
+		return;
 	va_start(args, format);
 	vsnprintf(line->mend, sizeof(line->mend), format, args);
 	va_end(args);

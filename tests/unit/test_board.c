@@ -186,6 +186,17 @@ static void test_a_line_that_is_there_and_not_in_force_wants_a_reboot(void)
 	expect_not("is off");
 }
 
+static void test_a_line_for_another_board_is_none_of_this_one(void)
+{
+	text("/proc/device-tree/model", "Raspberry Pi 3 Model B Rev 1.2");
+	text("/boot/firmware/config.txt", "[pi4]\ndtparam=i2c_arm=on\n[all]\ndtparam=audio=on\n");
+	look();
+	expect(BOARD_MISSING, "I2C is off: there is no adapter i2c-1", "sudo raspi-config");
+	text("/boot/firmware/config.txt", "[pi4]\n[all]\ndtparam=i2c_arm=on\n");
+	look();
+	expect(BOARD_MISSING, "has dtparam=i2c_arm=on", "sudo reboot");
+}
+
 static void test_an_adapter_without_a_device_file_wants_the_module(void)
 {
 	good_pi();
@@ -314,6 +325,36 @@ static void test_a_machine_without_a_device_tree_takes_any_adapter(void)
 	TEST_ASSERT_FALSE(report.missing);
 }
 
+static void test_more_than_a_report_holds_leaves_its_lines_right(void)
+{
+	static const char *const chips[] = {"0018", "0019", "001a", "001b"};
+	unsigned claims = 0;
+	char client[16];
+
+	for (unsigned n = 0; n < 8; n++) {
+		adapter(n, n % 2 ? 400000 : 0);
+		for (unsigned i = 0; i < 4; i++) {
+			snprintf(client, sizeof(client), "%u-%s", n, chips[i]);
+			claimed(client, "ds2482");
+		}
+	}
+	look();
+	TEST_ASSERT_EQUAL_UINT(BOARD_LINES, report.count);
+	TEST_ASSERT_TRUE_MESSAGE(report.missing, "the module is missing, said or not");
+	for (unsigned i = 0; i < report.count; i++) {
+		const struct board_line *line = &report.line[i];
+		unsigned number, address;
+
+		if (sscanf(line->text, "the chip at 0x%x of i2c-%u", &address, &number) == 2) {
+			snprintf(client, sizeof(client), "echo %u-%04x ", number, address);
+			TEST_ASSERT_EQUAL_STRING_LEN(client, line->mend, strlen(client));
+			TEST_ASSERT_NULL_MESSAGE(strstr(line->text, " kHz"), line->text);
+			claims++;
+		}
+	}
+	TEST_ASSERT_GREATER_THAN_UINT(10, claims);
+}
+
 static void test_the_kernels_masters_are_named(void)
 {
 	good_pi();
@@ -393,6 +434,7 @@ int main(void)
 	RUN_TEST(test_an_interface_that_is_off_names_the_command_and_the_line);
 	RUN_TEST(test_an_older_system_has_its_config_txt_elsewhere);
 	RUN_TEST(test_a_line_that_is_there_and_not_in_force_wants_a_reboot);
+	RUN_TEST(test_a_line_for_another_board_is_none_of_this_one);
 	RUN_TEST(test_an_adapter_without_a_device_file_wants_the_module);
 	RUN_TEST(test_a_device_file_that_one_may_not_open_names_its_mend);
 	RUN_TEST(test_a_file_of_a_group_names_the_group_to_join);
@@ -403,6 +445,7 @@ int main(void)
 	RUN_TEST(test_a_hat_is_known_by_what_its_eeprom_says);
 	RUN_TEST(test_a_board_that_does_not_tell_is_named);
 	RUN_TEST(test_a_machine_without_a_device_tree_takes_any_adapter);
+	RUN_TEST(test_more_than_a_report_holds_leaves_its_lines_right);
 	RUN_TEST(test_the_kernels_masters_are_named);
 	RUN_TEST(test_without_data_the_machine_is_looked_at_all_the_same);
 	RUN_TEST(test_wrong_data_is_refused_with_its_line);
