@@ -391,7 +391,7 @@ m32:
 	fi
 # The headers of the kernel are those of this machine; gcc-multilib would link them for -m32
 m32: export EXTRA_CFLAGS := -m32 -msse2 -mfpmath=sse -D_TIME_BITS=64 \
-            -idirafter /usr/include/$(shell $(CC) -print-multiarch)
+            -idirafter /usr/include/$(shell $(CC) -print-multiarch 2>/dev/null)
 
 # --- Diagrams: made of the program's own tables, and kept beside the pages that show them -------
 diagrams:
