@@ -94,7 +94,7 @@ class Traced(owsdtest.Owsd):
 
 def ctl(scene, daemon, environment, *arguments):
     """owsctl under the same faults."""
-    return subprocess.run([str(owsdtest.OWSCTL), "-n", daemon.name, *arguments], text=True, timeout=20,
+    return subprocess.run([str(owsdtest.OWSCTL), "-n", daemon.name, *arguments], text=True, timeout=owsdtest.PATIENCE,
                           cwd=scene.path, stdin=subprocess.DEVNULL, capture_output=True,
                           env=dict(os.environ, **environment))
 

@@ -109,6 +109,14 @@ def free_port():
     raise AssertionError("no free port")
 
 
+def need_ipv6():
+    try:
+        with socket.socket(socket.AF_INET6) as s:
+            s.bind(("::1", 0))
+    except OSError as why:
+        skip(f"no IPv6 here: {why}")
+
+
 class raw(str):
     """A value that rio() writes without quotes: raw("0x0018")."""
 
@@ -153,7 +161,9 @@ class Program:
         self.process.send_signal(number)
 
     def freeze(self):
+        """SIGSTOP; returns when all its threads have stopped."""
         self.signal(signal.SIGSTOP)
+        os.waitid(os.P_PID, self.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
 
     def thaw(self):
         self.signal(signal.SIGCONT)

@@ -230,19 +230,19 @@ class Peer:
 
     @staticmethod
     def _until_gone(s, stop, what, seconds, every=0.2):
-        """Send what again and again until the time is over; raises Gone when the client went."""
-        end = time.monotonic() + seconds
-        while (left := end - time.monotonic()) > 0:
-            s.settimeout(min(every, left))
+        """Send what again and again, as often as it fits into the time however late we are; raises
+        Gone when the client went."""
+        for _ in range(round(seconds / every)):
+            s.settimeout(every)
             try:
                 if not s.recv(1, socket.MSG_PEEK):
                     raise Gone
-                time.sleep(min(every, left))
+                time.sleep(every)
             except socket.timeout:
                 pass
             if stop.is_set():
                 raise Gone
-            s.settimeout(5)
+            s.settimeout(60)
             s.sendall(what)
         s.settimeout(None)
 

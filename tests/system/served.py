@@ -95,7 +95,7 @@ class Server:
         self.program, self.host, self.port, self.genuine = program, host, port, genuine
         self.target = f"{host}:{port}"
 
-    def connect(self, seconds=10):
+    def connect(self, seconds=owsdtest.PATIENCE):
         s = socket.create_connection((self.host, self.port), timeout=seconds)
         s.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         return s
