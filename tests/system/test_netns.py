@@ -29,7 +29,7 @@ class Cable:
         Cable.serial += 1
         self.server, self.clients = (f"owsd{os.getpid()}{side}{Cable.serial}" for side in "sc")
 
-    def __enter__(self):
+    def lay(self):
         for name in (self.server, self.clients):
             self.ip("netns", "add", name)
         self.ip("link", "add", "wire", "netns", self.server, "type", "veth", "peer", "name", "wire",
@@ -41,9 +41,8 @@ class Cable:
                 self.ip("-n", name, "address", "add", f"{address[side]}/64", "dev", "wire", "nodad")
             for interface in ("lo", "wire"):
                 self.ip("-n", name, "link", "set", interface, "up")
-        return self
 
-    def __exit__(self, *_):
+    def remove(self):
         for name in (self.server, self.clients):
             subprocess.run(["ip", "netns", "del", name], check=False, capture_output=True)
 
@@ -77,11 +76,15 @@ def cable():
         owsdtest.skip("needs root, to make network namespaces")
     if not shutil.which("ip"):
         owsdtest.skip("ip is not installed")
+    made = Cable()
     try:
-        with Cable() as made:
-            yield made
-    except subprocess.CalledProcessError as why:
-        owsdtest.skip(f"no network namespaces: {why}")
+        try:
+            made.lay()
+        except subprocess.CalledProcessError as why:
+            owsdtest.skip(f"no network namespaces: {why}")
+        yield made
+    finally:
+        made.remove()
 
 
 def told(done, value):
@@ -102,8 +105,8 @@ def test_a_port_alone_is_for_this_machine_alone(scene):
                          "src", V4[1])):
             subprocess.run(command, check=False, capture_output=True)
         assert net.ask(scene, f"127.77.0.1:{PORT}").returncode != 0
-        counters = faulty.counters(scene, daemon)
-        assert counters["served_connections"] >= 2 and counters["served_refused_peers"] == 0
+        until(lambda: faulty.counters(scene, daemon)["served_connections"] >= 2, 10)
+        assert faulty.counters(scene, daemon)["served_refused_peers"] == 0
 
 
 def test_only_networks_that_are_allowed_reach_an_address(scene):
@@ -119,7 +122,7 @@ def test_only_networks_that_are_allowed_reach_an_address(scene):
         for family, source, target in (("AF_INET", OTHER4[1], V4[0]), ("AF_INET6", OTHER6[1], V6[0])):
             stranger = net.client(scene, f"""
 s = socket.socket(socket.{family})
-s.settimeout(20)
+s.settimeout(60)
 s.bind(({source!r}, 0))
 s.connect(({target!r}, {PORT}))
 try:
@@ -129,7 +132,7 @@ except ConnectionError as why:
     print('got', why)
 """)
             assert stranger.wait(30) == 0, stranger.log()
-            assert "got b''" in stranger.log() or "reset" in stranger.log().lower(), stranger.log()
+            assert any(end in stranger.log() for end in ("got b''", "reset", "Broken pipe")), stranger.log()
             refused += 1
             until(lambda: faulty.counters(scene, daemon)["served_refused_peers"] == refused, 10)
         owsdtest.logged(daemon, "refused: not in ListenAllow")
@@ -149,19 +152,21 @@ def clients(scene, daemon):
     return faulty.counters(scene, daemon)["served_clients"]
 
 
+def sockets(daemon):
+    """How many descriptors are sockets; files come and go."""
+    found = 0
+    for entry in os.scandir(f"/proc/{daemon.pid}/fd"):
+        with contextlib.suppress(FileNotFoundError):
+            found += os.readlink(entry.path).startswith("socket:")
+    return found
+
+
 def test_a_cable_that_is_pulled_in_the_middle_leaves_no_client_behind(scene):
     with cable() as net:
         daemon = net.owsd(scene, f"{V4[0]}:{PORT}", ListenAllow="192.0.2.0/24")
-        before = len(os.listdir(f"/proc/{daemon.pid}/fd"))
-        half = net.client(scene, f"""
-whole = served.request(served.READ, {ROOM!r})
-s = socket.create_connection(({V4[0]!r}, {PORT}))
-s.sendall(whole[:30])
-print('half', flush=True)
-time.sleep(60)
-""")
-        # more answers than fit on the way, and none of them is taken
-        greedy = net.client(scene, f"""
+        before = sockets(daemon)
+        # one with more answers than fit on the way, of which none is taken, and one with half a request
+        two = net.client(scene, f"""
 s = socket.create_connection(({V4[0]!r}, {PORT}))
 s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
 s.settimeout(1)
@@ -169,16 +174,19 @@ try:
     while True:
         s.sendall(served.request(served.DIRALL, '/', served.USUAL | served.PERSIST) * 50)
 except OSError:
-    print('full', flush=True)
-time.sleep(60)
+    pass
+half = socket.create_connection(({V4[0]!r}, {PORT}))
+half.sendall(served.request(served.READ, {ROOM!r})[:30])
+print('both', flush=True)
+time.sleep(600)
 """)
-        until(lambda: "half" in half.log() and "full" in greedy.log(), 30)
-        assert clients(scene, daemon) == 2
+        until(lambda: "both" in two.log(), 30)
+        until(lambda: faulty.counters(scene, daemon)["served_connections"] == 2, 10)
         net.ip("-n", net.clients, "link", "set", "wire", "down")
-        assert scene.get(daemon, "room") == "21.5"
+        until(lambda: scene.get(daemon, "room") == "21.5", 10, "the table does not mind")
         until(lambda: clients(scene, daemon) == 0, 40, "both are dropped")
-        until(lambda: len(os.listdir(f"/proc/{daemon.pid}/fd")) == before, 10, "with their descriptors")
-        assert faulty.counters(scene, daemon)["served_timeouts"] == 2
+        until(lambda: sockets(daemon) == before, 10, "with their descriptors")
+        until(lambda: faulty.counters(scene, daemon)["served_timeouts"] == 2, 10, "for want of a word")
         net.ip("-n", net.clients, "link", "set", "wire", "up")
         until(lambda: told(net.ask(scene, f"{V4[0]}:{PORT}"), "21.5"), 30, "served again")
 
@@ -186,9 +194,10 @@ time.sleep(60)
 def test_a_client_that_sends_a_byte_now_and_then_is_dropped_at_the_deadline(scene):
     with cable() as net:
         daemon = net.owsd(scene, f"[{V6[0]}]:{PORT}", ListenAllow="2001:db8:1::/64")
+        # the whole of it takes longer than we wait
         slow = net.client(scene, f"""
 s = socket.create_connection(({V6[0]!r}, {PORT}))
-for byte in served.request(served.READ, '/x' * 200):
+for byte in served.request(served.READ, '/x' * 1000):
     try:
         s.sendall(bytes([byte]))
     except OSError:
@@ -205,7 +214,7 @@ def test_an_owsd_on_the_other_side_takes_a_cut_as_a_target_that_is_down(scene):
     """owsd over owsd through the cable: bad while it is cut, good again by itself."""
     with cable() as net:
         net.owsd(scene, f"{V4[0]}:{PORT}", ListenAllow="192.0.2.0/24")
-        far = scene.owsd(owsdtest.rio(f"{V4[0]}:{PORT}", [faulty.ROOM], Period=0.05, Timeout=1),
+        far = scene.owsd(owsdtest.rio(f"{V4[0]}:{PORT}", [faulty.ROOM], Period=0.05, Timeout=3),
                          prefix=net.inside(net.clients))
         until(lambda: scene.get(far, "room") == "21.5", 20)
         net.ip("-n", net.server, "link", "set", "wire", "down")
