@@ -4,9 +4,9 @@
  *   read PATH · fresh PATH · write PATH VALUE · dir PATH · probe PATH
  *                 "ok TEXT" (newlines of a listing as blanks) or "error NUMBER"
  *   simulated PATH  reads: "ok yes" or "ok no"
- *   timeout MS    for the requests that follow; 5000 at first
+ *   timeout MS    for the requests that follow; a minute at first
  *   repeat N PATH reads: "ok" when all were good, else "error" and the first error
- *   up · down     waits up to 20 s for this news: "ok TEXT", "error" when it did not come
+ *   up · down     waits up to 90 s for this news: "ok TEXT", "error" when it did not come
  *   counters      "ok name=value ..."
  */
 #include <errno.h>
@@ -21,8 +21,8 @@
 
 static struct worker *worker;
 static uint8_t data[70000];
-static int64_t timeout_ns = 5000 * MS;
-static struct bus_event news[64];
+static int64_t timeout_ns = 60000 * MS;
+static struct bus_event news[4096];
 static unsigned n_news, news_seen;
 
 static int64_t now(void)
@@ -96,7 +96,7 @@ static void repeat(char *arguments)
 
 static void await(enum bus_news what)
 {
-	int64_t until = now() + 20000 * MS;
+	int64_t until = now() + 90000 * MS;
 	struct bus_answer none;
 
 	while (now() < until) {
@@ -186,7 +186,7 @@ int main(int argc, char **argv)
 		obey(line);
 		fflush(stdout);
 	}
-	if (worker_stop(worker, 5000 * MS))
+	if (worker_stop(worker, 60000 * MS))
 		return 1;
 	worker_destroy(worker);
 	return 0;
