@@ -37,7 +37,7 @@ def build(name, compilers, command):
                                    f"-I{SOURCE}/src/libows", *command,
                                    *os.environ.get("EXTRA_CFLAGS", "").split(), "-o", program,
                                    str(owsdtest.BUILD / "libows.a"), "-lm", "-pthread"],
-                                  text=True, capture_output=True, timeout=60)
+                                  text=True, capture_output=True, timeout=400)
             assert done.returncode == 0, done.stderr
             _built[name] = program
         return _built[name]
@@ -150,7 +150,7 @@ def test_a_plc_program_reads_a_temperature_and_drives_a_relay(scene):
     for state in (1, 0, 1):
         wire(scene, daemon, state)
     assert plc.cell("I", "W") in (1900, 2300)
-    assert plc.cell("I", "X", 0, 2) == 1
+    until(lambda: plc.cell("I", "X", 0, 2) == 1, 10, "the output is good")
 
 
 def test_a_plc_knows_that_owsd_is_gone_and_goes_on_when_it_is_back(scene):
@@ -174,7 +174,7 @@ def test_a_plc_that_was_started_before_owsd_waits_for_it(scene):
     assert plc.cell("I", "X") == 0 and plc.cell("I", "W", kind="h") == -9999
     daemon = scene.owsd(plant(scene), name=name)
     until(lambda: plc.cell("I", "X") == 1, 10, "the temperature is good")
-    assert plc.cell("I", "W") == 2150
+    until(lambda: plc.cell("I", "W") == 2150, 10, "and there")
     plc.say("set Q X 0 0 1")
     wire(scene, daemon, 1)
 
@@ -270,9 +270,10 @@ def test_signals_are_pins_of_their_type_and_a_text_is_left_out(scene):
     until(lambda: hal.pin("room1.ok") == 1, 10, "the temperature is good")
     pins = hal.pins()
     assert pins["owsd.room1"] == ("float", "out", 21.5)
-    assert pins["owsd.room1.age"][:2] == ("float", "out") and pins["owsd.room1.age"][2] < 30
+    assert pins["owsd.room1.age"][:2] == ("float", "out") and pins["owsd.room1.age"][2] < 300
     assert pins["owsd.heater"][:2] == ("bit", "in") and pins["owsd.wire"][:2] == ("bit", "out")
-    assert pins["owsd.alive"] == ("bit", "out", 1)
+    assert pins["owsd.alive"][:2] == ("bit", "out")
+    until(lambda: hal.pin("alive") == 1, 10, "owsd is alive")
     assert "owsd.kind" not in pins and "owsd_hal: kind: " in hal.listen()
 
 
@@ -293,7 +294,9 @@ def test_a_pin_that_is_set_drives_the_relay(scene):
     hal = Hal(scene, daemon, "heater")
     hal.hear("ready")
     time.sleep(0.3)
-    assert hal.pin("heater") == 1 and scene.get(daemon, "heater") == "1"
+    assert hal.pin("heater") == 1
+    until(lambda: scene.get(daemon, "heater") == "1", 10, "it stays on")
+    wire(scene, daemon, 1)
 
 
 def test_pins_that_are_linked_follow_their_signal(scene):
