@@ -113,10 +113,11 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 	master->count = 0;
 	master->slave_count = 0;
 	master->told_rights = false;
-	if (strcmp(master->root, W1_ROOT) == 0)
-		w1_uevents_open(master);
-	if (w1_look_for_masters(master))
+	if (w1_look_for_masters(master)) {
+		if (strcmp(master->root, W1_ROOT) == 0)
+			w1_uevents_open(master);
 		return 0;
+	}
 	if (master->only)
 		snprintf(why, why_size, "the kernel has no w1_bus_master%u", master->only);
 	else

@@ -158,6 +158,8 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 	netlink->look_ns = 0;
 	if (n)
 		return n;
+	/* its own search finds devices; nobody would take what the kernel says of them */
+	w1_uevents_close((struct w1_master *)netlink->files);
 	n = has_no_slots() ? -EOPNOTSUPP : w1_talk_open(&netlink->talk);
 	if (!n) {
 		n = w1_talk_masters(&netlink->talk, numbers, W1_MASTERS);

@@ -171,6 +171,19 @@ static void test_a_uevent_of_the_kernel_makes_it_look_at_once(void)
 	close(ends[1]);
 }
 
+/* In the kernel's own folder there is none of that number. */
+static void test_without_a_master_nobody_listens_to_uevents(void)
+{
+	struct link_master *master;
+	char why[160];
+
+	TEST_ASSERT_EQUAL_INT(0, w1_master.create("w1_bus_master9998", &fs.host.env, &master, why,
+	                                          sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(-ENODEV, w1_master.open(master, why, sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(-1, ((struct w1_master *)master)->uevents);
+	w1_master.destroy(master);
+}
+
 static void test_a_slave_that_has_just_gone_is_no_device(void)
 {
 	fs_thermometer(WARM, 0x151);
@@ -427,6 +440,7 @@ int main(void)
 	RUN_TEST(test_a_master_that_comes_later_is_one_more_bus);
 	RUN_TEST(test_slaves_that_come_and_go_are_told);
 	RUN_TEST(test_a_uevent_of_the_kernel_makes_it_look_at_once);
+	RUN_TEST(test_without_a_master_nobody_listens_to_uevents);
 	RUN_TEST(test_a_slave_that_has_just_gone_is_no_device);
 	RUN_TEST(test_identity_needs_no_attribute);
 	RUN_TEST(test_a_ds2438_measures);
