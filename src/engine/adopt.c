@@ -18,8 +18,11 @@ static void take_time(struct engine *e, const struct engine *old, int64_t now_ns
 	e->period = old->period;
 	e->now_ns = now_ns;
 	e->start_ns = old->start_ns;
-	if (e->config->period_ns != old->config->period_ns)
-		e->start_ns = now_ns - (int64_t)old->period * e->config->period_ns;
+	e->first = old->first;
+	if (e->config->period_ns != old->config->period_ns) {
+		e->start_ns = now_ns;
+		e->first = old->period;
+	}
 	for (uint32_t row = 0; row < e->table.count; row++)
 		due_wheel_cancel(&e->limit_wheel, row);
 	e->wheel.period = e->limit_wheel.period = e->route_wheel.period = e->period;

@@ -127,7 +127,7 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 		engine_publish_counters(e);
 		engine_publish_driver(e, now_ns);
 	}
-	next = e->start_ns + (int64_t)(e->period + 1) * e->config->period_ns;
+	next = e->start_ns + (int64_t)(e->period - e->first + 1) * e->config->period_ns;
 	groups = engine_groups_turn(e, now_ns);
 	if (groups < next)
 		next = groups;

@@ -84,7 +84,7 @@ void engine_limits(struct engine *e, struct signal *s)
 	if (next == INT64_MAX)
 		due_wheel_cancel(&e->limit_wheel, engine_row(s));
 	else
-		due_wheel_at(&e->limit_wheel, engine_row(s), engine_periods(e, next - e->start_ns));
+		due_wheel_at(&e->limit_wheel, engine_row(s), engine_period_at(e, next));
 }
 
 void engine_limits_acknowledge(struct engine *e, struct signal *s)

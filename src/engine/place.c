@@ -137,7 +137,7 @@ static void route(struct engine *e, uint32_t index, int64_t now_ns)
 	if (next == INT64_MAX)
 		due_wheel_cancel(&e->route_wheel, index);
 	else
-		due_wheel_at(&e->route_wheel, index, engine_periods(e, next - e->start_ns));
+		due_wheel_at(&e->route_wheel, index, engine_period_at(e, next));
 }
 
 static void ready(void *ctx, uint32_t device)

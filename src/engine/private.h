@@ -36,8 +36,8 @@ struct engine {
 	struct image *image;
 	struct commands *commands;
 	struct log *log;
-	int64_t start_ns;
-	uint64_t period; /* boundaries since start */
+	int64_t start_ns; /* of period first: since then all were of the same length */
+	uint64_t period, first; /* boundaries since owsd's start */
 	struct table table;
 	struct structure structure;
 	struct alarm_item *alarm_items; /* all of the table, in its order */
@@ -87,6 +87,11 @@ static inline uint32_t engine_row(const struct signal *s)
 static inline uint64_t engine_periods(const struct engine *e, int64_t ns)
 {
 	return (uint64_t)((ns + e->config->period_ns - 1) / e->config->period_ns);
+}
+/* The first period that does not begin before that time, but for those before start_ns. */
+static inline uint64_t engine_period_at(const struct engine *e, int64_t ns)
+{
+	return e->first + (ns > e->start_ns ? engine_periods(e, ns - e->start_ns) : 0);
 }
 
 /* schedule.c: when rows are read and written */

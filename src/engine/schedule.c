@@ -69,7 +69,7 @@ static void limit_ready(void *ctx, uint32_t row)
 
 void engine_turn(struct engine *e, int64_t now_ns)
 {
-	uint64_t period = (uint64_t)((now_ns - e->start_ns) / e->config->period_ns);
+	uint64_t period = e->first + (uint64_t)((now_ns - e->start_ns) / e->config->period_ns);
 
 	if (period <= e->period)
 		return;

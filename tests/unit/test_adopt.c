@@ -252,6 +252,31 @@ static void test_the_count_of_periods_goes_on_when_their_length_changes(void)
 	TEST_ASSERT_LESS_OR_EQUAL_UINT32(2, scene_sample(&s, 0).count - scene_attrs(&s, 1).per_base);
 }
 
+static void slowest(struct config *config)
+{
+	config->period_ns = 60 * SCENE_S;
+}
+
+/* So many periods that, were they as long as the new ones, owsd would have run for four centuries. */
+static void test_the_count_of_periods_goes_on_after_years(void)
+{
+	uint64_t before;
+	int64_t measured_ns;
+
+	house();
+	s.now_ns += 7 * INT64_C(365) * 86400 * SCENE_S;
+	scene_run(&s, 10 * SCENE_S);
+	before = scene_counter(&s, "periods");
+	TEST_ASSERT_GREATER_THAN_UINT64(UINT64_C(2000000000), before);
+	scene_reload(&s, slowest);
+	measured_ns = scene_sample(&s, 1).measured_ns;
+	scene_run(&s, 600 * SCENE_S);
+	TEST_ASSERT_UINT64_WITHIN(1, before + 10, scene_counter(&s, "periods"));
+	TEST_ASSERT_GREATER_THAN_INT64(measured_ns + 500 * SCENE_S, scene_sample(&s, 1).measured_ns);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+	TEST_ASSERT_LESS_OR_EQUAL_UINT32(2, scene_sample(&s, 0).count - scene_attrs(&s, 1).per_base);
+}
+
 static void other_alias(struct config *config)
 {
 	add(config, "late", "/28.000000000009/temperature");
@@ -520,6 +545,7 @@ int main(void)
 	RUN_TEST(test_a_command_for_another_path_is_not_carried);
 	RUN_TEST(test_a_bad_signal_keeps_its_back_off);
 	RUN_TEST(test_the_count_of_periods_goes_on_when_their_length_changes);
+	RUN_TEST(test_the_count_of_periods_goes_on_after_years);
 	RUN_TEST(test_a_new_signal_is_not_stale_from_its_first_moment);
 	RUN_TEST(test_a_signal_that_is_not_read_any_more_is_not_good);
 	RUN_TEST(test_a_limit_that_is_new_knows_no_value_before_its_first);
