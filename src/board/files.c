@@ -11,7 +11,7 @@
 
 void board_path(char *path, const char *root, const char *format, ...)
 {
-	size_t len = (size_t)snprintf(path, BOARD_PATH, "%.*s", BOARD_PATH / 2, root);
+	size_t len = (size_t)snprintf(path, BOARD_PATH, "%.*s", BOARD_ROOT, root);
 	va_list args;
 
 	va_start(args, format);

@@ -7,6 +7,7 @@
 #include <stddef.h>
 
 #define BOARD_PATH 512
+#define BOARD_ROOT 256 /* at most so much of it is the root */
 
 /* The path below the root. */
 void board_path(char *path, const char *root, const char *format, ...)

@@ -275,6 +275,12 @@ int board_look(const char *root, const char *folder, const char *id, struct boar
 	int count, err;
 
 	*report = (struct board_report){0};
+	if (strlen(root) > BOARD_ROOT) {
+		snprintf(why, why_size, "the name of the folder is too long: %d characters at most",
+		         BOARD_ROOT);
+		free(data);
+		return -ENAMETOOLONG;
+	}
 	count = data ? board_data_list(folder, data, BOARDS, fault, sizeof(fault)) : -ENOMEM;
 	if (count < 0) {
 		report_add(report, BOARD_NOTE, "no board data: %s",

@@ -53,6 +53,18 @@ def test_a_board_that_does_not_tell_is_named(scene):
     assert "monarco-hat" in board(scene, root, 2, "=unipy").stderr
 
 
+def test_a_root_that_is_too_long_is_refused(scene):
+    """Not looked at as far as there is room: that is another folder."""
+    base = scene.path / "root"
+    short = base / ("a" * (255 - len(str(base))))
+    (short / "sys/bus/i2c/devices/i2c-1").mkdir(parents=True)
+    (short / "dev").mkdir()
+    (short / "dev/i2c-1").touch(0)
+    for root in (f"{short}{'b' * 10}", f"{short}/{'c/' * 2000}"):
+        done = scene.owsd_once("--board", "--root", root)
+        assert done.returncode == 2 and "too long" in done.stderr and not done.stdout, done
+
+
 def test_wrong_use_is_refused(scene):
     assert "--root goes with --board" in scene.owsd_once("--root", "/").stderr
 
