@@ -20,10 +20,10 @@ RUN = owsdtest.SOURCE / "board/demo/run"
 class Terminal:
     """board/demo/run on a terminal of its own."""
 
-    def __init__(self, scene, *arguments):
+    def __init__(self, scene, *arguments, name=None):
         for program in (owsdtest.OWSD, owsdtest.OWSCTL):
             owsdtest.need(program)
-        self.name = scene.name()
+        self.name = name or scene.name()
         self.port = owsdtest.free_port()
         self.text = ""
         self.status = None
@@ -187,6 +187,41 @@ def test_a_simulated_target_of_ones_own_is_scanned(scene):
                      row="temperature1")
     os.write(terminal.master, b"\x03")
     terminal.gone()
+
+
+def test_an_instance_that_is_another_s_is_left_alone(scene):
+    daemon = scene.owsd(owsdtest.SOURCE / "board/demo/house.rio", "-t",
+                        f"sim:{owsdtest.SOURCE}/board/demo/house.sim")
+    near = f"/dev/shm/owsd.{daemon.name}.near.image"
+    with open(near, "wb"):
+        pass
+    try:
+        before = glob.glob(f"/dev/shm/*{daemon.name}*")
+        terminal = Terminal(scene, name=daemon.name)
+        try:
+            terminal.shows(f"already served by process {daemon.pid}")
+        finally:
+            terminal.gone()
+        assert os.waitstatus_to_exitcode(terminal.status) == 1
+        assert sorted(glob.glob(f"/dev/shm/*{daemon.name}*")) == sorted(before)
+        assert len(before) == 4 and "was removed" not in daemon.log(), before
+    finally:
+        os.unlink(near)
+
+
+def test_an_instance_with_a_longer_name_is_left_alone(scene):
+    name = scene.name()
+    near = f"/dev/shm/owsd.{name}.near.image"
+    with open(near, "wb"):
+        pass
+    try:
+        terminal = Terminal(scene, name=name)
+        terminal.shows("Ctrl-C ends it all")
+        os.write(terminal.master, b"\x03")
+        terminal.gone()
+        assert glob.glob(f"/dev/shm/*{name}*") == [near]
+    finally:
+        os.path.exists(near) and os.unlink(near)
 
 
 def test_a_target_that_does_not_answer_is_said(scene):
