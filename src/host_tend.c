@@ -45,7 +45,7 @@ static void look_for_image(struct host *h, int64_t now_ns)
 		return;
 	h->image_lost_ns = now_ns;
 	log_err(h->log,
-	        "/dev/shm/owsd.%s.image was removed and programs that start now do not find it: "
+	        "/dev/shm/owsd.%s.image was removed or replaced and programs that start now do not find it: "
 	        "reload or restart owsd (of an ordinary user, logind's RemoveIPC= removes it at log-out)",
 	        h->instance);
 }

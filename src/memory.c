@@ -279,16 +279,13 @@ struct commands *memory_commands(struct memory *m)
 bool memory_commands_lost(const struct memory *m)
 {
 	const struct segment *segment = &m->commands[m->current].segment;
-	struct stat st;
 
-	return segment_lost(segment) || fstat(segment->fd, &st) < 0 || st.st_nlink == 0;
+	return segment_lost(segment) || !segment_named(m->instance, segment);
 }
 
 bool memory_image_lost(const struct memory *m)
 {
-	struct stat st;
-
-	return fstat(m->image_segment.fd, &st) == 0 && st.st_nlink == 0;
+	return !segment_named(m->instance, &m->image_segment);
 }
 
 static void let_go(struct memory_commands *c)
@@ -322,8 +319,8 @@ int memory_show_commands(struct memory *m)
 
 void memory_replaced(struct memory *m)
 {
-	/* one that was removed has not been retired by its name: its readers would wait for it for ever */
-	if (memory_image_lost(m)) {
+	/* one that had lost its name has not been retired by it: its readers would keep to it for ever */
+	if (__atomic_load_n(&m->image.header->state, __ATOMIC_RELAXED) != OWS_STATE_RETIRED) {
 		image_retire(m->image_segment.base, m->image_segment.size);
 		segment_wake(&m->image.header->news, INT_MAX);
 	}

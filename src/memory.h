@@ -51,7 +51,7 @@ int memory_make(struct memory *memory, const struct memory_setup *setup, char *w
 int memory_show(struct memory *memory, struct log *log, char *why, size_t why_size);
 /* The commands in use. */
 struct commands *memory_commands(struct memory *memory);
-/* Did a consumer truncate or unlink the command segment? A system call or two. */
+/* Did a consumer truncate, remove or replace the command segment? A few system calls. */
 bool memory_commands_lost(const struct memory *memory);
 /*
  * Make a new, empty command segment, not yet visible to consumers, and return its commands; NULL
@@ -61,7 +61,7 @@ bool memory_commands_lost(const struct memory *memory);
 struct commands *memory_renew_commands(struct memory *memory, int *err);
 /* Put the new command segment in its place, filled. 0 or a negative errno. */
 int memory_show_commands(struct memory *memory);
-/* Was the image unlinked, so that nobody can find it any more? A system call. */
+/* Was the image removed or replaced, so that nobody can find it any more? Two system calls. */
 bool memory_image_lost(const struct memory *memory);
 /* After a reload: these segments have been replaced, and go without a word. */
 void memory_replaced(struct memory *memory);

@@ -112,6 +112,19 @@ int segment_show(const char *instance, struct segment *segment)
 	return 0;
 }
 
+bool segment_named(const char *instance, const struct segment *segment)
+{
+	struct stat ours, there;
+	char path[80];
+
+	if (segment->temporary[0] != '\0' || fstat(segment->fd, &ours) < 0)
+		return true;
+	final_path(instance, segment->kind, path);
+	if (lstat(path, &there) < 0)
+		return errno != ENOENT;
+	return ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
+}
+
 int segment_open_old(const char *instance, enum segment_kind kind, struct segment *segment)
 {
 	struct stat st;

@@ -44,6 +44,11 @@ int segment_create(const char *instance, enum segment_kind kind, size_t size,
                    struct segment *segment);
 /* Put it in place under its final name, in one step; no more if it is there. */
 int segment_show(const char *instance, struct segment *segment);
+/*
+ * False: its final name was removed or leads to another file. What is not in place yet, or cannot be
+ * looked at, counts as there.
+ */
+bool segment_named(const char *instance, const struct segment *segment);
 /* Map what an earlier owsd left (writable). -ENOENT none; -EPERM of another user. */
 int segment_open_old(const char *instance, enum segment_kind kind, struct segment *segment);
 void segment_close(struct segment *segment);

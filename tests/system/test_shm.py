@@ -5,6 +5,7 @@
 import glob
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -123,17 +124,30 @@ def test_a_removed_image_is_told(scene):
     assert daemon.stop() == 0
 
 
-def test_readers_of_a_removed_image_follow_a_reload(scene):
-    daemon, _ = start(scene)
-    with ows.Ows(daemon.name) as signals:
-        scene.until(lambda: good(signals, "room"), 10, "room is good")
-        os.unlink(f"/dev/shm/owsd.{daemon.name}.image")
-        scene.until(lambda: "reload or restart owsd" in daemon.log(), 10, "it says what to do")
-        daemon.signal(signal.SIGHUP)
-        scene.until(signals.stale, 10, "the removed one is retired")
-        scene.until(lambda: reopened(signals), 10, "there is another")
-        scene.until(lambda: good(signals, "room"), 10, "room is good")
-    assert daemon.stop() == 0
+def lose_image(name, how):
+    image = f"/dev/shm/owsd.{name}.image"
+    if how == "removed":
+        os.unlink(image)
+    elif how == "renamed":
+        os.rename(image, image + ".away")
+    else:
+        shutil.copy(image, image + ".copy")
+        os.rename(image + ".copy", image)
+
+
+def test_readers_of_an_image_that_lost_its_name_follow_a_reload(scene):
+    for how in ("removed", "renamed", "replaced"):
+        daemon, _ = start(scene)
+        with ows.Ows(daemon.name) as signals:
+            scene.until(lambda: good(signals, "room"), 10, "room is good")
+            lose_image(daemon.name, how)
+            scene.until(lambda: "reload or restart owsd" in daemon.log(), 10, "it says what to do")
+            assert good(signals, "room") and not signals.stale(), how
+            daemon.signal(signal.SIGHUP)
+            scene.until(signals.stale, 10, "the one without a name is retired")
+            scene.until(lambda: reopened(signals), 10, "there is another")
+            scene.until(lambda: good(signals, "room"), 10, "room is good")
+        assert daemon.stop() == 0
 
 
 def lock_file(name):
