@@ -187,8 +187,7 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 	struct segment before;
 	int err;
 
-	*m = (struct memory){ .instance = setup->instance, .config = setup->config,
-		              .generation = 1 };
+	*m = (struct memory){ .instance = setup->instance, .config = setup->config };
 	m->image_segment.fd = -1;
 	for (unsigned i = 0; i < COMMANDS; i++)
 		m->commands[i].segment.fd = -1;
@@ -200,6 +199,8 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 	} else if (open_image_before(m->instance, &before)) {
 		m->generation = ((struct ows_image_header *)(void *)before.base)->generation + 1;
 		segment_close(&before);
+	} else {
+		m->generation = m->start_id; /* another one, even if the image before was removed */
 	}
 	err = make_image(m, setup->counters, setup->counter_count);
 	if (!err)

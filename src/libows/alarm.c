@@ -83,6 +83,7 @@ int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state)
 		.limit_state = a->limit_state,
 		.limit_kind = a->limit_condition,
 	};
+	handle_orphan(h, ows_now());
 	return handle_state(h);
 }
 

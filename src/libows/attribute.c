@@ -81,6 +81,7 @@ int attribute_get(struct ows *h, struct ows_id *id, int64_t now_ns, struct ows_v
 	const struct attribute_def *def = &attribute_table[id->attribute];
 	struct ows_slot slot, daemon;
 	int64_t since, result;
+	bool alive = handle_alive(h, now_ns);
 	int err = handle_state(h);
 
 	*value = (struct ows_value){.type = (uint8_t)def->type, .quality = OWS_Q_TARGET};
@@ -98,6 +99,6 @@ int attribute_get(struct ows *h, struct ows_id *id, int64_t now_ns, struct ows_v
 	value->number = def->type == OWS_DOUBLE ? (double)result / NS_PER_S : (double)result;
 	value->integer = def->type == OWS_DOUBLE ? 0 : result;
 	value->len = 0;
-	value->quality = err || !handle_alive(h, now_ns) ? OWS_Q_TARGET : OWS_Q_GOOD;
+	value->quality = err || !alive ? OWS_Q_TARGET : OWS_Q_GOOD;
 	return err;
 }

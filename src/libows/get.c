@@ -20,7 +20,7 @@ int handle_state(const struct ows *h)
 {
 	uint32_t state = __atomic_load_n(&h->map.image->state, __ATOMIC_ACQUIRE);
 
-	return state == OWS_STATE_LIVE ? 0 : -ESTALE;
+	return state == OWS_STATE_LIVE && !h->orphan ? 0 : -ESTALE;
 }
 
 /* owsd has ended, or not begun. */
@@ -38,6 +38,7 @@ static bool find_alive(struct ows *h, int64_t now_ns)
 	h->alive_now = now_ns;
 	h->alive = reader_sample(h->map.records, &daemon) &&
 	           handle_age(now_ns, daemon.measured_ns) <= h->dead_after_ns;
+	h->orphan = !h->alive && orphan_look(h, now_ns);
 	return h->alive;
 }
 
@@ -75,12 +76,13 @@ static inline int finish(struct ows *h, int64_t stale_after_ns, int64_t now_ns,
                          struct ows_value *value)
 {
 	int64_t since = value->measured_ns != 0 ? value->measured_ns : h->map.image->start_ns;
+	bool alive = handle_alive(h, now_ns);
 	int err = handle_state(h);
 
 	value->age_ns = handle_age(now_ns, since);
 	if (ows_good(value->quality)) {
 		/* a retired image was exchanged for another: its last heartbeat says how old it is */
-		if (stopped(h) || !handle_alive(h, now_ns))
+		if (stopped(h) || !alive)
 			value->quality = OWS_Q_TARGET;
 		else if (stale_after_ns > 0 && value->age_ns > stale_after_ns)
 			value->quality = OWS_Q_STALE;

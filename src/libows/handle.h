@@ -10,6 +10,13 @@
 #include "../signal/attribute.h"
 
 #include <stdbool.h>
+#include <sys/types.h>
+
+/* Which file a segment is: its name may come to lead to another. */
+struct ows_file {
+	dev_t device;
+	ino_t inode;
+};
 
 /*
  * The two segments of one generation. Where things are is taken once and checked, so that damage
@@ -27,6 +34,7 @@ struct ows_map {
 	uint32_t record_size, info_size, target_size, counter_size, alarm_size;
 	const char *base;
 	size_t image_size;
+	struct ows_file image_file;
 	uint32_t count, target_count, counter_count, alarm_count;
 	uint32_t pool_off, pool_size, text_off, text_size;
 
@@ -38,6 +46,7 @@ struct ows_map {
 	uint32_t *acks; /* NULL: a layout without */
 	char *command_base;
 	size_t command_size;
+	struct ows_file command_file;
 	uint32_t text_cap;
 };
 
@@ -66,6 +75,8 @@ struct ows {
 	/* Whether owsd lives, found out once for each now_ns */
 	int64_t alive_now, dead_after_ns;
 	bool alive;
+	bool orphan; /* it does not, and a name leads to another file; looked for once a second */
+	int64_t looked_ns;
 
 	int client; /* index in the table of clients, -1 none */
 	uint32_t pid;
@@ -101,6 +112,8 @@ static inline const struct ows_alarm_entry *map_alarm(const struct ows_map *map,
 }
 
 /* map.c */
+#define MAP_PATH 80
+void map_path(const char *instance, const char *kind, char path[MAP_PATH]);
 int map_open(const char *instance, enum ows_mode mode, struct ows_map *map);
 void map_close(struct ows_map *map);
 /* A string of the image; "" for an offset that is none. */
@@ -110,6 +123,16 @@ const char *map_name(const struct ows_map *map, uint32_t record);
 bool map_has_text(const struct ows_map *map, const struct ows_record *record);
 /* Record of a signal's name, -1 if there is none. */
 int map_find(const struct ows_map *map, const char *name, size_t len);
+
+/*
+ * orphan.c: owsd's heart stands still; does a name lead to another file than the one that is mapped,
+ * in which nobody is left to say so? A system call or two, once a second at most: what was found
+ * then stands in between. Leaves errno alone.
+ */
+#define ORPHAN_LOOK_NS INT64_C(1000000000)
+bool orphan_look(struct ows *h, int64_t now_ns);
+/* For what asks for no heart otherwise, looks for it once a second: 0, or -ESTALE on an orphan. */
+int handle_orphan(struct ows *h, int64_t now_ns);
 
 /* find.c */
 int find_resolve(struct ows *h, struct ows_id *id);
@@ -125,7 +148,7 @@ static inline int64_t handle_age(int64_t now_ns, int64_t then_ns)
 	return __builtin_sub_overflow(now_ns, then_ns, &age) ? INT64_MAX : age;
 }
 
-/* get.c: is owsd alive, as far as its heartbeat says? */
+/* get.c: is owsd alive, as far as its heartbeat says? If not, is the image an orphan too? */
 bool handle_alive(struct ows *h, int64_t now_ns);
 /* 0, or -ESTALE when the image is not the present one any more. */
 int handle_state(const struct ows *h);

@@ -36,6 +36,7 @@ int ows_daemon(struct ows *h, int64_t now_ns, struct ows_daemon *daemon)
 {
 	const struct ows_image_header *image = h->map.image;
 	struct ows_sample beat;
+	bool alive = handle_alive(h, now_ns);
 	int err = handle_state(h);
 
 	if (!reader_sample(h->map.records, &beat))
@@ -47,7 +48,7 @@ int ows_daemon(struct ows *h, int64_t now_ns, struct ows_daemon *daemon)
 		.start_ns = image->start_ns,
 		.beat_age_ns = handle_age(now_ns, beat.measured_ns),
 		.period_ns = image->period_ns,
-		.alive = !err && handle_alive(h, now_ns),
+		.alive = !err && alive,
 	};
 	return err;
 }

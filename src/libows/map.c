@@ -13,13 +13,19 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static int map_file(const char *instance, const char *kind, bool write, void **base, size_t *size)
+void map_path(const char *instance, const char *kind, char path[MAP_PATH])
 {
-	char path[80];
+	snprintf(path, MAP_PATH, "/dev/shm/owsd.%s.%s", instance, kind);
+}
+
+static int map_file(const char *instance, const char *kind, bool write, void **base, size_t *size,
+                    struct ows_file *file)
+{
+	char path[MAP_PATH];
 	struct stat st;
 	int fd, err = 0;
 
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.%s", instance, kind);
+	map_path(instance, kind, path);
 	fd = open(path, (write ? O_RDWR : O_RDONLY) | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
 	if (fd < 0)
 		return errno == ELOOP ? -EPERM : -errno;
@@ -31,6 +37,7 @@ static int map_file(const char *instance, const char *kind, bool write, void **b
 		err = -EPROTO;
 	if (!err) {
 		*size = (size_t)st.st_size;
+		*file = (struct ows_file){.device = st.st_dev, .inode = st.st_ino};
 		*base = mmap(NULL, *size, PROT_READ | (write ? PROT_WRITE : 0), MAP_SHARED, fd, 0);
 		if (*base == MAP_FAILED)
 			err = -errno;
@@ -165,7 +172,7 @@ int map_open(const char *instance, enum ows_mode mode, struct ows_map *map)
 	int err;
 
 	*map = (struct ows_map){0};
-	err = map_file(instance, "image", false, &base, &map->image_size);
+	err = map_file(instance, "image", false, &base, &map->image_size, &map->image_file);
 	if (err)
 		return err;
 	/* NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): errno is not 0 where it failed */
@@ -173,7 +180,8 @@ int map_open(const char *instance, enum ows_mode mode, struct ows_map *map)
 	map->image = base;
 	err = check_image(map);
 	if (!err && mode == OWS_CONTROL) {
-		err = map_file(instance, "command", true, &base, &map->command_size);
+		err = map_file(instance, "command", true, &base, &map->command_size,
+		               &map->command_file);
 		if (!err) {
 			map->command_base = base;
 			/* Without a guard all works too, unless somebody truncates the file */

@@ -15,7 +15,8 @@ static void take_map(struct ows *h, const struct ows_map *map)
 	int64_t period = map->image->period_ns;
 
 	h->map = *map;
-	h->alive_now = INT64_MIN;
+	h->alive_now = h->looked_ns = INT64_MIN;
+	h->orphan = false;
 	h->dead_after_ns = period > DEAD_LEAST_NS / 3 && period < INT64_MAX / 3 ? 3 * period
 	                                                                        : DEAD_LEAST_NS;
 }

@@ -3,7 +3,8 @@
  * libows: read and set the signals of owsd from a control program.
  *
  * Reading a value takes no system call, no lock and never waits, also when owsd dies in the middle
- * of a write. A handle belongs to one thread at a time. C11, C++11 and later.
+ * of a write. Only while owsd's heart stands still, a call looks once a second whether the names in
+ * /dev/shm lead to the segments of another owsd (lstat()); then it says -ESTALE. A handle belongs to one thread at a time. C11, C++11 and later.
  *
  *     struct ows *h;
  *     if (ows_open("OWS", OWS_READ, &h) == 0) {
@@ -120,11 +121,11 @@ int64_t ows_now(void);
 int ows_find(struct ows *h, const char *name);
 
 /*
- * Get a value. No system call, no lock, bounded. now_ns: ows_now(), once per cycle is enough.
- * -ESTALE: owsd was restarted or reloaded, call ows_reopen(); *value is filled all the same, good
- * only as long as the heartbeat in the old image is: two seconds, or three periods. -EAGAIN: no
- * whole sample in 64 attempts (does not happen while writers are sane). -ENOENT: the id's name is
- * not in the image any more. -EACCES: write-only name.
+ * Get a value. No system call (but the look above), no lock, bounded. now_ns: ows_now(), once per
+ * cycle is enough. -ESTALE: owsd was restarted or reloaded, call ows_reopen(); *value is filled all
+ * the same, good only as long as the heartbeat in the old image is: two seconds, or three periods.
+ * -EAGAIN: no whole sample in 64 attempts (does not happen while writers are sane). -ENOENT: the
+ * id's name is not in the image any more. -EACCES: write-only name.
  */
 int ows_get(struct ows *h, int id, int64_t now_ns, struct ows_value *value);
 /*
@@ -159,15 +160,16 @@ int ows_beat(struct ows *h, uint32_t period_ms);
 
 /*
  * Sleep until something was published after *news was last seen, at most timeout_ns (negative: no
- * limit). Start with *news = 0. Returns 1 news, 0 time is over, -ESTALE as ows_get(), -EINTR.
+ * limit). Start with *news = 0. Returns 1 news, 0 time is over, -ESTALE as ows_get(), -EINTR. Wakes
+ * once a second in between, to look as above.
  */
 int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns);
 
 /*
  * Map the present segments after -ESTALE; ids stay right. System calls, allocates.
  * -ENOENT: not there yet, try again in the next cycle (what is mapped stays readable). An owsd
- * that was killed cannot say that it ended: its values turn bad by themselves, and the owsd after
- * it says -ESTALE to all who still map the old image.
+ * that was killed cannot say that it ended: its values turn bad by themselves, and with the owsd
+ * after it -ESTALE comes to all who still map the old image, also if that was removed.
  */
 int ows_reopen(struct ows *h);
 

@@ -91,6 +91,8 @@ CommandHeader = collections.namedtuple(
     "pool_size text_off text_size text_cap ack_off")
 COMMAND_HEADER = struct.Struct("<IHHIIIiIIIIIIIIIIIIIIII")
 STATE_OFF, NEWS_OFF, ALARM_HEAD_OFF, BELL_OFF = 16, 128, 132, 128
+# How often the names of segments are looked at while owsd's heart stands still
+ORPHAN_LOOK_NS = 1_000_000_000
 
 
 class Stale(OSError):
@@ -204,7 +206,7 @@ class Segment:
     """One mapped file: its bytes, and its words as single 32- and 64-bit loads and stores."""
 
     def __init__(self, instance, kind, writable):
-        path = f"/dev/shm/owsd.{instance}.{kind}"
+        self.path = path = f"/dev/shm/owsd.{instance}.{kind}"
         self.fd = os.open(path, (os.O_RDWR if writable else os.O_RDONLY) | os.O_NOFOLLOW |
                           os.O_CLOEXEC | os.O_NONBLOCK)
         self.memory = self.words = self.doubles = None
@@ -214,7 +216,7 @@ class Segment:
                 raise PermissionError(errno.EPERM, "belongs to another user", path)
             if status.st_size < 256 or status.st_size % 8:
                 raise broken()
-            self.size = status.st_size
+            self.size, self.file = status.st_size, (status.st_dev, status.st_ino)
             self.memory = mmap.mmap(self.fd, self.size, mmap.MAP_SHARED,
                                     mmap.PROT_READ | (mmap.PROT_WRITE if writable else 0))
             self.words = memoryview(self.memory).cast("I")
@@ -233,6 +235,14 @@ class Segment:
             return ""
         end = self.memory.find(b"\0", offset, start + size)
         return self.memory[offset:end].decode(errors="replace") if end >= 0 else ""
+
+    def replaced(self):
+        """Does its name lead to another file? One that is gone leads nowhere yet."""
+        try:
+            there = os.lstat(self.path)
+        except OSError:
+            return False
+        return (there.st_dev, there.st_ino) != self.file
 
     def inside(self, offset, count, size):
         if offset % 8 or offset + count * size > self.size:
@@ -298,6 +308,7 @@ class Ows:
         self.image, self.header = image, header
         self.command, self.command_header = command, command_header if command else None
         self.dead_after_ns = max(2_000_000_000, 3 * header.period_ns)
+        self.looked_ns, self.orphan = None, False
         if restarted:
             self.seen_alarms.clear()
         self._read_table()
@@ -446,12 +457,26 @@ class Ows:
         return self._state() == LIVE and self._beats(now or now_ns())
 
     def _beats(self, now):
-        sample, _, _ = self._slot(0)
+        try:
+            sample, _, _ = self._slot(0)
+        except BlockingIOError:
+            return False
         return now - sample[1] <= self.dead_after_ns
 
     def stale(self):
-        """True when reopen() is due."""
-        return self._state() != LIVE
+        """True when reopen() is due: owsd says so in the image, or its heart stands still and the
+        name leads to the image of another."""
+        return self._state() != LIVE or self._is_orphan()
+
+    def _is_orphan(self):
+        """Of an owsd that was killed when its segments had lost their names, so that the one after
+        it cannot say anything in them. Looks once a second, and only while the heart stands."""
+        now = now_ns()
+        if self.looked_ns is None or now - self.looked_ns >= ORPHAN_LOOK_NS:
+            self.looked_ns = now
+            self.orphan = not self._beats(now) and (
+                self.image.replaced() or self.command is not None and self.command.replaced())
+        return self.orphan
 
     def get(self, name, now=None):
         """The Value of a name. Never raises for a dead or restarted owsd: the value is not good
@@ -577,7 +602,8 @@ class Ows:
             left = until - time.monotonic()
             if now != news or left <= 0:
                 return now
-            self.futex.wait(self.image.address + NEWS_OFF, now, left)
+            # Nobody wakes who sleeps on an orphan
+            self.futex.wait(self.image.address + NEWS_OFF, now, min(left, 1))
 
     # --- Setting --------------------------------------------------------------------------------
 
@@ -672,7 +698,11 @@ class Ows:
         words[(self.command_header.dirty_off >> 2) + record // 32] = 0xFFFFFFFF
         words[BELL_OFF >> 2] = words[BELL_OFF >> 2] + 0x10001 & 0xFFFFFFFF
         self.futex.wake(self.command.address + BELL_OFF)
-        if words[STATE_OFF >> 2] not in (LIVE, STOPPED):
+        self._found_by_owsd()
+
+    def _found_by_owsd(self):
+        """What is set in these commands is, by this owsd or by the next after an orderly end."""
+        if self.command.word(STATE_OFF) not in (LIVE, STOPPED) or self._is_orphan():
             raise Stale
 
     def _client_word(self, offset):
@@ -701,8 +731,7 @@ class Ows:
                 raise OSError(errno.ENOSPC, "the table of clients is full")
         self._set_client_word(8, period_ms)
         self._set_client_word(4, self._client_word(4) + 1)
-        if self.command.word(STATE_OFF) not in (LIVE, STOPPED):
-            raise Stale
+        self._found_by_owsd()
 
 
 def word(words, number, other):

@@ -20,22 +20,30 @@ static void mark(const struct ows *h, const struct ows_id *id)
 	__atomic_fetch_or(&h->map.dirty[id->record / 32], 1u << id->record % 32, __ATOMIC_RELEASE);
 }
 
+/* What is set here is found by this owsd, or by the next after an orderly end. */
+static int command_state(struct ows *h)
+{
+	uint32_t state = word_get(&h->map.command->state);
+
+	if (state != OWS_STATE_LIVE && state != OWS_STATE_STOPPED)
+		return -ESTALE;
+	return handle_orphan(h, ows_now());
+}
+
 /*
  * Wake the engine unless it will look by itself, and find out whether the segment is still the one
  * that owsd reads. The fence orders all that was set before both looks; the engine takes its awake
  * flag back, and owsd marks the segment retired, before they look for what was set.
  */
-static int ring(const struct ows *h)
+static int ring(struct ows *h)
 {
 	struct ows_command_header *command = h->map.command;
-	uint32_t state;
 
 	__atomic_fetch_add(&command->bell, 1, __ATOMIC_SEQ_CST);
 	word_fence(__ATOMIC_SEQ_CST);
 	if (word_get(&command->awake) == 0)
 		segment_wake(&command->bell, 1);
-	state = word_get(&command->state);
-	return state == OWS_STATE_LIVE || state == OWS_STATE_STOPPED ? 0 : -ESTALE;
+	return command_state(h);
 }
 
 static uint32_t stamp_it(const struct ows *h, const struct ows_id *id)
@@ -184,7 +192,7 @@ static void store_text(char *to, const char *text, size_t len)
 	}
 }
 
-static int set_string(const struct ows *h, const struct ows_id *id, const char *text,
+static int set_string(struct ows *h, const struct ows_id *id, const char *text,
                       uint32_t *stamp)
 {
 	size_t len = strlen(text), size = h->map.command_size;
@@ -271,7 +279,6 @@ static int take_client(struct ows *h)
 int ows_beat(struct ows *h, uint32_t period_ms)
 {
 	struct ows_client *client;
-	uint32_t state;
 	int err;
 
 	if (h->map.command == NULL)
@@ -289,6 +296,5 @@ int ows_beat(struct ows *h, uint32_t period_ms)
 	client = &h->map.clients[h->client];
 	word_set(&client->period_ms, period_ms);
 	__atomic_fetch_add(&client->beat, 1, __ATOMIC_RELEASE);
-	state = word_get(&h->map.command->state);
-	return state == OWS_STATE_LIVE || state == OWS_STATE_STOPPED ? 0 : -ESTALE;
+	return command_state(h);
 }

@@ -9,11 +9,13 @@ int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns)
 	int64_t now_ns = ows_now();
 	int64_t until = timeout_ns < 0 || timeout_ns > INT64_MAX - now_ns ? -1 : now_ns + timeout_ns;
 
-	for (;;) {
-		uint32_t seen = __atomic_load_n(word, __ATOMIC_ACQUIRE);
-		int64_t left = -1;
+	for (;; now_ns = ows_now()) {
+		int64_t left = ORPHAN_LOOK_NS; /* nobody wakes who sleeps on an orphan */
+		uint32_t seen;
 		int err;
 
+		handle_orphan(h, now_ns);
+		seen = __atomic_load_n(word, __ATOMIC_ACQUIRE);
 		if (handle_state(h))
 			return -ESTALE;
 		if (seen != *news) {
@@ -21,9 +23,10 @@ int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns)
 			return 1;
 		}
 		if (until >= 0) {
-			left = until - ows_now();
-			if (left <= 0)
+			if (until <= now_ns)
 				return 0;
+			if (until - now_ns < left)
+				left = until - now_ns;
 		}
 		err = segment_wait(word, seen, left);
 		if (err && err != -ETIMEDOUT)

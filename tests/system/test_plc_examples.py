@@ -142,6 +142,13 @@ def wire(scene, daemon, state):
     scene.until(lambda: scene.get(daemon, "wire") == str(state), 10, f"the relay is {state}")
 
 
+def kill_without_names(daemon):
+    """Its segments cannot be found by the next, who could say there that he has others."""
+    for kind in ("image", "command"):
+        os.unlink(f"/dev/shm/owsd.{daemon.name}.{kind}")
+    daemon.kill()
+
+
 def test_a_plc_program_reads_a_temperature_and_drives_a_relay(scene):
     daemon = scene.owsd(plant(scene, "square 19 23 4s"))
     plc = Plc(scene, daemon, "%IW0 room1 scale 100\n%IX0.0 room1 quality\n%QX0.0 heater\n"
@@ -163,6 +170,10 @@ def test_a_plc_knows_that_owsd_is_gone_and_goes_on_when_it_is_back(scene):
     until(lambda: plc.cell("I", "X") == 0, 10, "the temperature is not good")
     until(lambda: plc.cell("Q", "X") == 0, 10, "the program switches off")
     assert plc.cell("I", "W") == 1900, "the last value stays"
+    daemon = scene.owsd(config, name=daemon.name)
+    until(lambda: plc.cell("I", "X") == 1, 10, "the temperature is good")
+    wire(scene, daemon, 1)
+    kill_without_names(daemon)
     daemon = scene.owsd(config, name=daemon.name)
     until(lambda: plc.cell("I", "X") == 1, 10, "the temperature is good")
     wire(scene, daemon, 1)
@@ -326,6 +337,11 @@ def test_a_machine_goes_on_when_owsd_is_killed_and_when_it_is_back(scene):
     daemon = scene.owsd(config, name=daemon.name)
     until(lambda: hal.pin("room1.ok") and hal.pin("heater.ok") and hal.pin("alive"), 10,
           "all is good again")
+    wire(scene, daemon, 1)
+    kill_without_names(daemon)
+    daemon = scene.owsd(config, name=daemon.name)
+    until(lambda: hal.pin("room1.ok") and hal.pin("heater.ok") and hal.pin("alive"), 10,
+          "all is good in the new image")
     wire(scene, daemon, 1)
 
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Consumers beside owsd: it is killed, stopped and restarted under them, and they misbehave."""
 
+import concurrent.futures
 import glob
 import os
 import random
@@ -148,6 +149,50 @@ def test_readers_of_an_image_that_lost_its_name_follow_a_reload(scene):
             scene.until(lambda: reopened(signals), 10, "there is another")
             scene.until(lambda: good(signals, "room"), 10, "room is good")
         assert daemon.stop() == 0
+
+
+def test_consumers_of_a_removed_image_follow_the_owsd_after_a_kill(scene):
+    """Nobody can say anything in the old image: not the dead owsd, and the next cannot find it."""
+    daemon, config = start(scene)
+    name = daemon.name
+    control = scene.start([owsdtest.BUILD / "examples/control", "room", "relays", "30", "0", name])
+    reader = scene.start([owsdtest.BUILD / "examples/reader", name, "600"])
+    watch = scene.start([owsdtest.OWSCTL, "-n", name, "watch", "-l", "room"])
+    with ows.Ows(name) as signals, concurrent.futures.ThreadPoolExecutor() as pool:
+        for how in ("removed", "replaced"):
+            scene.until(lambda: good(signals, "back") and signals.get("back").value == 1, 10,
+                        "the controller heats")
+            sleeper = pool.submit(sleep_until_stale, ows.Ows(name))
+            seen = watch.log().count("was started anew")
+            lose_image(name, how)
+            if how == "removed":
+                os.unlink(command_file(name))
+            daemon.kill()
+            daemon = scene.owsd(config, name=name)
+            scene.until(signals.stale, 10, "the orphan is found out")
+            assert not signals.get("room").good
+            scene.until(lambda: reopened(signals), 10, "there is another")
+            assert sleeper.result(20), "it woke by itself"
+            scene.until(lambda: good(signals, "room"), 10, "room is good")
+            scene.until(lambda: watch.log().count("was started anew") > seen, 10, "owsctl is led on")
+            before, lines = signals.get("relays").applied, reader.log().count("\n")
+            scene.until(lambda: signals.get("relays").applied > before + 3, 10,
+                        "the controller's sets arrive")
+            scene.until(lambda: [line for line in reader.log()[lines:].splitlines()
+                                 if line.startswith("room") and " good," in line], 10,
+                        "the reader is led on")
+    assert control.running() and reader.running() and watch.running()
+
+
+def sleep_until_stale(signals):
+    with signals:
+        news, until = signals.wait(), time.monotonic() + 20
+        try:
+            while time.monotonic() < until:
+                news = signals.wait(news)
+        except ows.Stale:
+            return True
+    return False
 
 
 def lock_file(name):

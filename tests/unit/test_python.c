@@ -251,6 +251,38 @@ static void test_python_finds_its_way_over_a_reload(void)
 	TEST_ASSERT_EQUAL_STRING("stale True False\nStale\nFalse 2 0\n", output);
 }
 
+/* Killed after its segments had lost their names: nobody is left to say so in them. */
+static void test_python_finds_its_way_from_an_orphan(void)
+{
+	struct instance next;
+	FILE *run;
+	char first[64];
+
+	instance_beat(&in, ows_now() - 10 * INSTANCE_S, 0);
+	run = python("s = ows.Ows(name, control=True)\n"
+	             "print(s.stale(), s.set(\"relay\", 1), flush=True)\n"
+	             "try:\n"
+	             "    news, until = s.wait(), ows.now_ns() + 60 * 10**9\n"
+	             "    while ows.now_ns() < until: s.wait(news, 30)\n"
+	             "except ows.Stale: print(\"stale\", s.stale(), s.get(\"relay\").good)\n"
+	             "print(error(s.set, \"relay\", 0), error(s.beat, 1000),"
+	             " error(s.acknowledge, \"relay\"))\n"
+	             "s.reopen()\n"
+	             "print(s.stale(), s.set(\"relay\", 0), s.get(\"relay\").good)");
+	TEST_ASSERT_NOT_NULL(run);
+	TEST_ASSERT_NOT_NULL(fgets(first, sizeof(first), run));
+	TEST_ASSERT_EQUAL_STRING("False 1\n", first);
+	TEST_ASSERT_EQUAL(0, segment_remove(in.name, SEGMENT_IMAGE));
+	TEST_ASSERT_EQUAL(0, segment_remove(in.name, SEGMENT_COMMAND));
+	instance_make(&next, "python", 1, ows_now(), signals, COUNT);
+	instance_beat(&next, ows_now() + 60 * INSTANCE_S, 0);
+	instance_put(&next, RELAY, 1, ows_now());
+	instance_show(&next);
+	finish(run);
+	instance_leave(&next);
+	TEST_ASSERT_EQUAL_STRING("stale True False\nStale Stale Stale\nFalse 1 True\n", output);
+}
+
 static void test_python_refuses_rubbish(void)
 {
 	in.image.header->record_size = 128;
@@ -372,6 +404,7 @@ int main(void)
 	RUN_TEST(test_c_finds_what_python_set);
 	RUN_TEST(test_python_refuses_what_c_refuses);
 	RUN_TEST(test_python_finds_its_way_over_a_reload);
+	RUN_TEST(test_python_finds_its_way_from_an_orphan);
 	RUN_TEST(test_python_refuses_rubbish);
 	RUN_TEST(test_python_sees_whole_samples_beside_a_busy_writer);
 	return UNITY_END();
