@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """make run: it shows live values, says which are simulated, and leaves nothing behind."""
 
+import contextlib
 import glob
 import json
 import os
@@ -36,12 +37,12 @@ class Terminal:
                               OWSD_BUILD=str(owsdtest.BUILD))
             os.execvp("sh", ["sh", str(RUN), *arguments])
 
-    def shows(self, what, seconds=20):
+    def shows(self, what):
         """Read until the terminal has shown what."""
-        deadline = time.monotonic() + seconds
+        deadline = time.monotonic() + owsdtest.PATIENCE
         while what not in self.text:
             if time.monotonic() > deadline:
-                raise owsdtest.Late(f"{what!r} not within {seconds} s in:\n{self.text}")
+                raise owsdtest.Late(f"{what!r} not within {owsdtest.PATIENCE} s in:\n{self.text}")
             if select.select([self.master], [], [], 0.1)[0]:
                 try:
                     self.text += os.read(self.master, 65536).decode(errors="replace")
@@ -71,7 +72,7 @@ class Terminal:
     def gone(self):
         """Wait until all of it has ended, and see that nothing is left."""
         try:
-            deadline = time.monotonic() + 10
+            deadline = time.monotonic() + owsdtest.PATIENCE
             while not self.ended():
                 if self.master is not None and select.select([self.master], [], [], 0.02)[0]:
                     try:
@@ -92,7 +93,8 @@ class Terminal:
 
     def end(self):
         for path in self.group():
-            os.kill(int(path.split("/")[2]), signal.SIGKILL)
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(int(path.split("/")[2]), signal.SIGKILL)
         if self.status is None:
             os.waitpid(self.pid, 0)
             self.status = -1
@@ -153,7 +155,7 @@ def test_it_needs_no_owserver_and_shows_good_values_marked_as_simulated(scene):
         scene.until(all_are_good, 20, f"all are good: {rows}")
         assert all(row["simulated"] for row in rows.values()), rows
         assert len(rows) >= 10
-        assert scene.owsctl(terminal.name, "set", "-w", "5", "light", "on").returncode == 0
+        assert scene.owsctl(terminal.name, "set", "-w", "60", "light", "on").returncode == 0
     finally:
         os.write(terminal.master, b"\x03")
         terminal.gone()

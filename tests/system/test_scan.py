@@ -49,8 +49,8 @@ def test_dir_lists_paths_one_on_a_line(scene):
 def test_dir_of_an_owserver_is_that_of_owdir(scene):
     server = scene.owserver(mock=["28", "26"], tester=["29"])
     for path in ("/", "/uncached", server.devices()[0], "/bus.0"):
-        done = subprocess.run(["owdir", "-s", server.target, path], text=True, timeout=20,
-                              capture_output=True, check=True)
+        done = subprocess.run(["owdir", "-s", server.target, path], text=True, check=True,
+                              timeout=owsdtest.PATIENCE, capture_output=True)
         listed = [line for line in done.stdout.split() if line != "/uncached/uncached"]
         assert sorted(lines(scene, server.target, "dir", path)) == sorted(listed), path
 
@@ -86,8 +86,8 @@ def test_read_prints_what_owread_prints_but_its_padding(scene):
         compared += 1
     assert compared > 30, (compared, len(read))
     path = next(path for path in before if path.endswith("/PIO.BYTE"))
-    done = subprocess.run(["owread", "-s", server.target, path], text=True, timeout=20,
-                          capture_output=True, check=True)
+    done = subprocess.run(["owread", "-s", server.target, path], text=True, check=True,
+                          timeout=owsdtest.PATIENCE, capture_output=True)
     assert len(done.stdout) == 12
     assert ctl(scene, server.target, "read", path).stdout == done.stdout.strip() + "\n"
 
@@ -255,8 +255,12 @@ def test_what_is_wrong_is_said_with_its_status(scene):
 def test_a_silent_target_is_given_up_in_time(scene):
     server = scene.owserver(mock=["28"])
     server.freeze()
-    done = scene.owsctl(None, "dir", "-t", server.target, "-w", "0.5", seconds=10)
+    # with more time it is the greeting that is given up, in other words
+    done = scene.owsctl(None, "dir", "-t", server.target, "-w", "0.5")
     assert done.returncode == 1 and "no answer in time" in done.stderr, done
+    done = scene.owsctl(None, "dir", "-t", server.target, "-w", "60")
+    assert done.returncode == 1 and "answer" in done.stderr, done
+    assert "no answer in time" not in done.stderr, done
 
 
 def test_an_empty_wire_has_no_configuration(scene):
