@@ -20,8 +20,8 @@ import served
 from served import (ABSENT, DIRALL, NOP, PERSIST, READ, SWITCH, THERMOMETER, USUAL, WRITE, Closed)
 
 TYPE = THERMOMETER + "/type"
-# With periods of a second only a stall of the engine makes one late, not a busy machine
-SLOW = dict(Period=1)
+# A period is late for an engine that waits for a client, who has ten seconds, and for no busy machine
+SLOW = dict(Period=5)
 MEMORY_KB = 6000
 
 
@@ -59,10 +59,10 @@ def unharmed(scene, server):
     assert after - before < room, f"{before} kB before, {after} kB after"
 
 
-def answer(server, path=TYPE, seconds=10):
+def answer(server, path=TYPE):
     """What a newcomer is told, or None when he is plainly refused: the connection is closed."""
     try:
-        with server.connect(seconds) as s:
+        with server.connect() as s:
             s.sendall(served.request(READ, path))
             return served.receive(s).data
     except (Closed, ConnectionError):
@@ -94,11 +94,13 @@ def test_300_clients_at_once_are_all_answered(scene):
     many_descriptors(1024)
     server = served.owsd(scene, **SLOW)
     with unharmed(scene, server):
-        sockets = open_all(server, 300)
+        sockets, answers = [], []
         try:
-            for s in sockets:
-                s.sendall(served.request(READ, TYPE))
-            answers = []
+            for _ in range(300):
+                s = server.connect()
+                sockets.append(s)
+                with contextlib.suppress(ConnectionError):  # already refused
+                    s.sendall(served.request(READ, TYPE))
             for s in sockets:
                 try:
                     answers.append(served.receive(s).data)
@@ -229,7 +231,8 @@ def test_garbage_is_refused(scene):
                     s.settimeout(0.05)
                     with contextlib.suppress(TimeoutError):
                         s.recv(4096)
-        assert answer(server) == b"DS18B20", f"SEED={seed}"
+        # the house may still be full of it
+        owsdtest.until(lambda: answer(server) == b"DS18B20", 15, f"SEED={seed}", step=0.1)
 
 
 def test_a_header_that_asks_for_too_much_is_refused_at_once(scene):
@@ -245,6 +248,7 @@ def test_a_header_that_asks_for_too_much_is_refused_at_once(scene):
                     assert frame.ret < 0, frame
                 except Closed:
                     pass
+        assert counter(scene, server.program, "served_timeouts") == 0, "not for want of the rest"
 
 
 def test_a_write_is_refused_in_read_only_mode(scene):
@@ -277,7 +281,7 @@ def test_sigterm_with_idle_clients_ends_it(scene):
     idle[11].sendall(served.request(READ, "/uncached" + THERMOMETER + "/temperature"))
     try:
         server.program.signal(signal.SIGTERM)
-        assert server.program.wait(10) == 0
+        assert server.program.wait() == 0
     finally:
         close_all(idle)
 
@@ -285,15 +289,16 @@ def test_sigterm_with_idle_clients_ends_it(scene):
 def test_a_port_alone_is_served_on_loopback_only(scene):
     server = served.owsd_of(scene, f"sim:{scene.file('a.sim', served.WIRE)}")
     port = f"{server.port:04X}"
-    listening = []
-    for table in ("tcp", "tcp6"):
-        try:
-            with open(f"/proc/net/{table}", encoding="ascii") as f:
-                listening += [line.split()[1].split(":")[0] for line in f
-                              if line.split()[1].endswith(":" + port) and line.split()[3] == "0A"]
-        except FileNotFoundError:
-            pass
-    assert listening, "it listens"
+
+    def listens():
+        found = []
+        for table in ("tcp", "tcp6"):
+            with contextlib.suppress(FileNotFoundError), \
+                    open(f"/proc/net/{table}", encoding="ascii") as f:
+                found += [line.split()[1].split(":")[0] for line in f
+                          if line.split()[1].endswith(":" + port) and line.split()[3] == "0A"]
+        return found
+    listening = owsdtest.until(listens, 5, "it listens")
     loopback = {"0100007F", "00000000000000000000000001000000"}
     assert set(listening) <= loopback, listening
 

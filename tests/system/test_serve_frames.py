@@ -56,7 +56,7 @@ class Pair:
         """Bytes of our own making: the frame, or closed."""
         def one(server):
             try:
-                with server.connect(15) as s:
+                with server.connect() as s:
                     s.sendall(data)
                     return served.receive(s)
             except (Closed, ConnectionError):

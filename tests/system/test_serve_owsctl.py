@@ -73,7 +73,7 @@ def test_scan_of_an_instance_shows_what_a_scan_of_its_target_shows(scene):
 
 def test_the_configuration_of_an_asked_instance_runs_and_changes_no_output(scene):
     daemon, _, _ = socket_server(scene)
-    ctl(scene, daemon, "set", "-w", "10", "relays", "5")
+    ctl(scene, daemon, "set", "-w", "60", "relays", "5")
     file = scene.file("found.rio", ctl(scene, daemon, "scan", "--rio").stdout)
     assert daemon.stop() == 0
     check = scene.owsd_once("--check", "-c", file)
@@ -116,7 +116,7 @@ def test_an_owsd_is_the_target_of_another(scene):
             dict(Name="latch", Path=served.LATCH + "/PIO", Type="bool", IO="output", InitValue=0),
         ]))
         scene.until(lambda: scene.get(daemon, "room") == "21.5", 20, "room is good")
-        ctl(scene, daemon, "set", "-w", "10", "latch", "1")
+        ctl(scene, daemon, "set", "-w", "60", "latch", "1")
         assert server.frame(served.READ, "/uncached" + served.LATCH + "/PIO").data == b"1" or \
             server.genuine  # mock forgets it where it reads past its cache
         assert clients.Shell(scene, server).read(served.LATCH + "/PIO") == b"1"

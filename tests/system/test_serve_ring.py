@@ -45,9 +45,24 @@ def test_each_has_what_the_other_has(scene):
         assert float(ask(port, READ, f"/uncached/{HALL}/temperature")[4]) == 17.25
 
 
-def lost_on_all(scene, pair):
-    for daemon, _ in pair:
-        until(lambda: is_good(scene, daemon, "room"), 20, "the wire's value is there")
+def all_have_it(scene, pair, seconds):
+    end, had = time.monotonic() + seconds, set()
+    while len(had) < len(pair) and time.monotonic() < end:
+        had |= {daemon for daemon, _ in pair if is_good(scene, daemon, "room")}
+    return len(had) == len(pair)
+
+
+def lost_on_all(scene, make):
+    """make(SECONDS) is a ring whose device goes after so many seconds: more of them where that is
+    before all have its value, as on a busy machine."""
+    for seconds in (8, 25, 80):
+        pair = make(seconds)
+        if all_have_it(scene, pair, seconds):
+            break
+        for daemon, _ in pair:
+            daemon.stop()
+    else:
+        raise AssertionError("the wire's value is not everywhere")
     for daemon, _ in pair:
         until(lambda: not is_good(scene, daemon, "room"), 40, "the device is gone")
     # and nobody gives it back to the other
@@ -55,11 +70,12 @@ def lost_on_all(scene, pair):
         time.sleep(0.1)
         for daemon, _ in pair:
             assert not is_good(scene, daemon, "room")
+    return pair
 
 
 def test_a_value_does_not_outlive_its_device_in_a_ring(scene):
-    pair = ring(scene, WIRE.format(ROOM, 21.5) + "at 6s unplug one\n")
-    lost_on_all(scene, pair)
+    pair = lost_on_all(scene, lambda seconds: ring(
+        scene, WIRE.format(ROOM, 21.5) + f"at {seconds}s unplug one\n"))
     until(lambda: any(stat(scene, daemon, "served_came_round") for daemon, _ in pair), 30)
 
 
@@ -68,8 +84,8 @@ def test_a_ring_over_a_genuine_owserver_ends_too(scene):
         return scene.owserver(options=["-s", f"127.0.0.1:{port}",
                                         "--timeout_volatile=1", "--timeout_presence=1"]).target
 
-    lost_on_all(scene, ring(scene, WIRE.format(ROOM, 21.5) + "at 8s unplug one\n",
-                            between=between, Timeout=4))
+    lost_on_all(scene, lambda seconds: ring(
+        scene, WIRE.format(ROOM, 21.5) + f"at {seconds}s unplug one\n", between=between, Timeout=4))
 
 
 def test_an_owsd_that_is_its_own_target_has_no_devices_of_itself(scene):
@@ -80,7 +96,7 @@ def test_an_owsd_that_is_its_own_target_has_no_devices_of_itself(scene):
     until(lambda: scene.get(daemon, "room") == "21.5", 20)
     until(lambda: "absent" in scene.owsctl(daemon, "list").stdout, 20)
     assert ask(port, DIRALL, "/", flags=0x100)[4].rstrip(b"\0").decode() == f"/{ROOM}"
-    assert stat(scene, daemon, "served_came_round") > 0
+    until(lambda: stat(scene, daemon, "served_came_round") > 0, 20)
 
 
 def test_a_signal_of_a_signal_is_not_passed_on(scene):
