@@ -18,6 +18,7 @@ exception (assert will do), and is skipped by owsdtest.skip("why"). Every wait h
 """
 
 import concurrent.futures
+import contextlib
 import glob
 import itertools
 import os
@@ -107,6 +108,19 @@ def free_port():
         if _unused(port):
             return port
     raise AssertionError("no free port")
+
+
+@contextlib.contextmanager
+def default_port():
+    """The port of owserver on this machine, 4304, and so what `auto` finds: for one test at a time."""
+    def have():
+        with contextlib.suppress(OSError):
+            keep.bind("\0owsd.test.port.4304")
+            return True
+        return False
+    with socket.socket(socket.AF_UNIX) as keep:
+        until(have, 300, "no other test has port 4304", step=0.1)
+        yield 4304
 
 
 def need_ipv6():

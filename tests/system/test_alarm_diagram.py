@@ -22,7 +22,7 @@ def drawn(scene, change=None):
     assert change is None or changed != table
     scene.file("alarm_fsm.h", TABLE.with_suffix(".h").read_text())
     done = subprocess.run([sys.executable, SCRIPT, scene.file("alarm_fsm.c", changed)], text=True,
-                          capture_output=True, timeout=30)
+                          capture_output=True, timeout=owsdtest.PATIENCE)
     return done.stdout, done.stderr
 
 

@@ -459,7 +459,7 @@ def test_several_targets_are_one_network(scene):
 
 
 def test_a_target_that_is_down_is_an_error_at_once(scene):
-    _, port = served(scene, owsdtest.rio(f"127.0.0.1:{owsdtest.free_port()}", []))
+    _, port = served(scene, owsdtest.rio(f"127.0.0.1:{owsdtest.free_port()}", [], Timeout=600))
     assert ask(port, READ, "/28.AABBCCDDEEFF/type")[0] == -5
     assert ask(port, DIRALL, "/")[0] == -5
 

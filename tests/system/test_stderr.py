@@ -42,7 +42,7 @@ def test_a_full_stderr_does_not_keep_owsd_from_ending(scene):
         owsdtest.until(lambda: scene.owsctl(name, "get", "room").returncode == 3, 10, "it runs")
         time.sleep(0.5)  # its supervisor has had lines to write
         process.send_signal(signal.SIGTERM)
-        assert process.wait(5) == 0
+        assert process.wait(owsdtest.PATIENCE) == 0
     finally:
         process.kill()
         process.wait()
