@@ -27,7 +27,7 @@
    meanwhile are told at once that the target is down. */
 #define GREETING_NS (5000 * MS)
 #define SLICE_NS    (50 * MS)
-#define NAMES_NS    (1000 * MS)
+#define NAMES_NS    (5000 * MS) /* on a busy wire they stand in line */
 /* An idle connection is looked at so often, to learn that the server went. */
 #define IDLE_NS     (1000 * MS)
 #define READ_MAX    65536

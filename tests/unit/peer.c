@@ -225,6 +225,10 @@ static void serve(struct peer *peer, int fd)
 		if (is_greeting(&request, (char *)body)) {
 			saw(&peer->greetings);
 			letter = 'a';
+			if (request.type == FRAME_READ && *peer->plan == 'z') {
+				peer->plan++;
+				usleep(1500000);
+			}
 		} else {
 			letter = *peer->plan ? *peer->plan++ : 'a';
 			peer->flags = request.flags;

@@ -9,6 +9,7 @@
  *   x close instead of an answer     R reset instead             m half of an answer, then close
  *   D answer, and again 2 ms later
  *   s silence until the client goes  d half of an answer, then silence
+ *   z first of the plan: the names of its buses come 1.5 s late, and the rest follows
  *   g garbage     h payload 2 GB     n payload -5     v version 0x20000     w less than it says
  */
 #ifndef TESTS_PEER_H

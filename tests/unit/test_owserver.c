@@ -132,6 +132,14 @@ static void test_it_greets_before_it_is_up_and_says_where_it_is(void)
 	TEST_ASSERT_EQUAL_UINT(0, peer_saw(&peer.requests));
 }
 
+static void test_a_server_that_is_slow_to_name_its_buses_is_up(void)
+{
+	start("z");
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_DOWN));
+	TEST_ASSERT_EQUAL_UINT(1, peer_saw(&peer.connections));
+	TEST_ASSERT_EQUAL_UINT8(BUS_DETAIL_SIMULATED, ask(BUS_READ, TEMPERATURE, NULL, 64)->detail);
+}
+
 static void test_requests_share_one_connection(void)
 {
 	uint64_t before;
@@ -619,6 +627,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_it_greets_before_it_is_up_and_says_where_it_is);
+	RUN_TEST(test_a_server_that_is_slow_to_name_its_buses_is_up);
 	RUN_TEST(test_requests_share_one_connection);
 	RUN_TEST(test_a_read_asks_for_the_room_it_has_and_past_the_cache);
 	RUN_TEST(test_an_empty_text_is_an_answer);
