@@ -92,11 +92,21 @@ class Traced(owsdtest.Owsd):
             subprocess.run(["kill", f"-{int(number)}", children[0]], check=False)
 
 
+def stop_all_of(daemon):
+    """freeze(), and return when no thread of it runs any more."""
+    daemon.freeze()
+
+    def stopped():
+        tasks = os.listdir(f"/proc/{daemon.pid}/task")
+        return all(owsdtest.state_of(daemon.pid, task) == "T" for task in tasks)
+    owsdtest.until(stopped, 10, "all its threads stop")
+
+
 def ctl(scene, daemon, environment, *arguments):
     """owsctl under the same faults."""
-    return subprocess.run([str(owsdtest.OWSCTL), "-n", daemon.name, *arguments], text=True, timeout=owsdtest.PATIENCE,
-                          cwd=scene.path, stdin=subprocess.DEVNULL, capture_output=True,
-                          env=dict(os.environ, **environment))
+    return subprocess.run([str(owsdtest.OWSCTL), "-n", daemon.name, *arguments], text=True,
+                          timeout=owsdtest.PATIENCE, cwd=scene.path, stdin=subprocess.DEVNULL,
+                          capture_output=True, env=dict(os.environ, **environment))
 
 
 def leftovers(name):

@@ -76,6 +76,28 @@ def until(condition, seconds, what="", step=0.02):
         time.sleep(step)
 
 
+def settled(look, times=20, step=0.05):
+    """What look() says when it has said the same so often: for a second, if nothing else."""
+    seen = []
+
+    def same():
+        seen.append(look())
+        return seen[-times:] == seen[-1:] * times
+    until(same, PATIENCE, lambda: f"it settles: {seen[-times:]}", step)
+    return seen[-1]
+
+
+def open_files(process):
+    """The numbers of its descriptors."""
+    return sorted(int(n) for n in os.listdir(f"/proc/{process.pid}/fd"))
+
+
+def state_of(pid, task=None):
+    """R, S, D, T, Z as in proc(5)."""
+    with open(f"/proc/{pid}/task/{task or pid}/stat", encoding="ascii", errors="replace") as file:
+        return file.read().rpartition(")")[2].split()[0]
+
+
 def logged(daemon, text):
     """The log is written beside the work: what was said stands there soon."""
     until(lambda: text in daemon.log(), 10, lambda: f"{text!r} in the log:\n{daemon.log()}")

@@ -10,6 +10,7 @@ In a test:
         daemon = scene.owsd(owsdtest.rio(server.target, [...]))
         server.mode = "hang"                  # from now on
         server.plan.append("reset")           # or: the next request only, before mode counts
+        server.ways[PATH] = "alive"           # or: requests for this path, while it stands there
         server["/28.AABBCCDDEEFF/temperature"] = "22"
         assert server.writes == [("/29.AABBCCDDEEFF/PIO.0", b"1")]
         server.down(); server.up()            # stop listening, begin again on the same port
@@ -69,7 +70,7 @@ class Peer:
         # not one of the kernel's choice: it might give that to a client while we are down
         self.host, self.port = host, port or owsdtest.free_port()
         self.alarms, self.readonly, self.refusals = set(), set(), {}
-        self.plan = collections.deque()
+        self.plan, self.ways = collections.deque(), {}
         self.requests, self.connections = [], 0
         self._mode = "normal"
         self._lock = threading.Lock()
@@ -177,6 +178,7 @@ class Peer:
         greeting = kind == NOP or request.path.startswith("/bus.")
         if not greeting:
             self.requests.append(request)
+            mode = self.ways.get(request.path, mode)
             try:
                 mode = self.plan.popleft()
             except IndexError:

@@ -11,7 +11,7 @@ import time
 
 import owsdtest
 import peer
-from owsdtest import raw, until
+from owsdtest import open_files, raw, settled, until
 
 ROOM = "/28.AABBCCDDEE00/temperature"
 HALL = "/28.AABBCCDDEE01/temperature"
@@ -22,7 +22,8 @@ def lying_peer():
     return peer.Peer({ROOM: "       21.5", HALL: "      19.25", RELAY: "           0"})
 
 
-def house(server, timeout=1, **driver):
+def house(server, timeout=30, **driver):
+    """timeout: short where silence is to be noticed; elsewhere a slow machine is no fault."""
     return owsdtest.rio(server.target, [
         dict(Name="room", Path=ROOM, Type=raw("double"), IO=raw("input")),
         dict(Name="hall", Path=HALL, Type=raw("double"), IO=raw("input")),
@@ -45,10 +46,6 @@ def good(scene, daemon):
     return qualities(scene, daemon) == (0xC0, 0xC0)
 
 
-def descriptors(daemon):
-    return len(os.listdir(f"/proc/{daemon.pid}/fd"))
-
-
 def counter(scene, daemon, name):
     stats = json.loads(scene.owsctl(daemon, "--json", "stats").stdout)
     return next(c["value"] for c in stats["counters"] if c["name"] == name)
@@ -57,51 +54,48 @@ def counter(scene, daemon, name):
 def test_every_way_of_losing_the_target_is_survived(scene):
     """Bad within Timeout, the value kept, good again by itself, no descriptor more."""
     with lying_peer() as server:
-        daemon = scene.owsd(house(server))
+        daemon = scene.owsd(house(server, timeout=1))
         until(lambda: good(scene, daemon), 5, "good at first")
-        before = descriptors(daemon)
+        before = settled(lambda: len(open_files(daemon)))
         for mode in ("kill", "close", "reset", "garbage", "negative", "huge", "version",
                      "endless", "wrong", "hang", "stall", "accept_close", "dead"):
+            server.mode = mode
             if mode in ("accept_close", "dead"):
                 server.plan.append("close")  # they are about new connections
-            server.mode = mode
             until(lambda: qualities(scene, daemon)[0] != 0xC0, 10, f"{mode}: bad")
             assert signals(scene, daemon)["room"]["value"] == 21.5, mode
+            server.plan.clear()
             server.mode = "normal"
             until(lambda: good(scene, daemon), 15, f"{mode}: good again")
-            until(lambda: descriptors(daemon) == before, 2, f"{mode}: descriptors {before}")
+            until(lambda: len(open_files(daemon)) == before, 2, f"{mode}: descriptors {before}")
         assert daemon.running()
 
 
 def test_silence_is_a_failure_of_the_target_and_turns_all_bad_at_once(scene):
     with lying_peer() as server:
-        daemon = scene.owsd(house(server))
+        daemon = scene.owsd(house(server, timeout=1))
         until(lambda: good(scene, daemon), 5)
         server.mode = "hang"
-        until(lambda: 0x18 in qualities(scene, daemon), 5, "bad")
+        before = server.connections
+        until(lambda: server.connections > before, 10, "the connection is given up")
+        asked = len(server.requests)
+        # what is asked now, is asked after the failure; and only one of the two was asked before it
+        until(lambda: len(server.requests) > asked, 10, "it is asked again")
         assert qualities(scene, daemon) == (0x18, 0x18)
         assert signals(scene, daemon)["relay"]["quality_code"] in (0x18, 0x20)
 
 
 def test_a_slow_answer_with_keep_alives_is_an_error_of_that_signal_only(scene):
     with lying_peer() as server:
-        daemon = scene.owsd(house(server, timeout=1))
+        daemon = scene.owsd(house(server, timeout=3))
         until(lambda: good(scene, daemon), 5)
-        server.slow_paths = {ROOM}
-        answer = server.plan
-        deadline = time.monotonic() + 20
-        while qualities(scene, daemon)[0] == 0xC0 and time.monotonic() < deadline:
-            # the next request is slow if it is the room's
-            if len(server.requests) and server.requests[-1].path == HALL and not answer:
-                answer.append("alive")
-            time.sleep(0.01)
-            q = qualities(scene, daemon)
-            if q[0] != 0xC0:
-                break
-        assert qualities(scene, daemon)[0] == 0x18
-        assert signals(scene, daemon)["hall"]["count"] > 0
+        server.ways[ROOM] = "alive"
+        until(lambda: qualities(scene, daemon)[0] != 0xC0, 20, "bad")
+        count = signals(scene, daemon)["hall"]["count"]
+        until(lambda: signals(scene, daemon)["hall"]["count"] > count, 20, "the other is read")
+        assert qualities(scene, daemon) == (0x18, 0xC0)
         assert counter(scene, daemon, "target_failures") == 0, "the target itself never failed"
-        answer.clear()
+        server.ways.clear()
         until(lambda: good(scene, daemon), 10, "good again")
 
 
@@ -110,7 +104,8 @@ def test_a_refused_persistence_costs_speed_and_nothing_else(scene):
         server.mode = "refuse"
         daemon = scene.owsd(house(server))
         until(lambda: good(scene, daemon), 5)
-        time.sleep(0.5)
+        connections = server.connections
+        until(lambda: server.connections > connections + 10, 10, "it connects for each request")
         assert good(scene, daemon)
         assert counter(scene, daemon, "target_failures") == 0
 
@@ -118,7 +113,7 @@ def test_a_refused_persistence_costs_speed_and_nothing_else(scene):
 def test_fragments_and_trailing_bytes_are_read_right(scene):
     with lying_peer() as server:
         server.mode = "fragments"
-        daemon = scene.owsd(house(server, timeout=5))
+        daemon = scene.owsd(house(server))
         until(lambda: good(scene, daemon), 10)
         assert signals(scene, daemon)["hall"]["value"] == 19.25
 
@@ -132,18 +127,20 @@ def test_a_write_is_neither_lost_nor_repeated_when_the_target_goes(scene):
         assert scene.owsctl(daemon, "set", "relay", "5").returncode == 0
         server.up()
         until(lambda: server.writes, 15, "written after the return")
-        time.sleep(0.5)
+        reads = server.reads(ROOM)
+        until(lambda: server.reads(ROOM) > reads + 5, 15, "the lane goes round and round")
         assert [w for w in server.writes] == [(RELAY, b"5")], server.writes
 
 
 def test_the_genuine_owserver_killed_hanging_and_started_again(scene):
     server = scene.owserver(mock=["28", "29"])
     path = next(d for d in server.devices(0) if d.startswith("/28.")) + "/temperature"
+    # long enough for an owserver that is only slow: each reconnection is to have its reason
     config = owsdtest.rio(server.target, [
-        dict(Name="room", Path=path, Type=raw("double"), IO=raw("input"))], Timeout=1, Period=0.02)
+        dict(Name="room", Path=path, Type=raw("double"), IO=raw("input"))], Timeout=4, Period=0.02)
     daemon = scene.owsd(config)
     until(lambda: scene.get(daemon, "room"), 5)
-    before = descriptors(daemon)
+    before = settled(lambda: len(open_files(daemon)))
     for _ in range(5):
         server.kill()
         until(lambda: scene.owsctl(daemon, "get", "room").returncode == 3, 5, "bad")
@@ -155,7 +152,7 @@ def test_the_genuine_owserver_killed_hanging_and_started_again(scene):
     until(lambda: scene.get(daemon, "room"), 15, "good again")
     reconnects = int(scene.get(daemon, "_RECONNECTS"))
     assert reconnects == 6, (reconnects, daemon.log())
-    assert descriptors(daemon) == before
+    until(lambda: len(open_files(daemon)) == before, 10, f"descriptors {before}")
 
 
 def segment(daemon, kind):
@@ -166,16 +163,22 @@ def test_a_consumer_that_truncates_the_command_segment_harms_nobody(scene):
     with lying_peer() as server:
         daemon = scene.owsd(house(server))
         until(lambda: good(scene, daemon), 5)
-        for size in (0, 100, 5000):
+        for value, size in enumerate((0, 100, 5000), 11):
             inode = os.stat(segment(daemon, "command")).st_ino
             os.truncate(segment(daemon, "command"), size)
             until(lambda: os.stat(segment(daemon, "command")).st_ino != inode, 10,
                   "a new command segment")
             assert daemon.running()
             until(lambda: good(scene, daemon), 5)
-            until(lambda: scene.owsctl(daemon, "set", "relay", str(size % 100 + 1)).returncode == 0,
-                  5, "sets work")
-            until(lambda: (RELAY, str(size % 100 + 1).encode()) in server.writes, 5, "and arrive")
+            until(lambda: scene.owsctl(daemon, "set", "relay", str(value)).returncode == 0, 5,
+                  "sets work")
+            until(lambda: (RELAY, str(value).encode()) in server.writes, 5, "and arrive")
+
+
+def good_or_disabled(scene, daemon):
+    """That an input is not read can be commanded too, if it is a rare chance of rubbish."""
+    return all(quality == 0xC0 or scene.get(daemon, name + "_ReadEnable") == "0"
+               for name, quality in zip(("room", "hall"), qualities(scene, daemon)))
 
 
 def test_rubbish_in_the_command_segment_harms_nobody(scene):
@@ -195,11 +198,11 @@ def test_rubbish_in_the_command_segment_harms_nobody(scene):
         # what rubbish can still command is what its type can hold
         for path, data in server.writes:
             assert path == RELAY and 0 <= int(data) <= 255, (path, data)
-        until(lambda: good(scene, daemon), 5, "inputs live")
+        until(lambda: good_or_disabled(scene, daemon), 5, "inputs live")
         # and the next one takes over what it finds without falling over it
         daemon.kill()
         again = scene.owsd(daemon.config, name=daemon.name)
-        until(lambda: good(scene, again), 10)
+        until(lambda: good_or_disabled(scene, again), 10, "inputs live again")
 
 
 def test_a_period_longer_than_the_watchdogs_time_starves_no_watchdog(scene):
@@ -266,7 +269,7 @@ def test_a_dev_shm_that_fills_up_between_two_starts_loses_nothing_that_was_comma
             pid=$!
         }
         reads_5() {
-            for i in $(seq 200); do
+            for i in $(seq 1000); do
                 [ "$("$owsctl" -n T get relays 2>&1)" != 5 ] || return 0
                 sleep 0.05
             done
@@ -274,14 +277,14 @@ def test_a_dev_shm_that_fills_up_between_two_starts_loses_nothing_that_was_comma
             exit 2
         }
         start "$1"
-        for i in $(seq 200); do
+        for i in $(seq 1000); do
             "$owsctl" -n T set relays 5 2>/dev/null && break
             sleep 0.05
         done
         reads_5
         kill -9 $pid
         wait $pid
-        for i in $(seq 200); do
+        for i in $(seq 1000); do
             "$owsctl" -n T get relays >/dev/null 2>&1 || break
             sleep 0.05
         done
@@ -297,7 +300,7 @@ def test_a_dev_shm_that_fills_up_between_two_starts_loses_nothing_that_was_comma
         echo "again: 5"
     """)
     done = scene._run(["unshare", "-rm", "env", f"owsd={owsdtest.OWSD}", f"owsctl={owsdtest.OWSCTL}",
-                       "sh", script, file], 40)
+                       "sh", script, file], 200)
     if done.returncode == 77 or done.stderr.startswith("unshare"):
         owsdtest.skip("no user namespaces: " + done.stderr.strip())
     assert done.stdout == "full: status 1\n/dev/shm is full\nagain: 5\n", done
