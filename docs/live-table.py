@@ -22,6 +22,7 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCE = HERE.parent
 BUILD = pathlib.Path(os.environ.get("OWSD_BUILD", SOURCE / "build")).resolve()
+PATIENCE = 60
 COLUMNS, ROWS = 80, 20
 CELL, LINE, MARGIN, BAR = 8.4, 19, 18, 34
 PAPER, INK, FAINT, BOLD, RED = "#1b2129", "#d5dbe3", "#8793a3", "#ffffff", "#ff8f85"
@@ -38,21 +39,22 @@ def record(folder):
                             stderr=subprocess.DEVNULL)
     ctl = [BUILD / "owsctl", "-n", name]
     try:
-        deadline = time.monotonic() + 10
+        deadline = time.monotonic() + PATIENCE
         while subprocess.run([*ctl, "get", "key"], capture_output=True, check=False).returncode:
             if time.monotonic() > deadline:
                 sys.exit("live-table: owsd does not start")
             time.sleep(0.1)
         subprocess.run([*ctl, "set", "pump", "on"], check=True)
-        return on_terminal([*ctl, "watch", "-t", "14"]).replace(name, "OWS")
+        return on_terminal([*ctl, "watch", "-t", PATIENCE]).replace(name, "OWS")
     finally:
         owsd.terminate()
-        owsd.wait(10)
+        owsd.wait(PATIENCE)
         for file in pathlib.Path("/dev/shm").glob(f"owsd.{name}.*"):
             file.unlink()
 
 
 def on_terminal(command):
+    """What it writes, until it shows that the bedroom's thermometer is gone, and no other."""
     master, slave = pty.openpty()
     fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("4H", ROWS, COLUMNS, 0, 0))
     environment = {**os.environ, "TERM": "xterm"}
@@ -66,16 +68,24 @@ def on_terminal(command):
             said += os.read(master, 65536)
         except OSError:  # the other side is closed
             break
-    child.wait(10)
+        if red_names(said.decode(errors="ignore").rpartition("\x1b[H")[0]) == ["bedroom"]:
+            child.terminate()
+    child.wait(PATIENCE)
     os.close(master)
     return said.decode()
+
+
+def red_names(said):
+    """The signals whose rows are red on the last whole screen."""
+    return [text.split()[0] for runs in last_screen(said) for text, attributes in runs[:1]
+            if "31" in attributes.split(";") and text.strip()]
 
 
 def last_screen(said):
     """The lines of the last whole screen, each a list of (text, attributes)."""
     screens = [s for s in said.split("\x1b[H") if s.count("\n") > 3]
     lines = []
-    for line in screens[-1].replace("\r", "").split("\n")[:ROWS]:
+    for line in (screens or [""])[-1].replace("\r", "").split("\n")[:ROWS]:
         runs, attributes = [], ""
         for part in re.split(r"(\x1b\[[0-9;?]*[A-Za-z])", line):
             sgr = re.fullmatch(r"\x1b\[([0-9;]*)m", part)

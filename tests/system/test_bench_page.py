@@ -66,7 +66,7 @@ def saved(scene, load=0.1, kernel=True):
 
 def written(scene, page):
     done = subprocess.run([sys.executable, SOURCE / "tests/bench/page", "--saved", "--build", scene.path,
-                           "--page", page], capture_output=True, text=True, timeout=60)
+                           "--page", page], capture_output=True, text=True, timeout=owsdtest.PATIENCE)
     return done.returncode, done.stdout + done.stderr, page.read_text()
 
 

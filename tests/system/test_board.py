@@ -87,7 +87,7 @@ def test_a_scan_in_vain_says_which_board_this_is(scene):
 
 def test_auto_is_the_first_way_that_is_there_or_says_what_each_lacks(scene):
     with owsdtest.default_port():
-        done = scene.owsctl(None, "-t", "auto", "scan", "-w", "5")
+        done = scene.owsctl(None, "-t", "auto", "scan", "-w", "60")
     if done.returncode:
         first = done.stderr.splitlines()[0]
         assert all(f"cannot open {way}" in first for way in ("localhost:4304", "i2c:auto", "w1"))

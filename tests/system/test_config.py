@@ -15,6 +15,8 @@ import owsdtest
 
 PTRACE_TRACEME, PTRACE_SYSCALL, PTRACE_SETOPTIONS, PTRACE_GET_SYSCALL_INFO = 0, 24, 0x4200, 0x420E
 PTRACE_O_TRACESYSGOOD = 1
+# The numbers of write, fsync, and of all that rename
+NUMBERS = {"x86_64": (1, 74, (82, 264, 316)), "aarch64": (64, 82, (38, 276))}
 libc = ctypes.CDLL(None, use_errno=True)
 libc.ptrace.argtypes = [ctypes.c_long, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p]
 ITEM = dict(Name="x", Path="/28.000000000001/temperature", Type="double", IO="input")
@@ -24,11 +26,15 @@ def test_edits_at_once_lose_nothing(scene):
     owsdtest.need(owsdtest.OWSCTL)
     path = scene.path / "house.rio"
     script = """for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
-        "$0" config "$1" add "$2$i" "/28.000000000001/temperature" || exit 1
+        # five seconds of a slow disk are told, and nothing is lost by that
+        until said=$("$0" config "$1" add "$2$i" "/28.000000000001/temperature" 2>&1); do
+            case $said in *"another program has been editing here"*) ;; *) echo "$said"; exit 1 ;; esac
+        done
     done"""
-    both = [subprocess.Popen(["sh", "-c", script, str(owsdtest.OWSCTL), str(path), letter],
-                             stdin=subprocess.DEVNULL) for letter in "ab"]
-    assert [process.wait(60) for process in both] == [0, 0]
+    both = [scene.start(["sh", "-c", script, owsdtest.OWSCTL, path, letter]) for letter in "ab"]
+    assert [process.wait(180) for process in both] == [0, 0]
+    for process in both:
+        process.log_path.unlink()
     listed = scene.owsctl(None, "config", path, "list")
     assert listed.returncode == 0, listed.stderr
     names = {line.split()[0] for line in listed.stdout.splitlines() if "/28." in line}
@@ -95,30 +101,34 @@ def test_an_edit_that_is_killed_at_any_point_leaves_the_old_file_or_the_new_one(
     new = path.read_text()
     seen = []
     deadline = time.monotonic() + 5
-    # From the end: where that is too slow, the calls that load the program are left out. A run that
-    # needs fewer calls than the first ends by itself, with the new file
+    _, _, renames = NUMBERS.get(platform.machine(), (0, 0, ()))
+
+    def enough():
+        return seen.count(True) > 1 and seen.count(False) > 1 and \
+            any(not isinstance(what, bool) for what in seen)
+    # From the end: where that is too slow, the calls that load the program are left out. A run may
+    # need some calls more or fewer than the first did, and may end by itself, with the new file
     for stops in range(len(calls) - 1, 0, -1):
-        edit_with(scene, path, stops)
+        status, calls = edit_with(scene, path, stops)
         now = path.read_text()
         assert now in (new, owsdtest.rio("localhost", [ITEM])), f"killed at {stops}: {now!r}"
+        # new from the return of rename on, old until its entry
+        entry = next((i for i, number in enumerate(calls) if number in renames), len(calls))
+        if status is None and renames and len(calls) != entry + 1:
+            assert (now == new) == (len(calls) > entry + 1), f"killed at {stops}: {now == new}"
         seen.append(now == new)
         for left in scene.path.glob("house.rio.*"):
             left.unlink()
             seen.append(left)
-        if time.monotonic() > deadline:
+        if time.monotonic() > deadline and enough():
             break
-    # once new, and before that never
-    assert seen.count(True) > 1 and seen.count(False) > 1, seen
-    assert any(not isinstance(what, bool) for what in seen), "killed before the file was there"
-    order = [what for what in seen if isinstance(what, bool)]
-    assert order == sorted(order, reverse=True), "new, then old again"
+    assert enough(), seen
 
 
 def test_an_edit_is_on_the_disk_before_it_takes_the_place_of_the_old_file(scene):
-    numbers = {"x86_64": (1, 74, (82, 264, 316)), "aarch64": (64, 82, (38, 276))}
-    if platform.machine() not in numbers:
+    if platform.machine() not in NUMBERS:
         owsdtest.skip(f"the numbers of calls on {platform.machine()} are not here")
-    write, fsync, renames = numbers[platform.machine()]
+    write, fsync, renames = NUMBERS[platform.machine()]
     status, calls = edit_with(scene, scene.path / "house.rio")
     assert status == 0
     here = [number for number in calls if number in (write, fsync, *renames)]
@@ -205,7 +215,7 @@ def test_what_cannot_be_printed_is_an_error(scene):
                     [*owsctl, "list"], [*owsctl, "watch"], [*owsctl, "get", "_RECONNECTS"]):
         with open("/dev/full", "wb") as full:
             done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True,
-                                  stdin=subprocess.DEVNULL, timeout=20, check=False)
+                                  stdin=subprocess.DEVNULL, timeout=owsdtest.PATIENCE, check=False)
         assert done.returncode == 1, (command, done)
         assert "cannot write: No space left on device" in done.stderr, (command, done.stderr)
 
@@ -218,7 +228,7 @@ def test_a_file_that_may_not_grow_is_an_error_and_no_end_by_signal(scene):
         out = scene.path / "out"
         done = subprocess.run(["sh", "-c", 'ulimit -f 1; exec "$@" >out', "sh",
                                *map(str, command)], cwd=scene.path, stderr=subprocess.PIPE,
-                              text=True, stdin=subprocess.DEVNULL, timeout=20, check=False)
+                              text=True, stdin=subprocess.DEVNULL, timeout=owsdtest.PATIENCE, check=False)
         assert done.returncode == 1, (command, done)
         assert "cannot write: File too large" in done.stderr, (command, done.stderr)
         out.unlink()

@@ -17,6 +17,7 @@ Behind them stands an owsd on docs/stage.sim, with the names of docs/stage.rio. 
 somewhere, files that are named exist, and a command within a sentence has an option that exists.
 """
 
+import collections
 import json
 import os
 import re
@@ -25,6 +26,7 @@ import struct
 import subprocess
 import sys
 import textwrap
+import time
 import xml.etree.ElementTree
 
 import handbook
@@ -130,22 +132,31 @@ class Stage:
         text = re.sub(r'\bOWS(?=__|")|(?<=/owsd\.)OWS(?=\.)', self.daemon.name, text)
         return OF_THE_SYSTEM.sub(f"{self.root}/\\1/", text)
 
-    def run(self, command, seconds=60):
+    def run(self, command, seconds=180):
         return subprocess.run([str(c) for c in command], cwd=self.cwd, text=True, timeout=seconds,
                               stdin=subprocess.DEVNULL, capture_output=True,
                               env=self.environment())
 
     def program(self, command):
-        """A program of a page: it succeeds, or it goes on until it is ended, and complains of nothing."""
+        """A program of a page: it succeeds, or it goes on until it is ended, and complains of nothing.
+        It goes on when it has done what it does at first and waits, for more than a second."""
         child = subprocess.Popen([str(c) for c in command], cwd=self.cwd, text=True,
                                  stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                  stderr=subprocess.PIPE, env=self.environment())
-        try:
-            out, err = child.communicate(timeout=1.5)
-            assert child.returncode == 0, f"status {child.returncode}\n{out}{err}"
-        except subprocess.TimeoutExpired:
-            child.terminate()
-            out, err = child.communicate(timeout=10)
+        waits, goes_on = collections.deque(maxlen=30), False
+        deadline = time.monotonic() + owsdtest.PATIENCE
+        while True:
+            try:
+                out, err = child.communicate(timeout=0.05)
+                break
+            except subprocess.TimeoutExpired:
+                waits.append(owsdtest.state_of(child.pid) == "S")
+            if sum(waits) >= 25 or time.monotonic() > deadline:
+                goes_on = True
+                child.terminate()
+                out, err = child.communicate(timeout=owsdtest.PATIENCE)
+                break
+        assert goes_on or child.returncode == 0, f"status {child.returncode}\n{out}{err}"
         assert not err, err
         return out
 
@@ -377,7 +388,7 @@ def test_messages_that_are_explained_are_those_of_the_programs(_scene):
 
 def test_the_picture_of_the_live_table_can_be_drawn_again(scene):
     picture = scene.path / "table.svg"
-    subprocess.run([sys.executable, SOURCE / "docs/live-table.py", picture], check=True, timeout=60)
+    subprocess.run([sys.executable, SOURCE / "docs/live-table.py", picture], check=True, timeout=240)
     for svg in (picture, SOURCE / "docs/img/table.svg"):
         texts = {t.text: t.get("fill") for t in xml.etree.ElementTree.parse(svg).iter() if t.text}
         assert {"NAME", "boiler", "humidity", "pump"} <= set(texts), texts

@@ -17,7 +17,7 @@ WANTED = ["dtparam=i2c_arm=on", "dtparam=i2c_arm_baudrate=400000"]
 
 
 def sh(scene, *command, **env):
-    return subprocess.run([str(c) for c in command], cwd=scene.path, text=True, timeout=60,
+    return subprocess.run([str(c) for c in command], cwd=scene.path, text=True, timeout=180,
                           env=dict(os.environ, **env), stdin=subprocess.DEVNULL,
                           capture_output=True)
 

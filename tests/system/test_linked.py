@@ -21,7 +21,7 @@ def output(*command):
         if command[0] == program and not shutil.which(program):
             skip(f"no {program} here (package binutils)")
     return subprocess.run([str(c) for c in command], check=True, capture_output=True, text=True,
-                          timeout=60).stdout
+                          timeout=owsdtest.PATIENCE).stdout
 
 
 def needed(file):
@@ -50,7 +50,8 @@ def test_the_makefile_found_what_is_installed(scene):
         if os.path.exists(f"/usr/include/{header}"):
             assert said[name] != "no", f"{header} is here; was {name.upper()}=0 given?"
     version = owsdtest.OWSD
-    told = subprocess.run([version, "-V"], capture_output=True, text=True, timeout=20).stdout
+    told = subprocess.run([version, "-V"], capture_output=True, text=True,
+                          timeout=owsdtest.PATIENCE).stdout
     assert ("with libi2c" in told) == (said["libi2c"] != "no"), told
     generation = re.search(r"with libgpiod (\d)", told)
     assert (generation.group(1) if generation else "no") == said["libgpiod"], told
@@ -86,7 +87,7 @@ def test_every_test_of_a_file_is_run_by_unity(scene):
 
 def counted(*programs):
     done = subprocess.run(["sh", str(SOURCE / "tests/unit/run"), *map(str, programs)],
-                          capture_output=True, text=True, timeout=100)
+                          capture_output=True, text=True, timeout=200)
     return done.returncode, done.stdout.splitlines()[-1]
 
 
@@ -96,14 +97,15 @@ def test_the_count_of_a_run_is_that_of_unitys_summary(scene):
         skip("the unit tests are not built (make unit)")
     total = 0
     for program in programs:
-        said = subprocess.run([program], cwd=SOURCE, capture_output=True, text=True, timeout=60)
+        said = subprocess.run([program], cwd=SOURCE, capture_output=True, text=True,
+                              timeout=200)
         tests, failures, ignored = map(int, SUMMARY.search(said.stdout).groups())
         source = (SOURCE / "tests/unit" / (program.name + ".c")).read_text()
         assert tests == source.count("RUN_TEST("), program.name
         assert (failures, ignored) == (0, 0)
         total += tests
     done = subprocess.run(["sh", "tests/unit/run", *map(str, programs)], cwd=SOURCE,
-                          capture_output=True, text=True, timeout=100)
+                          capture_output=True, text=True, timeout=200)
     assert done.stdout.splitlines()[-1] == f"{total} passed, 0 failed", done.stdout
 
 
