@@ -152,7 +152,7 @@ static int put_value(struct rio **rio, struct rio_node *block, enum option optio
 
 	if (as_word && is_plain_word(value))
 		return rio_set(rio, block, key, value);
-	quoted = rio_quote(value, (*rio)->line_end);
+	quoted = rio_quote(value);
 	err = quoted ? rio_set(rio, block, key, quoted) : -ENOMEM;
 	rio_quote_free(quoted);
 	return err;
@@ -272,7 +272,7 @@ static int count_again(struct rio **rio)
 
 static char *item_text(const char *name, const char *path)
 {
-	char *quoted_name = rio_quote(name, "\n"), *quoted_path = rio_quote(path, "\n"), *text = NULL;
+	char *quoted_name = rio_quote(name), *quoted_path = rio_quote(path), *text = NULL;
 
 	if (quoted_name && quoted_path &&
 	    asprintf(&text,

@@ -8,7 +8,7 @@
 
 static void put_plain(FILE *out, int indent, const char *key, const char *text)
 {
-	char *quoted = rio_quote(text, "\n");
+	char *quoted = rio_quote(text);
 
 	fprintf(out, "%*s%-*s %s\n", indent, "", RIO_KEY_WIDTH - 1, key, quoted ? quoted : "\"\"");
 	rio_quote_free(quoted);

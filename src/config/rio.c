@@ -24,6 +24,13 @@ struct parser {
 	char value[RIO_VALUE_MAX];
 };
 
+size_t rio_line_end_length(const char *p, const char *end)
+{
+	if (*p == '\r')
+		return p + 1 < end && p[1] == '\n' ? 2 : 1;
+	return *p == '\n';
+}
+
 static struct place place_here(struct parser *p)
 {
 	for (; p->at.counted < p->at.p; p->at.counted++)
@@ -46,23 +53,22 @@ static char peek(const struct parser *p)
 	return at_end(p) ? '\0' : *p->at.p;
 }
 
+static bool at_line_end(const struct parser *p)
+{
+	return !at_end(p) && rio_line_end_length(p->at.p, p->end);
+}
+
 static void take_line_end(struct parser *p)
 {
-	p->at.p++;
+	p->at.p += rio_line_end_length(p->at.p, p->end);
 	p->at.line++;
 	p->at.counted = p->at.p;
 	p->at.column = 1;
 }
 
-static bool at_line_end(const struct parser *p)
-{
-	return peek(p) == '\n' ||
-	       (peek(p) == '\r' && p->at.p + 1 < p->end && p->at.p[1] == '\n');
-}
-
 static void skip_line(struct parser *p)
 {
-	while (!at_end(p) && *p->at.p != '\n')
+	while (!at_end(p) && !at_line_end(p))
 		p->at.p++;
 }
 
@@ -70,11 +76,11 @@ static void skip_line(struct parser *p)
 static void skip(struct parser *p)
 {
 	while (!at_end(p)) {
-		if (*p->at.p == '\n')
+		if (at_line_end(p))
 			take_line_end(p);
 		else if (*p->at.p == '#')
 			skip_line(p);
-		else if (*p->at.p == ' ' || *p->at.p == '\t' || at_line_end(p))
+		else if (*p->at.p == ' ' || *p->at.p == '\t')
 			p->at.p++;
 		else
 			return;
@@ -216,7 +222,7 @@ static void parse_list(struct parser *p, struct rio_node *node)
 	for (p->at.p++; !at_end(p) && !strchr("]{}", *p->at.p);) {
 		if (*p->at.p == '"')
 			parse_piece(p, node);
-		else if (*p->at.p == '\n' || *p->at.p == '#')
+		else if (at_line_end(p) || *p->at.p == '#')
 			skip(p);
 		else
 			p->at.p++;
@@ -348,9 +354,13 @@ static void parse_entries(struct parser *p, struct rio_node *block, int depth)
 
 static const char *find_line_end(const char *text, size_t len)
 {
-	const char *end = len ? memchr(text, '\n', len) : NULL;
+	const char *end = text + len;
 
-	return end && end > text && end[-1] == '\r' ? "\r\n" : "\n";
+	while (text < end && !rio_line_end_length(text, end))
+		text++;
+	if (text == end || *text == '\n')
+		return "\n";
+	return rio_line_end_length(text, end) == 2 ? "\r\n" : "\r";
 }
 
 int rio_parse(const char *file, const char *text, size_t len, struct config_report *report,

@@ -12,7 +12,8 @@
  *       Item { Name "room1" }          a block
  *     }
  *
- * In strings \" and \\ stand for the second character; other backslashes for themselves.
+ * In strings \" and \\ stand for the second character; other backslashes for themselves. LF, CRLF and
+ * CR end a line, also mixed.
  */
 #ifndef CONFIG_RIO_H
 #define CONFIG_RIO_H
@@ -47,7 +48,7 @@ struct rio {
 	struct arena arena;
 	const char *text;
 	size_t len;
-	const char *line_end; /* "\n" or "\r\n", as in the first line */
+	const char *line_end; /* "\n", "\r\n" or "\r", as in the first line */
 	struct rio_node root;
 };
 
@@ -59,6 +60,9 @@ struct rio {
 int rio_parse(const char *file, const char *text, size_t len, struct config_report *report,
               struct rio **rio);
 void rio_free(struct rio *rio);
+
+/* Bytes of the line end that stands at p, which is before end: 2, 1, or 0 when there is none. */
+size_t rio_line_end_length(const char *p, const char *end);
 
 /* The first child of that key, or NULL; rio_next: the next one of the same key. */
 struct rio_node *rio_child(const struct rio_node *block, const char *key);

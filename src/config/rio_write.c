@@ -37,7 +37,7 @@ static struct grow grow_make(void)
 	return (struct grow){.text = calloc(1, 64), .room = 64};
 }
 
-char *rio_quote(const char *text, const char *line_end)
+char *rio_quote(const char *text)
 {
 	struct grow out = grow_make();
 	size_t in_line = 0;
@@ -47,9 +47,7 @@ char *rio_quote(const char *text, const char *line_end)
 		bool begins_character = ((unsigned char)*p & 0xc0) != 0x80;
 
 		if (in_line >= RIO_WRAP && begins_character) {
-			grow_add(&out, "\"", 1);
-			grow_add(&out, line_end, strlen(line_end));
-			grow_add(&out, "\"", 1);
+			grow_add(&out, "\"\n\"", 3);
 			in_line = 0;
 		}
 		if (*p == '"' || *p == '\\')
@@ -66,6 +64,19 @@ void rio_quote_free(char *quoted)
 	free(quoted);
 }
 
+static void grow_add_lines(struct grow *grow, const char *lines, const char *line_end)
+{
+	for (;;) {
+		size_t len = strcspn(lines, "\n");
+
+		grow_add(grow, lines, len);
+		if (!lines[len])
+			return;
+		grow_add(grow, line_end, strlen(line_end));
+		lines += len + 1;
+	}
+}
+
 /* Replace the bytes begin to end by text. */
 static int rio_splice(struct rio **rio, size_t begin, size_t end, const char *text)
 {
@@ -75,7 +86,7 @@ static int rio_splice(struct rio **rio, size_t begin, size_t end, const char *te
 	int err;
 
 	grow_add(&out, (*rio)->text, begin);
-	grow_add(&out, text, strlen(text));
+	grow_add_lines(&out, text, (*rio)->line_end);
 	grow_add(&out, (*rio)->text + end, (*rio)->len - end);
 	if (!out.text)
 		return -ENOMEM;
@@ -90,21 +101,26 @@ static int rio_splice(struct rio **rio, size_t begin, size_t end, const char *te
 
 static bool is_blank(char c)
 {
-	return c == ' ' || c == '\t' || c == '\r';
+	return c == ' ' || c == '\t';
 }
 
 /* First byte of the line of offset. */
 static size_t line_begin(const struct rio *rio, size_t offset)
 {
-	while (offset && rio->text[offset - 1] != '\n')
+	while (offset && rio->text[offset - 1] != '\n' && rio->text[offset - 1] != '\r')
 		offset--;
 	return offset;
 }
 
-/* The line's "\n", or the end of the text. */
+static size_t line_end_length(const struct rio *rio, size_t offset)
+{
+	return offset < rio->len ? rio_line_end_length(rio->text + offset, rio->text + rio->len) : 0;
+}
+
+/* The line's end, or that of the text. */
 static size_t line_end_at(const struct rio *rio, size_t offset)
 {
-	while (offset < rio->len && rio->text[offset] != '\n')
+	while (offset < rio->len && !line_end_length(rio, offset))
 		offset++;
 	return offset;
 }
@@ -127,24 +143,22 @@ static size_t behind_line(const struct rio *rio, const struct rio_node *node)
 {
 	size_t end = line_end_at(rio, node->end), p = node->end;
 
-	if (end > p && rio->text[end - 1] == '\r')
-		end--;
 	while (p < end && is_blank(rio->text[p]))
 		p++;
 	return p == end || rio->text[p] == '#' ? end : node->end;
 }
 
-static void add_indented(struct grow *out, const struct rio *rio, const char *indent,
-                         size_t indent_len, const char *lines)
+static void add_indented(struct grow *out, const char *indent, size_t indent_len,
+                         const char *lines)
 {
 	while (*lines) {
 		size_t len = strcspn(lines, "\n");
 
-		grow_add(out, rio->line_end, strlen(rio->line_end));
+		grow_add(out, "\n", 1);
 		/* the rest of a wrapped string has no indentation */
 		if (*lines != '"')
 			grow_add(out, indent, indent_len);
-		grow_add(out, lines, len && lines[len - 1] == '\r' ? len - 1 : len);
+		grow_add(out, lines, len);
 		lines += len + (lines[len] == '\n');
 	}
 }
@@ -167,10 +181,10 @@ static char *lines_behind(const struct rio *rio, const struct rio_node *block,
 	if (!after)
 		grow_add(&indent, "  ", 2);
 	if (indent.text)
-		add_indented(&out, rio, indent.text, indent.len, lines);
+		add_indented(&out, indent.text, indent.len, lines);
 	/* what stands behind it in the same line goes to one of its own */
 	if (indent.text && !blank_between(rio, *at, line_end_at(rio, *at))) {
-		grow_add(&out, rio->line_end, strlen(rio->line_end));
+		grow_add(&out, "\n", 1);
 		grow_add(&out, indent.text, indent.len >= 2 ? indent.len - 2 : 0);
 		while (is_blank(rio->text[*end]))
 			++*end;
@@ -250,7 +264,7 @@ int rio_remove(struct rio **rio, struct rio_node *node)
 
 	if (blank_between(*rio, line, begin) && blank_between(*rio, end, rest)) {
 		begin = line;
-		end = rest + (rest < (*rio)->len);
+		end = rest + line_end_length(*rio, rest);
 	} else {
 		while (begin > line && is_blank((*rio)->text[begin - 1]) && begin - 1 > line)
 			begin--;

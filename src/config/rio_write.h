@@ -9,12 +9,13 @@
 #define RIO_WRAP      50 /* a longer string goes on in a new one at the start of the next line */
 
 /* text as a quoted string, wrapped if it is long; NULL: no memory. Free with rio_quote_free(). */
-char *rio_quote(const char *text, const char *line_end);
+char *rio_quote(const char *text);
 void rio_quote_free(char *quoted);
 
 /*
  * Changes work on the text: they return a new document in *rio, the old one and all its nodes are
- * gone. 0, -ENOMEM, or -EFBIG (the document is then the old one).
+ * gone. 0, -ENOMEM, or -EFBIG (the document is then the old one). Each "\n" of what is put becomes
+ * the document's own line end.
  */
 /*
  * Set a key, or add it behind the other values of the block. value is put as it is: quote strings

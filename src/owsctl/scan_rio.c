@@ -102,7 +102,7 @@ static bool wanted(const struct scan_device *device, unsigned i, bool inputs_onl
 static int fill(struct rio **rio, struct names *names, const struct scan *scan, const char *target,
                 bool inputs_only)
 {
-	char count[16], *quoted = rio_quote(target, "\n");
+	char count[16], *quoted = rio_quote(target);
 	int err = quoted ? rio_set(rio, driver_of(*rio), "TargetName", quoted) : -ENOMEM;
 
 	rio_quote_free(quoted);

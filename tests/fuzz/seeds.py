@@ -41,6 +41,7 @@ def rio():
     text = driver % ("w1", item % ("l", "/23.1/memory", (
         '    IOType 0x013C InitValue "' + "long " * 11 + '"\n    "and longer" # why\n')))
     put("rio", "large", text.replace("\n", "\r\n") + "\0s l InitValue=" + "x" * 120)
+    put("rio", "cr", text.replace("\n", "\r") + "\0s l InitValue=" + "x" * 120 + "\na m /23.2/memory")
     put("rio", "lists", 'OwsDrv { Example [ 0 1 "]" # a\n ] Item { Name "x" Path a/b Type bool } }\0'
         's x Type=word\na y c/d\n')
     put("rio", "backslashes", driver % ("sim:a\\\\", item % ("l", "/23.1/memory", (

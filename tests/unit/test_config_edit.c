@@ -227,20 +227,56 @@ static void test_an_item_is_added_to_a_configuration_without_items(void)
 	TEST_ASSERT_NOT_NULL(strstr(rio->text, "ItemCount               2\n"));
 }
 
-static void test_windows_line_ends_and_long_strings_are_kept_in_style(void)
+/* Every edit there is, each of which makes lines or takes some out. */
+static void edit_all(const char *text)
 {
+	static const char *const keys[] = {"InitValue"}, *const more[] = {"Type=byte", "IO=output"};
 	char path[100] = "Path=/28.551DDF030000/";
 
-	parse("OwsDrv {\r\n  Item {\r\n    Name \"a\"\r\n    Path \"/x/y\"\r\n    IOType 0x18\r\n  }\r\n}\r\n");
 	memset(path + strlen(path), 'p', 60);
-	TEST_ASSERT_EQUAL_INT(0, set("a", path));
-	TEST_ASSERT_EQUAL_INT(0, set("a", "Alarm=off"));
-	TEST_ASSERT_EQUAL_INT(0, edit_add(&rio, "b", path + 5, NULL, 0, &report));
-	for (const char *p = strchr(rio->text, '\n'); p; p = strchr(p + 1, '\n'))
-		TEST_ASSERT_EQUAL_CHAR('\r', p[-1]);
-	TEST_ASSERT_NOT_NULL(strstr(rio->text, "p\"\r\n\"p"));
+	parse(text);
+	TEST_ASSERT_EQUAL_INT(0, set("room1", path));
+	TEST_ASSERT_EQUAL_INT(0, set("room1", "Alarm=off"));
+	TEST_ASSERT_EQUAL_INT(0, edit_unset(&rio, "room1", keys, 1, &report));
+	TEST_ASSERT_EQUAL_INT(0, set("OwsDrv", "Period=0.5"));
+	TEST_ASSERT_EQUAL_INT(0, edit_add(&rio, "b", path + 5, more, 2, &report));
+	TEST_ASSERT_EQUAL_INT(0, edit_remove(&rio, "relay", &report));
 	TEST_ASSERT_EQUAL_INT(0, edit_commit(rio, file, &report));
 	TEST_ASSERT_EQUAL_STRING("", said);
+}
+
+/* Each "\n" of text becomes line_end. */
+static void with_line_ends(const char *text, const char *line_end, char *to)
+{
+	for (; *text; text++) {
+		if (*text == '\n')
+			to = stpcpy(to, line_end);
+		else
+			*to++ = *text;
+	}
+	*to = '\0';
+}
+
+static void test_every_edit_keeps_the_line_ends_of_the_file(void)
+{
+	static const char in_one_line[] = "OwsDrv {\n"
+	                                  "Item { Name \"room1\" Path \"/x/y\" Type byte InitValue \"\" }\n"
+	                                  "Item { Name \"relay\" Path \"/x/z\" Type byte } }\n";
+	static const char *const texts[] = {genuine, in_one_line}, *const ends[] = {"\r\n", "\r"};
+	char plain[4000], text[4000];
+
+	for (size_t i = 0; i < 2; i++) {
+		edit_all(texts[i]);
+		TEST_ASSERT_NOT_NULL(strstr(rio->text, "p\"\n\"p"));
+		TEST_ASSERT_LESS_THAN_size_t(sizeof(plain) / 2, rio->len);
+		strcpy(plain, rio->text);
+		for (size_t k = 0; k < 2; k++) {
+			with_line_ends(texts[i], ends[k], text);
+			edit_all(text);
+			with_line_ends(plain, ends[k], text);
+			expect_text(text);
+		}
+	}
 }
 
 static void test_what_cannot_be_edited_is_said(void)
@@ -373,7 +409,7 @@ int main(void)
 	RUN_TEST(test_added_and_removed_again_leaves_no_trace);
 	RUN_TEST(test_a_removed_item_leaves_comments_and_is_no_longer_counted);
 	RUN_TEST(test_an_item_is_added_to_a_configuration_without_items);
-	RUN_TEST(test_windows_line_ends_and_long_strings_are_kept_in_style);
+	RUN_TEST(test_every_edit_keeps_the_line_ends_of_the_file);
 	RUN_TEST(test_what_cannot_be_edited_is_said);
 	RUN_TEST(test_a_result_that_is_no_configuration_never_reaches_the_file);
 	RUN_TEST(test_a_replaced_file_keeps_its_mode_and_is_a_new_one);

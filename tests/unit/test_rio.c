@@ -122,6 +122,30 @@ static void test_lines_and_columns_are_those_of_an_editor(void)
 	TEST_ASSERT_EQUAL_INT(16, a->last->value_at.column);
 }
 
+static void test_a_line_ends_with_lf_or_crlf_or_cr(void)
+{
+	static const struct {
+		const char *text, *line_end;
+	} cases[] = {
+		{"# x\nA [ 1\n2 ] # y\nB \"1\"\n\n\"2\"\nC 3", "\n"},
+		{"# x\r\nA [ 1\r\n2 ] # y\r\nB \"1\"\r\n\r\n\"2\"\r\nC 3", "\r\n"},
+		{"# x\rA [ 1\r2 ] # y\rB \"1\"\r\r\"2\"\rC 3", "\r"},
+		{"# x\rA [ 1\r\n2 ] # y\nB \"1\"\r\r\"2\"\r\nC 3", "\r"},
+	};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		struct rio_node *root = parse(cases[i].text);
+
+		TEST_ASSERT_EQUAL_STRING(cases[i].line_end, rio->line_end);
+		TEST_ASSERT_EQUAL_INT(2, root->first->at.line);
+		TEST_ASSERT_EQUAL_INT(4, rio_child(root, "B")->at.line);
+		expect_value(root, "B", RIO_STRING, "12");
+		TEST_ASSERT_EQUAL_INT(7, rio_child(root, "C")->at.line);
+		TEST_ASSERT_EQUAL_INT(3, rio_child(root, "C")->value_at.column);
+	}
+	TEST_ASSERT_EQUAL_STRING("\n", (parse("A 1"), rio->line_end));
+}
+
 static void test_a_byte_order_mark_is_no_part_of_the_first_key(void)
 {
 	struct rio_node *root = parse("\xef\xbb\xbf" "A 1");
@@ -158,7 +182,8 @@ static void test_syntax_errors_say_place_and_expectation(void)
 		{"A { B 1 2 }", "f:1:9: error: expected a key or '}', found '2'\n"
 	                        "f:1:12: error: expected '}' to end A of line 1\n"},
 		{"A { \"x\" }\n}", "f:1:5: error: expected a key or '}', found '\"'\n"},
-		{"A 1\rB 2", "f:1:4: error: expected a key, found the byte 0x0D\n"},
+		{"A 1 \x0b", "f:1:5: error: expected a key, found the byte 0x0B\n"},
+		{"# a\rA 1\r\r\nB\r", "f:4:2: error: expected a value behind B\n"},
 		{"\xc3\xa4 1", "f:1:1: error: expected a key\n"},
 		{"A \"x\x01y\x02\"", "f:1:5: error: a control character (byte 0x01) is not allowed\n"},
 		{"A \"x\"\nB \"y\nC 1\nD \"z\n",
@@ -387,12 +412,12 @@ static void test_strings_are_wrapped_only_when_long_and_read_back(void)
 	char text[1000], *quoted;
 	uint32_t state = 12345;
 
-	quoted = rio_quote("12345678901234567890123456789012345678901234567890", "\n");
+	quoted = rio_quote("12345678901234567890123456789012345678901234567890");
 	TEST_ASSERT_NULL(strchr(quoted, '\n'));
 	rio_quote_free(quoted);
-	quoted = rio_quote("123456789012345678901234567890123456789012345678901", "\r\n");
+	quoted = rio_quote("123456789012345678901234567890123456789012345678901");
 	TEST_ASSERT_EQUAL_STRING(
-		"\"12345678901234567890123456789012345678901234567890\"\r\n\"1\"", quoted);
+		"\"12345678901234567890123456789012345678901234567890\"\n\"1\"", quoted);
 	rio_quote_free(quoted);
 	for (size_t len = 0; len < 300; len++) {
 		char document[2000];
@@ -402,7 +427,7 @@ static void test_strings_are_wrapped_only_when_long_and_read_back(void)
 			text[i] = "ab\"\\ #{}/.="[(state >> 16) % 11];
 		}
 		text[len] = '\0';
-		quoted = rio_quote(text, "\n");
+		quoted = rio_quote(text);
 		snprintf(document, sizeof(document), "K %s", quoted);
 		expect_value(parse(document), "K", RIO_STRING, text);
 		rio_quote_free(quoted);
@@ -416,12 +441,12 @@ static void test_a_character_of_several_bytes_is_not_cut_by_wrapping(void)
 
 	memset(text, 'x', sizeof(text));
 	memcpy(text + 49, "\xe2\x82\xac", 4);
-	quoted = rio_quote(text, "\n");
+	quoted = rio_quote(text);
 	end = strchr(quoted, '\n');
 	TEST_ASSERT_NULL(end);
 	rio_quote_free(quoted);
 	memcpy(text + 49, "\xe2\x82\xac" "y", 5);
-	quoted = rio_quote(text, "\n");
+	quoted = rio_quote(text);
 	TEST_ASSERT_NOT_NULL(strstr(quoted, "\xe2\x82\xac\"\n\"y\""));
 	rio_quote_free(quoted);
 }
@@ -436,6 +461,7 @@ int main(void)
 	RUN_TEST(test_comments_and_commented_keys_are_skipped);
 	RUN_TEST(test_lines_and_columns_are_those_of_an_editor);
 	RUN_TEST(test_a_file_of_utf_16_is_refused_as_such);
+	RUN_TEST(test_a_line_ends_with_lf_or_crlf_or_cr);
 	RUN_TEST(test_a_byte_order_mark_is_no_part_of_the_first_key);
 	RUN_TEST(test_empty_texts_are_documents_without_keys);
 	RUN_TEST(test_syntax_errors_say_place_and_expectation);
