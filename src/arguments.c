@@ -4,6 +4,7 @@
 #include "hal/bus.h"
 #include "hal/gpio/line.h"
 #include "printable.h"
+#include "refused.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -87,18 +88,13 @@ static void version(void)
 		printf("without libgpiod: no target gpio, no GPIO lines\n");
 }
 
-static bool is_known(int option)
-{
-	return option >= OPT_CHECK || (option && strchr(letters, option));
-}
-
 /* getopt would say it with what stands there, which may steer the terminal. */
-static int refuse(const char *what, const char *word)
+static int refuse(int option, char *const *argv)
 {
-	if (optopt && optopt < OPT_CHECK)
-		complain("%s: -%c", what, optopt);
-	else
-		complain("%s: %s", what, word);
+	char why[1024];
+
+	refused_option(option, words, argv, why, sizeof(why));
+	complain("%s", why);
 	usage(stderr);
 	return EXIT_USAGE;
 }
@@ -136,7 +132,7 @@ static int take_priority(struct arguments *a)
 	return -1;
 }
 
-static int take(struct arguments *a, int option, const char *word)
+static int take(struct arguments *a, int option, char *const *argv)
 {
 	switch (option) {
 	case 'c':
@@ -171,10 +167,8 @@ static int take(struct arguments *a, int option, const char *word)
 	case 'h':
 		usage(stdout);
 		return finish_output();
-	case ':':
-		return refuse("option without its argument", word);
 	default:
-		return refuse(is_known(optopt) ? "option takes no argument" : "unknown option", word);
+		return refuse(option, argv);
 	}
 }
 
@@ -206,7 +200,7 @@ int arguments_parse(int argc, char **argv, struct arguments *a)
 	*a = (struct arguments){ .instance = "OWS", .level = LOG_LEVEL_NOTICE };
 	opterr = 0;
 	while ((option = getopt_long(argc, argv, letters, words, NULL)) != -1) {
-		int status = take(a, option, argv[optind - 1]);
+		int status = take(a, option, argv);
 
 		if (status >= 0)
 			return status;

@@ -3,6 +3,7 @@
 #include "verbs.h"
 #include "when.h"
 #include "../printable.h"
+#include "../refused.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -13,6 +14,8 @@
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
+
+enum { JSON = 256 };
 
 __attribute__((format(printf, 1, 0)))
 static void say(const char *format, va_list args)
@@ -50,24 +53,37 @@ void ctl_options(void)
 	optind = 0;
 }
 
-int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
+/* The long options of the verb whose own are options. */
+static const struct option *longs_of(const char *options)
 {
 	static const struct option longs[] = {
-		{"json", no_argument, NULL, 'J'},
-		{"all", no_argument, NULL, 'a'},
+		{"json", no_argument, NULL, JSON},
 		{"help", no_argument, NULL, 'h'},
+		{"all", no_argument, NULL, 'a'},
 		{"rio", no_argument, NULL, 'r'},
-		{0},
 	};
-	char all[32];
+	static struct option had[sizeof(longs) / sizeof(longs[0]) + 1];
+	struct option *next = had;
+
+	for (size_t i = 0; i < sizeof(longs) / sizeof(longs[0]); i++)
+		if (longs[i].val == JSON || longs[i].val == 'h' || strchr(options, longs[i].val))
+			*next++ = longs[i];
+	*next = (struct option){0};
+	return had;
+}
+
+int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
+{
+	const struct option *longs = longs_of(options);
+	char all[32], why[1024];
 	int c;
 
 	snprintf(all, sizeof(all), "%s:h%s%s", *options == '+' ? "+" : "",
 	         ctl->verb->opens ? "t:" : "", options + (*options == '+'));
 	opterr = 0;
-	while ((c = getopt_long(argc, argv, all, longs, NULL)) == 'J' ||
+	while ((c = getopt_long(argc, argv, all, longs, NULL)) == JSON ||
 	       (c == 't' && ctl->verb->opens)) {
-		if (c == 'J')
+		if (c == JSON)
 			ctl->json = true;
 		else
 			ctl->target = optarg;
@@ -77,17 +93,9 @@ int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
 		       ctl->verb->brief);
 		exit(ctl_flush(CTL_DONE));
 	}
-	if ((c == 'a' || c == 'r') && !strchr(options, c)) {
-		optopt = 0;
-		c = '?';
-	}
 	if (c == ':' || c == '?') {
-		const char *what = c == ':' ? "option without its argument" : "unknown option";
-
-		if (optopt)
-			ctl_usage(ctl, "%s: -%c", what, optopt);
-		else
-			ctl_usage(ctl, "%s: %s", what, argv[optind - 1]);
+		refused_option(c, longs, argv, why, sizeof(why));
+		ctl_usage(ctl, "%s", why);
 		return '?';
 	}
 	return c;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl: look at the signals of owsd and set them; look at devices without owsd. */
+#include "../refused.h"
 #include "../standard.h"
 #include "verbs.h"
 
@@ -31,6 +32,7 @@ static const struct verb verbs[] = {
 	{"scan", "[-t TARGET] [-w SECONDS] [--rio] [-i]", "the devices that are there, or a "
 	 "configuration for them", verb_scan, .opens = true},
 };
+enum { JSON = 256 };
 #define VERBS (sizeof(verbs) / sizeof(verbs[0]))
 
 static void usage(FILE *out)
@@ -49,12 +51,13 @@ static void usage(FILE *out)
 int main(int argc, char **argv)
 {
 	static const struct option longs[] = {
-		{"json", no_argument, NULL, 'J'},
+		{"json", no_argument, NULL, JSON},
 		{"help", no_argument, NULL, 'h'},
 		{"version", no_argument, NULL, 'V'},
 		{0},
 	};
 	struct ctl ctl = {.instance = "OWS"};
+	char why[1024];
 	int c;
 
 	/* A reader of ours that leaves is seen as EPIPE. */
@@ -75,7 +78,7 @@ int main(int argc, char **argv)
 		case 't':
 			ctl.target = optarg;
 			break;
-		case 'J':
+		case JSON:
 			ctl.json = true;
 			break;
 		case 'V':
@@ -84,15 +87,9 @@ int main(int argc, char **argv)
 		case 'h':
 			usage(stdout);
 			return ctl_flush(CTL_DONE);
-		case ':':
-			ctl_fail("option without its argument: -%c", optopt);
-			usage(stderr);
-			return CTL_USAGE;
 		default:
-			if (optopt)
-				ctl_fail("unknown option: -%c", optopt);
-			else
-				ctl_fail("unknown option: %s", argv[optind - 1]);
+			refused_option(c, longs, argv, why, sizeof(why));
+			ctl_fail("%s", why);
 			usage(stderr);
 			return CTL_USAGE;
 		}

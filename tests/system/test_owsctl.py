@@ -203,6 +203,22 @@ def test_what_is_said_of_a_wrong_option_cannot_steer_the_terminal(scene):
         assert run.stderr.startswith("owsctl: ") and "option" in run.stderr.splitlines()[0], run
 
 
+def test_a_wrong_option_is_named_as_it_was_typed(scene):
+    for words, expected in ((["--version=3"], "--version takes no value: --version=3"),
+                            (["--json=yes", "list"], "--json takes no value: --json=yes"),
+                            (["list", "--json=yes"], "--json takes no value: --json=yes"),
+                            (["list", "--all=1"], "--all takes no value: --all=1"),
+                            (["stats", "--all=1"], "unknown option: --all=1"),
+                            (["scan", "--rio=x"], "--rio takes no value: --rio=x"),
+                            (["get", "-J"], "unknown option: -J"),
+                            (["-n"], "option without its argument: -n"),
+                            (["watch", "-t"], "option without its argument: -t")):
+        run = subprocess.run([owsdtest.OWSCTL, *words], text=True, capture_output=True, check=False,
+                             timeout=10)
+        assert run.returncode == 2, (words, run)
+        assert run.stderr.startswith(f"owsctl: {expected}\n"), (words, run.stderr)
+
+
 def test_the_live_table_follows_values_and_keys(scene):
     server, daemon, room, _ = house(scene)
     terminal = Terminal(daemon, 24, 100, "watch")
