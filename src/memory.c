@@ -7,6 +7,7 @@
 
 #include <errno.h>
 #include <limits.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -235,13 +236,19 @@ static void say_private(const struct memory *m, struct log *log)
 		            image ? "owsd" : "owsd-control");
 }
 
+static bool is_there(int32_t pid)
+{
+	return pid > 0 && (kill(pid, 0) == 0 || errno != ESRCH);
+}
+
 static void retire(struct segment *before, struct log *log)
 {
 	struct ows_image_header *h = (void *)before->base;
 	uint32_t state = __atomic_load_n(&h->state, __ATOMIC_RELAXED);
 
 	if (state == OWS_STATE_LIVE && h->pid != getpid())
-		log_notice(log, "taken over from owsd %d, which was killed", (int)h->pid);
+		log_notice(log, "taken over from owsd %d, which had not stopped%s", (int)h->pid,
+		           is_there(h->pid) ? "; there is still a process of that number" : "");
 	image_retire(before->base, before->size);
 	segment_wake(&h->news, INT_MAX);
 }

@@ -184,7 +184,7 @@ def test_a_killed_owsd_is_taken_over(scene):
     until(lambda: scene.owsctl(daemon, "get", "room").returncode == 3, 10, "age shows")
     again = scene.owsd(config, name=name)
     until(lambda: scene.get(again, "room"), 5, "good again")
-    owsdtest.logged(again, "taken over")
+    owsdtest.logged(again, f"taken over from owsd {daemon.pid}, which had not stopped\n")
 
 
 def test_bad_files_start_nothing_and_say_where(scene):

@@ -215,6 +215,8 @@ def test_of_two_owsd_of_one_instance_the_one_whose_lock_was_removed_ends(scene):
     first.freeze()
     os.unlink(lock_file(first.name))
     second = scene.owsd(config, name=first.name)
+    owsdtest.logged(second, f"taken over from owsd {first.pid}, which had not stopped; there is "
+                            "still a process of that number")
     first.thaw()
     assert first.wait() == 1
     owsdtest.logged(first, f"process {second.pid} serves the instance now")
