@@ -4,6 +4,7 @@
 #include "shm/segment.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <poll.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -130,9 +131,11 @@ void log_put(struct log *log, enum log_level level, const char *format, ...)
 	segment_wake(&log->word, 1);
 }
 
-int log_rate(struct log_rate *rate, int64_t now_ns)
+uint64_t log_rate(struct log_rate *rate, int64_t now_ns)
 {
-	rate->seen++;
+	uint64_t since = ++rate->seen - rate->said;
+
+
 	if (rate->seen < rate->next && now_ns - rate->last_ns < HOUR_NS)
 		return 0;
 	if (rate->next == 0)
@@ -140,7 +143,16 @@ int log_rate(struct log_rate *rate, int64_t now_ns)
 	while (rate->next <= rate->seen)
 		rate->next *= 2;
 	rate->last_ns = now_ns;
-	return 1;
+	rate->said = rate->seen;
+	return since;
+}
+
+const char *log_others(uint64_t n, char text[LOG_OTHERS])
+{
+	text[0] = '\0';
+	if (n > 1)
+		snprintf(text, LOG_OTHERS, " (%" PRIu64 " times since this was said last)", n);
+	return text;
 }
 
 /*

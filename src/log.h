@@ -38,12 +38,18 @@ void log_put(struct log *log, enum log_level level, const char *format, ...)
 #define log_info(log, ...)    log_at(log, LOG_LEVEL_INFO, __VA_ARGS__)
 #define log_debug(log, ...)   log_at(log, LOG_LEVEL_DEBUG, __VA_ARGS__)
 
-/* For what may repeat every cycle: says when to speak (1st, 2nd, 4th, 8th time, at least hourly). */
+/*
+ * For what may repeat every cycle: says when to speak (1st, 2nd, 4th, 8th time, at least hourly) by
+ * how many there were since it did, this one included; 0: not now. log_others() puts that behind a
+ * line, where it is more than this one.
+ */
 struct log_rate {
-	uint64_t seen, next;
+	uint64_t seen, said, next;
 	int64_t last_ns;
 };
-int log_rate(struct log_rate *rate, int64_t now_ns);
+uint64_t log_rate(struct log_rate *rate, int64_t now_ns);
+#define LOG_OTHERS 64
+const char *log_others(uint64_t n, char text[LOG_OTHERS]);
 
 /*
  * Supervisor only: write the lines to fd ("<4>" levels if prefix) as long as it takes them without

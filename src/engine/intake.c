@@ -11,12 +11,16 @@
 
 static void refuse(struct engine *e, struct signal *s, int err, int64_t now_ns)
 {
+	char others[LOG_OTHERS];
+	uint64_t n = log_rate(&e->refused, now_ns);
+
 	e->counters.refused_commands++;
 	s->write_err = err;
-	if (!log_rate(&e->refused, now_ns))
-		return;
-	log_warning(e->log, "%s: a value in the command segment was refused: %s", s->item->name,
-	            err == -ERANGE ? "the type cannot hold it" : "its text is damaged");
+	if (n)
+		log_warning(e->log, "%s: a value in the command segment was refused: %s%s",
+		            s->item->name,
+		            err == -ERANGE ? "the type cannot hold it" : "its text is damaged",
+		            log_others(n, others));
 }
 
 /* Look at a busy string again in the next step, for a second. */

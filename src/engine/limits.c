@@ -28,9 +28,13 @@ static void enter(struct engine *e, const struct signal *s, uint8_t kind, uint8_
 
 static void enter_raised(struct engine *e, struct signal *s, uint8_t kind)
 {
+	uint64_t n = log_rate(&s->limit_log, e->now_ns);
+	char others[LOG_OTHERS];
+
 	enter(e, s, kind, OWS_ALARM_RAISED);
-	if (log_rate(&s->limit_log, e->now_ns))
-		log_warning(e->log, "%s: alarm: %s", s->item->name, ows_alarm_kind_text(kind));
+	if (n)
+		log_warning(e->log, "%s: alarm: %s%s", s->item->name, ows_alarm_kind_text(kind),
+		            log_others(n, others));
 }
 
 static void show(struct signal *s)

@@ -241,16 +241,33 @@ static bool is_allowed(struct serve *s, const union address *from)
 static void refuse(struct serve *s, int fd, enum serve_counter what, struct log_rate *rate,
                    const char *reason)
 {
+	char others[LOG_OTHERS];
+	uint64_t n;
+
 	close(fd);
 	count(s, what, 1);
-	if (log_rate(rate, s->now_ns))
-		log_warning(s->log, "a client of the owserver protocol was refused: %s", reason);
+	n = log_rate(rate, s->now_ns);
+	if (n)
+		log_warning(s->log, "a client of the owserver protocol was refused: %s%s", reason,
+		            log_others(n, others));
+}
+
+static void refuse_peer(struct serve *s, int fd, const union address *from)
+{
+	bool is_v6 = from->any.sa_family == AF_INET6;
+	char reason[INET6_ADDRSTRLEN + 32] = "";
+
+	inet_ntop(from->any.sa_family,
+	          is_v6 ? (const void *)&from->v6.sin6_addr : (const void *)&from->v4.sin_addr, reason,
+	          sizeof(reason));
+	strcat(reason, " is not in ListenAllow");
+	refuse(s, fd, COUNT_refused_peers, &s->peer_rate, reason);
 }
 
 static void take(struct serve *s, int fd, bool network, const union address *from)
 {
 	if (network && !is_allowed(s, from)) {
-		refuse(s, fd, COUNT_refused_peers, &s->peer_rate, "not in ListenAllow");
+		refuse_peer(s, fd, from);
 		return;
 	}
 	if (!s->free_count && !client_evict(s)) {
@@ -258,7 +275,7 @@ static void take(struct serve *s, int fd, bool network, const union address *fro
 		return;
 	}
 	if (!client_open(s, fd, network)) {
-		close(fd);
+		refuse(s, fd, COUNT_refused_full, &s->full_rate, strerror(errno));
 		return;
 	}
 	count(s, COUNT_connections, 1);

@@ -135,7 +135,7 @@ except ConnectionError as why:
             assert any(end in stranger.log() for end in ("got b''", "reset", "Broken pipe")), stranger.log()
             refused += 1
             until(lambda: faulty.counters(scene, daemon)["served_refused_peers"] == refused, 10)
-        owsdtest.logged(daemon, "refused: not in ListenAllow")
+        owsdtest.logged(daemon, f"refused: {OTHER4[1]} is not in ListenAllow")
         assert told(net.ask(scene, f"{V4[0]}:{PORT}"), "21.5"), "the others are still served"
 
 

@@ -150,6 +150,24 @@ def test_1100_idle_clients_do_not_keep_others_out_for_long(scene):
             close_all(sockets)
 
 
+def test_refusals_are_counted_and_said_with_their_number(scene):
+    many_descriptors(2048)
+    server = served.owsd(scene, **SLOW)
+    sockets = []
+
+    def said():
+        sockets.extend(open_all(server, 50))
+        del sockets[:-1000]
+        return "refused: there are too many (2 times since this was said last)" in server.program.log()
+    owsdtest.until(said, 60, "how many were refused")
+    close_all(sockets)
+    lines = server.program.log().count("there are too many")
+    assert lines >= 3, server.program.log()
+    # a line at the first, second, fourth, eighth, ... of them
+    owsdtest.until(lambda: counter(scene, server.program, "served_refused_full") >= 2 ** (lines - 1),
+                   10, "all of them are counted")
+
+
 def test_a_client_that_does_not_read_gets_no_memory_and_holds_nobody_up(scene):
     server = served.owsd(scene, **SLOW)
     with unharmed(scene, server):

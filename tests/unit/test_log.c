@@ -283,10 +283,29 @@ static void test_a_repeated_line_is_said_at_least_hourly(void)
 	for (int i = 0; i < 5; i++)
 		log_rate(&rate, 0);
 	TEST_ASSERT_EQUAL(0, log_rate(&rate, hour - 1));
-	TEST_ASSERT_EQUAL(1, log_rate(&rate, hour));
+	TEST_ASSERT_EQUAL(3, log_rate(&rate, hour)); /* the seventh: fifth to seventh */
 	TEST_ASSERT_EQUAL(1, log_rate(&rate, hour + 1)); /* the eighth */
 	TEST_ASSERT_EQUAL(0, log_rate(&rate, 2 * hour));
-	TEST_ASSERT_EQUAL(1, log_rate(&rate, 2 * hour + 1));
+	TEST_ASSERT_EQUAL(2, log_rate(&rate, 2 * hour + 1));
+}
+
+static void test_how_often_it_was_not_said_is_told_when_it_is(void)
+{
+	struct log_rate rate = {0};
+	uint64_t told = 0, last = 0;
+	char others[LOG_OTHERS];
+
+	for (int i = 0; i < 1024; i++) {
+		uint64_t n = log_rate(&rate, 1);
+
+		told += n;
+		last = n ? n : last;
+	}
+	TEST_ASSERT_EQUAL_UINT64(1024, told);
+	TEST_ASSERT_EQUAL_STRING(" (512 times since this was said last)", log_others(last, others));
+	TEST_ASSERT_EQUAL_STRING("", log_others(1, others));
+	TEST_ASSERT_LESS_THAN_size_t(LOG_OTHERS, strlen(log_others(UINT64_MAX, others)));
+	TEST_ASSERT_NOT_NULL(strstr(others, "18446744073709551615 times"));
 }
 
 int main(void)
@@ -309,5 +328,6 @@ int main(void)
 	RUN_TEST(test_several_threads_lose_nothing_unsaid);
 	RUN_TEST(test_a_repeated_line_is_said_at_powers_of_two);
 	RUN_TEST(test_a_repeated_line_is_said_at_least_hourly);
+	RUN_TEST(test_how_often_it_was_not_said_is_told_when_it_is);
 	return UNITY_END();
 }
