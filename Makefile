@@ -431,24 +431,34 @@ uninstall:
 	rm -f $(foreach m,$(MAN),$(D)$(MANDIR)/man$(patsubst .%,%,$(suffix $(m)))/$(notdir $(m)))
 	rm -rf $(D)$(DATADIR)
 
-# The service for a systemd that looks below PREFIX, as it does in /usr and /usr/local; what has to
-# be done once is said
+# The service, where systemd and udev look: below PREFIX they do in /usr and /usr/local, else in /etc.
+# The unit names the owsd of PREFIX; what has to be done once is said
 SERVICE   := systemd/system/owsd@.service systemd/system/owsd.service sysusers.d/owsd.conf \
              tmpfiles.d/owsd.conf modules-load.d/owsd.conf udev/rules.d/60-owsd.rules
+SERVICE_PREFIX := $(abspath $(PREFIX))
+SERVICE_IN := $(D)$(if $(filter /usr /usr/local,$(SERVICE_PREFIX)),$(SERVICE_PREFIX)/lib,/etc)
 install-service:
-	install -d $(addprefix $(D)$(PREFIX)/lib/,$(sort $(dir $(SERVICE)))) $(D)/etc/owsd
-	sed 's,@SBINDIR@,$(PREFIX)/sbin,' board/systemd/owsd@.service >$(D)$(PREFIX)/lib/systemd/system/owsd@.service
-	install -m 644 board/systemd/owsd.service $(D)$(PREFIX)/lib/systemd/system/owsd.service
-	install -m 644 board/systemd/sysusers.conf $(D)$(PREFIX)/lib/sysusers.d/owsd.conf
-	install -m 644 board/systemd/tmpfiles.conf $(D)$(PREFIX)/lib/tmpfiles.d/owsd.conf
-	install -m 644 board/systemd/modules-load.conf $(D)$(PREFIX)/lib/modules-load.d/owsd.conf
-	install -m 644 board/udev/owsd.rules $(D)$(PREFIX)/lib/udev/rules.d/60-owsd.rules
+	@case '$(PREFIX)' in /*) ;; *) \
+	    echo "install-service: PREFIX is '$(PREFIX)': the unit needs the whole path, as /opt"; exit 1; esac
+	@case '$(SERVICE_PREFIX)' in *[!A-Za-z0-9/._+-]*) \
+	    echo "install-service: PREFIX is '$(PREFIX)': a unit takes letters, digits and . _ + - alone"; exit 1; esac
+	@case '$(SERVICE_PREFIX)/' in /home/*|/root/*|/run/user/*|/tmp/*|/var/tmp/*) \
+	    echo "install-service: PREFIX is '$(PREFIX)': the service sees no home and no /tmp; take another, as /opt"; \
+	    exit 1; esac
+	install -d $(addprefix $(SERVICE_IN)/,$(sort $(dir $(SERVICE)))) $(D)/etc/owsd
+	sed 's,@SBINDIR@,$(SERVICE_PREFIX:/=)/sbin,' board/systemd/owsd@.service >$(SERVICE_IN)/systemd/system/owsd@.service
+	chmod 644 $(SERVICE_IN)/systemd/system/owsd@.service
+	install -m 644 board/systemd/owsd.service $(SERVICE_IN)/systemd/system/owsd.service
+	install -m 644 board/systemd/sysusers.conf $(SERVICE_IN)/sysusers.d/owsd.conf
+	install -m 644 board/systemd/tmpfiles.conf $(SERVICE_IN)/tmpfiles.d/owsd.conf
+	install -m 644 board/systemd/modules-load.conf $(SERVICE_IN)/modules-load.d/owsd.conf
+	install -m 644 board/udev/owsd.rules $(SERVICE_IN)/udev/rules.d/60-owsd.rules
 	[ -e $(D)/etc/owsd/OWS.rio ] || install -m 644 board/debian/OWS.rio $(D)/etc/owsd/OWS.rio
 	@echo 'now: systemd-sysusers; modprobe i2c-dev; udevadm trigger; systemctl daemon-reload;'
 	@echo '     systemctl enable --now owsd      (its configuration: /etc/owsd/OWS.rio)'
 
 uninstall-service:
-	rm -f $(addprefix $(D)$(PREFIX)/lib/,$(SERVICE))
+	rm -f $(addprefix $(SERVICE_IN)/,$(SERVICE))
 
 # --- Packages ---------------------------------------------------------------------------------
 # One architecture or several, for this Debian or another: ARCH='arm64 armhf' SUITE=trixie

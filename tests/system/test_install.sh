@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# make install puts everything below DESTDIR, a program builds against it, uninstall removes it all
+# make install puts everything below DESTDIR, a program builds against it, uninstall removes it all;
+# the service is where systemd and udev look, and starts the owsd that was installed with it
 set -eu
 
 root=$PWD/root
@@ -61,7 +62,44 @@ env -u OWSD_BOARDS "$root/opt/owsd/sbin/owsd" --board=unipi-1.1 >board || [ $? =
 grep -q 'UniPi 1.1' board
 
 on_copy uninstall
-if find "$root" ! -type d | grep .; then
-	echo "uninstall left the files above"
-	exit 1
-fi
+nothing_left() {
+	if find "$root" ! -type d | grep .; then
+		echo "uninstall left the files above"
+		exit 1
+	fi
+}
+nothing_left
+
+for prefix in /usr/local /usr /opt /opt/owsd/ /; do
+	case $prefix in
+	/usr*) in=$root$prefix/lib ;;
+	*) in=$root/etc ;;
+	esac
+	on_copy install-service PREFIX=$prefix >said
+	for f in systemd/system/owsd.service sysusers.d/owsd.conf tmpfiles.d/owsd.conf \
+		modules-load.d/owsd.conf udev/rules.d/60-owsd.rules; do
+		[ -s "$in/$f" ] || { echo "PREFIX=$prefix: missing: $in/$f"; exit 1; }
+	done
+	grep -qx "ExecStart=${prefix%/}/sbin/owsd -n %i \$OWSD_OPTIONS" "$in/systemd/system/owsd@.service"
+	# the genuine one finds them, and enables the instance that the unit names
+	if command -v systemctl >/dev/null; then
+		systemctl --root="$root" enable owsd 2>enabled || { cat enabled; exit 1; }
+		[ -L "$root/etc/systemd/system/owsd.service.wants/owsd@OWS.service" ]
+		systemctl --root="$root" disable owsd 2>/dev/null
+	fi
+	if command -v systemd-sysusers >/dev/null; then
+		systemd-sysusers --root="$root" --cat-config | grep -q '^u owsd '
+		systemd-tmpfiles --root="$root" --cat-config | grep -q '^x /dev/shm/owsd'
+	fi
+	on_copy uninstall-service PREFIX=$prefix
+	rm "$root/etc/owsd/OWS.rio"
+	nothing_left
+done
+for prefix in opt '' '/opt/%h' '/opt/a,b' /home/plc/.local /root /tmp/owsd; do
+	if on_copy install-service PREFIX="$prefix" >said 2>&1; then
+		echo "install-service: PREFIX=$prefix is not refused"
+		exit 1
+	fi
+	grep -q "install-service: PREFIX is '$prefix'" said || { cat said; exit 1; }
+	nothing_left
+done
