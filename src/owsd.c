@@ -168,14 +168,8 @@ static void reload(struct host *host, const struct arguments *a, struct log *log
                    const struct notify *notify)
 {
 	struct config *config;
-	struct stat st;
 	char why[512];
 
-	/* a pipe would keep the supervisor from its work until somebody writes */
-	if (stat(a->file, &st) == 0 && !S_ISREG(st.st_mode)) {
-		log_err(log, "reload: %s is no regular file: all goes on as before", a->file);
-		return;
-	}
 	if (load(a, log, &config)) {
 		log_err(log, "reload: %s is refused: all goes on as before", a->file);
 		return;

@@ -69,8 +69,9 @@ struct rio_node *rio_child(const struct rio_node *block, const char *key);
 struct rio_node *rio_next(const struct rio_node *node);
 
 /*
- * Read a whole file into *text (malloc, NUL behind *len bytes). Errors are said through report:
- * negative errno; -EFBIG as above, -EILSEQ it is UTF-16. Blocking.
+ * Read a whole regular file into *text (malloc, NUL behind *len bytes). Errors are said through
+ * report: negative errno; -EFBIG as above, -EILSEQ it is UTF-16, -EINVAL it is no regular file, and
+ * was not opened. Blocking.
  */
 int rio_read(const char *file, struct config_report *report, char **text, size_t *len);
 

@@ -54,19 +54,81 @@ static bool is_utf16(const char *text, size_t len)
 	                    !text[0] != !text[1]);
 }
 
+static const char *kind_of(mode_t mode)
+{
+	switch (mode & S_IFMT) {
+	case S_IFDIR:
+		return "directory";
+	case S_IFIFO:
+		return "pipe";
+	case S_IFSOCK:
+		return "socket";
+	default:
+		return "device";
+	}
+}
+
+/* A pipe may have nobody at its other end, and a device any number of bytes. */
+static int check(const struct stat *st, struct place place, struct config_report *report)
+{
+	if (!S_ISREG(st->st_mode)) {
+		report_error(report, place, "is a %s: only a regular file is read",
+		             kind_of(st->st_mode));
+		return -EINVAL;
+	}
+	if (st->st_size > (off_t)RIO_FILE_MAX) {
+		report_error(report, place, "longer than %u bytes", RIO_FILE_MAX);
+		return -EFBIG;
+	}
+	return 0;
+}
+
+static int cannot_read(struct config_report *report, struct place place, int err)
+{
+	report_error(report, place, "cannot be read: %s", strerror(-err));
+	return err;
+}
+
+/* A descriptor, or a negative errno after having said why. */
+static int open_file(const char *file, struct config_report *report)
+{
+	const struct place place = { file, 0, 0 };
+	struct stat st;
+	int fd, err;
+
+	if (!*file) {
+		report_error(report, (struct place){0}, "the name of the configuration is empty");
+		return -EINVAL;
+	}
+	/* before it is opened, which is an act on some devices */
+	if (stat(file, &st) < 0)
+		return cannot_read(report, place, -errno);
+	err = check(&st, place, report);
+	if (err)
+		return err;
+	fd = open(file, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+	if (fd < 0)
+		return cannot_read(report, place, -errno);
+	/* and again, as another may have taken its place */
+	err = fstat(fd, &st) < 0 ? cannot_read(report, place, -errno) : check(&st, place, report);
+	if (err)
+		close(fd);
+	return err ? err : fd;
+}
+
 int rio_read(const char *file, struct config_report *report, char **text, size_t *len)
 {
 	const struct place place = { file, 0, 0 };
-	int fd = open(file, O_RDONLY | O_CLOEXEC | O_NOCTTY);
-	int err = fd < 0 ? -errno : read_all(fd, text, len);
+	int fd = open_file(file, report);
+	int err;
 
-	if (fd >= 0)
-		close(fd);
-	if (err || fd < 0) {
-		report_error(report, place, "cannot be read: %s", strerror(-err));
-		*text = NULL;
-		return err;
-	}
+	*text = NULL;
+	if (fd < 0)
+		return fd;
+	err = read_all(fd, text, len);
+	close(fd);
+	if (err)
+		return cannot_read(report, place, err);
 	if (*len > RIO_FILE_MAX) {
 		report_error(report, place, "longer than %u bytes", RIO_FILE_MAX);
 		err = -EFBIG;

@@ -187,6 +187,19 @@ def test_a_start_without_a_configuration_says_how_to_come_to_one(scene):
     assert done.returncode == 2 and "scan --rio" not in done.stderr, done.stderr
 
 
+def test_what_is_no_regular_file_is_refused_at_once(scene):
+    pipe = scene.path / "pipe.rio"
+    os.mkfifo(pipe)
+    for file, kind in ((pipe, "pipe"), (scene.path, "directory"), ("/dev/zero", "device")):
+        for words in ([owsdtest.OWSD, "--check", "-c", file], [owsdtest.OWSD, "-n", scene.name(), "-c", file],
+                      [owsdtest.OWSCTL, "config", file, "list"],
+                      [owsdtest.OWSCTL, "config", file, "set", "OwsDrv", "Timeout=3"],
+                      [owsdtest.OWSCTL, "config", file, "add", "a", "/x/y"]):
+            done = scene._run(words, 20)
+            assert done.returncode == 2, (words, done)
+            assert f"{file}: error: is a {kind}: only a regular file is read\n" in done.stderr, (words, done)
+
+
 def test_each_of_several_targets_is_checked(scene):
     path = scene.file("two.rio", owsdtest.rio("localhost:4304 | null:x", [ITEM]))
     for arguments in (["--check", "-c", path], ["-n", scene.name(), "-c", path]):

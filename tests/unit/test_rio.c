@@ -8,6 +8,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 static struct config_report report;
@@ -312,8 +315,45 @@ static void test_a_file_that_cannot_be_read_is_said(void)
 	TEST_ASSERT_EQUAL_INT(-ENOENT, rio_read("tests/unit/data/none.rio", &report, &text, &len));
 	TEST_ASSERT_EQUAL_STRING(
 		"tests/unit/data/none.rio: error: cannot be read: No such file or directory\n", said);
-	TEST_ASSERT_EQUAL_INT(-EISDIR, rio_read("tests/unit", &report, &text, &len));
 	TEST_ASSERT_NULL(text);
+}
+
+static void test_only_a_regular_file_of_a_size_is_read_at_all(void)
+{
+	char path[] = "/tmp/test_rio.XXXXXX", pipe[40];
+	struct sockaddr_un at = {.sun_family = AF_UNIX};
+	int fd = mkstemp(path), local = socket(AF_UNIX, SOCK_STREAM, 0);
+	const struct {
+		const char *file, *said;
+		int err;
+	} cases[] = {
+		{"", "error: the name of the configuration is empty\n", -EINVAL},
+		{"tests/unit", "tests/unit: error: is a directory: only a regular file is read\n", -EINVAL},
+		{"/dev/zero", "/dev/zero: error: is a device: only a regular file is read\n", -EINVAL},
+		{"/dev/null", "/dev/null: error: is a device: only a regular file is read\n", -EINVAL},
+		{pipe, ": error: is a pipe: only a regular file is read\n", -EINVAL},
+		{at.sun_path, ": error: is a socket: only a regular file is read\n", -EINVAL},
+		{path, ": error: longer than 16777216 bytes\n", -EFBIG},
+	};
+	size_t len;
+	char *text;
+
+	snprintf(pipe, sizeof(pipe), "%s.pipe", path);
+	snprintf(at.sun_path, sizeof(at.sun_path), "%s.socket", path);
+	TEST_ASSERT_EQUAL_INT(0, mkfifo(pipe, 0600));
+	TEST_ASSERT_EQUAL_INT(0, bind(local, (void *)&at, sizeof(at)));
+	TEST_ASSERT_EQUAL_INT(0, ftruncate(fd, (off_t)RIO_FILE_MAX + 1));
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		said[0] = '\0';
+		TEST_ASSERT_EQUAL_INT(cases[i].err, rio_read(cases[i].file, &report, &text, &len));
+		TEST_ASSERT_NULL(text);
+		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, cases[i].said), said);
+	}
+	close(local);
+	close(fd);
+	unlink(path);
+	unlink(pipe);
+	unlink(at.sun_path);
 }
 
 static void test_random_bytes_are_survived(void)
@@ -471,6 +511,7 @@ int main(void)
 	RUN_TEST(test_errors_are_reported_fifty_at_most_and_all_counted);
 	RUN_TEST(test_genuine_files_come_back_byte_for_byte);
 	RUN_TEST(test_a_file_that_cannot_be_read_is_said);
+	RUN_TEST(test_only_a_regular_file_of_a_size_is_read_at_all);
 	RUN_TEST(test_random_bytes_are_survived);
 	RUN_TEST(test_a_changed_value_changes_nothing_else);
 	RUN_TEST(test_a_value_that_touches_its_key_does_not_become_a_part_of_it);
