@@ -108,8 +108,6 @@ struct link {
 
 struct link_master;
 struct link_master_ops {
-	const char *scheme; /* "i2c", "sim": the target's scheme */
-	const char *summary;
 	/* where: the target without its scheme. Allocates all, touches nothing. As bus_ops.create. */
 	int (*create)(const char *where, const struct bus_env *env, struct link_master **master,
 	              char *why, size_t why_size);

@@ -218,8 +218,6 @@ static void every_destroy(struct link_master *base)
 }
 
 static const struct link_master_ops every_ops = {
-	.scheme = "i2c",
-	.summary = "every DS2482 there is",
 	.open = every_open,
 	.grow = every_grow,
 	.close = every_close,

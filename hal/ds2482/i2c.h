@@ -54,7 +54,6 @@ struct i2c_adapter {
 	/* At most this; the kernel does not tell, so the driver tries it and may lower it. */
 	enum i2c_combine combine;
 	unsigned max_messages; /* in one transfer; 42 with i2c-dev */
-	uint32_t hz;           /* bus speed if known, else 0 */
 	uint64_t transfers, bytes, syscalls; /* counted by the adapter */
 	int holder; /* process that a claim was refused for; 0 not known */
 };

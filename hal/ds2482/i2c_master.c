@@ -112,8 +112,6 @@ static int create(const char *where, const struct bus_env *env, struct link_mast
 }
 
 const struct link_master_ops ds2482_i2c_master = {
-	.scheme = "i2c",
-	.summary = "DS2482-100, -101, -800, DS2483, DS2484 on an I2C adapter",
 	.create = create,
 	.option = ds2482_option,
 	.open = ds2482_open,

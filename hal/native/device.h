@@ -45,7 +45,6 @@ struct device {
 	uint8_t make;       /* enum device_make */
 	uint8_t resolution; /* 9 to 12 as read back; 0: not known */
 	uint8_t stored;     /* what it was before our first change: the EEPROM's; 0: not known */
-	uint8_t tempres;    /* resolution of `temperature`; 0: that which is stored */
 	bool ignores;       /* takes no other resolution (clones) */
 	bool only_12;       /* has one resolution, and no bits that say so */
 	int16_t raw;        /* last good reading, sixteenths of a degree */

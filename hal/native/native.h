@@ -178,7 +178,6 @@ struct native {
 	uint64_t wire_ns, wire_seen_ns[NATIVE_CHANNELS]; /* of all links so far; what each said last */
 	uint64_t count[COUNTS]; /* written by one thread, whole for any */
 	struct bus_counter counters[COUNTS];
-	uint64_t cost_seen[3];
 };
 
 /*

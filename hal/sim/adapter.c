@@ -155,7 +155,6 @@ void sim_adapter_init(struct sim_adapter *adapter, struct sim_net *net, const st
 			.ops = &sim_adapter_ops,
 			.combine = combine[net->combine],
 			.max_messages = net->max_messages,
-			.hz = net->hz,
 		},
 		.net = net,
 		.env = env,

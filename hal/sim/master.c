@@ -93,8 +93,6 @@ struct sim_net *sim_master_net(struct link_master *master)
 }
 
 const struct link_master_ops sim_master = {
-	.scheme = "sim",
-	.summary = "a simulated DS2482 with its devices, from a scenario file",
 	.create = create,
 	.option = ds2482_option,
 	.open = ds2482_open,

@@ -261,8 +261,6 @@ static int search(struct link *base, bool alarm, uint8_t family, link_found *fou
 const struct link_files w1_files = {.property = w1_property, .search = search};
 
 const struct link_master_ops w1_master = {
-	.scheme = "w1",
-	.summary = "1-Wire devices of the kernel's drivers",
 	.create = create,
 	.open = open_masters,
 	.close = close_masters,

@@ -217,8 +217,6 @@ static void cost(const struct link_master *base, struct link_master_cost *cost)
 }
 
 const struct link_master_ops w1_netlink_master = {
-	.scheme = "w1",
-	.summary = "the kernel's 1-Wire masters, by netlink",
 	.create = create,
 	.open = open_masters,
 	.close = close_masters,

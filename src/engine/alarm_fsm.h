@@ -51,7 +51,6 @@ enum alarm_fact {
 	FACT_POS = 1 << 12,        /* iAlarmPos >= 0 */
 	FACT_KNOWN = 1 << 13,      /* done for this device in this cycle: no request is needed */
 	FACT_PASSED = 1 << 14,     /* one write or read went through, or none was pending */
-	FACT_ALWAYS = 1 << 15,
 };
 
 struct alarm_row {

@@ -67,7 +67,7 @@ void engine_clients(struct engine *e, int64_t now_ns)
 			continue;
 		}
 		if (!known->known || known->pid != c.pid || known->beat != c.beat) {
-			*known = (struct client){ true, c.pid, c.beat, c.period_ms, now_ns };
+			*known = (struct client){ true, c.pid, c.beat, now_ns };
 			continue;
 		}
 		if (now_ns - known->heard_ns > (c.period_ms ? c.period_ms : 1000) * 1000000LL)

@@ -18,7 +18,7 @@
 
 struct client {
 	bool known;
-	uint32_t pid, beat, period_ms;
+	uint32_t pid, beat;
 	int64_t heard_ns;
 };
 
@@ -59,7 +59,6 @@ struct engine {
 	int64_t gap_ns;         /* end of the last time in which nobody ran; 0: none */
 	uint64_t transactions, reconnects;
 	bool published;
-	bool rung; /* the command segment has to be looked through */
 
 	/* strings a consumer was writing when they were looked at */
 	uint32_t busy_slot[8];

@@ -65,7 +65,7 @@ struct client {
 	bool readable, ended; /* as far as the kernel has said; no more bytes come */
 	bool queued;          /* in the round */
 	bool network;         /* not a unix socket */
-	bool is_get, lent, hung_up, once_more;
+	bool is_get, lent, once_more;
 	uint8_t alive_left;   /* bytes of a keep-alive that was begun */
 	unsigned target;      /* of several that are asked in turn */
 	int32_t worst;        /* of those asked so far; 1: none answered yet */
@@ -81,7 +81,6 @@ struct client {
 	struct engine_guest guest;
 	struct via via;
 	uint32_t value_len;   /* READ: of what is in the room for the answer */
-	int64_t value_ns;
 	struct signals_command command;
 	struct directory *directory;
 	const uint8_t *out;   /* what is sent */

@@ -43,7 +43,6 @@ void ds_forget(void *ctx)
 }
 
 const struct link_master_ops ds_ops = {
-	.scheme = "test",
 	.open = ds2482_open,
 	.grow = ds2482_grow,
 	.close = ds2482_close,

@@ -65,7 +65,6 @@ static void forget(void *ctx)
 }
 
 static const struct link_master_ops place_ops = {
-	.scheme = "test",
 	.open = ds2482_open,
 	.grow = ds2482_grow,
 	.close = ds2482_close,

@@ -216,7 +216,6 @@ static void master_destroy(struct link_master *master)
 
 extern const struct link_master_ops wire_master;
 const struct link_master_ops wire_master = {
-	.scheme = "wire",
 	.create = master_create,
 	.open = master_open,
 	.close = master_close,
