@@ -44,10 +44,12 @@ $(foreach v,B DATADIR,$(if $($(v)),,$(error $(v) is empty: name a folder)))
 $(if $(filter $(abspath $(B))/%,$(CURDIR)/ $(patsubst %,$(CURDIR)/%/,src hal docs tests board)),\
     $(error B is '$(B)': make clean would remove the source; name a folder of its own))
 
-CC       := $(CROSS_COMPILE)$(if $(filter default,$(origin CC)),gcc,$(CC))
-CXX      := $(CROSS_COMPILE)$(if $(filter default,$(origin CXX)),g++,$(CXX))
-AR       := $(CROSS_COMPILE)$(if $(filter default,$(origin AR)),ar,$(AR))
-OBJCOPY  ?= $(CROSS_COMPILE)objcopy
+# A compiler of the environment is this machine's, and none for CROSS_COMPILE=aarch64-linux-gnu-
+NOT_GIVEN := default undefined $(if $(CROSS_COMPILE),environment)
+CC       := $(CROSS_COMPILE)$(if $(filter $(NOT_GIVEN),$(origin CC)),gcc,$(CC))
+CXX      := $(CROSS_COMPILE)$(if $(filter $(NOT_GIVEN),$(origin CXX)),g++,$(CXX))
+AR       := $(CROSS_COMPILE)$(if $(filter $(NOT_GIVEN),$(origin AR)),ar,$(AR))
+OBJCOPY  := $(if $(filter $(NOT_GIVEN),$(origin OBJCOPY)),$(CROSS_COMPILE)objcopy,$(OBJCOPY))
 PKG_CONFIG ?= pkg-config
 
 WARN     := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes \

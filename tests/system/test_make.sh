@@ -50,6 +50,21 @@ make -s -C tree --no-print-directory clean
 make -s -C tree --no-print-directory clean B="$PWD/out"
 [ ! -e tree/build ] && [ ! -e out ] && [ -s tree/src/kept.txt ]
 
+# CROSS_COMPILE has its own tools, whatever the environment says
+says() {
+	env CC='ccache gcc' CXX='ccache g++' AR=ar OBJCOPY=objcopy \
+		make -n -C "$OWSD_SOURCE" --no-print-directory B="$PWD/cross" V=1 LIBI2C=0 LIBGPIOD=0 "$@"
+}
+says CROSS_COMPILE=other- "$PWD/cross/src/shm/futex.o" "$PWD/cross/libows.a" all >log 2>&1
+for tool in gcc ar objcopy; do
+	grep -q "^other-$tool " log || { cat log; echo "other-$tool is not called"; exit 1; }
+done
+if grep -E '^(ccache |gcc |ar |objcopy )|other-(other|ccache)' log; then
+	echo "the above is not of CROSS_COMPILE"
+	exit 1
+fi
+says "$PWD/cross/src/shm/futex.o" | grep -q '^ccache gcc '
+
 # musl-gcc finds the headers of the kernel
 if command -v musl-gcc >/dev/null; then
 	make -s -C "$OWSD_SOURCE" --no-print-directory B="$PWD/musl" CC=musl-gcc LIBI2C=0 LIBGPIOD=0 \

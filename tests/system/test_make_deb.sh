@@ -1,0 +1,32 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# make deb ARCH=...: the build of another architecture is not given the caller's compiler or flags
+set -eu
+
+command -v dpkg-deb >/dev/null || { echo "not a Debian system"; exit 77; }
+unset MAKEFLAGS MFLAGS MAKELEVEL MAKEOVERRIDES
+mkdir tree bin
+tree=$PWD/tree
+(cd "$OWSD_SOURCE" && cp -r Makefile LICENSE ./*.md board "$tree" &&
+	find tests -name '*.mk' -exec cp --parents '{}' "$tree" ';')
+mkdir tree/src tree/hal tree/docs
+# Nothing is installed, and the clean system is this one that says what it was given
+printf '#!/bin/sh\n' >tree/board/install-deps
+cat >bin/mmdebstrap <<END
+#!/bin/sh
+env >'$PWD/environment'
+exit 1
+END
+chmod +x bin/mmdebstrap
+case $(dpkg --print-architecture) in arm64) other=armhf ;; *) other=arm64 ;; esac
+
+if PATH=$PWD/bin:$PATH CC='ccache gcc' CFLAGS=-march=native LDFLAGS=-static LIBGPIOD=0 \
+	make -C tree -j2 deb ARCH=$other CXX='ccache g++' B=elsewhere >log 2>&1; then
+	echo "a package was built"
+	exit 1
+fi
+[ -s environment ] || { cat log; echo "no clean system was asked for"; exit 1; }
+if grep -E '^(CC|CXX|CFLAGS|LDFLAGS|LIBGPIOD|B|MAKEFLAGS|MFLAGS|MAKEOVERRIDES)=' environment; then
+	echo "the build is given the above"
+	exit 1
+fi
