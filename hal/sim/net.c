@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define PAUSE_NS 10000000 /* at the least that is so */
+
 void sim_net_init(struct sim_net *net)
 {
 	*net = (struct sim_net){
@@ -172,6 +174,29 @@ static void run_chips(struct sim_net *net, int64_t t)
 		sim_chip_run(&net->chip[i], t);
 }
 
+/*
+ * After a pause, of what repeats only the last times: all of a day in which the machine slept would
+ * keep the caller for as long as they are many.
+ */
+static void leave_out(struct sim_net *net, int64_t t)
+{
+	int64_t repeats = 0, keep;
+
+	for (size_t i = 0; i < net->events; i++)
+		repeats += !net->event[i].done && net->event[i].every_ns > 0;
+	keep = repeats < SIM_CATCH_UP ? SIM_CATCH_UP / (repeats ? repeats : 1) : 1;
+	for (size_t i = 0; i < net->events; i++) {
+		struct sim_event *event = &net->event[i];
+		int64_t due;
+
+		if (event->done || event->every_ns <= 0 || event->at_ns > t)
+			continue;
+		due = (t - event->at_ns) / event->every_ns + 1;
+		if (due > keep)
+			event->at_ns += (due - keep) * event->every_ns;
+	}
+}
+
 void sim_net_run(struct sim_net *net, int64_t now)
 {
 	struct sim_event *event;
@@ -181,6 +206,8 @@ void sim_net_run(struct sim_net *net, int64_t now)
 	t = now - net->epoch;
 	if (t < net->time)
 		t = net->time;
+	if (t - net->time > PAUSE_NS)
+		leave_out(net, t);
 	while ((event = next_event(net)) && event->at_ns <= t) {
 		run_chips(net, event->at_ns);
 		apply(net, event, event->at_ns);

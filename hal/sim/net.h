@@ -74,7 +74,11 @@ struct sim_slave *sim_net_slave(const struct sim_net *net, const char *name);
 
 /* Power everything on; else the first call below does. */
 void sim_net_start(struct sim_net *net, int64_t now);
-/* Let everything happen that is due. */
+/*
+ * Let everything happen that is due; of what repeats, and was due more than SIM_CATCH_UP times
+ * since the last call (all together), the last times.
+ */
+#define SIM_CATCH_UP 100000
 void sim_net_run(struct sim_net *net, int64_t now);
 /* When the next event is due on the host's clock; INT64_MAX: never. */
 int64_t sim_net_next(const struct sim_net *net);

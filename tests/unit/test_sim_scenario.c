@@ -236,6 +236,37 @@ static void test_events_happen_at_their_time_again_and_for_as_long_as_they_say(v
 	TEST_ASSERT_EQUAL_UINT64(1 + 7 * 1440, slave->power_ons);
 }
 
+static void test_of_what_was_due_too_often_in_a_pause_the_last_times_happen(void)
+{
+	const int64_t us = S / 1000000, slept = 10 * 86400 * S;
+	const struct sim_slave *t, *u, *v;
+
+	parse("chip DS2482-100 0x18\nDS18B20 28.000000000001 as t\nDS18B20 28.000000000002 as u\n"
+	      "DS18B20 28.000000000003 as v\n"
+	      "at 0s every 1us brownout t\n"
+	      "at 0s every 10us unplug u for 4us\n"
+	      "at 1h short 0x18\n"
+	      "at 1us every 1s set v temperature ramp 0 10 10us\n");
+	t = sim_net_slave(&net, "t");
+	u = sim_net_slave(&net, "u");
+	v = sim_net_slave(&net, "v");
+	sim_net_run(&net, 0);
+	sim_net_run(&net, slept + 2 * us);
+	/* a quarter for each of the four that repeat, and at the end all are as they should be */
+	TEST_ASSERT_EQUAL_UINT64(2 + SIM_CATCH_UP / 4, t->power_ons);
+	TEST_ASSERT_FALSE(u->plugged);
+	TEST_ASSERT_EQUAL_UINT64(1 + SIM_CATCH_UP / 4, u->power_ons);
+	TEST_ASSERT_TRUE(net.chip[0].wire[0].shorted);
+	TEST_ASSERT_EQUAL_DOUBLE(1, sim_input_at(v, 0, slept + 2 * us));
+	sim_net_run(&net, slept + 5 * us);
+	TEST_ASSERT_TRUE(u->plugged);
+	TEST_ASSERT_EQUAL_UINT64(2 + SIM_CATCH_UP / 4 + 3, t->power_ons);
+	TEST_ASSERT_EQUAL_INT64(slept + 6 * us, sim_net_next(&net));
+	/* up to there none is left out, in one call as in many */
+	sim_net_run(&net, slept + 5 * us + S / 50);
+	TEST_ASSERT_EQUAL_UINT64(2 + SIM_CATCH_UP / 4 + 3 + 20000, t->power_ons);
+}
+
 static void test_an_event_can_be_made_to_happen_now(void)
 {
 	parse("chip DS2482-100 0x18\nDS18B20 28.000000000001 as t");
@@ -308,6 +339,7 @@ int main(void)
 	RUN_TEST(test_a_scenario_says_adapter_chips_wires_and_devices);
 	RUN_TEST(test_curves_are_what_they_say);
 	RUN_TEST(test_events_happen_at_their_time_again_and_for_as_long_as_they_say);
+	RUN_TEST(test_of_what_was_due_too_often_in_a_pause_the_last_times_happen);
 	RUN_TEST(test_an_event_can_be_made_to_happen_now);
 	RUN_TEST(test_random_text_is_refused_or_taken_but_never_crashes);
 	RUN_TEST(test_the_target_sim_opens_the_house_of_the_demonstration);
