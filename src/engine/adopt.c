@@ -17,6 +17,8 @@ static void take_time(struct engine *e, const struct engine *old, int64_t now_ns
 {
 	e->period = old->period;
 	e->now_ns = now_ns;
+	e->next_ns = old->next_ns;
+	e->gap_ns = old->gap_ns;
 	e->start_ns = old->start_ns;
 	e->first = old->first;
 	if (e->config->period_ns != old->config->period_ns) {
@@ -334,8 +336,10 @@ void engine_adopt(struct engine *e, struct engine *old, const struct adoption *p
 	commands_state(old->commands, OWS_STATE_RETIRED);
 	engine_intake(old, now_ns);
 	commands_carry_rows(e->commands, old->commands, plan->rows);
-	for (unsigned i = 0; i < old->lane_count; i++)
+	for (unsigned i = 0; i < old->lane_count; i++) {
+		lane_keep_reads(&old->lanes[i]);
 		lane_disown(&old->lanes[i], true);
+	}
 	take_time(e, old, now_ns);
 	take_counts(e, old);
 	for (unsigned g = 0; g < e->group_count; g++) {
@@ -350,6 +354,8 @@ void engine_adopt(struct engine *e, struct engine *old, const struct adoption *p
 	take_devices(e, old, plan);
 	take_signals(e, old, plan);
 	take_alarms(e, old, plan);
+	for (unsigned i = 0; i < e->lane_count; i++)
+		lane_resume_reads(&e->lanes[i]);
 	engine_doubts(e);
 	for (uint32_t row = 0; row < e->table.count; row++)
 		engine_publish(e, &e->table.signals[row]);

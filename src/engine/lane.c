@@ -101,7 +101,7 @@ bool lane_lend(struct lane *lane, struct slot *slot, int64_t now_ns)
 	}
 	slot->begun_ns = now_ns;
 	slot->begun = lane->engine->period;
-	slot->given_up = slot->moved = false;
+	slot->given_up = slot->moved = slot->kept = false;
 	if (lane->port->submit(lane->port->ctx, &slot->req))
 		return false;
 	slot->lent = true;

@@ -29,6 +29,7 @@ struct slot {
 	bool lent;     /* the bus has it */
 	bool given_up; /* its time is over; a late answer only frees the slot */
 	bool moved;    /* another lane serves its signal now; likewise */
+	bool kept;     /* while a reload goes on: a reading that was in flight before it */
 	enum purpose purpose;
 	uint32_t row;  /* of the table, of structure.checks (FOR_STRUCTURE), a device (FOR_PROBE) */
 	uint16_t turn;
@@ -117,10 +118,16 @@ void lane_take_row(struct lane *lane, uint32_t row);
 void lane_drop_row(struct lane *lane, uint32_t row);
 /*
  * A reload: this lane, which was never filled, goes on where `before` of another engine stands. What
- * is lent comes over and counts for nothing but its slots, and for outputs that it may still reach:
- * successors[row] is that row here, TABLE_NO_ROW: it has none.
+ * is lent comes over and counts for nothing but its slots, and for outputs that it may still reach,
+ * until readings are resumed: successors[row] is that row here, TABLE_NO_ROW: it has none.
  */
 void lane_adopt(struct lane *lane, struct lane *before, const uint32_t *successors);
+/*
+ * The readings that are in flight when a reload begins (keep, before all is disowned); those whose
+ * signals stay in this lane go on here (resume, when its signals are known).
+ */
+void lane_keep_reads(struct lane *lane);
+void lane_resume_reads(struct lane *lane);
 /*
  * Requests in flight whose signals another lane serves now (all: every one of them) count for
  * nothing but their slots any more.

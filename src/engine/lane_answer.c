@@ -143,6 +143,34 @@ static void disown(struct lane *lane, struct slot *slot)
 	signal_end(s, e->period, slot->begun);
 }
 
+void lane_keep_reads(struct lane *lane)
+{
+	for (unsigned i = 0; i < lane->depth; i++) {
+		struct slot *slot = &lane->slots[i];
+
+		slot->kept = slot->lent && !slot->given_up && !slot->moved &&
+		             slot->purpose == FOR_READ;
+	}
+}
+
+void lane_resume_reads(struct lane *lane)
+{
+	for (unsigned i = 0; i < lane->depth; i++) {
+		struct slot *slot = &lane->slots[i];
+		struct signal *s;
+
+		if (!slot->kept || slot->row == TABLE_NO_ROW)
+			continue;
+		s = &lane->engine->table.signals[slot->row];
+		if (s->lane != lane->index || s->item->fresh != slot->req.fresh || !signal_reads(s))
+			continue;
+		slot->moved = false;
+		due_set_remove(&lane->inputs, slot->row);
+		s->reading = true;
+		signal_begin(s, slot->begun);
+	}
+}
+
 void lane_disown(struct lane *lane, bool all)
 {
 	for (unsigned i = 0; i < lane->depth; i++) {

@@ -125,18 +125,76 @@ static void test_what_was_commanded_just_before_is_written(void)
 	TEST_ASSERT_EQUAL_UINT32(scene_slot(&s, 2)->stamp, scene_sample(&s, 2).applied);
 }
 
-static void test_a_request_in_flight_is_answered_to_its_room_and_asked_again(void)
+static void test_a_reading_in_flight_goes_on(void)
 {
-	scene_put(&s, "/28.551DDF030000/temperature", "21.5", 0);
-	s.bus[0].latency_ns = SCENE_S;
+	struct ows_sample before;
+
 	house();
+	scene_run(&s, SCENE_S);
+	s.bus[0].latency_ns = SCENE_S;
 	scene_run(&s, 500 * SCENE_MS);
 	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].pending_count);
+	before = scene_sample(&s, 1);
+	scene_put(&s, "/28.551DDF030000/temperature", "22", 0);
+	scene_clear_trace(&s);
 	scene_reload(&s, cellar_then_pump_then_room);
+	TEST_ASSERT_BITS_HIGH(OWS_ATTR_IN_WORK, scene_attrs(&s, 3).flags);
+	TEST_ASSERT_EQUAL_UINT32(before.count, scene_sample(&s, 3).count);
+	scene_run(&s, 600 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT32(before.count + 1, scene_sample(&s, 3).count);
+	TEST_ASSERT_EQUAL_UINT(1, s.reads); /* the cellar's */
+	TEST_ASSERT_BITS_LOW(OWS_ATTR_IN_WORK, scene_attrs(&s, 3).flags);
 	scene_run(&s, 10 * SCENE_S);
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 3).quality);
+	TEST_ASSERT_GREATER_THAN_UINT32(before.count + 3, scene_sample(&s, 3).count);
 	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "unknown_answers"));
 	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "late_answers"));
+}
+
+static void test_readings_arrive_though_reloads_come_faster_than_answers(void)
+{
+	uint32_t count;
+
+	house();
+	s.bus[0].latency_ns = SCENE_S;
+	count = scene_sample(&s, 1).count;
+	for (int i = 0; i < 100; i++) {
+		scene_reload(&s, nothing);
+		scene_run(&s, 100 * SCENE_MS);
+	}
+	TEST_ASSERT_GREATER_THAN_UINT32(count + 7, scene_sample(&s, 1).count);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+}
+
+static void room_fresh(struct config *config)
+{
+	item_of(config, "room")->fresh = true;
+}
+
+static void room_unread(struct config *config)
+{
+	item_of(config, "room")->readable = false;
+}
+
+/* What was asked otherwise than the file now says is no answer to it. */
+static void test_a_reading_in_flight_that_is_not_wanted_so_any_more_is_left(void)
+{
+	uint32_t count;
+
+	house();
+	s.bus[0].latency_ns = SCENE_S;
+	scene_run(&s, 500 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].pending_count);
+	count = scene_sample(&s, 1).count;
+	scene_reload(&s, room_fresh);
+	scene_run(&s, 700 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT32(count, scene_sample(&s, 1).count);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(count + 1, scene_sample(&s, 1).count);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].pending_count);
+	scene_reload(&s, room_unread);
+	scene_run(&s, 3 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(count + 1, scene_sample(&s, 1).count);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_DISABLED, scene_sample(&s, 1).quality);
 }
 
 static void without_room(struct config *config)
@@ -538,7 +596,9 @@ int main(void)
 	RUN_TEST(test_nothing_changes_when_nothing_was_changed);
 	RUN_TEST(test_signals_go_on_in_another_place_of_the_file);
 	RUN_TEST(test_what_was_commanded_just_before_is_written);
-	RUN_TEST(test_a_request_in_flight_is_answered_to_its_room_and_asked_again);
+	RUN_TEST(test_a_reading_in_flight_goes_on);
+	RUN_TEST(test_readings_arrive_though_reloads_come_faster_than_answers);
+	RUN_TEST(test_a_reading_in_flight_that_is_not_wanted_so_any_more_is_left);
 	RUN_TEST(test_a_request_of_a_signal_that_is_gone_outlives_several_reloads);
 	RUN_TEST(test_a_write_in_flight_ends_with_the_present_value);
 	RUN_TEST(test_an_output_that_is_gone_is_left_as_it_is);
