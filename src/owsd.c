@@ -26,6 +26,9 @@
 #define STOP_NS       2000000000LL
 #define SUPERVISE_NS  500000000LL
 #define AGAIN_NS      20000000LL /* a reload that has to wait */
+/* From the end of a reload to the next: it takes at most a tenth of the time, and leaves room to follow */
+#define APART_LEAST_NS 200000000LL
+#define APART_MOST_NS  10000000000LL
 
 static volatile sig_atomic_t stop_signal, hangup;
 static uint32_t *supervisor_word;
@@ -182,6 +185,16 @@ static void reload(struct host *host, const struct arguments *a, struct log *log
 	tell(host, a, log, notify);
 }
 
+/* When the next reload may begin. */
+static int64_t reload_after(int64_t begun_ns)
+{
+	int64_t now_ns = ows_now(), apart_ns = 10 * (now_ns - begun_ns);
+
+	if (apart_ns < APART_LEAST_NS)
+		apart_ns = APART_LEAST_NS;
+	return now_ns + (apart_ns < APART_MOST_NS ? apart_ns : APART_MOST_NS);
+}
+
 /*
  * Write the log, feed the watchdog while the engine's heart beats, until a signal ends it; or, and
  * that is false, another owsd that has the instance.
@@ -189,19 +202,20 @@ static void reload(struct host *host, const struct arguments *a, struct log *log
 static bool supervise(struct host *host, const struct arguments *a, struct instance *instance,
                       struct log *log, const struct notify *notify, int prefix)
 {
-	int64_t fed_ns = 0, wait_ns = SUPERVISE_NS;
+	int64_t fed_ns = 0, reload_ns = 0, wait_ns = SUPERVISE_NS;
 
 	if (notify->watchdog_ns && notify->watchdog_ns / 4 < wait_ns)
 		wait_ns = notify->watchdog_ns / 4;
 	while (!stop_signal) {
 		uint32_t seen = __atomic_load_n(log_word(log), __ATOMIC_ACQUIRE);
-		int64_t now_ns, period_ns;
+		int64_t now_ns = ows_now(), period_ns;
 
-		if (hangup && host_may_reload(host)) {
+		if (hangup && now_ns >= reload_ns && host_may_reload(host)) {
 			hangup = 0; /* one that comes from here on means a newer file */
 			notify_send(notify, NOTIFY_RELOADING);
 			reload(host, a, log, notify);
 			notify_send(notify, NOTIFY_READY);
+			reload_ns = reload_after(now_ns);
 		}
 		now_ns = ows_now();
 		period_ns = host_config(host)->period_ns;

@@ -97,6 +97,36 @@ def test_signals_that_stay_go_on_and_others_come_and_go(scene):
     until(lambda: get(scene, daemon, "room") == "21.5", 10, "room goes on")
 
 
+def test_a_storm_of_reloads_is_bounded_and_inputs_arrive_in_it(scene):
+    daemon, target = start(scene)
+    begun, asked = time.monotonic(), 0
+
+    with ows.Ows(daemon.name) as signals:
+        first = signals.get("room").count
+
+        def arrive():
+            nonlocal asked
+            asked += 1
+            change(scene, daemon, rio(target, ROOM, item(f"last{asked}", OTHER + "/temperature")))
+            if signals.stale():
+                try:
+                    signals.reopen()
+                except OSError:
+                    pass
+            return asked > 100 and signals.get("room").count > first + 5
+        until(arrive, 30, "room is read on", step=0.01)
+        reloads, took = daemon.log().count("reload: "), time.monotonic() - begun
+        assert 0 < reloads <= took / 0.2 + 1, (reloads, took)
+
+        def last_is_there():
+            try:
+                signals.reopen()
+            except OSError:
+                return False
+            return f"last{asked}" in signals.names()
+        until(last_is_there, 10, "the last file is served")
+
+
 def test_a_broken_file_is_refused_and_all_goes_on(scene):
     daemon, target = start(scene)
     for bad, said in (("OwsDrv {\n", "error"), (rio("nonsense:x", ROOM), "nonsense"),
