@@ -135,6 +135,11 @@ void instance_beat(struct instance *in, int64_t now_ns, uint32_t period)
 	image_news(&in->image);
 }
 
+void instance_lives_on(struct instance *in)
+{
+	instance_beat(in, ows_now() + INSTANCE_AHEAD, 0);
+}
+
 static struct ows_sample good(int64_t measured_ns)
 {
 	return (struct ows_sample){

@@ -211,6 +211,7 @@ static void serve(struct peer *peer, int fd)
 	struct frame_header request;
 	char letter = 'a';
 	size_t len;
+	int go_on;
 
 	do {
 		if (read_all(peer, fd, head, sizeof(head)))
@@ -238,7 +239,10 @@ static void serve(struct peer *peer, int fd)
 				saw(&peer->writes);
 			saw(&peer->requests);
 		}
-	} while (act(peer, fd, letter, answer, len));
+		go_on = act(peer, fd, letter, answer, len);
+		if (!is_greeting(&request, (char *)body))
+			saw(&peer->done);
+	} while (go_on);
 }
 
 static void *run(void *arg)
@@ -258,41 +262,65 @@ static void *run(void *arg)
 		saw(&peer->connections);
 		serve(peer, fd);
 		close(fd);
+		saw(&peer->closed);
 	}
 	return NULL;
 }
 
-static void begin(struct peer *peer)
+static int bind_to_port(const struct peer *peer, int fd)
 {
 	struct sockaddr_in in = { .sin_family = AF_INET, .sin_port = htons(peer->port),
 	                          .sin_addr.s_addr = htonl(INADDR_LOOPBACK) };
 	struct sockaddr_in6 in6 = { .sin6_family = AF_INET6, .sin6_port = htons(peer->port),
 	                            .sin6_addr = IN6ADDR_LOOPBACK_INIT };
-	struct sockaddr_un local = { .sun_family = AF_UNIX };
+	const int on = 1;
+
+	setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
+	return peer->family == AF_INET ? bind(fd, (struct sockaddr *)&in, sizeof(in))
+	                               : bind(fd, (struct sockaddr *)&in6, sizeof(in6));
+}
+
+static void note_port(struct peer *peer)
+{
 	struct sockaddr_storage here;
 	socklen_t len = sizeof(here);
-	const int on = 1;
+
+	TEST_ASSERT_EQUAL_INT(0, getsockname(peer->listen_fd, (struct sockaddr *)&here, &len));
+	peer->port = peer->family == AF_INET ? ntohs(((struct sockaddr_in *)&here)->sin_port)
+	                                     : ntohs(((struct sockaddr_in6 *)&here)->sin6_port);
+}
+
+/*
+ * A second socket on the port that does not listen: whoever connects is refused after peer_stop(),
+ * and no other program is given the port until peer_restart().
+ */
+static void hold_port(struct peer *peer)
+{
+	peer->hold_fd = socket(peer->family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	TEST_ASSERT_GREATER_THAN_INT(0, peer->hold_fd);
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, bind_to_port(peer, peer->hold_fd), strerror(errno));
+}
+
+static void begin(struct peer *peer)
+{
+	struct sockaddr_un local = { .sun_family = AF_UNIX };
 	int err;
 
 	peer->listen_fd = socket(peer->family, SOCK_STREAM | SOCK_CLOEXEC, 0);
 	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, peer->listen_fd);
-	setsockopt(peer->listen_fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
 	if (peer->family == AF_UNIX) {
 		snprintf(local.sun_path, sizeof(local.sun_path), "%s", peer->path_of_socket);
 		unlink(local.sun_path);
 		err = bind(peer->listen_fd, (struct sockaddr *)&local, sizeof(local));
 	} else {
-		err = peer->family == AF_INET
-		              ? bind(peer->listen_fd, (struct sockaddr *)&in, sizeof(in))
-		              : bind(peer->listen_fd, (struct sockaddr *)&in6, sizeof(in6));
+		err = bind_to_port(peer, peer->listen_fd);
 	}
 	TEST_ASSERT_EQUAL_INT_MESSAGE(0, err, strerror(errno));
+	if (peer->family != AF_UNIX && !peer->hold_fd) {
+		note_port(peer);
+		hold_port(peer);
+	}
 	TEST_ASSERT_EQUAL_INT(0, listen(peer->listen_fd, 8));
-	TEST_ASSERT_EQUAL_INT(0, getsockname(peer->listen_fd, (struct sockaddr *)&here, &len));
-	if (peer->family == AF_INET)
-		peer->port = ntohs(((struct sockaddr_in *)&here)->sin_port);
-	else if (peer->family == AF_INET6)
-		peer->port = ntohs(((struct sockaddr_in6 *)&here)->sin6_port);
 	peer->stopping = 0;
 	TEST_ASSERT_EQUAL_INT(0, pthread_create(&peer->thread, NULL, run, peer));
 }
@@ -324,4 +352,11 @@ void peer_stop(struct peer *peer)
 	close(peer->listen_fd);
 	if (peer->family == AF_UNIX)
 		unlink(peer->path_of_socket);
+}
+
+void peer_end(struct peer *peer)
+{
+	if (peer->hold_fd > 0)
+		close(peer->hold_fd);
+	peer->hold_fd = 0;
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * An owserver to test against: a thread on a loopback port that answers a few paths, and each
- * request (greetings, NOP and the names of
- * its buses, are not counted) as the next letter of its plan says; 'a' when it is over.
+ * request (greetings, NOP and the names of its buses, are not counted) as the next letter of its
+ * plan says; 'a' when it is over.
  *   a answer             r answer, refuse persistence, close     c answer, then close
  *   k 3 keep-alives, then answer     K keep-alives every 10 ms until the client goes
  *   f answer byte by byte            t answer and 3 bytes more   l answer with more than asked for
@@ -20,6 +20,7 @@
 
 struct peer {
 	int listen_fd, family;
+	int hold_fd; /* keeps the port while nobody listens on it */
 	uint16_t port;
 	char path_of_socket[40];
 	const char *plan;
@@ -28,6 +29,7 @@ struct peer {
 	int stopping;
 	/* What it saw; read with peer_saw(). */
 	unsigned connections, requests, greetings, writes;
+	unsigned done, closed; /* what a letter says of a request; connections, by this side */
 	uint32_t flags; /* of the last request */
 	int32_t size;
 	char path[256];
@@ -36,6 +38,8 @@ struct peer {
 /* family AF_INET, AF_INET6 or AF_UNIX; plan is kept. Fails the test when there is no port. */
 void peer_start(struct peer *peer, int family, const char *plan);
 void peer_stop(struct peer *peer);
+/* Give the port of a stopped one back. */
+void peer_end(struct peer *peer);
 /* Begin again on the same port after peer_stop(). */
 void peer_restart(struct peer *peer, const char *plan);
 unsigned peer_saw(const unsigned *count);

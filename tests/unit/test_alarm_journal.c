@@ -179,14 +179,15 @@ static void *write_on(void *arg)
 
 static void test_entries_are_whole_beside_a_busy_writer(void)
 {
+	int64_t until = ows_now() + 60 * INSTANCE_S;
 	struct ows_alarm alarm;
 	unsigned seen = 0;
 	pthread_t thread;
 
 	done = 0;
 	TEST_ASSERT_EQUAL(0, pthread_create(&thread, NULL, write_on, NULL));
-	for (int i = 0; i < 10000000 && seen < 20000; i++) {
-		uint32_t number = ows_alarm_count(h) - 1 - (uint32_t)i % 300;
+	for (uint32_t i = 0; seen < 20000 && ows_now() < until; i++) {
+		uint32_t number = ows_alarm_count(h) - 1 - i % 300;
 
 		if (ows_alarm(h, number, &alarm) != 0)
 			continue;

@@ -15,7 +15,9 @@
 
 #define TEMPERATURE "/28.67C6697351FF/temperature"
 #define OUTPUT      "/29.000029D60100/PIO.BYTE"
-#define PATIENCE    (20 * HOST_S)
+#define PATIENCE    (60 * HOST_S)
+/* For the peer to say something, on a busy machine too; and it passes. */
+#define ENOUGH      HOST_S
 
 static struct host host;
 static struct peer peer;
@@ -43,6 +45,7 @@ void tearDown(void)
 {
 	bus_destroy(bus);
 	stop_peer();
+	peer_end(&peer);
 }
 
 static void start_as(int family, const char *plan)
@@ -90,6 +93,17 @@ static int read_temperature(void)
 		TEST_ASSERT_EQUAL_MEMORY("     21.0625", data, 12);
 	}
 	return answer->err;
+}
+
+/* What the peer's thread does comes when that has the processor. */
+static void until_peer_saw(const unsigned *count, unsigned n)
+{
+	int64_t until = host_now(&host) + PATIENCE;
+
+	while (peer_saw(count) < n && host_now(&host) < until)
+		host_run(&host, bus, host_now(&host) + HOST_MS);
+	TEST_ASSERT_EQUAL_UINT(n, peer_saw(count));
+	host_run(&host, bus, host_now(&host) + 20 * HOST_MS);
 }
 
 static uint64_t counted(const char *name)
@@ -334,8 +348,8 @@ static void test_keep_alives_do_not_extend_the_deadline_and_the_target_stays_up(
 	start("K");
 	begun = host_now(&host);
 	TEST_ASSERT_EQUAL_INT(-EINPROGRESS,
-	                      ask_within(BUS_READ, TEMPERATURE, NULL, 64, 150 * HOST_MS)->err);
-	TEST_ASSERT_GREATER_OR_EQUAL_INT64(begun + 150 * HOST_MS, host_now(&host));
+	                      ask_within(BUS_READ, TEMPERATURE, NULL, 64, ENOUGH)->err);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT64(begun + ENOUGH, host_now(&host));
 	TEST_ASSERT_EQUAL_INT(0, read_temperature());
 	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_DOWN));
 	TEST_ASSERT_EQUAL_UINT(2, peer_saw(&peer.connections));
@@ -346,7 +360,7 @@ static void test_half_an_answer_is_a_sign_of_life_too(void)
 {
 	start("d");
 	TEST_ASSERT_EQUAL_INT(-EINPROGRESS,
-	                      ask_within(BUS_READ, TEMPERATURE, NULL, 64, 100 * HOST_MS)->err);
+	                      ask_within(BUS_READ, TEMPERATURE, NULL, 64, ENOUGH)->err);
 	TEST_ASSERT_EQUAL_INT(0, read_temperature());
 	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_DOWN));
 }
@@ -378,7 +392,7 @@ static void test_a_connection_closed_while_idle_is_replaced_unseen(void)
 {
 	start("caca");
 	TEST_ASSERT_EQUAL_INT(0, read_temperature());
-	host_run(&host, bus, host_now(&host) + 80 * HOST_MS);
+	until_peer_saw(&peer.closed, 1);
 	TEST_ASSERT_EQUAL_INT(0, ask(BUS_WRITE, OUTPUT, "1", 1)->err);
 	TEST_ASSERT_EQUAL_INT(0, read_temperature());
 	TEST_ASSERT_EQUAL_INT(0, read_temperature());
@@ -403,7 +417,7 @@ static void test_an_answer_that_came_twice_does_not_pass_for_the_next(void)
 	start("aD");
 	TEST_ASSERT_EQUAL_INT(0, read_temperature());
 	TEST_ASSERT_EQUAL_INT(0, read_temperature());
-	host_run(&host, bus, host_now(&host) + 20 * HOST_MS);
+	until_peer_saw(&peer.done, 2);
 	TEST_ASSERT_EQUAL_INT(0, ask(BUS_READ, "/28.67C6697351FF/type", NULL, 64)->err);
 	TEST_ASSERT_EQUAL_MEMORY("DS18B20", data, 7);
 	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_DOWN));
@@ -465,6 +479,7 @@ static void is_garbage(const char *plan)
 	bus_destroy(bus);
 	bus = NULL;
 	stop_peer();
+	peer_end(&peer);
 	host_init_real(&host);
 }
 
@@ -625,6 +640,8 @@ static void test_any_mixture_of_faults_ends_in_one_answer_each_and_no_leak(void)
 
 int main(void)
 {
+	/* of a name server that does not answer */
+	setenv("RES_OPTIONS", "timeout:1 attempts:1", 1);
 	UNITY_BEGIN();
 	RUN_TEST(test_it_greets_before_it_is_up_and_says_where_it_is);
 	RUN_TEST(test_a_server_that_is_slow_to_name_its_buses_is_up);

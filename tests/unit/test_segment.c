@@ -204,7 +204,7 @@ static void test_a_corpses_lock_is_left_behind(void)
 	TEST_ASSERT_GREATER_THAN(0, child);
 	TEST_ASSERT_EQUAL(1, read(ready[0], &c, 1));
 	fd = -1;
-	for (int64_t until = ows_now() + INT64_C(10000000000); fd < 0 && ows_now() < until;)
+	for (int64_t until = ows_now() + INT64_C(60000000000); fd < 0 && ows_now() < until;)
 		fd = segment_lock(name, &pid, &stolen);
 	TEST_ASSERT_GREATER_OR_EQUAL(0, fd);
 	TEST_ASSERT_TRUE(stolen);
@@ -262,7 +262,7 @@ static void *wake_later(void *arg)
 
 static void test_a_long_wait_ends_by_a_wake_from_another_mapping(void)
 {
-	static const int64_t limits[] = {INT64_C(3000000000), INT64_C(5000000000000000), INT64_MAX,
+	static const int64_t limits[] = {INT64_C(30000000000), INT64_C(5000000000000000), INT64_MAX,
 	                                 -1};
 	uint32_t *here = (void *)segment.base;
 	void *there = mmap(NULL, SIZE, PROT_READ | PROT_WRITE, MAP_SHARED, segment.fd, 0);
