@@ -92,14 +92,19 @@ def base():
         return path
     print(f"# image: making a root of {SUITE} for {ARCH}", flush=True)
     made = f"{path}.{os.getpid()}"
-    for mirror in filter(None, output("sh", os.path.join(TOP, "board/apt-mirrors")).split("\n")):
-        uri, key = mirror.split()
+    mirrors = output("sh", os.path.join(TOP, "board/apt-mirrors")).splitlines()
+    for attempt in range(3 * len(mirrors)):
+        if attempt and attempt % len(mirrors) == 0:
+            time.sleep(15)  # a network may be away for a moment
+        uri, key = mirrors[attempt % len(mirrors)].split()
         option = "" if key == "-" else f"[signed-by={key}] "
         command = ["mmdebstrap", "--quiet", "--variant=apt", "--arch=" + ARCH, "--format=tar",
                    "--include=" + ",".join(packages), "--aptopt=APT::Install-Recommends \"false\"",
+                   "--aptopt=Acquire::Retries \"5\"",
                    *(f"--dpkgopt=path-exclude=/usr/share/{name}/*" for name in LEAVE_OUT),
                    SUITE, made, f"deb {option}{uri} {SUITE} main"]
-        if subprocess.run(command, stdout=subprocess.DEVNULL, check=False).returncode == 0:
+        if subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                          check=False).returncode == 0:
             os.rename(made, path)
             return path
     if os.path.exists(made):
