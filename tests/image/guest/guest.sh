@@ -7,7 +7,7 @@ export LC_ALL=C PATH=/run/rig/bin:/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/
 . ./lib.sh
 
 file=/etc/owsd/OWS.rio
-patience=180 # at most; a busy host is slow
+patience=400 # at most; a busy host is slow
 start=400
 done=/var/lib/owsd/firstboot.done
 packaged=/usr/share/owsd/OWS.rio
