@@ -22,7 +22,7 @@
 
 enum { ROOM = 65536 };
 #define SECOND INT64_C(1000000000)
-#define PATIENCE (100 * SECOND)
+#define PATIENCE (300 * SECOND)
 
 static struct bus *bus;
 static struct bus_answer last;

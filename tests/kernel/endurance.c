@@ -18,7 +18,7 @@
 #define LOOK_US   50000
 #define FAULTS    (45 * SECOND)
 #define LONGEST   40 /* s, of a fault */
-#define WELL      (100 * SECOND) /* the back-off is 60 s at most */
+#define WELL      (180 * SECOND) /* the back-off is 60 s at most, and the machine may be slow */
 #define DEAD      (3 * SECOND)   /* a heartbeat that stopped is noticed after 2 s */
 #define GROWTH    512 /* KiB that the memory of one life may differ */
 #define SAMPLES   3   /* from which a life's memory is known */

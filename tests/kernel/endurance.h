@@ -37,7 +37,7 @@ bool sim_tell(const char *event);
 /* --- The daemon --- */
 void daemon_start(void);
 void daemon_signal(int number);
-/* After a signal that ends it: wait, at most 10 s. Its status as of waitpid(), -1: it does not end. */
+/* After a signal that ends it: wait, at most 60 s. Its status as of waitpid(), -1: it does not end. */
 int daemon_end(void);
 /* Exchange its file for the other one and have it read. */
 void daemon_reload(void);
@@ -51,7 +51,7 @@ void client_step(void);
 unsigned client_answers(void);
 
 /* --- The control program and reader --- */
-/* Wait for the table, at most 10 s. */
+/* Wait for the table, at most 60 s. */
 bool reader_open(void);
 /* One look at all signals: every good value must be true. */
 void reader_look(void);

@@ -65,7 +65,7 @@ int daemon_end(void)
 {
 	int status;
 
-	for (int i = 0; i < 100; i++) {
+	for (int i = 0; i < 600; i++) {
 		if (waitpid(owsd, &status, WNOHANG) == owsd) {
 			owsd = -1;
 			return status;

@@ -26,7 +26,7 @@ static struct ows *open_as(enum ows_mode mode)
 	struct ows *h = NULL;
 	int err = -1;
 
-	for (int i = 0; i < 100 && err; i++) {
+	for (int i = 0; i < 600 && err; i++) {
 		err = ows_open("OWS", mode, &h);
 		if (err)
 			usleep(100000);

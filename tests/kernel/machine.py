@@ -19,6 +19,10 @@ class CannotRun(Exception):
     pass
 
 
+class Outdated(CannotRun):
+    """What is known of the mirror is not so, or no more: it has one version of a package."""
+
+
 def give_up(why):
     raise CannotRun(why)
 
@@ -28,6 +32,13 @@ def output(*command, cwd=None):
         return subprocess.run(command, check=True, cwd=cwd, stdout=subprocess.PIPE, text=True).stdout
     except (OSError, subprocess.CalledProcessError) as err:
         give_up(f"{' '.join(command)}: {err}")
+
+
+def fetch(*command, cwd=None):
+    try:
+        output(*command, cwd=cwd)
+    except CannotRun as err:
+        raise Outdated(str(err)) from err
 
 
 class Machine:
@@ -42,8 +53,12 @@ class Machine:
         """Name and version of the package that Debian's meta package stands for."""
         raise NotImplementedError
 
+    def look_again(self, cache):
+        """After Outdated: see to it that the version of now is named."""
+        raise NotImplementedError
+
     def fetch_kernel(self, package, version, folder):
-        """Download it into folder."""
+        """Download it into folder; Outdated when it cannot be had."""
         raise NotImplementedError
 
     def unpack_kernel(self, vmlinuz, target):
@@ -78,21 +93,29 @@ class Amd64(Machine):
         depends = re.search(r"Depends: (linux-image-\S+)", output("apt-cache", "depends",
                                                                    "linux-image-amd64"))
         if not depends:
-            give_up("apt knows no linux-image-amd64: run apt-get update")
+            raise Outdated("apt knows no linux-image-amd64: run apt-get update")
         show = output("apt-cache", "show", "--no-all-versions", depends[1])
         return depends[1], re.search(r"^Version: (\S+)", show, re.M)[1]
 
+    def look_again(self, cache):
+        """In the lists of now; who may not read them anew keeps the old ones."""
+        subprocess.run(["apt-get", "-qq", "-o", "Acquire::Retries=5", "update"], check=False,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
     def fetch_kernel(self, package, version, folder):
-        output("apt-get", "-q", "download", f"{package}={version}", cwd=folder)
+        fetch("apt-get", "-q", "-o", "Acquire::Retries=5", "download", f"{package}={version}",
+              cwd=folder)
 
     def unpack_kernel(self, vmlinuz, target):
         """The ELF inside has a PVH entry: QEMU starts it without the slow unpacking in the guest."""
+        made = f"{target}.{os.getpid()}"  # another may be starting what is there
         with open(vmlinuz, "rb") as file:
             image = file.read()
         start = image.find(b"\xfd7zXZ\x00")
         data = lzma.LZMADecompressor().decompress(image[start:]) if start >= 0 else image
-        with open(target, "wb") as file:
+        with open(made, "wb") as file:
             file.write(data)
+        os.rename(made, target)
 
     def busybox(self, folder):
         path = "/bin/busybox"
@@ -121,19 +144,28 @@ class Arm64(Machine):
     # libc6-arm64-cross
     sysroot = "/usr/aarch64-linux-gnu/lib"
 
-    def kernel_package(self, cache):
+    def metas(self, cache):
+        """The folder for the meta package, and what is in it."""
         folder = os.path.join(cache, "arm64" if self.suite == "-" else f"arm64-{self.suite}")
         os.makedirs(folder, exist_ok=True)
-        metas = [name for name in os.listdir(folder) if name.startswith(self.meta + "_")]
+        return folder, sorted(os.path.join(folder, name) for name in os.listdir(folder)
+                              if name.startswith(self.meta + "_"))
+
+    def kernel_package(self, cache):
+        folder, metas = self.metas(cache)
         if not metas:
             output(FETCH, self.suite, "arm64", folder, self.meta)
-            metas = [name for name in os.listdir(folder) if name.startswith(self.meta + "_")]
-        depends = output("dpkg-deb", "-f", os.path.join(folder, sorted(metas)[-1]), "Depends")
+            metas = self.metas(cache)[1]
+        depends = output("dpkg-deb", "-f", metas[-1], "Depends")
         found = re.search(r"(linux-image-\S+) \(= (\S+)\)", depends)
         return found[1], found[2]
 
+    def look_again(self, cache):
+        for meta in self.metas(cache)[1]:
+            os.unlink(meta)
+
     def fetch_kernel(self, package, version, folder):
-        output(FETCH, self.suite, "arm64", folder, package)
+        fetch(FETCH, self.suite, "arm64", folder, package)
 
     def unpack_kernel(self, vmlinuz, target):
         shutil.copyfile(vmlinuz, target)

@@ -4,8 +4,8 @@
 . /rig/lib.sh
 
 i2c=/sys/bus/i2c/devices/i2c-0
-told_within=30
-back_within=60
+told_within=90
+back_within=150
 
 get() {
 	owsctl get $1 2>/tmp/reason
@@ -88,7 +88,8 @@ sim set warm temperature 24
 run_owsd
 does "another owsd takes over" within $back_within reads warm 24
 does "with what was commanded before" within $back_within reads relays 5
-does "and nothing switched meanwhile" reads pins 184
+does "and reads its inputs" within $back_within get pins
+does "of which nothing has switched meanwhile" reads pins 184
 does "owsd lives" kill -0 $owsd
 kill $owsd
 wait $owsd

@@ -24,11 +24,11 @@ reads() {
 for generation in 1 2; do
 	owsd-gpiod-$generation -c /rig/gpio-pi.rio >/tmp/log/$generation 2>&1 &
 	pid=$!
-	does "$generation: an output by its name is set" within 20 reads out 1
+	does "$generation: an output by its name is set" within 90 reads out 1
 	same "$generation: it is high" "out hi" "$(line GPIO23)"
-	does "$generation: an active-low one" within 20 reads low 0
+	does "$generation: an active-low one" within 90 reads low 0
 	same "$generation: is high when it is 0" "out hi" "$(line GPIO22)"
-	does "$generation: an input is read" within 20 owsctl get in
+	does "$generation: an input is read" within 90 owsctl get in
 	same "$generation: the kernel watches its edges" "in lo IRQ" \
 		"$(line GPIO17) $(grep -c 'GPIO17 .*owsd.* IRQ' /sys/kernel/debug/gpio | sed 's/1/IRQ/')"
 	owsctl get exp >/dev/null 2>&1

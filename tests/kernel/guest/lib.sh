@@ -38,7 +38,8 @@ does() {
 	if "$@" >/tmp/said 2>&1; then ok "$what"; else not_ok "$what" "$(tail -n 1 /tmp/said)"; fi
 }
 
-# SECONDS COMMAND...: until it succeeds, tried ten times a second; false when time is over
+# SECONDS COMMAND...: until it succeeds, tried ten times a second; false when time is over. It is
+# the host that is slow when it takes long, and patience costs nothing where all is well.
 within() {
 	local end=$(($(date +%s) + $1))
 	shift
@@ -57,15 +58,23 @@ plug() {
 	modprobe vhci-hcd && modprobe i2c-tiny-usb && modprobe i2c-dev
 	simchip /rig/$1 >>/tmp/log/simchip 2>&1 &
 	simchip_pid=$!
-	within 10 simchip -c stats && within 10 test -c /dev/i2c-0 && return
+	within 60 simchip -c stats && within 60 test -c /dev/i2c-0 && return
 	not_ok "the simulated adapter is plugged in" "no /dev/i2c-0"
 	finish
 }
 
-# Pull it out; whoever has the device open keeps its name alive.
+# The kernel has let go of the adapter; whoever has the device open keeps its name alive
+adapter_gone() {
+	[ ! -e /dev/i2c-0 ] && [ ! -e /sys/bus/i2c/devices/i2c-0 ]
+}
+
+# Pull it out, and wait until another cannot be taken for it
 unplug() {
 	kill $simchip_pid
 	wait $simchip_pid 2>/dev/null
+	within 60 adapter_gone && return
+	not_ok "the simulated adapter is unplugged" "/dev/i2c-0 is still there"
+	finish
 }
 
 # COMMAND...: to the simulated chips

@@ -4,8 +4,8 @@
 . /rig/lib.sh
 . /rig/w1lib.sh
 
-told_within=40
-back_within=60
+told_within=100
+back_within=150
 parts=4
 
 get() {
@@ -44,7 +44,7 @@ next_value() {
 told() {
 	does "$1: ${2:-warm} says so" within $told_within bad ${2:-warm}
 	sed 's/^/# /' /tmp/reason
-	does "$1: the other target goes on" within 20 more_than $(($(readings other) + 1))
+	does "$1: the other target goes on" within $told_within more_than $(($(readings other) + 1))
 }
 
 over() {
@@ -107,7 +107,7 @@ next_value
 sim plug warm
 over "part removed"
 
-modprobe -r w1_therm
+within 60 modprobe -r w1_therm
 told "module unloaded"
 does "module unloaded: which is in the log" within $told_within said "no driver of the kernel has it"
 does "module unloaded: the board stays good" owsctl get pins relays
@@ -141,6 +141,7 @@ over "a read that does not return"
 sim remove adapter
 told "adapter unplugged"
 does "adapter unplugged: the kernel has let go of it" within $told_within masters 0
+within $told_within adapter_gone
 next_value
 sim end remove adapter
 does "adapter unplugged: another is there" within $back_within test -c /dev/i2c-0
