@@ -157,11 +157,13 @@ LIBRARY  := $(if $(LIBOWS),$(B)/$(SO) $(B)/libows.a $(B)/libows.pc)
         examples unit-programs benches diagrams FORCE clang sanitize asan tsan m32
 all: $(PROGRAMS) $(LIBRARY) $(B)/core.a $(B)/libraries
 
-# What was found, said when it is new; the tests hold the programs against it
+# What was found, said when it is new; the tests hold the programs against it. Two makes may do this
+# at once
 $(B)/libraries: FORCE
 	@mkdir -p $(@D)
-	@echo 'libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no)' >$@.new
-	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; $(if $(quiet),:,sed 's/^/  WITH	/' $@); fi
+	@new=$@.$$$$; \
+	    echo 'libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no)' >$$new; \
+	    if cmp -s $$new $@; then rm $$new; else mv $$new $@; $(if $(quiet),:,sed 's/^/  WITH	/' $@); fi
 
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
