@@ -38,6 +38,10 @@ plug house.sim
 modprobe ds2482
 echo ds2482 0x18 >$i2c/new_device
 echo ds2482 0x1b >$i2c/new_device
+# Nine wires, searched every ten seconds, are all that a slow machine can do
+for master in /sys/bus/w1/devices/w1_bus_master*; do
+	echo 0 >$master/w1_master_search
+done
 run_owsd
 does "a chip that a kernel driver owns is said plainly" within $told_within \
 	said "0x1[8b] on /dev/i2c-0 is claimed by the kernel's ds2482 driver: use target w1, or echo 0-001[8b] > /sys/bus/i2c/drivers/ds2482/unbind"
