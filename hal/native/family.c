@@ -53,7 +53,12 @@ const struct property *family_property(const struct family *family, const struct
 
 	if (!property && !family->is_virtual)
 		property = by_name(&family_common, name, len);
-	return property && is_visible(property, device) ? property : NULL;
+	if (!property || is_visible(property, device))
+		return property;
+	/* its functions look which chip it is, and refuse it then */
+	return family->is_known && !family->is_known(device) && property->type != PROPERTY_DIRECTORY
+	               ? property
+	               : NULL;
 }
 
 /* The first of the table behind prev, if it comes before best. */

@@ -71,6 +71,8 @@ struct family {
 	const char *type; /* "DS18B20" */
 	/* NULL: type. Some families hold several chips. */
 	const char *(*type_of)(const struct device *device);
+	/* Which of them? Until that is known, requests may be for properties of any. NULL: it is. */
+	bool (*is_known)(const struct device *device);
 	const struct chip_memory *memory; /* of the properties of memory.h; NULL: it has none */
 	const struct property *properties; /* in any order, the hidden ones too */
 	unsigned count;

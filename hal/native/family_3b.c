@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * DS1825, MAX31826, MAX31850 and MAX31851 have one family code. The scratchpad tells them apart:
- * the MAX31850's configuration byte begins with 1111, the MAX31826 has no limits (bytes 2 and 3
- * are all ones).
+ * only of a DS1825 the configuration byte begins with 0, and the MAX31826 has neither limits nor a
+ * cold junction (bytes 2 and 3 are all ones).
  */
 #include <errno.h>
 #include <string.h>
@@ -20,25 +20,45 @@ enum { UNKNOWN, DS1825, MAX31826, MAX31850 };
 #define COPY_NS (25 * TXN_MS)
 #define PAGE 8
 
+#define FAULT_ANY 1
+
 static int scratchpad(struct txn *txn, uint8_t bytes[9])
 {
 	int err = thermometer_scratchpad(txn, bytes);
 
 	if (err)
 		return err;
-	if (bytes[SP_CONFIG] >> 4 == 0xf)
-		txn->device->CHIP = MAX31850;
+	if (!(bytes[SP_CONFIG] & 0x80))
+		txn->device->CHIP = DS1825;
 	else if (bytes[SP_HIGH] == 0xff && bytes[SP_LOW] == 0xff)
 		txn->device->CHIP = MAX31826;
 	else
-		txn->device->CHIP = DS1825;
+		txn->device->CHIP = MAX31850;
 	/* Those have one resolution. */
 	if (txn->device->CHIP != DS1825) {
 		txn->device->ignores = txn->device->only_12 = true;
 		txn->device->resolution = 12;
 		txn->device->stored = 12;
 	}
-	return 0;
+	/* which chip it is may not have been known when this was asked for */
+	return txn->property->visible && !txn->property->visible(txn->device) ? -ENOENT : 0;
+}
+
+/* 0: it is known which chip this is; TXN_MORE it is now, -ENOENT it has no such property. */
+static int identify(struct txn *txn)
+{
+	uint8_t bytes[9];
+	int err;
+
+	if (txn->device->CHIP != UNKNOWN)
+		return 0;
+	err = scratchpad(txn, bytes);
+	return err ? err : TXN_MORE;
+}
+
+static bool is_known(const struct device *device)
+{
+	return device->CHIP != UNKNOWN;
 }
 
 static bool is_ds1825(const struct device *device)
@@ -67,26 +87,41 @@ static const char *type_of(const struct device *device)
 static int read_temperature(struct txn *txn)
 {
 	uint8_t bytes[9];
+	int err = identify(txn);
 
-	if (txn->device->CHIP == UNKNOWN && txn->phase == 0) {
-		txn->phase = 1;
-		int err = scratchpad(txn, bytes);
-		return err ? err : TXN_MORE;
-	}
+	if (err)
+		return err;
 	if (txn->device->CHIP != MAX31850)
 		return thermometer_read_temperature(txn);
-	int err = scratchpad(txn, bytes);
+	err = scratchpad(txn, bytes);
 	txn->number[0] = ((int16_t)(bytes[2] | bytes[3] << 8) >> 4) / 16.0;
 	return err;
 }
 
+/* Open or short it has no temperature, whatever the bits above say. */
 static int read_thermocouple(struct txn *txn)
 {
 	uint8_t bytes[9];
 	int err = scratchpad(txn, bytes);
 
+	if (err)
+		return err;
 	txn->number[0] = ((int16_t)(bytes[0] | bytes[1] << 8) >> 2) / 4.0;
-	return err;
+	return bytes[0] & FAULT_ANY ? -EIO : 0;
+}
+
+static int read_limit(struct txn *txn)
+{
+	int err = identify(txn);
+
+	return err ? err : thermometer_read_limit(txn);
+}
+
+static int write_limit(struct txn *txn)
+{
+	int err = identify(txn);
+
+	return err ? err : thermometer_write_limit(txn);
 }
 
 /* arg: byte and bit. */
@@ -127,7 +162,11 @@ static int get_page(struct txn *txn, unsigned address, uint8_t *bytes)
 
 static int read_page(struct txn *txn)
 {
-	int err = get_page(txn, (unsigned)txn->element * PAGE, txn->phase ? txn->data : txn->mem);
+	int err = identify(txn);
+
+	if (err)
+		return err;
+	err = get_page(txn, (unsigned)txn->element * PAGE, txn->phase ? txn->data : txn->mem);
 
 	if (err || txn->phase++ == 0)
 		return err ? err : TXN_MORE;
@@ -138,7 +177,11 @@ static int read_page(struct txn *txn)
 static int read_memory(struct txn *txn)
 {
 	unsigned at = txn->phase / 2 * PAGE;
-	int err = get_page(txn, at, txn->phase % 2 ? txn->data + at : txn->mem);
+	int err = identify(txn);
+
+	if (err)
+		return err;
+	err = get_page(txn, at, txn->phase % 2 ? txn->data + at : txn->mem);
 
 	if (err)
 		return err;
@@ -187,17 +230,20 @@ static int put_page(struct txn *txn, unsigned address, const uint8_t *bytes, siz
 
 static int write_page(struct txn *txn)
 {
-	return put_page(txn, (unsigned)txn->element * PAGE, txn->data, txn->len);
+	int err = identify(txn);
+
+	return err ? err : put_page(txn, (unsigned)txn->element * PAGE, txn->data, txn->len);
 }
 
 static int write_memory(struct txn *txn)
 {
 	size_t at = txn->phase / 5 * PAGE;
 	size_t n = txn->len - at < PAGE ? txn->len - at : PAGE;
+	int err = identify(txn);
 
-	if (txn->len == 0)
-		return 0;
-	int err = put_page(txn, (unsigned)at, txn->data + at, n);
+	if (err || txn->len == 0)
+		return err;
+	err = put_page(txn, (unsigned)at, txn->data + at, n);
 	return err ? err : at + n < txn->len ? TXN_MORE : 0;
 }
 
@@ -212,11 +258,11 @@ static int write_memory(struct txn *txn)
 #define LIMIT(text, where)                                                                \
 	{.name = (text), .type = PROPERTY_TEMPERATURE, .life = LIFE_STABLE,                 \
 	 .access = ACCESS_BOTH, .arg = (where), .visible = is_ds1825,                       \
-	 .read = thermometer_read_limit, .write = thermometer_write_limit}
+	 .read = read_limit, .write = write_limit}
 
 static const struct property properties[] = {
 	TEMPERATURE("fasttemp", 9, is_ds1825),
-	FAULT("fault", 0, 1),
+	FAULT("fault", 0, FAULT_ANY),
 	{.name = "flagfield", .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE, .hidden = true,
 	 .access = ACCESS_READ, .read = read_flags},
 	FAULT("ground_short", 2, 2),
@@ -248,5 +294,6 @@ static const struct property properties[] = {
 
 const struct family family_3b = {
 	.code = 0x3b, .thermometer = true, .alarms = true, .type = "DS1825", .type_of = type_of,
+	.is_known = is_known,
 	PROPERTIES(properties),
 };
