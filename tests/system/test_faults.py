@@ -150,7 +150,7 @@ def test_the_genuine_owserver_killed_hanging_and_started_again(scene):
     until(lambda: scene.owsctl(daemon, "get", "room").returncode == 3, 5, "hanging: bad")
     server.thaw()
     until(lambda: scene.get(daemon, "room"), 15, "good again")
-    reconnects = int(scene.get(daemon, "_RECONNECTS"))
+    reconnects = int(until(lambda: scene.get(daemon, "_RECONNECTS"), 10))
     assert reconnects == 6, (reconnects, daemon.log())
     until(lambda: len(open_files(daemon)) == before, 10, f"descriptors {before}")
 

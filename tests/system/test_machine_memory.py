@@ -169,8 +169,8 @@ def test_without_descriptors_it_serves_what_it_has_and_takes_clients_again_later
     before = limit_descriptors(daemon, min(set(range(len(taken) + 1)) - set(taken)))
     with concurrent.futures.ThreadPoolExecutor(1) as pool:
         waiting = pool.submit(ask, scene)
-        count = int(scene.get(daemon, "_TRANSACTIONS"))
-        until(lambda: int(scene.get(daemon, "_TRANSACTIONS")) > count + 3, 20, "the engine goes on")
+        count = int(until(lambda: scene.get(daemon, "_TRANSACTIONS"), 20))
+        until(lambda: int(scene.get(daemon, "_TRANSACTIONS") or 0) > count + 3, 20, "the engine goes on")
         config.write_text(faulty.house(scene, more=True, ListenSocket=str(scene.path / "socket")))
         daemon.signal(signal.SIGHUP)
         until(lambda: "all goes on as before" in daemon.log(), 10, "the reload is refused")

@@ -37,9 +37,10 @@ def test_signals_of_a_file_are_live(scene):
     server = scene.owserver(mock=["28", "29"])
     daemon = scene.owsd(house(server))
     until(lambda: all_good(scene, daemon), 10, "all signals are good")
-    assert scene.get(daemon, "type") == "DS18B20"
-    assert int(scene.get(daemon, "pid")) == server.pid
-    assert len(scene.get(daemon, "bits").split(",")) == 8
+    # a heart that did not beat for two seconds hides a value, on a slow machine, for a moment
+    assert until(lambda: scene.get(daemon, "type"), 10) == "DS18B20"
+    assert int(until(lambda: scene.get(daemon, "pid"), 10)) == server.pid
+    assert len(until(lambda: scene.get(daemon, "bits"), 10).split(",")) == 8
     # what a mock device was told it tells: the value has come from there
     server.write(next(d for d in server.devices(0) if d.startswith("/28.")) + "/temphigh", "42.5")
     until(lambda: scene.get(daemon, "limit") == "42.5", 5, "the value follows")
@@ -63,17 +64,15 @@ def test_every_attribute_of_the_manual_answers_with_and_without_prefix(scene):
                 "_Period", "_Age", "_AgeMax"]
     for attribute in readable:
         for name in ("room" + attribute, f"{daemon.name}__room{attribute}"):
-            done = scene.owsctl(daemon, "get", name)
-            assert done.returncode == 0, f"{name}: {done.stderr}"
-            float(done.stdout)
+            float(until(lambda: scene.get(daemon, name), 10, name))
     for name in ("_TRANSACTIONS", "_RECONNECTS", f"{daemon.name}___TRANSACTIONS"):
-        assert int(scene.owsctl(daemon, "get", name).stdout) >= 0
+        assert int(until(lambda: scene.get(daemon, name), 10, name)) >= 0
     for attribute in ("_DGNRESET", "_WriteOneShot", "_WOS"):
         assert scene.owsctl(daemon, "get", "room" + attribute).returncode != 0, attribute
         assert scene.owsctl(daemon, "set", "relay" + attribute, "1").returncode == 0, attribute
     assert scene.owsctl(daemon, "set", "room_RE", "0").returncode == 0
     until(lambda: scene.owsctl(daemon, "get", "room").returncode == 3, 5, "reading is disabled")
-    assert scene.get(daemon, "room_RE") == "0"
+    assert until(lambda: scene.get(daemon, "room_RE"), 10) == "0"
 
 
 def test_genuine_files_load_unchanged(scene):
@@ -108,7 +107,7 @@ def test_a_signal_that_cannot_work_is_reported_at_start_and_the_others_live(scen
     until(lambda: quality() == [0x04, 0x04, 0x04, 0x08], 5, "each has its reason")
     for name in ("text", "readonly"):
         owsdtest.logged(daemon, f"{name} (line")
-    assert scene.get(daemon, "good")
+    until(lambda: scene.get(daemon, "good"), 10, "the good one is still good")
 
 
 def test_a_device_under_an_alias_is_found_by_its_id(scene):
@@ -232,7 +231,7 @@ def test_owsd_starts_while_owserver_is_down_and_finds_it_later(scene):
     assert values(scene, daemon)["room"]["value"] == 22
     scene.again(server)
     until(lambda: scene.get(daemon, "room"), 15, "good")
-    assert scene.get(daemon, "_RECONNECTS") == "0"
+    assert until(lambda: scene.get(daemon, "_RECONNECTS"), 10) == "0"
 
 
 def test_ipv6_and_host_names_reach_owserver(scene):
@@ -257,11 +256,13 @@ def test_memory_and_descriptors_stay_flat(scene):
     def kib():
         with open(f"/proc/{daemon.pid}/status", encoding="ascii") as file:
             return int(file.read().split("RssAnon:")[1].split()[0])
-    until(lambda: int(scene.get(daemon, "_TRANSACTIONS") or 0) > 500, 100)
-    files, before = settled(lambda: len(open_files(daemon))), kib()
-    until(lambda: int(scene.get(daemon, "_TRANSACTIONS") or 0) > 5000, 300)
+
+    def transactions():
+        return int(scene.get(daemon, "_TRANSACTIONS") or 0)
+    until(lambda: transactions() > 500, 100)
+    files, before, count = settled(lambda: len(open_files(daemon))), kib(), transactions()
+    until(lambda: transactions() > count + 4500, 300)
     after = kib()
-    print(before, after)
     assert after - before <= 64, (before, after)
     until(lambda: len(open_files(daemon)) == files, 10, f"descriptors {files}")
 
