@@ -29,11 +29,12 @@ int owsctl_main(int argc, char **argv);
 
 #define WORDS   16
 #define WAITS   40
+#define NAPS    1000
 #define HANDLES 16
 
 static struct fuzz fuzz;
 static int64_t now_ns;
-static unsigned waits;
+static unsigned waits, naps;
 static jmp_buf out_of_it;
 static bool running;
 static struct ows *handles[HANDLES];
@@ -83,6 +84,8 @@ int __wrap_nanosleep(const struct timespec *time, struct timespec *left);
 int __wrap_nanosleep(const struct timespec *time, struct timespec *left)
 {
 	(void)left;
+	if (++naps == NAPS)
+		longjmp(out_of_it, 100);
 	now_ns += (int64_t)time->tv_sec * 1000000000 + time->tv_nsec;
 	return 0;
 }
@@ -297,7 +300,7 @@ void fuzz_one(const uint8_t *bytes, size_t n)
 
 	fuzz = (struct fuzz){bytes, bytes + n};
 	now_ns = HEAP_START;
-	waits = 0;
+	waits = naps = 0;
 	heap_instance_reset();
 	argv[0] = (char *)(uintptr_t)"owsctl";
 	while (argc <= WORDS && fuzz_left(&fuzz)) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* libows' map.c with the heap in the place of /dev/shm. */
+/* libows' map.c and orphan.c with the heap in the place of /dev/shm, where a real owsd may be. */
 #include "heap_instance.h"
 
 #include "src/libows/handle.h"
@@ -40,4 +40,6 @@ static int heap_stat(int fd, struct stat *st)
 #define close(fd)         ((void)(fd))
 #define mmap(at, size, prot, flags, fd, off) ((void *)file_of(fd)->base)
 #define munmap(at, size)  ((void)(at))
+#define lstat(path, st)   ((void)(path), heap_stat(IMAGE_FD, st))
 #include "src/libows/map.c"
+#include "src/libows/orphan.c"
