@@ -5,6 +5,7 @@
 
 #include <arpa/inet.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <stdio.h>
@@ -141,14 +142,27 @@ static int remove_old(const union address *to)
 	return unlink(to->local.sun_path) < 0 ? -errno : 0;
 }
 
-/* Who may command outputs may use it: it carries writes. */
+/*
+ * Who may command outputs may use it: it carries writes. Bound it has mode 0600. In a folder that
+ * others may write something else may stand there by now, whose rights are none of ours.
+ */
 static int give_rights(const char *path)
 {
+	int fd = open(path, O_PATH | O_NOFOLLOW | O_CLOEXEC), err = 0;
+	char self[32];
+	struct stat st;
 	gid_t gid;
 
-	if (owner_group("owsd-control", &gid) && chown(path, (uid_t)-1, gid) == 0)
-		return chmod(path, 0660) < 0 ? -errno : 0;
-	return chmod(path, 0600) < 0 ? -errno : 0;
+	if (fd < 0)
+		return -errno;
+	snprintf(self, sizeof(self), "/proc/self/fd/%d", fd);
+	if (fstat(fd, &st) < 0 || !S_ISSOCK(st.st_mode) || st.st_uid != geteuid())
+		err = -EPERM;
+	else if (owner_group("owsd-control", &gid) &&
+	         fchownat(fd, "", (uid_t)-1, gid, AT_EMPTY_PATH) == 0 && chmod(self, 0660) < 0)
+		err = -errno;
+	close(fd);
+	return err;
 }
 
 static int open_local(struct serve *s, const char *path)
@@ -205,6 +219,7 @@ int listeners_open(struct serve *s, char *why, size_t why_size)
 		snprintf(why, why_size, "cannot listen at %s: %s%s", config->socket, strerror(-err),
 		         err == -EADDRINUSE ? " (somebody serves it)"
 		         : err == -EEXIST   ? " and is no socket"
+		         : err == -EPERM    ? " (somebody put something else in its place)"
 		                            : "");
 	return err;
 }

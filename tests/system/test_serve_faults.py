@@ -6,6 +6,7 @@ import random
 import struct
 import threading
 
+import faulty
 import owsdtest
 from owsdtest import until
 from test_serve import NOP, READ, Link, ask, house, served, stat
@@ -38,6 +39,19 @@ def test_random_requests_harm_nobody(scene):
                 pass
         assert daemon.running(), f"seed {seed}"
     assert ask(port, READ, "/28.0000000000B1/type")[4] == b"DS18B20", f"seed {seed}"
+
+
+def test_a_link_that_takes_the_place_of_the_socket_gives_no_other_file_to_the_group(scene):
+    """As who may write the folder makes it, while owsd is about to set the socket's rights."""
+    victim = scene.path / "secret"
+    victim.write_text("of its owner alone\n")
+    victim.chmod(0o400)
+    config = owsdtest.rio("null:", [], ListenSocket=str(scene.path / "socket"))
+    daemon = scene.owsd(config, env=faulty.env(scene, socket=victim), ready=False)
+    assert daemon.wait() == 1 and "cannot listen at" in daemon.log(), daemon.log()
+    assert faulty.happened(scene)
+    status = victim.stat()
+    assert status.st_mode & 0o777 == 0o400, oct(status.st_mode)
 
 
 def test_a_busy_table_starves_no_client_and_clients_starve_no_table(scene):

@@ -5,6 +5,8 @@
  *   FAULT_MEMORY=N    the N-th allocation fails (malloc, calloc, realloc, mmap); N+: all from there
  *   FAULT_THREAD=N    the N-th thread cannot be made; a path: none, while that file is there
  *   FAULT_CLOCK=FILE  two 64-bit numbers: what CLOCK_REALTIME and CLOCK_BOOTTIME are ahead, in ns
+ *   FAULT_SOCKET=FILE a unix socket is a link to that file as soon as it is bound, as somebody makes
+ *                     it who may write its folder
  *   FAULT_MARK=FILE   is made when one has happened
  */
 #define _GNU_SOURCE
@@ -16,6 +18,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -25,10 +29,11 @@ extern void *__libc_realloc(void *old, size_t size);
 
 static unsigned long memory_at, memory_count, thread_at, thread_count;
 static int memory_on;
-static const char *thread_file, *mark;
+static const char *thread_file, *mark, *socket_file;
 static const volatile int64_t *ahead;
 static int (*next_thread)(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);
 static int (*next_clock)(clockid_t, struct timespec *);
+static int (*next_bind)(int, const struct sockaddr *, socklen_t);
 static void *(*next_mmap)(void *, size_t, int, int, int, off_t);
 
 __attribute__((constructor)) static void prepare(void)
@@ -40,7 +45,9 @@ __attribute__((constructor)) static void prepare(void)
 	*(void **)&next_thread = dlsym(RTLD_NEXT, "pthread_create");
 	*(void **)&next_clock = dlsym(RTLD_NEXT, "clock_gettime");
 	*(void **)&next_mmap = dlsym(RTLD_NEXT, "mmap");
+	*(void **)&next_bind = dlsym(RTLD_NEXT, "bind");
 	mark = getenv("FAULT_MARK");
+	socket_file = getenv("FAULT_SOCKET");
 	thread_file = getenv("FAULT_THREAD");
 	if (thread_file && *thread_file != '/')
 		thread_at = strtoul(thread_file, NULL, 10);
@@ -122,6 +129,17 @@ int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*
 		return next_thread(thread, attributes, run, arg);
 	happens();
 	return EAGAIN;
+}
+
+int bind(int fd, __CONST_SOCKADDR_ARG address, socklen_t size)
+{
+	const struct sockaddr_un *local = address.__sockaddr_un__;
+	int err = next_bind(fd, address.__sockaddr__, size);
+
+	if (!err && socket_file && local->sun_family == AF_UNIX && unlink(local->sun_path) == 0 &&
+	    symlink(socket_file, local->sun_path) == 0)
+		happens();
+	return err;
 }
 
 int clock_gettime(clockid_t clock, struct timespec *now)
