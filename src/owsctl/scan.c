@@ -149,7 +149,10 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 	status = scan_target(&target, &scan);
 	if (!status && !scan.count)
 		scan_board(target.name);
-	if (!status && rio)
+	if (!status && rio && target.served.target[0] && target.served.cut)
+		status = ctl_fail("the targets of owsd %s are too long to be told whole: name them with "
+		                  "-t TARGET", ctl->instance);
+	else if (!status && rio)
 		status = target.served.target[0]
 		                 ? scan_rio(&scan, target.served.targets, true, inputs_only)
 		                 : scan_rio(&scan, target.name, false, inputs_only);

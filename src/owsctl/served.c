@@ -6,9 +6,13 @@
 #include <stdio.h>
 #include <string.h>
 
-/* As in TargetName: a bar between ways to one wire, a comma between wires. */
-static void copy_targets(struct ows *h, char *out, size_t size)
+/* The shared memory has so much of a target's text. */
+#define NAME_MOST 103
+
+/* As in TargetName: a bar between ways to one wire, a comma between wires. False: not whole. */
+static bool copy_targets(struct ows *h, char *out, size_t size)
 {
+	bool whole = true;
 	struct ows_target target;
 	uint32_t group = 0;
 	size_t used = 0;
@@ -17,12 +21,16 @@ static void copy_targets(struct ows *h, char *out, size_t size)
 		const char *between = !used ? "" : target.group == group ? " | " : ", ";
 		int n = snprintf(out + used, size - used, "%s%s", between, target.name);
 
-		if (n < 0 || (size_t)n >= size - used)
+		if (n < 0 || (size_t)n >= size - used) {
+			whole = false;
 			break;
+		}
+		whole = whole && strlen(target.name) < NAME_MOST;
 		used += (size_t)n;
 		group = target.group;
 	}
 	out[used] = '\0';
+	return whole;
 }
 
 int served_find(const struct ctl *ctl, struct served *served)
@@ -44,7 +52,7 @@ int served_find(const struct ctl *ctl, struct served *served)
 	where = ows_served(h);
 	if (served->runs && where)
 		snprintf(served->target, sizeof(served->target), "%s", where);
-	copy_targets(h, served->targets, sizeof(served->targets));
+	served->cut = !copy_targets(h, served->targets, sizeof(served->targets));
 	ows_close(h);
 	if (ctl->named && !served->runs)
 		return ctl_fail("owsd %s is not running", ctl->instance);

@@ -11,6 +11,7 @@ struct served {
 	bool runs;          /* there is an owsd of that name, and it lives */
 	char target[160];   /* what reaches it; "" where it serves none */
 	char targets[1024]; /* its own, as in TargetName */
+	bool cut;           /* not all of them, or not whole */
 };
 
 /* CTL_DONE, or CTL_FAILED after having said why: the instance was asked for and is not there. */

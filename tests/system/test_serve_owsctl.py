@@ -89,6 +89,19 @@ def test_the_configuration_of_an_asked_instance_runs_and_changes_no_output(scene
     assert rows[SWITCH + "/PIO.BYTE"]["io"] == "output"
 
 
+def test_targets_that_an_instance_cannot_tell_whole_make_no_configuration(scene):
+    folder = scene.path / ("long" * 25)
+    folder.mkdir()
+    (folder / "a.sim").write_text(served.WIRE)
+    daemon = scene.owsd(owsdtest.rio(f"sim:{folder}/a.sim", served.SIGNALS,
+                                     ListenSocket=str(scene.path / "owsd.sock")))
+    owsdtest.until(lambda: set(DEVICES) <= set(scene.owsctl(daemon, "dir").stdout.split()), 20,
+                   "all devices are there")
+    done = ctl(scene, daemon, "scan", "--rio", status=1)
+    assert not done.stdout and "-t TARGET" in done.stderr, done
+    assert THERMOMETER in ctl(scene, daemon, "scan").stdout
+
+
 def test_who_serves_nobody_says_so_when_asked_by_name(scene):
     target = f"sim:{scene.file('served.sim', served.WIRE)}"
     daemon = scene.owsd(owsdtest.rio(target, served.SIGNALS))
