@@ -52,7 +52,7 @@ does "the one that it kept is not" bad pins
 echo 0x1b >$i2c/delete_device
 does "until that is free, too" within $back_within reads pins 189
 
-does "everything is good" within $told_within all_good
+does "everything is good" within $back_within all_good
 same "a thermometer fed by the wire" -10.125 "$(get cold)"
 same "a DS18S20" 25.375 "$(get old)"
 same "one on channel 7" 13.75 "$(get far)"
