@@ -34,14 +34,14 @@ static const struct option words[] = {
 
 void complain(const char *format, ...)
 {
-	char text[1024];
 	va_list args;
+	char *text;
 
 	va_start(args, format);
-	vsnprintf(text, sizeof(text), format, args);
+	text = printable_line(format, args);
 	va_end(args);
-	text[printable(text, strlen(text))] = '\0';
-	fprintf(stderr, "owsd: %s\n", text);
+	fprintf(stderr, "owsd: %s\n", text ? text : format);
+	free(text);
 }
 
 int finish_output(void)
@@ -101,6 +101,11 @@ static int refuse(int option, char *const *argv)
 
 static int take_target(struct arguments *a)
 {
+	/* what the file means by that is an owserver at localhost */
+	if (!*optarg) {
+		complain("-t: a target expected, as localhost:4304, i2c:/dev/i2c-1 or w1");
+		return EXIT_USAGE;
+	}
 	if (a->target_count == CONFIG_TARGETS_MAX) {
 		complain("-t %s: at most %d targets", optarg, CONFIG_TARGETS_MAX);
 		return EXIT_USAGE;

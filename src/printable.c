@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "printable.h"
 
+#include <stdio.h>
+#include <string.h>
+
+#define HEAD 300
+#define GAP  " ... "
+
 /* Bytes of the character at text that has to go; 0: it may stay. */
 static size_t harmful(const unsigned char *text, size_t left)
 {
@@ -26,4 +32,34 @@ size_t printable(char *text, size_t len)
 		from += bytes ? bytes : 1;
 	}
 	return to;
+}
+
+static int is_inside_character(char c)
+{
+	return ((unsigned char)c & 0xc0) == 0x80;
+}
+
+static void shorten(char *text, size_t len)
+{
+	size_t head = HEAD, tail = len - (PRINTABLE_LINE - HEAD - strlen(GAP));
+
+	while (head && is_inside_character(text[head]))
+		head--;
+	while (is_inside_character(text[tail]))
+		tail++;
+	memcpy(text + head, GAP, strlen(GAP));
+	memmove(text + head + strlen(GAP), text + tail, len - tail + 1);
+}
+
+char *printable_line(const char *format, va_list args)
+{
+	char *text;
+	int len = vasprintf(&text, format, args);
+
+	if (len < 0)
+		return NULL;
+	if (len > PRINTABLE_LINE)
+		shorten(text, (size_t)len);
+	text[printable(text, strlen(text))] = '\0';
+	return text;
 }

@@ -2,6 +2,7 @@
 #ifndef PRINTABLE_H
 #define PRINTABLE_H
 
+#include <stdarg.h>
 #include <stddef.h>
 
 /*
@@ -10,5 +11,13 @@
  * length; the text is not terminated anew.
  */
 size_t printable(char *text, size_t len);
+
+/*
+ * A message as vprintf() would print it, printable. What is longer than PRINTABLE_LINE bytes, since
+ * somebody's long word stands in it, loses its middle: the end has the reason. To be freed; NULL: no
+ * memory.
+ */
+#define PRINTABLE_LINE 1000
+char *printable_line(const char *format, va_list args) __attribute__((format(printf, 1, 0)));
 
 #endif

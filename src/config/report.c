@@ -5,9 +5,10 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-#define MESSAGE_MAX 512
+#define MESSAGE_MAX (PRINTABLE_LINE + 300)
 
 static void put(struct config_report *report, struct place place, bool is_error,
                 const char *format, va_list args) __attribute__((format(printf, 4, 0)));
@@ -16,7 +17,7 @@ static void put(struct config_report *report, struct place place, bool is_error,
 {
 	unsigned *count = is_error ? &report->errors : &report->warnings;
 	const char *kind = is_error ? "error" : "warning";
-	char message[MESSAGE_MAX];
+	char message[MESSAGE_MAX], *text = NULL;
 	int n = 0;
 
 	if (++*count > REPORT_MAX + 1 || !report->line)
@@ -30,8 +31,9 @@ static void put(struct config_report *report, struct place place, bool is_error,
 	if (*count > REPORT_MAX)
 		snprintf(message + n, sizeof(message) - (size_t)n,
 		         "more than %d %ss, the rest is not shown", REPORT_MAX, kind);
-	else
-		vsnprintf(message + n, sizeof(message) - (size_t)n, format, args);
+	else if ((text = printable_line(format, args)))
+		snprintf(message + n, sizeof(message) - (size_t)n, "%s", text);
+	free(text);
 	/* values of the file are quoted in it */
 	message[printable(message, strlen(message))] = '\0';
 	report->line(report->ctx, is_error, message);

@@ -196,6 +196,17 @@ static int change(const char *file, const char *action, char **words, unsigned c
 	return status_of(err);
 }
 
+/* Options behind list too: it has no words of its own. */
+static int list_with(struct ctl *ctl, const char *file, int argc, char **argv)
+{
+	ctl_options();
+	if (ctl_option(ctl, argc, argv, "") != -1)
+		return CTL_USAGE;
+	if (optind < argc)
+		return ctl_usage(ctl, "expected config FILE list");
+	return list(ctl, file);
+}
+
 int verb_config(struct ctl *ctl, int argc, char **argv)
 {
 	static const struct {
@@ -222,10 +233,10 @@ int verb_config(struct ctl *ctl, int argc, char **argv)
 	for (size_t i = 0; i < sizeof(actions) / sizeof(actions[0]); i++) {
 		if (strcmp(actions[i].name, action) != 0)
 			continue;
-		if (words < actions[i].least || (!actions[i].least && words))
-			return ctl_usage(ctl, "expected config FILE %s%s", action, actions[i].words);
 		if (!actions[i].least)
-			return list(ctl, file);
+			return list_with(ctl, file, argc - optind - 1, argv + optind + 1);
+		if (words < actions[i].least)
+			return ctl_usage(ctl, "expected config FILE %s%s", action, actions[i].words);
 		return change(file, action, argv + optind + 2, (unsigned)words);
 	}
 	return ctl_usage(ctl, "there is no config %s", action);

@@ -20,11 +20,10 @@ enum { JSON = 256 };
 __attribute__((format(printf, 1, 0)))
 static void say(const char *format, va_list args)
 {
-	char text[4096];
+	char *text = printable_line(format, args);
 
-	vsnprintf(text, sizeof(text), format, args);
-	text[printable(text, strlen(text))] = '\0';
-	fprintf(stderr, "owsctl: %s\n", text);
+	fprintf(stderr, "owsctl: %s\n", text ? text : format);
+	free(text);
 }
 
 int ctl_fail(const char *format, ...)
@@ -87,6 +86,10 @@ int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
 			ctl->json = true;
 		else
 			ctl->target = optarg;
+		if (c == 't' && !*optarg) {
+			ctl_usage(ctl, CTL_NO_TARGET);
+			return '?';
+		}
 	}
 	if (c == 'h') {
 		printf("usage: owsctl %s %s\n%s\n", ctl->verb->name, ctl->verb->usage,
@@ -99,6 +102,11 @@ int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
 		return '?';
 	}
 	return c;
+}
+
+const char *ctl_word(const char *word)
+{
+	return *word ? word : "\"\"";
 }
 
 bool ctl_seconds(const char *text, int64_t *ns)
@@ -134,7 +142,7 @@ int ctl_open(const struct ctl *ctl, enum ows_mode mode, struct ows **h)
 		return ctl_fail("the shared memory of %s is of another version of owsd, or not of "
 		                "owsd", name);
 	case EINVAL:
-		return ctl_fail("%s cannot be the name of an instance", name);
+		return ctl_fail("%s cannot be the name of an instance", ctl_word(name));
 	}
 	return ctl_fail("cannot open the shared memory of %s: %s", name, strerror(-err));
 }
@@ -185,8 +193,8 @@ int ctl_unknown(struct ows *h, const char *name)
 		return ctl_fail("there is no %s: its prefix is of another instance; did you mean "
 		                "%s, or -n %.*s?", name, rest + 2, (int)(rest - name), name);
 	if (names_nearest(h, name, nearest))
-		return ctl_fail("there is no %s; did you mean %s?", name, nearest);
-	return ctl_fail("there is no %s", name);
+		return ctl_fail("there is no %s; did you mean %s?", ctl_word(name), nearest);
+	return ctl_fail("there is no %s", ctl_word(name));
 }
 
 bool ctl_reader_gone(void)

@@ -77,7 +77,11 @@ int main(int argc, char **argv)
 			break;
 		case 't':
 			ctl.target = optarg;
-			break;
+			if (*optarg)
+				break;
+			ctl_fail(CTL_NO_TARGET);
+			usage(stderr);
+			return CTL_USAGE;
 		case JSON:
 			ctl.json = true;
 			break;
@@ -107,7 +111,7 @@ int main(int argc, char **argv)
 			return ctl_flush(verbs[i].run(&ctl, argc - optind, argv + optind));
 		}
 	}
-	ctl_fail("there is no verb %s", argv[optind]);
+	ctl_fail("there is no verb %s", ctl_word(argv[optind]));
 	usage(stderr);
 	return CTL_USAGE;
 }

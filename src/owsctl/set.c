@@ -272,7 +272,8 @@ int verb_set(struct ctl *ctl, int argc, char **argv)
 			return CTL_USAGE;
 		seconds = optarg;
 		if (!ctl_seconds(seconds, &limit_ns))
-			return ctl_usage(ctl, "-w wants a number of seconds, not %s", seconds);
+			return ctl_usage(ctl, "-w wants a number of seconds, not %s",
+			                 ctl_word(seconds));
 	}
 	count = (argc - optind) / 2;
 	if (argc == optind || (argc - optind) % 2)

@@ -62,6 +62,10 @@ int ctl_usage(const struct ctl *ctl, const char *format, ...) /* returns CTL_USA
 int ctl_fail(const char *format, ...) /* returns CTL_FAILED */
 	__attribute__((format(printf, 1, 2)));
 
+/* The word as a message shows it: an empty one by its quotes. */
+const char *ctl_word(const char *word);
+#define CTL_NO_TARGET "-t: a target expected, as localhost:4304, i2c:/dev/i2c-1 or w1"
+
 /* A number of seconds, at most a year; false when text is none. */
 bool ctl_seconds(const char *text, int64_t *ns);
 

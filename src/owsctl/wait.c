@@ -97,7 +97,8 @@ static int begin(struct ctl *ctl, struct waiting *waiting, const char *value)
 		return ctl_usage(ctl, "%s is a string: only = and != can be waited for",
 		                 waiting->name);
 	if (err)
-		return ctl_usage(ctl, "%s is no value to compare %s with", value, waiting->name);
+		return ctl_usage(ctl, "%s is no value to compare %s with", ctl_word(value),
+		                 waiting->name);
 	return CTL_DONE;
 }
 
@@ -110,7 +111,8 @@ static int parse_limit(struct ctl *ctl, int argc, char **argv, int64_t *limit_ns
 		if (c != 't')
 			return CTL_USAGE;
 		if (!ctl_seconds(optarg, limit_ns))
-			return ctl_usage(ctl, "-t wants a number of seconds, not %s", optarg);
+			return ctl_usage(ctl, "-t wants a number of seconds, not %s",
+			                 ctl_word(optarg));
 	}
 	return CTL_DONE;
 }

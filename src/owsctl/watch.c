@@ -205,12 +205,13 @@ int verb_watch(struct ctl *ctl, int argc, char **argv)
 			break;
 		case 'c':
 			if (!parse_count(optarg, &watch.left))
-				return ctl_usage(ctl, "-c wants a number above 0, not %s", optarg);
+				return ctl_usage(ctl, "-c wants a number above 0, not %s",
+				                 ctl_word(optarg));
 			break;
 		case 't':
 			if (!ctl_seconds(optarg, &limit_ns))
 				return ctl_usage(ctl, "-t wants a number of seconds, not %s",
-				                 optarg);
+				                 ctl_word(optarg));
 			break;
 		default:
 			return CTL_USAGE;

@@ -200,6 +200,16 @@ def test_what_is_no_regular_file_is_refused_at_once(scene):
             assert f"{file}: error: is a {kind}: only a regular file is read\n" in done.stderr, (words, done)
 
 
+def test_a_list_takes_json_behind_it(scene):
+    file = scene.file("list.rio", owsdtest.rio("localhost", [ITEM]))
+    before, behind = (scene._run([owsdtest.OWSCTL, *words], 20) for words in
+                      (["--json", "config", file, "list"], ["config", file, "list", "--json"]))
+    assert before.returncode == 0 and before.stdout.startswith("{"), before
+    assert before.stdout == behind.stdout, behind
+    for words in (["more"], ["-x"]):
+        assert scene._run([owsdtest.OWSCTL, "config", file, "list", *words], 20).returncode == 2
+
+
 def test_each_of_several_targets_is_checked(scene):
     path = scene.file("two.rio", owsdtest.rio("localhost:4304 | null:x", [ITEM]))
     for arguments in (["--check", "-c", path], ["-n", scene.name(), "-c", path]):

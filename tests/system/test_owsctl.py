@@ -212,11 +212,26 @@ def test_a_wrong_option_is_named_as_it_was_typed(scene):
                             (["scan", "--rio=x"], "--rio takes no value: --rio=x"),
                             (["get", "-J"], "unknown option: -J"),
                             (["-n"], "option without its argument: -n"),
-                            (["watch", "-t"], "option without its argument: -t")):
+                            (["watch", "-t"], "option without its argument: -t"),
+                            (["watch", "-c", ""], '-c wants a number above 0, not ""'),
+                            (["-t", "", "dir"], "-t: a target expected, as localhost:4304, "
+                             "i2c:/dev/i2c-1 or w1"),
+                            (["dir", "-t", ""], "-t: a target expected, as localhost:4304, "
+                             "i2c:/dev/i2c-1 or w1"),
+                            ([""], 'there is no verb ""')):
         run = subprocess.run([owsdtest.OWSCTL, *words], text=True, capture_output=True, check=False,
                              timeout=10)
         assert run.returncode == 2, (words, run)
         assert run.stderr.startswith(f"owsctl: {expected}\n"), (words, run.stderr)
+
+
+def test_an_odd_name_is_shown_and_the_reason_behind_it_too(scene):
+    for name, expected in (("", '"" cannot be the name of an instance'),
+                           ("x" * 100000, "xxx cannot be the name of an instance")):
+        run = subprocess.run([owsdtest.OWSCTL, "-n", name, "list"], text=True, capture_output=True,
+                             check=False, timeout=10)
+        assert run.returncode == 1 and run.stderr.endswith(expected + "\n"), (run.returncode, run.stderr)
+        assert len(run.stderr) < 1100, len(run.stderr)
 
 
 def test_the_live_table_follows_values_and_keys(scene):

@@ -2,6 +2,8 @@
 #include "src/printable.h"
 #include "unity.h"
 
+#include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
 void setUp(void)
@@ -49,6 +51,47 @@ static void test_a_character_cut_at_the_end_is_left_to_others(void)
 	TEST_ASSERT_EQUAL_STRING("a\xc2", made("a\xc2"));
 }
 
+__attribute__((format(printf, 1, 2)))
+static char *line(const char *format, ...)
+{
+	va_list args;
+	char *text;
+
+	va_start(args, format);
+	text = printable_line(format, args);
+	va_end(args);
+	TEST_ASSERT_NOT_NULL(text);
+	return text;
+}
+
+static void test_a_long_message_loses_its_middle_and_keeps_its_reason(void)
+{
+	static const char *const characters[] = {"x", "\xc4\x8d", "\xe6\xb8\xa9", "\xf0\x9f\x8c\xa1"};
+	char word[8001], *text = line("%s is %d\n", "short", 5);
+
+	TEST_ASSERT_EQUAL_STRING("short is 5?", text);
+	free(text);
+	for (size_t i = 0; i < 4; i++) {
+		size_t len = strlen(characters[i]);
+
+		word[0] = '\0';
+		for (size_t k = 0; k < 8000 / len; k++)
+			memcpy(word + k * len, characters[i], len + 1);
+		text = line("the word '%s' is wrong", word);
+		TEST_ASSERT_LESS_OR_EQUAL_size_t(PRINTABLE_LINE, strlen(text));
+		TEST_ASSERT_GREATER_THAN_size_t(PRINTABLE_LINE - 10, strlen(text));
+		TEST_ASSERT_EQUAL_STRING_LEN("the word '", text, 10);
+		TEST_ASSERT_EQUAL_STRING("' is wrong", text + strlen(text) - 10);
+		/* whole characters on both sides of the gap */
+		for (char *p = text + 10, *end = text + strlen(text) - 10; p < end; p += len)
+			if (strncmp(p, " ... ", 5) == 0)
+				p += 5 - len;
+			else
+				TEST_ASSERT_EQUAL_MEMORY(characters[i], p, len);
+		free(text);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -56,5 +99,6 @@ int main(void)
 	RUN_TEST(test_control_characters_become_question_marks);
 	RUN_TEST(test_what_turns_the_direction_becomes_a_question_mark);
 	RUN_TEST(test_a_character_cut_at_the_end_is_left_to_others);
+	RUN_TEST(test_a_long_message_loses_its_middle_and_keeps_its_reason);
 	return UNITY_END();
 }
