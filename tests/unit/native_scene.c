@@ -7,8 +7,6 @@
 #include "hal/path.h"
 #include "unity.h"
 
-struct host host;
-struct bus *bus;
 struct bus_req req[NATIVE_REQUESTS];
 uint8_t data[NATIVE_REQUESTS][4096];
 static char path[NATIVE_REQUESTS][128];
@@ -22,8 +20,7 @@ void native_begin(void)
 
 void native_end(void)
 {
-	bus_destroy(bus);
-	bus = NULL;
+	one_bus_end();
 	wire_clear();
 }
 

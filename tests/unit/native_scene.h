@@ -6,12 +6,11 @@
 #ifndef TESTS_NATIVE_SCENE_H
 #define TESTS_NATIVE_SCENE_H
 
+#include "tests/unit/one_bus.h"
 #include "tests/unit/wire_link.h"
 
 #define NATIVE_REQUESTS 256
 
-extern struct host host;
-extern struct bus *bus;
 /* Of request id, as ask() returns it. */
 extern struct bus_req req[NATIVE_REQUESTS];
 extern uint8_t data[NATIVE_REQUESTS][4096];

@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* While nobody runs (a suspend, a stopped process) what was measured before must not become young. */
 #include "hal/link.h"
-#include "host.h"
+#include "one_bus.h"
 #include "scene.h"
 #include "unity.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 #define T1 "/28.551DDF030000/temperature12"
 
@@ -67,19 +64,12 @@ static void test_a_step_that_is_a_little_late_is_no_gap(void)
 static void test_a_conversion_is_as_old_as_its_command(void)
 {
 	static const char wire[] = "chip DS2482-100 0x18\nDS2438 26.A0B1C2000026 temperature ramp 20 30 10s\n";
-	char file[] = "/tmp/owsd-test-XXXXXX", target[64], data[32];
+	char data[32];
 	struct bus_req req = {.id = 1, .op = BUS_READ, .prio = BUS_INPUT, .data = (uint8_t *)data,
 	                      .path = "/26.A0B1C2000026/temperature", .len = sizeof(data)};
-	int fd = mkstemp(file);
-	struct host host;
-	struct bus *bus;
 	int64_t gap = 0;
 
-	TEST_ASSERT_EQUAL_INT(sizeof(wire) - 1, write(fd, wire, sizeof(wire) - 1));
-	close(fd);
-	host_init_virtual(&host);
-	snprintf(target, sizeof(target), "sim:%s", file);
-	bus = host_bus(&host, target);
+	simulate(wire);
 	host_run(&host, bus, host.now + HOST_S);
 	/* stopped at any moment of the reading, for longer than the curve lasts */
 	for (int64_t ms = 1; ms < 60; ms++) {
@@ -96,14 +86,12 @@ static void test_a_conversion_is_as_old_as_its_command(void)
 		data[host.answer[0].len] = '\0';
 		if (strtod(data, NULL) < 29.9)
 			TEST_ASSERT_LESS_OR_EQUAL_INT64(stopped, host.answer[0].measured_ns);
-		bus_destroy(bus);
-		host_init_virtual(&host);
-		bus = host_bus(&host, target);
+		one_bus_end();
+		simulate(wire);
 		host_run(&host, bus, host.now + HOST_S);
 	}
 	TEST_ASSERT_GREATER_THAN_INT64(5, gap);
-	bus_destroy(bus);
-	unlink(file);
+	one_bus_end();
 }
 
 int main(void)

@@ -5,11 +5,9 @@
 #include <string.h>
 
 #include "tests/unit/fake_gpio.h"
-#include "tests/unit/host.h"
+#include "tests/unit/one_bus.h"
 #include "unity.h"
 
-static struct host host;
-static struct bus *bus;
 static uint8_t data[256];
 static char why[200];
 
@@ -22,9 +20,7 @@ void setUp(void)
 
 void tearDown(void)
 {
-	if (bus)
-		bus_destroy(bus);
-	bus = NULL;
+	one_bus_end();
 	fake_gpio_end();
 }
 
@@ -115,18 +111,6 @@ static void test_a_pulse_between_two_readings_is_shown_by_the_first_and_over_in_
 	expect("/gpio/3", "0", host.now);
 }
 
-static uint64_t count(const char *name)
-{
-	size_t n;
-	const struct bus_counter *counters = bus_counters(bus, &n);
-
-	for (size_t i = 0; i < n; i++)
-		if (strcmp(counters[i].name, name) == 0)
-			return bus_counted(&counters[i]);
-	TEST_FAIL_MESSAGE(name);
-	return 0;
-}
-
 static void test_edges_that_no_reading_shows_are_counted(void)
 {
 	start();
@@ -135,9 +119,9 @@ static void test_edges_that_no_reading_shows_are_counted(void)
 		fake_gpio_level(3, i % 2 == 0, host.now + (i + 1) * HOST_MS);
 	host.now += 100 * HOST_MS;
 	expect("/gpio/3", "1", host.now - 95 * HOST_MS);
-	TEST_ASSERT_EQUAL_UINT64(5, count("edges"));
-	TEST_ASSERT_EQUAL_UINT64(4, count("edges_unseen"));
-	TEST_ASSERT_EQUAL_UINT64(0, count("pulses"));
+	TEST_ASSERT_EQUAL_UINT64(5, counted("edges"));
+	TEST_ASSERT_EQUAL_UINT64(4, counted("edges_unseen"));
+	TEST_ASSERT_EQUAL_UINT64(0, counted("pulses"));
 }
 
 static void test_where_the_kernel_lost_edges_the_level_counts_and_no_time_is_made_up(void)
@@ -257,7 +241,7 @@ static void test_who_has_a_line_is_told_once_and_it_is_taken_when_it_is_free(voi
 	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_NOTE));
 	TEST_ASSERT_EQUAL_STRING("line 4 of fake is in use by \"onewire@4\"",
 	                         host.event[host.events - 1].text);
-	TEST_ASSERT_EQUAL_UINT64(2, count("lines_refused"));
+	TEST_ASSERT_EQUAL_UINT64(2, counted("lines_refused"));
 	fake_gpio.line[4].consumer[0] = '\0';
 	expect("/gpio/4", "0", host.now);
 }

@@ -1,16 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The native bus on an adapter with two chips, one of which is late. */
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "tests/unit/host.h"
+#include "tests/unit/one_bus.h"
 #include "unity.h"
-
-static struct host host;
-static struct bus *bus;
-static char file[24];
 
 /* Gone after 20 s; when it is back, the first chip does not answer for a while. */
 static const char scenario[] = "chip DS2482-800 0x18\n"
@@ -23,24 +16,12 @@ static const char scenario[] = "chip DS2482-800 0x18\n"
 
 void setUp(void)
 {
-	char target[64];
-	int fd;
-
-	strcpy(file, "/tmp/owsd-test-XXXXXX");
-	fd = mkstemp(file);
-	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, fd);
-	TEST_ASSERT_EQUAL_INT(sizeof(scenario) - 1, write(fd, scenario, sizeof(scenario) - 1));
-	close(fd);
-	host_init_virtual(&host);
-	snprintf(target, sizeof(target), "sim:%s", file);
-	bus = host_bus(&host, target);
+	simulate(scenario);
 }
 
 void tearDown(void)
 {
-	bus_destroy(bus);
-	bus = NULL;
-	unlink(file);
+	one_bus_end();
 }
 
 static int ask(const char *path, char *text, uint32_t room)

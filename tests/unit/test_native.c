@@ -115,18 +115,6 @@ static void test_a_request_past_its_deadline_is_void_or_in_progress(void)
 	TEST_ASSERT_EQUAL_INT(-EINPROGRESS, answer_to(id)->err);
 }
 
-static uint64_t counted(const char *name)
-{
-	size_t n;
-	const struct bus_counter *counters = bus_counters(bus, &n);
-
-	for (size_t i = 0; i < n; i++)
-		if (strcmp(counters[i].name, name) == 0)
-			return bus_counted(&counters[i]);
-	TEST_FAIL_MESSAGE(name);
-	return 0;
-}
-
 static void test_what_channels_share_is_counted_once(void)
 {
 	wire_init(&host, 8, 1);

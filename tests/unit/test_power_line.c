@@ -1,25 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 /* GPIO lines beside the chips: the supply of the wire, the sleep pin. On a chip that is played. */
 #include <errno.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "hal/sim/net.h"
 #include "hal/sim/scenario.h"
 #include "tests/unit/fake_gpio.h"
-#include "tests/unit/host.h"
+#include "tests/unit/one_bus.h"
 #include "tests/unit/plant.h"
 #include "unity.h"
 
 #define POWER 2
 #define SLPZ  3
 
-static struct host host;
-static struct bus *bus;
 static struct sim_net *net;
-static char file[] = "/tmp/owsd-test-XXXXXX";
 static int64_t off_ns, dark_ns;
 static unsigned cycles;
 static bool low_is_on;
@@ -50,31 +44,18 @@ static void driven(unsigned line, bool high)
 
 void setUp(void)
 {
-	char target[64];
-	int fd;
-
-	strcpy(file, "/tmp/owsd-test-XXXXXX");
-	fd = mkstemp(file);
-	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, fd);
-	TEST_ASSERT_EQUAL_INT(sizeof(scenario) - 1, write(fd, scenario, sizeof(scenario) - 1));
-	close(fd);
 	fake_gpio_begin();
 	fake_gpio.driven = driven;
 	off_ns = dark_ns = 0;
 	cycles = 0;
 	low_is_on = false;
-	host_init_virtual(&host);
-	snprintf(target, sizeof(target), "sim:%s", file);
-	bus = host_bus(&host, target);
+	simulate(scenario);
 	net = plant_net(bus);
 }
 
 void tearDown(void)
 {
-	if (bus)
-		bus_destroy(bus);
-	bus = NULL;
-	unlink(file);
+	one_bus_end();
 	fake_gpio_end();
 }
 
@@ -96,18 +77,6 @@ static int read_temperature(const char *path)
 	return host.answer[0].err;
 }
 
-static uint64_t count(const char *name)
-{
-	size_t n;
-	const struct bus_counter *counters = bus_counters(bus, &n);
-
-	for (size_t i = 0; i < n; i++)
-		if (strcmp(counters[i].name, name) == 0)
-			return bus_counted(&counters[i]);
-	TEST_FAIL_MESSAGE(name);
-	return 0;
-}
-
 static void read_both(void)
 {
 	TEST_ASSERT_EQUAL_INT(0, read_temperature("/28.A0B1C2000028/temperature"));
@@ -125,8 +94,8 @@ static void test_a_chip_that_nothing_else_helps_has_its_supply_cycled(void)
 	TEST_ASSERT_EQUAL_UINT(1, cycles);
 	TEST_ASSERT_TRUE(fake_gpio.line[POWER].high);
 	TEST_ASSERT_EQUAL_INT64(500 * HOST_MS, dark_ns);
-	TEST_ASSERT_EQUAL_UINT64(1, count("recover_power_cycle"));
-	TEST_ASSERT_EQUAL_UINT64(0, count("recover_reopen"));
+	TEST_ASSERT_EQUAL_UINT64(1, counted("recover_power_cycle"));
+	TEST_ASSERT_EQUAL_UINT64(0, counted("recover_reopen"));
 	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_DOWN));
 	read_both();
 }
