@@ -5,16 +5,8 @@
 
 #include "hal/native/native.h"
 #include "hal/path.h"
-#include "tests/unit/wire_link.h"
+#include "tests/unit/one_slave.h"
 #include "unity.h"
-
-static struct host host;
-static struct bus *bus;
-static struct bus_req req;
-static uint8_t data[2048];
-static char path[128];
-static struct sim_slave *slave;
-static uint32_t next_id;
 
 /* An HD44780: what its pins tell it at each strobe. */
 static struct display {
@@ -101,14 +93,12 @@ static void sent_m(const uint8_t *bytes, size_t n)
 
 void setUp(void)
 {
-	host_init_virtual(&host);
+	one_slave_begin();
 }
 
 void tearDown(void)
 {
-	bus_destroy(bus);
-	bus = NULL;
-	wire_clear();
+	one_slave_end();
 }
 
 static void start(void (*strobe)(const uint8_t *, size_t))
@@ -120,40 +110,6 @@ static void start(void (*strobe)(const uint8_t *, size_t))
 	wire_net.sent = strobe;
 	bus = wire_open();
 	TEST_ASSERT_TRUE(host_run_events(&host, bus, 1, host.now + HOST_S));
-}
-
-static const struct bus_answer *go(enum bus_op op, const char *property, const char *text)
-{
-	char name[ROM_TEXT_MAX];
-	uint32_t id = next_id++;
-
-	rom_print(slave->rom, ROM_F_I, name);
-	snprintf(path, sizeof(path), "/%s/%s", name, property);
-	req = (struct bus_req){.id = id, .op = (uint8_t)op, .prio = BUS_OUTPUT, .fresh = true,
-	                       .path = path, .data = data, .len = sizeof(data) - 1,
-	                       .deadline_ns = host.now + 20 * HOST_S};
-	if (text) {
-		req.len = (uint32_t)strlen(text);
-		memcpy(data, text, req.len);
-	}
-	host.answers = 0;
-	TEST_ASSERT_EQUAL_INT(0, bus_submit(bus, &req));
-	TEST_ASSERT_TRUE(host_run_answers(&host, bus, 1, host.now + 21 * HOST_S));
-	TEST_ASSERT_EQUAL_UINT(1, host.answers);
-	return &host.answer[0];
-}
-
-static void writes(const char *property, const char *text)
-{
-	const struct bus_answer *answer = go(BUS_WRITE, property, text);
-
-	TEST_ASSERT_EQUAL_INT_MESSAGE(0, answer->err, property);
-	TEST_ASSERT_EQUAL_UINT_MESSAGE(strlen(text), answer->len, property);
-}
-
-static void refuses(int err, enum bus_op op, const char *property, const char *text)
-{
-	TEST_ASSERT_EQUAL_INT_MESSAGE(err, go(op, property, text)->err, property);
 }
 
 static void shows(unsigned at, const char *text)
@@ -171,7 +127,7 @@ static void test_four_bits_carry_a_message(void)
 	TEST_ASSERT_EQUAL_UINT8(2, display.entry);
 	shows(0, "Hello, house    ");
 	TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "strobe", NULL)->err);
-	TEST_ASSERT_EQUAL_CHAR('1', data[0]);
+	TEST_ASSERT_EQUAL_CHAR('1', slave_data[0]);
 	writes("LCD_H/screen", "!");
 	shows(0, "Hello, house!   ");
 	writes("LCD_H/home", "1");

@@ -5,27 +5,17 @@
 
 #include "hal/native/native.h"
 #include "hal/path.h"
-#include "tests/unit/wire_link.h"
+#include "tests/unit/one_slave.h"
 #include "unity.h"
-
-static struct host host;
-static struct bus *bus;
-static struct bus_req req;
-static uint8_t data[2048];
-static char path[128];
-static struct sim_slave *slave;
-static uint32_t next_id;
 
 void setUp(void)
 {
-	host_init_virtual(&host);
+	one_slave_begin();
 }
 
 void tearDown(void)
 {
-	bus_destroy(bus);
-	bus = NULL;
-	wire_clear();
+	one_slave_end();
 }
 
 static void start(const char *chip)
@@ -35,49 +25,6 @@ static void start(const char *chip)
 	wire_add(0, "DS18B20", 2);
 	bus = wire_open();
 	TEST_ASSERT_TRUE(host_run_events(&host, bus, 1, host.now + HOST_S));
-}
-
-static const struct bus_answer *go(enum bus_op op, const char *property, const char *text)
-{
-	char name[ROM_TEXT_MAX];
-	uint32_t id = next_id++;
-
-	rom_print(slave->rom, ROM_F_I, name);
-	snprintf(path, sizeof(path), "/%s/%s", name, property);
-	req = (struct bus_req){.id = id, .op = (uint8_t)op, .prio = BUS_OUTPUT, .fresh = true,
-	                       .path = path, .data = data, .len = sizeof(data) - 1,
-	                       .deadline_ns = host.now + 20 * HOST_S};
-	if (text) {
-		req.len = (uint32_t)strlen(text);
-		memcpy(data, text, req.len);
-	}
-	host.answers = 0;
-	TEST_ASSERT_EQUAL_INT(0, bus_submit(bus, &req));
-	TEST_ASSERT_TRUE(host_run_answers(&host, bus, 1, host.now + 21 * HOST_S));
-	TEST_ASSERT_EQUAL_UINT(1, host.answers);
-	return &host.answer[0];
-}
-
-static void reads(const char *property, const char *text)
-{
-	const struct bus_answer *answer = go(BUS_READ, property, NULL);
-
-	TEST_ASSERT_EQUAL_INT_MESSAGE(0, answer->err, property);
-	data[answer->len] = '\0';
-	TEST_ASSERT_EQUAL_STRING_MESSAGE(text, (char *)data, property);
-}
-
-static void writes(const char *property, const char *text)
-{
-	const struct bus_answer *answer = go(BUS_WRITE, property, text);
-
-	TEST_ASSERT_EQUAL_INT_MESSAGE(0, answer->err, property);
-	TEST_ASSERT_EQUAL_UINT_MESSAGE(strlen(text), answer->len, property);
-}
-
-static void refuses(int err, enum bus_op op, const char *property, const char *text)
-{
-	TEST_ASSERT_EQUAL_INT_MESSAGE(err, go(op, property, text)->err, property);
 }
 
 static void test_a_ds2408_switches_and_keeps_its_neighbours(void)
@@ -194,7 +141,7 @@ static void test_a_ds2438_measures_and_keeps_time(void)
 	reads("VAD", "           0");
 	reads("temperature", "          20");
 	TEST_ASSERT_EQUAL_UINT(8, go(BUS_READ, "pages/page.0", NULL)->len);
-	TEST_ASSERT_EQUAL_HEX8_MESSAGE(0x0f, data[0], "the stored configuration is as it was");
+	TEST_ASSERT_EQUAL_HEX8_MESSAGE(0x0f, slave_data[0], "the stored configuration is as it was");
 	reads("MultiSensor/type", "MS-T");
 	reads("B1-R1-A/gain", "     21.7391");
 	reads("S3-R1-A/gain", "     105.263");
@@ -309,17 +256,17 @@ static void memory_of(const char *chip, unsigned size, unsigned page)
 	TEST_ASSERT_EQUAL_UINT(size, host.answer[0].len);
 	TEST_ASSERT_EQUAL_UINT(size, go(BUS_READ, "memory", NULL)->len);
 	TEST_ASSERT_EQUAL_INT(0, host.answer[0].err);
-	TEST_ASSERT_EQUAL_MEMORY(text, data, size);
+	TEST_ASSERT_EQUAL_MEMORY(text, slave_data, size);
 	writes("memory", "hello");
 	TEST_ASSERT_EQUAL_UINT(size, go(BUS_READ, "memory", NULL)->len);
-	TEST_ASSERT_EQUAL_MEMORY("hello", data, 5);
-	TEST_ASSERT_EQUAL_MEMORY(text + 5, data + 5, size - 5);
+	TEST_ASSERT_EQUAL_MEMORY("hello", slave_data, 5);
+	TEST_ASSERT_EQUAL_MEMORY(text + 5, slave_data + 5, size - 5);
 	if (!page)
 		return;
 	writes("pages/page.1", "0123456789");
 	TEST_ASSERT_EQUAL_UINT(page, go(BUS_READ, "pages/page.1", NULL)->len);
-	TEST_ASSERT_EQUAL_MEMORY("0123456789", data, 10);
-	TEST_ASSERT_EQUAL_MEMORY(text + page + 10, data + 10, page - 10);
+	TEST_ASSERT_EQUAL_MEMORY("0123456789", slave_data, 10);
+	TEST_ASSERT_EQUAL_MEMORY(text + page + 10, slave_data + 10, page - 10);
 }
 
 static void test_memories_are_written_and_read(void)
@@ -381,15 +328,9 @@ static bool listed_in_alarm(void)
 	char name[ROM_TEXT_MAX];
 
 	rom_print(slave->rom, ROM_F_I, name);
-	req = (struct bus_req){.id = next_id++, .op = BUS_DIR, .prio = BUS_ALARM, .fresh = true,
-	                       .path = "/alarm", .data = data, .len = sizeof(data) - 1,
-	                       .deadline_ns = host.now + 20 * HOST_S};
-	host.answers = 0;
-	TEST_ASSERT_EQUAL_INT(0, bus_submit(bus, &req));
-	TEST_ASSERT_TRUE(host_run_answers(&host, bus, 1, host.now + 21 * HOST_S));
-	TEST_ASSERT_EQUAL_INT(0, host.answer[0].err);
-	data[host.answer[0].len] = '\0';
-	return strstr((char *)data, name);
+	TEST_ASSERT_EQUAL_INT(0, exchange(BUS_DIR, BUS_ALARM, "/alarm", NULL)->err);
+	slave_data[host.answer[0].len] = '\0';
+	return strstr((char *)slave_data, name);
 }
 
 static void arm_a_ds2450(void)
@@ -422,24 +363,14 @@ static void test_a_ds2450_that_restarts_is_told_once_and_alarms_again(void)
 
 static void test_a_visit_after_an_alarm_looks_for_a_restart_of_a_ds2450(void)
 {
-	char name[ROM_TEXT_MAX];
-
 	start("DS2450");
 	wire_set(slave, "volt.A", 3);
 	arm_a_ds2450();
 	sim_slave_brownout(slave, wire_time());
 	TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "latestvolt.A", NULL)->err);
 	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_POR));
-	rom_print(slave->rom, ROM_F_I, name);
-	snprintf(path, sizeof(path), "/%s/latestvolt.A", name);
-	req.id = next_id++;
-	req.prio = BUS_ALARM;
-	req.len = sizeof(data) - 1;
-	req.deadline_ns = host.now + 20 * HOST_S;
-	host.answers = 0;
-	TEST_ASSERT_EQUAL_INT(0, bus_submit(bus, &req));
-	TEST_ASSERT_TRUE(host_run_answers(&host, bus, 1, host.now + 21 * HOST_S));
-	TEST_ASSERT_EQUAL_INT(0, host.answer[0].err);
+	TEST_ASSERT_EQUAL_INT(0, exchange(BUS_READ, BUS_ALARM, slave_path("latestvolt.A"),
+	                                  NULL)->err);
 	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_POR));
 }
 
