@@ -2,6 +2,7 @@
 #include "src/config/edit.h"
 #include "src/config/replace.h"
 
+#include "tests/unit/said.h"
 #include "unity.h"
 
 #include <dirent.h>
@@ -14,23 +15,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static struct config_report report;
 static struct rio *rio;
-static char said[4096], directory[64], file[96];
-
-static void note(void *ctx, bool is_error, const char *message)
-{
-	size_t used = strlen(said);
-
-	(void)ctx;
-	(void)is_error;
-	snprintf(said + used, sizeof(said) - used, "%s\n", message);
-}
+static char directory[64], file[96];
 
 void setUp(void)
 {
-	report = (struct config_report){.line = note};
-	said[0] = '\0';
+	said_begin();
 	rio = NULL;
 	strcpy(directory, "/tmp/test_config_edit.XXXXXX");
 	TEST_ASSERT_NOT_NULL(mkdtemp(directory));

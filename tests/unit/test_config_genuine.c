@@ -3,6 +3,7 @@
 #include "src/config/config.h"
 #include "src/signal/value.h"
 
+#include "tests/unit/said.h"
 #include "unity.h"
 
 #include <stdlib.h>
@@ -12,17 +13,9 @@
 
 static struct config *config;
 
-static void no_line(void *ctx, bool is_error, const char *message)
-{
-	(void)ctx;
-	(void)is_error;
-	TEST_FAIL_MESSAGE(message);
-}
-
 static void load(const char *file)
 {
-	struct config_report report = {.line = no_line};
-
+	said_must_not_begin();
 	TEST_ASSERT_EQUAL_INT(0, config_load(file, &report, &config));
 	TEST_ASSERT_EQUAL_UINT(0, report.errors + report.warnings);
 	TEST_ASSERT_EQUAL_STRING(file, config->file);

@@ -2,18 +2,12 @@
 /* What owsd --check prints is a configuration of the same meaning. */
 #include "src/config/config.h"
 
+#include "tests/unit/said.h"
 #include "unity.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static void no_line(void *ctx, bool is_error, const char *message)
-{
-	(void)ctx;
-	(void)is_error;
-	TEST_FAIL_MESSAGE(message);
-}
 
 void setUp(void)
 {
@@ -25,9 +19,9 @@ void tearDown(void)
 
 static struct config *parse(const char *text, size_t len)
 {
-	struct config_report report = {.line = no_line};
 	struct config *config;
 
+	said_must_not_begin();
 	TEST_ASSERT_EQUAL_INT(0, config_parse("f", text, len, &report, &config));
 	return config;
 }

@@ -2,6 +2,7 @@
 /* The table of keys, and the manual page that has to say the same. */
 #include "src/config/options.h"
 
+#include "tests/unit/said.h"
 #include "unity.h"
 
 #include <stdio.h>
@@ -13,18 +14,11 @@
 static char *manual;
 static struct config *config;
 
-static void no_line(void *ctx, bool is_error, const char *message)
-{
-	(void)ctx;
-	(void)is_error;
-	TEST_FAIL_MESSAGE(message);
-}
-
 void setUp(void)
 {
-	struct config_report report = {.line = no_line};
 	size_t len;
 
+	said_must_not_begin();
 	config = NULL;
 	TEST_ASSERT_EQUAL_INT(0, rio_read(MANUAL, &report, &manual, &len));
 }
@@ -115,7 +109,6 @@ static void test_the_manual_has_every_key_with_default_and_limits(void)
 
 static void test_the_example_of_the_manual_is_a_configuration(void)
 {
-	struct config_report report = {.line = no_line};
 	const char *begin = strstr(manual, "\nOwsDrv {\n"), *end = strstr(manual, "\n.Ed");
 
 	TEST_ASSERT_TRUE(begin && end && begin < end);

@@ -2,6 +2,7 @@
 #include "src/config/rio.h"
 #include "src/config/rio_write.h"
 
+#include "tests/unit/said.h"
 #include "unity.h"
 
 #include <errno.h>
@@ -13,23 +14,11 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-static struct config_report report;
-static char said[8192];
 static struct rio *rio;
-
-static void note(void *ctx, bool is_error, const char *message)
-{
-	size_t used = strlen(said);
-
-	(void)ctx;
-	(void)is_error;
-	snprintf(said + used, sizeof(said) - used, "%s\n", message);
-}
 
 void setUp(void)
 {
-	report = (struct config_report){.line = note};
-	said[0] = '\0';
+	said_begin();
 	rio = NULL;
 }
 
