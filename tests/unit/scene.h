@@ -159,6 +159,8 @@ void scene_ring(struct scene *scene, unsigned record);
 struct ows_client *scene_client(struct scene *scene, unsigned client);
 
 struct ows_sample scene_sample(struct scene *scene, unsigned record);
+/* It has that quality, and comes from that target. */
+void scene_expect(struct scene *scene, unsigned record, uint8_t quality, unsigned target);
 struct ows_attrs scene_attrs(struct scene *scene, unsigned record);
 const char *scene_text(struct scene *scene, unsigned record);
 double scene_number(struct scene *scene, unsigned record);

@@ -62,6 +62,14 @@ struct ows_sample scene_sample(struct scene *s, unsigned record)
 	return r->slot[(r->seq >> 1) & 1].sample;
 }
 
+void scene_expect(struct scene *s, unsigned record, uint8_t quality, unsigned target)
+{
+	struct ows_sample sample = scene_sample(s, record);
+
+	TEST_ASSERT_EQUAL_HEX8(quality, sample.quality);
+	TEST_ASSERT_EQUAL_UINT(target, sample.target);
+}
+
 struct ows_attrs scene_attrs(struct scene *s, unsigned record)
 {
 	const struct ows_record *r = &s->image.records[record];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A bar: ways to one wire, of which exactly one is open. The scene fails when two are. */
-#include "scene.h"
+#include "alarm_scene.h"
 #include "unity.h"
 
 #include <errno.h>
@@ -36,20 +36,12 @@ static void reach(bool first, bool second, bool third)
 	scene_reach(&s, 2, third);
 }
 
-static void expect(unsigned record, uint8_t quality, unsigned target)
-{
-	struct ows_sample sample = scene_sample(&s, record);
-
-	TEST_ASSERT_EQUAL_HEX8(quality, sample.quality);
-	TEST_ASSERT_EQUAL_UINT(target, sample.target);
-}
-
 static void test_the_first_way_is_open_and_the_others_are_not_touched(void)
 {
 	reach(true, true, true);
 	scene_start(&s);
 	scene_run(&s, 100 * SCENE_S);
-	expect(1, OWS_Q_GOOD, 0);
+	scene_expect(&s, 1, OWS_Q_GOOD, 0);
 	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].opened);
 	TEST_ASSERT_EQUAL_UINT(0, s.bus[1].opened + s.bus[2].opened);
 	TEST_ASSERT_EQUAL_UINT32(1, scene_target_state(&s, 0));
@@ -62,7 +54,7 @@ static void test_ways_that_are_down_at_the_start_are_passed_over(void)
 	reach(false, false, true);
 	scene_start(&s);
 	scene_run(&s, 200 * SCENE_MS);
-	expect(1, OWS_Q_GOOD, 2);
+	scene_expect(&s, 1, OWS_Q_GOOD, 2);
 	TEST_ASSERT_EQUAL_UINT32(2, scene_target_state(&s, 0));
 	TEST_ASSERT_EQUAL_UINT32(1, scene_target_state(&s, 2));
 }
@@ -74,7 +66,7 @@ static void test_a_missing_device_moves_nothing(void)
 	scene_run(&s, SCENE_S);
 	scene_plug(&s, D1, SCENE_NOWHERE);
 	scene_run(&s, 100 * SCENE_S);
-	expect(1, OWS_Q_NO_DEVICE, 0);
+	scene_expect(&s, 1, OWS_Q_NO_DEVICE, 0);
 	TEST_ASSERT_EQUAL_UINT(0, s.bus[1].opened + s.bus[2].opened);
 }
 
@@ -84,18 +76,18 @@ static void test_the_next_way_takes_over_and_no_old_value_is_good(void)
 	s.bus[0].turn_ns = 700 * SCENE_MS; /* it is slow to let go */
 	scene_start(&s);
 	scene_run(&s, 2 * SCENE_S);
-	expect(1, OWS_Q_GOOD, 0);
+	scene_expect(&s, 1, OWS_Q_GOOD, 0);
 	s.bus[1].latency_ns = 50 * SCENE_MS;
 	scene_reach(&s, 0, false);
-	expect(1, OWS_Q_LAST_USABLE, 1);
+	scene_expect(&s, 1, OWS_Q_LAST_USABLE, 1);
 	TEST_ASSERT_EQUAL_DOUBLE(21.5, scene_number(&s, 1));
 	scene_run(&s, 690 * SCENE_MS);
 	TEST_ASSERT_EQUAL_UINT(0, s.bus[1].opened);
 	scene_run(&s, 20 * SCENE_MS);
-	expect(1, OWS_Q_LAST_USABLE, 1);
+	scene_expect(&s, 1, OWS_Q_LAST_USABLE, 1);
 	scene_put(&s, T1, "22", 0);
 	scene_run(&s, 50 * SCENE_MS);
-	expect(1, OWS_Q_GOOD, 1);
+	scene_expect(&s, 1, OWS_Q_GOOD, 1);
 	TEST_ASSERT_EQUAL_DOUBLE(22, scene_number(&s, 1));
 	TEST_ASSERT_EQUAL_UINT64(1, scene_counter_of(&s, 0, "moves_out"));
 	TEST_ASSERT_EQUAL_UINT64(1, scene_counter_of(&s, 1, "moves_in"));
@@ -108,13 +100,13 @@ static void test_it_returns_when_the_earlier_way_is_back_and_the_hold_is_over(vo
 	scene_run(&s, SCENE_S);
 	scene_reach(&s, 0, false);
 	scene_run(&s, 20 * SCENE_S);
-	expect(1, OWS_Q_GOOD, 1);
+	scene_expect(&s, 1, OWS_Q_GOOD, 1);
 	scene_reach(&s, 0, true);
 	scene_run(&s, 9900 * SCENE_MS);
-	expect(1, OWS_Q_GOOD, 1);
+	scene_expect(&s, 1, OWS_Q_GOOD, 1);
 	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].opened);
 	scene_run(&s, 200 * SCENE_MS);
-	expect(1, OWS_Q_GOOD, 0);
+	scene_expect(&s, 1, OWS_Q_GOOD, 0);
 	TEST_ASSERT_EQUAL_UINT(2, s.bus[0].opened);
 	TEST_ASSERT_EQUAL_UINT32(2, scene_target_state(&s, 1));
 }
@@ -133,12 +125,12 @@ static void test_an_answer_of_the_way_that_lets_go_is_not_believed(void)
 	/* it returns, and a read is with the other way still */
 	TEST_ASSERT_EQUAL_UINT(1, s.bus[1].pending_count);
 	for (unsigned i = 0; i < 18; i++) {
-		expect(1, OWS_Q_LAST_USABLE, 0);
+		scene_expect(&s, 1, OWS_Q_LAST_USABLE, 0);
 		scene_run(&s, 50 * SCENE_MS);
 	}
 	TEST_ASSERT_EQUAL_UINT(0, s.bus[1].pending_count);
 	scene_run(&s, 200 * SCENE_MS);
-	expect(1, OWS_Q_GOOD, 0);
+	scene_expect(&s, 1, OWS_Q_GOOD, 0);
 }
 
 static void test_a_return_that_fails_goes_to_the_way_that_worked_and_is_tried_less_often(void)
@@ -149,7 +141,7 @@ static void test_a_return_that_fails_goes_to_the_way_that_worked_and_is_tried_le
 	reach(false, false, true);
 	scene_start(&s);
 	scene_run(&s, SCENE_S);
-	expect(1, OWS_Q_GOOD, 2);
+	scene_expect(&s, 1, OWS_Q_GOOD, 2);
 	/* it is seen to be there each time, and fails when it is opened */
 	for (int64_t t = 0; returns < 4 && t < 400000; t += 100) {
 		unsigned opened = s.bus[0].opened;
@@ -166,7 +158,7 @@ static void test_a_return_that_fails_goes_to_the_way_that_worked_and_is_tried_le
 			gap[returns++] = s.now_ns - before;
 			before = s.now_ns;
 			scene_run(&s, SCENE_S);
-			expect(1, OWS_Q_GOOD, 2);
+			scene_expect(&s, 1, OWS_Q_GOOD, 2);
 		}
 	}
 	TEST_ASSERT_EQUAL_UINT(4, returns);
@@ -187,7 +179,7 @@ static void test_a_way_that_comes_and_goes_does_not_make_the_table_flap(void)
 	TEST_ASSERT_LESS_THAN_UINT(12, s.bus[0].opened);
 	scene_reach(&s, 0, true);
 	scene_run(&s, 700 * SCENE_S);
-	expect(1, OWS_Q_GOOD, 0);
+	scene_expect(&s, 1, OWS_Q_GOOD, 0);
 }
 
 static void test_when_all_are_down_they_are_tried_in_turn_less_and_less_often(void)
@@ -203,7 +195,7 @@ static void test_when_all_are_down_they_are_tried_in_turn_less_and_less_often(vo
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_INITIAL & 0, scene_sample(&s, 1).quality & 0xc0);
 	scene_reach(&s, 2, true);
 	scene_run(&s, 61 * SCENE_S);
-	expect(1, OWS_Q_GOOD, 2);
+	scene_expect(&s, 1, OWS_Q_GOOD, 2);
 }
 
 static void test_ways_that_fail_for_hours_are_told_now_and_then(void)
@@ -240,23 +232,23 @@ static void test_a_way_that_is_stuck_is_left_for_the_next(void)
 	scene_run(&s, SCENE_S);
 	s.bus[0].mute = true;
 	scene_run(&s, 20 * SCENE_S);
-	expect(1, OWS_Q_GOOD, 0); /* within Timeout */
+	scene_expect(&s, 1, OWS_Q_GOOD, 0); /* within Timeout */
 	scene_run(&s, SCENE_S);
-	expect(1, OWS_Q_LAST_USABLE, 1);
+	scene_expect(&s, 1, OWS_Q_LAST_USABLE, 1);
 	TEST_ASSERT_EQUAL_UINT(0, s.bus[1].opened);
 	/* it cannot let go: after 5 s it is not waited for any more */
 	scene_run(&s, 5 * SCENE_S);
-	expect(1, OWS_Q_GOOD, 1);
+	scene_expect(&s, 1, OWS_Q_GOOD, 1);
 	TEST_ASSERT_EQUAL_UINT64(1, scene_counter_of(&s, 0, "not_released"));
 	/* it comes back to life, lets go, and is there again */
 	s.bus[0].mute = false;
 	scene_answer_on(&s, 0, s.bus[0].swallowed[0]->id, 0, "85.5", s.bus[0].swallowed[0]);
 	s.bus[0].swallowed_count = 0;
 	scene_run(&s, 5 * SCENE_S);
-	expect(1, OWS_Q_GOOD, 1);
+	scene_expect(&s, 1, OWS_Q_GOOD, 1);
 	TEST_ASSERT_EQUAL_DOUBLE(21.5, scene_number(&s, 1));
 	scene_run(&s, 7 * SCENE_S);
-	expect(1, OWS_Q_GOOD, 0);
+	scene_expect(&s, 1, OWS_Q_GOOD, 0);
 }
 
 static void test_a_way_that_says_nothing_when_it_is_opened_is_passed_over(void)
@@ -268,7 +260,7 @@ static void test_a_way_that_says_nothing_when_it_is_opened_is_passed_over(void)
 	TEST_ASSERT_EQUAL_UINT(0, s.bus[1].opened);
 	s.bus[0].released = false; /* it hangs with the hardware in its hand */
 	scene_run(&s, 7 * SCENE_S);
-	expect(1, OWS_Q_GOOD, 1);
+	scene_expect(&s, 1, OWS_Q_GOOD, 1);
 }
 
 static void test_a_write_in_doubt_on_a_stuck_way_waits_for_its_end(void)
@@ -284,7 +276,7 @@ static void test_a_write_in_doubt_on_a_stuck_way_waits_for_its_end(void)
 	scene_run(&s, 300 * SCENE_MS);
 	s.bus[0].mute = true;
 	scene_run(&s, 30 * SCENE_S);
-	expect(1, OWS_Q_GOOD, 1);
+	scene_expect(&s, 1, OWS_Q_GOOD, 1);
 	scene_set(&s, 2, 2);
 	scene_run(&s, 10 * SCENE_S);
 	TEST_ASSERT_EQUAL_UINT(0, s.bus[1].writes);
@@ -294,7 +286,7 @@ static void test_a_write_in_doubt_on_a_stuck_way_waits_for_its_end(void)
 	scene_run(&s, 3 * SCENE_S);
 	TEST_ASSERT_GREATER_OR_EQUAL_UINT(1, s.bus[1].writes);
 	TEST_ASSERT_EQUAL_STRING("2", scene_at(&s, PIO));
-	expect(2, OWS_Q_GOOD, 1);
+	scene_expect(&s, 2, OWS_Q_GOOD, 1);
 }
 
 static void test_outputs_are_written_again_by_the_way_that_is_open_now(void)
@@ -311,18 +303,12 @@ static void test_outputs_are_written_again_by_the_way_that_is_open_now(void)
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_STRING("7", scene_at(&s, PIO));
 	TEST_ASSERT_EQUAL_UINT(1, s.bus[1].writes);
-	expect(2, OWS_Q_GOOD, 1);
+	scene_expect(&s, 2, OWS_Q_GOOD, 1);
 }
 
 static void test_an_alarm_item_moves_with_the_way(void)
 {
-	struct config_item *item = scene_input(&s, "door", SENSED, OWS_BYTE);
-
-	item->alarm = true;
-	item->fresh = true;
-	item->latch_alarm = "latch.BYTE";
-	item->por_alarm = "por";
-	item->reset_latch = "latch.BYTE=0";
+	alarm_item(&s, "door", SENSED, "latch.BYTE", "por", NULL, "latch.BYTE=0")->fresh = true;
 	scene_put(&s, SENSED, "0", 0);
 	scene_put(&s, D3 "/latch.BYTE", "0", 0);
 	scene_put(&s, D3 "/por", "0", 0);
@@ -353,15 +339,15 @@ static void test_a_bar_and_another_wire_make_one_table(void)
 	scene_reach(&s, 3, true);
 	scene_start(&s);
 	scene_run(&s, 2 * SCENE_S);
-	expect(1, OWS_Q_GOOD, 0);
-	expect(2, OWS_Q_GOOD, 3);
+	scene_expect(&s, 1, OWS_Q_GOOD, 0);
+	scene_expect(&s, 2, OWS_Q_GOOD, 3);
 	other->reads = 0;
 	/* while the bar changes, its devices are not looked for elsewhere */
 	s.bus[0].turn_ns = 3 * SCENE_S;
 	scene_reach(&s, 0, false);
 	scene_run(&s, 4 * SCENE_S);
-	expect(1, OWS_Q_GOOD, 1);
-	expect(2, OWS_Q_GOOD, 3);
+	scene_expect(&s, 1, OWS_Q_GOOD, 1);
+	scene_expect(&s, 2, OWS_Q_GOOD, 3);
 	TEST_ASSERT_EQUAL_UINT(0, other->probes);
 	TEST_ASSERT_UINT_WITHIN(2, 40, other->reads);
 	TEST_ASSERT_EQUAL_UINT64(1, scene_counter_of(&s, 3, "moves_in"));
@@ -375,15 +361,15 @@ static void test_a_bus_with_nothing_to_let_go_of_is_a_way_too(void)
 	scene_up_on(&s, 1); /* it does not know that it is not wanted */
 	scene_up_on(&s, 0);
 	scene_run(&s, SCENE_S);
-	expect(1, OWS_Q_GOOD, 0);
+	scene_expect(&s, 1, OWS_Q_GOOD, 0);
 	scene_down_on(&s, 0, -ENOTCONN);
 	scene_run(&s, SCENE_S);
-	expect(1, OWS_Q_GOOD, 1);
+	scene_expect(&s, 1, OWS_Q_GOOD, 1);
 	scene_up_on(&s, 0);
 	scene_run(&s, 9 * SCENE_S);
-	expect(1, OWS_Q_GOOD, 1);
+	scene_expect(&s, 1, OWS_Q_GOOD, 1);
 	scene_run(&s, 2 * SCENE_S);
-	expect(1, OWS_Q_GOOD, 0);
+	scene_expect(&s, 1, OWS_Q_GOOD, 0);
 }
 
 int main(void)
