@@ -199,7 +199,8 @@ void scene_reload(struct scene *s, void (*change)(struct config *))
 	part->config.targets = part->targets;
 	memcpy(part->items, config->items, sizeof(part->items));
 	memcpy(part->targets, config->targets, sizeof(part->targets));
-	change(&part->config);
+	if (change)
+		change(&part->config);
 	s->engine = make_engine(s, &part->config, part->ports, &part->image, &part->commands);
 	TEST_ASSERT_EQUAL_INT(0, adoption_plan(&plan, &part->config, config));
 	engine_adopt(s->engine, engine, &plan, s->now_ns);

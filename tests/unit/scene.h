@@ -135,7 +135,8 @@ void scene_tell(struct scene *scene, unsigned bus, enum bus_news news, const cha
 void scene_start(struct scene *scene);
 /*
  * A reload: change() edits items, targets (by the names of buses, their count and order as it likes)
- * and the rest of the configuration. What the buses have is left as it is, and the trace goes on.
+ * and the rest of the configuration; NULL: it is as it was. What the buses have is left as it is,
+ * and the trace goes on.
  */
 void scene_reload(struct scene *scene, void (*change)(struct config *));
 /* The types are checked at once, in no time; the requests after that take theirs. */

@@ -2,7 +2,6 @@
 /* A reload in the engine: what stays goes on as if nothing had been. */
 #include "scene.h"
 
-#include "src/engine/adopt.h"
 #include "src/libows/ows.h"
 #include "src/signal/value.h"
 #include "unity.h"
@@ -20,11 +19,6 @@ void setUp(void)
 void tearDown(void)
 {
 	scene_end(&s);
-}
-
-static void nothing(struct config *config)
-{
-	(void)config;
 }
 
 /* Items of the file by name; a new one at its end, or in the place of another. */
@@ -70,7 +64,7 @@ static void test_nothing_changes_when_nothing_was_changed(void)
 	attrs = scene_attrs(&s, 1);
 	periods = scene_counter(&s, "periods");
 	scene_clear_trace(&s);
-	scene_reload(&s, nothing);
+	scene_reload(&s, NULL);
 	now = scene_sample(&s, 1);
 	TEST_ASSERT_EQUAL_MEMORY(&room, &now, sizeof(now));
 	now = scene_sample(&s, 2);
@@ -158,7 +152,7 @@ static void test_readings_arrive_though_reloads_come_faster_than_answers(void)
 	s.bus[0].latency_ns = SCENE_S;
 	count = scene_sample(&s, 1).count;
 	for (int i = 0; i < 100; i++) {
-		scene_reload(&s, nothing);
+		scene_reload(&s, NULL);
 		scene_run(&s, 100 * SCENE_MS);
 	}
 	TEST_ASSERT_GREATER_THAN_UINT32(count + 7, scene_sample(&s, 1).count);
@@ -232,7 +226,7 @@ static void test_a_write_in_flight_ends_with_the_present_value(void)
 	TEST_ASSERT_NOT_NULL(strstr(s.trace, "W /29.066418000000/PIO.0=1"));
 	scene_clear_trace(&s);
 	scene_set(&s, 2, 0);
-	scene_reload(&s, nothing);
+	scene_reload(&s, NULL);
 	scene_run(&s, 5 * SCENE_S);
 	TEST_ASSERT_EQUAL_STRING("0", scene_at(&s, "/29.066418000000/PIO.0"));
 	TEST_ASSERT_EQUAL_UINT32(scene_slot(&s, 2)->stamp, scene_sample(&s, 2).applied);
@@ -285,7 +279,7 @@ static void test_a_bad_signal_keeps_its_back_off(void)
 	scene_run(&s, 200 * SCENE_S);
 	TEST_ASSERT_EQUAL_HEX8(0, scene_sample(&s, 1).quality & 0xc0);
 	scene_clear_trace(&s);
-	scene_reload(&s, nothing);
+	scene_reload(&s, NULL);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_LESS_OR_EQUAL_UINT(1, s.reads);
 	TEST_ASSERT_EQUAL_HEX8(0, scene_sample(&s, 1).quality & 0xc0);
@@ -450,90 +444,6 @@ static void test_a_value_of_a_target_that_is_gone_is_not_good(void)
 	TEST_ASSERT_NOT_NULL(strstr(s.trace, "1: W /29.066418000000/PIO.0=1"));
 }
 
-#define DOOR "/29.066418000000"
-
-static void judge_alarm(struct scene *scene, const char *path)
-{
-	if (strcmp(path, "/alarm") == 0)
-		scene_put(scene, path, strcmp(scene_at(scene, DOOR "/latch.BYTE"), "0")
-		                               ? "/alarm" DOOR "\n" : "", 0);
-}
-
-static void alarm_house(void)
-{
-	struct config_item *item;
-
-	scene_put(&s, DOOR "/sensed.BYTE", "255", 0);
-	scene_put(&s, DOOR "/latch.BYTE", "0", 0);
-	scene_put(&s, DOOR "/por", "0", 0);
-	scene_put(&s, "/alarm", "", 0);
-	item = scene_input(&s, "door", DOOR "/sensed.BYTE", OWS_BYTE);
-	item->alarm = true;
-	item->latch_alarm = "latch.BYTE";
-	item->por_alarm = "por";
-	item->reset_latch = "latch.BYTE=0";
-	s.on_read = judge_alarm;
-	scene_start(&s);
-	scene_up(&s);
-	scene_run(&s, SCENE_S);
-}
-
-static void test_alarms_go_on_and_the_journal_with_them(void)
-{
-	uint32_t head;
-
-	alarm_house();
-	scene_put(&s, DOOR "/latch.BYTE", "1", 0);
-	scene_run(&s, SCENE_S);
-	head = s.image.header->alarm_head;
-	TEST_ASSERT_EQUAL_UINT32(1, scene_attrs(&s, 1).alarms);
-	TEST_ASSERT_EQUAL_UINT32(2, head);
-	scene_reload(&s, nothing);
-	TEST_ASSERT_EQUAL_UINT32(1, scene_attrs(&s, 1).alarms);
-	TEST_ASSERT_EQUAL_UINT32(head, s.image.header->alarm_head);
-	TEST_ASSERT_EQUAL_UINT32(1, s.image.alarms[0].record);
-	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_RAISED, s.image.alarms[0].event);
-	scene_put(&s, DOOR "/latch.BYTE", "1", 0);
-	scene_run(&s, SCENE_S);
-	TEST_ASSERT_EQUAL_UINT32(2, scene_attrs(&s, 1).alarms);
-	TEST_ASSERT_EQUAL_UINT32(head + 2, s.image.header->alarm_head);
-}
-
-static void test_a_list_of_alarms_on_its_way_comes_over(void)
-{
-	alarm_house();
-	s.bus[0].slow = "/alarm";
-	s.bus[0].slow_ns = 2 * SCENE_S;
-	scene_put(&s, DOOR "/latch.BYTE", "1", 0);
-	scene_run(&s, SCENE_S);
-	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].pending_count);
-	scene_reload(&s, nothing);
-	scene_run(&s, 10 * SCENE_S);
-	TEST_ASSERT_EQUAL_UINT32(1, scene_attrs(&s, 1).alarms);
-	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "unknown_answers"));
-}
-
-static void without_door(struct config *config)
-{
-	*config->items = (struct config_item){ .name = "room", .path = "/28.551DDF030000/temperature",
-		                               .type = OWS_DOUBLE, .per_factor = 1,
-		                               .readable = true, .init_text = "",
-		                               .safe_text = "" };
-}
-
-static void test_the_journal_of_a_signal_that_is_gone_goes_with_it(void)
-{
-	alarm_house();
-	scene_put(&s, DOOR "/latch.BYTE", "1", 0);
-	scene_run(&s, SCENE_S);
-	scene_put(&s, "/28.551DDF030000/temperature", "21.5", 0);
-	scene_reload(&s, without_door);
-	TEST_ASSERT_EQUAL_UINT32(2, s.image.header->alarm_head);
-	TEST_ASSERT_EQUAL_UINT32(0, s.image.alarms[0].record);
-	scene_run(&s, SCENE_S);
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
-}
-
 static void test_a_silent_bus_stays_stuck_and_gives_back_what_it_had(void)
 {
 	house();
@@ -550,44 +460,6 @@ static void test_a_silent_bus_stays_stuck_and_gives_back_what_it_had(void)
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 3).quality);
 	TEST_ASSERT_EQUAL_DOUBLE(21.5, scene_number(&s, 3));
-}
-
-static void test_ways_to_a_wire_stay_all_or_none(void)
-{
-	struct config_target before[] = { { .text = "a", .group = 0 },
-		                          { .text = "b", .group = 0, .relation = CONFIG_BAR },
-		                          { .text = "c", .group = 1, .relation = CONFIG_COMMA } };
-	struct config_target now[] = { { .text = "c", .group = 0 },
-		                       { .text = "a", .group = 1, .relation = CONFIG_COMMA } };
-	struct config old = { .targets = before, .target_count = 3 };
-	struct config config = { .targets = now, .target_count = 2 };
-	struct adoption plan;
-
-	TEST_ASSERT_EQUAL_INT(0, adoption_plan(&plan, &config, &old));
-	TEST_ASSERT_EQUAL_INT(2, plan.ports[0]);
-	TEST_ASSERT_EQUAL_INT(-1, plan.ports[1]);
-	TEST_ASSERT_EQUAL_UINT(1, plan.kept_ports);
-	adoption_free(&plan);
-}
-
-static void test_a_target_whose_options_changed_is_opened_anew(void)
-{
-	struct config_target targets[] = { { .text = "i2c:/dev/i2c-1" } };
-	struct config_option on = { .key = "ActivePullUp", .text = "on" };
-	struct config_option off = { .key = "ActivePullUp", .text = "off" };
-	struct config_bus a = { .target = "i2c:/dev/i2c-1", .options = &on, .option_count = 1 };
-	struct config_bus b = { .target = "i2c:/dev/i2c-1", .options = &off, .option_count = 1 };
-	struct config old = { .targets = targets, .target_count = 1, .buses = &a, .bus_count = 1 };
-	struct config config = old;
-	struct adoption plan;
-
-	TEST_ASSERT_EQUAL_INT(0, adoption_plan(&plan, &config, &old));
-	TEST_ASSERT_EQUAL_INT(0, plan.ports[0]);
-	adoption_free(&plan);
-	config.buses = &b;
-	TEST_ASSERT_EQUAL_INT(0, adoption_plan(&plan, &config, &old));
-	TEST_ASSERT_EQUAL_INT(-1, plan.ports[0]);
-	adoption_free(&plan);
 }
 
 int main(void)
@@ -611,11 +483,6 @@ int main(void)
 	RUN_TEST(test_a_limit_that_is_new_knows_no_value_before_its_first);
 	RUN_TEST(test_a_target_keeps_its_signals_when_it_is_named_second);
 	RUN_TEST(test_a_value_of_a_target_that_is_gone_is_not_good);
-	RUN_TEST(test_alarms_go_on_and_the_journal_with_them);
-	RUN_TEST(test_a_list_of_alarms_on_its_way_comes_over);
-	RUN_TEST(test_the_journal_of_a_signal_that_is_gone_goes_with_it);
 	RUN_TEST(test_a_silent_bus_stays_stuck_and_gives_back_what_it_had);
-	RUN_TEST(test_ways_to_a_wire_stay_all_or_none);
-	RUN_TEST(test_a_target_whose_options_changed_is_opened_anew);
 	return UNITY_END();
 }
