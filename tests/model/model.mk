@@ -27,12 +27,13 @@ hammer-arm64:
 MODEL     := $(wildcard tests/model/*.c)
 MODEL_CODE := src/shm/image.c src/shm/reader.c src/shm/commands.c src/shm/carry.c \
              src/libows/get.c src/libows/set.c src/libows/wait.c src/libows/alarm.c
-MODEL_OWN := tests/model/weak.c tests/model/explore.c tests/model/main.c
+# What runs as a thread of the model, beside that; all else here is the model itself
+MODEL_RUN := tests/model/litmus.c tests/model/orders.c tests/model/records.c
 
 $(B)/model/%.o: %.c tests/model/access.h
 	@mkdir -p $(@D)
 	$(call show,CC)
-	$(Q)$(CC) $(ALL_CFLAGS) $(if $(filter $<,$(MODEL_OWN)),,-include tests/model/access.h) -MMD -MP -c -o $@ $<
+	$(Q)$(CC) $(ALL_CFLAGS) $(if $(filter $<,$(MODEL_RUN) $(MODEL_CODE)),-include tests/model/access.h) -MMD -MP -c -o $@ $<
 
 $(B)/model/model: $(patsubst %.c,$(B)/model/%.o,$(MODEL) $(MODEL_CODE)) $(B)/core.a
 	$(call show,LD)
