@@ -1,13 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/*
- * An owserver on a unix socket that answers on the world's clock, and what can be wrong with one:
- * it is slow, silent, gone, tells errors, power-fault readings and garbage, sends half a frame, one
- * twice, one with more behind it. The protocol has no request numbers, so an answer that comes
- * behind the next question would be taken for its answer by any client; that one lie is left out.
- */
-#include "part.h"
-
-#include "hal/owserver/frame.h"
+/* The sockets of an owserver, when it answers on them, and what goes wrong with it. */
+#include "server.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -19,53 +12,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#define CLIENTS 8
-#define ROOM    8192
-#define NOBODY  (-1)
-
-enum lie {
-	HONEST, SLOW, ALIVE, VERY_LATE, SILENT, REFUSES, CLOSES, HALF, HALF_AND_SILENT, GARBAGE,
-	HUGE, NEGATIVE, VERSION, SHORTER, TWICE, MORE, BY_BYTES, ERRORS, NO_DEVICE, FAULT_85,
-	FAULT_127, NO_NUMBER, EMPTY, LIES,
-};
-static const char *const lies[LIES] = {
-	[SLOW] = "slow", [ALIVE] = "only alive", [VERY_LATE] = "very late", [SILENT] = "silent",
-	[REFUSES] = "keeps no connection", [CLOSES] = "closes", [HALF] = "half an answer",
-	[HALF_AND_SILENT] = "half an answer and silence", [GARBAGE] = "garbage", [HUGE] = "huge",
-	[NEGATIVE] = "negative length", [VERSION] = "other version",
-	[SHORTER] = "shorter than told",
-	[TWICE] = "twice", [MORE] = "more than asked", [BY_BYTES] = "byte by byte",
-	[ERRORS] = "errors", [NO_DEVICE] = "no device", [FAULT_85] = "85", [FAULT_127] = "127.938",
-	[NO_NUMBER] = "no number", [EMPTY] = "empty",
-};
-
-struct server_client {
-	int fd;
-	uint8_t in[ROOM], out[ROOM];
-	unsigned got, len, sent;
-	int64_t due_ns, alive_ns; /* INT64_MAX: nothing is to be sent */
-	bool close, hangs;
-};
-
-struct server {
-	char path[60];
-	int listen_fd;
-	bool dead;  /* no socket */
-	bool hangs; /* one, and nobody behind it */
-	enum lie lie;
-	unsigned chance; /* of a lie, percent */
-	struct server_client client[CLIENTS];
-	/* the switch */
-	unsigned relays, latch, set_alarm;
-	bool por;
-};
-
-static struct server *of(struct part *part)
-{
-	return part->own;
-}
-
-/* --- Sockets --------------------------------------------------------------------------------- */
+#define NOBODY (-1)
 
 static void drop(struct server_client *c)
 {
@@ -76,7 +23,7 @@ static void drop(struct server_client *c)
 
 static void stop(struct server *s)
 {
-	for (unsigned i = 0; i < CLIENTS; i++)
+	for (unsigned i = 0; i < SERVER_CLIENTS; i++)
 		drop(&s->client[i]);
 	if (s->listen_fd >= 0)
 		close(s->listen_fd);
@@ -105,7 +52,7 @@ static void begin(struct part *part, char *target, unsigned size)
 	part->own = s;
 	s->set_alarm = 0;
 	s->por = true;
-	for (unsigned i = 0; i < CLIENTS; i++)
+	for (unsigned i = 0; i < SERVER_CLIENTS; i++)
 		s->client[i].fd = NOBODY;
 	stop(s);
 	snprintf(s->path, sizeof(s->path), "%s/s", directory);
@@ -115,7 +62,7 @@ static void begin(struct part *part, char *target, unsigned size)
 
 static void end(struct part *part)
 {
-	struct server *s = of(part);
+	struct server *s = server_of(part);
 
 	stop(s);
 	s->path[strlen(s->path) - 2] = '\0';
@@ -123,222 +70,9 @@ static void end(struct part *part)
 	free(s);
 }
 
-/* --- What it knows --------------------------------------------------------------------------- */
-
-static bool has(const struct part *part, int device)
-{
-	return device >= 0 && !field.device[device].away && field.device[device].wire == part->wire;
-}
-
-static int number(char *text, size_t size, unsigned value)
-{
-	return snprintf(text, size, "%12u", value);
-}
-
-static int switch_property(struct server *s, const char *property, char *text, size_t size)
-{
-	if (strcmp(property, "sensed.BYTE") == 0)
-		return number(text, size, field_pins() << 4 | (~s->relays & 0xf));
-	if (strcmp(property, "PIO.BYTE") == 0)
-		return number(text, size, s->relays);
-	if (strcmp(property, "latch.BYTE") == 0)
-		return number(text, size, s->latch);
-	if (strcmp(property, "por") == 0)
-		return number(text, size, s->por);
-	if (strcmp(property, "set_alarm") == 0)
-		return number(text, size, s->set_alarm);
-	return -1;
-}
-
-/* Length of the text, or a code of the protocol. */
-static int read_property(struct part *part, const char *path, char *text, size_t size)
-{
-	struct server *s = of(part);
-	int device;
-	const char *property;
-
-	if (strncmp(path, "/bus.0/interface/settings/name", 30) == 0)
-		return snprintf(text, size, "DS9490R");
-	if (strncmp(path, "/alarm/", 7) == 0)
-		path += 6;
-	device = field_find(path + 1);
-	property = device < 0 ? NULL : strchr(path + 1, '/');
-	if (!property)
-		return -1;
-	if (!has(part, device))
-		return -1;
-	property++;
-	if (strcmp(property, "type") == 0)
-		return snprintf(text, size, field.device[device].is_switch ? "DS2408" : "DS18B20");
-	if (field.device[device].is_switch)
-		return switch_property(s, property, text, size);
-	if (strcmp(property, "temperature12") != 0)
-		return -1;
-	if (s->lie == FAULT_85 && device != 1) /* near 85 it could be true */
-		return snprintf(text, size, "          85");
-	if (s->lie == FAULT_127)
-		return snprintf(text, size, "     127.938");
-	return snprintf(text, size, "%12g", field_temperature((unsigned)device, world_now()));
-}
-
-static int write_property(struct part *part, const char *path, const char *data)
-{
-	struct server *s = of(part);
-	int device;
-	const char *property;
-
-	if (strncmp(path, "/alarm/", 7) == 0)
-		path += 6;
-	device = field_find(path + 1);
-	property = device < 0 ? NULL : strchr(path + 1, '/');
-	if (!property || !has(part, device) || !field.device[device].is_switch)
-		return -1;
-	property++;
-	if (strcmp(property, "PIO.BYTE") == 0)
-		s->relays = (unsigned)strtoul(data, NULL, 10) & 0xf;
-	else if (strcmp(property, "latch.BYTE") == 0)
-		s->latch = 0;
-	else if (strcmp(property, "por") == 0)
-		s->por = false;
-	else if (strcmp(property, "set_alarm") == 0)
-		s->set_alarm = (unsigned)strtoul(data, NULL, 10);
-	else
-		return -1;
-	return 0;
-}
-
-static int list(struct part *part, const char *path, char *text, size_t size)
-{
-	struct server *s = of(part);
-	bool alarm = strncmp(path, "/alarm", 6) == 0;
-	size_t n = 0;
-
-	text[0] = '\0';
-	for (unsigned i = 0; i < field.devices; i++) {
-		bool in = field.device[i].is_switch && (s->por || (s->latch && s->set_alarm));
-
-		if (has(part, (int)i) && (!alarm || in))
-			n += (size_t)snprintf(text + n, size - n, "%s%s/%s", n ? "," : "",
-			                      alarm ? "/alarm" : "", field.device[i].id);
-	}
-	return (int)n;
-}
-
-/* --- Frames ---------------------------------------------------------------------------------- */
-
-static void change(uint8_t *frame, unsigned word, uint32_t value)
-{
-	for (int i = 0; i < 4; i++)
-		frame[word * 4 + (unsigned)i] = (uint8_t)(value >> (24 - 8 * i));
-}
-
-static void lie_about(struct server_client *c, enum lie lie)
-{
-	uint8_t junk[] = "HTTP/1.1 400 Bad Request";
-
-	switch (lie) {
-	case SLOW:
-		c->due_ns += (int64_t)world_random(18000) * FIELD_MS;
-		break;
-	case ALIVE:
-		c->alive_ns = c->due_ns;
-		c->due_ns = INT64_MAX;
-		break;
-	case VERY_LATE:
-		c->alive_ns = c->due_ns;
-		c->due_ns += 40 * FIELD_S;
-		break;
-	case SILENT:
-		c->due_ns = INT64_MAX;
-		break;
-	case REFUSES:
-		c->out[15] &= (uint8_t)~FRAME_PERSIST;
-		c->close = true;
-		break;
-	case CLOSES:
-		c->len = 0;
-		c->close = true;
-		break;
-	case HALF:
-		c->len /= 2;
-		c->close = true;
-		break;
-	case HALF_AND_SILENT:
-		c->len /= 2;
-		c->hangs = true;
-		break;
-	case GARBAGE:
-		memcpy(c->out, junk, FRAME_HEADER);
-		break;
-	case HUGE:
-		change(c->out, 1, 0x7fffffff);
-		break;
-	case NEGATIVE:
-		change(c->out, 1, (uint32_t)-5);
-		break;
-	case VERSION:
-		change(c->out, 0, 0x20000);
-		break;
-	case SHORTER:
-		change(c->out, 2, 100000);
-		break;
-	case TWICE:
-		if (c->len * 2 <= ROOM)
-			memcpy(c->out + c->len, c->out, c->len);
-		c->len *= 2;
-		break;
-	case MORE:
-		c->len += 3;
-		break;
-	case HONEST:
-	case BY_BYTES:
-	case ERRORS:
-	case NO_DEVICE:
-	case FAULT_85:
-	case FAULT_127:
-	case NO_NUMBER:
-	case EMPTY:
-	case LIES:
-		break;
-	}
-}
-
-/* The text of an answer, or its code. */
-static int answer_to(struct part *part, const struct frame_header *request, const char *path,
-                     const char *data, char *text, size_t size)
-{
-	enum lie lie = of(part)->lie;
-
-	switch ((enum frame_type)request->type) {
-	case FRAME_READ:
-		if (lie == ERRORS && strncmp(path, "/bus.", 5) != 0)
-			return -5;
-		if (lie == NO_DEVICE && strncmp(path, "/bus.", 5) != 0)
-			return -1;
-		if (lie == NO_NUMBER && strstr(path, "temperature"))
-			return snprintf(text, size, "fifteen");
-		if (lie == EMPTY && strstr(path, "temperature"))
-			return 0;
-		return read_property(part, path, text, size);
-	case FRAME_WRITE:
-		return lie == ERRORS ? -5 : write_property(part, path, data);
-	case FRAME_PRESENT:
-		return has(part, field_find(path + 1)) && lie != NO_DEVICE ? 0 : -1;
-	case FRAME_DIRALL:
-		return list(part, path, text, size);
-	case FRAME_NOP:
-	case FRAME_DIR:
-	case FRAME_GET:
-	case FRAME_DIRALLSLASH:
-	case FRAME_GETSLASH:
-		break;
-	}
-	return 0;
-}
-
 static void answer(struct part *part, struct server_client *c, const struct frame_header *request)
 {
-	struct server *s = of(part);
+	struct server *s = server_of(part);
 	char *path = (char *)c->in + FRAME_HEADER, *data, text[1024] = "", written[64] = "";
 	struct frame_header reply = { .flags = request->flags };
 	enum lie before = s->lie;
@@ -350,7 +84,7 @@ static void answer(struct part *part, struct server_client *c, const struct fram
 	if (request->type == FRAME_WRITE && request->size > 0 &&
 	    request->size < (int32_t)sizeof(written))
 		memcpy(written, data, (size_t)request->size);
-	n = answer_to(part, request, path, written, text, sizeof(text));
+	n = server_answer(part, request, path, written, text, sizeof(text));
 	reply.type = n;
 	if (request->type != FRAME_NOP && n >= 0) {
 		reply.payload = (int32_t)strlen(text);
@@ -369,7 +103,7 @@ static void answer(struct part *part, struct server_client *c, const struct fram
 	c->due_ns = world_now() + (1 + (int64_t)world_random(20)) * FIELD_MS;
 	if (request->type == FRAME_READ && strstr(path, "temperature"))
 		c->due_ns += 750 * FIELD_MS;
-	lie_about(c, s->lie);
+	server_lie(c, s->lie);
 	s->lie = before;
 }
 
@@ -383,7 +117,7 @@ static void take(struct part *part, struct server_client *c)
 		return;
 	frame_get_header(c->in, &request);
 	size = FRAME_HEADER + (unsigned)request.payload;
-	if (request.payload < 0 || size > ROOM - 1) {
+	if (request.payload < 0 || size > SERVER_ROOM - 1) {
 		drop(c);
 		return;
 	}
@@ -400,7 +134,7 @@ static void send_due(struct server *s, struct server_client *c)
 	uint8_t alive[FRAME_HEADER] = { 0 };
 
 	if (c->alive_ns <= world_now()) {
-		change(alive, 1, UINT32_MAX);
+		server_change(alive, 1, UINT32_MAX);
 		if (send(c->fd, alive, sizeof(alive), MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
 			drop(c);
 		else
@@ -428,7 +162,7 @@ static void send_due(struct server *s, struct server_client *c)
 
 static void receive(struct part *part, struct server_client *c)
 {
-	ssize_t n = recv(c->fd, c->in + c->got, ROOM - 1 - c->got, MSG_DONTWAIT);
+	ssize_t n = recv(c->fd, c->in + c->got, SERVER_ROOM - 1 - c->got, MSG_DONTWAIT);
 
 	if (n == 0 || (n < 0 && errno != EAGAIN)) {
 		drop(c);
@@ -441,7 +175,7 @@ static void receive(struct part *part, struct server_client *c)
 
 static void look(struct part *part)
 {
-	struct server *s = of(part);
+	struct server *s = server_of(part);
 	int fd;
 
 	if (s->dead || s->hangs)
@@ -449,26 +183,26 @@ static void look(struct part *part)
 	while ((fd = accept4(s->listen_fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK)) >= 0) {
 		struct server_client *c = s->client;
 
-		while (c < s->client + CLIENTS && c->fd >= 0)
+		while (c < s->client + SERVER_CLIENTS && c->fd >= 0)
 			c++;
-		if (c == s->client + CLIENTS) {
+		if (c == s->client + SERVER_CLIENTS) {
 			close(fd);
 			continue;
 		}
 		drop(c);
 		c->fd = fd;
 	}
-	for (unsigned i = 0; i < CLIENTS; i++)
+	for (unsigned i = 0; i < SERVER_CLIENTS; i++)
 		if (s->client[i].fd >= 0)
 			receive(part, &s->client[i]);
 }
 
 static int64_t next(struct part *part)
 {
-	const struct server *s = of(part);
+	const struct server *s = server_of(part);
 	int64_t at = INT64_MAX;
 
-	for (unsigned i = 0; i < CLIENTS && !s->hangs; i++) {
+	for (unsigned i = 0; i < SERVER_CLIENTS && !s->hangs; i++) {
 		const struct server_client *c = &s->client[i];
 		int64_t due = c->alive_ns < c->due_ns ? c->alive_ns : c->due_ns;
 
@@ -480,10 +214,10 @@ static int64_t next(struct part *part)
 
 static void run(struct part *part)
 {
-	struct server *s = of(part);
+	struct server *s = server_of(part);
 
 	look(part);
-	for (unsigned i = 0; i < CLIENTS; i++)
+	for (unsigned i = 0; i < SERVER_CLIENTS; i++)
 		if (s->client[i].fd >= 0)
 			send_due(s, &s->client[i]);
 }
@@ -520,13 +254,13 @@ static void unhang(void *ctx)
 {
 	struct part *part = ctx;
 
-	of(part)->hangs = false;
+	server_of(part)->hangs = false;
 	look(part); /* who waited is gone by now, and makes room */
 }
 
 static const char *fault(struct part *part, int64_t ns)
 {
-	struct server *s = of(part);
+	struct server *s = server_of(part);
 	unsigned what = world_random(10);
 
 	if (what == 0 && !s->dead) {
@@ -548,12 +282,12 @@ static const char *fault(struct part *part, int64_t ns)
 	s->lie = 1 + world_random(LIES - 1);
 	s->chance = world_random(2) ? 100 : 1 + world_random(60);
 	world_after(ns, honest, s);
-	return lies[s->lie];
+	return server_lies[s->lie];
 }
 
 static void restart(struct part *part, unsigned device)
 {
-	struct server *s = of(part);
+	struct server *s = server_of(part);
 
 	if (!field.device[device].is_switch)
 		return;
@@ -570,12 +304,12 @@ static void plug(struct part *part, unsigned device, bool in)
 
 static void pins(struct part *part)
 {
-	of(part)->latch |= 0xf0;
+	server_of(part)->latch |= 0xf0;
 }
 
 static unsigned relays(struct part *part)
 {
-	return of(part)->relays;
+	return server_of(part)->relays;
 }
 
 const struct part_ops part_server = {
