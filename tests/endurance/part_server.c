@@ -54,6 +54,7 @@ static void begin(struct part *part, char *target, unsigned size)
 	s->por = true;
 	for (unsigned i = 0; i < SERVER_CLIENTS; i++)
 		s->client[i].fd = NOBODY;
+	s->listen_fd = -1; /* 0 is of somebody else */
 	stop(s);
 	snprintf(s->path, sizeof(s->path), "%s/s", directory);
 	listen_again(s);

@@ -15,10 +15,12 @@
 
 #include "unity.h"
 
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #define EPISODE (1200 * FIELD_S)
 #define FAULTS  (400 * FIELD_S) /* of an episode */
@@ -208,6 +210,7 @@ static void live(const struct world *in)
 {
 	int64_t end;
 	clock_t begun = clock();
+	int input = fcntl(STDIN_FILENO, F_GETFD);
 	char message[200];
 
 	world = in;
@@ -226,9 +229,11 @@ static void live(const struct world *in)
 	         (unsigned long long)invariants_checked(), (unsigned long long)invariants_good(),
 	         (double)(clock() - begun) / CLOCKS_PER_SEC);
 	TEST_MESSAGE(message);
-	TEST_ASSERT_GREATER_THAN_UINT64(hours * 300, invariants_good());
-	TEST_ASSERT_GREATER_THAN_UINT64(hours * 5, happened());
+	/* not half of the usual, which a run of one hour in a quiet world has too */
+	TEST_ASSERT_GREATER_THAN_UINT64(hours * 150, invariants_good());
+	TEST_ASSERT_GREATER_THAN_UINT64(hours, happened());
 	station_end();
+	TEST_ASSERT_EQUAL_INT_MESSAGE(input, fcntl(STDIN_FILENO, F_GETFD), "descriptor 0 was closed");
 }
 
 static void test_native_bus_tells_nothing_false_and_gets_well(void)
