@@ -143,9 +143,9 @@ def apply_stage(root, debs):
     if done.returncode:
         print(done.stdout[-4000:])
         raise RuntimeError("pi-gen's stage failed")
-    # as pi-gen's export does
-    with open(os.path.join(root, "etc/machine-id"), "w", encoding="ascii"):
-        pass
+    # as pi-gen's export does: the first boot is one for systemd, too
+    with open(os.path.join(root, "etc/machine-id"), "w", encoding="ascii") as file:
+        file.write("uninitialized\n")
 
 
 def packages(debs):
