@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# After a power cut: the configuration is the one that was there, the first start is not made again,
-# outputs are as the configuration says, because a power cut ends what was commanded.
+# After a power cut, and after a reboot: the configuration is the one that was there, the first start
+# is not made again, outputs are as the configuration says, because both end what was commanded.
 . /run/rig/guest.sh
 
 first_value temperature1 'later boot'
@@ -17,4 +17,4 @@ echo '@@RIG-OUTSIDE /signals/temperature1 21.0625'
 echo '@@RIG-OUTSIDE-SET /signals/outputs1 6'
 does 'what is set from outside the chip has' within $patience reads inputs1 185
 same 'nothing has failed' '' "$(systemctl --failed --plain --no-legend)"
-finish
+restart

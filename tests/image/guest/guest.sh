@@ -30,6 +30,14 @@ cut() {
 	echo '@@RIG-CUT'
 	sleep 600
 }
+restart() {
+	logs
+	[ $failed = 0 ] || finish
+	trap - INT TERM
+	echo '@@RIG-RESTART'
+	systemctl reboot
+	sleep 600
+}
 trap 'failed=1; finish' INT TERM
 
 active() { systemctl -q is-active "$1"; }
