@@ -22,7 +22,7 @@
 #define DEAD      (3 * SECOND)   /* a heartbeat that stopped is noticed after 2 s */
 #define GROWTH    512 /* KiB that the memory of one life may differ */
 #define SAMPLES   3   /* from which a life's memory is known */
-#define SHOWN     20
+#define SHOWN     3 /* of what is wrong in one episode */
 
 static const char *const faults[] = {
 	"unplug warm for",      "unplug far for",           "unplug board for",
@@ -36,7 +36,7 @@ static const char *const faults[] = {
 	"refuse-data 0x1b for", "remove adapter for",
 };
 
-static unsigned seed, bad, episodes, restarts;
+static unsigned seed, bad, shown, episodes, restarts;
 static int64_t begun, end;
 static long memory_most;
 static int descriptors;
@@ -74,7 +74,8 @@ void violated(const char *form, ...)
 	char what[64];
 	va_list args;
 
-	if (++bad > SHOWN)
+	bad++;
+	if (shown++ >= SHOWN)
 		return;
 	snprintf(what, sizeof(what), "not ok - endurance: at %.1f s: ", (double)(ows_now() - begun) / 1e9);
 	va_start(args, form);
@@ -235,6 +236,7 @@ static void stop_it(void)
 {
 	daemon_signal(SIGSTOP);
 	nothing_is_good("owsd stands still");
+	reader_stood();
 	daemon_signal(SIGCONT);
 }
 
@@ -326,13 +328,16 @@ int main(int argc, char **argv)
 	mishap();
 	while (ows_now() < end) {
 		episodes++;
+		shown = 0;
 		trouble();
 		if (!becomes_well("faults"))
 			continue;
 		holds();
 		mishap();
 	}
-	if (!bad && daemon_lives())
+	if (bad)
+		remark("%u times something was wrong; the first %d of each episode are shown", bad, SHOWN);
+	else if (daemon_lives())
 		passed("endurance: %u episodes, %u restarts: %llu good values in %llu looks were true",
 		       episodes, restarts, (unsigned long long)reader_checked(),
 		       (unsigned long long)reader_looks());

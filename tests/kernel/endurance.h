@@ -55,6 +55,8 @@ unsigned client_answers(void);
 bool reader_open(void);
 /* One look at all signals: every good value must be true. */
 void reader_look(void);
+/* owsd stood still until now. */
+void reader_stood(void);
 /* All good, of now, and the output done. */
 bool reader_all_well(void);
 /* A signal that is good although nothing can be; -1: none. */

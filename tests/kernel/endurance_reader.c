@@ -12,10 +12,15 @@
  */
 #define SLACK (3 * SECOND)
 #define COUNTERS 512
+/* So long between two looks: the machine of the rig stood still itself */
+#define STOOD    SECOND
+/* A table that is being exchanged can be opened again */
+#define EXCHANGE 5
 
 static struct ows *reader, *control;
 static int ids[SIGNALS], output, transactions[SIGNALS + 1];
 static int64_t measured[SIGNALS];
+static int64_t looked_ns, stood_until_ns;
 static uint32_t generation;
 static int32_t pid;
 static uint64_t counted[COUNTERS];
@@ -66,6 +71,12 @@ static bool get(int i, struct ows_value *value)
 	return !err || err == -ESTALE;
 }
 
+/* What was on its way while owsd stood still is as old as its request: it may be true since then. */
+static int64_t true_until(const struct ows_value *value, int64_t now)
+{
+	return value->measured_ns < stood_until_ns ? now : value->measured_ns;
+}
+
 static void check(int i, const struct ows_value *value, int64_t now)
 {
 	checked++;
@@ -76,16 +87,24 @@ static void check(int i, const struct ows_value *value, int64_t now)
 	if (i < INPUTS && value->age_ns > STALE_AFTER + SECOND)
 		violated("%s is good and %.1f s old", signal_names[i], (double)value->age_ns / 1e9);
 	measured[i] = value->measured_ns;
-	if (i < INPUTS && !truth_between(i, value->number, value->measured_ns - SLACK, value->measured_ns))
+	if (i < INPUTS && !truth_between(i, value->number, value->measured_ns - SLACK,
+	                                 true_until(value, now)))
 		violated("%s is good and false: %g, measured %.3f s ago", signal_names[i], value->number,
 		         (double)value->age_ns / 1e9);
+}
+
+void reader_stood(void)
+{
+	stood_until_ns = ows_now();
 }
 
 void reader_look(void)
 {
 	struct ows_value value;
 
-	looks++;
+	if (looks++ && ows_now() - looked_ns > STOOD)
+		reader_stood();
+	looked_ns = ows_now();
 	if (ows_beat(control, 60000) == -ESTALE)
 		ows_reopen(control);
 	for (int i = 0; i < SIGNALS; i++)
@@ -128,10 +147,12 @@ int reader_any_good(void)
 
 void reader_set_relays(unsigned pins)
 {
+	int64_t until = ows_now() + EXCHANGE * SECOND;
 	int err = ows_set(control, output, pins, NULL);
 
-	if (err == -ESTALE) {
-		ows_reopen(control);
+	while (err == -ESTALE && ows_now() < until) {
+		if (ows_reopen(control))
+			usleep(10000);
 		err = ows_set(control, output, pins, NULL);
 	}
 	if (err)
