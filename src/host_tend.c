@@ -28,6 +28,8 @@ static int renew_commands(struct host *h)
 	struct commands *renewed;
 	int err = 0;
 
+	/* it unmaps the segment before the one that is lost, which a slow thread may still be at */
+	host_wait_for_ringers(h);
 	renewed = memory_renew_commands(&h->now->memory, &err);
 	if (!renewed)
 		return err;
