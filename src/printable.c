@@ -5,7 +5,7 @@
 #include <string.h>
 
 #define HEAD 300
-#define GAP  " ... "
+static const char gap[] = { ' ', '.', '.', '.', ' ' };
 
 /* Bytes of the character at text that has to go; 0: it may stay. */
 static size_t harmful(const unsigned char *text, size_t left)
@@ -41,14 +41,14 @@ static int is_inside_character(char c)
 
 static void shorten(char *text, size_t len)
 {
-	size_t head = HEAD, tail = len - (PRINTABLE_LINE - HEAD - strlen(GAP));
+	size_t head = HEAD, tail = len - (PRINTABLE_LINE - HEAD - sizeof(gap));
 
 	while (head && is_inside_character(text[head]))
 		head--;
 	while (is_inside_character(text[tail]))
 		tail++;
-	memcpy(text + head, GAP, strlen(GAP));
-	memmove(text + head + strlen(GAP), text + tail, len - tail + 1);
+	memcpy(text + head, gap, sizeof(gap));
+	memmove(text + head + sizeof(gap), text + tail, len - tail + 1);
 }
 
 char *printable_line(const char *format, va_list args)

@@ -12,21 +12,22 @@
 /* One byte more than is allowed, so that a longer file is known as such. */
 #define ROOM_MAX ((size_t)RIO_FILE_MAX + 1)
 
-static int read_all(int fd, char **text, size_t *len)
+/* NULL: *err is why. */
+static char *read_all(int fd, size_t *len, int *err)
 {
 	size_t room = 64 * 1024, used = 0;
 	char *data = malloc(room + 1), *more;
 	ssize_t n;
 
+	*err = -ENOMEM;
 	while (data) {
 		n = read(fd, data + used, room - used);
 		if (n < 0 && errno == EINTR)
 			continue;
 		if (n < 0) {
-			int err = -errno;
-
+			*err = -errno;
 			free(data);
-			return err;
+			return NULL;
 		}
 		used += (size_t)n;
 		if (n == 0 || used == ROOM_MAX)
@@ -40,11 +41,10 @@ static int read_all(int fd, char **text, size_t *len)
 		data = more;
 	}
 	if (!data)
-		return -ENOMEM;
+		return NULL;
 	data[used] = '\0';
-	*text = data;
 	*len = used;
-	return 0;
+	return data;
 }
 
 /* As Windows saves what it calls Unicode; with a byte order mark or without. */
@@ -125,10 +125,11 @@ int rio_read(const char *file, struct config_report *report, char **text, size_t
 	*text = NULL;
 	if (fd < 0)
 		return fd;
-	err = read_all(fd, text, len);
+	*text = read_all(fd, len, &err);
 	close(fd);
-	if (err)
+	if (!*text)
 		return cannot_read(report, place, err);
+	err = 0;
 	if (*len > RIO_FILE_MAX) {
 		report_error(report, place, "longer than %u bytes", RIO_FILE_MAX);
 		err = -EFBIG;

@@ -270,12 +270,12 @@ static void refuse(struct serve *s, int fd, enum serve_counter what, struct log_
 static void refuse_peer(struct serve *s, int fd, const union address *from)
 {
 	bool is_v6 = from->any.sa_family == AF_INET6;
-	char reason[INET6_ADDRSTRLEN + 32] = "";
+	char address[INET6_ADDRSTRLEN] = "", reason[INET6_ADDRSTRLEN + 32];
 
 	inet_ntop(from->any.sa_family,
-	          is_v6 ? (const void *)&from->v6.sin6_addr : (const void *)&from->v4.sin_addr, reason,
-	          sizeof(reason));
-	strcat(reason, " is not in ListenAllow");
+	          is_v6 ? (const void *)&from->v6.sin6_addr : (const void *)&from->v4.sin_addr, address,
+	          sizeof(address));
+	snprintf(reason, sizeof(reason), "%s is not in ListenAllow", address);
 	refuse(s, fd, COUNT_refused_peers, &s->peer_rate, reason);
 }
 
