@@ -118,7 +118,7 @@ static int fill(struct rio **rio, struct names *names, const struct scan *scan, 
 static bool can_stand(const char *target, bool several)
 {
 	for (const char *p = target; *p; p++)
-		if ((unsigned char)*p < ' ')
+		if ((unsigned char)*p < ' ' || *p == 0x7f)
 			return false;
 	return several || !strpbrk(target, ",|");
 }

@@ -2,13 +2,15 @@
 # Fuzzing: each target is one file tests/fuzz/fuzz_*.c, linked twice: with clang's libFuzzer and the
 # address and undefined-behaviour sanitizers for make fuzz, and with replay.c for make unit, which
 # runs its seeds and found cases.
-#   FUZZ picks targets, FUZZ_SECONDS bounds each of them, FUZZ_JOBS run at once; FUZZ_CC is another
-#   clang; OR_SKIP=1 counts the targets as skipped where there is no libFuzzer.
+#   FUZZ picks targets, FUZZ_SECONDS bounds each of them, FUZZ_JOBS run at once; FUZZ_SEED other than
+#   0 makes a run repeatable on a machine as fast; FUZZ_CC is another clang; OR_SKIP=1 counts the
+#   targets as skipped where there is no libFuzzer.
 
 FUZZ_TARGETS := $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
 FUZZ         ?= $(FUZZ_TARGETS)
 FUZZ_SECONDS ?= 60
 FUZZ_JOBS    ?= $(shell nproc)
+FUZZ_SEED    ?= 0
 FUZZ_CC      ?= $(if $(filter ccache,$(CC)),ccache )clang
 FUZZ_BUILD   := build/fuzz/programs
 REPLAYS      := $(FUZZ_TARGETS:%=$(B)/fuzz/replay_%)
@@ -47,7 +49,7 @@ fuzz:
 	        HARDEN='-U_FORTIFY_SOURCE -fPIE' EXTRA_CFLAGS='-fsanitize=fuzzer-no-link,address,undefined \
 	        -fno-sanitize-recover=all -fno-omit-frame-pointer' \
 	        $(FUZZ:%=$(FUZZ_BUILD)/fuzz/%) $(FUZZ:%=$(FUZZ_BUILD)/fuzz/%.dict) && \
-	    python3 tests/fuzz/run --seconds $(FUZZ_SECONDS) --jobs $(FUZZ_JOBS) \
+	    python3 tests/fuzz/run --seconds $(FUZZ_SECONDS) --jobs $(FUZZ_JOBS) --seed $(FUZZ_SEED) \
 	        --programs $(FUZZ_BUILD)/fuzz $(FUZZ); \
 	else \
 	    echo '0 passed, 0 failed, $(words $(FUZZ)) skipped'; \
