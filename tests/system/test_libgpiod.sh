@@ -3,7 +3,7 @@
 # The makefile takes the libgpiod that the compiler sees, whatever a pkg-config says of this machine's
 set -eu
 
-unset MAKEFLAGS MFLAGS MAKELEVEL MAKEOVERRIDES CFLAGS LDFLAGS EXTRA_CFLAGS CROSS_COMPILE
+unset MAKEFLAGS MFLAGS MAKELEVEL MAKEOVERRIDES CFLAGS LDFLAGS EXTRA_CFLAGS CROSS_COMPILE LIBGPIOD
 mkdir both lib1 lib2 none
 printf '#!/bin/sh\ncase "$*" in *--libs*) echo -lgpiod ;; esac\n' >says-2
 printf '#!/bin/sh\ncase "$*" in *--atleast-version*) exit 1 ;; *--libs*) echo -lgpiod ;; esac\n' >says-1
