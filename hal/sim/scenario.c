@@ -39,7 +39,7 @@ static void i2c_line(struct scenario *scenario, struct words *words)
 	scenario->adapter = true;
 	while (words_next(words)) {
 		if (strcmp(words->word, "speed") == 0) {
-			net->hz = (uint32_t)(words_number(words, "the speed in kHz", 1, 1000) *
+			net->hz = (uint32_t)(words_number(words, "the speed in kHz", 10, 1000) *
 			                     1000);
 		} else if (strcmp(words->word, "messages") == 0) {
 			net->max_messages = (unsigned)words_number(words, "the count", 2, 42);

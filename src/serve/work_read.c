@@ -49,7 +49,7 @@ bool work_ask_type(struct serve *s, struct client *c)
 void work_read_answered(struct serve *s, struct client *c, int err)
 {
 	if (err) {
-		if (c->is_get && (err == -EISDIR || err == -ENOENT))
+		if (c->is_get && !c->lent && (err == -EISDIR || err == -ENOENT))
 			work_want_directory(s, c, STEP_DIR);
 		else
 			answer_error(s, c, err);

@@ -71,7 +71,7 @@ static void test_a_wrong_line_is_named_with_its_column(void)
 		{"chip DS2482-100 0x18\nat 5s short 0x18.1", "s:2:13: \"0x18.1\": the chip has"},
 		{"chip DS2482-100 0x18\nat 5s end reset 0x18", "s:2:11: \"reset\": expected"},
 		{"chip DS2482-100 0x18\nat 5s reset 0x18 for 5s", "s:2:18: \"for\" is too much here"},
-		{"i2c speed 2000", "s:1:11: 2000: the speed in kHz goes from 1 to 1000"},
+		{"i2c speed 2000", "s:1:11: 2000: the speed in kHz goes from 10 to 1000"},
 		{"i2c combine some", "s:1:13: \"some\": expected any"},
 		{"chip DS2482-100 0x18\nDS18B20 28.000000000001 as a\nDS18B20 28.000000000001 as b",
 		 "s:3:9: there is a device 28.000000000001 already"},
