@@ -104,6 +104,12 @@ static bool is_blank(char c)
 	return c == ' ' || c == '\t';
 }
 
+/* Does what begins there end a word that comes to stand before it? */
+static bool parts(const struct rio *rio, size_t offset)
+{
+	return offset == rio->len || strchr(" \t\r\n}#", rio->text[offset]) != NULL;
+}
+
 /* First byte of the line of offset. */
 static size_t line_begin(const struct rio *rio, size_t offset)
 {
@@ -211,6 +217,8 @@ static int add_behind(struct rio **rio, const struct rio_node *block,
 		out = grow_make();
 		grow_add(&out, " ", 1);
 		grow_add(&out, lines, strlen(lines));
+		if (!parts(*rio, at))
+			grow_add(&out, " ", 1);
 	}
 	err = out.text ? rio_splice(rio, at, end, out.text) : -ENOMEM;
 	free(out.text);
@@ -265,7 +273,7 @@ int rio_remove(struct rio **rio, struct rio_node *node)
 	if (blank_between(*rio, line, begin) && blank_between(*rio, end, rest)) {
 		begin = line;
 		end = rest + line_end_length(*rio, rest);
-	} else {
+	} else if (parts(*rio, end)) {
 		while (begin > line && is_blank((*rio)->text[begin - 1]) && begin - 1 > line)
 			begin--;
 	}

@@ -40,12 +40,6 @@ static struct rio_node *parse(const char *text)
 	return &rio->root;
 }
 
-static void expect_text(const char *text)
-{
-	TEST_ASSERT_EQUAL_size_t(strlen(text), rio->len);
-	TEST_ASSERT_EQUAL_STRING(text, rio->text);
-}
-
 static void expect_value(const struct rio_node *block, const char *key, enum rio_kind kind,
                          const char *value)
 {
@@ -371,115 +365,6 @@ static void test_random_bytes_are_survived(void)
 	}
 }
 
-static void test_a_changed_value_changes_nothing_else(void)
-{
-	struct rio_node *a = rio_child(parse("# top\r\nA {\r\n\tX   1  # one\r\n  Y \"two\"\r\n}"), "A");
-
-	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, a, "X", "22"));
-	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, rio_child(&rio->root, "A"), "Y", "\"2\""));
-	expect_text("# top\r\nA {\r\n\tX   22  # one\r\n  Y \"2\"\r\n}");
-}
-
-static void test_a_value_that_touches_its_key_does_not_become_a_part_of_it(void)
-{
-	parse("A { X=1 Y\"2\" }");
-	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, rio_child(&rio->root, "A"), "X", "22"));
-	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, rio_child(&rio->root, "A"), "Y", "3"));
-	expect_text("A { X 22 Y 3 }");
-	expect_value(rio_child(&rio->root, "A"), "X", RIO_WORD, "22");
-}
-
-static void test_a_new_key_goes_behind_the_values_with_their_indent_and_line_end(void)
-{
-	struct rio_node *a = rio_child(parse("A {\r\n   X 1 # one\r\n   B { Z 1 }\r\n}\r\n"), "A");
-
-	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, a, "New", "7"));
-	expect_text("A {\r\n   X 1 # one\r\n   New                     7\r\n   B { Z 1 }\r\n}\r\n");
-	TEST_ASSERT_EQUAL_INT(
-		0, rio_set(&rio, rio_child(rio_child(&rio->root, "A"), "B"), "Q", "2"));
-	expect_text("A {\r\n   X 1 # one\r\n   New                     7\r\n"
-	            "   B { Z 1 Q                       2 }\r\n}\r\n");
-}
-
-static void test_an_empty_block_opens_for_its_first_key(void)
-{
-	static const char *const empty[] = {"A { }", "A {\n}", "A {}"};
-
-	for (size_t i = 0; i < sizeof(empty) / sizeof(empty[0]); i++) {
-		struct rio_node *a = rio_child(parse(empty[i]), "A");
-
-		TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, a, "K", "1"));
-		expect_value(rio_child(&rio->root, "A"), "K", RIO_WORD, "1");
-		TEST_ASSERT_EQUAL_CHAR('}', rio->text[rio->len - 1]);
-		TEST_ASSERT_EQUAL_CHAR('\n', rio->text[rio->len - 2]);
-	}
-}
-
-static void test_a_key_added_behind_a_block_whose_end_shares_its_line_stays_inside(void)
-{
-	struct rio_node *a = rio_child(parse("A {\n  X 1 }"), "A");
-
-	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, a, "Y", "2"));
-	expect_value(rio_child(&rio->root, "A"), "Y", RIO_WORD, "2");
-	TEST_ASSERT_NULL(rio_child(&rio->root, "Y"));
-}
-
-static void test_a_removed_block_takes_its_lines_along_and_leaves_comments(void)
-{
-	struct rio_node *a =
-		rio_child(parse("A {\n  # first\n  B {\n    X 1\n  }\n  # second\n  C { Y 2 }\n}\n"), "A");
-
-	TEST_ASSERT_EQUAL_INT(0, rio_remove(&rio, rio_child(a, "B")));
-	expect_text("A {\n  # first\n  # second\n  C { Y 2 }\n}\n");
-	a = rio_child(&rio->root, "A");
-	TEST_ASSERT_EQUAL_INT(0, rio_remove(&rio, rio_child(a, "C")->first));
-	expect_text("A {\n  # first\n  # second\n  C { }\n}\n");
-}
-
-static void test_strings_are_wrapped_only_when_long_and_read_back(void)
-{
-	char text[1000], *quoted;
-	uint32_t state = 12345;
-
-	quoted = rio_quote("12345678901234567890123456789012345678901234567890");
-	TEST_ASSERT_NULL(strchr(quoted, '\n'));
-	rio_quote_free(quoted);
-	quoted = rio_quote("123456789012345678901234567890123456789012345678901");
-	TEST_ASSERT_EQUAL_STRING(
-		"\"12345678901234567890123456789012345678901234567890\"\n\"1\"", quoted);
-	rio_quote_free(quoted);
-	for (size_t len = 0; len < 300; len++) {
-		char document[2000];
-
-		for (size_t i = 0; i < len; i++) {
-			state = state * 1664525 + 1013904223;
-			text[i] = "ab\"\\ #{}/.="[(state >> 16) % 11];
-		}
-		text[len] = '\0';
-		quoted = rio_quote(text);
-		snprintf(document, sizeof(document), "K %s", quoted);
-		expect_value(parse(document), "K", RIO_STRING, text);
-		rio_quote_free(quoted);
-	}
-}
-
-static void test_a_character_of_several_bytes_is_not_cut_by_wrapping(void)
-{
-	char text[100];
-	char *quoted, *end;
-
-	memset(text, 'x', sizeof(text));
-	memcpy(text + 49, "\xe2\x82\xac", 4);
-	quoted = rio_quote(text);
-	end = strchr(quoted, '\n');
-	TEST_ASSERT_NULL(end);
-	rio_quote_free(quoted);
-	memcpy(text + 49, "\xe2\x82\xac" "y", 5);
-	quoted = rio_quote(text);
-	TEST_ASSERT_NOT_NULL(strstr(quoted, "\xe2\x82\xac\"\n\"y\""));
-	rio_quote_free(quoted);
-}
-
 int main(void)
 {
 	UNITY_BEGIN();
@@ -502,13 +387,5 @@ int main(void)
 	RUN_TEST(test_a_file_that_cannot_be_read_is_said);
 	RUN_TEST(test_only_a_regular_file_of_a_size_is_read_at_all);
 	RUN_TEST(test_random_bytes_are_survived);
-	RUN_TEST(test_a_changed_value_changes_nothing_else);
-	RUN_TEST(test_a_value_that_touches_its_key_does_not_become_a_part_of_it);
-	RUN_TEST(test_a_new_key_goes_behind_the_values_with_their_indent_and_line_end);
-	RUN_TEST(test_an_empty_block_opens_for_its_first_key);
-	RUN_TEST(test_a_key_added_behind_a_block_whose_end_shares_its_line_stays_inside);
-	RUN_TEST(test_a_removed_block_takes_its_lines_along_and_leaves_comments);
-	RUN_TEST(test_strings_are_wrapped_only_when_long_and_read_back);
-	RUN_TEST(test_a_character_of_several_bytes_is_not_cut_by_wrapping);
 	return UNITY_END();
 }
