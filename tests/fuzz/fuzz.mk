@@ -2,9 +2,9 @@
 # Fuzzing: each target is one file tests/fuzz/fuzz_*.c, linked twice: with clang's libFuzzer and the
 # address and undefined-behaviour sanitizers for make fuzz, and with replay.c for make unit, which
 # runs its seeds and found cases.
-#   FUZZ picks targets, FUZZ_SECONDS bounds each of them, FUZZ_JOBS run at once; FUZZ_SEED other than
-#   0 makes a run repeatable on a machine as fast; FUZZ_CC is another clang; OR_SKIP=1 counts the
-#   targets as skipped where there is no libFuzzer.
+#   FUZZ picks targets, FUZZ_SECONDS bounds each of them, FUZZ_JOBS run at once; with FUZZ_SEED other
+#   than 0 the same inputs are tried each time, as many as the machine does; FUZZ_CC is another clang;
+#   OR_SKIP=1 counts the targets as skipped where there is no libFuzzer.
 
 FUZZ_TARGETS := $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
 FUZZ         ?= $(FUZZ_TARGETS)
@@ -26,8 +26,11 @@ FUZZ_WITH_netlink  := fuzz/bus_host.o fuzz/sysfs.o
 FUZZ_WITH_scenario := fuzz/bus_host.o
 FUZZ_WORDS_scenario := $(wildcard hal/sim/*.c)
 FUZZ_WITH_owsctl   := fuzz/heap_instance.o fuzz/heap_map.o fuzz/json_valid.o
-FUZZ_WRAP_owsctl   := exit ows_now segment_wait nanosleep ctl_reader_gone terminal_catch_signals isatty \
-                      ows_open ows_close board_look replace_file replace_lock rio_read bus_create
+FUZZ_WRAP_w1       := getpid
+FUZZ_WRAP_netlink  := getpid
+FUZZ_WRAP_owsctl   := getpid clock_gettime time exit ows_now segment_wait nanosleep \
+                      ctl_reader_gone terminal_catch_signals isatty ows_open ows_close board_look \
+                      replace_file replace_lock rio_read bus_create
 FUZZ_WORDS_owsctl  := src/owsctl/owsctl.c src/signal/attribute.c src/config/options.c src/owsctl/condition.c
 FUZZ_WORDS_values  := src/signal/attribute.c src/signal/value.c hal/path.c src/config/listen.c
 FUZZ_WORDS_rio     := src/config/options.c src/config/targets.c src/signal/value.c hal/native/native.c

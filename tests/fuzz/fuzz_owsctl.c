@@ -31,6 +31,7 @@ int owsctl_main(int argc, char **argv);
 #define WAITS   40
 #define NAPS    1000
 #define HANDLES 16
+#define WALL_S  INT64_C(1800000000)
 
 static struct fuzz fuzz;
 static int64_t now_ns;
@@ -60,6 +61,25 @@ int64_t __wrap_ows_now(void);
 int64_t __wrap_ows_now(void)
 {
 	return now_ns;
+}
+
+/* Time passes for who looks at the clock again and again, too. */
+int __wrap_clock_gettime(clockid_t clock, struct timespec *at);
+int __wrap_clock_gettime(clockid_t clock, struct timespec *at)
+{
+	int64_t ns = now_ns += 1000000;
+
+	if (clock == CLOCK_REALTIME)
+		ns += WALL_S * 1000000000;
+	*at = (struct timespec){ns / 1000000000, ns % 1000000000};
+	return 0;
+}
+
+time_t __wrap_time(time_t *at);
+time_t __wrap_time(time_t *at)
+{
+	(void)at;
+	return now_ns / 1000000000 + WALL_S;
 }
 
 /* Values change while somebody waits for it, but not for ever. */
