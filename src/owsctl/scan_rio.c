@@ -114,13 +114,32 @@ static int fill(struct rio **rio, struct names *names, const struct scan *scan, 
 	return err ? err : rio_set(rio, driver_of(*rio), "ItemCount", count);
 }
 
-/* Several targets, where an owsd has them, stand as in TargetName; of one, the name holds none. */
-static bool can_stand(const char *target, bool several)
+struct doubt {
+	const char *target;
+	int status;
+};
+
+static void refuse(void *ctx, bool is_error, const char *message)
 {
-	for (const char *p = target; *p; p++)
-		if ((unsigned char)*p < ' ' || *p == 0x7f)
-			return false;
-	return several || !strpbrk(target, ",|");
+	struct doubt *doubt = ctx;
+
+	if (is_error && !doubt->status)
+		doubt->status = ctl_fail("%s makes no configuration: %s", doubt->target, message);
+}
+
+/* Would owsd read what was made? Whatever a target or a device is called, nothing else is printed. */
+static int check(const struct rio *rio, const char *target)
+{
+	struct doubt doubt = {.target = target};
+	struct config_report report = {.line = refuse, .ctx = &doubt};
+	struct config *config;
+	int err = config_parse("what was found", rio->text, rio->len, &report, &config);
+
+	if (err == -ENOMEM)
+		return ctl_fail("no memory");
+	if (!err)
+		config_free(config);
+	return doubt.status;
 }
 
 int scan_rio(const struct scan *scan, const char *target, bool several, bool inputs_only)
@@ -131,10 +150,10 @@ int scan_rio(const struct scan *scan, const char *target, bool several, bool inp
 	struct rio *rio = NULL;
 	int err = names.name ? 0 : -ENOMEM, status = CTL_DONE;
 
-	if (!can_stand(target, several)) {
+	/* several, where an owsd has them, stand as in TargetName; the name of one holds neither */
+	if (!several && strpbrk(target, ",|")) {
 		free(names.name);
-		return ctl_fail("%s cannot be a TargetName: it holds \",\", \"|\" or a control character",
-		                target);
+		return ctl_fail("%s cannot be a TargetName: it holds \",\" or \"|\"", target);
 	}
 	if (!err)
 		err = rio_parse("scan", edit_empty, strlen(edit_empty), &silent, &rio);
@@ -144,7 +163,7 @@ int scan_rio(const struct scan *scan, const char *target, bool several, bool inp
 		status = ctl_fail("%s", err == -ENOMEM ? "no memory" : strerror(-err));
 	else if (!names.count)
 		status = ctl_fail("%s has no device that a configuration could be made for", target);
-	else
+	else if ((status = check(rio, target)) == CTL_DONE)
 		fwrite(rio->text, 1, rio->len, stdout);
 	if (rio)
 		rio_free(rio);
