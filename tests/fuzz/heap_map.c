@@ -21,7 +21,8 @@ static struct heap_file *file_of(int fd)
 
 static int heap_open(const char *path, int flags)
 {
-	int fd = strstr(path, ".command") ? COMMAND_FD : IMAGE_FD;
+	/* an instance may be named so, too */
+	int fd = strcmp(strrchr(path, '.'), ".command") ? IMAGE_FD : COMMAND_FD;
 
 	TEST_ASSERT_EQUAL_MESSAGE(fd == COMMAND_FD, (flags & O_ACCMODE) == O_RDWR, path);
 	errno = ENOENT;
