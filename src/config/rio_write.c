@@ -105,7 +105,7 @@ static bool is_blank(char c)
 }
 
 /* Does what begins there end a word that comes to stand before it? */
-static bool parts(const struct rio *rio, size_t offset)
+static bool ends_word_at(const struct rio *rio, size_t offset)
 {
 	return offset == rio->len || strchr(" \t\r\n}#", rio->text[offset]) != NULL;
 }
@@ -217,7 +217,7 @@ static int add_behind(struct rio **rio, const struct rio_node *block,
 		out = grow_make();
 		grow_add(&out, " ", 1);
 		grow_add(&out, lines, strlen(lines));
-		if (!parts(*rio, at))
+		if (!ends_word_at(*rio, at))
 			grow_add(&out, " ", 1);
 	}
 	err = out.text ? rio_splice(rio, at, end, out.text) : -ENOMEM;
@@ -273,7 +273,7 @@ int rio_remove(struct rio **rio, struct rio_node *node)
 	if (blank_between(*rio, line, begin) && blank_between(*rio, end, rest)) {
 		begin = line;
 		end = rest + line_end_length(*rio, rest);
-	} else if (parts(*rio, end)) {
+	} else if (ends_word_at(*rio, end)) {
 		while (begin > line && is_blank((*rio)->text[begin - 1]) && begin - 1 > line)
 			begin--;
 	}

@@ -114,24 +114,25 @@ static int fill(struct rio **rio, struct names *names, const struct scan *scan, 
 	return err ? err : rio_set(rio, driver_of(*rio), "ItemCount", count);
 }
 
-struct doubt {
+/* Why what was made for target is no configuration; status CTL_DONE: it is one. */
+struct refusal {
 	const char *target;
 	int status;
 };
 
 static void refuse(void *ctx, bool is_error, const char *message)
 {
-	struct doubt *doubt = ctx;
+	struct refusal *refusal = ctx;
 
-	if (is_error && !doubt->status)
-		doubt->status = ctl_fail("%s makes no configuration: %s", doubt->target, message);
+	if (is_error && !refusal->status)
+		refusal->status = ctl_fail("%s makes no configuration: %s", refusal->target, message);
 }
 
-/* Would owsd read what was made? Whatever a target or a device is called, nothing else is printed. */
+/* Would owsd read what was made? Nothing else is printed, however targets are called. */
 static int check(const struct rio *rio, const char *target)
 {
-	struct doubt doubt = {.target = target};
-	struct config_report report = {.line = refuse, .ctx = &doubt};
+	struct refusal refusal = {.target = target};
+	struct config_report report = {.line = refuse, .ctx = &refusal};
 	struct config *config;
 	int err = config_parse("what was found", rio->text, rio->len, &report, &config);
 
@@ -139,7 +140,7 @@ static int check(const struct rio *rio, const char *target)
 		return ctl_fail("no memory");
 	if (!err)
 		config_free(config);
-	return doubt.status;
+	return refusal.status;
 }
 
 int scan_rio(const struct scan *scan, const char *target, bool several, bool inputs_only)

@@ -3,8 +3,9 @@
 # address and undefined-behaviour sanitizers for make fuzz, and with replay.c for make unit, which
 # runs its seeds and found cases.
 #   FUZZ picks targets, FUZZ_SECONDS bounds each of them, FUZZ_JOBS run at once; with FUZZ_SEED other
-#   than 0 the same inputs are tried each time, as many as the machine does; FUZZ_CC is another clang;
-#   OR_SKIP=1 counts the targets as skipped where there is no libFuzzer.
+#   than 0 the same inputs are tried each time, as many as the machine does (of w1 and netlink the
+#   first thousands are the same); FUZZ_CC is another clang; OR_SKIP=1 counts the targets as skipped
+#   where there is no libFuzzer.
 
 FUZZ_TARGETS := $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
 FUZZ         ?= $(FUZZ_TARGETS)
@@ -26,6 +27,7 @@ FUZZ_WITH_netlink  := fuzz/bus_host.o fuzz/sysfs.o
 FUZZ_WITH_scenario := fuzz/bus_host.o
 FUZZ_WORDS_scenario := $(wildcard hal/sim/*.c)
 FUZZ_WITH_owsctl   := fuzz/heap_instance.o fuzz/heap_map.o fuzz/json_valid.o
+# w1 and netlink have a property that is the process's number
 FUZZ_WRAP_w1       := getpid
 FUZZ_WRAP_netlink  := getpid
 FUZZ_WRAP_owsctl   := getpid clock_gettime time exit ows_now segment_wait nanosleep \

@@ -2,7 +2,7 @@
 #include "src/config/rio.h"
 #include "src/config/rio_write.h"
 
-#include "tests/unit/said.h"
+#include "tests/unit/rio_case.h"
 #include "unity.h"
 
 #include <errno.h>
@@ -14,17 +14,14 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-static struct rio *rio;
-
 void setUp(void)
 {
-	said_begin();
-	rio = NULL;
+	rio_case_begin();
 }
 
 void tearDown(void)
 {
-	rio_free(rio);
+	rio_case_end();
 }
 
 static void parse_bytes(const char *text, size_t len)
@@ -33,70 +30,56 @@ static void parse_bytes(const char *text, size_t len)
 	TEST_ASSERT_EQUAL_INT(0, rio_parse("f", text, len, &report, &rio));
 }
 
-static struct rio_node *parse(const char *text)
-{
-	parse_bytes(text, strlen(text));
-	TEST_ASSERT_EQUAL_STRING("", said);
-	return &rio->root;
-}
-
-static void expect_value(const struct rio_node *block, const char *key, enum rio_kind kind,
-                         const char *value)
-{
-	const struct rio_node *node = rio_child(block, key);
-
-	TEST_ASSERT_NOT_NULL_MESSAGE(node, key);
-	TEST_ASSERT_EQUAL_INT_MESSAGE(kind, node->kind, key);
-	TEST_ASSERT_EQUAL_STRING_MESSAGE(value, node->value, key);
-}
-
 static void test_values_of_every_kind_are_read(void)
 {
-	struct rio_node *root = parse("A { W 0x0118\n N -4.7 S \"a b\" L [ 0 \"]\" 0 ]\n E \"\" B { } }");
+	struct rio_node *root =
+		rio_case_parse("A { W 0x0118\n N -4.7 S \"a b\" L [ 0 \"]\" 0 ]\n E \"\" B { } }");
 	struct rio_node *a = rio_child(root, "A");
 
-	expect_value(root, "A", RIO_BLOCK, "");
-	expect_value(a, "W", RIO_WORD, "0x0118");
-	expect_value(a, "N", RIO_WORD, "-4.7");
-	expect_value(a, "S", RIO_STRING, "a b");
-	expect_value(a, "L", RIO_LIST, "[ 0 \"]\" 0 ]");
-	expect_value(a, "E", RIO_STRING, "");
-	expect_value(a, "B", RIO_BLOCK, "");
+	rio_case_expect(root, "A", RIO_BLOCK, "");
+	rio_case_expect(a, "W", RIO_WORD, "0x0118");
+	rio_case_expect(a, "N", RIO_WORD, "-4.7");
+	rio_case_expect(a, "S", RIO_STRING, "a b");
+	rio_case_expect(a, "L", RIO_LIST, "[ 0 \"]\" 0 ]");
+	rio_case_expect(a, "E", RIO_STRING, "");
+	rio_case_expect(a, "B", RIO_BLOCK, "");
 	TEST_ASSERT_NULL(rio_child(a, "C"));
 	TEST_ASSERT_EQUAL_PTR(a, a->first->parent);
 }
 
 static void test_adjacent_strings_are_one(void)
 {
-	struct rio_node *root = parse("P \"abc\"\n\"def\" \"ghi\"\n# no part\n\"jkl\"\nQ \"x\"");
+	struct rio_node *root =
+		rio_case_parse("P \"abc\"\n\"def\" \"ghi\"\n# no part\n\"jkl\"\nQ \"x\"");
 
-	expect_value(root, "P", RIO_STRING, "abcdefghijkl");
-	expect_value(root, "Q", RIO_STRING, "x");
+	rio_case_expect(root, "P", RIO_STRING, "abcdefghijkl");
+	rio_case_expect(root, "Q", RIO_STRING, "x");
 	TEST_ASSERT_EQUAL_INT(5, rio_child(root, "Q")->at.line);
 }
 
 static void test_a_string_may_begin_in_the_line_behind_its_key(void)
 {
-	expect_value(parse("P\n  \"abc\"\n"), "P", RIO_STRING, "abc");
+	rio_case_expect(rio_case_parse("P\n  \"abc\"\n"), "P", RIO_STRING, "abc");
 }
 
 static void test_backslashes_escape_quotes_and_themselves_only(void)
 {
-	expect_value(parse("P \"a\\\"b\\\\c\\n\""), "P", RIO_STRING, "a\"b\\c\\n");
+	rio_case_expect(rio_case_parse("P \"a\\\"b\\\\c\\n\""), "P", RIO_STRING, "a\"b\\c\\n");
 }
 
 static void test_comments_and_commented_keys_are_skipped(void)
 {
-	struct rio_node *root = parse("#Comment1 \"not { this\"\n#\"continued\"\n#GUID 7dbe\n"
+	struct rio_node *root =
+		rio_case_parse("#Comment1 \"not { this\"\n#\"continued\"\n#GUID 7dbe\n"
 	                              "A { # behind {\n  X \"#\" # no comment in a string\n#}\n}\n#");
 
-	expect_value(rio_child(root, "A"), "X", RIO_STRING, "#");
+	rio_case_expect(rio_child(root, "A"), "X", RIO_STRING, "#");
 	TEST_ASSERT_NULL(root->first->next);
 }
 
 static void test_lines_and_columns_are_those_of_an_editor(void)
 {
-	struct rio_node *root = parse("A {\r\n\tKey \"\xc3\xa4\"  Next 1 }\r\n");
+	struct rio_node *root = rio_case_parse("A {\r\n\tKey \"\xc3\xa4\"  Next 1 }\r\n");
 	struct rio_node *a = rio_child(root, "A");
 
 	TEST_ASSERT_EQUAL_INT(1, a->at.line);
@@ -120,31 +103,31 @@ static void test_a_line_ends_with_lf_or_crlf_or_cr(void)
 	};
 
 	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
-		struct rio_node *root = parse(cases[i].text);
+		struct rio_node *root = rio_case_parse(cases[i].text);
 
 		TEST_ASSERT_EQUAL_STRING(cases[i].line_end, rio->line_end);
 		TEST_ASSERT_EQUAL_INT(2, root->first->at.line);
 		TEST_ASSERT_EQUAL_INT(4, rio_child(root, "B")->at.line);
-		expect_value(root, "B", RIO_STRING, "12");
+		rio_case_expect(root, "B", RIO_STRING, "12");
 		TEST_ASSERT_EQUAL_INT(7, rio_child(root, "C")->at.line);
 		TEST_ASSERT_EQUAL_INT(3, rio_child(root, "C")->value_at.column);
 	}
-	TEST_ASSERT_EQUAL_STRING("\n", (parse("A 1"), rio->line_end));
+	TEST_ASSERT_EQUAL_STRING("\n", (rio_case_parse("A 1"), rio->line_end));
 }
 
 static void test_a_byte_order_mark_is_no_part_of_the_first_key(void)
 {
-	struct rio_node *root = parse("\xef\xbb\xbf" "A 1");
+	struct rio_node *root = rio_case_parse("\xef\xbb\xbf" "A 1");
 
-	expect_value(root, "A", RIO_WORD, "1");
+	rio_case_expect(root, "A", RIO_WORD, "1");
 	TEST_ASSERT_EQUAL_INT(1, root->first->at.column);
 	TEST_ASSERT_EQUAL_size_t(3, root->first->begin);
 }
 
 static void test_empty_texts_are_documents_without_keys(void)
 {
-	TEST_ASSERT_NULL(parse("")->first);
-	TEST_ASSERT_NULL(parse("\n\r\n \t# x")->first);
+	TEST_ASSERT_NULL(rio_case_parse("")->first);
+	TEST_ASSERT_NULL(rio_case_parse("\n\r\n \t# x")->first);
 }
 
 static void test_syntax_errors_say_place_and_expectation(void)

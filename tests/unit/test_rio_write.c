@@ -1,32 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 #include "src/config/rio_write.h"
 
-#include "tests/unit/said.h"
+#include "tests/unit/rio_case.h"
 #include "unity.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static struct rio *rio;
-
 void setUp(void)
 {
-	said_begin();
-	rio = NULL;
+	rio_case_begin();
 }
 
 void tearDown(void)
 {
-	rio_free(rio);
-}
-
-static struct rio_node *parse(const char *text)
-{
-	rio_free(rio);
-	TEST_ASSERT_EQUAL_INT(0, rio_parse("f", text, strlen(text), &report, &rio));
-	TEST_ASSERT_EQUAL_STRING("", said);
-	return &rio->root;
+	rio_case_end();
 }
 
 static void expect_text(const char *text)
@@ -35,19 +24,10 @@ static void expect_text(const char *text)
 	TEST_ASSERT_EQUAL_STRING(text, rio->text);
 }
 
-static void expect_value(const struct rio_node *block, const char *key, enum rio_kind kind,
-                         const char *value)
-{
-	const struct rio_node *node = rio_child(block, key);
-
-	TEST_ASSERT_NOT_NULL_MESSAGE(node, key);
-	TEST_ASSERT_EQUAL_INT_MESSAGE(kind, node->kind, key);
-	TEST_ASSERT_EQUAL_STRING_MESSAGE(value, node->value, key);
-}
-
 static void test_a_changed_value_changes_nothing_else(void)
 {
-	struct rio_node *a = rio_child(parse("# top\r\nA {\r\n\tX   1  # one\r\n  Y \"two\"\r\n}"), "A");
+	struct rio_node *a =
+		rio_child(rio_case_parse("# top\r\nA {\r\n\tX   1  # one\r\n  Y \"two\"\r\n}"), "A");
 
 	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, a, "X", "22"));
 	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, rio_child(&rio->root, "A"), "Y", "\"2\""));
@@ -56,16 +36,17 @@ static void test_a_changed_value_changes_nothing_else(void)
 
 static void test_a_value_that_touches_its_key_does_not_become_a_part_of_it(void)
 {
-	parse("A { X=1 Y\"2\" }");
+	rio_case_parse("A { X=1 Y\"2\" }");
 	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, rio_child(&rio->root, "A"), "X", "22"));
 	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, rio_child(&rio->root, "A"), "Y", "3"));
 	expect_text("A { X 22 Y 3 }");
-	expect_value(rio_child(&rio->root, "A"), "X", RIO_WORD, "22");
+	rio_case_expect(rio_child(&rio->root, "A"), "X", RIO_WORD, "22");
 }
 
 static void test_a_new_key_goes_behind_the_values_with_their_indent_and_line_end(void)
 {
-	struct rio_node *a = rio_child(parse("A {\r\n   X 1 # one\r\n   B { Z 1 }\r\n}\r\n"), "A");
+	struct rio_node *a =
+		rio_child(rio_case_parse("A {\r\n   X 1 # one\r\n   B { Z 1 }\r\n}\r\n"), "A");
 
 	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, a, "New", "7"));
 	expect_text("A {\r\n   X 1 # one\r\n   New                     7\r\n   B { Z 1 }\r\n}\r\n");
@@ -80,10 +61,10 @@ static void test_an_empty_block_opens_for_its_first_key(void)
 	static const char *const empty[] = {"A { }", "A {\n}", "A {}"};
 
 	for (size_t i = 0; i < sizeof(empty) / sizeof(empty[0]); i++) {
-		struct rio_node *a = rio_child(parse(empty[i]), "A");
+		struct rio_node *a = rio_child(rio_case_parse(empty[i]), "A");
 
 		TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, a, "K", "1"));
-		expect_value(rio_child(&rio->root, "A"), "K", RIO_WORD, "1");
+		rio_case_expect(rio_child(&rio->root, "A"), "K", RIO_WORD, "1");
 		TEST_ASSERT_EQUAL_CHAR('}', rio->text[rio->len - 1]);
 		TEST_ASSERT_EQUAL_CHAR('\n', rio->text[rio->len - 2]);
 	}
@@ -91,17 +72,18 @@ static void test_an_empty_block_opens_for_its_first_key(void)
 
 static void test_a_key_added_behind_a_block_whose_end_shares_its_line_stays_inside(void)
 {
-	struct rio_node *a = rio_child(parse("A {\n  X 1 }"), "A");
+	struct rio_node *a = rio_child(rio_case_parse("A {\n  X 1 }"), "A");
 
 	TEST_ASSERT_EQUAL_INT(0, rio_set(&rio, a, "Y", "2"));
-	expect_value(rio_child(&rio->root, "A"), "Y", RIO_WORD, "2");
+	rio_case_expect(rio_child(&rio->root, "A"), "Y", RIO_WORD, "2");
 	TEST_ASSERT_NULL(rio_child(&rio->root, "Y"));
 }
 
 static void test_a_removed_block_takes_its_lines_along_and_leaves_comments(void)
 {
-	struct rio_node *a =
-		rio_child(parse("A {\n  # first\n  B {\n    X 1\n  }\n  # second\n  C { Y 2 }\n}\n"), "A");
+	struct rio_node *root =
+		rio_case_parse("A {\n  # first\n  B {\n    X 1\n  }\n  # second\n  C { Y 2 }\n}\n");
+	struct rio_node *a = rio_child(root, "A");
 
 	TEST_ASSERT_EQUAL_INT(0, rio_remove(&rio, rio_child(a, "B")));
 	expect_text("A {\n  # first\n  # second\n  C { Y 2 }\n}\n");
@@ -132,7 +114,7 @@ static void test_strings_are_wrapped_only_when_long_and_read_back(void)
 		text[len] = '\0';
 		quoted = rio_quote(text);
 		snprintf(document, sizeof(document), "K %s", quoted);
-		expect_value(parse(document), "K", RIO_STRING, text);
+		rio_case_expect(rio_case_parse(document), "K", RIO_STRING, text);
 		rio_quote_free(quoted);
 	}
 }
