@@ -7,6 +7,7 @@ import glob
 import json
 import os
 import pty
+import re
 import select
 import shutil
 import signal
@@ -21,7 +22,7 @@ RUN = owsdtest.SOURCE / "board/demo/run"
 class Terminal:
     """board/demo/run on a terminal of its own."""
 
-    def __init__(self, scene, *arguments, name=None):
+    def __init__(self, scene, *arguments, name=None, build=owsdtest.BUILD, cwd=None):
         for program in (owsdtest.OWSD, owsdtest.OWSCTL):
             owsdtest.need(program)
         self.name = name or scene.name()
@@ -33,8 +34,9 @@ class Terminal:
         except OSError as why:
             owsdtest.skip(f"no pseudo-terminal to be had: {why}")
         if self.pid == 0:
+            os.chdir(cwd or os.getcwd())
             os.environ.update(OWSERVER=f"127.0.0.1:{self.port}", NAME=self.name, TERM="vt100",
-                              OWSD_BUILD=str(owsdtest.BUILD))
+                              OWSD_BUILD=str(build))
             os.execvp("sh", ["sh", str(RUN), *arguments])
 
     def shows(self, what):
@@ -76,7 +78,7 @@ class Terminal:
             while not self.ended():
                 if self.master is not None and select.select([self.master], [], [], 0.02)[0]:
                     try:
-                        os.read(self.master, 65536)
+                        self.text += os.read(self.master, 65536).decode(errors="replace")
                     except OSError:
                         time.sleep(0.02)
                 elif self.master is None:
@@ -100,8 +102,8 @@ class Terminal:
             self.status = -1
 
 
-def shown(scene, *arguments, says=("ALL VALUES ARE SIMULATED",), row="living"):
-    terminal = Terminal(scene, *arguments)
+def shown(scene, *arguments, says=("ALL VALUES ARE SIMULATED",), row="living", **where):
+    terminal = Terminal(scene, *arguments, **where)
     try:
         for what in (*says, "Ctrl-C ends it all", row):
             terminal.shows(what)
@@ -120,6 +122,27 @@ def test_it_shows_values_and_ctrl_c_leaves_nothing_behind(scene):
     os.write(terminal.master, b"\x03")
     terminal.gone()
     nothing_in_memory(terminal)
+
+
+def test_the_commands_that_it_names_work_as_typed_and_are_named_again_at_its_end(scene):
+    checkout = scene.path / "checkout"
+    (checkout / "out").mkdir(parents=True)
+    for program in (owsdtest.OWSD, owsdtest.OWSCTL):
+        (checkout / "out" / program.name).symlink_to(program)
+    for build, begins in ((checkout / "out", "out/owsctl "), (owsdtest.BUILD, f"{owsdtest.OWSCTL.absolute()} ")):
+        terminal = shown(scene, build=build, cwd=checkout)
+        try:
+            commands = re.findall(r"^    (\S.*?)\r?$", terminal.text.split("\033[?1049h")[0], re.M)
+            assert len(commands) >= 2 and all(c.startswith(begins) for c in commands), commands
+            for command in commands:
+                done = scene._run(["sh", "-c", f"cd {checkout} && {command}"], 30)
+                assert done.returncode == 0, (command, done)
+        finally:
+            os.write(terminal.master, b"\x03")
+            terminal.gone()
+        after = terminal.text.rpartition("\033[?1049l")[2]
+        for command in commands:
+            assert f"    {command}\r\n" in after, (command, after)
 
 
 def test_sigterm_leaves_nothing_behind(scene):
