@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* owsd's command line, and the messages about it. */
 #include "arguments.h"
 
 #include "hal/bus.h"
@@ -57,7 +58,8 @@ static void usage(FILE *out)
 {
 	fputs("usage: owsd [-c FILE] [-n NAME] [-t TARGET]... [-l [HOST:]PORT]...\n"
 	      "            [--check] [--board[=ID]] [--rt PRIO] [-v] [-V] [-h]\n"
-	      "  -c, --config FILE   configuration (" ARGUMENTS_DIR "/NAME.rio)\n"
+	      "  -c, --config FILE   configuration (" ARGUMENTS_DIR "/NAME.rio);\n"
+	      "                      without that file -t and -l serve the devices, no signals\n"
 	      "  -n, --name NAME     instance: signal prefix and name of the segments (OWS)\n"
 	      "  -t, --target TARGET in place of TargetName; again for another wire\n"
 	      "  -l, --listen ADDRESS in place of Listen: serve the owserver protocol at PORT of this\n"

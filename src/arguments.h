@@ -23,6 +23,7 @@ struct arguments {
 	enum log_level level;
 	int rt_priority;
 	bool check, board;
+	bool needs_no_file; /* file is absent, and what is served is named by targets and listens */
 	const char *board_id, *root;
 };
 

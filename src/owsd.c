@@ -83,10 +83,25 @@ static int check_target(const struct config *config, const struct config_target 
 	return err;
 }
 
+static bool has_file(const struct arguments *a)
+{
+	return access(a->file, F_OK) == 0 || errno != ENOENT;
+}
+
+static int read_file(const struct arguments *a, struct config_report *report,
+                     struct config **config)
+{
+	static const char empty[] = "OwsDrv {\n}\n";
+
+	if (!a->needs_no_file || has_file(a))
+		return config_load(a->file, report, config);
+	return config_parse("no file", empty, sizeof(empty) - 1, report, config);
+}
+
 static int load(const struct arguments *a, struct log *log, struct config **config)
 {
 	struct config_report report = { .line = say, .ctx = log };
-	int err = config_load(a->file, &report, config);
+	int err = read_file(a, &report, config);
 
 	if (err)
 		return err;
@@ -162,7 +177,7 @@ static void tell(const struct host *host, const struct arguments *a, struct log 
 
 	name_targets(config, targets, sizeof(targets));
 	log_notice(log, "owsd %s: instance %s, %u signals from %s, target %s", OWSD_VERSION,
-	           a->instance, config->item_count, a->file, targets);
+	           a->instance, config->item_count, config->file, targets);
 	notify_status(notify, "%u signals, target %s", config->item_count, targets);
 }
 
@@ -275,6 +290,16 @@ static int run(const struct arguments *a, struct config *config, struct instance
 	return ours ? EXIT_SUCCESS : EXIT_RUN;
 }
 
+static void say_no_file(const struct arguments *a)
+{
+	complain("-c FILE names another; owsctl -t %s scan --rio makes one",
+	         a->target_count ? a->targets[0] : "auto");
+	complain("to serve the devices without a configuration, give %s",
+	         a->target_count   ? "-l PORT too"
+	         : a->listen_count ? "-t TARGET too"
+	                           : "-t TARGET and -l PORT");
+}
+
 int main(int argc, char **argv)
 {
 	struct config *config;
@@ -300,9 +325,11 @@ int main(int argc, char **argv)
 		return status;
 	if (a.board)
 		return tell_board(&a);
+	/* decided once: a file that goes later is missing at a reload */
+	a.needs_no_file = a.file == a.default_file && a.target_count && a.listen_count && !has_file(&a);
 	if (load(&a, NULL, &config)) {
-		if (a.file == a.default_file && access(a.file, F_OK) < 0)
-			complain("-c FILE names another; owsctl -t auto scan --rio makes one");
+		if (a.file == a.default_file && !has_file(&a))
+			say_no_file(&a);
 		return EXIT_USAGE;
 	}
 	if (a.check) {

@@ -295,7 +295,8 @@ class Owsd(Program):
         address = str(scene.path / f"n{next(_serial)}")
         self.notify.bind(address)
         os.chmod(address, 0o777)  # owsd may run as another user
-        super().__init__(scene, [*prefix, OWSD, "-n", name, "-c", config, *options],
+        super().__init__(scene, [*prefix, OWSD, "-n", name, *(["-c", config] if config else []),
+                                 *options],
                          {"NOTIFY_SOCKET": address, **(env or {})})
 
     def ready(self, seconds=PATIENCE):
@@ -385,8 +386,8 @@ class Scene:
         return new
 
     def owsd(self, config, *options, name=None, env=None, ready=True, prefix=()):
-        """Start owsd with the text (or the path) of a configuration; ready unless said otherwise.
-        prefix: a program that becomes owsd, with its arguments."""
+        """Start owsd with the text (or the path) of a configuration, None: without -c; ready unless
+        said otherwise. prefix: a program that becomes owsd, with its arguments."""
         need(OWSD)
         name = name or self.name()
         if isinstance(config, str):

@@ -91,7 +91,7 @@ def owsd(arguments):
     for option in ("-n", "-l"):
         for at in (i + 1 for i, w in enumerate(words) if w == option):
             words[at] = NAME + "d" if option == "-n" else f"127.0.0.1:{owsdtest.free_port()}"
-    if "-c" not in words:
+    if "-c" not in words and not {"-t", "-l"} <= set(words):
         words += ["-c", str(STAGE / "root/etc/owsd/OWS.rio")]
     if {"--check", "-V", "--version", "-h", "--help"} & set(words):
         run([BUILD / "owsd", *words])

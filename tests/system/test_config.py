@@ -183,6 +183,7 @@ def test_a_start_without_a_configuration_says_how_to_come_to_one(scene):
     done = scene._run([owsdtest.OWSD, "-n", scene.name()], 20)
     assert done.returncode == 2
     assert "No such file or directory" in done.stderr and "scan --rio" in done.stderr, done.stderr
+    assert "without a configuration, give -t TARGET and -l PORT" in done.stderr, done.stderr
     done = scene._run([owsdtest.OWSD, "-c", scene.path / "none.rio"], 20)
     assert done.returncode == 2 and "scan --rio" not in done.stderr, done.stderr
 
