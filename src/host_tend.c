@@ -3,6 +3,7 @@
 #include "host_private.h"
 
 #include "libows/ows.h"
+#include "shm/segment.h"
 
 #include <errno.h>
 #include <string.h>
@@ -84,6 +85,7 @@ void host_mend(struct host *h)
 void host_tend(struct host *h)
 {
 	int64_t now_ns = ows_now();
+	char hint[SEGMENT_HINT];
 	int err = 0;
 
 	if ((h->unshown || h->unstarted) && now_ns >= h->mend_ns)
@@ -102,7 +104,7 @@ void host_tend(struct host *h)
 	}
 	if (err && log_rate(&h->tend_rate, now_ns))
 		log_err(h->log,
-		        "the command segment was taken away and cannot be made again: %s: "
+		        "the command segment was taken away and cannot be made again: %s%s: "
 		        "it is tried again every second",
-		        strerror(-err));
+		        strerror(-err), segment_hint(h->instance, err, hint));
 }

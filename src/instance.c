@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The lock that makes a process the one owsd of its instance, and the watch over its name. */
 #include "instance.h"
 
 #include "libows/ows.h"
@@ -11,21 +12,10 @@
 
 #define LOOK_NS 1000000000
 
-static const char *hint(int err)
-{
-	switch (-err) {
-	case EPERM:
-		return " (a file of another user, or none that is plain, is in the way in /dev/shm)";
-	case ENOSPC:
-		return " (/dev/shm is full)";
-	default:
-		return "";
-	}
-}
-
 int instance_take(struct instance *instance, const char *name, struct log *log, char *why,
                   size_t why_size)
 {
+	char hint[SEGMENT_HINT];
 	bool stolen = false;
 	pid_t owner = 0;
 	int lock = segment_lock(name, &owner, &stolen);
@@ -37,7 +27,7 @@ int instance_take(struct instance *instance, const char *name, struct log *log, 
 		         name, (int)owner);
 	else if (lock < 0)
 		snprintf(why, why_size, "cannot lock instance %s: %s%s", name, strerror(-lock),
-		         hint(lock));
+		         segment_hint(name, lock, hint));
 	if (stolen)
 		log_warning(log, "the owsd before cannot die (stuck in the kernel): its lock is left");
 	return lock < 0 ? lock : 0;
@@ -46,6 +36,7 @@ int instance_take(struct instance *instance, const char *name, struct log *log, 
 bool instance_keep(struct instance *instance, struct log *log)
 {
 	int64_t now_ns = ows_now();
+	char hint[SEGMENT_HINT];
 	bool stolen;
 	pid_t owner = 0;
 	int lock;
@@ -67,7 +58,7 @@ bool instance_keep(struct instance *instance, struct log *log)
 		return false;
 	} else if (log_rate(&instance->rate, now_ns)) {
 		log_err(log, "/dev/shm/owsd.%s.lock was removed and cannot be made again: %s%s",
-		        instance->name, strerror(-lock), hint(lock));
+		        instance->name, strerror(-lock), segment_hint(instance->name, lock, hint));
 	}
 	return true;
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The segments of a running owsd: made, shown, renewed when a program destroys them, and retired. */
 #include "memory.h"
 
 #include "engine/table.h"
@@ -169,22 +170,9 @@ static void carry(struct memory *m, struct log *log)
 	segment_close(&before);
 }
 
-static const char *hint(int err)
-{
-	switch (-err) {
-	case ENOSPC:
-		return ": /dev/shm is full";
-	case EPERM:
-		return ": a file of another user is in the way in /dev/shm";
-	case EISDIR:
-		return ": a directory is in the way";
-	default:
-		return "";
-	}
-}
-
 int memory_make(struct memory *m, const struct memory_setup *setup, char *why, size_t why_size)
 {
+	char hint[SEGMENT_HINT];
 	struct segment before;
 	int err;
 
@@ -208,7 +196,7 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 		err = make_commands(m, &m->commands[0]);
 	if (err) {
 		snprintf(why, why_size, "cannot make the shared memory: %s%s", strerror(-err),
-		         hint(err));
+		         segment_hint(m->instance, err, hint));
 		memory_end(m);
 		return err;
 	}
@@ -255,6 +243,7 @@ static void retire(struct segment *before, struct log *log)
 
 int memory_show(struct memory *m, struct log *log, char *why, size_t why_size)
 {
+	char hint[SEGMENT_HINT];
 	struct segment before;
 	bool had_before = open_image_before(m->instance, &before);
 	int err;
@@ -266,9 +255,8 @@ int memory_show(struct memory *m, struct log *log, char *why, size_t why_size)
 		err = segment_show(m->instance, &m->image_segment);
 	if (err)
 		snprintf(why, why_size,
-		         "no program sees the values: cannot put the shared memory in place in "
-		         "/dev/shm: %s%s",
-		         strerror(-err), hint(err));
+		         "no program sees the values: cannot put the shared memory in place: %s%s",
+		         strerror(-err), segment_hint(m->instance, err, hint));
 	m->shown = !err;
 	if (!err)
 		say_private(m, log);

@@ -306,7 +306,7 @@ int main(int argc, char **argv)
 	struct arguments a;
 	struct instance instance;
 	struct log *log;
-	char why[256];
+	char why[512];
 	int status;
 
 #ifdef __GLIBC__

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The users and groups that the segments belong to, from /etc/passwd and /etc/group. */
 #include "owner.h"
 
 #include <grp.h>
@@ -43,6 +44,22 @@ bool owner_is_service(void)
 bool owner_trusted(uid_t uid)
 {
 	return uid == 0 || uid == geteuid() || is_service(uid);
+}
+
+void owner_name(uid_t uid, char name[OWNER_NAME])
+{
+	FILE *file = fopen("/etc/passwd", "re");
+	const struct passwd *entry;
+
+	snprintf(name, OWNER_NAME, "%lu", (unsigned long)uid);
+	while (file && (entry = fgetpwent(file)) != NULL)
+		if (entry->pw_uid == uid) {
+			snprintf(name, OWNER_NAME, "%.16s (%lu)", entry->pw_name,
+			         (unsigned long)uid);
+			break;
+		}
+	if (file)
+		fclose(file);
 }
 
 bool owner_group(const char *name, gid_t *gid)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The files of an instance in /dev/shm: made under a temporary name, shown, opened again, closed. */
 #include "segment.h"
 
 #include "owner.h"
@@ -8,11 +9,13 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #define SEGMENT_MIN 256
 #define SEGMENT_MAX 0x7fffffff
+#define NAME_TRIES  16
 
 static const struct segment_role {
 	const char *name, *group;
@@ -71,24 +74,45 @@ static int map(struct segment *segment)
 	return 0;
 }
 
+/*
+ * The first name is always the same, so that the next start removes what a killed one left. Any user
+ * can take that name: the others cannot be predicted.
+ */
+static int open_temporary(const char *instance, struct segment *segment)
+{
+	char path[80], suffix[12] = "";
+	uint32_t random;
+
+	final_path(instance, segment->kind, path);
+	for (int i = 0; i < NAME_TRIES; i++) {
+		snprintf(segment->temporary, sizeof(segment->temporary), "%.60s.new%s", path, suffix);
+		if (i == 0)
+			unlink(segment->temporary); /* the instance is locked: nobody uses it */
+		segment->fd = open(segment->temporary,
+		                   O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+		if (segment->fd >= 0)
+			return 0;
+		if (errno != EEXIST)
+			break;
+		if (getrandom(&random, sizeof(random), 0) != (ssize_t)sizeof(random))
+			break;
+		snprintf(suffix, sizeof(suffix), ".%08x", (unsigned)random);
+	}
+	segment->temporary[0] = '\0'; /* not ours to remove */
+	return errno == EEXIST ? -EPERM : -errno;
+}
+
 int segment_create(const char *instance, enum segment_kind kind, size_t size,
                    struct segment *segment)
 {
-	char path[80];
 	int err;
 
 	*segment = (struct segment){.fd = -1, .kind = kind, .size = size};
 	if (!segment_name_ok(instance) || size < SEGMENT_MIN || size > SEGMENT_MAX)
 		return -EINVAL;
-	final_path(instance, kind, path);
-	snprintf(segment->temporary, sizeof(segment->temporary), "%.70s.new", path);
-	/* The instance is locked: what is there is left from a start that was killed. */
-	if (unlink(segment->temporary) < 0 && errno != ENOENT)
-		return errno == EACCES ? -EPERM : -errno;
-	segment->fd = open(segment->temporary, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
-	                   0600);
-	if (segment->fd < 0)
-		return errno == EEXIST ? -EPERM : -errno;
+	err = open_temporary(instance, segment);
+	if (err)
+		return err;
 	err = allocate(segment->fd, size);
 	if (!err)
 		err = map(segment);

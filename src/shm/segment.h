@@ -36,7 +36,7 @@ struct segment {
 };
 
 /*
- * Make a segment of size zeroed bytes under a temporary name, all pages allocated (no SIGBUS later
+ * Make a segment of size zeroed bytes under a temporary name that nobody can keep from it, all pages allocated (no SIGBUS later
  * when /dev/shm is full: -ENOSPC now). Mode 0640 group owsd, or 0660 group owsd-control, where
  * those groups exist and the caller may give files to them.
  */
@@ -52,6 +52,12 @@ bool segment_named(const char *instance, const struct segment *segment);
 /* Map what an earlier owsd left (writable). -ENOENT none; -EPERM of another user. */
 int segment_open_old(const char *instance, enum segment_kind kind, struct segment *segment);
 void segment_close(struct segment *segment);
+/*
+ * What stands behind an error of these functions, as the end of a message: /dev/shm is full, or which
+ * file is in the way, whose it is and how to remove it. Empty where nothing is known.
+ */
+#define SEGMENT_HINT 200
+const char *segment_hint(const char *instance, int err, char text[SEGMENT_HINT]);
 /* Remove the name (the command segment is left in place at an ordinary end). */
 int segment_remove(const char *instance, enum segment_kind kind);
 

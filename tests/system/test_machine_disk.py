@@ -115,7 +115,7 @@ def test_a_reload_whose_image_cannot_be_put_in_place_is_said_and_done_later(scen
     config.write_text(faulty.house(scene, more=True))
     daemon.signal(signal.SIGHUP)
     until(lambda: "no program sees the values" in daemon.log(), 10, "it is said")
-    owsdtest.logged(daemon, "a directory is in the way")
+    owsdtest.logged(daemon, f": a directory of user root (0) is in the way: as root, rm -r {SHM}/owsd.")
     owsdtest.logged(daemon, "again every second")
     until(lambda: daemon.log().count("no program sees") >= 2, 10, "and tried again")
     daemon.signal(signal.SIGHUP)  # has to wait
@@ -133,7 +133,7 @@ def test_a_start_whose_image_cannot_be_put_in_place_is_refused_with_a_reason(sce
     (SHM / f"owsd.{name}.image").mkdir()
     daemon = scene.owsd(faulty.house(scene), name=name, ready=False)
     assert daemon.wait() == 1
-    owsdtest.logged(daemon, "a directory is in the way")
+    owsdtest.logged(daemon, f": a directory of user root (0) is in the way: as root, rm -r {SHM}/owsd.")
     (SHM / f"owsd.{name}.image").rmdir()
 
 

@@ -158,7 +158,7 @@ def test_what_a_stranger_puts_in_the_way_is_refused_and_never_used(scene):
     os.chown(victim, private.OWSD, private.OWSD)
     for squat, how in SQUATS.items():
         # what is opened; the rest is only replaced
-        others = ("command", "image.new", "command.new") if "link to a" in squat else ()
+        others = ("command",) if "link to a" in squat else ()
         for kind in ("lock", "image", *others):
             name = scene.name()
             path = segment(name, kind)
@@ -167,7 +167,8 @@ def test_what_a_stranger_puts_in_the_way_is_refused_and_never_used(scene):
             inode = path.lstat().st_ino
             daemon = daemon_of(scene, name=name, ready=False)
             assert daemon.wait(20) == 1, (squat, kind, daemon.log())
-            owsdtest.logged(daemon, "in the way")
+            owsdtest.logged(daemon, f" of user stranger ({private.USERS['stranger'][0]}) is in the "
+                                    f"way: as root, rm -r {path}\n")
             assert path.lstat().st_ino == inode and victim.read_text() == "precious\n"
             assert not pathlib.Path("/tmp/nowhere").exists()
             # nor does a reader believe in it
@@ -178,21 +179,29 @@ def test_what_a_stranger_puts_in_the_way_is_refused_and_never_used(scene):
                 segment(name, rest).unlink()
 
 
-def test_a_reload_that_a_stranger_gets_in_the_way_of_changes_nothing(scene):
-    daemon = daemon_of(scene)
-    good(scene, daemon.name)
-    for kind in ("image.new", "command.new"):
-        path = segment(daemon.name, kind)
-        assert python(scene, "stranger", SQUATS["a file for all"].format(path=str(path))).returncode == 0
-        lines = daemon.log().count("all goes on as before")
+def test_no_temporary_name_that_a_stranger_takes_keeps_owsd_from_anything(scene):
+    for squat, how in SQUATS.items():
+        name = scene.name()
+        squats = [segment(name, kind) for kind in ("image.new", "command.new")]
+        for path in squats:
+            done = python(scene, "stranger", how.format(path=str(path), victim="/etc/passwd"))
+            assert done.returncode == 0, done
+        before = [path.lstat() for path in squats]
+        daemon = daemon_of(scene, name=name)
+        good(scene, name)
         daemon.signal(signal.SIGHUP)
-        until(lambda: daemon.log().count("all goes on as before") > lines, 20, kind)
-        owsdtest.logged(daemon, "a file of another user is in the way")
-        good(scene, daemon.name)
-        path.unlink()
-    daemon.signal(signal.SIGHUP)
-    until(lambda: "reload:" in daemon.log() and "2 of them go on" in daemon.log(), 20, "then it is done")
-    good(scene, daemon.name)
+        until(lambda: "2 of them go on" in daemon.log(), 20, lambda: f"{squat}: {daemon.log()}")
+        good(scene, name)
+        os.truncate(segment(name, "command"), 0)
+        until(lambda: ctl(scene, "plc", name, "set", "relays", "6").returncode == 0, 20, squat)
+        until(lambda: ctl(scene, "plc", name, "get", "relays").stdout.strip() == "6", 20, squat)
+        assert [path.lstat() for path in squats] == before, squat
+        assert daemon.stop() == 0
+        assert faulty.leftovers(name) == ["command", "command.new", "image", "image.new", "lock"]
+        for path in squats:
+            shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+        for rest in KINDS:
+            segment(name, rest).unlink()
 
 
 HOSTILE = """

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -58,12 +59,34 @@ static void test_segments_are_seen_once_they_are_shown(void)
 
 static void test_a_command_segment_that_cannot_be_made_leaves_nothing_behind(void)
 {
-	TEST_ASSERT_EQUAL_INT(0, mkdir(file("command.new"), 0700));
-	TEST_ASSERT_LESS_THAN_INT(0, make());
+	int next = open("/dev/null", O_RDONLY);
+	struct rlimit before, limit;
+
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, next);
+	close(next);
+	TEST_ASSERT_EQUAL_INT(0, getrlimit(RLIMIT_NOFILE, &before));
+	limit = before;
+	limit.rlim_cur = (rlim_t)next + 1; /* the image has the last one */
+	TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &limit));
+	TEST_ASSERT_EQUAL_INT(-EMFILE, make());
+	TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &before));
 	TEST_ASSERT_NOT_EQUAL_CHAR('\0', why[0]);
 	memory_end(&memory);
-	TEST_ASSERT_EQUAL_INT(0, rmdir(file("command.new")));
+	TEST_ASSERT_EQUAL_INT(-1, access(file("command.new"), F_OK));
 	TEST_ASSERT_EQUAL_INT(-1, access(file("image.new"), F_OK));
+}
+
+static void test_a_directory_under_a_name_is_named_with_its_remedy(void)
+{
+	char remedy[160];
+
+	TEST_ASSERT_EQUAL_INT(0, mkdir(file("image"), 0700));
+	TEST_ASSERT_EQUAL_INT(0, make());
+	TEST_ASSERT_LESS_THAN_INT(0, memory_show(&memory, NULL, why, sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(0, rmdir(file("image")));
+	snprintf(remedy, sizeof(remedy), " is in the way: as root, rm -r %s", path);
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, ": a directory of user "), why);
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, remedy), why);
 }
 
 static void test_a_start_that_fails_leaves_the_image_of_the_owsd_before(void)
@@ -110,6 +133,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_segments_are_seen_once_they_are_shown);
 	RUN_TEST(test_a_command_segment_that_cannot_be_made_leaves_nothing_behind);
+	RUN_TEST(test_a_directory_under_a_name_is_named_with_its_remedy);
 	RUN_TEST(test_a_start_that_fails_leaves_the_image_of_the_owsd_before);
 	RUN_TEST(test_memory_that_was_never_made_takes_no_descriptor_with_it);
 	RUN_TEST(test_a_segment_made_again_is_seen_once_it_is_shown);

@@ -76,6 +76,25 @@ static void test_a_segment_is_seen_only_after_it_is_shown(void)
 	TEST_ASSERT_TRUE(exists("command"));
 }
 
+static void test_no_temporary_name_that_is_taken_is_an_obstacle(void)
+{
+	struct segment other;
+	char path[80];
+
+	/* as a file of another user, a directory is not removed */
+	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.image.new", name);
+	TEST_ASSERT_EQUAL(0, mkdir(path, 0700));
+	TEST_ASSERT_EQUAL(0, segment_create(name, SEGMENT_IMAGE, SIZE, &other));
+	TEST_ASSERT_EQUAL_STRING_LEN(path, other.temporary, strlen(path));
+	TEST_ASSERT_EQUAL(strlen(path) + 9, strlen(other.temporary));
+	TEST_ASSERT_EQUAL(0, segment_show(name, &other));
+	TEST_ASSERT_TRUE(exists("image"));
+	segment_close(&other);
+	TEST_ASSERT_TRUE(exists("image.new"));
+	TEST_ASSERT_EQUAL(0, rmdir(path));
+	TEST_ASSERT_EQUAL(0, segment_remove(name, SEGMENT_IMAGE));
+}
+
 static void test_a_segment_never_shown_leaves_nothing_behind(void)
 {
 	segment_close(&segment);
@@ -431,6 +450,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_names_that_would_leave_the_directory_are_refused);
 	RUN_TEST(test_a_segment_is_seen_only_after_it_is_shown);
+	RUN_TEST(test_no_temporary_name_that_is_taken_is_an_obstacle);
 	RUN_TEST(test_a_segment_never_shown_leaves_nothing_behind);
 	RUN_TEST(test_a_segment_is_zeroed_whole_and_closed_to_others);
 	RUN_TEST(test_what_a_killed_start_left_is_no_obstacle);

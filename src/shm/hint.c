@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT */
+/* What stands behind an error of /dev/shm, for the log: it is full, or a file is in the way. */
+#include "segment.h"
+
+#include "owner.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* In a sticky directory only root and the owner replace a file; nobody replaces a directory. */
+static bool blocks(const struct stat *st)
+{
+	return !S_ISREG(st->st_mode) || !owner_trusted(st->st_uid) ||
+	       (geteuid() != 0 && st->st_uid != geteuid());
+}
+
+static const char *kind_of(const struct stat *st)
+{
+	if (S_ISREG(st->st_mode))
+		return "file";
+	if (S_ISDIR(st->st_mode))
+		return "directory";
+	return S_ISLNK(st->st_mode) ? "link" : "special file";
+}
+
+const char *segment_hint(const char *instance, int err, char text[SEGMENT_HINT])
+{
+	static const char *const kinds[] = {"lock", "image", "command"};
+	char path[80], user[OWNER_NAME];
+	struct stat st;
+
+	if (err == -ENOSPC)
+		return ": /dev/shm is full";
+	if (!segment_name_ok(instance))
+		return "";
+	for (size_t i = 0; i < sizeof(kinds) / sizeof(kinds[0]); i++) {
+		snprintf(path, sizeof(path), "/dev/shm/owsd.%s.%s", instance, kinds[i]);
+		if (lstat(path, &st) < 0 || !blocks(&st))
+			continue;
+		owner_name(st.st_uid, user);
+		snprintf(text, SEGMENT_HINT,
+		         ": a %s of user %s is in the way: as root, rm -r %s", kind_of(&st), user,
+		         path);
+		return text;
+	}
+	return "";
+}
