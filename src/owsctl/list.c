@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* owsctl list: a line for each signal. */
 #include "rows.h"
 #include "table.h"
 #include "verbs.h"
@@ -7,14 +8,15 @@
 #include <getopt.h>
 
 static const struct table_column columns[] = {
-	{"NAME"}, {"VALUE", .right = true, .most = 40}, {"QUALITY"}, {"AGE", .right = true},
-	{"TYPE"}, {"IO"}, {"TARGET"}, {"PATH"},
+	{"NAME"}, {"VALUE", .right = true, .most = 40}, {"QUALITY"}, {"ALARM"},
+	{"AGE", .right = true}, {"TYPE"}, {"IO"}, {"TARGET"}, {"PATH"},
 };
+enum { ALARM = 3 };
 
 static bool add_row(struct table *table, struct ows *h, const struct row *row,
                     const struct reading *reading)
 {
-	char value[128], words[READING_WORDS], span[WHEN_TEXT] = "-";
+	char value[128], words[READING_WORDS], alarm[STANDING_WORDS], span[WHEN_TEXT] = "-";
 	struct ows_target target = {.name = "-"};
 
 	reading_show(reading, value, sizeof(value));
@@ -23,21 +25,23 @@ static bool add_row(struct table *table, struct ows *h, const struct row *row,
 	if (row->path)
 		ows_target(h, reading->value.target, &target);
 	return table_add(table, (const char *const[]){
-		                        row->name, value, reading_quality(reading, words), span,
+		                        row->name, value, reading_quality(reading, words),
+		                        standing_text(&row->alarms, alarm), span,
 		                        value_type_name((enum ows_type)reading->value.type),
 		                        !row->path ? "" : row->output ? "out" : "in",
 		                        target.name, row->path ? row->path : ""});
 }
 
-static bool print_table(struct ows *h, const struct rows *rows, struct reading *reading)
+static bool print_table(struct ows *h, struct rows *rows, struct reading *reading)
 {
 	struct table table;
 	char line[2048];
 	bool ok = true;
 
 	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
+	table.absent[ALARM] = !rows_have_alarms(h, rows);
 	for (int i = 0; ok && i < rows->count; i++) {
-		reading_get(h, rows->row[i].id, ows_now(), reading);
+		row_read(h, &rows->row[i], ows_now(), reading);
 		ok = add_row(&table, h, &rows->row[i], reading);
 	}
 	table_fit(&table, 0);
@@ -49,7 +53,7 @@ static bool print_table(struct ows *h, const struct rows *rows, struct reading *
 	return ok;
 }
 
-static void print_json(struct ows *h, const struct rows *rows, struct reading *reading)
+static void print_json(struct ows *h, struct rows *rows, struct reading *reading)
 {
 	struct when now = when_now();
 	struct json json;
@@ -57,7 +61,7 @@ static void print_json(struct ows *h, const struct rows *rows, struct reading *r
 	json_open(&json, stdout);
 	json_array(&json, NULL);
 	for (int i = 0; i < rows->count; i++) {
-		reading_get(h, rows->row[i].id, now.boot, reading);
+		row_read(h, &rows->row[i], now.boot, reading);
 		json_object(&json, NULL);
 		row_json(&json, &rows->row[i]);
 		reading_json(&json, h, reading, &now);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The signals that patterns select, and what is known of each. */
 #include "rows.h"
 #include "names.h"
 
@@ -63,6 +64,23 @@ void rows_free(struct rows *rows)
 	rows->count = 0;
 }
 
+void row_read(struct ows *h, struct row *row, int64_t now_ns, struct reading *reading)
+{
+	reading_get(h, row->id, now_ns, reading);
+	row->alarms = standing_of(h, row->id);
+}
+
+bool rows_have_alarms(struct ows *h, const struct rows *rows)
+{
+	for (int i = 0; i < rows->count; i++) {
+		struct ows_alarm_state alarms = standing_of(h, rows->row[i].id);
+
+		if (standing_possible(&alarms))
+			return true;
+	}
+	return false;
+}
+
 static uint64_t hash(const char *text, size_t len)
 {
 	uint64_t h = UINT64_C(0xcbf29ce484222325);
@@ -78,12 +96,17 @@ bool row_changed(struct row *row, const struct reading *reading)
 	int32_t err = reading_filled(reading) ? reading->value.err : reading->err;
 	uint64_t text_hash = hash(reading->text, reading->len);
 	bool changed = !row->seen || row->quality != quality || row->err != err ||
-	               row->text_hash != text_hash;
+	               row->text_hash != text_hash || row->stands != row->alarms.stands ||
+	               row->limit_state != row->alarms.limit_state ||
+	               row->limit_kind != row->alarms.limit_kind;
 
 	row->seen = true;
 	row->quality = quality;
 	row->err = err;
 	row->text_hash = text_hash;
+	row->stands = row->alarms.stands;
+	row->limit_state = row->alarms.limit_state;
+	row->limit_kind = row->alarms.limit_kind;
 	return changed;
 }
 
@@ -96,4 +119,5 @@ void row_json(struct json *json, const struct row *row)
 	json_string(json, "io", row->output ? "output" : "input");
 	json_bool(json, "uncached", row->fresh);
 	json_bool(json, "alarm", row->alarm);
+	standing_json(json, &row->alarms);
 }

@@ -4,17 +4,20 @@
 #define OWSCTL_ROWS_H
 
 #include "reading.h"
+#include "standing.h"
 
 struct row {
 	int id; /* for ows_get(); right over ows_reopen() */
 	char *name;
 	char *path; /* NULL: a driver signal */
 	bool output, fresh, alarm;
+	struct ows_alarm_state alarms; /* of the last row_read() */
 	/* what was seen last, see row_changed() */
 	bool seen;
 	uint8_t quality;
 	int32_t err;
 	uint64_t text_hash;
+	uint8_t stands, limit_state, limit_kind;
 };
 struct rows {
 	struct row *row;
@@ -26,10 +29,15 @@ int rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool d
                  struct rows *rows);
 void rows_free(struct rows *rows);
 
-/* Is value, quality or error another one than at the call before? */
+/* Its value, and how its alarms stand. */
+void row_read(struct ows *h, struct row *row, int64_t now_ns, struct reading *reading);
+/* Can one of the signals have alarms? */
+bool rows_have_alarms(struct ows *h, const struct rows *rows);
+
+/* Is value, quality, error or an alarm another one than at the call before? */
 bool row_changed(struct row *row, const struct reading *reading);
 
-/* name, output, path and the like as members of a JSON object. */
+/* name, output, path, alarms and the like as members of a JSON object. */
 void row_json(struct json *json, const struct row *row);
 
 #endif

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A table of text cells: collected, fitted into the terminal, printed line by line. */
 #include "table.h"
 #include "text.h"
 
@@ -61,51 +62,120 @@ static unsigned total(const struct table *table)
 	return sum;
 }
 
-static int to_drop(const struct table *table)
+static int to_drop(const struct table *table, bool spare_only)
 {
 	int found = -1;
 
 	for (unsigned i = 0; i < table->count; i++)
 		if (table->shown[i] && table->columns[i].drop > 0 &&
+		    (table->columns[i].spare || !spare_only) &&
 		    (found < 0 || table->columns[i].drop > table->columns[found].drop))
 			found = (int)i;
 	return found;
 }
 
-static unsigned widest(const struct table *table)
+/* How far a column may be cut before another is left out. */
+static unsigned shrunk(const struct table *table, unsigned i)
 {
-	unsigned found = 0;
+	unsigned to = table->columns[i].shrink;
 
-	for (unsigned i = 1; i < table->count; i++)
-		if (table->shown[i] &&
-		    (!table->shown[found] || table->width[i] > table->width[found]))
-			found = i;
+	return to > 0 && to < table->width[i] ? to : table->width[i];
+}
+
+/* Columns that cutting can gain. */
+static unsigned slack(const struct table *table)
+{
+	unsigned sum = 0;
+
+	for (unsigned i = 0; i < table->count; i++)
+		if (table->shown[i])
+			sum += table->width[i] - shrunk(table, i);
+	return sum;
+}
+
+/* The widest column that may be cut (gently: not below its shrink), or -1. */
+static int widest(const struct table *table, bool gently)
+{
+	int found = -1;
+
+	for (unsigned i = 0; i < table->count; i++)
+		if (table->shown[i] && table->width[i] > (gently ? shrunk(table, i) : LEAST) &&
+		    (found < 0 || table->width[i] > table->width[found]))
+			found = (int)i;
 	return found;
+}
+
+static unsigned larger(unsigned a, unsigned b)
+{
+	return a > b ? a : b;
+}
+
+/* Columns of a plain number from its decimal point on; -1: the cell holds no such number. */
+static int fraction_of(const char *cell)
+{
+	size_t digits, len = strspn(cell, "-");
+
+	digits = strspn(cell + len, "0123456789");
+	len += digits;
+	if (digits == 0 || strspn(cell, "-") > 1)
+		return -1;
+	if (!cell[len])
+		return 0;
+	digits = strspn(cell + len + 1, "0123456789");
+	return cell[len] == '.' && digits > 0 && !cell[len + 1 + digits] ? (int)digits + 1 : -1;
+}
+
+/* The width of a column, and how far its fractions go. */
+static void measure(struct table *table, unsigned i)
+{
+	unsigned whole = 0, other = text_columns(table->columns[i].title);
+
+	table->fraction[i] = 0;
+	for (size_t row = 0; row < table->rows; row++) {
+		const char *cell = table->cells[row * table->count + i];
+		unsigned width = text_columns(cell);
+		int fraction = table->columns[i].right ? fraction_of(cell) : -1;
+
+		if (fraction < 0) {
+			other = larger(other, width);
+			continue;
+		}
+		whole = larger(whole, width - (unsigned)fraction);
+		table->fraction[i] = larger(table->fraction[i], (unsigned)fraction);
+	}
+	table->width[i] = larger(larger(other, whole + table->fraction[i]), table->least[i]);
+	table->natural[i] = table->width[i];
 }
 
 void table_fit(struct table *table, unsigned columns)
 {
-	int drop;
+	int i;
 
-	for (unsigned i = 0; i < table->count; i++) {
-		table->shown[i] = true;
-		table->width[i] = text_columns(table->columns[i].title);
-		for (size_t row = 0; row < table->rows; row++) {
-			unsigned width = text_columns(table->cells[row * table->count + i]);
-
-			if (width > table->width[i])
-				table->width[i] = width;
-		}
-		if (table->width[i] < table->least[i])
-			table->width[i] = table->least[i];
-		table->natural[i] = table->width[i];
+	for (unsigned k = 0; k < table->count; k++) {
+		table->shown[k] = !table->absent[k];
+		measure(table, k);
 	}
 	if (columns == 0)
 		return;
-	while (total(table) > columns && (drop = to_drop(table)) >= 0)
-		table->shown[drop] = false;
-	while (total(table) > columns && table->width[widest(table)] > LEAST)
-		table->width[widest(table)]--;
+	while (total(table) > columns && (i = to_drop(table, true)) >= 0)
+		table->shown[i] = false;
+	while (total(table) > columns + slack(table) && (i = to_drop(table, false)) >= 0)
+		table->shown[i] = false;
+	while (total(table) > columns && (i = widest(table, true)) >= 0)
+		table->width[i]--;
+	while (total(table) > columns && (i = widest(table, false)) >= 0)
+		table->width[i]--;
+}
+
+/* Blanks behind a cell of a right column, so that the decimal points stand below each other. */
+static unsigned behind(const struct table *table, unsigned i, const char *cell, unsigned pad)
+{
+	int fraction = table->columns[i].right ? fraction_of(cell) : -1;
+
+	if (fraction < 0 || table->width[i] < table->natural[i])
+		return 0;
+	return table->fraction[i] - (unsigned)fraction < pad ? table->fraction[i] - (unsigned)fraction
+	                                                     : pad;
 }
 
 size_t table_line(const struct table *table, int row, char *line, size_t size)
@@ -116,12 +186,13 @@ size_t table_line(const struct table *table, int row, char *line, size_t size)
 		const char *cell = row < 0 ? table->columns[i].title
 		                           : table->cells[(size_t)row * table->count + i];
 		char cut[CELL];
-		size_t pad, bytes;
+		size_t pad, tail, bytes;
 
 		if (!table->shown[i])
 			continue;
 		pad = table->width[i] -
 		      text_clean(cell, strlen(cell), table->width[i], cut, sizeof(cut));
+		tail = table->columns[i].right ? behind(table, i, cell, (unsigned)pad) : pad;
 		bytes = strlen(cut);
 		if (len + GAP + pad + bytes >= size)
 			break;
@@ -129,18 +200,14 @@ size_t table_line(const struct table *table, int row, char *line, size_t size)
 			memset(line + len, ' ', GAP);
 			len += GAP;
 		}
-		if (table->columns[i].right) {
-			memset(line + len, ' ', pad);
-			len += pad;
-		}
+		memset(line + len, ' ', pad - tail);
+		len += pad - tail;
 		memcpy(line + len, cut, bytes);
 		len += bytes;
 		if (bytes > 0)
 			end = len;
-		if (!table->columns[i].right) {
-			memset(line + len, ' ', pad);
-			len += pad;
-		}
+		memset(line + len, ' ', tail);
+		len += tail;
 	}
 	line[end] = '\0';
 	return end;

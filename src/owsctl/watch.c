@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* owsctl watch: follow signals over changes and restarts, as lines or as a live table. */
 #include "watch.h"
 #include "terminal.h"
 #include "verbs.h"
@@ -102,7 +103,7 @@ static void say_event(struct watch *watch, enum watch_event event)
 static void print_change(struct watch *watch, const struct row *row, const struct when *now)
 {
 	const struct reading *reading = watch->reading;
-	char text[WHEN_TEXT], words[READING_WORDS];
+	char text[WHEN_TEXT], words[READING_WORDS], alarm[STANDING_WORDS];
 	struct json json;
 
 	json_open(&json, stdout);
@@ -120,7 +121,10 @@ static void print_change(struct watch *watch, const struct row *row, const struc
 		json_bytes(&json, NULL, reading->text, reading->len);
 	else
 		fputs(reading_filled(reading) ? reading->text : "-", stdout);
-	printf(" %s\n", reading_quality(reading, words));
+	printf(" %s", reading_quality(reading, words));
+	if (standing_any(&row->alarms))
+		printf("; alarm: %s", standing_text(&row->alarms, alarm));
+	putchar('\n');
 }
 
 static void print_changes(struct watch *watch)
@@ -130,7 +134,7 @@ static void print_changes(struct watch *watch)
 	for (int i = 0; i < watch->rows.count && watch->left != 0; i++) {
 		struct row *row = &watch->rows.row[i];
 
-		reading_get(watch->h, row->id, now.boot, watch->reading);
+		row_read(watch->h, row, now.boot, watch->reading);
 		if (!row_changed(row, watch->reading))
 			continue;
 		print_change(watch, row, &now);

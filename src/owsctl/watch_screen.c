@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The live table of owsctl watch on a terminal. */
 #include "table.h"
 #include "terminal.h"
 #include "text.h"
@@ -17,11 +18,13 @@
 static const struct table_column columns[] = {
 	{"NAME"},
 	{"VALUE", .right = true, .most = 32},
-	{"QUALITY"},
-	{"AGE", .right = true, .drop = 1},
-	{"TARGET", .drop = 2},
-	{"PATH", .drop = 3},
+	{"QUALITY", .shrink = 13}, /* "device absent" */
+	{"ALARM", .shrink = 8},
+	{"AGE", .right = true, .drop = 2},
+	{"PATH", .drop = 1, .shrink = 16}, /* "/28.551DDF030000" */
+	{"TARGET", .drop = 3, .spare = true},
 };
+enum { ALARM = 3, TARGET = 6 };
 #define COLUMNS (sizeof(columns) / sizeof(columns[0]))
 
 struct screen {
@@ -29,7 +32,10 @@ struct screen {
 	unsigned lines, width;
 	int top; /* first row shown */
 	unsigned least[COLUMNS]; /* widths of the last picture, so that it does not jump */
-	int not_good;
+	int not_good, in_alarm;
+	bool alarms; /* signals may have some */
+	/* What serves them all, told in the head line; "" where there are several */
+	char target[200];
 	const char *note; /* what happened last to owsd */
 };
 
@@ -66,18 +72,21 @@ static void put_head(FILE *out, const struct screen *screen)
 	struct watch *watch = screen->watch;
 	struct ows_daemon daemon = {0};
 	int64_t now = ows_now();
-	char text[256], span[WHEN_TEXT], clock[16] = "";
+	char text[512], span[WHEN_TEXT], clock[16] = "", alarms[32] = "";
 	time_t wall = time(NULL);
 	struct tm local;
 
 	ows_daemon(watch->h, now, &daemon);
 	if (localtime_r(&wall, &local))
 		strftime(clock, sizeof(clock), "%H:%M:%S", &local);
+	if (screen->alarms)
+		snprintf(alarms, sizeof(alarms), ", %d in alarm", screen->in_alarm);
 	if (daemon.alive)
-		snprintf(text, sizeof(text), "%s  %s  %d signals, %d not good  up %s%s%s",
-		         watch->ctl->instance, clock, watch->rows.count, screen->not_good,
+		snprintf(text, sizeof(text), "%s  %s  %d signal%s, %d not good%s  up %s%s%s%s%s",
+		         watch->ctl->instance, clock, watch->rows.count,
+		         watch->rows.count == 1 ? "" : "s", screen->not_good, alarms,
 		         when_span(now - daemon.start_ns, span), *screen->note ? "  " : "",
-		         screen->note);
+		         screen->note, *screen->target ? "  " : "", screen->target);
 	else if (daemon.state == 3)
 		snprintf(text, sizeof(text), "%s  %s  owsd was stopped", watch->ctl->instance,
 		         clock);
@@ -90,7 +99,7 @@ static void put_head(FILE *out, const struct screen *screen)
 static bool add_row(struct watch *watch, struct table *table, const struct row *row)
 {
 	const struct reading *reading = watch->reading;
-	char value[64], words[READING_WORDS], span[WHEN_TEXT] = "-";
+	char value[64], words[READING_WORDS], alarm[STANDING_WORDS], span[WHEN_TEXT] = "-";
 	struct ows_target target = {.name = "-"};
 
 	reading_show(reading, value, sizeof(value));
@@ -99,36 +108,69 @@ static bool add_row(struct watch *watch, struct table *table, const struct row *
 	if (row->path)
 		ows_target(watch->h, reading->value.target, &target);
 	return table_add(table, (const char *const[]){row->name, value,
-	                                              reading_quality(reading, words), span,
-	                                              target.name, row->path ? row->path : ""});
+	                                              reading_quality(reading, words),
+	                                              standing_text(&row->alarms, alarm), span,
+	                                              row->path ? row->path : "", target.name});
 }
 
-static bool fill(struct screen *screen, struct table *table, bool *good)
+/* Red for what is not good, yellow for an alarm that wants eyes; the words say both. */
+static const char *style_of(const struct row *row, const struct reading *reading)
+{
+	if (getenv("NO_COLOR"))
+		return "";
+	return !reading_good(reading)                ? "\033[31m"
+	       : standing_wants_eyes(&row->alarms) ? "\033[33m"
+	                                           : "";
+}
+
+/* Who serves the rows seen so far, if that is one target: its name; -1 none yet, -2 several. */
+static int same_target(struct ows *h, int so_far, const struct row *row,
+                       const struct reading *reading)
+{
+	struct ows_target target;
+	int this = reading->value.target;
+
+	if (!row->path || so_far == -2 || ows_target(h, this, &target))
+		return so_far;
+	return so_far == -1 || so_far == this ? this : -2;
+}
+
+static bool fill(struct screen *screen, struct table *table, const char **styles)
 {
 	struct watch *watch = screen->watch;
 	int shown = room(screen);
 	int64_t now = ows_now();
+	struct ows_target target;
+	int served = -1;
 
-	screen->not_good = 0;
+	screen->not_good = screen->in_alarm = 0;
+	screen->alarms = false;
 	for (int i = 0; i < watch->rows.count; i++) {
 		struct row *row = &watch->rows.row[i];
 
-		reading_get(watch->h, row->id, now, watch->reading);
+		row_read(watch->h, row, now, watch->reading);
 		screen->not_good += !reading_good(watch->reading);
+		screen->in_alarm += standing_any(&row->alarms);
+		screen->alarms |= standing_possible(&row->alarms);
+		served = same_target(watch->h, served, row, watch->reading);
 		if (row_changed(row, watch->reading) && watch->left > 0)
 			watch->left--;
 		if (i < screen->top || i >= screen->top + shown)
 			continue;
-		good[i - screen->top] = reading_good(watch->reading);
+		styles[i - screen->top] = style_of(row, watch->reading);
 		if (!add_row(watch, table, row))
 			return false;
 	}
+	snprintf(screen->target, sizeof(screen->target), "%s",
+	         served >= 0 && ows_target(watch->h, served, &target) == 0 ? target.name : "");
+	table->absent[ALARM] = !screen->alarms;
+	table->absent[TARGET] = screen->target[0] != '\0';
 	return true;
 }
 
-static void put_rows(FILE *out, struct screen *screen, struct table *table, const bool *good)
+static void put_rows(FILE *out, struct screen *screen, struct table *table,
+                     const char *const *styles)
 {
-	const bool colour = !getenv("NO_COLOR");
 	char line[2048], text[96];
 	int count = screen->watch->rows.count, last;
 
@@ -144,7 +186,7 @@ static void put_rows(FILE *out, struct screen *screen, struct table *table, cons
 	for (int i = 0; i < (int)table->rows; i++) {
 		table_line(table, i, line, sizeof(line));
 		fputs("\r\n", out);
-		put_line(out, screen, !good[i] && colour ? "\033[31m" : "", line);
+		put_line(out, screen, styles[i], line);
 	}
 	last = screen->top + (int)table->rows;
 	if (last - screen->top < count && screen->lines > 2) {
@@ -161,16 +203,16 @@ static int draw(struct screen *screen)
 	char *text = NULL;
 	size_t len = 0;
 	FILE *out = open_memstream(&text, &len);
-	bool *good = calloc(screen->lines + 1, sizeof(*good));
+	const char **styles = calloc(screen->lines + 1, sizeof(*styles));
 	struct table table;
 	int err = -ENOMEM;
 
 	table_init(&table, columns, COLUMNS);
 	keep_top_in_range(screen);
-	if (out && good && fill(screen, &table, good)) {
+	if (out && styles && fill(screen, &table, styles)) {
 		fputs("\033[H", out);
 		put_head(out, screen);
-		put_rows(out, screen, &table, good);
+		put_rows(out, screen, &table, styles);
 		fputs("\033[J", out);
 		err = 0;
 	}
@@ -179,7 +221,7 @@ static int draw(struct screen *screen)
 	if (err == 0 && !terminal_write(text, len))
 		err = -EPIPE;
 	table_free(&table);
-	free(good);
+	free(styles);
 	free(text);
 	return err;
 }

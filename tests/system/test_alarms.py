@@ -45,6 +45,44 @@ def played(scene, server, **keys):
     return daemon
 
 
+def listed(scene, daemon):
+    """What list says of the freezer: its line and its alarms."""
+    table = scene.owsctl(daemon, "list").stdout.splitlines()
+    row, = json.loads(scene.owsctl(daemon, "--json", "list").stdout)
+    at = table[0].index("ALARM")
+    return re.split("  +", table[1][at:])[0], row["alarms"]
+
+
+def test_list_and_watch_show_the_alarm_that_stands(scene):
+    with peer.Peer({FREEZER: "20"}) as server:
+        daemon = played(scene, server, LimitH=30)
+        assert listed(scene, daemon) == ("-", [])
+        server[FREEZER] = "31"
+        scene.until(lambda: alarms(scene, daemon), 15, "the alarm is raised")
+        words, entries = listed(scene, daemon)
+        assert words == "! high", words
+        assert entries == [dict(alarm="high", state="unacknowledged", device=False)]
+        line = scene.owsctl(daemon, "watch", "-c", "1").stdout
+        assert re.search(r" freezer 31 good.*; alarm: ! high$", line.strip()), line
+        assert scene.owsctl(daemon, "alarms", "ack", "freezer").returncode == 0
+        words, entries = listed(scene, daemon)
+        assert words == "high, acknowledged", words
+        assert entries == [dict(alarm="high", state="acknowledged", device=False)]
+        row = json.loads(scene.owsctl(daemon, "--json", "watch", "-c", "1").stdout)
+        assert row["alarms"] == entries and row["good"]
+
+
+def test_watch_tells_an_alarm_that_comes_to_stand_while_the_value_stays(scene):
+    with peer.Peer({FREEZER: "20"}) as server:
+        daemon = played(scene, server, LimitH=30)
+        server[FREEZER] = "31"
+        scene.until(lambda: alarms(scene, daemon), 15, "the alarm is raised")
+        watch = scene.start([owsdtest.OWSCTL, "-n", daemon.name, "watch"])
+        scene.until(lambda: "alarm: ! high" in watch.log(), 10, watch.log)
+        assert scene.owsctl(daemon, "alarms", "ack", "freezer").returncode == 0
+        scene.until(lambda: "31 good; alarm: high, acknowledged" in watch.log(), 10, watch.log)
+
+
 def test_a_limit_alarm_lives_from_raised_to_acknowledged(scene):
     with peer.Peer({FREEZER: "20"}) as server:
         daemon = played(scene, server, LimitH=30, LimitHH=40)

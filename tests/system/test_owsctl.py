@@ -293,6 +293,37 @@ def test_the_live_table_fits_small_terminals_and_scrolls(scene):
     assert terminal.end() == (0, True)
 
 
+def test_at_80_columns_each_row_has_its_path_and_the_head_has_their_target(scene):
+    server, daemon, room, _ = house(scene)
+    terminal = Terminal(daemon, 24, 80, "watch")
+    terminal.until(lambda s: len(s) == 5 and s[2].startswith("room"), "the rows")
+    head, titles, *rows = terminal.screen()
+    assert server.target in head and "3 signals" in head and "in alarm" not in head, head
+    assert titles.split() == ["NAME", "VALUE", "QUALITY", "AGE", "PATH"], titles
+    assert room[:16] in rows[0] and "/28.0102030405FF" in rows[2], rows
+    assert all(len(line) <= 80 for line in terminal.screen()), terminal.screen()
+    os.write(terminal.fd, b"q")
+    assert terminal.end() == (0, True)
+
+
+def test_the_live_table_marks_an_alarm_without_colour(scene):
+    chips = scene.file("net.sim", "i2c speed 400\nchip DS2482-100 0x18\n"
+                       "DS18B20 28.000000000001 temperature 31\nDS18B20 28.000000000002 temperature 4\n")
+    daemon = scene.owsd(owsdtest.rio(f"sim:{chips}", [
+        dict(Name="boiler", Path="/28.000000000001/temperature9", Type="double", LimitH=30),
+        dict(Name="outside", Path="/28.000000000002/temperature9", Type="double")], Period=0.05))
+    scene.until(lambda: "! high" in scene.owsctl(daemon, "list").stdout, 15, "the alarm stands")
+    terminal = Terminal(daemon, 24, 80, "watch")
+    terminal.until(lambda s: len(s) == 4 and "2 signals, 0 not good, 1 in alarm" in s[0]
+                   and re.match(r"boiler +31 +good, simulated +! high +", s[2])
+                   and re.match(r"outside +4 +good, simulated +- +", s[3])
+                   and "/28.00000000000" in s[2], "the mark")
+    assert scene.owsctl(daemon, "alarms", "ack", "-a").returncode == 0
+    terminal.until(lambda s: re.match(r"boiler +31 +good, simulated +high, ack", s[2]), "acknowledged")
+    os.write(terminal.fd, b"q")
+    assert terminal.end() == (0, True)
+
+
 def test_a_terminal_is_given_back_on_sigterm(scene):
     _, daemon, _, _ = house(scene)
     terminal = Terminal(daemon, 10, 60, "watch")

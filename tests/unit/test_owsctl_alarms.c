@@ -86,7 +86,7 @@ static void test_alarms_that_stand_are_shown_with_the_time_they_were_raised(void
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms"));
 	TEST_ASSERT_EQUAL_STRING("NAME   ALARM   STATE           SINCE  VALUE  QUALITY\n"
 	                         "room1  high    unacknowledged     5m   31.5  good\n"
-	                         "door   device  stands            60s      5  good\n",
+	                         "door   device  stands            60s    5    good\n",
 	                         out);
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms d*"));
 	TEST_ASSERT_NULL(strstr(out, "room1"));

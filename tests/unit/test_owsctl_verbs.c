@@ -115,7 +115,7 @@ static void test_list_shows_what_matches(void)
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_list, "list r*"));
 	holds(out, "NAME   VALUE  QUALITY");
 	holds(out, "room1   21.5  good");
-	holds(out, "relay      1  good");
+	holds(out, "relay    1    good");
 	TEST_ASSERT_NULL(strstr(out, "count"));
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_list, "list x*"));
 	holds(err, "no signal matches");

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: MIT */
+/* The alarms of a signal that stand now: its device alarm and its limit alarm, in words. */
+#include "standing.h"
+
+#include <errno.h>
+#include <stdio.h>
+
+struct ows_alarm_state standing_of(struct ows *h, int id)
+{
+	struct ows_alarm_state state = {0};
+	int err = ows_alarm_state(h, id, &state);
+
+	return err && err != -ESTALE ? (struct ows_alarm_state){0} : state;
+}
+
+bool standing_possible(const struct ows_alarm_state *state)
+{
+	return state->item || state->limits;
+}
+
+bool standing_any(const struct ows_alarm_state *state)
+{
+	return state->stands || state->limit_state != OWS_LIMIT_NORMAL;
+}
+
+bool standing_wants_eyes(const struct ows_alarm_state *state)
+{
+	return state->stands || state->limit_state == OWS_LIMIT_UNACKNOWLEDGED ||
+	       state->limit_state == OWS_LIMIT_RETURNED;
+}
+
+const char *standing_text(const struct ows_alarm_state *state, char words[STANDING_WORDS])
+{
+	const char *kind = ows_alarm_kind_text(state->limit_kind), *end = "", *mark = "! ";
+
+	if (state->limit_state == OWS_LIMIT_ACKNOWLEDGED) {
+		mark = "";
+		end = ", acknowledged";
+	} else if (state->limit_state == OWS_LIMIT_RETURNED) {
+		end = ", returned";
+	}
+	if (!standing_any(state))
+		snprintf(words, STANDING_WORDS, "-");
+	else if (state->limit_state == OWS_LIMIT_NORMAL)
+		snprintf(words, STANDING_WORDS, "! device");
+	else
+		snprintf(words, STANDING_WORDS, "%s%s%s%s", state->stands ? "! device; " : "", mark,
+		         kind, end);
+	return words;
+}
+
+static void add(struct json *json, const char *kind, const char *state, bool device)
+{
+	json_object(json, NULL);
+	json_string(json, "alarm", kind);
+	json_string(json, "state", state);
+	json_bool(json, "device", device);
+	json_object_end(json);
+}
+
+void standing_json(struct json *json, const struct ows_alarm_state *state)
+{
+	json_array(json, "alarms");
+	if (state->stands)
+		add(json, ows_alarm_kind_text(OWS_ALARM_DEVICE), "stands", true);
+	if (state->limit_state != OWS_LIMIT_NORMAL)
+		add(json, ows_alarm_kind_text(state->limit_kind),
+		    ows_limit_state_text(state->limit_state), false);
+	json_array_end(json);
+}

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT */
+/* The alarms that stand, in the words of list and watch. */
+#include "src/owsctl/standing.h"
+#include "unity.h"
+
+#include <string.h>
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static void test_each_state_has_its_words_and_its_mark(void)
+{
+	static const struct {
+		struct ows_alarm_state state;
+		const char *words;
+		bool eyes;
+	} rows[] = {
+		{{0}, "-", false},
+		{{.limits = 1, .item = 1}, "-", false},
+		{{.limit_state = OWS_LIMIT_UNACKNOWLEDGED, .limit_kind = OWS_ALARM_H}, "! high", true},
+		{{.limit_state = OWS_LIMIT_UNACKNOWLEDGED, .limit_kind = OWS_ALARM_LL}, "! low low", true},
+		{{.limit_state = OWS_LIMIT_ACKNOWLEDGED, .limit_kind = OWS_ALARM_HH},
+		 "high high, acknowledged", false},
+		{{.limit_state = OWS_LIMIT_RETURNED, .limit_kind = OWS_ALARM_BAD}, "! bad, returned", true},
+		{{.item = 1, .stands = 1}, "! device", true},
+		{{.item = 1, .polled = 1}, "-", false},
+		{{.stands = 1, .limit_state = OWS_LIMIT_ACKNOWLEDGED, .limit_kind = OWS_ALARM_L},
+		 "! device; low, acknowledged", true},
+		{{.stands = 1, .limit_state = OWS_LIMIT_UNACKNOWLEDGED, .limit_kind = OWS_ALARM_STALE},
+		 "! device; ! stale", true},
+	};
+	char words[STANDING_WORDS];
+
+	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		TEST_ASSERT_EQUAL_STRING(rows[i].words, standing_text(&rows[i].state, words));
+		TEST_ASSERT_EQUAL(rows[i].eyes, standing_wants_eyes(&rows[i].state));
+		TEST_ASSERT_EQUAL(rows[i].words[0] != '-', standing_any(&rows[i].state));
+		/* the mark and the colour say the same */
+		TEST_ASSERT_EQUAL(rows[i].eyes, rows[i].words[0] == '!');
+	}
+}
+
+static void test_no_words_are_cut(void)
+{
+	char words[STANDING_WORDS];
+
+	for (unsigned kind = 0; kind < 256; kind++)
+		for (unsigned state = 0; state < 256; state++) {
+			struct ows_alarm_state odd = {.stands = 1, .limit_state = (uint8_t)state,
+			                              .limit_kind = (uint8_t)kind};
+
+			TEST_ASSERT_TRUE(strlen(standing_text(&odd, words)) < STANDING_WORDS - 1);
+		}
+}
+
+static void test_a_signal_without_limits_has_no_alarm_column(void)
+{
+	TEST_ASSERT_FALSE(standing_possible(&(struct ows_alarm_state){0}));
+	TEST_ASSERT_TRUE(standing_possible(&(struct ows_alarm_state){.item = 1}));
+	TEST_ASSERT_TRUE(standing_possible(&(struct ows_alarm_state){.limits = 1}));
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_each_state_has_its_words_and_its_mark);
+	RUN_TEST(test_no_words_are_cut);
+	RUN_TEST(test_a_signal_without_limits_has_no_alarm_column);
+	return UNITY_END();
+}
