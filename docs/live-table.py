@@ -25,7 +25,8 @@ BUILD = pathlib.Path(os.environ.get("OWSD_BUILD", SOURCE / "build")).resolve()
 PATIENCE = 60
 COLUMNS, ROWS = 80, 20
 CELL, LINE, MARGIN, BAR = 8.4, 19, 18, 34
-PAPER, INK, FAINT, BOLD, RED = "#1b2129", "#d5dbe3", "#8793a3", "#ffffff", "#ff8f85"
+PAPER, INK, FAINT, BOLD = "#1b2129", "#d5dbe3", "#8793a3", "#ffffff"
+RED, YELLOW = "#ff8f85", "#f2c14e"
 
 
 def record(folder):
@@ -101,6 +102,8 @@ def last_screen(said):
 def style(attributes, number):
     if "31" in attributes.split(";"):
         return f' fill="{RED}"'
+    if "33" in attributes.split(";"):
+        return f' fill="{YELLOW}"'
     if "1" in attributes.split(";"):
         return f' fill="{BOLD}" font-weight="bold"'
     return f' fill="{FAINT}"' if number == 0 else ""
@@ -112,7 +115,7 @@ def draw(lines):
     svg = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" '
            f'viewBox="0 0 {width:.0f} {height:.0f}" role="img">',
            "<!-- SPDX-License-Identifier: MIT; made by docs/live-table.py -->",
-           "<title>owsctl watch: a table of signals with value, quality, age and target</title>",
+           "<title>owsctl watch: a table of signals with value, quality, age and path</title>",
            f'<rect x="0.5" y="0.5" width="{width - 1:.0f}" height="{height - 1:.0f}" rx="8" '
            f'fill="{PAPER}" stroke="#4a5563"/>',
            *(f'<circle cx="{MARGIN + 4 + 18 * i}" cy="18" r="5" fill="#4a5563"/>' for i in range(3)),
