@@ -81,7 +81,8 @@ struct bus_req {
  *   0             done
  *   -ENODEV       no such device on this target
  *   -ENOENT       the device has no such property
- *   -EACCES       the property cannot be read, or cannot be written
+ *   -EACCES       the property cannot be read, or cannot be written, whoever asks
+ *   -EPERM        this process may not: no right to its file, a server that takes no writes
  *   -EISDIR       READ or WRITE of a directory
  *   -ENOTDIR      DIR of a property
  *   -EINVAL       the target refused the value that was written

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The return codes of an owserver as errors of the bus contract. */
 #include "hal/owserver/status.h"
 
 #include <errno.h>
@@ -29,11 +30,11 @@ static const struct {
 	{ 59, -ENOENT },
 	{ 64, -ENOENT },
 	{ 69, -ENOENT },
-	{ 13, -EACCES },
-	{ 30, -EACCES },
+	{ 13, -EPERM },
+	{ 30, -EPERM },
+	{ 66, -EPERM },
 	{ 60, -EACCES },
 	{ 65, -EACCES },
-	{ 66, -EACCES },
 	{ 95, -EACCES },
 	{ 14, -EINVAL },
 	{ 22, -EINVAL },

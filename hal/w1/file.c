@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The attribute files of the kernel, and the meaning of the errors of open, read and write. */
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -63,10 +64,10 @@ static int meaning(struct w1_master *master, const char *directory, const char *
 			snprintf(text, sizeof(text),
 			         "no right to open %s/%s: run as root, or see docs/w1.md for udev",
 			         directory, name);
-			w1_note(master, -EACCES, text);
+			w1_note(master, -EPERM, text);
 		}
 		master->told_rights = true;
-		return -EACCES;
+		return -EPERM;
 	}
 	return -EIO;
 }

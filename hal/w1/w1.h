@@ -90,8 +90,9 @@ bool w1_name_parse(const char *name, size_t len, uint8_t rom[8]);
 
 /*
  * file.c: an attribute of a directory in root. Blocks for as long as the kernel takes. Bytes, or
- *   -ENODEV the directory is gone, -ENOENT it has no such attribute, -EACCES no right (told in the
- *   log once), -EINVAL the kernel refuses the value, -EIO any other error
+ *   -ENODEV the directory is gone, -ENOENT it has no such attribute, -EACCES it can only be read,
+ *   -EPERM no right (told in the log once), -EINVAL the kernel refuses the value, -EIO any other
+ *   error
  */
 int w1_read(struct w1_master *master, const char *directory, const char *name, void *data,
             size_t room);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/* What the end of a request does to its signal: value, quality, retry, log. */
 #include "private.h"
 
+#include "../signal/error.h"
 #include "../signal/value.h"
 
 #include <errno.h>
@@ -9,10 +11,17 @@
 /* How often an alarm item without PerFactor is read though no alarm came. */
 #define ALARM_ITEM_NS 60000000000LL
 
-static void say_bad(struct engine *e, const struct signal *s, int err, uint8_t quality)
+/* "no such property: check its spelling", "device error: wrong checksum"; what says all, once. */
+static void say_failed(struct engine *e, const struct signal *s, const char *what, int err,
+                       uint8_t quality)
 {
-	log_warning(e->log, "%s (%s): %s%s%s", s->item->name, s->item->path,
-	            ows_quality_text(quality), err ? ": " : "", err ? strerror(-err) : "");
+	const char *text = ows_quality_text(quality);
+	char words[ERROR_WORDS];
+
+	if (strcmp(text, error_text(err)) == 0)
+		text = "";
+	log_warning(e->log, "%s (%s): %s%s%s%s", s->item->name, s->item->path, what, text,
+	            *text && err ? ": " : "", err ? error_words(err, words) : "");
 }
 
 static void mark_absent(struct engine *e, struct lane *lane, const struct signal *s)
@@ -37,7 +46,7 @@ static int64_t fail_read(struct engine *e, struct lane *lane, struct signal *s, 
 		mark_absent(e, lane, s);
 	if (s->sample.quality != quality) {
 		s->sample.quality = quality;
-		say_bad(e, s, err, quality);
+		say_failed(e, s, "", err, quality);
 	}
 	return wait_ns;
 }
@@ -55,9 +64,7 @@ static int64_t fail_write(struct engine *e, struct lane *lane, struct signal *s,
 	if (err == -ENODEV)
 		mark_absent(e, lane, s);
 	if (s->write_retry.failures == e->config->max_retries + 1)
-		log_warning(e->log, "%s (%s): cannot be written%s%s: %s", s->item->name,
-		            s->item->path, err == -EACCES ? "" : ": ",
-		            err == -EACCES ? "" : ows_quality_text(quality), strerror(-err));
+		say_failed(e, s, "cannot be written: ", err, quality);
 	if (!signal_reads(s))
 		s->sample.quality = quality;
 	return wait_ns;
@@ -250,12 +257,13 @@ void engine_structure_done(struct engine *e, struct lane *lane, const struct slo
 		return;
 	for (uint32_t i = 0; i < check->count; i++) {
 		struct signal *s = &e->table.signals[e->structure.rows[check->first + i]];
-		const char *fault = structure_fault(&entry, s->item);
+		const char *fault;
+		int err = structure_fault(&entry, s->item, &fault);
 
-		if (!fault || s->lane != lane->index)
+		if (!err || s->lane != lane->index)
 			continue;
-		s->sample.quality = OWS_Q_NO_PROPERTY;
-		s->sample.err = -EPROTOTYPE;
+		s->sample.quality = failure_quality(err);
+		s->sample.err = err;
 		log_err(e->log, "%s (line %d): %s does not fit: %s", s->item->name, s->item->line,
 		        s->item->path, fault);
 		engine_publish(e, s);

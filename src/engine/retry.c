@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The meaning of an error for its signal: retry, back-off, quality. */
 #include "retry.h"
 
 #include "../libows/ows.h"
@@ -27,14 +28,17 @@ uint8_t failure_quality(int err)
 {
 	switch (-err) {
 	case ENOENT:
-	case EACCES:
 	case EISDIR:
 	case ENOTDIR:
+	case EOPNOTSUPP:
+		return OWS_Q_NO_PROPERTY;
 	case EILSEQ:
 	case EPROTOTYPE:
 	case EMSGSIZE:
-	case EOPNOTSUPP:
-		return OWS_Q_NO_PROPERTY;
+		return OWS_Q_TYPE;
+	case EACCES:
+	case EPERM:
+		return OWS_Q_ACCESS;
 	case ENODEV:
 		return OWS_Q_NO_DEVICE;
 	case ERANGE:

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Does the type of a signal fit its property? What /structure of the target says about it. */
 #include "structure.h"
 
 #include "hal/path.h"
@@ -105,17 +106,27 @@ int structure_parse(const char *text, size_t len, struct structure_entry *entry)
 	return 0;
 }
 
-const char *structure_fault(const struct structure_entry *entry, const struct config_item *item)
+int structure_fault(const struct structure_entry *entry, const struct config_item *item,
+                    const char **why)
 {
-	if (entry->type == 'D')
-		return "it is a directory, not a property";
-	if (item->type != OWS_STRING && entry->index == -1)
-		return "it is a list (.ALL): Type has to be string";
-	if (item->type != OWS_STRING && strchr("abdl", entry->type))
-		return "it is text: Type has to be string";
-	if (item->output && strcmp(entry->access, "ro") == 0)
-		return "it is read-only: IO has to be input";
-	if (item->readable && strcmp(entry->access, "wo") == 0)
-		return "it is write-only: it cannot be read";
-	return NULL;
+	int err = 0;
+
+	*why = "";
+	if (entry->type == 'D') {
+		err = -EISDIR;
+		*why = "it is a directory, not a property";
+	} else if (item->type != OWS_STRING && entry->index == -1) {
+		err = -EPROTOTYPE;
+		*why = "it is a list (.ALL): Type has to be string";
+	} else if (item->type != OWS_STRING && strchr("abdl", entry->type)) {
+		err = -EPROTOTYPE;
+		*why = "it is text: Type has to be string";
+	} else if (item->output && strcmp(entry->access, "ro") == 0) {
+		err = -EACCES;
+		*why = "it is read-only: IO has to be input";
+	} else if (item->readable && strcmp(entry->access, "wo") == 0) {
+		err = -EACCES;
+		*why = "it is write-only: IO has to be output, without Readable";
+	}
+	return err;
 }

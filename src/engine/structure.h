@@ -32,7 +32,11 @@ struct structure_entry {
 };
 /* 0 or -EILSEQ. */
 int structure_parse(const char *text, size_t len, struct structure_entry *entry);
-/* NULL if the signal can work on such a property, else why not. */
-const char *structure_fault(const struct structure_entry *entry, const struct config_item *item);
+/*
+ * 0 if the signal can work on such a property; else why not, and -EISDIR it is none, -EPROTOTYPE
+ * the type does not fit, -EACCES it can only be read, or only be written.
+ */
+int structure_fault(const struct structure_entry *entry, const struct config_item *item,
+                    const char **why);
 
 #endif

@@ -100,6 +100,8 @@ const char *ows_quality_text(uint8_t quality)
 		const char *text;
 	} texts[] = {
 		{OWS_Q_NO_PROPERTY, "no such property"},
+		{OWS_Q_TYPE, "wrong type"},
+		{OWS_Q_ACCESS, "access refused"},
 		{OWS_Q_NO_DEVICE, "device absent"},
 		{OWS_Q_DEVICE, "device error"},
 		{OWS_Q_SENSOR, "sensor power fault"},

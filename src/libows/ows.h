@@ -46,7 +46,9 @@ enum ows_type {
 
 /* The OPC quality byte QQSSSSLL. Good means that the two upper bits are set. */
 enum ows_quality {
-	OWS_Q_NO_PROPERTY = 0x04, /* no such property, or the type cannot hold it */
+	OWS_Q_NO_PROPERTY = 0x04, /* the device has no such property */
+	OWS_Q_TYPE = 0x05,        /* it has, and the type does not fit it */
+	OWS_Q_ACCESS = 0x06,      /* it has, and it cannot be read, or written, or not by owsd */
 	OWS_Q_NO_DEVICE = 0x08,   /* the device is absent */
 	OWS_Q_DEVICE = 0x0c,      /* device error: checksum, refused */
 	OWS_Q_SENSOR = 0x10,      /* power-fault reading of a thermometer (85, 127.94) */

@@ -69,7 +69,7 @@ int verb_dir(struct ctl *ctl, int argc, char **argv)
 	if (target_ask_one(&target, &ask)) {
 		status = ctl_fail("%s: %s", path, ask.answer.err == -ENOENT
 		                                          ? "no such directory"
-		                                          : target_error(ask.answer.err));
+		                                          : error_text(ask.answer.err));
 	} else {
 		text[ask.answer.len] = '\0';
 		print(ctl, text, fresh ? "/uncached" : "");

@@ -35,11 +35,11 @@ static int get_one(struct ows *h, const char *name, struct reading *reading)
 	if (id == -ENOENT)
 		return ctl_unknown(h, name);
 	if (id < 0)
-		return ctl_fail("%s: %s", name, reading_error(id));
+		return ctl_fail("%s: %s", name, error_text(id));
 	if (reading_get(h, id, ows_now(), reading) == -EACCES)
 		return ctl_fail("%s can only be set", name);
 	if (!reading_filled(reading))
-		return ctl_fail("%s: %s", name, reading_error(reading->err));
+		return ctl_fail("%s: %s", name, error_text(reading->err));
 	print_text(reading);
 	if (reading_good(reading))
 		return CTL_DONE;
@@ -59,7 +59,7 @@ static int get_json(struct json *json, struct ows *h, const char *name, struct r
 	if (id < 0) {
 		json_null(json, "value");
 		json_bool(json, "good", false);
-		json_string(json, "error", id == -ENOENT ? "no such name" : reading_error(id));
+		json_string(json, "error", id == -ENOENT ? "no such name" : error_text(id));
 		status = id == -ENOENT ? ctl_unknown(h, name) : CTL_FAILED;
 	} else {
 		reading_get(h, id, now->boot, reading);

@@ -287,26 +287,3 @@ size_t target_unpad(char *text, size_t len)
 			text[out++] = text[at];
 	return out;
 }
-
-const char *target_error(int err)
-{
-	switch (-err) {
-	case EISDIR:
-		return "it is a directory";
-	case ENOTDIR:
-		return "it is no directory";
-	case EACCES:
-		return "it cannot be read or written so";
-	case EINVAL:
-		return "the target refuses this value";
-	case EINPROGRESS:
-		return "no answer in time; the device may have done it";
-	case ENOTCONN:
-		return "the target is down";
-	case EPROTO:
-		return "the target answered garbage";
-	case EOPNOTSUPP:
-		return "this target cannot do that";
-	}
-	return reading_error(err);
-}

@@ -10,6 +10,8 @@
 #include "served.h"
 #include "verbs.h"
 
+#include "../signal/error.h"
+
 #define OPEN_DEFAULT_TARGET "localhost:4304"
 #define OPEN_TIMEOUT_NS     INT64_C(20000000000)
 
@@ -60,7 +62,5 @@ bool target_path(const char *given, char path[256], bool *fresh);
 size_t target_unpad(char *text, size_t len);
 /* Is it one number, as JSON writes them? */
 bool target_is_number(const char *text, size_t len);
-
-const char *target_error(int err);
 
 #endif

@@ -37,7 +37,7 @@ static void print_json(struct json *json, const char *path, const struct bus_ans
 	else
 		json_bytes(json, "value", text, len);
 	if (answer->err)
-		json_string(json, "error", target_error(answer->err));
+		json_string(json, "error", error_text(answer->err));
 	json_bool(json, "simulated", answer->detail & BUS_DETAIL_SIMULATED);
 	json_bool(json, "cached", answer->detail & BUS_DETAIL_CACHED);
 	json_object_end(json);
@@ -50,6 +50,7 @@ static int read_one(const struct ctl *ctl, struct json *json, struct target *tar
 	bool fresh;
 	struct ask ask = {.req = {.op = BUS_READ, .prio = BUS_GUEST, .path = path,
 	                          .data = (uint8_t *)text, .len = TEXT_MAX}};
+	char words[ERROR_WORDS];
 	size_t len = 0;
 	int err;
 
@@ -68,7 +69,7 @@ static int read_one(const struct ctl *ctl, struct json *json, struct target *tar
 	/* In order with stdout where both go to one place. */
 	if (!ctl->json)
 		fflush(stdout);
-	return ctl_fail("%s: %s", given, target_error(err));
+	return ctl_fail("%s: %s", given, error_words(err, words));
 }
 
 int verb_read(struct ctl *ctl, int argc, char **argv)

@@ -32,41 +32,11 @@ bool reading_good(const struct reading *reading)
 	return reading->err == 0 && ows_good(reading->value.quality);
 }
 
-const char *reading_error(int err)
-{
-	switch (-err) {
-	case 0:
-		return "no error";
-	case ENODEV:
-		return "no such device there";
-	case ENOENT:
-		return "no such property";
-	case EBADMSG:
-		return "wrong checksum";
-	case ECOMM:
-		return "the wire is short";
-	case ERANGE:
-		return "reading of a sensor without power, or out of range";
-	case EILSEQ:
-		return "the answer is no value of this type";
-	case ETIME:
-		return "its turn did not come in time";
-	case ETIMEDOUT:
-		return "no answer in time";
-	case ECONNREFUSED:
-		return "the target refuses the connection";
-	case ECONNRESET:
-	case EPIPE:
-		return "the target closed the connection";
-	}
-	return strerror(-err);
-}
-
 const char *reading_quality(const struct reading *reading, char words[READING_WORDS])
 {
 	snprintf(words, READING_WORDS, "%s%s",
 	         reading_filled(reading) ? ows_quality_text(reading->value.quality)
-	                                 : reading_error(reading->err),
+	                                 : error_text(reading->err),
 	         reading->value.detail & OWS_DETAIL_SIMULATED ? ", simulated" : "");
 	return words;
 }
@@ -74,14 +44,19 @@ const char *reading_quality(const struct reading *reading, char words[READING_WO
 const char *reading_why(const struct reading *reading, char words[READING_WORDS])
 {
 	const struct ows_value *value = &reading->value;
-	char span[WHEN_TEXT], error[80] = "";
+	char span[WHEN_TEXT], error[ERROR_WORDS + 4] = "", own[ERROR_WORDS];
 
 	if (!reading_filled(reading)) {
-		snprintf(words, READING_WORDS, "%s", reading_error(reading->err));
+		snprintf(words, READING_WORDS, "%s", error_text(reading->err));
 		return words;
 	}
-	if (value->err)
-		snprintf(error, sizeof(error), " (%s)", reading_error(value->err));
+	if (value->err) {
+		/* "no such property (check its spelling ...)", and no word of it twice */
+		bool same = strcmp(ows_quality_text(value->quality), error_text(value->err)) == 0;
+
+		snprintf(error, sizeof(error), " (%s)", same ? error_remedy(value->err)
+		                                             : error_words(value->err, own));
+	}
 	if (value->measured_ns)
 		snprintf(words, READING_WORDS, "%s%s, measured %s ago",
 		         ows_quality_text(value->quality), error, when_span(value->age_ns, span));
@@ -148,7 +123,7 @@ void reading_json(struct json *json, struct ows *h, const struct reading *readin
 	if (!reading_filled(reading)) {
 		json_null(json, "value");
 		json_bool(json, "good", false);
-		json_string(json, "error", reading_error(reading->err));
+		json_string(json, "error", error_text(reading->err));
 		return;
 	}
 	json_value(json, reading);
@@ -160,7 +135,7 @@ void reading_json(struct json *json, struct ows *h, const struct reading *readin
 	json_when(json, "measured", now, value->measured_ns);
 	json_when(json, "tried", now, value->tried_ns);
 	json_int(json, "err", value->err);
-	json_string(json, "error", value->err ? reading_error(value->err) : NULL);
+	json_string(json, "error", value->err ? error_text(value->err) : NULL);
 	json_uint(json, "count", value->count);
 	json_uint(json, "applied", value->applied);
 	json_string(json, "target",

@@ -7,6 +7,8 @@
 #include "verbs.h"
 #include "when.h"
 
+#include "../signal/error.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -25,12 +27,11 @@ bool reading_good(const struct reading *reading);
 /* What is there to be shown at all? */
 bool reading_filled(const struct reading *reading);
 
-#define READING_WORDS 160
+#define READING_WORDS 320
 /* "good", "device absent", "good, simulated". Returns words. */
 const char *reading_quality(const struct reading *reading, char words[READING_WORDS]);
 /* Why it is not good, for a person. Returns words. */
 const char *reading_why(const struct reading *reading, char words[READING_WORDS]);
-const char *reading_error(int err);
 /* The value in a line or a table: strings quoted. Cut to size. */
 void reading_show(const struct reading *reading, char *out, size_t size);
 

@@ -36,7 +36,7 @@ static void show_values(const struct scan_device *device, char *out, size_t size
 		if (!name || used >= size)
 			break;
 		n = snprintf(out + used, size - used, "%s%s=%s%s%s", used ? " " : "", name,
-		             value->err ? "(" : "", value->err ? target_error(value->err) : value->text,
+		             value->err ? "(" : "", value->err ? error_text(value->err) : value->text,
 		             value->err ? ")" : "");
 		used += n > 0 ? (size_t)n : 0;
 	}

@@ -95,7 +95,7 @@ static bool wanted(const struct scan_device *device, unsigned i, bool inputs_onl
 	if (!value->err && !value_parse(property->type, value->text, &number))
 		return true;
 	ctl_fail("left out: the output %s/%s, because it cannot be read: %s", device->path,
-	         property->name, value->err ? target_error(value->err) : value->text);
+	         property->name, value->err ? error_text(value->err) : value->text);
 	return false;
 }
 

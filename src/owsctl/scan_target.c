@@ -61,7 +61,7 @@ static int find(struct target *target, struct scan *scan, char *text)
 	int err = list(target, "/", true, text);
 
 	if (err)
-		return ctl_fail("%s: %s", target->name, target_error(err));
+		return ctl_fail("%s: %s", target->name, error_text(err));
 	for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
 		if (!device_of(line, &device))
 			continue;

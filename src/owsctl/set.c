@@ -64,7 +64,7 @@ static int prepare(const struct ctl *ctl, struct ows *h, struct order *order)
 		return ctl_unknown(h, order->name);
 	order->id = ows_find(h, order->name);
 	if (order->id < 0)
-		return ctl_fail("%s: %s", order->name, reading_error(order->id));
+		return ctl_fail("%s: %s", order->name, error_text(order->id));
 	def = &attribute_table[order->attribute];
 	if (!def->writable)
 		return ctl_fail("%s cannot be set, only read", order->name);
@@ -125,7 +125,7 @@ static int send(struct ows *h, struct order *order)
 	case EBUSY:
 		return ctl_fail("%s: another program is just setting it, try again", order->name);
 	}
-	return ctl_fail("%s: %s", order->name, reading_error(err));
+	return ctl_fail("%s: %s", order->name, error_text(err));
 }
 
 /* Has the bus, or for the enables the engine, taken what was set? */
@@ -182,11 +182,14 @@ static bool write_disabled(struct ows *h, const struct order *order)
 /* Of a signal that is read with success, the error is the write's. */
 static const char *why_not(const struct reading *reading, char words[READING_WORDS])
 {
+	char own[ERROR_WORDS];
+
 	if (!reading_good(reading) || !reading->value.err)
 		return reading_why(reading, words);
 	if (reading->value.err == -EACCES)
 		return "it cannot be written";
-	snprintf(words, READING_WORDS, "writing it fails: %s", reading_error(reading->value.err));
+	snprintf(words, READING_WORDS, "writing it fails: %s",
+	         error_words(reading->value.err, own));
 	return words;
 }
 

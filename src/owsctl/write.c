@@ -8,7 +8,7 @@ int verb_write(struct ctl *ctl, int argc, char **argv)
 {
 	int64_t timeout_ns = OPEN_TIMEOUT_NS;
 	struct target target;
-	char path[256];
+	char path[256], words[ERROR_WORDS];
 	bool fresh;
 	struct ask ask = {.req = {.op = BUS_WRITE, .prio = BUS_OUTPUT, .path = path}};
 	int status;
@@ -28,7 +28,7 @@ int verb_write(struct ctl *ctl, int argc, char **argv)
 	ask.req.data = (uint8_t *)argv[optind + 1];
 	ask.req.len = (uint32_t)strlen(argv[optind + 1]);
 	if (target_ask_one(&target, &ask))
-		status = ctl_fail("%s: %s", argv[optind], target_error(ask.answer.err));
+		status = ctl_fail("%s: %s", argv[optind], error_words(ask.answer.err, words));
 	target_close(&target);
 	return status;
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The return codes of the served protocol, and their texts. */
 #include "code.h"
 
 #include <errno.h>
@@ -17,6 +18,7 @@ int32_t code_of(int err)
 	case ENOTDIR:
 		return -20;
 	case EACCES:
+	case EPERM:
 	case EOPNOTSUPP:
 		return -95;
 	case EINVAL:

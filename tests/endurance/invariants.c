@@ -159,7 +159,7 @@ static void updates_are_counted(const struct item *item, const struct ows_sample
 static bool is_known(uint8_t quality)
 {
 	static const uint8_t known[] = {
-		OWS_Q_NO_PROPERTY, OWS_Q_NO_DEVICE, OWS_Q_DEVICE, OWS_Q_SENSOR, OWS_Q_TARGET,
+		OWS_Q_NO_PROPERTY, OWS_Q_TYPE, OWS_Q_ACCESS, OWS_Q_NO_DEVICE, OWS_Q_DEVICE, OWS_Q_SENSOR, OWS_Q_TARGET,
 		OWS_Q_SHORT,       OWS_Q_INITIAL,   OWS_Q_LAST_USABLE, OWS_Q_GOOD,
 	};
 

@@ -90,12 +90,14 @@ def test_genuine_files_load_unchanged(scene):
 
 def test_a_signal_that_cannot_work_is_reported_at_start_and_the_others_live(scene):
     server = scene.owserver(tester=["28", "29"])
+    switch = next(d for d in server.devices(0) if d.startswith("/29."))
     thermometer = next(d for d in server.devices(0) if d.startswith("/28."))
     daemon = scene.owsd(owsdtest.rio(server.target, [
         dict(Name="good", Path=thermometer + "/temperature", Type=raw("double"), IO=raw("input")),
         dict(Name="text", Path=thermometer + "/type", Type=raw("double"), IO=raw("input")),
         dict(Name="readonly", Path=thermometer + "/temperature", Type=raw("double"),
              IO=raw("output"), InitValue="1"),
+        dict(Name="writeonly", Path=switch + "/LCD_H/clear", Type=raw("bool"), IO=raw("input")),
         dict(Name="typo", Path=thermometer + "/temperatur", Type=raw("double"), IO=raw("input")),
         dict(Name="absent", Path="/28.AABBCCDDEEFF/temperature", Type=raw("double"),
              IO=raw("input")),
@@ -103,10 +105,14 @@ def test_a_signal_that_cannot_work_is_reported_at_start_and_the_others_live(scen
     until(lambda: scene.get(daemon, "good"), 5, "the good one is good")
 
     def quality():
-        return [values(scene, daemon)[n]["quality_code"] for n in ("text", "readonly", "typo", "absent")]
-    until(lambda: quality() == [0x04, 0x04, 0x04, 0x08], 5, "each has its reason")
-    for name in ("text", "readonly"):
+        return [values(scene, daemon)[n]["quality"] for n in
+                ("text", "readonly", "writeonly", "typo", "absent")]
+    until(lambda: quality() == ["wrong type", "access refused", "access refused",
+                                "no such property", "device absent"], 5, "each has its reason")
+    for name in ("text", "readonly", "writeonly"):
         owsdtest.logged(daemon, f"{name} (line")
+    owsdtest.logged(daemon, "no such property: check its spelling")
+    owsdtest.logged(daemon, "access refused: it can only be read, or only be written: IO input")
     until(lambda: scene.get(daemon, "good"), 10, "the good one is still good")
 
 

@@ -116,7 +116,8 @@ def test_read_takes_several_paths_and_goes_on_after_an_error(scene):
     paths = ["/28.67C6697351FF/temperature12", "/28.67C6697351FF/none", "/29.000029D60000/PIO.ALL"]
     done = ctl(scene, target, "read", *paths, status=1)
     assert done.stdout == "21.5\n0,0,0,0,0,0,0,0\n"
-    assert done.stderr == "owsctl: /28.67C6697351FF/none: no such property\n"
+    assert done.stderr == "owsctl: /28.67C6697351FF/none: no such property: check its " \
+        "spelling; owsctl dir shows what a device has\n"
     first, second, third = json.loads(ctl(scene, target, "--json", "read", *paths, status=1).stdout)
     assert first == dict(path=paths[0], value=21.5, simulated=True, cached=False)
     assert second["value"] is None and second["error"] == "no such property"

@@ -277,7 +277,7 @@ static void test_an_answer_that_is_no_number_is_an_item_error(void)
 	for (unsigned i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
 		scene_put(&s, T1, bad[i], 0);
 		scene_run(&s, 5 * SCENE_S);
-		TEST_ASSERT_EQUAL_HEX8_MESSAGE(OWS_Q_NO_PROPERTY, scene_sample(&s, 1).quality,
+		TEST_ASSERT_EQUAL_HEX8_MESSAGE(OWS_Q_TYPE, scene_sample(&s, 1).quality,
 		                               bad[i]);
 		TEST_ASSERT_EQUAL_DOUBLE(21.5, scene_number(&s, 1));
 		scene_put(&s, T1, "21.5", 0);

@@ -320,11 +320,11 @@ static void test_types_are_checked_before_the_first_value(void)
 	scene_start(&s);
 	scene_up(&s);
 	TEST_ASSERT_EQUAL_UINT(2, s.structure_reads);
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_NO_PROPERTY, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TYPE, scene_sample(&s, 1).quality);
 	TEST_ASSERT_EQUAL_INT32(-EPROTOTYPE, scene_sample(&s, 1).err);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_UINT(2, s.structure_reads);
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_NO_PROPERTY, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TYPE, scene_sample(&s, 1).quality);
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 2).quality);
 }
 

@@ -94,7 +94,10 @@ static void test_each_error_has_its_quality_and_none_is_good(void)
 		uint8_t quality;
 	} table[] = {
 		{ -ENODEV, OWS_Q_NO_DEVICE }, { -ENOENT, OWS_Q_NO_PROPERTY },
-		{ -EACCES, OWS_Q_NO_PROPERTY }, { -EILSEQ, OWS_Q_NO_PROPERTY },
+		{ -EISDIR, OWS_Q_NO_PROPERTY }, { -ENOTDIR, OWS_Q_NO_PROPERTY },
+		{ -EILSEQ, OWS_Q_TYPE },      { -EPROTOTYPE, OWS_Q_TYPE },
+		{ -EMSGSIZE, OWS_Q_TYPE },    { -EACCES, OWS_Q_ACCESS },
+		{ -EPERM, OWS_Q_ACCESS },
 		{ -EBADMSG, OWS_Q_DEVICE },   { -EIO, OWS_Q_DEVICE },
 		{ -EINVAL, OWS_Q_DEVICE },    { -ECOMM, OWS_Q_SHORT },
 		{ -ERANGE, OWS_Q_SENSOR },

@@ -18,7 +18,8 @@ static void test_return_codes_become_errors_of_the_contract(void)
 	TEST_ASSERT_EQUAL_INT(-EISDIR, status_of(-21, BUS_READ));
 	TEST_ASSERT_EQUAL_INT(-ENOTDIR, status_of(-20, BUS_DIR));
 	TEST_ASSERT_EQUAL_INT(-EACCES, status_of(-95, BUS_READ));
-	TEST_ASSERT_EQUAL_INT(-EACCES, status_of(-30, BUS_WRITE));
+	TEST_ASSERT_EQUAL_INT(-EPERM, status_of(-30, BUS_WRITE));
+	TEST_ASSERT_EQUAL_INT(-EPERM, status_of(-66, BUS_WRITE));
 	TEST_ASSERT_EQUAL_INT(-EINVAL, status_of(-22, BUS_WRITE));
 	TEST_ASSERT_EQUAL_INT(-EINVAL, status_of(-14, BUS_WRITE));
 	TEST_ASSERT_EQUAL_INT(-EINVAL, status_of(-34, BUS_WRITE));

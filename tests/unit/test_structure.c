@@ -18,9 +18,13 @@ static const char *fault(const char *text, enum ows_type type, bool output)
 {
 	struct config_item item = { .type = type, .output = output, .readable = !output };
 	struct structure_entry entry;
+	const char *why;
+	int err;
 
 	TEST_ASSERT_EQUAL_INT(0, parse(text, &entry));
-	return structure_fault(&entry, &item);
+	err = structure_fault(&entry, &item, &why);
+	TEST_ASSERT_EQUAL_INT(!*why, !err);
+	return err ? why : NULL;
 }
 
 /* All texts are the genuine owserver's. */

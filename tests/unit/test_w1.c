@@ -402,8 +402,8 @@ static void test_who_may_not_write_is_told_how(void)
 	int pio = fs_writes(BOARD_OW "/PIO.0", "1"), high = fs_writes(WARM_OW "/temphigh", "30");
 	if (user == 0)
 		TEST_ASSERT_EQUAL_INT(0, seteuid(0));
-	TEST_ASSERT_EQUAL_INT(-EACCES, pio);
-	TEST_ASSERT_EQUAL_INT(-EACCES, high);
+	TEST_ASSERT_EQUAL_INT(-EPERM, pio);
+	TEST_ASSERT_EQUAL_INT(-EPERM, high);
 	TEST_ASSERT_TRUE(fs_told(BUS_NOTE, "udev"));
 	TEST_ASSERT_EQUAL_UINT(1, host_events(&fs.host, BUS_NOTE));
 	TEST_ASSERT_EQUAL_UINT(0, host_events(&fs.host, BUS_DOWN));

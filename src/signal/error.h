@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef SIGNAL_ERROR_H
+#define SIGNAL_ERROR_H
+
+/*
+ * The words for a negative errno of the bus contract (hal/bus.h) or of libows, and what the user can
+ * do about it. Neither is NULL; the remedy is "" where there is nothing to do.
+ */
+const char *error_text(int err);
+const char *error_remedy(int err);
+
+/* Both in one: "no such property: check its spelling; ...". Returns words. */
+#define ERROR_WORDS 160
+const char *error_words(int err, char words[ERROR_WORDS]);
+
+#endif
