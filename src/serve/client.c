@@ -77,6 +77,7 @@ struct client *client_open(struct serve *s, int fd, bool network)
 	c->area = s->areas + (size_t)index * AREA_SIZE;
 	c->out_len = c->out_at = 0;
 	c->directory = NULL;
+	c->active_ns = s->now_ns;
 	client_enter(s, c, CLIENT_READING);
 	count(s, COUNT_clients, 1);
 	return c;
@@ -86,6 +87,7 @@ static void put_free(struct serve *s, struct client *c)
 {
 	c->state = CLIENT_FREE;
 	s->free[s->free_count++] = (uint16_t)index_of(s, c);
+	s->accepting = true;
 }
 
 static void client_close(struct serve *s, struct client *c)
@@ -146,12 +148,17 @@ bool client_evict(struct serve *s)
 	for (unsigned i = 0; i < s->used; i++) {
 		struct client *c = &s->clients[i];
 
-		if (c->state == CLIENT_READING && !c->have && !c->lent &&
-		    (!oldest || c->since_ns < oldest->since_ns))
+		if (c->state == CLIENT_READING && !c->have && !c->lent && !c->queued &&
+		    (!oldest || c->active_ns < oldest->active_ns))
 			oldest = c;
 	}
-	if (!oldest || s->now_ns - oldest->since_ns < EVICT_NS)
+	if (!oldest)
 		return false;
+	if (s->now_ns - oldest->active_ns < EVICT_NS) {
+		if (oldest->active_ns + EVICT_NS < s->look_ns)
+			s->look_ns = oldest->active_ns + EVICT_NS;
+		return false;
+	}
 	client_close(s, oldest);
 	count(s, COUNT_evicted, 1);
 	return true;
@@ -232,6 +239,8 @@ static void next_request(struct serve *s, struct client *c)
 	work_end(s, c);
 	c->served++;
 	c->past = c->length;
+	if (c->request.type != FRAME_NOP)
+		c->active_ns = s->now_ns;
 	if (!c->lent)
 		drop_past(c);
 	if (!(c->request.flags & FRAME_PERSIST)) {
@@ -323,6 +332,11 @@ static void read_request(struct serve *s, struct client *c)
 			client_ready(s, c);
 	} else {
 		count(s, COUNT_requests, 1);
+		/* which the answer says: a client that wants more queues up again */
+		if (s->held.is && !s->free_count && c->request.flags & FRAME_PERSIST) {
+			c->request.flags &= ~FRAME_PERSIST;
+			count(s, COUNT_not_kept, 1);
+		}
 		work_begin(s, c);
 	}
 }
@@ -385,4 +399,6 @@ void clients_look(struct serve *s)
 			next = limit_of(c);
 	}
 	s->look_ns = next;
+	/* is one idle for long enough by now? */
+	s->accepting |= s->held.is;
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Where clients connect: addresses, the unix socket, and who gets a place. */
 #include "server.h"
 
 #include "../shm/owner.h"
@@ -16,7 +17,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#define BACKLOG 128
+/* Those who wait for a place; the kernel's net.core.somaxconn may be less. */
+#define BACKLOG 4096
 /* Connections that are taken in a row, before clients have their turn again. */
 #define ACCEPTS 16
 
@@ -232,6 +234,9 @@ void listeners_close(struct serve *s)
 			unlink(s->config->serve.socket);
 	}
 	s->listener_count = 0;
+	if (s->held.is)
+		close(s->held.fd);
+	s->held.is = false;
 }
 
 static bool is_allowed(struct serve *s, const union address *from)
@@ -279,29 +284,63 @@ static void refuse_peer(struct serve *s, int fd, const union address *from)
 	refuse(s, fd, COUNT_refused_peers, &s->peer_rate, reason);
 }
 
-static void take(struct serve *s, int fd, bool network, const union address *from)
+/* All places are taken. Said when it begins; how often it did is counted. */
+static void hold(struct serve *s, int fd, bool network)
 {
-	if (network && !is_allowed(s, from)) {
+	char others[LOG_OTHERS];
+	uint64_t n = log_rate(&s->full_rate, s->now_ns);
+
+	s->held.is = true;
+	s->held.fd = fd;
+	s->held.network = network;
+	count(s, COUNT_full, 1);
+	if (n)
+		log_warning(s->log, "%d clients of the owserver protocol are there, others wait%s",
+		            SERVER_CLIENTS, log_others(n, others));
+}
+
+static void take(struct serve *s, int fd, bool network)
+{
+	if (client_open(s, fd, network))
+		count(s, COUNT_connections, 1);
+	else
+		refuse(s, fd, COUNT_refused_errors, &s->error_rate, strerror(errno));
+}
+
+static void meet(struct serve *s, int fd, bool network, const union address *from)
+{
+	if (network && !is_allowed(s, from))
 		refuse_peer(s, fd, from);
-		return;
-	}
-	if (!s->free_count && !client_evict(s)) {
-		refuse(s, fd, COUNT_refused_full, &s->full_rate, "there are too many");
-		return;
-	}
-	if (!client_open(s, fd, network)) {
-		refuse(s, fd, COUNT_refused_full, &s->full_rate, strerror(errno));
-		return;
-	}
-	count(s, COUNT_connections, 1);
+	else if (s->free_count || client_evict(s))
+		take(s, fd, network);
+	else
+		hold(s, fd, network);
+}
+
+/* True: nobody is held any more. */
+static bool place_held(struct serve *s)
+{
+	if (!s->held.is)
+		return true;
+	if (!s->free_count && !client_evict(s))
+		return false;
+	s->held.is = false;
+	take(s, s->held.fd, s->held.network);
+	return true;
 }
 
 bool listeners_accept(struct serve *s)
 {
 	bool any = false;
 
-	for (unsigned i = 0; i < s->listener_count; i++) {
-		for (int n = 0; n < ACCEPTS; n++) {
+	if (!place_held(s))
+		return false;
+	/* the next time another one first: one place at a time may become free */
+	s->listener_at++;
+	for (unsigned k = 0; k < s->listener_count; k++) {
+		unsigned i = (s->listener_at + k) % s->listener_count;
+
+		for (int n = 0; n < ACCEPTS && !s->held.is; n++) {
 			union address from = { .any = { .sa_family = AF_UNSPEC } };
 			socklen_t len = sizeof(from);
 			int fd = accept4(s->listeners[i].fd, &from.any, &len,
@@ -313,8 +352,8 @@ bool listeners_accept(struct serve *s)
 				break;
 			any = true;
 			if (fd >= 0)
-				take(s, fd, s->listeners[i].network, &from);
+				meet(s, fd, s->listeners[i].network, &from);
 		}
 	}
-	return any;
+	return any && !s->held.is;
 }

@@ -21,7 +21,7 @@
 /* Time limits, as the genuine owserver has them. */
 #define REQUEST_NS    INT64_C(10000000000)  /* from the first byte, or the connection, to the end */
 #define IDLE_NS       INT64_C(600000000000) /* of a connection that asked to be kept */
-#define EVICT_NS      INT64_C(10000000000)  /* idle for so long, it goes when another needs room */
+#define EVICT_NS      INT64_C(10000000000)  /* idle for so long, it goes when another waits */
 #define KEEPALIVE_NS  INT64_C(1000000000)
 #define SEND_NS       INT64_C(10000000000)  /* that no byte of an answer is taken */
 #define ANSWER_NS     INT64_C(60000000000)  /* for the whole of an answer */
@@ -71,6 +71,7 @@ struct client {
 	int32_t worst;        /* of those asked so far; 1: none answered yet */
 	int64_t since_ns;     /* of the state; READING: of the first byte */
 	int64_t tick_ns;      /* of the last progress, or the last keep-alive */
+	int64_t active_ns;    /* of its beginning, or of the end of a request that was more than a NOP */
 	uint64_t served;      /* requests */
 
 	size_t have, need, length; /* bytes in area; of the request in it: as far as known, its end */
@@ -96,11 +97,13 @@ struct client {
 	X(kept_answers)   /* reads that needed no bus */                                           \
 	X(bus_requests)   /* handed to the engine */                                               \
 	X(keepalives)                                                                              \
-	X(refused_full)   /* no room for another client */                                         \
+	X(full)           /* times that a new one had to wait for a place */                       \
+	X(not_kept)       /* closed behind an answer, because others waited */                     \
 	X(refused_peers)  /* not in ListenAllow */                                                 \
 	X(refused_writes) /* in read-only mode */                                                  \
 	X(came_round)     /* had been here before, by way of other servers */                      \
-	X(evicted)        /* idle, closed to make room */                                          \
+	X(evicted)        /* idle for long, closed because others waited */                        \
+	X(refused_errors) /* closed at once, because the kernel lacked something */                \
 	X(garbage)        /* no requests */                                                        \
 	X(timeouts)       /* half requests, answers nobody took, idle connections */               \
 	X(bytes_in)                                                                                \
@@ -135,8 +138,14 @@ struct serve {
 		int fd;
 		bool network;
 	} listeners[SERVER_LISTENERS];
-	unsigned listener_count;
+	unsigned listener_count, listener_at; /* at: accepts first */
 	bool accepting; /* more connections may wait */
+	/* Accepted when all places were taken: while one is held, no more are accepted. */
+	struct {
+		bool is;
+		int fd;
+		bool network;
+	} held;
 	int epoll_fd;
 
 	pthread_t thread;
@@ -153,7 +162,7 @@ struct serve {
 	uint16_t *round;           /* clients that have something to do, in turn */
 	unsigned round_at, round_count;
 	unsigned queued;           /* clients that wait for a directory */
-	struct log_rate full_rate, peer_rate;
+	struct log_rate full_rate, error_rate, peer_rate;
 	struct bus_counter counters[SERVE_COUNTER_COUNT];
 };
 
@@ -165,7 +174,7 @@ static inline void count(struct serve *s, enum serve_counter what, uint64_t by)
 /* listener.c: 0 or a negative errno with the reason in why */
 int listeners_open(struct serve *s, char *why, size_t why_size);
 void listeners_close(struct serve *s);
-/* Take in some of those who wait; false: nobody waits any more. */
+/* Take in some of those who wait; false: nobody waits any more, or there is no place for more. */
 bool listeners_accept(struct serve *s);
 
 /* client.c: connections, bytes and their time limits */
@@ -179,7 +188,7 @@ void client_turn(struct serve *s, struct client *c);
 void clients_look(struct serve *s);
 /* In the state from now on; the next time limit counts from here. */
 void client_enter(struct serve *s, struct client *c, enum client_state state);
-/* The longest idle one that may go for another; false: none. */
+/* Close the one that is idle for longest, if that is long; else s->look_ns is when it will be. */
 bool client_evict(struct serve *s);
 /* What is sent from now on. */
 void client_send(struct serve *s, struct client *c, const uint8_t *bytes, uint32_t len);
