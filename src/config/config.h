@@ -47,6 +47,11 @@ struct config_item {
 	struct config_limits limits;
 	int line; /* of Item */
 };
+/* An input whose Writable is off is never written, whatever its _WriteEnable is set to. */
+static inline bool config_item_takes_sets(const struct config_item *item)
+{
+	return item->output || item->writable;
+}
 
 enum config_relation {
 	CONFIG_FIRST,

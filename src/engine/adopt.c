@@ -188,7 +188,8 @@ static void take_signal(struct signal *s, const struct signal *was)
 	                                                OWS_ATTR_ALARM_POLLED);
 
 	flags |= flag_of(s, was, OWS_ATTR_READ_ENABLE, item->readable, before->readable);
-	flags |= flag_of(s, was, OWS_ATTR_WRITE_ENABLE, item->writable, before->writable);
+	if (config_item_takes_sets(item))
+		flags |= flag_of(s, was, OWS_ATTR_WRITE_ENABLE, item->writable, before->writable);
 	flags |= s->attrs.flags & OWS_ATTR_LIMITS;
 	s->sample = was->sample;
 	s->attrs = was->attrs;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* What programs have set in the command segment, checked and taken into the signals. */
 #include "private.h"
 
 #include "../signal/value.h"
@@ -15,11 +16,14 @@ static void refuse(struct engine *e, struct signal *s, int err, int64_t now_ns)
 	uint64_t n = log_rate(&e->refused, now_ns);
 
 	e->counters.refused_commands++;
-	s->write_err = err;
+	if (err != -EROFS)
+		s->write_err = err;
 	if (n)
 		log_warning(e->log, "%s: a value in the command segment was refused: %s%s",
 		            s->item->name,
-		            err == -ERANGE ? "the type cannot hold it" : "its text is damaged",
+		            err == -EROFS    ? "it is an input, and Writable is off"
+		            : err == -ERANGE ? "the type cannot hold it"
+		                             : "its text is damaged",
 		            log_others(n, others));
 }
 
@@ -65,7 +69,9 @@ static void take_value(struct engine *e, struct signal *s, const struct command 
 {
 	int err = 0;
 
-	if (signal_is_string(s))
+	if (!config_item_takes_sets(s->item))
+		err = -EROFS;
+	else if (signal_is_string(s))
 		err = take_text(e, s);
 	else if (!value_holds(s->item->type, c->value))
 		err = -ERANGE;
@@ -100,7 +106,8 @@ static void take_enables(struct engine *e, struct signal *s, const struct comman
 	bool read_before = signal_reads(s), write_before = signal_writes(s);
 
 	enable(s, c->read_enable, OWS_ATTR_READ_ENABLE);
-	enable(s, c->write_enable, OWS_ATTR_WRITE_ENABLE);
+	if (config_item_takes_sets(s->item))
+		enable(s, c->write_enable, OWS_ATTR_WRITE_ENABLE);
 	if (signal_reads(s) && !read_before) {
 		retry_clear(&s->read_retry);
 		engine_read_now(e, s);
@@ -130,8 +137,7 @@ void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
 	take_enables(e, s, &c);
 	if (c.one_shot && c.one_shot != s->one_shots) {
 		s->one_shots = c.one_shot;
-		/* an input that nobody made writable stays one */
-		s->one_shot = s->commanded && (s->item->output || signal_writes(s));
+		s->one_shot = s->commanded && config_item_takes_sets(s->item);
 	}
 	if (c.dgn_reset && c.dgn_reset != s->dgn_resets) {
 		s->dgn_resets = c.dgn_reset;

@@ -171,7 +171,8 @@ void signal_table_image(const struct config_item *item, struct image_signal *sig
 		.type = (uint8_t)item->type,
 		.flags = (uint8_t)((item->output ? OWS_RECORD_OUTPUT : 0) |
 		                   (item->fresh ? OWS_RECORD_FRESH : 0) |
-		                   (item->alarm ? OWS_RECORD_ALARM : 0)),
+		                   (item->alarm ? OWS_RECORD_ALARM : 0) |
+		                   (config_item_takes_sets(item) ? 0 : OWS_RECORD_NO_SET)),
 		.text_cap = item->type == OWS_STRING ? TABLE_TEXT_CAP : 0,
 		.per_factor = item->per_factor,
 		.line = (uint32_t)item->line,

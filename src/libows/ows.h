@@ -141,7 +141,8 @@ int ows_get_text(struct ows *h, int id, int64_t now_ns, struct ows_value *value,
  * Command an output (or a writable attribute). The value goes out at the signal's next write
  * turn, if it changed. At most one system call (none while the engine is awake).
  * Returns 0; -ERANGE the type cannot hold the value, -EINVAL NaN or infinity, -EACCES not
- * writable or the handle is OWS_READ, -EBUSY another program is just writing this string,
+ * writable or the handle is OWS_READ, -EROFS an input whose Writable is off in the configuration
+ * (also for its _WriteEnable), -EBUSY another program is just writing this string,
  * -ESTALE: set it again after ows_reopen(). stamp, if not NULL, gets the number that `applied`
  * will reach (0 for attributes). The flags _DGNRESET and _WriteOneShot act when this handle sets
  * them from 0 to another value. After an orderly end of owsd sets go on without an error and are

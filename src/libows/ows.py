@@ -46,7 +46,7 @@ Q_NO_PROPERTY, Q_TYPE, Q_ACCESS = 0x04, 0x05, 0x06
 Q_STALE, Q_TARGET, Q_GOOD = 0x14, 0x18, 0xC0
 RECORD_SIZE, INFO_SIZE, SLOT_SIZE, ENTRY_SIZE, CLIENT_SIZE, CLIENTS = 256, 64, 32, 16, 32, 32
 WHOLE_TRIES = 64
-OUTPUT, FRESH, ALARM = 1, 2, 4
+OUTPUT, FRESH, ALARM, NO_SET = 1, 2, 4, 8
 READ_ENABLE, WRITE_ENABLE, IN_WORK = 1, 2, 4
 ALARM_POLLED, ALARM_STANDS, LIMITS = 16, 32, 64
 
@@ -369,7 +369,8 @@ class Ows:
             name = image.string(name, h.pool_off, h.pool_size)
             path = image.string(path, h.pool_off, h.pool_size)
             self.table.append((Info(name, path, kind, bool(flags & OUTPUT), bool(flags & FRESH),
-                                    bool(flags & ALARM), factor, stale), text_off, text_cap))
+                                    bool(flags & ALARM), factor, stale), text_off, text_cap,
+                               bool(flags & NO_SET)))
             if record > 0:
                 self.records[name] = record
 
@@ -423,7 +424,7 @@ class Ows:
         raise KeyError(name)
 
     def names(self):
-        return [info.name for info, _, _ in self.table[1:]]
+        return [row[0].name for row in self.table[1:]]
 
     def info(self, name):
         return self.table[self.find(name)[0]][0]
@@ -434,7 +435,7 @@ class Ows:
         """A whole sample and its attributes, and the text if wanted, verified."""
         words, memory = self.image.words, self.image.memory
         base = self.header.record_off + record * self.header.record_size
-        _, text_off, text_cap = self.table[record]
+        _, text_off, text_cap, _ = self.table[record]
         for _ in range(WHOLE_TRIES):
             seq = words[base >> 2]
             half = seq >> 1 & 1
@@ -611,11 +612,14 @@ class Ows:
     def set(self, name, value):
         """Command an output or a writable attribute. Returns the stamp that Value.applied will
         reach (attributes: 0). TypeError: text where a number is expected, or the other way
-        round; ValueError: the type cannot hold it; PermissionError: not writable;
+        round; ValueError: the type cannot hold it; PermissionError: not writable, with errno
+        EROFS an input whose Writable is off in the configuration;
         BlockingIOError: another program is just writing this text; Stale."""
         record, attribute = self.find(name)
         if self.command is None:
             raise PermissionError(errno.EACCES, "opened without control", name)
+        if self.table[record][3] and attribute in ("_Value", "_WriteEnable", "_WriteOneShot"):
+            raise PermissionError(errno.EROFS, "an input, and Writable is off", name)
         self._there()
         slot = self.command_header.slot_off + record * SLOT_SIZE
         if attribute == "_Value" and record:

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Setting outputs and attributes: the checks, the slot of the command segment, the bell. */
 #include "handle.h"
 
 #include "../shm/word.h"
@@ -59,10 +60,9 @@ static uint32_t stamp_it(const struct ows *h, const struct ows_id *id)
 	return stamp;
 }
 
-/* An output takes sets always, an input while its _WriteEnable is on. */
-static bool takes_sets(const struct ows *h, const struct ows_id *id)
+/* An output takes sets always, an input with Writable on while its _WriteEnable is on. */
+static bool takes_sets(const struct ows *h, const struct ows_id *id, const struct ows_record *r)
 {
-	const struct ows_record *r = map_record(&h->map, (uint32_t)id->record);
 	uint32_t seq = __atomic_load_n(&r->seq, __ATOMIC_ACQUIRE);
 
 	if (r->flags & OWS_RECORD_OUTPUT || word_get(&slot_of(h, id)->write_enable) == ON)
@@ -70,11 +70,22 @@ static bool takes_sets(const struct ows *h, const struct ows_id *id)
 	return word_get(&r->slot[seq >> 1 & 1].attrs.flags) & OWS_ATTR_WRITE_ENABLE;
 }
 
+static bool is_of_writing(enum attribute attribute)
+{
+	return attribute == ATTR_VALUE || attribute == ATTR_WRITE_ENABLE ||
+	       attribute == ATTR_WRITE_ONE_SHOT;
+}
+
+/* owsd ignores what is refused here: these errors are for the program that sets. */
 static int check(const struct ows *h, const struct ows_id *e)
 {
+	const struct ows_record *r = map_record(&h->map, (uint32_t)e->record);
+
 	if (h->map.command == NULL || !attribute_table[e->attribute].writable)
 		return -EACCES;
-	return e->attribute != ATTR_VALUE || takes_sets(h, e) ? 0 : -EACCES;
+	if (r->flags & OWS_RECORD_NO_SET && is_of_writing((enum attribute)e->attribute))
+		return -EROFS;
+	return e->attribute != ATTR_VALUE || takes_sets(h, e, r) ? 0 : -EACCES;
 }
 
 static int check_id(const struct ows *h, int id, const struct ows_id **e)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The verb set: values checked, set, and waited for until the bus has them. */
 #include "names.h"
 #include "reading.h"
 #include "verbs.h"
@@ -119,6 +120,10 @@ static int send(struct ows *h, struct order *order)
 		return ctl_fail("%s: owsd is just starting anew, try again", order->name);
 	case EACCES:
 		return ctl_fail("%s is not writable: it is an input, and its _WriteEnable is 0",
+		                order->name);
+	case EROFS:
+		return ctl_fail("%s cannot be set: the signal is an input (Writable is off in the "
+		                "configuration)",
 		                order->name);
 	case ERANGE:
 		return ctl_fail("%s: %s is too long or out of range", order->name, order->text);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The table as /signals of the served protocol: read and set by name. */
 #include "signals.h"
 
 #include "../libows/handle.h"
@@ -165,6 +166,8 @@ static int set(struct signals *signals, struct ows_id *id, int64_t now_ns, const
 	err = handle_set_text(h, id, copy, &stamp);
 	if (err == -ERANGE)
 		return -EDOM;
+	if (err == -EROFS)
+		return -EACCES;
 	if (err)
 		return err == -EINVAL || err == -EACCES || err == -ESTALE ? err : -EIO;
 	if (id->attribute == ATTR_VALUE)

@@ -104,6 +104,7 @@ struct ows_record { /* 256 bytes */
 #define OWS_RECORD_OUTPUT 0x01
 #define OWS_RECORD_FRESH  0x02 /* read past the cache */
 #define OWS_RECORD_ALARM  0x04
+#define OWS_RECORD_NO_SET 0x08 /* an input whose Writable is off: nothing sets it (since 1.2) */
 
 /*
  * Record 0 is owsd itself: type OWS_LARGE, value = _RECONNECTS, measured_ns = the heartbeat,

@@ -46,7 +46,7 @@ size_t fuzz_memory(size_t n)
 	return 4000000;
 }
 
-/* What comes to a bus is a value of an item: one that is an input may have its _WriteEnable set. */
+/* What comes to a bus is a value of an item that the configuration lets be written. */
 static void check_write(struct scene *s, const char *path, const char *data, uint32_t len)
 {
 	int64_t value;
@@ -56,6 +56,7 @@ static void check_write(struct scene *s, const char *path, const char *data, uin
 	for (size_t i = 0; i < ITEMS; i++) {
 		if (strcmp(items[i].path, path) != 0)
 			continue;
+		TEST_ASSERT_TRUE_MESSAGE(items[i].output || items[i].writable, path);
 		if (items[i].type == OWS_STRING) {
 			TEST_ASSERT_TRUE(len <= VALUE_STRING_MAX);
 			return;

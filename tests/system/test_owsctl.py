@@ -265,19 +265,25 @@ def test_a_value_that_cannot_be_set_is_told_why(scene):
     sensor = "/28.000000000001"
     daemon = scene.owsd(owsdtest.rio("null:", [
         dict(Name="room", Path=sensor + "/temperature", Type="double", IO="input"),
-        dict(Name="relay", Path="/29.000000000002/PIO.BYTE", Type="byte", IO="output")]))
+        dict(Name="relay", Path="/29.000000000002/PIO.BYTE", Type="byte", IO="output"),
+        dict(Name="back", Path=sensor + "/temperature", Type="double", IO="input",
+             Writable=owsdtest.raw("on"))]))
+    assert scene.owsctl(daemon, "set", "-w", "60", "back_WE", "off").returncode == 0
+    cannot = "{} cannot be set: the signal is an input (Writable is off in the configuration)"
     done = scene.owsctl(daemon, "get", "OTHER__room")
     assert done.returncode == 1 and "did you mean room, or -n OTHER?" in done.stderr, done
     for words, reason in (
             (("relay", "1.5"), "relay: 1.5 is no whole number, as byte wants it (0 to 255)"),
             (("relay", "on"), 'relay: "on" is no value for byte (0 to 255)'),
             (("relay", "256"), "relay: 256 is out of range for byte (0 to 255)"),
-            (("room", "5"), "room is not writable: it is an input, and its _WriteEnable is 0")):
+            (("room", "5"), cannot.format("room")), (("room_WE", "on"), cannot.format("room_WE")),
+            (("room_WriteOneShot", "1"), cannot.format("room_WriteOneShot")),
+            (("back", "5"), "back is not writable: it is an input, and its _WriteEnable is 0")):
         done = scene.owsctl(daemon, "set", *words)
         assert done.returncode == 1 and done.stderr == f"owsctl: {reason}\n", (words, done)
-    assert scene.owsctl(daemon, "set", "-w", "60", "room_WE", "on").returncode == 0
-    assert scene.owsctl(daemon, "set", "-w", "60", "room", "5").returncode == 0
-    scene.until(lambda: scene.get(daemon, "room") == "5", 5, "is 5")
+    assert scene.owsctl(daemon, "set", "-w", "60", "back_WE", "on").returncode == 0
+    assert scene.owsctl(daemon, "set", "-w", "60", "back", "5").returncode == 0
+    scene.until(lambda: scene.get(daemon, "back") == "5", 5, "is 5")
 
 
 def test_the_live_table_fits_small_terminals_and_scrolls(scene):

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 
+import faulty
 import owsdtest
 
 sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
@@ -294,7 +295,6 @@ def test_rubbish_in_the_command_segment_harms_nothing(scene):
                     # What rubbish may do is what its writer has the right to
                     for name in ("room", "back"):
                         control.set(name + "_RE", 1)
-                        control.set(name + "_WE", 0)
                     control.set("relays_WE", 1)
                     control.set("relays", 3)
                     return True
@@ -305,6 +305,57 @@ def test_rubbish_in_the_command_segment_harms_nothing(scene):
         daemon.restore()
         scene.until(lambda: good(signals, "room") and signals.get("room").value == 21, 20,
                     "room is read on")
+
+
+def test_an_input_is_not_written_by_any_way(scene):
+    """By libows, owsctl, the served protocol, a program that writes past libows, and a reload."""
+    door = scene.path / "door"
+    server = scene.owserver(mock=["28.000000000001"])
+    sensor = server.devices()[0]
+    server.write(sensor + "/templow", "21")
+
+    def text(io, **keys):
+        return owsdtest.rio(server.target, [
+            dict(Name="low", Path=sensor + "/templow", Type="byte", IO=io, **keys)],
+            Period=0.02, ListenSocket=str(door))
+    config = scene.file("low.rio", text("input"))
+    daemon = scene.owsd(config)
+
+    def refused_by_all():
+        for name in ("low", "low_WriteEnable", "low_WE", "low_WriteOneShot", "low_WOS"):
+            done = scene.owsctl(daemon, "set", name, "1")
+            assert done.returncode == 1 and "is an input" in done.stderr, done
+            done = scene._run([owsdtest.OWSCTL, "-t", f"owserver:{door}", "write",
+                               f"/signals/{name}", "1"], 20)
+            assert done.returncode == 1, done
+            with opened(scene, daemon.name, control=True) as control:
+                try:
+                    control.set(name, 1)
+                    raise AssertionError(name)
+                except PermissionError:
+                    pass
+        with opened(scene, daemon.name, control=True) as control:
+            control.table[1] = (*control.table[1][:3], False)
+            refused = faulty.counters(scene, daemon)["refused_commands"]
+            for name, value in (("low_WE", 1), ("low", 99), ("low_WOS", 1)):
+                control.set(name, value)
+            scene.until(lambda: faulty.counters(scene, daemon)["refused_commands"] > refused, 10)
+            control.set("low_WE", 0)
+            then = control.get("_TRANSACTIONS").value + 5
+            scene.until(lambda: control.get("_TRANSACTIONS").value > then, 10, "five more requests")
+        assert server.read(sensor + "/templow").strip() == "21"
+
+    scene.until(lambda: scene.get(daemon, "low") == "21", 10, "is 21")
+    refused_by_all()
+    config.write_text(text("output", Writable=owsdtest.raw("off")))
+    daemon.signal(signal.SIGHUP)
+    scene.until(lambda: scene.owsctl(daemon, "set", "low_WE", "1").returncode == 0, 10)
+    scene.until(lambda: scene.get(daemon, "low_WE") == "1", 10)
+    config.write_text(text("input"))
+    lines = daemon.log().count("reload:")
+    daemon.signal(signal.SIGHUP)
+    scene.until(lambda: daemon.log().count("reload:") > lines, 10, "it is an input again")
+    refused_by_all()
 
 
 def test_a_bell_rung_without_end_does_not_stop_the_inputs(scene):

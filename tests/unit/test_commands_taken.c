@@ -171,6 +171,25 @@ static void test_the_same_value_set_again_during_its_write_is_confirmed_with_it(
 	TEST_ASSERT_EQUAL_UINT(1, s.writes);
 }
 
+/* By all that a program can put into the command segment, past libows. */
+static void test_an_input_that_the_file_does_not_make_writable_is_never_written(void)
+{
+	one_of_each();
+	for (int enabled = 0; enabled < 4; enabled++) {
+		scene_slot(&s, 1)->write_enable = (uint32_t)enabled;
+		scene_slot(&s, 1)->one_shot++;
+		scene_set(&s, 1, 5);
+		scene_run(&s, SCENE_S);
+		scene_slot(&s, 1)->one_shot++;
+		scene_ring(&s, 1);
+		scene_run(&s, SCENE_S);
+	}
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
+	TEST_ASSERT_EQUAL_UINT64(4, scene_counter(&s, "refused_commands"));
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_INT(0, scene_sample(&s, 1).err);
+}
+
 static void test_one_shot_writes_once_changed_or_not_enabled_or_not(void)
 {
 	one_of_each();
@@ -433,6 +452,7 @@ int main(void)
 	RUN_TEST(test_writing_disabled_keeps_what_was_set_until_it_is_enabled);
 	RUN_TEST(test_a_command_is_not_confirmed_while_writing_is_disabled);
 	RUN_TEST(test_the_same_value_set_again_during_its_write_is_confirmed_with_it);
+	RUN_TEST(test_an_input_that_the_file_does_not_make_writable_is_never_written);
 	RUN_TEST(test_one_shot_writes_once_changed_or_not_enabled_or_not);
 	RUN_TEST(test_diagnostics_are_reset_and_the_value_stays);
 	RUN_TEST(test_the_driver_reset_clears_its_counters_and_every_signal);

@@ -92,6 +92,25 @@ static void test_an_input_takes_sets_while_its_write_enable_is_on(void)
 	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "room1"), 1, NULL));
 }
 
+static void test_nothing_of_writing_is_set_of_an_input_whose_writable_is_off(void)
+{
+	static const char *const names[] = {"room1", "room1_WE", "room1_WriteEnable", "room1_WOS"};
+	struct ows_attrs attrs = {.flags = OWS_ATTR_WRITE_ENABLE};
+	struct ows_sample sample = {.quality = OWS_Q_GOOD};
+
+	image_publish(&in.image, ROOM, &sample, &attrs, NULL);
+	((struct ows_record *)&in.image.records[ROOM])->flags |= OWS_RECORD_NO_SET;
+	for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
+		TEST_ASSERT_EQUAL_MESSAGE(-EROFS, ows_set(h, ows_find(h, names[i]), 1, NULL), names[i]);
+		TEST_ASSERT_EQUAL_MESSAGE(-EROFS, ows_set_integer(h, ows_find(h, names[i]), 0, NULL),
+		                          names[i]);
+		TEST_ASSERT_EQUAL_MESSAGE(-EROFS, ows_set_text(h, ows_find(h, names[i]), "1", NULL),
+		                          names[i]);
+	}
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "room1_RE"), 1, NULL));
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "room1_DGNRESET"), 1, NULL));
+}
+
 static void test_a_reader_may_not_set(void)
 {
 	struct ows *reader;
@@ -308,6 +327,7 @@ int main(void)
 	RUN_TEST(test_a_value_the_type_cannot_hold_is_refused);
 	RUN_TEST(test_an_input_takes_no_sets);
 	RUN_TEST(test_an_input_takes_sets_while_its_write_enable_is_on);
+	RUN_TEST(test_nothing_of_writing_is_set_of_an_input_whose_writable_is_off);
 	RUN_TEST(test_a_reader_may_not_set);
 	RUN_TEST(test_enables_are_commanded_by_name);
 	RUN_TEST(test_a_flag_acts_when_it_goes_from_off_to_on);
