@@ -68,7 +68,7 @@ static void usage(FILE *out)
 	      "      --board[=ID]    say which board this is and what is missing there for a DS2482;\n"
 	      "                      ID: a board that does not tell; --root DIR: files below DIR\n"
 	      "      --rt PRIO       engine thread with SCHED_FIFO priority 1 to 99\n"
-	      "  -v, --verbose       say more; twice: everything\n"
+	      "  -v, --verbose       say more; twice: debugging; three times: each request too\n"
 	      "  -V, --version       version and backends\n"
 	      "  -h, --help          this text\n",
 	      out);
@@ -165,7 +165,7 @@ static int take(struct arguments *a, int option, char *const *argv)
 	case OPT_RT:
 		return take_priority(a);
 	case 'v':
-		if (a->level < LOG_LEVEL_DEBUG)
+		if (a->level < LOG_LEVEL_TRACE)
 			a->level++;
 		return -1;
 	case 'V':

@@ -174,7 +174,7 @@ static int write_line(int fd, int prefix, int level, const char *text, size_t le
 
 	if (prefix) {
 		out[size++] = '<';
-		out[size++] = (char)('0' + level);
+		out[size++] = (char)('0' + (level > LOG_LEVEL_DEBUG ? LOG_LEVEL_DEBUG : level));
 		out[size++] = '>';
 	}
 	memcpy(out + size, text, len);

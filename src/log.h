@@ -14,6 +14,7 @@ enum log_level { /* syslog's numbers */
 	LOG_LEVEL_NOTICE = 5,
 	LOG_LEVEL_INFO = 6,
 	LOG_LEVEL_DEBUG = 7,
+	LOG_LEVEL_TRACE = 8, /* the requests themselves; to the journal this is debug too */
 };
 
 struct log;
@@ -37,6 +38,7 @@ void log_put(struct log *log, enum log_level level, const char *format, ...)
 #define log_notice(log, ...)  log_at(log, LOG_LEVEL_NOTICE, __VA_ARGS__)
 #define log_info(log, ...)    log_at(log, LOG_LEVEL_INFO, __VA_ARGS__)
 #define log_debug(log, ...)   log_at(log, LOG_LEVEL_DEBUG, __VA_ARGS__)
+#define log_trace(log, ...)   log_at(log, LOG_LEVEL_TRACE, __VA_ARGS__)
 
 /*
  * For what may repeat every cycle: says when to speak (1st, 2nd, 4th, 8th time, at least hourly) by

@@ -257,6 +257,8 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now
 		lane->counters.unknown_answers++;
 		return;
 	}
+	if (trace_is_on(e->log))
+		trace_answer(lane, slot, answer, now_ns);
 	give_back(lane, slot);
 	if (!slot->given_up && !slot->moved) {
 		complete(lane, slot, answer, now_ns);
@@ -299,13 +301,15 @@ int64_t lane_timeouts(struct lane *lane, int64_t now_ns)
 				next = end;
 			continue;
 		}
-		slot->given_up = true;
 		lost++;
 		lane->counters.given_up++;
 		if (lane->heard_ns <= slot->begun_ns) {
 			answer.err = -ETIMEDOUT;
 			silent = true;
 		}
+		if (trace_is_on(lane->engine->log))
+			trace_answer(lane, slot, &answer, now_ns);
+		slot->given_up = true;
 		if (!slot->moved)
 			complete(lane, slot, &answer, now_ns);
 		else if (slot->purpose == FOR_WRITE)

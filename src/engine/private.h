@@ -4,6 +4,7 @@
 #define ENGINE_PRIVATE_H
 
 #include "lane.h"
+#include "trace.h"
 
 #define ENGINE_COUNTERS(X)                                                                         \
 	X(periods)                                                                                 \
@@ -68,6 +69,7 @@ struct engine {
 	struct client clients[OWS_CLIENTS];
 	uint32_t driver_resets;
 	struct log_rate refused;
+	struct trace trace;
 	struct {
 #define X(name) uint64_t name;
 		ENGINE_COUNTERS(X)

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""A stderr that nobody reads holds owsd up in nothing."""
+"""What owsd writes to its stderr; one that nobody reads holds owsd up in nothing."""
 
 import fcntl
 import os
+import re
 import signal
 import subprocess
 import time
@@ -74,6 +75,27 @@ def test_lines_come_when_a_full_stderr_is_read_again(scene):
         process.wait()
         os.close(reader)
         os.close(writer)
+
+
+def test_the_trace_shows_each_request_to_each_kind_of_target(scene):
+    server = scene.owserver(tester=["29"])
+    relay = server.devices(0)[0] + "/PIO.0"
+    house = scene.file("house.sim", "chip DS2482-100 0x18\nDS18B20 28.0000000000A1 as room temperature 21.5\n")
+    items = [dict(Name="relay", Path=relay, Type="bool", IO="output", InitValue="1"),
+             dict(Name="switch", Path=relay.replace("PIO", "sensed"), Type="bool", IO="input"),
+             dict(Name="room", Path="/28.0000000000A1/temperature9", Type="double", IO="input"),
+             dict(Name="typo", Path="/28.0000000000A1/temprature", Type="double", IO="input")]
+    config = owsdtest.rio(f"{server.target}, sim:{house}", items, Period=0.05)
+    daemon = scene.owsd(config, "-v", "-v", "-v")
+    for request in (rf"{server.target}: write {relay} \"1\": done", rf"{server.target}: read .*sensed.0: \"[01]\"",
+                    r'sim:.*: read /28.0000000000A1/temperature9: "21.5"',
+                    r"sim:.*: read /28.0000000000A1/temprature: no such property"):
+        owsdtest.until(lambda r=request: re.search(rf"^trace: {r}, [0-9.]+ ms$", daemon.log(), re.M), 20,
+                       lambda r=request: f"{r} in the trace:\n{daemon.log()}")
+    quiet = scene.owsd(config, "-v", "-v")
+    owsdtest.until(lambda: scene.get(quiet, "room"), 10, "it reads")
+    owsdtest.logged(quiet, "up")
+    assert "trace:" not in quiet.log()
 
 
 if __name__ == "__main__":

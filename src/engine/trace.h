@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT */
+/* The trace of requests (`owsd -v -v -v`), at the one place that all of them pass. */
+#ifndef ENGINE_TRACE_H
+#define ENGINE_TRACE_H
+
+#include "hal/bus.h"
+
+#include "../log.h"
+
+/* At most so many lines a window of requests that succeed, and as many of those that fail. */
+#define TRACE_PER_WINDOW 100u
+#define TRACE_WINDOW_NS  1000000000LL
+
+struct trace {
+	int64_t since_ns; /* begin of this window */
+	unsigned shown[2]; /* in it, by success and failure */
+	unsigned hidden;
+};
+
+struct lane;
+struct slot;
+
+static inline bool trace_is_on(const struct log *log)
+{
+	return log && log_level(log) >= LOG_LEVEL_TRACE;
+}
+
+/* The request of the slot has ended, or its time is over. Only where trace_is_on(). */
+void trace_answer(const struct lane *lane, const struct slot *slot, const struct bus_answer *answer,
+                  int64_t now_ns);
+
+#endif
