@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Changes of a configuration file, key by key; all the rest of it stays byte for byte. */
 #include "edit.h"
 
 #include "options.h"
@@ -256,7 +257,7 @@ int edit_unset(struct rio **rio, const char *name, const char *const *keys, unsi
 	return err;
 }
 
-static int count_again(struct rio **rio)
+int edit_count(struct rio **rio)
 {
 	struct rio_node *driver = find_driver(*rio);
 	unsigned items = 0;
@@ -318,7 +319,7 @@ int edit_add(struct rio **rio, const char *name, const char *path, const char *c
 	free(text);
 	if (!err && count)
 		err = edit_set(rio, name, settings, count, report);
-	return err ? err : count_again(rio);
+	return err ? err : edit_count(rio);
 }
 
 int edit_remove(struct rio **rio, const char *name, struct config_report *report)
@@ -331,7 +332,7 @@ int edit_remove(struct rio **rio, const char *name, struct config_report *report
 		return -EINVAL;
 	}
 	err = rio_remove(rio, item);
-	return err ? err : count_again(rio);
+	return err ? err : edit_count(rio);
 }
 
 int edit_lock(const char *file, struct config_report *report)

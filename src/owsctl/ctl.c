@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* What the verbs of owsctl have in common: options, messages, opening an instance, ending. */
 #include "names.h"
 #include "verbs.h"
 #include "when.h"
@@ -36,6 +37,16 @@ int ctl_fail(const char *format, ...)
 	return CTL_FAILED;
 }
 
+int ctl_nothing(const char *format, ...)
+{
+	va_list args;
+
+	va_start(args, format);
+	say(format, args);
+	va_end(args);
+	return CTL_NOTHING;
+}
+
 int ctl_usage(const struct ctl *ctl, const char *format, ...)
 {
 	va_list args;
@@ -60,6 +71,8 @@ static const struct option *longs_of(const char *options)
 		{"help", no_argument, NULL, 'h'},
 		{"all", no_argument, NULL, 'a'},
 		{"rio", no_argument, NULL, 'r'},
+		{"merge", required_argument, NULL, 'M'},
+		{"replace", required_argument, NULL, 'R'},
 	};
 	static struct option had[sizeof(longs) / sizeof(longs[0]) + 1];
 	struct option *next = had;

@@ -29,8 +29,8 @@ static const struct verb verbs[] = {
 	 verb_read, .opens = true},
 	{"write", "[-t TARGET] [-w SECONDS] PATH VALUE", "write a property of a device", verb_write,
 	 .opens = true},
-	{"scan", "[-t TARGET] [-w SECONDS] [--rio] [-i]", "the devices that are there, or a "
-	 "configuration for them", verb_scan, .opens = true},
+	{"scan", "[-t TARGET] [-w SECONDS] [--rio [-i] [--merge FILE [--replace OLD=NEW]...]]",
+	 "the devices that are there, or a configuration for them", verb_scan, .opens = true},
 };
 enum { JSON = 256 };
 #define VERBS (sizeof(verbs) / sizeof(verbs[0]))
@@ -45,7 +45,8 @@ static void usage(FILE *out)
 	      "             serves them, else localhost:4304 (owserver)\n"
 	      "  --json     print JSON\n"
 	      "  -V -h      print the version; this help, with a verb in front: the verb's\n"
-	      "exit status: 0 done, 1 failed, 2 wrong usage, 3 a value is not good\n", out);
+	      "exit status: 0 done, 1 failed, 2 wrong usage, 3 a value is not good,\n"
+	      "             4 a scan found nothing\n", out);
 }
 
 int main(int argc, char **argv)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "scan.h"
+/* owsctl scan: what is on the wires of a target, as a table, as JSON or as a configuration. */
+#include "scan_merge.h"
 #include "table.h"
 
 #include "../../hal/native/family.h"
@@ -7,6 +8,8 @@
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 static const struct table_column columns[] = {
 	{"PATH"}, {"FAMILY"}, {"TYPE"}, {"ALIAS"}, {"BUS"}, {"ALARM"}, {"VALUES"},
@@ -120,20 +123,86 @@ static void print_json(const struct scan *scan)
 	json_end(&json);
 }
 
+/* Print the configuration: made of what was found, or the file that it is put into. */
+static int print_rio(const struct ctl *ctl, const struct target *target, const struct scan *scan,
+                     struct scan_merge *merge, bool inputs_only)
+{
+	const struct served *served = &target->served;
+
+	if (merge->file)
+		return scan_merge(merge, scan, inputs_only);
+	if (served->target[0] && served->cut)
+		return ctl_fail("the targets of owsd %s are too long to be told whole: name them with "
+		                "-t TARGET", ctl->instance);
+	return served->target[0] ? scan_rio(scan, served->targets, true, inputs_only)
+	                         : scan_rio(scan, target->name, false, inputs_only);
+}
+
+static int show(const struct ctl *ctl, const struct scan *scan)
+{
+	if (ctl->json)
+		print_json(scan);
+	else if (scan->count && !print_table(scan))
+		return ctl_fail("no memory");
+	return CTL_DONE;
+}
+
+/* Who redirects into a file finds it empty after a failure. */
+static void tell_of_file(void)
+{
+	struct stat out;
+
+	if (!fstat(STDOUT_FILENO, &out) && S_ISREG(out.st_mode) && !out.st_size)
+		ctl_fail("no configuration was made: the file that the output goes to is empty");
+}
+
+static int look(struct ctl *ctl, int64_t timeout_ns, bool rio, bool inputs_only,
+                struct scan_merge *merge)
+{
+	struct target target;
+	struct scan scan;
+	int status = target_open(ctl, timeout_ns, &target);
+
+	if (status) {
+		scan_board(target.name);
+		return status;
+	}
+	status = scan_target(&target, &scan);
+	if (!status && (scan.count || !rio))
+		status = rio ? print_rio(ctl, &target, &scan, merge, inputs_only)
+		             : show(ctl, &scan);
+	if (!status && !scan.count) {
+		status = ctl_nothing("%s answers, but no device is there: look at the wires and the "
+		                     "supply of the devices, or name another target with -t TARGET",
+		                     target.name);
+		scan_board(target.name);
+	}
+	target_close(&target);
+	scan_free(&scan);
+	return status;
+}
+
 int verb_scan(struct ctl *ctl, int argc, char **argv)
 {
 	int64_t timeout_ns = OPEN_TIMEOUT_NS;
 	bool rio = false, inputs_only = false;
-	struct target target;
-	struct scan scan;
-	int c, status;
+	struct scan_merge merge = {0};
+	int c, status = CTL_DONE;
 
 	ctl_options();
-	while ((c = target_option(ctl, argc, argv, "ri", &timeout_ns)) != -1) {
+	while ((c = target_option(ctl, argc, argv, "riM:R:", &timeout_ns)) != -1) {
 		if (c == 'r')
 			rio = true;
 		else if (c == 'i')
 			inputs_only = true;
+		else if (c == 'M' && !merge.file)
+			merge.file = optarg;
+		else if (c == 'M')
+			return ctl_usage(ctl, "--merge stands there twice");
+		else if (c == 'R' && merge.pair_count < SCAN_PAIRS)
+			merge.pair[merge.pair_count++] = optarg;
+		else if (c == 'R')
+			return ctl_usage(ctl, "at most %d devices are replaced at once", SCAN_PAIRS);
 		else
 			return CTL_USAGE;
 	}
@@ -141,26 +210,16 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 		return ctl_usage(ctl, "%s: scan looks at all of a target", argv[optind]);
 	if (rio ? ctl->json : inputs_only)
 		return ctl_usage(ctl, rio ? "--rio is no JSON" : "-i goes with --rio");
-	status = target_open(ctl, timeout_ns, &target);
-	if (status) {
-		scan_board(target.name);
-		return status;
-	}
-	status = scan_target(&target, &scan);
-	if (!status && !scan.count)
-		scan_board(target.name);
-	if (!status && rio && target.served.target[0] && target.served.cut)
-		status = ctl_fail("the targets of owsd %s are too long to be told whole: name them with "
-		                  "-t TARGET", ctl->instance);
-	else if (!status && rio)
-		status = target.served.target[0]
-		                 ? scan_rio(&scan, target.served.targets, true, inputs_only)
-		                 : scan_rio(&scan, target.name, false, inputs_only);
-	else if (!status && ctl->json)
-		print_json(&scan);
-	else if (!status && !print_table(&scan))
-		status = ctl_fail("no memory");
-	target_close(&target);
-	scan_free(&scan);
+	if (merge.file && !rio)
+		return ctl_usage(ctl, "--merge goes with --rio: it makes a configuration");
+	if (merge.pair_count && !merge.file)
+		return ctl_usage(ctl, "--replace goes with --merge FILE, whose devices it replaces");
+	if (merge.file)
+		status = scan_merge_open(&merge);
+	if (!status)
+		status = look(ctl, timeout_ns, rio, inputs_only, &merge);
+	if (status && rio)
+		tell_of_file();
+	scan_merge_close(&merge);
 	return status;
 }

@@ -15,6 +15,7 @@ enum ctl_status {
 	CTL_FAILED = 1,
 	CTL_USAGE = 2,
 	CTL_NOT_GOOD = 3, /* a value is not good */
+	CTL_NOTHING = 4,  /* a scan found nothing */
 };
 
 struct verb;
@@ -60,6 +61,9 @@ int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options);
 int ctl_usage(const struct ctl *ctl, const char *format, ...) /* returns CTL_USAGE */
 	__attribute__((format(printf, 2, 3)));
 int ctl_fail(const char *format, ...) /* returns CTL_FAILED */
+	__attribute__((format(printf, 1, 2)));
+
+int ctl_nothing(const char *format, ...) /* returns CTL_NOTHING */
 	__attribute__((format(printf, 1, 2)));
 
 /* The word as a message shows it: an empty one by its quotes. */

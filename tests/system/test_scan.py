@@ -264,11 +264,159 @@ def test_a_silent_target_is_given_up_in_time(scene):
     assert "no answer in time" not in done.stderr, done
 
 
-def test_an_empty_wire_has_no_configuration(scene):
+def test_a_scan_that_finds_nothing_says_so_and_has_a_status_of_its_own(scene):
     target = sim(scene, "")
-    assert len(lines(scene, target, "scan")) == 1
-    done = ctl(scene, target, "scan", "--rio", status=1)
-    assert "no device" in done.stderr and done.stdout == ""
+    for words, out in ((("scan",), ""), (("--json", "scan"), "[]\n"), (("scan", "--rio"), ""),
+                       (("scan", "--rio", "-i"), "")):
+        done = ctl(scene, target, *words, status=4)
+        assert done.stdout == out and "no device is there: look at the wires" in done.stderr, done
+    nobody = f"127.0.0.1:{owsdtest.free_port()}"
+    for words in (("scan",), ("scan", "--rio")):
+        done = ctl(scene, nobody, *words, status=1)
+        assert done.stdout == "" and "cannot open" in done.stderr, done
+
+
+def test_devices_that_make_no_signal_make_no_configuration(scene):
+    server = scene.owserver(fake=["2C"])
+    assert len(lines(scene, server.target, "scan")) == 2
+    done = ctl(scene, server.target, "scan", "--rio", status=4)
+    assert done.stdout == "" and "has 1 device, and none that" in done.stderr, done
+
+
+def test_a_scan_that_fails_says_that_its_file_is_empty(scene):
+    for target, status in ((sim(scene, ""), 4), (f"127.0.0.1:{owsdtest.free_port()}", 1)):
+        with open(scene.path / "plant.rio", "w", encoding="utf-8") as out:
+            done = subprocess.run([owsdtest.OWSCTL, "-t", target, "scan", "--rio"], stdout=out,
+                                  stderr=subprocess.PIPE, text=True, check=False,
+                                  timeout=owsdtest.PATIENCE)
+        assert done.returncode == status and "output goes to is empty" in done.stderr, done
+
+
+BEFORE = """
+DS18B20 28.2022DB060000 as a temperature 21.5
+DS18B20 28.4AEC29CDBAAB as b temperature -5.0625
+DS2413  3A.000000000001 as c
+"""
+# b was exchanged for another; a DS2438 came, and a thermometer whose id sorts before all others
+AFTER = """
+DS18B20 28.2022DB060000 as a temperature 21.5
+DS18B20 28.7777777777AB as b temperature -5.0625
+DS2413  3A.000000000001 as c
+DS2438  26.F2FBE3467CC2 as d temperature 22 vdd 5 vad 2.3
+"""
+
+
+def plant(scene):
+    """A configuration that was made by a scan and then worked on."""
+    text = ctl(scene, sim(scene, BEFORE), "scan", "--rio").stdout
+    text = text.replace('Name                    "temperature1"',
+                        '# the living room\n    Name "room"   # mine\n    LimitH 26.50')
+    text = text.replace("Timeout                 20", "Timeout 20.0")
+    assert "room" in text and '"temperature2"' in text and "20.0" in text
+    return text
+
+
+def without(text, *lines_out):
+    return "".join(line for line in text.splitlines(True) if not any(x in line for x in lines_out))
+
+
+def test_a_merge_changes_nothing_where_nothing_changed(scene):
+    for end in ("\n", "\r\n"):
+        text = plant(scene).replace("\n", end)
+        file = scene.path / "plant.rio"
+        file.write_bytes(text.encode())
+        done = subprocess.run([owsdtest.OWSCTL, "-t", sim(scene, BEFORE), "scan", "--rio", "--merge",
+                               file], capture_output=True, check=False, timeout=owsdtest.PATIENCE)
+        assert (done.returncode, done.stderr) == (0, b""), done
+        assert done.stdout == text.encode()
+
+
+def test_a_merge_keeps_every_byte_and_says_new_missing_and_perhaps_replaced(scene):
+    text = plant(scene)
+    file = scene.file("plant.rio", text)
+    done = ctl(scene, sim(scene, AFTER), "scan", "--rio", "--merge", file)
+    head, tail = text[:text.rindex("}")], done.stdout
+    assert without(tail, "ItemCount").startswith(without(head, "ItemCount")), tail
+    assert file.read_text() == text
+    for said in ("owsctl: missing: temperature2: 28.4AEC29CDBAAB was not found; its items stay\n",
+                 "owsctl: new: temperature1 to vad1: 26.F2FBE3467CC2 (DS2438)\n",
+                 "owsctl: new: temperature3: 28.7777777777AB (DS18B20)\n",
+                 "--replace 28.4AEC29CDBAAB=28.7777777777AB\n"):
+        assert said in done.stderr, done.stderr
+    assert "room" not in done.stderr and "3A.0000" not in done.stderr, done.stderr
+    names = re.findall(r'\bName +"(.*)"', tail)
+    assert len(set(names)) == len(names) and "temperature2" in names, names
+    assert f"ItemCount               {len(names)}" in tail
+    check = scene.owsd_once("--check", "-c", scene.file("merged.rio", tail))
+    assert check.returncode == 0 and check.stderr == "", check
+
+
+def test_a_device_is_replaced_only_when_it_is_asked_for(scene):
+    text = plant(scene)
+    file = scene.file("plant.rio", text)
+    target = sim(scene, AFTER)
+    for old in ("28.4AEC29CDBAAB", "temperature2", "/284AEC29CDBAAB"):
+        done = ctl(scene, target, "scan", "--rio", "-i", "--merge", file, "--replace",
+                   f"{old}=28.7777777777AB")
+        assert "owsctl: replaced: temperature2: 28.4AEC29CDBAAB by 28.7777777777AB\n" in done.stderr
+        assert "missing" not in done.stderr, done.stderr
+        expected = text[:text.rindex("}")].replace("/28.4AEC29CDBAAB/", "/28.7777777777AB/")
+        assert without(done.stdout, "ItemCount").startswith(without(expected, "ItemCount"))
+
+
+def test_a_replacement_keeps_the_form_of_the_path(scene):
+    chips = "DS18B20 28.7777777777AB as b temperature -5.0625\n"
+    paths = {"/uncached/28.4AEC29CDBAAB/temperature9": "/uncached/28.7777777777AB/temperature9",
+             "284aec29cdbaab/temperature": "287777777777AB/temperature",
+             "/bus.3/28.4AEC29CDBAAB/temperature": "/bus.0/28.7777777777AB/temperature"}
+    file = scene.file("plant.rio", owsdtest.rio("", [
+        dict(Name=f"t{i}", Path=path, Type="double") for i, path in enumerate(paths)]))
+    done = ctl(scene, sim(scene, chips), "scan", "--rio", "--merge", file, "--replace",
+               "t1=28.7777777777AB")
+    assert re.findall(r'Path +"(.*)"', done.stdout) == list(paths.values()), done
+
+
+def test_what_cannot_be_merged_is_refused_and_nothing_is_printed(scene):
+    file = scene.file("plant.rio", plant(scene))
+    target = sim(scene, AFTER)
+    broken = scene.file("broken.rio", "OwsDrv {\n  Item {\n")
+    merge = ("scan", "--rio", "--merge", file)
+    b, new = "28.4AEC29CDBAAB", "28.7777777777AB"
+    for words, status, what in (
+            (("scan", "--merge", file), 2, "--merge goes with --rio"),
+            (("--json", *merge), 2, "--rio is no JSON"),
+            (("scan", "--rio", "--replace", f"{b}={new}"), 2, "--replace goes with --merge"),
+            ((*merge, "--replace", b), 2, "expected OLD=NEW"),
+            ((*merge, "--replace", f"kitchen={new}"), 2, "neither the id of a device nor"),
+            ((*merge, "--replace", f"{new}={new}"), 1, "no item of the file has this device"),
+            ((*merge, "--replace", f"room={new}"), 1, "the old device is still there"),
+            ((*merge, "--replace", f"{b}=28.0000000000FF"), 1, "was not found"),
+            ((*merge, "--replace", f"{b}=28.2022DB060000"), 1, "has items in the file already"),
+            ((*merge, "--replace", f"{b}=26.F2FBE3467CC2"), 1, "of different families"),
+            (("scan", "--rio", "--merge", "/nowhere.rio"), 1, "/nowhere.rio"),
+            (("scan", "--rio", "--merge", broken), 2, "broken.rio:")):
+        done = ctl(scene, target, *words, status=status)
+        assert done.stdout == "" and what in done.stderr, (words, done)
+    done = ctl(scene, sim(scene, ""), *merge, status=4)
+    assert done.stdout == "" and "no device is there" in done.stderr, done
+    for redirect in (">", ">>"):
+        done = subprocess.run(["/bin/sh", "-c", f'"$0" -t {target} scan --rio --merge x.rio {redirect} x.rio',
+                               owsdtest.OWSCTL], cwd=scene.path, capture_output=True, text=True,
+                              check=False, timeout=owsdtest.PATIENCE)
+        assert done.returncode == 1 and "x.rio is where the output goes" in done.stderr, done
+
+
+def test_items_that_name_no_id_are_not_called_missing(scene):
+    server = scene.owserver(mock=["28"])
+    thermometer, = server.devices()
+    server.write(thermometer + "/alias", "living")
+    file = scene.file("plant.rio", owsdtest.rio(server.target, [
+        dict(Name="room", Path="/living/temperature", Type="double"),
+        dict(Name="attic", Path="/attic/temperature", Type="double")]))
+    done = ctl(scene, server.target, "scan", "--rio", "--merge", file)
+    assert done.stdout == file.read_text(), done
+    assert done.stderr == ("owsctl: not judged: attic: its path, /attic/temperature, has no id of a "
+                           "device\n"), done
 
 
 if __name__ == "__main__":

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What a scan means for a configuration that is there: which of its devices stay, which are
+ * missing, which of those found are new, and which replaces which. Pure: nothing here knows files or buses.
+ */
+#ifndef OWSCTL_MERGE_H
+#define OWSCTL_MERGE_H
+
+#include "../../hal/path.h"
+
+enum merge_fate {
+	MERGE_STAYS,    /* in the file, and found */
+	MERGE_MISSING,  /* in the file, not found */
+	MERGE_NEW,      /* found, not in the file */
+	MERGE_REPLACED, /* in the file: other takes its place; found: it takes the place of other */
+};
+
+struct merge_device {
+	uint8_t rom[ROM_LEN];
+	enum merge_fate fate;
+	int other; /* replaced: index in the other list */
+	/* missing and new: so many devices of this family are missing, and as many new; 0: not so */
+	unsigned pairs;
+};
+
+/* --replace OLD=NEW */
+struct merge_pair {
+	uint8_t old_rom[ROM_LEN], new_rom[ROM_LEN];
+};
+
+enum merge_fault {
+	MERGE_RIGHT,
+	MERGE_OLD_UNKNOWN, /* no item of the file has OLD */
+	MERGE_OLD_FOUND,   /* OLD is still there */
+	MERGE_NEW_ABSENT,  /* NEW was not found */
+	MERGE_NEW_KNOWN,   /* NEW has items in the file */
+	MERGE_FAMILY,      /* they have other properties */
+	MERGE_TWICE,       /* OLD or NEW stands in two pairs */
+};
+
+/*
+ * Fill in what follows for the devices of the file (known) and those found; each list names a
+ * device once. A device is replaced only where a pair says so. What is wrong with the first wrong
+ * pair, whose index *wrong gets; the lists are then without meaning.
+ */
+enum merge_fault merge_decide(struct merge_device *known, unsigned known_count,
+                              struct merge_device *found, unsigned found_count,
+                              const struct merge_pair *pairs, unsigned pair_count,
+                              unsigned *wrong);
+
+#endif

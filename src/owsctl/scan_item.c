@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: MIT */
+/* Items of a configuration for devices that were found: their names, text and initial values. */
+#include "scan_item.h"
+
+#include "../config/config.h"
+#include "../config/rio_write.h"
+#include "../signal/value.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool scan_names_init(struct scan_names *names, size_t room)
+{
+	*names = (struct scan_names){.name = calloc(room + 1, sizeof(*names->name)),
+	                             .room = (unsigned)room};
+	return names->name != NULL;
+}
+
+void scan_names_free(struct scan_names *names)
+{
+	free(names->name);
+}
+
+void scan_names_add(struct scan_names *names, const char *name)
+{
+	size_t len = strnlen(name, SIGNAL_NAME_MAX);
+
+	if (names->count < names->room)
+		memcpy(names->name[names->count++], name, len); /* the rest is 0 */
+}
+
+static bool is_free(const struct scan_names *names, const char *name)
+{
+	for (unsigned i = 0; i < names->count; i++)
+		if (!strcmp(names->name[i], name))
+			return false;
+	return !signal_name_fault(name);
+}
+
+/*
+ * The name of a signal: the device's alias, with the property's word where it has several; else
+ * the word with the first number that is free.
+ */
+static const char *choose(struct scan_names *names, const struct scan_device *device,
+                          const struct scan_property *property)
+{
+	bool several = device->kind->property[1].name;
+	char name[SIGNAL_NAME_MAX + SCAN_ALIAS];
+
+	snprintf(name, sizeof(name), "%s%s%s", device->alias, several ? "_" : "",
+	         several ? property->word : "");
+	if (!device->alias[0] || strchr(name, '\\') || !is_free(names, name)) {
+		unsigned n = 0;
+
+		do
+			snprintf(name, sizeof(name), "%s%u", property->word, ++n);
+		while (!is_free(names, name));
+	}
+	scan_names_add(names, name);
+	return names->name[names->count - 1];
+}
+
+static int add_item(struct rio **rio, struct scan_names *names, const struct scan_device *device,
+                    unsigned i)
+{
+	const struct scan_property *property = &device->kind->property[i];
+	char text[512], rate[48] = "", init[128] = "";
+
+	if (property->per_factor)
+		snprintf(rate, sizeof(rate), "  PerFactor               %u\n", property->per_factor);
+	if (property->output)
+		snprintf(init, sizeof(init), "  InitValue               \"%s\"\n",
+		         device->value[i].text);
+	snprintf(text, sizeof(text),
+	         "# %s%s%s%s%s\n"
+	         "Item {\n"
+	         "  Name                    \"%s\"\n"
+	         "  Path                    \"%s/%s\"\n"
+	         "  Type                    \"%s\"\n"
+	         "  IO                      \"%s\"\n"
+	         "%s%s"
+	         "}",
+	         device->type, device->location[0] ? " on " : "", device->location,
+	         device->simulated ? " (simulated)" : "",
+	         property->output ? "; its InitValue is what it was set to when found" : "",
+	         choose(names, device, property), device->path, property->name,
+	         value_type_name(property->type), property->output ? "output" : "input", rate, init);
+	return rio_add(rio, rio_child(&(*rio)->root, "OwsDrv"), text);
+}
+
+/* Is it to be in the configuration? Says why not where that is a surprise. */
+static bool wanted(const struct scan_device *device, unsigned i, bool inputs_only)
+{
+	const struct scan_property *property = &device->kind->property[i];
+	const struct scan_value *value = &device->value[i];
+	int64_t number;
+
+	if (!property->name || (property->output && inputs_only) || value->err == -ENOENT)
+		return false;
+	if (!property->output)
+		return true;
+	if (!value->err && !value_parse(property->type, value->text, &number))
+		return true;
+	ctl_fail("left out: the output %s/%s, because it cannot be read: %s", device->path,
+	         property->name, value->err ? error_text(value->err) : value->text);
+	return false;
+}
+
+int scan_add_items(struct rio **rio, struct scan_names *names, const struct scan_device *device,
+                   bool inputs_only)
+{
+	int err = 0;
+
+	for (unsigned i = 0; device->kind && i < SCAN_PROPERTIES && !err; i++)
+		if (wanted(device, i, inputs_only))
+			err = add_item(rio, names, device, i);
+	return err;
+}
+
+/* Why what was made is no configuration; status CTL_DONE: it is one. */
+struct refusal {
+	const char *what;
+	int status;
+};
+
+static void refuse(void *ctx, bool is_error, const char *message)
+{
+	struct refusal *refusal = ctx;
+
+	if (is_error && !refusal->status)
+		refusal->status = ctl_fail("%s makes no configuration: %s", refusal->what, message);
+}
+
+int scan_check(const struct rio *rio, const char *what)
+{
+	struct refusal refusal = {.what = what};
+	struct config_report report = {.line = refuse, .ctx = &refusal};
+	struct config *config;
+	int err = config_parse("what was found", rio->text, rio->len, &report, &config);
+
+	if (err == -ENOMEM)
+		return ctl_fail("no memory");
+	if (!err)
+		config_free(config);
+	return refusal.status;
+}
