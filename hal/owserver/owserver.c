@@ -57,6 +57,7 @@ static const char *const counter_names[COUNTERS] = {
 	[TALK_REFUSED] = "refused_persistence",
 	[TALK_STALE] = "stale_connection",
 	[TALK_GARBAGE] = "garbage",
+	[TALK_FLOODS] = "keepalive_floods",
 	[TALK_TIMEOUTS] = "timeouts",
 	[TALK_BYTES_IN] = "bytes_in",
 	[TALK_BYTES_OUT] = "bytes_out",

@@ -1,9 +1,18 @@
 /* SPDX-License-Identifier: MIT */
+/* A request and its reply over a kept connection, and what a peer may send before the reply is whole. */
 #include "hal/owserver/talk.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+
+/* A genuine owserver sends one keep-alive a second, also where it stands behind another. */
+#define ALIVE_BURST 32u
+#define ALIVE_PER_S 20
+/* So many pieces of a reply are taken as they come, then what came within a pause together. */
+#define PIECES     16u
+#define PAUSE_NS   INT64_C(1000000)
+#define NS_PER_S   INT64_C(1000000000)
 
 static int64_t now(const struct talk *talk)
 {
@@ -47,6 +56,8 @@ static int make_request(struct talk *talk, const struct talk_request *request)
 
 static void expect_reply(struct talk *talk, const struct talk_request *request)
 {
+	talk->asked_ns = now(talk);
+	talk->alives = talk->pieces = 0;
 	if (request->room)
 		frame_begin(&talk->reader, request->room, request->limit);
 	else
@@ -78,11 +89,35 @@ static int whole(struct talk *talk, size_t left_over)
 	return 0;
 }
 
+/* Keep-alives cost time and say nothing: more than any owserver sends are no sign of life. */
+static bool is_flood(struct talk *talk)
+{
+	int64_t waited_ns = now(talk) - talk->asked_ns;
+
+	bus_count(&talk->counter[TALK_KEEPALIVES], 1);
+	return ++talk->alives > ALIVE_BURST + (uint64_t)(waited_ns * ALIVE_PER_S / NS_PER_S);
+}
+
+/* A peer that sends byte by byte costs a thousand looks a second at most. 0, or -ECANCELED. */
+static int pause_after_pieces(struct talk *talk, int64_t until_ns)
+{
+	const struct bus_env *env = talk->connection.env;
+	int64_t end_ns = now(talk) + PAUSE_NS;
+
+	if (++talk->pieces <= PIECES)
+		return 0;
+	return env->wait(env->ctx, -1, 0, end_ns < until_ns ? end_ns : until_ns);
+}
+
 int talk_receive(struct talk *talk, int64_t until_ns)
 {
 	do {
-		int n = connection_receive(&talk->connection, talk->in, sizeof(talk->in), until_ns);
+		int n = pause_after_pieces(talk, until_ns);
 		size_t at = 0;
+
+		if (n == 0)
+			n = connection_receive(&talk->connection, talk->in, sizeof(talk->in),
+			                       until_ns);
 
 		if (n == -ETIMEDOUT)
 			return -EAGAIN;
@@ -99,9 +134,11 @@ int talk_receive(struct talk *talk, int64_t until_ns)
 			at += used;
 			if (state == FRAME_WHOLE)
 				return whole(talk, (size_t)n - at);
-			if (state == FRAME_ALIVE)
-				bus_count(&talk->counter[TALK_KEEPALIVES], 1);
-			else if (state == -EMSGSIZE)
+			if (state == FRAME_ALIVE && is_flood(talk)) {
+				bus_count(&talk->counter[TALK_FLOODS], 1);
+				return fail(talk, -EPROTO, "keep-alives without end");
+			}
+			if (state == -EMSGSIZE)
 				return fail(talk, -EPROTO, "an answer longer than asked for");
 			else if (state < 0)
 				return fail(talk, -EPROTO, "this is no owserver");

@@ -19,6 +19,7 @@ enum talk_counter {
 	TALK_REFUSED,
 	TALK_STALE,
 	TALK_GARBAGE,
+	TALK_FLOODS,
 	TALK_TIMEOUTS,
 	TALK_BYTES_IN,
 	TALK_BYTES_OUT,
@@ -28,6 +29,8 @@ enum talk_counter {
 struct talk {
 	struct connection connection;
 	struct frame_reader reader; /* reader.header: the last reply */
+	int64_t asked_ns;           /* when this reply began to be waited for */
+	uint32_t alives, pieces;    /* keep-alives and pieces since then */
 	bool heard;                 /* bytes came since the caller cleared it */
 	char trouble[112];          /* why an exchange failed, as a sentence */
 	struct bus_counter *counter; /* by enum talk_counter */
@@ -55,7 +58,7 @@ struct talk_request {
  *   -EMSGSIZE     the path or the data are too long, nothing was sent (connection kept)
  *   -ECONNREFUSED no connection
  *   -ECONNRESET   closed by the peer
- *   -EPROTO       garbage
+ *   -EPROTO       garbage, or keep-alives without end
  *   -ETIMEDOUT    nothing heard until the deadline
  *   -EINPROGRESS  heard, but no whole reply by then; or the host shuts down
  */

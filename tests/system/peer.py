@@ -26,6 +26,7 @@ in all modes but accept_close and dead.
   slow S         answers after S seconds, a keep-alive every 0.2 s before
   late S         answers after S seconds of silence
   alive          sends keep-alives for ever, no answer         hang       sends nothing, for ever
+  flood          the same, as fast as it can
   kill           sends half of an answer, then closes          stall      sends half, then nothing
   close          closes instead of answering                   reset      resets the connection
   close_after    answers properly, then closes
@@ -53,7 +54,7 @@ NOP, READ, WRITE, DIR, PRESENT, DIRALL = 1, 2, 3, 4, 6, 7
 PERSIST = 0x4
 KEEP_ALIVE = struct.pack(">6i", 0, -1, 0, 0, 0, 0)
 MODES = {"normal", "refuse", "fragments", "slow", "late", "alive", "hang", "kill", "stall", "close",
-         "reset", "close_after", "garbage", "trailing", "negative", "huge", "version", "long",
+         "flood", "reset", "close_after", "garbage", "trailing", "negative", "huge", "version", "long",
          "wrong", "endless", "accept_close", "dead"}
 CLOSES = {"refuse", "kill", "close", "reset", "close_after"}
 
@@ -193,6 +194,9 @@ class Peer:
             self._until_gone(s, stop, b"", 3600)
         elif mode == "alive":
             self._until_gone(s, stop, KEEP_ALIVE, 3600)
+        elif mode == "flood":
+            while not stop.is_set():
+                s.sendall(KEEP_ALIVE * 1000)
         elif mode in ("slow", "late"):
             self._until_gone(s, stop, KEEP_ALIVE if mode == "slow" else b"", float(seconds))
         elif mode == "endless":

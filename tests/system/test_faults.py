@@ -58,7 +58,7 @@ def test_every_way_of_losing_the_target_is_survived(scene):
         until(lambda: good(scene, daemon), 5, "good at first")
         before = settled(lambda: len(open_files(daemon)))
         for mode in ("kill", "close", "reset", "garbage", "negative", "huge", "version",
-                     "endless", "wrong", "hang", "stall", "accept_close", "dead"):
+                     "endless", "flood", "wrong", "hang", "stall", "accept_close", "dead"):
             server.mode = mode
             if mode in ("accept_close", "dead"):
                 server.plan.append("close")  # they are about new connections
@@ -69,6 +69,8 @@ def test_every_way_of_losing_the_target_is_survived(scene):
             until(lambda: good(scene, daemon), 15, f"{mode}: good again")
             until(lambda: len(open_files(daemon)) == before, 2, f"{mode}: descriptors {before}")
         assert daemon.running()
+        assert counter(scene, daemon, "bus_keepalive_floods") >= 1
+        owsdtest.logged(daemon, "keep-alives without end")
 
 
 def test_silence_is_a_failure_of_the_target_and_turns_all_bad_at_once(scene):

@@ -80,11 +80,11 @@ static int read_all(const struct peer *peer, int fd, uint8_t *bytes, size_t n)
 	return 0;
 }
 
-static void until_gone(const struct peer *peer, int fd, const uint8_t *bytes, size_t n)
+static void until_gone(const struct peer *peer, int fd, int pause_ms, const uint8_t *bytes, size_t n)
 {
 	uint8_t byte;
 
-	while (wait_readable(peer, fd, 10) == 0)
+	while (wait_readable(peer, fd, pause_ms) == 0)
 		if (n && send(fd, bytes, n, MSG_NOSIGNAL) < 0)
 			return;
 	recv(fd, &byte, 1, 0);
@@ -147,7 +147,7 @@ static int act(const struct peer *peer, int fd, char letter, uint8_t *answer, si
 			send_all(fd, alive, sizeof(alive), i == 1 ? 5 : sizeof(alive));
 		break;
 	case 'K':
-		until_gone(peer, fd, alive, sizeof(alive));
+		until_gone(peer, fd, 100, alive, sizeof(alive));
 		return 0;
 	case 'D':
 		send_all(fd, answer, len, len);
@@ -163,10 +163,10 @@ static int act(const struct peer *peer, int fd, char letter, uint8_t *answer, si
 		return 0;
 	case 'd':
 		send_all(fd, answer, len / 2, len);
-		until_gone(peer, fd, NULL, 0);
+		until_gone(peer, fd, 100, NULL, 0);
 		return 0;
 	case 's':
-		until_gone(peer, fd, NULL, 0);
+		until_gone(peer, fd, 100, NULL, 0);
 		return 0;
 	case 'r':
 		answer[15] &= (uint8_t)~FRAME_PERSIST;

@@ -4,7 +4,7 @@
  * request (greetings, NOP and the names of its buses, are not counted) as the next letter of its
  * plan says; 'a' when it is over.
  *   a answer             r answer, refuse persistence, close     c answer, then close
- *   k 3 keep-alives, then answer     K keep-alives every 10 ms until the client goes
+ *   k 3 keep-alives, then answer     K keep-alives every 0.1 s until the client goes
  *   f answer byte by byte            t answer and 3 bytes more   l answer with more than asked for
  *   x close instead of an answer     R reset instead             m half of an answer, then close
  *   D answer, and again 2 ms later
