@@ -60,13 +60,23 @@ ifeq ($(WERROR),1)
 WARN     += -Werror
 CXXWARN  += -Werror
 endif
-HARDEN   := -fstack-protector-strong -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2 -fPIE
 CFLAGS   ?= -O2 -g
 CXXFLAGS ?= -O2 -g
+CPPFLAGS ?=
 EXTRA_CFLAGS ?=
+# What this compiler has of these; a warning says that it has not
+has       = $(shell printf '\043include <stdint.h>\nint main(void) { return 0; }\n' | \
+              $(CC) -Werror -O2 $(filter -m%,$(CFLAGS) $(EXTRA_CFLAGS)) $(1) -x c -c -o /dev/null - 2>/dev/null && echo '$(1)')
+FORTIFY  := $(or $(call has,-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3),-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
+# It wants -O, and yours holds
+ifneq ($(findstring _FORTIFY_SOURCE,$(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS))$(filter -O0,$(lastword -O0 $(filter -O%,$(CFLAGS) $(EXTRA_CFLAGS)))),)
+FORTIFY  :=
+endif
+HARDEN   := -fstack-protector-strong $(FORTIFY) -fPIE $(call has,-fstack-clash-protection) \
+            $(or $(call has,-fcf-protection),$(call has,-mbranch-protection=standard))
 CPP_COMMON = -D_GNU_SOURCE -D_FILE_OFFSET_BITS=64 -I. -DOWSD_VERSION='"$(VERSION)"'
-ALL_CFLAGS = -std=c17 $(CPP_COMMON) $(WARN) $(HARDEN) $(CFLAGS) $(EXTRA_CFLAGS)
-ALL_CXXFLAGS = -std=c++11 $(CPP_COMMON) $(CXXWARN) $(HARDEN) $(CXXFLAGS) $(EXTRA_CFLAGS)
+ALL_CFLAGS = -std=c17 $(CPP_COMMON) $(WARN) $(HARDEN) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS)
+ALL_CXXFLAGS = -std=c++11 $(CPP_COMMON) $(CXXWARN) $(HARDEN) $(CPPFLAGS) $(CXXFLAGS) $(EXTRA_CFLAGS)
 ALL_LDFLAGS = -pie -Wl,-z,relro,-z,now $(LDFLAGS) $(EXTRA_CFLAGS)
 LIBS     := -Wl,--as-needed -lm -pthread
 # Debian's musl-gcc knows its own headers alone; those of the kernel are beside glibc's
@@ -76,7 +86,7 @@ endif
 
 # I2C adapters, where libi2c is there for this compiler; LIBI2C=0 leaves it out
 LIBI2C   ?= $(shell printf '\043include <stdint.h>\n\043include <i2c/smbus.h>\nint main(void) { return i2c_smbus_read_byte(0); }\n' | \
-              $(CC) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -x c -o /dev/null - -li2c 2>/dev/null && echo 1)
+              $(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -x c -o /dev/null - -li2c 2>/dev/null && echo 1)
 LIBI2C   := $(LIBI2C)
 ifeq ($(LIBI2C),1)
 CPP_COMMON += -DOWSD_LIBI2C
@@ -90,8 +100,8 @@ LIBGPIOD_CFLAGS := $(LIBGPIOD_CFLAGS)
 LIBGPIOD_LIBS ?= $(or $(shell $(PKG_CONFIG) --libs libgpiod 2>/dev/null),-lgpiod)
 LIBGPIOD_LIBS := $(LIBGPIOD_LIBS)
 gpiod_has = $(shell printf '\043include <gpiod.h>\nint main(void) { return !$(1)(0); }\n' | \
-              $(CC) -Werror=implicit-function-declaration $(CFLAGS) $(EXTRA_CFLAGS) $(LIBGPIOD_CFLAGS) $(LDFLAGS) \
-              -x c -o /dev/null - $(LIBGPIOD_LIBS) 2>/dev/null && echo 1)
+              $(CC) -Werror=implicit-function-declaration $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(LIBGPIOD_CFLAGS) \
+              $(LDFLAGS) -x c -o /dev/null - $(LIBGPIOD_LIBS) 2>/dev/null && echo 1)
 LIBGPIOD ?= $(if $(call gpiod_has,gpiod_chip_get_info),2,$(call gpiod_has,gpiod_chip_name))
 LIBGPIOD := $(LIBGPIOD)
 ifneq ($(filter 1 2,$(LIBGPIOD)),)
@@ -101,11 +111,39 @@ endif
 
 comma    := ,
 
+# With what is compiled and linked: a file for each, written when that has changed, and never else.
+# What depends on it is made again then
+version_of = $(shell $(1) --version 2>/dev/null | head -n 1)
+with_cc  := $(CC): $(call version_of,$(CC)): $(ALL_CFLAGS)
+with_cxx := $(CXX): $(call version_of,$(CXX)): $(ALL_CXXFLAGS)
+with_ld  := $(CC): $(ALL_LDFLAGS) $(LIBS)
+with_libraries := libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no)
+WITH     := $(patsubst %,$(B)/with/%,cc cxx ld libraries)
+same      = $(and $(findstring x$(1)x,x$(2)x),$(findstring x$(2)x,x$(1)x))
+$(foreach f,$(WITH),$(if $(call same,$(strip $(with_$(notdir $(f)))),$(strip $(file <$(f)))),,$(eval $(f): FORCE)))
+
 # V=1 shows the commands, -s nothing
 V        ?= 0
 Q        := $(if $(filter 1,$(V)),,@)
 quiet    := $(findstring s,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 show      = $(if $(Q),$(if $(quiet),,@echo "  $(1)	$@"))
+
+# What objects and programs are made with; $(1) are flags of their own
+define compile
+@mkdir -p $(@D)
+$(call show,CC)
+$(Q)$(CC) $(ALL_CFLAGS) $(1) -MMD -MP -c -o $@ $<
+endef
+define link
+@mkdir -p $(@D)
+$(call show,LD)
+$(Q)$(CC) $(ALL_LDFLAGS) $(1) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LIBS)
+endef
+define program
+@mkdir -p $(@D)
+$(call show,CC)
+$(Q)$(CC) $(ALL_CFLAGS) $(1) $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.c %.a,$^) $(LIBS)
+endef
 
 # --- The roles -------------------------------------------------------------------------------
 # What a value is, and the names of section 3.3
@@ -143,38 +181,27 @@ BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/plant
 CORE     := $(SIGNAL) $(CONFIG) $(BOARD) $(SHM) $(ENGINE) $(SERVE) $(HAL) $(LIBOWS) $(filter-out src/owsd.c,$(OWSD)) \
             $(filter-out src/owsctl/owsctl.c,$(OWSCTL))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
-pic       = $(patsubst %.c,$(B)/pic/%.o,$(1))
 UNIT     := $(patsubst tests/unit/%.c,$(B)/unit/%,$(UNIT_SRC)) $(B)/unit/test_endurance
 BENCHES  := $(patsubst tests/bench/%.c,$(B)/bench/%,$(BENCH))
 SAMPLES  := $(patsubst docs/examples/%.c,$(B)/examples/%,$(filter %.c,$(EXAMPLES))) \
             $(patsubst docs/examples/%.cpp,$(B)/examples/%,$(filter %.cpp,$(EXAMPLES)))
-PROGRAMS := $(if $(wildcard src/owsd.c),$(B)/owsd) $(if $(wildcard src/owsctl/owsctl.c),$(B)/owsctl)
+PROGRAMS := $(B)/owsd $(B)/owsctl
 SO       := libows.so.$(VERSION)
-LIBRARY  := $(if $(LIBOWS),$(B)/$(SO) $(B)/libows.a $(B)/libows.pc)
+LIBRARY  := $(B)/$(SO) $(B)/libows.a $(B)/libows.pc
 
 .PHONY: all unit soak system test run bench install uninstall install-service uninstall-service \
         deb test-package test-service dist test-dist clean \
         examples unit-programs benches diagrams FORCE clang sanitize asan tsan m32
-all: $(PROGRAMS) $(LIBRARY) $(B)/core.a $(B)/libraries
+all: $(PROGRAMS) $(LIBRARY) $(B)/core.a $(B)/with/libraries
 
-# What was found, said when it is new; the tests hold the programs against it. Two makes may do this
-# at once
-$(B)/libraries: FORCE
+# Two makes may do this at once
+$(WITH): $(B)/with/%:
 	@mkdir -p $(@D)
-	@new=$@.$$$$; \
-	    echo 'libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no)' >$$new; \
-	    if cmp -s $$new $@; then rm $$new; else mv $$new $@; $(if $(quiet),:,sed 's/^/  WITH	/' $@); fi
+	@printf '%s\n' '$(subst ','\'',$(with_$*))' >$@.$$$$ && mv $@.$$$$ $@
+	$(if $(filter libraries,$*),$(if $(quiet),,@sed 's/^/  WITH	/' $@))
 
-$(B)/%.o: %.c
-	@mkdir -p $(@D)
-	$(call show,CC)
-	$(Q)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
-
-# What says the version is made again when the version changes
-$(call obj,src/owsd.c src/arguments.c src/owsctl/owsctl.c hal/native/virtual.c) $(B)/unit/test_native_virtual.o: $(B)/version
-$(B)/version: FORCE
-	@mkdir -p $(@D)
-	@echo '$(VERSION)' | cmp -s - $@ || echo '$(VERSION)' >$@
+$(B)/%.o: %.c $(B)/with/cc
+	$(call compile,$(PIC))
 
 # Everything but main(): what the programs and the unit tests link
 $(B)/core.a: $(call obj,$(CORE))
@@ -183,45 +210,40 @@ $(B)/core.a: $(call obj,$(CORE))
 	$(call show,AR)
 	$(Q)$(AR) rcs $@ $^
 
-$(B)/owsd: $(B)/src/owsd.o $(B)/core.a
-	$(call show,LD)
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
-
-$(B)/owsctl: $(B)/src/owsctl/owsctl.o $(B)/core.a
-	$(call show,LD)
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+$(PROGRAMS): $(B)/core.a $(B)/with/ld
+	$(call link)
+$(B)/owsd: $(B)/src/owsd.o
+$(B)/owsctl: $(B)/src/owsctl/owsctl.o
 
 # --- libows: exports ows_* and nothing else ---------------------------------------------------
-$(B)/pic/%.o: %.c
-	@mkdir -p $(@D)
-	$(call show,CC)
-	$(Q)$(CC) $(ALL_CFLAGS) -fPIC -fno-semantic-interposition -MMD -MP -c -o $@ $<
+# Of the daemon's sources it takes what it needs out of these; they go into the programs as they are
+LIBOWS_AID := $(call obj,$(SHM) $(SIGNAL))
+$(call obj,$(LIBOWS)) $(LIBOWS_AID): PIC := -fPIC -fno-semantic-interposition
 
-# What of the daemon's sources libows needs is drawn from here
-$(B)/pic/aid.a: $(call pic,$(SHM) $(SIGNAL))
+$(B)/libows/aid.a: $(LIBOWS_AID)
 	@mkdir -p $(@D)
 	@rm -f $@
 	$(call show,AR)
 	$(Q)$(AR) rcs $@ $^
 
-$(B)/pic/libows.map:
+$(B)/libows/libows.map:
 	@mkdir -p $(@D)
 	@echo '{ global: ows_*; local: *; };' > $@
 
-$(B)/$(SO): $(call pic,$(LIBOWS)) $(B)/pic/aid.a $(B)/pic/libows.map
+$(B)/$(SO): $(call obj,$(LIBOWS)) $(B)/libows/aid.a $(B)/libows/libows.map $(B)/with/ld
 	$(call show,LD)
-	$(Q)$(CC) -shared -Wl,-soname,libows.so.$(SOMAJOR) -Wl,--version-script,$(B)/pic/libows.map \
+	$(Q)$(CC) -shared -Wl,-soname,libows.so.$(SOMAJOR) -Wl,--version-script,$(B)/libows/libows.map \
 	    -Wl,-z,relro,-z,now $(if $(findstring sanitize,$(EXTRA_CFLAGS)),,-Wl,-z,defs) \
-	    $(LDFLAGS) $(EXTRA_CFLAGS) -o $@ $(filter %.o %.a,$^) $(LIBS)
+	    $(LDFLAGS) $(EXTRA_CFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LIBS)
 	@ln -sf $(SO) $(B)/libows.so.$(SOMAJOR)
 	@ln -sf $(SO) $(B)/libows.so
 
-$(B)/libows.a: $(call pic,$(LIBOWS)) $(B)/pic/aid.a
+$(B)/libows.a: $(call obj,$(LIBOWS)) $(B)/libows/aid.a
 	$(call show,AR)
 	@rm -f $@
-	$(Q)$(CC) $(filter -m%,$(CFLAGS) $(EXTRA_CFLAGS)) -r -nostdlib -o $(B)/pic/libows-one.o $^
-	$(Q)$(OBJCOPY) --wildcard --keep-global-symbol='ows_*' $(B)/pic/libows-one.o
-	$(Q)$(AR) rcs $@ $(B)/pic/libows-one.o
+	$(Q)$(CC) $(filter -m%,$(CFLAGS) $(EXTRA_CFLAGS)) -r -nostdlib -o $(B)/libows/one.o $^
+	$(Q)$(OBJCOPY) --wildcard --keep-global-symbol='ows_*' $(B)/libows/one.o
+	$(Q)$(AR) rcs $@ $(B)/libows/one.o
 
 # PREFIX may differ from one call to the next
 $(B)/libows.pc: FORCE
@@ -234,53 +256,45 @@ $(B)/libows.pc: FORCE
 # --- Examples ---------------------------------------------------------------------------------
 examples: $(SAMPLES)
 
-$(B)/examples/%: docs/examples/%.c $(B)/libows.a
-	@mkdir -p $(@D)
-	$(call show,CC)
-	$(Q)$(CC) $(ALL_CFLAGS) -Isrc/libows $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+$(B)/examples/%: docs/examples/%.c $(B)/libows.a $(B)/with/cc $(B)/with/ld
+	$(call program,-Isrc/libows)
 
-$(B)/examples/%: docs/examples/%.cpp $(B)/libows.a
+$(B)/examples/%: docs/examples/%.cpp $(B)/libows.a $(B)/with/cxx $(B)/with/ld
 	@mkdir -p $(@D)
 	$(call show,CXX)
-	$(Q)$(CXX) $(ALL_CXXFLAGS) -Isrc/libows $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -Isrc/libows $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.cpp %.a,$^) $(LIBS)
 
 # --- Unit tests: Unity, one program for each file ---------------------------------------------
-UNITY    ?= build/unity
+# In the source only where B is
+UNITY    ?= $(if $(filter $(CURDIR)/build $(CURDIR)/build/%,$(abspath $(B))),build,$(B))/unity
 UNITY_FLAGS := -isystem $(UNITY) -DUNITY_INCLUDE_DOUBLE -DUNITY_SUPPORT_64
 
 # One script makes all three files; the header stands for them. UNITY=DIR takes a copy of yours
-build/unity/unity.h: board/fetch-unity
-	sh board/fetch-unity build/unity
+$(sort build/unity/unity.h $(B)/unity/unity.h): board/fetch-unity
+	sh board/fetch-unity $(@D)
 	@touch $@
 
-$(B)/unit/unity.o: $(UNITY)/unity.h
+$(B)/unit/unity.o: $(UNITY)/unity.h $(B)/with/cc
 	@mkdir -p $(@D)
 	$(call show,CC)
-	$(Q)$(CC) -std=c17 $(CPP_COMMON) $(CFLAGS) $(EXTRA_CFLAGS) $(UNITY_FLAGS) -fPIE -w -c -o $@ $(UNITY)/unity.c
+	$(Q)$(CC) -std=c17 $(CPP_COMMON) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(UNITY_FLAGS) -fPIE -w -c -o $@ $(UNITY)/unity.c
 
-$(B)/unit/%.o: tests/unit/%.c $(UNITY)/unity.h
-	@mkdir -p $(@D)
-	$(call show,CC)
-	$(Q)$(CC) $(ALL_CFLAGS) $(UNITY_FLAGS) -Itests/unit -MMD -MP -c -o $@ $<
+$(B)/unit/%.o: tests/unit/%.c $(UNITY)/unity.h $(B)/with/cc
+	$(call compile,$(UNITY_FLAGS) -Itests/unit)
 
 $(filter-out %/test_endurance,$(UNIT)): %: %.o $(B)/unit/unity.o \
-    $(patsubst tests/unit/%.c,$(B)/unit/%.o,$(UNIT_AID)) $(B)/core.a
-	$(call show,LD)
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+    $(patsubst tests/unit/%.c,$(B)/unit/%.o,$(UNIT_AID)) $(B)/core.a $(B)/with/ld
+	$(call link)
 
-$(B)/unit/endurance/%.o: tests/endurance/%.c $(UNITY)/unity.h
-	@mkdir -p $(@D)
-	$(call show,CC)
-	$(Q)$(CC) $(ALL_CFLAGS) $(UNITY_FLAGS) -Itests/endurance -MMD -MP -c -o $@ $<
+$(B)/unit/endurance/%.o: tests/endurance/%.c $(UNITY)/unity.h $(B)/with/cc
+	$(call compile,$(UNITY_FLAGS) -Itests/endurance)
 
 # What the engine's thread allocates is counted, and the kernel's files are answered by the test
 ENDURANCE_WRAPS := malloc calloc realloc aligned_alloc strdup free open open64 read __read_chk write \
                    close
-$(B)/unit/test_endurance: ALL_LDFLAGS += $(patsubst %,-Wl$(comma)--wrap=%,$(ENDURANCE_WRAPS))
 $(B)/unit/test_endurance: $(patsubst tests/endurance/%.c,$(B)/unit/endurance/%.o,$(ENDURANCE)) \
-    $(B)/unit/unity.o $(patsubst tests/unit/%.c,$(B)/unit/%.o,$(UNIT_AID)) $(B)/core.a
-	$(call show,LD)
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+    $(B)/unit/unity.o $(patsubst tests/unit/%.c,$(B)/unit/%.o,$(UNIT_AID)) $(B)/core.a $(B)/with/ld
+	$(call link,$(patsubst %,-Wl$(comma)--wrap=%,$(ENDURANCE_WRAPS)))
 
 unit-programs: $(UNIT) replays
 
@@ -300,16 +314,14 @@ SYSTEM_AIDS := $(patsubst tests/system/%.c,$(B)/system/%,$(wildcard tests/system
                $(patsubst tests/system/preload/%.c,$(B)/system/%.so,$(wildcard tests/system/preload/*.c))
 $(B)/system/ownet: LIBS += $(if $(wildcard /usr/include/ownetapi.h),-lownet)
 
-$(B)/system/%: tests/system/%.c $(B)/core.a
-	@mkdir -p $(@D)
-	$(call show,CC)
-	$(Q)$(CC) $(ALL_CFLAGS) $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.c %.a,$^) $(LIBS)
+$(B)/system/%: tests/system/%.c $(B)/core.a $(B)/with/cc $(B)/with/ld
+	$(call program)
 
 # For LD_PRELOAD: never with a sanitizer, whose own it would be
-$(B)/system/%.so: tests/system/preload/%.c
+$(B)/system/%.so: tests/system/preload/%.c $(B)/with/cc
 	@mkdir -p $(@D)
 	$(call show,LD)
-	$(Q)$(CC) -std=c17 $(WARN) $(CFLAGS) -shared -fPIC -o $@ $< -ldl
+	$(Q)$(CC) -std=c17 $(WARN) $(CPPFLAGS) $(CFLAGS) -shared -fPIC -o $@ $< -ldl
 
 system: all examples $(SYSTEM_AIDS)
 	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/run
@@ -325,17 +337,15 @@ run:
 ifneq ($(TARGET),)
 	@sh board/install-deps build $(if $(filter owserver,$(TARGET)),run)
 else
-	@command -v $(firstword $(CC)) >/dev/null || sh board/install-deps build
+	@$(if $(call has,-O2),,sh board/install-deps build)
 endif
 	@$(MAKE) --no-print-directory all
 	@exec env OWSD_BUILD=$(abspath $(B)) sh board/demo/run '$(TARGET)'
 
 benches: all $(BENCHES)
 
-$(B)/bench/%: tests/bench/%.c $(BENCH_AID) $(B)/core.a
-	@mkdir -p $(@D)
-	$(call show,CC)
-	$(Q)$(CC) $(ALL_CFLAGS) $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.c %.a,$^) $(LIBS)
+$(B)/bench/%: tests/bench/%.c $(BENCH_AID) $(B)/core.a $(B)/with/cc $(B)/with/ld
+	$(call program)
 
 bench:
 	@sh board/install-deps build bench
@@ -409,8 +419,8 @@ D := $(DESTDIR)
 install: all
 	install -d $(D)$(PREFIX)/bin $(D)$(PREFIX)/sbin $(D)$(PREFIX)/include $(D)$(LIBDIR)/pkgconfig \
 	    $(D)$(DATADIR)/examples $(D)$(DATADIR)/boards
-	$(if $(wildcard src/owsd.c),install -m 755 $(B)/owsd $(D)$(PREFIX)/sbin/owsd)
-	$(if $(OWSCTL),install -m 755 $(B)/owsctl $(D)$(PREFIX)/bin/owsctl)
+	install -m 755 $(B)/owsd $(D)$(PREFIX)/sbin/owsd
+	install -m 755 $(B)/owsctl $(D)$(PREFIX)/bin/owsctl
 	install -m 644 $(B)/$(SO) $(D)$(LIBDIR)/$(SO)
 	ln -sf $(SO) $(D)$(LIBDIR)/libows.so.$(SOMAJOR)
 	ln -sf $(SO) $(D)$(LIBDIR)/libows.so
@@ -418,10 +428,10 @@ install: all
 	install -m 644 $(B)/libows.pc $(D)$(LIBDIR)/pkgconfig/libows.pc
 	install -m 644 src/libows/ows.h $(D)$(PREFIX)/include/ows.h
 	install -m 644 src/shm/layout.h $(D)$(PREFIX)/include/ows_layout.h
-	$(if $(EXAMPLES),install -m 644 $(EXAMPLES) $(D)$(DATADIR)/examples)
+	install -m 644 $(EXAMPLES) $(D)$(DATADIR)/examples
 	@set -e; for h in $(HOSTED); do d=$(D)$(DATADIR)/examples/$$h; install -d $$d; \
 	    install -m 644 docs/examples/$$h/* $$d; done
-	$(if $(PYTHON),install -m 644 $(PYTHON) $(D)$(DATADIR))
+	install -m 644 $(PYTHON) $(D)$(DATADIR)
 	install -m 644 $(wildcard board/boards/*.board) $(D)$(DATADIR)/boards
 	@set -e; for m in $(MAN); do d=$(D)$(MANDIR)/man$${m##*.}; install -d $$d; \
 	    install -m 644 $$m $$d; done

@@ -62,21 +62,17 @@ fuzz:
 
 replays: $(REPLAYS)
 
-$(B)/fuzz/%.o: tests/fuzz/%.c $(UNITY)/unity.h
-	@mkdir -p $(@D)
-	$(call show,CC)
-	$(Q)$(CC) $(ALL_CFLAGS) $(UNITY_FLAGS) -MMD -MP -c -o $@ $<
+$(B)/fuzz/%.o: tests/fuzz/%.c $(UNITY)/unity.h $(B)/with/cc
+	$(call compile,$(UNITY_FLAGS))
 
 define fuzz_program
 $$(B)/fuzz/$(1): $$(B)/fuzz/fuzz_$(1).o $$(B)/fuzz/fuzz.o $$(FUZZ_WITH_$(1):%=$$(B)/%) $$(B)/unit/unity.o \
-    $$(B)/core.a
-	$$(call show,LD)
-	$$(Q)$$(CC) $$(ALL_LDFLAGS) -fsanitize=fuzzer $$(FUZZ_WRAP_$(1):%=-Wl,--wrap=%) -o $$@ $$^ $$(LIBS)
+    $$(B)/core.a $$(B)/with/ld
+	$$(call link,-fsanitize=fuzzer $$(FUZZ_WRAP_$(1):%=-Wl$$(comma)--wrap=%))
 
 $$(B)/fuzz/replay_$(1): $$(B)/fuzz/fuzz_$(1).o $$(B)/fuzz/fuzz.o $$(B)/fuzz/replay.o \
-    $$(FUZZ_WITH_$(1):%=$$(B)/%) $$(B)/unit/unity.o $$(B)/core.a
-	$$(call show,LD)
-	$$(Q)$$(CC) $$(ALL_LDFLAGS) $$(FUZZ_WRAP_$(1):%=-Wl,--wrap=%) -o $$@ $$^ $$(LIBS)
+    $$(FUZZ_WITH_$(1):%=$$(B)/%) $$(B)/unit/unity.o $$(B)/core.a $$(B)/with/ld
+	$$(call link,$$(FUZZ_WRAP_$(1):%=-Wl$$(comma)--wrap=%))
 
 $$(B)/fuzz/$(1).dict: $$(FUZZ_WORDS_$(1)) tests/fuzz/fuzz.mk
 	@mkdir -p $$(@D)

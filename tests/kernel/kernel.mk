@@ -17,22 +17,18 @@ RIG_GUEST   := $(filter-out %/init,$(wildcard tests/kernel/guest/*))
 $(B)/unit/test_usbip: $(B)/tests/kernel/usbip.o
 $(B)/unit/test_tiny_usb: $(B)/tests/kernel/tiny_usb.o
 
-$(B)/kernel/simchip: $(B)/tests/kernel/simchip.o $(RIG_FRONT) $(B)/core.a
-	@mkdir -p $(@D)
-	$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+$(B)/kernel/simchip: $(B)/tests/kernel/simchip.o $(RIG_FRONT) $(B)/core.a $(B)/with/ld
+	$(call link)
 
-$(B)/kernel/owdump: $(B)/tests/kernel/owdump.o $(B)/tests/kernel/lines.o
-	@mkdir -p $(@D)
-	$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+$(B)/kernel/owdump: $(B)/tests/kernel/owdump.o $(B)/tests/kernel/lines.o $(B)/with/ld
+	$(call link)
 
-$(B)/kernel/busdump: $(B)/tests/kernel/busdump.o $(B)/tests/kernel/lines.o $(B)/core.a
-	@mkdir -p $(@D)
-	$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+$(B)/kernel/busdump: $(B)/tests/kernel/busdump.o $(B)/tests/kernel/lines.o $(B)/core.a $(B)/with/ld
+	$(call link)
 
 $(ENDURANCE): $(patsubst %,$(B)/tests/kernel/%.o,endurance endurance_truth endurance_daemon \
-              endurance_reader control) $(B)/core.a
-	@mkdir -p $(@D)
-	$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+              endurance_reader control) $(B)/core.a $(B)/with/ld
+	$(call link)
 
 kernel-programs: all $(RIG_OURS)
 
@@ -82,13 +78,12 @@ $(GPIOD_2)/usr/include/gpiod.h: board/fetch-debs
 	@touch $@
 
 # In build/arm64 only: owsd with the other library in place of the archive's
-$(B)/gpiod-2/library.o: hal/gpio/library_v2.c
+$(B)/gpiod-2/library.o: hal/gpio/library_v2.c $(B)/with/cc
 	@mkdir -p $(@D)
 	$(call show,CC)
 	$(Q)$(CC) -isystem $(GPIOD_2)/usr/include $(ALL_CFLAGS) -UOWSD_LIBGPIOD -DOWSD_LIBGPIOD=2 -MMD -MP -c -o $@ $<
-$(B)/gpiod-2/%: $(B)/src/%.o $(B)/gpiod-2/library.o $(B)/core.a
-	$(call show,LD)
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ -L$(GPIOD_2)/$(GPIOD_LIB) $(LIBS)
+$(B)/gpiod-2/%: $(B)/src/%.o $(B)/gpiod-2/library.o $(B)/core.a $(B)/with/ld
+	$(call link,-L$(GPIOD_2)/$(GPIOD_LIB))
 $(B)/owsd-gpiod-1: $(B)/owsd
 	@ln -f $< $@
 $(B)/owsd-gpiod-2: $(B)/gpiod-2/owsd

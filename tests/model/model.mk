@@ -30,14 +30,11 @@ MODEL_CODE := src/shm/image.c src/shm/reader.c src/shm/commands.c src/shm/carry.
 # What runs as a thread of the model, beside that; all else here is the model itself
 MODEL_RUN := tests/model/litmus.c tests/model/orders.c tests/model/records.c
 
-$(B)/model/%.o: %.c tests/model/access.h
-	@mkdir -p $(@D)
-	$(call show,CC)
-	$(Q)$(CC) $(ALL_CFLAGS) $(if $(filter $<,$(MODEL_RUN) $(MODEL_CODE)),-include tests/model/access.h) -MMD -MP -c -o $@ $<
+$(B)/model/%.o: %.c tests/model/access.h $(B)/with/cc
+	$(call compile,$(if $(filter $<,$(MODEL_RUN) $(MODEL_CODE)),-include tests/model/access.h))
 
-$(B)/model/model: $(patsubst %.c,$(B)/model/%.o,$(MODEL) $(MODEL_CODE)) $(B)/core.a
-	$(call show,LD)
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(LIBS)
+$(B)/model/model: $(patsubst %.c,$(B)/model/%.o,$(MODEL) $(MODEL_CODE)) $(B)/core.a $(B)/with/ld
+	$(call link)
 
 model: all $(B)/model/model
 	@$(B)/model/model

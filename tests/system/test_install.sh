@@ -6,8 +6,9 @@ set -eu
 
 root=$PWD/root
 unset MAKEFLAGS MFLAGS MAKELEVEL MAKEOVERRIDES
+# What is there is installed, whatever flags it was built with
 on_copy() {
-	make -s -C "$OWSD_SOURCE" --no-print-directory B="$OWSD_BUILD" DESTDIR="$root" PREFIX=/opt/owsd "$@"
+	make -s -o "$OWSD_BUILD/with/cc" -o "$OWSD_BUILD/with/ld" -C "$OWSD_SOURCE" --no-print-directory B="$OWSD_BUILD" DESTDIR="$root" PREFIX=/opt/owsd "$@"
 }
 [ -e "$OWSD_BUILD/libows.so" ] || { echo "libows is not built"; exit 1; }
 on_copy install

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What the programs are linked with, and that it is Unity who runs the unit tests and counts them."""
+"""What the programs are compiled and linked with, and that it is Unity who runs the unit tests and counts
+them."""
 
 import os
 import re
+import shlex
 import shutil
 import subprocess
 
@@ -30,7 +32,7 @@ def needed(file):
 
 def found():
     """{"libi2c": "yes" or "no", "libgpiod": "1", "2" or "no"}, as the makefile said it."""
-    words = (BUILD / "libraries").read_text().split()
+    words = (BUILD / "with/libraries").read_text().split()
     return dict(zip(words[::2], words[1::2]))
 
 
@@ -55,6 +57,63 @@ def test_the_makefile_found_what_is_installed(scene):
     assert ("with libi2c" in told) == (said["libi2c"] != "no"), told
     generation = re.search(r"with libgpiod (\d)", told)
     assert (generation.group(1) if generation else "no") == said["libgpiod"], told
+
+
+class Compiler:
+    """The one that has built the programs, with its flags."""
+
+    def __init__(self):
+        command, _, flags = (BUILD / "with/cc").read_text().split(": ", 2)
+        self.command, self.flags = shlex.split(command), shlex.split(flags)
+        if not shutil.which(self.command[0]):
+            skip(f"no {self.command[0]} here any more")
+        self.machine = [flag for flag in self.flags if flag.startswith("-m") and "=" not in flag]
+
+    def _asked(self, *flags):
+        return subprocess.run([*self.command, *flags, "-x", "c", "-"], input="#include <stdint.h>\n", text=True,
+                              capture_output=True, timeout=owsdtest.PATIENCE, cwd=SOURCE, check=False)
+
+    def has(self, *flags):
+        return self._asked(*self.machine, "-Werror", "-O2", *flags, "-S", "-o", os.devnull).returncode == 0
+
+    def fortified(self):
+        """What the library's headers make of it."""
+        level = re.search(r"__USE_FORTIFY_LEVEL (\d)", self._asked(*self.flags, "-E", "-dM").stdout)
+        return int(level.group(1)) if level else 0
+
+
+def test_each_protection_that_the_compiler_has_is_taken(scene):
+    compiler = Compiler()
+    for flag in ("-fstack-protector-strong", "-fstack-clash-protection", "-fcf-protection",
+                 "-mbranch-protection=standard"):
+        assert (flag in compiler.flags) == compiler.has(flag), (flag, compiler.flags)
+    if "-O0" in compiler.flags:
+        skip("without optimisation the calls of the library are not checked")
+    glibc = compiler.has("-include", "gnu/libc-version.h")
+    best = 3 if compiler.has("-U_FORTIFY_SOURCE", "-D_FORTIFY_SOURCE=3") else 2
+    assert compiler.fortified() == (best if glibc else 0), compiler.flags
+
+
+def test_the_objects_and_programs_have_the_protections(scene):
+    flags = Compiler().flags
+    notes = output("readelf", "-n", BUILD / "core.a")
+    for flag, note in (("-fcf-protection", "x86 feature: IBT, SHSTK"),
+                       ("-mbranch-protection=standard", "AArch64 feature: BTI, PAC")):
+        for member in notes.split("File: ")[1:] if flag in flags else ():
+            assert note in member, f"{member}\nwithout {note}"
+    # as gcc writes it down
+    for line in re.findall(r"DW_AT_producer.*: (GNU C.*)",
+                           output("readelf", "--debug-dump=info", "--dwarf-depth=1", BUILD / "core.a")):
+        for flag in ("-fstack-protector-strong", "-fstack-clash-protection"):
+            assert (flag in line) == (flag in flags), line
+    for program in (owsdtest.OWSD, owsdtest.OWSCTL, BUILD / "libows.so"):
+        stack = re.search(r"GNU_STACK .*?\s(R\S*)\s+0x\w+$", output("readelf", "-lW", program), re.M)
+        assert stack and stack.group(1) == "RW", f"{program}: its stack is {stack and stack.group(1)}"
+        assert "GNU_RELRO" in output("readelf", "-lW", program), program
+        assert re.search(r"FLAGS.*NOW", output("readelf", "-d", program)), program
+        assert re.search(r"Type:\s+DYN", output("readelf", "-h", program)), program
+        if Compiler().fortified():
+            assert "__snprintf_chk" in output("nm", "-D", "-u", program), program
 
 
 def test_the_library_of_the_consumers_links_nothing_but_libc(scene):
