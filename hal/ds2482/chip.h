@@ -28,7 +28,7 @@ bool ds2482_combines(const struct ds2482_chip *chip);
  */
 int ds2482_learn(struct ds2482_chip *chip);
 /* The chip was still busy where reading on should have ended: bytes come faster than measured. */
-void ds2482_was_early(struct ds2482_master *master);
+void ds2482_was_early(struct ds2482_chip *chip);
 
 /* --- run.c --- */
 #define DS2482_NO_PARAMETER (-1)

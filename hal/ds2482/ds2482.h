@@ -66,7 +66,9 @@ struct ds2482_master {
 	struct i2c_adapter *adapter; /* NULL while closed */
 	int address, channel;        /* only this one; -1 all */
 	bool active_pullup;
-	int64_t byte_ns; /* shortest time of one I2C byte, measured; 0 unknown */
+	int64_t byte_ns; /* shortest time of one I2C byte, measured; 0: bytes tell no time */
+	int64_t measured_ns; /* env time when */
+	unsigned measured_again; /* since the adapter was opened */
 	unsigned count;
 	struct ds2482_chip chip[DS2482_ADDRESSES];
 	/* The addresses where chips were taken, ever, in that order; and those now missing. */

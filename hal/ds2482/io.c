@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: MIT */
+/* Single I2C calls to a chip, and what the adapter can do and how fast it is, found by trying it. */
 #include "chip.h"
 
 #include <errno.h>
 
-#define MEASURE_BYTES 64
-#define MEASURE_TIMES 12
-#define LEAST_NS      9000 /* 1 MHz; nothing comes faster */
-#define MOST_MESSAGES 42
+#define MEASURE_BYTES  64
+#define MEASURE_TIMES  12
+#define LEAST_NS       9000 /* 1 MHz; no wire is faster */
+#define MOST_MESSAGES  42
+#define SOON_NS        INT64_C(60000000000)
+#define SOON_DOUBLINGS 16
 
 int64_t ds2482_now(const struct ds2482_master *master)
 {
@@ -73,7 +76,8 @@ int ds2482_write_read(struct ds2482_chip *chip, uint8_t command, uint8_t paramet
 /*
  * The rate that an adapter states is not always its rate (core clocks change), and reading too
  * few bytes would read too early. The call's own time makes a byte seem longer than it is: the
- * difference of two lengths is free of it.
+ * difference of two lengths is free of it. Bytes faster than any wire, or a clock too coarse to
+ * see them, mean that their number is no measure of time: then all waits are timed.
  */
 static int measure(struct ds2482_chip *chip)
 {
@@ -101,16 +105,29 @@ static int measure(struct ds2482_chip *chip)
 	/* 2 % are for the measurement's error. */
 	master->byte_ns = (shortest[1] - shortest[0]) / MEASURE_BYTES * 98 / 100;
 	if (master->byte_ns < LEAST_NS)
-		master->byte_ns = LEAST_NS;
+		master->byte_ns = 0;
+	master->measured_ns = ds2482_now(master);
 	return 0;
 }
 
-void ds2482_was_early(struct ds2482_master *master)
+/*
+ * So early so soon: whatever was measured, it is no measure of time. Noise on the bus looks the
+ * same, but takes longer to get here; then the bus is measured again, each time more reluctantly.
+ */
+void ds2482_was_early(struct ds2482_chip *chip)
 {
-	if (master->byte_ns > 0)
-		master->byte_ns = master->byte_ns * 9 / 10;
-	if (master->byte_ns > 0 && master->byte_ns < LEAST_NS)
-		master->byte_ns = LEAST_NS;
+	struct ds2482_master *master = chip->master;
+
+	if (master->byte_ns == 0)
+		return;
+	master->byte_ns = master->byte_ns * 9 / 10;
+	if (master->byte_ns >= LEAST_NS)
+		return;
+	if (ds2482_now(master) < master->measured_ns + (SOON_NS << master->measured_again) ||
+	    measure(chip))
+		master->byte_ns = 0;
+	if (master->measured_again < SOON_DOUBLINGS)
+		master->measured_again++;
 }
 
 /* Messages that change nothing; with -EOPNOTSUPP the adapter cannot. */
@@ -149,5 +166,6 @@ int ds2482_learn(struct ds2482_chip *chip)
 			err = 0;
 		}
 	}
+	chip->master->measured_again = 0;
 	return err ? err : measure(chip);
 }

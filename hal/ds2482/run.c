@@ -72,7 +72,7 @@ int ds2482_diagnose(struct ds2482_chip *chip, int err)
 	if (status == 0)
 		status = ds2482_read1(chip);
 	if (status >= 0 && (status & DS2482_1WB))
-		ds2482_was_early(chip->master);
+		ds2482_was_early(chip);
 	if (status >= 0)
 		status = wait_idle(chip, status);
 	if (status == -ETIMEDOUT || status == -ENODEV || status == -ECANCELED)
@@ -88,7 +88,7 @@ int ds2482_diagnose(struct ds2482_chip *chip, int err)
 static int judge(struct ds2482_chip *chip, int status)
 {
 	if (status >= 0 && (status & DS2482_1WB))
-		ds2482_was_early(chip->master);
+		ds2482_was_early(chip);
 	status = wait_idle(chip, status);
 	if (status < 0)
 		return ds2482_diagnose(chip, status);
