@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
+/* Items of the file: what their keys make of a signal, and what is wrong or odd about it. */
 #include "build.h"
 
 #include "../../hal/path.h"
 #include "../signal/attribute.h"
+#include "../signal/quantity.h"
 #include "../signal/value.h"
 
 #include <errno.h>
@@ -263,6 +265,20 @@ static void build_alarm(struct build *build, const struct rio_node *block,
 	warn_without_equals(build, &values[OPT_RESET_LATCH]);
 }
 
+/* A fraction is no integer, so such a signal would be good now and then. */
+static void warn_of_decimals(struct build *build, const struct rio_node *block,
+                             const struct option_value *values, const struct config_item *item)
+{
+	struct quantity quantity;
+
+	if (value_is_float(item->type) || item->type == OWS_STRING ||
+	    !quantity_of(item->path, &quantity) || quantity.decimals == 0)
+		return;
+	report_warning(build->report, place_of(&values[OPT_TYPE], block),
+	               "\"%s\" has decimals, and a %s has none: write Type double or float",
+	               item->path, value_type_name(item->type));
+}
+
 void item_build(struct build *build, const struct rio_node *block, struct config_item *item)
 {
 	struct option_value values[OPTION_COUNT_ALL];
@@ -274,6 +290,8 @@ void item_build(struct build *build, const struct rio_node *block, struct config
 	build_name(build, block, values, item);
 	build_path(build, block, values, item, &path);
 	known = build_type(build, block, values, item);
+	if (known)
+		warn_of_decimals(build, block, values, item);
 	build_flags(build, values, &path, item);
 	build_values(build, values, known, item);
 	build_alarm(build, block, values, &path, item);

@@ -86,6 +86,28 @@ static void succeed(struct engine *e, struct lane *lane, struct signal *s, uint8
 		engine_device_back(e, lane, d, now_ns);
 }
 
+/*
+ * Can the chip have measured it? What a simulated target makes up need not be what a chip can
+ * measure, and is marked.
+ */
+static int doubt(struct lane *lane, struct signal *s, const struct bus_answer *answer,
+                 double number, int64_t now_ns)
+{
+	if (!s->measured)
+		return 0;
+	if (!(answer->detail & BUS_DETAIL_SIMULATED) && quantity_excludes(&s->quantity, number)) {
+		lane->counters.out_of_range++;
+		log_debug(lane->engine->log, "%s (%s): %g is out of the chip's range", s->item->name,
+		          s->item->path, number);
+		return -EDOM;
+	}
+	if (s->quantity.starves && guard_refuses(&s->guard, number, now_ns)) {
+		lane->counters.power_faults++;
+		return -ERANGE;
+	}
+	return 0;
+}
+
 /* The value of an answer into the sample; 0, or why it cannot be one. */
 static int take_answer(struct lane *lane, struct signal *s, const struct slot *slot,
                        const struct bus_answer *answer, uint8_t *quality, int64_t now_ns)
@@ -108,14 +130,11 @@ static int take_answer(struct lane *lane, struct signal *s, const struct slot *s
 	else
 		err = value_from_text(s->item->type, (const char *)slot->data, answer->len, &value,
 		                      quality);
-	if (err)
-		return err;
-	if (s->guarded && guard_refuses(&s->guard, value_number(s->item->type, value), now_ns)) {
-		lane->counters.power_faults++;
-		return -ERANGE;
-	}
-	s->sample.value = value;
-	return 0;
+	if (!err)
+		err = doubt(lane, s, answer, value_number(s->item->type, value), now_ns);
+	if (!err)
+		s->sample.value = value;
+	return err;
 }
 
 /*

@@ -1,19 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Readings that mean a power fault: a thermometer that lost its supply answers 85 (its power-on
- * scratchpad), one whose conversion starved 127.94. On every bus they must not pass as good.
+ * scratchpad), one whose conversion starved 127.94. On every bus they must not pass as good. Which
+ * properties are such a thermometer's stands in signal/quantity.c.
  */
 #ifndef ENGINE_GUARD_H
 #define ENGINE_GUARD_H
 
 #include <stdbool.h>
 #include <stdint.h>
-
-/*
- * Is the path a temperature (degrees Celsius) of a DS18S20, DS1822, DS18B20, DS1825 or DS28EA00, or
- * of a device known by its alias?
- */
-bool guard_watches(const char *path);
 
 struct guard {
 	double last;     /* last reading that was believed */

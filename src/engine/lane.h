@@ -55,6 +55,7 @@ struct slot {
 	X(late_answers)   /* came after that */                                                    \
 	X(unknown_answers) /* nobody asked, or a second time */                                    \
 	X(power_faults)   /* 85 and 127.94 refused */                                              \
+	X(out_of_range)   /* values that the chip cannot have measured, refused */                 \
 	X(device_returns) /* devices that came back */                                             \
 	X(alarm_lists)    /* readings of /alarm */                                                 \
 	X(alarms)         /* occurrences */                                                        \

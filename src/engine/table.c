@@ -100,7 +100,7 @@ static void init_signal(struct signal *s, const struct config_item *item, uint32
 	s->attrs.flags = (item->readable ? OWS_ATTR_READ_ENABLE : 0) |
 	                 (item->writable ? OWS_ATTR_WRITE_ENABLE : 0) |
 	                 (item->limits.any ? OWS_ATTR_LIMITS : 0);
-	s->guarded = item->type != OWS_STRING && guard_watches(item->path);
+	s->measured = item->type != OWS_STRING && quantity_of(item->path, &s->quantity);
 	if (!item->has_init)
 		return;
 	s->sample.value = item->init_value;

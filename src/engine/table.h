@@ -9,6 +9,7 @@
 #include "../config/config.h"
 #include "../log.h"
 #include "../shm/image.h"
+#include "../signal/quantity.h"
 #include "../signal/value.h"
 #include "guard.h"
 #include "limit.h"
@@ -34,7 +35,8 @@ struct signal {
 	/* reading */
 	bool reading;
 	struct retry read_retry;
-	bool guarded;
+	bool measured; /* quantity says what it can be */
+	struct quantity quantity;
 	struct guard guard;
 
 	bool alarming; /* a request of the alarm machine counts for it */

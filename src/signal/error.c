@@ -28,6 +28,7 @@ static const struct {
 	/* what happens on the way */
 	{ EINVAL, "the target refuses this value", "" },
 	{ EBADMSG, "wrong checksum", "" },
+	{ EDOM, "a value out of the chip's range", "" },
 	{ ECOMM, "the wire is short", "" },
 	{ ERANGE, "reading of a sensor without power, or out of range", "" },
 	{ ETIME, "its turn did not come in time", "" },

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Values of signals: their types, and what texts and numbers make of them and back. */
 #include "value.h"
 
 #include <errno.h>
@@ -206,8 +207,8 @@ static float decimal_float(const struct decimal *d)
 }
 
 /*
- * To the nearest integer, half away from zero. Returns 0, or -1 or 1 when it lies below or above
- * the type (*value is then the limit). *exact: there was no fraction.
+ * The integer part. Returns 0, or -1 or 1 when it lies below or above the type (*value is then the
+ * limit). *exact: there was no fraction.
  */
 static int decimal_integer(const struct decimal *d, enum ows_type type, int64_t *value, bool *exact)
 {
@@ -227,10 +228,6 @@ static int decimal_integer(const struct decimal *d, enum ows_type type, int64_t 
 	}
 	for (int i = d->point > 0 ? d->point : 0; i < d->count && *exact; i++)
 		*exact = d->digits[i] == '0';
-	if (!over && d->point >= 0 && d->point < d->count && d->digits[d->point] >= '5') {
-		over = sum >= cap;
-		sum += !over;
-	}
 	if (!over)
 		*value = d->negative ? (int64_t)(0 - sum) : (int64_t)sum;
 	if (d->negative && (over || *value < types[type].least)) {
@@ -280,26 +277,15 @@ int value_from_text(enum ows_type type, const char *text, size_t len, int64_t *v
 		number = type == OWS_FLOAT ? (double)decimal_float(&d) : decimal_double(&d);
 		side = side_of_infinity(number);
 		*value = float_held(type, number, side);
-	} else if (type == OWS_BOOL) {
-		side = 0;
-		*value = d.count > 0;
 	} else {
 		side = decimal_integer(&d, type, value, &exact);
+		if (!exact)
+			return -EILSEQ;
+		if (type == OWS_BOOL && side > 0) /* any but zero */
+			side = 0;
 	}
 	*quality = quality_of_side(side);
 	return 0;
-}
-
-/* To the nearest, half away from zero: round(), which is all we would need libm for. */
-static double rounded(double number)
-{
-	double whole, rest;
-
-	if (number <= -0x1p52 || number >= 0x1p52)
-		return number;
-	whole = (double)(int64_t)number;
-	rest = number - whole;
-	return rest >= 0.5 ? whole + 1 : rest <= -0.5 ? whole - 1 : whole;
 }
 
 int value_from_number(enum ows_type type, double number, int64_t *value, uint8_t *quality)
@@ -315,16 +301,15 @@ int value_from_number(enum ows_type type, double number, int64_t *value, uint8_t
 	if (value_is_float(type)) {
 		side = side_of_infinity(number);
 		*value = float_held(type, number, side);
-	} else if (type == OWS_BOOL) {
-		*value = number != 0;
 	} else {
-		number = rounded(number);
+		if (number != trunc(number))
+			return -EILSEQ;
 		/* the limit of large itself is no double: 2^63 is the first one outside */
 		if (number < (double)types[type].least) {
 			side = -1;
 			*value = types[type].least;
 		} else if (number > (double)types[type].most || number >= 0x1p63) {
-			side = 1;
+			side = type != OWS_BOOL;
 			*value = types[type].most;
 		} else {
 			*value = (int64_t)number;

@@ -26,9 +26,10 @@ double value_number(enum ows_type type, int64_t value);
 int64_t value_of_double(double number); /* the bits */
 
 /*
- * Text from a bus to a value: blanks trimmed, the whole text must parse. Outside the type: nearest
- * limit, *quality OWS_Q_LOW or OWS_Q_HIGH, else OWS_Q_GOOD. -EILSEQ: does not parse (NAN and INF
- * too). Also "yes/no/on/off" for bool is refused here: buses say 0 and 1.
+ * Text from a bus to a value: blanks trimmed, the whole text must parse, and be whole for all but
+ * float and double. Outside the type: nearest limit, *quality OWS_Q_LOW or OWS_Q_HIGH, else
+ * OWS_Q_GOOD; for bool all above 0 is 1. -EILSEQ: does not parse (NAN and INF too), or has a
+ * fraction. Also "yes/no/on/off" for bool is refused here: buses say 0 and 1.
  */
 int value_from_text(enum ows_type type, const char *text, size_t len, int64_t *value,
                     uint8_t *quality);

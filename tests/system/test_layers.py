@@ -18,7 +18,7 @@ MAY = {
     "hal/sim": ["hal", "hal/ds2482"],
     "hal/native": ["hal", "hal/ds2482/ds2482.h", "hal/sim/master.h"],
     "hal/w1": ["hal/native"],
-    "src/signal": ["src/libows/ows.h"],
+    "src/signal": ["hal/path.h", "src/libows/ows.h"],
     "src/shm": ["src/libows/ows.h"],
     "src/libows": ["src/shm", "src/signal"],
     "src/config": ["hal/path.h", "src/signal", "src/libows/ows.h", "src/printable.h"],

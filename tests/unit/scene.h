@@ -42,6 +42,7 @@ struct scene_bus {
 	unsigned port;           /* the engine's number of it */
 	unsigned wire;
 	unsigned depth;          /* set before scene_start(); 1 */
+	uint8_t detail;          /* of its answers */
 	bool searches;           /* likewise */
 	bool holds;              /* likewise: it has hardware, which it can be asked to let go of */
 	int64_t latency_ns;      /* of each answer; 1 ms */

@@ -212,6 +212,25 @@ static void test_start_values_are_typed_and_an_empty_one_is_none(void)
 	TEST_ASSERT_EQUAL_STRING("", config->items[0].safe_text);
 }
 
+static void test_an_integer_for_what_has_decimals_is_warned_about(void)
+{
+	static const char *const fit[] = {
+		"Type double Path /28.551DDF030000/temperature", "Type long Path /boiler/pio",
+		"Type float Path /26.0CBEEA010000/VDD", "Type large Path /1D.0CBEEA010000/counters.A",
+		"Type string Path /28.551DDF030000/temperature", "Type long Path /28.551DDF030000/templow",
+	};
+	char text[128];
+
+	TEST_ASSERT_EQUAL_INT(0, parse_item("Name x Type long Path /28.551DDF030000/temperature"));
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "has decimals, and a long has none: write Type "
+	                                          "double or float"), said);
+	for (size_t i = 0; i < COUNT(fit); i++) {
+		snprintf(text, sizeof(text), "Name x %s", fit[i]);
+		TEST_ASSERT_EQUAL_INT(0, parse_item(text));
+		TEST_ASSERT_EQUAL_STRING_MESSAGE("", said, fit[i]);
+	}
+}
+
 static void test_a_start_value_longer_than_a_string_is_an_error(void)
 {
 	char keys[1200] = "Name a\nPath /28.000000000001/x\nType string\nInitValue \"";
@@ -235,6 +254,7 @@ int main(void)
 	RUN_TEST(test_the_bits_of_io_type_and_the_keys_that_override_them);
 	RUN_TEST(test_paths_lose_their_flags_and_gain_a_slash);
 	RUN_TEST(test_start_values_are_typed_and_an_empty_one_is_none);
+	RUN_TEST(test_an_integer_for_what_has_decimals_is_warned_about);
 	RUN_TEST(test_a_start_value_longer_than_a_string_is_an_error);
 	return UNITY_END();
 }
