@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* owsctl alarms: those that stand. */
 #include "alarms.h"
 #include "names.h"
 #include "rows.h"
@@ -99,6 +100,8 @@ static void look_at(struct live *live, int signal, const struct row *row)
 	if (ows_alarm_state(live->h, row->id, &state) == -EAGAIN)
 		return;
 	reading_get(live->h, row->id, live->now.boot, live->reading);
+	if (live->table)
+		reading_round(live->reading, row->path);
 	if (state.stands || state.polled) {
 		alarm.kind = ows_alarm_kind_text(OWS_ALARM_DEVICE);
 		alarm.state = state.stands ? "stands" : "no alarm search there: read as an input";

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+/* owsctl get: values alone, or as JSON. */
+#include "names.h"
 #include "reading.h"
 #include "text.h"
 #include "verbs.h"
@@ -27,7 +29,7 @@ static int worse(int a, int b)
 	return a == CTL_FAILED || b == CTL_FAILED ? CTL_FAILED : a > b ? a : b;
 }
 
-static int get_one(struct ows *h, const char *name, struct reading *reading)
+static int get_one(struct ctl *ctl, struct ows *h, const char *name, struct reading *reading)
 {
 	char words[READING_WORDS];
 	int id = ows_find(h, name);
@@ -40,6 +42,7 @@ static int get_one(struct ows *h, const char *name, struct reading *reading)
 		return ctl_fail("%s can only be set", name);
 	if (!reading_filled(reading))
 		return ctl_fail("%s: %s", name, error_text(reading->err));
+	reading_round(reading, names_path(h, ctl->instance, name));
 	print_text(reading);
 	if (reading_good(reading))
 		return CTL_DONE;
@@ -97,7 +100,7 @@ int verb_get(struct ctl *ctl, int argc, char **argv)
 		json_array(&json, NULL);
 	for (int i = optind; i < argc; i++) {
 		status = ctl->json ? get_json(&json, h, argv[i], &reading, &now)
-		                   : get_one(h, argv[i], &reading);
+		                   : get_one(ctl, h, argv[i], &reading);
 		worst = worse(worst, status);
 	}
 	if (ctl->json) {

@@ -42,6 +42,7 @@ static bool print_table(struct ows *h, struct rows *rows, struct reading *readin
 	table.absent[ALARM] = !rows_have_alarms(h, rows);
 	for (int i = 0; ok && i < rows->count; i++) {
 		row_read(h, &rows->row[i], ows_now(), reading);
+		reading_round(reading, rows->row[i].path);
 		ok = add_row(&table, h, &rows->row[i], reading);
 	}
 	table_fit(&table, 0);

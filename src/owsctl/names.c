@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Names as the user writes them. */
 #include "names.h"
 
 #include <fnmatch.h>
@@ -28,6 +29,18 @@ int names_lookup(struct ows *h, const char *instance, const char *name, int *sig
 		return record;
 	*signal = record - 1;
 	return 0;
+}
+
+const char *names_path(struct ows *h, const char *instance, const char *name)
+{
+	enum attribute attribute;
+	struct ows_info info;
+	int signal;
+
+	if (names_lookup(h, instance, name, &signal, &attribute) || attribute != ATTR_VALUE ||
+	    ows_info(h, signal, &info))
+		return NULL;
+	return info.path;
 }
 
 bool names_match(const char *name, char *const *patterns, int count)

@@ -15,6 +15,9 @@
 int names_lookup(struct ows *h, const char *instance, const char *name, int *signal,
                  enum attribute *attribute);
 
+/* The path behind a name that means a signal's value, else NULL. Lasts as that of ows_info(). */
+const char *names_path(struct ows *h, const char *instance, const char *name);
+
 /* Does one of count patterns (fnmatch) match, or is there none? */
 bool names_match(const char *name, char *const *patterns, int count);
 

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: MIT */
+/* How owsctl prints a value, its quality and its error, for persons and as JSON. */
 #include "reading.h"
 #include "text.h"
+#include "../signal/quantity.h"
 #include "../signal/value.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -20,6 +23,28 @@ int reading_get(struct ows *h, int id, int64_t now_ns, struct reading *reading)
 	    reading->value.len < sizeof(reading->text) && err == 0)
 		reading->len = reading->value.len;
 	return reading->err;
+}
+
+void reading_round(struct reading *reading, const char *path)
+{
+	struct quantity quantity;
+	char *text = reading->text;
+	size_t n;
+
+	if (!path || !reading_filled(reading) ||
+	    !value_is_float((enum ows_type)reading->value.type) ||
+	    !isfinite(reading->value.number) || !quantity_of(path, &quantity))
+		return;
+	n = (size_t)snprintf(text, sizeof(reading->text), "%.*f", quantity.decimals,
+	                     reading->value.number);
+	while (quantity.decimals > 0 && text[n - 1] == '0')
+		n--;
+	if (text[n - 1] == '.')
+		n--;
+	text[n] = '\0';
+	if (strcmp(text, "-0") == 0)
+		memmove(text, "0", n--);
+	reading->len = n;
 }
 
 bool reading_filled(const struct reading *reading)

@@ -21,8 +21,13 @@ struct reading {
 	char text[READING_TEXT];
 };
 
-/* Returns reading->err. */
+/* Returns reading->err. The text of a number has all its digits. */
 int reading_get(struct ows *h, int id, int64_t now_ns, struct reading *reading);
+/*
+ * For a person: the value is that of the property at path (NULL: of none), and digits that its
+ * chip does not give leave the text.
+ */
+void reading_round(struct reading *reading, const char *path);
 bool reading_good(const struct reading *reading);
 /* What is there to be shown at all? */
 bool reading_filled(const struct reading *reading);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* owsctl wait: until a value changes or fulfils a condition. */
 #include "condition.h"
 #include "names.h"
 #include "rows.h"
@@ -63,6 +64,7 @@ static int say_end(struct ctl *ctl, struct waiting *waiting, bool it_came)
 		json_object_end(&json);
 		json_end(&json);
 	} else if (it_came) {
+		reading_round(reading, names_path(waiting->h, ctl->instance, waiting->name));
 		fwrite(reading->text, 1, reading->len, stdout);
 		putchar('\n');
 	}

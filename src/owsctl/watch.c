@@ -135,6 +135,8 @@ static void print_changes(struct watch *watch)
 		struct row *row = &watch->rows.row[i];
 
 		row_read(watch->h, row, now.boot, watch->reading);
+		if (!watch->ctl->json)
+			reading_round(watch->reading, row->path);
 		if (!row_changed(row, watch->reading))
 			continue;
 		print_change(watch, row, &now);

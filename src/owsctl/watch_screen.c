@@ -149,6 +149,7 @@ static bool fill(struct screen *screen, struct table *table, const char **styles
 		struct row *row = &watch->rows.row[i];
 
 		row_read(watch->h, row, now, watch->reading);
+		reading_round(watch->reading, row->path);
 		screen->not_good += !reading_good(watch->reading);
 		screen->in_alarm += standing_any(&row->alarms);
 		screen->alarms |= standing_possible(&row->alarms);
