@@ -21,6 +21,8 @@ static const struct verb verbs[] = {
 	{"alarms", "[PATTERN...] | history ... | ack NAME... | -a",
 	 "alarms that stand, and those since the start", verb_alarms},
 	{"stats", "", "owsd itself, its targets and counters", verb_stats},
+	{"instances", "", "the owsds that run here, and those that have run", verb_instances},
+	{"remove", "NAME...", "take away what an instance that ended has left", verb_remove},
 	{"config", "FILE list | add | set | unset | remove ...", "look at a configuration and edit it",
 	 verb_config},
 	{"dir", "[-t TARGET] [-w SECONDS] [PATH]", "what is in a directory of a target", verb_dir,
@@ -39,7 +41,7 @@ static void usage(FILE *out)
 {
 	fputs("usage: owsctl [-n NAME | -t TARGET] [--json] VERB ...\n", out);
 	for (size_t i = 0; i < VERBS; i++)
-		fprintf(out, "  %-6s %-46s %s\n", verbs[i].name, verbs[i].usage, verbs[i].brief);
+		fprintf(out, "  %-9s %-46s %s\n", verbs[i].name, verbs[i].usage, verbs[i].brief);
 	fputs("  -n NAME    instance, default OWS\n"
 	      "  -t TARGET  what dir, read, write and scan open; default: the instance where it\n"
 	      "             serves them, else localhost:4304 (owserver)\n"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* owsctl stats: owsd itself, its targets and its counters; of an owsd that ended, the last ones. */
 #include "json.h"
 #include "verbs.h"
 #include "when.h"
@@ -51,9 +52,10 @@ static void count_served(struct ows *h, int64_t now_ns, unsigned served[TARGETS 
 			served[value.target]++;
 }
 
-static void print_target(int index, const struct ows_target *target, bool several, unsigned served)
+static void print_target(int index, const struct ows_target *target, bool several, bool alive,
+                         unsigned served)
 {
-	printf("target %-4d %s: %s, %u reconnect%s", index, target->name,
+	printf("target %-4d %s: %s%s, %u reconnect%s", index, target->name, alive ? "" : "was ",
 	       target_state(target->state), (unsigned)target->reconnects,
 	       target->reconnects == 1 ? "" : "s");
 	if (several)
@@ -85,6 +87,7 @@ static void print_json(const struct ctl *ctl, struct ows *h, const struct ows_da
 	json_uint(&json, "generation", daemon->generation);
 	json_seconds(&json, "period", daemon->period_ns);
 	json_seconds(&json, "heartbeat_age", daemon->beat_age_ns);
+	json_string(&json, "last_heartbeat", when_iso(now, now->boot - daemon->beat_age_ns, text));
 	json_object_end(&json);
 	json_int(&json, "signals", ows_count(h));
 	json_int(&json, "not_good", not_good(h, now->boot));
@@ -93,7 +96,8 @@ static void print_json(const struct ctl *ctl, struct ows *h, const struct ows_da
 	for (int i = 0; i < TARGETS && ows_target(h, i, &target) == 0; i++) {
 		json_object(&json, NULL);
 		json_string(&json, "name", target.name);
-		json_string(&json, "state", target_state(target.state));
+		json_string(&json, "state", daemon->alive ? target_state(target.state) : "unknown");
+		json_string(&json, "last_state", target_state(target.state));
 		json_uint(&json, "reconnects", target.reconnects);
 		json_uint(&json, "wire", target.group);
 		json_uint(&json, "signals", served[i]);
@@ -126,7 +130,11 @@ static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_da
 
 	count_served(h, now->boot, served);
 	printf("instance    %s\n", ctl->instance);
-	printf("owsd        pid %d, %s\n", (int)daemon->pid, daemon_state(daemon));
+	printf("owsd        pid %d, %s", (int)daemon->pid, daemon_state(daemon));
+	if (!daemon->alive)
+		printf(" since %s; all below is what it was then",
+		       when_iso(now, now->boot - daemon->beat_age_ns, text));
+	putchar('\n');
 	printf("started     %s, %s ago\n", when_iso(now, daemon->start_ns, text),
 	       when_span(now->boot - daemon->start_ns, span));
 	printf("generation  %u\n", (unsigned)daemon->generation);
@@ -137,7 +145,7 @@ static void print_text(const struct ctl *ctl, struct ows *h, const struct ows_da
 		printf("served      %s\n", ows_served(h));
 	several = ows_target(h, 1, &target) == 0;
 	for (int i = 0; i < TARGETS && ows_target(h, i, &target) == 0; i++)
-		print_target(i, &target, several, served[i]);
+		print_target(i, &target, several, daemon->alive, served[i]);
 	for (int i = 0; ows_counter(h, i, &counter) == 0; i++) {
 		bool own = ows_target(h, counter.target, &target) != 0;
 
@@ -163,6 +171,7 @@ int verb_stats(struct ctl *ctl, int argc, char **argv)
 		return status;
 	now = when_now();
 	ows_daemon(h, now.boot, &daemon);
+	ctl_alive(ctl, h, now.boot);
 	if (ctl->json)
 		print_json(ctl, h, &daemon, &now);
 	else

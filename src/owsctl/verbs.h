@@ -42,6 +42,8 @@ int verb_watch(struct ctl *ctl, int argc, char **argv);
 int verb_wait(struct ctl *ctl, int argc, char **argv);
 int verb_alarms(struct ctl *ctl, int argc, char **argv);
 int verb_stats(struct ctl *ctl, int argc, char **argv);
+int verb_instances(struct ctl *ctl, int argc, char **argv);
+int verb_remove(struct ctl *ctl, int argc, char **argv);
 int verb_config(struct ctl *ctl, int argc, char **argv);
 int verb_dir(struct ctl *ctl, int argc, char **argv);
 int verb_read(struct ctl *ctl, int argc, char **argv);

@@ -178,3 +178,57 @@ int segment_lock(const char *instance, pid_t *pid, bool *stolen)
 	}
 	return -EBUSY;
 }
+
+int segment_lock_look(const char *instance, pid_t *pid)
+{
+	struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_len = 1};
+	char path[PATH_ROOM];
+	int fd, held;
+
+	*pid = 0;
+	if (!segment_name_ok(instance))
+		return -EINVAL;
+	lock_path(instance, path);
+	fd = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+	if (fd < 0)
+		return -errno;
+	held = fcntl(fd, F_OFD_GETLK, &lock) < 0 ? -errno : lock.l_type != F_UNLCK;
+	if (held > 0) {
+		*pid = read_pid(fd);
+		held = !(*pid > 0 && is_corpse(*pid));
+	}
+	close(fd);
+	return held;
+}
+
+int segment_lock_any(const char *instance, pid_t *pid)
+{
+	char path[PATH_ROOM];
+	struct stat st;
+	int fd, err;
+
+	*pid = 0;
+	if (!segment_name_ok(instance))
+		return -EINVAL;
+	lock_path(instance, path);
+	fd = open(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+	if (fd < 0)
+		return errno == ELOOP || errno == EISDIR || errno == ENXIO ? -EPERM : -errno;
+	if (fstat(fd, &st) < 0 || !S_ISREG(st.st_mode)) {
+		close(fd);
+		return -EPERM;
+	}
+	err = lock_bytes(fd, F_WRLCK, BYTE_INSTANCE, 2);
+	if (err == -EAGAIN || err == -EACCES) {
+		*pid = read_pid(fd);
+		/* a corpse makes nothing any more */
+		err = *pid > 0 && is_corpse(*pid) ? 0 : -EBUSY;
+	} else if (!err && !still_there(fd, path)) {
+		err = -EBUSY; /* somebody else is at it */
+	}
+	if (err) {
+		close(fd);
+		return err;
+	}
+	return fd;
+}

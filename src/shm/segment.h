@@ -24,6 +24,16 @@ bool segment_name_ok(const char *instance);
  * process that cannot die while stuck in the kernel) is left behind and *stolen set.
  */
 int segment_lock(const char *instance, pid_t *pid, bool *stolen);
+/*
+ * Does a process hold the lock of the instance? 1 yes, with its number in *pid; 0 no, also where it
+ * is a corpse; -ENOENT: there is none; -EACCES: it belongs to another user. Takes nothing.
+ */
+int segment_lock_look(const char *instance, pid_t *pid);
+/*
+ * Take the lock that is there, whoever's file it is, so that what the instance left can be removed.
+ * A descriptor; -ENOENT none is there; -EBUSY an owsd runs; -EACCES, -EPERM.
+ */
+int segment_lock_any(const char *instance, pid_t *pid);
 /* False: the lock's file was removed or replaced. What cannot be looked at counts as there. */
 bool segment_lock_held(int lock, const char *instance);
 

@@ -29,7 +29,8 @@ MAY = {
                   "src/shm", "src/signal", "src/libows/handle.h", "src/libows/ows.h",
                   "src/log.h"],
     "src/owsctl": ["hal", "hal/native/family.h", "src/board", "src/config", "src/signal",
-                   "src/libows/ows.h", "src/printable.h", "src/refused.h", "src/standard.h"],
+                   "src/shm/remains.h", "src/libows/ows.h", "src/printable.h", "src/refused.h",
+                   "src/standard.h"],
     "src": ["hal", "hal/gpio/line.h", "src/board/board.h", "src/config", "src/engine", "src/serve",
             "src/shm", "src/libows/ows.h"],
 }

@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: MIT */
+/* owsctl instances and remove: which owsds run here or have run, and taking away what they left. */
+#include "instances.h"
+#include "table.h"
+#include "verbs.h"
+#include "json.h"
+#include "when.h"
+
+#include "../shm/remains.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#define FIELD 400
+
+static const struct table_column columns[] = {
+	{"NAME"}, {"STATE"}, {"PID", .right = true}, {"SINCE", .right = true},
+	{"SIGNALS", .right = true}, {"TARGETS"}, {"CONFIG"},
+};
+
+struct instance_info {
+	const char *name;
+	enum instance_state state;
+	int pid;          /* 0: not known */
+	int64_t since_ns; /* it began to be so; 0: not known */
+	int signals;      /* -1: not known */
+	char targets[FIELD], config[FIELD]; /* "": not known */
+	const char *why;  /* hidden: why; else NULL */
+};
+
+static size_t read_process(int pid, const char *what, char *text, size_t size)
+{
+	char path[48];
+	FILE *file;
+	size_t len = 0;
+
+	snprintf(path, sizeof(path), "/proc/%d/%s", pid, what);
+	file = pid > 0 ? fopen(path, "re") : NULL;
+	if (file) {
+		len = fread(text, 1, size - 1, file);
+		fclose(file);
+	}
+	text[len] = '\0';
+	return len;
+}
+
+static bool is_owsd(int pid)
+{
+	char comm[32];
+
+	read_process(pid, "comm", comm, sizeof(comm));
+	return !strcmp(comm, "owsd\n");
+}
+
+/* As it was given, or whole where the directory of the process may be looked at. */
+static void find_config(struct instance_info *info)
+{
+	char line[4096], path[48], folder[FIELD];
+	const char *config = instance_config_of(line, read_process(info->pid, "cmdline", line,
+	                                                           sizeof(line)));
+	ssize_t len = -1;
+
+	if (!config)
+		return;
+	snprintf(path, sizeof(path), "/proc/%d/cwd", info->pid);
+	if (*config != '/')
+		len = readlink(path, folder, sizeof(folder) - 1);
+	if (len > 0 && len + strlen(config) + 2 < sizeof(info->config))
+		snprintf(info->config, sizeof(info->config), "%.*s/%s", (int)len, folder, config);
+	else
+		snprintf(info->config, sizeof(info->config), "%s", config);
+}
+
+static void find_targets(struct ows *h, struct instance_info *info)
+{
+	struct ows_target target;
+	size_t used = 0;
+
+	for (int i = 0; ows_target(h, i, &target) == 0 && used < sizeof(info->targets); i++)
+		used += (size_t)snprintf(info->targets + used, sizeof(info->targets) - used, "%s%s",
+		                         i ? ", " : "", target.name);
+}
+
+static void look(const char *name, int64_t now_ns, struct instance_info *info)
+{
+	struct ows_daemon daemon = {0};
+	struct ows *h;
+	pid_t holder = 0;
+	int err = ows_open(name, OWS_READ, &h), lock = segment_lock_look(name, &holder);
+
+	*info = (struct instance_info){.name = name, .pid = (int)holder, .signals = -1};
+	if (err && err != -ENOENT) {
+		info->state = INSTANCE_HIDDEN;
+		info->why = err == -EACCES  ? "no right to see it: that is for group owsd"
+		            : err == -EPERM ? "it belongs to another user, neither root nor owsd"
+		                            : "of another version of owsd, or not of owsd";
+		return;
+	}
+	if (!err) {
+		ows_daemon(h, now_ns, &daemon);
+		info->pid = daemon.pid;
+		info->signals = ows_count(h);
+		find_targets(h, info);
+		info->since_ns = daemon.alive ? daemon.start_ns : now_ns - daemon.beat_age_ns;
+		ows_close(h);
+	}
+	info->state = instance_state_of(!err, daemon.state, daemon.alive, lock, is_owsd(info->pid));
+	if (info->state == INSTANCE_HIDDEN)
+		info->why = "it is starting, or its files were removed";
+	if (info->state == INSTANCE_RUNNING || info->state == INSTANCE_HANGS)
+		find_config(info);
+	else if (info->state == INSTANCE_LEFT)
+		info->pid = 0;
+}
+
+static bool add_row(struct table *table, const struct instance_info *info, const struct when *now)
+{
+	char pid[16] = "-", signals[16] = "-", span[WHEN_TEXT] = "-";
+
+	if (info->pid)
+		snprintf(pid, sizeof(pid), "%d", info->pid);
+	if (info->signals >= 0)
+		snprintf(signals, sizeof(signals), "%d", info->signals);
+	if (info->since_ns)
+		when_span(now->boot - info->since_ns, span);
+	return table_add(table, (const char *const[]){
+					info->name, instance_state_text(info->state), pid, span, signals,
+					info->targets[0] ? info->targets : "-",
+					info->why         ? info->why
+					: info->config[0] ? info->config
+							  : "-"});
+}
+
+static void add_json(struct json *json, const struct instance_info *info, const struct when *now)
+{
+	char text[WHEN_TEXT];
+
+	json_object(json, NULL);
+	json_string(json, "instance", info->name);
+	json_string(json, "state", instance_state_text(info->state));
+	if (info->pid)
+		json_int(json, "pid", info->pid);
+	else
+		json_null(json, "pid");
+	json_string(json, "since", info->since_ns ? when_iso(now, info->since_ns, text) : NULL);
+	if (info->signals >= 0)
+		json_int(json, "signals", info->signals);
+	else
+		json_null(json, "signals");
+	json_string(json, "targets", info->targets[0] ? info->targets : NULL);
+	json_string(json, "config", info->config[0] ? info->config : NULL);
+	json_string(json, "error", info->why);
+	json_object_end(json);
+}
+
+static bool show(const struct remains *remains, bool as_json)
+{
+	struct instance_info info;
+	struct when now = when_now();
+	struct table table;
+	struct json json;
+	char line[2048];
+	bool ok = true;
+
+	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
+	json_open(&json, stdout);
+	if (as_json)
+		json_array(&json, NULL);
+	for (unsigned i = 0; ok && i < remains->count; i++) {
+		look(remains->name[i], now.boot, &info);
+		if (as_json)
+			add_json(&json, &info, &now);
+		else
+			ok = add_row(&table, &info, &now);
+	}
+	if (as_json) {
+		json_array_end(&json);
+		json_end(&json);
+	}
+	table_fit(&table, 0);
+	for (int i = -1; ok && table.rows && i < (int)table.rows; i++) {
+		table_line(&table, i, line, sizeof(line));
+		puts(line);
+	}
+	table_free(&table);
+	return ok;
+}
+
+int verb_instances(struct ctl *ctl, int argc, char **argv)
+{
+	struct remains remains;
+	int err, status = CTL_DONE;
+
+	ctl_options();
+	if (ctl_option(ctl, argc, argv, "") != -1)
+		return CTL_USAGE;
+	if (optind < argc)
+		return ctl_usage(ctl, "instances takes no operands");
+	err = remains_list(&remains);
+	if (err)
+		return ctl_fail("/dev/shm: %s", strerror(-err));
+	if (!remains.count)
+		ctl_fail("no owsd has run here");
+	if (!show(&remains, ctl->json))
+		status = ctl_fail("no memory");
+	remains_free(&remains);
+	return status;
+}
+
+/* The heart beats although somebody removed the lock. */
+static bool beats_unlocked(const char *name, int *pid)
+{
+	struct ows_daemon daemon = {0};
+	struct ows *h;
+	pid_t holder;
+
+	if (segment_lock_look(name, &holder) != -ENOENT || ows_open(name, OWS_READ, &h))
+		return false;
+	ows_daemon(h, ows_now(), &daemon);
+	ows_close(h);
+	*pid = daemon.pid;
+	return daemon.alive;
+}
+
+static int refuse(const char *name, int err, int pid)
+{
+	switch (-err) {
+	case EBUSY:
+		if (pid)
+			return ctl_fail("owsd %s is running (process %d): it is not removed", name, pid);
+		return ctl_fail("owsd %s is running: it is not removed", name);
+	case ENOENT:
+		return ctl_fail("nothing is there of an owsd of the name %s", name);
+	case EACCES:
+	case EPERM:
+		return ctl_fail("no right to remove what is left of %s: its owner and root have it",
+		                name);
+	case EINVAL:
+		return ctl_fail("%s cannot be the name of an instance", ctl_word(name));
+	}
+	return ctl_fail("cannot remove what is left of %s: %s", name, strerror(-err));
+}
+
+int verb_remove(struct ctl *ctl, int argc, char **argv)
+{
+	int status = CTL_DONE;
+	struct json json;
+
+	ctl_options();
+	if (ctl_option(ctl, argc, argv, "") != -1)
+		return CTL_USAGE;
+	if (optind == argc)
+		return ctl_usage(ctl, "remove which instance? owsctl instances lists them");
+	json_open(&json, stdout);
+	if (ctl->json)
+		json_array(&json, NULL);
+	for (int i = optind; i < argc; i++) {
+		const char *name = argv[i];
+		unsigned files = 0;
+		int beating = 0, err;
+		pid_t pid = 0;
+
+		err = !segment_name_ok(name)           ? -EINVAL
+		      : beats_unlocked(name, &beating) ? -EBUSY
+						       : remains_remove(name, &pid, &files);
+		if (err)
+			status = refuse(name, err, pid ? (int)pid : beating);
+		else if (!ctl->json)
+			printf("removed %s: %u file%s\n", name, files, files == 1 ? "" : "s");
+		if (ctl->json) {
+			json_object(&json, NULL);
+			json_string(&json, "instance", name);
+			json_bool(&json, "removed", !err);
+			json_uint(&json, "files", files);
+			json_object_end(&json);
+		}
+	}
+	if (ctl->json) {
+		json_array_end(&json);
+		json_end(&json);
+	}
+	return status;
+}

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: MIT */
+/* The files that instances have in /dev/shm: found by their names, and removed under the lock. */
+#include "remains.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <glob.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define FOLDER "/dev/shm"
+#define PREFIX "owsd."
+
+/* The instance of a file's name: between "owsd." and the last dot. False: it is none of ours. */
+static bool instance_of(const char *file, char name[SEGMENT_NAME_MAX + 1])
+{
+	const char *end = strrchr(file, '.'), *begin = file + strlen(PREFIX);
+
+	if (strncmp(file, PREFIX, strlen(PREFIX)) != 0 || !end || end <= begin ||
+	    end - begin > SEGMENT_NAME_MAX)
+		return false;
+	if (strcmp(end, ".image") != 0 && strcmp(end, ".command") != 0 && strcmp(end, ".lock") != 0)
+		return false;
+	memcpy(name, begin, (size_t)(end - begin));
+	name[end - begin] = '\0';
+	return segment_name_ok(name);
+}
+
+static int by_name(const void *a, const void *b)
+{
+	return strcmp(a, b);
+}
+
+static void sort(struct remains *remains)
+{
+	unsigned kept = 0;
+
+	if (!remains->count)
+		return;
+	qsort(remains->name, remains->count, sizeof(*remains->name), by_name);
+	for (unsigned i = 1; i < remains->count; i++)
+		if (strcmp(remains->name[kept], remains->name[i]) != 0)
+			memmove(remains->name[++kept], remains->name[i], sizeof(*remains->name));
+	remains->count = kept + 1;
+}
+
+int remains_list(struct remains *remains)
+{
+	DIR *folder = opendir(FOLDER);
+	const struct dirent *entry;
+	int err = 0;
+
+	*remains = (struct remains){0};
+	if (!folder)
+		return -errno;
+	while (!err && (entry = readdir(folder)) != NULL) {
+		char name[SEGMENT_NAME_MAX + 1], (*more)[SEGMENT_NAME_MAX + 1];
+
+		if (!instance_of(entry->d_name, name))
+			continue;
+		more = realloc(remains->name, (remains->count + 1) * sizeof(*more));
+		if (!more) {
+			err = -ENOMEM;
+			break;
+		}
+		remains->name = more;
+		memcpy(more[remains->count++], name, sizeof(name));
+	}
+	closedir(folder);
+	if (err)
+		remains_free(remains);
+	sort(remains);
+	return err;
+}
+
+void remains_free(struct remains *remains)
+{
+	free(remains->name);
+	*remains = (struct remains){0};
+}
+
+/* The files of an instance but for its lock; a start that was killed leaves .new files. */
+static int find_files(const char *instance, glob_t *found)
+{
+	static const char *const forms[] = {
+		"image", "command", "image.new", "command.new", "image.new.????????",
+		"command.new.????????",
+	};
+	char pattern[128];
+	int err = 0;
+
+	memset(found, 0, sizeof(*found));
+	for (unsigned i = 0; i < sizeof(forms) / sizeof(forms[0]) && !err; i++) {
+		snprintf(pattern, sizeof(pattern), FOLDER "/" PREFIX "%s.%s", instance, forms[i]);
+		err = glob(pattern, i ? GLOB_APPEND : 0, NULL, found);
+		if (err == GLOB_NOMATCH)
+			err = 0;
+	}
+	return err ? -ENOMEM : 0;
+}
+
+static int remove_file(const char *path, unsigned *files)
+{
+	if (unlink(path) == 0)
+		++*files;
+	else if (errno != ENOENT)
+		return -errno;
+	return 0;
+}
+
+static int remove_all(const char *instance, const glob_t *found, unsigned *files)
+{
+	char path[128];
+	int err = 0;
+
+	for (size_t i = 0; i < found->gl_pathc && !err; i++)
+		err = remove_file(found->gl_pathv[i], files);
+	/* The lock is the last: as long as it is there, no owsd makes what is being removed. */
+	snprintf(path, sizeof(path), FOLDER "/" PREFIX "%s.lock", instance);
+	return err ? err : remove_file(path, files);
+}
+
+int remains_remove(const char *instance, pid_t *pid, unsigned *files)
+{
+	glob_t found;
+	bool stolen;
+	int lock = segment_lock_any(instance, pid), err;
+
+	*files = 0;
+	if (lock < 0 && lock != -ENOENT)
+		return lock;
+	err = find_files(instance, &found);
+	if (!err && lock == -ENOENT) {
+		lock = found.gl_pathc ? segment_lock(instance, pid, &stolen) : -ENOENT;
+		err = lock < 0 ? lock : 0;
+	}
+	if (!err)
+		err = remove_all(instance, &found, files);
+	globfree(&found);
+	if (lock >= 0)
+		close(lock);
+	return err;
+}
