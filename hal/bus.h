@@ -63,6 +63,8 @@ struct bus_req {
 	                        Begun: finished or failed by then, never undone */
 	const char *path;    /* "/28.551DDF030000/temperature12", without /uncached; immutable */
 	uint32_t len;        /* WRITE: bytes in data; READ and DIR: room in data */
+	uint32_t offset;     /* WRITE: of data in the value. What is behind the value's end is not
+	                        taken. A value that is not bytes takes no part of it: -EINVAL */
 	uint8_t *data;
 	/*
 	 * For a target that is a server of the same protocol: the servers that the request came

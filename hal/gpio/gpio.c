@@ -226,7 +226,7 @@ static int access_line(struct gpio_bus *gpio, int line, struct bus_req *req,
 		answer->number = value;
 		return 0;
 	}
-	err = parse_value(req, &value);
+	err = req->offset ? -EINVAL : parse_value(req, &value);
 	if (!err)
 		err = line_write(gpio, (unsigned)line, guest, value, why, why_size);
 	if (!err)

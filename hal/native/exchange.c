@@ -125,6 +125,8 @@ static int take_value(struct job *job)
 
 		if (skip > len)
 			skip = len;
+		txn->at = job->req->offset < size ? job->req->offset : size;
+		size -= txn->at;
 		txn->data = job->req->data + skip;
 		txn->len = len - skip < size ? len - skip : size;
 		txn->room = txn->len;

@@ -55,7 +55,7 @@ static int write_area(struct txn *txn)
 	case 0: /* This also fills the scratchpad with what is there. */
 		err = read_bytes(txn, area->read, txn->mem, area->size);
 		memcpy(in, txn->mem, area->size);
-		memcpy(txn->mem, txn->data, txn->len);
+		memcpy(txn->mem + txn->at, txn->data, txn->len);
 		txn->silent = false;
 		if (!err && memcmp(in, txn->mem, area->size) == 0)
 			return 0;

@@ -314,7 +314,7 @@ static int put_page(struct txn *txn)
 	if (err)
 		return err;
 	memcpy(want, txn->mem + 8, 8);
-	memcpy(want, txn->data, txn->len);
+	memcpy(want + txn->at, txn->data, txn->len);
 	return make_page(txn, (unsigned)txn->element, want);
 }
 
@@ -328,24 +328,26 @@ static int get_memory(struct txn *txn)
 	return ++txn->phase == 4 ? 0 : TXN_MORE;
 }
 
+/* phase: pages done. */
 static int put_memory(struct txn *txn)
 {
-	unsigned at = 8 * txn->phase;
-	size_t n = txn->len - at < 8 ? txn->len - at : 8;
+	size_t end = txn->at + txn->len, first = txn->at / 8 * 8, page = first + 8 * txn->phase;
+	size_t from = page < txn->at ? txn->at : page, to = page + 8 < end ? page + 8 : end;
 	uint8_t want[8];
 
 	if (txn->len == 0)
 		return 0;
-	int err = load_page(txn, txn->phase);
+	int err = load_page(txn, (unsigned)page / 8);
 	if (err)
 		return err;
 	memcpy(want, txn->mem + 8, 8);
-	memcpy(want, txn->data + at, n);
-	err = make_page(txn, txn->phase, want);
+	memcpy(want + (from - page), txn->data + (from - txn->at), to - from);
+	err = make_page(txn, (unsigned)page / 8, want);
 	if (err)
 		return err;
 	txn->mem[0] = 0;
-	return 8 * ++txn->phase >= txn->len ? 0 : TXN_MORE;
+	txn->phase++;
+	return to == end ? 0 : TXN_MORE;
 }
 
 /* A K30 sensor on a DS2450: A has 1 V per 1000 ppm, B is its reference of 3.2 V, D its supply. */

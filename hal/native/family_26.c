@@ -369,7 +369,8 @@ static int read_page(struct txn *txn)
 
 static int put_page(struct txn *txn)
 {
-	return ds2438_patch(txn, (unsigned)txn->element, 0, txn->data, (unsigned)txn->len);
+	return ds2438_patch(txn, (unsigned)txn->element, (unsigned)txn->at, txn->data,
+	                    (unsigned)txn->len);
 }
 
 #define MEASURED(text, kind, what)                                                        \

@@ -193,8 +193,11 @@ static int read_memory(struct txn *txn)
 	return txn->len < 128 ? TXN_MORE : 0;
 }
 
-/* A page: read, write the second scratchpad, read it back, copy, read again. */
-static int put_page(struct txn *txn, unsigned address, const uint8_t *bytes, size_t n)
+/*
+ * n bytes from at on in a page: read it, write the second scratchpad, read it back, copy, read
+ * again.
+ */
+static int put_page(struct txn *txn, unsigned address, size_t at, const uint8_t *bytes, size_t n)
 {
 	uint8_t command[2 + PAGE] = {WRITE_SCRATCHPAD_2, (uint8_t)address}, in[PAGE];
 	uint8_t verify[] = {READ_SCRATCHPAD_2, (uint8_t)address};
@@ -205,7 +208,7 @@ static int put_page(struct txn *txn, unsigned address, const uint8_t *bytes, siz
 	case 0:
 		err = get_page(txn, address, in);
 		memcpy(txn->mem, in, PAGE);
-		memcpy(txn->mem, bytes, n);
+		memcpy(txn->mem + at, bytes, n);
 		txn->silent = false;
 		if (err || memcmp(txn->mem, in, PAGE) != 0)
 			return err ? err : TXN_MORE;
@@ -232,19 +235,20 @@ static int write_page(struct txn *txn)
 {
 	int err = identify(txn);
 
-	return err ? err : put_page(txn, (unsigned)txn->element * PAGE, txn->data, txn->len);
+	return err ? err
+	           : put_page(txn, (unsigned)txn->element * PAGE, txn->at, txn->data, txn->len);
 }
 
 static int write_memory(struct txn *txn)
 {
-	size_t at = txn->phase / 5 * PAGE;
-	size_t n = txn->len - at < PAGE ? txn->len - at : PAGE;
+	size_t end = txn->at + txn->len, page = txn->at / PAGE * PAGE + txn->phase / 5 * PAGE;
+	size_t from = page < txn->at ? txn->at : page, to = page + PAGE < end ? page + PAGE : end;
 	int err = identify(txn);
 
 	if (err || txn->len == 0)
 		return err;
-	err = put_page(txn, (unsigned)at, txn->data + at, n);
-	return err ? err : at + n < txn->len ? TXN_MORE : 0;
+	err = put_page(txn, (unsigned)page, from - page, txn->data + (from - txn->at), to - from);
+	return err ? err : to < end ? TXN_MORE : 0;
 }
 
 #define TEMPERATURE(text, resolution, when)                                               \

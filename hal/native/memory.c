@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Memories that are read with F0h and written through a scratchpad, row by row. */
 #include "hal/native/memory.h"
 
 #include <errno.h>
@@ -168,12 +169,13 @@ static int write_range(struct txn *txn, const struct chip_memory *memory, unsign
 
 int memory_write(struct txn *txn)
 {
-	return write_range(txn, memory_of(txn), 0, (unsigned)txn->len);
+	return write_range(txn, memory_of(txn), (unsigned)txn->at, (unsigned)txn->len);
 }
 
 int memory_write_page(struct txn *txn)
 {
 	const struct chip_memory *memory = memory_of(txn);
+	unsigned page = (unsigned)txn->element * memory->page;
 
-	return write_range(txn, memory, (unsigned)txn->element * memory->page, (unsigned)txn->len);
+	return write_range(txn, memory, page + (unsigned)txn->at, (unsigned)txn->len);
 }

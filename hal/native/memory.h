@@ -19,8 +19,8 @@ struct chip_memory {
 };
 
 /*
- * The whole memory of the device's family, and page txn->element of it. Write: from its beginning,
- * txn->len bytes.
+ * The whole memory of the device's family, and page txn->element of it. Write: txn->len bytes from
+ * txn->at on.
  */
 int memory_read(struct txn *txn);
 int memory_read_page(struct txn *txn);

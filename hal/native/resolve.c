@@ -25,6 +25,13 @@ static bool is_directory(const struct family *family, const struct device *devic
 	return false;
 }
 
+/* Bytes that can be read can be written in part too. */
+static bool has_parts(const struct property *property, int extension)
+{
+	return property->type == PROPERTY_BINARY && property->access == ACCESS_BOTH &&
+	       extension != EXTENSION_ALL;
+}
+
 static int resolve_property(struct job *job, const struct family *family,
                             const struct device *device, const char *name, size_t len)
 {
@@ -60,6 +67,8 @@ static int resolve_property(struct job *job, const struct family *family,
 	job->kind = JOB_PROPERTY;
 	if (!(property->access & (job->req->op == BUS_READ ? ACCESS_READ : ACCESS_WRITE)))
 		return -EACCES;
+	if (job->req->op == BUS_WRITE && job->req->offset && !has_parts(property, extension))
+		return -EINVAL;
 	if (family->is_virtual && property->convert && job->req->op == BUS_WRITE)
 		job->kind = JOB_CONVERT;
 	return 0;

@@ -57,6 +57,11 @@ int frame_request(uint8_t *out, enum frame_type type, uint32_t flags, int32_t si
 	return FRAME_HEADER + header.payload;
 }
 
+void frame_set_offset(uint8_t *out, int32_t offset)
+{
+	put_word(out + 20, (uint32_t)offset);
+}
+
 int frame_add_tokens(uint8_t *out, int len, const uint8_t *tokens, uint32_t count)
 {
 	if (!count)

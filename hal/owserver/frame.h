@@ -62,6 +62,8 @@ void frame_get_header(const uint8_t bytes[FRAME_HEADER], struct frame_header *he
  */
 int frame_request(uint8_t *out, enum frame_type type, uint32_t flags, int32_t size,
                   const char *path, const uint8_t *data, uint32_t data_len);
+/* Where in the value a request's data begin; 0 if it is not said. */
+void frame_set_offset(uint8_t *out, int32_t offset);
 /*
  * Put the tokens of count servers, up to FRAME_TOKENS_SENT, behind a request of len bytes; out has room
  * for FRAME_TOKENS_SENT * FRAME_TOKEN_SIZE more. Returns the new length.

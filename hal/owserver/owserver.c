@@ -379,17 +379,19 @@ static int do_read(struct owserver *server, struct bus_req *req, uint32_t *len)
 static int do_write(struct owserver *server, struct bus_req *req, uint32_t *len)
 {
 	struct talk_request request = { .type = FRAME_WRITE, .path = req->path, .data = req->data,
-	                                .data_len = req->len };
+	                                .data_len = req->len, .offset = req->offset };
 	const struct frame_header *reply = &server->talk.reader.header;
+	bool is_output = req->prio == BUS_OUTPUT || req->prio == BUS_ALARM;
 	int err = talk_exchange(&server->talk, &request, req->deadline_ns);
 
 	if (err)
 		return err;
 	if (reply->type < 0)
 		return refused(server, req);
-	if (reply->size < 0 || (uint32_t)reply->size < req->len)
+	/* a memory that ends before takes less, but a part of an output is another value */
+	if (reply->size < 0 || (is_output && (uint32_t)reply->size < req->len))
 		return -EIO;
-	*len = req->len;
+	*len = (uint32_t)reply->size < req->len ? (uint32_t)reply->size : req->len;
 	return 0;
 }
 

@@ -51,7 +51,10 @@ static int make_request(struct talk *talk, const struct talk_request *request)
 	int len = frame_request(talk->out, request->type, flags, request->size, request->path,
 	                        request->data, request->data_len);
 
-	return len < 0 ? len : frame_add_tokens(talk->out, len, talk->tokens, talk->token_count);
+	if (len < 0)
+		return len;
+	frame_set_offset(talk->out, (int32_t)request->offset);
+	return frame_add_tokens(talk->out, len, talk->tokens, talk->token_count);
 }
 
 static void expect_reply(struct talk *talk, const struct talk_request *request)

@@ -47,7 +47,7 @@ struct talk_request {
 	const char *path;
 	int32_t size;        /* READ: bytes asked for */
 	const uint8_t *data; /* WRITE */
-	uint32_t data_len;
+	uint32_t data_len, offset;
 	uint8_t *room; /* where the reply's data go; NULL: not wanted */
 	uint32_t limit;
 };

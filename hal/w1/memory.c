@@ -51,7 +51,7 @@ static int read_eeprom(struct txn *txn)
 /* Row by row, and none that holds the bytes already: an EEPROM wears out. */
 static int write_row(struct txn *txn, unsigned row, unsigned size)
 {
-	unsigned start = start_of(txn), end = start + (unsigned)txn->len;
+	unsigned start = start_of(txn) + (unsigned)txn->at, end = start + (unsigned)txn->len;
 	uint8_t have[ROW_MAX], want[ROW_MAX];
 	int err = part(txn, row, have, size);
 
@@ -70,7 +70,8 @@ static int write_row(struct txn *txn, unsigned row, unsigned size)
 /* mem[0]: rows done. */
 static int write_eeprom(struct txn *txn)
 {
-	unsigned size = row_of(txn), start = start_of(txn), end = start + (unsigned)txn->len;
+	unsigned size = row_of(txn), start = start_of(txn) + (unsigned)txn->at;
+	unsigned end = start + (unsigned)txn->len;
 	unsigned row = start - start % size + txn->mem[0]++ * size;
 	int err = row < end ? write_row(txn, row, size) : 0;
 

@@ -194,7 +194,7 @@ bool guest_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
 	slot->pressing = table_lent(lane) || lane->guests.pressing < GUESTS_PRESSING;
 	slot->req = (struct bus_req){ .op = g->op, .fresh = g->fresh, .path = g->path,
 		                      .prio = slot->pressing ? BUS_INPUT : BUS_GUEST,
-		                      .len = g->len, .data = g->data,
+		                      .len = g->len, .offset = g->offset, .data = g->data,
 		                      .tokens = g->tokens, .token_count = g->token_count };
 	if (!lane_lend(lane, slot, now_ns))
 		return false;

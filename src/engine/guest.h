@@ -23,7 +23,7 @@ struct engine_guest {
 	uint32_t generation; /* of the image that counts lane so; answered: that counts served so */
 	const char *path;
 	uint8_t *data; /* as in struct bus_req */
-	uint32_t len;
+	uint32_t len, offset;
 	const uint8_t *tokens; /* likewise; NULL: the guest is no server */
 	uint32_t token_count;
 

@@ -87,6 +87,7 @@ void work_ask(struct serve *s, struct client *c, enum client_step step, enum bus
 	c->guest = (struct engine_guest){ .op = (uint8_t)op, .fresh = c->node.fresh, .lane = lane,
 		                          .generation = s->image->header->generation,
 		                          .path = c->path, .data = data, .len = len,
+		                          .offset = op == BUS_WRITE ? (uint32_t)c->request.offset : 0,
 		                          .tokens = c->via.tokens, .token_count = c->via.count };
 	count(s, COUNT_bus_requests, 1);
 	if (c->state != CLIENT_WORKING)

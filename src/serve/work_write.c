@@ -14,6 +14,11 @@ void work_write_target(struct serve *s, struct client *c)
 	uint32_t len = c->request.data_len;
 	int lane;
 
+	/* a part of a number is another number; for a type that is not known here its target decides */
+	if (c->request.offset && c->node.type && c->node.type != PROPERTY_BINARY) {
+		answer_error(s, c, -EINVAL);
+		return;
+	}
 	kept_forget(s->kept, &c->node);
 	if (units_convert(c->node.type, c->request.flags)) {
 		int n = units_take(c->node.type, c->request.flags, (const char *)data, len,
@@ -106,11 +111,13 @@ void work_write(struct serve *s, struct client *c)
 	c->request.data_len = (uint32_t)c->request.size;
 	if (work_is_directory(node)) {
 		work_refuse_directory(s, c);
-	} else if (node->kind == NODE_CODE || c->request.offset != 0) {
+	} else if (node->kind == NODE_CODE) {
 		answer_error(s, c, -EACCES);
 	} else {
 		name = name_of(s, node);
-		if (name)
+		if (name && c->request.offset)
+			answer_error(s, c, -EINVAL);
+		else if (name)
 			command(s, c, name);
 		else if (!work_ask_type(s, c))
 			work_write_target(s, c);

@@ -9,7 +9,8 @@
 
 What the server refuses raises Refused; its number is that of the owserver protocol where the
 client tells it. Ways to ask that not every client has are options of read() and dir(), and
-`can` names those that it has: scale="F", format="fic", size=4, offset=2.
+`can` names those that it has: scale="F", format="fic", size=4, offset=2. With "parts" it has
+write_at(path, value, offset).
 """
 
 import asyncio
@@ -127,7 +128,7 @@ class Shell(Client):
 class Libownet(Client):
     """The C library, in the program ownet: one persistent connection."""
 
-    can = frozenset(("scale", "format", "size", "present"))
+    can = frozenset(("scale", "format", "size", "present", "parts"))
 
     def __init__(self, scene, server):
         super().__init__(scene, server)
@@ -169,6 +170,9 @@ class Libownet(Client):
 
     def write(self, path, value):
         self._ask("put", value.hex() or "-", path)
+
+    def write_at(self, path, value, offset):
+        self._ask("lwrite", offset, value.hex() or "-", path)
 
     def present(self, path):
         try:
@@ -356,7 +360,7 @@ class Owhttpd(Client):
 class Owfs(Client):
     """owfs as a client of the server: a file system."""
 
-    can = frozenset(("number",))
+    can = frozenset(("number", "parts"))
     remote = False
 
     def __init__(self, scene, server):
@@ -404,6 +408,16 @@ class Owfs(Client):
         try:
             with open(self._file(path), "wb", buffering=0) as file:
                 file.write(value)
+        except OSError as error:
+            raise Refused(-error.errno, str(error)) from None
+
+    def write_at(self, path, value, offset):
+        """In the way of dd: a write for each 32 bytes."""
+        try:
+            with open(self._file(path), "r+b", buffering=0) as file:
+                file.seek(offset)
+                for at in range(0, len(value), 32):
+                    assert file.write(value[at:at + 32]) == len(value[at:at + 32])
         except OSError as error:
             raise Refused(-error.errno, str(error)) from None
 

@@ -89,6 +89,21 @@ class Judge:
             if self.client.tells:
                 assert self.client.read(MEMORY + "/pages/page.1") == text
 
+    def parts(self):
+        """Of a memory. What mock keeps of a write that is less than the whole is nobody's value."""
+        if "parts" not in self.client.can:
+            return
+        path = MEMORY + "/memory"
+        before = bytes(i % 251 for i in range(128))
+        with self.check("write a memory in parts"):
+            self.client.write_at(path, before, 0)
+            self.client.write_at(path, b"eight on", 8)
+            self.client.write_at(path, b"the end", 121)
+            self.client.write_at(MEMORY + "/pages/page.2", b"paged", 27)
+            if not self.server.genuine:
+                want = before[:8] + b"eight on" + before[16:91] + b"paged" + before[96:121] + b"the end"
+                assert self.server.frame(served.READ, "/uncached" + path).data == want
+
     def errors(self):
         read, write = self.client.read, self.client.write
         with self.check("no such device"):
@@ -230,7 +245,7 @@ def judged(scene, Kind, which):
     client = Kind(scene, server)
     judge = Judge(client, server)
     try:
-        for part in (judge.directory, judge.reading, judge.writing, judge.errors, judge.ways,
+        for part in (judge.directory, judge.reading, judge.writing, judge.parts, judge.errors, judge.ways,
                      judge.branches, judge.signals, judge.alarms, judge.aliases):
             part()
     finally:

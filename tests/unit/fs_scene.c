@@ -150,6 +150,7 @@ uint32_t fs_ask(enum bus_op op, const char *what, const void *value, size_t n)
 	fs.req[id] = (struct bus_req){.id = id, .op = (uint8_t)op, .prio = BUS_INPUT, .fresh = true,
 	                              .path = fs.path[id], .data = fs.data[id],
 	                              .len = op == BUS_WRITE ? (uint32_t)n : 4095,
+	                              .offset = op == BUS_WRITE ? fs.write_offset : 0,
 	                              .deadline_ns = fs.host.now + 20 * HOST_S};
 	memset(fs.data[id], 0, sizeof(fs.data[id]));
 	if (op == BUS_WRITE)
@@ -179,6 +180,16 @@ void fs_reads(const char *expected, const char *what)
 void fs_fails(int err, const char *what)
 {
 	TEST_ASSERT_EQUAL_INT_MESSAGE(err, fs_result(fs_ask(BUS_READ, what, NULL, 0)), what);
+}
+
+int fs_writes_at(uint32_t offset, const char *what, const char *value)
+{
+	int err;
+
+	fs.write_offset = offset;
+	err = fs_writes(what, value);
+	fs.write_offset = 0;
+	return err;
 }
 
 int fs_writes(const char *what, const char *value)

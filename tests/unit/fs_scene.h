@@ -20,6 +20,7 @@ extern struct fs {
 	struct bus *bus;
 	char root[64];
 	struct bus_req req[FS_REQUESTS]; /* of request id, as fs_ask() returns it */
+	uint32_t write_offset;
 	uint8_t data[FS_REQUESTS][4096];
 	char path[FS_REQUESTS][96];
 	uint32_t next_id;
@@ -57,6 +58,8 @@ int fs_result(uint32_t id);
 void fs_reads(const char *expected, const char *what);
 void fs_fails(int err, const char *what);
 int fs_writes(const char *what, const char *value);
+/* The same at an offset in the value. */
+int fs_writes_at(uint32_t offset, const char *what, const char *value);
 void fs_lists(const char *expected, const char *what);
 /* Was it told with these words? */
 bool fs_told(enum bus_news news, const char *part);

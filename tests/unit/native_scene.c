@@ -37,6 +37,8 @@ void start(void)
 	TEST_ASSERT_EQUAL_UINT8(BUS_UP, host.event[0].news);
 }
 
+uint32_t write_offset;
+
 uint32_t ask(enum bus_op op, enum bus_prio prio, bool fresh, const char *what,
                     const char *text)
 {
@@ -45,6 +47,7 @@ uint32_t ask(enum bus_op op, enum bus_prio prio, bool fresh, const char *what,
 	snprintf(path[id], sizeof(path[id]), "%s", what);
 	req[id] = (struct bus_req){.id = id, .op = (uint8_t)op, .prio = (uint8_t)prio, .fresh = fresh,
 	                           .path = path[id], .data = data[id], .len = sizeof(data[id]),
+	                           .offset = op == BUS_WRITE ? write_offset : 0,
 	                           .deadline_ns = host.now + 20 * HOST_S};
 	memset(data[id], 0, sizeof(data[id]));
 	if (op == BUS_WRITE) {

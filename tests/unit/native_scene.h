@@ -15,6 +15,9 @@
 extern struct bus_req req[NATIVE_REQUESTS];
 extern uint8_t data[NATIVE_REQUESTS][4096];
 
+/* Where writes begin in their value. */
+extern uint32_t write_offset;
+
 /* setUp() and tearDown() */
 void native_begin(void);
 void native_end(void);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* One slave on a wire of the native bus, and requests to it. */
 #include "tests/unit/one_slave.h"
 
 #include <stdio.h>
@@ -10,7 +11,7 @@
 struct sim_slave *slave;
 uint8_t slave_data[2048];
 static struct bus_req slave_req;
-static uint32_t next_id;
+static uint32_t next_id, offset;
 
 void one_slave_begin(void)
 {
@@ -32,6 +33,7 @@ const struct bus_answer *exchange(enum bus_op op, enum bus_prio prio, const char
 	                             .deadline_ns = host.now + 20 * HOST_S};
 	if (text) {
 		slave_req.len = (uint32_t)strlen(text);
+		slave_req.offset = offset;
 		memcpy(slave_data, text, slave_req.len);
 	}
 	host.answers = 0;
@@ -54,6 +56,16 @@ const char *slave_path(const char *property)
 const struct bus_answer *go(enum bus_op op, const char *property, const char *text)
 {
 	return exchange(op, BUS_OUTPUT, slave_path(property), text);
+}
+
+const struct bus_answer *put_at(uint32_t at, const char *property, const char *text)
+{
+	const struct bus_answer *answer;
+
+	offset = at;
+	answer = go(BUS_WRITE, property, text);
+	offset = 0;
+	return answer;
 }
 
 void reads(const char *property, const char *text)

@@ -20,6 +20,8 @@ const struct bus_answer *exchange(enum bus_op op, enum bus_prio prio, const char
                                   const char *text);
 /* The same of a property of the slave, as an output. */
 const struct bus_answer *go(enum bus_op op, const char *property, const char *text);
+/* A write of text at an offset. */
+const struct bus_answer *put_at(uint32_t at, const char *property, const char *text);
 /* A property is read as text, is written, gives this error. */
 void reads(const char *property, const char *text);
 void writes(const char *property, const char *text);

@@ -274,6 +274,32 @@ static void test_a_write_to_a_max31826_keeps_the_rest_of_the_page_and_copies_wha
 	TEST_ASSERT_EQUAL_UINT(4, part->copies);
 }
 
+static void test_a_part_of_a_max31826_is_written_anywhere(void)
+{
+	static const struct {
+		const char *name;
+		unsigned at, start, copies;
+	} parts[] = {{"memory", 0, 5, 2}, {"memory", 0, 8, 1}, {"memory", 0, 127, 1}, {"memory", 0, 128, 0},
+	             {"pages/page.4", 32, 3, 1}, {"pages/page.4", 32, 6, 1}, {"pages/page.4", 32, 8, 0}};
+	uint8_t want[MEMORY];
+	char text[5] = "";
+
+	make_max31826();
+	memcpy(want, part->memory, MEMORY);
+	for (unsigned i = 0; i < sizeof(parts) / sizeof(parts[0]); i++) {
+		unsigned end = parts[i].at ? 8 : MEMORY, room = end - parts[i].start;
+		unsigned copies = part->copies;
+
+		memset(text, 'a' + (int)i, 4);
+		memcpy(want + parts[i].at + parts[i].start, text, room < 4 ? room : 4);
+		write_offset = parts[i].start;
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(slave, parts[i].name), text));
+		TEST_ASSERT_EQUAL_MEMORY(want, part->memory, MEMORY);
+		TEST_ASSERT_EQUAL_UINT(parts[i].copies, part->copies - copies);
+	}
+	write_offset = 0;
+}
+
 static void test_a_locked_max31826_refuses_and_a_garbled_scratchpad_is_not_copied(void)
 {
 	make_max31826();
@@ -393,6 +419,7 @@ int main(void)
 	RUN_TEST(test_a_max31826_measures_as_its_table_says);
 	RUN_TEST(test_the_memory_of_a_max31826_is_read_by_page_and_whole);
 	RUN_TEST(test_a_write_to_a_max31826_keeps_the_rest_of_the_page_and_copies_what_is_new);
+	RUN_TEST(test_a_part_of_a_max31826_is_written_anywhere);
 	RUN_TEST(test_a_locked_max31826_refuses_and_a_garbled_scratchpad_is_not_copied);
 	RUN_TEST(test_a_max31850_tells_thermocouple_and_cold_junction_as_its_tables_say);
 	RUN_TEST(test_a_fault_of_the_thermocouple_is_told_and_its_temperature_is_not);

@@ -287,6 +287,12 @@ static void test_eeproms_are_read_and_written(void)
 			continue;
 		TEST_ASSERT_EQUAL_INT(0, fs_writes(chips[i].page, "page"));
 		TEST_ASSERT_EQUAL_STRING_LEN("apagea", fs_now_in(chips[i].name, "eeprom") + 63, 6);
+		TEST_ASSERT_EQUAL_INT(0, fs_writes_at(6, chips[i].page, "part"));
+		TEST_ASSERT_EQUAL_STRING_LEN("apageaaparta", fs_now_in(chips[i].name, "eeprom") + 63, 12);
+		TEST_ASSERT_EQUAL_INT(0, fs_writes_at(30, chips[i].page, "more than fits"));
+		TEST_ASSERT_EQUAL_STRING_LEN("amoa", fs_now_in(chips[i].name, "eeprom") + 93, 4);
+		TEST_ASSERT_EQUAL_INT(0, fs_writes_at(29, chips[i].memory, "two rows"));
+		TEST_ASSERT_EQUAL_STRING_LEN("atwo rowsa", fs_now_in(chips[i].name, "eeprom") + 28, 10);
 	}
 	fs_put(chips[2].name, "eeprom", bytes, 100);
 	fs_fails(-EIO, chips[2].memory);
