@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The lamps of owsd: the alarm output and the heartbeat, each a GPIO line. */
 #include "indicator.h"
 
 #include "hal/gpio/line.h"
@@ -63,10 +64,11 @@ static bool indicator_alarm(const struct image *image)
 static enum indicator_health indicator_health(const struct image *image, int64_t period_ns,
                                               int64_t now_ns)
 {
+	int64_t patience_ns = 2 * period_ns + SECOND;
 	struct ows_sample beat;
 
-	if (!reader_sample(&image->records[0], &beat) ||
-	    now_ns - beat.measured_ns > 2 * period_ns + SECOND)
+	if (!reader_sample(&image->records[0], &beat) || now_ns - beat.measured_ns > patience_ns ||
+	    beat.measured_ns - now_ns > patience_ns)
 		return INDICATOR_DEAD;
 	for (uint32_t i = 0; i < image->header->target_count; i++)
 		if (__atomic_load_n(&image->targets[i].state, __ATOMIC_RELAXED) == 1)

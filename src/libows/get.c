@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Reading values: a whole sample of the image, its age, and the quality that a dead owsd leaves it. */
 #include "handle.h"
 
 #include "../shm/reader.h"
@@ -37,7 +38,8 @@ static bool find_alive(struct ows *h, int64_t now_ns)
 
 	h->alive_now = now_ns;
 	h->alive = reader_sample(h->map.records, &daemon) &&
-	           handle_age(now_ns, daemon.measured_ns) <= h->dead_after_ns;
+	           handle_age(now_ns, daemon.measured_ns) <= h->dead_after_ns &&
+	           !handle_ahead(h, now_ns, daemon.measured_ns);
 	h->orphan = !h->alive && orphan_look(h, now_ns);
 	return h->alive;
 }
@@ -82,7 +84,7 @@ static inline int finish(struct ows *h, int64_t stale_after_ns, int64_t now_ns,
 	value->age_ns = handle_age(now_ns, since);
 	if (ows_good(value->quality)) {
 		/* a retired image was exchanged for another: its last heartbeat says how old it is */
-		if (stopped(h) || !alive)
+		if (stopped(h) || !alive || handle_ahead(h, now_ns, since))
 			value->quality = OWS_Q_TARGET;
 		else if (stale_after_ns > 0 && value->age_ns > stale_after_ns)
 			value->quality = OWS_Q_STALE;

@@ -148,6 +148,15 @@ static inline int64_t handle_age(int64_t now_ns, int64_t then_ns)
 	return __builtin_sub_overflow(now_ns, then_ns, &age) ? INT64_MAX : age;
 }
 
+/*
+ * A time that is further ahead than owsd may be late is no time of a living owsd. A little ahead it
+ * may be: the caller took its now_ns before owsd published.
+ */
+static inline bool handle_ahead(const struct ows *h, int64_t now_ns, int64_t then_ns)
+{
+	return handle_age(then_ns, now_ns) > h->dead_after_ns;
+}
+
 /* get.c: is owsd alive, as far as its heartbeat says? If not, is the image an orphan too? */
 bool handle_alive(struct ows *h, int64_t now_ns);
 /* 0, or -ESTALE when the image is not the present one any more. */

@@ -463,7 +463,8 @@ class Ows:
             sample, _, _ = self._slot(0)
         except BlockingIOError:
             return False
-        return now - sample[1] <= self.dead_after_ns
+        # A heart that beats in the future is dead too, unless now was taken just before the beat
+        return abs(now - sample[1]) <= self.dead_after_ns
 
     def stale(self):
         """True when reopen() is due: owsd says so in the image, or its heart stands still and the
@@ -502,7 +503,9 @@ class Ows:
             value = text[:length].decode(errors="replace") if is_text else decode(kind, raw)
         if quality & 0xC0 == 0xC0:
             # a retired image was exchanged for another: its last heartbeat says how old it is
-            if self._state() not in (LIVE, RETIRED) or not self._beats(now):
+            since = measured or self.header.start_ns
+            if self._state() not in (LIVE, RETIRED) or not self._beats(now) or \
+                    since > now + self.dead_after_ns:
                 quality = Q_TARGET
             elif attribute == "_Value" and record and 0 < info.stale_after_ns < age:
                 quality = Q_STALE

@@ -170,6 +170,8 @@ bool ctl_alive(const struct ctl *ctl, struct ows *h, int64_t now_ns)
 		return true;
 	if (daemon.state == 3)
 		ctl_fail("owsd %s was stopped; these are its last values", ctl->instance);
+	else if (!daemon.beat_age_ns)
+		ctl_fail("owsd %s is not running: its heartbeat lies in the future", ctl->instance);
 	else
 		ctl_fail("owsd %s is not running: last heartbeat %s ago", ctl->instance,
 		         when_span(daemon.beat_age_ns, span));

@@ -223,6 +223,45 @@ static void test_the_daemon_is_alive_while_its_heart_beats(void)
 	TEST_ASSERT_EQUAL(0, d.alive);
 }
 
+/* As a program with the right to write the image could forge it, or a clock of another namespace. */
+static void test_a_heart_that_beats_in_the_future_is_dead(void)
+{
+	static const int64_t ahead[] = {3 * INSTANCE_S, 3600 * INSTANCE_S, INT64_MAX};
+	struct ows_daemon d;
+	struct ows_value v;
+	char text[32];
+
+	instance_put_double(&in, 1, 21.5, now);
+	for (size_t i = 0; i < sizeof(ahead) / sizeof(ahead[0]); i++) {
+		instance_beat(&in, ahead[i] == INT64_MAX ? INT64_MAX : now + ahead[i], 100);
+		TEST_ASSERT_EQUAL(0, ows_daemon(h, now + (int64_t)i, &d));
+		TEST_ASSERT_EQUAL(0, d.alive);
+		ows_get_signal(h, 0, now + (int64_t)i, &v);
+		TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, v.quality);
+		ows_get_text(h, ows_find(h, "relay_PerFactor"), now + (int64_t)i, &v, text, sizeof(text));
+		TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, v.quality);
+	}
+	/* owsd published after this program had looked at its clock */
+	instance_beat(&in, now + INSTANCE_S, 100);
+	TEST_ASSERT_EQUAL(0, ows_daemon(h, now + 9, &d));
+	TEST_ASSERT_EQUAL(1, d.alive);
+	TEST_ASSERT_EQUAL_INT64(0, d.beat_age_ns);
+}
+
+static void test_a_value_that_was_measured_in_the_future_is_not_good(void)
+{
+	struct ows_value v;
+
+	instance_put_double(&in, 1, 21.5, now + INSTANCE_S);
+	TEST_ASSERT_EQUAL(0, ows_get_signal(h, 0, now + 1, &v));
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, v.quality);
+	TEST_ASSERT_EQUAL_INT64(0, v.age_ns);
+	instance_put_double(&in, 1, 21.5, now + 3 * INSTANCE_S);
+	TEST_ASSERT_EQUAL(0, ows_get_signal(h, 0, now + 2, &v));
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, v.quality);
+	TEST_ASSERT_EQUAL_INT64(0, v.age_ns);
+}
+
 static void test_targets_and_counters_end_with_enoent(void)
 {
 	struct ows_target t;
@@ -286,6 +325,8 @@ int main(void)
 	RUN_TEST(test_a_snapshot_has_the_table_in_its_order);
 	RUN_TEST(test_info_says_what_is_configured);
 	RUN_TEST(test_the_daemon_is_alive_while_its_heart_beats);
+	RUN_TEST(test_a_heart_that_beats_in_the_future_is_dead);
+	RUN_TEST(test_a_value_that_was_measured_in_the_future_is_not_good);
 	RUN_TEST(test_targets_and_counters_end_with_enoent);
 	RUN_TEST(test_where_it_is_served_is_told_and_so_is_an_image_without);
 	RUN_TEST(test_every_quality_has_words);

@@ -84,6 +84,14 @@ static void test_get_of_a_dead_owsd_says_that_it_is_dead(void)
 	holds(err, "is not running: last heartbeat 60s ago");
 }
 
+static void test_get_of_an_owsd_whose_heart_beats_in_the_future_says_so(void)
+{
+	instance_beat(&in, ows_now() + 3600 * INSTANCE_S, 0);
+	TEST_ASSERT_EQUAL(CTL_NOT_GOOD, run(verb_get, "get room1"));
+	TEST_ASSERT_EQUAL_STRING("21.5\n", out);
+	holds(err, "is not running: its heartbeat lies in the future");
+}
+
 static void test_get_without_a_name_is_wrong_usage(void)
 {
 	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_get, "get"));
@@ -309,6 +317,7 @@ int main(void)
 	RUN_TEST(test_get_of_a_value_that_is_not_good_is_status_3);
 	RUN_TEST(test_get_of_an_unknown_name_is_status_1_and_suggests);
 	RUN_TEST(test_get_of_a_dead_owsd_says_that_it_is_dead);
+	RUN_TEST(test_get_of_an_owsd_whose_heart_beats_in_the_future_says_so);
 	RUN_TEST(test_get_without_a_name_is_wrong_usage);
 	RUN_TEST(test_no_instance_is_told);
 	RUN_TEST(test_json_of_get_is_an_array_with_exact_integers);

@@ -78,7 +78,7 @@ static void expect(const char *code, const char *expected)
 static void test_python_reads_what_c_wrote(void)
 {
 	/* not stale however long python takes to start */
-	instance_put_double(&in, ROOM, 21.5, ows_now() + INSTANCE_AHEAD);
+	instance_put_double(&in, ROOM, 21.5, ows_now() + INSTANCE_PATIENCE / 2);
 	instance_put(&in, RELAY, 1, ows_now());
 	instance_put(&in, NUMBER, 4294967295, ows_now());
 	instance_put(&in, DEEP, INT64_MIN, ows_now());
@@ -136,6 +136,19 @@ static void test_python_lowers_quality_as_c_does(void)
 	       "print(*(hex(s.get(x, n + d).quality) for x, d in"
 	       " ((\"room1\", 0), (\"relay\", 0), (\"relay\", 63 * 10**9), (\"room1\", 63 * 10**9))))",
 	       "0x14 0xc0 0x18 0x18\n");
+}
+
+static void test_python_takes_what_is_of_the_future_for_dead(void)
+{
+	int64_t now = ows_now();
+
+	instance_put(&in, RELAY, 1, now);
+	instance_put(&in, NUMBER, 1, now + 3600 * INSTANCE_S);
+	expect("s = ows.Ows(name)\nprint(s.alive(), *(hex(s.get(x).quality) for x in (\"relay\", \"count\")))",
+	       "True 0xc0 0x18\n");
+	instance_beat(&in, now + 3600 * INSTANCE_S, 0);
+	expect("s = ows.Ows(name)\nprint(s.alive(), hex(s.get(\"relay\").quality))", "False 0x18\n");
+	instance_lives_on(&in);
 }
 
 static void test_python_computes_attributes_as_c_does(void)
@@ -275,7 +288,7 @@ static void test_python_finds_its_way_from_an_orphan(void)
 	TEST_ASSERT_EQUAL(0, segment_remove(in.name, SEGMENT_IMAGE));
 	TEST_ASSERT_EQUAL(0, segment_remove(in.name, SEGMENT_COMMAND));
 	instance_make(&next, "python", 1, ows_now(), signals, COUNT);
-	instance_beat(&next, ows_now() + 60 * INSTANCE_S, 0);
+	instance_lives_on(&next);
 	instance_put(&next, RELAY, 1, ows_now());
 	instance_show(&next);
 	finish(run);
@@ -400,6 +413,7 @@ int main(void)
 	RUN_TEST(test_python_names_the_targets);
 	RUN_TEST(test_python_looks_names_up_as_c_does);
 	RUN_TEST(test_python_lowers_quality_as_c_does);
+	RUN_TEST(test_python_takes_what_is_of_the_future_for_dead);
 	RUN_TEST(test_python_computes_attributes_as_c_does);
 	RUN_TEST(test_c_finds_what_python_set);
 	RUN_TEST(test_python_refuses_what_c_refuses);

@@ -210,7 +210,7 @@ static void test_what_is_not_known_here_is_asked_of_the_engine_once(void)
 static void test_an_input_of_the_table_is_answered_from_the_image(void)
 {
 	/* new however long it takes until it is asked for */
-	instance_put_double(&in, 1, 21.5, ows_now() + INSTANCE_AHEAD);
+	instance_put_double(&in, 1, 21.5, ows_now() + INSTANCE_PATIENCE / 2);
 	ask(fd, FRAME_READ, "/28.551DDF030000/temperature");
 	TEST_ASSERT_EQUAL_INT(12, answer(fd));
 	TEST_ASSERT_EQUAL_STRING("        21.5", data);
