@@ -164,8 +164,6 @@ static void carry(struct memory *m, struct log *log)
 		if (carried < 0)
 			log_warning(log, "what was commanded before is not taken over: the old "
 			                 "command segment is damaged");
-		else if (carried > 0)
-			log_info(log, "%d commanded values taken over", carried);
 	}
 	segment_close(&before);
 }

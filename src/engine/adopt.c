@@ -203,6 +203,7 @@ static void take_signal(struct signal *s, const struct signal *was)
 	s->dgn_resets = was->dgn_resets;
 	s->acknowledged = was->acknowledged;
 	s->client = was->client;
+	s->awaited = was->awaited;
 	s->held = was->held;
 	s->held_quality = was->held_quality;
 	s->held_err = was->held_err;

@@ -1,7 +1,14 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Whose commands are in force: the heartbeats of control programs, and what becomes of the commands
+ * that the owsd before has left (section 3 of docs/semantics.md, "A command is in force").
+ */
 #include "private.h"
 
 #include <string.h>
+
+/* A program that lives needs a cycle or two to learn that there is another owsd. */
+#define COME_BACK_NS 2000000000LL
 
 static void put_safe(struct engine *e, struct signal *s)
 {
@@ -16,24 +23,84 @@ static void put_safe(struct engine *e, struct signal *s)
 		memcpy(s->command_text, s->item->safe_text, len);
 		s->command_len = (uint32_t)len;
 	}
-	commands_put(e->commands, s->record, s->command,
-	             signal_is_string(s) ? s->command_text : NULL, s->command_len);
+	commands_put_safe(e->commands, s->record, s->command,
+	                  signal_is_string(s) ? s->command_text : NULL, s->command_len);
 	e->counters.safe_outputs++;
+}
+
+void engine_resume(struct engine *e, struct signal *s, const struct command *c, int64_t now_ns)
+{
+	struct command_client client = { 0 };
+
+	/* it is not taken unless it is set once more, or its giver beats */
+	s->stamp = c->stamp;
+	if (!c->stamp)
+		return;
+	if (c->safe && s->item->has_safe)
+		put_safe(e, s);
+	if (!c->client)
+		return;
+	commands_client(e->commands, c->client - 1, &client);
+	if (!client.pid)
+		return;
+	s->client = c->client;
+	s->awaited = true;
+	e->clients[c->client - 1] = (struct client){ true, true, client.pid, client.beat, now_ns };
+}
+
+void engine_give_up(struct engine *e, struct signal *s)
+{
+	s->client = 0;
+	s->awaited = false;
+	if (s->item->has_safe)
+		put_safe(e, s);
 	engine_write_check(e, s);
 	engine_publish(e, s);
 }
 
-/* It ended in order: its outputs stay as they are, whoever comes to sit in its place. */
-static void forget(struct engine *e, unsigned client)
+/*
+ * It ended in order: its outputs stay as they are, whoever comes to sit in its place. What it
+ * commanded before owsd's start is not repeated.
+ */
+static void forget(struct engine *e, unsigned client, bool all)
 {
-	for (uint32_t row = 0; row < e->table.count; row++)
-		if (e->table.signals[row].client == client + 1)
-			e->table.signals[row].client = 0;
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		struct signal *s = &e->table.signals[row];
+
+		if (s->client != client + 1 || !(all || s->awaited))
+			continue;
+		s->client = 0;
+		if (!s->awaited)
+			continue;
+		s->awaited = false;
+		engine_write_check(e, s);
+		engine_publish(e, s);
+	}
 	e->clients[client] = (struct client){ 0 };
+}
+
+/* It beats for the first time since owsd's start: it lives, and its commands are in force. */
+static void welcome(struct engine *e, unsigned client, int64_t now_ns)
+{
+	unsigned kept = 0;
+
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		struct signal *s = &e->table.signals[row];
+
+		if (s->client != client + 1 || !s->awaited)
+			continue;
+		s->stamp = 0;
+		engine_intake_signal(e, s, now_ns);
+		engine_publish(e, s);
+		kept++;
+	}
+	log_info(e->log, "control program %u beats again: its commands of %u outputs stay in force",
+	         (unsigned)e->clients[client].pid, kept);
 }
 
 static void lose(struct engine *e, unsigned client)
 {
+	const struct client *known = &e->clients[client];
 	unsigned safe = 0;
 
 	for (uint32_t row = 0; row < e->table.count; row++) {
@@ -41,17 +108,26 @@ static void lose(struct engine *e, unsigned client)
 
 		if (s->client != client + 1)
 			continue;
+		safe += s->item->has_safe;
+		if (s->item->has_safe || s->awaited)
+			engine_give_up(e, s);
 		s->client = 0;
-		if (s->item->has_safe) {
-			put_safe(e, s);
-			safe++;
-		}
 	}
 	e->counters.lost_clients++;
-	log_warning(e->log, "control program %u stopped beating: %u outputs go to SafeValue",
-	            (unsigned)e->clients[client].pid, safe);
+	log_warning(e->log, "control program %u %s: %u outputs go to SafeValue",
+	            (unsigned)known->pid,
+	            known->awaited ? "has not beaten since owsd started, and its commands are dropped"
+	                           : "stopped beating",
+	            safe);
 	e->clients[client] = (struct client){ 0 };
 	commands_drop_client(e->commands, client);
+}
+
+static int64_t patience(const struct client *known, const struct command_client *c)
+{
+	int64_t promised_ns = (c->period_ms ? c->period_ms : 1000) * 1000000LL;
+
+	return known->awaited && promised_ns < COME_BACK_NS ? COME_BACK_NS : promised_ns;
 }
 
 void engine_clients(struct engine *e, int64_t now_ns)
@@ -63,14 +139,18 @@ void engine_clients(struct engine *e, int64_t now_ns)
 		commands_client(e->commands, i, &c);
 		if (!c.pid) {
 			if (known->known)
-				forget(e, i);
+				forget(e, i, true);
 			continue;
 		}
+		if (known->awaited && known->pid != c.pid)
+			forget(e, i, false);
 		if (!known->known || known->pid != c.pid || known->beat != c.beat) {
-			*known = (struct client){ true, c.pid, c.beat, now_ns };
+			if (known->awaited)
+				welcome(e, i, now_ns);
+			*known = (struct client){ true, false, c.pid, c.beat, now_ns };
 			continue;
 		}
-		if (now_ns - known->heard_ns > (c.period_ms ? c.period_ms : 1000) * 1000000LL)
+		if (now_ns - known->heard_ns > patience(known, &c))
 			lose(e, i);
 	}
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The engine as a whole: made, stepped, given answers and events, and ended. */
 #include "private.h"
 
 #include <assert.h>
@@ -160,11 +161,13 @@ bool engine_published(struct engine *e)
 
 void engine_take_commands(struct engine *e, struct commands *commands, int64_t now_ns)
 {
+	int (*put)(struct commands *, uint32_t, int64_t, const char *, uint32_t);
+
 	engine_intake(e, now_ns);
 	e->commands = commands;
 	e->counters.lost_commands++;
 	for (unsigned i = 0; i < OWS_CLIENTS; i++)
-		e->clients[i].known = false;
+		e->clients[i] = (struct client){ 0 };
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
@@ -172,11 +175,14 @@ void engine_take_commands(struct engine *e, struct commands *commands, int64_t n
 		s->dgn_resets = 0;
 		s->acknowledged = 0;
 		s->client = 0;
-		/* what was commanded stands: here, and for the owsd after this one */
+		if (s->awaited)
+			engine_give_up(e, s);
+		/* what was commanded stands */
 		if (!s->stamp)
 			continue;
-		commands_put(commands, s->record, s->command,
-		             signal_is_string(s) ? s->command_text : NULL, s->command_len);
+		put = s->safe ? commands_put_safe : commands_put;
+		put(commands, s->record, s->command,
+		    signal_is_string(s) ? s->command_text : NULL, s->command_len);
 		commands_stamp(commands, s->record, s->stamp);
 	}
 	e->driver_resets = 0;

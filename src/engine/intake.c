@@ -80,6 +80,7 @@ static void take_value(struct engine *e, struct signal *s, const struct command 
 		return;
 	}
 	s->stamp = c->stamp;
+	s->awaited = false;
 	if (err) {
 		refuse(e, s, err, now_ns);
 		return;
@@ -220,7 +221,7 @@ void engine_intake_all(struct engine *e, int64_t now_ns)
 		s->one_shots = c.one_shot;
 		s->dgn_resets = c.dgn_reset;
 		s->acknowledged = c.acknowledged;
-		s->stamp = 0;
+		engine_resume(e, s, &c, now_ns);
 		engine_intake_signal(e, s, now_ns);
 	}
 }

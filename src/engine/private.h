@@ -19,6 +19,7 @@
 
 struct client {
 	bool known;
+	bool awaited; /* it beat before owsd's start, and did not since */
 	uint32_t pid, beat;
 	int64_t heard_ns;
 };
@@ -117,11 +118,15 @@ void engine_publish_counters(struct engine *e);
 /* intake.c: the command segment */
 void engine_intake(struct engine *e, int64_t now_ns);
 void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns);
-/* At start and after the segment was made again: everything that stands in it. */
+/* At start: everything that stands in it. */
 void engine_intake_all(struct engine *e, int64_t now_ns);
 
-/* clients.c: the heartbeats of control programs */
+/* clients.c: the heartbeats of control programs, and which commands are in force */
 void engine_clients(struct engine *e, int64_t now_ns);
+/* At start: what becomes of a command that the owsd before has left. */
+void engine_resume(struct engine *e, struct signal *s, const struct command *c, int64_t now_ns);
+/* Its giver did not come back, or the command is lost: SafeValue, else InitValue, else nothing. */
+void engine_give_up(struct engine *e, struct signal *s);
 
 /* completion.c: what an answer changes */
 void engine_read_done(struct engine *e, struct lane *lane, const struct slot *slot,

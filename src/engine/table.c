@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The signal table: a row for each item, and what a row says of itself. */
 #include "table.h"
 
 #include "hal/path.h"
@@ -196,7 +197,7 @@ static bool differs(const struct signal *s)
 
 bool signal_changed(const struct signal *s)
 {
-	return s->commanded && (s->one_shot || (signal_writes(s) && differs(s)));
+	return s->commanded && !s->awaited && (s->one_shot || (signal_writes(s) && differs(s)));
 }
 
 void signal_settle(struct signal *s)

@@ -55,6 +55,7 @@ struct signal {
 	char *command_text, *written_text; /* strings */
 	uint32_t command_len, written_len;
 	uint32_t client; /* 0: nobody who beats; else index + 1 */
+	bool awaited;    /* its command is of before the start: nothing is written until client beats */
 	uint16_t doubts; /* writes that may still reach it over other targets: it is not written */
 
 	/* what was last seen in the command segment */

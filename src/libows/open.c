@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A handle of libows: opened, closed, and opened again when owsd has other segments. */
 #include "handle.h"
 
 #include "../shm/word.h"
@@ -102,5 +103,8 @@ int ows_reopen(struct ows *h)
 	/* owsd carries the table of clients over; in another one we have no place yet */
 	if (h->client >= 0 && word_get(&map.clients[h->client].pid) != h->pid)
 		h->client = -1;
+	/* a new owsd repeats our commands when it hears us */
+	if (h->client >= 0)
+		__atomic_fetch_add(&map.clients[h->client].beat, 1, __ATOMIC_RELEASE);
 	return err;
 }

@@ -145,8 +145,8 @@ int ows_get_text(struct ows *h, int id, int64_t now_ns, struct ows_value *value,
  * (also for its _WriteEnable), -EBUSY another program is just writing this string,
  * -ESTALE: set it again after ows_reopen(). stamp, if not NULL, gets the number that `applied`
  * will reach (0 for attributes). The flags _DGNRESET and _WriteOneShot act when this handle sets
- * them from 0 to another value. After an orderly end of owsd sets go on without an error and are
- * found at its next start.
+ * them from 0 to another value. After an orderly end of owsd sets return -ESTALE until its next
+ * start; a set that returned 0 just before an end may be lost: `applied` says what was written.
  */
 int ows_set(struct ows *h, int id, double value, uint32_t *stamp);
 int ows_set_integer(struct ows *h, int id, int64_t value, uint32_t *stamp);
@@ -157,7 +157,9 @@ int ows_set_many(struct ows *h, const int *ids, const double *values, int n);
 /*
  * Say that this control program lives, and promise to say it again within period_ms. If it does
  * not, the outputs it set last go to their SafeValue. No system call after the first call.
- * -ENOSPC: the table of 32 clients is full.
+ * The commands of a program that beats outlive a restart of owsd: they are in force again when it
+ * beats, or calls ows_reopen(), within two seconds of the start or its period if that is longer.
+ * -ENOSPC: the table of 32 clients is full. -ESTALE: as ows_set().
  */
 int ows_beat(struct ows *h, uint32_t period_ms);
 

@@ -315,6 +315,8 @@ class Ows:
         self._read_table()
         if self.client is not None and self._client_word(0) != os.getpid():
             self.client = None
+        if self.client is not None:  # a new owsd repeats our commands when it hears us
+            self._set_client_word(4, self._client_word(4) + 1)
 
     @staticmethod
     def _check_image(image):
@@ -649,8 +651,11 @@ class Ows:
         self._ring(record)
 
     def _there(self):
-        """Another consumer may have truncated the file, and touching it then is a fatal signal."""
+        """Another consumer may have truncated the file, and touching it then is a fatal signal.
+        Nobody takes what is set in a segment whose owsd has stopped, or that was replaced."""
         if os.fstat(self.command.fd).st_size < self.command.size:
+            raise Stale
+        if self.command.word(STATE_OFF) != LIVE:
             raise Stale
 
     def _set_signal(self, record, slot, name, value):
@@ -709,8 +714,7 @@ class Ows:
         self._found_by_owsd()
 
     def _found_by_owsd(self):
-        """What is set in these commands is, by this owsd or by the next after an orderly end."""
-        if self.command.word(STATE_OFF) not in (LIVE, STOPPED) or self._is_orphan():
+        if self.command.word(STATE_OFF) != LIVE or self._is_orphan():
             raise Stale
 
     def _client_word(self, offset):

@@ -21,14 +21,15 @@ static void mark(const struct ows *h, const struct ows_id *id)
 	__atomic_fetch_or(&h->map.dirty[id->record / 32], 1u << id->record % 32, __ATOMIC_RELEASE);
 }
 
-/* What is set here is found by this owsd, or by the next after an orderly end. */
+/* Nobody takes what is set in a segment whose owsd has stopped, or that was replaced. */
+static bool is_live(const struct ows *h)
+{
+	return word_get(&h->map.command->state) == OWS_STATE_LIVE;
+}
+
 static int command_state(struct ows *h)
 {
-	uint32_t state = word_get(&h->map.command->state);
-
-	if (state != OWS_STATE_LIVE && state != OWS_STATE_STOPPED)
-		return -ESTALE;
-	return handle_orphan(h, ows_now());
+	return is_live(h) ? handle_orphan(h, ows_now()) : -ESTALE;
 }
 
 /*
@@ -85,7 +86,9 @@ static int check(const struct ows *h, const struct ows_id *e)
 		return -EACCES;
 	if (r->flags & OWS_RECORD_NO_SET && is_of_writing((enum attribute)e->attribute))
 		return -EROFS;
-	return e->attribute != ATTR_VALUE || takes_sets(h, e, r) ? 0 : -EACCES;
+	if (e->attribute == ATTR_VALUE && !takes_sets(h, e, r))
+		return -EACCES;
+	return is_live(h) ? 0 : -ESTALE;
 }
 
 static int check_id(const struct ows *h, int id, const struct ows_id **e)
@@ -268,6 +271,8 @@ int ows_acknowledge(struct ows *h, int id)
 		return -EACCES;
 	if (h->map.acks == NULL)
 		return -EOPNOTSUPP;
+	if (!is_live(h))
+		return -ESTALE;
 	__atomic_fetch_add(&h->map.acks[e->record], 1, __ATOMIC_RELEASE);
 	mark(h, e);
 	return ring(h);

@@ -105,6 +105,7 @@ static int put(struct ows *h, struct order *order)
 
 static int send(struct ows *h, struct order *order)
 {
+	struct ows_daemon daemon = {0};
 	int err = put(h, order);
 
 	/* owsd has just moved to new memory: say it there. */
@@ -117,7 +118,9 @@ static int send(struct ows *h, struct order *order)
 	case 0:
 		return CTL_DONE;
 	case ESTALE:
-		return ctl_fail("%s: owsd is just starting anew, try again", order->name);
+		ows_daemon(h, ows_now(), &daemon);
+		return daemon.alive ? ctl_fail("%s: owsd is just starting again, try again", order->name)
+		                    : ctl_fail("%s was not set: owsd is not running", order->name);
 	case EACCES:
 		return ctl_fail("%s is not writable: it is an input, and its _WriteEnable is 0",
 		                order->name);
@@ -254,7 +257,7 @@ static int set_all(struct ctl *ctl, struct ows *h, struct order *orders, int cou
 		return status;
 	ows_daemon(h, ows_now(), &daemon);
 	if (!daemon.alive && !seconds)
-		ctl_fail("owsd is not running: what was set is kept for its next start");
+		return ctl_fail("owsd is not running: nothing was set");
 	if (seconds && await(h, orders, count, limit_ns, &reading) != CTL_DONE) {
 		status = CTL_FAILED;
 		for (int i = 0; i < count; i++)

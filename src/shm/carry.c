@@ -135,7 +135,7 @@ static bool carry_slot(struct commands *to, uint32_t slot, const struct old_segm
 		return false;
 	s->value = was.value;
 	s->stamp = was.stamp;
-	s->client = was.client <= OWS_CLIENTS ? was.client : 0;
+	s->client = was.client <= OWS_CLIENTS || was.client == OWS_CLIENT_SAFE ? was.client : 0;
 	return true;
 }
 

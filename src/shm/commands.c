@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The command segment as owsd lays it out, reads it, and repairs what consumers overwrote. */
 #include "commands.h"
 
 #include "../libows/ows.h"
@@ -187,6 +188,7 @@ void commands_load(const struct commands *commands, uint32_t slot, struct comman
 	command->value = (int64_t)__atomic_load_n((shm_double_word *)&s->value, __ATOMIC_RELAXED);
 	client = word_get(&s->client);
 	command->client = client <= OWS_CLIENTS ? client : 0;
+	command->safe = client == OWS_CLIENT_SAFE;
 	command->read_enable = checked_enable(word_get(&s->read_enable));
 	command->write_enable = checked_enable(word_get(&s->write_enable));
 	command->one_shot = word_get(&s->one_shot);
@@ -214,14 +216,14 @@ int commands_text(const struct commands *commands, uint32_t slot, char *text)
 	return check == ows_check_bytes(text, len) ? (int)len : -EBADMSG;
 }
 
-int commands_put(struct commands *commands, uint32_t slot, int64_t value, const char *text,
-                 uint32_t len)
+static int put(struct commands *commands, uint32_t slot, uint32_t client, int64_t value,
+               const char *text, uint32_t len)
 {
 	struct ows_command_slot *s = slot_at(commands, slot);
 	struct ows_command_text *t;
 	uint32_t free_claim = 0;
 
-	word_set(&s->client, 0);
+	word_set(&s->client, client);
 	if (!text) {
 		/* One store: in two, a consumer's may come to lie between the halves */
 		__atomic_store_n((shm_double_word *)&s->value, (uint64_t)value, __ATOMIC_RELAXED);
@@ -243,6 +245,18 @@ int commands_put(struct commands *commands, uint32_t slot, int64_t value, const 
 	word_set(&t->check, ows_check_bytes(text, len));
 	__atomic_store_n(&t->claim, 0, __ATOMIC_RELEASE);
 	return 0;
+}
+
+int commands_put(struct commands *commands, uint32_t slot, int64_t value, const char *text,
+                 uint32_t len)
+{
+	return put(commands, slot, 0, value, text, len);
+}
+
+int commands_put_safe(struct commands *commands, uint32_t slot, int64_t value, const char *text,
+                      uint32_t len)
+{
+	return put(commands, slot, OWS_CLIENT_SAFE, value, text, len);
 }
 
 void commands_stamp(struct commands *commands, uint32_t slot, uint32_t stamp)

@@ -44,6 +44,7 @@ struct command {
 	int64_t value;
 	uint32_t stamp;  /* 0: never commanded */
 	uint32_t client; /* 0: nobody who beats; else index + 1, checked */
+	bool safe;       /* commands_put_safe() has put it there, and nobody set it since */
 	uint8_t read_enable, write_enable; /* 0 not commanded, 1 off, 2 on; checked */
 	uint32_t one_shot, dgn_reset;
 	uint32_t acknowledged; /* counts */
@@ -55,12 +56,14 @@ void commands_load(const struct commands *commands, uint32_t slot, struct comman
  */
 int commands_text(const struct commands *commands, uint32_t slot, char *text);
 /*
- * Put a value that owsd knows better in the place of a commanded one, so that it stands over a
- * restart: SafeValue, or in a segment made anew what was commanded in the one before. text and len
- * for strings, else NULL; -EBUSY while a consumer writes the text. The stamp is the consumers'.
+ * Put what was commanded in the segment before into a new one. text and len for strings, else NULL;
+ * -EBUSY while a consumer writes the text. The stamp is the consumers'.
  */
 int commands_put(struct commands *commands, uint32_t slot, int64_t value, const char *text,
                  uint32_t len);
+/* The same with SafeValue, marked so that the next owsd knows it. */
+int commands_put_safe(struct commands *commands, uint32_t slot, int64_t value, const char *text,
+                      uint32_t len);
 /* The stamp of a slot, in a segment that no consumer has seen yet. */
 void commands_stamp(struct commands *commands, uint32_t slot, uint32_t stamp);
 /* Free the claim of a writer that died in the middle; the engine calls it after a second. */
@@ -93,7 +96,7 @@ bool commands_mend(struct commands *commands, bool all);
  * Carry what was commanded from an older segment over to a new one, by name, type and path. old
  * may be anything: it is checked before use. It must be retired before (commands_state() or
  * commands_retire()), then no set is lost. After a restart _ReadEnable and _WriteEnable are not
- * carried, after a reload they are. Returns how many slots were carried over, -EPROTO when old is
+ * carried, after a reload they are. What stands in force again is the engine's matter. Returns how many slots were carried over, -EPROTO when old is
  * no command segment of this layout.
  */
 int commands_carry(struct commands *to, const void *old, size_t old_size, bool restart);

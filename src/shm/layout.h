@@ -14,7 +14,7 @@
  *   1.1  image: a journal of alarms; in the attributes the state of limit alarms and three flags;
  *        commands: words of acknowledgement
  *   1.2  image: group and moves of a target, and where the owserver protocol is served, which
- *        were 0
+ *        were 0; commands: the mark of SafeValue
  */
 #ifndef OWS_LAYOUT_H
 #define OWS_LAYOUT_H
@@ -207,12 +207,15 @@ struct ows_image_header { /* 256 bytes: four lines of 64 */
 struct ows_command_slot { /* 32 bytes */
 	uint64_t value;    /* as ows_sample.value */
 	uint32_t stamp;    /* counts commands (fetch_add after value was stored); 0: never commanded */
-	uint32_t client;   /* index + 1 in the client table of who set it last; 0: nobody who beats */
+	uint32_t client;   /* index + 1 in the client table of who set it last; 0: nobody who beats;
+	                      OWS_CLIENT_SAFE: owsd put it to SafeValue */
 	uint32_t read_enable;  /* 0 not commanded, 1 off, 2 on */
 	uint32_t write_enable; /* likewise */
 	uint32_t one_shot;     /* counts edges of _WriteOneShot */
 	uint32_t dgn_reset;    /* counts edges of _DGNRESET */
 };
+
+#define OWS_CLIENT_SAFE 0xffffffffu
 
 /* Strings: the claim is taken by compare-and-swap from 0 to the writer's pid. */
 struct ows_command_text { /* 16 bytes, then text_cap bytes */

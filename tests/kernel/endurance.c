@@ -210,6 +210,7 @@ static void restart(void)
 	samples = 0;
 	restarts++;
 	daemon_start();
+	truth_relays(0); /* InitValue: the reader sets and does not beat */
 }
 
 static void kill_it(void)

@@ -69,7 +69,7 @@ before=$(pid)
 does 'an upgrade while it runs' $apt install /tmp/next/owsd_*.deb
 does 'starts it anew' within 90 service owsd status
 does 'as another process' test "$(pid)" != "$before"
-does 'with what was commanded' within 90 reads pump 1
+does 'with InitValue, for who commanded has ended' within 90 reads pump 0
 does 'and the configuration as it was' cmp /etc/owsd/OWS.rio /tmp/OWS.rio
 
 echo 'OwsDrv { Period wrong }' >/etc/owsd/OWS.rio
@@ -80,14 +80,14 @@ service owsd start >/tmp/broken 2>&1
 does 'but says where it is broken' grep -q '/etc/owsd/OWS.rio:1:' /tmp/broken
 cp /tmp/OWS.rio /etc/owsd/OWS.rio
 does 'mended, it starts' service owsd start
-does 'still with what was commanded' within 90 reads pump 1
+does 'with values' within 90 owsctl get boiler
 
 does 'the package is removed' $apt remove owsd
 does 'nothing runs' refused pgrep -x owsd
 does 'the configuration stays' cmp /etc/owsd/OWS.rio /tmp/OWS.rio
 does 'the user too' getent passwd owsd
 does 'installed again' $apt install --allow-downgrades ./owsd_*.deb
-does 'it has what was commanded' within 90 reads pump 1
+does 'it has values' within 90 owsctl get boiler
 rm /etc/owsd/OWS.rio
 does 'and again' $apt install --reinstall ./owsd_*.deb
 does 'a configuration that was deleted stays deleted' test ! -e /etc/owsd/OWS.rio

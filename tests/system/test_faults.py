@@ -257,14 +257,38 @@ def test_a_full_dev_shm_is_refused_at_start_with_a_reason(scene):
     assert "/dev/shm is full" in done.stderr, done.stderr
 
 
-def test_a_dev_shm_that_fills_up_between_two_starts_loses_nothing_that_was_commanded(scene):
+def test_a_dev_shm_that_fills_up_between_two_starts_loses_no_command_of_a_living_program(scene):
     wire = scene.file("house.sim", "chip DS2482-100 0x18\nDS2408 29.A0B1C2000004\n")
     file = scene.file("house.rio", owsdtest.rio(f"sim:{wire}", [
         dict(Name="relays", Path="/29.A0B1C2000004/PIO.BYTE", Type=raw("byte"), IO=raw("output")),
     ]))
+    giver = scene.file("giver.py", """
+import time
+import ows
+
+def opened():
+    while True:
+        try:
+            return ows.Ows("T", control=True)
+        except OSError:
+            time.sleep(0.05)
+
+with opened() as s:
+    s.beat(600000)
+    s.set("relays", 5)
+    while True:
+        time.sleep(0.1)
+        try:
+            s.beat(600000)
+        except ows.Stale:
+            try:
+                s.reopen()
+            except OSError:
+                pass
+""")
     script = scene.file("script", """
         mount -t tmpfs -o size=4m tmpfs /dev/shm || exit 77
-        trap 'kill -9 $pid 2>/dev/null' EXIT
+        trap 'kill -9 $pid $giver 2>/dev/null' EXIT
         trap 'exit 1' TERM
         start() {
             "$owsd" -n T -c "$1" >>log 2>&1 &
@@ -279,10 +303,8 @@ def test_a_dev_shm_that_fills_up_between_two_starts_loses_nothing_that_was_comma
             exit 2
         }
         start "$1"
-        for i in $(seq 1000); do
-            "$owsctl" -n T set relays 5 2>/dev/null && break
-            sleep 0.05
-        done
+        python3 "$2" &
+        giver=$!
         reads_5
         kill -9 $pid
         wait $pid
@@ -302,7 +324,8 @@ def test_a_dev_shm_that_fills_up_between_two_starts_loses_nothing_that_was_comma
         echo "again: 5"
     """)
     done = scene._run(["unshare", "-rm", "env", f"owsd={owsdtest.OWSD}", f"owsctl={owsdtest.OWSCTL}",
-                       "sh", script, file], 200)
+                       f"PYTHONPATH={owsdtest.SOURCE / 'src/libows'}",
+                       "sh", script, file, giver], 200)
     if done.returncode == 77 or done.stderr.startswith("unshare"):
         owsdtest.skip("no user namespaces: " + done.stderr.strip())
     assert done.stdout == "full: status 1\n/dev/shm is full\nagain: 5\n", done

@@ -128,7 +128,7 @@ def test_a_device_under_an_alias_is_found_by_its_id(scene):
           "both are read")
 
 
-def test_what_was_commanded_outlives_owsd_by_name_type_and_path(scene):
+def test_what_a_living_program_commanded_outlives_owsd_by_name_type_and_path(scene):
     server = scene.owserver(mock=["28"])
     path = server.devices(0)[0]
     name = scene.name()
@@ -138,13 +138,30 @@ def test_what_was_commanded_outlives_owsd_by_name_type_and_path(scene):
             dict(Name=n, Path=path + p, Type=raw("float"), IO=raw("output"), InitValue="1")
             for n, p in names])
     daemon = scene.owsd(config(("high", "/temphigh"), ("low", "/templow")), name=name)
-    scene.owsctl(daemon, "set", "high", "77")
+    program = scene.start(["python3", "-c", f"""
+import sys, time
+sys.path.insert(0, {str(owsdtest.SOURCE / "src/libows")!r})
+import ows
+h = ows.Ows({daemon.name!r}, control=True)
+h.beat(2000)
+h.set("high", 77)
+while True:
+    time.sleep(0.1)
+    try:
+        h.beat(2000)
+    except ows.Stale:
+        try:
+            h.reopen()
+        except OSError:
+            pass
+"""])
     until(lambda: server.read(path + "/temphigh") == "77", 5, "written")
     daemon.kill()
     server.write(path + "/temphigh", "5")
     # the order changed, and `low` is another path now
     daemon = scene.owsd(config(("low", "/errata/trim"), ("high", "/temphigh")), name=name)
     until(lambda: server.read(path + "/temphigh") == "77", 5, "the commanded value is written again")
+    program.stop()
     assert daemon.stop() == 0
 
 

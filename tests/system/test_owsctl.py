@@ -131,14 +131,12 @@ def test_watch_ends_quietly_with_its_reader(scene):
     assert watch.stderr.read() == ""
 
 
-def test_an_owsd_that_is_gone_keeps_what_is_set(scene):
-    server, daemon, _, relay = house(scene)
+def test_nothing_is_set_at_an_owsd_that_is_gone(scene):
+    _, daemon, _, _ = house(scene)
     daemon.kill()
     owsdtest.until(lambda: scene.owsctl(daemon, "get", "room").returncode == 3, 10, "not good")
     done = scene.owsctl(daemon, "set", "relay", "1")
-    assert done.returncode == 0 and "kept for its next start" in done.stderr
-    scene.owsd(daemon.config, name=daemon.name)
-    owsdtest.until(lambda: server.read(relay + "/PIO") == "1", 15, "the relay is on")
+    assert done.returncode == 1 and "owsd is not running: nothing was set" in done.stderr
 
 
 class Terminal:

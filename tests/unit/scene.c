@@ -132,7 +132,7 @@ static struct scene_bus *bus_named(struct scene *s, const char *name)
 
 static struct engine *make_engine(struct scene *s, const struct config *config,
                                   struct engine_port *ports, struct image *image,
-                                  struct commands *commands)
+                                  struct commands *commands, const struct commands *left)
 {
 	struct engine_setup setup = {
 		.config = config,
@@ -147,6 +147,8 @@ static struct engine *make_engine(struct scene *s, const struct config *config,
 	struct engine *engine;
 
 	make_memory(s, config, image, commands);
+	if (left)
+		TEST_ASSERT_GREATER_OR_EQUAL_INT(0, commands_carry(commands, left->base, left->size, true));
 	for (unsigned i = 0; i < config->target_count; i++) {
 		struct scene_bus *bus = bus_named(s, config->targets[i].text);
 
@@ -174,7 +176,22 @@ void scene_start(struct scene *s)
 			bus->when_ns = s->now_ns + bus->turn_ns;
 		}
 	}
-	s->engine = make_engine(s, &s->config, s->ports, &s->image, &s->commands);
+	s->engine = make_engine(s, &s->config, s->ports, &s->image, &s->commands, NULL);
+}
+
+void scene_restart(struct scene *s)
+{
+	void *image_memory = s->image_memory, *command_memory = s->command_memory;
+	struct commands left = s->commands;
+
+	engine_destroy(s->engine);
+	for (unsigned i = 0; i < s->bus_count; i++)
+		s->bus[i].pending_count = 0;
+	s->engine = make_engine(s, &s->config, s->ports, &s->image, &s->commands, &left);
+	commands_forget(&left);
+	free(image_memory);
+	free(command_memory);
+	scene_clear_trace(s);
 }
 
 static bool stays(const struct config *config, const struct scene_bus *bus)
@@ -201,7 +218,7 @@ void scene_reload(struct scene *s, void (*change)(struct config *))
 	memcpy(part->targets, config->targets, sizeof(part->targets));
 	if (change)
 		change(&part->config);
-	s->engine = make_engine(s, &part->config, part->ports, &part->image, &part->commands);
+	s->engine = make_engine(s, &part->config, part->ports, &part->image, &part->commands, NULL);
 	TEST_ASSERT_EQUAL_INT(0, adoption_plan(&plan, &part->config, config));
 	engine_adopt(s->engine, engine, &plan, s->now_ns);
 	for (unsigned i = 0; i < s->bus_count; i++)

@@ -140,6 +140,11 @@ void scene_start(struct scene *scene);
  * and the trace goes on.
  */
 void scene_reload(struct scene *scene, void (*change)(struct config *));
+/*
+ * Another owsd with the same configuration after this one was killed: it has what the command segment
+ * holds. Not after scene_reload(). The target is down, and the trace begins.
+ */
+void scene_restart(struct scene *scene);
 /* The types are checked at once, in no time; the requests after that take theirs. */
 void scene_up(struct scene *scene);
 void scene_down(struct scene *scene, int err);

@@ -197,7 +197,6 @@ static void test_what_is_set_in_an_orphan_is_said_to_be_lost(void)
 	TEST_ASSERT_EQUAL(1, c.client);
 }
 
-/* Sets go on after an orderly end, but not into what the next owsd cannot find. */
 static void test_a_command_segment_alone_may_be_the_orphan(void)
 {
 	struct segment other;
@@ -206,7 +205,6 @@ static void test_a_command_segment_alone_may_be_the_orphan(void)
 
 	kill_first(DEAD);
 	TEST_ASSERT_EQUAL(0, ows_open(first.name, OWS_READ, &reader));
-	commands_state(&first.commands, OWS_STATE_STOPPED);
 	TEST_ASSERT_EQUAL(0, segment_remove(first.name, SEGMENT_COMMAND));
 	TEST_ASSERT_EQUAL(0, segment_create(first.name, SEGMENT_COMMAND, 4096, &other));
 	TEST_ASSERT_EQUAL(0, segment_show(first.name, &other));

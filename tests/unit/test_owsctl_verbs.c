@@ -198,12 +198,11 @@ static void test_set_makes_an_edge_each_time(void)
 	TEST_ASSERT_EQUAL_UINT32(1, commanded(0).dgn_reset);
 }
 
-static void test_set_while_owsd_is_dead_keeps_the_value_and_says_so(void)
+static void test_set_while_owsd_is_dead_fails_and_says_why(void)
 {
 	instance_beat(&in, ows_now() - 60 * INSTANCE_S, 0);
-	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_set, "set relay 0"));
-	holds(err, "is kept for its next start");
-	TEST_ASSERT_EQUAL(1, commanded(2).stamp);
+	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set relay 0"));
+	holds(err, "owsd is not running: nothing was set");
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set -w 0.05 relay 0"));
 	holds(err, "relay was not confirmed: owsd is not running");
 }
@@ -328,7 +327,7 @@ int main(void)
 	RUN_TEST(test_set_of_an_input_is_refused);
 	RUN_TEST(test_set_needs_names_and_values_in_pairs);
 	RUN_TEST(test_set_makes_an_edge_each_time);
-	RUN_TEST(test_set_while_owsd_is_dead_keeps_the_value_and_says_so);
+	RUN_TEST(test_set_while_owsd_is_dead_fails_and_says_why);
 	RUN_TEST(test_set_that_is_not_confirmed_says_why);
 	RUN_TEST(test_set_waits_until_it_is_confirmed);
 	RUN_TEST(test_wait_ends_at_once_when_the_condition_holds);

@@ -249,10 +249,20 @@ static void test_a_retired_segment_takes_no_sets(void)
 	TEST_ASSERT_EQUAL(-ESTALE, ows_beat(h, 100));
 }
 
-static void test_a_stopped_owsd_finds_the_sets_at_its_next_start(void)
+static void test_the_segment_of_a_stopped_owsd_takes_no_sets_and_keeps_what_was_in_force(void)
 {
-	commands_state(&in.commands, OWS_STATE_STOPPED);
 	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat"), 1, NULL));
+	commands_state(&in.commands, OWS_STATE_STOPPED);
+	TEST_ASSERT_EQUAL(-ESTALE, ows_set(h, ows_find(h, "heat"), 0, NULL));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_set_text(h, ows_find(h, "text"), "x", NULL));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_set_integer(h, ows_find(h, "heat_WOS"), 1, NULL));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_acknowledge(h, ows_find(h, "heat")));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_beat(h, 100));
+	TEST_ASSERT_EQUAL_INT64(1, load(HEAT).value);
+	TEST_ASSERT_EQUAL(1, load(HEAT).stamp);
+	TEST_ASSERT_EQUAL(0, load(HEAT).one_shot);
+	TEST_ASSERT_EQUAL(0, load(HEAT).acknowledged);
+	TEST_ASSERT_EQUAL(0, load(TEXT).stamp);
 }
 
 static void test_a_consumer_survives_the_truncation_by_another(void)
@@ -339,7 +349,7 @@ int main(void)
 	RUN_TEST(test_who_was_dropped_comes_back_with_his_next_beat);
 	RUN_TEST(test_the_table_of_clients_has_an_end);
 	RUN_TEST(test_a_retired_segment_takes_no_sets);
-	RUN_TEST(test_a_stopped_owsd_finds_the_sets_at_its_next_start);
+	RUN_TEST(test_the_segment_of_a_stopped_owsd_takes_no_sets_and_keeps_what_was_in_force);
 	RUN_TEST(test_a_consumer_survives_the_truncation_by_another);
 	RUN_TEST(test_no_ring_is_lost_between_awake_and_asleep);
 	return UNITY_END();

@@ -91,9 +91,8 @@ does "what owsd left when it was killed is not good" within $told_within bad war
 sim set warm temperature 24
 run_owsd
 does "another owsd takes over" within $back_within reads warm 24
-does "with what was commanded before" within $back_within reads relays 5
-does "and reads its inputs" within $back_within get pins
-does "of which nothing has switched meanwhile" reads pins 184
+does "with InitValue, for who commanded has ended" within $back_within reads relays 0
+does "which the chip does" within $back_within reads pins 189
 does "owsd lives" kill -0 $owsd
 kill $owsd
 wait $owsd
