@@ -55,8 +55,7 @@ int native_create(const struct bus_ops *ops, const struct link_master_ops *maste
 	native->stable_ns = STABLE_NS;
 	native->presence_ns = PRESENCE_NS;
 	snprintf(native->where, sizeof(native->where), "%s:%s", ops->scheme, where);
-	native->temperature_scale = 'C';
-	snprintf(native->pressure_scale, sizeof(native->pressure_scale), "mbar");
+	native_settings(native);
 	for (int i = 0; i < COUNTS; i++)
 		native->counters[i].name = count_names[i];
 	*bus = &native->bus;

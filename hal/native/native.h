@@ -30,6 +30,7 @@
 
 #define NATIVE_DEPTH 400
 #define NATIVE_CHANNELS 64
+#define NATIVE_IDLE_TIMEOUTS 8
 #define NATIVE_S INT64_C(1000000000)
 
 enum native_count {
@@ -173,6 +174,7 @@ struct native {
 	bool unaliased; /* listings show ids, not aliases */
 	struct tally tally[TALLIES];
 	int64_t delay_ns; /* the longest that a request took */
+	uint32_t idle_timeouts[NATIVE_IDLE_TIMEOUTS]; /* settings without effect */
 	char temperature_scale;
 	char pressure_scale[8];
 	uint64_t wire_ns, wire_seen_ns[NATIVE_CHANNELS]; /* of all links so far; what each said last */
@@ -208,6 +210,9 @@ void native_event(struct native *native, enum bus_news news, const uint8_t rom[8
                   const char *text);
 int native_set_alias(struct native *native, struct device *device, const char *text, size_t len);
 bool native_held(const struct native *native, unsigned channel, const struct job *job, int64_t now);
+
+/* settings.c: as they are at the start */
+void native_settings(struct native *native);
 
 /* master.c */
 int64_t master_step(struct native *native, int64_t now); /* opens; when to try again */

@@ -8,6 +8,7 @@
 #include "hal/native/virtual.h"
 
 enum { STABLE, VOLATILE, PRESENCE };
+enum { DIRECTORY, FTP, HA7, NETWORK, SERIAL, SERVER, USB, W1 };
 enum { UNCACHED, UNALIASED };
 
 static int read_scale(struct txn *txn)
@@ -63,6 +64,31 @@ static int write_timeout(struct txn *txn)
 	return 0;
 }
 
+/* As owserver has them at its start. */
+void native_settings(struct native *native)
+{
+	static const uint32_t seconds[NATIVE_IDLE_TIMEOUTS] = {
+		[DIRECTORY] = 60, [FTP] = 900, [HA7] = 60, [NETWORK] = 1,
+		[SERIAL] = 5,     [SERVER] = 10, [USB] = 5, [W1] = 30,
+	};
+
+	memcpy(native->idle_timeouts, seconds, sizeof(seconds));
+	native->temperature_scale = 'C';
+	memcpy(native->pressure_scale, "mbar", sizeof("mbar"));
+}
+
+static int read_idle(struct txn *txn)
+{
+	txn->number[0] = txn->native->idle_timeouts[txn->property->arg];
+	return 0;
+}
+
+static int write_idle(struct txn *txn)
+{
+	txn->native->idle_timeouts[txn->property->arg] = (uint32_t)txn->number[0];
+	return 0;
+}
+
 static bool *flag_of(struct txn *txn)
 {
 	return txn->property->arg == UNCACHED ? &txn->native->uncached : &txn->native->unaliased;
@@ -107,9 +133,9 @@ static int read_aliases(struct txn *txn)
 #define TIMEOUT(text, which)                                                              \
 	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, which, read_timeout,     \
 	        write_timeout)
-/* Of masters and servers that this bus has not. */
-#define NO_TIMEOUT(text)                                                                  \
-	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_READ, 0, virtual_zero, NULL)
+/* Of masters and servers that this bus has not: kept for those who wrote them, without effect. */
+#define IDLE(text, which)                                                                 \
+	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, which, read_idle, write_idle)
 #define FLAG(text, which)                                                                 \
 	VIRTUAL(text, PROPERTY_YESNO, LIFE_STATIC, ACCESS_BOTH, which, read_flag, write_flag)
 #define SCALE(text, bytes, which)                                                         \
@@ -122,18 +148,18 @@ static const struct property properties[] = {
 	VIRTUAL_TEXT("alias/list", UINT16_MAX, read_aliases),
 	FLAG("alias/unaliased", UNALIASED),
 	PROPERTY_DIR("timeout"),
-	NO_TIMEOUT("timeout/directory"),
-	NO_TIMEOUT("timeout/ftp"),
-	NO_TIMEOUT("timeout/ha7"),
-	NO_TIMEOUT("timeout/network"),
+	IDLE("timeout/directory", DIRECTORY),
+	IDLE("timeout/ftp", FTP),
+	IDLE("timeout/ha7", HA7),
+	IDLE("timeout/network", NETWORK),
 	TIMEOUT("timeout/presence", PRESENCE),
-	NO_TIMEOUT("timeout/serial"),
-	NO_TIMEOUT("timeout/server"),
+	IDLE("timeout/serial", SERIAL),
+	IDLE("timeout/server", SERVER),
 	TIMEOUT("timeout/stable", STABLE),
 	FLAG("timeout/uncached", UNCACHED),
-	NO_TIMEOUT("timeout/usb"),
+	IDLE("timeout/usb", USB),
 	TIMEOUT("timeout/volatile", VOLATILE),
-	NO_TIMEOUT("timeout/w1"),
+	IDLE("timeout/w1", W1),
 	PROPERTY_DIR("units"),
 	SCALE("units/pressure_scale", 12, 1),
 	SCALE("units/temperature_scale", 1, 0),

@@ -158,10 +158,6 @@ def test_writes(scene):
     pair.same(WRITE, T + "/templow", data=b"10", size=0)
     pair.same(WRITE, MEMORY + "/pages/page.0", data=b"hello")
     pair.judge(40)
-    # A part of a property cannot be written by way of a target: refused, never done elsewhere
-    before = pair.ours.frame(READ, MEMORY + "/memory").data
-    assert pair.ours.frame(WRITE, MEMORY + "/memory", data=b"hello", offset=4).ret == -95
-    assert pair.ours.frame(READ, "/uncached" + MEMORY + "/memory").data == before
     # A number that does not fit is refused, and not cut to its lowest byte
     for text in (b"-1", b"256"):
         assert pair.ours.frame(WRITE, SWITCH + "/PIO.BYTE", data=text).ret == -34
@@ -214,8 +210,15 @@ def test_the_directories_beside_the_devices_are_read(scene):
                  "/system/connections/nothing", "/structure/28/temperature", "/structure/29/PIO.ALL",
                  "/structure/28/type", "/structure/26/VDD", "/system/configuration/trim"):
         pair.same(READ, path)
-    for path in ("/settings/timeout/volatile", "/settings/timeout/stable", "/system/process/pid",
-                 "/settings/timeout/server", "/system/connections/count_current_buses",
+    for name in ("directory", "ftp", "ha7", "network", "serial", "server", "usb", "w1", "stable",
+                 "uncached"):  # with owserver's defaults
+        pair.same(READ, "/settings/timeout/" + name)
+    for name in ("directory", "ftp", "ha7", "network", "serial", "server", "usb", "w1"):
+        for text in (b"17", b"abc", b"", b"1.5", b"90000"):
+            pair.same(WRITE, "/settings/timeout/" + name, data=text)
+            pair.same(READ, "/settings/timeout/" + name)
+    for path in ("/settings/timeout/volatile", "/settings/timeout/presence", "/system/process/pid",
+                 "/system/connections/count_current_buses",
                  "/statistics/read/calls", "/statistics/read/tries.ALL", "/statistics/errors/max_delay",
                  "/simultaneous/temperature", "/simultaneous/present"):
         pair.alike(READ, path)

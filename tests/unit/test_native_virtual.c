@@ -30,8 +30,10 @@ static void test_settings_and_system_have_their_names(void)
 	expect(true, "/settings/timeout/presence", "           2");
 	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, "/settings/timeout/presence", "7"));
 	expect(true, "/settings/timeout/presence", "           7");
-	expect(true, "/settings/timeout/usb", "           0");
-	TEST_ASSERT_EQUAL_INT(-EACCES, result(BUS_WRITE, "/settings/timeout/usb", "1"));
+	expect(true, "/settings/timeout/usb", "           5");
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, "/settings/timeout/usb", "8"));
+	expect(true, "/settings/timeout/usb", "           8");
+	expect(true, "/settings/timeout/w1", "          30");
 	expect(true, "/system/configuration/i2c", "           1");
 	expect(true, "/system/configuration/USB", "           0");
 	expect(true, "/system/configuration/version", OWSD_VERSION);
