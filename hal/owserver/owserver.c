@@ -366,9 +366,11 @@ static int do_read(struct owserver *server, struct bus_req *req, uint32_t *len)
 		return err;
 	if (reply->type < 0)
 		return refused(server, req);
-	if (reply->type > reply->payload) {
+	/* to believe either, as 21 of 21.5, could be a false value */
+	if (reply->type != reply->payload) {
 		snprintf(server->talk.trouble, sizeof(server->talk.trouble),
-		         "%.60s: an answer shorter than it says", server->talk.connection.peer);
+		         "%.60s: an answer of another length than it says",
+		         server->talk.connection.peer);
 		bus_count(&server->counter[TALK_GARBAGE], 1);
 		return -EPROTO;
 	}

@@ -33,6 +33,7 @@ in all modes but accept_close and dead.
   garbage        sends text that is no frame                   trailing   more bytes after an answer
   negative       payload -5        huge    payload 2 GB        version    a version that is none
   long           more data than were asked for                 wrong      says more than it sends
+  less           says less than it sends
   endless        begins a frame of 200 000 bytes and sends bytes for ever
   accept_close   closes each connection at once                dead       accepts, never says a word
 
@@ -55,7 +56,7 @@ PERSIST = 0x4
 KEEP_ALIVE = struct.pack(">6i", 0, -1, 0, 0, 0, 0)
 MODES = {"normal", "refuse", "fragments", "slow", "late", "alive", "hang", "kill", "stall", "close",
          "flood", "reset", "close_after", "garbage", "trailing", "negative", "huge", "version", "long",
-         "wrong", "endless", "accept_close", "dead"}
+         "wrong", "less", "endless", "accept_close", "dead"}
 CLOSES = {"refuse", "kill", "close", "reset", "close_after"}
 
 Request = collections.namedtuple("Request", "kind path data flags size")
@@ -219,6 +220,8 @@ class Peer:
             words[0] = 0x20000
         elif mode == "wrong":
             words[2] = words[1] + 100
+        elif mode == "less":
+            words[2] = max(words[1] - 2, 0)
         elif mode == "long":
             words[1] = request.size + 1000
             reply += b"x" * (words[1] + 24 - len(reply))

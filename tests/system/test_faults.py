@@ -58,7 +58,7 @@ def test_every_way_of_losing_the_target_is_survived(scene):
         until(lambda: good(scene, daemon), 5, "good at first")
         before = settled(lambda: len(open_files(daemon)))
         for mode in ("kill", "close", "reset", "garbage", "negative", "huge", "version",
-                     "endless", "flood", "wrong", "hang", "stall", "accept_close", "dead"):
+                     "endless", "flood", "wrong", "less", "hang", "stall", "accept_close", "dead"):
             server.mode = mode
             if mode in ("accept_close", "dead"):
                 server.plan.append("close")  # they are about new connections
@@ -71,6 +71,28 @@ def test_every_way_of_losing_the_target_is_survived(scene):
         assert daemon.running()
         assert counter(scene, daemon, "bus_keepalive_floods") >= 1
         owsdtest.logged(daemon, "keep-alives without end")
+
+
+def test_what_no_chip_can_say_is_never_good(scene):
+    """A lying owserver's word is worth what the chip of that family can measure."""
+    lies = ["-999.9", "4095", "-127", "1e300", "85", "127.938", "21.5abc", "21,5", "0x15", "", " ",
+            "nan", "inf"]
+    with lying_peer() as server:
+        daemon = scene.owsd(house(server))
+        until(lambda: good(scene, daemon), 5, "good at first")
+        for lie in lies:
+            server[ROOM] = lie
+            until(lambda: qualities(scene, daemon)[0] != 0xC0, 10, f"{lie}: bad")
+            room, hall = (signals(scene, daemon)[name] for name in ("room", "hall"))
+            assert room["value"] == 21.5 and hall["good"], (lie, room, hall)
+            if lie in ("-999.9", "4095", "-127", "1e300"):
+                assert room["error"] == "a value out of the chip's range", room
+            server[ROOM] = "21.5"
+            scene.owsctl(daemon, "set", "room_ReadEnable", "0")  # ends the waiting for its turn
+            scene.owsctl(daemon, "set", "room_ReadEnable", "1")
+            until(lambda: good(scene, daemon), 15, f"{lie}: good again")
+        assert counter(scene, daemon, "out_of_range") >= 8
+        assert counter(scene, daemon, "target_failures") == 0
 
 
 def test_silence_is_a_failure_of_the_target_and_turns_all_bad_at_once(scene):

@@ -186,6 +186,9 @@ static int act(const struct peer *peer, int fd, char letter, uint8_t *answer, si
 	case 'w':
 		change(answer, 2, (uint32_t)len);
 		break;
+	case 'W':
+		change(answer, 2, (uint32_t)len - FRAME_HEADER - 2);
+		break;
 	case 't':
 		len += 3;
 		break;

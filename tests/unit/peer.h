@@ -11,6 +11,7 @@
  *   s silence until the client goes  d half of an answer, then silence
  *   z first of the plan: the names of its buses come 1.5 s late, and the rest follows
  *   g garbage     h payload 2 GB     n payload -5     v version 0x20000     w less than it says
+ *   W more than it says
  */
 #ifndef TESTS_PEER_H
 #define TESTS_PEER_H

@@ -100,13 +100,14 @@ static void test_garbage_of_each_kind_takes_the_target_down(void)
 	is_garbage("n");
 	is_garbage("v");
 	is_garbage("w");
+	is_garbage("W");
 	is_garbage("l");
 	is_garbage("t");
 }
 
 static void test_any_mixture_of_faults_ends_in_one_answer_each_and_no_leak(void)
 {
-	static const char letters[] = "aaaafkrcxRmdshgnvwlt";
+	static const char letters[] = "aaaafkrcxRmdshgnvwWlt";
 	const unsigned seed = 1963;
 	char plan[61];
 	unsigned open_before;
