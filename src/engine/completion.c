@@ -32,6 +32,24 @@ static void mark_absent(struct engine *e, struct lane *lane, const struct signal
 	engine_place(e, lane, s->device, ROUTE_ABSENT);
 }
 
+/*
+ * Is nothing good of the device any more, or is something not known yet? A target that has a device
+ * only by its own word is to hold its signals no longer than until another one has it too.
+ */
+static bool gives_nothing(const struct engine *e, const struct signal *failed)
+{
+	const struct device *d = &e->table.devices[failed->device];
+
+	for (uint32_t i = 0; i < d->count; i++) {
+		const struct signal *s = &e->table.signals[e->table.device_rows[d->first + i]];
+
+		if (s->lane == failed->lane && signal_reads(s) &&
+		    s->read_retry.failures <= e->config->max_retries)
+			return false;
+	}
+	return true;
+}
+
 /* An item error of a read; returns the back-off, 0: its next turn. */
 static int64_t fail_read(struct engine *e, struct lane *lane, struct signal *s, int err)
 {
@@ -44,6 +62,8 @@ static int64_t fail_read(struct engine *e, struct lane *lane, struct signal *s, 
 		return 0;
 	if (err == -ENODEV)
 		mark_absent(e, lane, s);
+	else if (s->device != TABLE_NO_DEVICE && gives_nothing(e, s))
+		engine_place(e, lane, s->device, ROUTE_FAILING);
 	if (s->sample.quality != quality) {
 		s->sample.quality = quality;
 		say_failed(e, s, "", err, quality);
@@ -70,8 +90,9 @@ static int64_t fail_write(struct engine *e, struct lane *lane, struct signal *s,
 	return wait_ns;
 }
 
+/* A good reading proves that the device is there; that a write was taken only claims it. */
 static void succeed(struct engine *e, struct lane *lane, struct signal *s, uint8_t quality,
-                    int64_t now_ns)
+                    bool proven, int64_t now_ns)
 {
 	struct device *d = s->device == TABLE_NO_DEVICE ? NULL : &e->table.devices[s->device];
 
@@ -81,7 +102,10 @@ static void succeed(struct engine *e, struct lane *lane, struct signal *s, uint8
 	s->sample.quality = quality;
 	s->sample.err = 0;
 	s->sample.target = (uint8_t)lane->index;
-	engine_place(e, lane, s->device, ROUTE_PRESENT);
+	if (proven)
+		engine_place(e, lane, s->device, ROUTE_PRESENT);
+	else
+		engine_place_claimed(e, lane, s->device);
 	if (d && d->absent)
 		engine_device_back(e, lane, d, now_ns);
 }
@@ -163,7 +187,7 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 		signal_update(s, e->period, time_of(e, slot, answer, now_ns), now_ns);
 		s->sample.detail = answer->detail;
 		retry_clear(&s->read_retry);
-		succeed(e, lane, s, quality, now_ns);
+		succeed(e, lane, s, quality, true, now_ns);
 		break;
 	case FAILURE_ITEM:
 		*wait_ns = fail_read(e, lane, s, err);
@@ -216,7 +240,7 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	if (s->write_retry.failures > e->config->max_retries && signal_reads(s))
 		log_info(e->log, "%s (%s): written again", s->item->name, s->item->path);
 	/* first, for a device that comes back forgets what was written, but for this */
-	succeed(e, lane, s, OWS_Q_GOOD, now_ns);
+	succeed(e, lane, s, OWS_Q_GOOD, false, now_ns);
 	s->confirmed = true;
 	s->written = slot->value;
 	s->sample.value = slot->value;

@@ -52,9 +52,22 @@ void engine_place(struct engine *e, const struct lane *lane, uint32_t device,
 		know(e, device, lane->port->group, presence);
 }
 
+static bool is_doubted(struct engine *e, uint32_t device, unsigned group)
+{
+	const struct route_place *place = places_of(e, device) + group;
+
+	return place->presence == ROUTE_FAILING && e->now_ns < place->since_ns + ROUTE_DOUBT_NS;
+}
+
+void engine_place_claimed(struct engine *e, const struct lane *lane, uint32_t device)
+{
+	if (e->places && device != TABLE_NO_DEVICE && !is_doubted(e, device, lane->port->group))
+		know(e, device, lane->port->group, ROUTE_PRESENT);
+}
+
 void engine_place_found(struct engine *e, const struct lane *lane, uint32_t device)
 {
-	if (!e->places || device == TABLE_NO_DEVICE)
+	if (!e->places || device == TABLE_NO_DEVICE || is_doubted(e, device, lane->port->group))
 		return;
 	for (unsigned g = 0; g < e->group_count; g++)
 		if (g != lane->port->group && places_of(e, device)[g].presence == ROUTE_PRESENT)
@@ -196,7 +209,9 @@ void engine_probe_done(struct engine *e, struct lane *lane, const struct slot *s
 	d->probe_ns = now_ns + back_off(d);
 	if (d->probe_doublings < 6)
 		d->probe_doublings++;
-	if (!answer->err || answer->err == -ENODEV)
-		engine_place(e, lane, slot->row, answer->err ? ROUTE_ABSENT : ROUTE_PRESENT);
+	if (!answer->err)
+		engine_place_claimed(e, lane, slot->row);
+	else if (answer->err == -ENODEV)
+		engine_place(e, lane, slot->row, ROUTE_ABSENT);
 	due_set_add(&e->routes, slot->row);
 }

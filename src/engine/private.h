@@ -183,6 +183,8 @@ void engine_places_free(struct engine *e);
 /* What an answer or the search of a bus says of a device; TABLE_NO_DEVICE is ignored. */
 void engine_place(struct engine *e, const struct lane *lane, uint32_t device,
                   enum route_presence presence);
+/* Somebody says that it is there, which is less than a good value of it. */
+void engine_place_claimed(struct engine *e, const struct lane *lane, uint32_t device);
 /* A bus has found the device: what is known of it elsewhere is old. */
 void engine_place_found(struct engine *e, const struct lane *lane, uint32_t device);
 /* A group has gone up or down: every device may be concerned. */

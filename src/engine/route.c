@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Which wire serves a device, and which way of a wire is open. */
 #include "route.h"
 
 static int64_t later(int64_t a, int64_t b)
@@ -8,13 +9,31 @@ static int64_t later(int64_t a, int64_t b)
 
 /* --- A comma --------------------------------------------------------------------------------- */
 
-/* The first other group on which the device may be. */
+/* The first other group on which the device may be; one where it fails only for want of another. */
 static int elsewhere(const struct route_place *places, const struct route_group *groups,
                      unsigned count, unsigned current)
 {
+	int failing = -1;
+
+	for (unsigned g = 0; g < count; g++) {
+		if (g == current || groups[g].state != ROUTE_UP ||
+		    places[g].presence == ROUTE_ABSENT)
+			continue;
+		if (places[g].presence != ROUTE_FAILING)
+			return (int)g;
+		if (failing < 0)
+			failing = (int)g;
+	}
+	return failing;
+}
+
+/* The first other group that says to have it. */
+static int claimed(const struct route_place *places, const struct route_group *groups,
+                   unsigned count, unsigned current)
+{
 	for (unsigned g = 0; g < count; g++)
 		if (g != current && groups[g].state == ROUTE_UP &&
-		    places[g].presence != ROUTE_ABSENT)
+		    places[g].presence == ROUTE_PRESENT)
 			return (int)g;
 	return -1;
 }
@@ -50,7 +69,11 @@ struct route_choice route_device(const struct route_place *places, const struct 
 
 	if (here == ROUTE_ABSENT && other >= 0)
 		return (struct route_choice){ (unsigned)other, INT64_MAX, "its device is absent there" };
-	if (here == ROUTE_UNKNOWN && down && other >= 0)
+	if (here == ROUTE_FAILING && claimed(places, groups, count, current) >= 0)
+		return (struct route_choice){
+			(unsigned)claimed(places, groups, count, current), INT64_MAX,
+			"its device gives no good value there" };
+	if ((here == ROUTE_UNKNOWN || here == ROUTE_FAILING) && down && other >= 0)
 		return (struct route_choice){ (unsigned)other, INT64_MAX, "the target is down" };
 	if (here != ROUTE_ABSENT)
 		return give_back(places, groups, current, moved_ns, now_ns);
@@ -87,6 +110,7 @@ int route_probe(const struct route_place *places, const struct route_group *grou
                 unsigned current, unsigned last)
 {
 	bool lost = places[current].presence == ROUTE_ABSENT ||
+	            places[current].presence == ROUTE_FAILING ||
 	            (places[current].presence == ROUTE_UNKNOWN &&
 	             groups[current].state == ROUTE_DOWN);
 

@@ -14,6 +14,7 @@
 
 #define ROUTE_HOLD_NS      10000000000LL  /* from the evidence to the return */
 #define ROUTE_HOLD_MAX_NS  640000000000LL /* of a bar, after returns that failed */
+#define ROUTE_DOUBT_NS     600000000000LL /* before a failing device that is claimed is believed */
 #define ROUTE_STEADY_NS    60000000000LL  /* a way that was up for so long did not fail on the return */
 #define ROUTE_RELEASE_NS   5000000000LL   /* for a way to let go of its hardware */
 #define ROUTE_DWELL_NS     1000000000LL   /* on each way when all have failed; doubles */
@@ -24,6 +25,7 @@
 enum route_presence {
 	ROUTE_UNKNOWN, /* counts as present until the first try */
 	ROUTE_PRESENT,
+	ROUTE_FAILING, /* it is said to be there, and no reading of it was good */
 	ROUTE_ABSENT,
 };
 struct route_place { /* a device on a group */

@@ -212,6 +212,29 @@ def port_is_free(port):
     return True
 
 
+def test_a_liar_that_stands_first_does_not_keep_a_device_of_the_second_wire(scene):
+    """It lists the device, takes writes of it and answers its reads, with what cannot be."""
+    room, relay, pins = ONE + "/temperature", RELAY + "/PIO.BYTE", RELAY + "/sensed.BYTE"
+    with peer.Peer({room: "-999.9", relay: "0", pins: "21.5", TWO + "/temperature": "18"}) as liar, \
+            peer.Peer({room: "21.5", relay: "0", pins: "7"}) as true:
+        rows = [dict(Name="pins", Path=pins, Type=raw("byte"), IO=raw("input")),
+                dict(Name="relay_out", Path=relay, Type=raw("byte"), IO=raw("output")),
+                dict(Name="room", Path=room, Type=raw("double"), IO=raw("input")),
+                dict(Name="two", Path=TWO + "/temperature", Type=raw("double"), IO=raw("input"))]
+        daemon = scene.owsd(owsdtest.rio(f"{liar.target}, {true.target}", rows, Timeout=6,
+                                         Period=0.05, MaxRetries=1))
+        until(lambda: served(scene, daemon, "room", true.target) == 21.5, 20, "the true one's")
+        until(lambda: served(scene, daemon, "pins", true.target) == 7, 20, "the true one's")
+        assert served(scene, daemon, "two", liar.target) == 18
+        assert scene.owsctl(daemon, "set", "-w", "20", "relay_out", "3").returncode == 0
+        assert (relay, b"3") in true.writes and (relay, b"3") not in liar.writes
+        before = targets(scene, daemon)[true.target]["moves"]
+        for _ in range(20):  # and there it stays
+            time.sleep(0.1)
+            assert served(scene, daemon, "room", true.target) == 21.5
+        assert targets(scene, daemon)[true.target]["moves"] == before
+
+
 def test_auto_says_what_is_missing_and_takes_what_comes(scene):
     with owsdtest.default_port():
         auto_finds(scene)

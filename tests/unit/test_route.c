@@ -17,11 +17,12 @@ void tearDown(void) {}
 static struct route_place places[3];
 static struct route_group groups[3];
 
-/* "P?-": presence on each group, "UD.": state of each, since long ago. */
+/* "P?F-": presence on each group, "UD.": state of each, since long ago. */
 static void facts(const char *presence, const char *state)
 {
 	for (unsigned g = 0; g < 3 && presence[g]; g++) {
 		places[g].presence = presence[g] == 'P'   ? ROUTE_PRESENT
+		                     : presence[g] == 'F' ? ROUTE_FAILING
 		                     : presence[g] == '-' ? ROUTE_ABSENT
 		                                          : ROUTE_UNKNOWN;
 		places[g].since_ns = NOW - 100 * S;
@@ -69,6 +70,21 @@ static void test_the_rules_of_a_comma(void)
 		{ "?-P", "DUU", 0, 2 },
 		{ "?--", "DUU", 0, 0 },
 		{ "?P?", ".UU", 0, 0 },
+		/* failing: to one that has it too, and only then */
+		{ "FP?", "UUU", 0, 1 },
+		{ "F?P", "UUU", 0, 2 },
+		{ "F??", "UUU", 0, 0 },
+		{ "F--", "UUU", 0, 0 },
+		{ "FP?", "UDU", 0, 0 },
+		{ "FFF", "UUU", 1, 1 },
+		{ "FFP", "UUU", 1, 2 },
+		{ "FP?", "UUU", 1, 1 },
+		/* failing is better than absent, and than down where nothing was good */
+		{ "F--", "UUU", 2, 0 },
+		{ "F-?", "UUU", 1, 2 },
+		{ "F?-", "DUU", 0, 1 },
+		{ "FF-", "DUU", 0, 1 },
+		{ "F?P", "U.D", 0, 0 },
 		/* back to an earlier one: by evidence only */
 		{ "?P?", "UUU", 1, 1 },
 		{ "PP?", "UUU", 1, 0 },
@@ -91,17 +107,17 @@ static void test_the_rules_of_a_comma(void)
 
 static void spell(unsigned code, char presence[4], char state[4])
 {
-	for (unsigned g = 0; g < 3; g++, code /= 9) {
-		presence[g] = "?P-"[code % 3];
-		state[g] = ".UD"[code / 3 % 3];
+	for (unsigned g = 0; g < 3; g++, code /= 12) {
+		presence[g] = "?PF-"[code % 4];
+		state[g] = ".UD"[code / 4 % 3];
 	}
 	presence[3] = state[3] = '\0';
 }
 
-/* All 27 * 27 facts of three groups, from each: what no choice may do. */
+/* All 64 * 27 facts of three groups, from each: what no choice may do. */
 static void test_no_choice_breaks_a_promise(void)
 {
-	for (unsigned code = 0; code < 729; code++)
+	for (unsigned code = 0; code < 1728; code++)
 		for (unsigned current = 0; current < 3; current++) {
 			char presence[4], state[4], message[64];
 			unsigned then;
@@ -119,6 +135,14 @@ static void test_no_choice_breaks_a_promise(void)
 			/* a device that is or may be where it is leaves for good evidence only */
 			if (presence[current] == 'P' || (presence[current] == '?' && state[current] != 'D'))
 				TEST_ASSERT_TRUE_MESSAGE(then < current && presence[then] == 'P', message);
+			/* one that fails leaves a target that is up for a claim alone */
+			if (presence[current] == 'F' && state[current] != 'D')
+				TEST_ASSERT_TRUE_MESSAGE(presence[then] == 'P', message);
+			/* nowhere is it taken to a target where it fails, but for want of another */
+			for (unsigned g = 0; presence[then] == 'F' && g < 3; g++)
+				TEST_ASSERT_FALSE_MESSAGE(g != current && state[g] == 'U' &&
+				                          (presence[g] == 'P' || presence[g] == '?'),
+				                          message);
 			/* and to where it is absent only if it is so everywhere */
 			for (unsigned g = 0; presence[then] == '-' && g < 3; g++)
 				TEST_ASSERT_FALSE_MESSAGE(state[g] == 'U' && presence[g] != '-', message);
@@ -165,6 +189,12 @@ static void test_a_lost_device_is_looked_for_on_the_other_targets_in_turn(void)
 	TEST_ASSERT_EQUAL_INT(2, route_probe(places, groups, 3, 0, 2));
 	facts("---", "UDD");
 	TEST_ASSERT_EQUAL_INT(-1, route_probe(places, groups, 3, 0, 2));
+	/* one that fails too */
+	facts("F?-", "UUU");
+	TEST_ASSERT_EQUAL_INT(1, route_probe(places, groups, 3, 0, 0));
+	TEST_ASSERT_EQUAL_INT(2, route_probe(places, groups, 3, 0, 1));
+	facts("FP-", "UUU");
+	TEST_ASSERT_EQUAL_INT(-1, route_probe(places, groups, 3, 1, 0));
 	/* one that is served is asked for only where an earlier target was never tried */
 	facts("P?-", "UUU");
 	TEST_ASSERT_EQUAL_INT(-1, route_probe(places, groups, 3, 0, 0));
