@@ -104,8 +104,10 @@ class Stale(OSError):
 
 
 class Value(collections.namedtuple("Value", "value type quality detail target err measured_ns "
-                                   "tried_ns age count applied")):
-    """A value with what belongs to it; age in seconds, before the first value since the start."""
+                                   "tried_ns age count applied data", defaults=[None])):
+    """A value with what belongs to it; age in seconds, before the first value since the start.
+    data: the bytes of a string as they are, of which value has U+FFFD where they are not UTF-8;
+    None for all other types."""
 
     @property
     def good(self):
@@ -491,7 +493,7 @@ class Ows:
         record, attribute = self.find(name)
         now = now or now_ns()
         info = self.table[record][0]
-        is_text = info.type == STRING and attribute == "_Value"
+        is_text, data = info.type == STRING and attribute == "_Value", None
         sample, attrs, text = self._slot(record, is_text)
         raw, measured, tried, err, quality, detail, target, _, count, applied, length, _ = sample
         age = max(0, now - (measured or self.header.start_ns))
@@ -502,7 +504,8 @@ class Ows:
             value, quality = self._attribute(record, attribute, sample, attrs, age), Q_GOOD
         else:
             kind = info.type
-            value = text[:length].decode(errors="replace") if is_text else decode(kind, raw)
+            data = bytes(text[:length]) if is_text else None
+            value = data.decode(errors="replace") if is_text else decode(kind, raw)
         if quality & 0xC0 == 0xC0:
             # a retired image was exchanged for another: its last heartbeat says how old it is
             since = measured or self.header.start_ns
@@ -512,7 +515,7 @@ class Ows:
             elif attribute == "_Value" and record and 0 < info.stale_after_ns < age:
                 quality = Q_STALE
         return Value(value, kind, quality, detail, target, err, measured, tried, age / 1e9, count,
-                     applied)
+                     applied, data)
 
     @staticmethod
     def _kind(record, attribute):

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* What owsctl prints as JSON, written as it comes. */
 #include "json.h"
 #include "text.h"
 
@@ -87,6 +88,26 @@ void json_bytes(struct json *json, const char *key, const char *text, size_t len
 {
 	begin(json, key);
 	put_string(json->out, text, len);
+}
+
+static bool is_utf8(const char *text, size_t len)
+{
+	while (len > 0)
+		if (text_next(&text, &len) < 0)
+			return false;
+	return true;
+}
+
+void json_text(struct json *json, const char *text, size_t len)
+{
+	json_bytes(json, "value", text, len);
+	if (is_utf8(text, len))
+		return;
+	begin(json, "hex");
+	putc('"', json->out);
+	for (size_t i = 0; i < len; i++)
+		fprintf(json->out, "%02x", (unsigned char)text[i]);
+	putc('"', json->out);
 }
 
 void json_int(struct json *json, const char *key, int64_t number)

@@ -24,6 +24,8 @@ void json_array_end(struct json *json);
 /* text NULL: null. Bytes that are not UTF-8 become U+FFFD. */
 void json_string(struct json *json, const char *key, const char *text);
 void json_bytes(struct json *json, const char *key, const char *text, size_t len);
+/* The member "value"; with "hex", all of its bytes, if they are not UTF-8. */
+void json_text(struct json *json, const char *text, size_t len);
 void json_int(struct json *json, const char *key, int64_t number);
 void json_uint(struct json *json, const char *key, uint64_t number);
 void json_bool(struct json *json, const char *key, bool value);

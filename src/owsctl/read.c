@@ -35,7 +35,7 @@ static void print_json(struct json *json, const char *path, const struct bus_ans
 	else if (target_is_number(text, len))
 		json_number(json, "value", text);
 	else
-		json_bytes(json, "value", text, len);
+		json_text(json, text, len);
 	if (answer->err)
 		json_string(json, "error", error_text(answer->err));
 	json_bool(json, "simulated", answer->detail & BUS_DETAIL_SIMULATED);

@@ -111,7 +111,7 @@ static void json_value(struct json *json, const struct reading *reading)
 {
 	switch ((enum ows_type)reading->value.type) {
 	case OWS_STRING:
-		json_bytes(json, "value", reading->text, reading->len);
+		json_text(json, reading->text, reading->len);
 		return;
 	case OWS_BOOL:
 		json_bool(json, "value", reading->value.integer != 0);

@@ -11,10 +11,15 @@ import select
 import signal
 import struct
 import subprocess
+import sys
 import termios
 import time
 
 import owsdtest
+import peer
+
+sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
+import ows  # noqa: E402
 
 
 def house(scene, **driver):
@@ -334,6 +339,29 @@ def test_a_terminal_is_given_back_on_sigterm(scene):
     terminal.until(lambda s: len(s) > 3, "a picture")
     os.kill(terminal.pid, signal.SIGTERM)
     assert terminal.end() == (0, True)
+
+
+def test_no_byte_of_a_binary_property_is_lost_on_the_way(scene):
+    """Into JSON and into Python; text stays text."""
+    page, name = "/23.A0B1C2000001/pages/page.0", "/23.A0B1C2000001/memory"
+    binary, plain = bytes(range(256)), "Kälte \0 \x85".encode()
+    with peer.Peer({page: binary, name: plain}) as server:
+        daemon = scene.owsd(owsdtest.rio(server.target, [
+            dict(Name="page", Path=page, Type="string", IO="input"),
+            dict(Name="text", Path=name, Type="string", IO="input")], Period=0.05))
+        scene.until(lambda: all(s["good"] for s in json.loads(
+            scene.owsctl(daemon, "--json", "list").stdout)), 15)
+        for arguments in (["-n", daemon.name, "list"], ["-n", daemon.name, "get", "page", "text"],
+                          ["-t", server.target, "read", page, name]):
+            done = scene.owsctl(None, "--json", *arguments)
+            assert done.returncode == 0, done.stderr
+            rows = json.loads(done.stdout)
+            assert bytes.fromhex(rows[0]["hex"]) == binary, (arguments, rows)
+            assert rows[1]["value"].encode() == plain and "hex" not in rows[1], (arguments, rows)
+        with ows.Ows(daemon.name) as signals:
+            assert signals.get("page").data == binary
+            assert signals.get("text").data == plain and signals.get("text").value == plain.decode()
+            assert signals.get("_TRANSACTIONS").data is None
 
 
 if __name__ == "__main__":

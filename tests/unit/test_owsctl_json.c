@@ -91,6 +91,82 @@ static void test_what_is_not_utf8_is_replaced(void)
 	}
 }
 
+/* What a JSON string stands for, in UTF-8. Returns its length. */
+static size_t decoded(const char *at, char *bytes)
+{
+	char *to = bytes;
+
+	for (; *at != '"'; at++) {
+		unsigned code;
+
+		if (*at != '\\') {
+			*to++ = *at;
+			continue;
+		}
+		at++;
+		if (*at != 'u') {
+			*to++ = *at == 'n' ? '\n' : *at;
+			continue;
+		}
+		TEST_ASSERT_EQUAL_INT(1, sscanf(at + 1, "%4x", &code));
+		at += 4;
+		if (code < 0x80) {
+			*to++ = (char)code;
+		} else {
+			*to++ = (char)(0xc0 | code >> 6);
+			*to++ = (char)(0x80 | (code & 0x3f));
+		}
+	}
+	return (size_t)(to - bytes);
+}
+
+static void test_no_byte_of_a_value_is_lost(void)
+{
+	static const char *const parts[] = {"a", "\xc3\xa4", "\xe2\x82\xac", "\"", "\\", "\n", "\x7f",
+	                                    "\xc2\x85", "\xef\xbf\xbd", "\xff", "\x80", "\xc3", " "};
+	unsigned with = 0;
+
+	srand(7);
+	for (int i = 0; i < 3000; i++) {
+		char bytes[64] = "", back[64];
+		size_t count = 0, parts_left = (size_t)rand() % 8, n = 0;
+		const char *hex;
+
+		while (parts_left-- > 0) {
+			const char *part = parts[(size_t)rand() % (i & 1 ? 9 : 13)];
+
+			memcpy(bytes + count, part, strlen(part));
+			count += strlen(part);
+			if (rand() % 20 == 0)
+				bytes[count++] = '\0';
+		}
+		rewind(out);
+		json_object(&json, NULL);
+		json_text(&json, bytes, count);
+		json_object_end(&json);
+		json_end(&json);
+		written();
+		*strchr(text, '\n') = '\0'; /* behind it is what was there before */
+		hex = strstr(text, ",\"hex\":\"");
+		if (hex) {
+			with++;
+			TEST_ASSERT_FALSE_MESSAGE(i & 1, text);
+			for (hex += 8; *hex != '"'; hex += 2) {
+				unsigned byte;
+
+				TEST_ASSERT_EQUAL_INT(1, sscanf(hex, "%2x", &byte));
+				back[n++] = (char)byte;
+			}
+		} else {
+			n = decoded(strstr(text, "\"value\":\"") + 9, back);
+		}
+		TEST_ASSERT_EQUAL_size_t_MESSAGE(count, n, text);
+		if (count > 0)
+			TEST_ASSERT_EQUAL_MEMORY_MESSAGE(bytes, back, count, text);
+	}
+	TEST_ASSERT_GREATER_THAN_UINT(500, with);
+}
+
 static void test_integers_of_64_bits_are_exact(void)
 {
 	json_array(&json, NULL);
@@ -148,6 +224,7 @@ int main(void)
 	RUN_TEST(test_zero_bytes_are_kept);
 	RUN_TEST(test_utf8_goes_through);
 	RUN_TEST(test_what_is_not_utf8_is_replaced);
+	RUN_TEST(test_no_byte_of_a_value_is_lost);
 	RUN_TEST(test_integers_of_64_bits_are_exact);
 	RUN_TEST(test_text_that_is_no_json_number_becomes_null);
 	RUN_TEST(test_seconds_have_three_digits);
