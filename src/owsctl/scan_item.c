@@ -14,29 +14,67 @@
 bool scan_names_init(struct scan_names *names, size_t room)
 {
 	*names = (struct scan_names){.name = calloc(room + 1, sizeof(*names->name)),
-	                             .room = (unsigned)room};
-	return names->name != NULL;
+	                             .room = (unsigned)room, .places = 2};
+	while (names->places < 2 * room)
+		names->places *= 2;
+	names->place = calloc(names->places, sizeof(*names->place));
+	names->items = open_memstream(&names->text, &names->len);
+	return names->name && names->place && names->items;
 }
 
 void scan_names_free(struct scan_names *names)
 {
+	if (names->items)
+		fclose(names->items);
+	free(names->text);
+	free(names->place);
 	free(names->name);
+}
+
+/* Where the name stands in the table, or would. Half of the places stay free. */
+static unsigned *find(const struct scan_names *names, const char *name)
+{
+	uint32_t hash = 2166136261u; /* FNV-1a */
+	unsigned at;
+
+	for (const char *p = name; *p; p++)
+		hash = (hash ^ (unsigned char)*p) * 16777619u;
+	for (at = hash & (names->places - 1); names->place[at];
+	     at = (at + 1) & (names->places - 1))
+		if (!strcmp(names->name[names->place[at] - 1], name))
+			break;
+	return &names->place[at];
 }
 
 void scan_names_add(struct scan_names *names, const char *name)
 {
-	size_t len = strnlen(name, SIGNAL_NAME_MAX);
+	char *to = names->name[names->count];
+	unsigned *place;
 
-	if (names->count < names->room)
-		memcpy(names->name[names->count++], name, len); /* the rest is 0 */
+	if (names->count == names->room)
+		return;
+	memcpy(to, name, strnlen(name, SIGNAL_NAME_MAX)); /* the rest is 0 */
+	place = find(names, to);
+	names->count++;
+	if (!*place)
+		*place = names->count;
 }
 
 static bool is_free(const struct scan_names *names, const char *name)
 {
-	for (unsigned i = 0; i < names->count; i++)
-		if (!strcmp(names->name[i], name))
-			return false;
-	return !signal_name_fault(name);
+	return !*find(names, name) && !signal_name_fault(name);
+}
+
+/* A name that was given stays given: the search goes on where it ended for this word. */
+static unsigned *last_of(struct scan_names *names, const char *word)
+{
+	unsigned i = 0;
+
+	while (i < SCAN_WORDS - 1 && names->word[i].word && strcmp(names->word[i].word, word) != 0)
+		i++;
+	if (!names->word[i].word || strcmp(names->word[i].word, word) != 0)
+		names->word[i] = (struct scan_word){.word = word};
+	return &names->word[i].last;
 }
 
 /*
@@ -52,42 +90,40 @@ static const char *choose(struct scan_names *names, const struct scan_device *de
 	snprintf(name, sizeof(name), "%s%s%s", device->alias, several ? "_" : "",
 	         several ? property->word : "");
 	if (!device->alias[0] || strchr(name, '\\') || !is_free(names, name)) {
-		unsigned n = 0;
+		unsigned *last = last_of(names, property->word);
 
 		do
-			snprintf(name, sizeof(name), "%s%u", property->word, ++n);
+			snprintf(name, sizeof(name), "%s%u", property->word, ++*last);
 		while (!is_free(names, name));
 	}
 	scan_names_add(names, name);
 	return names->name[names->count - 1];
 }
 
-static int add_item(struct rio **rio, struct scan_names *names, const struct scan_device *device,
-                    unsigned i)
+static void make_item(struct scan_names *names, const struct scan_device *device, unsigned i)
 {
 	const struct scan_property *property = &device->kind->property[i];
-	char text[512], rate[48] = "", init[128] = "";
+	char rate[48] = "", init[128] = "";
 
 	if (property->per_factor)
 		snprintf(rate, sizeof(rate), "  PerFactor               %u\n", property->per_factor);
 	if (property->output)
 		snprintf(init, sizeof(init), "  InitValue               \"%s\"\n",
 		         device->value[i].text);
-	snprintf(text, sizeof(text),
-	         "# %s%s%s%s%s\n"
-	         "Item {\n"
-	         "  Name                    \"%s\"\n"
-	         "  Path                    \"%s/%s\"\n"
-	         "  Type                    \"%s\"\n"
-	         "  IO                      \"%s\"\n"
-	         "%s%s"
-	         "}",
-	         device->type, device->location[0] ? " on " : "", device->location,
-	         device->simulated ? " (simulated)" : "",
-	         property->output ? "; its InitValue is what it was set to when found" : "",
-	         choose(names, device, property), device->path, property->name,
-	         value_type_name(property->type), property->output ? "output" : "input", rate, init);
-	return rio_add(rio, rio_child(&(*rio)->root, "OwsDrv"), text);
+	fprintf(names->items,
+	        "%s# %s%s%s%s%s\n"
+	        "Item {\n"
+	        "  Name                    \"%s\"\n"
+	        "  Path                    \"%s/%s\"\n"
+	        "  Type                    \"%s\"\n"
+	        "  IO                      \"%s\"\n"
+	        "%s%s"
+	        "}",
+	        ftell(names->items) > 0 ? "\n" : "", device->type, device->location[0] ? " on " : "", device->location,
+	        device->simulated ? " (simulated)" : "",
+	        property->output ? "; its InitValue is what it was set to when found" : "",
+	        choose(names, device, property), device->path, property->name,
+	        value_type_name(property->type), property->output ? "output" : "input", rate, init);
 }
 
 /* Is it to be in the configuration? Says why not where that is a surprise. */
@@ -108,15 +144,18 @@ static bool wanted(const struct scan_device *device, unsigned i, bool inputs_onl
 	return false;
 }
 
-int scan_add_items(struct rio **rio, struct scan_names *names, const struct scan_device *device,
-                   bool inputs_only)
+void scan_make_items(struct scan_names *names, const struct scan_device *device, bool inputs_only)
 {
-	int err = 0;
-
-	for (unsigned i = 0; device->kind && i < SCAN_PROPERTIES && !err; i++)
+	for (unsigned i = 0; device->kind && i < SCAN_PROPERTIES; i++)
 		if (wanted(device, i, inputs_only))
-			err = add_item(rio, names, device, i);
-	return err;
+			make_item(names, device, i);
+}
+
+int scan_add_items(struct rio **rio, struct scan_names *names)
+{
+	if (fflush(names->items) || ferror(names->items))
+		return -ENOMEM;
+	return names->len ? rio_add(rio, rio_child(&(*rio)->root, "OwsDrv"), names->text) : 0;
 }
 
 /* Why what was made is no configuration; status CTL_DONE: it is one. */

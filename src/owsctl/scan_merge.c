@@ -342,20 +342,19 @@ static int replace_device(struct work *work, unsigned known)
 	return err;
 }
 
-static int add_device(struct work *work, unsigned i, bool inputs_only)
+static void make_items(struct work *work, unsigned i, bool inputs_only)
 {
 	const struct scan_device *device = &work->scan->device[i];
 	unsigned first = work->names.count, n;
-	int err = scan_add_items(&work->merge->rio, &work->names, device, inputs_only);
 
+	scan_make_items(&work->names, device, inputs_only);
 	n = work->names.count - first;
-	if (!err && !n)
+	if (!n)
 		ctl_fail("new: %s (%s): no signal is made for it", device->path + 1, device->type);
-	else if (!err)
+	else
 		ctl_fail("new: %s%s%s: %s (%s)", work->names.name[first], n > 1 ? " to " : "",
 		         n > 1 ? work->names.name[first + n - 1] : "", device->path + 1,
 		         device->type);
-	return err;
 }
 
 static int change(struct work *work, bool inputs_only)
@@ -368,7 +367,9 @@ static int change(struct work *work, bool inputs_only)
 			err = replace_device(work, i);
 	for (unsigned i = 0; i < work->scan->count && !err; i++)
 		if (work->found[i].fate == MERGE_NEW)
-			err = add_device(work, i, inputs_only);
+			make_items(work, i, inputs_only);
+	if (!err)
+		err = scan_add_items(&work->merge->rio, &work->names);
 	return err || work->names.count == named ? err : edit_count(&work->merge->rio);
 }
 

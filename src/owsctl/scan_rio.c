@@ -21,8 +21,10 @@ static int fill(struct rio **rio, struct scan_names *names, const struct scan *s
 	int err = quoted ? rio_set(rio, driver_of(*rio), "TargetName", quoted) : -ENOMEM;
 
 	rio_quote_free(quoted);
-	for (unsigned i = 0; i < scan->count && !err; i++)
-		err = scan_add_items(rio, names, &scan->device[i], inputs_only);
+	for (unsigned i = 0; i < scan->count; i++)
+		scan_make_items(names, &scan->device[i], inputs_only);
+	if (!err)
+		err = scan_add_items(rio, names);
 	snprintf(count, sizeof(count), "%u", names->count);
 	return err ? err : rio_set(rio, driver_of(*rio), "ItemCount", count);
 }

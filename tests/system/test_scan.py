@@ -7,6 +7,7 @@ import re
 import subprocess
 
 import owsdtest
+import peer
 
 DEVICES = """
 DS18B20 28.67C6697351FF as a temperature 21.5
@@ -157,7 +158,7 @@ def test_scan_shows_every_device_with_its_values(scene):
 def runs(scene, text):
     """owsd takes the configuration without a word, and all its signals become good."""
     file = scene.file("found.rio", text)
-    check = scene.owsd_once("--check", "-c", file)
+    check = scene.owsd_once("--check", "-c", file, seconds=90)
     assert check.returncode == 0 and check.stderr == "", check
     daemon = scene.owsd(file)
 
@@ -218,6 +219,25 @@ def test_the_configuration_of_a_scan_runs_on_owserver_and_changes_no_output(scen
     assert str(rows["outputs1"]["value"]) == before == server.read(path)
     inputs = ctl(scene, server.target, "scan", "--rio", "-i").stdout
     assert '"output"' not in inputs and "inputs1" in inputs
+
+
+def test_a_scan_of_ten_thousand_devices_makes_a_configuration_of_all_of_them(scene):
+    devices = [f"/28.{n:012X}" for n in range(10000)]
+    values = {}
+    for device in devices:
+        values.update({device + "/type": "DS18B20", device + "/alias": "",
+                       device + "/temperature12": "        21.5"})
+    with peer.Peer(values) as server:
+        done = ctl(scene, server.target, "scan", "--rio")
+        assert done.returncode == 0, done
+        table = ctl(scene, server.target, "scan").stdout.splitlines()
+    assert len(table) == 10001 and all("temperature12=21.5" in line for line in table[1:])
+    file = scene.file("many.rio", done.stdout)
+    checked = scene.owsd_once("--check", "-c", file, seconds=90)
+    assert checked.returncode == 0, checked
+    for n, device in ((1, devices[0]), (10000, devices[-1])):
+        assert f'"temperature{n}"\n    Path                    "{device}/temperature12"' in done.stdout
+    assert done.stdout.count("  Item {") == 10000
 
 
 def test_an_alias_names_the_signals(scene):
