@@ -21,6 +21,7 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 	e->guests = setup->guests;
 	e->start_ns = setup->start_ns;
 	e->now_ns = setup->start_ns;
+	e->looks_ns = INT64_MIN / 2; /* all are left */
 	err = signal_table_init(&e->table, e->config);
 	if (!err)
 		err = due_wheel_init(&e->wheel, e->table.count * 2, 0);
@@ -116,12 +117,12 @@ void engine_event(struct engine *e, unsigned port, const struct bus_event *event
 int64_t engine_step(struct engine *e, int64_t now_ns)
 {
 	uint64_t before = e->period;
-	int64_t next, groups;
+	int64_t next, groups, deferred;
 
 	begin(e, now_ns);
 	e->counters.steps++;
 	engine_turn(e, now_ns);
-	engine_intake(e, now_ns);
+	deferred = engine_intake_limited(e, now_ns);
 	engine_guests_take(e, now_ns);
 	if (e->period != before) {
 		engine_clients(e, now_ns);
@@ -129,6 +130,8 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 		engine_publish_driver(e, now_ns);
 	}
 	next = e->start_ns + (int64_t)(e->period - e->first + 1) * e->config->period_ns;
+	if (deferred < next)
+		next = deferred;
 	groups = engine_groups_turn(e, now_ns);
 	if (groups < next)
 		next = groups;

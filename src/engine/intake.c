@@ -9,6 +9,14 @@
 
 /* A writer that holds a string's claim for longer has died. */
 #define CLAIM_NS 1000000000LL
+/*
+ * A program that marks slots without end costs this many looks a second. An honest set waits for none
+ * of it unless there is such a program; then it waits until the looks have gone round.
+ */
+#define LOOKS_PER_S   100000u
+#define LOOKS_LEAST   5000u
+#define LOOKS_SPAN_NS 1000000000LL
+#define DEFER_NS      10000000LL
 
 static void refuse(struct engine *e, struct signal *s, int err, int64_t now_ns)
 {
@@ -182,11 +190,10 @@ static void look_at(struct engine *e, uint32_t slot, int64_t now_ns)
 	}
 }
 
-void engine_intake(struct engine *e, int64_t now_ns)
+/* Texts that a program was just writing. */
+static void look_at_busy(struct engine *e, int64_t now_ns)
 {
 	unsigned busy = e->busy_count;
-	uint32_t from = 0;
-	int slot;
 
 	e->busy_count = 0;
 	for (unsigned i = 0; i < busy; i++) {
@@ -202,10 +209,64 @@ void engine_intake(struct engine *e, int64_t now_ns)
 		if (e->busy_count && e->busy_slot[e->busy_count - 1] == again)
 			e->busy_since_ns[e->busy_count - 1] = since;
 	}
-	while ((slot = commands_next_dirty(e->commands, from)) >= 0) {
+}
+
+/* Look at the marked slots from one on, at most so many. False: there are more. */
+static bool look_at_marked(struct engine *e, uint32_t *from, uint32_t *looks, int64_t now_ns)
+{
+	while (*looks) {
+		int slot = commands_next_dirty(e->commands, *from);
+
+		if (slot < 0)
+			return true;
 		look_at(e, (uint32_t)slot, now_ns);
-		from = (uint32_t)slot + 1;
+		*from = (uint32_t)slot + 1;
+		--*looks;
 	}
+	return false;
+}
+
+void engine_intake(struct engine *e, int64_t now_ns)
+{
+	uint32_t all = UINT32_MAX, from = 0;
+
+	look_at_busy(e, now_ns);
+	look_at_marked(e, &from, &all, now_ns);
+}
+
+/* A look that was not needed yet is kept, up to two for each slot and some. */
+static void refill_looks(struct engine *e, int64_t now_ns)
+{
+	uint64_t most = 2 * (uint64_t)e->table.count + LOOKS_LEAST;
+	int64_t since_ns = now_ns - e->looks_ns;
+	uint64_t more = since_ns < LOOKS_SPAN_NS ? (uint64_t)since_ns * LOOKS_PER_S / 1000000000u
+	                                         : most;
+
+	if (!more)
+		return;
+	e->looks = e->looks + more < most ? (uint32_t)(e->looks + more) : (uint32_t)most;
+	e->looks_ns = now_ns;
+}
+
+int64_t engine_intake_limited(struct engine *e, int64_t now_ns)
+{
+	uint32_t begin = e->look_from;
+
+	look_at_busy(e, now_ns);
+	if (now_ns < e->defer_ns)
+		return e->defer_ns;
+	refill_looks(e, now_ns);
+	/* once round: whoever marks the first slots again and again does not keep the last ones waiting */
+	if (look_at_marked(e, &e->look_from, &e->looks, now_ns)) {
+		e->look_from = 0;
+		if (!begin || look_at_marked(e, &e->look_from, &e->looks, now_ns)) {
+			e->look_from = 0;
+			return INT64_MAX;
+		}
+	}
+	e->counters.deferred_commands++;
+	e->defer_ns = now_ns + DEFER_NS;
+	return e->defer_ns;
 }
 
 void engine_intake_all(struct engine *e, int64_t now_ns)

@@ -12,6 +12,7 @@
 	X(steps)                                                                                   \
 	X(commands)         /* values taken from the command segment */                            \
 	X(refused_commands) /* values no program should have put there */                          \
+	X(deferred_commands) /* marks of commands that came too fast were left for 10 ms */         \
 	X(lost_clients)     /* control programs that stopped beating */                            \
 	X(safe_outputs)     /* outputs put to SafeValue */                                         \
 	X(lost_commands)    /* command segments that were taken away and made again */            \
@@ -66,6 +67,9 @@ struct engine {
 	uint32_t busy_slot[8];
 	int64_t busy_since_ns[8];
 	unsigned busy_count;
+	/* Of the looks at marked slots: how many are left, since when, where the next begins, not sooner. */
+	uint32_t looks, look_from;
+	int64_t looks_ns, defer_ns;
 
 	struct client clients[OWS_CLIENTS];
 	uint32_t driver_resets;
@@ -117,6 +121,11 @@ void engine_publish_counters(struct engine *e);
 
 /* intake.c: the command segment */
 void engine_intake(struct engine *e, int64_t now_ns);
+/*
+ * The same, with as many looks as programs that mark slots without end may cost; the rest is left for
+ * a later step. Returns when that is due, INT64_MAX: nothing is left.
+ */
+int64_t engine_intake_limited(struct engine *e, int64_t now_ns);
 void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns);
 /* At start: everything that stands in it. */
 void engine_intake_all(struct engine *e, int64_t now_ns);
