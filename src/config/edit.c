@@ -322,17 +322,35 @@ int edit_add(struct rio **rio, const char *name, const char *path, const char *c
 	return err ? err : edit_count(rio);
 }
 
+static struct rio_node *find_item_or_say(const struct rio *rio, const char *name,
+                                         struct config_report *report)
+{
+	struct rio_node *item = find_item(rio, name);
+
+	if (!item)
+		report_error(report, command_line, "there is no item \"%s\"", name);
+	return item;
+}
+
 int edit_remove(struct rio **rio, const char *name, struct config_report *report)
 {
-	struct rio_node *item = find_item(*rio, name);
-	int err;
+	struct rio_node *item = find_item_or_say(*rio, name, report);
+	int err = item ? rio_remove(rio, item) : -EINVAL;
 
-	if (!item) {
-		report_error(report, command_line, "there is no item \"%s\"", name);
-		return -EINVAL;
-	}
-	err = rio_remove(rio, item);
 	return err ? err : edit_count(rio);
+}
+
+int edit_move(struct rio **rio, const char *name, const char *other, bool behind,
+              struct config_report *report)
+{
+	struct rio_node *item = find_item_or_say(*rio, name, report);
+	struct rio_node *there = item ? find_item_or_say(*rio, other, report) : NULL;
+	int err = there ? rio_move(rio, item, there, behind) : -EINVAL;
+
+	if (there && err == -EINVAL)
+		report_error(report, command_line,
+		             "\"%s\" and \"%s\" can only be moved on lines of their own", name, other);
+	return err;
 }
 
 int edit_lock(const char *file, struct config_report *report)

@@ -21,6 +21,9 @@ int edit_set(struct rio **rio, const char *name, const char *const *settings, un
 int edit_unset(struct rio **rio, const char *name, const char *const *keys, unsigned count,
                struct config_report *report);
 int edit_remove(struct rio **rio, const char *name, struct config_report *report);
+/* Put an item before another, or behind it, with the comment lines directly above it. */
+int edit_move(struct rio **rio, const char *name, const char *other, bool behind,
+              struct config_report *report);
 /* ItemCount, where the file has it, as there are items. */
 int edit_count(struct rio **rio);
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Changes of a document in its text: what is not changed keeps every byte. */
 #include "rio_write.h"
 
 #include <errno.h>
@@ -77,8 +78,8 @@ static void grow_add_lines(struct grow *grow, const char *lines, const char *lin
 	}
 }
 
-/* Replace the bytes begin to end by text. */
-static int rio_splice(struct rio **rio, size_t begin, size_t end, const char *text)
+/* Replace the bytes begin to end by what was grown, which is freed. */
+static int splice_bytes(struct rio **rio, size_t begin, size_t end, struct grow *put)
 {
 	struct config_report silent = {0};
 	struct grow out = grow_make();
@@ -86,7 +87,12 @@ static int rio_splice(struct rio **rio, size_t begin, size_t end, const char *te
 	int err;
 
 	grow_add(&out, (*rio)->text, begin);
-	grow_add_lines(&out, text, (*rio)->line_end);
+	if (!put->text) {
+		free(out.text);
+		return -ENOMEM;
+	}
+	grow_add(&out, put->text, put->len);
+	free(put->text);
 	grow_add(&out, (*rio)->text + end, (*rio)->len - end);
 	if (!out.text)
 		return -ENOMEM;
@@ -97,6 +103,15 @@ static int rio_splice(struct rio **rio, size_t begin, size_t end, const char *te
 	rio_free(*rio);
 	*rio = made;
 	return 0;
+}
+
+/* Replace the bytes begin to end by text, with the document's line ends. */
+static int rio_splice(struct rio **rio, size_t begin, size_t end, const char *text)
+{
+	struct grow put = grow_make();
+
+	grow_add_lines(&put, text, (*rio)->line_end);
+	return splice_bytes(rio, begin, end, &put);
 }
 
 static bool is_blank(char c)
@@ -278,4 +293,64 @@ int rio_remove(struct rio **rio, struct rio_node *node)
 			begin--;
 	}
 	return rio_splice(rio, begin, end, "");
+}
+
+/* Does a line hold a comment and nothing else? */
+static bool is_comment(const struct rio *rio, size_t line)
+{
+	while (line < rio->len && is_blank(rio->text[line]))
+		line++;
+	return line < rio->len && rio->text[line] == '#';
+}
+
+/* First byte of the line before that of offset; offset where there is none. */
+static size_t line_before(const struct rio *rio, size_t offset)
+{
+	size_t line = line_begin(rio, offset);
+
+	if (!line)
+		return offset;
+	line--;
+	if (line && rio->text[line] == '\n' && rio->text[line - 1] == '\r')
+		line--;
+	return line_begin(rio, line);
+}
+
+/* The lines of a node and of the comments directly above it; false: they hold something else. */
+static bool own_lines(const struct rio *rio, const struct rio_node *node, size_t *begin, size_t *end)
+{
+	size_t line = line_begin(rio, node->begin), above;
+
+	*end = line_end_at(rio, node->end);
+	if (!begins_line(rio, node) || behind_line(rio, node) != *end || !line_end_length(rio, *end))
+		return false;
+	*end += line_end_length(rio, *end);
+	while ((above = line_before(rio, line)) < line && is_comment(rio, above) &&
+	       above >= node->parent->value_begin)
+		line = above;
+	*begin = line;
+	return true;
+}
+
+int rio_move(struct rio **rio, struct rio_node *node, const struct rio_node *other, bool behind)
+{
+	size_t begin, end, at, other_begin, other_end, from, to;
+	struct grow out;
+
+	if (!own_lines(*rio, node, &begin, &end) ||
+	    !own_lines(*rio, other, &other_begin, &other_end))
+		return -EINVAL;
+	at = behind ? other_end : other_begin;
+	if (at >= begin && at <= end)
+		return 0;
+	/* what stands between the two places changes sides with the node */
+	from = at < begin ? at : begin;
+	to = at < begin ? end : at;
+	out = grow_make();
+	if (at < begin)
+		grow_add(&out, (*rio)->text + begin, end - begin);
+	grow_add(&out, (*rio)->text + (at < begin ? at : end), at < begin ? begin - at : at - end);
+	if (at > end)
+		grow_add(&out, (*rio)->text + begin, end - begin);
+	return splice_bytes(rio, from, to, &out);
 }

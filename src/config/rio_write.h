@@ -26,5 +26,10 @@ int rio_set(struct rio **rio, struct rio_node *block, const char *key, const cha
 int rio_add(struct rio **rio, struct rio_node *block, const char *lines);
 /* Take a node out, with its lines if nothing else stands on them. */
 int rio_remove(struct rio **rio, struct rio_node *node);
+/*
+ * Put a node before other, or behind it, with its lines and the comments directly above it; both in
+ * one block. -EINVAL: something else stands on the lines of one.
+ */
+int rio_move(struct rio **rio, struct rio_node *node, const struct rio_node *other, bool behind);
 
 #endif

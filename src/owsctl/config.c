@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl config: look at a configuration file and edit it as the manual's dialog does. */
-#include "json.h"
-#include "table.h"
-#include "verbs.h"
+#include "config_list.h"
+#include "property.h"
 #include "../config/edit.h"
-#include "../signal/value.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -13,109 +11,11 @@
 #include <string.h>
 #include <unistd.h>
 
-static const struct table_column columns[] = {
-	{"NAME"}, {"TYPE"}, {"IO"}, {"INIT"}, {"READ"}, {"WRITE"}, {"UNCACHED"}, {"ALARM"}, {"PATH"},
-};
-
 static void say(void *ctx, bool is_error, const char *message)
 {
 	(void)ctx;
 	(void)is_error;
 	fprintf(stderr, "owsctl: %s\n", message);
-}
-
-static const char *yes(bool flag)
-{
-	return flag ? "on" : "off";
-}
-
-static bool print_table(const struct config *config)
-{
-	struct table table;
-	char line[8192];
-	bool ok = true;
-
-	for (unsigned i = 0; i < config->target_count; i++)
-		printf("%s%s", config->targets[i].relation == CONFIG_FIRST   ? "target "
-		               : config->targets[i].relation == CONFIG_COMMA ? ", "
-		                                                             : " | ",
-		       config->targets[i].text);
-	printf("\nconsecutive alarms %u, retries %u, time-out %g s, period %g s\n\n",
-	       config->max_cons_alarms, config->max_retries, (double)config->timeout_ns / 1e9,
-	       (double)config->period_ns / 1e9);
-	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
-	for (unsigned i = 0; ok && i < config->item_count; i++) {
-		const struct config_item *item = &config->items[i];
-
-		ok = table_add(&table, (const char *const[]){
-		                               item->name, value_type_name(item->type),
-		                               item->output ? "output" : "input", item->init_text,
-		                               yes(item->readable), yes(item->writable),
-		                               yes(item->fresh), yes(item->alarm), item->path});
-	}
-	table_fit(&table, 0);
-	for (int i = -1; ok && i < (int)config->item_count; i++) {
-		table_line(&table, i, line, sizeof(line));
-		puts(line);
-	}
-	table_free(&table);
-	return ok;
-}
-
-static void item_json(struct json *json, const struct config_item *item)
-{
-	json_object(json, NULL);
-	json_string(json, "name", item->name);
-	json_string(json, "path", item->path);
-	json_string(json, "type", value_type_name(item->type));
-	json_string(json, "io", item->output ? "output" : "input");
-	json_string(json, "init_value", item->has_init ? item->init_text : NULL);
-	json_string(json, "safe_value", item->has_safe ? item->safe_text : NULL);
-	json_bool(json, "readable", item->readable);
-	json_bool(json, "writable", item->writable);
-	json_bool(json, "uncached", item->fresh);
-	json_uint(json, "per_factor", item->per_factor);
-	json_seconds(json, "stale_after", item->stale_after_ns);
-	json_bool(json, "alarm", item->alarm);
-	json_string(json, "latch_alarm", item->latch_alarm);
-	json_string(json, "por_alarm", item->por_alarm);
-	json_string(json, "set_alarm", item->set_alarm);
-	json_string(json, "reset_latch", item->reset_latch);
-	json_int(json, "line", item->line);
-	json_object_end(json);
-}
-
-static void print_json(const struct config *config)
-{
-	static const char *const relations[] = {
-		[CONFIG_FIRST] = "first",
-		[CONFIG_COMMA] = "wire",
-		[CONFIG_BAR] = "way",
-	};
-	struct json json;
-
-	json_open(&json, stdout);
-	json_object(&json, NULL);
-	json_string(&json, "file", config->file);
-	json_array(&json, "targets");
-	for (unsigned i = 0; i < config->target_count; i++) {
-		json_object(&json, NULL);
-		json_string(&json, "target", config->targets[i].text);
-		json_string(&json, "relation", relations[config->targets[i].relation]);
-		json_object_end(&json);
-	}
-	json_array_end(&json);
-	json_uint(&json, "max_cons_alarms", config->max_cons_alarms);
-	json_uint(&json, "max_retries", config->max_retries);
-	json_seconds(&json, "timeout", config->timeout_ns);
-	json_seconds(&json, "period", config->period_ns);
-	json_seconds(&json, "alarm_period", config->alarm_period_ns);
-	json_array(&json, "items");
-	for (unsigned i = 0; i < config->item_count; i++)
-		item_json(&json, &config->items[i]);
-	json_array_end(&json);
-	json_object_end(&json);
-	json_end(&json);
 }
 
 /* What was wrong has been said, but for memory. */
@@ -128,18 +28,15 @@ static int status_of(int err)
 	return err == -EINVAL ? CTL_USAGE : CTL_FAILED;
 }
 
-static int list(struct ctl *ctl, const char *file)
+static int list(struct ctl *ctl, const char *file, char *const *patterns, int count)
 {
 	struct config_report report = {.line = say};
 	struct config *config;
-	int err = config_load(file, &report, &config), status = CTL_DONE;
+	int err = config_load(file, &report, &config), status;
 
 	if (err)
 		return err == -ENOMEM ? CTL_FAILED : status_of(err);
-	if (ctl->json)
-		print_json(config);
-	else if (!print_table(config))
-		status = ctl_fail("no memory");
+	status = config_list(config, patterns, count, ctl->json);
 	config_free(config);
 	return status;
 }
@@ -163,6 +60,43 @@ static int open_document(const char *file, bool make, struct config_report *repo
 	return err ? err : report->errors ? -EINVAL : 0;
 }
 
+/*
+ * Has the family of the device the property that the path of a new item, or a new path, names? One
+ * that it has not but nearly is refused; of others another server may know more than we do.
+ */
+static int check_path(const char *path)
+{
+	char nearest[PROPERTY_NAME];
+
+	if (property_known(path, nearest))
+		return 0;
+	if (*nearest) {
+		ctl_fail("%s: its family has no such property; did you mean %s?", path, nearest);
+		return -EINVAL;
+	}
+	ctl_fail("%s: its family has no such property that owsd knows of; it is kept", path);
+	return 0;
+}
+
+static int check_paths(const char *action, char **words, unsigned count)
+{
+	bool adds = !strcmp(action, "add");
+	int err = adds ? check_path(words[1]) : 0;
+
+	if (!adds && strcmp(action, "set") != 0)
+		return 0;
+	for (unsigned i = adds ? 2 : 1; i < count && !err; i++)
+		if (!strncmp(words[i], "Path=", 5))
+			err = check_path(words[i] + 5);
+	return err;
+}
+
+/* move NAME --before OTHER or --after OTHER */
+static int move(struct rio **rio, char **words, struct config_report *report)
+{
+	return edit_move(rio, words[0], words[2], !strcmp(words[1], "--after"), report);
+}
+
 /* settings and the like are read only */
 static const char *const *words_of(char **argv)
 {
@@ -178,7 +112,11 @@ static int change(const char *file, const char *action, char **words, unsigned c
 	if (lock < 0)
 		return CTL_FAILED;
 	err = open_document(file, !strcmp(action, "add"), &report, &rio);
-	if (!err && !strcmp(action, "add"))
+	if (!err)
+		err = check_paths(action, words, count);
+	if (!err && !strcmp(action, "move"))
+		err = move(&rio, words, &report);
+	else if (!err && !strcmp(action, "add"))
 		err = edit_add(&rio, words[0], words[1], words_of(words + 2), count - 2, &report);
 	else if (!err && !strcmp(action, "set"))
 		err = edit_set(&rio, words[0], words_of(words + 1), count - 1, &report);
@@ -196,15 +134,13 @@ static int change(const char *file, const char *action, char **words, unsigned c
 	return status_of(err);
 }
 
-/* Options behind list too: it has no words of its own. */
+/* Options behind list too, and patterns. */
 static int list_with(struct ctl *ctl, const char *file, int argc, char **argv)
 {
 	ctl_options();
 	if (ctl_option(ctl, argc, argv, "") != -1)
 		return CTL_USAGE;
-	if (optind < argc)
-		return ctl_usage(ctl, "expected config FILE list");
-	return list(ctl, file);
+	return list(ctl, file, argv + optind, argc - optind);
 }
 
 int verb_config(struct ctl *ctl, int argc, char **argv)
@@ -218,6 +154,7 @@ int verb_config(struct ctl *ctl, int argc, char **argv)
 		{"set", " NAME KEY=VALUE...", 2},
 		{"unset", " NAME KEY...", 2},
 		{"remove", " NAME...", 1},
+		{"move", " NAME --before OTHER | --after OTHER", 3},
 	};
 	const char *file, *action;
 	int words;
@@ -227,7 +164,7 @@ int verb_config(struct ctl *ctl, int argc, char **argv)
 		return CTL_USAGE;
 	file = argv[optind];
 	if (argc - optind < 2)
-		return ctl_usage(ctl, "expected a file and list, add, set, unset or remove");
+		return ctl_usage(ctl, "expected a file and list, add, set, unset, remove or move");
 	action = argv[optind + 1];
 	words = argc - optind - 2;
 	for (size_t i = 0; i < sizeof(actions) / sizeof(actions[0]); i++) {
@@ -235,7 +172,10 @@ int verb_config(struct ctl *ctl, int argc, char **argv)
 			continue;
 		if (!actions[i].least)
 			return list_with(ctl, file, argc - optind - 1, argv + optind + 1);
-		if (words < actions[i].least)
+		if (words < actions[i].least ||
+		    (!strcmp(action, "move") &&
+		     (words != 3 || (strcmp(argv[optind + 3], "--before") != 0 &&
+		                     strcmp(argv[optind + 3], "--after") != 0))))
 			return ctl_usage(ctl, "expected config FILE %s%s", action, actions[i].words);
 		return change(file, action, argv + optind + 2, (unsigned)words);
 	}

@@ -23,7 +23,7 @@ static const struct verb verbs[] = {
 	{"stats", "", "owsd itself, its targets and counters", verb_stats},
 	{"instances", "", "the owsds that run here, and those that have run", verb_instances},
 	{"remove", "NAME...", "take away what an instance that ended has left", verb_remove},
-	{"config", "FILE list | add | set | unset | remove ...", "look at a configuration and edit it",
+	{"config", "FILE list | add | set | unset | remove | move ...", "look at a configuration and edit it",
 	 verb_config},
 	{"dir", "[-t TARGET] [-w SECONDS] [PATH]", "what is in a directory of a target", verb_dir,
 	 .opens = true},

@@ -4,6 +4,7 @@
 
 import ctypes
 import fcntl
+import json
 import os
 import platform
 import signal
@@ -207,8 +208,65 @@ def test_a_list_takes_json_behind_it(scene):
                       (["--json", "config", file, "list"], ["config", file, "list", "--json"]))
     assert before.returncode == 0 and before.stdout.startswith("{"), before
     assert before.stdout == behind.stdout, behind
-    for words in (["more"], ["-x"]):
-        assert scene._run([owsdtest.OWSCTL, "config", file, "list", *words], 20).returncode == 2
+    for words, status in ((["more"], 1), (["-x"], 2)):
+        assert scene._run([owsdtest.OWSCTL, "config", file, "list", *words], 20).returncode == status
+
+
+def test_a_list_shows_what_protects_a_plant_and_one_item_alone(scene):
+    file = scene.file("list.rio", owsdtest.rio("localhost", [
+        dict(Name="freezer", Path="/28.000000000001/temperature", Type="double", LimitHH=-5, LimitH=-15.5,
+             LimitLL=-40, Hysteresis=1, OnDelay=300, OffDelay=60, PerFactor=10, StaleAfter=90),
+        dict(Name="valve", Path="/05.000000000002/PIO", Type="bool", IO="output", SafeValue="1"),
+        ITEM]))
+    table = scene.owsctl(None, "config", file, "list").stdout
+    for word in ("SAFE", "PERFACTOR", "STALE", "LIMITS",
+                 "LL -40, H -15.5, HH -5, hysteresis 1, on delay 300 s, off delay 60 s"):
+        assert word in table, table
+    one = scene.owsctl(None, "config", file, "list", "x").stdout
+    assert "freezer" not in one and "LIMITS" not in one and "/28.000000000001" in one, one
+    told = json.loads(scene.owsctl(None, "--json", "config", file, "list", "fre*", "x").stdout)["items"]
+    assert [i["name"] for i in told] == ["freezer", "x"] and told[1]["limits"] is None
+    assert told[0]["limits"] == dict(limit_ll=-40, limit_l=None, limit_h=-15.5, limit_hh=-5, hysteresis=1,
+                                     on_delay=300, off_delay=60)
+    done = scene.owsctl(None, "config", file, "list", "freezr")
+    assert done.returncode == 1 and "no item matches" in done.stderr and not done.stdout
+
+
+def test_a_property_that_the_family_has_not_is_refused_with_the_one_that_was_meant(scene):
+    file = scene.file("a.rio", owsdtest.rio("localhost", [ITEM]))
+    before = file.read_text()
+    for words in (("add", "y", "/28.000000000001/temprature12"),
+                  ("add", "y", "/uncached/28.000000000001/Temperature12"),
+                  ("set", "x", "Path=/28.000000000001/tempeature12")):
+        done = scene.owsctl(None, "config", file, *words)
+        assert done.returncode == 2 and "did you mean temperature12?" in done.stderr, done
+        assert file.read_text() == before
+    done = scene.owsctl(None, "config", file, "add", "y", "/29.000000000001/sensd.3")
+    assert done.returncode == 2 and "did you mean sensed.3?" in done.stderr, done
+    # another server may know more families and properties than this program
+    for number, (path, said) in enumerate((("/28.000000000001/quux", "owsd knows of; it is kept"),
+                                           ("/28.000000000001/errata/die", ""), ("/kitchen/temprature", ""),
+                                           ("/FC.000000000001/temprature", ""), ("/29.000000000001/PIO.ALL", ""),
+                                           ("/26.000000000001/HIH4000/humidity", ""))):
+        done = scene.owsctl(None, "config", file, "add", f"z{number}", path, "Type=string")
+        assert done.returncode == 0 and said in done.stderr and bool(said) == bool(done.stderr), done
+
+
+def test_an_item_is_moved_and_nothing_else_changes(scene):
+    items = {name: f"  # about {name}\n  Item {{\n    Name \"{name}\"   # mine\n"
+                   f"    Path \"/28.000000000001/temperature\"\n    Type double\n  }}\n" for name in "abc"}
+    head, tail = 'OwsDrv {\n  TargetName "localhost"\n', "  # the end\n}\n"
+    file = scene.file("a.rio", head + "".join(items.values()) + tail)
+    for words, order in ((("c", "--before", "a"), "cab"), (("c", "--after", "b"), "abc"),
+                         (("a", "--after", "b"), "bac"), (("a", "--before", "b"), "abc"),
+                         (("a", "--before", "b"), "abc"), (("a", "--after", "a"), "abc")):
+        done = scene.owsctl(None, "config", file, "move", *words)
+        assert (done.returncode, done.stderr) == (0, ""), done
+        assert file.read_text() == head + "".join(items[name] for name in order) + tail, words
+    for words, what in ((("a", "--before", "d"), 'there is no item "d"'), (("a", "before", "b"), "expected"),
+                        (("a", "--before"), "expected"), (("a", "--before", "b", "c"), "expected")):
+        done = scene.owsctl(None, "config", file, "move", *words)
+        assert done.returncode == 2 and what in done.stderr, done
 
 
 def test_each_of_several_targets_is_checked(scene):

@@ -4,6 +4,7 @@
 #include "tests/unit/rio_case.h"
 #include "unity.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -217,6 +218,58 @@ static void test_an_edit_leaves_every_neighbour_whatever_stands_between_them(voi
 	TEST_ASSERT_GREATER_THAN_UINT(50000, checked);
 }
 
+static struct rio_node *nth(const char *key, int n)
+{
+	struct rio_node *node = rio_child(rio_child(&rio->root, "A"), key);
+
+	while (n-- > 0)
+		node = rio_next(node);
+	return node;
+}
+
+static void test_a_block_is_moved_with_its_comments_byte_for_byte(void)
+{
+	static const char first[] = "\t# one\n  # and more\r\n  I { X 0x1 } # mine\r\n";
+	static const char second[] = "  I {\n\tX 2\r  }\n", third[] = "I { X 3 }\n";
+	static const char head[] = "A {\r\n  K 1 # K\n\n", tail[] = "  # end\n}\n";
+	const char *const parts[] = {first, second, third};
+	static const struct {
+		int node, other;
+		bool behind;
+		const char *order;
+	} moves[] = {
+		{0, 1, true, "102"},  {0, 2, true, "120"},  {2, 0, false, "201"}, {2, 1, false, "021"},
+		{1, 0, false, "102"}, {1, 2, true, "021"},  {0, 1, false, "012"}, {1, 1, true, "012"},
+		{1, 0, true, "012"},  {2, 0, true, "021"},  {0, 2, false, "102"},
+	};
+	char text[512];
+
+	for (unsigned i = 0; i < sizeof(moves) / sizeof(moves[0]); i++) {
+		snprintf(text, sizeof(text), "%s%s%s%s%s", head, first, second, third, tail);
+		rio_case_parse(text);
+		TEST_ASSERT_EQUAL_INT(0, rio_move(&rio, nth("I", moves[i].node),
+		                                  nth("I", moves[i].other), moves[i].behind));
+		snprintf(text, sizeof(text), "%s%s%s%s%s", head, parts[moves[i].order[0] - '0'],
+		         parts[moves[i].order[1] - '0'], parts[moves[i].order[2] - '0'], tail);
+		expect_text(text);
+	}
+}
+
+static void test_what_shares_its_line_is_not_moved(void)
+{
+	static const char *const texts[] = {
+		"A { I { X 1 }\n I { X 2 }\n}\n", "A {\n I { X 1 } I { X 2 }\n}\n",
+		"A {\n I { X 1 }\n I { X 2 } }",
+	};
+
+	for (unsigned i = 0; i < sizeof(texts) / sizeof(texts[0]); i++) {
+		rio_case_parse(texts[i]);
+		TEST_ASSERT_EQUAL_INT(-EINVAL, rio_move(&rio, nth("I", 0), nth("I", 1), true));
+		TEST_ASSERT_EQUAL_INT(-EINVAL, rio_move(&rio, nth("I", 1), nth("I", 0), false));
+		expect_text(texts[i]);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -228,6 +281,8 @@ int main(void)
 	RUN_TEST(test_a_removed_block_takes_its_lines_along_and_leaves_comments);
 	RUN_TEST(test_strings_are_wrapped_only_when_long_and_read_back);
 	RUN_TEST(test_a_character_of_several_bytes_is_not_cut_by_wrapping);
+	RUN_TEST(test_a_block_is_moved_with_its_comments_byte_for_byte);
+	RUN_TEST(test_what_shares_its_line_is_not_moved);
 	RUN_TEST(test_an_edit_leaves_every_neighbour_whatever_stands_between_them);
 	return UNITY_END();
 }

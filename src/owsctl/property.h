@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT */
+/* Does the family of a path's device have the path's property? */
+#ifndef OWSCTL_PROPERTY_H
+#define OWSCTL_PROPERTY_H
+
+#include <stdbool.h>
+
+#define PROPERTY_NAME 64
+
+/*
+ * True also where that cannot be known: a path without an id or a property, a family that is not
+ * ours. False: nearest gets the name that was probably meant, with the extension that was given;
+ * "" when none is near.
+ */
+bool property_known(const char *path, char nearest[PROPERTY_NAME]);
+
+#endif
