@@ -120,8 +120,9 @@ int host_reload(struct host *h, struct config *config, char *why, size_t why_siz
 		return err;
 	err = host_make_serving(h, config, &plan, &next, why, why_size);
 	if (!err) {
-		log_notice(h->log, "reload: %u signals, %u of them go on; %u targets, %u of them",
-		           config->item_count, plan.kept_rows, config->target_count,
+		log_notice(h->log, "reload: %u signal%s, %u of them go on; %u target%s, %u of them",
+		           config->item_count, config->item_count == 1 ? "" : "s", plan.kept_rows,
+		           config->target_count, config->target_count == 1 ? "" : "s",
 		           plan.kept_ports);
 		exchange(h, next, &plan);
 	}

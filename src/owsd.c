@@ -176,9 +176,11 @@ static void tell(const struct host *host, const struct arguments *a, struct log 
 	char targets[160];
 
 	name_targets(config, targets, sizeof(targets));
-	log_notice(log, "owsd %s: instance %s, %u signals from %s, target %s", OWSD_VERSION,
-	           a->instance, config->item_count, config->file, targets);
-	notify_status(notify, "%u signals, target %s", config->item_count, targets);
+	log_notice(log, "owsd %s: instance %s, %u signal%s from %s, target %s", OWSD_VERSION,
+	           a->instance, config->item_count, config->item_count == 1 ? "" : "s",
+	           config->file, targets);
+	notify_status(notify, "%u signal%s, target %s", config->item_count,
+	              config->item_count == 1 ? "" : "s", targets);
 }
 
 /* A file that is refused changes nothing. */

@@ -158,7 +158,8 @@ static void build_items(struct build *build, const struct rio_node *driver,
 	items_check(build, names);
 	if (count->given && count->number != items)
 		report_warning(build->report, count->node->value_at,
-		               "ItemCount is %s, but there are %u items", count->text, items);
+		               "ItemCount is %s, but there %s %u item%s", count->text,
+		               items == 1 ? "is" : "are", items, items == 1 ? "" : "s");
 	free(names);
 }
 

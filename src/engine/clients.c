@@ -114,11 +114,11 @@ static void lose(struct engine *e, unsigned client)
 		s->client = 0;
 	}
 	e->counters.lost_clients++;
-	log_warning(e->log, "control program %u %s: %u outputs go to SafeValue",
+	log_warning(e->log, "control program %u %s: %u output%s to SafeValue",
 	            (unsigned)known->pid,
 	            known->awaited ? "has not beaten since owsd started, and its commands are dropped"
 	                           : "stopped beating",
-	            safe);
+	            safe, safe == 1 ? " goes" : "s go");
 	e->clients[client] = (struct client){ 0 };
 	commands_drop_client(e->commands, client);
 }

@@ -87,9 +87,9 @@ static void say(struct engine *e, const struct device *d, const struct lane *fro
 {
 	const struct signal *s = &e->table.signals[e->table.device_rows[d->first]];
 
-	log_notice(e->log, "%s%s (%u signals): from %s to %s: %s", s->item->path,
-	           d->count > 1 ? " ..." : "", d->count, from->port->target, to->port->target,
-	           why);
+	log_notice(e->log, "%s%s (%u signal%s): from %s to %s: %s", s->item->path,
+	           d->count > 1 ? " ..." : "", d->count, d->count == 1 ? "" : "s",
+	           from->port->target, to->port->target, why);
 }
 
 void engine_move_device(struct engine *e, struct device *d, struct lane *to, const char *why,
@@ -129,7 +129,8 @@ void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, cons
 		moved += d->count;
 	}
 	log_at(e->log, engine_group(e, to)->quiet ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,
-	       "%u signals: from %s to %s: %s", moved, from->port->target, to->port->target, why);
+	       "%u signal%s: from %s to %s: %s", moved, moved == 1 ? "" : "s", from->port->target,
+	       to->port->target, why);
 	lane_forget_probes(from);
 	lane_disown(from, true);
 	alarm_restart(&from->alarm);

@@ -201,7 +201,7 @@ class First:
 def test_the_first_start_makes_the_configuration_and_no_later_one_does(scene):
     first = First(scene)
     ran = first.run()
-    assert ran.returncode == 0 and "1 signals" in ran.stderr, ran
+    assert ran.returncode == 0 and "1 signal of" in ran.stderr, ran
     made = first.file.read_text()
     assert "28.000000000002" in made and first.left() == ["OWS.rio"] and first.done()
     assert stat.S_IMODE(first.file.stat().st_mode) == 0o644

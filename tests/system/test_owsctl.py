@@ -333,6 +333,28 @@ def test_the_live_table_marks_an_alarm_without_colour(scene):
     assert terminal.end() == (0, True)
 
 
+def test_of_one_thing_nothing_speaks_in_the_plural(scene):
+    chips = scene.file("net.sim", "i2c speed 400\nchip DS2482-100 0x18\nDS2413 3A.000000000001\n")
+    text = owsdtest.rio(f"sim:{chips}", [
+        dict(Name="valve", Path="/3A.000000000001/PIO.A", Type="bool", IO="output", SafeValue="0")])
+    daemon = scene.owsd(text.replace("ItemCount               1", "ItemCount               2"))
+    said = [scene.owsctl(daemon, *words) for words in
+            (("list",), ("stats",), ("watch", "-c", "1"), ("alarms",))]
+    terminal = Terminal(daemon, 24, 80, "watch")
+    terminal.until(lambda s: len(s) == 3, "a picture")
+    said.append(terminal.screen())
+    os.write(terminal.fd, b"q")
+    assert terminal.end() == (0, True)
+    daemon.config.write_text(daemon.config.read_text().replace("PIO.A", "PIO.B"))
+    daemon.signal(signal.SIGHUP)
+    owsdtest.logged(daemon, "1 target, 1 of them")
+    said.append(daemon.log())
+    daemon.stop()
+    said.append(scene.owsctl(None, "remove", daemon.name))
+    for text in map(str, said):
+        assert not re.search(r"\b1 (?!alarms\b)[a-z]+[^s]s\b", text), text
+
+
 def test_a_terminal_is_given_back_on_sigterm(scene):
     _, daemon, _, _ = house(scene)
     terminal = Terminal(daemon, 10, 60, "watch")
