@@ -201,3 +201,26 @@ int ows_get_text(struct ows *h, int id, int64_t now_ns, struct ows_value *value,
 		return ows_get(h, id, now_ns, value);
 	return handle_get_text(h, &h->ids[id], now_ns, value, text, size);
 }
+
+int ows_command(struct ows *h, int id, struct ows_command *command)
+{
+	const struct ows_record *r;
+	struct ows_slot slot;
+
+	*command = (struct ows_command){0};
+	if ((unsigned)id >= h->id_count || h->ids[id].record <= 0)
+		return -ENOENT;
+	r = map_record(&h->map, (uint32_t)h->ids[id].record);
+	if (!reader_slot(r, &slot))
+		return -EAGAIN;
+	command->given = (slot.attrs.flags & OWS_ATTR_COMMANDED) != 0 && r->type != OWS_STRING;
+	command->pending = (slot.sample.flags & OWS_SAMPLE_PENDING) != 0;
+	command->safe = (slot.sample.flags & OWS_SAMPLE_SAFE) != 0;
+	if (command->given) {
+		command->number = value_number((enum ows_type)r->type, slot.attrs.commanded);
+		if (!value_is_float((enum ows_type)r->type))
+			command->integer = slot.attrs.commanded;
+	}
+	handle_orphan(h, ows_now());
+	return handle_state(h);
+}

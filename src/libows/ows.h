@@ -25,7 +25,7 @@
 
 #ifdef __cplusplus
 extern "C" {
-/* ows_info, ows_daemon, ows_target, ows_counter and ows_alarm are a struct and a function each */
+/* ows_info, ows_command, ows_daemon, ows_target and the like are a struct and a function each */
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wshadow"
 #endif
@@ -153,6 +153,17 @@ int ows_set_integer(struct ows *h, int id, int64_t value, uint32_t *stamp);
 int ows_set_text(struct ows *h, int id, const char *text, uint32_t *stamp);
 /* n values with one ring. Stops at the first error; returns how many were set, or the error. */
 int ows_set_many(struct ows *h, const int *ids, const double *values, int n);
+
+/* What owsd has been told to write, beside what was written or read back last (ows_get()). */
+struct ows_command {
+	double number;   /* as in ows_value */
+	int64_t integer; /* likewise */
+	uint8_t given;   /* 1: there is a command; 0 also for strings */
+	uint8_t pending; /* 1: not yet confirmed on the bus */
+	uint8_t safe;    /* 1: it is SafeValue: the client that set the output stopped beating */
+};
+/* Of the signal of an id of ows_find(). Errors as ows_get(); *command is filled with -ESTALE too. */
+int ows_command(struct ows *h, int id, struct ows_command *command);
 
 /*
  * Say that this control program lives, and promise to say it again within period_ms. If it does

@@ -25,7 +25,7 @@ static bool add_row(struct table *table, struct ows *h, const struct row *row,
 	if (row->path)
 		ows_target(h, reading->value.target, &target);
 	return table_add(table, (const char *const[]){
-		                        row->name, value, reading_quality(reading, words),
+		                        row->name, value, row_quality(row, reading, words),
 		                        standing_text(&row->alarms, alarm), span,
 		                        value_type_name((enum ows_type)reading->value.type),
 		                        !row->path ? "" : row->output ? "out" : "in",

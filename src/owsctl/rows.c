@@ -4,6 +4,7 @@
 #include "names.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,6 +20,7 @@ static int add(struct ows *h, struct rows *rows, const char *name, const struct 
 	rows->count++;
 	if (!info)
 		return 0;
+	row->type = info->type;
 	row->output = info->output;
 	row->fresh = info->fresh;
 	row->alarm = info->alarm;
@@ -64,10 +66,38 @@ void rows_free(struct rows *rows)
 	rows->count = 0;
 }
 
+static void read_command(struct ows *h, struct row *row, const struct reading *reading)
+{
+	enum ows_type type = (enum ows_type)reading->value.type;
+	struct ows_command command;
+	int err = ows_command(h, row->id, &command);
+	int64_t value;
+
+	row->commanded[0] = '\0';
+	row->differs = false;
+	if ((err && err != -ESTALE) || !command.given)
+		return;
+	value = value_is_float(type) ? value_of_double(command.number) : command.integer;
+	value_to_text(type, value, row->commanded);
+	row->differs = value_is_float(type) ? command.number != reading->value.number
+	                                    : command.integer != reading->value.integer;
+}
+
 void row_read(struct ows *h, struct row *row, int64_t now_ns, struct reading *reading)
 {
 	reading_get(h, row->id, now_ns, reading);
 	row->alarms = standing_of(h, row->id);
+	read_command(h, row, reading);
+}
+
+const char *row_quality(const struct row *row, const struct reading *reading,
+                        char words[READING_WORDS])
+{
+	size_t len = strlen(reading_quality(reading, words));
+
+	if (row->differs)
+		snprintf(words + len, READING_WORDS - len, "; commanded %s", row->commanded);
+	return words;
 }
 
 bool rows_have_alarms(struct ows *h, const struct rows *rows)
@@ -119,5 +149,9 @@ void row_json(struct json *json, const struct row *row)
 	json_string(json, "io", row->output ? "output" : "input");
 	json_bool(json, "uncached", row->fresh);
 	json_bool(json, "alarm", row->alarm);
+	if (row->type == OWS_BOOL && row->commanded[0])
+		json_bool(json, "commanded", row->commanded[0] == '1');
+	else
+		json_number(json, "commanded", row->commanded);
 	standing_json(json, &row->alarms);
 }

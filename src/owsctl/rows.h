@@ -6,12 +6,17 @@
 #include "reading.h"
 #include "standing.h"
 
+#include "../signal/value.h"
+
 struct row {
 	int id; /* for ows_get(); right over ows_reopen() */
 	char *name;
 	char *path; /* NULL: a driver signal */
+	uint8_t type; /* enum ows_type */
 	bool output, fresh, alarm;
 	struct ows_alarm_state alarms; /* of the last row_read() */
+	char commanded[VALUE_TEXT_MAX]; /* likewise: the command; "" none, or a string */
+	bool differs;                   /* likewise: it is not the value */
 	/* what was seen last, see row_changed() */
 	bool seen;
 	uint8_t quality;
@@ -29,10 +34,14 @@ int rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool d
                  struct rows *rows);
 void rows_free(struct rows *rows);
 
-/* Its value, and how its alarms stand. */
+/* Its value, how its alarms stand, and what it is commanded. */
 void row_read(struct ows *h, struct row *row, int64_t now_ns, struct reading *reading);
 /* Can one of the signals have alarms? */
 bool rows_have_alarms(struct ows *h, const struct rows *rows);
+
+/* Quality in words, and the command where it is not the value. Returns words. */
+const char *row_quality(const struct row *row, const struct reading *reading,
+                        char words[READING_WORDS]);
 
 /* Is value, quality, error or an alarm another one than at the call before? */
 bool row_changed(struct row *row, const struct reading *reading);

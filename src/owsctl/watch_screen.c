@@ -108,7 +108,7 @@ static bool add_row(struct watch *watch, struct table *table, const struct row *
 	if (row->path)
 		ows_target(watch->h, reading->value.target, &target);
 	return table_add(table, (const char *const[]){row->name, value,
-	                                              reading_quality(reading, words),
+	                                              row_quality(row, reading, words),
 	                                              standing_text(&row->alarms, alarm), span,
 	                                              row->path ? row->path : "", target.name});
 }

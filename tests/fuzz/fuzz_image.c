@@ -154,6 +154,7 @@ static void read_all(void)
 {
 	struct ows_value value, values[16];
 	struct ows_alarm_state state;
+	struct ows_command told;
 	char *text = malloc(40);
 
 	TEST_ASSERT_NOT_NULL(text);
@@ -167,6 +168,7 @@ static void read_all(void)
 		ows_get_text(h, id, now_ns, &value, text, size);
 		TEST_ASSERT_NOT_NULL_MESSAGE(memchr(text, '\0', size), "a text without end");
 		ows_alarm_state(h, id, &state);
+		ows_command(h, id, &told);
 	}
 	ows_snapshot(h, now_ns, values, 16);
 	ows_get_signal(h, (int)fuzz_byte(&fuzz), now_ns, &value);

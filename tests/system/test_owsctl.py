@@ -85,6 +85,32 @@ def test_an_output_is_confirmed_on_the_bus(scene):
         assert server.read(relay + "/PIO") == value
 
 
+def test_a_command_that_the_output_does_not_follow_is_shown(scene):
+    server, daemon, _, relay = house(scene)
+
+    def row():
+        rows = json.loads(scene.owsctl(daemon, "--json", "list", "relay").stdout)
+        return rows[0]["value"], rows[0]["commanded"]
+
+    def line():
+        return scene.owsctl(daemon, "list", "relay").stdout
+    assert row()[1] is None and "commanded" not in line()
+    assert scene.owsctl(daemon, "set", "-w", "60", "relay", "on").returncode == 0
+    scene.until(lambda: row() == (True, True), 10, row)
+    assert "commanded" not in line()
+    assert scene.owsctl(daemon, "set", "-w", "60", "relay_WE", "off").returncode == 0
+    assert scene.owsctl(daemon, "set", "relay", "off").returncode == 0
+    scene.until(lambda: row() == (True, False), 10, row)
+    assert "good, simulated; commanded 0 " in line(), line()
+    assert server.read(relay + "/PIO") == "1"
+    terminal = Terminal(daemon, 24, 120, "watch", "relay")
+    terminal.until(lambda s: len(s) == 3 and "good, simulated; commanded 0 " in s[2], "the command")
+    os.write(terminal.fd, b"q")
+    assert terminal.end() == (0, True)
+    assert scene.owsctl(daemon, "set", "-w", "60", "relay_WE", "on").returncode == 0
+    scene.until(lambda: "commanded" not in line() and row() == (False, False), 10, line)
+
+
 def test_wait_sees_the_temperature_rise(scene):
     server, daemon, room, _ = house(scene)
     waiting = owsctl(scene, daemon, "wait", "room", ">", "25", "-t", "80")

@@ -304,9 +304,50 @@ static void test_every_quality_has_words(void)
 	TEST_ASSERT_EQUAL_STRING("device absent", ows_quality_text(OWS_Q_NO_DEVICE));
 }
 
+static void publish_command(uint32_t record, int64_t value, int64_t commanded, uint8_t flags)
+{
+	struct ows_sample sample = {.value = value, .quality = OWS_Q_GOOD, .flags = flags};
+	struct ows_attrs attrs = {.commanded = commanded, .flags = OWS_ATTR_COMMANDED};
+
+	image_publish(&in.image, record, &sample, &attrs, NULL);
+}
+
+static void test_a_command_is_told_beside_the_value(void)
+{
+	struct ows_command command;
+
+	instance_put(&in, 2, 1, now);
+	TEST_ASSERT_EQUAL(0, ows_command(h, ows_find(h, "relay"), &command));
+	TEST_ASSERT_FALSE(command.given || command.pending || command.safe);
+	publish_command(2, 1, 0, OWS_SAMPLE_PENDING);
+	TEST_ASSERT_EQUAL(0, ows_command(h, ows_find(h, "relay"), &command));
+	TEST_ASSERT_TRUE(command.given && command.pending && !command.safe);
+	TEST_ASSERT_EQUAL_INT64(0, command.integer);
+	TEST_ASSERT_EQUAL(1, get("relay").integer);
+	publish_command(1, value_of_double(1.5), value_of_double(-2.25), OWS_SAMPLE_SAFE);
+	TEST_ASSERT_EQUAL(0, ows_command(h, ows_find(h, "room1"), &command));
+	TEST_ASSERT_TRUE(command.given && !command.pending && command.safe);
+	TEST_ASSERT_EQUAL_DOUBLE(-2.25, command.number);
+	TEST_ASSERT_EQUAL_INT64(0, command.integer);
+}
+
+static void test_strings_and_what_is_no_signal_have_no_command(void)
+{
+	struct ows_command command;
+
+	publish_command(4, 0, 1, 0);
+	TEST_ASSERT_EQUAL(0, ows_command(h, ows_find(h, "label"), &command));
+	TEST_ASSERT_FALSE(command.given);
+	TEST_ASSERT_EQUAL(-ENOENT, ows_command(h, ows_find(h, "_RECONNECTS"), &command));
+	TEST_ASSERT_EQUAL(-ENOENT, ows_command(h, 12345, &command));
+	TEST_ASSERT_EQUAL(-ENOENT, ows_command(h, -1, &command));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
+	RUN_TEST(test_a_command_is_told_beside_the_value);
+	RUN_TEST(test_strings_and_what_is_no_signal_have_no_command);
 	RUN_TEST(test_a_value_comes_back_as_it_was_published);
 	RUN_TEST(test_integers_come_in_both_forms);
 	RUN_TEST(test_the_prefix_may_stand_before_a_name);

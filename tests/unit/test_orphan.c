@@ -155,6 +155,7 @@ static void test_every_way_to_look_at_an_orphan_says_so(void)
 {
 	int age = ows_find(h, "room_Age");
 	struct ows_alarm_state state;
+	struct ows_command command;
 	struct ows_daemon daemon;
 	struct ows_value v;
 	char text[64];
@@ -169,11 +170,13 @@ static void test_every_way_to_look_at_an_orphan_says_so(void)
 	TEST_ASSERT_EQUAL(-ESTALE, ows_daemon(h, ows_now(), &daemon));
 	TEST_ASSERT_FALSE(daemon.alive);
 	TEST_ASSERT_EQUAL(-ESTALE, ows_alarm_state(h, room, &state));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_command(h, room, &command));
 	TEST_ASSERT_EQUAL(0, ows_reopen(h));
 	TEST_ASSERT_EQUAL(0, ows_get(h, age, ows_now(), &v));
 	TEST_ASSERT_EQUAL(0, ows_daemon(h, ows_now(), &daemon));
 	TEST_ASSERT_TRUE(daemon.alive);
 	TEST_ASSERT_EQUAL(0, ows_alarm_state(h, room, &state));
+	TEST_ASSERT_EQUAL(0, ows_command(h, room, &command));
 }
 
 static void test_what_is_set_in_an_orphan_is_said_to_be_lost(void)
