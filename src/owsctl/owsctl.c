@@ -35,13 +35,17 @@ static const struct verb verbs[] = {
 	 "the devices that are there, or a configuration for them", verb_scan, .opens = true},
 };
 enum { JSON = 256 };
+#define USAGE_WIDTH 46 /* what is longer has its meaning in the next line */
 #define VERBS (sizeof(verbs) / sizeof(verbs[0]))
 
 static void usage(FILE *out)
 {
 	fputs("usage: owsctl [-n NAME | -t TARGET] [--json] VERB ...\n", out);
 	for (size_t i = 0; i < VERBS; i++)
-		fprintf(out, "  %-9s %-46s %s\n", verbs[i].name, verbs[i].usage, verbs[i].brief);
+		fprintf(out, "  %-9s %-*s%s%*s%s\n", verbs[i].name, USAGE_WIDTH, verbs[i].usage,
+		        strlen(verbs[i].usage) > USAGE_WIDTH ? "\n" : "",
+		        strlen(verbs[i].usage) > USAGE_WIDTH ? USAGE_WIDTH + 13 : 1, "",
+		        verbs[i].brief);
 	fputs("  -n NAME    instance, default OWS\n"
 	      "  -t TARGET  what dir, read, write and scan open; default: the instance where it\n"
 	      "             serves them, else localhost:4304 (owserver)\n"
