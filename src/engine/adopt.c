@@ -217,6 +217,7 @@ static void take_signal(struct signal *s, const struct signal *was)
 	if (item->limits.any && before->limits.any) {
 		s->limit = was->limit;
 		s->limit_log = was->limit_log;
+		s->limit_said = was->limit_said;
 		memcpy(s->limit_value, was->limit_value, sizeof(s->limit_value));
 		s->limit_count = was->limit_count;
 		s->limit_values = was->limit_values;

@@ -32,9 +32,20 @@ static void enter_raised(struct engine *e, struct signal *s, uint8_t kind)
 	char others[LOG_OTHERS];
 
 	enter(e, s, kind, OWS_ALARM_RAISED);
+	s->limit_said |= n != 0;
 	if (n)
 		log_warning(e->log, "%s: alarm: %s%s", s->item->name, ows_alarm_kind_text(kind),
 		            log_others(n, others));
+}
+
+/* Where the log has the one it has the other: it does not end with an alarm that is over. */
+static void enter_returned(struct engine *e, struct signal *s, uint8_t kind)
+{
+	enter(e, s, kind, OWS_ALARM_RETURNED);
+	if (s->limit_said)
+		log_notice(e->log, "%s: alarm: %s: returned to normal", s->item->name,
+		           ows_alarm_kind_text(kind));
+	s->limit_said = false;
 }
 
 static void show(struct signal *s)
@@ -79,7 +90,7 @@ void engine_limits(struct engine *e, struct signal *s)
 	reading.stale = !reading.bad && e->now_ns >= stale_at;
 	next = limit_evaluate(&s->limit, limits, &reading, e->now_ns, &news);
 	if (news.returned)
-		enter(e, s, news.returned, OWS_ALARM_RETURNED);
+		enter_returned(e, s, news.returned);
 	if (news.raised)
 		enter_raised(e, s, news.raised);
 	show(s);

@@ -69,6 +69,7 @@ struct signal {
 	/* limit alarms */
 	struct limit limit;
 	struct log_rate limit_log;
+	bool limit_said; /* the log has what was raised: it gets the return too */
 	int64_t limit_value[2]; /* of the update before the last, of the last */
 	uint32_t limit_count;   /* sample.count of the last */
 	uint8_t limit_values;   /* how many of the two are known */

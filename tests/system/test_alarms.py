@@ -108,6 +108,7 @@ def test_an_alarm_that_returns_waits_to_be_acknowledged(scene):
         server[FREEZER] = "20"
         scene.until(lambda: ("high high", "returned") in history(scene, daemon, "freezer"), 20,
                     "the alarm returns")
+        owsdtest.logged(daemon, "freezer: alarm: high high: returned to normal")
         scene.until(lambda: [a["state"] for a in alarms(scene, daemon)] ==
                     ["returned to normal unacknowledged"], 10, "it waits")
         assert scene.owsctl(daemon, "alarms", "ack", "--all").returncode == 0

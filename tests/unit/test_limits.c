@@ -6,7 +6,9 @@
 #include "unity.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #define T1 "/28.000000000001/temperature"
 #define T2 "/28.000000000002/temperature"
@@ -275,6 +277,42 @@ static void test_words_of_acknowledgement_overwritten_with_rubbish_do_no_harm(vo
 	TEST_ASSERT_EQUAL(2, entered());
 }
 
+/* Values that go up and down all the time; the log speaks of that now and then only. */
+static void test_the_log_has_the_return_of_each_alarm_whose_begin_it_has(void)
+{
+	static char said[65536];
+	unsigned raised = 0, returned = 0;
+	FILE *out = tmpfile();
+
+	TEST_ASSERT_NOT_NULL(out);
+	s.log = log_create(LOG_LEVEL_NOTICE);
+	start();
+	for (int i = 0; i < 40; i++) {
+		scene_put(&s, T1, i % 2 ? "20" : i % 3 ? "35" : "45", 0);
+		scene_run(&s, 2 * SCENE_S);
+		log_drain(s.log, fileno(out), 0);
+	}
+	ssize_t n = pread(fileno(out), said, sizeof(said) - 1, 0);
+	TEST_ASSERT_GREATER_THAN(0, n);
+	said[n] = '\0';
+	for (const char *at = said; (at = strstr(at, "room: alarm: ")) != NULL; at++) {
+		const char *end = strchr(at, '\n');
+		bool over = memmem(at, (size_t)(end - at), "returned to normal", 18);
+
+		raised += !over;
+		returned += over;
+		TEST_ASSERT_EQUAL_UINT_MESSAGE(returned + !over, raised, said);
+	}
+	TEST_ASSERT_GREATER_THAN_UINT(3, raised);
+	TEST_ASSERT_LESS_THAN_UINT(20, raised);
+	TEST_ASSERT_EQUAL_UINT(raised, returned);
+	struct log *log = s.log;
+	scene_end(&s);
+	log_destroy(log);
+	fclose(out);
+	scene_init(&s);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -294,5 +332,6 @@ int main(void)
 	RUN_TEST(test_an_output_has_limit_alarms_of_what_was_written);
 	RUN_TEST(test_a_limit_alarm_is_no_alarm_of_the_device);
 	RUN_TEST(test_words_of_acknowledgement_overwritten_with_rubbish_do_no_harm);
+	RUN_TEST(test_the_log_has_the_return_of_each_alarm_whose_begin_it_has);
 	return UNITY_END();
 }
