@@ -2,6 +2,7 @@
 /* owsctl get: values alone, or as JSON. */
 #include "names.h"
 #include "reading.h"
+#include "seen.h"
 #include "text.h"
 #include "verbs.h"
 
@@ -29,7 +30,7 @@ static int worse(int a, int b)
 	return a == CTL_FAILED || b == CTL_FAILED ? CTL_FAILED : a > b ? a : b;
 }
 
-static int get_one(struct ctl *ctl, struct ows *h, const char *name, struct reading *reading)
+static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struct reading *reading)
 {
 	char words[READING_WORDS];
 	int id = ows_find(h, name);
@@ -42,6 +43,7 @@ static int get_one(struct ctl *ctl, struct ows *h, const char *name, struct read
 		return ctl_fail("%s can only be set", name);
 	if (!reading_filled(reading))
 		return ctl_fail("%s: %s", name, error_text(reading->err));
+	seen_alarm(ctl, h, name, id, reading);
 	reading_round(reading, names_path(h, ctl->instance, name));
 	print_text(reading);
 	if (reading_good(reading))
@@ -52,8 +54,8 @@ static int get_one(struct ctl *ctl, struct ows *h, const char *name, struct read
 	return CTL_NOT_GOOD;
 }
 
-static int get_json(struct json *json, struct ows *h, const char *name, struct reading *reading,
-                    const struct when *now)
+static int get_json(const struct ctl *ctl, struct json *json, struct ows *h, const char *name,
+                    struct reading *reading, const struct when *now)
 {
 	int id = ows_find(h, name), status = CTL_DONE;
 
@@ -66,6 +68,7 @@ static int get_json(struct json *json, struct ows *h, const char *name, struct r
 		status = id == -ENOENT ? ctl_unknown(h, name) : CTL_FAILED;
 	} else {
 		reading_get(h, id, now->boot, reading);
+		seen_alarm(ctl, h, name, id, reading);
 		if (reading->err == -EACCES)
 			status = ctl_fail("%s can only be set", name);
 		else if (!reading_filled(reading))
@@ -99,7 +102,7 @@ int verb_get(struct ctl *ctl, int argc, char **argv)
 	if (ctl->json)
 		json_array(&json, NULL);
 	for (int i = optind; i < argc; i++) {
-		status = ctl->json ? get_json(&json, h, argv[i], &reading, &now)
+		status = ctl->json ? get_json(ctl, &json, h, argv[i], &reading, &now)
 		                   : get_one(ctl, h, argv[i], &reading);
 		worst = worse(worst, status);
 	}

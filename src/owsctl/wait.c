@@ -3,6 +3,7 @@
 #include "condition.h"
 #include "names.h"
 #include "rows.h"
+#include "seen.h"
 #include "verbs.h"
 
 #include <errno.h>
@@ -12,6 +13,7 @@
 #define SLICE    INT64_C(250000000) /* a value that grows old or a dead owsd sends no news */
 
 struct waiting {
+	const struct ctl *ctl;
 	struct ows *h;
 	const char *name;
 	int id;
@@ -25,6 +27,7 @@ struct waiting {
 static bool came(struct waiting *waiting)
 {
 	reading_get(waiting->h, waiting->id, ows_now(), waiting->reading);
+	seen_alarm(waiting->ctl, waiting->h, waiting->name, waiting->id, waiting->reading);
 	if (waiting->op)
 		return reading_good(waiting->reading) &&
 		       condition_holds(&waiting->condition, waiting->reading);
@@ -122,7 +125,7 @@ static int parse_limit(struct ctl *ctl, int argc, char **argv, int64_t *limit_ns
 int verb_wait(struct ctl *ctl, int argc, char **argv)
 {
 	static struct reading reading;
-	struct waiting waiting = {.reading = &reading};
+	struct waiting waiting = {.ctl = ctl, .reading = &reading};
 	const char *value = NULL;
 	int64_t limit_ns = NO_LIMIT;
 	int status = parse_limit(ctl, argc, argv, &limit_ns), at = optind;

@@ -10,10 +10,43 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* How many alarms of a signal have been read; by name, as a reload gives it another record. */
+struct seen {
+	char name[SIGNAL_NAME_MAX + 1];
+	uint32_t alarms;
+};
+
 struct signals {
 	struct ows *h;
 	bool may_set;
+	struct seen *seen; /* room for each alarm item */
+	size_t seen_count, seen_room;
 };
+
+/* Without memory an alarm is shown again rather than never. */
+static void make_room(struct signals *signals)
+{
+	const struct ows_map *map = &signals->h->map;
+	size_t items = signals->seen_count;
+	struct seen *grown;
+
+	for (uint32_t record = 1; record < map->count; record++)
+		items += (map_record(map, record)->flags & OWS_RECORD_ALARM) != 0;
+	if (items <= signals->seen_room)
+		return;
+	grown = realloc(signals->seen, items * sizeof(*grown));
+	if (!grown)
+		return;
+	signals->seen = grown;
+	signals->seen_room = items;
+}
+
+/* After a reload; while that is going on the old image is still the one that is right. */
+static void follow(struct signals *signals)
+{
+	if (handle_state(signals->h) && ows_reopen(signals->h) == 0)
+		make_room(signals);
+}
 
 int signals_open(const char *instance, struct signals **out)
 {
@@ -32,6 +65,7 @@ int signals_open(const char *instance, struct signals **out)
 		signals_close(signals);
 		return err;
 	}
+	make_room(signals);
 	*out = signals;
 	return 0;
 }
@@ -41,6 +75,7 @@ void signals_close(struct signals *signals)
 	if (!signals)
 		return;
 	ows_close(signals->h);
+	free(signals->seen);
 	free(signals);
 }
 
@@ -54,9 +89,7 @@ static int look_up(struct signals *signals, const char *name, struct ows_id *id)
 	struct ows *h = signals->h;
 	int record;
 
-	/* after a reload; while that is going on the old image is still the one that is right */
-	if (handle_state(h))
-		ows_reopen(h);
+	follow(signals);
 	record = attribute_lookup(h->instance, name, find_name, &h->map, &id->attribute);
 	if (record < 0)
 		return -ENOENT;
@@ -83,20 +116,38 @@ int signals_record(struct signals *signals, const char *name)
 	return look_up(signals, name, &id) ? -1 : id.record;
 }
 
-/* Who has no memory of his own gets the count. */
-static int read_alarms(struct ows *h, const struct ows_id *id, char *text, size_t room)
+/* Clients come and go: all of them are one reader, and this is what it has seen. */
+static bool take_alarms(struct signals *signals, const char *name, uint32_t alarms)
 {
-	char number[VALUE_TEXT_MAX];
-	struct ows_slot slot;
-	int n;
+	struct seen *seen = signals->seen;
+	size_t i = 0;
+	bool news;
 
-	if (!reader_slot(&h->map.records[id->record], &slot))
+	while (i < signals->seen_count && strcmp(seen[i].name, name) != 0)
+		i++;
+	news = i < signals->seen_count ? seen[i].alarms != alarms : alarms != 0;
+	if (i == signals->seen_count && news && i < signals->seen_room &&
+	    strlen(name) <= SIGNAL_NAME_MAX) {
+		memcpy(seen[i].name, name, strlen(name) + 1);
+		signals->seen_count++;
+	}
+	if (i < signals->seen_count)
+		seen[i].alarms = alarms;
+	return news;
+}
+
+static int read_alarms(struct signals *signals, const struct ows_id *id, char *text, size_t room)
+{
+	const struct ows_map *map = &signals->h->map;
+	struct ows_slot slot;
+
+	if (!reader_slot(map_record(map, (uint32_t)id->record), &slot))
 		return -EIO;
-	n = value_to_text(OWS_LARGE, slot.attrs.alarms, number);
-	if ((size_t)n > room)
+	if (room < 1)
 		return -EMSGSIZE;
-	memcpy(text, number, (size_t)n);
-	return n;
+	*text = take_alarms(signals, map_name(map, (uint32_t)id->record), slot.attrs.alarms) ? '1'
+	                                                                                    : '0';
+	return 1;
 }
 
 int signals_read(struct signals *signals, const char *name, int64_t now_ns, char *text,
@@ -109,7 +160,7 @@ int signals_read(struct signals *signals, const char *name, int64_t now_ns, char
 	if (err)
 		return err;
 	if (id.attribute == ATTR_ALARM)
-		return read_alarms(signals->h, &id, text, room);
+		return read_alarms(signals, &id, text, room);
 	err = handle_get_text(signals->h, &id, now_ns, &value, text, room);
 	if (err == -EACCES)
 		return err;
@@ -200,8 +251,7 @@ int signals_applied(struct signals *signals, const char *name, struct signals_co
 	struct ows_sample sample;
 	struct ows_id id;
 
-	if (handle_state(h))
-		ows_reopen(h);
+	follow(signals);
 	if (h->map.image->generation != command->generation) {
 		if (look_up(signals, name, &id) || id.attribute != ATTR_VALUE)
 			return -ENOENT;
