@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The bus contract: the backend of a target, the queue of a simple bus, suspending. */
 #include "hal/bus.h"
 
 #include <assert.h>
@@ -6,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* How often a suspended bus looks whether its target is there again. */
 #define LOOK_NS INT64_C(3000000000)
@@ -33,6 +35,33 @@ static bool is_bare_ipv6(const char *target, const char *colon)
 {
 	return strchr(colon + 1, ':') &&
 	       target[strspn(target, "0123456789abcdefABCDEF:.")] == '\0';
+}
+
+/*
+ * Adapters that OWFS takes by such a word, and that owsd reaches by others only. False: it is none.
+ */
+static bool is_others_adapter(const char *word, size_t len, char *why, size_t why_size)
+{
+	static const char *const usb[] = { "usb", "ds9490", "ds9490r", "ds2490" };
+	static const char *const serial[] = { "serial", "link", "linkusb", "ds9097", "ds9097u",
+		                              "ds2480b" };
+	bool found = false;
+
+	for (size_t i = 0; i < sizeof(usb) / sizeof(usb[0]) && !found; i++) {
+		found = strlen(usb[i]) == len && strncasecmp(word, usb[i], len) == 0;
+		if (found)
+			snprintf(why, why_size, "%s is a USB adapter: take target w1, which has a DS9490R "
+			         "by the kernel's ds2490, or an owserver (a host: owserver:%s)",
+			         usb[i], usb[i]);
+	}
+	for (size_t i = 0; i < sizeof(serial) / sizeof(serial[0]) && !found; i++) {
+		found = strlen(serial[i]) == len && strncasecmp(word, serial[i], len) == 0;
+		if (found)
+			snprintf(why, why_size, "%s is a serial adapter: let an owserver have it, and "
+			         "name that: localhost:4304 (a host: owserver:%s)",
+			         serial[i], serial[i]);
+	}
+	return found;
 }
 
 static int no_backend(const char *word, size_t word_len, char *why, size_t why_size)
@@ -69,10 +98,18 @@ int bus_create(const char *target, const struct bus_env *env, struct bus **bus, 
 		snprintf(why, why_size, "auto stands for several targets: name one of them");
 		return -EINVAL;
 	}
+	if (!ops && !(colon && is_host_and_port(target, colon)) &&
+	    is_others_adapter(target, word_len, why, why_size))
+		return -EINVAL;
 	if (!ops) {
 		if (target[0] != '[' && colon && is_bare_ipv6(target, colon)) {
 			snprintf(why, why_size,
 			         "an IPv6 address is written in brackets, as in [::1]:4304");
+			return -EINVAL;
+		}
+		if (strncmp(target, "/dev/tty", 8) == 0) {
+			snprintf(why, why_size, "a serial adapter (DS9097U, LinkUSB): let an owserver "
+			         "have it, and name that: localhost:4304");
 			return -EINVAL;
 		}
 		if (target[0] == '/') {

@@ -151,7 +151,7 @@ const char *signal_name_fault(const char *name)
 	for (; *p; p += bytes) {
 		bytes = utf8_decode(p, &code);
 		if (!bytes)
-			return "is not UTF-8";
+			return "is not UTF-8: convert the file, as with iconv -f cp1250 -t utf-8";
 		if (code < 0x20 || between(code, 0x7f, 0x9f))
 			return "holds a control character";
 		if (code == ' ' || code == 0xa0 || code == 0x1680 || between(code, 0x2000, 0x200f) ||

@@ -179,6 +179,7 @@ static void test_printable_names_are_accepted(void)
 	TEST_ASSERT_NULL(signal_name_fault(longest));
 }
 
+#define NOT_UTF8 "is not UTF-8: convert the file, as with iconv -f cp1250 -t utf-8"
 static void test_a_bad_name_is_refused_with_the_reason(void)
 {
 	static const struct {
@@ -198,11 +199,11 @@ static void test_a_bad_name_is_refused_with_the_reason(void)
 		{"a#b", "holds one of / \" # { }"},
 		{"a{b", "holds one of / \" # { }"},
 		{"a}b", "holds one of / \" # { }"},
-		{"latin\xe9", "is not UTF-8"},
-		{"cut\xe2\x82", "is not UTF-8"},
-		{"over\xc0\xaf", "is not UTF-8"},
-		{"half\xed\xa0\x80", "is not UTF-8"},
-		{"high\xf4\x90\x80\x80", "is not UTF-8"},
+		{"latin\xe9", NOT_UTF8},
+		{"cut\xe2\x82", NOT_UTF8},
+		{"over\xc0\xaf", NOT_UTF8},
+		{"half\xed\xa0\x80", NOT_UTF8},
+		{"high\xf4\x90\x80\x80", NOT_UTF8},
 		{"_DGNRESET", "is the name of a driver signal"},
 		{"_TRANSACTIONS", "is the name of a driver signal"},
 		{"_RECONNECTS", "is the name of a driver signal"},

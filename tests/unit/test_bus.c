@@ -107,9 +107,28 @@ static void test_a_host_named_like_a_scheme_is_said_in_full(void)
 
 static void test_an_unknown_scheme_is_refused_with_the_names_there_are(void)
 {
-	is_refused("usb:/dev/x", -EPROTONOSUPPORT, "null: late:");
-	is_refused("usb:", -EPROTONOSUPPORT, "'usb'");
+	is_refused("pci:/dev/x", -EPROTONOSUPPORT, "null: late:");
+	is_refused("pci:", -EPROTONOSUPPORT, "'pci'");
 	is_refused("foo:bar:baz", -EPROTONOSUPPORT, "'foo'");
+}
+
+/* The words of OWFS, which the DNS would be asked for else. */
+static void test_an_adapter_that_others_drive_is_refused_with_the_way_to_it(void)
+{
+	static const char *const usb[] = { "usb", "USB", "usb:all", "DS9490R", "ds2490" };
+	static const char *const serial[] = { "link", "LinkUSB", "DS9097U", "serial:/dev/ttyS0",
+		                              "/dev/ttyUSB0" };
+
+	for (size_t i = 0; i < sizeof(usb) / sizeof(usb[0]); i++) {
+		is_refused(usb[i], -EINVAL, "target w1");
+		is_refused(usb[i], -EINVAL, "owserver");
+	}
+	for (size_t i = 0; i < sizeof(serial) / sizeof(serial[0]); i++)
+		is_refused(serial[i], -EINVAL, "localhost:4304");
+	becomes("link:4304", "owserver");
+	becomes("usb2", "owserver");
+	becomes("owserver:usb", "owserver");
+	becomes("usb.example.org", "owserver");
 }
 
 static void test_a_wrong_port_is_called_that(void)
@@ -262,6 +281,7 @@ int main(void)
 	RUN_TEST(test_a_scheme_chooses_its_backend);
 	RUN_TEST(test_a_host_named_like_a_scheme_is_said_in_full);
 	RUN_TEST(test_an_unknown_scheme_is_refused_with_the_names_there_are);
+	RUN_TEST(test_an_adapter_that_others_drive_is_refused_with_the_way_to_it);
 	RUN_TEST(test_a_wrong_port_is_called_that);
 	RUN_TEST(test_a_host_has_to_be_one);
 	RUN_TEST(test_a_bare_ipv6_address_is_told_to_use_brackets);
