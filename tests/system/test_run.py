@@ -184,6 +184,26 @@ def test_it_needs_no_owserver_and_shows_good_values_marked_as_simulated(scene):
         terminal.gone()
 
 
+def test_the_house_has_a_limit_alarm_and_a_device_alarm_that_come_and_go(scene):
+    demo = owsdtest.SOURCE / "board/demo"
+    wire = (demo / "house.sim").read_text().replace("sine 60 6 2m", "sine 60 6 16s")
+    quick = wire.replace("0:1 10s:0 11s:1 repeat 30s", "0:1 2s:0 3s:1 repeat 4s")
+    assert quick.count("16s") == 1 and "repeat 4s" in quick, "the curves are those of the demonstration"
+    scene.file("house.sim", quick)
+    config = (demo / "house.rio").read_text().replace("sim:board/demo/house.sim",
+                                                      f"sim:{scene.path}/house.sim")
+    daemon = scene.owsd(config)
+
+    def events():
+        listed = json.loads(scene.owsctl(daemon, "--json", "alarms", "history").stdout or "[]")
+        return [(e["name"], e["alarm"], e["event"]) for e in listed]
+    for name, alarm in (("boiler", "high"), ("button", "device")):
+        for event in ("raised", "returned"):
+            owsdtest.until(lambda n=name, a=alarm, e=event: (n, a, e) in events(), 40,
+                           lambda n=name, e=event: f"{n} has {e}: {events()}")
+    assert scene.owsctl(daemon, "alarms", "ack", "boiler").returncode == 0
+
+
 def test_an_owserver_with_simulated_devices_is_started_and_ended(scene):
     if shutil.which("owserver") is None:
         owsdtest.skip("owserver is not installed")
