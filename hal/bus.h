@@ -121,6 +121,7 @@ struct bus_event {
 	uint8_t news; /* enum bus_news */
 	uint8_t rom[8];
 	int32_t err;
+	int64_t cache_ns; /* BUS_UP of a server: so old may be what is not asked fresh; 0: not known */
 	char text[BUS_EVENT_TEXT];
 };
 

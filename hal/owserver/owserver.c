@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "hal/owserver/listing.h"
+#include "hal/owserver/cache.h"
 #include "hal/owserver/simulated.h"
 #include "hal/owserver/status.h"
 #include "hal/owserver/talk.h"
@@ -116,9 +117,9 @@ static void go_down(struct owserver *server, int err, const char *text)
 	snprintf(server->loss.text, sizeof(server->loss.text), "%s", text);
 }
 
-static void go_up(struct owserver *server)
+static void go_up(struct owserver *server, int64_t cache_ns)
 {
-	struct bus_event event = { .news = BUS_UP };
+	struct bus_event event = { .news = BUS_UP, .cache_ns = cache_ns };
 
 	if (server->was_up)
 		bus_count(&server->counter[RECONNECTS], 1);
@@ -200,6 +201,7 @@ static int as_loss(int err)
 static void go_on_greeting(struct owserver *server)
 {
 	int err = talk_receive(&server->talk, slice_end(server));
+	int64_t cache_ns = 0;
 
 	if (err == 0 && server->bus.suspended) {
 		server->state = UP;
@@ -208,7 +210,9 @@ static void go_on_greeting(struct owserver *server)
 	if (err == 0)
 		err = simulated_ask(&server->talk, now_of(server) + NAMES_NS, &server->simulated);
 	if (err == 0)
-		go_up(server);
+		err = cache_ask(&server->talk, now_of(server) + NAMES_NS, &cache_ns);
+	if (err == 0)
+		go_up(server, cache_ns);
 	else if (err != -EAGAIN)
 		go_down(server, as_loss(err), server->talk.trouble);
 	else if (now_of(server) >= server->give_up_ns)

@@ -29,6 +29,34 @@ void lane_up(struct lane *lane, const char *text, int64_t now_ns)
 	engine_group_check(e, lane->port->group, now_ns);
 }
 
+/*
+ * A server with a cache may give the same value again and again, and nobody sees that: once for each
+ * target, those are named who ask it more often than it looks.
+ */
+static void say_cached(const struct lane *lane, int64_t cache_ns)
+{
+	const struct engine *e = lane->engine;
+	const struct signal *first = NULL;
+	unsigned count = 0;
+
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		const struct signal *s = &e->table.signals[row];
+
+		if (s->lane != lane->index || s->device == TABLE_NO_DEVICE || !signal_reads(s) ||
+		    s->item->fresh || s->item->alarm ||
+		    e->config->period_ns >= cache_ns / s->item->per_factor)
+			continue;
+		first = first ? first : s;
+		count++;
+	}
+	if (count)
+		log_notice(e->log, "%s: answers from a cache of %lld s, and %u of its signals (%s%s) "
+		           "are read more often: Uncached on reads the device each time, "
+		           "timeout_volatile in owfs.conf shortens the cache",
+		           lane->port->target, (long long)(cache_ns / 1000000000), count,
+		           first->item->name, count > 1 ? ", ..." : "");
+}
+
 /* Whatever another target does not take over goes bad. */
 static void fail(struct lane *lane, int err, int64_t now_ns)
 {
@@ -111,7 +139,11 @@ static void said_up(struct lane *lane, const struct bus_event *event, int64_t no
 
 	lane->said_up = true;
 	if (lane->open) {
+		bool first = !lane->was_up;
+
 		lane_up(lane, event->text, now_ns);
+		if (first && event->cache_ns)
+			say_cached(lane, event->cache_ns);
 	} else if (!lane->port->suspend && !way->back) { /* it cannot say so otherwise */
 		way->back = true;
 		way->back_ns = now_ns;

@@ -59,7 +59,7 @@ def owserver():
     def reply(data=b"", status=0):
         return sent + all_of_it + struct.pack("BbB", 0, status, len(data)) + data
 
-    greeting = connect + reply() + reply(b"Simulated.0") + reply(status=-2)
+    greeting = connect + reply() + reply(b"Simulated.0") + reply(status=-2) + reply(b"          15")
     ask = struct.pack("BB", 0x20, 0x1b)      # READ, 256 bytes, 20 s
     put("owserver", "read", greeting + ask + reply(b"     21.0625") + b"\0" + ask +
         reply(status=-1) + reply(status=0) + b"\0")

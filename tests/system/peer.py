@@ -19,8 +19,8 @@ As a program: peer.py [--host HOST] [--port PORT] [PATH=VALUE ...]. It prints it
 takes commands on standard input, one a line: a mode, `next MODE`, `set PATH VALUE`,
 `alarm DEVICE ...`, `down`, `up`, `requests` (prints how many), `quit` (so does the end of input).
 
-Modes. Greetings (NOP, and questions below /bus.N) are not counted, and they are answered properly
-in all modes but accept_close and dead.
+Modes. Greetings (NOP, and questions below /bus.N and /settings/timeout) are not counted, and they
+are answered properly in all modes but accept_close and dead.
   normal         answers
   refuse         answers, refuses persistence and closes      fragments  answers byte by byte
   slow S         answers after S seconds, a keep-alive every 0.2 s before
@@ -177,7 +177,7 @@ class Peer:
         path, _, data = _exactly(s, length).partition(b"\0")
         request = Request(kind, path.decode("latin-1"), data, flags, size)
         mode = self._mode
-        greeting = kind == NOP or request.path.startswith("/bus.")
+        greeting = kind == NOP or request.path.startswith(("/bus.", "/settings/timeout/"))
         if not greeting:
             self.requests.append(request)
             mode = self.ways.get(request.path, mode)

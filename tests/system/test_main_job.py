@@ -116,6 +116,26 @@ def test_a_signal_that_cannot_work_is_reported_at_start_and_the_others_live(scen
     until(lambda: scene.get(daemon, "good"), 10, "the good one is still good")
 
 
+def test_signals_that_are_read_more_often_than_the_cache_is_renewed_are_named_once(scene):
+    server = scene.owserver(tester=["28", "29"])
+    thermometer = next(d for d in server.devices(0) if d.startswith("/28."))
+
+    def started(**keys):
+        daemon = scene.owsd(owsdtest.rio(server.target, [
+            dict(Name=name, Path=thermometer + "/temperature", Type=raw("double"), IO=raw("input"),
+                 **keys) for name in ("room", "hall")], Period=0.1))
+        until(lambda: scene.get(daemon, "hall"), 10, "it reads")
+        return daemon
+    daemon = started()
+    said = "answers from a cache of 15 s, and 2 of its signals (room, ...) are read more often: Uncached on"
+    owsdtest.logged(daemon, said)
+    assert daemon.log().count("answers from a cache") == 1
+    for keys in (dict(Uncached=raw("on")), dict(PerFactor=150)):
+        quiet = started(**keys)
+        owsdtest.logged(quiet, "from down to up")
+        assert "answers from a cache" not in quiet.log(), keys
+
+
 def test_a_device_under_an_alias_is_found_by_its_id(scene):
     server = scene.owserver(mock=["28"])
     path = server.devices(0)[0]

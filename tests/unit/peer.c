@@ -27,6 +27,7 @@ static const struct {
 	{ FRAME_READ, "/boiler/address", "2867C6697351FF68" },
 	{ FRAME_READ, "/29.000029D60100/strange", "?" },
 	{ FRAME_READ, "/bus.0/interface/settings/name", "Simulated-Peer" },
+	{ FRAME_READ, "/settings/timeout/volatile", "          15" },
 	{ FRAME_WRITE, "/29.000029D60100/PIO.BYTE", "" },
 	{ FRAME_PRESENT, "/28.67C6697351FF", "12345678" },
 	{ FRAME_PRESENT, "/29.000029D60100", "12345678" },
@@ -201,10 +202,11 @@ static int act(const struct peer *peer, int fd, char letter, uint8_t *answer, si
 	return letter != 'r' && letter != 'c';
 }
 
-/* A NOP, or the question which buses there are. */
+/* A NOP, or the questions which buses there are and how old its answers may be. */
 static bool is_greeting(const struct frame_header *request, const char *path)
 {
-	return request->type == FRAME_NOP || strncmp(path, "/bus.", 5) == 0;
+	return request->type == FRAME_NOP || strncmp(path, "/bus.", 5) == 0 ||
+	       strncmp(path, "/settings/timeout/", 18) == 0;
 }
 
 static void serve(struct peer *peer, int fd)

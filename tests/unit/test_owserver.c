@@ -22,7 +22,8 @@ static void test_it_greets_before_it_is_up_and_says_where_it_is(void)
 {
 	serve("");
 	TEST_ASSERT_NOT_NULL(strstr(host.event[0].text, peer.target));
-	TEST_ASSERT_EQUAL_UINT(3, peer_saw(&peer.greetings));
+	TEST_ASSERT_EQUAL_INT64(INT64_C(15000000000), host.event[0].cache_ns);
+	TEST_ASSERT_EQUAL_UINT(4, peer_saw(&peer.greetings));
 	TEST_ASSERT_EQUAL_UINT(0, peer_saw(&peer.requests));
 }
 
