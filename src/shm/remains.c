@@ -98,7 +98,12 @@ static int find_files(const char *instance, glob_t *found)
 		if (err == GLOB_NOMATCH)
 			err = 0;
 	}
-	return err ? -ENOMEM : 0;
+	/* what this user's owsctl has read of the alarms; that of others is theirs to remove */
+	snprintf(pattern, sizeof(pattern), FOLDER "/" PREFIX "%s.seen.%u", instance,
+	         (unsigned)geteuid());
+	if (!err)
+		err = glob(pattern, GLOB_APPEND, NULL, found);
+	return err && err != GLOB_NOMATCH ? -ENOMEM : 0;
 }
 
 static int remove_file(const char *path, unsigned *files)

@@ -124,6 +124,9 @@ def test_what_owsctl_has_seen_is_kept_in_no_file_of_another(scene):
         f.write("999999999999999999999999\n-5 inputs\n7\n\0\x7f" + "9" * 5000)
     assert scene.owsctl(daemon, "get", "inputs_Alarm").stdout == "1\n"
     assert scene.owsctl(daemon, "get", "inputs_Alarm").stdout == "0\n"
+    daemon.stop()
+    assert scene.owsctl(None, "remove", daemon.name).returncode == 0
+    assert not os.path.exists(seen)
 
 
 def test_a_bus_without_alarm_search_reads_its_alarm_items_as_inputs(scene):
