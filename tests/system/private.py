@@ -4,8 +4,9 @@
     private.main(users=True)
 
 /dev/shm is a small one. With users (needs root) /etc/passwd and /etc/group have, beside what they
-had, the user and the groups of the package and the people that USERS lists; nothing of the machine
-is changed. as_user(NAME) begins a command that runs as one of them, without any right of root.
+had, the user and the groups of the package and the people that USERS lists; room() is a folder that
+all of them reach, and where the test's own files are; nothing of the machine is changed.
+as_user(NAME) begins a command that runs as one of them, without any right of root.
 """
 
 import os
@@ -18,6 +19,8 @@ import tempfile
 import owsdtest
 
 INSIDE = "OWSD_TEST_IN_NAMESPACE"
+# Whose contents nobody misses while an empty file system is over one of them
+ROOMS = ("/tmp", "/mnt", "/media", "/srv", "/var/tmp")
 OWSD, CONTROL = 64711, 64712
 # name: user id, groups; the first group is his own
 USERS = {
@@ -33,6 +36,20 @@ def as_user(name):
     uid, groups = USERS[name]
     return ["setpriv", f"--reuid={uid}", f"--regid={groups[0]}", f"--groups={','.join(map(str, groups))}",
             "--bounding-set=-all", "--inh-caps=-all", "--no-new-privs"]
+
+
+def room():
+    return pathlib.Path(os.environ.get(INSIDE, "/tmp"))
+
+
+def _free_room():
+    """The first that has neither the checkout, nor the build, nor this Python."""
+    needed = [pathlib.Path(path).resolve() for path in (owsdtest.SOURCE, owsdtest.BUILD, sys.argv[0], sys.prefix)]
+    for name in ROOMS:
+        path = pathlib.Path(name).resolve()
+        if path.is_dir() and not any(need.is_relative_to(path) for need in needed):
+            return str(path)
+    _skip(f"the checkout and its build leave none of {', '.join(ROOMS)} to it")
 
 
 def _write_users(folder):
@@ -54,25 +71,26 @@ def _skip(why):
 
 def main(users=False, at_once=1):
     if os.environ.get(INSIDE):
-        os.environ.pop("TMPDIR", None)
+        os.environ["TMPDIR"] = str(room())
         owsdtest.main(at_once)
     root = os.geteuid() == 0
     if users and not root:
         _skip("needs root, to become other users")
     if users and not shutil.which("setpriv"):
         _skip("setpriv is not installed")
+    place = _free_room() if users else "/tmp"
     with tempfile.TemporaryDirectory() as folder:
         mounts = "mount -t tmpfs -o size=3m,mode=1777 tmpfs /dev/shm"
         if users:
             # programs and files where everybody reaches them
             mounts += " && " + _write_users(pathlib.Path(folder)) + \
-                " && mount -t tmpfs -o mode=1777 tmpfs /tmp"
+                f" && mount -t tmpfs -o mode=1777 tmpfs {place}"
         inside = [shutil.which("unshare") or "unshare", "-m", *([] if root else ["-r"]), "sh", "-c",
-                  mounts + ' && cd /tmp && exec "$@"', "sh"]
+                  f'{mounts} && cd {place} && exec "$@"', "sh"]
         try:
             subprocess.run([*inside, "true"], check=True, capture_output=True)
         except (OSError, subprocess.CalledProcessError) as why:
             _skip(f"no mount namespace of one's own: {getattr(why, 'stderr', why)}")
         status = subprocess.run([*inside, sys.executable, os.path.abspath(sys.argv[0]), *sys.argv[1:]],
-                                env=dict(os.environ, **{INSIDE: "1"}), check=False).returncode
+                                env=dict(os.environ, **{INSIDE: place}), check=False).returncode
     sys.exit(status)

@@ -17,7 +17,8 @@ import sandbox
 from owsdtest import until
 
 SHM = pathlib.Path("/dev/shm")
-PLACE = pathlib.Path("/tmp/place")
+PLACE = private.room() / "place"
+NOWHERE = private.room() / "nowhere"
 KINDS = ("image", "command", "lock")
 
 
@@ -146,7 +147,7 @@ SQUATS = {
     "a file for all": "fd = os.open({path!r}, os.O_CREAT | os.O_RDWR, 0o666); os.fchmod(fd, 0o666); "
                       "os.write(fd, b'x' * 8192)",
     "a link to a file of owsd's": "os.symlink({victim!r}, {path!r})",
-    "a link to nowhere": "os.symlink('/tmp/nowhere', {path!r})",
+    "a link to nowhere": f"os.symlink({str(NOWHERE)!r}, {{path!r}})",
     "a pipe": "os.mkfifo({path!r}, 0o666); os.chmod({path!r}, 0o666)",
     "a directory": "os.mkdir({path!r})",
     "a socket": "socket.socket(socket.AF_UNIX).bind({path!r})",
@@ -170,7 +171,7 @@ def test_what_a_stranger_puts_in_the_way_is_refused_and_never_used(scene):
             owsdtest.logged(daemon, f" of user stranger ({private.USERS['stranger'][0]}) is in the "
                                     f"way: as root, rm -r {path}\n")
             assert path.lstat().st_ino == inode and victim.read_text() == "precious\n"
-            assert not pathlib.Path("/tmp/nowhere").exists()
+            assert not NOWHERE.exists()
             # nor does a reader believe in it
             assert ctl(scene, "plc", name, "get", "room").returncode not in (0, 3), (squat, kind)
             shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
