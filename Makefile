@@ -4,7 +4,8 @@
 #   make run                      the main job, on a simulated house; no root, nothing else needed
 #   make run TARGET=...           the same on localhost:4304, i2c:/dev/i2c-1, ...; only reads.
 #                                 owserver: on the genuine one, with simulated devices if need be
-#   make test                     unit and system tests (sets up what they need)
+#   make test                     unit and system tests (sets up what they need);
+#                                 TESTS='test_run.py test_shm.py' these system tests alone
 #   make all unit soak system bench install uninstall clean
 #   make bench-page               make bench and bench-kernel into docs/performance.md, with plots
 #   make clang sanitize m32       the slower checks
@@ -21,6 +22,9 @@
 #   make test-dist                that tarball built and run without git and network
 #   make deb ARCH=arm64           Debian packages in build/deb; SUITE=trixie for another Debian
 #   make test-package             packages of three architectures, lintian, install to purge
+#   make test-fresh               the first two commands in new systems of Debian 12 and 13, with
+#                                 make alone or with gcc; DEBIAN=bookworm HAVE=gcc AT=tmp
+#                                 ORDER=run-test TESTS=test_run.py for less
 #   make test-service             the service under systemd in QEMU, with the packages of make deb
 #   make test-gpio                GPIO lines of an arm64 guest, with libgpiod 1.6 and 2.x;
 #                                 test-gpio-pi the same of a Raspberry Pi 3
@@ -190,7 +194,7 @@ SO       := libows.so.$(VERSION)
 LIBRARY  := $(B)/$(SO) $(B)/libows.a $(B)/libows.pc
 
 .PHONY: all unit soak system test run bench install uninstall install-service uninstall-service \
-        deb test-package test-service dist test-dist clean \
+        deb test-package test-service test-fresh dist test-dist clean \
         examples unit-programs benches diagrams FORCE clang sanitize asan tsan m32
 all: $(PROGRAMS) $(LIBRARY) $(B)/core.a $(B)/with/libraries
 
@@ -324,13 +328,13 @@ $(B)/system/%.so: tests/system/preload/%.c $(B)/with/cc
 	$(Q)$(CC) -std=c17 $(WARN) $(CPPFLAGS) $(CFLAGS) -shared -fPIC -o $@ $< -ldl
 
 system: all examples $(SYSTEM_AIDS)
-	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/run
+	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/run $(TESTS:%=tests/system/%)
 
 # Tools may be missing before install-deps ran: so make is asked again after it
 test:
 	@sh board/install-deps build run test
 	@$(MAKE) --no-print-directory all
-	@sh tests/both $(MAKE) --no-print-directory
+	@$(if $(TESTS),$(MAKE) --no-print-directory system,sh tests/both $(MAKE) --no-print-directory)
 
 # A compiler is enough for the simulation
 run:
@@ -482,6 +486,16 @@ deb:
 test-package:
 	@sh board/install-deps chroot $(if $(OR_SKIP),|| true)
 	@sh tests/package/run $(if $(OR_SKIP),--or-skip) $(if $(SUITE),--suite $(SUITE)) $(ARCH)
+
+# The two commands of the README in new systems: DEBIAN=bookworm HAVE=gcc AT=tmp ORDER=run-test
+test-fresh: export DEBIAN := $(DEBIAN)
+test-fresh: export HAVE := $(HAVE)
+test-fresh: export AT := $(AT)
+test-fresh: export ORDER := $(ORDER)
+test-fresh: export TESTS := $(TESTS)
+test-fresh:
+	@sh board/install-deps chroot $(if $(OR_SKIP),|| true)
+	@tests/fresh/run $(if $(OR_SKIP),--or-skip)
 
 # The service under its own systemd in QEMU, with the packages of the last make deb
 test-service:
