@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* What a request's path means: a property of a device, a directory, a table that has no device. */
 #include <errno.h>
 #include <string.h>
 
@@ -46,7 +47,7 @@ static int resolve_property(struct job *job, const struct family *family,
 	}
 	bool directory = property ? property->type == PROPERTY_DIRECTORY
 	                          : is_directory(family, device, name, len);
-	if (!property && !directory)
+	if ((!property && !directory) || (directory && extension != EXTENSION_NONE))
 		return -ENOENT;
 	if (directory) {
 		if (job->req->op == BUS_READ || job->req->op == BUS_WRITE)
@@ -151,6 +152,7 @@ static int resolve_directory(struct job *job)
 static int resolve_structure(struct job *job)
 {
 	struct path_slice below = job->path.property;
+	char text[64];
 	size_t used;
 
 	below.text += strlen("structure");
@@ -168,11 +170,12 @@ static int resolve_structure(struct job *job)
 		return -ENOENT;
 	if (job->kind == JOB_STRUCTURE)
 		return 0;
-	if (used == below.len - 1)
+	if (used == below.len - 1 ||
+	    is_directory(job->table, NULL, below.text + 1 + used + 1, below.len - 1 - used - 1))
 		return 0;
-	return is_directory(job->table, NULL, below.text + 1 + used + 1, below.len - 1 - used - 1)
-	               ? 0
-	               : -ENOTDIR;
+	if (structure_read(below.text + 1, below.len - 1, text, sizeof(text)) < 0)
+		return -ENOENT;
+	return job->req->op == BUS_PROBE ? 0 : -ENOTDIR;
 }
 
 static int resolve_virtual(struct job *job)

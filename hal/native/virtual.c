@@ -37,6 +37,13 @@ int virtual_count(struct txn *txn, uint64_t count)
 	return 0;
 }
 
+/* For devices that this bus does not know, whatever is there. */
+static int write_nothing(struct txn *txn)
+{
+	(void)txn;
+	return 0;
+}
+
 static int read_arg(struct txn *txn)
 {
 	txn->number[0] = txn->property->arg;
@@ -191,6 +198,7 @@ static const struct property interface[] = {
 #define SINGLE(text, command)                                                             	{.name = (text), .type = PROPERTY_ASCII, .life = LIFE_VOLATILE,                     	 .access = ACCESS_READ, .size = 18, .arg = (command), .read = read_single}
 
 static const struct property simultaneous[] = {
+	VIRTUAL("iblss", PROPERTY_YESNO, LIFE_VOLATILE, ACCESS_BOTH, 0, virtual_zero, write_nothing),
 	PRESENT("present"),
 	PRESENT("present_ds2400"),
 	SINGLE("single", READ_ROM),

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A client's path, taken apart: is it of the targets, a signal, a return code, or nothing? */
 #include "node.h"
 
 #include "hal/native/format.h"
@@ -58,6 +59,56 @@ static void take_code(struct node *node, const char *name, size_t len)
 		node->kind = NODE_CODE;
 }
 
+/* /alarm/alarm, /alarm/bus.0, /bus.0/bus.0: no tree has them, though a .rio file may say so. */
+static bool branches_again(const char *text, size_t len)
+{
+	const char *end = text + len;
+	bool alarm = false, bus = false;
+	struct path one;
+
+	while (text < end) {
+		const char *slash = memchr(text, '/', (size_t)(end - text));
+		size_t n = (size_t)((slash ? slash : end) - text);
+
+		if (path_split(text, n, &one) || one.device.len || one.property.len)
+			return false;
+		if ((one.alarm && alarm) || (one.bus >= 0 && (alarm || bus)))
+			return true;
+		alarm |= one.alarm;
+		bus |= one.bus >= 0;
+		text += n + (slash != NULL);
+	}
+	return false;
+}
+
+/* There once, and not on each bus or among the alarms. */
+static bool is_of_the_root(const char *text, size_t len)
+{
+	return starts(text, len, "settings") || starts(text, len, "statistics") ||
+	       starts(text, len, "structure") || starts(text, len, "system");
+}
+
+static bool is_file_of_structure(const char *text, size_t len)
+{
+	static const char above[] = "structure/";
+	const struct property *property;
+	const struct family *family;
+	size_t used, stem;
+
+	if (!starts(text, len, "structure") || len < sizeof(above))
+		return false;
+	text += sizeof(above) - 1;
+	len -= sizeof(above) - 1;
+	family = structure_family(text, len, &used);
+	if (!family || used + 1 >= len)
+		return false;
+	text += used + 1;
+	len -= used + 1;
+	extension_split(text, len, &stem);
+	property = family_property(family, NULL, text, stem);
+	return property && property->type != PROPERTY_DIRECTORY;
+}
+
 static void take_virtual(struct node *node, const struct path *split)
 {
 	static const char codes[] = "settings/return_codes";
@@ -65,6 +116,11 @@ static void take_virtual(struct node *node, const struct path *split)
 	size_t len = split->property.len, word;
 
 	node->every = node->bus < 0;
+	if (((split->alarm || node->bus >= 0) && is_of_the_root(text, len)) ||
+	    (node->slash && is_file_of_structure(text, len))) {
+		node->kind = NODE_NONE;
+		return;
+	}
 	if (starts(text, len, codes) && node->bus < 0) {
 		take_code(node, text + sizeof(codes) - 1, len - (sizeof(codes) - 1));
 		return;
@@ -107,7 +163,8 @@ void node_parse(const char *path, size_t len, struct node *node)
 		node->slash = true;
 		len--;
 	}
-	if (path_split(path, len, &split))
+	if ((node->slash && path[len - 1] == '/') || path_split(path, len, &split) ||
+	    branches_again(path, len))
 		return;
 	node->kind = NODE_TARGET;
 	node->fresh = node->uncached = split.uncached;
@@ -132,6 +189,9 @@ void node_parse(const char *path, size_t len, struct node *node)
 		node->root = split.bus < 0 && !split.alarm;
 		node->every = split.bus < 0;
 	}
+	if (node->slash && (node->kind == NODE_SIGNAL || node->kind == NODE_CODE ||
+	                    (node->type && node->type != PROPERTY_DIRECTORY)))
+		node->kind = NODE_NONE;
 }
 
 /* Of devices of families that hal/native does not know: the names that are directories only. */

@@ -125,7 +125,7 @@ void work_next_target(struct serve *s, struct client *c)
 
 bool work_is_directory(const struct node *node)
 {
-	return node->devices || node->kind == NODE_SIGNALS || node->kind == NODE_CODES ||
+	return node->slash || node->devices || node->kind == NODE_SIGNALS || node->kind == NODE_CODES ||
 	       (node->has_device && !node->path[node->device_len]);
 }
 
@@ -174,7 +174,7 @@ static void present_answered(struct serve *s, struct client *c, int err)
 static void begin_get(struct serve *s, struct client *c)
 {
 	c->is_get = true;
-	if (work_is_directory(&c->node) || c->node.slash)
+	if (work_is_directory(&c->node))
 		work_want_directory(s, c, STEP_DIR);
 	else
 		work_read(s, c);
@@ -236,7 +236,7 @@ static void came_round(struct serve *s, struct client *c)
 	             c->request.type != FRAME_PRESENT;
 
 	count(s, COUNT_came_round, 1);
-	if (lists && (work_is_directory(&c->node) || c->node.slash))
+	if (lists && work_is_directory(&c->node))
 		answer_code(s, c, 0);
 	else
 		answer_error(s, c, -ENODEV);
@@ -246,6 +246,13 @@ static bool is_known(int32_t type)
 {
 	return type == FRAME_NOP || (type >= FRAME_READ && type <= FRAME_DIR) ||
 	       (type >= FRAME_PRESENT && type <= FRAME_GETSLASH);
+}
+
+/* A slash behind a property of a device, as far as its family is known. */
+static bool is_no_directory(const struct node *node)
+{
+	return node->slash && node->has_device && node->path[node->device_len] &&
+	       node->type != PROPERTY_DIRECTORY;
 }
 
 void work_begin(struct serve *s, struct client *c)
@@ -274,7 +281,7 @@ void work_begin(struct serve *s, struct client *c)
 		return;
 	}
 	via_pass(&c->via, r->tokens, r->token_count, s->token);
-	if (c->node.kind == NODE_NONE || (c->node.slash && !lists && !work_is_directory(&c->node)))
+	if (c->node.kind == NODE_NONE || (!lists && is_no_directory(&c->node)))
 		answer_error(s, c, -ENOENT);
 	else
 		work_go_on(s, c);

@@ -118,7 +118,7 @@ static void read_here(struct serve *s, struct client *c)
 
 void work_refuse_directory(struct serve *s, struct client *c)
 {
-	if (c->node.has_device && c->node.kind == NODE_TARGET)
+	if (c->node.kind == NODE_TARGET && !c->node.devices && (c->node.has_device || c->node.slash))
 		work_ask(s, c, STEP_REFUSE, BUS_PROBE, work_path(s, c), NULL, 0);
 	else
 		answer_error(s, c, -EISDIR);
