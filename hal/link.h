@@ -70,8 +70,8 @@ struct link_ops {
 	 */
 	int (*search)(struct link *link, bool alarm, uint8_t family, link_found *found, void *ctx);
 	/*
-	 * Is rom there (alarm: and in alarm)? 1, 0 or an error. Leaves it selected: the next bit() is
-	 * its next slot. NULL: made as search.
+	 * Is rom there (alarm: and in alarm)? 1, 0 or an error, -EBADMSG: the search was disturbed.
+	 * Leaves it selected: the next bit() is its next slot. NULL: made as search.
 	 */
 	int (*verify)(struct link *link, const uint8_t rom[8], bool alarm);
 	/*

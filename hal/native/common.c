@@ -6,6 +6,8 @@
 #include "hal/native/family.h"
 #include "hal/native/native.h"
 
+#define LOOKS 3
+
 enum { ADDRESS, REVERSED_ADDRESS, ID, REVERSED_ID, FAMILY, CRC, LOCATOR, TYPE };
 
 static int put(struct txn *txn, const char *text, size_t len)
@@ -58,14 +60,13 @@ static int read_identity(struct txn *txn)
 	return -EIO;
 }
 
+/* Once not found may be noise. */
 static int read_present(struct txn *txn)
 {
 	int there = txn_verify(txn, false);
 
-	if (there < 0)
-		return there;
-	txn->number[0] = there;
-	return 0;
+	txn->number[0] = there > 0;
+	return there ? (there < 0 ? there : 0) : ++txn->phase < LOOKS ? TXN_MORE : 0;
 }
 
 static int read_alias(struct txn *txn)

@@ -8,7 +8,6 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/native/ds2450.h"
 #include "hal/native/native.h"
 #include "hal/native/thermometer.h"
 
@@ -16,6 +15,9 @@
 #define GATHER_NS (3 * TXN_MS)
 #define GATHER_MAX_NS (3 * NATIVE_S)
 #define SIMULTANEOUS_NS (2 * NATIVE_S)
+#define SINGLE_NS (60 * NATIVE_S)
+#define LOOKS 3
+#define TRIES 3
 
 static bool is_thermometer(const struct device *device, unsigned channel)
 {
@@ -67,7 +69,7 @@ void convert_begin(struct native *native, struct job *job, int64_t now)
 	struct device *device = job->txn.device;
 
 	/* Who does not insist is served by a conversion that is under way or just over. */
-	if (!job->fresh && device->converted_ns && device->converted_ns + SIMULTANEOUS_NS > now &&
+	if (!job->fresh && !job->again && device->converted_ns && device->converted_ns + SIMULTANEOUS_NS > now &&
 	    convert_right(job)) {
 		job->ready_ns = device->converted_ns;
 		job->state = JOB_CONVERTING;
@@ -78,30 +80,41 @@ void convert_begin(struct native *native, struct job *job, int64_t now)
 	convert_prepare(native, job, now);
 }
 
-/* Read Power Supply of all at once: a one means that nobody is parasitic. */
-static int ask_all(struct native *native, struct job *job)
+/* Read Power Supply of all at once: ones mean that nobody is parasitic, or that nobody heard. */
+static int look_at_supply(struct link *link)
 {
 	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_READ_POWER};
-	struct channel *channel = &native->channel[job->txn.channel];
-	struct link *link = channel->link;
+	uint8_t slots;
+
+	/* A driver sees to those that are fed by the wire. */
+	if (link->files)
+		return 1;
 	int err = link->ops->reset(link);
 
-	job->txn.on_wire = true;
 	if (err > 0)
 		err = link->ops->write(link, command, sizeof(command), LINK_IDLE);
 	else if (!err)
 		return -ENODEV;
 	if (!err)
-		err = link->ops->bit(link, true, LINK_IDLE);
-	if (err == -EHOSTDOWN)
-		return -ENODEV;
-	if (err < 0) {
-		job->txn.link_error = err;
-		return err;
+		err = link->ops->read(link, &slots, 1);
+	return err == -EHOSTDOWN ? -ENODEV : err ? err : slots == 0xff;
+}
+
+static int ask_all(struct native *native, struct job *job)
+{
+	struct channel *channel = &native->channel[job->txn.channel];
+	int external = 1;
+
+	job->txn.on_wire = true;
+	for (int look = 0; look < LOOKS && external > 0; look++)
+		external = look_at_supply(channel->link);
+	if (external < 0) {
+		job->txn.link_error = external == -ENODEV ? 0 : external;
+		return external;
 	}
 	channel->power_asked = true;
-	channel->all_external = err;
-	for (unsigned i = 0; err && i < native->table.count; i++)
+	channel->all_external = external;
+	for (unsigned i = 0; external && i < native->table.count; i++)
 		if (is_thermometer(&native->table.devices[i], job->txn.channel))
 			native->table.devices[i].power = POWER_EXTERNAL;
 	return TXN_MORE;
@@ -198,14 +211,24 @@ static struct plan look(const struct native *native, unsigned channel)
 	return plan;
 }
 
+/*
+ * Those with a supply hold the line low while they convert: if nobody does, nobody heard. One that
+ * alone did not hear is hidden by the others; the rounds one by one find it. Fed by the wire they
+ * cannot show it: thermometer.c looks at what they latched.
+ */
 static int send_all(struct link *link, enum link_after after)
 {
 	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_CONVERT};
+	uint8_t busy;
 	int err = link->ops->reset(link);
 
 	if (err <= 0)
 		return err ? err : -ENODEV;
 	err = link->ops->write(link, command, sizeof(command), after);
+	if (!err && after == LINK_IDLE && !link->files) {
+		err = link->ops->read(link, &busy, 1);
+		err = err ? err : busy ? -EBADMSG : 0;
+	}
 	if (!err && link->ops->flush)
 		err = link->ops->flush(link);
 	return err == -EHOSTDOWN ? -ENODEV : err;
@@ -221,8 +244,9 @@ static void fail_due(struct native *native, unsigned channel, int err)
 
 		if (!job->req || job->state != JOB_DUE || job->txn.channel != channel)
 			continue;
-		if (err == -ENODEV || err == -ECOMM || !recovered) {
-			job->txn.link_error = err == -ENODEV ? 0 : err;
+		if (err == -ENODEV || err == -EBADMSG || err == -ECOMM || !recovered) {
+			job->txn.link_error = err == -ENODEV || err == -EBADMSG ? 0 : err;
+			job->txn.silent = err == -EBADMSG;
 			job_failed(native, job, err);
 		} else {
 			job_restart(native, job);
@@ -237,6 +261,13 @@ static int64_t convert_ns(const struct link *link, const struct device *device)
 	return link->files ? 0 : thermometer_convert_ns(device);
 }
 
+static void converts(struct device *device, int64_t until)
+{
+	if (device->converted_ns)
+		device->earlier_ns = device->converted_ns;
+	device->converted_ns = until;
+}
+
 static void converting(struct native *native, unsigned n, int64_t now, int64_t longest)
 {
 	struct channel *channel = &native->channel[n];
@@ -247,7 +278,7 @@ static void converting(struct native *native, unsigned n, int64_t now, int64_t l
 		struct device *device = &native->table.devices[i];
 
 		if (is_thermometer(device, n))
-			device->converted_ns = now + convert_ns(channel->link, device);
+			converts(device, now + convert_ns(channel->link, device));
 	}
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
@@ -259,15 +290,35 @@ static void converting(struct native *native, unsigned n, int64_t now, int64_t l
 	}
 }
 
-static int broadcast(struct native *native, unsigned n, bool strong, int64_t longest)
+/*
+ * Now and then all that are due are asked one by one, so that what each holds is no older than
+ * that even if it is deaf to the broadcast. It costs the wire's time while they convert.
+ */
+static bool is_single_round(struct channel *channel, unsigned due, int64_t now)
+{
+	if (!channel->single_ns)
+		channel->single_ns = now + SINGLE_NS;
+	if (now < channel->single_ns)
+		return false;
+	if (due == 1)
+		channel->single_ns = now + SINGLE_NS;
+	return true;
+}
+
+int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t longest)
 {
 	struct link *link = native->channel[n].link;
-	int err = send_all(link, strong ? LINK_STRONG : LINK_IDLE);
-	int64_t now = native_now(native);
+	int err = -EBADMSG;
 
-	native_count(native, COUNT_TRANSACTIONS);
+	for (int try = 0; try < TRIES && err == -EBADMSG; try++) {
+		err = send_all(link, strong ? LINK_STRONG : LINK_IDLE);
+		native_count(native, COUNT_TRANSACTIONS);
+		if (err == -EBADMSG)
+			native_count(native, COUNT_CHECKSUMS);
+	}
 	if (err < 0)
 		return err;
+	int64_t now = native_now(native);
 	master_good(native, n);
 	native_count(native, COUNT_CONVERSIONS);
 	if (link->files)
@@ -297,7 +348,10 @@ static void convert_one(struct native *native, unsigned n)
 		job_failed(native, first, -EOPNOTSUPP);
 		return;
 	}
-	int err = txn_end(&first->txn, txn_command(&first->txn, &command, 1));
+	int err = txn_command(&first->txn, &command, 1);
+	if (!err)
+		err = txn_started(&first->txn);
+	err = txn_end(&first->txn, err);
 	int64_t now = native_now(native);
 
 	job_saw(native, first, err, now);
@@ -306,7 +360,7 @@ static void convert_one(struct native *native, unsigned n)
 		return;
 	}
 	native_count(native, COUNT_CONVERSIONS);
-	device->converted_ns = now + convert_ns(native->channel[n].link, device);
+	converts(device, now + convert_ns(native->channel[n].link, device));
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
 
@@ -369,83 +423,18 @@ bool convert_step(struct native *native, int64_t now, int64_t *next)
 			convert_one(native, n);
 			return true;
 		}
+		if (!plan.parasitic && !channel->link->files &&
+		    is_single_round(channel, plan.due, now)) {
+			convert_one(native, n);
+			return true;
+		}
 		if (plan.reading || plan.locked)
 			continue;
-		int err = broadcast(native, n, plan.parasitic_due,
+		int err = convert_broadcast(native, n, plan.parasitic_due,
 		                    plan.parasitic_due ? plan.all_ns : plan.due_ns);
 		if (err < 0)
 			fail_due(native, n, err);
 		return true;
 	}
 	return false;
-}
-
-/* All DS2450 of a channel at once. Their checksum is one: they were told the same. */
-static int convert_voltage(struct native *native, unsigned n)
-{
-	static const uint8_t skip = SKIP_ROM, command[] = {DS2450_CONVERT, 0x0f, 0x00};
-	struct channel *channel = &native->channel[n];
-	struct txn txn = {.native = native, .link = channel->link, .channel = n};
-	uint8_t none;
-	int err = txn_raw(&txn, &skip, 1);
-
-	if (!err)
-		err = txn_write(&txn, command, sizeof(command));
-	if (!err)
-		err = txn_read_crc16(&txn, command, sizeof(command), &none, 0);
-	/* One more slot arms the pull-up, for those without a supply. */
-	if (!err)
-		err = channel->link->ops->bit(channel->link, true, LINK_STRONG);
-	native_count(native, COUNT_TRANSACTIONS);
-	if (err < 0)
-		return txn.link_error ? txn.link_error : err;
-	master_good(native, n);
-	int64_t end = native_now(native) + DS2450_CONVERT_NS;
-	channel->simultaneous_ns[SIMULTANEOUS_VOLTAGE] = end;
-	native->hold_ns[channel->link->chip % NATIVE_CHANNELS] = end;
-	native->holder[channel->link->chip % NATIVE_CHANNELS] = NULL;
-	return 0;
-}
-
-static int convert_temperature(struct native *native, unsigned n)
-{
-	bool parasitic = false;
-
-	for (unsigned i = 0; i < native->table.count; i++)
-		parasitic |= is_thermometer(&native->table.devices[i], n) &&
-		             native->table.devices[i].power != POWER_EXTERNAL;
-	return broadcast(native, n, parasitic, 750 * TXN_MS);
-}
-
-static bool has_family(const struct native *native, unsigned n, const struct family *family)
-{
-	for (unsigned i = 0; i < native->table.count; i++) {
-		const struct device *device = &native->table.devices[i];
-
-		if (device->present && device->channel == n && device->family == family)
-			return true;
-	}
-	return false;
-}
-
-void convert_all(struct native *native, struct job *job, int64_t now)
-{
-	unsigned n = job->channel;
-	int err;
-
-	(void)now;
-	if (job->property->arg == SIMULTANEOUS_TEMPERATURE)
-		err = convert_temperature(native, n);
-	else
-		err = has_family(native, n, &family_20) ? convert_voltage(native, n) : 0;
-	job->txn.channel = n;
-	if (err < 0 && err != -ENODEV) {
-		job->txn.link_error = err == -EBADMSG || err == -EOPNOTSUPP ? 0 : err;
-		job_failed(native, job, err);
-		return;
-	}
-	if (job->bus < 0 && ++job->channel < native->channels)
-		return;
-	job->taken = job->req->len;
-	job_answer(native, job, 0);
 }

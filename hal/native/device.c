@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The device table: places, and what is known of each chip. */
 #include "hal/native/device.h"
 
 #include <errno.h>
@@ -73,8 +74,9 @@ void device_forget(struct device *device)
 	device->resolution = 0;
 	device->stored = 0;
 	device->raw_ns = 0;
-	device->converted_ns = 0;
+	device->converted_ns = device->earlier_ns = device->latched_ns = 0;
 	device->shadow_known = false;
+	device->base_of = 0;
 	memset(device->note, 0, sizeof(device->note));
 }
 

@@ -50,10 +50,17 @@ struct device {
 	int16_t raw;        /* last good reading, sixteenths of a degree */
 	int64_t raw_ns;     /* when; 0: none */
 	int64_t converted_ns; /* when its last conversion ends or ended; 0: none known */
+	int64_t earlier_ns;   /* ... and the one before that */
+	uint8_t latched[3];   /* what tells one conversion's result from another's, when it was read */
+	int64_t latched_ns;   /* ... and of which conversion that was; 0: not known */
 
 	/* Switches: the output byte that was last written and verified. */
 	uint8_t shadow;
 	bool shadow_known;
+
+	/* What stood in registers before a change that has not succeeded yet (txn_keep). */
+	uint8_t base[24];
+	uint8_t base_of; /* which registers; 0: none */
 
 	/* For the family's own use. */
 	uint8_t note[8];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the sensors on a DS2438 need of the chip. */
+/* A DS2438: its pages and its configuration (ds2438.c), what it measures (family_26.c). */
 #ifndef HAL_NATIVE_DS2438_H
 #define HAL_NATIVE_DS2438_H
 
@@ -14,10 +14,21 @@
 enum { DS2438_TEMPERATURE = 1, DS2438_VDD = 2, DS2438_VAD = 4, DS2438_VIS = 8 };
 #define DS2438_STEPS 4 /* of the phase, for each quantity */
 
-/* A page of the memory by way of its scratchpad, CRC checked. */
+/*
+ * All of these take several calls. They use txn->mem[] as here:
+ *   0, 1 ds2438_configure   2, 4 for the caller   3, 8..15 ds2438_patch   16..19 ds2438_read
+ *
+ * A page of the memory as it is now.
+ */
 int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8]);
-/* Put n bytes into a page; several calls, phase 0 first. */
+/* Put n bytes into a page; phase 0 first. */
 int ds2438_patch(struct txn *txn, unsigned page, unsigned at, const uint8_t *bytes, unsigned n);
+/* Set the configuration's bits of mask. *before (if not NULL): the configuration as it was. */
+int ds2438_configure(struct txn *txn, uint8_t mask, uint8_t bits, uint8_t *before);
+/* What Convert V measures, DS2438_AD or 0, until the next ds2438_read(). */
+int ds2438_select(struct txn *txn, uint8_t select);
+/* Page 0 after that; -EBADMSG if something else was selected. */
+int ds2438_read_selected(struct txn *txn, uint8_t select, uint8_t bytes[8]);
 /* Measure; several calls. real[]: degrees, volts of the supply, of the input, of the shunt. */
 int ds2438_measure(struct txn *txn, unsigned what);
 

@@ -245,6 +245,11 @@ void job_run_property(struct native *native, struct job *job, int64_t now)
 		job_restart(native, job);
 		return;
 	}
+	if (txn->unproven && !job->again && (job->fresh || !txn->device->earlier_ns)) {
+		job->again = true;
+		job_restart(native, job);
+		return;
+	}
 	if (needs_merge(job)) {
 		job->merged = true;
 		txn->phase = 0;

@@ -8,62 +8,71 @@
 
 #include "hal/native/family.h"
 
-/* Not conducting and not there look the same: the second call makes the difference. */
-static int read_pio(struct txn *txn)
-{
-	int there = txn_verify(txn, txn->phase == 0);
+#define LOOKS 3
 
-	if (there < 0)
-		return there;
-	if (txn->phase++ == 0) {
-		txn->number[0] = there;
-		return there ? 0 : TXN_MORE;
-	}
-	txn->silent = !there;
-	return there ? 0 : -ENODEV;
-}
-
-static int read_pin(struct txn *txn)
+/*
+ * Not conducting, not there and not heard look the same: LOOKS that do not find it say that it does
+ * not conduct, and then it is looked for among all.
+ */
+static int is_there(struct txn *txn)
 {
 	int there = txn_verify(txn, false);
 
-	if (there <= 0) {
-		txn->silent = true;
-		return there < 0 ? there : -ENODEV;
-	}
-	int level = txn_bit(txn);
-	txn->number[0] = level;
-	return level < 0 ? level : 0;
+	txn->silent = !there;
+	return there < 0 ? there : there ? 0 : -ENODEV;
 }
 
+static int read_pio(struct txn *txn)
+{
+	int there;
+
+	if (txn->phase >= LOOKS)
+		return is_there(txn);
+	there = txn_verify(txn, true);
+	txn->number[0] = there > 0;
+	txn->phase++;
+	return there < 0 ? there : there ? 0 : TXN_MORE;
+}
+
+/* A chip that the last slot of the search did not select leaves a one, too. */
+static int read_pin(struct txn *txn)
+{
+	int err = is_there(txn), level = err ? err : txn_bit(txn);
+
+	if (level < 0)
+		return level;
+	if (txn->phase && level != txn->mem[0])
+		return -EBADMSG;
+	txn->mem[0] = (uint8_t)level;
+	txn->number[0] = level;
+	return ++txn->phase < LOOKS ? TXN_MORE : 0;
+}
+
+/* Looks, turned over if it is not as wanted, looks again; and is it there, if it is found off. */
 static int write_pio(struct txn *txn)
 {
-	bool want = txn->number[0] != 0;
-	int state;
+	enum { TURN = LOOKS, AFTER, THERE = AFTER + LOOKS };
+	bool want = txn->number[0] != 0, after = txn->phase >= AFTER;
+	int there;
 
-	switch (txn->phase) {
-	case 0:
-	case 2:
-		state = txn_verify(txn, true);
-		if (state < 0)
-			return state;
-		if (state == want && txn->phase == 0 && !want) {
-			txn->phase = 3;
-			return TXN_MORE;
-		}
-		if (state == want)
-			return 0;
-		txn->phase++;
-		return txn->phase == 3 ? -EIO : TXN_MORE;
-	case 1:
-		state = txn_command(txn, NULL, 0);
-		txn->phase = 2;
-		return state ? state : TXN_MORE;
-	default:
-		state = txn_verify(txn, false);
-		txn->silent = !state;
-		return state < 0 ? state : state ? 0 : -ENODEV;
+	if (txn->phase == THERE)
+		return is_there(txn);
+	if (txn->phase == TURN) {
+		there = txn_command(txn, NULL, 0);
+		txn->phase = AFTER;
+		return there ? there : TXN_MORE;
 	}
+	there = txn_verify(txn, true);
+	if (there < 0)
+		return there;
+	if (!there && ++txn->phase != TURN && txn->phase != THERE)
+		return TXN_MORE;
+	if (there == want) {
+		txn->phase = THERE;
+		return want ? 0 : TXN_MORE;
+	}
+	txn->phase = TURN;
+	return after ? -EIO : TXN_MORE;
 }
 
 static const struct property properties[] = {

@@ -2,6 +2,7 @@
 /* DS2406 and DS2407 (data sheet 19-6076): one or two switches, and 1 kbit of EPROM. */
 #include <errno.h>
 
+#include "hal/native/crc.h"
 #include "hal/native/memory.h"
 
 #define READ_STATUS 0xaa
@@ -13,18 +14,30 @@
 
 #define INFO_TWO_CHANNELS 0x40
 #define INFO_SUPPLY 0x80
+#define STATUS 7 /* the byte, and which registers it is for txn_base() */
 #define STATUS_OUTPUTS 0x60 /* 1: does not conduct */
 
 static const struct chip_memory memory = {.size = 128, .page = 32};
 
+static bool is_checked(const uint8_t command[3], const uint8_t in[4])
+{
+	return onewire_crc16_matches(onewire_crc16(onewire_crc16(0, command, 3), in, 2), in + 2);
+}
+
 static int channel_info(struct txn *txn, uint8_t control, uint8_t *info)
 {
-	uint8_t command[] = {CHANNEL_ACCESS, control, 0xff}, in[2];
+	uint8_t command[] = {CHANNEL_ACCESS, control, 0xff}, in[4];
 	struct device *device = txn->device;
 	int err = txn_command(txn, command, sizeof(command));
 
 	if (!err)
-		err = txn_read_crc16(txn, command, sizeof(command), in, sizeof(in));
+		err = txn_read(txn, in, sizeof(in));
+	if (!err && !is_checked(command, in)) {
+		/* That it was told to clear its latches: this is what they were. */
+		command[1] ^= ACCESS_RESET_LATCHES;
+		if ((control & ACCESS_RESET_LATCHES) || !is_checked(command, in))
+			err = -EBADMSG;
+	}
 	if (err)
 		return err;
 	*info = in[0];
@@ -101,8 +114,12 @@ static int change_status(struct txn *txn, uint8_t mask, uint8_t bits)
 	switch (txn->phase++) {
 	case 0:
 		err = read_status(txn, &status);
+		if (err)
+			return err;
+		txn_base(txn, STATUS, &status, 1);
+		txn_keep(txn, STATUS, &status, 1);
 		txn->mem[0] = (uint8_t)((status & ~mask) | bits) & 0x7f;
-		return err ? err : TXN_MORE;
+		return TXN_MORE;
 	case 1:
 		txn->device->shadow_known = false;
 		command[3] = txn->mem[0];
@@ -115,8 +132,25 @@ static int change_status(struct txn *txn, uint8_t mask, uint8_t bits)
 		return err ? err : TXN_MORE;
 	default:
 		err = read_status(txn, &status);
-		return err ? err : (status & 0x7f) == txn->mem[0] ? 0 : -EIO;
+		if (err)
+			return err;
+		if ((status & 0x7f) != txn->mem[0])
+			return -EIO;
+		txn_changed(txn);
+		return 0;
 	}
+}
+
+/* The outputs ahead of a change of one: not those that a change that failed has left. */
+static int merge_pio(struct txn *txn)
+{
+	uint8_t status = 0;
+	int err = read_status(txn, &status);
+
+	if (!err)
+		txn_base(txn, STATUS, &status, 1);
+	txn->bits = (uint32_t)(~status >> 5 & 3);
+	return err;
 }
 
 static int write_pio(struct txn *txn)
@@ -170,7 +204,9 @@ static bool never(const struct device *device)
 	{.name = (text), .type = (kind), .life = (life_), .access = ACCESS_READ, .read = (reads)}
 
 static const struct property properties[] = {
-	BITS("PIO", LIFE_STABLE, ACCESS_BOTH, 0, read_pio, write_pio),
+	{.name = "PIO", .type = PROPERTY_BITS, .life = LIFE_STABLE, .access = ACCESS_BOTH,
+	 .array = {2, INDEX_LETTERS, true}, .read = read_pio, .write = write_pio,
+	 .merge = merge_pio},
 	{.name = "T8A", .type = PROPERTY_DIRECTORY, .life = LIFE_STATIC, .visible = never},
 	{.name = "T8A/volt", .type = PROPERTY_FLOAT, .life = LIFE_VOLATILE, .access = ACCESS_READ,
 	 .array = {8, INDEX_NUMBERS, false}, .visible = never, .read = not_there},

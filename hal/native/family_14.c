@@ -3,7 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/native/family.h"
+#include "hal/native/memory.h"
 
 #define READ_MEMORY 0xf0
 #define WRITE_SCRATCHPAD 0x0f
@@ -32,60 +32,67 @@ static int read_bytes(struct txn *txn, uint8_t code, uint8_t *bytes, unsigned n)
 	return err ? err : txn_read(txn, bytes, n);
 }
 
-/* Twice, as there is no checksum. */
+static int look(struct txn *txn, unsigned number, uint8_t code, unsigned n)
+{
+	uint8_t command[] = {code, 0x00};
+
+	return memory_look(txn, number, command, sizeof(command), txn->mem, n);
+}
+
 static int read_area(struct txn *txn)
 {
 	const struct area *area = &areas[txn->property->arg];
-	int err = read_bytes(txn, area->read, txn->phase ? txn->data : txn->mem, area->size);
+	int err = look(txn, txn->phase++, area->read, area->size);
 
-	if (err || txn->phase++ == 0)
-		return err ? err : TXN_MORE;
+	if (err)
+		return err;
+	memcpy(txn->data, txn->mem, area->size);
 	txn->len = area->size;
-	return memcmp(txn->data, txn->mem, area->size) == 0 ? 0 : -EBADMSG;
+	return 0;
 }
 
+/* The looks also fill the scratchpad with what is there. */
 static int write_area(struct txn *txn)
 {
+	enum { WRITE = MEMORY_LOOKS, VERIFY, COPY };
 	const struct area *area = &areas[txn->property->arg];
 	uint8_t command[34] = {area->write, 0x00}, in[32];
 	static const uint8_t key = KEY;
+	unsigned step = txn->phase++;
 	int err;
 
-	switch (txn->phase++) {
-	case 0: /* This also fills the scratchpad with what is there. */
-		err = read_bytes(txn, area->read, txn->mem, area->size);
-		memcpy(in, txn->mem, area->size);
-		memcpy(txn->mem + txn->at, txn->data, txn->len);
-		txn->silent = false;
-		if (!err && memcmp(in, txn->mem, area->size) == 0)
-			return 0;
-		return err ? err : TXN_MORE;
-	case 1:
+	switch (step) {
+	case WRITE:
 		memcpy(command + 2, txn->mem, area->size);
 		err = txn_command(txn, command, 2u + area->size);
 		return err ? err : TXN_MORE;
-	case 2:
+	case VERIFY:
 		err = read_bytes(txn, area->verify, in, area->size);
 		return err                                         ? err
 		       : memcmp(in, txn->mem, area->size) == 0 ? TXN_MORE
 		                                               : -EBADMSG;
-	case 3:
+	case COPY:
 		err = txn_command(txn, &area->copy, 1);
 		return err ? err : txn_write_strong(txn, &key, 1, COPY_NS);
-	default:
+	case COPY + 1:
 		err = read_bytes(txn, area->read, in, area->size);
 		return err ? err : memcmp(in, txn->mem, area->size) == 0 ? 0 : -EIO;
+	default:
+		err = look(txn, step, area->read, area->size);
+		txn->silent = false;
+		if (err)
+			return err;
+		memcpy(in, txn->mem, area->size);
+		memcpy(txn->mem + txn->at, txn->data, txn->len);
+		return memcmp(in, txn->mem, area->size) == 0 ? 0 : TXN_MORE;
 	}
 }
 
 static int read_status(struct txn *txn)
 {
-	uint8_t command[] = {READ_STATUS, 0x00}, in = 0;
-	int err = txn_command(txn, command, sizeof(command));
+	int err = look(txn, txn->phase++, READ_STATUS, 1);
 
-	if (!err)
-		err = txn_read(txn, &in, 1);
-	txn->number[0] = in;
+	txn->number[0] = txn->mem[0];
 	txn->silent = false;
 	return err;
 }

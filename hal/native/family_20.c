@@ -46,7 +46,8 @@ static int read_page(struct txn *txn, unsigned page, uint8_t bytes[8])
 		err = txn_read_crc16(txn, command, sizeof(command), bytes, 8);
 	if (err || page != CONTROL)
 		return err;
-	if (power_on_flags(bytes) && device->note[0])
+	/* A disturbed write can set a flag as well. */
+	if (power_on_flags(bytes) && device->note[0] && !device->base_of)
 		txn->restarted = true;
 	device->note[0] = !power_on_flags(bytes);
 	return 0;
@@ -67,40 +68,62 @@ static int write_byte(struct txn *txn, unsigned address, uint8_t byte)
 }
 
 /*
- * Make bytes of a page as wanted, one per call; 0 when all are. mem[0]: the page was read,
- * mem[8..15]: what it holds.
+ * The registers that can be written: the pages from CONTROL on. A disturbed write may reach any of
+ * them, so all are looked at before one is changed. mem[0]: how many pages have been read,
+ * mem[8..31]: what they hold, mem[32..55]: what they are to hold where no change is wanted.
  */
-static int make_page(struct txn *txn, unsigned page, const uint8_t want[8])
-{
-	uint8_t *have = txn->mem + 8;
+#define REGISTERS 24
+#define HAVE 8
+#define WANT 32
 
-	for (unsigned i = 0; i < 8; i++) {
+static int load(struct txn *txn)
+{
+	unsigned n = txn->mem[0];
+
+	if (n == REGISTERS / 8)
+		return 0;
+	int err = read_page(txn, CONTROL + n, txn->mem + HAVE + 8 * n);
+	if (err)
+		return err;
+	memcpy(txn->mem + WANT + 8 * n, txn->mem + HAVE + 8 * n, 8);
+	if (++txn->mem[0] == REGISTERS / 8)
+		txn_base(txn, 1, txn->mem + WANT, REGISTERS);
+	return TXN_MORE;
+}
+
+/* What page is to hold. */
+static uint8_t *wanted(struct txn *txn, unsigned page)
+{
+	return txn->mem + WANT + 8 * (page - CONTROL);
+}
+
+/* Make the registers as wanted, a byte per call; 0 when all are. */
+static int make(struct txn *txn)
+{
+	uint8_t *have = txn->mem + HAVE, *want = txn->mem + WANT;
+
+	for (unsigned i = 0; i < REGISTERS; i++) {
 		if (have[i] == want[i])
 			continue;
-		int err = write_byte(txn, page * 8 + i, want[i]);
+		txn_keep(txn, 1, have, REGISTERS);
+		int err = write_byte(txn, CONTROL * 8 + i, want[i]);
 		have[i] = want[i];
-		if (page == CONTROL && !err)
+		if (!err)
 			txn->device->note[0] = !power_on_flags(have);
 		return err ? err : TXN_MORE;
 	}
+	txn_changed(txn);
 	return 0;
 }
 
 /* Settings that are written end what the power-on flags tell. */
-static int make_control(struct txn *txn, uint8_t want[8])
+static int make_control(struct txn *txn)
 {
+	uint8_t *want = wanted(txn, CONTROL);
+
 	for (int i = 1; i < 8; i += 2)
 		want[i] = (uint8_t)(want[i] & ~POR);
-	return make_page(txn, CONTROL, want);
-}
-
-static int load_page(struct txn *txn, unsigned page)
-{
-	if (txn->mem[0])
-		return 0;
-	int err = read_page(txn, page, txn->mem + 8);
-	txn->mem[0] = 1;
-	return err ? err : TXN_MORE;
+	return make(txn);
 }
 
 /* Results are fractions of the range; limits are steps of 20 or 10 mV. */
@@ -155,36 +178,46 @@ static int start_conversion(struct txn *txn, bool powered)
 	return txn_bit_strong(txn, DS2450_CONVERT_NS);
 }
 
+static void want_conversion(uint8_t control[8], int arg)
+{
+	for (int i = 0; i < 8; i += 2) {
+		control[i] = arg & EIGHT_BIT ? 8 : 0;
+		control[i + 1] = (uint8_t)((control[i + 1] & ~(RANGE_HIGH | POR)) |
+		                           (arg & HALF_RANGE ? 0 : RANGE_HIGH));
+	}
+}
+
 static int convert(struct txn *txn, int arg)
 {
-	uint8_t want[8];
+	uint8_t bytes[8], want[8];
 	int err;
 
 	switch (txn->phase) {
 	case 0:
-		err = load_page(txn, CALIBRATION);
-		if (err)
-			return err;
-		txn->mem[1] = txn->mem[8 + SUPPLY_AT % 8] == SUPPLY_ON;
-		txn->mem[0] = 0;
+		err = read_page(txn, CALIBRATION, bytes);
+		txn->mem[1] = bytes[SUPPLY_AT % 8] == SUPPLY_ON;
 		txn->phase = 1;
-		return TXN_MORE;
+		return err ? err : TXN_MORE;
 	case 1:
-		err = load_page(txn, CONTROL);
+		err = read_page(txn, CONTROL, bytes);
 		if (err)
 			return err;
-		for (int i = 0; i < 8; i += 2) {
-			want[i] = arg & EIGHT_BIT ? 8 : 0;
-			want[i + 1] = (uint8_t)((txn->mem[8 + i + 1] & ~RANGE_HIGH) |
-			                        (arg & HALF_RANGE ? 0 : RANGE_HIGH));
-		}
-		err = make_control(txn, want);
-		if (err)
-			return err;
-		txn->phase = 2;
+		memcpy(want, bytes, 8);
+		want_conversion(want, arg);
+		txn->phase = memcmp(want, bytes, 8) == 0 && !txn->device->base_of ? 3 : 2;
 		return TXN_MORE;
 	case 2:
+		err = load(txn);
+		if (err)
+			return err;
+		want_conversion(wanted(txn, CONTROL), arg);
+		err = make_control(txn);
+		if (err)
+			return err;
 		txn->phase = 3;
+		return TXN_MORE;
+	case 3:
+		txn->phase = 4;
 		return start_conversion(txn, txn->mem[1]);
 	default:
 		return take_results(txn);
@@ -211,14 +244,14 @@ static int read_bit(struct txn *txn)
 
 static int write_bit(struct txn *txn)
 {
-	uint8_t want[8], bit = (uint8_t)txn->property->arg;
-	int err = load_page(txn, CONTROL), at = 2 * txn->element + (txn->property->arg >> 8);
+	uint8_t bit = (uint8_t)txn->property->arg, *want;
+	int err = load(txn);
 
 	if (err)
 		return err;
-	memcpy(want, txn->mem + 8, 8);
-	want[at] = (uint8_t)(txn->number[0] != 0 ? want[at] | bit : want[at] & ~bit);
-	return make_control(txn, want);
+	want = wanted(txn, CONTROL) + 2 * txn->element + (txn->property->arg >> 8);
+	*want = (uint8_t)(txn->number[0] != 0 ? *want | bit : *want & ~bit);
+	return make_control(txn);
 }
 
 /* As owserver has it, and against its manual: 0 conducts, 1 does not, enabled or not. */
@@ -233,29 +266,26 @@ static int read_pio(struct txn *txn)
 
 static int write_pio(struct txn *txn)
 {
-	uint8_t want[8];
-	int err = load_page(txn, CONTROL), at = 2 * txn->element;
+	int err = load(txn);
 
 	if (err)
 		return err;
-	memcpy(want, txn->mem + 8, 8);
-	want[at] = (uint8_t)((want[at] & 0x0f) | OUTPUT_ENABLE |
-	                     (txn->number[0] != 0 ? OUTPUT_OFF : 0));
-	return make_control(txn, want);
+	uint8_t *want = wanted(txn, CONTROL) + 2 * txn->element;
+	*want = (uint8_t)((*want & 0x0f) | OUTPUT_ENABLE | (txn->number[0] != 0 ? OUTPUT_OFF : 0));
+	return make_control(txn);
 }
 
 /* The power-on flags of all channels. */
 static int write_unset(struct txn *txn)
 {
-	uint8_t want[8];
-	int err = load_page(txn, CONTROL);
+	int err = load(txn);
 
 	if (err)
 		return err;
-	memcpy(want, txn->mem + 8, 8);
+	uint8_t *want = wanted(txn, CONTROL);
 	for (int i = 1; i < 8; i += 2)
 		want[i] = (uint8_t)(txn->number[0] != 0 ? want[i] | POR : want[i] & ~POR);
-	return make_page(txn, CONTROL, want);
+	return make(txn);
 }
 
 static int read_limit(struct txn *txn)
@@ -272,17 +302,15 @@ static int write_limit(struct txn *txn)
 {
 	double unit = limit_unit(txn->property->arg), steps = txn->number[0] / unit + 0.5;
 	int at = 2 * txn->element + (txn->property->arg & HIGH_LIMIT ? 1 : 0);
-	uint8_t want[8];
 	int err;
 
 	if (!(steps >= 0 && steps < 256))
 		return -EINVAL;
-	err = load_page(txn, LIMITS);
+	err = load(txn);
 	if (err)
 		return err;
-	memcpy(want, txn->mem + 8, 8);
-	want[at] = (uint8_t)steps;
-	return make_page(txn, LIMITS, want);
+	wanted(txn, LIMITS)[at] = (uint8_t)steps;
+	return make(txn);
 }
 
 static int read_power(struct txn *txn)
@@ -297,7 +325,12 @@ static int read_power(struct txn *txn)
 
 static int write_power(struct txn *txn)
 {
-	return write_byte(txn, SUPPLY_AT, txn->number[0] != 0 ? SUPPLY_ON : 0);
+	int err = load(txn);
+
+	if (err)
+		return err;
+	wanted(txn, CALIBRATION)[SUPPLY_AT % 8] = txn->number[0] != 0 ? SUPPLY_ON : 0;
+	return make(txn);
 }
 
 static int get_page(struct txn *txn)
@@ -306,16 +339,33 @@ static int get_page(struct txn *txn)
 	return read_page(txn, (unsigned)txn->element, txn->data);
 }
 
-static int put_page(struct txn *txn)
+/* Of the memory n bytes from address on. The results are read-only. */
+static int put(struct txn *txn, unsigned address, const uint8_t *bytes, size_t n)
 {
-	uint8_t want[8];
-	int err = load_page(txn, (unsigned)txn->element);
+	size_t results = address < 8 ? 8 - address : 0;
+	uint8_t in[8];
+	int err;
 
+	if (n == 0)
+		return 0;
+	if (results > n)
+		results = n;
+	if (results && txn->phase == 0) {
+		err = read_page(txn, RESULTS, in);
+		txn->phase = 1;
+		return err ? err : memcmp(in + address, bytes, results) == 0 ? TXN_MORE : -EIO;
+	}
+	err = load(txn);
 	if (err)
 		return err;
-	memcpy(want, txn->mem + 8, 8);
-	memcpy(want + txn->at, txn->data, txn->len);
-	return make_page(txn, (unsigned)txn->element, want);
+	if (n > results)
+		memcpy(txn->mem + WANT + address + results - 8, bytes + results, n - results);
+	return make(txn);
+}
+
+static int put_page(struct txn *txn)
+{
+	return put(txn, 8 * (unsigned)txn->element + (unsigned)txn->at, txn->data, txn->len);
 }
 
 static int get_memory(struct txn *txn)
@@ -328,26 +378,9 @@ static int get_memory(struct txn *txn)
 	return ++txn->phase == 4 ? 0 : TXN_MORE;
 }
 
-/* phase: pages done. */
 static int put_memory(struct txn *txn)
 {
-	size_t end = txn->at + txn->len, first = txn->at / 8 * 8, page = first + 8 * txn->phase;
-	size_t from = page < txn->at ? txn->at : page, to = page + 8 < end ? page + 8 : end;
-	uint8_t want[8];
-
-	if (txn->len == 0)
-		return 0;
-	int err = load_page(txn, (unsigned)page / 8);
-	if (err)
-		return err;
-	memcpy(want, txn->mem + 8, 8);
-	memcpy(want + (from - page), txn->data + (from - txn->at), to - from);
-	err = make_page(txn, (unsigned)page / 8, want);
-	if (err)
-		return err;
-	txn->mem[0] = 0;
-	txn->phase++;
-	return to == end ? 0 : TXN_MORE;
+	return put(txn, (unsigned)txn->at, txn->data, txn->len);
 }
 
 /* A K30 sensor on a DS2450: A has 1 V per 1000 ppm, B is its reference of 3.2 V, D its supply. */

@@ -1,103 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * DS2438 (data sheet 19-5099): temperature, two voltages, a current, a clock. What stands on
- * boards with this chip (humidity, pressure, light) is computed in sensors_26.c.
+ * DS2438 (data sheet 19-5099): temperature, two voltages, a current, a clock. How its memory is
+ * read and written stands in ds2438.c; what stands on boards with this chip (humidity, pressure,
+ * light) is computed in sensors_26.c.
  */
 #include "hal/native/ds2438.h"
 
 #include <errno.h>
 #include <string.h>
 
-#define RECALL 0xb8
-#define READ_SCRATCHPAD 0xbe
-#define WRITE_SCRATCHPAD 0x4e
-#define COPY_SCRATCHPAD 0x48
 #define CONVERT_T 0x44
 #define CONVERT_V 0xb4
 #define CONVERT_NS (10 * TXN_MS)
-#define COPY_NS (10 * TXN_MS)
 #define CURRENT_NS (28 * TXN_MS) /* 36.41 measurements a second */
-
-static int read_scratchpad(struct txn *txn, unsigned page, uint8_t in[9])
-{
-	uint8_t command[] = {READ_SCRATCHPAD, (uint8_t)page};
-	int err = txn_command(txn, command, sizeof(command));
-
-	return err ? err : txn_read_crc8(txn, in, 9);
-}
-
-int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8])
-{
-	uint8_t recall[] = {RECALL, (uint8_t)page}, in[9];
-	int err = txn_command(txn, recall, sizeof(recall));
-
-	if (!err)
-		err = read_scratchpad(txn, page, in);
-	if (!err)
-		memcpy(bytes, in, 8);
-	return err;
-}
-
-static int write_scratchpad(struct txn *txn, unsigned page, const uint8_t *bytes, unsigned n)
-{
-	uint8_t command[10] = {WRITE_SCRATCHPAD, (uint8_t)page}, in[9];
-	int err;
-
-	memcpy(command + 2, bytes, n);
-	err = txn_command(txn, command, 2 + n);
-	if (!err)
-		err = read_scratchpad(txn, page, in);
-	if (err)
-		return err;
-	/* The upper half of the status byte is the chip's own. */
-	if (page == 0 ? (in[0] ^ bytes[0]) & 0x0f : memcmp(in, bytes, n) != 0)
-		return -EBADMSG;
-	return 0;
-}
-
-/* Steps 0 to 2 of *step; 0 when the page is written. */
-static int write_page(struct txn *txn, unsigned page, const uint8_t *bytes, unsigned n,
-                      uint8_t *step)
-{
-	uint8_t copy[] = {COPY_SCRATCHPAD, (uint8_t)page};
-	int err;
-
-	switch ((*step)++) {
-	case 0:
-		err = write_scratchpad(txn, page, bytes, n);
-		return err ? err : TXN_MORE;
-	case 1:
-		err = txn_command(txn, copy, sizeof(copy));
-		return err ? err : txn_wait(txn, COPY_NS);
-	default:
-		*step = 0;
-		return 0;
-	}
-}
-
-/* Set the configuration's bits of mask; 0 when they are. mem[0]: its step, mem[1]: the byte. */
-static int configure(struct txn *txn, uint8_t mask, uint8_t bits, uint8_t *before)
-{
-	uint8_t bytes[8];
-
-	if (txn->mem[0] == 0) {
-		int err = ds2438_read(txn, 0, bytes);
-
-		if (err)
-			return err;
-		if (before)
-			*before = bytes[0];
-		if ((bytes[0] & mask) == bits)
-			return 0;
-		txn->mem[1] = (uint8_t)((bytes[0] & 0x0f & ~mask) | bits);
-		txn->mem[0] = 1;
-		return TXN_MORE;
-	}
-	uint8_t step = (uint8_t)(txn->mem[0] - 1);
-	int err = write_page(txn, 0, &txn->mem[1], 1, &step);
-	txn->mem[0] = err > 0 ? (uint8_t)(step + 1) : 0;
-	return err;
-}
 
 static int16_t word(const uint8_t *bytes)
 {
@@ -108,16 +23,18 @@ static int convert(struct txn *txn, uint8_t command)
 {
 	int err = txn_command(txn, &command, 1);
 
+	if (!err)
+		err = txn_started(txn);
 	return err ? err : txn_wait(txn, CONVERT_NS);
 }
 
 /*
  * A chip whose supply broke down while it measured has zero in its registers, and they have a right
- * checksum: so a zero is measured once more. mem[8] and up: that it was, for each quantity.
+ * checksum: so a zero is measured once more. mem[20] and up: that it was, for each quantity.
  */
 static bool doubtful(struct txn *txn, int raw)
 {
-	uint8_t *again = &txn->mem[8 + txn->phase / DS2438_STEPS];
+	uint8_t *again = &txn->mem[20 + txn->phase / DS2438_STEPS];
 
 	if (raw || *again)
 		return false;
@@ -150,32 +67,19 @@ static int measure_temperature(struct txn *txn, double *value)
  */
 static int measure_voltage(struct txn *txn, uint8_t select, double *value)
 {
-	uint8_t bytes[9];
+	uint8_t bytes[8];
 	int err;
 
 	switch (txn->phase % DS2438_STEPS) {
 	case 0:
-		err = ds2438_read(txn, 0, bytes);
-		if (err) {
-			txn->phase++;
-			return err;
-		}
-		txn->mem[1] = (bytes[0] & 0x0f) ^ DS2438_AD;
-		txn->phase += (bytes[0] & DS2438_AD) == select ? 2 : 1;
-		return TXN_MORE;
-	case 1:
-		err = write_scratchpad(txn, 0, &txn->mem[1], 1);
-		txn->phase++;
+		err = ds2438_select(txn, select);
+		txn->phase += err == 0;
 		return err ? err : TXN_MORE;
-	case 2:
+	case 1:
 		txn->phase++;
 		return convert(txn, CONVERT_V);
 	default:
-		err = read_scratchpad(txn, 0, bytes);
-		if (!err && (bytes[0] & DS2438_AD) != select)
-			err = -EIO;
-		if (!err)
-			err = ds2438_read(txn, 0, bytes);
+		err = ds2438_read_selected(txn, select, bytes);
 		if (err)
 			return err;
 		if (doubtful(txn, word(bytes + 3) & 0x3ff)) {
@@ -195,9 +99,9 @@ static int measure_current(struct txn *txn, double *value)
 
 	switch (txn->phase % DS2438_STEPS) {
 	case 0:
-		err = configure(txn, DS2438_IAD, DS2438_IAD, txn->mem[0] ? NULL : &txn->mem[2]);
+		err = ds2438_configure(txn, DS2438_IAD, DS2438_IAD, &txn->mem[2]);
 		if (err)
-			return err < 0 ? err : TXN_MORE;
+			return err;
 		txn->phase++;
 		return txn->mem[2] & DS2438_IAD ? TXN_MORE : txn_wait(txn, CURRENT_NS);
 	case 1:
@@ -209,7 +113,7 @@ static int measure_current(struct txn *txn, double *value)
 		return TXN_MORE;
 	default:
 		*value = txn->real[3];
-		return txn->mem[2] & DS2438_IAD ? 0 : configure(txn, DS2438_IAD, 0, NULL);
+		return txn->mem[2] & DS2438_IAD ? 0 : ds2438_configure(txn, DS2438_IAD, 0, NULL);
 	}
 }
 
@@ -283,23 +187,7 @@ static int write_flag(struct txn *txn)
 {
 	uint8_t bit = (uint8_t)txn->property->arg;
 
-	return configure(txn, bit, txn->number[0] != 0 ? bit : 0, NULL);
-}
-
-int ds2438_patch(struct txn *txn, unsigned page, unsigned at, const uint8_t *bytes, unsigned n)
-{
-	uint8_t *step = &txn->mem[3], *whole = &txn->mem[8], before[8];
-
-	if (txn->phase == 0) {
-		int err = ds2438_read(txn, page, whole);
-
-		memcpy(before, whole, 8);
-		memcpy(whole + at, bytes, n);
-		txn->phase = 1;
-		*step = 0;
-		return err ? err : memcmp(before, whole, 8) == 0 ? 0 : TXN_MORE;
-	}
-	return write_page(txn, page, whole, 8, step);
+	return ds2438_configure(txn, bit, txn->number[0] != 0 ? bit : 0, NULL);
 }
 
 /* arg: page * 8 + byte. */
@@ -309,9 +197,11 @@ static int read_time(struct txn *txn)
 	unsigned at = (unsigned)txn->property->arg % 8;
 	int err = ds2438_read(txn, (unsigned)txn->property->arg / 8, page);
 
+	if (err)
+		return err;
 	txn->number[0] = (double)(page[at] | page[at + 1] << 8 | page[at + 2] << 16 |
 	                          (uint32_t)page[at + 3] << 24);
-	return err;
+	return 0;
 }
 
 static int write_time(struct txn *txn)
@@ -347,15 +237,15 @@ static int write_offset(struct txn *txn)
 	uint8_t bytes[] = {(uint8_t)stored, (uint8_t)(stored >> 8)};
 	switch (txn->mem[4]) {
 	case 0:
-		err = configure(txn, DS2438_IAD, 0, txn->mem[0] ? NULL : &txn->mem[2]);
-		txn->phase = 0;
+		err = ds2438_configure(txn, DS2438_IAD, 0, &txn->mem[2]);
 		break;
 	case 1:
 		err = ds2438_patch(txn, 1, 5, bytes, sizeof(bytes));
-		txn->phase = 1;
 		break;
 	default:
-		return txn->mem[2] & DS2438_IAD ? configure(txn, DS2438_IAD, DS2438_IAD, NULL) : 0;
+		return txn->mem[2] & DS2438_IAD
+		               ? ds2438_configure(txn, DS2438_IAD, DS2438_IAD, NULL)
+		               : 0;
 	}
 	txn->mem[4] += err == 0;
 	return err < 0 ? err : TXN_MORE;

@@ -157,6 +157,20 @@ static int write_latch(struct txn *txn)
 }
 
 /* Mask, polarity and control, written and read back. The power-on flag stays unless told. */
+#define CONDITION 1 /* which registers these are for txn_base() */
+
+/* The registers as they are, ahead of a change of mask, polarity or control. */
+static int before_condition(struct txn *txn)
+{
+	int err = registers(txn, txn->mem);
+
+	if (err)
+		return err;
+	txn_base(txn, CONDITION, txn->mem + MASK, 3);
+	txn_keep(txn, CONDITION, txn->mem + MASK, 3);
+	return 0;
+}
+
 static int write_condition(struct txn *txn, uint8_t mask, uint8_t polarity, uint8_t control)
 {
 	uint8_t command[] = {WRITE_CONDITION, 0x8b, 0x00, mask, polarity, control};
@@ -173,10 +187,14 @@ static int write_condition(struct txn *txn, uint8_t mask, uint8_t polarity, uint
 	err = registers(txn, value);
 	if (err)
 		return err;
-	return value[MASK] == mask && value[POLARITY] == polarity &&
-	                       ((value[CONTROL] ^ control) & 0x07) == 0
-	               ? 0
-	               : -EIO;
+	if (value[MASK] != mask || value[POLARITY] != polarity ||
+	    ((value[CONTROL] ^ control) & 0x07) || (value[CONTROL] & ~control & CONTROL_POR))
+		return -EIO;
+	/* Cleared by a write that was disturbed, it can only be said, not set. */
+	if (control & ~value[CONTROL] & CONTROL_POR)
+		txn->restarted = true;
+	txn_changed(txn);
+	return 0;
 }
 
 static int read_alarm(struct txn *txn)
@@ -197,35 +215,32 @@ static int read_alarm(struct txn *txn)
 static int write_alarm(struct txn *txn)
 {
 	uint32_t digits = (uint32_t)txn->number[0];
-	uint8_t mask = 0, polarity = 0, value[REGISTERS];
+	uint8_t mask = 0, polarity = 0;
 
 	if (txn->phase == 0) {
-		int err = registers(txn, value);
+		int err = before_condition(txn);
 
-		if (err)
-			return err;
-		txn->mem[0] = value[CONTROL];
 		txn->phase = 1;
-		return TXN_MORE;
+		return err ? err : TXN_MORE;
 	}
 	for (int i = 0; i < 8; i++, digits /= 10) {
 		mask |= (uint8_t)((digits % 10 >> 1 & 1) << i);
 		polarity |= (uint8_t)((digits % 10 & 1) << i);
 	}
 	return write_condition(txn, mask, polarity,
-	                       (uint8_t)((txn->mem[0] & (CONTROL_STROBE | CONTROL_POR)) |
+	                       (uint8_t)((txn->mem[CONTROL] &
+	                                  (CONTROL_STROBE | CONTROL_POR)) |
 	                                 (digits & 3)));
 }
 
 /* por and strobe are bits of the control register. */
 static int write_flag(struct txn *txn)
 {
-	uint8_t value[REGISTERS], bit = (uint8_t)txn->property->arg;
+	uint8_t bit = (uint8_t)txn->property->arg;
 
 	if (txn->phase == 0) {
-		int err = registers(txn, value);
+		int err = before_condition(txn);
 
-		memcpy(txn->mem, value, sizeof(value));
 		txn->phase = 1;
 		return err ? err : TXN_MORE;
 	}
@@ -237,14 +252,11 @@ static int write_flag(struct txn *txn)
 
 int ds2408_strobe(struct txn *txn)
 {
-	uint8_t value[REGISTERS];
-
 	if (txn->phase == 0) {
-		int err = registers(txn, value);
+		int err = before_condition(txn);
 
-		if (err || value[CONTROL] & CONTROL_STROBE)
+		if (err || txn->mem[CONTROL] & CONTROL_STROBE)
 			return err;
-		memcpy(txn->mem, value, sizeof(value));
 		txn->phase = 1;
 		return TXN_MORE;
 	}

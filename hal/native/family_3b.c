@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/native/memory.h"
 #include "hal/native/thermometer.h"
 
 #define CHIP note[0]
@@ -160,74 +161,77 @@ static int get_page(struct txn *txn, unsigned address, uint8_t *bytes)
 	return err ? err : txn_read(txn, bytes, PAGE);
 }
 
+static int look(struct txn *txn, unsigned number, unsigned address)
+{
+	uint8_t command[] = {READ_MEMORY, (uint8_t)address};
+
+	return memory_look(txn, number, command, sizeof(command), txn->mem, PAGE);
+}
+
 static int read_page(struct txn *txn)
 {
 	int err = identify(txn);
 
+	if (!err)
+		err = look(txn, txn->phase++, (unsigned)txn->element * PAGE);
 	if (err)
 		return err;
-	err = get_page(txn, (unsigned)txn->element * PAGE, txn->phase ? txn->data : txn->mem);
-
-	if (err || txn->phase++ == 0)
-		return err ? err : TXN_MORE;
+	memcpy(txn->data, txn->mem, PAGE);
 	txn->len = PAGE;
-	return memcmp(txn->data, txn->mem, PAGE) == 0 ? 0 : -EBADMSG;
+	return 0;
 }
 
 static int read_memory(struct txn *txn)
 {
-	unsigned at = txn->phase / 2 * PAGE;
+	unsigned at = txn->phase / MEMORY_LOOKS * PAGE;
 	int err = identify(txn);
 
+	if (!err)
+		err = look(txn, txn->phase++ % MEMORY_LOOKS, at);
 	if (err)
 		return err;
-	err = get_page(txn, at, txn->phase % 2 ? txn->data + at : txn->mem);
-
-	if (err)
-		return err;
-	if (txn->phase++ % 2 == 0)
-		return TXN_MORE;
-	if (memcmp(txn->data + at, txn->mem, PAGE) != 0)
-		return -EBADMSG;
+	memcpy(txn->data + at, txn->mem, PAGE);
 	txn->len = at + PAGE;
 	return txn->len < 128 ? TXN_MORE : 0;
 }
 
-/*
- * n bytes from at on in a page: read it, write the second scratchpad, read it back, copy, read
- * again.
- */
+/* n bytes from at on in a page: looks, write the second scratchpad, read it back, copy, read again. */
+enum { WRITE = MEMORY_LOOKS, VERIFY, COPY, CHECK, PAGE_STEPS };
+
 static int put_page(struct txn *txn, unsigned address, size_t at, const uint8_t *bytes, size_t n)
 {
 	uint8_t command[2 + PAGE] = {WRITE_SCRATCHPAD_2, (uint8_t)address}, in[PAGE];
 	uint8_t verify[] = {READ_SCRATCHPAD_2, (uint8_t)address};
 	static const uint8_t copy[] = {COPY_SCRATCHPAD_2, COPY_KEY};
+	unsigned step = txn->phase++ % PAGE_STEPS;
 	int err;
 
-	switch (txn->phase++ % 5) {
-	case 0:
-		err = get_page(txn, address, in);
-		memcpy(txn->mem, in, PAGE);
-		memcpy(txn->mem + at, bytes, n);
-		txn->silent = false;
-		if (err || memcmp(txn->mem, in, PAGE) != 0)
-			return err ? err : TXN_MORE;
-		txn->phase += 4;
-		return 0;
-	case 1:
+	switch (step) {
+	case WRITE:
 		memcpy(command + 2, txn->mem, PAGE);
 		err = txn_command(txn, command, sizeof(command));
 		return err ? err : TXN_MORE;
-	case 2:
+	case VERIFY:
 		err = txn_command(txn, verify, sizeof(verify));
 		if (!err)
 			err = txn_read(txn, in, PAGE);
 		return err ? err : memcmp(in, txn->mem, PAGE) == 0 ? TXN_MORE : -EBADMSG;
-	case 3:
+	case COPY:
 		return txn_command_strong(txn, copy, sizeof(copy), COPY_NS);
-	default:
+	case CHECK:
 		err = get_page(txn, address, in);
 		return err ? err : memcmp(in, txn->mem, PAGE) == 0 ? 0 : -EIO;
+	default:
+		err = look(txn, step, address);
+		txn->silent = false;
+		if (err)
+			return err;
+		memcpy(in, txn->mem, PAGE);
+		memcpy(txn->mem + at, bytes, n);
+		if (memcmp(txn->mem, in, PAGE) != 0)
+			return TXN_MORE;
+		txn->phase += PAGE_STEPS - MEMORY_LOOKS;
+		return 0;
 	}
 }
 
@@ -241,7 +245,7 @@ static int write_page(struct txn *txn)
 
 static int write_memory(struct txn *txn)
 {
-	size_t end = txn->at + txn->len, page = txn->at / PAGE * PAGE + txn->phase / 5 * PAGE;
+	size_t end = txn->at + txn->len, page = txn->at / PAGE * PAGE + txn->phase / PAGE_STEPS * PAGE;
 	size_t from = page < txn->at ? txn->at : page, to = page + PAGE < end ? page + PAGE : end;
 	int err = identify(txn);
 

@@ -253,6 +253,9 @@ void hunt_locate(struct native *native, struct job *job, int64_t now)
 
 	native_count(native, COUNT_TRANSACTIONS);
 	int there = search_verify(channel->link, job->path.rom, false);
+
+	if (there == -EBADMSG)
+		there = 0;
 	if (there < 0) {
 		bool known = job->verified;
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* One request on its way: what it waits for, its next step, what follows a failure. */
 #include <errno.h>
 #include <string.h>
 
@@ -243,7 +244,7 @@ static void run_probe(struct native *native, struct job *job, int64_t now)
 	job_saw(native, job, there > 0 ? 0 : -ENODEV, now);
 	if (job->txn.link_error)
 		job_failed(native, job, there);
-	else if (there)
+	else if (there > 0)
 		job_answer(native, job, 0);
 	else
 		look_for(native, job, -ENODEV);

@@ -10,40 +10,39 @@
 #define READ_MEMORY 0xf0
 #define WRITE_SCRATCHPAD 0x0f
 #define READ_SCRATCHPAD 0xaa
-#define CHUNK 32
 #define ROW_MAX 32
 
 /*
- * These memories have no checksum of their own: each chunk is read twice, and has to be the same.
- * txn->mem[] holds what was read first.
+ * These memories have no checksum of their own: each chunk is read MEMORY_LOOKS times, and has to
+ * be the same. kept holds what was read first.
  */
-static int read_chunk(struct txn *txn, unsigned address, unsigned n)
+int memory_look(struct txn *txn, unsigned look, const uint8_t *command, size_t command_n,
+                uint8_t *kept, size_t n)
 {
-	uint8_t command[] = {READ_MEMORY, (uint8_t)address, (uint8_t)(address >> 8)};
-	uint8_t again[CHUNK];
-	int err = txn_command(txn, command, sizeof(command));
+	uint8_t again[MEMORY_CHUNK];
+	int err = txn_command(txn, command, command_n);
 
 	if (!err)
 		err = txn_read(txn, again, n);
 	if (err)
 		return err;
-	if (txn->phase % 2 == 0) {
-		memcpy(txn->mem, again, n);
-		return TXN_MORE;
-	}
-	return memcmp(txn->mem, again, n) == 0 ? 0 : -EBADMSG;
+	if (look == 0)
+		memcpy(kept, again, n);
+	else if (memcmp(kept, again, n) != 0)
+		return -EBADMSG;
+	return look + 1 < MEMORY_LOOKS ? TXN_MORE : 0;
 }
 
 static int read_range(struct txn *txn, unsigned address, unsigned n)
 {
-	unsigned at = txn->phase / 2 * CHUNK;
-	unsigned part = n - at < CHUNK ? n - at : CHUNK;
-	int err = read_chunk(txn, address + at, part);
+	unsigned at = txn->phase / MEMORY_LOOKS * MEMORY_CHUNK, from = address + at;
+	unsigned part = n - at < MEMORY_CHUNK ? n - at : MEMORY_CHUNK;
+	uint8_t command[] = {READ_MEMORY, (uint8_t)from, (uint8_t)(from >> 8)};
+	int err = memory_look(txn, txn->phase++ % MEMORY_LOOKS, command, sizeof(command), txn->mem,
+	                      part);
 
-	if (err < 0)
+	if (err)
 		return err;
-	if (txn->phase++ % 2 == 0)
-		return TXN_MORE;
 	memcpy(txn->data + at, txn->mem, part);
 	txn->len = at + part;
 	return txn->len < n ? TXN_MORE : 0;
@@ -118,14 +117,14 @@ static int copy_row(struct txn *txn, const struct chip_memory *memory, unsigned 
 }
 
 /*
- * Row by row: read what is there, put the new bytes in, and write if it differs, for an EEPROM
- * wears out. Five calls a row; mem[8..] holds the row.
+ * Row by row: look what is there, put the new bytes in, and write if it differs, for an EEPROM
+ * wears out. mem[8..] holds the row.
  */
 static int write_range(struct txn *txn, const struct chip_memory *memory, unsigned address, unsigned n)
 {
-	enum { READ, WRITE, VERIFY, COPY, CHECK, STEPS };
+	enum { WRITE = MEMORY_LOOKS, VERIFY, COPY, CHECK, STEPS };
 	unsigned row = memory->row, first = address / row * row;
-	unsigned here = first + txn->phase / STEPS * row;
+	unsigned here = first + txn->phase / STEPS * row, step = txn->phase % STEPS;
 	unsigned from = here < address ? address : here;
 	unsigned to = here + row < address + n ? here + row : address + n;
 	uint8_t command[] = {READ_MEMORY, (uint8_t)here, (uint8_t)(here >> 8)};
@@ -135,14 +134,7 @@ static int write_range(struct txn *txn, const struct chip_memory *memory, unsign
 
 	if (n == 0)
 		return 0;
-	switch (txn->phase % STEPS) {
-	case READ:
-	case CHECK:
-		err = txn_command(txn, command, sizeof(command));
-		if (!err)
-			err = txn_read(txn, in, row);
-		txn->silent = false;
-		break;
+	switch (step) {
 	case WRITE:
 		err = write_row(txn, memory, here, bytes);
 		break;
@@ -152,16 +144,25 @@ static int write_range(struct txn *txn, const struct chip_memory *memory, unsign
 	case COPY:
 		err = copy_row(txn, memory, here);
 		break;
+	case CHECK:
+		err = txn_command(txn, command, sizeof(command));
+		if (!err)
+			err = txn_read(txn, in, row);
+		txn->silent = false;
+		if (!err && memcmp(in, bytes, row) != 0)
+			err = -EIO;
+		break;
+	default:
+		err = memory_look(txn, step, command, sizeof(command), bytes, row);
+		txn->silent = false;
 	}
 	if (err < 0)
 		return err;
-	if (txn->phase % STEPS == CHECK && memcmp(in, bytes, row) != 0)
-		return -EIO;
-	if (txn->phase % STEPS == READ) {
-		memcpy(bytes, in, row);
+	if (step == MEMORY_LOOKS - 1) {
+		memcpy(in, bytes, row);
 		memcpy(bytes + (from - here), txn->data + (from - address), to - from);
 		if (memcmp(bytes, in, row) == 0)
-			txn->phase += CHECK;
+			txn->phase += STEPS - MEMORY_LOOKS;
 	}
 	txn->phase++;
 	return to == address + n && txn->phase % STEPS == 0 ? 0 : TXN_MORE;

@@ -19,6 +19,16 @@ struct chip_memory {
 };
 
 /*
+ * Bytes without a checksum are read so many times, and have to be the same: noise that turns over
+ * one bit in a thousand would get past two looks at a page once in 4,000.
+ */
+#define MEMORY_LOOKS 3
+#define MEMORY_CHUNK 32
+/* Look number look, from 0: TXN_MORE, and 0 behind the last. kept: n bytes from call to call. */
+int memory_look(struct txn *txn, unsigned look, const uint8_t *command, size_t command_n,
+                uint8_t *kept, size_t n);
+
+/*
  * The whole memory of the device's family, and page txn->element of it. Write: txn->len bytes from
  * txn->at on.
  */

@@ -9,6 +9,7 @@
  *   exchange.c properties read and written
  *   answer.c   answers, and the cache
  *   convert.c  who converts when: one Convert T for all thermometers due on a channel
+ *   simultaneous.c  writes to /simultaneous
  *   hunt.c     searches: background, directories, alarms; devices lost and found
  *   listing.c  directories
  *   virtual.c  the directories that belong to no device: simultaneous, interface, system
@@ -84,6 +85,7 @@ struct job {
 	struct bus_req *req;
 	uint8_t kind, state;
 	bool begun, fresh, verified, locks;
+	bool again; /* its conversion was unproven, and is made a second time */
 	bool waits; /* PREPARE: until another job has read its resolution */
 	unsigned element; /* of a separate array, when all of it is asked for */
 	uint8_t tries;   /* transactions that failed in a row */
@@ -121,6 +123,7 @@ struct channel {
 	bool all_external;     /* ... and none is parasitic */
 	bool is_short;
 	int64_t due_ns;        /* when the first thermometer became due; 0: none */
+	int64_t single_ns;     /* when those due are asked one by one next; 0: not known yet */
 	/* End of the last conversion of all; 0: none. */
 	int64_t simultaneous_ns[SIMULTANEOUS];
 	int64_t search_ns;     /* next pass of the background search */
@@ -258,6 +261,10 @@ bool convert_right(const struct job *job);
 void convert_prepare(struct native *native, struct job *job, int64_t now);
 /* Start a conversion where one is due. True: did a transaction. *next: when to look again. */
 bool convert_step(struct native *native, int64_t now, int64_t *next);
+/* Convert T to all; -EBADMSG if nobody begins. strong: with the pull-up, which holds it longest ns. */
+int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t longest);
+
+/* simultaneous.c */
 void convert_all(struct native *native, struct job *job, int64_t now);
 
 /* hunt.c */

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The two pins of DS2413 and DS28EA00. */
 #include "hal/native/pio.h"
 
 #include <errno.h>
@@ -20,15 +21,22 @@ static int take_status(struct txn *txn, uint8_t status)
 	return status & 0xf;
 }
 
+/*
+ * A byte's halves are each other's complement, which two bits turned over get past. It is sent as
+ * long as the master reads: two that follow each other have to be the same.
+ */
 static int read_status(struct txn *txn)
 {
 	static const uint8_t command = READ_PIO;
-	uint8_t status;
+	uint8_t status[3];
 	int err = txn_command(txn, &command, 1);
 
 	if (!err)
-		err = txn_read(txn, &status, 1);
-	return err ? err : take_status(txn, status);
+		err = txn_read(txn, status, sizeof(status));
+	if (err)
+		return err;
+	return status[1] == status[0] || status[1] == status[2] ? take_status(txn, status[1])
+	                                                        : -EBADMSG;
 }
 
 int pio_read_state(struct txn *txn)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Searches of one wire, device by device, and whether a certain one is there. */
 #include "hal/native/search.h"
 
 #include <errno.h>
@@ -149,6 +150,9 @@ int search_verify(struct link *link, const uint8_t rom[8], bool alarm)
 
 		if (bits < 0)
 			return bits;
+		/* Somebody answered the bit before. */
+		if ((bits & 3) == 3 && position > 1)
+			return -EBADMSG;
 		if ((bits & 3) == 3 || (bits >> 2 & 1) != want)
 			return 0;
 	}

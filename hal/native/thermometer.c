@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The thermometers' scratchpad: what it says, how it is set, whether it is of the last conversion. */
 #include "hal/native/thermometer.h"
 
 #include <errno.h>
@@ -7,6 +8,7 @@
 #define WRITE_SCRATCHPAD 0x4e
 #define READ_SCRATCHPAD 0xbe
 #define COPY_SCRATCHPAD 0x48
+#define RECALL 0xb8
 #define COPY_NS (10 * TXN_MS)
 #define READ_TRIM_1 0x93
 #define READ_TRIM_2 0x68
@@ -16,8 +18,10 @@
 #define RAW_POWER_ON 0x0550
 #define RAW_BROKEN 0x07f8 /* 127.5 and above: no chip measures that */
 #define REMAIN_POWER_ON 0x0c
+#define SP_KEPT 16 /* in txn->mem, behind the scratchpad */
 #define NEAR_RAW (5 * 16)
 #define NEAR_NS (300 * 1000 * TXN_MS)
+#define LOOKS 3
 
 int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9])
 {
@@ -140,6 +144,27 @@ int thermometer_prepare(struct txn *txn, unsigned resolution)
 	}
 }
 
+/*
+ * When the chip latched what it holds. One that is fed by the wire cannot show that it converts. If
+ * it holds something else than when it was read last, and converted once since, it did. If not, a
+ * conversion may have been missed: then this is at least the result of the one before.
+ */
+static int64_t latched_ns(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
+{
+	struct device *device = txn->device;
+	const uint8_t holds[3] = {scratchpad[SP_LSB], scratchpad[SP_MSB], scratchpad[SP_REMAIN]};
+	bool changed = device->raw_ns && device->raw_ns >= device->earlier_ns &&
+	               memcmp(device->latched, holds, sizeof(holds)) != 0;
+
+	memcpy(device->latched, holds, sizeof(holds));
+	txn->unproven = device->power == POWER_PARASITE && !txn->link->files && !changed;
+	int64_t when = txn->unproven ? device->earlier_ns : device->converted_ns;
+	/* It never becomes older than it was. */
+	if (when > device->latched_ns && when < now)
+		device->latched_ns = when;
+	return device->latched_ns;
+}
+
 int thermometer_read_temperature(struct txn *txn)
 {
 	struct device *device = txn->device;
@@ -154,10 +179,9 @@ int thermometer_read_temperature(struct txn *txn)
 	if (err)
 		return err;
 	learn_make(device, scratchpad);
+	txn->measured_ns = latched_ns(txn, scratchpad, now);
 	device->raw = (int16_t)raw;
 	device->raw_ns = now;
-	if (device->converted_ns && device->converted_ns < now)
-		txn->measured_ns = device->converted_ns;
 	txn->number[0] = raw / 16.0;
 	return 0;
 }
@@ -172,65 +196,118 @@ int thermometer_read_limit(struct txn *txn)
 	return err;
 }
 
+static bool is_set(const struct txn *txn, const uint8_t scratchpad[9])
+{
+	return memcmp(scratchpad + SP_HIGH, txn->mem + SP_HIGH,
+	              txn->device->family->fixed ? 2 : 3) == 0;
+}
+
+/* The steps of store(). */
+enum { WRITE = 1, VERIFY, COPY, MARK, FIND_MARK, RECALL_IT, CHECK };
+
+static int copy_settings(struct txn *txn)
+{
+	static const uint8_t copy = COPY_SCRATCHPAD;
+
+	/* Without a strong pull-up it matters who feeds the chip. */
+	if (txn->link->passive && txn->device->power == POWER_UNKNOWN) {
+		int err = thermometer_ask_power(txn);
+
+		return err < 0 ? err : TXN_MORE;
+	}
+	/* A driver's word for it is all there is. */
+	txn->phase = txn->link->files ? CHECK : MARK;
+	return txn_command_strong(txn, &copy, 1, COPY_NS);
+}
+
 /*
  * The user's setting goes to the EEPROM, so that it outlives the chip's power, and with it the
  * resolution that was there, not the one that a conversion asked for. What is there already is not
- * written again: the EEPROM wears out.
+ * written again: the EEPROM wears out. The copy says nothing. So the scratchpad is changed then
+ * (its upper limit) and recalled from the EEPROM: what was copied comes back.
  */
 static int store(struct txn *txn)
 {
-	static const uint8_t copy = COPY_SCRATCHPAD;
+	static const uint8_t recall = RECALL;
 	struct device *device = txn->device;
 	uint8_t scratchpad[9];
 	int err;
 
 	switch (txn->phase) {
-	case 1:
-		err = write_scratchpad(txn, txn->mem);
-		txn->phase = 2;
-		return err ? err : TXN_MORE;
-	case 2:
+	case MARK:
+	case WRITE:
+		memcpy(scratchpad, txn->mem, sizeof(scratchpad));
+		scratchpad[SP_HIGH] ^= txn->phase == MARK ? 0xff : 0;
+		err = write_scratchpad(txn, scratchpad);
+		break;
+	case VERIFY:
 		device->resolution = 0;
+		err = thermometer_scratchpad(txn, scratchpad);
+		if (!err && !is_set(txn, scratchpad))
+			return scratchpad[SP_CONFIG] != txn->mem[SP_CONFIG] ? -EINVAL : -EBADMSG;
+		break;
+	case COPY:
+		return copy_settings(txn);
+	case FIND_MARK:
+		err = thermometer_scratchpad(txn, scratchpad);
+		if (!err && (scratchpad[SP_HIGH] ^ txn->mem[SP_HIGH]) != 0xff)
+			err = -EBADMSG;
+		break;
+	case RECALL_IT:
+		err = txn_command(txn, &recall, 1);
+		break;
+	default:
 		err = thermometer_scratchpad(txn, scratchpad);
 		if (err)
 			return err;
-		if (memcmp(scratchpad + SP_HIGH, txn->mem + SP_HIGH, device->family->fixed ? 2 : 3))
-			return -EINVAL;
-		txn->phase = 3;
-		return TXN_MORE;
-	case 3:
-		/* Without a strong pull-up it matters who feeds the chip. */
-		if (txn->link->passive && device->power == POWER_UNKNOWN) {
-			err = thermometer_ask_power(txn);
-			return err < 0 ? err : TXN_MORE;
-		}
-		err = txn_command_strong(txn, &copy, 1, COPY_NS);
-		txn->phase = 4;
-		return err;
-	default:
+		if (!is_set(txn, scratchpad))
+			return -EIO;
+		txn_changed(txn);
 		device->stored = device->resolution;
 		return 0;
 	}
+	txn->phase++;
+	return err ? err : TXN_MORE;
+}
+
+#define SETTINGS 1 /* which registers these are for txn_base() */
+
+/* The scratchpad to txn->mem, ahead of a change of its settings. 1: one has failed before. */
+static int before_store(struct txn *txn)
+{
+	int err = thermometer_scratchpad(txn, txn->mem);
+
+	if (err)
+		return err;
+	bool failed = txn_base(txn, SETTINGS, txn->mem + SP_HIGH, 3);
+	memcpy(txn->mem + SP_KEPT, txn->mem + SP_HIGH, 3);
+	if (!txn->device->family->fixed)
+		txn->mem[SP_CONFIG] = config_for(txn->mem[SP_CONFIG], txn->device->stored);
+	return failed;
+}
+
+static int begin_store(struct txn *txn)
+{
+	txn_keep(txn, SETTINGS, txn->mem + SP_KEPT, 3);
+	txn->phase = 1;
+	return TXN_MORE;
 }
 
 int thermometer_write_limit(struct txn *txn)
 {
 	double value = txn->number[0];
-	int err;
+	int failed;
 
 	if (txn->phase)
 		return store(txn);
 	if (!(value > -128.5 && value < 127.5))
 		return -EINVAL;
 	int limit = (int)(value < 0 ? value - 0.5 : value + 0.5);
-	err = thermometer_scratchpad(txn, txn->mem);
-	if (err || (int8_t)txn->mem[txn->property->arg] == limit)
-		return err;
+	failed = before_store(txn);
+	if (failed < 0 || (!failed && (int8_t)txn->mem[txn->property->arg] == limit))
+		return failed;
 	txn->mem[txn->property->arg] = (uint8_t)limit;
-	if (!txn->device->family->fixed)
-		txn->mem[SP_CONFIG] = config_for(txn->mem[SP_CONFIG], txn->device->stored);
-	txn->phase = 1;
-	return TXN_MORE;
+	return begin_store(txn);
 }
 
 int thermometer_read_tempres(struct txn *txn)
@@ -244,31 +321,53 @@ int thermometer_read_tempres(struct txn *txn)
 
 int thermometer_write_tempres(struct txn *txn)
 {
-	int err;
+	int failed;
 
 	if (txn->phase)
 		return store(txn);
 	if (!(txn->number[0] >= 9 && txn->number[0] <= 12))
 		return -EINVAL;
 	unsigned resolution = (unsigned)txn->number[0];
-	err = thermometer_scratchpad(txn, txn->mem);
-	if (err || txn->device->stored == resolution)
-		return err;
+	failed = before_store(txn);
+	if (failed < 0 || (!failed && txn->device->stored == resolution))
+		return failed;
 	txn->mem[SP_CONFIG] = config_for(txn->mem[SP_CONFIG], resolution);
-	txn->phase = 1;
-	return TXN_MORE;
+	return begin_store(txn);
 }
 
-int thermometer_ask_power(struct txn *txn)
+/* Eight slots, which are all alike. */
+static int look_at_supply(struct txn *txn, uint8_t *slots)
 {
 	static const uint8_t command = THERMOMETER_READ_POWER;
-	int bit = txn_command(txn, &command, 1);
+	int err = txn_command(txn, &command, 1);
 
-	if (!bit)
-		bit = txn_bit(txn);
-	if (bit >= 0)
-		txn->device->power = bit ? POWER_EXTERNAL : POWER_PARASITE;
-	return bit;
+	if (err || !txn->link->files) {
+		err = err ? err : txn_read(txn, slots, 1);
+		txn->silent = false;
+		return err;
+	}
+	int bit = txn_bit(txn);
+	*slots = bit > 0 ? 0xff : 0;
+	return bit < 0 ? bit : 0;
+}
+
+/* Ones are also what one hears of a chip that did not take the command. */
+int thermometer_ask_power(struct txn *txn)
+{
+	uint8_t slots[LOOKS] = {0};
+	bool same = true;
+
+	for (int look = 0; look < LOOKS; look++) {
+		int err = look_at_supply(txn, &slots[look]);
+
+		if (err)
+			return err;
+		same &= slots[look] == slots[0];
+	}
+	if (!same || (slots[0] != 0 && slots[0] != 0xff))
+		return -EBADMSG;
+	txn->device->power = slots[0] ? POWER_EXTERNAL : POWER_PARASITE;
+	return slots[0] != 0;
 }
 
 /* A one is also what one hears of a chip that is not there: the scratchpad proves that it is. */
@@ -302,18 +401,21 @@ int thermometer_read_die(struct txn *txn)
 	return 0;
 }
 
-/* The two bytes of the factory's trim; a chip that does not know the commands leaves ones. */
+/*
+ * The two bytes of the factory's trim; a chip that does not know the commands leaves ones. Without
+ * a checksum both are read twice.
+ */
 static int read_trim(struct txn *txn)
 {
 	static const uint8_t commands[] = {READ_TRIM_1, READ_TRIM_2};
-	int err = txn_command(txn, &commands[txn->phase], 1);
+	int err = txn_command(txn, &commands[txn->phase % 2], 1);
 
 	if (!err)
 		err = txn_read(txn, &txn->mem[txn->phase], 1);
 	txn->silent = false;
-	if (err || txn->phase++ == 0)
+	if (err || ++txn->phase < 4)
 		return err ? err : TXN_MORE;
-	return 0;
+	return memcmp(txn->mem, txn->mem + 2, 2) == 0 ? 0 : -EBADMSG;
 }
 
 int thermometer_read_trim(struct txn *txn)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The steps of a transaction with one device: what a family's functions are made of. */
 #include "hal/native/txn.h"
 
 #include <assert.h>
@@ -24,7 +25,7 @@ static int of_link(struct txn *txn, int result)
 		txn->silent = true;
 		return -ENODEV;
 	}
-	if (result < 0 && result != -EOPNOTSUPP && !txn->link->files)
+	if (result < 0 && result != -EOPNOTSUPP && result != -EBADMSG && !txn->link->files)
 		txn->link_error = result;
 	return result;
 }
@@ -148,6 +149,18 @@ int txn_bit_strong(struct txn *txn, int64_t ns)
 	return hold(txn, of_link(txn, txn->link->ops->bit(txn->link, true, LINK_STRONG)), ns);
 }
 
+int txn_started(struct txn *txn)
+{
+	uint8_t busy;
+
+	/* A driver has waited for the end, or tells the error. */
+	if (txn->link->files)
+		return 0;
+	int err = txn_read(txn, &busy, 1);
+
+	return err ? err : busy ? -EBADMSG : 0;
+}
+
 int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n)
 {
 	int err = txn_read(txn, bytes, n);
@@ -178,4 +191,26 @@ int txn_verify(struct txn *txn, bool alarm)
 
 	txn->heard |= there > 0;
 	return there;
+}
+
+bool txn_base(const struct txn *txn, uint8_t which, uint8_t *bytes, size_t n)
+{
+	if (txn->device->base_of != which)
+		return false;
+	memcpy(bytes, txn->device->base, n);
+	return true;
+}
+
+void txn_keep(struct txn *txn, uint8_t which, const uint8_t *bytes, size_t n)
+{
+	assert(n <= sizeof(txn->device->base));
+	if (txn->device->base_of == which)
+		return;
+	txn->device->base_of = which;
+	memcpy(txn->device->base, bytes, n);
+}
+
+void txn_changed(struct txn *txn)
+{
+	txn->device->base_of = 0;
 }

@@ -44,7 +44,7 @@ struct txn {
 
 	/* From call to call. */
 	unsigned phase;
-	uint8_t mem[48];
+	uint8_t mem[64];
 	double real[4];
 	int64_t wake_ns; /* not to be called before */
 	bool strong;     /* the strong pull-up is on until then: the channel is held */
@@ -55,6 +55,7 @@ struct txn {
 	bool silent;    /* nothing but ones was read */
 	bool heard;     /* the device itself answered */
 	bool restarted; /* the chip lost its state: its power was away */
+	bool unproven;  /* a reading that may be of an older conversion than the last */
 };
 
 int64_t txn_now(const struct txn *txn);
@@ -79,6 +80,11 @@ int txn_read(struct txn *txn, uint8_t *bytes, size_t n);
 int txn_bit(struct txn *txn);
 /* One read slot with the strong pull-up behind it; as txn_command_strong(). */
 int txn_bit_strong(struct txn *txn, int64_t ns);
+/*
+ * Behind a command that takes time: the chip holds eight read slots low while it is at work.
+ * -EBADMSG: it has not taken the command, and what it gives later is older than that.
+ */
+int txn_started(struct txn *txn);
 /* n bytes, the last of which is the CRC8 of those before. -EBADMSG. */
 int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n);
 /*
@@ -86,11 +92,23 @@ int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n);
  */
 int txn_read_crc16(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t *bytes, size_t n);
 /*
+ * Registers are changed by reading, changing and writing them. A write that goes wrong may leave
+ * what nobody asked for, and made again must not begin with that. txn_base: if such a write of
+ * these registers (which: 1 to 255) has not succeeded yet, bytes become what was there before it.
+ * txn_keep, ahead of the first write: this is what is there. txn_changed: the write has succeeded.
+ */
+bool txn_base(const struct txn *txn, uint8_t which, uint8_t *bytes, size_t n);
+void txn_keep(struct txn *txn, uint8_t which, const uint8_t *bytes, size_t n);
+void txn_changed(struct txn *txn);
+/*
  * Behind each call of a property function: what a link keeps back is sent (link_ops.flush). err is
  * what the function returned, and so is this, unless sending failed.
  */
 int txn_end(struct txn *txn, int err);
-/* Is the device there (found by search, alarm search)? Leaves it selected. 1, 0 or an error. */
+/*
+ * Is the device there (found by search, alarm search)? Leaves it selected. 1, 0 or an error:
+ * -EBADMSG the search was disturbed. 0 is also what a disturbed search may say, 1 is certain.
+ */
 int txn_verify(struct txn *txn, bool alarm);
 
 #endif

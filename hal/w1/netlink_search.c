@@ -80,6 +80,9 @@ int w1_netlink_verify(struct link *base, const uint8_t rom[8], bool alarm)
 	for (unsigned i = 0; i < 64; i++) {
 		unsigned there = wire_at(slots, i);
 
+		/* Somebody answered the bit before. */
+		if (there == 3 && i)
+			return -EBADMSG;
 		if (there == 3 || (there < 2 && there != bit_of(rom, i)))
 			return 0;
 	}

@@ -39,7 +39,7 @@ static void begin(struct sim_slave *s, uint8_t byte)
 	part->command = byte;
 	part->got = 0;
 	switch (byte) {
-	case 0x44: /* Convert T: done at once */
+	case 0x44: /* Convert T: the line is low meanwhile */
 	case 0xb4: /* Read Power Supply: external */
 		sim_send_bits(s);
 		return;
@@ -89,7 +89,7 @@ static bool bit(struct sim_slave *s, int64_t t)
 {
 	(void)s;
 	(void)t;
-	return true;
+	return part->command != 0x44;
 }
 
 static void reset(struct sim_slave *s, int64_t t)

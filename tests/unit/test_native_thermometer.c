@@ -69,7 +69,8 @@ static void test_parasites_get_the_strong_pull_up_for_the_whole_conversion(void)
 	start();
 	expect(true, of(slave, "temperature"), "       -10.5");
 	expect(true, of(slave, "power"), "0");
-	TEST_ASSERT_EQUAL_UINT(1, wire_net.strong_count);
+	/* The first reading is made twice: whether the chip heard cannot be seen otherwise. */
+	TEST_ASSERT_EQUAL_UINT(2, wire_net.strong_count);
 	TEST_ASSERT_GREATER_OR_EQUAL_INT64(750 * HOST_MS, wire_net.strong_ns);
 }
 

@@ -60,17 +60,24 @@ static int wire_reset(struct link *link)
 	if (err)
 		return err;
 	wire_net.cost.resets++;
-	bool presence = sim_wire_reset(wire_of(link), false, wire_time());
+	bool heard = !wire_net.trouble || trouble_heard(wire_net.trouble);
+	bool presence = heard && sim_wire_reset(wire_of(link), false, wire_time());
+	if (wire_net.trouble)
+		presence = trouble_presence(wire_net.trouble, presence);
 	err = spend(RESET_NS);
 	return err ? err : presence;
 }
 
-static bool slot(struct link *link, bool out)
+/* What is turned over of a bit written reaches the chips so; of one read, the master. */
+static bool slot(struct link *link, bool out, bool writes)
 {
-	bool line = sim_wire_slot(wire_of(link), out, false, wire_time());
+	bool turns = wire_net.trouble && trouble_turns(wire_net.trouble);
+	bool sent = out ^ (turns && writes);
+	bool deaf = wire_net.trouble && wire_net.trouble->deaf;
+	bool line = deaf ? sent : sim_wire_slot(wire_of(link), sent, false, wire_time());
 
 	spend(SLOT_NS);
-	return line;
+	return line ^ (turns && !writes);
 }
 
 static void after_call(struct link *link, enum link_after after)
@@ -92,7 +99,7 @@ static int wire_write(struct link *link, const uint8_t *data, size_t n, enum lin
 		wire_net.converts[wire_net.convert_count++ % 64] = wire_time();
 	for (size_t i = 0; i < n; i++)
 		for (int bit = 0; bit < 8; bit++)
-			slot(link, data[i] >> bit & 1);
+			slot(link, data[i] >> bit & 1, true);
 	if (wire_net.sent)
 		wire_net.sent(data, n);
 	after_call(link, after);
@@ -108,7 +115,7 @@ static int wire_read(struct link *link, uint8_t *data, size_t n)
 	memset(data, 0, n);
 	for (size_t i = 0; i < n; i++)
 		for (int bit = 0; bit < 8; bit++)
-			data[i] |= (uint8_t)(slot(link, true) << bit);
+			data[i] |= (uint8_t)(slot(link, true, false) << bit);
 	return 0;
 }
 
@@ -118,9 +125,22 @@ static int wire_bit(struct link *link, bool out, enum link_after after)
 
 	if (err)
 		return err;
-	int line = slot(link, out);
+	int line = slot(link, out, !out);
 	after_call(link, after);
 	return line;
+}
+
+/* As the bridge chips do it, so that it is known which slot writes. */
+static int wire_triplet(struct link *link, bool direction)
+{
+	int err = begin(link);
+
+	if (err)
+		return err;
+	bool id = slot(link, true, false), complement = slot(link, true, false);
+	bool taken = id == complement ? id || direction : id;
+	slot(link, taken, true);
+	return id | complement << 1 | taken << 2;
 }
 
 static int wire_recover(struct link *link, enum link_rung rung)
@@ -145,15 +165,12 @@ static void wire_cost(const struct link *link, struct link_cost *cost)
 		*cost = wire_net.cost;
 }
 
-static const struct link_ops link_ops = {
-	.name = "test wire",
-	.reset = wire_reset,
-	.write = wire_write,
-	.read = wire_read,
-	.bit = wire_bit,
-	.recover = wire_recover,
-	.cost = wire_cost,
-};
+#define LINK_OPS                                                                          \
+	.name = "test wire", .reset = wire_reset, .write = wire_write, .read = wire_read,   \
+	.bit = wire_bit, .recover = wire_recover, .cost = wire_cost
+
+static const struct link_ops link_ops = {LINK_OPS};
+static const struct link_ops troubled_ops = {LINK_OPS, .triplet = wire_triplet};
 
 static int master_create(const char *where, const struct bus_env *env, struct link_master **master,
                          char *why, size_t why_size)
@@ -180,7 +197,8 @@ static int master_open(struct link_master *master, char *why, size_t why_size)
 		return wire_net.open_error;
 	}
 	for (unsigned i = 0; i < wire_net.channels; i++)
-		links[i] = (struct link){.ops = &link_ops, .env = master->env,
+		links[i] = (struct link){.ops = wire_net.trouble ? &troubled_ops : &link_ops,
+		                         .env = master->env,
 		                         .chip = wire_net.chips == 1 ? 0 : i};
 	return 0;
 }

@@ -9,6 +9,7 @@
 #include "hal/link.h"
 #include "hal/sim/wire.h"
 #include "tests/unit/host.h"
+#include "tests/unit/trouble.h"
 
 #define WIRE_CHANNELS 8
 
@@ -34,6 +35,7 @@ struct wire_net {
 	int64_t strong_ns; /* how long the last one was on */
 	int64_t strong_begin;
 	void (*sent)(const uint8_t *data, size_t n); /* NULL, or told of each write */
+	struct trouble *trouble; /* NULL: none */
 };
 
 /* One network at a time. */

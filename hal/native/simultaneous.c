@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: MIT */
+/* Writes to /simultaneous: all chips of a kind on one channel or on all convert. */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/native/ds2450.h"
+#include "hal/native/native.h"
+
+#define SKIP_ROM 0xcc
+
+/* All DS2450 of a channel at once. Their checksum is one: they were told the same. */
+static int convert_voltage(struct native *native, unsigned n)
+{
+	static const uint8_t skip = SKIP_ROM, command[] = {DS2450_CONVERT, 0x0f, 0x00};
+	struct channel *channel = &native->channel[n];
+	struct txn txn = {.native = native, .link = channel->link, .channel = n};
+	uint8_t none;
+	int err = txn_raw(&txn, &skip, 1);
+
+	if (!err)
+		err = txn_write(&txn, command, sizeof(command));
+	if (!err)
+		err = txn_read_crc16(&txn, command, sizeof(command), &none, 0);
+	/* One more slot arms the pull-up, for those without a supply. */
+	if (!err)
+		err = channel->link->ops->bit(channel->link, true, LINK_STRONG);
+	native_count(native, COUNT_TRANSACTIONS);
+	if (err < 0)
+		return txn.link_error ? txn.link_error : err;
+	master_good(native, n);
+	int64_t end = native_now(native) + DS2450_CONVERT_NS;
+	channel->simultaneous_ns[SIMULTANEOUS_VOLTAGE] = end;
+	native->hold_ns[channel->link->chip % NATIVE_CHANNELS] = end;
+	native->holder[channel->link->chip % NATIVE_CHANNELS] = NULL;
+	return 0;
+}
+
+/* Where there is no thermometer, nobody says that it converts. */
+static int convert_temperature(struct native *native, unsigned n)
+{
+	bool parasitic = false, any = false;
+
+	for (unsigned i = 0; i < native->table.count; i++) {
+		const struct device *device = &native->table.devices[i];
+
+		if (!device->present || device->channel != n || !device->family->thermometer)
+			continue;
+		any = true;
+		parasitic |= device->power != POWER_EXTERNAL;
+	}
+	if (any)
+		return convert_broadcast(native, n, parasitic, 750 * TXN_MS);
+	native->channel[n].simultaneous_ns[SIMULTANEOUS_TEMPERATURE] =
+		native_now(native) + 750 * TXN_MS;
+	return 0;
+}
+
+static bool has_family(const struct native *native, unsigned n, const struct family *family)
+{
+	for (unsigned i = 0; i < native->table.count; i++) {
+		const struct device *device = &native->table.devices[i];
+
+		if (device->present && device->channel == n && device->family == family)
+			return true;
+	}
+	return false;
+}
+
+void convert_all(struct native *native, struct job *job, int64_t now)
+{
+	unsigned n = job->channel;
+	int err;
+
+	(void)now;
+	if (job->property->arg == SIMULTANEOUS_TEMPERATURE)
+		err = convert_temperature(native, n);
+	else
+		err = has_family(native, n, &family_20) ? convert_voltage(native, n) : 0;
+	job->txn.channel = n;
+	if (err < 0 && err != -ENODEV) {
+		job->txn.link_error = err == -EBADMSG || err == -EOPNOTSUPP ? 0 : err;
+		job_failed(native, job, err);
+		return;
+	}
+	if (job->bus < 0 && ++job->channel < native->channels)
+		return;
+	job->taken = job->req->len;
+	job_answer(native, job, 0);
+}
