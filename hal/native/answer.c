@@ -114,3 +114,11 @@ void job_restart(struct native *native, struct job *job)
 	job->merged = false;
 	job->txn.wake_ns = 0;
 }
+
+void job_reread(struct native *native, struct job *job)
+{
+	job_unlock(native, job);
+	job_txn(native, job);
+	job->state = JOB_CONVERTING;
+	job->ready_ns = native_now(native);
+}

@@ -47,6 +47,16 @@ static void look_for(struct native *native, struct job *job, int err)
 	job->state = JOB_LOCATE;
 }
 
+/* What was read wrong is read again: the conversion behind it was right. */
+static void begin_again(struct native *native, struct job *job)
+{
+	if (job->state == JOB_RUN && job->property && job->property->convert &&
+	    job->req->op == BUS_READ)
+		job_reread(native, job);
+	else
+		job_restart(native, job);
+}
+
 void job_failed(struct native *native, struct job *job, int err)
 {
 	if (job->failures < UINT8_MAX)
@@ -60,7 +70,7 @@ void job_failed(struct native *native, struct job *job, int err)
 		native_count(native, COUNT_CHECKSUMS);
 		native->channel[job->txn.channel].checksums++;
 		if (++job->tries < TRIES_CHECKSUM)
-			job_restart(native, job);
+			begin_again(native, job);
 		else if (job->txn.silent && job->txn.device)
 			look_for(native, job, err);
 		else

@@ -236,6 +236,8 @@ void job_keep(struct native *native, struct job *job);
 /* Let go of device and pull-up. */
 void job_unlock(struct native *native, struct job *job);
 void job_restart(struct native *native, struct job *job);
+/* Begin again with what its conversion left. */
+void job_reread(struct native *native, struct job *job);
 
 /* exchange.c */
 /* Make the txn ready for the next element, from its beginning. */
