@@ -3,7 +3,7 @@
 """live-table.py [FILE]: draw what `owsctl watch` shows on a terminal, as docs/img/table.svg or FILE.
 
 A real run: owsd on the simulated house of board/demo, of which one thermometer is unplugged after
-a few seconds, and owsctl on a terminal of its own. `make all` comes first.
+a few seconds and one is too hot, and owsctl on a terminal of its own. `make all` comes first.
 """
 
 import fcntl
@@ -35,7 +35,10 @@ def record(folder):
     house = (SOURCE / "board/demo/house.sim").read_text()
     (folder / "house.sim").write_text(house + "\nat 6s unplug bedroom\n")
     rio = (SOURCE / "board/demo/house.rio").read_text()
-    (folder / "house.rio").write_text(rio.replace("sim:board/demo/house.sim", "sim:house.sim"))
+    rio = rio.replace("sim:board/demo/house.sim", "sim:house.sim")
+    if "LimitH" not in rio:  # an alarm to be seen
+        rio = rio.replace('"boiler"', '"boiler"\n    LimitH                  50')
+    (folder / "house.rio").write_text(rio)
     owsd = subprocess.Popen([BUILD / "owsd", "-n", name, "-c", "house.rio"], cwd=folder,
                             stderr=subprocess.DEVNULL)
     ctl = [BUILD / "owsctl", "-n", name]

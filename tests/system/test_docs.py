@@ -393,6 +393,7 @@ def test_the_picture_of_the_live_table_can_be_drawn_again(scene):
         texts = {t.text: t.get("fill") for t in xml.etree.ElementTree.parse(svg).iter() if t.text}
         assert {"NAME", "boiler", "humidity", "pump"} <= set(texts), texts
         assert texts["bedroom"] and not texts["living"], "the device that is gone is red"
+        assert any(text.startswith("! ") and colour for text, colour in texts.items()), "an alarm stands"
 
 
 # What is wrong, and what is said of it
