@@ -50,7 +50,9 @@ def test_a_root_gets_i2c_at_400_khz_and_the_first_start(scene):
     assert stat.S_IMODE(script.stat().st_mode) == 0o755
     link = top / "etc/systemd/system/multi-user.target.wants/owsd-firstboot.service"
     assert link.is_symlink() and link.exists()
-    assert "ExecStart=/usr/local/lib/owsd/firstboot" in link.read_text()
+    unit = link.read_text()
+    assert "ExecStart=/usr/local/lib/owsd/firstboot look\n" in unit and "User=owsd\n" in unit
+    assert unit.count("=+") == 1 and "ExecStartPost=+/usr/local/lib/owsd/firstboot put\n" in unit
     assert (top / "etc/owsd/OWS.rio").read_text() == PACKAGED
     before = everything(top)
     assert sh(scene, IMAGE / "setup", top).returncode == 0
@@ -162,8 +164,10 @@ class First:
     def __init__(self, scene, devices=THERMOMETER, name="first"):
         self.scene = scene
         self.here = scene.path / name
-        self.etc, self.state, self.tools = (self.here / n for n in ("etc", "state", "bin"))
-        for folder in (self.here, self.etc, self.tools):
+        self.etc, self.state, self.tools, self.run_of = (self.here / n for n in
+                                                         ("etc", "state", "bin", "run"))
+        self.found = self.run_of / "OWS.rio"
+        for folder in (self.here, self.etc, self.tools, self.run_of):
             folder.mkdir()
         self.file = self.etc / "OWS.rio"
         self.packaged = self.here / "packaged.rio"
@@ -186,10 +190,20 @@ class First:
         (self.tools / name).write_text(f"#!/bin/sh\n{text}\n")
         (self.tools / name).chmod(0o755)
 
-    def run(self):
-        return sh(self.scene, "sh", IMAGE / "firstboot", OWSD_ETC=str(self.etc),
+    def half(self, verb):
+        return sh(self.scene, "sh", IMAGE / "firstboot", verb, OWSD_ETC=str(self.etc),
                   OWSD_STATE=str(self.state), OWSD_PACKAGED=str(self.packaged),
-                  OWSD_TARGET=f"sim:{self.net}", PATH=f"{self.tools}:{os.environ['PATH']}")
+                  OWSD_FOUND=str(self.found), OWSD_TARGET=f"sim:{self.net}",
+                  PATH=f"{self.tools}:{os.environ['PATH']}")
+
+    def run(self):
+        """Both halves, as the unit does."""
+        looked = self.half("look")
+        if looked.returncode:
+            return looked
+        done = self.half("put")
+        done.stderr = looked.stderr + done.stderr
+        return done
 
     def left(self):
         return sorted(p.name for p in self.etc.iterdir())
@@ -268,6 +282,50 @@ def test_a_full_disk_leaves_the_old_file_and_is_said(scene):
     ran = first.run()
     assert ran.returncode == 0 and "cannot write" in ran.stderr, ran
     assert first.file.read_text() == PACKAGED and first.left() == ["OWS.rio"]
+
+
+LEFT = {
+    "a link to a file of root's": lambda found, secret: found.symlink_to(secret),
+    "a link to a device": lambda found, _: found.symlink_to("/dev/zero"),
+    "a pipe": lambda found, _: os.mkfifo(found),
+    "a directory": lambda found, _: found.mkdir(),
+    "an empty file": lambda found, _: found.touch(),
+    "a file without end": lambda found, _: (found.touch(), os.truncate(found, 1 << 40)),
+}
+
+
+def test_root_takes_nothing_but_a_file_of_what_the_scan_left(scene):
+    """As an owsd that the wire has taken over would leave it."""
+    secret = scene.file("secret", "of root\n")
+    for n, (what, leave) in enumerate(LEFT.items()):
+        first = First(scene, name=f"left{n}")
+        leave(first.found, secret)
+        done = first.half("put")
+        assert done.returncode == 1 and "could not be written whole" in done.stderr, (what, done)
+        assert first.file.read_text() == PACKAGED and not first.done(), what
+        assert first.left() == ["OWS.rio"], what
+        assert secret.read_text() == "of root\n"
+
+
+def test_the_half_of_the_first_start_that_runs_as_root_runs_no_program_of_ours(scene):
+    first = First(scene)
+    assert first.half("look").returncode == 0 and first.found.exists()
+    assert first.file.read_text() == PACKAGED and not first.done()
+    for name in ("owsd", "owsctl"):
+        first.tool(name, f"touch '{first.here}/ran'")
+    assert first.half("put").returncode == 0 and first.done()
+    assert "28.000000000002" in first.file.read_text()
+    assert not (first.here / "ran").exists()
+    assert sh(scene, "sh", IMAGE / "firstboot", OWSD_STATE=str(first.here / "none")).returncode == 2
+
+
+def test_the_sandbox_of_the_first_start_is_as_tight_as_that_of_the_service(scene):
+    program = shutil.which("systemd-analyze")
+    if not program:
+        owsdtest.skip("systemd-analyze is not installed")
+    done = sh(scene, program, "security", "--offline=true", "--threshold=15", "--no-pager",
+              IMAGE / "owsd-firstboot.service")
+    assert done.returncode == 0, done.stdout[-300:] + done.stderr
 
 
 def test_the_scripts_please_shellcheck(scene):
