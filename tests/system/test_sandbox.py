@@ -75,6 +75,34 @@ def test_no_call_that_it_makes_is_forbidden(scene):
     print(f"{len(made)} kinds of calls of {len(allowed)} that are allowed")
 
 
+def setting(name):
+    return re.search(rf"^{name}=(.*)$", sandbox.UNIT.read_text(), re.M).group(1)
+
+
+def test_the_units_limits_leave_room_for_the_largest_owsd(scene):
+    """As many targets as there can be with both doors, then 2 000 signals that are loaded again:
+    the room is for many times as many."""
+    door = scene.path / "door"
+    wires = [scene.file(f"{n}.sim", f"chip DS2482-100 0x18\nDS18B20 28.{n:012X}\n") for n in range(1, 17)]
+    daemon = scene.owsd(owsdtest.rio(", ".join(f"sim:{wire}" for wire in wires), [
+        dict(Name="room", Path="/28.000000000001/temperature", Type="double", IO="input")],
+        ListenSocket=str(door), Listen=f"127.0.0.1:{owsdtest.free_port()}"))
+    until(lambda: scene.get(daemon, "room"), 30, "room is good")
+    assert 16 < len(os.listdir(f"/proc/{daemon.pid}/task")) <= int(setting("TasksMax")) // 2
+    daemon.stop()
+    many = [dict(Name=f"s{n}", Path="/28.000000000001/temperature", Type="double", IO="input",
+                 PerFactor=1000) for n in range(2000)]
+    file = scene.file("many.rio", owsdtest.rio("null:", many))
+    daemon = scene.owsd(file)
+    file.write_text(owsdtest.rio("null:", many[1:]))
+    daemon.signal(signal.SIGHUP)
+    until(lambda: "reload:" in daemon.log(), 30, "it is loaded again")
+    with open(f"/proc/{daemon.pid}/status", encoding="ascii") as status:
+        peak = int(re.search(r"^VmHWM:\s+(\d+) kB", status.read(), re.M).group(1)) * 1024
+    assert setting("MemoryMax") == "512M" and peak * 20 < 512 << 20, peak
+    assert setting("LimitCORE") == "0"
+
+
 def test_the_rules_hold(scene):
     """The filter is no empty one: what it forbids fails, and so does a foreign address."""
     tries = {"os.nice(1)": False, "os.chroot('/')": False, "os.sched_setscheduler(0, 1, os.sched_param(1))":
