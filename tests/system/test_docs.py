@@ -351,6 +351,20 @@ for _page in PAGES + MANUALS:
     globals()[f"test_{re.sub(r'[^a-z0-9]', '_', _page.name.lower())}_is_true"] = case_of(_page)
 
 
+def test_the_tests_that_security_md_names_are_there(_scene):
+    named = 0
+    for row in (SOURCE / "SECURITY.md").read_text().splitlines():
+        files, text = [], ""
+        for word in re.findall(r"`(tests/[^`]+|test_\w+)`", row):
+            if word.startswith("tests/"):
+                text = (SOURCE / word).read_text()
+                files.append(word)
+            elif files:
+                assert re.search(rf"^(def|static void) {word}\(", text, re.M), (files[-1], word)
+                named += 1
+    assert named >= 15, named
+
+
 def test_manual_pages_are_well_formed(_scene):
     if not shutil.which("mandoc"):
         owsdtest.skip("mandoc is not installed")
