@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A target opened for the verbs that look at devices, and questions to it. */
 #include "open.h"
 
 #include "reading.h"
@@ -12,8 +13,9 @@
 #include <string.h>
 #include <time.h>
 
-#define S         INT64_C(1000000000)
-#define GRACE_NS  (2 * S) /* a request ends by its deadline; this is for what does not */
+#define S           INT64_C(1000000000)
+#define GRACE_NS    (2 * S) /* a request ends by its deadline; this is for what does not */
+#define PROGRESS_NS (5 * S) /* how often the count of answers is printed */
 
 static int64_t boottime(void *ctx)
 {
@@ -159,8 +161,21 @@ void target_close(struct target *target)
 	target->bus = NULL;
 }
 
+/* Of many questions, or a target that takes its time for each. */
+static void say_progress(const struct target *target, int64_t *said_ns)
+{
+	int64_t now_ns = boottime(NULL);
+
+	if (target->count == 1 || now_ns - *said_ns < PROGRESS_NS)
+		return;
+	*said_ns = now_ns;
+	fprintf(stderr, "owsctl: %u of %u answers from %s\n", target->answered, target->count,
+	        target->name);
+}
+
 void target_ask(struct target *target, struct ask *asks, unsigned count)
 {
+	int64_t said_ns = boottime(NULL);
 	unsigned given = 0;
 	int64_t until = boottime(NULL) + target->timeout_ns + GRACE_NS;
 
@@ -183,6 +198,7 @@ void target_ask(struct target *target, struct ask *asks, unsigned count)
 			given++;
 		}
 		step(target, until);
+		say_progress(target, &said_ns);
 		if (target->answered != answered)
 			until = boottime(NULL) + target->timeout_ns + GRACE_NS;
 	}

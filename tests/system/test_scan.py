@@ -240,6 +240,18 @@ def test_a_scan_of_ten_thousand_devices_makes_a_configuration_of_all_of_them(sce
     assert done.stdout.count("  Item {") == 10000
 
 
+def test_a_scan_that_takes_long_says_how_far_it_is(scene):
+    values = {}
+    for n in range(8):
+        values.update({f"/28.{n:012X}/{name}": value for name, value in
+                       (("type", "DS18B20"), ("alias", ""), ("temperature12", "21.5"))})
+    with peer.Peer(values) as server:
+        server.mode = "late 0.4"
+        done = ctl(scene, server.target, "scan")
+    assert re.search(rf"^owsctl: \d+ of 24 answers from {server.target}$", done.stderr, re.M), done
+    assert len(done.stdout.splitlines()) == 9
+
+
 def test_an_alias_names_the_signals(scene):
     server = scene.owserver(mock=["28", "26"])
     battery, thermometer = server.devices()
