@@ -171,66 +171,6 @@ static void test_the_same_value_set_again_during_its_write_is_confirmed_with_it(
 	TEST_ASSERT_EQUAL_UINT(1, s.writes);
 }
 
-/* By all that a program can put into the command segment, past libows. */
-static void test_an_input_that_the_file_does_not_make_writable_is_never_written(void)
-{
-	one_of_each();
-	for (int enabled = 0; enabled < 4; enabled++) {
-		scene_slot(&s, 1)->write_enable = (uint32_t)enabled;
-		scene_slot(&s, 1)->one_shot++;
-		scene_set(&s, 1, 5);
-		scene_run(&s, SCENE_S);
-		scene_slot(&s, 1)->one_shot++;
-		scene_ring(&s, 1);
-		scene_run(&s, SCENE_S);
-	}
-	TEST_ASSERT_EQUAL_UINT(0, s.writes);
-	TEST_ASSERT_EQUAL_UINT64(4, scene_counter(&s, "refused_commands"));
-	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
-	TEST_ASSERT_EQUAL_INT(0, scene_sample(&s, 1).err);
-}
-
-static void test_marks_without_end_are_left_for_later_and_keep_no_set_waiting(void)
-{
-	uint64_t deferred;
-
-	one_of_each();
-	for (int i = 0; i < 20000; i++) {
-		scene_ring(&s, 0);
-		scene_ring(&s, 1);
-		engine_step(s.engine, s.now_ns);
-	}
-	scene_run(&s, SCENE_S);
-	deferred = scene_counter(&s, "deferred_commands");
-	TEST_ASSERT_GREATER_THAN_UINT64(0, deferred);
-	TEST_ASSERT_LESS_OR_EQUAL_UINT64(2, deferred);
-	/* beside a program that marks what stands before it in each step */
-	for (int i = 0; i < 20000; i++) {
-		scene_ring(&s, 0);
-		scene_ring(&s, 1);
-		engine_step(s.engine, s.now_ns);
-	}
-	scene_set(&s, 2, 9);
-	for (int i = 0; i < 3000 && !s.writes; i++) {
-		scene_ring(&s, 0);
-		scene_ring(&s, 1);
-		scene_run(&s, 10000);
-	}
-	scene_run(&s, 10 * SCENE_MS);
-	TEST_ASSERT_EQUAL_UINT(1, s.writes);
-	TEST_ASSERT_EQUAL_STRING("9", scene_at(&s, PIO));
-}
-
-static void test_a_program_that_sets_a_thousand_times_a_second_is_never_made_to_wait(void)
-{
-	one_of_each();
-	for (int i = 0; i < 10000; i++) {
-		scene_set(&s, 2, i & 255);
-		scene_run(&s, SCENE_MS);
-	}
-	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "deferred_commands"));
-}
-
 static void test_one_shot_writes_once_changed_or_not_enabled_or_not(void)
 {
 	one_of_each();
@@ -493,9 +433,6 @@ int main(void)
 	RUN_TEST(test_writing_disabled_keeps_what_was_set_until_it_is_enabled);
 	RUN_TEST(test_a_command_is_not_confirmed_while_writing_is_disabled);
 	RUN_TEST(test_the_same_value_set_again_during_its_write_is_confirmed_with_it);
-	RUN_TEST(test_an_input_that_the_file_does_not_make_writable_is_never_written);
-	RUN_TEST(test_marks_without_end_are_left_for_later_and_keep_no_set_waiting);
-	RUN_TEST(test_a_program_that_sets_a_thousand_times_a_second_is_never_made_to_wait);
 	RUN_TEST(test_one_shot_writes_once_changed_or_not_enabled_or_not);
 	RUN_TEST(test_diagnostics_are_reset_and_the_value_stays);
 	RUN_TEST(test_the_driver_reset_clears_its_counters_and_every_signal);
