@@ -5,6 +5,7 @@
     faulty.house(scene)                   a configuration over simulated chips
 """
 
+import contextlib
 import json
 import os
 import struct
@@ -91,7 +92,8 @@ class Traced(owsdtest.Owsd):
         with open(f"/proc/{self.pid}/task/{self.pid}/children", encoding="ascii") as file:
             children = file.read().split()
         if children:
-            subprocess.run(["kill", f"-{int(number)}", children[0]], check=False)
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(int(children[0]), number)
 
 
 def stop_all_of(daemon):
