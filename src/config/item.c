@@ -225,12 +225,13 @@ static const char *keep_if_given(struct build *build, const struct option_value 
 	return value->given ? build_keep(build, value->text, strlen(value->text)) : NULL;
 }
 
-static void warn_without_equals(struct build *build, const struct option_value *value)
+static void warn_without_equals(struct build *build, const struct option_value *value,
+                                const char *follows)
 {
 	if (value->given && *value->text && !strchr(value->text, '='))
 		report_warning(build->report, value->node->value_at,
-		               "%s \"%s\" has no '=': nothing is written; expected property=value",
-		               value->node->key, value->text);
+		               "%s \"%s\" has no '=': nothing is written%s; expected property=value",
+		               value->node->key, value->text, follows);
 }
 
 /* Table 3.1: rows 3 and 10 leave for the next alarm when these are not defined. */
@@ -261,8 +262,17 @@ static void build_alarm(struct build *build, const struct rio_node *block,
 		               "device's latch such as LatchAlarm \"latch.BYTE\", or LatchAlarm "
 		               "\"present\" if it has none",
 		               latch_empty ? "empty" : "not defined");
-	warn_without_equals(build, &values[OPT_SET_ALARM]);
-	warn_without_equals(build, &values[OPT_RESET_LATCH]);
+	if (item->por_alarm && *item->por_alarm && !item->set_alarm)
+		report_warning(build->report, place,
+		               "this alarm cannot be armed after a restart of its device: SetAlarm is "
+		               "not defined, so %s is never cleared; write SetAlarm "
+		               "\"property=value\", or SetAlarm \"\" if nothing has to be set",
+		               item->por_alarm);
+	warn_without_equals(build, &values[OPT_SET_ALARM],
+	                    item->por_alarm && *item->por_alarm
+	                            ? ", and the alarm cannot be armed after a restart of its device"
+	                            : "");
+	warn_without_equals(build, &values[OPT_RESET_LATCH], "");
 }
 
 /* A fraction is no integer, so such a signal would be good now and then. */

@@ -166,6 +166,7 @@ static void take_command(struct signal *s, const struct signal *was)
 {
 	s->commanded = was->commanded;
 	s->confirmed = was->confirmed;
+	s->agrees = was->agrees;
 	s->one_shot = was->one_shot;
 	s->forced = was->forced;
 	s->safe = was->safe;
@@ -185,7 +186,8 @@ static void take_signal(struct signal *s, const struct signal *was)
 	const struct config_item *item = s->item, *before = was->item;
 	uint32_t flags = was->attrs.flags & ~(uint32_t)(OWS_ATTR_READ_ENABLE | OWS_ATTR_LIMITS |
 	                                                OWS_ATTR_WRITE_ENABLE | OWS_ATTR_IN_WORK |
-	                                                OWS_ATTR_ALARM_POLLED);
+	                                                OWS_ATTR_ALARM_POLLED |
+	                                                OWS_ATTR_ALARM_UNARMED);
 
 	flags |= flag_of(s, was, OWS_ATTR_READ_ENABLE, item->readable, before->readable);
 	if (config_item_takes_sets(item))
@@ -317,8 +319,17 @@ static void take_alarm(struct engine *e, struct alarm_item *item, const struct e
 	item->journal = was->journal;
 	item->wants_after = was->wants_after;
 	memcpy(item->latch_text, was->latch_text, sizeof(item->latch_text));
-	if (same_text(s->item->set_alarm, old->table.signals[before].item->set_alarm))
-		item->to_arm = was->to_arm;
+	if (same_text(s->item->por_alarm, old->table.signals[before].item->por_alarm)) {
+		item->restarted = was->restarted;
+		item->differs = was->differs;
+	}
+	if (!same_text(s->item->set_alarm, old->table.signals[before].item->set_alarm))
+		return;
+	item->to_arm = was->to_arm;
+	item->arm_retry = was->arm_retry;
+	item->arm_ns = was->arm_ns;
+	s->attrs.flags |= old->table.signals[before].attrs.flags & OWS_ATTR_ALARM_UNARMED;
+	s->alarm_err = old->table.signals[before].alarm_err;
 }
 
 static void take_alarms(struct engine *e, const struct engine *old, const struct adoption *plan)

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/* The alarm machine of a lane: what each state asks of the bus, and what the answer means to it. */
 #include "alarm.h"
 
+#include "alarm_arm.h"
 #include "alarm_known.h"
 #include "alarm_text.h"
 #include "private.h"
@@ -27,16 +29,14 @@ static uint32_t sensed_facts(struct engine *e, const struct alarm_item *i)
 	return 0;
 }
 
-/* The next output below the device that gets its InitValue, -1: none. */
-
 /* --- Facts of the states that need no answer ------------------------------------------------- */
 
-static uint32_t process_facts(struct alarm_machine *m, struct engine *e)
+static uint32_t process_facts(struct alarm_machine *m, struct engine *e, int64_t now_ns)
 {
 	if (m->in_a_row >= e->config->max_cons_alarms)
 		return FACT_MAX_CONS;
 	while (++m->position < (int64_t)m->count)
-		if (m->items[m->position]->listed) {
+		if (alarm_takes_part(m->items[m->position], now_ns)) {
 			m->in_a_row++;
 			return FACT_NEXT_ITEM;
 		}
@@ -68,7 +68,7 @@ static uint32_t facts_before(struct alarm_machine *m, struct lane *lane, int64_t
 
 	switch (m->state) {
 	case ALARM_PROCESS:
-		return process_facts(m, e);
+		return process_facts(m, e, now_ns);
 	case ALARM_BYPASS:
 		return bypass_facts(m, lane, now_ns);
 	case ALARM_POR_READ:
@@ -134,13 +134,12 @@ static void ask_init(struct engine *e, struct alarm_machine *m, struct alarm_req
 }
 
 /* The item whose SetAlarm is to be compared with the chip, if any is left. */
-static bool ask_arm(struct alarm_machine *m, struct alarm_request *r)
+static bool ask_arm(struct alarm_machine *m, struct alarm_request *r, int64_t now_ns)
 {
 	const struct alarm_strings *s;
 
-	for (uint32_t k = 0; m->arming < 0 && k < m->count; k++)
-		if (m->items[k]->to_arm)
-			m->arming = k;
+	if (m->arming < 0)
+		m->arming = alarm_to_arm(m, now_ns);
 	if (m->arming < 0)
 		return false;
 	s = &m->items[m->arming]->strings;
@@ -159,10 +158,14 @@ static bool ask_in_state(struct alarm_machine *m, struct lane *lane, struct alar
 		ask(r, BUS_READ, "", i, i->strings.latch, "");
 		return true;
 	}
+	if (m->proving) {
+		ask(r, BUS_READ, "", i, i->strings.por, "");
+		return true;
+	}
 	switch (m->state) {
 	case INIT:
 		m->position = -1;
-		if (ask_arm(m, r))
+		if (ask_arm(m, r, now_ns))
 			return true;
 		if (now_ns < m->list_ns)
 			return false;
@@ -231,11 +234,14 @@ bool alarm_run(struct alarm_machine *m, struct lane *lane, struct alarm_request 
 
 	/* a cycle without requests ends in INIT or ALARM_BYPASS: bounded */
 	while (m->state != NOT_USED && !m->in_work) {
-		uint32_t facts = m->collecting >= 0 ? 0 : facts_before(m, lane, now_ns);
+		bool between = m->collecting >= 0 || m->proving;
+		uint32_t facts = between ? 0 : facts_before(m, lane, now_ns);
 
 		row = facts ? alarm_next(m->state, facts) : NULL;
 		if (!row)
 			return ask_in_state(m, lane, request, now_ns);
+		if (m->state == ALARM_SET && facts & FACT_ND)
+			alarm_set_missing(lane, alarm_current(m), now_ns);
 		if (m->state == ALARM_LATCH && facts & FACT_KNOWN) {
 			/* the value that another item of the device has read */
 			struct alarm_item *i = alarm_current(m);
@@ -256,7 +262,7 @@ void alarm_started(struct alarm_machine *m, struct lane *lane, int64_t now_ns)
 	uint32_t facts = FACT_STARTED;
 
 	m->in_work = true;
-	if (m->collecting >= 0 || m->arming >= 0)
+	if (m->collecting >= 0 || m->arming >= 0 || m->proving)
 		return;
 	if (m->state == INIT) {
 		m->list_ns = now_ns + lane->engine->config->alarm_period_ns;
@@ -270,24 +276,6 @@ void alarm_started(struct alarm_machine *m, struct lane *lane, int64_t now_ns)
 }
 
 /* --- Answers --------------------------------------------------------------------------------- */
-
-static void armed(struct alarm_machine *m, const struct bus_answer *answer, const char *data)
-{
-	struct alarm_item *i = m->items[m->arming];
-
-	if (failure_of(answer->err) == FAILURE_TARGET) {
-		m->arming = -1;
-		m->arm_writes = false;
-		return;
-	}
-	if (!answer->err && !m->arm_writes && !alarm_as_set(data, answer->len, i->strings.set_value)) {
-		m->arm_writes = true;
-		return;
-	}
-	i->to_arm = false;
-	m->arming = -1;
-	m->arm_writes = false;
-}
 
 static int take_latch(struct alarm_machine *m, struct alarm_item *i,
                       const struct bus_answer *answer, const char *data)
@@ -319,6 +307,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 			alarm_list_failed(m, lane, err, now_ns);
 		break;
 	case ALARM_POR_READ_WAIT:
+		i->asks_por = false;
 		set = err ? err : alarm_non_zero(data, answer->len);
 		err = set < 0 ? set : 0;
 		if (err)
@@ -326,24 +315,30 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 		i->por_cycle = m->cycle;
 		i->por_set = set;
 		if (set)
-			engine_power_on_reset(e, lane, i, now_ns);
+			alarm_por_set(m, lane, i, now_ns);
+		else
+			alarm_por_clear(m, e, i);
 		return FACT_DONE | (set ? FACT_NON_ZERO : 0);
 	case ALARM_SET_WAIT:
-		if (!err) {
+		if (err) {
+			alarm_set_failed(lane, i, err, now_ns);
+			return FACT_FAILED;
+		} else {
 			i->set_cycle = m->cycle;
+			i->to_arm = false;
 			if (alarm_init_known(m, i) || alarm_next_init(e, m) < 0)
 				return FACT_DONE;
 			i->init_cycle = m->cycle;
 			return 0; /* the first output is asked for from here */
 		}
-		break;
 	case ALARM_INIT_WRITE_WAIT:
 		engine_write_done(e, lane, slot, answer, now_ns);
 		return (err ? FACT_FAILED : FACT_DONE) | (m->init_position >= 0 ? FACT_INIT_POS : 0);
 	case ALARM_POR_RESET_WAIT:
-		if (!err)
-			i->por_reset_cycle = m->cycle;
-		break;
+		m->proving = !err;
+		if (err)
+			alarm_por_failed(lane, i, err, now_ns);
+		return err ? FACT_FAILED : FACT_DONE;
 	case ALARM_LATCH_WAIT:
 		err = take_latch(m, i, answer, data);
 		if (err)
@@ -395,6 +390,23 @@ static bool collect(struct alarm_machine *m)
 	return m->collecting >= 0;
 }
 
+/* A driver may take the 0 and leave the flag: the next restart could not be told from this one. */
+static uint32_t proven(struct alarm_machine *m, struct lane *lane, const struct bus_answer *answer,
+                       const char *data, int64_t now_ns)
+{
+	struct alarm_item *i = alarm_current(m);
+	int set = answer->err ? answer->err : alarm_non_zero(data, answer->len);
+
+	m->proving = false;
+	if (set) {
+		alarm_por_failed(lane, i, set < 0 ? set : -EUCLEAN, now_ns);
+		return FACT_FAILED;
+	}
+	i->por_reset_cycle = m->cycle;
+	alarm_por_clear(m, lane->engine, i);
+	return FACT_DONE;
+}
+
 void alarm_answered(struct alarm_machine *m, struct lane *lane, const struct slot *slot,
                     const struct bus_answer *answer, int64_t now_ns)
 {
@@ -402,7 +414,7 @@ void alarm_answered(struct alarm_machine *m, struct lane *lane, const struct slo
 
 	m->in_work = false;
 	if (m->arming >= 0) {
-		armed(m, answer, (const char *)slot->data);
+		alarm_arm_answered(m, lane, answer, (const char *)slot->data, now_ns);
 		return;
 	}
 	if (failure_of(answer->err) == FAILURE_TARGET || answer->err == -ECANCELED ||
@@ -421,8 +433,13 @@ void alarm_answered(struct alarm_machine *m, struct lane *lane, const struct slo
 			enter(m, lane, alarm_next(m->state, m->held));
 		return;
 	}
+	if (m->proving) {
+		facts = proven(m, lane, answer, (const char *)slot->data, now_ns);
+		enter(m, lane, alarm_next(m->state, facts));
+		return;
+	}
 	facts = facts_after(m, lane, slot, answer, now_ns);
-	if (m->state == NOT_USED || !facts)
+	if (m->state == NOT_USED || !facts || m->proving)
 		return;
 	m->held = facts;
 	if (!(facts & FACT_DONE) || !collect(m))
@@ -458,14 +475,7 @@ void alarm_restart(struct alarm_machine *m)
 		return;
 	m->state = INIT;
 	m->position = m->init_position = m->arming = m->collecting = -1;
-	m->arm_writes = false;
+	m->arm_writes = m->proving = false;
 	m->in_work = false;
 	m->in_a_row = 0;
-}
-
-void alarm_rearm(struct alarm_machine *m, uint32_t device)
-{
-	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->device == device)
-			m->items[k]->to_arm = alarm_arms(m->items[k]);
 }

@@ -32,6 +32,11 @@ struct alarm_item {
 	bool listed;   /* its device stands in the list of /alarm */
 	bool stands;   /* an occurrence that was not reset yet */
 	bool to_arm;   /* SetAlarm has to be compared with the chip */
+	bool restarted; /* por was not 0, and not 0 since: that restart is known */
+	bool differs;   /* since then an output was read back otherwise than before: one more */
+	bool asks_por;  /* the device left the list meanwhile: is its por 0 now? */
+	struct retry arm_retry; /* of to_arm, and of ending the restart */
+	int64_t arm_ns;         /* not before */
 	/* what was done for it in the cycle of that number; 0: never */
 	uint32_t por_cycle, latch_cycle, set_cycle, init_cycle, por_reset_cycle, reset_cycle;
 	uint32_t collect_cycle;
@@ -68,6 +73,7 @@ struct alarm_machine {
 	int64_t arming;        /* item whose SetAlarm is compared, -1 none */
 	bool arm_writes;
 	int64_t collecting;    /* item whose latch is read ahead of a reset, -1 none */
+	bool proving;          /* 0 was written to por, which is read back */
 	uint32_t held;         /* the facts that wait for the end of that */
 	int64_t list_ns;       /* earliest time of the next list */
 	int64_t wait_ns;       /* doubles while lists fail */
@@ -124,7 +130,9 @@ int64_t alarm_wake(const struct alarm_machine *m);
 void alarm_restart(struct alarm_machine *m);
 /* The target is back, and may be another or have another driver: has it an alarm search now? */
 void alarm_ask_again(struct alarm_machine *m, struct lane *lane, int64_t now_ns);
-/* A device came back: its SetAlarm is compared again. */
-void alarm_rearm(struct alarm_machine *m, uint32_t device);
+/* A device came back: its SetAlarm is compared again, and its next por is a restart. */
+void alarm_rearm(struct alarm_machine *m, struct engine *e, uint32_t device);
+/* An output of the device was read back otherwise than before, though nothing was written. */
+void alarm_output_differs(struct alarm_machine *m, uint32_t device);
 
 #endif

@@ -147,6 +147,9 @@ void alarm_take_item(struct alarm_machine *m, struct alarm_item *item, int64_t n
 	m->collecting += m->collecting >= (int64_t)at;
 	item->listed = false;
 	item->to_arm = alarm_arms(item);
+	item->asks_por = false;
+	retry_clear(&item->arm_retry);
+	item->arm_ns = 0;
 	item->por_cycle = item->latch_cycle = item->set_cycle = item->init_cycle = 0;
 	item->por_reset_cycle = item->reset_cycle = item->collect_cycle = 0;
 	m->named = false;
@@ -181,8 +184,10 @@ bool alarm_drop_item(struct alarm_machine *m, struct alarm_item *item)
 	m->collecting -= m->collecting > at;
 	if (current && m->state != ALARM_BYPASS)
 		m->state = ALARM_PROCESS;
-	if (current)
+	if (current) {
 		m->init_position = -1;
+		m->proving = false;
+	}
 	m->named = false;
 	if (!m->count)
 		m->state = NOT_USED;

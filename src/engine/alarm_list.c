@@ -33,6 +33,7 @@ static void mark_listed(struct alarm_machine *m, struct lane *lane, const char *
 				continue;
 		}
 		m->items[k]->listed = ours = true;
+		m->items[k]->asks_por = false;
 	}
 	if (ours || !path.has_rom)
 		return;
@@ -52,8 +53,13 @@ void alarm_take_list(struct alarm_machine *m, struct lane *lane, const char *lis
 	m->cycle++;
 	lane->counters.alarm_lists++;
 	m->wait_ns = 0;
-	for (uint32_t k = 0; k < m->count; k++)
-		m->items[k]->listed = false;
+	for (uint32_t k = 0; k < m->count; k++) {
+		struct alarm_item *i = m->items[k];
+
+		/* unless it is found below */
+		i->asks_por = i->asks_por || (i->restarted && i->listed);
+		i->listed = false;
+	}
 	while (len) {
 		const char *end = memchr(list, '\n', len);
 		size_t n = end ? (size_t)(end - list) : len;

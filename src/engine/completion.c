@@ -173,6 +173,19 @@ static int64_t time_of(const struct engine *e, const struct slot *slot,
 	return slot->begun_ns < e->gap_ns && slot->begun_ns < measured_ns ? slot->begun_ns : measured_ns;
 }
 
+/* An output that changes though nothing was written may be that of a device that has restarted. */
+static void look_back(struct lane *lane, struct signal *s)
+{
+	bool agrees;
+
+	if (!s->item->output || !s->confirmed || s->writing || signal_is_string(s))
+		return;
+	agrees = s->sample.value == s->written;
+	if (s->agrees && !agrees)
+		alarm_output_differs(&lane->alarm, s->device);
+	s->agrees = agrees;
+}
+
 int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
                         const struct slot *slot, const struct bus_answer *answer, int64_t now_ns,
                         int64_t *wait_ns)
@@ -188,6 +201,7 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 		s->sample.detail = answer->detail;
 		retry_clear(&s->read_retry);
 		succeed(e, lane, s, quality, true, now_ns);
+		look_back(lane, s);
 		break;
 	case FAILURE_ITEM:
 		*wait_ns = fail_read(e, lane, s, err);
@@ -204,7 +218,8 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 /* An alarm item is read when it has something to say, and now and then to see that it lives. */
 static uint64_t reads_apart(struct engine *e, struct lane *lane, const struct signal *s)
 {
-	if (s->item->alarm && alarm_serves(&lane->alarm) && s->item->per_factor == 1)
+	if (s->item->alarm && alarm_serves(&lane->alarm) && s->item->per_factor == 1 &&
+	    !(s->attrs.flags & OWS_ATTR_ALARM_UNARMED))
 		return engine_periods(e, ALARM_ITEM_NS);
 	return s->item->per_factor;
 }
@@ -242,6 +257,7 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	/* first, for a device that comes back forgets what was written, but for this */
 	succeed(e, lane, s, OWS_Q_GOOD, false, now_ns);
 	s->confirmed = true;
+	s->agrees = false;
 	s->written = slot->value;
 	s->sample.value = slot->value;
 	s->sample.applied = slot->stamp;
@@ -371,7 +387,7 @@ void engine_device_back(struct engine *e, struct lane *lane, struct device *devi
 		retry_clear(&s->read_retry);
 		retry_clear(&s->write_retry);
 		due_wheel_cancel(&e->wheel, engine_row(s) * 2 + 1);
-		alarm_rearm(&lane->alarm, s->device);
+		alarm_rearm(&lane->alarm, e, s->device);
 		s->confirmed = false;
 		engine_read_now(e, s);
 		engine_write_check(e, s);

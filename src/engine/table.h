@@ -40,12 +40,14 @@ struct signal {
 	struct guard guard;
 
 	bool alarming; /* a request of the alarm machine counts for it */
+	int alarm_err; /* why its alarm cannot be armed, if OWS_ATTR_ALARM_UNARMED */
 
 	/* writing */
 	bool writing;
 	struct retry write_retry;
 	bool commanded;  /* there is something to write: by a program, or InitValue */
 	bool confirmed;  /* written holds what the bus has */
+	bool agrees;     /* it was read back as it was written */
 	bool one_shot;   /* write once more, changed or not */
 	bool forced;     /* a write in doubt ended late: the present value goes out again */
 	bool safe;       /* put to SafeValue, its client stopped beating */

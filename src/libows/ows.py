@@ -48,7 +48,7 @@ RECORD_SIZE, INFO_SIZE, SLOT_SIZE, ENTRY_SIZE, CLIENT_SIZE, CLIENTS = 256, 64, 3
 WHOLE_TRIES = 64
 OUTPUT, FRESH, ALARM, NO_SET = 1, 2, 4, 8
 READ_ENABLE, WRITE_ENABLE, IN_WORK = 1, 2, 4
-ALARM_POLLED, ALARM_STANDS, LIMITS = 16, 32, 64
+ALARM_POLLED, ALARM_STANDS, LIMITS, ALARM_UNARMED = 16, 32, 64, 128
 
 # name, short form, type, readable, writable; _Value has the type of its signal
 ATTRIBUTES = [
@@ -123,9 +123,10 @@ AlarmEntry = collections.namedtuple("AlarmEntry", "number name occurred_ns befor
                                     "quality latch")
 
 # How the alarms of a signal stand: occurrences of the device's alarm since owsd started, whether it
-# stands, whether the item is read as an input for want of an alarm search; limit alarms in words
+# stands, whether the item is read as an input for want of an alarm search; limit alarms in words;
+# whether the device's alarm cannot be armed
 AlarmState = collections.namedtuple("AlarmState", "occurrences stands polled limits limit_state "
-                                    "limit_kind")
+                                    "limit_kind unarmed")
 
 # A way to devices; ways to one wire have the same group, all but one of them suspended; moves:
 # signals that came from another target. The index is what Value.target says
@@ -590,7 +591,8 @@ class Ows:
         return AlarmState(attrs.alarms, bool(attrs.flags & ALARM_STANDS),
                           bool(attrs.flags & ALARM_POLLED), bool(attrs.flags & LIMITS),
                           word(LIMIT_STATES, attrs.limit_state, "unknown"),
-                          word(ALARM_KINDS, attrs.limit_condition, "none"))
+                          word(ALARM_KINDS, attrs.limit_condition, "none"),
+                          bool(attrs.flags & ALARM_UNARMED))
 
     def targets(self):
         """All targets: Target by Target."""

@@ -5,6 +5,8 @@
 #include "rows.h"
 #include "table.h"
 
+#include "../signal/error.h"
+
 #include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
@@ -96,6 +98,7 @@ static void look_at(struct live *live, int signal, const struct row *row)
 {
 	struct ows_alarm_state state = {0};
 	struct alarm alarm = {.name = row->name};
+	char words[ERROR_WORDS], unarmed[ERROR_WORDS + 32];
 
 	if (ows_alarm_state(live->h, row->id, &state) == -EAGAIN)
 		return;
@@ -110,6 +113,19 @@ static void look_at(struct live *live, int signal, const struct row *row)
 		alarm.occurrences = state.occurrences;
 		if (state.stands)
 			alarm.since_ns = raised(live->h, signal, OWS_ALARM_DEVICE);
+		add(live, &alarm);
+	}
+	if (state.unarmed) {
+		snprintf(unarmed, sizeof(unarmed), "cannot be armed: %s",
+		         error_words(live->reading->value.err, words));
+		alarm = (struct alarm){
+			.name = row->name,
+			.kind = ows_alarm_kind_text(OWS_ALARM_DEVICE),
+			.state = live->reading->value.err ? unarmed : "cannot be armed",
+			.device = true,
+			.polled = state.polled,
+			.occurrences = state.occurrences,
+		};
 		add(live, &alarm);
 	}
 	if (state.limit_state != OWS_LIMIT_NORMAL) {

@@ -20,18 +20,19 @@ bool standing_possible(const struct ows_alarm_state *state)
 
 bool standing_any(const struct ows_alarm_state *state)
 {
-	return state->stands || state->limit_state != OWS_LIMIT_NORMAL;
+	return state->stands || state->unarmed || state->limit_state != OWS_LIMIT_NORMAL;
 }
 
 bool standing_wants_eyes(const struct ows_alarm_state *state)
 {
-	return state->stands || state->limit_state == OWS_LIMIT_UNACKNOWLEDGED ||
+	return state->stands || state->unarmed || state->limit_state == OWS_LIMIT_UNACKNOWLEDGED ||
 	       state->limit_state == OWS_LIMIT_RETURNED;
 }
 
 const char *standing_text(const struct ows_alarm_state *state, char words[STANDING_WORDS])
 {
 	const char *kind = ows_alarm_kind_text(state->limit_kind), *end = "", *mark = "! ";
+	const char *device = state->unarmed ? "! cannot be armed" : state->stands ? "! device" : "";
 
 	if (state->limit_state == OWS_LIMIT_ACKNOWLEDGED) {
 		mark = "";
@@ -42,10 +43,10 @@ const char *standing_text(const struct ows_alarm_state *state, char words[STANDI
 	if (!standing_any(state))
 		snprintf(words, STANDING_WORDS, "-");
 	else if (state->limit_state == OWS_LIMIT_NORMAL)
-		snprintf(words, STANDING_WORDS, "! device");
+		snprintf(words, STANDING_WORDS, "%s", device);
 	else
-		snprintf(words, STANDING_WORDS, "%s%s%s%s", state->stands ? "! device; " : "", mark,
-		         kind, end);
+		snprintf(words, STANDING_WORDS, "%s%s%s%s%s", device, *device ? "; " : "", mark, kind,
+		         end);
 	return words;
 }
 
@@ -63,6 +64,8 @@ void standing_json(struct json *json, const struct ows_alarm_state *state)
 	json_array(json, "alarms");
 	if (state->stands)
 		add(json, ows_alarm_kind_text(OWS_ALARM_DEVICE), "stands", true);
+	if (state->unarmed)
+		add(json, ows_alarm_kind_text(OWS_ALARM_DEVICE), "cannot be armed", true);
 	if (state->limit_state != OWS_LIMIT_NORMAL)
 		add(json, ows_alarm_kind_text(state->limit_kind),
 		    ows_limit_state_text(state->limit_state), false);

@@ -14,7 +14,7 @@
  *   1.1  image: a journal of alarms; in the attributes the state of limit alarms and three flags;
  *        commands: words of acknowledgement
  *   1.2  image: group and moves of a target, and where the owserver protocol is served, which
- *        were 0; commands: the mark of SafeValue
+ *        were 0; a flag of alarms that cannot be armed; commands: the mark of SafeValue
  */
 #ifndef OWS_LAYOUT_H
 #define OWS_LAYOUT_H
@@ -79,6 +79,7 @@ struct ows_attrs { /* 72 bytes, 18 words */
 #define OWS_ATTR_ALARM_POLLED 0x10 /* alarm item read as an ordinary input: no alarm search there */
 #define OWS_ATTR_ALARM_STANDS 0x20 /* the device's alarm stands */
 #define OWS_ATTR_LIMITS       0x40 /* it has limit alarms */
+#define OWS_ATTR_ALARM_UNARMED 0x80 /* the device's alarm cannot be armed */
 
 struct ows_slot { /* 120 bytes */
 	struct ows_sample sample;

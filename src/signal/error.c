@@ -23,6 +23,8 @@ static const struct {
 	  "choose a property that answers less" },
 	{ EACCES, "it can only be read, or only be written", 
 	  "IO input reads it; IO output without Readable writes it" },
+	{ EBADRQC, "SetAlarm is not defined, or has no '='", "write SetAlarm \"property=value\"" },
+	{ EUCLEAN, "it is still set after 0 was written", "" },
 	{ EPERM, "no permission",
 	  "a read-only server refuses writes; a file of the kernel needs root or a udev rule" },
 	/* what happens on the way */

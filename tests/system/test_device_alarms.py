@@ -6,8 +6,10 @@ import json
 import os
 import subprocess
 import sys
+import time
 
 import owsdtest
+import peer
 from owsdtest import raw, until
 
 NETWORK = """
@@ -134,6 +136,81 @@ def test_a_bus_without_alarm_search_reads_its_alarm_items_as_inputs(scene):
     daemon = scene.owsd(config("null:"), "-v")
     until(lambda: "read as ordinary inputs" in daemon.log(), 5, "said once")
     assert daemon.log().count("read as ordinary inputs") == 1
+
+
+def buttons_and_lamp(target):
+    """The DS2408 of docs/alarms.md."""
+    return owsdtest.rio(target, [
+        dict(Name="buttons", Path=SWITCH + "/sensed.BYTE", Type=raw("byte"), Uncached=raw("on"),
+             Alarm=raw("on"), LatchAlarm="latch.BYTE", PorAlarm="por",
+             SetAlarm="set_alarm=133331111", ResetLatch="latch.BYTE=0"),
+        dict(Name="lamp", Path=SWITCH + "/PIO.0", Type=raw("bool"), IO=raw("output"),
+             InitValue="0"),
+    ], Period=0.05)
+
+
+def without_set_alarm(target):
+    text = buttons_and_lamp(target)
+    return "\n".join(line for line in text.splitlines() if "SetAlarm" not in line) + "\n"
+
+
+def transactions(scene, daemon, name):
+    return int(scene.owsctl(daemon, "get", name + "_TRANSACTIONS").stdout)
+
+
+def one_restart(scene, daemon, why):
+    """What is seen of one restart whose por stands: for seconds, and nothing more of it after."""
+    said = "the alarm cannot be armed: " + why
+    until(lambda: said in daemon.log(), 20, daemon.log)
+    # by the machine, or in its turn; a write that was on its way before is one more
+    owsdtest.settled(lambda: transactions(scene, daemon, "lamp"))
+    time.sleep(6)
+    assert 1 <= transactions(scene, daemon, "lamp") <= 2, "its outputs are written once"
+    assert daemon.log().count("the device has restarted") == 1, daemon.log()
+    assert daemon.log().count(said) == 1, daemon.log()
+    assert len(history(scene, daemon)) == 1, history(scene, daemon)
+    assert counter(scene, daemon, "power_on_resets") == 1
+    assert scene.get(daemon, "buttons") is not None, "its value is good"
+    listed = scene.owsctl(daemon, "list").stdout
+    assert "! cannot be armed" in listed, listed
+    alarms = scene.owsctl(daemon, "alarms").stdout
+    assert "buttons" in alarms and "cannot be armed: " in alarms, alarms
+    got = json.loads(scene.owsctl(daemon, "--json", "get", "buttons").stdout)
+    assert got[0]["err"] and got[0]["good"], got
+
+
+def test_a_restart_without_setalarm_is_one_restart(scene):
+    wire = scene.file("net.sim", "i2c speed 400\nchip DS2482-100 0x18\nDS2408 29.000000000001\n")
+    file = scene.file("board.rio", without_set_alarm(f"sim:{wire}"))
+    checked = scene.owsd_once("--check", "-c", file)
+    assert checked.returncode == 0, checked
+    assert "cannot be armed after a restart of its device: SetAlarm is not defined" in checked.stderr
+    one_restart(scene, scene.owsd(file), "SetAlarm is not defined")
+
+
+BOARD = {SWITCH + "/" + name: value for name, value in (
+    ("sensed.BYTE", "255"), ("latch.BYTE", "0"), ("por", "1"), ("set_alarm", "133331111"),
+    ("PIO.0", "0"))}
+
+
+def test_a_restart_whose_setalarm_or_por_is_refused_is_one_restart_until_that_heals(scene):
+    for refused, why in (("set_alarm", "set_alarm cannot be written: "),
+                         ("por", "por cannot be set to 0: ")):
+        with peer.Peer(BOARD) as server:
+            server.alarms = {SWITCH[1:]}
+            server.readonly = {f"{way}{SWITCH}/{refused}" for way in ("", "/uncached")}
+            daemon = scene.owsd(buttons_and_lamp(server.target))
+            one_restart(scene, daemon, why)
+            writes = [path for path, _ in server.writes if path.endswith("PIO.0")]
+            assert 1 <= len(writes) <= 2, server.writes
+            server.readonly = set()
+            until(lambda: "armed again" in daemon.log(), 70, daemon.log)
+            assert server[SWITCH + "/por"] == "0"
+            assert "cannot be armed" not in scene.owsctl(daemon, "list").stdout
+            server.values[SWITCH + "/por"] = b"1"
+            until(lambda: counter(scene, daemon, "power_on_resets") == 2, 20, "the next is one more")
+            until(lambda: server[SWITCH + "/por"] == "0", 20, "and is ended")
+            assert daemon.stop() == 0
 
 
 if __name__ == "__main__":

@@ -89,6 +89,7 @@ static void test_after_a_power_on_reset_everything_is_set_up_again(void)
 	                         "W " D "/set_alarm=133333333\n"
 	                         "W " D "/PIO.BYTE=3\n"
 	                         "W " D "/por=0\n"
+	                         "r " D "/por\n"
 	                         "r " D "/latch.BYTE\n"
 	                         "W " D "/PIO.BYTE=7\n",
 	                         s.trace);
@@ -117,6 +118,7 @@ static void test_all_outputs_below_the_device_get_their_init_value_in_order(void
 	                         "W " D "/PIO.0=1\n"
 	                         "W " D "/PIO.2=1\n"
 	                         "W " D "/por=0\n"
+	                         "r " D "/por\n"
 	                         "r " D "/latch.BYTE\n",
 	                         s.trace);
 }
@@ -309,7 +311,7 @@ static void test_every_combination_of_defined_empty_and_not_defined(void)
 			if (t == 0)
 				strcat(expected, "W " D "/set_alarm=133333333\n");
 			if (goes_on)
-				strcat(expected, "W " D "/por=0\n");
+				strcat(expected, "W " D "/por=0\nr " D "/por\n");
 		}
 		if (goes_on && l == 0) {
 			strcat(expected, "r " D "/latch.BYTE\n");

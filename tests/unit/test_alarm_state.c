@@ -41,7 +41,7 @@ static void test_a_signal_without_alarms_has_nothing_to_tell(void)
 	publish(ROOM, &(struct ows_attrs){0});
 	TEST_ASSERT_EQUAL(0, ows_alarm_state(h, ows_find(h, "room1"), &state));
 	TEST_ASSERT_EQUAL(0, state.occurrences);
-	TEST_ASSERT_FALSE(state.item || state.stands || state.polled || state.limits);
+	TEST_ASSERT_FALSE(state.item || state.stands || state.polled || state.limits || state.unarmed);
 	TEST_ASSERT_EQUAL(OWS_LIMIT_NORMAL, state.limit_state);
 	TEST_ASSERT_EQUAL(0, state.limit_kind);
 }
@@ -52,13 +52,14 @@ static void test_the_state_is_told_as_it_was_published(void)
 
 	publish(DOOR, &(struct ows_attrs){
 		.alarms = 7,
-		.flags = OWS_ATTR_LIMITS | OWS_ATTR_ALARM_STANDS | OWS_ATTR_ALARM_POLLED,
+		.flags = OWS_ATTR_LIMITS | OWS_ATTR_ALARM_STANDS | OWS_ATTR_ALARM_POLLED |
+		         OWS_ATTR_ALARM_UNARMED,
 		.limit_state = OWS_LIMIT_RETURNED,
 		.limit_condition = OWS_ALARM_LL,
 	});
 	TEST_ASSERT_EQUAL(0, ows_alarm_state(h, ows_find(h, "door_Age"), &state));
 	TEST_ASSERT_EQUAL(7, state.occurrences);
-	TEST_ASSERT_TRUE(state.limits && state.stands && state.polled && !state.item);
+	TEST_ASSERT_TRUE(state.limits && state.stands && state.polled && state.unarmed && !state.item);
 	TEST_ASSERT_EQUAL(OWS_LIMIT_RETURNED, state.limit_state);
 	TEST_ASSERT_EQUAL(OWS_ALARM_LL, state.limit_kind);
 }

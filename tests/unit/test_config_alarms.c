@@ -84,16 +84,23 @@ static void test_an_alarm_that_can_do_nothing_is_told_what_to_write(void)
 	"warning: this alarm never reads anything: LatchAlarm is " why                             \
 	"; write the device's latch such as LatchAlarm \"latch.BYTE\", or LatchAlarm \"present\" " \
 	"if it has none\n"
+#define NO_SET                                                                                     \
+	"warning: this alarm cannot be armed after a restart of its device: SetAlarm is not "      \
+	"defined, so por is never cleared; write SetAlarm \"property=value\", or SetAlarm \"\" if "  \
+	"nothing has to be set\n"
 	static const struct line cases[] = {
 		{ITEM "Alarm on", "f:3:34: " NO_POR "f:3:34: " NO_LATCH("not defined")},
-		{ITEM "Alarm on PorAlarm \"por\"", "f:3:34: " NO_LATCH("not defined")},
+		{ITEM "Alarm on PorAlarm \"por\"", "f:3:34: " NO_LATCH("not defined") "f:3:34: " NO_SET},
+		{ITEM "Alarm on PorAlarm \"por\" LatchAlarm x", "f:3:34: " NO_SET},
+		{ITEM "Alarm on PorAlarm \"\" LatchAlarm x", ""},
+		{ITEM "Alarm on PorAlarm \"por\" LatchAlarm x SetAlarm \"\"", ""},
 		{ITEM "Alarm on PorAlarm \"\" LatchAlarm \"\"", "f:3:34: " NO_LATCH("empty")},
 		{ITEM "Alarm on LatchAlarm \"latch.BYTE\"", "f:3:34: " NO_POR},
 		{ITEM "Alarm on PorAlarm \"\" LatchAlarm \"present\"", ""},
 		{ITEM "Alarm off LatchAlarm \"\"", ""},
 		{ITEM "Alarm on PorAlarm \"por\" LatchAlarm \"latch\" SetAlarm \"set_alarm\" ResetLatch \"\"",
-	         "f:3:80: warning: SetAlarm \"set_alarm\" has no '=': nothing is written; expected "
-	         "property=value\n"},
+	         "f:3:80: warning: SetAlarm \"set_alarm\" has no '=': nothing is written, and the alarm "
+	         "cannot be armed after a restart of its device; expected property=value\n"},
 		{ITEM "Alarm on PorAlarm \"por\" LatchAlarm \"latch\" SetAlarm \"a=b\" ResetLatch \"latch=0\"",
 	         ""},
 	};

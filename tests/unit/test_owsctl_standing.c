@@ -29,6 +29,9 @@ static void test_each_state_has_its_words_and_its_mark(void)
 		{{.limit_state = OWS_LIMIT_RETURNED, .limit_kind = OWS_ALARM_BAD}, "! bad, returned", true},
 		{{.item = 1, .stands = 1}, "! device", true},
 		{{.item = 1, .polled = 1}, "-", false},
+		{{.item = 1, .unarmed = 1}, "! cannot be armed", true},
+		{{.item = 1, .unarmed = 1, .stands = 1, .limit_state = OWS_LIMIT_ACKNOWLEDGED,
+		  .limit_kind = OWS_ALARM_L}, "! cannot be armed; low, acknowledged", true},
 		{{.stands = 1, .limit_state = OWS_LIMIT_ACKNOWLEDGED, .limit_kind = OWS_ALARM_L},
 		 "! device; low, acknowledged", true},
 		{{.stands = 1, .limit_state = OWS_LIMIT_UNACKNOWLEDGED, .limit_kind = OWS_ALARM_STALE},
@@ -51,7 +54,7 @@ static void test_no_words_are_cut(void)
 
 	for (unsigned kind = 0; kind < 256; kind++)
 		for (unsigned state = 0; state < 256; state++) {
-			struct ows_alarm_state odd = {.stands = 1, .limit_state = (uint8_t)state,
+			struct ows_alarm_state odd = {.unarmed = 1, .limit_state = (uint8_t)state,
 			                              .limit_kind = (uint8_t)kind};
 
 			TEST_ASSERT_TRUE(strlen(standing_text(&odd, words)) < STANDING_WORDS - 1);

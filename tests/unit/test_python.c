@@ -398,7 +398,7 @@ static void test_c_finds_what_python_acknowledged(void)
 	       "s.acknowledge(\"room1\")\n"
 	       "print(error(s.acknowledge, \"_TRANSACTIONS\"),"
 	       " error(ows.Ows(name).acknowledge, \"room1\"))",
-	       "3,True,False,True,returned to normal unacknowledged,low low\n"
+	       "3,True,False,True,returned to normal unacknowledged,low low,False\n"
 	       "KeyError PermissionError\n");
 	commands_load(&in.commands, ROOM, &command);
 	TEST_ASSERT_EQUAL(1, command.acknowledged);

@@ -117,7 +117,7 @@ static void test_python_reads_a_recorded_image(void)
 		"1 i2c:/dev/i2c-1 up 5 0 6\n"
 		"0 never 1001000000000 False True device raised 192 1,0,0,1\n"
 		"1 room.temperature 1002000000000 30.5 None high high acknowledged 192 \n"
-		"0 False False True returned to normal unacknowledged high high\n"
+		"0 False False True returned to normal unacknowledged high high False\n"
 		"Info(name=\"long\", path=\"/1D.000000000001/a\", type=4, output=False, fresh=True,"
 		" alarm=False, per_factor=4, stale_after_ns=2000000000)\n",
 		python("s = ows.Ows(sys.argv[1])\nN = 1010 * 10**9\n"

@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The arming of alarm items: SetAlarm compared with the chip, and a restart of a device, which is one
+ * restart as long as its por cannot be cleared (docs/semantics.md, section 4, "One restart").
+ */
+#include "alarm_arm.h"
+
+#include "alarm_known.h"
+#include "alarm_text.h"
+#include "private.h"
+
+#include "../signal/error.h"
+
+#include <errno.h>
+#include <string.h>
+
+/* Another item of the same device, or this one, with the same property for its restart. */
+static bool same_por(const struct alarm_item *a, const struct alarm_item *b)
+{
+	return a->device == b->device && a->strings.por && b->strings.por &&
+	       strcmp(a->strings.por, b->strings.por) == 0;
+}
+
+bool alarm_takes_part(const struct alarm_item *i, int64_t now_ns)
+{
+	return i->asks_por || (i->listed && !(i->restarted && now_ns < i->arm_ns));
+}
+
+static void show_unarmed(struct engine *e, struct alarm_item *i, int err, const char *property,
+                         const char *why)
+{
+	struct signal *s = alarm_signal(e, i);
+	bool before = s->attrs.flags & OWS_ATTR_ALARM_UNARMED;
+
+	s->attrs.flags |= OWS_ATTR_ALARM_UNARMED;
+	s->alarm_err = err;
+	if (!before) {
+		log_warning(e->log, "%s (%s): the alarm cannot be armed: %s%s%s", s->item->name,
+		            s->item->path, property, why, err == -EBADRQC ? "" : error_text(err));
+		engine_read_now(e, s);
+	}
+	engine_publish(e, s);
+}
+
+static void armed(struct engine *e, struct alarm_item *i)
+{
+	struct signal *s = alarm_signal(e, i);
+
+	retry_clear(&i->arm_retry);
+	i->arm_ns = 0;
+	if (!(s->attrs.flags & OWS_ATTR_ALARM_UNARMED))
+		return;
+	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_UNARMED;
+	s->alarm_err = 0;
+	log_notice(e->log, "%s (%s): the alarm is armed again", s->item->name, s->item->path);
+	engine_publish(e, s);
+}
+
+static void not_armed(struct lane *lane, struct alarm_item *i, int err, const char *property,
+                     const char *why, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	int64_t wait_ns;
+
+	lane->counters.item_errors++;
+	if (!retry_fail(&i->arm_retry, e->config->max_retries, &wait_ns))
+		return;
+	i->arm_ns = now_ns + wait_ns;
+	if (err != -ENODEV) /* its quality says so */
+		show_unarmed(e, i, err, property, why);
+}
+
+/* --- Restarts -------------------------------------------------------------------------------- */
+
+void alarm_por_set(struct alarm_machine *m, struct lane *lane, struct alarm_item *i, int64_t now_ns)
+{
+	if (i->restarted && !i->differs)
+		return;
+	engine_power_on_reset(lane->engine, lane, i, now_ns);
+	for (uint32_t k = 0; k < m->count; k++) {
+		struct alarm_item *other = m->items[k];
+
+		if (!same_por(other, i))
+			continue;
+		if (!other->restarted) {
+			retry_clear(&other->arm_retry);
+			other->arm_ns = 0;
+		}
+		other->restarted = true;
+		other->differs = false;
+	}
+}
+
+void alarm_por_clear(struct alarm_machine *m, struct engine *e, const struct alarm_item *i)
+{
+	for (uint32_t k = 0; k < m->count; k++) {
+		struct alarm_item *other = m->items[k];
+
+		if (!same_por(other, i) || !other->restarted)
+			continue;
+		other->restarted = other->differs = false;
+		if (!other->to_arm)
+			armed(e, other);
+		else
+			other->arm_ns = 0;
+	}
+}
+
+void alarm_set_failed(struct lane *lane, struct alarm_item *i, int err, int64_t now_ns)
+{
+	i->to_arm = alarm_arms(i);
+	not_armed(lane, i, err, i->strings.set, " cannot be written: ", now_ns);
+}
+
+void alarm_set_missing(struct lane *lane, struct alarm_item *i, int64_t now_ns)
+{
+	if (i->restarted) /* another item of the device may have ended it in this cycle */
+		not_armed(lane, i, -EBADRQC, "SetAlarm",
+		                i->strings.set ? " has no '='" : " is not defined", now_ns);
+}
+
+void alarm_por_failed(struct lane *lane, struct alarm_item *i, int err, int64_t now_ns)
+{
+	not_armed(lane, i, err, i->strings.por, " cannot be set to 0: ", now_ns);
+}
+
+void alarm_output_differs(struct alarm_machine *m, uint32_t device)
+{
+	for (uint32_t k = 0; k < m->count; k++)
+		if (m->items[k]->device == device && m->items[k]->restarted)
+			m->items[k]->differs = true;
+}
+
+void alarm_rearm(struct alarm_machine *m, struct engine *e, uint32_t device)
+{
+	for (uint32_t k = 0; k < m->count; k++) {
+		struct alarm_item *i = m->items[k];
+
+		if (i->device != device)
+			continue;
+		i->to_arm = alarm_arms(i);
+		i->restarted = i->differs = i->asks_por = false;
+		armed(e, i);
+	}
+}
+
+/* --- SetAlarm at start, and when a device comes back ------------------------------------------ */
+
+int64_t alarm_to_arm(const struct alarm_machine *m, int64_t now_ns)
+{
+	for (uint32_t k = 0; k < m->count; k++)
+		if (m->items[k]->to_arm && !m->items[k]->restarted && now_ns >= m->items[k]->arm_ns)
+			return k;
+	return -1;
+}
+
+void alarm_arm_answered(struct alarm_machine *m, struct lane *lane, const struct bus_answer *answer,
+                        const char *data, int64_t now_ns)
+{
+	struct alarm_item *i = m->items[m->arming];
+	bool wrote = m->arm_writes;
+	int err = answer->err;
+
+	/* what cannot be read may be written all the same */
+	if (!wrote && (err == -EACCES ||
+	               (!err && !alarm_as_set(data, answer->len, i->strings.set_value)))) {
+		m->arm_writes = true;
+		return;
+	}
+	m->arming = -1;
+	m->arm_writes = false;
+	switch (failure_of(err)) {
+	case FAILURE_NONE:
+		i->to_arm = false;
+		armed(lane->engine, i);
+		break;
+	case FAILURE_ITEM:
+		not_armed(lane, i, err, i->strings.set,
+		                wrote ? " cannot be written: " : " cannot be read: ", now_ns);
+		break;
+	case FAILURE_TARGET:
+	case FAILURE_VOID:
+		break;
+	}
+}
