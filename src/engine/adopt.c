@@ -316,6 +316,7 @@ static void take_alarm(struct engine *e, struct alarm_item *item, const struct e
 	if (!was)
 		return;
 	item->stands = was->stands;
+	item->entered = was->entered;
 	item->journal = was->journal;
 	item->wants_after = was->wants_after;
 	memcpy(item->latch_text, was->latch_text, sizeof(item->latch_text));

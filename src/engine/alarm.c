@@ -251,6 +251,8 @@ bool alarm_run(struct alarm_machine *m, struct lane *lane, struct alarm_request 
 			memcpy(i->latch_text, known->latch_text, sizeof(i->latch_text));
 			if (i->latch_set)
 				engine_alarm_raised(lane->engine, lane, i, now_ns);
+			else
+				engine_alarm_rests(lane->engine, i, now_ns);
 		}
 		enter(m, lane, row);
 	}
@@ -345,6 +347,8 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 			break;
 		if (i->latch_set)
 			engine_alarm_raised(e, lane, i, now_ns);
+		else
+			engine_alarm_rests(e, i, now_ns);
 		return FACT_DONE | (i->latch_set ? FACT_NON_ZERO : 0);
 	case ALARM_SENSED_WAIT:
 	case SENSED_WAIT:
@@ -355,7 +359,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 	case ALARM_LATCH_RESET_WAIT:
 		if (!err) {
 			i->reset_cycle = m->cycle;
-			engine_alarm_ended(e, i, now_ns);
+			engine_alarm_ended(e, i);
 		}
 		break;
 	case NOT_USED:

@@ -34,26 +34,39 @@ void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item 
 	s->attrs.alarms++;
 	s->attrs.flags |= OWS_ATTR_ALARM_STANDS;
 	lane->counters.alarms++;
-	entry = entry_of(s, OWS_ALARM_DEVICE, OWS_ALARM_RAISED, now_ns);
-	memcpy(entry.latch, item->latch_text, strnlen(item->latch_text, sizeof(entry.latch)));
-	item->journal = image_alarm(e->image, &entry);
-	item->wants_after = true;
-	log_info(e->log, "%s: alarm, %s is %s", s->item->name, item->strings.latch,
-	         item->latch_text);
+	if (!item->entered) {
+		entry = entry_of(s, OWS_ALARM_DEVICE, OWS_ALARM_RAISED, now_ns);
+		memcpy(entry.latch, item->latch_text, strnlen(item->latch_text, sizeof(entry.latch)));
+		item->journal = image_alarm(e->image, &entry);
+		item->entered = item->wants_after = true;
+		log_info(e->log, "%s: alarm, %s is %s", s->item->name, item->strings.latch,
+		         item->latch_text);
+	}
 	engine_publish(e, s);
 }
 
-void engine_alarm_ended(struct engine *e, struct alarm_item *item, int64_t now_ns)
+void engine_alarm_ended(struct engine *e, struct alarm_item *item)
 {
 	struct signal *s = &e->table.signals[item->row];
-	struct ows_alarm_entry entry = entry_of(s, OWS_ALARM_DEVICE, OWS_ALARM_RETURNED, now_ns);
 
 	if (!item->stands)
 		return;
 	item->stands = false;
 	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_STANDS;
-	image_alarm(e->image, &entry);
 	engine_publish(e, s);
+}
+
+void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_ns)
+{
+	struct ows_alarm_entry entry = entry_of(&e->table.signals[item->row], OWS_ALARM_DEVICE,
+	                                        OWS_ALARM_RETURNED, now_ns);
+
+	engine_alarm_ended(e, item);
+	if (!item->entered)
+		return;
+	item->entered = false;
+	image_alarm(e->image, &entry);
+	e->published = true;
 }
 
 int engine_alarm_value(struct engine *e, struct lane *lane, struct alarm_item *item,

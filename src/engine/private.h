@@ -152,7 +152,10 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 /* alarm_effect.c: what the alarm machine changes in the table */
 void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item *item,
                          int64_t now_ns);
-void engine_alarm_ended(struct engine *e, struct alarm_item *item, int64_t now_ns);
+/* Its latch was reset. */
+void engine_alarm_ended(struct engine *e, struct alarm_item *item);
+/* Its latch was read 0, or its device is not listed: the journal has the return. */
+void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_ns);
 /* The value read under an alarm; 0 or the item error. */
 int engine_alarm_value(struct engine *e, struct lane *lane, struct alarm_item *item,
                        const struct slot *slot, const struct bus_answer *answer, int64_t now_ns);
