@@ -80,13 +80,11 @@ static struct line *claim(struct log *log, uint32_t *turn)
 	}
 }
 
-/* Control characters become '?'; a UTF-8 character that was cut at the end goes away. */
-static size_t clean(char *text, size_t len, bool cut)
+/* Without the UTF-8 character that was cut at the end. */
+static size_t whole(const char *text, size_t len)
 {
-	size_t start = len = printable(text, len);
+	size_t start = len;
 
-	if (!cut)
-		return len;
 	while (start > 0 && len - start < 3 && ((unsigned char)text[start - 1] & 0xc0) == 0x80)
 		start--;
 	if (start > 0 && (unsigned char)text[start - 1] >= 0xc0) {
@@ -115,8 +113,8 @@ void log_put(struct log *log, enum log_level level, const char *format, ...)
 	va_end(args);
 	if (made < 0)
 		return;
-	len = made > LINE_BYTES ? LINE_BYTES : (size_t)made;
-	len = clean(text, len, made > LINE_BYTES);
+	len = made > LINE_BYTES ? whole(text, LINE_BYTES) : (size_t)made;
+	len = printable(text, len);
 
 	line = claim(log, &turn);
 	if (!line) {

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/* Text that comes from elsewhere, made fit for a terminal or a log. */
 #include "printable.h"
+
+#include "signal/utf8.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -7,29 +10,20 @@
 #define HEAD 300
 static const char gap[] = { ' ', '.', '.', '.', ' ' };
 
-/* Bytes of the character at text that has to go; 0: it may stay. */
-static size_t harmful(const unsigned char *text, size_t left)
-{
-	if (text[0] < 0x20 || text[0] == 0x7f)
-		return 1;
-	if (left >= 2 && text[0] == 0xc2 && text[1] >= 0x80 && text[1] < 0xa0)
-		return 2;
-	if (left >= 3 && text[0] == 0xe2 &&
-	    ((text[1] == 0x80 && text[2] >= 0xa8 && text[2] <= 0xae) ||
-	     (text[1] == 0x81 && text[2] >= 0xa6 && text[2] <= 0xa9)))
-		return 3;
-	return 0;
-}
-
 size_t printable(char *text, size_t len)
 {
+	const char *from = text;
 	size_t to = 0;
 
-	for (size_t from = 0; from < len;) {
-		size_t bytes = harmful((const unsigned char *)text + from, len - from);
+	while (len > 0) {
+		const char *at = from;
 
-		text[to++] = bytes ? '?' : text[from];
-		from += bytes ? bytes : 1;
+		if (utf8_disturbs(utf8_next(&from, &len))) {
+			text[to++] = '?';
+		} else {
+			memmove(text + to, at, (size_t)(from - at));
+			to += (size_t)(from - at);
+		}
 	}
 	return to;
 }

@@ -6,9 +6,10 @@
 #include <stddef.h>
 
 /*
- * Make text fit for a terminal, in place: each control character becomes '?', and so does each that
- * would make a line read other than it is (U+2028 to U+202E, U+2066 to U+2069). Returns the new
- * length; the text is not terminated anew.
+ * Make text fit for a terminal, in place: each control character becomes '?', and so does each byte
+ * that is not UTF-8 (a terminal of eight bits takes 9Bh for a command) and each character that would
+ * make a line read other than it is (U+2028 to U+202E, U+2066 to U+2069). Returns the new length;
+ * does not terminate the text.
  */
 size_t printable(char *text, size_t len);
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* What owsctl prints as JSON, written as it comes. */
 #include "json.h"
-#include "text.h"
+
+#include "../signal/utf8.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -23,7 +24,7 @@ static void put_string(FILE *out, const char *text, size_t len)
 	putc('"', out);
 	while (len > 0) {
 		const char *at = text;
-		int32_t c = text_next(&text, &len);
+		int32_t c = utf8_next(&text, &len);
 
 		if (c < 0)
 			fputs("\xef\xbf\xbd", out);
@@ -93,7 +94,7 @@ void json_bytes(struct json *json, const char *key, const char *text, size_t len
 static bool is_utf8(const char *text, size_t len)
 {
 	while (len > 0)
-		if (text_next(&text, &len) < 0)
+		if (utf8_next(&text, &len) < 0)
 			return false;
 	return true;
 }

@@ -1,30 +1,11 @@
 /* SPDX-License-Identifier: MIT */
+/* How many columns a text takes on a terminal, and what must not reach it. */
 #include "text.h"
+
+#include "../signal/utf8.h"
 
 #include <stdbool.h>
 #include <string.h>
-
-int32_t text_next(const char **text, size_t *len)
-{
-	static const int32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
-	const unsigned char *at = (const unsigned char *)*text;
-	size_t size = at[0] < 0x80 ? 1 : at[0] < 0xc2 ? 0 : at[0] < 0xe0 ? 2 : at[0] < 0xf0 ? 3
-	            : at[0] < 0xf5 ? 4 : 0;
-	int32_t c = size < 2 ? at[0] : at[0] & (0x7f >> size);
-	bool bad = size == 0 || size > *len;
-
-	for (size_t i = 1; !bad && i < size; i++) {
-		bad = (at[i] & 0xc0) != 0x80;
-		c = (int32_t)((uint32_t)c << 6 | (at[i] & 0x3f));
-	}
-	if (bad || (size > 1 && c < least[size]) || (c >= 0xd800 && c < 0xe000) || c > 0x10ffff) {
-		size = 1;
-		c = -1;
-	}
-	*text += size;
-	*len -= size;
-	return c;
-}
 
 struct range {
 	int32_t first, last;
@@ -65,15 +46,8 @@ unsigned text_columns(const char *text)
 	unsigned columns = 0;
 
 	while (len > 0)
-		columns += text_columns_of(text_next(&text, &len));
+		columns += text_columns_of(utf8_next(&text, &len));
 	return columns;
-}
-
-/* Bidirectional controls could make a line read other than it is. */
-static bool unsafe(int32_t c)
-{
-	return c < 0x20 || (c >= 0x7f && c < 0xa0) || (c >= 0x2028 && c <= 0x202e) ||
-	       (c >= 0x2066 && c <= 0x2069);
 }
 
 unsigned text_clean(const char *text, size_t len, unsigned columns, char *out, size_t room)
@@ -85,11 +59,11 @@ unsigned text_clean(const char *text, size_t len, unsigned columns, char *out, s
 		return 0;
 	while (len > 0) {
 		const char *at = text;
-		int32_t c = text_next(&text, &len);
+		int32_t c = utf8_next(&text, &len);
 		size_t bytes = (size_t)(text - at);
 		unsigned width;
 
-		if (unsafe(c)) {
+		if (utf8_disturbs(c)) {
 			at = "?";
 			bytes = 1;
 			c = '?';

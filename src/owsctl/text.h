@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Text on a terminal: UTF-8 and how many columns it takes, in any locale, and what must not reach
- * the terminal taken out.
+ * Text on a terminal: how many columns its UTF-8 takes, in any locale, and what must not reach the
+ * terminal taken out.
  */
 #ifndef OWSCTL_TEXT_H
 #define OWSCTL_TEXT_H
 
 #include <stddef.h>
-#include <stdint.h>
-
-/* The next character, *text and *len moved behind it; -1 for a byte that is not UTF-8. len > 0. */
-int32_t text_next(const char **text, size_t *len);
 
 /* Columns of cleaned text. */
 unsigned text_columns(const char *text);

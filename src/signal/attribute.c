@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "attribute.h"
 
+#include "utf8.h"
+
 #include <errno.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -106,51 +108,26 @@ int attribute_lookup(const char *prefix, const char *name, attribute_find *find,
 	return -ENOENT;
 }
 
-/* One UTF-8 character; returns its bytes, 0 if it is none (too long a form, surrogate, cut). */
-static int utf8_decode(const unsigned char *p, uint32_t *code)
-{
-	static const struct {
-		unsigned char mask, lead;
-		uint32_t least;
-	} forms[] = {{0x80, 0x00, 0}, {0xe0, 0xc0, 0x80}, {0xf0, 0xe0, 0x800}, {0xf8, 0xf0, 0x10000}};
-
-	for (int n = 0; n < 4; n++) {
-		if ((p[0] & forms[n].mask) != forms[n].lead)
-			continue;
-		*code = p[0] & (unsigned char)~forms[n].mask;
-		for (int i = 1; i <= n; i++) {
-			if ((p[i] & 0xc0) != 0x80)
-				return 0;
-			*code = *code << 6 | (p[i] & 0x3f);
-		}
-		if (*code < forms[n].least || *code > 0x10ffff || (*code >> 11) == 0x1b)
-			return 0;
-		return n + 1;
-	}
-	return 0;
-}
-
-static bool between(uint32_t code, uint32_t first, uint32_t last)
+static bool between(int32_t code, int32_t first, int32_t last)
 {
 	return code >= first && code <= last;
 }
 
 const char *signal_name_fault(const char *name)
 {
-	const unsigned char *p = (const unsigned char *)name;
-	uint32_t code;
-	int bytes;
+	size_t left = strnlen(name, SIGNAL_NAME_MAX + 1);
 
 	if (!*name)
 		return "is empty";
-	if (strnlen(name, SIGNAL_NAME_MAX + 1) > SIGNAL_NAME_MAX)
+	if (left > SIGNAL_NAME_MAX)
 		return "is longer than 63 bytes";
 	/* served as /signals/NAME, and a file where owfs mounts that */
 	if (!strcmp(name, ".") || !strcmp(name, ".."))
 		return "cannot stand in a path";
-	for (; *p; p += bytes) {
-		bytes = utf8_decode(p, &code);
-		if (!bytes)
+	for (const char *p = name; left > 0;) {
+		int32_t code = utf8_next(&p, &left);
+
+		if (code < 0)
 			return "is not UTF-8: convert the file, as with iconv -f cp1250 -t utf-8";
 		if (code < 0x20 || between(code, 0x7f, 0x9f))
 			return "holds a control character";
@@ -158,7 +135,7 @@ const char *signal_name_fault(const char *name)
 		    between(code, 0x2028, 0x202f) || between(code, 0x205f, 0x2064) ||
 		    code == 0x3000 || code == 0xfeff)
 			return "holds a blank or an invisible character";
-		if (code < 0x80 && strchr("/\"#{}", (int)code))
+		if (code < 0x80 && strchr("/\"#{}", code))
 			return "holds one of / \" # { }";
 	}
 	if (driver_signal(name) >= 0)

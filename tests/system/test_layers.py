@@ -32,7 +32,7 @@ MAY = {
                    "src/shm/remains.h", "src/libows/ows.h", "src/printable.h", "src/refused.h",
                    "src/standard.h"],
     "src": ["hal", "hal/gpio/line.h", "src/board/board.h", "src/config", "src/engine", "src/serve",
-            "src/shm", "src/libows/ows.h"],
+            "src/shm", "src/signal/utf8.h", "src/libows/ows.h"],
 }
 # What the engine and the values may have of the C library: nothing that waits, reads or writes
 PURE = {"assert.h", "errno.h", "float.h", "limits.h", "math.h", "stdbool.h", "stddef.h", "stdint.h",

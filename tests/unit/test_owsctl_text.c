@@ -91,19 +91,6 @@ static void test_the_room_is_never_exceeded(void)
 	}
 }
 
-static void test_characters_are_read_back_one_by_one(void)
-{
-	const char *text = "a\xc3\xa4\xe2\x82\xac\xf0\x9f\x8c\xa1\xff";
-	size_t len = strlen(text);
-
-	TEST_ASSERT_EQUAL_INT32('a', text_next(&text, &len));
-	TEST_ASSERT_EQUAL_INT32(0xe4, text_next(&text, &len));
-	TEST_ASSERT_EQUAL_INT32(0x20ac, text_next(&text, &len));
-	TEST_ASSERT_EQUAL_INT32(0x1f321, text_next(&text, &len));
-	TEST_ASSERT_EQUAL_INT32(-1, text_next(&text, &len));
-	TEST_ASSERT_EQUAL_size_t(0, len);
-}
-
 int main(void)
 {
 	UNITY_BEGIN();
@@ -113,6 +100,5 @@ int main(void)
 	RUN_TEST(test_a_wide_character_is_not_cut_in_half);
 	RUN_TEST(test_nothing_that_controls_the_terminal_gets_through);
 	RUN_TEST(test_the_room_is_never_exceeded);
-	RUN_TEST(test_characters_are_read_back_one_by_one);
 	return UNITY_END();
 }

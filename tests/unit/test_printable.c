@@ -45,10 +45,14 @@ static void test_what_turns_the_direction_becomes_a_question_mark(void)
 	TEST_ASSERT_EQUAL_STRING("\xe2\x80\xaf\xe2\x81\xaa", made("\xe2\x80\xaf\xe2\x81\xaa"));
 }
 
-static void test_a_character_cut_at_the_end_is_left_to_others(void)
+/* Of Windows-1250, or of a terminal's eight-bit commands */
+static void test_bytes_that_are_not_utf8_become_question_marks(void)
 {
-	TEST_ASSERT_EQUAL_STRING("a\xe2\x80", made("a\xe2\x80"));
-	TEST_ASSERT_EQUAL_STRING("a\xc2", made("a\xc2"));
+	TEST_ASSERT_EQUAL_STRING("?31m", made("\x9b" "31m"));
+	TEST_ASSERT_EQUAL_STRING("venkovn?", made("venkovn\xed"));
+	TEST_ASSERT_EQUAL_STRING("??x", made("\xc0\x80x"));
+	TEST_ASSERT_EQUAL_STRING("a??", made("a\xe2\x80"));
+	TEST_ASSERT_EQUAL_STRING("a?", made("a\xc2"));
 }
 
 __attribute__((format(printf, 1, 2)))
@@ -98,7 +102,7 @@ int main(void)
 	RUN_TEST(test_what_is_harmless_stays);
 	RUN_TEST(test_control_characters_become_question_marks);
 	RUN_TEST(test_what_turns_the_direction_becomes_a_question_mark);
-	RUN_TEST(test_a_character_cut_at_the_end_is_left_to_others);
+	RUN_TEST(test_bytes_that_are_not_utf8_become_question_marks);
 	RUN_TEST(test_a_long_message_loses_its_middle_and_keeps_its_reason);
 	return UNITY_END();
 }
