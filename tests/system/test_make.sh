@@ -3,7 +3,8 @@
 # make clean and make uninstall remove what make made and nothing else; odd folders are refused
 set -eu
 
-unset MAKEFLAGS MFLAGS MAKELEVEL MAKEOVERRIDES
+# With a B of the caller make clean would remove what is being tested
+unset MAKEFLAGS MFLAGS MAKELEVEL MAKEOVERRIDES B PREFIX DESTDIR LIBDIR MANDIR DATADIR
 # The makefile alone: what goes wrong here may not cost the source
 copy() {
 	mkdir -p "$1/src"
