@@ -11,6 +11,7 @@
 #define WRITE_SCRATCHPAD 0x0f
 #define READ_SCRATCHPAD 0xaa
 #define ROW_MAX 32
+#define BLANK_LOOKS 3 /* more */
 
 /*
  * These memories have no checksum of their own: each chunk is read MEMORY_LOOKS times, and has to
@@ -30,7 +31,15 @@ int memory_look(struct txn *txn, unsigned look, const uint8_t *command, size_t c
 		memcpy(kept, again, n);
 	else if (memcmp(kept, again, n) != 0)
 		return -EBADMSG;
-	return look + 1 < MEMORY_LOOKS ? TXN_MORE : 0;
+	if (look + 1 < MEMORY_LOOKS)
+		return TXN_MORE;
+	/* So long as nothing but ones is read, perhaps nobody hears: the last look is made again. */
+	if (txn->silent && ++txn->blanks <= BLANK_LOOKS) {
+		txn->phase--;
+		return TXN_MORE;
+	}
+	txn->blanks = 0;
+	return 0;
 }
 
 static int read_range(struct txn *txn, unsigned address, unsigned n)
@@ -158,7 +167,7 @@ static int write_range(struct txn *txn, const struct chip_memory *memory, unsign
 	}
 	if (err < 0)
 		return err;
-	if (step == MEMORY_LOOKS - 1) {
+	if (step == MEMORY_LOOKS - 1 && err == 0) {
 		memcpy(in, bytes, row);
 		memcpy(bytes + (from - here), txn->data + (from - address), to - from);
 		if (memcmp(bytes, in, row) == 0)

@@ -24,7 +24,10 @@ struct chip_memory {
  */
 #define MEMORY_LOOKS 3
 #define MEMORY_CHUNK 32
-/* Look number look, from 0: TXN_MORE, and 0 behind the last. kept: n bytes from call to call. */
+/*
+ * Look number look, from 0: TXN_MORE, and 0 behind the last. kept: n bytes from call to call. The
+ * caller adds 1 to txn->phase for each look.
+ */
 int memory_look(struct txn *txn, unsigned look, const uint8_t *command, size_t command_n,
                 uint8_t *kept, size_t n);
 

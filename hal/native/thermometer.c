@@ -21,7 +21,8 @@
 #define SP_KEPT 16 /* in txn->mem, behind the scratchpad */
 #define NEAR_RAW (5 * 16)
 #define NEAR_NS (300 * 1000 * TXN_MS)
-#define LOOKS 3
+#define LOOKS_ONE 3
+#define LOOKS_ZERO 2
 
 int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9])
 {
@@ -351,23 +352,22 @@ static int look_at_supply(struct txn *txn, uint8_t *slots)
 	return bit < 0 ? bit : 0;
 }
 
-/* Ones are also what one hears of a chip that did not take the command. */
+/* Ones are also what one hears of a chip that did not take the command: they need more looks. */
 int thermometer_ask_power(struct txn *txn)
 {
-	uint8_t slots[LOOKS] = {0};
-	bool same = true;
+	uint8_t slots = 0, first = 0;
 
-	for (int look = 0; look < LOOKS; look++) {
-		int err = look_at_supply(txn, &slots[look]);
+	for (int look = 0; look < (first ? LOOKS_ONE : LOOKS_ZERO); look++) {
+		int err = look_at_supply(txn, &slots);
 
 		if (err)
 			return err;
-		same &= slots[look] == slots[0];
+		first = look ? first : slots;
+		if (slots != first || (slots != 0 && slots != 0xff))
+			return -EBADMSG;
 	}
-	if (!same || (slots[0] != 0 && slots[0] != 0xff))
-		return -EBADMSG;
-	txn->device->power = slots[0] ? POWER_EXTERNAL : POWER_PARASITE;
-	return slots[0] != 0;
+	txn->device->power = slots ? POWER_EXTERNAL : POWER_PARASITE;
+	return slots != 0;
 }
 
 /* A one is also what one hears of a chip that is not there: the scratchpad proves that it is. */
@@ -376,13 +376,15 @@ int thermometer_read_power(struct txn *txn)
 	uint8_t scratchpad[9];
 	int bit;
 
-	if (txn->phase) {
+	if (txn->phase == 2) {
 		txn->number[0] = 1;
 		return thermometer_scratchpad(txn, scratchpad);
 	}
 	bit = thermometer_ask_power(txn);
 	txn->number[0] = 0;
-	txn->phase = 1;
+	if (bit == 0 && txn->phase)
+		return -EBADMSG;
+	txn->phase++;
 	return bit > 0 ? TXN_MORE : bit;
 }
 

@@ -45,6 +45,7 @@ struct txn {
 	/* From call to call. */
 	unsigned phase;
 	uint8_t mem[64];
+	uint8_t blanks; /* of memory_look() */
 	double real[4];
 	int64_t wake_ns; /* not to be called before */
 	bool strong;     /* the strong pull-up is on until then: the channel is held */

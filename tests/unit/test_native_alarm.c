@@ -140,7 +140,7 @@ static void test_an_alarm_waits_for_one_transaction_and_not_for_a_scan(void)
 	while (host.answers < 5)
 		host_run_answers(&host, bus, 5, host.now + 2 * HOST_S);
 	int64_t begun = host.now;
-	uint32_t id = ask(BUS_READ, BUS_ALARM, true, of(slave[19], "power"), NULL);
+	uint32_t id = ask(BUS_READ, BUS_ALARM, true, of(slave[19], "temphigh"), NULL);
 	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
 	TEST_ASSERT_LESS_THAN_INT64(begun + 40 * HOST_MS, host.now);
 	TEST_ASSERT_LESS_THAN_UINT(10, host.answers);
