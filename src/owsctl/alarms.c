@@ -98,7 +98,7 @@ static void look_at(struct live *live, int signal, const struct row *row)
 {
 	struct ows_alarm_state state = {0};
 	struct alarm alarm = {.name = row->name};
-	char words[ERROR_WORDS], unarmed[ERROR_WORDS + 32];
+	char unarmed[ERROR_WORDS];
 
 	if (ows_alarm_state(live->h, row->id, &state) == -EAGAIN)
 		return;
@@ -117,7 +117,7 @@ static void look_at(struct live *live, int signal, const struct row *row)
 	}
 	if (state.unarmed) {
 		snprintf(unarmed, sizeof(unarmed), "cannot be armed: %s",
-		         error_words(live->reading->value.err, words));
+		         error_text(live->reading->value.err));
 		alarm = (struct alarm){
 			.name = row->name,
 			.kind = ows_alarm_kind_text(OWS_ALARM_DEVICE),
