@@ -64,13 +64,25 @@ static void become_due(struct native *native, struct job *job, int64_t now)
 		channel->due_ns = now;
 }
 
+/*
+ * A conversion that is under way or just over serves who does not insist on one of his own, and
+ * who insists if nobody could read its result.
+ */
+static bool is_served(const struct job *job, int64_t now)
+{
+	const struct device *device = job->txn.device;
+	bool unread = device->unread_ns == device->converted_ns;
+	int64_t until = device->converted_ns + (job->fresh ? NATIVE_S : SIMULTANEOUS_NS);
+
+	return device->converted_ns && (!job->fresh || unread) && !job->again && until > now &&
+	       convert_right(job);
+}
+
 void convert_begin(struct native *native, struct job *job, int64_t now)
 {
 	struct device *device = job->txn.device;
 
-	/* Who does not insist is served by a conversion that is under way or just over. */
-	if (!job->fresh && !job->again && device->converted_ns && device->converted_ns + SIMULTANEOUS_NS > now &&
-	    convert_right(job)) {
+	if (is_served(job, now)) {
 		job->ready_ns = device->converted_ns;
 		job->state = JOB_CONVERTING;
 		return;

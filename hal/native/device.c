@@ -75,6 +75,7 @@ void device_forget(struct device *device)
 	device->stored = 0;
 	device->raw_ns = 0;
 	device->converted_ns = device->earlier_ns = device->latched_ns = 0;
+	device->unread_ns = 0;
 	device->shadow_known = false;
 	device->base_of = 0;
 	memset(device->note, 0, sizeof(device->note));

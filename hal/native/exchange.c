@@ -100,8 +100,11 @@ static void read_done(struct native *native, struct job *job)
 		return;
 	}
 	job->tries = 0;
-	if (job->txn.device)
+	if (job->txn.device) {
 		job->txn.device->settled |= !job->property->offline;
+		if (job->property->convert)
+			job->txn.device->unread_ns = 0;
+	}
 	if (more) {
 		job_txn(native, job);
 		return;

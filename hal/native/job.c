@@ -57,6 +57,14 @@ static void begin_again(struct native *native, struct job *job)
 		job_restart(native, job);
 }
 
+/* What was converted is still there: the next request for it reads it, and converts nothing. */
+static void give_up_reading(struct native *native, struct job *job, int err)
+{
+	if (job->txn.device && job->property && job->property->convert)
+		job->txn.device->unread_ns = job->txn.device->converted_ns;
+	job_answer(native, job, err);
+}
+
 void job_failed(struct native *native, struct job *job, int err)
 {
 	if (job->failures < UINT8_MAX)
@@ -74,7 +82,7 @@ void job_failed(struct native *native, struct job *job, int err)
 		else if (job->txn.silent && job->txn.device)
 			look_for(native, job, err);
 		else
-			job_answer(native, job, err);
+			give_up_reading(native, job, err);
 		return;
 	case -ENODEV:
 		if (job->txn.device)
