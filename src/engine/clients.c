@@ -58,16 +58,26 @@ void engine_give_up(struct engine *e, struct signal *s)
 	engine_publish(e, s);
 }
 
+/* A program that ends in order takes its place off its commands. */
+static bool is_given_up(const struct engine *e, const struct signal *s)
+{
+	struct command c;
+
+	commands_load(e->commands, s->record, &c);
+	return c.client != s->client;
+}
+
 /*
  * It ended in order: its outputs stay as they are, whoever comes to sit in its place. What it
- * commanded before owsd's start is not repeated.
+ * commanded before owsd's start is not repeated. Not all: another program sits there already, and
+ * may have set some.
  */
 static void forget(struct engine *e, unsigned client, bool all)
 {
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
-		if (s->client != client + 1 || !(all || s->awaited))
+		if (s->client != client + 1 || !(all || s->awaited || is_given_up(e, s)))
 			continue;
 		s->client = 0;
 		if (!s->awaited)
@@ -142,7 +152,7 @@ void engine_clients(struct engine *e, int64_t now_ns)
 				forget(e, i, true);
 			continue;
 		}
-		if (known->awaited && known->pid != c.pid)
+		if (known->known && known->pid != c.pid)
 			forget(e, i, false);
 		if (!known->known || known->pid != c.pid || known->beat != c.beat) {
 			if (known->awaited)

@@ -50,14 +50,24 @@ int ows_open(const char *instance, enum ows_mode mode, struct ows **handle)
 	return 0;
 }
 
+/*
+ * The commands stay, but not as those of the place: after a restart of owsd, the beat of the program
+ * that takes the place next would bring them back.
+ */
 static void leave_client(struct ows *h)
 {
 	uint32_t pid = h->pid;
 
-	if (h->client >= 0)
-		__atomic_compare_exchange_n(&h->map.clients[h->client].pid, &pid, 0, false,
-		                            __ATOMIC_RELEASE, __ATOMIC_RELAXED);
-	h->client = -1;
+	if (h->client < 0 || word_get(&h->map.clients[h->client].pid) != pid)
+		return;
+	for (uint32_t i = 0; i < h->map.count; i++) {
+		uint32_t mine = (uint32_t)h->client + 1;
+
+		__atomic_compare_exchange_n(&h->map.slots[i].client, &mine, 0, false,
+		                            __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+	}
+	__atomic_compare_exchange_n(&h->map.clients[h->client].pid, &pid, 0, false,
+	                            __ATOMIC_RELEASE, __ATOMIC_RELAXED);
 }
 
 void ows_close(struct ows *h)

@@ -387,6 +387,11 @@ class Ows:
 
     def close(self):
         if self.client is not None and self._client_word(0) == os.getpid():
+            # its commands stay, but not as those of the program that takes its place next
+            for record in range(self.command_header.slot_count):
+                at = (self.command_header.slot_off + record * SLOT_SIZE + 12) >> 2
+                if self.command.words[at] == self.client + 1:
+                    self.command.words[at] = 0
             self._set_client_word(0, 0)
         self.client = None
         self._drop()

@@ -111,6 +111,17 @@ static bool carry_text(struct commands *to, uint32_t slot, const struct old_segm
 	return true;
 }
 
+/* Whoever takes a free place is not the one that gave the command. */
+static uint32_t carry_giver(const struct commands *to, uint32_t client)
+{
+	const struct ows_client *clients = (const void *)(to->base + to->client_off);
+
+	if (client == OWS_CLIENT_SAFE)
+		return client;
+	return client != 0 && client <= OWS_CLIENTS && clients[client - 1].pid != 0 ? client : 0;
+}
+
+/* After carry_clients(). */
 static bool carry_slot(struct commands *to, uint32_t slot, const struct old_segment *old,
                        uint32_t from, uint32_t text_off, bool restart)
 {
@@ -135,7 +146,7 @@ static bool carry_slot(struct commands *to, uint32_t slot, const struct old_segm
 		return false;
 	s->value = was.value;
 	s->stamp = was.stamp;
-	s->client = was.client <= OWS_CLIENTS || was.client == OWS_CLIENT_SAFE ? was.client : 0;
+	s->client = carry_giver(to, was.client);
 	return true;
 }
 

@@ -308,6 +308,12 @@ void commands_client(const struct commands *commands, unsigned client, struct co
 
 void commands_drop_client(struct commands *commands, unsigned client)
 {
+	for (uint32_t i = 0; i < commands->slot_count; i++) {
+		uint32_t its = client + 1;
+
+		__atomic_compare_exchange_n(&slot_at(commands, i)->client, &its, 0, false,
+		                            __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+	}
 	__atomic_store_n(&client_at(commands, client)->pid, 0, __ATOMIC_RELEASE);
 }
 

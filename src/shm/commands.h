@@ -76,6 +76,7 @@ struct command_client {
 	uint32_t pid, beat, period_ms;
 };
 void commands_client(const struct commands *commands, unsigned client, struct command_client *c);
+/* Its place becomes free, and no command is its any more. */
 void commands_drop_client(struct commands *commands, unsigned client);
 
 uint32_t *commands_bell(const struct commands *commands);

@@ -42,6 +42,27 @@ while not once:
 s.close()
 """
 
+# Sets nothing, and beats
+FOLLOWER = """
+import sys, time
+import ows
+s = ows.Ows(sys.argv[1], control=True)
+s.beat(500)
+print("sits in place", s.client, flush=True)
+while True:
+    time.sleep(0.1)
+    try:
+        s.beat(500)
+    except ows.Stale:
+        pass
+    try:
+        if s.stale():
+            s.reopen()
+            print("reopened", flush=True)
+    except OSError:
+        pass
+"""
+
 
 class Plant:
     """A peer, an owsd on it and the giver of a command that is in force."""
@@ -121,6 +142,20 @@ def test_the_command_of_a_living_program_that_beats_stays_in_force_and_initvalue
             plant.writes([(path, b"1") for path in ALL], ended)
             assert "reopened" in plant.giver.log() and plant.giver.running()
             plant.giver.stop()
+            assert plant.daemon.stop() == 0
+
+
+def test_a_program_that_takes_the_place_of_one_that_ended_does_not_bring_its_commands_back(scene):
+    for ended in ENDS:
+        with peer.Peer(values()) as server:
+            plant = Plant(scene, server, beats=0.5, once=True)
+            follower = scene.start([sys.executable, "-c", FOLLOWER, plant.daemon.name],
+                                   {"PYTHONPATH": str(owsdtest.SOURCE / "src/libows")})
+            owsdtest.until(lambda: "sits in place 0" in follower.log(), 20, follower.log)
+            plant.again(ended)
+            plant.writes([(INIT, b"0"), (BOTH, b"0")], ended)
+            assert "reopened" in follower.log() and follower.running()
+            follower.stop()
             assert plant.daemon.stop() == 0
 
 

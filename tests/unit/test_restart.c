@@ -161,6 +161,48 @@ static void test_who_takes_the_place_of_a_giver_does_not_take_its_commands(void)
 	TEST_ASSERT_EQUAL_STRING(ALL_INIT, s.trace);
 }
 
+/* As ows_close() does, and at once somebody else takes the place. */
+static void leave_to(unsigned pid)
+{
+	for (unsigned i = 1; i <= 4; i++)
+		if (scene_slot(&s, i)->client == 1)
+			scene_slot(&s, i)->client = 0;
+	sit(pid, 500);
+}
+
+static void test_a_place_taken_before_the_restart_brings_back_no_commands_of_the_one_before(void)
+{
+	living_giver();
+	leave_to(43);
+	beat_on(SCENE_S);
+	restart();
+	beat_on(5 * SCENE_S);
+	TEST_ASSERT_EQUAL_STRING(ALL_INIT, s.trace);
+}
+
+static void test_who_takes_a_place_at_once_does_not_answer_for_the_outputs_of_the_one_before(void)
+{
+	living_giver();
+	leave_to(43);
+	scene_slot(&s, 3)->client = 1;
+	scene_set(&s, 3, 5);
+	beat_on(SCENE_S);
+	scene_clear_trace(&s);
+	scene_run(&s, 5 * SCENE_S); /* it beats no more */
+	TEST_ASSERT_EQUAL_STRING("W " SAFE "=20\n", s.trace);
+}
+
+static void test_the_commands_of_a_program_that_was_lost_do_not_come_back_with_the_next_one(void)
+{
+	living_giver();
+	scene_run(&s, 5 * SCENE_S); /* it beats no more */
+	sit(43, 500);
+	beat_on(SCENE_S);
+	restart();
+	beat_on(5 * SCENE_S);
+	TEST_ASSERT_EQUAL_STRING(ALL_SAFE, s.trace);
+}
+
 static void test_a_set_while_its_giver_is_awaited_counts_at_once(void)
 {
 	living_giver();
@@ -287,6 +329,9 @@ int main(void)
 	RUN_TEST(test_a_longer_promise_is_waited_for);
 	RUN_TEST(test_a_giver_that_says_good_bye_after_the_restart_has_ended_in_order);
 	RUN_TEST(test_who_takes_the_place_of_a_giver_does_not_take_its_commands);
+	RUN_TEST(test_a_place_taken_before_the_restart_brings_back_no_commands_of_the_one_before);
+	RUN_TEST(test_who_takes_a_place_at_once_does_not_answer_for_the_outputs_of_the_one_before);
+	RUN_TEST(test_the_commands_of_a_program_that_was_lost_do_not_come_back_with_the_next_one);
 	RUN_TEST(test_a_set_while_its_giver_is_awaited_counts_at_once);
 	RUN_TEST(test_a_superseded_command_does_not_come_back);
 	RUN_TEST(test_safevalue_stays_in_force_until_somebody_sets);

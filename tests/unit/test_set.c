@@ -226,6 +226,27 @@ static void test_who_was_dropped_comes_back_with_his_next_beat(void)
 	TEST_ASSERT_EQUAL(getpid(), c.pid);
 }
 
+static void test_who_ends_in_order_leaves_commands_that_are_nobodys(void)
+{
+	struct command_client c;
+	struct ows *other;
+
+	TEST_ASSERT_EQUAL(0, ows_beat(h, 500));
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_CONTROL, &other));
+	TEST_ASSERT_EQUAL(0, ows_beat(other, 500));
+	TEST_ASSERT_EQUAL(0, ows_set(other, ows_find(other, "heat"), 1, NULL));
+	TEST_ASSERT_EQUAL(0, ows_set_text(other, ows_find(other, "text"), "on", NULL));
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "valve"), 1, NULL));
+	TEST_ASSERT_EQUAL(2, load(TEXT).client);
+	ows_close(other);
+	TEST_ASSERT_EQUAL(0, load(HEAT).client);
+	TEST_ASSERT_EQUAL(0, load(TEXT).client);
+	TEST_ASSERT_EQUAL(1, load(HEAT).stamp);
+	TEST_ASSERT_EQUAL(1, load(VALVE).client);
+	commands_client(&in.commands, 1, &c);
+	TEST_ASSERT_EQUAL(0, c.pid);
+}
+
 static void test_the_table_of_clients_has_an_end(void)
 {
 	struct ows *many[OWS_CLIENTS + 1];
@@ -347,6 +368,7 @@ int main(void)
 	RUN_TEST(test_text_sets_a_number_too);
 	RUN_TEST(test_who_beats_is_named_in_what_he_sets);
 	RUN_TEST(test_who_was_dropped_comes_back_with_his_next_beat);
+	RUN_TEST(test_who_ends_in_order_leaves_commands_that_are_nobodys);
 	RUN_TEST(test_the_table_of_clients_has_an_end);
 	RUN_TEST(test_a_retired_segment_takes_no_sets);
 	RUN_TEST(test_the_segment_of_a_stopped_owsd_takes_no_sets_and_keeps_what_was_in_force);
