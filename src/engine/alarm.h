@@ -31,7 +31,7 @@ struct alarm_item {
 	struct alarm_strings strings;
 	bool listed;   /* its device stands in the list of /alarm */
 	bool stands;   /* an occurrence that was not reset yet */
-	bool entered;  /* in the journal, which has no return of it yet */
+	uint32_t entered; /* channels that the journal has, and no return of them yet */
 	bool to_arm;   /* SetAlarm has to be compared with the chip */
 	bool restarted; /* por was not 0, and not 0 since: that restart is known */
 	bool differs;   /* since then an output was read back otherwise than before: one more */

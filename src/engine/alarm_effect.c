@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the alarm machine changes in the table. */
+#include "alarm_text.h"
 #include "private.h"
 
 #include <string.h>
@@ -26,6 +27,7 @@ void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item 
                          int64_t now_ns)
 {
 	struct signal *s = &e->table.signals[item->row];
+	uint32_t channels = alarm_channels(item->latch_text);
 	struct ows_alarm_entry entry;
 
 	if (item->stands)
@@ -34,11 +36,12 @@ void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item 
 	s->attrs.alarms++;
 	s->attrs.flags |= OWS_ATTR_ALARM_STANDS;
 	lane->counters.alarms++;
-	if (!item->entered) {
+	if (channels & ~item->entered) {
 		entry = entry_of(s, OWS_ALARM_DEVICE, OWS_ALARM_RAISED, now_ns);
 		memcpy(entry.latch, item->latch_text, strnlen(item->latch_text, sizeof(entry.latch)));
 		item->journal = image_alarm(e->image, &entry);
-		item->entered = item->wants_after = true;
+		item->entered |= channels;
+		item->wants_after = true;
 		log_info(e->log, "%s: alarm, %s is %s", s->item->name, item->strings.latch,
 		         item->latch_text);
 	}
@@ -64,7 +67,7 @@ void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_n
 	engine_alarm_ended(e, item);
 	if (!item->entered)
 		return;
-	item->entered = false;
+	item->entered = 0;
 	image_alarm(e->image, &entry);
 	e->published = true;
 }

@@ -8,11 +8,13 @@
 
 static struct scene s;
 static bool latch_stuck;
+static const char *stuck; /* at this */
 
 void setUp(void)
 {
 	scene_init(&s);
 	latch_stuck = false;
+	stuck = "8";
 }
 void tearDown(void)
 {
@@ -27,7 +29,7 @@ static unsigned journal(void)
 static void on_read(struct scene *scene, const char *path)
 {
 	if (latch_stuck)
-		scene_put(scene, D "/latch.BYTE", "8", 0);
+		scene_put(scene, D "/latch.BYTE", stuck, 0);
 	alarm_on_read(scene, path);
 }
 
@@ -136,10 +138,50 @@ static void test_occurrences_without_a_rest_between_are_counted_and_entered_once
 	TEST_ASSERT_EQUAL_UINT(4, journal());
 }
 
+static void test_another_channel_is_entered_beside_one_whose_latch_is_always_set(void)
+{
+	begin();
+	latch_stays_set();
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(1, journal());
+	stuck = "12";
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(2, journal());
+	TEST_ASSERT_EQUAL_STRING("12", s.image.alarms[1].latch);
+	/* it comes and goes: that is known */
+	for (unsigned i = 0; i < 100; i++) {
+		stuck = i & 1 ? "12" : "8";
+		scene_run(&s, 500 * SCENE_MS);
+	}
+	TEST_ASSERT_EQUAL_UINT(2, journal());
+}
+
+static void test_a_latch_of_any_form_is_entered(void)
+{
+	static const char *const forms[] = {
+		"1", "   8", "yes", "1.5", "-1", "4294967296", "0,0,1", "no,yes", " 0 , 1 ",
+		"0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1", /* longer than what is kept of it */
+	};
+
+	for (unsigned i = 0; i < sizeof(forms) / sizeof(forms[0]); i++) {
+		begin();
+		stuck = forms[i];
+		latch_stays_set();
+		scene_put(&s, D "/latch.BYTE", stuck, 0);
+		scene_run(&s, SCENE_S);
+		TEST_ASSERT_EQUAL_UINT_MESSAGE(1, journal(), forms[i]);
+		scene_end(&s);
+		setUp();
+	}
+	begin();
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_whatever_fails_for_an_hour_the_journal_does_not_grow);
 	RUN_TEST(test_occurrences_without_a_rest_between_are_counted_and_entered_once);
+	RUN_TEST(test_a_latch_of_any_form_is_entered);
+	RUN_TEST(test_another_channel_is_entered_beside_one_whose_latch_is_always_set);
 	return UNITY_END();
 }
