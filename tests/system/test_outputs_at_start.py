@@ -111,7 +111,7 @@ def values():
 
 def test_what_a_program_that_ended_has_set_is_not_repeated_and_initvalue_is_written_once(scene):
     for ended in ENDS:
-        for beats in (0.0, 0.5):
+        for beats in (0.0, 5.0):
             with peer.Peer(values()) as server:
                 plant = Plant(scene, server, beats, once=True)
                 plant.again(ended)
@@ -137,7 +137,7 @@ def test_what_owsctl_set_is_not_repeated_and_initvalue_is_written_once(scene):
 def test_the_command_of_a_living_program_that_beats_stays_in_force_and_initvalue_is_withheld(scene):
     for ended in ENDS:
         with peer.Peer(values()) as server:
-            plant = Plant(scene, server, beats=1.0)
+            plant = Plant(scene, server, beats=5.0)
             plant.again(ended)
             plant.writes([(path, b"1") for path in ALL], ended)
             assert "reopened" in plant.giver.log() and plant.giver.running()
@@ -148,7 +148,7 @@ def test_the_command_of_a_living_program_that_beats_stays_in_force_and_initvalue
 def test_a_program_that_takes_the_place_of_one_that_ended_does_not_bring_its_commands_back(scene):
     for ended in ENDS:
         with peer.Peer(values()) as server:
-            plant = Plant(scene, server, beats=0.5, once=True)
+            plant = Plant(scene, server, beats=5.0, once=True)
             follower = scene.start([sys.executable, "-c", FOLLOWER, plant.daemon.name],
                                    {"PYTHONPATH": str(owsdtest.SOURCE / "src/libows")})
             owsdtest.until(lambda: "sits in place 0" in follower.log(), 20, follower.log)
@@ -186,7 +186,7 @@ def test_of_a_program_that_beat_and_hangs_or_is_dead_safevalue_is_written_else_i
 def test_safevalue_that_stands_stays_over_a_restart(scene):
     for ended in ENDS:
         with peer.Peer(values()) as server:
-            plant = Plant(scene, server, beats=0.5)
+            plant = Plant(scene, server, beats=2.0)
             plant.giver.kill()
             owsdtest.logged(plant.daemon, "stopped beating")
             plant.again(ended)
@@ -209,7 +209,7 @@ def test_a_reload_leaves_every_command_in_force_and_writes_nothing(scene):
 def test_a_superseded_command_does_not_come_back_with_its_giver(scene):
     for ended in ENDS:
         with peer.Peer(values()) as server:
-            plant = Plant(scene, server, beats=1.0)
+            plant = Plant(scene, server, beats=5.0)
             for name in ("plain", "init", "safe", "both"):
                 assert scene.owsctl(plant.daemon, "set", "-w", "10", name, "0").returncode == 0
             plant.again(ended)
