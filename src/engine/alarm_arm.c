@@ -42,22 +42,32 @@ static void show_unarmed(struct engine *e, struct alarm_item *i, int err, const 
 	engine_publish(e, s);
 }
 
-static void armed(struct engine *e, struct alarm_item *i)
+/* What failed is tried as if it never had. True: its signal said that it cannot be armed. */
+static bool begin_again(struct engine *e, struct alarm_item *i)
 {
 	struct signal *s = alarm_signal(e, i);
 
 	retry_clear(&i->arm_retry);
 	i->arm_ns = 0;
 	if (!(s->attrs.flags & OWS_ATTR_ALARM_UNARMED))
-		return;
+		return false;
 	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_UNARMED;
 	s->alarm_err = 0;
-	log_notice(e->log, "%s (%s): the alarm is armed again", s->item->name, s->item->path);
 	engine_publish(e, s);
+	return true;
+}
+
+static void armed(struct engine *e, struct alarm_item *i)
+{
+	const struct signal *s = alarm_signal(e, i);
+
+	if (begin_again(e, i))
+		log_notice(e->log, "%s (%s): the alarm is armed again", s->item->name,
+		           s->item->path);
 }
 
 static void not_armed(struct lane *lane, struct alarm_item *i, int err, const char *property,
-                     const char *why, int64_t now_ns)
+                      const char *why, int64_t now_ns)
 {
 	struct engine *e = lane->engine;
 	int64_t wait_ns;
@@ -140,7 +150,7 @@ void alarm_rearm(struct alarm_machine *m, struct engine *e, uint32_t device)
 			continue;
 		i->to_arm = alarm_arms(i);
 		i->restarted = i->differs = i->asks_por = false;
-		armed(e, i);
+		begin_again(e, i);
 	}
 }
 

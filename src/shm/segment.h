@@ -46,9 +46,9 @@ struct segment {
 };
 
 /*
- * Make a segment of size zeroed bytes under a temporary name that nobody can keep from it, all pages allocated (no SIGBUS later
- * when /dev/shm is full: -ENOSPC now). Mode 0640 group owsd, or 0660 group owsd-control, where
- * those groups exist and the caller may give files to them.
+ * Make a segment of size zeroed bytes under a temporary name that nobody can keep from it, all pages
+ * allocated (no SIGBUS later when /dev/shm is full: -ENOSPC now). Mode 0640 group owsd, or 0660 group
+ * owsd-control, where those groups exist and the caller may give files to them.
  */
 int segment_create(const char *instance, enum segment_kind kind, size_t size,
                    struct segment *segment);

@@ -21,7 +21,7 @@ static const struct {
 	{ EPROTOTYPE, "the type does not fit the property", "the log says which Type fits" },
 	{ EMSGSIZE, "the answer is longer than the room for it",
 	  "choose a property that answers less" },
-	{ EACCES, "it can only be read, or only be written", 
+	{ EACCES, "it can only be read, or only be written",
 	  "IO input reads it; IO output without Readable writes it" },
 	{ EBADRQC, "SetAlarm is not defined, or has no '='", "write SetAlarm \"property=value\"" },
 	{ EUCLEAN, "it is still set after 0 was written", "" },

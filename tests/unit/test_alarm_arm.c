@@ -3,7 +3,10 @@
 #include "alarm_scene.h"
 #include "unity.h"
 
+#include "src/log.h"
+
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 
 static struct scene s;
@@ -255,6 +258,46 @@ static void test_a_device_that_was_lost_and_is_back_has_restarted_again(void)
 	TEST_ASSERT_TRUE(unarmed(1));
 }
 
+/* How often the log has the text of late. */
+static unsigned logged(FILE *out, const char *text)
+{
+	unsigned n = 0;
+	char line[512];
+
+	log_drain(s.log, fileno(out), 0);
+	rewind(out);
+	while (fgets(line, sizeof(line), out))
+		n += strstr(line, text) != NULL;
+	return n;
+}
+
+static void test_a_device_that_is_back_is_not_said_to_be_armed_while_it_is_not(void)
+{
+	FILE *out = tmpfile();
+	struct log *log = log_create(LOG_LEVEL_NOTICE);
+
+	s.log = log;
+	board(refused());
+	lose_power();
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(1, logged(out, "the alarm cannot be armed"));
+	scene_tell(&s, 0, BUS_LOST, D);
+	scene_run(&s, SCENE_S);
+	scene_tell(&s, 0, BUS_FOUND, D);
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_TRUE(unarmed(1));
+	TEST_ASSERT_EQUAL_UINT(0, logged(out, "armed again"));
+	scene_refuse_writes(&s, D "/set_alarm", 0);
+	scene_run(&s, 60 * SCENE_S);
+	TEST_ASSERT_FALSE(unarmed(1));
+	TEST_ASSERT_EQUAL_UINT(1, logged(out, "armed again"));
+	fclose(out);
+	scene_end(&s);
+	log_destroy(log);
+	setUp();
+	board(no_set_alarm());
+}
+
 static void test_an_output_that_changed_by_itself_tells_of_another_restart(void)
 {
 	no_set_alarm();
@@ -429,6 +472,7 @@ int main(void)
 	RUN_TEST(test_a_por_that_somebody_else_cleared_ends_it_at_once);
 	RUN_TEST(test_a_list_that_misses_the_device_is_no_restart);
 	RUN_TEST(test_a_device_that_was_lost_and_is_back_has_restarted_again);
+	RUN_TEST(test_a_device_that_is_back_is_not_said_to_be_armed_while_it_is_not);
 	RUN_TEST(test_an_output_that_changed_by_itself_tells_of_another_restart);
 	RUN_TEST(test_an_output_that_never_is_what_was_written_tells_of_none);
 	RUN_TEST(test_several_items_of_one_device_tell_of_one_restart);
