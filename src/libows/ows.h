@@ -124,8 +124,9 @@ int ows_find(struct ows *h, const char *name);
 
 /*
  * Get a value. No system call (but the look above), no lock, bounded. now_ns: ows_now(), once per
- * cycle is enough. -ESTALE: owsd was restarted or reloaded, call ows_reopen(); *value is filled all
- * the same, good only as long as the heartbeat in the old image is: two seconds, or three periods.
+ * cycle is enough; from two seconds on it is too old, and values newer than it are bad. -ESTALE:
+ * owsd was restarted or reloaded, call ows_reopen(); *value is filled all the same, good only as
+ * long as the heartbeat in the old image is: two seconds, or three periods.
  * -EAGAIN: no whole sample in 64 attempts (does not happen while writers are sane). -ENOENT: the
  * id's name is not in the image any more. -EACCES: write-only name.
  */
