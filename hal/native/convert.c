@@ -225,8 +225,8 @@ static struct plan look(const struct native *native, unsigned channel)
 
 /*
  * Those with a supply hold the line low while they convert: if nobody does, nobody heard. One that
- * alone did not hear is hidden by the others; the rounds one by one find it. Fed by the wire they
- * cannot show it: thermometer.c looks at what they latched.
+ * alone did not hear is hidden by the others; the rounds one by one find it. The strong pull-up lets
+ * nobody show it: thermometer.c looks at what each chip latched.
  */
 static int send_all(struct link *link, enum link_after after)
 {
@@ -273,14 +273,15 @@ static int64_t convert_ns(const struct link *link, const struct device *device)
 	return link->files ? 0 : thermometer_convert_ns(device);
 }
 
-static void converts(struct device *device, int64_t until)
+static void converts(struct device *device, int64_t until, bool unseen)
 {
 	if (device->converted_ns)
 		device->earlier_ns = device->converted_ns;
 	device->converted_ns = until;
+	device->unseen = unseen;
 }
 
-static void converting(struct native *native, unsigned n, int64_t now, int64_t longest)
+static void converting(struct native *native, unsigned n, bool unseen, int64_t now, int64_t longest)
 {
 	struct channel *channel = &native->channel[n];
 
@@ -290,7 +291,7 @@ static void converting(struct native *native, unsigned n, int64_t now, int64_t l
 		struct device *device = &native->table.devices[i];
 
 		if (is_thermometer(device, n))
-			converts(device, now + convert_ns(channel->link, device));
+			converts(device, now + convert_ns(channel->link, device), unseen);
 	}
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
@@ -339,7 +340,7 @@ int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t lo
 		native->hold_ns[link->chip % NATIVE_CHANNELS] = now + longest;
 		native->holder[link->chip % NATIVE_CHANNELS] = NULL;
 	}
-	converting(native, n, now, longest);
+	converting(native, n, strong && !link->files, now, longest);
 	return 0;
 }
 
@@ -372,7 +373,7 @@ static void convert_one(struct native *native, unsigned n)
 		return;
 	}
 	native_count(native, COUNT_CONVERSIONS);
-	converts(device, now + convert_ns(native->channel[n].link, device));
+	converts(device, now + convert_ns(native->channel[n].link, device), false);
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
 

@@ -76,6 +76,7 @@ void device_forget(struct device *device)
 	device->raw_ns = 0;
 	device->converted_ns = device->earlier_ns = device->latched_ns = 0;
 	device->unread_ns = 0;
+	device->unseen = false;
 	device->shadow_known = false;
 	device->base_of = 0;
 	memset(device->note, 0, sizeof(device->note));

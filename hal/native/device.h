@@ -52,6 +52,7 @@ struct device {
 	int64_t converted_ns; /* when its last conversion ends or ended; 0: none known */
 	int64_t unread_ns;    /* the conversion whose result did not come over the wire whole; 0: none */
 	int64_t earlier_ns;   /* ... and the one before that */
+	bool unseen;          /* the chip could not show that its last conversion began */
 	uint8_t latched[3];   /* what tells one conversion's result from another's, when it was read */
 	int64_t latched_ns;   /* ... and of which conversion that was; 0: not known */
 

@@ -146,9 +146,9 @@ int thermometer_prepare(struct txn *txn, unsigned resolution)
 }
 
 /*
- * When the chip latched what it holds. One that is fed by the wire cannot show that it converts. If
- * it holds something else than when it was read last, and converted once since, it did. If not, a
- * conversion may have been missed: then this is at least the result of the one before.
+ * When the chip latched what it holds. While the strong pull-up is on, no chip can show that it
+ * converts. If it holds something else than when it was read last, and converted once since, it did.
+ * If not, a conversion may have been missed: then this is at least the result of the one before.
  */
 static int64_t latched_ns(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
 {
@@ -158,7 +158,7 @@ static int64_t latched_ns(struct txn *txn, const uint8_t scratchpad[9], int64_t 
 	               memcmp(device->latched, holds, sizeof(holds)) != 0;
 
 	memcpy(device->latched, holds, sizeof(holds));
-	txn->unproven = device->power == POWER_PARASITE && !txn->link->files && !changed;
+	txn->unproven = device->unseen && !changed;
 	int64_t when = txn->unproven ? device->earlier_ns : device->converted_ns;
 	/* It never becomes older than it was. */
 	if (when > device->latched_ns && when < now)

@@ -122,6 +122,52 @@ static void look_at(const char *chip, bool parasite)
 	TEST_ASSERT_EQUAL_UINT_MESSAGE(0, false_values, chip);
 }
 
+static uint32_t both(struct sim_slave *fed, struct sim_slave *supplied, const char *what)
+{
+	uint32_t id[] = {ask(BUS_READ, BUS_INPUT, true, of(fed, "temperature"), NULL),
+	                 ask(BUS_READ, BUS_INPUT, true, of(supplied, "temperature"), NULL)};
+
+	for (unsigned i = 0; i < 2 && what; i++)
+		if (answer_to(id[i])->err == 0)
+			TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(i ? 71.5 : 61.5, answer_to(id[i])->number, what);
+	answer_to(id[0]);
+	answer_to(id[1]);
+	return trouble.slots;
+}
+
+/* One Convert T with the strong pull-up serves both, and neither can show that it heard it. */
+static void test_no_trouble_makes_a_neighbour_of_one_fed_by_the_wire_say_what_is_not_true(void)
+{
+	struct visit visit = {.chip = "both", .property = "temperature"};
+	struct trouble what = {.kind = TROUBLE_NONE, .mask = 1};
+	uint32_t slots = 0;
+
+	do {
+		native_begin();
+		wire_init(&host, 1, 1);
+		wire_net.trouble = &trouble;
+		struct sim_slave *fed = wire_add(0, "DS18B20", 1), *supplied = wire_add(0, "DS18B20", 2);
+
+		fed->parasite = true;
+		trouble_none(&trouble);
+		start();
+		both(fed, supplied, NULL);
+		both(fed, supplied, NULL);
+		wire_set(fed, "temperature", 61.5);
+		wire_set(supplied, "temperature", 71.5);
+		host_run(&host, bus, host.now + 100 * HOST_MS);
+		trouble_none(&trouble);
+		trouble.kind = what.kind;
+		trouble.at = what.at;
+		trouble.mask = what.mask;
+		uint32_t n = both(fed, supplied, visit_says(&visit, &what));
+		slots = what.kind == TROUBLE_NONE ? n : slots;
+		visit_end();
+		what.at += what.kind == TROUBLE_DEAF;
+		what.kind = what.kind == TROUBLE_TURN ? TROUBLE_DEAF : TROUBLE_TURN;
+	} while (what.at < slots);
+}
+
 #define LOOKS(name, chip, parasite)                                                       \
 	static void test_no_trouble_makes_a_##name##_say_what_is_not_true(void)             \
 	{                                                                                   \
@@ -150,6 +196,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_no_trouble_makes_a_ds18b20_say_what_is_not_true);
 	RUN_TEST(test_no_trouble_makes_a_ds18b20_fed_by_the_wire_say_what_is_not_true);
+	RUN_TEST(test_no_trouble_makes_a_neighbour_of_one_fed_by_the_wire_say_what_is_not_true);
 	RUN_TEST(test_no_trouble_makes_a_ds18s20_say_what_is_not_true);
 	RUN_TEST(test_no_trouble_makes_a_ds1822_say_what_is_not_true);
 	RUN_TEST(test_no_trouble_makes_a_ds1825_say_what_is_not_true);
