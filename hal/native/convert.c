@@ -307,15 +307,11 @@ static void converting(struct native *native, unsigned n, bool unseen, int64_t n
  * Now and then all that are due are asked one by one, so that what each holds is no older than
  * that even if it is deaf to the broadcast. It costs the wire's time while they convert.
  */
-static bool is_single_round(struct channel *channel, unsigned due, int64_t now)
+static bool is_single_round(struct channel *channel, int64_t now)
 {
 	if (!channel->single_ns)
 		channel->single_ns = now + SINGLE_NS;
-	if (now < channel->single_ns)
-		return false;
-	if (due == 1)
-		channel->single_ns = now + SINGLE_NS;
-	return true;
+	return now >= channel->single_ns;
 }
 
 int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t longest)
@@ -344,22 +340,37 @@ int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t lo
 	return 0;
 }
 
-/* One by one: the first that is due. */
-static void convert_one(struct native *native, unsigned n)
+/* The result of another job's conversion has not been read yet: the next would overwrite it. */
+static bool is_measuring(const struct native *native, const struct device *device)
+{
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		const struct job *job = &native->jobs[i];
+
+		if (job->req && job->txn.device == device && job->property &&
+		    job->property->convert && job->kind == JOB_PROPERTY &&
+		    (job->state == JOB_CONVERTING || job->state == JOB_RUN))
+			return true;
+	}
+	return false;
+}
+
+/* One by one: the first that is due and free. False: there is none. */
+static bool convert_one(struct native *native, unsigned n)
 {
 	static const uint8_t command = THERMOMETER_CONVERT;
 	struct job *first = NULL;
 
 	for (unsigned i = 0; i < NATIVE_DEPTH && !first; i++)
 		if (native->jobs[i].req && native->jobs[i].state == JOB_DUE &&
-		    native->jobs[i].txn.channel == n)
+		    native->jobs[i].txn.channel == n &&
+		    !is_measuring(native, native->jobs[i].txn.device))
 			first = &native->jobs[i];
 	if (!first)
-		return;
+		return false;
 	struct device *device = first->txn.device;
 	if (first->txn.link->passive && device->power != POWER_EXTERNAL) {
 		job_failed(native, first, -EOPNOTSUPP);
-		return;
+		return true;
 	}
 	int err = txn_command(&first->txn, &command, 1);
 	if (!err)
@@ -370,7 +381,7 @@ static void convert_one(struct native *native, unsigned n)
 	job_saw(native, first, err, now);
 	if (err < 0) {
 		job_failed(native, first, err);
-		return;
+		return true;
 	}
 	native_count(native, COUNT_CONVERSIONS);
 	converts(device, now + convert_ns(native->channel[n].link, device), false);
@@ -382,6 +393,7 @@ static void convert_one(struct native *native, unsigned n)
 		job->state = JOB_CONVERTING;
 		job->ready_ns = device->converted_ns;
 	}
+	return true;
 }
 
 /*
@@ -432,13 +444,12 @@ bool convert_step(struct native *native, int64_t now, int64_t *next)
 		}
 		if (plan.parasitic && ask_one(native, n))
 			return true;
-		if (plan.parasitic && (!plan.parasitic_due || channel->link->passive)) {
-			convert_one(native, n);
-			return true;
-		}
-		if (!plan.parasitic && !channel->link->files &&
-		    is_single_round(channel, plan.due, now)) {
-			convert_one(native, n);
+		if (plan.parasitic ? !plan.parasitic_due || channel->link->passive
+		                   : !channel->link->files && is_single_round(channel, now)) {
+			if (!convert_one(native, n))
+				continue;
+			if (plan.due == 1)
+				channel->single_ns = now + SINGLE_NS;
 			return true;
 		}
 		if (plan.reading || plan.locked)

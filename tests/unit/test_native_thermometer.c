@@ -59,6 +59,34 @@ static void test_a_chip_that_takes_the_question_otherwise_does_not_divide_the_co
 	TEST_ASSERT_EQUAL_UINT(1, wire_net.convert_count);
 }
 
+/* A channel is asked one by one now and then: at each moment of another's conversion. */
+static void test_a_conversion_that_is_not_read_yet_is_not_overwritten(void)
+{
+	for (int ms = 20; ms < 760; ms += 40) {
+		wire_init(&host, 1, 1);
+		struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+		wire_set(slave, "temperature", 20.5);
+		start();
+		expect(true, of(slave, "temperature"), "        20.5");
+		/* what was converted a minute ago is due one by one */
+		host_run(&host, bus, host.now + 59160 * HOST_MS);
+		wire_set(slave, "temperature", 30.5);
+		int64_t begun = host.now;
+		uint32_t first = ask(BUS_READ, BUS_INPUT, true, of(slave, "temperature"), NULL);
+		host_run(&host, bus, host.now + ms * HOST_MS);
+		uint32_t second = ask(BUS_READ, BUS_INPUT, true, of(slave, "temperature"), NULL);
+
+		TEST_ASSERT_EQUAL_DOUBLE(30.5, answer_to(first)->number);
+		TEST_ASSERT_GREATER_OR_EQUAL_INT64(begun, answer_to(first)->measured_ns);
+		TEST_ASSERT_EQUAL_DOUBLE(30.5, answer_to(second)->number);
+		native_end();
+		native_begin();
+	}
+	wire_init(&host, 1, 1);
+	start();
+}
+
 static void test_parasites_get_the_strong_pull_up_for_the_whole_conversion(void)
 {
 	wire_init(&host, 1, 1);
@@ -208,6 +236,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_one_convert_serves_all_that_are_due);
 	RUN_TEST(test_a_chip_that_takes_the_question_otherwise_does_not_divide_the_conversion);
+	RUN_TEST(test_a_conversion_that_is_not_read_yet_is_not_overwritten);
 	RUN_TEST(test_parasites_get_the_strong_pull_up_for_the_whole_conversion);
 	RUN_TEST(test_limits_are_stored_with_the_resolution_that_was_there);
 	RUN_TEST(test_a_cached_value_keeps_its_time);
