@@ -410,8 +410,13 @@ static bool ask_one(struct native *native, unsigned n)
 
 		if (!is_thermometer(device, n) || device->power != POWER_UNKNOWN)
 			continue;
-		int bit = thermometer_ask_power(&txn);
-		native_count(native, COUNT_TRANSACTIONS);
+		int bit = -EBADMSG;
+		for (int try = 0; try < TRIES && bit == -EBADMSG; try++) {
+			bit = thermometer_ask_power(&txn);
+			native_count(native, COUNT_TRANSACTIONS);
+			if (bit == -EBADMSG)
+				native_count(native, COUNT_CHECKSUMS);
+		}
 		if (bit < 0)
 			device->power = POWER_PARASITE;
 		if (bit >= 0 || txn.link_error == 0)

@@ -87,6 +87,38 @@ static void test_a_conversion_that_is_not_read_yet_is_not_overwritten(void)
 	start();
 }
 
+static void test_noise_at_the_question_does_not_make_a_thermometer_fed_by_the_wire(void)
+{
+	struct trouble trouble;
+	uint32_t slots = 1;
+
+	for (uint32_t at = 0; at < slots; at += 3) {
+		wire_init(&host, 1, 1);
+		struct sim_slave *slave = wire_add(0, "DS18B20", 1), *other = wire_add(0, "DS18B20", 2);
+
+		/* it answers the question to all with zeros, so that each is asked */
+		wire_add(0, "DS2438", 3);
+		wire_net.trouble = &trouble;
+		start();
+		trouble_none(&trouble);
+		trouble.kind = at ? TROUBLE_TURN : TROUBLE_NONE;
+		trouble.at = at;
+		trouble.mask = 1;
+		result(BUS_READ, of(slave, "temperature"), NULL);
+		if (!at)
+			slots = trouble.slots;
+		trouble_none(&trouble);
+		wire_net.strong_count = 0;
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(other, "temperature"), NULL));
+		TEST_ASSERT_EQUAL_UINT_MESSAGE(0, wire_net.strong_count, "pulled up");
+		wire_net.trouble = NULL;
+		native_end();
+		native_begin();
+	}
+	wire_init(&host, 1, 1);
+	start();
+}
+
 static void test_parasites_get_the_strong_pull_up_for_the_whole_conversion(void)
 {
 	wire_init(&host, 1, 1);
@@ -237,6 +269,7 @@ int main(void)
 	RUN_TEST(test_one_convert_serves_all_that_are_due);
 	RUN_TEST(test_a_chip_that_takes_the_question_otherwise_does_not_divide_the_conversion);
 	RUN_TEST(test_a_conversion_that_is_not_read_yet_is_not_overwritten);
+	RUN_TEST(test_noise_at_the_question_does_not_make_a_thermometer_fed_by_the_wire);
 	RUN_TEST(test_parasites_get_the_strong_pull_up_for_the_whole_conversion);
 	RUN_TEST(test_limits_are_stored_with_the_resolution_that_was_there);
 	RUN_TEST(test_a_cached_value_keeps_its_time);
