@@ -321,7 +321,7 @@ static void take_alarm(struct engine *e, struct alarm_item *item, const struct e
 	item->wants_after = was->wants_after;
 	memcpy(item->latch_text, was->latch_text, sizeof(item->latch_text));
 	if (same_text(s->item->por_alarm, old->table.signals[before].item->por_alarm)) {
-		item->restarted = was->restarted;
+		item->restarted = item->asks_por = was->restarted;
 		item->differs = was->differs;
 	}
 	if (!same_text(s->item->set_alarm, old->table.signals[before].item->set_alarm))

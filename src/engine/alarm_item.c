@@ -147,7 +147,7 @@ void alarm_take_item(struct alarm_machine *m, struct alarm_item *item, int64_t n
 	m->collecting += m->collecting >= (int64_t)at;
 	item->listed = false;
 	item->to_arm = alarm_arms(item);
-	item->asks_por = false;
+	item->asks_por = item->restarted; /* unless it is listed there */
 	retry_clear(&item->arm_retry);
 	item->arm_ns = 0;
 	item->por_cycle = item->latch_cycle = item->set_cycle = item->init_cycle = 0;

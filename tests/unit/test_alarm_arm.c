@@ -382,6 +382,22 @@ static void test_a_reload_keeps_the_restart_in_mind(void)
 	TEST_ASSERT_EQUAL_UINT(0, count("W " PIO));
 }
 
+static void test_a_por_that_somebody_cleared_before_a_reload_ends_it_after_that(void)
+{
+	board(no_set_alarm());
+	lose_power();
+	scene_run(&s, 60 * SCENE_S);
+	TEST_ASSERT_TRUE(unarmed(1));
+	scene_put(&s, D "/por", "0", 0);
+	scene_reload(&s, NULL);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_FALSE(unarmed(1));
+	lose_power();
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(2, journal());
+	TEST_ASSERT_EQUAL_STRING("7", scene_at(&s, PIO));
+}
+
 static void mend(struct config *config)
 {
 	config->items[0].set_alarm = "set_alarm=133333333";
@@ -478,6 +494,7 @@ int main(void)
 	RUN_TEST(test_several_items_of_one_device_tell_of_one_restart);
 	RUN_TEST(test_an_item_that_can_end_the_restart_does_so_for_the_others);
 	RUN_TEST(test_a_reload_keeps_the_restart_in_mind);
+	RUN_TEST(test_a_por_that_somebody_cleared_before_a_reload_ends_it_after_that);
 	RUN_TEST(test_a_reload_that_mends_the_file_arms_it_at_once);
 	RUN_TEST(test_a_target_that_comes_and_goes_is_no_restart);
 	RUN_TEST(test_a_set_alarm_that_is_refused_at_start_is_told_and_tried_again);
