@@ -680,7 +680,8 @@ class Ows:
             self._set_text(record, value.encode())
         else:
             self.command.doubles[slot >> 3] = encode(info.type, value)
-        words[slot + 12 >> 2] = 0 if self.client is None else self.client + 1
+        mine = self.client is not None and self._client_word(0) == os.getpid()
+        words[slot + 12 >> 2] = self.client + 1 if mine else 0
         stamp = words[slot + 8 >> 2] + 1 & 0xFFFFFFFF or 1
         words[slot + 8 >> 2] = stamp
         return stamp

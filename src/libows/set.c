@@ -48,12 +48,20 @@ static int ring(struct ows *h)
 	return command_state(h);
 }
 
+/* Its place for the slots; 0 without one, also when owsd has dropped it and another may have it. */
+static uint32_t giver(const struct ows *h)
+{
+	if (h->client < 0 || word_get(&h->map.clients[h->client].pid) != h->pid)
+		return 0;
+	return (uint32_t)h->client + 1;
+}
+
 static uint32_t stamp_it(const struct ows *h, const struct ows_id *id)
 {
 	struct ows_command_slot *slot = slot_of(h, id);
 	uint32_t stamp;
 
-	word_set(&slot->client, (uint32_t)(h->client + 1));
+	word_set(&slot->client, giver(h));
 	stamp = __atomic_add_fetch(&slot->stamp, 1, __ATOMIC_RELEASE);
 	if (stamp == 0) /* means never commanded */
 		stamp = __atomic_add_fetch(&slot->stamp, 1, __ATOMIC_RELEASE);

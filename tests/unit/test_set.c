@@ -45,6 +45,11 @@ static struct command load(uint32_t slot)
 	return c;
 }
 
+static struct ows_client *client_at(unsigned client)
+{
+	return (struct ows_client *)(void *)(in.commands.base + in.commands.client_off) + client;
+}
+
 static void test_a_set_reaches_the_engine_with_stamp_mark_and_bell(void)
 {
 	uint32_t stamp, bell = *commands_bell(&in.commands);
@@ -226,6 +231,18 @@ static void test_who_was_dropped_comes_back_with_his_next_beat(void)
 	TEST_ASSERT_EQUAL(getpid(), c.pid);
 }
 
+static void test_who_was_dropped_sets_nothing_in_the_name_of_the_next_one(void)
+{
+	TEST_ASSERT_EQUAL(0, ows_beat(h, 500));
+	commands_drop_client(&in.commands, 0);
+	client_at(0)->pid = (uint32_t)getpid() + 1; /* another process takes the place */
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat"), 1, NULL));
+	TEST_ASSERT_EQUAL(0, load(HEAT).client);
+	TEST_ASSERT_EQUAL(0, ows_beat(h, 500));
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat"), 1, NULL));
+	TEST_ASSERT_EQUAL(2, load(HEAT).client);
+}
+
 static void test_who_ends_in_order_leaves_commands_that_are_nobodys(void)
 {
 	struct command_client c;
@@ -368,6 +385,7 @@ int main(void)
 	RUN_TEST(test_text_sets_a_number_too);
 	RUN_TEST(test_who_beats_is_named_in_what_he_sets);
 	RUN_TEST(test_who_was_dropped_comes_back_with_his_next_beat);
+	RUN_TEST(test_who_was_dropped_sets_nothing_in_the_name_of_the_next_one);
 	RUN_TEST(test_who_ends_in_order_leaves_commands_that_are_nobodys);
 	RUN_TEST(test_the_table_of_clients_has_an_end);
 	RUN_TEST(test_a_retired_segment_takes_no_sets);
