@@ -38,7 +38,8 @@ sed -i 's/^  TargetName.*/&\n  Listen "4304, 10.0.2.15:4304"\n  ListenAllow "10.
 does 'the file is right' owsd --check
 sync $file # as an editor does
 does 'the service is restarted with it' systemctl restart owsd@OWS
-does 'what was commanded goes before the start value' within $patience reads outputs1 5
+# The program that set 5 has ended
+does 'the output has its start value' within $patience reads outputs1 2
 echo '@@RIG-OUTSIDE /28.A0B1C2000028/temperature 21.0625'
 echo '@@RIG-OUTSIDE /signals/temperature2 -10.125'
 echo '@@RIG-OUTSIDE-SET /signals/outputs1 6'
