@@ -248,7 +248,8 @@ void job_run_property(struct native *native, struct job *job, int64_t now)
 		job_restart(native, job);
 		return;
 	}
-	if (txn->unproven && !job->again && (job->fresh || !txn->device->earlier_ns)) {
+	if (txn->device && txn->unproven && !job->again &&
+	    (job->fresh || !txn->device->earlier_ns)) {
 		job->again = true;
 		job_restart(native, job);
 		return;

@@ -195,9 +195,11 @@ static int convert(struct txn *txn, int arg)
 	switch (txn->phase) {
 	case 0:
 		err = read_page(txn, CALIBRATION, bytes);
+		if (err)
+			return err;
 		txn->mem[1] = bytes[SUPPLY_AT % 8] == SUPPLY_ON;
 		txn->phase = 1;
-		return err ? err : TXN_MORE;
+		return TXN_MORE;
 	case 1:
 		err = read_page(txn, CONTROL, bytes);
 		if (err)

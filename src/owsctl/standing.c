@@ -7,10 +7,11 @@
 
 struct ows_alarm_state standing_of(struct ows *h, int id)
 {
-	struct ows_alarm_state state = {0};
+	static const struct ows_alarm_state none;
+	struct ows_alarm_state state = none;
 	int err = ows_alarm_state(h, id, &state);
 
-	return err && err != -ESTALE ? (struct ows_alarm_state){0} : state;
+	return err && err != -ESTALE ? none : state;
 }
 
 bool standing_possible(const struct ows_alarm_state *state)
