@@ -127,6 +127,7 @@ bool row_changed(struct row *row, const struct reading *reading)
 	uint64_t text_hash = hash(reading->text, reading->len);
 	bool changed = !row->seen || row->quality != quality || row->err != err ||
 	               row->text_hash != text_hash || row->stands != row->alarms.stands ||
+	               row->unarmed != row->alarms.unarmed ||
 	               row->limit_state != row->alarms.limit_state ||
 	               row->limit_kind != row->alarms.limit_kind;
 
@@ -135,6 +136,7 @@ bool row_changed(struct row *row, const struct reading *reading)
 	row->err = err;
 	row->text_hash = text_hash;
 	row->stands = row->alarms.stands;
+	row->unarmed = row->alarms.unarmed;
 	row->limit_state = row->alarms.limit_state;
 	row->limit_kind = row->alarms.limit_kind;
 	return changed;

@@ -22,7 +22,7 @@ struct row {
 	uint8_t quality;
 	int32_t err;
 	uint64_t text_hash;
-	uint8_t stands, limit_state, limit_kind;
+	uint8_t stands, unarmed, limit_state, limit_kind;
 };
 struct rows {
 	struct row *row;

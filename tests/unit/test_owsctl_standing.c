@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The alarms that stand, in the words of list and watch. */
+#include "src/owsctl/rows.h"
 #include "src/owsctl/standing.h"
 #include "unity.h"
 
@@ -68,11 +69,37 @@ static void test_a_signal_without_limits_has_no_alarm_column(void)
 	TEST_ASSERT_TRUE(standing_possible(&(struct ows_alarm_state){.limits = 1}));
 }
 
+/* What watch prints in a line, a change of it is worth a line. */
+static void test_whatever_changes_the_words_of_an_alarm_is_a_change_of_its_row(void)
+{
+	static const struct ows_alarm_state states[] = {
+		{0}, {.stands = 1}, {.unarmed = 1}, {.unarmed = 1, .limit_state = OWS_LIMIT_UNACKNOWLEDGED},
+		{.limit_state = OWS_LIMIT_UNACKNOWLEDGED, .limit_kind = OWS_ALARM_H},
+		{.limit_state = OWS_LIMIT_UNACKNOWLEDGED, .limit_kind = OWS_ALARM_HH},
+		{.limit_state = OWS_LIMIT_ACKNOWLEDGED, .limit_kind = OWS_ALARM_HH},
+	};
+	static const size_t count = sizeof(states) / sizeof(states[0]);
+	static struct reading reading;
+	char before[STANDING_WORDS], after[STANDING_WORDS];
+
+	for (size_t i = 0; i < count * count; i++) {
+		struct row row = {.alarms = states[i / count]};
+
+		TEST_ASSERT_TRUE(row_changed(&row, &reading));
+		TEST_ASSERT_FALSE(row_changed(&row, &reading));
+		standing_text(&row.alarms, before);
+		row.alarms = states[i % count];
+		standing_text(&row.alarms, after);
+		TEST_ASSERT_EQUAL_MESSAGE(strcmp(before, after) != 0, row_changed(&row, &reading), after);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_each_state_has_its_words_and_its_mark);
 	RUN_TEST(test_no_words_are_cut);
+	RUN_TEST(test_whatever_changes_the_words_of_an_alarm_is_a_change_of_its_row);
 	RUN_TEST(test_a_signal_without_limits_has_no_alarm_column);
 	return UNITY_END();
 }
