@@ -211,19 +211,14 @@ int verb_instances(struct ctl *ctl, int argc, char **argv)
 	return status;
 }
 
-/* The heart beats although somebody removed the lock. */
-static bool beats_unlocked(const char *name, int *pid)
+/* Also where somebody removed its lock. */
+static bool is_running(const char *name, int *pid)
 {
-	struct ows_daemon daemon = {0};
-	struct ows *h;
-	pid_t holder;
+	struct instance_info info;
 
-	if (segment_lock_look(name, &holder) != -ENOENT || ows_open(name, OWS_READ, &h))
-		return false;
-	ows_daemon(h, ows_now(), &daemon);
-	ows_close(h);
-	*pid = daemon.pid;
-	return daemon.alive;
+	look(name, ows_now(), &info);
+	*pid = info.pid;
+	return info.state == INSTANCE_RUNNING || info.state == INSTANCE_HANGS;
 }
 
 static int refuse(const char *name, int err, int pid)
@@ -261,14 +256,14 @@ int verb_remove(struct ctl *ctl, int argc, char **argv)
 	for (int i = optind; i < argc; i++) {
 		const char *name = argv[i];
 		unsigned files = 0;
-		int beating = 0, err;
+		int running = 0, err;
 		pid_t pid = 0;
 
-		err = !segment_name_ok(name)           ? -EINVAL
-		      : beats_unlocked(name, &beating) ? -EBUSY
-						       : remains_remove(name, &pid, &files);
+		err = !segment_name_ok(name)       ? -EINVAL
+		      : is_running(name, &running) ? -EBUSY
+						   : remains_remove(name, &pid, &files);
 		if (err)
-			status = refuse(name, err, pid ? (int)pid : beating);
+			status = refuse(name, err, pid ? (int)pid : running);
 		else if (!ctl->json)
 			printf("removed %s: %u file%s\n", name, files, files == 1 ? "" : "s");
 		if (ctl->json) {
