@@ -204,7 +204,7 @@ static bool is_set(const struct txn *txn, const uint8_t scratchpad[9])
 }
 
 /* The steps of store(). */
-enum { WRITE = 1, VERIFY, COPY, MARK, FIND_MARK, RECALL_IT, CHECK };
+enum { WRITE = 1, VERIFY, COPY, RECALLS, CHECK = RECALLS + 3 };
 
 static int copy_settings(struct txn *txn)
 {
@@ -217,29 +217,27 @@ static int copy_settings(struct txn *txn)
 		return err < 0 ? err : TXN_MORE;
 	}
 	/* A driver's word for it is all there is. */
-	txn->phase = txn->link->files ? CHECK : MARK;
+	txn->phase = txn->link->files ? CHECK : RECALLS;
 	return txn_command_strong(txn, &copy, 1, COPY_NS);
 }
 
 /*
  * The user's setting goes to the EEPROM, so that it outlives the chip's power, and with it the
  * resolution that was there, not the one that a conversion asked for. What is there already is not
- * written again: the EEPROM wears out. The copy says nothing. So the scratchpad is changed then
- * (its upper limit) and recalled from the EEPROM: what was copied comes back.
+ * written again: the EEPROM wears out. The copy says nothing. So the scratchpad is recalled from the
+ * EEPROM then: if the copy was lost, the settings before it come back. A recall says nothing either,
+ * and is made three times. What is in force is what stood there or what is wanted, at each moment.
  */
 static int store(struct txn *txn)
 {
 	static const uint8_t recall = RECALL;
 	struct device *device = txn->device;
 	uint8_t scratchpad[9];
-	int err;
+	int err = 0;
 
 	switch (txn->phase) {
-	case MARK:
 	case WRITE:
-		memcpy(scratchpad, txn->mem, sizeof(scratchpad));
-		scratchpad[SP_HIGH] ^= txn->phase == MARK ? 0xff : 0;
-		err = write_scratchpad(txn, scratchpad);
+		err = write_scratchpad(txn, txn->mem);
 		break;
 	case VERIFY:
 		device->resolution = 0;
@@ -249,20 +247,17 @@ static int store(struct txn *txn)
 		break;
 	case COPY:
 		return copy_settings(txn);
-	case FIND_MARK:
-		err = thermometer_scratchpad(txn, scratchpad);
-		if (!err && (scratchpad[SP_HIGH] ^ txn->mem[SP_HIGH]) != 0xff)
-			err = -EBADMSG;
-		break;
-	case RECALL_IT:
-		err = txn_command(txn, &recall, 1);
-		break;
 	default:
-		err = thermometer_scratchpad(txn, scratchpad);
+		if (txn->phase < CHECK)
+			err = txn_command(txn, &recall, 1);
+		if (!err)
+			err = thermometer_scratchpad(txn, scratchpad);
 		if (err)
 			return err;
 		if (!is_set(txn, scratchpad))
 			return -EIO;
+		if (txn->phase + 1 < CHECK)
+			break;
 		txn_changed(txn);
 		device->stored = device->resolution;
 		return 0;

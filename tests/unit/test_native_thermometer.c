@@ -153,6 +153,32 @@ static void test_limits_are_stored_with_the_resolution_that_was_there(void)
 	expect(true, of(slave, "tempres"), "          10");
 }
 
+static unsigned settings_sent, settings_odd;
+
+/* Match ROM, Write Scratchpad, the upper limit, ... */
+static void look_at_settings(const uint8_t *bytes, size_t n)
+{
+	if (n != 13 || bytes[9] != 0x4e)
+		return;
+	settings_sent++;
+	settings_odd += bytes[10] != 30;
+}
+
+/* A wire that is cut in the midst of it leaves the chip with a limit that somebody asked for. */
+static void test_a_limit_on_its_way_to_the_eeprom_is_never_another(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	start();
+	settings_sent = settings_odd = 0;
+	wire_net.sent = look_at_settings;
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(slave, "temphigh"), "30"));
+	wire_net.sent = NULL;
+	TEST_ASSERT_GREATER_THAN_UINT(0, settings_sent);
+	TEST_ASSERT_EQUAL_UINT(0, settings_odd);
+}
+
 static void test_a_cached_value_keeps_its_time(void)
 {
 	wire_init(&host, 1, 1);
@@ -272,6 +298,7 @@ int main(void)
 	RUN_TEST(test_noise_at_the_question_does_not_make_a_thermometer_fed_by_the_wire);
 	RUN_TEST(test_parasites_get_the_strong_pull_up_for_the_whole_conversion);
 	RUN_TEST(test_limits_are_stored_with_the_resolution_that_was_there);
+	RUN_TEST(test_a_limit_on_its_way_to_the_eeprom_is_never_another);
 	RUN_TEST(test_a_cached_value_keeps_its_time);
 	RUN_TEST(test_a_monitor_that_restarts_while_it_measures_is_measured_again);
 	RUN_TEST(test_the_power_on_value_of_the_genuine_chip_is_known_from_the_temperature);
