@@ -136,7 +136,8 @@ static int take_value(struct job *job)
 		return 0;
 	}
 	if (all) {
-		if (list_count(text, len) != property->array.count ||
+		/* no element is written when a later one cannot be */
+		if ((job->element == 0 && !list_fits(property, text, len)) ||
 		    !list_part(text, len, job->element, &text, &len))
 			return -EINVAL;
 		return parse_value(property, EXTENSION_NONE, text, len, txn);

@@ -52,6 +52,8 @@ struct property {
 		bool aggregate; /* all elements come in one transaction */
 	} array;
 	uint16_t size;   /* bytes of ascii and binary; 0: that of the type */
+	bool negative;      /* unsigned, and a write may be below zero all the same */
+	const char *digits; /* unsigned: the most that each decimal digit may be; NULL: any */
 	uint8_t convert; /* 9 to 12, CONVERT_TEMPRES, or 0 */
 	int arg;         /* for functions that serve several properties */
 	bool (*visible)(const struct device *device); /* NULL: always; else no such property */

@@ -238,7 +238,7 @@ static const struct property properties[] = {
 	NUMBER("power", PROPERTY_YESNO, LIFE_VOLATILE, read_power),
 	BITS("sensed", LIFE_VOLATILE, ACCESS_READ, 2, read_info_bits, NULL),
 	{.name = "set_alarm", .type = PROPERTY_UNSIGNED, .life = LIFE_STABLE, .access = ACCESS_BOTH,
-	 .read = read_alarm, .write = write_alarm},
+	 .digits = "331", .read = read_alarm, .write = write_alarm},
 };
 
 const struct family family_12 = {

@@ -228,7 +228,7 @@ static int read_offset(struct txn *txn)
 /* The chip takes it only while it does not measure the current. mem[2]: as it was. */
 static int write_offset(struct txn *txn)
 {
-	int value = (int32_t)(uint32_t)txn->number[0];
+	int value = (int32_t)(uint32_t)(int64_t)txn->number[0]; /* as it is read, or below zero */
 	int err;
 
 	if (value < -256 || value > 255)
@@ -290,7 +290,7 @@ static const struct property properties[] = {
 	{.name = "latesttemp", .type = PROPERTY_TEMPERATURE, .life = LIFE_VOLATILE,
 	 .access = ACCESS_READ, .read = read_latest},
 	{.name = "offset", .type = PROPERTY_UNSIGNED, .life = LIFE_STABLE, .access = ACCESS_BOTH,
-	 .read = read_offset, .write = write_offset},
+	 .negative = true, .read = read_offset, .write = write_offset},
 	PROPERTY_DIR("pages"),
 	{.name = "pages/page", .type = PROPERTY_BINARY, .life = LIFE_STABLE, .access = ACCESS_BOTH,
 	 .array = {8, INDEX_NUMBERS, false}, .size = 8, .read = read_page, .write = put_page},

@@ -286,7 +286,7 @@ static const struct property properties[] = {
 	FLAG("power", LIFE_VOLATILE, ACCESS_READ, CONTROL_VCC, NULL),
 	BITS("sensed", LIFE_VOLATILE, ACCESS_READ, PIN, NULL),
 	{.name = "set_alarm", .type = PROPERTY_UNSIGNED, .life = LIFE_STABLE, .access = ACCESS_BOTH,
-	 .read = read_alarm, .write = write_alarm},
+	 .digits = "333333333", .read = read_alarm, .write = write_alarm},
 	FLAG("strobe", LIFE_STABLE, ACCESS_BOTH, CONTROL_STROBE, write_flag),
 };
 

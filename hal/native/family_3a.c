@@ -7,7 +7,8 @@
 static const struct property properties[] = {
 	PIO_BITS("PIO", ACCESS_BOTH, WRITE_PIO, pio_read_output, pio_write_output),
 	{.name = "piostate", .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE, .hidden = true,
-	 .access = ACCESS_BOTH, .arg = WRITE_PIO, .read = pio_read_state, .write = pio_write_state},
+	 .access = ACCESS_BOTH, .digits = "3", .arg = WRITE_PIO, .read = pio_read_state,
+	 .write = pio_write_state},
 	PIO_BITS("sensed", ACCESS_READ, 0, pio_read_pin, NULL),
 };
 

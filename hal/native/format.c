@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Values of properties as texts, and back: what a device shall be given has to fit its property. */
 #include "hal/native/format.h"
 
 #include <ctype.h>
@@ -9,6 +10,8 @@
 #include <string.h>
 #include <strings.h>
 #include <time.h>
+
+#define TEXT_ROOM 64 /* of a number or a date as text */
 
 int extension_split(const char *text, size_t len, size_t *name_len)
 {
@@ -178,29 +181,18 @@ double format_as_number(const struct property *property, int extension, const st
 	return extension == EXTENSION_NONE ? txn->number[0] : element_of(property, extension, txn);
 }
 
-static int parse_yesno(const char *text, double *number)
+static int parse_word(const char *text, double *number)
 {
 	static const struct {
 		const char *word;
 		double value;
 	} words[] = {{"yes", 1}, {"y", 1}, {"on", 1}, {"no", 0}, {"n", 0}, {"off", 0}};
-	char *end;
-	long value = strtol(text, &end, 10);
 
-	if (end != text) {
-		*number = value != 0;
-		return 0;
-	}
-	while (isspace((unsigned char)*text))
-		text++;
-	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++) {
-		size_t n = strlen(words[i].word);
-
-		if (strncasecmp(text, words[i].word, n) == 0 && !isalnum((unsigned char)text[n])) {
+	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
+		if (strcasecmp(text, words[i].word) == 0) {
 			*number = words[i].value;
 			return 0;
 		}
-	}
 	return -EINVAL;
 }
 
@@ -211,54 +203,111 @@ static int parse_date(const char *text, double *number)
 
 	for (size_t i = 0; i < sizeof(forms) / sizeof(forms[0]); i++) {
 		struct tm tm = {.tm_isdst = -1};
+		const char *end = strptime(text, forms[i], &tm);
 
-		if (!strptime(text, forms[i], &tm))
+		if (!end || *end)
 			continue;
 		tm.tm_isdst = -1;
 		*number = (double)mktime(&tm);
-		return *number < 0 ? -EINVAL : 0;
+		return *number < 0 || *number > UINT32_MAX ? -EINVAL : 0;
 	}
 	return -EINVAL;
 }
 
-static int parse_number(uint8_t type, const char *text, size_t len, double *number)
+/* Decimal digits: what else strtod() takes is no value of a property. */
+static int parse_decimal(const char *text, double *number)
 {
-	char copy[64], *end;
+	char *end;
 
-	if (len >= sizeof(copy))
+	if (text[strspn(text, "+-.0123456789eE")])
 		return -EINVAL;
+	errno = 0;
+	*number = strtod(text, &end);
+	return end == text || *end || errno ? -EINVAL : 0;
+}
+
+static int parse_whole(const char *text, double least, double most, double *number)
+{
+	if (parse_decimal(text, number) || *number != trunc(*number))
+		return -EINVAL;
+	return *number < least || *number > most ? -EINVAL : 0;
+}
+
+/* Without the blanks around it, and the end of line or of string behind it. */
+static bool copy_trimmed(const char *text, size_t len, char copy[TEXT_ROOM])
+{
+	while (len && (isspace((unsigned char)text[len - 1]) || text[len - 1] == '\0'))
+		len--;
+	while (len && isspace((unsigned char)*text)) {
+		text++;
+		len--;
+	}
+	if (len == 0 || len >= TEXT_ROOM || memchr(text, '\0', len))
+		return false;
 	memcpy(copy, text, len);
 	copy[len] = '\0';
-	errno = 0;
-	switch ((enum property_type)type) {
+	return true;
+}
+
+/* The last digit of the number is measured by the last of the limits. */
+static bool digits_fit(const char *limits, double number)
+{
+	uint32_t rest = (uint32_t)number;
+
+	for (size_t i = strlen(limits); i-- > 0; rest /= 10)
+		if (rest % 10 > (uint32_t)(limits[i] - '0'))
+			return false;
+	return rest == 0;
+}
+
+static int parse_unsigned(const struct property *property, const char *text, double *number)
+{
+	if (parse_whole(text, property->negative ? INT32_MIN : 0, UINT32_MAX, number))
+		return -EINVAL;
+	return !property->digits || digits_fit(property->digits, *number) ? 0 : -EINVAL;
+}
+
+static int parse_number(const struct property *property, const char *text, size_t len,
+                        double *number)
+{
+	char copy[TEXT_ROOM];
+
+	if (!copy_trimmed(text, len, copy))
+		return -EINVAL;
+	switch ((enum property_type)property->type) {
 	case PROPERTY_YESNO:
 	case PROPERTY_BITS:
-		return parse_yesno(copy, number);
+		return parse_word(copy, number) ? parse_whole(copy, 0, 1, number) : 0;
 	case PROPERTY_DATE:
 		return parse_date(copy, number);
 	case PROPERTY_UNSIGNED:
-	case PROPERTY_INTEGER: {
-		long long value = strtoll(copy, &end, 10);
-		*number = type == PROPERTY_UNSIGNED ? (double)(uint32_t)value
-		                                    : (double)(int32_t)value;
-		if (value > UINT32_MAX || value < INT32_MIN)
-			return -EINVAL;
-		break;
-	}
+		return parse_unsigned(property, copy, number);
+	case PROPERTY_INTEGER:
+		return parse_whole(copy, INT32_MIN, INT32_MAX, number);
 	case PROPERTY_FLOAT:
 	case PROPERTY_PRESSURE:
 	case PROPERTY_TEMPERATURE:
-		*number = strtod(copy, &end);
-		if (!isfinite(*number))
-			return -EINVAL;
-		break;
+		return parse_decimal(copy, number);
 	case PROPERTY_DIRECTORY:
 	case PROPERTY_ASCII:
 	case PROPERTY_BINARY:
 	case PROPERTY_ALIAS:
-		return -EINVAL;
+		break;
 	}
-	return end == copy || errno ? -EINVAL : 0;
+	return -EINVAL;
+}
+
+static int parse_byte(const struct property *property, const char *text, size_t len,
+                      uint32_t *bits)
+{
+	char copy[TEXT_ROOM];
+	double number;
+
+	if (!copy_trimmed(text, len, copy) ||
+	    parse_whole(copy, 0, ldexp(1, property->array.count) - 1, &number))
+		return -EINVAL;
+	*bits = (uint32_t)number;
+	return 0;
 }
 
 static void set_element(const struct property *property, int element, double number,
@@ -280,29 +329,21 @@ int parse_value(const struct property *property, int extension, const char *text
 	double number;
 	int err;
 
-	if (extension == EXTENSION_BYTE) {
-		err = parse_number(PROPERTY_UNSIGNED, text, len, &number);
-		if (!err)
-			txn->bits = (uint32_t)number & ((UINT32_C(1) << property->array.count) - 1);
-		return err;
-	}
+	if (extension == EXTENSION_BYTE)
+		return parse_byte(property, text, len, &txn->bits);
 	if (extension != EXTENSION_ALL) {
-		err = parse_number(property->type, text, len, &number);
+		err = parse_number(property, text, len, &number);
 		if (!err)
 			set_element(property, extension == EXTENSION_NONE ? 0 : extension, number,
 			            txn);
 		return err;
 	}
-	if (list_count(text, len) != property->array.count)
+	if (!list_fits(property, text, len))
 		return -EINVAL;
-	for (int i = 0; i < property->array.count; i++) {
-		if (!list_part(text, len, (unsigned)i, &part, &part_len))
-			return -EINVAL;
-		err = parse_number(property->type, part, part_len, &number);
-		if (err)
-			return err;
-		set_element(property, i, number, txn);
-	}
+	for (unsigned i = 0; i < property->array.count; i++)
+		if (list_part(text, len, i, &part, &part_len) &&
+		    parse_number(property, part, part_len, &number) == 0)
+			set_element(property, (int)i, number, txn);
 	return 0;
 }
 
@@ -324,11 +365,15 @@ bool list_part(const char *text, size_t len, unsigned n, const char **part, size
 	}
 }
 
-unsigned list_count(const char *text, size_t len)
+bool list_fits(const struct property *property, const char *text, size_t len)
 {
-	unsigned count = 1;
+	const char *part;
+	size_t part_len;
+	double number;
+	unsigned n = 0;
 
-	for (size_t i = 0; i < len; i++)
-		count += text[i] == ',';
-	return count;
+	for (; list_part(text, len, n, &part, &part_len); n++)
+		if (n == property->array.count || parse_number(property, part, part_len, &number))
+			return false;
+	return n == property->array.count;
 }

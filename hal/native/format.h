@@ -32,12 +32,14 @@ double format_as_number(const struct property *property, int extension, const st
 
 /*
  * The other way. With one element of an aggregate only that element is set: the others have to be
- * in txn. -EINVAL.
+ * in txn. -EINVAL, and txn is as before: the text is not the whole of a value in the range of the
+ * property. Blanks around it and an end of line or of string behind it do not count.
  */
 int parse_value(const struct property *property, int extension, const char *text, size_t len,
                 struct txn *txn);
 /* Part n of a comma list; false: there is none. */
 bool list_part(const char *text, size_t len, unsigned n, const char **part, size_t *part_len);
-unsigned list_count(const char *text, size_t len);
+/* Has the list as many elements as the property, and can the property take each of them? */
+bool list_fits(const struct property *property, const char *text, size_t len);
 
 #endif

@@ -3,7 +3,9 @@
 
 #include "hal/owserver/frame.h"
 
+#include <ctype.h>
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -58,16 +60,18 @@ static int parse(const char *text, size_t len, double *number)
 {
 	char copy[64], *end;
 
-	while (len && *text == ' ') {
+	while (len && isspace((unsigned char)*text)) {
 		text++;
 		len--;
 	}
+	while (len && (isspace((unsigned char)text[len - 1]) || text[len - 1] == '\0'))
+		len--;
 	if (len == 0 || len >= sizeof(copy))
 		return -EINVAL;
 	memcpy(copy, text, len);
 	copy[len] = '\0';
 	*number = strtod(copy, &end);
-	return end == copy ? -EINVAL : 0;
+	return end != copy + len || !isfinite(*number) ? -EINVAL : 0;
 }
 
 static size_t element(const char *text, size_t len)

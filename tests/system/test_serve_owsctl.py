@@ -49,6 +49,24 @@ def test_without_target_owsctl_asks_the_instance_on_its_socket(scene):
         assert what in ctl(scene, daemon, *words, status=1).stderr
 
 
+def test_a_value_that_does_not_fit_is_refused_and_nothing_is_written(scene):
+    pair, switch = "/12.765A2E63339F", "/3A.C99A66320DB7"
+    wrong = ("-1", "256", "300", "3.7", "12abc", "1,1", "0x10", "")
+    server = served.owsd(scene, items=served.SIGNALS[:1])
+    sim = ("-t", f"sim:{scene.file('alone.sim', served.WIRE)}")
+    for path, text in [(SWITCH + "/PIO.BYTE", text) for text in wrong] + [
+            (pair + "/PIO.BYTE", "4"), (pair + "/PIO.A", "2"), (switch + "/PIO.ALL", "1,0,1"),
+            (THERMOMETER + "/templow", "12abc"), (SWITCH + "/set_alarm", "433333333")]:
+        before = ctl(scene, server.program, "read", path).stdout
+        failed = ctl(scene, server.program, "write", path, text, status=1)
+        assert text == "" or "refuses this value" in failed.stderr, (path, text, failed)
+        if text:
+            frame = server.frame(served.WRITE, path, data=text.encode())
+            assert frame.ret == -22, (path, text, frame)
+            assert "refuses this value" in ctl(scene, None, *sim, "write", path, text, status=1).stderr
+        assert ctl(scene, server.program, "read", "/uncached" + path).stdout == before, (path, text)
+
+
 def test_the_same_by_name_of_the_socket_and_by_tcp(scene):
     daemon, path, _ = socket_server(scene)
     assert lines(scene, None, "-t", f"owserver:{path}", "read", THERMOMETER + "/type") == ["DS18B20"]

@@ -27,6 +27,33 @@ static void start(const char *chip)
 	TEST_ASSERT_TRUE(host_run_events(&host, bus, 1, host.now + HOST_S));
 }
 
+static void test_what_does_not_fit_a_ds2408_is_not_written(void)
+{
+	static const struct {
+		const char *property, *text;
+	} wrong[] = {
+		{"PIO.BYTE", "-1"}, {"PIO.BYTE", "256"}, {"PIO.BYTE", "300"}, {"PIO.BYTE", "3.7"},
+		{"PIO.BYTE", "12abc"}, {"PIO.BYTE", "1,1"}, {"PIO.BYTE", "0x10"},
+		{"PIO.0", "2"}, {"PIO.0", "-1"}, {"PIO.0", "1 0"}, {"PIO.ALL", "1,0,1"},
+		{"PIO.ALL", "1,0,1,0,1,0,1,0,1"}, {"PIO.ALL", "1,0,1,0,1,0,1,2"},
+		{"set_alarm", "-1"}, {"set_alarm", "433333333"}, {"set_alarm", "133333334"},
+		{"set_alarm", "1133333333"}, {"por", "7"},
+	};
+
+	start("DS2408");
+	writes("PIO.BYTE", "85");
+	writes("set_alarm", "133333333");
+	writes("por", "0");
+	for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
+		refuses(-EINVAL, BUS_WRITE, wrong[i].property, wrong[i].text);
+		reads("PIO.BYTE", "          85");
+		reads("set_alarm", "   133333333");
+		reads("por", "0");
+	}
+	writes("PIO.BYTE", " 170\n");
+	reads("PIO.BYTE", "         170");
+}
+
 static void test_a_ds2408_switches_and_keeps_its_neighbours(void)
 {
 	start("DS2408");
@@ -52,7 +79,6 @@ static void test_a_ds2408_switches_and_keeps_its_neighbours(void)
 	writes("strobe", "1");
 	reads("strobe", "1");
 	writes("out_of_testmode", "1");
-	refuses(-EINVAL, BUS_WRITE, "PIO.ALL", "1,0,1");
 	refuses(-EINVAL, BUS_WRITE, "PIO.0", "maybe");
 	refuses(-ENOENT, BUS_READ, "PIO", NULL);
 	refuses(-ENOENT, BUS_READ, "PIO.8", NULL);
@@ -157,6 +183,9 @@ static void test_a_ds2438_measures_and_keeps_time(void)
 	reads("vis", "           0");
 	reads("IAD", "0");
 	refuses(-EINVAL, BUS_WRITE, "offset", "1000");
+	refuses(-EINVAL, BUS_WRITE, "offset", "-257");
+	writes("offset", "4294967291");
+	reads("offset", "  4294967291");
 	writes("pages/page.4", "abcdefgh");
 	reads("pages/page.4", "abcdefgh");
 }
@@ -303,6 +332,10 @@ static void test_a_ds2450_converts_and_switches(void)
 	reads("PIO.ALL", "1,1,1,1");
 	writes("PIO.B", "0");
 	reads("PIO.ALL", "1,0,1,1");
+	refuses(-EINVAL, BUS_WRITE, "PIO.ALL", "0,1,0,2");
+	refuses(-EINVAL, BUS_WRITE, "PIO.ALL", "0,1,0");
+	refuses(-EINVAL, BUS_WRITE, "PIO.ALL", "0,1,0,1,0");
+	reads("PIO.ALL", "1,0,1,1");
 	writes("PIO.B", "1");
 	reads("PIO.B", "1");
 	reads("set_alarm/volthigh.C", "         5.1");
@@ -393,6 +426,7 @@ static void test_a_conversion_tells_that_a_ds2450_has_restarted(void)
 int main(void)
 {
 	UNITY_BEGIN();
+	RUN_TEST(test_what_does_not_fit_a_ds2408_is_not_written);
 	RUN_TEST(test_a_ds2408_switches_and_keeps_its_neighbours);
 	RUN_TEST(test_a_ds2408_that_restarts_is_told);
 	RUN_TEST(test_a_ds2413_switches);

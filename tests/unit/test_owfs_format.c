@@ -2,6 +2,7 @@
 /* The texts that a genuine owserver 3.2p4 printed for these values. */
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "hal/native/crc.h"
@@ -86,31 +87,130 @@ static void test_extensions_are_numbers_letters_all_and_byte_in_any_case(void)
 	extension(&letters, "volt.BYTE", EXTENSION_BYTE, false);
 }
 
-static void parses(uint8_t type, const char *text, int err, double number)
-{
-	struct property property = {.name = "x", .type = type};
-	struct txn txn = {0};
+struct written {
+	uint8_t type;
+	const char *text;
+	double number; /* NAN: refused */
+};
 
-	TEST_ASSERT_EQUAL_INT_MESSAGE(
-		err, parse_value(&property, EXTENSION_NONE, text, strlen(text), &txn), text);
-	if (!err)
+static void takes(const struct property *property, int extension, const char *text, size_t len,
+                  double number)
+{
+	struct txn txn = {.bits = 0x5a, .number = {-77}};
+	int err = parse_value(property, extension, text, len, &txn);
+
+	TEST_ASSERT_EQUAL_INT_MESSAGE(isnan(number) ? -EINVAL : 0, err, text);
+	if (err) {
+		TEST_ASSERT_EQUAL_HEX32_MESSAGE(0x5a, txn.bits, text);
+		TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(-77, txn.number[0], text);
+	} else if (property->type == PROPERTY_BITS) {
+		TEST_ASSERT_EQUAL_HEX32_MESSAGE((uint32_t)number, txn.bits, text);
+	} else {
 		TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(number, txn.number[0], text);
+	}
 }
 
-static void test_values_are_read_as_lax_as_owserver_reads_them(void)
+#define NO NAN
+
+static const struct written written[] = {
+	{PROPERTY_UNSIGNED, "0", 0}, {PROPERTY_UNSIGNED, "-0", 0}, {PROPERTY_UNSIGNED, "+7", 7},
+	{PROPERTY_UNSIGNED, "3.0", 3}, {PROPERTY_UNSIGNED, "1e+09", 1e9},
+	{PROPERTY_UNSIGNED, "4294967295", 4294967295.0}, {PROPERTY_UNSIGNED, "4294967296", NO},
+	{PROPERTY_UNSIGNED, "99999999999999999999999", NO}, {PROPERTY_UNSIGNED, "-1", NO},
+	{PROPERTY_UNSIGNED, "3.7", NO}, {PROPERTY_UNSIGNED, "4294967295.5", NO},
+	{PROPERTY_INTEGER, "-2147483648", -2147483648.0}, {PROPERTY_INTEGER, "2147483647", 2147483647},
+	{PROPERTY_INTEGER, "-2147483649", NO}, {PROPERTY_INTEGER, "2147483648", NO},
+	{PROPERTY_INTEGER, "-3", -3}, {PROPERTY_INTEGER, "-3.5", NO},
+	{PROPERTY_YESNO, "0", 0}, {PROPERTY_YESNO, "1", 1}, {PROPERTY_YESNO, "yes", 1},
+	{PROPERTY_YESNO, "Yes", 1}, {PROPERTY_YESNO, "y", 1}, {PROPERTY_YESNO, "ON", 1},
+	{PROPERTY_YESNO, "no", 0}, {PROPERTY_YESNO, "n", 0}, {PROPERTY_YESNO, "off", 0},
+	{PROPERTY_YESNO, "2", NO}, {PROPERTY_YESNO, "7", NO}, {PROPERTY_YESNO, "-1", NO},
+	{PROPERTY_YESNO, "0.5", NO}, {PROPERTY_YESNO, "maybe", NO}, {PROPERTY_YESNO, "yess", NO},
+	{PROPERTY_YESNO, "no way", NO}, {PROPERTY_YESNO, "yes,", NO},
+	{PROPERTY_TEMPERATURE, "-12.5", -12.5}, {PROPERTY_TEMPERATURE, "1E2", 100},
+	{PROPERTY_FLOAT, ".5", 0.5}, {PROPERTY_PRESSURE, "1013", 1013}, {PROPERTY_FLOAT, "1.2.3", NO},
+	{PROPERTY_FLOAT, "1e999", NO}, {PROPERTY_FLOAT, "21,5", NO},
+	{PROPERTY_DATE, "junk", NO}, {PROPERTY_DATE, "2026-11-22 12:00:00 or so", NO},
+	{PROPERTY_DATE, "2026-11-22", NO}, {PROPERTY_DATE, "1900-01-01 00:00:00", NO},
+	{PROPERTY_DATE, "2200-01-01 00:00:00", NO},
+};
+
+static void test_a_text_that_does_not_fit_its_property_is_refused(void)
 {
-	parses(PROPERTY_TEMPERATURE, "12abc", 0, 12);
-	parses(PROPERTY_TEMPERATURE, "abc", -EINVAL, 0);
-	parses(PROPERTY_TEMPERATURE, "", -EINVAL, 0);
-	parses(PROPERTY_TEMPERATURE, "nan", -EINVAL, 0);
-	parses(PROPERTY_UNSIGNED, "-1", 0, 4294967295.0);
-	parses(PROPERTY_UNSIGNED, "99999999999999999999999", -EINVAL, 0);
-	parses(PROPERTY_YESNO, "yes", 0, 1);
-	parses(PROPERTY_YESNO, "off", 0, 0);
-	parses(PROPERTY_YESNO, "7", 0, 1);
-	parses(PROPERTY_YESNO, " ", -EINVAL, 0);
-	parses(PROPERTY_YESNO, "maybe", -EINVAL, 0);
-	parses(PROPERTY_DATE, "junk", -EINVAL, 0);
+	for (size_t i = 0; i < sizeof(written) / sizeof(written[0]); i++) {
+		struct property property = {.name = "x", .type = written[i].type};
+		char text[64];
+
+		takes(&property, EXTENSION_NONE, written[i].text, strlen(written[i].text),
+		      written[i].number);
+		snprintf(text, sizeof(text), " \t%s \r\n", written[i].text);
+		takes(&property, EXTENSION_NONE, text, strlen(text), written[i].number);
+		takes(&property, EXTENSION_NONE, text, strlen(text) + 1, written[i].number);
+	}
+}
+
+static void test_no_type_takes_what_is_no_value(void)
+{
+	static const uint8_t types[] = {
+		PROPERTY_UNSIGNED, PROPERTY_INTEGER, PROPERTY_YESNO, PROPERTY_BITS, PROPERTY_FLOAT,
+		PROPERTY_TEMPERATURE, PROPERTY_PRESSURE, PROPERTY_DATE,
+	};
+	static const char *const texts[] = {
+		"", " ", "\n", "abc", "12abc", "1abc", "0 0", "1,1", "0x10", "0x1", "nan", "inf", "1e",
+		"--1", "1-", "+", ".", "1 yes",
+	};
+
+	for (size_t t = 0; t < sizeof(types); t++) {
+		struct property property = {.name = "x", .type = types[t]};
+
+		for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++)
+			takes(&property, EXTENSION_NONE, texts[i], strlen(texts[i]), NO);
+		takes(&property, EXTENSION_NONE, "1\0abc", 5, NO);
+	}
+}
+
+static void test_a_byte_has_as_many_bits_as_its_property(void)
+{
+	static const struct {
+		const char *text;
+		double number;
+	} bytes[] = {{"0", 0}, {"255", 255}, {" 44\n", 44}, {"-1", NO}, {"256", NO}, {"300", NO},
+	             {"3.7", NO}, {"12abc", NO}, {"1,1", NO}, {"0x10", NO}, {"yes", NO}, {"", NO}};
+	struct property two = bits;
+
+	for (size_t i = 0; i < sizeof(bytes) / sizeof(bytes[0]); i++)
+		takes(&bits, EXTENSION_BYTE, bytes[i].text, strlen(bytes[i].text), bytes[i].number);
+	two.array.count = 2;
+	takes(&two, EXTENSION_BYTE, "3", 1, 3);
+	takes(&two, EXTENSION_BYTE, "4", 1, NO);
+}
+
+static void test_a_list_has_as_many_elements_as_its_property(void)
+{
+	static const struct {
+		const char *text;
+		double number;
+	} lists[] = {{"1,0,1,0,0,0,0,1", 0x85}, {" 1, 0,yes,off,0,0,0,1\n", 0x85}, {"1,0,1", NO},
+	             {"1,0,1,0,0,0,0,1,0", NO}, {"1,0,1,0,0,0,0,", NO}, {"1,0,1,0,0,,0,1", NO},
+	             {"1", NO}, {"", NO}};
+
+	for (size_t i = 0; i < sizeof(lists) / sizeof(lists[0]); i++)
+		takes(&bits, EXTENSION_ALL, lists[i].text, strlen(lists[i].text), lists[i].number);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, parse_value(&bits, EXTENSION_ALL, "1,0,1,0,0,0,0,2", 15,
+	                                           &(struct txn){0}));
+}
+
+static void test_a_number_of_digits_has_each_of_them_in_its_range(void)
+{
+	struct property alarm = {.name = "x", .type = PROPERTY_UNSIGNED, .digits = "331"};
+	struct property below = {.name = "x", .type = PROPERTY_UNSIGNED, .negative = true};
+
+	takes(&alarm, EXTENSION_NONE, "331", 3, 331);
+	takes(&alarm, EXTENSION_NONE, "0", 1, 0);
+	takes(&alarm, EXTENSION_NONE, "332", 3, NO);
+	takes(&alarm, EXTENSION_NONE, "341", 3, NO);
+	takes(&alarm, EXTENSION_NONE, "1111", 4, NO);
+	takes(&below, EXTENSION_NONE, "-5", 2, -5);
 }
 
 static void test_one_element_leaves_the_others(void)
@@ -121,9 +221,6 @@ static void test_one_element_leaves_the_others(void)
 	TEST_ASSERT_EQUAL_HEX32(0xf2, txn.bits);
 	TEST_ASSERT_EQUAL_INT(0, parse_value(&bits, 7, "0", 1, &txn));
 	TEST_ASSERT_EQUAL_HEX32(0x72, txn.bits);
-	TEST_ASSERT_EQUAL_INT(0, parse_value(&bits, EXTENSION_BYTE, "256", 3, &txn));
-	TEST_ASSERT_EQUAL_HEX32(0, txn.bits);
-	TEST_ASSERT_EQUAL_INT(-EINVAL, parse_value(&bits, EXTENSION_ALL, "1,0,1", 5, &txn));
 }
 
 /* The check value of CRC-16/ARC, and the id of application note 27. */
@@ -141,7 +238,11 @@ int main(void)
 	RUN_TEST(test_numbers_are_those_of_owserver);
 	RUN_TEST(test_arrays_are_joined_by_commas_and_bytes_are_numbers);
 	RUN_TEST(test_extensions_are_numbers_letters_all_and_byte_in_any_case);
-	RUN_TEST(test_values_are_read_as_lax_as_owserver_reads_them);
+	RUN_TEST(test_a_text_that_does_not_fit_its_property_is_refused);
+	RUN_TEST(test_no_type_takes_what_is_no_value);
+	RUN_TEST(test_a_byte_has_as_many_bits_as_its_property);
+	RUN_TEST(test_a_list_has_as_many_elements_as_its_property);
+	RUN_TEST(test_a_number_of_digits_has_each_of_them_in_its_range);
 	RUN_TEST(test_one_element_leaves_the_others);
 	RUN_TEST(test_crc16_is_that_of_the_application_note);
 	return UNITY_END();

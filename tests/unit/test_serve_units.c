@@ -81,6 +81,9 @@ static void test_what_is_written_comes_back_in_degrees_celsius(void)
 	n = units_take('t', KELVIN, " 273.15,293.15", 14, out, sizeof(out));
 	TEST_ASSERT_EQUAL_STRING_LEN("0,20", out, n);
 	TEST_ASSERT_EQUAL_INT(-EINVAL, units_take('t', KELVIN, "warm", 4, out, sizeof(out)));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, units_take('t', KELVIN, "300abc", 6, out, sizeof(out)));
+	n = units_take('t', FAHRENHEIT, " 212 \n", 7, out, sizeof(out));
+	TEST_ASSERT_EQUAL_STRING_LEN("100", out, n);
 	TEST_ASSERT_EQUAL_INT(-EINVAL, units_take('t', KELVIN, "", 0, out, sizeof(out)));
 	TEST_ASSERT_EQUAL_INT(-EMSGSIZE, units_take('t', KELVIN, "1,2,3", 5, out, 12));
 }

@@ -37,6 +37,10 @@ static void test_a_ds2408_is_written_and_read_back(void)
 	TEST_ASSERT_EQUAL_INT(0, fs_writes(BOARD_OW "/PIO.3", "1"));
 	TEST_ASSERT_EQUAL_HEX8(0xf7, (uint8_t)fs_now_in(BOARD, "output")[0]);
 	fs_reads("           8", BOARD_OW "/PIO.BYTE");
+	TEST_ASSERT_EQUAL_INT(-EINVAL, fs_writes(BOARD_OW "/PIO.BYTE", "256"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, fs_writes(BOARD_OW "/PIO.BYTE", "12abc"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, fs_writes(BOARD_OW "/set_alarm", "100002224"));
+	TEST_ASSERT_EQUAL_HEX8(0xf7, (uint8_t)fs_now_in(BOARD, "output")[0]);
 	TEST_ASSERT_EQUAL_INT(0, fs_writes(BOARD_OW "/por", "0"));
 	TEST_ASSERT_EQUAL_HEX8(0x80, (uint8_t)fs_now_in(BOARD, "status_control")[0]);
 	TEST_ASSERT_EQUAL_INT(0, fs_writes(BOARD_OW "/latch.BYTE", "0"));
