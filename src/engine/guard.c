@@ -7,12 +7,19 @@
 #define NEAR_DEGREES 5.0
 #define RECENT_NS    60000000000LL
 
+/*
+ * 127.9375 in any rounding, from 127.9 to 128: nothing in there comes from a chip that measures up to
+ * 125. What is above is no rounding of it: the range of the chip excludes that, and an alias may be
+ * that of a chip which measures it.
+ */
+#define STARVED_LEAST 127.8995
+#define STARVED_MOST  128.0005
+
 bool guard_refuses(struct guard *guard, double degrees, int64_t now_ns)
 {
 	bool near;
 
-	/* owserver prints six digits: 127.9375 comes as 127.938 */
-	if (fabs(degrees - 127.9375) < 0.001)
+	if (degrees > STARVED_LEAST && degrees < STARVED_MOST)
 		return true;
 	near = guard->last_ns && now_ns - guard->last_ns <= RECENT_NS &&
 	       fabs(guard->last - 85.0) <= NEAR_DEGREES;
