@@ -121,8 +121,8 @@ def test_what_belongs_to_another_is_not_removed(scene):
         owsdtest.skip("needs root to be another user")
     daemon = start(scene)
     daemon.stop()
-    # the build may lie in a home that is closed to others
-    with tempfile.TemporaryDirectory() as folder:
+    # the build, and what the tests have for their files, may lie in what is closed to others
+    with tempfile.TemporaryDirectory(dir="/var/tmp") as folder:
         os.chmod(folder, 0o755)
         owsctl = shutil.copy(owsdtest.OWSCTL, folder)
         nobody = subprocess.run([owsctl, "remove", daemon.name], user=65534, group=65534,
