@@ -34,7 +34,8 @@ static const struct {
 	{"\x21", "temperature", {-42, 87, 3, false}},
 	/* DS2438: -55 to +125 within 2, 0.03125; 10 bits of 10 mV; 10 bits and sign of 0.2441 mV */
 	{"\x26", "temperature", {-58, 128, 5, false}},
-	{"\x26", "VDD", {0, 10.23, 2, false}},
+	/* the chip runs on its VDD of 2.4 V at least: a 0 is what a restart left */
+	{"\x26", "VDD", {2, 10.23, 2, false}},
 	{"\x26", "VAD", {0, 10.23, 2, false}},
 	{"\x26", "vis", {-0.25, 0.25, 5, false}},
 	/* Sensors of 0 to 100 %RH within 5, and as much again for their ageing in wet air */
