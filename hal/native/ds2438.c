@@ -26,6 +26,9 @@
 /* note[page]: the page's first byte as it was; of page 0 its configuration, once known. */
 #define KNOWN 0x80
 
+/* A page of the EEPROM: its first byte stays as it is. */
+#define MARKED_PAGE 3
+
 /* mem[] of ds2438_read(): its step, the mark, that the mark was found in the memory. */
 enum { STEP = 16, MARK, AGAIN };
 enum step { BEGIN, SET_MARK, FIND_MARK, TAKE };
@@ -162,6 +165,37 @@ int ds2438_read_selected(struct txn *txn, uint8_t select, uint8_t bytes[8])
 		txn->mem[STEP] = FIND_MARK;
 	}
 	return ds2438_read(txn, 0, bytes);
+}
+
+/* A driver's scratchpad cannot be marked. */
+int ds2438_mark(struct txn *txn)
+{
+	uint8_t *step = &txn->mem[24], *mark = &txn->mem[25], bytes[8];
+
+	if (txn->link->files)
+		return 0;
+	if (*step == 0) {
+		int err = ds2438_read(txn, MARKED_PAGE, bytes);
+
+		if (err)
+			return err;
+		*mark = (uint8_t)~bytes[0];
+		*step = 1;
+		return TXN_MORE;
+	}
+	*step = 0;
+	return write_scratchpad(txn, MARKED_PAGE, mark, 1);
+}
+
+int ds2438_is_marked(struct txn *txn)
+{
+	uint8_t in[9];
+
+	if (txn->link->files)
+		return 0;
+	int err = read_scratchpad(txn, MARKED_PAGE, in);
+
+	return err ? err : in[0] == txn->mem[25] ? 0 : -EBADMSG;
 }
 
 static bool near(unsigned now, unsigned before, unsigned most)

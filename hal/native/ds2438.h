@@ -17,6 +17,7 @@ enum { DS2438_TEMPERATURE = 1, DS2438_VDD = 2, DS2438_VAD = 4, DS2438_VIS = 8 };
 /*
  * All of these take several calls. They use txn->mem[] as here:
  *   0, 1 ds2438_configure   2, 4 for the caller   3, 8..15 ds2438_patch   16..19 ds2438_read
+ *   20..23 ds2438_measure   24, 25 ds2438_mark
  *
  * A page of the memory as it is now.
  */
@@ -29,6 +30,12 @@ int ds2438_configure(struct txn *txn, uint8_t mask, uint8_t bits, uint8_t *befor
 int ds2438_select(struct txn *txn, uint8_t select);
 /* Page 0 after that; -EBADMSG if something else was selected. */
 int ds2438_read_selected(struct txn *txn, uint8_t select, uint8_t bytes[8]);
+/*
+ * Leave a mark in a scratchpad, other than what a restart leaves there. ds2438_is_marked(): -EBADMSG
+ * if the chip has restarted since, or it cannot be known.
+ */
+int ds2438_mark(struct txn *txn);
+int ds2438_is_marked(struct txn *txn);
 /* Measure; several calls. real[]: degrees, volts of the supply, of the input, of the shunt. */
 int ds2438_measure(struct txn *txn, unsigned what);
 

@@ -36,21 +36,35 @@ static bool power_on_flags(const uint8_t control[8])
 	return (control[1] | control[3] | control[5] | control[7]) & POR;
 }
 
-static int read_page(struct txn *txn, unsigned page, uint8_t bytes[8])
+static void look_for_restart(struct txn *txn, const uint8_t control[8])
+{
+	struct device *device = txn->device;
+
+	/* A disturbed write can set a flag as well. */
+	if (power_on_flags(control) && device->note[0] && !device->base_of)
+		txn->restarted = true;
+	device->note[0] = !power_on_flags(control);
+}
+
+/*
+ * n pages in one transaction: a chip that restarts meanwhile is silent from there on, so all of
+ * them are of the time between two restarts.
+ */
+static int read_pages(struct txn *txn, unsigned page, uint8_t *bytes, unsigned n)
 {
 	uint8_t command[] = {READ_MEMORY, (uint8_t)(page * 8), 0x00};
-	struct device *device = txn->device;
 	int err = txn_command(txn, command, sizeof(command));
 
 	if (!err)
-		err = txn_read_crc16(txn, command, sizeof(command), bytes, 8);
-	if (err || page != CONTROL)
-		return err;
-	/* A disturbed write can set a flag as well. */
-	if (power_on_flags(bytes) && device->note[0] && !device->base_of)
-		txn->restarted = true;
-	device->note[0] = !power_on_flags(bytes);
-	return 0;
+		err = txn_read_pages(txn, command, sizeof(command), bytes, 8, n);
+	if (!err && page <= CONTROL && page + n > CONTROL)
+		look_for_restart(txn, bytes + 8 * (CONTROL - page));
+	return err;
+}
+
+static int read_page(struct txn *txn, unsigned page, uint8_t bytes[8])
+{
+	return read_pages(txn, page, bytes, 1);
 }
 
 static int write_byte(struct txn *txn, unsigned address, uint8_t byte)
@@ -137,29 +151,19 @@ static double limit_unit(int arg)
 	return arg & HALF_RANGE ? 0.01 : 0.02;
 }
 
-static int take_results(struct txn *txn)
+/* control: as it was when the results were. A restart leaves zeros as results. */
+static int take_results(struct txn *txn, uint8_t control[8])
 {
-	uint8_t bytes[8];
-	int err = read_page(txn, RESULTS, bytes);
+	uint8_t bytes[16];
+	int err = read_pages(txn, RESULTS, bytes, 2);
 
-	if (err)
-		return err;
+	if (err || power_on_flags(bytes + 8))
+		return err ? err : -EIO;
+	memcpy(control, bytes + 8, 8);
 	for (int i = 0; i < 4; i++)
 		txn->number[i] = volts(bytes[2 * i] | (unsigned)bytes[2 * i + 1] << 8,
 		                       txn->property->arg);
 	return 0;
-}
-
-/* The power-on flags, too, bring a device into the alarm search: a visit looks at them. */
-static int read_latest(struct txn *txn)
-{
-	uint8_t bytes[8];
-
-	if (!txn->visit || txn->phase)
-		return take_results(txn);
-	int err = read_page(txn, CONTROL, bytes);
-	txn->phase = 1;
-	return err ? err : TXN_MORE;
 }
 
 static int start_conversion(struct txn *txn, bool powered)
@@ -185,6 +189,19 @@ static void want_conversion(uint8_t control[8], int arg)
 		control[i + 1] = (uint8_t)((control[i + 1] & ~(RANGE_HIGH | POR)) |
 		                           (arg & HALF_RANGE ? 0 : RANGE_HIGH));
 	}
+}
+
+/* A restart since the settings were made sets the power-on flags, or the settings are others. */
+static int take_converted(struct txn *txn, int arg)
+{
+	uint8_t control[8], want[8];
+	int err = take_results(txn, control);
+
+	if (err)
+		return err;
+	memcpy(want, control, 8);
+	want_conversion(want, arg);
+	return memcmp(want, control, 8) == 0 ? 0 : -EIO;
 }
 
 static int convert(struct txn *txn, int arg)
@@ -222,8 +239,30 @@ static int convert(struct txn *txn, int arg)
 		txn->phase = 4;
 		return start_conversion(txn, txn->mem[1]);
 	default:
-		return take_results(txn);
+		return take_converted(txn, arg);
 	}
+}
+
+/*
+ * Nothing but zeros may be what a restart left whose flags a setting has cleared since: a conversion
+ * gives the truth. It would switch outputs off: with one enabled the zeros are an error. mem[2]: a
+ * conversion is made.
+ */
+static int read_latest(struct txn *txn)
+{
+	uint8_t control[8];
+
+	if (txn->mem[2])
+		return convert(txn, txn->property->arg);
+	int err = take_results(txn, control);
+
+	for (int i = 0; i < 4 && !err; i++)
+		if (txn->number[i] != 0)
+			return 0;
+	if (!err && (control[0] | control[2] | control[4] | control[6]) & OUTPUT_ENABLE)
+		err = -EIO;
+	txn->mem[2] = !err;
+	return err ? err : TXN_MORE;
 }
 
 static int read_volt(struct txn *txn)
@@ -372,12 +411,8 @@ static int put_page(struct txn *txn)
 
 static int get_memory(struct txn *txn)
 {
-	int err = read_page(txn, txn->phase, txn->data + 8 * txn->phase);
-
-	if (err)
-		return err;
 	txn->len = 32;
-	return ++txn->phase == 4 ? 0 : TXN_MORE;
+	return read_pages(txn, RESULTS, txn->data, 4);
 }
 
 static int put_memory(struct txn *txn)

@@ -28,20 +28,6 @@ static int convert(struct txn *txn, uint8_t command)
 	return err ? err : txn_wait(txn, CONVERT_NS);
 }
 
-/*
- * A chip whose supply broke down while it measured has zero in its registers, and they have a right
- * checksum: so a zero is measured once more. mem[20] and up: that it was, for each quantity.
- */
-static bool doubtful(struct txn *txn, int raw)
-{
-	uint8_t *again = &txn->mem[20 + txn->phase / DS2438_STEPS];
-
-	if (raw || *again)
-		return false;
-	*again = 1;
-	return true;
-}
-
 static int measure_temperature(struct txn *txn, double *value)
 {
 	uint8_t bytes[8];
@@ -53,10 +39,6 @@ static int measure_temperature(struct txn *txn, double *value)
 	int err = ds2438_read(txn, 0, bytes);
 	if (err)
 		return err;
-	if (doubtful(txn, word(bytes + 1))) {
-		txn->phase--;
-		return TXN_MORE;
-	}
 	*value = (word(bytes + 1) >> 3) / 32.0;
 	return 0;
 }
@@ -82,10 +64,6 @@ static int measure_voltage(struct txn *txn, uint8_t select, double *value)
 		err = ds2438_read_selected(txn, select, bytes);
 		if (err)
 			return err;
-		if (doubtful(txn, word(bytes + 3) & 0x3ff)) {
-			txn->phase -= txn->phase % DS2438_STEPS;
-			return TXN_MORE;
-		}
 		*value = (word(bytes + 3) & 0x3ff) / 100.0;
 		return 0;
 	}
@@ -117,11 +95,58 @@ static int measure_current(struct txn *txn, double *value)
 	}
 }
 
+static int measure_one(struct txn *txn, unsigned what, double *value)
+{
+	switch (what) {
+	case DS2438_TEMPERATURE:
+		return measure_temperature(txn, value);
+	case DS2438_VDD:
+		return measure_voltage(txn, DS2438_AD, value);
+	case DS2438_VAD:
+		return measure_voltage(txn, 0, value);
+	default:
+		return measure_current(txn, value);
+	}
+}
+
+/*
+ * A restart empties the registers, and their checksum is right: a zero may be what a restart left.
+ * Of the supply it always is. A zero of another quantity is measured again between a mark that a
+ * restart destroys and a look at the mark. *proof: as far as that is.
+ */
+enum proof { FIRST, MARK, AGAIN, LOOK };
+
+static int measure_and_prove(struct txn *txn, unsigned what, double *value, uint8_t *proof)
+{
+	unsigned begin = txn->phase - txn->phase % DS2438_STEPS;
+	int err;
+
+	switch ((enum proof)*proof) {
+	case MARK:
+		err = ds2438_mark(txn);
+		if (err)
+			return err;
+		*proof = AGAIN;
+		return txn_wait(txn, what == DS2438_VIS ? CURRENT_NS : 0);
+	case LOOK:
+		return ds2438_is_marked(txn);
+	default:
+		err = measure_one(txn, what, value);
+	}
+	if (err || *value != 0)
+		return err;
+	if (what == DS2438_VDD)
+		return -EIO;
+	*proof = *proof == FIRST ? MARK : LOOK;
+	txn->phase = begin;
+	return TXN_MORE;
+}
+
 int ds2438_measure(struct txn *txn, unsigned what)
 {
 	static const unsigned order[] = {DS2438_TEMPERATURE, DS2438_VAD, DS2438_VDD, DS2438_VIS};
+	static const unsigned place[] = {0, 2, 1, 3}; /* in real[] */
 	unsigned stage = txn->phase / DS2438_STEPS;
-	int err;
 
 	while (stage < 4 && !(what & order[stage]))
 		stage++;
@@ -129,19 +154,8 @@ int ds2438_measure(struct txn *txn, unsigned what)
 		return 0;
 	if (txn->phase / DS2438_STEPS != stage)
 		txn->phase = stage * DS2438_STEPS;
-	switch (order[stage]) {
-	case DS2438_TEMPERATURE:
-		err = measure_temperature(txn, &txn->real[0]);
-		break;
-	case DS2438_VDD:
-		err = measure_voltage(txn, DS2438_AD, &txn->real[1]);
-		break;
-	case DS2438_VAD:
-		err = measure_voltage(txn, 0, &txn->real[2]);
-		break;
-	default:
-		err = measure_current(txn, &txn->real[3]);
-	}
+	int err = measure_and_prove(txn, order[stage], &txn->real[place[stage]],
+	                            &txn->mem[20 + stage]);
 	if (err)
 		return err;
 	txn->phase = (stage + 1) * DS2438_STEPS;
@@ -163,14 +177,23 @@ static int read_measured(struct txn *txn)
 	return err;
 }
 
+/* A zero may be what a restart left: it is measured. mem[4]: that it is. */
 static int read_latest(struct txn *txn)
 {
 	uint8_t bytes[8];
-	int err = ds2438_read(txn, 0, bytes);
+	int err;
 
-	if (!err)
-		txn->number[0] = (word(bytes + 1) >> 3) / 32.0;
-	return err;
+	if (txn->mem[4]) {
+		err = ds2438_measure(txn, DS2438_TEMPERATURE);
+		txn->number[0] = txn->real[0];
+		return err;
+	}
+	err = ds2438_read(txn, 0, bytes);
+	if (err)
+		return err;
+	txn->number[0] = (word(bytes + 1) >> 3) / 32.0;
+	txn->mem[4] = txn->number[0] == 0;
+	return txn->mem[4] ? TXN_MORE : 0;
 }
 
 static int read_flag(struct txn *txn)

@@ -172,16 +172,27 @@ int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n)
 
 int txn_read_crc16(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t *bytes, size_t n)
 {
-	uint8_t in[BYTES_MAX + 2];
+	return txn_read_pages(txn, head, head_n, bytes, n, 1);
+}
 
-	assert(n <= BYTES_MAX);
-	int err = txn_read(txn, in, n + 2);
+/* In one read: a link may lend its wire for no longer. */
+int txn_read_pages(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t *bytes, size_t n,
+                   unsigned pages)
+{
+	uint8_t in[BYTES_MAX + 2];
+	uint16_t start = onewire_crc16(0, head, head_n);
+
+	assert(pages * (n + 2) <= sizeof(in));
+	int err = txn_read(txn, in, pages * (n + 2));
 	if (err < 0)
 		return err;
-	uint16_t crc = onewire_crc16(onewire_crc16(0, head, head_n), in, n);
-	if (!onewire_crc16_matches(crc, in + n))
-		return -EBADMSG;
-	memcpy(bytes, in, n);
+	for (unsigned i = 0; i < pages; i++, start = 0) {
+		const uint8_t *page = in + i * (n + 2);
+
+		if (!onewire_crc16_matches(onewire_crc16(start, page, n), page + n))
+			return -EBADMSG;
+		memcpy(bytes + i * n, page, n);
+	}
 	return 0;
 }
 

@@ -92,6 +92,9 @@ int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n);
  * n bytes and two of CRC16 (not kept), which covers head (what was sent) and them. -EBADMSG.
  */
 int txn_read_crc16(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t *bytes, size_t n);
+/* The same for pages of n bytes, each with its CRC16; only the first one's covers head. */
+int txn_read_pages(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t *bytes, size_t n,
+                   unsigned pages);
 /*
  * Registers are changed by reading, changing and writing them. A write that goes wrong may leave
  * what nobody asked for, and made again must not begin with that. txn_base: if such a write of

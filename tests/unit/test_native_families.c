@@ -394,17 +394,32 @@ static void test_a_ds2450_that_restarts_is_told_once_and_alarms_again(void)
 	}
 }
 
-static void test_a_visit_after_an_alarm_looks_for_a_restart_of_a_ds2450(void)
+static void test_the_results_of_a_ds2450_that_restarted_are_refused_until_it_converts(void)
 {
-	start("DS2450");
-	wire_set(slave, "volt.A", 3);
-	arm_a_ds2450();
-	sim_slave_brownout(slave, wire_time());
-	TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "latestvolt.A", NULL)->err);
-	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_POR));
-	TEST_ASSERT_EQUAL_INT(0, exchange(BUS_READ, BUS_ALARM, slave_path("latestvolt.A"),
-	                                  NULL)->err);
-	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_POR));
+	static const enum bus_prio prio[] = {BUS_INPUT, BUS_ALARM};
+
+	for (unsigned i = 0; i < 2; i++) {
+		start("DS2450");
+		wire_set(slave, "volt.A", 3);
+		arm_a_ds2450();
+		TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "volt.A", NULL)->err);
+		TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "latestvolt.A", NULL)->err);
+		sim_slave_brownout(slave, wire_time());
+		TEST_ASSERT_EQUAL_INT(-EIO, exchange(BUS_READ, prio[i], slave_path("latestvolt.A"),
+		                                     NULL)->err);
+		TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_POR));
+		writes("set_alarm/high.A", "1");
+		TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "latestvolt.A", NULL)->err);
+		TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.02, 3, go(BUS_READ, "latestvolt.A", NULL)->number,
+		                                  "the flags are cleared, the results still void");
+		wire_set(slave, "volt.A", 0);
+		TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "volt.A", NULL)->err);
+		writes("PIO.A", "0");
+		TEST_ASSERT_EQUAL_INT(-EIO, go(BUS_READ, "latestvolt.A", NULL)->err);
+		reads("PIO.A", "0");
+		tearDown();
+		setUp();
+	}
 }
 
 static void test_a_conversion_tells_that_a_ds2450_has_restarted(void)
@@ -442,7 +457,7 @@ int main(void)
 	RUN_TEST(test_a_ds2423_counts);
 	RUN_TEST(test_a_ds2450_converts_and_switches);
 	RUN_TEST(test_a_ds2450_that_restarts_is_told_once_and_alarms_again);
-	RUN_TEST(test_a_visit_after_an_alarm_looks_for_a_restart_of_a_ds2450);
+	RUN_TEST(test_the_results_of_a_ds2450_that_restarted_are_refused_until_it_converts);
 	RUN_TEST(test_a_conversion_tells_that_a_ds2450_has_restarted);
 	return UNITY_END();
 }

@@ -51,6 +51,7 @@ bool trouble_turns(struct trouble *trouble)
 	case TROUBLE_NONE:
 	case TROUBLE_ABSENT:
 	case TROUBLE_FALSE:
+	case TROUBLE_RESTART:
 		break;
 	case TROUBLE_TURN:
 		return slot >= trouble->at && slot - trouble->at < 8 &&

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A link master for tests, without a bridge chip. */
 #include "tests/unit/wire_link.h"
 
 #include <errno.h>
@@ -33,12 +34,28 @@ static int spend(int64_t ns)
 	                                                                                  : 0;
 }
 
+/* What was to happen by now, since the wire was used last: a restart may be in a wait. */
+static void restart(void)
+{
+	struct trouble *trouble = wire_net.trouble;
+
+	if (wire_net.used)
+		wire_net.used(wire_time());
+	while (trouble && trouble->kind == TROUBLE_RESTART && trouble->restart_ns &&
+	       trouble->restart_ns <= wire_time()) {
+		for (unsigned i = 0; i < wire_net.wire[0].count; i++)
+			sim_slave_brownout(wire_net.wire[0].slaves[i], trouble->restart_ns);
+		trouble->restart_ns = trouble->every_ns ? trouble->restart_ns + trouble->every_ns : 0;
+	}
+}
+
 /* Each call of the link. */
 static int begin(struct link *link)
 {
 	struct sim_wire *wire = wire_of(link);
 
 	wire_net.calls++;
+	restart();
 	for (unsigned i = 0; i < wire_net.channels; i++) {
 		if (!wire_net.wire[i].strong || links[i].chip != link->chip)
 			continue;
@@ -71,6 +88,7 @@ static int wire_reset(struct link *link)
 /* What is turned over of a bit written reaches the chips so; of one read, the master. */
 static bool slot(struct link *link, bool out, bool writes)
 {
+	restart();
 	bool turns = wire_net.trouble && trouble_turns(wire_net.trouble);
 	bool sent = out ^ (turns && writes);
 	bool deaf = wire_net.trouble && wire_net.trouble->deaf;

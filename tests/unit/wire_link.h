@@ -35,7 +35,8 @@ struct wire_net {
 	int64_t strong_ns; /* how long the last one was on */
 	int64_t strong_begin;
 	void (*sent)(const uint8_t *data, size_t n); /* NULL, or told of each write */
-	struct trouble *trouble; /* NULL: none */
+	struct trouble *trouble; /* NULL: none; restarts are those of the first wire's chips */
+	void (*used)(int64_t now); /* NULL, or called ahead of each reset and slot */
 };
 
 /* One network at a time. */
