@@ -3,6 +3,7 @@
 #include "names.h"
 #include "reading.h"
 #include "verbs.h"
+#include "../shm/remains.h"
 #include "../signal/value.h"
 
 #include <errno.h>
@@ -241,6 +242,19 @@ static void print_json(const struct order *orders, int count, bool waited)
 	json_end(&json);
 }
 
+/*
+ * A heart that has stopped is seen after two seconds, a lock that was let go at once. Who may not
+ * look at the lock waits for the heart.
+ */
+static bool was_killed(const struct ctl *ctl, struct ows *h)
+{
+	struct ows_daemon daemon = {0};
+	pid_t holder;
+
+	ows_daemon(h, ows_now(), &daemon);
+	return daemon.alive && segment_lock_look(ctl->instance, &holder) == 0;
+}
+
 static int set_all(struct ctl *ctl, struct ows *h, struct order *orders, int count,
                    const char *seconds, int64_t limit_ns)
 {
@@ -251,6 +265,8 @@ static int set_all(struct ctl *ctl, struct ows *h, struct order *orders, int cou
 	for (int i = 0; i < count; i++)
 		if (prepare(ctl, h, &orders[i]) != CTL_DONE)
 			status = CTL_FAILED;
+	if (status == CTL_DONE && was_killed(ctl, h))
+		return ctl_fail("owsd is not running: nothing was set");
 	for (int i = 0; i < count && status == CTL_DONE; i++)
 		status = send(h, &orders[i]);
 	if (status)

@@ -170,6 +170,20 @@ def test_nothing_is_set_at_an_owsd_that_is_gone(scene):
     assert done.returncode == 1 and "owsd is not running: nothing was set" in done.stderr
 
 
+def test_nothing_is_set_at_an_owsd_that_was_just_killed(scene):
+    _, daemon, _, _ = house(scene)
+
+    def command():
+        listed = json.loads(scene.owsctl(daemon, "--json", "list", "relay").stdout)
+        return listed[0]["commanded"]
+    before = command()
+    daemon.kill()
+    for words in (("relay", "1"), ("-w", "5", "relay", "1")):
+        done = scene.owsctl(daemon, "set", *words)
+        assert done.returncode == 1 and "owsd is not running: nothing was set" in done.stderr, done
+    assert command() == before
+
+
 class Terminal:
     """owsctl on a terminal of our own; screen() is its present picture, line by line."""
 
