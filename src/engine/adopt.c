@@ -187,7 +187,8 @@ static void take_signal(struct signal *s, const struct signal *was)
 	uint32_t flags = was->attrs.flags & ~(uint32_t)(OWS_ATTR_READ_ENABLE | OWS_ATTR_LIMITS |
 	                                                OWS_ATTR_WRITE_ENABLE | OWS_ATTR_IN_WORK |
 	                                                OWS_ATTR_ALARM_POLLED |
-	                                                OWS_ATTR_ALARM_UNARMED);
+	                                                OWS_ATTR_ALARM_UNARMED |
+	                                                OWS_ATTR_ALARM_POR);
 
 	flags |= flag_of(s, was, OWS_ATTR_READ_ENABLE, item->readable, before->readable);
 	if (config_item_takes_sets(item))
@@ -329,7 +330,8 @@ static void take_alarm(struct engine *e, struct alarm_item *item, const struct e
 	item->to_arm = was->to_arm;
 	item->arm_retry = was->arm_retry;
 	item->arm_ns = was->arm_ns;
-	s->attrs.flags |= old->table.signals[before].attrs.flags & OWS_ATTR_ALARM_UNARMED;
+	s->attrs.flags |= old->table.signals[before].attrs.flags &
+	                  (OWS_ATTR_ALARM_UNARMED | OWS_ATTR_ALARM_POR);
 	s->alarm_err = old->table.signals[before].alarm_err;
 }
 

@@ -32,7 +32,10 @@ static void show_unarmed(struct engine *e, struct alarm_item *i, int err, const 
 	struct signal *s = alarm_signal(e, i);
 	bool before = s->attrs.flags & OWS_ATTR_ALARM_UNARMED;
 
+	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_POR;
 	s->attrs.flags |= OWS_ATTR_ALARM_UNARMED;
+	if (property == i->strings.por)
+		s->attrs.flags |= OWS_ATTR_ALARM_POR;
 	s->alarm_err = err;
 	if (!before) {
 		log_warning(e->log, "%s (%s): the alarm cannot be armed: %s%s%s", s->item->name,
@@ -51,7 +54,7 @@ static bool begin_again(struct engine *e, struct alarm_item *i)
 	i->arm_ns = 0;
 	if (!(s->attrs.flags & OWS_ATTR_ALARM_UNARMED))
 		return false;
-	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_UNARMED;
+	s->attrs.flags &= ~(uint32_t)(OWS_ATTR_ALARM_UNARMED | OWS_ATTR_ALARM_POR);
 	s->alarm_err = 0;
 	engine_publish(e, s);
 	return true;

@@ -82,7 +82,9 @@ int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state)
 		.limits = (a->flags & OWS_ATTR_LIMITS) != 0,
 		.limit_state = a->limit_state,
 		.limit_kind = a->limit_condition,
-		.unarmed = (a->flags & OWS_ATTR_ALARM_UNARMED) != 0,
+		.unarmed = !(a->flags & OWS_ATTR_ALARM_UNARMED) ? 0
+		           : a->flags & OWS_ATTR_ALARM_POR  ? 2
+		                                            : 1,
 	};
 	handle_orphan(h, ows_now());
 	return handle_state(h);

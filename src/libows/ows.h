@@ -299,7 +299,8 @@ struct ows_alarm_state {
 	uint8_t limits;       /* 1: it has limit alarms */
 	uint8_t limit_state;  /* enum ows_limit_state */
 	uint8_t limit_kind;   /* enum ows_alarm_kind of the limit alarm; 0: none */
-	uint8_t unarmed;      /* 1: the device's alarm cannot be armed; err of the value says why */
+	/* The device's alarm cannot be armed: 1 for its SetAlarm, 2 for PorAlarm; err says why. */
+	uint8_t unarmed;
 };
 /* Of the signal of an id of ows_find(). Errors as ows_get(); *state is filled with -ESTALE too. */
 int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state);

@@ -94,6 +94,49 @@ static void add(struct live *live, const struct alarm *alarm)
 		add_json(live, alarm);
 }
 
+/* Why the alarm of the reading's signal cannot be armed, if no reading has failed since. */
+static const char *why_unarmed(const struct ows_alarm_state *state, const struct reading *reading,
+                               char words[ERROR_WORDS])
+{
+	const char *key = state->unarmed == 2 ? "PorAlarm" : "SetAlarm";
+	int error = reading_good(reading) ? reading->value.err : 0;
+
+	switch (-error) {
+	case 0:
+		snprintf(words, ERROR_WORDS, "cannot be armed");
+		break;
+	case EACCES:
+		snprintf(words, ERROR_WORDS, "cannot be armed: %s cannot be written", key);
+		break;
+	case EBADRQC:
+		snprintf(words, ERROR_WORDS, "cannot be armed: %s", error_text(error));
+		break;
+	case EUCLEAN:
+		snprintf(words, ERROR_WORDS, "cannot be armed: %s is still set after 0 was written", key);
+		break;
+	default:
+		snprintf(words, ERROR_WORDS, "cannot be armed: %s: %s", key, error_text(error));
+	}
+	return words;
+}
+
+/* Below the table, which they would make too wide. */
+static void print_reasons(struct live *live, const struct rows *rows, char *const *patterns,
+                          int pattern_count)
+{
+	struct ows_alarm_state state;
+	char words[ERROR_WORDS];
+
+	for (int i = 0; i < rows->count; i++) {
+		state = (struct ows_alarm_state){0};
+		if (!names_match(rows->row[i].name, patterns, pattern_count) ||
+		    ows_alarm_state(live->h, rows->row[i].id, &state) == -EAGAIN || !state.unarmed)
+			continue;
+		reading_get(live->h, rows->row[i].id, live->now.boot, live->reading);
+		printf("%s: %s\n", rows->row[i].name, why_unarmed(&state, live->reading, words));
+	}
+}
+
 static void look_at(struct live *live, int signal, const struct row *row)
 {
 	struct ows_alarm_state state = {0};
@@ -116,12 +159,11 @@ static void look_at(struct live *live, int signal, const struct row *row)
 		add(live, &alarm);
 	}
 	if (state.unarmed) {
-		snprintf(unarmed, sizeof(unarmed), "cannot be armed: %s",
-		         error_text(live->reading->value.err));
 		alarm = (struct alarm){
 			.name = row->name,
 			.kind = ows_alarm_kind_text(OWS_ALARM_DEVICE),
-			.state = live->reading->value.err ? unarmed : "cannot be armed",
+			.state = live->table ? "cannot be armed"
+			                     : why_unarmed(&state, live->reading, unarmed),
 			.device = true,
 			.polled = state.polled,
 			.occurrences = state.occurrences,
@@ -167,8 +209,55 @@ static bool show(struct ows *h, const struct rows *rows, bool json, char *const 
 		table_line(&table, i, line, sizeof(line));
 		puts(line);
 	}
+	if (!json && live.ok)
+		print_reasons(&live, rows, patterns, pattern_count);
 	table_free(&table);
 	return live.ok;
+}
+
+static const struct {
+	const char *word;
+	int (*run)(struct ctl *ctl, int argc, char **argv);
+} words[] = {{"history", alarms_history}, {"ack", alarms_ack}};
+#define WORDS (sizeof(words) / sizeof(words[0]))
+
+/* Is it one of the words, with a slip of the finger? */
+static const char *nearest_word(const char *pattern)
+{
+	for (size_t i = 0; i < WORDS; i++)
+		if (names_distance(pattern, words[i].word) <= strlen(words[i].word) / 3)
+			return words[i].word;
+	return NULL;
+}
+
+static bool matches(struct ows *h, char *const *pattern)
+{
+	struct ows_info info;
+
+	for (int i = 0; i < ows_count(h); i++)
+		if (ows_info(h, i, &info) == 0 && names_match(info.name, pattern, 1))
+			return true;
+	return false;
+}
+
+bool alarms_known(struct ows *h, char *const *patterns, int count)
+{
+	const char *word;
+	bool known = true;
+
+	for (int i = 0; i < count; i++) {
+		if (matches(h, &patterns[i]))
+			continue;
+		known = false;
+		word = nearest_word(patterns[i]);
+		if (word)
+			ctl_fail("there is no %s; did you mean alarms %s?", patterns[i], word);
+		else if (strpbrk(patterns[i], "*?["))
+			ctl_fail("no signal matches %s", patterns[i]);
+		else
+			ctl_unknown(h, patterns[i]);
+	}
+	return known;
 }
 
 int alarms_live(struct ctl *ctl, int argc, char **argv)
@@ -188,7 +277,9 @@ int alarms_live(struct ctl *ctl, int argc, char **argv)
 		return ctl_fail("no memory");
 	}
 	ctl_alive(ctl, h, ows_now());
-	if (!show(h, &rows, ctl->json, argv + optind, argc - optind))
+	if (!alarms_known(h, argv + optind, argc - optind))
+		status = CTL_FAILED;
+	else if (!show(h, &rows, ctl->json, argv + optind, argc - optind))
 		status = ctl_fail("no memory");
 	rows_free(&rows);
 	ows_close(h);
@@ -197,12 +288,7 @@ int alarms_live(struct ctl *ctl, int argc, char **argv)
 
 int verb_alarms(struct ctl *ctl, int argc, char **argv)
 {
-	static const struct {
-		const char *word;
-		int (*run)(struct ctl *ctl, int argc, char **argv);
-	} words[] = {{"history", alarms_history}, {"ack", alarms_ack}};
-
-	for (size_t i = 0; argc > 1 && i < sizeof(words) / sizeof(words[0]); i++)
+	for (size_t i = 0; argc > 1 && i < WORDS; i++)
 		if (strcmp(argv[1], words[i].word) == 0)
 			return words[i].run(ctl, argc - 1, argv + 1);
 	return alarms_live(ctl, argc, argv);

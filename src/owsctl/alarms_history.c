@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* owsctl alarms history: the journal. */
 #include "alarms.h"
 #include "json.h"
 #include "names.h"
@@ -132,7 +133,9 @@ int alarms_history(struct ctl *ctl, int argc, char **argv)
 	if (status)
 		return status;
 	ctl_alive(ctl, h, ows_now());
-	if (ctl->json)
+	if (!alarms_known(h, argv + optind, argc - optind))
+		status = CTL_FAILED;
+	else if (ctl->json)
 		print_json(h, argv + optind, argc - optind);
 	else if (!print_table(h, argv + optind, argc - optind))
 		status = ctl_fail("no memory");

@@ -80,6 +80,7 @@ struct ows_attrs { /* 72 bytes, 18 words */
 #define OWS_ATTR_ALARM_STANDS 0x20 /* the device's alarm stands */
 #define OWS_ATTR_LIMITS       0x40 /* it has limit alarms */
 #define OWS_ATTR_ALARM_UNARMED 0x80 /* the device's alarm cannot be armed */
+#define OWS_ATTR_ALARM_POR     0x100 /* that is for its PorAlarm; else for SetAlarm */
 
 struct ows_slot { /* 120 bytes */
 	struct ows_sample sample;

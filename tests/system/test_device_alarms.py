@@ -174,7 +174,9 @@ def one_restart(scene, daemon, why):
     listed = scene.owsctl(daemon, "list").stdout
     assert "! cannot be armed" in listed, listed
     alarms = scene.owsctl(daemon, "alarms").stdout
-    assert "buttons" in alarms and "cannot be armed: " in alarms, alarms
+    key = "PorAlarm" if why.startswith("por") else "SetAlarm"
+    assert f"\nbuttons: cannot be armed: {key} " in alarms and "IO input" not in alarms, alarms
+    assert max(map(len, alarms.splitlines())) <= 80, alarms
     got = json.loads(scene.owsctl(daemon, "--json", "get", "buttons").stdout)
     assert got[0]["err"] and got[0]["good"], got
 

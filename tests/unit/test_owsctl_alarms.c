@@ -6,6 +6,7 @@
 #include "src/signal/value.h"
 #include "unity.h"
 
+#include <errno.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -72,6 +73,65 @@ static void test_without_alarms_there_are_only_the_titles(void)
 	TEST_ASSERT_EQUAL_STRING("[]\n", out);
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms history --json"));
 	TEST_ASSERT_EQUAL_STRING("[]\n", out);
+}
+
+static void test_why_an_alarm_cannot_be_armed_names_the_key_and_stands_below_the_table(void)
+{
+	static const struct {
+		int error;
+		uint32_t flags;
+		const char *why;
+	} rows[] = {
+		{-EACCES, 0, "cannot be armed: SetAlarm cannot be written"},
+		{-EACCES, OWS_ATTR_ALARM_POR, "cannot be armed: PorAlarm cannot be written"},
+		{-EUCLEAN, OWS_ATTR_ALARM_POR, "cannot be armed: PorAlarm is still set after 0 was written"},
+		{-EBADRQC, 0, "cannot be armed: SetAlarm is not defined, or has no '='"},
+		{-EBADMSG, 0, "cannot be armed: SetAlarm: wrong checksum"},
+	};
+	char line[128], *end;
+
+	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		struct ows_sample sample = {.value = 5, .measured_ns = ows_now(),
+		                            .quality = OWS_Q_GOOD, .count = 1, .err = rows[i].error};
+		struct ows_attrs attrs = {.flags = OWS_ATTR_ALARM_UNARMED | rows[i].flags};
+
+		image_publish(&in.image, DOOR, &sample, &attrs, NULL);
+		image_news(&in.image);
+		TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms"));
+		snprintf(line, sizeof(line), "\ndoor: %s\n", rows[i].why);
+		holds(out, line);
+		for (const char *at = out; *at; at = end + 1) {
+			end = strchr(at, '\n');
+			TEST_ASSERT_LESS_OR_EQUAL(80, end - at);
+		}
+		TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms --json"));
+		holds(out, rows[i].why);
+		TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms room1"));
+		TEST_ASSERT_NULL(strstr(out, "door"));
+	}
+}
+
+static void test_a_word_that_no_signal_matches_is_refused(void)
+{
+	static const struct {
+		const char *line, *why;
+	} wrong[] = {
+		{"alarms histroy", "owsctl: there is no histroy; did you mean alarms history?\n"},
+		{"alarms akc", "owsctl: there is no akc; did you mean alarms ack?\n"},
+		{"alarms bogus", "owsctl: there is no bogus\n"},
+		{"alarms room", "owsctl: there is no room; did you mean room1?\n"},
+		{"alarms room1 zzz*", "owsctl: no signal matches zzz*\n"},
+		{"alarms history boilr", "owsctl: there is no boilr; did you mean boiler?\n"},
+		{"alarms history nothing --json", "owsctl: there is no nothing\n"},
+	};
+
+	for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
+		TEST_ASSERT_EQUAL_MESSAGE(CTL_FAILED, run(verb_alarms, wrong[i].line), wrong[i].line);
+		TEST_ASSERT_EQUAL_STRING(wrong[i].why, err);
+		TEST_ASSERT_EQUAL_STRING("", out);
+	}
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms room1"));
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms history ro*"));
 }
 
 static void test_alarms_that_stand_are_shown_with_the_time_they_were_raised(void)
@@ -244,6 +304,8 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_without_alarms_there_are_only_the_titles);
+	RUN_TEST(test_why_an_alarm_cannot_be_armed_names_the_key_and_stands_below_the_table);
+	RUN_TEST(test_a_word_that_no_signal_matches_is_refused);
 	RUN_TEST(test_alarms_that_stand_are_shown_with_the_time_they_were_raised);
 	RUN_TEST(test_an_item_that_is_read_as_an_input_says_so);
 	RUN_TEST(test_device_and_limit_alarm_of_one_signal_are_two_lines);
