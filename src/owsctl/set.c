@@ -242,6 +242,16 @@ static void print_json(const struct order *orders, int count, bool waited)
 	json_end(&json);
 }
 
+/* Of two values for one thing it would be chance which of them the device gets to see. */
+static int refuse_twice(const struct order *orders, int count)
+{
+	for (int i = 1; i < count; i++)
+		for (int j = 0; j < i; j++)
+			if (orders[i].id == orders[j].id)
+				return ctl_fail("%s is set twice: nothing was set", orders[i].name);
+	return CTL_DONE;
+}
+
 /*
  * A heart that has stopped is seen after two seconds, a lock that was let go at once. Who may not
  * look at the lock waits for the heart.
@@ -265,6 +275,8 @@ static int set_all(struct ctl *ctl, struct ows *h, struct order *orders, int cou
 	for (int i = 0; i < count; i++)
 		if (prepare(ctl, h, &orders[i]) != CTL_DONE)
 			status = CTL_FAILED;
+	if (status == CTL_DONE)
+		status = refuse_twice(orders, count);
 	if (status == CTL_DONE && was_killed(ctl, h))
 		return ctl_fail("owsd is not running: nothing was set");
 	for (int i = 0; i < count && status == CTL_DONE; i++)

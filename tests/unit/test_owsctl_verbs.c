@@ -169,6 +169,8 @@ static void test_set_sets_nothing_when_one_of_its_values_is_wrong(void)
 	holds(err, "room1_Age cannot be set, only read");
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set relay 1 rely 0"));
 	holds(err, "did you mean relay?");
+	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set relay 1 level 5 relay 0"));
+	holds(err, "relay is set twice: nothing was set");
 	TEST_ASSERT_EQUAL(0, commanded(2).stamp);
 }
 
