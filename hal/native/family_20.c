@@ -182,10 +182,12 @@ static int start_conversion(struct txn *txn, bool powered)
 	return txn_bit_strong(txn, DS2450_CONVERT_NS);
 }
 
+/* An enabled output stays as it is: a measurement switches nothing. */
 static void want_conversion(uint8_t control[8], int arg)
 {
 	for (int i = 0; i < 8; i += 2) {
-		control[i] = arg & EIGHT_BIT ? 8 : 0;
+		control[i] = (uint8_t)((control[i] & (OUTPUT_ENABLE | OUTPUT_OFF)) |
+		                       (arg & EIGHT_BIT ? 8 : 0));
 		control[i + 1] = (uint8_t)((control[i + 1] & ~(RANGE_HIGH | POR)) |
 		                           (arg & HALF_RANGE ? 0 : RANGE_HIGH));
 	}
@@ -245,8 +247,7 @@ static int convert(struct txn *txn, int arg)
 
 /*
  * Nothing but zeros may be what a restart left whose flags a setting has cleared since: a conversion
- * gives the truth. It would switch outputs off: with one enabled the zeros are an error. mem[2]: a
- * conversion is made.
+ * gives the truth. mem[2]: a conversion is made.
  */
 static int read_latest(struct txn *txn)
 {
@@ -259,8 +260,6 @@ static int read_latest(struct txn *txn)
 	for (int i = 0; i < 4 && !err; i++)
 		if (txn->number[i] != 0)
 			return 0;
-	if (!err && (control[0] | control[2] | control[4] | control[6]) & OUTPUT_ENABLE)
-		err = -EIO;
 	txn->mem[2] = !err;
 	return err ? err : TXN_MORE;
 }
