@@ -6,11 +6,34 @@
 #include "shm/segment.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
 #define LOOK_NS 1000000000
+
+/* The lock is the last: as long as it is there, no other owsd makes what is being removed. */
+static const char *const kinds[] = {"image", "command", "lock"};
+#define KINDS (sizeof(kinds) / sizeof(kinds[0]))
+
+static void file_path(const char *name, unsigned kind, char path[80])
+{
+	snprintf(path, 80, "/dev/shm/owsd.%.32s.%s", name, kinds[kind]);
+}
+
+static unsigned look_before(const char *name)
+{
+	unsigned before = 0;
+	char path[80];
+
+	for (unsigned i = 0; i < KINDS; i++) {
+		file_path(name, i, path);
+		if (faccessat(AT_FDCWD, path, F_OK, AT_SYMLINK_NOFOLLOW) == 0 || errno != ENOENT)
+			before |= 1u << i;
+	}
+	return before;
+}
 
 int instance_take(struct instance *instance, const char *name, struct log *log, char *why,
                   size_t why_size)
@@ -18,9 +41,14 @@ int instance_take(struct instance *instance, const char *name, struct log *log, 
 	char hint[SEGMENT_HINT];
 	bool stolen = false;
 	pid_t owner = 0;
+	unsigned before = look_before(name);
 	int lock = segment_lock(name, &owner, &stolen);
 
-	*instance = (struct instance){ .name = name, .lock = lock < 0 ? -1 : lock };
+	*instance = (struct instance){
+		.name = name,
+		.lock = lock < 0 ? -1 : lock,
+		.before = before,
+	};
 	if (lock == -EBUSY)
 		snprintf(why, why_size, "instance %s is already served by process %d; end it or "
 		                        "choose another name with -n",
@@ -68,4 +96,17 @@ void instance_leave(struct instance *instance)
 	if (instance->lock >= 0)
 		close(instance->lock);
 	instance->lock = -1;
+}
+
+void instance_abandon(struct instance *instance)
+{
+	char path[80];
+
+	if (instance->lock >= 0 && segment_lock_held(instance->lock, instance->name))
+		for (unsigned i = 0; i < KINDS; i++) {
+			file_path(instance->name, i, path);
+			if (!(instance->before & 1u << i))
+				unlink(path);
+		}
+	instance_leave(instance);
 }

@@ -12,6 +12,7 @@
 struct instance {
 	const char *name;
 	int lock; /* -1: not held */
+	unsigned before; /* a bit for each file that was there before the start */
 	int64_t look_ns; /* not sooner */
 	struct log_rate rate;
 };
@@ -25,5 +26,7 @@ int instance_take(struct instance *instance, const char *name, struct log *log, 
  */
 bool instance_keep(struct instance *instance, struct log *log);
 void instance_leave(struct instance *instance);
+/* After a start that failed: take away the files that were not there before it, and leave. */
+void instance_abandon(struct instance *instance);
 
 #endif

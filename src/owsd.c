@@ -270,6 +270,7 @@ static int run(const struct arguments *a, struct config *config, struct instance
 	if (notify_open(&notify))
 		log_warning(log, "NOTIFY_SOCKET cannot be used");
 	if (host_start(&setup, &host, why, sizeof(why))) {
+		instance_abandon(instance);
 		log_finish(log, STDERR_FILENO, prefix);
 		complain("%s", why);
 		return EXIT_RUN;

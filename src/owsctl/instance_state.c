@@ -19,6 +19,11 @@ enum instance_state instance_state_of(bool has_image, uint32_t state, bool alive
 	return held ? INSTANCE_HANGS : INSTANCE_KILLED;
 }
 
+bool instance_is_up(enum instance_state state)
+{
+	return state == INSTANCE_RUNNING || state == INSTANCE_HANGS;
+}
+
 const char *instance_state_text(enum instance_state state)
 {
 	static const char *const texts[] = {

@@ -29,7 +29,7 @@ struct instance_info {
 	int64_t since_ns; /* it began to be so; 0: not known */
 	int signals;      /* -1: not known */
 	char targets[FIELD], config[FIELD]; /* "": not known */
-	const char *why;  /* hidden: why; else NULL */
+	const char *why;  /* hidden: why; up: what is wrong with its lock; else NULL */
 };
 
 static size_t read_process(int pid, const char *what, char *text, size_t size)
@@ -50,10 +50,13 @@ static size_t read_process(int pid, const char *what, char *text, size_t size)
 
 static bool is_owsd(int pid)
 {
-	char comm[32];
+	static const char comm[] = " (owsd) ";
+	char stat[128];
+	const char *state;
 
-	read_process(pid, "comm", comm, sizeof(comm));
-	return !strcmp(comm, "owsd\n");
+	read_process(pid, "stat", stat, sizeof(stat));
+	state = strchr(stat, ' ');
+	return state && !strncmp(state, comm, strlen(comm)) && !strchr("ZX", state[strlen(comm)]);
 }
 
 /* As it was given, or whole where the directory of the process may be looked at. */
@@ -107,13 +110,19 @@ static void look(const char *name, int64_t now_ns, struct instance_info *info)
 		find_targets(h, info);
 		info->since_ns = daemon.alive ? daemon.start_ns : now_ns - daemon.beat_age_ns;
 		ows_close(h);
+		/* the lock of another: that nobody holds it does not say that this owsd has ended */
+		if (!lock && holder != daemon.pid)
+			lock = -ESTALE;
 	}
 	info->state = instance_state_of(!err, daemon.state, daemon.alive, lock, is_owsd(info->pid));
 	if (info->state == INSTANCE_HIDDEN)
 		info->why = "it is starting, or its files were removed";
-	if (info->state == INSTANCE_RUNNING || info->state == INSTANCE_HANGS)
+	if (instance_is_up(info->state)) {
 		find_config(info);
-	else if (info->state == INSTANCE_LEFT)
+		if (lock < 0 && lock != -EACCES)
+			info->why = "it runs without its lock: the file was removed or replaced";
+	}
+	if (info->state == INSTANCE_LEFT)
 		info->pid = 0;
 }
 
@@ -211,14 +220,14 @@ int verb_instances(struct ctl *ctl, int argc, char **argv)
 	return status;
 }
 
-/* Also where somebody removed its lock. */
-static bool is_running(const char *name, int *pid)
+/* By its heart and its process too: its lock may have been removed or replaced. */
+static bool is_up(const char *name, int *pid)
 {
 	struct instance_info info;
 
 	look(name, ows_now(), &info);
 	*pid = info.pid;
-	return info.state == INSTANCE_RUNNING || info.state == INSTANCE_HANGS;
+	return instance_is_up(info.state);
 }
 
 static int refuse(const char *name, int err, int pid)
@@ -234,6 +243,9 @@ static int refuse(const char *name, int err, int pid)
 	case EPERM:
 		return ctl_fail("no right to remove what is left of %s: its owner and root have it",
 		                name);
+	case ENOTEMPTY:
+		return ctl_fail("not all that is left of %s is removed: a directory under one of its names "
+		                "in /dev/shm has files", name);
 	case EINVAL:
 		return ctl_fail("%s cannot be the name of an instance", ctl_word(name));
 	}
@@ -259,9 +271,9 @@ int verb_remove(struct ctl *ctl, int argc, char **argv)
 		int running = 0, err;
 		pid_t pid = 0;
 
-		err = !segment_name_ok(name)       ? -EINVAL
-		      : is_running(name, &running) ? -EBUSY
-						   : remains_remove(name, &pid, &files);
+		err = !segment_name_ok(name)  ? -EINVAL
+		      : is_up(name, &running) ? -EBUSY
+					      : remains_remove(name, &pid, &files);
 		if (err)
 			status = refuse(name, err, pid ? (int)pid : running);
 		else if (!ctl->json)

@@ -18,11 +18,14 @@ enum instance_state {
 
 /*
  * What follows from the image (state as in ows_daemon; has_image false: there is none) and from the
- * lock: 1 somebody holds it, 0 nobody, negative: that cannot be told, and then the heart counts, and
- * process: an owsd of that number is there.
+ * lock: 1 somebody holds it, 0 the owsd of the image has let it go, negative: neither can be told (it
+ * was removed, or is another's), and then the heart counts, and process: an owsd of that number is
+ * there.
  */
 enum instance_state instance_state_of(bool has_image, uint32_t state, bool alive, int lock,
                                       bool process);
+/* Its process is there: nothing of it may be removed. */
+bool instance_is_up(enum instance_state state);
 const char *instance_state_text(enum instance_state state);
 
 /* The configuration of a command line as in /proc/PID/cmdline; NULL: it names none. */

@@ -25,6 +25,14 @@ static const char *kind_of(const struct stat *st)
 	return S_ISLNK(st->st_mode) ? "link" : "special file";
 }
 
+/* A file of an instance of another user, which may run: nothing is wrong with it. */
+static bool is_anothers(const struct stat *st)
+{
+	bool ours = geteuid() == 0 || owner_is_service();
+
+	return S_ISREG(st->st_mode) && (!ours || owner_trusted(st->st_uid));
+}
+
 const char *segment_hint(const char *instance, int err, char text[SEGMENT_HINT])
 {
 	static const char *const kinds[] = {"lock", "image", "command"};
@@ -40,9 +48,19 @@ const char *segment_hint(const char *instance, int err, char text[SEGMENT_HINT])
 		if (lstat(path, &st) < 0 || !blocks(&st))
 			continue;
 		owner_name(st.st_uid, user);
-		snprintf(text, SEGMENT_HINT,
-		         ": a %s of user %s is in the way: as root, rm -r %s", kind_of(&st), user,
-		         path);
+		if (is_anothers(&st))
+			snprintf(text, SEGMENT_HINT,
+			         ": instance %s belongs to user %s: run owsd as that user, or name "
+			         "another instance with -n",
+			         instance, user);
+		else if (S_ISREG(st.st_mode))
+			snprintf(text, SEGMENT_HINT,
+			         ": a file of user %s is in the way: as root, owsctl remove %s", user,
+			         instance);
+		else
+			snprintf(text, SEGMENT_HINT,
+			         ": a %s of user %s is in the way: as root, rm -r %s", kind_of(&st),
+			         user, path);
 		return text;
 	}
 	return "";

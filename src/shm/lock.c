@@ -183,6 +183,7 @@ int segment_lock_look(const char *instance, pid_t *pid)
 {
 	struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_len = 1};
 	char path[PATH_ROOM];
+	struct stat st;
 	int fd, held;
 
 	*pid = 0;
@@ -191,12 +192,15 @@ int segment_lock_look(const char *instance, pid_t *pid)
 	lock_path(instance, path);
 	fd = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
 	if (fd < 0)
-		return -errno;
+		return errno == ELOOP || errno == ENXIO ? -EPERM : -errno;
 	held = fcntl(fd, F_OFD_GETLK, &lock) < 0 ? -errno : lock.l_type != F_UNLCK;
-	if (held > 0) {
+	if (held >= 0 && (fstat(fd, &st) < 0 || !S_ISREG(st.st_mode) ||
+	                  (!held && !owner_trusted(st.st_uid))))
+		held = -EPERM;
+	if (held >= 0)
 		*pid = read_pid(fd);
+	if (held > 0)
 		held = !(*pid > 0 && is_corpse(*pid));
-	}
 	close(fd);
 	return held;
 }

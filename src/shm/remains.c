@@ -108,23 +108,27 @@ static int find_files(const char *instance, glob_t *found)
 
 static int remove_file(const char *path, unsigned *files)
 {
-	if (unlink(path) == 0)
+	if (unlink(path) == 0 || (errno == EISDIR && rmdir(path) == 0))
 		++*files;
 	else if (errno != ENOENT)
 		return -errno;
 	return 0;
 }
 
-static int remove_all(const char *instance, const glob_t *found, unsigned *files)
+/* The lock is the last: as long as it is there, no owsd makes what is being removed. */
+static int remove_all(const char *instance, const glob_t *found, bool lock_is_new, unsigned *files)
 {
 	char path[128];
 	int err = 0;
 
 	for (size_t i = 0; i < found->gl_pathc && !err; i++)
 		err = remove_file(found->gl_pathv[i], files);
-	/* The lock is the last: as long as it is there, no owsd makes what is being removed. */
 	snprintf(path, sizeof(path), FOLDER "/" PREFIX "%s.lock", instance);
-	return err ? err : remove_file(path, files);
+	if (lock_is_new)
+		unlink(path);
+	else if (!err)
+		err = remove_file(path, files);
+	return err;
 }
 
 int remains_remove(const char *instance, pid_t *pid, unsigned *files)
@@ -132,17 +136,19 @@ int remains_remove(const char *instance, pid_t *pid, unsigned *files)
 	glob_t found;
 	bool stolen;
 	int lock = segment_lock_any(instance, pid), err;
+	bool has_none = lock == -ENOENT;
 
 	*files = 0;
-	if (lock < 0 && lock != -ENOENT)
+	/* what is no file keeps every owsd of this name from starting, as our lock would */
+	if (lock < 0 && !has_none && lock != -EPERM)
 		return lock;
 	err = find_files(instance, &found);
-	if (!err && lock == -ENOENT) {
+	if (!err && has_none) {
 		lock = found.gl_pathc ? segment_lock(instance, pid, &stolen) : -ENOENT;
 		err = lock < 0 ? lock : 0;
 	}
 	if (!err)
-		err = remove_all(instance, &found, files);
+		err = remove_all(instance, &found, has_none, files);
 	globfree(&found);
 	if (lock >= 0)
 		close(lock);

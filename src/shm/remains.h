@@ -16,8 +16,9 @@ void remains_free(struct remains *remains);
 
 /*
  * Remove all files of an instance; how many in *files. -EBUSY: an owsd runs, its process in *pid;
- * -ENOENT: there is nothing; -EACCES or -EPERM: they belong to another user. Afterwards the
- * instance is as if it had never run.
+ * -ENOENT: there is nothing; -EACCES or -EPERM: they belong to another user; -ENOTEMPTY: under one of
+ * the names is a directory with files. Afterwards the instance is as if it had never run. Judges by
+ * the lock alone: the caller has to look whether an owsd runs without it.
  */
 int remains_remove(const char *instance, pid_t *pid, unsigned *files);
 

@@ -26,12 +26,13 @@ bool segment_name_ok(const char *instance);
 int segment_lock(const char *instance, pid_t *pid, bool *stolen);
 /*
  * Does a process hold the lock of the instance? 1 yes, with its number in *pid; 0 no, also where it
- * is a corpse; -ENOENT: there is none; -EACCES: it belongs to another user. Takes nothing.
+ * is a corpse, with the number of the last holder; -ENOENT: there is none; -EACCES: it belongs to
+ * another user; -EPERM: nobody holds it, and no owsd whose image we read made it. Takes nothing.
  */
 int segment_lock_look(const char *instance, pid_t *pid);
 /*
  * Take the lock that is there, whoever's file it is, so that what the instance left can be removed.
- * A descriptor; -ENOENT none is there; -EBUSY an owsd runs; -EACCES, -EPERM.
+ * A descriptor; -ENOENT none is there; -EBUSY an owsd runs; -EACCES; -EPERM what is there is no file.
  */
 int segment_lock_any(const char *instance, pid_t *pid);
 /* False: the lock's file was removed or replaced. What cannot be looked at counts as there. */
@@ -63,10 +64,11 @@ bool segment_named(const char *instance, const struct segment *segment);
 int segment_open_old(const char *instance, enum segment_kind kind, struct segment *segment);
 void segment_close(struct segment *segment);
 /*
- * What stands behind an error of these functions, as the end of a message: /dev/shm is full, or which
- * file is in the way, whose it is and how to remove it. Empty where nothing is known.
+ * What stands behind an error of these functions, as the end of a message: /dev/shm is full, the
+ * instance is another user's, or which file is in the way, whose it is and what removes it. Empty
+ * where nothing is known. It never advises to remove what a running owsd may hold.
  */
-#define SEGMENT_HINT 200
+#define SEGMENT_HINT 240
 const char *segment_hint(const char *instance, int err, char text[SEGMENT_HINT]);
 /* Remove the name (the command segment is left in place at an ordinary end). */
 int segment_remove(const char *instance, enum segment_kind kind);

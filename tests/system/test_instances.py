@@ -7,6 +7,7 @@ import json
 import os
 import re
 import shutil
+import socket
 import subprocess
 import tempfile
 
@@ -92,6 +93,18 @@ def test_a_running_instance_is_not_removed(scene):
         # one that runs may have made its lock again
         assert set(before) <= set(files(which.name)) and done.stdout == ""
     hanging.thaw()
+
+
+def test_a_start_that_fails_leaves_what_was_there_and_no_more(scene):
+    daemon = start(scene)
+    daemon.stop()
+    before = sorted(files(daemon.name))
+    fresh = scene.name()
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        for name, there in ((fresh, []), (daemon.name, before)):
+            done = scene.owsd_once("-n", name, "-c", daemon.config, "-l", str(taken.getsockname()[1]))
+            assert done.returncode == 1 and "cannot listen" in done.stderr, done
+            assert sorted(files(name)) == there
 
 
 def test_one_that_cannot_be_removed_does_not_keep_the_others(scene):

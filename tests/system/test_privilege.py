@@ -7,6 +7,7 @@ import os
 import pathlib
 import shutil
 import signal
+import socket
 import subprocess
 import time
 
@@ -168,13 +169,16 @@ def test_what_a_stranger_puts_in_the_way_is_refused_and_never_used(scene):
             inode = path.lstat().st_ino
             daemon = daemon_of(scene, name=name, ready=False)
             assert daemon.wait(20) == 1, (squat, kind, daemon.log())
+            remedy = f"owsctl remove {name}" if squat == "a file for all" else f"rm -r {path}"
             owsdtest.logged(daemon, f" of user stranger ({private.USERS['stranger'][0]}) is in the "
-                                    f"way: as root, rm -r {path}\n")
+                                    f"way: as root, {remedy}\n")
             assert path.lstat().st_ino == inode and victim.read_text() == "precious\n"
             assert not NOWHERE.exists()
             # nor does a reader believe in it
             assert ctl(scene, "plc", name, "get", "room").returncode not in (0, 3), (squat, kind)
-            shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+            done = scene.owsctl(None, "remove", name)
+            assert done.returncode == 0 and faulty.leftovers(name) == [], (squat, kind, done)
+            assert victim.read_text() == "precious\n"
             assert daemon_of(scene, name=name).stop() == 0, (squat, kind)
             for rest in KINDS:
                 segment(name, rest).unlink()
@@ -269,7 +273,9 @@ def test_another_users_owsd_of_that_name_is_refused_and_harms_nothing(scene):
     good(scene, daemon.name)
     for who in ("stranger", "plc"):
         done = as_user(scene, who, place() / "owsd", "-n", daemon.name, "-c", daemon.config)
-        assert done.returncode == 1 and "in the way" in done.stderr, done
+        assert done.returncode == 1 and "rm " not in done.stderr, done
+        assert (f"instance {daemon.name} belongs to user owsd ({private.OWSD}): run owsd as that user, "
+                "or name another instance with -n") in done.stderr, done
     good(scene, daemon.name)
     # one of his own he may have
     own = scene.name()
@@ -277,6 +283,41 @@ def test_another_users_owsd_of_that_name_is_refused_and_harms_nothing(scene):
     until(lambda: ctl(scene, "stranger", own, "get", "room").returncode == 0, 20, "it serves him")
     assert ctl(scene, "plc", own, "get", "room").returncode not in (0, 3), "and nobody else believes it"
     assert mine.stop() == 0
+
+
+def test_a_running_owsd_whose_lock_a_stranger_took_is_shown_and_not_removed(scene):
+    daemon = daemon_of(scene)
+    good(scene, daemon.name)
+    lock = segment(daemon.name, "lock")
+    daemon.freeze()
+    lock.unlink()
+    squat = SQUATS["a file for all"].format(path=str(lock))
+    assert python(scene, "stranger", squat).returncode == 0
+    for state in ("hangs", "running"):
+        until(lambda: f" {state} " in scene.owsctl(None, "instances").stdout, 10, state)
+        before = faulty.leftovers(daemon.name)
+        done = scene.owsctl(None, "remove", daemon.name)
+        assert done.returncode == 1 and f"is running (process {daemon.pid})" in done.stderr, done
+        assert faulty.leftovers(daemon.name) == before
+        assert "it runs without its lock" in scene.owsctl(None, "instances").stdout
+        daemon.thaw()
+    until(lambda: "cannot be made again" in daemon.log(), 10, "it is said")
+    assert "rm -" not in daemon.log()
+    assert daemon.stop() == 0
+    assert scene.owsctl(None, "remove", daemon.name).returncode == 0
+
+
+def test_a_strangers_failed_start_leaves_nothing_that_stops_owsd(scene):
+    name = scene.name()
+    config = scene.file("stranger.rio", faulty.house(scene))
+    os.chmod(scene.path, 0o777)
+    os.chmod(config, 0o644)
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        done = as_user(scene, "stranger", place() / "owsd", "-n", name, "-c", config, "-l",
+                       str(taken.getsockname()[1]))
+    assert done.returncode == 1 and "cannot listen" in done.stderr, done
+    assert faulty.leftovers(name) == []
+    assert daemon_of(scene, name=name).stop() == 0
 
 
 def test_owsd_has_no_right_and_gets_none(scene):

@@ -13,7 +13,7 @@ void tearDown(void)
 {
 }
 
-enum { LIVE = 1, RETIRED = 2, STOPPED = 3, ABSENT = -2, DENIED = -13 };
+enum { LIVE = 1, RETIRED = 2, STOPPED = 3, ABSENT = -2, DENIED = -13, LOST = -116 };
 
 static void test_the_state_follows_from_image_heart_and_lock(void)
 {
@@ -29,6 +29,9 @@ static void test_the_state_follows_from_image_heart_and_lock(void)
 		{true, LIVE, true, DENIED, false, INSTANCE_RUNNING},
 		{true, LIVE, true, ABSENT, true, INSTANCE_RUNNING}, /* somebody removed the lock */
 		{true, LIVE, true, 0, true, INSTANCE_KILLED}, /* just now */
+		{true, LIVE, true, LOST, false, INSTANCE_RUNNING},
+		{true, LIVE, false, LOST, true, INSTANCE_HANGS},
+		{true, LIVE, false, LOST, false, INSTANCE_KILLED},
 		{true, LIVE, false, 1, true, INSTANCE_HANGS},
 		{true, LIVE, false, 0, true, INSTANCE_KILLED}, /* another owsd got its number */
 		{true, LIVE, false, 0, false, INSTANCE_KILLED},
