@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The ring of log lines: any thread puts one in, the supervisor writes them out. */
 #include "log.h"
 #include "printable.h"
 #include "shm/segment.h"

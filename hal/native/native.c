@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The native bus as a backend of the bus contract: create, submit, step, suspend, counters. */
 #include "hal/native/native.h"
 
 #include <errno.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The frames of the owserver protocol, packed and taken apart. */
 #include "hal/owserver/frame.h"
 
 #include <errno.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The configuration made from a .rio document: its driver block, its items, its targets. */
 #include "build.h"
 
 #include "../signal/value.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A reload: the new engine takes over what stays from the one that runs. */
 #include "adopt.h"
 
 #include "private.h"

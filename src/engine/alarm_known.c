@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* What the alarm machine has read and written in the present cycle. */
 #include "alarm_known.h"
 
 #include "private.h"

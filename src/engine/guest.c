@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Requests of the served protocol: their rooms, their turns, their answers. */
 #include "private.h"
 
 #include "hal/path.h"

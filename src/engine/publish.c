@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* What the image shows of a signal and of the driver. */
 #include "private.h"
 
 #include <string.h>

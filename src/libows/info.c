@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* What libows returns about signals, targets, counters and the daemon itself. */
 #include "handle.h"
 
 #include "../shm/reader.h"

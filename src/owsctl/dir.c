@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* owsctl dir: the entries of a directory of a target. */
 #include "json.h"
 #include "open.h"
 #include "text.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* owsctl read: the value of a path of a target. */
 #include "json.h"
 #include "open.h"
 #include "text.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* What owsctl scan asks a target for: its devices and their properties. */
 #include "scan.h"
 #include "text.h"
 

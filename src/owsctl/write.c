@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* owsctl write: a value to a path of a target. */
 #include "open.h"
 
 #include <getopt.h>

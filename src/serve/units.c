@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Scales of temperature and pressure that a client of the served protocol asks for. */
 #include "units.h"
 
 #include "hal/owserver/frame.h"

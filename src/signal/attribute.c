@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The names of driver signals and attributes, and how a name is looked up. */
 #include "attribute.h"
 
 #include "utf8.h"
