@@ -336,17 +336,23 @@ static void test_an_output_that_never_is_what_was_written_tells_of_none(void)
 	TEST_ASSERT_EQUAL_UINT(1, journal());
 }
 
-static void test_several_items_of_one_device_tell_of_one_restart(void)
+/* Two items of one device, which restarts; the second has this SetAlarm. */
+static void restart_with_two_items(const char *set_alarm)
 {
 	no_set_alarm();
 	relays();
-	alarm_item(&s, "pin", D "/sensed.0", "latch.0", "por", NULL, "latch.0=0");
+	alarm_item(&s, "pin", D "/sensed.0", "latch.0", "por", set_alarm, "latch.0=0");
 	scene_put(&s, D "/sensed.0", "1", 0);
 	scene_put(&s, D "/latch.0", "0", 0);
 	alarm_device(&s, "0", "0");
 	alarm_begin(&s);
 	lose_power();
 	scene_run(&s, 60 * SCENE_S);
+}
+
+static void test_several_items_of_one_device_tell_of_one_restart(void)
+{
+	restart_with_two_items(NULL);
 	TEST_ASSERT_EQUAL_UINT(1, journal());
 	TEST_ASSERT_TRUE(unarmed(1) && unarmed(3));
 	TEST_ASSERT_EQUAL_UINT(1, count("W " PIO));
@@ -354,15 +360,7 @@ static void test_several_items_of_one_device_tell_of_one_restart(void)
 
 static void test_an_item_that_can_end_the_restart_does_so_for_the_others(void)
 {
-	no_set_alarm();
-	relays();
-	alarm_item(&s, "pin", D "/sensed.0", "latch.0", "por", "set_alarm=133333333", "latch.0=0");
-	scene_put(&s, D "/sensed.0", "1", 0);
-	scene_put(&s, D "/latch.0", "0", 0);
-	alarm_device(&s, "0", "0");
-	alarm_begin(&s);
-	lose_power();
-	scene_run(&s, 60 * SCENE_S);
+	restart_with_two_items("set_alarm=133333333");
 	TEST_ASSERT_EQUAL_STRING("0", scene_at(&s, D "/por"));
 	TEST_ASSERT_EQUAL_UINT(1, journal());
 	TEST_ASSERT_FALSE(unarmed(1) || unarmed(3));
