@@ -142,10 +142,10 @@ def test_errors(scene):
 def test_writes(scene):
     pair = Pair(scene)
     for path, texts in (
-            (T + "/templow", ("10", "abc", "12abc", "", " 11")),
+            (T + "/templow", ("10", "abc", "", " 11", "12 ", "-3")),
             (T + "/nonsense", ("10",)), (ABSENT + "/templow", ("10",)), (T, ("10",)),
             (SWITCH + "/PIO.BYTE", ("255", "99999999999999999999999", "0")),
-            (SWITCH + "/PIO.0", ("1", "yes", "on", "maybe", "7", "0", "no")),
+            (SWITCH + "/PIO.0", ("1", "yes", "on", "maybe", "0", "no")),
             (SWITCH + "/PIO.ALL", ("1,0,1,0,1,0,1,0", "1,0,1", "1", "0,0,0,0,0,0,0,0")),
             (SWITCH + "/PIO", ("1",)), (SWITCH + "/sensed.BYTE", ("1",)),
             (SWITCH + "/latch.BYTE", ("1",)), (SWITCH + "/set_alarm", ("111111111", "0")),
@@ -158,6 +158,10 @@ def test_writes(scene):
     pair.same(WRITE, T + "/templow", data=b"10", size=0)
     pair.same(WRITE, MEMORY + "/pages/page.0", data=b"hello")
     pair.judge(40)
+    # What is no value of its property is refused, where owserver takes its beginning, or any bit of it
+    for path, text in ((T + "/templow", b"12abc"), (SWITCH + "/PIO.0", b"7")):
+        assert pair.genuine.frame(WRITE, path, data=text).ret == 0
+        assert pair.ours.frame(WRITE, path, data=text).ret == -22
     # A number that does not fit is refused, and not cut to its lowest byte
     for text in (b"-1", b"256"):
         assert pair.ours.frame(WRITE, SWITCH + "/PIO.BYTE", data=text).ret == -34
@@ -214,9 +218,12 @@ def test_the_directories_beside_the_devices_are_read(scene):
                  "uncached"):  # with owserver's defaults
         pair.same(READ, "/settings/timeout/" + name)
     for name in ("directory", "ftp", "ha7", "network", "serial", "server", "usb", "w1"):
-        for text in (b"17", b"abc", b"", b"1.5", b"90000"):
+        for text in (b"17", b"abc", b"", b"90000"):
             pair.same(WRITE, "/settings/timeout/" + name, data=text)
             pair.same(READ, "/settings/timeout/" + name)
+        # what is no whole number is none, where owserver takes its beginning
+        assert pair.ours.frame(WRITE, "/settings/timeout/" + name, data=b"1.5").ret == -22
+        pair.same(READ, "/settings/timeout/" + name)
     for path in ("/settings/timeout/volatile", "/settings/timeout/presence", "/system/process/pid",
                  "/system/connections/count_current_buses",
                  "/statistics/read/calls", "/statistics/read/tries.ALL", "/statistics/errors/max_delay",
