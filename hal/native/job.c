@@ -47,11 +47,17 @@ static void look_for(struct native *native, struct job *job, int err)
 	job->state = JOB_LOCATE;
 }
 
-/* What was read wrong is read again: the conversion behind it was right. */
+/*
+ * What was read wrong is read again: the conversion behind it was right. Not one that is over for
+ * long, or that nothing is known of any more, as after the wire was opened again.
+ */
 static void begin_again(struct native *native, struct job *job)
 {
+	const struct device *device = job->txn.device;
+
 	if (job->state == JOB_RUN && job->property && job->property->convert &&
-	    job->req->op == BUS_READ)
+	    job->req->op == BUS_READ && device->converted_ns &&
+	    device->converted_ns + NATIVE_S > native_now(native))
 		job_reread(native, job);
 	else
 		job_restart(native, job);
