@@ -38,7 +38,7 @@ static bool is_listed(int err)
 	static const int listed[] = {
 		0, -ENODEV, -ENOENT, -EACCES, -EISDIR, -ENOTDIR, -EINVAL, -EBADMSG, -ECOMM, -ERANGE,
 		-EBUSY, -EIO, -EMSGSIZE, -EOPNOTSUPP, -ETIME, -EINPROGRESS, -ECANCELED, -ENOTCONN,
-		-ETIMEDOUT, -ECONNRESET, -EPROTO,
+		-ETIMEDOUT, -ECONNRESET, -EPROTO, -EPERM,
 	};
 
 	for (size_t i = 0; i < sizeof(listed) / sizeof(listed[0]); i++)

@@ -130,6 +130,7 @@ static void check_path(const char *text, size_t n)
 
 static void check_addresses(const char *text, size_t n)
 {
+	static const uint8_t mapped[12] = {[10] = 0xff, [11] = 0xff};
 	struct listen_address addresses[2], again[2];
 	struct listen_peers peers, same;
 	char printed[LISTEN_TEXT_MAX];
@@ -152,7 +153,10 @@ static void check_addresses(const char *text, size_t n)
 	TEST_ASSERT_EQUAL_INT_MESSAGE(
 		0, listen_peers_parse(printed, strlen(printed), &same, &why), printed);
 	TEST_ASSERT_EQUAL_UINT_MESSAGE(peers.bits, same.bits, printed);
-	TEST_ASSERT_TRUE_MESSAGE(listen_peers_have(&same, 1, peers.is_v6, peers.bytes), printed);
+	/* An address of IPv4 is looked up in ranges of IPv4, also in the form that IPv6 has for it. */
+	bool is_v4_in_v6 = peers.is_v6 && memcmp(peers.bytes, mapped, sizeof(mapped)) == 0;
+	TEST_ASSERT_TRUE_MESSAGE(listen_peers_have(&same, 1, peers.is_v6, peers.bytes) != is_v4_in_v6,
+	                         printed);
 }
 
 static void check_printable(char *text, size_t n)
