@@ -72,6 +72,24 @@ def prose(path):
             yield number, line
 
 
+def items(path):
+    """What is explained in a list below it, or in the cells beside it: (line number, text)."""
+    begun, first = None, ""
+    for number, line in prose(path):
+        if line.startswith("  - "):
+            if begun:
+                yield begun, first
+            begun = None
+        elif line.startswith("- "):
+            begun, first = number, line
+        elif line.startswith("| "):
+            yield number, line.split("|")[1]
+        elif begun and line.startswith("  "):
+            first += line[1:]
+        else:
+            begun = None
+
+
 def inline(path):
     """What stands in backticks in the prose."""
     for number, line in prose(path):
