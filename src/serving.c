@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "serving.h"
 
+#include "engine/counters.h"
 #include "hal/worker.h"
 #include "libows/ows.h"
 #include "target.h"

@@ -8,6 +8,7 @@
 #define SERVING_H
 
 #include "engine/adopt.h"
+#include "engine/engine.h"
 #include "memory.h"
 
 struct worker;

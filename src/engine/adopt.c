@@ -1,12 +1,22 @@
 /* SPDX-License-Identifier: MIT */
-/* A reload: the new engine takes over what stays from the one that runs. */
-#include "adopt.h"
-
-#include "private.h"
-
+/* A reload: the new engine takes over what stays from the engine that has run until now. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/engine/adopt.h"
+#include "src/engine/alarm_item.h"
+#include "src/engine/counters.h"
+#include "src/engine/disown.h"
+#include "src/engine/doubt.h"
+#include "src/engine/due.h"
+#include "src/engine/guests.h"
+#include "src/engine/intake.h"
+#include "src/engine/lane.h"
+#include "src/engine/place.h"
+#include "src/engine/publish.h"
+#include "src/engine/schedule.h"
+#include "src/engine/state.h"
 
 static uint64_t wait_of(const struct due_wheel *wheel, uint32_t entry)
 {
@@ -70,6 +80,7 @@ static void take_group(struct engine *e, unsigned group, struct engine *old, uns
 
 		g->ways[w] = was->ways[w];
 		lane_adopt(&e->lanes[g->first + w], from, successors);
+		guests_adopt(&e->lanes[g->first + w], from);
 		take_machine(&e->lanes[g->first + w].alarm, &from->alarm);
 	}
 }
@@ -84,7 +95,7 @@ static int new_lane(const struct engine *e, const struct adoption *plan, unsigne
 
 /* --- Devices --------------------------------------------------------------------------------- */
 
-static void serve(struct engine *e, uint32_t index, struct lane *lane)
+static void serve_device(struct engine *e, uint32_t index, struct lane *lane)
 {
 	const struct device *d = &e->table.devices[index];
 
@@ -143,7 +154,7 @@ static void take_devices(struct engine *e, const struct engine *old, const struc
 		if (!d->count)
 			continue;
 		take_device(e, i, old, plan);
-		serve(e, i, engine_open_lane(e, d->group));
+		serve_device(e, i, engine_open_lane(e, d->group));
 	}
 	engine_places_check(e);
 }

@@ -1,32 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A reload: an engine of the changed configuration takes over from the one that runs. What stays is
- * planned from the two configurations on the supervisor's thread; the taking over itself neither
- * allocates nor searches and belongs to the engine's thread.
+ * A reload: an engine of the changed configuration takes over from the one that runs. The taking over
+ * neither allocates nor searches, and belongs to the engine's thread.
  */
 #ifndef ENGINE_ADOPT_H
 #define ENGINE_ADOPT_H
 
-#include "engine.h"
+#include <stdint.h>
 
-#define ADOPT_NEW UINT32_MAX
+#include "src/engine/adoption.h"
 
-struct adoption {
-	/* of each new row: the old one of the same name, path and type; ADOPT_NEW: there is none */
-	uint32_t *rows;
-	uint32_t *successors; /* the other way round: of each old row the new one, or ADOPT_NEW */
-	/* of each new target: the old one that goes on as it is; -1: it has to be opened anew */
-	int *ports;
-	uint32_t kept_rows;
-	unsigned kept_ports;
-};
-
-/*
- * Ways to one wire stay all or none: their texts, their order and their options have to be the same.
- * 0 or -ENOMEM.
- */
-int adoption_plan(struct adoption *plan, const struct config *config, const struct config *before);
-void adoption_free(struct adoption *plan);
+struct engine;
 
 /*
  * e is as engine_create() made it, its image not shown and its commands empty; old has run until

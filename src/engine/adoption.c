@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What of a configuration stays in another: no engine is needed to say so. */
-#include "adopt.h"
+/* Which rows and targets of a configuration stay in a changed one: two configurations are compared. */
+#include "src/engine/adoption.h"
 
 #include <errno.h>
 #include <stdlib.h>

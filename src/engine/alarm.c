@@ -1,21 +1,25 @@
 /* SPDX-License-Identifier: MIT */
 /* The alarm machine of a lane: what each state asks of the bus, and what the answer means to it. */
-#include "alarm.h"
-
-#include "alarm_arm.h"
-#include "alarm_known.h"
-#include "alarm_text.h"
-#include "private.h"
-
-#include "../signal/value.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "src/engine/alarm.h"
+#include "src/engine/alarm_arm.h"
+#include "src/engine/alarm_effect.h"
+#include "src/engine/alarm_known.h"
+#include "src/engine/alarm_list.h"
+#include "src/engine/alarm_text.h"
+#include "src/engine/completion.h"
+#include "src/engine/publish.h"
+#include "src/engine/schedule.h"
+#include "src/engine/state.h"
+#include "src/log.h"
+#include "src/signal/value.h"
+
 #define BYPASS_NS 20000000LL
 
-static uint32_t defined(const char *name, const char *value)
+static uint32_t defined_fact(const char *name, const char *value)
 {
 	if (!name || !value)
 		return FACT_ND;
@@ -73,23 +77,23 @@ static uint32_t facts_before(struct alarm_machine *m, struct lane *lane, int64_t
 		return bypass_facts(m, lane, now_ns);
 	case ALARM_POR_READ:
 		known = alarm_por_known(m, i);
-		return defined(i->strings.por, i->strings.por) | (known ? FACT_KNOWN : 0) |
+		return defined_fact(i->strings.por, i->strings.por) | (known ? FACT_KNOWN : 0) |
 		       (known && known->por_set ? FACT_NON_ZERO : 0);
 	case ALARM_SET:
-		return defined(i->strings.set, i->strings.set_value) |
+		return defined_fact(i->strings.set, i->strings.set_value) |
 		       (alarm_set_known(m, i) ? FACT_KNOWN : 0);
 	case ALARM_POR_RESET:
-		return defined(i->strings.por, i->strings.por) |
+		return defined_fact(i->strings.por, i->strings.por) |
 		       (alarm_por_reset_known(m, i) ? FACT_KNOWN : 0);
 	case ALARM_LATCH:
 		known = alarm_latch_known(m, i);
-		return defined(i->strings.latch, i->strings.latch) | (known ? FACT_KNOWN : 0) |
+		return defined_fact(i->strings.latch, i->strings.latch) | (known ? FACT_KNOWN : 0) |
 		       (known && known->latch_set ? FACT_NON_ZERO : 0);
 	case ALARM_SENSED:
 	case SENSED:
 		return sensed_facts(e, i);
 	case ALARM_LATCH_RESET:
-		return defined(i->strings.reset, i->strings.reset_value) |
+		return defined_fact(i->strings.reset, i->strings.reset_value) |
 		       (alarm_reset_known(m, i) ? FACT_KNOWN : 0);
 	case ALARM_SET_WAIT: /* entered from ALARM_INIT_WRITE_WAIT: look for the next output */
 		return alarm_next_init(e, m) >= 0 ? 0 : FACT_DONE;
@@ -110,7 +114,7 @@ static uint32_t facts_before(struct alarm_machine *m, struct lane *lane, int64_t
 
 /* --- Requests -------------------------------------------------------------------------------- */
 
-static void ask(struct alarm_request *r, enum bus_op op, const char *before,
+static void ask_property(struct alarm_request *r, enum bus_op op, const char *before,
                 const struct alarm_item *i, const char *property, const char *data)
 {
 	r->op = op;
@@ -143,7 +147,7 @@ static bool ask_arm(struct alarm_machine *m, struct alarm_request *r, int64_t no
 	if (m->arming < 0)
 		return false;
 	s = &m->items[m->arming]->strings;
-	ask(r, m->arm_writes ? BUS_WRITE : BUS_READ, "", m->items[m->arming], s->set,
+	ask_property(r, m->arm_writes ? BUS_WRITE : BUS_READ, "", m->items[m->arming], s->set,
 	    m->arm_writes ? s->set_value : "");
 	return true;
 }
@@ -155,11 +159,11 @@ static bool ask_in_state(struct alarm_machine *m, struct lane *lane, struct alar
 
 	if (m->collecting >= 0) {
 		i = m->items[m->collecting];
-		ask(r, BUS_READ, "", i, i->strings.latch, "");
+		ask_property(r, BUS_READ, "", i, i->strings.latch, "");
 		return true;
 	}
 	if (m->proving) {
-		ask(r, BUS_READ, "", i, i->strings.por, "");
+		ask_property(r, BUS_READ, "", i, i->strings.por, "");
 		return true;
 	}
 	switch (m->state) {
@@ -176,28 +180,28 @@ static bool ask_in_state(struct alarm_machine *m, struct lane *lane, struct alar
 		memcpy(r->path, m->list_path, sizeof(m->list_path));
 		return true;
 	case ALARM_POR_READ:
-		ask(r, BUS_READ, "", i, i->strings.por, "");
+		ask_property(r, BUS_READ, "", i, i->strings.por, "");
 		return true;
 	case ALARM_SET:
-		ask(r, BUS_WRITE, "", i, i->strings.set, i->strings.set_value);
+		ask_property(r, BUS_WRITE, "", i, i->strings.set, i->strings.set_value);
 		return true;
 	case ALARM_SET_WAIT:
 		ask_init(lane->engine, m, r);
 		return true;
 	case ALARM_POR_RESET:
-		ask(r, BUS_WRITE, "", i, i->strings.por, "0");
+		ask_property(r, BUS_WRITE, "", i, i->strings.por, "0");
 		return true;
 	case ALARM_LATCH:
-		ask(r, BUS_READ, "", i, i->strings.latch, "");
+		ask_property(r, BUS_READ, "", i, i->strings.latch, "");
 		return true;
 	case ALARM_SENSED:
-		ask(r, BUS_READ, "/alarm", i, i->strings.sensed, "");
+		ask_property(r, BUS_READ, "/alarm", i, i->strings.sensed, "");
 		return true;
 	case ALARM_LATCH_RESET:
-		ask(r, BUS_WRITE, "/alarm", i, i->strings.reset, i->strings.reset_value);
+		ask_property(r, BUS_WRITE, "/alarm", i, i->strings.reset, i->strings.reset_value);
 		return true;
 	case SENSED:
-		ask(r, BUS_READ, "", i, i->strings.sensed, "");
+		ask_property(r, BUS_READ, "", i, i->strings.sensed, "");
 		return true;
 	case NOT_USED:
 	case ALARM_DIR:
@@ -215,7 +219,7 @@ static bool ask_in_state(struct alarm_machine *m, struct lane *lane, struct alar
 	return false;
 }
 
-static void enter(struct alarm_machine *m, struct lane *lane, const struct alarm_row *row)
+static void enter_state(struct alarm_machine *m, struct lane *lane, const struct alarm_row *row)
 {
 	log_debug(lane->engine->log, "%s: alarms: from %s to %s: %s", lane->port->target,
 	          alarm_state_name(m->state), alarm_state_name(row->next), row->text);
@@ -254,7 +258,7 @@ bool alarm_run(struct alarm_machine *m, struct lane *lane, struct alarm_request 
 			else
 				engine_alarm_rests(lane->engine, i, now_ns);
 		}
-		enter(m, lane, row);
+		enter_state(m, lane, row);
 	}
 	return false;
 }
@@ -274,7 +278,7 @@ void alarm_started(struct alarm_machine *m, struct lane *lane, int64_t now_ns)
 	} else if (m->state == ALARM_SET) {
 		m->init_position = -1;
 	}
-	enter(m, lane, alarm_next(m->state, facts));
+	enter_state(m, lane, alarm_next(m->state, facts));
 }
 
 /* --- Answers --------------------------------------------------------------------------------- */
@@ -290,6 +294,25 @@ static int take_latch(struct alarm_machine *m, struct alarm_item *i,
 	i->latch_set = set;
 	alarm_trim(i->latch_text, sizeof(i->latch_text), data, answer->len);
 	return 0;
+}
+
+/* The value read under an alarm; 0 or the item error. */
+static int take_alarm_value(struct engine *e, struct lane *lane, struct alarm_item *item,
+                       const struct slot *slot, const struct bus_answer *answer, int64_t now_ns)
+{
+	struct signal *s = &e->table.signals[item->row];
+	int64_t wait_ns;
+	int err;
+
+	if (!signal_reads(s))
+		return 0;
+	err = engine_take_reading(e, lane, s, slot, answer, now_ns, &wait_ns);
+	if (!err && item->wants_after && !signal_is_string(s)) {
+		image_alarm_after(e->image, item->journal, s->sample.value);
+		item->wants_after = false;
+	}
+	engine_publish(e, s);
+	return err;
 }
 
 /* What the answer means to the state; side effects on table and journal included. */
@@ -352,7 +375,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 		return FACT_DONE | (i->latch_set ? FACT_NON_ZERO : 0);
 	case ALARM_SENSED_WAIT:
 	case SENSED_WAIT:
-		err = engine_alarm_value(e, lane, i, slot, answer, now_ns);
+		err = take_alarm_value(e, lane, i, slot, answer, now_ns);
 		if (err && m->state == SENSED_WAIT)
 			engine_read_at(e, alarm_signal(e, i), e->period + 1);
 		return err ? FACT_FAILED : FACT_DONE;
@@ -384,7 +407,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
  * Before the first reset of a device with several alarm items, every latch of it is read: the reset
  * of one would clear the others'.
  */
-static bool collect(struct alarm_machine *m)
+static bool begin_collecting(struct alarm_machine *m)
 {
 	const struct alarm_item *i = alarm_current(m);
 
@@ -395,7 +418,7 @@ static bool collect(struct alarm_machine *m)
 }
 
 /* A driver may take the 0 and leave the flag: the next restart could not be told from this one. */
-static uint32_t proven(struct alarm_machine *m, struct lane *lane, const struct bus_answer *answer,
+static uint32_t por_proven(struct alarm_machine *m, struct lane *lane, const struct bus_answer *answer,
                        const char *data, int64_t now_ns)
 {
 	struct alarm_item *i = alarm_current(m);
@@ -434,20 +457,20 @@ void alarm_answered(struct alarm_machine *m, struct lane *lane, const struct slo
 		take_latch(m, other, answer, (const char *)slot->data);
 		m->collecting = alarm_to_collect(m, alarm_current(m));
 		if (m->collecting < 0)
-			enter(m, lane, alarm_next(m->state, m->held));
+			enter_state(m, lane, alarm_next(m->state, m->held));
 		return;
 	}
 	if (m->proving) {
-		facts = proven(m, lane, answer, (const char *)slot->data, now_ns);
-		enter(m, lane, alarm_next(m->state, facts));
+		facts = por_proven(m, lane, answer, (const char *)slot->data, now_ns);
+		enter_state(m, lane, alarm_next(m->state, facts));
 		return;
 	}
 	facts = facts_after(m, lane, slot, answer, now_ns);
 	if (m->state == NOT_USED || !facts || m->proving)
 		return;
 	m->held = facts;
-	if (!(facts & FACT_DONE) || !collect(m))
-		enter(m, lane, alarm_next(m->state, facts));
+	if (!(facts & FACT_DONE) || !begin_collecting(m))
+		enter_state(m, lane, alarm_next(m->state, facts));
 }
 
 void alarm_passed(struct alarm_machine *m)
@@ -461,25 +484,9 @@ bool alarm_holds(const struct alarm_machine *m)
 	       (m->state != NOT_USED && m->state != INIT && m->state != ALARM_BYPASS);
 }
 
-bool alarm_serves(const struct alarm_machine *m)
-{
-	return m->count && !m->polls;
-}
-
 int64_t alarm_wake(const struct alarm_machine *m)
 {
 	if (m->in_work)
 		return INT64_MAX;
 	return m->state == INIT ? m->list_ns : m->state == ALARM_BYPASS ? m->bypass_ns : INT64_MAX;
-}
-
-void alarm_restart(struct alarm_machine *m)
-{
-	if (m->state == NOT_USED)
-		return;
-	m->state = INIT;
-	m->position = m->init_position = m->arming = m->collecting = -1;
-	m->arm_writes = m->proving = false;
-	m->in_work = false;
-	m->in_a_row = 0;
 }

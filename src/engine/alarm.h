@@ -1,118 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/*
- * The alarm machine of one lane: what the states of alarm_fsm.h do. It asks for one request at a
- * time and is told how that ended. Private to the engine.
- */
+/* The alarm machine of a lane: what the states of alarm_fsm.h ask of the bus. */
 #ifndef ENGINE_ALARM_H
 #define ENGINE_ALARM_H
 
-#include "alarm_fsm.h"
-#include "table.h"
+#include "src/engine/state.h"
 
-#include "hal/bus.h"
-
-/* Room for the list of /alarm, bytes. */
-#define ALARM_LIST (64 * 1024)
-#define ALARM_TEXT 256
-
-/* The working strings of section 3.2; text NULL: not defined, "": empty. */
-struct alarm_strings {
-	char path[ALARM_TEXT];   /* sPath: "/29.066418000000" */
-	char sensed[ALARM_TEXT]; /* sSensed */
-	bool has_sensed;         /* false: the item is not read, sSensed counts as empty */
-	const char *por, *latch; /* sAlarmPor, sLatch: the item's own */
-	char set_text[ALARM_TEXT], reset_text[ALARM_TEXT];
-	const char *set, *set_value;     /* sSet, sSetVal: into set_text */
-	const char *reset, *reset_value; /* sLatchRes, sLatchResVal: into reset_text */
-};
-
-struct alarm_item {
-	uint32_t row, device;
-	struct alarm_strings strings;
-	bool listed;   /* its device stands in the list of /alarm */
-	bool stands;   /* an occurrence that was not reset yet */
-	uint32_t entered; /* channels that the journal has, and no return of them yet */
-	bool to_arm;   /* SetAlarm has to be compared with the chip */
-	bool restarted; /* por was not 0, and not 0 since: that restart is known */
-	bool differs;   /* since then an output was read back otherwise than before: one more */
-	bool asks_por;  /* the device left the list meanwhile: is its por 0 now? */
-	struct retry arm_retry; /* of to_arm, and of ending the restart */
-	int64_t arm_ns;         /* not before */
-	/* what was done for it in the cycle of that number; 0: never */
-	uint32_t por_cycle, latch_cycle, set_cycle, init_cycle, por_reset_cycle, reset_cycle;
-	uint32_t collect_cycle;
-	bool por_set, latch_set;
-	char latch_text[24];
-	uint32_t journal;  /* number of its entry that waits for the value after */
-	bool wants_after;
-};
-
-/* What the machine wants to be asked. */
-struct alarm_request {
-	enum bus_op op;
-	char path[ALARM_TEXT * 2 + 16];
-	char data[ALARM_TEXT];
-	uint32_t len;
-	uint32_t row; /* of the table that the request counts for; TABLE_NO_ROW: none */
-};
-#define TABLE_NO_ROW UINT32_MAX
-
-struct alarm_machine {
-	enum alarm_state state;
-	struct alarm_item **items; /* which this lane serves now, in the order of the table */
-	uint32_t count;
-	bool searches;         /* the list can be kept to families */
-	int64_t position;      /* iAlarmPos */
-	int64_t init_position; /* iAlarmInitPos */
-	uint32_t cycle;
-	unsigned in_a_row;     /* nCons */
-	bool polls;            /* the bus has no alarm search */
-	bool told;             /* the log knows */
-	bool in_work;          /* a request of the machine is with the bus */
-	bool passed;           /* since BYPASS was entered */
-	int64_t bypass_ns;     /* when it ends at the latest; 0: just entered */
-	int64_t arming;        /* item whose SetAlarm is compared, -1 none */
-	bool arm_writes;
-	int64_t collecting;    /* item whose latch is read ahead of a reset, -1 none */
-	bool proving;          /* 0 was written to por, which is read back */
-	uint32_t held;         /* the facts that wait for the end of that */
-	int64_t list_ns;       /* earliest time of the next list */
-	int64_t wait_ns;       /* doubles while lists fail */
-	char list_path[128];   /* "/alarm", or "/alarm/29,12"; if named */
-	bool named;
-	uint8_t families[32];
-	unsigned family_count;
-	unsigned strangers;    /* listed devices without alarm item that were logged */
-	uint8_t stranger[16][8];
-};
-
-struct engine;
-struct lane;
-
-/* All alarm items of the table; the caller frees them. 0 or -ENOMEM. */
-int alarm_items_init(const struct table *table, struct alarm_item **items, uint32_t *count);
-
-/* Has it a SetAlarm that can be compared with the chip? */
-bool alarm_arms(const struct alarm_item *item);
-
-/* Room for that many items; it has none yet. 0 or -ENOMEM. */
-int alarm_init(struct alarm_machine *m, uint32_t room, bool searches);
-void alarm_free(struct alarm_machine *m);
-/* The lane serves the item from now on: it starts at ALARM_POR_READ, its SetAlarm is compared. */
-void alarm_take_item(struct alarm_machine *m, struct alarm_item *item, int64_t now_ns);
-/*
- * The lane does not serve it any more: if the machine worked on it, it goes on with the next alarm.
- * True: the answer to what the machine asked last is of no interest any more.
- */
-bool alarm_drop_item(struct alarm_machine *m, struct alarm_item *item);
-/* Make list_path of the families of its items. */
-void alarm_name_list(struct alarm_machine *m, const struct table *table);
-
-/* Does the lane hold writes back for it? */
+/* Does the lane hold writes back for the machine? */
 bool alarm_holds(const struct alarm_machine *m);
-/* Is the item read by alarms (and now and then), not in every period? */
-bool alarm_serves(const struct alarm_machine *m);
-
 /*
  * Go on as far as there is something to do without asking; true: *request is what to ask next.
  * alarm_started() must follow if it was given to the bus.
@@ -120,20 +14,11 @@ bool alarm_serves(const struct alarm_machine *m);
 bool alarm_run(struct alarm_machine *m, struct lane *lane, struct alarm_request *request,
                int64_t now_ns);
 void alarm_started(struct alarm_machine *m, struct lane *lane, int64_t now_ns);
-struct slot;
 void alarm_answered(struct alarm_machine *m, struct lane *lane, const struct slot *slot,
                     const struct bus_answer *answer, int64_t now_ns);
 /* A write or read of the lane went through. */
 void alarm_passed(struct alarm_machine *m);
-/* When it wants to run again by itself; INT64_MAX: when it is told something. */
+/* When the machine has to run though nothing was answered; INT64_MAX: only then. */
 int64_t alarm_wake(const struct alarm_machine *m);
-/* The target was lost: from the beginning when it is back. */
-void alarm_restart(struct alarm_machine *m);
-/* The target is back, and may be another or have another driver: has it an alarm search now? */
-void alarm_ask_again(struct alarm_machine *m, struct lane *lane, int64_t now_ns);
-/* A device came back: its SetAlarm is compared again, and its next por is a restart. */
-void alarm_rearm(struct alarm_machine *m, struct engine *e, uint32_t device);
-/* An output of the device was read back otherwise than before, though nothing was written. */
-void alarm_output_differs(struct alarm_machine *m, uint32_t device);
 
 #endif

@@ -3,16 +3,20 @@
  * The arming of alarm items: SetAlarm compared with the chip, and a restart of a device, which is one
  * restart as long as its por cannot be cleared (docs/semantics.md, section 4, "One restart").
  */
-#include "alarm_arm.h"
-
-#include "alarm_known.h"
-#include "alarm_text.h"
-#include "private.h"
-
-#include "../signal/error.h"
-
 #include <errno.h>
 #include <string.h>
+
+#include "src/engine/alarm_arm.h"
+#include "src/engine/alarm_effect.h"
+#include "src/engine/alarm_item.h"
+#include "src/engine/alarm_known.h"
+#include "src/engine/alarm_text.h"
+#include "src/engine/publish.h"
+#include "src/engine/retry.h"
+#include "src/engine/schedule.h"
+#include "src/engine/state.h"
+#include "src/log.h"
+#include "src/signal/error.h"
 
 /* Another item of the same device, or this one, with the same property for its restart. */
 static bool same_por(const struct alarm_item *a, const struct alarm_item *b)
@@ -46,7 +50,7 @@ static void show_unarmed(struct engine *e, struct alarm_item *i, int err, const 
 }
 
 /* What failed is tried as if it never had. True: its signal said that it cannot be armed. */
-static bool begin_again(struct engine *e, struct alarm_item *i)
+static bool arm_anew(struct engine *e, struct alarm_item *i)
 {
 	struct signal *s = alarm_signal(e, i);
 
@@ -60,16 +64,16 @@ static bool begin_again(struct engine *e, struct alarm_item *i)
 	return true;
 }
 
-static void armed(struct engine *e, struct alarm_item *i)
+static void report_armed(struct engine *e, struct alarm_item *i)
 {
 	const struct signal *s = alarm_signal(e, i);
 
-	if (begin_again(e, i))
+	if (arm_anew(e, i))
 		log_notice(e->log, "%s (%s): the alarm is armed again", s->item->name,
 		           s->item->path);
 }
 
-static void not_armed(struct lane *lane, struct alarm_item *i, int err, const char *property,
+static void count_unarmed(struct lane *lane, struct alarm_item *i, int err, const char *property,
                       const char *why, int64_t now_ns)
 {
 	struct engine *e = lane->engine;
@@ -113,7 +117,7 @@ void alarm_por_clear(struct alarm_machine *m, struct engine *e, const struct ala
 			continue;
 		other->restarted = other->differs = false;
 		if (!other->to_arm)
-			armed(e, other);
+			report_armed(e, other);
 		else
 			other->arm_ns = 0;
 	}
@@ -122,26 +126,19 @@ void alarm_por_clear(struct alarm_machine *m, struct engine *e, const struct ala
 void alarm_set_failed(struct lane *lane, struct alarm_item *i, int err, int64_t now_ns)
 {
 	i->to_arm = alarm_arms(i);
-	not_armed(lane, i, err, i->strings.set, " cannot be written: ", now_ns);
+	count_unarmed(lane, i, err, i->strings.set, " cannot be written: ", now_ns);
 }
 
 void alarm_set_missing(struct lane *lane, struct alarm_item *i, int64_t now_ns)
 {
 	if (i->restarted) /* another item of the device may have ended it in this cycle */
-		not_armed(lane, i, -EBADRQC, "SetAlarm",
+		count_unarmed(lane, i, -EBADRQC, "SetAlarm",
 		                i->strings.set ? " has no '='" : " is not defined", now_ns);
 }
 
 void alarm_por_failed(struct lane *lane, struct alarm_item *i, int err, int64_t now_ns)
 {
-	not_armed(lane, i, err, i->strings.por, " cannot be set to 0: ", now_ns);
-}
-
-void alarm_output_differs(struct alarm_machine *m, uint32_t device)
-{
-	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->device == device && m->items[k]->restarted)
-			m->items[k]->differs = true;
+	count_unarmed(lane, i, err, i->strings.por, " cannot be set to 0: ", now_ns);
 }
 
 void alarm_rearm(struct alarm_machine *m, struct engine *e, uint32_t device)
@@ -153,7 +150,7 @@ void alarm_rearm(struct alarm_machine *m, struct engine *e, uint32_t device)
 			continue;
 		i->to_arm = alarm_arms(i);
 		i->restarted = i->differs = i->asks_por = false;
-		begin_again(e, i);
+		arm_anew(e, i);
 	}
 }
 
@@ -185,10 +182,10 @@ void alarm_arm_answered(struct alarm_machine *m, struct lane *lane, const struct
 	switch (failure_of(err)) {
 	case FAILURE_NONE:
 		i->to_arm = false;
-		armed(lane->engine, i);
+		report_armed(lane->engine, i);
 		break;
 	case FAILURE_ITEM:
-		not_armed(lane, i, err, i->strings.set,
+		count_unarmed(lane, i, err, i->strings.set,
 		                wrote ? " cannot be written: " : " cannot be read: ", now_ns);
 		break;
 	case FAILURE_TARGET:

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* The arming of alarm items and the restarts of their devices; of the machine alone. */
+/* The arming of alarm items and the restarts of their devices. */
 #ifndef ENGINE_ALARM_ARM_H
 #define ENGINE_ALARM_ARM_H
 
-#include "alarm.h"
+#include "src/engine/state.h"
 
 /* Is the item looked at in this cycle? Not while its device waits for another try to clear its por. */
 bool alarm_takes_part(const struct alarm_item *item, int64_t now_ns);
@@ -23,5 +23,7 @@ int64_t alarm_to_arm(const struct alarm_machine *m, int64_t now_ns);
 /* The answer to that, or to the write after it. */
 void alarm_arm_answered(struct alarm_machine *m, struct lane *lane, const struct bus_answer *answer,
                         const char *data, int64_t now_ns);
+/* A device came back: its SetAlarm is compared again, and its next por is a restart. */
+void alarm_rearm(struct alarm_machine *m, struct engine *e, uint32_t device);
 
 #endif

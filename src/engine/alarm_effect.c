@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* What the alarm machine changes in the table. */
-#include "alarm_text.h"
-#include "private.h"
-
+/* What alarms and restarts of devices change in the table, in the journal and in the log. */
 #include <string.h>
 
-static struct ows_alarm_entry entry_of(const struct signal *s, enum ows_alarm_kind kind,
+#include "src/engine/alarm_effect.h"
+#include "src/engine/alarm_text.h"
+#include "src/engine/publish.h"
+#include "src/engine/schedule.h"
+#include "src/engine/state.h"
+#include "src/log.h"
+
+static struct ows_alarm_entry alarm_entry(const struct signal *s, enum ows_alarm_kind kind,
                                        enum ows_alarm_event event, int64_t now_ns)
 {
 	struct ows_alarm_entry entry = {
@@ -37,7 +41,7 @@ void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item 
 	s->attrs.flags |= OWS_ATTR_ALARM_STANDS;
 	lane->counters.alarms++;
 	if (channels & ~item->entered) {
-		entry = entry_of(s, OWS_ALARM_DEVICE, OWS_ALARM_RAISED, now_ns);
+		entry = alarm_entry(s, OWS_ALARM_DEVICE, OWS_ALARM_RAISED, now_ns);
 		memcpy(entry.latch, item->latch_text, strnlen(item->latch_text, sizeof(entry.latch)));
 		item->journal = image_alarm(e->image, &entry);
 		item->entered |= channels;
@@ -61,7 +65,7 @@ void engine_alarm_ended(struct engine *e, struct alarm_item *item)
 
 void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_ns)
 {
-	struct ows_alarm_entry entry = entry_of(&e->table.signals[item->row], OWS_ALARM_DEVICE,
+	struct ows_alarm_entry entry = alarm_entry(&e->table.signals[item->row], OWS_ALARM_DEVICE,
 	                                        OWS_ALARM_RETURNED, now_ns);
 
 	engine_alarm_ended(e, item);
@@ -72,29 +76,11 @@ void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_n
 	e->published = true;
 }
 
-int engine_alarm_value(struct engine *e, struct lane *lane, struct alarm_item *item,
-                       const struct slot *slot, const struct bus_answer *answer, int64_t now_ns)
-{
-	struct signal *s = &e->table.signals[item->row];
-	int64_t wait_ns;
-	int err;
-
-	if (!signal_reads(s))
-		return 0;
-	err = engine_take_reading(e, lane, s, slot, answer, now_ns, &wait_ns);
-	if (!err && item->wants_after && !signal_is_string(s)) {
-		image_alarm_after(e->image, item->journal, s->sample.value);
-		item->wants_after = false;
-	}
-	engine_publish(e, s);
-	return err;
-}
-
 void engine_power_on_reset(struct engine *e, struct lane *lane, const struct alarm_item *item,
                            int64_t now_ns)
 {
 	const struct device *d = &e->table.devices[item->device];
-	struct ows_alarm_entry entry = entry_of(&e->table.signals[item->row], OWS_ALARM_POR,
+	struct ows_alarm_entry entry = alarm_entry(&e->table.signals[item->row], OWS_ALARM_POR,
 	                                        OWS_ALARM_RAISED, now_ns);
 
 	image_alarm(e->image, &entry);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The table of the alarm machine, row by row as the manual has it, and the walk through it. */
 #include "alarm_fsm.h"
 
 #define RULING "ruling: "

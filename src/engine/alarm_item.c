@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* What an alarm item says, and the making of a lane's machine. */
-#include "alarm.h"
-
-#include "hal/path.h"
-
+/* Alarm items are made from the configuration here; they come to the machine of a lane and leave it. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "hal/path.h"
+#include "src/engine/alarm_item.h"
 
 /* "name=value" at its first '='; no '=': the value is not defined. */
 static void split_pair(const char *text, char *copy, const char **name, const char **value)
@@ -195,4 +194,27 @@ bool alarm_drop_item(struct alarm_machine *m, struct alarm_item *item)
 		return false;
 	m->in_work = false;
 	return true;
+}
+
+void alarm_restart(struct alarm_machine *m)
+{
+	if (m->state == NOT_USED)
+		return;
+	m->state = INIT;
+	m->position = m->init_position = m->arming = m->collecting = -1;
+	m->arm_writes = m->proving = false;
+	m->in_work = false;
+	m->in_a_row = 0;
+}
+
+bool alarm_serves(const struct alarm_machine *m)
+{
+	return m->count && !m->polls;
+}
+
+void alarm_output_differs(struct alarm_machine *m, uint32_t device)
+{
+	for (uint32_t k = 0; k < m->count; k++)
+		if (m->items[k]->device == device && m->items[k]->restarted)
+			m->items[k]->differs = true;
 }

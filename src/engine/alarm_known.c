@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* What the alarm machine has read and written in the present cycle. */
-#include "alarm_known.h"
-
-#include "private.h"
-
+/* What the alarm machine has read and written in the present cycle, looked up by device. */
 #include <string.h>
+
+#include "src/engine/alarm_known.h"
+#include "src/engine/state.h"
 
 struct signal *alarm_signal(struct engine *e, const struct alarm_item *item)
 {
@@ -17,7 +16,7 @@ struct alarm_item *alarm_current(struct alarm_machine *m)
 }
 
 /* The same device in the same cycle: what was done there need not be done again. */
-static bool same(const char *a, const char *b)
+static bool same_text(const char *a, const char *b)
 {
 	return a && b && strcmp(a, b) == 0;
 }
@@ -26,7 +25,7 @@ const struct alarm_item *alarm_por_known(const struct alarm_machine *m, const st
 {
 	for (uint32_t k = 0; k < m->count; k++)
 		if (m->items[k]->device == i->device && m->items[k]->por_cycle == m->cycle &&
-		    same(m->items[k]->strings.por, i->strings.por))
+		    same_text(m->items[k]->strings.por, i->strings.por))
 			return m->items[k];
 	return NULL;
 }
@@ -36,7 +35,7 @@ const struct alarm_item *alarm_latch_known(const struct alarm_machine *m,
 {
 	for (uint32_t k = 0; k < m->count; k++)
 		if (m->items[k]->device == i->device && m->items[k]->latch_cycle == m->cycle &&
-		    same(m->items[k]->strings.latch, i->strings.latch))
+		    same_text(m->items[k]->strings.latch, i->strings.latch))
 			return m->items[k];
 	return NULL;
 }
@@ -45,8 +44,8 @@ bool alarm_set_known(const struct alarm_machine *m, const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++)
 		if (m->items[k]->device == i->device && m->items[k]->set_cycle == m->cycle &&
-		    same(m->items[k]->strings.set, i->strings.set) &&
-		    same(m->items[k]->strings.set_value, i->strings.set_value))
+		    same_text(m->items[k]->strings.set, i->strings.set) &&
+		    same_text(m->items[k]->strings.set_value, i->strings.set_value))
 			return true;
 	return false;
 }
@@ -55,7 +54,7 @@ bool alarm_por_reset_known(const struct alarm_machine *m, const struct alarm_ite
 {
 	for (uint32_t k = 0; k < m->count; k++)
 		if (m->items[k]->device == i->device && m->items[k]->por_reset_cycle == m->cycle &&
-		    same(m->items[k]->strings.por, i->strings.por))
+		    same_text(m->items[k]->strings.por, i->strings.por))
 			return true;
 	return false;
 }
@@ -72,8 +71,8 @@ bool alarm_reset_known(const struct alarm_machine *m, const struct alarm_item *i
 {
 	for (uint32_t k = 0; k < m->count; k++)
 		if (m->items[k]->device == i->device && m->items[k]->reset_cycle == m->cycle &&
-		    same(m->items[k]->strings.reset, i->strings.reset) &&
-		    same(m->items[k]->strings.reset_value, i->strings.reset_value))
+		    same_text(m->items[k]->strings.reset, i->strings.reset) &&
+		    same_text(m->items[k]->strings.reset_value, i->strings.reset_value))
 			return true;
 	return false;
 }
@@ -85,7 +84,7 @@ int64_t alarm_to_collect(const struct alarm_machine *m, const struct alarm_item 
 		const struct alarm_item *other = m->items[k];
 
 		if (other != i && other->device == i->device && other->strings.latch &&
-		    *other->strings.latch && !same(other->strings.latch, i->strings.latch) &&
+		    *other->strings.latch && !same_text(other->strings.latch, i->strings.latch) &&
 		    other->collect_cycle != m->cycle && !alarm_latch_known(m, other))
 			return k;
 	}

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * What the alarm machine knows in the present cycle: an item of the same device may have read or
- * written it already, and then it is not done again. Private to the machine.
+ * written it already, and then it is not done again.
  */
 #ifndef ENGINE_ALARM_KNOWN_H
 #define ENGINE_ALARM_KNOWN_H
 
-#include "alarm.h"
+#include "src/engine/state.h"
 
 struct signal *alarm_signal(struct engine *e, const struct alarm_item *item);
 /* The item at iAlarmPos, NULL: none. */
@@ -26,10 +26,5 @@ bool alarm_reset_known(const struct alarm_machine *m, const struct alarm_item *i
 int64_t alarm_to_collect(const struct alarm_machine *m, const struct alarm_item *i);
 /* The next output below the device that gets its InitValue, a row of the table, -1: none. */
 int64_t alarm_next_init(struct engine *e, struct alarm_machine *m);
-
-/* The list of /alarm arrived, or failed. */
-void alarm_take_list(struct alarm_machine *m, struct lane *lane, const char *list, size_t len,
-                     int64_t now_ns);
-void alarm_list_failed(struct alarm_machine *m, struct lane *lane, int err, int64_t now_ns);
 
 #endif

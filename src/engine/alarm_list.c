@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* The list of devices in alarm. */
-#include "alarm_known.h"
-
-#include "hal/path.h"
-#include "private.h"
-
+/* The list of devices in alarm, /alarm: which alarm items it names, and a bus that has none. */
 #include <errno.h>
 #include <string.h>
+
+#include "hal/path.h"
+#include "src/engine/alarm_effect.h"
+#include "src/engine/alarm_known.h"
+#include "src/engine/alarm_list.h"
+#include "src/engine/publish.h"
+#include "src/engine/state.h"
+#include "src/log.h"
 
 #define LIST_WAIT_MAX 60000000000LL
 

@@ -2,8 +2,6 @@
 /* Texts of latches, flags and alarm conditions: what they say, and whether they agree. */
 #include "alarm_text.h"
 
-#include "alarm.h"
-
 #include "../signal/value.h"
 
 #include <errno.h>

@@ -7,6 +7,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Room for a text of an alarm item, bytes. */
+#define ALARM_TEXT 256
+
 /* 1, 0, or -EILSEQ: blanks trimmed; a list is non-zero if one entry is; also yes/no, on/off. */
 int alarm_non_zero(const char *text, size_t len);
 /*

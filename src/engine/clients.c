@@ -3,9 +3,14 @@
  * Whose commands are in force: the heartbeats of control programs, and what becomes of the commands
  * that the owsd before has left (section 3 of docs/semantics.md, "A command is in force").
  */
-#include "private.h"
-
 #include <string.h>
+
+#include "src/engine/clients.h"
+#include "src/engine/intake.h"
+#include "src/engine/publish.h"
+#include "src/engine/schedule.h"
+#include "src/engine/state.h"
+#include "src/log.h"
 
 /* A program that lives needs a cycle or two to learn that there is another owsd. */
 #define COME_BACK_NS 2000000000LL
@@ -28,7 +33,7 @@ static void put_safe(struct engine *e, struct signal *s)
 	e->counters.safe_outputs++;
 }
 
-void engine_resume(struct engine *e, struct signal *s, const struct command *c, int64_t now_ns)
+static void resume_command(struct engine *e, struct signal *s, const struct command *c, int64_t now_ns)
 {
 	struct command_client client = { 0 };
 
@@ -48,6 +53,24 @@ void engine_resume(struct engine *e, struct signal *s, const struct command *c, 
 	e->clients[c->client - 1] = (struct client){ true, true, client.pid, client.beat, now_ns };
 }
 
+void engine_resume(struct engine *e, int64_t now_ns)
+{
+	struct command c;
+
+	commands_load(e->commands, 0, &c);
+	e->driver_resets = c.dgn_reset;
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		struct signal *s = &e->table.signals[row];
+
+		commands_load(e->commands, s->record, &c);
+		s->one_shots = c.one_shot;
+		s->dgn_resets = c.dgn_reset;
+		s->acknowledged = c.acknowledged;
+		resume_command(e, s, &c, now_ns);
+		engine_intake_signal(e, s, now_ns);
+	}
+}
+
 void engine_give_up(struct engine *e, struct signal *s)
 {
 	s->client = 0;
@@ -59,7 +82,7 @@ void engine_give_up(struct engine *e, struct signal *s)
 }
 
 /* A program that ends in order takes its place off its commands. */
-static bool is_given_up(const struct engine *e, const struct signal *s)
+static bool is_signed_off(const struct engine *e, const struct signal *s)
 {
 	struct command c;
 
@@ -72,12 +95,12 @@ static bool is_given_up(const struct engine *e, const struct signal *s)
  * commanded before owsd's start is not repeated. Not all: another program sits there already, and
  * may have set some.
  */
-static void forget(struct engine *e, unsigned client, bool all)
+static void forget_client(struct engine *e, unsigned client, bool all)
 {
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
-		if (s->client != client + 1 || !(all || s->awaited || is_given_up(e, s)))
+		if (s->client != client + 1 || !(all || s->awaited || is_signed_off(e, s)))
 			continue;
 		s->client = 0;
 		if (!s->awaited)
@@ -90,7 +113,7 @@ static void forget(struct engine *e, unsigned client, bool all)
 }
 
 /* It beats for the first time since owsd's start: it lives, and its commands are in force. */
-static void welcome(struct engine *e, unsigned client, int64_t now_ns)
+static void welcome_client(struct engine *e, unsigned client, int64_t now_ns)
 {
 	unsigned kept = 0;
 
@@ -108,7 +131,7 @@ static void welcome(struct engine *e, unsigned client, int64_t now_ns)
 	         (unsigned)e->clients[client].pid, kept);
 }
 
-static void lose(struct engine *e, unsigned client)
+static void lose_client(struct engine *e, unsigned client)
 {
 	const struct client *known = &e->clients[client];
 	unsigned safe = 0;
@@ -133,7 +156,7 @@ static void lose(struct engine *e, unsigned client)
 	commands_drop_client(e->commands, client);
 }
 
-static int64_t patience(const struct client *known, const struct command_client *c)
+static int64_t client_patience(const struct client *known, const struct command_client *c)
 {
 	int64_t promised_ns = (c->period_ms ? c->period_ms : 1000) * 1000000LL;
 
@@ -149,18 +172,18 @@ void engine_clients(struct engine *e, int64_t now_ns)
 		commands_client(e->commands, i, &c);
 		if (!c.pid) {
 			if (known->known)
-				forget(e, i, true);
+				forget_client(e, i, true);
 			continue;
 		}
 		if (known->known && known->pid != c.pid)
-			forget(e, i, false);
+			forget_client(e, i, false);
 		if (!known->known || known->pid != c.pid || known->beat != c.beat) {
 			if (known->awaited)
-				welcome(e, i, now_ns);
+				welcome_client(e, i, now_ns);
 			*known = (struct client){ true, false, c.pid, c.beat, now_ns };
 			continue;
 		}
-		if (now_ns - known->heard_ns > patience(known, &c))
-			lose(e, i);
+		if (now_ns - known->heard_ns > client_patience(known, &c))
+			lose_client(e, i);
 	}
 }

@@ -1,18 +1,25 @@
 /* SPDX-License-Identifier: MIT */
-/* What the end of a request does to its signal: value, quality, retry, log. */
-#include "private.h"
-
-#include "../signal/error.h"
-#include "../signal/value.h"
-
+/* What the end of a read or a write does to its signal: value, quality, retry, log. */
 #include <errno.h>
 #include <string.h>
+
+#include "src/engine/alarm_item.h"
+#include "src/engine/completion.h"
+#include "src/engine/device_back.h"
+#include "src/engine/guard.h"
+#include "src/engine/place.h"
+#include "src/engine/retry.h"
+#include "src/engine/schedule.h"
+#include "src/engine/state.h"
+#include "src/log.h"
+#include "src/signal/error.h"
+#include "src/signal/value.h"
 
 /* How often an alarm item without PerFactor is read though no alarm came. */
 #define ALARM_ITEM_NS 60000000000LL
 
 /* "no such property: check its spelling", "device error: wrong checksum"; what says all, once. */
-static void say_failed(struct engine *e, const struct signal *s, const char *what, int err,
+static void report_failed(struct engine *e, const struct signal *s, const char *what, int err,
                        uint8_t quality)
 {
 	const char *text = ows_quality_text(quality);
@@ -66,7 +73,7 @@ static int64_t fail_read(struct engine *e, struct lane *lane, struct signal *s, 
 		engine_place(e, lane, s->device, ROUTE_FAILING);
 	if (s->sample.quality != quality) {
 		s->sample.quality = quality;
-		say_failed(e, s, "", err, quality);
+		report_failed(e, s, "", err, quality);
 	}
 	return wait_ns;
 }
@@ -84,15 +91,15 @@ static int64_t fail_write(struct engine *e, struct lane *lane, struct signal *s,
 	if (err == -ENODEV)
 		mark_absent(e, lane, s);
 	if (s->write_retry.failures == e->config->max_retries + 1)
-		say_failed(e, s, "cannot be written: ", err, quality);
+		report_failed(e, s, "cannot be written: ", err, quality);
 	if (!signal_reads(s))
 		s->sample.quality = quality;
 	return wait_ns;
 }
 
 /* A good reading proves that the device is there; that a write was taken only claims it. */
-static void succeed(struct engine *e, struct lane *lane, struct signal *s, uint8_t quality,
-                    bool proven, int64_t now_ns)
+static void request_succeeded(struct engine *e, struct lane *lane, struct signal *s, uint8_t quality,
+                    bool proven)
 {
 	struct device *d = s->device == TABLE_NO_DEVICE ? NULL : &e->table.devices[s->device];
 
@@ -107,14 +114,14 @@ static void succeed(struct engine *e, struct lane *lane, struct signal *s, uint8
 	else
 		engine_place_claimed(e, lane, s->device);
 	if (d && d->absent)
-		engine_device_back(e, lane, d, now_ns);
+		engine_device_back(lane, d);
 }
 
 /*
  * Can the chip have measured it? What a simulated target makes up need not be what a chip can
  * measure, and is marked.
  */
-static int doubt(struct lane *lane, struct signal *s, const struct bus_answer *answer,
+static int doubt_reading(struct lane *lane, struct signal *s, const struct bus_answer *answer,
                  double number, int64_t now_ns)
 {
 	if (!s->measured)
@@ -133,7 +140,7 @@ static int doubt(struct lane *lane, struct signal *s, const struct bus_answer *a
 }
 
 /* The value of an answer into the sample; 0, or why it cannot be one. */
-static int take_answer(struct lane *lane, struct signal *s, const struct slot *slot,
+static int take_read_value(struct lane *lane, struct signal *s, const struct slot *slot,
                        const struct bus_answer *answer, uint8_t *quality, int64_t now_ns)
 {
 	int64_t value;
@@ -155,7 +162,7 @@ static int take_answer(struct lane *lane, struct signal *s, const struct slot *s
 		err = value_from_text(s->item->type, (const char *)slot->data, answer->len, &value,
 		                      quality);
 	if (!err)
-		err = doubt(lane, s, answer, value_number(s->item->type, value), now_ns);
+		err = doubt_reading(lane, s, answer, value_number(s->item->type, value), now_ns);
 	if (!err)
 		s->sample.value = value;
 	return err;
@@ -165,7 +172,7 @@ static int take_answer(struct lane *lane, struct signal *s, const struct slot *s
  * An answer that was on its way while nobody ran may have been measured long before it was taken, and
  * its bus could not know: then it is as old as its request.
  */
-static int64_t time_of(const struct engine *e, const struct slot *slot,
+static int64_t time_of_reading(const struct engine *e, const struct slot *slot,
                        const struct bus_answer *answer, int64_t now_ns)
 {
 	int64_t measured_ns = answer->measured_ns ? answer->measured_ns : now_ns;
@@ -174,7 +181,7 @@ static int64_t time_of(const struct engine *e, const struct slot *slot,
 }
 
 /* An output that changes though nothing was written may be that of a device that has restarted. */
-static void look_back(struct lane *lane, struct signal *s)
+static void compare_written(struct lane *lane, struct signal *s)
 {
 	bool agrees;
 
@@ -191,17 +198,17 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
                         int64_t *wait_ns)
 {
 	uint8_t quality = OWS_Q_GOOD;
-	int err = take_answer(lane, s, slot, answer, &quality, now_ns);
+	int err = take_read_value(lane, s, slot, answer, &quality, now_ns);
 
 	*wait_ns = 0;
 	switch (failure_of(err)) {
 	case FAILURE_NONE:
 		lane->counters.reads++;
-		signal_update(s, e->period, time_of(e, slot, answer, now_ns), now_ns);
+		signal_update(s, e->period, time_of_reading(e, slot, answer, now_ns), now_ns);
 		s->sample.detail = answer->detail;
 		retry_clear(&s->read_retry);
-		succeed(e, lane, s, quality, true, now_ns);
-		look_back(lane, s);
+		request_succeeded(e, lane, s, quality, true);
+		compare_written(lane, s);
 		break;
 	case FAILURE_ITEM:
 		*wait_ns = fail_read(e, lane, s, err);
@@ -255,7 +262,7 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	if (s->write_retry.failures > e->config->max_retries && signal_reads(s))
 		log_info(e->log, "%s (%s): written again", s->item->name, s->item->path);
 	/* first, for a device that comes back forgets what was written, but for this */
-	succeed(e, lane, s, OWS_Q_GOOD, false, now_ns);
+	request_succeeded(e, lane, s, OWS_Q_GOOD, false);
 	s->confirmed = true;
 	s->agrees = false;
 	s->written = slot->value;
@@ -299,97 +306,5 @@ void engine_write_done(struct engine *e, struct lane *lane, const struct slot *s
 	case FAILURE_VOID:
 		engine_write_check(e, s);
 		break;
-	}
-}
-
-void engine_structure_done(struct engine *e, struct lane *lane, const struct slot *slot,
-                           const struct bus_answer *answer)
-{
-	const struct structure_check *check = &e->structure.checks[slot->row];
-	struct structure_entry entry;
-
-	if (failure_of(answer->err) == FAILURE_TARGET) {
-		due_set_add(&lane->checks, slot->row);
-		return;
-	}
-	if (answer->err || structure_parse((const char *)slot->data, answer->len, &entry))
-		return;
-	for (uint32_t i = 0; i < check->count; i++) {
-		struct signal *s = &e->table.signals[e->structure.rows[check->first + i]];
-		const char *fault;
-		int err = structure_fault(&entry, s->item, &fault);
-
-		if (!err || s->lane != lane->index)
-			continue;
-		s->sample.quality = failure_quality(err);
-		s->sample.err = err;
-		log_err(e->log, "%s (line %d): %s does not fit: %s", s->item->name, s->item->line,
-		        s->item->path, fault);
-		engine_publish(e, s);
-	}
-}
-
-void engine_lane_down(struct engine *e, struct lane *lane, int err, int64_t now_ns)
-{
-	(void)now_ns;
-	alarm_restart(&lane->alarm);
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		struct signal *s = &e->table.signals[row];
-
-		if (s->lane != lane->index || (s->sample.quality == OWS_Q_DISABLED &&
-		                               !s->item->output && !signal_reads(s)))
-			continue;
-		if (!s->held) {
-			s->held = true;
-			s->held_quality = s->sample.quality;
-			s->held_err = s->sample.err;
-		}
-		s->sample.quality = OWS_Q_TARGET;
-		s->sample.err = err;
-		engine_publish(e, s);
-	}
-}
-
-void engine_lane_up(struct engine *e, struct lane *lane, int64_t now_ns)
-{
-	alarm_ask_again(&lane->alarm, lane, now_ns);
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		struct signal *s = &e->table.signals[row];
-
-		if (s->lane != lane->index)
-			continue;
-		retry_clear(&s->read_retry);
-		retry_clear(&s->write_retry);
-		due_wheel_cancel(&e->wheel, row * 2 + 1);
-		engine_read_now(e, s);
-		engine_write_check(e, s);
-		/* what is not read again stands as it stood */
-		if (s->held && !signal_reads(s) && s->sample.quality == OWS_Q_TARGET) {
-			s->sample.quality = s->held_quality;
-			s->sample.err = s->held_err;
-			engine_publish(e, s);
-		}
-		s->held = false;
-	}
-}
-
-void engine_device_back(struct engine *e, struct lane *lane, struct device *device,
-                        int64_t now_ns)
-{
-	(void)now_ns;
-	device->absent = false;
-	lane->counters.device_returns++;
-	for (uint32_t i = 0; i < device->count; i++) {
-		struct signal *s = &e->table.signals[e->table.device_rows[device->first + i]];
-
-		if (s->lane != lane->index)
-			continue;
-		retry_clear(&s->read_retry);
-		retry_clear(&s->write_retry);
-		due_wheel_cancel(&e->wheel, engine_row(s) * 2 + 1);
-		alarm_rearm(&lane->alarm, e, s->device);
-		s->confirmed = false;
-		engine_read_now(e, s);
-		engine_write_check(e, s);
 	}
 }

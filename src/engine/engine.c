@@ -1,10 +1,27 @@
 /* SPDX-License-Identifier: MIT */
-/* The engine as a whole: made, stepped, given answers and events, and ended. */
-#include "private.h"
-
+/* The engine as a whole: it is made and ended here, stepped, and given answers and events. */
 #include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
+
+#include "src/engine/alarm_item.h"
+#include "src/engine/ask.h"
+#include "src/engine/clients.h"
+#include "src/engine/counters.h"
+#include "src/engine/due.h"
+#include "src/engine/engine.h"
+#include "src/engine/group.h"
+#include "src/engine/guests.h"
+#include "src/engine/intake.h"
+#include "src/engine/lane.h"
+#include "src/engine/lane_answer.h"
+#include "src/engine/lane_event.h"
+#include "src/engine/place.h"
+#include "src/engine/publish.h"
+#include "src/engine/routing.h"
+#include "src/engine/schedule.h"
+#include "src/engine/state.h"
+#include "src/log.h"
 
 int engine_create(const struct engine_setup *setup, struct engine **engine)
 {
@@ -41,7 +58,7 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 			e->lane_count++;
 	}
 	if (!err)
-		err = engine_groups_init(e, setup);
+		err = engine_groups_init(e, setup->ports);
 	if (!err)
 		err = engine_places_init(e);
 	if (err) {
@@ -58,7 +75,7 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 		engine_read_now(e, &e->table.signals[row]);
 		engine_write_check(e, &e->table.signals[row]);
 	}
-	engine_intake_all(e, setup->start_ns);
+	engine_resume(e, setup->start_ns);
 	for (uint32_t row = 0; row < e->table.count; row++)
 		engine_publish(e, &e->table.signals[row]);
 	for (unsigned i = 0; i < e->lane_count; i++)
@@ -90,7 +107,7 @@ void engine_destroy(struct engine *e)
 /* So late nobody ran: the machine was suspended, or owsd stopped. */
 #define GAP_NS INT64_C(2000000000)
 
-static void begin(struct engine *e, int64_t now_ns)
+static void begin_call(struct engine *e, int64_t now_ns)
 {
 	if (e->next_ns && now_ns - e->next_ns > GAP_NS)
 		e->gap_ns = now_ns;
@@ -101,17 +118,17 @@ void engine_answer(struct engine *e, unsigned port, const struct bus_answer *ans
                    int64_t now_ns)
 {
 	assert(port < e->lane_count);
-	begin(e, now_ns);
+	begin_call(e, now_ns);
 	lane_answer(&e->lanes[port], answer, now_ns);
-	engine_places_turn(e, now_ns);
+	engine_route(e, now_ns);
 }
 
 void engine_event(struct engine *e, unsigned port, const struct bus_event *event, int64_t now_ns)
 {
 	assert(port < e->lane_count);
-	begin(e, now_ns);
+	begin_call(e, now_ns);
 	lane_event(&e->lanes[port], event, now_ns);
-	engine_places_turn(e, now_ns);
+	engine_route(e, now_ns);
 }
 
 int64_t engine_step(struct engine *e, int64_t now_ns)
@@ -119,11 +136,11 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 	uint64_t before = e->period;
 	int64_t next, groups, deferred;
 
-	begin(e, now_ns);
+	begin_call(e, now_ns);
 	e->counters.steps++;
 	engine_turn(e, now_ns);
 	deferred = engine_intake_limited(e, now_ns);
-	engine_guests_take(e, now_ns);
+	guests_take(e, now_ns);
 	if (e->period != before) {
 		engine_clients(e, now_ns);
 		engine_publish_counters(e);
@@ -132,14 +149,14 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 	next = e->start_ns + (int64_t)(e->period - e->first + 1) * e->config->period_ns;
 	if (deferred < next)
 		next = deferred;
-	groups = engine_groups_turn(e, now_ns);
+	groups = engine_route_groups(e, now_ns);
 	if (groups < next)
 		next = groups;
 	for (unsigned i = 0; i < e->lane_count; i++) {
 		int64_t timeout = lane_timeouts(&e->lanes[i], now_ns);
 		int64_t alarm;
 
-		engine_places_turn(e, now_ns);
+		engine_route(e, now_ns);
 		lane_fill(&e->lanes[i], now_ns);
 		/* what was lent just now included */
 		if (e->lanes[i].lent && now_ns + e->config->timeout_ns + LANE_GRACE_NS < timeout)

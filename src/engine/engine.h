@@ -1,36 +1,38 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The engine: owns the signal table, drives its lanes and publishes into the image. It does no I/O
+ * The engine: it owns the signal table, drives its lanes and publishes into the image. It does no I/O
  * and knows no clock: time is an argument, answers and events are brought to it, and requests leave
  * through the ports. One thread. So a day of its life is tested in milliseconds.
+ *
+ * This room may touch src/signal, src/config/config.h, src/shm, the log, and of hal the bus contract
+ * and the paths. Its files form a stack: a file uses files of its own layer and of those below it, and
+ * no two files use each other. state.h has the structures that all of them work on, and says which
+ * file changes what; each other header declares what its own .c defines.
+ *
+ *   step                 engine (makes it, and takes the calls), adopt (a reload)
+ *   events and answers   lane_event, lane_answer: what happened, recorded as facts; ask: what is next
+ *   routing              routing: acts on the facts, opens ways, moves devices
+ *   moves                move, lane_state (a target goes up and fails)
+ *   alarm and guests     alarm (the machine), guests
+ *   reading and writing  completion, device_back, intake, clients, place, doubt, types
+ *   alarm items          alarm_arm, alarm_list, alarm_effect, alarm_known
+ *   schedule, publish    schedule, publish, limits, counters
+ *   slots and table      lane, slots, disown, group, trace, alarm_item, table, structure, due
+ *   pure functions       route, adoption, limit, guard, retry, alarm_fsm, alarm_text
  */
 #ifndef ENGINE_ENGINE_H
 #define ENGINE_ENGINE_H
 
-#include "../config/config.h"
-#include "../log.h"
-#include "../shm/commands.h"
-#include "../shm/image.h"
+#include <stdbool.h>
+#include <stdint.h>
+
 #include "hal/bus.h"
-
-#include "guest.h"
-
-/* One target, as the engine reaches it. */
-struct engine_port {
-	const char *target; /* for the log; lives as long as the engine */
-	unsigned depth;     /* requests it takes before an answer */
-	bool searches;      /* its list of /alarm can be kept to families: "/alarm/29,12" */
-	/* 0 or -EAGAIN; never blocks. The request is lent until its answer. */
-	int (*submit)(void *ctx, struct bus_req *req);
-	void *ctx;
-	/*
-	 * Ways to one wire (a bar) have the same number; groups are numbered in the order in which they
-	 * are written, and their ways stand in it too. All but the first way of a group start suspended.
-	 */
-	unsigned group;
-	/* bus_ops.suspend; never blocks. NULL: nothing to let go of. */
-	void (*suspend)(void *ctx, bool yes);
-};
+#include "src/config/config.h"
+#include "src/engine/guest.h"
+#include "src/engine/port.h"
+#include "src/log.h"
+#include "src/shm/commands.h"
+#include "src/shm/image.h"
 
 struct engine_setup {
 	const struct config *config;
@@ -50,7 +52,7 @@ int engine_create(const struct engine_setup *setup, struct engine **engine);
 /* The buses must have given back what was lent, or never will. */
 void engine_destroy(struct engine *engine);
 
-/* What a bus told. Unknown and repeated ids are counted and ignored. */
+/* What a bus has answered and reported. Unknown and repeated ids are counted and ignored. */
 void engine_answer(struct engine *engine, unsigned port, const struct bus_answer *answer,
                    int64_t now_ns);
 void engine_event(struct engine *engine, unsigned port, const struct bus_event *event,
@@ -70,13 +72,5 @@ bool engine_published(struct engine *engine);
  * with this one, which is empty and which no consumer has seen yet. What was commanded goes in.
  */
 void engine_take_commands(struct engine *engine, struct commands *commands, int64_t now_ns);
-
-/*
- * Counters: the engine's own first, then LANE_COUNTERS for each port; the image is planned with
- * these names. engine_counter_count() counts both.
- */
-unsigned engine_counter_count(unsigned port_count);
-void engine_counter_plan(unsigned port_count, struct image_counter *counters);
-uint64_t engine_counter(const struct engine *engine, unsigned index);
 
 #endif

@@ -20,7 +20,7 @@ struct engine_guest {
 	uint8_t op; /* enum bus_op */
 	bool fresh;
 	int lane;   /* or GUEST_ANY_LANE */
-	uint32_t generation; /* of the image that counts lane so; answered: that counts served so */
+	uint32_t generation; /* of the image that numbers the lanes as lane does; when it is answered, as served does */
 	const char *path;
 	uint8_t *data; /* as in struct bus_req */
 	uint32_t len, offset;

@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* What programs have set in the command segment, checked and taken into the signals. */
-#include "private.h"
-
-#include "../signal/value.h"
-
+/* The engine looks into the command segment, checks what programs have set there, and takes it. */
 #include <errno.h>
 #include <string.h>
+
+#include "src/engine/intake.h"
+#include "src/engine/limits.h"
+#include "src/engine/publish.h"
+#include "src/engine/retry.h"
+#include "src/engine/schedule.h"
+#include "src/engine/state.h"
+#include "src/log.h"
+#include "src/signal/value.h"
 
 /* A writer that holds a string's claim for longer has died. */
 #define CLAIM_NS 1000000000LL
@@ -18,7 +23,7 @@
 #define LOOKS_SPAN_NS 1000000000LL
 #define DEFER_NS      10000000LL
 
-static void refuse(struct engine *e, struct signal *s, int err, int64_t now_ns)
+static void refuse_command(struct engine *e, struct signal *s, int err, int64_t now_ns)
 {
 	char others[LOG_OTHERS];
 	uint64_t n = log_rate(&e->refused, now_ns);
@@ -48,7 +53,7 @@ static void remember_busy(struct engine *e, uint32_t slot, int64_t now_ns)
 }
 
 /* 0 taken, -EBUSY to be looked at again, other: refused. */
-static int take_text(struct engine *e, struct signal *s)
+static int take_command_text(struct engine *e, struct signal *s)
 {
 	char text[TABLE_TEXT_CAP + 1];
 	int len = commands_text(e->commands, s->record, text);
@@ -73,14 +78,14 @@ static uint32_t client_of(struct engine *e, const struct command *c)
 	return client.pid ? c->client : 0;
 }
 
-static void take_value(struct engine *e, struct signal *s, const struct command *c, int64_t now_ns)
+static void take_command(struct engine *e, struct signal *s, const struct command *c, int64_t now_ns)
 {
 	int err = 0;
 
 	if (!config_item_takes_sets(s->item))
 		err = -EROFS;
 	else if (signal_is_string(s))
-		err = take_text(e, s);
+		err = take_command_text(e, s);
 	else if (!value_holds(s->item->type, c->value))
 		err = -ERANGE;
 	if (err == -EBUSY) {
@@ -90,7 +95,7 @@ static void take_value(struct engine *e, struct signal *s, const struct command 
 	s->stamp = c->stamp;
 	s->awaited = false;
 	if (err) {
-		refuse(e, s, err, now_ns);
+		refuse_command(e, s, err, now_ns);
 		return;
 	}
 	if (!signal_is_string(s))
@@ -102,7 +107,7 @@ static void take_value(struct engine *e, struct signal *s, const struct command 
 	e->counters.commands++;
 }
 
-static void enable(struct signal *s, uint8_t commanded, uint32_t flag)
+static void take_enable(struct signal *s, uint8_t commanded, uint32_t flag)
 {
 	if (commanded == 2)
 		s->attrs.flags |= flag;
@@ -114,9 +119,9 @@ static void take_enables(struct engine *e, struct signal *s, const struct comman
 {
 	bool read_before = signal_reads(s), write_before = signal_writes(s);
 
-	enable(s, c->read_enable, OWS_ATTR_READ_ENABLE);
+	take_enable(s, c->read_enable, OWS_ATTR_READ_ENABLE);
 	if (config_item_takes_sets(s->item))
-		enable(s, c->write_enable, OWS_ATTR_WRITE_ENABLE);
+		take_enable(s, c->write_enable, OWS_ATTR_WRITE_ENABLE);
 	if (signal_reads(s) && !read_before) {
 		retry_clear(&s->read_retry);
 		engine_read_now(e, s);
@@ -142,7 +147,7 @@ void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
 	commands_load(e->commands, s->record, &c);
 	/* 0 is no command: a segment that a consumer truncated is all 0 */
 	if (c.stamp && c.stamp != s->stamp)
-		take_value(e, s, &c, now_ns);
+		take_command(e, s, &c, now_ns);
 	take_enables(e, s, &c);
 	if (c.one_shot && c.one_shot != s->one_shots) {
 		s->one_shots = c.one_shot;
@@ -160,7 +165,7 @@ void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
 	engine_write_check(e, s);
 }
 
-static void take_driver(struct engine *e, int64_t now_ns)
+static void take_driver_reset(struct engine *e, int64_t now_ns)
 {
 	struct command c;
 
@@ -177,12 +182,12 @@ static void take_driver(struct engine *e, int64_t now_ns)
 	log_info(e->log, "diagnostics of all signals reset");
 }
 
-static void look_at(struct engine *e, uint32_t slot, int64_t now_ns)
+static void look_at_slot(struct engine *e, uint32_t slot, int64_t now_ns)
 {
 	struct signal *s;
 
 	if (slot == 0) {
-		take_driver(e, now_ns);
+		take_driver_reset(e, now_ns);
 	} else if (slot <= e->table.count) {
 		s = &e->table.signals[slot - 1];
 		engine_intake_signal(e, s, now_ns);
@@ -205,7 +210,7 @@ static void look_at_busy(struct engine *e, int64_t now_ns)
 			log_warning(e->log, "%s: a program died while it set this text",
 			            e->table.signals[again - 1].item->name);
 		}
-		look_at(e, again, now_ns);
+		look_at_slot(e, again, now_ns);
 		if (e->busy_count && e->busy_slot[e->busy_count - 1] == again)
 			e->busy_since_ns[e->busy_count - 1] = since;
 	}
@@ -219,7 +224,7 @@ static bool look_at_marked(struct engine *e, uint32_t *from, uint32_t *looks, in
 
 		if (slot < 0)
 			return true;
-		look_at(e, (uint32_t)slot, now_ns);
+		look_at_slot(e, (uint32_t)slot, now_ns);
 		*from = (uint32_t)slot + 1;
 		--*looks;
 	}
@@ -267,22 +272,4 @@ int64_t engine_intake_limited(struct engine *e, int64_t now_ns)
 	e->counters.deferred_commands++;
 	e->defer_ns = now_ns + DEFER_NS;
 	return e->defer_ns;
-}
-
-void engine_intake_all(struct engine *e, int64_t now_ns)
-{
-	struct command c;
-
-	commands_load(e->commands, 0, &c);
-	e->driver_resets = c.dgn_reset;
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		struct signal *s = &e->table.signals[row];
-
-		commands_load(e->commands, s->record, &c);
-		s->one_shots = c.one_shot;
-		s->dgn_resets = c.dgn_reset;
-		s->acknowledged = c.acknowledged;
-		engine_resume(e, s, &c, now_ns);
-		engine_intake_signal(e, s, now_ns);
-	}
 }

@@ -1,39 +1,22 @@
 /* SPDX-License-Identifier: MIT */
-/* What a bus tells by itself, and a bus that tells nothing. */
-#include "private.h"
-
+/* What a bus reports by itself becomes facts of its lane, of its way and of devices. */
 #include <errno.h>
-#include <stdlib.h>
 #include <string.h>
 
-void lane_up(struct lane *lane, const char *text, int64_t now_ns)
-{
-	struct engine *e = lane->engine;
-
-	if (lane->up)
-		return;
-	lane->up = true;
-	engine_group(e, lane)->quiet = false;
-	engine_way(e, lane)->up = true;
-	engine_way(e, lane)->failed = lane->stuck;
-	engine_way(e, lane)->up_ns = now_ns;
-	if (lane->was_up) {
-		lane->counters.reconnects++;
-		e->reconnects++;
-	}
-	log_notice(e->log, "%s: from down to up%s%s", lane->port->target, *text ? ": " : "", text);
-	lane->was_up = true;
-	engine_publish_target(e, lane);
-	engine_publish_driver(e, now_ns);
-	engine_lane_up(e, lane, now_ns);
-	engine_group_check(e, lane->port->group, now_ns);
-}
+#include "src/engine/device_back.h"
+#include "src/engine/doubt.h"
+#include "src/engine/lane_event.h"
+#include "src/engine/lane_state.h"
+#include "src/engine/place.h"
+#include "src/engine/publish.h"
+#include "src/engine/state.h"
+#include "src/log.h"
 
 /*
  * A server with a cache may give the same value again and again, and nobody sees that: once for each
  * target, those are named who ask it more often than it looks.
  */
-static void say_cached(const struct lane *lane, int64_t cache_ns)
+static void report_cached(const struct lane *lane, int64_t cache_ns)
 {
 	const struct engine *e = lane->engine;
 	const struct signal *first = NULL;
@@ -57,23 +40,7 @@ static void say_cached(const struct lane *lane, int64_t cache_ns)
 		           first->item->name, count > 1 ? ", ..." : "");
 }
 
-/* Whatever another target does not take over goes bad. */
-static void fail(struct lane *lane, int err, int64_t now_ns)
-{
-	struct engine *e = lane->engine;
-	struct route_way *way = engine_way(e, lane);
-
-	if (!way->failed)
-		way->failed_ns = now_ns;
-	way->failed = true;
-	way->up = false;
-	lane_forget_probes(lane);
-	lane_disown_alarm(lane);
-	engine_group_check(e, lane->port->group, now_ns);
-	engine_lane_down(e, lane, err, now_ns);
-}
-
-static void go_down(struct lane *lane, int err, const char *text, int64_t now_ns)
+static void down_event(struct lane *lane, int err, const char *text, int64_t now_ns)
 {
 	struct engine *e = lane->engine;
 
@@ -83,37 +50,13 @@ static void go_down(struct lane *lane, int err, const char *text, int64_t now_ns
 	lane->up = false;
 	lane->counters.target_failures++;
 	engine_publish_target(e, lane);
-	fail(lane, err, now_ns);
+	lane_fail(lane, err, now_ns);
 }
 
-static int compare_rom(const void *rom, const void *device)
-{
-	return memcmp(rom, ((const struct device *)device)->rom, 8);
-}
-
-/* Those with a ROM id stand first, in its order. */
-static uint32_t device_of(struct engine *e, const uint8_t rom[8])
-{
-	const struct device *d;
-	uint32_t roms = 0;
-
-	for (uint32_t low = 0, high = e->table.device_count; low < high;) {
-		uint32_t middle = low + (high - low) / 2;
-
-		if (e->table.devices[middle].has_rom)
-			low = middle + 1;
-		else
-			high = middle;
-		roms = low;
-	}
-	d = bsearch(rom, e->table.devices, roms, sizeof(*d), compare_rom);
-	return d ? (uint32_t)(d - e->table.devices) : TABLE_NO_DEVICE;
-}
-
-static void device_event(struct lane *lane, const struct bus_event *event, int64_t now_ns)
+static void device_event(struct lane *lane, const struct bus_event *event)
 {
 	struct engine *e = lane->engine;
-	uint32_t index = device_of(e, event->rom);
+	uint32_t index = table_device(&e->table, event->rom);
 	struct device *device;
 
 	if (index == TABLE_NO_DEVICE)
@@ -129,11 +72,11 @@ static void device_event(struct lane *lane, const struct bus_event *event, int64
 		device->absent = true;
 		engine_place(e, lane, index, ROUTE_ABSENT);
 	} else if (event->news == BUS_POR || device->absent) {
-		engine_device_back(e, lane, device, now_ns);
+		engine_device_back(lane, device);
 	}
 }
 
-static void said_up(struct lane *lane, const struct bus_event *event, int64_t now_ns)
+static void up_event(struct lane *lane, const struct bus_event *event, int64_t now_ns)
 {
 	struct route_way *way = engine_way(lane->engine, lane);
 
@@ -143,7 +86,7 @@ static void said_up(struct lane *lane, const struct bus_event *event, int64_t no
 
 		lane_up(lane, event->text, now_ns);
 		if (first && event->cache_ns)
-			say_cached(lane, event->cache_ns);
+			report_cached(lane, event->cache_ns);
 	} else if (!lane->port->suspend && !way->back) { /* it cannot say so otherwise */
 		way->back = true;
 		way->back_ns = now_ns;
@@ -167,7 +110,7 @@ static void suspended_event(struct lane *lane, const struct bus_event *event, in
 		engine_publish_target(e, lane);
 		engine_doubts(e);
 	}
-	engine_group_check(e, lane->port->group, now_ns);
+	engine_group(e, lane)->asks = true;
 }
 
 void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns)
@@ -175,18 +118,18 @@ void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns
 	lane->heard_ns = now_ns;
 	switch ((enum bus_news)event->news) {
 	case BUS_UP:
-		said_up(lane, event, now_ns);
+		up_event(lane, event, now_ns);
 		break;
 	case BUS_DOWN:
 		lane->said_up = false;
 		if (lane->open)
-			go_down(lane, event->err, event->text, now_ns);
+			down_event(lane, event->err, event->text, now_ns);
 		break;
 	case BUS_FOUND:
 	case BUS_POR:
 	case BUS_LOST:
 		if (lane->open)
-			device_event(lane, event, now_ns);
+			device_event(lane, event);
 		break;
 	case BUS_RELEASED:
 	case BUS_BACK:
@@ -196,34 +139,4 @@ void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns
 		log_notice(lane->engine->log, "%s: %s", lane->port->target, event->text);
 		break;
 	}
-}
-
-/*
- * The bus said nothing at all since the request began, or all it takes was given up: it is stuck,
- * not one device slow.
- */
-void lane_stuck(struct lane *lane, int64_t now_ns)
-{
-	lane->stuck = true;
-	if (!lane->open)
-		return;
-	log_err(lane->engine->log, "%s: no answer at all within Timeout", lane->port->target);
-	lane->counters.target_failures++;
-	fail(lane, -ETIMEDOUT, now_ns);
-}
-
-void lane_unstuck(struct lane *lane, int64_t now_ns)
-{
-	struct engine *e = lane->engine;
-	struct route_way *way = engine_way(e, lane);
-
-	lane->stuck = false;
-	log_notice(e->log, "%s: answers again", lane->port->target);
-	if (!lane->up)
-		return;
-	way->failed = false;
-	way->up = true;
-	way->up_ns = now_ns;
-	engine_lane_up(e, lane, now_ns);
-	engine_group_check(e, lane->port->group, now_ns);
 }

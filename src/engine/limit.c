@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The limit alarms of one signal: conditions, their delays, their rank, and the state of the alarm. */
 #include "limit.h"
 
 #define BIT(kind) ((uint16_t)(1u << (kind)))

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* Limit alarms in the engine: what is known of a signal goes in, journal and state come out. */
-#include "private.h"
+/* The limit alarms of a signal: what is known of the signal goes in, journal and state come out. */
+#include "src/engine/due.h"
+#include "src/engine/limit.h"
+#include "src/engine/limits.h"
+#include "src/engine/state.h"
+#include "src/log.h"
+#include "src/signal/value.h"
 
-#include "../signal/value.h"
-
-static void enter(struct engine *e, const struct signal *s, uint8_t kind, uint8_t event)
+static void journal_limit(struct engine *e, const struct signal *s, uint8_t kind, uint8_t event)
 {
 	struct ows_alarm_entry entry = {
 		.record = s->record,
@@ -26,12 +29,12 @@ static void enter(struct engine *e, const struct signal *s, uint8_t kind, uint8_
 	e->published = true;
 }
 
-static void enter_raised(struct engine *e, struct signal *s, uint8_t kind)
+static void limit_raised(struct engine *e, struct signal *s, uint8_t kind)
 {
 	uint64_t n = log_rate(&s->limit_log, e->now_ns);
 	char others[LOG_OTHERS];
 
-	enter(e, s, kind, OWS_ALARM_RAISED);
+	journal_limit(e, s, kind, OWS_ALARM_RAISED);
 	s->limit_said |= n != 0;
 	if (n)
 		log_warning(e->log, "%s: alarm: %s%s", s->item->name, ows_alarm_kind_text(kind),
@@ -39,22 +42,22 @@ static void enter_raised(struct engine *e, struct signal *s, uint8_t kind)
 }
 
 /* Where the log has the one it has the other: it does not end with an alarm that is over. */
-static void enter_returned(struct engine *e, struct signal *s, uint8_t kind)
+static void limit_returned(struct engine *e, struct signal *s, uint8_t kind)
 {
-	enter(e, s, kind, OWS_ALARM_RETURNED);
+	journal_limit(e, s, kind, OWS_ALARM_RETURNED);
 	if (s->limit_said)
 		log_notice(e->log, "%s: alarm: %s: returned to normal", s->item->name,
 		           ows_alarm_kind_text(kind));
 	s->limit_said = false;
 }
 
-static void show(struct signal *s)
+static void show_limit(struct signal *s)
 {
 	s->attrs.limit_state = (uint8_t)s->limit.state;
 	s->attrs.limit_condition = s->limit.kind;
 }
 
-static void take_value(struct signal *s)
+static void keep_limit_value(struct signal *s)
 {
 	if (s->sample.count == s->limit_count)
 		return;
@@ -78,7 +81,7 @@ void engine_limits(struct engine *e, struct signal *s)
 		due_wheel_cancel(&e->limit_wheel, engine_row(s));
 		return;
 	}
-	take_value(s);
+	keep_limit_value(s);
 	if (s->item->stale_after_ns)
 		stale_at = s->item->stale_after_ns + 1 +
 		           (s->sample.measured_ns ? s->sample.measured_ns : s->known_ns);
@@ -90,10 +93,10 @@ void engine_limits(struct engine *e, struct signal *s)
 	reading.stale = !reading.bad && e->now_ns >= stale_at;
 	next = limit_evaluate(&s->limit, limits, &reading, e->now_ns, &news);
 	if (news.returned)
-		enter_returned(e, s, news.returned);
+		limit_returned(e, s, news.returned);
 	if (news.raised)
-		enter_raised(e, s, news.raised);
-	show(s);
+		limit_raised(e, s, news.raised);
+	show_limit(s);
 	if (!reading.bad && !reading.stale && stale_at < next)
 		next = stale_at;
 	if (next == INT64_MAX)
@@ -108,6 +111,6 @@ void engine_limits_acknowledge(struct engine *e, struct signal *s)
 
 	if (!kind)
 		return;
-	enter(e, s, kind, OWS_ALARM_ACKNOWLEDGED);
-	show(s);
+	journal_limit(e, s, kind, OWS_ALARM_ACKNOWLEDGED);
+	show_limit(s);
 }

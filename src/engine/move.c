@@ -1,17 +1,26 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The only place where a signal's lane changes. A value from before the move is never shown as good,
- * what was written is forgotten, and what is still with the old bus counts for nothing any more.
+ * A signal moves to another lane here and nowhere else. A value from before the move is never shown as
+ * good, what was written is forgotten, and requests that the old bus still has count for nothing.
  */
-#include "alarm_known.h"
-#include "private.h"
-
 #include <errno.h>
 
-#include <string.h>
+#include "src/engine/alarm_item.h"
+#include "src/engine/alarm_known.h"
+#include "src/engine/disown.h"
+#include "src/engine/doubt.h"
+#include "src/engine/due.h"
+#include "src/engine/lane.h"
+#include "src/engine/move.h"
+#include "src/engine/place.h"
+#include "src/engine/publish.h"
+#include "src/engine/retry.h"
+#include "src/engine/schedule.h"
+#include "src/engine/state.h"
+#include "src/log.h"
 
 /* Old values are the last usable ones at best; what was bad stays so until something is read. */
-static void degrade(struct signal *s)
+static void degrade_signal(struct signal *s)
 {
 	if (s->held && !signal_reads(s)) {
 		s->sample.quality = s->held_quality;
@@ -25,7 +34,7 @@ static void degrade(struct signal *s)
 	s->sample.err = 0;
 }
 
-static void move(struct engine *e, struct signal *s, struct lane *to)
+static void move_signal(struct engine *e, struct signal *s, struct lane *to)
 {
 	struct lane *from = engine_lane(e, s);
 	uint32_t row = engine_row(s);
@@ -40,13 +49,13 @@ static void move(struct engine *e, struct signal *s, struct lane *to)
 	s->confirmed = false;
 	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_POLLED;
 	s->sample.target = (uint8_t)to->index;
-	degrade(s);
+	degrade_signal(s);
 	lane_take_row(to, row);
 	to->counters.moves_in++;
 }
 
 /* Once the old lane has disowned what it had of it. */
-static void go_on(struct engine *e, struct signal *s)
+static void signal_goes_on(struct engine *e, struct signal *s)
 {
 	if (s->doubts) {
 		s->write_err = -EINPROGRESS;
@@ -82,7 +91,7 @@ static bool has_alarms(const struct engine *e, const struct device *d)
 	return false;
 }
 
-static void say(struct engine *e, const struct device *d, const struct lane *from,
+static void report_move(struct engine *e, const struct device *d, const struct lane *from,
                 const struct lane *to, const char *why)
 {
 	const struct signal *s = &e->table.signals[e->table.device_rows[d->first]];
@@ -98,17 +107,17 @@ void engine_move_device(struct engine *e, struct device *d, struct lane *to, con
 	const uint32_t *rows = &e->table.device_rows[d->first];
 	struct lane *from = engine_lane(e, &e->table.signals[rows[0]]);
 
-	say(e, d, from, to, why);
+	report_move(e, d, from, to, why);
 	d->absent = false;
 	for (uint32_t k = 0; k < d->count; k++)
-		move(e, &e->table.signals[rows[k]], to);
+		move_signal(e, &e->table.signals[rows[k]], to);
 	if (has_alarms(e, d))
 		move_alarms(e, from, to, (uint32_t)(d - e->table.devices), now_ns);
 	lane_disown(from, false);
 	engine_publish_target(e, to);
 	engine_doubts(e);
 	for (uint32_t k = 0; k < d->count; k++)
-		go_on(e, &e->table.signals[rows[k]]);
+		signal_goes_on(e, &e->table.signals[rows[k]]);
 }
 
 void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, const char *why,
@@ -123,7 +132,7 @@ void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, cons
 			continue;
 		d->absent = false;
 		for (uint32_t k = 0; k < d->count; k++)
-			move(e, &e->table.signals[e->table.device_rows[d->first + k]], to);
+			move_signal(e, &e->table.signals[e->table.device_rows[d->first + k]], to);
 		if (has_alarms(e, d))
 			move_alarms(e, from, to, i, now_ns);
 		moved += d->count;
@@ -131,33 +140,12 @@ void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, cons
 	log_at(e->log, engine_group(e, to)->quiet ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,
 	       "%u signal%s: from %s to %s: %s", moved, moved == 1 ? "" : "s", from->port->target,
 	       to->port->target, why);
-	lane_forget_probes(from);
+	engine_probes_forget(from);
 	lane_disown(from, true);
 	alarm_restart(&from->alarm);
 	engine_publish_target(e, to);
 	engine_doubts(e);
 	for (uint32_t row = 0; row < e->table.count; row++)
 		if (e->table.signals[row].lane == to->index)
-			go_on(e, &e->table.signals[row]);
-}
-
-/* The slots that are lent say all: few, and looked through only when something moved or ended. */
-void engine_doubts(struct engine *e)
-{
-	for (int pass = 0; pass < 3; pass++)
-		for (unsigned i = 0; i < e->lane_count; i++)
-			for (unsigned k = 0; k < e->lanes[i].depth; k++) {
-				const struct slot *slot = &e->lanes[i].slots[k];
-				struct signal *s;
-
-				if (!slot->lent || !lane_writes_output(&e->lanes[i], slot))
-					continue;
-				s = &e->table.signals[slot->row];
-				if (pass == 0)
-					s->doubts = 0;
-				else if (pass == 1)
-					s->doubts += lane_in_doubt(&e->lanes[i], slot);
-				else if (!s->doubts)
-					engine_write_check(e, s);
-			}
+			signal_goes_on(e, &e->table.signals[row]);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The meaning of an error for its signal: retry, back-off, quality. */
+/* What an error means for its signal: which kind it is, which quality it gives, and the back-off. */
 #include "retry.h"
 
 #include "../libows/ows.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Which wire serves a device, and which way of a wire is open. */
+/* The rules that choose which wire serves a device, and which way of a wire is open. */
 #include "route.h"
 
 static int64_t later(int64_t a, int64_t b)

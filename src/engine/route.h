@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Who serves what: pure functions over facts. A group is a wire; its ways (a bar) are targets of
+ * Which target serves a device: pure functions over facts. A group is a wire; its ways (a bar) are targets of
  * which one is open. Groups are different wires (a comma), all of them open, and each device is
  * served by one. The rules stand in docs/semantics.md, "Several targets"; the tests are laid beside
  * them.

@@ -1,5 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "private.h"
+/* When the rows of the table are read and written: the wheel of periods and what is due. */
+#include "src/engine/due.h"
+#include "src/engine/publish.h"
+#include "src/engine/retry.h"
+#include "src/engine/schedule.h"
+#include "src/engine/state.h"
 
 void engine_read_now(struct engine *e, struct signal *s)
 {
@@ -49,7 +54,7 @@ void engine_write_check(struct engine *e, struct signal *s)
 	}
 }
 
-static void ready(void *ctx, uint32_t entry)
+static void row_ready(void *ctx, uint32_t entry)
 {
 	struct engine *e = ctx;
 	struct signal *s = &e->table.signals[entry / 2];
@@ -77,6 +82,6 @@ void engine_turn(struct engine *e, int64_t now_ns)
 		e->counters.late_periods += period - e->period - 1;
 	e->counters.periods += period - e->period;
 	e->period = period;
-	due_wheel_turn(&e->wheel, period, ready, e);
+	due_wheel_turn(&e->wheel, period, row_ready, e);
 	due_wheel_turn(&e->limit_wheel, period, limit_ready, e);
 }

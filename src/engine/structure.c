@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Does the type of a signal fit its property? What /structure of the target says about it. */
+/* Whether the type of a signal fits its property, by what /structure of the target says of it. */
 #include "structure.h"
 
 #include "hal/path.h"

@@ -76,6 +76,7 @@ static int find_devices(struct table *table)
 			d->has_rom = keys[i].has_rom;
 			memcpy(d->rom, keys[i].rom, sizeof(d->rom));
 			d->first = i;
+			table->rom_count += d->has_rom;
 		}
 		d = &table->devices[table->device_count - 1];
 		d->count++;
@@ -248,4 +249,16 @@ void signal_reset_diagnostics(struct signal *s, uint64_t period, int64_t now_ns)
 	s->attrs.pend_max =
 		s->attrs.flags & OWS_ATTR_IN_WORK ? (uint32_t)period - s->attrs.pend_base : 0;
 	s->attrs.age_max_ns = now_ns - (s->sample.count ? s->sample.measured_ns : s->known_ns);
+}
+
+static int compare_rom(const void *rom, const void *device)
+{
+	return memcmp(rom, ((const struct device *)device)->rom, ROM_LEN);
+}
+
+uint32_t table_device(const struct table *table, const uint8_t rom[8])
+{
+	const struct device *d = bsearch(rom, table->devices, table->rom_count, sizeof(*d), compare_rom);
+
+	return d ? (uint32_t)(d - table->devices) : TABLE_NO_DEVICE;
 }

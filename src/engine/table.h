@@ -83,7 +83,7 @@ struct device {
 	bool absent;    /* a signal of it went bad with "no such device" */
 	uint32_t first, count; /* rows in table.device_rows */
 
-	/* where it is served, and looked for (place.c) */
+	/* where it is served, and looked for (place.c, routing.c) */
 	unsigned group;
 	int64_t moved_ns;
 	bool probing;     /* queued or with a bus */
@@ -96,7 +96,7 @@ struct table {
 	struct signal *signals;
 	uint32_t count;
 	struct device *devices; /* one more than device_count: the rows without a device */
-	uint32_t device_count;
+	uint32_t device_count, rom_count; /* those with a ROM id stand first, in its order */
 	uint32_t *device_rows;
 	char *texts;
 };
@@ -104,6 +104,9 @@ struct table {
 /* Makes a row of each item; nothing is due yet. 0 or -ENOMEM. */
 int signal_table_init(struct table *table, const struct config *config);
 void signal_table_free(struct table *table);
+
+/* The device with this ROM id, TABLE_NO_DEVICE: no row is of it. */
+uint32_t table_device(const struct table *table, const uint8_t rom[8]);
 
 /* What the image and the command segment of this configuration contain. */
 void signal_table_image(const struct config_item *item, struct image_signal *signal);

@@ -2,7 +2,7 @@
 /* The trace of requests: a line in the log for each that a bus has answered, or has not in time. */
 #include "trace.h"
 
-#include "private.h"
+#include "src/engine/state.h"
 
 #include "../signal/error.h"
 
@@ -12,7 +12,7 @@
 #define QUOTED_SIZE (TEXT_SHOWN + 40)
 
 /* "21.5" without its padding; of a longer text the beginning, and how long it is. */
-static void quote(const uint8_t *data, size_t len, char out[QUOTED_SIZE])
+static void quote_data(const uint8_t *data, size_t len, char out[QUOTED_SIZE])
 {
 	size_t used = 0, shown;
 
@@ -30,13 +30,13 @@ static void quote(const uint8_t *data, size_t len, char out[QUOTED_SIZE])
 		snprintf(out + used, QUOTED_SIZE - used, "...\" (%zu bytes)", len);
 }
 
-static void result(const struct slot *slot, const struct bus_answer *answer, char out[QUOTED_SIZE])
+static void quote_result(const struct slot *slot, const struct bus_answer *answer, char out[QUOTED_SIZE])
 {
 	unsigned entries = 0;
 
 	switch ((enum bus_op)slot->req.op) {
 	case BUS_READ:
-		quote(slot->req.data, answer->len, out);
+		quote_data(slot->req.data, answer->len, out);
 		break;
 	case BUS_DIR:
 		for (uint32_t i = 0; i < answer->len; i++)
@@ -83,9 +83,9 @@ void trace_answer(const struct lane *lane, const struct slot *slot, const struct
 	if (!may_show(e, answer->err != 0))
 		return;
 	if (is_write)
-		quote(slot->req.data, slot->req.len, value);
+		quote_data(slot->req.data, slot->req.len, value);
 	if (!answer->err)
-		result(slot, answer, text);
+		quote_result(slot, answer, text);
 	log_trace(e->log, "trace: %s: %s %s%s%s%s: %s, %.1f ms%s", lane->port->target,
 	          ops[slot->req.op], slot->req.fresh ? "/uncached" : "", slot->req.path,
 	          is_write ? " " : "", value, answer->err ? error_text(answer->err) : text,

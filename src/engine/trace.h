@@ -11,12 +11,6 @@
 #define TRACE_PER_WINDOW 100u
 #define TRACE_WINDOW_NS  1000000000LL
 
-struct trace {
-	int64_t since_ns; /* begin of this window */
-	unsigned shown[2]; /* in it, by success and failure */
-	unsigned hidden;
-};
-
 struct lane;
 struct slot;
 

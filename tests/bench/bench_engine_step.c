@@ -2,6 +2,7 @@
 /* The engine's cost of one request, from due to published, for tables of different length. */
 #include "aid.h"
 
+#include "src/engine/counters.h"
 #include "src/engine/engine.h"
 #include "src/engine/table.h"
 

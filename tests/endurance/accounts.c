@@ -3,7 +3,8 @@
 #include "invariants.h"
 #include "memory.h"
 
-#include "src/engine/private.h"
+#include "src/engine/counters.h"
+#include "src/engine/state.h"
 
 #include <string.h>
 

@@ -4,6 +4,7 @@
 
 #include "memory.h"
 
+#include "src/engine/counters.h"
 #include "src/engine/table.h"
 
 #include <stdlib.h>

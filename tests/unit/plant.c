@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "tests/unit/plant.h"
 
+#include "src/engine/counters.h"
 #include "src/engine/table.h"
 #include "src/signal/value.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene_private.h"
 
+#include "src/engine/counters.h"
 #include "src/engine/adopt.h"
 #include "unity.h"
 

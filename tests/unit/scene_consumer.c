@@ -2,6 +2,7 @@
 /* A scene's segments as a consumer sees them, and what it writes there. */
 #include "scene.h"
 
+#include "src/engine/counters.h"
 #include "src/signal/value.h"
 #include "unity.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a reload keeps of the targets: a pure comparison of two configurations. */
-#include "src/engine/adopt.h"
+#include "src/engine/adoption.h"
 
 #include "unity.h"
 

@@ -1,11 +1,19 @@
 /* SPDX-License-Identifier: MIT */
-/* Requests of the served protocol: their rooms, their turns, their answers. */
-#include "private.h"
-
-#include "hal/path.h"
-
+/*
+ * The guests of the lanes: requests of clients of the served protocol wait here for their turns, are
+ * lent to the bus and answered.
+ */
 #include <errno.h>
 #include <string.h>
+
+#include "hal/path.h"
+#include "src/engine/guest.h"
+#include "src/engine/guests.h"
+#include "src/engine/publish.h"
+#include "src/engine/retry.h"
+#include "src/engine/schedule.h"
+#include "src/engine/slots.h"
+#include "src/engine/state.h"
 
 /* Requests of the table that go before a guest who waits, where there are always some. */
 #define GUEST_PASSED 4
@@ -17,13 +25,13 @@
  */
 #define GUEST_SERVER_NS INT64_C(2000000000)
 
-static void answer(struct engine *e, struct engine_guest *g)
+static void answer_guest(struct engine *e, struct engine_guest *g)
 {
 	g->generation = e->image->header->generation;
 	e->guests->answered(e->guests->ctx, g);
 }
 
-static void enqueue(struct lane *lane, struct engine_guest *g)
+static void guest_waits(struct lane *lane, struct engine_guest *g)
 {
 	g->next = NULL;
 	g->at = lane->index;
@@ -34,7 +42,7 @@ static void enqueue(struct lane *lane, struct engine_guest *g)
 	lane->guests.last = g;
 }
 
-static struct engine_guest *dequeue(struct lane *lane)
+static struct engine_guest *guest_leaves(struct lane *lane)
 {
 	struct engine_guest *g = lane->guests.first;
 
@@ -58,13 +66,13 @@ static int more_telling(int a, int b)
 }
 
 /* May another lane have what this one has not? Nothing was done there. */
-static bool goes_on(const struct engine_guest *g, int err)
+static bool guest_goes_on(const struct engine_guest *g, int err)
 {
 	return g->lane == GUEST_ANY_LANE && (err == -ENODEV || err == -ENOENT || err == -ENOTCONN);
 }
 
 /* The next lane that is asked; false: there is none. */
-static bool next_lane(struct engine *e, struct engine_guest *g)
+static bool guest_next_lane(struct engine *e, struct engine_guest *g)
 {
 	unsigned at = g->at;
 
@@ -72,38 +80,36 @@ static bool next_lane(struct engine *e, struct engine_guest *g)
 	for (unsigned i = at == g->served ? 0 : at + 1; i < e->lane_count; i++) {
 		if (i == g->served)
 			continue;
-		enqueue(&e->lanes[i], g);
+		guest_waits(&e->lanes[i], g);
 		return true;
 	}
 	return false;
 }
 
-static void failed(struct engine *e, struct engine_guest *g, int err)
+static void guest_failed(struct engine *e, struct engine_guest *g, int err)
 {
 	g->best_err = more_telling(g->best_err, err);
-	if (goes_on(g, err) && next_lane(e, g))
+	if (guest_goes_on(g, err) && guest_next_lane(e, g))
 		return;
 	g->answer = (struct bus_answer){ .err = g->best_err };
-	answer(e, g);
+	answer_guest(e, g);
 }
 
 /* The lane that serves the device of the path, if the table knows it. */
-static unsigned lane_of(struct engine *e, const char *path)
+static unsigned lane_of_path(const struct engine *e, const char *path)
 {
 	struct path split;
+	uint32_t device;
 
 	if (path_split(path, strlen(path), &split) || !split.has_rom)
 		return 0;
-	for (uint32_t i = 0; i < e->table.device_count; i++) {
-		const struct device *d = &e->table.devices[i];
-
-		if (d->has_rom && memcmp(d->rom, split.rom, ROM_LEN) == 0)
-			return e->table.signals[e->table.device_rows[d->first]].lane;
-	}
-	return 0;
+	device = table_device(&e->table, split.rom);
+	if (device == TABLE_NO_DEVICE)
+		return 0;
+	return e->table.signals[e->table.device_rows[e->table.devices[device].first]].lane;
 }
 
-static void flush(struct engine *e, struct lane *lane, int64_t now_ns)
+static void look_at_waiting(struct engine *e, struct lane *lane, int64_t now_ns)
 {
 	struct engine_guest *g = lane->guests.first;
 
@@ -112,11 +118,11 @@ static void flush(struct engine *e, struct lane *lane, int64_t now_ns)
 		struct engine_guest *next = g->next;
 
 		if (!lane->up || lane->stuck)
-			failed(e, g, -ENOTCONN);
+			guest_failed(e, g, -ENOTCONN);
 		else if (now_ns >= g->until_ns)
-			failed(e, g, -ETIME);
+			guest_failed(e, g, -ETIME);
 		else
-			enqueue(lane, g);
+			guest_waits(lane, g);
 		g = next;
 	}
 }
@@ -129,7 +135,7 @@ static int64_t patience_ns(const struct engine *e, const struct engine_guest *g)
 	                                                         : e->config->timeout_ns;
 }
 
-void engine_guests_take(struct engine *e, int64_t now_ns)
+void guests_take(struct engine *e, int64_t now_ns)
 {
 	struct engine_guest *g;
 
@@ -139,20 +145,20 @@ void engine_guests_take(struct engine *e, int64_t now_ns)
 		g->until_ns = now_ns + patience_ns(e, g);
 		g->lent = false;
 		g->best_err = 0;
-		g->served = g->lane == GUEST_ANY_LANE ? lane_of(e, g->path) : (unsigned)g->lane;
+		g->served = g->lane == GUEST_ANY_LANE ? lane_of_path(e, g->path) : (unsigned)g->lane;
 		/* asked as a reload went on: its lane may be another target by now */
 		if (g->served < e->lane_count &&
 		    (g->lane == GUEST_ANY_LANE || g->generation == e->image->header->generation)) {
-			enqueue(&e->lanes[g->served], g);
+			guest_waits(&e->lanes[g->served], g);
 		} else {
 			g->answer = (struct bus_answer){ .err = -ENODEV };
-			answer(e, g);
+			answer_guest(e, g);
 		}
 	}
 	/* in order: what a lane has not is asked of a later one, or of an earlier one next time */
 	for (unsigned i = 0; i < e->lane_count; i++)
 		if (e->lanes[i].guests.first)
-			flush(e, &e->lanes[i], now_ns);
+			look_at_waiting(e, &e->lanes[i], now_ns);
 }
 
 static unsigned table_lent(const struct lane *lane)
@@ -197,9 +203,9 @@ bool guest_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
 		                      .prio = slot->pressing ? BUS_INPUT : BUS_GUEST,
 		                      .len = g->len, .offset = g->offset, .data = g->data,
 		                      .tokens = g->tokens, .token_count = g->token_count };
-	if (!lane_lend(lane, slot, now_ns))
+	if (!slot_lend(lane, slot, now_ns))
 		return false;
-	dequeue(lane);
+	guest_leaves(lane);
 	lane->guests.pressing += slot->pressing;
 	lane->guests.passed = 0;
 	lane->guests.lent++;
@@ -217,7 +223,7 @@ static const char *stem_end(struct path_slice property)
 }
 
 /* Do both write the same latch: PIO.0, PIO.BYTE? */
-static bool overlap(const struct path *a, const char *path)
+static bool same_latch(const struct path *a, const char *path)
 {
 	struct path b;
 	size_t len;
@@ -239,7 +245,7 @@ static void restore_outputs(struct engine *e, const char *path)
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
-		if (!s->commanded || !signal_writes(s) || !overlap(&split, s->item->path))
+		if (!s->commanded || !signal_writes(s) || !same_latch(&split, s->item->path))
 			continue;
 		s->forced = true;
 		engine_write_check(e, s);
@@ -247,7 +253,7 @@ static void restore_outputs(struct engine *e, const char *path)
 	}
 }
 
-void engine_guest_done(struct engine *e, struct lane *lane, struct slot *slot,
+void guest_done(struct engine *e, struct lane *lane, struct slot *slot,
                        const struct bus_answer *a)
 {
 	struct engine_guest *g = slot->guest;
@@ -263,20 +269,20 @@ void engine_guest_done(struct engine *e, struct lane *lane, struct slot *slot,
 	if (lent) {
 		g->answer = *a;
 		g->lent = true;
-		answer(e, g);
+		answer_guest(e, g);
 		return;
 	}
 	slot->guest = NULL;
-	if (a->err && goes_on(g, a->err)) {
-		failed(e, g, a->err);
+	if (a->err && guest_goes_on(g, a->err)) {
+		guest_failed(e, g, a->err);
 		return;
 	}
 	g->answer = *a;
 	g->served = lane->index;
-	answer(e, g);
+	answer_guest(e, g);
 }
 
-void engine_guest_gone(struct engine *e, struct slot *slot)
+void guest_gone(struct engine *e, struct slot *slot)
 {
 	struct engine_guest *g = slot->guest;
 
@@ -303,10 +309,10 @@ void guests_refuse(struct lane *lane)
 	const struct bus_answer down = { .err = -ENOTCONN };
 
 	while (lane->guests.first) {
-		struct engine_guest *g = dequeue(lane);
+		struct engine_guest *g = guest_leaves(lane);
 
 		g->answer = down;
-		answer(lane->engine, g);
+		answer_guest(lane->engine, g);
 	}
 	for (unsigned i = 0; i < lane->depth; i++) {
 		struct slot *slot = &lane->slots[i];
@@ -314,7 +320,7 @@ void guests_refuse(struct lane *lane)
 		if (!slot->lent || slot->purpose != FOR_GUEST || slot->given_up)
 			continue;
 		slot->given_up = true;
-		engine_guest_done(lane->engine, lane, slot, &down);
+		guest_done(lane->engine, lane, slot, &down);
 	}
 }
 
@@ -326,6 +332,6 @@ void guests_release(struct lane *lane)
 		if (!slot->lent || slot->purpose != FOR_GUEST)
 			continue;
 		slot->lent = false;
-		engine_guest_gone(lane->engine, slot);
+		guest_gone(lane->engine, slot);
 	}
 }

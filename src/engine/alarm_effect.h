@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: MIT */
+/* What the alarm machine changes in the table and in the journal. */
+#ifndef ENGINE_ALARM_EFFECT_H
+#define ENGINE_ALARM_EFFECT_H
+
+#include "src/engine/state.h"
+
+/* The latch of the item was read and is not 0. */
+void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item *item,
+                         int64_t now_ns);
+/* Its latch was reset. */
+void engine_alarm_ended(struct engine *e, struct alarm_item *item);
+/* Its latch was read 0, or its device is not listed: the journal has the return. */
+void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_ns);
+/* The device's por was read non-zero: its outputs are not what was written. */
+void engine_power_on_reset(struct engine *e, struct lane *lane, const struct alarm_item *item,
+                           int64_t now_ns);
+/* The bus has no alarm search: the items are ordinary inputs. */
+void engine_alarm_polls(struct engine *e, struct alarm_machine *m);
+
+#endif

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT */
+/* The order of a lane: this file chooses what the lane asks its bus next, and makes that request. */
+#include <string.h>
+
+#include "src/engine/alarm.h"
+#include "src/engine/ask.h"
+#include "src/engine/guests.h"
+#include "src/engine/intake.h"
+#include "src/engine/place.h"
+#include "src/engine/publish.h"
+#include "src/engine/schedule.h"
+#include "src/engine/slots.h"
+#include "src/engine/state.h"
+#include "src/engine/types.h"
+#include "src/signal/value.h"
+
+static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	struct signal *s = &e->table.signals[row];
+
+	slot->purpose = FOR_READ;
+	slot->row = row;
+	slot->req = (struct bus_req){
+		.op = BUS_READ,
+		.prio = BUS_INPUT,
+		.fresh = s->item->fresh,
+		.path = s->item->path,
+		.len = sizeof(slot->data),
+	};
+	if (!slot_lend(lane, slot, now_ns))
+		return false;
+	due_set_take(&lane->inputs, row);
+	guest_passed(lane);
+	lane->writes_in_row = 0;
+	s->reading = true;
+	s->sample.tried_ns = now_ns;
+	signal_begin(s, e->period);
+	engine_publish(e, s);
+	return true;
+}
+
+static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	struct signal *s = &e->table.signals[row];
+
+	/* the value that counts is the one of this moment */
+	engine_intake_signal(e, s, now_ns);
+	if (!due_set_has(&lane->outputs, row)) {
+		engine_publish(e, s);
+		return true;
+	}
+	slot->purpose = FOR_WRITE;
+	slot->row = row;
+	slot->value = s->command;
+	slot->stamp = s->command_stamp;
+	slot->one_shot = s->one_shot;
+	slot->req = (struct bus_req){ .op = BUS_WRITE, .prio = BUS_OUTPUT, .path = s->item->path };
+	if (signal_is_string(s)) {
+		memcpy(slot->data, s->command_text, s->command_len);
+		slot->req.len = s->command_len;
+	} else {
+		char text[VALUE_TEXT_MAX];
+
+		slot->req.len = (uint32_t)value_to_text(s->item->type, s->command, text);
+		memcpy(slot->data, text, slot->req.len);
+	}
+	if (!slot_lend(lane, slot, now_ns))
+		return false;
+	due_set_take(&lane->outputs, row);
+	guest_passed(lane);
+	lane->writes_in_row++;
+	lane->writes_in_work++;
+	s->writing = true;
+	s->one_shot = false;
+	s->forced = false;
+	s->sample.tried_ns = now_ns;
+	signal_begin(s, e->period);
+	engine_publish(e, s);
+	return true;
+}
+
+/* True: the alarm machine has given the slot's request to the bus, or has none to give now. */
+static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	struct alarm_request *r = &lane->alarm_request;
+	struct signal *s;
+
+	/* one that was given up is still lent: the room for a list is not ours yet */
+	if (lane->alarm_slot || lane->writes_in_work ||
+	    !alarm_run(&lane->alarm, lane, r, now_ns))
+		return false;
+	slot->purpose = FOR_ALARM;
+	slot->row = r->row;
+	slot->req = (struct bus_req){ .op = (uint8_t)r->op, .prio = BUS_ALARM, .fresh = true,
+		                      .path = r->path, .len = sizeof(slot->data) };
+	if (r->op == BUS_WRITE) {
+		memcpy(slot->data, r->data, r->len);
+		slot->req.len = r->len;
+	}
+	if (r->row != TABLE_NO_ROW) {
+		slot->value = e->table.signals[r->row].item->init_value;
+		slot->stamp = e->table.signals[r->row].sample.applied;
+	}
+	if (!slot_lend(lane, slot, now_ns))
+		return false;
+	lane->alarm_slot = slot;
+	alarm_started(&lane->alarm, lane, now_ns);
+	if (r->row == TABLE_NO_ROW)
+		return true;
+	s = &e->table.signals[r->row];
+	s->alarming = true;
+	s->sample.tried_ns = now_ns;
+	signal_begin(s, e->period);
+	engine_publish(e, s);
+	return true;
+}
+
+/*
+ * The order of a lane: what the bus is made of, alarms, one changed output, the next due input,
+ * guests.
+ */
+static bool ask_next(struct lane *lane, struct slot *slot, int64_t now_ns)
+{
+	int64_t output, input, check = types_next(lane);
+
+	if (check >= 0)
+		return types_ask(lane, slot, (uint32_t)check, now_ns);
+	if (ask_alarm(lane, slot, now_ns) || engine_probe_ask(lane, slot, now_ns))
+		return true;
+	output = lane->writes_in_work || alarm_holds(&lane->alarm) ? -1
+	                                                          : due_set_next(&lane->outputs);
+	input = due_set_next(&lane->inputs);
+	if (guest_turn(lane, output >= 0 || input >= 0))
+		return guest_ask(lane, slot, now_ns);
+	/* a one-shot needs no writer, and has to come in its turn all the same */
+	if (output >= 0 &&
+	    (input < 0 || lane->writes_in_row < (lane->writers ? lane->writers : 1)))
+		return ask_write(lane, slot, (uint32_t)output, now_ns);
+	if (input >= 0)
+		return ask_read(lane, slot, (uint32_t)input, now_ns);
+	return false;
+}
+
+void lane_fill(struct lane *lane, int64_t now_ns)
+{
+	struct slot *slot;
+
+	while (lane->up && !lane->stuck && (slot = slot_next(lane)) != NULL)
+		if (!ask_next(lane, slot, now_ns))
+			break;
+}
+
+int64_t lane_wake(const struct lane *lane)
+{
+	int64_t alarm, probe;
+
+	if (!lane->up || lane->stuck || lane->lent == lane->depth)
+		return INT64_MAX;
+	probe = lane->probes.count && !lane->probing ? lane->probe_ns : INT64_MAX;
+	/* the end of these wakes it */
+	if (lane->alarm_slot || lane->writes_in_work)
+		return probe;
+	alarm = alarm_wake(&lane->alarm);
+	return probe < alarm ? probe : alarm;
+}

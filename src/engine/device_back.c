@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+/* A device that was absent is there again, or has restarted. */
+#include "src/engine/alarm_arm.h"
+#include "src/engine/device_back.h"
+#include "src/engine/retry.h"
+#include "src/engine/schedule.h"
+#include "src/engine/state.h"
+
+void engine_device_back(struct lane *lane, struct device *device)
+{
+	struct engine *e = lane->engine;
+
+	device->absent = false;
+	lane->counters.device_returns++;
+	for (uint32_t i = 0; i < device->count; i++) {
+		struct signal *s = &e->table.signals[e->table.device_rows[device->first + i]];
+
+		if (s->lane != lane->index)
+			continue;
+		retry_clear(&s->read_retry);
+		retry_clear(&s->write_retry);
+		due_wheel_cancel(&e->wheel, engine_row(s) * 2 + 1);
+		alarm_rearm(&lane->alarm, e, s->device);
+		s->confirmed = false;
+		engine_read_now(e, s);
+		engine_write_check(e, s);
+	}
+}

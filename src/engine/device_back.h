@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT */
+/* A device that came back. */
+#ifndef ENGINE_DEVICE_BACK_H
+#define ENGINE_DEVICE_BACK_H
+
+#include "src/engine/state.h"
+
+/*
+ * The device is there again, and may have restarted: read its signals on this lane, write its outputs
+ * again and arm its alarms.
+ */
+void engine_device_back(struct lane *lane, struct device *device);
+
+#endif

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What is lent to a bus while its signal moves to another lane, or while a reload goes on: the answer
+ * only frees the slot.
+ */
+#include <assert.h>
+
+#include "src/engine/disown.h"
+#include "src/engine/due.h"
+#include "src/engine/state.h"
+
+static void disown_slot(struct lane *lane, struct slot *slot)
+{
+	struct engine *e = lane->engine;
+	struct signal *s;
+
+	slot->moved = true;
+	if (slot->row == TABLE_NO_ROW)
+		return;
+	s = &e->table.signals[slot->row];
+	switch (slot->purpose) {
+	case FOR_READ:
+		s->reading = false;
+		break;
+	case FOR_WRITE:
+		s->writing = false;
+		s->one_shot |= slot->one_shot;
+		break;
+	case FOR_ALARM:
+		s->alarming = false;
+		break;
+	case FOR_STRUCTURE:
+	case FOR_PROBE:
+	case FOR_GUEST:
+		return;
+	}
+	signal_end(s, e->period, slot->begun);
+}
+
+void lane_disown(struct lane *lane, bool all)
+{
+	for (unsigned i = 0; i < lane->depth; i++) {
+		struct slot *slot = &lane->slots[i];
+
+		if (!slot->lent || slot->given_up || slot->moved ||
+		    slot->purpose == FOR_STRUCTURE || slot->purpose == FOR_PROBE ||
+		    slot->purpose == FOR_GUEST)
+			continue;
+		if (all || (slot->row != TABLE_NO_ROW &&
+		            lane->engine->table.signals[slot->row].lane != lane->index))
+			disown_slot(lane, slot);
+	}
+}
+
+void lane_disown_alarm(struct lane *lane)
+{
+	struct slot *slot = lane->alarm_slot;
+
+	if (slot && !slot->given_up && !slot->moved)
+		disown_slot(lane, slot);
+}
+
+void lane_keep_reads(struct lane *lane)
+{
+	for (unsigned i = 0; i < lane->depth; i++) {
+		struct slot *slot = &lane->slots[i];
+
+		slot->kept = slot->lent && !slot->given_up && !slot->moved &&
+		             slot->purpose == FOR_READ;
+	}
+}
+
+void lane_resume_reads(struct lane *lane)
+{
+	for (unsigned i = 0; i < lane->depth; i++) {
+		struct slot *slot = &lane->slots[i];
+		struct signal *s;
+
+		if (!slot->kept || slot->row == TABLE_NO_ROW)
+			continue;
+		s = &lane->engine->table.signals[slot->row];
+		if (s->lane != lane->index || s->item->fresh != slot->req.fresh || !signal_reads(s))
+			continue;
+		slot->moved = false;
+		due_set_remove(&lane->inputs, slot->row);
+		s->reading = true;
+		signal_begin(s, slot->begun);
+	}
+}
+
+static void come_over(struct slot *slot, const uint32_t *successors)
+{
+	bool of_row = slot->purpose == FOR_READ || slot->purpose == FOR_WRITE ||
+	              slot->purpose == FOR_ALARM;
+
+	if (slot->purpose == FOR_GUEST)
+		return;
+	slot->moved = true;
+	slot->row = of_row && slot->row != TABLE_NO_ROW ? successors[slot->row] : TABLE_NO_ROW;
+}
+
+void lane_adopt(struct lane *lane, struct lane *before, const uint32_t *successors)
+{
+	struct lane own = *lane;
+
+	assert(lane->depth == before->depth && !lane->lent);
+	for (unsigned i = 0; i < before->depth; i++)
+		if (before->slots[i].lent)
+			come_over(&before->slots[i], successors);
+	lane->up = before->up;
+	lane->was_up = before->was_up;
+	lane->stuck = before->stuck;
+	lane->open = before->open;
+	lane->said_up = before->said_up;
+	lane->heard_ns = before->heard_ns;
+	lane->slots = before->slots;
+	lane->free = before->free;
+	lane->free_count = before->free_count;
+	lane->look_ns = before->look_ns;
+	lane->lent = before->lent;
+	lane->writes_in_work = before->writes_in_work;
+	lane->list = before->list;
+	lane->alarm_slot = before->alarm_slot;
+	lane->counters = before->counters;
+	before->slots = own.slots;
+	before->free = own.free;
+	before->free_count = own.free_count;
+	before->lent = before->writes_in_work = 0;
+	before->list = own.list;
+	before->alarm_slot = NULL;
+}

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A lane whose target goes up, fails, is stuck or answers again: what that means to the signals of the
+ * lane, and the fact for the routing turn.
+ */
+#include <errno.h>
+
+#include "src/engine/alarm_item.h"
+#include "src/engine/alarm_list.h"
+#include "src/engine/disown.h"
+#include "src/engine/lane_state.h"
+#include "src/engine/place.h"
+#include "src/engine/publish.h"
+#include "src/engine/retry.h"
+#include "src/engine/schedule.h"
+#include "src/engine/state.h"
+#include "src/log.h"
+
+/* All signals of the lane are read again, and written if there is something to write. */
+static void refresh_signals(struct lane *lane, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+
+	alarm_ask_again(&lane->alarm, lane, now_ns);
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		struct signal *s = &e->table.signals[row];
+
+		if (s->lane != lane->index)
+			continue;
+		retry_clear(&s->read_retry);
+		retry_clear(&s->write_retry);
+		due_wheel_cancel(&e->wheel, row * 2 + 1);
+		engine_read_now(e, s);
+		engine_write_check(e, s);
+		/* what is not read again stands as it stood */
+		if (s->held && !signal_reads(s) && s->sample.quality == OWS_Q_TARGET) {
+			s->sample.quality = s->held_quality;
+			s->sample.err = s->held_err;
+			engine_publish(e, s);
+		}
+		s->held = false;
+	}
+}
+
+void lane_up(struct lane *lane, const char *text, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+
+	if (lane->up)
+		return;
+	lane->up = true;
+	engine_group(e, lane)->quiet = false;
+	engine_way(e, lane)->up = true;
+	engine_way(e, lane)->failed = lane->stuck;
+	engine_way(e, lane)->up_ns = now_ns;
+	if (lane->was_up) {
+		lane->counters.reconnects++;
+		e->reconnects++;
+	}
+	log_notice(e->log, "%s: from down to up%s%s", lane->port->target, *text ? ": " : "", text);
+	lane->was_up = true;
+	engine_publish_target(e, lane);
+	engine_publish_driver(e, now_ns);
+	refresh_signals(lane, now_ns);
+	engine_group(e, lane)->asks = true;
+}
+
+void lane_fail(struct lane *lane, int err, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	struct route_way *way = engine_way(e, lane);
+
+	if (!way->failed)
+		way->failed_ns = now_ns;
+	way->failed = true;
+	way->up = false;
+	engine_probes_forget(lane);
+	lane_disown_alarm(lane);
+	lane->fell = err;
+	engine_group(e, lane)->asks = true;
+}
+
+void lane_down(struct lane *lane, int err)
+{
+	struct engine *e = lane->engine;
+
+	alarm_restart(&lane->alarm);
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		struct signal *s = &e->table.signals[row];
+
+		if (s->lane != lane->index || (s->sample.quality == OWS_Q_DISABLED &&
+		                               !s->item->output && !signal_reads(s)))
+			continue;
+		if (!s->held) {
+			s->held = true;
+			s->held_quality = s->sample.quality;
+			s->held_err = s->sample.err;
+		}
+		s->sample.quality = OWS_Q_TARGET;
+		s->sample.err = err;
+		engine_publish(e, s);
+	}
+}
+
+void lane_stuck(struct lane *lane, int64_t now_ns)
+{
+	lane->stuck = true;
+	if (!lane->open)
+		return;
+	log_err(lane->engine->log, "%s: no answer at all within Timeout", lane->port->target);
+	lane->counters.target_failures++;
+	lane_fail(lane, -ETIMEDOUT, now_ns);
+}
+
+void lane_unstuck(struct lane *lane, int64_t now_ns)
+{
+	struct engine *e = lane->engine;
+	struct route_way *way = engine_way(e, lane);
+
+	lane->stuck = false;
+	log_notice(e->log, "%s: answers again", lane->port->target);
+	if (!lane->up)
+		return;
+	way->failed = false;
+	way->up = true;
+	way->up_ns = now_ns;
+	refresh_signals(lane, now_ns);
+	engine_group(e, lane)->asks = true;
+}

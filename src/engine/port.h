@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT */
+/* A port: one target, as the engine reaches it. The host fills it in. */
+#ifndef ENGINE_PORT_H
+#define ENGINE_PORT_H
+
+#include <stdbool.h>
+
+struct bus_req;
+
+struct engine_port {
+	const char *target; /* for the log; lives as long as the engine */
+	unsigned depth;     /* requests it takes before an answer */
+	bool searches;      /* its list of /alarm can be kept to families: "/alarm/29,12" */
+	/* 0 or -EAGAIN; never blocks. The request is lent until its answer. */
+	int (*submit)(void *ctx, struct bus_req *req);
+	void *ctx;
+	/*
+	 * Ways to one wire (a bar) have the same number; groups are numbered in the order in which they
+	 * are written, and their ways stand in it too. All but the first way of a group start suspended.
+	 */
+	unsigned group;
+	/* bus_ops.suspend; never blocks. NULL: nothing to let go of. */
+	void (*suspend)(void *ctx, bool yes);
+};
+
+#endif

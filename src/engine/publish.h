@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT */
+/* What the image shows. */
+#ifndef ENGINE_PUBLISH_H
+#define ENGINE_PUBLISH_H
+
+#include "src/engine/state.h"
+
+/* Publish the signal; its limit alarms are brought to the present first. */
+void engine_publish(struct engine *e, struct signal *s);
+void engine_publish_driver(struct engine *e, int64_t now_ns);
+void engine_publish_target(struct engine *e, const struct lane *lane);
+
+#endif

@@ -1,0 +1,286 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The state of an engine, for the files of this folder alone: structures, and nothing that acts on
+ * them. Above each group of members stands the file that changes them; others only read.
+ */
+#ifndef ENGINE_STATE_H
+#define ENGINE_STATE_H
+
+#include "hal/bus.h"
+#include "src/engine/alarm_item.h"
+#include "src/engine/due.h"
+#include "src/engine/port.h"
+#include "src/engine/route.h"
+#include "src/engine/structure.h"
+#include "src/engine/table.h"
+#include "src/log.h"
+#include "src/shm/commands.h"
+#include "src/shm/image.h"
+
+struct engine;
+struct engine_guest;
+struct engine_guests;
+
+/* Room for one answer or one value to be written. */
+#define LANE_DATA (TABLE_TEXT_CAP + 64)
+/* Room for the path of a request; the longest is one of the alarm machine. */
+#define LANE_PATH (2 * ALARM_TEXT + 16)
+/* How long after its deadline a request is given up that the bus did not answer at all. */
+#define LANE_GRACE_NS 250000000LL
+
+/* --- A request ------------------------------------------------------------------------------- */
+
+enum purpose { FOR_READ, FOR_WRITE, FOR_STRUCTURE, FOR_ALARM, FOR_PROBE, FOR_GUEST };
+
+/* A request and its room. Its id is slot | turn << 16, so that a late answer is told apart. */
+struct slot {
+	/* slots.c */
+	struct bus_req req;
+	bool lent; /* the bus has it */
+	uint16_t turn;
+	int64_t begun_ns;
+	uint64_t begun; /* in this period */
+
+	/* lane_answer.c */
+	bool given_up; /* its time is over; a late answer only frees the slot */
+	/* disown.c */
+	bool moved; /* another lane serves its signal now; likewise */
+	bool kept;  /* while a reload goes on: a reading that was in flight before it */
+
+	/* whoever asks: ask.c, guests.c */
+	enum purpose purpose;
+	uint32_t row;   /* of the table, of structure.checks (FOR_STRUCTURE), a device (FOR_PROBE) */
+	int64_t value;  /* of a write */
+	uint32_t stamp; /* of the command written */
+	bool one_shot;  /* the write was that of _WriteOneShot */
+	bool pressing;  /* a guest that goes as an input */
+	struct engine_guest *guest; /* owns path and data of the request */
+	uint8_t data[LANE_DATA];
+	char path[LANE_PATH]; /* of req: what is lent stands for itself, also over a reload */
+};
+
+/* --- A lane: the engine's side of one bus ---------------------------------------------------- */
+
+#define LANE_COUNTERS(X)                                                                           \
+	X(requests)       /* given to the bus */                                                   \
+	X(reads)          /* ended with success */                                                 \
+	X(writes)         /* ended with success */                                                 \
+	X(item_errors)                                                                             \
+	X(target_failures)                                                                         \
+	X(reconnects)                                                                              \
+	X(given_up)       /* the bus did not answer in time */                                     \
+	X(late_answers)   /* came after that */                                                    \
+	X(unknown_answers) /* nobody asked, or a second time */                                    \
+	X(power_faults)   /* 85 and 127.94 refused */                                              \
+	X(out_of_range)   /* values that the chip cannot have measured, refused */                 \
+	X(device_returns) /* devices that came back */                                             \
+	X(alarm_lists)    /* readings of /alarm */                                                 \
+	X(alarms)         /* occurrences */                                                        \
+	X(power_on_resets)                                                                         \
+	X(moves_in)       /* signals that came from another target */                              \
+	X(moves_out)      /* signals that went to another target */                                \
+	X(probes)         /* looks for a device that another target does not have */               \
+	X(not_released)   /* the next way was opened before this one had let go */                 \
+	X(guests)         /* requests of clients of the served protocol, given to the bus */       \
+	X(guest_errors)
+
+struct lane {
+	struct engine *engine;
+	const struct engine_port *port;
+	unsigned index;
+
+	/* lane_state.c; said_up: lane_event.c; heard_ns: both of them; open: routing.c */
+	bool up, was_up, stuck;
+	bool open;        /* it is the one way of its group that is open */
+	bool said_up;     /* what the bus said last, asked or not */
+	int64_t heard_ns; /* last answer or event of the bus */
+	int fell;         /* its target failed with this: routing.c has to act on it */
+
+	/* slots.c; writes_in_work: ask.c, lane_answer.c; alarm_slot: ask.c */
+	struct slot *slots;
+	uint16_t *free; /* slots that are not lent */
+	unsigned free_count;
+	int64_t look_ns; /* no request's time is over before */
+	unsigned depth, lent, writes_in_work;
+	struct slot *alarm_slot;
+	char *list; /* ALARM_LIST bytes: lent with a request for the list of /alarm */
+
+	/* schedule.c, and ask.c takes out what it asks */
+	struct due_set inputs, outputs; /* rows to read, rows to write */
+	/* ask.c */
+	uint32_t writes_in_row; /* since the last read was begun */
+	/* lane.c, intake.c */
+	uint32_t writers; /* rows whose writing is enabled */
+	/* types.c */
+	struct due_set checks; /* of the engine's structure: to be asked here */
+
+	/* place.c, and routing.c puts in what is to be looked for */
+	struct due_set probes; /* devices to be looked for here */
+	bool probing;          /* one of them is with the bus */
+	int64_t probe_ns;      /* earliest time of the next */
+
+	/* alarm.c and the files below it */
+	struct alarm_machine alarm;
+	struct alarm_request alarm_request; /* the next, or that of alarm_slot */
+
+	/* guests.c */
+	struct {
+		struct engine_guest *first, *last; /* those that wait */
+		unsigned lent;
+		unsigned passed;   /* requests of the table since one of them */
+		unsigned pressing; /* of those lent, how many go as inputs */
+	} guests;
+
+	struct {
+#define X(name) uint64_t name;
+		LANE_COUNTERS(X)
+#undef X
+	} counters;
+};
+
+/* --- The engine ------------------------------------------------------------------------------ */
+
+#define ENGINE_COUNTERS(X)                                                                         \
+	X(periods)                                                                                 \
+	X(late_periods)     /* boundaries that were more than a period late */                     \
+	X(steps)                                                                                   \
+	X(commands)         /* values taken from the command segment */                            \
+	X(refused_commands) /* values no program should have put there */                          \
+	X(deferred_commands) /* marks of commands that came too fast were left for 10 ms */         \
+	X(lost_clients)     /* control programs that stopped beating */                            \
+	X(safe_outputs)     /* outputs put to SafeValue */                                         \
+	X(lost_commands)    /* command segments that were taken away and made again */            \
+	X(reloads)          /* changed configurations that were taken over */
+
+/* A control program that beats. */
+struct client {
+	bool known;
+	bool awaited; /* it beat before owsd's start, and did not since */
+	uint32_t pid, beat;
+	int64_t heard_ns;
+};
+
+/* The ways to one wire; lanes[first ..] in the order in which they are written. */
+struct group {
+	unsigned first;
+	struct route_bar bar;
+	struct route_way *ways;
+	bool quiet; /* all ways have failed in turn, again: that is said now and then only */
+	bool asks;  /* a fact of its ways changed: routing.c has to act on it */
+	struct log_rate rounds;
+};
+
+/* The requests that the trace has shown in its present window. */
+struct trace {
+	int64_t since_ns;  /* begin of this window */
+	unsigned shown[2]; /* in it, by success and failure */
+	unsigned hidden;
+};
+
+struct engine {
+	/* engine.c */
+	const struct config *config;
+	struct image *image;
+	struct commands *commands;
+	struct log *log;
+	const struct engine_guests *guests; /* NULL: none */
+	struct lane *lanes;
+	unsigned lane_count;
+	int64_t now_ns;  /* of the call in work */
+	int64_t next_ns; /* when engine_step() asked to be called again */
+	int64_t gap_ns;  /* end of the last time in which nobody ran; 0: none */
+
+	struct table table;
+	struct structure structure;
+	struct alarm_item *alarm_items; /* all of the table, in its order */
+	uint32_t alarm_count;
+
+	/* schedule.c */
+	int64_t start_ns; /* of period first: since then all were of the same length */
+	uint64_t period, first; /* boundaries since owsd's start */
+	struct due_wheel wheel; /* row * 2: read, row * 2 + 1: write */
+	/* limits.c */
+	struct due_wheel limit_wheel; /* rows whose limit alarms change by time alone */
+
+	/* group.c makes, routing.c changes; facts in ways: lane_state.c, lane_event.c */
+	struct group *groups;
+	struct route_group *states; /* of the groups */
+	unsigned group_count;
+	struct route_way *ways;
+	/* place.c, and routing.c takes the devices out that it routes */
+	struct route_place *places; /* device * group_count + group; NULL: one group */
+	struct due_set routes;      /* devices of which something became known, as in route_wheel */
+	struct due_wheel route_wheel; /* devices to be routed again, the one of no device behind them */
+
+	/* lane_answer.c, lane_state.c; intake.c resets them */
+	uint64_t transactions, reconnects;
+	/* publish.c, and who puts something into the journal */
+	bool published;
+
+	/* intake.c: strings a consumer was writing when they were looked at */
+	uint32_t busy_slot[8];
+	int64_t busy_since_ns[8];
+	unsigned busy_count;
+	/* Of the looks at marked slots: how many are left, since when, where the next begins, not sooner. */
+	uint32_t looks, look_from;
+	int64_t looks_ns, defer_ns;
+	uint32_t driver_resets;
+	struct log_rate refused;
+
+	/* clients.c */
+	struct client clients[OWS_CLIENTS];
+	/* trace.c */
+	struct trace trace;
+	struct {
+#define X(name) uint64_t name;
+		ENGINE_COUNTERS(X)
+#undef X
+	} counters;
+};
+
+/* --- Where things stand ---------------------------------------------------------------------- */
+
+static inline struct lane *engine_lane(struct engine *e, const struct signal *s)
+{
+	return &e->lanes[s->lane];
+}
+
+static inline uint32_t engine_row(const struct signal *s)
+{
+	return s->record - 1;
+}
+
+static inline uint64_t engine_periods(const struct engine *e, int64_t ns)
+{
+	return (uint64_t)((ns + e->config->period_ns - 1) / e->config->period_ns);
+}
+
+/* The first period that does not begin before that time, but for those before start_ns. */
+static inline uint64_t engine_period_at(const struct engine *e, int64_t ns)
+{
+	return e->first + (ns > e->start_ns ? engine_periods(e, ns - e->start_ns) : 0);
+}
+
+static inline struct group *engine_group(struct engine *e, const struct lane *lane)
+{
+	return &e->groups[lane->port->group];
+}
+
+static inline struct route_way *engine_way(struct engine *e, const struct lane *lane)
+{
+	return &e->ways[lane->index];
+}
+
+/* The lane that is open, or will be. */
+static inline struct lane *engine_open_lane(struct engine *e, unsigned group)
+{
+	return &e->lanes[e->groups[group].first + e->groups[group].bar.open];
+}
+
+/* All places of the device, one for each group. */
+static inline struct route_place *engine_places(struct engine *e, uint32_t device)
+{
+	return &e->places[(size_t)device * e->group_count];
+}
+
+#endif
