@@ -11,6 +11,7 @@
 #   make clang sanitize m32       the slower checks
 #   make fuzz                     libFuzzer on what comes from outside; FUZZ=rio one of its targets,
 #                                 FUZZ_SECONDS=60 for each
+#   make format                   all C laid out as .clang-format says; make analyze checks it
 #   make analyze coverage         what gcc's analyzer, clang-tidy and cppcheck find (nothing is to
 #                                 be left); which lines and branches the tests reach
 #   make test-kill KILLS=10000    the writer of the shared memory killed at random points
@@ -149,23 +150,11 @@ $(call show,CC)
 $(Q)$(CC) $(ALL_CFLAGS) $(1) $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.c %.a,$^) $(LIBS)
 endef
 
-# --- The roles -------------------------------------------------------------------------------
-# What a value is, and the names of section 3.3
-SIGNAL   := $(wildcard src/signal/*.c)
-# The .rio file
-CONFIG   := $(wildcard src/config/*.c)
-# Which board this is, and what is missing there
-BOARD    := $(wildcard src/board/*.c)
-# Shared memory, owsd's side
-SHM      := $(wildcard src/shm/*.c)
-# The signal table and its lanes: no I/O in here
-ENGINE   := $(wildcard src/engine/*.c)
-# The owserver protocol, served to clients
-SERVE    := $(wildcard src/serve/*.c)
-# Ways to a device: the contract, its host, and one folder for each backend
-HAL      := $(wildcard hal/*.c) $(wildcard hal/*/*.c)
-# The programs and the consumers' library
-OWSD     := $(wildcard src/*.c)
+# --- The rooms: each has one folder, of source and of unit tests; its main header says what it is.
+# Each may use the rooms below it in this list, never one above (docs/design.md)
+SRC      := owsd host serve engine config board shm signal text
+HAL      := bus owfs wire chips native sim sim/chips ds2482 owserver w1 netlink gpio null
+# The consumers' library, and the program over it
 LIBOWS   := $(wildcard src/libows/*.c)
 OWSCTL   := $(wildcard src/owsctl/*.c)
 # Programs over libows to start from
@@ -175,17 +164,17 @@ HOSTED   := $(patsubst docs/examples/%/,%,$(wildcard docs/examples/*/))
 PYTHON   := $(wildcard src/libows/*.py)
 MAN      := $(wildcard docs/*.[1-8])
 # Tests
-UNIT_SRC := $(wildcard tests/unit/test_*.c)
-UNIT_AID := $(filter-out $(UNIT_SRC),$(wildcard tests/unit/*.c))
+UNIT_SRC := $(wildcard tests/unit/*/test_*.c)
+UNIT_AID := $(wildcard tests/unit/aid/*.c)
 ENDURANCE := $(wildcard tests/endurance/*.c)
 BENCH    := $(wildcard tests/bench/bench_*.c)
-BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/plant.c tests/unit/plant_net.c
+BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/aid/plant.c tests/unit/aid/plant_net.c
 # ---------------------------------------------------------------------------------------------
 
-CORE     := $(SIGNAL) $(CONFIG) $(BOARD) $(SHM) $(ENGINE) $(SERVE) $(HAL) $(LIBOWS) $(filter-out src/owsd.c,$(OWSD)) \
-            $(filter-out src/owsctl/owsctl.c,$(OWSCTL))
+CORE     := $(filter-out src/owsd/owsd.c src/owsctl/owsctl.c, \
+            $(wildcard $(SRC:%=src/%/*.c) $(HAL:%=hal/%/*.c)) $(LIBOWS) $(OWSCTL))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
-UNIT     := $(patsubst tests/unit/%.c,$(B)/unit/%,$(UNIT_SRC)) $(B)/unit/test_endurance
+UNIT     := $(patsubst %.c,$(B)/unit/%,$(notdir $(UNIT_SRC))) $(B)/unit/test_endurance
 BENCHES  := $(patsubst tests/bench/%.c,$(B)/bench/%,$(BENCH))
 SAMPLES  := $(patsubst docs/examples/%.c,$(B)/examples/%,$(filter %.c,$(EXAMPLES))) \
             $(patsubst docs/examples/%.cpp,$(B)/examples/%,$(filter %.cpp,$(EXAMPLES)))
@@ -216,12 +205,12 @@ $(B)/core.a: $(call obj,$(CORE))
 
 $(PROGRAMS): $(B)/core.a $(B)/with/ld
 	$(call link)
-$(B)/owsd: $(B)/src/owsd.o
+$(B)/owsd: $(B)/src/owsd/owsd.o
 $(B)/owsctl: $(B)/src/owsctl/owsctl.o
 
 # --- libows: exports ows_* and nothing else ---------------------------------------------------
 # Of the daemon's sources it takes what it needs out of these; they go into the programs as they are
-LIBOWS_AID := $(call obj,$(SHM) $(SIGNAL))
+LIBOWS_AID := $(call obj,$(wildcard src/shm/*.c src/signal/*.c))
 $(call obj,$(LIBOWS)) $(LIBOWS_AID): PIC := -fPIC -fno-semantic-interposition
 
 $(B)/libows/aid.a: $(LIBOWS_AID)
@@ -283,21 +272,21 @@ $(B)/unit/unity.o: $(UNITY)/unity.h $(B)/with/cc
 	$(call show,CC)
 	$(Q)$(CC) -std=c17 $(CPP_COMMON) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(UNITY_FLAGS) -fPIE -w -c -o $@ $(UNITY)/unity.c
 
-$(B)/unit/%.o: tests/unit/%.c $(UNITY)/unity.h $(B)/with/cc
-	$(call compile,$(UNITY_FLAGS) -Itests/unit)
+$(B)/tests/unit/%.o: tests/unit/%.c $(UNITY)/unity.h $(B)/with/cc
+	$(call compile,$(UNITY_FLAGS))
 
-$(filter-out %/test_endurance,$(UNIT)): %: %.o $(B)/unit/unity.o \
-    $(patsubst tests/unit/%.c,$(B)/unit/%.o,$(UNIT_AID)) $(B)/core.a $(B)/with/ld
+$(foreach t,$(UNIT_SRC),$(eval $(B)/unit/$(basename $(notdir $(t))): $(call obj,$(t))))
+$(filter-out %/test_endurance,$(UNIT)): $(B)/unit/unity.o $(call obj,$(UNIT_AID)) $(B)/core.a $(B)/with/ld
 	$(call link)
 
 $(B)/unit/endurance/%.o: tests/endurance/%.c $(UNITY)/unity.h $(B)/with/cc
-	$(call compile,$(UNITY_FLAGS) -Itests/endurance)
+	$(call compile,$(UNITY_FLAGS))
 
 # What the engine's thread allocates is counted, and the kernel's files are answered by the test
 ENDURANCE_WRAPS := malloc calloc realloc aligned_alloc strdup free open open64 read __read_chk write \
                    close
 $(B)/unit/test_endurance: $(patsubst tests/endurance/%.c,$(B)/unit/endurance/%.o,$(ENDURANCE)) \
-    $(B)/unit/unity.o $(patsubst tests/unit/%.c,$(B)/unit/%.o,$(UNIT_AID)) $(B)/core.a $(B)/with/ld
+    $(B)/unit/unity.o $(call obj,$(UNIT_AID)) $(B)/core.a $(B)/with/ld
 	$(call link,$(patsubst %,-Wl$(comma)--wrap=%,$(ENDURANCE_WRAPS)))
 
 unit-programs: $(UNIT) replays

@@ -3,12 +3,12 @@
  * Inside the driver: single I2C calls to a chip (io.c), whole 1-Wire operations (run.c), finding
  * and setting up a chip (detect.c), the links (link.c), GPIO lines beside the chips (power.c).
  *
- * Errors as hal/link.h, but io.c gives those of hal/ds2482/i2c.h.
+ * Errors as hal/wire/link.h, but io.c gives those of hal/ds2482/i2c.h.
  */
 #ifndef HAL_DS2482_CHIP_H
 #define HAL_DS2482_CHIP_H
 
-#include "ds2482.h"
+#include "hal/ds2482/ds2482.h"
 
 /* --- io.c --- */
 int64_t ds2482_now(const struct ds2482_master *master);
@@ -52,7 +52,7 @@ int ds2482_select(struct ds2482_link *link);
 /* --- power.c --- */
 /* How long a wire is without supply so that all slaves forget what they knew. */
 #define DS2482_POWER_OFF_NS INT64_C(500000000)
-#define DS2482_POWER_ON_NS  INT64_C(10000000)
+#define DS2482_POWER_ON_NS INT64_C(10000000)
 /* Supply on and chips awake, as far as there are lines for it. Errors as gpio_output_take(). */
 int ds2482_power_on(struct ds2482_master *master, char *why, size_t why_size);
 /* The chips go to sleep; the supply stays on. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "chip_lock.h"
-
 #include <errno.h>
 #include <fcntl.h>
+
+#include "hal/ds2482/chip_lock.h"
 
 /*
  * The lock belongs to the descriptor (OFD), so that two targets of one process hold each other off

@@ -20,7 +20,7 @@ enum ds2482_register {
 	DS2482_AT_DATA = 0xE1,
 	DS2482_AT_CHANNEL = 0xD2, /* -800 */
 	DS2482_AT_CONFIG = 0xC3,
-	DS2482_AT_PORT = 0xB4,    /* DS2483, DS2484 */
+	DS2482_AT_PORT = 0xB4, /* DS2483, DS2484 */
 };
 
 enum ds2482_status {

@@ -3,13 +3,13 @@
  * Other parts live at 0x18 to 0x1F too (thermometers, accelerometers) and would take a second
  * byte for the value of a register. So a chip has to prove itself by single-byte commands first.
  */
-#include "chip.h"
-
 #include <errno.h>
 
+#include "hal/ds2482/chip.h"
+
 #define SETTLE_NS INT64_C(1000000) /* a device reset takes 0.5 us */
-#define BUSY_NS   INT64_C(5000000)
-#define TRIES     2
+#define BUSY_NS INT64_C(5000000)
+#define TRIES 2
 
 static bool just_reset(int status)
 {
@@ -163,7 +163,7 @@ int ds2482_select(struct ds2482_link *link)
 		return -ENODEV;
 	if (chip->lost)
 		return -ENXIO;
-	config &= (uint8_t)~(DS2482_1WS | DS2482_SPU);
+	config &= (uint8_t) ~(DS2482_1WS | DS2482_SPU);
 	if (link->speed == LINK_OVERDRIVE)
 		config |= DS2482_1WS;
 	/* A strong pull-up belongs to the channel it was given to; the chip ends it by itself. */

@@ -3,16 +3,16 @@
  * The DS2482 driver: link masters over struct i2c_adapter. One master has all chips of an adapter
  * that the target names, one link for each channel of each.
  */
-#ifndef HAL_DS2482_DS2482_H
-#define HAL_DS2482_DS2482_H
+#ifndef HAL_DS2482_H
+#define HAL_DS2482_H
 
-#include "codes.h"
+#include "hal/ds2482/codes.h"
+#include "hal/ds2482/i2c.h"
 #include "hal/gpio/line.h"
-#include "hal/link.h"
-#include "i2c.h"
+#include "hal/wire/link.h"
 
 #define DS2482_FIRST_ADDRESS 0x18
-#define DS2482_ADDRESSES     8
+#define DS2482_ADDRESSES 8
 
 enum ds2482_part {
 	DS2482_100, /* or a -101: they do not differ on the bus */
@@ -35,11 +35,11 @@ struct ds2482_chip {
 	uint8_t address;
 	enum ds2482_part part;
 	unsigned channels;
-	bool lost;         /* reset or changed under us: nothing goes before a chip reset */
-	uint8_t channel;   /* the current one */
-	uint8_t config;    /* as the chip has it */
-	int64_t claim_ns;  /* env time of the next look whether the chip is still ours */
-	int64_t free_at;   /* env time by which the last operation has ended at the latest */
+	bool lost;        /* reset or changed under us: nothing goes before a chip reset */
+	uint8_t channel;  /* the current one */
+	uint8_t config;   /* as the chip has it */
+	int64_t claim_ns; /* env time of the next look whether the chip is still ours */
+	int64_t free_at;  /* env time by which the last operation has ended at the latest */
 	struct ds2482_link link[8];
 };
 
@@ -66,7 +66,7 @@ struct ds2482_master {
 	struct i2c_adapter *adapter; /* NULL while closed */
 	int address, channel;        /* only this one; -1 all */
 	bool active_pullup;
-	int64_t byte_ns; /* shortest time of one I2C byte, measured; 0: bytes tell no time */
+	int64_t byte_ns;     /* shortest time of one I2C byte, measured; 0: bytes tell no time */
 	int64_t measured_ns; /* env time when */
 	unsigned measured_again; /* since the adapter was opened */
 	unsigned count;

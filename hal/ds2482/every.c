@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "every.h"
-
-#include "ds2482.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+#include "hal/ds2482/ds2482.h"
+#include "hal/ds2482/every.h"
 
 #define LINKS 64 /* as many as a native bus takes */
 
@@ -101,7 +100,8 @@ static int every_open(struct link_master *base, char *why, size_t why_size)
 
 	n = every->source.list(every->source.ctx, number, EVERY_ADAPTERS);
 	if (!n) {
-		snprintf(why, why_size, "no /dev/i2c-*: switch I2C on (Raspberry Pi: "
+		snprintf(why, why_size,
+		         "no /dev/i2c-*: switch I2C on (Raspberry Pi: "
 		         "dtparam=i2c_arm=on), load the module i2c-dev");
 		return -ENODEV;
 	}

@@ -7,7 +7,7 @@
 #ifndef HAL_DS2482_EVERY_H
 #define HAL_DS2482_EVERY_H
 
-#include "hal/link.h"
+#include "hal/wire/link.h"
 
 #define EVERY_ADAPTERS 32
 

@@ -45,7 +45,7 @@ struct i2c_adapter_ops {
 };
 
 enum i2c_combine {
-	I2C_SMBUS_ONLY,   /* no I2C_RDWR at all */
+	I2C_SMBUS_ONLY,    /* no I2C_RDWR at all */
 	I2C_ONE_READ_LAST, /* bcm2835: one read message, and it has to be the last */
 	I2C_ANY,
 };
@@ -53,9 +53,9 @@ struct i2c_adapter {
 	const struct i2c_adapter_ops *ops;
 	/* At most this; the kernel does not tell, so the driver tries it and may lower it. */
 	enum i2c_combine combine;
-	unsigned max_messages; /* in one transfer; 42 with i2c-dev */
+	unsigned max_messages;               /* in one transfer; 42 with i2c-dev */
 	uint64_t transfers, bytes, syscalls; /* counted by the adapter */
-	int holder; /* process that a claim was refused for; 0 not known */
+	int holder;                          /* process that a claim was refused for; 0 not known */
 };
 
 #endif

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "i2c_dev.h"
-
-#include "chip_lock.h"
-
 #include <errno.h>
 #include <stdbool.h>
+
+#include "hal/ds2482/chip_lock.h"
+#include "hal/ds2482/i2c_dev.h"
 
 #ifdef OWSD_LIBI2C
 
@@ -64,8 +63,10 @@ static int transfer(struct i2c_adapter *base, uint8_t address, struct i2c_messag
 	for (size_t i = 0; i < n; i++) {
 		bool read = messages[i].flags & I2C_MESSAGE_READ;
 
-		msgs[i] = (struct i2c_msg){.addr = address, .flags = read ? I2C_M_RD : 0,
-		                           .len = messages[i].len, .buf = messages[i].data};
+		msgs[i] = (struct i2c_msg){.addr = address,
+		                           .flags = read ? I2C_M_RD : 0,
+		                           .len = messages[i].len,
+		                           .buf = messages[i].data};
 		base->bytes += messages[i].len + 1u;
 	}
 	return ioctl(dev->fd, I2C_RDWR, &data) < 0 ? plain(errno, false) : 0;

@@ -3,7 +3,7 @@
 #ifndef HAL_DS2482_I2C_DEV_H
 #define HAL_DS2482_I2C_DEV_H
 
-#include "i2c.h"
+#include "hal/ds2482/i2c.h"
 
 /*
  * Allocates. 0; -ENOMEM; -EOPNOTSUPP built without libi2c; -ENOTTY no I2C adapter; -errno of

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Scheme "i2c": `i2c:/dev/i2c-1`, `i2c:/dev/i2c-1:0x18`, `i2c:/dev/i2c-1:0x18.3`, `i2c:auto`. */
-#include "ds2482.h"
-#include "every.h"
-#include "i2c_dev.h"
-#include "look.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "hal/ds2482/ds2482.h"
+#include "hal/ds2482/every.h"
+#include "hal/ds2482/i2c_dev.h"
+#include "hal/ds2482/look.h"
 
 static int open_adapter(void *ctx, const struct bus_env *env, struct i2c_adapter **adapter,
                         char *why, size_t why_size)
@@ -22,15 +22,19 @@ static int open_adapter(void *ctx, const struct bus_env *env, struct i2c_adapter
 		break;
 	case -EACCES:
 	case -EPERM:
-		snprintf(why, why_size, "no permission for %s: the user has to be in the group "
-		         "that owns it (i2c)", path);
+		snprintf(why, why_size,
+		         "no permission for %s: the user has to be in the group "
+		         "that owns it (i2c)",
+		         path);
 		err = -EACCES;
 		break;
 	case -ENOENT:
 	case -ENXIO:
 	case -ENODEV:
-		snprintf(why, why_size, "no %s: switch I2C on (Raspberry Pi: dtparam=i2c_arm=on), "
-		         "load the module i2c-dev", path);
+		snprintf(why, why_size,
+		         "no %s: switch I2C on (Raspberry Pi: dtparam=i2c_arm=on), "
+		         "load the module i2c-dev",
+		         path);
 		err = -ENODEV;
 		break;
 	case -EOPNOTSUPP:
@@ -102,7 +106,8 @@ static int create(const char *where, const struct bus_env *env, struct link_mast
 	memcpy(path, where, len);
 	path[len] = '\0';
 	if (path[0] != '/') {
-		snprintf(why, why_size, "\"%s\": expected auto, or an adapter as /dev/i2c-1", where);
+		snprintf(why, why_size, "\"%s\": expected auto, or an adapter as /dev/i2c-1",
+		         where);
 		free(path);
 		return -EINVAL;
 	}

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Single I2C calls to a chip, and what the adapter can do and how fast it is, found by trying it. */
-#include "chip.h"
-
 #include <errno.h>
 
-#define MEASURE_BYTES  64
-#define MEASURE_TIMES  12
-#define LEAST_NS       9000 /* 1 MHz; no wire is faster */
-#define MOST_MESSAGES  42
-#define SOON_NS        INT64_C(60000000000)
+#include "hal/ds2482/chip.h"
+
+#define MEASURE_BYTES 64
+#define MEASURE_TIMES 12
+#define LEAST_NS 9000 /* 1 MHz; no wire is faster */
+#define MOST_MESSAGES 42
+#define SOON_NS INT64_C(60000000000)
 #define SOON_DOUBLINGS 16
 
 int64_t ds2482_now(const struct ds2482_master *master)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* One channel of a chip as a link. */
-#include "chip.h"
-
 #include <errno.h>
+
+#include "hal/ds2482/chip.h"
 
 #define CLAIM_NS INT64_C(250000000)
 
@@ -159,11 +159,13 @@ static int power_cycle(struct ds2482_link *link)
 	if (!err)
 		err = ds2482_configure(chip, (chip->config & DS2482_APU) | DS2482_PDN);
 	if (!err)
-		err = ds2482_wait_until(chip->master, ds2482_now(chip->master) + DS2482_POWER_OFF_NS);
+		err = ds2482_wait_until(chip->master,
+		                        ds2482_now(chip->master) + DS2482_POWER_OFF_NS);
 	if (!err)
 		err = ds2482_configure(chip, chip->config & DS2482_APU);
 	if (!err)
-		err = ds2482_wait_until(chip->master, ds2482_now(chip->master) + DS2482_POWER_ON_NS);
+		err = ds2482_wait_until(chip->master,
+		                        ds2482_now(chip->master) + DS2482_POWER_ON_NS);
 	return err;
 }
 
@@ -249,8 +251,8 @@ void ds2482_link_init(struct ds2482_chip *chip, unsigned number)
 
 	chip->link[number] = (struct ds2482_link){
 		.link = {.ops = &link_ops,
-		         .env = chip->master->master.env,
-		         .chip = before->ops ? before->chip : own},
+	                 .env = chip->master->master.env,
+	                 .chip = before->ops ? before->chip : own},
 		.chip = chip,
 		.number = (uint8_t)number,
 		.cost = chip->link[number].cost,

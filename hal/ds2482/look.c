@@ -1,9 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "look.h"
-
-#include "chip_lock.h"
-#include "ds2482.h"
-
 #include <dirent.h>
 #include <fcntl.h>
 #include <stdbool.h>
@@ -13,6 +8,10 @@
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
 #include <unistd.h>
+
+#include "hal/ds2482/chip_lock.h"
+#include "hal/ds2482/ds2482.h"
+#include "hal/ds2482/look.h"
 
 static void mix(uint64_t *mark, uint64_t word)
 {

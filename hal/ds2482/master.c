@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "chip.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "hal/ds2482/chip.h"
 
 static int parse_where(struct ds2482_master *master, const char *where, char *why, size_t why_size)
 {
@@ -33,8 +33,8 @@ wrong:
 }
 
 int ds2482_create(const struct link_master_ops *ops, const struct bus_env *env,
-                  const struct ds2482_source *source, const char *where,
-                  struct link_master **out, char *why, size_t why_size)
+                  const struct ds2482_source *source, const char *where, struct link_master **out,
+                  char *why, size_t why_size)
 {
 	struct ds2482_master *master = calloc(1, sizeof(*master));
 	int err;
@@ -98,7 +98,8 @@ static void name_holder(int pid, char *text, size_t size)
 		fclose(file);
 	}
 	name[strcspn(name, "\n")] = '\0';
-	snprintf(text, size, "%s%sprocess %d%s", name, name[0] ? " (" : "", pid, name[0] ? ")" : "");
+	snprintf(text, size, "%s%sprocess %d%s", name, name[0] ? " (" : "", pid,
+	         name[0] ? ")" : "");
 }
 
 static void explain(const struct ds2482_master *master, int err, int address, char *why,
@@ -121,11 +122,15 @@ static void explain(const struct ds2482_master *master, int err, int address, ch
 		break;
 	case -ENXIO:
 		if (address >= 0)
-			snprintf(why, size, "no DS2482 answers at 0x%02x on %s: look at supply, "
-			         "SDA, SCL, address pins", (unsigned)address, name);
+			snprintf(why, size,
+			         "no DS2482 answers at 0x%02x on %s: look at supply, "
+			         "SDA, SCL, address pins",
+			         (unsigned)address, name);
 		else
-			snprintf(why, size, "no DS2482 answers at 0x18 to 0x1f on %s: look at its "
-			         "supply, SDA and SCL", name);
+			snprintf(why, size,
+			         "no DS2482 answers at 0x18 to 0x1f on %s: look at its "
+			         "supply, SDA and SCL",
+			         name);
 		break;
 	case -ENODEV:
 		snprintf(why, size, "the adapter %s is gone", name);
@@ -186,8 +191,8 @@ static int try_chip(struct ds2482_master *master, uint8_t address)
 		return err;
 	if (!err && !is_known(master, address))
 		master->order[master->known++] = address;
-	master->missing[address - DS2482_FIRST_ADDRESS] =
-		err && (is_known(master, address) || (err != -ENXIO && err != -EIO));
+	master->missing[address - DS2482_FIRST_ADDRESS] = err && (is_known(master, address) ||
+	                                                          (err != -ENXIO && err != -EIO));
 	return err;
 }
 

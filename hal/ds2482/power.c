@@ -3,16 +3,16 @@
  * GPIO lines beside the chips: one that switches the supply of the wire (and perhaps of the chips),
  * one at the SLPZ pins of DS2482-101, DS2483 and DS2484.
  */
-#include "chip.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/ds2482/chip.h"
+
 /* A chip answers that long after SLPZ went high: 2 ms by the data sheet of the DS2484. */
 #define AWAKE_NS INT64_C(5000000)
-#define MS       INT64_C(1000000)
+#define MS INT64_C(1000000)
 
 static bool is_given(const struct gpio_output *output)
 {
@@ -108,7 +108,8 @@ int ds2482_power_cycle(struct ds2482_master *master)
 	/* on again whatever happened */
 	on = gpio_output_set(&master->power, true);
 	err = err ? err : on;
-	if (err == -ENODEV) /* the GPIO chip is gone: it is looked for when the master opens again */
+	if (err ==
+	    -ENODEV) /* the GPIO chip is gone: it is looked for when the master opens again */
 		gpio_output_release(&master->power);
 	if (!err)
 		err = pause_ns(master, DS2482_POWER_ON_NS);

@@ -8,18 +8,18 @@
  * own, each begins so early after a timed wait that its command byte arrives just when the
  * operation before has ended at the latest.
  */
-#include "chip.h"
-
 #include <assert.h>
 #include <errno.h>
 #include <string.h>
 
+#include "hal/ds2482/chip.h"
+
 /* Reading on pays from here on (a byte of at most 45 us, 200 kHz). */
 #define FAST_BYTE_NS 45000
-#define MAX_BYTES    180
+#define MAX_BYTES 180
 #define MAX_MESSAGES 42
-#define STUCK_NS     INT64_C(10000000)
-#define POLL_NS      INT64_C(200000)
+#define STUCK_NS INT64_C(10000000)
+#define POLL_NS INT64_C(200000)
 
 /* Bytes to read so that the last begins max_ns after the command, given what lies between. */
 static unsigned reading_on(const struct ds2482_chip *chip, long max_ns, unsigned between)
@@ -161,10 +161,9 @@ static int write_combined(struct ds2482_chip *chip, const uint8_t *data, size_t 
 		out[i][0] = DS2482_WRITE;
 		out[i][1] = data[i];
 		messages[2 * i] = (struct i2c_message){.len = 2, .data = out[i]};
-		messages[2 * i + 1] =
-			(struct i2c_message){.flags = I2C_MESSAGE_READ,
-			                     .len = (uint16_t)(whole ? end : between),
-			                     .data = in};
+		messages[2 * i + 1] = (struct i2c_message){.flags = I2C_MESSAGE_READ,
+		                                           .len = (uint16_t)(whole ? end : between),
+		                                           .data = in};
 	}
 	err = transfer(chip, messages, 2 * n);
 	if (err)

@@ -6,12 +6,12 @@
  * The contract has no way to say that a path has news, so an edge waits in the kernel, with its
  * time, until its line is read: at the latest one period later.
  */
-#include "hal/gpio/lines.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "hal/gpio/lines.h"
 
 #define SECOND INT64_C(1000000000)
 #define AGAIN_NS (SECOND / 2)
@@ -188,7 +188,7 @@ static int parse_value(const struct bus_req *req, bool *value)
 	static const struct {
 		const char *text;
 		bool value;
-	} words[] = {{"0", false}, {"1", true},     {"off", false},
+	} words[] = {{"0", false}, {"1", true},   {"off", false},
 	             {"on", true}, {"no", false}, {"yes", true}};
 	const char *text = (const char *)req->data;
 	uint32_t len = req->len;

@@ -121,7 +121,8 @@ static int request(struct gpio_chip *chip, unsigned offset, const struct gpio_se
 	line->line = gpiod_chip_get_line(chip->chip, offset);
 	err = line->line ? gpiod_line_request(line->line, &config, setup->value) : -1;
 	/* A line without an interrupt can be read all the same. */
-	if (err && line->line && line->edges && errno != EBUSY && errno != EPERM && errno != ENODEV) {
+	if (err && line->line && line->edges && errno != EBUSY && errno != EPERM &&
+	    errno != ENODEV) {
 		line->edges = false;
 		config.request_type = GPIOD_LINE_REQUEST_DIRECTION_INPUT;
 		errno = 0;

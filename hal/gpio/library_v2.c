@@ -113,7 +113,8 @@ static int settle(struct gpiod_line_settings *to, const struct gpio_setup *setup
 		err = gpiod_line_settings_set_drive(to, drives[setup->drive]);
 		if (!err)
 			err = gpiod_line_settings_set_output_value(
-				to, setup->value ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE);
+				to,
+				setup->value ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE);
 	}
 	if (!err && edges)
 		err = gpiod_line_settings_set_edge_detection(to, GPIOD_LINE_EDGE_BOTH);

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "hal/gpio/line.h"
-
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "hal/gpio/line.h"
 
 #define CONSUMER "owsd"
 #define DEV "/dev/"
@@ -23,8 +23,10 @@ static int open_path(const char *path, struct gpio_chip **chip, char *why, size_
 		break;
 	case -EACCES:
 	case -EPERM:
-		snprintf(why, why_size, "no permission for %s: the user has to be in the group "
-		         "that owns it (gpio)", path);
+		snprintf(why, why_size,
+		         "no permission for %s: the user has to be in the group "
+		         "that owns it (gpio)",
+		         path);
 		return -EACCES;
 	case -ENOENT:
 	case -ENXIO:
@@ -69,9 +71,11 @@ static int open_label(const char *label, struct gpio_chip **chip, char *why, siz
 	if (dir)
 		closedir(dir);
 	if (err)
-		snprintf(why, why_size, refused ? "no permission for the chips in /dev: the user has "
-		         "to be in the group that owns them (gpio)" :
-		         "no chip is labelled %s: gpiodetect lists the chips there are", label);
+		snprintf(why, why_size,
+		         refused ? "no permission for the chips in /dev: the user has "
+		                   "to be in the group that owns them (gpio)"
+		                 : "no chip is labelled %s: gpiodetect lists the chips there are",
+		         label);
 	return err && refused ? -EACCES : err;
 }
 
@@ -190,8 +194,10 @@ int gpio_spec_parse(const char *text, struct gpio_spec *spec, char *why, size_t 
 		word++;
 		len = strcspn(word, ",");
 		if (!take_word(&spec->setup, word, len)) {
-			snprintf(why, why_size, "\"%.*s\": expected active-low, pull-up, pull-down, "
-			         "open-drain or open-source", (int)(len < 40 ? len : 40), word);
+			snprintf(why, why_size,
+			         "\"%.*s\": expected active-low, pull-up, pull-down, "
+			         "open-drain or open-source",
+			         (int)(len < 40 ? len : 40), word);
 			return -EINVAL;
 		}
 	}

@@ -26,7 +26,7 @@ struct gpio_setup {
 	uint8_t bias;      /* enum gpio_bias */
 	uint8_t drive;     /* enum gpio_drive */
 	bool active_low;
-	bool value;        /* of an output from its first moment on */
+	bool value; /* of an output from its first moment on */
 };
 
 struct gpio_edge {

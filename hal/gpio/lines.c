@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-#include "hal/gpio/lines.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/gpio/lines.h"
+
 static const char *const option_names[GPIO_OPTIONS] = {
-	[GPIO_OPTION_ACTIVE_LOW] = "ActiveLow",
-	[GPIO_OPTION_PULL_UP] = "PullUp",
-	[GPIO_OPTION_PULL_DOWN] = "PullDown",
-	[GPIO_OPTION_OPEN_DRAIN] = "OpenDrain",
+	[GPIO_OPTION_ACTIVE_LOW] = "ActiveLow",   [GPIO_OPTION_PULL_UP] = "PullUp",
+	[GPIO_OPTION_PULL_DOWN] = "PullDown",     [GPIO_OPTION_OPEN_DRAIN] = "OpenDrain",
 	[GPIO_OPTION_OPEN_SOURCE] = "OpenSource",
 };
 
@@ -66,7 +64,8 @@ static int apply(struct gpio_bus *gpio, enum gpio_option option, char *why, size
 
 		if (len && line < 0) {
 			snprintf(why, why_size, "%s: %s has no line %.*s; gpioinfo lists them",
-			         option_names[option], gpio->where, (int)(len < 32 ? len : 32), text);
+			         option_names[option], gpio->where, (int)(len < 32 ? len : 32),
+			         text);
 			return -EINVAL;
 		}
 		if (len)
@@ -224,8 +223,8 @@ static int read_input(struct gpio_bus *gpio, struct line_state *line, bool *valu
 	return 0;
 }
 
-int line_read(struct gpio_bus *gpio, unsigned number, bool guest, bool *value,
-              int64_t *measured_ns, char *why, size_t why_size)
+int line_read(struct gpio_bus *gpio, unsigned number, bool guest, bool *value, int64_t *measured_ns,
+              char *why, size_t why_size)
 {
 	struct line_state *line = &gpio->line[number];
 	int level;

@@ -3,7 +3,7 @@
 #ifndef HAL_GPIO_LINES_H
 #define HAL_GPIO_LINES_H
 
-#include "hal/bus.h"
+#include "hal/bus/bus.h"
 #include "hal/gpio/line.h"
 
 #define GPIO_DEVICE "gpio" /* of /gpio/17 */

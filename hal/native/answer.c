@@ -3,8 +3,8 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/native/format.h"
 #include "hal/native/native.h"
+#include "hal/owfs/format.h"
 
 #define FOLLOW_NS 500000
 
@@ -28,7 +28,9 @@ static void give(struct native *native, struct job *job, const struct bus_answer
 
 void job_answer(struct native *native, struct job *job, int err)
 {
-	struct bus_answer answer = {.id = job->req->id, .err = err, .kind = BUS_TEXT,
+	struct bus_answer answer = {.id = job->req->id,
+	                            .err = err,
+	                            .kind = BUS_TEXT,
 	                            .measured_ns = native_now(native)};
 
 	job_unlock(native, job);
@@ -58,8 +60,11 @@ void job_answer(struct native *native, struct job *job, int err)
 
 void job_answer_cached(struct native *native, struct job *job, const struct cache_entry *entry)
 {
-	struct bus_answer answer = {.id = job->req->id, .kind = entry->kind, .len = entry->len,
-	                            .detail = BUS_DETAIL_CACHED, .measured_ns = entry->measured_ns,
+	struct bus_answer answer = {.id = job->req->id,
+	                            .kind = entry->kind,
+	                            .len = entry->len,
+	                            .detail = BUS_DETAIL_CACHED,
+	                            .measured_ns = entry->measured_ns,
 	                            .number = entry->number};
 
 	if (entry->len > job->req->len) {
@@ -94,8 +99,8 @@ void job_keep(struct native *native, struct job *job)
 
 	if (!job->txn.device || property->offline || job->out > CACHE_TEXT_MAX)
 		return;
-	struct cache_entry *entry =
-		cache_add(&native->cache, job->txn.device, property, job->extension);
+	struct cache_entry *entry = cache_add(&native->cache, job->txn.device, property,
+	                                      job->extension);
 	entry->measured_ns = measured;
 	entry->until_ns = measured + life_ns(native, property);
 	entry->kind = property->type == PROPERTY_BINARY ? BUS_BYTES : BUS_TEXT;

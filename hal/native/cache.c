@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "hal/native/cache.h"
-
 #include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
 
-#include "hal/native/device.h"
+#include "hal/native/cache.h"
+#include "hal/wire/device.h"
 
 #define SETS 256
 #define WAYS 4

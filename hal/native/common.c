@@ -3,7 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/native/family.h"
+#include "hal/chips/family.h"
 #include "hal/native/native.h"
 
 #define LOOKS 3
@@ -81,6 +81,7 @@ static int write_alias(struct txn *txn)
 	return native_set_alias(txn->native, txn->device, (const char *)txn->data, txn->len);
 }
 
+/* clang-format off */
 #define IDENTITY(text, what, bytes)                                                       \
 	{.name = (text), .type = PROPERTY_ASCII, .life = LIFE_STATIC, .access = ACCESS_READ, \
 	 .offline = true, .size = (bytes), .arg = (what), .read = read_identity}
@@ -100,5 +101,6 @@ static const struct property properties[] = {
 	IDENTITY("r_locator", LOCATOR, 16),
 	IDENTITY("type", TYPE, 32),
 };
+/* clang-format on */
 
 const struct family family_common = {.type = "unknown", PROPERTIES(properties)};

@@ -8,8 +8,8 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/thermometer.h"
 #include "hal/native/native.h"
-#include "hal/native/thermometer.h"
 
 #define SKIP_ROM 0xcc
 #define GATHER_NS (3 * TXN_MS)
@@ -405,7 +405,9 @@ static bool ask_one(struct native *native, unsigned n)
 {
 	for (unsigned i = 0; i < native->table.count; i++) {
 		struct device *device = &native->table.devices[i];
-		struct txn txn = {.native = native, .link = native->channel[n].link, .channel = n,
+		struct txn txn = {.native = native,
+		                  .link = native->channel[n].link,
+		                  .channel = n,
 		                  .device = device};
 
 		if (!is_thermometer(device, n) || device->power != POWER_UNKNOWN)
@@ -460,7 +462,7 @@ bool convert_step(struct native *native, int64_t now, int64_t *next)
 		if (plan.reading || plan.locked)
 			continue;
 		int err = convert_broadcast(native, n, plan.parasitic_due,
-		                    plan.parasitic_due ? plan.all_ns : plan.due_ns);
+		                            plan.parasitic_due ? plan.all_ns : plan.due_ns);
 		if (err < 0)
 			fail_due(native, n, err);
 		return true;

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "hal/native/files.h"
-#include "hal/native/format.h"
 #include "hal/native/native.h"
+#include "hal/owfs/format.h"
 
 static bool is_all(const struct job *job)
 {
@@ -48,8 +48,9 @@ void job_txn(struct native *native, struct job *job)
 	txn->link = native->channel[n].link;
 	txn->property = job->property;
 	txn->visit = job->req->prio == BUS_ALARM;
-	txn->element = is_all(job) ? (int)job->element
-	                           : job->extension >= 0 ? job->extension & 0xff : 0;
+	txn->element = is_all(job)           ? (int)job->element
+	               : job->extension >= 0 ? job->extension & 0xff
+	                                     : 0;
 	if (job->req->op == BUS_READ) {
 		txn->data = job->req->data + job->out;
 		txn->room = job->req->len - job->out;

@@ -6,7 +6,7 @@
 #ifndef HAL_NATIVE_FILES_H
 #define HAL_NATIVE_FILES_H
 
-#include "hal/native/family.h"
+#include "hal/chips/family.h"
 
 typedef int property_function(struct txn *txn);
 

@@ -3,8 +3,8 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/native/format.h"
 #include "hal/native/native.h"
+#include "hal/owfs/format.h"
 
 #define TRIES_CHECKSUM 3
 #define TRIES_SHORT 2

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "hal/native/files.h"
-#include "hal/native/format.h"
 #include "hal/native/native.h"
+#include "hal/owfs/format.h"
 
 static int __attribute__((format(printf, 2, 3))) add(struct job *job, const char *format, ...)
 {
@@ -60,7 +60,7 @@ int listing_add_device(struct native *native, struct job *job, const struct devi
 
 int listing_add_rest(struct native *native, struct job *job)
 {
-	static const char *const in_root[] = {"uncached", "settings", "system", "statistics",
+	static const char *const in_root[] = {"uncached",  "settings",     "system", "statistics",
 	                                      "structure", "simultaneous", "alarm"};
 	static const char *const in_bus[] = {"interface", "simultaneous", "alarm"};
 	char name[16];
@@ -100,7 +100,8 @@ static bool has_file(struct native *native, const struct device *device,
                      const struct property *property, int extension)
 {
 	struct link *link = device && native->channels > device->channel
-	                            ? native->channel[device->channel].link : NULL;
+	                            ? native->channel[device->channel].link
+	                            : NULL;
 	property_function *read = NULL, *write = NULL;
 
 	return !link || !link->files || property->offline ||

@@ -143,17 +143,14 @@ static void power_cycled(struct native *native, unsigned channel)
 	for (unsigned i = 0; i < native->table.count; i++) {
 		struct device *device = &native->table.devices[i];
 
-		if (device->present &&
-		    (device->channel == channel || native->master->one_supply))
+		if (device->present && (device->channel == channel || native->master->one_supply))
 			hunt_restarted(native, device);
 	}
 }
 
 static const enum native_count counts[] = {
-	[LINK_RETRY] = COUNT_RETRIES,
-	[LINK_BUS_RESET] = COUNT_BUS_RESETS,
-	[LINK_CHIP_RESET] = COUNT_CHIP_RESETS,
-	[LINK_POWER_CYCLE] = COUNT_POWER_CYCLES,
+	[LINK_RETRY] = COUNT_RETRIES,          [LINK_BUS_RESET] = COUNT_BUS_RESETS,
+	[LINK_CHIP_RESET] = COUNT_CHIP_RESETS, [LINK_POWER_CYCLE] = COUNT_POWER_CYCLES,
 	[LINK_REOPEN] = COUNT_REOPENS,
 };
 

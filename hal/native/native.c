@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* The native bus as a backend of the bus contract: create, submit, step, suspend, counters. */
-#include "hal/native/native.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "hal/native/native.h"
 
 #define VOLATILE_NS (2 * NATIVE_S)
 #define STABLE_NS (300 * NATIVE_S)
@@ -85,7 +85,8 @@ int native_option(struct bus *bus, const char *key, const char *text, char *why,
 {
 	struct link_master *master = ((struct native *)bus)->master;
 
-	return master->ops->option ? master->ops->option(master, key, text, why, why_size) : -ENOENT;
+	return master->ops->option ? master->ops->option(master, key, text, why, why_size)
+	                           : -ENOENT;
 }
 
 int64_t native_now(const struct native *native)
@@ -239,7 +240,8 @@ static void take_cost(struct native *native)
 			link->ops->cost(link, &one);
 		/* The master may open with fewer channels than before, or begin anew to count. */
 		native->wire_ns += one.wire_ns - (one.wire_ns < native->wire_seen_ns[i]
-		                                          ? 0 : native->wire_seen_ns[i]);
+		                                          ? 0
+		                                          : native->wire_seen_ns[i]);
 		native->wire_seen_ns[i] = one.wire_ns;
 	}
 	if (native->master->ops->cost)
@@ -308,8 +310,8 @@ int64_t native_step(struct bus *bus, int64_t now)
 
 int native_set_alias(struct native *native, struct device *device, const char *text, size_t len)
 {
-	static const char *const words[] = {"uncached", "alarm", "settings", "system", "statistics",
-	                                    "structure", "simultaneous", "interface"};
+	static const char *const words[] = {"uncached",   "alarm",     "settings",     "system",
+	                                    "statistics", "structure", "simultaneous", "interface"};
 	char *alias = device_alias(&native->table, device);
 	uint8_t rom[8];
 

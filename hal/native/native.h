@@ -19,15 +19,15 @@
  *
  * All of it runs on the bus's thread; but the counters, which any thread may read.
  */
-#ifndef HAL_NATIVE_NATIVE_H
-#define HAL_NATIVE_NATIVE_H
+#ifndef HAL_NATIVE_H
+#define HAL_NATIVE_H
 
-#include "hal/link.h"
+#include "hal/chips/family.h"
 #include "hal/native/cache.h"
-#include "hal/native/device.h"
-#include "hal/native/family.h"
-#include "hal/native/search.h"
-#include "hal/path.h"
+#include "hal/owfs/path.h"
+#include "hal/wire/device.h"
+#include "hal/wire/link.h"
+#include "hal/wire/search.h"
 
 #define NATIVE_DEPTH 400
 #define NATIVE_CHANNELS 64
@@ -85,29 +85,29 @@ struct job {
 	struct bus_req *req;
 	uint8_t kind, state;
 	bool begun, fresh, verified, locks;
-	bool again; /* its conversion was unproven, and is made a second time */
-	bool waits; /* PREPARE: until another job has read its resolution */
-	unsigned element; /* of a separate array, when all of it is asked for */
-	uint8_t tries;   /* transactions that failed in a row */
-	uint8_t faults;  /* power-fault readings in a row */
-	uint8_t failures; /* how often it was begun again after an error */
-	uint8_t channel; /* which one is being searched */
-	int bus;         /* N of /bus.N, -1: all */
+	bool again;                 /* its conversion was unproven, and is made a second time */
+	bool waits;                 /* PREPARE: until another job has read its resolution */
+	unsigned element;           /* of a separate array, when all of it is asked for */
+	uint8_t tries;              /* transactions that failed in a row */
+	uint8_t faults;             /* power-fault readings in a row */
+	uint8_t failures;           /* how often it was begun again after an error */
+	uint8_t channel;            /* which one is being searched */
+	int bus;                    /* N of /bus.N, -1: all */
 	const struct family *table; /* of a path without device */
 	struct path path;
-	uint32_t order;  /* lower came earlier */
+	uint32_t order; /* lower came earlier */
 	int64_t since_ns;
 	const struct property *property;
 	int extension;
-	int64_t ready_ns; /* CONVERTING */
-	size_t out;       /* bytes of the answer so far */
-	size_t taken;     /* WRITE: bytes used */
+	int64_t ready_ns;    /* CONVERTING */
+	size_t out;          /* bytes of the answer so far */
+	size_t taken;        /* WRITE: bytes used */
 	uint8_t families[8]; /* ALARM: only these; 0 behind the last */
 	uint8_t family_i;
-	bool merged;      /* WRITE of one element: the others have been read */
+	bool merged; /* WRITE of one element: the others have been read */
 	bool searching;
-	bool heard;       /* SCAN and ALARM: a channel answered */
-	size_t mark;      /* ... bytes of the answer before this channel */
+	bool heard;  /* SCAN and ALARM: a channel answered */
+	size_t mark; /* ... bytes of the answer before this channel */
 	struct search search;
 	struct txn txn;
 };
@@ -116,19 +116,19 @@ enum native_simultaneous { SIMULTANEOUS_TEMPERATURE, SIMULTANEOUS_VOLTAGE, SIMUL
 
 struct channel {
 	struct link *link;
-	uint8_t rung;          /* the next of the recovery ladder */
+	uint8_t rung;           /* the next of the recovery ladder */
 	uint8_t alarm_searches; /* since a list of the alarms was empty */
-	bool listed;           /* its devices have been searched for once */
-	bool power_asked;      /* all thermometers were asked for their supply at once */
-	bool all_external;     /* ... and none is parasitic */
+	bool listed;            /* its devices have been searched for once */
+	bool power_asked;       /* all thermometers were asked for their supply at once */
+	bool all_external;      /* ... and none is parasitic */
 	bool is_short;
-	int64_t due_ns;        /* when the first thermometer became due; 0: none */
-	int64_t single_ns;     /* when those due are asked one by one next; 0: not known yet */
+	int64_t due_ns;    /* when the first thermometer became due; 0: none */
+	int64_t single_ns; /* when those due are asked one by one next; 0: not known yet */
 	/* End of the last conversion of all; 0: none. */
 	int64_t simultaneous_ns[SIMULTANEOUS];
-	int64_t search_ns;     /* next pass of the background search */
-	uint32_t round;        /* number of the background search */
-	int64_t round_ns;      /* when it began */
+	int64_t search_ns; /* next pass of the background search */
+	uint32_t round;    /* number of the background search */
+	int64_t round_ns;  /* when it began */
 	bool searching, dirty;
 	struct search search;
 	uint64_t errors, shorts, checksums, transactions;
@@ -139,8 +139,8 @@ enum tally_kind { TALLY_READ, TALLY_WRITE, TALLY_DIRECTORY, TALLY_OVERALL, TALLI
 
 struct tally {
 	uint64_t calls, success, bytes;
-	uint64_t tries[3];      /* taken up a first, a second, a third time */
-	uint64_t now, max, sum; /* under way; the most; summed up at each call */
+	uint64_t tries[3];             /* taken up a first, a second, a third time */
+	uint64_t now, max, sum;        /* under way; the most; summed up at each call */
 	uint64_t entries[2], lists[2]; /* DIR: of the root and its like, of devices */
 };
 
@@ -160,8 +160,8 @@ struct native {
 	struct job *holder[NATIVE_CHANNELS];
 	int64_t follow_ns; /* until then an alarm's next request is waited for; 0: it is not */
 	int64_t hunt_ns, pass_ns; /* background search: its next pass; what the last took */
-	int64_t open_ns;  /* next try to open */
-	int64_t pause_ns; /* between tries */
+	int64_t open_ns;          /* next try to open */
+	int64_t pause_ns;         /* between tries */
 	int64_t up_ns;
 	int64_t grow_ns; /* next look for chips that were missing; INT64_MAX: none was */
 	bool grow_told;
@@ -173,15 +173,16 @@ struct native {
 	char where[NATIVE_WHERE_MAX];
 	int64_t volatile_ns, stable_ns; /* how long cached values live */
 	int64_t presence_ns; /* how long a device that answered is present without being asked */
-	bool uncached;  /* no request is answered from what is kept */
-	bool unaliased; /* listings show ids, not aliases */
+	bool uncached;       /* no request is answered from what is kept */
+	bool unaliased;      /* listings show ids, not aliases */
 	struct tally tally[TALLIES];
-	int64_t delay_ns; /* the longest that a request took */
+	int64_t delay_ns;                             /* the longest that a request took */
 	uint32_t idle_timeouts[NATIVE_IDLE_TIMEOUTS]; /* settings without effect */
 	char temperature_scale;
 	char pressure_scale[8];
-	uint64_t wire_ns, wire_seen_ns[NATIVE_CHANNELS]; /* of all links so far; what each said last */
-	uint64_t count[COUNTS]; /* written by one thread, whole for any */
+	uint64_t wire_ns,
+		wire_seen_ns[NATIVE_CHANNELS]; /* of all links so far; what each said last */
+	uint64_t count[COUNTS];                /* written by one thread, whole for any */
 	struct bus_counter counters[COUNTS];
 };
 
@@ -194,16 +195,15 @@ int native_create(const struct bus_ops *ops, const struct link_master_ops *maste
                   size_t why_size);
 void native_destroy(struct bus *bus);
 /* bus_ops.option: what the link master has. */
-int native_option(struct bus *bus, const char *key, const char *text, char *why,
-                  size_t why_size);
+int native_option(struct bus *bus, const char *key, const char *text, char *why, size_t why_size);
 int native_submit(struct bus *bus, struct bus_req *req);
 int64_t native_step(struct bus *bus, int64_t now);
 void native_suspend(struct bus *bus, bool yes);
 int native_there(struct bus *bus);
 const struct bus_counter *native_counters(struct bus *bus, size_t *n);
-#define NATIVE_BUS_SLOTS                                                                  \
-	.depth = NATIVE_DEPTH, .searches = true, .destroy = native_destroy,               \
-	.option = native_option, .submit = native_submit, .step = native_step,            \
+#define NATIVE_BUS_SLOTS \
+	.depth = NATIVE_DEPTH, .searches = true, .destroy = native_destroy, \
+	.option = native_option, .submit = native_submit, .step = native_step, \
 	.suspend = native_suspend, .there = native_there, .counters = native_counters
 
 /* --- Shared between the parts --- */

@@ -68,8 +68,8 @@ static int write_timeout(struct txn *txn)
 void native_settings(struct native *native)
 {
 	static const uint32_t seconds[NATIVE_IDLE_TIMEOUTS] = {
-		[DIRECTORY] = 60, [FTP] = 900, [HA7] = 60, [NETWORK] = 1,
-		[SERIAL] = 5,     [SERVER] = 10, [USB] = 5, [W1] = 30,
+		[DIRECTORY] = 60, [FTP] = 900,   [HA7] = 60, [NETWORK] = 1,
+		[SERIAL] = 5,     [SERVER] = 10, [USB] = 5,  [W1] = 30,
 	};
 
 	memcpy(native->idle_timeouts, seconds, sizeof(seconds));
@@ -130,18 +130,20 @@ static int read_aliases(struct txn *txn)
 	return 0;
 }
 
-#define TIMEOUT(text, which)                                                              \
-	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, which, read_timeout,     \
+#define TIMEOUT(text, which) \
+	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, which, read_timeout, \
 	        write_timeout)
 /* Of masters and servers that this bus has not: kept for those who wrote them, without effect. */
-#define IDLE(text, which)                                                                 \
+#define IDLE(text, which) \
 	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, which, read_idle, write_idle)
-#define FLAG(text, which)                                                                 \
+#define FLAG(text, which) \
 	VIRTUAL(text, PROPERTY_YESNO, LIFE_STATIC, ACCESS_BOTH, which, read_flag, write_flag)
+/* clang-format off */
 #define SCALE(text, bytes, which)                                                         \
 	{.name = (text), .type = PROPERTY_ASCII, .life = LIFE_STATIC, .access = ACCESS_BOTH, \
 	 .offline = true, .size = (bytes), .arg = (which), .read = read_scale,              \
 	 .write = write_scale}
+/* clang-format on */
 
 static const struct property properties[] = {
 	PROPERTY_DIR("alias"),

@@ -3,7 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/native/ds2450.h"
+#include "hal/chips/ds2450.h"
 #include "hal/native/native.h"
 
 #define SKIP_ROM 0xcc
@@ -50,8 +50,8 @@ static int convert_temperature(struct native *native, unsigned n)
 	}
 	if (any)
 		return convert_broadcast(native, n, parasitic, 750 * TXN_MS);
-	native->channel[n].simultaneous_ns[SIMULTANEOUS_TEMPERATURE] =
-		native_now(native) + 750 * TXN_MS;
+	native->channel[n].simultaneous_ns[SIMULTANEOUS_TEMPERATURE] = native_now(native) +
+	                                                               750 * TXN_MS;
 	return 0;
 }
 

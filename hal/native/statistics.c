@@ -114,8 +114,8 @@ static int read_cache(struct txn *txn)
 {
 	const struct cache *cache = &txn->native->cache;
 	const uint64_t values[] = {
-		[TRIES] = cache->tries, [HITS] = cache->hits, [ADDED] = cache->added,
-		[EXPIRED] = cache->expired, [DELETED] = cache->deleted, [HELD] = cache->held,
+		[TRIES] = cache->tries,         [HITS] = cache->hits,       [ADDED] = cache->added,
+		[EXPIRED] = cache->expired,     [DELETED] = cache->deleted, [HELD] = cache->held,
 		[HIT_BYTES] = cache->hit_bytes,
 	};
 
@@ -129,13 +129,15 @@ static int read_delay(struct txn *txn)
 }
 
 #define TALLY(text, kind, what) VIRTUAL_NUMBER(text, read_tally, OF(kind, what))
+/* clang-format off */
 #define TRIES(text, kind)                                                                 \
 	{.name = (text), .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE,                  \
 	 .access = ACCESS_READ, .offline = true, .array = {3, INDEX_NUMBERS, false},        \
 	 .arg = (kind), .read = read_tries}
-#define THREADS(text, kind)                                                               \
-	PROPERTY_DIR(text), TALLY(text "/max", kind, MAX), TALLY(text "/now", kind, NOW),   \
-	TALLY(text "/num", kind, CALLS), TALLY(text "/sum", kind, SUM)
+/* clang-format on */
+#define THREADS(text, kind) \
+	PROPERTY_DIR(text), TALLY(text "/max", kind, MAX), TALLY(text "/now", kind, NOW), \
+		TALLY(text "/num", kind, CALLS), TALLY(text "/sum", kind, SUM)
 
 static const struct property properties[] = {
 	PROPERTY_DIR("cache"),
@@ -162,7 +164,7 @@ static const struct property properties[] = {
 	VIRTUAL_NUMBER("errors/checksum", read_count, COUNT_CHECKSUMS),
 	VIRTUAL_NUMBER("errors/link", read_count, COUNT_LINK_ERRORS),
 	VIRTUAL("errors/max_delay", PROPERTY_FLOAT, LIFE_VOLATILE, ACCESS_READ, 0, read_delay,
-	        NULL),
+                NULL),
 	VIRTUAL_NUMBER("errors/shorts", read_count, COUNT_SHORTS),
 	PROPERTY_DIR("read"),
 	TALLY("read/bytes", TALLY_READ, BYTES),

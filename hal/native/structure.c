@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/native/format.h"
 #include "hal/native/native.h"
+#include "hal/owfs/format.h"
 
 const struct family *structure_family(const char *path, size_t len, size_t *used)
 {

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* The directories of OWFS that belong to no device: simultaneous, interface, system. */
-#include "hal/native/virtual.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "hal/native/crc.h"
 #include "hal/native/native.h"
-#include "hal/path.h"
+#include "hal/native/virtual.h"
+#include "hal/owfs/path.h"
+#include "hal/wire/crc.h"
 
 #define READ_ROM 0x33
 #define READ_ROM_DS2400 0x0f
@@ -115,7 +114,8 @@ static int read_name(struct txn *txn)
 	char name[64];
 
 	/* By this word a client of an owserver learns that nothing behind it is real. */
-	snprintf(name, sizeof(name), "%s%s", txn->native->master->ops->simulated ? "Simulated-" : "",
+	snprintf(name, sizeof(name), "%s%s",
+	         txn->native->master->ops->simulated ? "Simulated-" : "",
 	         txn->link ? txn->link->ops->name : "");
 	return virtual_put(txn, name);
 }
@@ -153,8 +153,10 @@ static int read_channel(struct txn *txn)
 {
 	const struct channel *channel = &txn->native->channel[txn->channel];
 	const uint64_t values[] = {
-		[ERRORS] = channel->errors, [SHORTS] = channel->shorts,
-		[CHECKSUMS] = channel->checksums, [TRANSACTIONS] = channel->transactions,
+		[ERRORS] = channel->errors,
+		[SHORTS] = channel->shorts,
+		[CHECKSUMS] = channel->checksums,
+		[TRANSACTIONS] = channel->transactions,
 	};
 
 	return virtual_count(txn, values[txn->property->arg]);
@@ -170,15 +172,15 @@ static const struct property interface[] = {
 	PROPERTY_DIR("settings"),
 	VIRTUAL_TEXT("settings/address", 512, read_address),
 	VIRTUAL("settings/ds2404_found", PROPERTY_YESNO, LIFE_STATIC, ACCESS_READ, 0, virtual_zero,
-	        NULL),
+                NULL),
 	VIRTUAL_TEXT("settings/name", 128, read_name),
 	VIRTUAL("settings/overdrive", PROPERTY_YESNO, LIFE_STATIC, ACCESS_READ, 0, virtual_zero,
-	        NULL),
+                NULL),
 	VIRTUAL("settings/version", PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_READ, 0, virtual_zero,
-	        NULL),
+                NULL),
 	PROPERTY_DIR("statistics"),
 	VIRTUAL("statistics/bus_time", PROPERTY_FLOAT, LIFE_VOLATILE, ACCESS_READ, WIRE_TIME,
-	        read_cost, NULL),
+                read_cost, NULL),
 	VIRTUAL_NUMBER("statistics/elapsed_time", read_elapsed, 0),
 	VIRTUAL_NUMBER("statistics/errors", read_channel, ERRORS),
 	VIRTUAL_NUMBER("statistics/locks", read_channel, TRANSACTIONS),
@@ -193,12 +195,26 @@ static const struct property interface[] = {
 	VIRTUAL_NUMBER("statistics/unlocks", read_channel, TRANSACTIONS),
 };
 
-#define CONVERTS(text, which)                                                             	{.name = (text), .type = PROPERTY_YESNO, .life = LIFE_VOLATILE,                     	 .access = ACCESS_BOTH, .offline = true, .convert = CONVERT_TEMPRES, .arg = (which), 	 .read = read_simultaneous}
-#define PRESENT(text)                                                                     	{.name = (text), .type = PROPERTY_YESNO, .life = LIFE_VOLATILE,                     	 .access = ACCESS_READ, .read = read_present}
-#define SINGLE(text, command)                                                             	{.name = (text), .type = PROPERTY_ASCII, .life = LIFE_VOLATILE,                     	 .access = ACCESS_READ, .size = 18, .arg = (command), .read = read_single}
+#define CONVERTS(text, which) \
+	{ \
+		.name = (text), .type = PROPERTY_YESNO, .life = LIFE_VOLATILE, \
+		.access = ACCESS_BOTH, .offline = true, .convert = CONVERT_TEMPRES, \
+		.arg = (which), .read = read_simultaneous \
+	}
+#define PRESENT(text) \
+	{ \
+		.name = (text), .type = PROPERTY_YESNO, .life = LIFE_VOLATILE, \
+		.access = ACCESS_READ, .read = read_present \
+	}
+#define SINGLE(text, command) \
+	{ \
+		.name = (text), .type = PROPERTY_ASCII, .life = LIFE_VOLATILE, \
+		.access = ACCESS_READ, .size = 18, .arg = (command), .read = read_single \
+	}
 
 static const struct property simultaneous[] = {
-	VIRTUAL("iblss", PROPERTY_YESNO, LIFE_VOLATILE, ACCESS_BOTH, 0, virtual_zero, write_nothing),
+	VIRTUAL("iblss", PROPERTY_YESNO, LIFE_VOLATILE, ACCESS_BOTH, 0, virtual_zero,
+                write_nothing),
 	PRESENT("present"),
 	PRESENT("present_ds2400"),
 	SINGLE("single", READ_ROM),
@@ -208,7 +224,8 @@ static const struct property simultaneous[] = {
 };
 
 /* What this build can drive. */
-#define DRIVES(text, yes)                                                                 	VIRTUAL(text, PROPERTY_INTEGER, LIFE_STATIC, ACCESS_READ, yes, read_arg, NULL)
+#define DRIVES(text, yes) \
+	VIRTUAL(text, PROPERTY_INTEGER, LIFE_STATIC, ACCESS_READ, yes, read_arg, NULL)
 
 static const struct property systems[] = {
 	PROPERTY_DIR("configuration"),

@@ -6,17 +6,17 @@
  * (percent of the requests), up and down (milliseconds that the target is there and away).
  * A path below /never, /twice or /late (a second) is treated so whatever the options are.
  */
-#include "hal/bus.h"
-
 #include <assert.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define LATE_DEPTH   16
-#define LATE_ECHOES  64
-#define MS           INT64_C(1000000)
+#include "hal/bus/bus.h"
+
+#define LATE_DEPTH 16
+#define LATE_ECHOES 64
+#define MS INT64_C(1000000)
 #define LATE_BY_NAME (1000 * MS)
 
 enum late_option { SEED, LATE, TWICE, NEVER, UP, DOWN, OPTIONS };
@@ -25,12 +25,9 @@ static const struct {
 	const char *name;
 	uint32_t fallback, most;
 } options[OPTIONS] = {
-	[SEED] = { "seed", 1, UINT32_MAX },
-	[LATE] = { "late", 50, 60000 },
-	[TWICE] = { "twice", 0, 100 },
-	[NEVER] = { "never", 0, 100 },
-	[UP] = { "up", 0, 3600000 },
-	[DOWN] = { "down", 1000, 3600000 },
+	[SEED] = {"seed", 1, UINT32_MAX}, [LATE] = {"late", 50, 60000},
+	[TWICE] = {"twice", 0, 100},      [NEVER] = {"never", 0, 100},
+	[UP] = {"up", 0, 3600000},        [DOWN] = {"down", 1000, 3600000},
 };
 
 struct late_slot {
@@ -177,7 +174,7 @@ static void give(struct late_bus *late, struct late_slot *slot, int64_t now)
 {
 	const struct bus_env *env = late->bus.env;
 	struct bus_req real = *slot->req;
-	struct bus_answer answer = { .id = real.id };
+	struct bus_answer answer = {.id = real.id};
 
 	if (is_below(&real, "/twice"))
 		real.path += strlen("/twice");
@@ -206,8 +203,8 @@ static void turn(struct late_bus *late, int64_t now)
 
 static void tell(struct late_bus *late)
 {
-	struct bus_event event = { .news = late->up ? BUS_UP : BUS_DOWN,
-	                           .err = late->up ? 0 : -ECONNRESET };
+	struct bus_event event = {.news = late->up ? BUS_UP : BUS_DOWN,
+	                          .err = late->up ? 0 : -ECONNRESET};
 
 	late->is_told = true;
 	snprintf(event.text, sizeof(event.text), "late: the target %s",

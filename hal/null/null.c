@@ -3,12 +3,12 @@
  * The null bus: a whole backend of the simple tier, to learn from and to test with. Its devices are
  * a table; a read gives what was written last. Target: `null:`, nothing after the colon.
  */
-#include "hal/bus.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "hal/bus/bus.h"
 
 #define DEVICE_LEN 16 /* "/28.000000000001" */
 #define PROPERTIES 4
@@ -17,11 +17,12 @@ static const struct property {
 	const char *path;
 	uint32_t len;
 	char text[64];
-} at_start[PROPERTIES] = { /* those of one device stand together */
-	{ "/28.000000000001/address", 16, "2800000000000140" },
-	{ "/28.000000000001/temperature", 4, "21.5" },
-	{ "/29.000000000002/address", 16, "290000000000029F" },
-	{ "/29.000000000002/PIO.BYTE", 1, "0" },
+} at_start[PROPERTIES] = {
+	/* those of one device stand together */
+	{"/28.000000000001/address", 16, "2800000000000140"},
+	{"/28.000000000001/temperature", 4, "21.5"},
+	{"/29.000000000002/address", 16, "290000000000029F"},
+	{"/29.000000000002/PIO.BYTE", 1, "0"},
 };
 
 struct null_bus {
@@ -77,7 +78,8 @@ static void null_exec(struct bus *bus, struct bus_req *req, struct bus_answer *a
 	answer->detail = BUS_DETAIL_SIMULATED;
 	answer->measured_ns = bus->env->now(bus->env->ctx);
 	answer->err = req->op != BUS_DIR ? -ENODEV : /* no alarm search: that is allowed */
-	              strcmp(req->path, "/alarm") == 0 ? -EOPNOTSUPP : list(req, &answer->len);
+	                      strcmp(req->path, "/alarm") == 0 ? -EOPNOTSUPP
+	                                                       : list(req, &answer->len);
 	for (unsigned i = 0; req->op != BUS_DIR && i < PROPERTIES; i++) {
 		struct property *p = &((struct null_bus *)bus)->property[i];
 
@@ -85,9 +87,10 @@ static void null_exec(struct bus *bus, struct bus_req *req, struct bus_answer *a
 			answer->err = req->op == BUS_PROBE ? 0 : -ENOENT;
 		if (req->op == BUS_PROBE || strcmp(req->path, p->path) != 0)
 			continue;
-		answer->err = req->op == BUS_WRITE &&
-		                              (req->offset || req->len > sizeof(p->text)) ? -EINVAL :
-		              req->op == BUS_READ && req->len < p->len ? -EMSGSIZE : 0;
+		answer->err = req->op == BUS_WRITE && (req->offset || req->len > sizeof(p->text))
+		                      ? -EINVAL
+		              : req->op == BUS_READ && req->len < p->len ? -EMSGSIZE
+		                                                         : 0;
 		if (!answer->err && req->op == BUS_WRITE)
 			memcpy(p->text, req->data, p->len = req->len);
 		else if (!answer->err)
@@ -96,7 +99,9 @@ static void null_exec(struct bus *bus, struct bus_req *req, struct bus_answer *a
 	}
 }
 
+/* clang-format off */
 const struct bus_ops null_bus = {
 	.scheme = "null", .summary = "a table in memory: a lesson and a test double", .depth = 1,
 	.create = null_create, .destroy = null_destroy, .exec = null_exec,
 };
+/* clang-format on */

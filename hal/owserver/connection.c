@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "hal/owserver/connection.h"
-
 #include <errno.h>
 #include <netdb.h>
 #include <netinet/in.h>
@@ -12,6 +10,8 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
+
+#include "hal/owserver/connection.h"
 
 #define DEFAULT_HOST "localhost"
 #define DEFAULT_PORT "4304"
@@ -55,8 +55,8 @@ int connection_init(struct connection *connection, const struct bus_env *env, co
 	bool bad_port = false;
 	int err = 0;
 
-	*connection = (struct connection){ .env = env, .fd = -1, .host = DEFAULT_HOST,
-	                                   .port = DEFAULT_PORT };
+	*connection = (struct connection){
+		.env = env, .fd = -1, .host = DEFAULT_HOST, .port = DEFAULT_PORT};
 	if (!*where)
 		return 0;
 	if (*where == '/')
@@ -80,8 +80,8 @@ int connection_init(struct connection *connection, const struct bus_env *env, co
 
 static int resolve(struct connection *connection)
 {
-	const struct addrinfo hints = { .ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM,
-	                                .ai_flags = AI_NUMERICSERV };
+	const struct addrinfo hints = {
+		.ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM, .ai_flags = AI_NUMERICSERV};
 	/* The loopback addresses come without loading any name service. */
 	bool is_local = strcmp(connection->host, DEFAULT_HOST) == 0;
 	int err = getaddrinfo(is_local ? NULL : connection->host, connection->port, &hints,
@@ -128,7 +128,7 @@ static void note_peer(struct connection *connection, const struct addrinfo *addr
 /* A port of this machine that nobody listens on may connect to itself. */
 static bool is_itself(int fd)
 {
-	struct sockaddr_storage here = { 0 }, there = { 0 };
+	struct sockaddr_storage here = {0}, there = {0};
 	socklen_t here_len = sizeof(here), there_len = sizeof(there);
 
 	return getsockname(fd, (struct sockaddr *)&here, &here_len) == 0 &&
@@ -152,8 +152,9 @@ static int try_next(struct connection *connection)
 		if (connection->fd >= 0) {
 			connection->give_up_ns = INT64_MAX;
 			if (connection->next)
-				connection->give_up_ns =
-					connection->env->now(connection->env->ctx) + ADDRESS_NS;
+				connection->give_up_ns = connection->env->now(
+								 connection->env->ctx) +
+				                         ADDRESS_NS;
 			setsockopt(connection->fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
 			if (connect(connection->fd, address->ai_addr, address->ai_addrlen) == 0 ||
 			    errno == EINPROGRESS || errno == EINTR)
@@ -162,8 +163,8 @@ static int try_next(struct connection *connection)
 		connection->last_err = -errno;
 		close_socket(connection);
 	}
-	snprintf(connection->trouble, sizeof(connection->trouble), "%.60s: %.36s",
-	         connection->peer, strerror(-connection->last_err));
+	snprintf(connection->trouble, sizeof(connection->trouble), "%.60s: %.36s", connection->peer,
+	         strerror(-connection->last_err));
 	return connection->last_err;
 }
 
@@ -279,8 +280,8 @@ bool connection_is_stale(const struct connection *connection)
 	       (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR);
 }
 
-int connection_send(struct connection *connection, const uint8_t *bytes, size_t n,
-                    int64_t until_ns, size_t *sent)
+int connection_send(struct connection *connection, const uint8_t *bytes, size_t n, int64_t until_ns,
+                    size_t *sent)
 {
 	const struct bus_env *env = connection->env;
 
@@ -303,8 +304,7 @@ int connection_send(struct connection *connection, const uint8_t *bytes, size_t 
 	return 0;
 }
 
-int connection_receive(struct connection *connection, uint8_t *bytes, size_t room,
-                       int64_t until_ns)
+int connection_receive(struct connection *connection, uint8_t *bytes, size_t room, int64_t until_ns)
 {
 	const struct bus_env *env = connection->env;
 

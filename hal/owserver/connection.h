@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "hal/bus.h"
+#include "hal/bus/bus.h"
 
 struct addrinfo;
 
@@ -48,8 +48,8 @@ bool connection_is_open(const struct connection *connection);
 /* Closed by the peer, or bytes came that nobody asked for: do not use it for a request. */
 bool connection_is_stale(const struct connection *connection);
 /* 0, -ETIMEDOUT, -ECANCELED, or what the socket says; *sent is set in any case. */
-int connection_send(struct connection *connection, const uint8_t *bytes, size_t n,
-                    int64_t until_ns, size_t *sent);
+int connection_send(struct connection *connection, const uint8_t *bytes, size_t n, int64_t until_ns,
+                    size_t *sent);
 /* Bytes received (at least 1), 0 the peer closed, or as connection_send(). */
 int connection_receive(struct connection *connection, uint8_t *bytes, size_t room,
                        int64_t until_ns);

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "hal/owserver/listing.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/path.h"
+#include "hal/owfs/path.h"
+#include "hal/owserver/listing.h"
 
-#define KEEP_NS     INT64_C(10000000000)
+#define KEEP_NS INT64_C(10000000000)
 #define ADDRESS_LEN 16
 
 static const struct listing_name *known(const struct listing *listing, const char *alias,
@@ -43,8 +42,11 @@ static int find_id(struct listing *listing, struct talk *talk, const char *alias
 	struct listing_name *place = &listing->name[listing->next];
 	char path[FRAME_PATH_MAX + 1];
 	uint8_t address[ADDRESS_LEN];
-	struct talk_request request = { .type = FRAME_READ, .path = path, .size = ADDRESS_LEN,
-	                                .room = address, .limit = ADDRESS_LEN };
+	struct talk_request request = {.type = FRAME_READ,
+	                               .path = path,
+	                               .size = ADDRESS_LEN,
+	                               .room = address,
+	                               .limit = ADDRESS_LEN};
 	int err;
 
 	if (name) {
@@ -108,9 +110,11 @@ static int put_entry(struct listing *listing, struct talk *talk, struct bus_req 
 
 int listing_read(struct listing *listing, struct talk *talk, struct bus_req *req, uint32_t *used)
 {
-	struct talk_request request = { .type = FRAME_DIRALL, .fresh = req->fresh,
-	                                .path = req->path, .room = listing->reply,
-	                                .limit = sizeof(listing->reply) };
+	struct talk_request request = {.type = FRAME_DIRALL,
+	                               .fresh = req->fresh,
+	                               .path = req->path,
+	                               .room = listing->reply,
+	                               .limit = sizeof(listing->reply)};
 	const char *text = (const char *)listing->reply;
 	int err = talk_exchange(talk, &request, req->deadline_ns);
 	size_t len, at = 0;

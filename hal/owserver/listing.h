@@ -6,10 +6,10 @@
 #ifndef HAL_OWSERVER_LISTING_H
 #define HAL_OWSERVER_LISTING_H
 
+#include "hal/owfs/path.h"
 #include "hal/owserver/talk.h"
-#include "hal/path.h"
 
-#define LISTING_MAX   262144 /* 10 000 devices are 170 kB */
+#define LISTING_MAX 262144 /* 10 000 devices are 170 kB */
 #define LISTING_NAMES 32
 
 struct listing_name {

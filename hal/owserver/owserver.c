@@ -14,24 +14,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/owserver/listing.h"
+#include "hal/owfs/path.h"
 #include "hal/owserver/cache.h"
+#include "hal/owserver/listing.h"
 #include "hal/owserver/simulated.h"
 #include "hal/owserver/status.h"
 #include "hal/owserver/talk.h"
-#include "hal/path.h"
 
-#define MS          INT64_C(1000000)
+#define MS INT64_C(1000000)
 #define BACKOFF_MIN (200 * MS)
 #define BACKOFF_MAX (5000 * MS)
 /* Connecting and greeting together; a step waits for a slice of it, so that requests that come
    meanwhile are told at once that the target is down. */
 #define GREETING_NS (5000 * MS)
-#define SLICE_NS    (50 * MS)
-#define NAMES_NS    (5000 * MS) /* on a busy wire they stand in line */
+#define SLICE_NS (50 * MS)
+#define NAMES_NS (5000 * MS) /* on a busy wire they stand in line */
 /* An idle connection is looked at so often, to learn that the server went. */
-#define IDLE_NS     (1000 * MS)
-#define READ_MAX    65536
+#define IDLE_NS (1000 * MS)
+#define READ_MAX 65536
 
 static_assert(BUS_TOKEN == FRAME_TOKEN_SIZE && BUS_TOKENS_MAX == FRAME_TOKENS_SENT,
               "the tokens of a request are those of its frame");
@@ -52,16 +52,11 @@ struct owserver {
 };
 
 static const char *const counter_names[COUNTERS] = {
-	[TALK_REQUESTS] = "requests",
-	[TALK_KEEPALIVES] = "keepalives",
-	[TALK_CONNECTIONS] = "connections",
-	[TALK_REFUSED] = "refused_persistence",
-	[TALK_STALE] = "stale_connection",
-	[TALK_GARBAGE] = "garbage",
-	[TALK_FLOODS] = "keepalive_floods",
-	[TALK_TIMEOUTS] = "timeouts",
-	[TALK_BYTES_IN] = "bytes_in",
-	[TALK_BYTES_OUT] = "bytes_out",
+	[TALK_REQUESTS] = "requests",       [TALK_KEEPALIVES] = "keepalives",
+	[TALK_CONNECTIONS] = "connections", [TALK_REFUSED] = "refused_persistence",
+	[TALK_STALE] = "stale_connection",  [TALK_GARBAGE] = "garbage",
+	[TALK_FLOODS] = "keepalive_floods", [TALK_TIMEOUTS] = "timeouts",
+	[TALK_BYTES_IN] = "bytes_in",       [TALK_BYTES_OUT] = "bytes_out",
 	[RECONNECTS] = "reconnects",
 };
 
@@ -113,13 +108,13 @@ static void go_down(struct owserver *server, int err, const char *text)
 	if (server->is_down_told || server->bus.suspended)
 		return;
 	server->is_down_told = true;
-	server->loss = (struct bus_event){ .news = BUS_DOWN, .err = err };
+	server->loss = (struct bus_event){.news = BUS_DOWN, .err = err};
 	snprintf(server->loss.text, sizeof(server->loss.text), "%s", text);
 }
 
 static void go_up(struct owserver *server, int64_t cache_ns)
 {
-	struct bus_event event = { .news = BUS_UP, .cache_ns = cache_ns };
+	struct bus_event event = {.news = BUS_UP, .cache_ns = cache_ns};
 
 	if (server->was_up)
 		bus_count(&server->counter[RECONNECTS], 1);
@@ -171,7 +166,7 @@ static int64_t slice_end(const struct owserver *server)
 
 static void go_on_connecting(struct owserver *server)
 {
-	const struct talk_request nop = { .type = FRAME_NOP };
+	const struct talk_request nop = {.type = FRAME_NOP};
 	struct talk *talk = &server->talk;
 	int err = connection_go_on(&talk->connection, slice_end(server));
 
@@ -324,7 +319,7 @@ static int owserver_there(struct bus *bus)
 static int present(struct owserver *server, const struct bus_req *req, bool fresh)
 {
 	char path[FRAME_PATH_MAX + 1];
-	struct talk_request request = { .type = FRAME_PRESENT, .fresh = fresh, .path = path };
+	struct talk_request request = {.type = FRAME_PRESENT, .fresh = fresh, .path = path};
 	size_t len = strlen(req->path);
 	struct path split;
 	int err;
@@ -358,8 +353,12 @@ static int refused(struct owserver *server, const struct bus_req *req)
 static int do_read(struct owserver *server, struct bus_req *req, uint32_t *len)
 {
 	uint32_t room = req->len < READ_MAX ? req->len : READ_MAX;
-	struct talk_request request = { .type = FRAME_READ, .fresh = req->fresh, .path = req->path,
-	                                .size = (int32_t)room, .room = req->data, .limit = room };
+	struct talk_request request = {.type = FRAME_READ,
+	                               .fresh = req->fresh,
+	                               .path = req->path,
+	                               .size = (int32_t)room,
+	                               .room = req->data,
+	                               .limit = room};
 	const struct frame_header *reply = &server->talk.reader.header;
 	int err;
 
@@ -384,8 +383,11 @@ static int do_read(struct owserver *server, struct bus_req *req, uint32_t *len)
 
 static int do_write(struct owserver *server, struct bus_req *req, uint32_t *len)
 {
-	struct talk_request request = { .type = FRAME_WRITE, .path = req->path, .data = req->data,
-	                                .data_len = req->len, .offset = req->offset };
+	struct talk_request request = {.type = FRAME_WRITE,
+	                               .path = req->path,
+	                               .data = req->data,
+	                               .data_len = req->len,
+	                               .offset = req->offset};
 	const struct frame_header *reply = &server->talk.reader.header;
 	bool is_output = req->prio == BUS_OUTPUT || req->prio == BUS_ALARM;
 	int err = talk_exchange(&server->talk, &request, req->deadline_ns);

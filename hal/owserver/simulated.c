@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "hal/owserver/simulated.h"
-
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/owserver/simulated.h"
+
 #define BUSES_MAX 16
-#define PREFIX    "Simulated"
+#define PREFIX "Simulated"
 
 int simulated_ask(struct talk *talk, int64_t deadline_ns, bool *simulated)
 {
@@ -16,8 +16,11 @@ int simulated_ask(struct talk *talk, int64_t deadline_ns, bool *simulated)
 	for (n = 0; n < BUSES_MAX && all; n++) {
 		char path[48];
 		uint8_t name[128];
-		struct talk_request request = { .type = FRAME_READ, .path = path, .room = name,
-		                                .size = sizeof(name), .limit = sizeof(name) };
+		struct talk_request request = {.type = FRAME_READ,
+		                               .path = path,
+		                               .room = name,
+		                               .size = sizeof(name),
+		                               .limit = sizeof(name)};
 		int err;
 
 		snprintf(path, sizeof(path), "/bus.%u/interface/settings/name", n);

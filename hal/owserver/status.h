@@ -3,7 +3,7 @@
 #ifndef HAL_OWSERVER_STATUS_H
 #define HAL_OWSERVER_STATUS_H
 
-#include "hal/bus.h"
+#include "hal/bus/bus.h"
 
 /*
  * The bus error for a negative return code. -1 stands for "no such device or property", which the

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* A request and its reply over a kept connection, and what a peer may send before the reply is whole. */
-#include "hal/owserver/talk.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "hal/owserver/talk.h"
 
 /* A genuine owserver sends one keep-alive a second, also where it stands behind another. */
 #define ALIVE_BURST 32u
 #define ALIVE_PER_S 20
 /* So many pieces of a reply are taken as they come, then what came within a pause together. */
-#define PIECES     16u
-#define PAUSE_NS   INT64_C(1000000)
-#define NS_PER_S   INT64_C(1000000000)
+#define PIECES 16u
+#define PAUSE_NS INT64_C(1000000)
+#define NS_PER_S INT64_C(1000000000)
 
 static int64_t now(const struct talk *talk)
 {

@@ -9,8 +9,8 @@
 #ifndef HAL_OWSERVER_TALK_H
 #define HAL_OWSERVER_TALK_H
 
+#include "hal/owfs/frame.h"
 #include "hal/owserver/connection.h"
-#include "hal/owserver/frame.h"
 
 enum talk_counter {
 	TALK_REQUESTS,
@@ -28,13 +28,13 @@ enum talk_counter {
 
 struct talk {
 	struct connection connection;
-	struct frame_reader reader; /* reader.header: the last reply */
-	int64_t asked_ns;           /* when this reply began to be waited for */
-	uint32_t alives, pieces;    /* keep-alives and pieces since then */
-	bool heard;                 /* bytes came since the caller cleared it */
-	char trouble[112];          /* why an exchange failed, as a sentence */
+	struct frame_reader reader;  /* reader.header: the last reply */
+	int64_t asked_ns;            /* when this reply began to be waited for */
+	uint32_t alives, pieces;     /* keep-alives and pieces since then */
+	bool heard;                  /* bytes came since the caller cleared it */
+	char trouble[112];           /* why an exchange failed, as a sentence */
 	struct bus_counter *counter; /* by enum talk_counter */
-	const uint8_t *tokens; /* go with each request: the servers it came through */
+	const uint8_t *tokens;       /* go with each request: the servers it came through */
 	uint32_t token_count;
 	uint8_t in[4096];
 	uint8_t out[FRAME_REQUEST_MAX + FRAME_TOKENS_SENT * FRAME_TOKEN_SIZE];

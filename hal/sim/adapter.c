@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "adapter.h"
-
 #include <errno.h>
+
+#include "hal/sim/adapter.h"
 
 /* A START or STOP condition takes about one bit, a byte nine. */
 #define BITS_BYTE 9
@@ -151,11 +151,12 @@ void sim_adapter_init(struct sim_adapter *adapter, struct sim_net *net, const st
 	};
 
 	*adapter = (struct sim_adapter){
-		.adapter = {
-			.ops = &sim_adapter_ops,
-			.combine = combine[net->combine],
-			.max_messages = net->max_messages,
-		},
+		.adapter =
+			{
+				.ops = &sim_adapter_ops,
+				.combine = combine[net->combine],
+				.max_messages = net->max_messages,
+			},
 		.net = net,
 		.env = env,
 		.open = true,

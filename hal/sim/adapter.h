@@ -6,9 +6,9 @@
 #ifndef HAL_SIM_ADAPTER_H
 #define HAL_SIM_ADAPTER_H
 
-#include "hal/bus.h"
+#include "hal/bus/bus.h"
 #include "hal/ds2482/i2c.h"
-#include "net.h"
+#include "hal/sim/net.h"
 
 struct sim_adapter {
 	struct i2c_adapter adapter;

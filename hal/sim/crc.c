@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "crc.h"
+#include "hal/sim/crc.h"
 
 uint8_t sim_crc8(uint8_t crc, const uint8_t *data, size_t n)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "curve.h"
+#include "hal/sim/curve.h"
 
 #define HALF_PI 1.57079632679489661923
-#define EXACT   9007199254740992.0 /* 2^53: up to here a double has every whole number */
+#define EXACT 9007199254740992.0 /* 2^53: up to here a double has every whole number */
 
 struct sim_curve sim_constant(double value)
 {

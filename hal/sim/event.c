@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "event.h"
-
-#include "scenario.h"
-
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "hal/sim/event.h"
+#include "hal/sim/scenario.h"
 
 static struct sim_slave *device(const struct sim_net *net, struct words *words,
                                 struct sim_event *event)
@@ -95,18 +94,12 @@ static const struct {
 	bool on;   /* what the event's flag is when it begins */
 	bool once; /* has no end */
 } events[] = {
-	{"set", SIM_SET, true, true},
-	{"unplug", SIM_PLUG, false, false},
-	{"plug", SIM_PLUG, true, true},
-	{"brownout", SIM_BROWNOUT, true, true},
-	{"corrupt", SIM_CORRUPT, true, false},
-	{"short", SIM_SHORT, true, false},
-	{"stick", SIM_STICK, true, false},
-	{"jam", SIM_JAM, true, false},
-	{"reset", SIM_CHIP_RESET, true, true},
-	{"sleep", SIM_CHIP_SLEEP, true, false},
-	{"refuse", SIM_REFUSE, true, false},
-	{"refuse-data", SIM_REFUSE_DATA, true, false},
+	{"set", SIM_SET, true, true},          {"unplug", SIM_PLUG, false, false},
+	{"plug", SIM_PLUG, true, true},        {"brownout", SIM_BROWNOUT, true, true},
+	{"corrupt", SIM_CORRUPT, true, false}, {"short", SIM_SHORT, true, false},
+	{"stick", SIM_STICK, true, false},     {"jam", SIM_JAM, true, false},
+	{"reset", SIM_CHIP_RESET, true, true}, {"sleep", SIM_CHIP_SLEEP, true, false},
+	{"refuse", SIM_REFUSE, true, false},   {"refuse-data", SIM_REFUSE_DATA, true, false},
 	{"remove", SIM_ADAPTER, false, false},
 };
 
@@ -157,8 +150,10 @@ unsigned event_parse(const struct sim_net *net, struct words *words, struct sim_
 	while (i < count && strcmp(words->word, events[i].name) != 0)
 		i++;
 	if (i == count || (end && events[i].once)) {
-		words_fail(words, "\"%s\": expected set, unplug, plug, brownout, corrupt, short, "
-		           "stick, jam, reset, sleep, refuse, refuse-data or remove", words->word);
+		words_fail(words,
+		           "\"%s\": expected set, unplug, plug, brownout, corrupt, short, "
+		           "stick, jam, reset, sleep, refuse, refuse-data or remove",
+		           words->word);
 		return 0;
 	}
 	event[0] = (struct sim_event){.what = events[i].what, .on = events[i].on ^ end};

@@ -2,8 +2,8 @@
 #ifndef HAL_SIM_EVENT_H
 #define HAL_SIM_EVENT_H
 
-#include "net.h"
-#include "words.h"
+#include "hal/sim/net.h"
+#include "hal/sim/words.h"
 
 /*
  * Read what happens, to the end of the line. One event, or with "for TIME" two: the second, at_ns

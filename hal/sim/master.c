@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-#include "master.h"
-
-#include "adapter.h"
-#include "hal/ds2482/ds2482.h"
-#include "scenario.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "hal/ds2482/ds2482.h"
+#include "hal/sim/adapter.h"
+#include "hal/sim/master.h"
+#include "hal/sim/scenario.h"
 
 struct simulation {
 	struct sim_net net;
@@ -63,9 +62,10 @@ static int create(const char *where, const struct bus_env *env, struct link_mast
 	const char *chip = behind_file(where);
 	size_t len = (size_t)(chip - where);
 	struct simulation *simulation = calloc(1, sizeof(*simulation) + len + 1);
-	struct ds2482_source source = {
-		.open = open_adapter, .there = there, .destroy = destroy_simulation,
-		.ctx = simulation};
+	struct ds2482_source source = {.open = open_adapter,
+	                               .there = there,
+	                               .destroy = destroy_simulation,
+	                               .ctx = simulation};
 	int err;
 
 	if (!simulation)

@@ -3,8 +3,8 @@
 #ifndef HAL_SIM_MASTER_H
 #define HAL_SIM_MASTER_H
 
-#include "hal/link.h"
-#include "net.h"
+#include "hal/sim/net.h"
+#include "hal/wire/link.h"
 
 extern const struct link_master_ops sim_master;
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "net.h"
-
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "hal/sim/net.h"
 
 #define PAUSE_NS 10000000 /* at the least that is so */
 

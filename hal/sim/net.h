@@ -9,21 +9,21 @@
 #ifndef HAL_SIM_NET_H
 #define HAL_SIM_NET_H
 
-#include "chip.h"
+#include "hal/sim/chips/chip.h"
 
 enum sim_what {
-	SIM_SET,        /* a new curve for an input */
-	SIM_PLUG,       /* a slave comes, or goes (on = false) */
-	SIM_BROWNOUT,   /* a slave restarts */
-	SIM_CORRUPT,    /* a slave's answers: corrupt_every, corrupt_probability, seed */
-	SIM_SHORT,      /* a wire is short, or free again */
-	SIM_STICK,      /* a chip's 1WB stays set until a device reset */
-	SIM_JAM,        /* the same whatever the host does, until it is over */
-	SIM_CHIP_RESET, /* a chip restarts */
-	SIM_CHIP_SLEEP, /* a chip is deaf, as with its SLPZ pin low */
-	SIM_REFUSE,     /* a chip's address is refused: each time, or each n-th */
+	SIM_SET,         /* a new curve for an input */
+	SIM_PLUG,        /* a slave comes, or goes (on = false) */
+	SIM_BROWNOUT,    /* a slave restarts */
+	SIM_CORRUPT,     /* a slave's answers: corrupt_every, corrupt_probability, seed */
+	SIM_SHORT,       /* a wire is short, or free again */
+	SIM_STICK,       /* a chip's 1WB stays set until a device reset */
+	SIM_JAM,         /* the same whatever the host does, until it is over */
+	SIM_CHIP_RESET,  /* a chip restarts */
+	SIM_CHIP_SLEEP,  /* a chip is deaf, as with its SLPZ pin low */
+	SIM_REFUSE,      /* a chip's address is refused: each time, or each n-th */
 	SIM_REFUSE_DATA, /* the same for bytes to the chip */
-	SIM_ADAPTER,    /* the adapter is plugged in, or gone */
+	SIM_ADAPTER,     /* the adapter is plugged in, or gone */
 };
 
 struct sim_event {

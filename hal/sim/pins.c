@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "pins.h"
+#include "hal/sim/pins.h"
 
 static bool outside(const struct sim_slave *slave, unsigned pin, int64_t t)
 {

@@ -3,7 +3,7 @@
 #ifndef HAL_SIM_PINS_H
 #define HAL_SIM_PINS_H
 
-#include "slave.h"
+#include "hal/sim/slave.h"
 
 struct sim_pins {
 	uint8_t latch;    /* 1: the output transistor is off */

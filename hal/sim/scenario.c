@@ -1,10 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "scenario.h"
-
-#include "event.h"
-#include "families.h"
-#include "hal/path.h"
-
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -15,12 +9,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "hal/owfs/path.h"
+#include "hal/sim/chips/families.h"
+#include "hal/sim/event.h"
+#include "hal/sim/scenario.h"
+
 #define MAX_FILE 1000000
 
 struct scenario {
 	struct sim_net *net;
 	unsigned channel; /* that devices go to */
-	bool adapter; /* its line was there */
+	bool adapter;     /* its line was there */
 	bool nomem;
 };
 
@@ -71,8 +70,10 @@ static void chip_line(struct scenario *scenario, struct words *words)
 	while (part <= SIM_DS2484 && strcasecmp(words->word, sim_part_name(part)) != 0)
 		part++;
 	if (part > SIM_DS2484) {
-		words_fail(words, "\"%s\": expected DS2482-100, DS2482-101, DS2482-800, DS2483 or "
-		           "DS2484", words->word);
+		words_fail(words,
+		           "\"%s\": expected DS2482-100, DS2482-101, DS2482-800, DS2483 or "
+		           "DS2484",
+		           words->word);
 		return;
 	}
 	address = (uint8_t)words_number(words, "the I2C address", 0x18, 0x1F);
@@ -215,14 +216,15 @@ static void device_line(struct scenario *scenario, const struct sim_family *fami
 	words_next(words);
 	err = rom_parse(words->word, strlen(words->word), rom);
 	if (err) {
-		words_fail(words, err == -EBADMSG ? "\"%s\": its CRC is wrong"
-		                                  : "\"%s\": expected a ROM id, as 28.0000000000A1",
+		words_fail(words,
+		           err == -EBADMSG ? "\"%s\": its CRC is wrong"
+		                           : "\"%s\": expected a ROM id, as 28.0000000000A1",
 		           words->word);
 		return;
 	}
 	if (rom[0] != family->code) {
-		words_fail(words, "a %s has family code %02X, not %02X", family->name,
-		           family->code, rom[0]);
+		words_fail(words, "a %s has family code %02X, not %02X", family->name, family->code,
+		           rom[0]);
 		return;
 	}
 	rom_print(rom, ROM_F_I, text);
@@ -277,8 +279,10 @@ static void parse_line(struct scenario *scenario, struct words *words)
 	else if (slave)
 		properties(slave, words);
 	else
-		words_fail(words, "\"%s\": expected i2c, chip, channel, at, a part such as DS18B20, "
-		           "or the name of a device", words->word);
+		words_fail(words,
+		           "\"%s\": expected i2c, chip, channel, at, a part such as DS18B20, "
+		           "or the name of a device",
+		           words->word);
 }
 
 int sim_scenario_parse(const char *name, const char *text, struct sim_net *net, char *why,

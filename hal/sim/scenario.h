@@ -3,7 +3,7 @@
 #ifndef HAL_SIM_SCENARIO_H
 #define HAL_SIM_SCENARIO_H
 
-#include "net.h"
+#include "hal/sim/net.h"
 
 /*
  * Make net of the file. 0; -errno of reading it; -EINVAL. why says what is wrong, as

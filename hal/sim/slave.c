@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "slave.h"
-
-#include "crc.h"
-
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+
+#include "hal/sim/crc.h"
+#include "hal/sim/slave.h"
 
 /* ROM commands: DS2408 data sheet, "1-Wire ROM function commands"; the same in all families. */
 enum {

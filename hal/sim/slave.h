@@ -8,28 +8,34 @@
 #ifndef HAL_SIM_SLAVE_H
 #define HAL_SIM_SLAVE_H
 
-#include "curve.h"
-
 #include <stdbool.h>
+
+#include "hal/sim/curve.h"
 
 struct sim_slave;
 
 /* A quantity that the slave measures or a pin that is driven from outside. */
 struct sim_input {
 	const char *name;
-	double start; /* its value unless the scenario gives another */
-	bool pin;     /* is 0 or 1 */
+	double start;       /* its value unless the scenario gives another */
+	bool pin;           /* is 0 or 1 */
 	double least, most; /* both 0: no bounds */
 };
 
-#define SIM_PIN(text)         {.name = (text), .start = 1, .pin = true}
-#define SIM_TEMPERATURE_INPUT {.name = "temperature", .start = 20, .least = -55, .most = 125}
+#define SIM_PIN(text) \
+	{ \
+		.name = (text), .start = 1, .pin = true \
+	}
+#define SIM_TEMPERATURE_INPUT \
+	{ \
+		.name = "temperature", .start = 20, .least = -55, .most = 125 \
+	}
 
 struct sim_family {
 	const char *name; /* "DS18B20" */
 	uint8_t code;
-	bool overdrive, resume; /* knows these ROM commands */
-	size_t state_size;      /* zeroed at creation; sim_state() */
+	bool overdrive, resume;         /* knows these ROM commands */
+	size_t state_size;              /* zeroed at creation; sim_state() */
 	const struct sim_input *inputs; /* name NULL at the end; NULL: none */
 
 	/* All optional. */
@@ -55,7 +61,7 @@ struct sim_family {
 };
 
 enum sim_layer {
-	SIM_ROM_IDLE,     /* deaf until the next reset */
+	SIM_ROM_IDLE, /* deaf until the next reset */
 	SIM_ROM_COMMAND,
 	SIM_ROM_READ,
 	SIM_ROM_MATCH,

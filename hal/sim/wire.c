@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "wire.h"
-
 #include <errno.h>
 #include <stdlib.h>
+
+#include "hal/sim/wire.h"
 
 int sim_wire_add(struct sim_wire *wire, struct sim_slave *slave)
 {

@@ -6,14 +6,14 @@
 #ifndef HAL_SIM_WIRE_H
 #define HAL_SIM_WIRE_H
 
-#include "slave.h"
+#include "hal/sim/slave.h"
 
 struct sim_wire {
 	struct sim_slave **slaves, **active; /* room for all in both */
 	size_t count, active_count;
-	bool shorted;     /* a short to ground */
-	bool unpowered;   /* the port is switched off (DS2483, DS2484) */
-	bool strong;      /* the strong pull-up is on */
+	bool shorted;           /* a short to ground */
+	bool unpowered;         /* the port is switched off (DS2483, DS2484) */
+	bool strong;            /* the strong pull-up is on */
 	uint64_t resets, slots; /* totals, for the tests */
 };
 

@@ -1,19 +1,24 @@
 /* SPDX-License-Identifier: MIT */
-#include "words.h"
-
 #include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/sim/words.h"
+
 #define MAX_TIME_S 1e9
 
 void words_init(struct words *words, const char *file, unsigned line, const char *text, char *why,
                 size_t why_size)
 {
-	*words = (struct words){.file = file, .line = line, .text = text, .next = text,
-	                        .column = 1, .why = why, .why_size = why_size};
+	*words = (struct words){.file = file,
+	                        .line = line,
+	                        .text = text,
+	                        .next = text,
+	                        .column = 1,
+	                        .why = why,
+	                        .why_size = why_size};
 }
 
 void words_fail(struct words *words, const char *format, ...)
@@ -24,10 +29,9 @@ void words_fail(struct words *words, const char *format, ...)
 	if (words->failed)
 		return;
 	words->failed = true;
-	used = words->line
-	               ? snprintf(words->why, words->why_size, "%s:%u:%u: ", words->file,
-	                          words->line, words->column)
-	               : snprintf(words->why, words->why_size, "%s: ", words->file);
+	used = words->line ? snprintf(words->why, words->why_size, "%s:%u:%u: ", words->file,
+	                              words->line, words->column)
+	                   : snprintf(words->why, words->why_size, "%s: ", words->file);
 	if (used < 0 || (size_t)used >= words->why_size)
 		return;
 	va_start(args, format);
@@ -142,7 +146,7 @@ static double unit_seconds(const char *unit)
 	static const struct {
 		const char *name;
 		double seconds;
-	} units[] = {{"us", 1e-6}, {"ms", 1e-3}, {"s", 1},        {"m", 60},
+	} units[] = {{"us", 1e-6}, {"ms", 1e-3}, {"s", 1},          {"m", 60},
 	             {"h", 3600},  {"d", 86400}, {"w", 7 * 86400.0}};
 
 	for (size_t i = 0; i < sizeof(units) / sizeof(units[0]); i++) {
@@ -172,8 +176,8 @@ int64_t words_time(struct words *words, const char *what)
 	if (!words_next(words))
 		words_fail(words, "expected %s, as 90s or 1.5h", what);
 	else if (!parse_time(words->word, &ns))
-		words_fail(words, "\"%s\": expected %s, as 500ms, 90s, 5m, 1.5h or 2d",
-		           words->word, what);
+		words_fail(words, "\"%s\": expected %s, as 500ms, 90s, 5m, 1.5h or 2d", words->word,
+		           what);
 	return ns;
 }
 
@@ -238,8 +242,11 @@ struct sim_curve words_curve(struct words *words, const struct sim_input *input)
 	static const struct {
 		const char *name;
 		enum sim_shape shape;
-	} shapes[] = {{"constant", SIM_CONSTANT}, {"ramp", SIM_RAMP}, {"sine", SIM_SINE},
-	              {"square", SIM_SQUARE},     {"steps", SIM_STEPS}};
+	} shapes[] = {{"constant", SIM_CONSTANT},
+	              {"ramp", SIM_RAMP},
+	              {"sine", SIM_SINE},
+	              {"square", SIM_SQUARE},
+	              {"steps", SIM_STEPS}};
 	struct sim_curve curve = {.shape = SIM_CONSTANT};
 	size_t i = 0;
 
@@ -248,8 +255,10 @@ struct sim_curve words_curve(struct words *words, const struct sim_input *input)
 		while (i < 5 && strcmp(words->word, shapes[i].name) != 0)
 			i++;
 		if (i == 5) {
-			words_fail(words, "\"%s\": expected a value, or constant, ramp, sine, "
-			           "square, steps", words->word);
+			words_fail(words,
+			           "\"%s\": expected a value, or constant, ramp, sine, "
+			           "square, steps",
+			           words->word);
 			return curve;
 		}
 		curve.shape = shapes[i].shape;

@@ -3,16 +3,17 @@
 #ifndef HAL_SIM_WORDS_H
 #define HAL_SIM_WORDS_H
 
-#include "slave.h"
-
 #include <stdbool.h>
+
+#include "hal/sim/slave.h"
 
 struct words {
 	const char *file;
 	unsigned line;
-	const char *text, *next; /* the whole line, and what is not read yet; ended by NUL or '\n' */
-	char word[64];           /* the last one read */
-	unsigned column;         /* its column, from 1 */
+	const char *text,
+		*next;   /* the whole line, and what is not read yet; ended by NUL or '\n' */
+	char word[64];   /* the last one read */
+	unsigned column; /* its column, from 1 */
 	char *why;
 	size_t why_size;
 	bool failed;

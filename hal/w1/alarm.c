@@ -5,7 +5,7 @@
  */
 #include <errno.h>
 
-#include "hal/native/thermometer.h"
+#include "hal/chips/thermometer.h"
 #include "hal/w1/w1.h"
 
 #define OLD_NS (10 * NATIVE_S)
@@ -80,7 +80,7 @@ static int ds2408(struct w1_master *master, struct w1_slave *slave)
 		err = byte_of(master, slave, control & LATCHES ? "activity" : "state", &level);
 	if (err)
 		return err;
-	uint8_t meets = (uint8_t)~(level ^ slave->polarity) & slave->mask;
+	uint8_t meets = (uint8_t) ~(level ^ slave->polarity) & slave->mask;
 	return control & ALL_OF ? slave->mask && meets == slave->mask : meets != 0;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "hal/w1/netlink.h"
+#include "hal/netlink/netlink.h"
 
 #define LOOK_NS (5 * NATIVE_S)
 #define UEVENTS_NS (NATIVE_S / 4)
@@ -33,8 +33,8 @@ static void look(struct native *native, struct w1_master *master, int64_t now)
 	master->look_ns = now + LOOK_NS;
 	w1_look_for_masters(master);
 	for (; native->channels < master->count; native->channels++)
-		native->channel[native->channels] =
-			(struct channel){.link = &master->links[native->channels].link};
+		native->channel[native->channels] = (struct channel){
+			.link = &master->links[native->channels].link};
 }
 
 static int64_t step(struct bus *bus, int64_t now)

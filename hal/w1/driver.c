@@ -42,9 +42,8 @@ static bool names_directory(const struct w1_way *way, const struct property *wha
 
 static bool has_element(const struct w1_way *way, int extension)
 {
-	return way->count == 0 ||
-	       (extension >= 0 && (extension & 0xff) >= way->first &&
-	        (extension & 0xff) < way->first + way->count);
+	return way->count == 0 || (extension >= 0 && (extension & 0xff) >= way->first &&
+	                           (extension & 0xff) < way->first + way->count);
 }
 
 /* Raw access has no search, which a DS2405 needs, and no time for a conversion. */
@@ -67,7 +66,7 @@ static void tell_driver(struct w1_master *master, const uint8_t rom[8])
 }
 
 int w1_property(struct link *base, const struct device *device, const struct property *what,
-                    int extension, property_function **read, property_function **write)
+                int extension, property_function **read, property_function **write)
 {
 	struct w1_master *master = ((struct w1_link *)base)->master;
 	const struct w1_driver *driver = w1_driver_of(master, device->rom);
@@ -100,4 +99,3 @@ int w1_property(struct link *base, const struct device *device, const struct pro
 	}
 	return -ENOENT;
 }
-

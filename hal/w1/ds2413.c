@@ -11,7 +11,8 @@
 static int command(struct w1_link *link)
 {
 	if (link->command[0] == WRITE_PIO && link->length == 3)
-		return w1_slave_write(link->master, link->slave->rom, "output", &link->command[1], 1);
+		return w1_slave_write(link->master, link->slave->rom, "output", &link->command[1],
+		                      1);
 	return link->command[0] == READ_PIO ? 0 : -EOPNOTSUPP;
 }
 

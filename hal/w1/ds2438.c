@@ -6,7 +6,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/native/ds2438.h"
+#include "hal/chips/ds2438.h"
 #include "hal/w1/w1.h"
 
 #define RECALL 0xb8
@@ -39,9 +39,8 @@ static int copy(struct w1_link *link)
 	if (changed & ~(DS2438_IAD | DS2438_AD))
 		return -EOPNOTSUPP;
 	on = link->slave->config & DS2438_IAD;
-	return changed & DS2438_IAD
-	               ? w1_slave_write(link->master, link->slave->rom, "iad", &on, 1)
-	               : 0;
+	return changed & DS2438_IAD ? w1_slave_write(link->master, link->slave->rom, "iad", &on, 1)
+	                            : 0;
 }
 
 static int command(struct w1_link *link)

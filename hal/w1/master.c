@@ -36,7 +36,8 @@ static int take_where(struct w1_master *master, const char *where, char *why, si
 	if (strncmp(where, root, sizeof(root) - 1) != 0) {
 		master->only = master_number(where);
 		if (!master->only)
-			snprintf(why, why_size, "'w1:' is followed by nothing or by a master, as in "
+			snprintf(why, why_size,
+			         "'w1:' is followed by nothing or by a master, as in "
 			         "w1:w1_bus_master1");
 		return master->only ? 0 : -EINVAL;
 	}
@@ -97,10 +98,12 @@ unsigned w1_look_for_masters(struct w1_master *master)
 		if (has_link(master, n) || !w1_exists(master, name, ""))
 			continue;
 		struct w1_link *link = &master->links[master->count];
-		*link = (struct w1_link){
-			.link = {.ops = &w1_link_ops, .env = master->master.env,
-			         .chip = master->count, .files = &w1_files},
-			.master = master, .number = n};
+		*link = (struct w1_link){.link = {.ops = &w1_link_ops,
+		                                  .env = master->master.env,
+		                                  .chip = master->count,
+		                                  .files = &w1_files},
+		                         .master = master,
+		                         .number = n};
 		master->count++;
 	}
 	return master->count - before;
@@ -121,7 +124,8 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 	if (master->only)
 		snprintf(why, why_size, "the kernel has no w1_bus_master%u", master->only);
 	else
-		snprintf(why, why_size, "no 1-Wire master in the kernel: modprobe its driver, or "
+		snprintf(why, why_size,
+		         "no 1-Wire master in the kernel: modprobe its driver, or "
 		         "dtoverlay=w1-gpio on a Raspberry Pi");
 	return -ENODEV;
 }

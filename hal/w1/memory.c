@@ -113,8 +113,8 @@ static int read_counter(struct txn *txn)
 	int err = read_lines(txn);
 
 	return err ? err
-	           : counter(w1_master_of(txn)->text,
-	                     (unsigned)(txn->property->arg + txn->element), &txn->number[0]);
+	           : counter(w1_master_of(txn)->text, (unsigned)(txn->property->arg + txn->element),
+	                     &txn->number[0]);
 }
 
 static int read_minimum(struct txn *txn)

@@ -198,8 +198,10 @@ static const struct w1_way ds2408[] = {
 	{.property = "por", .file = "status_control", .read = read_flag, .write = write_flag},
 	{.property = "power", .file = "status_control", .read = read_flag},
 	{.property = "sensed", .file = "state", .read = read_pins},
-	{.property = "set_alarm", .file = "cond_search_mask", .read = read_alarm,
-	 .write = write_alarm},
+	{.property = "set_alarm",
+         .file = "cond_search_mask",
+         .read = read_alarm,
+         .write = write_alarm},
 	{.property = "strobe", .file = "status_control", .read = read_flag, .write = write_flag},
 };
 

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/native/thermometer.h"
+#include "hal/chips/thermometer.h"
 #include "hal/w1/w1.h"
 
 #define READ_SCRATCHPAD 0xbe
@@ -295,7 +295,10 @@ static int read_setting(struct txn *txn)
 	return err;
 }
 
-#define CONVERTED(text) {.property = (text)}
+#define CONVERTED(text) \
+	{ \
+		.property = (text) \
+	}
 static const struct w1_way ways[] = {
 	{.property = "errata/die"},
 	CONVERTED("fasttemp"),
@@ -319,9 +322,11 @@ static const struct w1_way ways[] = {
 	CONVERTED("vdd_short"),
 };
 
+/* clang-format off */
 #define DRIVER(code) \
 	{.family = (code), .files = {"w1_slave", "temperature"}, .wire = &w1_thermometer_wire, \
 	 W1_WAYS(ways)}
+/* clang-format on */
 const struct w1_driver w1_thermometers[5] = {
 	DRIVER(0x10), DRIVER(0x22), DRIVER(0x28), DRIVER(0x3b), DRIVER(0x42),
 };

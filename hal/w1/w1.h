@@ -16,8 +16,8 @@
  *
  * The target "w1:netlink" is in netlink.h.
  */
-#ifndef HAL_W1_W1_H
-#define HAL_W1_W1_H
+#ifndef HAL_W1_H
+#define HAL_W1_H
 
 #include "hal/native/files.h"
 #include "hal/native/native.h"
@@ -34,14 +34,14 @@ struct w1_wire;
 struct w1_slave {
 	uint8_t rom[8];
 	uint8_t channel;
-	bool due;              /* thermometer: told to convert, not read since */
-	bool known;            /* scratchpad holds what was read last */
-	bool told_driver;      /* the log was told that no driver has it */
-	uint8_t scratchpad[9]; /* thermometer */
-	uint8_t config;        /* DS2438: the configuration in force */
+	bool due;               /* thermometer: told to convert, not read since */
+	bool known;             /* scratchpad holds what was read last */
+	bool told_driver;       /* the log was told that no driver has it */
+	uint8_t scratchpad[9];  /* thermometer */
+	uint8_t config;         /* DS2438: the configuration in force */
 	uint8_t mask, polarity; /* DS2408 */
-	int64_t condition_ns;  /* when these two were read; 0: not */
-	int64_t read_ns;       /* when the scratchpad was; 0: not */
+	int64_t condition_ns;   /* when these two were read; 0: not */
+	int64_t read_ns;        /* when the scratchpad was; 0: not */
 };
 
 struct w1_link {
@@ -67,11 +67,11 @@ struct w1_master {
 	struct w1_slave slaves[DEVICE_MAX];
 	unsigned slave_count;
 	bool told_rights;
-	int64_t look_ns; /* when to look for masters that came later */
-	int uevents;     /* socket; -1: none */
-	int64_t uevents_ns; /* when to look at it */
+	int64_t look_ns;                    /* when to look for masters that came later */
+	int uevents;                        /* socket; -1: none */
+	int64_t uevents_ns;                 /* when to look at it */
 	_Alignas(8) char text[W1_TEXT_MAX]; /* an attribute that is being looked at */
-	char lists[8 * W1_TEXT_MAX]; /* a list of slaves */
+	char lists[8 * W1_TEXT_MAX];        /* a list of slaves */
 };
 
 extern const struct link_master_ops w1_master;
@@ -142,8 +142,8 @@ extern const struct w1_wire w1_rw_wire, w1_thermometer_wire, w1_ds2438_wire, w1_
 /* driver.c */
 struct w1_way {
 	const char *property;
-	const char *file;      /* there is no such property without it; NULL: the driver's first */
-	uint8_t first, count;  /* these elements only; count 0: all */
+	const char *file;     /* there is no such property without it; NULL: the driver's first */
+	uint8_t first, count; /* these elements only; count 0: all */
 	property_function *read, *write; /* NULL: the family's own, over the wire */
 };
 struct w1_driver {

@@ -8,7 +8,10 @@ static const struct w1_way ds2413[] = {
 	{.property = "sensed"},
 };
 
-#define PAGE1(text) {.property = (text), .file = "page1"}
+#define PAGE1(text) \
+	{ \
+		.property = (text), .file = "page1" \
+	}
 static const struct w1_way ds2438[] = {
 	{.property = "CA"},
 	{.property = "EE"},

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "data.h"
-
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
@@ -8,9 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SUFFIX    ".board"
-#define KHZ_MAX   5000
-#define ADAPTERS  (1 << 20)
+#include "src/board/data.h"
+
+#define SUFFIX ".board"
+#define KHZ_MAX 5000
+#define ADAPTERS (1 << 20)
 
 /* A key with a text, or with the first of several that is free. */
 struct text_key {

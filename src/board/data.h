@@ -9,27 +9,27 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#define BOARD_TEXT   120
+#define BOARD_TEXT 120
 #define BOARD_MODELS 4
-#define BOARD_NOTES  2
+#define BOARD_NOTES 2
 
 /* Texts are "" where the file has no such key. */
 struct board_data {
-	char id[40];                           /* the file's name without ".board" */
-	char name[BOARD_TEXT];                 /* Name */
-	char model[BOARD_MODELS][BOARD_TEXT];  /* Model: how /proc/device-tree/model begins */
-	char hat_vendor[BOARD_TEXT];           /* HatVendor, HatProduct: the EEPROM's texts */
+	char id[40];                          /* the file's name without ".board" */
+	char name[BOARD_TEXT];                /* Name */
+	char model[BOARD_MODELS][BOARD_TEXT]; /* Model: how /proc/device-tree/model begins */
+	char hat_vendor[BOARD_TEXT];          /* HatVendor, HatProduct: the EEPROM's texts */
 	char hat_product[BOARD_TEXT];
-	int i2c;                               /* I2C: the header's adapter; -1 not told */
-	unsigned khz;                          /* KHz: that it can do; 0 not told */
-	char pins[BOARD_TEXT];                 /* Pins */
-	char combine[BOARD_TEXT];              /* Combine: any, or one-read (one read, the last) */
-	char gpio_chip[BOARD_TEXT];            /* GpioChip: its label */
-	char enable[BOARD_TEXT];               /* Enable: the command that switches I2C on */
-	char on_line[BOARD_TEXT];              /* OnLine, SpeedLine, WireLine: for config.txt */
+	int i2c;                    /* I2C: the header's adapter; -1 not told */
+	unsigned khz;               /* KHz: that it can do; 0 not told */
+	char pins[BOARD_TEXT];      /* Pins */
+	char combine[BOARD_TEXT];   /* Combine: any, or one-read (one read, the last) */
+	char gpio_chip[BOARD_TEXT]; /* GpioChip: its label */
+	char enable[BOARD_TEXT];    /* Enable: the command that switches I2C on */
+	char on_line[BOARD_TEXT];   /* OnLine, SpeedLine, WireLine: for config.txt */
 	char speed_line[BOARD_TEXT];
 	char wire_line[BOARD_TEXT];
-	char chip[BOARD_TEXT];                 /* Chip: address and type of its DS2482 */
+	char chip[BOARD_TEXT]; /* Chip: address and type of its DS2482 */
 	char note[BOARD_NOTES][BOARD_TEXT];
 };
 

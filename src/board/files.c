@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "files.h"
-
 #include <fcntl.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -8,6 +6,8 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "src/board/files.h"
 
 void board_path(char *path, const char *root, const char *format, ...)
 {

@@ -1,11 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "data.h"
-#include "files.h"
-#include "report.h"
-
-#include "../../hal/ds2482/ds2482.h"
-#include "../../hal/ds2482/look.h"
-
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -16,7 +9,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define BOARDS   48
+#include "hal/ds2482/ds2482.h"
+#include "hal/ds2482/look.h"
+#include "src/board/data.h"
+#include "src/board/files.h"
+#include "src/board/report.h"
+
+#define BOARDS 48
 #define ADAPTERS 64
 
 struct scene {
@@ -56,9 +55,11 @@ static void name_board(const struct scene *scene, const char *model)
 		report_add(scene->report, BOARD_FACT, "board: %s (%s)",
 		           model[0] ? model : scene->board->name, scene->board->id);
 	else if (model[0])
-		report_add(scene->report, BOARD_FACT, "board: %s, of which there is no data", model);
+		report_add(scene->report, BOARD_FACT, "board: %s, of which there is no data",
+		           model);
 	else
-		report_add(scene->report, BOARD_FACT, "board: it does not say which (no "
+		report_add(scene->report, BOARD_FACT,
+		           "board: it does not say which (no "
 		           "/proc/device-tree/model)");
 }
 
@@ -94,8 +95,10 @@ static void tell_adapter(const struct scene *scene, unsigned number)
 		report_add(scene->report, BOARD_FACT, "I2C: /dev/i2c-%u", number);
 	if (!scene->board || !hz || hz / 1000 >= scene->board->khz)
 		return;
-	report_add(scene->report, BOARD_NOTE, "I2C runs at %u kHz; a DS2482 takes %u, and its "
-	           "answers come sooner", hz / 1000, scene->board->khz);
+	report_add(scene->report, BOARD_NOTE,
+	           "I2C runs at %u kHz; a DS2482 takes %u, and its "
+	           "answers come sooner",
+	           hz / 1000, scene->board->khz);
 	if (scene->board->speed_line[0])
 		report_mend(scene->report, "echo %s | sudo tee -a %s && sudo reboot",
 		            scene->board->speed_line, board_config(scene->root));
@@ -109,7 +112,8 @@ static void miss_interface(const struct scene *scene, unsigned number)
 	if (board->on_line[0] && board_configured(scene->root, board->on_line)) {
 		report_add(scene->report, BOARD_MISSING,
 		           "there is no I2C adapter i2c-%u, though %s has %s: was it started "
-		           "since?", number, config, board->on_line);
+		           "since?",
+		           number, config, board->on_line);
 		report_mend(scene->report, "sudo reboot");
 		return;
 	}
@@ -123,7 +127,8 @@ static void miss_module(const struct scene *scene, const char *which)
 {
 	report_add(scene->report, BOARD_MISSING, "there is no %s: the module i2c-dev is not loaded",
 	           which);
-	report_mend(scene->report, "sudo modprobe i2c-dev    # at each start: echo i2c-dev | sudo tee "
+	report_mend(scene->report,
+	            "sudo modprobe i2c-dev    # at each start: echo i2c-dev | sudo tee "
 	            "/etc/modules-load.d/i2c-dev.conf");
 }
 
@@ -137,8 +142,10 @@ static void miss_permission(const struct scene *scene, const char *device, const
 		report_mend(scene->report, "sudo adduser %s %s    # then log in again",
 		            user ? user->pw_name : "USER", group->gr_name);
 	else
-		report_mend(scene->report, "sudo chgrp i2c %s && sudo chmod g+rw %s    # the package's "
-		            "udev rule does it at each start", device, device);
+		report_mend(scene->report,
+		            "sudo chgrp i2c %s && sudo chmod g+rw %s    # the package's "
+		            "udev rule does it at each start",
+		            device, device);
 }
 
 /* May the device file be opened? Else it is said. */
@@ -168,11 +175,14 @@ static void look_for_claims(const struct scene *scene, unsigned number)
 		board_link(scene->root, file, driver, sizeof(driver));
 		if (strcmp(driver, "ds2482"))
 			continue;
-		report_add(scene->report, BOARD_NOTE, "the chip at 0x%02x of i2c-%u is claimed by the "
+		report_add(scene->report, BOARD_NOTE,
+		           "the chip at 0x%02x of i2c-%u is claimed by the "
 		           "kernel's driver ds2482: target w1 reaches it, and so does auto; this "
-		           "gives it to i2c:/dev/i2c-%u", address, number, number);
-		report_mend(scene->report, "echo %u-%04x | sudo tee /sys/bus/i2c/drivers/ds2482/unbind",
-		            number, address);
+		           "gives it to i2c:/dev/i2c-%u",
+		           address, number, number);
+		report_mend(scene->report,
+		            "echo %u-%04x | sudo tee /sys/bus/i2c/drivers/ds2482/unbind", number,
+		            address);
 	}
 }
 
@@ -201,7 +211,8 @@ static void look_at_all(const struct scene *scene)
 	board_path(path, scene->root, I2C_SYS_ROOT);
 	count = i2c_list(path, number, ADAPTERS);
 	if (!count) {
-		report_add(scene->report, BOARD_MISSING, "there is no I2C adapter: switch it on in "
+		report_add(scene->report, BOARD_MISSING,
+		           "there is no I2C adapter: switch it on in "
 		           "the firmware or the device tree, or load its driver");
 		return;
 	}
@@ -300,7 +311,8 @@ int board_look(const char *root, const char *folder, const char *id, struct boar
 		if (base && base->pins[0])
 			report_add(report, BOARD_FACT, "header: %s", base->pins);
 		if (base && base->gpio_chip[0])
-			report_add(report, BOARD_FACT, "GPIO lines: target gpio:%s", base->gpio_chip);
+			report_add(report, BOARD_FACT, "GPIO lines: target gpio:%s",
+			           base->gpio_chip);
 		if (base && base->i2c >= 0)
 			look_at_header(&scene, (unsigned)base->i2c);
 		else

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "report.h"
-
-#include "../printable.h"
-
 #include <stdarg.h>
 #include <string.h>
+
+#include "src/board/report.h"
+#include "src/text/printable.h"
 
 static void clean(char *text)
 {

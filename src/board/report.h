@@ -3,7 +3,7 @@
 #ifndef BOARD_REPORT_H
 #define BOARD_REPORT_H
 
-#include "board.h"
+#include "src/board/board.h"
 
 /* A line, and behind it its mend; what comes from a file may hold anything. */
 void report_add(struct board_report *report, enum board_kind kind, const char *format, ...)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "arena.h"
-
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/config/arena.h"
 
 #define CHUNK_ROOM (16 * 1024)
 

@@ -3,7 +3,7 @@
 #ifndef CONFIG_BUILD_H
 #define CONFIG_BUILD_H
 
-#include "options.h"
+#include "src/config/options.h"
 
 #define CONFIG_ITEMS_MAX 65535
 
@@ -49,8 +49,7 @@ int serve_listens(struct build *build, const char *const *texts, unsigned count)
 /* One Item block. */
 void item_build(struct build *build, const struct rio_node *block, struct config_item *item);
 /* Its limit alarms, when its type is known. */
-void limits_build(struct build *build, const struct option_value *values,
-                  struct config_item *item);
+void limits_build(struct build *build, const struct option_value *values, struct config_item *item);
 /* What concerns items together: names. */
 void items_check(struct build *build, const struct place *names);
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The Bus blocks. What an option means is the backend's: here is only what its value looks like. */
-#include "build.h"
-
 #include <string.h>
+
+#include "src/config/build.h"
 
 static void keep_option(struct build *build, struct config_bus *bus, enum option option,
                         const struct option_value *value)

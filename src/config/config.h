@@ -3,15 +3,14 @@
  * The configuration as the engine needs it: checked, with defaults filled in. Made from a .rio
  * document (rio.h) by config_load(). Immutable after that; all strings belong to it.
  */
-#ifndef CONFIG_CONFIG_H
-#define CONFIG_CONFIG_H
-
-#include "../libows/ows.h"
-
-#include "listen.h"
+#ifndef CONFIG_H
+#define CONFIG_H
 
 #include <stdbool.h>
 #include <stdio.h>
+
+#include "src/config/listen.h"
+#include "src/libows/ows.h"
 
 enum config_limit {
 	CONFIG_LIMIT_LL,
@@ -37,10 +36,10 @@ struct config_item {
 	bool readable, writable; /* start values of _ReadEnable and _WriteEnable */
 	bool fresh;              /* Uncached, by flag or by path */
 	bool has_init, has_safe;
-	int64_t init_value, safe_value;         /* numbers, as in src/signal/value.h */
-	const char *init_text, *safe_text;      /* as written; for strings the value itself */
+	int64_t init_value, safe_value;    /* numbers, as in src/signal/value.h */
+	const char *init_text, *safe_text; /* as written; for strings the value itself */
 	uint32_t per_factor;
-	int64_t stale_after_ns;                 /* 0: no limit */
+	int64_t stale_after_ns; /* 0: no limit */
 	bool alarm;
 	/* NULL: not defined, "": empty; Table 3.1 tells the two apart */
 	const char *latch_alarm, *por_alarm, *set_alarm, *reset_latch;
@@ -65,8 +64,8 @@ extern const char *const config_auto_ways[CONFIG_AUTO_WAYS];
 struct config_target {
 	const char *text; /* "localhost:4304"; never empty */
 	enum config_relation relation;
-	unsigned group; /* of the wire: counts the commas */
-	bool automatic; /* one of the ways of auto */
+	unsigned group;   /* of the wire: counts the commas */
+	bool automatic;   /* one of the ways of auto */
 	int line, column; /* of TargetName's value; 0: not of the file */
 };
 

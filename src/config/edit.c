@@ -1,29 +1,27 @@
 /* SPDX-License-Identifier: MIT */
 /* Changes of a configuration file, key by key; all the rest of it stays byte for byte. */
-#include "edit.h"
-
-#include "options.h"
-#include "replace.h"
-#include "rio_write.h"
-
-#include "../signal/value.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
+#include "src/config/edit.h"
+#include "src/config/options.h"
+#include "src/config/replace.h"
+#include "src/config/rio_write.h"
+#include "src/signal/value.h"
+
 #define DRIVER "OwsDrv"
 
 const char edit_empty[] = "OwsDrv {\n"
-                          "  Version                 1.00\n"
-                          "  TargetName              \"localhost:4304\"\n"
-                          "  MaxConsAlarms           5\n"
-                          "  MaxRetries              3\n"
-                          "  Timeout                 20\n"
-                          "  ItemCount               0\n"
-                          "}\n";
+			  "  Version                 1.00\n"
+			  "  TargetName              \"localhost:4304\"\n"
+			  "  MaxConsAlarms           5\n"
+			  "  MaxRetries              3\n"
+			  "  Timeout                 20\n"
+			  "  ItemCount               0\n"
+			  "}\n";
 
 /* What is edited is named by the command line, not by a place in the file. */
 static const struct place command_line;
@@ -102,12 +100,12 @@ static int split_setting(char *setting, enum option_place place, enum option *op
 	if (found < 0) {
 		nearest = option_nearest(place, setting);
 		report_error(report, command_line, "there is no key %s%s%s%s", setting,
-		             nearest ? "; is it " : "", nearest ? nearest : "",
-		             nearest ? "?" : "");
+		             nearest ? "; is it " : "", nearest ? nearest : "", nearest ? "?" : "");
 		return -EINVAL;
 	}
 	if (has_control(*value)) {
-		report_error(report, command_line, "%s: control characters are not allowed", setting);
+		report_error(report, command_line, "%s: control characters are not allowed",
+		             setting);
 		return -EINVAL;
 	}
 	*option = (enum option)found;
@@ -181,7 +179,8 @@ static bool is_driver_name(const char *name, struct config_report *report)
 	if (strcmp(name, DRIVER) != 0)
 		return false;
 	report_error(report, command_line,
-	             "no item can be named " DRIVER ": that stands for the driver itself, whose keys are "
+	             "no item can be named " DRIVER
+	             ": that stands for the driver itself, whose keys are "
 	             "changed by config FILE set " DRIVER " KEY=VALUE");
 	return true;
 }
@@ -224,7 +223,8 @@ int edit_set(struct rio **rio, const char *name, const char *const *settings, un
 		if (!setting)
 			return block ? -ENOMEM : -EINVAL;
 		err = split_setting(setting, place, &option, &value, report);
-		if (!err && option == OPT_NAME && place == PLACE_ITEM && is_driver_name(value, report))
+		if (!err && option == OPT_NAME && place == PLACE_ITEM &&
+		    is_driver_name(value, report))
 			err = -EINVAL;
 		if (!err)
 			err = apply(rio, block, option, value);
@@ -349,7 +349,8 @@ int edit_move(struct rio **rio, const char *name, const char *other, bool behind
 
 	if (there && err == -EINVAL)
 		report_error(report, command_line,
-		             "\"%s\" and \"%s\" can only be moved on lines of their own", name, other);
+		             "\"%s\" and \"%s\" can only be moved on lines of their own", name,
+		             other);
 	return err;
 }
 

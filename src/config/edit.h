@@ -9,7 +9,7 @@
 #ifndef CONFIG_EDIT_H
 #define CONFIG_EDIT_H
 
-#include "rio.h"
+#include "src/config/rio.h"
 
 /* A new item at the end; an input of type double unless the settings say otherwise. */
 int edit_add(struct rio **rio, const char *name, const char *path, const char *const *settings,

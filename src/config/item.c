@@ -1,22 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 /* Items of the file: what their keys make of a signal, and what is wrong or odd about it. */
-#include "build.h"
-
-#include "../../hal/path.h"
-#include "../signal/attribute.h"
-#include "../signal/quantity.h"
-#include "../signal/value.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define IO_TYPE_CODE     0x0fu
-#define IO_TYPE_INPUT    0x10u
-#define IO_TYPE_OUTPUT   0x20u
+#include "hal/owfs/path.h"
+#include "src/config/build.h"
+#include "src/signal/attribute.h"
+#include "src/signal/quantity.h"
+#include "src/signal/value.h"
+
+#define IO_TYPE_CODE 0x0fu
+#define IO_TYPE_INPUT 0x10u
+#define IO_TYPE_OUTPUT 0x20u
 #define IO_TYPE_UNCACHED 0x100u
-#define IO_TYPE_KNOWN    (IO_TYPE_CODE | IO_TYPE_INPUT | IO_TYPE_OUTPUT | IO_TYPE_UNCACHED)
+#define IO_TYPE_KNOWN (IO_TYPE_CODE | IO_TYPE_INPUT | IO_TYPE_OUTPUT | IO_TYPE_UNCACHED)
 
 /* Where a key's value stands, or the item if the key is absent. */
 static struct place place_of(const struct option_value *value, const struct rio_node *block)
@@ -120,7 +119,7 @@ static bool build_type(struct build *build, const struct rio_node *block,
                        const struct option_value *values, struct config_item *item)
 {
 	const struct option_value *bits = &values[OPT_IO_TYPE], *type = &values[OPT_TYPE],
-	                          *io = &values[OPT_IO];
+				  *io = &values[OPT_IO];
 	bool known = false;
 
 	if (bits->given) {
@@ -180,11 +179,11 @@ static bool build_value(struct build *build, const struct option_value *value,
 		             "%s \"%s\": the type %s cannot hold it", value->node->key, value->text,
 		             value_type_name(item->type));
 	else
-		report_error(build->report, value->node->value_at, "%s \"%s\": expected %s (type %s)",
-		             value->node->key, value->text,
-		             item->type == OWS_BOOL           ? "0, 1, on, off, yes, no, true or false"
+		report_error(build->report, value->node->value_at,
+		             "%s \"%s\": expected %s (type %s)", value->node->key, value->text,
+		             item->type == OWS_BOOL       ? "0, 1, on, off, yes, no, true or false"
 		             : value_is_float(item->type) ? "a number with a decimal point"
-		                                              : "a whole number",
+		                                          : "a whole number",
 		             value_type_name(item->type));
 	return false;
 }
@@ -229,9 +228,10 @@ static void warn_without_equals(struct build *build, const struct option_value *
                                 const char *follows)
 {
 	if (value->given && *value->text && !strchr(value->text, '='))
-		report_warning(build->report, value->node->value_at,
-		               "%s \"%s\" has no '=': nothing is written%s; expected property=value",
-		               value->node->key, value->text, follows);
+		report_warning(
+			build->report, value->node->value_at,
+			"%s \"%s\" has no '=': nothing is written%s; expected property=value",
+			value->node->key, value->text, follows);
 }
 
 /* Table 3.1: rows 3 and 10 leave for the next alarm when these are not defined. */
@@ -253,9 +253,10 @@ static void build_alarm(struct build *build, const struct rio_node *block,
 		report_error(build->report, place, "Alarm on: expected a device in the path \"%s\"",
 		             item->path);
 	if (!values[OPT_POR_ALARM].node)
-		report_warning(build->report, place,
-		               "this alarm can never do anything: PorAlarm is not defined; write "
-		               "PorAlarm \"por\", or PorAlarm \"\" if the device has no such property");
+		report_warning(
+			build->report, place,
+			"this alarm can never do anything: PorAlarm is not defined; write "
+			"PorAlarm \"por\", or PorAlarm \"\" if the device has no such property");
 	if (!values[OPT_LATCH_ALARM].node || latch_empty)
 		report_warning(build->report, place,
 		               "this alarm never reads anything: LatchAlarm is %s; write the "
@@ -263,15 +264,17 @@ static void build_alarm(struct build *build, const struct rio_node *block,
 		               "\"present\" if it has none",
 		               latch_empty ? "empty" : "not defined");
 	if (item->por_alarm && *item->por_alarm && !item->set_alarm)
-		report_warning(build->report, place,
-		               "this alarm cannot be armed after a restart of its device: SetAlarm is "
-		               "not defined, so %s is never cleared; write SetAlarm "
-		               "\"property=value\", or SetAlarm \"\" if nothing has to be set",
-		               item->por_alarm);
-	warn_without_equals(build, &values[OPT_SET_ALARM],
-	                    item->por_alarm && *item->por_alarm
-	                            ? ", and the alarm cannot be armed after a restart of its device"
-	                            : "");
+		report_warning(
+			build->report, place,
+			"this alarm cannot be armed after a restart of its device: SetAlarm is "
+			"not defined, so %s is never cleared; write SetAlarm "
+			"\"property=value\", or SetAlarm \"\" if nothing has to be set",
+			item->por_alarm);
+	warn_without_equals(
+		build, &values[OPT_SET_ALARM],
+		item->por_alarm && *item->por_alarm
+			? ", and the alarm cannot be armed after a restart of its device"
+			: "");
 	warn_without_equals(build, &values[OPT_RESET_LATCH], "");
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "build.h"
+#include "src/config/build.h"
 
 /* From the least to the greatest. */
 static const enum option limit_options[CONFIG_LIMITS] = {
@@ -51,8 +51,7 @@ static void check_hysteresis(struct build *build, const struct option_value *val
 		             high->node->key);
 }
 
-void limits_build(struct build *build, const struct option_value *values,
-                  struct config_item *item)
+void limits_build(struct build *build, const struct option_value *values, struct config_item *item)
 {
 	struct config_limits *limits = &item->limits;
 
@@ -62,8 +61,8 @@ void limits_build(struct build *build, const struct option_value *values,
 		if (!limit->given)
 			continue;
 		if (item->type == OWS_STRING)
-			report_error(build->report, limit->node->at,
-			             "%s: a string has no limits", limit->node->key);
+			report_error(build->report, limit->node->at, "%s: a string has no limits",
+			             limit->node->key);
 		limits->any = limits->has[i] = true;
 		limits->limit[i] = limit->number;
 	}

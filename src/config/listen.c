@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "listen.h"
-
 #include <arpa/inet.h>
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
-static const uint8_t v4_mapped[12] = { [10] = 0xff, [11] = 0xff };
+#include "src/config/listen.h"
+
+static const uint8_t v4_mapped[12] = {[10] = 0xff, [11] = 0xff};
 
 static bool has_digits_only(const char *text, size_t len)
 {
@@ -43,9 +43,8 @@ static int numeric(const char *text, size_t len, bool *is_v6, uint8_t bytes[16])
 
 static int loopback(uint16_t port, struct listen_address addresses[2])
 {
-	addresses[0] = (struct listen_address){ .bytes = { 127, 0, 0, 1 }, .port = port };
-	addresses[1] = (struct listen_address){ .is_v6 = true, .bytes = { [15] = 1 },
-		                                .port = port };
+	addresses[0] = (struct listen_address){.bytes = {127, 0, 0, 1}, .port = port};
+	addresses[1] = (struct listen_address){.is_v6 = true, .bytes = {[15] = 1}, .port = port};
 	return 2;
 }
 
@@ -74,8 +73,7 @@ static bool split(const char *text, size_t len, const char **host, size_t *host_
 	return !colon || !memchr(colon + 1, ':', (size_t)(end - colon - 1));
 }
 
-int listen_parse(const char *text, size_t len, struct listen_address addresses[2],
-                 const char **why)
+int listen_parse(const char *text, size_t len, struct listen_address addresses[2], const char **why)
 {
 	const char *host, *port_text;
 	size_t host_len;
@@ -89,8 +87,7 @@ int listen_parse(const char *text, size_t len, struct listen_address addresses[2
 	*why = "expected PORT, HOST:PORT or [IPv6]:PORT";
 	if (!split(text, len, &host, &host_len, &port_text) || !host_len)
 		return -EINVAL;
-	port = port_text ? number(port_text, (size_t)(text + len - port_text), 65535)
-	                 : LISTEN_PORT;
+	port = port_text ? number(port_text, (size_t)(text + len - port_text), 65535) : LISTEN_PORT;
 	*why = "expected a port from 0 to 65535 behind the colon";
 	if (port < 0)
 		return -EINVAL;
@@ -98,7 +95,7 @@ int listen_parse(const char *text, size_t len, struct listen_address addresses[2
 		return loopback((uint16_t)port, addresses);
 	*why = "expected an address of this machine such as 192.168.1.5 (0.0.0.0 and [::]: all), "
 	       "or localhost";
-	addresses[0] = (struct listen_address){ .port = (uint16_t)port };
+	addresses[0] = (struct listen_address){.port = (uint16_t)port};
 	return numeric(host, host_len, &addresses[0].is_v6, addresses[0].bytes) ? -EINVAL : 1;
 }
 
@@ -114,8 +111,7 @@ static void as_v4(struct listen_peers *peers)
 	memset(peers->bytes + 4, 0, 12);
 }
 
-int listen_peers_parse(const char *text, size_t len, struct listen_peers *peers,
-                       const char **why)
+int listen_peers_parse(const char *text, size_t len, struct listen_peers *peers, const char **why)
 {
 	const char *slash = memchr(text, '/', len);
 	size_t host_len = slash ? (size_t)(slash - text) : len;
@@ -147,7 +143,7 @@ bool listen_same_peers(const struct listen_peers *a, const struct listen_peers *
 
 bool listen_is_loopback(const struct listen_address *address)
 {
-	static const uint8_t v6[16] = { [15] = 1 };
+	static const uint8_t v6[16] = {[15] = 1};
 
 	return address->is_v6 ? memcmp(address->bytes, v6, 16) == 0 : address->bytes[0] == 127;
 }

@@ -7,8 +7,8 @@
 #define CONFIG_LISTEN_H
 
 #include <stdbool.h>
-#include <stdint.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #define LISTEN_MAX 16
 #define LISTEN_PEERS_MAX 64
@@ -33,8 +33,7 @@ struct listen_peers {
 int listen_parse(const char *text, size_t len, struct listen_address addresses[2],
                  const char **why);
 /* "192.168.1.0/24", "10.0.0.7", "fd00::/8". 0 or -EINVAL, the reason in *why. */
-int listen_peers_parse(const char *text, size_t len, struct listen_peers *peers,
-                       const char **why);
+int listen_peers_parse(const char *text, size_t len, struct listen_peers *peers, const char **why);
 
 bool listen_is_loopback(const struct listen_address *address);
 bool listen_same(const struct listen_address *a, const struct listen_address *b);

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* The configuration made from a .rio document: its driver block, its items, its targets. */
-#include "build.h"
-
-#include "../signal/value.h"
-
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/config/build.h"
+#include "src/signal/value.h"
 
 #define DRIVER "OwsDrv"
 
@@ -52,11 +51,10 @@ static const struct rio_node *find_driver(const struct rio *rio, const char *fil
 				             node->key);
 		} else if (node->kind != RIO_BLOCK) {
 			if (!node->broken)
-				report_error(report, node->value_at,
-				             "expected { behind " DRIVER);
+				report_error(report, node->value_at, "expected { behind " DRIVER);
 		} else if (driver) {
-			report_error(report, node->at,
-			             DRIVER " stands twice, first in line %d", driver->at.line);
+			report_error(report, node->at, DRIVER " stands twice, first in line %d",
+			             driver->at.line);
 		} else {
 			driver = node;
 		}
@@ -68,9 +66,8 @@ static const struct rio_node *find_driver(const struct rio *rio, const char *fil
 
 static const char *build_line(struct build *build, const struct option_value *value)
 {
-	return value->given && *value->text
-	               ? build_keep(build, value->text, strlen(value->text))
-	               : NULL;
+	return value->given && *value->text ? build_keep(build, value->text, strlen(value->text))
+	                                    : NULL;
 }
 
 static void build_driver(struct build *build, const struct option_value *values)

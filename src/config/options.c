@@ -1,111 +1,110 @@
 /* SPDX-License-Identifier: MIT */
-#include "options.h"
-
-#include "../signal/value.h"
-
 #include <ctype.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
 #include <strings.h>
 
+#include "src/config/options.h"
+#include "src/signal/value.h"
+
 #define DAY 86400.0
 
 const struct option_def option_table[OPTION_COUNT_ALL] = {
 	[OPT_VERSION] = {"Version", PLACE_DRIVER, OPTION_TEXT, .preset = "1.00",
-	                 .help = "version of the file format"},
+                         .help = "version of the file format"},
 	[OPT_TARGET_NAME] = {"TargetName", PLACE_DRIVER, OPTION_TEXT, .preset = "localhost:4304",
-	                     .help = "where the devices are reached"},
+                             .help = "where the devices are reached"},
 	[OPT_MAX_CONS_ALARMS] = {"MaxConsAlarms", PLACE_DRIVER, OPTION_COUNT, false, 0, 1000, "5",
-	                         "alarms served in a row before one write or read goes through"},
+                                 "alarms served in a row before one write or read goes through"},
 	[OPT_MAX_REQUESTS] = {"MaxRequests", PLACE_DRIVER, OPTION_COUNT, false, 0, 1000, "1",
-	                      "requests at a time, in older files; counts as 1"},
+                              "requests at a time, in older files; counts as 1"},
 	[OPT_MAX_RETRIES] = {"MaxRetries", PLACE_DRIVER, OPTION_COUNT, false, 0, 100, "3",
-	                     "retries after an item error"},
+                             "retries after an item error"},
 	[OPT_TIMEOUT] = {"Timeout", PLACE_DRIVER, OPTION_SECONDS, false, 0.001, DAY, "20",
-	                 "time limit of a request, seconds"},
+                         "time limit of a request, seconds"},
 	[OPT_PERIOD] = {"Period", PLACE_DRIVER, OPTION_SECONDS, false, 0.001, 60, "0.1",
-	                "period of the driver, seconds"},
+                        "period of the driver, seconds"},
 	[OPT_ALARM_PERIOD] = {"AlarmPeriod", PLACE_DRIVER, OPTION_SECONDS, false, 0, DAY, "0.05",
-	                      "least time between two looks at /alarm, seconds"},
+                              "least time between two looks at /alarm, seconds"},
 	[OPT_LISTEN] = {"Listen", PLACE_DRIVER, OPTION_TEXT,
-	                .help = "where the owserver protocol is served"},
+                        .help = "where the owserver protocol is served"},
 	[OPT_LISTEN_SOCKET] = {"ListenSocket", PLACE_DRIVER, OPTION_TEXT,
-	                       .help = "unix socket on which it is served"},
+                               .help = "unix socket on which it is served"},
 	[OPT_LISTEN_ALLOW] = {"ListenAllow", PLACE_DRIVER, OPTION_TEXT,
-	                      .help = "addresses of those who may connect over the network"},
+                              .help = "addresses of those who may connect over the network"},
 	[OPT_LISTEN_READ_ONLY] = {"ListenReadOnly", PLACE_DRIVER, OPTION_FLAG, .preset = "off",
-	                          .help = "refuse all writes over the protocol"},
+                                  .help = "refuse all writes over the protocol"},
 	[OPT_ITEM_COUNT] = {"ItemCount", PLACE_DRIVER, OPTION_COUNT, false, 0, 1e9, NULL,
-	                    "number of items"},
+                            "number of items"},
 	[OPT_ALARM_LINE] = {"AlarmLine", PLACE_DRIVER, OPTION_TEXT,
-	                    .help = "GPIO line that is on while there is an alarm"},
+                            .help = "GPIO line that is on while there is an alarm"},
 	[OPT_HEARTBEAT_LINE] = {"HeartbeatLine", PLACE_DRIVER, OPTION_TEXT,
-	                        .help = "GPIO line that blinks while owsd is well"},
+                                .help = "GPIO line that blinks while owsd is well"},
 	[OPT_BUS] = {"Bus", PLACE_DRIVER, OPTION_BLOCK, true, .help = "options of one target"},
 	[OPT_ITEM] = {"Item", PLACE_DRIVER, OPTION_BLOCK, true, .help = "one signal"},
 
 	[OPT_NAME] = {"Name", PLACE_ITEM, OPTION_TEXT, .help = "name of the signal"},
 	[OPT_PATH] = {"Path", PLACE_ITEM, OPTION_TEXT, .help = "OWFS path of the property"},
 	[OPT_IO_TYPE] = {"IOType", PLACE_ITEM, OPTION_COUNT, false, 0, UINT32_MAX, NULL,
-	                 "type, direction and Uncached as bits"},
+                         "type, direction and Uncached as bits"},
 	[OPT_TYPE] = {"Type", PLACE_ITEM, OPTION_TYPE, .help = "data type"},
 	[OPT_IO] = {"IO", PLACE_ITEM, OPTION_IO, .preset = "input",
-	            .help = "read cyclically, or written when changed"},
+                    .help = "read cyclically, or written when changed"},
 	[OPT_READABLE] = {"Readable", PLACE_ITEM, OPTION_FLAG,
-	                  .help = "start value of _ReadEnable; on for inputs, off for outputs"},
+                          .help = "start value of _ReadEnable; on for inputs, off for outputs"},
 	[OPT_WRITABLE] = {"Writable", PLACE_ITEM, OPTION_FLAG,
-	                  .help = "start value of _WriteEnable; on for outputs, off for inputs"},
+                          .help = "start value of _WriteEnable; on for outputs, off for inputs"},
 	[OPT_UNCACHED] = {"Uncached", PLACE_ITEM, OPTION_FLAG, .preset = "off",
-	                  .help = "read past the cache"},
+                          .help = "read past the cache"},
 	[OPT_INIT_VALUE] = {"InitValue", PLACE_ITEM, OPTION_TEXT, .preset = "",
-	                    .help = "value until the first read; outputs: written once at start"},
+                            .help = "value until the first read; outputs: written once at start"},
 	[OPT_SAFE_VALUE] = {"SafeValue", PLACE_ITEM, OPTION_TEXT,
-	                    .help = "written when the control program stops beating"},
+                            .help = "written when the control program stops beating"},
 	[OPT_PER_FACTOR] = {"PerFactor", PLACE_ITEM, OPTION_COUNT, false, 1, 1e6, "1",
-	                    "read again no sooner than that many periods later"},
+                            "read again no sooner than that many periods later"},
 	[OPT_STALE_AFTER] = {"StaleAfter", PLACE_ITEM, OPTION_SECONDS, false, 0, 365 * DAY, "0",
-	                     "age at which a value is no longer good, seconds; 0: never"},
+                             "age at which a value is no longer good, seconds; 0: never"},
 	[OPT_ALARM] = {"Alarm", PLACE_ITEM, OPTION_FLAG, .preset = "off",
-	               .help = "watch the device by its alarms"},
+                       .help = "watch the device by its alarms"},
 	[OPT_LATCH_ALARM] = {"LatchAlarm", PLACE_ITEM, OPTION_TEXT,
-	                     .help = "property that says what changed"},
+                             .help = "property that says what changed"},
 	[OPT_POR_ALARM] = {"PorAlarm", PLACE_ITEM, OPTION_TEXT,
-	                   .help = "property that says that the device restarted"},
+                           .help = "property that says that the device restarted"},
 	[OPT_SET_ALARM] = {"SetAlarm", PLACE_ITEM, OPTION_TEXT,
-	                   .help = "property=value that arms the alarm"},
+                           .help = "property=value that arms the alarm"},
 	[OPT_RESET_LATCH] = {"ResetLatch", PLACE_ITEM, OPTION_TEXT,
-	                     .help = "property=value that clears the latch"},
+                             .help = "property=value that clears the latch"},
 	[OPT_LIMIT_HH] = {"LimitHH", PLACE_ITEM, OPTION_NUMBER, false, -DBL_MAX, DBL_MAX, NULL,
-	                  "alarm at or above that value, higher than LimitH"},
+                          "alarm at or above that value, higher than LimitH"},
 	[OPT_LIMIT_H] = {"LimitH", PLACE_ITEM, OPTION_NUMBER, false, -DBL_MAX, DBL_MAX, NULL,
-	                 "alarm at or above that value"},
+                         "alarm at or above that value"},
 	[OPT_LIMIT_L] = {"LimitL", PLACE_ITEM, OPTION_NUMBER, false, -DBL_MAX, DBL_MAX, NULL,
-	                 "alarm at or below that value"},
+                         "alarm at or below that value"},
 	[OPT_LIMIT_LL] = {"LimitLL", PLACE_ITEM, OPTION_NUMBER, false, -DBL_MAX, DBL_MAX, NULL,
-	                  "alarm at or below that value, lower than LimitL"},
+                          "alarm at or below that value, lower than LimitL"},
 	[OPT_HYSTERESIS] = {"Hysteresis", PLACE_ITEM, OPTION_NUMBER, false, 0, DBL_MAX, "0",
-	                    "how far a value returns inside a limit before its alarm ends"},
+                            "how far a value returns inside a limit before its alarm ends"},
 	[OPT_ON_DELAY] = {"OnDelay", PLACE_ITEM, OPTION_SECONDS, false, 0, DAY, "0",
-	                  "how long a limit alarm's condition stands before it is raised, seconds"},
+                          "how long a limit alarm's condition stands before it is raised, seconds"},
 	[OPT_OFF_DELAY] = {"OffDelay", PLACE_ITEM, OPTION_SECONDS, false, 0, DAY, "0",
-	                   "how long it is gone before the alarm returns, seconds"},
+                           "how long it is gone before the alarm returns, seconds"},
 
 	[OPT_BUS_TARGET] = {"Target", PLACE_BUS, OPTION_TEXT, .help = "the target it is for"},
 	[OPT_BUS_POWER_LINE] = {"PowerLine", PLACE_BUS, OPTION_TEXT,
-	                        .help = "GPIO line that switches the supply of the wire"},
+                                .help = "GPIO line that switches the supply of the wire"},
 	[OPT_BUS_POWER_OFF_MS] = {"PowerOffMs", PLACE_BUS, OPTION_COUNT, false, 1, 60000, "500",
-	                          "how long the supply is off, milliseconds"},
+                                  "how long the supply is off, milliseconds"},
 	[OPT_BUS_SLEEP_LINE] = {"SleepLine", PLACE_BUS, OPTION_TEXT,
-	                        .help = "GPIO line at the SLPZ pin of the chips"},
+                                .help = "GPIO line at the SLPZ pin of the chips"},
 	[OPT_BUS_ACTIVE_LOW] = {"ActiveLow", PLACE_BUS, OPTION_TEXT,
-	                        .help = "lines that are 1 when low"},
+                                .help = "lines that are 1 when low"},
 	[OPT_BUS_PULL_UP] = {"PullUp", PLACE_BUS, OPTION_TEXT, .help = "lines with pull-up"},
 	[OPT_BUS_PULL_DOWN] = {"PullDown", PLACE_BUS, OPTION_TEXT, .help = "lines with pull-down"},
 	[OPT_BUS_OPEN_DRAIN] = {"OpenDrain", PLACE_BUS, OPTION_TEXT,
-	                        .help = "outputs that only pull low"},
+                                .help = "outputs that only pull low"},
 	[OPT_BUS_OPEN_SOURCE] = {"OpenSource", PLACE_BUS, OPTION_TEXT,
-	                         .help = "outputs that only drive high"},
+                                 .help = "outputs that only drive high"},
 };
 
 static const char *const place_names[] = {"OwsDrv", "Item", "Bus"};
@@ -180,10 +179,11 @@ static void warn_unknown(const struct rio_node *node, enum option_place place,
 	const char *nearest = option_nearest(place, node->key);
 
 	if (place == PLACE_ITEM && looks_like_alarm(node))
-		report_warning(report, node->at,
-		               "unknown key %s in %s is ignored; \"%s\" looks like part of an alarm: "
-		               "the keys are Alarm, LatchAlarm, PorAlarm, SetAlarm, ResetLatch",
-		               node->key, place_names[place], node->value);
+		report_warning(
+			report, node->at,
+			"unknown key %s in %s is ignored; \"%s\" looks like part of an alarm: "
+			"the keys are Alarm, LatchAlarm, PorAlarm, SetAlarm, ResetLatch",
+			node->key, place_names[place], node->value);
 	else if (nearest)
 		report_warning(report, node->at, "unknown key %s in %s is ignored; is it %s?",
 		               node->key, place_names[place], nearest);
@@ -258,12 +258,13 @@ static void say_expected(const struct option_def *def, const struct rio_node *no
 			             node->value);
 		else
 			report_error(report, node->value_at,
-			             "%s \"%s\": expected a whole number from %.0f to %.0f", def->key,
-			             node->value, def->least, def->most);
+			             "%s \"%s\": expected a whole number from %.0f to %.0f",
+			             def->key, node->value, def->least, def->most);
 		break;
 	case OPTION_SECONDS:
-		report_error(report, node->value_at, "%s \"%s\": expected seconds from %.10g to %.10g",
-		             def->key, node->value, def->least, def->most);
+		report_error(report, node->value_at,
+		             "%s \"%s\": expected seconds from %.10g to %.10g", def->key,
+		             node->value, def->least, def->most);
 		break;
 	case OPTION_NUMBER:
 		report_error(report, node->value_at, "%s \"%s\": expected a number%s", def->key,
@@ -280,8 +281,8 @@ static void say_expected(const struct option_def *def, const struct rio_node *no
 		             def->key, node->value);
 		break;
 	case OPTION_IO:
-		report_error(report, node->value_at, "%s \"%s\": expected input or output", def->key,
-		             node->value);
+		report_error(report, node->value_at, "%s \"%s\": expected input or output",
+		             def->key, node->value);
 		break;
 	case OPTION_TEXT:
 	case OPTION_BLOCK:

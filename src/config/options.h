@@ -6,9 +6,9 @@
 #ifndef CONFIG_OPTIONS_H
 #define CONFIG_OPTIONS_H
 
-#include "arena.h"
-#include "config.h"
-#include "rio.h"
+#include "src/config/arena.h"
+#include "src/config/config.h"
+#include "src/config/rio.h"
 
 enum option_place {
 	PLACE_DRIVER,
@@ -102,9 +102,9 @@ const char *option_nearest(enum option_place place, const char *key);
 /* One key of a block as it was read. */
 struct option_value {
 	const struct rio_node *node; /* NULL: absent */
-	bool given;       /* present and valid; if not, number is the default */
-	const char *text; /* "" if not given */
-	double number;    /* counts, seconds, numbers, flags (0, 1), types, IO (1: output) */
+	bool given;                  /* present and valid; if not, number is the default */
+	const char *text;            /* "" if not given */
+	double number; /* counts, seconds, numbers, flags (0, 1), types, IO (1: output) */
 };
 
 /*

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Targets that lead back to the owsd that has them. */
-#include "build.h"
-
 #include <errno.h>
 #include <string.h>
+
+#include "src/config/build.h"
 
 #define SCHEME "owserver:"
 
@@ -85,8 +85,10 @@ int config_check_own(struct config *config, struct config_report *report)
 			             target->text);
 			continue;
 		}
-		report_warning(report, place, "auto looks for no owserver at %s: this owsd listens "
-		               "there", target->text);
+		report_warning(report, place,
+		               "auto looks for no owserver at %s: this owsd listens "
+		               "there",
+		               target->text);
 		leave_out(config, i--);
 	}
 	return report->errors == before ? 0 : -EINVAL;

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "options.h"
-#include "rio_write.h"
-
-#include "../signal/value.h"
-
 #include <stdarg.h>
+
+#include "src/config/options.h"
+#include "src/config/rio_write.h"
+#include "src/signal/value.h"
 
 static void put_plain(FILE *out, int indent, const char *key, const char *text)
 {

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "replace.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -12,9 +10,11 @@
 #include <time.h>
 #include <unistd.h>
 
-#define SUFFIX      ".XXXXXX"
-#define LOCK_TRIES  250
-#define LOCK_PAUSE  20000000 /* ns: five seconds in all */
+#include "src/config/replace.h"
+
+#define SUFFIX ".XXXXXX"
+#define LOCK_TRIES 250
+#define LOCK_PAUSE 20000000 /* ns: five seconds in all */
 
 static int write_all(int fd, const char *text, size_t len)
 {
@@ -70,8 +70,7 @@ static int open_directory(char *path)
 
 	if (slash && slash != path)
 		*slash = '\0';
-	return open(slash ? (slash == path ? "/" : path) : ".",
-	            O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	return open(slash ? (slash == path ? "/" : path) : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
 }
 
 /* The rename itself has to reach the disk too; file systems that cannot do that are no error. */

@@ -1,19 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-#include "report.h"
-
-#include "../printable.h"
-
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/config/report.h"
+#include "src/text/printable.h"
+
 #define MESSAGE_MAX (PRINTABLE_LINE + 300)
 
-static void put(struct config_report *report, struct place place, bool is_error,
-                const char *format, va_list args) __attribute__((format(printf, 4, 0)));
-static void put(struct config_report *report, struct place place, bool is_error,
-                const char *format, va_list args)
+static void put(struct config_report *report, struct place place, bool is_error, const char *format,
+                va_list args) __attribute__((format(printf, 4, 0)));
+static void put(struct config_report *report, struct place place, bool is_error, const char *format,
+                va_list args)
 {
 	unsigned *count = is_error ? &report->errors : &report->warnings;
 	const char *kind = is_error ? "error" : "warning";

@@ -6,7 +6,7 @@
 #ifndef CONFIG_REPORT_H
 #define CONFIG_REPORT_H
 
-#include "config.h"
+#include "src/config/config.h"
 
 #define REPORT_MAX 50
 

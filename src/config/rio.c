@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "rio.h"
-
 #include <errno.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/config/rio.h"
 
 struct spot {
 	const char *p;
@@ -182,7 +182,8 @@ static void parse_piece(struct parser *p, struct rio_node *node)
 		p->at.p++;
 		return;
 	}
-	report_error(p->report, begin, "expected '\"' at the end of the string, found the end of the %s",
+	report_error(p->report, begin,
+	             "expected '\"' at the end of the string, found the end of the %s",
 	             at_end(p) ? "file" : "line");
 	node->broken = true;
 }
@@ -323,8 +324,8 @@ static void refuse_here(struct parser *p, struct rio_node *block, int depth)
 	if (c == '{')
 		report_error(p->report, place_here(p), "expected a key before '{'");
 	else if (is_control(c))
-		report_error(p->report, place_here(p), "expected a key%s, found the byte 0x%02X", inside,
-		             (unsigned char)c);
+		report_error(p->report, place_here(p), "expected a key%s, found the byte 0x%02X",
+		             inside, (unsigned char)c);
 	else if ((unsigned char)c >= 0x80)
 		report_error(p->report, place_here(p), "expected a key%s", inside);
 	else
@@ -372,7 +373,8 @@ int rio_parse(const char *file, const char *text, size_t len, struct config_repo
 
 	*rio = NULL;
 	if (len > RIO_FILE_MAX) {
-		report_error(report, (struct place){file, 0, 0}, "longer than %u bytes", RIO_FILE_MAX);
+		report_error(report, (struct place){file, 0, 0}, "longer than %u bytes",
+		             RIO_FILE_MAX);
 		return -EFBIG;
 	}
 	made = calloc(1, sizeof(*made));
@@ -385,9 +387,16 @@ int rio_parse(const char *file, const char *text, size_t len, struct config_repo
 	}
 	made->len = len;
 	made->line_end = find_line_end(text, len);
-	made->root = (struct rio_node){.kind = RIO_BLOCK, .key = "", .value = "", .end = len,
-	                               .value_end = len, .at = {file, 1, 1}};
-	*p = (struct parser){.rio = made, .report = report, .file = file, .end = made->text + len,
+	made->root = (struct rio_node){.kind = RIO_BLOCK,
+	                               .key = "",
+	                               .value = "",
+	                               .end = len,
+	                               .value_end = len,
+	                               .at = {file, 1, 1}};
+	*p = (struct parser){.rio = made,
+	                     .report = report,
+	                     .file = file,
+	                     .end = made->text + len,
 	                     .at = {.p = made->text, .line = 1, .column = 1}};
 	if (len >= 3 && !memcmp(text, "\xef\xbb\xbf", 3))
 		p->at.p += 3;

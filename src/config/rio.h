@@ -18,12 +18,12 @@
 #ifndef CONFIG_RIO_H
 #define CONFIG_RIO_H
 
-#include "arena.h"
-#include "report.h"
+#include "src/config/arena.h"
+#include "src/config/report.h"
 
-#define RIO_FILE_MAX  (16u * 1024 * 1024)
+#define RIO_FILE_MAX (16u * 1024 * 1024)
 #define RIO_DEPTH_MAX 16
-#define RIO_KEY_MAX   63
+#define RIO_KEY_MAX 63
 #define RIO_VALUE_MAX 4096 /* bytes of a word or of a string after joining */
 
 enum rio_kind {

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "rio.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <stdbool.h>
@@ -8,6 +6,8 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "src/config/rio.h"
 
 /* One byte more than is allowed, so that a longer file is known as such. */
 #define ROOM_MAX ((size_t)RIO_FILE_MAX + 1)
@@ -92,7 +92,7 @@ static int cannot_read(struct config_report *report, struct place place, int err
 /* A descriptor, or a negative errno after having said why. */
 static int open_file(const char *file, struct config_report *report)
 {
-	const struct place place = { file, 0, 0 };
+	const struct place place = {file, 0, 0};
 	struct stat st;
 	int fd, err;
 
@@ -118,7 +118,7 @@ static int open_file(const char *file, struct config_report *report)
 
 int rio_read(const char *file, struct config_report *report, char **text, size_t *len)
 {
-	const struct place place = { file, 0, 0 };
+	const struct place place = {file, 0, 0};
 	int fd = open_file(file, report);
 	int err;
 

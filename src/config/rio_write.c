@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Changes of a document in its text: what is not changed keeps every byte. */
-#include "rio_write.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/config/rio_write.h"
 
 /* A text that grows; text NULL: no memory. */
 struct grow {
@@ -135,7 +135,8 @@ static size_t line_begin(const struct rio *rio, size_t offset)
 
 static size_t line_end_length(const struct rio *rio, size_t offset)
 {
-	return offset < rio->len ? rio_line_end_length(rio->text + offset, rio->text + rio->len) : 0;
+	return offset < rio->len ? rio_line_end_length(rio->text + offset, rio->text + rio->len)
+	                         : 0;
 }
 
 /* The line's end, or that of the text. */
@@ -169,8 +170,7 @@ static size_t behind_line(const struct rio *rio, const struct rio_node *node)
 	return p == end || rio->text[p] == '#' ? end : node->end;
 }
 
-static void add_indented(struct grow *out, const char *indent, size_t indent_len,
-                         const char *lines)
+static void add_indented(struct grow *out, const char *indent, size_t indent_len, const char *lines)
 {
 	while (*lines) {
 		size_t len = strcspn(lines, "\n");
@@ -189,8 +189,7 @@ static void add_indented(struct grow *out, const char *indent, size_t indent_len
  * are for the place from at to end.
  */
 static char *lines_behind(const struct rio *rio, const struct rio_node *block,
-                          const struct rio_node *after, const char *lines, size_t *at,
-                          size_t *end)
+                          const struct rio_node *after, const char *lines, size_t *at, size_t *end)
 {
 	const struct rio_node *like = after ? after : block;
 	size_t begin = line_begin(rio, like->begin);
@@ -218,8 +217,8 @@ static char *lines_behind(const struct rio *rio, const struct rio_node *block,
 	return out.text;
 }
 
-static int add_behind(struct rio **rio, const struct rio_node *block,
-                      const struct rio_node *after, const char *lines)
+static int add_behind(struct rio **rio, const struct rio_node *block, const struct rio_node *after,
+                      const char *lines)
 {
 	struct grow out;
 	size_t at, end;
@@ -317,12 +316,14 @@ static size_t line_before(const struct rio *rio, size_t offset)
 }
 
 /* The lines of a node and of the comments directly above it; false: they hold something else. */
-static bool own_lines(const struct rio *rio, const struct rio_node *node, size_t *begin, size_t *end)
+static bool own_lines(const struct rio *rio, const struct rio_node *node, size_t *begin,
+                      size_t *end)
 {
 	size_t line = line_begin(rio, node->begin), above;
 
 	*end = line_end_at(rio, node->end);
-	if (!begins_line(rio, node) || behind_line(rio, node) != *end || !line_end_length(rio, *end))
+	if (!begins_line(rio, node) || behind_line(rio, node) != *end ||
+	    !line_end_length(rio, *end))
 		return false;
 	*end += line_end_length(rio, *end);
 	while ((above = line_before(rio, line)) < line && is_comment(rio, above) &&

@@ -3,10 +3,10 @@
 #ifndef CONFIG_RIO_WRITE_H
 #define CONFIG_RIO_WRITE_H
 
-#include "rio.h"
+#include "src/config/rio.h"
 
 #define RIO_KEY_WIDTH 24 /* REXYGEN puts values in this column behind the key's first letter */
-#define RIO_WRAP      50 /* a longer string goes on in a new one at the start of the next line */
+#define RIO_WRAP 50      /* a longer string goes on in a new one at the start of the next line */
 
 /* text as a quoted string, wrapped if it is long; NULL: no memory. Free with rio_quote_free(). */
 char *rio_quote(const char *text);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The keys Listen... of the driver block. */
-#include "build.h"
-
 #include <errno.h>
 #include <string.h>
+
+#include "src/config/build.h"
 
 #define SOCKET_PATH_MAX 107
 
@@ -24,15 +24,15 @@ static bool next_part(const char **text, const char **part, size_t *len)
 	return true;
 }
 
-static void add_address(struct build *build, const struct listen_address *address,
-                        const char *part, size_t len, struct place place)
+static void add_address(struct build *build, const struct listen_address *address, const char *part,
+                        size_t len, struct place place)
 {
 	struct config_serve *serve = &build->box->config.serve;
 
 	for (unsigned i = 0; i < serve->address_count; i++)
 		if (address->port && listen_same(&serve->addresses[i], address)) {
-			report_error(build->report, place, "Listen \"%.*s\": stands twice", (int)len,
-			             part);
+			report_error(build->report, place, "Listen \"%.*s\": stands twice",
+			             (int)len, part);
 			return;
 		}
 	if (serve->address_count == LISTEN_MAX) {
@@ -52,7 +52,8 @@ static void add_listens(struct build *build, const char *text, struct place plac
 		int n = listen_parse(part, len, addresses, &why);
 
 		if (n < 0)
-			report_error(build->report, place, "Listen \"%.*s\": %s", (int)len, part, why);
+			report_error(build->report, place, "Listen \"%.*s\": %s", (int)len, part,
+			             why);
 		for (int i = 0; i < n; i++)
 			add_address(build, &addresses[i], part, len, place);
 	}
@@ -71,8 +72,8 @@ static void add_peers(struct build *build, const struct option_value *allow)
 			return;
 		}
 		if (listen_peers_parse(part, len, &serve->peers[serve->peer_count], &why))
-			report_error(build->report, allow->node->value_at, "ListenAllow \"%.*s\": %s",
-			             (int)len, part, why);
+			report_error(build->report, allow->node->value_at,
+			             "ListenAllow \"%.*s\": %s", (int)len, part, why);
 		else
 			serve->peer_count++;
 	}

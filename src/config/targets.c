@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-#include "build.h"
-
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
-#define DEFAULT_TARGET "localhost:4304"
-#define DEFAULT_PORT   "4304"
+#include "src/config/build.h"
 
-#define AUTO           "auto"
+#define DEFAULT_TARGET "localhost:4304"
+#define DEFAULT_PORT "4304"
+
+#define AUTO "auto"
 const char *const config_auto_ways[CONFIG_AUTO_WAYS] = {DEFAULT_TARGET, "i2c:auto", "w1"};
 
 /* Schemes and bare words that are no host; of owserver the scheme may be left out. */

@@ -107,8 +107,8 @@ static void serve_device(struct engine *e, uint32_t index, struct lane *lane)
 	}
 }
 
-static void take_places(struct engine *e, uint32_t index, const struct engine *old,
-                        uint32_t before, const struct adoption *plan)
+static void take_places(struct engine *e, uint32_t index, const struct engine *old, uint32_t before,
+                        const struct adoption *plan)
 {
 	struct route_place *to = &e->places[(size_t)index * e->group_count];
 
@@ -196,11 +196,11 @@ static void take_command(struct signal *s, const struct signal *was)
 static void take_signal(struct signal *s, const struct signal *was)
 {
 	const struct config_item *item = s->item, *before = was->item;
-	uint32_t flags = was->attrs.flags & ~(uint32_t)(OWS_ATTR_READ_ENABLE | OWS_ATTR_LIMITS |
-	                                                OWS_ATTR_WRITE_ENABLE | OWS_ATTR_IN_WORK |
-	                                                OWS_ATTR_ALARM_POLLED |
-	                                                OWS_ATTR_ALARM_UNARMED |
-	                                                OWS_ATTR_ALARM_POR);
+	uint32_t flags = was->attrs.flags &
+	                 ~(uint32_t)(OWS_ATTR_READ_ENABLE | OWS_ATTR_LIMITS |
+	                             OWS_ATTR_WRITE_ENABLE | OWS_ATTR_IN_WORK |
+	                             OWS_ATTR_ALARM_POLLED | OWS_ATTR_ALARM_UNARMED |
+	                             OWS_ATTR_ALARM_POR);
 
 	flags |= flag_of(s, was, OWS_ATTR_READ_ENABLE, item->readable, before->readable);
 	if (config_item_takes_sets(item))
@@ -263,7 +263,8 @@ static void take_source(struct engine *e, struct signal *s, const struct adoptio
 static void take_turn(struct engine *e, struct signal *s, const struct engine *old, uint32_t before)
 {
 	uint32_t row = engine_row(s);
-	uint64_t read = wait_of(&old->wheel, before * 2), write = wait_of(&old->wheel, before * 2 + 1);
+	uint64_t read = wait_of(&old->wheel, before * 2),
+		 write = wait_of(&old->wheel, before * 2 + 1);
 
 	engine_read_never(e, s);
 	if (read && s->item->per_factor == old->table.signals[before].item->per_factor)

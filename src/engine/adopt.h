@@ -19,7 +19,8 @@ struct engine;
  * and carried over. old serves no more; it may be destroyed when the buses that did not stay have
  * ended.
  */
-void engine_adopt(struct engine *e, struct engine *old, const struct adoption *plan, int64_t now_ns);
+void engine_adopt(struct engine *e, struct engine *old, const struct adoption *plan,
+                  int64_t now_ns);
 /* The buses that did not stay have ended: what guests had lent to them is theirs again. */
 void engine_abandon(struct engine *old);
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Which rows and targets of a configuration stay in a changed one: two configurations are compared. */
-#include "src/engine/adoption.h"
-
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/engine/adoption.h"
 
 static int compare_items(const struct config_item *a, const struct config_item *b)
 {
@@ -127,7 +127,7 @@ int adoption_plan(struct adoption *plan, const struct config *config, const stru
 {
 	int err;
 
-	*plan = (struct adoption){ 0 };
+	*plan = (struct adoption){0};
 	err = plan_rows(plan, config, before);
 	if (!err)
 		err = plan_ports(plan, config, before);
@@ -141,5 +141,5 @@ void adoption_free(struct adoption *plan)
 	free(plan->rows);
 	free(plan->successors);
 	free(plan->ports);
-	*plan = (struct adoption){ 0 };
+	*plan = (struct adoption){0};
 }

@@ -14,8 +14,8 @@
 #include "src/engine/publish.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
-#include "src/log.h"
 #include "src/signal/value.h"
+#include "src/text/log.h"
 
 #define BYPASS_NS 20000000LL
 
@@ -115,7 +115,7 @@ static uint32_t facts_before(struct alarm_machine *m, struct lane *lane, int64_t
 /* --- Requests -------------------------------------------------------------------------------- */
 
 static void ask_property(struct alarm_request *r, enum bus_op op, const char *before,
-                const struct alarm_item *i, const char *property, const char *data)
+                         const struct alarm_item *i, const char *property, const char *data)
 {
 	r->op = op;
 	r->row = i->row;
@@ -148,7 +148,7 @@ static bool ask_arm(struct alarm_machine *m, struct alarm_request *r, int64_t no
 		return false;
 	s = &m->items[m->arming]->strings;
 	ask_property(r, m->arm_writes ? BUS_WRITE : BUS_READ, "", m->items[m->arming], s->set,
-	    m->arm_writes ? s->set_value : "");
+	             m->arm_writes ? s->set_value : "");
 	return true;
 }
 
@@ -298,7 +298,8 @@ static int take_latch(struct alarm_machine *m, struct alarm_item *i,
 
 /* The value read under an alarm; 0 or the item error. */
 static int take_alarm_value(struct engine *e, struct lane *lane, struct alarm_item *item,
-                       const struct slot *slot, const struct bus_answer *answer, int64_t now_ns)
+                            const struct slot *slot, const struct bus_answer *answer,
+                            int64_t now_ns)
 {
 	struct signal *s = &e->table.signals[item->row];
 	int64_t wait_ns;
@@ -358,7 +359,8 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 		}
 	case ALARM_INIT_WRITE_WAIT:
 		engine_write_done(e, lane, slot, answer, now_ns);
-		return (err ? FACT_FAILED : FACT_DONE) | (m->init_position >= 0 ? FACT_INIT_POS : 0);
+		return (err ? FACT_FAILED : FACT_DONE) |
+		       (m->init_position >= 0 ? FACT_INIT_POS : 0);
 	case ALARM_POR_RESET_WAIT:
 		m->proving = !err;
 		if (err)
@@ -418,8 +420,8 @@ static bool begin_collecting(struct alarm_machine *m)
 }
 
 /* A driver may take the 0 and leave the flag: the next restart could not be told from this one. */
-static uint32_t por_proven(struct alarm_machine *m, struct lane *lane, const struct bus_answer *answer,
-                       const char *data, int64_t now_ns)
+static uint32_t por_proven(struct alarm_machine *m, struct lane *lane,
+                           const struct bus_answer *answer, const char *data, int64_t now_ns)
 {
 	struct alarm_item *i = alarm_current(m);
 	int set = answer->err ? answer->err : alarm_non_zero(data, answer->len);
@@ -480,8 +482,7 @@ void alarm_passed(struct alarm_machine *m)
 
 bool alarm_holds(const struct alarm_machine *m)
 {
-	return m->in_work ||
-	       (m->state != NOT_USED && m->state != INIT && m->state != ALARM_BYPASS);
+	return m->in_work || (m->state != NOT_USED && m->state != INIT && m->state != ALARM_BYPASS);
 }
 
 int64_t alarm_wake(const struct alarm_machine *m)

@@ -15,8 +15,8 @@
 #include "src/engine/retry.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
-#include "src/log.h"
 #include "src/signal/error.h"
+#include "src/text/log.h"
 
 /* Another item of the same device, or this one, with the same property for its restart. */
 static bool same_por(const struct alarm_item *a, const struct alarm_item *b)
@@ -74,7 +74,7 @@ static void report_armed(struct engine *e, struct alarm_item *i)
 }
 
 static void count_unarmed(struct lane *lane, struct alarm_item *i, int err, const char *property,
-                      const char *why, int64_t now_ns)
+                          const char *why, int64_t now_ns)
 {
 	struct engine *e = lane->engine;
 	int64_t wait_ns;
@@ -133,7 +133,7 @@ void alarm_set_missing(struct lane *lane, struct alarm_item *i, int64_t now_ns)
 {
 	if (i->restarted) /* another item of the device may have ended it in this cycle */
 		count_unarmed(lane, i, -EBADRQC, "SetAlarm",
-		                i->strings.set ? " has no '='" : " is not defined", now_ns);
+		              i->strings.set ? " has no '='" : " is not defined", now_ns);
 }
 
 void alarm_por_failed(struct lane *lane, struct alarm_item *i, int err, int64_t now_ns)
@@ -172,8 +172,8 @@ void alarm_arm_answered(struct alarm_machine *m, struct lane *lane, const struct
 	int err = answer->err;
 
 	/* what cannot be read may be written all the same */
-	if (!wrote && (err == -EACCES ||
-	               (!err && !alarm_as_set(data, answer->len, i->strings.set_value)))) {
+	if (!wrote &&
+	    (err == -EACCES || (!err && !alarm_as_set(data, answer->len, i->strings.set_value)))) {
 		m->arm_writes = true;
 		return;
 	}
@@ -186,7 +186,7 @@ void alarm_arm_answered(struct alarm_machine *m, struct lane *lane, const struct
 		break;
 	case FAILURE_ITEM:
 		count_unarmed(lane, i, err, i->strings.set,
-		                wrote ? " cannot be written: " : " cannot be read: ", now_ns);
+		              wrote ? " cannot be written: " : " cannot be read: ", now_ns);
 		break;
 	case FAILURE_TARGET:
 	case FAILURE_VOID:

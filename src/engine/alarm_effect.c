@@ -7,10 +7,10 @@
 #include "src/engine/publish.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
-#include "src/log.h"
+#include "src/text/log.h"
 
 static struct ows_alarm_entry alarm_entry(const struct signal *s, enum ows_alarm_kind kind,
-                                       enum ows_alarm_event event, int64_t now_ns)
+                                          enum ows_alarm_event event, int64_t now_ns)
 {
 	struct ows_alarm_entry entry = {
 		.record = s->record,
@@ -42,7 +42,8 @@ void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item 
 	lane->counters.alarms++;
 	if (channels & ~item->entered) {
 		entry = alarm_entry(s, OWS_ALARM_DEVICE, OWS_ALARM_RAISED, now_ns);
-		memcpy(entry.latch, item->latch_text, strnlen(item->latch_text, sizeof(entry.latch)));
+		memcpy(entry.latch, item->latch_text,
+		       strnlen(item->latch_text, sizeof(entry.latch)));
 		item->journal = image_alarm(e->image, &entry);
 		item->entered |= channels;
 		item->wants_after = true;
@@ -66,7 +67,7 @@ void engine_alarm_ended(struct engine *e, struct alarm_item *item)
 void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_ns)
 {
 	struct ows_alarm_entry entry = alarm_entry(&e->table.signals[item->row], OWS_ALARM_DEVICE,
-	                                        OWS_ALARM_RETURNED, now_ns);
+	                                           OWS_ALARM_RETURNED, now_ns);
 
 	engine_alarm_ended(e, item);
 	if (!item->entered)
@@ -81,7 +82,7 @@ void engine_power_on_reset(struct engine *e, struct lane *lane, const struct ala
 {
 	const struct device *d = &e->table.devices[item->device];
 	struct ows_alarm_entry entry = alarm_entry(&e->table.signals[item->row], OWS_ALARM_POR,
-	                                        OWS_ALARM_RAISED, now_ns);
+	                                           OWS_ALARM_RAISED, now_ns);
 
 	image_alarm(e->image, &entry);
 	e->published = true;

@@ -36,21 +36,22 @@ enum alarm_state {
 
 /* What can be true when a state is left; a set of bits. */
 enum alarm_fact {
-	FACT_ITEMS = 1 << 0,       /* there is an alarm item */
-	FACT_STARTED = 1 << 1,     /* the request of the state was given to the bus */
-	FACT_DONE = 1 << 2,        /* the request in work ended well */
-	FACT_FAILED = 1 << 3,      /* it failed, or its answer cannot be used */
-	FACT_MAX_CONS = 1 << 4,    /* MaxConsAlarms items were begun since the last bypass */
-	FACT_NEXT_ITEM = 1 << 5,   /* another listed alarm item follows; iAlarmPos is it now */
-	FACT_CYCLE_END = 1 << 6,   /* none follows; iAlarmPos is -1 now */
-	FACT_ND = 1 << 7,          /* the state's string is not defined */
-	FACT_EMPTY = 1 << 8,       /* it is empty */
-	FACT_NON_ZERO = 1 << 9,    /* what was read is not zero */
-	FACT_INIT_OUTPUT = 1 << 10, /* another output below the device: its InitValue is on the way */
-	FACT_INIT_POS = 1 << 11,   /* iAlarmInitPos >= 0 */
-	FACT_POS = 1 << 12,        /* iAlarmPos >= 0 */
-	FACT_KNOWN = 1 << 13,      /* done for this device in this cycle: no request is needed */
-	FACT_PASSED = 1 << 14,     /* one write or read went through, or none was pending */
+	FACT_ITEMS = 1 << 0,     /* there is an alarm item */
+	FACT_STARTED = 1 << 1,   /* the request of the state was given to the bus */
+	FACT_DONE = 1 << 2,      /* the request in work ended well */
+	FACT_FAILED = 1 << 3,    /* it failed, or its answer cannot be used */
+	FACT_MAX_CONS = 1 << 4,  /* MaxConsAlarms items were begun since the last bypass */
+	FACT_NEXT_ITEM = 1 << 5, /* another listed alarm item follows; iAlarmPos is it now */
+	FACT_CYCLE_END = 1 << 6, /* none follows; iAlarmPos is -1 now */
+	FACT_ND = 1 << 7,        /* the state's string is not defined */
+	FACT_EMPTY = 1 << 8,     /* it is empty */
+	FACT_NON_ZERO = 1 << 9,  /* what was read is not zero */
+	FACT_INIT_OUTPUT =
+		1 << 10,         /* another output below the device: its InitValue is on the way */
+	FACT_INIT_POS = 1 << 11, /* iAlarmInitPos >= 0 */
+	FACT_POS = 1 << 12,      /* iAlarmPos >= 0 */
+	FACT_KNOWN = 1 << 13,    /* done for this device in this cycle: no request is needed */
+	FACT_PASSED = 1 << 14,   /* one write or read went through, or none was pending */
 };
 
 struct alarm_row {

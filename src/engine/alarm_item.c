@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/path.h"
+#include "hal/owfs/path.h"
 #include "src/engine/alarm_item.h"
 
 /* "name=value" at its first '='; no '=': the value is not defined. */
@@ -34,7 +34,7 @@ static void alarm_split(const struct config_item *item, struct alarm_strings *s)
 {
 	struct path path;
 
-	*s = (struct alarm_strings){ .has_sensed = false };
+	*s = (struct alarm_strings){.has_sensed = false};
 	if (!path_split(item->path, strlen(item->path), &path) && path.device.len) {
 		int len = (int)(path.device.text + path.device.len - item->path);
 
@@ -117,8 +117,12 @@ void alarm_name_list(struct alarm_machine *m, const struct table *table)
 
 int alarm_init(struct alarm_machine *m, uint32_t room, bool searches)
 {
-	*m = (struct alarm_machine){ .state = NOT_USED, .position = -1, .init_position = -1,
-		                     .arming = -1, .collecting = -1, .searches = searches };
+	*m = (struct alarm_machine){.state = NOT_USED,
+	                            .position = -1,
+	                            .init_position = -1,
+	                            .arming = -1,
+	                            .collecting = -1,
+	                            .searches = searches};
 	if (!room)
 		return 0;
 	m->items = calloc(room, sizeof(*m->items));
@@ -175,8 +179,7 @@ bool alarm_drop_item(struct alarm_machine *m, struct alarm_item *item)
 		m->arm_writes = false;
 	}
 	m->count--;
-	memmove(&m->items[at], &m->items[at + 1],
-	        (m->count - (uint32_t)at) * sizeof(*m->items));
+	memmove(&m->items[at], &m->items[at + 1], (m->count - (uint32_t)at) * sizeof(*m->items));
 	/* the next alarm is the one behind the present place */
 	m->position -= m->position >= at;
 	m->arming -= m->arming > at;

@@ -6,7 +6,7 @@
 #ifndef ENGINE_ALARM_ITEM_H
 #define ENGINE_ALARM_ITEM_H
 
-#include "hal/bus.h"
+#include "hal/bus/bus.h"
 #include "src/engine/alarm_fsm.h"
 #include "src/engine/alarm_text.h"
 #include "src/engine/retry.h"
@@ -29,13 +29,13 @@ struct alarm_strings {
 struct alarm_item {
 	uint32_t row, device;
 	struct alarm_strings strings;
-	bool listed;   /* its device stands in the list of /alarm */
-	bool stands;   /* an occurrence that was not reset yet */
+	bool listed;      /* its device stands in the list of /alarm */
+	bool stands;      /* an occurrence that was not reset yet */
 	uint32_t entered; /* channels that the journal has, and no return of them yet */
-	bool to_arm;   /* SetAlarm has to be compared with the chip */
-	bool restarted; /* por was not 0, and not 0 since: that restart is known */
-	bool differs;   /* since then an output was read back otherwise than before: one more */
-	bool asks_por;  /* the device left the list meanwhile: is its por 0 now? */
+	bool to_arm;      /* SetAlarm has to be compared with the chip */
+	bool restarted;   /* por was not 0, and not 0 since: that restart is known */
+	bool differs;     /* since then an output was read back otherwise than before: one more */
+	bool asks_por;    /* the device left the list meanwhile: is its por 0 now? */
 	struct retry arm_retry; /* of to_arm, and of ending the restart */
 	int64_t arm_ns;         /* not before */
 	/* what was done for it in the cycle of that number; 0: never */
@@ -43,7 +43,7 @@ struct alarm_item {
 	uint32_t collect_cycle;
 	bool por_set, latch_set;
 	char latch_text[24];
-	uint32_t journal;  /* number of its entry that waits for the value after */
+	uint32_t journal; /* number of its entry that waits for the value after */
 	bool wants_after;
 };
 
@@ -65,24 +65,24 @@ struct alarm_machine {
 	int64_t position;      /* iAlarmPos */
 	int64_t init_position; /* iAlarmInitPos */
 	uint32_t cycle;
-	unsigned in_a_row;     /* nCons */
-	bool polls;            /* the bus has no alarm search */
-	bool told;             /* the log knows */
-	bool in_work;          /* a request of the machine is with the bus */
-	bool passed;           /* since BYPASS was entered */
-	int64_t bypass_ns;     /* when it ends at the latest; 0: just entered */
-	int64_t arming;        /* item whose SetAlarm is compared, -1 none */
+	unsigned in_a_row; /* nCons */
+	bool polls;        /* the bus has no alarm search */
+	bool told;         /* the log knows */
+	bool in_work;      /* a request of the machine is with the bus */
+	bool passed;       /* since BYPASS was entered */
+	int64_t bypass_ns; /* when it ends at the latest; 0: just entered */
+	int64_t arming;    /* item whose SetAlarm is compared, -1 none */
 	bool arm_writes;
-	int64_t collecting;    /* item whose latch is read ahead of a reset, -1 none */
-	bool proving;          /* 0 was written to por, which is read back */
-	uint32_t held;         /* the facts that wait for the end of that */
-	int64_t list_ns;       /* earliest time of the next list */
-	int64_t wait_ns;       /* doubles while lists fail */
-	char list_path[128];   /* "/alarm", or "/alarm/29,12"; if named */
+	int64_t collecting;  /* item whose latch is read ahead of a reset, -1 none */
+	bool proving;        /* 0 was written to por, which is read back */
+	uint32_t held;       /* the facts that wait for the end of that */
+	int64_t list_ns;     /* earliest time of the next list */
+	int64_t wait_ns;     /* doubles while lists fail */
+	char list_path[128]; /* "/alarm", or "/alarm/29,12"; if named */
 	bool named;
 	uint8_t families[32];
 	unsigned family_count;
-	unsigned strangers;    /* listed devices without alarm item that were logged */
+	unsigned strangers; /* listed devices without alarm item that were logged */
 	uint8_t stranger[16][8];
 };
 

@@ -31,7 +31,7 @@ const struct alarm_item *alarm_por_known(const struct alarm_machine *m, const st
 }
 
 const struct alarm_item *alarm_latch_known(const struct alarm_machine *m,
-                                            const struct alarm_item *i)
+                                           const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++)
 		if (m->items[k]->device == i->device && m->items[k]->latch_cycle == m->cycle &&

@@ -3,13 +3,13 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/path.h"
+#include "hal/owfs/path.h"
 #include "src/engine/alarm_effect.h"
 #include "src/engine/alarm_known.h"
 #include "src/engine/alarm_list.h"
 #include "src/engine/publish.h"
 #include "src/engine/state.h"
-#include "src/log.h"
+#include "src/text/log.h"
 
 #define LIST_WAIT_MAX 60000000000LL
 
@@ -31,8 +31,7 @@ static void mark_listed(struct alarm_machine *m, struct lane *lane, const char *
 		} else {
 			const char *text = m->items[k]->strings.path;
 
-			if (path_split(text, strlen(text), &own) ||
-			    !path_same_device(&path, &own))
+			if (path_split(text, strlen(text), &own) || !path_same_device(&path, &own))
 				continue;
 		}
 		m->items[k]->listed = ours = true;
@@ -51,7 +50,7 @@ static void mark_listed(struct alarm_machine *m, struct lane *lane, const char *
 }
 
 void alarm_take_list(struct alarm_machine *m, struct lane *lane, const char *list, size_t len,
-                      int64_t now_ns)
+                     int64_t now_ns)
 {
 	m->cycle++;
 	lane->counters.alarm_lists++;

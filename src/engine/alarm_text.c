@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /* Texts of latches, flags and alarm conditions: what they say, and whether they agree. */
-#include "alarm_text.h"
-
-#include "../signal/value.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/engine/alarm_text.h"
+#include "src/signal/value.h"
+
 /* One entry of a list, as alarm_non_zero(). */
 static int entry_non_zero(const char *text, size_t len)
 {
-	static const char *const yes[] = { "yes", "on" }, *const no[] = { "no", "off" };
+	static const char *const yes[] = {"yes", "on"}, *const no[] = {"no", "off"};
 	size_t begin = 0, end = len;
 	char entry[32];
 	int64_t value;

@@ -56,7 +56,7 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 	slot->value = s->command;
 	slot->stamp = s->command_stamp;
 	slot->one_shot = s->one_shot;
-	slot->req = (struct bus_req){ .op = BUS_WRITE, .prio = BUS_OUTPUT, .path = s->item->path };
+	slot->req = (struct bus_req){.op = BUS_WRITE, .prio = BUS_OUTPUT, .path = s->item->path};
 	if (signal_is_string(s)) {
 		memcpy(slot->data, s->command_text, s->command_len);
 		slot->req.len = s->command_len;
@@ -89,13 +89,15 @@ static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
 	struct signal *s;
 
 	/* one that was given up is still lent: the room for a list is not ours yet */
-	if (lane->alarm_slot || lane->writes_in_work ||
-	    !alarm_run(&lane->alarm, lane, r, now_ns))
+	if (lane->alarm_slot || lane->writes_in_work || !alarm_run(&lane->alarm, lane, r, now_ns))
 		return false;
 	slot->purpose = FOR_ALARM;
 	slot->row = r->row;
-	slot->req = (struct bus_req){ .op = (uint8_t)r->op, .prio = BUS_ALARM, .fresh = true,
-		                      .path = r->path, .len = sizeof(slot->data) };
+	slot->req = (struct bus_req){.op = (uint8_t)r->op,
+	                             .prio = BUS_ALARM,
+	                             .fresh = true,
+	                             .path = r->path,
+	                             .len = sizeof(slot->data)};
 	if (r->op == BUS_WRITE) {
 		memcpy(slot->data, r->data, r->len);
 		slot->req.len = r->len;
@@ -131,13 +133,12 @@ static bool ask_next(struct lane *lane, struct slot *slot, int64_t now_ns)
 	if (ask_alarm(lane, slot, now_ns) || engine_probe_ask(lane, slot, now_ns))
 		return true;
 	output = lane->writes_in_work || alarm_holds(&lane->alarm) ? -1
-	                                                          : due_set_next(&lane->outputs);
+	                                                           : due_set_next(&lane->outputs);
 	input = due_set_next(&lane->inputs);
 	if (guest_turn(lane, output >= 0 || input >= 0))
 		return guest_ask(lane, slot, now_ns);
 	/* a one-shot needs no writer, and has to come in its turn all the same */
-	if (output >= 0 &&
-	    (input < 0 || lane->writes_in_row < (lane->writers ? lane->writers : 1)))
+	if (output >= 0 && (input < 0 || lane->writes_in_row < (lane->writers ? lane->writers : 1)))
 		return ask_write(lane, slot, (uint32_t)output, now_ns);
 	if (input >= 0)
 		return ask_read(lane, slot, (uint32_t)input, now_ns);

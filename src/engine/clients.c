@@ -10,7 +10,7 @@
 #include "src/engine/publish.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
-#include "src/log.h"
+#include "src/text/log.h"
 
 /* A program that lives needs a cycle or two to learn that there is another owsd. */
 #define COME_BACK_NS 2000000000LL
@@ -33,9 +33,10 @@ static void put_safe(struct engine *e, struct signal *s)
 	e->counters.safe_outputs++;
 }
 
-static void resume_command(struct engine *e, struct signal *s, const struct command *c, int64_t now_ns)
+static void resume_command(struct engine *e, struct signal *s, const struct command *c,
+                           int64_t now_ns)
 {
-	struct command_client client = { 0 };
+	struct command_client client = {0};
 
 	/* it is not taken unless it is set once more, or its giver beats */
 	s->stamp = c->stamp;
@@ -50,7 +51,7 @@ static void resume_command(struct engine *e, struct signal *s, const struct comm
 		return;
 	s->client = c->client;
 	s->awaited = true;
-	e->clients[c->client - 1] = (struct client){ true, true, client.pid, client.beat, now_ns };
+	e->clients[c->client - 1] = (struct client){true, true, client.pid, client.beat, now_ns};
 }
 
 void engine_resume(struct engine *e, int64_t now_ns)
@@ -109,7 +110,7 @@ static void forget_client(struct engine *e, unsigned client, bool all)
 		engine_write_check(e, s);
 		engine_publish(e, s);
 	}
-	e->clients[client] = (struct client){ 0 };
+	e->clients[client] = (struct client){0};
 }
 
 /* It beats for the first time since owsd's start: it lives, and its commands are in force. */
@@ -147,12 +148,12 @@ static void lose_client(struct engine *e, unsigned client)
 		s->client = 0;
 	}
 	e->counters.lost_clients++;
-	log_warning(e->log, "control program %u %s: %u output%s to SafeValue",
-	            (unsigned)known->pid,
-	            known->awaited ? "has not beaten since owsd started, and its commands are dropped"
-	                           : "stopped beating",
+	log_warning(e->log, "control program %u %s: %u output%s to SafeValue", (unsigned)known->pid,
+	            known->awaited
+	                    ? "has not beaten since owsd started, and its commands are dropped"
+	                    : "stopped beating",
 	            safe, safe == 1 ? " goes" : "s go");
-	e->clients[client] = (struct client){ 0 };
+	e->clients[client] = (struct client){0};
 	commands_drop_client(e->commands, client);
 }
 
@@ -180,7 +181,7 @@ void engine_clients(struct engine *e, int64_t now_ns)
 		if (!known->known || known->pid != c.pid || known->beat != c.beat) {
 			if (known->awaited)
 				welcome_client(e, i, now_ns);
-			*known = (struct client){ true, false, c.pid, c.beat, now_ns };
+			*known = (struct client){true, false, c.pid, c.beat, now_ns};
 			continue;
 		}
 		if (now_ns - known->heard_ns > client_patience(known, &c))

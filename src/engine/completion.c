@@ -11,16 +11,16 @@
 #include "src/engine/retry.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
-#include "src/log.h"
 #include "src/signal/error.h"
 #include "src/signal/value.h"
+#include "src/text/log.h"
 
 /* How often an alarm item without PerFactor is read though no alarm came. */
 #define ALARM_ITEM_NS 60000000000LL
 
 /* "no such property: check its spelling", "device error: wrong checksum"; what says all, once. */
 static void report_failed(struct engine *e, const struct signal *s, const char *what, int err,
-                       uint8_t quality)
+                          uint8_t quality)
 {
 	const char *text = ows_quality_text(quality);
 	char words[ERROR_WORDS];
@@ -98,8 +98,8 @@ static int64_t fail_write(struct engine *e, struct lane *lane, struct signal *s,
 }
 
 /* A good reading proves that the device is there; that a write was taken only claims it. */
-static void request_succeeded(struct engine *e, struct lane *lane, struct signal *s, uint8_t quality,
-                    bool proven)
+static void request_succeeded(struct engine *e, struct lane *lane, struct signal *s,
+                              uint8_t quality, bool proven)
 {
 	struct device *d = s->device == TABLE_NO_DEVICE ? NULL : &e->table.devices[s->device];
 
@@ -122,14 +122,14 @@ static void request_succeeded(struct engine *e, struct lane *lane, struct signal
  * measure, and is marked.
  */
 static int doubt_reading(struct lane *lane, struct signal *s, const struct bus_answer *answer,
-                 double number, int64_t now_ns)
+                         double number, int64_t now_ns)
 {
 	if (!s->measured)
 		return 0;
 	if (!(answer->detail & BUS_DETAIL_SIMULATED) && quantity_excludes(&s->quantity, number)) {
 		lane->counters.out_of_range++;
-		log_debug(lane->engine->log, "%s (%s): %g is out of the chip's range", s->item->name,
-		          s->item->path, number);
+		log_debug(lane->engine->log, "%s (%s): %g is out of the chip's range",
+		          s->item->name, s->item->path, number);
 		return -EDOM;
 	}
 	if (s->quantity.starves && guard_refuses(&s->guard, number, now_ns)) {
@@ -141,7 +141,7 @@ static int doubt_reading(struct lane *lane, struct signal *s, const struct bus_a
 
 /* The value of an answer into the sample; 0, or why it cannot be one. */
 static int take_read_value(struct lane *lane, struct signal *s, const struct slot *slot,
-                       const struct bus_answer *answer, uint8_t *quality, int64_t now_ns)
+                           const struct bus_answer *answer, uint8_t *quality, int64_t now_ns)
 {
 	int64_t value;
 	int err;
@@ -173,11 +173,12 @@ static int take_read_value(struct lane *lane, struct signal *s, const struct slo
  * its bus could not know: then it is as old as its request.
  */
 static int64_t time_of_reading(const struct engine *e, const struct slot *slot,
-                       const struct bus_answer *answer, int64_t now_ns)
+                               const struct bus_answer *answer, int64_t now_ns)
 {
 	int64_t measured_ns = answer->measured_ns ? answer->measured_ns : now_ns;
 
-	return slot->begun_ns < e->gap_ns && slot->begun_ns < measured_ns ? slot->begun_ns : measured_ns;
+	return slot->begun_ns < e->gap_ns && slot->begun_ns < measured_ns ? slot->begun_ns
+	                                                                  : measured_ns;
 }
 
 /* An output that changes though nothing was written may be that of a device that has restarted. */
@@ -245,7 +246,8 @@ void engine_read_done(struct engine *e, struct lane *lane, const struct slot *sl
 		engine_read_at(e, s, e->period + (wait_ns ? engine_periods(e, wait_ns) : 1));
 }
 
-void engine_alarm_failed(struct engine *e, struct lane *lane, const struct alarm_item *item, int err)
+void engine_alarm_failed(struct engine *e, struct lane *lane, const struct alarm_item *item,
+                         int err)
 {
 	struct signal *s = &e->table.signals[item->row];
 

@@ -16,7 +16,7 @@ static const char *const lane_names[] = {
 #undef X
 };
 #define ENGINE_NAMES (sizeof(engine_names) / sizeof(engine_names[0]))
-#define LANE_NAMES   (sizeof(lane_names) / sizeof(lane_names[0]))
+#define LANE_NAMES (sizeof(lane_names) / sizeof(lane_names[0]))
 
 unsigned engine_counter_count(unsigned port_count)
 {
@@ -26,10 +26,10 @@ unsigned engine_counter_count(unsigned port_count)
 void engine_counter_plan(unsigned port_count, struct image_counter *counters)
 {
 	for (unsigned i = 0; i < ENGINE_NAMES; i++)
-		*counters++ = (struct image_counter){ engine_names[i], UINT32_MAX };
+		*counters++ = (struct image_counter){engine_names[i], UINT32_MAX};
 	for (unsigned port = 0; port < port_count; port++)
 		for (unsigned i = 0; i < LANE_NAMES; i++)
-			*counters++ = (struct image_counter){ lane_names[i], port };
+			*counters++ = (struct image_counter){lane_names[i], port};
 }
 
 uint64_t engine_counter(const struct engine *e, unsigned index)

@@ -27,8 +27,7 @@ static bool lane_in_doubt(const struct lane *lane, const struct slot *slot)
 	struct engine *e = lane->engine;
 
 	return slot->lent && (slot->given_up || slot->moved) && lane_writes_output(lane, slot) &&
-	       e->table.signals[slot->row].lane != lane->index &&
-	       !engine_way(e, lane)->released;
+	       e->table.signals[slot->row].lane != lane->index && !engine_way(e, lane)->released;
 }
 
 /* The slots that are lent say all: few, and looked through only when something moved or ended. */

@@ -3,11 +3,11 @@
  * Sets of what is due, as bits under a summary of words that are not empty, and the wheel, as lists of
  * rows by the period that they wait for.
  */
-#include "due.h"
-
 #include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
+
+#include "src/engine/due.h"
 
 static uint32_t words_for(uint32_t bits)
 {
@@ -18,7 +18,7 @@ int due_set_init(struct due_set *set, uint32_t size)
 {
 	uint32_t words = words_for(size);
 
-	*set = (struct due_set){ .size = size };
+	*set = (struct due_set){.size = size};
 	set->word = calloc(words + 1, sizeof(*set->word));
 	set->summary = calloc(words_for(words) + 1, sizeof(*set->summary));
 	if (!set->word || !set->summary) {
@@ -32,7 +32,7 @@ void due_set_free(struct due_set *set)
 {
 	free(set->word);
 	free(set->summary);
-	*set = (struct due_set){ 0 };
+	*set = (struct due_set){0};
 }
 
 bool due_set_has(const struct due_set *set, uint32_t row)
@@ -141,7 +141,7 @@ void due_wheel_at(struct due_wheel *wheel, uint32_t row, uint64_t period)
 		period = wheel->period + 1;
 	w = &wheel->wait[row];
 	head = &wheel->bucket[period % DUE_BUCKETS];
-	*w = (struct due_wait){ .period = period, .next = *head, .prev = DUE_NONE, .waits = true };
+	*w = (struct due_wait){.period = period, .next = *head, .prev = DUE_NONE, .waits = true};
 	if (*head != DUE_NONE)
 		wheel->wait[*head].prev = row;
 	*head = row;

@@ -39,7 +39,7 @@ struct due_wheel {
 		uint64_t period;
 		uint32_t next, prev; /* DUE_NONE: end; row waits while in_bucket */
 		bool waits;
-	} *wait;
+	} * wait;
 };
 
 int due_wheel_init(struct due_wheel *wheel, uint32_t size, uint64_t period);

@@ -21,7 +21,7 @@
 #include "src/engine/routing.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
-#include "src/log.h"
+#include "src/text/log.h"
 
 int engine_create(const struct engine_setup *setup, struct engine **engine)
 {
@@ -114,8 +114,7 @@ static void begin_call(struct engine *e, int64_t now_ns)
 	e->now_ns = now_ns;
 }
 
-void engine_answer(struct engine *e, unsigned port, const struct bus_answer *answer,
-                   int64_t now_ns)
+void engine_answer(struct engine *e, unsigned port, const struct bus_answer *answer, int64_t now_ns)
 {
 	assert(port < e->lane_count);
 	begin_call(e, now_ns);
@@ -187,7 +186,7 @@ void engine_take_commands(struct engine *e, struct commands *commands, int64_t n
 	e->commands = commands;
 	e->counters.lost_commands++;
 	for (unsigned i = 0; i < OWS_CLIENTS; i++)
-		e->clients[i] = (struct client){ 0 };
+		e->clients[i] = (struct client){0};
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
@@ -201,8 +200,8 @@ void engine_take_commands(struct engine *e, struct commands *commands, int64_t n
 		if (!s->stamp)
 			continue;
 		put = s->safe ? commands_put_safe : commands_put;
-		put(commands, s->record, s->command,
-		    signal_is_string(s) ? s->command_text : NULL, s->command_len);
+		put(commands, s->record, s->command, signal_is_string(s) ? s->command_text : NULL,
+		    s->command_len);
 		commands_stamp(commands, s->record, s->stamp);
 	}
 	e->driver_resets = 0;

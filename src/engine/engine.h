@@ -20,19 +20,19 @@
  *   slots and table      lane, slots, disown, group, trace, alarm_item, table, structure, due
  *   pure functions       route, adoption, limit, guard, retry, alarm_fsm, alarm_text
  */
-#ifndef ENGINE_ENGINE_H
-#define ENGINE_ENGINE_H
+#ifndef ENGINE_H
+#define ENGINE_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "hal/bus.h"
+#include "hal/bus/bus.h"
 #include "src/config/config.h"
 #include "src/engine/guest.h"
 #include "src/engine/port.h"
-#include "src/log.h"
 #include "src/shm/commands.h"
 #include "src/shm/image.h"
+#include "src/text/log.h"
 
 struct engine_setup {
 	const struct config *config;
@@ -40,7 +40,7 @@ struct engine_setup {
 	unsigned port_count; /* at least 1 */
 	struct image *image;
 	struct commands *commands;
-	struct log *log;     /* NULL: silent */
+	struct log *log;                    /* NULL: silent */
 	const struct engine_guests *guests; /* NULL: none; lives as long as the engine */
 	int64_t start_ns;
 };

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Which readings of a thermometer mean that it lacks power. */
-#include "guard.h"
-
 #include <math.h>
 
+#include "src/engine/guard.h"
+
 #define NEAR_DEGREES 5.0
-#define RECENT_NS    60000000000LL
+#define RECENT_NS 60000000000LL
 
 /*
  * 127.9375 in any rounding, from 127.9 to 128: nothing in there comes from a chip that measures up to
@@ -13,7 +13,7 @@
  * that of a chip which measures it.
  */
 #define STARVED_LEAST 127.8995
-#define STARVED_MOST  128.0005
+#define STARVED_MOST 128.0005
 
 bool guard_refuses(struct guard *guard, double degrees, int64_t now_ns)
 {

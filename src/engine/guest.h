@@ -7,7 +7,7 @@
 #ifndef ENGINE_GUEST_H
 #define ENGINE_GUEST_H
 
-#include "hal/bus.h"
+#include "hal/bus/bus.h"
 
 /* No certain lane: the one that serves the path's device; unknown devices: one after another. */
 #define GUEST_ANY_LANE (-1)
@@ -19,8 +19,9 @@
 struct engine_guest {
 	uint8_t op; /* enum bus_op */
 	bool fresh;
-	int lane;   /* or GUEST_ANY_LANE */
-	uint32_t generation; /* of the image that numbers the lanes as lane does; when it is answered, as served does */
+	int lane; /* or GUEST_ANY_LANE */
+	uint32_t
+		generation; /* of the image that numbers the lanes as lane does; when it is answered, as served does */
 	const char *path;
 	uint8_t *data; /* as in struct bus_req */
 	uint32_t len, offset;

@@ -6,7 +6,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/path.h"
+#include "hal/owfs/path.h"
 #include "src/engine/guest.h"
 #include "src/engine/guests.h"
 #include "src/engine/publish.h"
@@ -17,7 +17,7 @@
 
 /* Requests of the table that go before a guest who waits, where there are always some. */
 #define GUEST_PASSED 4
-#define GUESTS_LENT  64
+#define GUESTS_LENT 64
 #define GUESTS_PRESSING 16
 /*
  * How long one that came through another server waits for its turn: two servers that have each other
@@ -55,7 +55,7 @@ static struct engine_guest *guest_leaves(struct lane *lane)
 /* The more telling of two errors: a property that is missing, a device, a target. */
 static int more_telling(int a, int b)
 {
-	static const int order[] = { -ENOTCONN, -ENODEV, -ENOENT };
+	static const int order[] = {-ENOTCONN, -ENODEV, -ENOENT};
 	int at_a = -1, at_b = -1;
 
 	for (int i = 0; i < 3; i++) {
@@ -91,7 +91,7 @@ static void guest_failed(struct engine *e, struct engine_guest *g, int err)
 	g->best_err = more_telling(g->best_err, err);
 	if (guest_goes_on(g, err) && guest_next_lane(e, g))
 		return;
-	g->answer = (struct bus_answer){ .err = g->best_err };
+	g->answer = (struct bus_answer){.err = g->best_err};
 	answer_guest(e, g);
 }
 
@@ -145,13 +145,14 @@ void guests_take(struct engine *e, int64_t now_ns)
 		g->until_ns = now_ns + patience_ns(e, g);
 		g->lent = false;
 		g->best_err = 0;
-		g->served = g->lane == GUEST_ANY_LANE ? lane_of_path(e, g->path) : (unsigned)g->lane;
+		g->served = g->lane == GUEST_ANY_LANE ? lane_of_path(e, g->path)
+		                                      : (unsigned)g->lane;
 		/* asked as a reload went on: its lane may be another target by now */
 		if (g->served < e->lane_count &&
 		    (g->lane == GUEST_ANY_LANE || g->generation == e->image->header->generation)) {
 			guest_waits(&e->lanes[g->served], g);
 		} else {
-			g->answer = (struct bus_answer){ .err = -ENODEV };
+			g->answer = (struct bus_answer){.err = -ENODEV};
 			answer_guest(e, g);
 		}
 	}
@@ -199,10 +200,15 @@ bool guest_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
 	slot->row = TABLE_NO_ROW;
 	slot->guest = g;
 	slot->pressing = table_lent(lane) || lane->guests.pressing < GUESTS_PRESSING;
-	slot->req = (struct bus_req){ .op = g->op, .fresh = g->fresh, .path = g->path,
-		                      .prio = slot->pressing ? BUS_INPUT : BUS_GUEST,
-		                      .len = g->len, .offset = g->offset, .data = g->data,
-		                      .tokens = g->tokens, .token_count = g->token_count };
+	slot->req = (struct bus_req){.op = g->op,
+	                             .fresh = g->fresh,
+	                             .path = g->path,
+	                             .prio = slot->pressing ? BUS_INPUT : BUS_GUEST,
+	                             .len = g->len,
+	                             .offset = g->offset,
+	                             .data = g->data,
+	                             .tokens = g->tokens,
+	                             .token_count = g->token_count};
 	if (!slot_lend(lane, slot, now_ns))
 		return false;
 	guest_leaves(lane);
@@ -253,16 +259,15 @@ static void restore_outputs(struct engine *e, const char *path)
 	}
 }
 
-void guest_done(struct engine *e, struct lane *lane, struct slot *slot,
-                       const struct bus_answer *a)
+void guest_done(struct engine *e, struct lane *lane, struct slot *slot, const struct bus_answer *a)
 {
 	struct engine_guest *g = slot->guest;
 	bool lent = slot->lent;
 
 	lane->guests.lent--;
 	lane->guests.pressing -= slot->pressing;
-	if (g->op == BUS_WRITE && (!a->err || failure_of(a->err) == FAILURE_TARGET ||
-	                           a->err == -EINPROGRESS))
+	if (g->op == BUS_WRITE &&
+	    (!a->err || failure_of(a->err) == FAILURE_TARGET || a->err == -EINPROGRESS))
 		restore_outputs(e, g->path);
 	if (a->err)
 		lane->counters.guest_errors++;
@@ -306,7 +311,7 @@ void guests_adopt(struct lane *lane, struct lane *before)
 
 void guests_refuse(struct lane *lane)
 {
-	const struct bus_answer down = { .err = -ENOTCONN };
+	const struct bus_answer down = {.err = -ENOTCONN};
 
 	while (lane->guests.first) {
 		struct engine_guest *g = guest_leaves(lane);

@@ -9,8 +9,8 @@
 #include "src/engine/retry.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
-#include "src/log.h"
 #include "src/signal/value.h"
+#include "src/text/log.h"
 
 /* A writer that holds a string's claim for longer has died. */
 #define CLAIM_NS 1000000000LL
@@ -18,10 +18,10 @@
  * A program that marks slots without end costs this many looks a second. An honest set waits for none
  * of it unless there is such a program; then it waits until the looks have gone round.
  */
-#define LOOKS_PER_S   100000u
-#define LOOKS_LEAST   5000u
+#define LOOKS_PER_S 100000u
+#define LOOKS_LEAST 5000u
 #define LOOKS_SPAN_NS 1000000000LL
-#define DEFER_NS      10000000LL
+#define DEFER_NS 10000000LL
 
 static void refuse_command(struct engine *e, struct signal *s, int err, int64_t now_ns)
 {
@@ -78,7 +78,8 @@ static uint32_t client_of(struct engine *e, const struct command *c)
 	return client.pid ? c->client : 0;
 }
 
-static void take_command(struct engine *e, struct signal *s, const struct command *c, int64_t now_ns)
+static void take_command(struct engine *e, struct signal *s, const struct command *c,
+                         int64_t now_ns)
 {
 	int err = 0;
 

@@ -11,7 +11,7 @@
 int lane_init(struct lane *lane, struct engine *engine, const struct engine_port *port,
               unsigned index)
 {
-	*lane = (struct lane){ .engine = engine, .port = port, .index = index };
+	*lane = (struct lane){.engine = engine, .port = port, .index = index};
 	if (slots_init(lane) || due_set_init(&lane->inputs, engine->table.count) ||
 	    due_set_init(&lane->outputs, engine->table.count) ||
 	    due_set_init(&lane->checks, engine->structure.count) ||

@@ -18,7 +18,7 @@
 
 /* The request's time as the table sees it is over: by an answer, or given up. */
 static void complete_request(struct lane *lane, struct slot *slot, const struct bus_answer *answer,
-                     int64_t now_ns)
+                             int64_t now_ns)
 {
 	bool counts = failure_of(answer->err) != FAILURE_VOID;
 	struct engine *e = lane->engine;
@@ -113,7 +113,7 @@ int64_t lane_timeouts(struct lane *lane, int64_t now_ns)
 	for (unsigned i = 0; i < lane->depth; i++) {
 		struct slot *slot = &lane->slots[i];
 		int64_t end = slot->req.deadline_ns + LANE_GRACE_NS;
-		struct bus_answer answer = { .id = slot->req.id, .err = -EINPROGRESS };
+		struct bus_answer answer = {.id = slot->req.id, .err = -EINPROGRESS};
 
 		if (!slot->lent)
 			continue;

@@ -10,7 +10,7 @@
 #include "src/engine/place.h"
 #include "src/engine/publish.h"
 #include "src/engine/state.h"
-#include "src/log.h"
+#include "src/text/log.h"
 
 /*
  * A server with a cache may give the same value again and again, and nobody sees that: once for each
@@ -33,7 +33,8 @@ static void report_cached(const struct lane *lane, int64_t cache_ns)
 		count++;
 	}
 	if (count)
-		log_notice(e->log, "%s: answers from a cache of %lld s, and %u of its signals (%s%s) "
+		log_notice(e->log,
+		           "%s: answers from a cache of %lld s, and %u of its signals (%s%s) "
 		           "are read more often: Uncached on reads the device each time, "
 		           "timeout_volatile in owfs.conf shortens the cache",
 		           lane->port->target, (long long)(cache_ns / 1000000000), count,

@@ -14,7 +14,7 @@
 #include "src/engine/retry.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
-#include "src/log.h"
+#include "src/text/log.h"
 
 /* All signals of the lane are read again, and written if there is something to write. */
 static void refresh_signals(struct lane *lane, int64_t now_ns)
@@ -88,8 +88,8 @@ void lane_down(struct lane *lane, int err)
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
-		if (s->lane != lane->index || (s->sample.quality == OWS_Q_DISABLED &&
-		                               !s->item->output && !signal_reads(s)))
+		if (s->lane != lane->index ||
+		    (s->sample.quality == OWS_Q_DISABLED && !s->item->output && !signal_reads(s)))
 			continue;
 		if (!s->held) {
 			s->held = true;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The limit alarms of one signal: conditions, their delays, their rank, and the state of the alarm. */
-#include "limit.h"
+#include "src/engine/limit.h"
 
 #define BIT(kind) ((uint16_t)(1u << (kind)))
 
@@ -62,8 +62,7 @@ static uint16_t conditions_in(const struct limit *limit, const struct config_lim
 	for (int i = 0; i < CONFIG_LIMITS; i++) {
 		bool stands = limit->active & BIT(kinds[i]);
 
-		if (limits->has[i] &&
-		    (known ? beyond(limits, i, reading->value, stands) : stands))
+		if (limits->has[i] && (known ? beyond(limits, i, reading->value, stands) : stands))
 			in |= BIT(kinds[i]);
 	}
 	return in;
@@ -95,14 +94,13 @@ static int64_t run_delays(struct limit *limit, const struct config_limits *limit
 }
 
 int64_t limit_evaluate(struct limit *limit, const struct config_limits *limits,
-                       const struct limit_reading *reading, int64_t now_ns,
-                       struct limit_news *news)
+                       const struct limit_reading *reading, int64_t now_ns, struct limit_news *news)
 {
 	uint16_t before = limit->active, begun;
 	uint8_t stood = highest(before);
 	int64_t next = run_delays(limit, limits, conditions_in(limit, limits, reading), now_ns);
 
-	*news = (struct limit_news){ 0 };
+	*news = (struct limit_news){0};
 	begun = limit->active & (uint16_t)~before;
 	if (stood && !(limit->active & BIT(stood)))
 		news->returned = stood;

@@ -13,7 +13,7 @@
 #ifndef ENGINE_LIMIT_H
 #define ENGINE_LIMIT_H
 
-#include "../config/config.h"
+#include "src/config/config.h"
 
 enum limit_event {
 	LIMIT_RAISE,       /* a condition became active */

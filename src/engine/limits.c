@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* The limit alarms of a signal: what is known of the signal goes in, journal and state come out. */
+#include "src/engine/limits.h"
 #include "src/engine/due.h"
 #include "src/engine/limit.h"
-#include "src/engine/limits.h"
 #include "src/engine/state.h"
-#include "src/log.h"
 #include "src/signal/value.h"
+#include "src/text/log.h"
 
 static void journal_limit(struct engine *e, const struct signal *s, uint8_t kind, uint8_t event)
 {

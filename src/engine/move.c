@@ -17,7 +17,7 @@
 #include "src/engine/retry.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
-#include "src/log.h"
+#include "src/text/log.h"
 
 /* Old values are the last usable ones at best; what was bad stays so until something is read. */
 static void degrade_signal(struct signal *s)
@@ -92,7 +92,7 @@ static bool has_alarms(const struct engine *e, const struct device *d)
 }
 
 static void report_move(struct engine *e, const struct device *d, const struct lane *from,
-                const struct lane *to, const char *why)
+                        const struct lane *to, const char *why)
 {
 	const struct signal *s = &e->table.signals[e->table.device_rows[d->first]];
 

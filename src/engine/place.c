@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/path.h"
+#include "hal/owfs/path.h"
 #include "src/engine/due.h"
 #include "src/engine/place.h"
 #include "src/engine/retry.h"
@@ -37,13 +37,14 @@ void engine_places_free(struct engine *e)
 		due_wheel_free(&e->route_wheel);
 }
 
-static void know_presence(struct engine *e, uint32_t device, unsigned group, enum route_presence presence)
+static void know_presence(struct engine *e, uint32_t device, unsigned group,
+                          enum route_presence presence)
 {
 	struct route_place *place = engine_places(e, device) + group;
 
 	if (place->presence == presence)
 		return;
-	*place = (struct route_place){ presence, e->now_ns };
+	*place = (struct route_place){presence, e->now_ns};
 	due_set_add(&e->routes, device);
 }
 
@@ -104,18 +105,17 @@ static bool next_probe(struct lane *lane, struct slot *slot)
 	         (int)(path.device.text + path.device.len - text), text);
 	slot->purpose = FOR_PROBE;
 	slot->row = (uint32_t)device;
-	slot->req = (struct bus_req){ .op = BUS_PROBE,
-		                      .prio = BUS_INPUT,
-		                      .fresh = true,
-		                      .path = slot->path,
-		                      .len = sizeof(slot->data) };
+	slot->req = (struct bus_req){.op = BUS_PROBE,
+	                             .prio = BUS_INPUT,
+	                             .fresh = true,
+	                             .path = slot->path,
+	                             .len = sizeof(slot->data)};
 	return true;
 }
 
 bool engine_probe_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
 {
-	if (lane->probing || now_ns < lane->probe_ns ||
-	    !next_probe(lane, slot))
+	if (lane->probing || now_ns < lane->probe_ns || !next_probe(lane, slot))
 		return false;
 	if (!slot_lend(lane, slot, now_ns))
 		return false;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What the image shows of a signal, of a target and of owsd itself. */
-#include "src/engine/limits.h"
 #include "src/engine/publish.h"
+#include "src/engine/limits.h"
 #include "src/engine/state.h"
 
 void engine_publish(struct engine *e, struct signal *s)

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* What an error means for its signal: which kind it is, which quality it gives, and the back-off. */
-#include "retry.h"
-
-#include "../libows/ows.h"
-
 #include <errno.h>
+
+#include "src/engine/retry.h"
+#include "src/libows/ows.h"
 
 enum failure failure_of(int err)
 {
@@ -77,5 +76,5 @@ bool retry_fail(struct retry *retry, unsigned max_retries, int64_t *wait_ns)
 
 void retry_clear(struct retry *retry)
 {
-	*retry = (struct retry){ 0 };
+	*retry = (struct retry){0};
 }

@@ -11,7 +11,7 @@
 
 enum failure {
 	FAILURE_NONE,
-	FAILURE_ITEM,   /* of this path: device absent, no such property, refused, not convertible */
+	FAILURE_ITEM, /* of this path: device absent, no such property, refused, not convertible */
 	FAILURE_TARGET, /* of the whole target: down, silent, garbage */
 	FAILURE_VOID,   /* the request was not begun: nothing is known */
 };
@@ -25,7 +25,7 @@ struct retry {
 	uint8_t doublings; /* of the back-off */
 };
 #define RETRY_FIRST_NS 1000000000LL
-#define RETRY_MAX_NS   60000000000LL
+#define RETRY_MAX_NS 60000000000LL
 
 /*
  * Count one item error. Returns true when quality goes bad (or stays so); *wait_ns is then the

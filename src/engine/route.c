@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The rules that choose which wire serves a device, and which way of a wire is open. */
-#include "route.h"
+#include "src/engine/route.h"
 
 static int64_t later(int64_t a, int64_t b)
 {
@@ -43,17 +43,16 @@ static struct route_choice give_back(const struct route_place *places,
                                      const struct route_group *groups, unsigned current,
                                      int64_t moved_ns, int64_t now_ns)
 {
-	struct route_choice choice = { current, INT64_MAX, NULL };
+	struct route_choice choice = {current, INT64_MAX, NULL};
 
 	for (unsigned g = 0; g < current; g++) {
 		int64_t at;
 
 		if (groups[g].state != ROUTE_UP || places[g].presence != ROUTE_PRESENT)
 			continue;
-		at = ROUTE_HOLD_NS +
-		     later(later(places[g].since_ns, groups[g].since_ns), moved_ns);
+		at = ROUTE_HOLD_NS + later(later(places[g].since_ns, groups[g].since_ns), moved_ns);
 		if (now_ns >= at)
-			return (struct route_choice){ g, INT64_MAX, "its device is there again" };
+			return (struct route_choice){g, INT64_MAX, "its device is there again"};
 		if (at < choice.again_ns)
 			choice.again_ns = at;
 	}
@@ -68,26 +67,27 @@ struct route_choice route_device(const struct route_place *places, const struct 
 	int other = elsewhere(places, groups, count, current);
 
 	if (here == ROUTE_ABSENT && other >= 0)
-		return (struct route_choice){ (unsigned)other, INT64_MAX, "its device is absent there" };
+		return (struct route_choice){(unsigned)other, INT64_MAX,
+		                             "its device is absent there"};
 	if (here == ROUTE_FAILING && claimed(places, groups, count, current) >= 0)
-		return (struct route_choice){
-			(unsigned)claimed(places, groups, count, current), INT64_MAX,
-			"its device gives no good value there" };
+		return (struct route_choice){(unsigned)claimed(places, groups, count, current),
+		                             INT64_MAX, "its device gives no good value there"};
 	if ((here == ROUTE_UNKNOWN || here == ROUTE_FAILING) && down && other >= 0)
-		return (struct route_choice){ (unsigned)other, INT64_MAX, "the target is down" };
+		return (struct route_choice){(unsigned)other, INT64_MAX, "the target is down"};
 	if (here != ROUTE_ABSENT)
 		return give_back(places, groups, current, moved_ns, now_ns);
 	/* absent everywhere: the first one's */
 	for (unsigned g = 0; g < current; g++)
 		if (groups[g].state == ROUTE_UP)
-			return (struct route_choice){ g, INT64_MAX, "its device is absent everywhere" };
-	return (struct route_choice){ current, INT64_MAX, NULL };
+			return (struct route_choice){g, INT64_MAX,
+			                             "its device is absent everywhere"};
+	return (struct route_choice){current, INT64_MAX, NULL};
 }
 
 struct route_choice route_path(const struct route_group *groups, unsigned count, unsigned current,
                                int64_t now_ns)
 {
-	struct route_choice choice = { current, INT64_MAX, NULL };
+	struct route_choice choice = {current, INT64_MAX, NULL};
 
 	for (unsigned g = 0; g < count; g++) {
 		int64_t at = groups[g].since_ns + ROUTE_HOLD_NS;
@@ -95,11 +95,11 @@ struct route_choice route_path(const struct route_group *groups, unsigned count,
 		if (g == current || groups[g].state != ROUTE_UP)
 			continue;
 		if (groups[current].state == ROUTE_DOWN)
-			return (struct route_choice){ g, INT64_MAX, "the target is down" };
+			return (struct route_choice){g, INT64_MAX, "the target is down"};
 		if (g > current)
 			continue;
 		if (now_ns >= at)
-			return (struct route_choice){ g, INT64_MAX, "the target is up again" };
+			return (struct route_choice){g, INT64_MAX, "the target is up again"};
 		if (at < choice.again_ns)
 			choice.again_ns = at;
 	}
@@ -129,11 +129,11 @@ int route_probe(const struct route_place *places, const struct route_group *grou
 
 void route_bar_init(struct route_bar *bar, unsigned count, int64_t patience_ns, int64_t now_ns)
 {
-	*bar = (struct route_bar){ .count = count,
-		                   .from = -1,
-		                   .since_ns = now_ns,
-		                   .patience_ns = patience_ns,
-		                   .hold_ns = ROUTE_HOLD_NS };
+	*bar = (struct route_bar){.count = count,
+	                          .from = -1,
+	                          .since_ns = now_ns,
+	                          .patience_ns = patience_ns,
+	                          .hold_ns = ROUTE_HOLD_NS};
 }
 
 /* When the open way failed; INT64_MAX: it has not. */
@@ -182,7 +182,7 @@ static int64_t dwell(const struct route_bar *bar, const struct route_way *ways)
 static struct route_step move_on(const struct route_bar *bar, const struct route_way *ways,
                                  int64_t failed_ns, int64_t now_ns)
 {
-	struct route_step step = { ROUTE_STAY, bar->open, INT64_MAX, NULL };
+	struct route_step step = {ROUTE_STAY, bar->open, INT64_MAX, NULL};
 	bool was_steady = steady(&ways[bar->open], failed_ns);
 	int64_t at = failed_ns;
 	int next;
@@ -199,15 +199,15 @@ static struct route_step move_on(const struct route_bar *bar, const struct route
 		step.again_ns = at;
 		return step;
 	}
-	return (struct route_step){ ROUTE_LEAVE, (unsigned)next, INT64_MAX,
-		                    ways[bar->open].failed ? "the target is down"
-		                                           : "the target says nothing" };
+	return (struct route_step){ROUTE_LEAVE, (unsigned)next, INT64_MAX,
+	                           ways[bar->open].failed ? "the target is down"
+	                                                  : "the target says nothing"};
 }
 
 static struct route_step go_back(const struct route_bar *bar, const struct route_way *ways,
                                  int64_t now_ns)
 {
-	struct route_step step = { ROUTE_STAY, bar->open, INT64_MAX, NULL };
+	struct route_step step = {ROUTE_STAY, bar->open, INT64_MAX, NULL};
 
 	for (unsigned w = 0; w < bar->open; w++) {
 		int64_t at;
@@ -216,8 +216,8 @@ static struct route_step go_back(const struct route_bar *bar, const struct route
 			continue;
 		at = later(ways[w].back_ns, bar->since_ns) + bar->hold_ns;
 		if (now_ns >= at)
-			return (struct route_step){ ROUTE_LEAVE, w, INT64_MAX,
-				                    "the target is there again" };
+			return (struct route_step){ROUTE_LEAVE, w, INT64_MAX,
+			                           "the target is there again"};
 		if (at < step.again_ns)
 			step.again_ns = at;
 	}
@@ -227,7 +227,7 @@ static struct route_step go_back(const struct route_bar *bar, const struct route
 struct route_step route_bar(const struct route_bar *bar, const struct route_way *ways,
                             int64_t now_ns)
 {
-	struct route_step step = { ROUTE_STAY, bar->open, INT64_MAX, NULL };
+	struct route_step step = {ROUTE_STAY, bar->open, INT64_MAX, NULL};
 	int64_t failed_ns;
 
 	if (bar->letting_go) {

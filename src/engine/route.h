@@ -12,12 +12,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define ROUTE_HOLD_NS      10000000000LL  /* from the evidence to the return */
-#define ROUTE_HOLD_MAX_NS  640000000000LL /* of a bar, after returns that failed */
-#define ROUTE_DOUBT_NS     600000000000LL /* before a failing device that is claimed is believed */
-#define ROUTE_STEADY_NS    60000000000LL  /* a way that was up for so long did not fail on the return */
-#define ROUTE_RELEASE_NS   5000000000LL   /* for a way to let go of its hardware */
-#define ROUTE_DWELL_NS     1000000000LL   /* on each way when all have failed; doubles */
+#define ROUTE_HOLD_NS 10000000000LL      /* from the evidence to the return */
+#define ROUTE_HOLD_MAX_NS 640000000000LL /* of a bar, after returns that failed */
+#define ROUTE_DOUBT_NS 600000000000LL    /* before a failing device that is claimed is believed */
+#define ROUTE_STEADY_NS 60000000000LL /* a way that was up for so long did not fail on the return */
+#define ROUTE_RELEASE_NS 5000000000LL /* for a way to let go of its hardware */
+#define ROUTE_DWELL_NS 1000000000LL   /* on each way when all have failed; doubles */
 #define ROUTE_DWELL_MAX_NS 30000000000LL
 
 /* --- A comma: which group serves a device ---------------------------------------------------- */
@@ -72,7 +72,7 @@ struct route_way {
 
 struct route_bar {
 	unsigned count;
-	unsigned open;       /* the one way that is open, or will be when `leaving` has let go */
+	unsigned open; /* the one way that is open, or will be when `leaving` has let go */
 	bool letting_go;
 	unsigned leaving;
 	int from;            /* `open` is a return; this way worked before it. -1: it is none */

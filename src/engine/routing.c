@@ -4,19 +4,20 @@
  * ways of the groups, moves devices to the groups that serve them, and sends out for those that are
  * nowhere.
  */
+#include "src/engine/routing.h"
 #include "src/engine/due.h"
 #include "src/engine/lane_state.h"
 #include "src/engine/move.h"
 #include "src/engine/place.h"
 #include "src/engine/publish.h"
 #include "src/engine/route.h"
-#include "src/engine/routing.h"
 #include "src/engine/state.h"
-#include "src/log.h"
+#include "src/text/log.h"
 
 /* --- Groups: which way is open --------------------------------------------------------------- */
 
-static void leave_way(struct engine *e, struct group *g, const struct route_step *step, int64_t now_ns)
+static void leave_way(struct engine *e, struct group *g, const struct route_step *step,
+                      int64_t now_ns)
 {
 	struct lane *from = &e->lanes[g->first + g->bar.open];
 	struct lane *to = &e->lanes[g->first + step->way];
@@ -27,7 +28,7 @@ static void leave_way(struct engine *e, struct group *g, const struct route_step
 	else if (g->bar.failures % g->bar.count == 1)
 		g->quiet = !log_rate(&g->rounds, now_ns);
 	from->open = from->up = from->was_up = false;
-	*engine_way(e, from) = (struct route_way){ .released = false };
+	*engine_way(e, from) = (struct route_way){.released = false};
 	engine_move_lane(e, from, to, step->why, now_ns);
 	if (from->port->suspend)
 		from->port->suspend(from->port->ctx, true);
@@ -46,7 +47,7 @@ static void open_way(struct engine *e, struct group *g, const struct route_step 
 		            left->port->target, lane->port->target);
 	}
 	route_bar_took(&g->bar, g->ways, step, now_ns);
-	*engine_way(e, lane) = (struct route_way){ .failed = lane->stuck, .failed_ns = now_ns };
+	*engine_way(e, lane) = (struct route_way){.failed = lane->stuck, .failed_ns = now_ns};
 	lane->open = true;
 	engine_publish_target(e, lane);
 	if (lane->port->suspend)
@@ -75,7 +76,7 @@ static void see_group_state(struct engine *e, unsigned group, int64_t now_ns)
 
 	if (state == e->states[group].state)
 		return;
-	e->states[group] = (struct route_group){ state, now_ns };
+	e->states[group] = (struct route_group){state, now_ns};
 	engine_places_check(e);
 }
 
@@ -135,7 +136,8 @@ int64_t engine_route_groups(struct engine *e, int64_t now_ns)
 static int64_t look_for(struct engine *e, uint32_t index, int64_t now_ns)
 {
 	struct device *d = &e->table.devices[index];
-	int group = route_probe(engine_places(e, index), e->states, e->group_count, d->group, d->probed);
+	int group = route_probe(engine_places(e, index), e->states, e->group_count, d->group,
+	                        d->probed);
 
 	if (d->probing)
 		return INT64_MAX;
@@ -163,8 +165,8 @@ static struct route_choice choose_group(struct engine *e, uint32_t index, int64_
 
 	if (index == e->table.device_count)
 		return route_path(e->states, e->group_count, d->group, now_ns);
-	return route_device(engine_places(e, index), e->states, e->group_count, d->group, d->moved_ns,
-	                    now_ns);
+	return route_device(engine_places(e, index), e->states, e->group_count, d->group,
+	                    d->moved_ns, now_ns);
 }
 
 static void route_one(struct engine *e, uint32_t index, int64_t now_ns)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* When the rows of the table are read and written: the wheel of periods and what is due. */
+#include "src/engine/schedule.h"
 #include "src/engine/due.h"
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"
-#include "src/engine/schedule.h"
 #include "src/engine/state.h"
 
 void engine_read_now(struct engine *e, struct signal *s)

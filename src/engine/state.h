@@ -6,16 +6,16 @@
 #ifndef ENGINE_STATE_H
 #define ENGINE_STATE_H
 
-#include "hal/bus.h"
+#include "hal/bus/bus.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/due.h"
 #include "src/engine/port.h"
 #include "src/engine/route.h"
 #include "src/engine/structure.h"
 #include "src/engine/table.h"
-#include "src/log.h"
 #include "src/shm/commands.h"
 #include "src/shm/image.h"
+#include "src/text/log.h"
 
 struct engine;
 struct engine_guest;
@@ -49,11 +49,11 @@ struct slot {
 
 	/* whoever asks: ask.c, guests.c */
 	enum purpose purpose;
-	uint32_t row;   /* of the table, of structure.checks (FOR_STRUCTURE), a device (FOR_PROBE) */
-	int64_t value;  /* of a write */
-	uint32_t stamp; /* of the command written */
-	bool one_shot;  /* the write was that of _WriteOneShot */
-	bool pressing;  /* a guest that goes as an input */
+	uint32_t row;  /* of the table, of structure.checks (FOR_STRUCTURE), a device (FOR_PROBE) */
+	int64_t value; /* of a write */
+	uint32_t stamp;             /* of the command written */
+	bool one_shot;              /* the write was that of _WriteOneShot */
+	bool pressing;              /* a guest that goes as an input */
 	struct engine_guest *guest; /* owns path and data of the request */
 	uint8_t data[LANE_DATA];
 	char path[LANE_PATH]; /* of req: what is lent stands for itself, also over a reload */
@@ -61,27 +61,27 @@ struct slot {
 
 /* --- A lane: the engine's side of one bus ---------------------------------------------------- */
 
-#define LANE_COUNTERS(X)                                                                           \
-	X(requests)       /* given to the bus */                                                   \
-	X(reads)          /* ended with success */                                                 \
-	X(writes)         /* ended with success */                                                 \
-	X(item_errors)                                                                             \
-	X(target_failures)                                                                         \
-	X(reconnects)                                                                              \
-	X(given_up)       /* the bus did not answer in time */                                     \
-	X(late_answers)   /* came after that */                                                    \
-	X(unknown_answers) /* nobody asked, or a second time */                                    \
-	X(power_faults)   /* 85 and 127.94 refused */                                              \
-	X(out_of_range)   /* values that the chip cannot have measured, refused */                 \
-	X(device_returns) /* devices that came back */                                             \
-	X(alarm_lists)    /* readings of /alarm */                                                 \
-	X(alarms)         /* occurrences */                                                        \
-	X(power_on_resets)                                                                         \
-	X(moves_in)       /* signals that came from another target */                              \
-	X(moves_out)      /* signals that went to another target */                                \
-	X(probes)         /* looks for a device that another target does not have */               \
-	X(not_released)   /* the next way was opened before this one had let go */                 \
-	X(guests)         /* requests of clients of the served protocol, given to the bus */       \
+#define LANE_COUNTERS(X) \
+	X(requests) /* given to the bus */ \
+	X(reads)    /* ended with success */ \
+	X(writes)   /* ended with success */ \
+	X(item_errors) \
+	X(target_failures) \
+	X(reconnects) \
+	X(given_up)        /* the bus did not answer in time */ \
+	X(late_answers)    /* came after that */ \
+	X(unknown_answers) /* nobody asked, or a second time */ \
+	X(power_faults)    /* 85 and 127.94 refused */ \
+	X(out_of_range)    /* values that the chip cannot have measured, refused */ \
+	X(device_returns)  /* devices that came back */ \
+	X(alarm_lists)     /* readings of /alarm */ \
+	X(alarms)          /* occurrences */ \
+	X(power_on_resets) \
+	X(moves_in)     /* signals that came from another target */ \
+	X(moves_out)    /* signals that went to another target */ \
+	X(probes)       /* looks for a device that another target does not have */ \
+	X(not_released) /* the next way was opened before this one had let go */ \
+	X(guests)       /* requests of clients of the served protocol, given to the bus */ \
 	X(guest_errors)
 
 struct lane {
@@ -140,17 +140,17 @@ struct lane {
 
 /* --- The engine ------------------------------------------------------------------------------ */
 
-#define ENGINE_COUNTERS(X)                                                                         \
-	X(periods)                                                                                 \
-	X(late_periods)     /* boundaries that were more than a period late */                     \
-	X(steps)                                                                                   \
-	X(commands)         /* values taken from the command segment */                            \
-	X(refused_commands) /* values no program should have put there */                          \
-	X(deferred_commands) /* marks of commands that came too fast were left for 10 ms */         \
-	X(lost_clients)     /* control programs that stopped beating */                            \
-	X(safe_outputs)     /* outputs put to SafeValue */                                         \
-	X(lost_commands)    /* command segments that were taken away and made again */            \
-	X(reloads)          /* changed configurations that were taken over */
+#define ENGINE_COUNTERS(X) \
+	X(periods) \
+	X(late_periods) /* boundaries that were more than a period late */ \
+	X(steps) \
+	X(commands)          /* values taken from the command segment */ \
+	X(refused_commands)  /* values no program should have put there */ \
+	X(deferred_commands) /* marks of commands that came too fast were left for 10 ms */ \
+	X(lost_clients)      /* control programs that stopped beating */ \
+	X(safe_outputs)      /* outputs put to SafeValue */ \
+	X(lost_commands)     /* command segments that were taken away and made again */ \
+	X(reloads)           /* changed configurations that were taken over */
 
 /* A control program that beats. */
 struct client {
@@ -196,7 +196,7 @@ struct engine {
 	uint32_t alarm_count;
 
 	/* schedule.c */
-	int64_t start_ns; /* of period first: since then all were of the same length */
+	int64_t start_ns;       /* of period first: since then all were of the same length */
 	uint64_t period, first; /* boundaries since owsd's start */
 	struct due_wheel wheel; /* row * 2: read, row * 2 + 1: write */
 	/* limits.c */
@@ -210,7 +210,8 @@ struct engine {
 	/* place.c, and routing.c takes the devices out that it routes */
 	struct route_place *places; /* device * group_count + group; NULL: one group */
 	struct due_set routes;      /* devices of which something became known, as in route_wheel */
-	struct due_wheel route_wheel; /* devices to be routed again, the one of no device behind them */
+	struct due_wheel
+		route_wheel; /* devices to be routed again, the one of no device behind them */
 
 	/* lane_answer.c, lane_state.c; intake.c resets them */
 	uint64_t transactions, reconnects;

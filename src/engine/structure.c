@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Whether the type of a signal fits its property, by what /structure of the target says of it. */
-#include "structure.h"
-
-#include "hal/path.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "hal/owfs/path.h"
+#include "src/engine/structure.h"
 
 struct wanted {
 	struct structure_check check;
@@ -39,7 +38,7 @@ int structure_init(struct structure *structure, const struct table *table)
 	struct wanted *wanted = calloc((size_t)table->count + 1, sizeof(*wanted));
 	uint32_t n = 0;
 
-	*structure = (struct structure){ 0 };
+	*structure = (struct structure){0};
 	structure->checks = calloc((size_t)table->count + 1, sizeof(*structure->checks));
 	structure->rows = calloc((size_t)table->count + 1, sizeof(*structure->rows));
 	structure->check_of = calloc((size_t)table->count + 1, sizeof(*structure->check_of));
@@ -74,7 +73,7 @@ void structure_free(struct structure *structure)
 	free(structure->checks);
 	free(structure->rows);
 	free(structure->check_of);
-	*structure = (struct structure){ 0 };
+	*structure = (struct structure){0};
 }
 
 /* strchr() would find the NUL at the end too. */

@@ -6,10 +6,10 @@
 #ifndef ENGINE_STRUCTURE_H
 #define ENGINE_STRUCTURE_H
 
-#include "table.h"
+#include "src/engine/table.h"
 
 struct structure_check {
-	char path[96];       /* "/structure/28/temperature12" */
+	char path[96];         /* "/structure/28/temperature12" */
 	uint32_t first, count; /* rows in structure.rows */
 };
 struct structure {
@@ -26,8 +26,8 @@ void structure_free(struct structure *structure);
 
 /* "t,000000,000001,ro,000012,v," as parsed. */
 struct structure_entry {
-	char type;   /* y yes/no, i u integer, f t g p float, a b d l text, D directory */
-	long index;  /* -1: .ALL, -2: .BYTE */
+	char type;      /* y yes/no, i u integer, f t g p float, a b d l text, D directory */
+	long index;     /* -1: .ALL, -2: .BYTE */
 	char access[3]; /* "ro" "rw" "wo" "oo" */
 };
 /* 0 or -EILSEQ. */

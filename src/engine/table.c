@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* The signal table: a row for each item, and what a row says of itself. */
-#include "table.h"
-
-#include "hal/path.h"
-
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "hal/owfs/path.h"
+#include "src/engine/table.h"
 
 /* What tells devices apart: the ROM id, or the alias. */
 struct device_key {
@@ -87,8 +86,7 @@ static int find_devices(struct table *table)
 	for (uint32_t row = 0; row < table->count; row++)
 		if (table->signals[row].device == TABLE_NO_DEVICE)
 			table->device_rows[n++] = row;
-	table->devices[table->device_count].count =
-		n - table->devices[table->device_count].first;
+	table->devices[table->device_count].count = n - table->devices[table->device_count].first;
 	free(keys);
 	return 0;
 }
@@ -126,7 +124,7 @@ int signal_table_init(struct table *table, const struct config *config)
 	uint32_t strings = 0;
 	char *text;
 
-	*table = (struct table){ .count = config->item_count };
+	*table = (struct table){.count = config->item_count};
 	for (uint32_t row = 0; row < table->count; row++)
 		strings += config->items[row].type == OWS_STRING;
 	table->signals = calloc((size_t)table->count + 1, sizeof(*table->signals));
@@ -162,7 +160,7 @@ void signal_table_free(struct table *table)
 	free(table->devices);
 	free(table->device_rows);
 	free(table->texts);
-	*table = (struct table){ 0 };
+	*table = (struct table){0};
 }
 
 void signal_table_image(const struct config_item *item, struct image_signal *signal)
@@ -172,9 +170,9 @@ void signal_table_image(const struct config_item *item, struct image_signal *sig
 		.path = item->path,
 		.type = (uint8_t)item->type,
 		.flags = (uint8_t)((item->output ? OWS_RECORD_OUTPUT : 0) |
-		                   (item->fresh ? OWS_RECORD_FRESH : 0) |
-		                   (item->alarm ? OWS_RECORD_ALARM : 0) |
-		                   (config_item_takes_sets(item) ? 0 : OWS_RECORD_NO_SET)),
+	                           (item->fresh ? OWS_RECORD_FRESH : 0) |
+	                           (item->alarm ? OWS_RECORD_ALARM : 0) |
+	                           (config_item_takes_sets(item) ? 0 : OWS_RECORD_NO_SET)),
 		.text_cap = item->type == OWS_STRING ? TABLE_TEXT_CAP : 0,
 		.per_factor = item->per_factor,
 		.line = (uint32_t)item->line,
@@ -246,8 +244,9 @@ void signal_reset_diagnostics(struct signal *s, uint64_t period, int64_t now_ns)
 	s->attrs.transactions = 0;
 	s->attrs.pend_last = 0;
 	s->attrs.per_max = (uint32_t)period - s->attrs.per_base;
-	s->attrs.pend_max =
-		s->attrs.flags & OWS_ATTR_IN_WORK ? (uint32_t)period - s->attrs.pend_base : 0;
+	s->attrs.pend_max = s->attrs.flags & OWS_ATTR_IN_WORK
+	                            ? (uint32_t)period - s->attrs.pend_base
+	                            : 0;
 	s->attrs.age_max_ns = now_ns - (s->sample.count ? s->sample.measured_ns : s->known_ns);
 }
 
@@ -258,7 +257,8 @@ static int compare_rom(const void *rom, const void *device)
 
 uint32_t table_device(const struct table *table, const uint8_t rom[8])
 {
-	const struct device *d = bsearch(rom, table->devices, table->rom_count, sizeof(*d), compare_rom);
+	const struct device *d = bsearch(rom, table->devices, table->rom_count, sizeof(*d),
+	                                 compare_rom);
 
 	return d ? (uint32_t)(d - table->devices) : TABLE_NO_DEVICE;
 }

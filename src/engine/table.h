@@ -6,14 +6,14 @@
 #ifndef ENGINE_TABLE_H
 #define ENGINE_TABLE_H
 
-#include "../config/config.h"
-#include "../log.h"
-#include "../shm/image.h"
-#include "../signal/quantity.h"
-#include "../signal/value.h"
-#include "guard.h"
-#include "limit.h"
-#include "retry.h"
+#include "src/config/config.h"
+#include "src/engine/guard.h"
+#include "src/engine/limit.h"
+#include "src/engine/retry.h"
+#include "src/shm/image.h"
+#include "src/signal/quantity.h"
+#include "src/signal/value.h"
+#include "src/text/log.h"
 
 /* Room for the text of a string signal in the layout, bytes; a multiple of 4. */
 #define TABLE_TEXT_CAP VALUE_STRING_MAX
@@ -28,7 +28,7 @@ struct signal {
 
 	struct ows_sample sample; /* as published */
 	struct ows_attrs attrs;
-	char *text; /* strings: published text, TABLE_TEXT_CAP bytes */
+	char *text;       /* strings: published text, TABLE_TEXT_CAP bytes */
 	int64_t known_ns; /* since when it is in the table */
 	int64_t updated_ns;
 
@@ -45,19 +45,19 @@ struct signal {
 	/* writing */
 	bool writing;
 	struct retry write_retry;
-	bool commanded;  /* there is something to write: by a program, or InitValue */
-	bool confirmed;  /* written holds what the bus has */
-	bool agrees;     /* it was read back as it was written */
-	bool one_shot;   /* write once more, changed or not */
-	bool forced;     /* a write in doubt ended late: the present value goes out again */
-	bool safe;       /* put to SafeValue, its client stopped beating */
-	int write_err;   /* of the last write, until one succeeds or writing is disabled */
+	bool commanded; /* there is something to write: by a program, or InitValue */
+	bool confirmed; /* written holds what the bus has */
+	bool agrees;    /* it was read back as it was written */
+	bool one_shot;  /* write once more, changed or not */
+	bool forced;    /* a write in doubt ended late: the present value goes out again */
+	bool safe;      /* put to SafeValue, its client stopped beating */
+	int write_err;  /* of the last write, until one succeeds or writing is disabled */
 	int64_t command, written;
-	uint32_t command_stamp; /* of command; stamp may be that of a refused one */
+	uint32_t command_stamp;            /* of command; stamp may be that of a refused one */
 	char *command_text, *written_text; /* strings */
 	uint32_t command_len, written_len;
 	uint32_t client; /* 0: nobody who beats; else index + 1 */
-	bool awaited;    /* its command is of before the start: nothing is written until client beats */
+	bool awaited; /* its command is of before the start: nothing is written until client beats */
 	uint16_t doubts; /* writes that may still reach it over other targets: it is not written */
 
 	/* what was last seen in the command segment */
@@ -71,7 +71,7 @@ struct signal {
 	/* limit alarms */
 	struct limit limit;
 	struct log_rate limit_log;
-	bool limit_said; /* the log has what was raised: it gets the return too */
+	bool limit_said;        /* the log has what was raised: it gets the return too */
 	int64_t limit_value[2]; /* of the update before the last, of the last */
 	uint32_t limit_count;   /* sample.count of the last */
 	uint8_t limit_values;   /* how many of the two are known */
@@ -79,15 +79,15 @@ struct signal {
 
 struct device {
 	uint8_t rom[8];
-	bool has_rom;   /* false: an alias */
-	bool absent;    /* a signal of it went bad with "no such device" */
+	bool has_rom;          /* false: an alias */
+	bool absent;           /* a signal of it went bad with "no such device" */
 	uint32_t first, count; /* rows in table.device_rows */
 
 	/* where it is served, and looked for (place.c, routing.c) */
 	unsigned group;
 	int64_t moved_ns;
-	bool probing;     /* queued or with a bus */
-	unsigned probed;  /* the last group it was looked for on */
+	bool probing;    /* queued or with a bus */
+	unsigned probed; /* the last group it was looked for on */
 	unsigned probe_doublings;
 	int64_t probe_ns; /* not before; 0: it need not be looked for */
 };

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* The trace of requests: a line in the log for each that a bus has answered, or has not in time. */
-#include "trace.h"
-
-#include "src/engine/state.h"
-
-#include "../signal/error.h"
-
 #include <stdio.h>
 
-#define TEXT_SHOWN  32 /* bytes of a value */
+#include "src/engine/state.h"
+#include "src/engine/trace.h"
+#include "src/signal/error.h"
+
+#define TEXT_SHOWN 32 /* bytes of a value */
 #define QUOTED_SIZE (TEXT_SHOWN + 40)
 
 /* "21.5" without its padding; of a longer text the beginning, and how long it is. */
@@ -30,7 +28,8 @@ static void quote_data(const uint8_t *data, size_t len, char out[QUOTED_SIZE])
 		snprintf(out + used, QUOTED_SIZE - used, "...\" (%zu bytes)", len);
 }
 
-static void quote_result(const struct slot *slot, const struct bus_answer *answer, char out[QUOTED_SIZE])
+static void quote_result(const struct slot *slot, const struct bus_answer *answer,
+                         char out[QUOTED_SIZE])
 {
 	unsigned entries = 0;
 
@@ -60,7 +59,7 @@ static bool may_show(struct engine *e, bool failed)
 	if (e->now_ns - trace->since_ns >= TRACE_WINDOW_NS) {
 		if (trace->hidden)
 			log_trace(e->log, "trace: %u more requests in a second", trace->hidden);
-		*trace = (struct trace){ .since_ns = e->now_ns };
+		*trace = (struct trace){.since_ns = e->now_ns};
 	}
 	if (trace->shown[failed] >= TRACE_PER_WINDOW) {
 		trace->hidden++;
@@ -74,7 +73,10 @@ void trace_answer(const struct lane *lane, const struct slot *slot, const struct
                   int64_t now_ns)
 {
 	static const char *const ops[] = {
-		[BUS_READ] = "read", [BUS_WRITE] = "write", [BUS_DIR] = "dir", [BUS_PROBE] = "probe",
+		[BUS_READ] = "read",
+		[BUS_WRITE] = "write",
+		[BUS_DIR] = "dir",
+		[BUS_PROBE] = "probe",
 	};
 	struct engine *e = lane->engine;
 	char value[QUOTED_SIZE] = "", text[QUOTED_SIZE] = "";

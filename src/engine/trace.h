@@ -3,13 +3,12 @@
 #ifndef ENGINE_TRACE_H
 #define ENGINE_TRACE_H
 
-#include "hal/bus.h"
-
-#include "../log.h"
+#include "hal/bus/bus.h"
+#include "src/text/log.h"
 
 /* At most so many lines a window of requests that succeed, and as many of those that fail. */
 #define TRACE_PER_WINDOW 100u
-#define TRACE_WINDOW_NS  1000000000LL
+#define TRACE_WINDOW_NS 1000000000LL
 
 struct lane;
 struct slot;

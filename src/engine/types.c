@@ -3,13 +3,13 @@
  * The check of types on a lane: it asks /structure of its target about the properties of its signals,
  * and reports each signal whose type cannot hold its property.
  */
+#include "src/engine/types.h"
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"
 #include "src/engine/slots.h"
 #include "src/engine/state.h"
 #include "src/engine/structure.h"
-#include "src/engine/types.h"
-#include "src/log.h"
+#include "src/text/log.h"
 
 /* The next check that a signal of this lane needs; -1: none. */
 int64_t types_next(struct lane *lane)
@@ -33,10 +33,10 @@ bool types_ask(struct lane *lane, struct slot *slot, uint32_t check, int64_t now
 {
 	slot->purpose = FOR_STRUCTURE;
 	slot->row = check;
-	slot->req = (struct bus_req){ .op = BUS_READ,
-		                      .prio = BUS_INPUT,
-		                      .path = lane->engine->structure.checks[check].path,
-		                      .len = sizeof(slot->data) };
+	slot->req = (struct bus_req){.op = BUS_READ,
+	                             .prio = BUS_INPUT,
+	                             .path = lane->engine->structure.checks[check].path,
+	                             .len = sizeof(slot->data)};
 	if (!slot_lend(lane, slot, now_ns))
 		return false;
 	due_set_take(&lane->checks, check);

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* The journal of alarms, and how the alarms of a signal stand. */
-#include "handle.h"
-
-#include "../shm/reader.h"
-#include "../signal/value.h"
-
 #include <errno.h>
 #include <string.h>
+
+#include "src/libows/handle.h"
+#include "src/shm/reader.h"
+#include "src/signal/value.h"
 
 #define WORDS (sizeof(struct ows_alarm_entry) / 4)
 
@@ -83,8 +82,8 @@ int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state)
 		.limit_state = a->limit_state,
 		.limit_kind = a->limit_condition,
 		.unarmed = !(a->flags & OWS_ATTR_ALARM_UNARMED) ? 0
-		           : a->flags & OWS_ATTR_ALARM_POR  ? 2
-		                                            : 1,
+	                   : a->flags & OWS_ATTR_ALARM_POR      ? 2
+	                                                        : 1,
 	};
 	handle_orphan(h, ows_now());
 	return handle_state(h);
@@ -105,14 +104,10 @@ const char *ows_limit_state_text(uint8_t state)
 const char *ows_alarm_kind_text(uint8_t kind)
 {
 	static const char *const texts[] = {
-		[OWS_ALARM_DEVICE] = "device",
-		[OWS_ALARM_POR] = "power-on reset",
-		[OWS_ALARM_HH] = "high high",
-		[OWS_ALARM_H] = "high",
-		[OWS_ALARM_L] = "low",
-		[OWS_ALARM_LL] = "low low",
-		[OWS_ALARM_STALE] = "stale",
-		[OWS_ALARM_BAD] = "bad",
+		[OWS_ALARM_DEVICE] = "device", [OWS_ALARM_POR] = "power-on reset",
+		[OWS_ALARM_HH] = "high high",  [OWS_ALARM_H] = "high",
+		[OWS_ALARM_L] = "low",         [OWS_ALARM_LL] = "low low",
+		[OWS_ALARM_STALE] = "stale",   [OWS_ALARM_BAD] = "bad",
 	};
 
 	return kind < sizeof(texts) / sizeof(texts[0]) && texts[kind] ? texts[kind] : "none";

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Attributes of a signal, made from what owsd publishes and from the running time. */
-#include "handle.h"
-
-#include "../shm/reader.h"
-
 #include <errno.h>
+
+#include "src/libows/handle.h"
+#include "src/shm/reader.h"
 
 #define NS_PER_S 1e9
 

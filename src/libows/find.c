@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "handle.h"
-
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/libows/handle.h"
 
 static int find_name(void *ctx, const char *name, size_t len)
 {

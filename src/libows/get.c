@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Reading values: a whole sample of the image, its age, and the quality that a dead owsd leaves it. */
-#include "handle.h"
-
-#include "../shm/reader.h"
-#include "../signal/value.h"
-
 #include <errno.h>
 #include <string.h>
 #include <time.h>
+
+#include "src/libows/handle.h"
+#include "src/shm/reader.h"
+#include "src/signal/value.h"
 
 int64_t ows_now(void)
 {
@@ -92,8 +91,8 @@ static inline int finish(struct ows *h, int64_t stale_after_ns, int64_t now_ns,
 	return err;
 }
 
-static inline int get_record(struct ows *h, unsigned record, int64_t stale_after_ns,
-                             int64_t now_ns, struct ows_value *value)
+static inline int get_record(struct ows *h, unsigned record, int64_t stale_after_ns, int64_t now_ns,
+                             struct ows_value *value)
 {
 	const struct ows_record *r = map_record(&h->map, record);
 	struct ows_sample sample;
@@ -182,7 +181,8 @@ int handle_get_text(struct ows *h, struct ows_id *e, int64_t now_ns, struct ows_
 {
 	int err, cut;
 
-	if (e->attribute == ATTR_VALUE && map_record(&h->map, (uint32_t)e->record)->type == OWS_STRING)
+	if (e->attribute == ATTR_VALUE &&
+	    map_record(&h->map, (uint32_t)e->record)->type == OWS_STRING)
 		return get_string(h, e, now_ns, value, text, size);
 	err = get(h, e, now_ns, value);
 	if (err && err != -ESTALE)

@@ -3,14 +3,13 @@
 #ifndef LIBOWS_HANDLE_H
 #define LIBOWS_HANDLE_H
 
-#include "ows.h"
-
-#include "../shm/layout.h"
-#include "../shm/segment.h"
-#include "../signal/attribute.h"
-
 #include <stdbool.h>
 #include <sys/types.h>
+
+#include "src/libows/ows.h"
+#include "src/shm/layout.h"
+#include "src/shm/segment.h"
+#include "src/signal/attribute.h"
 
 /* Which file a segment is: its name may come to lead to another. */
 struct ows_file {
@@ -99,7 +98,8 @@ static inline const struct ows_target_entry *map_target(const struct ows_map *ma
 	return (const void *)((const char *)map->targets + (size_t)target * map->target_size);
 }
 
-static inline const struct ows_counter_entry *map_counter(const struct ows_map *map, uint32_t counter)
+static inline const struct ows_counter_entry *map_counter(const struct ows_map *map,
+                                                          uint32_t counter)
 {
 	return (const void *)((const char *)map->counters + (size_t)counter * map->counter_size);
 }

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* What libows returns about signals, targets, counters and the daemon itself. */
-#include "handle.h"
-
-#include "../shm/reader.h"
-
 #include <errno.h>
+
+#include "src/libows/handle.h"
+#include "src/shm/reader.h"
 
 int ows_count(const struct ows *h)
 {

@@ -1,10 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "handle.h"
-
-#include "../shm/guard.h"
-#include "../shm/owner.h"
-#include "../shm/word.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -12,6 +6,11 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "src/libows/handle.h"
+#include "src/shm/guard.h"
+#include "src/shm/owner.h"
+#include "src/shm/word.h"
 
 void map_path(const char *instance, const char *kind, char path[MAP_PATH])
 {

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* A handle of libows: opened, closed, and opened again when owsd has other segments. */
-#include "handle.h"
-
-#include "../shm/word.h"
-
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+#include "src/libows/handle.h"
+#include "src/shm/word.h"
 
 #define DEAD_LEAST_NS INT64_C(2000000000)
 

@@ -3,10 +3,10 @@
  * The segments of an owsd that was killed after their names were removed: the next one makes others,
  * and cannot reach these to say so.
  */
-#include "handle.h"
-
 #include <errno.h>
 #include <sys/stat.h>
+
+#include "src/libows/handle.h"
 
 /* A name that is gone leads nowhere yet: the next owsd makes it. */
 static bool leads_elsewhere(const struct ows *h, const char *kind, const struct ows_file *file)
@@ -26,8 +26,7 @@ bool orphan_look(struct ows *h, int64_t now_ns)
 		return h->orphan;
 	h->looked_ns = now_ns;
 	h->orphan = leads_elsewhere(h, "image", &h->map.image_file) ||
-	            (h->map.command != NULL &&
-	             leads_elsewhere(h, "command", &h->map.command_file));
+	            (h->map.command != NULL && leads_elsewhere(h, "command", &h->map.command_file));
 	errno = saved;
 	return h->orphan;
 }

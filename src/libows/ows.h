@@ -19,6 +19,8 @@
  */
 #ifndef OWS_H
 #define OWS_H
+/* The columns are laid out for the reader of the installed file. */
+/* clang-format off */
 
 #include <stddef.h>
 #include <stdint.h>

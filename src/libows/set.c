@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Setting outputs and attributes: the checks, the slot of the command segment, the bell. */
-#include "handle.h"
-
-#include "../shm/word.h"
-#include "../signal/value.h"
-
 #include <errno.h>
 #include <string.h>
 
-#define ON  2
+#include "src/libows/handle.h"
+#include "src/shm/word.h"
+#include "src/signal/value.h"
+
+#define ON 2
 #define OFF 1
 
 static struct ows_command_slot *slot_of(const struct ows *h, const struct ows_id *id)
@@ -109,8 +108,9 @@ static int check_id(const struct ows *h, int id, const struct ows_id **e)
 
 static enum ows_type type_of(const struct ows *h, const struct ows_id *id)
 {
-	return id->attribute == ATTR_VALUE ? (enum ows_type)map_record(&h->map, (uint32_t)id->record)->type
-	                                   : attribute_table[id->attribute].type;
+	return id->attribute == ATTR_VALUE
+	               ? (enum ows_type)map_record(&h->map, (uint32_t)id->record)->type
+	               : attribute_table[id->attribute].type;
 }
 
 /* A flag acts when it goes from off to on, as this handle sets it. */
@@ -214,8 +214,7 @@ static void store_text(char *to, const char *text, size_t len)
 	}
 }
 
-static int set_string(struct ows *h, const struct ows_id *id, const char *text,
-                      uint32_t *stamp)
+static int set_string(struct ows *h, const struct ows_id *id, const char *text, uint32_t *stamp)
 {
 	size_t len = strlen(text), size = h->map.command_size;
 	uint32_t off = word_get(&h->map.entries[id->record].text_off), free_claim = 0, mine, got;
@@ -224,8 +223,7 @@ static int set_string(struct ows *h, const struct ows_id *id, const char *text,
 	if (len > h->map.text_cap)
 		return -ERANGE;
 	/* Another consumer may have overwritten the offset */
-	if (off == 0 || off % 4 != 0 || off > size ||
-	    sizeof(*t) + h->map.text_cap > size - off)
+	if (off == 0 || off % 4 != 0 || off > size || sizeof(*t) + h->map.text_cap > size - off)
 		return -EPROTO;
 	t = (void *)(h->map.command_base + off);
 	mine = h->pid;
@@ -236,8 +234,7 @@ static int set_string(struct ows *h, const struct ows_id *id, const char *text,
 	store_text((char *)(t + 1), text, len);
 	word_set(&t->check, ows_check_bytes(text, len));
 	/* Unless owsd took the claim away because it lasted too long */
-	__atomic_compare_exchange_n(&t->claim, &mine, 0, false, __ATOMIC_RELEASE,
-	                            __ATOMIC_RELAXED);
+	__atomic_compare_exchange_n(&t->claim, &mine, 0, false, __ATOMIC_RELEASE, __ATOMIC_RELAXED);
 	got = stamp_it(h, id);
 	if (stamp != NULL)
 		*stamp = got;

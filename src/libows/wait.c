@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-#include "handle.h"
-
 #include <errno.h>
+
+#include "src/libows/handle.h"
 
 int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns)
 {
 	const uint32_t *word = &h->map.image->news;
 	int64_t now_ns = ows_now();
-	int64_t until = timeout_ns < 0 || timeout_ns > INT64_MAX - now_ns ? -1 : now_ns + timeout_ns;
+	int64_t until = timeout_ns < 0 || timeout_ns > INT64_MAX - now_ns ? -1
+	                                                                  : now_ns + timeout_ns;
 
 	for (;; now_ns = ows_now()) {
 		int64_t left = ORPHAN_LOOK_NS; /* nobody wakes who sleeps on an orphan */

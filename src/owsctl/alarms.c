@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl alarms: those that stand. */
-#include "alarms.h"
-#include "names.h"
-#include "rows.h"
-#include "table.h"
-
-#include "../signal/error.h"
-
 #include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "src/owsctl/alarms.h"
+#include "src/owsctl/names.h"
+#include "src/owsctl/rows.h"
+#include "src/owsctl/table.h"
+#include "src/signal/error.h"
 
 /* One line of the live table. */
 struct alarm {
@@ -30,10 +29,12 @@ struct live {
 	bool ok;
 };
 
+/* clang-format off */
 static const struct table_column columns[] = {
 	{"NAME"}, {"ALARM"}, {"STATE"}, {"SINCE", .right = true}, {"VALUE", .right = true, .most = 40},
 	{"QUALITY"},
 };
+/* clang-format on */
 #define COLUMNS (sizeof(columns) / sizeof(columns[0]))
 
 /* When the present alarm of a signal was raised, as far as the journal goes back. */
@@ -61,9 +62,9 @@ static void add_row(struct live *live, const struct alarm *alarm)
 	reading_show(live->reading, value, sizeof(value));
 	if (alarm->since_ns)
 		when_span(live->now.boot - alarm->since_ns, span);
-	if (!table_add(live->table, (const char *const[]){
-					    alarm->name, alarm->kind, alarm->state, span, value,
-					    reading_quality(live->reading, words)}))
+	if (!table_add(live->table,
+	               (const char *const[]){alarm->name, alarm->kind, alarm->state, span, value,
+	                                     reading_quality(live->reading, words)}))
 		live->ok = false;
 }
 
@@ -112,7 +113,8 @@ static const char *why_unarmed(const struct ows_alarm_state *state, const struct
 		snprintf(words, ERROR_WORDS, "cannot be armed: %s", error_text(error));
 		break;
 	case EUCLEAN:
-		snprintf(words, ERROR_WORDS, "cannot be armed: %s is still set after 0 was written", key);
+		snprintf(words, ERROR_WORDS, "cannot be armed: %s is still set after 0 was written",
+		         key);
 		break;
 	default:
 		snprintf(words, ERROR_WORDS, "cannot be armed: %s: %s", key, error_text(error));
@@ -163,7 +165,7 @@ static void look_at(struct live *live, int signal, const struct row *row)
 			.name = row->name,
 			.kind = ows_alarm_kind_text(OWS_ALARM_DEVICE),
 			.state = live->table ? "cannot be armed"
-			                     : why_unarmed(&state, live->reading, unarmed),
+		                             : why_unarmed(&state, live->reading, unarmed),
 			.device = true,
 			.polled = state.polled,
 			.occurrences = state.occurrences,

@@ -3,7 +3,7 @@
 #ifndef OWSCTL_ALARMS_H
 #define OWSCTL_ALARMS_H
 
-#include "verbs.h"
+#include "src/owsctl/verbs.h"
 
 /* Does each pattern match a signal? If not, what was wrong is on stderr. */
 bool alarms_known(struct ows *h, char *const *patterns, int count);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "alarms.h"
-
 #include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "src/owsctl/alarms.h"
 
 /* owsd takes an acknowledgement at once; longer means that it hangs. */
 #define PATIENCE_NS INT64_C(2000000000)

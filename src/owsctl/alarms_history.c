@@ -1,20 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl alarms history: the journal. */
-#include "alarms.h"
-#include "json.h"
-#include "names.h"
-#include "table.h"
-#include "when.h"
-#include "../signal/value.h"
-
 #include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
 
+#include "src/owsctl/alarms.h"
+#include "src/owsctl/json.h"
+#include "src/owsctl/names.h"
+#include "src/owsctl/table.h"
+#include "src/owsctl/when.h"
+#include "src/signal/value.h"
+
+/* clang-format off */
 static const struct table_column columns[] = {
 	{"TIME"}, {"NAME"}, {"ALARM"}, {"EVENT"}, {"BEFORE", .right = true}, {"AFTER", .right = true},
 	{"QUALITY"}, {"LATCH"},
 };
+/* clang-format on */
 
 static const char *value_text(const struct ows_alarm *alarm, bool after, char text[VALUE_TEXT_MAX])
 {
@@ -35,12 +37,12 @@ static bool add_row(struct table *table, const struct when *now, const char *nam
 	const char *left = value_text(alarm, false, before);
 	const char *right = value_text(alarm, true, after);
 
-	return table_add(table, (const char *const[]){
-					when_iso(now, alarm->occurred_ns, time), name,
-					ows_alarm_kind_text(alarm->kind),
-					ows_alarm_event_text(alarm->event), left ? left : "-",
-					right ? right : "-", ows_quality_text(alarm->quality),
-					alarm->latch});
+	return table_add(table,
+	                 (const char *const[]){when_iso(now, alarm->occurred_ns, time), name,
+	                                       ows_alarm_kind_text(alarm->kind),
+	                                       ows_alarm_event_text(alarm->event),
+	                                       left ? left : "-", right ? right : "-",
+	                                       ows_quality_text(alarm->quality), alarm->latch});
 }
 
 static void json_value(struct json *json, const char *key, const char *text)

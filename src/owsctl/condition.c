@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "condition.h"
-#include "../signal/value.h"
-
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/owsctl/condition.h"
+#include "src/signal/value.h"
 
 static const char *const ops[] = {
 	[CONDITION_EQ] = "=",  [CONDITION_NE] = "!=", [CONDITION_LT] = "<",

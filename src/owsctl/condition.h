@@ -3,7 +3,7 @@
 #ifndef OWSCTL_CONDITION_H
 #define OWSCTL_CONDITION_H
 
-#include "reading.h"
+#include "src/owsctl/reading.h"
 
 enum condition_op {
 	CONDITION_EQ,
@@ -17,7 +17,7 @@ enum condition_op {
 struct condition {
 	enum condition_op op;
 	const char *text;
-	bool whole;      /* the number is an integer, exact in integer */
+	bool whole; /* the number is an integer, exact in integer */
 	int64_t integer;
 	double number;
 };

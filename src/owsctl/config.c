@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl config: look at a configuration file and edit it as the manual's dialog does. */
-#include "config_list.h"
-#include "property.h"
-#include "../config/edit.h"
-
 #include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+#include "src/config/edit.h"
+#include "src/owsctl/config_list.h"
+#include "src/owsctl/property.h"
 
 static void say(void *ctx, bool is_error, const char *message)
 {
@@ -176,7 +176,8 @@ int verb_config(struct ctl *ctl, int argc, char **argv)
 		    (!strcmp(action, "move") &&
 		     (words != 3 || (strcmp(argv[optind + 3], "--before") != 0 &&
 		                     strcmp(argv[optind + 3], "--after") != 0))))
-			return ctl_usage(ctl, "expected config FILE %s%s", action, actions[i].words);
+			return ctl_usage(ctl, "expected config FILE %s%s", action,
+			                 actions[i].words);
 		return change(file, action, argv + optind + 2, (unsigned)words);
 	}
 	return ctl_usage(ctl, "there is no config %s", action);

@@ -1,24 +1,37 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl config FILE list: targets, the driver's keys and the items, as a table or JSON. */
-#include "config_list.h"
-#include "json.h"
-#include "names.h"
-#include "table.h"
-
-#include "../signal/value.h"
-
 #include <stdio.h>
 
+#include "src/owsctl/config_list.h"
+#include "src/owsctl/json.h"
+#include "src/owsctl/names.h"
+#include "src/owsctl/table.h"
+#include "src/signal/value.h"
+
 enum {
-	NAME, TYPE, IO, INIT, SAFE, READ, WRITE, UNCACHED, PER_FACTOR, STALE_AFTER, ALARM, LIMITS, PATH,
+	NAME,
+	TYPE,
+	IO,
+	INIT,
+	SAFE,
+	READ,
+	WRITE,
+	UNCACHED,
+	PER_FACTOR,
+	STALE_AFTER,
+	ALARM,
+	LIMITS,
+	PATH,
 	COLUMNS,
 };
+/* clang-format off */
 static const struct table_column columns[COLUMNS] = {
 	[NAME] = {"NAME"}, [TYPE] = {"TYPE"}, [IO] = {"IO"}, [INIT] = {"INIT"}, [SAFE] = {"SAFE"},
 	[READ] = {"READ"}, [WRITE] = {"WRITE"}, [UNCACHED] = {"UNCACHED"},
 	[PER_FACTOR] = {"PERFACTOR", .right = true}, [STALE_AFTER] = {"STALE", .right = true},
 	[ALARM] = {"ALARM"}, [LIMITS] = {"LIMITS"}, [PATH] = {"PATH"},
 };
+/* clang-format on */
 
 static const char *yes(bool flag)
 {
@@ -35,7 +48,9 @@ static double seconds(int64_t ns)
 static const char *limits_text(const struct config_limits *limits, char text[LIMITS_TEXT])
 {
 	static const char *const names[CONFIG_LIMITS] = {
-		[CONFIG_LIMIT_LL] = "LL", [CONFIG_LIMIT_L] = "L", [CONFIG_LIMIT_H] = "H",
+		[CONFIG_LIMIT_LL] = "LL",
+		[CONFIG_LIMIT_L] = "L",
+		[CONFIG_LIMIT_H] = "H",
 		[CONFIG_LIMIT_HH] = "HH",
 	};
 	int used = 0;
@@ -60,9 +75,10 @@ static const char *limits_text(const struct config_limits *limits, char text[LIM
 static void print_driver(const struct config *config)
 {
 	for (unsigned i = 0; i < config->target_count; i++)
-		printf("%s%s", config->targets[i].relation == CONFIG_FIRST   ? "target "
-		               : config->targets[i].relation == CONFIG_COMMA ? ", "
-		                                                             : " | ",
+		printf("%s%s",
+		       config->targets[i].relation == CONFIG_FIRST   ? "target "
+		       : config->targets[i].relation == CONFIG_COMMA ? ", "
+		                                                     : " | ",
 		       config->targets[i].text);
 	printf("\nconsecutive alarms %u, retries %u, time-out %g s, period %g s\n\n",
 	       config->max_cons_alarms, config->max_retries, seconds(config->timeout_ns),
@@ -81,20 +97,20 @@ static bool add_row(struct table *table, const struct config_item *item)
 	table->absent[PER_FACTOR] &= item->per_factor == 1;
 	table->absent[STALE_AFTER] &= !item->stale_after_ns;
 	table->absent[LIMITS] &= !item->limits.any;
-	return table_add(table, (const char *const[COLUMNS]){
-					[NAME] = item->name,
-					[TYPE] = value_type_name(item->type),
-					[IO] = item->output ? "output" : "input",
-					[INIT] = item->init_text,
-					[SAFE] = item->has_safe ? item->safe_text : "-",
-					[READ] = yes(item->readable),
-					[WRITE] = yes(item->writable),
-					[UNCACHED] = yes(item->fresh),
-					[PER_FACTOR] = per_factor,
-					[STALE_AFTER] = stale,
-					[ALARM] = yes(item->alarm),
-					[LIMITS] = limits_text(&item->limits, limits),
-					[PATH] = item->path});
+	return table_add(
+		table, (const char *const[COLUMNS]){[NAME] = item->name,
+	                                            [TYPE] = value_type_name(item->type),
+	                                            [IO] = item->output ? "output" : "input",
+	                                            [INIT] = item->init_text,
+	                                            [SAFE] = item->has_safe ? item->safe_text : "-",
+	                                            [READ] = yes(item->readable),
+	                                            [WRITE] = yes(item->writable),
+	                                            [UNCACHED] = yes(item->fresh),
+	                                            [PER_FACTOR] = per_factor,
+	                                            [STALE_AFTER] = stale,
+	                                            [ALARM] = yes(item->alarm),
+	                                            [LIMITS] = limits_text(&item->limits, limits),
+	                                            [PATH] = item->path});
 }
 
 static bool print_table(const struct config *config, char *const *patterns, int count)
@@ -130,8 +146,10 @@ static void json_double(struct json *json, const char *key, double number)
 static void limits_json(struct json *json, const struct config_limits *limits)
 {
 	static const char *const keys[CONFIG_LIMITS] = {
-		[CONFIG_LIMIT_LL] = "limit_ll", [CONFIG_LIMIT_L] = "limit_l",
-		[CONFIG_LIMIT_H] = "limit_h", [CONFIG_LIMIT_HH] = "limit_hh",
+		[CONFIG_LIMIT_LL] = "limit_ll",
+		[CONFIG_LIMIT_L] = "limit_l",
+		[CONFIG_LIMIT_H] = "limit_h",
+		[CONFIG_LIMIT_HH] = "limit_hh",
 	};
 
 	if (!limits->any) {

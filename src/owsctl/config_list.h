@@ -3,9 +3,8 @@
 #ifndef OWSCTL_CONFIG_LIST_H
 #define OWSCTL_CONFIG_LIST_H
 
-#include "verbs.h"
-
-#include "../config/config.h"
+#include "src/config/config.h"
+#include "src/owsctl/verbs.h"
 
 /* The items whose names match a pattern (none: all), as a table or JSON. The exit status. */
 int config_list(const struct config *config, char *const *patterns, int count, bool json);

@@ -1,11 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* What the verbs of owsctl have in common: options, messages, opening an instance, ending. */
-#include "names.h"
-#include "verbs.h"
-#include "when.h"
-#include "../printable.h"
-#include "../refused.h"
-
 #include <errno.h>
 #include <getopt.h>
 #include <poll.h>
@@ -16,10 +10,15 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "src/owsctl/names.h"
+#include "src/owsctl/verbs.h"
+#include "src/owsctl/when.h"
+#include "src/text/printable.h"
+#include "src/text/refused.h"
+
 enum { JSON = 256 };
 
-__attribute__((format(printf, 1, 0)))
-static void say(const char *format, va_list args)
+__attribute__((format(printf, 1, 0))) static void say(const char *format, va_list args)
 {
 	char *text = printable_line(format, args);
 
@@ -67,12 +66,9 @@ void ctl_options(void)
 static const struct option *longs_of(const char *options)
 {
 	static const struct option longs[] = {
-		{"json", no_argument, NULL, JSON},
-		{"help", no_argument, NULL, 'h'},
-		{"all", no_argument, NULL, 'a'},
-		{"rio", no_argument, NULL, 'r'},
-		{"merge", required_argument, NULL, 'M'},
-		{"replace", required_argument, NULL, 'R'},
+		{"json", no_argument, NULL, JSON},       {"help", no_argument, NULL, 'h'},
+		{"all", no_argument, NULL, 'a'},         {"rio", no_argument, NULL, 'r'},
+		{"merge", required_argument, NULL, 'M'}, {"replace", required_argument, NULL, 'R'},
 	};
 	static struct option had[sizeof(longs) / sizeof(longs[0]) + 1];
 	struct option *next = had;
@@ -150,10 +146,12 @@ int ctl_open(const struct ctl *ctl, enum ows_mode mode, struct ows **h)
 		                mode == OWS_READ ? "owsd" : "owsd-control");
 	case EPERM:
 		return ctl_fail("the shared memory of %s belongs to another user, neither root nor "
-		                "owsd: refused", name);
+		                "owsd: refused",
+		                name);
 	case EPROTO:
 		return ctl_fail("the shared memory of %s is of another version of owsd, or not of "
-		                "owsd", name);
+		                "owsd",
+		                name);
 	case EINVAL:
 		return ctl_fail("%s cannot be the name of an instance", ctl_word(name));
 	}
@@ -206,7 +204,8 @@ int ctl_unknown(struct ows *h, const char *name)
 
 	if (rest && rest != name && ows_find(h, rest + 2) >= 0)
 		return ctl_fail("there is no %s: its prefix is of another instance; did you mean "
-		                "%s, or -n %.*s?", name, rest + 2, (int)(rest - name), name);
+		                "%s, or -n %.*s?",
+		                name, rest + 2, (int)(rest - name), name);
 	if (names_nearest(h, name, nearest))
 		return ctl_fail("there is no %s; did you mean %s?", ctl_word(name), nearest);
 	return ctl_fail("there is no %s", ctl_word(name));

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl dir: the entries of a directory of a target. */
-#include "json.h"
-#include "open.h"
-#include "text.h"
-
 #include <errno.h>
 #include <getopt.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/owsctl/json.h"
+#include "src/owsctl/open.h"
+#include "src/owsctl/text.h"
 
 #define LISTING_MAX (256u * 1024)
 
@@ -68,9 +68,9 @@ int verb_dir(struct ctl *ctl, int argc, char **argv)
 	ask.req.data = (uint8_t *)text;
 	ask.req.len = LISTING_MAX;
 	if (target_ask_one(&target, &ask)) {
-		status = ctl_fail("%s: %s", path, ask.answer.err == -ENOENT
-		                                          ? "no such directory"
-		                                          : error_text(ask.answer.err));
+		status = ctl_fail("%s: %s", path,
+		                  ask.answer.err == -ENOENT ? "no such directory"
+		                                            : error_text(ask.answer.err));
 	} else {
 		text[ask.answer.len] = '\0';
 		print(ctl, text, fresh ? "/uncached" : "");

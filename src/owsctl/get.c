@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl get: values alone, or as JSON. */
-#include "names.h"
-#include "reading.h"
-#include "seen.h"
-#include "text.h"
-#include "verbs.h"
-
 #include <errno.h>
 #include <getopt.h>
 #include <stdlib.h>
 #include <unistd.h>
+
+#include "src/owsctl/names.h"
+#include "src/owsctl/reading.h"
+#include "src/owsctl/seen.h"
+#include "src/owsctl/text.h"
+#include "src/owsctl/verbs.h"
 
 /* Bytes from the bus go to a program as they are, and to a terminal without control characters. */
 static void print_text(const struct reading *reading)

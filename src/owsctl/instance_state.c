@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The state of an instance from what is seen of it, and the file that its command line names. */
-#include "instances.h"
-
 #include <string.h>
+
+#include "src/owsctl/instances.h"
 
 enum instance_state instance_state_of(bool has_image, uint32_t state, bool alive, int lock,
                                       bool process)

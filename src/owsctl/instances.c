@@ -1,13 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl instances and remove: which owsds run here or have run, and taking away what they left. */
-#include "instances.h"
-#include "table.h"
-#include "verbs.h"
-#include "json.h"
-#include "when.h"
-
-#include "../shm/remains.h"
-
 #include <errno.h>
 #include <getopt.h>
 #include <limits.h>
@@ -15,21 +7,30 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "src/owsctl/instances.h"
+#include "src/owsctl/json.h"
+#include "src/owsctl/table.h"
+#include "src/owsctl/verbs.h"
+#include "src/owsctl/when.h"
+#include "src/shm/remains.h"
+
 #define FIELD 400
 
+/* clang-format off */
 static const struct table_column columns[] = {
 	{"NAME"}, {"STATE"}, {"PID", .right = true}, {"SINCE", .right = true},
 	{"SIGNALS", .right = true}, {"TARGETS"}, {"CONFIG"},
 };
+/* clang-format on */
 
 struct instance_info {
 	const char *name;
 	enum instance_state state;
-	int pid;          /* 0: not known */
-	int64_t since_ns; /* it began to be so; 0: not known */
-	int signals;      /* -1: not known */
+	int pid;                            /* 0: not known */
+	int64_t since_ns;                   /* it began to be so; 0: not known */
+	int signals;                        /* -1: not known */
 	char targets[FIELD], config[FIELD]; /* "": not known */
-	const char *why;  /* hidden: why; up: what is wrong with its lock; else NULL */
+	const char *why; /* hidden: why; up: what is wrong with its lock; else NULL */
 };
 
 static size_t read_process(int pid, const char *what, char *text, size_t size)
@@ -63,8 +64,8 @@ static bool is_owsd(int pid)
 static void find_config(struct instance_info *info)
 {
 	char line[4096], path[48], folder[FIELD];
-	const char *config = instance_config_of(line, read_process(info->pid, "cmdline", line,
-	                                                           sizeof(line)));
+	const char *config = instance_config_of(
+		line, read_process(info->pid, "cmdline", line, sizeof(line)));
 	ssize_t len = -1;
 
 	if (!config)
@@ -136,12 +137,12 @@ static bool add_row(struct table *table, const struct instance_info *info, const
 		snprintf(signals, sizeof(signals), "%d", info->signals);
 	if (info->since_ns)
 		when_span(now->boot - info->since_ns, span);
-	return table_add(table, (const char *const[]){
-					info->name, instance_state_text(info->state), pid, span, signals,
-					info->targets[0] ? info->targets : "-",
-					info->why         ? info->why
-					: info->config[0] ? info->config
-							  : "-"});
+	return table_add(table, (const char *const[]){info->name, instance_state_text(info->state),
+	                                              pid, span, signals,
+	                                              info->targets[0] ? info->targets : "-",
+	                                              info->why         ? info->why
+	                                              : info->config[0] ? info->config
+	                                                                : "-"});
 }
 
 static void add_json(struct json *json, const struct instance_info *info, const struct when *now)
@@ -235,7 +236,8 @@ static int refuse(const char *name, int err, int pid)
 	switch (-err) {
 	case EBUSY:
 		if (pid)
-			return ctl_fail("owsd %s is running (process %d): it is not removed", name, pid);
+			return ctl_fail("owsd %s is running (process %d): it is not removed", name,
+			                pid);
 		return ctl_fail("owsd %s is running: it is not removed", name);
 	case ENOENT:
 		return ctl_fail("nothing is there of an owsd of the name %s", name);
@@ -244,8 +246,10 @@ static int refuse(const char *name, int err, int pid)
 		return ctl_fail("no right to remove what is left of %s: its owner and root have it",
 		                name);
 	case ENOTEMPTY:
-		return ctl_fail("not all that is left of %s is removed: a directory under one of its names "
-		                "in /dev/shm has files", name);
+		return ctl_fail(
+			"not all that is left of %s is removed: a directory under one of its names "
+			"in /dev/shm has files",
+			name);
 	case EINVAL:
 		return ctl_fail("%s cannot be the name of an instance", ctl_word(name));
 	}
@@ -273,7 +277,7 @@ int verb_remove(struct ctl *ctl, int argc, char **argv)
 
 		err = !segment_name_ok(name)  ? -EINVAL
 		      : is_up(name, &running) ? -EBUSY
-					      : remains_remove(name, &pid, &files);
+		                              : remains_remove(name, &pid, &files);
 		if (err)
 			status = refuse(name, err, pid ? (int)pid : running);
 		else if (!ctl->json)

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* What owsctl prints as JSON, written as it comes. */
-#include "json.h"
-
-#include "../signal/utf8.h"
-
 #include <inttypes.h>
 #include <string.h>
+
+#include "src/owsctl/json.h"
+#include "src/signal/utf8.h"
 
 void json_open(struct json *json, FILE *out)
 {

@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl list: a line for each signal. */
-#include "rows.h"
-#include "table.h"
-#include "verbs.h"
-#include "../signal/value.h"
-
 #include <getopt.h>
 
+#include "src/owsctl/rows.h"
+#include "src/owsctl/table.h"
+#include "src/owsctl/verbs.h"
+#include "src/signal/value.h"
+
+/* clang-format off */
 static const struct table_column columns[] = {
 	{"NAME"}, {"VALUE", .right = true, .most = 40}, {"QUALITY"}, {"ALARM"},
 	{"AGE", .right = true}, {"TYPE"}, {"IO"}, {"TARGET"}, {"PATH"},
 };
+/* clang-format on */
 enum { ALARM = 3 };
 
 static bool add_row(struct table *table, struct ows *h, const struct row *row,
@@ -24,12 +26,14 @@ static bool add_row(struct table *table, struct ows *h, const struct row *row,
 		when_span(reading->value.age_ns, span);
 	if (row->path)
 		ows_target(h, reading->value.target, &target);
-	return table_add(table, (const char *const[]){
-		                        row->name, value, row_quality(row, reading, words),
-		                        standing_text(&row->alarms, alarm), span,
-		                        value_type_name((enum ows_type)reading->value.type),
-		                        !row->path ? "" : row->output ? "out" : "in",
-		                        target.name, row->path ? row->path : ""});
+	return table_add(table,
+	                 (const char *const[]){row->name, value, row_quality(row, reading, words),
+	                                       standing_text(&row->alarms, alarm), span,
+	                                       value_type_name((enum ows_type)reading->value.type),
+	                                       !row->path    ? ""
+	                                       : row->output ? "out"
+	                                                     : "in",
+	                                       target.name, row->path ? row->path : ""});
 }
 
 static bool print_table(struct ows *h, struct rows *rows, struct reading *reading)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Which devices of a configuration stay, are missing or are replaced, and which found are new. */
-#include "merge.h"
-
 #include <string.h>
+
+#include "src/owsctl/merge.h"
 
 static bool same(const uint8_t a[ROM_LEN], const uint8_t b[ROM_LEN])
 {
@@ -72,8 +72,7 @@ static void pair_up(struct merge_device *known, unsigned known_count, struct mer
 
 enum merge_fault merge_decide(struct merge_device *known, unsigned known_count,
                               struct merge_device *found, unsigned found_count,
-                              const struct merge_pair *pairs, unsigned pair_count,
-                              unsigned *wrong)
+                              const struct merge_pair *pairs, unsigned pair_count, unsigned *wrong)
 {
 	for (unsigned i = 0; i < known_count; i++) {
 		bool there = find(found, found_count, known[i].rom) >= 0;

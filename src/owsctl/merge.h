@@ -6,7 +6,7 @@
 #ifndef OWSCTL_MERGE_H
 #define OWSCTL_MERGE_H
 
-#include "../../hal/path.h"
+#include "hal/owfs/path.h"
 
 enum merge_fate {
 	MERGE_STAYS,    /* in the file, and found */
@@ -45,7 +45,6 @@ enum merge_fault {
  */
 enum merge_fault merge_decide(struct merge_device *known, unsigned known_count,
                               struct merge_device *found, unsigned found_count,
-                              const struct merge_pair *pairs, unsigned pair_count,
-                              unsigned *wrong);
+                              const struct merge_pair *pairs, unsigned pair_count, unsigned *wrong);
 
 #endif

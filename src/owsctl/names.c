@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Names as the user writes them. */
-#include "names.h"
-
 #include <fnmatch.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "src/owsctl/names.h"
 
 static int find_record(void *ctx, const char *name, size_t len)
 {

@@ -3,11 +3,11 @@
 #ifndef OWSCTL_NAMES_H
 #define OWSCTL_NAMES_H
 
-#include "../libows/ows.h"
-#include "../signal/attribute.h"
-
 #include <stdbool.h>
 #include <stddef.h>
+
+#include "src/libows/ows.h"
+#include "src/signal/attribute.h"
 
 #define NAMES_MAX (SIGNAL_NAME_MAX + 32)
 

@@ -1,11 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* A target opened for the verbs that look at devices, and questions to it. */
-#include "open.h"
-
-#include "reading.h"
-
-#include "../config/config.h"
-
 #include <errno.h>
 #include <getopt.h>
 #include <poll.h>
@@ -13,8 +7,12 @@
 #include <string.h>
 #include <time.h>
 
-#define S           INT64_C(1000000000)
-#define GRACE_NS    (2 * S) /* a request ends by its deadline; this is for what does not */
+#include "src/config/config.h"
+#include "src/owsctl/open.h"
+#include "src/owsctl/reading.h"
+
+#define S INT64_C(1000000000)
+#define GRACE_NS (2 * S)    /* a request ends by its deadline; this is for what does not */
 #define PROGRESS_NS (5 * S) /* how often the count of answers is printed */
 
 static int64_t boottime(void *ctx)
@@ -141,17 +139,21 @@ int target_open(const struct ctl *ctl, int64_t timeout_ns, struct target *target
 	if (!name)
 		name = target->served.target[0] ? target->served.target : OPEN_DEFAULT_TARGET;
 	target->name = name;
-	target->env = (struct bus_env){.ctx = target, .now = boottime, .wait = wait_fd,
-	                               .answer = take_answer, .event = take_event};
+	target->env = (struct bus_env){.ctx = target,
+	                               .now = boottime,
+	                               .wait = wait_fd,
+	                               .answer = take_answer,
+	                               .event = take_event};
 	status = strcmp(name, "auto") ? open_way(target, name, until, why, sizeof(why))
 	                              : open_auto(target, until, why, sizeof(why));
 	if (status)
 		ctl_fail("%s%s", why,
 		         status == CTL_USAGE || ctl->target ? ""
-		         : !target->served.runs     ? " (-t TARGET names another target)"
-		         : target->served.target[0] ? ""
-		                                    : " (and the owsd that runs here serves no clients: "
-		                                      "ListenSocket in its configuration lets it)");
+		         : !target->served.runs             ? " (-t TARGET names another target)"
+		         : target->served.target[0]
+		                 ? ""
+		                 : " (and the owsd that runs here serves no clients: "
+		                   "ListenSocket in its configuration lets it)");
 	return status;
 }
 
@@ -216,7 +218,8 @@ int target_option(struct ctl *ctl, int argc, char **argv, const char *options, i
 	char all[16];
 	int c;
 
-	snprintf(all, sizeof(all), "%sw:%s", *options == '+' ? "+" : "", options + (*options == '+'));
+	snprintf(all, sizeof(all), "%sw:%s", *options == '+' ? "+" : "",
+	         options + (*options == '+'));
 	while ((c = ctl_option(ctl, argc, argv, all)) == 'w') {
 		if (ctl_seconds(optarg, timeout_ns) && *timeout_ns > 0)
 			continue;

@@ -6,23 +6,22 @@
 #ifndef OWSCTL_OPEN_H
 #define OWSCTL_OPEN_H
 
-#include "../../hal/bus.h"
-#include "served.h"
-#include "verbs.h"
-
-#include "../signal/error.h"
+#include "hal/bus/bus.h"
+#include "src/owsctl/served.h"
+#include "src/owsctl/verbs.h"
+#include "src/signal/error.h"
 
 #define OPEN_DEFAULT_TARGET "localhost:4304"
-#define OPEN_TIMEOUT_NS     INT64_C(20000000000)
+#define OPEN_TIMEOUT_NS INT64_C(20000000000)
 
 struct target {
-	const char *name; /* as given */
+	const char *name;     /* as given */
 	struct served served; /* none was given: of the instance */
-	int64_t timeout_ns; /* for opening, and for each request */
+	int64_t timeout_ns;   /* for opening, and for each request */
 	struct bus *bus;
 	struct bus_env env;
 	bool up, down;
-	bool dead; /* a request was never answered: it is still lent */
+	bool dead;             /* a request was never answered: it is still lent */
 	struct bus_event loss; /* down: why */
 	struct ask *asks;
 	unsigned count, answered;

@@ -1,38 +1,38 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl: look at the signals of owsd and set them; look at devices without owsd. */
-#include "../refused.h"
-#include "../standard.h"
-#include "verbs.h"
-
 #include <getopt.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "src/owsctl/verbs.h"
+#include "src/owsd/standard.h"
+#include "src/text/refused.h"
+
 static const struct verb verbs[] = {
 	{"list", "[-a] [PATTERN...]", "all signals with value, quality, age and path", verb_list},
 	{"get", "NAME...", "values alone, one line for each name", verb_get},
 	{"set", "[-w SECONDS] NAME VALUE [NAME VALUE]...", "set outputs and writable attributes",
-	 verb_set},
+         verb_set},
 	{"watch", "[-al] [-c COUNT] [-t SECONDS] [PATTERN...]", "follow values as they change",
-	 verb_watch},
+         verb_watch},
 	{"wait", "[-t SECONDS] NAME [OP VALUE]", "sleep until a value changes or a condition holds",
-	 verb_wait},
+         verb_wait},
 	{"alarms", "[PATTERN...] | history ... | ack NAME... | -a",
-	 "alarms that stand, and those since the start", verb_alarms},
+         "alarms that stand, and those since the start", verb_alarms},
 	{"stats", "", "owsd itself, its targets and counters", verb_stats},
 	{"instances", "", "the owsds that run here, and those that have run", verb_instances},
 	{"remove", "NAME...", "take away what an instance that ended has left", verb_remove},
-	{"config", "FILE list | add | set | unset | remove | move ...", "look at a configuration and edit it",
-	 verb_config},
+	{"config", "FILE list | add | set | unset | remove | move ...",
+         "look at a configuration and edit it", verb_config},
 	{"dir", "[-t TARGET] [-w SECONDS] [PATH]", "what is in a directory of a target", verb_dir,
-	 .opens = true},
+         .opens = true},
 	{"read", "[-t TARGET] [-w SECONDS] PATH...", "properties of devices, one line for each",
-	 verb_read, .opens = true},
+         verb_read, .opens = true},
 	{"write", "[-t TARGET] [-w SECONDS] PATH VALUE", "write a property of a device", verb_write,
-	 .opens = true},
+         .opens = true},
 	{"scan", "[-t TARGET] [-w SECONDS] [--rio [-i] [--merge FILE [--replace OLD=NEW]...]]",
-	 "the devices that are there, or a configuration for them", verb_scan, .opens = true},
+         "the devices that are there, or a configuration for them", verb_scan, .opens = true},
 };
 enum { JSON = 256 };
 #define USAGE_WIDTH 46 /* what is longer has its meaning in the next line */
@@ -52,7 +52,8 @@ static void usage(FILE *out)
 	      "  --json     print JSON\n"
 	      "  -V -h      print the version; this help, with a verb in front: the verb's\n"
 	      "exit status: 0 done, 1 failed, 2 wrong usage, 3 a value is not good,\n"
-	      "             4 a scan found nothing\n", out);
+	      "             4 a scan found nothing\n",
+	      out);
 }
 
 int main(int argc, char **argv)
@@ -113,8 +114,10 @@ int main(int argc, char **argv)
 		if (strcmp(verbs[i].name, argv[optind]) == 0) {
 			ctl.verb = &verbs[i];
 			if (ctl.target && !verbs[i].opens)
-				return ctl_usage(&ctl, "-t TARGET is for dir, read, write and scan; "
-				                 "%s looks at a running owsd", verbs[i].name);
+				return ctl_usage(&ctl,
+				                 "-t TARGET is for dir, read, write and scan; "
+				                 "%s looks at a running owsd",
+				                 verbs[i].name);
 			return ctl_flush(verbs[i].run(&ctl, argc - optind, argv + optind));
 		}
 	}

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Properties that paths name, held against the tables of the families. */
-#include "property.h"
-#include "names.h"
-
-#include "../../hal/native/family.h"
-#include "../../hal/path.h"
-
 #include <stdio.h>
 #include <string.h>
+
+#include "hal/chips/family.h"
+#include "hal/owfs/path.h"
+#include "src/owsctl/names.h"
+#include "src/owsctl/property.h"
 
 static bool begins(const struct property *property, const char *name, size_t len)
 {

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl read: the value of a path of a target. */
-#include "json.h"
-#include "open.h"
-#include "text.h"
-
 #include <getopt.h>
 #include <unistd.h>
+
+#include "src/owsctl/json.h"
+#include "src/owsctl/open.h"
+#include "src/owsctl/text.h"
 
 #define TEXT_MAX 65536
 
@@ -49,8 +49,11 @@ static int read_one(const struct ctl *ctl, struct json *json, struct target *tar
 {
 	char path[256];
 	bool fresh;
-	struct ask ask = {.req = {.op = BUS_READ, .prio = BUS_GUEST, .path = path,
-	                          .data = (uint8_t *)text, .len = TEXT_MAX}};
+	struct ask ask = {.req = {.op = BUS_READ,
+	                          .prio = BUS_GUEST,
+	                          .path = path,
+	                          .data = (uint8_t *)text,
+	                          .len = TEXT_MAX}};
 	char words[ERROR_WORDS];
 	size_t len = 0;
 	int err;

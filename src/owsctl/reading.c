@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* How owsctl prints a value, its quality and its error, for persons and as JSON. */
-#include "reading.h"
-#include "text.h"
-#include "../signal/quantity.h"
-#include "../signal/value.h"
-
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "src/owsctl/reading.h"
+#include "src/owsctl/text.h"
+#include "src/signal/quantity.h"
+#include "src/signal/value.h"
 
 int reading_get(struct ows *h, int id, int64_t now_ns, struct reading *reading)
 {
@@ -79,8 +79,8 @@ const char *reading_why(const struct reading *reading, char words[READING_WORDS]
 		/* "no such property (check its spelling ...)", and no word of it twice */
 		bool same = strcmp(ows_quality_text(value->quality), error_text(value->err)) == 0;
 
-		snprintf(error, sizeof(error), " (%s)", same ? error_remedy(value->err)
-		                                             : error_words(value->err, own));
+		snprintf(error, sizeof(error), " (%s)",
+		         same ? error_remedy(value->err) : error_words(value->err, own));
 	}
 	if (value->measured_ns)
 		snprintf(words, READING_WORDS, "%s%s, measured %s ago",

@@ -3,14 +3,13 @@
 #ifndef OWSCTL_READING_H
 #define OWSCTL_READING_H
 
-#include "json.h"
-#include "verbs.h"
-#include "when.h"
-
-#include "../signal/error.h"
-
 #include <stdbool.h>
 #include <stddef.h>
+
+#include "src/owsctl/json.h"
+#include "src/owsctl/verbs.h"
+#include "src/owsctl/when.h"
+#include "src/signal/error.h"
 
 #define READING_TEXT 65536 /* the longest text a layout can hold */
 

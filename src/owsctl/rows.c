@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* The signals that patterns select, and what is known of each. */
-#include "rows.h"
-#include "names.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/owsctl/names.h"
+#include "src/owsctl/rows.h"
 
 static int add(struct ows *h, struct rows *rows, const char *name, const struct ows_info *info)
 {
@@ -46,8 +46,7 @@ int rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool d
 	for (int i = 0; err == 0 && i < count; i++) {
 		struct ows_info info;
 
-		if (ows_info(h, i, &info) == 0 &&
-		    names_match(info.name, patterns, pattern_count))
+		if (ows_info(h, i, &info) == 0 && names_match(info.name, patterns, pattern_count))
 			err = add(h, rows, info.name, &info);
 	}
 	if (err)

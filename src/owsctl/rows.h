@@ -3,18 +3,17 @@
 #ifndef OWSCTL_ROWS_H
 #define OWSCTL_ROWS_H
 
-#include "reading.h"
-#include "standing.h"
-
-#include "../signal/value.h"
+#include "src/owsctl/reading.h"
+#include "src/owsctl/standing.h"
+#include "src/signal/value.h"
 
 struct row {
 	int id; /* for ows_get(); right over ows_reopen() */
 	char *name;
-	char *path; /* NULL: a driver signal */
+	char *path;   /* NULL: a driver signal */
 	uint8_t type; /* enum ows_type */
 	bool output, fresh, alarm;
-	struct ows_alarm_state alarms; /* of the last row_read() */
+	struct ows_alarm_state alarms;  /* of the last row_read() */
 	char commanded[VALUE_TEXT_MAX]; /* likewise: the command; "" none, or a string */
 	bool differs;                   /* likewise: it is not the value */
 	/* what was seen last, see row_changed() */

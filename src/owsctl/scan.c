@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl scan: what is on the wires of a target, as a table, as JSON or as a configuration. */
-#include "scan_merge.h"
-#include "table.h"
-
-#include "../../hal/native/family.h"
-
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "hal/chips/family.h"
+#include "src/owsctl/scan_merge.h"
+#include "src/owsctl/table.h"
 
 static const struct table_column columns[] = {
 	{"PATH"}, {"FAMILY"}, {"TYPE"}, {"ALIAS"}, {"BUS"}, {"ALARM"}, {"VALUES"},
@@ -39,7 +38,8 @@ static void show_values(const struct scan_device *device, char *out, size_t size
 		if (!name || used >= size)
 			break;
 		n = snprintf(out + used, size - used, "%s%s=%s%s%s", used ? " " : "", name,
-		             value->err ? "(" : "", value->err ? error_text(value->err) : value->text,
+		             value->err ? "(" : "",
+		             value->err ? error_text(value->err) : value->text,
 		             value->err ? ")" : "");
 		used += n > 0 ? (size_t)n : 0;
 	}
@@ -60,10 +60,9 @@ static bool print_table(const struct scan *scan)
 		snprintf(bus, sizeof(bus), "%s%s", device->location[0] ? device->location : "-",
 		         device->simulated ? " (simulated)" : "");
 		show_values(device, values, sizeof(values));
-		ok = table_add(&table, (const char *const[]){
-			                       device->path, family, device->type,
-			                       device->alias[0] ? device->alias : "-", bus,
-			                       alarm ? alarm : "-", values});
+		ok = table_add(&table, (const char *const[]){device->path, family, device->type,
+		                                             device->alias[0] ? device->alias : "-",
+		                                             bus, alarm ? alarm : "-", values});
 	}
 	table_fit(&table, 0);
 	for (int i = -1; ok && i < (int)scan->count; i++) {
@@ -132,8 +131,10 @@ static int print_rio(const struct ctl *ctl, const struct target *target, const s
 	if (merge->file)
 		return scan_merge(merge, scan, inputs_only);
 	if (served->target[0] && served->cut)
-		return ctl_fail("the targets of owsd %s are too long to be told whole: name them with "
-		                "-t TARGET", ctl->instance);
+		return ctl_fail(
+			"the targets of owsd %s are too long to be told whole: name them with "
+			"-t TARGET",
+			ctl->instance);
 	return served->target[0] ? scan_rio(scan, served->targets, true, inputs_only)
 	                         : scan_rio(scan, target->name, false, inputs_only);
 }
@@ -172,9 +173,10 @@ static int look(struct ctl *ctl, int64_t timeout_ns, bool rio, bool inputs_only,
 		status = rio ? print_rio(ctl, &target, &scan, merge, inputs_only)
 		             : show(ctl, &scan);
 	if (!status && !scan.count) {
-		status = ctl_nothing("%s answers, but no device is there: look at the wires and the "
-		                     "supply of the devices, or name another target with -t TARGET",
-		                     target.name);
+		status = ctl_nothing(
+			"%s answers, but no device is there: look at the wires and the "
+			"supply of the devices, or name another target with -t TARGET",
+			target.name);
 		scan_board(target.name);
 	}
 	target_close(&target);
@@ -202,7 +204,8 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 		else if (c == 'R' && merge.pair_count < SCAN_PAIRS)
 			merge.pair[merge.pair_count++] = optarg;
 		else if (c == 'R')
-			return ctl_usage(ctl, "at most %d devices are replaced at once", SCAN_PAIRS);
+			return ctl_usage(ctl, "at most %d devices are replaced at once",
+			                 SCAN_PAIRS);
 		else
 			return CTL_USAGE;
 	}
@@ -213,7 +216,8 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 	if (merge.file && !rio)
 		return ctl_usage(ctl, "--merge goes with --rio: it makes a configuration");
 	if (merge.pair_count && !merge.file)
-		return ctl_usage(ctl, "--replace goes with --merge FILE, whose devices it replaces");
+		return ctl_usage(ctl,
+		                 "--replace goes with --merge FILE, whose devices it replaces");
 	if (merge.file)
 		status = scan_merge_open(&merge);
 	if (!status)

@@ -3,8 +3,8 @@
 #ifndef OWSCTL_SCAN_H
 #define OWSCTL_SCAN_H
 
-#include "json.h"
-#include "open.h"
+#include "src/owsctl/json.h"
+#include "src/owsctl/open.h"
 
 /* What most people want of a device of some families. */
 struct scan_property {
@@ -17,7 +17,7 @@ struct scan_property {
 
 #define SCAN_PROPERTIES 4
 struct scan_kind {
-	const char *families; /* "22 28" */
+	const char *families;                           /* "22 28" */
 	struct scan_property property[SCAN_PROPERTIES]; /* name NULL behind the last */
 };
 
@@ -26,15 +26,15 @@ struct scan_value {
 	char text[64];
 };
 
-#define SCAN_TYPE  40
+#define SCAN_TYPE 40
 #define SCAN_ALIAS 64
 struct scan_device {
 	char path[24];     /* "/28.551DDF030000" */
 	char location[16]; /* "bus.0" */
 	uint8_t family;
 	bool simulated;
-	char type[SCAN_TYPE];   /* "" not told */
-	char alias[SCAN_ALIAS]; /* "" none */
+	char type[SCAN_TYPE];         /* "" not told */
+	char alias[SCAN_ALIAS];       /* "" none */
 	const struct scan_kind *kind; /* NULL: none of ours */
 	struct scan_value value[SCAN_PROPERTIES];
 };

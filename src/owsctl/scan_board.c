@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "scan.h"
-
-#include "../board/board.h"
-
 #include <string.h>
+
+#include "src/board/board.h"
+#include "src/owsctl/scan.h"
 
 static bool is_hardware(const char *target)
 {

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /* Items of a configuration for devices that were found: their names, text and initial values. */
-#include "scan_item.h"
-
-#include "../config/config.h"
-#include "../config/rio_write.h"
-#include "../signal/value.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/config/config.h"
+#include "src/config/rio_write.h"
+#include "src/owsctl/scan_item.h"
+#include "src/signal/value.h"
+
 bool scan_names_init(struct scan_names *names, size_t room)
 {
 	*names = (struct scan_names){.name = calloc(room + 1, sizeof(*names->name)),
-	                             .room = (unsigned)room, .places = 2};
+	                             .room = (unsigned)room,
+	                             .places = 2};
 	while (names->places < 2 * room)
 		names->places *= 2;
 	names->place = calloc(names->places, sizeof(*names->place));
@@ -39,8 +39,7 @@ static unsigned *find(const struct scan_names *names, const char *name)
 
 	for (const char *p = name; *p; p++)
 		hash = (hash ^ (unsigned char)*p) * 16777619u;
-	for (at = hash & (names->places - 1); names->place[at];
-	     at = (at + 1) & (names->places - 1))
+	for (at = hash & (names->places - 1); names->place[at]; at = (at + 1) & (names->places - 1))
 		if (!strcmp(names->name[names->place[at] - 1], name))
 			break;
 	return &names->place[at];
@@ -106,7 +105,8 @@ static void make_item(struct scan_names *names, const struct scan_device *device
 	char rate[48] = "", init[128] = "";
 
 	if (property->per_factor)
-		snprintf(rate, sizeof(rate), "  PerFactor               %u\n", property->per_factor);
+		snprintf(rate, sizeof(rate), "  PerFactor               %u\n",
+		         property->per_factor);
 	if (property->output)
 		snprintf(init, sizeof(init), "  InitValue               \"%s\"\n",
 		         device->value[i].text);
@@ -119,7 +119,8 @@ static void make_item(struct scan_names *names, const struct scan_device *device
 	        "  IO                      \"%s\"\n"
 	        "%s%s"
 	        "}",
-	        ftell(names->items) > 0 ? "\n" : "", device->type, device->location[0] ? " on " : "", device->location,
+	        ftell(names->items) > 0 ? "\n" : "", device->type,
+	        device->location[0] ? " on " : "", device->location,
 	        device->simulated ? " (simulated)" : "",
 	        property->output ? "; its InitValue is what it was set to when found" : "",
 	        choose(names, device, property), device->path, property->name,

@@ -3,12 +3,11 @@
 #ifndef OWSCTL_SCAN_ITEM_H
 #define OWSCTL_SCAN_ITEM_H
 
-#include "scan.h"
-
-#include "../config/rio.h"
-#include "../signal/attribute.h"
-
 #include <stdio.h>
+
+#include "src/config/rio.h"
+#include "src/owsctl/scan.h"
+#include "src/signal/attribute.h"
 
 #define SCAN_WORDS 32
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "scan.h"
-
 #include <stdio.h>
 #include <string.h>
+
+#include "src/owsctl/scan.h"
 
 /* In periods of 0.1 s: measurements once a second, contacts as fast as it goes. */
 #define MEASURED 10
@@ -12,16 +12,18 @@ static const struct scan_kind kinds[] = {
 	{"22 28 3B 42", {{"temperature12", "temperature", OWS_DOUBLE, .per_factor = MEASURED}}},
 	{"01 14 23 2D", {{"present", "present", OWS_BOOL}}},
 	{"05", {{"sensed", "contact", OWS_BOOL}, {"PIO", "switch", OWS_BOOL, .output = true}}},
-	{"12 29 3A", {{"sensed.BYTE", "inputs", OWS_BYTE},
-	              {"PIO.BYTE", "outputs", OWS_BYTE, .output = true}}},
-	{"26", {{"temperature", "temperature", OWS_DOUBLE, .per_factor = MEASURED},
-	        {"humidity", "humidity", OWS_DOUBLE, .per_factor = MEASURED},
-	        {"VDD", "vdd", OWS_DOUBLE, .per_factor = MEASURED},
-	        {"VAD", "vad", OWS_DOUBLE, .per_factor = MEASURED}}},
-	{"20", {{"volt.A", "volt_a", OWS_DOUBLE, .per_factor = MEASURED},
-	        {"volt.B", "volt_b", OWS_DOUBLE, .per_factor = MEASURED},
-	        {"volt.C", "volt_c", OWS_DOUBLE, .per_factor = MEASURED},
-	        {"volt.D", "volt_d", OWS_DOUBLE, .per_factor = MEASURED}}},
+	{"12 29 3A",
+         {{"sensed.BYTE", "inputs", OWS_BYTE}, {"PIO.BYTE", "outputs", OWS_BYTE, .output = true}}},
+	{"26",
+         {{"temperature", "temperature", OWS_DOUBLE, .per_factor = MEASURED},
+          {"humidity", "humidity", OWS_DOUBLE, .per_factor = MEASURED},
+          {"VDD", "vdd", OWS_DOUBLE, .per_factor = MEASURED},
+          {"VAD", "vad", OWS_DOUBLE, .per_factor = MEASURED}}},
+	{"20",
+         {{"volt.A", "volt_a", OWS_DOUBLE, .per_factor = MEASURED},
+          {"volt.B", "volt_b", OWS_DOUBLE, .per_factor = MEASURED},
+          {"volt.C", "volt_c", OWS_DOUBLE, .per_factor = MEASURED},
+          {"volt.D", "volt_d", OWS_DOUBLE, .per_factor = MEASURED}}},
 	{"1D", {{"counter.A", "counter_a", OWS_DWORD}, {"counter.B", "counter_b", OWS_DWORD}}},
 };
 

@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* scan --rio --merge FILE: the file as it is, with its new devices, and what is missing told. */
-#include "scan_merge.h"
-#include "merge.h"
-#include "scan_item.h"
-
-#include "../config/edit.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "src/config/edit.h"
+#include "src/owsctl/merge.h"
+#include "src/owsctl/scan_item.h"
+#include "src/owsctl/scan_merge.h"
 
 #define NAMES_TEXT 160
 
@@ -56,8 +55,10 @@ int scan_merge_open(struct scan_merge *merge)
 	int err;
 
 	if (is_stdout(merge->file))
-		return ctl_fail("%s is where the output goes: what was in it is lost before it can be "
-		                "read. Write to another file, and rename that", merge->file);
+		return ctl_fail(
+			"%s is where the output goes: what was in it is lost before it can be "
+			"read. Write to another file, and rename that",
+			merge->file);
 	err = rio_read(merge->file, &report, &text, &len);
 	if (err)
 		return err == -ENOMEM ? ctl_fail("no memory") : CTL_FAILED;
@@ -194,7 +195,8 @@ static bool parse_pair(struct work *work, const char *text, struct merge_pair *p
 	for (unsigned i = 0; i < work->item_count; i++) {
 		const struct item *item = &work->item[i];
 
-		if (item->device < 0 || strlen(item->name) != len || memcmp(item->name, text, len) != 0)
+		if (item->device < 0 || strlen(item->name) != len ||
+		    memcmp(item->name, text, len) != 0)
 			continue;
 		memcpy(pair->old_rom, work->known[item->device].rom, ROM_LEN);
 		return true;
@@ -266,8 +268,10 @@ static void suggest(const struct work *work, const struct merge_device *missing,
 		if (found->fate != MERGE_NEW || found->rom[0] != missing->rom[0])
 			continue;
 		id_of(found, new);
-		ctl_fail("replaced? %s: %s is missing, %s of the same family is new; if it took the "
-		         "place: --replace %s=%s", names, old, new, old, new);
+		ctl_fail(
+			"replaced? %s: %s is missing, %s of the same family is new; if it took the "
+			"place: --replace %s=%s",
+			names, old, new, old, new);
 	}
 }
 

@@ -3,14 +3,13 @@
 #ifndef OWSCTL_SCAN_MERGE_H
 #define OWSCTL_SCAN_MERGE_H
 
-#include "scan.h"
-
-#include "../config/rio.h"
+#include "src/config/rio.h"
+#include "src/owsctl/scan.h"
 
 #define SCAN_PAIRS 64
 
 struct scan_merge {
-	const char *file; /* NULL: nothing is to be merged */
+	const char *file;             /* NULL: nothing is to be merged */
 	const char *pair[SCAN_PAIRS]; /* OLD=NEW, as given */
 	unsigned pair_count;
 	struct rio *rio;

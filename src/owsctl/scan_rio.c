@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* scan --rio: a configuration made of what was found. */
-#include "scan_item.h"
-
-#include "../config/edit.h"
-#include "../config/rio_write.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "src/config/edit.h"
+#include "src/config/rio_write.h"
+#include "src/owsctl/scan_item.h"
 
 static struct rio_node *driver_of(struct rio *rio)
 {
@@ -47,9 +46,10 @@ int scan_rio(const struct scan *scan, const char *target, bool several, bool inp
 	if (err)
 		status = ctl_fail("%s", err == -ENOMEM ? "no memory" : strerror(-err));
 	else if (!names.count)
-		status = ctl_nothing("%s has %u device%s, and none that a configuration could be made "
-		                     "for",
-		                     target, scan->count, scan->count == 1 ? "" : "s");
+		status = ctl_nothing(
+			"%s has %u device%s, and none that a configuration could be made "
+			"for",
+			target, scan->count, scan->count == 1 ? "" : "s");
 	else if ((status = scan_check(rio, target)) == CTL_DONE)
 		fwrite(rio->text, 1, rio->len, stdout);
 	if (rio)

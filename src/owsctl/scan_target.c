@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* What owsctl scan asks a target for: its devices and their properties. */
-#include "scan.h"
-#include "text.h"
-
-#include "../../hal/path.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/owfs/path.h"
+#include "src/owsctl/scan.h"
+#include "src/owsctl/text.h"
+
 #define LISTING_MAX (256u * 1024)
-#define BUSES_MAX   256
+#define BUSES_MAX 256
 
 /* What is asked of a device beside the properties of its kind. */
 enum { ASK_TYPE, ASK_ALIAS, ASK_PROPERTIES, ASKS = ASK_PROPERTIES + SCAN_PROPERTIES };
@@ -31,8 +30,12 @@ static int by_path(const void *a, const void *b)
 /* The listing of path in text (LISTING_MAX + 1 bytes); the error. */
 static int list(struct target *target, const char *path, bool fresh, char *text)
 {
-	struct ask ask = {.req = {.op = BUS_DIR, .prio = BUS_GUEST, .path = path, .fresh = fresh,
-	                          .data = (uint8_t *)text, .len = LISTING_MAX}};
+	struct ask ask = {.req = {.op = BUS_DIR,
+	                          .prio = BUS_GUEST,
+	                          .path = path,
+	                          .fresh = fresh,
+	                          .data = (uint8_t *)text,
+	                          .len = LISTING_MAX}};
 	int err = target_ask_one(target, &ask);
 
 	text[err ? 0 : ask.answer.len] = '\0';
@@ -152,16 +155,20 @@ static int look(struct target *target, struct scan *scan)
 			continue;
 		snprintf(question->path, sizeof(question->path), "%s/%s", device->path, name);
 		asks[count++].req = (struct bus_req){
-			.op = BUS_READ, .prio = BUS_GUEST, .path = question->path,
+			.op = BUS_READ,
+			.prio = BUS_GUEST,
+			.path = question->path,
 			.fresh = i % ASKS >= ASK_PROPERTIES &&
-			         device->kind->property[i % ASKS - ASK_PROPERTIES].output,
-			.data = (uint8_t *)question->text, .len = sizeof(question->text)};
+		                 device->kind->property[i % ASKS - ASK_PROPERTIES].output,
+			.data = (uint8_t *)question->text,
+			.len = sizeof(question->text)};
 	}
 	target_ask(target, asks, count);
 	count = 0;
 	for (unsigned i = 0; i < room; i++)
 		if (property_of(&scan->device[i / ASKS], i % ASKS)) {
-			take(&scan->device[i / ASKS], i % ASKS, &asks[count], questions[count].text);
+			take(&scan->device[i / ASKS], i % ASKS, &asks[count],
+			     questions[count].text);
 			count++;
 		}
 	/* A dead target is not stepped again, so nothing is written to what is still lent to it. */

@@ -6,10 +6,6 @@
  *     START              of owsd, in nanoseconds: what another owsd counted means nothing
  *     OCCURRENCES NAME   of each signal whose _Alarm was read
  */
-#include "seen.h"
-
-#include "names.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
@@ -19,6 +15,9 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "src/owsctl/names.h"
+#include "src/owsctl/seen.h"
 
 #define TEXT_MAX (1024 * 1024)
 

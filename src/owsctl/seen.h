@@ -2,7 +2,7 @@
 #ifndef OWSCTL_SEEN_H
 #define OWSCTL_SEEN_H
 
-#include "reading.h"
+#include "src/owsctl/reading.h"
 
 /*
  * name is the name that was read into reading, with the id. If it is an _Alarm that this user's

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "served.h"
-#include "when.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "src/owsctl/served.h"
+#include "src/owsctl/when.h"
 
 /* The shared memory has so much of a target's text. */
 #define NAME_MOST 103
@@ -58,6 +58,7 @@ int served_find(const struct ctl *ctl, struct served *served)
 		return ctl_fail("owsd %s is not running", ctl->instance);
 	if (ctl->named && !served->target[0])
 		return ctl_fail("owsd %s serves no clients: ListenSocket in its configuration or "
-		                "its option -l lets it", ctl->instance);
+		                "its option -l lets it",
+		                ctl->instance);
 	return CTL_DONE;
 }

@@ -3,9 +3,9 @@
 #ifndef OWSCTL_SERVED_H
 #define OWSCTL_SERVED_H
 
-#include "verbs.h"
-
 #include <stddef.h>
+
+#include "src/owsctl/verbs.h"
 
 struct served {
 	bool runs;          /* there is an owsd of that name, and it lives */

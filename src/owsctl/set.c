@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* The verb set: values checked, set, and waited for until the bus has them. */
-#include "names.h"
-#include "reading.h"
-#include "verbs.h"
-#include "../shm/remains.h"
-#include "../signal/value.h"
-
 #include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/owsctl/names.h"
+#include "src/owsctl/reading.h"
+#include "src/owsctl/verbs.h"
+#include "src/shm/remains.h"
+#include "src/signal/value.h"
 
 struct order {
 	const char *name;
@@ -120,8 +120,9 @@ static int send(struct ows *h, struct order *order)
 		return CTL_DONE;
 	case ESTALE:
 		ows_daemon(h, ows_now(), &daemon);
-		return daemon.alive ? ctl_fail("%s: owsd is just starting again, try again", order->name)
-		                    : ctl_fail("%s was not set: owsd is not running", order->name);
+		return daemon.alive
+		               ? ctl_fail("%s: owsd is just starting again, try again", order->name)
+		               : ctl_fail("%s was not set: owsd is not running", order->name);
 	case EACCES:
 		return ctl_fail("%s is not writable: it is an input, and its _WriteEnable is 0",
 		                order->name);
@@ -218,8 +219,8 @@ static void say_why(struct ows *h, const struct order *order, const char *second
 	         reading->value.err)
 		ctl_fail("%s was not confirmed: %s", order->name, why_not(reading, words));
 	else
-		ctl_fail("%s was not confirmed within %s s: its turn has not come",
-		         order->name, seconds);
+		ctl_fail("%s was not confirmed within %s s: its turn has not come", order->name,
+		         seconds);
 }
 
 static void print_json(const struct order *orders, int count, bool waited)

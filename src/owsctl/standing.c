@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The alarms of a signal that stand now: its device alarm and its limit alarm, in words. */
-#include "standing.h"
-
 #include <errno.h>
 #include <stdio.h>
+
+#include "src/owsctl/standing.h"
 
 struct ows_alarm_state standing_of(struct ows *h, int id)
 {
@@ -46,8 +46,8 @@ const char *standing_text(const struct ows_alarm_state *state, char words[STANDI
 	else if (state->limit_state == OWS_LIMIT_NORMAL)
 		snprintf(words, STANDING_WORDS, "%s", device);
 	else
-		snprintf(words, STANDING_WORDS, "%s%s%s%s%s", device, *device ? "; " : "", mark, kind,
-		         end);
+		snprintf(words, STANDING_WORDS, "%s%s%s%s%s", device, *device ? "; " : "", mark,
+		         kind, end);
 	return words;
 }
 

@@ -3,11 +3,10 @@
 #ifndef OWSCTL_STANDING_H
 #define OWSCTL_STANDING_H
 
-#include "json.h"
-
-#include "../libows/ows.h"
-
 #include <stdbool.h>
+
+#include "src/libows/ows.h"
+#include "src/owsctl/json.h"
 
 /* Of the signal of an id of ows_find(); nothing stands where nothing is known, as of the driver. */
 struct ows_alarm_state standing_of(struct ows *h, int id);

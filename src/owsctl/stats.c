@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl stats: owsd itself, its targets and its counters; of an owsd that ended, the last ones. */
-#include "json.h"
-#include "verbs.h"
-#include "when.h"
-
 #include <getopt.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "src/owsctl/json.h"
+#include "src/owsctl/verbs.h"
+#include "src/owsctl/when.h"
 
 static const char *daemon_state(const struct ows_daemon *daemon)
 {

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* A table of text cells: collected, fitted into the terminal, printed line by line. */
-#include "table.h"
-#include "text.h"
-
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/owsctl/table.h"
+#include "src/owsctl/text.h"
+
 #define CELL 512 /* bytes */
-#define GAP  2
-#define LEAST 4  /* a column is not made narrower than that */
+#define GAP 2
+#define LEAST 4 /* a column is not made narrower than that */
 
 void table_init(struct table *table, const struct table_column *columns, unsigned count)
 {
@@ -174,8 +174,9 @@ static unsigned behind(const struct table *table, unsigned i, const char *cell, 
 
 	if (fraction < 0 || table->width[i] < table->natural[i])
 		return 0;
-	return table->fraction[i] - (unsigned)fraction < pad ? table->fraction[i] - (unsigned)fraction
-	                                                     : pad;
+	return table->fraction[i] - (unsigned)fraction < pad
+	               ? table->fraction[i] - (unsigned)fraction
+	               : pad;
 }
 
 size_t table_line(const struct table *table, int row, char *line, size_t size)

@@ -10,19 +10,19 @@
 
 struct table_column {
 	const char *title;
-	bool right;       /* aligned to the right; numbers at their decimal points */
-	unsigned drop;    /* left out in a narrow terminal, greatest first; 0: never */
-	bool spare;       /* left out before another column is cut */
-	unsigned shrink;  /* cut down to that many columns before one is left out; 0: not */
-	unsigned most;    /* cut at that many columns; 0: no limit */
+	bool right;      /* aligned to the right; numbers at their decimal points */
+	unsigned drop;   /* left out in a narrow terminal, greatest first; 0: never */
+	bool spare;      /* left out before another column is cut */
+	unsigned shrink; /* cut down to that many columns before one is left out; 0: not */
+	unsigned most;   /* cut at that many columns; 0: no limit */
 };
 
 struct table {
 	const struct table_column *columns;
 	unsigned count;
-	unsigned least[TABLE_COLUMNS];   /* not narrower than that, if there is room; caller's */
-	bool absent[TABLE_COLUMNS];      /* not shown, however much room there is; caller's */
-	unsigned natural[TABLE_COLUMNS]; /* before fitting */
+	unsigned least[TABLE_COLUMNS];    /* not narrower than that, if there is room; caller's */
+	bool absent[TABLE_COLUMNS];       /* not shown, however much room there is; caller's */
+	unsigned natural[TABLE_COLUMNS];  /* before fitting */
 	unsigned fraction[TABLE_COLUMNS]; /* of right ones: columns from the decimal point on */
 	unsigned width[TABLE_COLUMNS];
 	bool shown[TABLE_COLUMNS];

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "terminal.h"
-
 #include <errno.h>
 #include <poll.h>
 #include <signal.h>
@@ -9,6 +7,8 @@
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
+
+#include "src/owsctl/terminal.h"
 
 static volatile sig_atomic_t end_asked, stop_asked;
 static struct {
@@ -129,13 +129,13 @@ static const struct {
 	const char *bytes;
 	enum terminal_key key;
 } keys[] = {
-	{"\033[A", KEY_UP},        {"\033OA", KEY_UP},    {"\033[B", KEY_DOWN},
-	{"\033OB", KEY_DOWN},      {"\033[5~", KEY_PAGE_UP}, {"\033[6~", KEY_PAGE_DOWN},
-	{"\033[H", KEY_FIRST},     {"\033OH", KEY_FIRST}, {"\033[1~", KEY_FIRST},
-	{"\033[F", KEY_LAST},      {"\033OF", KEY_LAST},  {"\033[4~", KEY_LAST},
-	{"k", KEY_UP},             {"j", KEY_DOWN},       {"b", KEY_PAGE_UP},
-	{" ", KEY_PAGE_DOWN},      {"g", KEY_FIRST},      {"G", KEY_LAST},
-	{"q", KEY_END},            {"Q", KEY_END},        {"\004", KEY_END},
+	{"\033[A", KEY_UP},    {"\033OA", KEY_UP},       {"\033[B", KEY_DOWN},
+	{"\033OB", KEY_DOWN},  {"\033[5~", KEY_PAGE_UP}, {"\033[6~", KEY_PAGE_DOWN},
+	{"\033[H", KEY_FIRST}, {"\033OH", KEY_FIRST},    {"\033[1~", KEY_FIRST},
+	{"\033[F", KEY_LAST},  {"\033OF", KEY_LAST},     {"\033[4~", KEY_LAST},
+	{"k", KEY_UP},         {"j", KEY_DOWN},          {"b", KEY_PAGE_UP},
+	{" ", KEY_PAGE_DOWN},  {"g", KEY_FIRST},         {"G", KEY_LAST},
+	{"q", KEY_END},        {"Q", KEY_END},           {"\004", KEY_END},
 };
 
 enum terminal_key terminal_key(void)

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* How many columns a text takes on a terminal, and what must not reach it. */
-#include "text.h"
-
-#include "../signal/utf8.h"
-
 #include <stdbool.h>
 #include <string.h>
+
+#include "src/owsctl/text.h"
+#include "src/signal/utf8.h"
 
 struct range {
 	int32_t first, last;
@@ -52,7 +51,7 @@ unsigned text_columns(const char *text)
 
 unsigned text_clean(const char *text, size_t len, unsigned columns, char *out, size_t room)
 {
-	size_t size = 0, mark = 0;       /* mark: where '~' goes if the rest does not fit */
+	size_t size = 0, mark = 0; /* mark: where '~' goes if the rest does not fit */
 	unsigned used = 0, mark_used = 0;
 
 	if (room == 0)

@@ -6,9 +6,9 @@
 #ifndef OWSCTL_VERBS_H
 #define OWSCTL_VERBS_H
 
-#include "../libows/ows.h"
-
 #include <stdbool.h>
+
+#include "src/libows/ows.h"
 
 enum ctl_status {
 	CTL_DONE = 0,
@@ -21,7 +21,7 @@ enum ctl_status {
 struct verb;
 struct ctl {
 	const char *instance;
-	bool named; /* -n: the instance was given */
+	bool named;         /* -n: the instance was given */
 	const char *target; /* -t; NULL: none given */
 	bool json;
 	const struct verb *verb; /* the one in work */

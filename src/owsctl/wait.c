@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl wait: until a value changes or fulfils a condition. */
-#include "condition.h"
-#include "names.h"
-#include "rows.h"
-#include "seen.h"
-#include "verbs.h"
-
 #include <errno.h>
 #include <getopt.h>
 
+#include "src/owsctl/condition.h"
+#include "src/owsctl/names.h"
+#include "src/owsctl/rows.h"
+#include "src/owsctl/seen.h"
+#include "src/owsctl/verbs.h"
+
 #define NO_LIMIT INT64_MAX
-#define SLICE    INT64_C(250000000) /* a value that grows old or a dead owsd sends no news */
+#define SLICE INT64_C(250000000) /* a value that grows old or a dead owsd sends no news */
 
 struct waiting {
 	const struct ctl *ctl;
@@ -87,8 +87,8 @@ static int begin(struct ctl *ctl, struct waiting *waiting, const char *value)
 	int signal, err;
 
 	waiting->id = ows_find(waiting->h, waiting->name);
-	if (waiting->id < 0 || names_lookup(waiting->h, ctl->instance, waiting->name, &signal,
-	                                    &attribute) != 0)
+	if (waiting->id < 0 ||
+	    names_lookup(waiting->h, ctl->instance, waiting->name, &signal, &attribute) != 0)
 		return ctl_unknown(waiting->h, waiting->name);
 	if (!attribute_table[attribute].readable)
 		return ctl_fail("%s can only be set", waiting->name);
@@ -150,8 +150,7 @@ int verb_wait(struct ctl *ctl, int argc, char **argv)
 		if (status)
 			return status;
 		if (optind < argc)
-			return ctl_usage(ctl, "%s is no comparison (= != < <= > >=)",
-			                 argv[optind]);
+			return ctl_usage(ctl, "%s is no comparison (= != < <= > >=)", argv[optind]);
 	}
 	status = ctl_open(ctl, OWS_READ, &waiting.h);
 	if (status)

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl watch: follow signals over changes and restarts, as lines or as a live table. */
-#include "watch.h"
-#include "terminal.h"
-#include "verbs.h"
-
 #include <errno.h>
 #include <getopt.h>
 #include <stdlib.h>
@@ -11,8 +7,12 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "src/owsctl/terminal.h"
+#include "src/owsctl/verbs.h"
+#include "src/owsctl/watch.h"
+
 #define SHORTEST_SLEEP INT64_C(10000000)
-#define LONGEST_SLEEP  INT64_C(500000000) /* ages and a dead owsd are seen without news */
+#define LONGEST_SLEEP INT64_C(500000000) /* ages and a dead owsd are seen without news */
 
 bool watch_over(const struct watch *watch)
 {
@@ -68,7 +68,9 @@ int watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns)
 static void say_event(struct watch *watch, enum watch_event event)
 {
 	static const char *const words[] = {
-		[WATCH_RESTARTED] = "restarted", [WATCH_LOST] = "lost", [WATCH_BACK] = "back",
+		[WATCH_RESTARTED] = "restarted",
+		[WATCH_LOST] = "lost",
+		[WATCH_BACK] = "back",
 	};
 	char text[WHEN_TEXT];
 	struct when now = when_now();
@@ -88,8 +90,7 @@ static void say_event(struct watch *watch, enum watch_event event)
 	case WATCH_NOTHING:
 		return;
 	case WATCH_RESTARTED:
-		ctl_fail("owsd %s was started anew or has reloaded its file",
-		         watch->ctl->instance);
+		ctl_fail("owsd %s was started anew or has reloaded its file", watch->ctl->instance);
 		return;
 	case WATCH_LOST:
 		ctl_alive(watch->ctl, watch->h, ows_now());

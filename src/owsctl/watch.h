@@ -3,7 +3,7 @@
 #ifndef OWSCTL_WATCH_H
 #define OWSCTL_WATCH_H
 
-#include "rows.h"
+#include "src/owsctl/rows.h"
 
 struct watch {
 	struct ctl *ctl;

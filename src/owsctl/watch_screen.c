@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 /* The live table of owsctl watch on a terminal. */
-#include "table.h"
-#include "terminal.h"
-#include "text.h"
-#include "verbs.h"
-#include "watch.h"
-
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#define BETWEEN_KEYS     INT64_C(50000000)
+#include "src/owsctl/table.h"
+#include "src/owsctl/terminal.h"
+#include "src/owsctl/text.h"
+#include "src/owsctl/verbs.h"
+#include "src/owsctl/watch.h"
+
+#define BETWEEN_KEYS INT64_C(50000000)
 #define BETWEEN_PICTURES INT64_C(100000000)
-#define LONGEST_PICTURE  INT64_C(1000000000) /* ages count up without news */
+#define LONGEST_PICTURE INT64_C(1000000000) /* ages count up without news */
 
 static const struct table_column columns[] = {
 	{"NAME"},
@@ -30,7 +30,7 @@ enum { ALARM = 3, TARGET = 6 };
 struct screen {
 	struct watch *watch;
 	unsigned lines, width;
-	int top; /* first row shown */
+	int top;                 /* first row shown */
 	unsigned least[COLUMNS]; /* widths of the last picture, so that it does not jump */
 	int not_good, in_alarm;
 	bool alarms; /* signals may have some */
@@ -107,10 +107,10 @@ static bool add_row(struct watch *watch, struct table *table, const struct row *
 		when_span(reading->value.age_ns, span);
 	if (row->path)
 		ows_target(watch->h, reading->value.target, &target);
-	return table_add(table, (const char *const[]){row->name, value,
-	                                              row_quality(row, reading, words),
-	                                              standing_text(&row->alarms, alarm), span,
-	                                              row->path ? row->path : "", target.name});
+	return table_add(table,
+	                 (const char *const[]){row->name, value, row_quality(row, reading, words),
+	                                       standing_text(&row->alarms, alarm), span,
+	                                       row->path ? row->path : "", target.name});
 }
 
 /* Red for what is not good, yellow for an alarm that wants eyes; the words say both. */
@@ -118,7 +118,7 @@ static const char *style_of(const struct row *row, const struct reading *reading
 {
 	if (getenv("NO_COLOR"))
 		return "";
-	return !reading_good(reading)                ? "\033[31m"
+	return !reading_good(reading)              ? "\033[31m"
 	       : standing_wants_eyes(&row->alarms) ? "\033[33m"
 	                                           : "";
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "when.h"
-#include "../libows/ows.h"
-
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
+
+#include "src/libows/ows.h"
+#include "src/owsctl/when.h"
 
 #define SECOND INT64_C(1000000000)
 

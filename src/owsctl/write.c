@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl write: a value to a path of a target. */
-#include "open.h"
-
 #include <getopt.h>
 #include <string.h>
+
+#include "src/owsctl/open.h"
 
 int verb_write(struct ctl *ctl, int argc, char **argv)
 {

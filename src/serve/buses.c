@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "buses.h"
-
 #include <string.h>
+
+#include "src/serve/buses.h"
 
 int buses_number(struct buses *buses, unsigned target, unsigned number)
 {

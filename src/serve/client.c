@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Connections: bytes in, bytes out, time limits. What a request means is not known here. */
-#include "server.h"
-
-#include "hal/owserver/frame.h"
-
 #include <errno.h>
 #include <string.h>
 #include <sys/epoll.h>
@@ -11,9 +7,12 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "hal/owfs/frame.h"
+#include "src/serve/server.h"
+
 #define FIRST_READ AREA_ANSWER
 
-static const uint8_t alive_frame[FRAME_HEADER] = { [4] = 0xff, 0xff, 0xff, 0xff };
+static const uint8_t alive_frame[FRAME_HEADER] = {[4] = 0xff, 0xff, 0xff, 0xff};
 
 static unsigned index_of(const struct serve *s, const struct client *c)
 {
@@ -58,7 +57,7 @@ void client_enter(struct serve *s, struct client *c, enum client_state state)
 
 struct client *client_open(struct serve *s, int fd, bool network)
 {
-	struct epoll_event event = { .events = EPOLLIN | EPOLLOUT | EPOLLRDHUP | EPOLLET };
+	struct epoll_event event = {.events = EPOLLIN | EPOLLOUT | EPOLLRDHUP | EPOLLET};
 	unsigned index = s->free[s->free_count - 1];
 	struct client *c = &s->clients[index];
 	bool queued = c->queued;
@@ -175,7 +174,8 @@ void client_event(struct serve *s, struct client *c, uint32_t events)
 	c->ended |= (events & EPOLLRDHUP) != 0;
 	if (events & (EPOLLIN | EPOLLRDHUP))
 		c->readable = true;
-	if (c->state == CLIENT_SENDING ? events & EPOLLOUT : c->state == CLIENT_READING && c->readable)
+	if (c->state == CLIENT_SENDING ? events & EPOLLOUT
+	                               : c->state == CLIENT_READING && c->readable)
 		client_ready(s, c);
 }
 

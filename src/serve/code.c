@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The return codes of the served protocol, and their texts. */
-#include "code.h"
-
 #include <errno.h>
 #include <string.h>
+
+#include "src/serve/code.h"
 
 int32_t code_of(int err)
 {
@@ -38,21 +38,21 @@ static const struct {
 	uint8_t code;
 	const char *text;
 } texts[] = {
-	{ 0, "good" },
-	{ 1, "no such device or property" },
-	{ 5, "the device or the bus failed" },
-	{ 14, "not a value of this property" },
-	{ 16, "busy" },
-	{ 19, "no such device" },
-	{ 20, "not a directory" },
-	{ 21, "is a directory" },
-	{ 22, "not a value of this property" },
-	{ 30, "writing is not allowed here" },
-	{ 34, "out of range" },
-	{ 42, "unknown request" },
-	{ 74, "a request without a path" },
-	{ 90, "a size that cannot be served" },
-	{ 95, "the property cannot be read or written so" },
+	{0, "good"},
+	{1, "no such device or property"},
+	{5, "the device or the bus failed"},
+	{14, "not a value of this property"},
+	{16, "busy"},
+	{19, "no such device"},
+	{20, "not a directory"},
+	{21, "is a directory"},
+	{22, "not a value of this property"},
+	{30, "writing is not allowed here"},
+	{34, "out of range"},
+	{42, "unknown request"},
+	{74, "a request without a path"},
+	{90, "a size that cannot be served"},
+	{95, "the property cannot be read or written so"},
 };
 
 const char *code_text(unsigned code)

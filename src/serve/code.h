@@ -11,14 +11,14 @@
 
 /* What is not an error of a bus. */
 #define CODE_NO_SUCH_PATH (-1)
-#define CODE_READ_ONLY    (-30)
-#define CODE_BAD_TYPE     (-42)
-#define CODE_EMPTY        (-74)
-#define CODE_BAD_SIZE     (-90)
+#define CODE_READ_ONLY (-30)
+#define CODE_BAD_TYPE (-42)
+#define CODE_EMPTY (-74)
+#define CODE_BAD_SIZE (-90)
 
 #define CODE_COUNT 211
 
-/* The return code of a negative errno of a bus (hal/bus.h) or of the served namespace. */
+/* The return code of a negative errno of a bus (hal/bus/bus.h) or of the served namespace. */
 int32_t code_of(int err);
 /* What a code means; never NULL, without a comma. */
 const char *code_text(unsigned code);

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-#include "directory.h"
-
-#include "hal/owserver/frame.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/owfs/frame.h"
+#include "src/serve/directory.h"
+
 /* What stands in the root beside devices and buses, in the order of owserver. */
-static const char *const in_root[] = { "uncached", "settings", "system", "statistics", "structure",
-	                               "simultaneous", "alarm", "signals", NULL };
+static const char *const in_root[] = {"uncached",   "settings",  "system",
+                                      "statistics", "structure", "simultaneous",
+                                      "alarm",      "signals",   NULL};
 #define IN_UNCACHED 1 /* from there in /uncached */
 
 /* What the protocol tells of the families in a list: as owserver answers it for each. */
@@ -25,15 +25,17 @@ static const struct {
 	uint16_t flags;
 	uint8_t families[20];
 } family_flags[] = {
-	{ FLAG_RESUME, { 0x18, 0x1c, 0x29, 0x2c, 0x2d, 0x37, 0x3a, 0x41, 0x43, 0xed, 0xfc } },
-	{ FLAG_ALARM, { 0x04, 0x05, 0x10, 0x12, 0x1c, 0x20, 0x21, 0x22, 0x28, 0x29, 0x2c, 0x35, 0x3b,
-	                0x41, 0x42, 0x7e, 0xdd, 0xfc, 0xff } },
-	{ FLAG_OVERDRIVE, { 0x0a, 0x0c, 0x0f, 0x18, 0x1a, 0x1c, 0x1d, 0x20, 0x21, 0x23, 0x29, 0x2c,
-	                    0x2d, 0x37, 0x3a, 0x41, 0x43, 0x8f } },
-	{ FLAG_CHAIN, { 0x42 } },
-	{ FLAG_VOLT, { 0x1e, 0x20, 0x26, 0xa6 } },
-	{ FLAG_TEMPERATURE, { 0x10, 0x1e, 0x21, 0x22, 0x26, 0x28, 0x3b, 0x41, 0x42, 0x7e, 0xa6,
-	                      0xfe } },
+	{FLAG_RESUME, {0x18, 0x1c, 0x29, 0x2c, 0x2d, 0x37, 0x3a, 0x41, 0x43, 0xed, 0xfc}},
+	{FLAG_ALARM,
+         {0x04, 0x05, 0x10, 0x12, 0x1c, 0x20, 0x21, 0x22, 0x28, 0x29, 0x2c, 0x35, 0x3b, 0x41, 0x42,
+          0x7e, 0xdd, 0xfc, 0xff}},
+	{FLAG_OVERDRIVE,
+         {0x0a, 0x0c, 0x0f, 0x18, 0x1a, 0x1c, 0x1d, 0x20, 0x21, 0x23, 0x29, 0x2c, 0x2d, 0x37, 0x3a,
+          0x41, 0x43, 0x8f}},
+	{FLAG_CHAIN, {0x42}},
+	{FLAG_VOLT, {0x1e, 0x20, 0x26, 0xa6}},
+	{FLAG_TEMPERATURE,
+         {0x10, 0x1e, 0x21, 0x22, 0x26, 0x28, 0x3b, 0x41, 0x42, 0x7e, 0xa6, 0xfe}},
 };
 
 static uint32_t flags_of(uint8_t family)
@@ -48,7 +50,8 @@ static uint32_t flags_of(uint8_t family)
 
 void directory_begin(struct directory *directory)
 {
-	directory->len = directory->count = directory->flags = directory->mark = directory->out_len = 0;
+	directory->len = directory->count = directory->flags = directory->mark =
+		directory->out_len = 0;
 }
 
 uint8_t *directory_room(struct directory *directory, uint32_t *room)
@@ -124,7 +127,7 @@ static bool keeps(const struct node *node, struct buses *buses, unsigned target,
 }
 
 void directory_take(struct directory *directory, const struct node *node, struct buses *buses,
-                  unsigned target, uint32_t len)
+                    unsigned target, uint32_t len)
 {
 	char *from = directory->raw + directory->len, *end = from + len;
 	bool others = directory->len != 0;
@@ -190,11 +193,13 @@ static bool put(struct directory *directory, const void *bytes, size_t len)
 	return true;
 }
 
-static bool put_header(struct directory *directory, const struct directory_form *form, uint32_t payload,
-                       uint32_t size, uint32_t flags)
+static bool put_header(struct directory *directory, const struct directory_form *form,
+                       uint32_t payload, uint32_t size, uint32_t flags)
 {
-	struct frame_header h = { .payload = (int32_t)payload, .flags = form->flags,
-		                  .size = (int32_t)size, .offset = (int32_t)flags };
+	struct frame_header h = {.payload = (int32_t)payload,
+	                         .flags = form->flags,
+	                         .size = (int32_t)size,
+	                         .offset = (int32_t)flags};
 	uint8_t bytes[FRAME_HEADER];
 
 	frame_put_header(bytes, &h);
@@ -202,8 +207,8 @@ static bool put_header(struct directory *directory, const struct directory_form 
 }
 
 /* A device's name in the format asked for; others as they are. */
-static size_t as_asked(struct directory *directory, const struct directory_form *form, const char **name,
-                       size_t len, char text[ROM_TEXT_MAX])
+static size_t as_asked(struct directory *directory, const struct directory_form *form,
+                       const char **name, size_t len, char text[ROM_TEXT_MAX])
 {
 	uint32_t format = FRAME_FORMAT(form->flags);
 	uint8_t rom[ROM_LEN];
@@ -215,8 +220,8 @@ static size_t as_asked(struct directory *directory, const struct directory_form 
 	return (size_t)rom_print(rom, format > ROM_FIC ? ROM_F_I : (enum rom_format)format, text);
 }
 
-static bool put_entry(struct directory *directory, const struct directory_form *form, const char *name,
-                      size_t len)
+static bool put_entry(struct directory *directory, const struct directory_form *form,
+                      const char *name, size_t len)
 {
 	bool slash = form->slash && node_is_directory(form->node, name, len);
 	bool root = form->prefix_len && form->prefix[0] != '/';
@@ -270,7 +275,8 @@ int directory_form(struct directory *directory, const struct directory_form *for
 	return ok && end(directory, form) ? 0 : -EMSGSIZE;
 }
 
-void directory_add_rest(struct directory *directory, const struct node *node, const struct buses *buses)
+void directory_add_rest(struct directory *directory, const struct node *node,
+                        const struct buses *buses)
 {
 	char name[16];
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "guests.h"
-
 #include <errno.h>
 #include <stdlib.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
+
+#include "src/serve/guests.h"
 
 static struct engine_guest *take(void *ctx)
 {
@@ -31,7 +31,7 @@ void guests_wake(struct guests *g)
 /* There is room for two messages of each request that can be under way. */
 static void tell(struct guests *g, struct engine_guest *guest, bool released)
 {
-	g->told[ring_put_at(&g->back)] = (struct guests_message){ guest, released };
+	g->told[ring_put_at(&g->back)] = (struct guests_message){guest, released};
 	ring_did_put(&g->back);
 	if (__atomic_exchange_n(&g->sleeping, 0, __ATOMIC_SEQ_CST))
 		guests_wake(g);
@@ -49,8 +49,8 @@ static void released(void *ctx, struct engine_guest *guest)
 
 int guests_create(struct guests *g, unsigned most, void (*ring)(void *ctx), void *ring_ctx)
 {
-	*g = (struct guests){ .ring = ring, .ring_ctx = ring_ctx };
-	g->port = (struct engine_guests){ take, answered, released, g };
+	*g = (struct guests){.ring = ring, .ring_ctx = ring_ctx};
+	g->port = (struct engine_guests){take, answered, released, g};
 	g->there.size = ring_size(most);
 	g->back.size = ring_size(2 * most);
 	g->asked = calloc(g->there.size, sizeof(*g->asked));

@@ -6,8 +6,8 @@
 #ifndef SERVE_GUESTS_H
 #define SERVE_GUESTS_H
 
-#include "../engine/guest.h"
-#include "hal/ring.h"
+#include "hal/bus/ring.h"
+#include "src/engine/guest.h"
 
 struct guests_message {
 	struct engine_guest *guest;

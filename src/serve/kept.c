@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: MIT */
-#include "kept.h"
-
-#include "../shm/reader.h"
-#include "../signal/value.h"
-#include "hal/native/format.h"
-
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define VOLATILE_NS INT64_C(2000000000)
-#define SECOND_NS   INT64_C(1000000000)
-#define STATIC_NS   INT64_C(300000000000)
+#include "hal/owfs/format.h"
+#include "src/serve/kept.h"
+#include "src/shm/reader.h"
+#include "src/signal/value.h"
 
-#define SETS     256
-#define WAYS     4
+#define VOLATILE_NS INT64_C(2000000000)
+#define SECOND_NS INT64_C(1000000000)
+#define STATIC_NS INT64_C(300000000000)
+
+#define SETS 256
+#define WAYS 4
 #define PATH_MAX_KEPT 88
 
 struct entry {
@@ -126,8 +125,8 @@ static int64_t life_ns(char life)
 	return life == LIFE_STATIC ? STATIC_NS : life == LIFE_SECOND ? SECOND_NS : VOLATILE_NS;
 }
 
-static int find_signal(const struct kept *kept, const struct image *image,
-                       const struct node *node, int64_t now_ns, char *text, size_t room)
+static int find_signal(const struct kept *kept, const struct image *image, const struct node *node,
+                       int64_t now_ns, char *text, size_t room)
 {
 	int record = kept_signal(kept, node->path, false);
 	struct ows_sample sample;
@@ -136,8 +135,7 @@ static int find_signal(const struct kept *kept, const struct image *image,
 	if (record < 0)
 		return -ENOENT;
 	type = (enum ows_type)image->records[record].type;
-	if (!holds(type, node->type) ||
-	    !reader_sample(&image->records[record], &sample) ||
+	if (!holds(type, node->type) || !reader_sample(&image->records[record], &sample) ||
 	    sample.quality != OWS_Q_GOOD || !sample.measured_ns ||
 	    now_ns - sample.measured_ns > life_ns(node->life))
 		return -ENOENT;

@@ -7,9 +7,9 @@
 #ifndef SERVE_KEPT_H
 #define SERVE_KEPT_H
 
-#include "../config/config.h"
-#include "../shm/image.h"
-#include "node.h"
+#include "src/config/config.h"
+#include "src/serve/node.h"
+#include "src/shm/image.h"
 
 #define KEPT_TEXT_MAX 104
 

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Where clients connect: addresses, the unix socket, and who gets a place. */
-#include "server.h"
-
-#include "../shm/owner.h"
-
 #include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -16,6 +12,9 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
+
+#include "src/serve/server.h"
+#include "src/shm/owner.h"
 
 /* Those who wait for a place; the kernel's net.core.somaxconn may be less. */
 #define BACKLOG 4096
@@ -46,11 +45,10 @@ static socklen_t fill(const struct listen_address *from, union address *to)
 
 static int add(struct serve *s, int fd, bool network)
 {
-	struct epoll_event event = { .events = EPOLLIN | EPOLLET };
+	struct epoll_event event = {.events = EPOLLIN | EPOLLET};
 
 	event.data.u32 = SERVER_CLIENTS + 1 + s->listener_count;
-	if (listen(fd, BACKLOG) < 0 ||
-	    epoll_ctl(s->epoll_fd, EPOLL_CTL_ADD, fd, &event) < 0)
+	if (listen(fd, BACKLOG) < 0 || epoll_ctl(s->epoll_fd, EPOLL_CTL_ADD, fd, &event) < 0)
 		return -errno;
 	s->listeners[s->listener_count].fd = fd;
 	s->listeners[s->listener_count++].network = network;
@@ -81,7 +79,8 @@ static int bind_later(struct serve *s, int fd, const struct listen_address *addr
 	    bind(fd, &to->any, len) < 0)
 		return -errno;
 	listen_print(address, text);
-	log_warning(s->log, "Listen %s: not an address of this machine now; it is served when it comes",
+	log_warning(s->log,
+	            "Listen %s: not an address of this machine now; it is served when it comes",
 	            text);
 	return 0;
 }
@@ -169,7 +168,7 @@ static int give_rights(const char *path)
 
 static int open_local(struct serve *s, const char *path)
 {
-	union address to = { .local = { .sun_family = AF_UNIX } };
+	union address to = {.local = {.sun_family = AF_UNIX}};
 	mode_t mask;
 	int fd, err;
 
@@ -242,7 +241,7 @@ void listeners_close(struct serve *s)
 static bool is_allowed(struct serve *s, const union address *from)
 {
 	const struct config_serve *config = &s->config->serve;
-	struct listen_address peer = { .is_v6 = from->any.sa_family == AF_INET6 };
+	struct listen_address peer = {.is_v6 = from->any.sa_family == AF_INET6};
 
 	if (!config->peer_count)
 		return true;
@@ -278,8 +277,8 @@ static void refuse_peer(struct serve *s, int fd, const union address *from)
 	char address[INET6_ADDRSTRLEN] = "", reason[INET6_ADDRSTRLEN + 32];
 
 	inet_ntop(from->any.sa_family,
-	          is_v6 ? (const void *)&from->v6.sin6_addr : (const void *)&from->v4.sin_addr, address,
-	          sizeof(address));
+	          is_v6 ? (const void *)&from->v6.sin6_addr : (const void *)&from->v4.sin_addr,
+	          address, sizeof(address));
 	snprintf(reason, sizeof(reason), "%s is not in ListenAllow", address);
 	refuse(s, fd, COUNT_refused_peers, &s->peer_rate, reason);
 }
@@ -341,7 +340,7 @@ bool listeners_accept(struct serve *s)
 		unsigned i = (s->listener_at + k) % s->listener_count;
 
 		for (int n = 0; n < ACCEPTS && !s->held.is; n++) {
-			union address from = { .any = { .sa_family = AF_UNSPEC } };
+			union address from = {.any = {.sa_family = AF_UNSPEC}};
 			socklen_t len = sizeof(from);
 			int fd = accept4(s->listeners[i].fd, &from.any, &len,
 			                 SOCK_NONBLOCK | SOCK_CLOEXEC);

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* A client's path, taken apart: is it of the targets, a signal, a return code, or nothing? */
-#include "node.h"
-
-#include "hal/native/format.h"
-#include "hal/native/native.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "hal/native/native.h"
+#include "hal/owfs/format.h"
+#include "src/serve/node.h"
 
 static bool is(const char *text, size_t len, const char *word)
 {
@@ -195,6 +194,7 @@ void node_parse(const char *path, size_t len, struct node *node)
 }
 
 /* Of devices of families that hal/native does not know: the names that are directories only. */
+/* clang-format off */
 static const char *const subdirectories[] = {
 	"8bit", "910", "911", "B1-R1-A", "CO2", "DA5534", "DA5540", "DATANAB", "EDS0064",
 	"EDS0065", "EDS0066", "EDS0067", "EDS0068", "EDS0070", "EDS0071", "EDS0072", "EDS0080",
@@ -208,12 +208,14 @@ static const char *const subdirectories[] = {
 	"typeJ", "typeK", "typeN", "typeR", "typeS", "typeT", "undertemp", "use_password",
 	"user_registers", NULL,
 };
+/* clang-format on */
 
 /* The same in what belongs to no device. */
 static const char *const virtual_subdirectories[] = {
-	"bus", "device", "directory", "DS1WM", "external", "ha5", "i2c", "internal", "K1WM", "link",
-	"overall", "PBM", "persistent", "primary", "read", "search_errors", "secondary", "serial",
-	"simulated", "usb", "write", NULL,
+	"bus",      "device",        "directory", "DS1WM",   "external",  "ha5",        "i2c",
+	"internal", "K1WM",          "link",      "overall", "PBM",       "persistent", "primary",
+	"read",     "search_errors", "secondary", "serial",  "simulated", "usb",        "write",
+	NULL,
 };
 
 static bool is_named(const char *const *names, const char *name, size_t len)

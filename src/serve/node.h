@@ -10,8 +10,8 @@
 #ifndef SERVE_NODE_H
 #define SERVE_NODE_H
 
-#include "hal/native/family.h"
-#include "hal/path.h"
+#include "hal/chips/family.h"
+#include "hal/owfs/path.h"
 
 #define NODE_PATH_MAX (PATH_LEN_MAX + 32)
 
@@ -20,7 +20,7 @@ enum node_kind {
 	NODE_TARGET,  /* what the targets have */
 	NODE_SIGNALS, /* the directory of the signals */
 	NODE_SIGNAL,
-	NODE_CODES,   /* the directory of the return codes */
+	NODE_CODES, /* the directory of the return codes */
 	NODE_CODE,
 };
 
@@ -35,12 +35,13 @@ struct node {
 	int bus;       /* N of bus.N as clients count them, -1: none */
 	bool has_device, has_rom;
 	uint8_t rom[ROM_LEN];
-	char type;     /* of the property: a letter of /structure, 0 not known */
-	char life;     /* likewise */
-	int code;      /* NODE_CODE: which, -1 all */
+	char type;        /* of the property: a letter of /structure, 0 not known */
+	char life;        /* likewise */
+	int code;         /* NODE_CODE: which, -1 all */
 	const char *name; /* NODE_SIGNAL: of the signal or attribute, up to the end of the path */
 	uint16_t device_len; /* bytes of path up to and with the device */
-	char path[NODE_PATH_MAX]; /* for a target: without uncached and bus.N, ids as 28.551DDF030000 */
+	char path
+		[NODE_PATH_MAX]; /* for a target: without uncached and bus.N, ids as 28.551DDF030000 */
 };
 
 void node_parse(const char *path, size_t len, struct node *node);

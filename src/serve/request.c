@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "request.h"
-
-#include "hal/owserver/frame.h"
-
 #include <errno.h>
 #include <string.h>
+
+#include "hal/owfs/frame.h"
+#include "src/serve/request.h"
 
 static uint32_t tokens_of(const struct frame_header *h)
 {
@@ -40,10 +39,15 @@ int request_parse(const uint8_t *bytes, size_t have, struct request *request, si
 	if (err || have < *length)
 		return err;
 	*request = (struct request){
-		.type = h.type, .flags = h.flags, .size = h.size, .offset = h.offset,
+		.type = h.type,
+		.flags = h.flags,
+		.size = h.size,
+		.offset = h.offset,
 		.payload = (uint32_t)h.payload,
-		.path = (const char *)bytes + FRAME_HEADER, .path_len = (uint32_t)h.payload,
-		.tokens = bytes + FRAME_HEADER + h.payload, .token_count = tokens_of(&h),
+		.path = (const char *)bytes + FRAME_HEADER,
+		.path_len = (uint32_t)h.payload,
+		.tokens = bytes + FRAME_HEADER + h.payload,
+		.token_count = tokens_of(&h),
 	};
 	nul = h.payload ? memchr(request->path, '\0', request->payload) : NULL;
 	if (nul) {

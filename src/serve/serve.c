@@ -1,9 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "server.h"
-
-#include "../libows/ows.h"
-#include "../shm/segment.h"
-
 #include <errno.h>
 #include <sched.h>
 #include <signal.h>
@@ -14,9 +9,13 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "src/libows/ows.h"
+#include "src/serve/server.h"
+#include "src/shm/segment.h"
+
 #define STACK_SIZE (128 * 1024)
-#define TAKE_NS    1000000 /* between looks whether the thread has taken a reload */
-#define EVENTS     64
+#define TAKE_NS 1000000 /* between looks whether the thread has taken a reload */
+#define EVENTS 64
 #define WAKE_EVENT SERVER_CLIENTS
 
 static const char *const counter_names[SERVE_COUNTER_COUNT] = {
@@ -60,10 +59,9 @@ bool serve_is_open(const struct config_serve *config)
 	return false;
 }
 
-int serve_create(const struct serve_setup *setup, struct serve **serve, char *why,
-                 size_t why_size)
+int serve_create(const struct serve_setup *setup, struct serve **serve, char *why, size_t why_size)
 {
-	struct epoll_event event = { .events = EPOLLIN | EPOLLET, .data.u32 = WAKE_EVENT };
+	struct epoll_event event = {.events = EPOLLIN | EPOLLET, .data.u32 = WAKE_EVENT};
 	struct serve *s = calloc(1, sizeof(*s));
 	int err = -ENOMEM;
 
@@ -264,7 +262,7 @@ int serve_prepare(struct serve *s, const struct config *config)
 void serve_reload(struct serve *s, const struct config *config, const struct image *image,
                   const int *ports)
 {
-	struct serve_next next = { config, image, s->prepared, ports };
+	struct serve_next next = {config, image, s->prepared, ports};
 	static const uint32_t nobody = 0;
 
 	s->prepared = NULL;

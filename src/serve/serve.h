@@ -5,14 +5,14 @@
  * hands the rest to the engine as requests of guests (engine/guest.h). It allocates nothing after
  * serve_start().
  */
-#ifndef SERVE_SERVE_H
-#define SERVE_SERVE_H
+#ifndef SERVE_H
+#define SERVE_H
 
-#include "../config/config.h"
-#include "../engine/guest.h"
-#include "../log.h"
-#include "../shm/image.h"
-#include "hal/bus.h"
+#include "hal/bus/bus.h"
+#include "src/config/config.h"
+#include "src/engine/guest.h"
+#include "src/shm/image.h"
+#include "src/text/log.h"
 
 struct serve;
 
@@ -28,8 +28,7 @@ struct serve_setup {
  * Take the addresses and allocate. 0, or a negative errno (-EADDRINUSE), the reason then stands in
  * why. config asks for at least one address or a socket.
  */
-int serve_create(const struct serve_setup *setup, struct serve **serve, char *why,
-                 size_t why_size);
+int serve_create(const struct serve_setup *setup, struct serve **serve, char *why, size_t why_size);
 const struct engine_guests *serve_guests(struct serve *serve);
 /* Start the thread; the image is in place and lives as long. 0 or a negative errno. */
 int serve_start(struct serve *serve, const struct image *image);

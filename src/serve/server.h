@@ -3,29 +3,29 @@
 #ifndef SERVE_SERVER_H
 #define SERVE_SERVER_H
 
-#include "code.h"
-#include "guests.h"
-#include "kept.h"
-#include "directory.h"
-#include "request.h"
-#include "serve.h"
-#include "signals.h"
-#include "via.h"
-
 #include <pthread.h>
 
-#define SERVER_CLIENTS  512
+#include "src/serve/code.h"
+#include "src/serve/directory.h"
+#include "src/serve/guests.h"
+#include "src/serve/kept.h"
+#include "src/serve/request.h"
+#include "src/serve/serve.h"
+#include "src/serve/signals.h"
+#include "src/serve/via.h"
+
+#define SERVER_CLIENTS 512
 #define SERVER_DIRECTORIES 4
 #define SERVER_LISTENERS (LISTEN_MAX + 1)
 
 /* Time limits, as the genuine owserver has them. */
-#define REQUEST_NS    INT64_C(10000000000)  /* from the first byte, or the connection, to the end */
-#define IDLE_NS       INT64_C(600000000000) /* of a connection that asked to be kept */
-#define EVICT_NS      INT64_C(10000000000)  /* idle for so long, it goes when another waits */
-#define KEEPALIVE_NS  INT64_C(1000000000)
-#define SEND_NS       INT64_C(10000000000)  /* that no byte of an answer is taken */
-#define ANSWER_NS     INT64_C(60000000000)  /* for the whole of an answer */
-#define APPLY_NS      INT64_C(10000000000)  /* until a commanded output is confirmed */
+#define REQUEST_NS INT64_C(10000000000) /* from the first byte, or the connection, to the end */
+#define IDLE_NS INT64_C(600000000000)   /* of a connection that asked to be kept */
+#define EVICT_NS INT64_C(10000000000)   /* idle for so long, it goes when another waits */
+#define KEEPALIVE_NS INT64_C(1000000000)
+#define SEND_NS INT64_C(10000000000)   /* that no byte of an answer is taken */
+#define ANSWER_NS INT64_C(60000000000) /* for the whole of an answer */
+#define APPLY_NS INT64_C(10000000000)  /* until a commanded output is confirmed */
 #define APPLY_LOOK_NS INT64_C(10000000)
 
 /*
@@ -33,16 +33,16 @@
  * are not touched cost nothing.
  */
 #define AREA_ANSWER 2048 /* where the answer begins, at least */
-#define AREA_SIZE   (72 * 1024)
+#define AREA_SIZE (72 * 1024)
 
 enum client_state {
 	CLIENT_FREE,
-	CLIENT_READING, /* waits for a request, or for the rest of one */
-	CLIENT_WORKING, /* the engine has its request */
-	CLIENT_QUEUED,  /* waits for a directory to be free */
+	CLIENT_READING,  /* waits for a request, or for the rest of one */
+	CLIENT_WORKING,  /* the engine has its request */
+	CLIENT_QUEUED,   /* waits for a directory to be free */
 	CLIENT_APPLYING, /* waits for its command to reach the bus */
 	CLIENT_SENDING,
-	CLIENT_LEFT,    /* gone, but the engine or a bus still has what is its */
+	CLIENT_LEFT, /* gone, but the engine or a bus still has what is its */
 };
 
 /* What the engine was asked for, and so what comes next. */
@@ -51,12 +51,12 @@ enum client_step {
 	STEP_WRITE,
 	STEP_WRITE_EACH, /* to one target after another */
 	STEP_DIR,
-	STEP_BUSES,      /* a look at the root, to learn what bus.N is */
+	STEP_BUSES, /* a look at the root, to learn what bus.N is */
 	STEP_PROBE,
-	STEP_REFUSE,     /* a directory cannot be read or written: is it there at all? */
-	STEP_ADDRESS,    /* of an alias */
-	STEP_FAMILY,     /* of an alias */
-	STEP_STRUCTURE,  /* the type of a property that is not known here */
+	STEP_REFUSE,    /* a directory cannot be read or written: is it there at all? */
+	STEP_ADDRESS,   /* of an alias */
+	STEP_FAMILY,    /* of an alias */
+	STEP_STRUCTURE, /* the type of a property that is not known here */
 };
 
 struct client {
@@ -66,54 +66,55 @@ struct client {
 	bool queued;          /* in the round */
 	bool network;         /* not a unix socket */
 	bool is_get, lent, once_more;
-	uint8_t alive_left;   /* bytes of a keep-alive that was begun */
-	unsigned target;      /* of several that are asked in turn */
-	int32_t worst;        /* of those asked so far; 1: none answered yet */
-	int64_t since_ns;     /* of the state; READING: of the first byte */
-	int64_t tick_ns;      /* of the last progress, or the last keep-alive */
-	int64_t active_ns;    /* of its beginning, or of the end of a request that was more than a NOP */
-	uint64_t served;      /* requests */
+	uint8_t alive_left; /* bytes of a keep-alive that was begun */
+	unsigned target;    /* of several that are asked in turn */
+	int32_t worst;      /* of those asked so far; 1: none answered yet */
+	int64_t since_ns;   /* of the state; READING: of the first byte */
+	int64_t tick_ns;    /* of the last progress, or the last keep-alive */
+	int64_t active_ns; /* of its beginning, or of the end of a request that was more than a NOP */
+	uint64_t served;   /* requests */
 
-	size_t have, need, length; /* bytes in area; of the request in it: as far as known, its end */
-	size_t past;               /* of the bytes in area: of an answered request that a bus still has */
+	size_t have, need,
+		length; /* bytes in area; of the request in it: as far as known, its end */
+	size_t past;    /* of the bytes in area: of an answered request that a bus still has */
 	struct request request;
 	struct node node;
 	char path[NODE_PATH_MAX + 16]; /* as the engine was given it */
 	struct engine_guest guest;
 	struct via via;
-	uint32_t value_len;   /* READ: of what is in the room for the answer */
+	uint32_t value_len; /* READ: of what is in the room for the answer */
 	struct signals_command command;
 	struct directory *directory;
-	const uint8_t *out;   /* what is sent */
+	const uint8_t *out; /* what is sent */
 	uint32_t out_len, out_at;
 	uint8_t *area;
 };
 
-#define SERVE_COUNTERS(X)                                                                          \
-	X(connections)    /* accepted */                                                           \
-	X(clients)        /* now */                                                                \
-	X(requests)                                                                                \
-	X(errors)         /* answered with an error */                                             \
-	X(kept_answers)   /* reads that needed no bus */                                           \
-	X(bus_requests)   /* handed to the engine */                                               \
-	X(keepalives)                                                                              \
-	X(full)           /* times that a new one had to wait for a place */                       \
-	X(not_kept)       /* closed behind an answer, because others waited */                     \
-	X(refused_peers)  /* not in ListenAllow */                                                 \
-	X(refused_writes) /* in read-only mode */                                                  \
-	X(came_round)     /* had been here before, by way of other servers */                      \
-	X(evicted)        /* idle for long, closed because others waited */                        \
-	X(refused_errors) /* closed at once, because the kernel lacked something */                \
-	X(garbage)        /* no requests */                                                        \
-	X(timeouts)       /* half requests, answers nobody took, idle connections */               \
-	X(bytes_in)                                                                                \
+#define SERVE_COUNTERS(X) \
+	X(connections) /* accepted */ \
+	X(clients)     /* now */ \
+	X(requests) \
+	X(errors)       /* answered with an error */ \
+	X(kept_answers) /* reads that needed no bus */ \
+	X(bus_requests) /* handed to the engine */ \
+	X(keepalives) \
+	X(full)           /* times that a new one had to wait for a place */ \
+	X(not_kept)       /* closed behind an answer, because others waited */ \
+	X(refused_peers)  /* not in ListenAllow */ \
+	X(refused_writes) /* in read-only mode */ \
+	X(came_round)     /* had been here before, by way of other servers */ \
+	X(evicted)        /* idle for long, closed because others waited */ \
+	X(refused_errors) /* closed at once, because the kernel lacked something */ \
+	X(garbage)        /* no requests */ \
+	X(timeouts)       /* half requests, answers nobody took, idle connections */ \
+	X(bytes_in) \
 	X(bytes_out)
 
 enum serve_counter {
 #define X(name) COUNT_##name,
 	SERVE_COUNTERS(X)
 #undef X
-	SERVE_COUNTER_COUNT,
+		SERVE_COUNTER_COUNT,
 };
 
 struct serve {
@@ -123,12 +124,12 @@ struct serve {
 	struct log *log;
 	struct guests guests;
 	struct kept *kept, *prepared; /* for the next reload */
-	struct serve_next { /* of a reload, for the thread to take */
+	struct serve_next {           /* of a reload, for the thread to take */
 		const struct config *config;
 		const struct image *image;
 		struct kept *kept;
 		const int *ports;
-	} *next;
+	} * next;
 	struct signals *signals;
 	struct buses buses;
 	uint8_t token[BUS_TOKEN];
@@ -139,7 +140,7 @@ struct serve {
 		bool network;
 	} listeners[SERVER_LISTENERS];
 	unsigned listener_count, listener_at; /* at: accepts first */
-	bool accepting; /* more connections may wait */
+	bool accepting;                       /* more connections may wait */
 	/* Accepted when all places were taken: while one is held, no more are accepted. */
 	struct {
 		bool is;
@@ -161,7 +162,7 @@ struct serve {
 	unsigned free_count, used; /* used: the highest ever in use + 1 */
 	uint16_t *round;           /* clients that have something to do, in turn */
 	unsigned round_at, round_count;
-	unsigned queued;           /* clients that wait for a directory */
+	unsigned queued; /* clients that wait for a directory */
 	struct log_rate full_rate, error_rate, peer_rate;
 	struct bus_counter counters[SERVE_COUNTER_COUNT];
 };

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* The table as /signals of the served protocol: read and set by name. */
-#include "signals.h"
-
-#include "../libows/handle.h"
-#include "../shm/reader.h"
-#include "../signal/value.h"
-
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/libows/handle.h"
+#include "src/serve/signals.h"
+#include "src/shm/reader.h"
+#include "src/signal/value.h"
 
 /* How many alarms of a signal have been read; by name, as a reload gives it another record. */
 struct seen {
@@ -146,12 +145,11 @@ static int read_alarms(struct signals *signals, const struct ows_id *id, char *t
 	if (room < 1)
 		return -EMSGSIZE;
 	*text = take_alarms(signals, map_name(map, (uint32_t)id->record), slot.attrs.alarms) ? '1'
-	                                                                                    : '0';
+	                                                                                     : '0';
 	return 1;
 }
 
-int signals_read(struct signals *signals, const char *name, int64_t now_ns, char *text,
-                 size_t room)
+int signals_read(struct signals *signals, const char *name, int64_t now_ns, char *text, size_t room)
 {
 	struct ows_value value;
 	struct ows_id id;
@@ -194,9 +192,8 @@ static bool takes_commands(const struct ows *h, const struct ows_id *id)
 {
 	struct ows_slot slot;
 
-	return id->attribute != ATTR_VALUE ||
-	       (reader_slot(&h->map.records[id->record], &slot) &&
-	        slot.attrs.flags & OWS_ATTR_WRITE_ENABLE);
+	return id->attribute != ATTR_VALUE || (reader_slot(&h->map.records[id->record], &slot) &&
+	                                       slot.attrs.flags & OWS_ATTR_WRITE_ENABLE);
 }
 
 static int set(struct signals *signals, struct ows_id *id, int64_t now_ns, const char *text,
@@ -205,10 +202,9 @@ static int set(struct signals *signals, struct ows_id *id, int64_t now_ns, const
 	struct ows *h = signals->h;
 	char copy[VALUE_STRING_MAX + 1];
 	uint32_t stamp = 0;
-	int err = take_text(text, len,
-	                    id->attribute == ATTR_VALUE &&
-	                            h->map.records[id->record].type == OWS_STRING,
-	                    copy);
+	int err = take_text(
+		text, len,
+		id->attribute == ATTR_VALUE && h->map.records[id->record].type == OWS_STRING, copy);
 
 	if (err)
 		return err;
@@ -222,8 +218,8 @@ static int set(struct signals *signals, struct ows_id *id, int64_t now_ns, const
 	if (err)
 		return err == -EINVAL || err == -EACCES || err == -ESTALE ? err : -EIO;
 	if (id->attribute == ATTR_VALUE)
-		*command = (struct signals_command){ (unsigned)id->record,
-			                             h->map.image->generation, stamp, now_ns };
+		*command = (struct signals_command){(unsigned)id->record, h->map.image->generation,
+		                                    stamp, now_ns};
 	return 0;
 }
 
@@ -233,7 +229,7 @@ int signals_write(struct signals *signals, const char *name, int64_t now_ns, con
 	struct ows_id id;
 	int err = look_up(signals, name, &id);
 
-	*command = (struct signals_command){ 0 };
+	*command = (struct signals_command){0};
 	if (!err)
 		err = set(signals, &id, now_ns, text, len, command);
 	if (err != -ESTALE)

@@ -6,9 +6,8 @@
 #ifndef SERVE_SIGNALS_H
 #define SERVE_SIGNALS_H
 
-#include "directory.h"
-
-#include "../libows/ows.h"
+#include "src/libows/ows.h"
+#include "src/serve/directory.h"
 
 struct signals;
 
@@ -32,7 +31,7 @@ int signals_read(struct signals *signals, const char *name, int64_t now_ns, char
 
 /* A command that is on its way. */
 struct signals_command {
-	unsigned record; /* 0: nothing to wait for */
+	unsigned record;     /* 0: nothing to wait for */
 	uint32_t generation; /* of the image that counts it so */
 	uint32_t stamp;
 	int64_t since_ns;

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Scales of temperature and pressure that a client of the served protocol asks for. */
-#include "units.h"
-
-#include "hal/owserver/frame.h"
-
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -11,24 +7,31 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/owfs/frame.h"
+#include "src/serve/units.h"
+
 /* A scale as a straight line: client = bus * factor + offset. */
 struct scale {
 	double factor, offset;
 };
 
 /* C, F, K, R */
+/* clang-format off */
 static const struct scale temperatures[] = {
 	{ 1, 0 }, { 1.8, 32 }, { 1, 273.15 }, { 1.8, 32 + 459.67 },
 };
+/* clang-format on */
 /* mbar, atm, mmHg, inHg, psi, Pa. One mmHg is 133.322387415 Pa, a psi 6894.757293168 Pa. */
+/* clang-format off */
 static const double pressures[] = {
 	1, 100 / 101325.0, 100 / 133.322387415, 100 / (25.4 * 133.322387415),
 	100 / 6894.757293168, 100, 1, 1,
 };
+/* clang-format on */
 
 static struct scale scale_of(char type, uint32_t flags)
 {
-	struct scale scale = { 1, 0 };
+	struct scale scale = {1, 0};
 
 	if (type == 't' || type == 'g')
 		scale = temperatures[FRAME_TEMPERATURE(flags)];

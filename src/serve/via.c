@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "via.h"
-
 #include <string.h>
 #include <sys/random.h>
 #include <time.h>
 #include <unistd.h>
+
+#include "src/serve/via.h"
 
 void via_token(uint8_t token[BUS_TOKEN])
 {

@@ -7,7 +7,7 @@
 #ifndef SERVE_VIA_H
 #define SERVE_VIA_H
 
-#include "hal/bus.h"
+#include "hal/bus/bus.h"
 
 struct via {
 	uint8_t tokens[BUS_TOKENS_MAX * BUS_TOKEN];

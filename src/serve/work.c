@@ -3,14 +3,13 @@
  * From a request to its answer: what its path means, what is known here, what the engine is asked
  * for, one step after another, and what the client gets.
  */
-#include "work.h"
-
-#include "../shm/word.h"
-#include "hal/owserver/frame.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "hal/owfs/frame.h"
+#include "src/serve/work.h"
+#include "src/shm/word.h"
 
 /* --- Answers ---------------------------------------------------------------------------------- */
 
@@ -18,9 +17,11 @@
 static void answer_data(struct serve *s, struct client *c, int32_t ret, uint32_t payload,
                         uint32_t size, int32_t offset)
 {
-	struct frame_header h = { .payload = (int32_t)payload, .type = ret,
-		                  .flags = c->request.flags, .size = (int32_t)size,
-		                  .offset = offset };
+	struct frame_header h = {.payload = (int32_t)payload,
+	                         .type = ret,
+	                         .flags = c->request.flags,
+	                         .size = (int32_t)size,
+	                         .offset = offset};
 	uint8_t *data = client_room(c);
 
 	if (ret < 0)
@@ -81,14 +82,20 @@ static bool is_up(const struct serve *s, unsigned target)
 }
 
 void work_ask(struct serve *s, struct client *c, enum client_step step, enum bus_op op, int lane,
-                uint8_t *data, uint32_t len)
+              uint8_t *data, uint32_t len)
 {
 	c->step = (uint8_t)step;
-	c->guest = (struct engine_guest){ .op = (uint8_t)op, .fresh = c->node.fresh, .lane = lane,
-		                          .generation = s->image->header->generation,
-		                          .path = c->path, .data = data, .len = len,
-		                          .offset = op == BUS_WRITE ? (uint32_t)c->request.offset : 0,
-		                          .tokens = c->via.tokens, .token_count = c->via.count };
+	c->guest = (struct engine_guest){.op = (uint8_t)op,
+	                                 .fresh = c->node.fresh,
+	                                 .lane = lane,
+	                                 .generation = s->image->header->generation,
+	                                 .path = c->path,
+	                                 .data = data,
+	                                 .len = len,
+	                                 .offset = op == BUS_WRITE ? (uint32_t)c->request.offset
+	                                                           : 0,
+	                                 .tokens = c->via.tokens,
+	                                 .token_count = c->via.count};
 	count(s, COUNT_bus_requests, 1);
 	if (c->state != CLIENT_WORKING)
 		client_enter(s, c, CLIENT_WORKING);
@@ -125,8 +132,8 @@ void work_next_target(struct serve *s, struct client *c)
 
 bool work_is_directory(const struct node *node)
 {
-	return node->slash || node->devices || node->kind == NODE_SIGNALS || node->kind == NODE_CODES ||
-	       (node->has_device && !node->path[node->device_len]);
+	return node->slash || node->devices || node->kind == NODE_SIGNALS ||
+	       node->kind == NODE_CODES || (node->has_device && !node->path[node->device_len]);
 }
 
 /* --- Presence --------------------------------------------------------------------------------- */

@@ -3,7 +3,7 @@
 #ifndef SERVE_WORK_H
 #define SERVE_WORK_H
 
-#include "server.h"
+#include "src/serve/server.h"
 
 /* client.worst before any target has answered */
 #define WORK_NOT_YET 1

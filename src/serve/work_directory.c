@@ -1,19 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 /* DIR and its kin: names from the targets, or from here, on their way to a client. */
-#include "work.h"
-
-#include "hal/owserver/frame.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "hal/owfs/frame.h"
+#include "src/serve/work.h"
 
 static void ask_target(struct serve *s, struct client *c);
 static void form_directory(struct serve *s, struct client *c)
 {
 	struct directory_form form = {
-		.node = &c->node, .prefix = c->request.path, .prefix_len = c->request.path_len,
-		.flags = c->request.flags, .frames = c->request.type == FRAME_DIR,
+		.node = &c->node,
+		.prefix = c->request.path,
+		.prefix_len = c->request.path_len,
+		.flags = c->request.flags,
+		.frames = c->request.type == FRAME_DIR,
 		.slash = c->request.type == FRAME_DIRALLSLASH || c->request.type == FRAME_GETSLASH,
 	};
 	int err;
@@ -86,7 +88,8 @@ static void begin_directory(struct serve *s, struct client *c, struct directory 
 
 		directory_add(directory, "text.ALL", 8);
 		for (unsigned i = 0; i < CODE_COUNT; i++)
-			directory_add(directory, name, (size_t)snprintf(name, sizeof(name), "text.%u", i));
+			directory_add(directory, name,
+			              (size_t)snprintf(name, sizeof(name), "text.%u", i));
 		c->worst = 0;
 		listed(s, c);
 		return;
@@ -157,7 +160,7 @@ void work_want_directory(struct serve *s, struct client *c, enum client_step ste
 void work_listed(struct serve *s, struct client *c, int err)
 {
 	bool buses = c->step == STEP_BUSES, every = buses || c->node.every;
-	struct node root = { .root = true };
+	struct node root = {.root = true};
 
 	/* neither the room nor the request is free for anything else yet */
 	if (c->lent) {
@@ -170,11 +173,12 @@ void work_listed(struct serve *s, struct client *c, int err)
 	}
 	if (!err)
 		directory_take(c->directory, buses ? &root : &c->node, &s->buses, c->guest.served,
-		             c->guest.answer.len);
+		               c->guest.answer.len);
 	if (err == -ENOTDIR && c->node.slash)
 		err = -ENOENT;
 	/* of several one that knows the directory is enough */
-	if (!err || c->worst == WORK_NOT_YET || (c->worst < 0 && err != -ENOENT && err != -ENOTCONN))
+	if (!err || c->worst == WORK_NOT_YET ||
+	    (c->worst < 0 && err != -ENOENT && err != -ENOTCONN))
 		c->worst = !err || c->worst == 0 ? 0 : err;
 	if (every) {
 		c->target++;

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* READ: from what is known here, or from a bus, in the units of the client. */
-#include "work.h"
-
-#include "units.h"
-
-#include "hal/owserver/frame.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "hal/owfs/frame.h"
+#include "src/serve/units.h"
+#include "src/serve/work.h"
 
 /* The largest READ that a client may ask for. */
 #define READ_MOST 100050
@@ -86,13 +84,14 @@ static void read_target(struct serve *s, struct client *c)
 static bool is_passed_on(const struct serve *s, const struct client *c)
 {
 	int record = c->request.token_count && s->passes_on
-	                     ? signals_record(s->signals, c->node.name) : -1;
+	                     ? signals_record(s->signals, c->node.name)
+	                     : -1;
 	struct node node;
 
 	if (record < 1 || (unsigned)record > s->config->item_count)
 		return false;
-	node_parse(s->config->items[record - 1].path,
-	           strlen(s->config->items[record - 1].path), &node);
+	node_parse(s->config->items[record - 1].path, strlen(s->config->items[record - 1].path),
+	           &node);
 	return node.kind == NODE_SIGNAL;
 }
 
@@ -118,7 +117,8 @@ static void read_here(struct serve *s, struct client *c)
 
 void work_refuse_directory(struct serve *s, struct client *c)
 {
-	if (c->node.kind == NODE_TARGET && !c->node.devices && (c->node.has_device || c->node.slash))
+	if (c->node.kind == NODE_TARGET && !c->node.devices &&
+	    (c->node.has_device || c->node.slash))
 		work_ask(s, c, STEP_REFUSE, BUS_PROBE, work_path(s, c), NULL, 0);
 	else
 		answer_error(s, c, -EISDIR);
@@ -141,7 +141,7 @@ void work_read(struct serve *s, struct client *c)
 void work_typed(struct serve *s, struct client *c, int err)
 {
 	const uint8_t *text = c->guest.data;
-	uint8_t rom[ROM_LEN] = { 0 };
+	uint8_t rom[ROM_LEN] = {0};
 	char path[NODE_PATH_MAX];
 
 	if (err) {
@@ -153,13 +153,15 @@ void work_typed(struct serve *s, struct client *c, int err)
 	} else {
 		/* as a device of that family would be */
 		for (int i = 0; i < 2 && c->guest.answer.len == 2; i++)
-			rom[0] = (uint8_t)(rom[0] * 16 + (text[i] & 0xf) + (text[i] >= 'A' ? 9 : 0));
+			rom[0] = (uint8_t)(rom[0] * 16 + (text[i] & 0xf) +
+			                   (text[i] >= 'A' ? 9 : 0));
 		if (rom[0]) {
 			struct node like;
 			char id[ROM_TEXT_MAX];
 
 			rom_print(rom, ROM_F_I, id);
-			snprintf(path, sizeof(path), "/%s%s", id, c->node.path + c->node.device_len);
+			snprintf(path, sizeof(path), "/%s%s", id,
+			         c->node.path + c->node.device_len);
 			node_parse(path, strlen(path), &like);
 			c->node.type = like.type;
 			c->node.has_rom = true;

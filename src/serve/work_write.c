@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* WRITE: to a device, to all targets, or as a command to the table. */
-#include "work.h"
-
-#include "units.h"
-
-#include "hal/owserver/frame.h"
-
 #include <errno.h>
+
+#include "hal/owfs/frame.h"
+#include "src/serve/units.h"
+#include "src/serve/work.h"
 
 void work_write_target(struct serve *s, struct client *c)
 {
@@ -63,7 +61,8 @@ static void command(struct serve *s, struct client *c, const char *name)
 	int err = 0;
 
 	if (c->node.kind != NODE_SIGNAL && units_convert(c->node.type, c->request.flags)) {
-		err = units_take(c->node.type, c->request.flags, text, len, room, client_room_size(c));
+		err = units_take(c->node.type, c->request.flags, text, len, room,
+		                 client_room_size(c));
 		len = err < 0 ? 0 : (uint32_t)err;
 		text = room;
 	}
@@ -145,7 +144,7 @@ void work_written(struct serve *s, struct client *c, int err)
 	if (err)
 		answer_error(s, c, err);
 	else
-		answer_written(s, c, units_convert(c->node.type, c->request.flags)
-		                            ? c->request.data_len
-		                            : c->guest.answer.len);
+		answer_written(s, c,
+		               units_convert(c->node.type, c->request.flags) ? c->request.data_len
+		                                                             : c->guest.answer.len);
 }

@@ -3,13 +3,12 @@
  * Carrying commands from an older segment into a new one. Every number of the old one is read once
  * into a variable and checked there: a consumer may still be writing rubbish into it.
  */
-#include "commands.h"
-
-#include "../libows/ows.h"
-#include "word.h"
-
 #include <errno.h>
 #include <string.h>
+
+#include "src/libows/ows.h"
+#include "src/shm/commands.h"
+#include "src/shm/word.h"
 
 /* More than any configuration has: each may be looked at for each signal of ours. */
 #define SLOTS_MAX 65536

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* The command segment as owsd lays it out, reads it, and repairs what consumers overwrote. */
-#include "commands.h"
-
-#include "../libows/ows.h"
-#include "word.h"
-
 #include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/libows/ows.h"
+#include "src/shm/commands.h"
+#include "src/shm/word.h"
 
 #define COMMANDS_MAX 0x7fffffffu
 #define CONSTANT_HEADER offsetof(struct ows_command_header, bell)
@@ -375,9 +374,9 @@ bool commands_mend(struct commands *commands, bool all)
 {
 	bool mended = mend_words(commands->base, commands->keep, CONSTANT_HEADER);
 
-	if (all && mend_words(commands->base + commands->entry_off,
-	                      commands->keep + commands->entry_off,
-	                      commands->keep_size - commands->entry_off))
+	if (all &&
+	    mend_words(commands->base + commands->entry_off, commands->keep + commands->entry_off,
+	               commands->keep_size - commands->entry_off))
 		mended = true;
 	return mended;
 }

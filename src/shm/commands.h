@@ -7,9 +7,9 @@
 #ifndef SHM_COMMANDS_H
 #define SHM_COMMANDS_H
 
-#include "layout.h"
-
 #include <stdbool.h>
+
+#include "src/shm/layout.h"
 
 struct command_signal {
 	const char *name;
@@ -30,7 +30,7 @@ struct commands {
 	uint32_t slot_off, slot_count, entry_off, dirty_off, dirty_words, client_off, ack_off;
 	uint32_t text_cap;
 	uint32_t *text_off; /* for each slot, 0 if none; allocated by commands_build() */
-	char *keep;         /* copy of what does not change: the header's first half, entries, names */
+	char *keep; /* copy of what does not change: the header's first half, entries, names */
 	uint32_t keep_size;
 };
 

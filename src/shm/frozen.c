@@ -3,11 +3,12 @@
  * The layout of major version 1, field by field: offset and size in bytes. Programs in other
  * languages are written against these numbers. A field that is added goes here too, none is changed.
  */
-#include "layout.h"
+#include "src/shm/layout.h"
 
 #define AT(what, field, offset, size) \
 	_Static_assert(offsetof(struct what, field) == (offset) && \
-	               sizeof(((struct what *)0)->field) == (size), #what "." #field)
+	                       sizeof(((struct what *)0)->field) == (size), \
+	               #what "." #field)
 
 AT(ows_sample, value, 0, 8);
 AT(ows_sample, measured_ns, 8, 8);
@@ -168,4 +169,5 @@ _Static_assert(OWS_LAYOUT_MAJOR == 1, "these are the numbers of major version 1"
 _Static_assert(OWS_ALARMS == 256 && OWS_CLIENTS == 32, "published");
 _Static_assert(OWS_IMAGE_MAGIC == 0x4953574f && OWS_COMMAND_MAGIC == 0x4353574f, "published");
 _Static_assert(OWS_STATE_BUILDING == 0 && OWS_STATE_LIVE == 1 && OWS_STATE_RETIRED == 2 &&
-               OWS_STATE_STOPPED == 3, "published");
+                       OWS_STATE_STOPPED == 3,
+               "published");

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "segment.h"
-
 #include <errno.h>
 #include <limits.h>
 #include <linux/futex.h>
 #include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
+
+#include "src/shm/segment.h"
 
 /*
  * The plain call takes the kernel's old timespec of two longs. Where time_t is wider than long the

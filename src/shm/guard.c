@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-#include "guard.h"
-
-#include "segment.h"
-
 #include <errno.h>
 #include <pthread.h>
 #include <stdint.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+
+#include "src/shm/guard.h"
+#include "src/shm/segment.h"
 
 /* base is 0 while the range is free or being set: the handler looks at it first. */
 static struct guard_range {

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* What stands behind an error of /dev/shm, for the log: it is full, or a file is in the way. */
-#include "segment.h"
-
-#include "owner.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "src/shm/owner.h"
+#include "src/shm/segment.h"
 
 /* In a sticky directory only root and the owner replace a file; nobody replaces a directory. */
 static bool blocks(const struct stat *st)
@@ -55,8 +54,8 @@ const char *segment_hint(const char *instance, int err, char text[SEGMENT_HINT])
 			         instance, user);
 		else if (S_ISREG(st.st_mode))
 			snprintf(text, SEGMENT_HINT,
-			         ": a file of user %s is in the way: as root, owsctl remove %s", user,
-			         instance);
+			         ": a file of user %s is in the way: as root, owsctl remove %s",
+			         user, instance);
 		else
 			snprintf(text, SEGMENT_HINT,
 			         ": a %s of user %s is in the way: as root, rm -r %s", kind_of(&st),

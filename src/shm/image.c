@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-#include "image.h"
-
-#include "../libows/ows.h"
-#include "word.h"
-
 #include <assert.h>
 #include <string.h>
 
+#include "src/libows/ows.h"
+#include "src/shm/image.h"
+#include "src/shm/word.h"
+
 #define IMAGE_MAX 0x7fffffffu
 #define SAMPLE_WORDS (sizeof(struct ows_sample) / 4)
-#define ATTRS_WORDS  (sizeof(struct ows_attrs) / 4)
-#define ALARM_WORDS  (sizeof(struct ows_alarm_entry) / 4)
+#define ATTRS_WORDS (sizeof(struct ows_attrs) / 4)
+#define ALARM_WORDS (sizeof(struct ows_alarm_entry) / 4)
 
 /* Where the areas are, in the order in which they lie. */
 struct image_areas {
@@ -211,8 +210,7 @@ void image_build(const struct image_plan *plan, void *memory, struct image *imag
 	}
 	sort_names(image->base, names, plan->signal_count + 1);
 	for (uint32_t i = 0; i < plan->target_count; i++) {
-		copy_name(image->targets[i].name, sizeof(image->targets[i].name),
-		          plan->targets[i]);
+		copy_name(image->targets[i].name, sizeof(image->targets[i].name), plan->targets[i]);
 		image->targets[i].group = plan->groups ? plan->groups[i] : i;
 	}
 	for (uint32_t i = 0; i < plan->counter_count; i++) {
@@ -297,8 +295,7 @@ void image_carry_alarms(struct image *image, const struct image *before, const u
 	for (uint32_t n = head > OWS_ALARMS ? head - OWS_ALARMS : 0; n != head; n++) {
 		struct ows_alarm_entry entry = before->alarms[n % OWS_ALARMS];
 
-		if (entry.number != n || !entry.record ||
-		    records[entry.record - 1] == UINT32_MAX)
+		if (entry.number != n || !entry.record || records[entry.record - 1] == UINT32_MAX)
 			continue;
 		entry.record = records[entry.record - 1] + 1;
 		write_alarm(&image->alarms[n % OWS_ALARMS], &entry);

@@ -6,17 +6,17 @@
 #ifndef SHM_IMAGE_H
 #define SHM_IMAGE_H
 
-#include "layout.h"
-
 #include <stdbool.h>
+
+#include "src/shm/layout.h"
 
 /* What the image of a configuration contains; strings are copied. */
 struct image_signal {
 	const char *name;
 	const char *path;
 	uint8_t type;
-	uint8_t flags;      /* OWS_RECORD_ bits */
-	uint16_t text_cap;  /* strings */
+	uint8_t flags;     /* OWS_RECORD_ bits */
+	uint16_t text_cap; /* strings */
 	uint32_t per_factor;
 	uint32_t line;
 	int64_t stale_after_ns;

@@ -18,6 +18,8 @@
  */
 #ifndef OWS_LAYOUT_H
 #define OWS_LAYOUT_H
+/* The columns are laid out for the reader of the installed file. */
+/* clang-format off */
 
 #include <stddef.h>
 #include <stdint.h>

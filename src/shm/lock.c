@@ -3,10 +3,6 @@
  * The lock of an instance is a file of its own with mode 0600: on a file that others may read, any
  * reader could hold a lock and so keep owsd from starting.
  */
-#include "segment.h"
-
-#include "owner.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -14,15 +10,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "src/shm/owner.h"
+#include "src/shm/segment.h"
+
 #define LOCK_TRIES 16
-#define PATH_ROOM  80
+#define PATH_ROOM 80
 
 /*
  * Byte 0 is the instance. Byte 1 is held while the pid is written and while a corpse's file is
  * replaced, so that nobody takes a lock for a corpse's whose new owner has not yet put his pid.
  */
 #define BYTE_INSTANCE 0
-#define BYTE_PID      1
+#define BYTE_PID 1
 
 static int lock_bytes(int fd, short type, off_t start, off_t len)
 {
@@ -194,8 +193,8 @@ int segment_lock_look(const char *instance, pid_t *pid)
 	if (fd < 0)
 		return errno == ELOOP || errno == ENXIO ? -EPERM : -errno;
 	held = fcntl(fd, F_OFD_GETLK, &lock) < 0 ? -errno : lock.l_type != F_UNLCK;
-	if (held >= 0 && (fstat(fd, &st) < 0 || !S_ISREG(st.st_mode) ||
-	                  (!held && !owner_trusted(st.st_uid))))
+	if (held >= 0 &&
+	    (fstat(fd, &st) < 0 || !S_ISREG(st.st_mode) || (!held && !owner_trusted(st.st_uid))))
 		held = -EPERM;
 	if (held >= 0)
 		*pid = read_pid(fd);

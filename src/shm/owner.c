@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* The users and groups that the segments belong to, from /etc/passwd and /etc/group. */
-#include "owner.h"
-
 #include <grp.h>
 #include <pwd.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
+
+#include "src/shm/owner.h"
 
 #define OWNER_USER "owsd"
 

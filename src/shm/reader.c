@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "reader.h"
-
 #include <string.h>
+
+#include "src/shm/reader.h"
 
 bool reader_text(const char *base, const struct ows_record *record, struct ows_sample *sample,
                  char *text, size_t size)

@@ -6,10 +6,10 @@
 #ifndef SHM_READER_H
 #define SHM_READER_H
 
-#include "layout.h"
-#include "word.h"
-
 #include <stdbool.h>
+
+#include "src/shm/layout.h"
+#include "src/shm/word.h"
 
 #ifndef READER_TRIES /* the model has fewer */
 #define READER_TRIES 64

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The files that instances have in /dev/shm: found by their names, and removed under the lock. */
-#include "remains.h"
-
 #include <dirent.h>
 #include <errno.h>
 #include <glob.h>
@@ -9,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+#include "src/shm/remains.h"
 
 #define FOLDER "/dev/shm"
 #define PREFIX "owsd."
@@ -85,7 +85,11 @@ void remains_free(struct remains *remains)
 static int find_files(const char *instance, glob_t *found)
 {
 	static const char *const forms[] = {
-		"image", "command", "image.new", "command.new", "image.new.????????",
+		"image",
+		"command",
+		"image.new",
+		"command.new",
+		"image.new.????????",
 		"command.new.????????",
 	};
 	char pattern[128];

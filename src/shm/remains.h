@@ -3,7 +3,7 @@
 #ifndef SHM_REMAINS_H
 #define SHM_REMAINS_H
 
-#include "segment.h"
+#include "src/shm/segment.h"
 
 struct remains {
 	char (*name)[SEGMENT_NAME_MAX + 1]; /* in the order of their letters, each once */

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The files of an instance in /dev/shm: made under a temporary name, shown, opened again, closed. */
-#include "segment.h"
-
-#include "owner.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -13,9 +9,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "src/shm/owner.h"
+#include "src/shm/segment.h"
+
 #define SEGMENT_MIN 256
 #define SEGMENT_MAX 0x7fffffff
-#define NAME_TRIES  16
+#define NAME_TRIES 16
 
 static const struct segment_role {
 	const char *name, *group;
@@ -85,7 +84,8 @@ static int open_temporary(const char *instance, struct segment *segment)
 
 	final_path(instance, segment->kind, path);
 	for (int i = 0; i < NAME_TRIES; i++) {
-		snprintf(segment->temporary, sizeof(segment->temporary), "%.60s.new%s", path, suffix);
+		snprintf(segment->temporary, sizeof(segment->temporary), "%.60s.new%s", path,
+		         suffix);
 		if (i == 0)
 			unlink(segment->temporary); /* the instance is locked: nobody uses it */
 		segment->fd = open(segment->temporary,

@@ -21,12 +21,12 @@
  * same protocol with more barriers.
  */
 #if defined(__SANITIZE_THREAD__) || __has_feature(thread_sanitizer)
-#define WORD_LOAD       __ATOMIC_ACQUIRE
-#define WORD_STORE      __ATOMIC_RELEASE
+#define WORD_LOAD __ATOMIC_ACQUIRE
+#define WORD_STORE __ATOMIC_RELEASE
 #define word_fence(how) __atomic_signal_fence(how)
 #else
-#define WORD_LOAD       __ATOMIC_RELAXED
-#define WORD_STORE      __ATOMIC_RELAXED
+#define WORD_LOAD __ATOMIC_RELAXED
+#define WORD_STORE __ATOMIC_RELAXED
 #define word_fence(how) __atomic_thread_fence(how)
 #endif
 

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* The names of driver signals and attributes, and how a name is looked up. */
-#include "attribute.h"
-
-#include "utf8.h"
-
 #include <errno.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "src/signal/attribute.h"
+#include "src/signal/utf8.h"
 
 const struct attribute_def attribute_table[ATTR_COUNT] = {
 	[ATTR_VALUE] = {"_Value", NULL, (enum ows_type)0, true, true, false},
@@ -132,9 +131,9 @@ const char *signal_name_fault(const char *name)
 			return "is not UTF-8: convert the file, as with iconv -f cp1250 -t utf-8";
 		if (code < 0x20 || between(code, 0x7f, 0x9f))
 			return "holds a control character";
-		if (code == ' ' || code == 0xa0 || code == 0x1680 || between(code, 0x2000, 0x200f) ||
-		    between(code, 0x2028, 0x202f) || between(code, 0x205f, 0x2064) ||
-		    code == 0x3000 || code == 0xfeff)
+		if (code == ' ' || code == 0xa0 || code == 0x1680 ||
+		    between(code, 0x2000, 0x200f) || between(code, 0x2028, 0x202f) ||
+		    between(code, 0x205f, 0x2064) || code == 0x3000 || code == 0xfeff)
 			return "holds a blank or an invisible character";
 		if (code < 0x80 && strchr("/\"#{}", code))
 			return "holds one of / \" # { }";

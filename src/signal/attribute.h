@@ -6,9 +6,9 @@
 #ifndef SIGNAL_ATTRIBUTE_H
 #define SIGNAL_ATTRIBUTE_H
 
-#include "../libows/ows.h"
-
 #include <stdbool.h>
+
+#include "src/libows/ows.h"
 
 enum attribute {
 	ATTR_VALUE,
@@ -35,8 +35,8 @@ enum attribute {
 };
 
 struct attribute_def {
-	const char *name;  /* "_ReadEnable" */
-	const char *brief; /* "_RE", NULL if none */
+	const char *name;   /* "_ReadEnable" */
+	const char *brief;  /* "_RE", NULL if none */
 	enum ows_type type; /* of _Value: the signal's own, 0 here */
 	bool readable, writable;
 	bool driver;

@@ -1,47 +1,48 @@
 /* SPDX-License-Identifier: MIT */
 /* The words for the error of a request, and the remedy: one table for the log and for owsctl. */
-#include "error.h"
-
 #include <errno.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "src/signal/error.h"
+
 static const struct {
 	int err;
 	const char *text, *remedy;
 } errors[] = {
-	{ 0, "no error", "" },
+	{0, "no error", ""},
 	/* what a path can be wrong in */
-	{ ENODEV, "no such device there", "" },
-	{ ENOENT, "no such property", "check its spelling; owsctl dir shows what a device has" },
-	{ EISDIR, "it is a directory", "owsctl dir shows the properties in it" },
-	{ ENOTDIR, "it is no directory", "" },
-	{ EILSEQ, "the answer is no value of this type", "choose another Type; string takes any text" },
-	{ EPROTOTYPE, "the type does not fit the property", "the log says which Type fits" },
-	{ EMSGSIZE, "the answer is longer than the room for it",
-	  "choose a property that answers less" },
-	{ EACCES, "it can only be read, or only be written",
-	  "IO input reads it; IO output without Readable writes it" },
-	{ EBADRQC, "SetAlarm is not defined, or has no '='", "write SetAlarm \"property=value\"" },
-	{ EUCLEAN, "it is still set after 0 was written", "" },
-	{ EPERM, "no permission",
-	  "a read-only server refuses writes; a file of the kernel needs root or a udev rule" },
+	{ENODEV, "no such device there", ""},
+	{ENOENT, "no such property", "check its spelling; owsctl dir shows what a device has"},
+	{EISDIR, "it is a directory", "owsctl dir shows the properties in it"},
+	{ENOTDIR, "it is no directory", ""},
+	{EILSEQ, "the answer is no value of this type",
+         "choose another Type; string takes any text"},
+	{EPROTOTYPE, "the type does not fit the property", "the log says which Type fits"},
+	{EMSGSIZE, "the answer is longer than the room for it",
+         "choose a property that answers less"},
+	{EACCES, "it can only be read, or only be written",
+         "IO input reads it; IO output without Readable writes it"},
+	{EBADRQC, "SetAlarm is not defined, or has no '='", "write SetAlarm \"property=value\""},
+	{EUCLEAN, "it is still set after 0 was written", ""},
+	{EPERM, "no permission",
+         "a read-only server refuses writes; a file of the kernel needs root or a udev rule"},
 	/* what happens on the way */
-	{ EINVAL, "the target refuses this value", "" },
-	{ EBADMSG, "wrong checksum", "" },
-	{ EDOM, "a value out of the chip's range", "" },
-	{ ECOMM, "the wire is short", "" },
-	{ ERANGE, "reading of a sensor without power, or out of range", "" },
-	{ ETIME, "its turn did not come in time", "" },
-	{ ETIMEDOUT, "no answer in time", "" },
-	{ EINPROGRESS, "no answer in time; the device may have done it", "" },
-	{ ENOTCONN, "the target is down", "" },
-	{ ECONNREFUSED, "the target refuses the connection", "" },
-	{ ECONNRESET, "the target closed the connection", "" },
-	{ EPIPE, "the target closed the connection", "" },
-	{ EPROTO, "the target answered garbage", "" },
-	{ EOPNOTSUPP, "this target cannot do that", "" },
+	{EINVAL, "the target refuses this value", ""},
+	{EBADMSG, "wrong checksum", ""},
+	{EDOM, "a value out of the chip's range", ""},
+	{ECOMM, "the wire is short", ""},
+	{ERANGE, "reading of a sensor without power, or out of range", ""},
+	{ETIME, "its turn did not come in time", ""},
+	{ETIMEDOUT, "no answer in time", ""},
+	{EINPROGRESS, "no answer in time; the device may have done it", ""},
+	{ENOTCONN, "the target is down", ""},
+	{ECONNREFUSED, "the target refuses the connection", ""},
+	{ECONNRESET, "the target closed the connection", ""},
+	{EPIPE, "the target closed the connection", ""},
+	{EPROTO, "the target answered garbage", ""},
+	{EOPNOTSUPP, "this target cannot do that", ""},
 };
 #define ERRORS (sizeof(errors) / sizeof(errors[0]))
 

@@ -3,7 +3,7 @@
 #define SIGNAL_ERROR_H
 
 /*
- * The words for a negative errno of the bus contract (hal/bus.h) or of libows, and what the user can
+ * The words for a negative errno of the bus contract (hal/bus/bus.h) or of libows, and what the user can
  * do about it. Neither is NULL; the remedy is "" where there is nothing to do.
  */
 const char *error_text(int err);

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* What properties of the chip families can be: one table, by data sheet. */
-#include "quantity.h"
-
-#include "hal/path.h"
-
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
+
+#include "hal/owfs/path.h"
+#include "src/signal/quantity.h"
 
 /* DS18S20 (and DS1920), DS1822, DS18B20, DS1825 and MAX31826 and MAX31850, DS28EA00 */
 #define THERMOMETERS "\x10\x22\x28\x3b\x42"

@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /* UTF-8 decoded, a character at a time. */
-#include "utf8.h"
+#include "src/signal/utf8.h"
 
 int32_t utf8_next(const char **text, size_t *len)
 {
 	static const int32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
 	const unsigned char *at = (const unsigned char *)*text;
-	size_t size = at[0] < 0x80 ? 1 : at[0] < 0xc2 ? 0 : at[0] < 0xe0 ? 2 : at[0] < 0xf0 ? 3
-	            : at[0] < 0xf5 ? 4 : 0;
+	size_t size = at[0] < 0x80   ? 1
+	              : at[0] < 0xc2 ? 0
+	              : at[0] < 0xe0 ? 2
+	              : at[0] < 0xf0 ? 3
+	              : at[0] < 0xf5 ? 4
+	                             : 0;
 	int32_t c = size < 2 ? at[0] : at[0] & (0x7f >> size);
 	bool bad = size == 0 || size > *len;
 

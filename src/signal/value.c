@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Values of signals: their types, and what texts and numbers make of them and back. */
-#include "value.h"
-
 #include <errno.h>
 #include <float.h>
 #include <limits.h>
@@ -10,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+
+#include "src/signal/value.h"
 
 /* What "nearest limit" means for each integer type; floats have their own way. */
 static const struct type_def {
@@ -449,7 +449,9 @@ int value_to_text(enum ows_type type, int64_t value, char text[VALUE_TEXT_MAX])
 	number = double_of(value);
 	if (!isfinite(number))
 		return snprintf(text, VALUE_TEXT_MAX, "%s",
-		                isnan(number) ? "nan" : number < 0 ? "-inf" : "inf");
+		                isnan(number) ? "nan"
+		                : number < 0  ? "-inf"
+		                              : "inf");
 	/* below the normal numbers fewer digits tell two of them apart */
 	if (fabs(number) < (type == OWS_FLOAT ? (double)FLT_MIN : DBL_MIN))
 		digits = 1;

@@ -7,9 +7,9 @@
 #ifndef SIGNAL_VALUE_H
 #define SIGNAL_VALUE_H
 
-#include "../libows/ows.h"
-
 #include <stdbool.h>
+
+#include "src/libows/ows.h"
 
 /* Bytes of a string signal, without NUL; a multiple of 4. */
 #define VALUE_STRING_MAX 1024
@@ -17,7 +17,7 @@
 #define VALUE_TEXT_MAX 32
 
 bool value_type_ok(int type);
-bool value_is_float(enum ows_type type);  /* float or double */
+bool value_is_float(enum ows_type type);         /* float or double */
 const char *value_type_name(enum ows_type type); /* "double"; "?" for no type */
 /* Type of a name ("double"), -1 if there is none. */
 int value_type_parse(const char *name);

@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: MIT
 # What looks at the source and at the tests
 
-.PHONY: analyze coverage
+.PHONY: analyze coverage format
 
-# gcc -fanalyzer, clang-tidy and cppcheck, two to four minutes; TOOLS and FILES narrow it
+# Lays all C out as .clang-format says; analyze checks it
+format:
+	@git ls-files '*.c' '*.h' | grep -E '^(src|hal|tests)/' | xargs clang-format -i
+
+# clang-format, gcc -fanalyzer, clang-tidy and cppcheck, two to four minutes; TOOLS and FILES narrow it
 analyze:
 	@sh board/install-deps build analyze $(if $(OR_SKIP),|| true)
 	@python3 tests/analyze/run $(if $(OR_SKIP),--or-skip) $(TOOLS:%=--tool %) $(FILES:%=--file %) \

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "aid.h"
-
 #include <arpa/inet.h>
 #include <errno.h>
 #include <math.h>
@@ -17,9 +15,11 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "tests/bench/aid.h"
+
 #define FLAG_PERSIST 0x4
-#define TYPE_READ    2
-#define TYPE_DIRALL  7
+#define TYPE_READ 2
+#define TYPE_DIRALL 7
 
 int64_t bench_now(void)
 {
@@ -72,7 +72,7 @@ double bench_percentile(double *values, size_t n, double p)
 
 void bench_distribution(const char *name, double *values, size_t n, const char *unit)
 {
-	static const double points[] = { 0, 1, 10, 25, 50, 75, 90, 99, 99.9, 99.99, 100 };
+	static const double points[] = {0, 1, 10, 25, 50, 75, 90, 99, 99.9, 99.99, 100};
 	char line[96];
 
 	for (size_t i = 0; i < sizeof(points) / sizeof(points[0]); i++) {
@@ -107,7 +107,7 @@ int64_t bench_cpu_ns(pid_t pid)
 
 int bench_port(void)
 {
-	struct sockaddr_in a = { .sin_family = AF_INET };
+	struct sockaddr_in a = {.sin_family = AF_INET};
 	socklen_t len = sizeof(a);
 	int fd = socket(AF_INET, SOCK_STREAM, 0), port = 0;
 
@@ -121,7 +121,7 @@ int bench_port(void)
 
 int bench_socket(int port)
 {
-	struct sockaddr_in a = { .sin_family = AF_INET, .sin_port = htons((uint16_t)port) };
+	struct sockaddr_in a = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)};
 	int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0), on = 1;
 
 	a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -215,7 +215,7 @@ bool bench_peer_start(struct bench_peer *peer, unsigned devices, int cpu)
 	char config[80], address[32];
 	FILE *f;
 
-	*peer = (struct bench_peer){ .devices = devices };
+	*peer = (struct bench_peer){.devices = devices};
 	peer->paths = calloc(devices, sizeof(*peer->paths));
 	snprintf(peer->folder, sizeof(peer->folder), "/tmp/owsd-bench-XXXXXX");
 	if (!peer->paths || !mkdtemp(peer->folder))
@@ -273,5 +273,5 @@ void bench_peer_end(struct bench_peer *peer)
 	unlink(config);
 	rmdir(peer->folder);
 	free(peer->paths);
-	*peer = (struct bench_peer){ 0 };
+	*peer = (struct bench_peer){0};
 }

@@ -3,8 +3,8 @@
  * What the benches share: time, placement, the line a figure is printed on, and the peer: the
  * genuine owserver with fake thermometers, asked over a bare socket.
  */
-#ifndef BENCH_AID_H
-#define BENCH_AID_H
+#ifndef TESTS_BENCH_AID_H
+#define TESTS_BENCH_AID_H
 
 #include <stdbool.h>
 #include <stddef.h>

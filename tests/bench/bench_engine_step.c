@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* The engine's cost of one request, from due to published, for tables of different length. */
-#include "aid.h"
-
-#include "src/engine/counters.h"
-#include "src/engine/engine.h"
-#include "src/engine/table.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/engine/counters.h"
+#include "src/engine/engine.h"
+#include "src/engine/table.h"
+#include "tests/bench/aid.h"
+
 #define REQUESTS 200000
-#define ROUNDS   7
+#define ROUNDS 7
 
 static struct bus_req *pending;
 
@@ -27,7 +26,7 @@ static int submit(void *ctx, struct bus_req *req)
 static void answer(struct engine *engine, int64_t now)
 {
 	static const char text[] = "     21.4375";
-	struct bus_answer a = { .id = pending->id, .len = sizeof(text) - 1, .measured_ns = now };
+	struct bus_answer a = {.id = pending->id, .len = sizeof(text) - 1, .measured_ns = now};
 
 	memcpy(pending->data, text, sizeof(text) - 1);
 	if (strncmp(pending->path, "/structure/", 11) == 0)
@@ -38,24 +37,32 @@ static void answer(struct engine *engine, int64_t now)
 
 static double one_step_ns(unsigned signals)
 {
-	struct config_target target = { .text = "bench" };
+	struct config_target target = {.text = "bench"};
 	struct config_item *items = calloc(signals, sizeof(*items));
 	struct image_signal *rows = calloc(signals, sizeof(*rows));
 	struct command_signal *names = calloc(signals, sizeof(*names));
-	char (*text)[64] = calloc(signals, sizeof(*text));
+	char(*text)[64] = calloc(signals, sizeof(*text));
 	struct image_counter counters[64];
-	const char *targets[] = { "bench" };
-	struct config config = { .file = "bench", .targets = &target, .target_count = 1,
-		                 .max_retries = 3, .timeout_ns = 20000000000, .period_ns = 1000000,
-		                 .items = items, .item_count = signals };
-	struct engine_port port = { .target = "bench", .depth = 1, .submit = submit };
-	struct bus_event up = { .news = BUS_UP };
-	struct engine_setup setup = { .config = &config, .ports = &port, .port_count = 1 };
-	struct image_plan plan = { .signals = rows, .signal_count = signals, .targets = targets,
-		                   .target_count = 1, .counters = counters,
-		                   .counter_count = engine_counter_count(1) };
-	struct command_plan command_plan = { .signals = names, .signal_count = signals,
-		                             .text_cap = TABLE_TEXT_CAP };
+	const char *targets[] = {"bench"};
+	struct config config = {.file = "bench",
+	                        .targets = &target,
+	                        .target_count = 1,
+	                        .max_retries = 3,
+	                        .timeout_ns = 20000000000,
+	                        .period_ns = 1000000,
+	                        .items = items,
+	                        .item_count = signals};
+	struct engine_port port = {.target = "bench", .depth = 1, .submit = submit};
+	struct bus_event up = {.news = BUS_UP};
+	struct engine_setup setup = {.config = &config, .ports = &port, .port_count = 1};
+	struct image_plan plan = {.signals = rows,
+	                          .signal_count = signals,
+	                          .targets = targets,
+	                          .target_count = 1,
+	                          .counters = counters,
+	                          .counter_count = engine_counter_count(1)};
+	struct command_plan command_plan = {
+		.signals = names, .signal_count = signals, .text_cap = TABLE_TEXT_CAP};
 	struct commands commands;
 	struct image image;
 	struct engine *engine;
@@ -66,11 +73,15 @@ static double one_step_ns(unsigned signals)
 	for (unsigned i = 0; i < signals; i++) {
 		snprintf(text[i], 32, "signal%u", i);
 		snprintf(text[i] + 32, 32, "/28.%012X/temperature", i);
-		items[i] = (struct config_item){ .name = text[i], .path = text[i] + 32,
-			                         .type = OWS_DOUBLE, .readable = true,
-			                         .per_factor = 1, .init_text = "", .safe_text = "" };
+		items[i] = (struct config_item){.name = text[i],
+		                                .path = text[i] + 32,
+		                                .type = OWS_DOUBLE,
+		                                .readable = true,
+		                                .per_factor = 1,
+		                                .init_text = "",
+		                                .safe_text = ""};
 		signal_table_image(&items[i], &rows[i]);
-		names[i] = (struct command_signal){ text[i], text[i] + 32, OWS_DOUBLE };
+		names[i] = (struct command_signal){text[i], text[i] + 32, OWS_DOUBLE};
 	}
 	engine_counter_plan(1, counters);
 	image_memory = aligned_alloc(64, (image_size(&plan) + 63) / 64 * 64);
@@ -120,7 +131,7 @@ static double one_step_ns(unsigned signals)
 
 int main(void)
 {
-	static const unsigned tables[] = { 10, 100, 1000, 10000 };
+	static const unsigned tables[] = {10, 100, 1000, 10000};
 	char name[32];
 
 	bench_pin(0);

@@ -3,8 +3,6 @@
  * What owsd costs while it works: 100 thermometers of a genuine owserver, Period 0.1, PerFactor 10;
  * beside it the server it asks.
  */
-#include "aid.h"
-
 #include <dirent.h>
 #include <signal.h>
 #include <stdio.h>
@@ -14,7 +12,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define SIGNALS   100
+#include "tests/bench/aid.h"
+
+#define SIGNALS 100
 #define SECONDS_N 10
 
 /* A field of /proc/PID/status. */

@@ -5,22 +5,21 @@
  * 400 kHz. Eight DS2408 with the alarm items of figure 3.3 of the manual, AlarmPeriod such that the
  * idle search of the alarms takes 4 or 10 % of the time; and the same inputs read in the cycle.
  */
-#include "aid.h"
-
-#include "hal/ds2482/codes.h"
-#include "tests/unit/plant.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/ds2482/codes.h"
+#include "tests/bench/aid.h"
+#include "tests/unit/aid/plant.h"
+
 #define THERMOMETERS 50
-#define BOARDS       8
-#define CHANGES      600
-#define LISTS        101
-#define LIST_NS      (20 * PLANT_MS)
+#define BOARDS 8
+#define CHANGES 600
+#define LISTS 101
+#define LIST_NS (20 * PLANT_MS)
 /* Waking of engine and bus threads on a small board. */
-#define DELAY_NS     (100 * PLANT_US)
+#define DELAY_NS (100 * PLANT_US)
 
 static struct plant plant;
 static struct {
@@ -54,13 +53,15 @@ static void write_rio(char *text, size_t size, double alarm_period, unsigned per
 {
 	size_t n = (size_t)snprintf(text, size,
 	                            "OwsDrv {\n  TargetName \"sim:plant\"\n  Period 0.1\n"
-	                            "  AlarmPeriod %.4f\n", alarm_period ? alarm_period : 0.05);
+	                            "  AlarmPeriod %.4f\n",
+	                            alarm_period ? alarm_period : 0.05);
 
 	for (unsigned i = 0; i < BOARDS; i++) {
-		n += (size_t)snprintf(text + n, size - n,
-		                      "  Item {\n    Name \"b%u\"\n    Path \"/29.%08X%04X/sensed.BYTE\"\n"
-		                      "    Type byte\n    IO input\n    Uncached on\n", i,
-		                      (i + 77) * 2654435761u, i);
+		n += (size_t)snprintf(
+			text + n, size - n,
+			"  Item {\n    Name \"b%u\"\n    Path \"/29.%08X%04X/sensed.BYTE\"\n"
+			"    Type byte\n    IO input\n    Uncached on\n",
+			i, (i + 77) * 2654435761u, i);
 		if (alarm_period)
 			n += (size_t)snprintf(text + n, size - n,
 			                      "    Alarm on\n    LatchAlarm \"latch.BYTE\"\n"
@@ -70,11 +71,12 @@ static void write_rio(char *text, size_t size, double alarm_period, unsigned per
 		n += (size_t)snprintf(text + n, size - n, "  }\n");
 	}
 	for (unsigned i = 0; i < THERMOMETERS; i++)
-		n += (size_t)snprintf(text + n, size - n,
-		                      "  Item {\n    Name \"t%u\"\n    Path \"/28.%08X%04X/temperature12\"\n"
-		                      "    Type double\n    IO input\n    Uncached on\n"
-		                      "    PerFactor %u\n  }\n", i,
-		                      (i + 1) * 2654435761u, i, per_factor);
+		n += (size_t)snprintf(
+			text + n, size - n,
+			"  Item {\n    Name \"t%u\"\n    Path \"/28.%08X%04X/temperature12\"\n"
+			"    Type double\n    IO input\n    Uncached on\n"
+			"    PerFactor %u\n  }\n",
+			i, (i + 1) * 2654435761u, i, per_factor);
 	snprintf(text + n, size - n, "}\n");
 }
 
@@ -138,7 +140,7 @@ static void one_change(void)
 
 static void measure(const char *name, double alarm_period)
 {
-	struct sim_event event = { .what = SIM_SET, .done = true };
+	struct sim_event event = {.what = SIM_SET, .done = true};
 	static double ms[CHANGES];
 	char line[64];
 
@@ -166,7 +168,8 @@ int main(void)
 	double idle = idle_search_ms();
 
 	bench_line("alarm_search.idle.wire", idle, "ms");
-	bench_line("alarm_search.idle.limit", (ds2482_reset_ns[0] + 32 * ds2482_slot_ns[0]) / 1e6, "ms");
+	bench_line("alarm_search.idle.limit", (ds2482_reset_ns[0] + 32 * ds2482_slot_ns[0]) / 1e6,
+	           "ms");
 	measure("alarm4", idle / 1e3 / 0.04);
 	measure("alarm10", idle / 1e3 / 0.10);
 	measure("cyclic", 0);

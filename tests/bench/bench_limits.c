@@ -4,10 +4,6 @@
  * of the other CPU's cache, a thread woken, and a request and its answer of the owserver protocol's
  * size over loopback TCP with nothing in between.
  */
-#include "aid.h"
-
-#include "src/shm/segment.h"
-
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <pthread.h>
@@ -21,21 +17,25 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define LINE  64
+#include "src/shm/segment.h"
+#include "tests/bench/aid.h"
+
+#define LINE 64
 #define WORDS (64 << 20)
-#define HOPS  4000
+#define HOPS 4000
 #define TURNS 1000
 #define SERIES 100
 #define WAKES 1000
 #define TRIPS 20000
 #define ASKED 54 /* header and "/28.0123456789AB/temperature" */
-#define TOLD  36 /* header and 12 characters */
+#define TOLD 36  /* header and 12 characters */
 
 /* Each load needs the one before: nothing can be fetched ahead. */
 static void memory(const char *name, size_t size)
 {
 	size_t lines = size / LINE, at = 0;
-	uint8_t *room = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+	uint8_t *room = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1,
+	                     0);
 	double ns[SERIES];
 
 	if (room == MAP_FAILED)
@@ -150,7 +150,7 @@ static void answer_all(int listener, int cpu)
 static void loopback(const char *where, int cpu)
 {
 	static double us[TRIPS];
-	struct sockaddr_in a = { .sin_family = AF_INET };
+	struct sockaddr_in a = {.sin_family = AF_INET};
 	int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0), fd;
 	socklen_t len = sizeof(a);
 	char data[ASKED] = "", name[64];

@@ -4,10 +4,6 @@
  * libownet, all against the same genuine owserver and all on one CPU with it; and the CPU time a
  * read costs on both sides.
  */
-#include "aid.h"
-
-#include "hal/bus.h"
-
 #include <dlfcn.h>
 #include <errno.h>
 #include <poll.h>
@@ -17,7 +13,10 @@
 #include <time.h>
 #include <unistd.h>
 
-#define READS  5000
+#include "hal/bus/bus.h"
+#include "tests/bench/aid.h"
+
+#define READS 5000
 #define ROUNDS 7
 
 static struct bus_answer last;
@@ -34,9 +33,9 @@ static int64_t now(void *ctx)
 
 static int wait_for(void *ctx, int fd, short events, int64_t until_ns)
 {
-	struct pollfd p = { .fd = fd, .events = events };
+	struct pollfd p = {.fd = fd, .events = events};
 	int64_t left = until_ns - now(ctx);
-	struct timespec t = { left > 0 ? left / 1000000000 : 0, left > 0 ? left % 1000000000 : 0 };
+	struct timespec t = {left > 0 ? left / 1000000000 : 0, left > 0 ? left % 1000000000 : 0};
 
 	return ppoll(&p, fd >= 0, &t, NULL) > 0;
 }
@@ -55,13 +54,13 @@ static void take_event(void *ctx, const struct bus_event *event)
 		is_up = true;
 }
 
-static const struct bus_env env = { .now = now, .wait = wait_for, .answer = take_answer,
-	                            .event = take_event };
+static const struct bus_env env = {
+	.now = now, .wait = wait_for, .answer = take_answer, .event = take_event};
 
 static bool read_ours(struct bus *bus, const char *path)
 {
 	static uint8_t data[128];
-	struct bus_req req = { .op = BUS_READ, .path = path, .len = sizeof(data), .data = data };
+	struct bus_req req = {.op = BUS_READ, .path = path, .len = sizeof(data), .data = data};
 
 	req.deadline_ns = now(NULL) + 1000000000;
 	answered = false;
@@ -158,7 +157,8 @@ int main(void)
 		bench_note("owserver_reads.libownet left out: libownet is not installed");
 	for (int round = 0; round < ROUNDS; round++)
 		for (int who = 0; who < WHO; who++) {
-			int64_t begin = bench_now(), own = own_cpu_ns(), its = bench_cpu_ns(peer.pid);
+			int64_t begin = bench_now(), own = own_cpu_ns(),
+				its = bench_cpu_ns(peer.pid);
 
 			if (who == OWNET && !has_ownet)
 				continue;
@@ -171,8 +171,8 @@ int main(void)
 				}
 			per_s[who][round] = READS * 1e9 / (double)(bench_now() - begin);
 			own_us[who] += (double)(own_cpu_ns() - own) / 1e3 / READS / ROUNDS;
-			peer_us[who] +=
-				(double)(bench_cpu_ns(peer.pid) - its) / 1e3 / READS / ROUNDS;
+			peer_us[who] += (double)(bench_cpu_ns(peer.pid) - its) / 1e3 / READS /
+			                ROUNDS;
 		}
 	for (int who = 0; who < WHO; who++) {
 		if (who == OWNET && !has_ownet)

@@ -11,22 +11,21 @@
  * Convert T is a reset and 2 bytes for each channel; a reading is a reset, Match ROM with its 8
  * bytes, the command and 9 bytes: 19 bytes. One conversion, because all channels convert at once.
  */
-#include "aid.h"
-
-#include "hal/bus.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#define RESET_NS   1184000.0
-#define SLOT_NS    69300.0
+#include "hal/bus/bus.h"
+#include "tests/bench/aid.h"
+
+#define RESET_NS 1184000.0
+#define SLOT_NS 69300.0
 #define CONVERT_NS 750e6
-#define MS         INT64_C(1000000)
-#define S          INT64_C(1000000000)
-#define MOST       100
-#define SCANS      8
+#define MS INT64_C(1000000)
+#define S INT64_C(1000000000)
+#define MOST 100
+#define SCANS 8
 
 struct place {
 	struct bus_env env;
@@ -110,8 +109,11 @@ static void begin(struct place *p, unsigned thermometers, unsigned channels, int
 	p->now = 1000 * S;
 	p->channels = channels;
 	p->thermometers = thermometers;
-	p->env = (struct bus_env){ .ctx = p, .now = place_now, .wait = place_wait,
-		                   .answer = place_answer, .event = place_event };
+	p->env = (struct bus_env){.ctx = p,
+	                          .now = place_now,
+	                          .wait = place_wait,
+	                          .answer = place_answer,
+	                          .event = place_event};
 	snprintf(p->file, sizeof(p->file), "/tmp/owsd-bench-XXXXXX");
 	fd = mkstemp(p->file);
 	f = fd < 0 ? NULL : fdopen(fd, "w");
@@ -143,9 +145,14 @@ static void ask(struct place *p, unsigned i, const char *property)
 {
 	snprintf(p->path[i], sizeof(p->path[i]), "/28.%08X%04X/%s", (i + 1) * 2654435761u, i,
 	         property);
-	p->req[i] = (struct bus_req){ .id = i, .op = BUS_READ, .prio = BUS_INPUT, .fresh = true,
-		                      .deadline_ns = p->now + 20 * S, .path = p->path[i],
-		                      .len = sizeof(p->data[i]), .data = p->data[i] };
+	p->req[i] = (struct bus_req){.id = i,
+	                             .op = BUS_READ,
+	                             .prio = BUS_INPUT,
+	                             .fresh = true,
+	                             .deadline_ns = p->now + 20 * S,
+	                             .path = p->path[i],
+	                             .len = sizeof(p->data[i]),
+	                             .data = p->data[i]};
 	if (bus_submit(p->bus, &p->req[i]))
 		exit(1);
 }
@@ -224,10 +231,9 @@ int main(void)
 {
 	static const struct {
 		unsigned thermometers, channels;
-	} nets[] = { { 1, 1 }, { 2, 1 }, { 5, 1 }, { 10, 1 }, { 20, 1 }, { 50, 1 }, { 100, 1 },
-		     { 80, 8 } };
-	static const char *const combines[] = { "any", "one-read" };
-	static const int speeds[] = { 400, 100 };
+	} nets[] = {{1, 1}, {2, 1}, {5, 1}, {10, 1}, {20, 1}, {50, 1}, {100, 1}, {80, 8}};
+	static const char *const combines[] = {"any", "one-read"};
+	static const int speeds[] = {400, 100};
 
 	for (unsigned s = 0; s < 2; s++)
 		for (unsigned c = 0; c < 2; c++)

@@ -5,10 +5,6 @@
  * way; on one CPU with the server, and on another. And what 64 clients cost in memory, and whether
  * they make the engine late.
  */
-#include "aid.h"
-
-#include "src/libows/ows.h"
-
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,10 +14,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define DEVICES   100
-#define CLIENTS   64
-#define SECOND    1000000000
-#define SAMPLES   400000
+#include "src/libows/ows.h"
+#include "tests/bench/aid.h"
+
+#define DEVICES 100
+#define CLIENTS 64
+#define SECOND 1000000000
+#define SAMPLES 400000
 
 static double latency[SAMPLES];
 
@@ -162,7 +161,7 @@ static bool write_file(const char *file, const struct bench_peer *peer)
 
 int main(int argc, char **argv)
 {
-	static const int clients[] = { 1, 16, 64 };
+	static const int clients[] = {1, 16, 64};
 	char program[512], file[128], instance[32], path[128], port[16];
 	const char *slash = strrchr(argv[0], '/');
 	struct bench_peer peer;
@@ -175,8 +174,8 @@ int main(int argc, char **argv)
 	         slash ? argv[0] : ".");
 	snprintf(file, sizeof(file), "%s/bench.rio", peer.folder);
 	snprintf(instance, sizeof(instance), "bench-%d", (int)getpid());
-	sides[1] = (struct side){ ".owserver", peer.port, peer.pid };
-	sides[0] = (struct side){ "", bench_port(), 0 };
+	sides[1] = (struct side){".owserver", peer.port, peer.pid};
+	sides[0] = (struct side){"", bench_port(), 0};
 	snprintf(port, sizeof(port), "%d", sides[0].port);
 	if (!write_file(file, &peer))
 		return 1;

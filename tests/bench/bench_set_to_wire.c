@@ -3,10 +3,6 @@
  * From ows_set() in a control program to the request of an idle owsd at its owserver: a peer of our
  * own takes the time when the write arrives, so one hop over loopback is in the figure.
  */
-#include "aid.h"
-
-#include "src/libows/ows.h"
-
 #include <arpa/inet.h>
 #include <netinet/tcp.h>
 #include <pthread.h>
@@ -18,6 +14,9 @@
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "src/libows/ows.h"
+#include "tests/bench/aid.h"
 
 #define SETS 500
 #define WRITE 3
@@ -84,7 +83,7 @@ static pid_t start_owsd(const char *self, const char *folder, const char *instan
 int main(int argc, char **argv)
 {
 	static double us[SETS];
-	struct sockaddr_in a = { .sin_family = AF_INET };
+	struct sockaddr_in a = {.sin_family = AF_INET};
 	socklen_t len = sizeof(a);
 	char folder[] = "/tmp/owsd-bench-XXXXXX", instance[32], path[128];
 	int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0), id = -1, done = 0;

@@ -4,19 +4,18 @@
  * second; beside it, in the same run, one READ of the genuine owserver from another CPU than the
  * server's.
  */
-#include "aid.h"
-
-#include "src/libows/ows.h"
-#include "src/shm/image.h"
-#include "src/shm/segment.h"
-
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#define BATCH   1000
+#include "src/libows/ows.h"
+#include "src/shm/image.h"
+#include "src/shm/segment.h"
+#include "tests/bench/aid.h"
+
+#define BATCH 1000
 #define BATCHES 20000
 #define WRITES_PER_S 10000
 
@@ -25,8 +24,8 @@ static int stop;
 
 static void publish(double degrees)
 {
-	struct ows_sample sample = { .measured_ns = ows_now(), .quality = OWS_Q_GOOD, .count = 1 };
-	struct ows_attrs attrs = { .flags = OWS_ATTR_READ_ENABLE };
+	struct ows_sample sample = {.measured_ns = ows_now(), .quality = OWS_Q_GOOD, .count = 1};
+	struct ows_attrs attrs = {.flags = OWS_ATTR_READ_ENABLE};
 
 	memcpy(&sample.value, &degrees, sizeof(degrees));
 	image_publish(&image, 1, &sample, &attrs, NULL);
@@ -51,11 +50,15 @@ static void *write_all_the_time(void *ctx)
 
 static bool open_instance(struct segment *segment, char *name, struct ows **h)
 {
-	const struct image_signal signal = { .name = "room", .path = "/28.0/temperature",
-		                             .type = OWS_DOUBLE, .per_factor = 1 };
-	struct image_plan plan = { .signals = &signal, .signal_count = 1, .generation = 1,
-		                   .start_id = 1, .pid = getpid(), .start_ns = ows_now(),
-		                   .period_ns = 100000000 };
+	const struct image_signal signal = {
+		.name = "room", .path = "/28.0/temperature", .type = OWS_DOUBLE, .per_factor = 1};
+	struct image_plan plan = {.signals = &signal,
+	                          .signal_count = 1,
+	                          .generation = 1,
+	                          .start_id = 1,
+	                          .pid = getpid(),
+	                          .start_ns = ows_now(),
+	                          .period_ns = 100000000};
 	size_t size = image_size(&plan);
 
 	sprintf(name, "bench-%d", (int)getpid());

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* What must be true of requests, counters, memory. The engine's inside is looked at here alone. */
-#include "invariants.h"
-#include "memory.h"
+#include <string.h>
 
 #include "src/engine/counters.h"
 #include "src/engine/state.h"
-
-#include <string.h>
+#include "tests/endurance/invariants.h"
+#include "tests/endurance/memory.h"
 
 #define LANE_COUNTS (engine_counter_count(1) - engine_counter_count(0))
 /* A request has 20 s, and the bus may find out a little later what became of it. */
@@ -155,8 +154,7 @@ static void counters_go_on(const struct generation *g)
 		size_t n;
 
 		for (unsigned i = 0; i < each; i++)
-			step_on(&g->bus[p]->seen[i],
-			        engine_counter(g->engine, own + p * each + i),
+			step_on(&g->bus[p]->seen[i], engine_counter(g->engine, own + p * each + i),
 			        plan[own + p * each + i].name);
 		counters = bus_counters(g->bus[p]->bus, &n);
 		for (size_t i = 0; i < n && i < STATION_SEEN; i++)

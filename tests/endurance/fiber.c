@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "fiber.h"
-
 #include <stdint.h>
 #include <stdlib.h>
+
+#include "tests/endurance/fiber.h"
 
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/common_interface_defs.h>
@@ -43,7 +43,7 @@ void fiber_begin(struct fiber *fiber, void (*run)(void *ctx), void *ctx)
 {
 	uint64_t bits = (uintptr_t)fiber;
 
-	*fiber = (struct fiber){ .run = run, .ctx = ctx, .stack = malloc(FIBER_STACK) };
+	*fiber = (struct fiber){.run = run, .ctx = ctx, .stack = malloc(FIBER_STACK)};
 	if (!fiber->stack || getcontext(&fiber->context))
 		abort();
 	fiber->context.uc_stack.ss_sp = fiber->stack;

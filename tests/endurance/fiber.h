@@ -3,8 +3,8 @@
  * A fiber: a function with a stack of its own that is left in the middle and entered again, as a
  * worker's thread that waits; but one at a time, in an order that a seed repeats.
  */
-#ifndef ENDURANCE_FIBER_H
-#define ENDURANCE_FIBER_H
+#ifndef TESTS_ENDURANCE_FIBER_H
+#define TESTS_ENDURANCE_FIBER_H
 
 #include <stdbool.h>
 #include <stddef.h>

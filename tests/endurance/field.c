@@ -1,25 +1,27 @@
 /* SPDX-License-Identifier: MIT */
-#include "field.h"
-
 #include <math.h>
 #include <string.h>
 
-#define TWO_PI    6.28318530717958647692
-#define NEAR      0.15 /* the coarsest resolution here, and half of it */
-#define LOOKS     8
+#include "tests/endurance/field.h"
+
+#define TWO_PI 6.28318530717958647692
+#define NEAR 0.15 /* the coarsest resolution here, and half of it */
+#define LOOKS 8
 
 struct field field;
 
 void field_begin(int64_t now_ns)
 {
 	static const struct field_device devices[] = {
-		{ .id = "28.0000000000B1", .name = "boiler", .mean = 60, .swing = 6,
-		  .span_s = 7200 },
+		{.id = "28.0000000000B1", .name = "boiler", .mean = 60, .swing = 6, .span_s = 7200},
 		/* through 85, the power-on value */
-		{ .id = "28.0000000000B2", .name = "hot", .mean = 82, .swing = 8, .span_s = 10800 },
-		{ .id = "28.0000000000A3", .name = "outside", .mean = 8, .swing = 12,
-		  .span_s = 86400 },
-		{ .id = "29.000000000001", .name = "board", .is_switch = true },
+		{.id = "28.0000000000B2", .name = "hot", .mean = 82, .swing = 8, .span_s = 10800},
+		{.id = "28.0000000000A3",
+	         .name = "outside",
+	         .mean = 8,
+	         .swing = 12,
+	         .span_s = 86400},
+		{.id = "29.000000000001", .name = "board", .is_switch = true},
 	};
 
 	memset(&field, 0, sizeof(field));

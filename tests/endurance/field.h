@@ -3,25 +3,25 @@
  * What there is in truth: devices, what they measure over time, how their pins are. Each part of
  * a world shows it in its way, and what the engine publishes is compared with it.
  */
-#ifndef ENDURANCE_FIELD_H
-#define ENDURANCE_FIELD_H
+#ifndef TESTS_ENDURANCE_FIELD_H
+#define TESTS_ENDURANCE_FIELD_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
 #define FIELD_DEVICES 6
-#define FIELD_PINS    16
-#define FIELD_MS      INT64_C(1000000)
-#define FIELD_S       INT64_C(1000000000)
+#define FIELD_PINS 16
+#define FIELD_MS INT64_C(1000000)
+#define FIELD_S INT64_C(1000000000)
 
 struct field_device {
-	const char *id;    /* "28.0000000000B1" */
-	const char *name;  /* "boiler" */
+	const char *id;     /* "28.0000000000B1" */
+	const char *name;   /* "boiler" */
 	double mean, swing; /* of a sine */
-	int64_t span_s;    /* 0: it always measures mean */
+	int64_t span_s;     /* 0: it always measures mean */
 	bool is_switch;
-	bool away;         /* on no wire */
-	unsigned wire;     /* on this one */
+	bool away;     /* on no wire */
+	unsigned wire; /* on this one */
 };
 
 struct field {

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* What belongs to one configuration: made, put in the place of another, ended. */
-#include "station_private.h"
-
-#include "memory.h"
+#include <stdlib.h>
+#include <string.h>
 
 #include "src/engine/counters.h"
 #include "src/engine/table.h"
-
-#include <stdlib.h>
-#include <string.h>
+#include "tests/endurance/memory.h"
+#include "tests/endurance/station_private.h"
 
 static void free_generation(struct generation *g)
 {
@@ -68,25 +66,33 @@ static void make_memory(struct generation *g)
 	uint32_t groups[STATION_PARTS];
 	struct image_signal *rows = calloc(c->item_count, sizeof(*rows));
 	struct command_signal *names = calloc(c->item_count, sizeof(*names));
-	struct image_counter *counters =
-		calloc(engine_counter_count(c->target_count), sizeof(*counters));
-	struct image_plan plan = { .signals = rows, .signal_count = c->item_count,
-		                   .targets = targets, .target_count = c->target_count,
-		                   .groups = groups, .counters = counters,
-		                   .counter_count = engine_counter_count(c->target_count),
-		                   .generation = (uint32_t)station.reloads + 1, .start_id = 7,
-		                   .pid = 1, .start_ns = station.start, .period_ns = c->period_ns };
-	struct command_plan command_plan = { .signals = names, .signal_count = c->item_count,
-		                             .text_cap = TABLE_TEXT_CAP,
-		                             .generation = (uint32_t)station.reloads + 1,
-		                             .start_id = 7, .pid = 1 };
+	struct image_counter *counters = calloc(engine_counter_count(c->target_count),
+	                                        sizeof(*counters));
+	struct image_plan plan = {.signals = rows,
+	                          .signal_count = c->item_count,
+	                          .targets = targets,
+	                          .target_count = c->target_count,
+	                          .groups = groups,
+	                          .counters = counters,
+	                          .counter_count = engine_counter_count(c->target_count),
+	                          .generation = (uint32_t)station.reloads + 1,
+	                          .start_id = 7,
+	                          .pid = 1,
+	                          .start_ns = station.start,
+	                          .period_ns = c->period_ns};
+	struct command_plan command_plan = {.signals = names,
+	                                    .signal_count = c->item_count,
+	                                    .text_cap = TABLE_TEXT_CAP,
+	                                    .generation = (uint32_t)station.reloads + 1,
+	                                    .start_id = 7,
+	                                    .pid = 1};
 
 	if (!rows || !names || !counters)
 		world_fails("no memory", "");
 	for (unsigned i = 0; i < c->item_count; i++) {
 		signal_table_image(&c->items[i], &rows[i]);
-		names[i] = (struct command_signal){ c->items[i].name, c->items[i].path,
-			                            (uint8_t)c->items[i].type };
+		names[i] = (struct command_signal){c->items[i].name, c->items[i].path,
+		                                   (uint8_t)c->items[i].type};
 	}
 	for (unsigned i = 0; i < c->target_count; i++) {
 		targets[i] = c->targets[i].text;
@@ -118,8 +124,11 @@ static void make_ports(struct generation *g, const struct generation *before,
 
 		g->bus[i] = b;
 		g->ports[i] = (struct engine_port){
-			.target = c->targets[i].text, .depth = bus_depth(b->bus),
-			.searches = b->bus->ops->searches, .submit = station_submit, .ctx = b,
+			.target = c->targets[i].text,
+			.depth = bus_depth(b->bus),
+			.searches = b->bus->ops->searches,
+			.submit = station_submit,
+			.ctx = b,
 			.group = c->targets[i].group,
 			.suspend = b->bus->ops->suspend ? station_suspend : NULL,
 		};
@@ -130,7 +139,7 @@ static struct generation *make_generation(const char *rio, const struct generati
                                           struct adoption *plan)
 {
 	struct generation *g = calloc(1, sizeof(*g));
-	struct config_report report = { .line = say };
+	struct config_report report = {.line = say};
 	struct engine_setup setup;
 
 	if (!g || config_parse("world.rio", rio, strlen(rio), &report, &g->config))
@@ -139,10 +148,13 @@ static struct generation *make_generation(const char *rio, const struct generati
 		world_fails("no memory", "");
 	make_memory(g);
 	make_ports(g, before, plan);
-	setup = (struct engine_setup){ .config = g->config, .ports = g->ports,
-		                       .port_count = g->port_count, .image = &g->image,
-		                       .commands = &g->commands, .log = station.log,
-		                       .start_ns = station.now };
+	setup = (struct engine_setup){.config = g->config,
+	                              .ports = g->ports,
+	                              .port_count = g->port_count,
+	                              .image = &g->image,
+	                              .commands = &g->commands,
+	                              .log = station.log,
+	                              .start_ns = station.now};
 	if (engine_create(&setup, &g->engine))
 		world_fails("no memory", "");
 	return g;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "happen.h"
-
-#include "program.h"
-#include "world.h"
+#include "tests/endurance/happen.h"
+#include "tests/endurance/program.h"
+#include "tests/endurance/world.h"
 
 static uint64_t faults;
 static unsigned variant;

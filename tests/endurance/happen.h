@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* What happens to a world: faults of its parts, devices, programs, reloads, suspends. */
-#ifndef ENDURANCE_HAPPEN_H
-#define ENDURANCE_HAPPEN_H
+#ifndef TESTS_ENDURANCE_HAPPEN_H
+#define TESTS_ENDURANCE_HAPPEN_H
 
-#include "field.h"
+#include "tests/endurance/field.h"
 
 #define ALONE (100 * FIELD_S) /* the longest fault */
 

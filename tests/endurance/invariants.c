@@ -1,21 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /* What must be true of signals. */
-#include "invariants.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "src/engine/table.h"
 #include "src/libows/ows.h"
 #include "src/signal/value.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
+#include "tests/endurance/invariants.h"
 
 /* A device that fails is tried again after 60 s at most, and a target has 20 s for an answer. */
 #define UNTRIED_NS (180 * FIELD_S)
 /* When all is well: a turn of its own, and others before it. */
 #define LATE_NS (60 * FIELD_S)
 #define SPIN_NS (20 * FIELD_S)
-#define SPINS   20000
+#define SPINS 20000
 
 struct item items[ITEMS];
 unsigned item_count;
@@ -84,8 +83,7 @@ static _Noreturn void fails(const char *what, const struct item *item, const str
 
 /* --- A good sample --------------------------------------------------------------------------- */
 
-static void good_value_is_true(const struct item *item, uint32_t record,
-                               const struct ows_sample *s)
+static void good_value_is_true(const struct item *item, uint32_t record, const struct ows_sample *s)
 {
 	const struct part *part = part_of(s);
 	int64_t from = s->measured_ns - (part ? part->ops->age_ns : 0);
@@ -159,8 +157,9 @@ static void updates_are_counted(const struct item *item, const struct ows_sample
 static bool is_known(uint8_t quality)
 {
 	static const uint8_t known[] = {
-		OWS_Q_NO_PROPERTY, OWS_Q_TYPE, OWS_Q_ACCESS, OWS_Q_NO_DEVICE, OWS_Q_DEVICE, OWS_Q_SENSOR, OWS_Q_TARGET,
-		OWS_Q_SHORT,       OWS_Q_INITIAL,   OWS_Q_LAST_USABLE, OWS_Q_GOOD,
+		OWS_Q_NO_PROPERTY, OWS_Q_TYPE,        OWS_Q_ACCESS, OWS_Q_NO_DEVICE,
+		OWS_Q_DEVICE,      OWS_Q_SENSOR,      OWS_Q_TARGET, OWS_Q_SHORT,
+		OWS_Q_INITIAL,     OWS_Q_LAST_USABLE, OWS_Q_GOOD,
 	};
 
 	return memchr(known, quality, sizeof(known)) != NULL;
@@ -276,8 +275,8 @@ static void outputs_are_as_commanded(const struct item *item, const struct ows_s
 	}
 	if (s->value != commanded)
 		fails("not as commanded", item, s);
-	if (part->ops->relays && part->ops->relays(station.part + (part - station.part)) !=
-	                                 (unsigned)commanded)
+	if (part->ops->relays &&
+	    part->ops->relays(station.part + (part - station.part)) != (unsigned)commanded)
 		fails("the chip has other outputs", item, s);
 }
 

@@ -4,10 +4,10 @@
  * function of its own in invariants.c (signals) and accounts.c (requests, counters, memory), which
  * says seed, time and signal through world_fails().
  */
-#ifndef ENDURANCE_INVARIANTS_H
-#define ENDURANCE_INVARIANTS_H
+#ifndef TESTS_ENDURANCE_INVARIANTS_H
+#define TESTS_ENDURANCE_INVARIANTS_H
 
-#include "station.h"
+#include "tests/endurance/station.h"
 
 #define ITEMS 12
 
@@ -16,9 +16,9 @@ enum item_kind { ITEM_TEMPERATURE, ITEM_PINS, ITEM_RELAYS, ITEM_TEXT };
 struct item {
 	const char *name;
 	enum item_kind kind;
-	int device;        /* of the field */
-	int64_t due_ns;    /* it is read so often */
-	const char *text;  /* of ITEM_TEXT */
+	int device;       /* of the field */
+	int64_t due_ns;   /* it is read so often */
+	const char *text; /* of ITEM_TEXT */
 };
 
 extern struct item items[ITEMS];

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "memory.h"
-
 #include <fcntl.h>
 #include <stddef.h>
+
+#include "tests/endurance/memory.h"
 
 #define DESCRIPTORS 1024
 

@@ -3,8 +3,8 @@
  * Who allocates: what is allocated while the engine's thread is watched is counted, and how many
  * blocks live. The linker puts these functions in the place of the allocator's (--wrap).
  */
-#ifndef ENDURANCE_MEMORY_H
-#define ENDURANCE_MEMORY_H
+#ifndef TESTS_ENDURANCE_MEMORY_H
+#define TESTS_ENDURANCE_MEMORY_H
 
 #include <stdbool.h>
 

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* One target of a world: what simulates it below the real backend, and what goes wrong there. */
-#ifndef ENDURANCE_PART_H
-#define ENDURANCE_PART_H
+#ifndef TESTS_ENDURANCE_PART_H
+#define TESTS_ENDURANCE_PART_H
 
-#include "field.h"
-
-#include "hal/bus.h"
+#include "hal/bus/bus.h"
+#include "tests/endurance/field.h"
 
 struct part;
 

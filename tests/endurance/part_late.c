@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The late bus: what goes wrong there is its nature, and what it has is a table. */
-#include "part.h"
-
 #include <stdio.h>
+
+#include "tests/endurance/part.h"
 
 static void begin(struct part *part, char *target, unsigned size)
 {

@@ -3,17 +3,17 @@
  * The native bus over two simulated DS2482: faults of wires, chips and the adapter, as lines of a
  * scenario. The simulation begins anew with each bus, as a chip does that was without power.
  */
-#include "part.h"
-
-#include "hal/sim/net.h"
-#include "hal/sim/scenario.h"
-#include "tests/unit/plant.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "hal/sim/net.h"
+#include "hal/sim/scenario.h"
+#include "tests/endurance/part.h"
+#include "tests/unit/aid/plant.h"
+
+/* clang-format off */
 static const char *const faults[] = {
 	"corrupt hot each 3 for",  "corrupt board chance 0.3 seed 5 for",
 	"corrupt boiler each 2 for", "corrupt outside each 1 for",
@@ -27,6 +27,7 @@ static const char *const faults[] = {
 	"refuse-data 0x18 each 11 for", "refuse-data 0x19 each 5 for",
 	"remove adapter for",
 };
+/* clang-format on */
 #define FAULTS (sizeof(faults) / sizeof(faults[0]))
 
 struct native_part {
@@ -115,7 +116,9 @@ static void opened(struct part *part, struct bus *bus)
 
 		if (!d->is_switch)
 			slave->input[0] = (struct sim_curve){
-				.shape = SIM_SINE, .a = d->mean, .b = d->swing,
+				.shape = SIM_SINE,
+				.a = d->mean,
+				.b = d->swing,
 				.span_ns = (d->span_s ? d->span_s : 1) * FIELD_S,
 				.start_ns = field.start_ns - world_now(),
 			};

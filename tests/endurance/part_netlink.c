@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* The target w1:netlink on a model of the kernel's 1-Wire core (tests/unit/w1_core.h). */
-#include "part.h"
-
-#include "hal/path.h"
-#include "tests/unit/w1_core.h"
-
+/* The target w1:netlink on a model of the kernel's 1-Wire core (tests/unit/aid/w1_core.h). */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "hal/owfs/path.h"
+#include "tests/endurance/part.h"
+#include "tests/unit/aid/w1_core.h"
 
 #define MASTERS 2
 
@@ -82,7 +81,9 @@ static void add(struct part *part, unsigned device)
 	sim_slave_power_on(slave, world_now());
 	if (!d->is_switch)
 		slave->input[0] = (struct sim_curve){
-			.shape = SIM_SINE, .a = d->mean, .b = d->swing,
+			.shape = SIM_SINE,
+			.a = d->mean,
+			.b = d->swing,
 			.span_ns = (d->span_s ? d->span_s : 1) * FIELD_S,
 			.start_ns = field.start_ns,
 		};

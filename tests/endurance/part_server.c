@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The sockets of an owserver, when it answers on them, and what goes wrong with it. */
-#include "server.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -12,13 +10,15 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "tests/endurance/server.h"
+
 #define NOBODY (-1)
 
 static void drop(struct server_client *c)
 {
 	if (c->fd >= 0)
 		close(c->fd);
-	*c = (struct server_client){ .fd = NOBODY, .due_ns = INT64_MAX, .alive_ns = INT64_MAX };
+	*c = (struct server_client){.fd = NOBODY, .due_ns = INT64_MAX, .alive_ns = INT64_MAX};
 }
 
 static void stop(struct server *s)
@@ -33,7 +33,7 @@ static void stop(struct server *s)
 
 static void listen_again(struct server *s)
 {
-	struct sockaddr_un here = { .sun_family = AF_UNIX };
+	struct sockaddr_un here = {.sun_family = AF_UNIX};
 
 	snprintf(here.sun_path, sizeof(here.sun_path), "%s", s->path);
 	s->listen_fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
@@ -75,7 +75,7 @@ static void answer(struct part *part, struct server_client *c, const struct fram
 {
 	struct server *s = server_of(part);
 	char *path = (char *)c->in + FRAME_HEADER, *data, text[1024] = "", written[64] = "";
-	struct frame_header reply = { .flags = request->flags };
+	struct frame_header reply = {.flags = request->flags};
 	enum lie before = s->lie;
 	int n;
 
@@ -132,7 +132,7 @@ static void take(struct part *part, struct server_client *c)
 
 static void send_due(struct server *s, struct server_client *c)
 {
-	uint8_t alive[FRAME_HEADER] = { 0 };
+	uint8_t alive[FRAME_HEADER] = {0};
 
 	if (c->alive_ns <= world_now()) {
 		server_change(alive, 1, UINT32_MAX);
@@ -225,7 +225,7 @@ static void run(struct part *part)
 
 static int64_t ready(struct part *part, int fd, short events)
 {
-	struct pollfd poll_fd = { .fd = fd, .events = events };
+	struct pollfd poll_fd = {.fd = fd, .events = events};
 
 	look(part);
 	if (poll(&poll_fd, 1, 0) > 0)

@@ -4,11 +4,6 @@
  * here when they are read. A conversion keeps the reader, as it does in the kernel; files vanish,
  * fail, hang and tell nonsense.
  */
-#include "part.h"
-
-#include "hal/path.h"
-#include "hal/w1/w1.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <stdarg.h>
@@ -18,8 +13,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "hal/owfs/path.h"
+#include "hal/w1/w1.h"
+#include "tests/endurance/part.h"
+
 #define DESCRIPTORS 256
-#define CONVERT_NS  (750 * FIELD_MS)
+#define CONVERT_NS (750 * FIELD_MS)
 
 int __real_open(const char *path, int flags, ...);
 int __real_open64(const char *path, int flags, ...);
@@ -36,9 +35,9 @@ int __wrap_close(int fd);
 
 enum trouble { NONE, FAILS, HANGS, NO_CRC, NO_TEXT, EMPTY_FILE, POWER_ON, TROUBLES };
 static const char *const troubles[TROUBLES] = {
-	[FAILS] = "files fail", [HANGS] = "the kernel hangs", [NO_CRC] = "checksums are wrong",
-	[NO_TEXT] = "files tell nonsense", [EMPTY_FILE] = "files are empty",
-	[POWER_ON] = "85 of the power-on",
+	[FAILS] = "files fail",           [HANGS] = "the kernel hangs",
+	[NO_CRC] = "checksums are wrong", [NO_TEXT] = "files tell nonsense",
+	[EMPTY_FILE] = "files are empty", [POWER_ON] = "85 of the power-on",
 };
 
 struct sysfs {
@@ -85,10 +84,16 @@ static void put_file(const char *directory, const char *name)
 	__real_close(fd);
 }
 
-static const char *const thermometer_files[] = { "name", "w1_slave", "alarms", "resolution",
-	                                         "ext_power", NULL };
-static const char *const switch_files[] = { "name", "output", "state", "activity", "status_control",
-	                                    "cond_search_mask", "cond_search_polarity", NULL };
+static const char *const thermometer_files[] = {"name",       "w1_slave",  "alarms",
+                                                "resolution", "ext_power", NULL};
+static const char *const switch_files[] = {"name",
+                                           "output",
+                                           "state",
+                                           "activity",
+                                           "status_control",
+                                           "cond_search_mask",
+                                           "cond_search_polarity",
+                                           NULL};
 
 static const char *const *files_of(unsigned device)
 {

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "program.h"
-
-#include "world.h"
-
 #include <string.h>
 
+#include "tests/endurance/program.h"
+#include "tests/endurance/world.h"
+
 #define BEAT_MS 3000
-#define CLIENT  3
+#define CLIENT 3
 
 static bool beats;
 static uint32_t beat, stamp = 1001;
@@ -60,7 +59,7 @@ void program_runs(void)
 {
 	if (!beats)
 		return;
-	*client() = (struct ows_client){ .pid = 42, .beat = ++beat, .period_ms = 1000 * BEAT_MS };
+	*client() = (struct ows_client){.pid = 42, .beat = ++beat, .period_ms = 1000 * BEAT_MS};
 }
 
 void program_sets(unsigned value)
@@ -76,7 +75,7 @@ void program_dies(void)
 	program_runs();
 	station_run(station.now + (int64_t)world_random(20) * FIELD_S);
 	beats = false;
-	*client() = (struct ows_client){ .pid = 42, .beat = beat, .period_ms = BEAT_MS };
+	*client() = (struct ows_client){.pid = 42, .beat = beat, .period_ms = BEAT_MS};
 	station_run(station.now + FIELD_S);
 	commanded = 0; /* SafeValue */
 }

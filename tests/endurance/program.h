@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* A control program: it sets the relays, beats, dies, and scribbles. */
-#ifndef ENDURANCE_PROGRAM_H
-#define ENDURANCE_PROGRAM_H
+#ifndef TESTS_ENDURANCE_PROGRAM_H
+#define TESTS_ENDURANCE_PROGRAM_H
 
 #include <stdbool.h>
 

@@ -5,20 +5,40 @@
  * twice, one with more behind it. The protocol has no request numbers, so an answer that comes
  * behind the next question would be taken for its answer by any client; that one lie is left out.
  */
-#ifndef ENDURANCE_SERVER_H
-#define ENDURANCE_SERVER_H
+#ifndef TESTS_ENDURANCE_SERVER_H
+#define TESTS_ENDURANCE_SERVER_H
 
-#include "part.h"
-
-#include "hal/owserver/frame.h"
+#include "hal/owfs/frame.h"
+#include "tests/endurance/part.h"
 
 #define SERVER_CLIENTS 8
-#define SERVER_ROOM    8192
+#define SERVER_ROOM 8192
 
 enum lie {
-	HONEST, SLOW, ALIVE, VERY_LATE, SILENT, REFUSES, CLOSES, HALF, HALF_AND_SILENT, GARBAGE,
-	HUGE, NEGATIVE, VERSION, SHORTER, TWICE, MORE, BY_BYTES, ERRORS, NO_DEVICE, FAULT_85,
-	FAULT_127, NO_NUMBER, EMPTY, LIES,
+	HONEST,
+	SLOW,
+	ALIVE,
+	VERY_LATE,
+	SILENT,
+	REFUSES,
+	CLOSES,
+	HALF,
+	HALF_AND_SILENT,
+	GARBAGE,
+	HUGE,
+	NEGATIVE,
+	VERSION,
+	SHORTER,
+	TWICE,
+	MORE,
+	BY_BYTES,
+	ERRORS,
+	NO_DEVICE,
+	FAULT_85,
+	FAULT_127,
+	NO_NUMBER,
+	EMPTY,
+	LIES,
 };
 
 struct server_client {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* What an owserver knows of the field, and what it answers. */
-#include "server.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "tests/endurance/server.h"
 
 static bool has(const struct part *part, int device)
 {

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* What is wrong with the frame of an answer. */
-#include "server.h"
-
 #include <string.h>
 
+#include "tests/endurance/server.h"
+
+/* clang-format off */
 const char *const server_lies[LIES] = {
 	[SLOW] = "slow", [ALIVE] = "only alive", [VERY_LATE] = "very late", [SILENT] = "silent",
 	[REFUSES] = "keeps no connection", [CLOSES] = "closes", [HALF] = "half an answer",
@@ -14,6 +15,7 @@ const char *const server_lies[LIES] = {
 	[ERRORS] = "errors", [NO_DEVICE] = "no device", [FAULT_85] = "85", [FAULT_127] = "127.938",
 	[NO_NUMBER] = "no number", [EMPTY] = "empty",
 };
+/* clang-format on */
 
 void server_change(uint8_t *frame, unsigned word, uint32_t value)
 {

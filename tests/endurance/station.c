@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The clock, and what goes on at its time. */
-#include "station_private.h"
+#include "tests/endurance/station_private.h"
 
 #define IDLE_MOST 200000 /* turns in which no time passes */
 
@@ -24,7 +24,7 @@ void world_after(int64_t ns, void (*end)(void *ctx), void *ctx)
 		end(ctx);
 		return;
 	}
-	station.timer[station.timer_count++] = (struct station_timer){ station.now + ns, end, ctx };
+	station.timer[station.timer_count++] = (struct station_timer){station.now + ns, end, ctx};
 }
 
 /* When anything but this bus has something to do. */

@@ -5,24 +5,23 @@
  * generation as the supervisor does: new buses and memory beside what runs, adoption in one step,
  * and the end of what did not stay while the engine goes on.
  */
-#ifndef ENDURANCE_STATION_H
-#define ENDURANCE_STATION_H
-
-#include "fiber.h"
-#include "part.h"
+#ifndef TESTS_ENDURANCE_STATION_H
+#define TESTS_ENDURANCE_STATION_H
 
 #include "src/config/config.h"
 #include "src/engine/adopt.h"
 #include "src/engine/engine.h"
+#include "tests/endurance/fiber.h"
+#include "tests/endurance/part.h"
 
-#define STATION_PARTS    5
-#define STATION_BUSES    16 /* those that are still ending included */
-#define STATION_LENT     BUS_MAX_DEPTH
-#define STATION_GONE     UINT32_MAX
+#define STATION_PARTS 5
+#define STATION_BUSES 16 /* those that are still ending included */
+#define STATION_LENT BUS_MAX_DEPTH
+#define STATION_GONE UINT32_MAX
 #define STATION_MESSAGES 4096 /* power of 2 */
-#define STATION_TIMERS   128
-#define STATION_LEAVING  32
-#define STATION_SEEN     64
+#define STATION_TIMERS 128
+#define STATION_LEAVING 32
+#define STATION_SEEN 64
 
 struct station_bus {
 	struct part *part; /* NULL: a free place */
@@ -31,7 +30,7 @@ struct station_bus {
 	struct fiber fiber;
 	unsigned port; /* STATION_GONE: no engine has it any more */
 	/* what its thread waits for */
-	bool sleeps;   /* for orders, between two steps */
+	bool sleeps; /* for orders, between two steps */
 	bool in_kernel, ready, stopping;
 	int64_t wake_ns;
 	int fd;
@@ -94,7 +93,7 @@ struct station {
 	/* After each step of the engine. */
 	void (*stepped)(void);
 	const char *broken; /* said inside a fiber */
-	struct log *log; /* NULL: none */
+	struct log *log;    /* NULL: none */
 	int64_t log_from_ns;
 };
 

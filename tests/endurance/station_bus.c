@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* A bus and its thread: what it may wait for, and what it says. */
-#include "station_private.h"
-
 #include <errno.h>
 #include <string.h>
+
+#include "tests/endurance/station_private.h"
 
 #define ANSWER_NS (100 * 1000)
 
@@ -104,7 +104,7 @@ static void bus_tells(void *ctx, const struct bus_event *event)
 	m->event = *event;
 }
 
-/* As hal/worker.c does. */
+/* As hal/bus/worker.c does. */
 static void work(void *ctx)
 {
 	struct station_bus *b = ctx;
@@ -149,9 +149,12 @@ struct station_bus *station_bus_open(const struct config_target *target, bool su
 		part++;
 	if (b == station.bus + STATION_BUSES || part == station.part + station.part_count)
 		world_fails("no such part", target->text);
-	*b = (struct station_bus){ .part = part, .fd = -1, .wake_ns = station.now };
-	b->env = (struct bus_env){ .ctx = b, .now = bus_now, .wait = bus_wait,
-		                   .answer = bus_answers, .event = bus_tells };
+	*b = (struct station_bus){.part = part, .fd = -1, .wake_ns = station.now};
+	b->env = (struct bus_env){.ctx = b,
+	                          .now = bus_now,
+	                          .wait = bus_wait,
+	                          .answer = bus_answers,
+	                          .event = bus_tells};
 	if (bus_create(target->text, &b->env, &b->bus, why, sizeof(why)))
 		world_fails(why, target->text);
 	part->bus = b->bus;
@@ -176,7 +179,7 @@ void station_bus_free(struct station_bus *b)
 		if (m->bus == b)
 			world_fails("a bus that has ended still speaks", b->part->ops->name);
 	}
-	*b = (struct station_bus){ .fd = -1 };
+	*b = (struct station_bus){.fd = -1};
 }
 
 bool station_bus_speaks(const struct station_bus *b)

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* The engine's thread: what it asks of buses, what it is told, and its log. */
-#include "station_private.h"
-
-#include "memory.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
+
+#include "tests/endurance/memory.h"
+#include "tests/endurance/station_private.h"
 
 static int null_fd = -1;
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Between the files of the station. */
-#ifndef ENDURANCE_STATION_PRIVATE_H
-#define ENDURANCE_STATION_PRIVATE_H
+#ifndef TESTS_ENDURANCE_STATION_PRIVATE_H
+#define TESTS_ENDURANCE_STATION_PRIVATE_H
 
-#include "station.h"
+#include "tests/endurance/station.h"
 
 /* station.c: when station_run() ends; when anything but this bus (NULL: at all) has to do something. */
 extern int64_t station_until;

@@ -9,12 +9,6 @@
  * through a month, `test_endurance 720 SEED WORLD` in one of them; a number behind that is the
  * second from which on the engine's log is shown.
  */
-#include "happen.h"
-#include "program.h"
-#include "world.h"
-
-#include "unity.h"
-
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,10 +16,16 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "unity.h"
+
+#include "tests/endurance/happen.h"
+#include "tests/endurance/program.h"
+#include "tests/endurance/world.h"
+
 #define EPISODE (1200 * FIELD_S)
-#define FAULTS  (400 * FIELD_S) /* of an episode */
-#define LOOK    (10 * FIELD_S)  /* it may be looked for a target that comes and goes by itself */
-#define EVENTS  10
+#define FAULTS (400 * FIELD_S) /* of an episode */
+#define LOOK (10 * FIELD_S)    /* it may be looked for a target that comes and goes by itself */
+#define EVENTS 10
 
 const struct world *world;
 static unsigned hours;
@@ -70,11 +70,13 @@ void world_note(const char *what)
 static void add_item(const char *name, enum item_kind kind, int device, const char *text)
 {
 	static const int64_t due_s[] = {
-		[ITEM_TEMPERATURE] = 20, [ITEM_PINS] = 70, [ITEM_RELAYS] = 20, [ITEM_TEXT] = 200,
+		[ITEM_TEMPERATURE] = 20,
+		[ITEM_PINS] = 70,
+		[ITEM_RELAYS] = 20,
+		[ITEM_TEXT] = 200,
 	};
 
-	items[item_count++] =
-		(struct item){ name, kind, device, due_s[kind] * FIELD_S, text };
+	items[item_count++] = (struct item){name, kind, device, due_s[kind] * FIELD_S, text};
 }
 
 static void standard_devices(void)
@@ -99,15 +101,16 @@ static void table_devices(void)
 {
 	field_begin(station.now);
 	field.devices = 2;
-	field.device[0] =
-		(struct field_device){ .id = "28.000000000001", .name = "room", .mean = 21.5 };
-	field.device[1] = (struct field_device){ .id = "29.000000000002", .name = "board",
-		                                 .is_switch = true };
+	field.device[0] = (struct field_device){
+		.id = "28.000000000001", .name = "room", .mean = 21.5};
+	field.device[1] = (struct field_device){
+		.id = "29.000000000002", .name = "board", .is_switch = true};
 	add_item("room", ITEM_TEMPERATURE, 0, NULL);
 	add_item("again", ITEM_TEMPERATURE, 0, NULL);
 	add_item("relays", ITEM_RELAYS, 1, NULL);
 }
 
+/* clang-format off */
 static const struct world worlds[] = {
 	{ .name = "native", .targets = "%0", .parts = { &part_native }, .devices = standard_devices,
 	  .hours = 6 },
@@ -124,6 +127,7 @@ static const struct world worlds[] = {
 	  .parts = { &part_server, &part_server, &part_netlink, &part_sysfs },
 	  .wires = { 0, 0, 1, 2 }, .devices = roaming_devices, .hours = 6 },
 };
+/* clang-format on */
 #define WORLDS (sizeof(worlds) / sizeof(worlds[0]))
 
 /* --- A life ---------------------------------------------------------------------------------- */
@@ -233,7 +237,8 @@ static void live(const struct world *in)
 	TEST_ASSERT_GREATER_THAN_UINT64(hours * 150, invariants_good());
 	TEST_ASSERT_GREATER_THAN_UINT64(hours, happened());
 	station_end();
-	TEST_ASSERT_EQUAL_INT_MESSAGE(input, fcntl(STDIN_FILENO, F_GETFD), "descriptor 0 was closed");
+	TEST_ASSERT_EQUAL_INT_MESSAGE(input, fcntl(STDIN_FILENO, F_GETFD),
+	                              "descriptor 0 was closed");
 }
 
 static void test_native_bus_tells_nothing_false_and_gets_well(void)
@@ -270,12 +275,12 @@ static const struct {
 	const char *name;
 	void (*test)(void);
 } tests[WORLDS] = {
-	{ "native", test_native_bus_tells_nothing_false_and_gets_well },
-	{ "late", test_late_bus_tells_nothing_false_and_gets_well },
-	{ "server", test_owserver_bus_tells_nothing_false_and_gets_well },
-	{ "sysfs", test_kernel_files_tell_nothing_false_and_get_well },
-	{ "netlink", test_kernel_netlink_tells_nothing_false_and_gets_well },
-	{ "mixed", test_several_targets_tell_nothing_false_and_get_well },
+	{"native", test_native_bus_tells_nothing_false_and_gets_well},
+	{"late", test_late_bus_tells_nothing_false_and_gets_well},
+	{"server", test_owserver_bus_tells_nothing_false_and_gets_well},
+	{"sysfs", test_kernel_files_tell_nothing_false_and_get_well},
+	{"netlink", test_kernel_netlink_tells_nothing_false_and_gets_well},
+	{"mixed", test_several_targets_tell_nothing_false_and_get_well},
 };
 
 int main(int argc, char **argv)

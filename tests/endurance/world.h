@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* What a world is made of, and what it is told of while it lives. */
-#ifndef ENDURANCE_WORLD_H
-#define ENDURANCE_WORLD_H
+#ifndef TESTS_ENDURANCE_WORLD_H
+#define TESTS_ENDURANCE_WORLD_H
 
-#include "invariants.h"
+#include "tests/endurance/invariants.h"
 
 struct world {
 	const char *name;
 	const char *targets; /* %0 is the first part's target; comma and bar as in the file */
 	const struct part_ops *parts[STATION_PARTS];
 	unsigned wires[STATION_PARTS];
-	bool moody;          /* a target of it is never quiet for long */
+	bool moody; /* a target of it is never quiet for long */
 	void (*devices)(void);
-	unsigned hours;      /* among the unit tests */
+	unsigned hours; /* among the unit tests */
 };
 
 /* test_endurance.c: the one that lives; something happens to it, which a failure tells. */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The configuration of a world, and its variants. */
-#include "world.h"
-
 #include <stdio.h>
 #include <string.h>
+
+#include "tests/endurance/world.h"
 
 static size_t put_item(char *rio, size_t size, const struct item *item, unsigned variant)
 {

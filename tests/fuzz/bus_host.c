@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "bus_host.h"
-
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "tests/fuzz/bus_host.h"
 
 /* A bus works at most so often without that time passes. */
 #define SPINS 100000
@@ -36,8 +36,9 @@ static int wait_for(void *ctx, int fd, short events, int64_t until_ns)
 static bool is_listed(int err)
 {
 	static const int listed[] = {
-		0, -ENODEV, -ENOENT, -EACCES, -EISDIR, -ENOTDIR, -EINVAL, -EBADMSG, -ECOMM, -ERANGE,
-		-EBUSY, -EIO, -EMSGSIZE, -EOPNOTSUPP, -ETIME, -EINPROGRESS, -ECANCELED, -ENOTCONN,
+		0,          -ENODEV,     -ENOENT, -EACCES,      -EISDIR,    -ENOTDIR,
+		-EINVAL,    -EBADMSG,    -ECOMM,  -ERANGE,      -EBUSY,     -EIO,
+		-EMSGSIZE,  -EOPNOTSUPP, -ETIME,  -EINPROGRESS, -ECANCELED, -ENOTCONN,
 		-ETIMEDOUT, -ECONNRESET, -EPROTO, -EPERM,
 	};
 
@@ -62,7 +63,7 @@ static void take_answer(void *ctx, const struct bus_answer *answer)
 
 	TEST_ASSERT_TRUE_MESSAGE(host->slot[at].lent && req->id == answer->id,
 	                         "an answer to nothing");
-	TEST_ASSERT_TRUE_MESSAGE(is_listed(answer->err), "no error of hal/bus.h");
+	TEST_ASSERT_TRUE_MESSAGE(is_listed(answer->err), "no error of hal/bus/bus.h");
 	TEST_ASSERT_TRUE_MESSAGE(answer->len <= req->len, "longer than its room");
 	if (answer->err)
 		TEST_ASSERT_EQUAL_UINT32(0, answer->len);
@@ -93,8 +94,11 @@ static void take_event(void *ctx, const struct bus_event *event)
 void bus_host_begin(struct bus_host *host)
 {
 	*host = (struct bus_host){.now = 1000 * BUS_HOST_S, .steps = SPINS};
-	host->env = (struct bus_env){.ctx = host, .now = now, .wait = wait_for,
-	                             .answer = take_answer, .event = take_event};
+	host->env = (struct bus_env){.ctx = host,
+	                             .now = now,
+	                             .wait = wait_for,
+	                             .answer = take_answer,
+	                             .event = take_event};
 }
 
 struct bus *bus_host_open(struct bus_host *host, const char *target)
@@ -124,8 +128,12 @@ void bus_host_ask(struct bus_host *host, enum bus_op op, const char *path, bool 
 
 	if (host->slot[at].lent)
 		return;
-	*req = (struct bus_req){.id = host->next_id, .op = (uint8_t)op, .prio = BUS_GUEST,
-	                        .fresh = fresh, .deadline_ns = host->now + timeout_ns, .len = len};
+	*req = (struct bus_req){.id = host->next_id,
+	                        .op = (uint8_t)op,
+	                        .prio = BUS_GUEST,
+	                        .fresh = fresh,
+	                        .deadline_ns = host->now + timeout_ns,
+	                        .len = len};
 	TEST_ASSERT_TRUE(strlen(path) < sizeof(host->slot[at].path));
 	strcpy(host->slot[at].path, path);
 	req->path = host->slot[at].path;

@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The host of a bus under fuzzing, on a virtual clock: it checks what hal/bus.h promises. Each
+ * The host of a bus under fuzzing, on a virtual clock: it checks what hal/bus/bus.h promises. Each
  * request is answered once, by one of the errors that are listed there, within its room; a bus that
  * lost its target tells BUS_DOWN.
  */
-#ifndef TESTS_BUS_HOST_H
-#define TESTS_BUS_HOST_H
+#ifndef TESTS_FUZZ_BUS_HOST_H
+#define TESTS_FUZZ_BUS_HOST_H
 
-#include "fuzz.h"
+#include "hal/bus/bus.h"
+#include "tests/fuzz/fuzz.h"
 
-#include "hal/bus.h"
-
-#define BUS_HOST_MS   INT64_C(1000000)
-#define BUS_HOST_S    INT64_C(1000000000)
+#define BUS_HOST_MS INT64_C(1000000)
+#define BUS_HOST_S INT64_C(1000000000)
 #define BUS_HOST_REQS 8
 
 struct bus_host {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "fuzz.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/types.h>
+
+#include "tests/fuzz/fuzz.h"
 
 #ifndef __has_feature
 #define __has_feature(x) 0

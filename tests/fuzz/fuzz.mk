@@ -19,13 +19,13 @@ REPLAYS      := $(FUZZ_TARGETS:%=$(B)/fuzz/replay_%)
 # What a target needs beside core.a, the functions of which it takes the place (__wrap_...), and
 # where its dictionary comes from: the words in quotes of these files
 FUZZ_WITH_owserver := fuzz/bus_host.o
-FUZZ_WITH_commands := unit/scene.o unit/scene_bus.o unit/scene_consumer.o unit/scene_wire.o
+FUZZ_WITH_commands := tests/unit/aid/scene.o tests/unit/aid/scene_bus.o tests/unit/aid/scene_consumer.o tests/unit/aid/scene_wire.o
 FUZZ_WITH_image    := fuzz/heap_instance.o fuzz/heap_map.o
 FUZZ_WITH_serve    := fuzz/heap_instance.o fuzz/heap_map.o
 FUZZ_WITH_w1       := fuzz/bus_host.o fuzz/sysfs.o
 FUZZ_WITH_netlink  := fuzz/bus_host.o fuzz/sysfs.o
 FUZZ_WITH_scenario := fuzz/bus_host.o
-FUZZ_WORDS_scenario := $(wildcard hal/sim/*.c)
+FUZZ_WORDS_scenario := $(wildcard hal/sim/*.c hal/sim/chips/*.c)
 FUZZ_WITH_owsctl   := fuzz/heap_instance.o fuzz/heap_map.o fuzz/json_valid.o
 # w1 and netlink have a property that is the process's number
 FUZZ_WRAP_w1       := getpid
@@ -34,9 +34,9 @@ FUZZ_WRAP_owsctl   := getpid clock_gettime time exit ows_now segment_wait nanosl
                       ctl_reader_gone terminal_catch_signals isatty ows_open ows_close board_look \
                       replace_file replace_lock rio_read bus_create
 FUZZ_WORDS_owsctl  := src/owsctl/owsctl.c src/signal/attribute.c src/config/options.c src/owsctl/condition.c
-FUZZ_WORDS_values  := src/signal/attribute.c src/signal/value.c hal/path.c src/config/listen.c
+FUZZ_WORDS_values  := src/signal/attribute.c src/signal/value.c hal/owfs/path.c src/config/listen.c
 FUZZ_WORDS_rio     := src/config/options.c src/config/targets.c src/signal/value.c hal/native/native.c
-FUZZ_WORDS_serve   := src/serve/node.c src/serve/directory.c src/signal/attribute.c hal/path.c
+FUZZ_WORDS_serve   := src/serve/node.c src/serve/directory.c src/signal/attribute.c hal/owfs/path.c
 
 .PHONY: fuzz replays
 

@@ -5,14 +5,13 @@
  * bus what is of the type, and publishes whole samples. At the end what is left of the segment is
  * carried over to a new one, as the next owsd does.
  */
-#include "fuzz.h"
-
-#include "src/signal/value.h"
-#include "tests/unit/scene.h"
-
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/signal/value.h"
+#include "tests/fuzz/fuzz.h"
+#include "tests/unit/aid/scene.h"
 
 #define STEPS 64
 
@@ -76,8 +75,9 @@ static void check_image(void)
 		const struct ows_slot *slot = &r->slot[r->seq >> 1 & 1];
 
 		TEST_ASSERT_EQUAL_UINT32(0, r->seq & 1);
-		TEST_ASSERT_EQUAL_HEX32(ows_check((const uint32_t *)(const void *)&slot->sample, 11),
-		                        slot->sample.check);
+		TEST_ASSERT_EQUAL_HEX32(
+			ows_check((const uint32_t *)(const void *)&slot->sample, 11),
+			slot->sample.check);
 		TEST_ASSERT_EQUAL_HEX32(ows_check((const uint32_t *)(const void *)&slot->attrs, 17),
 		                        slot->attrs.check);
 		TEST_ASSERT_TRUE(slot->sample.len <= r->text_cap);
@@ -203,7 +203,8 @@ static void happen(void)
 		client->period_ms = what & 0x80 ? fuzz_word(&fuzz) : 100;
 		break;
 	case 5:
-		scene_put(&scene, items[(what >> 4) % ITEMS].path, "1", errors[fuzz_byte(&fuzz) & 7]);
+		scene_put(&scene, items[(what >> 4) % ITEMS].path, "1",
+		          errors[fuzz_byte(&fuzz) & 7]);
 		break;
 	case 6:
 		run(spans[what >> 3 & 7] * SCENE_MS);
@@ -225,10 +226,11 @@ static void begin(void)
 	scene.no_trace = true;
 	scene.on_write = check_write;
 	for (size_t i = 0; i < ITEMS; i++) {
-		struct config_item *item =
-			items[i].output
-				? scene_output(&scene, items[i].name, items[i].path, items[i].type)
-				: scene_input(&scene, items[i].name, items[i].path, items[i].type);
+		struct config_item *item = items[i].output
+		                                   ? scene_output(&scene, items[i].name,
+		                                                  items[i].path, items[i].type)
+		                                   : scene_input(&scene, items[i].name,
+		                                                 items[i].path, items[i].type);
 
 		item->writable = items[i].writable;
 		scene_put(&scene, items[i].path, "1", 0);
@@ -275,7 +277,8 @@ static void carry(uint8_t how)
 		if (text_off[i])
 			TEST_ASSERT_TRUE(commands_text(&to, i, text) >= (got.stamp ? 0 : -EBADMSG));
 	}
-	TEST_ASSERT_FALSE_MESSAGE(commands_mend(&to, true), "carrying changed what owsd says there");
+	TEST_ASSERT_FALSE_MESSAGE(commands_mend(&to, true),
+	                          "carrying changed what owsd says there");
 	commands_forget(&to);
 	free(memory);
 	free(old);

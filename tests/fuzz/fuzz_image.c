@@ -4,14 +4,12 @@
  * is a list of patches and of calls. Nothing is read or written outside of the segments, and every
  * text ends.
  */
-#include "fuzz.h"
-
-#include "heap_instance.h"
-
-#include "src/libows/handle.h"
-
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/libows/handle.h"
+#include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/heap_instance.h"
 
 #define STEPS 80
 
@@ -40,9 +38,9 @@ static char *copy(const char *from, size_t size)
 static uint32_t place(const char *base, size_t size)
 {
 	const struct ows_image_header *header = heap.image.header;
-	const uint32_t areas[] = {header->record_off, header->info_off, header->name_off,
+	const uint32_t areas[] = {header->record_off, header->info_off,    header->name_off,
 	                          header->target_off, header->counter_off, header->alarm_off,
-	                          header->pool_off, header->text_off};
+	                          header->pool_off,   header->text_off};
 	uint32_t off = fuzz_word(&fuzz);
 
 	if (base == image && off >> 24)
@@ -65,8 +63,9 @@ static void patch(char *base, size_t size)
 /* A number of a header, an entry or a record: what is checked when it is opened. */
 static void set_number(char *base, size_t size)
 {
-	static const uint32_t numbers[] = {0, 1, 4, 8, 255, 256, 0x7fffffff, 0x80000000, 0xffffffff,
-	                                   0xfffffff8, 64, 128, 65535, 2};
+	static const uint32_t numbers[] = {0,   1,          4,          8,          255,
+	                                   256, 0x7fffffff, 0x80000000, 0xffffffff, 0xfffffff8,
+	                                   64,  128,        65535,      2};
 	uint32_t off = place(base, size - 3) & ~3u, number = 0;
 	uint8_t how = fuzz_byte(&fuzz);
 
@@ -113,11 +112,13 @@ static void damage(uint8_t what)
 	keep_ends();
 }
 
+/* clang-format off */
 static const char *const names[] = {
 	"room", "relay", "label", "level", "OWS__count", "room_Age", "_TRANSACTIONS", "_DGNRESET",
 	"relay_WriteEnable", "label_Alarm", "relay_WOS", "count_PerMax", "room_PerFactor", "nobody",
 	"level_DGNRESET", "warm",
 };
+/* clang-format on */
 #define NAMES (sizeof(names) / sizeof(names[0]))
 
 static size_t ended(const char *text)
@@ -186,7 +187,8 @@ static void set_some(uint8_t what)
 	id = ids[0];
 	ows_set(h, id, 3, &stamp);
 	ows_set_integer(h, id, -1, NULL);
-	ows_set_text(h, id, what & 0x10 ? "on" : "a text that is a little longer than most", &stamp);
+	ows_set_text(h, id, what & 0x10 ? "on" : "a text that is a little longer than most",
+	             &stamp);
 	ows_set_many(h, ids, doubles, 3);
 	ows_acknowledge(h, id);
 	ows_beat(h, 100);

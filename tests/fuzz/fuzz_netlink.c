@@ -4,12 +4,6 @@
  * which datagrams come. Replies can be made as the kernel makes them, for the request at hand, with
  * something wrong in them.
  */
-#include "bus_host.h"
-#include "sysfs.h"
-
-#include "hal/path.h"
-#include "hal/w1/netlink.h"
-
 #include <errno.h>
 #include <linux/connector.h>
 #include <linux/netlink.h>
@@ -17,10 +11,15 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#define STEPS    24
-#define REPLIES  400
+#include "hal/netlink/netlink.h"
+#include "hal/owfs/path.h"
+#include "tests/fuzz/bus_host.h"
+#include "tests/fuzz/sysfs.h"
+
+#define STEPS 24
+#define REPLIES 400
 #define DATAGRAM 2048
-#define HEADS    (NLMSG_HDRLEN + sizeof(struct cn_msg) + 12)
+#define HEADS (NLMSG_HDRLEN + sizeof(struct cn_msg) + 12)
 
 static struct fuzz fuzz;
 static struct bus_host host;
@@ -233,9 +232,11 @@ static int64_t ready(void *ctx, int fd, short events)
 static void ask(uint8_t what)
 {
 	static const char *const paths[] = {
-		"/28.A10000000000/temperature", "/", "/29.B10000000000/PIO.BYTE", "/alarm",
-		"/simultaneous/temperature", "/26.110000000000/VAD", "/28.A10000000000/present",
-		"/23.C10000000000/memory", "/29.B10000000000/latch.ALL", "/28.A10000000000/templow",
+		"/28.A10000000000/temperature", "/",
+		"/29.B10000000000/PIO.BYTE",    "/alarm",
+		"/simultaneous/temperature",    "/26.110000000000/VAD",
+		"/28.A10000000000/present",     "/23.C10000000000/memory",
+		"/29.B10000000000/latch.ALL",   "/28.A10000000000/templow",
 	};
 	const char *path = paths[(what >> 3 & 15) % 10];
 	enum bus_op op = strchr(path + 1, '/') ? what & 0x80 ? BUS_WRITE : BUS_READ : BUS_DIR;

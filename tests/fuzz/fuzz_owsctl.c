@@ -4,17 +4,15 @@
  * What comes behind is what a target answers, or the configuration file. No file is written and no
  * bus opened; time is virtual, and who waits for ever is ended.
  */
-#include "fuzz.h"
-
-#include "heap_instance.h"
-#include "json_valid.h"
-
-#include "hal/bus.h"
+#include "hal/bus/bus.h"
 #include "src/board/board.h"
 #include "src/config/config.h"
 #include "src/config/replace.h"
 #include "src/config/rio.h"
 #include "src/signal/value.h"
+#include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/heap_instance.h"
+#include "tests/fuzz/json_valid.h"
 
 int owsctl_main(int argc, char **argv);
 #define main owsctl_main
@@ -27,11 +25,11 @@ int owsctl_main(int argc, char **argv);
 #include <stdlib.h>
 #include <time.h>
 
-#define WORDS   16
-#define WAITS   40
-#define NAPS    1000
+#define WORDS 16
+#define WAITS 40
+#define NAPS 1000
 #define HANDLES 16
-#define WALL_S  INT64_C(1800000000)
+#define WALL_S INT64_C(1800000000)
 
 static struct fuzz fuzz;
 static int64_t now_ns;
@@ -222,8 +220,8 @@ static void destroy(struct bus *bus)
 	free(bus);
 }
 
-static const struct bus_ops fuzz_bus = {.scheme = "fuzz", .summary = "", .depth = 4,
-                                        .destroy = destroy, .exec = answer};
+static const struct bus_ops fuzz_bus = {
+	.scheme = "fuzz", .summary = "", .depth = 4, .destroy = destroy, .exec = answer};
 
 int __wrap_bus_create(const char *target, const struct bus_env *env, struct bus **bus, char *why,
                       size_t why_size);
@@ -322,7 +320,7 @@ void fuzz_one(const uint8_t *bytes, size_t n)
 	now_ns = HEAP_START;
 	waits = naps = 0;
 	heap_instance_reset();
-	argv[0] = (char *)(uintptr_t)"owsctl";
+	argv[0] = (char *)(uintptr_t) "owsctl";
 	while (argc <= WORDS && fuzz_left(&fuzz)) {
 		argv[argc] = words[argc - 1];
 		if (!*fuzz_line(&fuzz, words[argc - 1], sizeof(words[0])))
@@ -331,7 +329,8 @@ void fuzz_one(const uint8_t *bytes, size_t n)
 	}
 	argv[argc] = NULL;
 	status = run(argc, argv, &out, &out_n, &err, &err_n);
-	TEST_ASSERT_TRUE((status >= CTL_DONE && status <= CTL_NOTHING) || status == 100 || status == 101);
+	TEST_ASSERT_TRUE((status >= CTL_DONE && status <= CTL_NOTHING) || status == 100 ||
+	                 status == 101);
 	TEST_ASSERT_TRUE_MESSAGE(status != CTL_USAGE || err_n, "wrong usage, and nothing is said");
 	check_messages(err, err_n);
 	if (argc > 2 && !strcmp(argv[1], "--json") && argv[2][0] != '-' && status < 100)

@@ -3,19 +3,18 @@
  * The owserver bus with a hostile server: what its connection gives comes from the input. Bytes are
  * read when the bus waits for an answer; between the requests they say what is asked for next.
  */
-#include "bus_host.h"
-
-#include "hal/owserver/connection.h"
-#include "hal/owserver/frame.h"
-
 #include <errno.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/owfs/frame.h"
+#include "hal/owserver/connection.h"
+#include "tests/fuzz/bus_host.h"
+
 #define REQUESTS 24
-#define WAITS    600 /* for one input */
+#define WAITS 600 /* for one input */
 
 static struct fuzz fuzz;
 static struct bus_host host;
@@ -136,8 +135,8 @@ static void put(const void *bytes, size_t n)
 static void put_frame(int32_t type, uint32_t flags, int32_t payload, int32_t size, size_t n,
                       const uint8_t *data)
 {
-	struct frame_header header = {.payload = payload, .type = type, .flags = flags,
-	                              .size = size};
+	struct frame_header header = {
+		.payload = payload, .type = type, .flags = flags, .size = size};
 	uint8_t head[FRAME_HEADER];
 
 	frame_put_header(head, &header);
@@ -158,8 +157,8 @@ static bool serve(void)
 	case 0: /* an answer that fits what was asked, with a status */
 		status = (int8_t)fuzz_byte(&fuzz);
 		data = fuzz_bytes(&fuzz, 255, &n);
-		put_frame(status < 0 ? status : (int32_t)n, FRAME_PERSIST, (int32_t)n, (int32_t)n, n,
-		          data);
+		put_frame(status < 0 ? status : (int32_t)n, FRAME_PERSIST, (int32_t)n, (int32_t)n,
+		          n, data);
 		return true;
 	case 1: /* bytes */
 		data = fuzz_bytes(&fuzz, 255, &n);
@@ -225,18 +224,24 @@ int connection_receive(struct connection *c, uint8_t *bytes, size_t room, int64_
 static void ask(void)
 {
 	static const char *const paths[] = {
-		"/28.67C6697351FF/temperature", "/", "/bus.0/28.67C6697351FF", "/alias/memory",
-		"/29.000029D60100/PIO.BYTE", "/simultaneous/temperature", "/alarm",
+		"/28.67C6697351FF/temperature",
+		"/",
+		"/bus.0/28.67C6697351FF",
+		"/alias/memory",
+		"/29.000029D60100/PIO.BYTE",
+		"/simultaneous/temperature",
+		"/alarm",
 		"/1F.000029D60100/main/28.67C6697351FF/type",
 	};
 	static const uint32_t rooms[] = {0, 1, 12, 256, 4096, 65536, 100000, 2};
-	static const int64_t times[] = {BUS_HOST_MS, 100 * BUS_HOST_MS, BUS_HOST_S, 20 * BUS_HOST_S};
+	static const int64_t times[] = {BUS_HOST_MS, 100 * BUS_HOST_MS, BUS_HOST_S,
+	                                20 * BUS_HOST_S};
 	static const uint8_t value[100000];
 	uint8_t what = fuzz_byte(&fuzz), how = fuzz_byte(&fuzz);
 	enum bus_op op = (enum bus_op)(what & 3);
 
-	bus_host_ask(&host, op, paths[what >> 2 & 7], what & 0x20,
-	             op == BUS_WRITE ? value : NULL, rooms[how & 7], times[how >> 3 & 3]);
+	bus_host_ask(&host, op, paths[what >> 2 & 7], what & 0x20, op == BUS_WRITE ? value : NULL,
+	             rooms[how & 7], times[how >> 3 & 3]);
 	if ((how & 0xc0) == 0xc0)
 		bus_suspend(host.bus, what & 0x40);
 }

@@ -5,16 +5,15 @@
  *
  *     a NAME PATH KEY=VALUE...     s NAME KEY=VALUE...     u NAME KEY...     r NAME
  */
-#include "fuzz.h"
-
-#include "src/config/edit.h"
-#include "src/config/options.h"
-#include "src/config/rio_write.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/config/edit.h"
+#include "src/config/options.h"
+#include "src/config/rio_write.h"
+#include "tests/fuzz/fuzz.h"
 
 #define WORDS 8
 #define EDITS 16

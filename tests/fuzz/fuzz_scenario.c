@@ -4,10 +4,6 @@
  * virtual time, and if it has few events served as target sim:FILE. Behind the NUL come events, a
  * line each, that happen one after the other.
  */
-#include "bus_host.h"
-
-#include "hal/sim/scenario.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,8 +11,11 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "hal/sim/scenario.h"
+#include "tests/fuzz/bus_host.h"
+
 #define EVENTS 16
-#define NS_MS  INT64_C(1000000)
+#define NS_MS INT64_C(1000000)
 
 static struct bus_host host;
 

@@ -4,23 +4,21 @@
  * The input is a list of what happens: bytes and requests of up to four clients, answers of the
  * engine, time.
  */
-#include "fuzz.h"
-
-#include "heap_instance.h"
-
 #include "src/libows/ows.h"
+#include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/heap_instance.h"
 
 static int64_t virtual_now(void);
 #define ows_now virtual_now
 #include "src/serve/serve.c"
 #undef ows_now
 
-#include "hal/owserver/frame.h"
-
 #include <sys/socket.h>
 
+#include "hal/owfs/frame.h"
+
 #define CLIENTS 4
-#define GUESTS  16
+#define GUESTS 16
 #define EVENTS_MOST 200
 #define NS_MS INT64_C(1000000)
 
@@ -140,16 +138,29 @@ static void send_bytes(struct other_side *side, const uint8_t *bytes, size_t n)
 static void send_request(struct other_side *side)
 {
 	static const char *const paths[] = {
-		"/", "/28.551DDF030000/temperature", "/signals/room", "/29.551DDF030000/PIO.0",
-		"/bus.0/", "/uncached/alarm/", "/settings/return_codes/text.ALL", "/signals/",
-		"/structure/28/temperature", "/alias/temperature", "/signals/label", "/bus.1",
-		"/28.551DDF030000/", "/statistics/read", "/signals/relay", "/simultaneous/temperature",
+		"/",
+		"/28.551DDF030000/temperature",
+		"/signals/room",
+		"/29.551DDF030000/PIO.0",
+		"/bus.0/",
+		"/uncached/alarm/",
+		"/settings/return_codes/text.ALL",
+		"/signals/",
+		"/structure/28/temperature",
+		"/alias/temperature",
+		"/signals/label",
+		"/bus.1",
+		"/28.551DDF030000/",
+		"/statistics/read",
+		"/signals/relay",
+		"/simultaneous/temperature",
 	};
 	static const int32_t sizes[] = {64, 65536, 100050, 0, -1, 1, 2147483647, 8192};
 	static uint8_t frame[FRAME_REQUEST_MAX + 1024];
 	uint8_t type = fuzz_byte(&fuzz), what = fuzz_byte(&fuzz), how = fuzz_byte(&fuzz);
 	size_t n, path_len;
-	struct frame_header h = {.type = type & 0x0f, .size = sizes[how & 7],
+	struct frame_header h = {.type = type & 0x0f,
+	                         .size = sizes[how & 7],
 	                         .offset = how & 8 ? (int32_t)fuzz_word(&fuzz) : 0};
 	const uint8_t *data;
 
@@ -186,9 +197,11 @@ static void take_guests(void)
 
 	while (guest_count < GUESTS && (guest = port->take(port->ctx)) != NULL) {
 		for (unsigned i = 0; i < guest_count; i++)
-			TEST_ASSERT_TRUE_MESSAGE(guests[i].guest != guest, "asked again while lent");
+			TEST_ASSERT_TRUE_MESSAGE(guests[i].guest != guest,
+			                         "asked again while lent");
 		TEST_ASSERT_NOT_NULL(memchr(guest->path, '\0', NODE_PATH_MAX + 16));
-		TEST_ASSERT_TRUE(guest->lane == GUEST_ANY_LANE || (guest->lane >= 0 && guest->lane < 2));
+		TEST_ASSERT_TRUE(guest->lane == GUEST_ANY_LANE ||
+		                 (guest->lane >= 0 && guest->lane < 2));
 		guests[guest_count++] = (struct guest){.guest = guest};
 	}
 }
@@ -212,9 +225,10 @@ static void fill(struct engine_guest *g)
 
 static void answer_one(void)
 {
-	static const int errors[] = {0, 0, 0, -ENODEV, -ENOENT, -EISDIR, -EACCES, -EIO, -ENOTDIR,
-	                             -ENOTCONN, -EINPROGRESS, -EINVAL, -ETIMEDOUT, -EMSGSIZE, -EBUSY,
-	                             -EOPNOTSUPP};
+	static const int errors[] = {
+		0,          0,         0,        -ENODEV,    -ENOENT,      -EISDIR,
+		-EACCES,    -EIO,      -ENOTDIR, -ENOTCONN,  -EINPROGRESS, -EINVAL,
+		-ETIMEDOUT, -EMSGSIZE, -EBUSY,   -EOPNOTSUPP};
 	const struct engine_guests *port = serve_guests(serve);
 	uint8_t what = fuzz_byte(&fuzz);
 	struct engine_guest *g;
@@ -252,13 +266,13 @@ static void publish(void)
 	uint32_t record = 1 + what % HEAP_SIGNALS;
 
 	heap_beat(now_ns);
-	heap_put(record, heap_signals[record - 1].type == OWS_BOOL ? 1 : fuzz_word(&fuzz),
-	         "more", now_ns, what >> 4);
+	heap_put(record, heap_signals[record - 1].type == OWS_BOOL ? 1 : fuzz_word(&fuzz), "more",
+	         now_ns, what >> 4);
 }
 
 static void happen(void)
 {
-	static const int64_t spans[] = {NS_MS, 20 * NS_MS, 1100 * NS_MS, 3000 * NS_MS,
+	static const int64_t spans[] = {NS_MS,         20 * NS_MS,    1100 * NS_MS,   3000 * NS_MS,
 	                                11000 * NS_MS, 61000 * NS_MS, 601000 * NS_MS, 100 * NS_MS};
 	uint8_t what = fuzz_byte(&fuzz);
 	struct other_side *side = &sides[what >> 6];
@@ -302,8 +316,8 @@ static void begin(void)
 {
 	static struct config_item items[HEAP_SIGNALS];
 	static struct config_target targets[] = {{.text = "null:"}, {.text = "late:"}};
-	static const struct config config = {.targets = targets, .target_count = 2, .items = items,
-	                                     .item_count = HEAP_SIGNALS};
+	static const struct config config = {
+		.targets = targets, .target_count = 2, .items = items, .item_count = HEAP_SIGNALS};
 	struct serve_setup setup = {.config = &config, .instance = "OWS", .ring = no_ring};
 	char why[128];
 
@@ -338,7 +352,8 @@ static void end(void)
 		turn();
 	}
 	turn();
-	TEST_ASSERT_EQUAL_UINT_MESSAGE(SERVER_CLIENTS, serve->free_count, "a client stays for ever");
+	TEST_ASSERT_EQUAL_UINT_MESSAGE(SERVER_CLIENTS, serve->free_count,
+	                               "a client stays for ever");
 	TEST_ASSERT_EQUAL_UINT64(0, serve->counters[COUNT_clients].value);
 	TEST_ASSERT_EQUAL_UINT(0, serve->queued);
 	for (int i = 0; i < SERVER_DIRECTORIES; i++)

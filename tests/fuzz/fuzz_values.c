@@ -3,18 +3,17 @@
  * Texts that stand for something: values of every type, names of signals and attributes, paths,
  * device ids, addresses. What was read, printed, is read as the same. The first byte picks the type.
  */
-#include "fuzz.h"
-
-#include "hal/path.h"
-#include "src/config/listen.h"
-#include "src/printable.h"
-#include "src/signal/attribute.h"
-#include "src/signal/value.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "hal/owfs/path.h"
+#include "src/config/listen.h"
+#include "src/signal/attribute.h"
+#include "src/signal/value.h"
+#include "src/text/printable.h"
+#include "tests/fuzz/fuzz.h"
 
 size_t fuzz_memory(size_t n)
 {
@@ -35,7 +34,8 @@ static void print_and_read(enum ows_type type, int64_t value)
 	TEST_ASSERT_EQUAL_size_t(n, strlen(text));
 	TEST_ASSERT_EQUAL_INT_MESSAGE(0, value_parse(type, text, &again), text);
 	TEST_ASSERT_TRUE_MESSAGE(value_number(type, value) == value_number(type, again), text);
-	TEST_ASSERT_EQUAL_INT_MESSAGE(0, value_from_text(type, text, (size_t)n, &again, &quality), text);
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, value_from_text(type, text, (size_t)n, &again, &quality),
+	                              text);
 	TEST_ASSERT_EQUAL_HEX8_MESSAGE(OWS_Q_GOOD, quality, text);
 	TEST_ASSERT_TRUE_MESSAGE(value_number(type, value) == value_number(type, again), text);
 }
@@ -150,13 +150,13 @@ static void check_addresses(const char *text, size_t n)
 	if (listen_peers_parse(text, n, &peers, &why))
 		return;
 	listen_peers_print(&peers, printed);
-	TEST_ASSERT_EQUAL_INT_MESSAGE(
-		0, listen_peers_parse(printed, strlen(printed), &same, &why), printed);
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, listen_peers_parse(printed, strlen(printed), &same, &why),
+	                              printed);
 	TEST_ASSERT_EQUAL_UINT_MESSAGE(peers.bits, same.bits, printed);
 	/* An address of IPv4 is looked up in ranges of IPv4, also in the form that IPv6 has for it. */
 	bool is_v4_in_v6 = peers.is_v6 && memcmp(peers.bytes, mapped, sizeof(mapped)) == 0;
-	TEST_ASSERT_TRUE_MESSAGE(listen_peers_have(&same, 1, peers.is_v6, peers.bytes) != is_v4_in_v6,
-	                         printed);
+	TEST_ASSERT_TRUE_MESSAGE(
+		listen_peers_have(&same, 1, peers.is_v6, peers.bytes) != is_v4_in_v6, printed);
 }
 
 static void check_printable(char *text, size_t n)

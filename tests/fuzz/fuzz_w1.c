@@ -4,16 +4,15 @@
  * list of what happens: files get contents or go, properties are read and written, directories and
  * alarms listed.
  */
-#include "bus_host.h"
-#include "sysfs.h"
-
-#include "hal/native/family.h"
-#include "hal/path.h"
-#include "hal/w1/w1.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "hal/chips/family.h"
+#include "hal/owfs/path.h"
+#include "hal/w1/w1.h"
+#include "tests/fuzz/bus_host.h"
+#include "tests/fuzz/sysfs.h"
 
 #define STEPS 60
 
@@ -24,15 +23,17 @@ static struct slave {
 	char name[W1_NAME_MAX], path[ROM_TEXT_MAX + 1];
 } slaves[2];
 
-static const uint8_t families[] = {0x28, 0x10, 0x22, 0x3b, 0x42, 0x29, 0x3a, 0x12, 0x05, 0x26, 0x1d,
-                                   0x20, 0x23, 0x2d, 0x14, 0x01};
+static const uint8_t families[] = {0x28, 0x10, 0x22, 0x3b, 0x42, 0x29, 0x3a, 0x12,
+                                   0x05, 0x26, 0x1d, 0x20, 0x23, 0x2d, 0x14, 0x01};
 /* What the kernel's drivers have. */
+/* clang-format off */
 static const char *const attributes[] = {
 	"w1_slave", "temperature", "resolution", "alarms", "ext_power", "eeprom", "rw", "state",
 	"output", "activity", "cond_search_mask", "cond_search_polarity", "status_control", "page0",
 	"page1", "vad", "vdd", "id", "name", "conv_time", "features", "iad", "offset", "eeprom_cmd",
 	"therm_bulk_read", "w1_master_slaves",
 };
+/* clang-format on */
 #define ATTRIBUTES (sizeof(attributes) / sizeof(attributes[0]))
 
 size_t fuzz_memory(size_t n)
@@ -68,8 +69,7 @@ static void put_file(uint8_t what)
 		n = 512;
 	}
 	sysfs_file(what & 0x10 ? "w1_bus_master1" : slave->name,
-	           attributes[(which & 0x3f) % ATTRIBUTES], bytes, n,
-	           which & 0x80 ? fault & 7 : 0);
+	           attributes[(which & 0x3f) % ATTRIBUTES], bytes, n, which & 0x80 ? fault & 7 : 0);
 }
 
 static void list_slaves(void)
@@ -110,9 +110,9 @@ static const struct property *nth_property(const struct family *family, unsigned
 static void ask(uint8_t what)
 {
 	static const char *const extensions[] = {"", ".ALL", ".BYTE", ".0", ".A", ".1", ".7", ".3"};
-	static const char *const others[] = {"/", "/alarm", "/simultaneous/temperature", "/bus.0",
-	                                     "/uncached", "/alarm/28,10,29", "/settings/timeout",
-	                                     "/statistics/errors"};
+	static const char *const others[] = {
+		"/",         "/alarm",          "/simultaneous/temperature", "/bus.0",
+		"/uncached", "/alarm/28,10,29", "/settings/timeout",         "/statistics/errors"};
 	const struct slave *slave = &slaves[what >> 3 & 1];
 	uint8_t which = fuzz_byte(&fuzz), how = fuzz_byte(&fuzz);
 	enum bus_op op = how & 0x80 ? BUS_WRITE : how & 0x40 ? BUS_DIR : BUS_READ;

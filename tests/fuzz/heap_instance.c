@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "heap_instance.h"
-
-#include "src/signal/value.h"
-
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/signal/value.h"
+#include "tests/fuzz/heap_instance.h"
 
 const struct command_signal heap_signals[HEAP_SIGNALS] = {
 	{"room", "/28.551DDF030000/temperature", OWS_DOUBLE},
@@ -39,9 +38,13 @@ void heap_put(uint32_t record, int64_t value, const char *text, int64_t measured
               uint32_t applied)
 {
 	bool is_text = heap_signals[record - 1].type == OWS_STRING;
-	struct ows_sample sample = {.value = value, .measured_ns = measured_ns,
-	                            .tried_ns = measured_ns, .quality = OWS_Q_GOOD, .count = 1,
-	                            .applied = applied, .len = is_text ? (uint32_t)strlen(text) : 0};
+	struct ows_sample sample = {.value = value,
+	                            .measured_ns = measured_ns,
+	                            .tried_ns = measured_ns,
+	                            .quality = OWS_Q_GOOD,
+	                            .count = 1,
+	                            .applied = applied,
+	                            .len = is_text ? (uint32_t)strlen(text) : 0};
 	struct ows_attrs attrs = {.flags = OWS_ATTR_READ_ENABLE | OWS_ATTR_WRITE_ENABLE};
 
 	image_publish(&heap.image, record, &sample, &attrs, is_text ? text : NULL);
@@ -53,21 +56,35 @@ static void make(void)
 	static const char *const targets[] = {"localhost:4304", "w1"};
 	static const struct image_counter counters[] = {{"alarms", 0xffffffffu}, {"keepalives", 0}};
 	struct image_signal signals[HEAP_SIGNALS];
-	struct image_plan image = {.signals = signals, .signal_count = HEAP_SIGNALS,
-	                           .targets = targets, .target_count = 2, .counters = counters,
-	                           .counter_count = 2, .served = "owserver:/run/owsd/T.sock",
-	                           .generation = 1, .start_id = 7, .pid = 1, .start_ns = HEAP_START,
+	struct image_plan image = {.signals = signals,
+	                           .signal_count = HEAP_SIGNALS,
+	                           .targets = targets,
+	                           .target_count = 2,
+	                           .counters = counters,
+	                           .counter_count = 2,
+	                           .served = "owserver:/run/owsd/T.sock",
+	                           .generation = 1,
+	                           .start_id = 7,
+	                           .pid = 1,
+	                           .start_ns = HEAP_START,
 	                           .period_ns = 100000000};
-	struct command_plan commands = {.signals = heap_signals, .signal_count = HEAP_SIGNALS,
-	                                .text_cap = HEAP_TEXT, .generation = 1, .start_id = 7,
+	struct command_plan commands = {.signals = heap_signals,
+	                                .signal_count = HEAP_SIGNALS,
+	                                .text_cap = HEAP_TEXT,
+	                                .generation = 1,
+	                                .start_id = 7,
 	                                .pid = 1};
-	struct ows_alarm_entry alarm = {.record = 1, .occurred_ns = HEAP_START,
-	                                .kind = OWS_ALARM_H, .flags = OWS_ALARM_BEFORE};
+	struct ows_alarm_entry alarm = {.record = 1,
+	                                .occurred_ns = HEAP_START,
+	                                .kind = OWS_ALARM_H,
+	                                .flags = OWS_ALARM_BEFORE};
 
 	for (unsigned i = 0; i < HEAP_SIGNALS; i++)
 		signals[i] = (struct image_signal){
-			.name = heap_signals[i].name, .path = heap_signals[i].path,
-			.type = heap_signals[i].type, .per_factor = i + 1,
+			.name = heap_signals[i].name,
+			.path = heap_signals[i].path,
+			.type = heap_signals[i].type,
+			.per_factor = i + 1,
 			.flags = is_output[i] ? OWS_RECORD_OUTPUT : 0,
 			.text_cap = heap_signals[i].type == OWS_STRING ? HEAP_TEXT : 0};
 	heap.image_size = image_size(&image);
@@ -80,9 +97,10 @@ static void make(void)
 	commands_state(&heap.commands, OWS_STATE_LIVE);
 	heap_beat(HEAP_START);
 	for (unsigned i = 0; i < HEAP_SIGNALS; i++)
-		heap_put(i + 1, heap_signals[i].type == OWS_DOUBLE || heap_signals[i].type == OWS_FLOAT
-		                        ? value_of_double(21.5)
-		                        : 1,
+		heap_put(i + 1,
+		         heap_signals[i].type == OWS_DOUBLE || heap_signals[i].type == OWS_FLOAT
+		                 ? value_of_double(21.5)
+		                 : 1,
 		         "boiler", HEAP_START, 0);
 	image_alarm(&heap.image, &alarm);
 	for (unsigned i = 0; i < 2; i++)

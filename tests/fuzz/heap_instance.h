@@ -3,13 +3,12 @@
  * An instance of owsd whose two segments lie on the heap, each exactly as long as it says, and
  * libows' way to it: ows_open() maps what stands in heap_files, whatever the name.
  */
-#ifndef TESTS_HEAP_INSTANCE_H
-#define TESTS_HEAP_INSTANCE_H
-
-#include "fuzz.h"
+#ifndef TESTS_FUZZ_HEAP_INSTANCE_H
+#define TESTS_FUZZ_HEAP_INSTANCE_H
 
 #include "src/shm/commands.h"
 #include "src/shm/image.h"
+#include "tests/fuzz/fuzz.h"
 
 /* What ows_open() finds; base NULL: nothing. */
 struct heap_file {
@@ -18,8 +17,8 @@ struct heap_file {
 };
 extern struct heap_file heap_image_file, heap_command_file;
 
-#define HEAP_TEXT    64
-#define HEAP_START   (INT64_C(1000) * 1000000000)
+#define HEAP_TEXT 64
+#define HEAP_START (INT64_C(1000) * 1000000000)
 #define HEAP_SIGNALS 6
 /* room (double), relay (bool, output), count (large), label (string, output), level (byte, output),
    warm (float) */

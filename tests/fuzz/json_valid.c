@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "json_valid.h"
-
 #include <string.h>
+
+#include "tests/fuzz/json_valid.h"
 
 #define DEEP 64
 

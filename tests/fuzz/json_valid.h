@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef TESTS_JSON_VALID_H
-#define TESTS_JSON_VALID_H
+#ifndef TESTS_FUZZ_JSON_VALID_H
+#define TESTS_FUZZ_JSON_VALID_H
 
 #include <stdbool.h>
 #include <stddef.h>

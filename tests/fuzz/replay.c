@@ -3,12 +3,12 @@
  * The seeds and found cases of a target, without libFuzzer: each file is a test. With arguments
  * these files only. What comes last on stdout before a crash is the file that made it.
  */
-#include "fuzz.h"
-
 #include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "tests/fuzz/fuzz.h"
 
 static unsigned tests;
 

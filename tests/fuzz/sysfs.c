@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "sysfs.h"
-
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -11,6 +9,7 @@
 #include <unistd.h>
 
 #include "hal/w1/w1.h"
+#include "tests/fuzz/sysfs.h"
 
 #define FD_BASE 1000
 
@@ -177,12 +176,12 @@ static ssize_t sysfs_list(int fd, void *buffer, size_t room)
 	return (ssize_t)used;
 }
 
-#define access(path, mode)          ((void)(mode), sysfs_access(path))
-#define stat(path, st)              sysfs_stat(path, st)
-#define open(path, flags)           ((void)(flags), sysfs_open(path))
-#define lseek(fd, at, whence)       ((void)(whence), sysfs_seek(fd, at))
-#define read(fd, to, n)             sysfs_read(fd, to, n)
-#define write(fd, from, n)          sysfs_write(fd, from, n)
-#define close(fd)                   ((void)(fd))
-#define getdents64(fd, buffer, n)   sysfs_list(fd, buffer, n)
+#define access(path, mode) ((void)(mode), sysfs_access(path))
+#define stat(path, st) sysfs_stat(path, st)
+#define open(path, flags) ((void)(flags), sysfs_open(path))
+#define lseek(fd, at, whence) ((void)(whence), sysfs_seek(fd, at))
+#define read(fd, to, n) sysfs_read(fd, to, n)
+#define write(fd, from, n) sysfs_write(fd, from, n)
+#define close(fd) ((void)(fd))
+#define getdents64(fd, buffer, n) sysfs_list(fd, buffer, n)
 #include "hal/w1/file.c"

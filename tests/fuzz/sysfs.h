@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Files of w1 in the place of /sys/bus/w1/devices: hal/w1/file.c on a file system in memory. */
-#ifndef TESTS_SYSFS_H
-#define TESTS_SYSFS_H
+#ifndef TESTS_FUZZ_SYSFS_H
+#define TESTS_FUZZ_SYSFS_H
 
-#include "fuzz.h"
+#include "tests/fuzz/fuzz.h"
 
-#define SYSFS_ROOT  "/fuzz"
+#define SYSFS_ROOT "/fuzz"
 #define SYSFS_FILES 40
 #define SYSFS_BYTES 600
 
@@ -21,7 +21,8 @@ enum sysfs_fault {
 void sysfs_clear(void);
 /* A directory below the root; n bytes of names, each ended by a NUL, are listed in it. */
 void sysfs_directory(const char *directory, const uint8_t *names, size_t n);
-void sysfs_file(const char *directory, const char *name, const void *bytes, size_t n, uint8_t fault);
+void sysfs_file(const char *directory, const char *name, const void *bytes, size_t n,
+                uint8_t fault);
 /* Name NULL: the directory and all of it. */
 void sysfs_remove(const char *directory, const char *name);
 

@@ -17,7 +17,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "hal/bus.h"
+#include "hal/bus/bus.h"
 #include "tests/kernel/lines.h"
 
 enum { ROOM = 65536 };

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/kernel/control.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,6 +6,8 @@
 #include <sys/time.h>
 #include <sys/un.h>
 #include <unistd.h>
+
+#include "tests/kernel/control.h"
 
 #define SOCKET_PATH "/run/simchip"
 #define LINE_MAX_BYTES 1024
@@ -88,7 +88,8 @@ int control_tell(int words, char **word)
 	ssize_t got = 0;
 
 	for (int i = 0; i < words && used < sizeof(line); i++)
-		used += (size_t)snprintf(line + used, sizeof(line) - used, i ? " %s" : "%s", word[i]);
+		used += (size_t)snprintf(line + used, sizeof(line) - used, i ? " %s" : "%s",
+		                         word[i]);
 	if (used >= sizeof(line))
 		return 1;
 	for (int i = 0; i < ATTEMPTS && got == 0; i++)

@@ -4,8 +4,6 @@
  * chips and the wire, over each other; then quiet, until all is well; then something that happens
  * to owsd or the machine itself. At each look a value that is good is true, and nothing grows.
  */
-#include "endurance.h"
-
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -15,15 +13,18 @@
 #include <time.h>
 #include <unistd.h>
 
-#define LOOK_US   50000
-#define FAULTS    (45 * SECOND)
-#define LONGEST   40 /* s, of a fault */
-#define WELL      (180 * SECOND) /* the back-off is 60 s at most, and the machine may be slow */
-#define DEAD      (3 * SECOND)   /* a heartbeat that stopped is noticed after 2 s */
-#define GROWTH    512 /* KiB that the memory of one life may differ */
-#define SAMPLES   3   /* from which a life's memory is known */
-#define SHOWN     3 /* of what is wrong in one episode */
+#include "tests/kernel/endurance.h"
 
+#define LOOK_US 50000
+#define FAULTS (45 * SECOND)
+#define LONGEST 40          /* s, of a fault */
+#define WELL (180 * SECOND) /* the back-off is 60 s at most, and the machine may be slow */
+#define DEAD (3 * SECOND)   /* a heartbeat that stopped is noticed after 2 s */
+#define GROWTH 512          /* KiB that the memory of one life may differ */
+#define SAMPLES 3           /* from which a life's memory is known */
+#define SHOWN 3             /* of what is wrong in one episode */
+
+/* clang-format off */
 static const char *const faults[] = {
 	"unplug warm for",      "unplug far for",           "unplug board for",
 	"unplug air for",       "brownout warm",            "brownout cold",
@@ -35,6 +36,7 @@ static const char *const faults[] = {
 	"refuse 0x18 each 7 for", "refuse 0x1b for",        "refuse-data 0x18 each 11 for",
 	"refuse-data 0x1b for", "remove adapter for",
 };
+/* clang-format on */
 
 static unsigned seed, bad, shown, episodes, restarts;
 static int64_t begun, end;
@@ -77,7 +79,8 @@ void violated(const char *form, ...)
 	bad++;
 	if (shown++ >= SHOWN)
 		return;
-	snprintf(what, sizeof(what), "not ok - endurance: at %.1f s: ", (double)(ows_now() - begun) / 1e9);
+	snprintf(what, sizeof(what),
+	         "not ok - endurance: at %.1f s: ", (double)(ows_now() - begun) / 1e9);
 	va_start(args, form);
 	line(what, form, args);
 	va_end(args);
@@ -337,7 +340,8 @@ int main(int argc, char **argv)
 		mishap();
 	}
 	if (bad)
-		remark("%u times something was wrong; the first %d of each episode are shown", bad, SHOWN);
+		remark("%u times something was wrong; the first %d of each episode are shown", bad,
+		       SHOWN);
 	else if (daemon_lives())
 		passed("endurance: %u episodes, %u restarts: %llu good values in %llu looks were true",
 		       episodes, restarts, (unsigned long long)reader_checked(),

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "endurance.h"
-
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -10,6 +8,8 @@
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "tests/kernel/endurance.h"
 
 #define SERVED "127.0.0.1:4304"
 
@@ -122,7 +122,7 @@ int daemon_descriptors(void)
 /* --- The served client --- */
 #define CLIENT_PERIOD (2 * SECOND)
 /* What is read while it changes may be as old as one conversion and what is queued before it */
-#define CLIENT_SLACK  (4 * SECOND)
+#define CLIENT_SLACK (4 * SECOND)
 
 static pid_t client = -1;
 static int answer_fd = -1;
@@ -138,8 +138,8 @@ static void ask(void)
 	asked_ns = ows_now();
 	client = child(ends[1]);
 	if (client == 0) {
-		execlp("owsctl", "owsctl", "-t", SERVED, "read", "/uncached/28.A0B1C2000028/temperature12",
-		       NULL);
+		execlp("owsctl", "owsctl", "-t", SERVED, "read",
+		       "/uncached/28.A0B1C2000028/temperature12", NULL);
 		_exit(127);
 	}
 	close(ends[1]);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "endurance.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
+
+#include "tests/kernel/endurance.h"
 
 /*
  * A value is true if it was there up to so long before its time of measurement: a conversion, and
@@ -13,7 +13,7 @@
 #define SLACK (3 * SECOND)
 #define COUNTERS 512
 /* So long between two looks: the machine of the rig stood still itself */
-#define STOOD    SECOND
+#define STOOD SECOND
 /* A table that is being exchanged can be opened again */
 #define EXCHANGE 5
 
@@ -87,10 +87,10 @@ static void check(int i, const struct ows_value *value, int64_t now)
 	if (i < INPUTS && value->age_ns > STALE_AFTER + SECOND)
 		violated("%s is good and %.1f s old", signal_names[i], (double)value->age_ns / 1e9);
 	measured[i] = value->measured_ns;
-	if (i < INPUTS && !truth_between(i, value->number, value->measured_ns - SLACK,
-	                                 true_until(value, now)))
-		violated("%s is good and false: %g, measured %.3f s ago", signal_names[i], value->number,
-		         (double)value->age_ns / 1e9);
+	if (i < INPUTS &&
+	    !truth_between(i, value->number, value->measured_ns - SLACK, true_until(value, now)))
+		violated("%s is good and false: %g, measured %.3f s ago", signal_names[i],
+		         value->number, (double)value->age_ns / 1e9);
 }
 
 void reader_stood(void)
@@ -131,8 +131,9 @@ void reader_explain(void)
 
 	for (int i = 0; i < SIGNALS; i++)
 		if (get(i, &value))
-			remark("%s: %g, %s, error %d, measured %.1f s ago", signal_names[i], value.number,
-			       ows_quality_text(value.quality), value.err, (double)value.age_ns / 1e9);
+			remark("%s: %g, %s, error %d, measured %.1f s ago", signal_names[i],
+			       value.number, ows_quality_text(value.quality), value.err,
+			       (double)value.age_ns / 1e9);
 }
 
 int reader_any_good(void)
@@ -180,15 +181,17 @@ static void sums(void)
 		if (strcmp(counter.name, "requests") == 0)
 			requests += counter.value;
 	if (sum > all || all > requests)
-		violated("counters: %llu of the signals, %llu ended, %llu begun", (unsigned long long)sum,
-		         (unsigned long long)all, (unsigned long long)requests);
+		violated("counters: %llu of the signals, %llu ended, %llu begun",
+		         (unsigned long long)sum, (unsigned long long)all,
+		         (unsigned long long)requests);
 }
 
 static bool never(const char *name)
 {
 	return strcmp(name, "refused_commands") == 0 || strcmp(name, "lost_commands") == 0 ||
-	       strcmp(name, "mended_command_headers") == 0 || strcmp(name, "unknown_answers") == 0 ||
-	       strcmp(name, "served_garbage") == 0 || strcmp(name, "served_refused_errors") == 0;
+	       strcmp(name, "mended_command_headers") == 0 ||
+	       strcmp(name, "unknown_answers") == 0 || strcmp(name, "served_garbage") == 0 ||
+	       strcmp(name, "served_refused_errors") == 0;
 }
 
 void reader_counters(void)
@@ -208,7 +211,8 @@ void reader_counters(void)
 			violated("counter %s went back from %llu to %llu", counter.name,
 			         (unsigned long long)counted[i], (unsigned long long)counter.value);
 		if (counter.value && !counted[i] && never(counter.name))
-			violated("counter %s: %llu", counter.name, (unsigned long long)counter.value);
+			violated("counter %s: %llu", counter.name,
+			         (unsigned long long)counter.value);
 		counted[i] = strcmp(counter.name, "served_clients") == 0 ? 0 : counter.value;
 	}
 	sums();

@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-#include "endurance.h"
-
-#include "control.h"
-
 #include <stdio.h>
 #include <string.h>
+
+#include "tests/kernel/control.h"
+#include "tests/kernel/endurance.h"
 
 #define KEPT 64 /* the last changes of each input */
 /* Values differ from one another for as long as any reading of them may be about */
 #define STEPS 400
 
 const char *const signal_names[SIGNALS] = {
-	[WARM] = "warm", [COLD] = "cold", [FAR] = "far", [AIR] = "air",
-	[PINS] = "pins", [RELAYS] = "relays",
+	[WARM] = "warm", [COLD] = "cold", [FAR] = "far",
+	[AIR] = "air",   [PINS] = "pins", [RELAYS] = "relays",
 };
 
 struct change {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/kernel/lines.h"
-
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "tests/kernel/lines.h"
 
 #define LINE_ROOM 2400 /* 512 bytes as \xNN, and a path */
 

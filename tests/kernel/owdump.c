@@ -24,7 +24,7 @@ enum { TYPE_READ = 2, TYPE_WRITE = 3, TYPE_DIRALL = 7 };
 enum { FLAGS = 0x10a, ROOM = 65536, TIMEOUT_S = 60, DEEPEST = 4 };
 enum { WORD_PAYLOAD = 1, WORD_TYPE = 2, WORD_FLAGS = 3, WORD_SIZE = 4, WORDS = 6 };
 #define RET_IS_DIRECTORY (-21)
-#define RET_NO_SERVER    (-1000)
+#define RET_NO_SERVER (-1000)
 
 static uint16_t port;
 

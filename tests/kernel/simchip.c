@@ -110,10 +110,12 @@ static void stats(const struct rig *rig, char *text, size_t size)
 			conversions += conversions_on(&rig->net.chip[i].wire[n]);
 		}
 	}
-	snprintf(text, size, "messages %llu\nbytes %llu\nresets %llu\nslots %llu\nwire_us %llu\nconversions %llu\n",
-	         (unsigned long long)rig->adapter.adapter.transfers,
-	         (unsigned long long)rig->adapter.adapter.bytes, resets, slots, wire_ns / 1000,
-	         conversions);
+	snprintf(
+		text, size,
+		"messages %llu\nbytes %llu\nresets %llu\nslots %llu\nwire_us %llu\nconversions %llu\n",
+		(unsigned long long)rig->adapter.adapter.transfers,
+		(unsigned long long)rig->adapter.adapter.bytes, resets, slots, wire_ns / 1000,
+		conversions);
 }
 
 static int command(void *ctx, const char *line, char *answer, size_t size)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/kernel/tiny_usb.h"
-
 #include <errno.h>
 #include <string.h>
+
+#include "tests/kernel/tiny_usb.h"
 
 enum {
 	REQUEST_TYPE_KIND = 0x60,
@@ -36,13 +36,14 @@ enum { STATUS_ACKNOWLEDGED = 1, STATUS_REFUSED = 2 };
 /* I2C_FUNC_I2C and the SMBus calls that the kernel makes of plain messages. */
 #define FUNCTIONS 0x0eff0001u
 
+/* clang-format off */
 static const uint8_t device_descriptor[] = {
 	18, DESCRIPTOR_DEVICE, 0x10, 0x01, 0xff, 0, 0, 64, 0x03, 0x04, 0x31, 0xc6, 0x05, 0x02,
 	1, 2, 3, 1,
 };
+/* clang-format on */
 static const uint8_t configuration_descriptor[] = {
-	9, DESCRIPTOR_CONFIGURATION, 18, 0, 1, 1, 0, 0x80, 50,
-	9, 4, 0, 0, 0, 0xff, 0, 0, 0,
+	9, DESCRIPTOR_CONFIGURATION, 18, 0, 1, 1, 0, 0x80, 50, 9, 4, 0, 0, 0, 0xff, 0, 0, 0,
 };
 static const char *const strings[] = {"", "owsd", "simulated i2c-tiny-usb", "1"};
 
@@ -121,7 +122,10 @@ static int transfer(struct tiny_usb *usb, const uint8_t setup[8], uint8_t *data,
 static int vendor(struct tiny_usb *usb, const uint8_t setup[8], uint8_t *data, size_t room)
 {
 	static const uint8_t functions[4] = {
-		FUNCTIONS & 0xff, FUNCTIONS >> 8 & 0xff, FUNCTIONS >> 16 & 0xff, FUNCTIONS >> 24,
+		FUNCTIONS & 0xff,
+		FUNCTIONS >> 8 & 0xff,
+		FUNCTIONS >> 16 & 0xff,
+		FUNCTIONS >> 24,
 	};
 
 	if (setup[1] >= I2C_TRANSFER && setup[1] <= I2C_TRANSFER_LAST)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/kernel/usbip.h"
-
 #include <errno.h>
 #include <string.h>
+
+#include "tests/kernel/usbip.h"
 
 enum {
 	AT_COMMAND = 0,
@@ -47,8 +47,8 @@ int usbip_decode(const uint8_t header[USBIP_HEADER], struct usbip_request *reque
 	return 0;
 }
 
-void usbip_answer(uint8_t header[USBIP_HEADER], const struct usbip_request *request,
-                  int32_t status, uint32_t actual)
+void usbip_answer(uint8_t header[USBIP_HEADER], const struct usbip_request *request, int32_t status,
+                  uint32_t actual)
 {
 	bool unlink = request->command == USBIP_CMD_UNLINK;
 

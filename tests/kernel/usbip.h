@@ -22,9 +22,9 @@ enum usbip_command {
 struct usbip_request {
 	enum usbip_command command; /* USBIP_CMD_SUBMIT or USBIP_CMD_UNLINK */
 	uint32_t seq;
-	bool in;           /* data goes to the host */
+	bool in; /* data goes to the host */
 	uint32_t endpoint;
-	uint32_t length;   /* room for data in, or bytes that follow the header for data out */
+	uint32_t length; /* room for data in, or bytes that follow the header for data out */
 	uint8_t setup[8];
 };
 
@@ -35,7 +35,7 @@ int usbip_decode(const uint8_t header[USBIP_HEADER], struct usbip_request *reque
  * The header of the answer. status: 0 or negative errno; actual: bytes moved, and, for data in,
  * bytes that follow. An unlink is always too late here, which status 0 says.
  */
-void usbip_answer(uint8_t header[USBIP_HEADER], const struct usbip_request *request,
-                  int32_t status, uint32_t actual);
+void usbip_answer(uint8_t header[USBIP_HEADER], const struct usbip_request *request, int32_t status,
+                  uint32_t actual);
 
 #endif

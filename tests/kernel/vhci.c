@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "tests/kernel/vhci.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -9,6 +7,7 @@
 #include <unistd.h>
 
 #include "tests/kernel/usbip.h"
+#include "tests/kernel/vhci.h"
 
 #define ATTACH "/sys/devices/platform/vhci_hcd.0/attach"
 
@@ -25,7 +24,8 @@ int vhci_plug(unsigned port)
 	if (attach < 0) {
 		err = -errno;
 	} else {
-		len = snprintf(line, sizeof(line), "%u %d %d %d", port, ends[1], DEVICE_ID, FULL_SPEED);
+		len = snprintf(line, sizeof(line), "%u %d %d %d", port, ends[1], DEVICE_ID,
+		               FULL_SPEED);
 		if (write(attach, line, (size_t)len) != len)
 			err = -errno;
 		close(attach);
@@ -85,8 +85,9 @@ int vhci_serve(int fd, struct tiny_usb *usb)
 	if (err)
 		return err;
 	if (request.command == USBIP_CMD_SUBMIT)
-		moved = request.endpoint ? -EPIPE
-		                         : tiny_usb_control(usb, request.setup, data, request.length);
+		moved = request.endpoint
+		                ? -EPIPE
+		                : tiny_usb_control(usb, request.setup, data, request.length);
 	usbip_answer(buffer, &request, moved < 0 ? moved : 0, moved < 0 ? 0 : (uint32_t)moved);
 	if (request.in && moved > 0)
 		len += (size_t)moved;

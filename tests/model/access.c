@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* What threads call: each access to a word that is tracked stops its thread. */
-#include "search.h"
-
-#include "src/libows/handle.h"
-#include "src/shm/segment.h"
-
 #include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
+
+#include "src/libows/handle.h"
+#include "src/shm/segment.h"
+#include "tests/model/search.h"
 
 uint64_t read_plain(const volatile void *at, size_t size)
 {

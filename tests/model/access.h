@@ -4,8 +4,8 @@
  * The file itself is the one that the programs are built from. Each access knows where it stands, so
  * that it can be weakened there.
  */
-#ifndef MODEL_ACCESS_H
-#define MODEL_ACCESS_H
+#ifndef TESTS_MODEL_ACCESS_H
+#define TESTS_MODEL_ACCESS_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -52,6 +52,7 @@ static inline uint32_t access_change(volatile uint32_t *at, enum access_rmw how,
 	((ACCESS_TYPE(p))access_load((p), sizeof(*(p)), (order), ACCESS_SITE))
 #define __atomic_store_n(p, value, order) \
 	access_store((p), sizeof(*(p)), (uint64_t)(value), (order), ACCESS_SITE)
+/* clang-format off */
 #define __atomic_fetch_add(p, n, order) \
 	access_change((p), ACCESS_ADD, (n), (order), ACCESS_SITE)
 #define __atomic_add_fetch(p, n, order) (__atomic_fetch_add(p, n, order) + (n))
@@ -61,6 +62,7 @@ static inline uint32_t access_change(volatile uint32_t *at, enum access_rmw how,
 	access_change((p), ACCESS_OR, (n), (order), ACCESS_SITE)
 #define __atomic_fetch_and(p, n, order) \
 	access_change((p), ACCESS_AND, (n), (order), ACCESS_SITE)
+/* clang-format on */
 #define __atomic_compare_exchange_n(p, expected, value, weak, order, failed) \
 	(__extension__({ \
 		uint64_t access_expected = *(expected); \

@@ -1,19 +1,21 @@
 /* SPDX-License-Identifier: MIT */
-#include "search.h"
-
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define DEPTH      200
+#include "tests/model/search.h"
+
+#define DEPTH 200
 #define STATES_MAX (UINT64_C(1) << 24)
 
+/* clang-format off */
 static const char *const kinds[] = {
 	[LOAD] = "load", [STORE] = "store", [RMW] = "read-modify-write",
 	[CAS] = "compare-and-swap", [FENCE] = "fence", [WAIT] = "futex wait",
 	[WOKEN] = "woken", [WAKE] = "futex wake",
 };
+/* clang-format on */
 static const char *const orders[] = {
 	[__ATOMIC_RELAXED] = "relaxed", [__ATOMIC_CONSUME] = "consume",
 	[__ATOMIC_ACQUIRE] = "acquire", [__ATOMIC_RELEASE] = "release",

@@ -4,11 +4,11 @@
  * and remembers the states it has been in. A thread is plain code, compiled with access.h; it stops
  * before each access, and its stack is put aside and back as the search goes to and fro.
  */
-#ifndef MODEL_EXPLORE_H
-#define MODEL_EXPLORE_H
+#ifndef TESTS_MODEL_EXPLORE_H
+#define TESTS_MODEL_EXPLORE_H
 
-#include "access.h"
-#include "weak.h"
+#include "tests/model/access.h"
+#include "tests/model/weak.h"
 
 struct scenario {
 	const char *name;

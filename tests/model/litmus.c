@@ -3,15 +3,15 @@
  * The checker checked: small programs of which it is known, and published, what RC11 allows and what
  * it forbids. x, y, z are 0 before; each thread notes what it read.
  */
-#include "suites.h"
-
 #include <stdio.h>
 #include <string.h>
+
+#include "tests/model/suites.h"
 
 #define RLX __ATOMIC_RELAXED
 #define ACQ __ATOMIC_ACQUIRE
 #define REL __ATOMIC_RELEASE
-#define SC  __ATOMIC_SEQ_CST
+#define SC __ATOMIC_SEQ_CST
 
 static uint32_t x, y, z;
 static struct notes {
@@ -20,11 +20,19 @@ static struct notes {
 static bool happened;
 
 #define W(where, value, order) __atomic_store_n(&(where), value, order)
-#define R(where, order)        __atomic_load_n(&(where), order)
-#define F(order)               __atomic_thread_fence(order)
-#define INC(where, order)      __atomic_fetch_add(&(where), 1, order)
-#define THREAD(name, ...)      static void name(void) { __VA_ARGS__; }
-#define OUTCOME(name, ...)     static void name(void) { happened |= (__VA_ARGS__); }
+#define R(where, order) __atomic_load_n(&(where), order)
+#define F(order) __atomic_thread_fence(order)
+#define INC(where, order) __atomic_fetch_add(&(where), 1, order)
+#define THREAD(name, ...) \
+	static void name(void) \
+	{ \
+		__VA_ARGS__; \
+	}
+#define OUTCOME(name, ...) \
+	static void name(void) \
+	{ \
+		happened |= (__VA_ARGS__); \
+	}
 
 static void setup(void)
 {
@@ -148,8 +156,10 @@ static const struct litmus {
 	{"MP, release fence alone", ALLOWED, flag_without_data, {mp_w_f, mp_r}},
 	{"MP, acquire fence alone", ALLOWED, flag_without_data, {mp_w, mp_r_f}},
 	{"release sequence of one thread", CPP20, counted_without_data, {rs_w, mp_r_acq}},
-	{"release sequence with an increment", FORBIDDEN, counted_without_data,
-	 {mp_w_rel, rs_inc, mp_r_acq}},
+	{"release sequence with an increment",
+         FORBIDDEN,
+         counted_without_data,
+         {mp_w_rel, rs_inc, mp_r_acq}},
 	{"LB, relaxed", FORBIDDEN, both_new, {lb1, lb2}},
 	{"IRIW, release and acquire", ALLOWED, opposite, {w_x_rel, w_y_rel, ir1, ir2}},
 	{"IRIW, fences", FORBIDDEN, opposite, {w_x, w_y, ir1_f, ir2_f}},
@@ -166,8 +176,10 @@ static const struct litmus {
 	{"R, release and acquire", ALLOWED, r_weak, {r_w, r_r}},
 	{"R, fences", FORBIDDEN, r_weak, {r_w_f, r_r_f}},
 	{"WRC, relaxed", ALLOWED, effect_without_cause, {w_x, wrc_m, wrc_r}},
-	{"WRC, release and acquire", FORBIDDEN, effect_without_cause,
-	 {w_x_rel, wrc_m_ra, wrc_r_acq}},
+	{"WRC, release and acquire",
+         FORBIDDEN,
+         effect_without_cause,
+         {w_x_rel, wrc_m_ra, wrc_r_acq}},
 	{"ISA2, release and acquire", FORBIDDEN, effect_without_cause, {isa_w, wrc_m_ra, isa_r}},
 	{"two increments", FORBIDDEN, lost_count, {inc1, inc2}},
 	{"two claims by compare-and-swap", FORBIDDEN, two_owners, {cas1, cas2}},

@@ -4,11 +4,11 @@
  * may show: first the checker by programs of which the answer is known, then the code, then the code
  * with each of its orders and fences weakened in turn, which must be found out.
  */
-#include "suites.h"
-
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "tests/model/suites.h"
 
 void tally_test(struct tally *tally, bool passed, const char *format, ...)
 {

@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Control programs set, owsd takes: the code of src/libows/set.c, src/shm/commands.c, src/shm/carry.c,
- * and the sleep of src/host_engine.c.
+ * and the sleep of src/host/engine_thread.c.
  */
-#include "suites.h"
-
-#include "src/host_engine.c"
+#include "src/host/engine_thread.c"
 #include "src/libows/handle.h"
 #include "src/shm/commands.h"
+#include "tests/model/suites.h"
 
 #define NUMBER 1 /* slots */
 #define STRING 2
-#define TEXT   8
+#define TEXT 8
 
 static _Alignas(64) char memory[8192], next_memory[8192];
 static struct commands commands, next;
@@ -23,11 +22,11 @@ static struct host host;
 
 /* What the threads found out. */
 static struct {
-	struct command got;    /* by owsd, last */
+	struct command got; /* by owsd, last */
 	char text[TEXT + 1];
 	bool text_got;
-	int err[2];            /* of the programs' sets */
-	uint32_t news;         /* another value: owsd has seen all that it can */
+	int err[2];    /* of the programs' sets */
+	uint32_t news; /* another value: owsd has seen all that it can */
 } found;
 
 static int64_t number_of(unsigned program)
@@ -43,9 +42,11 @@ static const char *text_of(unsigned program)
 static void make_commands(char *where, struct commands *made)
 {
 	static const struct command_signal signals[] = {
-		{"number", "/x", OWS_LARGE}, {"string", "/y", OWS_STRING},
+		{"number", "/x", OWS_LARGE},
+		{"string", "/y", OWS_STRING},
 	};
-	static const struct command_plan plan = {.signals = signals, .signal_count = 2, .text_cap = TEXT};
+	static const struct command_plan plan = {
+		.signals = signals, .signal_count = 2, .text_cap = TEXT};
 
 	commands_forget(made);
 	memset(where, 0, sizeof(memory));
@@ -74,18 +75,19 @@ static void setup(void)
 	ids[1] = (struct ows_id){.record = STRING, .attribute = ATTR_VALUE};
 	for (uint32_t i = 0; i < 2; i++)
 		handles[i] = (struct ows){
-			.map = {
-				.records = records,
-				.record_size = sizeof(records[0]),
-				.count = 3,
-				.command = header,
-				.slots = slots,
-				.entries = (void *)(memory + commands.entry_off),
-				.dirty = (void *)(memory + commands.dirty_off),
-				.command_base = memory,
-				.command_size = commands.size,
-				.text_cap = TEXT,
-			},
+			.map =
+				{
+					.records = records,
+					.record_size = sizeof(records[0]),
+					.count = 3,
+					.command = header,
+					.slots = slots,
+					.entries = (void *)(memory + commands.entry_off),
+					.dirty = (void *)(memory + commands.dirty_off),
+					.command_base = memory,
+					.command_size = commands.size,
+					.text_cap = TEXT,
+				},
 			.ids = ids,
 			.id_count = 2,
 			.client = -1,
@@ -173,7 +175,8 @@ static void nobody(void)
 static void look_at_number(void)
 {
 	commands_load(&commands, NUMBER, &found.got);
-	if (found.got.value != 0 && found.got.value != number_of(0) && found.got.value != number_of(1))
+	if (found.got.value != 0 && found.got.value != number_of(0) &&
+	    found.got.value != number_of(1))
 		explore_fail("value %#llx, which nobody set", (unsigned long long)found.got.value);
 	if (found.got.stamp != 0 && found.got.value == 0)
 		explore_fail("stamp %u before its value", found.got.stamp);
@@ -200,7 +203,7 @@ static void look_at_text(void)
 		explore_fail("text '%s', which nobody set", found.text);
 }
 
-/* The loop of engine_main() in src/host_engine.c, as far as commands go. */
+/* The loop of engine_main() in src/host/engine_thread.c, as far as commands go. */
 static void engine(void (*look)(void), uint32_t slot)
 {
 	for (;;) {
@@ -299,6 +302,7 @@ static void carried(void)
 		explore_fail("the set said that all is well, and is lost");
 }
 
+/* clang-format off */
 const struct scenario command_scenarios[] = {
 	{"a program sets twice, owsd sleeps between", setup_number, 2,
 	 {engine_own_number, program_twice}, .end = number_taken},
@@ -313,3 +317,4 @@ const struct scenario command_scenarios[] = {
 	 .end = carried},
 	{NULL},
 };
+/* clang-format on */

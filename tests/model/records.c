@@ -1,21 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /* owsd publishes, consumers read: the code of src/shm/image.c, src/shm/reader.h, src/libows. */
-#include "suites.h"
-
-#include "src/libows/handle.h"
-#include "src/shm/image.h"
-#include "src/shm/reader.h"
-
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "src/libows/handle.h"
+#include "src/shm/image.h"
+#include "src/shm/reader.h"
+#include "tests/model/suites.h"
+
 #define SAMPLE_WORDS 12
-#define WORDS        30
-#define UPDATES      5  /* the last state; the first is there before the threads */
-#define SECOND_LIFE  16 /* added to the state's number by a writer that follows a killed one */
-#define TEXT         8
+#define WORDS 30
+#define UPDATES 5      /* the last state; the first is there before the threads */
+#define SECOND_LIFE 16 /* added to the state's number by a writer that follows a killed one */
+#define TEXT 8
 
 static _Alignas(64) char memory[65536];
 static struct image image;
@@ -62,16 +61,17 @@ static void make_image(void)
 	image.header->news = 0;
 	publish(1);
 	handle = (struct ows){
-		.map = {
-			.image = image.header,
-			.records = image.records,
-			.record_size = sizeof(struct ows_record),
-			.alarms = image.alarms,
-			.alarm_size = sizeof(struct ows_alarm_entry),
-			.alarm_count = OWS_ALARMS,
-			.base = memory,
-			.count = 2,
-		},
+		.map =
+			{
+				.image = image.header,
+				.records = image.records,
+				.record_size = sizeof(struct ows_record),
+				.alarms = image.alarms,
+				.alarm_size = sizeof(struct ows_alarm_entry),
+				.alarm_count = OWS_ALARMS,
+				.base = memory,
+				.count = 2,
+			},
 	};
 	flag = name = 0;
 	explore_track("seq", &image.records[1].seq, 4);
@@ -153,7 +153,8 @@ static uint32_t judge(const void *slot, uint32_t last)
 	uint32_t a = state_of(word_a, words[word_a]), b = state_of(word_b, words[word_b]);
 
 	if (a != b)
-		explore_fail("torn: word %u is of state %u, word %u of state %u", word_a, a, word_b, b);
+		explore_fail("torn: word %u is of state %u, word %u of state %u", word_a, a, word_b,
+		             b);
 	if (a % SECOND_LIFE < last % SECOND_LIFE)
 		explore_fail("back from state %u to state %u", last, a);
 	return a;
@@ -419,6 +420,7 @@ static void read_in_order_by_check_word(void)
 
 /* --- */
 
+/* clang-format off */
 const struct scenario record_scenarios[] = {
 	{"a slot read twice beside a busy writer", setup, 2, {write_all, read_twice}, .end = NULL},
 	{"two readers", setup, 3, {write_few, read_once, read_once}, .end = NULL},
@@ -437,13 +439,20 @@ const struct scenario record_scenarios[] = {
 	 {write_few, read_whole_by_check_word}, .end = NULL},
 	{NULL},
 };
+/* clang-format on */
 
 const struct scenario wrong_scenarios[] = {
-	{"a reader that does not look at the sequence word again", setup, 2,
-	 {write_all, read_unchecked}, .end = NULL},
+	{"a reader that does not look at the sequence word again",
+         setup,
+         2,
+         {write_all, read_unchecked},
+         .end = NULL},
 	{"a reader that knows one slot only", setup, 2, {write_all, read_slot_0}, .end = NULL},
-	{"without fences, by the check word: in order", setup, 2,
-	 {write_all, read_in_order_by_check_word}, .end = NULL},
+	{"without fences, by the check word: in order",
+         setup,
+         2,
+         {write_all, read_in_order_by_check_word},
+         .end = NULL},
 	{NULL},
 };
 
@@ -463,7 +472,8 @@ void record_pairs(struct tally *tally)
 			pairs++;
 		}
 	}
-	tally_test(tally, pairs == WORDS * (WORDS - 1) / 2, "each pair of words of a slot: %u", pairs);
+	tally_test(tally, pairs == WORDS * (WORDS - 1) / 2, "each pair of words of a slot: %u",
+	           pairs);
 	word_a = 0;
 	word_b = WORDS - 1;
 }

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* Between the files of the search: where it stands, its threads, and their steps. */
-#ifndef MODEL_SEARCH_H
-#define MODEL_SEARCH_H
-
-#include "explore.h"
+#ifndef TESTS_MODEL_SEARCH_H
+#define TESTS_MODEL_SEARCH_H
 
 #include <setjmp.h>
 #include <ucontext.h>
 
-#define STACK      32768
-#define KEEPS      4
+#include "tests/model/explore.h"
+
+#define STACK 32768
+#define KEEPS 4
 #define KEPT_BYTES 512
 
 enum { LOAD, STORE, RMW, CAS, FENCE, WAIT, WOKEN, WAKE };

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The states that the search has been in. */
-#include "search.h"
-
 #include <stdlib.h>
+
+#include "tests/model/search.h"
 
 static uint64_t *seen, room; /* a power of 2 */
 

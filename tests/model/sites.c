@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The accesses that were met, and how each is weakened. */
-#include "search.h"
-
 #include <string.h>
+
+#include "tests/model/search.h"
 
 /* In the order in which they were met */
 static struct site *sites, *last_site;

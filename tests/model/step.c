@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What a step does to the memory, and from which messages it may choose. */
-#include "search.h"
+#include "tests/model/search.h"
 
 static void wake(struct thread *t, struct step *s)
 {
@@ -41,14 +41,13 @@ bool step_perform(struct thread *t, unsigned from)
 			return false;
 		s->result = weak_load(m, i, s->location, from, s->order);
 		weak_replace(m, i, s->location, from, combine(s->how, s->result, s->value),
-		               s->order);
+		             s->order);
 		break;
 	case CAS:
 		swaps = m->location[s->location].messages[from].value == s->expected;
 		if (swaps && !weak_room(m, s->location, from))
 			return false;
-		s->result = weak_load(m, i, s->location, from,
-		                        swaps ? s->order : s->failed_order);
+		s->result = weak_load(m, i, s->location, from, swaps ? s->order : s->failed_order);
 		if (swaps)
 			weak_replace(m, i, s->location, from, s->value, s->order);
 		break;

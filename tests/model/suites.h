@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* What main.c runs, and how it counts. */
-#ifndef MODEL_SUITES_H
-#define MODEL_SUITES_H
+#ifndef TESTS_MODEL_SUITES_H
+#define TESTS_MODEL_SUITES_H
 
-#include "explore.h"
+#include "tests/model/explore.h"
 
 struct tally {
 	unsigned passed, failed;

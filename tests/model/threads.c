@@ -2,11 +2,11 @@
 /* The threads of a scenario: stacks that stop and go on, and how they are put aside and back. */
 /* The checked form of longjmp() takes a change of stacks for an error */
 #undef _FORTIFY_SOURCE
-#include "search.h"
-
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "tests/model/search.h"
 
 #define BELOW 512 /* of the frame that stops: what it may have put there itself */
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "weak.h"
-
 #include <assert.h>
 #include <string.h>
+
+#include "tests/model/weak.h"
 
 bool weak_stores_go_on;
 
@@ -120,15 +120,15 @@ static void put(struct weak *m, unsigned thread, unsigned location, unsigned pla
 	reach(&message->view, location, place);
 }
 
-void weak_store(struct weak *m, unsigned thread, unsigned location, unsigned behind,
-                  uint64_t value, int order)
+void weak_store(struct weak *m, unsigned thread, unsigned location, unsigned behind, uint64_t value,
+                int order)
 {
 	assert(weak_room(m, location, behind));
 	put(m, thread, location, behind + 1, value, order, NULL);
 }
 
-void weak_replace(struct weak *m, unsigned thread, unsigned location, unsigned from,
-                    uint64_t value, int order)
+void weak_replace(struct weak *m, unsigned thread, unsigned location, unsigned from, uint64_t value,
+                  int order)
 {
 	struct view sequence = m->location[location].messages[from].view;
 

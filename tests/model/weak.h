@@ -10,15 +10,15 @@
  * An access that is sequentially consistent counts as release and acquire, which is weaker; only
  * fences are sequentially consistent in full.
  */
-#ifndef MODEL_WEAK_H
-#define MODEL_WEAK_H
+#ifndef TESTS_MODEL_WEAK_H
+#define TESTS_MODEL_WEAK_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
 #define LOCATIONS 12
-#define MESSAGES  20
-#define THREADS   4
+#define MESSAGES 20
+#define THREADS 4
 
 struct view {
 	uint8_t at[LOCATIONS]; /* index of a message */
@@ -27,7 +27,7 @@ struct view {
 struct message {
 	uint64_t value;
 	struct view view; /* what its reader gets to know if he acquires */
-	bool glued;       /* put here by a read-modify-write of the message before: nothing in between */
+	bool glued; /* put here by a read-modify-write of the message before: nothing in between */
 };
 
 struct location {
@@ -61,15 +61,14 @@ unsigned weak_add(struct weak *m, uint64_t value);
 
 /* Order: __ATOMIC_RELAXED .. __ATOMIC_SEQ_CST. from: the message read; it must be allowed. */
 unsigned weak_oldest(const struct weak *m, unsigned thread, unsigned location);
-uint64_t weak_load(struct weak *m, unsigned thread, unsigned location, unsigned from,
-                     int order);
+uint64_t weak_load(struct weak *m, unsigned thread, unsigned location, unsigned from, int order);
 /* May a store be put behind message from, or a read-modify-write read it? */
 bool weak_room(const struct weak *m, unsigned location, unsigned from);
-void weak_store(struct weak *m, unsigned thread, unsigned location, unsigned behind,
-                  uint64_t value, int order);
+void weak_store(struct weak *m, unsigned thread, unsigned location, unsigned behind, uint64_t value,
+                int order);
 /* The load half was done by weak_load() of the same message. */
-void weak_replace(struct weak *m, unsigned thread, unsigned location, unsigned from,
-                    uint64_t value, int order);
+void weak_replace(struct weak *m, unsigned thread, unsigned location, unsigned from, uint64_t value,
+                  int order);
 void weak_fence(struct weak *m, unsigned thread, int order);
 /* Taking and leaving the kernel's lock. */
 void weak_lock(struct weak *m, unsigned thread);

@@ -15,7 +15,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "hal/worker.h"
+#include "hal/bus/worker.h"
 
 #define MS INT64_C(1000000)
 
@@ -35,7 +35,7 @@ static int64_t now(void)
 
 static void nap(void)
 {
-	nanosleep(&(struct timespec){ .tv_nsec = 200000 }, NULL);
+	nanosleep(&(struct timespec){.tv_nsec = 200000}, NULL);
 }
 
 static bool take(struct bus_answer *answer)
@@ -56,9 +56,14 @@ static bool take(struct bus_answer *answer)
 static struct bus_answer ask(enum bus_op op, bool fresh, const char *path, uint32_t len)
 {
 	static uint32_t id;
-	struct bus_req req = { .id = ++id, .op = (uint8_t)op, .fresh = fresh, .path = path,
-	                       .data = data, .len = len, .deadline_ns = now() + timeout_ns };
-	struct bus_answer answer = { 0 };
+	struct bus_req req = {.id = ++id,
+	                      .op = (uint8_t)op,
+	                      .fresh = fresh,
+	                      .path = path,
+	                      .data = data,
+	                      .len = len,
+	                      .deadline_ns = now() + timeout_ns};
+	struct bus_answer answer = {0};
 
 	if (worker_submit(worker, &req)) {
 		answer.err = -EAGAIN;
@@ -87,7 +92,7 @@ static void repeat(char *arguments)
 {
 	char *path = strchr(arguments, ' ');
 	unsigned long n = strtoul(arguments, NULL, 10);
-	struct bus_answer answer = { .err = path ? 0 : -EINVAL };
+	struct bus_answer answer = {.err = path ? 0 : -EINVAL};
 
 	for (unsigned long i = 0; i < n && !answer.err; i++)
 		answer = ask(BUS_READ, false, path + 1, sizeof(data));

@@ -49,8 +49,8 @@ static void obey(OWNET_HANDLE h, char *verb, char *rest)
 		ret = OWNET_read(h, rest, &text);
 		say(ret, text);
 	} else if (!strcmp(verb, "lread") &&
-	           sscanf(rest, "%ld %ld %4095s", &size, &offset, path) == 3 &&
-	           size >= 0 && size <= (long)sizeof(data)) {
+	           sscanf(rest, "%ld %ld %4095s", &size, &offset, path) == 3 && size >= 0 &&
+	           size <= (long)sizeof(data)) {
 		ret = OWNET_lread(h, path, data, (size_t)size, offset);
 		say(ret, data);
 	} else if (!strcmp(verb, "put") && sscanf(rest, "%4095s %4095s", word, path) == 2) {

@@ -12,7 +12,7 @@ import subprocess
 import owsdtest
 from owsdtest import BUILD, SOURCE, skip
 
-UNIT = sorted((SOURCE / "tests/unit").glob("test_*.c"))
+UNIT = sorted((SOURCE / "tests/unit").glob("*/test_*.c"))
 SUMMARY = re.compile(r"^(\d+) Tests (\d+) Failures (\d+) Ignored", re.M)
 # libi2c and libgpiod as the linker knows them, and what we call in them
 LIBRARIES = {"libi2c": ("libi2c.so.", "i2c_smbus_"), "libgpiod": ("libgpiod.so.", "gpiod_")}
@@ -159,7 +159,7 @@ def test_the_count_of_a_run_is_that_of_unitys_summary(scene):
         said = subprocess.run([program], cwd=SOURCE, capture_output=True, text=True,
                               timeout=200)
         tests, failures, ignored = map(int, SUMMARY.search(said.stdout).groups())
-        source = (SOURCE / "tests/unit" / (program.name + ".c")).read_text()
+        source = next(file for file in UNIT if file.stem == program.name).read_text()
         assert tests == source.count("RUN_TEST("), program.name
         assert (failures, ignored) == (0, 0)
         total += tests

@@ -19,7 +19,7 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
-#include "hal.h"
+#include "tests/system/linuxcnc/hal.h"
 
 #define PINS 64
 
@@ -45,7 +45,7 @@ static struct shared {
 	bool ready;
 	long used;
 	_Alignas(16) char memory[1 << 16];
-} *hal;
+} * hal;
 
 static union cell *cell_of(const struct pin *pin)
 {
@@ -184,7 +184,8 @@ static int pin_new(hal_type_t type, hal_pin_dir_t dir, void **data, const char *
 }
 
 #define NEWF(kind, ctype, htype) \
-	int hal_pin_##kind##_newf(hal_pin_dir_t dir, ctype **data, int comp_id, const char *format, ...) \
+	int hal_pin_##kind##_newf(hal_pin_dir_t dir, ctype **data, int comp_id, \
+	                          const char *format, ...) \
 	{ \
 		va_list args; \
 		int err; \

@@ -4,8 +4,8 @@
  * declared as there, so that the example is compiled and run by the tests. LinuxCNC itself is
  * another project; docs/linuxcnc.md says against which one the example was tried.
  */
-#ifndef STAND_IN_HAL_H
-#define STAND_IN_HAL_H
+#ifndef TESTS_SYSTEM_LINUXCNC_HAL_H
+#define TESTS_SYSTEM_LINUXCNC_HAL_H
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -26,8 +26,8 @@ int hal_exit(int comp_id);
 void *hal_malloc(long size);
 
 #define HAL_PIN(kind, type) \
-	int hal_pin_##kind##_newf(hal_pin_dir_t dir, type **data, int comp_id, const char *format, ...) \
-		__attribute__((format(printf, 4, 5)))
+	int hal_pin_##kind##_newf(hal_pin_dir_t dir, type **data, int comp_id, const char *format, \
+	                          ...) __attribute__((format(printf, 4, 5)))
 HAL_PIN(bit, hal_bit_t);
 HAL_PIN(s32, hal_s32_t);
 HAL_PIN(u32, hal_u32_t);

@@ -5,8 +5,8 @@
  * runtime itself is another project under the GPL; docs/openplc.md says against which one the
  * example was tried.
  */
-#ifndef STAND_IN_LADDER_H
-#define STAND_IN_LADDER_H
+#ifndef TESTS_SYSTEM_OPENPLC_LADDER_H
+#define TESTS_SYSTEM_OPENPLC_LADDER_H
 
 #include <pthread.h>
 #include <stdint.h>

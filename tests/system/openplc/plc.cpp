@@ -7,16 +7,15 @@
 //     show I W INDEX 0            print a cell
 //     thermostat                  from now on do as docs/examples/openplc/thermostat.st does
 //     stop                        as OpenPLC stops; so does the end of the input
-#include "ladder.h"
-
-#include <poll.h>
-#include <unistd.h>
-
 #include <cstdio>
 #include <cstring>
 #include <iostream>
+#include <poll.h>
 #include <sstream>
 #include <string>
+#include <unistd.h>
+
+#include "tests/system/openplc/ladder.h"
 
 IEC_BOOL *bool_input[BUFFER_SIZE][8], *bool_output[BUFFER_SIZE][8];
 IEC_BYTE *byte_input[BUFFER_SIZE], *byte_output[BUFFER_SIZE];

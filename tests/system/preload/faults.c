@@ -117,7 +117,8 @@ void *mmap(void *at, size_t size, int protection, int flags, int fd, off_t offse
 	return MAP_FAILED;
 }
 
-int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*run)(void *), void *arg)
+int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*run)(void *),
+                   void *arg)
 {
 	int fails = 0;
 

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The bus contract: a bus answers dir, read and write on the OWFS paths of one target.
+ *
+ * A backend is one `struct bus_ops`. The simple tier writes exec(), which blocks and does one
+ * request at a time. The overlapping tier writes submit() and step(). Callers never see which it
+ * is: they use bus_submit() and bus_step() below, which make the second out of the first.
+ *
+ * Times are nanoseconds of env->now() (CLOCK_BOOTTIME in production, a virtual clock in tests).
+ * Errors are negative errno. A bus is used by one thread at a time, except where said.
+ */
+#ifndef HAL_BUS_H
+#define HAL_BUS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum bus_op {
+	BUS_READ,
+	BUS_WRITE,
+	BUS_DIR,   /* answer: full paths, each ended by '\n'. A bus that searches also takes
+	              "/alarm/29,12": only these families, which is quicker */
+	BUS_PROBE, /* cheapest proof that the path's device is there; no data */
+};
+
+/* What a request is for; where a bus has a choice, the lower goes first. */
+enum bus_prio {
+	BUS_ALARM,
+	BUS_OUTPUT,
+	BUS_INPUT,
+	BUS_GUEST,
+};
+
+enum bus_kind {
+	BUS_TEXT,   /* OWFS text in data, as owserver prints it (numbers may be blank padded) */
+	BUS_NUMBER, /* the same text, and the exact number beside it */
+	BUS_BYTES,  /* raw bytes in data */
+};
+
+enum bus_news {
+	BUS_UP,       /* requests can be served from now on */
+	BUS_DOWN,     /* the target is lost: err and text say why; sent once per loss */
+	BUS_FOUND,    /* the device rom came (buses that search) */
+	BUS_LOST,     /* the device rom went */
+	BUS_POR,      /* the device rom was seen to have restarted */
+	BUS_NOTE,     /* text for the log, nothing changes */
+	BUS_RELEASED, /* asked to suspend, the bus has let go of its hardware */
+	BUS_BACK, /* suspended, it sees that its target is there again, without having touched the
+	              wire; told once per change */
+};
+
+/*
+ * A request. Lent to the bus from bus_submit() until its answer; the caller does not touch it
+ * meanwhile, and neither frees nor reuses it before the answer came.
+ */
+struct bus_req {
+	uint32_t id;         /* caller's, echoed in the answer */
+	uint8_t op;          /* enum bus_op */
+	uint8_t prio;        /* enum bus_prio */
+	bool fresh;          /* past every cache */
+	int64_t deadline_ns; /* not begun by then: answered -ETIME without effect.
+	                        Begun: finished or failed by then, never undone */
+	const char *path;    /* "/28.551DDF030000/temperature12", without /uncached; immutable */
+	uint32_t len;        /* WRITE: bytes in data; READ and DIR: room in data */
+	uint32_t offset;     /* WRITE: of data in the value. What is behind the value's end is not
+	                        taken. A value that is not bytes takes no part of it: -EINVAL */
+	uint8_t *data;
+	/*
+	 * For a target that is a server of the same protocol: the servers that the request came
+	 * through, this process last, BUS_TOKEN bytes for each. One who finds himself there has been
+	 * asked in a circle. NULL: nobody can come back to this process.
+	 */
+	const uint8_t *tokens;
+	uint32_t token_count; /* up to BUS_TOKENS_MAX */
+};
+
+#define BUS_TOKEN 16
+#define BUS_TOKENS_MAX 8
+
+/*
+ * Exactly one for each request that was accepted. Values of err:
+ *   0             done
+ *   -ENODEV       no such device on this target
+ *   -ENOENT       the device has no such property
+ *   -EACCES       the property cannot be read, or cannot be written, whoever asks
+ *   -EPERM        this process may not: no right to its file, a server that takes no writes
+ *   -EISDIR       READ or WRITE of a directory
+ *   -ENOTDIR      DIR of a property
+ *   -EINVAL       the target refused the value that was written
+ *   -EBADMSG      checksum
+ *   -ECOMM        the wire is short
+ *   -ERANGE       a reading that means power fault (85, 127.94)
+ *   -EBUSY        somebody else has it (a GPIO line)
+ *   -EIO          any other device error
+ *   -EMSGSIZE     the answer is longer than the room
+ *   -EOPNOTSUPP   this bus has no such operation (DIR of /alarm on some)
+ *   -ETIME        not begun before its deadline, no effect
+ *   -EINPROGRESS  the target lives but had no answer by the deadline; a write is in doubt
+ *   -ECANCELED    the host shuts down
+ *   -ENOTCONN     the target is down; nothing was sent
+ *   -ETIMEDOUT    the target fell silent; a BUS_DOWN follows; a write is in doubt
+ *   -ECONNRESET   the target was lost on the way; a BUS_DOWN follows; a write is in doubt
+ *   -EPROTO       the target answered garbage; a BUS_DOWN follows; a write is in doubt
+ */
+struct bus_answer {
+	uint32_t id;
+	int32_t err;
+	uint8_t kind;        /* enum bus_kind */
+	uint8_t detail;      /* BUS_DETAIL_* */
+	uint32_t len;        /* READ and DIR: bytes in req->data; WRITE: bytes taken */
+	int64_t measured_ns; /* when the chip latched the value; where unknown, when the answer came */
+	double number;       /* if kind is BUS_NUMBER */
+};
+
+#define BUS_DETAIL_SIMULATED 0x01 /* the device is not real */
+#define BUS_DETAIL_CACHED 0x02    /* from a cache: measured_ns is older than the answer */
+
+#define BUS_EVENT_TEXT 140
+struct bus_event {
+	uint8_t news; /* enum bus_news */
+	uint8_t rom[8];
+	int32_t err;
+	int64_t cache_ns; /* BUS_UP of a server: so old may be what is not asked fresh; 0: not known */
+	char text[BUS_EVENT_TEXT];
+};
+
+/* What the host gives a backend: all that a backend may use to wait or to tell. */
+struct bus_env {
+	void *ctx;
+	/* Any thread. */
+	int64_t (*now)(void *ctx);
+	/*
+	 * Wait for events (poll(2) bits) on fd, at most until until_ns; fd -1 waits for time alone.
+	 * Returns 1 ready, 0 time is over, -ECANCELED the host shuts down. Every wait of a backend
+	 * goes through here: that gives deadlines, prompt shutdown and virtual time.
+	 */
+	int (*wait)(void *ctx, int fd, short events, int64_t until_ns);
+	/* Answers and events reach the host in the order in which they were given. */
+	void (*answer)(void *ctx, const struct bus_answer *answer);
+	void (*event)(void *ctx, const struct bus_event *event);
+};
+
+/* A running total that `owsctl stats` shows; name is a literal such as "keepalives". */
+struct bus_counter {
+	const char *name;
+	uint64_t value;
+};
+
+/* The bus's thread adds, any thread reads. */
+static inline void bus_count(struct bus_counter *counter, uint64_t by)
+{
+	uint64_t value = __atomic_load_n(&counter->value, __ATOMIC_RELAXED);
+
+	__atomic_store_n(&counter->value, value + by, __ATOMIC_RELAXED);
+}
+
+static inline uint64_t bus_counted(const struct bus_counter *counter)
+{
+	return __atomic_load_n(&counter->value, __ATOMIC_RELAXED);
+}
+
+struct bus;
+
+struct bus_ops {
+	const char *scheme;  /* "owserver": what stands before the colon of a target */
+	const char *summary; /* one line for --version and the manual */
+	unsigned depth;      /* requests it takes before an answer; at least 1 */
+	bool searches;       /* sends BUS_FOUND and BUS_LOST by itself */
+
+	/*
+	 * Allocate everything the bus will need; never touch hardware or network, never block.
+	 * where is the target without scheme and colon. Returns 0 and the bus, or -EINVAL with the
+	 * reason in why (size why_size), or -ENOMEM.
+	 */
+	int (*create)(const char *where, const struct bus_env *env, struct bus **bus, char *why,
+	              size_t why_size);
+	/* Let go of everything; no answers are given for what is still lent. */
+	void (*destroy)(struct bus *bus);
+	/*
+	 * One option of the target's Bus block, before the first step; touches no hardware. 0;
+	 * -ENOENT this bus has no such option; -EINVAL with the reason in why; -ENOMEM. NULL: it has
+	 * none.
+	 */
+	int (*option)(struct bus *bus, const char *key, const char *text, char *why,
+	              size_t why_size);
+
+	/* Simple tier: do one request, blocking, ended by req->deadline_ns; fills answer but its id. */
+	void (*exec)(struct bus *bus, struct bus_req *req, struct bus_answer *answer);
+
+	/* Overlapping tier. 0, or -EAGAIN when depth is reached; never blocks. */
+	int (*submit)(struct bus *bus, struct bus_req *req);
+	/*
+	 * One bounded piece of work, connecting and searching included; answers and events are given
+	 * from inside. Returns when it wants to be called again (INT64_MAX: at the next submit).
+	 * A simple bus may have one too, which then tells BUS_UP and BUS_DOWN: it is called before each
+	 * exec and when nothing is to do. Without one a simple bus is up from the start.
+	 */
+	int64_t (*step)(struct bus *bus, int64_t now);
+	/*
+	 * Let go of the hardware (true), which is done when it returns; take it again (false): the
+	 * steps that follow tell BUS_UP or BUS_DOWN. Meanwhile there is no exec, and submit and step of
+	 * an overlapping bus answer -ENOTCONN. NULL, for a simple bus: nothing to let go of.
+	 */
+	void (*suspend)(struct bus *bus, bool yes);
+	/*
+	 * Suspended: is the target there, as far as can be seen without touching the wire? 1, 0, or
+	 * -EAGAIN: it is still looking and wants to be called again. As bounded as a step. A target
+	 * that failed although it was to be seen is there again only when what is seen has changed.
+	 * NULL: always.
+	 */
+	int (*there)(struct bus *bus);
+	/* The running totals, to be read with bus_counted(); *n gets their count. NULL: none. */
+	const struct bus_counter *(*counters)(struct bus *bus, size_t *n);
+};
+
+/* The part of a bus that all backends share: first member of the backend's own struct. */
+#define BUS_MAX_DEPTH 512
+struct bus {
+	const struct bus_ops *ops;
+	const struct bus_env *env;
+	struct bus_req **queue; /* simple tier: requests not yet begun */
+	unsigned head, count;
+	bool told_up; /* simple tier without step: it is up from its first step on */
+	bool suspended;
+	bool there;      /* suspended: BUS_BACK was told */
+	int64_t look_ns; /* ... and when the target is looked for again */
+};
+
+/* All backends of this build, NULL at the end. */
+extern const struct bus_ops *const bus_backends[];
+extern const struct bus_ops owserver_bus, i2c_bus, sim_bus, null_bus, late_bus, w1_bus, gpio_bus;
+
+/*
+ * Find the backend of a target ("owserver:localhost:4304", "null:") and create the bus. Bare
+ * `host`, `host:port` and `[v6]:port` mean owserver, and so does an empty target (localhost). A
+ * word that is a scheme is one, with or without a colon. Returns as bus_ops.create; -EPROTONOSUPPORT
+ * when no backend of this build has the scheme (why names those there are). why is to stand behind
+ * the target, which it does not repeat.
+ */
+int bus_create(const char *target, const struct bus_env *env, struct bus **bus, char *why,
+               size_t why_size);
+/* As bus_ops.option, with a reason for each error. */
+int bus_option(struct bus *bus, const char *key, const char *text, char *why, size_t why_size);
+/* For backends' create(): fill the shared part. Returns 0 or -ENOMEM. */
+int bus_init(struct bus *bus, const struct bus_ops *ops, const struct bus_env *env);
+void bus_destroy(struct bus *bus);
+unsigned bus_depth(const struct bus *bus);
+
+/*
+ * As the slots of the overlapping tier, for either tier. Of the requests that wait, the simple
+ * tier begins the lowest prio first, and the oldest of these.
+ */
+int bus_submit(struct bus *bus, struct bus_req *req);
+int64_t bus_step(struct bus *bus, int64_t now);
+/*
+ * Let go of the hardware: BUS_RELEASED is told before it returns. From then on requests are
+ * answered -ENOTCONN and nothing touches the wire; bus_step() looks for the target every few
+ * seconds and tells BUS_BACK once when it comes. false: take the hardware again; BUS_UP or
+ * BUS_DOWN follows.
+ */
+void bus_suspend(struct bus *bus, bool yes);
+const struct bus_counter *bus_counters(struct bus *bus, size_t *n);
+
+#endif

@@ -1,0 +1,395 @@
+/* SPDX-License-Identifier: MIT */
+#include <assert.h>
+#include <errno.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/prctl.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "hal/bus/ring.h"
+#include "hal/bus/worker.h"
+
+#define SECOND INT64_C(1000000000)
+#define STACK_SIZE (256 * 1024)
+/* Relative time-outs do not count suspend: look at the clock again this often. */
+#define LONGEST_WAIT (10 * SECOND)
+#define FULL_NAP (SECOND / 1000)
+#define EVENT_NAPS 200 /* then the event is dropped */
+#define EVENT_ROOM 24
+
+struct worker {
+	struct bus *bus;
+	struct bus_env env;
+	worker_bell *bell;
+	void *bell_ctx;
+	char name[16];
+
+	struct ring orders;
+	struct bus_req **order;
+	struct ring messages;
+	struct worker_message *message;
+	struct bus_counter stalls, dropped;
+
+	int wake_fd;
+	uint32_t sleeping; /* the thread waits for orders: wake it */
+	uint32_t stopping;
+	/* Turns of bus_suspend() asked for and done: odd ones suspend, even ones take again. */
+	uint32_t turns_asked, turns_done;
+
+	bool started;
+	pthread_t thread;
+	pthread_mutex_t mutex;
+	pthread_cond_t ended_cond;
+	bool ended;
+};
+
+static int64_t clock_ns(clockid_t clock)
+{
+	struct timespec t;
+
+	clock_gettime(clock, &t);
+	return (int64_t)t.tv_sec * SECOND + t.tv_nsec;
+}
+
+static bool is_stopping(const struct worker *worker)
+{
+	return __atomic_load_n(&worker->stopping, __ATOMIC_SEQ_CST);
+}
+
+static void wake(struct worker *worker)
+{
+	uint64_t one = 1;
+	ssize_t n;
+
+	do
+		n = write(worker->wake_fd, &one, sizeof(one));
+	while (n < 0 && errno == EINTR);
+}
+
+/* One ppoll: 1 fd is ready, 0 not. Wake-ups are taken away; who waits looks for their reason. */
+static int poll_once(struct worker *worker, int fd, short events, int64_t until_ns)
+{
+	struct pollfd fds[2] = {{.fd = worker->wake_fd, .events = POLLIN},
+	                        {.fd = fd, .events = events}};
+	int64_t left = until_ns - clock_ns(CLOCK_BOOTTIME);
+	struct timespec t = {0};
+	uint64_t wakes;
+
+	if (left > LONGEST_WAIT)
+		left = LONGEST_WAIT;
+	if (left > 0)
+		t = (struct timespec){.tv_sec = (time_t)(left / SECOND),
+		                      .tv_nsec = (long)(left % SECOND)};
+	if (ppoll(fds, fd >= 0 ? 2 : 1, &t, NULL) <= 0)
+		return 0;
+	if (fds[0].revents && read(worker->wake_fd, &wakes, sizeof(wakes)) < 0)
+		assert(errno == EAGAIN || errno == EINTR);
+	return fd >= 0 && fds[1].revents;
+}
+
+static int64_t env_now(void *ctx)
+{
+	(void)ctx;
+	return clock_ns(CLOCK_BOOTTIME);
+}
+
+static int env_wait(void *ctx, int fd, short events, int64_t until_ns)
+{
+	struct worker *worker = ctx;
+
+	while (!is_stopping(worker)) {
+		if (poll_once(worker, fd, events, until_ns))
+			return 1;
+		if (clock_ns(CLOCK_BOOTTIME) >= until_ns)
+			return 0;
+	}
+	return -ECANCELED;
+}
+
+static void put_message(struct worker *worker, const struct worker_message *message)
+{
+	worker->message[ring_put_at(&worker->messages)] = *message;
+	ring_did_put(&worker->messages);
+	if (worker->bell)
+		worker->bell(worker->bell_ctx);
+}
+
+/* False: the queue stayed as full as `full`, for `naps` or until the end. */
+static bool wait_for_room(struct worker *worker, uint32_t full, unsigned naps)
+{
+	if (ring_used(&worker->messages) < full)
+		return true;
+	bus_count(&worker->stalls, 1);
+	for (unsigned i = 0; i < naps && !is_stopping(worker); i++) {
+		poll_once(worker, -1, 0, clock_ns(CLOCK_BOOTTIME) + FULL_NAP);
+		if (ring_used(&worker->messages) < full)
+			return true;
+	}
+	return false;
+}
+
+static void env_answer(void *ctx, const struct bus_answer *answer)
+{
+	struct worker *worker = ctx;
+	struct worker_message message = {.is_event = false, .answer = *answer};
+
+	while (!wait_for_room(worker, worker->messages.size, EVENT_NAPS))
+		if (is_stopping(worker))
+			return;
+	put_message(worker, &message);
+}
+
+/* Events leave room for an answer to each request that the bus can hold. */
+static void env_event(void *ctx, const struct bus_event *event)
+{
+	struct worker *worker = ctx;
+	struct worker_message message = {.is_event = true, .event = *event};
+	uint32_t full = worker->messages.size - bus_depth(worker->bus);
+
+	if (wait_for_room(worker, full, EVENT_NAPS))
+		put_message(worker, &message);
+	else
+		bus_count(&worker->dropped, 1);
+}
+
+static void take_orders(struct worker *worker)
+{
+	while (ring_used(&worker->orders)) {
+		if (bus_submit(worker->bus, worker->order[ring_take_at(&worker->orders)]))
+			return;
+		ring_did_take(&worker->orders);
+	}
+}
+
+static bool has_turn(const struct worker *worker)
+{
+	return __atomic_load_n(&worker->turns_asked, __ATOMIC_SEQ_CST) != worker->turns_done;
+}
+
+static void take_turns(struct worker *worker)
+{
+	while (has_turn(worker)) {
+		worker->turns_done++;
+		bus_suspend(worker->bus, worker->turns_done & 1);
+	}
+}
+
+static void sleep_until(struct worker *worker, int64_t until_ns)
+{
+	/* On one CPU the engine, whom the bell woke, runs now; its next order saves a sleep. */
+	sched_yield();
+	if (ring_used(&worker->orders))
+		return;
+	__atomic_store_n(&worker->sleeping, 1, __ATOMIC_SEQ_CST);
+	if (!ring_used(&worker->orders) && !has_turn(worker) && !is_stopping(worker))
+		poll_once(worker, -1, 0, until_ns);
+	__atomic_store_n(&worker->sleeping, 0, __ATOMIC_SEQ_CST);
+}
+
+static void *run(void *arg)
+{
+	struct worker *worker = arg;
+
+	prctl(PR_SET_NAME, worker->name);
+	while (!is_stopping(worker)) {
+		uint32_t left;
+		int64_t next;
+
+		take_orders(worker);
+		take_turns(worker);
+		left = ring_used(&worker->orders);
+		next = bus_step(worker->bus, clock_ns(CLOCK_BOOTTIME));
+		/* Orders that the bus had no room for wait for its next step. */
+		if (left && next > clock_ns(CLOCK_BOOTTIME))
+			poll_once(worker, -1, 0, next);
+		else if (next > clock_ns(CLOCK_BOOTTIME))
+			sleep_until(worker, next);
+	}
+	pthread_mutex_lock(&worker->mutex);
+	worker->ended = true;
+	pthread_cond_signal(&worker->ended_cond);
+	pthread_mutex_unlock(&worker->mutex);
+	return NULL;
+}
+
+static int make_lock(struct worker *worker)
+{
+	pthread_condattr_t attr;
+	int err = pthread_condattr_init(&attr);
+
+	if (err)
+		return -err;
+	err = pthread_condattr_setclock(&attr, CLOCK_MONOTONIC);
+	if (!err)
+		err = pthread_cond_init(&worker->ended_cond, &attr);
+	pthread_condattr_destroy(&attr);
+	if (!err)
+		err = pthread_mutex_init(&worker->mutex, NULL);
+	return -err;
+}
+
+int worker_create(const char *target, const char *name, worker_bell *bell, void *ctx,
+                  struct worker **out, char *why, size_t why_size)
+{
+	struct worker *worker = calloc(1, sizeof(*worker));
+	unsigned depth;
+	int err;
+
+	if (!worker) {
+		snprintf(why, why_size, "'%.80s': out of memory", target);
+		return -ENOMEM;
+	}
+	worker->env = (struct bus_env){.ctx = worker,
+	                               .now = env_now,
+	                               .wait = env_wait,
+	                               .answer = env_answer,
+	                               .event = env_event};
+	worker->bell = bell;
+	worker->bell_ctx = ctx;
+	snprintf(worker->name, sizeof(worker->name), "%s", name);
+	worker->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	err = worker->wake_fd < 0 ? -errno : make_lock(worker);
+	if (err) {
+		snprintf(why, why_size, "'%.80s': %s", target, strerror(-err));
+		if (worker->wake_fd >= 0)
+			close(worker->wake_fd);
+		free(worker);
+		return err;
+	}
+	err = bus_create(target, &worker->env, &worker->bus, why, why_size);
+	if (!err) {
+		depth = bus_depth(worker->bus);
+		worker->orders.size = ring_size(depth);
+		worker->messages.size = ring_size(2 * depth + EVENT_ROOM);
+		worker->order = calloc(worker->orders.size, sizeof(*worker->order));
+		worker->message = calloc(worker->messages.size, sizeof(*worker->message));
+		if (!worker->order || !worker->message) {
+			snprintf(why, why_size, "'%.80s': out of memory", target);
+			err = -ENOMEM;
+		}
+	}
+	if (err) {
+		worker_destroy(worker);
+		return err;
+	}
+	*out = worker;
+	return 0;
+}
+
+int worker_start(struct worker *worker)
+{
+	sigset_t all, before;
+	pthread_attr_t attr;
+	int err;
+
+	assert(!worker->started);
+	err = pthread_attr_init(&attr);
+	if (err)
+		return -err;
+	err = pthread_attr_setstacksize(&attr, STACK_SIZE);
+	/* a fault of the thread's own: where it is blocked the kernel kills, handler or not */
+	sigfillset(&all);
+	sigdelset(&all, SIGBUS);
+	if (!err)
+		err = pthread_sigmask(SIG_SETMASK, &all, &before);
+	if (!err) {
+		err = pthread_create(&worker->thread, &attr, run, worker);
+		pthread_sigmask(SIG_SETMASK, &before, NULL);
+	}
+	pthread_attr_destroy(&attr);
+	worker->started = !err;
+	return -err;
+}
+
+bool worker_started(const struct worker *worker)
+{
+	return worker->started;
+}
+
+struct bus *worker_bus(struct worker *worker)
+{
+	return worker->bus;
+}
+
+int worker_submit(struct worker *worker, struct bus_req *req)
+{
+	if (ring_used(&worker->orders) >= bus_depth(worker->bus))
+		return -EAGAIN;
+	worker->order[ring_put_at(&worker->orders)] = req;
+	ring_did_put(&worker->orders);
+	if (__atomic_exchange_n(&worker->sleeping, 0, __ATOMIC_SEQ_CST))
+		wake(worker);
+	return 0;
+}
+
+void worker_suspend(struct worker *worker, bool yes)
+{
+	uint32_t turns = worker->turns_asked;
+
+	if ((turns & 1) == yes)
+		return;
+	__atomic_store_n(&worker->turns_asked, turns + 1, __ATOMIC_SEQ_CST);
+	wake(worker);
+}
+
+bool worker_next(struct worker *worker, struct worker_message *message)
+{
+	if (!ring_used(&worker->messages))
+		return false;
+	*message = worker->message[ring_take_at(&worker->messages)];
+	ring_did_take(&worker->messages);
+	return true;
+}
+
+int worker_stop(struct worker *worker, int64_t timeout_ns)
+{
+	int64_t until = clock_ns(CLOCK_MONOTONIC) + timeout_ns;
+	struct timespec t = {.tv_sec = (time_t)(until / SECOND), .tv_nsec = (long)(until % SECOND)};
+	int err = 0;
+
+	if (!worker->started)
+		return 0;
+	__atomic_store_n(&worker->stopping, 1, __ATOMIC_SEQ_CST);
+	wake(worker);
+	pthread_mutex_lock(&worker->mutex);
+	while (!worker->ended && !err)
+		err = pthread_cond_timedwait(&worker->ended_cond, &worker->mutex, &t);
+	err = worker->ended ? 0 : -ETIMEDOUT;
+	pthread_mutex_unlock(&worker->mutex);
+	if (err)
+		return err;
+	pthread_join(worker->thread, NULL);
+	worker->started = false;
+	return 0;
+}
+
+void worker_destroy(struct worker *worker)
+{
+	if (!worker)
+		return;
+	assert(!worker->started);
+	bus_destroy(worker->bus);
+	pthread_cond_destroy(&worker->ended_cond);
+	pthread_mutex_destroy(&worker->mutex);
+	close(worker->wake_fd);
+	free(worker->order);
+	free(worker->message);
+	free(worker);
+}
+
+uint64_t worker_stalls(const struct worker *worker)
+{
+	return bus_counted(&worker->stalls);
+}
+
+uint64_t worker_dropped(const struct worker *worker)
+{
+	return bus_counted(&worker->dropped);
+}

@@ -1,0 +1,307 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The memory of a DS2438 (data sheet 19-5099), which is read and written by way of scratchpads, one
+ * for each page.
+ *
+ * Its checksum covers neither the command nor the page's number, and Recall says nothing: if it is
+ * lost, the scratchpad's old contents come with a right checksum. So the scratchpad's first byte is
+ * changed before and read back (the mark): who finds the memory's byte there knows of the Recall.
+ * What is read is read twice, as the number of another page may have reached the chip.
+ */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/chips/ds2438.h"
+
+#define RECALL 0xb8
+#define READ_SCRATCHPAD 0xbe
+#define WRITE_SCRATCHPAD 0x4e
+#define COPY_SCRATCHPAD 0x48
+#define COPY_NS (10 * TXN_MS)
+
+#define CONFIGURATION 0x0f
+#define BUSY 0x70      /* a conversion or a copy is under way */
+#define THRESHOLD 0xc0 /* of byte 7 */
+
+/* note[page]: the page's first byte as it was; of page 0 its configuration, once known. */
+#define KNOWN 0x80
+
+/* A page of the EEPROM: its first byte stays as it is. */
+#define MARKED_PAGE 3
+
+/* mem[] of ds2438_read(): its step, the mark, that the mark was found in the memory. */
+enum { STEP = 16, MARK, AGAIN };
+enum step { BEGIN, SET_MARK, FIND_MARK, TAKE };
+
+static int read_scratchpad(struct txn *txn, unsigned page, uint8_t in[9])
+{
+	uint8_t command[] = {READ_SCRATCHPAD, (uint8_t)page};
+	int err = txn_command(txn, command, sizeof(command));
+
+	return err ? err : txn_read_crc8(txn, in, 9);
+}
+
+static int recall(struct txn *txn, unsigned page, uint8_t in[9])
+{
+	uint8_t command[] = {RECALL, (uint8_t)page};
+	int err = txn_command(txn, command, sizeof(command));
+
+	return err ? err : read_scratchpad(txn, page, in);
+}
+
+/* And read back. Of page 0 only the configuration is taken. */
+static int write_scratchpad(struct txn *txn, unsigned page, const uint8_t *bytes, unsigned n)
+{
+	uint8_t command[10] = {WRITE_SCRATCHPAD, (uint8_t)page}, in[9];
+	int err;
+
+	memcpy(command + 2, bytes, n);
+	err = txn_command(txn, command, 2 + n);
+	if (!err)
+		err = read_scratchpad(txn, page, in);
+	if (err)
+		return err;
+	if (page == 0 ? ((in[0] ^ bytes[0]) & CONFIGURATION) || (in[0] & BUSY)
+	              : memcmp(in, bytes, n) != 0)
+		return -EBADMSG;
+	return 0;
+}
+
+static bool is_mark(const struct txn *txn, unsigned page, uint8_t byte)
+{
+	return ((byte ^ txn->mem[MARK]) & (page ? 0xff : DS2438_AD)) == 0;
+}
+
+/* Behind the mark. */
+static int take(struct txn *txn, unsigned page, uint8_t bytes[8])
+{
+	uint8_t in[9], again[9], *note = &txn->device->note[page];
+	int err = recall(txn, page, in);
+
+	if (!err)
+		err = read_scratchpad(txn, page, again);
+	if (!err && memcmp(in, again, sizeof(in)) != 0)
+		err = -EBADMSG;
+	if (err)
+		return err;
+	txn->mem[STEP] = SET_MARK;
+	*note = page ? in[0] : KNOWN | (in[0] & CONFIGURATION);
+	if (!is_mark(txn, page, in[0])) {
+		txn->mem[STEP] = BEGIN;
+		txn->mem[AGAIN] = 0;
+		memcpy(bytes, in, 8);
+		return 0;
+	}
+	/* The memory may well hold the mark: with another one, once more. */
+	return txn->mem[AGAIN]++ ? -EBADMSG : TXN_MORE;
+}
+
+int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8])
+{
+	uint8_t in[9] = {0}, *note = &txn->device->note[page];
+	int err;
+
+	/* A driver reads by itself. */
+	if (txn->link->files) {
+		err = recall(txn, page, in);
+		*note = page ? in[0] : KNOWN | (in[0] & CONFIGURATION);
+		memcpy(bytes, in, 8);
+		return err;
+	}
+	switch ((enum step)txn->mem[STEP]) {
+	case BEGIN:
+		if (page == 0 && !*note) {
+			err = recall(txn, page, in);
+			*note = KNOWN | (in[0] & CONFIGURATION);
+			txn->mem[STEP] = SET_MARK;
+			return err ? err : TXN_MORE;
+		}
+		/* fallthrough */
+	case SET_MARK:
+		txn->mem[MARK] = page ? (uint8_t) ~*note
+		                      : (uint8_t)((*note & CONFIGURATION) ^ DS2438_AD);
+		err = write_scratchpad(txn, page, &txn->mem[MARK], 1);
+		txn->mem[STEP] = TAKE;
+		return err ? err : TXN_MORE;
+	case FIND_MARK:
+		err = read_scratchpad(txn, page, in);
+		if (!err && (!is_mark(txn, page, in[0]) || (in[0] & BUSY)))
+			err = -EBADMSG;
+		txn->mem[STEP] = TAKE;
+		return err ? err : TXN_MORE;
+	case TAKE:
+		break;
+	}
+	err = take(txn, page, bytes);
+	if (err < 0)
+		*note = 0;
+	return err;
+}
+
+int ds2438_select(struct txn *txn, uint8_t select)
+{
+	uint8_t configuration = txn->device->note[0], bytes[8];
+
+	if (!(configuration & KNOWN) || txn->mem[STEP] != BEGIN) {
+		int err = ds2438_read(txn, 0, bytes);
+
+		return err ? err : TXN_MORE;
+	}
+	configuration = (uint8_t)((configuration & CONFIGURATION & ~DS2438_AD) | select);
+	return write_scratchpad(txn, 0, &configuration, 1);
+}
+
+/* What is selected is a mark, too, where the memory selects the other. */
+int ds2438_read_selected(struct txn *txn, uint8_t select, uint8_t bytes[8])
+{
+	if (txn->link->files) {
+		uint8_t in[9];
+		int err = read_scratchpad(txn, 0, in);
+
+		if (err || (in[0] & DS2438_AD) != select)
+			return err ? err : -EIO;
+	} else if (txn->mem[STEP] == BEGIN && (txn->device->note[0] & DS2438_AD) != select) {
+		txn->mem[MARK] = select;
+		txn->mem[STEP] = FIND_MARK;
+	}
+	return ds2438_read(txn, 0, bytes);
+}
+
+/* A driver's scratchpad cannot be marked. */
+int ds2438_mark(struct txn *txn)
+{
+	uint8_t *step = &txn->mem[24], *mark = &txn->mem[25], bytes[8];
+
+	if (txn->link->files)
+		return 0;
+	if (*step == 0) {
+		int err = ds2438_read(txn, MARKED_PAGE, bytes);
+
+		if (err)
+			return err;
+		*mark = (uint8_t)~bytes[0];
+		*step = 1;
+		return TXN_MORE;
+	}
+	*step = 0;
+	return write_scratchpad(txn, MARKED_PAGE, mark, 1);
+}
+
+int ds2438_is_marked(struct txn *txn)
+{
+	uint8_t in[9];
+
+	if (txn->link->files)
+		return 0;
+	int err = read_scratchpad(txn, MARKED_PAGE, in);
+
+	return err ? err : in[0] == txn->mem[25] ? 0 : -EBADMSG;
+}
+
+static bool near(unsigned now, unsigned before, unsigned most)
+{
+	return now - before <= most;
+}
+
+/* What was written, and has gone on since where the chip counts by itself. */
+static bool is_written(unsigned page, const uint8_t *in, const uint8_t *bytes, unsigned n)
+{
+	uint32_t now = in[0] | in[1] << 8 | in[2] << 16 | (uint32_t)in[3] << 24;
+	uint32_t then = bytes[0] | bytes[1] << 8 | bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+
+	switch (page) {
+	case 0: /* the configuration and the threshold; the rest is measured */
+		return ((in[0] ^ bytes[0]) & CONFIGURATION) == 0 &&
+		       (n < 8 || ((in[7] ^ bytes[7]) & THRESHOLD) == 0);
+	case 1: /* the clock, the accumulator, the offset */
+		return near(now, then, 5) && near((uint8_t)(in[4] - bytes[4] + 1), 0, 2) &&
+		       memcmp(in + 5, bytes + 5, 2) == 0;
+	case 7: /* two words, and what was charged and discharged */
+		return now == then &&
+		       near((in[4] | in[5] << 8) - (bytes[4] | bytes[5] << 8), 0, 1) &&
+		       near((in[6] | in[7] << 8) - (bytes[6] | bytes[7] << 8), 0, 1);
+	default:
+		return memcmp(in, bytes, n) == 0;
+	}
+}
+
+/*
+ * The steps of *step: the scratchpad, three recalls, the copy, and what the page holds then. 0 when
+ * it is written. A copy whose page's number is disturbed by one bit takes one of three other
+ * scratchpads: they are made to hold what their pages hold.
+ */
+static int write_page(struct txn *txn, unsigned page, const uint8_t *bytes, unsigned n,
+                      uint8_t *step)
+{
+	uint8_t command[] = {COPY_SCRATCHPAD, (uint8_t)page}, in[8];
+	int err;
+
+	switch (*step) {
+	case 0:
+		err = write_scratchpad(txn, page, bytes, n);
+		*step = txn->link->files ? 4 : 1;
+		return err ? err : TXN_MORE;
+	case 1:
+	case 2:
+	case 3:
+		command[0] = RECALL;
+		command[1] ^= (uint8_t)(1 << (*step - 1));
+		err = txn_command(txn, command, sizeof(command));
+		++*step;
+		return err ? err : TXN_MORE;
+	case 4:
+		err = txn_command(txn, command, sizeof(command));
+		++*step;
+		return err ? err : txn_wait(txn, COPY_NS);
+	default:
+		err = txn->link->files ? 0 : ds2438_read(txn, page, in);
+		if (err)
+			return err;
+		*step = 0;
+		if (txn->link->files)
+			return 0;
+		return is_written(page, in, bytes, n) ? 0 : -EIO;
+	}
+}
+
+int ds2438_configure(struct txn *txn, uint8_t mask, uint8_t bits, uint8_t *before)
+{
+	uint8_t bytes[8] = {0};
+	int err;
+
+	if (txn->mem[0] == 0) {
+		err = ds2438_read(txn, 0, bytes);
+		if (err)
+			return err;
+		if (before)
+			*before = bytes[0];
+		if ((bytes[0] & mask) == bits)
+			return 0;
+		txn->mem[1] = (uint8_t)((bytes[0] & CONFIGURATION & ~mask) | bits);
+		txn->mem[0] = 1;
+		return TXN_MORE;
+	}
+	uint8_t step = (uint8_t)(txn->mem[0] - 1);
+	bytes[0] = txn->mem[1];
+	err = write_page(txn, 0, bytes, 1, &step);
+	txn->mem[0] = err > 0 ? (uint8_t)(step + 1) : 0;
+	return err;
+}
+
+int ds2438_patch(struct txn *txn, unsigned page, unsigned at, const uint8_t *bytes, unsigned n)
+{
+	uint8_t *step = &txn->mem[3], *whole = &txn->mem[8], before[8];
+
+	if (txn->phase == 0) {
+		int err = ds2438_read(txn, page, whole);
+
+		if (err)
+			return err;
+		memcpy(before, whole, 8);
+		memcpy(whole + at, bytes, n);
+		txn->phase = 1;
+		*step = 0;
+		return memcmp(before, whole, 8) == 0 ? 0 : TXN_MORE;
+	}
+	return write_page(txn, page, whole, 8, step);
+}

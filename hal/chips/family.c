@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "hal/chips/family.h"
+
+static const struct family *const families[] = {
+	&family_01, &family_05, &family_10, &family_12, &family_14, &family_1d,
+	&family_20, &family_22, &family_23, &family_26, &family_28, &family_29,
+	&family_2d, &family_3a, &family_3b, &family_42,
+};
+#define FAMILIES (sizeof(families) / sizeof(families[0]))
+
+const struct family *family_of(uint8_t code)
+{
+	for (size_t i = 0; i < FAMILIES; i++)
+		if (families[i]->code == code)
+			return families[i];
+	return &family_common;
+}
+
+const struct family *family_nth(unsigned n)
+{
+	return n < FAMILIES ? families[n] : NULL;
+}
+
+const char *family_type(const struct device *device)
+{
+	const struct family *family = device->family;
+
+	return family->type_of ? family->type_of(device) : family->type;
+}
+
+static bool is_visible(const struct property *property, const struct device *device)
+{
+	return !device || !property->visible || property->visible(device);
+}
+
+static const struct property *by_name(const struct family *family, const char *name, size_t len)
+{
+	for (unsigned i = 0; i < family->count; i++) {
+		const struct property *property = &family->properties[i];
+
+		if (strlen(property->name) == len && memcmp(property->name, name, len) == 0)
+			return property;
+	}
+	return NULL;
+}
+
+const struct property *family_property(const struct family *family, const struct device *device,
+                                       const char *name, size_t len)
+{
+	const struct property *property = by_name(family, name, len);
+
+	if (!property && !family->is_virtual)
+		property = by_name(&family_common, name, len);
+	if (!property || is_visible(property, device))
+		return property;
+	/* its functions look which chip it is, and refuse it then */
+	return family->is_known && !family->is_known(device) && property->type != PROPERTY_DIRECTORY
+	               ? property
+	               : NULL;
+}
+
+/* The first of the table behind prev, if it comes before best. */
+static const struct property *nearer(const struct family *family, const struct device *device,
+                                     const struct property *prev, const struct property *best)
+{
+	for (unsigned i = 0; i < family->count; i++) {
+		const struct property *property = &family->properties[i];
+
+		if (prev && strcmp(property->name, prev->name) <= 0)
+			continue;
+		if (best && strcmp(property->name, best->name) >= 0)
+			continue;
+		if (is_visible(property, device))
+			best = property;
+	}
+	return best;
+}
+
+const struct property *family_next(const struct family *family, const struct device *device,
+                                   const struct property *prev)
+{
+	const struct property *best = nearer(family, device, prev, NULL);
+
+	if (family->is_virtual || family == &family_common)
+		return best;
+	return nearer(&family_common, device, prev, best);
+}
+
+unsigned property_size(const struct property *property)
+{
+	switch ((enum property_type)property->type) {
+	case PROPERTY_DIRECTORY:
+	case PROPERTY_ASCII:
+	case PROPERTY_BINARY:
+		return property->size;
+	case PROPERTY_DATE:
+		return 24;
+	case PROPERTY_FLOAT:
+	case PROPERTY_INTEGER:
+	case PROPERTY_PRESSURE:
+	case PROPERTY_TEMPERATURE:
+	case PROPERTY_UNSIGNED:
+		return 12;
+	case PROPERTY_ALIAS:
+		return DEVICE_ALIAS_MAX;
+	case PROPERTY_YESNO:
+	case PROPERTY_BITS:
+		return 1;
+	}
+	return 0;
+}

@@ -1,0 +1,5 @@
+/* SPDX-License-Identifier: MIT */
+/* DS2401, DS1990A: an id and nothing else. */
+#include "hal/chips/family.h"
+
+const struct family family_01 = {.code = 0x01, .type = "DS2401"};

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * DS2405 (data sheet 19-5140): each Match ROM turns its switch over, so it is never matched to be
+ * read: the conditional search finds it while it conducts, and after a search that ended at it the
+ * next slots give its pin.
+ */
+#include <errno.h>
+
+#include "hal/chips/family.h"
+
+#define LOOKS 3
+
+/*
+ * Not conducting, not there and not heard look the same: LOOKS that do not find it say that it does
+ * not conduct, and then it is looked for among all.
+ */
+static int is_there(struct txn *txn)
+{
+	int there = txn_verify(txn, false);
+
+	txn->silent = !there;
+	return there < 0 ? there : there ? 0 : -ENODEV;
+}
+
+static int read_pio(struct txn *txn)
+{
+	int there;
+
+	if (txn->phase >= LOOKS)
+		return is_there(txn);
+	there = txn_verify(txn, true);
+	txn->number[0] = there > 0;
+	txn->phase++;
+	return there < 0 ? there : there ? 0 : TXN_MORE;
+}
+
+/* A chip that the last slot of the search did not select leaves a one, too. */
+static int read_pin(struct txn *txn)
+{
+	int err = is_there(txn), level = err ? err : txn_bit(txn);
+
+	if (level < 0)
+		return level;
+	if (txn->phase && level != txn->mem[0])
+		return -EBADMSG;
+	txn->mem[0] = (uint8_t)level;
+	txn->number[0] = level;
+	return ++txn->phase < LOOKS ? TXN_MORE : 0;
+}
+
+/* Looks, turned over if it is not as wanted, looks again; and is it there, if it is found off. */
+static int write_pio(struct txn *txn)
+{
+	enum { TURN = LOOKS, AFTER, THERE = AFTER + LOOKS };
+	bool want = txn->number[0] != 0, after = txn->phase >= AFTER;
+	int there;
+
+	if (txn->phase == THERE)
+		return is_there(txn);
+	if (txn->phase == TURN) {
+		there = txn_command(txn, NULL, 0);
+		txn->phase = AFTER;
+		return there ? there : TXN_MORE;
+	}
+	there = txn_verify(txn, true);
+	if (there < 0)
+		return there;
+	if (!there && ++txn->phase != TURN && txn->phase != THERE)
+		return TXN_MORE;
+	if (there == want) {
+		txn->phase = THERE;
+		return want ? 0 : TXN_MORE;
+	}
+	txn->phase = TURN;
+	return after ? -EIO : TXN_MORE;
+}
+
+/* clang-format off */
+static const struct property properties[] = {
+	{.name = "PIO", .type = PROPERTY_YESNO, .life = LIFE_STABLE, .access = ACCESS_BOTH,
+	 .read = read_pio, .write = write_pio},
+	{.name = "sensed", .type = PROPERTY_YESNO, .life = LIFE_VOLATILE, .access = ACCESS_READ,
+	 .read = read_pin},
+};
+/* clang-format on */
+
+const struct family family_05 = {
+	.code = 0x05,
+	.alarms = true,
+	.type = "DS2405",
+	PROPERTIES(properties),
+};

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT */
+/* DS18S20 and DS1920: one resolution, and what is below half a degree comes from COUNT_REMAIN. */
+#include "hal/chips/thermometer.h"
+
+/* clang-format off */
+#define HIDDEN_TEMPERATURE(text)                                                          \
+	{.name = (text), .type = PROPERTY_TEMPERATURE, .life = LIFE_VOLATILE, .hidden = true, \
+	 .access = ACCESS_READ, .convert = CONVERT_TEMPRES,                                 \
+	 .read = thermometer_read_temperature}
+/* clang-format on */
+
+static const struct property properties[] = {
+	THERMOMETER_ERRATA,
+	HIDDEN_TEMPERATURE("fasttemp"),
+	THERMOMETER_LATEST,
+	THERMOMETER_POWER,
+	THERMOMETER_SCRATCHPAD,
+	THERMOMETER_TEMPERATURE("temperature", CONVERT_TEMPRES),
+	HIDDEN_TEMPERATURE("temperature10"),
+	HIDDEN_TEMPERATURE("temperature11"),
+	HIDDEN_TEMPERATURE("temperature12"),
+	HIDDEN_TEMPERATURE("temperature9"),
+	THERMOMETER_LIMIT("temphigh", SP_HIGH),
+	THERMOMETER_LIMIT("templow", SP_LOW),
+};
+
+/* clang-format off */
+const struct family family_10 = {
+	.code = 0x10, .thermometer = true, .fixed = true, .alarms = true, .type = "DS18S20",
+	PROPERTIES(properties),
+};
+/* clang-format on */

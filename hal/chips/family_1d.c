@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT */
+/* DS2423 (data sheet 19-5140): 4 kbit of RAM, and counters on its last four pages. */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/chips/memory.h"
+
+#define READ_COUNTER 0xa5
+#define EXTERNAL_A 14
+
+/* clang-format off */
+static const struct chip_memory memory = {
+	.size = 512, .page = 32, .row = 32, .copy = 0x5a, .copy_ns = TXN_MS,
+};
+/* clang-format on */
+
+/* From the page's last byte on: that byte, 32 bits of counter, 32 of zero, and the CRC16. */
+static int counter(struct txn *txn, unsigned page, uint32_t *count)
+{
+	unsigned address = page * 32 + 31;
+	uint8_t command[] = {READ_COUNTER, (uint8_t)address, (uint8_t)(address >> 8)}, in[9];
+	int err = txn_command(txn, command, sizeof(command));
+
+	if (!err)
+		err = txn_read_crc16(txn, command, sizeof(command), in, sizeof(in));
+	if (!err)
+		*count = in[1] | in[2] << 8 | in[3] << 16 | (uint32_t)in[4] << 24;
+	return err;
+}
+
+static int read_counter(struct txn *txn)
+{
+	uint32_t count = 0;
+	int err = counter(txn, (unsigned)(txn->property->arg + txn->element), &count);
+
+	txn->number[0] = count;
+	return err;
+}
+
+static int read_minimum(struct txn *txn)
+{
+	uint32_t count = 0;
+	int err = counter(txn, EXTERNAL_A + txn->phase, &count);
+
+	if (err)
+		return err;
+	if (txn->phase++ == 0) {
+		txn->real[0] = count;
+		return TXN_MORE;
+	}
+	txn->number[0] = txn->real[0] < count ? txn->real[0] : count;
+	return 0;
+}
+
+/* The counters cannot be set. */
+static int write_minimum(struct txn *txn)
+{
+	(void)txn;
+	return -EINVAL;
+}
+
+/* clang-format off */
+#define COUNTERS(text, n, index_, page, hidden_)                                          \
+	{.name = (text), .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE,                  \
+	 .access = ACCESS_READ, .hidden = (hidden_), .array = {(n), (index_), false},       \
+	 .arg = (page), .read = read_counter}
+
+static const struct property properties[] = {
+	COUNTERS("counter", 2, INDEX_LETTERS, EXTERNAL_A, false),
+	COUNTERS("counters", 2, INDEX_LETTERS, EXTERNAL_A, true),
+	MEMORY_WHOLE(512, memory_write),
+	{.name = "mincount", .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE,
+	 .access = ACCESS_BOTH, .read = read_minimum, .write = write_minimum},
+	COUNTERS("pages/count", 16, INDEX_NUMBERS, 0, false),
+	MEMORY_PAGES(16, 32, memory_write_page),
+};
+/* clang-format on */
+
+const struct family family_1d = {
+	.code = 0x1d,
+	.type = "DS2423",
+	.memory = &memory,
+	PROPERTIES(properties),
+};

@@ -1,0 +1,447 @@
+/* SPDX-License-Identifier: MIT */
+/* The thermometers' scratchpad: what it says, how it is set, whether it is of the last conversion. */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/chips/thermometer.h"
+
+#define WRITE_SCRATCHPAD 0x4e
+#define READ_SCRATCHPAD 0xbe
+#define COPY_SCRATCHPAD 0x48
+#define RECALL 0xb8
+#define COPY_NS (10 * TXN_MS)
+#define READ_TRIM_1 0x93
+#define READ_TRIM_2 0x68
+#define TRIM_BLANKET 0x9d
+#define TRIM_SECOND 0xbb
+
+#define RAW_POWER_ON 0x0550
+#define RAW_BROKEN 0x07f8 /* 127.5 and above: no chip measures that */
+#define REMAIN_POWER_ON 0x0c
+#define SP_KEPT 16 /* in txn->mem, behind the scratchpad */
+#define NEAR_RAW (5 * 16)
+#define NEAR_NS (300 * 1000 * TXN_MS)
+#define LOOKS_ONE 3
+#define LOOKS_ZERO 2
+
+int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9])
+{
+	static const uint8_t command = READ_SCRATCHPAD;
+	struct device *device = txn->device;
+	int err = txn_command(txn, &command, 1);
+
+	if (!err)
+		err = txn_read_crc8(txn, scratchpad, 9);
+	/* Nothing but zeros has a right checksum, and no such chip. */
+	if (!err && scratchpad[SP_CONFIG] == 0 && scratchpad[SP_PER_DEGREE] == 0)
+		err = -EBADMSG;
+	if (err || device->family->fixed || device->only_12)
+		return err;
+	uint8_t resolution = (uint8_t)(9 + (scratchpad[SP_CONFIG] >> 5 & 3));
+	if (device->resolution && device->resolution != resolution)
+		txn->restarted = true;
+	if (!device->stored)
+		device->stored = resolution;
+	device->resolution = resolution;
+	return 0;
+}
+
+/* Sixteenths of a degree at the resolution that the scratchpad states. */
+static int thermometer_raw(const struct device *device, const uint8_t scratchpad[9])
+{
+	int raw = (int16_t)(scratchpad[SP_LSB] | scratchpad[SP_MSB] << 8);
+
+	if (device->family->fixed) {
+		int per_degree = scratchpad[SP_PER_DEGREE];
+		int whole = raw >> 1;
+
+		if (!per_degree)
+			return raw * 8;
+		return whole * 16 - 4 + 16 * (per_degree - scratchpad[SP_REMAIN]) / per_degree;
+	}
+	if (device->only_12)
+		return raw;
+	return raw & ~((1 << (3 - (scratchpad[SP_CONFIG] >> 5 & 3))) - 1);
+}
+
+/*
+ * The genuine chip's byte 6 is 16 less the last four bits of the temperature after a conversion,
+ * and 12 at power-on; many clones keep one value. Where the two agree nothing is learnt.
+ */
+static void learn_make(struct device *device, const uint8_t scratchpad[9])
+{
+	int low = scratchpad[SP_LSB] & 0xf;
+
+	if (device->family->fixed || device->resolution != 12 || low == 0 || low == 4)
+		return;
+	device->make = scratchpad[SP_REMAIN] == 16 - low ? MAKE_GENUINE : MAKE_CLONE;
+}
+
+/*
+ * Is the reading one of a chip that had no power (85 at power-on, 127.94)? -ERANGE, and
+ * txn->restarted where the scratchpad proves it; else 0. now: when it was read.
+ */
+static int thermometer_guard(struct txn *txn, int raw, const uint8_t scratchpad[9], int64_t now)
+{
+	struct device *device = txn->device;
+
+	if (raw >= RAW_BROKEN)
+		return -ERANGE;
+	if (raw != RAW_POWER_ON)
+		return 0;
+	if (device->make == MAKE_GENUINE && scratchpad[SP_REMAIN] != REMAIN_POWER_ON)
+		return 0;
+	if (device->make != MAKE_GENUINE && device->raw_ns && now - device->raw_ns < NEAR_NS &&
+	    device->raw >= RAW_POWER_ON - NEAR_RAW)
+		return 0;
+	txn->restarted = scratchpad[SP_REMAIN] == REMAIN_POWER_ON &&
+	                 (device->raw_ns || device->converted_ns);
+	return -ERANGE;
+}
+
+int64_t thermometer_convert_ns(const struct device *device)
+{
+	if (device->family->fixed || device->resolution < 9)
+		return 750 * TXN_MS;
+	return 750 * TXN_MS >> (12 - device->resolution);
+}
+
+static int write_scratchpad(struct txn *txn, const uint8_t scratchpad[9])
+{
+	uint8_t out[4] = {WRITE_SCRATCHPAD, scratchpad[SP_HIGH], scratchpad[SP_LOW],
+	                  scratchpad[SP_CONFIG]};
+
+	return txn_command(txn, out, txn->device->family->fixed ? 3 : 4);
+}
+
+static uint8_t config_for(uint8_t config, unsigned resolution)
+{
+	return (uint8_t)((config & ~0x60) | (resolution - 9) << 5);
+}
+
+int thermometer_prepare(struct txn *txn, unsigned resolution)
+{
+	struct device *device = txn->device;
+	uint8_t scratchpad[9];
+	int err;
+
+	switch (txn->phase) {
+	case 0:
+		err = thermometer_scratchpad(txn, txn->mem);
+		if (err || device->resolution == resolution)
+			return err;
+		txn->mem[SP_CONFIG] = config_for(txn->mem[SP_CONFIG], resolution);
+		txn->phase = 1;
+		return TXN_MORE;
+	case 1:
+		err = write_scratchpad(txn, txn->mem);
+		txn->phase = 2;
+		return err ? err : TXN_MORE;
+	default:
+		device->resolution = 0;
+		err = thermometer_scratchpad(txn, scratchpad);
+		device->ignores = !err && device->resolution != resolution;
+		return err;
+	}
+}
+
+/*
+ * When the chip latched what it holds. While the strong pull-up is on, no chip can show that it
+ * converts. If it holds something else than when it was read last, and converted once since, it did.
+ * If not, a conversion may have been missed: then this is at least the result of the one before.
+ */
+static int64_t latched_ns(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
+{
+	struct device *device = txn->device;
+	const uint8_t holds[3] = {scratchpad[SP_LSB], scratchpad[SP_MSB], scratchpad[SP_REMAIN]};
+	bool changed = device->raw_ns && device->raw_ns >= device->earlier_ns &&
+	               memcmp(device->latched, holds, sizeof(holds)) != 0;
+
+	memcpy(device->latched, holds, sizeof(holds));
+	txn->unproven = device->unseen && !changed;
+	int64_t when = txn->unproven ? device->earlier_ns : device->converted_ns;
+	/* It never becomes older than it was. */
+	if (when > device->latched_ns && when < now)
+		device->latched_ns = when;
+	return device->latched_ns;
+}
+
+int thermometer_read_temperature(struct txn *txn)
+{
+	struct device *device = txn->device;
+	uint8_t scratchpad[9];
+	int err = thermometer_scratchpad(txn, scratchpad);
+
+	if (err)
+		return err;
+	int64_t now = txn_now(txn);
+	int raw = thermometer_raw(device, scratchpad);
+	err = thermometer_guard(txn, raw, scratchpad, now);
+	if (err)
+		return err;
+	learn_make(device, scratchpad);
+	txn->measured_ns = latched_ns(txn, scratchpad, now);
+	device->raw = (int16_t)raw;
+	device->raw_ns = now;
+	txn->number[0] = raw / 16.0;
+	return 0;
+}
+
+int thermometer_read_limit(struct txn *txn)
+{
+	uint8_t scratchpad[9];
+	int err = thermometer_scratchpad(txn, scratchpad);
+
+	if (!err)
+		txn->number[0] = (int8_t)scratchpad[txn->property->arg];
+	return err;
+}
+
+static bool is_set(const struct txn *txn, const uint8_t scratchpad[9])
+{
+	return memcmp(scratchpad + SP_HIGH, txn->mem + SP_HIGH,
+	              txn->device->family->fixed ? 2 : 3) == 0;
+}
+
+/* The steps of store(). */
+enum { WRITE = 1, VERIFY, COPY, RECALLS, CHECK = RECALLS + 3 };
+
+static int copy_settings(struct txn *txn)
+{
+	static const uint8_t copy = COPY_SCRATCHPAD;
+
+	/* Without a strong pull-up it matters who feeds the chip. */
+	if (txn->link->passive && txn->device->power == POWER_UNKNOWN) {
+		int err = thermometer_ask_power(txn);
+
+		return err < 0 ? err : TXN_MORE;
+	}
+	/* A driver's word for it is all there is. */
+	txn->phase = txn->link->files ? CHECK : RECALLS;
+	return txn_command_strong(txn, &copy, 1, COPY_NS);
+}
+
+/*
+ * The user's setting goes to the EEPROM, so that it outlives the chip's power, and with it the
+ * resolution that was there, not the one that a conversion asked for. What is there already is not
+ * written again: the EEPROM wears out. The copy says nothing. So the scratchpad is recalled from the
+ * EEPROM then: if the copy was lost, the settings before it come back. A recall says nothing either,
+ * and is made three times. What is in force is what stood there or what is wanted, at each moment.
+ */
+static int store(struct txn *txn)
+{
+	static const uint8_t recall = RECALL;
+	struct device *device = txn->device;
+	uint8_t scratchpad[9];
+	int err = 0;
+
+	switch (txn->phase) {
+	case WRITE:
+		err = write_scratchpad(txn, txn->mem);
+		break;
+	case VERIFY:
+		device->resolution = 0;
+		err = thermometer_scratchpad(txn, scratchpad);
+		if (!err && !is_set(txn, scratchpad))
+			return scratchpad[SP_CONFIG] != txn->mem[SP_CONFIG] ? -EINVAL : -EBADMSG;
+		break;
+	case COPY:
+		return copy_settings(txn);
+	default:
+		if (txn->phase < CHECK)
+			err = txn_command(txn, &recall, 1);
+		if (!err)
+			err = thermometer_scratchpad(txn, scratchpad);
+		if (err)
+			return err;
+		if (!is_set(txn, scratchpad))
+			return -EIO;
+		if (txn->phase + 1 < CHECK)
+			break;
+		txn_changed(txn);
+		device->stored = device->resolution;
+		return 0;
+	}
+	txn->phase++;
+	return err ? err : TXN_MORE;
+}
+
+#define SETTINGS 1 /* which registers these are for txn_base() */
+
+/* The scratchpad to txn->mem, ahead of a change of its settings. 1: one has failed before. */
+static int before_store(struct txn *txn)
+{
+	int err = thermometer_scratchpad(txn, txn->mem);
+
+	if (err)
+		return err;
+	bool failed = txn_base(txn, SETTINGS, txn->mem + SP_HIGH, 3);
+	memcpy(txn->mem + SP_KEPT, txn->mem + SP_HIGH, 3);
+	if (!txn->device->family->fixed)
+		txn->mem[SP_CONFIG] = config_for(txn->mem[SP_CONFIG], txn->device->stored);
+	return failed;
+}
+
+static int begin_store(struct txn *txn)
+{
+	txn_keep(txn, SETTINGS, txn->mem + SP_KEPT, 3);
+	txn->phase = 1;
+	return TXN_MORE;
+}
+
+int thermometer_write_limit(struct txn *txn)
+{
+	double value = txn->number[0];
+	int failed;
+
+	if (txn->phase)
+		return store(txn);
+	if (!(value > -128.5 && value < 127.5))
+		return -EINVAL;
+	int limit = (int)(value < 0 ? value - 0.5 : value + 0.5);
+	failed = before_store(txn);
+	if (failed < 0 || (!failed && (int8_t)txn->mem[txn->property->arg] == limit))
+		return failed;
+	txn->mem[txn->property->arg] = (uint8_t)limit;
+	return begin_store(txn);
+}
+
+int thermometer_read_tempres(struct txn *txn)
+{
+	uint8_t scratchpad[9];
+	int err = thermometer_scratchpad(txn, scratchpad);
+
+	txn->number[0] = txn->device->stored;
+	return err;
+}
+
+int thermometer_write_tempres(struct txn *txn)
+{
+	int failed;
+
+	if (txn->phase)
+		return store(txn);
+	if (!(txn->number[0] >= 9 && txn->number[0] <= 12))
+		return -EINVAL;
+	unsigned resolution = (unsigned)txn->number[0];
+	failed = before_store(txn);
+	if (failed < 0 || (!failed && txn->device->stored == resolution))
+		return failed;
+	txn->mem[SP_CONFIG] = config_for(txn->mem[SP_CONFIG], resolution);
+	return begin_store(txn);
+}
+
+/* Eight slots, which are all alike. */
+static int look_at_supply(struct txn *txn, uint8_t *slots)
+{
+	static const uint8_t command = THERMOMETER_READ_POWER;
+	int err = txn_command(txn, &command, 1);
+
+	if (err || !txn->link->files) {
+		err = err ? err : txn_read(txn, slots, 1);
+		txn->silent = false;
+		return err;
+	}
+	int bit = txn_bit(txn);
+	*slots = bit > 0 ? 0xff : 0;
+	return bit < 0 ? bit : 0;
+}
+
+/* Ones are also what one hears of a chip that did not take the command: they need more looks. */
+int thermometer_ask_power(struct txn *txn)
+{
+	uint8_t slots = 0, first = 0;
+
+	for (int look = 0; look < (first ? LOOKS_ONE : LOOKS_ZERO); look++) {
+		int err = look_at_supply(txn, &slots);
+
+		if (err)
+			return err;
+		first = look ? first : slots;
+		if (slots != first || (slots != 0 && slots != 0xff))
+			return -EBADMSG;
+	}
+	txn->device->power = slots ? POWER_EXTERNAL : POWER_PARASITE;
+	return slots != 0;
+}
+
+/* A one is also what one hears of a chip that is not there: the scratchpad proves that it is. */
+int thermometer_read_power(struct txn *txn)
+{
+	uint8_t scratchpad[9];
+	int bit;
+
+	if (txn->phase == 2) {
+		txn->number[0] = 1;
+		return thermometer_scratchpad(txn, scratchpad);
+	}
+	bit = thermometer_ask_power(txn);
+	txn->number[0] = 0;
+	if (bit == 0 && txn->phase)
+		return -EBADMSG;
+	txn->phase++;
+	return bit > 0 ? TXN_MORE : bit;
+}
+
+int thermometer_read_scratchpad(struct txn *txn)
+{
+	txn->len = 9;
+	return thermometer_scratchpad(txn, txn->data);
+}
+
+/* Of the dies that OWFS tells apart only the last is still around: B6 and B7 left the market
+ * before 2001. */
+int thermometer_read_die(struct txn *txn)
+{
+	memcpy(txn->data, "C2", 2);
+	txn->len = 2;
+	return 0;
+}
+
+/*
+ * The two bytes of the factory's trim; a chip that does not know the commands leaves ones. Without
+ * a checksum both are read twice.
+ */
+static int read_trim(struct txn *txn)
+{
+	static const uint8_t commands[] = {READ_TRIM_1, READ_TRIM_2};
+	int err = txn_command(txn, &commands[txn->phase % 2], 1);
+
+	if (!err)
+		err = txn_read(txn, &txn->mem[txn->phase], 1);
+	txn->silent = false;
+	if (err || ++txn->phase < 4)
+		return err ? err : TXN_MORE;
+	return memcmp(txn->mem, txn->mem + 2, 2) == 0 ? 0 : -EBADMSG;
+}
+
+int thermometer_read_trim(struct txn *txn)
+{
+	int err = read_trim(txn);
+
+	txn->number[0] = txn->mem[0] | txn->mem[1] << 8;
+	return err;
+}
+
+/* Only the B7 die has a trim value to repair. */
+int thermometer_refuse_trim(struct txn *txn)
+{
+	(void)txn;
+	return -EINVAL;
+}
+
+int thermometer_read_trim_valid(struct txn *txn)
+{
+	int err = read_trim(txn), low = txn->mem[0] & 7;
+
+	txn->number[0] = (low == 3 || low == 5) && txn->mem[1] == TRIM_SECOND;
+	return err;
+}
+
+int thermometer_read_trim_blanket(struct txn *txn)
+{
+	int err = read_trim(txn);
+
+	txn->number[0] = txn->mem[0] == TRIM_BLANKET && txn->mem[1] == TRIM_SECOND;
+	return err;
+}

@@ -1,0 +1,231 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "hal/netlink/netlink.h"
+
+static const char word[] = "netlink";
+
+bool w1_is_netlink(const char *where)
+{
+	size_t n = sizeof(word) - 1;
+
+	return strncmp(where, word, n) == 0 && (where[n] == '\0' || where[n] == '/');
+}
+
+static bool has_master(void *ctx, uint32_t master)
+{
+	const struct w1_netlink *netlink = ctx;
+	char name[24];
+
+	w1_master_name(master, name);
+	return w1_exists((const struct w1_master *)netlink->files, name, "");
+}
+
+/* Behind the word and a slash: what target w1 takes. */
+static int create(const char *where, const struct bus_env *env, struct link_master **out, char *why,
+                  size_t why_size)
+{
+	struct w1_netlink *netlink = calloc(1, sizeof(*netlink));
+	const char *rest = where + sizeof(word) - 1;
+
+	if (!netlink)
+		return -ENOMEM;
+	int err = w1_master.create(*rest ? rest + 1 : rest, env, &netlink->files, why, why_size);
+	if (err) {
+		free(netlink);
+		return err;
+	}
+	netlink->master = (struct link_master){.ops = &w1_netlink_master, .env = env};
+	netlink->talk = (struct w1_talk){.env = env, .there = has_master, .ctx = netlink, .fd = -1};
+	netlink->only = ((struct w1_master *)netlink->files)->only;
+	*out = &netlink->master;
+	return 0;
+}
+
+static void destroy(struct link_master *base)
+{
+	struct w1_netlink *netlink = (struct w1_netlink *)base;
+
+	w1_talk_close(&netlink->talk);
+	netlink->files->ops->destroy(netlink->files);
+	free(netlink);
+}
+
+static bool has_link(const struct w1_netlink *netlink, uint32_t number)
+{
+	for (unsigned i = 0; i < netlink->count; i++)
+		if (netlink->links[i].number == number)
+			return true;
+	return false;
+}
+
+static void add_links(struct w1_netlink *netlink, const uint32_t *numbers, unsigned n)
+{
+	for (unsigned i = 0; i < n && netlink->count < W1_MASTERS; i++) {
+		if (has_link(netlink, numbers[i]) || (netlink->only && numbers[i] != netlink->only))
+			continue;
+		struct w1_netlink_link *link = &netlink->links[netlink->count];
+		*link = (struct w1_netlink_link){.link = {.ops = &w1_netlink_link_ops,
+		                                          .env = netlink->master.env,
+		                                          .chip = netlink->count,
+		                                          .passive = true},
+		                                 .netlink = netlink,
+		                                 .number = numbers[i],
+		                                 .next_slot = -1};
+		w1_request_begin(&link->request, link->number);
+		netlink->count++;
+	}
+}
+
+unsigned w1_netlink_look(struct w1_netlink *netlink)
+{
+	unsigned before = netlink->count;
+	uint32_t numbers[W1_MASTERS];
+
+	if (netlink->refused)
+		return w1_look_for_masters((struct w1_master *)netlink->files);
+	int n = w1_talk_masters(&netlink->talk, numbers, W1_MASTERS);
+	if (n > 0)
+		add_links(netlink, numbers, (unsigned)n);
+	return netlink->count - before;
+}
+
+/*
+ * These masters have no single slots, and the kernel does not look before it asks their driver for
+ * one (Linux 6.1).
+ */
+static bool has_no_slots(void)
+{
+	static const char *const drivers[] = {"ds1wm", "omap_hdq"};
+	char path[64];
+
+	for (size_t i = 0; i < sizeof(drivers) / sizeof(drivers[0]); i++) {
+		snprintf(path, sizeof(path), "/sys/bus/platform/drivers/%s", drivers[i]);
+		if (access(path, F_OK) == 0)
+			return true;
+	}
+	return false;
+}
+
+/*
+ * Why netlink cannot serve here, now and later; NULL: it is a passing fault, as is silence of a
+ * kernel that has answered before.
+ */
+static const char *reason(const struct w1_netlink *netlink, int err)
+{
+	switch (err) {
+	case -EPERM:
+	case -EACCES:
+		return "no right to it";
+	case -EAFNOSUPPORT:
+		return "this service may not open such sockets (RestrictAddressFamilies)";
+	case -EPROTONOSUPPORT:
+		return "this kernel has no connector (CONFIG_CONNECTOR)";
+	case -ECONNREFUSED:
+		return "the connector is in another network namespace";
+	case -ETIMEDOUT:
+		return netlink->answered ? NULL
+		                         : "this kernel's w1 does not answer there (CONFIG_W1_CON)";
+	case -EOPNOTSUPP:
+		return "a driver here (ds1wm, omap_hdq) has no single slots";
+	default:
+		return NULL;
+	}
+}
+
+static int serve_files(struct w1_netlink *netlink, int err)
+{
+	struct bus_event event = {.news = BUS_NOTE, .err = err};
+
+	netlink->refused = true;
+	snprintf(event.text, sizeof(event.text),
+	         "netlink refused: %s; served by files as target w1", reason(netlink, err));
+	if (!netlink->told)
+		netlink->master.env->event(netlink->master.env->ctx, &event);
+	netlink->told = true;
+	return 0;
+}
+
+static int open_masters(struct link_master *base, char *why, size_t why_size)
+{
+	struct w1_netlink *netlink = (struct w1_netlink *)base;
+	uint32_t numbers[W1_MASTERS];
+	int n = netlink->files->ops->open(netlink->files, why, why_size);
+
+	netlink->count = netlink->seen_count = 0;
+	netlink->refused = false;
+	netlink->look_ns = 0;
+	if (n)
+		return n;
+	/* its own search finds devices; nobody would take what the kernel says of them */
+	w1_uevents_close((struct w1_master *)netlink->files);
+	n = has_no_slots() ? -EOPNOTSUPP : w1_talk_open(&netlink->talk);
+	if (!n) {
+		n = w1_talk_masters(&netlink->talk, numbers, W1_MASTERS);
+		if (n > 0)
+			add_links(netlink, numbers, (unsigned)n);
+	}
+	netlink->answered |= n > 0;
+	if (netlink->count) {
+		netlink->told = false;
+		return 0;
+	}
+	w1_talk_close(&netlink->talk);
+	if (reason(netlink, n))
+		return serve_files(netlink, n);
+	snprintf(why, why_size, "netlink: %s", n < 0 ? strerror(-n) : "no such master any more");
+	return n < 0 ? n : -ENODEV;
+}
+
+static void close_masters(struct link_master *base)
+{
+	struct w1_netlink *netlink = (struct w1_netlink *)base;
+
+	w1_talk_close(&netlink->talk);
+	netlink->files->ops->close(netlink->files);
+	netlink->count = 0;
+}
+
+/* The same masters as target w1, whoever serves them. */
+static int there(struct link_master *base, uint64_t *mark)
+{
+	struct w1_netlink *netlink = (struct w1_netlink *)base;
+
+	return netlink->files->ops->there(netlink->files, mark);
+}
+
+static unsigned channels(struct link_master *base)
+{
+	struct w1_netlink *netlink = (struct w1_netlink *)base;
+
+	return netlink->refused ? netlink->files->ops->channels(netlink->files) : netlink->count;
+}
+
+static struct link *channel(struct link_master *base, unsigned n)
+{
+	struct w1_netlink *netlink = (struct w1_netlink *)base;
+
+	return netlink->refused ? netlink->files->ops->channel(netlink->files, n)
+	                        : &netlink->links[n].link;
+}
+
+static void cost(const struct link_master *base, struct link_master_cost *cost)
+{
+	*cost = (struct link_master_cost){
+		.syscalls = ((const struct w1_netlink *)base)->talk.syscalls};
+}
+
+const struct link_master_ops w1_netlink_master = {
+	.create = create,
+	.open = open_masters,
+	.close = close_masters,
+	.there = there,
+	.channels = channels,
+	.channel = channel,
+	.cost = cost,
+	.destroy = destroy,
+};

@@ -1,0 +1,378 @@
+/* SPDX-License-Identifier: MIT */
+/* Values of properties as texts, and back: what a device shall be given has to fit its property. */
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <time.h>
+
+#include "hal/owfs/format.h"
+
+#define TEXT_ROOM 64 /* of a number or a date as text */
+
+int extension_split(const char *text, size_t len, size_t *name_len)
+{
+	size_t dot = len;
+
+	*name_len = len;
+	while (dot > 0 && text[dot - 1] != '.' && text[dot - 1] != '/')
+		dot--;
+	if (dot == 0 || text[dot - 1] == '/' || dot == len)
+		return EXTENSION_NONE;
+
+	const char *word = text + dot;
+	size_t n = len - dot;
+	int element = 0;
+
+	*name_len = dot - 1;
+	if (n == 3 && strncasecmp(word, "ALL", 3) == 0)
+		return EXTENSION_ALL;
+	if (n == 4 && strncasecmp(word, "BYTE", 4) == 0)
+		return EXTENSION_BYTE;
+	if (n == 1 && isalpha((unsigned char)*word))
+		return 256 + (toupper((unsigned char)*word) - 'A');
+	for (size_t i = 0; i < n; i++) {
+		if (n > 2 || !isdigit((unsigned char)word[i])) {
+			*name_len = len;
+			return EXTENSION_NONE;
+		}
+		element = element * 10 + (word[i] - '0');
+	}
+	return element;
+}
+
+bool extension_fits(const struct property *property, int extension)
+{
+	int first = property->array.index == INDEX_LETTERS ? 256 : 0;
+
+	if (property->array.index == INDEX_NONE)
+		return extension == EXTENSION_NONE;
+	if (extension == EXTENSION_BYTE)
+		return property->type == PROPERTY_BITS;
+	if (extension == EXTENSION_ALL)
+		return true;
+	return extension >= first && extension < first + property->array.count;
+}
+
+int extension_print(const struct property *property, int extension, char text[8])
+{
+	if (property->array.index == INDEX_NONE || extension == EXTENSION_NONE) {
+		text[0] = '\0';
+		return 0;
+	}
+	if (extension == EXTENSION_ALL)
+		return snprintf(text, 8, ".ALL");
+	if (extension == EXTENSION_BYTE)
+		return snprintf(text, 8, ".BYTE");
+	if (property->array.index == INDEX_LETTERS)
+		return snprintf(text, 8, ".%c", 'A' + (extension & 0x1f));
+	return snprintf(text, 8, ".%d", extension & 0xff);
+}
+
+static int put(const char *from, int len, char *text, size_t room)
+{
+	if (len < 0 || (size_t)len > room)
+		return -EMSGSIZE;
+	memcpy(text, from, (size_t)len);
+	return len;
+}
+
+static int format_date(double seconds, char *text, size_t room)
+{
+	time_t when = (time_t)seconds;
+	struct tm tm;
+	char out[40];
+
+	if (!localtime_r(&when, &tm))
+		return -EIO;
+	return put(out, (int)strftime(out, sizeof(out), "%a %b %e %H:%M:%S %Y", &tm), text, room);
+}
+
+int format_number(uint8_t type, double number, char *text, size_t room)
+{
+	char out[32];
+
+	switch ((enum property_type)type) {
+	case PROPERTY_YESNO:
+	case PROPERTY_BITS:
+		return put(number != 0 ? "1" : "0", 1, text, room);
+	case PROPERTY_UNSIGNED:
+		return put(out, snprintf(out, sizeof(out), "%12lu", (unsigned long)number), text,
+		           room);
+	case PROPERTY_INTEGER:
+		return put(out, snprintf(out, sizeof(out), "%12ld", (long)number), text, room);
+	case PROPERTY_DATE:
+		return format_date(number, text, room);
+	case PROPERTY_FLOAT:
+	case PROPERTY_PRESSURE:
+	case PROPERTY_TEMPERATURE:
+		return put(out, snprintf(out, sizeof(out), "%12G", number), text, room);
+	case PROPERTY_DIRECTORY:
+	case PROPERTY_ASCII:
+	case PROPERTY_BINARY:
+	case PROPERTY_ALIAS:
+		break;
+	}
+	return -EIO;
+}
+
+static double element_of(const struct property *property, int element, const struct txn *txn)
+{
+	element &= 0xff;
+	if (property->type == PROPERTY_BITS)
+		return txn->bits >> element & 1;
+	return txn->number[property->array.aggregate ? element : 0];
+}
+
+int format_value(const struct property *property, int extension, const struct txn *txn, char *text,
+                 size_t room)
+{
+	size_t used = 0;
+
+	if (extension == EXTENSION_NONE)
+		return format_number(property->type, txn->number[0], text, room);
+	if (extension == EXTENSION_BYTE)
+		return format_number(PROPERTY_UNSIGNED, txn->bits, text, room);
+	if (extension != EXTENSION_ALL)
+		return format_number(property->type, element_of(property, extension, txn), text,
+		                     room);
+	for (int i = 0; i < property->array.count; i++) {
+		if (i && used == room)
+			return -EMSGSIZE;
+		if (i)
+			text[used++] = ',';
+		int n = format_number(property->type, element_of(property, i, txn), text + used,
+		                      room - used);
+		if (n < 0)
+			return n;
+		used += (size_t)n;
+	}
+	return (int)used;
+}
+
+bool format_is_number(const struct property *property, int extension)
+{
+	switch ((enum property_type)property->type) {
+	case PROPERTY_DIRECTORY:
+	case PROPERTY_ASCII:
+	case PROPERTY_BINARY:
+	case PROPERTY_ALIAS:
+	case PROPERTY_DATE:
+		return false;
+	case PROPERTY_FLOAT:
+	case PROPERTY_INTEGER:
+	case PROPERTY_PRESSURE:
+	case PROPERTY_TEMPERATURE:
+	case PROPERTY_UNSIGNED:
+	case PROPERTY_YESNO:
+	case PROPERTY_BITS:
+		break;
+	}
+	return extension != EXTENSION_ALL;
+}
+
+double format_as_number(const struct property *property, int extension, const struct txn *txn)
+{
+	if (extension == EXTENSION_BYTE)
+		return txn->bits;
+	return extension == EXTENSION_NONE ? txn->number[0] : element_of(property, extension, txn);
+}
+
+static int parse_word(const char *text, double *number)
+{
+	static const struct {
+		const char *word;
+		double value;
+	} words[] = {{"yes", 1}, {"y", 1}, {"on", 1}, {"no", 0}, {"n", 0}, {"off", 0}};
+
+	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
+		if (strcasecmp(text, words[i].word) == 0) {
+			*number = words[i].value;
+			return 0;
+		}
+	return -EINVAL;
+}
+
+static int parse_date(const char *text, double *number)
+{
+	static const char *const forms[] = {"%a %b %d %H:%M:%S %Y", "%b %d %Y %H:%M:%S",
+	                                    "%b %d %H:%M:%S %Y", "%Y-%m-%d %H:%M:%S"};
+
+	for (size_t i = 0; i < sizeof(forms) / sizeof(forms[0]); i++) {
+		struct tm tm = {.tm_isdst = -1};
+		const char *end = strptime(text, forms[i], &tm);
+
+		if (!end || *end)
+			continue;
+		tm.tm_isdst = -1;
+		*number = (double)mktime(&tm);
+		return *number < 0 || *number > UINT32_MAX ? -EINVAL : 0;
+	}
+	return -EINVAL;
+}
+
+/* Decimal digits: what else strtod() takes is no value of a property. */
+static int parse_decimal(const char *text, double *number)
+{
+	char *end;
+
+	if (text[strspn(text, "+-.0123456789eE")])
+		return -EINVAL;
+	errno = 0;
+	*number = strtod(text, &end);
+	return end == text || *end || errno ? -EINVAL : 0;
+}
+
+static int parse_whole(const char *text, double least, double most, double *number)
+{
+	if (parse_decimal(text, number) || *number != trunc(*number))
+		return -EINVAL;
+	return *number < least || *number > most ? -EINVAL : 0;
+}
+
+/* Without the blanks around it, and the end of line or of string behind it. */
+static bool copy_trimmed(const char *text, size_t len, char copy[TEXT_ROOM])
+{
+	while (len && (isspace((unsigned char)text[len - 1]) || text[len - 1] == '\0'))
+		len--;
+	while (len && isspace((unsigned char)*text)) {
+		text++;
+		len--;
+	}
+	if (len == 0 || len >= TEXT_ROOM || memchr(text, '\0', len))
+		return false;
+	memcpy(copy, text, len);
+	copy[len] = '\0';
+	return true;
+}
+
+/* The last digit of the number is measured by the last of the limits. */
+static bool digits_fit(const char *limits, double number)
+{
+	uint32_t rest = (uint32_t)number;
+
+	for (size_t i = strlen(limits); i-- > 0; rest /= 10)
+		if (rest % 10 > (uint32_t)(limits[i] - '0'))
+			return false;
+	return rest == 0;
+}
+
+static int parse_unsigned(const struct property *property, const char *text, double *number)
+{
+	if (parse_whole(text, property->negative ? INT32_MIN : 0, UINT32_MAX, number))
+		return -EINVAL;
+	return !property->digits || digits_fit(property->digits, *number) ? 0 : -EINVAL;
+}
+
+static int parse_number(const struct property *property, const char *text, size_t len,
+                        double *number)
+{
+	char copy[TEXT_ROOM];
+
+	if (!copy_trimmed(text, len, copy))
+		return -EINVAL;
+	switch ((enum property_type)property->type) {
+	case PROPERTY_YESNO:
+	case PROPERTY_BITS:
+		return parse_word(copy, number) ? parse_whole(copy, 0, 1, number) : 0;
+	case PROPERTY_DATE:
+		return parse_date(copy, number);
+	case PROPERTY_UNSIGNED:
+		return parse_unsigned(property, copy, number);
+	case PROPERTY_INTEGER:
+		return parse_whole(copy, INT32_MIN, INT32_MAX, number);
+	case PROPERTY_FLOAT:
+	case PROPERTY_PRESSURE:
+	case PROPERTY_TEMPERATURE:
+		return parse_decimal(copy, number);
+	case PROPERTY_DIRECTORY:
+	case PROPERTY_ASCII:
+	case PROPERTY_BINARY:
+	case PROPERTY_ALIAS:
+		break;
+	}
+	return -EINVAL;
+}
+
+static int parse_byte(const struct property *property, const char *text, size_t len, uint32_t *bits)
+{
+	char copy[TEXT_ROOM];
+	double number;
+
+	if (!copy_trimmed(text, len, copy) ||
+	    parse_whole(copy, 0, ldexp(1, property->array.count) - 1, &number))
+		return -EINVAL;
+	*bits = (uint32_t)number;
+	return 0;
+}
+
+static void set_element(const struct property *property, int element, double number,
+                        struct txn *txn)
+{
+	uint32_t bit = UINT32_C(1) << (element & 0x1f);
+
+	if (property->type == PROPERTY_BITS)
+		txn->bits = number != 0 ? txn->bits | bit : txn->bits & ~bit;
+	else
+		txn->number[property->array.aggregate ? element & 0xff : 0] = number;
+}
+
+int parse_value(const struct property *property, int extension, const char *text, size_t len,
+                struct txn *txn)
+{
+	const char *part;
+	size_t part_len;
+	double number;
+	int err;
+
+	if (extension == EXTENSION_BYTE)
+		return parse_byte(property, text, len, &txn->bits);
+	if (extension != EXTENSION_ALL) {
+		err = parse_number(property, text, len, &number);
+		if (!err)
+			set_element(property, extension == EXTENSION_NONE ? 0 : extension, number,
+			            txn);
+		return err;
+	}
+	if (!list_fits(property, text, len))
+		return -EINVAL;
+	for (unsigned i = 0; i < property->array.count; i++)
+		if (list_part(text, len, i, &part, &part_len) &&
+		    parse_number(property, part, part_len, &number) == 0)
+			set_element(property, (int)i, number, txn);
+	return 0;
+}
+
+bool list_part(const char *text, size_t len, unsigned n, const char **part, size_t *part_len)
+{
+	const char *end = text + len;
+
+	for (;; n--) {
+		const char *comma = memchr(text, ',', (size_t)(end - text));
+
+		if (n == 0) {
+			*part = text;
+			*part_len = (size_t)((comma ? comma : end) - text);
+			return true;
+		}
+		if (!comma)
+			return false;
+		text = comma + 1;
+	}
+}
+
+bool list_fits(const struct property *property, const char *text, size_t len)
+{
+	const char *part;
+	size_t part_len;
+	double number;
+	unsigned n = 0;
+
+	for (; list_part(text, len, n, &part, &part_len); n++)
+		if (n == property->array.count || parse_number(property, part, part_len, &number))
+			return false;
+	return n == property->array.count;
+}

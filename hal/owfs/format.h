@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The texts of OWFS: numbers right-aligned in 12 characters, printed with %G to six digits, yes/no
+ * one character, elements joined by commas. Pure functions.
+ */
+#ifndef HAL_OWFS_FORMAT_H
+#define HAL_OWFS_FORMAT_H
+
+#include "hal/chips/family.h"
+
+/* What stands behind the dot of an array's name; 0 and up is an element. */
+enum extension { EXTENSION_ALL = -1, EXTENSION_BYTE = -2, EXTENSION_NONE = -3 };
+
+/*
+ * Split "PIO.BYTE" (len bytes) into name length and extension as the property's array has it.
+ * *name_len: up to the last dot that starts an extension. Returns the extension; whether it fits
+ * the property is extension_fits().
+ */
+int extension_split(const char *text, size_t len, size_t *name_len);
+bool extension_fits(const struct property *property, int extension);
+/* ".BYTE", ".ALL", ".3", ".C" or "" (no array). Returns the length. */
+int extension_print(const struct property *property, int extension, char text[8]);
+
+/* One number of this type, and its length; -EMSGSIZE. */
+int format_number(uint8_t type, double number, char *text, size_t room);
+/* The value in txn as text of the extension; length or -EMSGSIZE. Not for text and binary. */
+int format_value(const struct property *property, int extension, const struct txn *txn, char *text,
+                 size_t room);
+/* Does the text stand for exactly one number, and which? */
+bool format_is_number(const struct property *property, int extension);
+double format_as_number(const struct property *property, int extension, const struct txn *txn);
+
+/*
+ * The other way. With one element of an aggregate only that element is set: the others have to be
+ * in txn. -EINVAL, and txn is as before: the text is not the whole of a value in the range of the
+ * property. Blanks around it and an end of line or of string behind it do not count.
+ */
+int parse_value(const struct property *property, int extension, const char *text, size_t len,
+                struct txn *txn);
+/* Part n of a comma list; false: there is none. */
+bool list_part(const char *text, size_t len, unsigned n, const char **part, size_t *part_len);
+/* Has the list as many elements as the property, and can the property take each of them? */
+bool list_fits(const struct property *property, const char *text, size_t len);
+
+#endif

@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: MIT */
+/* The device table: places, and what is known of each chip. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/chips/family.h"
+#include "hal/wire/device.h"
+
+int device_table_create(struct device_table *table)
+{
+	table->count = 0;
+	table->devices = calloc(DEVICE_MAX, sizeof(*table->devices));
+	table->aliases = calloc(DEVICE_MAX, sizeof(*table->aliases));
+	return table->devices && table->aliases ? 0 : -ENOMEM;
+}
+
+void device_table_destroy(struct device_table *table)
+{
+	free(table->devices);
+	free(table->aliases);
+}
+
+/* By its first seven bytes; NULL: not in the table. */
+static struct device *device_find_id(struct device_table *table, const uint8_t id[7])
+{
+	for (unsigned i = 0; i < table->count; i++)
+		if (memcmp(table->devices[i].rom, id, 7) == 0)
+			return &table->devices[i];
+	return NULL;
+}
+
+struct device *device_find(struct device_table *table, const uint8_t rom[8])
+{
+	return device_find_id(table, rom);
+}
+
+static struct device *place(struct device_table *table)
+{
+	if (table->count < DEVICE_MAX)
+		return &table->devices[table->count++];
+	for (unsigned i = 0; i < DEVICE_MAX; i++) {
+		struct device *device = &table->devices[i];
+
+		if (!device->present && !device->locked && !table->aliases[i][0])
+			return device;
+	}
+	return NULL;
+}
+
+struct device *device_add(struct device_table *table, const uint8_t rom[8], unsigned channel)
+{
+	struct device *device = device_find(table, rom);
+
+	if (!device) {
+		device = place(table);
+		if (!device)
+			return NULL;
+		uint32_t changes = device->changes + 1;
+		memset(device, 0, sizeof(*device));
+		memcpy(device->rom, rom, 8);
+		device->family = family_of(rom[0]);
+		device->changes = changes;
+	}
+	device->channel = (uint8_t)channel;
+	return device;
+}
+
+void device_forget(struct device *device)
+{
+	device->changes++;
+	device->power = POWER_UNKNOWN;
+	device->resolution = 0;
+	device->stored = 0;
+	device->raw_ns = 0;
+	device->converted_ns = device->earlier_ns = device->latched_ns = 0;
+	device->unread_ns = 0;
+	device->unseen = false;
+	device->shadow_known = false;
+	device->base_of = 0;
+	memset(device->note, 0, sizeof(device->note));
+}
+
+char *device_alias(struct device_table *table, const struct device *device)
+{
+	return table->aliases[device - table->devices];
+}
+
+struct device *device_by_alias(struct device_table *table, const char *name, size_t len)
+{
+	if (len == 0 || len > DEVICE_ALIAS_MAX)
+		return NULL;
+	for (unsigned i = 0; i < table->count; i++)
+		if (strlen(table->aliases[i]) == len && memcmp(table->aliases[i], name, len) == 0)
+			return &table->devices[i];
+	return NULL;
+}

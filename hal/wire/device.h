@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The device table of a native bus: every id that was ever seen, its channel, and what is known of
+ * the chip. Bounded; a device keeps its place while it is away, so that it is known again.
+ */
+#ifndef HAL_WIRE_DEVICE_H
+#define HAL_WIRE_DEVICE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define DEVICE_MAX 512
+#define DEVICE_ALIAS_MAX 256
+
+enum device_power {
+	POWER_UNKNOWN,
+	POWER_PARASITE,
+	POWER_EXTERNAL,
+};
+
+/* Does byte 6 of a thermometer's scratchpad follow the temperature, as in the genuine chip? */
+enum device_make {
+	MAKE_UNKNOWN,
+	MAKE_GENUINE,
+	MAKE_CLONE,
+};
+
+struct family;
+
+struct device {
+	const struct family *family;
+	uint8_t rom[8];
+	uint8_t channel;
+	bool present;
+	bool settled;     /* was read or written since it came or restarted */
+	bool locked;      /* a job of several transactions is at work with it */
+	uint8_t missed;   /* full searches in a row that did not see it */
+	uint32_t seen;    /* number of the last full search that saw it */
+	uint32_t changes; /* grows when what is cached of it is void */
+	int64_t ok_ns;    /* last transaction that proved its presence; 0: never */
+
+	/* Thermometers. */
+	uint8_t power;        /* enum device_power */
+	uint8_t make;         /* enum device_make */
+	uint8_t resolution;   /* 9 to 12 as read back; 0: not known */
+	uint8_t stored;       /* what it was before our first change: the EEPROM's; 0: not known */
+	bool ignores;         /* takes no other resolution (clones) */
+	bool only_12;         /* has one resolution, and no bits that say so */
+	int16_t raw;          /* last good reading, sixteenths of a degree */
+	int64_t raw_ns;       /* when; 0: none */
+	int64_t converted_ns; /* when its last conversion ends or ended; 0: none known */
+	int64_t unread_ns; /* the conversion whose result did not come over the wire whole; 0: none */
+	int64_t earlier_ns; /* ... and the one before that */
+	bool unseen;        /* the chip could not show that its last conversion began */
+	uint8_t latched
+		[3]; /* what tells one conversion's result from another's, when it was read */
+	int64_t latched_ns; /* ... and of which conversion that was; 0: not known */
+
+	/* Switches: the output byte that was last written and verified. */
+	uint8_t shadow;
+	bool shadow_known;
+
+	/* What stood in registers before a change that has not succeeded yet (txn_keep). */
+	uint8_t base[24];
+	uint8_t base_of; /* which registers; 0: none */
+
+	/* For the family's own use. */
+	uint8_t note[8];
+	uint8_t registers[8]; /* as read for a visit of the alarm machine */
+	int64_t registers_ns; /* when; 0: not */
+};
+
+struct device_table {
+	struct device *devices; /* DEVICE_MAX */
+	char (*aliases)[DEVICE_ALIAS_MAX + 1];
+	unsigned count;
+};
+
+int device_table_create(struct device_table *table);
+void device_table_destroy(struct device_table *table);
+struct device *device_find(struct device_table *table, const uint8_t rom[8]);
+/*
+ * The device's place, a new one if need be: of a full table that of a device that is away and has
+ * no alias. NULL: no place.
+ */
+struct device *device_add(struct device_table *table, const uint8_t rom[8], unsigned channel);
+/* What was known of the chip's state is void: it was away or has restarted. */
+void device_forget(struct device *device);
+char *device_alias(struct device_table *table, const struct device *device);
+struct device *device_by_alias(struct device_table *table, const char *name, size_t len);
+
+#endif

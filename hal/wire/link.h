@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The link contract: a link moves bits on one 1-Wire wire. A master (one chip) owns 1 to 8 links.
+ *
+ * Blocking: each call is at most one bus operation and bounded; all waits go through the
+ * environment the master was created with. One thread: the native bus calls it. Errors travel in
+ * the return value, never in the data:
+ *   -ECOMM      the wire is short
+ *   -ETIMEDOUT  the master chip is stuck (busy for longer than any operation takes)
+ *   -EIO        the way to the chip failed once (refused byte, refused address)
+ *   -ENXIO      the chip was reset or changed under us: recover(LINK_CHIP_RESET)
+ *   -ENODEV     the adapter is gone: close the master
+ *   -EHOSTDOWN  nobody answered the reset, said late (see flush)
+ *   -EOPNOTSUPP this link cannot: the strong pull-up, the slot, a write behind a read
+ *   -ECANCELED  the host shuts down
+ */
+#ifndef HAL_WIRE_LINK_H
+#define HAL_WIRE_LINK_H
+
+#include "hal/bus/bus.h"
+
+enum link_after {
+	LINK_IDLE,
+	LINK_STRONG, /* strong pull-up from the last bit on, until the next call on this link */
+};
+enum link_speed { LINK_STANDARD, LINK_OVERDRIVE };
+
+/* The recovery ladder; the native bus climbs it and counts each step. */
+enum link_rung {
+	LINK_RETRY,
+	LINK_BUS_RESET,
+	LINK_CHIP_RESET,  /* device reset and configuration of the master chip */
+	LINK_POWER_CYCLE, /* the supply of the wire off and on; -EOPNOTSUPP without a line for it */
+	LINK_REOPEN,
+};
+
+/* Running totals of one link; the statistics read them. */
+struct link_cost {
+	uint64_t wire_ns; /* time the 1-Wire slots took by the data sheet */
+	uint64_t resets;  /* 1-Wire resets */
+};
+/* Running totals of what the links of a master share. */
+struct link_master_cost {
+	uint64_t transfers; /* I2C transactions, START to STOP */
+	uint64_t bytes;     /* on the I2C bus, addresses included */
+	uint64_t syscalls;
+};
+
+struct link;
+struct link_files;
+/* One ROM id found by a search, family first. Return not 0 to end the search. */
+typedef int link_found(void *ctx, const uint8_t rom[8]);
+
+struct link_ops {
+	const char *name;
+	/* 1 presence, 0 nobody there. */
+	int (*reset)(struct link *link);
+	int (*write)(struct link *link, const uint8_t *data, size_t n, enum link_after after);
+	int (*read)(struct link *link, uint8_t *data, size_t n);
+	/* One slot: 0 or 1 as read back; writing 1 is reading. */
+	int (*bit)(struct link *link, bool out, enum link_after after);
+	/*
+	 * Two read slots and one write slot. Returns bit 0: the id bit read, bit 1: its complement,
+	 * bit 2: the direction taken. NULL: made of bit().
+	 */
+	int (*triplet)(struct link *link, bool direction);
+	/*
+	 * A whole search, of one family or (0) of all: 0, what found returned, or an error. NULL: made
+	 * of reset, write and triplet (hal/wire/search.h).
+	 */
+	int (*search)(struct link *link, bool alarm, uint8_t family, link_found *found, void *ctx);
+	/*
+	 * Is rom there (alarm: and in alarm)? 1, 0 or an error, -EBADMSG: the search was disturbed.
+	 * Leaves it selected: the next bit() is its next slot. NULL: made as search.
+	 */
+	int (*verify)(struct link *link, const uint8_t rom[8], bool alarm);
+	/*
+	 * For links that share their wire, and hold it for one request at a time: such a one keeps what
+	 * is written until something is read, so that a transaction is one request. reset() says 1
+	 * then, and read(), bit() or flush() say -EHOSTDOWN if nobody was there; a write() behind a
+	 * read() of the same transaction would be a request of its own and is refused. This sends what
+	 * is kept, and so does the next reset(); 0 or an error. NULL: nothing is ever kept.
+	 */
+	int (*flush)(struct link *link);
+	/* -EOPNOTSUPP. */
+	int (*speed)(struct link *link, enum link_speed speed);
+	int (*recover)(struct link *link, enum link_rung rung);
+	void (*cost)(const struct link *link, struct link_cost *cost);
+};
+
+/* First member of a backend's own struct. */
+struct link {
+	const struct link_ops *ops;
+	const struct bus_env *env;
+	/* Links with one number share a chip: a call on one ends the strong pull-up of another. */
+	unsigned chip;
+	/*
+	 * NULL: a wire. Else a driver speaks 1-Wire and gives files (hal/native/files.h): an error is
+	 * the device's, not the link's, and a conversion is over when its command returns.
+	 */
+	const struct link_files *files;
+	/*
+	 * There is no strong pull-up: LINK_STRONG is refused. EEPROMs are then written by the wire's
+	 * resistor, thermometers fed by the wire do not convert.
+	 */
+	bool passive;
+};
+
+struct link_master;
+struct link_master_ops {
+	/* where: the target without its scheme. Allocates all, touches nothing. As bus_ops.create. */
+	int (*create)(const char *where, const struct bus_env *env, struct link_master **master,
+	              char *why, size_t why_size);
+	/* Optional, as bus_ops.option. */
+	int (*option)(struct link_master *master, const char *key, const char *text, char *why,
+	              size_t why_size);
+	/*
+	 * Take the hardware. -EBUSY a kernel driver owns the chip, -EACCES, -ENODEV, -ENXIO no chip
+	 * answers; why gets what to do about it. May be called again after close().
+	 */
+	int (*open)(struct link_master *master, char *why, size_t why_size);
+	/* At the first lasting error, or the kernel cannot finish an unplugging. */
+	void (*close)(struct link_master *master);
+	/*
+	 * Closed: does it look as if open() could work? 1 or 0, never touching the hardware. *mark
+	 * differs where something else is seen than before (a device file made anew, a driver bound or
+	 * unbound). NULL: that cannot be seen.
+	 */
+	int (*there)(struct link_master *master, uint64_t *mark);
+	/*
+	 * Optional. Take chips that belong here and could not be taken at open(): their channels come
+	 * behind those that are there. 1: some are still missing, or may yet come, and why names one
+	 * that is; 0: none is. -ENODEV,
+	 * -ECANCELED.
+	 */
+	int (*grow)(struct link_master *master, char *why, size_t why_size);
+	unsigned (*channels)(struct link_master *master); /* known after open() and grow() */
+	struct link *(*channel)(struct link_master *master, unsigned n);
+	/* Optional; also while closed. */
+	void (*cost)(const struct link_master *master, struct link_master_cost *cost);
+	void (*destroy)(struct link_master *master);
+	bool simulated; /* its devices are not real: answers say BUS_DETAIL_SIMULATED */
+};
+struct link_master {
+	const struct link_master_ops *ops;
+	const struct bus_env *env;
+	bool one_supply; /* the power cycle of one link is one of all */
+};
+
+#endif

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: MIT */
+/* Searches of one wire, device by device, and whether a certain one is there. */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/native/files.h"
+#include "hal/wire/crc.h"
+#include "hal/wire/search.h"
+
+void search_begin(struct search *search, bool alarm, uint8_t family)
+{
+	memset(search, 0, sizeof(*search));
+	search->command = alarm ? ONEWIRE_ALARM_SEARCH : ONEWIRE_SEARCH;
+	search->family = family;
+	search->rom[0] = family;
+	search->branch = family ? 64 : 0;
+}
+
+static int triplet(struct link *link, bool direction)
+{
+	if (link->ops->triplet)
+		return link->ops->triplet(link, direction);
+
+	int id = link->ops->bit(link, true, LINK_IDLE);
+	if (id < 0)
+		return id;
+	int complement = link->ops->bit(link, true, LINK_IDLE);
+	if (complement < 0)
+		return complement;
+	if (id && complement)
+		return 7;
+	bool taken = id == complement ? direction : id;
+	int err = link->ops->bit(link, taken, LINK_IDLE);
+	return err < 0 ? err : id | complement << 1 | taken << 2;
+}
+
+static int start(struct link *link, uint8_t command)
+{
+	int present = link->ops->reset(link);
+
+	if (present <= 0)
+		return present;
+	int err = link->ops->write(link, &command, 1, LINK_IDLE);
+	return err < 0 ? err : 1;
+}
+
+static bool rom_bit(const uint8_t rom[8], unsigned position)
+{
+	return rom[(position - 1) / 8] >> (position - 1) % 8 & 1;
+}
+
+static void set_rom_bit(uint8_t rom[8], unsigned position, bool value)
+{
+	uint8_t mask = (uint8_t)(1 << (position - 1) % 8);
+
+	rom[(position - 1) / 8] = (uint8_t)(value ? rom[(position - 1) / 8] | mask
+	                                          : rom[(position - 1) / 8] & ~mask);
+}
+
+/* The direction at a branch: as last time before the deepest untried one, 1 there, 0 behind. */
+static bool direction_at(const struct search *search, unsigned position)
+{
+	if (position < search->branch || search->branch == 64)
+		return rom_bit(search->rom, position);
+	return position == search->branch;
+}
+
+int search_next(struct search *search, struct link *link)
+{
+	uint8_t rom[8] = {0};
+	unsigned untried = 0;
+
+	if (search->last)
+		return 0;
+	int present = start(link, search->command);
+	if (present <= 0) {
+		search->last = true;
+		return present;
+	}
+	for (unsigned position = 1; position <= 64; position++) {
+		int bits = triplet(link, direction_at(search, position));
+
+		if (bits < 0)
+			return bits;
+		if ((bits & 3) == 3) {
+			search->last = true;
+			return position == 1 ? 0 : -EBADMSG;
+		}
+		bool taken = bits >> 2 & 1;
+		if (position <= 8 && search->family &&
+		    taken != (search->family >> (position - 1) & 1)) {
+			search->last = true;
+			return 0;
+		}
+		if ((bits & 3) == 0 && !taken)
+			untried = position;
+		set_rom_bit(rom, position, taken);
+		if (search->lone && search->lone(search->ctx, rom, position, rom))
+			break;
+	}
+	if (!onewire_rom_valid(rom))
+		return -EBADMSG;
+	if (search->family && rom[0] != search->family) {
+		search->last = true;
+		return 0;
+	}
+	memcpy(search->rom, rom, sizeof(rom));
+	search->branch = (uint8_t)untried;
+	/* Branches within the family byte lead to other families. */
+	search->last = untried == 0 || (search->family && untried <= 8);
+	return 1;
+}
+
+struct wanted {
+	const uint8_t *rom;
+	bool there;
+};
+
+static int is_wanted(void *ctx, const uint8_t rom[8])
+{
+	struct wanted *wanted = ctx;
+
+	wanted->there = memcmp(rom, wanted->rom, 8) == 0;
+	return wanted->there;
+}
+
+static int verify_listed(struct link *link, const uint8_t rom[8], bool alarm)
+{
+	struct wanted wanted = {.rom = rom};
+	int err = link->files->search(link, alarm, rom[0], is_wanted, &wanted);
+
+	return err < 0 ? err : wanted.there;
+}
+
+int search_verify(struct link *link, const uint8_t rom[8], bool alarm)
+{
+	if (link->files)
+		return verify_listed(link, rom, alarm);
+	if (link->ops->verify)
+		return link->ops->verify(link, rom, alarm);
+
+	int present = start(link, alarm ? ONEWIRE_ALARM_SEARCH : ONEWIRE_SEARCH);
+
+	if (present <= 0)
+		return present;
+	for (unsigned position = 1; position <= 64; position++) {
+		bool want = rom_bit(rom, position);
+		int bits = triplet(link, want);
+
+		if (bits < 0)
+			return bits;
+		/* Somebody answered the bit before. */
+		if ((bits & 3) == 3 && position > 1)
+			return -EBADMSG;
+		if ((bits & 3) == 3 || (bits >> 2 & 1) != want)
+			return 0;
+	}
+	return 1;
+}

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: MIT */
+/* The steps of a transaction with one device: what a family's functions are made of. */
+#include <assert.h>
+#include <errno.h>
+#include <string.h>
+
+#include "hal/owfs/path.h"
+#include "hal/wire/crc.h"
+#include "hal/wire/search.h"
+#include "hal/wire/txn.h"
+
+#define MATCH_ROM 0x55
+#define BYTES_MAX 64
+
+int64_t txn_now(const struct txn *txn)
+{
+	return txn->link->env->now(txn->link->env->ctx);
+}
+
+static int of_link(struct txn *txn, int result)
+{
+	txn->on_wire = true;
+	if (result == -EHOSTDOWN) {
+		txn->silent = true;
+		return -ENODEV;
+	}
+	if (result < 0 && result != -EOPNOTSUPP && result != -EBADMSG && !txn->link->files)
+		txn->link_error = result;
+	return result;
+}
+
+int txn_end(struct txn *txn, int err)
+{
+	if (!txn->on_wire || !txn->link->ops->flush)
+		return err;
+	int sent = of_link(txn, txn->link->ops->flush(txn->link));
+	return sent < 0 && err >= 0 ? sent : err;
+}
+
+int txn_wait(struct txn *txn, int64_t ns)
+{
+	int err = txn_end(txn, 0);
+
+	if (err)
+		return err;
+	/* what the chip does now is read when owsd runs again: that may be long after */
+	txn->measured_ns = txn_now(txn);
+	txn->wake_ns = txn->measured_ns + ns;
+	return TXN_MORE;
+}
+
+static int reset(struct txn *txn)
+{
+	int present = of_link(txn, txn->link->ops->reset(txn->link));
+
+	if (present)
+		return present < 0 ? present : 0;
+	txn->silent = true;
+	return -ENODEV;
+}
+
+int txn_raw(struct txn *txn, const uint8_t *bytes, size_t n)
+{
+	int err = reset(txn);
+
+	return err ? err : txn_write(txn, bytes, n);
+}
+
+static int command(struct txn *txn, const uint8_t *bytes, size_t n, enum link_after after)
+{
+	uint8_t out[9 + BYTES_MAX] = {MATCH_ROM};
+
+	assert(n <= BYTES_MAX && txn->device);
+	int err = reset(txn);
+	if (err)
+		return err;
+	memcpy(out + 1, txn->device->rom, 8);
+	if (n)
+		memcpy(out + 9, bytes, n);
+	return of_link(txn, txn->link->ops->write(txn->link, out, 9 + n, after));
+}
+
+/* The strong pull-up, or what takes its place. */
+static int pull(const struct txn *txn, enum link_after *after)
+{
+	*after = txn->link->passive ? LINK_IDLE : LINK_STRONG;
+	return txn->link->passive && txn->device && txn->device->power == POWER_PARASITE
+	               ? -EOPNOTSUPP
+	               : 0;
+}
+
+static int hold(struct txn *txn, int err, int64_t ns)
+{
+	if (err < 0)
+		return err;
+	txn->strong = !txn->link->passive;
+	return txn_wait(txn, ns);
+}
+
+int txn_command(struct txn *txn, const uint8_t *bytes, size_t n)
+{
+	return command(txn, bytes, n, LINK_IDLE);
+}
+
+int txn_command_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
+{
+	enum link_after after;
+	int err = pull(txn, &after);
+
+	return err ? err : hold(txn, command(txn, bytes, n, after), ns);
+}
+
+int txn_write(struct txn *txn, const uint8_t *bytes, size_t n)
+{
+	return of_link(txn, txn->link->ops->write(txn->link, bytes, n, LINK_IDLE));
+}
+
+int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
+{
+	enum link_after after;
+	int err = pull(txn, &after);
+
+	if (err)
+		return err;
+	return hold(txn, of_link(txn, txn->link->ops->write(txn->link, bytes, n, after)), ns);
+}
+
+int txn_read(struct txn *txn, uint8_t *bytes, size_t n)
+{
+	int err = of_link(txn, txn->link->ops->read(txn->link, bytes, n));
+
+	if (err < 0)
+		return err;
+	txn->silent = true;
+	for (size_t i = 0; i < n && txn->silent; i++)
+		txn->silent = bytes[i] == 0xff;
+	txn->heard |= !txn->silent;
+	return 0;
+}
+
+int txn_bit(struct txn *txn)
+{
+	return of_link(txn, txn->link->ops->bit(txn->link, true, LINK_IDLE));
+}
+
+int txn_bit_strong(struct txn *txn, int64_t ns)
+{
+	return hold(txn, of_link(txn, txn->link->ops->bit(txn->link, true, LINK_STRONG)), ns);
+}
+
+int txn_started(struct txn *txn)
+{
+	uint8_t busy;
+
+	/* A driver has waited for the end, or tells the error. */
+	if (txn->link->files)
+		return 0;
+	int err = txn_read(txn, &busy, 1);
+
+	return err ? err : busy ? -EBADMSG : 0;
+}
+
+int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n)
+{
+	int err = txn_read(txn, bytes, n);
+
+	if (err < 0)
+		return err;
+	return rom_crc8(bytes, n) ? -EBADMSG : 0;
+}
+
+int txn_read_crc16(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t *bytes, size_t n)
+{
+	return txn_read_pages(txn, head, head_n, bytes, n, 1);
+}
+
+/* In one read: a link may lend its wire for no longer. */
+int txn_read_pages(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t *bytes, size_t n,
+                   unsigned pages)
+{
+	uint8_t in[BYTES_MAX + 2];
+	uint16_t start = onewire_crc16(0, head, head_n);
+
+	assert(pages * (n + 2) <= sizeof(in));
+	int err = txn_read(txn, in, pages * (n + 2));
+	if (err < 0)
+		return err;
+	for (unsigned i = 0; i < pages; i++, start = 0) {
+		const uint8_t *page = in + i * (n + 2);
+
+		if (!onewire_crc16_matches(onewire_crc16(start, page, n), page + n))
+			return -EBADMSG;
+		memcpy(bytes + i * n, page, n);
+	}
+	return 0;
+}
+
+int txn_verify(struct txn *txn, bool alarm)
+{
+	int there = of_link(txn, search_verify(txn->link, txn->device->rom, alarm));
+
+	txn->heard |= there > 0;
+	return there;
+}
+
+bool txn_base(const struct txn *txn, uint8_t which, uint8_t *bytes, size_t n)
+{
+	if (txn->device->base_of != which)
+		return false;
+	memcpy(bytes, txn->device->base, n);
+	return true;
+}
+
+void txn_keep(struct txn *txn, uint8_t which, const uint8_t *bytes, size_t n)
+{
+	assert(n <= sizeof(txn->device->base));
+	if (txn->device->base_of == which)
+		return;
+	txn->device->base_of = which;
+	memcpy(txn->device->base, bytes, n);
+}
+
+void txn_changed(struct txn *txn)
+{
+	txn->device->base_of = 0;
+}

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What a chip family writes its properties with: transactions with one device.
+ *
+ * A property function does at most one 1-Wire transaction (a reset and what follows it, about 15
+ * ms) per call. It returns 0 when the value is there, a negative errno, or TXN_MORE: it is called
+ * again after other work had its turn, with phase, mem and real as it left them. txn_wait() says
+ * how long the chip needs meanwhile. The device is its own until it returns something else.
+ * After an error the function is begun again with phase 0, at most a few times.
+ */
+#ifndef HAL_WIRE_TXN_H
+#define HAL_WIRE_TXN_H
+
+#include "hal/wire/device.h"
+#include "hal/wire/link.h"
+
+#define TXN_MORE 1
+#define TXN_NUMBERS 8
+#define TXN_MS INT64_C(1000000)
+
+struct native;
+struct property;
+
+struct txn {
+	struct native *native;
+	struct link *link;
+	struct device *device;
+	const struct property *property;
+	bool visit; /* of the alarm machine: readings that follow each other may be one */
+	unsigned channel;
+	/* Those of the property, or what the link has in their place (hal/native/files.h). */
+	int (*read)(struct txn *txn);
+	int (*write)(struct txn *txn);
+
+	/* The value: read fills it, write finds it here. */
+	int element;                /* of an array whose elements are separate; else 0 */
+	double number[TXN_NUMBERS]; /* numbers, yes/no, dates (seconds of 1970); one for each
+	                               element of an aggregate */
+	uint32_t bits;              /* bit fields, element 0 in bit 0 */
+	uint8_t *data;              /* binary and text: room bytes; read sets len */
+	size_t at;                  /* write of binary: data's first byte in the value or element */
+	size_t room, len;
+	int64_t measured_ns; /* read: when the chip took the value; 0: now */
+
+	/* From call to call. */
+	unsigned phase;
+	uint8_t mem[64];
+	uint8_t blanks; /* of memory_look() */
+	double real[4];
+	int64_t wake_ns; /* not to be called before */
+	bool strong;     /* the strong pull-up is on until then: the channel is held */
+
+	/* Found out on the way. */
+	bool on_wire;   /* something was sent */
+	int link_error; /* the error is the link's, not the device's */
+	bool silent;    /* nothing but ones was read */
+	bool heard;     /* the device itself answered */
+	bool restarted; /* the chip lost its state: its power was away */
+	bool unproven;  /* a reading that may be of an older conversion than the last */
+};
+
+int64_t txn_now(const struct txn *txn);
+/* Sends what is written so far; then returns TXN_MORE: to be called again ns later. */
+int txn_wait(struct txn *txn, int64_t ns);
+
+/* Reset, match ROM, and n bytes. -ENODEV nobody there. */
+int txn_command(struct txn *txn, const uint8_t *bytes, size_t n);
+/*
+ * The same with the strong pull-up after the last bit, for ns. Returns TXN_MORE: to be called
+ * again when the pull-up has ended. On a link that has none: without it, but -EOPNOTSUPP for a
+ * thermometer that is known to be fed by the wire.
+ */
+int txn_command_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns);
+/* Reset and n bytes, without selecting the device. */
+int txn_raw(struct txn *txn, const uint8_t *bytes, size_t n);
+int txn_write(struct txn *txn, const uint8_t *bytes, size_t n);
+/* As txn_command_strong(). */
+int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns);
+int txn_read(struct txn *txn, uint8_t *bytes, size_t n);
+/* One read slot: 0 or 1. */
+int txn_bit(struct txn *txn);
+/* One read slot with the strong pull-up behind it; as txn_command_strong(). */
+int txn_bit_strong(struct txn *txn, int64_t ns);
+/*
+ * Behind a command that takes time: the chip holds eight read slots low while it is at work.
+ * -EBADMSG: it has not taken the command, and what it gives later is older than that.
+ */
+int txn_started(struct txn *txn);
+/* n bytes, the last of which is the CRC8 of those before. -EBADMSG. */
+int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n);
+/*
+ * n bytes and two of CRC16 (not kept), which covers head (what was sent) and them. -EBADMSG.
+ */
+int txn_read_crc16(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t *bytes, size_t n);
+/* The same for pages of n bytes, each with its CRC16; only the first one's covers head. */
+int txn_read_pages(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t *bytes, size_t n,
+                   unsigned pages);
+/*
+ * Registers are changed by reading, changing and writing them. A write that goes wrong may leave
+ * what nobody asked for, and made again must not begin with that. txn_base: if such a write of
+ * these registers (which: 1 to 255) has not succeeded yet, bytes become what was there before it.
+ * txn_keep, ahead of the first write: this is what is there. txn_changed: the write has succeeded.
+ */
+bool txn_base(const struct txn *txn, uint8_t which, uint8_t *bytes, size_t n);
+void txn_keep(struct txn *txn, uint8_t which, const uint8_t *bytes, size_t n);
+void txn_changed(struct txn *txn);
+/*
+ * Behind each call of a property function: what a link keeps back is sent (link_ops.flush). err is
+ * what the function returned, and so is this, unless sending failed.
+ */
+int txn_end(struct txn *txn, int err);
+/*
+ * Is the device there (found by search, alarm search)? Leaves it selected. 1, 0 or an error:
+ * -EBADMSG the search was disturbed. 0 is also what a disturbed search may say, 1 is certain.
+ */
+int txn_verify(struct txn *txn, bool alarm);
+
+#endif

@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/bus/worker.h"
+#include "src/host/indicator.h"
+#include "src/host/private.h"
+#include "src/libows/ows.h"
+#include "src/serve/serve.h"
+#include "src/shm/reader.h"
+
+int host_make_serving(struct host *h, struct config *config, const struct adoption *plan,
+                      struct serving **serving, char *why, size_t why_size)
+{
+	struct serving_setup setup = {
+		.config = config,
+		.instance = h->instance,
+		.log = h->log,
+		.ring = host_ring,
+		.ring_ctx = h,
+		.guests = h->serve ? serve_guests(h->serve) : NULL,
+		.before = h->now,
+		.plan = plan,
+	};
+	struct image_counter *counters = host_plan_counters(h, &setup.counter_count);
+	int err = -ENOMEM;
+
+	snprintf(why, why_size, "%s", strerror(ENOMEM));
+	*serving = calloc(1, sizeof(**serving));
+	setup.counters = counters;
+	if (counters && *serving)
+		err = serving_make(*serving, &setup, why, why_size);
+	free(counters);
+	if (!err)
+		return 0;
+	free(*serving);
+	*serving = NULL;
+	return err;
+}
+
+static void free_host(struct host *h)
+{
+	serve_stop(h->serve);
+	indicator_destroy(h->indicator);
+	if (h->now)
+		serving_free(h->now);
+	serve_destroy(h->serve);
+	free(h->now);
+	free(h);
+}
+
+static int create_serve(struct host *h, const struct config *config, char *why, size_t why_size)
+{
+	const struct serve_setup setup = {
+		.config = config,
+		.instance = h->instance,
+		.log = h->log,
+		.ring = host_ring,
+		.ring_ctx = h,
+	};
+
+	if (!config->serve.address_count && !config->serve.socket)
+		return 0;
+	if (serve_is_open(&config->serve))
+		log_warning(
+			h->log,
+			"the owserver protocol is served beyond this machine and lets %s write: "
+			"see ListenAllow and ListenReadOnly",
+			config->serve.peer_count ? "all of ListenAllow" : "everybody");
+	return serve_create(&setup, &h->serve, why, why_size);
+}
+
+int host_start_indicator(struct host *h, char *why, size_t why_size)
+{
+	int err = indicator_create(h->now->config, &h->now->memory.image, h->log, &h->indicator);
+
+	if (!err)
+		err = indicator_start(h->indicator);
+	if (!err)
+		return 0;
+	snprintf(why, why_size, "cannot start the thread of AlarmLine and HeartbeatLine: %s",
+	         strerror(-err));
+	indicator_destroy(h->indicator);
+	h->indicator = NULL;
+	return err;
+}
+
+int host_start_workers(struct serving *s, char *why, size_t why_size)
+{
+	int first = 0;
+
+	for (unsigned i = 0; i < s->worker_count; i++) {
+		int err = worker_started(s->workers[i]) ? 0 : worker_start(s->workers[i]);
+
+		if (err && !first)
+			snprintf(why, why_size, "cannot start the thread of target %s: %s",
+			         s->config->targets[i].text, strerror(-err));
+		first = first ? first : err;
+	}
+	return first;
+}
+
+int host_start(const struct host_setup *setup, struct host **host, char *why, size_t why_size)
+{
+	struct host *h = calloc(1, sizeof(*h));
+	int err;
+
+	snprintf(why, why_size, "%s", strerror(ENOMEM));
+	if (!h) {
+		config_free(setup->config);
+		return -ENOMEM;
+	}
+	h->log = setup->log;
+	h->instance = setup->instance;
+	err = create_serve(h, setup->config, why, why_size);
+	if (!err)
+		err = host_make_serving(h, setup->config, NULL, &h->now, why, why_size);
+	if (err) {
+		free_host(h); /* the server's socket has its path in the configuration */
+		config_free(setup->config);
+		return err;
+	}
+	err = memory_show(&h->now->memory, h->log, why, why_size);
+	if (err)
+		goto fail;
+	h->bell = commands_bell(h->now->commands);
+	err = host_start_engine(h, setup->rt_priority, why, why_size);
+	if (err)
+		goto fail;
+	err = host_start_workers(h->now, why, why_size);
+	if (!err && h->serve) {
+		err = serve_start(h->serve, &h->now->memory.image);
+		if (err)
+			snprintf(why, why_size, "cannot serve the owserver protocol: %s",
+			         strerror(-err));
+	}
+	if (!err)
+		err = host_start_indicator(h, why, why_size);
+	if (err) {
+		host_stop(h, 1000000000);
+		return err;
+	}
+	*host = h;
+	return 0;
+fail:
+	free_host(h);
+	return err;
+}
+
+int64_t host_beat(const struct host *host)
+{
+	struct ows_sample sample;
+
+	return reader_sample(&host->now->memory.image.records[0], &sample) ? sample.measured_ns : 0;
+}
+
+const struct config *host_config(const struct host *host)
+{
+	return host->now->config;
+}
+
+bool host_stop(struct host *h, int64_t timeout_ns)
+{
+	bool stuck = false;
+
+	/* first what others could wait for: ports and clients */
+	serve_stop(h->serve);
+	__atomic_store_n(&h->stop, 1, __ATOMIC_RELEASE);
+	if (h->running) {
+		host_ring(h);
+		pthread_join(h->thread, NULL);
+	}
+	stuck = !indicator_stop(h->indicator, timeout_ns) || h->left_behind;
+	stuck |= !serving_stop(h->now, timeout_ns);
+	if (stuck) {
+		/* who comes back from the kernel now still rings in it, and looks at it */
+		memory_stop(&h->now->memory);
+		return false;
+	}
+	free_host(h);
+	return true;
+}

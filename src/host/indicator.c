@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: MIT */
+/* The lamps of owsd: the alarm output and the heartbeat, each a GPIO line. */
+#include <errno.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/gpio/line.h"
+#include "src/host/indicator.h"
+#include "src/libows/ows.h"
+#include "src/shm/reader.h"
+#include "src/shm/segment.h"
+
+#define MS INT64_C(1000000)
+#define SECOND (1000 * MS)
+#define HALF (SECOND / 2)
+#define FLASH (100 * MS)
+#define LOOK_NS (250 * MS) /* at the image, for alarms */
+#define AGAIN_NS (5 * SECOND)
+#define STACK (64 * 1024)
+
+struct lamp {
+	const char *key; /* NULL: not configured */
+	struct gpio_output output;
+	bool told;        /* that it cannot be had */
+	int64_t again_ns; /* when to take it, or to set it though nothing changed: is it still there? */
+	int lit;          /* as set; -1: unknown */
+};
+
+enum indicator_health {
+	INDICATOR_DEAD,  /* the engine's heart does not beat: dark */
+	INDICATOR_ALONE, /* it does, but no target is up: a flash every two seconds */
+	INDICATOR_WELL,  /* and one is: half a second on, half a second off */
+};
+
+struct indicator {
+	const struct image *image;
+	struct log *log;
+	int64_t period_ns, look_ns;
+	bool alarm;
+	struct lamp alarm_lamp, heartbeat_lamp;
+	pthread_t thread;
+	bool running;
+	uint32_t stop, ended;
+};
+
+/* Does any signal's alarm stand, or wait to be acknowledged? */
+static bool indicator_alarm(const struct image *image)
+{
+	for (uint32_t i = 1; i < image->header->record_count; i++) {
+		const struct ows_record *record = &image->records[i];
+		struct ows_slot slot;
+
+		if (reader_slot(record, &slot) && (slot.attrs.limit_state != OWS_LIMIT_NORMAL ||
+		                                   (slot.attrs.flags & OWS_ATTR_ALARM_STANDS)))
+			return true;
+	}
+	return false;
+}
+
+static enum indicator_health indicator_health(const struct image *image, int64_t period_ns,
+                                              int64_t now_ns)
+{
+	int64_t patience_ns = 2 * period_ns + SECOND;
+	struct ows_sample beat;
+
+	if (!reader_sample(&image->records[0], &beat) || now_ns - beat.measured_ns > patience_ns ||
+	    beat.measured_ns - now_ns > patience_ns)
+		return INDICATOR_DEAD;
+	for (uint32_t i = 0; i < image->header->target_count; i++)
+		if (__atomic_load_n(&image->targets[i].state, __ATOMIC_RELAXED) == 1)
+			return INDICATOR_WELL;
+	return INDICATOR_ALONE;
+}
+
+/* Is the lamp on at that time? */
+static bool indicator_lit(enum indicator_health health, int64_t now_ns)
+{
+	switch (health) {
+	case INDICATOR_DEAD:
+		return false;
+	case INDICATOR_ALONE:
+		return now_ns % (2 * SECOND) < FLASH;
+	case INDICATOR_WELL:
+		return now_ns % SECOND < HALF;
+	}
+	return false;
+}
+
+/* When that changes next. */
+static int64_t changes(enum indicator_health health, int64_t now_ns)
+{
+	switch (health) {
+	case INDICATOR_DEAD:
+		return now_ns + LOOK_NS;
+	case INDICATOR_ALONE:
+		return indicator_lit(health, now_ns) ? now_ns - now_ns % (2 * SECOND) + FLASH
+		                                     : now_ns - now_ns % (2 * SECOND) + 2 * SECOND;
+	case INDICATOR_WELL:
+		return now_ns - now_ns % HALF + HALF;
+	}
+	return now_ns + LOOK_NS;
+}
+
+static void lost(struct indicator *indicator, struct lamp *lamp, const char *why)
+{
+	gpio_output_release(&lamp->output);
+	lamp->lit = -1;
+	if (!lamp->told)
+		log_warning(indicator->log, "%s: %s", lamp->key, why);
+	lamp->told = true;
+}
+
+static void show(struct indicator *indicator, struct lamp *lamp, bool lit, int64_t now_ns)
+{
+	char why[160];
+	int err;
+
+	if (!lamp->key || ((lamp->lit == lit || !lamp->output.line) && now_ns < lamp->again_ns))
+		return;
+	lamp->again_ns = now_ns + AGAIN_NS;
+	if (!lamp->output.line) {
+		err = gpio_output_take(&lamp->output, lit, why, sizeof(why));
+		if (!err && lamp->told)
+			log_notice(indicator->log, "%s: works again", lamp->key);
+		if (!err)
+			lamp->told = false;
+	} else {
+		err = gpio_output_set(&lamp->output, lit);
+		if (err)
+			snprintf(why, sizeof(why), "%s", strerror(-err));
+	}
+	if (err)
+		lost(indicator, lamp, why);
+	else
+		lamp->lit = lit;
+}
+
+int64_t indicator_step(struct indicator *indicator, int64_t now_ns)
+{
+	enum indicator_health health = indicator_health(indicator->image, indicator->period_ns,
+	                                                now_ns);
+	int64_t next_ns = changes(health, now_ns);
+
+	if (indicator->alarm_lamp.key && now_ns >= indicator->look_ns) {
+		indicator->look_ns = now_ns + LOOK_NS;
+		indicator->alarm = indicator_alarm(indicator->image);
+	}
+	show(indicator, &indicator->alarm_lamp, indicator->alarm, now_ns);
+	show(indicator, &indicator->heartbeat_lamp, indicator_lit(health, now_ns), now_ns);
+	return indicator->alarm_lamp.key && indicator->look_ns < next_ns ? indicator->look_ns
+	                                                                 : next_ns;
+}
+
+static int lamp_create(struct lamp *lamp, const char *key, const char *text, struct log *log)
+{
+	char why[160];
+	int err;
+
+	lamp->lit = -1;
+	if (!text)
+		return 0;
+	err = gpio_spec_parse(text, &lamp->output.spec, why, sizeof(why));
+	if (err)
+		log_err(log, "%s: %s", key, why);
+	else
+		lamp->key = key;
+	return err;
+}
+
+int indicator_create(const struct config *config, const struct image *image, struct log *log,
+                     struct indicator **out)
+{
+	struct indicator *indicator;
+	int err;
+
+	*out = NULL;
+	if (!config->alarm_line && !config->heartbeat_line)
+		return 0;
+	indicator = calloc(1, sizeof(*indicator));
+	if (!indicator)
+		return -ENOMEM;
+	indicator->image = image;
+	indicator->log = log;
+	indicator->period_ns = config->period_ns;
+	err = lamp_create(&indicator->alarm_lamp, "AlarmLine", config->alarm_line, log);
+	if (!err)
+		err = lamp_create(&indicator->heartbeat_lamp, "HeartbeatLine",
+		                  config->heartbeat_line, log);
+	if (err) {
+		free(indicator);
+		return -EINVAL;
+	}
+	*out = indicator;
+	return 0;
+}
+
+void indicator_destroy(struct indicator *indicator)
+{
+	if (!indicator)
+		return;
+	if (indicator->heartbeat_lamp.output.line)
+		gpio_output_set(&indicator->heartbeat_lamp.output, false);
+	gpio_output_release(&indicator->heartbeat_lamp.output);
+	gpio_output_release(&indicator->alarm_lamp.output);
+	free(indicator);
+}
+
+static void *run(void *ctx)
+{
+	struct indicator *indicator = ctx;
+
+	while (!__atomic_load_n(&indicator->stop, __ATOMIC_ACQUIRE)) {
+		int64_t next_ns = indicator_step(indicator, ows_now());
+		int64_t left_ns = next_ns - ows_now();
+
+		if (left_ns > 0)
+			segment_wait(&indicator->stop, 0, left_ns);
+	}
+	__atomic_store_n(&indicator->ended, 1, __ATOMIC_RELEASE);
+	segment_wake(&indicator->ended, 1);
+	return NULL;
+}
+
+int indicator_start(struct indicator *indicator)
+{
+	sigset_t all, before;
+	pthread_attr_t attr;
+	int err;
+
+	if (!indicator)
+		return 0;
+	pthread_attr_init(&attr);
+	pthread_attr_setstacksize(&attr, STACK);
+	/* a synchronous SIGBUS is the guard's and cannot be held back */
+	sigfillset(&all);
+	sigdelset(&all, SIGBUS);
+	pthread_sigmask(SIG_SETMASK, &all, &before);
+	err = pthread_create(&indicator->thread, &attr, run, indicator);
+	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	pthread_attr_destroy(&attr);
+	indicator->running = !err;
+	if (!err)
+		pthread_setname_np(indicator->thread, "owsd-lamps");
+	return -err;
+}
+
+bool indicator_stop(struct indicator *indicator, int64_t timeout_ns)
+{
+	int64_t until_ns = ows_now() + timeout_ns, left_ns = timeout_ns;
+
+	if (!indicator || !indicator->running)
+		return true;
+	__atomic_store_n(&indicator->stop, 1, __ATOMIC_RELEASE);
+	segment_wake(&indicator->stop, 1);
+	/* pthread_timedjoin_np() would go by the wall clock, which may be set meanwhile */
+	while (!__atomic_load_n(&indicator->ended, __ATOMIC_ACQUIRE)) {
+		if (left_ns <= 0)
+			return false;
+		segment_wait(&indicator->ended, 0, left_ns);
+		left_ns = until_ns - ows_now();
+	}
+	pthread_join(indicator->thread, NULL);
+	indicator->running = false;
+	return true;
+}

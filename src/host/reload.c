@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: MIT */
+/* Another configuration in place of the one that is served, and the end of what did not stay. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/host/indicator.h"
+#include "src/host/private.h"
+#include "src/serve/serve.h"
+
+/* How long the buses that a reload ends may take, all together. */
+#define END_NS 2000000000LL
+
+static void pause_until_null(void *word)
+{
+	static const uint32_t nobody = 0;
+
+	while (__atomic_load_n((void **)word, __ATOMIC_ACQUIRE))
+		segment_wait(&nobody, 0, HOST_LOOK_NS);
+}
+
+/* Those that did not stay; false: one of them does not end. */
+static bool end_workers(struct serving *before, const struct serving *now,
+                        const struct adoption *plan)
+{
+	for (unsigned i = 0; i < now->worker_count; i++)
+		if (plan->ports[i] >= 0)
+			before->taken[plan->ports[i]] = true;
+	return serving_stop(before, END_NS);
+}
+
+/* ended: its buses have; dark: the lamps that look at its image have. */
+static void leave(struct host *h, struct serving *before, bool ended, bool dark)
+{
+	if (ended) {
+		__atomic_store_n(&h->ended, before->engine, __ATOMIC_RELEASE);
+		host_ring(h);
+		pause_until_null(&h->ended);
+	} else {
+		log_err(h->log, "a bus that the reload ended is stuck in the kernel; "
+		                "owsd leaves it behind");
+	}
+	if (!dark)
+		log_err(h->log, "AlarmLine or HeartbeatLine is stuck in the kernel; "
+		                "owsd leaves it behind");
+	host_wait_for_ringers(h);
+	if (dark)
+		memory_replaced(&before->memory);
+	if (!ended || !dark) {
+		h->left_behind = true;
+		return;
+	}
+	serving_free(before);
+	free(before);
+}
+
+static bool same_listeners(const struct config_serve *a, const struct config_serve *b)
+{
+	if (a->address_count != b->address_count || a->peer_count != b->peer_count ||
+	    a->read_only != b->read_only || !a->socket != !b->socket ||
+	    (a->socket && strcmp(a->socket, b->socket) != 0))
+		return false;
+	for (unsigned i = 0; i < a->address_count; i++)
+		if (!listen_same(&a->addresses[i], &b->addresses[i]))
+			return false;
+	for (unsigned i = 0; i < a->peer_count; i++)
+		if (!listen_same_peers(&a->peers[i], &b->peers[i]))
+			return false;
+	return true;
+}
+
+/* The engine serves it from here on; nothing of what follows can refuse it any more. */
+static void exchange(struct host *h, struct serving *next, const struct adoption *plan)
+{
+	struct serving *before = h->now;
+	bool dark;
+
+	h->plan = plan;
+	__atomic_store_n(&h->next, next, __ATOMIC_RELEASE);
+	host_ring(h);
+	pause_until_null(&h->next);
+	h->plan = NULL;
+	h->unshown = true;
+	h->unstarted = false; /* before their hardware is let go of */
+	host_mend(h);
+	if (h->serve)
+		serve_reload(h->serve, next->config, &next->memory.image, plan->ports);
+	dark = indicator_stop(h->indicator, END_NS);
+	if (dark)
+		indicator_destroy(h->indicator);
+	h->indicator = NULL;
+	leave(h, before, end_workers(before, next, plan), dark);
+	h->unstarted = true;
+	host_mend(h);
+}
+
+bool host_may_reload(const struct host *h)
+{
+	return !h->unseen && !h->unshown && !__atomic_load_n(&h->renewed, __ATOMIC_ACQUIRE);
+}
+
+int host_reload(struct host *h, struct config *config, char *why, size_t why_size)
+{
+	struct adoption plan;
+	struct serving *next;
+	int err;
+
+	if (!same_listeners(&config->serve, &h->now->config->serve)) {
+		snprintf(why, why_size,
+		         "what Listen, ListenSocket, ListenAllow and ListenReadOnly "
+		         "say is changed by a restart only");
+		return -EBUSY;
+	}
+	snprintf(why, why_size, "%s", strerror(ENOMEM));
+	if (h->serve && serve_prepare(h->serve, config))
+		return -ENOMEM;
+	err = adoption_plan(&plan, config, h->now->config);
+	if (err)
+		return err;
+	err = host_make_serving(h, config, &plan, &next, why, why_size);
+	if (!err) {
+		log_notice(h->log, "reload: %u signal%s, %u of them go on; %u target%s, %u of them",
+		           config->item_count, config->item_count == 1 ? "" : "s", plan.kept_rows,
+		           config->target_count, config->target_count == 1 ? "" : "s",
+		           plan.kept_ports);
+		exchange(h, next, &plan);
+	}
+	adoption_free(&plan);
+	return err;
+}

@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/bus/worker.h"
+#include "src/engine/counters.h"
+#include "src/host/serving.h"
+#include "src/host/target.h"
+#include "src/libows/ows.h"
+
+static int submit(void *ctx, struct bus_req *req)
+{
+	return worker_submit(ctx, req);
+}
+
+static void suspend(void *ctx, bool yes)
+{
+	worker_suspend(ctx, yes);
+}
+
+static int new_worker(struct serving *s, const struct serving_setup *setup, unsigned i, char *why,
+                      size_t why_size)
+{
+	const char *target = s->config->targets[i].text;
+	char reason[256] = "", name[24];
+	int err;
+
+	snprintf(name, sizeof(name), "owsd-bus%u", i);
+	err = worker_create(target, name, setup->ring, setup->ring_ctx, &s->workers[i], reason,
+	                    sizeof(reason));
+	if (err) {
+		snprintf(why, why_size, "target %s: %s", target, *reason ? reason : strerror(-err));
+		return err;
+	}
+	err = target_options(worker_bus(s->workers[i]), s->config, target, reason, sizeof(reason));
+	if (err) {
+		snprintf(why, why_size, "target %s: %s", target, reason);
+		worker_destroy(s->workers[i]);
+		return err;
+	}
+	/* of several ways to one wire the first is open at the start */
+	if (s->config->targets[i].relation == CONFIG_BAR)
+		worker_suspend(s->workers[i], true);
+	return 0;
+}
+
+static int make_workers(struct serving *s, const struct serving_setup *setup, char *why,
+                        size_t why_size)
+{
+	unsigned count = s->config->target_count;
+
+	s->workers = calloc(count, sizeof(*s->workers));
+	s->taken = calloc(count, sizeof(*s->taken));
+	s->ports = calloc(count, sizeof(*s->ports));
+	s->bus_counters = calloc(count, sizeof(*s->bus_counters));
+	if (!s->workers || !s->taken || !s->ports || !s->bus_counters)
+		return -ENOMEM;
+	for (unsigned i = 0; i < count; i++) {
+		int from = setup->plan ? setup->plan->ports[i] : -1, err = 0;
+		size_t n = 0;
+
+		if (from >= 0)
+			s->workers[i] = setup->before->workers[from];
+		else
+			err = new_worker(s, setup, i, why, why_size);
+		if (err)
+			return err;
+		s->worker_count++;
+		bus_counters(worker_bus(s->workers[i]), &n);
+		s->bus_counters[i] = (unsigned)n;
+		s->ports[i] = (struct engine_port){
+			.target = s->config->targets[i].text,
+			.depth = bus_depth(worker_bus(s->workers[i])),
+			.searches = worker_bus(s->workers[i])->ops->searches,
+			.submit = submit,
+			.ctx = s->workers[i],
+			.group = s->config->targets[i].group,
+			.suspend = suspend,
+		};
+	}
+	return 0;
+}
+
+/* Engine's counters, then each bus's, then the host's. */
+static int make_memory(struct serving *s, const struct serving_setup *setup, char *why,
+                       size_t why_size)
+{
+	unsigned count = engine_counter_count(s->worker_count), first = count;
+	struct image_counter *plan;
+	char(*names)[48];
+	int err;
+
+	s->own_counters = count;
+	for (unsigned i = 0; i < s->worker_count; i++)
+		s->own_counters += s->bus_counters[i];
+	plan = calloc(s->own_counters + setup->counter_count, sizeof(*plan));
+	names = calloc(s->own_counters - count + 1, sizeof(*names));
+	if (!plan || !names) {
+		free(plan);
+		free(names);
+		return -ENOMEM;
+	}
+	engine_counter_plan(s->worker_count, plan);
+	for (unsigned i = 0; i < s->worker_count; i++) {
+		size_t n;
+		const struct bus_counter *c = bus_counters(worker_bus(s->workers[i]), &n);
+
+		for (size_t k = 0; k < s->bus_counters[i]; k++, count++) {
+			snprintf(names[count - first], sizeof(*names), "bus_%s", c[k].name);
+			plan[count] = (struct image_counter){names[count - first], i};
+		}
+	}
+	memcpy(plan + count, setup->counters, setup->counter_count * sizeof(*plan));
+	count += setup->counter_count;
+	err = memory_make(&s->memory,
+	                  &(struct memory_setup){
+				  .instance = setup->instance,
+				  .config = s->config,
+				  .counters = plan,
+				  .counter_count = count,
+				  .log = setup->log,
+				  .before = setup->before ? &setup->before->memory : NULL,
+			  },
+	                  why, why_size);
+	free(plan);
+	free(names);
+	return err;
+}
+
+static int make_engine(struct serving *s, const struct serving_setup *setup)
+{
+	struct engine_setup engine = {
+		.config = s->config,
+		.ports = s->ports,
+		.port_count = s->worker_count,
+		.image = &s->memory.image,
+		.commands = s->commands,
+		.log = setup->log,
+		.guests = setup->guests,
+		.start_ns = s->memory.start_ns,
+	};
+
+	return engine_create(&engine, &s->engine);
+}
+
+int serving_make(struct serving *s, const struct serving_setup *setup, char *why, size_t why_size)
+{
+	int err;
+
+	snprintf(why, why_size, "%s", strerror(ENOMEM));
+	*s = (struct serving){.config = setup->config};
+	err = make_workers(s, setup, why, why_size);
+	if (!err)
+		err = make_memory(s, setup, why, why_size);
+	if (!err) {
+		s->commands = memory_commands(&s->memory);
+		err = make_engine(s, setup);
+	}
+	if (!err)
+		return 0;
+	for (unsigned i = 0; i < s->worker_count; i++)
+		s->taken[i] = setup->plan && setup->plan->ports[i] >= 0;
+	s->config = NULL; /* the caller's again */
+	serving_free(s);
+	return err;
+}
+
+void serving_publish(struct serving *s)
+{
+	uint32_t index = engine_counter_count(s->worker_count);
+
+	for (unsigned i = 0; i < s->worker_count; i++) {
+		size_t n;
+		const struct bus_counter *c = bus_counters(worker_bus(s->workers[i]), &n);
+
+		for (size_t k = 0; k < s->bus_counters[i]; k++)
+			image_counter(&s->memory.image, index++, bus_counted(&c[k]));
+	}
+}
+
+uint64_t serving_stalls(const struct serving *s)
+{
+	uint64_t n = s->stalls_before;
+
+	for (unsigned i = 0; i < s->worker_count; i++)
+		n += worker_stalls(s->workers[i]);
+	return n;
+}
+
+uint64_t serving_dropped(const struct serving *s)
+{
+	uint64_t n = s->dropped_before;
+
+	for (unsigned i = 0; i < s->worker_count; i++)
+		n += worker_dropped(s->workers[i]);
+	return n;
+}
+
+void serving_keep_counts(struct serving *s, const struct serving *before, const int *ports)
+{
+	s->stalls_before = before->stalls_before;
+	s->dropped_before = before->dropped_before;
+	for (unsigned i = 0; i < before->worker_count; i++) {
+		bool stays = false;
+
+		for (unsigned k = 0; k < s->worker_count; k++)
+			stays |= ports[k] == (int)i;
+		if (stays)
+			continue;
+		s->stalls_before += worker_stalls(before->workers[i]);
+		s->dropped_before += worker_dropped(before->workers[i]);
+	}
+}
+
+bool serving_stop(struct serving *s, int64_t timeout_ns)
+{
+	int64_t until_ns = ows_now() + timeout_ns;
+	bool ended = true;
+
+	/* all are asked before one is waited for */
+	for (unsigned i = 0; i < s->worker_count; i++)
+		if (!s->taken[i])
+			worker_stop(s->workers[i], 0);
+	for (unsigned i = 0; i < s->worker_count; i++) {
+		int64_t left_ns = until_ns - ows_now();
+
+		if (!s->taken[i])
+			ended &= worker_stop(s->workers[i], left_ns > 0 ? left_ns : 0) == 0;
+	}
+	return ended;
+}
+
+void serving_free(struct serving *s)
+{
+	engine_destroy(s->engine);
+	for (unsigned i = 0; i < s->worker_count; i++)
+		if (!s->taken[i])
+			worker_destroy(s->workers[i]);
+	memory_end(&s->memory);
+	free(s->workers);
+	free(s->taken);
+	free(s->ports);
+	free(s->bus_counters);
+	config_free(s->config);
+	*s = (struct serving){0};
+}

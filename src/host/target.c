@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "hal/bus/bus.h"
+#include "hal/gpio/line.h"
+#include "src/config/report.h"
+#include "src/host/target.h"
+#include "src/libows/ows.h"
+
+static int64_t now(void *ctx)
+{
+	(void)ctx;
+	return ows_now();
+}
+
+static int no_wait(void *ctx, int fd, short events, int64_t until_ns)
+{
+	(void)ctx, (void)fd, (void)events, (void)until_ns;
+	return -ECANCELED;
+}
+
+static void no_answer(void *ctx, const struct bus_answer *answer)
+{
+	(void)ctx, (void)answer;
+}
+
+static void no_event(void *ctx, const struct bus_event *event)
+{
+	(void)ctx, (void)event;
+}
+
+static const struct bus_env env = {
+	.now = now, .wait = no_wait, .answer = no_answer, .event = no_event};
+
+int target_check(const char *target, char *why, size_t why_size)
+{
+	struct bus *bus = NULL;
+	int err = bus_create(target, &env, &bus, why, why_size);
+
+	if (err && !*why)
+		snprintf(why, why_size, "%s", strerror(-err));
+	if (!err)
+		bus_destroy(bus);
+	return err;
+}
+
+int target_options(struct bus *bus, const struct config *config, const char *target, char *why,
+                   size_t why_size)
+{
+	const struct config_bus *block = config_bus(config, target);
+
+	for (unsigned i = 0; block && i < block->option_count; i++) {
+		const struct config_option *option = &block->options[i];
+		char reason[160];
+		int err = bus_option(bus, option->key, option->text, reason, sizeof(reason));
+
+		if (err) {
+			snprintf(why, why_size, "%s: %s", option->key, reason);
+			return err;
+		}
+	}
+	return 0;
+}
+
+static int check_bus(const struct config *config, const struct config_bus *block,
+                     struct config_report *report)
+{
+	struct bus *bus = NULL;
+	char why[160];
+	int err = bus_create(block->target, &env, &bus, why, sizeof(why)), worst = 0;
+
+	if (err) {
+		report_error(report, (struct place){config->file, block->line, block->column},
+		             "target \"%s\": %s", block->target, why);
+		return err;
+	}
+	for (unsigned i = 0; i < block->option_count; i++) {
+		const struct config_option *option = &block->options[i];
+
+		err = bus_option(bus, option->key, option->text, why, sizeof(why));
+		if (err)
+			report_error(report,
+			             (struct place){config->file, option->line, option->column},
+			             "%s: %s", option->key, why);
+		worst = err ? err : worst;
+	}
+	bus_destroy(bus);
+	return worst;
+}
+
+static int check_line(const struct config *config, const char *key, const char *text,
+                      struct config_report *report)
+{
+	struct gpio_spec spec;
+	char why[160];
+	int err = text ? gpio_spec_parse(text, &spec, why, sizeof(why)) : 0;
+
+	if (err)
+		report_error(report, (struct place){config->file, 0, 0}, "%s: %s", key, why);
+	return err;
+}
+
+int target_check_options(const struct config *config, struct config_report *report)
+{
+	int err = check_line(config, "AlarmLine", config->alarm_line, report);
+	int other = check_line(config, "HeartbeatLine", config->heartbeat_line, report);
+
+	err = err ? err : other;
+	if (!err && config->alarm_line && config->heartbeat_line &&
+	    strcmp(config->alarm_line, config->heartbeat_line) == 0) {
+		report_error(report, (struct place){config->file, 0, 0},
+		             "AlarmLine and HeartbeatLine are the same line");
+		err = -EINVAL;
+	}
+	for (unsigned i = 0; i < config->bus_count; i++) {
+		other = check_bus(config, &config->buses[i], report);
+		err = err ? err : other;
+	}
+	return err;
+}

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: MIT */
+/* What the supervisor looks after: the shared memory, and what a reload has left to do. */
+#include <errno.h>
+#include <string.h>
+
+#include "src/host/private.h"
+#include "src/libows/ows.h"
+#include "src/shm/segment.h"
+
+/* A consumer that takes the command segment away again and again has one made once a second. */
+#define TEND_NS 1000000000
+/* How often the loss of the image is said. */
+#define IMAGE_LOST_NS 60000000000LL
+
+static int show_renewed(struct host *h)
+{
+	int err = memory_show_commands(&h->now->memory);
+
+	if (err)
+		return err;
+	h->unseen = false;
+	h->tend_rate = (struct log_rate){0};
+	return 0;
+}
+
+static int renew_commands(struct host *h)
+{
+	struct commands *renewed;
+	int err = 0;
+
+	/* it unmaps the segment before the one that is lost, which a slow thread may still be at */
+	host_wait_for_ringers(h);
+	renewed = memory_renew_commands(&h->now->memory, &err);
+	if (!renewed)
+		return err;
+	h->unseen = true;
+	__atomic_store_n(&h->renewed, renewed, __ATOMIC_RELEASE);
+	host_ring(h);
+	return 0;
+}
+
+/* An image of the same values under the name would need all readers to open it: a reload's work. */
+static void look_for_image(struct host *h, int64_t now_ns)
+{
+	if ((h->image_lost_ns && now_ns - h->image_lost_ns < IMAGE_LOST_NS) ||
+	    !memory_image_lost(&h->now->memory))
+		return;
+	h->image_lost_ns = now_ns;
+	log_err(h->log,
+	        "/dev/shm/owsd.%s.image was removed or replaced and programs that start now do not find it: "
+	        "reload or restart owsd (of an ordinary user, logind's RemoveIPC= removes it at log-out)",
+	        h->instance);
+}
+
+static void say_unmended(struct host *h, const char *why)
+{
+	if (log_rate(&h->mend_rate, ows_now()))
+		log_err(h->log, "%s: it is tried again every second", why);
+}
+
+void host_mend(struct host *h)
+{
+	bool before = h->unmended != 0;
+	char why[512];
+
+	if (h->unshown)
+		h->unshown = memory_show(&h->now->memory, h->log, why, sizeof(why)) != 0;
+	if (h->unshown)
+		say_unmended(h, why);
+	if (h->unstarted)
+		h->unstarted = host_start_workers(h->now, why, sizeof(why)) ||
+		               (!h->indicator && host_start_indicator(h, why, sizeof(why)));
+	if (h->unstarted)
+		say_unmended(h, why);
+	__atomic_store_n(&h->unmended, (uint32_t)h->unshown + h->unstarted, __ATOMIC_RELAXED);
+	h->mend_ns = ows_now() + TEND_NS;
+	if (h->unmended)
+		return;
+	h->mend_rate = (struct log_rate){0};
+	if (before)
+		log_notice(h->log, "what the reload could not do at once is done");
+}
+
+void host_tend(struct host *h)
+{
+	int64_t now_ns = ows_now();
+	char hint[SEGMENT_HINT];
+	int err = 0;
+
+	if ((h->unshown || h->unstarted) && now_ns >= h->mend_ns)
+		host_mend(h);
+	look_for_image(h, now_ns);
+	if (__atomic_load_n(&h->renewed, __ATOMIC_ACQUIRE)) /* the engine has not filled it yet */
+		return;
+	if (now_ns < h->tend_ns)
+		return;
+	if (h->unseen) {
+		err = show_renewed(h);
+		h->tend_ns = now_ns + TEND_NS;
+	} else if (memory_commands_lost(&h->now->memory)) {
+		err = renew_commands(h);
+		h->tend_ns = err ? now_ns + TEND_NS : 0;
+	}
+	if (err && log_rate(&h->tend_rate, now_ns))
+		log_err(h->log,
+		        "the command segment was taken away and cannot be made again: %s%s: "
+		        "it is tried again every second",
+		        strerror(-err), segment_hint(h->instance, err, hint));
+}

@@ -1,0 +1,359 @@
+/* SPDX-License-Identifier: MIT */
+/* owsd: start-up, supervision and end. */
+#include <errno.h>
+
+#include "src/board/board.h"
+#include "src/config/report.h"
+#include "src/host/host.h"
+#include "src/host/target.h"
+#include "src/libows/ows.h"
+#include "src/owsd/arguments.h"
+#include "src/owsd/instance.h"
+#include "src/owsd/notify.h"
+#include "src/owsd/standard.h"
+#include "src/shm/segment.h"
+#include "src/text/log.h"
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define STOP_NS 2000000000LL
+#define SUPERVISE_NS 500000000LL
+#define AGAIN_NS 20000000LL /* a reload that has to wait */
+/* From the end of a reload to the next: it takes at most a tenth of the time, and leaves room to follow */
+#define APART_LEAST_NS 200000000LL
+#define APART_MOST_NS 10000000000LL
+
+static volatile sig_atomic_t stop_signal, hangup;
+static uint32_t *supervisor_word;
+
+static void on_signal(int number)
+{
+	if (number == SIGHUP)
+		hangup = 1;
+	else
+		stop_signal = number;
+	/* so that a wait that is just beginning returns at once */
+	if (supervisor_word)
+		__atomic_fetch_add(supervisor_word, 1, __ATOMIC_SEQ_CST);
+}
+
+static int tell_board(const struct arguments *a)
+{
+	struct board_report report;
+	char folder[400], why[800];
+	int status;
+
+	board_folder(folder, sizeof(folder));
+	if (board_look(a->root ? a->root : "", folder, a->board_id, &report, why, sizeof(why))) {
+		complain("%s", why);
+		return EXIT_USAGE;
+	}
+	board_print(&report, stdout);
+	status = finish_output();
+	return report.missing ? EXIT_RUN : status;
+}
+
+/* ctx: a log; NULL: stderr */
+static void say(void *ctx, bool is_error, const char *message)
+{
+	if (!ctx)
+		fprintf(stderr, "%s\n", message);
+	else if (is_error)
+		log_err(ctx, "%s", message);
+	else
+		log_warning(ctx, "%s", message);
+}
+
+static int check_target(const struct config *config, const struct config_target *target,
+                        struct config_report *report)
+{
+	struct place place = {target->line ? config->file : NULL, target->line, target->column};
+	char why[256];
+	int err = target_check(target->text, why, sizeof(why));
+
+	if (err)
+		report_error(report, place, "target \"%s\": %s", target->text, why);
+	return err;
+}
+
+static bool has_file(const struct arguments *a)
+{
+	return access(a->file, F_OK) == 0 || errno != ENOENT;
+}
+
+static int read_file(const struct arguments *a, struct config_report *report,
+                     struct config **config)
+{
+	static const char empty[] = "OwsDrv {\n}\n";
+
+	if (!a->needs_no_file || has_file(a))
+		return config_load(a->file, report, config);
+	return config_parse("no file", empty, sizeof(empty) - 1, report, config);
+}
+
+static int load(const struct arguments *a, struct log *log, struct config **config)
+{
+	struct config_report report = {.line = say, .ctx = log};
+	int err = read_file(a, &report, config);
+
+	if (err)
+		return err;
+	if (a->target_count)
+		err = config_set_targets(*config, a->targets, a->target_count, &report);
+	if (!err && a->listen_count)
+		err = config_set_listens(*config, a->listens, a->listen_count, &report);
+	if (!err)
+		err = config_check_own(*config, &report);
+	for (unsigned i = 0; !err && i < (*config)->target_count; i++)
+		err = check_target(*config, &(*config)->targets[i], &report);
+	if (!err)
+		err = target_check_options(*config, &report);
+	if (!err) {
+		config_check_buses(*config, &report);
+		return 0;
+	}
+	config_free(*config);
+	return err;
+}
+
+/* Does stderr go to the journal, which reads levels from "<4>" prefixes? */
+static int stderr_is_journal(void)
+{
+	const char *stream = getenv("JOURNAL_STREAM");
+	unsigned long long device, inode;
+	struct stat st;
+
+	/* NOLINTNEXTLINE(cert-err34-c): a number out of range is none of ours either */
+	return stream && sscanf(stream, "%llu:%llu", &device, &inode) == 2 &&
+	       fstat(STDERR_FILENO, &st) == 0 && st.st_dev == device && st.st_ino == inode;
+}
+
+static void catch_signals(void)
+{
+	struct sigaction action = {.sa_handler = on_signal};
+
+	sigemptyset(&action.sa_mask);
+	sigaction(SIGTERM, &action, NULL);
+	sigaction(SIGINT, &action, NULL);
+	sigaction(SIGHUP, &action, NULL);
+	action.sa_handler = SIG_IGN;
+	sigaction(SIGPIPE, &action, NULL);
+}
+
+/* As in the file; what does not fit is counted. */
+static void name_targets(const struct config *config, char *text, size_t size)
+{
+	size_t used = 0;
+
+	for (unsigned i = 0; i < config->target_count; i++) {
+		const struct config_target *target = &config->targets[i];
+		const char *before = target->relation == CONFIG_FIRST   ? ""
+		                     : target->relation == CONFIG_COMMA ? ", "
+		                                                        : " | ";
+		int n = snprintf(text + used, size - used, "%s%s", before, target->text);
+
+		if (n < 0 || (size_t)n + 24 >= size - used) {
+			snprintf(text + used, size - used, "%s%u%s", i ? " and " : "",
+			         config->target_count - i, i ? " more" : " of them");
+			return;
+		}
+		used += (size_t)n;
+	}
+}
+
+/* What the service manager and the log are told of what is served. */
+static void tell(const struct host *host, const struct arguments *a, struct log *log,
+                 const struct notify *notify)
+{
+	const struct config *config = host_config(host);
+	char targets[160];
+
+	name_targets(config, targets, sizeof(targets));
+	log_notice(log, "owsd %s: instance %s, %u signal%s from %s, target %s", OWSD_VERSION,
+	           a->instance, config->item_count, config->item_count == 1 ? "" : "s",
+	           config->file, targets);
+	notify_status(notify, "%u signal%s, target %s", config->item_count,
+	              config->item_count == 1 ? "" : "s", targets);
+}
+
+/* A file that is refused changes nothing. */
+static void reload(struct host *host, const struct arguments *a, struct log *log,
+                   const struct notify *notify)
+{
+	struct config *config;
+	char why[512];
+
+	if (load(a, log, &config)) {
+		log_err(log, "reload: %s is refused: all goes on as before", a->file);
+		return;
+	}
+	if (host_reload(host, config, why, sizeof(why))) {
+		config_free(config);
+		log_err(log, "reload: %s: all goes on as before", why);
+		return;
+	}
+	tell(host, a, log, notify);
+}
+
+/* When the next reload may begin. */
+static int64_t reload_after(int64_t begun_ns)
+{
+	int64_t now_ns = ows_now(), apart_ns = 10 * (now_ns - begun_ns);
+
+	if (apart_ns < APART_LEAST_NS)
+		apart_ns = APART_LEAST_NS;
+	return now_ns + (apart_ns < APART_MOST_NS ? apart_ns : APART_MOST_NS);
+}
+
+/*
+ * Write the log, feed the watchdog while the engine's heart beats, until a signal ends it; or, and
+ * that is false, another owsd that has the instance.
+ */
+static bool supervise(struct host *host, const struct arguments *a, struct instance *instance,
+                      struct log *log, const struct notify *notify, int prefix)
+{
+	int64_t fed_ns = 0, reload_ns = 0, wait_ns = SUPERVISE_NS;
+
+	if (notify->watchdog_ns && notify->watchdog_ns / 4 < wait_ns)
+		wait_ns = notify->watchdog_ns / 4;
+	while (!stop_signal) {
+		uint32_t seen = __atomic_load_n(log_word(log), __ATOMIC_ACQUIRE);
+		int64_t now_ns = ows_now(), period_ns;
+
+		if (hangup && now_ns >= reload_ns && host_may_reload(host)) {
+			hangup = 0; /* one that comes from here on means a newer file */
+			notify_send(notify, NOTIFY_RELOADING);
+			reload(host, a, log, notify);
+			notify_send(notify, NOTIFY_READY);
+			reload_ns = reload_after(now_ns);
+		}
+		now_ns = ows_now();
+		period_ns = host_config(host)->period_ns;
+		/* the heart beats once a period, which may be longer than the watchdog's time */
+		if (notify->watchdog_ns && now_ns - fed_ns >= notify->watchdog_ns / 4 &&
+		    now_ns - host_beat(host) <= 2 * period_ns + notify->watchdog_ns / 4) {
+			fed_ns = now_ns;
+			notify_send(notify, NOTIFY_WATCHDOG);
+		}
+		if (!instance_keep(instance, log))
+			return false;
+		host_tend(host);
+		log_drain(log, STDERR_FILENO, prefix);
+		if (!stop_signal)
+			segment_wait(log_word(log), seen, hangup ? AGAIN_NS : wait_ns);
+	}
+	return true;
+}
+
+static int run(const struct arguments *a, struct config *config, struct instance *instance,
+               struct log *log)
+{
+	struct host_setup setup = {
+		.config = config,
+		.instance = a->instance,
+		.log = log,
+		.rt_priority = a->rt_priority,
+	};
+	int prefix = stderr_is_journal();
+	struct notify notify;
+	struct host *host;
+	char why[512];
+	bool ended, ours;
+
+	if (notify_open(&notify))
+		log_warning(log, "NOTIFY_SOCKET cannot be used");
+	if (host_start(&setup, &host, why, sizeof(why))) {
+		instance_abandon(instance);
+		log_finish(log, STDERR_FILENO, prefix);
+		complain("%s", why);
+		return EXIT_RUN;
+	}
+	tell(host, a, log, &notify);
+	notify_send(&notify, NOTIFY_READY);
+	ours = supervise(host, a, instance, log, &notify, prefix);
+	log_notice(log, "owsd ends: %s",
+	           !ours                    ? "the instance is another's"
+	           : stop_signal == SIGTERM ? "SIGTERM"
+	                                    : "SIGINT");
+	notify_send(&notify, NOTIFY_STOPPING);
+	ended = host_stop(host, STOP_NS);
+	if (!ended)
+		log_err(log, "a bus is stuck in the kernel; owsd leaves it behind");
+	log_finish(log, STDERR_FILENO, prefix);
+	if (!ended)
+		_exit(ours ? EXIT_SUCCESS : EXIT_RUN);
+	notify_close(&notify);
+	return ours ? EXIT_SUCCESS : EXIT_RUN;
+}
+
+static void say_no_file(const struct arguments *a)
+{
+	complain("-c FILE names another; owsctl -t %s scan --rio makes one",
+	         a->target_count ? a->targets[0] : "auto");
+	complain("to serve the devices without a configuration, give %s",
+	         a->target_count   ? "-l PORT too"
+	         : a->listen_count ? "-t TARGET too"
+	                           : "-t TARGET and -l PORT");
+}
+
+int main(int argc, char **argv)
+{
+	struct config *config;
+	struct arguments a;
+	struct instance instance;
+	struct log *log;
+	char why[512];
+	int status;
+
+#ifdef __GLIBC__
+	/* What is used little of a large block stays zero pages. Else the limit rises by itself */
+	mallopt(M_MMAP_THRESHOLD, 64 * 1024);
+#endif
+	status = standard_open();
+	if (status) {
+		complain("/dev/null: %s", strerror(-status));
+		return EXIT_RUN;
+	}
+	/* a file that may not grow is an error of the write like another */
+	signal(SIGXFSZ, SIG_IGN);
+	status = arguments_parse(argc, argv, &a);
+	if (status >= 0)
+		return status;
+	if (a.board)
+		return tell_board(&a);
+	/* decided once: a file that goes later is missing at a reload */
+	a.needs_no_file = a.file == a.default_file && a.target_count && a.listen_count &&
+	                  !has_file(&a);
+	if (load(&a, NULL, &config)) {
+		if (a.file == a.default_file && !has_file(&a))
+			say_no_file(&a);
+		return EXIT_USAGE;
+	}
+	if (a.check) {
+		config_print(config, stdout);
+		config_free(config);
+		return finish_output();
+	}
+	log = log_create(a.level);
+	if (!log) {
+		complain("no memory for the log");
+		return EXIT_RUN;
+	}
+	supervisor_word = log_word(log);
+	catch_signals();
+	if (instance_take(&instance, a.instance, log, why, sizeof(why))) {
+		complain("%s", why);
+		return EXIT_RUN;
+	}
+	status = run(&a, config, &instance, log);
+	instance_leave(&instance);
+	log_destroy(log);
+	return status;
+}

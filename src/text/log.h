@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The log: any thread puts lines into a bounded ring, without blocking and without a system call
+ * but one wake; the supervisor writes them to stderr. Lines that find the ring full are counted.
+ */
+#ifndef TEXT_LOG_H
+#define TEXT_LOG_H
+
+#include <stdint.h>
+
+enum log_level { /* syslog's numbers */
+	         LOG_LEVEL_ERR = 3,
+	         LOG_LEVEL_WARNING = 4,
+	         LOG_LEVEL_NOTICE = 5,
+	         LOG_LEVEL_INFO = 6,
+	         LOG_LEVEL_DEBUG = 7,
+	         LOG_LEVEL_TRACE =
+	                 8, /* the requests themselves; to the journal this is debug too */
+};
+
+struct log;
+
+/* The ring, allocated once; lines above level are not made. NULL: no memory. */
+struct log *log_create(enum log_level level);
+void log_destroy(struct log *log);
+enum log_level log_level(const struct log *log);
+
+/* Any thread. A line is cut at 255 bytes; control characters become '?'. log NULL: nothing. */
+void log_put(struct log *log, enum log_level level, const char *format, ...)
+	__attribute__((format(printf, 3, 4)));
+
+#define log_at(log, lvl, ...) \
+	do { \
+		if ((log) && (lvl) <= log_level(log)) \
+			log_put((log), (lvl), __VA_ARGS__); \
+	} while (0)
+#define log_err(log, ...) log_at(log, LOG_LEVEL_ERR, __VA_ARGS__)
+#define log_warning(log, ...) log_at(log, LOG_LEVEL_WARNING, __VA_ARGS__)
+#define log_notice(log, ...) log_at(log, LOG_LEVEL_NOTICE, __VA_ARGS__)
+#define log_info(log, ...) log_at(log, LOG_LEVEL_INFO, __VA_ARGS__)
+#define log_debug(log, ...) log_at(log, LOG_LEVEL_DEBUG, __VA_ARGS__)
+#define log_trace(log, ...) log_at(log, LOG_LEVEL_TRACE, __VA_ARGS__)
+
+/*
+ * For what may repeat every cycle: says when to speak (1st, 2nd, 4th, 8th time, at least hourly) by
+ * how many there were since it did, this one included; 0: not now. log_others() puts that behind a
+ * line, where it is more than this one.
+ */
+struct log_rate {
+	uint64_t seen, said, next;
+	int64_t last_ns;
+};
+uint64_t log_rate(struct log_rate *rate, int64_t now_ns);
+#define LOG_OTHERS 64
+const char *log_others(uint64_t n, char text[LOG_OTHERS]);
+
+/*
+ * Supervisor only: write the lines to fd ("<4>" levels if prefix) as long as it takes them without
+ * blocking; the others stay. Returns how many.
+ */
+int log_drain(struct log *log, int fd, int prefix);
+/* The last lines: try for at most 200 ms. */
+void log_finish(struct log *log, int fd, int prefix);
+/* The futex word that each line counts up; for the supervisor's wait. */
+uint32_t *log_word(struct log *log);
+uint64_t log_dropped(const struct log *log);
+
+#endif

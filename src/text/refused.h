@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef TEXT_REFUSED_H
+#define TEXT_REFUSED_H
+
+#include <getopt.h>
+#include <stddef.h>
+
+/*
+ * Why getopt_long() has just returned c, which is '?' or ':', by the name that was typed. The short
+ * options begin with ':', opterr is 0, and each long one has the letter of a short one or a value
+ * above 255. Words of argv stand in text as they are: printable() makes them fit for a terminal.
+ */
+void refused_option(int c, const struct option *longs, char *const *argv, char *text, size_t size);
+
+#endif

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT */
+/* Verbs of owsctl with stdout and stderr caught. */
+#ifndef TESTS_UNIT_AID_CAUGHT_H
+#define TESTS_UNIT_AID_CAUGHT_H
+
+#include "src/owsctl/verbs.h"
+
+extern struct ctl caught_ctl;
+extern char *out, *err; /* of the last run */
+
+void caught_begin(const char *instance);
+void caught_end(void);
+/* Run a verb with the words, its own name first; its status. */
+int run(int (*function)(struct ctl *, int, char **), const char *words);
+void holds(const char *text, const char *part);
+
+#endif

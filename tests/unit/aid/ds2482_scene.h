@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT */
+/* The driver of the DS2482 over the simulated chip, in virtual time. */
+#ifndef TESTS_UNIT_AID_DS2482_SCENE_H
+#define TESTS_UNIT_AID_DS2482_SCENE_H
+
+#include "hal/ds2482/ds2482.h"
+#include "hal/sim/adapter.h"
+#include "tests/unit/aid/host.h"
+
+extern struct ds {
+	struct host host;
+	struct sim_net net;
+	struct sim_adapter adapter;
+	struct link_master *master;
+	struct link *wire; /* the first */
+	unsigned closes;
+	char why[200];
+} ds;
+
+/* setUp() and tearDown() */
+void ds_begin(void);
+void ds_end(void);
+
+/* Open the master at that place of the scenario; the error, ds.why says which. */
+int ds_try_open(const char *scenario, const char *where);
+/* Open whatever is there. */
+void ds_start(const char *scenario);
+/* What a master of one's own is made of. */
+extern const struct link_master_ops ds_ops;
+int ds_open_adapter(void *ctx, const struct bus_env *env, struct i2c_adapter **out, char *text,
+                    size_t size);
+void ds_forget(void *ctx);
+
+/* One thermometer "t" behind adapters of every kind. */
+#define DS_KINDS 8
+extern const char *const ds_kinds[DS_KINDS];
+
+/* An event of the scenario language, now. */
+void ds_event(const char *text);
+/* Reset, Match ROM, Read Scratchpad and its nine bytes, of the device of that name. */
+int ds_read_scratchpad(const char *name, uint8_t scratchpad[9]);
+/* Of the thermometer "t", as it is after power-on. */
+void ds_check_scratchpad(void);
+
+#endif

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT */
+/* The target w1:netlink on a model of the kernel's 1-Wire core; the tests' set-up is here. */
+#ifndef TESTS_UNIT_AID_NETLINK_SCENE_H
+#define TESTS_UNIT_AID_NETLINK_SCENE_H
+
+#include "hal/native/native.h"
+#include "tests/unit/aid/w1_core.h"
+
+#define NETLINK_ROOM 4096
+
+struct netlink_scene {
+	struct host host;
+	struct bus *bus;
+	uint8_t data[NETLINK_ROOM]; /* of the last answer, with NUL */
+};
+extern struct netlink_scene nl;
+
+/* In setUp() and tearDown(). */
+void nl_begin(void);
+void nl_end(void);
+/* The core has so many masters, and a directory in the place of sysfs shows them. */
+void nl_masters(unsigned masters);
+void nl_sysfs_master(unsigned number);
+void nl_erase(const char *what); /* in that directory */
+/* The bus of "w1:netlink/root=...", with rest behind. */
+void nl_create(const char *rest);
+/* The same, and it is up. */
+void nl_start(void);
+void nl_close(void);
+struct sim_slave *nl_thermometer(unsigned channel, unsigned id, double value);
+
+/* One request past every cache; the answer is good until the next. */
+const struct bus_answer *nl_ask(enum bus_op op, const char *path, const char *value);
+/* "/28.../property" */
+const char *nl_path(const struct sim_slave *slave, const char *property);
+int nl_read(const struct sim_slave *slave, const char *property);
+int nl_write(const struct sim_slave *slave, const char *property, const char *value);
+void nl_reads(const struct sim_slave *slave, const char *property, const char *expected);
+void nl_lists(const char *directory, const char *expected);
+bool nl_told(enum bus_news news, const char *part);
+
+#endif

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+/* The one bus of a test and its host: what most tests of a bus have, and do alike. */
+#ifndef TESTS_UNIT_AID_ONE_BUS_H
+#define TESTS_UNIT_AID_ONE_BUS_H
+
+#include "tests/unit/aid/host.h"
+
+extern struct host host;
+extern struct bus *bus;
+
+/* Open sim: over this scenario, on the virtual clock. */
+void simulate(const char *scenario);
+/* A running total of the bus; fails the test when there is none of this name. */
+uint64_t counted(const char *name);
+/* Destroy the bus, if there is one. */
+void one_bus_end(void);
+
+#endif

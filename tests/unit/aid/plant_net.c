@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: MIT */
+/* From a bus to its simulation: apart, because engine and native bus both have a `device`. */
+#include "hal/native/native.h"
+#include "hal/sim/master.h"
+#include "tests/unit/aid/plant.h"
+
+struct sim_net *plant_net(struct bus *bus)
+{
+	return sim_master_net(((struct native *)bus)->master);
+}

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <stdio.h>
+
+#include "unity.h"
+
+#include "tests/unit/aid/recorded_readers.h"
+#include "tests/unit/aid/recording.h"
+
+static const struct {
+	const char *text;
+	uint8_t quality;
+} expected[COUNT + 1] = {
+	[BOOL_] = {"1", OWS_Q_GOOD},
+	[BYTE_] = {"255", OWS_Q_GOOD},
+	[SHORT_] = {"-32768", OWS_Q_DEVICE},
+	[LONG_] = {"-2147483648", OWS_Q_STALE},
+	[WORD_] = {"65535", OWS_Q_HIGH},
+	[DWORD_] = {"4294967295", OWS_Q_GOOD},
+	[FLOAT_] = {"45.5", OWS_Q_GOOD},
+	[DOUBLE_] = {"-21.0625", OWS_Q_GOOD},
+	[LARGE_] = {"-9223372036854775808", OWS_Q_GOOD},
+	[STRING_] = {LONG_TEXT, OWS_Q_GOOD},
+	[EMPTY_] = {"", OWS_Q_GOOD},
+	[NEVER_] = {"0", OWS_Q_INITIAL},
+};
+
+static void check_signal(struct ows *h, uint32_t record)
+{
+	const char *name = signals[record - 1].name;
+	bool never = record == NEVER_;
+	struct ows_info info;
+	struct ows_value v;
+	char text[TEXT_CAP + 1];
+	int err = ows_get_text(h, ows_find(h, name), NOW_NS, &v, text, sizeof(text));
+
+	TEST_ASSERT_EQUAL_MESSAGE(0, err, name);
+	TEST_ASSERT_EQUAL_STRING_MESSAGE(expected[record].text, text, name);
+	TEST_ASSERT_EQUAL_MESSAGE(signals[record - 1].type, v.type, name);
+	TEST_ASSERT_EQUAL_HEX8_MESSAGE(never ? 0 : expected[record].quality, v.quality, name);
+	TEST_ASSERT_EQUAL_INT64_MESSAGE(never ? 0 : NOW_NS - record * S, v.measured_ns, name);
+	TEST_ASSERT_EQUAL_INT64_MESSAGE(never ? 0 : NOW_NS - record * S / 2, v.tried_ns, name);
+	TEST_ASSERT_EQUAL_INT64_MESSAGE(never ? 10 * S : record * S, v.age_ns, name);
+	TEST_ASSERT_EQUAL_MESSAGE(record == SHORT_ ? -EIO : 0, v.err, name);
+	TEST_ASSERT_EQUAL_MESSAGE(never ? 0 : 100 + record, v.count, name);
+	TEST_ASSERT_EQUAL_MESSAGE(never ? 0 : 200 + record, v.applied, name);
+	TEST_ASSERT_EQUAL_MESSAGE(never ? 0 : record % 4, v.detail, name);
+	TEST_ASSERT_EQUAL_MESSAGE(never ? 0 : record % 2, v.target, name);
+	TEST_ASSERT_EQUAL(0, ows_info(h, (int)record - 1, &info));
+	TEST_ASSERT_EQUAL_STRING(name, info.name);
+	TEST_ASSERT_EQUAL_STRING(signals[record - 1].path, info.path);
+	TEST_ASSERT_EQUAL(signals[record - 1].per_factor, info.per_factor);
+	TEST_ASSERT_EQUAL_INT64(signals[record - 1].stale_after_ns, info.stale_after_ns);
+	TEST_ASSERT_EQUAL((signals[record - 1].flags & OWS_RECORD_OUTPUT) != 0, info.output);
+	TEST_ASSERT_EQUAL((signals[record - 1].flags & OWS_RECORD_FRESH) != 0, info.fresh);
+	TEST_ASSERT_EQUAL((signals[record - 1].flags & OWS_RECORD_ALARM) != 0, info.alarm);
+}
+
+static double attribute(struct ows *h, const char *name)
+{
+	struct ows_value v;
+
+	TEST_ASSERT_EQUAL_MESSAGE(0, ows_get(h, ows_find(h, name), NOW_NS, &v), name);
+	return v.number;
+}
+
+static void check_attributes(struct ows *h)
+{
+	TEST_ASSERT_EQUAL_DOUBLE(5000000002.0, attribute(h, "byte_TRANSACTIONS"));
+	TEST_ASSERT_EQUAL_DOUBLE(0.5, attribute(h, "byte_Period"));
+	TEST_ASSERT_EQUAL_DOUBLE(2, attribute(h, "byte_Age"));
+	TEST_ASSERT_EQUAL_DOUBLE(200, attribute(h, "byte_AgeMax"));
+	TEST_ASSERT_EQUAL_DOUBLE(2, attribute(h, "byte_PerCount"));
+	TEST_ASSERT_EQUAL_DOUBLE(3, attribute(h, "byte_PerMax"));
+	TEST_ASSERT_EQUAL_DOUBLE(10, attribute(h, "byte_PendCount"));
+	TEST_ASSERT_EQUAL_DOUBLE(402, attribute(h, "byte_PendLast"));
+	TEST_ASSERT_EQUAL_DOUBLE(10, attribute(h, "byte_PendMax"));
+	TEST_ASSERT_EQUAL_DOUBLE(1, attribute(h, "byte_ReadEnable"));
+	TEST_ASSERT_EQUAL_DOUBLE(0, attribute(h, "byte_WE"));
+	TEST_ASSERT_EQUAL_DOUBLE(4294967295.0, attribute(h, "room.temperature_PerFactor"));
+	TEST_ASSERT_EQUAL_DOUBLE(77, attribute(h, "_TRANSACTIONS"));
+	TEST_ASSERT_EQUAL_DOUBLE(3, attribute(h, "_RECONNECTS"));
+}
+
+static void check_alarms(struct ows *h)
+{
+	struct ows_alarm_state state;
+	struct ows_alarm alarm;
+
+	TEST_ASSERT_EQUAL(2, ows_alarm_count(h));
+	TEST_ASSERT_EQUAL(0, ows_alarm(h, 0, &alarm));
+	TEST_ASSERT_EQUAL(NEVER_ - 1, alarm.signal);
+	TEST_ASSERT_EQUAL_INT64(1001 * S, alarm.occurred_ns);
+	TEST_ASSERT_EQUAL_STRING("1,0,0,1", alarm.latch);
+	TEST_ASSERT_EQUAL(OWS_ALARM_DEVICE, alarm.kind);
+	TEST_ASSERT_EQUAL(OWS_ALARM_RAISED, alarm.event);
+	TEST_ASSERT_TRUE(alarm.has_before && alarm.has_after);
+	TEST_ASSERT_EQUAL_INT64(1, alarm.after_integer);
+	TEST_ASSERT_EQUAL(0, ows_alarm(h, 1, &alarm));
+	TEST_ASSERT_EQUAL_DOUBLE(30.5, alarm.before);
+	TEST_ASSERT_FALSE(alarm.has_after);
+	TEST_ASSERT_EQUAL(OWS_ALARM_ACKNOWLEDGED, alarm.event);
+	TEST_ASSERT_EQUAL(-ENOENT, ows_alarm(h, 2, &alarm));
+	TEST_ASSERT_EQUAL(0, ows_alarm_state(h, ows_find(h, "room.temperature"), &state));
+	TEST_ASSERT_TRUE(state.limits && !state.stands);
+	TEST_ASSERT_EQUAL(OWS_LIMIT_RETURNED, state.limit_state);
+	TEST_ASSERT_EQUAL(OWS_ALARM_HH, state.limit_kind);
+}
+
+static void check_targets(struct ows *h)
+{
+	struct ows_target target;
+	struct ows_counter counter;
+
+	TEST_ASSERT_EQUAL(0, ows_target(h, 0, &target));
+	TEST_ASSERT_EQUAL_STRING("localhost:4304", target.name);
+	TEST_ASSERT_EQUAL(2, target.state);
+	TEST_ASSERT_EQUAL(4, target.reconnects);
+	TEST_ASSERT_EQUAL(0, ows_target(h, 1, &target));
+	TEST_ASSERT_EQUAL_STRING("i2c:/dev/i2c-1", target.name);
+	TEST_ASSERT_EQUAL(0, target.group);
+	TEST_ASSERT_EQUAL(6, target.moves);
+	TEST_ASSERT_EQUAL(-ENOENT, ows_target(h, 2, &target));
+	TEST_ASSERT_EQUAL(0, ows_counter(h, 1, &counter));
+	TEST_ASSERT_EQUAL_STRING("crc_errors", counter.name);
+	TEST_ASSERT_EQUAL(1, counter.target);
+	TEST_ASSERT_EQUAL_UINT64(0x123456789a, counter.value);
+	TEST_ASSERT_EQUAL_STRING("owserver:/run/owsd/OWS.sock", ows_served(h));
+}
+
+void check_all(struct ows *h)
+{
+	TEST_ASSERT_EQUAL(COUNT, ows_count(h));
+	for (uint32_t record = 1; record <= COUNT; record++)
+		check_signal(h, record);
+	check_attributes(h);
+	check_alarms(h);
+	check_targets(h);
+}
+
+const char *output_of(const char *command)
+{
+	static char output[8192];
+	FILE *pipe = popen(command, "r");
+	size_t n;
+
+	TEST_ASSERT_NOT_NULL(pipe);
+	n = fread(output, 1, sizeof(output) - 1, pipe);
+	output[n] = '\0';
+	TEST_ASSERT_EQUAL_MESSAGE(0, pclose(pipe), output);
+	return output;
+}
+
+const char *python(const char *code)
+{
+	char command[4096];
+
+	snprintf(
+		command, sizeof(command),
+		"PYTHONDONTWRITEBYTECODE=1 PYTHONIOENCODING=utf-8 PYTHONPATH=src/libows python3 -c '"
+		"import ows, sys\n%s' %s 2>&1",
+		code, instance);
+	return output_of(command);
+}

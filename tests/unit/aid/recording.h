@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The segments that an earlier release made of a few signals, kept in tests/unit/data, and the same
+ * made by today's writer. Each field of a record is a function of its number, so that each is another.
+ */
+#ifndef TESTS_UNIT_AID_RECORDING_H
+#define TESTS_UNIT_AID_RECORDING_H
+
+#include "src/shm/commands.h"
+#include "src/shm/image.h"
+
+#define S INT64_C(1000000000)
+#define START_NS (1000 * S)
+#define NOW_NS (1010 * S)
+#define TEXT_CAP 64
+#define SIZE_MAX_ 65536
+#define LONG_TEXT \
+	"K\xc3\xbchlraum 3, Verdampfer \xc2\xb0" \
+	"C: text of sixty-four bytes, all used!"
+
+enum {
+	BOOL_ = 1,
+	BYTE_,
+	SHORT_,
+	LONG_,
+	WORD_,
+	DWORD_,
+	FLOAT_,
+	DOUBLE_,
+	LARGE_,
+	STRING_,
+	EMPTY_,
+	NEVER_
+};
+#define COUNT NEVER_
+
+extern const struct image_signal signals[COUNT];
+/* The one under whose name both segments are shown. */
+extern char instance[40];
+extern char image_memory[SIZE_MAX_], command_memory[SIZE_MAX_];
+extern struct image image;
+extern struct commands commands;
+
+/* setUp() and tearDown(): both recorded segments in memory, and shown. */
+void recording_begin(void);
+void recording_end(void);
+
+/* "image" or "command"; returns the size. */
+uint32_t read_recording(const char *kind, char *memory);
+void show(const char *kind, const char *memory, uint32_t size);
+/* By today's writer, in memory. */
+void make_image(void);
+void make_commands(void);
+/* Write both files again. */
+void record(void);
+
+#endif

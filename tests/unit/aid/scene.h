@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A scene for engine tests: an engine with its image and commands on the heap, buses that are
+ * scripted, and a clock that only moves when the test says so. Everything that goes to a bus is
+ * written down in a trace that a reader can follow.
+ *
+ * Most tests have one bus, and speak of it as the scene. Several are made by scene_bus(): each is a
+ * target on a wire, and those on the same wire are ways to it (a bar).
+ */
+#ifndef TESTS_UNIT_AID_SCENE_H
+#define TESTS_UNIT_AID_SCENE_H
+
+#include "src/config/config.h"
+#include "src/engine/engine.h"
+#include "src/shm/commands.h"
+#include "src/shm/image.h"
+
+#define SCENE_MS 1000000LL
+#define SCENE_S 1000000000LL
+#define SCENE_ITEMS 64
+#define SCENE_DEPTH 8
+#define SCENE_BUSES 4
+#define SCENE_NOWHERE 99
+
+/* What a wire has at a path. */
+struct scene_property {
+	const char *path;
+	unsigned wire;
+	char text[128];
+	int err;       /* not 0: answered instead */
+	int write_err; /* likewise, to writes */
+};
+
+struct scene_pending {
+	struct bus_req *req;
+	int64_t when_ns;
+};
+
+struct scene_bus {
+	struct scene *scene;
+	const char *name;
+	unsigned port; /* the engine's number of it */
+	unsigned wire;
+	unsigned depth;     /* set before scene_start(); 1 */
+	uint8_t detail;     /* of its answers */
+	bool searches;      /* likewise */
+	bool holds;         /* likewise: it has hardware, which it can be asked to let go of */
+	int64_t latency_ns; /* of each answer; 1 ms */
+	const char *slow;   /* but of this path: slow_ns */
+	int64_t slow_ns;
+	bool mute;    /* the bus answers nothing */
+	bool refuses; /* submit says -EAGAIN */
+	struct scene_pending pending[SCENE_DEPTH];
+	unsigned pending_count, most_pending;
+	struct bus_req *swallowed[SCENE_DEPTH]; /* requests taken while mute */
+	unsigned swallowed_count;
+	unsigned reads, writes, lists, probes;
+
+	/* of a bus that holds hardware */
+	bool there;         /* its target: set by scene_reach(); told when it is opened */
+	bool released;      /* it has let go, or was never opened */
+	bool asked, wanted; /* to let go or to open, and it has not done so yet; which of them */
+	int64_t asked_ns;
+	int64_t turn_ns; /* it takes to do so; 1 ms */
+	int64_t when_ns; /* it will have done so; INT64_MAX: nothing was asked */
+	unsigned opened;
+};
+
+/* What belongs to one engine. */
+struct scene_part {
+	struct config config;
+	struct config_item items[SCENE_ITEMS];
+	struct config_target targets[SCENE_BUSES];
+	struct engine_port ports[SCENE_BUSES];
+	struct image image;
+	struct commands commands;
+};
+
+struct scene {
+	struct config config;
+	struct config_item items[SCENE_ITEMS];
+	struct config_target targets[SCENE_BUSES];
+	struct scene_property properties[SCENE_ITEMS * 2];
+	unsigned property_count;
+
+	struct engine *engine;
+	struct engine_port ports[SCENE_BUSES];
+	struct scene_part *part; /* what the engine of a reload stands on; NULL: this here */
+	struct scene_bus bus[SCENE_BUSES];
+	unsigned bus_count;
+	struct log *log;                    /* set before scene_start(); NULL */
+	const struct engine_guests *guests; /* likewise */
+	struct image image;
+	struct commands commands;
+	struct command_plan command_plan;
+	void *image_memory, *command_memory;
+	int64_t now_ns;
+
+	char trace[16384]; /* "R /path\n" (r: fresh), "W /path=text\n"; "1: " before bus 1's */
+	bool no_trace;
+	unsigned reads, writes, structure_reads, lists;
+	bool trace_lists; /* "D /alarm" too */
+	/* what else happens to the devices when something is read or written; may use scene_put() */
+	void (*on_write)(struct scene *scene, const char *path, const char *data, uint32_t len);
+	void (*on_read)(struct scene *scene, const char *path);
+	/* likewise, and by which bus */
+	void (*on_done)(struct scene_bus *bus, const struct bus_req *req);
+};
+
+/* Fill in an item with the defaults of the file; the pointers must live. */
+struct config_item *scene_input(struct scene *scene, const char *name, const char *path,
+                                enum ows_type type);
+struct config_item *scene_output(struct scene *scene, const char *name, const char *path,
+                                 enum ows_type type);
+/*
+ * What the bus answers at path. err 0: text. Replaces. "/alarm" is the list of the devices in alarm,
+ * each path ended by '\n'; without it the bus has no alarm search.
+ */
+void scene_put(struct scene *scene, const char *path, const char *text, int err);
+/* Writes there fail with err, reads do not; 0: they do not any more. */
+void scene_refuse_writes(struct scene *scene, const char *path, int err);
+const char *scene_at(struct scene *scene, const char *path);
+
+void scene_init(struct scene *scene);
+/* One more target, on that wire; wires are numbered in the order of their first targets. */
+struct scene_bus *scene_bus(struct scene *scene, const char *name, unsigned wire);
+/* As scene_put(), on another wire than the first. */
+void scene_put_on(struct scene *scene, unsigned wire, const char *path, const char *text, int err);
+/* All properties below path go to another wire, or SCENE_NOWHERE: "/28.551DDF030000". */
+void scene_plug(struct scene *scene, const char *path, unsigned wire);
+/* The target of a bus that holds hardware can be reached, or not; what it says follows from that. */
+void scene_reach(struct scene *scene, unsigned bus, bool there);
+/* Tell of a device: BUS_FOUND, BUS_LOST, BUS_POR. */
+void scene_tell(struct scene *scene, unsigned bus, enum bus_news news, const char *path);
+/* Make memory and engine; the target is down until scene_up(). */
+void scene_start(struct scene *scene);
+/*
+ * A reload: change() edits items, targets (by the names of buses, their count and order as it likes)
+ * and the rest of the configuration; NULL: it is as it was. What the buses have is left as it is,
+ * and the trace goes on.
+ */
+void scene_reload(struct scene *scene, void (*change)(struct config *));
+/*
+ * Another owsd with the same configuration after this one was killed: it has what the command segment
+ * holds. Not after scene_reload(). The target is down, and the trace begins.
+ */
+void scene_restart(struct scene *scene);
+/* The types are checked at once, in no time; the requests after that take theirs. */
+void scene_up(struct scene *scene);
+void scene_down(struct scene *scene, int err);
+void scene_up_on(struct scene *scene, unsigned bus);
+void scene_down_on(struct scene *scene, unsigned bus, int err);
+/* Let time pass: step the engine when it wants it, deliver answers when they are due. */
+void scene_run(struct scene *scene, int64_t ns);
+void scene_answer(struct scene *scene, uint32_t id, int err, const char *text, struct bus_req *req);
+void scene_answer_on(struct scene *scene, unsigned bus, uint32_t id, int err, const char *text,
+                     struct bus_req *req);
+void scene_clear_trace(struct scene *scene);
+void scene_end(struct scene *scene);
+
+/* As a consumer does. record: 1 is the first item. */
+void scene_set(struct scene *scene, unsigned record, int64_t value);
+void scene_set_text(struct scene *scene, unsigned record, const char *text);
+struct ows_command_slot *scene_slot(struct scene *scene, unsigned record);
+void scene_ring(struct scene *scene, unsigned record);
+struct ows_client *scene_client(struct scene *scene, unsigned client);
+
+struct ows_sample scene_sample(struct scene *scene, unsigned record);
+/* It has that quality, and comes from that target. */
+void scene_expect(struct scene *scene, unsigned record, uint8_t quality, unsigned target);
+struct ows_attrs scene_attrs(struct scene *scene, unsigned record);
+const char *scene_text(struct scene *scene, unsigned record);
+double scene_number(struct scene *scene, unsigned record);
+uint64_t scene_counter(struct scene *scene, const char *name);
+/* Of a lane. */
+uint64_t scene_counter_of(struct scene *scene, unsigned bus, const char *name);
+uint32_t scene_target_state(struct scene *scene, unsigned bus);
+
+#endif

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Records of which every field says the same number, so that a mixture of two shows, besides the
+ * check words: an oracle that has nothing of the protocol under test.
+ */
+#ifndef TESTS_UNIT_AID_WHOLE_H
+#define TESTS_UNIT_AID_WHOLE_H
+
+#include "src/shm/image.h"
+
+/* Texts have up to room - 1 bytes; 0: the record has none. */
+void whole_publish(struct image *image, uint32_t record, uint32_t n, uint32_t room);
+bool whole_sample(const struct ows_sample *sample);
+bool whole_slot(const struct ows_slot *slot);
+/* A sample with its text. */
+bool whole_text(const struct ows_sample *sample, const char *text, uint32_t room);
+
+#endif

@@ -1,0 +1,414 @@
+/* SPDX-License-Identifier: MIT */
+#include <dirent.h>
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "unity.h"
+
+#include "src/config/edit.h"
+#include "src/config/replace.h"
+#include "tests/unit/aid/said.h"
+
+static struct rio *rio;
+static char directory[64], file[96];
+
+void setUp(void)
+{
+	said_begin();
+	rio = NULL;
+	strcpy(directory, "/tmp/test_config_edit.XXXXXX");
+	TEST_ASSERT_NOT_NULL(mkdtemp(directory));
+	snprintf(file, sizeof(file), "%s/house.rio", directory);
+}
+
+static unsigned entries(bool remove)
+{
+	DIR *dir = opendir(directory);
+	struct dirent *entry;
+	unsigned count = 0;
+	char path[400];
+
+	while (dir && (entry = readdir(dir))) {
+		if (entry->d_name[0] == '.')
+			continue;
+		count++;
+		snprintf(path, sizeof(path), "%s/%s", directory, entry->d_name);
+		if (remove)
+			unlink(path);
+	}
+	if (dir)
+		closedir(dir);
+	return count;
+}
+
+void tearDown(void)
+{
+	rio_free(rio);
+	entries(true);
+	rmdir(directory);
+}
+
+static void parse(const char *text)
+{
+	rio_free(rio);
+	TEST_ASSERT_EQUAL_INT(0, rio_parse("f", text, strlen(text), &report, &rio));
+	TEST_ASSERT_EQUAL_STRING("", said);
+}
+
+static void expect_text(const char *text)
+{
+	TEST_ASSERT_EQUAL_STRING(text, rio->text);
+}
+
+static int set(const char *name, const char *setting)
+{
+	return edit_set(&rio, name, &setting, 1, &report);
+}
+
+static const char genuine[] = "OwsDrv {\n"
+			      "  # the heating\n"
+			      "  Timeout                 10\n"
+			      "  ItemCount               2\n"
+			      "  #Comment1 \"room\"\n"
+			      "  #\"continued\"\n"
+			      "  Item {\n"
+			      "    Name                    \"room1\" # north\n"
+			      "    Path                    \"/28.551DDF030000/temperature12\"\n"
+			      "    IOType                  0x0018\n"
+			      "    InitValue               \"22\"\n"
+			      "  }\n"
+			      "\n"
+			      "  Item {\n"
+			      "    Name                    \"relay\"\n"
+			      "    Path                    \"/29.B89115000000/PIO.BYTE\"\n"
+			      "    IOType                  0x0022\n"
+			      "    InitValue               \"0\"\n"
+			      "  }\n"
+			      "}\n";
+
+/* genuine with one piece replaced */
+static const char *with(const char *piece, const char *by)
+{
+	static char text[2048];
+	const char *at = strstr(genuine, piece);
+
+	TEST_ASSERT_NOT_NULL(at);
+	snprintf(text, sizeof(text), "%.*s%s%s", (int)(at - genuine), genuine, by,
+	         at + strlen(piece));
+	return text;
+}
+
+static void test_a_set_value_changes_its_bytes_only(void)
+{
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, set("room1", "InitValue=-3.5"));
+	expect_text(with("\"22\"", "\"-3.5\""));
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, set("room1", "Name=attic"));
+	expect_text(with("\"room1\"", "\"attic\""));
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, set("OwsDrv", "Timeout=7.5"));
+	expect_text(with("10\n", "7.5\n"));
+}
+
+static void test_type_direction_and_uncached_go_into_io_type(void)
+{
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, set("relay", "Type=word"));
+	expect_text(with("0x0022", "0x0025"));
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, set("relay", "IO=input"));
+	expect_text(with("0x0022", "0x0012"));
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, set("room1", "Uncached=on"));
+	expect_text(with("0x0018", "0x0118"));
+	TEST_ASSERT_EQUAL_INT(0, set("room1", "Uncached=off"));
+	expect_text(genuine);
+}
+
+static void test_a_key_that_is_new_stands_behind_the_others(void)
+{
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, set("room1", "PerFactor=10"));
+	expect_text(with("\"22\"\n", "\"22\"\n    PerFactor               10\n"));
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, set("OwsDrv", "Period=0.5"));
+	expect_text(with("2\n", "2\n  Period                  0.5\n"));
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, set("relay", "SetAlarm=set_alarm=133333333"));
+	expect_text(
+		with("\"0\"\n", "\"0\"\n    SetAlarm                \"set_alarm=133333333\"\n"));
+}
+
+static void test_settings_are_applied_in_order_also_over_a_new_name(void)
+{
+	static const char *const settings[] = {"Name=x", "Type=bool", "InitValue=on"};
+
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, edit_set(&rio, "relay", settings, 3, &report));
+	TEST_ASSERT_NOT_NULL(strstr(rio->text, "\"x\"\n"));
+	TEST_ASSERT_NOT_NULL(strstr(rio->text, "0x0021\n    InitValue               \"on\"\n"));
+}
+
+static void test_a_key_can_be_taken_out_so_that_it_is_not_defined(void)
+{
+	static const char *const keys[] = {"InitValue"}, *const none[] = {"PorAlarm"};
+
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, edit_unset(&rio, "room1", keys, 1, &report));
+	expect_text(with("    InitValue               \"22\"\n", ""));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_unset(&rio, "room1", none, 1, &report));
+	TEST_ASSERT_EQUAL_STRING("error: \"room1\" has no key PorAlarm\n", said);
+}
+
+static void test_an_added_item_is_last_and_counted(void)
+{
+	static const char *const settings[] = {"Type=byte", "IO=output", "SafeValue=1"};
+
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(
+		0, edit_add(&rio, "new", "/29.B89115000000/PIO.1", settings, 3, &report));
+	TEST_ASSERT_NOT_NULL(strstr(rio->text, "ItemCount               3\n"));
+	TEST_ASSERT_NOT_NULL(strstr(rio->text,
+	                            "\"0\"\n"
+	                            "  }\n"
+	                            "  Item {\n"
+	                            "    Name                    \"new\"\n"
+	                            "    Path                    \"/29.B89115000000/PIO.1\"\n"
+	                            "    IOType                  0x0022\n"
+	                            "    InitValue               \"\"\n"
+	                            "    SafeValue               \"1\"\n"
+	                            "  }\n"
+	                            "}\n"));
+}
+
+static void test_added_and_removed_again_leaves_no_trace(void)
+{
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, edit_add(&rio, "new", "/a/b", NULL, 0, &report));
+	TEST_ASSERT_EQUAL_INT(0, edit_remove(&rio, "new", &report));
+	expect_text(genuine);
+}
+
+static void test_a_removed_item_leaves_comments_and_is_no_longer_counted(void)
+{
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, edit_remove(&rio, "room1", &report));
+	TEST_ASSERT_NULL(strstr(rio->text, "room1"));
+	TEST_ASSERT_NOT_NULL(strstr(rio->text, "  ItemCount               1\n"
+	                                       "  #Comment1 \"room\"\n"
+	                                       "  #\"continued\"\n"
+	                                       "\n"
+	                                       "  Item {\n"
+	                                       "    Name                    \"relay\"\n"));
+}
+
+static void test_an_item_is_added_to_a_configuration_without_items(void)
+{
+	parse(edit_empty);
+	TEST_ASSERT_EQUAL_INT(0, edit_add(&rio, "a", "/x/y", NULL, 0, &report));
+	TEST_ASSERT_EQUAL_INT(0, edit_add(&rio, "b", "/x/z", NULL, 0, &report));
+	TEST_ASSERT_EQUAL_INT(0, edit_commit(rio, file, &report));
+	TEST_ASSERT_EQUAL_STRING("", said);
+	TEST_ASSERT_NOT_NULL(strstr(rio->text, "ItemCount               2\n"));
+}
+
+/* Every edit there is, each of which makes lines or takes some out. */
+static void edit_all(const char *text)
+{
+	static const char *const keys[] = {"InitValue"}, *const more[] = {"Type=byte", "IO=output"};
+	char path[100] = "Path=/28.551DDF030000/";
+
+	memset(path + strlen(path), 'p', 60);
+	parse(text);
+	TEST_ASSERT_EQUAL_INT(0, set("room1", path));
+	TEST_ASSERT_EQUAL_INT(0, set("room1", "Alarm=off"));
+	TEST_ASSERT_EQUAL_INT(0, edit_unset(&rio, "room1", keys, 1, &report));
+	TEST_ASSERT_EQUAL_INT(0, set("OwsDrv", "Period=0.5"));
+	TEST_ASSERT_EQUAL_INT(0, edit_add(&rio, "b", path + 5, more, 2, &report));
+	TEST_ASSERT_EQUAL_INT(0, edit_remove(&rio, "relay", &report));
+	TEST_ASSERT_EQUAL_INT(0, edit_commit(rio, file, &report));
+	TEST_ASSERT_EQUAL_STRING("", said);
+}
+
+/* Each "\n" of text becomes line_end. */
+static void with_line_ends(const char *text, const char *line_end, char *to)
+{
+	for (; *text; text++) {
+		if (*text == '\n')
+			to = stpcpy(to, line_end);
+		else
+			*to++ = *text;
+	}
+	*to = '\0';
+}
+
+static void test_every_edit_keeps_the_line_ends_of_the_file(void)
+{
+	static const char in_one_line[] =
+		"OwsDrv {\n"
+		"Item { Name \"room1\" Path \"/x/y\" Type byte InitValue \"\" }\n"
+		"Item { Name \"relay\" Path \"/x/z\" Type byte } }\n";
+	static const char *const texts[] = {genuine, in_one_line}, *const ends[] = {"\r\n", "\r"};
+	char plain[4000], text[4000];
+
+	for (size_t i = 0; i < 2; i++) {
+		edit_all(texts[i]);
+		TEST_ASSERT_NOT_NULL(strstr(rio->text, "p\"\n\"p"));
+		TEST_ASSERT_LESS_THAN_size_t(sizeof(plain) / 2, rio->len);
+		strcpy(plain, rio->text);
+		for (size_t k = 0; k < 2; k++) {
+			with_line_ends(texts[i], ends[k], text);
+			edit_all(text);
+			with_line_ends(plain, ends[k], text);
+			expect_text(text);
+		}
+	}
+}
+
+static void test_what_cannot_be_edited_is_said(void)
+{
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, set("none", "Type=byte"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, set("room1", "Typ=byte"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, set("room1", "Zebra=1"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, set("room1", "Type"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, set("room1", "Name=a\nb"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, set("OwsDrv", "Item=3"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_remove(&rio, "none", &report));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_add(&rio, "relay", "/a/b", NULL, 0, &report));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_add(&rio, "OwsDrv", "/a/b", NULL, 0, &report));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, set("relay", "Name=OwsDrv"));
+	TEST_ASSERT_EQUAL_STRING(
+		"error: there is no item \"none\"\n"
+		"error: there is no key Typ; is it Type?\n"
+		"error: there is no key Zebra\n"
+		"error: \"Type\": expected KEY=VALUE\n"
+		"error: Name: control characters are not allowed\n"
+		"error: Item is a block and has no value\n"
+		"error: there is no item \"none\"\n"
+		"error: there is an item \"relay\" already\n"
+		"error: no item can be named OwsDrv: that stands for the driver itself, "
+		"whose keys are changed by config FILE set OwsDrv KEY=VALUE\n"
+		"error: no item can be named OwsDrv: that stands for the driver itself, "
+		"whose keys are changed by config FILE set OwsDrv KEY=VALUE\n",
+		said);
+	expect_text(genuine);
+}
+
+static void read_back(const char *path, char *text, size_t size)
+{
+	FILE *in = fopen(path, "r");
+	size_t len;
+
+	TEST_ASSERT_NOT_NULL_MESSAGE(in, path);
+	len = fread(text, 1, size - 1, in);
+	text[len] = '\0';
+	fclose(in);
+}
+
+static void test_a_result_that_is_no_configuration_never_reaches_the_file(void)
+{
+	char text[2048];
+
+	TEST_ASSERT_EQUAL_INT(0, replace_file(file, genuine, strlen(genuine)));
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, set("relay", "InitValue=256"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_commit(rio, file, &report));
+	TEST_ASSERT_NOT_NULL(strstr(said, "InitValue \"256\": the type byte cannot hold it"));
+	read_back(file, text, sizeof(text));
+	TEST_ASSERT_EQUAL_STRING(genuine, text);
+	TEST_ASSERT_EQUAL_UINT(1, entries(false));
+}
+
+static void test_a_replaced_file_keeps_its_mode_and_is_a_new_one(void)
+{
+	struct stat before, after;
+	char text[16];
+
+	TEST_ASSERT_EQUAL_INT(0, replace_file(file, "one", 3));
+	TEST_ASSERT_EQUAL_INT(0, chmod(file, 0640));
+	TEST_ASSERT_EQUAL_INT(0, stat(file, &before));
+	TEST_ASSERT_EQUAL_INT(0, replace_file(file, "two", 3));
+	TEST_ASSERT_EQUAL_INT(0, stat(file, &after));
+	TEST_ASSERT_EQUAL_HEX(0640, after.st_mode & 07777);
+	TEST_ASSERT_EQUAL_INT(before.st_uid, after.st_uid);
+	TEST_ASSERT_EQUAL_INT(before.st_gid, after.st_gid);
+	read_back(file, text, sizeof(text));
+	TEST_ASSERT_EQUAL_STRING("two", text);
+	TEST_ASSERT_EQUAL_UINT(1, entries(false));
+}
+
+static void test_a_symbolic_link_stays_and_its_target_is_replaced(void)
+{
+	struct stat status;
+	char link[96], text[16];
+
+	snprintf(link, sizeof(link), "%s/link.rio", directory);
+	TEST_ASSERT_EQUAL_INT(0, replace_file(file, "one", 3));
+	TEST_ASSERT_EQUAL_INT(0, symlink("house.rio", link));
+	TEST_ASSERT_EQUAL_INT(0, replace_file(link, "two", 3));
+	TEST_ASSERT_EQUAL_INT(0, lstat(link, &status));
+	TEST_ASSERT_TRUE(S_ISLNK(status.st_mode));
+	read_back(file, text, sizeof(text));
+	TEST_ASSERT_EQUAL_STRING("two", text);
+	TEST_ASSERT_EQUAL_INT(0, unlink(file));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, replace_file(link, "x", 1));
+}
+
+static void test_when_writing_fails_the_old_file_stays_and_nothing_is_left_over(void)
+{
+	struct rlimit limit, small;
+	char text[16];
+	int err;
+
+	TEST_ASSERT_EQUAL_INT(0, replace_file(file, "one", 3));
+	/* a limit on the size of files fails as a full disk does: in the middle of a write */
+	TEST_ASSERT_EQUAL_INT(0, getrlimit(RLIMIT_FSIZE, &limit));
+	small = limit;
+	small.rlim_cur = 100;
+	signal(SIGXFSZ, SIG_IGN);
+	TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_FSIZE, &small));
+	err = replace_file(file, genuine, strlen(genuine));
+	TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_FSIZE, &limit));
+	signal(SIGXFSZ, SIG_DFL);
+	TEST_ASSERT_EQUAL_INT(-EFBIG, err);
+	read_back(file, text, sizeof(text));
+	TEST_ASSERT_EQUAL_STRING("one", text);
+	TEST_ASSERT_EQUAL_UINT(1, entries(false));
+}
+
+static void test_only_plain_files_are_replaced(void)
+{
+	TEST_ASSERT_EQUAL_INT(-EISDIR, replace_file(directory, "x", 1));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, replace_file("/dev/null", "x", 1));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, replace_file("/nonexistent/dir/x.rio", "x", 1));
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_set_value_changes_its_bytes_only);
+	RUN_TEST(test_type_direction_and_uncached_go_into_io_type);
+	RUN_TEST(test_a_key_that_is_new_stands_behind_the_others);
+	RUN_TEST(test_settings_are_applied_in_order_also_over_a_new_name);
+	RUN_TEST(test_a_key_can_be_taken_out_so_that_it_is_not_defined);
+	RUN_TEST(test_an_added_item_is_last_and_counted);
+	RUN_TEST(test_added_and_removed_again_leaves_no_trace);
+	RUN_TEST(test_a_removed_item_leaves_comments_and_is_no_longer_counted);
+	RUN_TEST(test_an_item_is_added_to_a_configuration_without_items);
+	RUN_TEST(test_every_edit_keeps_the_line_ends_of_the_file);
+	RUN_TEST(test_what_cannot_be_edited_is_said);
+	RUN_TEST(test_a_result_that_is_no_configuration_never_reaches_the_file);
+	RUN_TEST(test_a_replaced_file_keeps_its_mode_and_is_a_new_one);
+	RUN_TEST(test_a_symbolic_link_stays_and_its_target_is_replaced);
+	RUN_TEST(test_when_writing_fails_the_old_file_stays_and_nothing_is_left_over);
+	RUN_TEST(test_only_plain_files_are_replaced);
+	return UNITY_END();
+}

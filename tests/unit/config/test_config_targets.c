@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: MIT */
+/* Targets, the bars and commas between them, the Bus of each, and those that are refused. */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "unity.h"
+
+#include "tests/unit/aid/config_case.h"
+
+void setUp(void)
+{
+	config_case_begin();
+}
+
+void tearDown(void)
+{
+	config_case_end();
+}
+
+static void test_a_target_finds_its_bus_however_it_is_spelt(void)
+{
+	const struct config_bus *bus;
+
+	parse_driver("TargetName \"LocalHost | i2c:/dev/i2c-1\" AlarmLine \"gpiochip0/5\"\n"
+	             "Bus { Target \"i2c:/dev/i2c-1\" SleepLine \"c/3\" PowerLine \"c/2\" }\n"
+	             "Bus { Target \"localhost:4304\" }");
+	TEST_ASSERT_NOT_NULL(config);
+	bus = config_bus(config, "i2c:/dev/i2c-1");
+	TEST_ASSERT_EQUAL_PTR(&config->buses[0], bus);
+	TEST_ASSERT_EQUAL_UINT(2, bus->option_count);
+	TEST_ASSERT_EQUAL_STRING("PowerLine", bus->options[0].key);
+	TEST_ASSERT_EQUAL_STRING("c/2", bus->options[0].text);
+	TEST_ASSERT_EQUAL_INT(3, bus->options[0].line);
+	TEST_ASSERT_EQUAL_STRING("SleepLine", bus->options[1].key);
+	TEST_ASSERT_EQUAL_PTR(&config->buses[1], config_bus(config, "LocalHost"));
+	TEST_ASSERT_EQUAL_UINT(0, config->buses[1].option_count);
+	TEST_ASSERT_NULL(config_bus(config, "i2c:/dev/i2c-2"));
+	TEST_ASSERT_EQUAL_STRING("gpiochip0/5", config->alarm_line);
+	TEST_ASSERT_NULL(config->heartbeat_line);
+}
+
+static void test_a_comma_separates_two_wires_and_a_bar_two_ways(void)
+{
+	TEST_ASSERT_EQUAL_INT(
+		0, parse_driver("TargetName \" localhost:4304|i2c:/dev/i2c-1 | w1 , [::1]:4304\""));
+	TEST_ASSERT_EQUAL_STRING("", said);
+	TEST_ASSERT_EQUAL_UINT(4, config->target_count);
+	TEST_ASSERT_EQUAL_STRING("localhost:4304", config->targets[0].text);
+	TEST_ASSERT_EQUAL_STRING("i2c:/dev/i2c-1", config->targets[1].text);
+	TEST_ASSERT_EQUAL_STRING("w1", config->targets[2].text);
+	TEST_ASSERT_EQUAL_STRING("[::1]:4304", config->targets[3].text);
+	TEST_ASSERT_EQUAL_INT(CONFIG_FIRST, config->targets[0].relation);
+	TEST_ASSERT_EQUAL_INT(CONFIG_BAR, config->targets[1].relation);
+	TEST_ASSERT_EQUAL_INT(CONFIG_BAR, config->targets[2].relation);
+	TEST_ASSERT_EQUAL_INT(CONFIG_COMMA, config->targets[3].relation);
+}
+
+static void test_auto_is_a_bar_of_three_ways(void)
+{
+	TEST_ASSERT_EQUAL_INT(0, parse_driver("TargetName \"sim:a, auto | far:4304\""));
+	TEST_ASSERT_EQUAL_UINT(5, config->target_count);
+	TEST_ASSERT_EQUAL_STRING("localhost:4304", config->targets[1].text);
+	TEST_ASSERT_EQUAL_STRING("i2c:auto", config->targets[2].text);
+	TEST_ASSERT_EQUAL_STRING("w1", config->targets[3].text);
+	TEST_ASSERT_EQUAL_INT(CONFIG_COMMA, config->targets[1].relation);
+	for (int i = 2; i < 5; i++)
+		TEST_ASSERT_EQUAL_INT(CONFIG_BAR, config->targets[i].relation);
+	TEST_ASSERT_EQUAL_INT(0, parse_driver("TargetName \"auto\""));
+	TEST_ASSERT_EQUAL_INT(CONFIG_FIRST, config->targets[0].relation);
+	TEST_ASSERT_EQUAL_UINT(3, config->target_count);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, parse_driver("TargetName \"auto, w1\""));
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "the target \"w1\" stands twice"), said);
+}
+
+static int own(const char *listen, const char *target)
+{
+	char keys[300];
+
+	snprintf(keys, sizeof(keys), "Listen \"%s\"\nTargetName \"%s\"", listen, target);
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, parse_driver(keys), said);
+	said[0] = '\0';
+	return config_check_own(config, &report);
+}
+
+static void test_a_target_that_leads_back_to_owsd_is_refused(void)
+{
+	static const char *const back[][2] = {
+		{"4304", "localhost"},
+		{"4304", "127.0.0.1:4304"},
+		{"4304", "[::1]"},
+		{"0.0.0.0:4310", "localhost:4310"},
+		{"[::]:4310", "owserver:localhost:4310"},
+		{"192.168.1.5:4304", "192.168.1.5"},
+	};
+	static const char *const good[][2] = {
+		{"4305", "localhost"}, {"192.168.1.5:4304", "localhost"},
+		{"4304", "far:4304"},  {"0.0.0.0:4304", "192.168.1.6"},
+		{"4304", "null:"},     {"0.0.0.0:4310", "[::1]:4310"},
+	};
+
+	for (size_t i = 0; i < sizeof(back) / sizeof(back[0]); i++) {
+		TEST_ASSERT_EQUAL_INT_MESSAGE(-EINVAL, own(back[i][0], back[i][1]), back[i][1]);
+		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "is where this owsd listens"), said);
+	}
+	for (size_t i = 0; i < sizeof(good) / sizeof(good[0]); i++)
+		TEST_ASSERT_EQUAL_INT_MESSAGE(0, own(good[i][0], good[i][1]), said);
+}
+
+static void test_auto_leaves_out_what_leads_back_to_owsd(void)
+{
+	TEST_ASSERT_EQUAL_INT(0, own("4304", "auto, far"));
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "warning: auto looks for no owserver"), said);
+	TEST_ASSERT_EQUAL_UINT(3, config->target_count);
+	TEST_ASSERT_EQUAL_STRING("i2c:auto", config->targets[0].text);
+	TEST_ASSERT_EQUAL_INT(CONFIG_FIRST, config->targets[0].relation);
+	TEST_ASSERT_EQUAL_INT(CONFIG_BAR, config->targets[1].relation);
+	TEST_ASSERT_EQUAL_INT(CONFIG_COMMA, config->targets[2].relation);
+	TEST_ASSERT_EQUAL_UINT(0, config->targets[1].group);
+	TEST_ASSERT_EQUAL_UINT(1, config->targets[2].group);
+}
+
+static void test_more_than_sixteen_targets_are_refused(void)
+{
+	char line[200] = "TargetName \"h1";
+
+	for (int i = 2; i <= CONFIG_TARGETS_MAX; i++)
+		snprintf(line + strlen(line), sizeof(line) - strlen(line), ",h%d", i);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, parse_driver(strcat(line, "|one.more\"")));
+	TEST_ASSERT_EQUAL_STRING("f:2:12: error: \"one.more\" is one too many: owsd serves at most "
+	                         "16 targets, ways behind a bar and the 3 of auto counted\n",
+	                         said);
+	strcpy(strrchr(line, '|'), "\"");
+	TEST_ASSERT_EQUAL_INT(0, parse_driver(line));
+	TEST_ASSERT_EQUAL_UINT(16, config->target_count);
+}
+
+static void test_targets_of_the_command_line_replace_those_of_the_file(void)
+{
+	static const char *const good[] = {"a | b", "c"}, *const bad[] = {"a", "a:4304"};
+
+	parse_driver("TargetName \"x\"");
+	TEST_ASSERT_EQUAL_INT(-EINVAL, config_set_targets(config, bad, 2, &report));
+	TEST_ASSERT_EQUAL_STRING("error: the target \"a:4304\" stands twice; the first is \"a\"\n",
+	                         said);
+	TEST_ASSERT_EQUAL_STRING("x", config->targets[0].text);
+	TEST_ASSERT_EQUAL_UINT(1, config->target_count);
+	TEST_ASSERT_EQUAL_INT(0, config_set_targets(config, good, 2, &report));
+	TEST_ASSERT_EQUAL_UINT(3, config->target_count);
+	TEST_ASSERT_EQUAL_STRING("b", config->targets[1].text);
+	TEST_ASSERT_EQUAL_INT(CONFIG_BAR, config->targets[1].relation);
+	TEST_ASSERT_EQUAL_INT(CONFIG_COMMA, config->targets[2].relation);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_target_finds_its_bus_however_it_is_spelt);
+	RUN_TEST(test_a_comma_separates_two_wires_and_a_bar_two_ways);
+	RUN_TEST(test_auto_is_a_bar_of_three_ways);
+	RUN_TEST(test_a_target_that_leads_back_to_owsd_is_refused);
+	RUN_TEST(test_auto_leaves_out_what_leads_back_to_owsd);
+	RUN_TEST(test_more_than_sixteen_targets_are_refused);
+	RUN_TEST(test_targets_of_the_command_line_replace_those_of_the_file);
+	return UNITY_END();
+}

@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: MIT */
+/* The table of keys, and the manual page that has to say the same. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "unity.h"
+
+#include "src/config/options.h"
+#include "tests/unit/aid/said.h"
+
+#define MANUAL "docs/owsd.rio.5"
+
+static char *manual;
+static struct config *config;
+
+void setUp(void)
+{
+	size_t len;
+
+	said_must_not_begin();
+	config = NULL;
+	TEST_ASSERT_EQUAL_INT(0, rio_read(MANUAL, &report, &manual, &len));
+}
+
+void tearDown(void)
+{
+	config_free(config);
+	free(manual);
+	manual = NULL;
+}
+
+/* The paragraph of a key, up to the next key or section; copied into section. */
+static void find_section(const char *key, char *section, size_t size)
+{
+	char mark[96];
+	const char *begin, *end, *other;
+
+	snprintf(mark, sizeof(mark), "\n.It Cm %s\n", key);
+	begin = strstr(manual, mark);
+	TEST_ASSERT_NOT_NULL_MESSAGE(begin, key);
+	begin += strlen(mark);
+	end = strstr(begin, "\n.It Cm ");
+	other = strstr(begin, "\n.El");
+	if (!end || other < end)
+		end = other;
+	TEST_ASSERT_NOT_NULL_MESSAGE(end, key);
+	snprintf(section, size, "%.*s", (int)(end - begin), begin);
+}
+
+static bool has_number(const char *text, double number)
+{
+	while (*text) {
+		char *end;
+		double found = strtod(text, &end);
+
+		if (end != text && found == number)
+			return true;
+		text = end != text ? end : text + 1;
+	}
+	return false;
+}
+
+static void test_every_key_has_a_place_a_kind_and_help(void)
+{
+	for (int i = 0; i < OPTION_COUNT_ALL; i++) {
+		const struct option_def *def = &option_table[i];
+
+		TEST_ASSERT_NOT_NULL(def->key);
+		TEST_ASSERT_NOT_NULL_MESSAGE(def->help, def->key);
+		TEST_ASSERT_TRUE_MESSAGE(strlen(def->key) <= RIO_KEY_MAX, def->key);
+		TEST_ASSERT_EQUAL_INT_MESSAGE(i, option_find(def->place, def->key), def->key);
+		if (def->kind == OPTION_COUNT || def->kind == OPTION_SECONDS)
+			TEST_ASSERT_TRUE_MESSAGE(def->least < def->most, def->key);
+	}
+	TEST_ASSERT_EQUAL_INT(-1, option_find(PLACE_DRIVER, "Name"));
+	TEST_ASSERT_EQUAL_INT(-1, option_find(PLACE_ITEM, "name"));
+}
+
+static void test_the_nearest_key_is_near(void)
+{
+	TEST_ASSERT_EQUAL_STRING("Timeout", option_nearest(PLACE_DRIVER, "timeout"));
+	TEST_ASSERT_EQUAL_STRING("MaxRetries", option_nearest(PLACE_DRIVER, "MaxRetrys"));
+	TEST_ASSERT_EQUAL_STRING("PerFactor", option_nearest(PLACE_ITEM, "PerFaktor"));
+	TEST_ASSERT_EQUAL_STRING("Readable", option_nearest(PLACE_ITEM, "Readible"));
+	TEST_ASSERT_NULL(option_nearest(PLACE_ITEM, "Elephant"));
+	TEST_ASSERT_NULL(option_nearest(PLACE_DRIVER, "Name"));
+}
+
+static void test_the_manual_has_every_key_with_default_and_limits(void)
+{
+	char section[2048];
+
+	for (int i = 0; i < OPTION_COUNT_ALL; i++) {
+		const struct option_def *def = &option_table[i];
+
+		if (def->place == PLACE_BUS)
+			continue;
+		find_section(def->key, section, sizeof(section));
+		if (def->preset && *def->preset)
+			TEST_ASSERT_NOT_NULL_MESSAGE(strstr(section, def->preset), def->key);
+		if ((def->kind == OPTION_COUNT && i != OPT_IO_TYPE && i != OPT_ITEM_COUNT) ||
+		    def->kind == OPTION_SECONDS) {
+			TEST_ASSERT_TRUE_MESSAGE(has_number(section, def->least), def->key);
+			TEST_ASSERT_TRUE_MESSAGE(has_number(section, def->most), def->key);
+		}
+	}
+}
+
+static void test_the_example_of_the_manual_is_a_configuration(void)
+{
+	const char *begin = strstr(manual, "\nOwsDrv {\n"), *end = strstr(manual, "\n.Ed");
+
+	TEST_ASSERT_TRUE(begin && end && begin < end);
+	TEST_ASSERT_EQUAL_INT(0,
+	                      config_parse(MANUAL, begin, (size_t)(end - begin), &report, &config));
+	TEST_ASSERT_EQUAL_UINT(3, config->item_count);
+	TEST_ASSERT_TRUE(config->items[2].alarm);
+	TEST_ASSERT_TRUE(config->items[1].has_safe);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_every_key_has_a_place_a_kind_and_help);
+	RUN_TEST(test_the_nearest_key_is_near);
+	RUN_TEST(test_the_manual_has_every_key_with_default_and_limits);
+	RUN_TEST(test_the_example_of_the_manual_is_a_configuration);
+	return UNITY_END();
+}

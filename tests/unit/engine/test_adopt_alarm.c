@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: MIT */
+/* A reload in the engine: alarms and their journal. */
+#include "unity.h"
+
+#include "tests/unit/aid/alarm_scene.h"
+
+static struct scene s;
+
+void setUp(void)
+{
+	scene_init(&s);
+}
+
+void tearDown(void)
+{
+	scene_end(&s);
+}
+
+static void alarm_house(void)
+{
+	alarm_device(&s, "0", "0");
+	alarm_item(&s, "door", D "/sensed.BYTE", "latch.BYTE", "por", NULL, "latch.BYTE=0");
+	s.on_read = alarm_on_read;
+	scene_start(&s);
+	scene_up(&s);
+	scene_run(&s, SCENE_S);
+}
+
+static void test_alarms_go_on_and_the_journal_with_them(void)
+{
+	uint32_t head;
+
+	alarm_house();
+	scene_put(&s, D "/latch.BYTE", "1", 0);
+	scene_run(&s, SCENE_S);
+	head = s.image.header->alarm_head;
+	TEST_ASSERT_EQUAL_UINT32(1, scene_attrs(&s, 1).alarms);
+	TEST_ASSERT_EQUAL_UINT32(2, head);
+	scene_reload(&s, NULL);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_attrs(&s, 1).alarms);
+	TEST_ASSERT_EQUAL_UINT32(head, s.image.header->alarm_head);
+	TEST_ASSERT_EQUAL_UINT32(1, s.image.alarms[0].record);
+	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_RAISED, s.image.alarms[0].event);
+	scene_put(&s, D "/latch.BYTE", "1", 0);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(2, scene_attrs(&s, 1).alarms);
+	TEST_ASSERT_EQUAL_UINT32(head + 2, s.image.header->alarm_head);
+}
+
+static void test_a_list_of_alarms_on_its_way_comes_over(void)
+{
+	alarm_house();
+	s.bus[0].slow = "/alarm";
+	s.bus[0].slow_ns = 2 * SCENE_S;
+	scene_put(&s, D "/latch.BYTE", "1", 0);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].pending_count);
+	scene_reload(&s, NULL);
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_attrs(&s, 1).alarms);
+	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "unknown_answers"));
+}
+
+static void without_door(struct config *config)
+{
+	*config->items = (struct config_item){.name = "room",
+	                                      .path = "/28.551DDF030000/temperature",
+	                                      .type = OWS_DOUBLE,
+	                                      .per_factor = 1,
+	                                      .readable = true,
+	                                      .init_text = "",
+	                                      .safe_text = ""};
+}
+
+static void test_the_journal_of_a_signal_that_is_gone_goes_with_it(void)
+{
+	alarm_house();
+	scene_put(&s, D "/latch.BYTE", "1", 0);
+	scene_run(&s, SCENE_S);
+	scene_put(&s, "/28.551DDF030000/temperature", "21.5", 0);
+	scene_reload(&s, without_door);
+	TEST_ASSERT_EQUAL_UINT32(2, s.image.header->alarm_head);
+	TEST_ASSERT_EQUAL_UINT32(0, s.image.alarms[0].record);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_alarms_go_on_and_the_journal_with_them);
+	RUN_TEST(test_a_list_of_alarms_on_its_way_comes_over);
+	RUN_TEST(test_the_journal_of_a_signal_that_is_gone_goes_with_it);
+	return UNITY_END();
+}

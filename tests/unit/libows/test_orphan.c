@@ -1,0 +1,316 @@
+/* SPDX-License-Identifier: MIT */
+/* Consumers of an owsd that was killed after the names of its segments were removed. */
+#include <errno.h>
+#include <pthread.h>
+#include <time.h>
+
+#include "unity.h"
+
+#include "tests/unit/aid/instance.h"
+
+static const struct instance_signal signals[] = {
+	{"room", "/28.1/temperature", OWS_DOUBLE, false, 0},
+	{"relay", "/29.1/PIO.0", OWS_BOOL, true, 0},
+	{"label", "/23.1/memory", OWS_STRING, true, 0},
+};
+enum { ROOM = 1, RELAY, LABEL };
+#define COUNT 3
+#define DEAD (3 * INSTANCE_S) /* since its last beat */
+
+static struct instance first, second;
+static bool shown; /* the second is there */
+static struct ows *h;
+static int room, relay, label;
+static int64_t t0; /* the first one's last beat */
+
+/* It was killed as long ago as is said. */
+static void kill_first(int64_t ago_ns)
+{
+	t0 = ows_now() - ago_ns;
+	instance_beat(&first, t0, 0);
+	instance_put_double(&first, ROOM, 20, t0);
+}
+
+void setUp(void)
+{
+	instance_start(&first, "orphan", signals, COUNT);
+	shown = false;
+	TEST_ASSERT_EQUAL(0, ows_open(first.name, OWS_CONTROL, &h));
+	room = ows_find(h, "room");
+	relay = ows_find(h, "relay");
+	label = ows_find(h, "label");
+	kill_first(0);
+}
+
+void tearDown(void)
+{
+	ows_close(h);
+	if (shown)
+		instance_leave(&second);
+	instance_end(&first);
+}
+
+static void remove_names(void)
+{
+	TEST_ASSERT_EQUAL(0, segment_remove(first.name, SEGMENT_IMAGE));
+	TEST_ASSERT_EQUAL(0, segment_remove(first.name, SEGMENT_COMMAND));
+}
+
+/* The owsd after it, which finds nothing to retire. */
+static void start_second(void)
+{
+	int64_t now = ows_now();
+
+	instance_make(&second, "orphan", 1, now, signals, COUNT);
+	instance_lives_on(&second);
+	instance_put_double(&second, ROOM, 21, now);
+	instance_show(&second);
+	shown = true;
+}
+
+static void replace(void)
+{
+	remove_names();
+	start_second();
+}
+
+static int get(int64_t now_ns)
+{
+	struct ows_value v;
+
+	return ows_get(h, room, now_ns, &v);
+}
+
+static void test_a_reader_of_an_orphan_is_led_to_the_next_owsd(void)
+{
+	struct ows_value v;
+
+	replace();
+	TEST_ASSERT_EQUAL(-ESTALE, ows_get(h, room, t0 + DEAD, &v));
+	TEST_ASSERT_EQUAL_DOUBLE(20, v.number);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, v.quality);
+	TEST_ASSERT_EQUAL(0, ows_reopen(h));
+	TEST_ASSERT_EQUAL(0, ows_get(h, room, ows_now(), &v));
+	TEST_ASSERT_EQUAL_DOUBLE(21, v.number);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, v.quality);
+}
+
+static void test_while_the_heart_beats_nobody_looks_at_names(void)
+{
+	struct ows_value v;
+
+	replace();
+	TEST_ASSERT_EQUAL(0, ows_get(h, room, t0 + INSTANCE_S, &v));
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, v.quality);
+	TEST_ASSERT_EQUAL(-ESTALE, get(t0 + DEAD));
+	/* the process was stopped, not dead, and goes on */
+	instance_beat(&first, t0 + 4 * INSTANCE_S, 1);
+	TEST_ASSERT_EQUAL(0, get(t0 + 4 * INSTANCE_S));
+}
+
+static void test_a_name_that_leads_nowhere_yet_is_no_reason_to_reopen(void)
+{
+	struct ows_value v;
+
+	remove_names();
+	TEST_ASSERT_EQUAL(0, ows_get(h, room, t0 + DEAD, &v));
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, v.quality);
+	start_second();
+	TEST_ASSERT_EQUAL(-ESTALE, get(t0 + DEAD + INSTANCE_S));
+}
+
+static void test_a_dead_owsd_whose_names_are_in_place_is_no_orphan(void)
+{
+	kill_first(DEAD);
+	TEST_ASSERT_EQUAL(0, get(t0 + DEAD));
+	TEST_ASSERT_EQUAL(0, ows_set(h, relay, 1, NULL));
+	TEST_ASSERT_EQUAL(0, ows_reopen(h));
+	TEST_ASSERT_EQUAL(0, get(t0 + DEAD));
+}
+
+static void test_names_are_looked_at_once_a_second(void)
+{
+	TEST_ASSERT_EQUAL(0, get(t0 + DEAD));
+	replace();
+	TEST_ASSERT_EQUAL(0, get(t0 + DEAD + INSTANCE_S - 1));
+	TEST_ASSERT_EQUAL(-ESTALE, get(t0 + DEAD + INSTANCE_S));
+	remove_names();
+	TEST_ASSERT_EQUAL(-ESTALE, get(t0 + DEAD + 2 * INSTANCE_S - 1));
+	TEST_ASSERT_EQUAL(0, get(t0 + DEAD + 2 * INSTANCE_S));
+	TEST_ASSERT_EQUAL(0, get(t0 + DEAD)); /* a clock that goes back is looked at anew */
+}
+
+/* What is bad has no heart to ask for its quality. */
+static void test_a_reader_of_a_bad_value_is_led_on_too(void)
+{
+	struct ows_sample sample = {.quality = OWS_Q_NO_DEVICE, .measured_ns = t0};
+	struct ows_attrs attrs = {0};
+
+	image_publish(&first.image, ROOM, &sample, &attrs, NULL);
+	replace();
+	TEST_ASSERT_EQUAL(-ESTALE, get(t0 + DEAD));
+}
+
+static void test_every_way_to_look_at_an_orphan_says_so(void)
+{
+	int age = ows_find(h, "room_Age");
+	struct ows_alarm_state state;
+	struct ows_command command;
+	struct ows_daemon daemon;
+	struct ows_value v;
+	char text[64];
+
+	kill_first(DEAD);
+	replace();
+	TEST_ASSERT_EQUAL(-ESTALE, ows_get_signal(h, 0, ows_now(), &v));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_get_text(h, room, ows_now(), &v, text, sizeof(text)));
+	TEST_ASSERT_EQUAL_STRING("20", text);
+	TEST_ASSERT_EQUAL(-ESTALE, ows_get_text(h, label, ows_now(), &v, text, sizeof(text)));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_get(h, age, ows_now(), &v));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_daemon(h, ows_now(), &daemon));
+	TEST_ASSERT_FALSE(daemon.alive);
+	TEST_ASSERT_EQUAL(-ESTALE, ows_alarm_state(h, room, &state));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_command(h, room, &command));
+	TEST_ASSERT_EQUAL(0, ows_reopen(h));
+	TEST_ASSERT_EQUAL(0, ows_get(h, age, ows_now(), &v));
+	TEST_ASSERT_EQUAL(0, ows_daemon(h, ows_now(), &daemon));
+	TEST_ASSERT_TRUE(daemon.alive);
+	TEST_ASSERT_EQUAL(0, ows_alarm_state(h, room, &state));
+	TEST_ASSERT_EQUAL(0, ows_command(h, room, &command));
+}
+
+static void test_what_is_set_in_an_orphan_is_said_to_be_lost(void)
+{
+	const int ids[] = {relay, relay};
+	const double values[] = {1, 0};
+	struct command c;
+
+	kill_first(DEAD);
+	replace();
+	TEST_ASSERT_EQUAL(-ESTALE, ows_set(h, relay, 1, NULL));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_set_text(h, label, "x", NULL));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_set_many(h, ids, values, 2));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_acknowledge(h, room));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_beat(h, 1000));
+	TEST_ASSERT_EQUAL(0, ows_reopen(h));
+	TEST_ASSERT_EQUAL(0, ows_beat(h, 1000));
+	TEST_ASSERT_EQUAL(0, ows_set(h, relay, 1, NULL));
+	commands_load(&second.commands, RELAY, &c);
+	TEST_ASSERT_EQUAL_INT64(1, c.value);
+	TEST_ASSERT_EQUAL(1, c.client);
+}
+
+static void test_a_command_segment_alone_may_be_the_orphan(void)
+{
+	struct segment other;
+	struct ows *reader;
+	struct ows_value v;
+
+	kill_first(DEAD);
+	TEST_ASSERT_EQUAL(0, ows_open(first.name, OWS_READ, &reader));
+	TEST_ASSERT_EQUAL(0, segment_remove(first.name, SEGMENT_COMMAND));
+	TEST_ASSERT_EQUAL(0, segment_create(first.name, SEGMENT_COMMAND, 4096, &other));
+	TEST_ASSERT_EQUAL(0, segment_show(first.name, &other));
+	segment_close(&other);
+	TEST_ASSERT_EQUAL(-ESTALE, ows_set(h, relay, 1, NULL));
+	TEST_ASSERT_EQUAL(-ENOENT, ows_reopen(h));
+	TEST_ASSERT_EQUAL(0, ows_get_signal(reader, 0, ows_now(), &v));
+	ows_close(reader);
+}
+
+static void test_a_look_leaves_errno_alone(void)
+{
+	remove_names();
+	errno = EDOM;
+	TEST_ASSERT_EQUAL(0, get(t0 + DEAD));
+	TEST_ASSERT_EQUAL(EDOM, errno);
+}
+
+static void test_who_waits_on_an_orphan_is_told(void)
+{
+	uint32_t news = 0;
+
+	TEST_ASSERT_EQUAL(1, ows_wait(h, &news, 0));
+	kill_first(DEAD);
+	TEST_ASSERT_EQUAL(1, ows_wait(h, &news, 0));
+	replace();
+	TEST_ASSERT_EQUAL(-ESTALE, ows_wait(h, &news, 60 * INSTANCE_S));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_wait(h, &news, -1));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_wait(h, &news, 0));
+}
+
+static void test_who_waits_on_an_owsd_that_was_stopped_and_goes_on_is_served(void)
+{
+	const struct timespec pause = {.tv_nsec = 50000000};
+	int64_t deadline = ows_now() + 20 * INSTANCE_S;
+	uint32_t news = 0;
+	int got;
+
+	kill_first(DEAD);
+	replace();
+	TEST_ASSERT_EQUAL(-ESTALE, ows_wait(h, &news, 0));
+	do {
+		instance_beat(&first, ows_now(), 1);
+		got = ows_wait(h, &news, 0);
+		nanosleep(&pause, NULL);
+	} while (got == -ESTALE && ows_now() < deadline);
+	TEST_ASSERT_EQUAL(1, got);
+}
+
+static void test_who_waits_on_a_dead_owsd_wakes_at_his_time(void)
+{
+	uint32_t news = 0;
+
+	kill_first(DEAD);
+	TEST_ASSERT_EQUAL(1, ows_wait(h, &news, 0));
+	remove_names();
+	TEST_ASSERT_EQUAL(0, ows_wait(h, &news, 1000000));
+	TEST_ASSERT_EQUAL(0,
+	                  ows_wait(h, &news, INSTANCE_S + 1000000)); /* longer than between looks */
+}
+
+static void *replace_later(void *arg)
+{
+	const struct timespec pause = {.tv_nsec = 20000000};
+
+	(void)arg;
+	nanosleep(&pause, NULL);
+	start_second();
+	return NULL;
+}
+
+/* Nobody wakes it: nobody has what it sleeps on. */
+static void test_a_sleeper_on_an_orphan_wakes_by_itself(void)
+{
+	uint32_t news = 0;
+	pthread_t thread;
+
+	kill_first(DEAD);
+	remove_names();
+	TEST_ASSERT_EQUAL(1, ows_wait(h, &news, 0));
+	TEST_ASSERT_EQUAL(0, pthread_create(&thread, NULL, replace_later, NULL));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_wait(h, &news, 60 * INSTANCE_S));
+	pthread_join(thread, NULL);
+	TEST_ASSERT_EQUAL(0, ows_reopen(h));
+	TEST_ASSERT_EQUAL(0, get(ows_now()));
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_reader_of_an_orphan_is_led_to_the_next_owsd);
+	RUN_TEST(test_while_the_heart_beats_nobody_looks_at_names);
+	RUN_TEST(test_a_name_that_leads_nowhere_yet_is_no_reason_to_reopen);
+	RUN_TEST(test_a_dead_owsd_whose_names_are_in_place_is_no_orphan);
+	RUN_TEST(test_names_are_looked_at_once_a_second);
+	RUN_TEST(test_a_reader_of_a_bad_value_is_led_on_too);
+	RUN_TEST(test_every_way_to_look_at_an_orphan_says_so);
+	RUN_TEST(test_what_is_set_in_an_orphan_is_said_to_be_lost);
+	RUN_TEST(test_a_command_segment_alone_may_be_the_orphan);
+	RUN_TEST(test_a_look_leaves_errno_alone);
+	RUN_TEST(test_who_waits_on_an_orphan_is_told);
+	RUN_TEST(test_who_waits_on_an_owsd_that_was_stopped_and_goes_on_is_served);
+	RUN_TEST(test_who_waits_on_a_dead_owsd_wakes_at_his_time);
+	RUN_TEST(test_a_sleeper_on_an_orphan_wakes_by_itself);
+	return UNITY_END();
+}

@@ -1,0 +1,439 @@
+/* SPDX-License-Identifier: MIT */
+/* The Python reader and writer beside the C sides. Runs python3 in the directory of the sources. */
+#include <errno.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "unity.h"
+
+#include "src/signal/value.h"
+#include "tests/unit/aid/instance.h"
+
+static const struct instance_signal signals[] = {
+	{"room1", "/28.1/temperature", OWS_DOUBLE, false, 10 * INSTANCE_S},
+	{"relay", "/29.1/PIO.0", OWS_BOOL, true, 0},
+	{"count", "/1D.1/counters.A", OWS_DWORD, true, 0},
+	{"label", "/23.1/memory", OWS_STRING, true, 0},
+	{"deep", "/20.1/x", OWS_LARGE, true, 0},
+	{"room1_Age", "/28.2/temperature", OWS_FLOAT, false, 0},
+};
+#define COUNT 6
+enum { ROOM = 1, RELAY, NUMBER, LABEL, DEEP, ROOM_AGE };
+
+static struct instance in;
+static char output[4096];
+
+void setUp(void)
+{
+	instance_start(&in, "python", signals, COUNT);
+	instance_lives_on(&in);
+	output[0] = '\0';
+}
+
+void tearDown(void)
+{
+	instance_end(&in);
+}
+
+static FILE *python(const char *code)
+{
+	char command[4096];
+	int n = snprintf(command, sizeof(command),
+	                 "PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=src/libows python3 -c '"
+	                 "import ows, sys\n"
+	                 "name = sys.argv[1]\n"
+	                 "def error(call, *a):\n"
+	                 "    try:\n"
+	                 "        call(*a)\n"
+	                 "        return None\n"
+	                 "    except Exception as e:\n"
+	                 "        return type(e).__name__\n"
+	                 "%s' %s 2>&1",
+	                 code, in.name);
+
+	TEST_ASSERT_LESS_THAN((int)sizeof(command), n);
+	return popen(command, "r");
+}
+
+static void finish(FILE *run)
+{
+	size_t n = fread(output, 1, sizeof(output) - 1, run);
+
+	output[n] = '\0';
+	TEST_ASSERT_EQUAL_MESSAGE(0, pclose(run), output);
+}
+
+static void expect(const char *code, const char *expected)
+{
+	FILE *run = python(code);
+
+	TEST_ASSERT_NOT_NULL(run);
+	finish(run);
+	TEST_ASSERT_EQUAL_STRING(expected, output);
+}
+
+static void test_python_reads_what_c_wrote(void)
+{
+	/* not stale however long python takes to start */
+	instance_put_double(&in, ROOM, 21.5, ows_now() + INSTANCE_PATIENCE / 2);
+	instance_put(&in, RELAY, 1, ows_now());
+	instance_put(&in, NUMBER, 4294967295, ows_now());
+	instance_put(&in, DEEP, INT64_MIN, ows_now());
+	instance_put_text(&in, LABEL, "boiler \xc3\xa9", ows_now());
+	instance_put_double(&in, ROOM_AGE, 55, ows_now());
+	expect("s = ows.Ows(name)\n"
+	       "for n in s.names(): print(n, s.get(n).value, s.get(n).good, s.get(n).type)",
+	       "room1 21.5 True 8\nrelay True True 1\ncount 4294967295 True 6\n"
+	       "label boiler \xc3\xa9 True 12\ndeep -9223372036854775808 True 10\n"
+	       "room1_Age 55.0 True 7\n");
+}
+
+static void test_python_names_the_targets(void)
+{
+	image_target(&in.image, 0, 2, 3);
+	image_moves(&in.image, 1, 5);
+	instance_put_double(&in, ROOM, 21.5, ows_now());
+	expect("s = ows.Ows(name)\nfor t in s.targets(): print(*t)\n"
+	       "print(list(s.targets())[s.get(s.names()[0]).target].name)",
+	       "0 localhost:4304 suspended 3 0 0\n1 w1 down 0 1 5\nw1\n");
+}
+
+static void test_python_looks_names_up_as_c_does(void)
+{
+	static const char *const names[] = {
+		"room1",         "room1_Age",        "room1_Age_Age",
+		"relay_RE",      "relay_ReadEnable", "nobody",
+		"_TRANSACTIONS", "_RECONNECTS",      "_DGNRESET",
+		"relay_Alarm",   "room1_",           "",
+		"_Age",          "ELSE__room1",      "deep_Value",
+		"relay_WOS",     "count_PerMax",
+	};
+	struct ows *h;
+	char expected[sizeof(output)] = "", code[2048] = "s = ows.Ows(name)\nfor n in (";
+	size_t used = 0;
+
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_READ, &h));
+	for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
+		strcat(strcat(strcat(code, "\""), names[i]), "\",");
+		used += (size_t)snprintf(expected + used, sizeof(expected) - used, "%s %s\n",
+		                         names[i],
+		                         ows_find(h, names[i]) >= 0 ? "None" : "KeyError");
+	}
+	ows_close(h);
+	strcat(code, "): print(n, error(s.find, n))\n"
+	             "print(s.find(name + \"__relay_RE\"), s.find(name + \"___RECONNECTS\"))");
+	snprintf(expected + used, sizeof(expected) - used,
+	         "(2, '_ReadEnable') (0, '_RECONNECTS')\n");
+	expect(code, expected);
+}
+
+static void test_python_lowers_quality_as_c_does(void)
+{
+	int64_t now = ows_now();
+
+	instance_put_double(&in, ROOM, 1, now - 11 * INSTANCE_S);
+	instance_put(&in, RELAY, 1, now);
+	expect("s = ows.Ows(name)\nn = ows.now_ns()\n"
+	       "print(*(hex(s.get(x, n + d).quality) for x, d in"
+	       " ((\"room1\", 0), (\"relay\", 0), (\"relay\", 63 * 10**9), (\"room1\", 63 * 10**9))))",
+	       "0x14 0xc0 0x18 0x18\n");
+}
+
+static void test_python_takes_what_is_of_the_future_for_dead(void)
+{
+	int64_t now = ows_now();
+
+	instance_put(&in, RELAY, 1, now);
+	instance_put(&in, NUMBER, 1, now + 3600 * INSTANCE_S);
+	expect("s = ows.Ows(name)\nprint(s.alive(), *(hex(s.get(x).quality) for x in (\"relay\", \"count\")))",
+	       "True 0xc0 0x18\n");
+	instance_beat(&in, now + 3600 * INSTANCE_S, 0);
+	expect("s = ows.Ows(name)\nprint(s.alive(), hex(s.get(\"relay\").quality))",
+	       "False 0x18\n");
+	instance_lives_on(&in);
+}
+
+static void test_python_computes_attributes_as_c_does(void)
+{
+	struct ows_sample sample = {.measured_ns = 1000, .quality = OWS_Q_GOOD};
+	struct ows_attrs attrs = {
+		.transactions = 5,
+		.update_ns = 2500000000,
+		.age_max_ns = 3 * INSTANCE_S,
+		.per_base = 0xfffffffeu,
+		.per_max = 2,
+		.pend_base = 0,
+		.pend_last = 7,
+		.pend_max = 9,
+		.alarms = 1,
+		.flags = OWS_ATTR_WRITE_ENABLE | OWS_ATTR_IN_WORK,
+	};
+	static const char *const names[] = {
+		"relay_TRANSACTIONS", "relay_PerFactor", "relay_PerCount", "relay_PerMax",
+		"relay_PendCount",    "relay_PendLast",  "relay_PendMax",  "relay_Period",
+		"relay_RE",           "relay_WE",        "relay_Alarm",    "relay_Alarm",
+		"_TRANSACTIONS",      "_RECONNECTS",
+	};
+	char expected[sizeof(output)] = "", code[2048] = "s = ows.Ows(name)\nfor n in (";
+	size_t used = 0;
+	struct ows *h;
+
+	image_publish(&in.image, RELAY, &sample, &attrs, NULL);
+	instance_beat(&in, ows_now(), 4);
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_READ, &h));
+	for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
+		struct ows_value v;
+
+		TEST_ASSERT_EQUAL(0, ows_get(h, ows_find(h, names[i]), ows_now(), &v));
+		strcat(strcat(strcat(code, "\""), names[i]), "\",");
+		used += (size_t)snprintf(expected + used, sizeof(expected) - used, "%s %.6f %d\n",
+		                         names[i], v.number, v.type);
+	}
+	ows_close(h);
+	strcat(code, "): v = s.get(n); print(n, \"%.6f\" % v.value, v.type)\n"
+	             "print(error(s.get, \"relay_WOS\"), error(s.get, \"_DGNRESET\"))");
+	snprintf(expected + used, sizeof(expected) - used, "PermissionError PermissionError\n");
+	expect(code, expected);
+}
+
+static struct command load(uint32_t slot)
+{
+	struct command c;
+
+	commands_load(&in.commands, slot, &c);
+	return c;
+}
+
+static void test_c_finds_what_python_set(void)
+{
+	uint32_t bell = *commands_bell(&in.commands);
+	char text[INSTANCE_TEXT + 1];
+	struct command_client client;
+
+	expect("s = ows.Ows(name, control=True)\n"
+	       "s.beat(700)\ns.beat(700)\n"
+	       "print(s.set(\"relay\", True), s.set(\"relay\", 0), s.set(\"count\", 4294967295))\n"
+	       "print(s.set(\"deep\", -2**63), s.set(\"label\", \"north\"))\n"
+	       "s.set(\"relay_RE\", 1); s.set(\"relay_WE\", 0)\n"
+	       "for level in (1, 1, 0, 1): s.set(\"relay_WOS\", level)\n"
+	       "s.set(\"_DGNRESET\", 1)\n"
+	       "sys.stdout.flush(); import os; os._exit(0)",
+	       "1 2 1\n1 1\n");
+	TEST_ASSERT_EQUAL_INT64(0, load(RELAY).value);
+	TEST_ASSERT_EQUAL(2, load(RELAY).stamp);
+	TEST_ASSERT_EQUAL(1, load(RELAY).client);
+	TEST_ASSERT_EQUAL(2, load(RELAY).read_enable);
+	TEST_ASSERT_EQUAL(1, load(RELAY).write_enable);
+	TEST_ASSERT_EQUAL(2, load(RELAY).one_shot);
+	TEST_ASSERT_EQUAL(1, load(0).dgn_reset);
+	TEST_ASSERT_EQUAL_INT64(4294967295, load(NUMBER).value);
+	TEST_ASSERT_EQUAL_INT64(INT64_MIN, load(DEEP).value);
+	TEST_ASSERT_EQUAL(5, commands_text(&in.commands, LABEL, text));
+	TEST_ASSERT_EQUAL_STRING("north", text);
+	commands_client(&in.commands, 0, &client);
+	TEST_ASSERT_EQUAL(2, client.beat);
+	TEST_ASSERT_EQUAL(700, client.period_ms);
+	TEST_ASSERT_NOT_EQUAL(0, client.pid);
+	TEST_ASSERT_NOT_EQUAL(bell, *commands_bell(&in.commands));
+	for (int i = 0; i <= COUNT; i++)
+		TEST_ASSERT_EQUAL(i, commands_next_dirty(&in.commands, 0));
+	TEST_ASSERT_EQUAL(-1, commands_next_dirty(&in.commands, 0));
+}
+
+static void test_python_refuses_what_c_refuses(void)
+{
+	expect("s = ows.Ows(name, control=True)\n"
+	       "for n, v in ((\"room1\", 1), (\"relay\", 2), (\"count\", 1.5), (\"count\", -1),"
+	       " (\"label\", \"x\" * 65), (\"room1_Age_Age\", 1), (\"nobody\", 1), (\"deep\", 2**63)):"
+	       " print(error(s.set, n, v))\n"
+	       "print(error(ows.Ows(name).set, \"relay\", 1), error(ows.Ows, \"no-such\"))",
+	       "PermissionError\nValueError\nValueError\nValueError\nValueError\nPermissionError\n"
+	       "KeyError\nValueError\nPermissionError FileNotFoundError\n");
+	TEST_ASSERT_EQUAL(0, load(RELAY).stamp);
+	TEST_ASSERT_EQUAL(-1, commands_next_dirty(&in.commands, 0));
+}
+
+static void test_python_finds_its_way_over_a_reload(void)
+{
+	FILE *run = python("s = ows.Ows(name, control=True)\n"
+	                   "print(s.stale(), s.set(\"relay\", 1), flush=True)\n"
+	                   "try:\n"
+	                   "    news = 0\n"
+	                   "    while True: news = s.wait(news, 20)\n"
+	                   "except ows.Stale: print(\"stale\", s.stale(), s.get(\"relay\").good)\n"
+	                   "print(error(s.set, \"relay\", 0))\n"
+	                   "s.reopen()\n"
+	                   "print(s.stale(), s.set(\"relay\", 0), s.get(\"relay\").quality)");
+	char first[64];
+
+	TEST_ASSERT_NOT_NULL(run);
+	TEST_ASSERT_NOT_NULL(fgets(first, sizeof(first), run));
+	TEST_ASSERT_EQUAL_STRING("False 1\n", first);
+	instance_reload(&in, signals, COUNT);
+	finish(run);
+	TEST_ASSERT_EQUAL_STRING("stale True False\nStale\nFalse 2 0\n", output);
+}
+
+/* Killed after its segments had lost their names: nobody is left to say so in them. */
+static void test_python_finds_its_way_from_an_orphan(void)
+{
+	struct instance next;
+	FILE *run;
+	char first[64];
+
+	instance_beat(&in, ows_now() - 10 * INSTANCE_S, 0);
+	run = python("s = ows.Ows(name, control=True)\n"
+	             "print(s.stale(), s.set(\"relay\", 1), flush=True)\n"
+	             "try:\n"
+	             "    news, until = s.wait(), ows.now_ns() + 60 * 10**9\n"
+	             "    while ows.now_ns() < until: s.wait(news, 30)\n"
+	             "except ows.Stale: print(\"stale\", s.stale(), s.get(\"relay\").good)\n"
+	             "print(error(s.set, \"relay\", 0), error(s.beat, 1000),"
+	             " error(s.acknowledge, \"relay\"))\n"
+	             "s.reopen()\n"
+	             "print(s.stale(), s.set(\"relay\", 0), s.get(\"relay\").good)");
+	TEST_ASSERT_NOT_NULL(run);
+	TEST_ASSERT_NOT_NULL(fgets(first, sizeof(first), run));
+	TEST_ASSERT_EQUAL_STRING("False 1\n", first);
+	TEST_ASSERT_EQUAL(0, segment_remove(in.name, SEGMENT_IMAGE));
+	TEST_ASSERT_EQUAL(0, segment_remove(in.name, SEGMENT_COMMAND));
+	instance_make(&next, "python", 1, ows_now(), signals, COUNT);
+	instance_lives_on(&next);
+	instance_put(&next, RELAY, 1, ows_now());
+	instance_show(&next);
+	finish(run);
+	instance_leave(&next);
+	TEST_ASSERT_EQUAL_STRING("stale True False\nStale Stale Stale\nFalse 1 True\n", output);
+}
+
+static void test_python_refuses_rubbish(void)
+{
+	in.image.header->record_size = 128;
+	expect("print(error(ows.Ows, name))", "OSError\n");
+	in.image.header->record_size = 256;
+	in.image.header->record_count = 0x7fffffff;
+	expect("print(error(ows.Ows, name))", "OSError\n");
+	in.image.header->record_count = COUNT + 1;
+	((struct ows_command_header *)(void *)in.commands.base)->slot_off = 0xfffffff8u;
+	expect("print(error(ows.Ows, name, True))", "OSError\n");
+	TEST_ASSERT_EQUAL(0, ftruncate(in.command_memory.fd, 256));
+	expect("print(error(ows.Ows, name, True))", "OSError\n");
+}
+
+static int done;
+
+static void *write_on(void *arg)
+{
+	int64_t n = 1;
+
+	while (!__atomic_load_n(&done, __ATOMIC_ACQUIRE)) {
+		n++;
+		struct ows_sample sample = {.value = n, .measured_ns = n, .count = (uint32_t)n};
+		struct ows_attrs attrs = {.transactions = (uint64_t)n};
+
+		image_publish(&in.image, DEEP, &sample, &attrs, NULL);
+		if (n % 64 == 0)
+			nanosleep(&(struct timespec){.tv_nsec = 20000}, NULL);
+	}
+	return arg;
+}
+
+static void test_python_sees_whole_samples_beside_a_busy_writer(void)
+{
+	pthread_t thread;
+
+	done = 0;
+	TEST_ASSERT_EQUAL(0, pthread_create(&thread, NULL, write_on, NULL));
+	expect("s = ows.Ows(name)\nbad = last = 0\n"
+	       "for i in range(3000):\n"
+	       "    v = s.get(\"deep\")\n"
+	       "    bad += v.value != v.measured_ns or v.value & 0xffffffff != v.count"
+	       " or v.value < last\n"
+	       "    last = v.value\n"
+	       "print(bad)",
+	       "0\n");
+	__atomic_store_n(&done, 1, __ATOMIC_RELEASE);
+	pthread_join(thread, NULL);
+}
+
+static void test_python_reads_the_journal_of_alarms(void)
+{
+	struct ows_alarm_entry entry = {
+		.record = ROOM,
+		.occurred_ns = 5,
+		.before = value_of_double(21.5),
+		.kind = OWS_ALARM_HH,
+		.event = OWS_ALARM_RAISED,
+		.quality = OWS_Q_GOOD,
+		.flags = OWS_ALARM_BEFORE,
+	};
+
+	for (int i = 0; i < OWS_ALARMS + 1; i++)
+		image_alarm(&in.image, &entry);
+	entry = (struct ows_alarm_entry){
+		.record = RELAY,
+		.occurred_ns = 6,
+		.kind = OWS_ALARM_DEVICE,
+		.event = OWS_ALARM_RETURNED,
+		.latch = "1,0",
+	};
+	image_alarm_after(&in.image, image_alarm(&in.image, &entry), 1);
+	in.image.alarms[5].seq++;
+	expect("s = ows.Ows(name)\n"
+	       "all = list(s.alarms())\n"
+	       "print(len(all), all[0].number, 5 in [a.number for a in all])\n"
+	       "print(*all[0][1:])\n"
+	       "print(*[list(a) for a in s.alarms(257)])\n"
+	       "print(list(s.alarms(258)))\n",
+	       "255 2 False\n"
+	       "room1 5 21.5 None high high raised 192 \n"
+	       "[257, 'relay', 6, None, True, 'device', 'returned', 0, '1,0']\n"
+	       "[]\n");
+}
+
+static void test_c_finds_what_python_acknowledged(void)
+{
+	struct ows_sample sample = {.quality = OWS_Q_GOOD};
+	struct ows_attrs attrs = {
+		.alarms = 3,
+		.flags = OWS_ATTR_LIMITS | OWS_ATTR_ALARM_STANDS,
+		.limit_state = OWS_LIMIT_RETURNED,
+		.limit_condition = OWS_ALARM_LL,
+	};
+	struct command command;
+
+	image_publish(&in.image, ROOM, &sample, &attrs, NULL);
+	expect("s = ows.Ows(name, control=True)\n"
+	       "print(*s.alarm_state(\"room1\"), sep=\",\")\n"
+	       "s.acknowledge(\"room1\")\n"
+	       "print(error(s.acknowledge, \"_TRANSACTIONS\"),"
+	       " error(ows.Ows(name).acknowledge, \"room1\"))",
+	       "3,True,False,True,returned to normal unacknowledged,low low,False\n"
+	       "KeyError PermissionError\n");
+	commands_load(&in.commands, ROOM, &command);
+	TEST_ASSERT_EQUAL(1, command.acknowledged);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_python_reads_what_c_wrote);
+	RUN_TEST(test_python_reads_the_journal_of_alarms);
+	RUN_TEST(test_c_finds_what_python_acknowledged);
+	RUN_TEST(test_python_names_the_targets);
+	RUN_TEST(test_python_looks_names_up_as_c_does);
+	RUN_TEST(test_python_lowers_quality_as_c_does);
+	RUN_TEST(test_python_takes_what_is_of_the_future_for_dead);
+	RUN_TEST(test_python_computes_attributes_as_c_does);
+	RUN_TEST(test_c_finds_what_python_set);
+	RUN_TEST(test_python_refuses_what_c_refuses);
+	RUN_TEST(test_python_finds_its_way_over_a_reload);
+	RUN_TEST(test_python_finds_its_way_from_an_orphan);
+	RUN_TEST(test_python_refuses_rubbish);
+	RUN_TEST(test_python_sees_whole_samples_beside_a_busy_writer);
+	return UNITY_END();
+}

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+#include <string.h>
+
+#include "unity.h"
+
+#include "tests/unit/aid/native_scene.h"
+
+void setUp(void)
+{
+	native_begin();
+}
+
+void tearDown(void)
+{
+	native_end();
+}
+
+static void test_a_thermometer_is_found_and_read(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	wire_set(slave, "temperature", 21.0625);
+	start();
+	expect(true, of(slave, "temperature"), "     21.0625");
+	expect(true, of(slave, "temperature9"), "          21");
+	expect(true, of(slave, "temperature12"), "     21.0625");
+	expect(true, of(slave, "type"), "DS18B20");
+	expect(true, of(slave, "family"), "28");
+	expect(true, of(slave, "power"), "1");
+	expect(true, of(slave, "tempres"), "          12");
+	expect(true, of(slave, "present"), "1");
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_FOUND));
+}
+
+static void test_the_listing_has_devices_and_directories(void)
+{
+	wire_init(&host, 2, 2);
+	wire_add(0, "DS18B20", 1);
+	wire_add(1, "DS2401", 2);
+	start();
+	uint32_t id = ask(BUS_DIR, BUS_INPUT, true, "/", NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_NOT_NULL(strstr((char *)data[id], "/28.01005DDF0300\n"));
+	TEST_ASSERT_NOT_NULL(strstr((char *)data[id], "/01.02005DDF0300\n"));
+	TEST_ASSERT_NOT_NULL(strstr((char *)data[id], "/bus.1\n"));
+	TEST_ASSERT_NOT_NULL(strstr((char *)data[id], "/alarm\n"));
+	id = ask(BUS_DIR, BUS_INPUT, false, "/bus.1", NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_STRING("/bus.1/01.02005DDF0300\n/bus.1/interface\n/bus.1/simultaneous\n"
+	                         "/bus.1/alarm\n",
+	                         (char *)data[id]);
+	id = ask(BUS_DIR, BUS_INPUT, false, "/01.02005DDF0300", NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_NOT_NULL(strstr((char *)data[id], "/01.02005DDF0300/address\n"));
+	TEST_ASSERT_NULL(strstr((char *)data[id], "present"));
+}
+
+static void test_errors_are_those_of_the_contract(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	start();
+	TEST_ASSERT_EQUAL_INT(-ENOENT, result(BUS_READ, of(slave, "nonsense"), NULL));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, result(BUS_READ, of(slave, "temperature.0"), NULL));
+	TEST_ASSERT_EQUAL_INT(-ENODEV, result(BUS_READ, "/28.AABBCCDDEEFF/temperature", NULL));
+	TEST_ASSERT_EQUAL_INT(-EACCES, result(BUS_WRITE, of(slave, "temperature"), "1"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, result(BUS_WRITE, of(slave, "templow"), "abc"));
+	TEST_ASSERT_EQUAL_INT(-EISDIR, result(BUS_READ, name_of(slave), NULL));
+	TEST_ASSERT_EQUAL_INT(-ENOTDIR, result(BUS_DIR, of(slave, "temperature"), NULL));
+	TEST_ASSERT_EQUAL_INT(-ENODEV, result(BUS_PROBE, "/28.AABBCCDDEEFF", NULL));
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_PROBE, name_of(slave), NULL));
+}
+
+static void test_an_alias_names_the_device(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	start();
+	expect(true, of(slave, "alias"), "");
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(slave, "alias"), "boiler"));
+	expect(true, "/boiler/alias", "boiler");
+	expect(true, "/boiler/id", "01005DDF0300");
+	TEST_ASSERT_EQUAL_INT(-EINVAL, result(BUS_WRITE, of(slave, "alias"), "a/b"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, result(BUS_WRITE, of(slave, "alias"), "bus.0"));
+}
+
+static void test_structure_states_the_properties(void)
+{
+	wire_init(&host, 1, 1);
+	start();
+	expect(true, "/structure/28/temperature12", "t,000000,000001,ro,000012,v,");
+	expect(true, "/structure/28/templow", "t,000000,000001,rw,000012,s,");
+	TEST_ASSERT_EQUAL_INT(-ENOENT, result(BUS_READ, "/structure/28/nonsense", NULL));
+	uint32_t id = ask(BUS_DIR, BUS_INPUT, false, "/structure/28/errata", NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_STRING(
+		"/structure/28/errata/die\n/structure/28/errata/trim\n"
+		"/structure/28/errata/trimblanket\n/structure/28/errata/trimvalid\n",
+		(char *)data[id]);
+}
+
+static void test_a_request_past_its_deadline_is_void_or_in_progress(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	start();
+	host_run(&host, bus, host.now + HOST_S);
+	uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(slave, "temperature"), NULL);
+	req[id].deadline_ns = host.now;
+	TEST_ASSERT_EQUAL_INT(-ETIME, answer_to(id)->err);
+	id = ask(BUS_READ, BUS_INPUT, true, of(slave, "temperature"), NULL);
+	req[id].deadline_ns = host.now + 300 * HOST_MS;
+	TEST_ASSERT_EQUAL_INT(-EINPROGRESS, answer_to(id)->err);
+}
+
+static void test_what_channels_share_is_counted_once(void)
+{
+	wire_init(&host, 8, 1);
+	wire_net.shared = (struct link_master_cost){.transfers = 5, .syscalls = 7};
+	start();
+	host_run(&host, bus, host.now + HOST_S);
+	TEST_ASSERT_EQUAL_UINT64(wire_net.cost.wire_ns / 1000, counted("wire_us"));
+	TEST_ASSERT_EQUAL_UINT64(5, counted("i2c_transfers"));
+	TEST_ASSERT_EQUAL_UINT64(7, counted("syscalls"));
+}
+
+static void test_a_target_without_its_file_is_refused_with_the_reason(void)
+{
+	struct bus *none = NULL;
+	char why[200] = "";
+
+	wire_init(&host, 1, 1);
+	TEST_ASSERT_LESS_THAN_INT(
+		0, bus_create("sim:/nowhere/at/all", &host.env, &none, why, sizeof(why)));
+	TEST_ASSERT_NULL(none);
+	TEST_ASSERT_NOT_NULL(strstr(why, "/nowhere/at/all"));
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_thermometer_is_found_and_read);
+	RUN_TEST(test_the_listing_has_devices_and_directories);
+	RUN_TEST(test_errors_are_those_of_the_contract);
+	RUN_TEST(test_an_alias_names_the_device);
+	RUN_TEST(test_structure_states_the_properties);
+	RUN_TEST(test_a_request_past_its_deadline_is_void_or_in_progress);
+	RUN_TEST(test_what_channels_share_is_counted_once);
+	RUN_TEST(test_a_target_without_its_file_is_refused_with_the_reason);
+	return UNITY_END();
+}

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "unity.h"
+
+#include "tests/unit/aid/native_scene.h"
+
+void setUp(void)
+{
+	native_begin();
+}
+
+void tearDown(void)
+{
+	native_end();
+}
+
+static void test_alarms_list_the_devices_in_alarm(void)
+{
+	wire_init(&host, 2, 2);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1), *other = wire_add(1, "DS18B20", 2);
+
+	wire_set(slave, "temperature", 40);
+	wire_set(other, "temperature", 20);
+	start();
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(slave, "temphigh"), "30"));
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(other, "temphigh"), "30"));
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(other, "templow"), "10"));
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, "/simultaneous/temperature", "1"));
+	host_run(&host, bus, host.now + HOST_S);
+	for (int i = 0; i < 20; i++) {
+		uint32_t id = ask(BUS_DIR, BUS_ALARM, true, "/alarm", NULL);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		TEST_ASSERT_EQUAL_STRING("/alarm/28.01005DDF0300\n", (char *)data[id]);
+	}
+	uint32_t id = ask(BUS_DIR, BUS_ALARM, true, "/alarm/29,28", NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_STRING("/alarm/28.01005DDF0300\n", (char *)data[id]);
+	id = ask(BUS_DIR, BUS_ALARM, true, "/alarm/29", NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_STRING("", (char *)data[id]);
+}
+
+static void test_an_alarm_search_goes_no_further_than_its_family(void)
+{
+	static const char *const chips[] = {"DS18B20", "DS1822", "DS2406", "DS18S20"};
+	uint64_t resets, slots;
+
+	for (unsigned n = 0; n < 4; n++) {
+		wire_init(&host, 1, 1);
+		/* With the limits of the factory it is in alarm once it has converted. */
+		struct sim_slave *slave = wire_add(0, chips[n], 1);
+
+		wire_add(0, "DS2408", 2);
+		start();
+		if (strcmp(chips[n], "DS2406") != 0)
+			TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(slave, "temperature"), NULL));
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, "/29.02005DDF0300/por", "0"));
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, "/29.02005DDF0300/latch.BYTE", "0"));
+		resets = wire_net.wire[0].resets;
+		slots = wire_net.wire[0].slots;
+		uint32_t id = ask(BUS_DIR, BUS_ALARM, true, "/alarm/29", NULL);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		TEST_ASSERT_EQUAL_STRING("", (char *)data[id]);
+		TEST_ASSERT_EQUAL_UINT64(1, wire_net.wire[0].resets - resets);
+		TEST_ASSERT_LESS_OR_EQUAL_UINT64(8 + 8 * 3, wire_net.wire[0].slots - slots);
+		tearDown();
+		setUp();
+	}
+}
+
+static void test_an_alarm_s_next_request_is_waited_for(void)
+{
+	struct sim_slave *slave[6], *board;
+	int64_t begun;
+
+	wire_init(&host, 1, 1);
+	for (unsigned i = 0; i < 6; i++)
+		slave[i] = wire_add(0, "DS18B20", i + 1);
+	board = wire_add(0, "DS2408", 9);
+	start();
+	host_run(&host, bus, host.now + 2 * HOST_S);
+	for (unsigned i = 0; i < 6; i++)
+		ask(BUS_READ, BUS_INPUT, true, of(slave[i], "scratchpad"), NULL);
+	for (unsigned i = 0; i < 3; i++) {
+		uint32_t id = ask(BUS_READ, BUS_ALARM, true, of(board, "sensed.BYTE"), NULL);
+
+		begun = host.now;
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		/* A thread hears of the answer a little later; the others are not begun meanwhile. */
+		TEST_ASSERT_EQUAL_UINT(i + 1, host.answers);
+		host_run(&host, bus, host.now + HOST_MS / 5);
+		TEST_ASSERT_LESS_THAN_INT64(begun + 18 * HOST_MS, host.now);
+	}
+	/* Nobody asks: they go on. */
+	TEST_ASSERT_TRUE(host_run_answers(&host, bus, 9, host.now + 130 * HOST_MS));
+}
+
+static void test_one_register_read_serves_por_and_latch_of_a_visit(void)
+{
+	struct sim_slave *board;
+	uint64_t resets;
+	uint32_t id;
+
+	wire_init(&host, 1, 1);
+	board = wire_add(0, "DS2408", 1);
+	start();
+	host_run(&host, bus, host.now + 2 * HOST_S);
+	for (unsigned i = 0; i < 3; i++) {
+		wire_set(board, "pin.0", i & 1);
+		resets = wire_net.wire[0].resets;
+		id = ask(BUS_READ, BUS_ALARM, true, of(board, "por"), NULL);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		id = ask(BUS_READ, BUS_ALARM, true, of(board, "latch.BYTE"), NULL);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		TEST_ASSERT_EQUAL_STRING("           1", (char *)data[id]);
+		TEST_ASSERT_EQUAL_UINT64(1, wire_net.wire[0].resets - resets);
+		/* The value itself is always read. */
+		id = ask(BUS_READ, BUS_ALARM, true, of(board, "sensed.BYTE"), NULL);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		TEST_ASSERT_EQUAL_UINT64(2, wire_net.wire[0].resets - resets);
+		id = ask(BUS_WRITE, BUS_ALARM, true, of(board, "latch.BYTE"), "0");
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		id = ask(BUS_READ, BUS_ALARM, true, of(board, "latch.BYTE"), NULL);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		TEST_ASSERT_EQUAL_STRING("           0", (char *)data[id]);
+	}
+}
+
+static void test_an_alarm_waits_for_one_transaction_and_not_for_a_scan(void)
+{
+	struct sim_slave *slave[20];
+
+	wire_init(&host, 1, 1);
+	for (unsigned i = 0; i < 20; i++)
+		slave[i] = wire_add(0, "DS18B20", i + 1);
+	start();
+	host_run(&host, bus, host.now + 2 * HOST_S);
+	for (unsigned i = 0; i < 20; i++)
+		ask(BUS_READ, BUS_INPUT, true, of(slave[i], "temperature"), NULL);
+	while (host.answers < 5)
+		host_run_answers(&host, bus, 5, host.now + 2 * HOST_S);
+	int64_t begun = host.now;
+	uint32_t id = ask(BUS_READ, BUS_ALARM, true, of(slave[19], "temphigh"), NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_LESS_THAN_INT64(begun + 40 * HOST_MS, host.now);
+	TEST_ASSERT_LESS_THAN_UINT(10, host.answers);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_alarms_list_the_devices_in_alarm);
+	RUN_TEST(test_an_alarm_search_goes_no_further_than_its_family);
+	RUN_TEST(test_an_alarm_s_next_request_is_waited_for);
+	RUN_TEST(test_one_register_read_serves_por_and_latch_of_a_visit);
+	RUN_TEST(test_an_alarm_waits_for_one_transaction_and_not_for_a_scan);
+	return UNITY_END();
+}

@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+
+#include "unity.h"
+
+#include "tests/unit/aid/native_scene.h"
+
+void setUp(void)
+{
+	native_begin();
+}
+
+void tearDown(void)
+{
+	native_end();
+}
+
+static void test_a_short_is_told_and_gone_again(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	start();
+	expect(true, of(slave, "power"), "1");
+	wire_net.wire[0].shorted = true;
+	TEST_ASSERT_EQUAL_INT(-ECOMM, result(BUS_READ, of(slave, "temperature"), NULL));
+	TEST_ASSERT_EQUAL_INT(-ECOMM, result(BUS_READ, of(slave, "power"), NULL));
+	wire_net.wire[0].shorted = false;
+	expect(true, of(slave, "power"), "1");
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_LOST));
+}
+
+static void test_a_device_that_leaves_is_lost_and_found_again(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	wire_add(0, "DS2401", 9);
+	start();
+	expect(true, of(slave, "power"), "1");
+	sim_wire_plug(&wire_net.wire[0], slave, false, wire_time());
+	TEST_ASSERT_EQUAL_INT(-ENODEV, result(BUS_READ, of(slave, "power"), NULL));
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_LOST));
+	sim_wire_plug(&wire_net.wire[0], slave, true, wire_time());
+	host_run(&host, bus, host.now + 10 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(3, host_events(&host, BUS_FOUND));
+	expect(true, of(slave, "power"), "1");
+}
+
+static void test_the_background_search_sees_devices_come_and_go(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS2401", 1);
+
+	wire_add(0, "DS2401", 2);
+	start();
+	host_run(&host, bus, host.now + 2 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(2, host_events(&host, BUS_FOUND));
+	sim_wire_plug(&wire_net.wire[0], slave, false, wire_time());
+	host_run(&host, bus, host.now + 15 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_LOST));
+	wire_add(0, "DS2401", 3);
+	host_run(&host, bus, host.now + 15 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(3, host_events(&host, BUS_FOUND));
+}
+
+static void test_the_ladder_is_climbed_until_the_chip_answers(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	start();
+	expect(true, of(slave, "power"), "1");
+	wire_net.fault = -ETIMEDOUT;
+	wire_net.fault_count = 1000;
+	wire_net.fault_until = LINK_CHIP_RESET;
+	expect(true, of(slave, "power"), "1");
+	TEST_ASSERT_EQUAL_UINT(1, wire_net.recovered[LINK_BUS_RESET]);
+	TEST_ASSERT_EQUAL_UINT(1, wire_net.recovered[LINK_CHIP_RESET]);
+	wire_net.fault = -ETIMEDOUT;
+	wire_net.fault_count = 100000;
+	wire_net.fault_until = LINK_REOPEN + 1;
+	TEST_ASSERT_EQUAL_INT(-ECONNRESET, result(BUS_READ, of(slave, "power"), NULL));
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_DOWN));
+	wire_net.fault_count = 0;
+	host_run(&host, bus, host.now + HOST_S);
+	TEST_ASSERT_EQUAL_UINT(2, host_events(&host, BUS_UP));
+	expect(true, of(slave, "power"), "1");
+}
+
+static void test_a_suspended_bus_lets_go_and_comes_back(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	start();
+	host_run(&host, bus, host.now + HOST_S);
+	bus_suspend(bus, true);
+	TEST_ASSERT_EQUAL_UINT(1, wire_net.closes);
+	TEST_ASSERT_EQUAL_INT(-ENOTCONN, result(BUS_READ, of(slave, "power"), NULL));
+	bus_suspend(bus, false);
+	host_run(&host, bus, host.now + HOST_S);
+	TEST_ASSERT_EQUAL_UINT(2, host_events(&host, BUS_UP));
+	expect(true, of(slave, "power"), "1");
+}
+
+static void test_a_target_that_does_not_open_is_tried_again_for_ever(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	wire_net.open_error = -ENXIO;
+	bus = wire_open();
+	host_run(&host, bus, host.now + 60 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_DOWN));
+	TEST_ASSERT_EQUAL_STRING("no such chip", host.event[0].text);
+	TEST_ASSERT_EQUAL_INT(-ENOTCONN, result(BUS_READ, of(slave, "power"), NULL));
+	TEST_ASSERT_GREATER_THAN_UINT(10, wire_net.opens);
+	TEST_ASSERT_LESS_THAN_UINT(30, wire_net.opens);
+	wire_net.open_error = 0;
+	host_run(&host, bus, host.now + 6 * HOST_S);
+	expect(true, of(slave, "power"), "1");
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_short_is_told_and_gone_again);
+	RUN_TEST(test_a_device_that_leaves_is_lost_and_found_again);
+	RUN_TEST(test_the_background_search_sees_devices_come_and_go);
+	RUN_TEST(test_the_ladder_is_climbed_until_the_chip_answers);
+	RUN_TEST(test_a_suspended_bus_lets_go_and_comes_back);
+	RUN_TEST(test_a_target_that_does_not_open_is_tried_again_for_ever);
+	return UNITY_END();
+}

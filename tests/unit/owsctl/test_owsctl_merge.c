@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: MIT */
+/* What a scan means for a configuration that is there, as a table of cases. */
+#include <stdio.h>
+#include <string.h>
+
+#include "unity.h"
+
+#include "src/owsctl/merge.h"
+
+#define MOST 8
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+/* A device is a letter: upper case of family 28, lower case of family 10. */
+static void rom_of(char letter, uint8_t rom[ROM_LEN])
+{
+	memset(rom, 0, ROM_LEN);
+	rom[0] = letter >= 'a' ? 0x10 : 0x28;
+	rom[1] = (uint8_t)letter;
+	rom[ROM_LEN - 1] = rom_crc8(rom, ROM_LEN - 1);
+}
+
+static unsigned list_of(const char *letters, struct merge_device *list)
+{
+	unsigned count = 0;
+
+	for (; *letters; letters++)
+		rom_of(*letters, list[count++].rom);
+	return count;
+}
+
+/* "A+ B-1 Cr": each with its fate (+ stays, - missing, n new, r replaced), and pairs if there are. */
+static void print(const struct merge_device *list, unsigned count, char *out)
+{
+	static const char fates[] = {[MERGE_STAYS] = '+',
+	                             [MERGE_MISSING] = '-',
+	                             [MERGE_NEW] = 'n',
+	                             [MERGE_REPLACED] = 'r'};
+
+	*out = '\0';
+	for (unsigned i = 0; i < count; i++) {
+		out += sprintf(out, "%s%c%c", i ? " " : "", list[i].rom[1], fates[list[i].fate]);
+		if (list[i].pairs)
+			out += sprintf(out, "%u", list[i].pairs);
+	}
+}
+
+static const struct {
+	const char *known, *found, *pairs; /* pairs: "AB" is --replace A=B */
+	enum merge_fault fault;
+	unsigned wrong;
+	const char *says_known, *says_found;
+} cases[] = {
+	{"", "", "", MERGE_RIGHT, 0, "", ""},
+	{"AB", "AB", "", MERGE_RIGHT, 0, "A+ B+", "A+ B+"},
+	{"AB", "BA", "", MERGE_RIGHT, 0, "A+ B+", "B+ A+"},
+	{"A", "AB", "", MERGE_RIGHT, 0, "A+", "A+ Bn"},
+	{"AB", "A", "", MERGE_RIGHT, 0, "A+ B-", "A+"},
+	{"AB", "", "", MERGE_RIGHT, 0, "A- B-", ""},
+	/* one gone, one come, of a family: perhaps replaced, but never without being asked */
+	{"AB", "AC", "", MERGE_RIGHT, 0, "A+ B-1", "A+ Cn1"},
+	{"AB", "CD", "", MERGE_RIGHT, 0, "A-2 B-2", "Cn2 Dn2"},
+	/* other counts, or another family: no guess */
+	{"AB", "C", "", MERGE_RIGHT, 0, "A- B-", "Cn"},
+	{"A", "BC", "", MERGE_RIGHT, 0, "A-", "Bn Cn"},
+	{"A", "b", "", MERGE_RIGHT, 0, "A-", "bn"},
+	{"Aa", "Bbc", "", MERGE_RIGHT, 0, "A-1 a-", "Bn1 bn cn"},
+	/* asked for */
+	{"AB", "AC", "BC", MERGE_RIGHT, 0, "A+ Br", "A+ Cr"},
+	{"AB", "CD", "AD", MERGE_RIGHT, 0, "Ar B-1", "Cn1 Dr"},
+	{"AB", "CD", "ADBC", MERGE_RIGHT, 0, "Ar Br", "Cr Dr"},
+	{"A", "BCD", "AC", MERGE_RIGHT, 0, "Ar", "Bn Cr Dn"},
+	/* refused */
+	{"A", "C", "BC", MERGE_OLD_UNKNOWN, 0, NULL, NULL},
+	{"A", "AC", "AC", MERGE_OLD_FOUND, 0, NULL, NULL},
+	{"A", "B", "AC", MERGE_NEW_ABSENT, 0, NULL, NULL},
+	{"AB", "B", "AB", MERGE_NEW_KNOWN, 0, NULL, NULL},
+	{"A", "b", "Ab", MERGE_FAMILY, 0, NULL, NULL},
+	{"AB", "CD", "ACBC", MERGE_TWICE, 1, NULL, NULL},
+	{"AB", "CD", "ACAD", MERGE_TWICE, 1, NULL, NULL},
+	{"AB", "CD", "BDAx", MERGE_NEW_ABSENT, 1, NULL, NULL},
+};
+
+static void test_each_case_is_decided_as_the_table_says(void)
+{
+	for (unsigned i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		struct merge_device known[MOST] = {0}, found[MOST] = {0};
+		unsigned known_count = list_of(cases[i].known, known);
+		unsigned found_count = list_of(cases[i].found, found), wrong, pairs = 0;
+		struct merge_pair pair[MOST];
+		char text[80], what[40];
+
+		for (const char *p = cases[i].pairs; *p; p += 2, pairs++) {
+			rom_of(p[0], pair[pairs].old_rom);
+			rom_of(p[1], pair[pairs].new_rom);
+		}
+		snprintf(what, sizeof(what), "case %u: %s, %s, %s", i, cases[i].known,
+		         cases[i].found, cases[i].pairs);
+		TEST_ASSERT_EQUAL_MESSAGE(
+			cases[i].fault,
+			merge_decide(known, known_count, found, found_count, pair, pairs, &wrong),
+			what);
+		if (cases[i].fault != MERGE_RIGHT) {
+			TEST_ASSERT_EQUAL_UINT_MESSAGE(cases[i].wrong, wrong, what);
+			continue;
+		}
+		print(known, known_count, text);
+		TEST_ASSERT_EQUAL_STRING_MESSAGE(cases[i].says_known, text, what);
+		print(found, found_count, text);
+		TEST_ASSERT_EQUAL_STRING_MESSAGE(cases[i].says_found, text, what);
+	}
+}
+
+static void test_what_is_replaced_knows_by_what(void)
+{
+	struct merge_device known[2], found[2];
+	struct merge_pair pair[2];
+	unsigned wrong;
+
+	list_of("AB", known);
+	list_of("CD", found);
+	for (int i = 0; i < 2; i++) {
+		rom_of("AB"[i], pair[i].old_rom);
+		rom_of("DC"[i], pair[i].new_rom);
+	}
+	TEST_ASSERT_EQUAL(MERGE_RIGHT, merge_decide(known, 2, found, 2, pair, 2, &wrong));
+	for (int i = 0; i < 2; i++) {
+		TEST_ASSERT_EQUAL(1 - i, known[i].other);
+		TEST_ASSERT_EQUAL(1 - i, found[i].other);
+	}
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_each_case_is_decided_as_the_table_says);
+	RUN_TEST(test_what_is_replaced_knows_by_what);
+	return UNITY_END();
+}

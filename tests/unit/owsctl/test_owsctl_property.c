@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: MIT */
+/* Properties in paths, held against the families. */
+#include <stdio.h>
+
+#include "unity.h"
+
+#include "hal/chips/family.h"
+#include "src/owsctl/property.h"
+
+static char nearest[PROPERTY_NAME];
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static void test_every_property_of_every_family_is_known(void)
+{
+	unsigned count = 0;
+
+	for (unsigned n = 0; family_nth(n); n++) {
+		const struct family *family = family_nth(n);
+		const struct property *property = NULL;
+
+		while ((property = family_next(family, NULL, property))) {
+			char path[128];
+
+			for (int form = 0; form < 3; form++) {
+				snprintf(path, sizeof(path), "%s/%02X.000000000001/%s%s",
+				         form == 1 ? "/uncached" : "", family->code, property->name,
+				         form == 2 ? ".ALL" : "");
+				TEST_ASSERT_TRUE_MESSAGE(property_known(path, nearest), path);
+			}
+			count++;
+		}
+	}
+	TEST_ASSERT_TRUE(count > 200);
+}
+
+static void test_of_what_nobody_can_know_nothing_is_said(void)
+{
+	static const char *const paths[] = {
+		"",
+		"/",
+		"/28.000000000001",
+		"/28.000000000001/",
+		"/kitchen/temprature",
+		"/FC.000000000001/temprature",
+		"/simultaneous/temprature",
+		"gpiochip0/17",
+		"/28.0000/x",
+	};
+
+	for (unsigned i = 0; i < sizeof(paths) / sizeof(paths[0]); i++)
+		TEST_ASSERT_TRUE_MESSAGE(property_known(paths[i], nearest), paths[i]);
+}
+
+static void test_a_typing_error_is_answered_with_what_was_meant(void)
+{
+	static const struct {
+		const char *path, *nearest;
+	} rows[] = {
+		{"/28.000000000001/temprature12", "temperature12"},
+		{"/28.000000000001/Temperature", "temperature"},
+		{"/29.000000000001/sensd.3", "sensed.3"},
+		{"/29.000000000001/PIO_.BYTE", "PIO.BYTE"},
+		{"/26.000000000001/humidty", "humidity"},
+		{"/26.000000000001/HIH400/humidity", "HIH4000/humidity"},
+		{"/28.000000000001/quux", ""},
+		{"/28.000000000001/quux.3", ""},
+	};
+
+	for (unsigned i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		TEST_ASSERT_FALSE_MESSAGE(property_known(rows[i].path, nearest), rows[i].path);
+		TEST_ASSERT_EQUAL_STRING(rows[i].nearest, nearest);
+	}
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_every_property_of_every_family_is_known);
+	RUN_TEST(test_of_what_nobody_can_know_nothing_is_said);
+	RUN_TEST(test_a_typing_error_is_answered_with_what_was_meant);
+	return UNITY_END();
+}

@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: MIT */
+/* The owserver bus when its server is silent, lost, not there or not wanted, and back again. */
+#include <errno.h>
+#include <netinet/in.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "unity.h"
+
+#include "tests/unit/aid/owserver_scene.h"
+
+void setUp(void)
+{
+	owserver_begin();
+}
+
+void tearDown(void)
+{
+	owserver_end();
+}
+
+static void test_silence_takes_the_target_down_and_it_comes_back(void)
+{
+	serve("s");
+	TEST_ASSERT_EQUAL_INT(-ETIMEDOUT,
+	                      request_within(BUS_READ, TEMPERATURE, NULL, 64, 100 * HOST_MS)->err);
+	goes_down_with(-ETIMEDOUT, peer.target);
+	TEST_ASSERT_EQUAL_INT(-ENOTCONN, read_temperature());
+	comes_up();
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+	TEST_ASSERT_EQUAL_UINT64(1, counted("reconnects"));
+}
+
+static void test_a_connection_closed_while_idle_is_replaced_unseen(void)
+{
+	serve("caca");
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+	until_peer_saw(&peer.closed, 1);
+	TEST_ASSERT_EQUAL_INT(0, request(BUS_WRITE, OUTPUT, "1", 1)->err);
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+	TEST_ASSERT_GREATER_OR_EQUAL_UINT64(2, counted("stale_connection"));
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_DOWN));
+	TEST_ASSERT_EQUAL_UINT(1, peer_saw(&peer.writes));
+}
+
+static void test_a_read_that_met_a_closing_server_is_repeated_once(void)
+{
+	serve("axaaxx");
+	for (unsigned i = 0; i < 3; i++)
+		TEST_ASSERT_EQUAL_INT(0, read_temperature());
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_DOWN));
+	TEST_ASSERT_EQUAL_UINT64(1, counted("stale_connection"));
+	TEST_ASSERT_EQUAL_INT(-ECONNRESET, read_temperature());
+	goes_down_with(-ECONNRESET, "closed");
+}
+
+static void test_a_write_that_was_sent_is_never_repeated(void)
+{
+	serve("ax");
+	TEST_ASSERT_EQUAL_INT(0, request(BUS_WRITE, OUTPUT, "1", 1)->err);
+	TEST_ASSERT_EQUAL_INT(-ECONNRESET, request(BUS_WRITE, OUTPUT, "2", 1)->err);
+	TEST_ASSERT_EQUAL_UINT(2, peer_saw(&peer.writes));
+	goes_down_with(-ECONNRESET, peer.target);
+	comes_up();
+	TEST_ASSERT_EQUAL_INT(0, request(BUS_WRITE, OUTPUT, "2", 1)->err);
+	TEST_ASSERT_EQUAL_UINT(3, peer_saw(&peer.writes));
+}
+
+static void test_a_server_lost_in_the_middle_of_an_answer_is_down(void)
+{
+	serve("am");
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+	TEST_ASSERT_EQUAL_INT(-ECONNRESET, read_temperature());
+	goes_down_with(-ECONNRESET, "closed");
+	comes_up();
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+}
+
+static void test_the_answer_comes_before_the_news_of_the_loss(void)
+{
+	struct bus_req req = {.id = 9,
+	                      .op = BUS_READ,
+	                      .path = TEMPERATURE,
+	                      .data = room,
+	                      .len = 64,
+	                      .deadline_ns = host_now(&host) + PATIENCE};
+
+	serve("m");
+	TEST_ASSERT_EQUAL_INT(0, bus_submit(bus, &req));
+	while (host.answers == 0) {
+		TEST_ASSERT_EQUAL_UINT(1, host.events);
+		bus_step(bus, host_now(&host));
+	}
+	TEST_ASSERT_EQUAL_UINT(1, host.events);
+	bus_step(bus, host_now(&host));
+	TEST_ASSERT_EQUAL_UINT(2, host.events);
+}
+
+static void test_a_reset_is_a_loss(void)
+{
+	serve("RR");
+	TEST_ASSERT_EQUAL_INT(-ECONNRESET, read_temperature());
+	goes_down_with(-ECONNRESET, peer.target);
+}
+
+static void test_a_target_that_is_not_there_is_tried_for_ever_and_told_once(void)
+{
+	unsigned open_before;
+
+	peer_start(&peer, AF_INET, "");
+	peer_stop(&peer);
+	bus = host_bus(&host, peer.target);
+	open_before = descriptors();
+	goes_down_with(-ECONNRESET, "refused");
+	host_run(&host, bus, host_now(&host) + 700 * HOST_MS);
+	TEST_ASSERT_EQUAL_UINT(1, host.events);
+	TEST_ASSERT_EQUAL_UINT(open_before, descriptors());
+	TEST_ASSERT_EQUAL_INT(-ENOTCONN, read_temperature());
+	peer_restart(&peer, "");
+	is_peer_up = true;
+	comes_up();
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+	TEST_ASSERT_EQUAL_UINT64(0, counted("reconnects"));
+}
+
+static void test_a_server_that_goes_while_idle_is_noticed(void)
+{
+	serve("");
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+	stop_peer();
+	goes_down_with(-ECONNRESET, "refused");
+	TEST_ASSERT_EQUAL_INT(-ENOTCONN, read_temperature());
+}
+
+static void test_an_unknown_name_says_so(void)
+{
+	bus = host_bus(&host, "no-such-host.invalid:4304");
+	goes_down_with(-ECONNRESET, "no-such-host.invalid");
+}
+
+static void test_shutdown_ends_a_request_at_once(void)
+{
+	struct bus_req req = {.id = 9,
+	                      .op = BUS_READ,
+	                      .path = TEMPERATURE,
+	                      .data = room,
+	                      .len = 64,
+	                      .deadline_ns = INT64_MAX};
+
+	serve("s");
+	TEST_ASSERT_EQUAL_INT(0, bus_submit(bus, &req));
+	host.shutdown = true;
+	bus_step(bus, host_now(&host));
+	TEST_ASSERT_EQUAL_INT(-EINPROGRESS, host_answer(&host, 9)->err);
+}
+
+static void test_a_suspended_bus_lets_go_of_the_connection(void)
+{
+	unsigned open_before;
+
+	serve("");
+	open_before = descriptors();
+	bus_suspend(bus, true);
+	TEST_ASSERT_LESS_OR_EQUAL_UINT(open_before - 1, descriptors());
+	TEST_ASSERT_EQUAL_INT(-ENOTCONN, read_temperature());
+	bus_suspend(bus, false);
+	comes_up();
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+}
+
+static unsigned backs_within(int64_t time_ns)
+{
+	host_run(&host, bus, host_now(&host) + time_ns);
+	return host_events(&host, BUS_BACK);
+}
+
+static void test_a_suspended_bus_sees_when_the_server_is_back(void)
+{
+	unsigned open_before;
+
+	serve("");
+	stop_peer();
+	bus_suspend(bus, true);
+	open_before = descriptors();
+	TEST_ASSERT_EQUAL_UINT(0, backs_within(300 * HOST_MS));
+	peer_restart(&peer, "");
+	is_peer_up = true;
+	TEST_ASSERT_TRUE(host_run_events(&host, bus, host.events + 1, host_now(&host) + PATIENCE));
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_BACK));
+	TEST_ASSERT_EQUAL_UINT(0, peer_saw(&peer.requests));
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_DOWN));
+	stop_peer();
+	TEST_ASSERT_EQUAL_UINT(open_before, descriptors());
+}
+
+static void test_a_server_that_hangs_is_not_back(void)
+{
+	int fd = socket(AF_INET, SOCK_STREAM, 0);
+	struct sockaddr_in address = {.sin_family = AF_INET,
+	                              .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+	socklen_t len = sizeof(address);
+	char target[32];
+
+	TEST_ASSERT_EQUAL_INT(0, bind(fd, (struct sockaddr *)&address, len));
+	TEST_ASSERT_EQUAL_INT(0, listen(fd, 4));
+	TEST_ASSERT_EQUAL_INT(0, getsockname(fd, (struct sockaddr *)&address, &len));
+	snprintf(target, sizeof(target), "127.0.0.1:%d", ntohs(address.sin_port));
+	bus = host_bus(&host, target);
+	bus_suspend(bus, true);
+	TEST_ASSERT_EQUAL_UINT(0, backs_within(400 * HOST_MS));
+	TEST_ASSERT_EQUAL_INT(-ENOTCONN, read_temperature());
+	close(fd);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_silence_takes_the_target_down_and_it_comes_back);
+	RUN_TEST(test_a_connection_closed_while_idle_is_replaced_unseen);
+	RUN_TEST(test_a_read_that_met_a_closing_server_is_repeated_once);
+	RUN_TEST(test_a_write_that_was_sent_is_never_repeated);
+	RUN_TEST(test_a_server_lost_in_the_middle_of_an_answer_is_down);
+	RUN_TEST(test_the_answer_comes_before_the_news_of_the_loss);
+	RUN_TEST(test_a_reset_is_a_loss);
+	RUN_TEST(test_a_target_that_is_not_there_is_tried_for_ever_and_told_once);
+	RUN_TEST(test_a_server_that_goes_while_idle_is_noticed);
+	RUN_TEST(test_an_unknown_name_says_so);
+	RUN_TEST(test_shutdown_ends_a_request_at_once);
+	RUN_TEST(test_a_suspended_bus_lets_go_of_the_connection);
+	RUN_TEST(test_a_suspended_bus_sees_when_the_server_is_back);
+	RUN_TEST(test_a_server_that_hangs_is_not_back);
+	return UNITY_END();
+}

@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT */
+#include <math.h>
+#include <stdio.h>
+
+#include "unity.h"
+
+#include "src/signal/quantity.h"
+
+void setUp(void)
+{
+}
+void tearDown(void)
+{
+}
+
+static struct quantity of(const char *path)
+{
+	struct quantity quantity;
+
+	TEST_ASSERT_TRUE_MESSAGE(quantity_of(path, &quantity), path);
+	return quantity;
+}
+
+static void test_thermometers_that_can_starve_are_known_in_every_spelling(void)
+{
+	static const char *const yes[] = {
+		"/28.551DDF030000/temperature12",
+		"/28551ddf030000/temperature",
+		"/10.E466DA610B63/temperature",
+		"/22.000000000000/fasttemp",
+		"/3b.112233445566/latesttemp",
+		"/42.112233445566/temperature9",
+		"/bus.1/28.551DDF030000/temperature10",
+		"/boiler/temperature",
+		"/1F.112233445566/main/28.551DDF030000/temperature",
+	};
+	static const char *const no[] = {"/26.0CBEEA010000/temperature",
+	                                 "/26.0CBEEA010000/humidity",
+	                                 "/3B.112233445566/thermocouple"};
+	static const char *const nothing[] = {
+		"/28.551DDF030000/templow",
+		"/28.551DDF030000/power",
+		"/simultaneous/temperature",
+		"/29.B89115000000/sensed.BYTE",
+		"/",
+		"",
+		"/28.551DDF030000",
+		"/boiler",
+		"/28.551DDF030000/temperature13",
+		"/28.551DDF030000/VDD",
+		"/20.551DDF030000/vol",
+		"/1F.112233445566/temperature",
+	};
+
+	for (unsigned i = 0; i < sizeof(yes) / sizeof(yes[0]); i++)
+		TEST_ASSERT_TRUE_MESSAGE(of(yes[i]).starves, yes[i]);
+	for (unsigned i = 0; i < sizeof(no) / sizeof(no[0]); i++)
+		TEST_ASSERT_FALSE_MESSAGE(of(no[i]).starves, no[i]);
+	for (unsigned i = 0; i < sizeof(nothing) / sizeof(nothing[0]); i++) {
+		struct quantity quantity;
+
+		TEST_ASSERT_FALSE_MESSAGE(quantity_of(nothing[i], &quantity), nothing[i]);
+	}
+}
+
+/* What a chip may rightly say, and what none of its kind ever does. */
+static void test_the_range_is_the_chips_own(void)
+{
+	static const struct {
+		const char *path;
+		double least, most, below, above;
+	} rows[] = {
+		{"/28.551DDF030000/temperature", -57, 127.5, -999.9, 200},
+		{"/10.551DDF030000/temperature", -57, 127, -127.9, 1370},
+		{"/22.551DDF030000/temperature11", -58, 128, -60, 130},
+		{"/3B.551DDF030000/temperature", -40, 125, -273, 999},
+		{"/3B.551DDF030000/thermocouple", -270, 1820, -300, 2048},
+		{"/42.551DDF030000/temperature", -55, 125, -100, 150},
+		{"/26.551DDF030000/temperature", -55, 125, -100, 150},
+		{"/26.551DDF030000/VDD", 2.4, 10.23, 0, 76.78},
+		{"/26.551DDF030000/VAD", 0, 10.23, -1, 10.24},
+		{"/26.551DDF030000/vis", -0.2499584, 0.2497143, -0.3, 34.7},
+		{"/26.551DDF030000/humidity", -2.5, 104, -26, 135},
+		{"/26.551DDF030000/HIH4000/humidity", 0, 100, -33, 173},
+		{"/26.551DDF030000/B1-R1-A/pressure", 300, 1150, -1, INFINITY},
+		{"/20.551DDF030000/volt.A", 0, 5.11992, -0.001, 12},
+		{"/20.551DDF030000/volt2.D", 0, 2.55996, -0.001, 5},
+		{"/20.551DDF030000/latestvolt.B", 0, 5.11992, -5, 95.1},
+		{"/41.551DDF030000/temperature", -42, 142, -45, 150},
+		{"/1D.551DDF030000/counter.A", 0, 4294967295.0, -1, 4294967296.0},
+		{"/1D.551DDF030000/counters.B", 0, 4294967295.0, -1, 1e12},
+		{"/boiler/temperature", -273, 1e6, -274, INFINITY},
+	};
+
+	for (unsigned i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		struct quantity quantity = of(rows[i].path);
+
+		TEST_ASSERT_FALSE_MESSAGE(quantity_excludes(&quantity, rows[i].least),
+		                          rows[i].path);
+		TEST_ASSERT_FALSE_MESSAGE(quantity_excludes(&quantity, rows[i].most), rows[i].path);
+		TEST_ASSERT_TRUE_MESSAGE(quantity_excludes(&quantity, rows[i].below), rows[i].path);
+		if (isfinite(rows[i].above))
+			TEST_ASSERT_TRUE_MESSAGE(quantity_excludes(&quantity, rows[i].above),
+			                         rows[i].path);
+	}
+}
+
+static void test_an_alias_excludes_only_what_nothing_can_measure(void)
+{
+	struct quantity quantity = of("/cellar/humidity");
+
+	TEST_ASSERT_FALSE(quantity_excludes(&quantity, -1e9));
+	TEST_ASSERT_FALSE(quantity_excludes(&quantity, 1e9));
+	quantity = of("/oven/temperature");
+	TEST_ASSERT_FALSE(quantity_excludes(&quantity, 1200));
+	TEST_ASSERT_TRUE(quantity_excludes(&quantity, -999.9));
+}
+
+static void test_the_decimals_hold_one_step_of_the_chip(void)
+{
+	static const struct {
+		const char *path;
+		double step;
+	} rows[] = {
+		{"/28.551DDF030000/temperature", 0.0625},
+		{"/28.551DDF030000/temperature9", 0.5},
+		{"/28.551DDF030000/temperature10", 0.25},
+		{"/28.551DDF030000/temperature11", 0.125},
+		{"/28.551DDF030000/temperature12", 0.0625},
+		{"/10.551DDF030000/temperature", 0.0625},
+		{"/26.551DDF030000/temperature", 0.03125},
+		{"/26.551DDF030000/VDD", 0.01},
+		{"/3B.551DDF030000/thermocouple", 0.25},
+		{"/28.551DDF030000/fasttemp", 0.5},
+	};
+
+	for (unsigned i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		struct quantity quantity = of(rows[i].path);
+		double least = pow(10, -quantity.decimals);
+
+		TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-9, round(rows[i].step / least) * least,
+		                                  rows[i].step, rows[i].path);
+		least *= 10;
+		TEST_ASSERT_TRUE_MESSAGE(fabs(round(rows[i].step / least) * least - rows[i].step) >
+		                                 1e-9,
+		                         rows[i].path);
+	}
+	TEST_ASSERT_EQUAL_INT(2, of("/26.551DDF030000/humidity").decimals);
+	TEST_ASSERT_EQUAL_INT(2, of("/cellar/humidity").decimals);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_thermometers_that_can_starve_are_known_in_every_spelling);
+	RUN_TEST(test_the_range_is_the_chips_own);
+	RUN_TEST(test_an_alias_excludes_only_what_nothing_can_measure);
+	RUN_TEST(test_the_decimals_hold_one_step_of_the_chip);
+	return UNITY_END();
+}

@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: MIT */
+/* What hangs, or cannot be done, in the kernel's files: who else notices? */
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "unity.h"
+
+#include "hal/bus/worker.h"
+#include "hal/chips/family.h"
+#include "hal/native/files.h"
+#include "hal/wire/crc.h"
+
+#define S INT64_C(1000000000)
+#define HANGS 0
+#define LIVES 1
+
+static char root[64];
+static struct worker *worker[2];
+static struct bus_req req[2];
+static uint8_t data[2][32];
+static struct bus_answer answer[2];
+static unsigned answers[2];
+
+static int64_t boottime(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_BOOTTIME, &t);
+	return (int64_t)t.tv_sec * S + t.tv_nsec;
+}
+
+static void no_bell(void *ctx)
+{
+	(void)ctx;
+}
+
+static void in_root(char path[200], const char *name)
+{
+	snprintf(path, 200, "%s/%s", root, name);
+}
+
+static void directory(const char *name)
+{
+	char path[200];
+
+	in_root(path, name);
+	TEST_ASSERT_EQUAL_INT(0, mkdir(path, 0755));
+}
+
+static void text(const char *name, const char *what)
+{
+	char path[200];
+
+	in_root(path, name);
+	FILE *file = fopen(path, "w");
+	TEST_ASSERT_NOT_NULL(file);
+	fputs(what, file);
+	fclose(file);
+}
+
+void setUp(void)
+{
+	memset(answers, 0, sizeof(answers));
+	snprintf(root, sizeof(root), "/tmp/owsd-w1-XXXXXX");
+	TEST_ASSERT_NOT_NULL(mkdtemp(root));
+}
+
+void tearDown(void)
+{
+	char line[100];
+
+	snprintf(line, sizeof(line), "rm -rf %s", root);
+	TEST_ASSERT_EQUAL_INT(0, system(line));
+}
+
+static void start(unsigned n, const char *target)
+{
+	char why[200] = "";
+	int err = worker_create(target, "bus-under-test", no_bell, NULL, &worker[n], why,
+	                        sizeof(why));
+
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, err, why);
+	TEST_ASSERT_EQUAL_INT(0, worker_start(worker[n]));
+}
+
+static void ask(unsigned n, const char *path)
+{
+	req[n] = (struct bus_req){.op = BUS_READ,
+	                          .prio = BUS_INPUT,
+	                          .fresh = true,
+	                          .path = path,
+	                          .data = data[n],
+	                          .len = sizeof(data[n]),
+	                          .deadline_ns = boottime() + 60 * S};
+	TEST_ASSERT_EQUAL_INT(0, worker_submit(worker[n], &req[n]));
+}
+
+static void take(unsigned n)
+{
+	struct worker_message message;
+
+	while (worker_next(worker[n], &message)) {
+		if (message.is_event)
+			continue;
+		answer[n] = message.answer;
+		answers[n]++;
+	}
+}
+
+static void take_until(unsigned n, unsigned count)
+{
+	for (int64_t until = boottime() + 20 * S; answers[n] < count && boottime() < until;) {
+		take(n);
+		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+	}
+	TEST_ASSERT_EQUAL_UINT(count, answers[n]);
+}
+
+/* Opening a FIFO for reading lasts until somebody writes: so the worker is held in the kernel. */
+static void test_a_read_that_never_returns_stalls_its_own_bus_only(void)
+{
+	char target[100], fifo[200];
+
+	directory("w1_bus_master1");
+	directory("w1_bus_master1/28-0000000000a1");
+	directory("28-0000000000a1");
+	text("28-0000000000a1/ext_power", "1\n");
+	in_root(fifo, "28-0000000000a1/w1_slave");
+	TEST_ASSERT_EQUAL_INT(0, mkfifo(fifo, 0644));
+	snprintf(target, sizeof(target), "w1:root=%s", root);
+	start(HANGS, target);
+	start(LIVES, "null:");
+	ask(HANGS, "/28.A10000000000/temperature");
+	/* It reads: only now there is somebody at the other end. */
+	int writer = -1;
+	for (int64_t until = boottime() + 20 * S; writer < 0 && boottime() < until;)
+		writer = open(fifo, O_WRONLY | O_NONBLOCK);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, writer);
+	for (unsigned i = 1; i <= 20; i++) {
+		ask(LIVES, "/28.000000000001/temperature");
+		take_until(LIVES, i);
+	}
+	take(HANGS);
+	TEST_ASSERT_EQUAL_UINT(0, answers[HANGS]);
+	TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, worker_stop(worker[HANGS], S / 10));
+	TEST_ASSERT_EQUAL_INT(0, worker_stop(worker[LIVES], 20 * S));
+	close(writer);
+	TEST_ASSERT_EQUAL_INT(0, worker_stop(worker[HANGS], 20 * S));
+	worker_destroy(worker[HANGS]);
+	worker_destroy(worker[LIVES]);
+}
+
+/* --- A link without strong pull-up whose answers are right --- */
+
+static uint8_t sent[16];
+static size_t sent_n;
+
+static int reset(struct link *link)
+{
+	(void)link;
+	return 1;
+}
+
+static int write_bytes(struct link *link, const uint8_t *bytes, size_t n, enum link_after after)
+{
+	(void)link;
+	(void)after;
+	sent_n = n - 9;
+	memcpy(sent, bytes + 9, sent_n);
+	return 0;
+}
+
+static int read_bytes(struct link *link, uint8_t *bytes, size_t n)
+{
+	(void)link;
+	memset(bytes, 0, n);
+	/* Behind the checksum of Write Memory comes what was written. */
+	size_t before = sent[0] == 0x55 ? 0 : n - 2;
+	uint16_t crc = onewire_crc16(onewire_crc16(0, sent, sent_n), bytes, before);
+	bytes[before] = (uint8_t)~crc;
+	bytes[before + 1] = (uint8_t)(~crc >> 8);
+	if (!before)
+		bytes[2] = sent[sent_n - 1];
+	return 0;
+}
+
+static int bit(struct link *link, bool out, enum link_after after)
+{
+	(void)link;
+	(void)out;
+	return after == LINK_STRONG ? -EOPNOTSUPP : 1;
+}
+
+static int64_t now(void *ctx)
+{
+	return *(int64_t *)ctx;
+}
+
+static void test_a_pull_up_that_a_driver_has_not_is_no_error_of_the_master(void)
+{
+	static const struct link_ops ops = {
+		.reset = reset, .write = write_bytes, .read = read_bytes, .bit = bit};
+	static const struct link_files files;
+	int64_t time = S;
+	struct bus_env env = {.ctx = &time, .now = now};
+	struct link link = {.ops = &ops, .env = &env, .files = &files};
+	struct device device = {.rom = {0x20, 1}, .family = family_of(0x20)};
+	struct txn txn = {.link = &link, .device = &device};
+	int err = TXN_MORE;
+
+	for (unsigned i = 0; !txn.property && i < device.family->count; i++)
+		if (strcmp(device.family->properties[i].name, "volt") == 0)
+			txn.property = &device.family->properties[i];
+	TEST_ASSERT_NOT_NULL(txn.property);
+	for (int i = 0; i < 30 && err == TXN_MORE; i++, time += S)
+		err = txn.property->read(&txn);
+	TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP, err);
+	TEST_ASSERT_EQUAL_INT(0, txn.link_error);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_read_that_never_returns_stalls_its_own_bus_only);
+	RUN_TEST(test_a_pull_up_that_a_driver_has_not_is_no_error_of_the_master);
+	return UNITY_END();
+}
