@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
+/* Families and their properties: found by code and by name, listed in order. */
 #include <string.h>
 
 #include "hal/chips/family.h"
 
 static const struct family *const families[] = {
-	&family_01, &family_05, &family_10, &family_12, &family_14, &family_1d,
-	&family_20, &family_22, &family_23, &family_26, &family_28, &family_29,
-	&family_2d, &family_3a, &family_3b, &family_42,
+#define FAMILY(code) &family_##code,
+#include "hal/chips/families.h"
+#undef FAMILY
 };
 #define FAMILIES (sizeof(families) / sizeof(families[0]))
 
@@ -86,6 +87,19 @@ const struct property *family_next(const struct family *family, const struct dev
 	if (family->is_virtual || family == &family_common)
 		return best;
 	return nearer(&family_common, device, prev, best);
+}
+
+property_function *property_reader(const struct property *property)
+{
+	return property->read || !property->field.area ? property->read : field_read;
+}
+
+property_function *property_writer(const struct property *property)
+{
+	return property->write || !(property->access & ACCESS_WRITE) ||
+	                       !(property->set ? property->set : &property->field)->area
+	               ? property->write
+	               : field_write;
 }
 
 unsigned property_size(const struct property *property)

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A chip family is one file that states its properties: name, type, array, access, size and life
- * of the value as OWFS has them, and the functions that read and write it (hal/wire/txn.h). To
- * add a family: write the file, and name its table in family.c.
+ * A chip family is one file that states its areas (area.h) and its properties: name, type, array,
+ * access, size and life of the value as OWFS has them, and the field of an area that it is. What no
+ * field can say has functions (txn.h). To add a family: write the file, and name it in families.h.
  */
 #ifndef HAL_CHIPS_FAMILY_H
 #define HAL_CHIPS_FAMILY_H
 
-#include "hal/wire/txn.h"
+#include "hal/chips/area.h"
 
 /* The letters are those of /structure. */
 enum property_type {
@@ -40,8 +40,6 @@ enum property_index { INDEX_NONE, INDEX_NUMBERS, INDEX_LETTERS };
 /* convert: a fresh reading needs a conversion, at this resolution or that of tempres. */
 #define CONVERT_TEMPRES 1
 
-struct chip_memory;
-
 struct property {
 	const char *name; /* "temperature12", "errata/die" */
 	uint8_t type, life, access;
@@ -51,13 +49,15 @@ struct property {
 		uint8_t count, index;
 		bool aggregate; /* all elements come in one transaction */
 	} array;
-	uint16_t size;      /* bytes of ascii and binary; 0: that of the type */
-	bool negative;      /* unsigned, and a write may be below zero all the same */
-	const char *digits; /* unsigned: the most that each decimal digit may be; NULL: any */
-	uint8_t convert;    /* 9 to 12, CONVERT_TEMPRES, or 0 */
-	int arg;            /* for functions that serve several properties */
+	uint16_t size;           /* bytes of ascii and binary; 0: that of the type */
+	bool negative;           /* unsigned, and a write may be below zero all the same */
+	const char *digits;      /* unsigned: the most that each decimal digit may be; NULL: any */
+	uint8_t convert;         /* 9 to 12, CONVERT_TEMPRES, or 0 */
+	struct field field;      /* what it is; .area NULL: it has functions */
+	const struct field *set; /* what is written, if that is another */
+	int arg;                 /* for functions that serve several properties */
 	bool (*visible)(const struct device *device); /* NULL: always; else no such property */
-	int (*read)(struct txn *txn);
+	int (*read)(struct txn *txn);                 /* NULL: of the field */
 	int (*write)(struct txn *txn);
 	/* What the other elements are when one is written; NULL: what read says. */
 	int (*merge)(struct txn *txn);
@@ -75,8 +75,7 @@ struct family {
 	const char *(*type_of)(const struct device *device);
 	/* Which of them? Until that is known, requests may be for properties of any. NULL: it is. */
 	bool (*is_known)(const struct device *device);
-	const struct chip_memory *memory;  /* of the properties of memory.h; NULL: it has none */
-	const struct property *properties; /* in any order, the hidden ones too */
+	const struct property *properties; /* sorted by name, the hidden ones too */
 	unsigned count;
 };
 
@@ -96,13 +95,17 @@ const struct property *family_property(const struct family *family, const struct
  */
 const struct property *family_next(const struct family *family, const struct device *device,
                                    const struct property *prev);
+/* What reads it, and what writes it: the property's function, or the field's; NULL: nothing. */
+typedef int property_function(struct txn *txn);
+property_function *property_reader(const struct property *property);
+property_function *property_writer(const struct property *property);
 /* Bytes of a whole value, of one element, as owserver states it. */
 unsigned property_size(const struct property *property);
 
 extern const struct family family_common;
-extern const struct family family_01, family_05, family_10, family_12, family_14, family_1d,
-	family_20, family_22, family_23, family_26, family_28, family_29, family_2d, family_3a,
-	family_3b, family_42;
+#define FAMILY(code) extern const struct family family_##code;
+#include "hal/chips/families.h"
+#undef FAMILY
 
 /* clang-format off */
 #define PROPERTY_DIR(path) \

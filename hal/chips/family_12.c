@@ -2,22 +2,15 @@
 /* DS2406 and DS2407 (data sheet 19-6076): one or two switches, and 1 kbit of EPROM. */
 #include <errno.h>
 
-#include "hal/chips/memory.h"
+#include "hal/chips/family.h"
 #include "hal/wire/crc.h"
 
-#define READ_STATUS 0xaa
-#define WRITE_STATUS 0x55
 #define CHANNEL_ACCESS 0xf5
 /* Channel control: read, channel A, CRC16 behind each byte; and the latches' reset. */
 #define ACCESS_READ_A 0x45
 #define ACCESS_RESET_LATCHES 0x80
 
-#define INFO_TWO_CHANNELS 0x40
-#define INFO_SUPPLY 0x80
-#define STATUS 7            /* the byte, and which registers it is for txn_base() */
-#define STATUS_OUTPUTS 0x60 /* 1: does not conduct */
-
-static const struct chip_memory memory = {.size = 128, .page = 32};
+#define STATUS_SUPPLY 0x80
 
 static bool is_checked(const uint8_t command[3], const uint8_t in[4])
 {
@@ -48,46 +41,11 @@ static int channel_info(struct txn *txn, uint8_t control, uint8_t *info)
 	return 0;
 }
 
-static int read_info_bits(struct txn *txn)
+static int load_info(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+                     unsigned n)
 {
-	uint8_t info = 0;
-	int err = channel_info(txn, ACCESS_READ_A, &info);
-
-	txn->bits = info >> txn->property->arg & 3;
-	return err;
-}
-
-static int read_pio(struct txn *txn)
-{
-	int err = read_info_bits(txn);
-
-	txn->bits ^= 3;
-	return err;
-}
-
-static int read_info(struct txn *txn)
-{
-	uint8_t info = 0;
-	int err = channel_info(txn, ACCESS_READ_A, &info);
-
-	txn->number[0] = info;
-	return err;
-}
-
-static int read_channels(struct txn *txn)
-{
-	int err = read_info(txn);
-
-	txn->number[0] = (unsigned)txn->number[0] & INFO_TWO_CHANNELS ? 2 : 1;
-	return err;
-}
-
-static int read_power(struct txn *txn)
-{
-	int err = read_info(txn);
-
-	txn->number[0] = ((unsigned)txn->number[0] & INFO_SUPPLY) != 0;
-	return err;
+	(void)area, (void)at, (void)n;
+	return channel_info(txn, ACCESS_READ_A, bytes);
 }
 
 static int write_latch(struct txn *txn)
@@ -97,91 +55,56 @@ static int write_latch(struct txn *txn)
 	return channel_info(txn, ACCESS_READ_A | ACCESS_RESET_LATCHES, &info);
 }
 
-static int read_status(struct txn *txn, uint8_t *status)
+/* The supply is no setting. */
+static int saw_status(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
-	uint8_t command[] = {READ_STATUS, 0x07, 0x00};
-	int err = txn_command(txn, command, sizeof(command));
-
-	return err ? err : txn_read_crc16(txn, command, sizeof(command), status, 1);
+	(void)txn, (void)at, (void)n;
+	bytes[0] &= (uint8_t)~STATUS_SUPPLY;
+	return 0;
 }
 
-/* Change the status byte's bits of mask: read, write, read back. */
-static int change_status(struct txn *txn, uint8_t mask, uint8_t bits)
-{
-	uint8_t command[] = {WRITE_STATUS, 0x07, 0x00, 0}, status = 0;
-	int err;
-
-	switch (txn->phase++) {
-	case 0:
-		err = read_status(txn, &status);
-		if (err)
-			return err;
-		txn_base(txn, STATUS, &status, 1);
-		txn_keep(txn, STATUS, &status, 1);
-		txn->mem[0] = (uint8_t)((status & ~mask) | bits) & 0x7f;
-		return TXN_MORE;
-	case 1:
-		txn->device->shadow_known = false;
-		command[3] = txn->mem[0];
-		err = txn_command(txn, command, sizeof(command));
-		if (!err)
-			err = txn_read_crc16(txn, command, sizeof(command), &status, 0);
-		/* Eight slots more make it take effect. */
-		if (!err)
-			err = txn_read(txn, &status, 1);
-		return err ? err : TXN_MORE;
-	default:
-		err = read_status(txn, &status);
-		if (err)
-			return err;
-		if ((status & 0x7f) != txn->mem[0])
-			return -EIO;
-		txn_changed(txn);
-		return 0;
-	}
-}
-
-/* The outputs ahead of a change of one: not those that a change that failed has left. */
-static int merge_pio(struct txn *txn)
-{
-	uint8_t status = 0;
-	int err = read_status(txn, &status);
-
-	if (!err)
-		txn_base(txn, STATUS, &status, 1);
-	txn->bits = (uint32_t)(~status >> 5 & 3);
-	return err;
-}
-
-static int write_pio(struct txn *txn)
-{
-	return change_status(txn, STATUS_OUTPUTS, (uint8_t)((~txn->bits & 3) << 5));
-}
+/* EPROM takes pulses of 12 V, which no master here gives: it has no row. */
+static const struct area memory = {
+	.name = "memory",
+	.size = 128,
+	.address_bytes = 2,
+	.read = 0xf0,
+};
+static const struct area info = {.name = "info", .size = 1, .load = load_info};
+static const struct area status = {
+	.name = "status",
+	.at = 7,
+	.size = 1,
+	.address_bytes = 2,
+	.read = 0xaa,
+	.block = 1,
+	.check = AREA_CRC16,
+	.saw = saw_status,
+	.row = 1,
+	.write = 0x55,
+	.write_crc16 = true,
+};
+/* 1: does not conduct. */
+static const struct field outputs = {&status, .shift = 5, .inverted = true};
 
 /* Three digits: channels, source, polarity. */
 static int read_alarm(struct txn *txn)
 {
-	uint8_t status = 0;
-	int err = read_status(txn, &status);
+	uint8_t byte = 0;
+	int err = area_read(txn, &status, 0, &byte, 1);
 
-	txn->number[0] = (status >> 3 & 3) * 100 + (status >> 1 & 3) * 10 + (status & 1);
+	txn->number[0] = (byte >> 3 & 3) * 100 + (byte >> 1 & 3) * 10 + (byte & 1);
 	return err;
 }
 
 static int write_alarm(struct txn *txn)
 {
+	static const uint8_t mask = 0x1f;
 	unsigned digits = (unsigned)txn->number[0];
+	uint8_t byte = (uint8_t)((digits / 100 & 3) << 3 | (digits / 10 % 10 & 3) << 1 |
+	                         (digits % 10 & 1));
 
-	return change_status(txn, 0x1f,
-	                     (uint8_t)((digits / 100 & 3) << 3 | (digits / 10 % 10 & 3) << 1 |
-	                               (digits % 10 & 1)));
-}
-
-/* EPROM takes pulses of 12 V, which no master here gives. */
-static int refuse(struct txn *txn)
-{
-	(void)txn;
-	return -EOPNOTSUPP;
+	return area_write(txn, &status, 0, &byte, &mask, 1);
 }
 
 /* The boards TAI8570 and T8A: not part of one, as far as can be told. */
@@ -197,56 +120,72 @@ static bool never(const struct device *device)
 	return false;
 }
 
-/* clang-format off */
-#define BITS(text, life_, access_, shift, reads, writes)                                  \
-	{.name = (text), .type = PROPERTY_BITS, .life = (life_), .access = (access_),       \
-	 .array = {2, INDEX_LETTERS, true}, .arg = (shift), .read = (reads), .write = (writes)}
-#define NUMBER(text, kind, life_, reads)                                                  \
-	{.name = (text), .type = (kind), .life = (life_), .access = ACCESS_READ, .read = (reads)}
+#define BITS(text, access_, shift_, writes) \
+	{ \
+		.name = (text), .type = PROPERTY_BITS, .life = LIFE_VOLATILE, .access = (access_), \
+		.array = {2, INDEX_LETTERS, true}, FIELD(info, .shift = (shift_)), \
+		.write = (writes) \
+	}
+#define NUMBER(text, kind, life_, ...) \
+	{ \
+		.name = (text), .type = (kind), .life = (life_), .access = ACCESS_READ, \
+		__VA_ARGS__ \
+	}
+#define NOT_THERE(text, kind) NUMBER(text, kind, LIFE_VOLATILE, .read = not_there)
 
 static const struct property properties[] = {
-	{.name = "PIO", .type = PROPERTY_BITS, .life = LIFE_STABLE, .access = ACCESS_BOTH,
-	 .array = {2, INDEX_LETTERS, true}, .read = read_pio, .write = write_pio,
-	 .merge = merge_pio},
+	{.name = "PIO",
+         .type = PROPERTY_BITS,
+         .life = LIFE_STABLE,
+         .access = ACCESS_BOTH,
+         .array = {2, INDEX_LETTERS, true},
+         FIELD(info, .inverted = true),
+         .set = &outputs},
 	{.name = "T8A", .type = PROPERTY_DIRECTORY, .life = LIFE_STATIC, .visible = never},
-	{.name = "T8A/volt", .type = PROPERTY_FLOAT, .life = LIFE_VOLATILE, .access = ACCESS_READ,
-	 .array = {8, INDEX_NUMBERS, false}, .visible = never, .read = not_there},
+	{.name = "T8A/volt",
+         .type = PROPERTY_FLOAT,
+         .life = LIFE_VOLATILE,
+         .access = ACCESS_READ,
+         .array = {8, INDEX_NUMBERS, false},
+         .visible = never,
+         .read = not_there},
 	PROPERTY_DIR("TAI8570"),
-	{.name = "TAI8570/C", .type = PROPERTY_UNSIGNED, .life = LIFE_STATIC, .hidden = true,
-	 .access = ACCESS_READ, .array = {6, INDEX_NUMBERS, true}, .read = not_there},
-	{.name = "TAI8570/D1", .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE, .hidden = true,
-	 .access = ACCESS_READ, .read = not_there},
-	{.name = "TAI8570/D2", .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE, .hidden = true,
-	 .access = ACCESS_READ, .read = not_there},
+	NUMBER("TAI8570/C", PROPERTY_UNSIGNED, LIFE_STATIC, .hidden = true,
+               .array = {6, INDEX_NUMBERS, true}, .read = not_there),
+	NUMBER("TAI8570/D1", PROPERTY_UNSIGNED, LIFE_VOLATILE, .hidden = true, .read = not_there),
+	NUMBER("TAI8570/D2", PROPERTY_UNSIGNED, LIFE_VOLATILE, .hidden = true, .read = not_there),
 	PROPERTY_DIR("TAI8570/DA5534"),
-	NUMBER("TAI8570/DA5534/pressure", PROPERTY_PRESSURE, LIFE_VOLATILE, not_there),
-	NUMBER("TAI8570/DA5534/temperature", PROPERTY_TEMPERATURE, LIFE_VOLATILE, not_there),
+	NOT_THERE("TAI8570/DA5534/pressure", PROPERTY_PRESSURE),
+	NOT_THERE("TAI8570/DA5534/temperature", PROPERTY_TEMPERATURE),
 	PROPERTY_DIR("TAI8570/DA5540"),
-	NUMBER("TAI8570/DA5540/pressure", PROPERTY_PRESSURE, LIFE_VOLATILE, not_there),
-	NUMBER("TAI8570/DA5540/temperature", PROPERTY_TEMPERATURE, LIFE_VOLATILE, not_there),
-	NUMBER("TAI8570/pressure", PROPERTY_PRESSURE, LIFE_VOLATILE, not_there),
-	{.name = "TAI8570/sibling", .type = PROPERTY_ASCII, .life = LIFE_STABLE,
-	 .access = ACCESS_READ, .size = 16, .read = not_there},
-	NUMBER("TAI8570/temperature", PROPERTY_TEMPERATURE, LIFE_VOLATILE, not_there),
+	NOT_THERE("TAI8570/DA5540/pressure", PROPERTY_PRESSURE),
+	NOT_THERE("TAI8570/DA5540/temperature", PROPERTY_TEMPERATURE),
+	NOT_THERE("TAI8570/pressure", PROPERTY_PRESSURE),
+	NUMBER("TAI8570/sibling", PROPERTY_ASCII, LIFE_STABLE, .size = 16, .read = not_there),
+	NOT_THERE("TAI8570/temperature", PROPERTY_TEMPERATURE),
 	{.name = "aux", .type = PROPERTY_DIRECTORY, .life = LIFE_VOLATILE, .size = 8},
-	NUMBER("channels", PROPERTY_UNSIGNED, LIFE_STABLE, read_channels),
-	BITS("flipflop", LIFE_VOLATILE, ACCESS_READ, 0, read_info_bits, NULL),
-	{.name = "infobyte", .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE, .hidden = true,
-	 .access = ACCESS_READ, .read = read_info},
-	BITS("latch", LIFE_VOLATILE, ACCESS_BOTH, 4, read_info_bits, write_latch),
-	MEMORY_WHOLE(128, refuse),
-	MEMORY_PAGES(4, 32, refuse),
-	NUMBER("power", PROPERTY_YESNO, LIFE_VOLATILE, read_power),
-	BITS("sensed", LIFE_VOLATILE, ACCESS_READ, 2, read_info_bits, NULL),
-	{.name = "set_alarm", .type = PROPERTY_UNSIGNED, .life = LIFE_STABLE, .access = ACCESS_BOTH,
-	 .digits = "331", .read = read_alarm, .write = write_alarm},
+	NUMBER("channels", PROPERTY_UNSIGNED, LIFE_STABLE,
+               FIELD(info, .shift = 6, .bits = 1, .offset = 1)),
+	BITS("flipflop", ACCESS_READ, 0, NULL),
+	NUMBER("infobyte", PROPERTY_UNSIGNED, LIFE_VOLATILE, .hidden = true, FIELD(info)),
+	BITS("latch", ACCESS_BOTH, 4, write_latch),
+	AREA_MEMORY(memory, 128),
+	PROPERTY_DIR("pages"),
+	AREA_PAGES(memory, 4, 32),
+	NUMBER("power", PROPERTY_YESNO, LIFE_VOLATILE, FIELD(info, .shift = 7)),
+	BITS("sensed", ACCESS_READ, 2, NULL),
+	{.name = "set_alarm",
+         .type = PROPERTY_UNSIGNED,
+         .life = LIFE_STABLE,
+         .access = ACCESS_BOTH,
+         .digits = "331",
+         .read = read_alarm,
+         .write = write_alarm},
 };
-/* clang-format on */
 
 const struct family family_12 = {
 	.code = 0x12,
 	.alarms = true,
 	.type = "DS2406",
-	.memory = &memory,
 	PROPERTIES(properties),
 };

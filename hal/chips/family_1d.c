@@ -1,18 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 /* DS2423 (data sheet 19-5140): 4 kbit of RAM, and counters on its last four pages. */
 #include <errno.h>
-#include <string.h>
 
-#include "hal/chips/memory.h"
+#include "hal/chips/family.h"
 
 #define READ_COUNTER 0xa5
 #define EXTERNAL_A 14
 
-/* clang-format off */
-static const struct chip_memory memory = {
-	.size = 512, .page = 32, .row = 32, .copy = 0x5a, .copy_ns = TXN_MS,
+static const struct area memory = {
+	.name = "memory",
+	.size = 512,
+	.address_bytes = 2,
+	.read = 0xf0,
+	.row = 32,
+	.write = 0x0f,
+	.verify = 0xaa,
+	.copy = 0x5a,
+	.copy_ns = TXN_MS,
 };
-/* clang-format on */
 
 /* From the page's last byte on: that byte, 32 bits of counter, 32 of zero, and the CRC16. */
 static int counter(struct txn *txn, unsigned page, uint32_t *count)
@@ -45,10 +50,10 @@ static int read_minimum(struct txn *txn)
 	if (err)
 		return err;
 	if (txn->phase++ == 0) {
-		txn->real[0] = count;
+		txn->number[0] = count;
 		return TXN_MORE;
 	}
-	txn->number[0] = txn->real[0] < count ? txn->real[0] : count;
+	txn->number[0] = txn->number[0] < count ? txn->number[0] : count;
 	return 0;
 }
 
@@ -68,17 +73,13 @@ static int write_minimum(struct txn *txn)
 static const struct property properties[] = {
 	COUNTERS("counter", 2, INDEX_LETTERS, EXTERNAL_A, false),
 	COUNTERS("counters", 2, INDEX_LETTERS, EXTERNAL_A, true),
-	MEMORY_WHOLE(512, memory_write),
+	AREA_MEMORY(memory, 512),
 	{.name = "mincount", .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE,
 	 .access = ACCESS_BOTH, .read = read_minimum, .write = write_minimum},
+	PROPERTY_DIR("pages"),
 	COUNTERS("pages/count", 16, INDEX_NUMBERS, 0, false),
-	MEMORY_PAGES(16, 32, memory_write_page),
+	AREA_PAGES(memory, 16, 32),
 };
 /* clang-format on */
 
-const struct family family_1d = {
-	.code = 0x1d,
-	.type = "DS2423",
-	.memory = &memory,
-	PROPERTIES(properties),
-};
+const struct family family_1d = {.code = 0x1d, .type = "DS2423", PROPERTIES(properties)};

@@ -101,7 +101,7 @@ static int load(struct txn *txn)
 		return err;
 	memcpy(txn->mem + WANT + 8 * n, txn->mem + HAVE + 8 * n, 8);
 	if (++txn->mem[0] == REGISTERS / 8)
-		txn_base(txn, 1, txn->mem + WANT, REGISTERS);
+		txn_base(txn, txn->device->family, txn->mem + WANT, REGISTERS);
 	return TXN_MORE;
 }
 
@@ -119,7 +119,7 @@ static int make(struct txn *txn)
 	for (unsigned i = 0; i < REGISTERS; i++) {
 		if (have[i] == want[i])
 			continue;
-		txn_keep(txn, 1, have, REGISTERS);
+		txn_keep(txn, txn->device->family, have, REGISTERS);
 		int err = write_byte(txn, CONTROL * 8 + i, want[i]);
 		have[i] = want[i];
 		if (!err)

@@ -1,21 +1,24 @@
 /* SPDX-License-Identifier: MIT */
 /* DS2433: 4 kbit of EEPROM (data sheet 2433): rows of 32 bytes, 5 ms to copy one. */
-#include "hal/chips/memory.h"
+#include "hal/chips/family.h"
 
-/* clang-format off */
-static const struct chip_memory memory = {
-	.size = 512, .page = 32, .row = 32, .copy = 0x55, .checks = false, .strong = true,
+static const struct area memory = {
+	.name = "memory",
+	.size = 512,
+	.address_bytes = 2,
+	.read = 0xf0,
+	.row = 32,
+	.write = 0x0f,
+	.verify = 0xaa,
+	.copy = 0x55,
+	.strong = true,
 	.copy_ns = 5 * TXN_MS,
 };
-/* clang-format on */
 
 static const struct property properties[] = {
-	MEMORY_WHOLE(512, memory_write),
-	MEMORY_PAGES(16, 32, memory_write_page),
+	AREA_MEMORY(memory, 512),
+	PROPERTY_DIR("pages"),
+	AREA_PAGES(memory, 16, 32),
 };
 
-/* clang-format off */
-const struct family family_23 = {
-	.code = 0x23, .type = "DS2433", .memory = &memory, PROPERTIES(properties),
-};
-/* clang-format on */
+const struct family family_23 = {.code = 0x23, .type = "DS2433", PROPERTIES(properties)};

@@ -157,7 +157,6 @@ static int write_latch(struct txn *txn)
 }
 
 /* Mask, polarity and control, written and read back. The power-on flag stays unless told. */
-#define CONDITION 1 /* which registers these are for txn_base() */
 
 /* The registers as they are, ahead of a change of mask, polarity or control. */
 static int before_condition(struct txn *txn)
@@ -166,8 +165,8 @@ static int before_condition(struct txn *txn)
 
 	if (err)
 		return err;
-	txn_base(txn, CONDITION, txn->mem + MASK, 3);
-	txn_keep(txn, CONDITION, txn->mem + MASK, 3);
+	txn_base(txn, txn->device->family, txn->mem + MASK, 3);
+	txn_keep(txn, txn->device->family, txn->mem + MASK, 3);
 	return 0;
 }
 

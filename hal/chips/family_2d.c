@@ -1,21 +1,25 @@
 /* SPDX-License-Identifier: MIT */
 /* DS2431: 1024 bits of EEPROM (data sheet 19-4675): rows of 8 bytes, 10 ms to copy one. */
-#include "hal/chips/memory.h"
+#include "hal/chips/family.h"
 
-/* clang-format off */
-static const struct chip_memory memory = {
-	.size = 128, .page = 32, .row = 8, .copy = 0x55, .checks = true, .strong = true,
+static const struct area memory = {
+	.name = "memory",
+	.size = 128,
+	.address_bytes = 2,
+	.read = 0xf0,
+	.row = 8,
+	.write = 0x0f,
+	.verify = 0xaa,
+	.copy = 0x55,
+	.write_crc16 = true,
+	.strong = true,
 	.copy_ns = 10 * TXN_MS,
 };
-/* clang-format on */
 
 static const struct property properties[] = {
-	MEMORY_WHOLE(128, memory_write),
-	MEMORY_PAGES(4, 32, memory_write_page),
+	AREA_MEMORY(memory, 128),
+	PROPERTY_DIR("pages"),
+	AREA_PAGES(memory, 4, 32),
 };
 
-/* clang-format off */
-const struct family family_2d = {
-	.code = 0x2d, .type = "DS2431", .memory = &memory, PROPERTIES(properties),
-};
-/* clang-format on */
+const struct family family_2d = {.code = 0x2d, .type = "DS2431", PROPERTIES(properties)};

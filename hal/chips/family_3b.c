@@ -7,19 +7,10 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/chips/memory.h"
 #include "hal/chips/thermometer.h"
 
 #define CHIP note[0]
 enum { UNKNOWN, DS1825, MAX31826, MAX31850 };
-
-#define READ_MEMORY 0xf0
-#define WRITE_SCRATCHPAD_2 0x0f
-#define READ_SCRATCHPAD_2 0xaa
-#define COPY_SCRATCHPAD_2 0x55
-#define COPY_KEY 0xa5
-#define COPY_NS (25 * TXN_MS)
-#define PAGE 8
 
 #define FAULT_ANY 1
 
@@ -153,108 +144,21 @@ static int read_location(struct txn *txn)
 	return err;
 }
 
-static int get_page(struct txn *txn, unsigned address, uint8_t *bytes)
-{
-	uint8_t command[] = {READ_MEMORY, (uint8_t)address};
-	int err = txn_command(txn, command, sizeof(command));
-
-	return err ? err : txn_read(txn, bytes, PAGE);
-}
-
-static int look(struct txn *txn, unsigned number, unsigned address)
-{
-	uint8_t command[] = {READ_MEMORY, (uint8_t)address};
-
-	return memory_look(txn, number, command, sizeof(command), txn->mem, PAGE);
-}
-
-static int read_page(struct txn *txn)
-{
-	int err = identify(txn);
-
-	if (!err)
-		err = look(txn, txn->phase++, (unsigned)txn->element * PAGE);
-	if (err)
-		return err;
-	memcpy(txn->data, txn->mem, PAGE);
-	txn->len = PAGE;
-	return 0;
-}
-
-static int read_memory(struct txn *txn)
-{
-	unsigned at = txn->phase / MEMORY_LOOKS * PAGE;
-	int err = identify(txn);
-
-	if (!err)
-		err = look(txn, txn->phase++ % MEMORY_LOOKS, at);
-	if (err)
-		return err;
-	memcpy(txn->data + at, txn->mem, PAGE);
-	txn->len = at + PAGE;
-	return txn->len < 128 ? TXN_MORE : 0;
-}
-
-/* n bytes from at on in a page: looks, write the second scratchpad, read it back, copy, read again. */
-enum { WRITE = MEMORY_LOOKS, VERIFY, COPY, CHECK, PAGE_STEPS };
-
-static int put_page(struct txn *txn, unsigned address, size_t at, const uint8_t *bytes, size_t n)
-{
-	uint8_t command[2 + PAGE] = {WRITE_SCRATCHPAD_2, (uint8_t)address}, in[PAGE];
-	uint8_t verify[] = {READ_SCRATCHPAD_2, (uint8_t)address};
-	static const uint8_t copy[] = {COPY_SCRATCHPAD_2, COPY_KEY};
-	unsigned step = txn->phase++ % PAGE_STEPS;
-	int err;
-
-	switch (step) {
-	case WRITE:
-		memcpy(command + 2, txn->mem, PAGE);
-		err = txn_command(txn, command, sizeof(command));
-		return err ? err : TXN_MORE;
-	case VERIFY:
-		err = txn_command(txn, verify, sizeof(verify));
-		if (!err)
-			err = txn_read(txn, in, PAGE);
-		return err ? err : memcmp(in, txn->mem, PAGE) == 0 ? TXN_MORE : -EBADMSG;
-	case COPY:
-		return txn_command_strong(txn, copy, sizeof(copy), COPY_NS);
-	case CHECK:
-		err = get_page(txn, address, in);
-		return err ? err : memcmp(in, txn->mem, PAGE) == 0 ? 0 : -EIO;
-	default:
-		err = look(txn, step, address);
-		txn->silent = false;
-		if (err)
-			return err;
-		memcpy(in, txn->mem, PAGE);
-		memcpy(txn->mem + at, bytes, n);
-		if (memcmp(txn->mem, in, PAGE) != 0)
-			return TXN_MORE;
-		txn->phase += PAGE_STEPS - MEMORY_LOOKS;
-		return 0;
-	}
-}
-
-static int write_page(struct txn *txn)
-{
-	int err = identify(txn);
-
-	return err ? err
-	           : put_page(txn, (unsigned)txn->element * PAGE, txn->at, txn->data, txn->len);
-}
-
-static int write_memory(struct txn *txn)
-{
-	size_t end = txn->at + txn->len,
-	       page = txn->at / PAGE * PAGE + txn->phase / PAGE_STEPS * PAGE;
-	size_t from = page < txn->at ? txn->at : page, to = page + PAGE < end ? page + PAGE : end;
-	int err = identify(txn);
-
-	if (err || txn->len == 0)
-		return err;
-	err = put_page(txn, (unsigned)page, from - page, txn->data + (from - txn->at), to - from);
-	return err ? err : to < end ? TXN_MORE : 0;
-}
+static const struct area memory = {
+	.name = "memory",
+	.size = 128,
+	.address_bytes = 1,
+	.read = 0xf0,
+	.block = 8,
+	.begin = identify,
+	.row = 8,
+	.write = 0x0f,
+	.verify = 0xaa,
+	.copy = 0x55,
+	.key = 0xa5,
+	.strong = true,
+	.copy_ns = 25 * TXN_MS,
+};
 
 /* clang-format off */
 #define TEMPERATURE(text, resolution, when)                                               \
@@ -278,12 +182,12 @@ static const struct property properties[] = {
 	FAULT("ground_short", 2, 2),
 	TEMPERATURE("latesttemp", 0, NULL),
 	{.name = "memory", .type = PROPERTY_BINARY, .life = LIFE_VOLATILE, .access = ACCESS_BOTH,
-	 .size = 128, .visible = is_max31826, .read = read_memory, .write = write_memory},
+	 .size = 128, .visible = is_max31826, FIELD(memory)},
 	FAULT("open_circuit", 2, 1),
 	{.name = "pages", .type = PROPERTY_DIRECTORY, .life = LIFE_STATIC, .visible = is_max31826},
 	{.name = "pages/page", .type = PROPERTY_BINARY, .life = LIFE_VOLATILE,
-	 .access = ACCESS_BOTH, .array = {16, INDEX_NUMBERS, false}, .size = PAGE,
-	 .visible = is_max31826, .read = read_page, .write = write_page},
+	 .access = ACCESS_BOTH, .array = {16, INDEX_NUMBERS, false}, .size = 8,
+	 .visible = is_max31826, FIELD(memory)},
 	THERMOMETER_POWER,
 	{.name = "prog_addr", .type = PROPERTY_UNSIGNED, .life = LIFE_STABLE, .access = ACCESS_READ,
 	 .read = read_location},

@@ -266,8 +266,6 @@ static int store(struct txn *txn)
 	return err ? err : TXN_MORE;
 }
 
-#define SETTINGS 1 /* which registers these are for txn_base() */
-
 /* The scratchpad to txn->mem, ahead of a change of its settings. 1: one has failed before. */
 static int before_store(struct txn *txn)
 {
@@ -275,7 +273,7 @@ static int before_store(struct txn *txn)
 
 	if (err)
 		return err;
-	bool failed = txn_base(txn, SETTINGS, txn->mem + SP_HIGH, 3);
+	bool failed = txn_base(txn, txn->device->family, txn->mem + SP_HIGH, 3);
 	memcpy(txn->mem + SP_KEPT, txn->mem + SP_HIGH, 3);
 	if (!txn->device->family->fixed)
 		txn->mem[SP_CONFIG] = config_for(txn->mem[SP_CONFIG], txn->device->stored);
@@ -284,7 +282,7 @@ static int before_store(struct txn *txn)
 
 static int begin_store(struct txn *txn)
 {
-	txn_keep(txn, SETTINGS, txn->mem + SP_KEPT, 3);
+	txn_keep(txn, txn->device->family, txn->mem + SP_KEPT, 3);
 	txn->phase = 1;
 	return TXN_MORE;
 }

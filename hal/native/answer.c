@@ -43,8 +43,8 @@ void job_answer(struct native *native, struct job *job, int err)
 	if (!err && job->req->op == BUS_READ) {
 		const struct property *property = job->property;
 
-		if (job->txn.measured_ns)
-			answer.measured_ns = job->txn.measured_ns;
+		if (job->txn.link)
+			answer.measured_ns = txn_measured(&job->txn);
 		if (property && property->type == PROPERTY_BINARY)
 			answer.kind = BUS_BYTES;
 		if (property && format_is_number(property, job->extension)) {
@@ -78,7 +78,7 @@ void job_answer_cached(struct native *native, struct job *job, const struct cach
 	give(native, job, &answer);
 }
 
-static int64_t life_ns(const struct native *native, const struct property *property)
+int64_t property_life_ns(const struct native *native, const struct property *property)
 {
 	switch ((enum property_life)property->life) {
 	case LIFE_STATIC:
@@ -95,14 +95,14 @@ static int64_t life_ns(const struct native *native, const struct property *prope
 void job_keep(struct native *native, struct job *job)
 {
 	const struct property *property = job->property;
-	int64_t measured = job->txn.measured_ns ? job->txn.measured_ns : native_now(native);
+	int64_t measured = txn_measured(&job->txn);
 
 	if (!job->txn.device || property->offline || job->out > CACHE_TEXT_MAX)
 		return;
 	struct cache_entry *entry = cache_add(&native->cache, job->txn.device, property,
 	                                      job->extension);
 	entry->measured_ns = measured;
-	entry->until_ns = measured + life_ns(native, property);
+	entry->until_ns = measured + property_life_ns(native, property);
 	entry->kind = property->type == PROPERTY_BINARY ? BUS_BYTES : BUS_TEXT;
 	if (format_is_number(property, job->extension)) {
 		entry->kind = BUS_NUMBER;

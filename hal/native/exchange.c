@@ -26,13 +26,35 @@ static void take_functions(struct job *job)
 
 	if (!job->property)
 		return;
-	txn->read = job->property->read;
-	txn->write = job->property->write;
+	txn->read = property_reader(job->property);
+	txn->write = property_writer(job->property);
 	if (!files || !txn->device || job->property->offline)
 		return;
 	if (files->property(txn->link, txn->device, job->property,
 	                    is_all(job) ? txn->element : job->extension, &txn->read, &txn->write))
 		txn->read = txn->write = no_file;
+}
+
+#define VISIT_NS (2 * TXN_MS)
+
+/*
+ * What of that which is kept serves the request: read after it came; or within the value's life,
+ * if a cached one will do. A try that failed takes nothing from before. What the alarm machine asks
+ * for one after the other is read once: no write fits in between, as it would take longer.
+ */
+static void take_limits(const struct native *native, struct job *job)
+{
+	struct txn *txn = &job->txn;
+	int64_t now = native_now(native);
+
+	txn->since_ns = job->failures || job->req->op != BUS_READ ? INT64_MAX : job->since_ns;
+	txn->oldest_ns = INT64_MAX;
+	if (txn->since_ns == INT64_MAX || !job->property)
+		return;
+	if (!job->fresh)
+		txn->oldest_ns = now - property_life_ns(native, job->property);
+	else if (job->req->prio == BUS_ALARM)
+		txn->oldest_ns = now - VISIT_NS;
 }
 
 void job_txn(struct native *native, struct job *job)
@@ -48,6 +70,7 @@ void job_txn(struct native *native, struct job *job)
 	txn->link = native->channel[n].link;
 	txn->property = job->property;
 	txn->visit = job->req->prio == BUS_ALARM;
+	txn->one = job->extension >= 0;
 	txn->element = is_all(job)           ? (int)job->element
 	               : job->extension >= 0 ? job->extension & 0xff
 	                                     : 0;
@@ -55,6 +78,7 @@ void job_txn(struct native *native, struct job *job)
 		txn->data = job->req->data + job->out;
 		txn->room = job->req->len - job->out;
 	}
+	take_limits(native, job);
 	take_functions(job);
 }
 
@@ -168,7 +192,7 @@ static void write_done(struct native *native, struct job *job)
 static bool needs_merge(const struct job *job)
 {
 	return job->req->op == BUS_WRITE && !job->merged && job->extension >= 0 &&
-	       job->property->array.count > 1 && job->property->read &&
+	       job->property->array.count > 1 && job->txn.read && job->txn.write != field_write &&
 	       (job->property->array.aggregate || job->property->type == PROPERTY_BITS);
 }
 
@@ -183,7 +207,7 @@ static int run_function(struct job *job)
 	if (job->req->op == BUS_READ)
 		return txn->read(txn);
 	if (needs_merge(job))
-		return txn->read == job->property->read && job->property->merge
+		return txn->read == property_reader(job->property) && job->property->merge
 		               ? job->property->merge(txn)
 		               : txn->read(txn);
 	if (txn->phase == 0) {
@@ -192,6 +216,8 @@ static int run_function(struct job *job)
 		if (err)
 			return err;
 	}
+	if (txn->device)
+		txn_void(txn);
 	return txn->write(txn);
 }
 
@@ -260,6 +286,8 @@ void job_run_property(struct native *native, struct job *job, int64_t now)
 		job->merged = true;
 		txn->phase = 0;
 		txn->wake_ns = 0;
+		memset(&txn->area, 0, sizeof(txn->area));
+		memset(txn->own, 0, sizeof(txn->own));
 		return;
 	}
 	if (job->req->op == BUS_READ)

@@ -8,8 +8,6 @@
 
 #include "hal/chips/family.h"
 
-typedef int property_function(struct txn *txn);
-
 struct link_files {
 	/*
 	 * How this element (enum extension) of the device's property is read and written: the

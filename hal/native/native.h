@@ -233,6 +233,8 @@ int resolve(struct native *native, struct job *job);
 void job_answer(struct native *native, struct job *job, int err);
 void job_answer_cached(struct native *native, struct job *job, const struct cache_entry *entry);
 void job_keep(struct native *native, struct job *job);
+/* How long a value of the property is true enough for a request that takes a cached one. */
+int64_t property_life_ns(const struct native *native, const struct property *property);
 /* Let go of device and pull-up. */
 void job_unlock(struct native *native, struct job *job);
 void job_restart(struct native *native, struct job *job);

@@ -274,13 +274,13 @@ static int read_latest(struct txn *txn)
 	struct w1_slave *slave = w1_slave_of(w1_master_of(txn), txn->device->rom);
 
 	slave->due |= !slave->known;
-	return txn->property->read(txn);
+	return property_reader(txn->property)(txn);
 }
 
 static int read_whole(struct txn *txn)
 {
 	w1_slave_of(w1_master_of(txn), txn->device->rom)->due = true;
-	return txn->property->read(txn);
+	return property_reader(txn->property)(txn);
 }
 
 /* A conversion that is still to be read is not for this. */
@@ -290,7 +290,7 @@ static int read_setting(struct txn *txn)
 	bool due = slave->due;
 
 	slave->due = false;
-	int err = txn->property->read(txn);
+	int err = property_reader(txn->property)(txn);
 	slave->due = due;
 	return err;
 }

@@ -11,13 +11,15 @@ int device_table_create(struct device_table *table)
 {
 	table->count = 0;
 	table->devices = calloc(DEVICE_MAX, sizeof(*table->devices));
+	table->own = calloc(DEVICE_MAX, sizeof(*table->own));
 	table->aliases = calloc(DEVICE_MAX, sizeof(*table->aliases));
-	return table->devices && table->aliases ? 0 : -ENOMEM;
+	return table->devices && table->own && table->aliases ? 0 : -ENOMEM;
 }
 
 void device_table_destroy(struct device_table *table)
 {
 	free(table->devices);
+	free(table->own);
 	free(table->aliases);
 }
 
@@ -58,6 +60,8 @@ struct device *device_add(struct device_table *table, const uint8_t rom[8], unsi
 			return NULL;
 		uint32_t changes = device->changes + 1;
 		memset(device, 0, sizeof(*device));
+		device->own = table->own[device - table->devices];
+		memset(device->own, 0, DEVICE_OWN);
 		memcpy(device->rom, rom, 8);
 		device->family = family_of(rom[0]);
 		device->changes = changes;
@@ -77,8 +81,9 @@ void device_forget(struct device *device)
 	device->unread_ns = 0;
 	device->unseen = false;
 	device->shadow_known = false;
-	device->base_of = 0;
+	device->base_of = NULL;
 	memset(device->note, 0, sizeof(device->note));
+	memset(device->own, 0, DEVICE_OWN);
 }
 
 char *device_alias(struct device_table *table, const struct device *device)

@@ -28,6 +28,16 @@ enum device_make {
 
 struct family;
 
+/* What was read of a chip: txn_share(). */
+#define DEVICE_READINGS 6
+struct device_reading {
+	const void *what; /* NULL: free */
+	uint16_t at, n;
+	int64_t begun_ns, made_ns;
+	uint8_t bytes[32];
+};
+#define DEVICE_OWN 128
+
 struct device {
 	const struct family *family;
 	uint8_t rom[8];
@@ -62,8 +72,13 @@ struct device {
 	bool shadow_known;
 
 	/* What stood in registers before a change that has not succeeded yet (txn_keep). */
-	uint8_t base[24];
-	uint8_t base_of; /* which registers; 0: none */
+	uint8_t base[32];
+	const void *base_of; /* which registers; NULL: none */
+
+	struct device_reading readings[DEVICE_READINGS];
+	uint32_t readings_of; /* `changes` when they were made */
+
+	void *own; /* DEVICE_OWN bytes for a struct of the family; zero when nothing is known */
 
 	/* For the family's own use. */
 	uint8_t note[8];
@@ -73,6 +88,7 @@ struct device {
 
 struct device_table {
 	struct device *devices; /* DEVICE_MAX */
+	unsigned char (*own)[DEVICE_OWN];
 	char (*aliases)[DEVICE_ALIAS_MAX + 1];
 	unsigned count;
 };

@@ -48,6 +48,7 @@ struct link_master_cost {
 
 struct link;
 struct link_files;
+struct area;
 /* One ROM id found by a search, family first. Return not 0 to end the search. */
 typedef int link_found(void *ctx, const uint8_t rom[8]);
 
@@ -82,6 +83,15 @@ struct link_ops {
 	 * is kept, and so does the next reset(); 0 or an error. NULL: nothing is ever kept.
 	 */
 	int (*flush)(struct link *link);
+	/*
+	 * Of a link that is no wire: bytes of an area of a chip (hal/chips/area.h), from byte `at` of
+	 * the area on, as area_fetch() and area_write() have them. 0 or an error: -ENOENT nothing
+	 * stands for that area. NULL: area.c speaks to the chip.
+	 */
+	int (*area_read)(struct link *link, const uint8_t rom[8], const struct area *area,
+	                 unsigned at, uint8_t *bytes, unsigned n);
+	int (*area_write)(struct link *link, const uint8_t rom[8], const struct area *area,
+	                  unsigned at, const uint8_t *bytes, unsigned n);
 	/* -EOPNOTSUPP. */
 	int (*speed)(struct link *link, enum link_speed speed);
 	int (*recover)(struct link *link, enum link_rung rung);

@@ -203,7 +203,7 @@ int txn_verify(struct txn *txn, bool alarm)
 	return there;
 }
 
-bool txn_base(const struct txn *txn, uint8_t which, uint8_t *bytes, size_t n)
+bool txn_base(const struct txn *txn, const void *which, uint8_t *bytes, size_t n)
 {
 	if (txn->device->base_of != which)
 		return false;
@@ -211,7 +211,7 @@ bool txn_base(const struct txn *txn, uint8_t which, uint8_t *bytes, size_t n)
 	return true;
 }
 
-void txn_keep(struct txn *txn, uint8_t which, const uint8_t *bytes, size_t n)
+void txn_keep(struct txn *txn, const void *which, const uint8_t *bytes, size_t n)
 {
 	assert(n <= sizeof(txn->device->base));
 	if (txn->device->base_of == which)
@@ -222,5 +222,66 @@ void txn_keep(struct txn *txn, uint8_t which, const uint8_t *bytes, size_t n)
 
 void txn_changed(struct txn *txn)
 {
-	txn->device->base_of = 0;
+	txn->device->base_of = NULL;
+}
+
+void txn_share(struct txn *txn, const void *what, unsigned at, const void *bytes, size_t n,
+               int64_t begun_ns)
+{
+	struct device *device = txn->device;
+	struct device_reading *place = device->readings;
+
+	if (device->readings_of != device->changes)
+		txn_void(txn);
+	for (unsigned i = 0; i < DEVICE_READINGS; i++) {
+		struct device_reading *reading = &device->readings[i];
+
+		if (reading->what == what && reading->at == at) {
+			place = reading;
+			break;
+		}
+		if (reading->made_ns < place->made_ns)
+			place = reading;
+	}
+	assert(n <= sizeof(place->bytes));
+	*place = (struct device_reading){.what = what,
+	                                 .at = (uint16_t)at,
+	                                 .n = (uint16_t)n,
+	                                 .begun_ns = begun_ns,
+	                                 .made_ns = txn_now(txn)};
+	memcpy(place->bytes, bytes, n);
+}
+
+bool txn_shared(struct txn *txn, const void *what, unsigned at, void *bytes, size_t n)
+{
+	const struct device *device = txn->device;
+
+	if (device->readings_of != device->changes)
+		return false;
+	for (unsigned i = 0; i < DEVICE_READINGS; i++) {
+		const struct device_reading *reading = &device->readings[i];
+
+		if (reading->what != what || reading->at > at ||
+		    at + n > (size_t)reading->at + reading->n ||
+		    (reading->begun_ns < txn->since_ns && reading->made_ns < txn->oldest_ns))
+			continue;
+		memcpy(bytes, reading->bytes + (at - reading->at), n);
+		if (!txn->shared_ns || reading->made_ns < txn->shared_ns)
+			txn->shared_ns = reading->made_ns;
+		return true;
+	}
+	return false;
+}
+
+void txn_void(struct txn *txn)
+{
+	memset(txn->device->readings, 0, sizeof(txn->device->readings));
+	txn->device->readings_of = txn->device->changes;
+}
+
+int64_t txn_measured(const struct txn *txn)
+{
+	int64_t measured = txn->measured_ns ? txn->measured_ns : txn_now(txn);
+
+	return txn->shared_ns && txn->shared_ns < measured ? txn->shared_ns : measured;
 }

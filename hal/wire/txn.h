@@ -21,6 +21,17 @@
 struct native;
 struct property;
 
+/* Where area.c is with an area, from call to call; zero: at the beginning. */
+#define AREA_UNIT 32
+struct area_visit {
+	uint8_t step, looks, blanks;
+	uint8_t ending;   /* the scratchpad's ending offset */
+	uint16_t done;    /* bytes that are written */
+	int64_t begun_ns; /* when reading began */
+	uint8_t have[AREA_UNIT], want[AREA_UNIT];
+};
+#define TXN_OWN 64
+
 struct txn {
 	struct native *native;
 	struct link *link;
@@ -40,12 +51,17 @@ struct txn {
 	uint8_t *data;              /* binary and text: room bytes; read sets len */
 	size_t at;                  /* write of binary: data's first byte in the value or element */
 	size_t room, len;
+	bool one;            /* write: of an aggregate only the element is given */
 	int64_t measured_ns; /* read: when the chip took the value; 0: now */
+	/* A reading that others left serves if it began at since_ns or was made at oldest_ns. */
+	int64_t since_ns, oldest_ns;
+	int64_t shared_ns; /* when the oldest of those that served was made; 0: none did */
 
 	/* From call to call. */
 	unsigned phase;
+	struct area_visit area;
+	_Alignas(8) uint8_t own[TXN_OWN]; /* for a struct of the family: txn_own() */
 	uint8_t mem[64];
-	uint8_t blanks; /* of memory_look() */
 	double real[4];
 	int64_t wake_ns; /* not to be called before */
 	bool strong;     /* the strong pull-up is on until then: the channel is held */
@@ -98,12 +114,29 @@ int txn_read_pages(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t 
 /*
  * Registers are changed by reading, changing and writing them. A write that goes wrong may leave
  * what nobody asked for, and made again must not begin with that. txn_base: if such a write of
- * these registers (which: 1 to 255) has not succeeded yet, bytes become what was there before it.
+ * these registers (which: their area) has not succeeded yet, bytes become what was there before it.
  * txn_keep, ahead of the first write: this is what is there. txn_changed: the write has succeeded.
  */
-bool txn_base(const struct txn *txn, uint8_t which, uint8_t *bytes, size_t n);
-void txn_keep(struct txn *txn, uint8_t which, const uint8_t *bytes, size_t n);
+bool txn_base(const struct txn *txn, const void *which, uint8_t *bytes, size_t n);
+void txn_keep(struct txn *txn, const void *which, const uint8_t *bytes, size_t n);
 void txn_changed(struct txn *txn);
+/*
+ * What was read of a chip is kept with the device for others who ask for it: txn_share, of what
+ * (an area, or anything else that has an address) n bytes from `at` on; begun_ns: when reading
+ * began. txn_shared: bytes that are kept and serve this request; false: they have to be read.
+ * txn_void: the chip's registers are written: nothing that is kept is true any more.
+ */
+void txn_share(struct txn *txn, const void *what, unsigned at, const void *bytes, size_t n,
+               int64_t begun_ns);
+bool txn_shared(struct txn *txn, const void *what, unsigned at, void *bytes, size_t n);
+void txn_void(struct txn *txn);
+/* When the chip took the value that the request is answered with. */
+int64_t txn_measured(const struct txn *txn);
+/* The family's struct of TXN_OWN bytes at most, zero at the beginning. */
+static inline void *txn_own(struct txn *txn)
+{
+	return txn->own;
+}
 /*
  * Behind each call of a property function: what a link keeps back is sent (link_ops.flush). err is
  * what the function returned, and so is this, unless sending failed.

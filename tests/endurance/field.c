@@ -8,7 +8,7 @@
 #define NEAR 0.15 /* the coarsest resolution here, and half of it */
 #define LOOKS 8
 
-struct field field;
+struct field_truth field;
 
 void field_begin(int64_t now_ns)
 {

@@ -24,7 +24,7 @@ struct field_device {
 	unsigned wire; /* on this one */
 };
 
-struct field {
+struct field_truth {
 	struct field_device device[FIELD_DEVICES];
 	unsigned devices;
 	int64_t start_ns;
@@ -35,7 +35,7 @@ struct field {
 	} inputs[FIELD_PINS];
 };
 
-extern struct field field;
+extern struct field_truth field;
 
 /* The devices of all worlds but one; the time is that of the world's clock. */
 void field_begin(int64_t now_ns);

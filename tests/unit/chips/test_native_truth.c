@@ -73,6 +73,7 @@ static bool is_like_another(const struct family *family, unsigned n)
 			return false;
 	for (unsigned i = 0; i < n; i++)
 		if (family->properties[i].read == property->read &&
+		    family->properties[i].field.area == property->field.area &&
 		    family->properties[i].convert == property->convert &&
 		    !strstr(family->properties[i].name, "HTM"))
 			return true;

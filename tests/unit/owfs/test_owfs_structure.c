@@ -74,8 +74,10 @@ static void check_row(char *column[COLUMNS])
 	int n = structure_read(name, strlen(name), text, sizeof(text));
 	TEST_ASSERT_GREATER_THAN_INT_MESSAGE(0, n, name);
 	TEST_ASSERT_EQUAL_STRING_MESSAGE(column[RAW], text, name);
-	TEST_ASSERT_TRUE_MESSAGE(!(property->access & ACCESS_READ) || property->read, name);
-	TEST_ASSERT_TRUE_MESSAGE(!(property->access & ACCESS_WRITE) || property->write, name);
+	TEST_ASSERT_TRUE_MESSAGE(!(property->access & ACCESS_READ) || property_reader(property),
+	                         name);
+	TEST_ASSERT_TRUE_MESSAGE(!(property->access & ACCESS_WRITE) || property_writer(property),
+	                         name);
 }
 
 static void test_every_family_has_the_properties_that_owserver_states(void)

@@ -109,7 +109,7 @@ static void test_what_a_scan_reads_is_there_in_our_own_families(void)
 
 			TEST_ASSERT_NOT_NULL_MESSAGE(property, kind->property[i].name);
 			if (kind->property[i].output)
-				TEST_ASSERT_NOT_NULL(property->write);
+				TEST_ASSERT_NOT_NULL(property_writer(property));
 			properties++;
 		}
 	}

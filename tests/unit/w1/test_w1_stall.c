@@ -210,7 +210,8 @@ static void test_a_pull_up_that_a_driver_has_not_is_no_error_of_the_master(void)
 	int64_t time = S;
 	struct bus_env env = {.ctx = &time, .now = now};
 	struct link link = {.ops = &ops, .env = &env, .files = &files};
-	struct device device = {.rom = {0x20, 1}, .family = family_of(0x20)};
+	static unsigned char own[DEVICE_OWN];
+	struct device device = {.rom = {0x20, 1}, .family = family_of(0x20), .own = own};
 	struct txn txn = {.link = &link, .device = &device};
 	int err = TXN_MORE;
 
@@ -219,7 +220,7 @@ static void test_a_pull_up_that_a_driver_has_not_is_no_error_of_the_master(void)
 			txn.property = &device.family->properties[i];
 	TEST_ASSERT_NOT_NULL(txn.property);
 	for (int i = 0; i < 30 && err == TXN_MORE; i++, time += S)
-		err = txn.property->read(&txn);
+		err = property_reader(txn.property)(&txn);
 	TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP, err);
 	TEST_ASSERT_EQUAL_INT(0, txn.link_error);
 }

@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A chip as its data sheet draws it: areas of memory with the commands that reach them, and fields
+ * of these areas that mean a property. A family with nothing else needs no function of its own:
+ *
+ *	static const struct area memory = {
+ *		.name = "memory", .size = 128, .address_bytes = 2, .read = 0xf0, .row = 8,
+ *		.write = 0x0f, .verify = 0xaa, .copy = 0x55, .write_crc16 = true, .strong = true,
+ *		.copy_ns = 10 * TXN_MS,
+ *	};
+ *	static const struct property properties[] = {
+ *		AREA_MEMORY(memory, 128),
+ *		PROPERTY_DIR("pages"),
+ *		AREA_PAGES(memory, 4, 32),
+ *	};
+ *
+ * Reading: the command, the address, the bytes, and their check. What was read is kept with the
+ * device: who asks for another field of the same bytes within its life gets them without the wire.
+ *
+ * Writing, unit by unit: look what is there, put the new bits in, and write if that differs.
+ *	with .verify	a scratchpad takes a row, is read back, and copied
+ *	without		registers: each row that differs is written, and all are read back. A write
+ *			that failed is made again from what stood there before it (txn_base).
+ * Without .row, the area cannot be written by this master: -EOPNOTSUPP.
+ */
+#ifndef HAL_CHIPS_AREA_H
+#define HAL_CHIPS_AREA_H
+
+#include "hal/wire/txn.h"
+
+struct property;
+
+/* What proves that the bytes are right. */
+enum area_check {
+	AREA_UNCHECKED, /* nothing: they are read AREA_LOOKS times, and have to be the same */
+	AREA_CRC8,      /* the last of them is the CRC8 of those before */
+	AREA_CRC16,     /* CRC16 after each block; the first one's covers command and address too */
+	AREA_CRC8_PAGES, /* CRC8 of command and address before, and one after each block */
+};
+
+/*
+ * Noise that turns over one bit in a thousand would get past two looks at a page once in 4,000.
+ */
+#define AREA_LOOKS 3
+
+struct area {
+	const char *name; /* as the data sheet calls it; a link that is no wire knows it by that */
+	uint16_t at;      /* address of its first byte */
+	uint16_t size;    /* bytes */
+	/*
+	 * Bytes that are read as a whole, AREA_UNIT at most; 0: 1. Of checked ones several come in
+	 * one transaction, of unchecked ones one.
+	 */
+	uint8_t block;
+	uint8_t row;   /* bytes that one command writes; 0: none does */
+	uint8_t fixed; /* so many at its beginning are read-only, and may be written as they are */
+	uint8_t address_bytes;             /* behind a command, low byte first: 0, 1, 2 */
+	uint8_t check;                     /* enum area_check */
+	uint8_t read, write, verify, copy; /* commands; 0: there is none */
+	uint8_t key;      /* behind copy; 0: address and ending offset as verify gives them */
+	bool write_crc16; /* the chip answers what is written, and verify, with CRC16 */
+	bool echo;        /* ... and then with the byte that it has taken */
+	bool strong;      /* the copy needs the strong pull-up */
+	int64_t copy_ns;
+
+	/*
+	 * All optional. begin: before anything is sent; 0, TXN_MORE or an error. load and store: in
+	 * place of .read and .write, whole transactions; load may take several calls. saw: of what
+	 * was read, from byte `at` of the area on, it notes what that says of the device, and blanks
+	 * bits that do not count; 0 or an error. is_written: does what is read back show that all was written?
+	 */
+	int (*begin)(struct txn *txn);
+	int (*load)(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+	            unsigned n);
+	int (*store)(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
+	             unsigned n);
+	int (*saw)(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n);
+	bool (*is_written)(const uint8_t *have, const uint8_t *want, unsigned n);
+};
+
+struct field {
+	const struct area *area;
+	uint16_t at;     /* its first byte in the area */
+	uint16_t stride; /* bytes from an element to the next; of binary 0: those of an element */
+	uint8_t bytes;   /* 1 to 4; 0: 1 */
+	uint8_t shift;
+	uint8_t bits; /* 0: all from shift on; of PROPERTY_BITS as many as elements */
+	bool is_signed, big_endian, inverted;
+	double unit, offset; /* value = bits * unit + offset; unit 0: 1 */
+};
+
+/* A command after which the chip measures or computes. */
+struct conversion {
+	uint8_t command[3], n;
+	bool crc16; /* the chip answers with the CRC16 of the command */
+	int64_t ns;
+};
+
+/*
+ * n bytes (AREA_UNIT at most) from byte `at` of the area on; several calls. What another request
+ * has read serves as far as the request allows it.
+ */
+int area_read(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n);
+/* The same of any length to txn->data and txn->len. */
+int area_read_data(struct txn *txn, const struct area *area, unsigned at, unsigned n);
+/* One transaction: the command and what it gives, its checksum checked. */
+int area_fetch(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n);
+/* Of the n bytes from `at` on those bits that are set in mask; mask NULL: all. Several calls. */
+int area_write(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
+               const uint8_t *mask, unsigned n);
+
+/* Of a property with .field: txn->property's element txn->element, or all. */
+int field_read(struct txn *txn);
+int field_write(struct txn *txn);
+
+/* Returns TXN_MORE: to be called again when it is over; strong: with the strong pull-up. */
+int conversion_start(struct txn *txn, const struct conversion *conversion, bool strong);
+
+/* FIELD(registers, .at = 3, .shift = 2) in a row of a table of properties. */
+#define FIELD(...) .field = {.area = &__VA_ARGS__}
+/* The rows of a table that nearly every memory has: "memory", and below "pages" its pages. */
+#define AREA_MEMORY(area_, bytes_) \
+	{ \
+		.name = "memory", .type = PROPERTY_BINARY, .life = LIFE_VOLATILE, \
+		.access = ACCESS_BOTH, .size = (bytes_), FIELD(area_) \
+	}
+#define AREA_PAGES(area_, pages_, bytes_) \
+	{ \
+		.name = "pages/page", .type = PROPERTY_BINARY, .life = LIFE_VOLATILE, \
+		.access = ACCESS_BOTH, .array = {(pages_), INDEX_NUMBERS, false}, \
+		.size = (bytes_), FIELD(area_) \
+	}
+
+#endif
