@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "src/engine/adopt.h"
+#include "src/engine/adopt_signal.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/counters.h"
 #include "src/engine/disown.h"
@@ -26,62 +27,43 @@ static uint64_t wait_of(const struct due_wheel *wheel, uint32_t entry)
 /* The count of periods goes on though a period may last otherwise than before. */
 static void take_time(struct engine *e, const struct engine *old, int64_t now_ns)
 {
-	e->period = old->period;
-	e->now_ns = now_ns;
-	e->next_ns = old->next_ns;
-	e->gap_ns = old->gap_ns;
-	e->start_ns = old->start_ns;
-	e->first = old->first;
+	e->time = old->time;
+	e->time.now_ns = now_ns;
 	if (e->config->period_ns != old->config->period_ns) {
-		e->start_ns = now_ns;
-		e->first = old->period;
+		e->time.start_ns = now_ns;
+		e->time.first = old->time.period;
 	}
 	for (uint32_t row = 0; row < e->table.count; row++)
 		due_wheel_cancel(&e->limit_wheel, row);
-	e->wheel.period = e->limit_wheel.period = e->route_wheel.period = e->period;
+	e->wheel.period = e->limit_wheel.period = e->route_wheel.period = e->time.period;
 }
 
 static void take_counts(struct engine *e, const struct engine *old)
 {
-	e->transactions = old->transactions;
-	e->reconnects = old->reconnects;
+	e->driver = old->driver;
 	e->counters = old->counters;
 	e->counters.reloads++;
 	memcpy(e->clients, old->clients, sizeof(e->clients));
-	e->driver_resets = old->driver_resets;
 	e->refused = old->refused;
 }
 
 /* --- Targets --------------------------------------------------------------------------------- */
-
-static void take_machine(struct alarm_machine *m, const struct alarm_machine *before)
-{
-	m->cycle = before->cycle;
-	m->polls = before->polls;
-	m->told = before->told;
-	m->list_ns = before->list_ns;
-	m->wait_ns = before->wait_ns;
-	m->strangers = before->strangers;
-	memcpy(m->stranger, before->stranger, sizeof(m->stranger));
-}
 
 static void take_group(struct engine *e, unsigned group, struct engine *old, unsigned before,
                        const uint32_t *successors)
 {
 	struct group *g = &e->groups[group], *was = &old->groups[before];
 
-	assert(g->bar.count == was->bar.count);
-	g->bar = was->bar;
-	g->quiet = was->quiet;
-	g->rounds = was->rounds;
+	assert(g->state.bar.count == was->state.bar.count);
+	g->state = was->state;
 	e->states[group] = old->states[before];
-	for (unsigned w = 0; w < g->bar.count; w++) {
+	for (unsigned w = 0; w < g->state.bar.count; w++) {
 		struct lane *from = &old->lanes[was->first + w];
 
 		g->ways[w] = was->ways[w];
 		lane_adopt(&e->lanes[g->first + w], from, successors);
 		guests_adopt(&e->lanes[g->first + w], from);
-		take_machine(&e->lanes[g->first + w].alarm, &from->alarm);
+		e->lanes[g->first + w].alarm.list = from->alarm.list;
 	}
 }
 
@@ -161,87 +143,6 @@ static void take_devices(struct engine *e, const struct engine *old, const struc
 
 /* --- Signals --------------------------------------------------------------------------------- */
 
-static uint32_t flag_of(const struct signal *s, const struct signal *was, uint32_t flag,
-                        bool configured, bool before)
-{
-	/* what the file says counts where it was changed, else what a program has set */
-	return configured == before ? was->attrs.flags & flag : s->attrs.flags & flag;
-}
-
-static void take_text(char *to, const char *from)
-{
-	if (to)
-		memcpy(to, from, TABLE_TEXT_CAP);
-}
-
-static void take_command(struct signal *s, const struct signal *was)
-{
-	s->commanded = was->commanded;
-	s->confirmed = was->confirmed;
-	s->agrees = was->agrees;
-	s->one_shot = was->one_shot;
-	s->forced = was->forced;
-	s->safe = was->safe;
-	s->write_err = was->write_err;
-	s->command = was->command;
-	s->written = was->written;
-	s->command_stamp = was->command_stamp;
-	s->command_len = was->command_len;
-	s->written_len = was->written_len;
-	s->write_retry = was->write_retry;
-	take_text(s->command_text, was->command_text);
-	take_text(s->written_text, was->written_text);
-}
-
-static void take_signal(struct signal *s, const struct signal *was)
-{
-	const struct config_item *item = s->item, *before = was->item;
-	uint32_t flags = was->attrs.flags &
-	                 ~(uint32_t)(OWS_ATTR_READ_ENABLE | OWS_ATTR_LIMITS |
-	                             OWS_ATTR_WRITE_ENABLE | OWS_ATTR_IN_WORK |
-	                             OWS_ATTR_ALARM_POLLED | OWS_ATTR_ALARM_UNARMED |
-	                             OWS_ATTR_ALARM_POR);
-
-	flags |= flag_of(s, was, OWS_ATTR_READ_ENABLE, item->readable, before->readable);
-	if (config_item_takes_sets(item))
-		flags |= flag_of(s, was, OWS_ATTR_WRITE_ENABLE, item->writable, before->writable);
-	flags |= s->attrs.flags & OWS_ATTR_LIMITS;
-	s->sample = was->sample;
-	s->attrs = was->attrs;
-	s->attrs.flags = flags;
-	s->known_ns = was->known_ns;
-	s->updated_ns = was->updated_ns;
-	s->read_retry = was->read_retry;
-	s->guard = was->guard;
-	s->stamp = was->stamp;
-	s->one_shots = was->one_shots;
-	s->dgn_resets = was->dgn_resets;
-	s->acknowledged = was->acknowledged;
-	s->client = was->client;
-	s->awaited = was->awaited;
-	s->held = was->held;
-	s->held_quality = was->held_quality;
-	s->held_err = was->held_err;
-	if (signal_reads(was) && !signal_reads(s) && !before->output) {
-		s->sample.quality = OWS_Q_DISABLED;
-		s->held = false;
-	}
-	take_text(s->text, was->text);
-	if (item->output == before->output || was->command_stamp)
-		take_command(s, was);
-	if (item->limits.any && before->limits.any) {
-		s->limit = was->limit;
-		s->limit_log = was->limit_log;
-		s->limit_said = was->limit_said;
-		memcpy(s->limit_value, was->limit_value, sizeof(s->limit_value));
-		s->limit_count = was->limit_count;
-		s->limit_values = was->limit_values;
-	} else if (!item->limits.any) {
-		s->attrs.limit_state = 0;
-		s->attrs.limit_condition = 0;
-	}
-}
-
 /* A value that another target gave is the last usable one at best. */
 static void take_source(struct engine *e, struct signal *s, const struct adoption *plan)
 {
@@ -252,8 +153,8 @@ static void take_source(struct engine *e, struct signal *s, const struct adoptio
 	s->sample.target = (uint8_t)s->lane;
 	if (lane == (int)s->lane)
 		return;
-	s->confirmed = false;
-	s->held = false;
+	s->command.confirmed = false;
+	s->read.held = false;
 	if (s->sample.quality & 0xc0) {
 		s->sample.quality = OWS_Q_LAST_USABLE;
 		s->sample.err = 0;
@@ -272,7 +173,7 @@ static void take_turn(struct engine *e, struct signal *s, const struct engine *o
 	else
 		engine_read_now(e, s);
 	due_set_remove(&engine_lane(e, s)->outputs, row);
-	if (write && s->write_retry.failures)
+	if (write && s->command.retry.failures)
 		engine_write_at(e, s, write);
 	else
 		engine_write_check(e, s);
@@ -285,14 +186,14 @@ static void take_signals(struct engine *e, const struct engine *old, const struc
 		struct lane *lane = engine_lane(e, s);
 
 		if (plan->rows[row] == ADOPT_NEW) {
-			s->known_ns = e->now_ns;
-			s->attrs.per_base = (uint32_t)e->period;
+			s->read.known_ns = e->time.now_ns;
+			s->attrs.per_base = (uint32_t)e->time.period;
 			engine_read_now(e, s);
 			engine_write_check(e, s);
 			continue;
 		}
 		lane->writers -= signal_writes(s);
-		take_signal(s, &old->table.signals[plan->rows[row]]);
+		signal_adopt(s, &old->table.signals[plan->rows[row]]);
 		lane->writers += signal_writes(s);
 		take_source(e, s, plan);
 		take_turn(e, s, old, plan->rows[row]);
@@ -321,28 +222,22 @@ static void take_alarm(struct engine *e, struct alarm_item *item, const struct e
 	uint32_t before = plan->rows[item->row];
 	const struct alarm_item *was = NULL;
 
-	alarm_take_item(&lane->alarm, item, e->now_ns);
-	if (lane->alarm.polls)
+	alarm_take_item(&lane->alarm, item, e->time.now_ns);
+	if (lane->alarm.list.polls)
 		s->attrs.flags |= OWS_ATTR_ALARM_POLLED;
 	if (before != ADOPT_NEW && old->alarm_count)
 		was = bsearch(&before, old->alarm_items, old->alarm_count, sizeof(*was),
 		              compare_rows);
 	if (!was)
 		return;
-	item->stands = was->stands;
-	item->entered = was->entered;
-	item->journal = was->journal;
-	item->wants_after = was->wants_after;
-	memcpy(item->latch_text, was->latch_text, sizeof(item->latch_text));
+	item->occurrence = was->occurrence;
 	if (same_text(s->item->por_alarm, old->table.signals[before].item->por_alarm)) {
-		item->restarted = item->asks_por = was->restarted;
-		item->differs = was->differs;
+		item->restart = was->restart;
+		item->asks_por = was->restart.known;
 	}
 	if (!same_text(s->item->set_alarm, old->table.signals[before].item->set_alarm))
 		return;
-	item->to_arm = was->to_arm;
-	item->arm_retry = was->arm_retry;
-	item->arm_ns = was->arm_ns;
+	item->arming = was->arming;
 	s->attrs.flags |= old->table.signals[before].attrs.flags &
 	                  (OWS_ATTR_ALARM_UNARMED | OWS_ATTR_ALARM_POR);
 	s->alarm_err = old->table.signals[before].alarm_err;

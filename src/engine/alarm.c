@@ -54,8 +54,8 @@ static uint32_t process_facts(struct alarm_machine *m, struct engine *e, int64_t
  */
 static uint32_t bypass_facts(struct alarm_machine *m, const struct lane *lane, int64_t now_ns)
 {
-	bool pending = lane->inputs.count || lane->outputs.count || lane->writes_in_work ||
-	               lane->lent > (m->in_work ? 1u : 0u);
+	bool pending = lane->inputs.count || lane->outputs.count || lane->lent.writes ||
+	               lane->lent.count > (m->in_work ? 1u : 0u);
 
 	if (!m->bypass_ns)
 		m->bypass_ns = now_ns + BYPASS_NS;
@@ -171,7 +171,7 @@ static bool ask_in_state(struct alarm_machine *m, struct lane *lane, struct alar
 		m->position = -1;
 		if (ask_arm(m, r, now_ns))
 			return true;
-		if (now_ns < m->list_ns)
+		if (now_ns < m->list.next_ns)
 			return false;
 		if (!m->named)
 			alarm_name_list(m, &lane->engine->table);
@@ -252,7 +252,8 @@ bool alarm_run(struct alarm_machine *m, struct lane *lane, struct alarm_request 
 			const struct alarm_item *known = alarm_latch_known(m, i);
 
 			i->latch_set = known->latch_set;
-			memcpy(i->latch_text, known->latch_text, sizeof(i->latch_text));
+			memcpy(i->occurrence.latch_text, known->occurrence.latch_text,
+			       sizeof(i->occurrence.latch_text));
 			if (i->latch_set)
 				engine_alarm_raised(lane->engine, lane, i, now_ns);
 			else
@@ -271,7 +272,7 @@ void alarm_started(struct alarm_machine *m, struct lane *lane, int64_t now_ns)
 	if (m->collecting >= 0 || m->arming >= 0 || m->proving)
 		return;
 	if (m->state == INIT) {
-		m->list_ns = now_ns + lane->engine->config->alarm_period_ns;
+		m->list.next_ns = now_ns + lane->engine->config->alarm_period_ns;
 	} else if (m->state == ALARM_SET_WAIT) {
 		m->init_position = alarm_next_init(lane->engine, m);
 		facts = FACT_DONE | FACT_INIT_OUTPUT;
@@ -290,9 +291,9 @@ static int take_latch(struct alarm_machine *m, struct alarm_item *i,
 
 	if (set < 0)
 		return set;
-	i->latch_cycle = m->cycle;
+	i->latch_cycle = m->list.cycle;
 	i->latch_set = set;
-	alarm_trim(i->latch_text, sizeof(i->latch_text), data, answer->len);
+	alarm_trim(i->occurrence.latch_text, sizeof(i->occurrence.latch_text), data, answer->len);
 	return 0;
 }
 
@@ -308,9 +309,9 @@ static int take_alarm_value(struct engine *e, struct lane *lane, struct alarm_it
 	if (!signal_reads(s))
 		return 0;
 	err = engine_take_reading(e, lane, s, slot, answer, now_ns, &wait_ns);
-	if (!err && item->wants_after && !signal_is_string(s)) {
-		image_alarm_after(e->image, item->journal, s->sample.value);
-		item->wants_after = false;
+	if (!err && item->occurrence.wants_after && !signal_is_string(s)) {
+		image_alarm_after(e->image, item->occurrence.journal, s->sample.value);
+		item->occurrence.wants_after = false;
 	}
 	engine_publish(e, s);
 	return err;
@@ -322,7 +323,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 {
 	struct engine *e = lane->engine;
 	struct alarm_item *i = alarm_current(m);
-	const char *data = m->state == ALARM_DIR ? lane->list : (const char *)slot->data;
+	const char *data = m->state == ALARM_DIR ? lane->lent.list : (const char *)slot->data;
 	int err = answer->err, set;
 
 	switch (m->state) {
@@ -338,7 +339,7 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 		err = set < 0 ? set : 0;
 		if (err)
 			break;
-		i->por_cycle = m->cycle;
+		i->por_cycle = m->list.cycle;
 		i->por_set = set;
 		if (set)
 			alarm_por_set(m, lane, i, now_ns);
@@ -350,11 +351,11 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 			alarm_set_failed(lane, i, err, now_ns);
 			return FACT_FAILED;
 		} else {
-			i->set_cycle = m->cycle;
-			i->to_arm = false;
+			i->set_cycle = m->list.cycle;
+			i->arming.wanted = false;
 			if (alarm_init_known(m, i) || alarm_next_init(e, m) < 0)
 				return FACT_DONE;
-			i->init_cycle = m->cycle;
+			i->init_cycle = m->list.cycle;
 			return 0; /* the first output is asked for from here */
 		}
 	case ALARM_INIT_WRITE_WAIT:
@@ -379,11 +380,11 @@ static uint32_t facts_after(struct alarm_machine *m, struct lane *lane, const st
 	case SENSED_WAIT:
 		err = take_alarm_value(e, lane, i, slot, answer, now_ns);
 		if (err && m->state == SENSED_WAIT)
-			engine_read_at(e, alarm_signal(e, i), e->period + 1);
+			engine_read_at(e, alarm_signal(e, i), e->time.period + 1);
 		return err ? FACT_FAILED : FACT_DONE;
 	case ALARM_LATCH_RESET_WAIT:
 		if (!err) {
-			i->reset_cycle = m->cycle;
+			i->reset_cycle = m->list.cycle;
 			engine_alarm_ended(e, i);
 		}
 		break;
@@ -431,7 +432,7 @@ static uint32_t por_proven(struct alarm_machine *m, struct lane *lane,
 		alarm_por_failed(lane, i, set < 0 ? set : -EUCLEAN, now_ns);
 		return FACT_FAILED;
 	}
-	i->por_reset_cycle = m->cycle;
+	i->por_reset_cycle = m->list.cycle;
 	alarm_por_clear(m, lane->engine, i);
 	return FACT_DONE;
 }
@@ -455,7 +456,7 @@ void alarm_answered(struct alarm_machine *m, struct lane *lane, const struct slo
 		struct alarm_item *other = m->items[m->collecting];
 
 		/* what cannot be read now is asked for again by its own item */
-		other->collect_cycle = m->cycle;
+		other->collect_cycle = m->list.cycle;
 		take_latch(m, other, answer, (const char *)slot->data);
 		m->collecting = alarm_to_collect(m, alarm_current(m));
 		if (m->collecting < 0)
@@ -489,5 +490,7 @@ int64_t alarm_wake(const struct alarm_machine *m)
 {
 	if (m->in_work)
 		return INT64_MAX;
-	return m->state == INIT ? m->list_ns : m->state == ALARM_BYPASS ? m->bypass_ns : INT64_MAX;
+	return m->state == INIT           ? m->list.next_ns
+	       : m->state == ALARM_BYPASS ? m->bypass_ns
+	                                  : INT64_MAX;
 }

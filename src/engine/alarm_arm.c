@@ -27,7 +27,8 @@ static bool same_por(const struct alarm_item *a, const struct alarm_item *b)
 
 bool alarm_takes_part(const struct alarm_item *i, int64_t now_ns)
 {
-	return i->asks_por || (i->listed && !(i->restarted && now_ns < i->arm_ns));
+	return i->asks_por ||
+	       (i->listed && !(i->restart.known && now_ns < i->arming.not_before_ns));
 }
 
 static void show_unarmed(struct engine *e, struct alarm_item *i, int err, const char *property,
@@ -54,8 +55,8 @@ static bool arm_anew(struct engine *e, struct alarm_item *i)
 {
 	struct signal *s = alarm_signal(e, i);
 
-	retry_clear(&i->arm_retry);
-	i->arm_ns = 0;
+	retry_clear(&i->arming.retry);
+	i->arming.not_before_ns = 0;
 	if (!(s->attrs.flags & OWS_ATTR_ALARM_UNARMED))
 		return false;
 	s->attrs.flags &= ~(uint32_t)(OWS_ATTR_ALARM_UNARMED | OWS_ATTR_ALARM_POR);
@@ -80,9 +81,9 @@ static void count_unarmed(struct lane *lane, struct alarm_item *i, int err, cons
 	int64_t wait_ns;
 
 	lane->counters.item_errors++;
-	if (!retry_fail(&i->arm_retry, e->config->max_retries, &wait_ns))
+	if (!retry_fail(&i->arming.retry, e->config->max_retries, &wait_ns))
 		return;
-	i->arm_ns = now_ns + wait_ns;
+	i->arming.not_before_ns = now_ns + wait_ns;
 	if (err != -ENODEV) /* its quality says so */
 		show_unarmed(e, i, err, property, why);
 }
@@ -91,7 +92,7 @@ static void count_unarmed(struct lane *lane, struct alarm_item *i, int err, cons
 
 void alarm_por_set(struct alarm_machine *m, struct lane *lane, struct alarm_item *i, int64_t now_ns)
 {
-	if (i->restarted && !i->differs)
+	if (i->restart.known && !i->restart.differs)
 		return;
 	engine_power_on_reset(lane->engine, lane, i, now_ns);
 	for (uint32_t k = 0; k < m->count; k++) {
@@ -99,12 +100,12 @@ void alarm_por_set(struct alarm_machine *m, struct lane *lane, struct alarm_item
 
 		if (!same_por(other, i))
 			continue;
-		if (!other->restarted) {
-			retry_clear(&other->arm_retry);
-			other->arm_ns = 0;
+		if (!other->restart.known) {
+			retry_clear(&other->arming.retry);
+			other->arming.not_before_ns = 0;
 		}
-		other->restarted = true;
-		other->differs = false;
+		other->restart.known = true;
+		other->restart.differs = false;
 	}
 }
 
@@ -113,25 +114,25 @@ void alarm_por_clear(struct alarm_machine *m, struct engine *e, const struct ala
 	for (uint32_t k = 0; k < m->count; k++) {
 		struct alarm_item *other = m->items[k];
 
-		if (!same_por(other, i) || !other->restarted)
+		if (!same_por(other, i) || !other->restart.known)
 			continue;
-		other->restarted = other->differs = false;
-		if (!other->to_arm)
+		other->restart.known = other->restart.differs = false;
+		if (!other->arming.wanted)
 			report_armed(e, other);
 		else
-			other->arm_ns = 0;
+			other->arming.not_before_ns = 0;
 	}
 }
 
 void alarm_set_failed(struct lane *lane, struct alarm_item *i, int err, int64_t now_ns)
 {
-	i->to_arm = alarm_arms(i);
+	i->arming.wanted = alarm_arms(i);
 	count_unarmed(lane, i, err, i->strings.set, " cannot be written: ", now_ns);
 }
 
 void alarm_set_missing(struct lane *lane, struct alarm_item *i, int64_t now_ns)
 {
-	if (i->restarted) /* another item of the device may have ended it in this cycle */
+	if (i->restart.known) /* another item of the device may have ended it in this cycle */
 		count_unarmed(lane, i, -EBADRQC, "SetAlarm",
 		              i->strings.set ? " has no '='" : " is not defined", now_ns);
 }
@@ -148,8 +149,8 @@ void alarm_rearm(struct alarm_machine *m, struct engine *e, uint32_t device)
 
 		if (i->device != device)
 			continue;
-		i->to_arm = alarm_arms(i);
-		i->restarted = i->differs = i->asks_por = false;
+		i->arming.wanted = alarm_arms(i);
+		i->restart.known = i->restart.differs = i->asks_por = false;
 		arm_anew(e, i);
 	}
 }
@@ -159,7 +160,8 @@ void alarm_rearm(struct alarm_machine *m, struct engine *e, uint32_t device)
 int64_t alarm_to_arm(const struct alarm_machine *m, int64_t now_ns)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->to_arm && !m->items[k]->restarted && now_ns >= m->items[k]->arm_ns)
+		if (m->items[k]->arming.wanted && !m->items[k]->restart.known &&
+		    now_ns >= m->items[k]->arming.not_before_ns)
 			return k;
 	return -1;
 }
@@ -181,7 +183,7 @@ void alarm_arm_answered(struct alarm_machine *m, struct lane *lane, const struct
 	m->arm_writes = false;
 	switch (failure_of(err)) {
 	case FAILURE_NONE:
-		i->to_arm = false;
+		i->arming.wanted = false;
 		report_armed(lane->engine, i);
 		break;
 	case FAILURE_ITEM:

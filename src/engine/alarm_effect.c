@@ -31,24 +31,24 @@ void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item 
                          int64_t now_ns)
 {
 	struct signal *s = &e->table.signals[item->row];
-	uint32_t channels = alarm_channels(item->latch_text);
+	uint32_t channels = alarm_channels(item->occurrence.latch_text);
 	struct ows_alarm_entry entry;
 
-	if (item->stands)
+	if (item->occurrence.stands)
 		return;
-	item->stands = true;
+	item->occurrence.stands = true;
 	s->attrs.alarms++;
 	s->attrs.flags |= OWS_ATTR_ALARM_STANDS;
 	lane->counters.alarms++;
-	if (channels & ~item->entered) {
+	if (channels & ~item->occurrence.entered) {
 		entry = alarm_entry(s, OWS_ALARM_DEVICE, OWS_ALARM_RAISED, now_ns);
-		memcpy(entry.latch, item->latch_text,
-		       strnlen(item->latch_text, sizeof(entry.latch)));
-		item->journal = image_alarm(e->image, &entry);
-		item->entered |= channels;
-		item->wants_after = true;
+		memcpy(entry.latch, item->occurrence.latch_text,
+		       strnlen(item->occurrence.latch_text, sizeof(entry.latch)));
+		item->occurrence.journal = image_alarm(e->image, &entry);
+		item->occurrence.entered |= channels;
+		item->occurrence.wants_after = true;
 		log_info(e->log, "%s: alarm, %s is %s", s->item->name, item->strings.latch,
-		         item->latch_text);
+		         item->occurrence.latch_text);
 	}
 	engine_publish(e, s);
 }
@@ -57,9 +57,9 @@ void engine_alarm_ended(struct engine *e, struct alarm_item *item)
 {
 	struct signal *s = &e->table.signals[item->row];
 
-	if (!item->stands)
+	if (!item->occurrence.stands)
 		return;
-	item->stands = false;
+	item->occurrence.stands = false;
 	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_STANDS;
 	engine_publish(e, s);
 }
@@ -70,9 +70,9 @@ void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_n
 	                                           OWS_ALARM_RETURNED, now_ns);
 
 	engine_alarm_ended(e, item);
-	if (!item->entered)
+	if (!item->occurrence.entered)
 		return;
-	item->entered = 0;
+	item->occurrence.entered = 0;
 	image_alarm(e->image, &entry);
 	e->published = true;
 }
@@ -93,7 +93,7 @@ void engine_power_on_reset(struct engine *e, struct lane *lane, const struct ala
 
 		if (s->lane != lane->index)
 			continue;
-		s->confirmed = false;
+		s->command.confirmed = false;
 		engine_write_check(e, s);
 	}
 }
@@ -104,7 +104,7 @@ void engine_alarm_polls(struct engine *e, struct alarm_machine *m)
 		struct signal *s = &e->table.signals[m->items[k]->row];
 
 		s->attrs.flags |= OWS_ATTR_ALARM_POLLED;
-		engine_read_at(e, s, e->period + 1);
+		engine_read_at(e, s, e->time.period + 1);
 		engine_publish(e, s);
 	}
 }

@@ -149,18 +149,18 @@ void alarm_take_item(struct alarm_machine *m, struct alarm_item *item, int64_t n
 	m->arming += m->arming >= (int64_t)at;
 	m->collecting += m->collecting >= (int64_t)at;
 	item->listed = false;
-	item->to_arm = alarm_arms(item);
-	item->asks_por = item->restarted; /* unless it is listed there */
-	retry_clear(&item->arm_retry);
-	item->arm_ns = 0;
+	item->arming.wanted = alarm_arms(item);
+	item->asks_por = item->restart.known; /* unless it is listed there */
+	retry_clear(&item->arming.retry);
+	item->arming.not_before_ns = 0;
 	item->por_cycle = item->latch_cycle = item->set_cycle = item->init_cycle = 0;
 	item->por_reset_cycle = item->reset_cycle = item->collect_cycle = 0;
 	m->named = false;
-	if (m->state != NOT_USED || m->polls)
+	if (m->state != NOT_USED || m->list.polls)
 		return;
 	m->state = alarm_next(NOT_USED, FACT_ITEMS)->next;
-	if (m->list_ns < now_ns)
-		m->list_ns = now_ns;
+	if (m->list.next_ns < now_ns)
+		m->list.next_ns = now_ns;
 }
 
 bool alarm_drop_item(struct alarm_machine *m, struct alarm_item *item)
@@ -212,12 +212,12 @@ void alarm_restart(struct alarm_machine *m)
 
 bool alarm_serves(const struct alarm_machine *m)
 {
-	return m->count && !m->polls;
+	return m->count && !m->list.polls;
 }
 
 void alarm_output_differs(struct alarm_machine *m, uint32_t device)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->device == device && m->items[k]->restarted)
-			m->items[k]->differs = true;
+		if (m->items[k]->device == device && m->items[k]->restart.known)
+			m->items[k]->restart.differs = true;
 }

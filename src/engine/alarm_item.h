@@ -26,25 +26,40 @@ struct alarm_strings {
 	const char *reset, *reset_value; /* sLatchRes, sLatchResVal: into reset_text */
 };
 
+/* An occurrence, from the latch that was read; a reload carries it over. */
+struct alarm_occurrence {
+	bool stands;      /* its latch was not reset yet */
+	uint32_t entered; /* channels that the journal has, and no return of them yet */
+	uint32_t journal; /* number of the entry that waits for the value after */
+	bool wants_after;
+	char latch_text[24];
+};
+
+/* A restart of the device, by its por; a reload carries it over. */
+struct alarm_restart {
+	bool known;   /* por was not 0, and not 0 since */
+	bool differs; /* since then an output was read back otherwise than before: one more */
+};
+
+/* SetAlarm compared with the chip; a reload carries it over. */
+struct alarm_arming {
+	bool wanted;
+	struct retry retry; /* of that, and of ending the restart */
+	int64_t not_before_ns;
+};
+
 struct alarm_item {
 	uint32_t row, device;
 	struct alarm_strings strings;
-	bool listed;      /* its device stands in the list of /alarm */
-	bool stands;      /* an occurrence that was not reset yet */
-	uint32_t entered; /* channels that the journal has, and no return of them yet */
-	bool to_arm;      /* SetAlarm has to be compared with the chip */
-	bool restarted;   /* por was not 0, and not 0 since: that restart is known */
-	bool differs;     /* since then an output was read back otherwise than before: one more */
-	bool asks_por;    /* the device left the list meanwhile: is its por 0 now? */
-	struct retry arm_retry; /* of to_arm, and of ending the restart */
-	int64_t arm_ns;         /* not before */
+	bool listed;   /* its device stands in the list of /alarm */
+	bool asks_por; /* the device left the list after a restart: is its por 0 now? */
+	struct alarm_occurrence occurrence;
+	struct alarm_restart restart;
+	struct alarm_arming arming;
 	/* what was done for it in the cycle of that number; 0: never */
 	uint32_t por_cycle, latch_cycle, set_cycle, init_cycle, por_reset_cycle, reset_cycle;
 	uint32_t collect_cycle;
 	bool por_set, latch_set;
-	char latch_text[24];
-	uint32_t journal; /* number of its entry that waits for the value after */
-	bool wants_after;
 };
 
 /* What the machine wants to be asked. */
@@ -57,33 +72,38 @@ struct alarm_request {
 };
 #define TABLE_NO_ROW UINT32_MAX
 
+/* What is known of the lists of a target; a reload carries it over. */
+struct alarm_listing {
+	uint32_t cycle;     /* lists so far */
+	bool polls;         /* the bus has no alarm search */
+	bool told;          /* the log knows */
+	int64_t next_ns;    /* earliest time of the next list */
+	int64_t wait_ns;    /* doubles while lists fail */
+	unsigned strangers; /* listed devices without alarm item that were logged */
+	uint8_t stranger[16][8];
+};
+
 struct alarm_machine {
 	enum alarm_state state;
 	struct alarm_item **items; /* which this lane serves now, in the order of the table */
 	uint32_t count;
+	struct alarm_listing list;
 	bool searches;         /* the list can be kept to families */
 	int64_t position;      /* iAlarmPos */
 	int64_t init_position; /* iAlarmInitPos */
-	uint32_t cycle;
-	unsigned in_a_row; /* nCons */
-	bool polls;        /* the bus has no alarm search */
-	bool told;         /* the log knows */
-	bool in_work;      /* a request of the machine is with the bus */
-	bool passed;       /* since BYPASS was entered */
-	int64_t bypass_ns; /* when it ends at the latest; 0: just entered */
-	int64_t arming;    /* item whose SetAlarm is compared, -1 none */
+	unsigned in_a_row;     /* nCons */
+	bool in_work;          /* a request of the machine is with the bus */
+	bool passed;           /* since BYPASS was entered */
+	int64_t bypass_ns;     /* when it ends at the latest; 0: just entered */
+	int64_t arming;        /* item whose SetAlarm is compared, -1 none */
 	bool arm_writes;
 	int64_t collecting;  /* item whose latch is read ahead of a reset, -1 none */
 	bool proving;        /* 0 was written to por, which is read back */
 	uint32_t held;       /* the facts that wait for the end of that */
-	int64_t list_ns;     /* earliest time of the next list */
-	int64_t wait_ns;     /* doubles while lists fail */
 	char list_path[128]; /* "/alarm", or "/alarm/29,12"; if named */
 	bool named;
 	uint8_t families[32];
 	unsigned family_count;
-	unsigned strangers; /* listed devices without alarm item that were logged */
-	uint8_t stranger[16][8];
 };
 
 /* All alarm items of the table; the caller frees them. 0 or -ENOMEM. */

@@ -24,7 +24,7 @@ static bool same_text(const char *a, const char *b)
 const struct alarm_item *alarm_por_known(const struct alarm_machine *m, const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->device == i->device && m->items[k]->por_cycle == m->cycle &&
+		if (m->items[k]->device == i->device && m->items[k]->por_cycle == m->list.cycle &&
 		    same_text(m->items[k]->strings.por, i->strings.por))
 			return m->items[k];
 	return NULL;
@@ -34,7 +34,7 @@ const struct alarm_item *alarm_latch_known(const struct alarm_machine *m,
                                            const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->device == i->device && m->items[k]->latch_cycle == m->cycle &&
+		if (m->items[k]->device == i->device && m->items[k]->latch_cycle == m->list.cycle &&
 		    same_text(m->items[k]->strings.latch, i->strings.latch))
 			return m->items[k];
 	return NULL;
@@ -43,7 +43,7 @@ const struct alarm_item *alarm_latch_known(const struct alarm_machine *m,
 bool alarm_set_known(const struct alarm_machine *m, const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->device == i->device && m->items[k]->set_cycle == m->cycle &&
+		if (m->items[k]->device == i->device && m->items[k]->set_cycle == m->list.cycle &&
 		    same_text(m->items[k]->strings.set, i->strings.set) &&
 		    same_text(m->items[k]->strings.set_value, i->strings.set_value))
 			return true;
@@ -53,7 +53,8 @@ bool alarm_set_known(const struct alarm_machine *m, const struct alarm_item *i)
 bool alarm_por_reset_known(const struct alarm_machine *m, const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->device == i->device && m->items[k]->por_reset_cycle == m->cycle &&
+		if (m->items[k]->device == i->device &&
+		    m->items[k]->por_reset_cycle == m->list.cycle &&
 		    same_text(m->items[k]->strings.por, i->strings.por))
 			return true;
 	return false;
@@ -62,7 +63,7 @@ bool alarm_por_reset_known(const struct alarm_machine *m, const struct alarm_ite
 bool alarm_init_known(const struct alarm_machine *m, const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->device == i->device && m->items[k]->init_cycle == m->cycle)
+		if (m->items[k]->device == i->device && m->items[k]->init_cycle == m->list.cycle)
 			return true;
 	return false;
 }
@@ -70,7 +71,7 @@ bool alarm_init_known(const struct alarm_machine *m, const struct alarm_item *i)
 bool alarm_reset_known(const struct alarm_machine *m, const struct alarm_item *i)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->device == i->device && m->items[k]->reset_cycle == m->cycle &&
+		if (m->items[k]->device == i->device && m->items[k]->reset_cycle == m->list.cycle &&
 		    same_text(m->items[k]->strings.reset, i->strings.reset) &&
 		    same_text(m->items[k]->strings.reset_value, i->strings.reset_value))
 			return true;
@@ -85,7 +86,7 @@ int64_t alarm_to_collect(const struct alarm_machine *m, const struct alarm_item 
 
 		if (other != i && other->device == i->device && other->strings.latch &&
 		    *other->strings.latch && !same_text(other->strings.latch, i->strings.latch) &&
-		    other->collect_cycle != m->cycle && !alarm_latch_known(m, other))
+		    other->collect_cycle != m->list.cycle && !alarm_latch_known(m, other))
 			return k;
 	}
 	return -1;
@@ -104,7 +105,7 @@ int64_t alarm_next_init(struct engine *e, struct alarm_machine *m)
 		const struct signal *s = &e->table.signals[row];
 
 		if ((int64_t)row > m->init_position && s->item->output && s->item->has_init &&
-		    !s->confirmed && signal_writes(s) && !s->doubts &&
+		    !s->command.confirmed && signal_writes(s) && !s->doubts &&
 		    s->lane == e->table.signals[current->row].lane)
 			return row;
 	}

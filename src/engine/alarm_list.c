@@ -39,12 +39,12 @@ static void mark_listed(struct alarm_machine *m, struct lane *lane, const char *
 	}
 	if (ours || !path.has_rom)
 		return;
-	for (unsigned k = 0; k < m->strangers; k++)
-		if (memcmp(m->stranger[k], path.rom, 8) == 0)
+	for (unsigned k = 0; k < m->list.strangers; k++)
+		if (memcmp(m->list.stranger[k], path.rom, 8) == 0)
 			return;
-	if (m->strangers == sizeof(m->stranger) / sizeof(m->stranger[0]))
+	if (m->list.strangers == sizeof(m->list.stranger) / sizeof(m->list.stranger[0]))
 		return;
-	memcpy(m->stranger[m->strangers++], path.rom, 8);
+	memcpy(m->list.stranger[m->list.strangers++], path.rom, 8);
 	log_info(e->log, "%s: %.*s is in alarm and has no alarm item", lane->port->target, (int)len,
 	         entry);
 }
@@ -52,14 +52,14 @@ static void mark_listed(struct alarm_machine *m, struct lane *lane, const char *
 void alarm_take_list(struct alarm_machine *m, struct lane *lane, const char *list, size_t len,
                      int64_t now_ns)
 {
-	m->cycle++;
+	m->list.cycle++;
 	lane->counters.alarm_lists++;
-	m->wait_ns = 0;
+	m->list.wait_ns = 0;
 	for (uint32_t k = 0; k < m->count; k++) {
 		struct alarm_item *i = m->items[k];
 
 		/* unless it is found below */
-		i->asks_por = i->asks_por || (i->restarted && i->listed);
+		i->asks_por = i->asks_por || (i->restart.known && i->listed);
 		i->listed = false;
 	}
 	while (len) {
@@ -82,27 +82,27 @@ void alarm_list_failed(struct alarm_machine *m, struct lane *lane, int err, int6
 	struct engine *e = lane->engine;
 
 	if (err == -EOPNOTSUPP) {
-		log_at(e->log, m->told ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,
+		log_at(e->log, m->list.told ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,
 		       "%s: no alarm search: alarm items are read as ordinary inputs",
 		       lane->port->target);
-		m->polls = m->told = true;
+		m->list.polls = m->list.told = true;
 		m->state = NOT_USED;
 		engine_alarm_polls(e, m);
 		return;
 	}
-	m->wait_ns = m->wait_ns ? m->wait_ns * 2 : e->config->alarm_period_ns;
-	if (m->wait_ns > LIST_WAIT_MAX)
-		m->wait_ns = LIST_WAIT_MAX;
-	m->list_ns = now_ns + m->wait_ns;
+	m->list.wait_ns = m->list.wait_ns ? m->list.wait_ns * 2 : e->config->alarm_period_ns;
+	if (m->list.wait_ns > LIST_WAIT_MAX)
+		m->list.wait_ns = LIST_WAIT_MAX;
+	m->list.next_ns = now_ns + m->list.wait_ns;
 	m->position = -1;
 }
 
 void alarm_ask_again(struct alarm_machine *m, struct lane *lane, int64_t now_ns)
 {
-	if (!m->polls)
+	if (!m->list.polls)
 		return;
-	m->polls = false;
-	m->list_ns = now_ns;
+	m->list.polls = false;
+	m->list.next_ns = now_ns;
 	if (m->count)
 		m->state = alarm_next(NOT_USED, FACT_ITEMS)->next;
 	for (uint32_t k = 0; k < m->count; k++) {

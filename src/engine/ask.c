@@ -35,7 +35,7 @@ static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t
 	lane->writes_in_row = 0;
 	s->reading = true;
 	s->sample.tried_ns = now_ns;
-	signal_begin(s, e->period);
+	signal_begin(s, e->time.period);
 	engine_publish(e, s);
 	return true;
 }
@@ -53,17 +53,17 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 	}
 	slot->purpose = FOR_WRITE;
 	slot->row = row;
-	slot->value = s->command;
-	slot->stamp = s->command_stamp;
-	slot->one_shot = s->one_shot;
+	slot->value = s->command.value;
+	slot->stamp = s->command.stamp;
+	slot->one_shot = s->command.one_shot;
 	slot->req = (struct bus_req){.op = BUS_WRITE, .prio = BUS_OUTPUT, .path = s->item->path};
 	if (signal_is_string(s)) {
-		memcpy(slot->data, s->command_text, s->command_len);
-		slot->req.len = s->command_len;
+		memcpy(slot->data, s->command_text, s->command.len);
+		slot->req.len = s->command.len;
 	} else {
 		char text[VALUE_TEXT_MAX];
 
-		slot->req.len = (uint32_t)value_to_text(s->item->type, s->command, text);
+		slot->req.len = (uint32_t)value_to_text(s->item->type, s->command.value, text);
 		memcpy(slot->data, text, slot->req.len);
 	}
 	if (!slot_lend(lane, slot, now_ns))
@@ -71,12 +71,12 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 	due_set_take(&lane->outputs, row);
 	guest_passed(lane);
 	lane->writes_in_row++;
-	lane->writes_in_work++;
+	lane->lent.writes++;
 	s->writing = true;
-	s->one_shot = false;
-	s->forced = false;
+	s->command.one_shot = false;
+	s->command.forced = false;
 	s->sample.tried_ns = now_ns;
-	signal_begin(s, e->period);
+	signal_begin(s, e->time.period);
 	engine_publish(e, s);
 	return true;
 }
@@ -89,7 +89,7 @@ static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
 	struct signal *s;
 
 	/* one that was given up is still lent: the room for a list is not ours yet */
-	if (lane->alarm_slot || lane->writes_in_work || !alarm_run(&lane->alarm, lane, r, now_ns))
+	if (lane->lent.alarm || lane->lent.writes || !alarm_run(&lane->alarm, lane, r, now_ns))
 		return false;
 	slot->purpose = FOR_ALARM;
 	slot->row = r->row;
@@ -108,14 +108,14 @@ static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
 	}
 	if (!slot_lend(lane, slot, now_ns))
 		return false;
-	lane->alarm_slot = slot;
+	lane->lent.alarm = slot;
 	alarm_started(&lane->alarm, lane, now_ns);
 	if (r->row == TABLE_NO_ROW)
 		return true;
 	s = &e->table.signals[r->row];
 	s->alarming = true;
 	s->sample.tried_ns = now_ns;
-	signal_begin(s, e->period);
+	signal_begin(s, e->time.period);
 	engine_publish(e, s);
 	return true;
 }
@@ -132,8 +132,7 @@ static bool ask_next(struct lane *lane, struct slot *slot, int64_t now_ns)
 		return types_ask(lane, slot, (uint32_t)check, now_ns);
 	if (ask_alarm(lane, slot, now_ns) || engine_probe_ask(lane, slot, now_ns))
 		return true;
-	output = lane->writes_in_work || alarm_holds(&lane->alarm) ? -1
-	                                                           : due_set_next(&lane->outputs);
+	output = lane->lent.writes || alarm_holds(&lane->alarm) ? -1 : due_set_next(&lane->outputs);
 	input = due_set_next(&lane->inputs);
 	if (guest_turn(lane, output >= 0 || input >= 0))
 		return guest_ask(lane, slot, now_ns);
@@ -149,7 +148,7 @@ void lane_fill(struct lane *lane, int64_t now_ns)
 {
 	struct slot *slot;
 
-	while (lane->up && !lane->stuck && (slot = slot_next(lane)) != NULL)
+	while (lane->state.up && !lane->state.stuck && (slot = slot_next(lane)) != NULL)
 		if (!ask_next(lane, slot, now_ns))
 			break;
 }
@@ -158,11 +157,11 @@ int64_t lane_wake(const struct lane *lane)
 {
 	int64_t alarm, probe;
 
-	if (!lane->up || lane->stuck || lane->lent == lane->depth)
+	if (!lane->state.up || lane->state.stuck || lane->lent.count == lane->depth)
 		return INT64_MAX;
 	probe = lane->probes.count && !lane->probing ? lane->probe_ns : INT64_MAX;
 	/* the end of these wakes it */
-	if (lane->alarm_slot || lane->writes_in_work)
+	if (lane->lent.alarm || lane->lent.writes)
 		return probe;
 	alarm = alarm_wake(&lane->alarm);
 	return probe < alarm ? probe : alarm;

@@ -17,19 +17,19 @@
 
 static void put_safe(struct engine *e, struct signal *s)
 {
-	s->safe = true;
-	s->commanded = true;
-	s->command = s->item->safe_value;
+	s->command.safe = true;
+	s->command.given = true;
+	s->command.value = s->item->safe_value;
 	if (signal_is_string(s)) {
 		size_t len = strlen(s->item->safe_text);
 
 		if (len > TABLE_TEXT_CAP)
 			len = TABLE_TEXT_CAP;
 		memcpy(s->command_text, s->item->safe_text, len);
-		s->command_len = (uint32_t)len;
+		s->command.len = (uint32_t)len;
 	}
-	commands_put_safe(e->commands, s->record, s->command,
-	                  signal_is_string(s) ? s->command_text : NULL, s->command_len);
+	commands_put_safe(e->commands, s->record, s->command.value,
+	                  signal_is_string(s) ? s->command_text : NULL, s->command.len);
 	e->counters.safe_outputs++;
 }
 
@@ -39,7 +39,7 @@ static void resume_command(struct engine *e, struct signal *s, const struct comm
 	struct command_client client = {0};
 
 	/* it is not taken unless it is set once more, or its giver beats */
-	s->stamp = c->stamp;
+	s->seen.stamp = c->stamp;
 	if (!c->stamp)
 		return;
 	if (c->safe && s->item->has_safe)
@@ -49,8 +49,8 @@ static void resume_command(struct engine *e, struct signal *s, const struct comm
 	commands_client(e->commands, c->client - 1, &client);
 	if (!client.pid)
 		return;
-	s->client = c->client;
-	s->awaited = true;
+	s->seen.client = c->client;
+	s->seen.awaited = true;
 	e->clients[c->client - 1] = (struct client){true, true, client.pid, client.beat, now_ns};
 }
 
@@ -59,14 +59,14 @@ void engine_resume(struct engine *e, int64_t now_ns)
 	struct command c;
 
 	commands_load(e->commands, 0, &c);
-	e->driver_resets = c.dgn_reset;
+	e->driver.resets = c.dgn_reset;
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
 		commands_load(e->commands, s->record, &c);
-		s->one_shots = c.one_shot;
-		s->dgn_resets = c.dgn_reset;
-		s->acknowledged = c.acknowledged;
+		s->seen.one_shots = c.one_shot;
+		s->seen.dgn_resets = c.dgn_reset;
+		s->seen.acknowledged = c.acknowledged;
 		resume_command(e, s, &c, now_ns);
 		engine_intake_signal(e, s, now_ns);
 	}
@@ -74,8 +74,8 @@ void engine_resume(struct engine *e, int64_t now_ns)
 
 void engine_give_up(struct engine *e, struct signal *s)
 {
-	s->client = 0;
-	s->awaited = false;
+	s->seen.client = 0;
+	s->seen.awaited = false;
 	if (s->item->has_safe)
 		put_safe(e, s);
 	engine_write_check(e, s);
@@ -88,7 +88,7 @@ static bool is_signed_off(const struct engine *e, const struct signal *s)
 	struct command c;
 
 	commands_load(e->commands, s->record, &c);
-	return c.client != s->client;
+	return c.client != s->seen.client;
 }
 
 /*
@@ -101,12 +101,13 @@ static void forget_client(struct engine *e, unsigned client, bool all)
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
-		if (s->client != client + 1 || !(all || s->awaited || is_signed_off(e, s)))
+		if (s->seen.client != client + 1 ||
+		    !(all || s->seen.awaited || is_signed_off(e, s)))
 			continue;
-		s->client = 0;
-		if (!s->awaited)
+		s->seen.client = 0;
+		if (!s->seen.awaited)
 			continue;
-		s->awaited = false;
+		s->seen.awaited = false;
 		engine_write_check(e, s);
 		engine_publish(e, s);
 	}
@@ -121,9 +122,9 @@ static void welcome_client(struct engine *e, unsigned client, int64_t now_ns)
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
-		if (s->client != client + 1 || !s->awaited)
+		if (s->seen.client != client + 1 || !s->seen.awaited)
 			continue;
-		s->stamp = 0;
+		s->seen.stamp = 0;
 		engine_intake_signal(e, s, now_ns);
 		engine_publish(e, s);
 		kept++;
@@ -140,12 +141,12 @@ static void lose_client(struct engine *e, unsigned client)
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
-		if (s->client != client + 1)
+		if (s->seen.client != client + 1)
 			continue;
 		safe += s->item->has_safe;
-		if (s->item->has_safe || s->awaited)
+		if (s->item->has_safe || s->seen.awaited)
 			engine_give_up(e, s);
-		s->client = 0;
+		s->seen.client = 0;
 	}
 	e->counters.lost_clients++;
 	log_warning(e->log, "control program %u %s: %u output%s to SafeValue", (unsigned)known->pid,

@@ -51,7 +51,7 @@ static bool gives_nothing(const struct engine *e, const struct signal *failed)
 		const struct signal *s = &e->table.signals[e->table.device_rows[d->first + i]];
 
 		if (s->lane == failed->lane && signal_reads(s) &&
-		    s->read_retry.failures <= e->config->max_retries)
+		    s->read.retry.failures <= e->config->max_retries)
 			return false;
 	}
 	return true;
@@ -65,7 +65,7 @@ static int64_t fail_read(struct engine *e, struct lane *lane, struct signal *s, 
 
 	lane->counters.item_errors++;
 	s->sample.err = err;
-	if (!retry_fail(&s->read_retry, e->config->max_retries, &wait_ns))
+	if (!retry_fail(&s->read.retry, e->config->max_retries, &wait_ns))
 		return 0;
 	if (err == -ENODEV)
 		mark_absent(e, lane, s);
@@ -85,12 +85,12 @@ static int64_t fail_write(struct engine *e, struct lane *lane, struct signal *s,
 	int64_t wait_ns;
 
 	lane->counters.item_errors++;
-	s->write_err = err;
-	if (!retry_fail(&s->write_retry, e->config->max_retries, &wait_ns))
+	s->command.err = err;
+	if (!retry_fail(&s->command.retry, e->config->max_retries, &wait_ns))
 		return 0;
 	if (err == -ENODEV)
 		mark_absent(e, lane, s);
-	if (s->write_retry.failures == e->config->max_retries + 1)
+	if (s->command.retry.failures == e->config->max_retries + 1)
 		report_failed(e, s, "cannot be written: ", err, quality);
 	if (!signal_reads(s))
 		s->sample.quality = quality;
@@ -132,7 +132,7 @@ static int doubt_reading(struct lane *lane, struct signal *s, const struct bus_a
 		          s->item->name, s->item->path, number);
 		return -EDOM;
 	}
-	if (s->quantity.starves && guard_refuses(&s->guard, number, now_ns)) {
+	if (s->quantity.starves && guard_refuses(&s->read.guard, number, now_ns)) {
 		lane->counters.power_faults++;
 		return -ERANGE;
 	}
@@ -177,8 +177,8 @@ static int64_t time_of_reading(const struct engine *e, const struct slot *slot,
 {
 	int64_t measured_ns = answer->measured_ns ? answer->measured_ns : now_ns;
 
-	return slot->begun_ns < e->gap_ns && slot->begun_ns < measured_ns ? slot->begun_ns
-	                                                                  : measured_ns;
+	return slot->begun_ns < e->time.gap_ns && slot->begun_ns < measured_ns ? slot->begun_ns
+	                                                                       : measured_ns;
 }
 
 /* An output that changes though nothing was written may be that of a device that has restarted. */
@@ -186,12 +186,12 @@ static void compare_written(struct lane *lane, struct signal *s)
 {
 	bool agrees;
 
-	if (!s->item->output || !s->confirmed || s->writing || signal_is_string(s))
+	if (!s->item->output || !s->command.confirmed || s->writing || signal_is_string(s))
 		return;
-	agrees = s->sample.value == s->written;
-	if (s->agrees && !agrees)
+	agrees = s->sample.value == s->command.written;
+	if (s->command.agrees && !agrees)
 		alarm_output_differs(&lane->alarm, s->device);
-	s->agrees = agrees;
+	s->command.agrees = agrees;
 }
 
 int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
@@ -205,9 +205,9 @@ int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
 	switch (failure_of(err)) {
 	case FAILURE_NONE:
 		lane->counters.reads++;
-		signal_update(s, e->period, time_of_reading(e, slot, answer, now_ns), now_ns);
+		signal_update(s, e->time.period, time_of_reading(e, slot, answer, now_ns), now_ns);
 		s->sample.detail = answer->detail;
-		retry_clear(&s->read_retry);
+		retry_clear(&s->read.retry);
 		request_succeeded(e, lane, s, quality, true);
 		compare_written(lane, s);
 		break;
@@ -243,7 +243,7 @@ void engine_read_done(struct engine *e, struct lane *lane, const struct slot *sl
 	if (engine_take_reading(e, lane, s, slot, answer, now_ns, &wait_ns) == 0)
 		engine_read_at(e, s, slot->begun + reads_apart(e, lane, s));
 	else
-		engine_read_at(e, s, e->period + (wait_ns ? engine_periods(e, wait_ns) : 1));
+		engine_read_at(e, s, e->time.period + (wait_ns ? engine_periods(e, wait_ns) : 1));
 }
 
 void engine_alarm_failed(struct engine *e, struct lane *lane, const struct alarm_item *item,
@@ -261,24 +261,25 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	struct signal *s = &e->table.signals[slot->row];
 
 	lane->counters.writes++;
-	if (s->write_retry.failures > e->config->max_retries && signal_reads(s))
+	if (s->command.retry.failures > e->config->max_retries && signal_reads(s))
 		log_info(e->log, "%s (%s): written again", s->item->name, s->item->path);
 	/* first, for a device that comes back forgets what was written, but for this */
 	request_succeeded(e, lane, s, OWS_Q_GOOD, false);
-	s->confirmed = true;
-	s->agrees = false;
-	s->written = slot->value;
+	s->command.confirmed = true;
+	s->command.agrees = false;
+	s->command.written = slot->value;
 	s->sample.value = slot->value;
 	s->sample.applied = slot->stamp;
 	s->sample.detail = answer->detail;
 	if (signal_is_string(s)) {
 		memcpy(s->written_text, slot->data, slot->req.len);
 		memcpy(s->text, slot->data, slot->req.len);
-		s->written_len = s->sample.len = slot->req.len;
+		s->command.written_len = s->sample.len = slot->req.len;
 	}
-	signal_update(s, e->period, answer->measured_ns ? answer->measured_ns : now_ns, now_ns);
-	retry_clear(&s->write_retry);
-	s->write_err = 0;
+	signal_update(s, e->time.period, answer->measured_ns ? answer->measured_ns : now_ns,
+	              now_ns);
+	retry_clear(&s->command.retry);
+	s->command.err = 0;
 	signal_settle(s);
 	engine_write_check(e, s);
 }
@@ -290,8 +291,8 @@ void engine_write_done(struct engine *e, struct lane *lane, const struct slot *s
 	int64_t wait_ns;
 
 	if (answer->err) {
-		s->confirmed = false;
-		s->one_shot |= slot->one_shot;
+		s->command.confirmed = false;
+		s->command.one_shot |= slot->one_shot;
 	}
 	switch (failure_of(answer->err)) {
 	case FAILURE_NONE:
@@ -299,7 +300,7 @@ void engine_write_done(struct engine *e, struct lane *lane, const struct slot *s
 		return;
 	case FAILURE_ITEM:
 		wait_ns = fail_write(e, lane, s, answer->err);
-		engine_write_at(e, s, e->period + (wait_ns ? engine_periods(e, wait_ns) : 1));
+		engine_write_at(e, s, e->time.period + (wait_ns ? engine_periods(e, wait_ns) : 1));
 		break;
 	case FAILURE_TARGET:
 		s->sample.err = answer->err;

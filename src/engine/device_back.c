@@ -17,11 +17,11 @@ void engine_device_back(struct lane *lane, struct device *device)
 
 		if (s->lane != lane->index)
 			continue;
-		retry_clear(&s->read_retry);
-		retry_clear(&s->write_retry);
+		retry_clear(&s->read.retry);
+		retry_clear(&s->command.retry);
 		due_wheel_cancel(&e->wheel, engine_row(s) * 2 + 1);
 		alarm_rearm(&lane->alarm, e, s->device);
-		s->confirmed = false;
+		s->command.confirmed = false;
 		engine_read_now(e, s);
 		engine_write_check(e, s);
 	}

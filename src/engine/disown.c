@@ -24,7 +24,7 @@ static void disown_slot(struct lane *lane, struct slot *slot)
 		break;
 	case FOR_WRITE:
 		s->writing = false;
-		s->one_shot |= slot->one_shot;
+		s->command.one_shot |= slot->one_shot;
 		break;
 	case FOR_ALARM:
 		s->alarming = false;
@@ -34,13 +34,13 @@ static void disown_slot(struct lane *lane, struct slot *slot)
 	case FOR_GUEST:
 		return;
 	}
-	signal_end(s, e->period, slot->begun);
+	signal_end(s, e->time.period, slot->begun);
 }
 
 void lane_disown(struct lane *lane, bool all)
 {
 	for (unsigned i = 0; i < lane->depth; i++) {
-		struct slot *slot = &lane->slots[i];
+		struct slot *slot = &lane->lent.slots[i];
 
 		if (!slot->lent || slot->given_up || slot->moved ||
 		    slot->purpose == FOR_STRUCTURE || slot->purpose == FOR_PROBE ||
@@ -54,7 +54,7 @@ void lane_disown(struct lane *lane, bool all)
 
 void lane_disown_alarm(struct lane *lane)
 {
-	struct slot *slot = lane->alarm_slot;
+	struct slot *slot = lane->lent.alarm;
 
 	if (slot && !slot->given_up && !slot->moved)
 		disown_slot(lane, slot);
@@ -63,7 +63,7 @@ void lane_disown_alarm(struct lane *lane)
 void lane_keep_reads(struct lane *lane)
 {
 	for (unsigned i = 0; i < lane->depth; i++) {
-		struct slot *slot = &lane->slots[i];
+		struct slot *slot = &lane->lent.slots[i];
 
 		slot->kept = slot->lent && !slot->given_up && !slot->moved &&
 		             slot->purpose == FOR_READ;
@@ -73,7 +73,7 @@ void lane_keep_reads(struct lane *lane)
 void lane_resume_reads(struct lane *lane)
 {
 	for (unsigned i = 0; i < lane->depth; i++) {
-		struct slot *slot = &lane->slots[i];
+		struct slot *slot = &lane->lent.slots[i];
 		struct signal *s;
 
 		if (!slot->kept || slot->row == TABLE_NO_ROW)
@@ -101,31 +101,14 @@ static void come_over(struct slot *slot, const uint32_t *successors)
 
 void lane_adopt(struct lane *lane, struct lane *before, const uint32_t *successors)
 {
-	struct lane own = *lane;
+	struct lane_lent own = lane->lent;
 
-	assert(lane->depth == before->depth && !lane->lent);
+	assert(lane->depth == before->depth && !lane->lent.count);
 	for (unsigned i = 0; i < before->depth; i++)
-		if (before->slots[i].lent)
-			come_over(&before->slots[i], successors);
-	lane->up = before->up;
-	lane->was_up = before->was_up;
-	lane->stuck = before->stuck;
-	lane->open = before->open;
-	lane->said_up = before->said_up;
-	lane->heard_ns = before->heard_ns;
-	lane->slots = before->slots;
-	lane->free = before->free;
-	lane->free_count = before->free_count;
-	lane->look_ns = before->look_ns;
-	lane->lent = before->lent;
-	lane->writes_in_work = before->writes_in_work;
-	lane->list = before->list;
-	lane->alarm_slot = before->alarm_slot;
+		if (before->lent.slots[i].lent)
+			come_over(&before->lent.slots[i], successors);
+	lane->state = before->state;
 	lane->counters = before->counters;
-	before->slots = own.slots;
-	before->free = own.free;
-	before->free_count = own.free_count;
-	before->lent = before->writes_in_work = 0;
-	before->list = own.list;
-	before->alarm_slot = NULL;
+	lane->lent = before->lent;
+	before->lent = own;
 }

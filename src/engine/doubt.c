@@ -37,8 +37,9 @@ static void each_output_lent(struct engine *e, void (*visit)(struct lane *, cons
 		struct lane *lane = &e->lanes[i];
 
 		for (unsigned k = 0; k < lane->depth; k++)
-			if (lane->slots[k].lent && lane_writes_output(lane, &lane->slots[k]))
-				visit(lane, &lane->slots[k]);
+			if (lane->lent.slots[k].lent &&
+			    lane_writes_output(lane, &lane->lent.slots[k]))
+				visit(lane, &lane->lent.slots[k]);
 	}
 }
 
@@ -71,7 +72,7 @@ void engine_doubt_ended(struct engine *e, const struct slot *slot)
 {
 	struct signal *s = &e->table.signals[slot->row];
 
-	s->forced = true;
+	s->command.forced = true;
 	s->doubts = 0; /* but for what is still lent */
 	engine_doubts(e);
 	engine_write_check(e, s);

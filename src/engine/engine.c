@@ -36,8 +36,8 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 	e->commands = setup->commands;
 	e->log = setup->log;
 	e->guests = setup->guests;
-	e->start_ns = setup->start_ns;
-	e->now_ns = setup->start_ns;
+	e->time.start_ns = setup->start_ns;
+	e->time.now_ns = setup->start_ns;
 	e->looks_ns = INT64_MIN / 2; /* all are left */
 	err = signal_table_init(&e->table, e->config);
 	if (!err)
@@ -66,7 +66,7 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 		return err;
 	}
 	for (uint32_t row = 0; row < e->table.count; row++) {
-		e->table.signals[row].known_ns = setup->start_ns;
+		e->table.signals[row].read.known_ns = setup->start_ns;
 		lane_take_row(&e->lanes[0], row);
 	}
 	for (uint32_t i = 0; i < e->alarm_count; i++)
@@ -109,9 +109,9 @@ void engine_destroy(struct engine *e)
 
 static void begin_call(struct engine *e, int64_t now_ns)
 {
-	if (e->next_ns && now_ns - e->next_ns > GAP_NS)
-		e->gap_ns = now_ns;
-	e->now_ns = now_ns;
+	if (e->time.next_ns && now_ns - e->time.next_ns > GAP_NS)
+		e->time.gap_ns = now_ns;
+	e->time.now_ns = now_ns;
 }
 
 void engine_answer(struct engine *e, unsigned port, const struct bus_answer *answer, int64_t now_ns)
@@ -132,7 +132,7 @@ void engine_event(struct engine *e, unsigned port, const struct bus_event *event
 
 int64_t engine_step(struct engine *e, int64_t now_ns)
 {
-	uint64_t before = e->period;
+	uint64_t before = e->time.period;
 	int64_t next, groups, deferred;
 
 	begin_call(e, now_ns);
@@ -140,12 +140,13 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 	engine_turn(e, now_ns);
 	deferred = engine_intake_limited(e, now_ns);
 	guests_take(e, now_ns);
-	if (e->period != before) {
+	if (e->time.period != before) {
 		engine_clients(e, now_ns);
 		engine_publish_counters(e);
 		engine_publish_driver(e, now_ns);
 	}
-	next = e->start_ns + (int64_t)(e->period - e->first + 1) * e->config->period_ns;
+	next = e->time.start_ns +
+	       (int64_t)(e->time.period - e->time.first + 1) * e->config->period_ns;
 	if (deferred < next)
 		next = deferred;
 	groups = engine_route_groups(e, now_ns);
@@ -158,7 +159,8 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 		engine_route(e, now_ns);
 		lane_fill(&e->lanes[i], now_ns);
 		/* what was lent just now included */
-		if (e->lanes[i].lent && now_ns + e->config->timeout_ns + LANE_GRACE_NS < timeout)
+		if (e->lanes[i].lent.count &&
+		    now_ns + e->config->timeout_ns + LANE_GRACE_NS < timeout)
 			timeout = now_ns + e->config->timeout_ns + LANE_GRACE_NS;
 		if (timeout < next)
 			next = timeout;
@@ -166,7 +168,7 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 		if (alarm < next)
 			next = alarm;
 	}
-	e->next_ns = next;
+	e->time.next_ns = next;
 	return next;
 }
 
@@ -190,21 +192,21 @@ void engine_take_commands(struct engine *e, struct commands *commands, int64_t n
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
-		s->one_shots = 0;
-		s->dgn_resets = 0;
-		s->acknowledged = 0;
-		s->client = 0;
-		if (s->awaited)
+		s->seen.one_shots = 0;
+		s->seen.dgn_resets = 0;
+		s->seen.acknowledged = 0;
+		s->seen.client = 0;
+		if (s->seen.awaited)
 			engine_give_up(e, s);
 		/* what was commanded stands */
-		if (!s->stamp)
+		if (!s->seen.stamp)
 			continue;
-		put = s->safe ? commands_put_safe : commands_put;
-		put(commands, s->record, s->command, signal_is_string(s) ? s->command_text : NULL,
-		    s->command_len);
-		commands_stamp(commands, s->record, s->stamp);
+		put = s->command.safe ? commands_put_safe : commands_put;
+		put(commands, s->record, s->command.value,
+		    signal_is_string(s) ? s->command_text : NULL, s->command.len);
+		commands_stamp(commands, s->record, s->seen.stamp);
 	}
-	e->driver_resets = 0;
+	e->driver.resets = 0;
 	e->busy_count = 0;
 	log_warning(e->log, "a program took the command segment away: made again");
 }

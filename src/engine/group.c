@@ -25,10 +25,10 @@ int engine_groups_init(struct engine *e, const struct engine_port *ports)
 			count++;
 		e->groups[group].first = i;
 		e->groups[group].ways = &e->ways[i];
-		route_bar_init(&e->groups[group].bar, count, patience_ns, e->start_ns);
+		route_bar_init(&e->groups[group].state.bar, count, patience_ns, e->time.start_ns);
 		e->states[group] = (struct route_group){.state = ROUTE_OPENING,
-		                                        .since_ns = e->start_ns};
-		e->lanes[i].open = true;
+		                                        .since_ns = e->time.start_ns};
+		e->lanes[i].state.open = true;
 		for (unsigned w = 1; w < count; w++)
 			e->ways[i + w].released = true;
 		i += count;

@@ -117,7 +117,7 @@ static void look_at_waiting(struct engine *e, struct lane *lane, int64_t now_ns)
 	while (g) {
 		struct engine_guest *next = g->next;
 
-		if (!lane->up || lane->stuck)
+		if (!lane->state.up || lane->state.stuck)
 			guest_failed(e, g, -ENOTCONN);
 		else if (now_ns >= g->until_ns)
 			guest_failed(e, g, -ETIME);
@@ -164,7 +164,7 @@ void guests_take(struct engine *e, int64_t now_ns)
 
 static unsigned table_lent(const struct lane *lane)
 {
-	return lane->lent - lane->guests.lent;
+	return lane->lent.count - lane->guests.lent;
 }
 
 /* A part of what the bus takes, and where the table is at work a part of what the bus has of it. */
@@ -251,9 +251,9 @@ static void restore_outputs(struct engine *e, const char *path)
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];
 
-		if (!s->commanded || !signal_writes(s) || !same_latch(&split, s->item->path))
+		if (!s->command.given || !signal_writes(s) || !same_latch(&split, s->item->path))
 			continue;
-		s->forced = true;
+		s->command.forced = true;
 		engine_write_check(e, s);
 		engine_publish(e, s);
 	}
@@ -302,7 +302,7 @@ void guests_adopt(struct lane *lane, struct lane *before)
 	for (struct engine_guest *g = lane->guests.first; g; g = g->next)
 		g->at = g->served = lane->index;
 	for (unsigned i = 0; i < lane->depth; i++) {
-		const struct slot *slot = &lane->slots[i];
+		const struct slot *slot = &lane->lent.slots[i];
 
 		if (slot->lent && slot->purpose == FOR_GUEST)
 			slot->guest->at = slot->guest->served = lane->index;
@@ -320,7 +320,7 @@ void guests_refuse(struct lane *lane)
 		answer_guest(lane->engine, g);
 	}
 	for (unsigned i = 0; i < lane->depth; i++) {
-		struct slot *slot = &lane->slots[i];
+		struct slot *slot = &lane->lent.slots[i];
 
 		if (!slot->lent || slot->purpose != FOR_GUEST || slot->given_up)
 			continue;
@@ -332,7 +332,7 @@ void guests_refuse(struct lane *lane)
 void guests_release(struct lane *lane)
 {
 	for (unsigned i = 0; i < lane->depth; i++) {
-		struct slot *slot = &lane->slots[i];
+		struct slot *slot = &lane->lent.slots[i];
 
 		if (!slot->lent || slot->purpose != FOR_GUEST)
 			continue;

@@ -30,7 +30,7 @@ static void refuse_command(struct engine *e, struct signal *s, int err, int64_t 
 
 	e->counters.refused_commands++;
 	if (err != -EROFS)
-		s->write_err = err;
+		s->command.err = err;
 	if (n)
 		log_warning(e->log, "%s: a value in the command segment was refused: %s%s",
 		            s->item->name,
@@ -63,7 +63,7 @@ static int take_command_text(struct engine *e, struct signal *s)
 	if (len > TABLE_TEXT_CAP)
 		return -EBADMSG;
 	memcpy(s->command_text, text, (size_t)len);
-	s->command_len = (uint32_t)len;
+	s->command.len = (uint32_t)len;
 	return 0;
 }
 
@@ -93,18 +93,18 @@ static void take_command(struct engine *e, struct signal *s, const struct comman
 		remember_busy(e, s->record, now_ns);
 		return;
 	}
-	s->stamp = c->stamp;
-	s->awaited = false;
+	s->seen.stamp = c->stamp;
+	s->seen.awaited = false;
 	if (err) {
 		refuse_command(e, s, err, now_ns);
 		return;
 	}
 	if (!signal_is_string(s))
-		s->command = c->value;
-	s->command_stamp = c->stamp;
-	s->commanded = true;
-	s->safe = false;
-	s->client = client_of(e, c);
+		s->command.value = c->value;
+	s->command.stamp = c->stamp;
+	s->command.given = true;
+	s->command.safe = false;
+	s->seen.client = client_of(e, c);
 	e->counters.commands++;
 }
 
@@ -124,7 +124,7 @@ static void take_enables(struct engine *e, struct signal *s, const struct comman
 	if (config_item_takes_sets(s->item))
 		take_enable(s, c->write_enable, OWS_ATTR_WRITE_ENABLE);
 	if (signal_reads(s) && !read_before) {
-		retry_clear(&s->read_retry);
+		retry_clear(&s->read.retry);
 		engine_read_now(e, s);
 	} else if (!signal_reads(s) && read_before) {
 		engine_read_never(e, s);
@@ -133,7 +133,7 @@ static void take_enables(struct engine *e, struct signal *s, const struct comman
 	}
 	if (signal_writes(s) != write_before) {
 		if (write_before) {
-			s->write_err = 0;
+			s->command.err = 0;
 			engine_lane(e, s)->writers--;
 		} else {
 			engine_lane(e, s)->writers++;
@@ -147,19 +147,19 @@ void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
 
 	commands_load(e->commands, s->record, &c);
 	/* 0 is no command: a segment that a consumer truncated is all 0 */
-	if (c.stamp && c.stamp != s->stamp)
+	if (c.stamp && c.stamp != s->seen.stamp)
 		take_command(e, s, &c, now_ns);
 	take_enables(e, s, &c);
-	if (c.one_shot && c.one_shot != s->one_shots) {
-		s->one_shots = c.one_shot;
-		s->one_shot = s->commanded && config_item_takes_sets(s->item);
+	if (c.one_shot && c.one_shot != s->seen.one_shots) {
+		s->seen.one_shots = c.one_shot;
+		s->command.one_shot = s->command.given && config_item_takes_sets(s->item);
 	}
-	if (c.dgn_reset && c.dgn_reset != s->dgn_resets) {
-		s->dgn_resets = c.dgn_reset;
-		signal_reset_diagnostics(s, e->period, now_ns);
+	if (c.dgn_reset && c.dgn_reset != s->seen.dgn_resets) {
+		s->seen.dgn_resets = c.dgn_reset;
+		signal_reset_diagnostics(s, e->time.period, now_ns);
 	}
-	if (c.acknowledged && c.acknowledged != s->acknowledged) {
-		s->acknowledged = c.acknowledged;
+	if (c.acknowledged && c.acknowledged != s->seen.acknowledged) {
+		s->seen.acknowledged = c.acknowledged;
 		engine_limits_acknowledge(e, s);
 	}
 	signal_settle(s);
@@ -171,13 +171,13 @@ static void take_driver_reset(struct engine *e, int64_t now_ns)
 	struct command c;
 
 	commands_load(e->commands, 0, &c);
-	if (!c.dgn_reset || c.dgn_reset == e->driver_resets)
+	if (!c.dgn_reset || c.dgn_reset == e->driver.resets)
 		return;
-	e->driver_resets = c.dgn_reset;
-	e->transactions = 0;
-	e->reconnects = 0;
+	e->driver.resets = c.dgn_reset;
+	e->driver.transactions = 0;
+	e->driver.reconnects = 0;
 	for (uint32_t row = 0; row < e->table.count; row++) {
-		signal_reset_diagnostics(&e->table.signals[row], e->period, now_ns);
+		signal_reset_diagnostics(&e->table.signals[row], e->time.period, now_ns);
 		engine_publish(e, &e->table.signals[row]);
 	}
 	log_info(e->log, "diagnostics of all signals reset");

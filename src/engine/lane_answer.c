@@ -28,7 +28,7 @@ static void complete_request(struct lane *lane, struct slot *slot, const struct 
 		guest_done(e, lane, slot, answer);
 		return;
 	}
-	e->transactions += counts;
+	e->driver.transactions += counts;
 	switch (slot->purpose) {
 	case FOR_GUEST:
 		break;
@@ -42,7 +42,7 @@ static void complete_request(struct lane *lane, struct slot *slot, const struct 
 		s = &e->table.signals[slot->row];
 		s->reading = false;
 		s->attrs.transactions += counts;
-		signal_end(s, e->period, slot->begun);
+		signal_end(s, e->time.period, slot->begun);
 		engine_read_done(e, lane, slot, answer, now_ns);
 		engine_publish(e, s);
 		alarm_passed(&lane->alarm);
@@ -50,9 +50,9 @@ static void complete_request(struct lane *lane, struct slot *slot, const struct 
 	case FOR_WRITE:
 		s = &e->table.signals[slot->row];
 		s->writing = false;
-		lane->writes_in_work--;
+		lane->lent.writes--;
 		s->attrs.transactions += counts;
-		signal_end(s, e->period, slot->begun);
+		signal_end(s, e->time.period, slot->begun);
 		engine_write_done(e, lane, slot, answer, now_ns);
 		engine_publish(e, s);
 		alarm_passed(&lane->alarm);
@@ -65,7 +65,7 @@ static void complete_request(struct lane *lane, struct slot *slot, const struct 
 		s = &e->table.signals[slot->row];
 		s->alarming = false;
 		s->attrs.transactions += counts;
-		signal_end(s, e->period, slot->begun);
+		signal_end(s, e->time.period, slot->begun);
 		alarm_answered(&lane->alarm, lane, slot, answer, now_ns);
 		engine_publish(e, s);
 		break;
@@ -77,7 +77,7 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now
 	struct slot *slot = slot_of_id(lane, answer->id);
 	struct engine *e = lane->engine;
 
-	lane->heard_ns = now_ns;
+	lane->state.heard_ns = now_ns;
 	if (!slot) {
 		lane->counters.unknown_answers++;
 		return;
@@ -90,13 +90,13 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now
 	} else {
 		lane->counters.late_answers += slot->given_up;
 		if (!slot->given_up && slot->purpose == FOR_WRITE)
-			lane->writes_in_work--;
+			lane->lent.writes--;
 		if (slot->purpose == FOR_GUEST)
 			guest_gone(e, slot);
 		else if (lane_writes_output(lane, slot))
 			engine_doubt_ended(e, slot);
 	}
-	if (lane->stuck)
+	if (lane->state.stuck)
 		lane_unstuck(lane, now_ns);
 }
 
@@ -106,12 +106,12 @@ int64_t lane_timeouts(struct lane *lane, int64_t now_ns)
 	bool silent = false;
 	unsigned lost = 0;
 
-	if (!lane->lent)
+	if (!lane->lent.count)
 		return next;
-	if (now_ns < lane->look_ns)
-		return lane->look_ns;
+	if (now_ns < lane->lent.look_ns)
+		return lane->lent.look_ns;
 	for (unsigned i = 0; i < lane->depth; i++) {
-		struct slot *slot = &lane->slots[i];
+		struct slot *slot = &lane->lent.slots[i];
 		int64_t end = slot->req.deadline_ns + LANE_GRACE_NS;
 		struct bus_answer answer = {.id = slot->req.id, .err = -EINPROGRESS};
 
@@ -128,7 +128,7 @@ int64_t lane_timeouts(struct lane *lane, int64_t now_ns)
 		}
 		lost++;
 		lane->counters.given_up++;
-		if (lane->heard_ns <= slot->begun_ns) {
+		if (lane->state.heard_ns <= slot->begun_ns) {
 			answer.err = -ETIMEDOUT;
 			silent = true;
 		}
@@ -138,10 +138,10 @@ int64_t lane_timeouts(struct lane *lane, int64_t now_ns)
 		if (!slot->moved)
 			complete_request(lane, slot, &answer, now_ns);
 		else if (slot->purpose == FOR_WRITE)
-			lane->writes_in_work--;
+			lane->lent.writes--;
 	}
-	lane->look_ns = next;
-	if (!lane->stuck && (silent || lost == lane->depth))
+	lane->lent.look_ns = next;
+	if (!lane->state.stuck && (silent || lost == lane->depth))
 		lane_stuck(lane, now_ns);
 	return next;
 }

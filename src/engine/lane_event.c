@@ -45,10 +45,10 @@ static void down_event(struct lane *lane, int err, const char *text, int64_t now
 {
 	struct engine *e = lane->engine;
 
-	log_at(e->log, engine_group(e, lane)->quiet ? LOG_LEVEL_DEBUG : LOG_LEVEL_WARNING,
-	       "%s: %s: %s", lane->port->target, lane->up ? "from up to down" : "down",
+	log_at(e->log, engine_group(e, lane)->state.quiet ? LOG_LEVEL_DEBUG : LOG_LEVEL_WARNING,
+	       "%s: %s: %s", lane->port->target, lane->state.up ? "from up to down" : "down",
 	       *text ? text : strerror(-err));
-	lane->up = false;
+	lane->state.up = false;
 	lane->counters.target_failures++;
 	engine_publish_target(e, lane);
 	lane_fail(lane, err, now_ns);
@@ -81,9 +81,9 @@ static void up_event(struct lane *lane, const struct bus_event *event, int64_t n
 {
 	struct route_way *way = engine_way(lane->engine, lane);
 
-	lane->said_up = true;
-	if (lane->open) {
-		bool first = !lane->was_up;
+	lane->state.said_up = true;
+	if (lane->state.open) {
+		bool first = !lane->state.was_up;
 
 		lane_up(lane, event->text, now_ns);
 		if (first && event->cache_ns)
@@ -100,7 +100,7 @@ static void suspended_event(struct lane *lane, const struct bus_event *event, in
 	struct engine *e = lane->engine;
 	struct route_way *way = engine_way(e, lane);
 
-	if (lane->open)
+	if (lane->state.open)
 		return;
 	if (event->news == BUS_BACK) {
 		way->back = true;
@@ -116,20 +116,20 @@ static void suspended_event(struct lane *lane, const struct bus_event *event, in
 
 void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns)
 {
-	lane->heard_ns = now_ns;
+	lane->state.heard_ns = now_ns;
 	switch ((enum bus_news)event->news) {
 	case BUS_UP:
 		up_event(lane, event, now_ns);
 		break;
 	case BUS_DOWN:
-		lane->said_up = false;
-		if (lane->open)
+		lane->state.said_up = false;
+		if (lane->state.open)
 			down_event(lane, event->err, event->text, now_ns);
 		break;
 	case BUS_FOUND:
 	case BUS_POR:
 	case BUS_LOST:
-		if (lane->open)
+		if (lane->state.open)
 			device_event(lane, event);
 		break;
 	case BUS_RELEASED:

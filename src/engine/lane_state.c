@@ -27,18 +27,18 @@ static void refresh_signals(struct lane *lane, int64_t now_ns)
 
 		if (s->lane != lane->index)
 			continue;
-		retry_clear(&s->read_retry);
-		retry_clear(&s->write_retry);
+		retry_clear(&s->read.retry);
+		retry_clear(&s->command.retry);
 		due_wheel_cancel(&e->wheel, row * 2 + 1);
 		engine_read_now(e, s);
 		engine_write_check(e, s);
 		/* what is not read again stands as it stood */
-		if (s->held && !signal_reads(s) && s->sample.quality == OWS_Q_TARGET) {
-			s->sample.quality = s->held_quality;
-			s->sample.err = s->held_err;
+		if (s->read.held && !signal_reads(s) && s->sample.quality == OWS_Q_TARGET) {
+			s->sample.quality = s->read.held_quality;
+			s->sample.err = s->read.held_err;
 			engine_publish(e, s);
 		}
-		s->held = false;
+		s->read.held = false;
 	}
 }
 
@@ -46,19 +46,19 @@ void lane_up(struct lane *lane, const char *text, int64_t now_ns)
 {
 	struct engine *e = lane->engine;
 
-	if (lane->up)
+	if (lane->state.up)
 		return;
-	lane->up = true;
-	engine_group(e, lane)->quiet = false;
+	lane->state.up = true;
+	engine_group(e, lane)->state.quiet = false;
 	engine_way(e, lane)->up = true;
-	engine_way(e, lane)->failed = lane->stuck;
+	engine_way(e, lane)->failed = lane->state.stuck;
 	engine_way(e, lane)->up_ns = now_ns;
-	if (lane->was_up) {
+	if (lane->state.was_up) {
 		lane->counters.reconnects++;
-		e->reconnects++;
+		e->driver.reconnects++;
 	}
 	log_notice(e->log, "%s: from down to up%s%s", lane->port->target, *text ? ": " : "", text);
-	lane->was_up = true;
+	lane->state.was_up = true;
 	engine_publish_target(e, lane);
 	engine_publish_driver(e, now_ns);
 	refresh_signals(lane, now_ns);
@@ -76,7 +76,7 @@ void lane_fail(struct lane *lane, int err, int64_t now_ns)
 	way->up = false;
 	engine_probes_forget(lane);
 	lane_disown_alarm(lane);
-	lane->fell = err;
+	lane->state.fell = err;
 	engine_group(e, lane)->asks = true;
 }
 
@@ -91,10 +91,10 @@ void lane_down(struct lane *lane, int err)
 		if (s->lane != lane->index ||
 		    (s->sample.quality == OWS_Q_DISABLED && !s->item->output && !signal_reads(s)))
 			continue;
-		if (!s->held) {
-			s->held = true;
-			s->held_quality = s->sample.quality;
-			s->held_err = s->sample.err;
+		if (!s->read.held) {
+			s->read.held = true;
+			s->read.held_quality = s->sample.quality;
+			s->read.held_err = s->sample.err;
 		}
 		s->sample.quality = OWS_Q_TARGET;
 		s->sample.err = err;
@@ -104,8 +104,8 @@ void lane_down(struct lane *lane, int err)
 
 void lane_stuck(struct lane *lane, int64_t now_ns)
 {
-	lane->stuck = true;
-	if (!lane->open)
+	lane->state.stuck = true;
+	if (!lane->state.open)
 		return;
 	log_err(lane->engine->log, "%s: no answer at all within Timeout", lane->port->target);
 	lane->counters.target_failures++;
@@ -117,9 +117,9 @@ void lane_unstuck(struct lane *lane, int64_t now_ns)
 	struct engine *e = lane->engine;
 	struct route_way *way = engine_way(e, lane);
 
-	lane->stuck = false;
+	lane->state.stuck = false;
 	log_notice(e->log, "%s: answers again", lane->port->target);
-	if (!lane->up)
+	if (!lane->state.up)
 		return;
 	way->failed = false;
 	way->up = true;

@@ -11,18 +11,18 @@ static void journal_limit(struct engine *e, const struct signal *s, uint8_t kind
 {
 	struct ows_alarm_entry entry = {
 		.record = s->record,
-		.occurred_ns = e->now_ns,
+		.occurred_ns = e->time.now_ns,
 		.kind = kind,
 		.event = event,
 		.quality = s->sample.quality,
 	};
 
-	if (event != OWS_ALARM_ACKNOWLEDGED && s->limit_values) {
-		entry.after = s->limit_value[1];
+	if (event != OWS_ALARM_ACKNOWLEDGED && s->limit.values) {
+		entry.after = s->limit.value[1];
 		entry.flags |= OWS_ALARM_AFTER;
 	}
-	if (event != OWS_ALARM_ACKNOWLEDGED && s->limit_values > 1) {
-		entry.before = s->limit_value[0];
+	if (event != OWS_ALARM_ACKNOWLEDGED && s->limit.values > 1) {
+		entry.before = s->limit.value[0];
 		entry.flags |= OWS_ALARM_BEFORE;
 	}
 	image_alarm(e->image, &entry);
@@ -31,11 +31,11 @@ static void journal_limit(struct engine *e, const struct signal *s, uint8_t kind
 
 static void limit_raised(struct engine *e, struct signal *s, uint8_t kind)
 {
-	uint64_t n = log_rate(&s->limit_log, e->now_ns);
+	uint64_t n = log_rate(&s->limit.log, e->time.now_ns);
 	char others[LOG_OTHERS];
 
 	journal_limit(e, s, kind, OWS_ALARM_RAISED);
-	s->limit_said |= n != 0;
+	s->limit.said |= n != 0;
 	if (n)
 		log_warning(e->log, "%s: alarm: %s%s", s->item->name, ows_alarm_kind_text(kind),
 		            log_others(n, others));
@@ -45,27 +45,27 @@ static void limit_raised(struct engine *e, struct signal *s, uint8_t kind)
 static void limit_returned(struct engine *e, struct signal *s, uint8_t kind)
 {
 	journal_limit(e, s, kind, OWS_ALARM_RETURNED);
-	if (s->limit_said)
+	if (s->limit.said)
 		log_notice(e->log, "%s: alarm: %s: returned to normal", s->item->name,
 		           ows_alarm_kind_text(kind));
-	s->limit_said = false;
+	s->limit.said = false;
 }
 
 static void show_limit(struct signal *s)
 {
-	s->attrs.limit_state = (uint8_t)s->limit.state;
-	s->attrs.limit_condition = s->limit.kind;
+	s->attrs.limit_state = (uint8_t)s->limit.alarm.state;
+	s->attrs.limit_condition = s->limit.alarm.kind;
 }
 
 static void keep_limit_value(struct signal *s)
 {
-	if (s->sample.count == s->limit_count)
+	if (s->sample.count == s->limit.count)
 		return;
-	s->limit_count = s->sample.count;
-	if (s->limit_values < 2)
-		s->limit_values++;
-	s->limit_value[0] = s->limit_value[1];
-	s->limit_value[1] = s->sample.value;
+	s->limit.count = s->sample.count;
+	if (s->limit.values < 2)
+		s->limit.values++;
+	s->limit.value[0] = s->limit.value[1];
+	s->limit.value[1] = s->sample.value;
 }
 
 void engine_limits(struct engine *e, struct signal *s)
@@ -84,14 +84,14 @@ void engine_limits(struct engine *e, struct signal *s)
 	keep_limit_value(s);
 	if (s->item->stale_after_ns)
 		stale_at = s->item->stale_after_ns + 1 +
-		           (s->sample.measured_ns ? s->sample.measured_ns : s->known_ns);
+		           (s->sample.measured_ns ? s->sample.measured_ns : s->read.known_ns);
 	reading = (struct limit_reading){
 		.value = value_number(s->item->type, s->sample.value),
 		.bad = (s->sample.quality & 0xc0) == 0 && s->sample.quality != OWS_Q_INITIAL,
 		.unknown = s->sample.quality == OWS_Q_INITIAL,
 	};
-	reading.stale = !reading.bad && e->now_ns >= stale_at;
-	next = limit_evaluate(&s->limit, limits, &reading, e->now_ns, &news);
+	reading.stale = !reading.bad && e->time.now_ns >= stale_at;
+	next = limit_evaluate(&s->limit.alarm, limits, &reading, e->time.now_ns, &news);
 	if (news.returned)
 		limit_returned(e, s, news.returned);
 	if (news.raised)
@@ -107,7 +107,7 @@ void engine_limits(struct engine *e, struct signal *s)
 
 void engine_limits_acknowledge(struct engine *e, struct signal *s)
 {
-	uint8_t kind = limit_acknowledge(&s->limit);
+	uint8_t kind = limit_acknowledge(&s->limit.alarm);
 
 	if (!kind)
 		return;

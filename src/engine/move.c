@@ -22,11 +22,11 @@
 /* Old values are the last usable ones at best; what was bad stays so until something is read. */
 static void degrade_signal(struct signal *s)
 {
-	if (s->held && !signal_reads(s)) {
-		s->sample.quality = s->held_quality;
-		s->sample.err = s->held_err;
+	if (s->read.held && !signal_reads(s)) {
+		s->sample.quality = s->read.held_quality;
+		s->sample.err = s->read.held_err;
 	}
-	s->held = false;
+	s->read.held = false;
 	if (s->sample.quality & 0xc0)
 		s->sample.quality = OWS_Q_LAST_USABLE;
 	else if (s->sample.quality != OWS_Q_INITIAL)
@@ -43,10 +43,10 @@ static void move_signal(struct engine *e, struct signal *s, struct lane *to)
 	from->counters.moves_out++;
 	due_wheel_cancel(&e->wheel, row * 2);
 	due_wheel_cancel(&e->wheel, row * 2 + 1);
-	retry_clear(&s->read_retry);
-	retry_clear(&s->write_retry);
-	s->write_err = 0;
-	s->confirmed = false;
+	retry_clear(&s->read.retry);
+	retry_clear(&s->command.retry);
+	s->command.err = 0;
+	s->command.confirmed = false;
 	s->attrs.flags &= ~(uint32_t)OWS_ATTR_ALARM_POLLED;
 	s->sample.target = (uint8_t)to->index;
 	degrade_signal(s);
@@ -58,7 +58,7 @@ static void move_signal(struct engine *e, struct signal *s, struct lane *to)
 static void signal_goes_on(struct engine *e, struct signal *s)
 {
 	if (s->doubts) {
-		s->write_err = -EINPROGRESS;
+		s->command.err = -EINPROGRESS;
 		log_warning(e->log, "%s (%s): a write is in doubt: not written until it has ended",
 		            s->item->name, s->item->path);
 	}
@@ -75,10 +75,10 @@ static void move_alarms(struct engine *e, struct lane *from, struct lane *to, ui
 
 		if (item->device != device)
 			continue;
-		if (alarm_drop_item(&from->alarm, item) && from->alarm_slot)
-			from->alarm_slot->moved = true;
+		if (alarm_drop_item(&from->alarm, item) && from->lent.alarm)
+			from->lent.alarm->moved = true;
 		alarm_take_item(&to->alarm, item, now_ns);
-		if (to->alarm.polls)
+		if (to->alarm.list.polls)
 			alarm_signal(e, item)->attrs.flags |= OWS_ATTR_ALARM_POLLED;
 	}
 }
@@ -137,7 +137,7 @@ void engine_move_lane(struct engine *e, struct lane *from, struct lane *to, cons
 			move_alarms(e, from, to, i, now_ns);
 		moved += d->count;
 	}
-	log_at(e->log, engine_group(e, to)->quiet ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,
+	log_at(e->log, engine_group(e, to)->state.quiet ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,
 	       "%u signal%s: from %s to %s: %s", moved, moved == 1 ? "" : "s", from->port->target,
 	       to->port->target, why);
 	engine_probes_forget(from);

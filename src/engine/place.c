@@ -44,7 +44,7 @@ static void know_presence(struct engine *e, uint32_t device, unsigned group,
 
 	if (place->presence == presence)
 		return;
-	*place = (struct route_place){presence, e->now_ns};
+	*place = (struct route_place){presence, e->time.now_ns};
 	due_set_add(&e->routes, device);
 }
 
@@ -59,7 +59,8 @@ static bool is_doubted(struct engine *e, uint32_t device, unsigned group)
 {
 	const struct route_place *place = engine_places(e, device) + group;
 
-	return place->presence == ROUTE_FAILING && e->now_ns < place->since_ns + ROUTE_DOUBT_NS;
+	return place->presence == ROUTE_FAILING &&
+	       e->time.now_ns < place->since_ns + ROUTE_DOUBT_NS;
 }
 
 void engine_place_claimed(struct engine *e, const struct lane *lane, uint32_t device)

@@ -19,15 +19,15 @@
 static void leave_way(struct engine *e, struct group *g, const struct route_step *step,
                       int64_t now_ns)
 {
-	struct lane *from = &e->lanes[g->first + g->bar.open];
+	struct lane *from = &e->lanes[g->first + g->state.bar.open];
 	struct lane *to = &e->lanes[g->first + step->way];
 
-	route_bar_took(&g->bar, g->ways, step, now_ns);
-	if (g->bar.failures <= g->bar.count)
-		g->quiet = false;
-	else if (g->bar.failures % g->bar.count == 1)
-		g->quiet = !log_rate(&g->rounds, now_ns);
-	from->open = from->up = from->was_up = false;
+	route_bar_took(&g->state.bar, g->ways, step, now_ns);
+	if (g->state.bar.failures <= g->state.bar.count)
+		g->state.quiet = false;
+	else if (g->state.bar.failures % g->state.bar.count == 1)
+		g->state.quiet = !log_rate(&g->state.rounds, now_ns);
+	from->state.open = from->state.up = from->state.was_up = false;
 	*engine_way(e, from) = (struct route_way){.released = false};
 	engine_move_lane(e, from, to, step->why, now_ns);
 	if (from->port->suspend)
@@ -38,7 +38,7 @@ static void leave_way(struct engine *e, struct group *g, const struct route_step
 static void open_way(struct engine *e, struct group *g, const struct route_step *step,
                      int64_t now_ns)
 {
-	struct lane *left = &e->lanes[g->first + g->bar.leaving];
+	struct lane *left = &e->lanes[g->first + g->state.bar.leaving];
 	struct lane *lane = &e->lanes[g->first + step->way];
 
 	if (!engine_way(e, left)->released) {
@@ -46,23 +46,24 @@ static void open_way(struct engine *e, struct group *g, const struct route_step 
 		log_warning(e->log, "%s: has not let go of its hardware: %s is opened all the same",
 		            left->port->target, lane->port->target);
 	}
-	route_bar_took(&g->bar, g->ways, step, now_ns);
-	*engine_way(e, lane) = (struct route_way){.failed = lane->stuck, .failed_ns = now_ns};
-	lane->open = true;
+	route_bar_took(&g->state.bar, g->ways, step, now_ns);
+	*engine_way(e, lane) = (struct route_way){.failed = lane->state.stuck, .failed_ns = now_ns};
+	lane->state.open = true;
 	engine_publish_target(e, lane);
 	if (lane->port->suspend)
 		lane->port->suspend(lane->port->ctx, false);
-	else if (lane->said_up)
+	else if (lane->state.said_up)
 		lane_up(lane, "", now_ns);
 }
 
 /* Nothing to let go of but what is lent. */
 static void release_idle(struct engine *e, struct group *g)
 {
-	for (unsigned w = 0; w < g->bar.count; w++) {
+	for (unsigned w = 0; w < g->state.bar.count; w++) {
 		struct lane *lane = &e->lanes[g->first + w];
 
-		if (lane->open || lane->port->suspend || lane->lent || g->ways[w].released)
+		if (lane->state.open || lane->port->suspend || lane->lent.count ||
+		    g->ways[w].released)
 			continue;
 		g->ways[w].released = true;
 		engine_publish_target(e, lane);
@@ -72,7 +73,7 @@ static void release_idle(struct engine *e, struct group *g)
 static void see_group_state(struct engine *e, unsigned group, int64_t now_ns)
 {
 	struct group *g = &e->groups[group];
-	enum route_state state = route_bar_state(&g->bar, g->ways, now_ns);
+	enum route_state state = route_bar_state(&g->state.bar, g->ways, now_ns);
 
 	if (state == e->states[group].state)
 		return;
@@ -83,11 +84,11 @@ static void see_group_state(struct engine *e, unsigned group, int64_t now_ns)
 /* What another way did not take over goes bad. */
 static void fail_signals(struct engine *e, const struct group *g)
 {
-	for (unsigned w = 0; w < g->bar.count; w++) {
+	for (unsigned w = 0; w < g->state.bar.count; w++) {
 		struct lane *lane = &e->lanes[g->first + w];
-		int err = lane->fell;
+		int err = lane->state.fell;
 
-		lane->fell = 0;
+		lane->state.fell = 0;
 		if (err)
 			lane_down(lane, err);
 	}
@@ -102,9 +103,9 @@ static int64_t group_turn(struct engine *e, unsigned group, int64_t now_ns)
 	g->asks = false;
 	/* a step leads to one more at most: to let go, to open */
 	for (;;) {
-		if (g->bar.count > 1)
+		if (g->state.bar.count > 1)
 			release_idle(e, g);
-		step = route_bar(&g->bar, g->ways, now_ns);
+		step = route_bar(&g->state.bar, g->ways, now_ns);
 		if (step.act == ROUTE_STAY)
 			break;
 		if (step.act == ROUTE_LEAVE)
@@ -211,7 +212,7 @@ static void route_devices(struct engine *e, int64_t now_ns)
 
 	if (!e->places)
 		return;
-	due_wheel_turn(&e->route_wheel, e->period, device_ready, e);
+	due_wheel_turn(&e->route_wheel, e->time.period, device_ready, e);
 	while ((device = due_set_next(&e->routes)) >= 0) {
 		due_set_take(&e->routes, (uint32_t)device);
 		route_one(e, (uint32_t)device, now_ns);

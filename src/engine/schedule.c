@@ -18,7 +18,7 @@ void engine_read_at(struct engine *e, struct signal *s, uint64_t period)
 {
 	if (!signal_reads(s))
 		return;
-	if (period <= e->period) {
+	if (period <= e->time.period) {
 		engine_read_now(e, s);
 		return;
 	}
@@ -46,7 +46,7 @@ void engine_write_check(struct engine *e, struct signal *s)
 	if (!signal_changed(s)) {
 		due_wheel_cancel(&e->wheel, row * 2 + 1);
 		due_set_remove(outputs, row);
-		retry_clear(&s->write_retry);
+		retry_clear(&s->command.retry);
 	} else if (s->doubts) {
 		due_set_remove(outputs, row);
 	} else if (!s->writing && !e->wheel.wait[row * 2 + 1].waits) {
@@ -74,14 +74,15 @@ static void limit_ready(void *ctx, uint32_t row)
 
 void engine_turn(struct engine *e, int64_t now_ns)
 {
-	uint64_t period = e->first + (uint64_t)((now_ns - e->start_ns) / e->config->period_ns);
+	uint64_t period = e->time.first +
+	                  (uint64_t)((now_ns - e->time.start_ns) / e->config->period_ns);
 
-	if (period <= e->period)
+	if (period <= e->time.period)
 		return;
-	if (period > e->period + 1)
-		e->counters.late_periods += period - e->period - 1;
-	e->counters.periods += period - e->period;
-	e->period = period;
+	if (period > e->time.period + 1)
+		e->counters.late_periods += period - e->time.period - 1;
+	e->counters.periods += period - e->time.period;
+	e->time.period = period;
 	due_wheel_turn(&e->wheel, period, row_ready, e);
 	due_wheel_turn(&e->limit_wheel, period, limit_ready, e);
 }

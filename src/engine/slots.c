@@ -14,29 +14,31 @@
 int slots_init(struct lane *lane)
 {
 	lane->depth = lane->port->depth;
-	lane->look_ns = INT64_MAX;
-	lane->slots = calloc(lane->depth, sizeof(*lane->slots));
-	lane->free = calloc(lane->depth, sizeof(*lane->free));
-	lane->list = calloc(1, ALARM_LIST);
-	if (!lane->slots || !lane->free || !lane->list)
+	lane->lent.look_ns = INT64_MAX;
+	lane->lent.slots = calloc(lane->depth, sizeof(*lane->lent.slots));
+	lane->lent.free = calloc(lane->depth, sizeof(*lane->lent.free));
+	lane->lent.list = calloc(1, ALARM_LIST);
+	if (!lane->lent.slots || !lane->lent.free || !lane->lent.list)
 		return -ENOMEM;
-	while (lane->free_count < lane->depth) {
-		lane->free[lane->free_count] = (uint16_t)(lane->depth - 1 - lane->free_count);
-		lane->free_count++;
+	while (lane->lent.free_count < lane->depth) {
+		lane->lent.free[lane->lent.free_count] = (uint16_t)(lane->depth - 1 -
+		                                                    lane->lent.free_count);
+		lane->lent.free_count++;
 	}
 	return 0;
 }
 
 void slots_free(struct lane *lane)
 {
-	free(lane->slots);
-	free(lane->free);
-	free(lane->list);
+	free(lane->lent.slots);
+	free(lane->lent.free);
+	free(lane->lent.list);
 }
 
 struct slot *slot_next(struct lane *lane)
 {
-	return lane->free_count ? &lane->slots[lane->free[lane->free_count - 1]] : NULL;
+	return lane->lent.free_count ? &lane->lent.slots[lane->lent.free[lane->lent.free_count - 1]]
+	                             : NULL;
 }
 
 /* What is lent stands for itself: the table may change meanwhile. */
@@ -56,7 +58,7 @@ static void slot_own_path(struct slot *slot)
 bool slot_lend(struct lane *lane, struct slot *slot, int64_t now_ns)
 {
 	slot->turn++;
-	slot->req.id = (uint32_t)(slot - lane->slots) | (uint32_t)slot->turn << 16;
+	slot->req.id = (uint32_t)(slot - lane->lent.slots) | (uint32_t)slot->turn << 16;
 	slot->req.deadline_ns = now_ns + lane->engine->config->timeout_ns;
 	if (slot->purpose != FOR_GUEST)
 		slot_own_path(slot);
@@ -65,19 +67,19 @@ bool slot_lend(struct lane *lane, struct slot *slot, int64_t now_ns)
 		slot->req.token_count = 1;
 	}
 	if (slot->req.op == BUS_DIR && slot->purpose == FOR_ALARM) {
-		slot->req.data = (uint8_t *)lane->list;
+		slot->req.data = (uint8_t *)lane->lent.list;
 		slot->req.len = ALARM_LIST;
 	}
 	slot->begun_ns = now_ns;
-	slot->begun = lane->engine->period;
+	slot->begun = lane->engine->time.period;
 	slot->given_up = slot->moved = slot->kept = false;
 	if (lane->port->submit(lane->port->ctx, &slot->req))
 		return false;
 	slot->lent = true;
-	lane->lent++;
-	lane->free_count--; /* it was the one on top */
-	if (slot->req.deadline_ns + LANE_GRACE_NS < lane->look_ns)
-		lane->look_ns = slot->req.deadline_ns + LANE_GRACE_NS;
+	lane->lent.count++;
+	lane->lent.free_count--; /* it was the one on top */
+	if (slot->req.deadline_ns + LANE_GRACE_NS < lane->lent.look_ns)
+		lane->lent.look_ns = slot->req.deadline_ns + LANE_GRACE_NS;
 	lane->counters.requests++;
 	return true;
 }
@@ -88,15 +90,15 @@ struct slot *slot_of_id(struct lane *lane, uint32_t id)
 
 	if ((id & 0xffff) >= lane->depth)
 		return NULL;
-	slot = &lane->slots[id & 0xffff];
+	slot = &lane->lent.slots[id & 0xffff];
 	return slot->lent && slot->req.id == id ? slot : NULL;
 }
 
 void slot_give_back(struct lane *lane, struct slot *slot)
 {
 	slot->lent = false;
-	lane->lent--;
-	lane->free[lane->free_count++] = (uint16_t)(slot - lane->slots);
-	if (lane->alarm_slot == slot)
-		lane->alarm_slot = NULL;
+	lane->lent.count--;
+	lane->lent.free[lane->lent.free_count++] = (uint16_t)(slot - lane->lent.slots);
+	if (lane->lent.alarm == slot)
+		lane->lent.alarm = NULL;
 }

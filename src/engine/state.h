@@ -84,26 +84,39 @@ struct slot {
 	X(guests)       /* requests of clients of the served protocol, given to the bus */ \
 	X(guest_errors)
 
+/* How the target is; a reload carries it over. */
+struct lane_state {
+	/* lane_state.c */
+	bool up, was_up, stuck;
+	int fell; /* the target failed with this: routing.c has to act on it */
+	/* routing.c */
+	bool open; /* the lane is the one way of its group that is open */
+	/* lane_event.c; heard_ns: lane_answer.c too */
+	bool said_up;     /* what the bus said last, asked or not */
+	int64_t heard_ns; /* last answer or event of the bus */
+};
+
+/* What the bus has, and room for it; a reload carries it over. */
+struct lane_lent {
+	/* slots.c */
+	struct slot *slots;
+	uint16_t *free; /* slots that are not lent */
+	unsigned free_count, count;
+	int64_t look_ns; /* no request's time is over before */
+	char *list;      /* ALARM_LIST bytes: lent with a request for the list of /alarm */
+	/* ask.c, lane_answer.c */
+	unsigned writes;
+	struct slot *alarm; /* the request of the alarm machine */
+};
+
 struct lane {
 	struct engine *engine;
 	const struct engine_port *port;
 	unsigned index;
 
-	/* lane_state.c; said_up: lane_event.c; heard_ns: both of them; open: routing.c */
-	bool up, was_up, stuck;
-	bool open;        /* it is the one way of its group that is open */
-	bool said_up;     /* what the bus said last, asked or not */
-	int64_t heard_ns; /* last answer or event of the bus */
-	int fell;         /* its target failed with this: routing.c has to act on it */
-
-	/* slots.c; writes_in_work: ask.c, lane_answer.c; alarm_slot: ask.c */
-	struct slot *slots;
-	uint16_t *free; /* slots that are not lent */
-	unsigned free_count;
-	int64_t look_ns; /* no request's time is over before */
-	unsigned depth, lent, writes_in_work;
-	struct slot *alarm_slot;
-	char *list; /* ALARM_LIST bytes: lent with a request for the list of /alarm */
+	unsigned depth; /* slots */
+	struct lane_state state;
+	struct lane_lent lent;
 
 	/* schedule.c, and ask.c takes out what it asks */
 	struct due_set inputs, outputs; /* rows to read, rows to write */
@@ -121,7 +134,7 @@ struct lane {
 
 	/* alarm.c and the files below it */
 	struct alarm_machine alarm;
-	struct alarm_request alarm_request; /* the next, or that of alarm_slot */
+	struct alarm_request alarm_request; /* the next, or that of lent.alarm */
 
 	/* guests.c */
 	struct {
@@ -160,14 +173,36 @@ struct client {
 	int64_t heard_ns;
 };
 
+/* Which way of a group is open; a reload carries it over. */
+struct group_state {
+	struct route_bar bar;
+	bool quiet; /* all ways have failed in turn, again: that is said now and then only */
+	struct log_rate rounds;
+};
+
 /* The ways to one wire; lanes[first ..] in the order in which they are written. */
 struct group {
 	unsigned first;
-	struct route_bar bar;
+	bool asks; /* a fact of its ways changed: routing.c has to act on it */
 	struct route_way *ways;
-	bool quiet; /* all ways have failed in turn, again: that is said now and then only */
-	bool asks;  /* a fact of its ways changed: routing.c has to act on it */
-	struct log_rate rounds;
+	struct group_state state;
+};
+
+/* Time as the engine counts it; a reload carries it over. */
+struct engine_time {
+	/* schedule.c, adopt.c */
+	int64_t start_ns;       /* of period first: since then all were of the same length */
+	uint64_t period, first; /* boundaries since owsd's start */
+	/* engine.c */
+	int64_t now_ns;  /* of the call in work */
+	int64_t next_ns; /* when engine_step() asked to be called again */
+	int64_t gap_ns;  /* end of the last time in which nobody ran; 0: none */
+};
+
+/* What record 0 shows; a reload carries it over. */
+struct engine_driver {
+	uint64_t transactions, reconnects;
+	uint32_t resets; /* last seen in the command segment */
 };
 
 /* The requests that the trace has shown in its present window. */
@@ -186,9 +221,7 @@ struct engine {
 	const struct engine_guests *guests; /* NULL: none */
 	struct lane *lanes;
 	unsigned lane_count;
-	int64_t now_ns;  /* of the call in work */
-	int64_t next_ns; /* when engine_step() asked to be called again */
-	int64_t gap_ns;  /* end of the last time in which nobody ran; 0: none */
+	struct engine_time time;
 
 	struct table table;
 	struct structure structure;
@@ -196,8 +229,6 @@ struct engine {
 	uint32_t alarm_count;
 
 	/* schedule.c */
-	int64_t start_ns;       /* of period first: since then all were of the same length */
-	uint64_t period, first; /* boundaries since owsd's start */
 	struct due_wheel wheel; /* row * 2: read, row * 2 + 1: write */
 	/* limits.c */
 	struct due_wheel limit_wheel; /* rows whose limit alarms change by time alone */
@@ -213,8 +244,8 @@ struct engine {
 	struct due_wheel
 		route_wheel; /* devices to be routed again, the one of no device behind them */
 
-	/* lane_answer.c, lane_state.c; intake.c resets them */
-	uint64_t transactions, reconnects;
+	/* lane_answer.c, lane_state.c; intake.c resets it */
+	struct engine_driver driver;
 	/* publish.c, and who puts something into the journal */
 	bool published;
 
@@ -225,7 +256,6 @@ struct engine {
 	/* Of the looks at marked slots: how many are left, since when, where the next begins, not sooner. */
 	uint32_t looks, look_from;
 	int64_t looks_ns, defer_ns;
-	uint32_t driver_resets;
 	struct log_rate refused;
 
 	/* clients.c */
@@ -259,7 +289,8 @@ static inline uint64_t engine_periods(const struct engine *e, int64_t ns)
 /* The first period that does not begin before that time, but for those before start_ns. */
 static inline uint64_t engine_period_at(const struct engine *e, int64_t ns)
 {
-	return e->first + (ns > e->start_ns ? engine_periods(e, ns - e->start_ns) : 0);
+	return e->time.first +
+	       (ns > e->time.start_ns ? engine_periods(e, ns - e->time.start_ns) : 0);
 }
 
 static inline struct group *engine_group(struct engine *e, const struct lane *lane)
@@ -275,7 +306,7 @@ static inline struct route_way *engine_way(struct engine *e, const struct lane *
 /* The lane that is open, or will be. */
 static inline struct lane *engine_open_lane(struct engine *e, unsigned group)
 {
-	return &e->lanes[e->groups[group].first + e->groups[group].bar.open];
+	return &e->lanes[e->groups[group].first + e->groups[group].state.bar.open];
 }
 
 /* All places of the device, one for each group. */

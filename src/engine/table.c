@@ -105,8 +105,8 @@ static void init_signal(struct signal *s, const struct config_item *item, uint32
 		return;
 	s->sample.value = item->init_value;
 	if (item->output) {
-		s->commanded = true;
-		s->command = item->init_value;
+		s->command.given = true;
+		s->command.value = item->init_value;
 	}
 	if (item->type == OWS_STRING) {
 		size_t len = strlen(item->init_text);
@@ -115,7 +115,7 @@ static void init_signal(struct signal *s, const struct config_item *item, uint32
 			len = TABLE_TEXT_CAP;
 		memcpy(s->text, item->init_text, len);
 		memcpy(s->command_text, item->init_text, len);
-		s->sample.len = s->command_len = (uint32_t)len;
+		s->sample.len = s->command.len = (uint32_t)len;
 	}
 }
 
@@ -186,23 +186,24 @@ void signal_table_image(const struct config_item *item, struct image_signal *sig
 
 static bool differs(const struct signal *s)
 {
-	if (!s->confirmed || s->forced)
+	if (!s->command.confirmed || s->command.forced)
 		return true;
 	if (signal_is_string(s))
-		return s->command_len != s->written_len ||
-		       memcmp(s->command_text, s->written_text, s->command_len) != 0;
-	return s->command != s->written;
+		return s->command.len != s->command.written_len ||
+		       memcmp(s->command_text, s->written_text, s->command.len) != 0;
+	return s->command.value != s->command.written;
 }
 
 bool signal_changed(const struct signal *s)
 {
-	return s->commanded && !s->awaited && (s->one_shot || (signal_writes(s) && differs(s)));
+	return s->command.given && !s->seen.awaited &&
+	       (s->command.one_shot || (signal_writes(s) && differs(s)));
 }
 
 void signal_settle(struct signal *s)
 {
-	if (s->commanded && signal_writes(s) && !s->writing && !signal_changed(s))
-		s->sample.applied = s->command_stamp;
+	if (s->command.given && signal_writes(s) && !s->writing && !signal_changed(s))
+		s->sample.applied = s->command.stamp;
 }
 
 void signal_begin(struct signal *s, uint64_t period)
@@ -225,15 +226,15 @@ void signal_end(struct signal *s, uint64_t period, uint64_t begun)
 void signal_update(struct signal *s, uint64_t period, int64_t measured_ns, int64_t now_ns)
 {
 	uint32_t waited = (uint32_t)period - s->attrs.per_base;
-	int64_t age = now_ns - (s->sample.count ? s->sample.measured_ns : s->known_ns);
+	int64_t age = now_ns - (s->sample.count ? s->sample.measured_ns : s->read.known_ns);
 
 	if (waited > s->attrs.per_max)
 		s->attrs.per_max = waited;
 	if (age > s->attrs.age_max_ns)
 		s->attrs.age_max_ns = age;
 	if (s->sample.count)
-		s->attrs.update_ns = now_ns - s->updated_ns;
-	s->updated_ns = now_ns;
+		s->attrs.update_ns = now_ns - s->read.updated_ns;
+	s->read.updated_ns = now_ns;
 	s->attrs.per_base = (uint32_t)period;
 	s->sample.measured_ns = measured_ns;
 	s->sample.count++;
@@ -247,7 +248,7 @@ void signal_reset_diagnostics(struct signal *s, uint64_t period, int64_t now_ns)
 	s->attrs.pend_max = s->attrs.flags & OWS_ATTR_IN_WORK
 	                            ? (uint32_t)period - s->attrs.pend_base
 	                            : 0;
-	s->attrs.age_max_ns = now_ns - (s->sample.count ? s->sample.measured_ns : s->known_ns);
+	s->attrs.age_max_ns = now_ns - (s->sample.count ? s->sample.measured_ns : s->read.known_ns);
 }
 
 static int compare_rom(const void *rom, const void *device)

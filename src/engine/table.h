@@ -20,61 +20,77 @@
 
 #define TABLE_NO_DEVICE UINT32_MAX
 
+/*
+ * A reload carries over what stands in sample, attrs and in the structures of a signal that have a
+ * name, each of them whole (adopt_signal.c). What stands beside them is of one engine: the place in
+ * its table, and what its buses have.
+ */
+
+/* How reading goes. */
+struct signal_reading {
+	int64_t known_ns; /* since when the signal is in the table */
+	int64_t updated_ns;
+	struct retry retry;
+	struct guard guard;
+	/* quality and error as they stood when the target was lost, if held */
+	bool held;
+	uint8_t held_quality;
+	int32_t held_err;
+};
+
+/* What was last seen in the command segment. */
+struct signal_seen {
+	uint32_t stamp, one_shots, dgn_resets, acknowledged;
+	uint32_t client; /* 0: nobody who beats; else index + 1 */
+	bool awaited; /* the command is of before the start: nothing is written until client beats */
+};
+
+/* What is to be written, what was written, and how writing goes. */
+struct signal_command {
+	bool given;     /* there is something to write: by a program, or InitValue */
+	bool confirmed; /* written is what the bus has */
+	bool agrees;    /* it was read back as it was written */
+	bool one_shot;  /* write once more, changed or not */
+	bool forced;    /* a write in doubt ended late: the present value goes out again */
+	bool safe;      /* put to SafeValue, its client stopped beating */
+	int err;        /* of the last write, until one succeeds or writing is disabled */
+	int64_t value, written;
+	uint32_t stamp;            /* of value; seen.stamp may be that of a refused one */
+	uint32_t len, written_len; /* strings: of command_text, written_text */
+	struct retry retry;
+};
+
+/* The limit alarms, and what the journal and the log have of them. */
+struct signal_limit {
+	struct limit alarm;
+	struct log_rate log;
+	bool said;        /* the log has what was raised: it gets the return too */
+	int64_t value[2]; /* of the update before the last, of the last */
+	uint32_t count;   /* sample.count of the last */
+	uint8_t values;   /* how many of the two are known */
+};
+
 struct signal {
 	const struct config_item *item;
 	uint32_t record;
 	uint32_t device; /* row of table.devices, or TABLE_NO_DEVICE */
 	unsigned lane;   /* which serves it */
+	bool measured;   /* quantity says what it can be */
+	struct quantity quantity;
+
+	bool reading, writing; /* a request of the lane is with the bus */
+	bool alarming;         /* a request of the alarm machine counts for it */
+	uint16_t doubts; /* writes that may still reach it over other targets: it is not written */
+	int alarm_err;   /* why its alarm cannot be armed, if OWS_ATTR_ALARM_UNARMED */
 
 	struct ows_sample sample; /* as published */
 	struct ows_attrs attrs;
-	char *text;       /* strings: published text, TABLE_TEXT_CAP bytes */
-	int64_t known_ns; /* since when it is in the table */
-	int64_t updated_ns;
-
-	/* reading */
-	bool reading;
-	struct retry read_retry;
-	bool measured; /* quantity says what it can be */
-	struct quantity quantity;
-	struct guard guard;
-
-	bool alarming; /* a request of the alarm machine counts for it */
-	int alarm_err; /* why its alarm cannot be armed, if OWS_ATTR_ALARM_UNARMED */
-
-	/* writing */
-	bool writing;
-	struct retry write_retry;
-	bool commanded; /* there is something to write: by a program, or InitValue */
-	bool confirmed; /* written holds what the bus has */
-	bool agrees;    /* it was read back as it was written */
-	bool one_shot;  /* write once more, changed or not */
-	bool forced;    /* a write in doubt ended late: the present value goes out again */
-	bool safe;      /* put to SafeValue, its client stopped beating */
-	int write_err;  /* of the last write, until one succeeds or writing is disabled */
-	int64_t command, written;
-	uint32_t command_stamp;            /* of command; stamp may be that of a refused one */
-	char *command_text, *written_text; /* strings */
-	uint32_t command_len, written_len;
-	uint32_t client; /* 0: nobody who beats; else index + 1 */
-	bool awaited; /* its command is of before the start: nothing is written until client beats */
-	uint16_t doubts; /* writes that may still reach it over other targets: it is not written */
-
-	/* what was last seen in the command segment */
-	uint32_t stamp, one_shots, dgn_resets, acknowledged;
-
-	/* as it stood when its target was lost */
-	bool held;
-	uint8_t held_quality;
-	int32_t held_err;
-
-	/* limit alarms */
-	struct limit limit;
-	struct log_rate limit_log;
-	bool limit_said;        /* the log has what was raised: it gets the return too */
-	int64_t limit_value[2]; /* of the update before the last, of the last */
-	uint32_t limit_count;   /* sample.count of the last */
-	uint8_t limit_values;   /* how many of the two are known */
+	struct signal_reading read;
+	struct signal_seen seen;
+	struct signal_command command;
+	struct signal_limit limit;
+	/* strings, TABLE_TEXT_CAP bytes each: published, to be written, written */
+	char *text, *command_text, *written_text;
 };
 
 struct device {

@@ -56,10 +56,10 @@ static bool may_show(struct engine *e, bool failed)
 {
 	struct trace *trace = &e->trace;
 
-	if (e->now_ns - trace->since_ns >= TRACE_WINDOW_NS) {
+	if (e->time.now_ns - trace->since_ns >= TRACE_WINDOW_NS) {
 		if (trace->hidden)
 			log_trace(e->log, "trace: %u more requests in a second", trace->hidden);
-		*trace = (struct trace){.since_ns = e->now_ns};
+		*trace = (struct trace){.since_ns = e->time.now_ns};
 	}
 	if (trace->shown[failed] >= TRACE_PER_WINDOW) {
 		trace->hidden++;

@@ -29,7 +29,7 @@ bool lane_works(uint32_t record)
 {
 	const struct lane *lane = engine_lane(engine(), &engine()->table.signals[record - 1]);
 
-	return lane->open && lane->up && !lane->stuck;
+	return lane->state.open && lane->state.up && !lane->state.stuck;
 }
 
 bool record_reads(uint32_t record)
@@ -45,9 +45,9 @@ static void requests_add_up(const struct lane *lane, const struct station_bus *b
 
 	if (lane->counters.requests != b->submitted)
 		world_fails("requests are not what was lent", lane->port->target);
-	if (lane->counters.requests != accepted + lane->lent)
+	if (lane->counters.requests != accepted + lane->lent.count)
 		world_fails("requests are not answers and what is lent", lane->port->target);
-	if (lane->lent != b->lent_count)
+	if (lane->lent.count != b->lent_count)
 		world_fails("more is lent than the bus has", lane->port->target);
 }
 
@@ -56,7 +56,7 @@ static void given_up_adds_up(const struct lane *lane)
 	uint64_t waiting = 0;
 
 	for (unsigned i = 0; i < lane->depth; i++)
-		waiting += lane->slots[i].lent && lane->slots[i].given_up;
+		waiting += lane->lent.slots[i].lent && lane->lent.slots[i].given_up;
 	if (lane->counters.given_up != lane->counters.late_answers + waiting)
 		world_fails("given up is not late answers and what is still lent",
 		            lane->port->target);
@@ -67,14 +67,14 @@ static void slots_add_up(const struct lane *lane)
 	unsigned lent = 0, writes = 0;
 
 	for (unsigned i = 0; i < lane->depth; i++) {
-		const struct slot *slot = &lane->slots[i];
+		const struct slot *slot = &lane->lent.slots[i];
 
 		lent += slot->lent;
 		writes += slot->lent && !slot->given_up && slot->purpose == FOR_WRITE;
 	}
-	if (lent != lane->lent || lane->free_count + lane->lent != lane->depth)
+	if (lent != lane->lent.count || lane->lent.free_count + lane->lent.count != lane->depth)
 		world_fails("a slot is lost", lane->port->target);
-	if (writes != lane->writes_in_work)
+	if (writes != lane->lent.writes)
 		world_fails("writes in work are not those that are lent", lane->port->target);
 }
 
@@ -89,7 +89,7 @@ static void kinds_add_up(const struct lane *lane)
 static void waits_are_bounded(const struct lane *lane)
 {
 	for (unsigned i = 0; i < lane->depth; i++) {
-		const struct slot *slot = &lane->slots[i];
+		const struct slot *slot = &lane->lent.slots[i];
 
 		if (slot->lent && !slot->given_up && lane->port &&
 		    slot->begun_ns + LENT_NS < station.now &&
@@ -101,8 +101,9 @@ static void waits_are_bounded(const struct lane *lane)
 static void nothing_is_lent_for_long(const struct lane *lane)
 {
 	for (unsigned i = 0; i < lane->depth; i++)
-		if (lane->slots[i].lent && lane->slots[i].begun_ns + LENT_NS < station.now)
-			world_fails("a slot has not come back", lane->slots[i].path);
+		if (lane->lent.slots[i].lent &&
+		    lane->lent.slots[i].begun_ns + LENT_NS < station.now)
+			world_fails("a slot has not come back", lane->lent.slots[i].path);
 }
 
 /* --- All lanes ------------------------------------------------------------------------------- */
@@ -130,7 +131,7 @@ static void totals_add_up(const struct engine *e)
 {
 	if (moves_of(e) + moves_gone != 0)
 		world_fails("signals moved in are not those moved out", "");
-	if (reconnects_of(e) + reconnects_gone != e->reconnects)
+	if (reconnects_of(e) + reconnects_gone != e->driver.reconnects)
 		world_fails("reconnects are not those of the targets", "");
 }
 
@@ -197,7 +198,7 @@ void accounts_reloaded(void)
 	const struct engine *e = engine();
 
 	moves_gone = -moves_of(e);
-	reconnects_gone = e->reconnects - reconnects_of(e);
+	reconnects_gone = e->driver.reconnects - reconnects_of(e);
 }
 
 /* --- All is well ----------------------------------------------------------------------------- */
