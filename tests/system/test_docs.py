@@ -376,6 +376,16 @@ def test_lines_end_at_100_columns(_scene):
     assert not faults, faults
 
 
+def test_contributing_names_every_helper_of_the_tests(_scene):
+    text = (SOURCE / "CONTRIBUTING.md").read_text()
+    helpers = [h for h in (SOURCE / "tests/unit/aid").glob("*.h") if "_private" not in h.name]
+    tests = (SOURCE / "tests/system").glob("[!t]*.py")
+    missing = [f.name for f in [*helpers, *tests] if f"| `{f.name}` |" not in text]
+    gone = [n for n in re.findall(r"^\| `(\w+\.(?:h|py))` \|", text, re.M)
+            if not list(SOURCE.glob(f"tests/*/{n}")) + list(SOURCE.glob(f"tests/unit/aid/{n}"))]
+    assert len(helpers) > 20 and not missing and not gone, (missing, gone)
+
+
 def test_manual_pages_are_well_formed(_scene):
     if not shutil.which("mandoc"):
         owsdtest.skip("mandoc is not installed")
