@@ -15,7 +15,7 @@
 
 enum { OPT_CHECK = 256, OPT_BOARD, OPT_ROOT, OPT_RT };
 
-/* ':' has a missing argument told from an unknown option */
+/* the leading ':' makes getopt distinguish a missing argument from an unknown option */
 static const char letters[] = ":c:n:t:l:vVh";
 static const struct option words[] = {
 	{"config", required_argument, NULL, 'c'},
@@ -89,7 +89,7 @@ static void version(void)
 		printf("without libgpiod: no target gpio, no GPIO lines\n");
 }
 
-/* getopt would say it with what stands there, which may steer the terminal. */
+/* getopt would print the argument as it stands, and that may steer the terminal. */
 static int refuse(int option, char *const *argv)
 {
 	char why[1024];
@@ -138,7 +138,7 @@ static int take_priority(struct arguments *a)
 	return -1;
 }
 
-static int take(struct arguments *a, int option, char *const *argv)
+static int take_option(struct arguments *a, int option, char *const *argv)
 {
 	switch (option) {
 	case 'c':
@@ -178,8 +178,8 @@ static int take(struct arguments *a, int option, char *const *argv)
 	}
 }
 
-/* What only all of them together can say. */
-static int check(struct arguments *a)
+/* Checks that need all options. */
+static int check_together(struct arguments *a)
 {
 	if (a->root && !a->board) {
 		complain("--root goes with --board");
@@ -206,7 +206,7 @@ int arguments_parse(int argc, char **argv, struct arguments *a)
 	*a = (struct arguments){.instance = "OWS", .level = LOG_LEVEL_NOTICE};
 	opterr = 0;
 	while ((option = getopt_long(argc, argv, letters, words, NULL)) != -1) {
-		int status = take(a, option, argv);
+		int status = take_option(a, option, argv);
 
 		if (status >= 0)
 			return status;
@@ -215,5 +215,5 @@ int arguments_parse(int argc, char **argv, struct arguments *a)
 		complain("unexpected argument '%s' (a file is given with -c)", argv[optind]);
 		return EXIT_USAGE;
 	}
-	return check(a);
+	return check_together(a);
 }

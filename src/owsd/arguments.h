@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* owsd's command line, and what the one who typed it is told. */
+/* owsd's command line, and the messages to the user who typed it. */
 #ifndef OWSD_ARGUMENTS_H
 #define OWSD_ARGUMENTS_H
 
@@ -27,11 +27,14 @@ struct arguments {
 	const char *board_id, *root;
 };
 
-/* -1: go on; else the exit status, and all is said. What *a points to is argv's. */
+/*
+ * Returns -1: go on; else the exit status, after printing the reason. The strings in *a are those
+ * of argv.
+ */
 int arguments_parse(int argc, char **argv, struct arguments *a);
-/* A line on stderr. Names come from outside: nothing in them may steer a terminal. */
+/* Print a line on stderr, made printable: names come from outside and must not steer a terminal. */
 void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
-/* The exit status of what only prints. */
+/* Close stdout; returns the exit status of an option that only prints. */
 int finish_output(void);
 
 #endif

@@ -12,7 +12,10 @@
 
 #define LOOK_NS 1000000000
 
-/* The lock is the last: as long as it is there, no other owsd makes what is being removed. */
+/*
+ * The lock is the last: as long as it exists, no other owsd creates the files that are being
+ * removed.
+ */
 static const char *const kinds[] = {"image", "command", "lock"};
 #define KINDS (sizeof(kinds) / sizeof(kinds[0]))
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The instance as this process holds it: its lock, taken at the start and looked after. */
+/*
+ * The instance as this process holds it: its lock is taken at the start and checked every second.
+ */
 #ifndef OWSD_INSTANCE_H
 #define OWSD_INSTANCE_H
 
@@ -17,16 +19,17 @@ struct instance {
 	struct log_rate rate;
 };
 
-/* 0 or a negative errno, the reason then stands in why. Does not wait. */
+/* Returns 0, or a negative errno with the reason in why. Does not wait. */
 int instance_take(struct instance *instance, const char *name, struct log *log, char *why,
                   size_t why_size);
 /*
- * Look, once a second, whether the lock's file is still there, and take the lock again where it was
- * removed. False, and said: another owsd was first; this one has to end. Two system calls.
+ * Check, once a second, that the lock's file still exists, and take the lock again if the file was
+ * removed. Returns false, after logging why, when another owsd was first: then this owsd has to
+ * end. Two system calls.
  */
 bool instance_keep(struct instance *instance, struct log *log);
 void instance_leave(struct instance *instance);
-/* After a start that failed: take away the files that were not there before it, and leave. */
+/* After a start that failed: remove the files that did not exist before the start, and leave. */
 void instance_abandon(struct instance *instance);
 
 #endif

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The notification protocol of sd_notify(3): state, status and watchdog for the service manager. */
 #include <errno.h>
 #include <inttypes.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Telling the service manager how we are: the notification protocol of sd_notify(3), a datagram to
- * the socket named in NOTIFY_SOCKET. Without that variable all functions do nothing.
+ * Reports owsd's state to the service manager by the notification protocol of sd_notify(3):
+ * datagrams to the socket named in NOTIFY_SOCKET. Without that variable all functions do nothing.
  */
 #ifndef OWSD_NOTIFY_H
 #define OWSD_NOTIFY_H
@@ -11,10 +11,10 @@
 #include <sys/un.h>
 
 struct notify {
-	int fd; /* -1: nobody to tell */
+	int fd; /* -1: there is no service manager */
 	socklen_t len;
 	struct sockaddr_un address;
-	int64_t watchdog_ns; /* say NOTIFY_WATCHDOG at least twice in this time; 0: not asked for */
+	int64_t watchdog_ns; /* send NOTIFY_WATCHDOG at least twice in this time; 0: not wanted */
 };
 
 enum notify_news {
@@ -25,13 +25,14 @@ enum notify_news {
 };
 
 /*
- * Read NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID. Returns 0, also when there is nobody to tell;
- * -EINVAL NOTIFY_SOCKET is no path and no abstract name or too long; other errno of socket().
+ * Read NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID. Returns 0, also when there is no service
+ * manager; -EINVAL when NOTIFY_SOCKET is neither a path nor an abstract name, or is too long; or
+ * another negative errno of socket().
  */
 int notify_open(struct notify *notify);
 void notify_close(struct notify *notify);
 
-/* Never blocks. 0, or the negative errno of sending, which the caller may ignore. */
+/* Never blocks. Returns 0, or the negative errno of sending, which the caller may ignore. */
 int notify_send(const struct notify *notify, enum notify_news news);
 /* What `systemctl status` shows; cut at 255 bytes, control characters become '?'. */
 int notify_status(const struct notify *notify, const char *format, ...)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* owsd: start-up, supervision and end. */
+/* owsd's main program: start-up, supervision, reload and end. */
 #include <errno.h>
 
 #include "src/board/board.h"
@@ -26,7 +26,7 @@
 #define STOP_NS 2000000000LL
 #define SUPERVISE_NS 500000000LL
 #define AGAIN_NS 20000000LL /* a reload that has to wait */
-/* From the end of a reload to the next: it takes at most a tenth of the time, and leaves room to follow */
+/* From the end of a reload to the next: reloads take at most a tenth of the time */
 #define APART_LEAST_NS 200000000LL
 #define APART_MOST_NS 10000000000LL
 
@@ -39,12 +39,12 @@ static void on_signal(int number)
 		hangup = 1;
 	else
 		stop_signal = number;
-	/* so that a wait that is just beginning returns at once */
+	/* makes a wait that is just beginning return at once */
 	if (supervisor_word)
 		__atomic_fetch_add(supervisor_word, 1, __ATOMIC_SEQ_CST);
 }
 
-static int tell_board(const struct arguments *a)
+static int print_board(const struct arguments *a)
 {
 	struct board_report report;
 	char folder[400], why[800];
@@ -60,8 +60,8 @@ static int tell_board(const struct arguments *a)
 	return report.missing ? EXIT_RUN : status;
 }
 
-/* ctx: a log; NULL: stderr */
-static void say(void *ctx, bool is_error, const char *message)
+/* Print a message about the configuration. ctx: a log; NULL: stderr */
+static void report_line(void *ctx, bool is_error, const char *message)
 {
 	if (!ctx)
 		fprintf(stderr, "%s\n", message);
@@ -100,7 +100,7 @@ static int read_file(const struct arguments *a, struct config_report *report,
 
 static int load(const struct arguments *a, struct log *log, struct config **config)
 {
-	struct config_report report = {.line = say, .ctx = log};
+	struct config_report report = {.line = report_line, .ctx = log};
 	int err = read_file(a, &report, config);
 
 	if (err)
@@ -147,7 +147,7 @@ static void catch_signals(void)
 	sigaction(SIGPIPE, &action, NULL);
 }
 
-/* As in the file; what does not fit is counted. */
+/* The targets as in the file; text ends with the number of those that do not fit. */
 static void name_targets(const struct config *config, char *text, size_t size)
 {
 	size_t used = 0;
@@ -168,9 +168,9 @@ static void name_targets(const struct config *config, char *text, size_t size)
 	}
 }
 
-/* What the service manager and the log are told of what is served. */
-static void tell(const struct host *host, const struct arguments *a, struct log *log,
-                 const struct notify *notify)
+/* Report to the log and to the service manager what owsd serves. */
+static void report_served(const struct host *host, const struct arguments *a, struct log *log,
+                          const struct notify *notify)
 {
 	const struct config *config = host_config(host);
 	char targets[160];
@@ -183,7 +183,7 @@ static void tell(const struct host *host, const struct arguments *a, struct log 
 	              config->item_count == 1 ? "" : "s", targets);
 }
 
-/* A file that is refused changes nothing. */
+/* Load the file again and serve it; a file that is refused changes nothing. */
 static void reload(struct host *host, const struct arguments *a, struct log *log,
                    const struct notify *notify)
 {
@@ -199,7 +199,7 @@ static void reload(struct host *host, const struct arguments *a, struct log *log
 		log_err(log, "reload: %s: all goes on as before", why);
 		return;
 	}
-	tell(host, a, log, notify);
+	report_served(host, a, log, notify);
 }
 
 /* When the next reload may begin. */
@@ -213,8 +213,8 @@ static int64_t reload_after(int64_t begun_ns)
 }
 
 /*
- * Write the log, feed the watchdog while the engine's heart beats, until a signal ends it; or, and
- * that is false, another owsd that has the instance.
+ * Write the log and feed the watchdog while the engine's heart beats. Returns true when a signal
+ * ends owsd, false when another owsd has the instance.
  */
 static bool supervise(struct host *host, const struct arguments *a, struct instance *instance,
                       struct log *log, const struct notify *notify, int prefix)
@@ -228,7 +228,7 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
 		int64_t now_ns = ows_now(), period_ns;
 
 		if (hangup && now_ns >= reload_ns && host_may_reload(host)) {
-			hangup = 0; /* one that comes from here on means a newer file */
+			hangup = 0; /* a SIGHUP that comes from here on means a newer file */
 			notify_send(notify, NOTIFY_RELOADING);
 			reload(host, a, log, notify);
 			notify_send(notify, NOTIFY_READY);
@@ -236,7 +236,10 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
 		}
 		now_ns = ows_now();
 		period_ns = host_config(host)->period_ns;
-		/* the heart beats once a period, which may be longer than the watchdog's time */
+		/*
+		 * the engine's heart beats once a period, which may be longer than the watchdog's
+		 * time
+		 */
 		if (notify->watchdog_ns && now_ns - fed_ns >= notify->watchdog_ns / 4 &&
 		    now_ns - host_beat(host) <= 2 * period_ns + notify->watchdog_ns / 4) {
 			fed_ns = now_ns;
@@ -275,7 +278,7 @@ static int run(const struct arguments *a, struct config *config, struct instance
 		complain("%s", why);
 		return EXIT_RUN;
 	}
-	tell(host, a, log, &notify);
+	report_served(host, a, log, &notify);
 	notify_send(&notify, NOTIFY_READY);
 	ours = supervise(host, a, instance, log, &notify, prefix);
 	log_notice(log, "owsd ends: %s",
@@ -293,7 +296,7 @@ static int run(const struct arguments *a, struct config *config, struct instance
 	return ours ? EXIT_SUCCESS : EXIT_RUN;
 }
 
-static void say_no_file(const struct arguments *a)
+static void explain_no_file(const struct arguments *a)
 {
 	complain("-c FILE names another; owsctl -t %s scan --rio makes one",
 	         a->target_count ? a->targets[0] : "auto");
@@ -313,7 +316,10 @@ int main(int argc, char **argv)
 	int status;
 
 #ifdef __GLIBC__
-	/* What is used little of a large block stays zero pages. Else the limit rises by itself */
+	/*
+	 * mapped blocks keep their unused pages out of memory; unset, malloc raises this limit by
+	 * itself
+	 */
 	mallopt(M_MMAP_THRESHOLD, 64 * 1024);
 #endif
 	status = standard_open();
@@ -321,19 +327,19 @@ int main(int argc, char **argv)
 		complain("/dev/null: %s", strerror(-status));
 		return EXIT_RUN;
 	}
-	/* a file that may not grow is an error of the write like another */
+	/* a write beyond the file size limit then fails with an error instead of ending owsd */
 	signal(SIGXFSZ, SIG_IGN);
 	status = arguments_parse(argc, argv, &a);
 	if (status >= 0)
 		return status;
 	if (a.board)
-		return tell_board(&a);
-	/* decided once: a file that goes later is missing at a reload */
+		return print_board(&a);
+	/* decided once: when the file is removed later, a reload reports it as missing */
 	a.needs_no_file = a.file == a.default_file && a.target_count && a.listen_count &&
 	                  !has_file(&a);
 	if (load(&a, NULL, &config)) {
 		if (a.file == a.default_file && !has_file(&a))
-			say_no_file(&a);
+			explain_no_file(&a);
 		return EXIT_USAGE;
 	}
 	if (a.check) {

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Opens the standard streams that the caller has closed. */
 #include <errno.h>
 #include <fcntl.h>
 #include <unistd.h>
@@ -9,7 +10,7 @@ int standard_open(void)
 {
 	int fd;
 
-	/* open() gives the lowest that is free */
+	/* open() returns the lowest number that is free */
 	do
 		fd = open("/dev/null", O_RDONLY);
 	while ((fd >= 0 && fd <= STDERR_FILENO) || (fd < 0 && errno == EINTR));

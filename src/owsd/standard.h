@@ -3,9 +3,9 @@
 #define OWSD_STANDARD_H
 
 /*
- * Standard input, output and error that the caller has closed are taken, so that no file opened
- * later gets their number and with it what is meant for people. Writes there fail as they did.
- * First in main(); 0 or a negative errno.
+ * Open /dev/null on each of standard input, output and error that the caller has closed, so that no
+ * file opened later gets its number and with it the messages meant for the user. Writes there still
+ * fail. Called first in main(). Returns 0 or a negative errno.
  */
 int standard_open(void);
 

@@ -48,7 +48,7 @@ static bool ends_with(const char *name, size_t len, const char *suffix, size_t *
 	return true;
 }
 
-/* The longest signal name followed by an attribute; its record, or -1. */
+/* The record of the longest signal name that is followed by an attribute in name, or -1. */
 static int split_lookup(const char *name, attribute_find *find, void *ctx,
                         enum attribute *attribute)
 {
@@ -78,7 +78,7 @@ int attribute_lookup(const char *prefix, const char *name, attribute_find *find,
                      enum attribute *attribute)
 {
 	size_t skip = prefix ? strlen(prefix) : 0;
-	const char *forms[2] = {name, NULL}; /* as it is, and without PREFIX__ */
+	const char *forms[2] = {name, NULL}; /* the name as it is, and without PREFIX__ */
 	int record;
 
 	if (skip && !strncmp(name, prefix, skip) && name[skip] == '_' && name[skip + 1] == '_')
@@ -121,7 +121,7 @@ const char *signal_name_fault(const char *name)
 		return "is empty";
 	if (left > SIGNAL_NAME_MAX)
 		return "is longer than 63 bytes";
-	/* served as /signals/NAME, and a file where owfs mounts that */
+	/* a name is served as /signals/NAME, and is a file where owfs mounts /signals */
 	if (!strcmp(name, ".") || !strcmp(name, ".."))
 		return "cannot stand in a path";
 	for (const char *p = name; left > 0;) {

@@ -53,7 +53,10 @@ typedef int attribute_find(void *ctx, const char *name, size_t len);
 int attribute_lookup(const char *prefix, const char *name, attribute_find *find, void *ctx,
                      enum attribute *attribute);
 
-/* Signal names: 1 to 63 bytes, printable UTF-8, no blank, none of / " # { }. NULL or the reason. */
+/*
+ * What is wrong with the name of a signal, NULL if nothing: a name is 1 to 63 bytes of printable
+ * UTF-8 with no blank and none of / " # { }.
+ */
 #define SIGNAL_NAME_MAX 63
 const char *signal_name_fault(const char *name);
 

@@ -3,8 +3,8 @@
 #define SIGNAL_ERROR_H
 
 /*
- * The words for a negative errno of the bus contract (hal/bus/bus.h) or of libows, and what the user can
- * do about it. Neither is NULL; the remedy is "" where there is nothing to do.
+ * The words for a negative errno of the bus contract (hal/bus/bus.h) or of libows, and what the
+ * user can do about the error. Neither is NULL; the remedy is "" where the user can do nothing.
  */
 const char *error_text(int err);
 const char *error_remedy(int err);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What properties of the chip families can be: one table, by data sheet. */
+/* The table of the ranges that properties of the chip families can have, by data sheet. */
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -11,15 +11,17 @@
 #define THERMOMETERS "\x10\x22\x28\x3b\x42"
 
 /*
- * The range that the data sheet says is measured, and beyond it the error that the data sheet
- * allows at its ends: a chip at 125 degrees may rightly say 127. Where results are computed from
- * a register, what the register holds.
+ * The range that the chip measures by its data sheet, widened by the error that the data sheet
+ * allows at its ends: a chip at 125 degrees may rightly report 127. Where a result is computed from
+ * a register, the range that the register holds.
  */
 static const struct {
 	const char *families, *property;
 	struct quantity is;
 } table[] = {
-	/* -55 to +125, at the ends within 2 degrees, a DS1822 within 3; 9 to 12 bits, 0.5 to 0.0625 */
+	/*
+	 * -55 to +125, at the ends within 2 degrees, a DS1822 within 3; 9 to 12 bits, 0.5 to 0.0625
+	 */
 	{THERMOMETERS, "temperature", {-58, 128, 4, true}},
 	{THERMOMETERS, "temperature9", {-58, 128, 1, true}},
 	{THERMOMETERS, "temperature10", {-58, 128, 2, true}},
@@ -66,7 +68,7 @@ static const struct {
 };
 #define ROWS (sizeof(table) / sizeof(table[0]))
 
-/* "volt.A" is one of "volt". */
+/* Is this property the name, or an element of it, as "volt.A" is of "volt"? */
 static bool is_named(const struct path_slice *property, const char *name)
 {
 	const char *dot = memchr(property->text, '.', property->len);

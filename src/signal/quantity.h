@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a measured property of a chip family can be: the range that the chip can measure, the
- * decimals that it gives, and whether a power fault looks like a value. By data sheet; degrees
- * Celsius, volts, percent, millibars.
+ * The values that a measured property of a chip family can have, by data sheet: the range that the
+ * chip can measure, the decimals of its results, and whether a power fault looks like a value.
+ * Units are degrees Celsius, volts, percent, millibars.
  */
 #ifndef SIGNAL_QUANTITY_H
 #define SIGNAL_QUANTITY_H
@@ -10,14 +10,14 @@
 #include <stdbool.h>
 
 struct quantity {
-	double least, most; /* nothing outside is ever true */
+	double least, most; /* a number outside is never a true measurement */
 	int decimals;       /* of its resolution */
-	bool starves;       /* a thermometer that says 85 or 127.94 when it lacks power */
+	bool starves;       /* a thermometer that reports 85 or 127.94 when it lacks power */
 };
 
 /*
- * What the property at path can be; false: nothing is known of it. An alias may be any chip: then
- * the property's name decides, and only what no chip can measure is out of range.
+ * The quantity of the property at path; false: nothing is known of that property. An alias may name
+ * any chip: then the property's name decides, and only what no chip can measure is out of range.
  */
 bool quantity_of(const char *path, struct quantity *quantity);
 

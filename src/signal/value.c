@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Values of signals: their types, and what texts and numbers make of them and back. */
+/* Values of signals: their types, and how texts and numbers become values and values texts. */
 #include <errno.h>
 #include <float.h>
 #include <limits.h>
@@ -11,7 +11,7 @@
 
 #include "src/signal/value.h"
 
-/* What "nearest limit" means for each integer type; floats have their own way. */
+/* The limits of each integer type; float and double have those of the C types. */
 static const struct type_def {
 	const char *name;
 	int64_t least, most;
@@ -88,7 +88,7 @@ double value_number(enum ows_type type, int64_t value)
 /*
  * A decimal number as written: 0.DIGITS times ten to the power of point. Integers are rounded on
  * the digits, exactly; a double is made from digits and exponent without a decimal point, so that
- * no locale has a say in it.
+ * the locale does not matter.
  */
 #define DIGITS_MAX 400
 struct decimal {
@@ -197,7 +197,7 @@ static double decimal_double(const struct decimal *d)
 	return strtod(text, NULL);
 }
 
-/* Not by way of a double: that would round twice. */
+/* Parsed as a float, not as a double first: that would round twice. */
 static float decimal_float(const struct decimal *d)
 {
 	char text[DIGITS_MAX + 16];
@@ -281,7 +281,7 @@ int value_from_text(enum ows_type type, const char *text, size_t len, int64_t *v
 		side = decimal_integer(&d, type, value, &exact);
 		if (!exact)
 			return -EILSEQ;
-		if (type == OWS_BOOL && side > 0) /* any but zero */
+		if (type == OWS_BOOL && side > 0) /* any number above zero is true */
 			side = 0;
 	}
 	*quality = quality_of_side(side);
@@ -406,7 +406,9 @@ int value_parse(enum ows_type type, const char *text, int64_t *value)
 
 /* --- To text ------------------------------------------------------------------------------ */
 
-/* printf puts the locale's decimal point: whatever is no part of a C number becomes a dot. */
+/*
+ * printf prints the locale's decimal point: every byte that is no part of a C number becomes a dot.
+ */
 static int print_digits(double number, int digits, char text[VALUE_TEXT_MAX])
 {
 	char raw[64];
@@ -452,7 +454,7 @@ int value_to_text(enum ows_type type, int64_t value, char text[VALUE_TEXT_MAX])
 		                isnan(number) ? "nan"
 		                : number < 0  ? "-inf"
 		                              : "inf");
-	/* below the normal numbers fewer digits tell two of them apart */
+	/* below the normal numbers fewer digits distinguish two numbers */
 	if (fabs(number) < (type == OWS_FLOAT ? (double)FLT_MIN : DBL_MIN))
 		digits = 1;
 	do {

@@ -26,26 +26,30 @@ double value_number(enum ows_type type, int64_t value);
 int64_t value_of_double(double number); /* the bits */
 
 /*
- * Text from a bus to a value: blanks trimmed, the whole text must parse, and be whole for all but
- * float and double. Outside the type: nearest limit, *quality OWS_Q_LOW or OWS_Q_HIGH, else
- * OWS_Q_GOOD; for bool all above 0 is 1. -EILSEQ: does not parse (NAN and INF too), or has a
- * fraction. Also "yes/no/on/off" for bool is refused here: buses say 0 and 1.
+ * Text from a bus to a value: blanks are trimmed, the rest must be one number, and a whole number
+ * for all types but float and double. A number outside the type becomes the nearest limit with
+ * *quality OWS_Q_LOW or OWS_Q_HIGH, else *quality is OWS_Q_GOOD; for bool all above 0 is 1.
+ * -EILSEQ: the text is no number (NAN and INF too), or has a fraction. "yes/no/on/off" for bool is
+ * refused here: buses answer 0 and 1.
  */
 int value_from_text(enum ows_type type, const char *text, size_t len, int64_t *value,
                     uint8_t *quality);
 /* The same for a bus that knows the number. */
 int value_from_number(enum ows_type type, double number, int64_t *value, uint8_t *quality);
 
-/* What a control program sets: -ERANGE the type cannot hold it, -EINVAL NaN and infinity. */
+/*
+ * A number that a control program sets: -ERANGE the type cannot hold it, -EINVAL NaN and infinity.
+ */
 int value_set_double(enum ows_type type, double number, int64_t *value);
 int value_set_integer(enum ows_type type, int64_t number, int64_t *value);
 /* Can a value found in shared memory be one of this type? */
 bool value_holds(enum ows_type type, int64_t value);
 
 /*
- * InitValue, SafeValue and `owsctl set`: decimal point, bool also on/off yes/no true/false; exact,
- * nothing is clamped or rounded to an integer. -ERANGE the type cannot hold it, -EINVAL no number,
- * or no whole one. Not for strings.
+ * The text of InitValue, SafeValue and `owsctl set` to a value: decimal point, bool also on/off
+ * yes/no true/false; nothing is clamped or rounded to an integer. -ERANGE: the type cannot hold the
+ * number; -EINVAL: the text is no number, or has a fraction where the type needs a whole number.
+ * Not for strings.
  */
 int value_parse(enum ows_type type, const char *text, int64_t *value);
 

@@ -21,8 +21,8 @@
 #define HOUR_NS (3600 * INT64_C(1000000000))
 
 /*
- * turn says whose the line is: in round r of the ring, r * LINES is the producers', r * LINES + 1
- * the reader's. All zero is the empty ring, so untouched lines cost no memory.
+ * turn names the owner of the line: in round r of the ring, r * LINES is the producers', r * LINES
+ * + 1 the reader's. All zero is the empty ring, so untouched lines cost no memory.
  */
 struct line {
 	uint32_t turn;
@@ -35,8 +35,8 @@ struct log {
 	uint32_t head; /* next to take by a producer */
 	uint32_t word;
 	uint32_t dropped;
-	uint32_t tail; /* the reader's alone */
-	uint32_t said; /* drops already told, the reader's alone */
+	uint32_t tail;     /* the reader's alone */
+	uint32_t reported; /* drops already reported, the reader's alone */
 	enum log_level level;
 	struct line lines[LINES];
 };
@@ -60,7 +60,7 @@ enum log_level log_level(const struct log *log)
 	return log->level;
 }
 
-static struct line *claim(struct log *log, uint32_t *turn)
+static struct line *claim_line(struct log *log, uint32_t *turn)
 {
 	uint32_t head = __atomic_load_n(&log->head, __ATOMIC_RELAXED);
 
@@ -81,8 +81,8 @@ static struct line *claim(struct log *log, uint32_t *turn)
 	}
 }
 
-/* Without the UTF-8 character that was cut at the end. */
-static size_t whole(const char *text, size_t len)
+/* The length of text without the UTF-8 character that was cut at its end. */
+static size_t whole_characters(const char *text, size_t len)
 {
 	size_t start = len;
 
@@ -114,10 +114,10 @@ void log_put(struct log *log, enum log_level level, const char *format, ...)
 	va_end(args);
 	if (made < 0)
 		return;
-	len = made > LINE_BYTES ? whole(text, LINE_BYTES) : (size_t)made;
+	len = made > LINE_BYTES ? whole_characters(text, LINE_BYTES) : (size_t)made;
 	len = printable(text, len);
 
-	line = claim(log, &turn);
+	line = claim_line(log, &turn);
 	if (!line) {
 		__atomic_fetch_add(&log->dropped, 1, __ATOMIC_RELAXED);
 		return;
@@ -132,7 +132,7 @@ void log_put(struct log *log, enum log_level level, const char *format, ...)
 
 uint64_t log_rate(struct log_rate *rate, int64_t now_ns)
 {
-	uint64_t since = ++rate->seen - rate->said;
+	uint64_t since = ++rate->seen - rate->reported;
 
 	if (rate->seen < rate->next && now_ns - rate->last_ns < HOUR_NS)
 		return 0;
@@ -141,7 +141,7 @@ uint64_t log_rate(struct log_rate *rate, int64_t now_ns)
 	while (rate->next <= rate->seen)
 		rate->next *= 2;
 	rate->last_ns = now_ns;
-	rate->said = rate->seen;
+	rate->reported = rate->seen;
 	return since;
 }
 
@@ -154,8 +154,8 @@ const char *log_others(uint64_t n, char text[LOG_OTHERS])
 }
 
 /*
- * stderr may be shared, so it is not ours to make non-blocking. A pipe that is writable takes a
- * line, which is shorter than PIPE_BUF, whole.
+ * Other processes may share stderr, so owsd must not make it non-blocking. A pipe that is writable
+ * takes a whole line, since a line is shorter than PIPE_BUF.
  */
 static bool takes_line(int fd)
 {
@@ -195,10 +195,10 @@ static int write_line(int fd, int prefix, int level, const char *text, size_t le
 	return 0;
 }
 
-static void say_lost(struct log *log, int fd, int prefix)
+static void report_lost(struct log *log, int fd, int prefix)
 {
 	uint32_t dropped = __atomic_load_n(&log->dropped, __ATOMIC_RELAXED);
-	uint32_t lost = dropped - log->said;
+	uint32_t lost = dropped - log->reported;
 	char text[48];
 	int len;
 
@@ -207,7 +207,7 @@ static void say_lost(struct log *log, int fd, int prefix)
 	len = snprintf(text, sizeof(text), "%u log line%s lost", (unsigned)lost,
 	               lost == 1 ? "" : "s");
 	if (write_line(fd, prefix, LOG_LEVEL_WARNING, text, (size_t)len) == 0)
-		log->said = dropped;
+		log->reported = dropped;
 }
 
 static bool has_lines(const struct log *log)
@@ -233,13 +233,13 @@ int log_drain(struct log *log, int fd, int prefix)
 		err = write_line(fd, prefix, line->level, line->text, line->len);
 		if (err == -EAGAIN)
 			return count;
-		if (err) /* a full disk, a reader that went: said when there is one again */
+		if (err) /* a full disk or a reader that is gone: report_lost() logs the loss later */
 			__atomic_fetch_add(&log->dropped, 1, __ATOMIC_RELAXED);
 		__atomic_store_n(&line->turn, turn + LINES, __ATOMIC_RELEASE);
 		log->tail++;
 		count++;
 	}
-	say_lost(log, fd, prefix);
+	report_lost(log, fd, prefix);
 	return count;
 }
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The log: any thread puts lines into a bounded ring, without blocking and without a system call
- * but one wake; the supervisor writes them to stderr. Lines that find the ring full are counted.
+ * but one wake; the supervisor writes them to stderr. The log counts the lines that find the ring
+ * full.
  */
 #ifndef TEXT_LOG_H
 #define TEXT_LOG_H
@@ -20,12 +21,12 @@ enum log_level { /* syslog's numbers */
 
 struct log;
 
-/* The ring, allocated once; lines above level are not made. NULL: no memory. */
+/* Allocates the ring once. Lines above level are not formatted. NULL: no memory. */
 struct log *log_create(enum log_level level);
 void log_destroy(struct log *log);
 enum log_level log_level(const struct log *log);
 
-/* Any thread. A line is cut at 255 bytes; control characters become '?'. log NULL: nothing. */
+/* Any thread. Cuts the line at 255 bytes; control characters become '?'. log NULL: does nothing. */
 void log_put(struct log *log, enum log_level level, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
 
@@ -42,12 +43,13 @@ void log_put(struct log *log, enum log_level level, const char *format, ...)
 #define log_trace(log, ...) log_at(log, LOG_LEVEL_TRACE, __VA_ARGS__)
 
 /*
- * For what may repeat every cycle: says when to speak (1st, 2nd, 4th, 8th time, at least hourly) by
- * how many there were since it did, this one included; 0: not now. log_others() puts that behind a
- * line, where it is more than this one.
+ * For an event that may repeat every cycle: whether to log it now (the 1st, 2nd, 4th, 8th time, and
+ * at least hourly). Returns how many events there were since the last one that was logged, this
+ * one included, or 0: do not log now. log_others() makes of a number above 1 the words that end the
+ * line; else they are empty.
  */
 struct log_rate {
-	uint64_t seen, said, next;
+	uint64_t seen, reported, next;
 	int64_t last_ns;
 };
 uint64_t log_rate(struct log_rate *rate, int64_t now_ns);
@@ -55,11 +57,11 @@ uint64_t log_rate(struct log_rate *rate, int64_t now_ns);
 const char *log_others(uint64_t n, char text[LOG_OTHERS]);
 
 /*
- * Supervisor only: write the lines to fd ("<4>" levels if prefix) as long as it takes them without
- * blocking; the others stay. Returns how many.
+ * Supervisor only: write the lines to fd (with "<4>" levels if prefix) as long as fd takes them
+ * without blocking; the other lines stay in the ring. Returns how many were written.
  */
 int log_drain(struct log *log, int fd, int prefix);
-/* The last lines: try for at most 200 ms. */
+/* Write the last lines before the end; tries for at most 200 ms. */
 void log_finish(struct log *log, int fd, int prefix);
 /* The futex word that each line counts up; for the supervisor's wait. */
 uint32_t *log_word(struct log *log);

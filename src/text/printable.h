@@ -7,16 +7,16 @@
 
 /*
  * Make text fit for a terminal, in place: each control character becomes '?', and so does each byte
- * that is not UTF-8 (a terminal of eight bits takes 9Bh for a command) and each character that would
- * make a line read other than it is (U+2028 to U+202E, U+2066 to U+2069). Returns the new length;
- * does not terminate the text.
+ * that is not UTF-8 (a terminal of eight bits takes 9Bh for a command) and each character that
+ * would make a line read other than it is (U+2028 to U+202E, U+2066 to U+2069). Returns the new
+ * length; does not terminate the text.
  */
 size_t printable(char *text, size_t len);
 
 /*
- * A message as vprintf() would print it, printable. What is longer than PRINTABLE_LINE bytes, since
- * somebody's long word stands in it, loses its middle: the end has the reason. To be freed; NULL: no
- * memory.
+ * A message as vprintf() would print it, made printable. A message longer than PRINTABLE_LINE bytes
+ * (a long word of the user stands in it) loses its middle, because its end has the reason. The
+ * caller frees it; NULL: no memory.
  */
 #define PRINTABLE_LINE 1000
 char *printable_line(const char *format, va_list args) __attribute__((format(printf, 1, 0)));

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Why getopt_long() refused an option, in words that name the option as it was typed. */
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,7 +14,7 @@ static const char *name_of(const struct option *longs, int value)
 	return "";
 }
 
-/* What an abbreviation may stand for, behind text; how many. */
+/* Append to text the options that an abbreviation may stand for; returns how many there are. */
 static unsigned add_meant(const struct option *longs, const char *typed, char *text, size_t size)
 {
 	size_t len = strcspn(typed, "="), used = strlen(text);
@@ -40,7 +41,7 @@ static void refuse_long(const struct option *longs, const char *word, char *text
 
 void refused_option(int c, const struct option *longs, char *const *argv, char *text, size_t size)
 {
-	/* a long option has been gone past, a short one only where it ends its word */
+	/* getopt has moved past a long option; past a short one only where it ends its word */
 	const char *word = argv[optind - 1], *name = name_of(longs, optopt);
 	bool is_long = strncmp(word, "--", 2) == 0;
 
