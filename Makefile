@@ -8,7 +8,9 @@
 #                                 TESTS='test_run.py test_shm.py' these system tests alone
 #   make all unit soak system bench install uninstall clean
 #   make bench-page               make bench and bench-kernel into docs/performance.md, with plots
-#   make clang sanitize m32       the slower checks
+#   make check-all                every check there is, for hours; .ci/run those that a change can
+#                                 break, in half an hour of two cores
+#   make clang sanitize m32       a second compiler, its sanitizers, 32 bits
 #   make fuzz                     libFuzzer on what comes from outside; FUZZ=rio one of its targets,
 #                                 FUZZ_SECONDS=60 for each
 #   make format                   all C laid out as .clang-format says; make analyze checks it
@@ -56,6 +58,8 @@ CXX      := $(CROSS_COMPILE)$(if $(filter $(NOT_GIVEN),$(origin CXX)),g++,$(CXX)
 AR       := $(CROSS_COMPILE)$(if $(filter $(NOT_GIVEN),$(origin AR)),ar,$(AR))
 OBJCOPY  := $(if $(filter $(NOT_GIVEN),$(origin OBJCOPY)),$(CROSS_COMPILE)objcopy,$(OBJCOPY))
 PKG_CONFIG ?= pkg-config
+# Other compilers too go through it
+CCACHE   := $(if $(filter ccache,$(CC)),ccache )
 
 WARN     := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes \
             -Wpointer-arith -Wcast-qual -Wwrite-strings -Wundef -Wvla -Wformat=2 \
@@ -184,7 +188,7 @@ LIBRARY  := $(B)/$(SO) $(B)/libows.a $(B)/libows.pc
 
 .PHONY: all unit soak system test run bench install uninstall install-service uninstall-service \
         deb test-package test-service test-fresh dist test-dist clean \
-        examples unit-programs benches diagrams FORCE clang sanitize asan tsan m32
+        examples unit-programs benches diagrams check-all FORCE
 all: $(PROGRAMS) $(LIBRARY) $(B)/core.a $(B)/with/libraries
 
 # Two makes may do this at once
@@ -238,13 +242,13 @@ $(B)/libows.a: $(call obj,$(LIBOWS)) $(B)/libows/aid.a
 	$(Q)$(OBJCOPY) --wildcard --keep-global-symbol='ows_*' $(B)/libows/one.o
 	$(Q)$(AR) rcs $@ $(B)/libows/one.o
 
-# PREFIX may differ from one call to the next
+# PREFIX may differ from one call to the next, and two makes may do this at once
 $(B)/libows.pc: FORCE
 	@mkdir -p $(@D)
 	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$${prefix}/include' '' \
 	    'Name: libows' 'Description: Signals of owsd, the 1-Wire daemon, in shared memory' \
 	    'Version: $(VERSION)' 'Libs: -L$${libdir} -lows' 'Libs.private: -lm -pthread' \
-	    'Cflags: -I$${includedir}' > $@
+	    'Cflags: -I$${includedir}' >$@.$$$$ && mv $@.$$$$ $@
 
 # --- Examples ---------------------------------------------------------------------------------
 examples: $(SAMPLES)
@@ -355,57 +359,16 @@ include tests/kernel/kernel.mk
 include tests/model/model.mk
 include tests/image/image.mk
 include tests/fuzz/fuzz.mk
+include tests/analyze/analyze.mk
 
-# --- Slower checks ----------------------------------------------------------------------------
-# What gcc guesses of values is worse in code that a sanitizer has changed; the plain build is asked
-GUESSES  := -Wno-maybe-uninitialized -Wno-format-truncation
-ASAN_FLAGS := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer \
-              $(GUESSES)
-# TSan does not know fences, and gcc says so at each
-TSAN_FLAGS := -fsanitize=thread -fno-omit-frame-pointer -Wno-tsan $(GUESSES)
-
-asan:
-	@$(MAKE) --no-print-directory B=build/asan all
-	@ASAN_OPTIONS=detect_leaks=1:abort_on_error=0:handle_sigbus=0 UBSAN_OPTIONS=print_stacktrace=1 \
-	    sh tests/both $(MAKE) --no-print-directory B=build/asan
-asan: export EXTRA_CFLAGS := $(ASAN_FLAGS)
-asan: export CFLAGS := -O1 -g
-
-# Without the address space's randomness: some kernels give more of it than TSan can stand
-tsan:
-	@$(MAKE) --no-print-directory B=build/tsan all
-	@fixed=; setarch -R true 2>/dev/null && fixed='setarch -R'; \
-	    TSAN_OPTIONS=halt_on_error=1:handle_sigbus=0:suppressions=$(CURDIR)/tests/tsan.supp \
-	    $$fixed sh tests/both $(MAKE) --no-print-directory B=build/tsan
-tsan: export EXTRA_CFLAGS := $(TSAN_FLAGS)
-tsan: export CFLAGS := -O1 -g
-
-sanitize:
-	@$(MAKE) --no-print-directory asan
-	@$(MAKE) --no-print-directory tsan
-
-clang:
-	@$(MAKE) --no-print-directory B=build/clang CC=clang CXX=clang++ WERROR=1 all examples unit
-
-# 32 bits with 64-bit time: what breaks here breaks on a Raspberry Pi with a 32-bit system. Floats
-# as there: SSE, because the x87 evaluates them in more bits than they have.
-m32:
-	@if echo 'int main(void) { return 0; }' | $(CC) -m32 -x c -o /dev/null - 2>/dev/null; then \
-	    $(MAKE) --no-print-directory B=build/m32 all unit; \
-	else \
-	    echo "m32: $(CC) cannot link 32-bit programs here (package gcc-12-multilib)"; \
-	    echo '0 passed, 0 failed, 1 skipped'; \
-	fi
-# The headers of the kernel are those of this machine; gcc-multilib would link them for -m32
-m32: export EXTRA_CFLAGS := -m32 -msse2 -mfpmath=sse -D_TIME_BITS=64 \
-            -idirafter /usr/include/$(shell $(CC) -print-multiarch 2>/dev/null)
+# .ci/run is half an hour; this goes on for hours, with what is rarely broken
+check-all:
+	@bash .ci/run --all
 
 # --- Diagrams: made of the program's own tables, and kept beside the pages that show them -------
 diagrams:
 	python3 docs/alarm-states.py >docs/img/alarm-states.svg.new
 	mv docs/img/alarm-states.svg.new docs/img/alarm-states.svg
-
-include tests/analyze/analyze.mk
 
 # --- Install ----------------------------------------------------------------------------------
 D := $(DESTDIR)

@@ -1,7 +1,51 @@
 # SPDX-License-Identifier: MIT
-# What looks at the source and at the tests
+# What looks at the source and at the tests: other compilers and sanitizers, analyzers, coverage
 
-.PHONY: analyze coverage format
+.PHONY: analyze coverage format clang sanitize asan tsan m32
+
+# What gcc guesses of values is worse in code that a sanitizer has changed; the plain build is asked
+GUESSES  := -Wno-maybe-uninitialized -Wno-format-truncation
+ASAN_FLAGS := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer \
+              $(GUESSES)
+# TSan does not know fences, and gcc says so at each
+TSAN_FLAGS := -fsanitize=thread -fno-omit-frame-pointer -Wno-tsan $(GUESSES)
+
+asan:
+	@$(MAKE) --no-print-directory B=build/asan all
+	@ASAN_OPTIONS=detect_leaks=1:abort_on_error=0:handle_sigbus=0 UBSAN_OPTIONS=print_stacktrace=1 \
+	    sh tests/both $(MAKE) --no-print-directory B=build/asan
+asan: export EXTRA_CFLAGS := $(ASAN_FLAGS)
+asan: export CFLAGS := -O1 -g
+
+# Without the address space's randomness: some kernels give more of it than TSan can stand
+tsan:
+	@$(MAKE) --no-print-directory B=build/tsan all
+	@fixed=; setarch -R true 2>/dev/null && fixed='setarch -R'; \
+	    TSAN_OPTIONS=halt_on_error=1:handle_sigbus=0:suppressions=$(CURDIR)/tests/tsan.supp \
+	    $$fixed sh tests/both $(MAKE) --no-print-directory B=build/tsan
+tsan: export EXTRA_CFLAGS := $(TSAN_FLAGS)
+tsan: export CFLAGS := -O1 -g
+
+sanitize:
+	@$(MAKE) --no-print-directory asan
+	@$(MAKE) --no-print-directory tsan
+
+clang:
+	@$(MAKE) --no-print-directory B=build/clang CC='$(CCACHE)clang' CXX='$(CCACHE)clang++' WERROR=1 \
+	    all examples unit
+
+# 32 bits with 64-bit time: what breaks here breaks on a Raspberry Pi with a 32-bit system. Floats
+# as there: SSE, because the x87 evaluates them in more bits than they have.
+m32:
+	@if echo 'int main(void) { return 0; }' | $(CC) -m32 -x c -o /dev/null - 2>/dev/null; then \
+	    $(MAKE) --no-print-directory B=build/m32 all unit; \
+	else \
+	    echo "m32: $(CC) cannot link 32-bit programs here (package gcc-12-multilib)"; \
+	    echo '0 passed, 0 failed, 1 skipped'; \
+	fi
+# The headers of the kernel are those of this machine; gcc-multilib would link them for -m32
+m32: export EXTRA_CFLAGS := -m32 -msse2 -mfpmath=sse -D_TIME_BITS=64 \
+            -idirafter /usr/include/$(shell $(CC) -print-multiarch 2>/dev/null)
 
 # Lays all C out as .clang-format says; analyze checks it
 format:

@@ -12,7 +12,7 @@ FUZZ         ?= $(FUZZ_TARGETS)
 FUZZ_SECONDS ?= 60
 FUZZ_JOBS    ?= $(shell nproc)
 FUZZ_SEED    ?= 0
-FUZZ_CC      ?= $(if $(filter ccache,$(CC)),ccache )clang
+FUZZ_CC      ?= $(CCACHE)clang
 FUZZ_BUILD   := build/fuzz/programs
 REPLAYS      := $(FUZZ_TARGETS:%=$(B)/fuzz/replay_%)
 

@@ -4,13 +4,12 @@
 
 .PHONY: test-image
 
-IMAGE_SIMCHIP := build/image/programs/kernel/simchip
+IMAGE_SIMCHIP := $(ARM64_PLAIN)/kernel/simchip
 IMAGE_TIME ?= 900
 
 test-image: CASES ?= main bare full
 test-image:
 	@sh board/install-deps build arm64 image $(if $(OR_SKIP),|| true)
-	@$(MAKE) --no-print-directory B=build/image/programs AR=aarch64-linux-gnu-ar LIBI2C=0 LIBGPIOD=0 \
-	    CC='$(if $(filter ccache,$(CC)),ccache )$(ARM64_CC)' $(IMAGE_SIMCHIP) $(if $(OR_SKIP),|| true)
+	@$(ARM64_PLAIN_MAKE) $(IMAGE_SIMCHIP) $(if $(OR_SKIP),|| true)
 	@python3 tests/image/boot --time $(IMAGE_TIME) $(if $(OR_SKIP),--or-skip) --debs build/deb \
 	    --build build/image --program $(IMAGE_SIMCHIP) --cc '$(ARM64_CC)' $(CASES)

@@ -66,9 +66,13 @@ GPIOD_2  := $(abspath build/gpiod-2-arm64)
 GPIOD_LIB := usr/lib/aarch64-linux-gnu
 # gcc for arm64 and gcc-multilib, which make m32 wants, do not go together; clang goes with both
 ARM64_CC ?= $(or $(shell command -v aarch64-linux-gnu-gcc),clang --target=aarch64-linux-gnu)
-ARM64_MAKE = $(MAKE) --no-print-directory B=$(ARM64) CC='$(if $(filter ccache,$(CC)),ccache )$(ARM64_CC)' \
+ARM64_MAKE = $(MAKE) --no-print-directory B=$(ARM64) CC='$(CCACHE)$(ARM64_CC)' \
     AR=aarch64-linux-gnu-ar LIBI2C=0 LIBGPIOD=1 LIBGPIOD_CFLAGS='-isystem $(GPIOD_1)/usr/include' \
     LIBGPIOD_LIBS='-L$(GPIOD_1)/$(GPIOD_LIB) -lgpiod'
+# Without libraries
+ARM64_PLAIN := build/arm64-plain
+ARM64_PLAIN_MAKE = $(MAKE) --no-print-directory B=$(ARM64_PLAIN) CC='$(CCACHE)$(ARM64_CC)' \
+    AR=aarch64-linux-gnu-ar LIBI2C=0 LIBGPIOD=0
 
 $(GPIOD_1)/usr/include/gpiod.h: board/fetch-debs
 	@sh board/fetch-debs -x bookworm arm64 $(GPIOD_1) libgpiod-dev libgpiod2

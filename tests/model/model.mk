@@ -10,14 +10,12 @@ test-kill: all $(B)/unit/test_kill
 	@awk '/ Tests .* Failures /{ print $$1 - $$3, "passed,", $$3, "failed"; bad = $$3; n = 1 } END { exit bad || !n }' $(B)/test-kill.log
 
 # Readers beside a writer as arm64 code, in qemu's user mode: a few seconds beside the building
-HAMMER_MAKE = $(MAKE) --no-print-directory B=build/hammer CC='$(if $(filter ccache,$(CC)),ccache )$(ARM64_CC)' \
-    AR=aarch64-linux-gnu-ar LIBI2C=0 LIBGPIOD=0
 hammer-arm64:
 	@sh board/install-deps build hammer $(if $(OR_SKIP),|| true)
 	@+if command -v qemu-aarch64-static >/dev/null && \
 	    echo 'int main(void) { return 0; }' | $(ARM64_CC) -x c -o /dev/null - 2>/dev/null; then \
-	    $(HAMMER_MAKE) build/hammer/unit/test_torn && \
-	    RUNNER='qemu-aarch64-static -L /usr/aarch64-linux-gnu' sh tests/unit/run build/hammer/unit/test_torn; \
+	    $(ARM64_PLAIN_MAKE) $(ARM64_PLAIN)/unit/test_torn && \
+	    RUNNER='qemu-aarch64-static -L /usr/aarch64-linux-gnu' sh tests/unit/run $(ARM64_PLAIN)/unit/test_torn; \
 	else \
 	    echo 'hammer-arm64: no compiler for arm64, or no qemu-aarch64-static'; \
 	    $(if $(OR_SKIP),echo '0 passed$(comma) 0 failed$(comma) 1 skipped',exit 1); \
