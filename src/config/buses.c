@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "src/config/build.h"
+#include "src/config/buses.h"
+#include "src/config/targets.h"
 
 static void keep_option(struct build *build, struct config_bus *bus, enum option option,
                         const struct option_value *value)

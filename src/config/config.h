@@ -60,7 +60,6 @@ enum config_relation {
 #define CONFIG_TARGETS_MAX 16
 /* "auto" stands for its ways: an owserver here, else every DS2482, else the kernel's masters. */
 #define CONFIG_AUTO_WAYS 3u
-extern const char *const config_auto_ways[CONFIG_AUTO_WAYS];
 struct config_target {
 	const char *text; /* "localhost:4304"; never empty */
 	enum config_relation relation;
@@ -112,34 +111,5 @@ struct config_report {
 	void *ctx;
 	unsigned errors, warnings;
 };
-
-/*
- * Read and check a file. Returns 0, -EINVAL when report->errors > 0 (*config is then NULL), or a
- * negative errno of reading it (said through report too). Blocking (file).
- */
-int config_load(const char *file, struct config_report *report, struct config **config);
-/* The same from memory; file is for messages. */
-int config_parse(const char *file, const char *text, size_t len, struct config_report *report,
-                 struct config **config);
-/* Replace the targets (owsd -t); each text may itself hold commas and bars. 0 or -EINVAL. */
-int config_set_targets(struct config *config, const char *const *texts, unsigned count,
-                       struct config_report *report);
-/* Replace where the owserver protocol is served (owsd -l). 0 or -EINVAL. */
-int config_set_listens(struct config *config, const char *const *texts, unsigned count,
-                       struct config_report *report);
-/*
- * A target that leads back to this owsd's own server is an error; of auto it is left out, with a
- * warning. 0 or -EINVAL.
- */
-int config_check_own(struct config *config, struct config_report *report);
-/* Is a target a server of the owserver protocol? */
-bool config_has_servers(const struct config *config);
-/* The Bus block of a target, however it is spelt; NULL: it has none. */
-const struct config_bus *config_bus(const struct config *config, const char *target);
-/* Warn of Bus blocks whose target is none of those that are served. */
-void config_check_buses(const struct config *config, struct config_report *report);
-void config_free(struct config *config);
-/* What `owsd --check` prints: the configuration as understood. */
-void config_print(const struct config *config, FILE *out);
 
 #endif

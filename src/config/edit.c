@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include "src/config/edit.h"
+#include "src/config/load.h"
 #include "src/config/options.h"
 #include "src/config/replace.h"
 #include "src/config/rio_write.h"

@@ -7,6 +7,8 @@
 
 #include "hal/owfs/path.h"
 #include "src/config/build.h"
+#include "src/config/item.h"
+#include "src/config/limits.h"
 #include "src/signal/attribute.h"
 #include "src/signal/quantity.h"
 #include "src/signal/value.h"

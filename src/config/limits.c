@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+/* Limit alarms of an item: which limits it has, and whether they fit together. */
+#include "src/config/limits.h"
 #include "src/config/build.h"
 
 /* From the least to the greatest. */

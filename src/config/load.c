@@ -6,27 +6,15 @@
 #include <string.h>
 
 #include "src/config/build.h"
+#include "src/config/buses.h"
+#include "src/config/item.h"
+#include "src/config/load.h"
+#include "src/config/rio_file.h"
+#include "src/config/serve.h"
+#include "src/config/targets.h"
 #include "src/signal/value.h"
 
 #define DRIVER "OwsDrv"
-
-const char *build_keep(struct build *build, const char *text, size_t len)
-{
-	const char *copy = arena_text(&build->box->arena, text, len);
-
-	if (!copy)
-		build->no_memory = true;
-	return copy ? copy : "";
-}
-
-void *build_take(struct build *build, size_t count, size_t size)
-{
-	void *memory = arena_take(&build->box->arena, (count + 1) * size);
-
-	if (!memory)
-		build->no_memory = true;
-	return memory;
-}
 
 static int64_t nanoseconds(double seconds)
 {

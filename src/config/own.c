@@ -3,7 +3,8 @@
 #include <errno.h>
 #include <string.h>
 
-#include "src/config/build.h"
+#include "src/config/own.h"
+#include "src/config/targets.h"
 
 #define SCHEME "owserver:"
 

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: MIT */
+/* The configuration as owsd understood it, printed as a file. */
 #include <stdarg.h>
 
+#include "src/config/buses.h"
 #include "src/config/options.h"
+#include "src/config/print.h"
 #include "src/config/rio_write.h"
 #include "src/signal/value.h"
 

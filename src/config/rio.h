@@ -68,11 +68,4 @@ size_t rio_line_end_length(const char *p, const char *end);
 struct rio_node *rio_child(const struct rio_node *block, const char *key);
 struct rio_node *rio_next(const struct rio_node *node);
 
-/*
- * Read a whole regular file into *text (malloc, NUL behind *len bytes). Errors are said through
- * report: negative errno; -EFBIG as above, -EILSEQ it is UTF-16, -EINVAL it is no regular file, and
- * was not opened. Blocking.
- */
-int rio_read(const char *file, struct config_report *report, char **text, size_t *len);
-
 #endif

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A .rio file read into memory, if it is one. */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdbool.h>
@@ -8,6 +9,7 @@
 #include <unistd.h>
 
 #include "src/config/rio.h"
+#include "src/config/rio_file.h"
 
 /* One byte more than is allowed, so that a longer file is known as such. */
 #define ROOM_MAX ((size_t)RIO_FILE_MAX + 1)

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "src/config/build.h"
+#include "src/config/serve.h"
 
 #define SOCKET_PATH_MAX 107
 

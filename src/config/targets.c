@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
+/* Targets as they are written: lists with commas and bars, auto, and which spellings are the same. */
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
 #include "src/config/build.h"
+#include "src/config/targets.h"
 
 #define DEFAULT_TARGET "localhost:4304"
 #define DEFAULT_PORT "4304"

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/config/buses.h"
 #include "src/engine/adoption.h"
 
 static int compare_items(const struct config_item *a, const struct config_item *b)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "hal/bus/worker.h"
+#include "src/config/load.h"
 #include "src/host/indicator.h"
 #include "src/host/private.h"
 #include "src/libows/ows.h"

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "hal/bus/worker.h"
+#include "src/config/load.h"
 #include "src/engine/counters.h"
 #include "src/host/serving.h"
 #include "src/host/target.h"

@@ -5,6 +5,7 @@
 
 #include "hal/bus/bus.h"
 #include "hal/gpio/line.h"
+#include "src/config/buses.h"
 #include "src/config/report.h"
 #include "src/host/target.h"
 #include "src/libows/ows.h"

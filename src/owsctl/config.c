@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 #include "src/config/edit.h"
+#include "src/config/load.h"
+#include "src/config/rio_file.h"
 #include "src/owsctl/config_list.h"
 #include "src/owsctl/property.h"
 

@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "src/config/config.h"
+#include "src/config/targets.h"
 #include "src/owsctl/open.h"
 #include "src/owsctl/reading.h"
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "src/config/config.h"
+#include "src/config/load.h"
 #include "src/config/rio_write.h"
 #include "src/owsctl/scan_item.h"
 #include "src/signal/value.h"

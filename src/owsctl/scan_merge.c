@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 #include "src/config/edit.h"
+#include "src/config/load.h"
+#include "src/config/rio_file.h"
 #include "src/owsctl/merge.h"
 #include "src/owsctl/scan_item.h"
 #include "src/owsctl/scan_merge.h"

@@ -3,6 +3,10 @@
 #include <errno.h>
 
 #include "src/board/board.h"
+#include "src/config/buses.h"
+#include "src/config/load.h"
+#include "src/config/own.h"
+#include "src/config/print.h"
 #include "src/config/report.h"
 #include "src/host/host.h"
 #include "src/host/target.h"

@@ -9,6 +9,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "src/config/own.h"
 #include "src/libows/ows.h"
 #include "src/serve/server.h"
 #include "src/shm/segment.h"

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/config/load.h"
 #include "src/engine/counters.h"
 #include "src/engine/table.h"
 #include "tests/endurance/memory.h"

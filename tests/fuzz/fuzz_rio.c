@@ -11,7 +11,9 @@
 #include <string.h>
 
 #include "src/config/edit.h"
+#include "src/config/load.h"
 #include "src/config/options.h"
+#include "src/config/print.h"
 #include "src/config/rio_write.h"
 #include "tests/fuzz/fuzz.h"
 

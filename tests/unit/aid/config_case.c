@@ -5,6 +5,7 @@
 
 #include "unity.h"
 
+#include "src/config/load.h"
 #include "tests/unit/aid/config_case.h"
 
 struct config *config;

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "src/config/load.h"
 #include "src/engine/counters.h"
 #include "src/engine/table.h"
 #include "src/signal/value.h"

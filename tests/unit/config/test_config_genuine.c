@@ -6,6 +6,7 @@
 #include "unity.h"
 
 #include "src/config/config.h"
+#include "src/config/load.h"
 #include "src/signal/value.h"
 #include "tests/unit/aid/said.h"
 

@@ -7,6 +7,8 @@
 #include "unity.h"
 
 #include "src/config/config.h"
+#include "src/config/load.h"
+#include "src/config/print.h"
 #include "tests/unit/aid/said.h"
 
 void setUp(void)

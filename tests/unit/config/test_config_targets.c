@@ -6,6 +6,9 @@
 
 #include "unity.h"
 
+#include "src/config/buses.h"
+#include "src/config/load.h"
+#include "src/config/own.h"
 #include "tests/unit/aid/config_case.h"
 
 void setUp(void)

@@ -6,7 +6,9 @@
 
 #include "unity.h"
 
+#include "src/config/load.h"
 #include "src/config/options.h"
+#include "src/config/rio_file.h"
 #include "tests/unit/aid/said.h"
 
 #define MANUAL "docs/owsd.rio.5"

@@ -11,6 +11,7 @@
 #include "unity.h"
 
 #include "src/config/rio.h"
+#include "src/config/rio_file.h"
 #include "src/config/rio_write.h"
 #include "tests/unit/aid/rio_case.h"
 

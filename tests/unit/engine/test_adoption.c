@@ -4,6 +4,7 @@
 
 #include "unity.h"
 
+#include "src/config/buses.h"
 #include "src/engine/adopt_signal.h"
 #include "src/engine/adoption.h"
 #include "src/engine/disown.h"

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+/* Items of the file: what their keys make of a signal, and what is wrong or odd about it. */
+#ifndef CONFIG_ITEM_H
+#define CONFIG_ITEM_H
+
+struct build;
+struct config_item;
+struct place;
+struct rio_node;
+
+/* One Item block. */
+void item_build(struct build *build, const struct rio_node *block, struct config_item *item);
+/* What concerns items together: names. */
+void items_check(struct build *build, const struct place *names);
+
+#endif

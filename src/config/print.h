@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT */
+/* The configuration as owsd understood it, printed as a file. */
+#ifndef CONFIG_PRINT_H
+#define CONFIG_PRINT_H
+
+#include <stdio.h>
+
+struct config;
+
+/* What `owsd --check` prints: the configuration as understood. */
+void config_print(const struct config *config, FILE *out);
+
+#endif

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT */
+/* Targets as they are written: lists with commas and bars, auto, and which spellings are the same. */
+#ifndef CONFIG_TARGETS_H
+#define CONFIG_TARGETS_H
+
+#include <stdbool.h>
+
+#include "src/config/report.h"
+
+struct build;
+
+extern const char *const config_auto_ways[CONFIG_AUTO_WAYS];
+
+/*
+ * The one spelling by which targets of an owserver are compared: "owserver:host:port"; others as
+ * they are.
+ */
+#define TARGET_MAX 255
+#define TARGET_CANONICAL (TARGET_MAX + 32)
+void target_canonical(const char *text, char out[TARGET_CANONICAL]);
+/* Do they mean the same target? */
+bool target_same(const char *a, const char *b);
+/* "a, b | c" behind the targets there are. Errors are said at place. */
+void targets_add(struct build *build, const char *text, struct place place);
+
+#endif
