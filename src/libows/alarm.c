@@ -3,7 +3,9 @@
 #include <errno.h>
 #include <string.h>
 
+#include "src/libows/alive.h"
 #include "src/libows/handle.h"
+#include "src/libows/orphan.h"
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
 

@@ -2,7 +2,10 @@
 /* Attributes of a signal, made from what owsd publishes and from the running time. */
 #include <errno.h>
 
+#include "src/libows/alive.h"
+#include "src/libows/attribute.h"
 #include "src/libows/handle.h"
+#include "src/libows/sample.h"
 #include "src/shm/reader.h"
 
 #define NS_PER_S 1e9

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: MIT */
+/* Names that a program asks for, and what of the image they mean. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/libows/find.h"
 #include "src/libows/handle.h"
+#include "src/libows/map.h"
 
 static int find_name(void *ctx, const char *name, size_t len)
 {

@@ -4,7 +4,13 @@
 #include <string.h>
 #include <time.h>
 
+#include "src/libows/alive.h"
+#include "src/libows/attribute.h"
+#include "src/libows/get.h"
 #include "src/libows/handle.h"
+#include "src/libows/map.h"
+#include "src/libows/orphan.h"
+#include "src/libows/sample.h"
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
 
@@ -16,60 +22,12 @@ int64_t ows_now(void)
 	return (int64_t)ts.tv_sec * 1000000000 + ts.tv_nsec;
 }
 
-int handle_state(const struct ows *h)
-{
-	uint32_t state = __atomic_load_n(&h->map.image->state, __ATOMIC_ACQUIRE);
-
-	return state == OWS_STATE_LIVE && !h->orphan ? 0 : -ESTALE;
-}
-
 /* owsd has ended, or not begun. */
 static bool stopped(const struct ows *h)
 {
 	uint32_t state = __atomic_load_n(&h->map.image->state, __ATOMIC_RELAXED);
 
 	return state != OWS_STATE_LIVE && state != OWS_STATE_RETIRED;
-}
-
-static bool find_alive(struct ows *h, int64_t now_ns)
-{
-	struct ows_sample daemon;
-
-	h->alive_now = now_ns;
-	h->alive = reader_sample(h->map.records, &daemon) &&
-	           handle_age(now_ns, daemon.measured_ns) <= h->dead_after_ns &&
-	           !handle_ahead(h, now_ns, daemon.measured_ns);
-	h->orphan = !h->alive && orphan_look(h, now_ns);
-	return h->alive;
-}
-
-bool handle_alive(struct ows *h, int64_t now_ns)
-{
-	return now_ns == h->alive_now ? h->alive : find_alive(h, now_ns);
-}
-
-void value_fill(struct ows_value *value, const struct ows_sample *sample, uint8_t type)
-{
-	if (type == OWS_DOUBLE || type == OWS_FLOAT) {
-		memcpy(&value->number, &sample->value, sizeof(value->number));
-		value->integer = 0;
-	} else if (type == OWS_STRING) {
-		value->number = 0;
-		value->integer = 0;
-	} else {
-		value->number = (double)sample->value;
-		value->integer = sample->value;
-	}
-	value->measured_ns = sample->measured_ns;
-	value->tried_ns = sample->tried_ns;
-	value->err = sample->err;
-	value->count = sample->count;
-	value->applied = sample->applied;
-	value->len = sample->len;
-	value->type = type;
-	value->quality = sample->quality;
-	value->detail = sample->detail;
-	value->target = sample->target;
 }
 
 /* Age and the lowered quality; the return value of ows_get(). */

@@ -111,33 +111,6 @@ static inline const struct ows_alarm_entry *map_alarm(const struct ows_map *map,
 	                      (size_t)(number % map->alarm_count) * map->alarm_size);
 }
 
-/* map.c */
-#define MAP_PATH 80
-void map_path(const char *instance, const char *kind, char path[MAP_PATH]);
-int map_open(const char *instance, enum ows_mode mode, struct ows_map *map);
-void map_close(struct ows_map *map);
-/* A string of the image; "" for an offset that is none. */
-const char *map_string(const struct ows_map *map, uint32_t off);
-const char *map_name(const struct ows_map *map, uint32_t record);
-/* Do the texts of a record lie where texts are? */
-bool map_has_text(const struct ows_map *map, const struct ows_record *record);
-/* Record of a signal's name, -1 if there is none. */
-int map_find(const struct ows_map *map, const char *name, size_t len);
-
-/*
- * orphan.c: owsd's heart stands still; does a name lead to another file than the one that is mapped,
- * in which nobody is left to say so? A system call or two, once a second at most: what was found
- * then stands in between. Leaves errno alone.
- */
-#define ORPHAN_LOOK_NS INT64_C(1000000000)
-bool orphan_look(struct ows *h, int64_t now_ns);
-/* For what asks for no heart otherwise, looks for it once a second: 0, or -ESTALE on an orphan. */
-int handle_orphan(struct ows *h, int64_t now_ns);
-
-/* find.c */
-int find_resolve(struct ows *h, struct ows_id *id);
-void find_free(struct ows *h);
-
 /* From then to now; 0 for what is to come, and no overflow whatever the segment says. */
 static inline int64_t handle_age(int64_t now_ns, int64_t then_ns)
 {
@@ -156,21 +129,5 @@ static inline bool handle_ahead(const struct ows *h, int64_t now_ns, int64_t the
 {
 	return handle_age(then_ns, now_ns) > h->dead_after_ns;
 }
-
-/* get.c: is owsd alive, as far as its heartbeat says? If not, is the image an orphan too? */
-bool handle_alive(struct ows *h, int64_t now_ns);
-/* 0, or -ESTALE when the image is not the present one any more. */
-int handle_state(const struct ows *h);
-void value_fill(struct ows_value *value, const struct ows_sample *sample, uint8_t type);
-
-/* As ows_get_text(), of an id that need not be one of the handle; size is not 0. */
-int handle_get_text(struct ows *h, struct ows_id *id, int64_t now_ns, struct ows_value *value,
-                    char *text, size_t size);
-
-/* set.c: as ows_set_text(), of an id that need not be one of the handle. */
-int handle_set_text(struct ows *h, const struct ows_id *id, const char *text, uint32_t *stamp);
-
-/* attribute.c: as ows_get(), of an id that is not the value itself. */
-int attribute_get(struct ows *h, struct ows_id *id, int64_t now_ns, struct ows_value *value);
 
 #endif

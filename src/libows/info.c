@@ -2,7 +2,9 @@
 /* What libows returns about signals, targets, counters and the daemon itself. */
 #include <errno.h>
 
+#include "src/libows/alive.h"
 #include "src/libows/handle.h"
+#include "src/libows/map.h"
 #include "src/shm/reader.h"
 
 int ows_count(const struct ows *h)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The two segments of an owsd: found by name, mapped, and checked before anything of them is used. */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -8,6 +9,7 @@
 #include <unistd.h>
 
 #include "src/libows/handle.h"
+#include "src/libows/map.h"
 #include "src/shm/guard.h"
 #include "src/shm/owner.h"
 #include "src/shm/word.h"
@@ -237,4 +239,20 @@ int map_find(const struct ows_map *map, const char *name, size_t len)
 			high = middle;
 	}
 	return -1;
+}
+
+/* A name that is gone leads nowhere yet: the next owsd makes it. */
+static bool leads_elsewhere(const char *instance, const char *kind, const struct ows_file *file)
+{
+	char path[MAP_PATH];
+	struct stat st;
+
+	map_path(instance, kind, path);
+	return lstat(path, &st) == 0 && (st.st_ino != file->inode || st.st_dev != file->device);
+}
+
+bool map_is_elsewhere(const struct ows_map *map, const char *instance)
+{
+	return leads_elsewhere(instance, "image", &map->image_file) ||
+	       (map->command != NULL && leads_elsewhere(instance, "command", &map->command_file));
 }

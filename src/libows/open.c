@@ -5,7 +5,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "src/libows/find.h"
 #include "src/libows/handle.h"
+#include "src/libows/map.h"
 #include "src/shm/word.h"
 
 #define DEAD_LEAST_NS INT64_C(2000000000)

@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "src/libows/handle.h"
+#include "src/libows/orphan.h"
+#include "src/libows/set.h"
 #include "src/shm/word.h"
 #include "src/signal/value.h"
 

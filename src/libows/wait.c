@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: MIT */
+/* Waiting for news of owsd. */
 #include <errno.h>
 
+#include "src/libows/alive.h"
 #include "src/libows/handle.h"
+#include "src/libows/orphan.h"
 
 int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns)
 {

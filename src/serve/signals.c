@@ -4,7 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/libows/alive.h"
+#include "src/libows/get.h"
 #include "src/libows/handle.h"
+#include "src/libows/map.h"
+#include "src/libows/set.h"
 #include "src/serve/signals.h"
 #include "src/shm/reader.h"
 #include "src/signal/value.h"

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* libows' map.c and orphan.c with the heap in the place of /dev/shm, where a real owsd may be. */
+/* libows' map.c with the heap in the place of /dev/shm, where a real owsd may be. */
+#include "tests/fuzz/heap_instance.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include "src/libows/handle.h"
-#include "tests/fuzz/heap_instance.h"
 
 struct heap_file heap_image_file, heap_command_file;
 enum { IMAGE_FD = 1000, COMMAND_FD };
@@ -42,4 +41,3 @@ static int heap_stat(int fd, struct stat *st)
 #define munmap(at, size) ((void)(at))
 #define lstat(path, st) ((void)(path), heap_stat(IMAGE_FD, st))
 #include "src/libows/map.c"
-#include "src/libows/orphan.c"

@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "src/libows/handle.h"
+#include "src/libows/orphan.h"
 #include "src/shm/segment.h"
 #include "tests/model/search.h"
 
@@ -193,13 +194,6 @@ int segment_wake(const uint32_t *word, int how_many)
 }
 
 /* In the place of src/libows/orphan.c: there are no names, and no time passes. */
-bool orphan_look(struct ows *h, int64_t now_ns)
-{
-	(void)h;
-	(void)now_ns;
-	return false;
-}
-
 int handle_orphan(struct ows *h, int64_t now_ns)
 {
 	(void)h;

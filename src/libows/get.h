@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT */
+/* Reading values: a whole sample of the image, its age, and the quality that a dead owsd leaves it. */
+#ifndef LIBOWS_GET_H
+#define LIBOWS_GET_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct ows;
+struct ows_id;
+struct ows_value;
+
+/* As ows_get_text(), of an id that need not be one of the handle; size is not 0. */
+int handle_get_text(struct ows *h, struct ows_id *id, int64_t now_ns, struct ows_value *value,
+                    char *text, size_t size);
+
+#endif
