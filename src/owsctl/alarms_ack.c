@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: MIT */
+/* owsctl alarms ack: limit alarms acknowledged. */
+
 #include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "src/owsctl/alarms.h"
+#include "src/libows/ows.h"
+#include "src/owsctl/alarms_ack.h"
+#include "src/owsctl/ctl.h"
 
 /* owsd takes an acknowledgement at once; longer means that it hangs. */
 #define PATIENCE_NS INT64_C(2000000000)

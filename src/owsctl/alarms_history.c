@@ -4,7 +4,8 @@
 #include <getopt.h>
 #include <stdio.h>
 
-#include "src/owsctl/alarms.h"
+#include "src/owsctl/alarms_history.h"
+#include "src/owsctl/alarms_live.h"
 #include "src/owsctl/json.h"
 #include "src/owsctl/names.h"
 #include "src/owsctl/table.h"

@@ -12,6 +12,7 @@
 #include "src/config/rio_file.h"
 #include "src/owsctl/config_list.h"
 #include "src/owsctl/property.h"
+#include "src/owsctl/verbs.h"
 
 static void say(void *ctx, bool is_error, const char *message)
 {

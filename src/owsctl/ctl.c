@@ -10,8 +10,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/names.h"
-#include "src/owsctl/verbs.h"
 #include "src/owsctl/when.h"
 #include "src/text/printable.h"
 #include "src/text/refused.h"

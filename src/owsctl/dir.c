@@ -8,6 +8,7 @@
 #include "src/owsctl/json.h"
 #include "src/owsctl/open.h"
 #include "src/owsctl/text.h"
+#include "src/owsctl/verbs.h"
 
 #define LISTING_MAX (256u * 1024)
 

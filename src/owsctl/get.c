@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/names.h"
 #include "src/owsctl/reading.h"
 #include "src/owsctl/seen.h"

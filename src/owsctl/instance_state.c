@@ -2,7 +2,7 @@
 /* The state of an instance from what is seen of it, and the file that its command line names. */
 #include <string.h>
 
-#include "src/owsctl/instances.h"
+#include "src/owsctl/instance_state.h"
 
 enum instance_state instance_state_of(bool has_image, uint32_t state, bool alive, int lock,
                                       bool process)

@@ -7,7 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "src/owsctl/instances.h"
+#include "src/owsctl/ctl.h"
+#include "src/owsctl/instance_state.h"
 #include "src/owsctl/json.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/verbs.h"

@@ -2,6 +2,7 @@
 /* owsctl list: a line for each signal. */
 #include <getopt.h>
 
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/rows.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/verbs.h"

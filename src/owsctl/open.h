@@ -7,8 +7,8 @@
 #define OWSCTL_OPEN_H
 
 #include "hal/bus/bus.h"
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/served.h"
-#include "src/owsctl/verbs.h"
 #include "src/signal/error.h"
 
 #define OPEN_DEFAULT_TARGET "localhost:4304"

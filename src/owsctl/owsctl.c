@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/verbs.h"
 #include "src/owsd/standard.h"
 #include "src/text/refused.h"

@@ -6,6 +6,7 @@
 #include "src/owsctl/json.h"
 #include "src/owsctl/open.h"
 #include "src/owsctl/text.h"
+#include "src/owsctl/verbs.h"
 
 #define TEXT_MAX 65536
 

@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/json.h"
-#include "src/owsctl/verbs.h"
 #include "src/owsctl/when.h"
 #include "src/signal/error.h"
 

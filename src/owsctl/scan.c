@@ -7,8 +7,12 @@
 #include <unistd.h>
 
 #include "hal/chips/family.h"
+#include "src/owsctl/scan_board.h"
 #include "src/owsctl/scan_merge.h"
+#include "src/owsctl/scan_rio.h"
+#include "src/owsctl/scan_target.h"
 #include "src/owsctl/table.h"
+#include "src/owsctl/verbs.h"
 
 static const struct table_column columns[] = {
 	{"PATH"}, {"FAMILY"}, {"TYPE"}, {"ALIAS"}, {"BUS"}, {"ALARM"}, {"VALUES"},

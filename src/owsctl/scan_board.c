@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
+/* Nothing was found: what the board lacks for it. */
+
 #include <string.h>
 
 #include "src/board/board.h"
-#include "src/owsctl/scan.h"
+#include "src/owsctl/scan_board.h"
 
 static bool is_hardware(const char *target)
 {

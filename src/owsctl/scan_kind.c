@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
+/* What most people want of a device, by its family. */
 #include <stdio.h>
 #include <string.h>
 
-#include "src/owsctl/scan.h"
+#include "src/owsctl/scan_device.h"
+#include "src/owsctl/scan_kind.h"
 
 /* In periods of 0.1 s: measurements once a second, contacts as fast as it goes. */
 #define MEASURED 10

@@ -7,6 +7,7 @@
 #include "src/config/edit.h"
 #include "src/config/rio_write.h"
 #include "src/owsctl/scan_item.h"
+#include "src/owsctl/scan_rio.h"
 
 static struct rio_node *driver_of(struct rio *rio)
 {

@@ -6,7 +6,9 @@
 #include <string.h>
 
 #include "hal/owfs/path.h"
-#include "src/owsctl/scan.h"
+#include "src/owsctl/scan_device.h"
+#include "src/owsctl/scan_kind.h"
+#include "src/owsctl/scan_target.h"
 #include "src/owsctl/text.h"
 
 #define LISTING_MAX (256u * 1024)

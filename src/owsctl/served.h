@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-#include "src/owsctl/verbs.h"
+#include "src/owsctl/ctl.h"
 
 struct served {
 	bool runs;          /* there is an owsd of that name, and it lives */

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/names.h"
 #include "src/owsctl/reading.h"
 #include "src/owsctl/verbs.h"

@@ -4,6 +4,7 @@
 #include <getopt.h>
 
 #include "src/owsctl/condition.h"
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/names.h"
 #include "src/owsctl/rows.h"
 #include "src/owsctl/seen.h"

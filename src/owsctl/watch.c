@@ -4,66 +4,14 @@
 #include <getopt.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/terminal.h"
 #include "src/owsctl/verbs.h"
-#include "src/owsctl/watch.h"
+#include "src/owsctl/watch_screen.h"
 
 #define SHORTEST_SLEEP INT64_C(10000000)
-#define LONGEST_SLEEP INT64_C(500000000) /* ages and a dead owsd are seen without news */
-
-bool watch_over(const struct watch *watch)
-{
-	return terminal_asked_to_end() || watch->left == 0 || ows_now() >= watch->end_ns;
-}
-
-static int restarted(struct watch *watch, const struct ows_daemon *daemon)
-{
-	watch->generation = daemon->generation;
-	watch->alive = daemon->alive;
-	watch->news = 0;
-	rows_free(&watch->rows);
-	if (rows_collect(watch->h, watch->patterns, watch->pattern_count, watch->driver,
-	                 &watch->rows) != 0)
-		return -ENOMEM;
-	return WATCH_RESTARTED;
-}
-
-/* News may come faster than anybody reads. */
-static void pause_until(int64_t until_ns)
-{
-	int64_t left = until_ns - ows_now();
-	const struct timespec pause = {.tv_nsec = (long)(left % 1000000000)};
-
-	if (left > 0)
-		nanosleep(&pause, NULL);
-}
-
-int watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns)
-{
-	struct ows_daemon daemon;
-	int64_t now = ows_now();
-	int err;
-
-	if (timeout_ns > LONGEST_SLEEP)
-		timeout_ns = LONGEST_SLEEP;
-	if (timeout_ns > watch->end_ns - now)
-		timeout_ns = watch->end_ns - now;
-	if (timeout_ns > 0)
-		ctl_sleep(watch->h, &watch->news, timeout_ns);
-	pause_until(now + least_ns);
-	err = ows_daemon(watch->h, ows_now(), &daemon);
-	if (err && err != -ESTALE)
-		return WATCH_NOTHING;
-	if (daemon.generation != watch->generation)
-		return restarted(watch, &daemon);
-	if ((bool)daemon.alive == watch->alive)
-		return WATCH_NOTHING;
-	watch->alive = daemon.alive;
-	return daemon.alive ? WATCH_BACK : WATCH_LOST;
-}
 
 static void say_event(struct watch *watch, enum watch_event event)
 {
@@ -158,7 +106,7 @@ static int watch_lines(struct watch *watch)
 		print_changes(watch);
 		if (watch_over(watch) || !ctl_flush_lines() || ctl_reader_gone())
 			return CTL_DONE;
-		event = watch_sleep(watch, SHORTEST_SLEEP, LONGEST_SLEEP);
+		event = watch_sleep(watch, SHORTEST_SLEEP, INT64_MAX);
 		if (event < 0)
 			return ctl_fail("no memory");
 		if (event != WATCH_NOTHING)
@@ -172,7 +120,7 @@ static int begin(struct watch *watch, bool screen)
 	int status;
 
 	ows_daemon(watch->h, ows_now(), &daemon);
-	if (restarted(watch, &daemon) < 0)
+	if (watch_collect(watch, &daemon) < 0)
 		return ctl_fail("no memory");
 	if (watch->rows.count == 0 && watch->pattern_count > 0) {
 		rows_free(&watch->rows);

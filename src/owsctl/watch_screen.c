@@ -5,11 +5,11 @@
 #include <string.h>
 #include <time.h>
 
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/terminal.h"
 #include "src/owsctl/text.h"
-#include "src/owsctl/verbs.h"
-#include "src/owsctl/watch.h"
+#include "src/owsctl/watch_screen.h"
 
 #define BETWEEN_KEYS INT64_C(50000000)
 #define BETWEEN_PICTURES INT64_C(100000000)

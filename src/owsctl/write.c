@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "src/owsctl/open.h"
+#include "src/owsctl/verbs.h"
 
 int verb_write(struct ctl *ctl, int argc, char **argv)
 {

@@ -3,7 +3,7 @@
 #ifndef TESTS_UNIT_AID_CAUGHT_H
 #define TESTS_UNIT_AID_CAUGHT_H
 
-#include "src/owsctl/verbs.h"
+#include "src/owsctl/ctl.h"
 
 extern struct ctl caught_ctl;
 extern char *out, *err; /* of the last run */

@@ -7,7 +7,8 @@
 
 #include "hal/chips/family.h"
 #include "src/owsctl/open.h"
-#include "src/owsctl/scan.h"
+#include "src/owsctl/scan_device.h"
+#include "src/owsctl/scan_kind.h"
 
 void setUp(void)
 {

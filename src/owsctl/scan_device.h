@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The devices of a target: found, looked at, and made into a table, JSON or a configuration. */
-#ifndef OWSCTL_SCAN_H
-#define OWSCTL_SCAN_H
+/* What `owsctl scan` finds: devices, and what each of them has. */
+#ifndef OWSCTL_SCAN_DEVICE_H
+#define OWSCTL_SCAN_DEVICE_H
 
 #include "src/owsctl/json.h"
 #include "src/owsctl/open.h"
@@ -43,23 +43,5 @@ struct scan {
 	struct scan_device *device; /* sorted by path */
 	unsigned count;
 };
-
-/* The kind of a family, or NULL. */
-const struct scan_kind *scan_kind_of(uint8_t family);
-
-/* Find all devices and read them. CTL_DONE, or CTL_FAILED after having said why. */
-int scan_target(struct target *target, struct scan *scan);
-void scan_free(struct scan *scan);
-/*
- * Nothing was found: say on stderr which board this is and what is missing there. Of a target that
- * is not this machine's hardware, nothing is said.
- */
-void scan_board(const char *target);
-
-/*
- * Print a configuration with that TargetName, which may be several; without outputs if inputs_only.
- * CTL_DONE, or CTL_FAILED after having said why; then nothing was printed.
- */
-int scan_rio(const struct scan *scan, const char *target, bool several, bool inputs_only);
 
 #endif

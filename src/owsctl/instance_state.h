@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* An instance of owsd as `owsctl instances` shows it. */
-#ifndef OWSCTL_INSTANCES_H
-#define OWSCTL_INSTANCES_H
+#ifndef OWSCTL_INSTANCE_STATE_H
+#define OWSCTL_INSTANCE_STATE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What the live table and the plain lines of `owsctl watch` have in common. */
-#ifndef OWSCTL_WATCH_H
-#define OWSCTL_WATCH_H
+#ifndef OWSCTL_WATCH_SLEEP_H
+#define OWSCTL_WATCH_SLEEP_H
 
 #include "src/owsctl/rows.h"
 
@@ -20,15 +20,14 @@ struct watch {
 	struct reading *reading;
 };
 
-/* The table on the terminal until the end; exit status. */
-int watch_screen(struct watch *watch);
-
 enum watch_event {
 	WATCH_NOTHING,
 	WATCH_RESTARTED, /* rows were collected anew: all changed */
 	WATCH_LOST,      /* owsd stopped or does not beat */
 	WATCH_BACK,      /* it beats again */
 };
+/* Collect the rows of this owsd. WATCH_RESTARTED or -ENOMEM. */
+int watch_collect(struct watch *watch, const struct ows_daemon *daemon);
 /*
  * Sleep until news, at least least_ns (below 1 s) and at most timeout_ns, and follow owsd over
  * restarts. -ENOMEM, else an event.
