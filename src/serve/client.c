@@ -8,7 +8,8 @@
 #include <unistd.h>
 
 #include "hal/owfs/frame.h"
-#include "src/serve/server.h"
+#include "src/serve/client.h"
+#include "src/serve/directory.h"
 
 #define FIRST_READ AREA_ANSWER
 
@@ -89,6 +90,13 @@ static void put_free(struct serve *s, struct client *c)
 	s->accepting = true;
 }
 
+static void release_directory(struct client *c)
+{
+	if (c->directory)
+		directory_release(c->directory);
+	c->directory = NULL;
+}
+
 static void client_close(struct serve *s, struct client *c)
 {
 	bool engine_has_it = c->state == CLIENT_WORKING || c->lent;
@@ -101,10 +109,8 @@ static void client_close(struct serve *s, struct client *c)
 	count(s, COUNT_clients, (uint64_t)-1);
 	if (c->state == CLIENT_QUEUED)
 		s->queued--;
-	if (!engine_has_it && c->directory) {
-		work_release(s, c->directory);
-		c->directory = NULL;
-	}
+	if (!engine_has_it)
+		release_directory(c);
 	if (engine_has_it)
 		c->state = CLIENT_LEFT;
 	else
@@ -130,10 +136,8 @@ void client_back(struct serve *s, struct client *c)
 	c->lent = false;
 	if (c->past)
 		drop_past(c);
-	if (c->state != CLIENT_WORKING && c->directory) {
-		work_release(s, c->directory);
-		c->directory = NULL;
-	}
+	if (c->state != CLIENT_WORKING)
+		release_directory(c);
 	if (c->state == CLIENT_LEFT)
 		put_free(s, c);
 	else
@@ -236,7 +240,8 @@ static void send_alive(struct serve *s, struct client *c)
 /* The answer is out. What a bus still has of the request stays as it is until that is back. */
 static void next_request(struct serve *s, struct client *c)
 {
-	work_end(s, c);
+	if (!c->lent)
+		release_directory(c);
 	c->served++;
 	c->past = c->length;
 	if (c->request.type != FRAME_NOP)
@@ -308,18 +313,19 @@ static bool receive(struct serve *s, struct client *c)
 	return true;
 }
 
-static void read_request(struct serve *s, struct client *c)
+/* True: the client has a request. */
+static bool read_request(struct serve *s, struct client *c)
 {
 	int state;
 
 	if (c->lent) /* a bus still has what is in the area */
-		return;
+		return false;
 	state = request_parse(c->area, c->have, &c->request, &c->length);
 	if (state == 0 && c->readable) {
 		c->need = c->length;
 		if (!receive(s, c)) {
 			client_close(s, c);
-			return;
+			return false;
 		}
 		state = request_parse(c->area, c->have, &c->request, &c->length);
 	}
@@ -337,11 +343,11 @@ static void read_request(struct serve *s, struct client *c)
 			c->request.flags &= ~FRAME_PERSIST;
 			count(s, COUNT_not_kept, 1);
 		}
-		work_begin(s, c);
 	}
+	return state > 0;
 }
 
-void client_turn(struct serve *s, struct client *c)
+bool client_turn(struct serve *s, struct client *c)
 {
 	switch ((enum client_state)c->state) {
 	case CLIENT_FREE:
@@ -349,14 +355,14 @@ void client_turn(struct serve *s, struct client *c)
 	case CLIENT_WORKING:
 	case CLIENT_QUEUED:
 	case CLIENT_APPLYING:
-		return;
+		return false;
 	case CLIENT_READING:
-		read_request(s, c);
-		return;
+		return read_request(s, c);
 	case CLIENT_SENDING:
 		go_on_sending(s, c);
-		return;
+		return false;
 	}
+	return false;
 }
 
 /* --- Time limits ------------------------------------------------------------------------------ */
@@ -389,11 +395,8 @@ void clients_look(struct serve *s)
 	for (unsigned i = 0; i < s->used; i++) {
 		struct client *c = &s->clients[i];
 
-		if (c->state == CLIENT_APPLYING) {
-			work_applying(s, c);
-			if (c->state == CLIENT_APPLYING && s->now_ns + APPLY_LOOK_NS < next)
-				next = s->now_ns + APPLY_LOOK_NS;
-		}
+		if (c->state == CLIENT_APPLYING && s->now_ns + APPLY_LOOK_NS < next)
+			next = s->now_ns + APPLY_LOOK_NS;
 		look(s, c);
 		if (limit_of(c) < next)
 			next = limit_of(c);

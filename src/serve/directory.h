@@ -26,6 +26,11 @@ struct directory {
 	uint32_t seen[DIRECTORY_SEEN]; /* hash set of offsets + 1 */
 };
 
+static inline void directory_release(struct directory *directory)
+{
+	directory->used = false;
+}
+
 void directory_begin(struct directory *directory);
 /* Where the next target puts its full paths, each ended by '\n', and how much room there is. */
 uint8_t *directory_room(struct directory *directory, uint32_t *room);

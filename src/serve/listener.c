@@ -13,7 +13,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "src/serve/server.h"
+#include "src/serve/client.h"
+#include "src/serve/listener.h"
 #include "src/shm/owner.h"
 
 /* Those who wait for a place; the kernel's net.core.somaxconn may be less. */

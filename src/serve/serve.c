@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The server of the owserver protocol: its thread, its start and end, and what a reload changes. */
 #include <errno.h>
 #include <sched.h>
 #include <signal.h>
@@ -11,7 +12,12 @@
 
 #include "src/config/own.h"
 #include "src/libows/ows.h"
-#include "src/serve/server.h"
+#include "src/serve/client.h"
+#include "src/serve/listener.h"
+#include "src/serve/serve.h"
+#include "src/serve/work.h"
+#include "src/serve/work_directory.h"
+#include "src/serve/work_write.h"
 #include "src/shm/segment.h"
 
 #define STACK_SIZE (128 * 1024)
@@ -153,7 +159,8 @@ static void serve_round(struct serve *s)
 		s->round_at = (s->round_at + 1) % SERVER_CLIENTS;
 		s->round_count--;
 		c->queued = false;
-		client_turn(s, c);
+		if (client_turn(s, c))
+			work_begin(s, c);
 	}
 }
 
@@ -206,8 +213,10 @@ static void *run(void *arg)
 			s->accepting = listeners_accept(s);
 		serve_round(s);
 		work_queue(s);
-		if (s->now_ns >= s->look_ns)
+		if (s->now_ns >= s->look_ns) {
+			work_look(s);
 			clients_look(s);
+		}
 	}
 	return NULL;
 }

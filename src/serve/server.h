@@ -10,9 +10,9 @@
 #include "src/serve/guests.h"
 #include "src/serve/kept.h"
 #include "src/serve/request.h"
-#include "src/serve/serve.h"
 #include "src/serve/signals.h"
 #include "src/serve/via.h"
+#include "src/text/log.h"
 
 #define SERVER_CLIENTS 512
 #define SERVER_DIRECTORIES 4
@@ -171,43 +171,5 @@ static inline void count(struct serve *s, enum serve_counter what, uint64_t by)
 {
 	bus_count(&s->counters[what], by);
 }
-
-/* listener.c: 0 or a negative errno with the reason in why */
-int listeners_open(struct serve *s, char *why, size_t why_size);
-void listeners_close(struct serve *s);
-/* Take in some of those who wait; false: nobody waits any more, or there is no place for more. */
-bool listeners_accept(struct serve *s);
-
-/* client.c: connections, bytes and their time limits */
-struct client *client_open(struct serve *s, int fd, bool network);
-/* What a bus still had of it is back. */
-void client_back(struct serve *s, struct client *c);
-void client_event(struct serve *s, struct client *c, uint32_t events);
-/* Its turn in the round: at most one request. */
-void client_turn(struct serve *s, struct client *c);
-/* Look at all time limits; sets s->look_ns. */
-void clients_look(struct serve *s);
-/* In the state from now on; the next time limit counts from here. */
-void client_enter(struct serve *s, struct client *c, enum client_state state);
-/* Close the one that is idle for longest, if that is long; else s->look_ns is when it will be. */
-bool client_evict(struct serve *s);
-/* What is sent from now on. */
-void client_send(struct serve *s, struct client *c, const uint8_t *bytes, uint32_t len);
-/* Where the data of an answer go, behind room for its header. */
-uint8_t *client_room(struct client *c);
-uint32_t client_room_size(struct client *c);
-
-/* work.c: from a request to its answer */
-void work_begin(struct serve *s, struct client *c);
-/* The engine has answered. */
-void work_answered(struct serve *s, struct client *c);
-/* Clients that wait for a directory: is one free? Let some go on. */
-bool work_waits(struct serve *s);
-void work_queue(struct serve *s);
-/* Look whether the command has been carried out. */
-void work_applying(struct serve *s, struct client *c);
-/* The answer is on its way, or nobody waits for it. */
-void work_end(struct serve *s, struct client *c);
-void work_release(struct serve *s, struct directory *directory);
 
 #endif

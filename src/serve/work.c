@@ -4,145 +4,18 @@
  * for, one step after another, and what the client gets.
  */
 #include <errno.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "hal/owfs/frame.h"
+#include "src/serve/answer.h"
+#include "src/serve/client.h"
 #include "src/serve/work.h"
-#include "src/shm/word.h"
-
-/* --- Answers ---------------------------------------------------------------------------------- */
-
-/* payload bytes are in client_room(). */
-static void answer_data(struct serve *s, struct client *c, int32_t ret, uint32_t payload,
-                        uint32_t size, int32_t offset)
-{
-	struct frame_header h = {.payload = (int32_t)payload,
-	                         .type = ret,
-	                         .flags = c->request.flags,
-	                         .size = (int32_t)size,
-	                         .offset = offset};
-	uint8_t *data = client_room(c);
-
-	if (ret < 0)
-		count(s, COUNT_errors, 1);
-	frame_put_header(data - FRAME_HEADER, &h);
-	client_send(s, c, data - FRAME_HEADER, FRAME_HEADER + payload);
-}
-
-void answer_code(struct serve *s, struct client *c, int32_t code)
-{
-	answer_data(s, c, code, 0, 0, 0);
-}
-
-void answer_error(struct serve *s, struct client *c, int err)
-{
-	answer_code(s, c, code_of(err));
-}
-
-/* len bytes of value are in the room: the part that the client wants. */
-void answer_value(struct serve *s, struct client *c, uint32_t len)
-{
-	uint32_t offset = (uint32_t)c->request.offset, size = (uint32_t)c->request.size;
-	uint8_t *data = client_room(c);
-
-	if (c->request.offset < 0 || offset >= len) {
-		answer_data(s, c, 0, 0, 0, 0);
-		return;
-	}
-	len -= offset;
-	if (size < len)
-		len = size;
-	if (offset)
-		memmove(data, data + offset, len);
-	answer_data(s, c, (int32_t)len, len, len, (int32_t)offset);
-}
-
-void answer_written(struct serve *s, struct client *c, uint32_t taken)
-{
-	answer_data(s, c, 0, 0, taken, 0);
-}
-
-/* --- The engine ------------------------------------------------------------------------------- */
-
-/* Targets are counted now as they were when the engine was asked. */
-bool work_same_targets(const struct serve *s, const struct client *c)
-{
-	return c->guest.generation == s->image->header->generation;
-}
-
-unsigned work_targets(const struct serve *s)
-{
-	return s->config->target_count;
-}
-
-static bool is_up(const struct serve *s, unsigned target)
-{
-	return word_get(&s->image->targets[target].state) == 1;
-}
-
-void work_ask(struct serve *s, struct client *c, enum client_step step, enum bus_op op, int lane,
-              uint8_t *data, uint32_t len)
-{
-	c->step = (uint8_t)step;
-	c->guest = (struct engine_guest){.op = (uint8_t)op,
-	                                 .fresh = c->node.fresh,
-	                                 .lane = lane,
-	                                 .generation = s->image->header->generation,
-	                                 .path = c->path,
-	                                 .data = data,
-	                                 .len = len,
-	                                 .offset = op == BUS_WRITE ? (uint32_t)c->request.offset
-	                                                           : 0,
-	                                 .tokens = c->via.tokens,
-	                                 .token_count = c->via.count};
-	count(s, COUNT_bus_requests, 1);
-	if (c->state != CLIENT_WORKING)
-		client_enter(s, c, CLIENT_WORKING);
-	guests_ask(&s->guests, &c->guest);
-}
-
-/* The path as the target counts its buses; the lane that has to answer. */
-int work_path(struct serve *s, struct client *c)
-{
-	const struct node *node = &c->node;
-
-	if (node->bus < 0) {
-		snprintf(c->path, sizeof(c->path), "%s", node->path);
-		return GUEST_ANY_LANE;
-	}
-	snprintf(c->path, sizeof(c->path), "/bus.%u%s", s->buses.bus[node->bus].number,
-	         node->path[1] ? node->path : "");
-	return s->buses.bus[node->bus].target;
-}
-
-/* A property of the device. */
-void work_device_path(struct client *c, const char *property)
-{
-	snprintf(c->path, sizeof(c->path), "%.*s%s", (int)c->node.device_len, c->node.path,
-	         property);
-}
-
-/* Of a directory that each target has a part of: the next one that is up. */
-void work_next_target(struct serve *s, struct client *c)
-{
-	while (c->target < work_targets(s) && !is_up(s, c->target))
-		c->target++;
-}
-
-bool work_is_directory(const struct node *node)
-{
-	return node->slash || node->devices || node->kind == NODE_SIGNALS ||
-	       node->kind == NODE_CODES || (node->has_device && !node->path[node->device_len]);
-}
+#include "src/serve/work_ask.h"
+#include "src/serve/work_directory.h"
+#include "src/serve/work_read.h"
+#include "src/serve/work_type.h"
+#include "src/serve/work_write.h"
 
 /* --- Presence --------------------------------------------------------------------------------- */
-
-static void reply_id(struct serve *s, struct client *c, const uint8_t rom[ROM_LEN])
-{
-	memcpy(client_room(c), rom, ROM_LEN);
-	answer_data(s, c, 0, ROM_LEN, 0, 0);
-}
 
 static void begin_present(struct serve *s, struct client *c)
 {
@@ -152,7 +25,7 @@ static void begin_present(struct serve *s, struct client *c)
 	if (node->kind == NODE_SIGNAL && !signals_has(s->signals, node->name))
 		answer_error(s, c, -ENOENT);
 	else if (node->kind != NODE_TARGET || node->devices)
-		reply_id(s, c, none);
+		answer_id(s, c, none);
 	else
 		work_ask(s, c, STEP_PROBE, BUS_PROBE, work_path(s, c), NULL, 0);
 }
@@ -167,12 +40,12 @@ static void present_answered(struct serve *s, struct client *c, int err)
 		if (rom_parse((const char *)client_room(c), c->guest.answer.len, rom))
 			answer_error(s, c, -EIO);
 		else
-			reply_id(s, c, rom);
+			answer_id(s, c, rom);
 	} else if (c->node.has_device && !c->node.has_rom) {
 		work_device_path(c, "/address");
 		work_ask(s, c, STEP_ADDRESS, BUS_READ, GUEST_ANY_LANE, client_room(c), 64);
 	} else {
-		reply_id(s, c, c->node.rom);
+		answer_id(s, c, c->node.rom);
 	}
 }
 
@@ -198,16 +71,16 @@ static void begin_dir(struct serve *s, struct client *c)
 }
 
 /* With the path understood, and its bus known. */
-void work_go_on(struct serve *s, struct client *c)
+static void go_on(struct serve *s, struct client *c)
 {
-	if (c->node.bus >= 0 && (unsigned)c->node.bus >= s->buses.count) {
+	while (c->node.bus >= 0 && (unsigned)c->node.bus >= s->buses.count) {
 		if (c->once_more) {
 			answer_error(s, c, -ENODEV);
 			return;
 		}
 		c->once_more = true;
-		work_want_directory(s, c, STEP_BUSES);
-		return;
+		if (!work_want_directory(s, c, STEP_BUSES))
+			return;
 	}
 	c->target = 0;
 	c->worst = WORK_NOT_YET;
@@ -291,7 +164,15 @@ void work_begin(struct serve *s, struct client *c)
 	if (c->node.kind == NODE_NONE || (!lists && is_no_directory(&c->node)))
 		answer_error(s, c, -ENOENT);
 	else
-		work_go_on(s, c);
+		go_on(s, c);
+}
+
+static void type_known(struct serve *s, struct client *c)
+{
+	if (c->request.type == FRAME_WRITE)
+		work_write_target(s, c);
+	else
+		work_show(s, c);
 }
 
 void work_answered(struct serve *s, struct client *c)
@@ -311,7 +192,8 @@ void work_answered(struct serve *s, struct client *c)
 		return;
 	case STEP_DIR:
 	case STEP_BUSES:
-		work_listed(s, c, err);
+		if (work_listed(s, c, err))
+			go_on(s, c);
 		return;
 	case STEP_REFUSE:
 		answer_error(s, c, err ? err : -EISDIR);
@@ -322,15 +204,21 @@ void work_answered(struct serve *s, struct client *c)
 		return;
 	case STEP_FAMILY:
 	case STEP_STRUCTURE:
-		work_typed(s, c, err);
+		if (work_typed(s, c, err))
+			type_known(s, c);
 		return;
 	}
 }
 
-void work_end(struct serve *s, struct client *c)
+void work_queue(struct serve *s)
 {
-	if (!c->directory || c->lent)
-		return;
-	work_release(s, c->directory);
-	c->directory = NULL;
+	for (int i = 0; i < SERVER_DIRECTORIES; i++) {
+		bool ended;
+		struct client *c = work_unqueue(s, &ended);
+
+		if (!c)
+			return;
+		if (ended)
+			go_on(s, c);
+	}
 }

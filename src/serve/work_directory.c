@@ -5,9 +5,11 @@
 #include <string.h>
 
 #include "hal/owfs/frame.h"
-#include "src/serve/work.h"
+#include "src/serve/answer.h"
+#include "src/serve/client.h"
+#include "src/serve/work_ask.h"
+#include "src/serve/work_directory.h"
 
-static void ask_target(struct serve *s, struct client *c);
 static void form_directory(struct serve *s, struct client *c)
 {
 	struct directory_form form = {
@@ -34,20 +36,22 @@ static void form_directory(struct serve *s, struct client *c)
 		client_send(s, c, c->directory->out, c->directory->out_len);
 }
 
-static void listed(struct serve *s, struct client *c)
+/* True: the look for buses has ended. */
+static bool listed(struct serve *s, struct client *c)
 {
 	if (c->step == STEP_BUSES) {
-		work_release(s, c->directory);
+		directory_release(c->directory);
 		c->directory = NULL;
-		work_go_on(s, c);
-	} else if (c->worst < 0) {
-		answer_error(s, c, c->worst);
-	} else {
-		form_directory(s, c);
+		return true;
 	}
+	if (c->worst < 0)
+		answer_error(s, c, c->worst);
+	else
+		form_directory(s, c);
+	return false;
 }
 
-static void ask_target(struct serve *s, struct client *c)
+static bool ask_target(struct serve *s, struct client *c)
 {
 	bool buses = c->step == STEP_BUSES, every = buses || c->node.every;
 	int lane = GUEST_ANY_LANE;
@@ -59,8 +63,7 @@ static void ask_target(struct serve *s, struct client *c)
 		if (c->target >= work_targets(s)) {
 			if (c->worst == WORK_NOT_YET)
 				c->worst = -ENOTCONN;
-			listed(s, c);
-			return;
+			return listed(s, c);
 		}
 		lane = (int)c->target;
 		snprintf(c->path, sizeof(c->path), "%s", buses ? "/" : c->node.path);
@@ -69,9 +72,10 @@ static void ask_target(struct serve *s, struct client *c)
 	}
 	to = directory_room(c->directory, &room);
 	work_ask(s, c, buses ? STEP_BUSES : STEP_DIR, BUS_DIR, lane, to, room);
+	return false;
 }
 
-static void begin_directory(struct serve *s, struct client *c, struct directory *directory)
+static bool begin_directory(struct serve *s, struct client *c, struct directory *directory)
 {
 	c->directory = directory;
 	directory->used = true;
@@ -80,8 +84,7 @@ static void begin_directory(struct serve *s, struct client *c, struct directory 
 	c->worst = WORK_NOT_YET;
 	if (c->node.kind == NODE_SIGNALS && c->step != STEP_BUSES) {
 		c->worst = signals_list(s->signals, directory) ? 0 : -EMSGSIZE;
-		listed(s, c);
-		return;
+		return listed(s, c);
 	}
 	if (c->node.kind == NODE_CODES && c->step != STEP_BUSES) {
 		char name[16];
@@ -91,16 +94,9 @@ static void begin_directory(struct serve *s, struct client *c, struct directory 
 			directory_add(directory, name,
 			              (size_t)snprintf(name, sizeof(name), "text.%u", i));
 		c->worst = 0;
-		listed(s, c);
-		return;
+		return listed(s, c);
 	}
-	ask_target(s, c);
-}
-
-void work_release(struct serve *s, struct directory *directory)
-{
-	(void)s;
-	directory->used = false;
+	return ask_target(s, c);
 }
 
 static struct directory *free_directory(struct serve *s)
@@ -130,34 +126,32 @@ static struct client *first_queued(struct serve *s)
 	return first;
 }
 
-void work_queue(struct serve *s)
+struct client *work_unqueue(struct serve *s, bool *ended)
 {
-	for (int i = 0; i < SERVER_DIRECTORIES; i++) {
-		struct directory *directory = free_directory(s);
-		struct client *c = s->queued && directory ? first_queued(s) : NULL;
+	struct directory *directory = free_directory(s);
+	struct client *c = s->queued && directory ? first_queued(s) : NULL;
 
-		if (!c)
-			return;
-		s->queued--;
-		c->state = CLIENT_READING; /* until its work says otherwise, now */
-		begin_directory(s, c, directory);
-	}
+	if (!c)
+		return NULL;
+	s->queued--;
+	c->state = CLIENT_READING; /* until its work says otherwise, now */
+	*ended = begin_directory(s, c, directory);
+	return c;
 }
 
-void work_want_directory(struct serve *s, struct client *c, enum client_step step)
+bool work_want_directory(struct serve *s, struct client *c, enum client_step step)
 {
 	struct directory *directory = s->queued ? NULL : free_directory(s);
 
 	c->step = (uint8_t)step;
-	if (directory) {
-		begin_directory(s, c, directory);
-		return;
-	}
+	if (directory)
+		return begin_directory(s, c, directory);
 	s->queued++;
 	client_enter(s, c, CLIENT_QUEUED);
+	return false;
 }
 
-void work_listed(struct serve *s, struct client *c, int err)
+bool work_listed(struct serve *s, struct client *c, int err)
 {
 	bool buses = c->step == STEP_BUSES, every = buses || c->node.every;
 	struct node root = {.root = true};
@@ -165,11 +159,11 @@ void work_listed(struct serve *s, struct client *c, int err)
 	/* neither the room nor the request is free for anything else yet */
 	if (c->lent) {
 		answer_error(s, c, err);
-		return;
+		return false;
 	}
 	if ((every || c->node.root) && !work_same_targets(s, c)) {
 		answer_error(s, c, -EIO);
-		return;
+		return false;
 	}
 	if (!err)
 		directory_take(c->directory, buses ? &root : &c->node, &s->buses, c->guest.served,
@@ -182,8 +176,7 @@ void work_listed(struct serve *s, struct client *c, int err)
 		c->worst = !err || c->worst == 0 ? 0 : err;
 	if (every) {
 		c->target++;
-		ask_target(s, c);
-		return;
+		return ask_target(s, c);
 	}
-	listed(s, c);
+	return listed(s, c);
 }

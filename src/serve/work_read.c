@@ -5,15 +5,20 @@
 #include <string.h>
 
 #include "hal/owfs/frame.h"
+#include "src/serve/answer.h"
+#include "src/serve/client.h"
 #include "src/serve/units.h"
-#include "src/serve/work.h"
+#include "src/serve/work_ask.h"
+#include "src/serve/work_directory.h"
+#include "src/serve/work_read.h"
+#include "src/serve/work_type.h"
 
 /* The largest READ that a client may ask for. */
 #define READ_MOST 100050
 #define LONG_VALUE 4096
 
 /* The value is in the room as the bus gave it: into the client's units, and out. */
-static void show(struct serve *s, struct client *c)
+void work_show(struct serve *s, struct client *c)
 {
 	int n = units_show(c->node.type, c->request.flags, (char *)client_room(c), c->value_len,
 	                   client_room_size(c));
@@ -22,26 +27,6 @@ static void show(struct serve *s, struct client *c)
 		answer_error(s, c, n);
 	else
 		answer_value(s, c, (uint32_t)n);
-}
-
-/* A scale was asked for, and whether the value has one is not known: ask what it is. */
-bool work_ask_type(struct serve *s, struct client *c)
-{
-	const struct node *node = &c->node;
-	uint8_t *room = c->request.type == FRAME_WRITE ? client_room(c)
-	                                               : client_room(c) + c->value_len;
-
-	if (node->type || !node->has_device || !units_asked(c->request.flags))
-		return false;
-	if (!node->has_rom) {
-		work_device_path(c, "/family");
-		work_ask(s, c, STEP_FAMILY, BUS_READ, GUEST_ANY_LANE, room, 64);
-		return true;
-	}
-	snprintf(c->path, sizeof(c->path), "/structure/%02X%s", node->rom[0],
-	         node->path + node->device_len);
-	work_ask(s, c, STEP_STRUCTURE, BUS_READ, GUEST_ANY_LANE, room, 64);
-	return true;
 }
 
 void work_read_answered(struct serve *s, struct client *c, int err)
@@ -59,7 +44,7 @@ void work_read_answered(struct serve *s, struct client *c, int err)
 	if (c->value_len > LONG_VALUE && !c->node.type && units_asked(c->request.flags))
 		answer_error(s, c, -EMSGSIZE);
 	else if (!work_ask_type(s, c))
-		show(s, c);
+		work_show(s, c);
 }
 
 static void read_target(struct serve *s, struct client *c)
@@ -74,7 +59,7 @@ static void read_target(struct serve *s, struct client *c)
 	if (n >= 0) {
 		count(s, COUNT_kept_answers, 1);
 		c->value_len = (uint32_t)n;
-		show(s, c);
+		work_show(s, c);
 		return;
 	}
 	work_ask(s, c, STEP_READ, BUS_READ, work_path(s, c), client_room(c), client_room_size(c));
@@ -115,15 +100,6 @@ static void read_here(struct serve *s, struct client *c)
 		answer_value(s, c, (uint32_t)n);
 }
 
-void work_refuse_directory(struct serve *s, struct client *c)
-{
-	if (c->node.kind == NODE_TARGET && !c->node.devices &&
-	    (c->node.has_device || c->node.slash))
-		work_ask(s, c, STEP_REFUSE, BUS_PROBE, work_path(s, c), NULL, 0);
-	else
-		answer_error(s, c, -EISDIR);
-}
-
 void work_read(struct serve *s, struct client *c)
 {
 	if (c->request.size <= 0 || c->request.size > READ_MOST) {
@@ -136,44 +112,4 @@ void work_read(struct serve *s, struct client *c)
 		work_refuse_directory(s, c);
 	else
 		read_target(s, c);
-}
-
-void work_typed(struct serve *s, struct client *c, int err)
-{
-	const uint8_t *text = c->guest.data;
-	uint8_t rom[ROM_LEN] = {0};
-	char path[NODE_PATH_MAX];
-
-	if (err) {
-		answer_error(s, c, err);
-		return;
-	}
-	if (c->step == STEP_STRUCTURE) {
-		c->node.type = c->guest.answer.len ? (char)text[0] : 'a';
-	} else {
-		/* as a device of that family would be */
-		for (int i = 0; i < 2 && c->guest.answer.len == 2; i++)
-			rom[0] = (uint8_t)(rom[0] * 16 + (text[i] & 0xf) +
-			                   (text[i] >= 'A' ? 9 : 0));
-		if (rom[0]) {
-			struct node like;
-			char id[ROM_TEXT_MAX];
-
-			rom_print(rom, ROM_F_I, id);
-			snprintf(path, sizeof(path), "/%s%s", id,
-			         c->node.path + c->node.device_len);
-			node_parse(path, strlen(path), &like);
-			c->node.type = like.type;
-			c->node.has_rom = true;
-			memcpy(c->node.rom, rom, ROM_LEN);
-			if (!like.type && work_ask_type(s, c))
-				return;
-		}
-	}
-	if (!c->node.type)
-		answer_error(s, c, -EIO);
-	else if (c->request.type == FRAME_WRITE)
-		work_write_target(s, c);
-	else
-		show(s, c);
 }

@@ -3,8 +3,12 @@
 #include <errno.h>
 
 #include "hal/owfs/frame.h"
+#include "src/serve/answer.h"
+#include "src/serve/client.h"
 #include "src/serve/units.h"
-#include "src/serve/work.h"
+#include "src/serve/work_ask.h"
+#include "src/serve/work_type.h"
+#include "src/serve/work_write.h"
 
 void work_write_target(struct serve *s, struct client *c)
 {
@@ -52,6 +56,22 @@ static const char *name_of(const struct serve *s, const struct node *node)
 	return record < 0 ? NULL : s->config->items[record - 1].name;
 }
 
+/* Look whether the command has been carried out. */
+static void applying(struct serve *s, struct client *c)
+{
+	const char *name = name_of(s, &c->node);
+	int err = name ? signals_applied(s->signals, name, &c->command) : -ENOENT;
+
+	if (err == 0) {
+		kept_forget(s->kept, &c->node);
+		answer_written(s, c, c->request.data_len);
+	} else if (err != -EAGAIN || s->now_ns - c->since_ns >= APPLY_NS) {
+		answer_error(s, c, err == -EAGAIN ? -EIO : err);
+	} else if (s->now_ns + APPLY_LOOK_NS < s->look_ns) {
+		s->look_ns = s->now_ns + APPLY_LOOK_NS;
+	}
+}
+
 /* An output of the table: its control program commands it, and so does this client. */
 static void command(struct serve *s, struct client *c, const char *name)
 {
@@ -75,22 +95,7 @@ static void command(struct serve *s, struct client *c, const char *name)
 	else
 		client_enter(s, c, CLIENT_APPLYING);
 	if (c->state == CLIENT_APPLYING)
-		work_applying(s, c);
-}
-
-void work_applying(struct serve *s, struct client *c)
-{
-	const char *name = name_of(s, &c->node);
-	int err = name ? signals_applied(s->signals, name, &c->command) : -ENOENT;
-
-	if (err == 0) {
-		kept_forget(s->kept, &c->node);
-		answer_written(s, c, c->request.data_len);
-	} else if (err != -EAGAIN || s->now_ns - c->since_ns >= APPLY_NS) {
-		answer_error(s, c, err == -EAGAIN ? -EIO : err);
-	} else if (s->now_ns + APPLY_LOOK_NS < s->look_ns) {
-		s->look_ns = s->now_ns + APPLY_LOOK_NS;
-	}
+		applying(s, c);
 }
 
 void work_write(struct serve *s, struct client *c)
@@ -147,4 +152,11 @@ void work_written(struct serve *s, struct client *c, int err)
 		answer_written(s, c,
 		               units_convert(c->node.type, c->request.flags) ? c->request.data_len
 		                                                             : c->guest.answer.len);
+}
+
+void work_look(struct serve *s)
+{
+	for (unsigned i = 0; i < s->used; i++)
+		if (s->clients[i].state == CLIENT_APPLYING)
+			applying(s, &s->clients[i]);
 }

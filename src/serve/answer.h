@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT */
+/* Answers of the served protocol, made in a client's area and sent. */
+#ifndef SERVE_ANSWER_H
+#define SERVE_ANSWER_H
+
+#include "hal/owfs/path.h"
+#include "src/serve/server.h"
+
+void answer_code(struct serve *s, struct client *c, int32_t code);
+/* A negative errno. */
+void answer_error(struct serve *s, struct client *c, int err);
+/* len bytes of value are in client_room(): the part that the client wants. */
+void answer_value(struct serve *s, struct client *c, uint32_t len);
+void answer_written(struct serve *s, struct client *c, uint32_t taken);
+void answer_id(struct serve *s, struct client *c, const uint8_t rom[ROM_LEN]);
+
+#endif

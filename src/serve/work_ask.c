@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: MIT */
+/* What the engine is asked for: which path of which target, and what its answer goes on with. */
+#include <errno.h>
+#include <stdio.h>
+
+#include "src/serve/answer.h"
+#include "src/serve/client.h"
+#include "src/serve/work_ask.h"
+#include "src/shm/word.h"
+
+/* Targets are counted now as they were when the engine was asked. */
+bool work_same_targets(const struct serve *s, const struct client *c)
+{
+	return c->guest.generation == s->image->header->generation;
+}
+
+unsigned work_targets(const struct serve *s)
+{
+	return s->config->target_count;
+}
+
+static bool is_up(const struct serve *s, unsigned target)
+{
+	return word_get(&s->image->targets[target].state) == 1;
+}
+
+void work_ask(struct serve *s, struct client *c, enum client_step step, enum bus_op op, int lane,
+              uint8_t *data, uint32_t len)
+{
+	c->step = (uint8_t)step;
+	c->guest = (struct engine_guest){.op = (uint8_t)op,
+	                                 .fresh = c->node.fresh,
+	                                 .lane = lane,
+	                                 .generation = s->image->header->generation,
+	                                 .path = c->path,
+	                                 .data = data,
+	                                 .len = len,
+	                                 .offset = op == BUS_WRITE ? (uint32_t)c->request.offset
+	                                                           : 0,
+	                                 .tokens = c->via.tokens,
+	                                 .token_count = c->via.count};
+	count(s, COUNT_bus_requests, 1);
+	if (c->state != CLIENT_WORKING)
+		client_enter(s, c, CLIENT_WORKING);
+	guests_ask(&s->guests, &c->guest);
+}
+
+/* The path as the target counts its buses; the lane that has to answer. */
+int work_path(struct serve *s, struct client *c)
+{
+	const struct node *node = &c->node;
+
+	if (node->bus < 0) {
+		snprintf(c->path, sizeof(c->path), "%s", node->path);
+		return GUEST_ANY_LANE;
+	}
+	snprintf(c->path, sizeof(c->path), "/bus.%u%s", s->buses.bus[node->bus].number,
+	         node->path[1] ? node->path : "");
+	return s->buses.bus[node->bus].target;
+}
+
+/* A property of the device. */
+void work_device_path(struct client *c, const char *property)
+{
+	snprintf(c->path, sizeof(c->path), "%.*s%s", (int)c->node.device_len, c->node.path,
+	         property);
+}
+
+/* Of a directory that each target has a part of: the next one that is up. */
+void work_next_target(struct serve *s, struct client *c)
+{
+	while (c->target < work_targets(s) && !is_up(s, c->target))
+		c->target++;
+}
+
+bool work_is_directory(const struct node *node)
+{
+	return node->slash || node->devices || node->kind == NODE_SIGNALS ||
+	       node->kind == NODE_CODES || (node->has_device && !node->path[node->device_len]);
+}
+
+void work_refuse_directory(struct serve *s, struct client *c)
+{
+	if (c->node.kind == NODE_TARGET && !c->node.devices &&
+	    (c->node.has_device || c->node.slash))
+		work_ask(s, c, STEP_REFUSE, BUS_PROBE, work_path(s, c), NULL, 0);
+	else
+		answer_error(s, c, -EISDIR);
+}
