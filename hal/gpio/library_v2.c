@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* libgpiod 2.x */
-#include "hal/gpio/line.h"
+#include "hal/gpio/api.h"
 
 #if defined(OWSD_LIBGPIOD) && OWSD_LIBGPIOD == 2
 #include <errno.h>

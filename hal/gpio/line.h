@@ -7,68 +7,8 @@
 #ifndef HAL_GPIO_LINE_H
 #define HAL_GPIO_LINE_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "hal/gpio/api.h"
 
-#define GPIO_NAME_MAX 64 /* of a line, a consumer, a chip; with NUL */
-
-enum gpio_direction {
-	GPIO_AS_IT_IS, /* only look: nothing is changed */
-	GPIO_INPUT,    /* both edges are kept for gpio_edge() */
-	GPIO_OUTPUT,
-};
-enum gpio_bias { GPIO_BIAS_AS_IT_IS, GPIO_PULL_UP, GPIO_PULL_DOWN };
-enum gpio_drive { GPIO_PUSH_PULL, GPIO_OPEN_DRAIN, GPIO_OPEN_SOURCE };
-
-struct gpio_setup {
-	uint8_t direction; /* enum gpio_direction */
-	uint8_t bias;      /* enum gpio_bias */
-	uint8_t drive;     /* enum gpio_drive */
-	bool active_low;
-	bool value; /* of an output from its first moment on */
-};
-
-struct gpio_edge {
-	int64_t at_ns; /* when the kernel took the interrupt, CLOCK_BOOTTIME */
-	bool value;    /* the level after it, active-low taken into account */
-};
-
-struct gpio_info {
-	char name[GPIO_NAME_MAX];     /* "" when the board gave none */
-	char consumer[GPIO_NAME_MAX]; /* who has it; "" unknown or nobody */
-	bool used;
-	bool output;
-};
-
-struct gpio_chip;
-struct gpio_line;
-
-/* A generation of libgpiod, or what tests put in its place. */
-struct gpio_api {
-	const char *(*version)(void);
-	/* path: "/dev/gpiochip0". -ENOENT, -EACCES, -ENOTTY no GPIO chip. */
-	int (*open)(const char *path, struct gpio_chip **chip);
-	void (*close)(struct gpio_chip *chip);
-	const char *(*label)(struct gpio_chip *chip);
-	unsigned (*lines)(struct gpio_chip *chip);
-	int (*info)(struct gpio_chip *chip, unsigned offset, struct gpio_info *info);
-	/* -EBUSY somebody has it. consumer is what others see of us. */
-	int (*request)(struct gpio_chip *chip, unsigned offset, const struct gpio_setup *setup,
-	               const char *consumer, struct gpio_line **line);
-	int (*set)(struct gpio_line *line, bool value);
-	int (*get)(struct gpio_line *line); /* 0, 1; -ENODEV the chip is gone */
-	int (*edge)(struct gpio_line *line, struct gpio_edge *edge); /* 1 one, 0 none is kept */
-	int (*fd)(struct gpio_line *line); /* readable while an edge is kept */
-	/* An output's level afterwards is the driver's affair. */
-	void (*release)(struct gpio_line *line);
-};
-
-/* Edges that the kernel keeps for a line until they are taken. */
-#define GPIO_EDGES_KEPT 16
-
-/* The library of this build; NULL: none (LIBGPIOD=0). */
-extern const struct gpio_api *const gpio_library;
 /* What a test puts in its place, before any thread starts. */
 extern const struct gpio_api *gpio_substitute;
 

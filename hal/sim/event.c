@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
+/* What happens to a simulated network: a line of a scenario, read and made to happen. */
+#include "hal/sim/event.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "hal/sim/event.h"
-#include "hal/sim/scenario.h"
 
 static struct sim_slave *device(const struct sim_net *net, struct words *words,
                                 struct sim_event *event)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* What happens to a simulated network: a line of a scenario, read and made to happen. */
 #ifndef HAL_SIM_EVENT_H
 #define HAL_SIM_EVENT_H
 
@@ -10,5 +11,12 @@
  * later, ends the first. Returns how many; 0 when words failed.
  */
 unsigned event_parse(const struct sim_net *net, struct words *words, struct sim_event event[2]);
+
+/*
+ * Let one event happen at now: what follows "at TIME" in a scenario, as "unplug kitchen" or
+ * "short 0x18.2 for 5s". 0, -EINVAL with the reason in why, -ENOMEM.
+ */
+int sim_scenario_event(struct sim_net *net, const char *line, int64_t now, char *why,
+                       size_t why_size);
 
 #endif

@@ -13,11 +13,5 @@ int sim_scenario_read(const char *file, struct sim_net *net, char *why, size_t w
 /* The same from a text; name stands for the file in messages. */
 int sim_scenario_parse(const char *name, const char *text, struct sim_net *net, char *why,
                        size_t why_size);
-/*
- * Let one event happen at now: what follows "at TIME" in a scenario, as "unplug kitchen" or
- * "short 0x18.2 for 5s". 0, -EINVAL with the reason in why, -ENOMEM.
- */
-int sim_scenario_event(struct sim_net *net, const char *line, int64_t now, char *why,
-                       size_t why_size);
 
 #endif

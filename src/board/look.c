@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* What files of /proc and /sys, and the data of boards, say about this machine. */
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -13,6 +14,7 @@
 #include "hal/ds2482/look.h"
 #include "src/board/data.h"
 #include "src/board/files.h"
+#include "src/board/look.h"
 #include "src/board/report.h"
 
 #define BOARDS 48

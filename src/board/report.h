@@ -14,4 +14,7 @@ void report_mend(struct board_report *report, const char *format, ...)
 /* What is missing before the notes, else in the order in which it was added. */
 void report_sort(struct board_report *report);
 
+/* On each line; what mends it is indented below. */
+void board_print(const struct board_report *report, FILE *out);
+
 #endif

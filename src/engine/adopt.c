@@ -18,6 +18,7 @@
 #include "src/engine/publish.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
+#include "src/shm/carry.h"
 
 static uint64_t wait_of(const struct due_wheel *wheel, uint32_t entry)
 {

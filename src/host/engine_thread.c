@@ -13,6 +13,7 @@
 #include "src/host/private.h"
 #include "src/libows/ows.h"
 #include "src/serve/serve.h"
+#include "src/shm/futex.h"
 
 #define ENGINE_STACK (128 * 1024)
 /* A bell rung without news must not spin the engine. */

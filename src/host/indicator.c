@@ -10,8 +10,8 @@
 #include "hal/gpio/line.h"
 #include "src/host/indicator.h"
 #include "src/libows/ows.h"
+#include "src/shm/futex.h"
 #include "src/shm/reader.h"
-#include "src/shm/segment.h"
 
 #define MS INT64_C(1000000)
 #define SECOND (1000 * MS)

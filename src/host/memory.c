@@ -14,6 +14,9 @@
 #include "src/engine/table.h"
 #include "src/host/memory.h"
 #include "src/libows/ows.h"
+#include "src/shm/carry.h"
+#include "src/shm/futex.h"
+#include "src/shm/hint.h"
 #include "src/shm/owner.h"
 
 #define COMMANDS (sizeof(((struct memory *)0)->commands) / sizeof(struct memory_commands))

@@ -8,6 +8,7 @@
 #include "src/host/indicator.h"
 #include "src/host/private.h"
 #include "src/serve/serve.h"
+#include "src/shm/futex.h"
 
 /* How long the buses that a reload ends may take, all together. */
 #define END_NS 2000000000LL

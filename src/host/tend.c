@@ -5,6 +5,7 @@
 
 #include "src/host/private.h"
 #include "src/libows/ows.h"
+#include "src/shm/hint.h"
 #include "src/shm/segment.h"
 
 /* A consumer that takes the command segment away again and again has one made once a second. */

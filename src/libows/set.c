@@ -6,6 +6,7 @@
 #include "src/libows/handle.h"
 #include "src/libows/orphan.h"
 #include "src/libows/set.h"
+#include "src/shm/futex.h"
 #include "src/shm/word.h"
 #include "src/signal/value.h"
 

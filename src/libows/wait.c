@@ -5,6 +5,7 @@
 #include "src/libows/alive.h"
 #include "src/libows/handle.h"
 #include "src/libows/orphan.h"
+#include "src/shm/futex.h"
 
 int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns)
 {

@@ -13,6 +13,7 @@
 #include "src/owsctl/table.h"
 #include "src/owsctl/verbs.h"
 #include "src/owsctl/when.h"
+#include "src/shm/lock.h"
 #include "src/shm/remains.h"
 
 #define FIELD 400

@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "src/board/board.h"
+#include "src/board/look.h"
+#include "src/board/report.h"
 #include "src/owsctl/scan_board.h"
 
 static bool is_hardware(const char *target)

@@ -10,6 +10,7 @@
 #include "src/owsctl/names.h"
 #include "src/owsctl/reading.h"
 #include "src/owsctl/verbs.h"
+#include "src/shm/lock.h"
 #include "src/shm/remains.h"
 #include "src/signal/value.h"
 

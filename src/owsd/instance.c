@@ -8,6 +8,8 @@
 
 #include "src/libows/ows.h"
 #include "src/owsd/instance.h"
+#include "src/shm/hint.h"
+#include "src/shm/lock.h"
 #include "src/shm/segment.h"
 
 #define LOOK_NS 1000000000

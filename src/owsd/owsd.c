@@ -3,6 +3,8 @@
 #include <errno.h>
 
 #include "src/board/board.h"
+#include "src/board/look.h"
+#include "src/board/report.h"
 #include "src/config/buses.h"
 #include "src/config/load.h"
 #include "src/config/own.h"
@@ -15,7 +17,7 @@
 #include "src/owsd/instance.h"
 #include "src/owsd/notify.h"
 #include "src/owsd/standard.h"
-#include "src/shm/segment.h"
+#include "src/shm/futex.h"
 #include "src/text/log.h"
 #ifdef __GLIBC__
 #include <malloc.h>

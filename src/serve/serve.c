@@ -18,7 +18,7 @@
 #include "src/serve/work.h"
 #include "src/serve/work_directory.h"
 #include "src/serve/work_write.h"
-#include "src/shm/segment.h"
+#include "src/shm/futex.h"
 
 #define STACK_SIZE (128 * 1024)
 #define TAKE_NS 1000000 /* between looks whether the thread has taken a reload */

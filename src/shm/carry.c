@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "src/libows/ows.h"
+#include "src/shm/carry.h"
 #include "src/shm/commands.h"
 #include "src/shm/word.h"
 

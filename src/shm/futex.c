@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+/* Sleep on a word of the shared memory, and wake who sleeps there. */
+
 #include <errno.h>
 #include <limits.h>
 #include <linux/futex.h>
@@ -6,7 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "src/shm/segment.h"
+#include "src/shm/futex.h"
 
 /*
  * The plain call takes the kernel's old timespec of two longs. Where time_t is wider than long the

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
+/* Ranges of memory whose SIGBUS is caught, and the handler that catches it. */
 #include <errno.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdint.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/stat.h>
 
 #include "src/shm/guard.h"
-#include "src/shm/segment.h"
 
 /* base is 0 while the range is free or being set: the handler looks at it first. */
 static struct guard_range {
@@ -127,28 +127,9 @@ void guard_remove(const void *base)
 	pthread_mutex_unlock(&setting);
 }
 
-static bool guard_lost(const void *base)
+bool guard_lost(const void *base)
 {
 	struct guard_range *range = base != NULL ? guarded((uintptr_t)base) : NULL;
 
 	return range != NULL && __atomic_load_n(&range->lost, __ATOMIC_ACQUIRE) != 0;
-}
-
-int segment_guard(struct segment *segment)
-{
-	return guard_add(segment->base, segment->size, false);
-}
-
-void segment_unguard(struct segment *segment)
-{
-	guard_remove(segment->base);
-}
-
-bool segment_lost(const struct segment *segment)
-{
-	struct stat st;
-
-	if (guard_lost(segment->base))
-		return true;
-	return fstat(segment->fd, &st) == 0 && (size_t)st.st_size != segment->size;
 }

@@ -16,5 +16,7 @@
  * SIGBUS handler of its own. */
 int guard_add(void *base, size_t size, bool only_default);
 void guard_remove(const void *base);
+/* The file was truncated, and what is behind its end was touched. */
+bool guard_lost(const void *base);
 
 #endif

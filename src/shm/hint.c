@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "src/shm/hint.h"
 #include "src/shm/owner.h"
 #include "src/shm/segment.h"
 

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "src/shm/lock.h"
 #include "src/shm/owner.h"
 #include "src/shm/segment.h"
 

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "src/shm/lock.h"
 #include "src/shm/remains.h"
 
 #define FOLDER "/dev/shm"

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "src/shm/guard.h"
 #include "src/shm/owner.h"
 #include "src/shm/segment.h"
 
@@ -201,4 +202,23 @@ int segment_remove(const char *instance, enum segment_kind kind)
 		return -EINVAL;
 	final_path(instance, kind, path);
 	return unlink(path) < 0 ? -errno : 0;
+}
+
+int segment_guard(struct segment *segment)
+{
+	return guard_add(segment->base, segment->size, false);
+}
+
+void segment_unguard(struct segment *segment)
+{
+	guard_remove(segment->base);
+}
+
+bool segment_lost(const struct segment *segment)
+{
+	struct stat st;
+
+	if (guard_lost(segment->base))
+		return true;
+	return fstat(segment->fd, &st) == 0 && (size_t)st.st_size != segment->size;
 }

@@ -18,26 +18,6 @@ enum segment_kind { SEGMENT_IMAGE, SEGMENT_COMMAND };
 #define SEGMENT_NAME_MAX 32
 bool segment_name_ok(const char *instance);
 
-/*
- * Take the instance: one owsd for each name. Returns a descriptor to keep, or -EBUSY (*pid gets the
- * owner's), -EACCES, -EPERM (a file of another user is in the way), other errno. A corpse's lock (a
- * process that cannot die while stuck in the kernel) is left behind and *stolen set.
- */
-int segment_lock(const char *instance, pid_t *pid, bool *stolen);
-/*
- * Does a process hold the lock of the instance? 1 yes, with its number in *pid; 0 no, also where it
- * is a corpse, with the number of the last holder; -ENOENT: there is none; -EACCES: it belongs to
- * another user; -EPERM: nobody holds it, and no owsd whose image we read made it. Takes nothing.
- */
-int segment_lock_look(const char *instance, pid_t *pid);
-/*
- * Take the lock that is there, whoever's file it is, so that what the instance left can be removed.
- * A descriptor; -ENOENT none is there; -EBUSY an owsd runs; -EACCES; -EPERM what is there is no file.
- */
-int segment_lock_any(const char *instance, pid_t *pid);
-/* False: the lock's file was removed or replaced. What cannot be looked at counts as there. */
-bool segment_lock_held(int lock, const char *instance);
-
 struct segment {
 	char *base;
 	size_t size;
@@ -63,23 +43,8 @@ bool segment_named(const char *instance, const struct segment *segment);
 /* Map what an earlier owsd left (writable). -ENOENT none; -EPERM of another user. */
 int segment_open_old(const char *instance, enum segment_kind kind, struct segment *segment);
 void segment_close(struct segment *segment);
-/*
- * What stands behind an error of these functions, as the end of a message: /dev/shm is full, the
- * instance is another user's, or which file is in the way, whose it is and what removes it. Empty
- * where nothing is known. It never advises to remove what a running owsd may hold.
- */
-#define SEGMENT_HINT 240
-const char *segment_hint(const char *instance, int err, char text[SEGMENT_HINT]);
 /* Remove the name (the command segment is left in place at an ordinary end). */
 int segment_remove(const char *instance, enum segment_kind kind);
-
-/*
- * Futex on a word that other processes share. Never FUTEX_PRIVATE.
- * segment_wait: sleep while *word == seen, at most timeout_ns (negative: no limit). 0 woken or
- * changed, -ETIMEDOUT, -EINTR, -EFAULT the memory is gone.
- */
-int segment_wait(const uint32_t *word, uint32_t seen, int64_t timeout_ns);
-int segment_wake(const uint32_t *word, int how_many);
 
 /*
  * Guard a mapping against a consumer that truncates its file: a SIGBUS inside it maps private zero

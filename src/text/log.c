@@ -11,7 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "src/shm/segment.h"
+#include "src/shm/futex.h"
 #include "src/text/log.h"
 #include "src/text/printable.h"
 

@@ -4,6 +4,9 @@
  * of the other CPU's cache, a thread woken, and a request and its answer of the owserver protocol's
  * size over loopback TCP with nothing in between.
  */
+#include "src/shm/futex.h"
+#include "tests/bench/aid.h"
+
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <pthread.h>
@@ -16,9 +19,6 @@
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include "src/shm/segment.h"
-#include "tests/bench/aid.h"
 
 #define LINE 64
 #define WORDS (64 << 20)

@@ -8,8 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "hal/sim/event.h"
 #include "hal/sim/net.h"
-#include "hal/sim/scenario.h"
 #include "tests/endurance/part.h"
 #include "tests/unit/aid/plant.h"
 

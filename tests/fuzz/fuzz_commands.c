@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/shm/carry.h"
 #include "src/signal/value.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/unit/aid/scene.h"

@@ -11,6 +11,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "hal/sim/event.h"
 #include "hal/sim/scenario.h"
 #include "tests/fuzz/bus_host.h"
 

@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "hal/sim/adapter.h"
+#include "hal/sim/event.h"
 #include "hal/sim/scenario.h"
 #include "tests/kernel/control.h"
 #include "tests/kernel/vhci.h"

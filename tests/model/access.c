@@ -6,7 +6,7 @@
 
 #include "src/libows/handle.h"
 #include "src/libows/orphan.h"
-#include "src/shm/segment.h"
+#include "src/shm/futex.h"
 #include "tests/model/search.h"
 
 uint64_t read_plain(const volatile void *at, size_t size)

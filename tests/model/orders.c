@@ -5,6 +5,7 @@
  */
 #include "src/host/engine_thread.c"
 #include "src/libows/handle.h"
+#include "src/shm/carry.h"
 #include "src/shm/commands.h"
 #include "tests/model/suites.h"
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "src/libows/handle.h"
+#include "src/shm/futex.h"
 #include "src/shm/image.h"
 #include "src/shm/reader.h"
 #include "tests/model/suites.h"

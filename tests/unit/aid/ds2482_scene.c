@@ -5,6 +5,7 @@
 #include "unity.h"
 
 #include "hal/sim/crc.h"
+#include "hal/sim/event.h"
 #include "hal/sim/scenario.h"
 #include "tests/unit/aid/ds2482_scene.h"
 

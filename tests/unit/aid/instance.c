@@ -6,6 +6,8 @@
 
 #include "unity.h"
 
+#include "src/shm/carry.h"
+#include "src/shm/futex.h"
 #include "src/signal/value.h"
 #include "tests/unit/aid/instance.h"
 

@@ -6,6 +6,7 @@
 
 #include "src/engine/adopt.h"
 #include "src/engine/counters.h"
+#include "src/shm/carry.h"
 #include "tests/unit/aid/scene_private.h"
 
 static struct config_item *add_item(struct scene *s, const char *name, const char *path,

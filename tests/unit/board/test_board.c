@@ -11,6 +11,8 @@
 
 #include "src/board/board.h"
 #include "src/board/data.h"
+#include "src/board/look.h"
+#include "src/board/report.h"
 
 #define DATA "board/boards"
 

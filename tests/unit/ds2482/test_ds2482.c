@@ -8,7 +8,6 @@
 #include "unity.h"
 
 #include "hal/sim/crc.h"
-#include "hal/sim/scenario.h"
 #include "tests/unit/aid/ds2482_scene.h"
 
 void setUp(void)

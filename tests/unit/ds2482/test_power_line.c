@@ -5,8 +5,8 @@
 
 #include "unity.h"
 
+#include "hal/sim/event.h"
 #include "hal/sim/net.h"
-#include "hal/sim/scenario.h"
 #include "tests/unit/aid/fake_gpio.h"
 #include "tests/unit/aid/one_bus.h"
 #include "tests/unit/aid/plant.h"

@@ -10,6 +10,7 @@
 
 #include "unity.h"
 
+#include "src/shm/carry.h"
 #include "tests/unit/aid/recorded_readers.h"
 #include "tests/unit/aid/recording.h"
 

@@ -10,6 +10,7 @@
 
 #include "unity.h"
 
+#include "src/shm/futex.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal before[] = {

@@ -9,6 +9,7 @@
 
 #include "unity.h"
 
+#include "src/shm/futex.h"
 #include "src/signal/value.h"
 #include "tests/unit/aid/instance.h"
 

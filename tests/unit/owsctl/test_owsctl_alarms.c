@@ -10,6 +10,7 @@
 #include "unity.h"
 
 #include "src/owsctl/verbs.h"
+#include "src/shm/futex.h"
 #include "src/signal/value.h"
 #include "tests/unit/aid/caught.h"
 #include "tests/unit/aid/instance.h"

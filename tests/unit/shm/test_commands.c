@@ -8,6 +8,7 @@
 #include "unity.h"
 
 #include "src/libows/ows.h"
+#include "src/shm/carry.h"
 #include "src/shm/commands.h"
 
 #define COUNT 40

@@ -13,6 +13,8 @@
 #include "unity.h"
 
 #include "src/libows/ows.h"
+#include "src/shm/futex.h"
+#include "src/shm/lock.h"
 #include "src/shm/segment.h"
 
 #define SIZE 8192

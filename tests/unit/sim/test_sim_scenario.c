@@ -8,6 +8,7 @@
 
 #include "unity.h"
 
+#include "hal/sim/event.h"
 #include "hal/sim/master.h"
 #include "hal/sim/scenario.h"
 #include "tests/unit/aid/host.h"
