@@ -295,10 +295,11 @@ $(B)/unit/test_endurance: $(patsubst tests/endurance/%.c,$(B)/unit/endurance/%.o
 
 unit-programs: $(UNIT) replays
 
-# RUNNER runs programs of another architecture: RUNNER=qemu-aarch64-static
+# RUNNER runs programs of another architecture: RUNNER=qemu-aarch64-static.
+# UNIT_WITHOUT=test_rio leaves programs out
 unit: export RUNNER := $(RUNNER)
 unit: all $(UNIT) replays
-	@sh tests/unit/run $(UNIT) $(REPLAYS)
+	@sh tests/unit/run $(filter-out $(UNIT_WITHOUT:%=$(B)/unit/%),$(UNIT)) $(REPLAYS)
 
 # A month of faults in virtual time on every backend, five minutes of a processor; HOURS=168 is a
 # week in one. SEED=1, WORLD=native for one of them
