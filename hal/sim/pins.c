@@ -1,59 +1,102 @@
 /* SPDX-License-Identifier: MIT */
+/* The pins that drive and are driven, and the commands that read and write them. */
 #include "hal/sim/pins.h"
 
-static bool outside(const struct sim_slave *slave, unsigned pin, int64_t t)
+static struct sim_pins *state(struct sim_slave *slave)
 {
-	return sim_input_at(slave, pin, t) >= 0.5;
+	return sim_state(slave, sim_pins);
 }
 
-static uint8_t levels(const struct sim_slave *slave, const struct sim_pins *pins, int64_t t)
+static bool outside(const struct sim_slave *slave, unsigned input, int64_t t)
 {
+	return sim_input_at(slave, input, t) >= 0.5;
+}
+
+static uint8_t levels(const struct sim_slave *slave, int64_t t)
+{
+	const struct sim_pins *pins = slave->state;
 	unsigned level = 0;
 
 	for (unsigned i = 0; i < pins->count; i++)
-		level |= (unsigned)outside(slave, i, t) << i;
+		level |= (unsigned)outside(slave, pins->first + i, t) << i;
 	return (uint8_t)(level & pins->latch);
 }
 
 /* Did the outside change and change back between two looks? Few jumps settle it. */
-static bool jumped(const struct sim_slave *slave, unsigned pin, int64_t from, int64_t to)
+static bool jumped(const struct sim_slave *slave, unsigned input, int64_t from, int64_t to)
 {
-	bool level = outside(slave, pin, from);
+	bool level = outside(slave, input, from);
 
 	for (unsigned i = 0; i < 2 * SIM_MAX_STEPS; i++) {
-		from = sim_curve_next(&slave->input[pin], from);
+		from = sim_curve_next(&slave->input[input], from);
 		if (from > to)
 			return false;
-		if (outside(slave, pin, from) != level)
+		if (outside(slave, input, from) != level)
 			return true;
 	}
 	return false;
 }
 
-void sim_pins_start(struct sim_slave *slave, struct sim_pins *pins, unsigned count, int64_t t)
+void sim_pins_start(struct sim_slave *slave, unsigned first, unsigned count, int64_t t)
 {
-	*pins = (struct sim_pins){.latch = (uint8_t)((1u << count) - 1), .count = count, .seen = t};
-	pins->level = levels(slave, pins, t);
+	*state(slave) = (struct sim_pins){
+		.latch = (uint8_t)((1u << count) - 1), .first = first, .count = count, .seen = t};
+	state(slave)->level = levels(slave, t);
 }
 
-void sim_pins_follow(struct sim_slave *slave, struct sim_pins *pins, int64_t t)
+void sim_pins_follow(struct sim_slave *slave, int64_t t)
 {
-	uint8_t level = levels(slave, pins, t);
+	struct sim_pins *pins = state(slave);
+	uint8_t level = levels(slave, t);
 
 	pins->activity |= level ^ pins->level;
 	for (unsigned i = 0; i < pins->count; i++) {
 		uint8_t mask = (uint8_t)(1u << i);
 
 		if ((pins->latch & mask) && !(pins->activity & mask) &&
-		    jumped(slave, i, pins->seen, t))
+		    jumped(slave, pins->first + i, pins->seen, t))
 			pins->activity |= mask;
 	}
 	pins->level = level;
 	pins->seen = t;
 }
 
-void sim_pins_write(struct sim_slave *slave, struct sim_pins *pins, uint8_t latch, int64_t t)
+void sim_pins_write(struct sim_slave *slave, uint8_t latch, int64_t t)
 {
-	pins->latch = latch;
-	sim_pins_follow(slave, pins, t);
+	state(slave)->latch = latch;
+	sim_pins_follow(slave, t);
+}
+
+/* Two pins: pin A, latch A, pin B, latch B, and their complement above. Eight: their levels. */
+void sim_pins_send(struct sim_slave *slave, int64_t t)
+{
+	const struct sim_pins *pins = slave->state;
+	unsigned low = (pins->level & 1) | (pins->latch & 1) << 1 | (pins->level & 2) << 1 |
+	               (pins->latch & 2) << 2;
+
+	(void)t;
+	sim_send_byte(slave, pins->count == 8 ? pins->level : (uint8_t)(low | (~low & 15) << 4));
+}
+
+/* New latches and their complement: AAh, */
+void sim_pins_take(struct sim_slave *slave, int64_t t)
+{
+	if ((slave->taken[0] ^ slave->taken[1]) != 0xFF) {
+		sim_end(slave);
+		return;
+	}
+	sim_pins_write(slave, slave->taken[0] & ((1u << state(slave)->count) - 1) & 0xFF, t);
+	sim_send_byte(slave, 0xAA);
+}
+
+/* ... the pins as they are now, and the next two bytes. */
+void sim_pins_taken(struct sim_slave *slave, int64_t t)
+{
+	if (slave->got == 2) {
+		slave->got = 3;
+		sim_pins_send(slave, t);
+	} else {
+		slave->got = 0;
+		sim_receive(slave);
+	}
 }

@@ -20,6 +20,9 @@ enum {
 	ROM_OVERDRIVE_MATCH = 0x69,
 };
 
+/* tSPON: the strong pull-up has to come within 10 us of the command's last slot. */
+#define STRONG_WITHIN_NS 100000
+
 struct sim_slave *sim_slave_create(const struct sim_family *family, const uint8_t id[6])
 {
 	struct sim_slave *slave = calloc(1, sizeof(*slave));
@@ -85,10 +88,18 @@ void sim_receive(struct sim_slave *slave)
 	slave->bits = 0;
 }
 
+/* More of what the next checksum is of. */
+static void check(struct sim_slave *slave, const uint8_t *data, size_t n)
+{
+	slave->crc = slave->family->crc8 ? sim_crc8((uint8_t)slave->crc, data, n)
+	                                 : sim_crc16(slave->crc, data, n);
+}
+
 void sim_send(struct sim_slave *slave, const uint8_t *data, size_t n)
 {
 	assert(n > 0 && n <= SIM_MAX_SEND);
 	memcpy(slave->send, data, n);
+	check(slave, data, n);
 	slave->mode = SIM_SEND;
 	slave->send_at = 0;
 	slave->send_count = (uint16_t)n;
@@ -111,8 +122,73 @@ void sim_end(struct sim_slave *slave)
 	slave->layer = SIM_ROM_IDLE;
 }
 
+void sim_send_checked(struct sim_slave *slave, const uint8_t *data, size_t n)
+{
+	uint8_t out[SIM_MAX_SEND];
+
+	assert(n + 2 <= sizeof(out));
+	if (n)
+		memcpy(out, data, n);
+	check(slave, data, n);
+	if (slave->family->crc8) {
+		out[n++] = (uint8_t)slave->crc;
+	} else {
+		out[n++] = (uint8_t)~slave->crc;
+		out[n++] = (uint8_t)(~slave->crc >> 8);
+	}
+	sim_send(slave, out, n);
+	slave->crc = 0;
+}
+
+void sim_send_crc8(struct sim_slave *slave, const uint8_t *data, size_t n)
+{
+	uint8_t out[SIM_MAX_SEND];
+
+	assert(n < sizeof(out));
+	memcpy(out, data, n);
+	out[n] = sim_crc8(0, data, n);
+	sim_send(slave, out, n + 1);
+}
+
+void sim_send_memory(struct sim_slave *slave, const uint8_t *memory, unsigned size, unsigned page)
+{
+	if (slave->address >= size) {
+		sim_end(slave);
+		return;
+	}
+	memory += slave->address++;
+	if (page && slave->address % page == 0)
+		sim_send_checked(slave, memory, 1);
+	else
+		sim_send_byte(slave, *memory);
+}
+
+void sim_send_stored(struct sim_slave *slave, uint8_t stored)
+{
+	sim_send_checked(slave, NULL, 0);
+	slave->send[slave->send_count++] = stored;
+	slave->address++;
+	slave->crc = slave->family->crc8 ? slave->address & 0xFF : slave->address;
+}
+
+void sim_work(struct sim_slave *slave, int64_t takes, int64_t t)
+{
+	slave->busy = true;
+	slave->since = t;
+	slave->until = t + takes;
+	sim_send_bits(slave);
+}
+
 void sim_slave_advance(struct sim_slave *slave, int64_t t)
 {
+	bool fed = !slave->parasite || slave->strong || !slave->family->starves;
+
+	if (slave->busy && !fed && t > slave->since + STRONG_WITHIN_NS)
+		sim_slave_power_on(slave, t);
+	if (slave->busy && t >= slave->until) {
+		slave->busy = false;
+		slave->family->worked(slave, slave->until);
+	}
 	if (slave->family->advance)
 		slave->family->advance(slave, t);
 }
@@ -121,7 +197,7 @@ void sim_slave_power_on(struct sim_slave *slave, int64_t t)
 {
 	slave->power_ons++;
 	slave->layer = SIM_ROM_IDLE;
-	slave->overdrive = slave->resumable = false;
+	slave->overdrive = slave->resumable = slave->busy = false;
 	if (slave->family->power_on)
 		slave->family->power_on(slave, t);
 }
@@ -141,9 +217,8 @@ void sim_slave_reset(struct sim_slave *slave, bool overdrive, int64_t t)
 	}
 	slave->overdrive = overdrive;
 	slave->layer = SIM_ROM_COMMAND;
+	slave->function = NULL;
 	sim_receive(slave);
-	if (slave->family->reset)
-		slave->family->reset(slave, t);
 }
 
 void sim_slave_strong(struct sim_slave *slave, bool on, int64_t t)
@@ -152,8 +227,9 @@ void sim_slave_strong(struct sim_slave *slave, bool on, int64_t t)
 	if (slave->strong == on)
 		return;
 	slave->strong = on;
-	if (slave->family->strong)
-		slave->family->strong(slave, on, t);
+	/* What is done now would need the current on. */
+	if (!on && slave->parasite && slave->busy)
+		sim_slave_power_on(slave, t);
 }
 
 /* xorshift64*: the same numbers everywhere. */
@@ -178,8 +254,6 @@ static void function_layer(struct sim_slave *slave)
 	    (slave->corrupt_probability > 0 &&
 	     random_part(&slave->corrupt_random) < slave->corrupt_probability))
 		slave->corrupt_bit = (int)(random_part(&slave->corrupt_random) * 64);
-	if (!slave->family->received)
-		sim_end(slave);
 }
 
 static void begin_rom(struct sim_slave *slave, enum sim_layer layer)
@@ -286,7 +360,7 @@ bool sim_slave_output(struct sim_slave *slave, int64_t t)
 		case SIM_SEND:
 			return next_sent_bit(slave);
 		case SIM_BITS:
-			return slave->family->bit(slave, t);
+			return slave->family->bit ? slave->family->bit(slave, t) : !slave->busy;
 		}
 		break;
 	}
@@ -302,10 +376,52 @@ static void sent_bit(struct sim_slave *slave, int64_t t)
 	slave->bits = 0;
 	if (++slave->send_at < slave->send_count)
 		return;
-	if (slave->family->drained)
-		slave->family->drained(slave, t);
+	if (slave->function->next)
+		slave->function->next(slave, t);
 	if (slave->mode == SIM_SEND && slave->send_at >= slave->send_count)
 		sim_end(slave);
+}
+
+static void begin_function(struct sim_slave *slave, uint8_t code, int64_t t)
+{
+	const struct sim_function *function = slave->family->functions;
+
+	while (function && function->code && function->code != code)
+		function++;
+	if (!function || !function->code) {
+		sim_end(slave);
+		return;
+	}
+	slave->function = function;
+	slave->got = 0;
+	slave->crc = 0;
+	check(slave, &code, 1);
+	if (!function->takes && function->start)
+		function->start(slave, t);
+}
+
+static void function_byte(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	const struct sim_function *function = slave->function;
+
+	if (!function) {
+		begin_function(slave, byte, t);
+		return;
+	}
+	check(slave, &byte, 1);
+	if (slave->got < function->takes) {
+		slave->taken[slave->got++] = byte;
+		if (slave->got < function->takes)
+			return;
+		slave->address = (uint16_t)(slave->taken[0] |
+		                            (function->takes > 1 ? slave->taken[1] << 8 : 0));
+		if (function->start)
+			function->start(slave, t);
+	} else if (function->byte) {
+		function->byte(slave, byte, t);
+	} else {
+		sim_end(slave);
+	}
 }
 
 static void received_bit(struct sim_slave *slave, bool line, int64_t t)
@@ -319,7 +435,7 @@ static void received_bit(struct sim_slave *slave, bool line, int64_t t)
 	if (slave->layer == SIM_ROM_COMMAND)
 		rom_command(slave, byte, t);
 	else
-		slave->family->received(slave, byte, t);
+		function_byte(slave, byte, t);
 }
 
 void sim_slave_slot(struct sim_slave *slave, bool line, int64_t t)

@@ -31,6 +31,19 @@ struct sim_input {
 		.name = "temperature", .start = 20, .least = -55, .most = 125 \
 	}
 
+/*
+ * A function command: its code, the bytes that belong to it, and what it does. The slave keeps the
+ * bytes in taken, and an address of one or two of them in address.
+ */
+struct sim_function {
+	uint8_t code, takes; /* code 0 ends a table */
+	/* All optional. */
+	void (*start)(struct sim_slave *slave, int64_t t); /* the code and its bytes are there */
+	void (*byte)(struct sim_slave *slave, uint8_t byte, int64_t t); /* a further one came */
+	/* The last bit of what was to be sent is gone: send more, receive, or nothing. */
+	void (*next)(struct sim_slave *slave, int64_t t);
+};
+
 struct sim_family {
 	const char *name; /* "DS18B20" */
 	uint8_t code;
@@ -38,22 +51,19 @@ struct sim_family {
 	size_t state_size;              /* zeroed at creation; sim_state() */
 	const struct sim_input *inputs; /* name NULL at the end; NULL: none */
 
+	bool crc8;    /* the checksums of its functions have 8 bits, not 16 */
+	bool starves; /* fed by the wire, restarts if it works without strong pull-up */
+	const struct sim_function *functions; /* NULL: none */
+
 	/* All optional. */
 	void (*create)(struct sim_slave *slave); /* contents of the memories as from the factory */
 	void (*power_on)(struct sim_slave *slave, int64_t t);
-	void (*reset)(struct sim_slave *slave, int64_t t); /* 1-Wire reset */
 	/* Selected alone, by a Match ROM or at the end of a search: in the function layer. */
 	void (*selected)(struct sim_slave *slave, bool match, int64_t t);
 	bool (*alarm)(struct sim_slave *slave, int64_t t); /* answers a conditional search? */
-	/* A whole byte from the master. The answer is set up with the calls below. */
-	void (*received)(struct sim_slave *slave, uint8_t byte, int64_t t);
-	/* The last bit of what was to be sent is gone: send more, receive, or nothing. */
-	void (*drained)(struct sim_slave *slave, int64_t t);
-	bool (*bit)(struct sim_slave *slave, int64_t t); /* the next bit in SIM_BITS */
-	/* Work up to t: end conversions, follow the inputs. Called before everything else. */
-	void (*advance)(struct sim_slave *slave, int64_t t);
-	/* The wire's strong pull-up comes or goes. */
-	void (*strong)(struct sim_slave *slave, bool on, int64_t t);
+	bool (*bit)(struct sim_slave *slave, int64_t t); /* the next one in SIM_BITS; NULL: idle? */
+	void (*worked)(struct sim_slave *slave, int64_t t);  /* what sim_work() began has ended */
+	void (*advance)(struct sim_slave *slave, int64_t t); /* follow the inputs up to t */
 	/* A start value of the scenario. 0, -ENOENT no such option, -ERANGE. */
 	int (*option)(struct sim_slave *slave, const char *name, double value);
 	/* The memory that a scenario may fill. */
@@ -96,6 +106,13 @@ struct sim_slave {
 	uint16_t send_at, send_count;
 	uint8_t send[SIM_MAX_SEND];
 
+	const struct sim_function *function; /* under way; NULL: its code has yet to come */
+	uint8_t taken[3], got;
+	uint16_t address;
+	uint16_t crc; /* of all bytes since the code, or since the last checksum */
+	bool busy;    /* works from since until until */
+	int64_t since, until;
+
 	uint64_t power_ons, conversions; /* for the tests */
 	void *state;
 };
@@ -127,5 +144,15 @@ void sim_send(struct sim_slave *slave, const uint8_t *data, size_t n);
 void sim_send_byte(struct sim_slave *slave, uint8_t byte);
 void sim_send_bits(struct sim_slave *slave); /* each slot asks family->bit() */
 void sim_end(struct sim_slave *slave);       /* deaf until the next reset */
+/* n bytes and the checksum of all that came and went since the code or the last checksum. */
+void sim_send_checked(struct sim_slave *slave, const uint8_t *data, size_t n);
+/* n bytes and their own CRC8. */
+void sim_send_crc8(struct sim_slave *slave, const uint8_t *data, size_t n);
+/* The byte at the address, which moves on; after each page the checksum. page 0: none. */
+void sim_send_memory(struct sim_slave *slave, const uint8_t *memory, unsigned size, unsigned page);
+/* The checksum, then stored, which is at the address; the next checksum starts with the next. */
+void sim_send_stored(struct sim_slave *slave, uint8_t stored);
+/* Busy for a while: read slots are 0, worked() ends it. */
+void sim_work(struct sim_slave *slave, int64_t takes, int64_t t);
 
 #endif

@@ -9,18 +9,8 @@
 
 #include "hal/sim/chips/families.h"
 #include "hal/sim/chips/thermometer.h"
-#include "hal/sim/crc.h"
 
-enum {
-	CONVERT = 0x44,
-	READ_SCRATCHPAD = 0xBE,
-	WRITE_SCRATCHPAD = 0x4E,
-	COPY_SCRATCHPAD = 0x48,
-	RECALL = 0xB8,
-	READ_POWER = 0xB4,
-	PIO_READ = 0xF5,  /* DS28EA00 */
-	PIO_WRITE = 0xA5, /* DS28EA00 */
-};
+enum { READ_POWER = 0xB4 };
 
 #define FAMILY_S20 0x10
 #define FAMILY_1825 0x3B
@@ -29,8 +19,6 @@ enum {
 #define MS INT64_C(1000000)
 /* tWR of the EEPROM, all data sheets: 10 ms at most. */
 #define COPY_NS (10 * MS)
-/* tSPON: the strong pull-up has to come within 10 us of the command's last slot. */
-#define STRONG_WITHIN_NS 100000
 
 static struct sim_thermometer *state(struct sim_slave *slave)
 {
@@ -94,15 +82,14 @@ static void power_on(struct sim_slave *slave, int64_t t)
 	struct sim_thermometer *s = state(slave);
 	int raw = is_s20(slave) ? 85 * 2 : 85 * 16;
 
-	(void)t;
+	if (slave->family->code == FAMILY_EA00)
+		sim_pins_start(slave, SIM_PIN_A, 2, t);
 	s->scratchpad[0] = (uint8_t)raw;
 	s->scratchpad[1] = (uint8_t)(raw >> 8);
 	s->scratchpad[5] = 0xFF;
 	s->scratchpad[6] = 0x0C;
 	s->scratchpad[7] = 0x10;
-	s->converting = s->copying = s->alarm = false;
-	s->command = 0;
-	s->latch = 3;
+	s->alarm = false;
 	recall(slave);
 }
 
@@ -140,186 +127,70 @@ static void latch_temperature(struct sim_slave *slave, int64_t t)
 	slave->conversions++;
 }
 
-/* A part that is fed by the wire restarts when it wants current and gets none. */
-static void starve(struct sim_slave *slave, int64_t t)
-{
-	sim_slave_power_on(slave, t);
-}
-
-static void advance(struct sim_slave *slave, int64_t t)
+/* A copy is of what the scratchpad holds when it ends. */
+static void worked(struct sim_slave *slave, int64_t t)
 {
 	struct sim_thermometer *s = state(slave);
 
-	if (!s->converting && !s->copying)
-		return;
-	if (slave->parasite && !slave->strong && t > s->busy_since + STRONG_WITHIN_NS) {
-		starve(slave, t);
-		return;
-	}
-	if (t < s->busy_until)
-		return;
-	if (s->converting)
-		latch_temperature(slave, s->busy_until);
-	else
+	if (s->copying)
 		memcpy(s->eeprom, s->scratchpad + 2, 3);
-	s->converting = s->copying = false;
+	else
+		latch_temperature(slave, t);
 }
 
-/* advance() came first: busy still means that it goes away too early. */
-static void strong(struct sim_slave *slave, bool on, int64_t t)
+static void convert(struct sim_slave *slave, int64_t t)
 {
-	struct sim_thermometer *s = state(slave);
-
-	if (!on && slave->parasite && (s->converting || s->copying))
-		starve(slave, t);
+	state(slave)->copying = false;
+	sim_work(slave, sim_thermometer_conversion(slave), t);
 }
 
-static void work(struct sim_slave *slave, bool *which, int64_t takes, int64_t t)
+static void copy(struct sim_slave *slave, int64_t t)
 {
-	struct sim_thermometer *s = state(slave);
-
-	*which = true;
-	s->busy_since = t;
-	s->busy_until = t + takes;
-	sim_send_bits(slave);
+	state(slave)->copying = true;
+	sim_work(slave, COPY_NS, t);
 }
 
 static bool bit(struct sim_slave *slave, int64_t t)
 {
-	const struct sim_thermometer *s = slave->state;
-
 	(void)t;
-	if (s->command == READ_POWER)
+	if (slave->function->code == READ_POWER)
 		return !slave->parasite;
-	return !s->converting && !s->copying;
+	return !slave->busy;
 }
 
-static void send_scratchpad(struct sim_slave *slave)
-{
-	struct sim_thermometer *s = state(slave);
-	uint8_t out[9];
-
-	memcpy(out, s->scratchpad, 8);
-	out[8] = sim_crc8(0, out, 8);
-	sim_send(slave, out, sizeof(out));
-}
-
-/* DS28EA00, PIO status: pin A, latch A, pin B, latch B, and their complement above. */
-static void send_pins(struct sim_slave *slave, int64_t t)
-{
-	const struct sim_thermometer *s = slave->state;
-	unsigned pins = 0;
-
-	for (unsigned i = 0; i < 2; i++) {
-		bool latch = s->latch >> i & 1;
-		bool pin = latch && sim_input_at(slave, SIM_PIN_A + i, t) >= 0.5;
-
-		pins |= ((pin ? 1u : 0) | (latch ? 2u : 0)) << (2 * i);
-	}
-	sim_send_byte(slave, (uint8_t)(pins | (~pins & 15) << 4));
-}
-
-static void command(struct sim_slave *slave, uint8_t byte, int64_t t)
-{
-	struct sim_thermometer *s = state(slave);
-	bool ea00 = slave->family->code == FAMILY_EA00;
-
-	s->command = byte;
-	s->got = 0;
-	switch (byte) {
-	case CONVERT:
-		work(slave, &s->converting, sim_thermometer_conversion(slave), t);
-		return;
-	case COPY_SCRATCHPAD:
-		work(slave, &s->copying, COPY_NS, t);
-		return;
-	case READ_SCRATCHPAD:
-		send_scratchpad(slave);
-		return;
-	case WRITE_SCRATCHPAD:
-		return;
-	case RECALL:
-		recall(slave);
-		sim_send_bits(slave);
-		return;
-	case READ_POWER:
-		sim_send_bits(slave);
-		return;
-	case PIO_READ:
-		if (!ea00)
-			break;
-		send_pins(slave, t);
-		return;
-	case PIO_WRITE:
-		if (!ea00)
-			break;
-		return;
-	}
-	s->command = 0;
-	sim_end(slave);
-}
-
-static void write_scratchpad(struct sim_slave *slave, uint8_t byte)
-{
-	struct sim_thermometer *s = state(slave);
-	unsigned at = s->got++;
-
-	s->scratchpad[2 + at] = at == 2 ? config_byte(slave, byte) : byte;
-	if (s->got == (is_s20(slave) ? 2 : 3))
-		sim_end(slave);
-}
-
-static void pio_write(struct sim_slave *slave, uint8_t byte)
-{
-	struct sim_thermometer *s = state(slave);
-
-	s->taken[s->got++] = byte;
-	if (s->got < 2)
-		return;
-	s->got = 0;
-	if ((s->taken[0] ^ s->taken[1]) != 0xFF) {
-		sim_end(slave);
-		return;
-	}
-	s->latch = s->taken[0] & 3;
-	sim_send_byte(slave, 0xAA);
-	s->got = 2;
-}
-
-static void received(struct sim_slave *slave, uint8_t byte, int64_t t)
-{
-	switch (state(slave)->command) {
-	case WRITE_SCRATCHPAD:
-		write_scratchpad(slave, byte);
-		break;
-	case PIO_WRITE:
-		pio_write(slave, byte);
-		break;
-	default:
-		command(slave, byte, t);
-		break;
-	}
-}
-
-static void drained(struct sim_slave *slave, int64_t t)
-{
-	struct sim_thermometer *s = state(slave);
-
-	if (s->command == PIO_READ) {
-		send_pins(slave, t);
-	} else if (s->command == PIO_WRITE && s->got == 2) {
-		send_pins(slave, t);
-		s->got = 3;
-	} else if (s->command == PIO_WRITE) {
-		s->got = 0;
-		sim_receive(slave);
-	}
-}
-
-static void reset(struct sim_slave *slave, int64_t t)
+static void send_bits(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	state(slave)->command = 0;
+	sim_send_bits(slave);
+}
+
+static void recall_eeprom(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	recall(slave);
+	sim_send_bits(slave);
+}
+
+static void read_scratchpad(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	sim_send_crc8(slave, state(slave)->scratchpad, 8);
+}
+
+static void begin_write(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	slave->address = 2;
+}
+
+static void write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	unsigned at = slave->address++;
+
+	(void)t;
+	state(slave)->scratchpad[at] = at == 4 ? config_byte(slave, byte) : byte;
+	if (at == (is_s20(slave) ? 3 : 4))
+		sim_end(slave);
 }
 
 static bool alarm(struct sim_slave *slave, int64_t t)
@@ -359,6 +230,21 @@ static int option(struct sim_slave *slave, const char *name, double value)
 	return 0;
 }
 
+#define FUNCTIONS \
+	{.code = 0x44, .start = convert}, {.code = 0xBE, .start = read_scratchpad}, \
+		{.code = 0x4E, .start = begin_write, .byte = write_scratchpad}, \
+		{.code = 0x48, .start = copy}, {.code = 0xB8, .start = recall_eeprom}, \
+	{ \
+		.code = READ_POWER, .start = send_bits \
+	}
+static const struct sim_function functions[] = {FUNCTIONS, {0}};
+static const struct sim_function ea00_functions[] = {
+	FUNCTIONS,
+	SIM_PINS_READ(0xF5),
+	SIM_PINS_WRITE(0xA5),
+	{0},
+};
+
 static const struct sim_input inputs[] = {
 	[SIM_TEMPERATURE] = SIM_TEMPERATURE_INPUT,
 	{0},
@@ -373,14 +259,15 @@ static const struct sim_input ea00_inputs[] = {
 #define THERMOMETER(part, family, ...) \
 	{ \
 		.name = part, .code = family, .state_size = sizeof(struct sim_thermometer), \
-		.create = create, .power_on = power_on, .reset = reset, .alarm = alarm, \
-		.received = received, .drained = drained, .bit = bit, .advance = advance, \
-		.strong = strong, .option = option, __VA_ARGS__ \
+		.starves = true, .create = create, .power_on = power_on, .alarm = alarm, \
+		.bit = bit, .worked = worked, .option = option, __VA_ARGS__ \
 	}
+#define PLAIN .inputs = inputs, .functions = functions
 
-const struct sim_family sim_ds18b20 = THERMOMETER("DS18B20", 0x28, .inputs = inputs);
-const struct sim_family sim_ds18s20 = THERMOMETER("DS18S20", FAMILY_S20, .inputs = inputs);
-const struct sim_family sim_ds1822 = THERMOMETER("DS1822", 0x22, .inputs = inputs);
-const struct sim_family sim_ds1825 = THERMOMETER("DS1825", FAMILY_1825, .inputs = inputs);
+const struct sim_family sim_ds18b20 = THERMOMETER("DS18B20", 0x28, PLAIN);
+const struct sim_family sim_ds18s20 = THERMOMETER("DS18S20", FAMILY_S20, PLAIN);
+const struct sim_family sim_ds1822 = THERMOMETER("DS1822", 0x22, PLAIN);
+const struct sim_family sim_ds1825 = THERMOMETER("DS1825", FAMILY_1825, PLAIN);
 const struct sim_family sim_ds28ea00 = THERMOMETER("DS28EA00", FAMILY_EA00, .inputs = ea00_inputs,
-                                                   .overdrive = true);
+                                                   .functions = ea00_functions, .overdrive = true,
+                                                   .advance = sim_pins_follow);

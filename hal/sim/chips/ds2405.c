@@ -7,29 +7,20 @@
 #include "hal/sim/chips/families.h"
 #include "hal/sim/pins.h"
 
-struct ds2405 {
-	struct sim_pins pins;
-};
-
 static struct sim_pins *pins(struct sim_slave *slave)
 {
-	return &sim_state(slave, ds2405)->pins;
+	return sim_state(slave, sim_pins);
 }
 
 static void power_on(struct sim_slave *slave, int64_t t)
 {
-	sim_pins_start(slave, pins(slave), 1, t);
-}
-
-static void advance(struct sim_slave *slave, int64_t t)
-{
-	sim_pins_follow(slave, pins(slave), t);
+	sim_pins_start(slave, 0, 1, t);
 }
 
 static void selected(struct sim_slave *slave, bool match, int64_t t)
 {
 	if (match)
-		sim_pins_write(slave, pins(slave), pins(slave)->latch ^ 1, t);
+		sim_pins_write(slave, pins(slave)->latch ^ 1, t);
 	sim_send_bits(slave);
 }
 
@@ -45,23 +36,16 @@ static bool bit(struct sim_slave *slave, int64_t t)
 	return pins(slave)->level & 1;
 }
 
-static void received(struct sim_slave *slave, uint8_t byte, int64_t t)
-{
-	(void)byte, (void)t;
-	sim_end(slave);
-}
-
 static const struct sim_input inputs[] = {SIM_PIN("pin"), {0}};
 
 const struct sim_family sim_ds2405 = {
 	.name = "DS2405",
 	.code = 0x05,
-	.state_size = sizeof(struct ds2405),
+	.state_size = sizeof(struct sim_pins),
 	.inputs = inputs,
 	.power_on = power_on,
 	.selected = selected,
 	.alarm = alarm,
-	.received = received,
 	.bit = bit,
-	.advance = advance,
+	.advance = sim_pins_follow,
 };

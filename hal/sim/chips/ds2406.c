@@ -3,10 +3,7 @@
 #include <string.h>
 
 #include "hal/sim/chips/families.h"
-#include "hal/sim/crc.h"
 #include "hal/sim/pins.h"
-
-enum { READ_MEMORY = 0xF0, WRITE_STATUS = 0x55, READ_STATUS = 0xAA, CHANNEL_ACCESS = 0xF5 };
 
 /* Status byte 7. */
 enum { POLARITY = 0x01, LATCH_A = 0x20, LATCH_B = 0x40, SUPPLY = 0x80 };
@@ -18,11 +15,8 @@ enum { MEMORY = 128, STATUS = 8 };
 struct ds2406 {
 	struct sim_pins pins;
 	uint8_t memory[MEMORY], status[STATUS];
-	uint8_t command, got, taken[3];
-	uint16_t address, crc;
-	/* Channel access. */
-	uint8_t control;
-	bool reading; /* the direction of this byte */
+	/* Channel access: the direction of this byte, and how many there were. */
+	bool reading;
 	unsigned bytes;
 };
 
@@ -39,22 +33,8 @@ static void create(struct sim_slave *slave)
 
 static void power_on(struct sim_slave *slave, int64_t t)
 {
-	struct ds2406 *s = state(slave);
-
-	s->command = 0;
-	s->status[7] = 0x1F;
-	sim_pins_start(slave, &s->pins, 2, t);
-}
-
-static void advance(struct sim_slave *slave, int64_t t)
-{
-	sim_pins_follow(slave, &state(slave)->pins, t);
-}
-
-static void reset(struct sim_slave *slave, int64_t t)
-{
-	(void)t;
-	state(slave)->command = 0;
+	state(slave)->status[7] = 0x1F;
+	sim_pins_start(slave, 0, 2, t);
 }
 
 /* The channels selected, ORed, from the source selected, against the polarity. */
@@ -68,62 +48,40 @@ static bool alarm(struct sim_slave *slave, int64_t t)
 	return ((source & channels) != 0) == (s->status[7] & POLARITY);
 }
 
-static uint8_t status(struct sim_slave *slave, unsigned at)
+static void send_memory(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	sim_send_memory(slave, state(slave)->memory, MEMORY, MEMORY);
+}
+
+static void send_status(struct sim_slave *slave, int64_t t)
 {
 	const struct ds2406 *s = state(slave);
+	uint8_t status[STATUS];
 
-	if (at != 7)
-		return s->status[at];
-	return (uint8_t)((s->status[7] & 0x1F) | (s->pins.latch & 1 ? LATCH_A : 0) |
-	                 (s->pins.latch & 2 ? LATCH_B : 0) | (slave->parasite ? 0 : SUPPLY));
+	(void)t;
+	memcpy(status, s->status, sizeof(status));
+	status[7] |= (uint8_t)((s->pins.latch & 1 ? LATCH_A : 0) |
+	                       (s->pins.latch & 2 ? LATCH_B : 0) | (slave->parasite ? 0 : SUPPLY));
+	sim_send_memory(slave, status, STATUS, STATUS);
 }
 
-static unsigned add_crc(struct ds2406 *s, uint8_t *out, unsigned n)
+static void write_status(struct sim_slave *slave, int64_t t)
 {
-	s->crc = sim_crc16(s->crc, out, n);
-	out[n++] = (uint8_t)~s->crc;
-	out[n++] = (uint8_t)(~s->crc >> 8);
-	s->crc = 0;
-	return n;
-}
+	uint8_t byte = slave->taken[2];
 
-/* A byte, and behind the last one the checksum over command, address and data. */
-static void send_memory(struct sim_slave *slave, unsigned size)
-{
-	struct ds2406 *s = state(slave);
-	uint8_t out[3];
-	unsigned n = 1;
-
-	if (s->address >= size) {
-		sim_end(slave);
-		return;
+	if (slave->address == 7) {
+		state(slave)->status[7] = byte & 0x1F;
+		sim_pins_write(slave, byte >> 5 & 3, t);
 	}
-	out[0] = s->command == READ_STATUS ? status(slave, s->address) : s->memory[s->address];
-	if (++s->address == size)
-		n = add_crc(s, out, 1);
-	else
-		s->crc = sim_crc16(s->crc, out, 1);
-	sim_send(slave, out, n);
-}
-
-static void write_status(struct sim_slave *slave, uint8_t byte, int64_t t)
-{
-	struct ds2406 *s = state(slave);
-	uint8_t out[2];
-
-	if (s->address == 7) {
-		s->status[7] = byte & 0x1F;
-		sim_pins_write(slave, &s->pins, byte >> 5 & 3, t);
-	}
-	add_crc(s, out, 0);
-	sim_send(slave, out, 2);
+	sim_send_checked(slave, NULL, 0);
 }
 
 /* --- Channel access ---------------------------------------------------------------------------- */
 
-static unsigned channels(const struct ds2406 *s)
+static unsigned channels(const struct sim_slave *slave)
 {
-	return s->control >> 2 & 3;
+	return slave->taken[0] >> 2 & 3;
 }
 
 static uint8_t info(const struct sim_slave *slave)
@@ -134,11 +92,28 @@ static uint8_t info(const struct sim_slave *slave)
 	                 (slave->parasite ? 0 : 0x80));
 }
 
-static uint8_t sample(const struct ds2406 *s)
+static void begin_access(struct sim_slave *slave, int64_t t)
 {
+	struct ds2406 *s = state(slave);
+	uint8_t out = info(slave);
+
+	(void)t;
+	s->reading = slave->taken[0] & IM;
+	s->bytes = 0;
+	if (slave->taken[0] & ALR)
+		s->pins.activity = 0;
+	if (channels(slave) == 0)
+		sim_end(slave);
+	else
+		sim_send_byte(slave, out);
+}
+
+static uint8_t sample(const struct sim_slave *slave)
+{
+	const struct ds2406 *s = slave->state;
 	bool a = s->pins.level & 1, b = s->pins.level & 2;
 
-	switch (channels(s)) {
+	switch (channels(slave)) {
 	case 1:
 		return a ? 0xFF : 0;
 	case 2:
@@ -148,122 +123,53 @@ static uint8_t sample(const struct ds2406 *s)
 	}
 }
 
+/* One more byte was exchanged: does a checksum follow? */
+static bool crc_is_due(struct sim_slave *slave)
+{
+	static const unsigned every[4] = {0, 1, 8, 32};
+	unsigned n = every[slave->taken[0] & 3];
+
+	return ++state(slave)->bytes && n && state(slave)->bytes % n == 0;
+}
+
+/* The next byte of the exchange, in its direction. */
+static void next_byte(struct sim_slave *slave, int64_t t)
+{
+	struct ds2406 *s = state(slave);
+	uint8_t out = sample(slave);
+
+	(void)t;
+	if (!s->reading) {
+		sim_receive(slave);
+		return;
+	}
+	if (slave->taken[0] & TOG)
+		s->reading = false;
+	if (crc_is_due(slave))
+		sim_send_checked(slave, &out, 1);
+	else
+		sim_send_byte(slave, out);
+}
+
+/* Bit by bit; the last one for each channel stays. */
 static void write_pins(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	struct ds2406 *s = state(slave);
 	uint8_t latch = s->pins.latch;
 
-	/* Bit by bit; the last one for each channel stays. */
-	if (channels(s) == 1)
+	if (channels(slave) == 1)
 		latch = (uint8_t)((latch & 2) | byte >> 7);
-	else if (channels(s) == 2)
+	else if (channels(slave) == 2)
 		latch = (uint8_t)((latch & 1) | (byte >> 7) << 1);
 	else
 		latch = byte >> 6;
-	sim_pins_write(slave, &s->pins, latch, t);
-}
-
-static unsigned crc_every(const struct ds2406 *s)
-{
-	static const unsigned every[4] = {0, 1, 8, 32};
-
-	return every[s->control & 3];
-}
-
-/* The next byte of the exchange, in its direction; with a checksum before it when one is due. */
-static void next_byte(struct sim_slave *slave)
-{
-	struct ds2406 *s = state(slave);
-	uint8_t out[3];
-	unsigned n = 1;
-
-	if (!s->reading) {
-		sim_receive(slave);
-		return;
-	}
-	out[0] = sample(s);
-	s->bytes++;
-	if (crc_every(s) && s->bytes % crc_every(s) == 0)
-		n = add_crc(s, out, 1);
-	else
-		s->crc = sim_crc16(s->crc, out, 1);
-	if (s->control & TOG)
-		s->reading = false;
-	sim_send(slave, out, n);
-}
-
-static void channel_received(struct sim_slave *slave, uint8_t byte, int64_t t)
-{
-	struct ds2406 *s = state(slave);
-	uint8_t out[2];
-
-	s->crc = sim_crc16(s->crc, &byte, 1);
-	if (s->got < 2) {
-		s->taken[s->got++] = byte;
-		if (s->got < 2)
-			return;
-		s->control = s->taken[0];
-		s->reading = s->control & IM;
-		s->bytes = 0;
-		out[0] = info(slave);
-		if (s->control & ALR)
-			s->pins.activity = 0;
-		if (channels(s) == 0) {
-			sim_end(slave);
-			return;
-		}
-		s->crc = sim_crc16(s->crc, out, 1);
-		sim_send(slave, out, 1);
-		return;
-	}
-	write_pins(slave, byte, t);
-	s->bytes++;
-	if (s->control & TOG)
+	sim_pins_write(slave, latch, t);
+	if (slave->taken[0] & TOG)
 		s->reading = true;
-	if (crc_every(s) && s->bytes % crc_every(s) == 0) {
-		add_crc(s, out, 0);
-		sim_send(slave, out, 2);
-	} else {
-		next_byte(slave);
-	}
-}
-
-static void received(struct sim_slave *slave, uint8_t byte, int64_t t)
-{
-	struct ds2406 *s = state(slave);
-
-	if (s->command == CHANNEL_ACCESS) {
-		channel_received(slave, byte, t);
-		return;
-	}
-	s->crc = sim_crc16(s->command ? s->crc : 0, &byte, 1);
-	if (s->command == 0) {
-		s->command = byte;
-		s->got = 0;
-		if (byte != READ_MEMORY && byte != WRITE_STATUS && byte != READ_STATUS &&
-		    byte != CHANNEL_ACCESS)
-			sim_end(slave);
-		return;
-	}
-	s->taken[s->got++] = byte;
-	s->address = (uint16_t)(s->taken[0] | s->taken[1] << 8);
-	if (s->got == 2 && s->command != WRITE_STATUS)
-		send_memory(slave, s->command == READ_STATUS ? STATUS : MEMORY);
-	else if (s->got == 3)
-		write_status(slave, byte, t);
-}
-
-static void drained(struct sim_slave *slave, int64_t t)
-{
-	struct ds2406 *s = state(slave);
-
-	(void)t;
-	if (s->command == CHANNEL_ACCESS)
-		next_byte(slave);
-	else if (s->command == READ_STATUS)
-		send_memory(slave, STATUS);
-	else if (s->command == READ_MEMORY)
-		send_memory(slave, MEMORY);
+	if (crc_is_due(slave))
+		sim_send_checked(slave, NULL, 0);
+	else
+		next_byte(slave, t);
 }
 
 static uint8_t *memory(struct sim_slave *slave, size_t *size)
@@ -272,19 +178,25 @@ static uint8_t *memory(struct sim_slave *slave, size_t *size)
 	return state(slave)->memory;
 }
 
+static const struct sim_function functions[] = {
+	{.code = 0xF0, .takes = 2, .start = send_memory, .next = send_memory}, /* Read Memory */
+	{.code = 0xAA, .takes = 2, .start = send_status, .next = send_status}, /* Read Status */
+	{.code = 0x55, .takes = 3, .start = write_status},
+	{.code = 0xF5, .takes = 2, .start = begin_access, .next = next_byte, .byte = write_pins},
+	{0},
+};
+
 static const struct sim_input inputs[] = {SIM_PIN("pin.A"), SIM_PIN("pin.B"), {0}};
 
 const struct sim_family sim_ds2406 = {
 	.name = "DS2406",
 	.code = 0x12,
 	.state_size = sizeof(struct ds2406),
+	.functions = functions,
 	.inputs = inputs,
 	.create = create,
 	.power_on = power_on,
-	.reset = reset,
 	.alarm = alarm,
-	.received = received,
-	.drained = drained,
-	.advance = advance,
+	.advance = sim_pins_follow,
 	.memory = memory,
 };

@@ -1,22 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* DS2408 (data sheet 19-5702): eight pins, activity latches, conditional search. */
-#include <errno.h>
 #include <string.h>
 
 #include "hal/sim/chips/families.h"
-#include "hal/sim/crc.h"
 #include "hal/sim/pins.h"
 
-enum {
-	READ_REGISTERS = 0xF0,
-	READ_CHANNELS = 0xF5,
-	WRITE_CHANNELS = 0x5A,
-	WRITE_CONDITION = 0xCC,
-	RESET_ACTIVITY = 0xC3,
-};
-
 /* Register addresses, "Figure 4". */
-enum { LOGIC = 0x88, LATCH, ACTIVITY, MASK, POLARITY, CONTROL, LAST = 0x8F };
+enum { LOGIC = 0x88, LATCH, ACTIVITY, MASK, POLARITY, CONTROL, END = 0x90 };
 /* Control/status register. */
 enum { PLS = 0x01, CT = 0x02, ROS = 0x04, PORL = 0x08, VCCP = 0x80 };
 
@@ -25,9 +15,6 @@ enum { PLS = 0x01, CT = 0x02, ROS = 0x04, PORL = 0x08, VCCP = 0x80 };
 struct ds2408 {
 	struct sim_pins pins;
 	uint8_t mask, polarity, control;
-	uint8_t command, got, taken[3];
-	uint16_t address, crc;
-	unsigned sampled;
 };
 
 static struct ds2408 *state(struct sim_slave *slave)
@@ -37,22 +24,8 @@ static struct ds2408 *state(struct sim_slave *slave)
 
 static void power_on(struct sim_slave *slave, int64_t t)
 {
-	struct ds2408 *s = state(slave);
-
-	memset(s, 0, sizeof(*s));
-	sim_pins_start(slave, &s->pins, 8, t);
-	s->control = PORL;
-}
-
-static void advance(struct sim_slave *slave, int64_t t)
-{
-	sim_pins_follow(slave, &state(slave)->pins, t);
-}
-
-static void reset(struct sim_slave *slave, int64_t t)
-{
-	(void)t;
-	state(slave)->command = 0;
+	*state(slave) = (struct ds2408){.control = PORL};
+	sim_pins_start(slave, 0, 8, t);
 }
 
 static bool alarm(struct sim_slave *slave, int64_t t)
@@ -69,89 +42,57 @@ static bool alarm(struct sim_slave *slave, int64_t t)
 	return match;
 }
 
-static uint8_t read_register(struct sim_slave *slave, unsigned address)
+/* Up to the last register; then the checksum, of command and address too. */
+static void send_registers(struct sim_slave *slave, int64_t t)
+{
+	const struct ds2408 *s = state(slave);
+	uint8_t all[END];
+
+	(void)t;
+	memset(all, 0xFF, sizeof(all));
+	all[LOGIC] = s->pins.level;
+	all[LATCH] = s->pins.latch;
+	all[ACTIVITY] = s->pins.activity;
+	all[MASK] = s->mask;
+	all[POLARITY] = s->polarity;
+	all[CONTROL] = (uint8_t)(s->control | (slave->parasite ? 0 : VCCP));
+	if (slave->address < LOGIC)
+		sim_end(slave);
+	else
+		sim_send_memory(slave, all, END, END);
+}
+
+/* The samples are counted in the address. */
+static void send_sample(struct sim_slave *slave, int64_t t)
 {
 	const struct ds2408 *s = state(slave);
 
-	switch (address) {
-	case LOGIC:
-		return s->pins.level;
-	case LATCH:
-		return s->pins.latch;
-	case ACTIVITY:
-		return s->pins.activity;
-	case MASK:
-		return s->mask;
-	case POLARITY:
-		return s->polarity;
-	case CONTROL:
-		return (uint8_t)(s->control | (slave->parasite ? 0 : VCCP));
-	default:
-		return 0xFF;
-	}
+	(void)t;
+	if (slave->address++ % SAMPLES == SAMPLES - 1)
+		sim_send_checked(slave, &s->pins.level, 1);
+	else
+		sim_send_byte(slave, s->pins.level);
 }
 
-/* A byte, and behind the last register the inverted CRC16 over command, address and data. */
-static void send_registers(struct sim_slave *slave)
+static void send_first_sample(struct sim_slave *slave, int64_t t)
 {
-	struct ds2408 *s = state(slave);
-	uint8_t out[3];
-
-	out[0] = read_register(slave, s->address);
-	s->crc = sim_crc16(s->crc, out, 1);
-	if (s->address++ < LAST) {
-		sim_send(slave, out, 1);
-		return;
-	}
-	out[1] = (uint8_t)~s->crc;
-	out[2] = (uint8_t)(~s->crc >> 8);
-	s->command = 0;
-	sim_send(slave, out, 3);
+	slave->address = 0;
+	send_sample(slave, t);
 }
 
-static void send_sample(struct sim_slave *slave)
+static void check_condition(struct sim_slave *slave, int64_t t)
 {
-	struct ds2408 *s = state(slave);
-	uint8_t out[3] = {s->pins.level};
-
-	s->crc = sim_crc16(s->crc, out, 1);
-	if (++s->sampled < SAMPLES) {
-		sim_send(slave, out, 1);
-		return;
-	}
-	out[1] = (uint8_t)~s->crc;
-	out[2] = (uint8_t)(~s->crc >> 8);
-	s->crc = 0;
-	s->sampled = 0;
-	sim_send(slave, out, 3);
-}
-
-static void write_channels(struct sim_slave *slave, uint8_t byte, int64_t t)
-{
-	struct ds2408 *s = state(slave);
-
-	s->taken[s->got++] = byte;
-	if (s->got < 2)
-		return;
-	if ((s->taken[0] ^ s->taken[1]) != 0xFF) {
+	(void)t;
+	if (slave->address < MASK || slave->address > CONTROL)
 		sim_end(slave);
-		return;
-	}
-	sim_pins_write(slave, &s->pins, s->taken[0], t);
-	sim_send_byte(slave, 0xAA);
 }
 
-static void write_condition(struct sim_slave *slave, uint8_t byte)
+static void write_condition(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	struct ds2408 *s = state(slave);
 
-	if (s->got < 2) {
-		s->address |= (uint16_t)(byte << (8 * s->got++));
-		if (s->got == 2 && (s->address < MASK || s->address > CONTROL))
-			sim_end(slave);
-		return;
-	}
-	switch (s->address++) {
+	(void)t;
+	switch (slave->address++) {
 	case MASK:
 		s->mask = byte;
 		break;
@@ -165,91 +106,28 @@ static void write_condition(struct sim_slave *slave, uint8_t byte)
 	}
 }
 
-static void read_registers(struct sim_slave *slave, uint8_t byte)
+static void confirm(struct sim_slave *slave, int64_t t)
 {
-	struct ds2408 *s = state(slave);
-
-	s->address |= (uint16_t)(byte << (8 * s->got++));
-	s->crc = sim_crc16(s->crc, &byte, 1);
-	if (s->got < 2)
-		return;
-	if (s->address < LOGIC || s->address > LAST)
-		sim_end(slave);
-	else
-		send_registers(slave);
-}
-
-static void command(struct sim_slave *slave, uint8_t byte)
-{
-	struct ds2408 *s = state(slave);
-
-	s->command = byte;
-	s->got = 0;
-	s->address = 0;
-	s->sampled = 0;
-	s->crc = sim_crc16(0, &byte, 1);
-	switch (byte) {
-	case READ_REGISTERS:
-	case WRITE_CHANNELS:
-	case WRITE_CONDITION:
-		break;
-	case READ_CHANNELS:
-		send_sample(slave);
-		break;
-	case RESET_ACTIVITY:
-		s->pins.activity = 0;
-		sim_send_byte(slave, 0xAA);
-		break;
-	default:
-		sim_end(slave);
-		break;
-	}
-}
-
-static void received(struct sim_slave *slave, uint8_t byte, int64_t t)
-{
-	switch (state(slave)->command) {
-	case READ_REGISTERS:
-		read_registers(slave, byte);
-		break;
-	case WRITE_CHANNELS:
-		write_channels(slave, byte, t);
-		break;
-	case WRITE_CONDITION:
-		write_condition(slave, byte);
-		break;
-	default:
-		command(slave, byte);
-		break;
-	}
-}
-
-static void drained(struct sim_slave *slave, int64_t t)
-{
-	struct ds2408 *s = state(slave);
-
 	(void)t;
-	switch (s->command) {
-	case READ_REGISTERS:
-		send_registers(slave);
-		break;
-	case READ_CHANNELS:
-		send_sample(slave);
-		break;
-	case RESET_ACTIVITY:
-		sim_send_byte(slave, 0xAA);
-		break;
-	case WRITE_CHANNELS: /* AAh, the new state of the pins, and the next byte */
-		if (s->got == 2) {
-			s->got = 3;
-			sim_send_byte(slave, s->pins.level);
-		} else {
-			s->got = 0;
-			sim_receive(slave);
-		}
-		break;
-	}
+	sim_send_byte(slave, 0xAA);
 }
+
+static void reset_activity(struct sim_slave *slave, int64_t t)
+{
+	state(slave)->pins.activity = 0;
+	confirm(slave, t);
+}
+
+static const struct sim_function functions[] = {
+	/* Read PIO Registers, Channel Access Read and Write */
+	{.code = 0xF0, .takes = 2, .start = send_registers, .next = send_registers},
+	{.code = 0xF5, .start = send_first_sample, .next = send_sample},
+	SIM_PINS_WRITE(0x5A),
+	/* Write Conditional Search Register, Reset Activity Latches */
+	{.code = 0xCC, .takes = 2, .start = check_condition, .byte = write_condition},
+	{.code = 0xC3, .start = reset_activity, .next = confirm},
+	{0},
+};
 
 static const struct sim_input inputs[] = {
 	SIM_PIN("pin.0"), SIM_PIN("pin.1"), SIM_PIN("pin.2"),
@@ -263,11 +141,9 @@ const struct sim_family sim_ds2408 = {
 	.overdrive = true,
 	.resume = true,
 	.state_size = sizeof(struct ds2408),
+	.functions = functions,
 	.inputs = inputs,
 	.power_on = power_on,
-	.reset = reset,
 	.alarm = alarm,
-	.received = received,
-	.drained = drained,
-	.advance = advance,
+	.advance = sim_pins_follow,
 };

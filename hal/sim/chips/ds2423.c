@@ -5,9 +5,7 @@
 
 #include "hal/sim/chips/families.h"
 #include "hal/sim/chips/scratchpad.h"
-#include "hal/sim/crc.h"
 
-enum { READ_COUNTER = 0xA5 };
 enum { FIRST_COUNTER_PAGE = 14, PAGES = 16 };
 
 struct ds2423 {
@@ -19,7 +17,7 @@ struct ds2423 {
 
 /* tPROG of a RAM: 32 us. */
 static const struct sim_scratchpad_kind kind = {
-	.size = 512, .page = 32, .copy = 0x5A, .copy_ns = 32000};
+	.size = 512, .writable = 512, .page = 32, .copy_ns = 32000};
 
 static struct ds2423 *state(struct sim_slave *slave)
 {
@@ -43,7 +41,6 @@ static void advance(struct sim_slave *slave, int64_t t)
 {
 	struct ds2423 *s = state(slave);
 
-	sim_scratchpad_advance(slave, t);
 	for (unsigned i = 0; i < 2; i++) {
 		const struct sim_curve *curve = &slave->input[i];
 		bool level = sim_curve_at(curve, t) >= 0.5;
@@ -59,59 +56,24 @@ static void advance(struct sim_slave *slave, int64_t t)
 }
 
 /* The rest of the page, its counter, four bytes of 0, checksum. */
-static void send_page(struct sim_slave *slave)
+static void send_page(struct sim_slave *slave, int64_t t)
 {
-	struct sim_scratchpad *m = &state(slave)->memory;
-	unsigned page = m->address / 32, n = 0;
-	uint32_t count = UINT32_MAX;
-	uint8_t out[32 + 4 + 4 + 2];
+	const struct ds2423 *s = state(slave);
+	unsigned page = slave->address / 32, n = 0;
+	uint32_t count = page < FIRST_COUNTER_PAGE ? UINT32_MAX : s->counter[page % 2];
+	uint8_t out[32 + 4 + 4] = {0};
 
+	(void)t;
 	if (page >= PAGES) {
 		sim_end(slave);
 		return;
 	}
-	if (page >= FIRST_COUNTER_PAGE)
-		count = state(slave)->counter[page - FIRST_COUNTER_PAGE];
 	do
-		out[n++] = m->memory[m->address++];
-	while (m->address % 32);
+		out[n++] = s->memory.memory[slave->address++];
+	while (slave->address % 32);
 	for (unsigned i = 0; i < 4; i++)
 		out[n++] = (uint8_t)(count >> (8 * i));
-	memset(out + n, 0, 4);
-	n += 4;
-	m->crc = sim_crc16(m->crc, out, n);
-	out[n++] = (uint8_t)~m->crc;
-	out[n++] = (uint8_t)(~m->crc >> 8);
-	m->crc = 0;
-	sim_send(slave, out, n);
-}
-
-static void received(struct sim_slave *slave, uint8_t byte, int64_t t)
-{
-	struct sim_scratchpad *m = &state(slave)->memory;
-
-	if (m->command == 0 && byte == READ_COUNTER) {
-		m->command = byte;
-		m->got = 0;
-		m->crc = sim_crc16(0, &byte, 1);
-	} else if (m->command == READ_COUNTER) {
-		m->crc = sim_crc16(m->crc, &byte, 1);
-		m->taken[m->got++] = byte;
-		if (m->got == 2) {
-			m->address = (uint16_t)(m->taken[0] | m->taken[1] << 8);
-			send_page(slave);
-		}
-	} else {
-		sim_scratchpad_received(slave, byte, t);
-	}
-}
-
-static void drained(struct sim_slave *slave, int64_t t)
-{
-	if (state(slave)->memory.command == READ_COUNTER)
-		send_page(slave);
-	else
-		sim_scratchpad_drained(slave, t);
+	sim_send_checked(slave, out, n + 4);
 }
 
 static int option(struct sim_slave *slave, const char *name, double value)
@@ -130,6 +92,13 @@ static int option(struct sim_slave *slave, const char *name, double value)
 	return 0;
 }
 
+static const struct sim_function functions[] = {
+	SIM_SCRATCHPAD_FUNCTIONS(0x5A),
+	/* Read Memory and Counter */
+	{.code = 0xA5, .takes = 2, .start = send_page, .next = send_page},
+	{0},
+};
+
 static const struct sim_input inputs[] = {SIM_PIN("pin.A"), SIM_PIN("pin.B"), {0}};
 
 const struct sim_family sim_ds2423 = {
@@ -137,13 +106,12 @@ const struct sim_family sim_ds2423 = {
 	.code = 0x1D,
 	.overdrive = true,
 	.state_size = sizeof(struct ds2423),
+	.functions = functions,
 	.inputs = inputs,
 	.create = create,
 	.power_on = power_on,
-	.reset = sim_scratchpad_reset,
-	.received = received,
-	.drained = drained,
 	.bit = sim_scratchpad_bit,
+	.worked = sim_scratchpad_worked,
 	.advance = advance,
 	.option = option,
 	.memory = sim_scratchpad_memory,

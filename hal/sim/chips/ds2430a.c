@@ -4,17 +4,7 @@
 
 #include "hal/sim/chips/families.h"
 
-enum {
-	WRITE_SCRATCHPAD = 0x0F,
-	READ_SCRATCHPAD = 0xAA,
-	COPY_SCRATCHPAD = 0x55,
-	READ_MEMORY = 0xF0,
-	WRITE_APPLICATION = 0x99,
-	READ_APPLICATION = 0xC3,
-	READ_STATUS = 0x66,
-	LOCK_APPLICATION = 0x5A,
-	KEY = 0xA5,
-};
+enum { KEY = 0xA5, LOCK_APPLICATION = 0x5A };
 
 /* tPROG: 10 ms. */
 #define COPY_NS INT64_C(10000000)
@@ -22,10 +12,7 @@ enum {
 struct ds2430a {
 	uint8_t memory[32], application[8];
 	uint8_t scratchpad[32], register_pad[8];
-	bool locked, addressed;
-	uint8_t command, address;
-	bool copying, locking;
-	int64_t until;
+	bool locked, locking;
 };
 
 static struct ds2430a *state(struct sim_slave *slave)
@@ -46,23 +33,13 @@ static void power_on(struct sim_slave *slave, int64_t t)
 	(void)t;
 	memcpy(s->scratchpad, s->memory, 32);
 	memcpy(s->register_pad, s->application, 8);
-	s->copying = false;
-	s->command = 0;
 }
 
-static void reset(struct sim_slave *slave, int64_t t)
-{
-	(void)t;
-	state(slave)->command = 0;
-}
-
-static void advance(struct sim_slave *slave, int64_t t)
+static void worked(struct sim_slave *slave, int64_t t)
 {
 	struct ds2430a *s = state(slave);
 
-	if (!s->copying || t < s->until)
-		return;
-	s->copying = false;
+	(void)t;
 	if (s->locking) {
 		memcpy(s->application, s->register_pad, 8);
 		s->locked = true;
@@ -71,90 +48,56 @@ static void advance(struct sim_slave *slave, int64_t t)
 	}
 }
 
-static void strong(struct sim_slave *slave, bool on, int64_t t)
-{
-	if (!on && slave->parasite && state(slave)->copying)
-		sim_slave_power_on(slave, t);
-}
-
-static void send(struct sim_slave *slave)
-{
-	struct ds2430a *s = state(slave);
-
-	switch (s->command) {
-	case READ_MEMORY:
-	case READ_SCRATCHPAD:
-		sim_send_byte(slave, s->scratchpad[s->address++ % 32]);
-		break;
-	case READ_APPLICATION:
-		sim_send_byte(slave, s->locked ? s->application[s->address++ % 8]
-		                               : s->register_pad[s->address++ % 8]);
-		break;
-	case READ_STATUS:
-		sim_send_byte(slave, s->locked ? 0xFC : 0xFF);
-		break;
-	}
-}
-
-static void copy(struct sim_slave *slave, uint8_t byte, int64_t t)
-{
-	struct ds2430a *s = state(slave);
-
-	if (byte == KEY && !(s->command == LOCK_APPLICATION && s->locked)) {
-		s->copying = true;
-		s->locking = s->command == LOCK_APPLICATION;
-		s->until = t + COPY_NS;
-	}
-	sim_end(slave);
-}
-
-static void received(struct sim_slave *slave, uint8_t byte, int64_t t)
-{
-	struct ds2430a *s = state(slave);
-
-	if (s->command == 0) {
-		s->command = byte;
-		s->addressed = false;
-		return;
-	}
-	switch (s->command) {
-	case COPY_SCRATCHPAD:
-	case LOCK_APPLICATION:
-		copy(slave, byte, t);
-		return;
-	case READ_MEMORY:
-		memcpy(s->scratchpad, s->memory, 32);
-		break;
-	case READ_SCRATCHPAD:
-	case READ_APPLICATION:
-	case READ_STATUS:
-		break;
-	case WRITE_SCRATCHPAD:
-		if (!s->addressed)
-			s->address = byte;
-		else
-			s->scratchpad[s->address++ % 32] = byte;
-		s->addressed = true;
-		return;
-	case WRITE_APPLICATION:
-		if (!s->addressed)
-			s->address = byte;
-		else if (!s->locked)
-			s->register_pad[s->address++ % 8] = byte;
-		s->addressed = true;
-		return;
-	default:
-		sim_end(slave);
-		return;
-	}
-	s->address = byte;
-	send(slave);
-}
-
-static void drained(struct sim_slave *slave, int64_t t)
+static void send_scratchpad(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	send(slave);
+	sim_send_byte(slave, state(slave)->scratchpad[slave->address++ % 32]);
+}
+
+static void read_memory(struct sim_slave *slave, int64_t t)
+{
+	memcpy(state(slave)->scratchpad, state(slave)->memory, 32);
+	send_scratchpad(slave, t);
+}
+
+static void send_application(struct sim_slave *slave, int64_t t)
+{
+	const struct ds2430a *s = state(slave);
+	unsigned at = slave->address++ % 8;
+
+	(void)t;
+	sim_send_byte(slave, s->locked ? s->application[at] : s->register_pad[at]);
+}
+
+static void send_status(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	sim_send_byte(slave, state(slave)->locked ? 0xFC : 0xFF);
+}
+
+static void write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	(void)t;
+	state(slave)->scratchpad[slave->address++ % 32] = byte;
+}
+
+static void write_application(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	(void)t;
+	if (!state(slave)->locked)
+		state(slave)->register_pad[slave->address++ % 8] = byte;
+}
+
+static void copy(struct sim_slave *slave, int64_t t)
+{
+	struct ds2430a *s = state(slave);
+	bool locking = slave->function->code == LOCK_APPLICATION;
+
+	if (slave->taken[0] == KEY && !(locking && s->locked)) {
+		s->locking = locking;
+		sim_work(slave, COPY_NS, t);
+	}
+	sim_end(slave);
 }
 
 static uint8_t *memory(struct sim_slave *slave, size_t *size)
@@ -163,16 +106,27 @@ static uint8_t *memory(struct sim_slave *slave, size_t *size)
 	return state(slave)->memory;
 }
 
+static const struct sim_function functions[] = {
+	/* Write, Read, Copy Scratchpad; Read Memory */
+	{.code = 0x0F, .takes = 1, .byte = write_scratchpad},
+	{.code = 0xAA, .takes = 1, .start = send_scratchpad, .next = send_scratchpad},
+	{.code = 0x55, .takes = 1, .start = copy},
+	{.code = 0xF0, .takes = 1, .start = read_memory, .next = send_scratchpad},
+	/* Write and Read Application Register, Read Status Register */
+	{.code = 0x99, .takes = 1, .byte = write_application},
+	{.code = 0xC3, .takes = 1, .start = send_application, .next = send_application},
+	{.code = 0x66, .takes = 1, .start = send_status, .next = send_status},
+	{.code = LOCK_APPLICATION, .takes = 1, .start = copy},
+	{0},
+};
+
 const struct sim_family sim_ds2430a = {
 	.name = "DS2430A",
 	.code = 0x14,
 	.state_size = sizeof(struct ds2430a),
+	.functions = functions,
 	.create = create,
 	.power_on = power_on,
-	.reset = reset,
-	.received = received,
-	.drained = drained,
-	.advance = advance,
-	.strong = strong,
+	.worked = worked,
 	.memory = memory,
 };

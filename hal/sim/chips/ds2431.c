@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* DS2431 (data sheet 19-4675) and DS2433 (19-5268): EEPROM. */
+/* DS2431 (data sheet 19-4675), DS2433 (19-5268) and DS28EC20 (19-5235): EEPROM. */
 #include <string.h>
 
 #include "hal/sim/chips/families.h"
@@ -7,32 +7,59 @@
 
 /* Four pages of 32, and the register page; tPROG 10 ms. */
 static const struct sim_scratchpad_kind ds2431 = {
-	.size = 0x90, .page = 8, .copy = 0x55, .copy_ns = 10000000, .whole = true};
+	.size = 0x90, .writable = 0x90, .page = 8, .copy_ns = 10000000, .whole = true};
 /* Sixteen pages of 32; tPROG 5 ms. */
 static const struct sim_scratchpad_kind ds2433 = {
-	.size = 512, .page = 32, .copy = 0x55, .copy_ns = 5000000};
+	.size = 512, .writable = 512, .page = 32, .copy_ns = 5000000};
+/* Eighty pages of 32, the register page, a page that is read-only; tPROG 10 ms. */
+static const struct sim_scratchpad_kind ds28ec20 = {.size = 0xA40,
+                                                    .writable = 0xA20,
+                                                    .page = 32,
+                                                    .copy_ns = 10000000,
+                                                    .to_end = true,
+                                                    .sequence = true};
 
 static void create(struct sim_slave *slave)
 {
 	struct sim_scratchpad *s = sim_state(slave, sim_scratchpad);
 
-	s->kind = slave->family == &sim_ds2431 ? &ds2431 : &ds2433;
-	memset(s->memory, 0xFF, sizeof(s->memory));
-	if (s->kind == &ds2431) {
-		memset(s->memory, 0, 0x85);
+	switch (slave->family->code) {
+	case 0x2D:
+		s->kind = &ds2431;
 		s->memory[0x85] = 0xAA; /* factory byte */
+		memset(s->memory + 0x86, 0xFF, 0x90 - 0x86);
+		break;
+	case 0x43:
+		s->kind = &ds28ec20;
+		memset(s->memory, 0xFF, 0xA00);
+		s->memory[0xA20] = 0x55; /* factory byte */
+		break;
+	default:
+		s->kind = &ds2433;
+		memset(s->memory, 0xFF, 512);
+		break;
 	}
 }
 
-#define EEPROM(part, family) \
+static const struct sim_function functions[] = {SIM_SCRATCHPAD_FUNCTIONS(0x55), {0}};
+static const struct sim_function ds28ec20_functions[] = {
+	SIM_SCRATCHPAD_FUNCTIONS(0x55),
+	/* Extended Read Memory */
+	{.code = 0xA5,
+         .takes = 2,
+         .start = sim_scratchpad_dump_pages,
+         .next = sim_scratchpad_dump_pages},
+	{0},
+};
+
+#define EEPROM(part, family, commands) \
 	{ \
-		.name = (part), .code = (family), .overdrive = true, .resume = (family) == 0x2D, \
-		.state_size = sizeof(struct sim_scratchpad), .create = create, \
-		.power_on = sim_scratchpad_power_on, .reset = sim_scratchpad_reset, \
-		.received = sim_scratchpad_received, .drained = sim_scratchpad_drained, \
-		.bit = sim_scratchpad_bit, .advance = sim_scratchpad_advance, \
-		.strong = sim_scratchpad_strong, .memory = sim_scratchpad_memory \
+		.name = (part), .code = (family), .overdrive = true, .functions = (commands), \
+		.resume = (family) != 0x23, .state_size = sizeof(struct sim_scratchpad), \
+		.create = create, .power_on = sim_scratchpad_power_on, .bit = sim_scratchpad_bit, \
+		.worked = sim_scratchpad_worked, .memory = sim_scratchpad_memory \
 	}
 
-const struct sim_family sim_ds2431 = EEPROM("DS2431", 0x2D);
-const struct sim_family sim_ds2433 = EEPROM("DS2433", 0x23);
+const struct sim_family sim_ds2431 = EEPROM("DS2431", 0x2D, functions);
+const struct sim_family sim_ds2433 = EEPROM("DS2433", 0x23, functions);
+const struct sim_family sim_ds28ec20 = EEPROM("DS28EC20", 0x43, ds28ec20_functions);

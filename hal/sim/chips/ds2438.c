@@ -1,19 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* DS2438 (data sheet, "Smart Battery Monitor"): temperature, two voltages, current, 64 bytes. */
-#include <errno.h>
 #include <string.h>
 
 #include "hal/sim/chips/families.h"
-#include "hal/sim/crc.h"
-
-enum {
-	CONVERT_T = 0x44,
-	CONVERT_V = 0xB4,
-	WRITE_SCRATCHPAD = 0x4E,
-	COPY_SCRATCHPAD = 0x48,
-	READ_SCRATCHPAD = 0xBE,
-	RECALL = 0xB8,
-};
 
 /* Status/configuration, page 0 byte 0. */
 enum { IAD = 0x01, CA = 0x02, EE = 0x04, AD = 0x08, TB = 0x10, NVB = 0x20, ADB = 0x40 };
@@ -30,10 +19,9 @@ enum work { IDLE, TEMPERATURE_WORK, VOLTAGE_WORK, COPY_WORK };
 struct ds2438 {
 	uint8_t memory[8][8];     /* pages 0 to 2 in part registers */
 	uint8_t scratchpad[8][8]; /* each page has its own */
-	uint8_t command, got, page;
 	uint8_t busy_page;
 	enum work work;
-	int64_t until, started; /* the elapsed time meter was 0 at started */
+	int64_t started; /* the elapsed time meter was 0 at started */
 };
 
 static struct ds2438 *state(struct sim_slave *slave)
@@ -55,15 +43,8 @@ static void power_on(struct sim_slave *slave, int64_t t)
 	s->memory[1][7] = 0xFF;
 	memset(s->memory[2], 0, 8);
 	memcpy(s->scratchpad, s->memory, sizeof(s->memory));
-	s->command = 0;
 	s->work = IDLE;
 	s->started = t;
-}
-
-static void reset(struct sim_slave *slave, int64_t t)
-{
-	(void)t;
-	state(slave)->command = 0;
 }
 
 static void put16(uint8_t *at, int value)
@@ -89,7 +70,7 @@ static void measure_current(struct sim_slave *slave, int64_t t)
 		      within(sim_input_at(slave, VSENS, t) / CURRENT_MV, -1023, 1023));
 }
 
-static void finish(struct sim_slave *slave, int64_t t)
+static void worked(struct sim_slave *slave, int64_t t)
 {
 	struct ds2438 *s = state(slave);
 	unsigned source = s->scratchpad[0][0] & AD ? VDD : VAD;
@@ -127,114 +108,88 @@ static void finish(struct sim_slave *slave, int64_t t)
 static void advance(struct sim_slave *slave, int64_t t)
 {
 	struct ds2438 *s = state(slave);
-	uint32_t seconds;
+	uint32_t seconds = (uint32_t)((t - s->started) / SECOND);
 
-	if (s->work != IDLE && t >= s->until)
-		finish(slave, s->until);
-	seconds = (uint32_t)((t - s->started) / SECOND);
 	for (unsigned i = 0; i < 4; i++)
 		s->memory[1][i] = (uint8_t)(seconds >> (8 * i));
 }
 
-static bool bit(struct sim_slave *slave, int64_t t)
+static unsigned page_of(const struct sim_slave *slave)
 {
-	(void)t;
-	return state(slave)->work == IDLE;
+	return slave->taken[0] & 7;
 }
 
-static void work(struct sim_slave *slave, enum work what, int64_t t)
+static void convert_temperature(struct sim_slave *slave, int64_t t)
 {
-	struct ds2438 *s = state(slave);
+	state(slave)->work = TEMPERATURE_WORK;
+	sim_work(slave, WORK_NS, t);
+}
 
-	s->work = what;
-	s->until = t + WORK_NS;
-	s->busy_page = s->page;
-	sim_send_bits(slave);
+static void convert_voltage(struct sim_slave *slave, int64_t t)
+{
+	state(slave)->work = VOLTAGE_WORK;
+	sim_work(slave, WORK_NS, t);
+}
+
+static void copy(struct sim_slave *slave, int64_t t)
+{
+	state(slave)->work = COPY_WORK;
+	state(slave)->busy_page = slave->taken[0] & 7;
+	sim_work(slave, WORK_NS, t);
 }
 
 static void recall(struct sim_slave *slave, int64_t t)
 {
 	struct ds2438 *s = state(slave);
+	unsigned page = page_of(slave);
 
-	if (s->page == 0)
+	if (page == 0)
 		measure_current(slave, t);
-	memcpy(s->scratchpad[s->page], s->memory[s->page], 8);
+	memcpy(s->scratchpad[page], s->memory[page], 8);
 	sim_send_bits(slave);
 }
 
-static void send_scratchpad(struct sim_slave *slave)
+static void read_scratchpad(struct sim_slave *slave, int64_t t)
 {
+	static const uint8_t busy[] = {[IDLE] = 0, TB, ADB, NVB};
 	const struct ds2438 *s = state(slave);
-	uint8_t out[9];
+	uint8_t out[8];
 
-	memcpy(out, s->scratchpad[s->page], 8);
-	if (s->page == 0) {
-		static const uint8_t busy[] = {[IDLE] = 0, TB, ADB, NVB};
-
+	(void)t;
+	memcpy(out, s->scratchpad[page_of(slave)], 8);
+	if (page_of(slave) == 0)
 		out[0] = (uint8_t)((out[0] & 15) | busy[s->work]);
-	}
-	out[8] = sim_crc8(0, out, 8);
-	sim_send(slave, out, 9);
+	sim_send_crc8(slave, out, 8);
 }
 
-static void command(struct sim_slave *slave, uint8_t byte, int64_t t)
+static void begin_page(struct sim_slave *slave, int64_t t)
 {
-	struct ds2438 *s = state(slave);
+	(void)t;
+	slave->address = 0;
+}
 
-	s->command = byte;
-	s->got = 0;
-	switch (byte) {
-	case CONVERT_T:
-		work(slave, TEMPERATURE_WORK, t);
-		break;
-	case CONVERT_V:
-		work(slave, VOLTAGE_WORK, t);
-		break;
-	case WRITE_SCRATCHPAD:
-	case COPY_SCRATCHPAD:
-	case READ_SCRATCHPAD:
-	case RECALL:
-		break;
-	default:
+static void write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	unsigned page = page_of(slave), at = slave->address++;
+
+	(void)t;
+	/* Of page 0 the configuration and the threshold can be written. */
+	if (page != 0 || at == 0 || at == 7)
+		state(slave)->scratchpad[page][at] = byte;
+	if (at == 7)
 		sim_end(slave);
-		break;
-	}
 }
 
-static void page_chosen(struct sim_slave *slave, int64_t t)
-{
-	switch (state(slave)->command) {
-	case COPY_SCRATCHPAD:
-		work(slave, COPY_WORK, t);
-		break;
-	case READ_SCRATCHPAD:
-		send_scratchpad(slave);
-		break;
-	case RECALL:
-		recall(slave, t);
-		break;
-	}
-}
-
-static void received(struct sim_slave *slave, uint8_t byte, int64_t t)
-{
-	struct ds2438 *s = state(slave);
-
-	if (!s->command) {
-		command(slave, byte, t);
-	} else if (s->got++ == 0) {
-		s->page = byte & 7;
-		page_chosen(slave, t);
-	} else {
-		unsigned at = s->got - 2u;
-
-		/* Of page 0 the configuration and the threshold can be written. */
-		if (s->page != 0 || at == 0 || at == 7)
-			s->scratchpad[s->page][at] = byte;
-		if (at == 7)
-			sim_end(slave);
-	}
-}
+static const struct sim_function functions[] = {
+	{.code = 0x44, .start = convert_temperature},
+	{.code = 0xB4, .start = convert_voltage},
+	/* Write, Read, Copy Scratchpad; Recall Memory */
+	{.code = 0x4E, .takes = 1, .start = begin_page, .byte = write_scratchpad},
+	{.code = 0xBE, .takes = 1, .start = read_scratchpad},
+	{.code = 0x48, .takes = 1, .start = copy},
+	{.code = 0xB8, .takes = 1, .start = recall},
+	{0},
+};
 
 static uint8_t *memory(struct sim_slave *slave, size_t *size)
 {
@@ -254,12 +209,11 @@ const struct sim_family sim_ds2438 = {
 	.name = "DS2438",
 	.code = 0x26,
 	.state_size = sizeof(struct ds2438),
+	.functions = functions,
 	.inputs = inputs,
 	.create = create,
 	.power_on = power_on,
-	.reset = reset,
-	.received = received,
-	.bit = bit,
+	.worked = worked,
 	.advance = advance,
 	.memory = memory,
 };

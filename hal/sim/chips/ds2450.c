@@ -4,9 +4,6 @@
 #include <string.h>
 
 #include "hal/sim/chips/families.h"
-#include "hal/sim/crc.h"
-
-enum { READ_MEMORY = 0xAA, WRITE_MEMORY = 0x55, CONVERT = 0x3C };
 
 /* Page 1, the second byte of a channel: input range, alarms enabled, alarms, power-on reset. */
 enum { IR = 0x01, AEL = 0x04, AEH = 0x08, AFL = 0x10, AFH = 0x20, POR = 0x80 };
@@ -21,10 +18,7 @@ enum { PAGE = 8, SIZE = 32, CONTROL = 8, LIMITS = 16 };
 
 struct ds2450 {
 	uint8_t memory[SIZE];
-	uint8_t command, got, taken[2], channels;
-	uint16_t address, crc;
-	bool converting;
-	int64_t until;
+	uint8_t channels; /* under conversion */
 };
 
 static struct ds2450 *state(struct sim_slave *slave)
@@ -43,12 +37,6 @@ static void power_on(struct sim_slave *slave, int64_t t)
 		s->memory[CONTROL + 2 * i + 1] = POR | AEH | AEL;
 		s->memory[LIMITS + 2 * i + 1] = 0xFF;
 	}
-}
-
-static void reset(struct sim_slave *slave, int64_t t)
-{
-	(void)t;
-	state(slave)->command = 0;
 }
 
 static unsigned resolution(const struct ds2450 *s, unsigned channel)
@@ -80,16 +68,11 @@ static void measure(struct sim_slave *slave, unsigned channel, int64_t t)
 		control[1] |= AFH;
 }
 
-static void advance(struct sim_slave *slave, int64_t t)
+static void worked(struct sim_slave *slave, int64_t t)
 {
-	struct ds2450 *s = state(slave);
-
-	if (!s->converting || t < s->until)
-		return;
-	s->converting = false;
 	for (unsigned i = 0; i < 4; i++) {
-		if (s->channels >> i & 1)
-			measure(slave, i, s->until);
+		if (state(slave)->channels >> i & 1)
+			measure(slave, i, t);
 	}
 	slave->conversions++;
 }
@@ -109,132 +92,64 @@ static bool alarm(struct sim_slave *slave, int64_t t)
 	return false;
 }
 
-static bool bit(struct sim_slave *slave, int64_t t)
+/* After a page the checksum: of the first over command and address too. */
+static void send_memory(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	return !state(slave)->converting;
-}
-
-static unsigned add_crc(struct ds2450 *s, uint8_t *out, unsigned n)
-{
-	s->crc = sim_crc16(s->crc, out, n);
-	out[n++] = (uint8_t)~s->crc;
-	out[n++] = (uint8_t)(~s->crc >> 8);
-	return n;
-}
-
-/* A byte, and behind a page the checksum: of the first over command and address too. */
-static void send_memory(struct sim_slave *slave)
-{
-	struct ds2450 *s = state(slave);
-	uint8_t out[3];
-	unsigned n = 1;
-
-	if (s->address >= SIZE) {
-		sim_end(slave);
-		return;
-	}
-	out[0] = s->memory[s->address++];
-	if (s->address % PAGE == 0) {
-		n = add_crc(s, out, 1);
-		s->crc = 0;
-	} else {
-		s->crc = sim_crc16(s->crc, out, 1);
-	}
-	sim_send(slave, out, n);
+	sim_send_memory(slave, state(slave)->memory, SIZE, PAGE);
 }
 
 /* The checksum, then the byte as it is stored; then the next address may be written. */
-static void write_memory(struct sim_slave *slave, uint8_t byte)
+static void write_memory(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	struct ds2450 *s = state(slave);
-	uint8_t out[3];
-	unsigned n;
 
-	if (s->address >= SIZE) {
+	(void)t;
+	if (slave->address >= SIZE) {
 		sim_end(slave);
 		return;
 	}
-	s->crc = sim_crc16(s->crc, &byte, 1);
-	n = add_crc(s, out, 0);
-	if (s->address >= PAGE) /* the results are read-only */
-		s->memory[s->address] = byte;
-	out[n++] = s->memory[s->address++];
-	/* The next checksum starts with the next address. */
-	s->crc = s->address;
-	sim_send(slave, out, n);
+	if (slave->address >= PAGE) /* the results are read-only */
+		s->memory[slave->address] = byte;
+	sim_send_stored(slave, s->memory[slave->address]);
 }
 
-static void convert_command(struct sim_slave *slave)
+static void receive(struct sim_slave *slave, int64_t t)
 {
-	uint8_t out[2];
-
-	add_crc(state(slave), out, 0);
-	sim_send(slave, out, 2);
+	(void)t;
+	sim_receive(slave);
 }
 
-/* It starts behind the checksum, where a parasite's strong pull-up comes too. */
+static void send_checksum(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	sim_send_checked(slave, NULL, 0);
+}
+
+/* It starts after the checksum, where a parasite's strong pull-up comes too. */
 static void convert(struct sim_slave *slave, int64_t t)
 {
 	struct ds2450 *s = state(slave);
 	int64_t takes = START_NS;
 
-	s->channels = s->taken[0] & 15;
+	s->channels = slave->taken[0] & 15;
 	for (unsigned i = 0; i < 4; i++) {
-		unsigned preset = s->taken[1] >> (2 * i) & 3;
+		unsigned preset = slave->taken[1] >> (2 * i) & 3;
 
 		if (s->channels >> i & 1)
 			takes += BIT_NS * resolution(s, i);
 		if (preset == 1 || preset == 2)
 			memset(&s->memory[2 * i], preset == 1 ? 0 : 0xFF, 2);
 	}
-	s->until = t + takes;
-	s->converting = true;
-	sim_send_bits(slave);
+	sim_work(slave, takes, t);
 }
 
-static void received(struct sim_slave *slave, uint8_t byte, int64_t t)
-{
-	struct ds2450 *s = state(slave);
-
-	(void)t;
-	if (s->command == 0) {
-		s->command = byte;
-		s->got = 0;
-		s->crc = sim_crc16(0, &byte, 1);
-		if (byte != READ_MEMORY && byte != WRITE_MEMORY && byte != CONVERT)
-			sim_end(slave);
-		return;
-	}
-	if (s->got == 2) {
-		write_memory(slave, byte);
-		return;
-	}
-	s->crc = sim_crc16(s->crc, &byte, 1);
-	s->taken[s->got++] = byte;
-	if (s->got < 2)
-		return;
-	s->address = (uint16_t)(s->taken[0] | s->taken[1] << 8);
-	if (s->command == READ_MEMORY)
-		send_memory(slave);
-	else if (s->command == CONVERT)
-		convert_command(slave);
-}
-
-static void drained(struct sim_slave *slave, int64_t t)
-{
-	switch (state(slave)->command) {
-	case READ_MEMORY:
-		send_memory(slave);
-		break;
-	case WRITE_MEMORY:
-		sim_receive(slave);
-		break;
-	case CONVERT:
-		convert(slave, t);
-		break;
-	}
-}
+static const struct sim_function functions[] = {
+	{.code = 0xAA, .takes = 2, .start = send_memory, .next = send_memory}, /* Read Memory */
+	{.code = 0x55, .takes = 2, .byte = write_memory, .next = receive},
+	{.code = 0x3C, .takes = 2, .start = send_checksum, .next = convert},
+	{0},
+};
 
 static const struct sim_input inputs[] = {
 	{.name = "volt.A"}, {.name = "volt.B"}, {.name = "volt.C"}, {.name = "volt.D"}, {0}};
@@ -244,12 +159,9 @@ const struct sim_family sim_ds2450 = {
 	.code = 0x20,
 	.overdrive = true,
 	.state_size = sizeof(struct ds2450),
+	.functions = functions,
 	.inputs = inputs,
 	.power_on = power_on,
-	.reset = reset,
 	.alarm = alarm,
-	.received = received,
-	.drained = drained,
-	.bit = bit,
-	.advance = advance,
+	.worked = worked,
 };

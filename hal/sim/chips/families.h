@@ -1,14 +1,27 @@
 /* SPDX-License-Identifier: MIT */
-/* The slave families there are: one line here and one in families.c for each new file. */
+/* The slave families there are: a word in the list below for each. */
 #ifndef HAL_SIM_CHIPS_FAMILIES_H
 #define HAL_SIM_CHIPS_FAMILIES_H
 
 #include "hal/sim/slave.h"
 
-extern const struct sim_family sim_ds18b20, sim_ds18s20, sim_ds1822, sim_ds1825, sim_ds28ea00;
-extern const struct sim_family sim_ds2405, sim_ds2406, sim_ds2408, sim_ds2413;
-extern const struct sim_family sim_ds2438, sim_ds2450;
-extern const struct sim_family sim_ds2423, sim_ds2430a, sim_ds2431, sim_ds2433;
-extern const struct sim_family sim_ds2401;
+/* clang-format off */
+/* Of those that share a family code the first stands for it. */
+#define SIM_FAMILIES(family) \
+	/* thermometers */ \
+	family(ds18b20) family(ds18s20) family(ds1822) family(ds1825) family(ds28ea00) \
+	family(max31826) family(max31850) \
+	/* switches */ \
+	family(ds2405) family(ds2406) family(ds2408) family(ds2413) \
+	/* voltages, batteries */ \
+	family(ds2438) family(ds2450) family(ds2720) \
+	/* memories */ \
+	family(ds2423) family(ds2430a) family(ds2431) family(ds2433) family(ds2502) \
+	family(ds28ec20) \
+	family(ds2401)
+/* clang-format on */
+
+#define SIM_FAMILY_DECLARE(part) extern const struct sim_family sim_##part;
+SIM_FAMILIES(SIM_FAMILY_DECLARE)
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The memories that are written through a scratchpad: target address, ending offset, a copy that
- * needs both as its key. DS2431, DS2433 and DS2423 differ in sizes, codes and times.
+ * needs both as its key. DS2431, DS2433, DS28EC20 and DS2423 differ in sizes, codes and times.
  */
 #ifndef HAL_SIM_CHIPS_SCRATCHPAD_H
 #define HAL_SIM_CHIPS_SCRATCHPAD_H
@@ -9,33 +9,45 @@
 #include "hal/sim/slave.h"
 
 struct sim_scratchpad_kind {
-	uint16_t size; /* of the memory */
-	uint8_t page;  /* bytes of the scratchpad: 8 or 32 */
-	uint8_t copy;  /* command code */
+	uint16_t size;     /* of what can be read */
+	uint16_t writable; /* of it, what can be written */
+	uint8_t page;      /* bytes of the scratchpad: 8 or 32 */
 	int64_t copy_ns;
-	bool whole; /* a copy takes the whole scratchpad */
+	bool whole;    /* a copy takes the whole scratchpad */
+	bool to_end;   /* the scratchpad is read to its end, whatever was written */
+	bool sequence; /* a read of the memory before the copy forbids it */
 };
 
-#define SIM_SCRATCHPAD_MEMORY 512
+#define SIM_SCRATCHPAD_MEMORY 0xA40
 struct sim_scratchpad {
 	const struct sim_scratchpad_kind *kind;
 	uint8_t memory[SIM_SCRATCHPAD_MEMORY];
 	uint8_t pad[32];
-	uint8_t command, got, taken[3];
-	uint16_t target, address, crc;
+	uint16_t target;
 	uint8_t status; /* E/S */
-	bool copying;
-	int64_t until;
+	bool bad_sequence;
 };
 
-/* For the slots of struct sim_family; the state begins with a struct sim_scratchpad. */
+/* For struct sim_family; the state begins with a struct sim_scratchpad. */
+#define SIM_SCRATCHPAD_FUNCTIONS(copy) \
+	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = sim_scratchpad_write}, \
+		{.code = 0xAA, .start = sim_scratchpad_read}, \
+		{.code = (copy), .takes = 3, .start = sim_scratchpad_copy}, \
+	{ \
+		.code = 0xF0, .takes = 2, .start = sim_scratchpad_dump, \
+		.next = sim_scratchpad_dump \
+	}
 void sim_scratchpad_power_on(struct sim_slave *slave, int64_t t);
-void sim_scratchpad_reset(struct sim_slave *slave, int64_t t);
-void sim_scratchpad_received(struct sim_slave *slave, uint8_t byte, int64_t t);
-void sim_scratchpad_drained(struct sim_slave *slave, int64_t t);
 bool sim_scratchpad_bit(struct sim_slave *slave, int64_t t);
-void sim_scratchpad_advance(struct sim_slave *slave, int64_t t);
-void sim_scratchpad_strong(struct sim_slave *slave, bool on, int64_t t);
+void sim_scratchpad_worked(struct sim_slave *slave, int64_t t);
 uint8_t *sim_scratchpad_memory(struct sim_slave *slave, size_t *size);
+/* For struct sim_function. */
+void sim_scratchpad_target(struct sim_slave *slave, int64_t t);
+void sim_scratchpad_write(struct sim_slave *slave, uint8_t byte, int64_t t);
+void sim_scratchpad_read(struct sim_slave *slave, int64_t t);
+void sim_scratchpad_copy(struct sim_slave *slave, int64_t t);
+void sim_scratchpad_dump(struct sim_slave *slave, int64_t t);
+/* Page by page, each with its checksum. */
+void sim_scratchpad_dump_pages(struct sim_slave *slave, int64_t t);
 
 #endif

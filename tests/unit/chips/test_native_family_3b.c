@@ -1,138 +1,63 @@
 /* SPDX-License-Identifier: MIT */
-/*
- * Family 3B beside the data sheets: DS1825 (19-7384), MAX31826 (19-6264), MAX31850 and MAX31851
- * (19-6725). The parts here are scratchpads that a test fills, with the MAX31826's memory.
- */
+/* Family 3B: what is read of a DS1825, a MAX31826 and a MAX31850 is what their data sheets say. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "unity.h"
 
-#include "hal/sim/crc.h"
+#include "hal/sim/chips/thermometer.h"
 #include "tests/unit/aid/native_scene.h"
 
-#define MEMORY 128
-#define PAGE 8
-
-struct part {
-	uint8_t scratchpad[8];
-	uint8_t memory[MEMORY], second[PAGE], taken[2 + PAGE];
-	uint8_t command, got, target;
-	bool locked, garbled;    /* the EEPROM takes nothing; the second scratchpad is read wrong */
-	unsigned copies, writes; /* of the second scratchpad; of the first */
-};
+#define MEMORY SIM_MAX_MEMORY
+#define PAGE SIM_MAX_PAGE
 
 static struct sim_slave *slave;
-static struct part *part;
+static struct sim_max *part; /* of a MAX31826, MAX31850 */
+static uint8_t *scratchpad;
+static unsigned writes; /* of the scratchpad */
 
-static void send_with_crc(struct sim_slave *s, const uint8_t *bytes, size_t n)
+static void count_writes(const uint8_t *bytes, size_t n)
 {
-	uint8_t out[PAGE + 1];
-
-	memcpy(out, bytes, n);
-	out[n] = sim_crc8(0, bytes, n);
-	sim_send(s, out, n + 1);
+	writes += n && memchr(bytes, 0x4e, n) != NULL;
 }
 
-static void begin(struct sim_slave *s, uint8_t byte)
-{
-	part->command = byte;
-	part->got = 0;
-	switch (byte) {
-	case 0x44: /* Convert T: the line is low meanwhile */
-	case 0xb4: /* Read Power Supply: external */
-		sim_send_bits(s);
-		return;
-	case 0xbe: /* Read Scratchpad */
-		send_with_crc(s, part->scratchpad, 8);
-		return;
-	case 0x4e: /* Write Scratchpad: of these parts none is changed by it */
-		part->writes++;
-		return;
-	case 0xf0: /* Read Memory */
-	case 0x0f: /* Write Scratchpad 2 */
-	case 0xaa: /* Read Scratchpad 2 */
-	case 0x55: /* Copy Scratchpad 2 */
-		return;
-	default:
-		sim_end(s);
-	}
-}
-
-static void received(struct sim_slave *s, uint8_t byte, int64_t t)
-{
-	(void)t;
-	if (!part->command) {
-		begin(s, byte);
-		return;
-	}
-	if (part->got < sizeof(part->taken))
-		part->taken[part->got++] = byte;
-	if (part->command == 0xf0) {
-		sim_send(s, part->memory + byte % MEMORY, PAGE);
-	} else if (part->command == 0xaa) {
-		part->second[0] ^= part->garbled;
-		send_with_crc(s, part->second, PAGE);
-		part->second[0] ^= part->garbled;
-	} else if (part->command == 0x0f && part->got == 1 + PAGE) {
-		part->target = part->taken[0];
-		memcpy(part->second, part->taken + 1, PAGE);
-	} else if (part->command == 0x55 && byte == 0xa5) {
-		part->copies++;
-		if (!part->locked)
-			memcpy(part->memory + part->target, part->second, PAGE);
-		sim_end(s);
-	}
-}
-
-static bool bit(struct sim_slave *s, int64_t t)
-{
-	(void)s;
-	(void)t;
-	return part->command != 0x44;
-}
-
-static void reset(struct sim_slave *s, int64_t t)
-{
-	(void)s;
-	(void)t;
-	part->command = 0;
-}
-
-/* clang-format off */
-static const struct sim_family family = {
-	.name = "family 3B", .code = 0x3b, .state_size = sizeof(struct part), .reset = reset,
-	.received = received, .bit = bit,
-};
-/* clang-format on */
-
-/* A part with these first five bytes of its scratchpad. */
-static void plug(unsigned temperature, unsigned second, uint8_t config)
-{
-	static const uint8_t id[6] = {1, 2, 3, 4, 5, 6};
-
-	wire_init(&host, 1, 1);
-	slave = sim_slave_create(&family, id);
-	TEST_ASSERT_NOT_NULL(slave);
-	TEST_ASSERT_EQUAL_INT(0, sim_wire_add(&wire_net.wire[0], slave));
-	part = slave->state;
-	memset(part->scratchpad, 0xff, sizeof(part->scratchpad));
-	part->scratchpad[0] = (uint8_t)temperature;
-	part->scratchpad[1] = (uint8_t)(temperature >> 8);
-	part->scratchpad[2] = (uint8_t)second;
-	part->scratchpad[3] = (uint8_t)(second >> 8);
-	part->scratchpad[4] = config;
-	for (unsigned i = 0; i < MEMORY; i++)
-		part->memory[i] = (uint8_t)(i * 7);
-	start();
-}
-
-static void replug(unsigned temperature, unsigned second, uint8_t config)
+/* A part that has just got power; of a DS1825 the option comes first. */
+static void plug_with(const char *chip, const char *option, double value)
 {
 	native_end();
 	native_begin();
-	plug(temperature, second, config);
+	wire_init(&host, 1, 1);
+	wire_net.sent = count_writes;
+	writes = 0;
+	slave = wire_add(0, chip, 1);
+	if (option)
+		TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, option, value));
+	sim_slave_power_on(slave, wire_time());
+	part = slave->state;
+	scratchpad = part->scratchpad;
+	if (strcmp(chip, "DS1825") == 0)
+		scratchpad = ((struct sim_thermometer *)slave->state)->scratchpad;
+	for (unsigned i = 0; strcmp(chip, "MAX31826") == 0 && i < MEMORY; i++)
+		part->memory[i] = (uint8_t)(i * 7);
+}
+
+static void plug(const char *chip)
+{
+	plug_with(chip, NULL, 0);
+	start();
+}
+
+static void expect_raw(unsigned raw, unsigned at)
+{
+	TEST_ASSERT_EQUAL_HEX16(raw, scratchpad[at] | scratchpad[at + 1] << 8);
+}
+
+/* What it seems to have measured before. */
+static void put_raw(unsigned raw, unsigned at)
+{
+	scratchpad[at] = (uint8_t)raw;
+	scratchpad[at + 1] = (uint8_t)(raw >> 8);
 }
 
 void setUp(void)
@@ -170,11 +95,11 @@ static const struct {
 
 static void test_a_ds1825_measures_as_its_table_says(void)
 {
-	plug(0, 0x464b, 0x7f);
+	plug("DS1825");
 	for (size_t i = 0; i < TABLE; i++) {
-		part->scratchpad[0] = (uint8_t)table[i].raw;
-		part->scratchpad[1] = (uint8_t)(table[i].raw >> 8);
+		wire_set(slave, "temperature", table[i].celsius);
 		expect(true, of(slave, "temperature"), as_number(table[i].celsius));
+		expect_raw(table[i].raw, 0);
 		expect(true, of(slave, "latesttemp"), as_number(table[i].celsius));
 		forget();
 	}
@@ -190,7 +115,12 @@ static void test_a_ds1825_tells_its_address_pins_and_resolution(void)
 	for (unsigned i = 0; i < 16; i++) {
 		unsigned resolution = i % 4;
 
-		replug(0x0191, 0x464b, (uint8_t)(0x10 | resolution << 5 | i));
+		plug_with("DS1825", "address", i);
+		slave->family->option(slave, "resolution", 9 + resolution);
+		sim_slave_power_on(slave, wire_time());
+		start();
+		put_raw(0x0191, 0);
+		TEST_ASSERT_EQUAL_HEX8(0x10 | resolution << 5 | i, scratchpad[4]);
 		expect_number("prog_addr", i);
 		expect_number("tempres", 9 + resolution);
 		/* undefined bits of a coarser reading count as 0 */
@@ -201,14 +131,21 @@ static void test_a_ds1825_tells_its_address_pins_and_resolution(void)
 
 static void test_the_power_on_value_of_a_ds1825_is_no_reading(void)
 {
-	plug(0x0550, 0x464b, 0x7f);
-	part->scratchpad[6] = 0x0c;
+	plug_with("DS1825", "fixed", 1);
+	start();
+	wire_set(slave, "temperature", 85);
 	TEST_ASSERT_EQUAL_INT(-ERANGE, result(BUS_READ, of(slave, "temperature"), NULL));
+	expect_raw(0x0550, 0);
+	TEST_ASSERT_EQUAL_HEX8(0x0c, scratchpad[6]);
 }
 
 static void test_limits_of_one_below_zero_make_no_max31826_of_a_ds1825(void)
 {
-	plug(0x0191, 0xffff, 0x7f);
+	plug_with("DS1825", "high", -1);
+	slave->family->option(slave, "low", -1);
+	sim_slave_power_on(slave, wire_time());
+	start();
+	wire_set(slave, "temperature", 25.0625);
 	expect(true, of(slave, "temperature"), "     25.0625");
 	expect(true, of(slave, "type"), "DS1825");
 	expect_number("temphigh", -1);
@@ -221,11 +158,14 @@ static void test_a_max31826_measures_as_its_table_says(void)
 	static const uint8_t configs[] = {0x85, 0x95, 0xe5, 0xf5};
 
 	for (size_t k = 0; k < sizeof(configs); k++) {
-		replug(0, 0xffff, configs[k]);
+		plug_with("MAX31826", "address", 5);
+		TEST_ASSERT_EQUAL_HEX8(0xf5, scratchpad[4]);
+		scratchpad[4] = configs[k];
+		start();
 		for (size_t i = 0; i < TABLE; i++) {
-			part->scratchpad[0] = (uint8_t)table[i].raw;
-			part->scratchpad[1] = (uint8_t)(table[i].raw >> 8);
+			wire_set(slave, "temperature", table[i].celsius);
 			expect(true, of(slave, "temperature"), as_number(table[i].celsius));
+			expect_raw(table[i].raw, 0);
 			forget();
 		}
 		expect(true, of(slave, "type"), "MAX31826");
@@ -238,7 +178,8 @@ static void test_a_max31826_measures_as_its_table_says(void)
 
 static void make_max31826(void)
 {
-	plug(0x0191, 0xffff, 0xf0);
+	plug("MAX31826");
+	wire_set(slave, "temperature", 25.0625);
 	expect(true, of(slave, "temperature"), "     25.0625");
 }
 
@@ -334,13 +275,15 @@ static void test_a_max31850_tells_thermocouple_and_cold_junction_as_its_tables_s
 		  {-0.0625, 0xfff0}, {-1, 0xff00},       {-20, 0xec00}, {-55, 0xc900},
 	  };
 
-	plug(0, 0, 0xfa);
+	plug_with("MAX31850", "address", 10);
+	sim_slave_power_on(slave, wire_time());
+	start();
 	for (size_t i = 0; i < 8; i++) {
-		part->scratchpad[0] = (uint8_t)thermocouple[i].raw;
-		part->scratchpad[1] = (uint8_t)(thermocouple[i].raw >> 8);
-		part->scratchpad[2] = (uint8_t)junction[i].raw;
-		part->scratchpad[3] = (uint8_t)(junction[i].raw >> 8);
+		wire_set(slave, "thermocouple", thermocouple[i].celsius);
+		wire_set(slave, "temperature", junction[i].celsius);
 		expect(true, of(slave, "temperature"), as_number(junction[i].celsius));
+		expect_raw(thermocouple[i].raw, 0);
+		expect_raw(junction[i].raw, 2);
 		expect(true, of(slave, "thermocouple"), as_number(thermocouple[i].celsius));
 		expect(true, of(slave, "latesttemp"), as_number(junction[i].celsius));
 		forget();
@@ -349,36 +292,49 @@ static void test_a_max31850_tells_thermocouple_and_cold_junction_as_its_tables_s
 	expect_number("prog_addr", 10);
 	TEST_ASSERT_EQUAL_INT(-ENOENT, result(BUS_READ, of(slave, "temphigh"), NULL));
 	TEST_ASSERT_EQUAL_INT(-ENOENT, result(BUS_READ, of(slave, "memory"), NULL));
-	TEST_ASSERT_EQUAL_UINT(0, part->writes);
+	TEST_ASSERT_EQUAL_UINT(0, writes);
 }
 
 static void test_a_fault_of_the_thermocouple_is_told_and_its_temperature_is_not(void)
 {
-	static const struct {
-		const char *property;
-		uint8_t bit;
-	} faults[] = {{"open_circuit", 1}, {"ground_short", 2}, {"vdd_short", 4}};
+	static const char *const faults[] = {"open_circuit", "ground_short", "vdd_short"};
 
-	plug(0x0190, 0x1900, 0xf0);
+	plug("MAX31850");
+	wire_set(slave, "thermocouple", 25);
+	wire_set(slave, "temperature", 25);
 	expect(true, of(slave, "temperature"), "          25");
 	expect(true, of(slave, "thermocouple"), "          25");
 	for (int which = 0; which < 3; which++) {
-		part->scratchpad[0] = 0x90 | 1;
-		part->scratchpad[2] = faults[which].bit;
+		wire_set(slave, faults[which], 1);
+		TEST_ASSERT_EQUAL_INT_MESSAGE(
+			-EIO, result(BUS_READ, of(slave, "thermocouple"), NULL), faults[which]);
+		expect_raw(0x0191, 0);
+		expect_raw(0x1900 | 1 << which, 2);
 		expect(true, of(slave, "fault"), "1");
 		for (int i = 0; i < 3; i++)
-			expect(true, of(slave, faults[i].property), i == which ? "1" : "0");
-		TEST_ASSERT_EQUAL_INT_MESSAGE(-EIO,
-		                              result(BUS_READ, of(slave, "thermocouple"), NULL),
-		                              faults[which].property);
+			expect(true, of(slave, faults[i]), i == which ? "1" : "0");
 		/* the chip's own is right none the less */
 		expect(true, of(slave, "temperature"), "          25");
+		wire_set(slave, faults[which], 0);
 		forget();
 	}
-	part->scratchpad[0] = 0x90;
-	part->scratchpad[2] = 0;
-	expect(true, of(slave, "fault"), "0");
 	expect(true, of(slave, "thermocouple"), "          25");
+	expect(true, of(slave, "fault"), "0");
+}
+
+/* It has measured 25 and 21 degrees before. */
+static void plug_warm(const char *chip)
+{
+	bool junction = strcmp(chip, "MAX31850") == 0;
+
+	plug_with(chip, NULL, 0);
+	put_raw(0x0190, 0);
+	if (junction) {
+		put_raw(0x1500, 2);
+		wire_set(slave, "thermocouple", 25);
+	}
+	wire_set(slave, "temperature", junction ? 21 : 25);
+	start();
 }
 
 static void test_which_chip_it_is_need_not_be_known_before_a_request(void)
@@ -396,23 +352,23 @@ static void test_which_chip_it_is_need_not_be_known_before_a_request(void)
 	for (size_t i = 0; i < sizeof(first) / sizeof(first[0]); i++) {
 		const char *property = first[i].property;
 
-		replug(0x0190, 0x464b, 0x70);
+		plug_warm("DS1825");
 		TEST_ASSERT_EQUAL_INT_MESSAGE(
 			first[i].ds1825, result(BUS_READ, of(slave, property), NULL), property);
-		replug(0x0190, 0xffff, 0xf0);
+		plug_warm("MAX31826");
 		TEST_ASSERT_EQUAL_INT_MESSAGE(
 			first[i].max31826, result(BUS_READ, of(slave, property), NULL), property);
-		replug(0x0190, 0x1500, 0xf0);
+		plug_warm("MAX31850");
 		TEST_ASSERT_EQUAL_INT_MESSAGE(
 			first[i].max31850, result(BUS_READ, of(slave, property), NULL), property);
 		expect(true, of(slave, "temperature"), "          21");
 		expect(true, of(slave, "thermocouple"), "          25");
 	}
-	replug(0x0190, 0x1500, 0xf0);
+	plug_warm("MAX31850");
 	TEST_ASSERT_EQUAL_INT(-ENOENT, result(BUS_WRITE, of(slave, "templow"), "5"));
-	replug(0x0190, 0x1500, 0xf0);
+	plug_warm("MAX31850");
 	TEST_ASSERT_EQUAL_INT(-ENOENT, result(BUS_WRITE, of(slave, "pages/page.2"), "x"));
-	replug(0x0190, 0xffff, 0xf0);
+	plug_warm("MAX31826");
 	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(slave, "memory"), "x"));
 	TEST_ASSERT_EQUAL_HEX8('x', part->memory[0]);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* DS2431, DS2433, DS2423 and DS2430A against their data sheets. */
+/* The memories: each command does what the chip's data sheet says. */
 #include <string.h>
 
 #include "unity.h"
@@ -190,6 +190,144 @@ static void test_a_ds2430a_locks_its_application_register(void)
 	TEST_ASSERT_EQUAL_HEX8(0x66, hand_byte(&hand));
 }
 
+/* DS28EC20, "Memory function flow chart". */
+static void test_a_ds28ec20_sends_pages_and_their_checksums(void)
+{
+	uint8_t out[3 + 34] = {0xA5, 0xE0, 0x09};
+
+	slave = hand_plug(&hand, &sim_ds28ec20, 1);
+	write_scratchpad(0x9E0, 0x10, 32);
+	hand_skip(&hand, 4, 0x55, 0xE0, 0x09, 0x1F);
+	hand.now += 11 * HAND_MS;
+	TEST_ASSERT_EQUAL_HEX8(0xAA, hand_byte(&hand));
+	hand_skip(&hand, 3, 0xA5, 0xE0, 0x09); /* the last page */
+	hand_read(&hand, out + 3, 34);
+	check_crc16(out, 37);
+	TEST_ASSERT_EQUAL_HEX8(0x10, out[3]);
+	TEST_ASSERT_EQUAL_HEX8(0x2F, out[34]);
+	hand_read(&hand, out, 34); /* the register page: open blocks, user bytes */
+	check_crc16(out, 34);
+	TEST_ASSERT_EQUAL_HEX8(0x00, out[0]);
+	hand_read(&hand, out, 34); /* the factory byte */
+	check_crc16(out, 34);
+	TEST_ASSERT_EQUAL_HEX8(0x55, out[0]);
+	TEST_ASSERT_EQUAL_HEX8(0xFF, hand_byte(&hand));
+}
+
+static void test_a_ds28ec20_reads_its_scratchpad_to_the_end_and_copies_what_was_written(void)
+{
+	uint8_t out[1 + 3 + 16 + 2] = {0xAA};
+
+	slave = hand_plug(&hand, &sim_ds28ec20, 1);
+	hand_skip(&hand, 5, 0x0F, 0x30, 0x01, 0x77, 0x78);
+	hand_skip(&hand, 1, 0xAA);
+	hand_read(&hand, out + 1, 21);
+	check_crc16(out, 22);
+	TEST_ASSERT_EQUAL_HEX8(0x11, out[3]);
+	TEST_ASSERT_EQUAL_HEX8(0x78, out[5]);
+	hand_skip(&hand, 4, 0x55, 0x30, 0x01, 0x11);
+	hand.now += 11 * HAND_MS;
+	TEST_ASSERT_EQUAL_HEX8(0x77, memory_at(0x130));
+	TEST_ASSERT_EQUAL_HEX8(0x78, memory_at(0x131));
+	TEST_ASSERT_EQUAL_HEX8(0xFF, memory_at(0x132));
+}
+
+/* The BS flag. */
+static void test_a_read_before_the_copy_is_a_bad_sequence_for_a_ds28ec20(void)
+{
+	slave = hand_plug(&hand, &sim_ds28ec20, 1);
+	write_scratchpad(0x20, 1, 32);
+	TEST_ASSERT_EQUAL_HEX8(0xFF, memory_at(0x20));
+	hand_skip(&hand, 4, 0x55, 0x20, 0x00, 0x1F);
+	hand.now += 11 * HAND_MS;
+	TEST_ASSERT_EQUAL_HEX8(0xFF, hand_byte(&hand));
+	TEST_ASSERT_EQUAL_HEX8(0xFF, memory_at(0x20));
+	write_scratchpad(0x20, 1, 32);
+	TEST_ASSERT_EQUAL_HEX8(0x1F, read_scratchpad(0x20, 1, 32));
+	hand_skip(&hand, 4, 0x55, 0x20, 0x00, 0x1F);
+	hand.now += 11 * HAND_MS;
+	TEST_ASSERT_EQUAL_HEX8(0x01, memory_at(0x20));
+}
+
+static void test_a_ds28ec20_has_a_page_that_is_read_only(void)
+{
+	slave = hand_plug(&hand, &sim_ds28ec20, 1);
+	hand_skip(&hand, 4, 0x0F, 0x20, 0x0A, 0x00);
+	hand_skip(&hand, 4, 0x55, 0x20, 0x0A, 0x00);
+	hand.now += 11 * HAND_MS;
+	TEST_ASSERT_EQUAL_HEX8(0x55, memory_at(0xA20));
+}
+
+/* A command, its address, and the CRC8 of both. */
+static void begin_ds2502(uint8_t command, uint8_t at)
+{
+	uint8_t out[4] = {command, at, 0};
+
+	hand_skip(&hand, 3, command, at, 0);
+	out[3] = hand_byte(&hand);
+	TEST_ASSERT_EQUAL_HEX8(0, sim_crc8(0, out, 4));
+}
+
+static void read_ds2502(unsigned n, uint8_t first, uint8_t last)
+{
+	uint8_t in[129];
+
+	hand_read(&hand, in, n + 1);
+	TEST_ASSERT_EQUAL_HEX8(first, in[0]);
+	TEST_ASSERT_EQUAL_HEX8(last, in[n - 1]);
+	TEST_ASSERT_EQUAL_HEX8(0, sim_crc8(0, in, n + 1));
+}
+
+static uint8_t *plug_ds2502(void)
+{
+	size_t size;
+	uint8_t *memory;
+
+	slave = hand_plug(&hand, &sim_ds2502, 1);
+	memory = slave->family->memory(slave, &size);
+	TEST_ASSERT_EQUAL_size_t(128 + 8, size);
+	for (unsigned i = 0; i < 128; i++)
+		memory[i] = (uint8_t)i;
+	return memory;
+}
+
+static void test_a_ds2502_ends_its_memory_and_its_status_with_a_checksum(void)
+{
+	plug_ds2502()[128] = 0xFE; /* page 0 is write-protected */
+	begin_ds2502(0xF0, 0x00);
+	read_ds2502(128, 0x00, 0x7F);
+	TEST_ASSERT_EQUAL_HEX8(0xFF, hand_byte(&hand));
+	begin_ds2502(0xF0, 0x7D);
+	read_ds2502(3, 0x7D, 0x7F);
+	begin_ds2502(0xAA, 0x00);
+	read_ds2502(8, 0xFE, 0x00);
+	TEST_ASSERT_EQUAL_HEX8(0xFF, hand_byte(&hand));
+}
+
+static void test_a_ds2502_sends_pages_with_a_checksum_of_their_data_each(void)
+{
+	plug_ds2502();
+	begin_ds2502(0xC3, 0x45);
+	read_ds2502(27, 0x45, 0x5F);
+	read_ds2502(32, 0x60, 0x7F);
+	TEST_ASSERT_EQUAL_HEX8(0xFF, hand_byte(&hand));
+}
+
+/* Its first checksum is of command, address and byte; the next starts with the low address. */
+static void test_a_ds2502_without_12_volts_answers_a_write_and_keeps_its_byte(void)
+{
+	const uint8_t first[] = {0x0F, 0x10, 0x00, 0x00}, second = 0x5A;
+	const uint8_t *memory = plug_ds2502();
+
+	hand_skip(&hand, 4, 0x0F, 0x10, 0x00, 0x00);
+	TEST_ASSERT_EQUAL_HEX8(sim_crc8(0, first, 4), hand_byte(&hand));
+	TEST_ASSERT_EQUAL_HEX8(0x10, hand_byte(&hand));
+	hand_write(&hand, &second, 1);
+	TEST_ASSERT_EQUAL_HEX8(sim_crc8(0x11, &second, 1), hand_byte(&hand));
+	TEST_ASSERT_EQUAL_HEX8(0x11, hand_byte(&hand));
+	TEST_ASSERT_EQUAL_HEX8(0x10, memory[0x10]);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -200,5 +338,12 @@ int main(void)
 	RUN_TEST(test_counter_pages_follow_each_other_with_a_checksum_each);
 	RUN_TEST(test_a_ds2430a_has_addresses_of_one_byte);
 	RUN_TEST(test_a_ds2430a_locks_its_application_register);
+	RUN_TEST(test_a_ds28ec20_sends_pages_and_their_checksums);
+	RUN_TEST(test_a_ds28ec20_reads_its_scratchpad_to_the_end_and_copies_what_was_written);
+	RUN_TEST(test_a_read_before_the_copy_is_a_bad_sequence_for_a_ds28ec20);
+	RUN_TEST(test_a_ds28ec20_has_a_page_that_is_read_only);
+	RUN_TEST(test_a_ds2502_ends_its_memory_and_its_status_with_a_checksum);
+	RUN_TEST(test_a_ds2502_sends_pages_with_a_checksum_of_their_data_each);
+	RUN_TEST(test_a_ds2502_without_12_volts_answers_a_write_and_keeps_its_byte);
 	return UNITY_END();
 }

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * DS2502 (data sheet 19-5076): 1 kbit of EPROM in four pages, and eight status bytes. It is
+ * programmed with 12 V, which nothing here gives: the flow chart of a write runs, no bit changes.
+ */
+#include <string.h>
+
+#include "hal/sim/chips/families.h"
+
+enum { MEMORY = 128, STATUS = 8, PAGE = 32, READ_MEMORY = 0xF0, READ_STATUS = 0xAA };
+enum { WRITE_STATUS = 0x55 };
+
+struct ds2502 {
+	uint8_t memory[MEMORY], status[STATUS];
+};
+
+static struct ds2502 *state(struct sim_slave *slave)
+{
+	return sim_state(slave, ds2502);
+}
+
+/* Status byte 7 is programmed at the factory. */
+static void create(struct sim_slave *slave)
+{
+	memset(state(slave), 0xFF, sizeof(struct ds2502));
+	state(slave)->status[7] = 0;
+}
+
+/* The CRC8 of command and address. */
+static void send_checksum(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	sim_send_checked(slave, NULL, 0);
+}
+
+/* Read Memory and Read Status have a checksum at the end; Read Data/Generate CRC after each page. */
+static void send(struct sim_slave *slave, int64_t t)
+{
+	struct ds2502 *s = state(slave);
+
+	(void)t;
+	if (slave->function->code == READ_STATUS)
+		sim_send_memory(slave, s->status, STATUS, STATUS);
+	else
+		sim_send_memory(slave, s->memory, MEMORY,
+		                slave->function->code == READ_MEMORY ? MEMORY : PAGE);
+}
+
+/* Checksum; the pulse would come here; the byte as it is; the next data byte. */
+static void write(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	struct ds2502 *s = state(slave);
+	bool is_status = slave->function->code == WRITE_STATUS;
+
+	(void)byte, (void)t;
+	if (slave->address >= (is_status ? STATUS : MEMORY))
+		sim_end(slave);
+	else
+		sim_send_stored(slave,
+		                is_status ? s->status[slave->address] : s->memory[slave->address]);
+}
+
+static void receive(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	sim_receive(slave);
+}
+
+static uint8_t *memory(struct sim_slave *slave, size_t *size)
+{
+	*size = sizeof(struct ds2502); /* the status bytes after the data */
+	return state(slave)->memory;
+}
+
+static const struct sim_function functions[] = {
+	{.code = READ_MEMORY, .takes = 2, .start = send_checksum, .next = send},
+	{.code = READ_STATUS, .takes = 2, .start = send_checksum, .next = send},
+	/* Read Data/Generate 8-Bit CRC, Write Memory */
+	{.code = 0xC3, .takes = 2, .start = send_checksum, .next = send},
+	{.code = 0x0F, .takes = 2, .byte = write, .next = receive},
+	{.code = WRITE_STATUS, .takes = 2, .byte = write, .next = receive},
+	{0},
+};
+
+const struct sim_family sim_ds2502 = {
+	.name = "DS2502",
+	.code = 0x09,
+	.crc8 = true,
+	.state_size = sizeof(struct ds2502),
+	.functions = functions,
+	.create = create,
+	.memory = memory,
+};

@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * DS2720 (data sheet, "Efficient, Addressable Single-Cell Rechargeable Lithium Protection IC"):
+ * registers, and two lockable blocks of four bytes of EEPROM, each with its shadow RAM.
+ */
+#include <string.h>
+
+#include "hal/sim/chips/families.h"
+
+enum { PROTECTION = 0x00, EEPROM_REGISTER = 0x07, SPECIAL = 0x08 };
+enum { DE = 0x01, CE = 0x02, DC = 0x04, CC = 0x08, DOC = 0x10, UV = 0x40, OV = 0x80 };
+enum { LOCK = 0x40, EEC = 0x80 }; /* and a flag for each block locked from bit 0 on */
+enum { OT = 0x01, PSF = 0x80 };
+enum { BLOCKS = 2, BLOCK = 4 };
+enum { OVERVOLTAGE, UNDERVOLTAGE, OVERCURRENT, OVERTEMPERATURE, PS }; /* inputs */
+
+/* tEEC: 10 ms at most. */
+#define COPY_NS INT64_C(10000000)
+
+struct ds2720 {
+	uint8_t memory[256], eeprom[BLOCKS][BLOCK];
+	uint8_t copied; /* the block under way */
+};
+
+static struct ds2720 *state(struct sim_slave *slave)
+{
+	return sim_state(slave, ds2720);
+}
+
+/* 20h and 30h. */
+static unsigned block_at(unsigned block)
+{
+	return 0x20 + 0x10 * block;
+}
+
+/* The block in which the address lies; BLOCKS: none. */
+static unsigned block_of(unsigned address)
+{
+	unsigned block = 0;
+
+	while (block < BLOCKS && (address < block_at(block) || address >= block_at(block) + BLOCK))
+		block++;
+	return block;
+}
+
+static void power_on(struct sim_slave *slave, int64_t t)
+{
+	struct ds2720 *s = state(slave);
+
+	(void)t;
+	for (unsigned i = 0; i < BLOCKS; i++)
+		memcpy(s->memory + block_at(i), s->eeprom[i], BLOCK);
+	s->memory[PROTECTION] = CE | DE;
+	s->memory[EEPROM_REGISTER] &= (1 << BLOCKS) - 1;
+	s->memory[SPECIAL] = PSF;
+}
+
+/* A condition sets its flag, which stays; the flags and the enables decide on the FETs. */
+static void advance(struct sim_slave *slave, int64_t t)
+{
+	static const uint8_t flags[] = {OV, UV, DOC};
+	uint8_t *protection = &state(slave)->memory[PROTECTION];
+	uint8_t *special = &state(slave)->memory[SPECIAL];
+
+	for (unsigned i = 0; i < sizeof(flags); i++)
+		if (sim_input_at(slave, i, t) >= 0.5)
+			*protection |= flags[i];
+	if (sim_input_at(slave, OVERTEMPERATURE, t) >= 0.5)
+		*special |= OT;
+	if (sim_input_at(slave, PS, t) < 0.5)
+		*special &= (uint8_t)~PSF;
+	*protection &= (uint8_t) ~(CC | DC);
+	if ((*protection & CE) && !(*protection & OV) && !(*special & OT))
+		*protection |= CC;
+	if ((*protection & DE) && !(*protection & (UV | DOC)) && !(*special & OT))
+		*protection |= DC;
+}
+
+static void worked(struct sim_slave *slave, int64_t t)
+{
+	struct ds2720 *s = state(slave);
+
+	(void)t;
+	memcpy(s->eeprom[s->copied], s->memory + block_at(s->copied), BLOCK);
+	s->memory[EEPROM_REGISTER] &= (uint8_t)~EEC;
+}
+
+/* Any other command than the lock itself takes the leave to lock away. */
+static void forget_lock(struct sim_slave *slave)
+{
+	state(slave)->memory[EEPROM_REGISTER] &= (uint8_t)~LOCK;
+}
+
+static void read_data(struct sim_slave *slave, int64_t t)
+{
+	struct ds2720 *s = state(slave);
+
+	(void)t;
+	sim_send_memory(slave, s->memory, sizeof(s->memory), 0);
+}
+
+static void begin_read(struct sim_slave *slave, int64_t t)
+{
+	forget_lock(slave);
+	read_data(slave, t);
+}
+
+static void begin_write(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	forget_lock(slave);
+}
+
+/* What is read-only, reserved or locked stays as it is; flags are cleared, not set. */
+static void write_data(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	struct ds2720 *s = state(slave);
+	unsigned at = slave->address++, block = block_of(at);
+	uint8_t *to = &s->memory[at % sizeof(s->memory)];
+
+	if (at >= sizeof(s->memory))
+		return;
+	if (block < BLOCKS && !slave->busy && !(s->memory[EEPROM_REGISTER] >> block & 1))
+		*to = byte;
+	if (at == PROTECTION)
+		*to = (uint8_t)((byte & (CE | DE)) | (*to & (byte | CC | DC) & ~(CE | DE)));
+	if (at == EEPROM_REGISTER)
+		*to |= byte & LOCK;
+	if (at == SPECIAL)
+		*to = byte & (OT | PSF);
+	advance(slave, t);
+}
+
+static void copy(struct sim_slave *slave, int64_t t)
+{
+	struct ds2720 *s = state(slave);
+	unsigned block = block_of(slave->address);
+
+	forget_lock(slave);
+	if (block < BLOCKS && !(s->memory[EEPROM_REGISTER] >> block & 1)) {
+		s->copied = (uint8_t)block;
+		s->memory[EEPROM_REGISTER] |= EEC;
+		sim_work(slave, COPY_NS, t);
+	}
+	sim_end(slave);
+}
+
+static void recall(struct sim_slave *slave, int64_t t)
+{
+	struct ds2720 *s = state(slave);
+	unsigned block = block_of(slave->address);
+
+	(void)t;
+	forget_lock(slave);
+	if (block < BLOCKS)
+		memcpy(s->memory + block_at(block), s->eeprom[block], BLOCK);
+	sim_end(slave);
+}
+
+static void lock(struct sim_slave *slave, int64_t t)
+{
+	uint8_t *reg = &state(slave)->memory[EEPROM_REGISTER];
+	unsigned block = block_of(slave->address);
+
+	(void)t;
+	if (block < BLOCKS && (*reg & LOCK))
+		*reg |= (uint8_t)(1 << block);
+	forget_lock(slave);
+	sim_end(slave);
+}
+
+static uint8_t *memory(struct sim_slave *slave, size_t *size)
+{
+	*size = sizeof(state(slave)->eeprom); /* it is recalled at power-on */
+	return state(slave)->eeprom[0];
+}
+
+static const struct sim_function functions[] = {
+	{.code = 0x69, .takes = 1, .start = begin_read, .next = read_data}, /* Read Data */
+	{.code = 0x6C, .takes = 1, .start = begin_write, .byte = write_data},
+	{.code = 0x48, .takes = 1, .start = copy},
+	{.code = 0xB8, .takes = 1, .start = recall},
+	{.code = 0x6A, .takes = 1, .start = lock},
+	{0},
+};
+
+#define CONDITION(text) \
+	{ \
+		.name = (text), .pin = true \
+	}
+
+static const struct sim_input inputs[] = {
+	[OVERVOLTAGE] = CONDITION("overvoltage"),
+	[UNDERVOLTAGE] = CONDITION("undervoltage"),
+	[OVERCURRENT] = CONDITION("overcurrent"),
+	[OVERTEMPERATURE] = CONDITION("overtemperature"),
+	[PS] = SIM_PIN("ps"),
+	{0},
+};
+
+const struct sim_family sim_ds2720 = {
+	.name = "DS2720",
+	.code = 0x31,
+	.state_size = sizeof(struct ds2720),
+	.functions = functions,
+	.inputs = inputs,
+	.power_on = power_on,
+	.worked = worked,
+	.advance = advance,
+	.memory = memory,
+};

@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The parts of family 3B that are no DS1825: MAX31826 (data sheet 19-6264), a thermometer with 1
+ * kbit of EEPROM, and MAX31850 (19-6725), which measures a thermocouple and its cold junction.
+ */
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+#include "hal/sim/chips/families.h"
+#include "hal/sim/chips/thermometer.h"
+
+enum { KEY = 0xA5, READ_POWER = 0xB4 };
+enum { TEMPERATURE, THERMOCOUPLE, OPEN_CIRCUIT, GROUND_SHORT, VDD_SHORT }; /* inputs */
+
+/* tCONV: 150 ms (MAX31826), 100 ms (MAX31850) at most. */
+#define MS INT64_C(1000000)
+/* tWR of the EEPROM: 10 ms. */
+#define COPY_NS (10 * MS)
+
+static struct sim_max *state(struct sim_slave *slave)
+{
+	return sim_state(slave, sim_max);
+}
+
+static bool is_max31850(const struct sim_slave *slave)
+{
+	return slave->family == &sim_max31850;
+}
+
+static void create(struct sim_slave *slave)
+{
+	memset(state(slave)->memory, 0xFF, SIM_MAX_MEMORY);
+}
+
+static void put16(uint8_t *at, int64_t raw)
+{
+	at[0] = (uint8_t)raw;
+	at[1] = (uint8_t)(raw >> 8);
+}
+
+static void power_on(struct sim_slave *slave, int64_t t)
+{
+	struct sim_max *s = state(slave);
+
+	(void)t;
+	memset(s->scratchpad, 0xFF, 8);
+	put16(s->scratchpad, is_max31850(slave) ? 0 : 85 * 16);
+	if (is_max31850(slave))
+		put16(s->scratchpad + 2, 0);
+	s->scratchpad[4] = (uint8_t)(0xF0 | s->address);
+	s->copying = false;
+}
+
+static int64_t part_of(struct sim_slave *slave, unsigned input, double least, double most, int in,
+                       int64_t t)
+{
+	double celsius = sim_input_at(slave, input, t);
+
+	return sim_round((celsius < least ? least : celsius > most ? most : celsius) * in);
+}
+
+/* 14 bits of 0.25 above two, the lowest of which is the fault; 12 of 0.0625 above four. */
+static void measure_thermocouple(struct sim_slave *slave, int64_t t)
+{
+	struct sim_max *s = state(slave);
+	unsigned faults = 0;
+
+	for (unsigned i = 0; i < 3; i++)
+		faults |= (unsigned)(sim_input_at(slave, OPEN_CIRCUIT + i, t) >= 0.5) << i;
+	put16(s->scratchpad, part_of(slave, THERMOCOUPLE, -270, 1800, 4, t) * 4 + (faults != 0));
+	put16(s->scratchpad + 2, part_of(slave, TEMPERATURE, -55, 127.9375, 16, t) * 16 + faults);
+}
+
+static void worked(struct sim_slave *slave, int64_t t)
+{
+	struct sim_max *s = state(slave);
+
+	if (s->copying) {
+		memcpy(s->memory + s->target, s->second, SIM_MAX_PAGE);
+		return;
+	}
+	slave->conversions++;
+	if (is_max31850(slave))
+		measure_thermocouple(slave, t);
+	else
+		put16(s->scratchpad, part_of(slave, TEMPERATURE, -55, 125, 16, t));
+}
+
+static bool bit(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	return slave->function->code == READ_POWER ? !slave->parasite : !slave->busy;
+}
+
+static void convert(struct sim_slave *slave, int64_t t)
+{
+	state(slave)->copying = false;
+	sim_work(slave, (is_max31850(slave) ? 100 : 150) * MS, t);
+}
+
+static void read_power(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	sim_send_bits(slave);
+}
+
+static void read_scratchpad(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	sim_send_crc8(slave, state(slave)->scratchpad, 8);
+}
+
+/* --- The memory of the MAX31826: pages of 8 bytes, by a second scratchpad ---------------------- */
+
+static void read_memory(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	sim_send_memory(slave, state(slave)->memory, SIM_MAX_MEMORY, 0);
+}
+
+static void target(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	state(slave)->target = slave->taken[0] & (SIM_MAX_MEMORY - SIM_MAX_PAGE);
+	slave->address = 0;
+}
+
+static void write_second(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	(void)t;
+	state(slave)->second[slave->address++] = byte;
+	if (slave->address == SIM_MAX_PAGE)
+		sim_end(slave);
+}
+
+static void read_second(struct sim_slave *slave, int64_t t)
+{
+	struct sim_max *s = state(slave);
+
+	(void)t;
+	s->second[0] ^= s->garbled;
+	sim_send_crc8(slave, s->second, SIM_MAX_PAGE);
+	s->second[0] ^= s->garbled;
+}
+
+static void copy(struct sim_slave *slave, int64_t t)
+{
+	struct sim_max *s = state(slave);
+
+	if (slave->taken[0] == KEY) {
+		s->copies++;
+		s->copying = true;
+		if (!s->locked)
+			sim_work(slave, COPY_NS, t);
+	}
+	sim_end(slave);
+}
+
+static int option(struct sim_slave *slave, const char *name, double value)
+{
+	if (strcmp(name, "address") != 0)
+		return -ENOENT;
+	if (value < 0 || value > 15 || value != floor(value))
+		return -ERANGE;
+	state(slave)->address = (uint8_t)value;
+	return 0;
+}
+
+static uint8_t *memory(struct sim_slave *slave, size_t *size)
+{
+	*size = SIM_MAX_MEMORY;
+	return state(slave)->memory;
+}
+
+#define FUNCTIONS \
+	{.code = 0x44, .start = convert}, {.code = 0xBE, .start = read_scratchpad}, \
+	{ \
+		.code = READ_POWER, .start = read_power \
+	}
+static const struct sim_function max31826_functions[] = {
+	FUNCTIONS,
+	{.code = 0xF0, .takes = 1, .start = read_memory, .next = read_memory},
+	/* Write, Read, Copy Scratchpad 2 */
+	{.code = 0x0F, .takes = 1, .start = target, .byte = write_second},
+	{.code = 0xAA, .takes = 1, .start = read_second},
+	{.code = 0x55, .takes = 1, .start = copy},
+	{0},
+};
+static const struct sim_function max31850_functions[] = {FUNCTIONS, {0}};
+
+#define FAULT(text) \
+	{ \
+		.name = (text), .pin = true \
+	}
+static const struct sim_input max31826_inputs[] = {SIM_TEMPERATURE_INPUT, {0}};
+static const struct sim_input max31850_inputs[] = {
+	[TEMPERATURE] = {.name = "temperature", .start = 20, .least = -55, .most = 127.9375},
+	[THERMOCOUPLE] = {.name = "thermocouple", .start = 20, .least = -270, .most = 1800},
+	[OPEN_CIRCUIT] = FAULT("open_circuit"),
+	[GROUND_SHORT] = FAULT("ground_short"),
+	[VDD_SHORT] = FAULT("vdd_short"),
+	{0},
+};
+
+#define PART(part, ...) \
+	{ \
+		.name = part, .code = 0x3B, .starves = true, .state_size = sizeof(struct sim_max), \
+		.create = create, .power_on = power_on, .bit = bit, .worked = worked, \
+		.option = option, __VA_ARGS__ \
+	}
+
+const struct sim_family sim_max31826 = PART("MAX31826", .functions = max31826_functions,
+                                            .inputs = max31826_inputs, .memory = memory);
+const struct sim_family sim_max31850 = PART("MAX31850", .functions = max31850_functions,
+                                            .inputs = max31850_inputs);
