@@ -16,7 +16,7 @@
 #include "src/shm/futex.h"
 
 #define ENGINE_STACK (128 * 1024)
-/* A bell rung without news must not spin the engine. */
+/* After so many turns without news the engine pauses: a bell rung without end must not spin it. */
 #define IDLE_RINGS 3
 #define IDLE_NS 1000000
 
@@ -26,13 +26,13 @@ enum {
 	COUNTER_MENDED,
 	COUNTER_WORKER_STALLS,
 	COUNTER_DROPPED_EVENTS,
-	COUNTER_UNMENDED,
+	COUNTER_UNFINISHED,
 	HOST_COUNTERS,
 };
 static const char *const host_counters[HOST_COUNTERS] = {
 	[COUNTER_LOG_DROPPED] = "log_dropped",       [COUNTER_IDLE_RINGS] = "idle_rings",
 	[COUNTER_MENDED] = "mended_command_headers", [COUNTER_WORKER_STALLS] = "worker_stalls",
-	[COUNTER_DROPPED_EVENTS] = "dropped_events", [COUNTER_UNMENDED] = "unfinished_reload",
+	[COUNTER_DROPPED_EVENTS] = "dropped_events", [COUNTER_UNFINISHED] = "unfinished_reload",
 };
 
 void host_ring(void *ctx)
@@ -63,7 +63,10 @@ static bool take_messages(struct serving *now, int64_t now_ns)
 	bool any = false;
 
 	for (unsigned i = 0; i < now->worker_count; i++) {
-		/* bounded, so that one bus that talks without end does not keep the others out */
+		/*
+		 * bounded, so that a bus that sends without end does not keep the other buses
+		 * waiting
+		 */
 		for (unsigned n = 0; n < 2 * BUS_MAX_DEPTH; n++) {
 			if (!worker_next(now->workers[i], &message))
 				break;
@@ -97,13 +100,16 @@ static void publish_counters(struct host *h)
 	image_counter(image, index + COUNTER_MENDED, h->mended);
 	image_counter(image, index + COUNTER_WORKER_STALLS, serving_stalls(h->now));
 	image_counter(image, index + COUNTER_DROPPED_EVENTS, serving_dropped(h->now));
-	image_counter(image, index + COUNTER_UNMENDED,
-	              __atomic_load_n(&h->unmended, __ATOMIC_RELAXED));
+	image_counter(image, index + COUNTER_UNFINISHED,
+	              __atomic_load_n(&h->unfinished, __ATOMIC_RELAXED));
 	if (h->serve)
 		publish_serve_counters(h, index + HOST_COUNTERS);
 }
 
-/* The bell goes first: who rings the old one is heard at the next period. */
+/*
+ * Use the command segment that the supervisor has made again. The bell changes first: a program
+ * that still rings the old bell is noticed at the next period.
+ */
 static void take_renewed(struct host *h, int64_t now_ns)
 {
 	struct commands *renewed = __atomic_load_n(&h->renewed, __ATOMIC_ACQUIRE);
@@ -116,7 +122,7 @@ static void take_renewed(struct host *h, int64_t now_ns)
 	__atomic_store_n(&h->renewed, NULL, __ATOMIC_RELEASE);
 }
 
-/* What a reload has made takes over; what it has ended is left. */
+/* Take over what a reload has made, and let go of the engine that it has ended. */
 static void take_next(struct host *h, int64_t now_ns)
 {
 	struct serving *next = __atomic_load_n(&h->next, __ATOMIC_ACQUIRE);
@@ -171,7 +177,7 @@ static void *engine_main(void *ctx)
 		}
 		take_renewed(h, now_ns);
 		take_next(h, now_ns);
-		if (bell != h->bell) /* another one: nothing is known of it yet */
+		if (bell != h->bell) /* seen was read from the bell before: read the new one */
 			continue;
 		idle = busy ? 0 : idle + 1;
 		if (idle > IDLE_RINGS) {
@@ -201,7 +207,7 @@ int host_start_engine(struct host *h, int rt_priority, char *why, size_t why_siz
 		if (mlockall(MCL_CURRENT | MCL_FUTURE))
 			log_warning(h->log, "--rt: memory cannot be locked: %s", strerror(errno));
 	}
-	/* a synchronous SIGBUS is the guard's and cannot be held back */
+	/* a synchronous SIGBUS belongs to the guard and cannot be blocked */
 	sigfillset(&all);
 	sigdelset(&all, SIGBUS);
 	pthread_sigmask(SIG_SETMASK, &all, &before);

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Starts and stops the parts of owsd: memory, engine, workers, the served protocol, the indicator.
+ */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -166,7 +169,7 @@ bool host_stop(struct host *h, int64_t timeout_ns)
 {
 	bool stuck = false;
 
-	/* first what others could wait for: ports and clients */
+	/* first the parts that others could wait for: ports and clients */
 	serve_stop(h->serve);
 	__atomic_store_n(&h->stop, 1, __ATOMIC_RELEASE);
 	if (h->running) {
@@ -176,7 +179,10 @@ bool host_stop(struct host *h, int64_t timeout_ns)
 	stuck = !indicator_stop(h->indicator, timeout_ns) || h->left_behind;
 	stuck |= !serving_stop(h->now, timeout_ns);
 	if (stuck) {
-		/* who comes back from the kernel now still rings in it, and looks at it */
+		/*
+		 * a thread that returns from the kernel later still rings in this memory and reads
+		 * it
+		 */
 		memory_stop(&h->now->memory);
 		return false;
 	}

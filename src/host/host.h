@@ -12,32 +12,32 @@
 struct host;
 
 struct host_setup {
-	struct config *config; /* the host's from here on, also if it fails */
+	struct config *config; /* the host owns it from here on, also if host_start() fails */
 	const char *instance;
 	struct log *log;
 	int rt_priority; /* 0: ordinary scheduling */
 };
 
 /*
- * Create buses, shared memory and engine; start the threads. Returns 0 or a negative errno, the
- * reason then stands in why.
+ * Create buses, shared memory and engine; start the threads. Returns 0, or a negative errno with
+ * the reason in why.
  */
 int host_start(const struct host_setup *setup, struct host **host, char *why, size_t why_size);
 
-/* False while a command segment that was taken away is being made again. The supervisor asks. */
+/* False while the host replaces a lost command segment. Supervisor only. */
 bool host_may_reload(const struct host *host);
 
 /*
  * Serve another configuration without a gap: signals of the same name, path and type go on with
- * value, quality, alarms and retries, targets with the same options stay open. Blocks until that is
- * done. Returns 0 (config is the host's), or a negative errno with the reason in why: all goes on
- * as before. Only when host_may_reload().
+ * value, quality, alarms and retries, targets with the same options stay open. Blocks until the
+ * reload is done. Returns 0 (the host owns config), or a negative errno with the reason in why:
+ * then nothing changes. Only when host_may_reload().
  */
 int host_reload(struct host *host, struct config *config, char *why, size_t why_size);
 
 /*
- * What must not be done on the engine's thread: look after the shared memory. The supervisor calls
- * it now and then.
+ * The work that must not be done on the engine's thread: repair the shared memory, and finish what
+ * a reload could not do. The supervisor calls it at least twice a second.
  */
 void host_tend(struct host *host);
 
@@ -48,8 +48,8 @@ const struct config *host_config(const struct host *host);
 
 /*
  * End in order: engine first, then the workers, at most timeout_ns each. Returns true when all
- * threads ended and everything was freed; false when a worker is stuck in the kernel: all that
- * others could wait for has been let go of, and the process has to _exit().
+ * threads ended and everything was freed; false when a worker is stuck in the kernel: then
+ * everything that others could wait for is released, and the process has to _exit().
  */
 bool host_stop(struct host *host, int64_t timeout_ns);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The lamps of owsd: the alarm output and the heartbeat, each a GPIO line. */
+/* The lamps of owsd: the alarm output and the heartbeat, each a GPIO line, and their thread. */
 #include <errno.h>
 #include <pthread.h>
 #include <signal.h>
@@ -24,15 +24,15 @@
 struct lamp {
 	const char *key; /* NULL: not configured */
 	struct gpio_output output;
-	bool told;        /* that it cannot be had */
-	int64_t again_ns; /* when to take it, or to set it though nothing changed: is it still there? */
+	bool reported;    /* that the line cannot be used */
+	int64_t again_ns; /* when to take the line, or to set it again as a check */
 	int lit;          /* as set; -1: unknown */
 };
 
 enum indicator_health {
-	INDICATOR_DEAD,  /* the engine's heart does not beat: dark */
-	INDICATOR_ALONE, /* it does, but no target is up: a flash every two seconds */
-	INDICATOR_WELL,  /* and one is: half a second on, half a second off */
+	INDICATOR_DEAD,  /* the engine's heart does not beat: the lamp is dark */
+	INDICATOR_ALONE, /* the heart beats, but no target is up: a flash every two seconds */
+	INDICATOR_WELL,  /* the heart beats, a target is up: on and off for half a second each */
 };
 
 struct indicator {
@@ -46,7 +46,7 @@ struct indicator {
 	uint32_t stop, ended;
 };
 
-/* Does any signal's alarm stand, or wait to be acknowledged? */
+/* Does the alarm of any signal stand, or wait for its acknowledgement? */
 static bool indicator_alarm(const struct image *image)
 {
 	for (uint32_t i = 1; i < image->header->record_count; i++) {
@@ -75,7 +75,7 @@ static enum indicator_health indicator_health(const struct image *image, int64_t
 	return INDICATOR_ALONE;
 }
 
-/* Is the lamp on at that time? */
+/* Is the heartbeat lamp on at now_ns? */
 static bool indicator_lit(enum indicator_health health, int64_t now_ns)
 {
 	switch (health) {
@@ -89,8 +89,8 @@ static bool indicator_lit(enum indicator_health health, int64_t now_ns)
 	return false;
 }
 
-/* When that changes next. */
-static int64_t changes(enum indicator_health health, int64_t now_ns)
+/* The time after now_ns at which the heartbeat lamp changes next. */
+static int64_t next_change(enum indicator_health health, int64_t now_ns)
 {
 	switch (health) {
 	case INDICATOR_DEAD:
@@ -108,12 +108,12 @@ static void lost(struct indicator *indicator, struct lamp *lamp, const char *why
 {
 	gpio_output_release(&lamp->output);
 	lamp->lit = -1;
-	if (!lamp->told)
+	if (!lamp->reported)
 		log_warning(indicator->log, "%s: %s", lamp->key, why);
-	lamp->told = true;
+	lamp->reported = true;
 }
 
-static void show(struct indicator *indicator, struct lamp *lamp, bool lit, int64_t now_ns)
+static void set_lamp(struct indicator *indicator, struct lamp *lamp, bool lit, int64_t now_ns)
 {
 	char why[160];
 	int err;
@@ -123,10 +123,10 @@ static void show(struct indicator *indicator, struct lamp *lamp, bool lit, int64
 	lamp->again_ns = now_ns + AGAIN_NS;
 	if (!lamp->output.line) {
 		err = gpio_output_take(&lamp->output, lit, why, sizeof(why));
-		if (!err && lamp->told)
+		if (!err && lamp->reported)
 			log_notice(indicator->log, "%s: works again", lamp->key);
 		if (!err)
-			lamp->told = false;
+			lamp->reported = false;
 	} else {
 		err = gpio_output_set(&lamp->output, lit);
 		if (err)
@@ -142,14 +142,14 @@ int64_t indicator_step(struct indicator *indicator, int64_t now_ns)
 {
 	enum indicator_health health = indicator_health(indicator->image, indicator->period_ns,
 	                                                now_ns);
-	int64_t next_ns = changes(health, now_ns);
+	int64_t next_ns = next_change(health, now_ns);
 
 	if (indicator->alarm_lamp.key && now_ns >= indicator->look_ns) {
 		indicator->look_ns = now_ns + LOOK_NS;
 		indicator->alarm = indicator_alarm(indicator->image);
 	}
-	show(indicator, &indicator->alarm_lamp, indicator->alarm, now_ns);
-	show(indicator, &indicator->heartbeat_lamp, indicator_lit(health, now_ns), now_ns);
+	set_lamp(indicator, &indicator->alarm_lamp, indicator->alarm, now_ns);
+	set_lamp(indicator, &indicator->heartbeat_lamp, indicator_lit(health, now_ns), now_ns);
 	return indicator->alarm_lamp.key && indicator->look_ns < next_ns ? indicator->look_ns
 	                                                                 : next_ns;
 }
@@ -208,7 +208,7 @@ void indicator_destroy(struct indicator *indicator)
 	free(indicator);
 }
 
-static void *run(void *ctx)
+static void *indicator_main(void *ctx)
 {
 	struct indicator *indicator = ctx;
 
@@ -234,11 +234,11 @@ int indicator_start(struct indicator *indicator)
 		return 0;
 	pthread_attr_init(&attr);
 	pthread_attr_setstacksize(&attr, STACK);
-	/* a synchronous SIGBUS is the guard's and cannot be held back */
+	/* a synchronous SIGBUS belongs to the guard and cannot be blocked */
 	sigfillset(&all);
 	sigdelset(&all, SIGBUS);
 	pthread_sigmask(SIG_SETMASK, &all, &before);
-	err = pthread_create(&indicator->thread, &attr, run, indicator);
+	err = pthread_create(&indicator->thread, &attr, indicator_main, indicator);
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
 	pthread_attr_destroy(&attr);
 	indicator->running = !err;
@@ -255,7 +255,7 @@ bool indicator_stop(struct indicator *indicator, int64_t timeout_ns)
 		return true;
 	__atomic_store_n(&indicator->stop, 1, __ATOMIC_RELEASE);
 	segment_wake(&indicator->stop, 1);
-	/* pthread_timedjoin_np() would go by the wall clock, which may be set meanwhile */
+	/* pthread_timedjoin_np() uses the wall clock, which somebody may set meanwhile */
 	while (!__atomic_load_n(&indicator->ended, __ATOMIC_ACQUIRE)) {
 		if (left_ns <= 0)
 			return false;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Two GPIO lines that tell people beside the machine how owsd is: AlarmLine is on while there is
- * an alarm that `owsctl alarms` would show, HeartbeatLine blinks. A thread of its own sets them
- * from the image, so that neither engine nor supervisor waits for a line.
+ * Two GPIO lines that show the state of owsd to people beside the machine: AlarmLine is on while
+ * there is an alarm that `owsctl alarms` would show, HeartbeatLine blinks. A thread of the
+ * indicator sets them from the image, so that neither engine nor supervisor waits for a line.
  */
 #ifndef HOST_INDICATOR_H
 #define HOST_INDICATOR_H
@@ -13,20 +13,26 @@
 
 struct indicator;
 
-/* NULL and 0 when the configuration has neither line. -ENOMEM; -EINVAL a line is none. */
+/*
+ * Returns 0, with *indicator NULL when the configuration has neither line; -ENOMEM; -EINVAL the
+ * text of a line does not name a GPIO line.
+ */
 int indicator_create(const struct config *config, const struct image *image, struct log *log,
                      struct indicator **indicator);
 /*
- * Set the lines as they are to be now; takes them first, and again every few seconds where that
- * failed. Returns when to call again.
+ * Set both lines for now_ns; takes them first, and tries again every few seconds where taking a
+ * line failed. Returns the time of the next call.
  */
 int64_t indicator_step(struct indicator *indicator, int64_t now_ns);
-/* The heartbeat goes out; the alarm line is let go of as it is. */
+/* Turn the heartbeat off, release the alarm line as it is, and free the indicator. */
 void indicator_destroy(struct indicator *indicator);
 
-/* The thread that does so. indicator may be NULL. 0 or a negative errno. */
+/* Start the thread that calls indicator_step(). indicator may be NULL. 0 or a negative errno. */
 int indicator_start(struct indicator *indicator);
-/* End it; false: it is stuck in the kernel, and indicator_destroy() must not be called. */
+/*
+ * End the thread; false: the thread is stuck in the kernel, and indicator_destroy() must not be
+ * called.
+ */
 bool indicator_stop(struct indicator *indicator, int64_t timeout_ns);
 
 #endif

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The segments of a running owsd: made, shown, renewed when a program destroys them, and retired. */
+/*
+ * The segments of a running owsd: made, shown, renewed when a program destroys them, and retired.
+ */
 #include <errno.h>
 #include <limits.h>
 #include <signal.h>
@@ -38,7 +40,7 @@ static uint32_t random_id(void)
 	return id | 1;
 }
 
-/* The image of the owsd before, if there is one that can be told to retire. */
+/* Open the image that the previous owsd left, if this owsd may mark it retired. */
 static bool open_image_before(const char *instance, struct segment *before)
 {
 	const struct ows_image_header *h;
@@ -147,8 +149,11 @@ static int make_commands(struct memory *m, struct memory_commands *to)
 	return err;
 }
 
-/* From the state RETIRED on a consumer's set fails there, so nothing is lost between the two. */
-static void carry(struct memory *m, struct log *log)
+/*
+ * Carry the commands over from the segment of the previous owsd. Once that segment is RETIRED, sets
+ * fail there, so no command is lost between the two segments.
+ */
+static void carry_commands(struct memory *m, struct log *log)
 {
 	struct segment before;
 	int carried, err;
@@ -189,7 +194,8 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 		m->generation = ((struct ows_image_header *)(void *)before.base)->generation + 1;
 		segment_close(&before);
 	} else {
-		m->generation = m->start_id; /* another one, even if the image before was removed */
+		m->generation =
+			m->start_id; /* a new number, even if the image before was removed */
 	}
 	err = make_image(m, setup->counters, setup->counter_count);
 	if (!err)
@@ -201,7 +207,7 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 		return err;
 	}
 	if (!setup->before)
-		carry(m, setup->log);
+		carry_commands(m, setup->log);
 	return 0;
 }
 
@@ -212,8 +218,11 @@ static bool is_private(const struct segment *segment)
 	return fstat(segment->fd, &st) == 0 && (st.st_mode & S_IRWXG) == 0;
 }
 
-/* By hand they belong to the user, and that is meant; of the service nobody could use them. */
-static void say_private(const struct memory *m, struct log *log)
+/*
+ * Log that no group may use the segments: intended when a user starts owsd by hand, a fault in the
+ * service, whose consumers could not open them.
+ */
+static void report_private(const struct memory *m, struct log *log)
 {
 	bool image = is_private(&m->image_segment);
 
@@ -226,19 +235,20 @@ static void say_private(const struct memory *m, struct log *log)
 			image ? "owsd" : "owsd-control");
 }
 
-static bool is_there(int32_t pid)
+static bool process_exists(int32_t pid)
 {
 	return pid > 0 && (kill(pid, 0) == 0 || errno != ESRCH);
 }
 
-static void retire(struct segment *before, struct log *log)
+static void retire_image(struct segment *before, struct log *log)
 {
 	struct ows_image_header *h = (void *)before->base;
 	uint32_t state = __atomic_load_n(&h->state, __ATOMIC_RELAXED);
 
 	if (state == OWS_STATE_LIVE && h->pid != getpid())
 		log_notice(log, "taken over from owsd %d, which had not stopped%s", (int)h->pid,
-		           is_there(h->pid) ? "; there is still a process of that number" : "");
+		           process_exists(h->pid) ? "; there is still a process of that number"
+		                                  : "");
 	image_retire(before->base, before->size);
 	segment_wake(&h->news, INT_MAX);
 }
@@ -261,9 +271,9 @@ int memory_show(struct memory *m, struct log *log, char *why, size_t why_size)
 		         strerror(-err), segment_hint(m->instance, err, hint));
 	m->shown = !err;
 	if (!err)
-		say_private(m, log);
+		report_private(m, log);
 	if (had_before && !err)
-		retire(&before, log);
+		retire_image(&before, log);
 	if (had_before)
 		segment_close(&before);
 	return err;
@@ -286,7 +296,7 @@ bool memory_image_lost(const struct memory *m)
 	return !segment_named(m->instance, &m->image_segment);
 }
 
-static void let_go(struct memory_commands *c)
+static void release_commands(struct memory_commands *c)
 {
 	segment_close(&c->segment);
 	commands_forget(&c->commands);
@@ -297,13 +307,16 @@ struct commands *memory_renew_commands(struct memory *m, int *err)
 	unsigned next = (m->current + 1) % COMMANDS;
 	struct memory_commands *to = &m->commands[next];
 
-	let_go(to);
+	release_commands(to);
 	*err = make_commands(m, to);
 	if (*err) {
-		let_go(to);
+		release_commands(to);
 		return NULL;
 	}
-	/* if not all of it is gone, its consumers learn so that they have to open the new one */
+	/*
+	 * consumers that still map the old segment read in its state that they have to open the new
+	 * one
+	 */
 	commands_state(memory_commands(m), OWS_STATE_RETIRED);
 	m->current = next;
 	return &to->commands;
@@ -317,7 +330,7 @@ int memory_show_commands(struct memory *m)
 
 void memory_replaced(struct memory *m)
 {
-	/* one that had lost its name has not been retired by it: its readers would keep to it for ever */
+	/* an image that had lost its name is not retired yet: its readers would keep it for ever */
 	if (__atomic_load_n(&m->image.header->state, __ATOMIC_RELAXED) != OWS_STATE_RETIRED) {
 		image_retire(m->image_segment.base, m->image_segment.size);
 		segment_wake(&m->image.header->news, INT_MAX);
@@ -344,5 +357,5 @@ void memory_end(struct memory *m)
 	memory_stop(m);
 	segment_close(&m->image_segment);
 	for (unsigned i = 0; i < COMMANDS; i++)
-		let_go(&m->commands[i]);
+		release_commands(&m->commands[i]);
 }

@@ -17,7 +17,7 @@ struct memory {
 	const struct config *config;
 	struct segment image_segment;
 	struct image image;
-	/* the one in use, and those before it that a consumer took away */
+	/* the segment in use, and those before it that consumers removed or truncated */
 	struct memory_commands {
 		struct segment segment;
 		struct commands commands;
@@ -38,15 +38,15 @@ struct memory_setup {
 };
 /*
  * Make both segments, not yet visible to consumers; the caller holds the instance's lock and
- * publishes the first values before memory_show(). At a start what was commanded of the owsd before
- * is carried over; at a reload that is the engine's work. Returns 0 or a negative errno, the reason
- * then stands in why.
+ * publishes the first values before memory_show(). A start carries the commands over that consumers
+ * gave to the previous owsd; at a reload the engine does it. Returns 0, or a negative errno with
+ * the reason in why.
  */
 int memory_make(struct memory *memory, const struct memory_setup *setup, char *why,
                 size_t why_size);
 /*
- * Put them in place of those before, which are retired. 0 or a negative errno, the reason then
- * stands in why; may be called again then.
+ * Put both segments in place of the segments before, and retire those. Returns 0, or a negative
+ * errno with the reason in why; then the caller may call it again.
  */
 int memory_show(struct memory *memory, struct log *log, char *why, size_t why_size);
 /* The commands in use. */
@@ -55,24 +55,27 @@ struct commands *memory_commands(struct memory *memory);
 bool memory_commands_lost(const struct memory *memory);
 /*
  * Make a new, empty command segment, not yet visible to consumers, and return its commands; NULL
- * and *err if that fails. The one before is retired; its mapping stays until the call after the
- * next, so that others can let go of it.
+ * and *err if that fails. The segment before is retired; its mapping stays until the call after the
+ * next, so that other threads can finish with it.
  */
 struct commands *memory_renew_commands(struct memory *memory, int *err);
-/* Put the new command segment in its place, filled. 0 or a negative errno. */
+/* Show consumers the new command segment, which the engine has filled. 0 or a negative errno. */
 int memory_show_commands(struct memory *memory);
-/* Was the image removed or replaced, so that nobody can find it any more? Two system calls. */
+/* Was the image removed or replaced, so that no program can find it any more? Two system calls. */
 bool memory_image_lost(const struct memory *memory);
-/* After a reload: these segments have been replaced, and go without a word. */
+/*
+ * After a reload: unmap these segments, which the new ones have replaced; consumers know already.
+ */
 void memory_replaced(struct memory *memory);
 /*
- * Say that owsd ends, where memory was shown; it stays mapped for threads that do not end. May be
+ * Mark in shown segments that owsd ends; they stay mapped for threads that do not end. May be
  * called again.
  */
 void memory_stop(struct memory *memory);
 /*
- * The same, and unmap: both segments stay, for the last values and for the next start. What was never
- * shown goes without a word, what was never made (all zero) is left alone. May be called again.
+ * The same, and unmap: the files of both segments stay, for the last values and for the next start.
+ * Segments that were never shown are removed; memory that was never made (all zero) is left alone.
+ * May be called again.
  */
 void memory_end(struct memory *memory);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The inside of the host, shared by host.c, host_engine.c and host_reload.c. */
+/* The inside of the host, which the files of this room share. */
 #ifndef HOST_PRIVATE_H
 #define HOST_PRIVATE_H
 
@@ -8,14 +8,18 @@
 #include "src/host/host.h"
 #include "src/host/serving.h"
 
-/* How long the supervisor looks whether the engine, the server have taken what it gave them. */
+/*
+ * The supervisor's pause between two looks whether engine or server have taken what it gave them.
+ */
 #define HOST_LOOK_NS 1000000
 
 struct host {
-	struct serving *now;  /* the engine's thread exchanges it, the supervisor alone else */
-	struct serving *next; /* of a reload, for the engine to take over */
+	struct serving
+		*now; /* exchanged by the engine's thread; else only the supervisor uses it */
+	struct serving *next; /* made by a reload, for the engine to take over */
 	const struct adoption *plan;
-	struct engine *ended; /* whose buses have ended, for the engine's thread to leave */
+	struct engine
+		*ended; /* an engine whose buses have ended, for the engine's thread to abandon */
 	struct log *log;
 	const char *instance;
 	struct serve *serve; /* NULL: the owserver protocol is not served */
@@ -23,43 +27,48 @@ struct host {
 	struct indicator *indicator;
 	pthread_t thread;
 	bool running;
-	bool left_behind; /* a bus that is stuck in the kernel, with all that it has lent */
+	bool left_behind; /* a bus is stuck in the kernel, and keeps the memory that it uses */
 	uint32_t stop;
 	struct commands *renewed; /* made by the supervisor, for the engine to take */
-	bool unseen;              /* consumers have not been shown it yet */
+	bool unseen;              /* renewed is not yet shown to consumers */
 	uint32_t *bell;           /* in the command segment */
-	uint32_t ringing;         /* threads that have just looked where it is */
+	uint32_t ringing;         /* how many threads have read bell and not yet rung it */
 	int64_t tend_ns;          /* not sooner */
 	struct log_rate tend_rate;
 	int64_t image_lost_ns;
-	/* of a reload: its image is not in place, threads of it do not run; how many of the two */
+	/*
+	 * what a reload has not finished: its image is not in place, its threads do not run; how
+	 * many
+	 */
 	bool unshown, unstarted;
-	uint32_t unmended;
-	int64_t mend_ns; /* not sooner */
-	struct log_rate mend_rate;
+	uint32_t unfinished;
+	int64_t finish_ns; /* not sooner */
+	struct log_rate finish_rate;
 	uint64_t idle_rings, mended;
 };
 
-/* host_engine.c. Start the thread: 0 or a negative errno, the reason then stands in why. */
+/* engine_thread.c. Start the engine's thread: 0, or a negative errno with the reason in why. */
 int host_start_engine(struct host *host, int rt_priority, char *why, size_t why_size);
-/* Wake it, from any thread. */
+/* Wake the engine, from any thread. */
 void host_ring(void *host);
-/* After the bell was exchanged: until nobody has his hand on the one before any more. */
+/* After the bell was exchanged: wait until no thread can ring the bell before any more. */
 void host_wait_for_ringers(const struct host *host);
-/* What of the counters is of no bus: the host's own, then the server's. Freed by the caller. */
+/*
+ * The counters that belong to no bus: the host's own, then the server's. The caller frees the plan.
+ */
 struct image_counter *host_plan_counters(const struct host *host, uint32_t *count);
 
-/* host.c: 0 or a negative errno, the reason then stands in why; plan NULL: a start */
+/* host.c. Returns 0, or a negative errno with the reason in why; plan NULL: a start. */
 int host_make_serving(struct host *host, struct config *config, const struct adoption *plan,
                       struct serving **serving, char *why, size_t why_size);
-/* All that are not running; the first that cannot be started is the error. */
+/* Start all workers that do not run yet; returns the error of the first that cannot be started. */
 int host_start_workers(struct serving *serving, char *why, size_t why_size);
 int host_start_indicator(struct host *host, char *why, size_t why_size);
 
 /*
- * host_tend.c. What a reload could not do once the engine had taken it, and what is said and
- * counted until it can; host_tend() calls it once a second.
+ * tend.c. Try again what a reload could not finish after the engine had taken it; log and count it
+ * until it is done. host_tend() calls it once a second.
  */
-void host_mend(struct host *host);
+void host_finish_reload(struct host *host);
 
 #endif

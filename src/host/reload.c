@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Another configuration in place of the one that is served, and the end of what did not stay. */
+/*
+ * The reload: puts another configuration in place of the served one, and ends what does not stay.
+ */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +12,7 @@
 #include "src/serve/serve.h"
 #include "src/shm/futex.h"
 
-/* How long the buses that a reload ends may take, all together. */
+/* The time that all buses which a reload ends may take together. */
 #define END_NS 2000000000LL
 
 static void pause_until_null(void *word)
@@ -21,7 +23,7 @@ static void pause_until_null(void *word)
 		segment_wait(&nobody, 0, HOST_LOOK_NS);
 }
 
-/* Those that did not stay; false: one of them does not end. */
+/* End the workers that do not stay; false: one of them does not end. */
 static bool end_workers(struct serving *before, const struct serving *now,
                         const struct adoption *plan)
 {
@@ -31,8 +33,8 @@ static bool end_workers(struct serving *before, const struct serving *now,
 	return serving_stop(before, END_NS);
 }
 
-/* ended: its buses have; dark: the lamps that look at its image have. */
-static void leave(struct host *h, struct serving *before, bool ended, bool dark)
+/* Free what was served before. ended: its buses have ended; dark: the thread of its lamps has. */
+static void leave_before(struct host *h, struct serving *before, bool ended, bool dark)
 {
 	if (ended) {
 		__atomic_store_n(&h->ended, before->engine, __ATOMIC_RELEASE);
@@ -71,8 +73,8 @@ static bool same_listeners(const struct config_serve *a, const struct config_ser
 	return true;
 }
 
-/* The engine serves it from here on; nothing of what follows can refuse it any more. */
-static void exchange(struct host *h, struct serving *next, const struct adoption *plan)
+/* Give next to the engine. From here on the reload cannot be refused any more. */
+static void exchange_serving(struct host *h, struct serving *next, const struct adoption *plan)
 {
 	struct serving *before = h->now;
 	bool dark;
@@ -83,17 +85,18 @@ static void exchange(struct host *h, struct serving *next, const struct adoption
 	pause_until_null(&h->next);
 	h->plan = NULL;
 	h->unshown = true;
-	h->unstarted = false; /* before their hardware is let go of */
-	host_mend(h);
+	h->unstarted =
+		false; /* the threads start only after the old ones have released the hardware */
+	host_finish_reload(h);
 	if (h->serve)
 		serve_reload(h->serve, next->config, &next->memory.image, plan->ports);
 	dark = indicator_stop(h->indicator, END_NS);
 	if (dark)
 		indicator_destroy(h->indicator);
 	h->indicator = NULL;
-	leave(h, before, end_workers(before, next, plan), dark);
+	leave_before(h, before, end_workers(before, next, plan), dark);
 	h->unstarted = true;
-	host_mend(h);
+	host_finish_reload(h);
 }
 
 bool host_may_reload(const struct host *h)
@@ -125,7 +128,7 @@ int host_reload(struct host *h, struct config *config, char *why, size_t why_siz
 		           config->item_count, config->item_count == 1 ? "" : "s", plan.kept_rows,
 		           config->target_count, config->target_count == 1 ? "" : "s",
 		           plan.kept_ports);
-		exchange(h, next, &plan);
+		exchange_serving(h, next, &plan);
 	}
 	adoption_free(&plan);
 	return err;

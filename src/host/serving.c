@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Makes, stops and frees what stands on one configuration: workers, shared memory, engine. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,7 +42,7 @@ static int new_worker(struct serving *s, const struct serving_setup *setup, unsi
 		worker_destroy(s->workers[i]);
 		return err;
 	}
-	/* of several ways to one wire the first is open at the start */
+	/* of several ways to one wire only the first is open at the start */
 	if (s->config->targets[i].relation == CONFIG_BAR)
 		worker_suspend(s->workers[i], true);
 	return 0;
@@ -84,7 +85,7 @@ static int make_workers(struct serving *s, const struct serving_setup *setup, ch
 	return 0;
 }
 
-/* Engine's counters, then each bus's, then the host's. */
+/* The counters in the image: the engine's, then each bus's, then the host's. */
 static int make_memory(struct serving *s, const struct serving_setup *setup, char *why,
                        size_t why_size)
 {
@@ -163,7 +164,7 @@ int serving_make(struct serving *s, const struct serving_setup *setup, char *why
 		return 0;
 	for (unsigned i = 0; i < s->worker_count; i++)
 		s->taken[i] = setup->plan && setup->plan->ports[i] >= 0;
-	s->config = NULL; /* the caller's again */
+	s->config = NULL; /* the caller owns it again */
 	serving_free(s);
 	return err;
 }
@@ -220,7 +221,7 @@ bool serving_stop(struct serving *s, int64_t timeout_ns)
 	int64_t until_ns = ows_now() + timeout_ns;
 	bool ended = true;
 
-	/* all are asked before one is waited for */
+	/* ask all workers to end before waiting for any of them */
 	for (unsigned i = 0; i < s->worker_count; i++)
 		if (!s->taken[i])
 			worker_stop(s->workers[i], 0);

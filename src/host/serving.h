@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What stands on one configuration: the workers of its targets, its shared memory and its engine. A
- * reload makes another one beside it, which takes the workers over that stay. No threads are started
- * here; blocking.
+ * A serving is everything that stands on one configuration: the workers of its targets, its shared
+ * memory and its engine. A reload makes a second serving beside the first, which takes over the
+ * workers that stay. No threads are started here; blocking.
  */
 #ifndef HOST_SERVING_H
 #define HOST_SERVING_H
@@ -14,16 +14,16 @@
 struct worker;
 
 struct serving {
-	struct config *config; /* its own */
+	struct config *config; /* owned by the serving */
 	struct memory memory;
 	struct commands *commands; /* as the engine uses them */
 	struct engine *engine;
 	struct engine_port *ports;
 	struct worker **workers;
-	bool *taken; /* this worker belongs to the one after */
+	bool *taken; /* for each worker: the serving after this one owns it now */
 	unsigned worker_count;
 	unsigned *bus_counters; /* how many each worker's bus has */
-	unsigned own_counters;  /* index of the first counter that is of no bus and of no lane */
+	unsigned own_counters;  /* index of the first counter that belongs to no bus and no lane */
 	uint64_t stalls_before, dropped_before; /* of workers that reloads have ended */
 };
 
@@ -34,29 +34,35 @@ struct serving_setup {
 	void (*ring)(void *ctx); /* wakes the engine; any thread */
 	void *ring_ctx;
 	const struct engine_guests *guests;   /* NULL: none */
-	const struct image_counter *counters; /* of the host */
+	const struct image_counter *counters; /* the host's */
 	uint32_t counter_count;
-	/* of a reload: what is there, and what of it stays; NULL: a start */
+	/* a reload: what is served now, and what of it stays; NULL: a start */
 	struct serving *before;
 	const struct adoption *plan;
 };
 
 /*
- * Returns 0 or a negative errno, the reason then stands in why and nothing was made or taken, nor is
- * config. The image is not shown.
+ * Returns 0, or a negative errno with the reason in why; then nothing was made or taken over, and
+ * the caller still owns config. The image is not yet shown to consumers.
  */
 int serving_make(struct serving *serving, const struct serving_setup *setup, char *why,
                  size_t why_size);
-/* The counters of its buses into the image; the caller's stand behind them, from own_counters. */
+/*
+ * Write the counters of the buses into the image; the caller's counters follow from own_counters
+ * on.
+ */
 void serving_publish(struct serving *serving);
-/* Of all workers, those that reloads have ended included: messages that had to wait, events dropped. */
+/*
+ * Messages that had to wait, and events that were dropped, of all workers, including the workers
+ * that reloads have ended.
+ */
 uint64_t serving_stalls(const struct serving *serving);
 uint64_t serving_dropped(const struct serving *serving);
-/* The engine's thread, at a reload: what the workers that do not stay have counted is kept. */
+/* Keep the counts of the workers that do not stay. Called by the engine's thread at a reload. */
 void serving_keep_counts(struct serving *serving, const struct serving *before, const int *ports);
-/* End the workers that are not taken. Blocks; false: one did not end within timeout_ns. */
+/* End the workers that are not taken. Blocks; false: a worker did not end within timeout_ns. */
 bool serving_stop(struct serving *serving, int64_t timeout_ns);
-/* Ends nothing: workers that are not taken have ended. The configuration goes too. */
+/* Free all, the configuration too. The workers that are not taken have ended before. */
 void serving_free(struct serving *serving);
 
 #endif

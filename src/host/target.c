@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Checks targets and their options, and gives a bus the options of its Bus block. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,7 +11,7 @@
 #include "src/host/target.h"
 #include "src/libows/ows.h"
 
-static int64_t now(void *ctx)
+static int64_t target_now(void *ctx)
 {
 	(void)ctx;
 	return ows_now();
@@ -33,7 +34,7 @@ static void no_event(void *ctx, const struct bus_event *event)
 }
 
 static const struct bus_env env = {
-	.now = now, .wait = no_wait, .answer = no_answer, .event = no_event};
+	.now = target_now, .wait = no_wait, .answer = no_answer, .event = no_event};
 
 int target_check(const char *target, char *why, size_t why_size)
 {

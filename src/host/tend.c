@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the supervisor looks after: the shared memory, and what a reload has left to do. */
+/* The supervisor's upkeep: repairs the shared memory, and finishes what a reload has left to do. */
 #include <errno.h>
 #include <string.h>
 
@@ -8,9 +8,9 @@
 #include "src/shm/hint.h"
 #include "src/shm/segment.h"
 
-/* A consumer that takes the command segment away again and again has one made once a second. */
+/* Where a consumer removes the command segment again and again, owsd makes it once a second. */
 #define TEND_NS 1000000000
-/* How often the loss of the image is said. */
+/* How often owsd logs that the image is lost. */
 #define IMAGE_LOST_NS 60000000000LL
 
 static int show_renewed(struct host *h)
@@ -29,7 +29,10 @@ static int renew_commands(struct host *h)
 	struct commands *renewed;
 	int err = 0;
 
-	/* it unmaps the segment before the one that is lost, which a slow thread may still be at */
+	/*
+	 * memory_renew_commands() unmaps the segment before the lost one, which a slow thread may
+	 * still use
+	 */
 	host_wait_for_ringers(h);
 	renewed = memory_renew_commands(&h->now->memory, &err);
 	if (!renewed)
@@ -40,7 +43,9 @@ static int renew_commands(struct host *h)
 	return 0;
 }
 
-/* An image of the same values under the name would need all readers to open it: a reload's work. */
+/*
+ * Log that the image is lost. Only a reload makes a new image, since all readers have to open it.
+ */
 static void look_for_image(struct host *h, int64_t now_ns)
 {
 	if ((h->image_lost_ns && now_ns - h->image_lost_ns < IMAGE_LOST_NS) ||
@@ -53,31 +58,31 @@ static void look_for_image(struct host *h, int64_t now_ns)
 	        h->instance);
 }
 
-static void say_unmended(struct host *h, const char *why)
+static void report_unfinished(struct host *h, const char *why)
 {
-	if (log_rate(&h->mend_rate, ows_now()))
+	if (log_rate(&h->finish_rate, ows_now()))
 		log_err(h->log, "%s: it is tried again every second", why);
 }
 
-void host_mend(struct host *h)
+void host_finish_reload(struct host *h)
 {
-	bool before = h->unmended != 0;
+	bool before = h->unfinished != 0;
 	char why[512];
 
 	if (h->unshown)
 		h->unshown = memory_show(&h->now->memory, h->log, why, sizeof(why)) != 0;
 	if (h->unshown)
-		say_unmended(h, why);
+		report_unfinished(h, why);
 	if (h->unstarted)
 		h->unstarted = host_start_workers(h->now, why, sizeof(why)) ||
 		               (!h->indicator && host_start_indicator(h, why, sizeof(why)));
 	if (h->unstarted)
-		say_unmended(h, why);
-	__atomic_store_n(&h->unmended, (uint32_t)h->unshown + h->unstarted, __ATOMIC_RELAXED);
-	h->mend_ns = ows_now() + TEND_NS;
-	if (h->unmended)
+		report_unfinished(h, why);
+	__atomic_store_n(&h->unfinished, (uint32_t)h->unshown + h->unstarted, __ATOMIC_RELAXED);
+	h->finish_ns = ows_now() + TEND_NS;
+	if (h->unfinished)
 		return;
-	h->mend_rate = (struct log_rate){0};
+	h->finish_rate = (struct log_rate){0};
 	if (before)
 		log_notice(h->log, "what the reload could not do at once is done");
 }
@@ -88,8 +93,8 @@ void host_tend(struct host *h)
 	char hint[SEGMENT_HINT];
 	int err = 0;
 
-	if ((h->unshown || h->unstarted) && now_ns >= h->mend_ns)
-		host_mend(h);
+	if ((h->unshown || h->unstarted) && now_ns >= h->finish_ns)
+		host_finish_reload(h);
 	look_for_image(h, now_ns);
 	if (__atomic_load_n(&h->renewed, __ATOMIC_ACQUIRE)) /* the engine has not filled it yet */
 		return;
