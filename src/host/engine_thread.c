@@ -23,16 +23,16 @@
 enum {
 	COUNTER_LOG_DROPPED,
 	COUNTER_IDLE_RINGS,
-	COUNTER_MENDED,
+	COUNTER_REPAIRED,
 	COUNTER_WORKER_STALLS,
 	COUNTER_DROPPED_EVENTS,
 	COUNTER_UNFINISHED,
 	HOST_COUNTERS,
 };
 static const char *const host_counters[HOST_COUNTERS] = {
-	[COUNTER_LOG_DROPPED] = "log_dropped",       [COUNTER_IDLE_RINGS] = "idle_rings",
-	[COUNTER_MENDED] = "mended_command_headers", [COUNTER_WORKER_STALLS] = "worker_stalls",
-	[COUNTER_DROPPED_EVENTS] = "dropped_events", [COUNTER_UNFINISHED] = "unfinished_reload",
+	[COUNTER_LOG_DROPPED] = "log_dropped",         [COUNTER_IDLE_RINGS] = "idle_rings",
+	[COUNTER_REPAIRED] = "mended_command_headers", [COUNTER_WORKER_STALLS] = "worker_stalls",
+	[COUNTER_DROPPED_EVENTS] = "dropped_events",   [COUNTER_UNFINISHED] = "unfinished_reload",
 };
 
 void host_ring(void *ctx)
@@ -97,7 +97,7 @@ static void publish_counters(struct host *h)
 	serving_publish(h->now);
 	image_counter(image, index + COUNTER_LOG_DROPPED, log_dropped(h->log));
 	image_counter(image, index + COUNTER_IDLE_RINGS, h->idle_rings);
-	image_counter(image, index + COUNTER_MENDED, h->mended);
+	image_counter(image, index + COUNTER_REPAIRED, h->mended);
 	image_counter(image, index + COUNTER_WORKER_STALLS, serving_stalls(h->now));
 	image_counter(image, index + COUNTER_DROPPED_EVENTS, serving_dropped(h->now));
 	image_counter(image, index + COUNTER_UNFINISHED,
@@ -166,7 +166,7 @@ static void *engine_main(void *ctx)
 		next_ns = engine_step(h->now->engine, now_ns);
 		if (now_ns - counted_ns >= h->now->config->period_ns) {
 			counted_ns = now_ns;
-			h->mended += commands_mend(h->now->commands, false);
+			h->mended += commands_repair(h->now->commands, false);
 			publish_counters(h);
 			busy = true;
 		}

@@ -345,7 +345,7 @@ void memory_stop(struct memory *m)
 		return;
 	image_state(&m->image, OWS_STATE_STOPPED);
 	segment_wake(&m->image.header->news, INT_MAX);
-	commands_mend(memory_commands(m), true);
+	commands_repair(memory_commands(m), true);
 	commands_state(memory_commands(m), OWS_STATE_STOPPED);
 	m->shown = false;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Carrying commands from an older segment into a new one. Every number of the old one is read once
- * into a variable and checked there: a consumer may still be writing rubbish into it.
+ * Carries commands from an older segment into a new one. Every number of the old segment is read
+ * once into a variable and checked there: a consumer may still be writing rubbish into the segment.
  */
 #include <errno.h>
 #include <string.h>
@@ -11,7 +11,9 @@
 #include "src/shm/commands.h"
 #include "src/shm/word.h"
 
-/* More than any configuration has: each may be looked at for each signal of ours. */
+/*
+ * More slots than any configuration has; bounds the search, which may try each for each new slot.
+ */
 #define SLOTS_MAX 65536
 
 struct old_segment {
@@ -20,8 +22,8 @@ struct old_segment {
 	uint32_t slot_off, entry_off, count, text_cap, client_off;
 };
 
-/* Is an area of count times size bytes at off inside, and aligned as its words need? */
-static bool inside(const struct old_segment *old, uint32_t off, uint64_t count, uint64_t size)
+/* Does an area of count times size bytes at off lie inside the segment, aligned for its words? */
+static bool area_inside(const struct old_segment *old, uint32_t off, uint64_t count, uint64_t size)
 {
 	return off % 8 == 0 && off <= old->size && count * size <= old->size - off;
 }
@@ -47,9 +49,9 @@ static int open_old(const void *memory, size_t size, struct old_segment *old)
 		.text_cap = h.text_cap,
 		.client_off = h.client_off,
 	};
-	if (!inside(old, h.slot_off, h.slot_count, sizeof(struct ows_command_slot)) ||
-	    !inside(old, h.entry_off, h.slot_count, sizeof(struct ows_command_entry)) ||
-	    !inside(old, h.client_off, OWS_CLIENTS, sizeof(struct ows_client)))
+	if (!area_inside(old, h.slot_off, h.slot_count, sizeof(struct ows_command_slot)) ||
+	    !area_inside(old, h.entry_off, h.slot_count, sizeof(struct ows_command_entry)) ||
+	    !area_inside(old, h.client_off, OWS_CLIENTS, sizeof(struct ows_client)))
 		return -EPROTO;
 	return 0;
 }
@@ -69,7 +71,7 @@ static struct ows_command_entry old_entry(const struct old_segment *old, uint32_
 	return e;
 }
 
-/* Looks from a guess on, for most files change little; returns the slot or 0. */
+/* Find a signal's slot, from a guess on, since most files change little; returns the slot or 0. */
 static uint32_t find_old(const struct old_segment *old, uint32_t guess, const char *name,
                          const char *path, uint32_t type, struct ows_command_entry *entry)
 {
@@ -111,7 +113,9 @@ static bool carry_text(struct commands *to, uint32_t slot, const struct old_segm
 	return true;
 }
 
-/* Whoever takes a free place is not the one that gave the command. */
+/*
+ * The giver of a command as carried: none if its place is free, since another program may take it.
+ */
 static uint32_t carry_giver(const struct commands *to, uint32_t client)
 {
 	const struct ows_client *clients = (const void *)(to->base + to->client_off);
@@ -121,7 +125,7 @@ static uint32_t carry_giver(const struct commands *to, uint32_t client)
 	return client != 0 && client <= OWS_CLIENTS && clients[client - 1].pid != 0 ? client : 0;
 }
 
-/* After carry_clients(). */
+/* Carry a slot; call carry_clients() before. */
 static bool carry_slot(struct commands *to, uint32_t slot, const struct old_segment *old,
                        uint32_t from, uint32_t text_off, bool restart)
 {
@@ -130,7 +134,10 @@ static bool carry_slot(struct commands *to, uint32_t slot, const struct old_segm
 
 	there += from;
 	words_load(&was, there, sizeof(was) / 4);
-	/* A program may be setting it: as in commands_load(), no stamp before its value, no half */
+	/*
+	 * A program may be setting the slot: read the stamp before the value, and the value in one
+	 * load
+	 */
 	was.stamp = __atomic_load_n(&there->stamp, __ATOMIC_ACQUIRE);
 	was.value = __atomic_load_n((const shm_double_word *)&there->value, __ATOMIC_RELAXED);
 	s = (void *)(to->base + to->slot_off + (size_t)slot * sizeof(*s));

@@ -12,7 +12,7 @@
 #define COMMANDS_MAX 0x7fffffffu
 #define CONSTANT_HEADER offsetof(struct ows_command_header, bell)
 
-/* Where the areas are, in the order in which they lie. */
+/* The offsets of the areas of the segment, in their order. */
 struct command_areas {
 	uint64_t entry, pool, pool_end, dirty, client, slot, ack, text, end;
 	uint32_t dirty_words;
@@ -182,7 +182,10 @@ void commands_load(const struct commands *commands, uint32_t slot, struct comman
 	const uint32_t *acks = (const void *)(commands->base + commands->ack_off);
 	uint32_t client;
 
-	/* The stamp is counted after the value was stored: the value is at least as new. */
+	/*
+	 * Consumers store the value before they count the stamp: the value read here is at least as
+	 * new.
+	 */
 	command->stamp = __atomic_load_n(&s->stamp, __ATOMIC_ACQUIRE);
 	command->value = (int64_t)__atomic_load_n((shm_double_word *)&s->value, __ATOMIC_RELAXED);
 	client = word_get(&s->client);
@@ -215,8 +218,8 @@ int commands_text(const struct commands *commands, uint32_t slot, char *text)
 	return check == ows_check_bytes(text, len) ? (int)len : -EBADMSG;
 }
 
-static int put(struct commands *commands, uint32_t slot, uint32_t client, int64_t value,
-               const char *text, uint32_t len)
+static int put_command(struct commands *commands, uint32_t slot, uint32_t client, int64_t value,
+                       const char *text, uint32_t len)
 {
 	struct ows_command_slot *s = slot_at(commands, slot);
 	struct ows_command_text *t;
@@ -224,7 +227,7 @@ static int put(struct commands *commands, uint32_t slot, uint32_t client, int64_
 
 	word_set(&s->client, client);
 	if (!text) {
-		/* One store: in two, a consumer's may come to lie between the halves */
+		/* One store: between two, a consumer could store a value of its own */
 		__atomic_store_n((shm_double_word *)&s->value, (uint64_t)value, __ATOMIC_RELAXED);
 		return 0;
 	}
@@ -249,13 +252,13 @@ static int put(struct commands *commands, uint32_t slot, uint32_t client, int64_
 int commands_put(struct commands *commands, uint32_t slot, int64_t value, const char *text,
                  uint32_t len)
 {
-	return put(commands, slot, 0, value, text, len);
+	return put_command(commands, slot, 0, value, text, len);
 }
 
 int commands_put_safe(struct commands *commands, uint32_t slot, int64_t value, const char *text,
                       uint32_t len)
 {
-	return put(commands, slot, OWS_CLIENT_SAFE, value, text, len);
+	return put_command(commands, slot, OWS_CLIENT_SAFE, value, text, len);
 }
 
 void commands_stamp(struct commands *commands, uint32_t slot, uint32_t stamp)
@@ -324,7 +327,10 @@ uint32_t *commands_bell(const struct commands *commands)
 void commands_awake(struct commands *commands, bool awake)
 {
 	__atomic_store_n(&header_of(commands)->awake, awake ? 1 : 0, __ATOMIC_SEQ_CST);
-	/* Who saw the old flag and did not wake had marked before: looking now finds his mark. */
+	/*
+	 * A consumer that saw the old flag and did not wake owsd had marked its slot before: the
+	 * look that follows finds the mark.
+	 */
 	word_fence(__ATOMIC_SEQ_CST);
 }
 
@@ -347,9 +353,9 @@ void commands_retire(void *old, size_t old_size)
 	word_fence(__ATOMIC_SEQ_CST);
 }
 
-static bool mend_words(char *to, const char *keep, size_t size)
+static bool restore_words(char *to, const char *keep, size_t size)
 {
-	bool mended = false;
+	bool restored = false;
 
 	for (size_t i = 0; i < size; i += 4) {
 		uint32_t was, is = 0;
@@ -357,26 +363,26 @@ static bool mend_words(char *to, const char *keep, size_t size)
 
 		words_load(&was, to + i, 1);
 		if (n == 4) {
-			words_load(&is, keep + i, 1); /* the state may just be changing */
+			words_load(&is, keep + i, 1); /* the state may change meanwhile */
 		} else {
 			memcpy(&is, keep + i, n);
 			memcpy((char *)&is + n, (const char *)&was + n, 4 - n);
 		}
 		if (was != is) {
 			words_store(to + i, &is, 1);
-			mended = true;
+			restored = true;
 		}
 	}
-	return mended;
+	return restored;
 }
 
-bool commands_mend(struct commands *commands, bool all)
+bool commands_repair(struct commands *commands, bool all)
 {
-	bool mended = mend_words(commands->base, commands->keep, CONSTANT_HEADER);
+	bool restored = restore_words(commands->base, commands->keep, CONSTANT_HEADER);
 
-	if (all &&
-	    mend_words(commands->base + commands->entry_off, commands->keep + commands->entry_off,
-	               commands->keep_size - commands->entry_off))
-		mended = true;
-	return mended;
+	if (all && restore_words(commands->base + commands->entry_off,
+	                         commands->keep + commands->entry_off,
+	                         commands->keep_size - commands->entry_off))
+		restored = true;
+	return restored;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The layout of major version 1, field by field: offset and size in bytes. Programs in other
- * languages are written against these numbers. A field that is added goes here too, none is changed.
+ * languages are written against these numbers. A new field is added here too; no line is changed.
  */
 #include "src/shm/layout.h"
 

@@ -11,8 +11,8 @@
 #include "src/shm/futex.h"
 
 /*
- * The plain call takes the kernel's old timespec of two longs. Where time_t is wider than long the
- * C library's timespec is not that one, and the call would read half of it.
+ * The plain call takes the kernel's old timespec of two longs. Where time_t is wider than long, the
+ * C library's timespec differs from that one, and the kernel would read half of it.
  */
 #ifdef SYS_futex_time64
 #define FUTEX_CALL (sizeof(time_t) > sizeof(long) ? SYS_futex_time64 : SYS_futex)

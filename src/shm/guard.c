@@ -9,7 +9,7 @@
 
 #include "src/shm/guard.h"
 
-/* base is 0 while the range is free or being set: the handler looks at it first. */
+/* base is 0 while the range is free or is being set: the handler reads base first. */
 static struct guard_range {
 	uintptr_t base;
 	size_t size;
@@ -19,7 +19,7 @@ static struct sigaction previous;
 static int installed;
 static pthread_mutex_t setting = PTHREAD_MUTEX_INITIALIZER;
 
-static struct guard_range *find(uintptr_t address)
+static struct guard_range *find_range(uintptr_t address)
 {
 	for (int i = 0; i < GUARD_MAX; i++) {
 		uintptr_t base = __atomic_load_n(&ranges[i].base, __ATOMIC_ACQUIRE);
@@ -30,7 +30,9 @@ static struct guard_range *find(uintptr_t address)
 	return NULL;
 }
 
-/* Back to what it was; the instruction faults again, or the signal is sent again. */
+/*
+ * Restore the handler before ours; the instruction then faults again, or the signal is sent again.
+ */
 static void pass_on(int number, siginfo_t *info, void *context)
 {
 	if (previous.sa_flags & SA_SIGINFO) {
@@ -54,7 +56,7 @@ static void on_bus_error(int number, siginfo_t *info, void *context)
 	int saved = errno;
 
 	if (info->si_code > 0)
-		range = find((uintptr_t)info->si_addr);
+		range = find_range((uintptr_t)info->si_addr);
 	if (range != NULL && mmap((void *)range->base, range->size, PROT_READ | PROT_WRITE,
 	                          MAP_PRIVATE | MAP_FIXED | MAP_ANONYMOUS, -1, 0) != MAP_FAILED)
 		__atomic_store_n(&range->lost, 1, __ATOMIC_RELEASE);
@@ -77,7 +79,7 @@ static int install(bool only_default)
 	return sigaction(SIGBUS, &ours, NULL) < 0 ? -errno : 0;
 }
 
-/* Somebody may have put his own handler over ours; then it stays. */
+/* Restore the handler before ours, unless the program has replaced ours meanwhile. */
 static void uninstall(void)
 {
 	struct sigaction now;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What stands behind an error of /dev/shm, for the log: it is full, or a file is in the way. */
+/* The cause of an error of /dev/shm, for the log: /dev/shm is full, or a file is in the way. */
 #include <errno.h>
 #include <stdio.h>
 #include <sys/stat.h>
@@ -9,8 +9,8 @@
 #include "src/shm/owner.h"
 #include "src/shm/segment.h"
 
-/* In a sticky directory only root and the owner replace a file; nobody replaces a directory. */
-static bool blocks(const struct stat *st)
+/* Can owsd not replace this file? In a sticky directory only root and the owner replace files. */
+static bool is_in_the_way(const struct stat *st)
 {
 	return !S_ISREG(st->st_mode) || !owner_trusted(st->st_uid) ||
 	       (geteuid() != 0 && st->st_uid != geteuid());
@@ -25,8 +25,8 @@ static const char *kind_of(const struct stat *st)
 	return S_ISLNK(st->st_mode) ? "link" : "special file";
 }
 
-/* A file of an instance of another user, which may run: nothing is wrong with it. */
-static bool is_anothers(const struct stat *st)
+/* Does the file belong to another user's instance, which may be running? Then nothing is wrong. */
+static bool belongs_to_another(const struct stat *st)
 {
 	bool ours = geteuid() == 0 || owner_is_service();
 
@@ -45,10 +45,10 @@ const char *segment_hint(const char *instance, int err, char text[SEGMENT_HINT])
 		return "";
 	for (size_t i = 0; i < sizeof(kinds) / sizeof(kinds[0]); i++) {
 		snprintf(path, sizeof(path), "/dev/shm/owsd.%s.%s", instance, kinds[i]);
-		if (lstat(path, &st) < 0 || !blocks(&st))
+		if (lstat(path, &st) < 0 || !is_in_the_way(&st))
 			continue;
 		owner_name(st.st_uid, user);
-		if (is_anothers(&st))
+		if (belongs_to_another(&st))
 			snprintf(text, SEGMENT_HINT,
 			         ": instance %s belongs to user %s: run owsd as that user, or name "
 			         "another instance with -n",

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The image as owsd lays it out and publishes into it. */
 #include <assert.h>
 #include <string.h>
 
@@ -11,7 +12,7 @@
 #define ATTRS_WORDS (sizeof(struct ows_attrs) / 4)
 #define ALARM_WORDS (sizeof(struct ows_alarm_entry) / 4)
 
-/* Where the areas are, in the order in which they lie. */
+/* The offsets of the areas of the segment, in their order. */
 struct image_areas {
 	uint64_t record, info, name, target, counter, alarm, text, pool, end;
 };
@@ -108,7 +109,7 @@ static void sift_down(const char *base, struct ows_name_entry *heap, uint32_t i,
 	}
 }
 
-/* Heap sort: qsort() has no context to find the strings by. */
+/* Heap sort: the comparison needs base to find the strings, and qsort() passes no context. */
 static void sort_names(const char *base, struct ows_name_entry *names, uint32_t n)
 {
 	for (uint32_t i = n / 2; i-- > 0;)
@@ -243,7 +244,7 @@ void image_publish(struct image *image, uint32_t record, const struct ows_sample
 	assert(sample->len <= r->text_cap);
 	whole.sample.check = ows_check((const void *)&whole.sample, SAMPLE_WORDS - 1);
 	whole.attrs.check = ows_check((const void *)&whole.attrs, ATTRS_WORDS - 1);
-	/* Who reads this number copies the slot before: it has to be there, whoever wrote it */
+	/* A reader of this number copies the slot before, whose words must be visible by now */
 	__atomic_store_n(&r->seq, 2 * n - 1, __ATOMIC_RELEASE);
 	word_fence(__ATOMIC_RELEASE);
 	words_store(slot, &whole, SAMPLE_WORDS + ATTRS_WORDS);
@@ -253,7 +254,7 @@ void image_publish(struct image *image, uint32_t record, const struct ows_sample
 	__atomic_store_n(&r->seq, 2 * n, __ATOMIC_RELEASE);
 }
 
-/* Write an entry but for its seq, which a reader watches. */
+/* Write all of an entry but its seq, by which a reader notices the change. */
 static void write_alarm(struct ows_alarm_entry *to, struct ows_alarm_entry *entry)
 {
 	uint32_t seq = word_get(&to->seq);

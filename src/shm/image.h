@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The image, writer's side: build it in memory, publish into it. No system call in this file's
- * functions: src/shm/segment.h makes the memory, tests use the heap. One thread.
+ * The image, writer's side: build it in memory, publish into it. No function here makes a system
+ * call: src/shm/segment.h makes the memory, tests use the heap. One thread.
  */
 #ifndef SHM_IMAGE_H
 #define SHM_IMAGE_H
@@ -57,30 +57,32 @@ size_t image_size(const struct image_plan *plan);
 void image_build(const struct image_plan *plan, void *memory, struct image *image);
 
 /*
- * Publish a new state of a record: both parts, and for strings len bytes of text. The check words
- * are made here. Bounded, wait-free.
+ * Publish a new state of a record: both parts, and for strings len bytes of text. Computes the
+ * check words. Bounded, wait-free.
  */
 void image_publish(struct image *image, uint32_t record, const struct ows_sample *sample,
                    const struct ows_attrs *attrs, const char *text);
 /*
- * Enter an alarm into the journal; seq, number and check are made here. Returns its number, by
- * which the value after may be added as long as the ring holds it; later that does nothing.
+ * Enter an alarm into the journal; seq, number and check are set here. Returns the entry's number,
+ * with which image_alarm_after() adds the value after the alarm; once the ring has lost the entry,
+ * that does nothing.
  */
 uint32_t image_alarm(struct image *image, const struct ows_alarm_entry *entry);
 void image_alarm_after(struct image *image, uint32_t number, int64_t after);
 /*
- * The journal of an image before this one goes on in it, with its numbers: what was record r is now
- * records[r - 1] + 1, or if that is 0xffffffff gone, and so are its entries.
+ * Continue the journal of the previous image in this one, with its numbers: record r of the
+ * previous image is records[r - 1] + 1 here; where that is 0xffffffff, the record and its entries
+ * are gone.
  */
 void image_carry_alarms(struct image *image, const struct image *before, const uint32_t *records);
 void image_target(struct image *image, uint32_t target, uint32_t state, uint32_t reconnects);
 void image_moves(struct image *image, uint32_t target, uint32_t moves);
 void image_counter(struct image *image, uint32_t counter, uint64_t total);
-/* Counts the news word; the caller wakes sleepers (segment_wake) when it has published enough. */
+/* Count the news word up; the caller wakes sleepers (segment_wake) when it has published enough. */
 void image_news(struct image *image);
-/* Counts the news word too. */
+/* Set the state of the image; counts the news word up too. */
 void image_state(struct image *image, enum ows_state state);
-/* Retire an image that an earlier owsd left, of which nothing is known but its size. */
+/* Retire an image that an earlier owsd left, of which only the size is known. */
 void image_retire(void *old, size_t old_size);
 
 #endif

@@ -19,7 +19,8 @@
 
 /*
  * Byte 0 is the instance. Byte 1 is held while the pid is written and while a corpse's file is
- * replaced, so that nobody takes a lock for a corpse's whose new owner has not yet put his pid.
+ * replaced, so that no owsd mistakes a lock whose new owner has not yet written its pid for a
+ * corpse's.
  */
 #define BYTE_INSTANCE 0
 #define BYTE_PID 1
@@ -81,7 +82,7 @@ static pid_t read_pid(int fd)
 	return (pid_t)pid;
 }
 
-/* The page that is there is written before anything is cut off: a full /dev/shm has no other. */
+/* Write over the page that exists before truncating: a full /dev/shm has no other page to give. */
 static int write_pid(int fd)
 {
 	char text[16];
@@ -93,7 +94,7 @@ static int write_pid(int fd)
 	return 0;
 }
 
-/* A process that was killed while one of its threads cannot leave the kernel. */
+/* A corpse is a process that was killed while one of its threads cannot leave the kernel. */
 static bool is_corpse(pid_t pid)
 {
 	char path[32], text[512], *end;
@@ -113,8 +114,10 @@ static bool is_corpse(pid_t pid)
 	return end != NULL && (strncmp(end, ") Z", 3) == 0 || strncmp(end, ") X", 3) == 0);
 }
 
-/* The file that is locked by a corpse goes away; its descriptor keeps other replacers out. */
-static int replace(int fd, const char *path)
+/*
+ * Replace the file that a corpse has locked; byte 1 of fd, which is locked, keeps other owsds out.
+ */
+static int replace_lock(int fd, const char *path)
 {
 	if (lock_bytes(fd, F_WRLCK, BYTE_PID, 1) < 0 || !is_corpse(read_pid(fd)))
 		return -EBUSY;
@@ -163,12 +166,12 @@ int segment_lock(const char *instance, pid_t *pid, bool *stolen)
 			lock_bytes(fd, F_UNLCK, BYTE_PID, 1);
 			if (err == 0)
 				return fd;
-			unlink(path); /* nobody's: who waits for it looks whether it is still there */
+			unlink(path); /* no owsd holds it: one that waits for it checks that it exists */
 		} else if (err == -EAGAIN || err == -EACCES) {
 			*pid = read_pid(fd);
 			err = -EBUSY;
 			if (*pid > 0 && is_corpse(*pid)) {
-				err = replace(fd, path);
+				err = replace_lock(fd, path);
 				*stolen = err == 0;
 			}
 		}
@@ -225,10 +228,10 @@ int segment_lock_any(const char *instance, pid_t *pid)
 	err = lock_bytes(fd, F_WRLCK, BYTE_INSTANCE, 2);
 	if (err == -EAGAIN || err == -EACCES) {
 		*pid = read_pid(fd);
-		/* a corpse makes nothing any more */
+		/* a corpse creates no files any more */
 		err = *pid > 0 && is_corpse(*pid) ? 0 : -EBUSY;
 	} else if (!err && !still_there(fd, path)) {
-		err = -EBUSY; /* somebody else is at it */
+		err = -EBUSY; /* another process replaces or removes the file */
 	}
 	if (err) {
 		close(fd);

@@ -11,8 +11,8 @@
 #define OWNER_USER "owsd"
 
 /*
- * The files themselves: our user and groups are the system's own, and the name services of a
- * directory would be loaded into the daemon for nothing.
+ * Read from the files themselves: the user and groups of owsd are local, and getpwnam() would load
+ * the name services of a directory into the daemon for nothing.
  */
 static bool user_id(const char *name, uid_t *uid)
 {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Who may own a segment that we use. Blocking: reads /etc/passwd and /etc/group; one thread. */
+/* Who may own a segment that owsd uses. Blocking: reads /etc/passwd and /etc/group; one thread. */
 #ifndef SHM_OWNER_H
 #define SHM_OWNER_H
 
 #include <stdbool.h>
 #include <sys/types.h>
 
-/* root, owsd, or the caller. */
+/* Is uid root, owsd, or the caller? */
 bool owner_trusted(uid_t uid);
 /* Is the caller the service's user, owsd? */
 bool owner_is_service(void);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The reader's copy of a string signal's text, taken whole or not at all. */
 #include <string.h>
 
 #include "src/shm/reader.h"

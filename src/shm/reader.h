@@ -15,14 +15,14 @@
 #define READER_TRIES 64
 #endif
 
-/* Begin a round: which slot to copy. */
+/* Begin a round: returns the slot to copy. */
 static inline const struct ows_slot *reader_begin(const struct ows_record *record, uint32_t *seq)
 {
 	*seq = __atomic_load_n(&record->seq, __ATOMIC_ACQUIRE);
 	return &record->slot[*seq >> 1 & 1];
 }
 
-/* After the copy: is it whole? */
+/* Is the copy whole that was made since reader_begin()? */
 static inline bool reader_end(const struct ows_record *record, uint32_t seq)
 {
 	word_fence(__ATOMIC_ACQUIRE);

@@ -14,7 +14,7 @@
 #define FOLDER "/dev/shm"
 #define PREFIX "owsd."
 
-/* The instance of a file's name: between "owsd." and the last dot. False: it is none of ours. */
+/* The instance of a file's name, between "owsd." and the last dot. False: no file of an owsd. */
 static bool instance_of(const char *file, char name[SEGMENT_NAME_MAX + 1])
 {
 	const char *end = strrchr(file, '.'), *begin = file + strlen(PREFIX);
@@ -103,7 +103,7 @@ static int find_files(const char *instance, glob_t *found)
 		if (err == GLOB_NOMATCH)
 			err = 0;
 	}
-	/* what this user's owsctl has read of the alarms; that of others is theirs to remove */
+	/* the alarms that this user's owsctl has seen; other users remove their own file */
 	snprintf(pattern, sizeof(pattern), FOLDER "/" PREFIX "%s.seen.%u", instance,
 	         (unsigned)geteuid());
 	if (!err)
@@ -120,7 +120,7 @@ static int remove_file(const char *path, unsigned *files)
 	return 0;
 }
 
-/* The lock is the last: as long as it is there, no owsd makes what is being removed. */
+/* The lock is the last: as long as it exists, no owsd creates the files that are being removed. */
 static int remove_all(const char *instance, const glob_t *found, bool lock_is_new, unsigned *files)
 {
 	char path[128];
@@ -144,7 +144,10 @@ int remains_remove(const char *instance, pid_t *pid, unsigned *files)
 	bool has_none = lock == -ENOENT;
 
 	*files = 0;
-	/* what is no file keeps every owsd of this name from starting, as our lock would */
+	/*
+	 * a directory or socket in place of the lock keeps every owsd of this name from starting
+	 * too
+	 */
 	if (lock < 0 && !has_none && lock != -EPERM)
 		return lock;
 	err = find_files(instance, &found);

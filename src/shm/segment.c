@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The files of an instance in /dev/shm: made under a temporary name, shown, opened again, closed. */
+/*
+ * The files of an instance in /dev/shm: made under a temporary name, shown, opened again, closed.
+ */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -42,8 +44,8 @@ static void final_path(const char *instance, enum segment_kind kind, char path[8
 }
 
 /*
- * Where the group cannot be given the mode is 0600: the caller's own group may be anybody's.
- * Returns 0 or a negative errno.
+ * Give the file to its group. Where that fails the mode is 0600, since the caller's own group may
+ * have any members. Returns 0 or a negative errno.
  */
 static int give_to_group(int fd, const struct segment_role *role)
 {
@@ -75,8 +77,8 @@ static int map(struct segment *segment)
 }
 
 /*
- * The first name is always the same, so that the next start removes what a killed one left. Any user
- * can take that name: the others cannot be predicted.
+ * The first name tried is always the same, so that the next start removes what a killed owsd left.
+ * Any user can take that name; the names tried after it cannot be predicted.
  */
 static int open_temporary(const char *instance, struct segment *segment)
 {
@@ -88,7 +90,7 @@ static int open_temporary(const char *instance, struct segment *segment)
 		snprintf(segment->temporary, sizeof(segment->temporary), "%.60s.new%s", path,
 		         suffix);
 		if (i == 0)
-			unlink(segment->temporary); /* the instance is locked: nobody uses it */
+			unlink(segment->temporary); /* this process holds the lock: the file is a leftover */
 		segment->fd = open(segment->temporary,
 		                   O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
 		if (segment->fd >= 0)
@@ -99,7 +101,7 @@ static int open_temporary(const char *instance, struct segment *segment)
 			break;
 		snprintf(suffix, sizeof(suffix), ".%08x", (unsigned)random);
 	}
-	segment->temporary[0] = '\0'; /* not ours to remove */
+	segment->temporary[0] = '\0'; /* owsd did not create it and must not remove it */
 	return errno == EEXIST ? -EPERM : -errno;
 }
 

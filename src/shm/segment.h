@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The memory under image and commands: POSIX shared memory of an instance, its lock, and waking.
- * owsd's side. Blocking: file-system calls only.
+ * The memory under image and commands, owsd's side: POSIX shared memory of an instance, the lock of
+ * the instance, waiting and waking. Blocking: file-system calls only.
  */
 #ifndef SHM_SEGMENT_H
 #define SHM_SEGMENT_H
@@ -14,7 +14,7 @@
 
 enum segment_kind { SEGMENT_IMAGE, SEGMENT_COMMAND };
 
-/* Longest instance name; letters, digits, '-', '_', '.', not first a dot. */
+/* The longest name of an instance: letters, digits, '-', '_', '.', and no dot at the beginning. */
 #define SEGMENT_NAME_MAX 32
 bool segment_name_ok(const char *instance);
 
@@ -27,28 +27,29 @@ struct segment {
 };
 
 /*
- * Make a segment of size zeroed bytes under a temporary name that nobody can keep from it, all pages
- * allocated (no SIGBUS later when /dev/shm is full: -ENOSPC now). Mode 0640 group owsd, or 0660 group
- * owsd-control, where those groups exist and the caller may give files to them.
+ * Make a segment of size zeroed bytes under a temporary name that no other user can block, with all
+ * pages allocated (-ENOSPC now instead of a SIGBUS later when /dev/shm is full). Mode 0640 group
+ * owsd, or 0660 group owsd-control, where those groups exist and the caller may give files to them.
  */
 int segment_create(const char *instance, enum segment_kind kind, size_t size,
                    struct segment *segment);
-/* Put it in place under its final name, in one step; no more if it is there. */
+/* Rename the segment to its final name, in one step; does nothing if it has that name already. */
 int segment_show(const char *instance, struct segment *segment);
 /*
- * False: its final name was removed or leads to another file. What is not in place yet, or cannot be
- * looked at, counts as there.
+ * False: the final name was removed or leads to another file. True also for a segment that has no
+ * final name yet, and where that cannot be found out.
  */
 bool segment_named(const char *instance, const struct segment *segment);
-/* Map what an earlier owsd left (writable). -ENOENT none; -EPERM of another user. */
+/* Map a segment that an earlier owsd left, writable. -ENOENT: none; -EPERM: another user's. */
 int segment_open_old(const char *instance, enum segment_kind kind, struct segment *segment);
 void segment_close(struct segment *segment);
 /* Remove the name (the command segment is left in place at an ordinary end). */
 int segment_remove(const char *instance, enum segment_kind kind);
 
 /*
- * Guard a mapping against a consumer that truncates its file: a SIGBUS inside it maps private zero
- * pages over it and counts, so that the toucher goes on. One guard at a time per mapping, up to 4.
+ * Guard a mapping against a consumer that truncates its file: on a SIGBUS inside the mapping
+ * private zero pages replace it, and the thread that touched it goes on. One guard for each
+ * mapping, up to 4.
  */
 int segment_guard(struct segment *segment);
 void segment_unguard(struct segment *segment);

@@ -44,7 +44,7 @@ static inline void word_set(uint32_t *word, uint32_t value)
 	__atomic_store_n(word, value, __ATOMIC_RELAXED);
 }
 
-/* Both n words; from is shared. */
+/* Copy n words; from is shared. */
 static inline void words_load(void *to, const void *from, size_t n)
 {
 	const shm_word *f = (const shm_word *)from;
@@ -55,8 +55,8 @@ static inline void words_load(void *to, const void *from, size_t n)
 }
 
 /*
- * The same of n words, even and aligned to 8, in half as many loads where the processor has 64-bit
- * ones: what is put together from two stores is slow to read back at once.
+ * The same where n is even and both are aligned to 8, in half as many loads where the processor has
+ * 64-bit loads: a processor is slow to read in one load what it has just written in two stores.
  */
 static inline void words_load_aligned(void *to, const void *from, size_t n)
 {
@@ -71,7 +71,7 @@ static inline void words_load_aligned(void *to, const void *from, size_t n)
 #endif
 }
 
-/* to is shared. */
+/* Copy n words; to is shared. */
 static inline void words_store(void *to, const void *from, size_t n)
 {
 	const shm_word *f = (const shm_word *)from;

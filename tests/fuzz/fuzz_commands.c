@@ -216,7 +216,7 @@ static void happen(void)
 		else if (what & 0x10)
 			scene_up(&scene);
 		else
-			commands_mend(&scene.commands, what & 0x20);
+			commands_repair(&scene.commands, what & 0x20);
 		break;
 	}
 }
@@ -278,7 +278,7 @@ static void carry(uint8_t how)
 		if (text_off[i])
 			TEST_ASSERT_TRUE(commands_text(&to, i, text) >= (got.stamp ? 0 : -EBADMSG));
 	}
-	TEST_ASSERT_FALSE_MESSAGE(commands_mend(&to, true),
+	TEST_ASSERT_FALSE_MESSAGE(commands_repair(&to, true),
 	                          "carrying changed what owsd says there");
 	commands_forget(&to);
 	free(memory);
@@ -296,7 +296,7 @@ void fuzz_one(const uint8_t *bytes, size_t n)
 		happen();
 	run(500 * SCENE_MS);
 	if (!(how & 4))
-		commands_mend(&scene.commands, true);
+		commands_repair(&scene.commands, true);
 	carry(how);
 	scene_end(&scene);
 }

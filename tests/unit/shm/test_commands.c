@@ -164,13 +164,13 @@ static void test_an_overwritten_header_is_mended(void)
 
 	commands_state(&to, OWS_STATE_LIVE);
 	memcpy(before, to.base, sizeof(before));
-	TEST_ASSERT_FALSE(commands_mend(&to, true));
+	TEST_ASSERT_FALSE(commands_repair(&to, true));
 	memset(to.base, 0xee, 128);
-	TEST_ASSERT_TRUE(commands_mend(&to, false));
+	TEST_ASSERT_TRUE(commands_repair(&to, false));
 	TEST_ASSERT_EQUAL_MEMORY(before, to.base, 128);
 	memset(to.base + to.entry_off, 0xee, to.keep_size - to.entry_off);
-	TEST_ASSERT_FALSE(commands_mend(&to, false));
-	TEST_ASSERT_TRUE(commands_mend(&to, true));
+	TEST_ASSERT_FALSE(commands_repair(&to, false));
+	TEST_ASSERT_TRUE(commands_repair(&to, true));
 	TEST_ASSERT_EQUAL_MEMORY(to.keep, to.base, 128);
 	TEST_ASSERT_EQUAL_MEMORY(to.keep + 256, to.base + 256, to.keep_size - 256);
 }
@@ -341,8 +341,8 @@ static void test_rubbish_in_the_present_segment_harms_nothing(void)
 		}
 		for (unsigned i = 0; i < OWS_CLIENTS; i++)
 			commands_client(&to, i, &client);
-		TEST_ASSERT_TRUE(commands_mend(&to, true));
-		TEST_ASSERT_FALSE(commands_mend(&to, true));
+		TEST_ASSERT_TRUE(commands_repair(&to, true));
+		TEST_ASSERT_FALSE(commands_repair(&to, true));
 	}
 }
 
