@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Whether owsd lives, by its heartbeat. If it does not, the image may be an orphan: an owsd that was
- * killed after the names of its segments were removed cannot mark them, and the next owsd makes others.
+ * Whether owsd lives, by its heartbeat. If it does not, the image may be an orphan: an owsd that
+ * was killed after the names of its segments were removed cannot mark them, and the next owsd makes
+ * others.
  */
 #include <errno.h>
 
@@ -10,8 +11,9 @@
 #include "src/shm/reader.h"
 
 /*
- * owsd's heart stands still; does a name lead to another file than the one that is mapped? One or two
- * system calls, once a second at most: what was found then stands in between. Leaves errno alone.
+ * Does a name lead to another file than the mapped one? Called while owsd's heart stands still.
+ * Makes one or two system calls, at most once a second; in between it returns the last answer.
+ * Leaves errno alone.
  */
 static bool orphan_look(struct ows *h, int64_t now_ns)
 {

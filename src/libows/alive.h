@@ -7,19 +7,19 @@
 
 #include "src/libows/handle.h"
 
-/* A name that leads to another segment is looked for no more often. */
+/* The time between two looks whether a name leads to another segment. */
 #define ORPHAN_LOOK_NS INT64_C(1000000000)
 
-/* From the heartbeat, whatever is known of this now_ns already. */
+/* Checks the heartbeat, without the answer that is kept for this now_ns. */
 bool alive_find(struct ows *h, int64_t now_ns);
 
-/* Does owsd live, as far as its heartbeat says? If not, h->orphan is looked at too. */
+/* Does owsd live, by its heartbeat? If not, also checks whether the image is an orphan. */
 static inline bool handle_alive(struct ows *h, int64_t now_ns)
 {
 	return now_ns == h->alive_now ? h->alive : alive_find(h, now_ns);
 }
 
-/* 0, or -ESTALE when the image is not the present one any more. */
+/* Returns 0, or -ESTALE when the image is no longer the present one. */
 static inline int handle_state(const struct ows *h)
 {
 	uint32_t state = __atomic_load_n(&h->map.image->state, __ATOMIC_ACQUIRE);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Attributes of a signal, made from what owsd publishes and from the running time. */
+/* Computes the attributes of a signal from what owsd publishes and from the running time. */
 #include <errno.h>
 
 #include "src/libows/alive.h"
@@ -15,7 +15,7 @@ static int64_t larger(int64_t a, int64_t b)
 	return a > b ? a : b;
 }
 
-/* Periods since a period number; 0 when the two were read across a boundary. */
+/* Periods from base to now; 0 when the two numbers were read across a boundary. */
 static int64_t periods(uint32_t now, uint32_t base)
 {
 	int32_t n = (int32_t)(now - base);
@@ -31,7 +31,7 @@ static int64_t take_alarm(struct ows_memory *memory, uint32_t alarms)
 	return some;
 }
 
-/* An integer or, for times, nanoseconds. */
+/* The attribute as an integer; times in nanoseconds. */
 static int64_t compute(struct ows *h, struct ows_id *id, const struct ows_slot *slot,
                        uint32_t period, int64_t age_ns)
 {

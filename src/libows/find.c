@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Names that a program asks for, and what of the image they mean. */
+/* The names that a program looks up: their ids, and the record of each id in the present image. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +13,7 @@ static int find_name(void *ctx, const char *name, size_t len)
 	return map_find(ctx, name, len);
 }
 
-/* Room for one more element; the pointer stays valid when there is no memory. */
+/* Make room for one more element; *array stays valid when there is no memory. */
 static int grow(void **array, unsigned count, unsigned *room, size_t size)
 {
 	unsigned more = *room ? *room * 2 : 16;

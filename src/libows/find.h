@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Names that a program asks for, and what of the image they mean. */
+/* The names that a program looks up: their ids, and the record of each id in the present image. */
 #ifndef LIBOWS_FIND_H
 #define LIBOWS_FIND_H
 

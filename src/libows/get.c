@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Reading values: a whole sample of the image, its age, and the quality that a dead owsd leaves it. */
+/* Reads values: a whole sample of the image, its age, and its quality, lowered if owsd is dead. */
 #include <errno.h>
 #include <string.h>
 #include <time.h>
@@ -22,7 +22,7 @@ int64_t ows_now(void)
 	return (int64_t)ts.tv_sec * 1000000000 + ts.tv_nsec;
 }
 
-/* owsd has ended, or not begun. */
+/* Has owsd ended, or not yet begun? */
 static bool stopped(const struct ows *h)
 {
 	uint32_t state = __atomic_load_n(&h->map.image->state, __ATOMIC_RELAXED);
@@ -30,9 +30,9 @@ static bool stopped(const struct ows *h)
 	return state != OWS_STATE_LIVE && state != OWS_STATE_RETIRED;
 }
 
-/* Age and the lowered quality; the return value of ows_get(). */
-static inline int finish(struct ows *h, int64_t stale_after_ns, int64_t now_ns,
-                         struct ows_value *value)
+/* Set the age and lower the quality; returns what ows_get() returns. */
+static inline int finish_value(struct ows *h, int64_t stale_after_ns, int64_t now_ns,
+                               struct ows_value *value)
 {
 	int64_t since = value->measured_ns != 0 ? value->measured_ns : h->map.image->start_ns;
 	bool alive = handle_alive(h, now_ns);
@@ -40,7 +40,7 @@ static inline int finish(struct ows *h, int64_t stale_after_ns, int64_t now_ns,
 
 	value->age_ns = handle_age(now_ns, since);
 	if (ows_good(value->quality)) {
-		/* a retired image was exchanged for another: its last heartbeat says how old it is */
+		/* a retired image stays good until its last heartbeat is too old */
 		if (stopped(h) || !alive || handle_ahead(h, now_ns, since))
 			value->quality = OWS_Q_TARGET;
 		else if (stale_after_ns > 0 && value->age_ns > stale_after_ns)
@@ -60,10 +60,10 @@ static inline int get_record(struct ows *h, unsigned record, int64_t stale_after
 		return -EAGAIN;
 	}
 	value_fill(value, &sample, r->type);
-	return finish(h, stale_after_ns, now_ns, value);
+	return finish_value(h, stale_after_ns, now_ns, value);
 }
 
-static int get(struct ows *h, struct ows_id *e, int64_t now_ns, struct ows_value *value)
+static int get_id(struct ows *h, struct ows_id *e, int64_t now_ns, struct ows_value *value)
 {
 	if (e->attribute != ATTR_VALUE)
 		return attribute_get(h, e, now_ns, value);
@@ -76,7 +76,7 @@ int ows_get(struct ows *h, int id, int64_t now_ns, struct ows_value *value)
 		*value = (struct ows_value){.quality = OWS_Q_NO_PROPERTY};
 		return -ENOENT;
 	}
-	return get(h, &h->ids[id], now_ns, value);
+	return get_id(h, &h->ids[id], now_ns, value);
 }
 
 int ows_get_signal(struct ows *h, int signal, int64_t now_ns, struct ows_value *value)
@@ -130,7 +130,7 @@ static int get_string(struct ows *h, const struct ows_id *e, int64_t now_ns,
 		return -EAGAIN;
 	}
 	value_fill(value, &sample, r->type);
-	err = finish(h, e->stale_after_ns, now_ns, value);
+	err = finish_value(h, e->stale_after_ns, now_ns, value);
 	return !err && sample.len >= size ? -ENOSPC : err;
 }
 
@@ -142,7 +142,7 @@ int handle_get_text(struct ows *h, struct ows_id *e, int64_t now_ns, struct ows_
 	if (e->attribute == ATTR_VALUE &&
 	    map_record(&h->map, (uint32_t)e->record)->type == OWS_STRING)
 		return get_string(h, e, now_ns, value, text, size);
-	err = get(h, e, now_ns, value);
+	err = get_id(h, e, now_ns, value);
 	if (err && err != -ESTALE)
 		return err;
 	cut = print_number(value, text, size);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Reading values: a whole sample of the image, its age, and the quality that a dead owsd leaves it. */
+/* Reads values: a whole sample of the image, its age, and its quality, lowered if owsd is dead. */
 #ifndef LIBOWS_GET_H
 #define LIBOWS_GET_H
 

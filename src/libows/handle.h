@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a handle of libows is made of. Not installed. */
+/* The inside of a handle of libows. Not installed. */
 #ifndef LIBOWS_HANDLE_H
 #define LIBOWS_HANDLE_H
 
@@ -11,15 +11,15 @@
 #include "src/shm/segment.h"
 #include "src/signal/attribute.h"
 
-/* Which file a segment is: its name may come to lead to another. */
+/* The identity of a segment's file: the name may lead to another file later. */
 struct ows_file {
 	dev_t device;
 	ino_t inode;
 };
 
 /*
- * The two segments of one generation. Where things are is taken once and checked, so that damage
- * that comes later leads nowhere else.
+ * The two segments of one generation. Offsets and counts are read once and checked, so that later
+ * damage to the segments leads to no other place.
  */
 struct ows_map {
 	const struct ows_image_header *image;
@@ -29,7 +29,7 @@ struct ows_map {
 	const struct ows_target_entry *targets;
 	const struct ows_counter_entry *counters;
 	const struct ows_alarm_entry *alarms;
-	/* Entries of a later minor version may be larger: they are found by map_record() and the like */
+	/* Entries of a later minor version may be larger: find them by map_record() and the like */
 	uint32_t record_size, info_size, target_size, counter_size, alarm_size;
 	const char *base;
 	size_t image_size;
@@ -42,14 +42,14 @@ struct ows_map {
 	struct ows_command_entry *entries;
 	struct ows_client *clients;
 	uint32_t *dirty;
-	uint32_t *acks; /* NULL: a layout without */
+	uint32_t *acks; /* NULL: the layout is older and has none */
 	char *command_base;
 	size_t command_size;
 	struct ows_file command_file;
 	uint32_t text_cap;
 };
 
-/* What a handle remembers of a signal, over restarts; record 0 has the empty name. */
+/* The state that a handle keeps for a signal, over restarts; record 0 has the empty name. */
 struct ows_memory {
 	char *name;
 	uint32_t alarms_seen;
@@ -71,10 +71,10 @@ struct ows {
 	struct ows_memory *memories;
 	unsigned memory_count, memory_room;
 
-	/* Whether owsd lives, found out once for each now_ns */
+	/* Does owsd live? Computed once for each now_ns, which is alive_now */
 	int64_t alive_now, dead_after_ns;
 	bool alive;
-	bool orphan; /* it does not, and a name leads to another file; looked for once a second */
+	bool orphan; /* owsd is dead, and a name leads to another file; checked once a second */
 	int64_t looked_ns;
 
 	int client; /* index in the table of clients, -1 none */
@@ -104,14 +104,14 @@ static inline const struct ows_counter_entry *map_counter(const struct ows_map *
 	return (const void *)((const char *)map->counters + (size_t)counter * map->counter_size);
 }
 
-/* Where alarm number n lies, if it is still there. */
+/* The place of alarm n in the ring, which may hold a later alarm by now. */
 static inline const struct ows_alarm_entry *map_alarm(const struct ows_map *map, uint32_t number)
 {
 	return (const void *)((const char *)map->alarms +
 	                      (size_t)(number % map->alarm_count) * map->alarm_size);
 }
 
-/* From then to now; 0 for what is to come, and no overflow whatever the segment says. */
+/* The time from then to now; 0 if then is in the future; never overflows, whatever then is. */
 static inline int64_t handle_age(int64_t now_ns, int64_t then_ns)
 {
 	int64_t age;
@@ -122,8 +122,8 @@ static inline int64_t handle_age(int64_t now_ns, int64_t then_ns)
 }
 
 /*
- * A time that is further ahead than owsd may be late is no time of a living owsd. A little ahead it
- * may be: the caller took its now_ns before owsd published.
+ * Is then_ns too far in the future to come from a living owsd? It may be a little ahead, since the
+ * caller took now_ns before owsd published.
  */
 static inline bool handle_ahead(const struct ows *h, int64_t now_ns, int64_t then_ns)
 {

@@ -73,7 +73,7 @@ int ows_target(struct ows *h, int index, struct ows_target *target)
 		.name = entry->name,
 		.state = word_get(&entry->state),
 		.reconnects = word_get(&entry->reconnects),
-		/* Before 1.2 there was one target. */
+		/* Before layout 1.2 owsd had one target, and these words were 0. */
 		.group = entry->group,
 		.moves = word_get(&entry->moves),
 	};

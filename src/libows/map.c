@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The two segments of an owsd: found by name, mapped, and checked before anything of them is used. */
+/*
+ * Maps the segments of an instance and checks them: owner, layout, and that every area lies inside.
+ */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -47,14 +49,14 @@ static int map_file(const char *instance, const char *kind, bool write, void **b
 	return err;
 }
 
-/* count entries of size bytes at off lie inside, whole words. */
-static bool inside(size_t segment, uint32_t off, uint32_t count, uint32_t size)
+/* Do count entries of size bytes at off lie inside the segment, in whole words? */
+static bool area_inside(size_t segment, uint32_t off, uint32_t count, uint32_t size)
 {
 	return off % 8 == 0 && off <= segment && (uint64_t)count * size <= segment - off;
 }
 
-/* Text of size bytes at most. */
-static bool ends(const char *text, size_t size)
+/* Does the text end within size bytes? */
+static bool text_ends(const char *text, size_t size)
 {
 	return memchr(text, '\0', size) != NULL;
 }
@@ -68,8 +70,10 @@ bool map_has_text(const struct ows_map *map, const struct ows_record *record)
 	       2 * cap <= map->text_size - (off - map->text_off);
 }
 
-/* A later minor version may append to an entry, in steps that keep it aligned. */
-static bool holds(uint32_t there, size_t ours)
+/*
+ * Is an entry of `there` bytes one of ours? A later minor version may append aligned words to it.
+ */
+static bool entry_fits(uint32_t there, size_t ours)
 {
 	return there >= ours && there % 8 == 0;
 }
@@ -81,35 +85,37 @@ static bool entries_right(const struct ows_map *map)
 		    map->names[i].record >= map->count)
 			return false;
 	for (uint32_t i = 0; i < map->target_count; i++)
-		if (!ends(map_target(map, i)->name, sizeof(map->targets->name)))
+		if (!text_ends(map_target(map, i)->name, sizeof(map->targets->name)))
 			return false;
 	for (uint32_t i = 0; i < map->counter_count; i++)
-		if (!ends(map_counter(map, i)->name, sizeof(map->counters->name)))
+		if (!text_ends(map_counter(map, i)->name, sizeof(map->counters->name)))
 			return false;
 	return true;
 }
 
 static int check_image(struct ows_map *map)
 {
-	struct ows_image_header h = {0}; /* gcc's analyzer does not follow the loads */
+	/* zeroed for the analyzer of gcc, which does not follow the loads */
+	struct ows_image_header h = {0};
+
 	size_t size = map->image_size;
 
 	words_load(&h, map->base, sizeof(h) / 4);
 	if (h.magic != OWS_IMAGE_MAGIC || h.major != OWS_LAYOUT_MAJOR || h.size != size ||
-	    !holds(h.record_size, sizeof(struct ows_record)) ||
-	    !holds(h.info_size, sizeof(struct ows_info_entry)) ||
-	    !holds(h.target_size, sizeof(struct ows_target_entry)) ||
-	    !holds(h.counter_size, sizeof(struct ows_counter_entry)) || h.record_count == 0)
+	    !entry_fits(h.record_size, sizeof(struct ows_record)) ||
+	    !entry_fits(h.info_size, sizeof(struct ows_info_entry)) ||
+	    !entry_fits(h.target_size, sizeof(struct ows_target_entry)) ||
+	    !entry_fits(h.counter_size, sizeof(struct ows_counter_entry)) || h.record_count == 0)
 		return -EPROTO;
-	if (!inside(size, h.record_off, h.record_count, h.record_size) ||
-	    !inside(size, h.info_off, h.record_count, h.info_size) ||
-	    !inside(size, h.name_off, h.record_count, sizeof(struct ows_name_entry)) ||
-	    !inside(size, h.target_off, h.target_count, h.target_size) ||
-	    !inside(size, h.counter_off, h.counter_count, h.counter_size) ||
-	    !inside(size, h.alarm_off, h.alarm_count, h.alarm_size) ||
-	    (h.alarm_count != 0 && !holds(h.alarm_size, sizeof(struct ows_alarm_entry))) ||
-	    !inside(size, h.text_off, h.text_size, 1) ||
-	    !inside(size, h.pool_off, h.pool_size, 1) || h.pool_size == 0 ||
+	if (!area_inside(size, h.record_off, h.record_count, h.record_size) ||
+	    !area_inside(size, h.info_off, h.record_count, h.info_size) ||
+	    !area_inside(size, h.name_off, h.record_count, sizeof(struct ows_name_entry)) ||
+	    !area_inside(size, h.target_off, h.target_count, h.target_size) ||
+	    !area_inside(size, h.counter_off, h.counter_count, h.counter_size) ||
+	    !area_inside(size, h.alarm_off, h.alarm_count, h.alarm_size) ||
+	    (h.alarm_count != 0 && !entry_fits(h.alarm_size, sizeof(struct ows_alarm_entry))) ||
+	    !area_inside(size, h.text_off, h.text_size, 1) ||
+	    !area_inside(size, h.pool_off, h.pool_size, 1) || h.pool_size == 0 ||
 	    map->base[h.pool_off + h.pool_size - 1] != '\0')
 		return -EPROTO;
 	map->records = (const void *)(map->base + h.record_off);
@@ -134,7 +140,7 @@ static int check_image(struct ows_map *map)
 	return entries_right(map) ? 0 : -EPROTO;
 }
 
-/* Anybody of the group may write it: every number is taken once and then checked. */
+/* All of the group may write this segment: read every number once and then check it. */
 static int check_command(struct ows_map *map)
 {
 	struct ows_command_header h;
@@ -146,15 +152,17 @@ static int check_command(struct ows_map *map)
 	    h.entry_size != sizeof(struct ows_command_entry) ||
 	    h.client_size != sizeof(struct ows_client))
 		return -EPROTO;
-	/* Of another generation: owsd is just putting the new ones in place */
+	/*
+	 * The segments are of two generations: owsd is putting the new ones in place at the moment
+	 */
 	if (h.generation != map->image->generation || h.start_id != map->image->start_id)
 		return -ENOENT;
 	if (h.slot_count != map->count || h.dirty_words != (map->count + 31) / 32 ||
-	    !inside(size, h.slot_off, h.slot_count, h.slot_size) ||
-	    !inside(size, h.entry_off, h.slot_count, h.entry_size) ||
-	    !inside(size, h.dirty_off, h.dirty_words, 4) ||
-	    !inside(size, h.client_off, OWS_CLIENTS, h.client_size) ||
-	    !inside(size, h.ack_off, h.slot_count, 4) || h.text_cap > 0xffff)
+	    !area_inside(size, h.slot_off, h.slot_count, h.slot_size) ||
+	    !area_inside(size, h.entry_off, h.slot_count, h.entry_size) ||
+	    !area_inside(size, h.dirty_off, h.dirty_words, 4) ||
+	    !area_inside(size, h.client_off, OWS_CLIENTS, h.client_size) ||
+	    !area_inside(size, h.ack_off, h.slot_count, 4) || h.text_cap > 0xffff)
 		return -EPROTO;
 	map->command = (void *)map->command_base;
 	map->slots = (void *)(map->command_base + h.slot_off);
@@ -185,7 +193,7 @@ int map_open(const char *instance, enum ows_mode mode, struct ows_map *map)
 		               &map->command_file);
 		if (!err) {
 			map->command_base = base;
-			/* Without a guard all works too, unless somebody truncates the file */
+			/* Without a guard all works too, unless a consumer truncates the file */
 			guard_add(base, map->command_size, true);
 			err = check_command(map);
 		}
@@ -208,7 +216,7 @@ void map_close(struct ows_map *map)
 
 const char *map_string(const struct ows_map *map, uint32_t off)
 {
-	/* The pool ends with a NUL, so every offset into it is a string */
+	/* The pool ends with a NUL, so every offset into the pool is a string */
 	return off >= map->pool_off && off - map->pool_off < map->pool_size ? map->base + off : "";
 }
 
@@ -241,7 +249,7 @@ int map_find(const struct ows_map *map, const char *name, size_t len)
 	return -1;
 }
 
-/* A name that is gone leads nowhere yet: the next owsd makes it. */
+/* Does the name lead to another file? False while there is none: the next owsd makes it. */
 static bool leads_elsewhere(const char *instance, const char *kind, const struct ows_file *file)
 {
 	char path[MAP_PATH];

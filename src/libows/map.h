@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The two segments of an owsd: found by name, mapped, and checked before anything of them is used. */
+/*
+ * The two segments of an owsd: found by name, mapped, and checked before anything of them is used.
+ */
 #ifndef LIBOWS_MAP_H
 #define LIBOWS_MAP_H
 
@@ -16,14 +18,14 @@ struct ows_record;
 void map_path(const char *instance, const char *kind, char path[MAP_PATH]);
 int map_open(const char *instance, enum ows_mode mode, struct ows_map *map);
 void map_close(struct ows_map *map);
-/* A string of the image; "" for an offset that is none. */
+/* The string at an offset of the image; "" for an offset outside the strings. */
 const char *map_string(const struct ows_map *map, uint32_t off);
 const char *map_name(const struct ows_map *map, uint32_t record);
 /* Do the texts of a record lie where texts are? */
 bool map_has_text(const struct ows_map *map, const struct ows_record *record);
 /* Record of a signal's name, -1 if there is none. */
 int map_find(const struct ows_map *map, const char *name, size_t len);
-/* Does a name lead to another file than the one that is mapped? One or two system calls. */
+/* Does a name lead to another file than the mapped one? One or two system calls. */
 bool map_is_elsewhere(const struct ows_map *map, const char *instance);
 
 #endif

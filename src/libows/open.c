@@ -52,8 +52,8 @@ int ows_open(const char *instance, enum ows_mode mode, struct ows **handle)
 }
 
 /*
- * The commands stay, but not as those of the place: after a restart of owsd, the beat of the program
- * that takes the place next would bring them back.
+ * Give the client's place back. Its commands stay in force, but no longer belong to the place:
+ * after a restart of owsd, the beat of the next program in that place would bring them back.
  */
 static void leave_client(struct ows *h)
 {
@@ -81,7 +81,7 @@ void ows_close(struct ows *h)
 	free(h);
 }
 
-/* A map that says itself that it is the past is no better than the one at hand. */
+/* Is the map live? A retired one is no better than the map that the handle has. */
 static bool is_present(const struct ows_map *map)
 {
 	if (word_get(&map->image->state) != OWS_STATE_LIVE)
@@ -111,10 +111,12 @@ int ows_reopen(struct ows *h)
 	for (unsigned i = 0; i < h->id_count; i++)
 		if (find_resolve(h, &h->ids[i]) == -ENOMEM)
 			err = -ENOMEM;
-	/* owsd carries the table of clients over; in another one we have no place yet */
+	/*
+	 * owsd carries the table of clients over; in a table without our pid we have no place yet
+	 */
 	if (h->client >= 0 && word_get(&map.clients[h->client].pid) != h->pid)
 		h->client = -1;
-	/* a new owsd repeats our commands when it hears us */
+	/* a new owsd puts our commands in force again when we beat */
 	if (h->client >= 0)
 		__atomic_fetch_add(&map.clients[h->client].beat, 1, __ATOMIC_RELEASE);
 	return err;

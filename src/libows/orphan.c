@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* For callers that need no heartbeat: whether the image is an orphan, looked at now and then. */
+/* Checks now and then whether the image is an orphan, for callers that need no heartbeat. */
 #include "src/libows/orphan.h"
 #include "src/libows/alive.h"
 

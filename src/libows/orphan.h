@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* For callers that need no heartbeat: whether the image is an orphan, looked at now and then. */
+/* Checks now and then whether the image is an orphan, for callers that need no heartbeat. */
 #ifndef LIBOWS_ORPHAN_H
 #define LIBOWS_ORPHAN_H
 
@@ -7,7 +7,7 @@
 
 struct ows;
 
-/* Looks for the heartbeat once a second. 0, or -ESTALE on an orphan. */
+/* Checks the heartbeat once a second. Returns 0, or -ESTALE on an orphan. */
 int handle_orphan(struct ows *h, int64_t now_ns);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Setting outputs and attributes: the checks, the slot of the command segment, the bell. */
+/* Sets outputs and attributes: the checks, the slot of the command segment, the bell. */
 #include <errno.h>
 #include <string.h>
 
@@ -23,7 +23,7 @@ static void mark(const struct ows *h, const struct ows_id *id)
 	__atomic_fetch_or(&h->map.dirty[id->record / 32], 1u << id->record % 32, __ATOMIC_RELEASE);
 }
 
-/* Nobody takes what is set in a segment whose owsd has stopped, or that was replaced. */
+/* Does an owsd read this segment? Not if owsd has stopped or the segment was replaced. */
 static bool is_live(const struct ows *h)
 {
 	return word_get(&h->map.command->state) == OWS_STATE_LIVE;
@@ -35,11 +35,11 @@ static int command_state(struct ows *h)
 }
 
 /*
- * Wake the engine unless it will look by itself, and find out whether the segment is still the one
- * that owsd reads. The fence orders all that was set before both looks; the engine takes its awake
- * flag back, and owsd marks the segment retired, before they look for what was set.
+ * Wake the engine unless it is awake, and return whether owsd still reads this segment. The fence
+ * orders the sets before both loads; the engine clears its awake flag, and owsd marks the segment
+ * retired, before they look for sets.
  */
-static int ring(struct ows *h)
+static int ring_engine(struct ows *h)
 {
 	struct ows_command_header *command = h->map.command;
 
@@ -50,7 +50,9 @@ static int ring(struct ows *h)
 	return command_state(h);
 }
 
-/* Its place for the slots; 0 without one, also when owsd has dropped it and another may have it. */
+/*
+ * This program's client number for a slot; 0 without a place, or if owsd has dropped the program.
+ */
 static uint32_t giver(const struct ows *h)
 {
 	if (h->client < 0 || word_get(&h->map.clients[h->client].pid) != h->pid)
@@ -65,13 +67,13 @@ static uint32_t stamp_it(const struct ows *h, const struct ows_id *id)
 
 	word_set(&slot->client, giver(h));
 	stamp = __atomic_add_fetch(&slot->stamp, 1, __ATOMIC_RELEASE);
-	if (stamp == 0) /* means never commanded */
+	if (stamp == 0) /* 0 means never commanded: count past it */
 		stamp = __atomic_add_fetch(&slot->stamp, 1, __ATOMIC_RELEASE);
 	mark(h, id);
 	return stamp;
 }
 
-/* An output takes sets always, an input with Writable on while its _WriteEnable is on. */
+/* Does the signal take sets? An output always, an input with Writable while _WriteEnable is on. */
 static bool takes_sets(const struct ows *h, const struct ows_id *id, const struct ows_record *r)
 {
 	uint32_t seq = __atomic_load_n(&r->seq, __ATOMIC_ACQUIRE);
@@ -87,8 +89,8 @@ static bool is_of_writing(enum attribute attribute)
 	       attribute == ATTR_WRITE_ONE_SHOT;
 }
 
-/* owsd ignores what is refused here: these errors are for the program that sets. */
-static int check(const struct ows *h, const struct ows_id *e)
+/* Errors for the program that sets; owsd itself ignores every set that is refused here. */
+static int check_set(const struct ows *h, const struct ows_id *e)
 {
 	const struct ows_record *r = map_record(&h->map, (uint32_t)e->record);
 
@@ -106,7 +108,7 @@ static int check_id(const struct ows *h, int id, const struct ows_id **e)
 	if ((unsigned)id >= h->id_count || h->ids[id].record < 0)
 		return -ENOENT;
 	*e = &h->ids[id];
-	return check(h, *e);
+	return check_set(h, *e);
 }
 
 static enum ows_type type_of(const struct ows *h, const struct ows_id *id)
@@ -116,9 +118,9 @@ static enum ows_type type_of(const struct ows *h, const struct ows_id *id)
 	               : attribute_table[id->attribute].type;
 }
 
-/* A flag acts when it goes from off to on, as this handle sets it. */
-static void edge(const struct ows *h, const struct ows_id *id, bool *level, uint32_t *counter,
-                 bool on)
+/* Count a flag's edge: it acts when this handle sets it from off to on. */
+static void count_edge(const struct ows *h, const struct ows_id *id, bool *level, uint32_t *counter,
+                       bool on)
 {
 	if (on && !*level) {
 		__atomic_fetch_add(counter, 1, __ATOMIC_RELEASE);
@@ -137,14 +139,14 @@ static void set_flag(const struct ows *h, const struct ows_id *id, bool on)
 		         on ? ON : OFF);
 		mark(h, id);
 	} else if (id->attribute == ATTR_WRITE_ONE_SHOT) {
-		edge(h, id, &h->memories[id->memory].shot_level, &slot->one_shot, on);
+		count_edge(h, id, &h->memories[id->memory].shot_level, &slot->one_shot, on);
 	} else {
-		edge(h, id, &h->memories[id->memory].reset_level, &slot->dgn_reset, on);
+		count_edge(h, id, &h->memories[id->memory].reset_level, &slot->dgn_reset, on);
 	}
 }
 
-/* Everything but the ring. */
-static void put(const struct ows *h, const struct ows_id *id, int64_t value, uint32_t *stamp)
+/* Set a number, without the ring. */
+static void put_number(const struct ows *h, const struct ows_id *id, int64_t value, uint32_t *stamp)
 {
 	uint32_t got = 0;
 
@@ -169,8 +171,8 @@ int ows_set(struct ows *h, int id, double number, uint32_t *stamp)
 		err = value_set_double(type_of(h, e), number, &value);
 	if (err)
 		return err;
-	put(h, e, value, stamp);
-	return ring(h);
+	put_number(h, e, value, stamp);
+	return ring_engine(h);
 }
 
 int ows_set_integer(struct ows *h, int id, int64_t number, uint32_t *stamp)
@@ -183,8 +185,8 @@ int ows_set_integer(struct ows *h, int id, int64_t number, uint32_t *stamp)
 		err = value_set_integer(type_of(h, e), number, &value);
 	if (err)
 		return err;
-	put(h, e, value, stamp);
-	return ring(h);
+	put_number(h, e, value, stamp);
+	return ring_engine(h);
 }
 
 int ows_set_many(struct ows *h, const int *ids, const double *values, int n)
@@ -199,11 +201,11 @@ int ows_set_many(struct ows *h, const int *ids, const double *values, int n)
 			err = value_set_double(type_of(h, e), values[done], &value);
 		if (err)
 			break;
-		put(h, e, value, NULL);
+		put_number(h, e, value, NULL);
 	}
 	if (done == 0)
 		return err;
-	rung = ring(h);
+	rung = ring_engine(h);
 	return rung ? rung : done;
 }
 
@@ -225,7 +227,7 @@ static int set_string(struct ows *h, const struct ows_id *id, const char *text, 
 
 	if (len > h->map.text_cap)
 		return -ERANGE;
-	/* Another consumer may have overwritten the offset */
+	/* Another consumer may have overwritten the offset: check it */
 	if (off == 0 || off % 4 != 0 || off > size || sizeof(*t) + h->map.text_cap > size - off)
 		return -EPROTO;
 	t = (void *)(h->map.command_base + off);
@@ -236,18 +238,18 @@ static int set_string(struct ows *h, const struct ows_id *id, const char *text, 
 	word_set(&t->len, (uint32_t)len);
 	store_text((char *)(t + 1), text, len);
 	word_set(&t->check, ows_check_bytes(text, len));
-	/* Unless owsd took the claim away because it lasted too long */
+	/* Release the claim, unless owsd has taken it away because it lasted too long */
 	__atomic_compare_exchange_n(&t->claim, &mine, 0, false, __ATOMIC_RELEASE, __ATOMIC_RELAXED);
 	got = stamp_it(h, id);
 	if (stamp != NULL)
 		*stamp = got;
-	return ring(h);
+	return ring_engine(h);
 }
 
 int handle_set_text(struct ows *h, const struct ows_id *e, const char *text, uint32_t *stamp)
 {
 	int64_t value;
-	int err = check(h, e);
+	int err = check_set(h, e);
 
 	if (err)
 		return err;
@@ -256,8 +258,8 @@ int handle_set_text(struct ows *h, const struct ows_id *e, const char *text, uin
 	err = value_parse(type_of(h, e), text, &value);
 	if (err)
 		return err;
-	put(h, e, value, stamp);
-	return ring(h);
+	put_number(h, e, value, stamp);
+	return ring_engine(h);
 }
 
 int ows_set_text(struct ows *h, int id, const char *text, uint32_t *stamp)
@@ -283,7 +285,7 @@ int ows_acknowledge(struct ows *h, int id)
 		return -ESTALE;
 	__atomic_fetch_add(&h->map.acks[e->record], 1, __ATOMIC_RELEASE);
 	mark(h, e);
-	return ring(h);
+	return ring_engine(h);
 }
 
 static int take_client(struct ows *h)
@@ -309,7 +311,7 @@ int ows_beat(struct ows *h, uint32_t period_ms)
 		return -EACCES;
 	if (period_ms == 0)
 		return -EINVAL;
-	/* owsd drops who was silent for too long */
+	/* owsd drops a client that was silent for too long */
 	if (h->client >= 0 && word_get(&h->map.clients[h->client].pid) != h->pid)
 		h->client = -1;
 	if (h->client < 0) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Setting outputs and attributes: the checks, the slot of the command segment, the bell. */
+/* Sets outputs and attributes: the checks, the slot of the command segment, the bell. */
 #ifndef LIBOWS_SET_H
 #define LIBOWS_SET_H
 
@@ -8,7 +8,7 @@
 struct ows;
 struct ows_id;
 
-/* As ows_set_text(), of an id that need not be one of the handle. */
+/* As ows_set_text(), for an id that need not be one of the handle's. */
 int handle_set_text(struct ows *h, const struct ows_id *id, const char *text, uint32_t *stamp);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Waiting for news of owsd. */
+/* Waits for news: ows_wait(). */
 #include <errno.h>
 
 #include "src/libows/alive.h"
@@ -15,7 +15,7 @@ int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns)
 	                                                                  : now_ns + timeout_ns;
 
 	for (;; now_ns = ows_now()) {
-		int64_t left = ORPHAN_LOOK_NS; /* nobody wakes who sleeps on an orphan */
+		int64_t left = ORPHAN_LOOK_NS; /* no owsd wakes a program that waits on an orphan */
 		uint32_t seen;
 		int err;
 

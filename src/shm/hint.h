@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What stands behind an error of /dev/shm, for the log: it is full, or a file is in the way. */
+/* The cause of an error of /dev/shm, for the log: /dev/shm is full, or a file is in the way. */
 #ifndef SHM_HINT_H
 #define SHM_HINT_H
 

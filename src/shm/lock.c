@@ -166,7 +166,7 @@ int segment_lock(const char *instance, pid_t *pid, bool *stolen)
 			lock_bytes(fd, F_UNLCK, BYTE_PID, 1);
 			if (err == 0)
 				return fd;
-			unlink(path); /* no owsd holds it: one that waits for it checks that it exists */
+			unlink(path); /* no owsd holds it, and a waiter checks that it exists */
 		} else if (err == -EAGAIN || err == -EACCES) {
 			*pid = read_pid(fd);
 			err = -EBUSY;

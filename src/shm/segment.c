@@ -90,7 +90,7 @@ static int open_temporary(const char *instance, struct segment *segment)
 		snprintf(segment->temporary, sizeof(segment->temporary), "%.60s.new%s", path,
 		         suffix);
 		if (i == 0)
-			unlink(segment->temporary); /* this process holds the lock: the file is a leftover */
+			unlink(segment->temporary); /* the lock is held: the file is a leftover */
 		segment->fd = open(segment->temporary,
 		                   O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
 		if (segment->fd >= 0)
