@@ -260,7 +260,7 @@ static int check_unit(struct txn *txn, const struct area *area, struct unit unit
 		err = area->saw(txn, unit.at, in, unit.n);
 	if (err)
 		return err;
-	bool written = area->is_written ? area->is_written(in, visit->want, unit.n)
+	bool written = area->is_written ? area->is_written(txn, in, visit->want, unit.n)
 	                                : memcmp(in, visit->want, unit.n) == 0;
 	if (written && !area->verify)
 		txn_changed(txn);
@@ -336,12 +336,14 @@ static int prepare(struct txn *txn, const struct area *area, struct unit unit, u
 	if (err)
 		return err;
 	memcpy(visit->want, visit->have, unit.n);
-	bool again = !area->verify && txn_base(txn, area, visit->want, unit.n);
+	bool again = !area->verify && !txn->restarted && txn_base(txn, area, visit->want, unit.n);
 	for (unsigned i = from; i < to; i++) {
 		uint8_t bits = mask ? mask[i - at] : 0xff, *byte = &visit->want[i - unit.at];
 
 		*byte = (uint8_t)((*byte & ~bits) | (bytes[i - at] & bits));
 	}
+	if (area->adjust && unit.at >= area->fixed)
+		area->adjust(txn, visit->want);
 	/* Bits that do not count may be wrong as well. */
 	bool anew = again && unit.n == area->row;
 	bool equal = !anew && memcmp(visit->have, visit->want, unit.n) == 0;

@@ -75,7 +75,8 @@ struct area {
 	int (*store)(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
 	             unsigned n);
 	int (*saw)(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n);
-	bool (*is_written)(const uint8_t *have, const uint8_t *want, unsigned n);
+	bool (*is_written)(struct txn *txn, const uint8_t *have, const uint8_t *want, unsigned n);
+	void (*adjust)(struct txn *txn, uint8_t *want);
 };
 
 struct field {
@@ -120,15 +121,9 @@ int conversion_start(struct txn *txn, const struct conversion *conversion, bool 
 #define FIELD(...) .field = {.area = &__VA_ARGS__}
 /* The rows of a table that nearly every memory has: "memory", and below "pages" its pages. */
 #define AREA_MEMORY(area_, bytes_) \
-	{ \
-		.name = "memory", .type = PROPERTY_BINARY, .life = LIFE_VOLATILE, \
-		.access = ACCESS_BOTH, .size = (bytes_), FIELD(area_) \
-	}
+	PROPERTY("memory", BINARY, VOLATILE, BOTH, .size = (bytes_), FIELD(area_))
 #define AREA_PAGES(area_, pages_, bytes_) \
-	{ \
-		.name = "pages/page", .type = PROPERTY_BINARY, .life = LIFE_VOLATILE, \
-		.access = ACCESS_BOTH, .array = {(pages_), INDEX_NUMBERS, false}, \
-		.size = (bytes_), FIELD(area_) \
-	}
+	PROPERTY("pages/page", BINARY, VOLATILE, BOTH, ELEMENTS(pages_, NUMBERS), \
+	         .size = (bytes_), FIELD(area_))
 
 #endif

@@ -23,14 +23,11 @@
 #define BUSY 0x70      /* a conversion or a copy is under way */
 #define THRESHOLD 0xc0 /* of byte 7 */
 
-/* note[page]: the page's first byte as it was; of page 0 its configuration, once known. */
-#define KNOWN 0x80
+#define KNOWN 0x80 /* of a configuration */
 
 /* A page of the EEPROM: its first byte stays as it is. */
 #define MARKED_PAGE 3
 
-/* mem[] of ds2438_read(): its step, the mark, that the mark was found in the memory. */
-enum { STEP = 16, MARK, AGAIN };
 enum step { BEGIN, SET_MARK, FIND_MARK, TAKE };
 
 static int read_scratchpad(struct txn *txn, unsigned page, uint8_t in[9])
@@ -67,15 +64,15 @@ static int write_scratchpad(struct txn *txn, unsigned page, const uint8_t *bytes
 	return 0;
 }
 
-static bool is_mark(const struct txn *txn, unsigned page, uint8_t byte)
+static bool is_mark(struct txn *txn, unsigned page, uint8_t byte)
 {
-	return ((byte ^ txn->mem[MARK]) & (page ? 0xff : DS2438_AD)) == 0;
+	return ((byte ^ ds2438_visit(txn)->mark) & (page ? 0xff : DS2438_AD)) == 0;
 }
 
 /* Behind the mark. */
 static int take(struct txn *txn, unsigned page, uint8_t bytes[8])
 {
-	uint8_t in[9], again[9], *note = &txn->device->note[page];
+	uint8_t in[9], again[9], *note = &ds2438_of(txn)->first[page];
 	int err = recall(txn, page, in);
 
 	if (!err)
@@ -84,21 +81,24 @@ static int take(struct txn *txn, unsigned page, uint8_t bytes[8])
 		err = -EBADMSG;
 	if (err)
 		return err;
-	txn->mem[STEP] = SET_MARK;
+	ds2438_visit(txn)->step = SET_MARK;
 	*note = page ? in[0] : KNOWN | (in[0] & CONFIGURATION);
 	if (!is_mark(txn, page, in[0])) {
-		txn->mem[STEP] = BEGIN;
-		txn->mem[AGAIN] = 0;
+		ds2438_visit(txn)->step = BEGIN;
+		ds2438_visit(txn)->again = false;
 		memcpy(bytes, in, 8);
 		return 0;
 	}
 	/* The memory may well hold the mark: with another one, once more. */
-	return txn->mem[AGAIN]++ ? -EBADMSG : TXN_MORE;
+	if (ds2438_visit(txn)->again)
+		return -EBADMSG;
+	ds2438_visit(txn)->again = true;
+	return TXN_MORE;
 }
 
 int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8])
 {
-	uint8_t in[9] = {0}, *note = &txn->device->note[page];
+	uint8_t in[9] = {0}, *note = &ds2438_of(txn)->first[page];
 	int err;
 
 	/* A driver reads by itself. */
@@ -108,26 +108,26 @@ int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8])
 		memcpy(bytes, in, 8);
 		return err;
 	}
-	switch ((enum step)txn->mem[STEP]) {
+	switch ((enum step)ds2438_visit(txn)->step) {
 	case BEGIN:
 		if (page == 0 && !*note) {
 			err = recall(txn, page, in);
 			*note = KNOWN | (in[0] & CONFIGURATION);
-			txn->mem[STEP] = SET_MARK;
+			ds2438_visit(txn)->step = SET_MARK;
 			return err ? err : TXN_MORE;
 		}
 		/* fallthrough */
 	case SET_MARK:
-		txn->mem[MARK] = page ? (uint8_t) ~*note
-		                      : (uint8_t)((*note & CONFIGURATION) ^ DS2438_AD);
-		err = write_scratchpad(txn, page, &txn->mem[MARK], 1);
-		txn->mem[STEP] = TAKE;
+		ds2438_visit(txn)->mark = page ? (uint8_t) ~*note
+		                               : (uint8_t)((*note & CONFIGURATION) ^ DS2438_AD);
+		err = write_scratchpad(txn, page, &ds2438_visit(txn)->mark, 1);
+		ds2438_visit(txn)->step = TAKE;
 		return err ? err : TXN_MORE;
 	case FIND_MARK:
 		err = read_scratchpad(txn, page, in);
 		if (!err && (!is_mark(txn, page, in[0]) || (in[0] & BUSY)))
 			err = -EBADMSG;
-		txn->mem[STEP] = TAKE;
+		ds2438_visit(txn)->step = TAKE;
 		return err ? err : TXN_MORE;
 	case TAKE:
 		break;
@@ -140,9 +140,9 @@ int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8])
 
 int ds2438_select(struct txn *txn, uint8_t select)
 {
-	uint8_t configuration = txn->device->note[0], bytes[8];
+	uint8_t configuration = ds2438_of(txn)->first[0], bytes[8];
 
-	if (!(configuration & KNOWN) || txn->mem[STEP] != BEGIN) {
+	if (!(configuration & KNOWN) || ds2438_visit(txn)->step != BEGIN) {
 		int err = ds2438_read(txn, 0, bytes);
 
 		return err ? err : TXN_MORE;
@@ -160,9 +160,10 @@ int ds2438_read_selected(struct txn *txn, uint8_t select, uint8_t bytes[8])
 
 		if (err || (in[0] & DS2438_AD) != select)
 			return err ? err : -EIO;
-	} else if (txn->mem[STEP] == BEGIN && (txn->device->note[0] & DS2438_AD) != select) {
-		txn->mem[MARK] = select;
-		txn->mem[STEP] = FIND_MARK;
+	} else if (ds2438_visit(txn)->step == BEGIN &&
+	           (ds2438_of(txn)->first[0] & DS2438_AD) != select) {
+		ds2438_visit(txn)->mark = select;
+		ds2438_visit(txn)->step = FIND_MARK;
 	}
 	return ds2438_read(txn, 0, bytes);
 }
@@ -170,21 +171,22 @@ int ds2438_read_selected(struct txn *txn, uint8_t select, uint8_t bytes[8])
 /* A driver's scratchpad cannot be marked. */
 int ds2438_mark(struct txn *txn)
 {
-	uint8_t *step = &txn->mem[24], *mark = &txn->mem[25], bytes[8];
+	struct ds2438_visit *visit = ds2438_visit(txn);
+	uint8_t bytes[8];
 
 	if (txn->link->files)
 		return 0;
-	if (*step == 0) {
+	if (!visit->marking) {
 		int err = ds2438_read(txn, MARKED_PAGE, bytes);
 
 		if (err)
 			return err;
-		*mark = (uint8_t)~bytes[0];
-		*step = 1;
+		visit->proof_mark = (uint8_t)~bytes[0];
+		visit->marking = true;
 		return TXN_MORE;
 	}
-	*step = 0;
-	return write_scratchpad(txn, MARKED_PAGE, mark, 1);
+	visit->marking = false;
+	return write_scratchpad(txn, MARKED_PAGE, &visit->proof_mark, 1);
 }
 
 int ds2438_is_marked(struct txn *txn)
@@ -195,7 +197,7 @@ int ds2438_is_marked(struct txn *txn)
 		return 0;
 	int err = read_scratchpad(txn, MARKED_PAGE, in);
 
-	return err ? err : in[0] == txn->mem[25] ? 0 : -EBADMSG;
+	return err ? err : in[0] == ds2438_visit(txn)->proof_mark ? 0 : -EBADMSG;
 }
 
 static bool near(unsigned now, unsigned before, unsigned most)
@@ -266,10 +268,11 @@ static int write_page(struct txn *txn, unsigned page, const uint8_t *bytes, unsi
 
 int ds2438_configure(struct txn *txn, uint8_t mask, uint8_t bits, uint8_t *before)
 {
+	struct ds2438_visit *visit = ds2438_visit(txn);
 	uint8_t bytes[8] = {0};
 	int err;
 
-	if (txn->mem[0] == 0) {
+	if (!visit->configuring) {
 		err = ds2438_read(txn, 0, bytes);
 		if (err)
 			return err;
@@ -277,31 +280,53 @@ int ds2438_configure(struct txn *txn, uint8_t mask, uint8_t bits, uint8_t *befor
 			*before = bytes[0];
 		if ((bytes[0] & mask) == bits)
 			return 0;
-		txn->mem[1] = (uint8_t)((bytes[0] & CONFIGURATION & ~mask) | bits);
-		txn->mem[0] = 1;
+		visit->configuration = (uint8_t)((bytes[0] & CONFIGURATION & ~mask) | bits);
+		visit->configuring = true;
+		visit->writing = 0;
 		return TXN_MORE;
 	}
-	uint8_t step = (uint8_t)(txn->mem[0] - 1);
-	bytes[0] = txn->mem[1];
-	err = write_page(txn, 0, bytes, 1, &step);
-	txn->mem[0] = err > 0 ? (uint8_t)(step + 1) : 0;
+	bytes[0] = visit->configuration;
+	err = write_page(txn, 0, bytes, 1, &visit->writing);
+	visit->configuring = err > 0;
 	return err;
 }
 
 int ds2438_patch(struct txn *txn, unsigned page, unsigned at, const uint8_t *bytes, unsigned n)
 {
-	uint8_t *step = &txn->mem[3], *whole = &txn->mem[8], before[8];
+	struct ds2438_visit *visit = ds2438_visit(txn);
+	uint8_t before[8];
 
-	if (txn->phase == 0) {
-		int err = ds2438_read(txn, page, whole);
+	if (!visit->patching) {
+		int err = ds2438_read(txn, page, visit->page);
 
 		if (err)
 			return err;
-		memcpy(before, whole, 8);
-		memcpy(whole + at, bytes, n);
-		txn->phase = 1;
-		*step = 0;
-		return memcmp(before, whole, 8) == 0 ? 0 : TXN_MORE;
+		memcpy(before, visit->page, 8);
+		memcpy(visit->page + at, bytes, n);
+		visit->patching = memcmp(before, visit->page, 8) != 0;
+		visit->writing = 0;
+		return visit->patching ? TXN_MORE : 0;
 	}
-	return write_page(txn, page, whole, 8, step);
+	int err = write_page(txn, page, visit->page, 8, &visit->writing);
+	visit->patching = err > 0;
+	return err;
+}
+
+static int load_page(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+                     unsigned n)
+{
+	(void)area, (void)n;
+	return ds2438_read(txn, at / 8, bytes);
+}
+
+const struct area ds2438_pages = {.name = "pages", .size = 64, .block = 8, .load = load_page};
+
+int ds2438_write_field(struct txn *txn)
+{
+	const struct field *field = &txn->property->field;
+	uint32_t value = (uint32_t)txn->number[0];
+	uint8_t bytes[] = {(uint8_t)value, (uint8_t)(value >> 8), (uint8_t)(value >> 16),
+	                   (uint8_t)(value >> 24)};
+
+	return ds2438_patch(txn, field->at / 8, field->at % 8, bytes, sizeof(bytes));
 }

@@ -11,16 +11,45 @@
 #define DS2438_EE 0x04
 #define DS2438_AD 0x08 /* the supply, not the input, is measured */
 
-enum { DS2438_TEMPERATURE = 1, DS2438_VDD = 2, DS2438_VAD = 4, DS2438_VIS = 8 };
-#define DS2438_STEPS 4 /* of the phase, for each quantity */
+/* What it measures, in this order; sets of them are bits. */
+enum ds2438_quantity { DS2438_TEMPERATURE, DS2438_VAD, DS2438_VDD, DS2438_VIS, DS2438_QUANTITIES };
 
-/*
- * All of these take several calls. They use txn->mem[] as here:
- *   0, 1 ds2438_configure   2, 4 for the caller   3, 8..15 ds2438_patch   16..19 ds2438_read
- *   20..23 ds2438_measure   24, 25 ds2438_mark
- *
- * A page of the memory as it is now.
- */
+/* What is known of the chip (device.own). */
+struct ds2438 {
+	/* Of each page its first byte as it was; of page 0 the configuration and 80h. 0: not known. */
+	uint8_t first[8];
+};
+static inline struct ds2438 *ds2438_of(const struct txn *txn)
+{
+	return txn->device->own;
+}
+
+/* Where a visit is; the functions here and in family_26.c take several calls. */
+struct ds2438_visit {
+	uint8_t step, mark; /* of ds2438_read() */
+	bool again;         /* ... and the memory held the mark */
+	bool configuring, patching, marking;
+	uint8_t writing;       /* the step of writing a page */
+	uint8_t configuration; /* as it is to be */
+	uint8_t page[8];       /* as it is to be */
+	uint8_t proof_mark;    /* of ds2438_mark() */
+	uint8_t proof;         /* of the quantity that is measured */
+	bool measuring;        /* latesttemp was nothing */
+	uint8_t before;        /* the configuration before the visit */
+	uint8_t stage;         /* quantities that are done, or a step of the caller */
+	int64_t begun_ns;      /* of the quantity; 0: it is to be begun */
+	double value[4];       /* of the quantities */
+};
+static inline struct ds2438_visit *ds2438_visit(struct txn *txn)
+{
+	return txn_own(txn);
+}
+
+/* For fields; they are written by ds2438_write_field() (of four bytes) and ds2438_patch(). */
+extern const struct area ds2438_pages;
+int ds2438_write_field(struct txn *txn);
+
+/* A page of the memory as it is now. */
 int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8]);
 /* Put n bytes into a page; phase 0 first. */
 int ds2438_patch(struct txn *txn, unsigned page, unsigned at, const uint8_t *bytes, unsigned n);
@@ -36,7 +65,7 @@ int ds2438_read_selected(struct txn *txn, uint8_t select, uint8_t bytes[8]);
  */
 int ds2438_mark(struct txn *txn);
 int ds2438_is_marked(struct txn *txn);
-/* Measure; several calls. real[]: degrees, volts of the supply, of the input, of the shunt. */
+/* Measure a set of quantities, or take what has been measured for others: to value[]. */
 int ds2438_measure(struct txn *txn, unsigned what);
 
 int sensor_read_humidity(struct txn *txn); /* arg: enum sensor_humidity */
@@ -51,39 +80,12 @@ int sensor_reset_datanab(struct txn *txn);
 enum sensor_humidity { HIH3600, HIH4000, HIH5030, HTM1735, DATANAB };
 enum sensor_setting { B1_GAIN, B1_OFFSET, S3_GAIN };
 
-/* clang-format off */
-#define DS2438_HUMIDITY(text, which)                                                      \
-	{.name = (text), .type = PROPERTY_FLOAT, .life = LIFE_VOLATILE, .access = ACCESS_READ, \
-	 .arg = (which), .read = sensor_read_humidity}
-#define DS2438_SETTING(text, kind, which)                                                 \
-	{.name = (text), .type = (kind), .life = LIFE_STABLE, .access = ACCESS_BOTH,        \
-	 .arg = (which), .read = sensor_read_setting, .write = sensor_write_setting}
-#define DS2438_LIGHT(text, lux)                                                           \
-	{.name = (text), .type = PROPERTY_FLOAT, .life = LIFE_VOLATILE, .access = ACCESS_READ, \
-	 .arg = (lux), .read = sensor_read_light}
-#define DS2438_SENSORS                                                                    \
-	PROPERTY_DIR("B1-R1-A"), DS2438_SETTING("B1-R1-A/gain", PROPERTY_PRESSURE, B1_GAIN), \
-	DS2438_SETTING("B1-R1-A/offset", PROPERTY_PRESSURE, B1_OFFSET),                     \
-	{.name = "B1-R1-A/pressure", .type = PROPERTY_PRESSURE, .life = LIFE_VOLATILE,      \
-	 .access = ACCESS_READ, .read = sensor_read_pressure},                              \
-	{.name = "DATANAB", .type = PROPERTY_DIRECTORY, .life = LIFE_STATIC,                \
-	 .visible = sensor_is_datanab},                                                     \
-	{.name = "DATANAB/humidity", .type = PROPERTY_FLOAT, .life = LIFE_VOLATILE,         \
-	 .access = ACCESS_READ, .arg = DATANAB, .visible = sensor_is_datanab,               \
-	 .read = sensor_read_humidity},                                                     \
-	{.name = "DATANAB/reset", .type = PROPERTY_YESNO, .life = LIFE_STABLE,              \
-	 .access = ACCESS_WRITE, .visible = sensor_is_datanab, .write = sensor_reset_datanab}, \
-	PROPERTY_DIR("HIH3600"), DS2438_HUMIDITY("HIH3600/humidity", HIH3600),              \
-	PROPERTY_DIR("HIH4000"), DS2438_HUMIDITY("HIH4000/humidity", HIH4000),              \
-	PROPERTY_DIR("HIH5030"), DS2438_HUMIDITY("HIH5030/humidity", HIH5030),              \
-	PROPERTY_DIR("HTM1735"), DS2438_HUMIDITY("HTM1735/humidity", HTM1735),              \
-	PROPERTY_DIR("MultiSensor"),                                                        \
-	{.name = "MultiSensor/type", .type = PROPERTY_ASCII, .life = LIFE_STABLE,           \
-	 .access = ACCESS_READ, .size = 12, .read = sensor_read_type},                      \
-	PROPERTY_DIR("S3-R1-A"), DS2438_LIGHT("S3-R1-A/current", 0),                        \
-	DS2438_SETTING("S3-R1-A/gain", PROPERTY_FLOAT, S3_GAIN),                            \
-	DS2438_LIGHT("S3-R1-A/illuminance", 1),                                             \
-	DS2438_HUMIDITY("humidity", HIH3600)
-/* clang-format on */
+#define DS2438_HUMIDITY(text, which) \
+	PROPERTY(text, FLOAT, VOLATILE, READ, .arg = (which), .read = sensor_read_humidity)
+#define DS2438_SETTING(text, kind, which) \
+	PROPERTY(text, kind, STABLE, BOTH, .arg = (which), .read = sensor_read_setting, \
+	         .write = sensor_write_setting)
+#define DS2438_LIGHT(text, lux) \
+	PROPERTY(text, FLOAT, VOLATILE, READ, .arg = (lux), .read = sensor_read_light)
 
 #endif

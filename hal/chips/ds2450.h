@@ -3,10 +3,9 @@
 #ifndef HAL_CHIPS_DS2450_H
 #define HAL_CHIPS_DS2450_H
 
-#include "hal/wire/txn.h"
+#include "hal/chips/area.h"
 
-#define DS2450_CONVERT 0x3c
-/* Four channels of 16 bits at 80 us, and 160 us. */
-#define DS2450_CONVERT_NS (6 * TXN_MS)
+/* All four channels with 16 bits. */
+extern const struct conversion ds2450_conversion;
 
 #endif

@@ -36,13 +36,38 @@ static bool is_visible(const struct property *property, const struct device *dev
 	return !device || !property->visible || property->visible(device);
 }
 
+static int order(const char *name, size_t len, const char *other)
+{
+	int order = strncmp(name, other, len);
+
+	return order ? order : -(other[len] != '\0');
+}
+
+/* The first that is not below the name. Tables of families are sorted. */
+static unsigned find(const struct family *family, const char *name, size_t len)
+{
+	unsigned low = 0, high = family->count;
+
+	while (low < high) {
+		unsigned middle = (low + high) / 2;
+
+		if (order(name, len, family->properties[middle].name) > 0)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return low;
+}
+
 static const struct property *by_name(const struct family *family, const char *name, size_t len)
 {
-	for (unsigned i = 0; i < family->count; i++) {
-		const struct property *property = &family->properties[i];
+	unsigned i = family->is_virtual ? 0 : find(family, name, len);
 
-		if (strlen(property->name) == len && memcmp(property->name, name, len) == 0)
-			return property;
+	for (; i < family->count; i++) {
+		if (order(name, len, family->properties[i].name) == 0)
+			return &family->properties[i];
+		if (!family->is_virtual)
+			break;
 	}
 	return NULL;
 }
@@ -66,7 +91,12 @@ const struct property *family_property(const struct family *family, const struct
 static const struct property *nearer(const struct family *family, const struct device *device,
                                      const struct property *prev, const struct property *best)
 {
-	for (unsigned i = 0; i < family->count; i++) {
+	bool sorted = !family->is_virtual;
+
+	for (unsigned i = sorted && prev ? find(family, prev->name, strlen(prev->name)) : 0;
+	     i < family->count &&
+	     !(sorted && best && strcmp(family->properties[i].name, best->name) > 0);
+	     i++) {
 		const struct property *property = &family->properties[i];
 
 		if (prev && strcmp(property->name, prev->name) <= 0)

@@ -45,6 +45,7 @@ struct property {
 	uint8_t type, life, access;
 	bool hidden;  /* not listed */
 	bool offline; /* its functions use no wire */
+	bool flag; /* tells why a chip alarms: a visit of the alarm machine reads all such once */
 	struct {
 		uint8_t count, index;
 		bool aggregate; /* all elements come in one transaction */
@@ -75,6 +76,8 @@ struct family {
 	const char *(*type_of)(const struct device *device);
 	/* Which of them? Until that is known, requests may be for properties of any. NULL: it is. */
 	bool (*is_known)(const struct device *device);
+	/* The chip was away or has restarted: what of device.own is void? NULL: all of it. */
+	void (*forget)(struct device *device);
 	const struct property *properties; /* sorted by name, the hidden ones too */
 	unsigned count;
 };
@@ -107,7 +110,16 @@ extern const struct family family_common;
 #include "hal/chips/families.h"
 #undef FAMILY
 
+/*
+ * Rows of a family's table: PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = "331", ...).
+ * Arrays are ELEMENTS, read one by one, or AGGREGATE, read in one transaction.
+ */
 /* clang-format off */
+#define PROPERTY(text, kind, life_, access_, ...) \
+	{.name = (text), .type = PROPERTY_##kind, .life = LIFE_##life_, \
+	 .access = ACCESS_##access_, __VA_ARGS__}
+#define ELEMENTS(n, index_) .array = {(n), INDEX_##index_, false}
+#define AGGREGATE(n, index_) .array = {(n), INDEX_##index_, true}
 #define PROPERTY_DIR(path) \
 	{.name = (path), .type = PROPERTY_DIRECTORY, .life = LIFE_STATIC, .access = ACCESS_NONE}
 /* clang-format on */

@@ -41,9 +41,8 @@ static int read_pin(struct txn *txn)
 
 	if (level < 0)
 		return level;
-	if (txn->phase && level != txn->mem[0])
+	if (txn->phase && level != (int)txn->number[0])
 		return -EBADMSG;
-	txn->mem[0] = (uint8_t)level;
 	txn->number[0] = level;
 	return ++txn->phase < LOOKS ? TXN_MORE : 0;
 }
@@ -77,12 +76,9 @@ static int write_pio(struct txn *txn)
 
 /* clang-format off */
 static const struct property properties[] = {
-	{.name = "PIO", .type = PROPERTY_YESNO, .life = LIFE_STABLE, .access = ACCESS_BOTH,
-	 .read = read_pio, .write = write_pio},
-	{.name = "sensed", .type = PROPERTY_YESNO, .life = LIFE_VOLATILE, .access = ACCESS_READ,
-	 .read = read_pin},
+	PROPERTY("PIO", YESNO, STABLE, BOTH, .read = read_pio, .write = write_pio),
+	PROPERTY("sensed", YESNO, VOLATILE, READ, .read = read_pin),
 };
-/* clang-format on */
 
 const struct family family_05 = {
 	.code = 0x05,

@@ -2,12 +2,9 @@
 /* DS18S20 and DS1920: one resolution, and what is below half a degree comes from COUNT_REMAIN. */
 #include "hal/chips/thermometer.h"
 
-/* clang-format off */
-#define HIDDEN_TEMPERATURE(text)                                                          \
-	{.name = (text), .type = PROPERTY_TEMPERATURE, .life = LIFE_VOLATILE, .hidden = true, \
-	 .access = ACCESS_READ, .convert = CONVERT_TEMPRES,                                 \
-	 .read = thermometer_read_temperature}
-/* clang-format on */
+#define HIDDEN_TEMPERATURE(text) \
+	PROPERTY(text, TEMPERATURE, VOLATILE, READ, .hidden = true, .convert = CONVERT_TEMPRES, \
+	         .read = thermometer_read_temperature)
 
 static const struct property properties[] = {
 	THERMOMETER_ERRATA,
@@ -24,9 +21,10 @@ static const struct property properties[] = {
 	THERMOMETER_LIMIT("templow", SP_LOW),
 };
 
-/* clang-format off */
 const struct family family_10 = {
-	.code = 0x10, .thermometer = true, .fixed = true, .alarms = true, .type = "DS18S20",
+	.code = 0x10,
+	.fixed = true,
+	.type = "DS18S20",
+	THERMOMETER_FAMILY,
 	PROPERTIES(properties),
 };
-/* clang-format on */

@@ -121,66 +121,42 @@ static bool never(const struct device *device)
 }
 
 #define BITS(text, access_, shift_, writes) \
-	{ \
-		.name = (text), .type = PROPERTY_BITS, .life = LIFE_VOLATILE, .access = (access_), \
-		.array = {2, INDEX_LETTERS, true}, FIELD(info, .shift = (shift_)), \
-		.write = (writes) \
-	}
-#define NUMBER(text, kind, life_, ...) \
-	{ \
-		.name = (text), .type = (kind), .life = (life_), .access = ACCESS_READ, \
-		__VA_ARGS__ \
-	}
-#define NOT_THERE(text, kind) NUMBER(text, kind, LIFE_VOLATILE, .read = not_there)
+	PROPERTY(text, BITS, VOLATILE, access_, AGGREGATE(2, LETTERS), \
+	         FIELD(info, .shift = (shift_)), .write = (writes))
+#define NOT_THERE(text, kind, life_, ...) \
+	PROPERTY(text, kind, life_, READ, .read = not_there, __VA_ARGS__)
 
 static const struct property properties[] = {
-	{.name = "PIO",
-         .type = PROPERTY_BITS,
-         .life = LIFE_STABLE,
-         .access = ACCESS_BOTH,
-         .array = {2, INDEX_LETTERS, true},
-         FIELD(info, .inverted = true),
-         .set = &outputs},
-	{.name = "T8A", .type = PROPERTY_DIRECTORY, .life = LIFE_STATIC, .visible = never},
-	{.name = "T8A/volt",
-         .type = PROPERTY_FLOAT,
-         .life = LIFE_VOLATILE,
-         .access = ACCESS_READ,
-         .array = {8, INDEX_NUMBERS, false},
-         .visible = never,
-         .read = not_there},
+	PROPERTY("PIO", BITS, STABLE, BOTH, AGGREGATE(2, LETTERS), FIELD(info, .inverted = true),
+                 .set = &outputs),
+	PROPERTY("T8A", DIRECTORY, STATIC, NONE, .visible = never),
+	NOT_THERE("T8A/volt", FLOAT, VOLATILE, ELEMENTS(8, NUMBERS), .visible = never),
 	PROPERTY_DIR("TAI8570"),
-	NUMBER("TAI8570/C", PROPERTY_UNSIGNED, LIFE_STATIC, .hidden = true,
-               .array = {6, INDEX_NUMBERS, true}, .read = not_there),
-	NUMBER("TAI8570/D1", PROPERTY_UNSIGNED, LIFE_VOLATILE, .hidden = true, .read = not_there),
-	NUMBER("TAI8570/D2", PROPERTY_UNSIGNED, LIFE_VOLATILE, .hidden = true, .read = not_there),
+	NOT_THERE("TAI8570/C", UNSIGNED, STATIC, AGGREGATE(6, NUMBERS), .hidden = true),
+	NOT_THERE("TAI8570/D1", UNSIGNED, VOLATILE, .hidden = true),
+	NOT_THERE("TAI8570/D2", UNSIGNED, VOLATILE, .hidden = true),
 	PROPERTY_DIR("TAI8570/DA5534"),
-	NOT_THERE("TAI8570/DA5534/pressure", PROPERTY_PRESSURE),
-	NOT_THERE("TAI8570/DA5534/temperature", PROPERTY_TEMPERATURE),
+	NOT_THERE("TAI8570/DA5534/pressure", PRESSURE, VOLATILE, .size = 0),
+	NOT_THERE("TAI8570/DA5534/temperature", TEMPERATURE, VOLATILE, .size = 0),
 	PROPERTY_DIR("TAI8570/DA5540"),
-	NOT_THERE("TAI8570/DA5540/pressure", PROPERTY_PRESSURE),
-	NOT_THERE("TAI8570/DA5540/temperature", PROPERTY_TEMPERATURE),
-	NOT_THERE("TAI8570/pressure", PROPERTY_PRESSURE),
-	NUMBER("TAI8570/sibling", PROPERTY_ASCII, LIFE_STABLE, .size = 16, .read = not_there),
-	NOT_THERE("TAI8570/temperature", PROPERTY_TEMPERATURE),
-	{.name = "aux", .type = PROPERTY_DIRECTORY, .life = LIFE_VOLATILE, .size = 8},
-	NUMBER("channels", PROPERTY_UNSIGNED, LIFE_STABLE,
-               FIELD(info, .shift = 6, .bits = 1, .offset = 1)),
-	BITS("flipflop", ACCESS_READ, 0, NULL),
-	NUMBER("infobyte", PROPERTY_UNSIGNED, LIFE_VOLATILE, .hidden = true, FIELD(info)),
-	BITS("latch", ACCESS_BOTH, 4, write_latch),
+	NOT_THERE("TAI8570/DA5540/pressure", PRESSURE, VOLATILE, .size = 0),
+	NOT_THERE("TAI8570/DA5540/temperature", TEMPERATURE, VOLATILE, .size = 0),
+	NOT_THERE("TAI8570/pressure", PRESSURE, VOLATILE, .size = 0),
+	NOT_THERE("TAI8570/sibling", ASCII, STABLE, .size = 16),
+	NOT_THERE("TAI8570/temperature", TEMPERATURE, VOLATILE, .size = 0),
+	PROPERTY("aux", DIRECTORY, VOLATILE, NONE, .size = 8),
+	PROPERTY("channels", UNSIGNED, STABLE, READ,
+                 FIELD(info, .shift = 6, .bits = 1, .offset = 1)),
+	BITS("flipflop", READ, 0, NULL),
+	PROPERTY("infobyte", UNSIGNED, VOLATILE, READ, FIELD(info), .hidden = true),
+	BITS("latch", BOTH, 4, write_latch),
 	AREA_MEMORY(memory, 128),
 	PROPERTY_DIR("pages"),
 	AREA_PAGES(memory, 4, 32),
-	NUMBER("power", PROPERTY_YESNO, LIFE_VOLATILE, FIELD(info, .shift = 7)),
-	BITS("sensed", ACCESS_READ, 2, NULL),
-	{.name = "set_alarm",
-         .type = PROPERTY_UNSIGNED,
-         .life = LIFE_STABLE,
-         .access = ACCESS_BOTH,
-         .digits = "331",
-         .read = read_alarm,
-         .write = write_alarm},
+	PROPERTY("power", YESNO, VOLATILE, READ, FIELD(info, .shift = 7)),
+	BITS("sensed", READ, 2, NULL),
+	PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = "331", .read = read_alarm,
+                 .write = write_alarm),
 };
 
 const struct family family_12 = {

@@ -33,18 +33,9 @@ static const struct area application = {
 static const struct area status = {.name = "status", .size = 1, .address_bytes = 1, .read = 0x66};
 
 static const struct property properties[] = {
-	{.name = "application",
-         .type = PROPERTY_BINARY,
-         .life = LIFE_STABLE,
-         .access = ACCESS_BOTH,
-         .size = 8,
-         FIELD(application)},
+	PROPERTY("application", BINARY, STABLE, BOTH, .size = 8, FIELD(application)),
 	AREA_MEMORY(memory, 32),
-	{.name = "status",
-         .type = PROPERTY_UNSIGNED,
-         .life = LIFE_STABLE,
-         .access = ACCESS_READ,
-         FIELD(status)},
+	PROPERTY("status", UNSIGNED, STABLE, READ, FIELD(status)),
 };
 
 const struct family family_14 = {.code = 0x14, .type = "DS2430A", PROPERTIES(properties)};

@@ -64,22 +64,19 @@ static int write_minimum(struct txn *txn)
 	return -EINVAL;
 }
 
-/* clang-format off */
-#define COUNTERS(text, n, index_, page, hidden_)                                          \
-	{.name = (text), .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE,                  \
-	 .access = ACCESS_READ, .hidden = (hidden_), .array = {(n), (index_), false},       \
-	 .arg = (page), .read = read_counter}
+#define COUNTERS(text, n, index_, page, ...) \
+	PROPERTY(text, UNSIGNED, VOLATILE, READ, ELEMENTS(n, index_), .arg = (page), \
+	         .read = read_counter, __VA_ARGS__)
 
 static const struct property properties[] = {
-	COUNTERS("counter", 2, INDEX_LETTERS, EXTERNAL_A, false),
-	COUNTERS("counters", 2, INDEX_LETTERS, EXTERNAL_A, true),
+	COUNTERS("counter", 2, LETTERS, EXTERNAL_A, .hidden = false),
+	COUNTERS("counters", 2, LETTERS, EXTERNAL_A, .hidden = true),
 	AREA_MEMORY(memory, 512),
-	{.name = "mincount", .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE,
-	 .access = ACCESS_BOTH, .read = read_minimum, .write = write_minimum},
+	PROPERTY("mincount", UNSIGNED, VOLATILE, BOTH, .read = read_minimum,
+                 .write = write_minimum),
 	PROPERTY_DIR("pages"),
-	COUNTERS("pages/count", 16, INDEX_NUMBERS, 0, false),
+	COUNTERS("pages/count", 16, NUMBERS, 0, .hidden = false),
 	AREA_PAGES(memory, 16, 32),
 };
-/* clang-format on */
 
 const struct family family_1d = {.code = 0x1d, .type = "DS2423", PROPERTIES(properties)};

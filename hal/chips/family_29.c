@@ -3,90 +3,63 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/chips/family.h"
+#include "hal/chips/ds2408.h"
 #include "hal/chips/lcd.h"
 
-#define READ_REGISTERS 0xf0
 #define WRITE_OUTPUT 0x5a
 #define WRITE_CONDITION 0xcc
 #define RESET_LATCHES 0xc3
 #define CONFIRMED 0xaa
 
-#define VISIT_NS (2 * TXN_MS)
-
 /* The registers from 0x88 on. */
 enum { PIN, OUTPUT, ACTIVITY, MASK, POLARITY, CONTROL, REGISTERS = 8 };
 
-#define CONTROL_STROBE 0x04 /* ROS */
-#define CONTROL_POR 0x08
-#define CONTROL_VCC 0x80
+/* Bits of the control register. */
+enum { SOURCE, STROBE = 2 /* ROS */, POR, VCC = 7 };
+#define CONTROL_SOURCE 0x03
+#define CONTROL_SETTINGS 0x07
+#define CONTROL_STROBE (1 << STROBE)
+#define CONTROL_POR (1 << POR)
+#define CONTROL_VCC (1 << VCC)
 
-/* note[0]: the power-on flag has been seen clear. */
-
-static int registers(struct txn *txn, uint8_t value[REGISTERS])
+static int saw_registers(struct txn *txn, unsigned at, uint8_t *value, unsigned n)
 {
-	static const uint8_t command[] = {READ_REGISTERS, 0x88, 0x00};
 	struct device *device = txn->device;
-	int err = txn_command(txn, command, sizeof(command));
-
-	if (!err)
-		err = txn_read_crc16(txn, command, sizeof(command), value, REGISTERS);
-	if (err)
-		return err;
+	struct ds2408 *chip = device->own;
 	bool por = value[CONTROL] & CONTROL_POR;
-	if ((por && device->note[0]) || (device->shadow_known && device->shadow != value[OUTPUT]))
+
+	(void)at, (void)n;
+	if ((por && chip->por_clear) || (device->shadow_known && device->shadow != value[OUTPUT]))
 		txn->restarted = true;
-	device->note[0] = !por;
+	chip->por_clear = !por;
 	device->shadow = value[OUTPUT];
 	device->shadow_known = true;
 	device->power = value[CONTROL] & CONTROL_VCC ? POWER_EXTERNAL : POWER_PARASITE;
 	return 0;
 }
 
-/*
- * The power-on flag and the latches that a visit of the alarm machine asks for one after the other
- * are read once. No write fits in between, as it would take longer.
- */
-static int visited(struct txn *txn, uint8_t value[REGISTERS])
-{
-	struct device *device = txn->device;
-	int err;
+static const struct area registers = {
+	.name = "registers",
+	.at = 0x88,
+	.size = REGISTERS,
+	.block = REGISTERS,
+	.address_bytes = 2,
+	.read = 0xf0,
+	.check = AREA_CRC16,
+	.saw = saw_registers,
+};
 
-	if (!txn->visit)
-		return registers(txn, value);
-	if (device->registers_ns && txn_now(txn) - device->registers_ns < VISIT_NS) {
-		memcpy(value, device->registers, REGISTERS);
-		device->registers_ns = 0;
-		return 0;
-	}
-	err = registers(txn, value);
-	memcpy(device->registers, value, REGISTERS);
-	device->registers_ns = err ? 0 : txn_now(txn);
-	return err;
-}
-
-/* An output bit of 1 does not conduct. */
-static int read_bits(struct txn *txn)
+/* A part of the registers that is written by itself. */
+static int load_part(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+                     unsigned n)
 {
 	uint8_t value[REGISTERS];
-	int err = txn->property->arg == ACTIVITY ? visited(txn, value) : registers(txn, value);
+	int err = area_fetch(txn, &registers, 0, value, REGISTERS);
 
 	if (err)
 		return err;
-	txn->bits = value[txn->property->arg];
-	if (txn->property->arg == OUTPUT)
-		txn->bits ^= 0xff;
-	return 0;
-}
-
-static int read_flag(struct txn *txn)
-{
-	uint8_t value[REGISTERS];
-	int err = txn->property->arg == CONTROL_POR ? visited(txn, value) : registers(txn, value);
-
-	if (!err)
-		txn->number[0] = (value[CONTROL] & txn->property->arg) != 0;
-	return err;
+	memcpy(bytes, value + (area->at - registers.at) + at, n);
+	return saw_registers(txn, 0, value, REGISTERS);
 }
 
 /* The way out of the test mode in which a slow supply can leave the chip (data sheet, page 39). */
@@ -129,22 +102,6 @@ int ds2408_put(struct txn *txn, const uint8_t *bytes, unsigned n)
 	return 0;
 }
 
-static int write_pio(struct txn *txn)
-{
-	uint8_t value[REGISTERS], byte = (uint8_t)~txn->bits;
-	int err;
-
-	if (txn->phase == 0) {
-		err = ds2408_put(txn, &byte, 1);
-		txn->mem[0] = byte;
-		txn->phase = 1;
-		return err ? err : TXN_MORE;
-	}
-	txn->device->shadow_known = false;
-	err = registers(txn, value);
-	return err ? err : value[OUTPUT] == txn->mem[0] ? 0 : -EIO;
-}
-
 static int write_latch(struct txn *txn)
 {
 	static const uint8_t command = RESET_LATCHES;
@@ -156,110 +113,98 @@ static int write_latch(struct txn *txn)
 	return err ? err : answer == CONFIRMED ? 0 : -EBADMSG;
 }
 
-/* Mask, polarity and control, written and read back. The power-on flag stays unless told. */
-
-/* The registers as they are, ahead of a change of mask, polarity or control. */
-static int before_condition(struct txn *txn)
+static int store_output(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
+                        unsigned n)
 {
-	int err = registers(txn, txn->mem);
+	(void)area, (void)at;
+	return ds2408_put(txn, bytes, n);
+}
 
-	if (err)
-		return err;
-	txn_base(txn, txn->device->family, txn->mem + MASK, 3);
-	txn_keep(txn, txn->device->family, txn->mem + MASK, 3);
+static const struct area output = {
+	.name = "output",
+	.at = 0x88 + OUTPUT,
+	.size = 1,
+	.row = 1,
+	.load = load_part,
+	.store = store_output,
+};
+
+static int store_condition(struct txn *txn, const struct area *area, unsigned at,
+                           const uint8_t *bytes, unsigned n)
+{
+	uint8_t command[] = {WRITE_CONDITION, (uint8_t)area->at, 0x00,
+	                     bytes[0],        bytes[1],          bytes[2]};
+	struct ds2408 *chip = txn->device->own;
+
+	(void)at, (void)n;
+	if (!(bytes[2] & CONTROL_POR))
+		chip->por_clear = false;
+	return txn_command(txn, command, sizeof(command));
+}
+
+static int saw_condition(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
+{
+	(void)txn, (void)at, (void)n;
+	bytes[2] &= CONTROL_SETTINGS | CONTROL_POR;
 	return 0;
 }
 
-static int write_condition(struct txn *txn, uint8_t mask, uint8_t polarity, uint8_t control)
+/* A power-on flag that a disturbed write has cleared can only be told, not set. */
+static bool condition_is_written(struct txn *txn, const uint8_t *have, const uint8_t *want,
+                                 unsigned n)
 {
-	uint8_t command[] = {WRITE_CONDITION, 0x8b, 0x00, mask, polarity, control};
-	uint8_t value[REGISTERS];
-	int err;
-
-	if (txn->phase == 1) {
-		err = txn_command(txn, command, sizeof(command));
-		txn->phase = 2;
-		return err ? err : TXN_MORE;
-	}
-	if (!(control & CONTROL_POR))
-		txn->device->note[0] = 0;
-	err = registers(txn, value);
-	if (err)
-		return err;
-	if (value[MASK] != mask || value[POLARITY] != polarity ||
-	    ((value[CONTROL] ^ control) & 0x07) || (value[CONTROL] & ~control & CONTROL_POR))
-		return -EIO;
-	/* Cleared by a write that was disturbed, it can only be said, not set. */
-	if (control & ~value[CONTROL] & CONTROL_POR)
-		txn->restarted = true;
-	txn_changed(txn);
-	return 0;
+	(void)n;
+	if (memcmp(have, want, 2) != 0 || ((have[2] ^ want[2]) & CONTROL_SETTINGS) ||
+	    (have[2] & ~want[2] & CONTROL_POR))
+		return false;
+	txn->restarted |= (want[2] & ~have[2] & CONTROL_POR) != 0;
+	return true;
 }
 
+/* Mask, polarity and control. */
+static const struct area condition = {
+	.name = "condition",
+	.at = 0x88 + MASK,
+	.size = 3,
+	.row = 3,
+	.load = load_part,
+	.store = store_condition,
+	.saw = saw_condition,
+	.is_written = condition_is_written,
+};
+
+/* A digit for each channel, 2 selected + 1 high; before them the source. */
 static int read_alarm(struct txn *txn)
 {
-	uint8_t value[REGISTERS];
-	uint32_t digits;
-	int err = registers(txn, value);
+	uint8_t value[3];
+	int err = area_read(txn, &registers, MASK, value, sizeof(value));
+	uint32_t digits = value[2] & CONTROL_SOURCE;
 
-	if (err)
-		return err;
-	digits = value[CONTROL] & 3;
-	for (int i = 7; i >= 0; i--)
-		digits = 10 * digits + (value[MASK] >> i & 1) * 2u + (value[POLARITY] >> i & 1);
+	for (int i = 7; i >= 0 && !err; i--)
+		digits = 10 * digits + (value[0] >> i & 1) * 2u + (value[1] >> i & 1);
 	txn->number[0] = digits;
-	return 0;
+	return err;
 }
 
 static int write_alarm(struct txn *txn)
 {
+	static const uint8_t which[] = {0xff, 0xff, CONTROL_SOURCE};
 	uint32_t digits = (uint32_t)txn->number[0];
-	uint8_t mask = 0, polarity = 0;
+	uint8_t value[3] = {0};
 
-	if (txn->phase == 0) {
-		int err = before_condition(txn);
-
-		txn->phase = 1;
-		return err ? err : TXN_MORE;
-	}
 	for (int i = 0; i < 8; i++, digits /= 10) {
-		mask |= (uint8_t)((digits % 10 >> 1 & 1) << i);
-		polarity |= (uint8_t)((digits % 10 & 1) << i);
+		value[0] |= (uint8_t)((digits % 10 >> 1 & 1) << i);
+		value[1] |= (uint8_t)((digits % 10 & 1) << i);
 	}
-	return write_condition(
-		txn, mask, polarity,
-		(uint8_t)((txn->mem[CONTROL] & (CONTROL_STROBE | CONTROL_POR)) | (digits & 3)));
-}
-
-/* por and strobe are bits of the control register. */
-static int write_flag(struct txn *txn)
-{
-	uint8_t bit = (uint8_t)txn->property->arg;
-
-	if (txn->phase == 0) {
-		int err = before_condition(txn);
-
-		txn->phase = 1;
-		return err ? err : TXN_MORE;
-	}
-	uint8_t control = (uint8_t)(txn->mem[CONTROL] & 0x0f & ~bit);
-	if (txn->number[0] != 0)
-		control |= bit;
-	return write_condition(txn, txn->mem[MASK], txn->mem[POLARITY], control);
+	value[2] = (uint8_t)(digits & CONTROL_SOURCE);
+	return area_write(txn, &condition, 0, value, which, sizeof(value));
 }
 
 int ds2408_strobe(struct txn *txn)
 {
-	if (txn->phase == 0) {
-		int err = before_condition(txn);
+	static const uint8_t strobe = CONTROL_STROBE;
 
-		if (err || txn->mem[CONTROL] & CONTROL_STROBE)
-			return err;
-		txn->phase = 1;
-		return TXN_MORE;
-	}
-	return write_condition(txn, txn->mem[MASK], txn->mem[POLARITY],
-	                       (uint8_t)((txn->mem[CONTROL] & 0x0f) | CONTROL_STROBE));
+	return area_write(txn, &condition, CONTROL - MASK, &strobe, &strobe, 1);
 }
 
 static int write_test_mode(struct txn *txn)
@@ -267,28 +212,30 @@ static int write_test_mode(struct txn *txn)
 	return txn->number[0] == 0 ? 0 : leave_test_mode(txn);
 }
 
-/* clang-format off */
-#define BITS(text, life_, access_, where, writes)                                         \
-	{.name = (text), .type = PROPERTY_BITS, .life = (life_), .access = (access_),      \
-	 .array = {8, INDEX_NUMBERS, true}, .arg = (where), .read = read_bits, .write = (writes)}
-#define FLAG(text, life_, access_, bit, writes)                                           \
-	{.name = (text), .type = PROPERTY_YESNO, .life = (life_), .access = (access_),     \
-	 .arg = (bit), .read = read_flag, .write = (writes)}
+#define SET(area_, ...) \
+	.set = &(const struct field) \
+	{ \
+		.area = &(area_), __VA_ARGS__ \
+	}
+#define FLAG(text, life_, access_, bit, ...) \
+	PROPERTY(text, YESNO, life_, access_, \
+	         FIELD(registers, .at = CONTROL, .shift = (bit), .bits = 1), \
+	         SET(condition, .at = CONTROL - MASK, .shift = (bit), .bits = 1), __VA_ARGS__)
 
 static const struct property properties[] = {
 	LCD_PROPERTIES,
-	BITS("PIO", LIFE_STABLE, ACCESS_BOTH, OUTPUT, write_pio),
-	BITS("latch", LIFE_VOLATILE, ACCESS_BOTH, ACTIVITY, write_latch),
-	{.name = "out_of_testmode", .type = PROPERTY_YESNO, .life = LIFE_VOLATILE,
-	 .access = ACCESS_WRITE, .write = write_test_mode},
-	FLAG("por", LIFE_STABLE, ACCESS_BOTH, CONTROL_POR, write_flag),
-	FLAG("power", LIFE_VOLATILE, ACCESS_READ, CONTROL_VCC, NULL),
-	BITS("sensed", LIFE_VOLATILE, ACCESS_READ, PIN, NULL),
-	{.name = "set_alarm", .type = PROPERTY_UNSIGNED, .life = LIFE_STABLE, .access = ACCESS_BOTH,
-	 .digits = "333333333", .read = read_alarm, .write = write_alarm},
-	FLAG("strobe", LIFE_STABLE, ACCESS_BOTH, CONTROL_STROBE, write_flag),
+	PROPERTY("PIO", BITS, STABLE, BOTH, AGGREGATE(8, NUMBERS),
+                 FIELD(registers, .at = OUTPUT, .inverted = true), SET(output, .inverted = true)),
+	PROPERTY("latch", BITS, VOLATILE, BOTH, AGGREGATE(8, NUMBERS),
+                 FIELD(registers, .at = ACTIVITY), .flag = true, .write = write_latch),
+	PROPERTY("out_of_testmode", YESNO, VOLATILE, WRITE, .write = write_test_mode),
+	FLAG("por", STABLE, BOTH, POR, .flag = true),
+	FLAG("power", VOLATILE, READ, VCC, .flag = false),
+	PROPERTY("sensed", BITS, VOLATILE, READ, AGGREGATE(8, NUMBERS), FIELD(registers)),
+	PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = "333333333", .read = read_alarm,
+                 .write = write_alarm),
+	FLAG("strobe", STABLE, BOTH, STROBE, .flag = false),
 };
-/* clang-format on */
 
 const struct family family_29 = {
 	.code = 0x29,

@@ -3,25 +3,22 @@
 #include "hal/chips/pio.h"
 #include "hal/chips/thermometer.h"
 
-#define WRITE_PIO 0xa5
+static const struct area latches = {PIO_LATCHES(0xa5)};
 
-/* clang-format off */
 static const struct property properties[] = {
-	THERMOMETER_PROPERTIES,
-	{.name = "PIO", .type = PROPERTY_BITS, .life = LIFE_VOLATILE, .access = ACCESS_BOTH,
-	 .array = {2, INDEX_LETTERS, true}, .arg = WRITE_PIO, .read = pio_read_low,
-	 .write = pio_write_output, .merge = pio_read_output},
-	PIO_BITS("latch", ACCESS_BOTH, WRITE_PIO, pio_read_output, pio_write_output),
-	{.name = "piostate", .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE, .hidden = true,
-	 .access = ACCESS_READ, .read = pio_read_state},
-	PIO_BITS("sensed", ACCESS_READ, 0, pio_read_pin, NULL),
+	PIO_BITS("PIO", BOTH, PIO_READ(PIO_PINS, true), PIO_SET(latches)),
+	THERMOMETER_TEMPERATURE("fasttemp", 9),
+	PIO_BITS("latch", BOTH, PIO_READ(PIO_OUTPUTS, true), PIO_SET(latches)),
+	THERMOMETER_LATEST,
+	PROPERTY("piostate", UNSIGNED, VOLATILE, READ, .hidden = true, PIO_READ(PIO_STATE, false)),
+	THERMOMETER_POWER,
+	PIO_BITS("sensed", READ, PIO_READ(PIO_PINS, false)),
+	THERMOMETER_TEMPERATURES,
 };
-/* clang-format on */
 
 const struct family family_42 = {
 	.code = 0x42,
-	.thermometer = true,
-	.alarms = true,
 	.type = "DS28EA00",
+	THERMOMETER_FAMILY,
 	PROPERTIES(properties),
 };

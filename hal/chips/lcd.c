@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
+/* What displays are told, as bytes for the outputs of their DS2408. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/ds2408.h"
 #include "hal/chips/lcd.h"
 
 /* Instructions of the HD44780 (Hitachi ADE-207-272, table 6) and their times. */
@@ -22,7 +24,11 @@
 #define STEPS_MAX (TEXT_MAX + 16)
 #define CHUNK 4 /* bytes of one transaction */
 
-#define INITIALISED note[1] /* enum lcd_board */
+/* A visit: whether the display is to be set up first, and how far it is. */
+struct lcd_visit {
+	bool begun, set_up, strobed;
+	uint8_t next; /* step */
+};
 
 /* What a step is beside its byte. */
 enum { DATA = 0x100, NIBBLE = 0x200, SLOW = 0x400, RESET = 0x800 };
@@ -175,41 +181,40 @@ static unsigned outputs(int board, unsigned step, uint8_t *bytes)
 	return step & NIBBLE ? 1 : 2;
 }
 
-/* mem[40]: the display is set up first; mem[41]: the strobe is on; mem[42]: the next step. */
 int lcd_write(struct txn *txn)
 {
 	int board = txn->property->arg >> 8, err;
-	uint8_t *next = &txn->mem[42], bytes[2 * CHUNK];
+	struct ds2408 *chip = txn->device->own;
+	struct lcd_visit *visit = txn_own(txn);
+	uint8_t bytes[2 * CHUNK];
 	struct steps steps;
 	unsigned n = 0, step = 0;
 
-	if (txn->phase == 0)
-		txn->mem[40] = txn->device->INITIALISED != board;
-	err = plan(&steps, txn, board, txn->mem[40]);
+	if (!visit->begun)
+		visit->set_up = chip->display != board;
+	visit->begun = true;
+	err = plan(&steps, txn, board, visit->set_up);
 	if (err)
 		return err;
-	if (!txn->mem[41]) {
+	if (!visit->strobed) {
 		err = ds2408_strobe(txn);
-		if (err)
-			return err;
 		/* Who had it off was restarted. */
-		txn->mem[40] |= txn->phase != 0;
-		txn->mem[41] = 1;
-		txn->phase = UINT8_MAX;
-		return TXN_MORE;
+		visit->set_up |= err > 0;
+		visit->strobed = err == 0;
+		return err < 0 ? err : TXN_MORE;
 	}
-	while (*next < steps.n && n <= CHUNK - 2 && !(step & (SLOW | RESET))) {
-		step = steps.step[(*next)++];
+	while (visit->next < steps.n && n <= CHUNK - 2 && !(step & (SLOW | RESET))) {
+		step = steps.step[visit->next++];
 		n += outputs(board, step, bytes + n);
 	}
-	txn->device->INITIALISED = LCD_NONE;
+	chip->display = LCD_NONE;
 	err = n ? ds2408_put(txn, bytes, n) : 0;
 	if (err)
 		return err;
-	if (*next < steps.n && step & (SLOW | RESET))
+	if (visit->next < steps.n && step & (SLOW | RESET))
 		return txn_wait(txn, step & RESET ? RESET_NS : SLOW_NS);
-	if (*next < steps.n)
+	if (visit->next < steps.n)
 		return TXN_MORE;
-	txn->device->INITIALISED = (uint8_t)board;
+	chip->display = (uint8_t)board;
 	return 0;
 }

@@ -23,34 +23,25 @@ enum lcd_command {
 
 int lcd_write(struct txn *txn); /* arg: LCD_DO(board, command) */
 
-/* family_29.c: the strobe is switched on; two calls at most, from phase 0 on. */
-int ds2408_strobe(struct txn *txn);
-/* Bytes for the outputs, in one transaction. */
-int ds2408_put(struct txn *txn, const uint8_t *bytes, unsigned n);
-
 #define LCD_DO(board, command) ((board) << 8 | (command))
-/* clang-format off */
-#define LCD_ENTRY(text, kind, bytes, board, command)                                      \
-	{.name = (text), .type = (kind), .life = LIFE_STABLE, .access = ACCESS_WRITE,       \
-	 .size = (bytes), .arg = LCD_DO(board, command), .write = lcd_write}
-#define LCD_GLYPHS(text, bytes, command)                                                  \
-	{.name = (text), .type = PROPERTY_BINARY, .life = LIFE_STABLE, .access = ACCESS_WRITE, \
-	 .array = {8, INDEX_NUMBERS, false}, .size = 8, .takes = (bytes),                   \
-	 .arg = LCD_DO(LCD_H, command), .write = lcd_write}
-/* clang-format on */
+#define LCD_ENTRY(text, kind, bytes, board, command) \
+	PROPERTY(text, kind, STABLE, WRITE, .size = (bytes), .arg = LCD_DO(board, command), \
+	         .write = lcd_write)
+#define LCD_GLYPHS(text, bytes, command) \
+	PROPERTY(text, BINARY, STABLE, WRITE, ELEMENTS(8, NUMBERS), .size = 8, .takes = (bytes), \
+	         .arg = LCD_DO(LCD_H, command), .write = lcd_write)
 #define LCD_PROPERTIES \
-	PROPERTY_DIR("LCD_H"), LCD_ENTRY("LCD_H/clear", PROPERTY_YESNO, 0, LCD_H, LCD_CLEAR), \
-		LCD_ENTRY("LCD_H/home", PROPERTY_YESNO, 0, LCD_H, LCD_HOME), \
-		LCD_ENTRY("LCD_H/message", PROPERTY_ASCII, 128, LCD_H, LCD_MESSAGE), \
-		LCD_ENTRY("LCD_H/onoff", PROPERTY_UNSIGNED, 0, LCD_H, LCD_ON_OFF), \
+	PROPERTY_DIR("LCD_H"), LCD_ENTRY("LCD_H/clear", YESNO, 0, LCD_H, LCD_CLEAR), \
+		LCD_ENTRY("LCD_H/home", YESNO, 0, LCD_H, LCD_HOME), \
+		LCD_ENTRY("LCD_H/message", ASCII, 128, LCD_H, LCD_MESSAGE), \
+		LCD_ENTRY("LCD_H/onoff", UNSIGNED, 0, LCD_H, LCD_ON_OFF), \
 		LCD_GLYPHS("LCD_H/redefchar", 8, LCD_GLYPH), \
 		LCD_GLYPHS("LCD_H/redefchar_hex", 16, LCD_GLYPH_HEX), \
-		LCD_ENTRY("LCD_H/screen", PROPERTY_ASCII, 128, LCD_H, LCD_SCREEN), \
-		LCD_ENTRY("LCD_H/screenyx", PROPERTY_ASCII, 128, LCD_H, LCD_SCREEN_YX), \
-		PROPERTY_DIR("LCD_M"), \
-		LCD_ENTRY("LCD_M/clear", PROPERTY_YESNO, 0, LCD_M, LCD_CLEAR), \
-		LCD_ENTRY("LCD_M/home", PROPERTY_YESNO, 0, LCD_M, LCD_HOME), \
-		LCD_ENTRY("LCD_M/message", PROPERTY_ASCII, 128, LCD_M, LCD_MESSAGE), \
-		LCD_ENTRY("LCD_M/screen", PROPERTY_ASCII, 128, LCD_M, LCD_SCREEN)
+		LCD_ENTRY("LCD_H/screen", ASCII, 128, LCD_H, LCD_SCREEN), \
+		LCD_ENTRY("LCD_H/screenyx", ASCII, 128, LCD_H, LCD_SCREEN_YX), \
+		PROPERTY_DIR("LCD_M"), LCD_ENTRY("LCD_M/clear", YESNO, 0, LCD_M, LCD_CLEAR), \
+		LCD_ENTRY("LCD_M/home", YESNO, 0, LCD_M, LCD_HOME), \
+		LCD_ENTRY("LCD_M/message", ASCII, 128, LCD_M, LCD_MESSAGE), \
+		LCD_ENTRY("LCD_M/screen", ASCII, 128, LCD_M, LCD_SCREEN)
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The two pins of DS2413 and DS28EA00. */
 #include <errno.h>
+#include <string.h>
 
 #include "hal/chips/pio.h"
 
@@ -39,65 +40,41 @@ static int read_status(struct txn *txn)
 	                                                        : -EBADMSG;
 }
 
-int pio_read_state(struct txn *txn)
+/* The pins, the latches, and the nibble itself. */
+static int load_status(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+                       unsigned n)
 {
 	int status = read_status(txn);
+	const uint8_t parts[] = {(uint8_t)((status & 1) | (status >> 1 & 2)), txn->device->shadow,
+	                         (uint8_t)status};
 
-	txn->number[0] = status;
+	(void)area;
+	memcpy(bytes, parts + at, n);
 	return status < 0 ? status : 0;
 }
 
-int pio_read_pin(struct txn *txn)
-{
-	int status = read_status(txn);
+const struct area pio_status = {.name = "status", .size = 3, .block = 3, .load = load_status};
 
-	txn->bits = (uint32_t)((status & 1) | (status >> 1 & 2));
-	return status < 0 ? status : 0;
+int pio_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
+{
+	return load_status(txn, area, 1 + at, bytes, n);
 }
 
-int pio_read_low(struct txn *txn)
+/* The byte and its complement, the confirmation, the status. */
+int pio_store(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
+              unsigned n)
 {
-	int err = pio_read_pin(txn);
+	uint8_t byte = bytes[0] | 0xfc, command[] = {area->write, byte, (uint8_t)~byte}, answer[2];
+	int err = txn_command(txn, command, sizeof(command));
 
-	txn->bits ^= 3;
-	return err;
-}
-
-int pio_read_output(struct txn *txn)
-{
-	int status = read_status(txn);
-
-	txn->bits = (uint32_t)((status >> 1 & 1) | (status >> 2 & 2)) ^ 3;
-	return status < 0 ? status : 0;
-}
-
-/* The byte and its complement, the confirmation, the status; then read back by itself. */
-static int write_latches(struct txn *txn, unsigned latch)
-{
-	uint8_t byte = (uint8_t)(latch | 0xfc);
-	uint8_t command[] = {(uint8_t)txn->property->arg, byte, (uint8_t)~byte}, answer[2];
-	int err;
-
-	txn->device->shadow_known = false;
-	if (txn->phase) {
-		err = read_status(txn);
-		return err < 0 ? err : txn->device->shadow == (latch & 3) ? 0 : -EIO;
-	}
-	err = txn_command(txn, command, sizeof(command));
+	(void)at, (void)n;
 	if (!err)
 		err = txn_read(txn, answer, sizeof(answer));
-	if (err)
-		return err;
-	txn->phase = 1;
-	return answer[0] == CONFIRMED ? TXN_MORE : -EBADMSG;
+	return err ? err : answer[0] == CONFIRMED ? 0 : -EBADMSG;
 }
 
-int pio_write_output(struct txn *txn)
+bool pio_is_written(struct txn *txn, const uint8_t *have, const uint8_t *want, unsigned n)
 {
-	return write_latches(txn, ~txn->bits & 3);
-}
-
-int pio_write_state(struct txn *txn)
-{
-	return write_latches(txn, (unsigned)txn->number[0] & 3);
+	(void)txn, (void)n;
+	return ((have[0] ^ want[0]) & 3) == 0;
 }

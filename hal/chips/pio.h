@@ -5,18 +5,27 @@
 
 #include "hal/chips/family.h"
 
-/* One status nibble: pin and output latch of A, then of B; a latch of 1 does not conduct. */
-int pio_read_output(struct txn *txn);  /* PIO: 1 conducts */
-int pio_read_pin(struct txn *txn);     /* sensed */
-int pio_read_low(struct txn *txn);     /* sensed, 1 is low */
-int pio_read_state(struct txn *txn);   /* the nibble */
-int pio_write_output(struct txn *txn); /* arg: the family's write command */
-int pio_write_state(struct txn *txn);
+/* The status: levels of the pins, output latches (1 does not conduct), and the nibble of both. */
+enum { PIO_PINS, PIO_OUTPUTS, PIO_STATE };
+extern const struct area pio_status;
 
-/* clang-format off */
-#define PIO_BITS(text, access_, command, reads, writes)                                   \
-	{.name = (text), .type = PROPERTY_BITS, .life = LIFE_VOLATILE, .access = (access_), \
-	 .array = {2, INDEX_LETTERS, true}, .arg = (command), .read = (reads), .write = (writes)}
-/* clang-format on */
+/* The hooks of the latches' area. */
+int pio_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n);
+int pio_store(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
+              unsigned n);
+bool pio_is_written(struct txn *txn, const uint8_t *have, const uint8_t *want, unsigned n);
+
+#define PIO_LATCHES(command) \
+	.name = "latches", .size = 1, .row = 1, .write = (command), .load = pio_load, \
+	.store = pio_store, .is_written = pio_is_written
+#define PIO_BITS(text, access_, ...) \
+	PROPERTY(text, BITS, VOLATILE, access_, AGGREGATE(2, LETTERS), __VA_ARGS__)
+#define PIO_READ(part, inverted_) FIELD(pio_status, .at = (part), .inverted = (inverted_))
+/* A write of both gives the whole byte: what is there does not matter. */
+#define PIO_SET(area_) \
+	.set = &(const struct field) \
+	{ \
+		.area = &(area_), .bits = 8, .inverted = true \
+	}
 
 #endif

@@ -43,15 +43,19 @@ static double relative_humidity(int sensor, double celsius, double supply, doubl
 
 int sensor_read_humidity(struct txn *txn)
 {
+	const double *value = ds2438_visit(txn)->value;
 	int sensor = txn->property->arg;
-	unsigned what = DS2438_VAD | (sensor == HTM1735 ? 0 : DS2438_TEMPERATURE | DS2438_VDD);
-	int err = ds2438_measure(txn, what);
+	unsigned what = 1 << DS2438_VAD;
 
+	if (sensor != HTM1735)
+		what |= 1 << DS2438_TEMPERATURE | 1 << DS2438_VDD;
+	int err = ds2438_measure(txn, what);
 	if (err)
 		return err;
-	if (sensor != HTM1735 && txn->real[1] <= 0)
+	if (sensor != HTM1735 && value[DS2438_VDD] <= 0)
 		return -EIO;
-	txn->number[0] = relative_humidity(sensor, txn->real[0], txn->real[1], txn->real[2]);
+	txn->number[0] = relative_humidity(sensor, value[DS2438_TEMPERATURE], value[DS2438_VDD],
+	                                   value[DS2438_VAD]);
 	return 0;
 }
 
@@ -67,7 +71,7 @@ static double setting(const uint8_t page[8], int which)
 int sensor_read_setting(struct txn *txn)
 {
 	uint8_t page[8];
-	int err = ds2438_read(txn, SETTING_PAGE, page);
+	int err = area_read(txn, &ds2438_pages, 8 * SETTING_PAGE, page, 8);
 
 	if (!err)
 		txn->number[0] = setting(page, txn->property->arg);
@@ -86,18 +90,19 @@ int sensor_write_setting(struct txn *txn)
 	return ds2438_patch(txn, SETTING_PAGE, settings[which].at, bytes, sizeof(bytes));
 }
 
-/* The settings' page comes last, behind the measurement's phases. */
-static int with_settings(struct txn *txn, unsigned what, uint8_t page[8])
+/* The settings' page comes last. */
+static int with_settings(struct txn *txn, enum ds2438_quantity what, uint8_t page[8])
 {
-	if (txn->phase < 4 * DS2438_STEPS) {
-		int err = ds2438_measure(txn, what);
+	struct ds2438_visit *visit = ds2438_visit(txn);
 
-		if (err)
-			return err;
-		txn->phase = 4 * DS2438_STEPS;
-		return TXN_MORE;
+	if (visit->stage <= DS2438_QUANTITIES) {
+		int err = ds2438_measure(txn, 1u << what);
+
+		if (!err)
+			visit->stage = DS2438_QUANTITIES + 1;
+		return err ? err : TXN_MORE;
 	}
-	return ds2438_read(txn, SETTING_PAGE, page);
+	return area_read(txn, &ds2438_pages, 8 * SETTING_PAGE, page, 8);
 }
 
 int sensor_read_pressure(struct txn *txn)
@@ -106,7 +111,8 @@ int sensor_read_pressure(struct txn *txn)
 	int err = with_settings(txn, DS2438_VAD, page);
 
 	if (!err)
-		txn->number[0] = txn->real[2] * setting(page, B1_GAIN) + setting(page, B1_OFFSET);
+		txn->number[0] = ds2438_visit(txn)->value[DS2438_VAD] * setting(page, B1_GAIN) +
+		                 setting(page, B1_OFFSET);
 	return err;
 }
 
@@ -117,7 +123,7 @@ int sensor_read_light(struct txn *txn)
 
 	if (err)
 		return err;
-	double microampere = txn->real[3] / SHUNT_OHM * 1e6;
+	double microampere = ds2438_visit(txn)->value[DS2438_VIS] / SHUNT_OHM * 1e6;
 	double lux = microampere * setting(page, S3_GAIN);
 	txn->number[0] = txn->property->arg ? (lux < 1 ? 1 : lux) : microampere;
 	return 0;
@@ -128,7 +134,7 @@ int sensor_read_type(struct txn *txn)
 	static const char *const types[] = {"MS-TH", "MS-TV", "MS-TL", "MS-TC", "MS-TW"};
 	const char *type = "unknown";
 	uint8_t page[8];
-	int err = ds2438_read(txn, SETTING_PAGE, page);
+	int err = area_read(txn, &ds2438_pages, 8 * SETTING_PAGE, page, 8);
 
 	if (err)
 		return err;

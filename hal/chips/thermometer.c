@@ -6,7 +6,6 @@
 #include "hal/chips/thermometer.h"
 
 #define WRITE_SCRATCHPAD 0x4e
-#define READ_SCRATCHPAD 0xbe
 #define COPY_SCRATCHPAD 0x48
 #define RECALL 0xb8
 #define COPY_NS (10 * TXN_MS)
@@ -18,32 +17,65 @@
 #define RAW_POWER_ON 0x0550
 #define RAW_BROKEN 0x07f8 /* 127.5 and above: no chip measures that */
 #define REMAIN_POWER_ON 0x0c
-#define SP_KEPT 16 /* in txn->mem, behind the scratchpad */
 #define NEAR_RAW (5 * 16)
 #define NEAR_NS (300 * 1000 * TXN_MS)
 #define LOOKS_ONE 3
 #define LOOKS_ZERO 2
 
+/* What a visit that changes the scratchpad, or one that reads the trim, keeps from call to call. */
+struct visit {
+	uint8_t scratchpad[9]; /* as it is to be */
+	uint8_t kept[3];       /* limits and configuration as they were */
+	uint8_t trim[4];
+};
+static struct visit *visit_of(struct txn *txn)
+{
+	return txn_own(txn);
+}
+
+void thermometer_forget(struct device *device)
+{
+	struct thermometer *chip = device->own;
+
+	*chip = (struct thermometer){.make = chip->make,
+	                             .ignores = chip->ignores,
+	                             .only_12 = chip->only_12,
+	                             .raw = chip->raw};
+}
+
+int thermometer_saw(struct txn *txn, unsigned at, uint8_t *scratchpad, unsigned n)
+{
+	struct thermometer *chip = txn->device->own;
+
+	(void)at, (void)n;
+	/* Nothing but zeros has a right checksum, and no such chip. */
+	if (scratchpad[SP_CONFIG] == 0 && scratchpad[SP_PER_DEGREE] == 0)
+		return -EBADMSG;
+	if (txn->device->family->fixed || chip->only_12)
+		return 0;
+	uint8_t resolution = (uint8_t)(9 + (scratchpad[SP_CONFIG] >> 5 & 3));
+	if (chip->resolution && chip->resolution != resolution)
+		txn->restarted = true;
+	if (!chip->stored)
+		chip->stored = resolution;
+	chip->resolution = resolution;
+	return 0;
+}
+
+const struct area thermometer_area = {
+	.name = "scratchpad",
+	.size = 9,
+	.block = 9,
+	.read = 0xbe,
+	.check = AREA_CRC8,
+	.saw = thermometer_saw,
+};
+
 int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9])
 {
-	static const uint8_t command = READ_SCRATCHPAD;
-	struct device *device = txn->device;
-	int err = txn_command(txn, &command, 1);
+	int err = area_fetch(txn, &thermometer_area, 0, scratchpad, 9);
 
-	if (!err)
-		err = txn_read_crc8(txn, scratchpad, 9);
-	/* Nothing but zeros has a right checksum, and no such chip. */
-	if (!err && scratchpad[SP_CONFIG] == 0 && scratchpad[SP_PER_DEGREE] == 0)
-		err = -EBADMSG;
-	if (err || device->family->fixed || device->only_12)
-		return err;
-	uint8_t resolution = (uint8_t)(9 + (scratchpad[SP_CONFIG] >> 5 & 3));
-	if (device->resolution && device->resolution != resolution)
-		txn->restarted = true;
-	if (!device->stored)
-		device->stored = resolution;
-	device->resolution = resolution;
-	return 0;
+	return err ? err : thermometer_saw(txn, 0, scratchpad, 9);
 }
 
 /* Sixteenths of a degree at the resolution that the scratchpad states. */
@@ -59,7 +91,7 @@ static int thermometer_raw(const struct device *device, const uint8_t scratchpad
 			return raw * 8;
 		return whole * 16 - 4 + 16 * (per_degree - scratchpad[SP_REMAIN]) / per_degree;
 	}
-	if (device->only_12)
+	if (thermometer_of(device)->only_12)
 		return raw;
 	return raw & ~((1 << (3 - (scratchpad[SP_CONFIG] >> 5 & 3))) - 1);
 }
@@ -72,9 +104,11 @@ static void learn_make(struct device *device, const uint8_t scratchpad[9])
 {
 	int low = scratchpad[SP_LSB] & 0xf;
 
-	if (device->family->fixed || device->resolution != 12 || low == 0 || low == 4)
+	if (device->family->fixed || thermometer_of(device)->resolution != 12 || low == 0 ||
+	    low == 4)
 		return;
-	device->make = scratchpad[SP_REMAIN] == 16 - low ? MAKE_GENUINE : MAKE_CLONE;
+	thermometer_of(device)->make = scratchpad[SP_REMAIN] == 16 - low ? MAKE_GENUINE
+	                                                                 : MAKE_CLONE;
 }
 
 /*
@@ -89,21 +123,23 @@ static int thermometer_guard(struct txn *txn, int raw, const uint8_t scratchpad[
 		return -ERANGE;
 	if (raw != RAW_POWER_ON)
 		return 0;
-	if (device->make == MAKE_GENUINE && scratchpad[SP_REMAIN] != REMAIN_POWER_ON)
+	if (thermometer_of(device)->make == MAKE_GENUINE &&
+	    scratchpad[SP_REMAIN] != REMAIN_POWER_ON)
 		return 0;
-	if (device->make != MAKE_GENUINE && device->raw_ns && now - device->raw_ns < NEAR_NS &&
-	    device->raw >= RAW_POWER_ON - NEAR_RAW)
+	if (thermometer_of(device)->make != MAKE_GENUINE && thermometer_of(device)->raw_ns &&
+	    now - thermometer_of(device)->raw_ns < NEAR_NS &&
+	    thermometer_of(device)->raw >= RAW_POWER_ON - NEAR_RAW)
 		return 0;
 	txn->restarted = scratchpad[SP_REMAIN] == REMAIN_POWER_ON &&
-	                 (device->raw_ns || device->converted_ns);
+	                 (thermometer_of(device)->raw_ns || thermometer_of(device)->converted_ns);
 	return -ERANGE;
 }
 
 int64_t thermometer_convert_ns(const struct device *device)
 {
-	if (device->family->fixed || device->resolution < 9)
+	if (device->family->fixed || thermometer_of(device)->resolution < 9)
 		return 750 * TXN_MS;
-	return 750 * TXN_MS >> (12 - device->resolution);
+	return 750 * TXN_MS >> (12 - thermometer_of(device)->resolution);
 }
 
 static int write_scratchpad(struct txn *txn, const uint8_t scratchpad[9])
@@ -127,20 +163,22 @@ int thermometer_prepare(struct txn *txn, unsigned resolution)
 
 	switch (txn->phase) {
 	case 0:
-		err = thermometer_scratchpad(txn, txn->mem);
-		if (err || device->resolution == resolution)
+		err = thermometer_scratchpad(txn, visit_of(txn)->scratchpad);
+		if (err || thermometer_of(device)->resolution == resolution)
 			return err;
-		txn->mem[SP_CONFIG] = config_for(txn->mem[SP_CONFIG], resolution);
+		visit_of(txn)->scratchpad[SP_CONFIG] = config_for(
+			visit_of(txn)->scratchpad[SP_CONFIG], resolution);
 		txn->phase = 1;
 		return TXN_MORE;
 	case 1:
-		err = write_scratchpad(txn, txn->mem);
+		err = write_scratchpad(txn, visit_of(txn)->scratchpad);
 		txn->phase = 2;
 		return err ? err : TXN_MORE;
 	default:
-		device->resolution = 0;
+		thermometer_of(device)->resolution = 0;
 		err = thermometer_scratchpad(txn, scratchpad);
-		device->ignores = !err && device->resolution != resolution;
+		thermometer_of(device)->ignores = !err &&
+		                                  thermometer_of(device)->resolution != resolution;
 		return err;
 	}
 }
@@ -154,16 +192,18 @@ static int64_t latched_ns(struct txn *txn, const uint8_t scratchpad[9], int64_t 
 {
 	struct device *device = txn->device;
 	const uint8_t holds[3] = {scratchpad[SP_LSB], scratchpad[SP_MSB], scratchpad[SP_REMAIN]};
-	bool changed = device->raw_ns && device->raw_ns >= device->earlier_ns &&
-	               memcmp(device->latched, holds, sizeof(holds)) != 0;
+	bool changed = thermometer_of(device)->raw_ns &&
+	               thermometer_of(device)->raw_ns >= thermometer_of(device)->earlier_ns &&
+	               memcmp(thermometer_of(device)->latched, holds, sizeof(holds)) != 0;
 
-	memcpy(device->latched, holds, sizeof(holds));
-	txn->unproven = device->unseen && !changed;
-	int64_t when = txn->unproven ? device->earlier_ns : device->converted_ns;
+	memcpy(thermometer_of(device)->latched, holds, sizeof(holds));
+	txn->unproven = thermometer_of(device)->unseen && !changed;
+	int64_t when = txn->unproven ? thermometer_of(device)->earlier_ns
+	                             : thermometer_of(device)->converted_ns;
 	/* It never becomes older than it was. */
-	if (when > device->latched_ns && when < now)
-		device->latched_ns = when;
-	return device->latched_ns;
+	if (when > thermometer_of(device)->latched_ns && when < now)
+		thermometer_of(device)->latched_ns = when;
+	return thermometer_of(device)->latched_ns;
 }
 
 int thermometer_read_temperature(struct txn *txn)
@@ -181,25 +221,15 @@ int thermometer_read_temperature(struct txn *txn)
 		return err;
 	learn_make(device, scratchpad);
 	txn->measured_ns = latched_ns(txn, scratchpad, now);
-	device->raw = (int16_t)raw;
-	device->raw_ns = now;
+	thermometer_of(device)->raw = (int16_t)raw;
+	thermometer_of(device)->raw_ns = now;
 	txn->number[0] = raw / 16.0;
 	return 0;
 }
 
-int thermometer_read_limit(struct txn *txn)
+static bool is_set(struct txn *txn, const uint8_t scratchpad[9])
 {
-	uint8_t scratchpad[9];
-	int err = thermometer_scratchpad(txn, scratchpad);
-
-	if (!err)
-		txn->number[0] = (int8_t)scratchpad[txn->property->arg];
-	return err;
-}
-
-static bool is_set(const struct txn *txn, const uint8_t scratchpad[9])
-{
-	return memcmp(scratchpad + SP_HIGH, txn->mem + SP_HIGH,
+	return memcmp(scratchpad + SP_HIGH, visit_of(txn)->scratchpad + SP_HIGH,
 	              txn->device->family->fixed ? 2 : 3) == 0;
 }
 
@@ -237,13 +267,15 @@ static int store(struct txn *txn)
 
 	switch (txn->phase) {
 	case WRITE:
-		err = write_scratchpad(txn, txn->mem);
+		err = write_scratchpad(txn, visit_of(txn)->scratchpad);
 		break;
 	case VERIFY:
-		device->resolution = 0;
+		thermometer_of(device)->resolution = 0;
 		err = thermometer_scratchpad(txn, scratchpad);
 		if (!err && !is_set(txn, scratchpad))
-			return scratchpad[SP_CONFIG] != txn->mem[SP_CONFIG] ? -EINVAL : -EBADMSG;
+			return scratchpad[SP_CONFIG] != visit_of(txn)->scratchpad[SP_CONFIG]
+			               ? -EINVAL
+			               : -EBADMSG;
 		break;
 	case COPY:
 		return copy_settings(txn);
@@ -259,30 +291,31 @@ static int store(struct txn *txn)
 		if (txn->phase + 1 < CHECK)
 			break;
 		txn_changed(txn);
-		device->stored = device->resolution;
+		thermometer_of(device)->stored = thermometer_of(device)->resolution;
 		return 0;
 	}
 	txn->phase++;
 	return err ? err : TXN_MORE;
 }
 
-/* The scratchpad to txn->mem, ahead of a change of its settings. 1: one has failed before. */
+/* The scratchpad to the visit, ahead of a change of its settings. 1: one has failed before. */
 static int before_store(struct txn *txn)
 {
-	int err = thermometer_scratchpad(txn, txn->mem);
+	int err = thermometer_scratchpad(txn, visit_of(txn)->scratchpad);
 
 	if (err)
 		return err;
-	bool failed = txn_base(txn, txn->device->family, txn->mem + SP_HIGH, 3);
-	memcpy(txn->mem + SP_KEPT, txn->mem + SP_HIGH, 3);
+	bool failed = txn_base(txn, &thermometer_area, visit_of(txn)->scratchpad + SP_HIGH, 3);
+	memcpy(visit_of(txn)->kept, visit_of(txn)->scratchpad + SP_HIGH, 3);
 	if (!txn->device->family->fixed)
-		txn->mem[SP_CONFIG] = config_for(txn->mem[SP_CONFIG], txn->device->stored);
+		visit_of(txn)->scratchpad[SP_CONFIG] = config_for(
+			visit_of(txn)->scratchpad[SP_CONFIG], thermometer_of(txn->device)->stored);
 	return failed;
 }
 
 static int begin_store(struct txn *txn)
 {
-	txn_keep(txn, txn->device->family, txn->mem + SP_KEPT, 3);
+	txn_keep(txn, &thermometer_area, visit_of(txn)->kept, 3);
 	txn->phase = 1;
 	return TXN_MORE;
 }
@@ -298,9 +331,10 @@ int thermometer_write_limit(struct txn *txn)
 		return -EINVAL;
 	int limit = (int)(value < 0 ? value - 0.5 : value + 0.5);
 	failed = before_store(txn);
-	if (failed < 0 || (!failed && (int8_t)txn->mem[txn->property->arg] == limit))
+	if (failed < 0 ||
+	    (!failed && (int8_t)visit_of(txn)->scratchpad[txn->property->field.at] == limit))
 		return failed;
-	txn->mem[txn->property->arg] = (uint8_t)limit;
+	visit_of(txn)->scratchpad[txn->property->field.at] = (uint8_t)limit;
 	return begin_store(txn);
 }
 
@@ -309,7 +343,7 @@ int thermometer_read_tempres(struct txn *txn)
 	uint8_t scratchpad[9];
 	int err = thermometer_scratchpad(txn, scratchpad);
 
-	txn->number[0] = txn->device->stored;
+	txn->number[0] = thermometer_of(txn->device)->stored;
 	return err;
 }
 
@@ -323,9 +357,10 @@ int thermometer_write_tempres(struct txn *txn)
 		return -EINVAL;
 	unsigned resolution = (unsigned)txn->number[0];
 	failed = before_store(txn);
-	if (failed < 0 || (!failed && txn->device->stored == resolution))
+	if (failed < 0 || (!failed && thermometer_of(txn->device)->stored == resolution))
 		return failed;
-	txn->mem[SP_CONFIG] = config_for(txn->mem[SP_CONFIG], resolution);
+	visit_of(txn)->scratchpad[SP_CONFIG] = config_for(visit_of(txn)->scratchpad[SP_CONFIG],
+	                                                  resolution);
 	return begin_store(txn);
 }
 
@@ -381,12 +416,6 @@ int thermometer_read_power(struct txn *txn)
 	return bit > 0 ? TXN_MORE : bit;
 }
 
-int thermometer_read_scratchpad(struct txn *txn)
-{
-	txn->len = 9;
-	return thermometer_scratchpad(txn, txn->data);
-}
-
 /* Of the dies that OWFS tells apart only the last is still around: B6 and B7 left the market
  * before 2001. */
 int thermometer_read_die(struct txn *txn)
@@ -406,18 +435,18 @@ static int read_trim(struct txn *txn)
 	int err = txn_command(txn, &commands[txn->phase % 2], 1);
 
 	if (!err)
-		err = txn_read(txn, &txn->mem[txn->phase], 1);
+		err = txn_read(txn, &visit_of(txn)->trim[txn->phase], 1);
 	txn->silent = false;
 	if (err || ++txn->phase < 4)
 		return err ? err : TXN_MORE;
-	return memcmp(txn->mem, txn->mem + 2, 2) == 0 ? 0 : -EBADMSG;
+	return memcmp(visit_of(txn)->trim, visit_of(txn)->trim + 2, 2) == 0 ? 0 : -EBADMSG;
 }
 
 int thermometer_read_trim(struct txn *txn)
 {
 	int err = read_trim(txn);
 
-	txn->number[0] = txn->mem[0] | txn->mem[1] << 8;
+	txn->number[0] = visit_of(txn)->trim[0] | visit_of(txn)->trim[1] << 8;
 	return err;
 }
 
@@ -430,9 +459,9 @@ int thermometer_refuse_trim(struct txn *txn)
 
 int thermometer_read_trim_valid(struct txn *txn)
 {
-	int err = read_trim(txn), low = txn->mem[0] & 7;
+	int err = read_trim(txn), low = visit_of(txn)->trim[0] & 7;
 
-	txn->number[0] = (low == 3 || low == 5) && txn->mem[1] == TRIM_SECOND;
+	txn->number[0] = (low == 3 || low == 5) && visit_of(txn)->trim[1] == TRIM_SECOND;
 	return err;
 }
 
@@ -440,6 +469,7 @@ int thermometer_read_trim_blanket(struct txn *txn)
 {
 	int err = read_trim(txn);
 
-	txn->number[0] = txn->mem[0] == TRIM_BLANKET && txn->mem[1] == TRIM_SECOND;
+	txn->number[0] = visit_of(txn)->trim[0] == TRIM_BLANKET &&
+	                 visit_of(txn)->trim[1] == TRIM_SECOND;
 	return err;
 }

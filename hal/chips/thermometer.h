@@ -13,7 +13,41 @@
 
 enum { SP_LSB, SP_MSB, SP_HIGH, SP_LOW, SP_CONFIG, SP_5, SP_REMAIN, SP_PER_DEGREE, SP_CRC };
 
-/* The scratchpad, CRC checked; what its configuration tells is noted in the device. */
+/* Does byte 6 of a scratchpad follow the temperature, as in the genuine chip? */
+enum thermometer_make { MAKE_UNKNOWN, MAKE_GENUINE, MAKE_CLONE };
+
+/* What is known of the chip (device.own). */
+struct thermometer {
+	/* For good. */
+	uint8_t make; /* enum thermometer_make */
+	bool ignores; /* takes no other resolution (clones) */
+	bool only_12; /* has one resolution, and no bits that say so */
+	/* Until it restarts. */
+	uint8_t resolution;   /* 9 to 12 as read back; 0: not known */
+	uint8_t stored;       /* what it was before our first change: the EEPROM's; 0: not known */
+	uint8_t kind;         /* which chip of the family it is; 0: not known */
+	bool unseen;          /* the chip could not show that its last conversion began */
+	int16_t raw;          /* last good reading, sixteenths of a degree */
+	int64_t raw_ns;       /* when; 0: none */
+	int64_t converted_ns; /* when its last conversion ends or ended; 0: none known */
+	int64_t unread_ns;    /* the one whose result did not come over the wire whole; 0: none */
+	int64_t earlier_ns;   /* the one before the last */
+	uint8_t latched[3];   /* what tells one conversion's result from another's, when read */
+	int64_t latched_ns;   /* ... and of which conversion that was; 0: not known */
+};
+static inline struct thermometer *thermometer_of(const struct device *device)
+{
+	return device->own;
+}
+void thermometer_forget(struct device *device);
+
+/*
+ * The nine bytes. What their configuration tells is noted; -EBADMSG: no such chip sends them, -ENOENT
+ * it has not the property that is asked for.
+ */
+extern const struct area thermometer_area;
+int thermometer_saw(struct txn *txn, unsigned at, uint8_t *scratchpad, unsigned n);
+/* The scratchpad as it is now. */
 int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9]);
 /* A conversion's longest time at the device's present resolution. */
 int64_t thermometer_convert_ns(const struct device *device);
@@ -24,62 +58,58 @@ int thermometer_prepare(struct txn *txn, unsigned resolution);
 int thermometer_ask_power(struct txn *txn);
 
 int thermometer_read_temperature(struct txn *txn);
-int thermometer_read_limit(struct txn *txn); /* arg: SP_HIGH or SP_LOW */
-int thermometer_write_limit(struct txn *txn);
+int thermometer_write_limit(struct txn *txn); /* of the field's byte */
 int thermometer_read_tempres(struct txn *txn);
 int thermometer_write_tempres(struct txn *txn);
 int thermometer_read_power(struct txn *txn);
-int thermometer_read_scratchpad(struct txn *txn);
 int thermometer_read_die(struct txn *txn);
 int thermometer_read_trim(struct txn *txn);
 int thermometer_refuse_trim(struct txn *txn);
 int thermometer_read_trim_valid(struct txn *txn);
 int thermometer_read_trim_blanket(struct txn *txn);
 
-/* clang-format off */
-#define THERMOMETER_TEMPERATURE(text, resolution)                                        \
-	{.name = (text), .type = PROPERTY_TEMPERATURE, .life = LIFE_VOLATILE,             \
-	 .access = ACCESS_READ, .convert = (resolution), .read = thermometer_read_temperature}
-#define THERMOMETER_LATEST                                                               \
-	{.name = "latesttemp", .type = PROPERTY_TEMPERATURE, .life = LIFE_VOLATILE,       \
-	 .access = ACCESS_READ, .read = thermometer_read_temperature}
-#define THERMOMETER_LIMIT(text, where)                                                   \
-	{.name = (text), .type = PROPERTY_TEMPERATURE, .life = LIFE_STABLE,               \
-	 .access = ACCESS_BOTH, .arg = (where), .read = thermometer_read_limit,           \
-	 .write = thermometer_write_limit}
-#define THERMOMETER_TEMPRES                                                              \
-	{.name = "tempres", .type = PROPERTY_UNSIGNED, .life = LIFE_STABLE,               \
-	 .access = ACCESS_BOTH, .read = thermometer_read_tempres,                         \
-	 .write = thermometer_write_tempres}
-#define THERMOMETER_POWER                                                                \
-	{.name = "power", .type = PROPERTY_YESNO, .life = LIFE_VOLATILE,                  \
-	 .access = ACCESS_READ, .read = thermometer_read_power}
-#define THERMOMETER_SCRATCHPAD                                                           \
-	{.name = "scratchpad", .type = PROPERTY_BINARY, .life = LIFE_VOLATILE,            \
-	 .access = ACCESS_READ, .size = 9, .read = thermometer_read_scratchpad}
-#define THERMOMETER_ERRATA                                                               \
-	PROPERTY_DIR("errata"),                                                           \
-	{.name = "errata/die", .type = PROPERTY_ASCII, .life = LIFE_STATIC,               \
-	 .access = ACCESS_READ, .size = 2, .read = thermometer_read_die},                 \
-	{.name = "errata/trim", .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE,         \
-	 .access = ACCESS_BOTH, .read = thermometer_read_trim,                            \
-	 .write = thermometer_refuse_trim},                                               \
-	{.name = "errata/trimblanket", .type = PROPERTY_YESNO, .life = LIFE_VOLATILE,     \
-	 .access = ACCESS_BOTH, .read = thermometer_read_trim_blanket,                    \
-	 .write = thermometer_refuse_trim},                                               \
-	{.name = "errata/trimvalid", .type = PROPERTY_YESNO, .life = LIFE_VOLATILE,       \
-	 .access = ACCESS_READ, .read = thermometer_read_trim_valid}
-/* clang-format on */
+#define THERMOMETER_TEMPERATURE(text, resolution) \
+	PROPERTY(text, TEMPERATURE, VOLATILE, READ, .convert = (resolution), \
+	         .read = thermometer_read_temperature)
+#define THERMOMETER_LIMIT(text, where) \
+	PROPERTY(text, TEMPERATURE, STABLE, BOTH, \
+	         FIELD(thermometer_area, .at = (where), .is_signed = true), \
+	         .write = thermometer_write_limit)
 
-/* What DS18B20, DS1822 and DS28EA00 have alike. */
-#define THERMOMETER_PROPERTIES \
-	THERMOMETER_TEMPERATURE("fasttemp", 9), THERMOMETER_LATEST, THERMOMETER_POWER, \
-		THERMOMETER_TEMPERATURE("temperature", CONVERT_TEMPRES), \
+/*
+ * Parts of the families' tables, sorted: what all have first, then (a scratchpad) and what all have
+ * last.
+ */
+#define THERMOMETER_ERRATA \
+	PROPERTY_DIR("errata"), \
+		PROPERTY("errata/die", ASCII, STATIC, READ, .size = 2, \
+	                 .read = thermometer_read_die), \
+		PROPERTY("errata/trim", UNSIGNED, VOLATILE, BOTH, .read = thermometer_read_trim, \
+	                 .write = thermometer_refuse_trim), \
+		PROPERTY("errata/trimblanket", YESNO, VOLATILE, BOTH, \
+	                 .read = thermometer_read_trim_blanket, .write = thermometer_refuse_trim), \
+		PROPERTY("errata/trimvalid", YESNO, VOLATILE, READ, \
+	                 .read = thermometer_read_trim_valid)
+#define THERMOMETER_LATEST THERMOMETER_TEMPERATURE("latesttemp", 0)
+#define THERMOMETER_POWER PROPERTY("power", YESNO, VOLATILE, READ, .read = thermometer_read_power)
+#define THERMOMETER_SCRATCHPAD \
+	PROPERTY("scratchpad", BINARY, VOLATILE, READ, .size = 9, FIELD(thermometer_area))
+#define THERMOMETER_TEMPRES \
+	PROPERTY("tempres", UNSIGNED, STABLE, BOTH, .read = thermometer_read_tempres, \
+	         .write = thermometer_write_tempres)
+/* At each resolution, the limits, and the resolution of the EEPROM. */
+#define THERMOMETER_TEMPERATURES \
+	THERMOMETER_TEMPERATURE("temperature", CONVERT_TEMPRES), \
 		THERMOMETER_TEMPERATURE("temperature10", 10), \
 		THERMOMETER_TEMPERATURE("temperature11", 11), \
 		THERMOMETER_TEMPERATURE("temperature12", 12), \
 		THERMOMETER_TEMPERATURE("temperature9", 9), \
 		THERMOMETER_LIMIT("temphigh", SP_HIGH), THERMOMETER_LIMIT("templow", SP_LOW), \
 		THERMOMETER_TEMPRES
+/* DS18B20 and DS1822 */
+#define THERMOMETER_PROPERTIES \
+	THERMOMETER_ERRATA, THERMOMETER_TEMPERATURE("fasttemp", 9), THERMOMETER_LATEST, \
+		THERMOMETER_POWER, THERMOMETER_SCRATCHPAD, THERMOMETER_TEMPERATURES
+#define THERMOMETER_FAMILY .thermometer = true, .alarms = true, .forget = thermometer_forget
 
 #endif

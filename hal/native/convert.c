@@ -28,7 +28,8 @@ static unsigned wanted(const struct job *job)
 {
 	const struct device *device = job->txn.device;
 
-	return job->property->convert == CONVERT_TEMPRES ? device->stored : job->property->convert;
+	return job->property->convert == CONVERT_TEMPRES ? thermometer_of(device)->stored
+	                                                 : job->property->convert;
 }
 
 bool convert_right(const struct job *job)
@@ -36,8 +37,9 @@ bool convert_right(const struct job *job)
 	const struct device *device = job->txn.device;
 
 	/* Not known yet: most are right, and the reading will tell. */
-	return device->family->fixed || device->ignores || !device->resolution || !wanted(job) ||
-	       device->resolution == wanted(job);
+	return device->family->fixed || thermometer_of(device)->ignores ||
+	       !thermometer_of(device)->resolution || !wanted(job) ||
+	       thermometer_of(device)->resolution == wanted(job);
 }
 
 /* Another job has this device between its preparation and its reading, at its resolution. */
@@ -71,11 +73,12 @@ static void become_due(struct native *native, struct job *job, int64_t now)
 static bool is_served(const struct job *job, int64_t now)
 {
 	const struct device *device = job->txn.device;
-	bool unread = device->unread_ns == device->converted_ns;
-	int64_t until = device->converted_ns + (job->fresh ? NATIVE_S : SIMULTANEOUS_NS);
+	bool unread = thermometer_of(device)->unread_ns == thermometer_of(device)->converted_ns;
+	int64_t until = thermometer_of(device)->converted_ns +
+	                (job->fresh ? NATIVE_S : SIMULTANEOUS_NS);
 
-	return device->converted_ns && (!job->fresh || unread) && !job->again && until > now &&
-	       convert_right(job);
+	return thermometer_of(device)->converted_ns && (!job->fresh || unread) && !job->again &&
+	       until > now && convert_right(job);
 }
 
 void convert_begin(struct native *native, struct job *job, int64_t now)
@@ -83,7 +86,7 @@ void convert_begin(struct native *native, struct job *job, int64_t now)
 	struct device *device = job->txn.device;
 
 	if (is_served(job, now)) {
-		job->ready_ns = device->converted_ns;
+		job->ready_ns = thermometer_of(device)->converted_ns;
 		job->state = JOB_CONVERTING;
 		return;
 	}
@@ -275,10 +278,10 @@ static int64_t convert_ns(const struct link *link, const struct device *device)
 
 static void converts(struct device *device, int64_t until, bool unseen)
 {
-	if (device->converted_ns)
-		device->earlier_ns = device->converted_ns;
-	device->converted_ns = until;
-	device->unseen = unseen;
+	if (thermometer_of(device)->converted_ns)
+		thermometer_of(device)->earlier_ns = thermometer_of(device)->converted_ns;
+	thermometer_of(device)->converted_ns = until;
+	thermometer_of(device)->unseen = unseen;
 }
 
 static void converting(struct native *native, unsigned n, bool unseen, int64_t now, int64_t longest)
@@ -299,7 +302,7 @@ static void converting(struct native *native, unsigned n, bool unseen, int64_t n
 		if (!job->req || job->state != JOB_DUE || job->txn.channel != n)
 			continue;
 		job->state = JOB_CONVERTING;
-		job->ready_ns = job->txn.device->converted_ns;
+		job->ready_ns = thermometer_of(job->txn.device)->converted_ns;
 	}
 }
 
@@ -391,7 +394,7 @@ static bool convert_one(struct native *native, unsigned n)
 		if (!job->req || job->state != JOB_DUE || job->txn.device != device)
 			continue;
 		job->state = JOB_CONVERTING;
-		job->ready_ns = device->converted_ns;
+		job->ready_ns = thermometer_of(device)->converted_ns;
 	}
 	return true;
 }

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/thermometer.h"
 #include "hal/native/files.h"
 #include "hal/native/native.h"
 #include "hal/owfs/format.h"
@@ -39,8 +40,8 @@ static void take_functions(struct job *job)
 
 /*
  * What of that which is kept serves the request: read after it came; or within the value's life,
- * if a cached one will do. A try that failed takes nothing from before. What the alarm machine asks
- * for one after the other is read once: no write fits in between, as it would take longer.
+ * if a cached one will do. A try that failed takes nothing from before. The flags that the alarm machine
+ * asks for one after the other are read once: no write fits in between, as it would take longer.
  */
 static void take_limits(const struct native *native, struct job *job)
 {
@@ -53,7 +54,8 @@ static void take_limits(const struct native *native, struct job *job)
 		return;
 	if (!job->fresh)
 		txn->oldest_ns = now - property_life_ns(native, job->property);
-	else if (job->req->prio == BUS_ALARM)
+	txn->once = job->fresh && job->req->prio == BUS_ALARM && job->property->flag;
+	if (txn->once)
 		txn->oldest_ns = now - VISIT_NS;
 }
 
@@ -69,7 +71,6 @@ void job_txn(struct native *native, struct job *job)
 	txn->channel = n;
 	txn->link = native->channel[n].link;
 	txn->property = job->property;
-	txn->visit = job->req->prio == BUS_ALARM;
 	txn->one = job->extension >= 0;
 	txn->element = is_all(job)           ? (int)job->element
 	               : job->extension >= 0 ? job->extension & 0xff
@@ -128,7 +129,7 @@ static void read_done(struct native *native, struct job *job)
 	if (job->txn.device) {
 		job->txn.device->settled |= !job->property->offline;
 		if (job->property->convert)
-			job->txn.device->unread_ns = 0;
+			thermometer_of(job->txn.device)->unread_ns = 0;
 	}
 	if (more) {
 		job_txn(native, job);
@@ -272,12 +273,12 @@ void job_run_property(struct native *native, struct job *job, int64_t now)
 	job_unlock(native, job);
 	if (txn->device && job->property->convert && !convert_right(job)) {
 		/* It converted at another resolution than was thought. */
-		job->txn.device->converted_ns = 0;
+		thermometer_of(job->txn.device)->converted_ns = 0;
 		job_restart(native, job);
 		return;
 	}
 	if (txn->device && txn->unproven && !job->again &&
-	    (job->fresh || !txn->device->earlier_ns)) {
+	    (job->fresh || !thermometer_of(txn->device)->earlier_ns)) {
 		job->again = true;
 		job_restart(native, job);
 		return;

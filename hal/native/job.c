@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/thermometer.h"
 #include "hal/native/native.h"
 #include "hal/owfs/format.h"
 
@@ -56,8 +57,8 @@ static void begin_again(struct native *native, struct job *job)
 	const struct device *device = job->txn.device;
 
 	if (job->state == JOB_RUN && job->property && job->property->convert &&
-	    job->req->op == BUS_READ && device->converted_ns &&
-	    device->converted_ns + NATIVE_S > native_now(native))
+	    job->req->op == BUS_READ && thermometer_of(device)->converted_ns &&
+	    thermometer_of(device)->converted_ns + NATIVE_S > native_now(native))
 		job_reread(native, job);
 	else
 		job_restart(native, job);
@@ -67,7 +68,8 @@ static void begin_again(struct native *native, struct job *job)
 static void give_up_reading(struct native *native, struct job *job, int err)
 {
 	if (job->txn.device && job->property && job->property->convert)
-		job->txn.device->unread_ns = job->txn.device->converted_ns;
+		thermometer_of(job->txn.device)->unread_ns =
+			thermometer_of(job->txn.device)->converted_ns;
 	job_answer(native, job, err);
 }
 
@@ -102,7 +104,7 @@ void job_failed(struct native *native, struct job *job, int err)
 			job_answer(native, job, err);
 			return;
 		}
-		job->txn.device->converted_ns = 0;
+		thermometer_of(job->txn.device)->converted_ns = 0;
 		job->fresh = true;
 		job_restart(native, job);
 		return;

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/chips/thermometer.h"
 #include "hal/native/native.h"
 
 #define PAUSE_MIN_NS (NATIVE_S / 5)
@@ -117,7 +118,8 @@ void master_down(struct native *native, int err, const char *why)
 static void convert_again(struct native *native)
 {
 	for (unsigned i = 0; i < native->table.count; i++)
-		native->table.devices[i].converted_ns = 0;
+		if (native->table.devices[i].family->thermometer)
+			thermometer_of(&native->table.devices[i])->converted_ns = 0;
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
 		if (native->jobs[i].req && native->jobs[i].state == JOB_CONVERTING)
 			job_restart(native, &native->jobs[i]);

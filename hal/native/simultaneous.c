@@ -11,16 +11,17 @@
 /* All DS2450 of a channel at once. Their checksum is one: they were told the same. */
 static int convert_voltage(struct native *native, unsigned n)
 {
-	static const uint8_t skip = SKIP_ROM, command[] = {DS2450_CONVERT, 0x0f, 0x00};
+	static const uint8_t skip = SKIP_ROM;
+	const struct conversion *conversion = &ds2450_conversion;
 	struct channel *channel = &native->channel[n];
 	struct txn txn = {.native = native, .link = channel->link, .channel = n};
 	uint8_t none;
 	int err = txn_raw(&txn, &skip, 1);
 
 	if (!err)
-		err = txn_write(&txn, command, sizeof(command));
+		err = txn_write(&txn, conversion->command, conversion->n);
 	if (!err)
-		err = txn_read_crc16(&txn, command, sizeof(command), &none, 0);
+		err = txn_read_crc16(&txn, conversion->command, conversion->n, &none, 0);
 	/* One more slot arms the pull-up, for those without a supply. */
 	if (!err)
 		err = channel->link->ops->bit(channel->link, true, LINK_STRONG);
@@ -28,7 +29,7 @@ static int convert_voltage(struct native *native, unsigned n)
 	if (err < 0)
 		return txn.link_error ? txn.link_error : err;
 	master_good(native, n);
-	int64_t end = native_now(native) + DS2450_CONVERT_NS;
+	int64_t end = native_now(native) + conversion->ns;
 	channel->simultaneous_ns[SIMULTANEOUS_VOLTAGE] = end;
 	native->hold_ns[channel->link->chip % NATIVE_CHANNELS] = end;
 	native->holder[channel->link->chip % NATIVE_CHANNELS] = NULL;

@@ -67,12 +67,12 @@ static int write_row(struct txn *txn, unsigned row, unsigned size)
 	return err ? err : memcmp(have, want, size) == 0 ? 0 : -EIO;
 }
 
-/* mem[0]: rows done. */
 static int write_eeprom(struct txn *txn)
 {
+	unsigned *rows = txn_own(txn);
 	unsigned size = row_of(txn), start = start_of(txn) + (unsigned)txn->at;
 	unsigned end = start + (unsigned)txn->len;
-	unsigned row = start - start % size + txn->mem[0]++ * size;
+	unsigned row = start - start % size + (*rows)++ * size;
 	int err = row < end ? write_row(txn, row, size) : 0;
 
 	return err || row + size >= end ? err : TXN_MORE;

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/ds2408.h"
 #include "hal/w1/w1.h"
 
 #define SETTINGS 0x07 /* bits of the DS2408's control register that are written */
@@ -34,10 +35,11 @@ static void saw_output(struct txn *txn, uint8_t output)
 	device->shadow_known = true;
 }
 
-/* --- DS2408 --- note[0]: the power-on flag has been seen clear. */
+/* --- DS2408 --- */
 
 static int control(struct txn *txn, uint8_t *value)
 {
+	struct ds2408 *ds2408 = txn->device->own;
 	int err = byte_of(txn, "status_control", value);
 
 	if (err)
@@ -45,9 +47,9 @@ static int control(struct txn *txn, uint8_t *value)
 	txn->silent = *value == 0xff;
 	if (*value & NEVER_SET)
 		return -EBADMSG;
-	if (*value & POR && txn->device->note[0])
+	if (*value & POR && ds2408->por_clear)
 		txn->restarted = true;
-	txn->device->note[0] = !(*value & POR);
+	ds2408->por_clear = !(*value & POR);
 	txn->device->power = *value & VCC ? POWER_EXTERNAL : POWER_PARASITE;
 	txn->heard = true;
 	return 0;
@@ -116,7 +118,7 @@ static int read_flag(struct txn *txn)
 	uint8_t value = 0;
 	int err = control(txn, &value);
 
-	txn->number[0] = (value & txn->property->arg) != 0;
+	txn->number[0] = (value >> txn->property->field.shift & 1) != 0;
 	return err;
 }
 
@@ -126,10 +128,11 @@ static int read_flag(struct txn *txn)
  */
 static int put_control(struct txn *txn, uint8_t value)
 {
+	struct ds2408 *ds2408 = txn->device->own;
 	uint8_t now = 0;
 
 	if (!(value & POR))
-		txn->device->note[0] = 0;
+		ds2408->por_clear = false;
 	int err = put_byte(txn, "status_control", value);
 	if (err && err != -EIO)
 		return err;
@@ -139,7 +142,7 @@ static int put_control(struct txn *txn, uint8_t value)
 
 static int write_flag(struct txn *txn)
 {
-	uint8_t value = 0, bit = (uint8_t)txn->property->arg;
+	uint8_t value = 0, bit = (uint8_t)(1 << txn->property->field.shift);
 	int err = control(txn, &value);
 
 	if (err)

@@ -74,16 +74,12 @@ void device_forget(struct device *device)
 {
 	device->changes++;
 	device->power = POWER_UNKNOWN;
-	device->resolution = 0;
-	device->stored = 0;
-	device->raw_ns = 0;
-	device->converted_ns = device->earlier_ns = device->latched_ns = 0;
-	device->unread_ns = 0;
-	device->unseen = false;
 	device->shadow_known = false;
 	device->base_of = NULL;
-	memset(device->note, 0, sizeof(device->note));
-	memset(device->own, 0, DEVICE_OWN);
+	if (device->family->forget)
+		device->family->forget(device);
+	else
+		memset(device->own, 0, DEVICE_OWN);
 }
 
 char *device_alias(struct device_table *table, const struct device *device)

@@ -19,13 +19,6 @@ enum device_power {
 	POWER_EXTERNAL,
 };
 
-/* Does byte 6 of a thermometer's scratchpad follow the temperature, as in the genuine chip? */
-enum device_make {
-	MAKE_UNKNOWN,
-	MAKE_GENUINE,
-	MAKE_CLONE,
-};
-
 struct family;
 
 /* What was read of a chip: txn_share(). */
@@ -50,22 +43,7 @@ struct device {
 	uint32_t changes; /* grows when what is cached of it is void */
 	int64_t ok_ns;    /* last transaction that proved its presence; 0: never */
 
-	/* Thermometers. */
-	uint8_t power;        /* enum device_power */
-	uint8_t make;         /* enum device_make */
-	uint8_t resolution;   /* 9 to 12 as read back; 0: not known */
-	uint8_t stored;       /* what it was before our first change: the EEPROM's; 0: not known */
-	bool ignores;         /* takes no other resolution (clones) */
-	bool only_12;         /* has one resolution, and no bits that say so */
-	int16_t raw;          /* last good reading, sixteenths of a degree */
-	int64_t raw_ns;       /* when; 0: none */
-	int64_t converted_ns; /* when its last conversion ends or ended; 0: none known */
-	int64_t unread_ns; /* the conversion whose result did not come over the wire whole; 0: none */
-	int64_t earlier_ns; /* ... and the one before that */
-	bool unseen;        /* the chip could not show that its last conversion began */
-	uint8_t latched
-		[3]; /* what tells one conversion's result from another's, when it was read */
-	int64_t latched_ns; /* ... and of which conversion that was; 0: not known */
+	uint8_t power; /* enum device_power */
 
 	/* Switches: the output byte that was last written and verified. */
 	uint8_t shadow;
@@ -79,11 +57,6 @@ struct device {
 	uint32_t readings_of; /* `changes` when they were made */
 
 	void *own; /* DEVICE_OWN bytes for a struct of the family; zero when nothing is known */
-
-	/* For the family's own use. */
-	uint8_t note[8];
-	uint8_t registers[8]; /* as read for a visit of the alarm machine */
-	int64_t registers_ns; /* when; 0: not */
 };
 
 struct device_table {

@@ -248,18 +248,19 @@ void txn_share(struct txn *txn, const void *what, unsigned at, const void *bytes
 	                                 .at = (uint16_t)at,
 	                                 .n = (uint16_t)n,
 	                                 .begun_ns = begun_ns,
-	                                 .made_ns = txn_now(txn)};
+	                                 .made_ns = txn->measured_ns ? txn->measured_ns
+	                                                             : txn_now(txn)};
 	memcpy(place->bytes, bytes, n);
 }
 
 bool txn_shared(struct txn *txn, const void *what, unsigned at, void *bytes, size_t n)
 {
-	const struct device *device = txn->device;
+	struct device *device = txn->device;
 
 	if (device->readings_of != device->changes)
 		return false;
 	for (unsigned i = 0; i < DEVICE_READINGS; i++) {
-		const struct device_reading *reading = &device->readings[i];
+		struct device_reading *reading = &device->readings[i];
 
 		if (reading->what != what || reading->at > at ||
 		    at + n > (size_t)reading->at + reading->n ||
@@ -268,6 +269,8 @@ bool txn_shared(struct txn *txn, const void *what, unsigned at, void *bytes, siz
 		memcpy(bytes, reading->bytes + (at - reading->at), n);
 		if (!txn->shared_ns || reading->made_ns < txn->shared_ns)
 			txn->shared_ns = reading->made_ns;
+		if (txn->once)
+			reading->what = NULL;
 		return true;
 	}
 	return false;

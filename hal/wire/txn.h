@@ -4,7 +4,7 @@
  *
  * A property function does at most one 1-Wire transaction (a reset and what follows it, about 15
  * ms) per call. It returns 0 when the value is there, a negative errno, or TXN_MORE: it is called
- * again after other work had its turn, with phase, mem and real as it left them. txn_wait() says
+ * again after other work had its turn, with phase, area and own as it left them. txn_wait() says
  * how long the chip needs meanwhile. The device is its own until it returns something else.
  * After an error the function is begun again with phase 0, at most a few times.
  */
@@ -37,7 +37,6 @@ struct txn {
 	struct link *link;
 	struct device *device;
 	const struct property *property;
-	bool visit; /* of the alarm machine: readings that follow each other may be one */
 	unsigned channel;
 	/* Those of the property, or what the link has in their place (hal/native/files.h). */
 	int (*read)(struct txn *txn);
@@ -55,16 +54,15 @@ struct txn {
 	int64_t measured_ns; /* read: when the chip took the value; 0: now */
 	/* A reading that others left serves if it began at since_ns or was made at oldest_ns. */
 	int64_t since_ns, oldest_ns;
+	bool once;         /* and then it serves nobody else */
 	int64_t shared_ns; /* when the oldest of those that served was made; 0: none did */
 
 	/* From call to call. */
 	unsigned phase;
 	struct area_visit area;
 	_Alignas(8) uint8_t own[TXN_OWN]; /* for a struct of the family: txn_own() */
-	uint8_t mem[64];
-	double real[4];
-	int64_t wake_ns; /* not to be called before */
-	bool strong;     /* the strong pull-up is on until then: the channel is held */
+	int64_t wake_ns;                  /* not to be called before */
+	bool strong; /* the strong pull-up is on until then: the channel is held */
 
 	/* Found out on the way. */
 	bool on_wire;   /* something was sent */

@@ -176,17 +176,29 @@ static int write_bytes(struct link *link, const uint8_t *bytes, size_t n, enum l
 	return 0;
 }
 
+/* A DS2450 that keeps what is written, in pages of eight bytes with a checksum each. */
+static uint8_t kept[32];
+
 static int read_bytes(struct link *link, uint8_t *bytes, size_t n)
 {
+	uint16_t crc = onewire_crc16(0, sent, sent_n);
+	size_t at = sent[1];
+
 	(void)link;
-	memset(bytes, 0, n);
-	/* Behind the checksum of Write Memory comes what was written. */
-	size_t before = sent[0] == 0x55 ? 0 : n - 2;
-	uint16_t crc = onewire_crc16(onewire_crc16(0, sent, sent_n), bytes, before);
-	bytes[before] = (uint8_t)~crc;
-	bytes[before + 1] = (uint8_t)(~crc >> 8);
-	if (!before)
-		bytes[2] = sent[sent_n - 1];
+	if (sent[0] == 0x55)
+		kept[at] = sent[sent_n - 1];
+	for (size_t i = 0; i < n; crc = 0) {
+		size_t part = sent[0] == 0xaa ? 8 : 0;
+
+		memcpy(bytes + i, kept + at, part);
+		crc = onewire_crc16(crc, bytes + i, part);
+		at += part;
+		i += part;
+		bytes[i++] = (uint8_t)~crc;
+		bytes[i++] = (uint8_t)(~crc >> 8);
+		if (i < n && !part)
+			bytes[i++] = kept[at];
+	}
 	return 0;
 }
 

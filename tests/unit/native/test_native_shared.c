@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: MIT */
+/* One read of a register serves all who ask for its fields: the transactions are counted. */
+#include <stdio.h>
+#include <string.h>
+
+#include "hal/chips/family.h"
+#include "tests/unit/aid/native_scene.h"
+#include "unity.h"
+
+static struct sim_slave *chip;
+static uint64_t before;
+
+void setUp(void)
+{
+	native_begin();
+	wire_init(&host, 1, 1);
+}
+
+void tearDown(void)
+{
+	native_end();
+}
+
+static void begin(const char *name)
+{
+	chip = wire_add(0, name, 1);
+	start();
+	host_run(&host, bus, host.now + 2 * HOST_S);
+	before = wire_net.wire[0].resets;
+}
+
+/* Transactions since the last look. */
+static unsigned transactions(void)
+{
+	uint64_t resets = wire_net.wire[0].resets, n = resets - before;
+
+	before = resets;
+	return (unsigned)n;
+}
+
+/* Ask for all elements at once, and wait for all answers. */
+static void ask_eight(bool fresh, const char *property)
+{
+	uint32_t id[8];
+	char path[40];
+
+	for (unsigned i = 0; i < 8; i++) {
+		snprintf(path, sizeof(path), "%s.%u", property, i);
+		id[i] = ask(BUS_READ, BUS_GUEST, fresh, of(chip, path), NULL);
+	}
+	for (unsigned i = 0; i < 8; i++)
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id[i])->err);
+}
+
+static void test_eight_bits_asked_for_at_once_are_one_visit(void)
+{
+	begin("DS2408");
+	ask_eight(false, "PIO");
+	TEST_ASSERT_EQUAL_UINT(1, transactions());
+	ask_eight(true, "PIO");
+	TEST_ASSERT_EQUAL_UINT(1, transactions());
+}
+
+static void test_registers_that_were_read_serve_their_other_fields_within_their_life(void)
+{
+	begin("DS2408");
+	expect(false, of(chip, "PIO.0"), "0");
+	TEST_ASSERT_EQUAL_UINT(1, transactions());
+	ask_eight(false, "sensed");
+	ask_eight(false, "latch");
+	expect(false, of(chip, "power"), "1");
+	expect(false, of(chip, "set_alarm"), "           0");
+	TEST_ASSERT_EQUAL_UINT(0, transactions());
+}
+
+static void test_a_value_is_never_older_than_its_life(void)
+{
+	begin("DS2408");
+	expect(false, of(chip, "PIO.0"), "0");
+	wire_set(chip, "pin.0", 0);
+	int64_t read_ns = host.now;
+
+	host_run(&host, bus, host.now + 1500 * HOST_MS);
+	uint32_t id = ask(BUS_READ, BUS_GUEST, false, of(chip, "sensed.0"), NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_STRING("1", (char *)data[id]);
+	TEST_ASSERT_LESS_OR_EQUAL_INT64(read_ns, answer_to(id)->measured_ns);
+	/* Another field is as old as the registers, and so is what is kept of the first. */
+	host_run(&host, bus, host.now + 700 * HOST_MS);
+	expect(false, of(chip, "sensed.0"), "0");
+	expect(false, of(chip, "sensed.1"), "1");
+}
+
+static void test_an_uncached_request_gets_nothing_from_before_it_came(void)
+{
+	begin("DS2408");
+	expect(true, of(chip, "sensed.0"), "1");
+	wire_set(chip, "pin.0", 0);
+	transactions();
+	expect(true, of(chip, "sensed.0"), "0");
+	TEST_ASSERT_EQUAL_UINT(1, transactions());
+}
+
+static void test_what_was_read_before_a_write_serves_nobody_after_it(void)
+{
+	begin("DS2408");
+	expect(false, of(chip, "PIO.BYTE"), "           0");
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(chip, "PIO.3"), "1"));
+	expect(false, of(chip, "PIO.BYTE"), "           8");
+	expect(false, of(chip, "sensed.3"), "0");
+	expect(false, of(chip, "PIO.3"), "1");
+}
+
+static void test_requests_around_a_write_are_answered_with_what_was_true_then(void)
+{
+	begin("DS2408");
+	uint32_t first = ask(BUS_READ, BUS_GUEST, true, of(chip, "PIO.1"), NULL);
+	uint32_t write = ask(BUS_WRITE, BUS_GUEST, true, of(chip, "PIO.1"), "1");
+	uint32_t second = ask(BUS_READ, BUS_GUEST, true, of(chip, "PIO.1"), NULL);
+
+	TEST_ASSERT_EQUAL_INT(0, answer_to(first)->err);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(write)->err);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(second)->err);
+	TEST_ASSERT_EQUAL_STRING("0", (char *)data[first]);
+	TEST_ASSERT_EQUAL_STRING("1", (char *)data[second]);
+}
+
+static void test_what_was_read_before_a_restart_or_a_loss_serves_nobody_after_it(void)
+{
+	begin("DS2408");
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(chip, "PIO.BYTE"), "255"));
+	expect(false, of(chip, "PIO.0"), "1");
+	sim_slave_brownout(chip, wire_time());
+	/* The read that finds the restart is not kept. */
+	(void)result(BUS_READ, of(chip, "sensed.BYTE"), NULL);
+	transactions();
+	expect(false, of(chip, "PIO.1"), "0");
+	TEST_ASSERT_GREATER_THAN_UINT(0, transactions());
+}
+
+static void test_humidity_leaves_the_temperature_to_those_who_ask_next(void)
+{
+	begin("DS2438");
+	wire_set(chip, "temperature", 20);
+	uint32_t id = ask(BUS_READ, BUS_GUEST, false, of(chip, "humidity"), NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_GREATER_THAN_UINT(0, transactions());
+	expect(false, of(chip, "temperature"), "          20");
+	id = ask(BUS_READ, BUS_GUEST, false, of(chip, "VDD"), NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	id = ask(BUS_READ, BUS_GUEST, false, of(chip, "HIH4000/humidity"), NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_UINT(0, transactions());
+	expect(true, of(chip, "temperature"), "          20");
+	TEST_ASSERT_GREATER_THAN_UINT(0, transactions());
+}
+
+static void test_four_volts_asked_for_at_once_are_one_conversion(void)
+{
+	static const char *const volts[] = {"volt.A", "volt.B", "volt.C", "volt.D"};
+	uint32_t id[4];
+
+	begin("DS2450");
+	for (int i = 0; i < 4; i++)
+		id[i] = ask(BUS_READ, BUS_GUEST, true, of(chip, volts[0]), NULL);
+	for (int i = 0; i < 4; i++)
+		answer_to(id[i]);
+	transactions();
+	for (int i = 0; i < 4; i++)
+		id[i] = ask(BUS_READ, BUS_GUEST, true, of(chip, volts[i]), NULL);
+	for (int i = 0; i < 4; i++)
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id[i])->err);
+	/* The settings, the conversion, its result. */
+	TEST_ASSERT_EQUAL_UINT(3, transactions());
+}
+
+/* What of two requests is out of one row is still found: the tables are searched by halves. */
+static void test_the_properties_of_each_family_are_sorted_by_name(void)
+{
+	const struct family *family;
+
+	for (unsigned n = 0; (family = family_nth(n)); n++)
+		for (unsigned i = 1; i < family->count; i++)
+			TEST_ASSERT_LESS_THAN_INT_MESSAGE(
+				0,
+				strcmp(family->properties[i - 1].name, family->properties[i].name),
+				family->properties[i].name);
+}
+
+static void test_the_families_are_in_the_order_of_their_codes(void)
+{
+	for (unsigned n = 1; family_nth(n); n++)
+		TEST_ASSERT_GREATER_THAN_UINT(family_nth(n - 1)->code, family_nth(n)->code);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_eight_bits_asked_for_at_once_are_one_visit);
+	RUN_TEST(test_registers_that_were_read_serve_their_other_fields_within_their_life);
+	RUN_TEST(test_a_value_is_never_older_than_its_life);
+	RUN_TEST(test_an_uncached_request_gets_nothing_from_before_it_came);
+	RUN_TEST(test_what_was_read_before_a_write_serves_nobody_after_it);
+	RUN_TEST(test_requests_around_a_write_are_answered_with_what_was_true_then);
+	RUN_TEST(test_what_was_read_before_a_restart_or_a_loss_serves_nobody_after_it);
+	RUN_TEST(test_humidity_leaves_the_temperature_to_those_who_ask_next);
+	RUN_TEST(test_four_volts_asked_for_at_once_are_one_conversion);
+	RUN_TEST(test_the_properties_of_each_family_are_sorted_by_name);
+	RUN_TEST(test_the_families_are_in_the_order_of_their_codes);
+	return UNITY_END();
+}
