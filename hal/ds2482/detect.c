@@ -5,7 +5,12 @@
  */
 #include <errno.h>
 
-#include "hal/ds2482/chip.h"
+#include "hal/ds2482/codes.h"
+#include "hal/ds2482/detect.h"
+#include "hal/ds2482/ds2482.h"
+#include "hal/ds2482/io.h"
+#include "hal/ds2482/run.h"
+#include "hal/wire/link.h"
 
 #define SETTLE_NS INT64_C(1000000) /* a device reset takes 0.5 us */
 #define BUSY_NS INT64_C(5000000)

@@ -63,6 +63,8 @@ struct ds2482_source {
 struct ds2482_master {
 	struct link_master master; /* first */
 	struct ds2482_source source;
+	/* The last rung of the recovery of a link: closed, and opened with the same chips. */
+	int (*reopen)(struct ds2482_master *master);
 	struct i2c_adapter *adapter; /* NULL while closed */
 	int address, channel;        /* only this one; -1 all */
 	bool active_pullup;
@@ -81,27 +83,5 @@ struct ds2482_master {
 	/* The cost before the adapter was opened again. */
 	struct link_master_cost cost;
 };
-
-/*
- * Make a master; it owns source.ctx from then on. where is ":0x18.3", ":0x18" or "" (all chips).
- * 0, -EINVAL with the reason in why, -ENOMEM.
- */
-int ds2482_create(const struct link_master_ops *ops, const struct bus_env *env,
-                  const struct ds2482_source *source, const char *where,
-                  struct link_master **master, char *why, size_t why_size);
-/* The slots of link_master_ops but create. */
-int ds2482_option(struct link_master *master, const char *key, const char *text, char *why,
-                  size_t why_size);
-int ds2482_open(struct link_master *master, char *why, size_t why_size);
-int ds2482_grow(struct link_master *master, char *why, size_t why_size);
-void ds2482_close(struct link_master *master);
-int ds2482_there(struct link_master *master, uint64_t *mark);
-unsigned ds2482_channels(struct link_master *master);
-struct link *ds2482_channel(struct link_master *master, unsigned n);
-void ds2482_cost(const struct link_master *master, struct link_master_cost *cost);
-void ds2482_destroy(struct link_master *master);
-
-/* Scheme "i2c": over hal/ds2482/i2c_dev.h. */
-extern const struct link_master_ops ds2482_i2c_master;
 
 #endif

@@ -8,7 +8,10 @@
 #include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/every.h"
 #include "hal/ds2482/i2c_dev.h"
+#include "hal/ds2482/i2c_master.h"
 #include "hal/ds2482/look.h"
+#include "hal/ds2482/master.h"
+#include "hal/ds2482/power.h"
 
 static int open_adapter(void *ctx, const struct bus_env *env, struct i2c_adapter **adapter,
                         char *why, size_t why_size)

@@ -2,7 +2,10 @@
 /* Single I2C calls to a chip, and what the adapter can do and how fast it is, found by trying it. */
 #include <errno.h>
 
-#include "hal/ds2482/chip.h"
+#include "hal/bus/bus.h"
+#include "hal/ds2482/ds2482.h"
+#include "hal/ds2482/i2c.h"
+#include "hal/ds2482/io.h"
 
 #define MEASURE_BYTES 64
 #define MEASURE_TIMES 12

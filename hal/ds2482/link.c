@@ -3,6 +3,11 @@
 #include <errno.h>
 
 #include "hal/ds2482/chip.h"
+#include "hal/ds2482/detect.h"
+#include "hal/ds2482/io.h"
+#include "hal/ds2482/link.h"
+#include "hal/ds2482/power.h"
+#include "hal/ds2482/run.h"
 
 #define CLAIM_NS INT64_C(250000000)
 
@@ -169,30 +174,6 @@ static int power_cycle(struct ds2482_link *link)
 	return err;
 }
 
-static int reopen(struct ds2482_link *link)
-{
-	struct ds2482_master *master = link->chip->master;
-	uint8_t address[DS2482_ADDRESSES];
-	unsigned count = master->count;
-	char why[160];
-	int err;
-
-	for (unsigned i = 0; i < count; i++)
-		address[i] = master->chip[i].address;
-	ds2482_close(&master->master);
-	err = ds2482_open(&master->master, why, sizeof(why));
-	if (err)
-		return err;
-	/* The links that others hold are to be the same ones afterwards. */
-	for (unsigned i = 0; i < count; i++) {
-		if (i >= master->count || master->chip[i].address != address[i])
-			err = -ENXIO;
-	}
-	if (err)
-		ds2482_close(&master->master);
-	return err;
-}
-
 static int link_recover(struct link *base, enum link_rung rung)
 {
 	struct ds2482_link *link = self(base);
@@ -221,7 +202,7 @@ static int link_recover(struct link *base, enum link_rung rung)
 	case LINK_POWER_CYCLE:
 		return power_cycle(link);
 	case LINK_REOPEN:
-		return reopen(link);
+		return chip->master->reopen(chip->master);
 	}
 	return -EINVAL;
 }

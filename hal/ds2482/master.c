@@ -1,10 +1,15 @@
 /* SPDX-License-Identifier: MIT */
+/* A master: the chips of an adapter, opened, closed and opened again. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "hal/ds2482/chip.h"
+#include "hal/ds2482/detect.h"
+#include "hal/ds2482/link.h"
+#include "hal/ds2482/master.h"
+#include "hal/ds2482/power.h"
 
 static int parse_where(struct ds2482_master *master, const char *where, char *why, size_t why_size)
 {
@@ -30,31 +35,6 @@ wrong:
 	         "\"%s\": expected \":0x18\" to \":0x1f\", with \".0\" to \".7\" for one channel",
 	         where);
 	return -EINVAL;
-}
-
-int ds2482_create(const struct link_master_ops *ops, const struct bus_env *env,
-                  const struct ds2482_source *source, const char *where, struct link_master **out,
-                  char *why, size_t why_size)
-{
-	struct ds2482_master *master = calloc(1, sizeof(*master));
-	int err;
-
-	if (!master) {
-		source->destroy(source->ctx);
-		return -ENOMEM;
-	}
-	master->master.ops = ops;
-	master->master.env = env;
-	master->source = *source;
-	master->active_pullup = true;
-	master->power_off_ns = DS2482_POWER_OFF_NS;
-	err = parse_where(master, where, why, why_size);
-	if (err) {
-		ds2482_destroy(&master->master);
-		return err;
-	}
-	*out = &master->master;
-	return 0;
 }
 
 void ds2482_cost(const struct link_master *base, struct link_master_cost *cost)
@@ -280,6 +260,56 @@ void ds2482_close(struct link_master *base)
 {
 	close_adapter((struct ds2482_master *)base);
 	ds2482_rest((struct ds2482_master *)base);
+}
+
+/* The links that others hold stay the same ones. */
+static int reopen(struct ds2482_master *master)
+{
+	uint8_t address[DS2482_ADDRESSES];
+	unsigned count = master->count;
+	char why[160];
+	int err;
+
+	for (unsigned i = 0; i < count; i++)
+		address[i] = master->chip[i].address;
+	ds2482_close(&master->master);
+	err = ds2482_open(&master->master, why, sizeof(why));
+	if (err)
+		return err;
+	/* The links that others hold are to be the same ones afterwards. */
+	for (unsigned i = 0; i < count; i++) {
+		if (i >= master->count || master->chip[i].address != address[i])
+			err = -ENXIO;
+	}
+	if (err)
+		ds2482_close(&master->master);
+	return err;
+}
+
+int ds2482_create(const struct link_master_ops *ops, const struct bus_env *env,
+                  const struct ds2482_source *source, const char *where, struct link_master **out,
+                  char *why, size_t why_size)
+{
+	struct ds2482_master *master = calloc(1, sizeof(*master));
+	int err;
+
+	if (!master) {
+		source->destroy(source->ctx);
+		return -ENOMEM;
+	}
+	master->master.ops = ops;
+	master->master.env = env;
+	master->source = *source;
+	master->reopen = reopen;
+	master->active_pullup = true;
+	master->power_off_ns = DS2482_POWER_OFF_NS;
+	err = parse_where(master, where, why, why_size);
+	if (err) {
+		ds2482_destroy(&master->master);
+		return err;
+	}
+	*out = &master->master;
+	return 0;
 }
 
 int ds2482_there(struct link_master *base, uint64_t *mark)

@@ -9,6 +9,9 @@
 #include <string.h>
 
 #include "hal/ds2482/chip.h"
+#include "hal/ds2482/detect.h"
+#include "hal/ds2482/io.h"
+#include "hal/ds2482/power.h"
 
 /* A chip answers that long after SLPZ went high: 2 ms by the data sheet of the DS2484. */
 #define AWAKE_NS INT64_C(5000000)

@@ -13,6 +13,8 @@
 #include <string.h>
 
 #include "hal/ds2482/chip.h"
+#include "hal/ds2482/io.h"
+#include "hal/ds2482/run.h"
 
 /* Reading on pays from here on (a byte of at most 45 us, 200 kHz). */
 #define FAST_BYTE_NS 45000

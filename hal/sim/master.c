@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "hal/ds2482/ds2482.h"
+#include "hal/ds2482/master.h"
+#include "hal/ds2482/power.h"
 #include "hal/sim/adapter.h"
 #include "hal/sim/master.h"
 #include "hal/sim/scenario.h"

@@ -9,7 +9,7 @@
 #ifndef HAL_SIM_NET_H
 #define HAL_SIM_NET_H
 
-#include "hal/sim/chips/chip.h"
+#include "hal/sim/chip.h"
 
 enum sim_what {
 	SIM_SET,         /* a new curve for an input */

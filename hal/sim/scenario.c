@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "hal/owfs/path.h"
-#include "hal/sim/chips/families.h"
 #include "hal/sim/event.h"
+#include "hal/sim/families.h"
 #include "hal/sim/scenario.h"
 
 #define MAX_FILE 1000000

@@ -10,6 +10,7 @@
 #include <sys/mman.h>
 
 #include "hal/bus/worker.h"
+#include "src/host/engine_thread.h"
 #include "src/host/private.h"
 #include "src/libows/ows.h"
 #include "src/serve/serve.h"

@@ -9,40 +9,14 @@
 
 #include "hal/bus/worker.h"
 #include "src/config/load.h"
+#include "src/host/engine_thread.h"
+#include "src/host/host.h"
 #include "src/host/indicator.h"
+#include "src/host/make.h"
 #include "src/host/private.h"
 #include "src/libows/ows.h"
 #include "src/serve/serve.h"
 #include "src/shm/reader.h"
-
-int host_make_serving(struct host *h, struct config *config, const struct adoption *plan,
-                      struct serving **serving, char *why, size_t why_size)
-{
-	struct serving_setup setup = {
-		.config = config,
-		.instance = h->instance,
-		.log = h->log,
-		.ring = host_ring,
-		.ring_ctx = h,
-		.guests = h->serve ? serve_guests(h->serve) : NULL,
-		.before = h->now,
-		.plan = plan,
-	};
-	struct image_counter *counters = host_plan_counters(h, &setup.counter_count);
-	int err = -ENOMEM;
-
-	snprintf(why, why_size, "%s", strerror(ENOMEM));
-	*serving = calloc(1, sizeof(**serving));
-	setup.counters = counters;
-	if (counters && *serving)
-		err = serving_make(*serving, &setup, why, why_size);
-	free(counters);
-	if (!err)
-		return 0;
-	free(*serving);
-	*serving = NULL;
-	return err;
-}
 
 static void free_host(struct host *h)
 {
@@ -74,36 +48,6 @@ static int create_serve(struct host *h, const struct config *config, char *why, 
 			"see ListenAllow and ListenReadOnly",
 			config->serve.peer_count ? "all of ListenAllow" : "everybody");
 	return serve_create(&setup, &h->serve, why, why_size);
-}
-
-int host_start_indicator(struct host *h, char *why, size_t why_size)
-{
-	int err = indicator_create(h->now->config, &h->now->memory.image, h->log, &h->indicator);
-
-	if (!err)
-		err = indicator_start(h->indicator);
-	if (!err)
-		return 0;
-	snprintf(why, why_size, "cannot start the thread of AlarmLine and HeartbeatLine: %s",
-	         strerror(-err));
-	indicator_destroy(h->indicator);
-	h->indicator = NULL;
-	return err;
-}
-
-int host_start_workers(struct serving *s, char *why, size_t why_size)
-{
-	int first = 0;
-
-	for (unsigned i = 0; i < s->worker_count; i++) {
-		int err = worker_started(s->workers[i]) ? 0 : worker_start(s->workers[i]);
-
-		if (err && !first)
-			snprintf(why, why_size, "cannot start the thread of target %s: %s",
-			         s->config->targets[i].text, strerror(-err));
-		first = first ? first : err;
-	}
-	return first;
 }
 
 int host_start(const struct host_setup *setup, struct host **host, char *why, size_t why_size)

@@ -24,23 +24,6 @@ struct host_setup {
  */
 int host_start(const struct host_setup *setup, struct host **host, char *why, size_t why_size);
 
-/* False while the host replaces a lost command segment. Supervisor only. */
-bool host_may_reload(const struct host *host);
-
-/*
- * Serve another configuration without a gap: signals of the same name, path and type go on with
- * value, quality, alarms and retries, targets with the same options stay open. Blocks until the
- * reload is done. Returns 0 (the host owns config), or a negative errno with the reason in why:
- * then nothing changes. Only when host_may_reload().
- */
-int host_reload(struct host *host, struct config *config, char *why, size_t why_size);
-
-/*
- * The work that must not be done on the engine's thread: repair the shared memory, and finish what
- * a reload could not do. The supervisor calls it at least twice a second.
- */
-void host_tend(struct host *host);
-
 /* Time of the engine's last heartbeat, ns of CLOCK_BOOTTIME. Any thread. */
 int64_t host_beat(const struct host *host);
 /* The configuration that is served. */

@@ -5,7 +5,6 @@
 
 #include <pthread.h>
 
-#include "src/host/host.h"
 #include "src/host/serving.h"
 
 /*
@@ -46,29 +45,5 @@ struct host {
 	struct log_rate finish_rate;
 	uint64_t idle_rings, mended;
 };
-
-/* engine_thread.c. Start the engine's thread: 0, or a negative errno with the reason in why. */
-int host_start_engine(struct host *host, int rt_priority, char *why, size_t why_size);
-/* Wake the engine, from any thread. */
-void host_ring(void *host);
-/* After the bell was exchanged: wait until no thread can ring the bell before any more. */
-void host_wait_for_ringers(const struct host *host);
-/*
- * The counters that belong to no bus: the host's own, then the server's. The caller frees the plan.
- */
-struct image_counter *host_plan_counters(const struct host *host, uint32_t *count);
-
-/* host.c. Returns 0, or a negative errno with the reason in why; plan NULL: a start. */
-int host_make_serving(struct host *host, struct config *config, const struct adoption *plan,
-                      struct serving **serving, char *why, size_t why_size);
-/* Start all workers that do not run yet; returns the error of the first that cannot be started. */
-int host_start_workers(struct serving *serving, char *why, size_t why_size);
-int host_start_indicator(struct host *host, char *why, size_t why_size);
-
-/*
- * tend.c. Try again what a reload could not finish after the engine had taken it; log and count it
- * until it is done. host_tend() calls it once a second.
- */
-void host_finish_reload(struct host *host);
 
 #endif

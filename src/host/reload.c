@@ -7,8 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/host/engine_thread.h"
 #include "src/host/indicator.h"
+#include "src/host/make.h"
 #include "src/host/private.h"
+#include "src/host/reload.h"
+#include "src/host/tend.h"
 #include "src/serve/serve.h"
 #include "src/shm/futex.h"
 

@@ -3,7 +3,10 @@
 #include <errno.h>
 #include <string.h>
 
+#include "src/host/engine_thread.h"
+#include "src/host/make.h"
 #include "src/host/private.h"
+#include "src/host/tend.h"
 #include "src/libows/ows.h"
 #include "src/shm/hint.h"
 #include "src/shm/segment.h"

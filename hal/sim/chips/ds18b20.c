@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "hal/sim/chips/families.h"
 #include "hal/sim/chips/thermometer.h"
+#include "hal/sim/families.h"
 
 enum { READ_POWER = 0xB4 };
 

@@ -4,7 +4,7 @@
  * then, as after a search that ended here, read slots give the pin's level. The conditional
  * search is answered while the output is on.
  */
-#include "hal/sim/chips/families.h"
+#include "hal/sim/families.h"
 #include "hal/sim/pins.h"
 
 static struct sim_pins *pins(struct sim_slave *slave)

@@ -2,7 +2,7 @@
 /* DS2406 (data sheet, "Dual Addressable Switch Plus 1Kb Memory"); its EPROM is not programmed. */
 #include <string.h>
 
-#include "hal/sim/chips/families.h"
+#include "hal/sim/families.h"
 #include "hal/sim/pins.h"
 
 /* Status byte 7. */

@@ -2,7 +2,7 @@
 /* DS2408 (data sheet 19-5702): eight pins, activity latches, conditional search. */
 #include <string.h>
 
-#include "hal/sim/chips/families.h"
+#include "hal/sim/families.h"
 #include "hal/sim/pins.h"
 
 /* Register addresses, "Figure 4". */

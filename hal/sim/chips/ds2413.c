@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* DS2413 (data sheet 19-5709): two pins. */
-#include "hal/sim/chips/families.h"
+#include "hal/sim/families.h"
 #include "hal/sim/pins.h"
 
 static void power_on(struct sim_slave *slave, int64_t t)

@@ -3,8 +3,8 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/sim/chips/families.h"
 #include "hal/sim/chips/scratchpad.h"
+#include "hal/sim/families.h"
 
 enum { FIRST_COUNTER_PAGE = 14, PAGES = 16 };
 

@@ -2,8 +2,8 @@
 /* DS2431 (data sheet 19-4675), DS2433 (19-5268) and DS28EC20 (19-5235): EEPROM. */
 #include <string.h>
 
-#include "hal/sim/chips/families.h"
 #include "hal/sim/chips/scratchpad.h"
+#include "hal/sim/families.h"
 
 /* Four pages of 32, and the register page; tPROG 10 ms. */
 static const struct sim_scratchpad_kind ds2431 = {

@@ -2,7 +2,7 @@
 /* DS2438 (data sheet, "Smart Battery Monitor"): temperature, two voltages, current, 64 bytes. */
 #include <string.h>
 
-#include "hal/sim/chips/families.h"
+#include "hal/sim/families.h"
 
 /* Status/configuration, page 0 byte 0. */
 enum { IAD = 0x01, CA = 0x02, EE = 0x04, AD = 0x08, TB = 0x10, NVB = 0x20, ADB = 0x40 };

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "hal/sim/chips/families.h"
+#include "hal/sim/families.h"
 
 /* Page 1, the second byte of a channel: input range, alarms enabled, alarms, power-on reset. */
 enum { IR = 0x01, AEL = 0x04, AEH = 0x08, AFL = 0x10, AFH = 0x20, POR = 0x80 };

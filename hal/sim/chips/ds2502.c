@@ -5,7 +5,7 @@
  */
 #include <string.h>
 
-#include "hal/sim/chips/families.h"
+#include "hal/sim/families.h"
 
 enum { MEMORY = 128, STATUS = 8, PAGE = 32, READ_MEMORY = 0xF0, READ_STATUS = 0xAA };
 enum { WRITE_STATUS = 0x55 };

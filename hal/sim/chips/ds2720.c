@@ -5,7 +5,7 @@
  */
 #include <string.h>
 
-#include "hal/sim/chips/families.h"
+#include "hal/sim/families.h"
 
 enum { PROTECTION = 0x00, EEPROM_REGISTER = 0x07, SPECIAL = 0x08 };
 enum { DE = 0x01, CE = 0x02, DC = 0x04, CC = 0x08, DOC = 0x10, UV = 0x40, OV = 0x80 };

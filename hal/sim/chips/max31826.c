@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "hal/sim/chips/families.h"
 #include "hal/sim/chips/thermometer.h"
+#include "hal/sim/families.h"
 
 enum { KEY = 0xA5, READ_POWER = 0xB4 };
 enum { TEMPERATURE, THERMOCOUPLE, OPEN_CIRCUIT, GROUND_SHORT, VDD_SHORT }; /* inputs */

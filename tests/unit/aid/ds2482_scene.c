@@ -2,6 +2,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/ds2482/master.h"
 #include "unity.h"
 
 #include "hal/sim/crc.h"

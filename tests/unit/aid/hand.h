@@ -3,7 +3,7 @@
 #ifndef TESTS_UNIT_AID_HAND_H
 #define TESTS_UNIT_AID_HAND_H
 
-#include "hal/sim/chips/families.h"
+#include "hal/sim/families.h"
 #include "hal/sim/wire.h"
 
 #define HAND_MS INT64_C(1000000)

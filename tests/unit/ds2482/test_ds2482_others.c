@@ -6,6 +6,7 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include "hal/ds2482/master.h"
 #include "unity.h"
 
 #include "tests/unit/aid/ds2482_scene.h"

@@ -2,6 +2,7 @@
 /* Adapters whose bytes take any time or none, steady or not, under clocks of any resolution. */
 #include <stdio.h>
 
+#include "hal/ds2482/master.h"
 #include "unity.h"
 
 #include "hal/sim/scenario.h"

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "hal/ds2482/i2c_master.h"
 #include "unity.h"
 
 #include "hal/sim/crc.h"

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/ds2482/master.h"
 #include "unity.h"
 
 #include "hal/ds2482/ds2482.h"

@@ -4,8 +4,8 @@
 
 #include "unity.h"
 
-#include "hal/sim/chips/chip.h"
-#include "hal/sim/chips/families.h"
+#include "hal/sim/chip.h"
+#include "hal/sim/families.h"
 
 #define US INT64_C(1000)
 

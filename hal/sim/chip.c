@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "hal/sim/chips/chip.h"
+#include "hal/sim/chip.h"
 
 #define US 1000
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The slave families there are: a word in the list below for each. */
-#ifndef HAL_SIM_CHIPS_FAMILIES_H
-#define HAL_SIM_CHIPS_FAMILIES_H
+#ifndef HAL_SIM_FAMILIES_H
+#define HAL_SIM_FAMILIES_H
 
 #include "hal/sim/slave.h"
 

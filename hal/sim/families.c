@@ -2,7 +2,7 @@
 /* The table of the families. */
 #include <stddef.h>
 
-#include "hal/sim/chips/families.h"
+#include "hal/sim/families.h"
 
 #define ENTRY(part) &sim_##part,
 

@@ -7,8 +7,8 @@
  *
  * t is ns since the start of the simulation and never goes back.
  */
-#ifndef HAL_SIM_CHIPS_CHIP_H
-#define HAL_SIM_CHIPS_CHIP_H
+#ifndef HAL_SIM_CHIP_H
+#define HAL_SIM_CHIP_H
 
 #include "hal/sim/wire.h"
 

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT */
+/* Single I2C calls to a chip, and what the adapter can do and how fast it is, found by trying it. */
+#ifndef HAL_DS2482_IO_H
+#define HAL_DS2482_IO_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct ds2482_chip;
+struct ds2482_master;
+
+int64_t ds2482_now(const struct ds2482_master *master);
+/* 0, -ECANCELED. */
+int ds2482_wait_until(const struct ds2482_master *master, int64_t t);
+int ds2482_write1(struct ds2482_chip *chip, uint8_t command);
+int ds2482_write2(struct ds2482_chip *chip, uint8_t command, uint8_t parameter);
+/* The register the read pointer is at. */
+int ds2482_read1(struct ds2482_chip *chip);
+/* Write command and parameter, read what the chip then points to. */
+int ds2482_write_read(struct ds2482_chip *chip, uint8_t command, uint8_t parameter);
+/* Can the adapter do more than the SMBus calls? */
+bool ds2482_combines(const struct ds2482_chip *chip);
+/*
+ * What the adapter takes in one transfer, by trying it, and how long an I2C byte takes at least:
+ * for reading on instead of waiting. The chip is to be one for certain, and idle.
+ */
+int ds2482_learn(struct ds2482_chip *chip);
+/* The chip was still busy where reading on should have ended: bytes come faster than measured. */
+void ds2482_was_early(struct ds2482_chip *chip);
+
+#endif

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+/* GPIO lines beside the chips: the supply of the wire, and the SLPZ pins. */
+#ifndef HAL_DS2482_POWER_H
+#define HAL_DS2482_POWER_H
+
+#include <stddef.h>
+
+struct ds2482_master;
+struct link_master;
+
+/* Supply on and chips awake, as far as there are lines for it. Errors as gpio_output_take(). */
+int ds2482_power_on(struct ds2482_master *master, char *why, size_t why_size);
+/* The chips go to sleep; the supply stays on. */
+void ds2482_rest(struct ds2482_master *master);
+void ds2482_power_release(struct ds2482_master *master);
+/* The supply off and on, then all chips are set up. -EOPNOTSUPP: no line for it. */
+int ds2482_power_cycle(struct ds2482_master *master);
+
+/* The slots of link_master_ops but create. */
+int ds2482_option(struct link_master *master, const char *key, const char *text, char *why,
+                  size_t why_size);
+
+#endif

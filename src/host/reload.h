@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT */
+/* Another configuration, served without a gap. */
+#ifndef HOST_RELOAD_H
+#define HOST_RELOAD_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+struct config;
+struct host;
+
+/* False while the host replaces a lost command segment. Supervisor only. */
+bool host_may_reload(const struct host *host);
+/*
+ * Serve another configuration without a gap: signals of the same name, path and type go on with
+ * value, quality, alarms and retries, targets with the same options stay open. Blocks until the
+ * reload is done. Returns 0 (the host owns config), or a negative errno with the reason in why:
+ * then nothing changes. Only when host_may_reload().
+ */
+int host_reload(struct host *host, struct config *config, char *why, size_t why_size);
+
+#endif

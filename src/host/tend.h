@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT */
+/* The supervisor's upkeep: repairs the shared memory, and finishes what a reload has left to do. */
+#ifndef HOST_TEND_H
+#define HOST_TEND_H
+
+struct host;
+
+/*
+ * The work that must not be done on the engine's thread: repair the shared memory, and finish what
+ * a reload could not do. The supervisor calls it at least twice a second.
+ */
+void host_tend(struct host *host);
+
+/*
+ * Try again what a reload could not finish after the engine had taken it; log and count it
+ * until it is done. host_tend() calls it once a second.
+ */
+void host_finish_reload(struct host *host);
+
+#endif
