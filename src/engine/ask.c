@@ -21,6 +21,7 @@ static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t
 
 	slot->purpose = FOR_READ;
 	slot->row = row;
+	slot->shown = false;
 	slot->req = (struct bus_req){
 		.op = BUS_READ,
 		.prio = BUS_INPUT,
@@ -34,9 +35,7 @@ static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t
 	guest_passed(lane);
 	lane->writes_in_row = 0;
 	s->reading = true;
-	s->sample.tried_ns = now_ns;
 	signal_begin(s, e->time.period);
-	engine_publish(e, s);
 	return true;
 }
 
@@ -151,6 +150,22 @@ void lane_fill(struct lane *lane, int64_t now_ns)
 	while (lane->state.up && !lane->state.stuck && (slot = slot_next(lane)) != NULL)
 		if (!ask_next(lane, slot, now_ns))
 			break;
+}
+
+void lane_show_reads(struct lane *lane)
+{
+	for (unsigned i = 0; i < lane->depth; i++) {
+		struct slot *slot = &lane->lent.slots[i];
+		struct signal *s;
+
+		if (!slot->lent || slot->given_up || slot->moved || slot->shown ||
+		    slot->purpose != FOR_READ)
+			continue;
+		slot->shown = true;
+		s = &lane->engine->table.signals[slot->row];
+		s->sample.tried_ns = slot->begun_ns;
+		engine_publish(lane->engine, s);
+	}
 }
 
 int64_t lane_wake(const struct lane *lane)

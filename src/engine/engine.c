@@ -141,6 +141,9 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 	deferred = engine_intake_limited(e, now_ns);
 	guests_take(e, now_ns);
 	if (e->time.period != before) {
+		for (unsigned i = 0; i < e->lane_count; i++)
+			if (e->lanes[i].lent.count)
+				lane_show_reads(&e->lanes[i]);
 		engine_clients(e, now_ns);
 		engine_publish_counters(e);
 		engine_publish_driver(e, now_ns);

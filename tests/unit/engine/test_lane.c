@@ -112,6 +112,42 @@ static void test_an_input_shows_its_init_value_until_it_is_read(void)
 	TEST_ASSERT_EQUAL_INT64(0, scene_sample(&s, 1).measured_ns);
 }
 
+/* How often the image was published for a record: two steps of its sequence each time. */
+static uint32_t published(unsigned record)
+{
+	return s.image.records[record].seq / 2;
+}
+
+static void test_a_reading_is_published_once_when_it_ends(void)
+{
+	uint32_t before;
+
+	three_thermometers();
+	scene_start(&s);
+	scene_up(&s);
+	scene_run(&s, SCENE_S);
+	before = published(1);
+	scene_clear_trace(&s);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(10, published(1) - before);
+	TEST_ASSERT_EQUAL_UINT(10 * 3 * (sizeof(T1) + 2), strlen(s.trace));
+}
+
+static void test_a_reading_that_outlasts_a_period_is_shown_in_work(void)
+{
+	three_thermometers();
+	s.bus[0].latency_ns = 250 * SCENE_MS;
+	scene_start(&s);
+	scene_up(&s);
+	scene_run(&s, 99 * SCENE_MS);
+	TEST_ASSERT_BITS_LOW(OWS_ATTR_IN_WORK, scene_attrs(&s, 1).flags);
+	scene_run(&s, SCENE_MS);
+	TEST_ASSERT_BITS_HIGH(OWS_ATTR_IN_WORK, scene_attrs(&s, 1).flags);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_attrs(&s, 0).per_base - scene_attrs(&s, 1).pend_base);
+	scene_run(&s, 150 * SCENE_MS);
+	TEST_ASSERT_BITS_LOW(OWS_ATTR_IN_WORK, scene_attrs(&s, 1).flags);
+}
+
 static void test_a_per_factor_spaces_the_reads_from_begin_to_begin(void)
 {
 	scene_input(&s, "t1", T1, OWS_DOUBLE)->per_factor = 10;
@@ -338,6 +374,8 @@ int main(void)
 	RUN_TEST(test_at_most_one_write_is_in_work);
 	RUN_TEST(test_nothing_goes_out_while_the_target_is_down);
 	RUN_TEST(test_an_input_shows_its_init_value_until_it_is_read);
+	RUN_TEST(test_a_reading_is_published_once_when_it_ends);
+	RUN_TEST(test_a_reading_that_outlasts_a_period_is_shown_in_work);
 	RUN_TEST(test_a_per_factor_spaces_the_reads_from_begin_to_begin);
 	RUN_TEST(test_a_fresh_item_is_read_past_the_cache);
 	RUN_TEST(test_an_init_value_is_written_once_at_start_before_any_read);
