@@ -34,7 +34,7 @@ enum bus_prio {
 
 enum bus_kind {
 	BUS_TEXT,   /* OWFS text in data, as owserver prints it (numbers may be blank padded) */
-	BUS_NUMBER, /* the same text, and the exact number beside it */
+	BUS_NUMBER, /* the exact number; data has its text, or nothing where the request says so */
 	BUS_BYTES,  /* raw bytes in data */
 };
 
@@ -59,6 +59,7 @@ struct bus_req {
 	uint8_t op;          /* enum bus_op */
 	uint8_t prio;        /* enum bus_prio */
 	bool fresh;          /* past every cache */
+	bool number;         /* READ: where the answer is a number, its text is not needed */
 	int64_t deadline_ns; /* not begun by then: answered -ETIME without effect.
 	                        Begun: finished or failed by then, never undone */
 	const char *path;    /* "/28.551DDF030000/temperature12", without /uncached; immutable */

@@ -74,6 +74,16 @@ void job_answer_cached(struct native *native, struct job *job, const struct cach
 	if (native->master->ops->simulated)
 		answer.detail |= BUS_DETAIL_SIMULATED;
 	memcpy(job->req->data, entry->text, entry->len);
+	if (entry->kind == BUS_NUMBER && !entry->len && !job->req->number) {
+		int n = format_alone(entry->property, entry->extension, entry->number,
+		                     (char *)job->req->data, job->req->len);
+		if (n < 0) {
+			job_answer(native, job, n);
+			return;
+		}
+		answer.len = (uint32_t)n;
+	}
+	native->cache.hit_bytes += answer.len;
 	native_count(native, COUNT_CACHE_HITS);
 	give(native, job, &answer);
 }

@@ -50,7 +50,6 @@ const struct cache_entry *cache_find(struct cache *cache, const struct device *d
 			return NULL;
 		}
 		cache->hits++;
-		cache->hit_bytes += entry->len;
 		return entry;
 	}
 	return NULL;

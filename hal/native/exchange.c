@@ -96,6 +96,8 @@ static int add_element(struct job *job)
 	const struct property *property = job->property;
 	bool all = is_all(job);
 
+	if (job->req->number && format_is_number(property, job->extension))
+		return 0;
 	if (is_text(property)) {
 		if (txn->len > txn->room)
 			return -EMSGSIZE;

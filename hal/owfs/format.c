@@ -127,18 +127,21 @@ static double element_of(const struct property *property, int element, const str
 	return txn->number[property->array.aggregate ? element : 0];
 }
 
+int format_alone(const struct property *property, int extension, double number, char *text,
+                 size_t room)
+{
+	return format_number(extension == EXTENSION_BYTE ? PROPERTY_UNSIGNED : property->type,
+	                     number, text, room);
+}
+
 int format_value(const struct property *property, int extension, const struct txn *txn, char *text,
                  size_t room)
 {
 	size_t used = 0;
 
-	if (extension == EXTENSION_NONE)
-		return format_number(property->type, txn->number[0], text, room);
-	if (extension == EXTENSION_BYTE)
-		return format_number(PROPERTY_UNSIGNED, txn->bits, text, room);
 	if (extension != EXTENSION_ALL)
-		return format_number(property->type, element_of(property, extension, txn), text,
-		                     room);
+		return format_alone(property, extension, format_as_number(property, extension, txn),
+		                    text, room);
 	for (int i = 0; i < property->array.count; i++) {
 		if (i && used == room)
 			return -EMSGSIZE;

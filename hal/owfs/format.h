@@ -26,6 +26,9 @@ int format_number(uint8_t type, double number, char *text, size_t room);
 /* The value in txn as text of the extension; length or -EMSGSIZE. Not for text and binary. */
 int format_value(const struct property *property, int extension, const struct txn *txn, char *text,
                  size_t room);
+/* The text of one number that is the whole value of the extension. */
+int format_alone(const struct property *property, int extension, double number, char *text,
+                 size_t room);
 /* Does the text stand for exactly one number, and which? */
 bool format_is_number(const struct property *property, int extension);
 double format_as_number(const struct property *property, int extension, const struct txn *txn);

@@ -11,6 +11,7 @@
 #include "src/engine/schedule.h"
 #include "src/engine/slots.h"
 #include "src/engine/state.h"
+#include "src/engine/trace.h"
 #include "src/engine/types.h"
 #include "src/signal/value.h"
 
@@ -27,6 +28,7 @@ static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t
 		.prio = BUS_INPUT,
 		.fresh = s->item->fresh,
 		.path = s->item->path,
+		.number = !signal_is_string(s) && !trace_is_on(e->log),
 		.len = sizeof(slot->data),
 	};
 	if (!slot_lend(lane, slot, now_ns))

@@ -54,7 +54,7 @@ struct slot {
 	uint32_t stamp;             /* of the command written */
 	bool one_shot;              /* the write was that of _WriteOneShot */
 	bool pressing;              /* a guest that goes as an input */
-	bool shown; /* a reading: the image has it that it is in work */
+	bool shown;                 /* a reading: the image has it that it is in work */
 	struct engine_guest *guest; /* owns path and data of the request */
 	uint8_t data[LANE_DATA];
 	char path[LANE_PATH]; /* of req: what is lent stands for itself, also over a reload */

@@ -199,6 +199,24 @@ static void test_a_cached_value_keeps_its_time(void)
 	expect(false, of(slave, "temperature"), "          30");
 }
 
+static void test_a_number_is_read_without_its_text_and_the_cache_gives_both(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	wire_set(slave, "temperature", 20.0625);
+	start();
+	uint32_t id = ask(BUS_READ, BUS_INPUT, false, of(slave, "temperature"), NULL);
+	req[id].number = true; /* before the bus has begun */
+	TEST_ASSERT_EQUAL_DOUBLE(20.0625, answer_to(id)->number);
+	TEST_ASSERT_EQUAL_UINT32(0, answer_to(id)->len);
+	id = ask(BUS_READ, BUS_GUEST, false, of(slave, "temperature"), NULL);
+	TEST_ASSERT_BITS_HIGH(BUS_DETAIL_CACHED, answer_to(id)->detail);
+	TEST_ASSERT_EQUAL_DOUBLE(20.0625, answer_to(id)->number);
+	TEST_ASSERT_EQUAL_UINT32(12, answer_to(id)->len);
+	TEST_ASSERT_EQUAL_STRING("     20.0625", (char *)data[id]);
+}
+
 static void test_a_monitor_that_restarts_while_it_measures_is_measured_again(void)
 {
 	wire_init(&host, 1, 1);
@@ -302,6 +320,7 @@ int main(void)
 	RUN_TEST(test_limits_are_stored_with_the_resolution_that_was_there);
 	RUN_TEST(test_a_limit_on_its_way_to_the_eeprom_is_never_another);
 	RUN_TEST(test_a_cached_value_keeps_its_time);
+	RUN_TEST(test_a_number_is_read_without_its_text_and_the_cache_gives_both);
 	RUN_TEST(test_a_monitor_that_restarts_while_it_measures_is_measured_again);
 	RUN_TEST(test_the_power_on_value_of_the_genuine_chip_is_known_from_the_temperature);
 	RUN_TEST(test_the_power_on_value_is_never_good);
