@@ -25,7 +25,7 @@ static uint64_t wait_of(const struct due_wheel *wheel, uint32_t entry)
 	return wheel->wait[entry].waits ? wheel->wait[entry].period : 0;
 }
 
-/* The count of periods goes on though a period may last otherwise than before. */
+/* The count of periods goes on, though a period may be longer or shorter than before. */
 static void take_time(struct engine *e, const struct engine *old, int64_t now_ns)
 {
 	e->time = old->time;

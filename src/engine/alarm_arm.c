@@ -50,7 +50,7 @@ static void show_unarmed(struct engine *e, struct alarm_item *i, int err, const 
 	engine_publish(e, s);
 }
 
-/* What failed is tried as if it never had. True: its signal said that it cannot be armed. */
+/* Arming begins anew, without the failures so far. True: the signal was shown as not armed. */
 static bool arm_anew(struct engine *e, struct alarm_item *i)
 {
 	struct signal *s = alarm_signal(e, i);

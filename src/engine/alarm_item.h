@@ -38,7 +38,7 @@ struct alarm_occurrence {
 /* A restart of the device, by its por; a reload carries it over. */
 struct alarm_restart {
 	bool known;   /* por was not 0, and not 0 since */
-	bool differs; /* since then an output was read back otherwise than before: one more */
+	bool differs; /* since then an output changed by itself: the device has restarted again */
 };
 
 /* SetAlarm compared with the chip; a reload carries it over. */
@@ -76,7 +76,7 @@ struct alarm_request {
 struct alarm_listing {
 	uint32_t cycle;     /* lists so far */
 	bool polls;         /* the bus has no alarm search */
-	bool told;          /* the log knows */
+	bool told;          /* that is in the log */
 	int64_t next_ns;    /* earliest time of the next list */
 	int64_t wait_ns;    /* doubles while lists fail */
 	unsigned strangers; /* listed devices without alarm item that were logged */
@@ -128,7 +128,7 @@ void alarm_name_list(struct alarm_machine *m, const struct table *table);
 void alarm_restart(struct alarm_machine *m);
 /* Are the items read by alarms (and now and then), not in every period? */
 bool alarm_serves(const struct alarm_machine *m);
-/* An output of the device was read back otherwise than before, though nothing was written. */
+/* An output of the device has changed though nothing was written to it. */
 void alarm_output_differs(struct alarm_machine *m, uint32_t device);
 
 #endif

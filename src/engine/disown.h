@@ -10,7 +10,7 @@
  * nothing but their slots any more.
  */
 void lane_disown(struct lane *lane, bool all);
-/* Likewise the request of the alarm machine, which begins anew. */
+/* The request of the alarm machine counts for nothing either; the machine begins anew. */
 void lane_disown_alarm(struct lane *lane);
 
 /*

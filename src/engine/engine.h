@@ -9,9 +9,9 @@
  * no two files use each other. state.h has the structures that all of them work on, and says which
  * file changes what; each other header declares what its own .c defines.
  *
- *   step                 engine (makes it, and takes the calls), adopt (a reload)
- *   events and answers   lane_event, lane_answer: what happened, recorded as facts; ask: what is next
- *   routing              routing: acts on the facts, opens ways, moves devices
+ *   step                 engine (makes it, and takes the calls), adopt, adopt_signal (a reload)
+ *   events and answers   lane_event, lane_answer (record what happened), ask (chooses what is next)
+ *   routing              routing (acts on the facts: opens ways, moves devices)
  *   moves                move, lane_state (a target goes up and fails)
  *   alarm and guests     alarm (the machine), guests
  *   reading and writing  completion, device_back, intake, clients, place, doubt, types
@@ -64,7 +64,7 @@ void engine_event(struct engine *engine, unsigned port, const struct bus_event *
  */
 int64_t engine_step(struct engine *engine, int64_t now_ns);
 
-/* Was anything published since the last call? The host then wakes those who wait for news. */
+/* Was anything published since the last call? The host then wakes the consumers that wait for news. */
 bool engine_published(struct engine *engine);
 
 /*

@@ -9,7 +9,7 @@
 
 #include "hal/bus/bus.h"
 
-/* No certain lane: the one that serves the path's device; unknown devices: one after another. */
+/* Any lane: the lane that serves the device of the path, or each in turn if the table has no such device. */
 #define GUEST_ANY_LANE (-1)
 
 /*
@@ -25,7 +25,7 @@ struct engine_guest {
 	const char *path;
 	uint8_t *data; /* as in struct bus_req */
 	uint32_t len, offset;
-	const uint8_t *tokens; /* likewise; NULL: the guest is no server */
+	const uint8_t *tokens; /* as in struct bus_req; NULL: the guest is no server */
 	uint32_t token_count;
 
 	struct bus_answer answer; /* its id says nothing */

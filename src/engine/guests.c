@@ -15,7 +15,7 @@
 #include "src/engine/slots.h"
 #include "src/engine/state.h"
 
-/* Requests of the table that go before a guest who waits, where there are always some. */
+/* So many requests of a busy table go before a guest that waits. */
 #define GUEST_PASSED 4
 #define GUESTS_LENT 64
 #define GUESTS_PRESSING 16
@@ -52,7 +52,7 @@ static struct engine_guest *guest_leaves(struct lane *lane)
 	return g;
 }
 
-/* The more telling of two errors: a property that is missing, a device, a target. */
+/* The more precise of two errors: a missing property, then a missing device, then a target that is down. */
 static int more_telling(int a, int b)
 {
 	static const int order[] = {-ENOTCONN, -ENODEV, -ENOENT};
@@ -156,7 +156,7 @@ void guests_take(struct engine *e, int64_t now_ns)
 			answer_guest(e, g);
 		}
 	}
-	/* in order: what a lane has not is asked of a later one, or of an earlier one next time */
+	/* in order: a request that a lane cannot serve goes to a later lane now, to an earlier one next time */
 	for (unsigned i = 0; i < e->lane_count; i++)
 		if (e->lanes[i].guests.first)
 			look_at_waiting(e, &e->lanes[i], now_ns);
@@ -189,8 +189,8 @@ void guest_passed(struct lane *lane)
 }
 
 /*
- * A bus that the table keeps busy would never come to its guests: so those whom it is lent beside
- * the table, which are few, are no less urgent than inputs, and some of those who find it idle.
+ * A bus that the table keeps busy would never come to its guests. So the few requests of guests that
+ * are lent beside the table's have the priority of inputs, and some of those on an idle bus too.
  */
 bool guest_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
 {

@@ -5,7 +5,7 @@
 
 #include "src/engine/state.h"
 
-/* Take those who wait at the server's side into the lanes. */
+/* Take the guests that wait at the server's side into the lanes. */
 void guests_take(struct engine *e, int64_t now_ns);
 
 /* Is it a guest's turn, where the table has something to ask too (others), or not? */
@@ -22,7 +22,7 @@ void guest_done(struct engine *e, struct lane *lane, struct slot *slot,
 void guest_gone(struct engine *e, struct slot *slot);
 
 /*
- * A reload. adopt: those who wait on the lane `before`, or have something lent there, go on in a lane
+ * A reload. adopt: guests that wait on the lane `before`, or have something lent there, go on in a lane
  * that has taken its slots over. refuse: they learn that their target is down. release: they get back
  * what they had lent to buses that have ended.
  */

@@ -67,7 +67,7 @@ static int take_command_text(struct engine *e, struct signal *s)
 	return 0;
 }
 
-/* A program that said good-bye beats no more, and its outputs stay as they are. */
+/* 0 for a program that has signed off: it beats no more, and its outputs stay as they are. */
 static uint32_t client_of(struct engine *e, const struct command *c)
 {
 	struct command_client client;

@@ -13,8 +13,8 @@
 #include "src/text/log.h"
 
 /*
- * A server with a cache may give the same value again and again, and nobody sees that: once for each
- * target, those are named who ask it more often than it looks.
+ * A server with a cache may give the same value again and again without a sign of it. The log names,
+ * once for each target, the signals that are read more often than the server looks.
  */
 static void report_cached(const struct lane *lane, int64_t cache_ns)
 {
@@ -88,7 +88,8 @@ static void up_event(struct lane *lane, const struct bus_event *event, int64_t n
 		lane_up(lane, event->text, now_ns);
 		if (first && event->cache_ns)
 			report_cached(lane, event->cache_ns);
-	} else if (!lane->port->suspend && !way->back) { /* it cannot say so otherwise */
+	} else if (!lane->port->suspend &&
+	           !way->back) { /* without suspend, BUS_UP is the only sign of that */
 		way->back = true;
 		way->back_ns = now_ns;
 	}

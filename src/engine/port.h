@@ -16,7 +16,7 @@ struct engine_port {
 	void *ctx;
 	/*
 	 * Ways to one wire (a bar) have the same number; groups are numbered in the order in which they
-	 * are written, and their ways stand in it too. All but the first way of a group start suspended.
+	 * are written, and so are the ways of a group. Every way but the first starts suspended.
 	 */
 	unsigned group;
 	/* bus_ops.suspend; never blocks. NULL: nothing to let go of. */

@@ -19,7 +19,7 @@ void engine_publish(struct engine *e, struct signal *s)
 	sample = s->sample;
 	if (!sample.err)
 		sample.err = s->command.err;
-	if (!sample.err && !signal_writes(s)) /* else it would be said of a write */
+	if (!sample.err && !signal_writes(s)) /* else it would look like the error of a write */
 		sample.err = s->alarm_err;
 	image_publish(e->image, s->record, &sample, &s->attrs, s->text);
 	e->published = true;

@@ -25,7 +25,7 @@
 enum route_presence {
 	ROUTE_UNKNOWN, /* counts as present until the first try */
 	ROUTE_PRESENT,
-	ROUTE_FAILING, /* it is said to be there, and no reading of it was good */
+	ROUTE_FAILING, /* a target lists it, and no reading of it was good */
 	ROUTE_ABSENT,
 };
 struct route_place { /* a device on a group */
@@ -64,7 +64,7 @@ int route_probe(const struct route_place *places, const struct route_group *grou
 
 struct route_way {
 	bool released; /* it has no hold of the hardware */
-	bool up;       /* since it was opened it has said so, and not the contrary */
+	bool up;       /* the last report since it was opened is BUS_UP */
 	bool failed;   /* since it was opened it went down, or is stuck */
 	bool back;     /* since it was asked to let go it saw its target */
 	int64_t up_ns, failed_ns, back_ns;

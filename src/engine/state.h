@@ -32,7 +32,7 @@ struct engine_guests;
 
 enum purpose { FOR_READ, FOR_WRITE, FOR_STRUCTURE, FOR_ALARM, FOR_PROBE, FOR_GUEST };
 
-/* A request and its room. Its id is slot | turn << 16, so that a late answer is told apart. */
+/* A request and its room. Its id is slot | turn << 16, so that a late answer does not fit a new request. */
 struct slot {
 	/* slots.c */
 	struct bus_req req;
@@ -44,7 +44,7 @@ struct slot {
 	/* lane_answer.c */
 	bool given_up; /* its time is over; a late answer only frees the slot */
 	/* disown.c */
-	bool moved; /* another lane serves its signal now; likewise */
+	bool moved; /* another lane serves its signal now; an answer only frees the slot */
 	bool kept;  /* while a reload goes on: a reading that was in flight before it */
 
 	/* whoever asks: ask.c, guests.c */
@@ -93,7 +93,7 @@ struct lane_state {
 	/* routing.c */
 	bool open; /* the lane is the one way of its group that is open */
 	/* lane_event.c; heard_ns: lane_answer.c too */
-	bool said_up;     /* what the bus said last, asked or not */
+	bool said_up;     /* the last report of the bus was BUS_UP */
 	int64_t heard_ns; /* last answer or event of the bus */
 };
 
@@ -177,7 +177,7 @@ struct client {
 /* Which way of a group is open; a reload carries it over. */
 struct group_state {
 	struct route_bar bar;
-	bool quiet; /* all ways have failed in turn, again: that is said now and then only */
+	bool quiet; /* all ways have failed in turn, again: the log has that now and then only */
 	struct log_rate rounds;
 };
 
@@ -247,7 +247,7 @@ struct engine {
 
 	/* lane_answer.c, lane_state.c; intake.c resets it */
 	struct engine_driver driver;
-	/* publish.c, and who puts something into the journal */
+	/* publish.c, limits.c, alarm_effect.c */
 	bool published;
 
 	/* intake.c: strings a consumer was writing when they were looked at */

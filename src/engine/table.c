@@ -7,7 +7,7 @@
 #include "hal/owfs/path.h"
 #include "src/engine/table.h"
 
-/* What tells devices apart: the ROM id, or the alias. */
+/* What identifies a device: the ROM id, or the alias. */
 struct device_key {
 	uint8_t rom[8];
 	bool has_rom;

@@ -41,7 +41,7 @@ struct signal_reading {
 /* What was last seen in the command segment. */
 struct signal_seen {
 	uint32_t stamp, one_shots, dgn_resets, acknowledged;
-	uint32_t client; /* 0: nobody who beats; else index + 1 */
+	uint32_t client; /* index + 1 of the control program that beats; 0: none */
 	bool awaited; /* the command is of before the start: nothing is written until client beats */
 };
 
@@ -64,7 +64,7 @@ struct signal_command {
 struct signal_limit {
 	struct limit alarm;
 	struct log_rate log;
-	bool said;        /* the log has what was raised: it gets the return too */
+	bool said;        /* the log has the raised alarm, and gets its return too */
 	int64_t value[2]; /* of the update before the last, of the last */
 	uint32_t count;   /* sample.count of the last */
 	uint8_t values;   /* how many of the two are known */

@@ -5,6 +5,7 @@
 Which room may use which is in docs/design.md, and test_graph.py holds the sources against it.
 """
 
+import pathlib
 import re
 
 import owsdtest
@@ -47,6 +48,20 @@ def test_the_engine_and_the_values_do_no_input_and_output(scene):
 def test_the_alarm_machine_is_a_function_of_its_own_header_alone(scene):
     assert list(headers(SOURCE / "src/engine/alarm_fsm.c")) == ["src/engine/alarm_fsm.h"]
     assert not list(headers(SOURCE / "src/engine/alarm_fsm.h"))
+
+
+def test_the_files_of_the_engine_keep_to_the_stack_that_its_header_shows(scene):
+    head = (SOURCE / "src/engine/engine.h").read_text().split("*/")[1]
+    lines = re.findall(r"^ \*   (\w[\w ,]*?)  +(\S.*)$", head, re.M)
+    layer = {name.strip(): height for height, (_, files) in enumerate(reversed(lines))
+             for name in re.sub(r"\([^)]*\)", "", files).split(",")}
+    made = {f.stem for f in sources("src/engine") if f.suffix == ".c"}
+    assert set(layer) == made, set(layer) ^ made
+    wrong = [f"{file.name} includes {header}" for file in sources("src/engine")
+             for header in headers(file) if pathlib.Path(header).stem in layer
+             and header.startswith("src/engine/") and file.stem in layer
+             and layer[pathlib.Path(header).stem] > layer[file.stem]]
+    assert not wrong, wrong
 
 
 if __name__ == "__main__":
