@@ -49,13 +49,18 @@ static int read_pages(struct txn *txn, const struct area *area, const uint8_t *c
 int area_fetch(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
 {
 	uint8_t command[3];
-	unsigned len = address(command, area->read, area, at);
+	unsigned len = address(command, area->recall, area, at);
+	int err = 0;
 
 	if (txn->link->ops->area_read) {
 		txn->on_wire = true;
 		return txn->link->ops->area_read(txn->link, txn->device->rom, area, at, bytes, n);
 	}
-	int err = txn_command(txn, command, len);
+	if (area->recall)
+		err = txn_command(txn, command, len);
+	command[0] = area->read;
+	if (!err)
+		err = txn_command(txn, command, len);
 	if (err)
 		return err;
 	switch ((enum area_check)area->check) {

@@ -9,7 +9,7 @@
 #include "tests/unit/aid/one_slave.h"
 
 struct sim_slave *slave;
-uint8_t slave_data[2048];
+uint8_t slave_data[4096];
 static struct bus_req slave_req;
 static uint32_t next_id, offset;
 

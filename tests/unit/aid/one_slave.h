@@ -9,7 +9,7 @@
 /* Set by the test, which opens the bus as well. */
 extern struct sim_slave *slave;
 /* What was read. */
-extern uint8_t slave_data[2048];
+extern uint8_t slave_data[4096];
 
 /* setUp() and tearDown() */
 void one_slave_begin(void);

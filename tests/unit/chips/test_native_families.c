@@ -289,7 +289,7 @@ static void test_a_ds2406_switches_and_alarms(void)
 
 static void memory_of(const char *chip, unsigned size, unsigned page)
 {
-	char text[600];
+	char text[2700];
 
 	start(chip);
 	for (unsigned i = 0; i < sizeof(text) - 1; i++)
@@ -322,6 +322,90 @@ static void test_memories_are_written_and_read(void)
 	reads("status", "         255");
 	tearDown();
 	memory_of("DS2423", 512, 32);
+	tearDown();
+	memory_of("DS28EC20", 2560, 32);
+	TEST_ASSERT_EQUAL_UINT(32, go(BUS_READ, "pages/page.79", NULL)->len);
+	refuses(-ENOENT, BUS_READ, "pages/page.80", NULL);
+}
+
+static void test_a_ds2502_is_read_and_needs_more_than_this_master_has_to_be_written(void)
+{
+	size_t size;
+
+	start("DS2502");
+	uint8_t *memory = slave->family->memory(slave, &size);
+	for (unsigned i = 0; i < 128; i++)
+		memory[i] = (uint8_t)(i * 3);
+	TEST_ASSERT_EQUAL_UINT(128, go(BUS_READ, "memory", NULL)->len);
+	TEST_ASSERT_EQUAL_MEMORY(memory, slave_data, 128);
+	TEST_ASSERT_EQUAL_UINT(32, go(BUS_READ, "pages/page.2", NULL)->len);
+	TEST_ASSERT_EQUAL_MEMORY(memory + 64, slave_data, 32);
+	refuses(-ENOENT, BUS_READ, "pages/page.4", NULL);
+	refuses(-EOPNOTSUPP, BUS_WRITE, "memory", "x");
+	refuses(-EOPNOTSUPP, BUS_WRITE, "pages/page.0", "x");
+	TEST_ASSERT_EQUAL_HEX8(0, memory[0]);
+}
+
+static void test_a_ds2720_shows_its_flags_and_takes_back_what_is_over(void)
+{
+	start("DS2720");
+	reads("ce", "1");
+	reads("de", "1");
+	reads("cc", "1");
+	reads("dc", "1");
+	reads("psf", "1");
+	writes("ce", "0");
+	reads("cc", "0");
+	reads("ce", "0");
+	reads("dc", "1");
+	writes("ce", "1");
+	refuses(-EOPNOTSUPP, BUS_WRITE, "cc", "0"); /* it shows a pin */
+	refuses(-EOPNOTSUPP, BUS_WRITE, "dc", "0");
+	wire_set(slave, "overvoltage", 1);
+	reads("ov", "1");
+	reads("cc", "0");
+	refuses(-EIO, BUS_WRITE, "ov", "0"); /* it lasts */
+	wire_set(slave, "overvoltage", 0);
+	writes("ov", "0");
+	reads("cc", "1");
+	refuses(-EIO, BUS_WRITE, "uv", "1"); /* the chip alone sets it */
+	wire_set(slave, "undervoltage", 1);
+	wire_set(slave, "overtemperature", 1);
+	reads("uv", "1");
+	reads("doc", "0");
+	reads("ot", "1");
+	reads("dc", "0");
+}
+
+static void test_what_is_written_to_a_page_of_a_ds2720_is_there_after_a_restart(void)
+{
+	start("DS2720");
+	writes("pages/page.1", "abcd");
+	writes("pages/page.0", "xy");
+	sim_slave_brownout(slave, wire_time());
+	reads("pages/page.1", "abcd");
+	TEST_ASSERT_EQUAL_UINT(4, go(BUS_READ, "pages/page.0", NULL)->len);
+	TEST_ASSERT_EQUAL_MEMORY("xy\0\0", slave_data, 4);
+	TEST_ASSERT_EQUAL_UINT(256, go(BUS_READ, "memory", NULL)->len);
+	TEST_ASSERT_EQUAL_MEMORY("xy", slave_data + 0x20, 2);
+	TEST_ASSERT_EQUAL_MEMORY("abcd", slave_data + 0x30, 4);
+	refuses(-EOPNOTSUPP, BUS_WRITE, "memory", "x");
+}
+
+static void test_a_block_of_a_ds2720_is_locked_for_good(void)
+{
+	start("DS2720");
+	writes("pages/page.1", "abcd");
+	reads("lock.0", "0");
+	reads("lock.1", "0");
+	writes("lock.1", "1");
+	reads("lock.1", "1");
+	reads("lock.0", "0");
+	refuses(-EIO, BUS_WRITE, "pages/page.1", "efgh");
+	reads("pages/page.1", "abcd");
+	writes("pages/page.0", "efgh");
+	refuses(-EOPNOTSUPP, BUS_WRITE, "lock.1", "0");
+	reads("lock.1", "1");
 }
 
 static void test_a_ds2423_counts(void)
@@ -482,6 +566,10 @@ int main(void)
 	RUN_TEST(test_a_ds2405_is_not_turned_over_by_looking);
 	RUN_TEST(test_a_ds2406_switches_and_alarms);
 	RUN_TEST(test_memories_are_written_and_read);
+	RUN_TEST(test_a_ds2502_is_read_and_needs_more_than_this_master_has_to_be_written);
+	RUN_TEST(test_a_ds2720_shows_its_flags_and_takes_back_what_is_over);
+	RUN_TEST(test_what_is_written_to_a_page_of_a_ds2720_is_there_after_a_restart);
+	RUN_TEST(test_a_block_of_a_ds2720_is_locked_for_good);
 	RUN_TEST(test_a_ds2423_counts);
 	RUN_TEST(test_a_ds2450_converts_and_switches);
 	RUN_TEST(test_a_ds2450_that_restarts_is_told_once_and_alarms_again);

@@ -107,7 +107,10 @@ static void look_at_all(const char *chip, bool parasite, bool turned)
 			continue;
 		visit_begin(&visit);
 		int err = answer_to(visit_go(&visit, &(struct trouble){.kind = TROUBLE_NONE}))->err;
-		visit.stride = trouble.slots > 4000 ? 13 : trouble.slots > 2500 ? 5 : 1;
+		visit.stride = trouble.slots > 15000  ? 211
+		               : trouble.slots > 4000 ? 13
+		               : trouble.slots > 2500 ? 5
+		                                      : 1;
 		visit_end();
 		if (!err)
 			look(&visit);
@@ -195,6 +198,9 @@ LOOKS(ds2431, "DS2431", false)
 LOOKS(ds2433, "DS2433", false)
 LOOKS(ds2438, "DS2438", false)
 LOOKS(ds2450, "DS2450", false)
+LOOKS(ds2502, "DS2502", false)
+LOOKS(ds2720, "DS2720", false)
+LOOKS(ds28ec20, "DS28EC20", false)
 
 int main(void)
 {
@@ -216,5 +222,8 @@ int main(void)
 	RUN_TEST(test_no_trouble_makes_a_ds2433_say_what_is_not_true);
 	RUN_TEST(test_no_trouble_makes_a_ds2438_say_what_is_not_true);
 	RUN_TEST(test_no_trouble_makes_a_ds2450_say_what_is_not_true);
+	RUN_TEST(test_no_trouble_makes_a_ds2502_say_what_is_not_true);
+	RUN_TEST(test_no_trouble_makes_a_ds2720_say_what_is_not_true);
+	RUN_TEST(test_no_trouble_makes_a_ds28ec20_say_what_is_not_true);
 	return UNITY_END();
 }

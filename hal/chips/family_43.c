@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT */
+/* DS28EC20: 20 kbit of EEPROM (data sheet 19-6067): rows of 32 bytes, 10 ms to copy one. */
+#include "hal/chips/family.h"
+
+static const struct area memory = {
+	.name = "memory",
+	.size = 2560,
+	.address_bytes = 2,
+	.read = 0xa5,
+	.block = 32,
+	.check = AREA_CRC16,
+	.row = 32,
+	.write = 0x0f,
+	.verify = 0xaa,
+	.copy = 0x55,
+	.write_crc16 = true,
+	.strong = true,
+	.copy_ns = 10 * TXN_MS,
+};
+
+static const struct property properties[] = {
+	AREA_MEMORY(memory, 2560),
+	PROPERTY_DIR("pages"),
+	AREA_PAGES(memory, 80, 32),
+};
+
+const struct family family_43 = {.code = 0x43, .type = "DS28EC20", PROPERTIES(properties)};
