@@ -112,6 +112,31 @@ def test_read_of_our_own_bus_agrees_with_owserver(scene):
         assert len(errors) == 1, errors
 
 
+def test_memories_and_a_battery_protector_are_those_of_owserver(scene):
+    server = scene.owserver(mock=["09", "31", "43"])
+    devices = {d[1:3]: d for d in server.devices()}
+    parts = {"09": "DS2502", "31": "DS2720", "43": "DS28EC20"}
+    target = sim(scene, "".join(f"{part} {devices[f][1:]}\n" for f, part in parts.items()))
+
+    def both(*words):
+        ours, theirs = (ctl(scene, t, *words).stdout for t in (target, server.target))
+        assert ours, words
+        return ours, theirs
+
+    for family, device in devices.items():
+        ours, theirs = both("dir", device)
+        assert sorted(ours.split()) == sorted(theirs.split()), family
+        for name in ("memory", "pages/page.0", "type", "present"):
+            ours, theirs = both("read", f"/structure/{family}/{name}")
+            assert ours == theirs, (family, name)
+        names = ("type", "family", "id", "address", "crc8", "r_id", "r_address", "alias")
+        ours, theirs = both("read", *(f"{device}/{name}" for name in names))
+        assert ours == theirs, family
+    for name in ("cc", "lock.1", "psf", "uv"):
+        ours, theirs = both("read", f"/structure/31/{name}")
+        assert ours == theirs, name
+
+
 def test_read_takes_several_paths_and_goes_on_after_an_error(scene):
     target = sim(scene)
     paths = ["/28.67C6697351FF/temperature12", "/28.67C6697351FF/none", "/29.000029D60000/PIO.ALL"]
@@ -193,6 +218,9 @@ DS2431 2D.00000000000C
 DS2433 23.00000000000D
 DS2438 26.00000000000E temperature 22 vdd 5 vad 2.3
 DS2450 20.00000000000F volt.A 1.5
+DS2502 09.000000000010
+DS2720 31.000000000011
+DS28EC20 43.000000000012
 """
 
 
