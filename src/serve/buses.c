@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The numbers that clients see for the buses of all targets: /bus.N. */
 #include <string.h>
 
 #include "src/serve/buses.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * /bus.N over several targets: each bus of each target has one number for the life of owsd, in the
- * order of the targets as far as they are up when clients first ask. When all numbers are given,
- * those of targets that a reload took away are given again, the lowest first.
+ * /bus.N over several targets: each bus of each target has one number for the life of owsd. Numbers
+ * are given in the order of the targets that are up when clients first ask. When all numbers are
+ * given, the numbers of targets that a reload removed are given again, the lowest first.
  */
 #ifndef SERVE_BUSES_H
 #define SERVE_BUSES_H
@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 #define BUSES_MAX 256
-#define BUSES_NO_TARGET 255 /* it went; no target has this index */
+#define BUSES_NO_TARGET 255 /* a reload removed the target; no target has this index */
 
 struct buses {
 	unsigned count;
@@ -21,11 +21,14 @@ struct buses {
 	} bus[BUSES_MAX];
 };
 
-/* The number of a target's bus, given now if need be; -1: all are those of targets that are there. */
+/* The number of a target's bus; gives it one if it has none. -1: all numbers are in use. */
 int buses_number(struct buses *buses, unsigned target, unsigned number);
-/* After a reload: target i is what ports[i] was, -1 a new one. Numbers stay, also of those that went. */
+/*
+ * After a reload: target i was target ports[i] before, or is new where that is -1. All numbers
+ * stay, also those of removed targets.
+ */
 void buses_renumber(struct buses *buses, const int *ports, unsigned count);
-/* N of a name "bus.N", -1: it is none. */
+/* The N of a name "bus.N", -1: the name has another form. */
 int buses_parse(const char *name, unsigned len);
 
 #endif

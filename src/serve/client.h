@@ -1,25 +1,27 @@
 /* SPDX-License-Identifier: MIT */
-/* Connections: bytes in, bytes out, time limits. What a request means is not known here. */
+/*
+ * Connections of clients: bytes in, bytes out, time limits. The meaning of requests is elsewhere.
+ */
 #ifndef SERVE_CLIENT_H
 #define SERVE_CLIENT_H
 
 #include "src/serve/server.h"
 
 struct client *client_open(struct serve *s, int fd, bool network);
-/* What a bus still had of it is back. */
+/* The engine and the buses have returned all memory of the client that they used. */
 void client_back(struct serve *s, struct client *c);
 void client_event(struct serve *s, struct client *c, uint32_t events);
-/* Its turn in the round: at most one request. True: c->request is one to work on. */
+/* The client's turn in the round: at most one request. True: c->request waits to be worked on. */
 bool client_turn(struct serve *s, struct client *c);
-/* Look at all time limits; sets s->look_ns. */
+/* Apply the time limits of all clients; sets s->look_ns. */
 void clients_look(struct serve *s);
-/* In the state from now on; the next time limit counts from here. */
+/* Enter a state; its time limit counts from now. */
 void client_enter(struct serve *s, struct client *c, enum client_state state);
-/* Close the one that is idle for longest, if that is long; else s->look_ns is when it will be. */
+/* Close the client that is idle for longest, if for EVICT_NS; else set s->look_ns to that time. */
 bool client_evict(struct serve *s);
-/* What is sent from now on. */
+/* Set the bytes that are sent from now on. */
 void client_send(struct serve *s, struct client *c, const uint8_t *bytes, uint32_t len);
-/* Where the data of an answer go, behind room for its header. */
+/* The place for the data of an answer, after the room for the answer's header. */
 uint8_t *client_room(struct client *c);
 uint32_t client_room_size(struct client *c);
 

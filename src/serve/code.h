@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The return codes of the owserver protocol: what an error of a bus is for a client, as the genuine
- * owserver says it, and the texts that clients ask for in /settings/return_codes.
+ * The return codes of the owserver protocol: the code that a client gets for an error of a bus, as
+ * from the genuine owserver, and the texts that clients read in /settings/return_codes.
  */
 #ifndef SERVE_CODE_H
 #define SERVE_CODE_H
@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What is not an error of a bus. */
+/* Codes for errors that do not come from a bus. */
 #define CODE_NO_SUCH_PATH (-1)
 #define CODE_READ_ONLY (-30)
 #define CODE_BAD_TYPE (-42)
@@ -20,9 +20,9 @@
 
 /* The return code of a negative errno of a bus (hal/bus/bus.h) or of the served namespace. */
 int32_t code_of(int err);
-/* What a code means; never NULL, without a comma. */
+/* The text of a code; never NULL, without a comma. */
 const char *code_text(unsigned code);
-/* All texts with commas between. Returns the length, -EMSGSIZE. */
+/* Print all texts with commas between. Returns the length, or -EMSGSIZE. */
 int code_texts(char *text, size_t room);
 
 #endif

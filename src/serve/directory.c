@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A directory on its way to a client: the gathered names, and the answer made of them. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A directory on its way to a client: names are gathered from one target or several, each once, and
- * then made into the answer the client asked for. One of a few large rooms; untouched pages of it
- * cost nothing.
+ * A directory on its way to a client: its names are gathered from one target or several, each once,
+ * and then made into the answer that the client asked for. The server has a few of these large
+ * structs; their untouched pages cost no memory.
  */
 #ifndef SERVE_DIRECTORY_H
 #define SERVE_DIRECTORY_H
@@ -18,8 +18,8 @@ struct directory {
 	bool used;
 	uint32_t len; /* bytes of raw: names, each ended by '\n' */
 	uint32_t count;
-	uint32_t flags; /* of the devices, as the protocol has them */
-	uint32_t mark;  /* where the present target's part begins */
+	uint32_t flags; /* of the devices, in the form of the protocol */
+	uint32_t mark;  /* where the part of the present target begins in raw */
 	uint32_t out_len;
 	char raw[DIRECTORY_RAW];
 	uint8_t out[DIRECTORY_OUT];
@@ -32,20 +32,20 @@ static inline void directory_release(struct directory *directory)
 }
 
 void directory_begin(struct directory *directory);
-/* Where the next target puts its full paths, each ended by '\n', and how much room there is. */
+/* The place, and its size, where the next target puts its full paths, each ended by '\n'. */
 uint8_t *directory_room(struct directory *directory, uint32_t *room);
 /*
- * len bytes were put there by this target: keep the last component of each path, numbered as
- * clients count buses, that was not there before.
+ * Take the len bytes that this target has put into directory_room(): keep the last component of
+ * each path that the directory does not have yet, with buses numbered as clients count them.
  */
 void directory_take(struct directory *directory, const struct node *node, struct buses *buses,
                     unsigned target, uint32_t len);
-/* One name; false: no room. */
+/* Add one name; false: no room. */
 bool directory_add(struct directory *directory, const char *name, size_t len);
 
 void directory_add_once(struct directory *directory, const char *name);
 
-/* What stands in the root beside the devices. */
+/* Add the entries of the root that are no devices. */
 void directory_add_rest(struct directory *directory, const struct node *node,
                         const struct buses *buses);
 
@@ -57,7 +57,7 @@ struct directory_form {
 	bool frames;    /* DIR: a frame for each entry */
 	bool slash;     /* directories end with '/' */
 };
-/* Make the whole answer in directory->out. 0 or -EMSGSIZE. */
+/* Format the whole answer in directory->out. 0 or -EMSGSIZE. */
 int directory_form(struct directory *directory, const struct directory_form *form);
 
 #endif

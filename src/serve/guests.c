@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The two queues between the server's thread and the engine's. */
 #include <errno.h>
 #include <stdlib.h>
 #include <sys/eventfd.h>
@@ -6,7 +7,7 @@
 
 #include "src/serve/guests.h"
 
-static struct engine_guest *take(void *ctx)
+static struct engine_guest *take_message(void *ctx)
 {
 	struct guests *g = ctx;
 	struct engine_guest *guest;
@@ -29,7 +30,7 @@ void guests_wake(struct guests *g)
 }
 
 /* There is room for two messages of each request that can be under way. */
-static void tell(struct guests *g, struct engine_guest *guest, bool released)
+static void put_message(struct guests *g, struct engine_guest *guest, bool released)
 {
 	g->told[ring_put_at(&g->back)] = (struct guests_message){guest, released};
 	ring_did_put(&g->back);
@@ -39,18 +40,18 @@ static void tell(struct guests *g, struct engine_guest *guest, bool released)
 
 static void answered(void *ctx, struct engine_guest *guest)
 {
-	tell(ctx, guest, false);
+	put_message(ctx, guest, false);
 }
 
 static void released(void *ctx, struct engine_guest *guest)
 {
-	tell(ctx, guest, true);
+	put_message(ctx, guest, true);
 }
 
 int guests_create(struct guests *g, unsigned most, void (*ring)(void *ctx), void *ring_ctx)
 {
 	*g = (struct guests){.ring = ring, .ring_ctx = ring_ctx};
-	g->port = (struct engine_guests){take, answered, released, g};
+	g->port = (struct engine_guests){take_message, answered, released, g};
 	g->there.size = ring_size(most);
 	g->back.size = ring_size(2 * most);
 	g->asked = calloc(g->there.size, sizeof(*g->asked));

@@ -11,7 +11,7 @@
 
 struct guests_message {
 	struct engine_guest *guest;
-	bool released; /* what was lent is back; else it is answered */
+	bool released; /* the guest's memory is returned; else the guest is answered */
 };
 
 struct guests {
@@ -25,7 +25,7 @@ struct guests {
 	void *ring_ctx;
 };
 
-/* Room for most requests at a time. ring wakes the engine. 0 or a negative errno. */
+/* Make room for `most` requests at a time. ring wakes the engine. 0 or a negative errno. */
 int guests_create(struct guests *guests, unsigned most, void (*ring)(void *ctx), void *ring_ctx);
 void guests_destroy(struct guests *guests);
 
@@ -33,8 +33,8 @@ void guests_destroy(struct guests *guests);
 void guests_ask(struct guests *guests, struct engine_guest *guest);
 bool guests_next(struct guests *guests, struct guests_message *message);
 /*
- * Before and after a wait for wake_fd, which is watched by its edges and so never read. False: there
- * is something already.
+ * Called before and after a wait for wake_fd, which is watched edge-triggered and so never read.
+ * guests_sleep() returns false when a message has come already.
  */
 bool guests_sleep(struct guests *guests);
 void guests_awake(struct guests *guests);

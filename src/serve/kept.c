@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Answers that need no bus: inputs of the table, and what clients read lately. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -181,7 +182,9 @@ void kept_add(struct kept *kept, const struct node *node, int64_t measured_ns, c
 	size_t path_len = strlen(node->path);
 	struct entry *set, *best;
 
-	/* what an alias means may change; of an unknown property nobody knows how long it is true */
+	/*
+	 * what an alias means may change; of an unknown property nobody knows how long it is true
+	 */
 	if (!node->has_rom || node->bus >= 0 || !node->type || path_len > PATH_MAX_KEPT ||
 	    len > KEPT_TEXT_MAX || strcmp(node->path + node->device_len, "/present") == 0 ||
 	    node->type == PROPERTY_ALIAS)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Reads that need no bus: properties that are inputs of the table and were read lately, and what
- * clients asked for lately. The times are those of owserver's cache, but shorter where the control
- * program may have changed what is kept: 2 s, 300 s for what never changes.
+ * Reads that need no bus: properties that are inputs of the table and were read lately, and answers
+ * that clients got lately. The life of an answer is as in owserver's cache, but shorter where the
+ * control program may have changed the property: 2 s; and 300 s for a property that never changes.
  */
 #ifndef SERVE_KEPT_H
 #define SERVE_KEPT_H
@@ -22,13 +22,13 @@ void kept_destroy(struct kept *kept);
 /* The text, as a bus would give it, or -ENOENT. image is of the same config. Returns the length. */
 int kept_find(struct kept *kept, const struct image *image, const struct node *node, int64_t now_ns,
               char *text, size_t room);
-/* Keep what a bus has answered, as long as it is worth it. */
+/* Keep the answer of a bus, if the property may be kept at all. */
 void kept_add(struct kept *kept, const struct node *node, int64_t measured_ns, const uint8_t *text,
               size_t len);
-/* Something of this device was written, or may have been. */
+/* Forget the answers of a device of which a property was written, or may have been. */
 void kept_forget(struct kept *kept, const struct node *node);
 
-/* The signal (record of the image) whose path is this, as output or as input; -1: none. */
+/* The signal (record of the image) with this path, output or input; -1: none. */
 int kept_signal(const struct kept *kept, const char *path, bool output);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a path of a client means: a part of the targets' namespace, a signal, a return code. Pure
+ * The meaning of a client's path: a part of the targets' namespace, a signal, a return code. Pure
  * functions.
  *
  *     [/uncached|/alarm|/bus.N]... device/property      what the targets have
@@ -16,7 +16,7 @@
 #define NODE_PATH_MAX (PATH_LEN_MAX + 32)
 
 enum node_kind {
-	NODE_NONE,    /* nothing can be there */
+	NODE_NONE,    /* the path cannot exist */
 	NODE_TARGET,  /* what the targets have */
 	NODE_SIGNALS, /* the directory of the signals */
 	NODE_SIGNAL,
@@ -27,11 +27,11 @@ enum node_kind {
 struct node {
 	uint8_t kind;
 	bool fresh;
-	bool uncached; /* by its path */
+	bool uncached; /* the path begins with /uncached */
 	bool devices;  /* a directory of devices: the root, /alarm, those of a bus */
-	bool root;     /* ... and of all else: / or /uncached */
-	bool every;    /* each target has its part of it */
-	bool slash;    /* the path ended with one, as only that of a directory may */
+	bool root;     /* the root directory: / or /uncached */
+	bool every;    /* each target has a part of the directory */
+	bool slash;    /* the path ends with a slash, as only the path of a directory may */
 	int bus;       /* N of bus.N as clients count them, -1: none */
 	bool has_device, has_rom;
 	uint8_t rom[ROM_LEN];
@@ -45,7 +45,7 @@ struct node {
 };
 
 void node_parse(const char *path, size_t len, struct node *node);
-/* Is this name, an entry of the directory, itself one? */
+/* Is this name, an entry of the directory, a directory itself? */
 bool node_is_directory(const struct node *directory, const char *name, size_t len);
 
 #endif

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The parser of requests of the owserver protocol. */
 #include <errno.h>
 #include <string.h>
 

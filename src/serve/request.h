@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A request of the owserver protocol as it stands in a buffer. Pure functions over hostile bytes:
- * nothing is trusted but what was checked here.
+ * A request of the owserver protocol as it stands in a buffer. Pure functions over bytes of clients
+ * that may be hostile: every length is checked here before it is used.
  */
 #ifndef SERVE_REQUEST_H
 #define SERVE_REQUEST_H
@@ -27,9 +27,10 @@ struct request {
 };
 
 /*
- * Look at `have` bytes. Returns 0: more are needed, *length says how many in all (24 while that is
- * not known); 1: *request is whole and points into bytes, *length are its bytes; -EPROTO: this is
- * no request, -EMSGSIZE: too long. After an error the connection cannot be used any more.
+ * Parse `have` bytes. Returns 0: more bytes are needed, in all *length (24 while that is not
+ * known); 1: *request is whole and points into bytes, *length is its length; -EPROTO: this is no
+ * request; -EMSGSIZE: the request is too long. After an error the connection cannot be used any
+ * more.
  */
 int request_parse(const uint8_t *bytes, size_t have, struct request *request, size_t *length);
 

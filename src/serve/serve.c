@@ -31,7 +31,7 @@ static const char *const counter_names[SERVE_COUNTER_COUNT] = {
 #undef X
 };
 
-/* Address space of which only what is touched becomes memory. */
+/* Reserve address space; only the pages that are touched become memory. */
 static void *reserve(size_t size)
 {
 	void *p = mmap(NULL, size, PROT_READ | PROT_WRITE,
@@ -199,7 +199,10 @@ static void *run(void *arg)
 
 		if (wait && !guests_sleep(&s->guests))
 			wait = 0;
-		/* on one CPU a client that was just answered runs now: its next request saves a sleep */
+		/*
+		 * on one CPU a client that was just answered runs now: its next request saves a
+		 * sleep
+		 */
 		if (wait)
 			sched_yield();
 		n = epoll_wait(s->epoll_fd, events, EVENTS, wait);

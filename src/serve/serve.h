@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The server of the owserver protocol: a thread of its own between clients that nobody trusts and
- * the engine. It answers what it can from the shared memory and from what was read lately, and
- * hands the rest to the engine as requests of guests (engine/guest.h). It allocates nothing after
- * serve_start().
+ * The server of the owserver protocol: a thread between clients, which it does not trust, and the
+ * engine. The server answers what it can from the shared memory and from what was read lately, and
+ * hands the rest to the engine as requests of guests (src/engine/guest.h). It allocates nothing
+ * after serve_start().
  */
 #ifndef SERVE_H
 #define SERVE_H
@@ -25,31 +25,32 @@ struct serve_setup {
 };
 
 /*
- * Take the addresses and allocate. 0, or a negative errno (-EADDRINUSE), the reason then stands in
- * why. config asks for at least one address or a socket.
+ * Listen at the addresses, and allocate. 0, or a negative errno (-EADDRINUSE) with the reason in
+ * why. config has at least one address or a socket.
  */
 int serve_create(const struct serve_setup *setup, struct serve **serve, char *why, size_t why_size);
 const struct engine_guests *serve_guests(struct serve *serve);
-/* Start the thread; the image is in place and lives as long. 0 or a negative errno. */
+/* Start the thread; the image is in place, and outlives the server. 0 or a negative errno. */
 int serve_start(struct serve *serve, const struct image *image);
 /* Allocate what a reload needs, while it can still be refused. 0 or -ENOMEM. */
 int serve_prepare(struct serve *serve, const struct config *config);
 /*
- * Once it is prepared: the table and the targets are others from now on; ports[i] is what target i
- * was before, -1: none. What serve.config listens to is the same. Blocks until the thread has taken
- * it; config and image live until the next reload or serve_destroy().
+ * After serve_prepare(): serve the table and the targets of another config from now on. ports[i] is
+ * the index that target i had before, -1: none. The addresses to listen at are the same. Blocks
+ * until the thread has taken config over; config and image live until the next reload or
+ * serve_destroy().
  */
 void serve_reload(struct serve *serve, const struct config *config, const struct image *image,
                   const int *ports);
 /* End the thread; clients are closed. */
 void serve_stop(struct serve *serve);
-/* When nobody writes to what guests have lent any more. */
+/* Free the server, once neither engine nor bus writes to the memory of a guest any more. */
 void serve_destroy(struct serve *serve);
 
 /* Any thread. */
 const struct bus_counter *serve_counters(const struct serve *serve, size_t *n);
 
-/* Is it served to others than this machine, with writing allowed? */
+/* May other machines write through this server? */
 bool serve_is_open(const struct config_serve *config);
 
 #endif

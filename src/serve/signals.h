@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The table as clients of the protocol see it, in /signals: read and commanded as any consumer of
- * the shared memory does. A value that is not good is an error and no value.
+ * The table as clients of the protocol see it in /signals; the server reads and commands signals as
+ * any consumer of the shared memory does. A value that is not good is answered as an error.
  */
 #ifndef SERVE_SIGNALS_H
 #define SERVE_SIGNALS_H
@@ -18,9 +18,9 @@ struct signals;
 int signals_open(const char *instance, struct signals **signals);
 void signals_close(struct signals *signals);
 
-/* Does this name stand for a signal or an attribute? */
+/* Is this the name of a signal or of an attribute? */
 bool signals_has(struct signals *signals, const char *name);
-/* The record of the signal that it is or belongs to; -1: there is none. */
+/* The record of the signal that has this name or attribute; -1: there is none. */
 int signals_record(struct signals *signals, const char *name);
 /*
  * The text of a signal or attribute. Its length; -ENOENT no such name, -EACCES not readable, -EIO
@@ -32,7 +32,7 @@ int signals_read(struct signals *signals, const char *name, int64_t now_ns, char
 /* A command that is on its way. */
 struct signals_command {
 	unsigned record;     /* 0: nothing to wait for */
-	uint32_t generation; /* of the image that counts it so */
+	uint32_t generation; /* of the image in which the signal has this record */
 	uint32_t stamp;
 	int64_t since_ns;
 };

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The tokens of the servers that a request came through. */
 #include <string.h>
 #include <sys/random.h>
 #include <time.h>

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The servers that a request came through. Each owserver puts its token behind what it passes on, so
- * that a request which went round comes to an end. The genuine owserver 3.2 clears the first byte of
- * the tokens that it passes on; so that byte counts for nothing here and is 0 in ours.
+ * The servers that a request came through. Each owserver appends its token to the requests that it
+ * passes on, so that a request which runs in a circle comes to an end. The genuine owserver 3.2
+ * clears the first byte of the tokens that it passes on; so owsd ignores that byte, and sends 0 in
+ * its own.
  */
 #ifndef SERVE_VIA_H
 #define SERVE_VIA_H
@@ -16,9 +17,9 @@ struct via {
 
 /* A token that no other server has. Never blocks. */
 void via_token(uint8_t token[BUS_TOKEN]);
-/* Did it come through this server before, or through more of them than can be told? */
+/* Did the request come through this server before, or through too many servers to know? */
 bool via_came_round(const uint8_t *tokens, uint32_t count, const uint8_t token[BUS_TOKEN]);
-/* What goes with it to a target; it has not come round. */
+/* The tokens that go with the request to a target; not for a request that has come round. */
 void via_pass(struct via *via, const uint8_t *tokens, uint32_t count,
               const uint8_t token[BUS_TOKEN]);
 
