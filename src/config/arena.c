@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* An arena: memory that is taken piece by piece and freed all at once. */
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>

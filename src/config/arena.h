@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Memory that is taken piece by piece and given back at once. */
+/* An arena: memory that is taken piece by piece and freed all at once. */
 #ifndef CONFIG_ARENA_H
 #define CONFIG_ARENA_H
 
@@ -10,9 +10,9 @@ struct arena { /* all zero: empty */
 	struct arena_chunk *chunks;
 };
 
-/* Zeroed, aligned for any type. NULL: no memory. */
+/* Take size zeroed bytes, aligned for any type. NULL: no memory. */
 void *arena_take(struct arena *arena, size_t size);
-/* len bytes of text and a NUL. */
+/* Take a copy of len bytes of text, with a NUL. */
 char *arena_text(struct arena *arena, const char *text, size_t len);
 void arena_free(struct arena *arena);
 

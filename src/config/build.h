@@ -19,10 +19,10 @@ struct build {
 	bool no_memory;
 };
 
-/* A copy in the arena; "" and no_memory if there is no room. */
+/* A copy of the text in the arena; "" and no_memory set when there is no memory. */
 const char *build_keep(struct build *build, const char *text, size_t len);
 
-/* Zeroed room for count elements and one more; NULL and no_memory if there is none. */
+/* Zeroed room for count elements and one more; NULL and no_memory set when there is no memory. */
 void *build_take(struct build *build, size_t count, size_t size);
 
 #endif

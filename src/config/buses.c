@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The Bus blocks. What an option means is the backend's: here is only what its value looks like. */
+/* Reads the Bus blocks. Only the form of a value is checked here; the backend knows its meaning. */
 #include <string.h>
 
 #include "src/config/build.h"
@@ -71,7 +71,7 @@ const struct config_bus *config_bus(const struct config *config, const char *tar
 	return NULL;
 }
 
-/* What an auto target stands for is not known here. */
+/* Is the target configured? With auto always, since its ways are not known here. */
 static bool is_served(const struct config *config, const char *target)
 {
 	for (unsigned i = 0; i < config->target_count; i++)

@@ -14,7 +14,7 @@ void buses_build(struct build *build, const struct rio_node *driver);
 
 /* The Bus block of a target, however it is spelt; NULL: it has none. */
 const struct config_bus *config_bus(const struct config *config, const char *target);
-/* Warn of Bus blocks whose target is none of those that are served. */
+/* Warn of Bus blocks whose target is not among the configured targets. */
 void config_check_buses(const struct config *config, struct config_report *report);
 
 #endif

@@ -46,7 +46,7 @@ struct config_item {
 	struct config_limits limits;
 	int line; /* of Item */
 };
-/* An input whose Writable is off is never written, whatever its _WriteEnable is set to. */
+/* Does the item take sets? An input with Writable off never does, whatever its _WriteEnable. */
 static inline bool config_item_takes_sets(const struct config_item *item)
 {
 	return item->output || item->writable;
@@ -105,7 +105,7 @@ struct config {
 	struct config_serve serve;
 };
 
-/* Collects what was found wrong; message is complete ("house.rio:12:26: error: ..."). */
+/* Receives the errors and warnings; a message is a whole line ("house.rio:12:26: error: ..."). */
 struct config_report {
 	void (*line)(void *ctx, bool is_error, const char *message);
 	void *ctx;

@@ -24,7 +24,7 @@ const char edit_empty[] = "OwsDrv {\n"
 			  "  ItemCount               0\n"
 			  "}\n";
 
-/* What is edited is named by the command line, not by a place in the file. */
+/* The place of errors in edits: the command line, not a place in the file. */
 static const struct place command_line;
 
 static struct rio_node *find_driver(const struct rio *rio)
@@ -48,7 +48,7 @@ static struct rio_node *find_item(const struct rio *rio, const char *name)
 	return NULL;
 }
 
-/* The block that name stands for; says so if there is none. */
+/* The block of that name; reports an error if there is none. */
 static struct rio_node *find_block(const struct rio *rio, const char *name,
                                    enum option_place *place, struct config_report *report)
 {
@@ -113,7 +113,7 @@ static int split_setting(char *setting, enum option_place place, enum option *op
 	return 0;
 }
 
-/* IOType with Type, IO or Uncached put into it; false if the setting is not one of these. */
+/* Put Type, IO or Uncached into the bits of IOType; false: the setting is none of these. */
 static bool change_bits(enum option option, const char *value, unsigned long *bits)
 {
 	int type;
@@ -174,7 +174,7 @@ static int apply(struct rio **rio, struct rio_node *block, enum option option, c
 	return put_value(rio, block, option, value);
 }
 
-/* With an item of that name nobody could reach the driver's own keys any more. */
+/* Refuse the name of the driver for an item: it would hide the driver's own keys. */
 static bool is_driver_name(const char *name, struct config_report *report)
 {
 	if (strcmp(name, DRIVER) != 0)
@@ -186,7 +186,7 @@ static bool is_driver_name(const char *name, struct config_report *report)
 	return true;
 }
 
-/* Which of two values of one key was meant nobody can know. */
+/* Refuse settings that give one key twice: either value may be the intended one. */
 static int check_once(const char *const *settings, unsigned count, struct config_report *report)
 {
 	for (unsigned i = 1; i < count; i++) {
@@ -229,7 +229,7 @@ int edit_set(struct rio **rio, const char *name, const char *const *settings, un
 			err = -EINVAL;
 		if (!err)
 			err = apply(rio, block, option, value);
-		/* it goes by its new name from here on */
+		/* the item has its new name from here on */
 		if (!err && option == OPT_NAME)
 			snprintf(current, sizeof(current), "%s", value);
 		free(setting);

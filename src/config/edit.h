@@ -4,7 +4,7 @@
  * document: comments, order and spelling of everything else stay.
  *
  * Settings are "KEY=VALUE". Type, IO and Uncached go into the bits of IOType where an item has
- * that. What is wrong is said through report. Returns 0, -EINVAL (said), -ENOMEM or -EFBIG.
+ * that. Errors go to report. Returns 0, -EINVAL (reported), -ENOMEM or -EFBIG.
  */
 #ifndef CONFIG_EDIT_H
 #define CONFIG_EDIT_H
@@ -17,30 +17,30 @@ int edit_add(struct rio **rio, const char *name, const char *path, const char *c
 /* Change an item, or the driver's own keys: name "OwsDrv". */
 int edit_set(struct rio **rio, const char *name, const char *const *settings, unsigned count,
              struct config_report *report);
-/* Take keys out, so that they are not defined. */
+/* Remove keys, so that they are not defined. */
 int edit_unset(struct rio **rio, const char *name, const char *const *keys, unsigned count,
                struct config_report *report);
 int edit_remove(struct rio **rio, const char *name, struct config_report *report);
 /* Put an item before another, or behind it, with the comment lines directly above it. */
 int edit_move(struct rio **rio, const char *name, const char *other, bool behind,
               struct config_report *report);
-/* ItemCount, where the file has it, as there are items. */
+/* Correct ItemCount, where the file has that key, to the number of items. */
 int edit_count(struct rio **rio);
 
 /* The text of a configuration without items. */
 extern const char edit_empty[];
 
 /*
- * Keep other edits away from file, from before it is read until it is committed: a descriptor to be
- * closed then, or a negative errno (said). Blocking, for five seconds at most.
+ * Lock file against other edits; call it before reading the file. Returns a descriptor, which the
+ * caller closes after the commit, or a negative errno (reported). Blocking, five seconds at most.
  */
 int edit_lock(const char *file, struct config_report *report);
 
 /*
  * Check the document, then put it in the place of file in one step: a temporary file beside it,
  * with the same owner and mode, written out and renamed. A symbolic link stays and its target is
- * replaced. Whatever fails, the old file is untouched. 0, -EINVAL (check, said) or a negative
- * errno (said). Blocking.
+ * replaced. When something fails, the old file is untouched. 0, -EINVAL (the check, reported) or a
+ * negative errno (reported). Blocking.
  */
 int edit_commit(const struct rio *rio, const char *file, struct config_report *report);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Items of the file: what their keys make of a signal, and what is wrong or odd about it. */
+/* Makes an item of a block of the file, and reports what is wrong or odd about its keys. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -280,7 +280,9 @@ static void build_alarm(struct build *build, const struct rio_node *block,
 	warn_without_equals(build, &values[OPT_RESET_LATCH], "");
 }
 
-/* A fraction is no integer, so such a signal would be good now and then. */
+/*
+ * Warn of an integer type for a property with decimals: its value would be bad at every fraction.
+ */
 static void warn_of_decimals(struct build *build, const struct rio_node *block,
                              const struct option_value *values, const struct config_item *item)
 {

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Addresses to listen at and ranges of peers: read, compared and printed. */
 #include <arpa/inet.h>
 #include <errno.h>
 #include <stdio.h>
@@ -16,7 +17,7 @@ static bool has_digits_only(const char *text, size_t len)
 	return len != 0;
 }
 
-/* All of the text a number up to most; -1. */
+/* The number that the whole text is, at most `most`; else -1. */
 static long number(const char *text, size_t len, long most)
 {
 	long value = 0;
@@ -99,7 +100,7 @@ int listen_parse(const char *text, size_t len, struct listen_address addresses[2
 	return numeric(host, host_len, &addresses[0].is_v6, addresses[0].bytes) ? -EINVAL : 1;
 }
 
-/* As peers are looked up: an IPv4 range in IPv6 form would never have one. */
+/* Make an IPv4 range in IPv6 form an IPv4 range, as listen_peers_have() looks peers up. */
 static void as_v4(struct listen_peers *peers)
 {
 	if (!peers->is_v6 || peers->bits < 96 ||

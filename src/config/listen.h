@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Where the owserver protocol is served, and to whom: PORT, HOST:PORT, [IPv6]:PORT; peers as
- * addresses or ranges. Numeric addresses, so that no name server is asked. Pure functions.
+ * The addresses where owsd serves the owserver protocol (PORT, HOST:PORT, [IPv6]:PORT), and the
+ * peers that it serves (addresses or ranges). Only numeric, so that owsd asks no name server. Pure
+ * functions.
  */
 #ifndef CONFIG_LISTEN_H
 #define CONFIG_LISTEN_H
@@ -27,18 +28,18 @@ struct listen_peers {
 };
 
 /*
- * Read one address (len bytes). `4304` and `localhost:4304` are both loopback addresses, so one or
- * two are put into addresses (room for 2). Returns how many, or -EINVAL, the reason in *why.
+ * Read one address (len bytes). `4304` and `localhost:4304` mean both loopback addresses, so the
+ * function stores one or two addresses. Returns how many, or -EINVAL with the reason in *why.
  */
 int listen_parse(const char *text, size_t len, struct listen_address addresses[2],
                  const char **why);
-/* "192.168.1.0/24", "10.0.0.7", "fd00::/8". 0 or -EINVAL, the reason in *why. */
+/* Read peers: "192.168.1.0/24", "10.0.0.7", "fd00::/8". 0, or -EINVAL with the reason in *why. */
 int listen_peers_parse(const char *text, size_t len, struct listen_peers *peers, const char **why);
 
 bool listen_is_loopback(const struct listen_address *address);
 bool listen_same(const struct listen_address *a, const struct listen_address *b);
 bool listen_same_peers(const struct listen_peers *a, const struct listen_peers *b);
-/* IPv4 addresses in IPv6 form count as IPv4. */
+/* Is the address among the peers? IPv4 addresses in IPv6 form count as IPv4. */
 bool listen_peers_have(const struct listen_peers *peers, unsigned count, bool is_v6,
                        const uint8_t *bytes);
 /* "127.0.0.1:4304", "[::1]:4304" */

@@ -21,7 +21,7 @@ static int64_t nanoseconds(double seconds)
 	return (int64_t)(seconds * 1e9 + 0.5);
 }
 
-/* The one OwsDrv block of the file; NULL after having said what is there instead. */
+/* The one OwsDrv block of the file; NULL after reporting what the file has instead. */
 static const struct rio_node *find_driver(const struct rio *rio, const char *file,
                                           struct config_report *report)
 {

@@ -10,7 +10,7 @@ struct config_report;
 
 /*
  * Read and check a file. Returns 0, -EINVAL when report->errors > 0 (*config is then NULL), or a
- * negative errno of reading it (said through report too). Blocking (file).
+ * negative errno of reading the file (also reported). Blocking (file).
  */
 int config_load(const char *file, struct config_report *report, struct config **config);
 /* The same from memory; file is for messages. */

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The table of all keys of the configuration, and how the values of a block are read by it. */
 #include <ctype.h>
 #include <float.h>
 #include <math.h>
@@ -117,7 +118,7 @@ int option_find(enum option_place place, const char *key)
 	return -1;
 }
 
-/* Letters to change, put in or leave out; case does not count. */
+/* How many letters to change, insert or leave out to get from a to b; case does not count. */
 static unsigned distance(const char *a, const char *b)
 {
 	unsigned row[RIO_KEY_MAX + 1];
@@ -165,7 +166,9 @@ const char *option_nearest(enum option_place place, const char *key)
 	return nearest;
 }
 
-/* The real names of the alarm keys are not public: a value may tell that one of them was meant. */
+/*
+ * Does the value look like that of an alarm key? The original's names of these keys are not public.
+ */
 static bool looks_like_alarm(const struct rio_node *node)
 {
 	return node->kind == RIO_STRING &&
@@ -247,8 +250,8 @@ static bool parse_kind(const struct option_def *def, const char *text, double *n
 	return false;
 }
 
-static void say_expected(const struct option_def *def, const struct rio_node *node,
-                         struct config_report *report)
+static void report_expected(const struct option_def *def, const struct rio_node *node,
+                            struct config_report *report)
 {
 	switch (def->kind) {
 	case OPTION_COUNT:
@@ -314,7 +317,7 @@ static void read_one(const struct rio_node *node, const struct option_def *def,
 	if (def->kind == OPTION_BLOCK)
 		return;
 	if (!parse_kind(def, node->value, &number)) {
-		say_expected(def, node, report);
+		report_expected(def, node, report);
 		return;
 	}
 	value->text = node->value;

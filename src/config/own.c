@@ -15,7 +15,10 @@ static bool is_any(const struct listen_address *address)
 	return memcmp(address->bytes, any, sizeof(any)) == 0;
 }
 
-/* One who listens at all addresses is met at this machine's own. */
+/*
+ * Does target reach the server at served? A server at all addresses is reached at any of this
+ * machine.
+ */
 static bool meets(const struct listen_address *served, const struct listen_address *target)
 {
 	if (!served->port || served->port != target->port)
@@ -59,7 +62,7 @@ bool config_has_servers(const struct config *config)
 	return false;
 }
 
-/* The next way takes its place in the row. */
+/* Remove target i; the next way takes its relation to the target before. */
 static void leave_out(struct config *config, unsigned i)
 {
 	struct config_target *target = &config->targets[i];

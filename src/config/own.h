@@ -9,8 +9,8 @@ struct config;
 struct config_report;
 
 /*
- * A target that leads back to this owsd's own server is an error; of auto it is left out, with a
- * warning. 0 or -EINVAL.
+ * Check that no target leads back to this owsd's own server: such a target is an error; a way of
+ * auto is left out with a warning. 0 or -EINVAL.
  */
 int config_check_own(struct config *config, struct config_report *report);
 /* Is a target a server of the owserver protocol? */

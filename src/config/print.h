@@ -7,7 +7,7 @@
 
 struct config;
 
-/* What `owsd --check` prints: the configuration as understood. */
+/* Print the configuration as owsd understands it, for `owsd --check`. */
 void config_print(const struct config *config, FILE *out);
 
 #endif

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Replaces a file in one step: a temporary file beside it is written out and renamed. */
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -31,8 +32,8 @@ static int write_all(int fd, const char *text, size_t len)
 	return 0;
 }
 
-/* The owner first: changing it takes set-id bits away. */
-static int take_over(int fd, const struct stat *old)
+/* Give the new file the owner and then the mode of the old: a new owner clears the set-id bits. */
+static int copy_owner(int fd, const struct stat *old)
 {
 	struct stat made;
 
@@ -54,7 +55,7 @@ static int mode_of_new_file(int fd)
 
 static int fill(int fd, const struct stat *old, const char *text, size_t len)
 {
-	int err = old ? take_over(fd, old) : mode_of_new_file(fd);
+	int err = old ? copy_owner(fd, old) : mode_of_new_file(fd);
 
 	if (!err)
 		err = write_all(fd, text, len);
@@ -63,7 +64,7 @@ static int fill(int fd, const struct stat *old, const char *text, size_t len)
 	return err;
 }
 
-/* The directory of path, which is cut for it. */
+/* Open the directory of path; cuts path at its last slash. */
 static int open_directory(char *path)
 {
 	char *slash = strrchr(path, '/');
@@ -73,7 +74,7 @@ static int open_directory(char *path)
 	return open(slash ? (slash == path ? "/" : path) : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
 }
 
-/* The rename itself has to reach the disk too; file systems that cannot do that are no error. */
+/* Bring the rename to the disk too; a file system that cannot do so is no error. */
 static void sync_directory(char *path)
 {
 	int fd = open_directory(path);
@@ -111,7 +112,7 @@ int replace_file(const char *file, const char *text, size_t len)
 	struct stat old;
 
 	if (!realpath(file, path)) {
-		/* a link to nowhere is not for us to make */
+		/* owsd does not create the missing target of a link */
 		if (errno != ENOENT || !lstat(file, &old))
 			return -errno;
 		if (strlen(file) >= sizeof(path))
@@ -139,7 +140,9 @@ int replace_lock(const char *file)
 			return -ENAMETOOLONG;
 		memcpy(path, file, strlen(file) + 1);
 	}
-	/* The directory stays when the file in it is replaced, and is there before the file is */
+	/*
+	 * Lock the directory: it stays when the file is replaced, and exists before the file does
+	 */
 	fd = open_directory(path);
 	if (fd < 0)
 		return -errno;

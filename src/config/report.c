@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Errors and warnings about a configuration, formatted with their place and passed on. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,10 +10,10 @@
 
 #define MESSAGE_MAX (PRINTABLE_LINE + 300)
 
-static void put(struct config_report *report, struct place place, bool is_error, const char *format,
-                va_list args) __attribute__((format(printf, 4, 0)));
-static void put(struct config_report *report, struct place place, bool is_error, const char *format,
-                va_list args)
+static void put_line(struct config_report *report, struct place place, bool is_error,
+                     const char *format, va_list args) __attribute__((format(printf, 4, 0)));
+static void put_line(struct config_report *report, struct place place, bool is_error,
+                     const char *format, va_list args)
 {
 	unsigned *count = is_error ? &report->errors : &report->warnings;
 	const char *kind = is_error ? "error" : "warning";
@@ -33,7 +34,7 @@ static void put(struct config_report *report, struct place place, bool is_error,
 	else if ((text = printable_line(format, args)))
 		snprintf(message + n, sizeof(message) - (size_t)n, "%s", text);
 	free(text);
-	/* values of the file are quoted in it */
+	/* the message quotes values of the file, which may hold control characters */
 	message[printable(message, strlen(message))] = '\0';
 	report->line(report->ctx, is_error, message);
 }
@@ -43,7 +44,7 @@ void report_error(struct config_report *report, struct place place, const char *
 	va_list args;
 
 	va_start(args, format);
-	put(report, place, true, format, args);
+	put_line(report, place, true, format, args);
 	va_end(args);
 }
 
@@ -52,6 +53,6 @@ void report_warning(struct config_report *report, struct place place, const char
 	va_list args;
 
 	va_start(args, format);
-	put(report, place, false, format, args);
+	put_line(report, place, false, format, args);
 	va_end(args);
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The reader of .rio files: bytes become a document of nodes with their places. */
 #include <errno.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -72,7 +73,7 @@ static void skip_line(struct parser *p)
 		p->at.p++;
 }
 
-/* Blanks, line ends and comments. */
+/* Skip blanks, line ends and comments. */
 static void skip(struct parser *p)
 {
 	while (!at_end(p)) {
@@ -143,7 +144,7 @@ static void add_to_value(struct parser *p, char c)
 	p->used++;
 }
 
-/* What add_to_value() collected; says so when it was too much. */
+/* Store in the node what add_to_value() collected; reports an error when it was too long. */
 static void take_value(struct parser *p, struct rio_node *node)
 {
 	if (p->used > sizeof(p->value)) {
@@ -278,7 +279,10 @@ static void parse_key(struct parser *p, struct rio_node *node)
 	node->key = keep(p, begin, len);
 }
 
-/* A word has to stand in the line of its key: a key whose value was forgotten takes no other. */
+/*
+ * An entry: a key and its value, in one line, so that a key without value does not take the next
+ * word.
+ */
 static void parse_entry(struct parser *p, struct rio_node *block, int depth)
 {
 	struct rio_node *node = node_make(p, block);

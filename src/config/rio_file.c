@@ -11,7 +11,7 @@
 #include "src/config/rio.h"
 #include "src/config/rio_file.h"
 
-/* One byte more than is allowed, so that a longer file is known as such. */
+/* One byte more than is allowed, so that a longer file is recognised. */
 #define ROOM_MAX ((size_t)RIO_FILE_MAX + 1)
 
 /* NULL: *err is why. */
@@ -49,7 +49,7 @@ static char *read_all(int fd, size_t *len, int *err)
 	return data;
 }
 
-/* As Windows saves what it calls Unicode; with a byte order mark or without. */
+/* Is the text UTF-16, as some editors save files, with or without a byte order mark? */
 static bool is_utf16(const char *text, size_t len)
 {
 	return len >= 2 && (!memcmp(text, "\xff\xfe", 2) || !memcmp(text, "\xfe\xff", 2) ||
@@ -70,7 +70,7 @@ static const char *kind_of(mode_t mode)
 	}
 }
 
-/* A pipe may have nobody at its other end, and a device any number of bytes. */
+/* Refuse all but regular files: a pipe may have no writer, and a device any number of bytes. */
 static int check(const struct stat *st, struct place place, struct config_report *report)
 {
 	if (!S_ISREG(st->st_mode)) {
@@ -91,7 +91,7 @@ static int cannot_read(struct config_report *report, struct place place, int err
 	return err;
 }
 
-/* A descriptor, or a negative errno after having said why. */
+/* Returns a descriptor, or a negative errno after reporting why. */
 static int open_file(const char *file, struct config_report *report)
 {
 	const struct place place = {file, 0, 0};
@@ -102,7 +102,7 @@ static int open_file(const char *file, struct config_report *report)
 		report_error(report, (struct place){0}, "the name of the configuration is empty");
 		return -EINVAL;
 	}
-	/* before it is opened, which is an act on some devices */
+	/* check before opening, which has an effect on some devices */
 	if (stat(file, &st) < 0)
 		return cannot_read(report, place, -errno);
 	err = check(&st, place, report);
@@ -111,7 +111,7 @@ static int open_file(const char *file, struct config_report *report)
 	fd = open(file, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
 	if (fd < 0)
 		return cannot_read(report, place, -errno);
-	/* and again, as another may have taken its place */
+	/* check again, since another file may have taken its place */
 	err = fstat(fd, &st) < 0 ? cannot_read(report, place, -errno) : check(&st, place, report);
 	if (err)
 		close(fd);

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Targets as they are written: lists with commas and bars, auto, and which spellings are the same. */
+/*
+ * Targets as they are written: lists with commas and bars, auto, and which spellings are the same.
+ */
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,7 +16,7 @@
 #define AUTO "auto"
 const char *const config_auto_ways[CONFIG_AUTO_WAYS] = {DEFAULT_TARGET, "i2c:auto", "w1"};
 
-/* Schemes and bare words that are no host; of owserver the scheme may be left out. */
+/* Schemes and bare words that are no host; the scheme of an owserver may be left out. */
 static const char *const schemes[] = {"i2c", "w1", "sim", "gpio", "null", "late", NULL};
 
 static bool is_scheme(const char *text, size_t len)
@@ -100,7 +102,7 @@ static void target_add(struct build *build, const char *text, size_t len,
 	config->target_count++;
 }
 
-/* auto is a bar like any other, and --check shows it. */
+/* Add a target; auto becomes its ways, joined by bars, as --check shows. */
 static void add_member(struct build *build, const char *text, size_t len,
                        enum config_relation relation, struct place place)
 {
