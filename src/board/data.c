@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The data files of boards: read, listed, and matched with the machine. */
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>

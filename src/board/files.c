@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The files of the machine that a look at the board reads, below a root directory. */
 #include <fcntl.h>
 #include <stdarg.h>
 #include <stdint.h>

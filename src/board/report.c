@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The report of `--board`: its lines, in order of importance, and their remedies. */
 #include <stdarg.h>
 #include <string.h>
 

@@ -97,7 +97,6 @@ static int check_image(struct ows_map *map)
 {
 	/* zeroed for the analyzer of gcc, which does not follow the loads */
 	struct ows_image_header h = {0};
-
 	size_t size = map->image_size;
 
 	words_load(&h, map->base, sizeof(h) / 4);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Conditions of `owsctl wait`: a comparison of a signal with a value. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>

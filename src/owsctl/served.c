@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Finds the target that reaches the served protocol of an instance. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The terminal of the live views: raw mode, its size, its keys, and the signals that end or stop
+ * it.
+ */
 #include <errno.h>
 #include <poll.h>
 #include <signal.h>
