@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The table of all backends of this build. */
 #include "hal/bus/bus.h"
 
 /* clang-format off */

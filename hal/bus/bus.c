@@ -9,7 +9,7 @@
 
 #include "hal/bus/bus.h"
 
-/* How often a suspended bus looks whether its target is there again. */
+/* How often a suspended bus checks whether its target is back. */
 #define LOOK_NS INT64_C(3000000000)
 
 static const struct bus_ops *backend_of(const char *word, size_t len)
@@ -20,7 +20,7 @@ static const struct bus_ops *backend_of(const char *word, size_t len)
 	return NULL;
 }
 
-/* Is WORD:REST meant as HOST:PORT, however wrong the port is? */
+/* Does WORD:REST mean HOST:PORT, even with a wrong port? */
 static bool is_host_and_port(const char *target, const char *colon)
 {
 	const char *rest = colon + 1 + strspn(colon + 1, " \t+-");
@@ -30,14 +30,14 @@ static bool is_host_and_port(const char *target, const char *colon)
 	       (len == 9 && memcmp(target, "localhost", len) == 0);
 }
 
-/* An IPv6 address without its brackets. */
+/* Is the target an IPv6 address without its brackets? */
 static bool is_bare_ipv6(const char *target, const char *colon)
 {
 	return strchr(colon + 1, ':') && target[strspn(target, "0123456789abcdefABCDEF:.")] == '\0';
 }
 
 /*
- * Adapters that OWFS takes by such a word, and that owsd reaches by others only. False: it is none.
+ * Is the word an adapter of OWFS that owsd reaches only by another target? Then why has the remedy.
  */
 static bool is_others_adapter(const char *word, size_t len, char *why, size_t why_size)
 {
@@ -182,7 +182,7 @@ static struct bus_req **slot(struct bus *bus, unsigned i)
 	return &bus->queue[(bus->head + i) % bus->ops->depth];
 }
 
-static struct bus_req *take(struct bus *bus, unsigned i)
+static struct bus_req *take_request(struct bus *bus, unsigned i)
 {
 	struct bus_req *req = *slot(bus, i);
 
@@ -215,7 +215,7 @@ int bus_submit(struct bus *bus, struct bus_req *req)
 
 static void exec_next(struct bus *bus)
 {
-	struct bus_req *req = take(bus, most_urgent(bus));
+	struct bus_req *req = take_request(bus, most_urgent(bus));
 	struct bus_answer answer = {.id = req->id};
 
 	if (bus->env->now(bus->env->ctx) >= req->deadline_ns)
@@ -225,32 +225,32 @@ static void exec_next(struct bus *bus)
 	bus->env->answer(bus->env->ctx, &answer);
 }
 
-static void tell(struct bus *bus, enum bus_news news)
+static void report_news(struct bus *bus, enum bus_news news)
 {
 	const struct bus_event event = {.news = (uint8_t)news};
 
 	bus->env->event(bus->env->ctx, &event);
 }
 
-/* A bus that has no step cannot be down. */
-static void tell_up(struct bus *bus)
+/* Report BUS_UP for a bus without a step, which cannot be down. */
+static void report_up(struct bus *bus)
 {
 	if (bus->told_up || bus->ops->step)
 		return;
 	bus->told_up = true;
-	tell(bus, BUS_UP);
+	report_news(bus, BUS_UP);
 }
 
 static void refuse_all(struct bus *bus)
 {
 	while (bus->count) {
-		struct bus_answer answer = {.id = take(bus, 0)->id, .err = -ENOTCONN};
+		struct bus_answer answer = {.id = take_request(bus, 0)->id, .err = -ENOTCONN};
 
 		bus->env->answer(bus->env->ctx, &answer);
 	}
 }
 
-static int64_t look(struct bus *bus, int64_t now)
+static int64_t look_for_target(struct bus *bus, int64_t now)
 {
 	int there;
 
@@ -260,7 +260,7 @@ static int64_t look(struct bus *bus, int64_t now)
 	if (there == -EAGAIN)
 		return now;
 	if (there > 0 && !bus->there)
-		tell(bus, BUS_BACK);
+		report_news(bus, BUS_BACK);
 	bus->there = there > 0;
 	bus->look_ns = bus->env->now(bus->env->ctx) + LOOK_NS;
 	return bus->look_ns;
@@ -272,7 +272,7 @@ static int64_t step_suspended(struct bus *bus, int64_t now)
 		refuse_all(bus);
 	else
 		bus->ops->step(bus, now);
-	return look(bus, now);
+	return look_for_target(bus, now);
 }
 
 int64_t bus_step(struct bus *bus, int64_t now)
@@ -283,7 +283,7 @@ int64_t bus_step(struct bus *bus, int64_t now)
 		return step_suspended(bus, now);
 	if (!bus->ops->exec)
 		return bus->ops->step(bus, now);
-	tell_up(bus);
+	report_up(bus);
 	if (bus->ops->step)
 		next = bus->ops->step(bus, now);
 	if (bus->count == 0)
@@ -304,7 +304,7 @@ void bus_suspend(struct bus *bus, bool yes)
 		return;
 	if (bus->ops->exec)
 		refuse_all(bus);
-	tell(bus, BUS_RELEASED);
+	report_news(bus, BUS_RELEASED);
 	bus->there = false;
 	bus->look_ns = 0;
 }

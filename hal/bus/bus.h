@@ -41,36 +41,36 @@ enum bus_kind {
 enum bus_news {
 	BUS_UP,       /* requests can be served from now on */
 	BUS_DOWN,     /* the target is lost: err and text say why; sent once per loss */
-	BUS_FOUND,    /* the device rom came (buses that search) */
-	BUS_LOST,     /* the device rom went */
+	BUS_FOUND,    /* the device rom appeared (buses that search) */
+	BUS_LOST,     /* the device rom disappeared */
 	BUS_POR,      /* the device rom was seen to have restarted */
 	BUS_NOTE,     /* text for the log, nothing changes */
-	BUS_RELEASED, /* asked to suspend, the bus has let go of its hardware */
-	BUS_BACK, /* suspended, it sees that its target is there again, without having touched the
-	              wire; told once per change */
+	BUS_RELEASED, /* the bus was asked to suspend and has released its hardware */
+	BUS_BACK,     /* the suspended bus sees that its target is back, without touching the wire;
+	                 sent once per change */
 };
 
 /*
- * A request. Lent to the bus from bus_submit() until its answer; the caller does not touch it
- * meanwhile, and neither frees nor reuses it before the answer came.
+ * A request. The bus owns it from bus_submit() until its answer; the caller does not touch it
+ * meanwhile, and neither frees nor reuses it before the answer.
  */
 struct bus_req {
 	uint32_t id;         /* caller's, echoed in the answer */
 	uint8_t op;          /* enum bus_op */
 	uint8_t prio;        /* enum bus_prio */
-	bool fresh;          /* past every cache */
+	bool fresh;          /* read past every cache */
 	bool number;         /* READ: where the answer is a number, its text is not needed */
 	int64_t deadline_ns; /* not begun by then: answered -ETIME without effect.
 	                        Begun: finished or failed by then, never undone */
 	const char *path;    /* "/28.551DDF030000/temperature12", without /uncached; immutable */
 	uint32_t len;        /* WRITE: bytes in data; READ and DIR: room in data */
-	uint32_t offset;     /* WRITE: of data in the value. What is behind the value's end is not
-	                        taken. A value that is not bytes takes no part of it: -EINVAL */
+	uint32_t offset; /* WRITE: of data in the value. Bytes beyond the value's end are ignored.
+	                        A value that is no bytes cannot be written in parts: -EINVAL */
 	uint8_t *data;
 	/*
 	 * For a target that is a server of the same protocol: the servers that the request came
-	 * through, this process last, BUS_TOKEN bytes for each. One who finds himself there has been
-	 * asked in a circle. NULL: nobody can come back to this process.
+	 * through, this process last, BUS_TOKEN bytes for each. A server that finds its own token
+	 * has been asked in a circle. NULL: the target cannot lead back to this process.
 	 */
 	const uint8_t *tokens;
 	uint32_t token_count; /* up to BUS_TOKENS_MAX */
@@ -84,15 +84,15 @@ struct bus_req {
  *   0             done
  *   -ENODEV       no such device on this target
  *   -ENOENT       the device has no such property
- *   -EACCES       the property cannot be read, or cannot be written, whoever asks
- *   -EPERM        this process may not: no right to its file, a server that takes no writes
+ *   -EACCES       the property cannot be read, or cannot be written, by any process
+ *   -EPERM        no permission: for the file of the kernel, or from a server that refuses writes
  *   -EISDIR       READ or WRITE of a directory
  *   -ENOTDIR      DIR of a property
  *   -EINVAL       the target refused the value that was written
  *   -EBADMSG      checksum
  *   -ECOMM        the wire is short
  *   -ERANGE       a reading that means power fault (85, 127.94)
- *   -EBUSY        somebody else has it (a GPIO line)
+ *   -EBUSY        another process has it (a GPIO line)
  *   -EIO          any other device error
  *   -EMSGSIZE     the answer is longer than the room
  *   -EOPNOTSUPP   this bus has no such operation (DIR of /alarm on some)
@@ -110,7 +110,7 @@ struct bus_answer {
 	uint8_t kind;        /* enum bus_kind */
 	uint8_t detail;      /* BUS_DETAIL_* */
 	uint32_t len;        /* READ and DIR: bytes in req->data; WRITE: bytes taken */
-	int64_t measured_ns; /* when the chip latched the value; where unknown, when the answer came */
+	int64_t measured_ns; /* when the chip latched the value, else when the answer came */
 	double number;       /* if kind is BUS_NUMBER */
 };
 
@@ -122,11 +122,11 @@ struct bus_event {
 	uint8_t news; /* enum bus_news */
 	uint8_t rom[8];
 	int32_t err;
-	int64_t cache_ns; /* BUS_UP of a server: so old may be what is not asked fresh; 0: not known */
+	int64_t cache_ns; /* BUS_UP of a server: greatest age of a cached answer; 0: not known */
 	char text[BUS_EVENT_TEXT];
 };
 
-/* What the host gives a backend: all that a backend may use to wait or to tell. */
+/* What the host gives a backend: all that a backend may use to wait or to report. */
 struct bus_env {
 	void *ctx;
 	/* Any thread. */
@@ -176,39 +176,44 @@ struct bus_ops {
 	 */
 	int (*create)(const char *where, const struct bus_env *env, struct bus **bus, char *why,
 	              size_t why_size);
-	/* Let go of everything; no answers are given for what is still lent. */
+	/* Release and free everything; requests that the bus still owns get no answer. */
 	void (*destroy)(struct bus *bus);
 	/*
-	 * One option of the target's Bus block, before the first step; touches no hardware. 0;
-	 * -ENOENT this bus has no such option; -EINVAL with the reason in why; -ENOMEM. NULL: it has
-	 * none.
+	 * Set an option of the target's Bus block, before the first step; touches no hardware. 0;
+	 * -ENOENT: this bus has no such option; -EINVAL with the reason in why; -ENOMEM. NULL: the
+	 * backend has no options.
 	 */
 	int (*option)(struct bus *bus, const char *key, const char *text, char *why,
 	              size_t why_size);
 
-	/* Simple tier: do one request, blocking, ended by req->deadline_ns; fills answer but its id. */
+	/*
+	 * Simple tier: do one request, blocking, ended by req->deadline_ns; fills answer but its
+	 * id.
+	 */
 	void (*exec)(struct bus *bus, struct bus_req *req, struct bus_answer *answer);
 
 	/* Overlapping tier. 0, or -EAGAIN when depth is reached; never blocks. */
 	int (*submit)(struct bus *bus, struct bus_req *req);
 	/*
-	 * One bounded piece of work, connecting and searching included; answers and events are given
-	 * from inside. Returns when it wants to be called again (INT64_MAX: at the next submit).
-	 * A simple bus may have one too, which then tells BUS_UP and BUS_DOWN: it is called before each
-	 * exec and when nothing is to do. Without one a simple bus is up from the start.
+	 * Do one bounded piece of work, connecting and searching included; step calls env->answer
+	 * and env->event. Returns the time of its next call (INT64_MAX: at the next submit). A
+	 * simple bus may have a step too, which then reports BUS_UP and BUS_DOWN: it is called
+	 * before each exec and when there is no request. A simple bus without a step is up from the
+	 * start.
 	 */
 	int64_t (*step)(struct bus *bus, int64_t now);
 	/*
-	 * Let go of the hardware (true), which is done when it returns; take it again (false): the
-	 * steps that follow tell BUS_UP or BUS_DOWN. Meanwhile there is no exec, and submit and step of
-	 * an overlapping bus answer -ENOTCONN. NULL, for a simple bus: nothing to let go of.
+	 * true: release the hardware before returning; false: take it again, and the steps that
+	 * follow report BUS_UP or BUS_DOWN. Meanwhile exec is not called, and submit and step of an
+	 * overlapping bus answer -ENOTCONN. NULL, for a simple bus: the bus has no hardware to
+	 * release.
 	 */
 	void (*suspend)(struct bus *bus, bool yes);
 	/*
-	 * Suspended: is the target there, as far as can be seen without touching the wire? 1, 0, or
-	 * -EAGAIN: it is still looking and wants to be called again. As bounded as a step. A target
-	 * that failed although it was to be seen is there again only when what is seen has changed.
-	 * NULL: always.
+	 * Of a suspended bus: is the target present, as far as can be seen without touching the
+	 * wire? 1, 0, or -EAGAIN: call again for the answer. As bounded as a step. A target that
+	 * failed while it was visible counts as present again only after what is visible has
+	 * changed. NULL: always.
 	 */
 	int (*there)(struct bus *bus);
 	/* The running totals, to be read with bus_counted(); *n gets their count. NULL: none. */
@@ -222,10 +227,10 @@ struct bus {
 	const struct bus_env *env;
 	struct bus_req **queue; /* simple tier: requests not yet begun */
 	unsigned head, count;
-	bool told_up; /* simple tier without step: it is up from its first step on */
+	bool told_up; /* simple tier without step: BUS_UP was reported at its first step */
 	bool suspended;
-	bool there;      /* suspended: BUS_BACK was told */
-	int64_t look_ns; /* ... and when the target is looked for again */
+	bool there;      /* suspended: BUS_BACK was reported */
+	int64_t look_ns; /* suspended: when to look for the target again */
 };
 
 /* All backends of this build, NULL at the end. */
@@ -235,29 +240,29 @@ extern const struct bus_ops owserver_bus, i2c_bus, sim_bus, null_bus, late_bus, 
 /*
  * Find the backend of a target ("owserver:localhost:4304", "null:") and create the bus. Bare
  * `host`, `host:port` and `[v6]:port` mean owserver, and so does an empty target (localhost). A
- * word that is a scheme is one, with or without a colon. Returns as bus_ops.create; -EPROTONOSUPPORT
- * when no backend of this build has the scheme (why names those there are). why is to stand behind
- * the target, which it does not repeat.
+ * word that is a scheme means the scheme, with or without a colon. Returns as bus_ops.create;
+ * -EPROTONOSUPPORT when no backend of this build has the scheme (why names the schemes of this
+ * build). why is the end of a message that names the target before.
  */
 int bus_create(const char *target, const struct bus_env *env, struct bus **bus, char *why,
                size_t why_size);
 /* As bus_ops.option, with a reason for each error. */
 int bus_option(struct bus *bus, const char *key, const char *text, char *why, size_t why_size);
-/* For backends' create(): fill the shared part. Returns 0 or -ENOMEM. */
+/* For create() of a backend: fill the shared part. Returns 0 or -ENOMEM. */
 int bus_init(struct bus *bus, const struct bus_ops *ops, const struct bus_env *env);
 void bus_destroy(struct bus *bus);
 unsigned bus_depth(const struct bus *bus);
 
 /*
- * As the slots of the overlapping tier, for either tier. Of the requests that wait, the simple
- * tier begins the lowest prio first, and the oldest of these.
+ * submit and step for either tier. Of the waiting requests, a simple bus begins the one with the
+ * lowest prio first, and the oldest of these.
  */
 int bus_submit(struct bus *bus, struct bus_req *req);
 int64_t bus_step(struct bus *bus, int64_t now);
 /*
- * Let go of the hardware: BUS_RELEASED is told before it returns. From then on requests are
+ * true: release the hardware, and report BUS_RELEASED before returning. From then on requests are
  * answered -ENOTCONN and nothing touches the wire; bus_step() looks for the target every few
- * seconds and tells BUS_BACK once when it comes. false: take the hardware again; BUS_UP or
+ * seconds and reports BUS_BACK once when it is back. false: take the hardware again; BUS_UP or
  * BUS_DOWN follows.
  */
 void bus_suspend(struct bus *bus, bool yes);

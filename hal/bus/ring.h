@@ -31,7 +31,9 @@ static inline uint32_t ring_used(const struct ring *ring)
 	return __atomic_load_n(&ring->put, __ATOMIC_SEQ_CST) - taken;
 }
 
-/* Either side, about itself: the cell to fill, or to empty, next. */
+/*
+ * The cell that the putter fills next, and the cell that the taker empties next; each for itself.
+ */
 static inline uint32_t ring_put_at(const struct ring *ring)
 {
 	return ring->put & (ring->size - 1);

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The thread of a bus: takes orders from the engine, runs the bus, and queues its answers and
+ * events.
+ */
 #include <assert.h>
 #include <errno.h>
 #include <poll.h>
@@ -18,7 +22,7 @@
 
 #define SECOND INT64_C(1000000000)
 #define STACK_SIZE (256 * 1024)
-/* Relative time-outs do not count suspend: look at the clock again this often. */
+/* Relative time-outs do not count suspend: read the clock again this often. */
 #define LONGEST_WAIT (10 * SECOND)
 #define FULL_NAP (SECOND / 1000)
 #define EVENT_NAPS 200 /* then the event is dropped */
@@ -73,7 +77,7 @@ static void wake(struct worker *worker)
 	while (n < 0 && errno == EINTR);
 }
 
-/* One ppoll: 1 fd is ready, 0 not. Wake-ups are taken away; who waits looks for their reason. */
+/* One ppoll: 1 fd is ready, 0 not. Clears wake-ups; the caller looks for their reason. */
 static int poll_once(struct worker *worker, int fd, short events, int64_t until_ns)
 {
 	struct pollfd fds[2] = {{.fd = worker->wake_fd, .events = POLLIN},
@@ -183,7 +187,7 @@ static void take_turns(struct worker *worker)
 
 static void sleep_until(struct worker *worker, int64_t until_ns)
 {
-	/* On one CPU the engine, whom the bell woke, runs now; its next order saves a sleep. */
+	/* On one CPU the engine, which the bell woke, runs now; its next order saves a sleep. */
 	sched_yield();
 	if (ring_used(&worker->orders))
 		return;
@@ -193,7 +197,7 @@ static void sleep_until(struct worker *worker, int64_t until_ns)
 	__atomic_store_n(&worker->sleeping, 0, __ATOMIC_SEQ_CST);
 }
 
-static void *run(void *arg)
+static void *worker_main(void *arg)
 {
 	struct worker *worker = arg;
 
@@ -206,7 +210,7 @@ static void *run(void *arg)
 		take_turns(worker);
 		left = ring_used(&worker->orders);
 		next = bus_step(worker->bus, clock_ns(CLOCK_BOOTTIME));
-		/* Orders that the bus had no room for wait for its next step. */
+		/* Orders that the bus had no room for wait until the bus wants its next step. */
 		if (left && next > clock_ns(CLOCK_BOOTTIME))
 			poll_once(worker, -1, 0, next);
 		else if (next > clock_ns(CLOCK_BOOTTIME))
@@ -294,13 +298,13 @@ int worker_start(struct worker *worker)
 	if (err)
 		return -err;
 	err = pthread_attr_setstacksize(&attr, STACK_SIZE);
-	/* a fault of the thread's own: where it is blocked the kernel kills, handler or not */
+	/* SIGBUS stays unblocked: for a blocked fault of a thread the kernel kills the process */
 	sigfillset(&all);
 	sigdelset(&all, SIGBUS);
 	if (!err)
 		err = pthread_sigmask(SIG_SETMASK, &all, &before);
 	if (!err) {
-		err = pthread_create(&worker->thread, &attr, run, worker);
+		err = pthread_create(&worker->thread, &attr, worker_main, worker);
 		pthread_sigmask(SIG_SETMASK, &before, NULL);
 	}
 	pthread_attr_destroy(&attr);

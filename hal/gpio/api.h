@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a generation of libgpiod does for us: the table that its file fills in. */
+/* The table of functions that each generation of libgpiod fills in. */
 #ifndef HAL_GPIO_API_H
 #define HAL_GPIO_API_H
 
@@ -10,7 +10,7 @@
 #define GPIO_NAME_MAX 64 /* of a line, a consumer, a chip; with NUL */
 
 enum gpio_direction {
-	GPIO_AS_IT_IS, /* only look: nothing is changed */
+	GPIO_AS_IT_IS, /* only read the line: nothing is changed */
 	GPIO_INPUT,    /* both edges are kept for gpio_edge() */
 	GPIO_OUTPUT,
 };
@@ -32,7 +32,7 @@ struct gpio_edge {
 
 struct gpio_info {
 	char name[GPIO_NAME_MAX];     /* "" when the board gave none */
-	char consumer[GPIO_NAME_MAX]; /* who has it; "" unknown or nobody */
+	char consumer[GPIO_NAME_MAX]; /* the name of the line's holder; "": unknown or none */
 	bool used;
 	bool output;
 };
@@ -49,14 +49,16 @@ struct gpio_api {
 	const char *(*label)(struct gpio_chip *chip);
 	unsigned (*lines)(struct gpio_chip *chip);
 	int (*info)(struct gpio_chip *chip, unsigned offset, struct gpio_info *info);
-	/* -EBUSY somebody has it. consumer is what others see of us. */
+	/*
+	 * -EBUSY: another program has the line. consumer is the name that others see as the holder.
+	 */
 	int (*request)(struct gpio_chip *chip, unsigned offset, const struct gpio_setup *setup,
 	               const char *consumer, struct gpio_line **line);
 	int (*set)(struct gpio_line *line, bool value);
 	int (*get)(struct gpio_line *line); /* 0, 1; -ENODEV the chip is gone */
 	int (*edge)(struct gpio_line *line, struct gpio_edge *edge); /* 1 one, 0 none is kept */
 	int (*fd)(struct gpio_line *line); /* readable while an edge is kept */
-	/* An output's level afterwards is the driver's affair. */
+	/* The chip's driver decides the level of an output afterwards. */
 	void (*release)(struct gpio_line *line);
 };
 

@@ -31,7 +31,7 @@ static int64_t now_of(const struct gpio_bus *gpio)
 	return gpio->bus.env->now(gpio->bus.env->ctx);
 }
 
-static void tell(struct gpio_bus *gpio, enum bus_news news, int err, const char *text)
+static void report_news(struct gpio_bus *gpio, enum bus_news news, int err, const char *text)
 {
 	struct bus_event event = {.news = (uint8_t)news, .err = err};
 
@@ -51,8 +51,8 @@ static void gpio_destroy(struct bus *bus)
 	free(gpio);
 }
 
-static int create(const char *where, const struct bus_env *env, struct bus **bus, char *why,
-                  size_t why_size)
+static int gpio_create(const char *where, const struct bus_env *env, struct bus **bus, char *why,
+                       size_t why_size)
 {
 	struct gpio_bus *gpio;
 
@@ -83,7 +83,7 @@ static void down(struct gpio_bus *gpio, int err, const char *why)
 	gpio->chip = NULL;
 	gpio->next_ns = now_of(gpio) + AGAIN_NS;
 	if (!gpio->told)
-		tell(gpio, BUS_DOWN, err, why);
+		report_news(gpio, BUS_DOWN, err, why);
 	gpio->told = true;
 }
 
@@ -103,8 +103,8 @@ static int open_chip(struct gpio_bus *gpio, char *why, size_t why_size)
 	return err;
 }
 
-/* Nobody may be reading: a chip that was unplugged is noticed all the same. */
-static int64_t step(struct bus *bus, int64_t now)
+/* Checks that the chip still exists, even when no signal is read. */
+static int64_t gpio_step(struct bus *bus, int64_t now)
 {
 	struct gpio_bus *gpio = (struct gpio_bus *)bus;
 	struct gpio_info info;
@@ -118,7 +118,7 @@ static int64_t step(struct bus *bus, int64_t now)
 	if (gpio->chip) {
 		unsigned i = 0;
 
-		/* of a line that we have nothing is asked */
+		/* a line that owsd holds needs no check */
 		while (i + 1 < gpio->lines && gpio->line[i].held)
 			i++;
 		if (gpio_api()->info(gpio->chip, i, &info) == -ENODEV)
@@ -135,7 +135,7 @@ static int64_t step(struct bus *bus, int64_t now)
 	gpio->told = false;
 	gpio->next_ns = now + LOOK_NS;
 	bus_count(&gpio->count[GPIO_OPENS], 1);
-	tell(gpio, BUS_UP, 0, "");
+	report_news(gpio, BUS_UP, 0, "");
 	return gpio->next_ns;
 }
 
@@ -262,7 +262,7 @@ static void exec(struct bus *bus, struct bus_req *req, struct bus_answer *answer
 		down(gpio, -ENODEV, "the chip is gone");
 		answer->err = -ECONNRESET;
 	} else if (*why) {
-		tell(gpio, BUS_NOTE, answer->err, why);
+		report_news(gpio, BUS_NOTE, answer->err, why);
 	}
 }
 
@@ -289,11 +289,11 @@ const struct bus_ops gpio_bus = {
 	.scheme = "gpio",
 	.summary = "lines of a GPIO chip",
 	.depth = DEPTH,
-	.create = create,
+	.create = gpio_create,
 	.destroy = gpio_destroy,
 	.option = lines_option,
 	.exec = exec,
-	.step = step,
+	.step = gpio_step,
 	.suspend = suspend,
 	.counters = counters,
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* libgpiod 1.6 */
+/* The GPIO calls by libgpiod 1.6. */
 #include "hal/gpio/api.h"
 
 #if defined(OWSD_LIBGPIOD) && OWSD_LIBGPIOD == 1
@@ -120,7 +120,7 @@ static int request(struct gpio_chip *chip, unsigned offset, const struct gpio_se
 	line->edges = setup->direction == GPIO_INPUT;
 	line->line = gpiod_chip_get_line(chip->chip, offset);
 	err = line->line ? gpiod_line_request(line->line, &config, setup->value) : -1;
-	/* A line without an interrupt can be read all the same. */
+	/* A line without an interrupt can still be read: request it without edges. */
 	if (err && line->line && line->edges && errno != EBUSY && errno != EPERM &&
 	    errno != ENODEV) {
 		line->edges = false;
@@ -157,7 +157,7 @@ static int fd(struct gpio_line *line)
 	return line->edges ? gpiod_line_event_get_fd(line->line) : -1;
 }
 
-/* Its times are of CLOCK_MONOTONIC (kernel 5.7 and later), which stands still in suspend. */
+/* The kernel's times (5.7 and later) are of CLOCK_MONOTONIC, which stands still in suspend. */
 static int64_t boottime(const struct timespec *ts)
 {
 	struct timespec boot, mono;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* libgpiod 2.x */
+/* The GPIO calls by libgpiod 2.x. */
 #include "hal/gpio/api.h"
 
 #if defined(OWSD_LIBGPIOD) && OWSD_LIBGPIOD == 2
@@ -165,7 +165,7 @@ static int request(struct gpio_chip *chip, unsigned offset, const struct gpio_se
 		return -ENOMEM;
 	line->offset = offset;
 	line->request = ask(chip, offset, setup, consumer, edges);
-	/* A line without an interrupt can be read all the same. */
+	/* A line without an interrupt can still be read: request it without edges. */
 	if (!line->request && edges && errno != EBUSY && errno != EPERM && errno != ENODEV) {
 		edges = false;
 		line->request = ask(chip, offset, setup, consumer, false);
@@ -210,7 +210,7 @@ static int fd(struct gpio_line *line)
 	return line->edges ? gpiod_line_request_get_fd(line->request) : -1;
 }
 
-/* Its times are of CLOCK_MONOTONIC, which stands still in suspend. */
+/* The kernel's times are of CLOCK_MONOTONIC, which stands still in suspend. */
 static int64_t boottime(uint64_t monotonic_ns)
 {
 	struct timespec boot, mono;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* GPIO chips and lines over the library: opened, requested, and outputs named by an option. */
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
@@ -44,7 +45,7 @@ static int open_path(const char *path, struct gpio_chip **chip, char *why, size_
 	return err;
 }
 
-/* By its label, looking at all of them. */
+/* Open a chip by its label; looks at all chips. */
 static int open_label(const char *label, struct gpio_chip **chip, char *why, size_t why_size)
 {
 	DIR *dir = opendir(DEV);

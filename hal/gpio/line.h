@@ -9,7 +9,7 @@
 
 #include "hal/gpio/api.h"
 
-/* What a test puts in its place, before any thread starts. */
+/* The library of this build, or its substitute, which a test sets before any thread starts. */
 extern const struct gpio_api *gpio_substitute;
 
 static inline const struct gpio_api *gpio_api(void)
@@ -18,14 +18,14 @@ static inline const struct gpio_api *gpio_api(void)
 }
 
 /*
- * Open a chip by name (gpiochip0), path (/dev/gpiochip0) or label (pinctrl-bcm2711). why gets what
- * to do about an error: -EOPNOTSUPP built without libgpiod, -ENODEV no such chip, -EACCES, -ENOTTY.
+ * Open a chip by name (gpiochip0), path (/dev/gpiochip0) or label (pinctrl-bcm2711). why gets the
+ * remedy of an error: -EOPNOTSUPP: built without libgpiod; -ENODEV: no such chip; -EACCES; -ENOTTY.
  */
 int gpio_open(const char *name, struct gpio_chip **chip, char *why, size_t why_size);
 void gpio_close(struct gpio_chip *chip);
 /* The line's offset by its number or its name; -ENOENT. */
 int gpio_offset(struct gpio_chip *chip, const char *text, size_t len);
-/* Request a line; why tells of -EBUSY who has it. */
+/* Request a line; on -EBUSY why names the holder. */
 int gpio_request(struct gpio_chip *chip, unsigned offset, const struct gpio_setup *setup,
                  struct gpio_line **line, char *why, size_t why_size);
 
@@ -38,7 +38,7 @@ struct gpio_spec {
 	char line[GPIO_NAME_MAX];
 	struct gpio_setup setup;
 };
-/* 0, -EINVAL and why; -EOPNOTSUPP built without libgpiod. Touches nothing. */
+/* 0; -EINVAL with the reason in why; -EOPNOTSUPP: built without libgpiod. Touches nothing. */
 int gpio_spec_parse(const char *text, struct gpio_spec *spec, char *why, size_t why_size);
 
 /* An output and its chip. */
@@ -47,7 +47,7 @@ struct gpio_output {
 	struct gpio_chip *chip; /* NULL: not taken */
 	struct gpio_line *line;
 };
-/* Take it with that value, if it is not taken yet. Errors as gpio_open() and gpio_request(). */
+/* Take the output with that value, unless it is taken. Errors as gpio_open() and gpio_request(). */
 int gpio_output_take(struct gpio_output *output, bool value, char *why, size_t why_size);
 int gpio_output_set(struct gpio_output *output, bool value);
 void gpio_output_release(struct gpio_output *output);

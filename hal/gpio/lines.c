@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The lines of a GPIO chip as a bus reads and writes them, with the edges of inputs. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,8 +54,8 @@ static void set_option(struct gpio_setup *setup, enum gpio_option option)
 	}
 }
 
-/* A name that is wrong would leave its line with the wrong sense: better no target. */
-static int apply(struct gpio_bus *gpio, enum gpio_option option, char *why, size_t why_size)
+/* Refuse an unknown name: its line would work with the wrong sense. */
+static int apply_option(struct gpio_bus *gpio, enum gpio_option option, char *why, size_t why_size)
 {
 	const char *text = gpio->option[option];
 
@@ -91,7 +92,7 @@ int lines_create(struct gpio_bus *gpio, char *why, size_t why_size)
 			memcpy(gpio->line[i].name, info.name, sizeof(info.name));
 	}
 	for (int i = 0; i < GPIO_OPTIONS && !err; i++)
-		err = apply(gpio, (enum gpio_option)i, why, why_size);
+		err = apply_option(gpio, (enum gpio_option)i, why, why_size);
 	return err;
 }
 
@@ -114,8 +115,8 @@ int lines_find(const struct gpio_bus *gpio, const char *text)
 	return -ENOENT;
 }
 
-static int take(struct gpio_bus *gpio, unsigned number, const struct gpio_setup *setup,
-                struct gpio_line **held, char *why, size_t why_size)
+static int take_line(struct gpio_bus *gpio, unsigned number, const struct gpio_setup *setup,
+                     struct gpio_line **held, char *why, size_t why_size)
 {
 	struct line_state *line = &gpio->line[number];
 	int err = gpio_request(gpio->chip, number, setup, held, why, why_size);
@@ -146,13 +147,13 @@ static int plain(int err)
 	return err == -ENODEV || err == -ENXIO ? err : -EIO;
 }
 
-/* A line that nobody here has: looked at and let go of, as it is. */
+/* Read a line that owsd does not hold: requested as it is, and released. */
 static int peek(struct gpio_bus *gpio, unsigned number, bool *value, char *why, size_t why_size)
 {
 	struct gpio_setup setup = {.direction = GPIO_AS_IT_IS,
 	                           .active_low = gpio->line[number].setup.active_low};
 	struct gpio_line *held;
-	int level, err = take(gpio, number, &setup, &held, why, why_size);
+	int level, err = take_line(gpio, number, &setup, &held, why, why_size);
 
 	if (err)
 		return err;
@@ -168,7 +169,7 @@ struct edges {
 	int64_t first_ns[2];
 };
 
-/* What the kernel kept. As many as it can keep: others may be lost. */
+/* Take the edges that the kernel kept. When they are GPIO_EDGES_KEPT, others may be lost. */
 static int drain(struct gpio_bus *gpio, struct line_state *line, struct edges *edges)
 {
 	struct gpio_edge edge;
@@ -187,8 +188,8 @@ static int drain(struct gpio_bus *gpio, struct line_state *line, struct edges *e
 }
 
 /*
- * One change at a time: where the level left and came back between two reads, the read shows that
- * it left, and the next one that it is back.
+ * Show one change at a time: where the level left and came back between two reads, this read shows
+ * that it left, and the next read that it is back.
  */
 static int read_input(struct gpio_bus *gpio, struct line_state *line, bool *value,
                       int64_t *measured_ns)
@@ -237,7 +238,7 @@ int line_read(struct gpio_bus *gpio, unsigned number, bool guest, bool *value, i
 		int err;
 
 		line->setup.direction = GPIO_INPUT;
-		err = take(gpio, number, &line->setup, &line->held, why, why_size);
+		err = take_line(gpio, number, &line->setup, &line->held, why, why_size);
 		if (err)
 			return err;
 		line->since_ns = 0;
@@ -269,5 +270,5 @@ int line_write(struct gpio_bus *gpio, unsigned number, bool guest, bool value, c
 	line->held = NULL;
 	line->setup.direction = GPIO_OUTPUT;
 	line->setup.value = value;
-	return take(gpio, number, &line->setup, &line->held, why, why_size);
+	return take_line(gpio, number, &line->setup, &line->held, why, why_size);
 }

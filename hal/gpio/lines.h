@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Inside the bus "gpio": the chip's lines, and what is remembered of each. */
+/* Inside the bus "gpio": the chip's lines, and the state that the bus keeps for each. */
 #ifndef HAL_GPIO_LINES_H
 #define HAL_GPIO_LINES_H
 
@@ -29,7 +29,7 @@ enum gpio_count {
 struct line_state {
 	struct gpio_line *held;  /* NULL: not requested */
 	struct gpio_setup setup; /* as requested, or to be */
-	bool told;               /* why it cannot be had */
+	bool told;               /* the reason why the line cannot be used was reported */
 	char name[GPIO_NAME_MAX];
 	/* Of an input: what was answered last, and when the level after that began; 0: unknown. */
 	bool shown;
@@ -57,9 +57,9 @@ void lines_release(struct gpio_bus *gpio);
 int lines_find(const struct gpio_bus *gpio, const char *text);
 
 /*
- * A guest only looks: his reading requests no line for good and takes no edge, and he may set
- * what is an output already. Errors as struct bus_answer, -ENODEV: the chip is gone. why gets
- * what the log is to be told, once for each line, else stays "".
+ * A guest changes nothing: its read keeps no line and takes no edge, and its write is for lines
+ * that are outputs already. Errors as struct bus_answer; -ENODEV: the chip is gone. why gets a
+ * message for the log, once for each line, else stays "".
  */
 int line_read(struct gpio_bus *gpio, unsigned line, bool guest, bool *value, int64_t *measured_ns,
               char *why, size_t why_size);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The late bus: the test double of the overlapping tier, so that nobody comes to rely on answers
+ * The late bus: the test double of the overlapping tier. With it no test comes to rely on answers
  * that are prompt, in order, single and certain. Its devices are those of the null bus. Target:
  * `late:` and options, joined by ';': seed, late (longest delay in milliseconds), twice and never
  * (percent of the requests), up and down (milliseconds that the target is there and away).
@@ -36,7 +36,7 @@ struct late_slot {
 	bool twice, never;
 };
 
-/* The second answer of a request that is no longer here. */
+/* A second answer, for a request that the bus has already answered. */
 struct late_echo {
 	struct bus_answer answer;
 	int64_t due_ns;
@@ -245,7 +245,7 @@ static int64_t late_step(struct bus *bus, int64_t now)
 	return next;
 }
 
-/* What was lent is answered now, but for what is never answered. */
+/* Answer all requests now, but for those that are never answered. */
 static void late_suspend(struct bus *bus, bool yes)
 {
 	struct late_bus *late = (struct late_bus *)bus;

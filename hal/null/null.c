@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The null bus: a whole backend of the simple tier, to learn from and to test with. Its devices are
- * a table; a read gives what was written last. Target: `null:`, nothing after the colon.
+ * a table; a read returns what was written last. Target: `null:`, nothing after the colon.
  */
 #include <errno.h>
 #include <stdio.h>

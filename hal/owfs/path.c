@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* OWFS paths and device ids: parsed, printed, split and compared. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -105,13 +106,13 @@ static bool slice_in(struct path_slice slice, const char *const *words)
 	return false;
 }
 
-/* What OWFS has beside devices in the root and behind a coupler. */
+/* The entries that OWFS has beside the devices, in the root and below a coupler. */
 static const char *const no_device[] = {"simultaneous", "settings",  "statistics", "structure",
                                         "system",       "interface", NULL};
 static const char *const branches[] = {"main", "aux", NULL};
 #define DS2409_FAMILY 0x1f
 
-/* The component at *pos, and *pos behind it and its slash. */
+/* The component at *pos; moves *pos past the component and its slash. */
 static struct path_slice component(const char *text, size_t len, size_t *pos)
 {
 	struct path_slice slice = {text + *pos, 0};
@@ -193,7 +194,9 @@ static int take_device(struct path_slice part, struct path *path)
 	return 0;
 }
 
-/* Behind main or aux of a coupler: a device? Of an alias only the form of the next part can tell. */
+/*
+ * Is the part after main or aux of a coupler a device? Of an alias only the part after it can show.
+ */
 static bool leads_on(const struct path *path, struct path_slice branch, struct path_slice next)
 {
 	uint8_t rom[ROM_LEN];

@@ -5,10 +5,9 @@
  *
  *     [/uncached][/alarm][/bus.N][/text]/device/property
  *
- * owhttpd puts text or json in front, which mean nothing here.
- * The leading "/" may be absent. The device is a ROM id in one of the six formats of OWFS or an
- * alias; behind a DS2409 coupler it has several components (/1F.x/main/28.y). The property may
- * have directories (HIH4000/humidity).
+ * owhttpd puts text or json in front, which owsd ignores. The leading "/" may be absent. The device
+ * is a ROM id in one of the six formats of OWFS or an alias; below a DS2409 coupler the device has
+ * several components (/1F.x/main/28.y). The property may have directories (HIH4000/humidity).
  */
 #ifndef HAL_OWFS_PATH_H
 #define HAL_OWFS_PATH_H
@@ -19,7 +18,9 @@
 
 #define PATH_LEN_MAX 255
 
-/* Family, six bytes of id, CRC8: the order in which they are on the wire and in "28.551DDF030000". */
+/*
+ * Family, six bytes of id, CRC8: the order in which they are on the wire and in "28.551DDF030000".
+ */
 #define ROM_LEN 8
 
 /* Dallas CRC8 (x^8 + x^5 + x^4 + 1, least bit first, from 0); 0 over data and its CRC. */
@@ -36,12 +37,12 @@ enum rom_format {
 #define ROM_TEXT_MAX 19 /* with NUL */
 
 /*
- * Read a ROM id in any of the formats, hex in any case; where the text has no CRC it is computed.
- * 0; -EINVAL the text has none of the forms (an alias); -EBADMSG it has, but the CRC is wrong or
- * the family is 00.
+ * Read a ROM id in any of the formats, hex in any case; where the text has no CRC, it is computed.
+ * 0; -EINVAL: the text has none of the formats (it is an alias); -EBADMSG: the text has a format,
+ * but the CRC is wrong or the family is 00.
  */
 int rom_parse(const char *text, size_t len, uint8_t rom[ROM_LEN]);
-/* The other way, upper case. Returns the length. */
+/* Print a ROM id in a format, upper case. Returns the length. */
 int rom_print(const uint8_t rom[ROM_LEN], enum rom_format format, char text[ROM_TEXT_MAX]);
 
 /* A part of the text, not NUL-terminated; len 0: absent. */
@@ -62,14 +63,16 @@ struct path {
 };
 
 /*
- * Split len bytes of text. NULL, or what is wrong with it, to be said after the path ("has an
- * empty component"); *path is then undefined. "" and "/" are the root: no device, no property.
+ * Split len bytes of text. Returns NULL, or the fault as the end of a message that names the path
+ * before ("has an empty component"); *path is then undefined. "" and "/" are the root: no device,
+ * no property.
  */
 const char *path_split(const char *text, size_t len, struct path *path);
 
 /*
- * Is it the same device? ROM ids are compared as ids, so format and branch do not matter; aliases
- * by their letters. False when only one of the two is an alias, and without a device.
+ * Do both paths name the same device? ROM ids are compared as ids, so format and branch do not
+ * matter; aliases by their letters. False when only one of the two is an alias, or when a path has
+ * no device.
  */
 bool path_same_device(const struct path *a, const struct path *b);
 
