@@ -65,7 +65,7 @@ struct bus_req {
 	const char *path;    /* "/28.551DDF030000/temperature12", without /uncached; immutable */
 	uint32_t len;        /* WRITE: bytes in data; READ and DIR: room in data */
 	uint32_t offset; /* WRITE: of data in the value. Bytes beyond the value's end are ignored.
-	                        A value that is no bytes cannot be written in parts: -EINVAL */
+	                    A value that is no bytes cannot be written in parts: -EINVAL */
 	uint8_t *data;
 	/*
 	 * For a target that is a server of the same protocol: the servers that the request came

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The lock on a chip: a byte of the adapter's device file, locked by whoever drives the chip. */
 #include <errno.h>
 #include <fcntl.h>
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The master of the target i2c:auto: every DS2482 of the machine. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,7 +41,7 @@ static struct every_adapter *adapter_of(struct every_master *every, unsigned num
 	return adapter;
 }
 
-/* Links that are not known yet, behind those that are. Each chip has a number of its own. */
+/* Append the links that are not known yet. Each chip has a number of its own. */
 static void take_links(struct every_master *every, const struct every_adapter *adapter)
 {
 	unsigned n = adapter->master->ops->channels(adapter->master);

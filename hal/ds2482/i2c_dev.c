@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* An I2C adapter of the kernel, by i2c-dev and libi2c. */
 #include <errno.h>
 #include <stdbool.h>
 
@@ -16,7 +17,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-/* In units of 10 ms: an I2C transaction of ours takes 20 ms at the most. */
+/* In units of 10 ms: an I2C transaction of owsd takes 20 ms at most. */
 #define TIMEOUT_10MS 10
 
 struct i2c_dev {

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* What the kernel's files show of I2C adapters and their chips. */
 #include <dirent.h>
 #include <fcntl.h>
 #include <stdbool.h>
@@ -18,7 +19,7 @@ static void mix(uint64_t *mark, uint64_t word)
 	*mark = (*mark ^ word) * UINT64_C(0x100000001b3);
 }
 
-/* A device file has the adapter's number as its own, whatever its name. */
+/* The minor number of a device file is the adapter's number, whatever the file's name. */
 static void client_name(const char *path, uint8_t address, char *name, size_t size)
 {
 	struct stat st = {0};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What is to be seen of an I2C adapter and its chips without a byte on its wires. */
+/* What the kernel's files show of an I2C adapter and its chips, without a byte on the wires. */
 #ifndef HAL_DS2482_LOOK_H
 #define HAL_DS2482_LOOK_H
 

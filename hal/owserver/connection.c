@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A connection to an owserver: its addresses, connecting, sending and receiving. */
 #include <errno.h>
 #include <netdb.h>
 #include <netinet/in.h>
@@ -15,7 +16,7 @@
 
 #define DEFAULT_HOST "localhost"
 #define DEFAULT_PORT "4304"
-/* One address of several must not use up the time of the others. */
+/* The time for one address of several, so that it does not use up the time of the others. */
 #define ADDRESS_NS INT64_C(1000000000)
 
 static int set_part(char *out, size_t size, const char *from, size_t len)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The listing of a directory of an owserver, with each device under its id. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

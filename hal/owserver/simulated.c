@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Asks an owserver whether its buses are simulated. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
+/* The simulated network as an I2C adapter. */
 #include <errno.h>
 
 #include "hal/sim/adapter.h"
 
-/* A START or STOP condition takes about one bit, a byte nine. */
+/* The bits of a transaction: a START or STOP condition takes about one, a byte nine. */
 #define BITS_BYTE 9
 
 struct clock {

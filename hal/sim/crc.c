@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The checksums that simulated slaves make. */
 #include "hal/sim/crc.h"
 
 uint8_t sim_crc8(uint8_t crc, const uint8_t *data, size_t n)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Curves: the value of a quantity at a time, and the time of its next change. */
 #include "hal/sim/curve.h"
 
 #define HALF_PI 1.57079632679489661923
@@ -9,7 +10,7 @@ struct sim_curve sim_constant(double value)
 	return (struct sim_curve){.shape = SIM_CONSTANT, .a = value};
 }
 
-/* Time since the begin of the current repetition. */
+/* The time since the current repetition began. */
 static int64_t phase(const struct sim_curve *curve, int64_t t)
 {
 	int64_t since = t - curve->start_ns;
@@ -27,7 +28,10 @@ static double sine(double turns)
 
 	if (quarter & 1)
 		x = 1 - x;
-	/* in the half of the quarter that is nearer to zero the sine's series, in the other the cosine's */
+	/*
+	 * in the half of the quarter that is nearer to zero the sine's series, in the other the
+	 * cosine's
+	 */
 	int n = x > 0.5 ? 0 : 1;
 	double angle = (n ? x : 1 - x) * HALF_PI;
 	square = angle * angle;

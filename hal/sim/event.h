@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What happens to a simulated network: a line of a scenario, read and made to happen. */
+/* Events of a simulated network: parsed from a line of a scenario, and carried out. */
 #ifndef HAL_SIM_EVENT_H
 #define HAL_SIM_EVENT_H
 

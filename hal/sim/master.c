@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The link master of scheme sim: the DS2482 driver over a simulated network from a file. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The simulated network: its chips, wires and slaves, run up to a time with their events. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,7 +58,7 @@ int sim_net_add_event(struct sim_net *net, const struct sim_event *event)
 	return 0;
 }
 
-/* The i-th slave of all; NULL behind the last. */
+/* The i-th slave of all; NULL after the last. */
 static struct sim_slave *slave_at(const struct sim_net *net, size_t i, struct sim_wire const **on)
 {
 	for (unsigned chip = 0; chip < net->chips; chip++) {

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The parser of the scenario language, which makes a simulated network of a text. */
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -127,7 +128,7 @@ static void fill_memory(struct sim_slave *slave, struct words *words)
 	}
 }
 
-/* What a device's line says of it after its name. */
+/* The properties of a device, which its line has after the name. */
 static void properties(struct sim_slave *slave, struct words *words)
 {
 	while (words_next(words)) {

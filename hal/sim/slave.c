@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A simulated slave: the ROM layer bit by bit, and the calls of its family. */
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A simulated wire: the slots of one master on all slaves. */
 #include <errno.h>
 #include <stdlib.h>
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Words of a scenario's line: names, numbers, times and curves. */
 #include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>

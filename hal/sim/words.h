@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Words of a line of the scenario language. The first error stands; after it nothing is read. */
+/* The words of a line of the scenario language. The first error stays; after it nothing is read. */
 #ifndef HAL_SIM_WORDS_H
 #define HAL_SIM_WORDS_H
 
