@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Fibers by makecontext(): functions that stop in the middle and go on later. */
 #include <stdint.h>
 #include <stdlib.h>
 

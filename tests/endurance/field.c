@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The devices of the simulated field, and their true values at each time. */
 #include <math.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The events that an endurance run draws by its seed, and carries out. */
 #include "tests/endurance/happen.h"
 #include "tests/endurance/program.h"
 #include "tests/endurance/world.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Counts the allocations of the watched thread, and the blocks and descriptors that live. */
 #include <fcntl.h>
 #include <stddef.h>
 

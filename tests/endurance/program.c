@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The control program of an endurance run. */
 #include <string.h>
 
 #include "tests/endurance/program.h"

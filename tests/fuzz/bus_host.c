@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The host of a fuzzed bus, which checks the bus contract. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

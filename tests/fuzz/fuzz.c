@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The entry of a fuzz target, the bytes of its case, and the functions that it must not call. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

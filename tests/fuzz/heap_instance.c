@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* An instance of owsd on the heap, and the way of libows to it. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A small, strict parser of JSON, which judges the output of owsctl. */
 #include <string.h>
 
 #include "tests/fuzz/json_valid.h"

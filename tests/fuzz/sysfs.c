@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A file system in memory in place of /sys/bus/w1/devices. */
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The socket over which the scripts of the guest command the simulator. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

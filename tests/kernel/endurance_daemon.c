@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Starts, signals, measures and ends the owsd of the endurance run in the guest. */
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Reads the signals of owsd in the guest and compares them with the truth. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -71,7 +72,9 @@ static bool get(int i, struct ows_value *value)
 	return !err || err == -ESTALE;
 }
 
-/* What was on its way while owsd stood still is as old as its request: it may be true since then. */
+/*
+ * What was on its way while owsd stood still is as old as its request: it may be true since then.
+ */
 static int64_t true_until(const struct ows_value *value, int64_t now)
 {
 	return value->measured_ns < stood_until_ns ? now : value->measured_ns;

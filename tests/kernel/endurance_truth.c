@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The true values of the simulated devices in the guest, over time. */
 #include <stdio.h>
 #include <string.h>
 

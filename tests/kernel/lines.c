@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The lines that owdump and busdump print, for paths and values. */
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The control requests of a simulated i2c-tiny-usb adapter. */
 #include <errno.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The headers of USB/IP: decoded and encoded. */
 #include <errno.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Plugs a simulated USB device into the kernel, and serves its requests. */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Visits every state of the threads of a model, and prints the path to a fault. */
 #include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The weak memory: stores as messages, and the views of the threads. */
 #include <assert.h>
 #include <string.h>
 

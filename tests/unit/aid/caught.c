@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Runs verbs of owsctl and catches their stdout and stderr. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

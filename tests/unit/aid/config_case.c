@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Parses configurations from texts, and compares the messages about them. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Sets up the DS2482 driver over the simulated chip. */
 #include <errno.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A GPIO library with one fake chip. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Sets up the w1 bus on a directory that looks like /sys/bus/w1/devices. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

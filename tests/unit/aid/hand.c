@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Works a simulated wire by hand: resets, slots, searches. */
 #include <stdarg.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The host of a bus under test, on a virtual or the real clock. */
 #include <errno.h>
 #include <poll.h>
 #include <string.h>

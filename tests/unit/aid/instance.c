@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* An instance of owsd without owsd: makes and fills its segments. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Sets up the native bus over a net of simulated slaves. */
 #include <stdio.h>
 #include <string.h>
 

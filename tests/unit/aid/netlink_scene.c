@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Sets up the target w1:netlink on a model of the kernel's 1-Wire core. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The one bus of a test and its host. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

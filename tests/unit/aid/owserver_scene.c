@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Sets up the owserver bus against a peer on loopback. */
 #include <dirent.h>
 #include <errno.h>
 #include <netinet/in.h>

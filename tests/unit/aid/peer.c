@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* An owserver to test against, whose plan misbehaves request by request. */
 #include <arpa/inet.h>
 #include <errno.h>
 #include <netinet/in.h>

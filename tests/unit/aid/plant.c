@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A plant: engine, native bus, DS2482 driver and simulator on one virtual clock. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The readers of a recording: libows, the layout's header and ows.py, each of which finds all
+ * values.
+ */
 #include <errno.h>
 #include <stdio.h>
 

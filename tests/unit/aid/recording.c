@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Makes the segments of a recording, and reads those that an earlier release made. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

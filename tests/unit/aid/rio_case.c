@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Parses .rio documents from texts. */
 #include <string.h>
 
 #include "unity.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Keeps the messages of a report, and refuses a message that must not come. */
 #include <stdio.h>
 #include <string.h>
 

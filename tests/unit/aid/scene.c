@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A scene: an engine on the heap, scripted buses, and a trace of what goes to the buses. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A scene of two targets, each on a wire of its own. */
 #include "tests/unit/aid/two_wires.h"
 
 void two_wires_begin(struct scene *s)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A model of the kernel's 1-Wire core behind a netlink socket. */
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/connector.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Records of which every field has the same number, so that a mixture of two shows. */
 #include <string.h>
 
 #include "tests/unit/aid/whole.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the bus contract: targets and their backends, the queue of a simple bus, suspending. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the late bus. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

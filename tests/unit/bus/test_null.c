@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the null bus. */
 #include <errno.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of LCDs behind a DS2408: the pin writes that carry a message. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the chip families over the native bus and simulated slaves. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

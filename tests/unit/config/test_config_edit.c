@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of edits of a configuration, key by key. */
 #include <dirent.h>
 #include <errno.h>
 #include <signal.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the addresses to listen at and of ranges of peers. */
 #include <arpa/inet.h>
 #include <errno.h>
 #include <stdlib.h>

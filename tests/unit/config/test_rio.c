@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the reader of .rio documents. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of changes in the text of a .rio document. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

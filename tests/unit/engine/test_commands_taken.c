@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of what the engine does with the commands of programs. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>

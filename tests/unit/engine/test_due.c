@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the set of due rows and of the schedule. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

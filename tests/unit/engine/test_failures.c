@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of signals whose devices or targets fail and come back. */
 #include <errno.h>
 #include <string.h>
 

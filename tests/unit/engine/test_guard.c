@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the guard against power-fault readings of thermometers. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of guests: requests of the served protocol through the engine. */
 #include <errno.h>
 #include <string.h>
 

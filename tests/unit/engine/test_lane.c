@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of lanes: which request goes to a bus, and when. */
 #include <errno.h>
 #include <string.h>
 

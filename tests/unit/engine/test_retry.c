@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of retries: the quality after failures, and the time until the next try. */
 #include <errno.h>
 
 #include "unity.h"

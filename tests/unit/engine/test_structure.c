@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the entries of /structure: parsing, and which types fit a property. */
 #include <errno.h>
 #include <string.h>
 

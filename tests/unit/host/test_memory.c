@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the shared memory of an instance: made, shown, retired. */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>

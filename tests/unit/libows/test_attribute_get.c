@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of reading attributes and driver signals by libows. */
 #include <errno.h>
 
 #include "unity.h"

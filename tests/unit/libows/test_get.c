@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of reading values by libows. */
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -223,7 +224,9 @@ static void test_the_daemon_is_alive_while_its_heart_beats(void)
 	TEST_ASSERT_EQUAL(0, d.alive);
 }
 
-/* As a program with the right to write the image could forge it, or a clock of another namespace. */
+/*
+ * As a program with the right to write the image could forge it, or a clock of another namespace.
+ */
 static void test_a_heart_that_beats_in_the_future_is_dead(void)
 {
 	static const int64_t ahead[] = {3 * INSTANCE_S, 3600 * INSTANCE_S, INT64_MAX};

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of opening segments again after a reload or restart. */
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>

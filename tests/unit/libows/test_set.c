@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of setting outputs and attributes by libows. */
 #include <errno.h>
 #include <math.h>
 #include <pthread.h>

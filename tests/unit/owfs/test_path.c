@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of OWFS paths and device ids. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

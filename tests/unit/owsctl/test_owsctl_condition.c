@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the conditions of `owsctl wait`. */
 #include <errno.h>
 #include <math.h>
 #include <string.h>

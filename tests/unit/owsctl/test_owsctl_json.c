@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the JSON that owsctl writes. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the names and patterns that owsctl takes. */
 #include <errno.h>
 #include <string.h>
 

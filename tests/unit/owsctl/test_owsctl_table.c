@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the tables of owsctl: columns, widths, narrow terminals. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of texts cut to columns of the terminal. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

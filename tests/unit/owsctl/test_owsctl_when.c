@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of times and spans as owsctl prints them. */
 #include <stdlib.h>
 #include <time.h>
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the notifications to the service manager. */
 #include <errno.h>
 #include <stddef.h>
 #include <stdio.h>

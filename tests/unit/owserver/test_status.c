@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the return codes of owserver as errors of the bus contract. */
 #include <errno.h>
 
 #include "unity.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the simulated i2c-tiny-usb adapter. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

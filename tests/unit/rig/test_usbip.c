@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the headers of USB/IP. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of directories of the served protocol. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the meaning of clients' paths. */
 #include <stdlib.h>
 #include <string.h>
 #include <unity.h>

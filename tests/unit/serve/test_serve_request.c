@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the parser of requests of the owserver protocol. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of values converted between the scales of buses and clients. */
 #include <errno.h>
 #include <string.h>
 #include <unity.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the tokens of the servers that a request came through. */
 #include <string.h>
 #include <unity.h>
 

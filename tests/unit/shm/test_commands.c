@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the command segment, and of commands carried to a new one. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the image: its layout, and states that are whole wherever a write breaks off. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

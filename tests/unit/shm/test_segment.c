@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the files of an instance in /dev/shm, and of its lock. */
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of names: signals, driver signals and attributes. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

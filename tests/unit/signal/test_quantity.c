@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the ranges that properties of the chip families can have. */
 #include <math.h>
 #include <stdio.h>
 

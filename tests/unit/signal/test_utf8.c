@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of UTF-8 and of the characters that disturb a line. */
 #include <string.h>
 
 #include "unity.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of values of signals, and of their texts. */
 #include <errno.h>
 #include <float.h>
 #include <math.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the scenario language of the simulator. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

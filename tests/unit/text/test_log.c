@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the log's ring. */
 #include <fcntl.h>
 #include <pthread.h>
 #include <stdio.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of text made fit for a terminal. */
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the words for a refused option. */
 #include <stdlib.h>
 #include <string.h>
 
