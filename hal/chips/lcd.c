@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What displays are told, as bytes for the outputs of their DS2408. */
+/* Character displays behind a DS2408: messages as bytes for the outputs of the chip. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

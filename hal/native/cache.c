@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The answers that the native bus keeps for reads that need not be fresh. */
 #include <assert.h>
 #include <errno.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Directories of the native bus: devices, their properties, and the structure of families. */
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The links of the native bus: opened, grown, lost and recovered. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

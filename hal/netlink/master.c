@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The kernel's 1-Wire masters as link masters, over the netlink connector. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

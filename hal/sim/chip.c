@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The simulated bridge chips: registers, commands, and 1-Wire operations run by the clock. */
 #include <string.h>
 
 #include "hal/sim/chip.h"
@@ -400,7 +401,9 @@ bool sim_chip_write(struct sim_chip *chip, uint8_t byte, int64_t t)
 		chip->parameter = true;
 	} else {
 		taken = take_parameter(chip, byte, t);
-		/* DS2484, "Adjust 1-Wire Port": parameters may follow each other; nothing else may. */
+		/*
+		 * DS2484, "Adjust 1-Wire Port": parameters may follow each other; nothing else may.
+		 */
 		if (chip->command != ADJUST_PORT || !adjustable(chip))
 			chip->command = 0;
 	}

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The kernel's names of 1-Wire devices, to and from ROM ids. */
 #include <stdio.h>
 #include <string.h>
 

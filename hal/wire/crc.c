@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The checksums of 1-Wire: CRC16 of blocks, and what makes a ROM id valid. */
 #include "hal/wire/crc.h"
 #include "hal/owfs/path.h"
 

@@ -64,5 +64,15 @@ def test_the_files_of_the_engine_keep_to_the_stack_that_its_header_shows(scene):
     assert not wrong, wrong
 
 
+def test_every_c_file_begins_with_what_stands_in_it(scene):
+    bare = []
+    for top in ("src", "hal", "tests"):
+        for file in sorted((SOURCE / top).rglob("*.c")):
+            lines = file.read_text().splitlines()
+            if not (lines[0].startswith("/* SPDX-") and lines[1].startswith("/*")):
+                bare.append(str(file.relative_to(SOURCE)))
+    assert not bare, "no sentence after the SPDX line of " + ", ".join(bare)
+
+
 if __name__ == "__main__":
     owsdtest.main()

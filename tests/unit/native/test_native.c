@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the native bus: finding, reading, listing, errors. */
 #include <errno.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the alarm search of the native bus. */
 #include <string.h>
 
 #include "unity.h"
@@ -87,7 +88,9 @@ static void test_an_alarm_s_next_request_is_waited_for(void)
 
 		begun = host.now;
 		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
-		/* A thread hears of the answer a little later; the others are not begun meanwhile. */
+		/*
+		 * A thread hears of the answer a little later; the others are not begun meanwhile.
+		 */
 		TEST_ASSERT_EQUAL_UINT(i + 1, host.answers);
 		host_run(&host, bus, host.now + HOST_MS / 5);
 		TEST_ASSERT_LESS_THAN_INT64(begun + 18 * HOST_MS, host.now);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of devices, wires and chips that are lost and come back. */
 #include <errno.h>
 
 #include "unity.h"

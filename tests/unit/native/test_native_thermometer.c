@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of conversions shared by the thermometers of a wire. */
 #include <errno.h>
 
 #include "unity.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of the properties that the native bus itself has: settings, statistics, system. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

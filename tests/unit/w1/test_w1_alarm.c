@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of alarms over the kernel's 1-Wire drivers. */
 #include <errno.h>
 
 #include "unity.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Tests of thermometers over the kernel's 1-Wire drivers. */
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>
