@@ -8,9 +8,10 @@
 #include <strings.h>
 
 #include "hal/bus/bus.h"
+#include "hal/bus/time.h"
 
 /* How often a suspended bus checks whether its target is back. */
-#define LOOK_NS INT64_C(3000000000)
+#define LOOK_NS (3 * NS_PER_S)
 
 static const struct bus_ops *backend_of(const char *word, size_t len)
 {

@@ -18,13 +18,13 @@
 #include <unistd.h>
 
 #include "hal/bus/ring.h"
+#include "hal/bus/time.h"
 #include "hal/bus/worker.h"
 
-#define SECOND INT64_C(1000000000)
 #define STACK_SIZE (256 * 1024)
 /* Relative time-outs do not count suspend: read the clock again this often. */
-#define LONGEST_WAIT (10 * SECOND)
-#define FULL_NAP (SECOND / 1000)
+#define LONGEST_WAIT (10 * NS_PER_S)
+#define FULL_NAP (NS_PER_S / 1000)
 #define EVENT_NAPS 200 /* then the event is dropped */
 #define EVENT_ROOM 24
 
@@ -59,7 +59,7 @@ static int64_t clock_ns(clockid_t clock)
 	struct timespec t;
 
 	clock_gettime(clock, &t);
-	return (int64_t)t.tv_sec * SECOND + t.tv_nsec;
+	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
 }
 
 static bool is_stopping(const struct worker *worker)
@@ -89,8 +89,8 @@ static int poll_once(struct worker *worker, int fd, short events, int64_t until_
 	if (left > LONGEST_WAIT)
 		left = LONGEST_WAIT;
 	if (left > 0)
-		t = (struct timespec){.tv_sec = (time_t)(left / SECOND),
-		                      .tv_nsec = (long)(left % SECOND)};
+		t = (struct timespec){.tv_sec = (time_t)(left / NS_PER_S),
+		                      .tv_nsec = (long)(left % NS_PER_S)};
 	if (ppoll(fds, fd >= 0 ? 2 : 1, &t, NULL) <= 0)
 		return 0;
 	if (fds[0].revents && read(worker->wake_fd, &wakes, sizeof(wakes)) < 0)
@@ -355,7 +355,8 @@ bool worker_next(struct worker *worker, struct worker_message *message)
 int worker_stop(struct worker *worker, int64_t timeout_ns)
 {
 	int64_t until = clock_ns(CLOCK_MONOTONIC) + timeout_ns;
-	struct timespec t = {.tv_sec = (time_t)(until / SECOND), .tv_nsec = (long)(until % SECOND)};
+	struct timespec t = {.tv_sec = (time_t)(until / NS_PER_S),
+	                     .tv_nsec = (long)(until % NS_PER_S)};
 	int err = 0;
 
 	if (!worker->started)

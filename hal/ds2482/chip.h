@@ -3,12 +3,13 @@
 #ifndef HAL_DS2482_CHIP_H
 #define HAL_DS2482_CHIP_H
 
+#include "hal/bus/time.h"
 #include "hal/ds2482/ds2482.h"
 
 #define DS2482_NO_PARAMETER (-1)
 
 /* How long a wire is without supply so that all slaves forget what they knew. */
-#define DS2482_POWER_OFF_NS INT64_C(500000000)
-#define DS2482_POWER_ON_NS INT64_C(10000000)
+#define DS2482_POWER_OFF_NS (500 * NS_PER_MS)
+#define DS2482_POWER_ON_NS (10 * NS_PER_MS)
 
 #endif

@@ -5,6 +5,7 @@
  */
 #include <errno.h>
 
+#include "hal/bus/time.h"
 #include "hal/ds2482/codes.h"
 #include "hal/ds2482/detect.h"
 #include "hal/ds2482/ds2482.h"
@@ -12,8 +13,8 @@
 #include "hal/ds2482/run.h"
 #include "hal/wire/link.h"
 
-#define SETTLE_NS INT64_C(1000000) /* a device reset takes 0.5 us */
-#define BUSY_NS INT64_C(5000000)
+#define SETTLE_NS NS_PER_MS /* a device reset takes 0.5 us */
+#define BUSY_NS (5 * NS_PER_MS)
 #define TRIES 2
 
 static bool just_reset(int status)

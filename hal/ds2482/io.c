@@ -3,6 +3,7 @@
 #include <errno.h>
 
 #include "hal/bus/bus.h"
+#include "hal/bus/time.h"
 #include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/i2c.h"
 #include "hal/ds2482/io.h"
@@ -11,7 +12,7 @@
 #define MEASURE_TIMES 12
 #define LEAST_NS 9000 /* 1 MHz; no wire is faster */
 #define MOST_MESSAGES 42
-#define SOON_NS INT64_C(60000000000)
+#define SOON_NS (60 * NS_PER_S)
 #define SOON_DOUBLINGS 16
 
 int64_t ds2482_now(const struct ds2482_master *master)

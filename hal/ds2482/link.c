@@ -2,6 +2,7 @@
 /* One channel of a chip as a link. */
 #include <errno.h>
 
+#include "hal/bus/time.h"
 #include "hal/ds2482/chip.h"
 #include "hal/ds2482/detect.h"
 #include "hal/ds2482/io.h"
@@ -9,7 +10,7 @@
 #include "hal/ds2482/power.h"
 #include "hal/ds2482/run.h"
 
-#define CLAIM_NS INT64_C(250000000)
+#define CLAIM_NS (250 * NS_PER_MS)
 
 static struct ds2482_link *self(struct link *link)
 {

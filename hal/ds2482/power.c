@@ -8,14 +8,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/ds2482/chip.h"
 #include "hal/ds2482/detect.h"
 #include "hal/ds2482/io.h"
 #include "hal/ds2482/power.h"
 
 /* A chip answers that long after SLPZ went high: 2 ms by the data sheet of the DS2484. */
-#define AWAKE_NS INT64_C(5000000)
-#define MS INT64_C(1000000)
+#define AWAKE_NS (5 * NS_PER_MS)
 
 static bool is_given(const struct gpio_output *output)
 {
@@ -42,7 +42,7 @@ int ds2482_option(struct link_master *base, const char *key, const char *text, c
 		snprintf(why, why_size, "\"%.40s\": expected milliseconds from 1 to 60000", text);
 		return -EINVAL;
 	}
-	master->power_off_ns = ms * MS;
+	master->power_off_ns = ms * NS_PER_MS;
 	return 0;
 }
 

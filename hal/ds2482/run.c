@@ -12,6 +12,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/ds2482/chip.h"
 #include "hal/ds2482/io.h"
 #include "hal/ds2482/run.h"
@@ -20,7 +21,7 @@
 #define FAST_BYTE_NS 45000
 #define MAX_BYTES 180
 #define MAX_MESSAGES 42
-#define STUCK_NS INT64_C(10000000)
+#define STUCK_NS (10 * NS_PER_MS)
 #define POLL_NS INT64_C(200000)
 
 /* Bytes to read so that the last begins max_ns after the command, given what lies between. */

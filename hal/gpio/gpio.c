@@ -11,11 +11,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/gpio/lines.h"
 
-#define SECOND INT64_C(1000000000)
-#define AGAIN_NS (SECOND / 2)
-#define LOOK_NS (5 * SECOND)
+#define AGAIN_NS (NS_PER_S / 2)
+#define LOOK_NS (5 * NS_PER_S)
 #define DEPTH 64
 
 static const char *const names[GPIO_COUNTS] = {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The GPIO calls by libgpiod 1.6. */
+#include "hal/bus/time.h"
 #include "hal/gpio/api.h"
 
 #if defined(OWSD_LIBGPIOD) && OWSD_LIBGPIOD == 1
@@ -9,8 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
-
-#define SECOND INT64_C(1000000000)
 
 struct gpio_chip {
 	struct gpiod_chip *chip;
@@ -164,7 +163,7 @@ static int64_t boottime(const struct timespec *ts)
 
 	clock_gettime(CLOCK_BOOTTIME, &boot);
 	clock_gettime(CLOCK_MONOTONIC, &mono);
-	return ((int64_t)ts->tv_sec + boot.tv_sec - mono.tv_sec) * SECOND + ts->tv_nsec +
+	return ((int64_t)ts->tv_sec + boot.tv_sec - mono.tv_sec) * NS_PER_S + ts->tv_nsec +
 	       boot.tv_nsec - mono.tv_nsec;
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The GPIO calls by libgpiod 2.x. */
+#include "hal/bus/time.h"
 #include "hal/gpio/api.h"
 
 #if defined(OWSD_LIBGPIOD) && OWSD_LIBGPIOD == 2
@@ -8,8 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
-
-#define SECOND INT64_C(1000000000)
 
 struct gpio_chip {
 	struct gpiod_chip *chip;
@@ -217,7 +216,7 @@ static int64_t boottime(uint64_t monotonic_ns)
 
 	clock_gettime(CLOCK_BOOTTIME, &boot);
 	clock_gettime(CLOCK_MONOTONIC, &mono);
-	return (int64_t)monotonic_ns + ((int64_t)boot.tv_sec - mono.tv_sec) * SECOND +
+	return (int64_t)monotonic_ns + ((int64_t)boot.tv_sec - mono.tv_sec) * NS_PER_S +
 	       boot.tv_nsec - mono.tv_nsec;
 }
 

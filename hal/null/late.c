@@ -13,11 +13,11 @@
 #include <string.h>
 
 #include "hal/bus/bus.h"
+#include "hal/bus/time.h"
 
 #define LATE_DEPTH 16
 #define LATE_ECHOES 64
-#define MS INT64_C(1000000)
-#define LATE_BY_NAME (1000 * MS)
+#define LATE_BY_NAME (1000 * NS_PER_MS)
 
 enum late_option { SEED, LATE, TWICE, NEVER, UP, DOWN, OPTIONS };
 
@@ -144,7 +144,7 @@ static int late_submit(struct bus *bus, struct bus_req *req)
 {
 	struct late_bus *late = (struct late_bus *)bus;
 	struct late_slot *slot = late->slot;
-	int64_t delay = (int64_t)draw(late, late->option[LATE] + 1) * MS;
+	int64_t delay = (int64_t)draw(late, late->option[LATE] + 1) * NS_PER_MS;
 
 	while (slot < late->slot + LATE_DEPTH && slot->req)
 		slot++;
@@ -165,7 +165,8 @@ static void give_again(struct late_bus *late, const struct bus_answer *answer, i
 		if (late->echo[i].due_ns)
 			continue;
 		late->echo[i].answer = *answer;
-		late->echo[i].due_ns = now + 1 + (int64_t)draw(late, late->option[LATE] + 1) * MS;
+		late->echo[i].due_ns = now + 1 +
+		                       (int64_t)draw(late, late->option[LATE] + 1) * NS_PER_MS;
 		return;
 	}
 }
@@ -198,7 +199,7 @@ static void turn(struct late_bus *late, int64_t now)
 	late->is_told = false;
 	late->turn_ns = INT64_MAX;
 	if (late->option[UP])
-		late->turn_ns = now + (int64_t)late->option[late->up ? UP : DOWN] * MS;
+		late->turn_ns = now + (int64_t)late->option[late->up ? UP : DOWN] * NS_PER_MS;
 }
 
 static void tell(struct late_bus *late)

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/owserver/cache.h"
 
 #define DAY_S 86400
@@ -25,6 +26,6 @@ int cache_ask(struct talk *talk, int64_t deadline_ns, int64_t *cache_ns)
 	seconds = strtol((const char *)text, &end, 10);
 	if (end != (const char *)text && strspn(end, " \n") == strlen(end) && seconds > 0 &&
 	    seconds <= DAY_S)
-		*cache_ns = seconds * INT64_C(1000000000);
+		*cache_ns = seconds * NS_PER_S;
 	return 0;
 }

@@ -12,12 +12,13 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "hal/bus/time.h"
 #include "hal/owserver/connection.h"
 
 #define DEFAULT_HOST "localhost"
 #define DEFAULT_PORT "4304"
 /* The time for one address of several, so that it does not use up the time of the others. */
-#define ADDRESS_NS INT64_C(1000000000)
+#define ADDRESS_NS NS_PER_S
 
 static int set_part(char *out, size_t size, const char *from, size_t len)
 {

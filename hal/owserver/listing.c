@@ -4,10 +4,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/owfs/path.h"
 #include "hal/owserver/listing.h"
 
-#define KEEP_NS INT64_C(10000000000)
+#define KEEP_NS (10 * NS_PER_S)
 #define ADDRESS_LEN 16
 
 static const struct listing_name *known(const struct listing *listing, const char *alias,

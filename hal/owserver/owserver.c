@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/owfs/path.h"
 #include "hal/owserver/cache.h"
 #include "hal/owserver/listing.h"
@@ -21,16 +22,15 @@
 #include "hal/owserver/status.h"
 #include "hal/owserver/talk.h"
 
-#define MS INT64_C(1000000)
-#define BACKOFF_MIN (200 * MS)
-#define BACKOFF_MAX (5000 * MS)
+#define BACKOFF_MIN (200 * NS_PER_MS)
+#define BACKOFF_MAX (5000 * NS_PER_MS)
 /* Connecting and greeting together; a step waits for a slice of it, so that requests that come
    meanwhile are told at once that the target is down. */
-#define GREETING_NS (5000 * MS)
-#define SLICE_NS (50 * MS)
-#define NAMES_NS (5000 * MS) /* on a busy wire they stand in line */
+#define GREETING_NS (5000 * NS_PER_MS)
+#define SLICE_NS (50 * NS_PER_MS)
+#define NAMES_NS (5000 * NS_PER_MS) /* on a busy wire they stand in line */
 /* An idle connection is looked at so often, to learn that the server went. */
-#define IDLE_NS (1000 * MS)
+#define IDLE_NS (1000 * NS_PER_MS)
 #define READ_MAX 65536
 
 static_assert(BUS_TOKEN == FRAME_TOKEN_SIZE && BUS_TOKENS_MAX == FRAME_TOKENS_SENT,

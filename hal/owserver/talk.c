@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/owserver/talk.h"
 
 /* A genuine owserver sends one keep-alive a second, also where it stands behind another. */
@@ -11,8 +12,7 @@
 #define ALIVE_PER_S 20
 /* So many pieces of a reply are taken as they come, then what came within a pause together. */
 #define PIECES 16u
-#define PAUSE_NS INT64_C(1000000)
-#define NS_PER_S INT64_C(1000000000)
+#define PAUSE_NS NS_PER_MS
 
 static int64_t now(const struct talk *talk)
 {

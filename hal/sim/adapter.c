@@ -2,6 +2,7 @@
 /* The simulated network as an I2C adapter. */
 #include <errno.h>
 
+#include "hal/bus/time.h"
 #include "hal/sim/adapter.h"
 
 /* The bits of a transaction: a START or STOP condition takes about one, a byte nine. */
@@ -14,7 +15,7 @@ struct clock {
 
 static int64_t bits(const struct sim_adapter *adapter, unsigned n)
 {
-	return INT64_C(1000000000) * n / adapter->net->hz;
+	return NS_PER_S * n / adapter->net->hz;
 }
 
 static void begin(struct clock *clock, struct sim_adapter *adapter)

@@ -4,9 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/sim/net.h"
 
-#define PAUSE_NS 10000000 /* at the least that is so */
+#define PAUSE_NS (10 * NS_PER_MS) /* at the least that is so */
 
 void sim_net_init(struct sim_net *net)
 {

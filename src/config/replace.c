@@ -11,11 +11,12 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/bus/time.h"
 #include "src/config/replace.h"
 
 #define SUFFIX ".XXXXXX"
 #define LOCK_TRIES 250
-#define LOCK_PAUSE 20000000 /* ns: five seconds in all */
+#define LOCK_PAUSE (20 * NS_PER_MS) /* ns: five seconds in all */
 
 static int write_all(int fd, const char *text, size_t len)
 {

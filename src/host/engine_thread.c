@@ -9,6 +9,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
+#include "hal/bus/time.h"
 #include "hal/bus/worker.h"
 #include "src/host/engine_thread.h"
 #include "src/host/private.h"
@@ -19,7 +20,7 @@
 #define ENGINE_STACK (128 * 1024)
 /* After so many turns without news the engine pauses: a bell rung without end must not spin it. */
 #define IDLE_RINGS 3
-#define IDLE_NS 1000000
+#define IDLE_NS NS_PER_MS
 
 enum {
 	COUNTER_LOG_DROPPED,

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/bus/worker.h"
 #include "src/config/load.h"
 #include "src/host/engine_thread.h"
@@ -87,7 +88,7 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 	if (!err)
 		err = host_start_indicator(h, why, why_size);
 	if (err) {
-		host_stop(h, 1000000000);
+		host_stop(h, NS_PER_S);
 		return err;
 	}
 	*host = h;

@@ -7,18 +7,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/gpio/line.h"
 #include "src/host/indicator.h"
 #include "src/libows/ows.h"
 #include "src/shm/futex.h"
 #include "src/shm/reader.h"
 
-#define MS INT64_C(1000000)
-#define SECOND (1000 * MS)
-#define HALF (SECOND / 2)
-#define FLASH (100 * MS)
-#define LOOK_NS (250 * MS) /* at the image, for alarms */
-#define AGAIN_NS (5 * SECOND)
+#define HALF (NS_PER_S / 2)
+#define FLASH (100 * NS_PER_MS)
+#define LOOK_NS (250 * NS_PER_MS) /* at the image, for alarms */
+#define AGAIN_NS (5 * NS_PER_S)
 #define STACK (64 * 1024)
 
 struct lamp {
@@ -63,7 +62,7 @@ static bool indicator_alarm(const struct image *image)
 static enum indicator_health indicator_health(const struct image *image, int64_t period_ns,
                                               int64_t now_ns)
 {
-	int64_t patience_ns = 2 * period_ns + SECOND;
+	int64_t patience_ns = 2 * period_ns + NS_PER_S;
 	struct ows_sample beat;
 
 	if (!reader_sample(&image->records[0], &beat) || now_ns - beat.measured_ns > patience_ns ||
@@ -82,9 +81,9 @@ static bool indicator_lit(enum indicator_health health, int64_t now_ns)
 	case INDICATOR_DEAD:
 		return false;
 	case INDICATOR_ALONE:
-		return now_ns % (2 * SECOND) < FLASH;
+		return now_ns % (2 * NS_PER_S) < FLASH;
 	case INDICATOR_WELL:
-		return now_ns % SECOND < HALF;
+		return now_ns % NS_PER_S < HALF;
 	}
 	return false;
 }
@@ -96,8 +95,9 @@ static int64_t next_change(enum indicator_health health, int64_t now_ns)
 	case INDICATOR_DEAD:
 		return now_ns + LOOK_NS;
 	case INDICATOR_ALONE:
-		return indicator_lit(health, now_ns) ? now_ns - now_ns % (2 * SECOND) + FLASH
-		                                     : now_ns - now_ns % (2 * SECOND) + 2 * SECOND;
+		return indicator_lit(health, now_ns)
+		               ? now_ns - now_ns % (2 * NS_PER_S) + FLASH
+		               : now_ns - now_ns % (2 * NS_PER_S) + 2 * NS_PER_S;
 	case INDICATOR_WELL:
 		return now_ns - now_ns % HALF + HALF;
 	}

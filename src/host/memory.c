@@ -13,6 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/bus/time.h"
 #include "src/engine/table.h"
 #include "src/host/memory.h"
 #include "src/libows/ows.h"
@@ -28,7 +29,7 @@ static int64_t wall_ns(void)
 	struct timespec t;
 
 	clock_gettime(CLOCK_REALTIME, &t);
-	return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
 }
 
 static uint32_t random_id(void)

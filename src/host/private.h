@@ -5,12 +5,13 @@
 
 #include <pthread.h>
 
+#include "hal/bus/time.h"
 #include "src/host/serving.h"
 
 /*
  * The supervisor's pause between two looks whether engine or server have taken what it gave them.
  */
-#define HOST_LOOK_NS 1000000
+#define HOST_LOOK_NS NS_PER_MS
 
 struct host {
 	struct serving

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "src/host/engine_thread.h"
 #include "src/host/indicator.h"
 #include "src/host/make.h"
@@ -17,7 +18,7 @@
 #include "src/shm/futex.h"
 
 /* The time that all buses which a reload ends may take together. */
-#define END_NS 2000000000LL
+#define END_NS (2 * NS_PER_S)
 
 static void pause_until_null(void *word)
 {

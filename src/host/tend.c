@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "src/host/engine_thread.h"
 #include "src/host/make.h"
 #include "src/host/private.h"
@@ -12,9 +13,9 @@
 #include "src/shm/segment.h"
 
 /* Where a consumer removes the command segment again and again, owsd makes it once a second. */
-#define TEND_NS 1000000000
+#define TEND_NS NS_PER_S
 /* How often owsd logs that the image is lost. */
-#define IMAGE_LOST_NS 60000000000LL
+#define IMAGE_LOST_NS (60 * NS_PER_S)
 
 static int show_renewed(struct host *h)
 {

@@ -5,10 +5,11 @@
 
 #include <errno.h>
 
+#include "hal/bus/time.h"
 #include "src/libows/handle.h"
 
 /* The time between two looks whether a name leads to another segment. */
-#define ORPHAN_LOOK_NS INT64_C(1000000000)
+#define ORPHAN_LOOK_NS NS_PER_S
 
 /* Checks the heartbeat, without the answer that is kept for this now_ns. */
 bool alive_find(struct ows *h, int64_t now_ns);

@@ -2,13 +2,12 @@
 /* Computes the attributes of a signal from what owsd publishes and from the running time. */
 #include <errno.h>
 
+#include "hal/bus/time.h"
 #include "src/libows/alive.h"
 #include "src/libows/attribute.h"
 #include "src/libows/handle.h"
 #include "src/libows/sample.h"
 #include "src/shm/reader.h"
-
-#define NS_PER_S 1e9
 
 static int64_t larger(int64_t a, int64_t b)
 {

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "hal/bus/time.h"
 #include "src/libows/alive.h"
 #include "src/libows/attribute.h"
 #include "src/libows/get.h"
@@ -19,7 +20,7 @@ int64_t ows_now(void)
 	struct timespec ts;
 
 	clock_gettime(CLOCK_BOOTTIME, &ts);
-	return (int64_t)ts.tv_sec * 1000000000 + ts.tv_nsec;
+	return (int64_t)ts.tv_sec * NS_PER_S + ts.tv_nsec;
 }
 
 /* Has owsd ended, or not yet begun? */

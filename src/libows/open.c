@@ -5,12 +5,13 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "hal/bus/time.h"
 #include "src/libows/find.h"
 #include "src/libows/handle.h"
 #include "src/libows/map.h"
 #include "src/shm/word.h"
 
-#define DEAD_LEAST_NS INT64_C(2000000000)
+#define DEAD_LEAST_NS (2 * NS_PER_S)
 
 static void take_map(struct ows *h, const struct ows_map *map)
 {

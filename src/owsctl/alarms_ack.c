@@ -6,12 +6,13 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "src/libows/ows.h"
 #include "src/owsctl/alarms_ack.h"
 #include "src/owsctl/ctl.h"
 
 /* owsd takes an acknowledgement at once; longer means that it hangs. */
-#define PATIENCE_NS INT64_C(2000000000)
+#define PATIENCE_NS (2 * NS_PER_S)
 
 static bool unacknowledged(struct ows *h, int id)
 {

@@ -10,6 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/bus/time.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/names.h"
 #include "src/owsctl/when.h"
@@ -178,7 +179,7 @@ bool ctl_alive(const struct ctl *ctl, struct ows *h, int64_t now_ns)
 
 void ctl_nap(void)
 {
-	const struct timespec nap = {.tv_nsec = 200000000};
+	const struct timespec nap = {.tv_nsec = 200 * NS_PER_MS};
 
 	nanosleep(&nap, NULL);
 }

@@ -3,6 +3,7 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "src/owsctl/json.h"
 #include "src/signal/utf8.h"
 
@@ -136,7 +137,7 @@ void json_null(struct json *json, const char *key)
 
 void json_seconds(struct json *json, const char *key, int64_t ns)
 {
-	int64_t ms = ns / 1000000;
+	int64_t ms = ns / NS_PER_MS;
 
 	begin(json, key);
 	if (ms < 0)

@@ -7,14 +7,14 @@
 #include <string.h>
 #include <time.h>
 
+#include "hal/bus/time.h"
 #include "src/config/config.h"
 #include "src/config/targets.h"
 #include "src/owsctl/open.h"
 #include "src/owsctl/reading.h"
 
-#define S INT64_C(1000000000)
-#define GRACE_NS (2 * S)    /* a request ends by its deadline; this is for what does not */
-#define PROGRESS_NS (5 * S) /* how often the count of answers is printed */
+#define GRACE_NS (2 * NS_PER_S)    /* a request ends by its deadline; this is for what does not */
+#define PROGRESS_NS (5 * NS_PER_S) /* how often the count of answers is printed */
 
 static int64_t boottime(void *ctx)
 {
@@ -22,7 +22,7 @@ static int64_t boottime(void *ctx)
 
 	(void)ctx;
 	clock_gettime(CLOCK_BOOTTIME, &t);
-	return (int64_t)t.tv_sec * S + t.tv_nsec;
+	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
 }
 
 static int wait_fd(void *ctx, int fd, short events, int64_t until_ns)
@@ -31,7 +31,8 @@ static int wait_fd(void *ctx, int fd, short events, int64_t until_ns)
 	int64_t left;
 
 	while ((left = until_ns - boottime(ctx)) > 0) {
-		struct timespec t = {.tv_sec = (time_t)(left / S), .tv_nsec = (long)(left % S)};
+		struct timespec t = {.tv_sec = (time_t)(left / NS_PER_S),
+		                     .tv_nsec = (long)(left % NS_PER_S)};
 
 		if (ppoll(&poll_fd, 1, &t, NULL) > 0)
 			return 1;

@@ -7,12 +7,13 @@
 #define OWSCTL_OPEN_H
 
 #include "hal/bus/bus.h"
+#include "hal/bus/time.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/served.h"
 #include "src/signal/error.h"
 
 #define OPEN_DEFAULT_TARGET "localhost:4304"
-#define OPEN_TIMEOUT_NS INT64_C(20000000000)
+#define OPEN_TIMEOUT_NS (20 * NS_PER_S)
 
 struct target {
 	const char *name;     /* as given */

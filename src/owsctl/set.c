@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/names.h"
 #include "src/owsctl/reading.h"
@@ -166,7 +167,7 @@ static bool all_confirmed(struct ows *h, struct order *orders, int count, struct
 static int await(struct ows *h, struct order *orders, int count, int64_t limit_ns,
                  struct reading *reading)
 {
-	const int64_t slice = INT64_C(100000000);
+	const int64_t slice = 100 * NS_PER_MS;
 	int64_t end = ows_now() + limit_ns;
 	uint32_t news = 0;
 

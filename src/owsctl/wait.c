@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <getopt.h>
 
+#include "hal/bus/time.h"
 #include "src/owsctl/condition.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/names.h"
@@ -11,7 +12,7 @@
 #include "src/owsctl/verbs.h"
 
 #define NO_LIMIT INT64_MAX
-#define SLICE INT64_C(250000000) /* a value that grows old or a dead owsd sends no news */
+#define SLICE (250 * NS_PER_MS) /* a value that grows old or a dead owsd sends no news */
 
 struct waiting {
 	const struct ctl *ctl;

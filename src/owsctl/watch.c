@@ -6,12 +6,13 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "hal/bus/time.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/terminal.h"
 #include "src/owsctl/verbs.h"
 #include "src/owsctl/watch_screen.h"
 
-#define SHORTEST_SLEEP INT64_C(10000000)
+#define SHORTEST_SLEEP (10 * NS_PER_MS)
 
 static void say_event(struct watch *watch, enum watch_event event)
 {

@@ -5,15 +5,16 @@
 #include <string.h>
 #include <time.h>
 
+#include "hal/bus/time.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/terminal.h"
 #include "src/owsctl/text.h"
 #include "src/owsctl/watch_screen.h"
 
-#define BETWEEN_KEYS INT64_C(50000000)
-#define BETWEEN_PICTURES INT64_C(100000000)
-#define LONGEST_PICTURE INT64_C(1000000000) /* ages count up without news */
+#define BETWEEN_KEYS (50 * NS_PER_MS)
+#define BETWEEN_PICTURES (100 * NS_PER_MS)
+#define LONGEST_PICTURE NS_PER_S /* ages count up without news */
 
 static const struct table_column columns[] = {
 	{"NAME"},

@@ -3,11 +3,12 @@
 #include <errno.h>
 #include <time.h>
 
+#include "hal/bus/time.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/terminal.h"
 #include "src/owsctl/watch_sleep.h"
 
-#define LONGEST_SLEEP INT64_C(500000000) /* ages and a dead owsd are seen without news */
+#define LONGEST_SLEEP (500 * NS_PER_MS) /* ages and a dead owsd are seen without news */
 
 bool watch_over(const struct watch *watch)
 {
@@ -30,7 +31,7 @@ int watch_collect(struct watch *watch, const struct ows_daemon *daemon)
 static void pause_until(int64_t until_ns)
 {
 	int64_t left = until_ns - ows_now();
-	const struct timespec pause = {.tv_nsec = (long)(left % 1000000000)};
+	const struct timespec pause = {.tv_nsec = (long)(left % NS_PER_S)};
 
 	if (left > 0)
 		nanosleep(&pause, NULL);

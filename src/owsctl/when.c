@@ -4,10 +4,9 @@
 #include <string.h>
 #include <time.h>
 
+#include "hal/bus/time.h"
 #include "src/libows/ows.h"
 #include "src/owsctl/when.h"
-
-#define SECOND INT64_C(1000000000)
 
 struct when when_now(void)
 {
@@ -15,7 +14,7 @@ struct when when_now(void)
 	struct when now;
 
 	clock_gettime(CLOCK_REALTIME, &wall);
-	now.wall = (int64_t)wall.tv_sec * SECOND + wall.tv_nsec;
+	now.wall = (int64_t)wall.tv_sec * NS_PER_S + wall.tv_nsec;
 	now.boot = ows_now();
 	return now;
 }
@@ -23,7 +22,7 @@ struct when when_now(void)
 const char *when_iso(const struct when *now, int64_t boot_ns, char text[WHEN_TEXT])
 {
 	int64_t wall = now->wall - (now->boot - boot_ns);
-	time_t seconds = (time_t)(wall / SECOND);
+	time_t seconds = (time_t)(wall / NS_PER_S);
 	struct tm local;
 	char day[24], zone[8];
 
@@ -32,19 +31,19 @@ const char *when_iso(const struct when *now, int64_t boot_ns, char text[WHEN_TEX
 	    strftime(zone, sizeof(zone), "%z", &local) != 5)
 		snprintf(text, WHEN_TEXT, "?");
 	else
-		snprintf(text, WHEN_TEXT, "%s.%03d%.3s:%.2s", day, (int)(wall % SECOND / 1000000),
-		         zone, zone + 3);
+		snprintf(text, WHEN_TEXT, "%s.%03d%.3s:%.2s", day,
+		         (int)(wall % NS_PER_S / NS_PER_MS), zone, zone + 3);
 	return text;
 }
 
 const char *when_span(int64_t ns, char text[WHEN_TEXT])
 {
-	int64_t s = ns / SECOND;
+	int64_t s = ns / NS_PER_S;
 
 	if (s < 0)
 		snprintf(text, WHEN_TEXT, "0.0s");
 	else if (s < 10)
-		snprintf(text, WHEN_TEXT, "%d.%ds", (int)s, (int)(ns % SECOND / (SECOND / 10)));
+		snprintf(text, WHEN_TEXT, "%d.%ds", (int)s, (int)(ns % NS_PER_S / (NS_PER_S / 10)));
 	else if (s < 120)
 		snprintf(text, WHEN_TEXT, "%ds", (int)s);
 	else if (s < 120 * 60)

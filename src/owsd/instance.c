@@ -6,13 +6,14 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "hal/bus/time.h"
 #include "src/libows/ows.h"
 #include "src/owsd/instance.h"
 #include "src/shm/hint.h"
 #include "src/shm/lock.h"
 #include "src/shm/segment.h"
 
-#define LOOK_NS 1000000000
+#define LOOK_NS NS_PER_S
 
 /*
  * The lock is the last: as long as it exists, no other owsd creates the files that are being

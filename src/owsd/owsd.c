@@ -2,6 +2,7 @@
 /* owsd's main program: start-up, supervision, reload and end. */
 #include <errno.h>
 
+#include "hal/bus/time.h"
 #include "src/board/board.h"
 #include "src/board/look.h"
 #include "src/board/report.h"
@@ -31,12 +32,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define STOP_NS 2000000000LL
-#define SUPERVISE_NS 500000000LL
-#define AGAIN_NS 20000000LL /* a reload that has to wait */
+#define STOP_NS (2 * NS_PER_S)
+#define SUPERVISE_NS (500 * NS_PER_MS)
+#define AGAIN_NS (20 * NS_PER_MS) /* a reload that has to wait */
 /* From the end of a reload to the next: reloads take at most a tenth of the time */
-#define APART_LEAST_NS 200000000LL
-#define APART_MOST_NS 10000000000LL
+#define APART_LEAST_NS (200 * NS_PER_MS)
+#define APART_MOST_NS (10 * NS_PER_S)
 
 static volatile sig_atomic_t stop_signal, hangup;
 static uint32_t *supervisor_word;

@@ -4,14 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/owfs/format.h"
 #include "src/serve/kept.h"
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
 
-#define VOLATILE_NS INT64_C(2000000000)
-#define SECOND_NS INT64_C(1000000000)
-#define STATIC_NS INT64_C(300000000000)
+#define VOLATILE_NS (2 * NS_PER_S)
+#define STATIC_NS (300 * NS_PER_S)
 
 #define SETS 256
 #define WAYS 4
@@ -123,7 +123,7 @@ static bool holds(enum ows_type type, char property)
 
 static int64_t life_ns(char life)
 {
-	return life == LIFE_STATIC ? STATIC_NS : life == LIFE_SECOND ? SECOND_NS : VOLATILE_NS;
+	return life == LIFE_STATIC ? STATIC_NS : life == LIFE_SECOND ? NS_PER_S : VOLATILE_NS;
 }
 
 static int find_signal(const struct kept *kept, const struct image *image, const struct node *node,

@@ -10,6 +10,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "hal/bus/time.h"
 #include "src/config/own.h"
 #include "src/libows/ows.h"
 #include "src/serve/client.h"
@@ -21,7 +22,7 @@
 #include "src/shm/futex.h"
 
 #define STACK_SIZE (128 * 1024)
-#define TAKE_NS 1000000 /* between looks whether the thread has taken a reload */
+#define TAKE_NS NS_PER_MS /* between looks whether the thread has taken a reload */
 #define EVENTS 64
 #define WAKE_EVENT SERVER_CLIENTS
 
@@ -170,7 +171,7 @@ static int wait_ms(struct serve *s)
 
 	if (s->round_count || s->accepting || left <= 0 || work_waits(s))
 		return 0;
-	return left > INT64_C(1000000) * 60000 ? 60000 : (int)((left + 999999) / 1000000);
+	return left > NS_PER_MS * 60000 ? 60000 : (int)((left + NS_PER_MS - 1) / NS_PER_MS);
 }
 
 static void take_next(struct serve *s)

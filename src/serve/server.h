@@ -5,6 +5,7 @@
 
 #include <pthread.h>
 
+#include "hal/bus/time.h"
 #include "src/serve/code.h"
 #include "src/serve/directory.h"
 #include "src/serve/guests.h"
@@ -19,14 +20,14 @@
 #define SERVER_LISTENERS (LISTEN_MAX + 1)
 
 /* Time limits, as the genuine owserver has them. */
-#define REQUEST_NS INT64_C(10000000000) /* from the first byte, or the connection, to the end */
-#define IDLE_NS INT64_C(600000000000)   /* of a connection that asked to be kept */
-#define EVICT_NS INT64_C(10000000000)   /* idle for so long, it goes when another waits */
-#define KEEPALIVE_NS INT64_C(1000000000)
-#define SEND_NS INT64_C(10000000000)   /* that no byte of an answer is taken */
-#define ANSWER_NS INT64_C(60000000000) /* for the whole of an answer */
-#define APPLY_NS INT64_C(10000000000)  /* until a commanded output is confirmed */
-#define APPLY_LOOK_NS INT64_C(10000000)
+#define REQUEST_NS (10 * NS_PER_S) /* from the first byte, or the connection, to the end */
+#define IDLE_NS (600 * NS_PER_S)   /* of a connection that asked to be kept */
+#define EVICT_NS (10 * NS_PER_S)   /* idle for so long, it goes when another waits */
+#define KEEPALIVE_NS NS_PER_S
+#define SEND_NS (10 * NS_PER_S)   /* that no byte of an answer is taken */
+#define ANSWER_NS (60 * NS_PER_S) /* for the whole of an answer */
+#define APPLY_NS (10 * NS_PER_S)  /* until a commanded output is confirmed */
+#define APPLY_LOOK_NS (10 * NS_PER_MS)
 
 /*
  * What a connection's bytes are put in: the request, and behind it what is sent. Pages of it that

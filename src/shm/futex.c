@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/bus/time.h"
 #include "src/shm/futex.h"
 
 /*
@@ -22,14 +23,14 @@ _Static_assert(sizeof(time_t) == sizeof(long), "the futex call needs its 64-bit 
 #endif
 
 /* About ten years: no limit in practice, and no overflow in the kernel. */
-#define LONGEST_NS (INT64_C(315360000) * 1000000000)
+#define LONGEST_NS (INT64_C(315360000) * NS_PER_S)
 
 int segment_wait(const uint32_t *word, uint32_t seen, int64_t timeout_ns)
 {
 	int64_t ns = timeout_ns < LONGEST_NS ? timeout_ns : LONGEST_NS;
 	struct timespec ts = {
-		.tv_sec = (time_t)(ns / 1000000000),
-		.tv_nsec = (long)(ns % 1000000000),
+		.tv_sec = (time_t)(ns / NS_PER_S),
+		.tv_nsec = (long)(ns % NS_PER_S),
 	};
 	int saved = errno, err = 0;
 

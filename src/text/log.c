@@ -11,6 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/bus/time.h"
 #include "src/shm/futex.h"
 #include "src/text/log.h"
 #include "src/text/printable.h"
@@ -18,7 +19,7 @@
 #define LINES 256u /* a power of two */
 #define LINE_BYTES 255
 #define FINISH_MS 200
-#define HOUR_NS (3600 * INT64_C(1000000000))
+#define HOUR_NS (3600 * NS_PER_S)
 
 /*
  * turn names the owner of the line: in round r of the ring, r * LINES is the producers', r * LINES
@@ -248,7 +249,7 @@ static int64_t clock_ms(void)
 	struct timespec t;
 
 	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (int64_t)t.tv_sec * 1000 + t.tv_nsec / 1000000;
+	return (int64_t)t.tv_sec * 1000 + t.tv_nsec / NS_PER_MS;
 }
 
 void log_finish(struct log *log, int fd, int prefix)

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/sim/chips/thermometer.h"
 #include "hal/sim/families.h"
 
@@ -16,9 +17,8 @@ enum { READ_POWER = 0xB4 };
 #define FAMILY_1825 0x3B
 #define FAMILY_EA00 0x42
 
-#define MS INT64_C(1000000)
 /* tWR of the EEPROM, all data sheets: 10 ms at most. */
-#define COPY_NS (10 * MS)
+#define COPY_NS (10 * NS_PER_MS)
 
 static struct sim_thermometer *state(struct sim_slave *slave)
 {
@@ -42,7 +42,7 @@ static int64_t sim_thermometer_conversion(const struct sim_slave *slave)
 {
 	const struct sim_thermometer *s = slave->state;
 	/* tCONV: 93.75, 187.5, 375, 750 ms at most. */
-	int64_t full = (750 * MS) >> (12 - resolution(slave));
+	int64_t full = (750 * NS_PER_MS) >> (12 - resolution(slave));
 
 	return s->percent ? full / 100 * s->percent : full;
 }

@@ -2,12 +2,13 @@
 /* DS2430A (data sheet, "256-bit 1-Wire EEPROM"): 32 bytes, and an application register. */
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/sim/families.h"
 
 enum { KEY = 0xA5, LOCK_APPLICATION = 0x5A };
 
 /* tPROG: 10 ms. */
-#define COPY_NS INT64_C(10000000)
+#define COPY_NS (10 * NS_PER_MS)
 
 struct ds2430a {
 	uint8_t memory[32], application[8];

@@ -2,20 +2,21 @@
 /* DS2431 (data sheet 19-4675), DS2433 (19-5268) and DS28EC20 (19-5235): EEPROM. */
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/sim/chips/scratchpad.h"
 #include "hal/sim/families.h"
 
 /* Four pages of 32, and the register page; tPROG 10 ms. */
 static const struct sim_scratchpad_kind ds2431 = {
-	.size = 0x90, .writable = 0x90, .page = 8, .copy_ns = 10000000, .whole = true};
+	.size = 0x90, .writable = 0x90, .page = 8, .copy_ns = 10 * NS_PER_MS, .whole = true};
 /* Sixteen pages of 32; tPROG 5 ms. */
 static const struct sim_scratchpad_kind ds2433 = {
-	.size = 512, .writable = 512, .page = 32, .copy_ns = 5000000};
+	.size = 512, .writable = 512, .page = 32, .copy_ns = 5 * NS_PER_MS};
 /* Eighty pages of 32, the register page, a page that is read-only; tPROG 10 ms. */
 static const struct sim_scratchpad_kind ds28ec20 = {.size = 0xA40,
                                                     .writable = 0xA20,
                                                     .page = 32,
-                                                    .copy_ns = 10000000,
+                                                    .copy_ns = 10 * NS_PER_MS,
                                                     .to_end = true,
                                                     .sequence = true};
 

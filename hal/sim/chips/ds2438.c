@@ -2,14 +2,14 @@
 /* DS2438 (data sheet, "Smart Battery Monitor"): temperature, two voltages, current, 64 bytes. */
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/sim/families.h"
 
 /* Status/configuration, page 0 byte 0. */
 enum { IAD = 0x01, CA = 0x02, EE = 0x04, AD = 0x08, TB = 0x10, NVB = 0x20, ADB = 0x40 };
 
 /* tCONV and tWR: 10 ms at most. */
-#define WORK_NS INT64_C(10000000)
-#define SECOND INT64_C(1000000000)
+#define WORK_NS (10 * NS_PER_MS)
 /* Current register: 0.2441 mV across the sense resistor. */
 #define CURRENT_MV 0.2441
 
@@ -98,7 +98,7 @@ static void worked(struct sim_slave *slave, int64_t t)
 			const uint8_t *b = s->memory[1];
 			uint32_t seconds = b[0] | b[1] << 8 | b[2] << 16 | (uint32_t)b[3] << 24;
 
-			s->started = t - (int64_t)seconds * SECOND;
+			s->started = t - (int64_t)seconds * NS_PER_S;
 		}
 		break;
 	}
@@ -108,7 +108,7 @@ static void worked(struct sim_slave *slave, int64_t t)
 static void advance(struct sim_slave *slave, int64_t t)
 {
 	struct ds2438 *s = state(slave);
-	uint32_t seconds = (uint32_t)((t - s->started) / SECOND);
+	uint32_t seconds = (uint32_t)((t - s->started) / NS_PER_S);
 
 	for (unsigned i = 0; i < 4; i++)
 		s->memory[1][i] = (uint8_t)(seconds >> (8 * i));

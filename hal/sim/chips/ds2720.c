@@ -5,6 +5,7 @@
  */
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/sim/families.h"
 
 enum { PROTECTION = 0x00, EEPROM_REGISTER = 0x07, SPECIAL = 0x08 };
@@ -15,7 +16,7 @@ enum { BLOCKS = 2, BLOCK = 4 };
 enum { OVERVOLTAGE, UNDERVOLTAGE, OVERCURRENT, OVERTEMPERATURE, PS }; /* inputs */
 
 /* tEEC: 10 ms at most. */
-#define COPY_NS INT64_C(10000000)
+#define COPY_NS (10 * NS_PER_MS)
 
 struct ds2720 {
 	uint8_t memory[256], eeprom[BLOCKS][BLOCK];

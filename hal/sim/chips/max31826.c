@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/sim/chips/thermometer.h"
 #include "hal/sim/families.h"
 
@@ -14,9 +15,8 @@ enum { KEY = 0xA5, READ_POWER = 0xB4 };
 enum { TEMPERATURE, THERMOCOUPLE, OPEN_CIRCUIT, GROUND_SHORT, VDD_SHORT }; /* inputs */
 
 /* tCONV: 150 ms (MAX31826), 100 ms (MAX31850) at most. */
-#define MS INT64_C(1000000)
 /* tWR of the EEPROM: 10 ms. */
-#define COPY_NS (10 * MS)
+#define COPY_NS (10 * NS_PER_MS)
 
 static struct sim_max *state(struct sim_slave *slave)
 {
@@ -96,7 +96,7 @@ static bool bit(struct sim_slave *slave, int64_t t)
 static void convert(struct sim_slave *slave, int64_t t)
 {
 	state(slave)->copying = false;
-	sim_work(slave, (is_max31850(slave) ? 100 : 150) * MS, t);
+	sim_work(slave, (is_max31850(slave) ? 100 : 150) * NS_PER_MS, t);
 }
 
 static void read_power(struct sim_slave *slave, int64_t t)

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT */
+/* The units of time: every time and every span here is in nanoseconds. */
+#ifndef HAL_BUS_TIME_H
+#define HAL_BUS_TIME_H
+
+#include <stdint.h>
+
+#define NS_PER_S INT64_C(1000000000)
+#define NS_PER_MS INT64_C(1000000)
+
+#endif
