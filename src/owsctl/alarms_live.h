@@ -5,11 +5,11 @@
 
 #include "src/owsctl/ctl.h"
 
-/* The words that `owsctl alarms` takes for no pattern; argv[0] is the word. */
+/* The words of `owsctl alarms` that are no patterns; argv[0] is the word. */
 #define ALARMS_HISTORY "history"
 #define ALARMS_ACK "ack"
 
-/* Does each pattern match a signal? If not, what was wrong is on stderr. */
+/* Does each pattern match a signal? If not, prints the error on stderr. */
 bool alarms_known(struct ows *h, char *const *patterns, int count);
 int alarms_live(struct ctl *ctl, int argc, char **argv);
 

@@ -25,8 +25,9 @@ struct condition {
 /* "=" "==" "!=" "<" "<=" ">" ">="; -1: none of them. */
 int condition_op(const char *text);
 /*
- * For values of that type. Numbers as in `owsctl set`, but no limits of the type; bool also on/off
- * and the like. -EINVAL the text is no number, -EOPNOTSUPP strings know only = and !=.
+ * Make a condition for values of that type. Numbers as in `owsctl set`, but without the limits of
+ * the type; bool also on/off and the like. -EINVAL: the text is no number; -EOPNOTSUPP: strings
+ * have only = and !=.
  */
 int condition_make(enum ows_type type, const char *op, const char *text,
                    struct condition *condition);

@@ -37,14 +37,15 @@ struct verb {
 
 /*
  * The next option as getopt(); options that begin with '+' stop at the first word that is none.
- * --json is taken, and -t by verbs that open a target; --all means -a where there is one; -h prints
- * the usage and ends the program. '?' : it was wrong and this has been said; return CTL_USAGE.
- * Operands are argv[optind] and up once -1 was returned. ctl_options() starts anew.
+ * ctl_option() handles --json, and -t for verbs that open a target; --all means -a where the verb
+ * has -a; -h prints the usage and ends the program. '?': the option was wrong and the reason is
+ * printed; return CTL_USAGE. After -1 the operands are argv[optind] and up. ctl_options() starts
+ * again.
  */
 void ctl_options(void);
 int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options);
 
-/* Say what is wrong on stderr. */
+/* Print an error on stderr. */
 int ctl_usage(const struct ctl *ctl, const char *format, ...) /* returns CTL_USAGE */
 	__attribute__((format(printf, 2, 3)));
 int ctl_fail(const char *format, ...) /* returns CTL_FAILED */
@@ -60,21 +61,21 @@ const char *ctl_word(const char *word);
 /* A number of seconds, at most a year; false when text is none. */
 bool ctl_seconds(const char *text, int64_t *ns);
 
-/* Open the instance; CTL_DONE, or CTL_FAILED after having said why. */
+/* Open the instance; CTL_DONE, or CTL_FAILED after printing why. */
 int ctl_open(const struct ctl *ctl, enum ows_mode mode, struct ows **h);
-/* "owsd is not running ..." on stderr when it is not; returns whether it runs. */
+/* Returns whether owsd runs; prints "owsd is not running ..." on stderr when it does not. */
 bool ctl_alive(const struct ctl *ctl, struct ows *h, int64_t now_ns);
-/* Between two looks for a new owsd. */
+/* The time between two looks for a new owsd. */
 void ctl_nap(void);
-/* ows_wait(), and look for a new owsd where the present one is gone. */
+/* As ows_wait(), and looks for a new owsd when the present one is gone. */
 void ctl_sleep(struct ows *h, uint32_t *news, int64_t timeout_ns);
-/* No such name: says so with the nearest there is; returns CTL_FAILED. */
+/* Print that there is no such name, with the nearest name; returns CTL_FAILED. */
 int ctl_unknown(struct ows *h, const char *name);
-/* Nobody reads stdout any more. */
+/* Has the reader of stdout closed it? */
 bool ctl_reader_gone(void);
-/* Write what is left; CTL_FAILED after having said why, else status. No reader is no error. */
+/* Flush stdout; CTL_FAILED after printing why, else status. A reader that is gone is no error. */
 int ctl_flush(int status);
-/* What is printed so far, at once; false: it cannot be written, which ctl_flush() will say. */
+/* Write at once what is printed so far; false: writing failed, which ctl_flush() reports. */
 bool ctl_flush_lines(void);
 
 #endif

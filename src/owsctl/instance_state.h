@@ -9,22 +9,22 @@
 
 enum instance_state {
 	INSTANCE_RUNNING,
-	INSTANCE_HANGS,   /* its process is there, its heart stands still */
-	INSTANCE_STOPPED, /* in order */
-	INSTANCE_KILLED,  /* it could not say that it ended */
+	INSTANCE_HANGS,   /* its process exists, its heart stands still */
+	INSTANCE_STOPPED, /* it ended in order */
+	INSTANCE_KILLED,  /* it ended without marking its segments */
 	INSTANCE_LEFT,    /* no image: files of a start or an end that was cut short */
-	INSTANCE_HIDDEN,  /* it cannot be looked at */
+	INSTANCE_HIDDEN,  /* its files cannot be read */
 };
 
 /*
- * What follows from the image (state as in ows_daemon; has_image false: there is none) and from the
- * lock: 1 somebody holds it, 0 the owsd of the image has let it go, negative: neither can be told (it
- * was removed, or is another's), and then the heart counts, and process: an owsd of that number is
- * there.
+ * The state of an instance, by its image (state as in ows_daemon; has_image false: none) and its
+ * lock: 1: a process holds the lock; 0: the owsd of the image has released it; negative: not known,
+ * because the lock was removed or belongs to another user. Then the heart decides, and process: an
+ * owsd of that number exists.
  */
 enum instance_state instance_state_of(bool has_image, uint32_t state, bool alive, int lock,
                                       bool process);
-/* Its process is there: nothing of it may be removed. */
+/* Does the instance's process exist? Then its files must not be removed. */
 bool instance_is_up(enum instance_state state);
 const char *instance_state_text(enum instance_state state);
 

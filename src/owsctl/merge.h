@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * What a scan means for a configuration that is there: which of its devices stay, which are
- * missing, which of those found are new, and which replaces which. Pure: nothing here knows files or buses.
+ * missing, which of those found are new, and which replaces which. Pure: nothing here knows files
+ * or buses.
  */
 #ifndef OWSCTL_MERGE_H
 #define OWSCTL_MERGE_H
@@ -12,14 +13,16 @@ enum merge_fate {
 	MERGE_STAYS,    /* in the file, and found */
 	MERGE_MISSING,  /* in the file, not found */
 	MERGE_NEW,      /* found, not in the file */
-	MERGE_REPLACED, /* in the file: other takes its place; found: it takes the place of other */
+	MERGE_REPLACED, /* in the file: replaced by other; found: replaces other */
 };
 
 struct merge_device {
 	uint8_t rom[ROM_LEN];
 	enum merge_fate fate;
 	int other; /* replaced: index in the other list */
-	/* missing and new: so many devices of this family are missing, and as many new; 0: not so */
+	/*
+	 * missing and new: so many devices of this family are missing, and as many are new; else 0
+	 */
 	unsigned pairs;
 };
 
@@ -39,9 +42,9 @@ enum merge_fault {
 };
 
 /*
- * Fill in what follows for the devices of the file (known) and those found; each list names a
- * device once. A device is replaced only where a pair says so. What is wrong with the first wrong
- * pair, whose index *wrong gets; the lists are then without meaning.
+ * Fill in the fates of the devices in the file (known) and of those found; each list has a device
+ * once. A device is replaced only where a pair asks for it. Returns what is wrong with the first
+ * wrong pair; *wrong gets its index, and the lists are then without meaning.
  */
 enum merge_fault merge_decide(struct merge_device *known, unsigned known_count,
                               struct merge_device *found, unsigned found_count,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Names as the user writes them: what they stand for, patterns, and the nearest of the table. */
+/* Names as the user writes them: their signals, patterns, and the nearest name of the table. */
 #ifndef OWSCTL_NAMES_H
 #define OWSCTL_NAMES_H
 
@@ -15,7 +15,9 @@
 int names_lookup(struct ows *h, const char *instance, const char *name, int *signal,
                  enum attribute *attribute);
 
-/* The path behind a name that means a signal's value, else NULL. Lasts as that of ows_info(). */
+/*
+ * The path of the signal whose value a name means, else NULL. Valid as long as that of ows_info().
+ */
 const char *names_path(struct ows *h, const char *instance, const char *name);
 
 /* Does one of count patterns (fnmatch) match, or is there none? */
@@ -23,7 +25,7 @@ bool names_match(const char *name, char *const *patterns, int count);
 
 /* Single insertions, deletions, replacements and swaps of neighbours between two names. */
 unsigned names_distance(const char *a, const char *b);
-/* The name that was probably meant; false if none is near. */
+/* The name that the user probably meant; false if no name is near. */
 bool names_nearest(struct ows *h, const char *name, char nearest[NAMES_MAX]);
 
 #endif

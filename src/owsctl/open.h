@@ -22,7 +22,7 @@ struct target {
 	struct bus *bus;
 	struct bus_env env;
 	bool up, down;
-	bool dead;             /* a request was never answered: it is still lent */
+	bool dead;             /* a request was never answered: the bus still owns it */
 	struct bus_event loss; /* down: why */
 	struct ask *asks;
 	unsigned count, answered;
@@ -35,13 +35,15 @@ struct ask {
 	struct bus_answer answer;
 };
 
-/* Open ctl->target, or what stands in for it. CTL_DONE; or the status, after having said why. */
+/*
+ * Open ctl->target, or the served target without one. CTL_DONE, or the status after printing why.
+ */
 int target_open(const struct ctl *ctl, int64_t timeout_ns, struct target *target);
 void target_close(struct target *target);
 
 /*
- * Do count requests, as many at once as the bus takes. Each has an answer afterwards: what had none
- * by its deadline has -ETIMEDOUT, and so has all that is asked of the target from then on.
+ * Do count requests, as many at once as the bus takes. Each has an answer afterwards: a request
+ * without one by its deadline gets -ETIMEDOUT, and so does every later request of this target.
  */
 void target_ask(struct target *target, struct ask *asks, unsigned count);
 /* One request: the error of its answer. */
@@ -51,13 +53,13 @@ int target_ask_one(struct target *target, struct ask *ask);
 int target_option(struct ctl *ctl, int argc, char **argv, const char *options, int64_t *timeout_ns);
 
 /*
- * The path of a request: one "/" in front, /uncached taken off and told in *fresh. False: too long.
+ * The path of a request: one "/" in front, without /uncached, which sets *fresh. False: too long.
  */
 bool target_path(const char *given, char path[256], bool *fresh);
 
 /*
- * owserver and our own buses pad numbers with blanks to 12 characters, and so the elements of a
- * list of numbers. Takes them off, in place; other text stays. Returns the new length.
+ * Trim the blanks with which owserver and owsd's buses pad numbers, and the elements of lists of
+ * numbers, to 12 characters; in place; other text stays. Returns the new length.
  */
 size_t target_unpad(char *text, size_t len);
 /* Is it one number, as JSON writes them? */

@@ -8,9 +8,9 @@
 #define PROPERTY_NAME 64
 
 /*
- * True also where that cannot be known: a path without an id or a property, a family that is not
- * ours. False: nearest gets the name that was probably meant, with the extension that was given;
- * "" when none is near.
+ * True also where that cannot be known: a path without an id or a property, a family that owsd does
+ * not have. False: nearest gets the name that the user probably meant, with the given extension; ""
+ * when no name is near.
  */
 bool property_known(const char *path, char nearest[PROPERTY_NAME]);
 

@@ -23,20 +23,20 @@ struct reading {
 /* Returns reading->err. The text of a number has all its digits. */
 int reading_get(struct ows *h, int id, int64_t now_ns, struct reading *reading);
 /*
- * For a person: the value is that of the property at path (NULL: of none), and digits that its
- * chip does not give leave the text.
+ * Round the text for a person: digits beyond the resolution of the property at path (NULL: none)
+ * are removed.
  */
 void reading_round(struct reading *reading, const char *path);
 bool reading_good(const struct reading *reading);
-/* What is there to be shown at all? */
+/* Is there a value to show at all? */
 bool reading_filled(const struct reading *reading);
 
 #define READING_WORDS 320
 /* "good", "device absent", "good, simulated". Returns words. */
 const char *reading_quality(const struct reading *reading, char words[READING_WORDS]);
-/* Why it is not good, for a person. Returns words. */
+/* Why the value is not good, for a person. Returns words. */
 const char *reading_why(const struct reading *reading, char words[READING_WORDS]);
-/* The value in a line or a table: strings quoted. Cut to size. */
+/* The text of the value for a line or a table: strings quoted, cut to size. */
 void reading_show(const struct reading *reading, char *out, size_t size);
 
 /* The members of a JSON object: value, quality and all that belongs to it. */

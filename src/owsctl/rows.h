@@ -15,8 +15,8 @@ struct row {
 	bool output, fresh, alarm;
 	struct ows_alarm_state alarms;  /* of the last row_read() */
 	char commanded[VALUE_TEXT_MAX]; /* likewise: the command; "" none, or a string */
-	bool differs;                   /* likewise: it is not the value */
-	/* what was seen last, see row_changed() */
+	bool differs;                   /* likewise: the command differs from the value */
+	/* the state at the last call of row_changed() */
 	bool seen;
 	uint8_t quality;
 	int32_t err;
@@ -33,16 +33,16 @@ int rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool d
                  struct rows *rows);
 void rows_free(struct rows *rows);
 
-/* Its value, how its alarms stand, and what it is commanded. */
+/* Read the value of a row, the state of its alarms, and its command. */
 void row_read(struct ows *h, struct row *row, int64_t now_ns, struct reading *reading);
 /* Can one of the signals have alarms? */
 bool rows_have_alarms(struct ows *h, const struct rows *rows);
 
-/* Quality in words, and the command where it is not the value. Returns words. */
+/* The quality in words, and the command where it differs from the value. Returns words. */
 const char *row_quality(const struct row *row, const struct reading *reading,
                         char words[READING_WORDS]);
 
-/* Is value, quality, error or an alarm another one than at the call before? */
+/* Have value, quality, error or an alarm changed since the last call? */
 bool row_changed(struct row *row, const struct reading *reading);
 
 /* name, output, path, alarms and the like as members of a JSON object. */

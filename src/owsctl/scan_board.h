@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Nothing was found: what the board lacks for it. */
+/* After a scan that found nothing: what the board lacks. */
 #ifndef OWSCTL_SCAN_BOARD_H
 #define OWSCTL_SCAN_BOARD_H
 
 /*
- * Nothing was found: say on stderr which board this is and what is missing there. Of a target that
- * is not this machine's hardware, nothing is said.
+ * After a scan that found nothing: print on stderr which board this is and what is missing there.
+ * For a target that is not this machine's hardware, prints nothing.
  */
 void scan_board(const char *target);
 
