@@ -121,11 +121,11 @@ int area_read(struct txn *txn, const struct area *area, unsigned at, uint8_t *by
 	int err;
 
 	if (!visit->begun_ns) {
-		if (txn_shared(txn, area, at, bytes, n))
-			return 0;
 		err = area->begin ? area->begin(txn) : 0;
 		if (err)
 			return err;
+		if (txn_shared(txn, area, at, bytes, n))
+			return 0;
 		visit->begun_ns = txn_now(txn);
 	}
 	whole_blocks(area, &from, &len);

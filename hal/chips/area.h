@@ -65,10 +65,12 @@ struct area {
 	int64_t copy_ns;
 
 	/*
-	 * All optional. begin: before anything is sent; 0, TXN_MORE or an error. load and store: in
-	 * place of .read and .write, whole transactions; load may take several calls. saw: of what
-	 * was read, from byte `at` of the area on, it notes what that says of the device, and blanks
-	 * bits that do not count; 0 or an error. is_written: does what is read back show that all was written?
+	 * All optional. begin: before anything is sent, or taken from what is kept; 0, TXN_MORE or
+	 * an error. load and store: in place of .read and .write, whole transactions; load may take
+	 * several calls. saw: of what was read, from byte `at` of the area on, it notes what that
+	 * says of the device, and blanks bits that do not count; 0 or an error. is_written: does
+	 * what is read back show that all was written? adjust: of the whole unit that is to be
+	 * written, it changes what goes with the change that was asked for.
 	 */
 	int (*begin)(struct txn *txn);
 	int (*load)(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,

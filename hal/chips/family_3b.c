@@ -12,6 +12,21 @@ enum { UNKNOWN, DS1825, MAX31826, MAX31850 }; /* thermometer.kind */
 
 #define FAULT_ANY 1
 
+static bool is_known(const struct device *device)
+{
+	return thermometer_of(device)->kind != UNKNOWN;
+}
+
+/* Which chip it is may have become known since this property was asked for: -ENOENT. */
+static int refuse_absent(struct txn *txn)
+{
+	const struct property *property = txn->property;
+
+	return is_known(txn->device) && property->visible && !property->visible(txn->device)
+	               ? -ENOENT
+	               : 0;
+}
+
 static int saw_scratchpad(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
 	struct thermometer *chip = txn->device->own;
@@ -31,8 +46,7 @@ static int saw_scratchpad(struct txn *txn, unsigned at, uint8_t *bytes, unsigned
 		chip->resolution = 12;
 		chip->stored = 12;
 	}
-	/* which chip it is may not have been known when this was asked for */
-	return txn->property->visible && !txn->property->visible(txn->device) ? -ENOENT : 0;
+	return refuse_absent(txn);
 }
 
 static const struct area scratchpad = {
@@ -41,6 +55,7 @@ static const struct area scratchpad = {
 	.block = 9,
 	.read = 0xbe,
 	.check = AREA_CRC8,
+	.begin = refuse_absent,
 	.saw = saw_scratchpad,
 };
 
@@ -51,11 +66,6 @@ static int now(struct txn *txn, uint8_t bytes[9])
 	return err ? err : saw_scratchpad(txn, 0, bytes, 9);
 }
 
-static bool is_known(const struct device *device)
-{
-	return thermometer_of(device)->kind != UNKNOWN;
-}
-
 /* 0: it is known which chip this is; TXN_MORE it is now, -ENOENT it has no such property. */
 static int identify(struct txn *txn)
 {
@@ -63,7 +73,7 @@ static int identify(struct txn *txn)
 	int err;
 
 	if (is_known(txn->device))
-		return 0;
+		return refuse_absent(txn);
 	err = now(txn, bytes);
 	return err ? err : TXN_MORE;
 }

@@ -373,6 +373,30 @@ static void test_which_chip_it_is_need_not_be_known_before_a_request(void)
 	TEST_ASSERT_EQUAL_HEX8('x', part->memory[0]);
 }
 
+static void test_which_chip_it_is_may_become_known_while_a_request_waits(void)
+{
+	static const struct {
+		enum bus_op op;
+		const char *property;
+	} waits[] = {
+		{BUS_READ, "temphigh"}, {BUS_READ, "fasttemp"}, {BUS_READ, "pages/page.1"},
+		{BUS_WRITE, "templow"}, {BUS_WRITE, "memory"},
+	};
+
+	for (size_t i = 0; i < sizeof(waits) / sizeof(waits[0]); i++) {
+		const char *property = waits[i].property;
+
+		plug_warm("MAX31850");
+		uint32_t first = ask(BUS_READ, BUS_GUEST, false, of(slave, "prog_addr"), NULL);
+		uint32_t second = ask(waits[i].op, BUS_GUEST, false, of(slave, property),
+		                      waits[i].op == BUS_WRITE ? "5" : NULL);
+
+		TEST_ASSERT_EQUAL_INT(0, answer_to(first)->err);
+		TEST_ASSERT_EQUAL_INT_MESSAGE(-ENOENT, answer_to(second)->err, property);
+		TEST_ASSERT_EQUAL_UINT(0, writes);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -388,5 +412,6 @@ int main(void)
 	RUN_TEST(test_a_max31850_tells_thermocouple_and_cold_junction_as_its_tables_say);
 	RUN_TEST(test_a_fault_of_the_thermocouple_is_told_and_its_temperature_is_not);
 	RUN_TEST(test_which_chip_it_is_need_not_be_known_before_a_request);
+	RUN_TEST(test_which_chip_it_is_may_become_known_while_a_request_waits);
 	return UNITY_END();
 }
