@@ -79,7 +79,7 @@ static int no_backend(const char *word, size_t word_len, char *why, size_t why_s
 		used += (size_t)n;
 	}
 	snprintf(why, why_size,
-	         "'%.*s' is no way to a bus that is known here; there are%s, "
+	         "'%.*s' is an unknown kind of target; there are%s, "
 	         "and HOST, HOST:PORT, [IPv6]:PORT for an owserver",
 	         (int)(word_len > 40 ? 40 : word_len), word, names);
 	return -EPROTONOSUPPORT;

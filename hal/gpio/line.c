@@ -139,7 +139,7 @@ int gpio_request(struct gpio_chip *chip, unsigned offset, const struct gpio_setu
 		snprintf(why, why_size, "line %u of %s is in use by \"%s\"", offset,
 		         gpio_api()->label(chip), info.consumer);
 	else if (err == -EBUSY)
-		snprintf(why, why_size, "line %u of %s is in use: gpioinfo tells by whom", offset,
+		snprintf(why, why_size, "line %u of %s is in use: gpioinfo shows the user", offset,
 		         gpio_api()->label(chip));
 	else if (err)
 		snprintf(why, why_size, "line %u of %s: %s", offset, gpio_api()->label(chip),

@@ -372,7 +372,7 @@ static int do_read(struct owserver *server, struct bus_req *req, uint32_t *len)
 	/* to believe either, as 21 of 21.5, could be a false value */
 	if (reply->type != reply->payload) {
 		snprintf(server->talk.trouble, sizeof(server->talk.trouble),
-		         "%.60s: an answer of another length than it says",
+		         "%.60s: an answer whose length differs from its header",
 		         server->talk.connection.peer);
 		bus_count(&server->counter[TALK_GARBAGE], 1);
 		return -EPROTO;

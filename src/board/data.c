@@ -48,7 +48,7 @@ static int set_text(struct board_data *data, const char *key, const char *value,
 		while (n < text_keys[i].room && text[n * BOARD_TEXT])
 			n++;
 		if (n == text_keys[i].room) {
-			snprintf(why, why_size, "%s stands there too often", key);
+			snprintf(why, why_size, "%s is given too often", key);
 			return -EINVAL;
 		}
 		if (strlen(value) >= BOARD_TEXT) {

@@ -88,6 +88,6 @@ void config_check_buses(const struct config *config, struct config_report *repor
 
 		if (!is_served(config, bus->target))
 			report_warning(report, (struct place){config->file, bus->line, bus->column},
-			               "no target is \"%s\": this Bus is for nothing", bus->target);
+			               "no target is \"%s\": this Bus has no effect", bus->target);
 	}
 }

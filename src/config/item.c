@@ -75,7 +75,7 @@ static void build_path(struct build *build, const struct rio_node *block,
 	}
 	fault = path_split(text, strlen(text), path);
 	if (!fault && !path->property.len)
-		fault = path->device.len ? "has no property behind the device" : "has no property";
+		fault = path->device.len ? "has no property after the device" : "has no property";
 	if (fault) {
 		report_error(build->report, place, "the path \"%s\" %s", text, fault);
 		return;
@@ -345,7 +345,7 @@ void items_check(struct build *build, const struct place *names)
 			first = i;
 		else if (*sorted[i].name)
 			report_error(build->report, names[sorted[i].index],
-			             "the name \"%s\" stands twice, first in line %d",
+			             "the name \"%s\" is given twice, first in line %d",
 			             sorted[i].name, names[sorted[first].index].line);
 	}
 	free(sorted);

@@ -89,7 +89,7 @@ int listen_parse(const char *text, size_t len, struct listen_address addresses[2
 	if (!split(text, len, &host, &host_len, &port_text) || !host_len)
 		return -EINVAL;
 	port = port_text ? number(port_text, (size_t)(text + len - port_text), 65535) : LISTEN_PORT;
-	*why = "expected a port from 0 to 65535 behind the colon";
+	*why = "expected a port from 0 to 65535 after the colon";
 	if (port < 0)
 		return -EINVAL;
 	if (host_len == 9 && memcmp(host, "localhost", 9) == 0)

@@ -39,9 +39,9 @@ static const struct rio_node *find_driver(const struct rio *rio, const char *fil
 				             node->key);
 		} else if (node->kind != RIO_BLOCK) {
 			if (!node->broken)
-				report_error(report, node->value_at, "expected { behind " DRIVER);
+				report_error(report, node->value_at, "expected { after " DRIVER);
 		} else if (driver) {
-			report_error(report, node->at, DRIVER " stands twice, first in line %d",
+			report_error(report, node->at, DRIVER " is given twice, first in line %d",
 			             driver->at.line);
 		} else {
 			driver = node;

@@ -15,7 +15,7 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 	[OPT_VERSION] = {"Version", PLACE_DRIVER, OPTION_TEXT, .preset = "1.00",
                          .help = "version of the file format"},
 	[OPT_TARGET_NAME] = {"TargetName", PLACE_DRIVER, OPTION_TEXT, .preset = "localhost:4304",
-                             .help = "where the devices are reached"},
+                             .help = "where owsd reaches the devices"},
 	[OPT_MAX_CONS_ALARMS] = {"MaxConsAlarms", PLACE_DRIVER, OPTION_COUNT, false, 0, 1000, "5",
                                  "alarms served in a row before one write or read goes through"},
 	[OPT_MAX_REQUESTS] = {"MaxRequests", PLACE_DRIVER, OPTION_COUNT, false, 0, 1000, "1",
@@ -27,13 +27,13 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 	[OPT_PERIOD] = {"Period", PLACE_DRIVER, OPTION_SECONDS, false, 0.001, 60, "0.1",
                         "period of the driver, seconds"},
 	[OPT_ALARM_PERIOD] = {"AlarmPeriod", PLACE_DRIVER, OPTION_SECONDS, false, 0, DAY, "0.05",
-                              "least time between two looks at /alarm, seconds"},
+                              "least time between two readings of /alarm, seconds"},
 	[OPT_LISTEN] = {"Listen", PLACE_DRIVER, OPTION_TEXT,
                         .help = "where the owserver protocol is served"},
 	[OPT_LISTEN_SOCKET] = {"ListenSocket", PLACE_DRIVER, OPTION_TEXT,
                                .help = "unix socket on which it is served"},
 	[OPT_LISTEN_ALLOW] = {"ListenAllow", PLACE_DRIVER, OPTION_TEXT,
-                              .help = "addresses of those who may connect over the network"},
+                              .help = "addresses that may connect over the network"},
 	[OPT_LISTEN_READ_ONLY] = {"ListenReadOnly", PLACE_DRIVER, OPTION_FLAG, .preset = "off",
                                   .help = "refuse all writes over the protocol"},
 	[OPT_ITEM_COUNT] = {"ItemCount", PLACE_DRIVER, OPTION_COUNT, false, 0, 1e9, NULL,
@@ -69,9 +69,9 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 	[OPT_ALARM] = {"Alarm", PLACE_ITEM, OPTION_FLAG, .preset = "off",
                        .help = "watch the device by its alarms"},
 	[OPT_LATCH_ALARM] = {"LatchAlarm", PLACE_ITEM, OPTION_TEXT,
-                             .help = "property that says what changed"},
+                             .help = "property that shows what changed"},
 	[OPT_POR_ALARM] = {"PorAlarm", PLACE_ITEM, OPTION_TEXT,
-                           .help = "property that says that the device restarted"},
+                           .help = "property that shows that the device restarted"},
 	[OPT_SET_ALARM] = {"SetAlarm", PLACE_ITEM, OPTION_TEXT,
                            .help = "property=value that arms the alarm"},
 	[OPT_RESET_LATCH] = {"ResetLatch", PLACE_ITEM, OPTION_TEXT,
@@ -299,7 +299,7 @@ static void read_one(const struct rio_node *node, const struct option_def *def,
 	double number = value->number;
 
 	if (value->node && !def->repeats) {
-		report_error(report, node->at, "%s stands twice, first in line %d", def->key,
+		report_error(report, node->at, "%s is given twice, first in line %d", def->key,
 		             value->node->at.line);
 		return;
 	}

@@ -310,7 +310,7 @@ static void parse_entry(struct parser *p, struct rio_node *block, int depth)
 		} else {
 			p->at = behind;
 			node->value_begin = offset_here(p);
-			report_error(p->report, place_here(p), "expected a value behind %s",
+			report_error(p->report, place_here(p), "expected a value after %s",
 			             node->key);
 			node->broken = true;
 		}

@@ -77,7 +77,7 @@ static void target_add(struct build *build, const char *text, size_t len,
 	if (config->target_count == CONFIG_TARGETS_MAX) {
 		report_error(build->report, place,
 		             "\"%.*s\" is one too many: owsd serves at most %d targets, ways "
-		             "behind a bar and the %u of auto counted",
+		             "after a bar and the %u of auto counted",
 		             (int)len, text, CONFIG_TARGETS_MAX, CONFIG_AUTO_WAYS);
 		return;
 	}
@@ -90,7 +90,7 @@ static void target_add(struct build *build, const char *text, size_t len,
 	for (unsigned i = 0; i < config->target_count; i++)
 		if (target_same(config->targets[i].text, target->text)) {
 			report_error(build->report, place,
-			             "the target \"%s\" stands twice; the first is \"%s\"",
+			             "the target \"%s\" is given twice; the first is \"%s\"",
 			             target->text, config->targets[i].text);
 			return;
 		}

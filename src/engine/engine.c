@@ -211,5 +211,5 @@ void engine_take_commands(struct engine *e, struct commands *commands, int64_t n
 	}
 	e->driver.resets = 0;
 	e->busy_count = 0;
-	log_warning(e->log, "a program took the command segment away: made again");
+	log_warning(e->log, "a program removed the command segment: owsd made it again");
 }

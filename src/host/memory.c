@@ -162,15 +162,14 @@ static void carry_commands(struct memory *m, struct log *log)
 	err = segment_open_old(m->instance, SEGMENT_COMMAND, &before);
 	if (err) {
 		if (err != -ENOENT)
-			log_warning(log, "what was commanded before is not taken over: %s",
-			            strerror(-err));
+			log_warning(log, "earlier commands are not taken over: %s", strerror(-err));
 		return;
 	}
 	if (segment_guard(&before) == 0) {
 		commands_retire(before.base, before.size);
 		carried = commands_carry(memory_commands(m), before.base, before.size, true);
 		if (carried < 0)
-			log_warning(log, "what was commanded before is not taken over: the old "
+			log_warning(log, "earlier commands are not taken over: the old "
 			                 "command segment is damaged");
 	}
 	segment_close(&before);

@@ -46,12 +46,12 @@ static void leave_before(struct host *h, struct serving *before, bool ended, boo
 		host_ring(h);
 		pause_until_null(&h->ended);
 	} else {
-		log_err(h->log, "a bus that the reload ended is stuck in the kernel; "
-		                "owsd leaves it behind");
+		log_err(h->log,
+		        "a bus that the reload ended is stuck in the kernel; owsd gives it up");
 	}
 	if (!dark)
-		log_err(h->log, "AlarmLine or HeartbeatLine is stuck in the kernel; "
-		                "owsd leaves it behind");
+		log_err(h->log,
+		        "AlarmLine or HeartbeatLine is stuck in the kernel; owsd gives it up");
 	host_wait_for_ringers(h);
 	if (dark)
 		memory_replaced(&before->memory);
@@ -117,8 +117,8 @@ int host_reload(struct host *h, struct config *config, char *why, size_t why_siz
 
 	if (!same_listeners(&config->serve, &h->now->config->serve)) {
 		snprintf(why, why_size,
-		         "what Listen, ListenSocket, ListenAllow and ListenReadOnly "
-		         "say is changed by a restart only");
+		         "Listen, ListenSocket, ListenAllow and ListenReadOnly "
+		         "change by a restart only");
 		return -EBUSY;
 	}
 	snprintf(why, why_size, "%s", strerror(ENOMEM));

@@ -65,7 +65,7 @@ static void look_for_image(struct host *h, int64_t now_ns)
 static void report_unfinished(struct host *h, const char *why)
 {
 	if (log_rate(&h->finish_rate, ows_now()))
-		log_err(h->log, "%s: it is tried again every second", why);
+		log_err(h->log, "%s: owsd tries again every second", why);
 }
 
 void host_finish_reload(struct host *h)
@@ -88,7 +88,7 @@ void host_finish_reload(struct host *h)
 		return;
 	h->finish_rate = (struct log_rate){0};
 	if (before)
-		log_notice(h->log, "what the reload could not do at once is done");
+		log_notice(h->log, "the rest of the reload is done");
 }
 
 void host_tend(struct host *h)
@@ -113,7 +113,7 @@ void host_tend(struct host *h)
 	}
 	if (err && log_rate(&h->tend_rate, now_ns))
 		log_err(h->log,
-		        "the command segment was taken away and cannot be made again: %s%s: "
-		        "it is tried again every second",
+		        "the command segment was removed and cannot be made again: %s%s: "
+		        "owsd tries again every second",
 		        strerror(-err), segment_hint(h->instance, err, hint));
 }

@@ -136,7 +136,7 @@ static int print_rio(const struct ctl *ctl, const struct target *target, const s
 		return scan_merge(merge, scan, inputs_only);
 	if (served->target[0] && served->cut)
 		return ctl_fail(
-			"the targets of owsd %s are too long to be told whole: name them with "
+			"the targets of owsd %s are too many to name them all: name them with "
 			"-t TARGET",
 			ctl->instance);
 	return served->target[0] ? scan_rio(scan, served->targets, true, inputs_only)
@@ -204,7 +204,7 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 		else if (c == 'M' && !merge.file)
 			merge.file = optarg;
 		else if (c == 'M')
-			return ctl_usage(ctl, "--merge stands there twice");
+			return ctl_usage(ctl, "--merge is given twice");
 		else if (c == 'R' && merge.pair_count < SCAN_PAIRS)
 			merge.pair[merge.pair_count++] = optarg;
 		else if (c == 'R')

@@ -39,7 +39,8 @@ static void say_event(struct watch *watch, enum watch_event event)
 	case WATCH_NOTHING:
 		return;
 	case WATCH_RESTARTED:
-		ctl_fail("owsd %s was started anew or has reloaded its file", watch->ctl->instance);
+		ctl_fail("owsd %s was started again or has reloaded its file",
+		         watch->ctl->instance);
 		return;
 	case WATCH_LOST:
 		ctl_alive(watch->ctl, watch->h, ows_now());

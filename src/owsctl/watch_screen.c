@@ -267,7 +267,7 @@ static void on_event(struct screen *screen, enum watch_event event)
 		return;
 	case WATCH_RESTARTED:
 		memset(screen->least, 0, sizeof(screen->least));
-		screen->note = "owsd was started anew";
+		screen->note = "owsd was started again";
 		return;
 	case WATCH_LOST:
 		screen->note = "";

@@ -64,10 +64,11 @@ static void usage(FILE *out)
 	      "  -l, --listen ADDRESS in place of Listen: serve the owserver protocol at PORT of this\n"
 	      "                      machine alone, or at HOST:PORT\n"
 	      "      --check         print the configuration as understood, start nothing\n"
-	      "      --board[=ID]    say which board this is and what is missing there for a DS2482;\n"
-	      "                      ID: a board that does not tell; --root DIR: files below DIR\n"
+	      "      --board[=ID]    report the board, and what is missing there for a DS2482;\n"
+	      "                      ID: a board that does not identify itself\n"
+	      "      --root DIR      with --board: look at the files below DIR\n"
 	      "      --rt PRIO       engine thread with SCHED_FIFO priority 1 to 99\n"
-	      "  -v, --verbose       say more; twice: debugging; three times: each request too\n"
+	      "  -v, --verbose       log more; twice: debugging; three times: each request too\n"
 	      "  -V, --version       version and backends\n"
 	      "  -h, --help          this text\n",
 	      out);

@@ -63,8 +63,9 @@ int instance_take(struct instance *instance, const char *name, struct log *log, 
 		snprintf(why, why_size, "cannot lock instance %s: %s%s", name, strerror(-lock),
 		         segment_hint(name, lock, hint));
 	if (stolen)
-		log_warning(log,
-		            "the owsd before cannot die (stuck in the kernel): its lock is left");
+		log_warning(
+			log,
+			"the previous owsd is stuck in the kernel: owsd starts with a new lock");
 	return lock < 0 ? lock : 0;
 }
 

@@ -291,13 +291,13 @@ static int run(const struct arguments *a, struct config *config, struct instance
 	notify_send(&notify, NOTIFY_READY);
 	ours = supervise(host, a, instance, log, &notify, prefix);
 	log_notice(log, "owsd ends: %s",
-	           !ours                    ? "the instance is another's"
+	           !ours                    ? "another process serves the instance"
 	           : stop_signal == SIGTERM ? "SIGTERM"
 	                                    : "SIGINT");
 	notify_send(&notify, NOTIFY_STOPPING);
 	ended = host_stop(host, STOP_NS);
 	if (!ended)
-		log_err(log, "a bus is stuck in the kernel; owsd leaves it behind");
+		log_err(log, "a bus is stuck in the kernel; owsd gives it up");
 	log_finish(log, STDERR_FILENO, prefix);
 	if (!ended)
 		_exit(ours ? EXIT_SUCCESS : EXIT_RUN);

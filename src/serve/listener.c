@@ -219,9 +219,9 @@ int listeners_open(struct serve *s, char *why, size_t why_size)
 	err = open_local(s, config->socket);
 	if (err)
 		snprintf(why, why_size, "cannot listen at %s: %s%s", config->socket, strerror(-err),
-		         err == -EADDRINUSE ? " (somebody serves it)"
+		         err == -EADDRINUSE ? " (another process serves it)"
 		         : err == -EEXIST   ? " and is no socket"
-		         : err == -EPERM    ? " (somebody put something else in its place)"
+		         : err == -EPERM    ? " (another process put something else in its place)"
 		                            : "");
 	return err;
 }

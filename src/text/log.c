@@ -150,7 +150,7 @@ const char *log_others(uint64_t n, char text[LOG_OTHERS])
 {
 	text[0] = '\0';
 	if (n > 1)
-		snprintf(text, LOG_OTHERS, " (%" PRIu64 " times since this was said last)", n);
+		snprintf(text, LOG_OTHERS, " (%" PRIu64 " times since the last such line)", n);
 	return text;
 }
 

@@ -147,7 +147,7 @@ def test_watch_prints_changes_and_follows_a_killed_owsd(scene):
     said.until("is not running: last heartbeat")
     lines.until(r"^\S+ room 22.5 target down, simulated$")
     scene.owsd(daemon.config, name=daemon.name)
-    said.until("was started anew")
+    said.until("was started again")
     lines.until(r"target down.*\n(.*\n)*\S+ room 22.5 good, simulated$", 20)
     watch.terminate()
     assert watch.wait(owsdtest.PATIENCE) == 0

@@ -131,7 +131,7 @@ def test_a_storm_of_reloads_is_bounded_and_inputs_arrive_in_it(scene):
 def test_a_broken_file_is_refused_and_all_goes_on(scene):
     daemon, target = start(scene)
     for bad, said in (("OwsDrv {\n", "error"), (rio("nonsense:x", ROOM), "nonsense"),
-                      (rio(target, ROOM, ROOM), "stands twice"),
+                      (rio(target, ROOM, ROOM), "is given twice"),
                       (rio(f"{target}, sim:/nowhere.sim", ROOM), "/nowhere.sim")):
         text = reload(scene, daemon, bad)
         assert "goes on as before" in text and said in text, text

@@ -360,7 +360,7 @@ def test_a_killed_owsd_leaves_no_socket_in_the_way(scene):
     assert os.path.exists(path)
     scene.owsd(config)
     done = scene.owsd_once("-n", scene.name(), "-c", config)
-    assert done.returncode == 1 and "somebody serves it" in done.stderr, done.stderr
+    assert done.returncode == 1 and "another process serves it" in done.stderr, done.stderr
 
 
 def test_signals_do_not_wait_for_an_address_that_is_not_there_yet(scene):
@@ -386,7 +386,7 @@ def test_a_port_in_use_is_said(scene):
 
 def test_wrong_addresses_are_refused_with_their_place(scene):
     for key, text, what in (("Listen", "here:4304", "expected an address of this machine"),
-                            ("Listen", "4304, 4304", "stands twice"),
+                            ("Listen", "4304, 4304", "is given twice"),
                             ("Listen", "70000", "expected"),
                             ("ListenAllow", "10.0.0.0/33", "expected an address or a range"),
                             ("ListenSocket", "a.sock", "expected a path from the root")):

@@ -305,7 +305,7 @@ def test_a_full_house_is_counted_and_said_with_its_number(scene):
             s.close()
         del sockets[:20]
         sockets.extend(open_all(server, 20))
-        return "others wait (2 times since this was said last)" in server.program.log()
+        return "others wait (2 times since the last such line)" in server.program.log()
     owsdtest.until(said, 60, "how often it was full")
     close_all(sockets)
     lines = server.program.log().count("others wait")

@@ -173,7 +173,7 @@ def test_consumers_of_a_removed_image_follow_the_owsd_after_a_kill(scene):
             scene.until(lambda: good(signals, "back") and signals.get("back").value == 1, 10,
                         "the controller heats")
             sleeper = pool.submit(sleep_until_stale, ows.Ows(name))
-            seen = watch.log().count("was started anew")
+            seen = watch.log().count("was started again")
             lose_image(name, how)
             if how == "removed":
                 os.unlink(command_file(name))
@@ -184,7 +184,7 @@ def test_consumers_of_a_removed_image_follow_the_owsd_after_a_kill(scene):
             scene.until(lambda: reopened(signals), 10, "there is another")
             assert sleeper.result(), "it woke by itself"
             scene.until(lambda: good(signals, "room"), 10, "room is good")
-            scene.until(lambda: watch.log().count("was started anew") > seen, 10, "owsctl is led on")
+            scene.until(lambda: watch.log().count("was started again") > seen, 10, "owsctl is led on")
             before, lines = signals.get("relays").applied, reader.log().count("\n")
             scene.until(lambda: signals.get("relays").applied > before + 3, 10,
                         "the controller's sets arrive")

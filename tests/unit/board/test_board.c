@@ -396,7 +396,7 @@ static void test_wrong_data_is_refused_with_its_line(void)
 	reads("Name a\nSpeed 1\n", -EINVAL, ":2: unknown key Speed");
 	reads("Name a\nI2C one\n", -EINVAL, ":2: I2C: a number from 0");
 	reads("Name a\nKHz 99999\n", -EINVAL, ":2: KHz");
-	reads("Name a\nName b\n", -EINVAL, ":2: Name stands there too often");
+	reads("Name a\nName b\n", -EINVAL, ":2: Name is given too often");
 	reads("Name a\nPins\n", -EINVAL, ":2: Pins has no value");
 	reads("Name a\nCombine all\n", -EINVAL, ":2: Combine: any or one-read");
 	reads("I2C 1\n", -EINVAL, "no Name");

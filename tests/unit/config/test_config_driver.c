@@ -41,8 +41,9 @@ static void test_a_file_of_something_else_is_refused(void)
 	         "f:1:1: error: expected OwsDrv {, found the block MbmDrv: is it the "
 	         "file of another driver?\n"},
 		{"Period 1\nOwsDrv { }", "f:1:1: error: expected OwsDrv {, found Period\n"},
-		{"OwsDrv 1", "f:1:8: error: expected { behind OwsDrv\n"},
-		{"OwsDrv { }\nOwsDrv { }", "f:2:1: error: OwsDrv stands twice, first in line 1\n"},
+		{"OwsDrv 1", "f:1:8: error: expected { after OwsDrv\n"},
+		{"OwsDrv { }\nOwsDrv { }",
+	         "f:2:1: error: OwsDrv is given twice, first in line 1\n"},
 		{"OwsDrv {", "f:1:9: error: expected '}' to end OwsDrv of line 1\n"},
 	};
 
@@ -72,22 +73,22 @@ static void test_wrong_driver_values_are_errors_with_what_was_expected(void)
 		{"Timeout 1\nAlarmPeriod 2",
 	         "f:3:13: error: AlarmPeriod \"2\": expected no more than "
 	         "Timeout, which is 1 s\n"},
-		{"Timeout 1\nTimeout 2", "f:3:1: error: Timeout stands twice, first in line 2\n"},
+		{"Timeout 1\nTimeout 2", "f:3:1: error: Timeout is given twice, first in line 2\n"},
 		{"Timeout [ 1 ]", "f:2:9: error: Timeout: expected one value\n"},
 		{"Timeout { }", "f:2:9: error: Timeout: expected one value\n"},
 		{"Item 5", "f:2:6: error: Item: expected a block in { }\n"},
 		{"TargetName \"a, ,b\"", "f:2:12: error: expected a target beside ',' or '|'\n"},
 		{"TargetName \"a|\"", "f:2:12: error: expected a target beside ',' or '|'\n"},
 		{"TargetName \"w1, i2c:/dev/i2c-1 | w1\"",
-	         "f:2:12: error: the target \"w1\" stands twice; the first is \"w1\"\n"},
+	         "f:2:12: error: the target \"w1\" is given twice; the first is \"w1\"\n"},
 		{"TargetName \"localhost, LOCALHOST:4304\"",
-	         "f:2:12: error: the target \"LOCALHOST:4304\" stands twice; the first is "
+	         "f:2:12: error: the target \"LOCALHOST:4304\" is given twice; the first is "
 	         "\"localhost\"\n"},
 		{"TargetName \"owserver:w1:4304, owserver:w1\"",
-	         "f:2:12: error: the target \"owserver:w1\" stands twice; the first is "
+	         "f:2:12: error: the target \"owserver:w1\" is given twice; the first is "
 	         "\"owserver:w1:4304\"\n"},
 		{"TargetName \"[::1] | [::1]:4304\"",
-	         "f:2:12: error: the target \"[::1]:4304\" stands twice; the first is \"[::1]\"\n"},
+	         "f:2:12: error: the target \"[::1]:4304\" is given twice; the first is \"[::1]\"\n"},
 		{"Bus { }", "f:2:1: error: expected a Target in this Bus\n"},
 		{"Bus { Target \"\" }", "f:2:1: error: expected a Target in this Bus\n"},
 		{"Bus { Target w1 }\nBus { Target \"w1\" }",

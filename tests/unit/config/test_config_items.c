@@ -39,7 +39,7 @@ static void test_wrong_items_are_errors_with_what_was_expected(void)
 		{"Name x Path \"/uncached\" Type bool",
 	         "f:3:13: error: the path \"/uncached\" has no property\n"},
 		{"Name x Path \"/28.551DDF030000\" Type bool",
-	         "f:3:13: error: the path \"/28.551DDF030000\" has no property behind the device\n"},
+	         "f:3:13: error: the path \"/28.551DDF030000\" has no property after the device\n"},
 		{"Name x Path \"/28.551DDF030000.00/t\" Type bool",
 	         "f:3:13: error: the path \"/28.551DDF030000.00/t\" has a device id with a wrong "
 	         "checksum\n"},
@@ -82,7 +82,7 @@ static void test_wrong_items_are_errors_with_what_was_expected(void)
 	         "f:3:82: error: Alarm on: expected a device in the path "
 	         "\"/simultaneous/temperature\"\n"},
 		{"Name x Path /a/b Type bool }\nItem { Name x Path /a/c Type bool",
-	         "f:4:13: error: the name \"x\" stands twice, first in line 3\n"},
+	         "f:4:13: error: the name \"x\" is given twice, first in line 3\n"},
 	};
 
 	expect_errors(cases, COUNT(cases), parse_item);
@@ -92,8 +92,8 @@ static void test_three_items_of_one_name_all_name_the_first(void)
 {
 	parse_driver("Item { Name x Path a/b Type bool }\nItem { Name y Path a/b Type bool }\n"
 	             "Item { Name x Path a/b Type bool }\nItem { Name x Path a/b Type bool }");
-	TEST_ASSERT_EQUAL_STRING("f:4:13: error: the name \"x\" stands twice, first in line 2\n"
-	                         "f:5:13: error: the name \"x\" stands twice, first in line 2\n",
+	TEST_ASSERT_EQUAL_STRING("f:4:13: error: the name \"x\" is given twice, first in line 2\n"
+	                         "f:5:13: error: the name \"x\" is given twice, first in line 2\n",
 	                         said);
 }
 

@@ -73,7 +73,7 @@ static void test_auto_is_a_bar_of_three_ways(void)
 	TEST_ASSERT_EQUAL_INT(CONFIG_FIRST, config->targets[0].relation);
 	TEST_ASSERT_EQUAL_UINT(3, config->target_count);
 	TEST_ASSERT_EQUAL_INT(-EINVAL, parse_driver("TargetName \"auto, w1\""));
-	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "the target \"w1\" stands twice"), said);
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "the target \"w1\" is given twice"), said);
 }
 
 static int own(const char *listen, const char *target)
@@ -131,7 +131,7 @@ static void test_more_than_sixteen_targets_are_refused(void)
 		snprintf(line + strlen(line), sizeof(line) - strlen(line), ",h%d", i);
 	TEST_ASSERT_EQUAL_INT(-EINVAL, parse_driver(strcat(line, "|one.more\"")));
 	TEST_ASSERT_EQUAL_STRING("f:2:12: error: \"one.more\" is one too many: owsd serves at most "
-	                         "16 targets, ways behind a bar and the 3 of auto counted\n",
+	                         "16 targets, ways after a bar and the 3 of auto counted\n",
 	                         said);
 	strcpy(strrchr(line, '|'), "\"");
 	TEST_ASSERT_EQUAL_INT(0, parse_driver(line));
@@ -144,8 +144,8 @@ static void test_targets_of_the_command_line_replace_those_of_the_file(void)
 
 	parse_driver("TargetName \"x\"");
 	TEST_ASSERT_EQUAL_INT(-EINVAL, config_set_targets(config, bad, 2, &report));
-	TEST_ASSERT_EQUAL_STRING("error: the target \"a:4304\" stands twice; the first is \"a\"\n",
-	                         said);
+	TEST_ASSERT_EQUAL_STRING(
+		"error: the target \"a:4304\" is given twice; the first is \"a\"\n", said);
 	TEST_ASSERT_EQUAL_STRING("x", config->targets[0].text);
 	TEST_ASSERT_EQUAL_UINT(1, config->target_count);
 	TEST_ASSERT_EQUAL_INT(0, config_set_targets(config, good, 2, &report));

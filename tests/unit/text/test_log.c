@@ -304,7 +304,7 @@ static void test_how_often_it_was_not_said_is_told_when_it_is(void)
 		last = n ? n : last;
 	}
 	TEST_ASSERT_EQUAL_UINT64(1024, told);
-	TEST_ASSERT_EQUAL_STRING(" (512 times since this was said last)", log_others(last, others));
+	TEST_ASSERT_EQUAL_STRING(" (512 times since the last such line)", log_others(last, others));
 	TEST_ASSERT_EQUAL_STRING("", log_others(1, others));
 	TEST_ASSERT_LESS_THAN_size_t(LOG_OTHERS, strlen(log_others(UINT64_MAX, others)));
 	TEST_ASSERT_NOT_NULL(strstr(others, "18446744073709551615 times"));
