@@ -32,7 +32,7 @@ static void add_address(struct build *build, const struct listen_address *addres
 
 	for (unsigned i = 0; i < serve->address_count; i++)
 		if (address->port && listen_same(&serve->addresses[i], address)) {
-			report_error(build->report, place, "Listen \"%.*s\": stands twice",
+			report_error(build->report, place, "Listen \"%.*s\": is given twice",
 			             (int)len, part);
 			return;
 		}
