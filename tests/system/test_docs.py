@@ -330,7 +330,8 @@ def go_through(scene, page):
             faults.append(f"{page.name}:{line}: {fault}")
 
     for block in handbook.blocks(page):
-        attempt(block.line, check_block, stage, block)
+        if page.name != "first-family.md":  # test_first_family.py replays that one
+            attempt(block.line, check_block, stage, block)
     if page.suffix == ".md":
         written = {block.file for block in handbook.blocks(page)}
         for line, target in handbook.links(page):
