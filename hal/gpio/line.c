@@ -36,7 +36,7 @@ static int open_path(const char *path, struct gpio_chip **chip, char *why, size_
 		return -ENODEV;
 	case -ENOTTY:
 	case -EINVAL:
-		snprintf(why, why_size, "%s is no GPIO chip: gpiodetect lists them", path);
+		snprintf(why, why_size, "%s is not a GPIO chip: gpiodetect lists them", path);
 		return -ENOTTY;
 	default:
 		snprintf(why, why_size, "%s: %s", path, strerror(-err));

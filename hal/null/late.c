@@ -93,7 +93,7 @@ static int set_options(struct late_bus *late, const char *where, char *why, size
 
 		if (set_option(late, where, len)) {
 			snprintf(why, why_size,
-			         "'late:': '%.*s' is no option; there are seed, late, twice, "
+			         "'late:': '%.*s' is not an option; there are seed, late, twice, "
 			         "never, up, down, each with =NUMBER",
 			         (int)(len > 40 ? 40 : len), where);
 			return -EINVAL;

@@ -74,7 +74,8 @@ int connection_init(struct connection *connection, const struct bus_env *env, co
 		bad_port = err != 0;
 	}
 	if (bad_port)
-		snprintf(why, why_size, "the port '%.40s' is no number from 1 to 65535", rest + 1);
+		snprintf(why, why_size, "the port '%.40s' is not a number from 1 to 65535",
+		         rest + 1);
 	else if (err)
 		snprintf(why, why_size, "HOST, HOST:PORT, [IPv6]:PORT or /SOCKET is expected");
 	return err;

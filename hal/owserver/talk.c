@@ -144,7 +144,7 @@ int talk_receive(struct talk *talk, int64_t until_ns)
 			if (state == -EMSGSIZE)
 				return fail(talk, -EPROTO, "an answer longer than asked for");
 			else if (state < 0)
-				return fail(talk, -EPROTO, "this is no owserver");
+				return fail(talk, -EPROTO, "this is not an owserver");
 		}
 	} while (now(talk) < until_ns);
 	return -EAGAIN;

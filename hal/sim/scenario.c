@@ -343,7 +343,7 @@ static char *read_text(const char *file, char *why, size_t why_size, int *err)
 	else if (len > MAX_FILE)
 		snprintf(why, why_size, "%s: longer than %d bytes", file, MAX_FILE);
 	else
-		snprintf(why, why_size, "%s: has a zero byte, is no text", file);
+		snprintf(why, why_size, "%s: has a zero byte, is not text", file);
 	free(text);
 	return NULL;
 }

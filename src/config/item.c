@@ -105,11 +105,12 @@ static bool take_io_type(struct build *build, const struct option_value *value,
 	item->writable = item->output;
 	item->fresh |= (bits & IO_TYPE_UNCACHED) != 0;
 	if (!value_type_ok(code)) {
-		report_error(build->report, value->node->value_at,
-		             "IOType %s: %d is no type; expected 1 bool, 2 byte, 3 short, 4 long, "
-		             "5 word, 6 dword, 7 float, 8 double, 10 large or 12 string in the "
-		             "last hexadecimal digit",
-		             value->text, code);
+		report_error(
+			build->report, value->node->value_at,
+			"IOType %s: %d is not a type; expected 1 bool, 2 byte, 3 short, 4 long, "
+			"5 word, 6 dword, 7 float, 8 double, 10 large or 12 string in the "
+			"last hexadecimal digit",
+			value->text, code);
 		return false;
 	}
 	item->type = (enum ows_type)code;

@@ -225,7 +225,7 @@ int target_option(struct ctl *ctl, int argc, char **argv, const char *options, i
 	while ((c = ctl_option(ctl, argc, argv, all)) == 'w') {
 		if (ctl_seconds(optarg, timeout_ns) && *timeout_ns > 0)
 			continue;
-		ctl_usage(ctl, "%s is no number of seconds above 0", ctl_word(optarg));
+		ctl_usage(ctl, "%s is not a number of seconds above 0", ctl_word(optarg));
 		return '?';
 	}
 	return c;

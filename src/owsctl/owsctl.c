@@ -22,18 +22,18 @@ static const struct verb verbs[] = {
 	{"alarms", "[PATTERN...] | history ... | ack NAME... | -a",
          "alarms that stand, and those since the start", verb_alarms},
 	{"stats", "", "owsd itself, its targets and counters", verb_stats},
-	{"instances", "", "the owsds that run here, and those that have run", verb_instances},
-	{"remove", "NAME...", "take away what an instance that ended has left", verb_remove},
+	{"instances", "", "list the owsd that run here, and those that have run", verb_instances},
+	{"remove", "NAME...", "remove the files of an instance that has ended", verb_remove},
 	{"config", "FILE list | add | set | unset | remove | move ...",
          "look at a configuration and edit it", verb_config},
-	{"dir", "[-t TARGET] [-w SECONDS] [PATH]", "what is in a directory of a target", verb_dir,
+	{"dir", "[-t TARGET] [-w SECONDS] [PATH]", "list a directory of a target", verb_dir,
          .opens = true},
 	{"read", "[-t TARGET] [-w SECONDS] PATH...", "properties of devices, one line for each",
          verb_read, .opens = true},
 	{"write", "[-t TARGET] [-w SECONDS] PATH VALUE", "write a property of a device", verb_write,
          .opens = true},
 	{"scan", "[-t TARGET] [-w SECONDS] [--rio [-i] [--merge FILE [--replace OLD=NEW]...]]",
-         "the devices that are there, or a configuration for them", verb_scan, .opens = true},
+         "list the devices, or print a configuration for them", verb_scan, .opens = true},
 };
 enum { JSON = 256 };
 #define USAGE_WIDTH 46 /* what is longer has its meaning in the next line */

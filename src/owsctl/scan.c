@@ -216,7 +216,7 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 	if (optind < argc)
 		return ctl_usage(ctl, "%s: scan looks at all of a target", argv[optind]);
 	if (rio ? ctl->json : inputs_only)
-		return ctl_usage(ctl, rio ? "--rio is no JSON" : "-i goes with --rio");
+		return ctl_usage(ctl, rio ? "--rio prints no JSON" : "-i goes with --rio");
 	if (merge.file && !rio)
 		return ctl_usage(ctl, "--merge goes with --rio: it makes a configuration");
 	if (merge.pair_count && !merge.file)

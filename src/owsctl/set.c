@@ -86,10 +86,10 @@ static int prepare(const struct ctl *ctl, struct ows *h, struct order *order)
 		return ctl_fail("%s: %s is out of range for %s (%s)", order->name, order->text,
 		                value_type_name(order->type), range(order->type));
 	if (err && value_parse(OWS_DOUBLE, order->text, &order->value) == 0)
-		return ctl_fail("%s: %s is no whole number, as %s wants it (%s)", order->name,
+		return ctl_fail("%s: %s is not a whole number, as %s wants it (%s)", order->name,
 		                order->text, value_type_name(order->type), range(order->type));
 	if (err)
-		return ctl_fail("%s: \"%s\" is no value for %s (%s)", order->name, order->text,
+		return ctl_fail("%s: \"%s\" is not a value for %s (%s)", order->name, order->text,
 		                value_type_name(order->type), range(order->type));
 	return CTL_DONE;
 }

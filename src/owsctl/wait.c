@@ -104,7 +104,7 @@ static int begin(struct ctl *ctl, struct waiting *waiting, const char *value)
 		return ctl_usage(ctl, "%s is a string: only = and != can be waited for",
 		                 waiting->name);
 	if (err)
-		return ctl_usage(ctl, "%s is no value to compare %s with", ctl_word(value),
+		return ctl_usage(ctl, "%s is not a value to compare %s with", ctl_word(value),
 		                 waiting->name);
 	return CTL_DONE;
 }

@@ -220,7 +220,7 @@ int listeners_open(struct serve *s, char *why, size_t why_size)
 	if (err)
 		snprintf(why, why_size, "cannot listen at %s: %s%s", config->socket, strerror(-err),
 		         err == -EADDRINUSE ? " (another process serves it)"
-		         : err == -EEXIST   ? " and is no socket"
+		         : err == -EEXIST   ? " and is not a socket"
 		         : err == -EPERM    ? " (another process put something else in its place)"
 		                            : "");
 	return err;

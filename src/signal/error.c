@@ -17,7 +17,7 @@ static const struct {
 	{ENOENT, "no such property", "check its spelling; owsctl dir shows what a device has"},
 	{EISDIR, "it is a directory", "owsctl dir shows the properties in it"},
 	{ENOTDIR, "it is no directory", ""},
-	{EILSEQ, "the answer is no value of this type",
+	{EILSEQ, "the answer is not a value of this type",
          "choose another Type; string takes any text"},
 	{EPROTOTYPE, "the type does not fit the property", "the log says which Type fits"},
 	{EMSGSIZE, "the answer is longer than the room for it",

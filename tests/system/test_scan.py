@@ -444,7 +444,7 @@ def test_what_cannot_be_merged_is_refused_and_nothing_is_printed(scene):
     b, new = "28.4AEC29CDBAAB", "28.7777777777AB"
     for words, status, what in (
             (("scan", "--merge", file), 2, "--merge goes with --rio"),
-            (("--json", *merge), 2, "--rio is no JSON"),
+            (("--json", *merge), 2, "--rio prints no JSON"),
             (("scan", "--rio", "--replace", f"{b}={new}"), 2, "--replace goes with --merge"),
             ((*merge, "--replace", b), 2, "expected OLD=NEW"),
             ((*merge, "--replace", f"kitchen={new}"), 2, "neither the id of a device nor"),

@@ -21,7 +21,7 @@ void tearDown(void)
 static void test_wrong_items_are_errors_with_what_was_expected(void)
 {
 #define TYPES \
-	"is no type; expected 1 bool, 2 byte, 3 short, 4 long, 5 word, 6 dword, 7 float, 8 " \
+	"is not a type; expected 1 bool, 2 byte, 3 short, 4 long, 5 word, 6 dword, 7 float, 8 " \
 	"double, 10 large or 12 string in the last hexadecimal digit\n"
 	static const struct line cases[] = {
 		{"Path \"/a/b\" Type bool", "f:2:1: error: expected a Name in this Item\n"},

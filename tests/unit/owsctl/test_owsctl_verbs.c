@@ -166,7 +166,7 @@ static void test_set_sets_nothing_when_one_of_its_values_is_wrong(void)
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set relay 1 level 256"));
 	holds(err, "level: 256 is out of range for byte (0 to 255)");
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set relay 1 level high"));
-	holds(err, "level: \"high\" is no value for byte");
+	holds(err, "level: \"high\" is not a value for byte");
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set relay 1 room1_Age 0"));
 	holds(err, "room1_Age cannot be set, only read");
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set relay 1 rely 0"));
