@@ -305,7 +305,7 @@ def test_what_is_wrong_is_said_with_its_status(scene):
             (("-t", target, "write", "/x"), 2, "a path and a value"),
             (("-t", target, "scan", "-i"), 2, "goes with --rio"),
             (("-t", target, "--json", "scan", "--rio"), 2, "no JSON"),
-            (("-t", target, "dir", "-w", "soon"), 2, "no number of seconds"),
+            (("-t", target, "dir", "-w", "soon"), 2, "not a number of seconds"),
             (("-t", target, "dir", "/28.0000000000FF"), 1, "no such device"),
             (("list", "--rio"), 2, "unknown option")):
         done = scene.owsctl(None, *words)
