@@ -122,6 +122,12 @@ int conversion_start(struct txn *txn, const struct conversion *conversion, bool 
 
 /* FIELD(registers, .at = 3, .shift = 2) in a row of a table of properties. */
 #define FIELD(...) .field = {.area = &__VA_ARGS__}
+/* The same of what is written, if that is another field. */
+#define SET(...) \
+	.set = &(const struct field) \
+	{ \
+		.area = &__VA_ARGS__ \
+	}
 /* The rows of a table that nearly every memory has: "memory", and below "pages" its pages. */
 #define AREA_MEMORY(area_, bytes_) \
 	PROPERTY("memory", BINARY, VOLATILE, BOTH, .size = (bytes_), FIELD(area_))

@@ -84,8 +84,6 @@ static const struct area status = {
 	.write = 0x55,
 	.write_crc16 = true,
 };
-/* 1: does not conduct. */
-static const struct field outputs = {&status, .shift = 5, .inverted = true};
 
 /* Three digits: channels, source, polarity. */
 static int read_alarm(struct txn *txn)
@@ -128,7 +126,7 @@ static bool never(const struct device *device)
 
 static const struct property properties[] = {
 	PROPERTY("PIO", BITS, STABLE, BOTH, AGGREGATE(2, LETTERS), FIELD(info, .inverted = true),
-                 .set = &outputs),
+                 SET(status, .shift = 5, .inverted = true)),
 	PROPERTY("T8A", DIRECTORY, STATIC, NONE, .visible = never),
 	NOT_THERE("T8A/volt", FLOAT, VOLATILE, ELEMENTS(8, NUMBERS), .visible = never),
 	PROPERTY_DIR("TAI8570"),

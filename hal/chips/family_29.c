@@ -212,11 +212,6 @@ static int write_test_mode(struct txn *txn)
 	return txn->number[0] == 0 ? 0 : leave_test_mode(txn);
 }
 
-#define SET(area_, ...) \
-	.set = &(const struct field) \
-	{ \
-		.area = &(area_), __VA_ARGS__ \
-	}
 #define FLAG(text, life_, access_, bit, ...) \
 	PROPERTY(text, YESNO, life_, access_, \
 	         FIELD(registers, .at = CONTROL, .shift = (bit), .bits = 1), \

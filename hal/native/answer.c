@@ -45,6 +45,8 @@ void job_answer(struct native *native, struct job *job, int err)
 
 		if (job->txn.link)
 			answer.measured_ns = txn_measured(&job->txn);
+		if (job->txn.shared_ns && !job->fresh)
+			answer.detail |= BUS_DETAIL_CACHED;
 		if (property && property->type == PROPERTY_BINARY)
 			answer.kind = BUS_BYTES;
 		if (property && format_is_number(property, job->extension)) {

@@ -65,7 +65,10 @@ void job_txn(struct native *native, struct job *job)
 	struct device *device = txn->device;
 	unsigned n = device ? device->channel : job->bus >= 0 ? (unsigned)job->bus : 0;
 
+	/* All elements are as old as the oldest. */
+	int64_t shared_ns = job->element ? txn->shared_ns : 0;
 	memset(txn, 0, sizeof(*txn));
+	txn->shared_ns = shared_ns;
 	txn->native = native;
 	txn->device = device;
 	txn->channel = n;

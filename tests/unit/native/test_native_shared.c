@@ -91,6 +91,32 @@ static void test_a_value_is_never_older_than_its_life(void)
 	expect(false, of(chip, "sensed.1"), "1");
 }
 
+static void test_a_list_is_as_old_as_its_oldest_element(void)
+{
+	size_t size;
+
+	begin("DS2431");
+	uint8_t *memory = chip->family->memory(chip, &size);
+
+	memset(memory, 'a', size);
+	TEST_ASSERT_EQUAL_INT(
+		0, answer_to(ask(BUS_READ, BUS_GUEST, false, of(chip, "pages/page.0"), NULL))->err);
+	int64_t read_ns = host.now;
+
+	memset(memory, 'b', size);
+	host_run(&host, bus, host.now + 1500 * HOST_MS);
+	uint32_t id = ask(BUS_READ, BUS_GUEST, false, of(chip, "pages/page.ALL"), NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_UINT8('a', data[id][0]);
+	TEST_ASSERT_EQUAL_UINT8('b', data[id][32]);
+	TEST_ASSERT_LESS_OR_EQUAL_INT64(read_ns, answer_to(id)->measured_ns);
+	TEST_ASSERT_TRUE(answer_to(id)->detail & BUS_DETAIL_CACHED);
+	host_run(&host, bus, host.now + 700 * HOST_MS);
+	id = ask(BUS_READ, BUS_GUEST, false, of(chip, "pages/page.ALL"), NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_UINT8('b', data[id][0]);
+}
+
 static void test_an_uncached_request_gets_nothing_from_before_it_came(void)
 {
 	begin("DS2408");
@@ -199,6 +225,7 @@ int main(void)
 	RUN_TEST(test_eight_bits_asked_for_at_once_are_one_visit);
 	RUN_TEST(test_registers_that_were_read_serve_their_other_fields_within_their_life);
 	RUN_TEST(test_a_value_is_never_older_than_its_life);
+	RUN_TEST(test_a_list_is_as_old_as_its_oldest_element);
 	RUN_TEST(test_an_uncached_request_gets_nothing_from_before_it_came);
 	RUN_TEST(test_what_was_read_before_a_write_serves_nobody_after_it);
 	RUN_TEST(test_requests_around_a_write_are_answered_with_what_was_true_then);
