@@ -40,6 +40,7 @@ struct ds2438_visit {
 	int64_t begun_ns;      /* of the quantity; 0: it is to be begun */
 	double value[4];       /* of the quantities */
 };
+_Static_assert(sizeof(struct ds2438_visit) <= TXN_OWN, "no room for the visit");
 static inline struct ds2438_visit *ds2438_visit(struct txn *txn)
 {
 	return txn_own(txn);

@@ -34,6 +34,7 @@ struct visit {
 	uint8_t supply;
 	int64_t begun_ns;
 };
+_Static_assert(sizeof(struct visit) <= TXN_OWN, "no room for the visit");
 
 static bool power_on_flags(const uint8_t control[8])
 {

@@ -29,6 +29,7 @@ struct lcd_visit {
 	bool begun, set_up, strobed;
 	uint8_t next; /* step */
 };
+_Static_assert(sizeof(struct lcd_visit) <= TXN_OWN, "no room for the visit");
 
 /* What a step is beside its byte. */
 enum { DATA = 0x100, NIBBLE = 0x200, SLOW = 0x400, RESET = 0x800 };

@@ -35,6 +35,7 @@ struct thermometer {
 	uint8_t latched[3];   /* what tells one conversion's result from another's, when read */
 	int64_t latched_ns;   /* ... and of which conversion that was; 0: not known */
 };
+_Static_assert(sizeof(struct thermometer) <= DEVICE_OWN, "no room for what is known");
 static inline struct thermometer *thermometer_of(const struct device *device)
 {
 	return device->own;
