@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "hal/chips/family.h"
-#include "hal/owfs/path.h"
 #include "hal/wire/crc.h"
 
 #define BLANK_LOOKS 3 /* more */
@@ -35,10 +34,10 @@ static int read_pages(struct txn *txn, const struct area *area, const uint8_t *c
 
 	if (err)
 		return err;
-	if (rom_crc8(command, len) != in[0])
+	if (onewire_crc8(command, len) != in[0])
 		return -EBADMSG;
 	for (const uint8_t *page = in + 1; n; n -= area->block, page += area->block + 1) {
-		if (rom_crc8(page, area->block + 1u))
+		if (onewire_crc8(page, area->block + 1u))
 			return -EBADMSG;
 		memcpy(bytes, page, area->block);
 		bytes += area->block;
