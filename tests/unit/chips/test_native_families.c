@@ -409,6 +409,18 @@ static void test_a_block_of_a_ds2720_is_locked_for_good(void)
 	reads("lock.1", "1");
 }
 
+/* Read Application Register has the register's own scratchpad, Read Scratchpad that of the memory. */
+static void test_the_application_register_of_a_ds2430a_is_written_once(void)
+{
+	start("DS2430A");
+	writes("application", "register");
+	TEST_ASSERT_EQUAL_UINT(8, go(BUS_READ, "application", NULL)->len);
+	TEST_ASSERT_EQUAL_MEMORY("register", slave_data, 8);
+	reads("status", "         252");
+	go(BUS_WRITE, "application", "anything");
+	TEST_ASSERT_EQUAL_INT(-EBADMSG, host.answer[0].err);
+}
+
 static void test_a_ds2423_counts(void)
 {
 	start("DS2423");
@@ -571,6 +583,7 @@ int main(void)
 	RUN_TEST(test_a_ds2720_shows_its_flags_and_takes_back_what_is_over);
 	RUN_TEST(test_what_is_written_to_a_page_of_a_ds2720_is_there_after_a_restart);
 	RUN_TEST(test_a_block_of_a_ds2720_is_locked_for_good);
+	RUN_TEST(test_the_application_register_of_a_ds2430a_is_written_once);
 	RUN_TEST(test_a_ds2423_counts);
 	RUN_TEST(test_a_ds2450_converts_and_switches);
 	RUN_TEST(test_a_ds2450_that_restarts_is_told_once_and_alarms_again);
