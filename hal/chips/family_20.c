@@ -216,6 +216,16 @@ static int read_pio(struct txn *txn)
 	return err;
 }
 
+/* Any other byte is none: a conversion then takes its power from the wire. */
+static int read_power(struct txn *txn)
+{
+	uint8_t byte = 0;
+	int err = area_read(txn, &memory, SUPPLY_AT, &byte, 1);
+
+	txn->number[0] = byte == SUPPLY_ON;
+	return err;
+}
+
 static int write_pio(struct txn *txn)
 {
 	static const uint8_t which = 0xf0;
@@ -289,7 +299,7 @@ static const struct property properties[] = {
 	PROPERTY_DIR("pages"),
 	AREA_PAGES(memory, 4, 8),
 	PROPERTY("power", YESNO, STABLE, BOTH,
-                 FIELD(memory, .at = SUPPLY_AT, .unit = 1.0 / SUPPLY_ON)),
+                 FIELD(memory, .at = SUPPLY_AT, .unit = 1.0 / SUPPLY_ON), .read = read_power),
 	PROPERTY_DIR("set_alarm"),
 	FLAG("set_alarm/high", STABLE, 3),
 	FLAG("set_alarm/low", STABLE, 2),

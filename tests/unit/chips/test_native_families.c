@@ -434,6 +434,8 @@ static void test_a_ds2450_converts_and_switches(void)
 {
 	start("DS2450");
 	wire_set(slave, "volt.A", 2.5);
+	writes("pages/page.3", "....1");
+	reads("power", "0");
 	writes("power", "1");
 	reads("power", "1");
 	go(BUS_READ, "volt.ALL", NULL);
