@@ -14,12 +14,12 @@
 #define HOST_LOOK_NS NS_PER_MS
 
 struct host {
-	struct serving
-		*now; /* exchanged by the engine's thread; else only the supervisor uses it */
+	/* The engine's thread exchanges it; else only the supervisor uses it. */
+	struct serving *now;
 	struct serving *next; /* made by a reload, for the engine to take over */
 	const struct adoption *plan;
-	struct engine
-		*ended; /* an engine whose buses have ended, for the engine's thread to abandon */
+	/* An engine whose buses have ended, for the engine's thread to abandon. */
+	struct engine *ended;
 	struct log *log;
 	const char *instance;
 	struct serve *serve; /* NULL: the owserver protocol is not served */
@@ -36,13 +36,11 @@ struct host {
 	int64_t tend_ns;          /* not sooner */
 	struct log_rate tend_rate;
 	int64_t image_lost_ns;
-	/*
-	 * what a reload has not finished: its image is not in place, its threads do not run; how
-	 * many
-	 */
-	bool unshown, unstarted;
-	uint32_t unfinished;
-	int64_t finish_ns; /* not sooner */
+	/* What a reload has not finished. */
+	bool unshown;        /* its image is not in place */
+	bool unstarted;      /* its threads do not run */
+	uint32_t unfinished; /* how many of the two; a counter shows it */
+	int64_t finish_ns;   /* not sooner */
 	struct log_rate finish_rate;
 	uint64_t idle_rings, mended;
 };

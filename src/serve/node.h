@@ -40,8 +40,8 @@ struct node {
 	int code;         /* NODE_CODE: which, -1 all */
 	const char *name; /* NODE_SIGNAL: of the signal or attribute, up to the end of the path */
 	uint16_t device_len; /* bytes of path up to and with the device */
-	char path
-		[NODE_PATH_MAX]; /* for a target: without uncached and bus.N, ids as 28.551DDF030000 */
+	/* For a target: without uncached and bus.N, ids as 28.551DDF030000. */
+	char path[NODE_PATH_MAX];
 };
 
 void node_parse(const char *path, size_t len, struct node *node);
