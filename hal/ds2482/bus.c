@@ -3,8 +3,8 @@
 #include "hal/ds2482/i2c_master.h"
 #include "hal/native/native.h"
 
-static int create(const char *where, const struct bus_env *env, struct bus **bus, char *why,
-                  size_t why_size)
+static int i2c_bus_create(const char *where, const struct bus_env *env, struct bus **bus, char *why,
+                          size_t why_size)
 {
 	return native_create(&i2c_bus, &ds2482_i2c_master, where, env, bus, why, why_size);
 }
@@ -12,6 +12,6 @@ static int create(const char *where, const struct bus_env *env, struct bus **bus
 const struct bus_ops i2c_bus = {
 	.scheme = "i2c",
 	.summary = "1-Wire devices on DS2482-100, -101, -800, DS2483 or DS2484",
-	.create = create,
+	.create = i2c_bus_create,
 	NATIVE_BUS_SLOTS,
 };

@@ -92,8 +92,8 @@ static int make_adapter(void *ctx, unsigned number, const struct bus_env *env,
 	return ds2482_i2c_master.create(where, env, master, why, sizeof(why));
 }
 
-static int create(const char *where, const struct bus_env *env, struct link_master **master,
-                  char *why, size_t why_size)
+static int i2c_master_create(const char *where, const struct bus_env *env,
+                             struct link_master **master, char *why, size_t why_size)
 {
 	size_t len = strcspn(where, ":");
 	struct ds2482_source source = {
@@ -120,7 +120,7 @@ static int create(const char *where, const struct bus_env *env, struct link_mast
 }
 
 const struct link_master_ops ds2482_i2c_master = {
-	.create = create,
+	.create = i2c_master_create,
 	.option = ds2482_option,
 	.open = ds2482_open,
 	.grow = ds2482_grow,

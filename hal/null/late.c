@@ -202,7 +202,7 @@ static void turn(struct late_bus *late, int64_t now)
 		late->turn_ns = now + (int64_t)late->option[late->up ? UP : DOWN] * NS_PER_MS;
 }
 
-static void tell(struct late_bus *late)
+static void report_turn(struct late_bus *late)
 {
 	struct bus_event event = {.news = late->up ? BUS_UP : BUS_DOWN,
 	                          .err = late->up ? 0 : -ECONNRESET};
@@ -221,7 +221,7 @@ static int64_t late_step(struct bus *bus, int64_t now)
 	if (now >= late->turn_ns)
 		turn(late, now);
 	if (!late->is_told && !bus->suspended)
-		tell(late);
+		report_turn(late);
 	next = late->turn_ns;
 	for (unsigned i = 0; i < LATE_DEPTH; i++) {
 		struct late_slot *slot = &late->slot[i];

@@ -3,8 +3,8 @@
 #include "hal/native/native.h"
 #include "hal/sim/master.h"
 
-static int create(const char *where, const struct bus_env *env, struct bus **bus, char *why,
-                  size_t why_size)
+static int sim_bus_create(const char *where, const struct bus_env *env, struct bus **bus, char *why,
+                          size_t why_size)
 {
 	return native_create(&sim_bus, &sim_master, where, env, bus, why, why_size);
 }
@@ -12,6 +12,6 @@ static int create(const char *where, const struct bus_env *env, struct bus **bus
 const struct bus_ops sim_bus = {
 	.scheme = "sim",
 	.summary = "simulated 1-Wire devices, from a scenario file",
-	.create = create,
+	.create = sim_bus_create,
 	NATIVE_BUS_SLOTS,
 };

@@ -59,8 +59,8 @@ static const char *behind_file(const char *where)
 	return chip && strncmp(chip, ":0x", 3) == 0 ? chip : where + strlen(where);
 }
 
-static int create(const char *where, const struct bus_env *env, struct link_master **master,
-                  char *why, size_t why_size)
+static int sim_master_create(const char *where, const struct bus_env *env,
+                             struct link_master **master, char *why, size_t why_size)
 {
 	const char *chip = behind_file(where);
 	size_t len = (size_t)(chip - where);
@@ -96,7 +96,7 @@ struct sim_net *sim_master_net(struct link_master *master)
 }
 
 const struct link_master_ops sim_master = {
-	.create = create,
+	.create = sim_master_create,
 	.option = ds2482_option,
 	.open = ds2482_open,
 	.grow = ds2482_grow,

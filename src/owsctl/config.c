@@ -14,7 +14,7 @@
 #include "src/owsctl/property.h"
 #include "src/owsctl/verbs.h"
 
-static void say(void *ctx, bool is_error, const char *message)
+static void print_report(void *ctx, bool is_error, const char *message)
 {
 	(void)ctx;
 	(void)is_error;
@@ -33,7 +33,7 @@ static int status_of(int err)
 
 static int list(struct ctl *ctl, const char *file, char *const *patterns, int count)
 {
-	struct config_report report = {.line = say};
+	struct config_report report = {.line = print_report};
 	struct config *config;
 	int err = config_load(file, &report, &config), status;
 
@@ -108,7 +108,7 @@ static const char *const *words_of(char **argv)
 
 static int change(const char *file, const char *action, char **words, unsigned count)
 {
-	struct config_report report = {.line = say};
+	struct config_report report = {.line = print_report};
 	struct rio *rio;
 	int lock = edit_lock(file, &report), err;
 

@@ -33,7 +33,7 @@ struct work {
 	struct scan_names names;
 };
 
-static void say(void *ctx, bool is_error, const char *message)
+static void print_report(void *ctx, bool is_error, const char *message)
 {
 	(void)ctx;
 	if (is_error)
@@ -50,7 +50,7 @@ static bool is_stdout(const char *file)
 
 int scan_merge_open(struct scan_merge *merge)
 {
-	struct config_report report = {.line = say};
+	struct config_report report = {.line = print_report};
 	struct config *config = NULL;
 	char *text;
 	size_t len;
@@ -332,7 +332,7 @@ static int replace_device(struct work *work, unsigned known)
 	const struct scan_device *found = &work->scan->device[work->known[known].other];
 	char setting[PATH_LEN_MAX + 64] = "Path=", names[NAMES_TEXT], id[2][ROM_TEXT_MAX];
 	const char *const settings[] = {setting};
-	struct config_report report = {.line = say};
+	struct config_report report = {.line = print_report};
 	int err = 0;
 
 	for (unsigned i = 0; i < work->item_count && !err; i++) {

@@ -118,7 +118,7 @@ static const char *property_of(const struct scan_device *device, unsigned ask)
 	return device->kind ? device->kind->property[ask - ASK_PROPERTIES].name : NULL;
 }
 
-static void take(struct scan_device *device, unsigned n, struct ask *ask, char *text)
+static void take_answer(struct scan_device *device, unsigned n, struct ask *ask, char *text)
 {
 	struct scan_value *value;
 	size_t len = ask->answer.err ? 0 : target_unpad(text, ask->answer.len);
@@ -169,8 +169,8 @@ static int look(struct target *target, struct scan *scan)
 	count = 0;
 	for (unsigned i = 0; i < room; i++)
 		if (property_of(&scan->device[i / ASKS], i % ASKS)) {
-			take(&scan->device[i / ASKS], i % ASKS, &asks[count],
-			     questions[count].text);
+			take_answer(&scan->device[i / ASKS], i % ASKS, &asks[count],
+			            questions[count].text);
 			count++;
 		}
 	/* A dead target is not stepped again, so nothing is written to what is still lent to it. */

@@ -299,7 +299,7 @@ static void hold(struct serve *s, int fd, bool network)
 		            SERVER_CLIENTS, log_others(n, others));
 }
 
-static void take(struct serve *s, int fd, bool network)
+static void take_client(struct serve *s, int fd, bool network)
 {
 	if (client_open(s, fd, network))
 		count(s, COUNT_connections, 1);
@@ -312,7 +312,7 @@ static void meet(struct serve *s, int fd, bool network, const union address *fro
 	if (network && !is_allowed(s, from))
 		refuse_peer(s, fd, from);
 	else if (s->free_count || client_evict(s))
-		take(s, fd, network);
+		take_client(s, fd, network);
 	else
 		hold(s, fd, network);
 }
@@ -325,7 +325,7 @@ static bool place_held(struct serve *s)
 	if (!s->free_count && !client_evict(s))
 		return false;
 	s->held.is = false;
-	take(s, s->held.fd, s->held.network);
+	take_client(s, s->held.fd, s->held.network);
 	return true;
 }
 
