@@ -4,7 +4,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/chips/family.h"
+#include "hal/chips/area.h"
 #include "hal/wire/crc.h"
 
 #define BLANK_LOOKS 3 /* more */

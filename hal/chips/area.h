@@ -28,8 +28,6 @@
 
 #include "hal/wire/txn.h"
 
-struct property;
-
 /* What proves that the bytes are right. */
 enum area_check {
 	AREA_UNCHECKED, /* nothing: they are read AREA_LOOKS times, and have to be the same */
@@ -113,26 +111,7 @@ int area_fetch(struct txn *txn, const struct area *area, unsigned at, uint8_t *b
 int area_write(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
                const uint8_t *mask, unsigned n);
 
-/* Of a property with .field: txn->property's element txn->element, or all. */
-int field_read(struct txn *txn);
-int field_write(struct txn *txn);
-
 /* Returns TXN_MORE: to be called again when it is over; strong: with the strong pull-up. */
 int conversion_start(struct txn *txn, const struct conversion *conversion, bool strong);
-
-/* FIELD(registers, .at = 3, .shift = 2) in a row of a table of properties. */
-#define FIELD(...) .field = {.area = &__VA_ARGS__}
-/* The same of what is written, if that is another field. */
-#define SET(...) \
-	.set = &(const struct field) \
-	{ \
-		.area = &__VA_ARGS__ \
-	}
-/* The rows of a table that nearly every memory has: "memory", and below "pages" its pages. */
-#define AREA_MEMORY(area_, bytes_) \
-	PROPERTY("memory", BINARY, VOLATILE, BOTH, .size = (bytes_), FIELD(area_))
-#define AREA_PAGES(area_, pages_, bytes_) \
-	PROPERTY("pages/page", BINARY, VOLATILE, BOTH, ELEMENTS(pages_, NUMBERS), \
-	         .size = (bytes_), FIELD(area_))
 
 #endif

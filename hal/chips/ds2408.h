@@ -1,9 +1,24 @@
 /* SPDX-License-Identifier: MIT */
-/* What family_29.c has of a DS2408 for the displays that stand on one. */
+/* DS2408 (data sheet 19-5702): its registers, and what displays that stand on one need. */
 #ifndef HAL_CHIPS_DS2408_H
 #define HAL_CHIPS_DS2408_H
 
-#include "hal/chips/family.h"
+#include "hal/chips/area.h"
+
+/* The registers from 0x88 on. */
+enum {
+	DS2408_PIN,
+	DS2408_OUTPUT,
+	DS2408_ACTIVITY,
+	DS2408_MASK,
+	DS2408_POLARITY,
+	DS2408_CONTROL,
+	DS2408_REGISTERS = 8
+};
+
+/* Bits of the control register. */
+enum { DS2408_SOURCE, DS2408_STROBE = 2 /* ROS */, DS2408_POR, DS2408_VCC = 7 };
+#define DS2408_CONTROL_SOURCE 0x03
 
 /* What is known of the chip (device.own). */
 struct ds2408 {
@@ -11,6 +26,11 @@ struct ds2408 {
 	uint8_t display; /* enum lcd_board: which one has been set up */
 };
 
+/* All registers are read; the outputs, and mask, polarity and control, are written. */
+extern const struct area ds2408_registers, ds2408_output, ds2408_condition;
+
+/* The way out of the test mode in which a slow supply can leave the chip (data sheet, page 39). */
+int ds2408_leave_test_mode(struct txn *txn);
 /* The strobe is switched on; several calls if it is not: TXN_MORE says that it was off. */
 int ds2408_strobe(struct txn *txn);
 /* Bytes for the outputs, in one transaction. */

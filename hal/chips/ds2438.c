@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "hal/chips/ds2438.h"
+#include "hal/chips/property.h"
 
 #define RECALL 0xb8
 #define READ_SCRATCHPAD 0xbe

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* A DS2438: its pages and its configuration (ds2438.c), what it measures (family_26.c). */
+/* A DS2438: its pages and its configuration. */
 #ifndef HAL_CHIPS_DS2438_H
 #define HAL_CHIPS_DS2438_H
 
-#include "hal/chips/family.h"
+#include "hal/chips/area.h"
 
 /* Bits of the status/configuration register, page 0 byte 0. */
 #define DS2438_IAD 0x01
@@ -24,7 +24,7 @@ static inline struct ds2438 *ds2438_of(const struct txn *txn)
 	return txn->device->own;
 }
 
-/* Where a visit is; the functions here and in family_26.c take several calls. */
+/* Where a visit is; the functions here and in ds2438_measure.h take several calls. */
 struct ds2438_visit {
 	uint8_t step, mark; /* of ds2438_read() */
 	bool again;         /* ... and the memory held the mark */
@@ -44,6 +44,12 @@ _Static_assert(sizeof(struct ds2438_visit) <= TXN_OWN, "no room for the visit");
 static inline struct ds2438_visit *ds2438_visit(struct txn *txn)
 {
 	return txn_own(txn);
+}
+
+/* Two bytes as they stand in the memory. */
+static inline int16_t ds2438_word(const uint8_t *bytes)
+{
+	return (int16_t)(bytes[0] | bytes[1] << 8);
 }
 
 /* For fields; they are written by ds2438_write_field() (of four bytes) and ds2438_patch(). */
@@ -66,27 +72,4 @@ int ds2438_read_selected(struct txn *txn, uint8_t select, uint8_t bytes[8]);
  */
 int ds2438_mark(struct txn *txn);
 int ds2438_is_marked(struct txn *txn);
-/* Measure a set of quantities, or take what has been measured for others: to value[]. */
-int ds2438_measure(struct txn *txn, unsigned what);
-
-int sensor_read_humidity(struct txn *txn); /* arg: enum sensor_humidity */
-int sensor_read_pressure(struct txn *txn);
-int sensor_read_light(struct txn *txn);   /* arg: 1 in lux */
-int sensor_read_setting(struct txn *txn); /* arg: enum sensor_setting */
-int sensor_write_setting(struct txn *txn);
-int sensor_read_type(struct txn *txn);
-bool sensor_is_datanab(const struct device *device);
-int sensor_reset_datanab(struct txn *txn);
-
-enum sensor_humidity { HIH3600, HIH4000, HIH5030, HTM1735, DATANAB };
-enum sensor_setting { B1_GAIN, B1_OFFSET, S3_GAIN };
-
-#define DS2438_HUMIDITY(text, which) \
-	PROPERTY(text, FLOAT, VOLATILE, READ, .arg = (which), .read = sensor_read_humidity)
-#define DS2438_SETTING(text, kind, which) \
-	PROPERTY(text, kind, STABLE, BOTH, .arg = (which), .read = sensor_read_setting, \
-	         .write = sensor_write_setting)
-#define DS2438_LIGHT(text, lux) \
-	PROPERTY(text, FLOAT, VOLATILE, READ, .arg = (lux), .read = sensor_read_light)
-
 #endif

@@ -1,28 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Families and their properties: found by code and by name, listed in order. */
+/* What a family has its own way for: what its chips are called, what a restart makes void. */
 #include <string.h>
 
 #include "hal/chips/family.h"
-
-static const struct family *const families[] = {
-#define FAMILY(code) &family_##code,
-#include "hal/chips/families.h"
-#undef FAMILY
-};
-#define FAMILIES (sizeof(families) / sizeof(families[0]))
-
-const struct family *family_of(uint8_t code)
-{
-	for (size_t i = 0; i < FAMILIES; i++)
-		if (families[i]->code == code)
-			return families[i];
-	return &family_common;
-}
-
-const struct family *family_nth(unsigned n)
-{
-	return n < FAMILIES ? families[n] : NULL;
-}
 
 const char *family_type(const struct device *device)
 {
@@ -31,127 +11,11 @@ const char *family_type(const struct device *device)
 	return family->type_of ? family->type_of(device) : family->type;
 }
 
-static bool is_visible(const struct property *property, const struct device *device)
+void family_forget(struct device *device)
 {
-	return !device || !property->visible || property->visible(device);
-}
-
-static int order(const char *name, size_t len, const char *other)
-{
-	int order = strncmp(name, other, len);
-
-	return order ? order : -(other[len] != '\0');
-}
-
-/* The first that is not below the name. Tables of families are sorted. */
-static unsigned find(const struct family *family, const char *name, size_t len)
-{
-	unsigned low = 0, high = family->count;
-
-	while (low < high) {
-		unsigned middle = (low + high) / 2;
-
-		if (order(name, len, family->properties[middle].name) > 0)
-			low = middle + 1;
-		else
-			high = middle;
-	}
-	return low;
-}
-
-static const struct property *by_name(const struct family *family, const char *name, size_t len)
-{
-	unsigned i = family->is_virtual ? 0 : find(family, name, len);
-
-	for (; i < family->count; i++) {
-		if (order(name, len, family->properties[i].name) == 0)
-			return &family->properties[i];
-		if (!family->is_virtual)
-			break;
-	}
-	return NULL;
-}
-
-const struct property *family_property(const struct family *family, const struct device *device,
-                                       const char *name, size_t len)
-{
-	const struct property *property = by_name(family, name, len);
-
-	if (!property && !family->is_virtual)
-		property = by_name(&family_common, name, len);
-	if (!property || is_visible(property, device))
-		return property;
-	/* its functions look which chip it is, and refuse it then */
-	return family->is_known && !family->is_known(device) && property->type != PROPERTY_DIRECTORY
-	               ? property
-	               : NULL;
-}
-
-/* The first of the table behind prev, if it comes before best. */
-static const struct property *nearer(const struct family *family, const struct device *device,
-                                     const struct property *prev, const struct property *best)
-{
-	bool sorted = !family->is_virtual;
-
-	for (unsigned i = sorted && prev ? find(family, prev->name, strlen(prev->name)) : 0;
-	     i < family->count &&
-	     !(sorted && best && strcmp(family->properties[i].name, best->name) > 0);
-	     i++) {
-		const struct property *property = &family->properties[i];
-
-		if (prev && strcmp(property->name, prev->name) <= 0)
-			continue;
-		if (best && strcmp(property->name, best->name) >= 0)
-			continue;
-		if (is_visible(property, device))
-			best = property;
-	}
-	return best;
-}
-
-const struct property *family_next(const struct family *family, const struct device *device,
-                                   const struct property *prev)
-{
-	const struct property *best = nearer(family, device, prev, NULL);
-
-	if (family->is_virtual || family == &family_common)
-		return best;
-	return nearer(&family_common, device, prev, best);
-}
-
-property_function *property_reader(const struct property *property)
-{
-	return property->read || !property->field.area ? property->read : field_read;
-}
-
-property_function *property_writer(const struct property *property)
-{
-	return property->write || !(property->access & ACCESS_WRITE) ||
-	                       !(property->set ? property->set : &property->field)->area
-	               ? property->write
-	               : field_write;
-}
-
-unsigned property_size(const struct property *property)
-{
-	switch ((enum property_type)property->type) {
-	case PROPERTY_DIRECTORY:
-	case PROPERTY_ASCII:
-	case PROPERTY_BINARY:
-		return property->size;
-	case PROPERTY_DATE:
-		return 24;
-	case PROPERTY_FLOAT:
-	case PROPERTY_INTEGER:
-	case PROPERTY_PRESSURE:
-	case PROPERTY_TEMPERATURE:
-	case PROPERTY_UNSIGNED:
-		return 12;
-	case PROPERTY_ALIAS:
-		return DEVICE_ALIAS_MAX;
-	case PROPERTY_YESNO:
-	case PROPERTY_BITS:
-		return 1;
-	}
-	return 0;
+	device_forget(device);
+	if (device->family->forget)
+		device->family->forget(device);
+	else
+		memset(device->own, 0, DEVICE_OWN);
 }

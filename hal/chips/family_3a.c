@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* DS2413: two switches. */
+#include "hal/chips/family.h"
 #include "hal/chips/pio.h"
 
 static const struct area latches = {PIO_LATCHES(0x5a)};

@@ -3,7 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/chips/family.h"
+#include "hal/chips/field.h"
 
 #define BYTES_MAX 4
 
@@ -134,4 +134,17 @@ int field_write(struct txn *txn)
 	}
 	return area_write(txn, field->area, at, bytes, which,
 	                  (count - 1) * field->stride + bytes_of(field));
+}
+
+property_function *property_reader(const struct property *property)
+{
+	return property->read || !property->field.area ? property->read : field_read;
+}
+
+property_function *property_writer(const struct property *property)
+{
+	return property->write || !(property->access & ACCESS_WRITE) ||
+	                       !(property->set ? property->set : &property->field)->area
+	               ? property->write
+	               : field_write;
 }

@@ -7,7 +7,7 @@
 #ifndef HAL_CHIPS_LCD_H
 #define HAL_CHIPS_LCD_H
 
-#include "hal/chips/family.h"
+#include "hal/chips/property.h"
 
 enum lcd_board { LCD_NONE, LCD_H, LCD_M };
 enum lcd_command {

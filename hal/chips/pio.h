@@ -3,7 +3,7 @@
 #ifndef HAL_CHIPS_PIO_H
 #define HAL_CHIPS_PIO_H
 
-#include "hal/chips/family.h"
+#include "hal/chips/property.h"
 
 /* The status: levels of the pins, output latches (1 does not conduct), and the nibble of both. */
 enum { PIO_PINS, PIO_OUTPUTS, PIO_STATE };

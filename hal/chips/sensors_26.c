@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "hal/chips/ds2438.h"
+#include "hal/chips/ds2438_measure.h"
+#include "hal/chips/sensors_26.h"
 
 /*
  * The Hobby Boards' settings stand in page 3, 16 bits each. 0 is not set: 46 mV/mbar and 904.7

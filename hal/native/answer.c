@@ -3,8 +3,8 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/format.h"
 #include "hal/native/native.h"
-#include "hal/owfs/format.h"
 
 #define FOLLOW_NS 500000
 

@@ -3,10 +3,11 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/field.h"
+#include "hal/chips/format.h"
 #include "hal/chips/thermometer.h"
 #include "hal/native/files.h"
 #include "hal/native/native.h"
-#include "hal/owfs/format.h"
 
 static bool is_all(const struct job *job)
 {

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/chips/find.h"
 #include "hal/native/files.h"
 #include "hal/native/native.h"
 
@@ -32,13 +33,13 @@ static void hunt_found(struct native *native, const uint8_t rom[8], unsigned n, 
 	bool known = device && device->present && device->channel == n;
 
 	if (!known) {
-		device = device_add(&native->table, rom, n);
+		device = device_add(&native->table, rom, family_of(rom[0]), n);
 		if (!device) {
 			native_event(native, BUS_NOTE, NULL, -ENOSPC,
 			             "more devices than the table holds: one is left out");
 			return;
 		}
-		device_forget(device);
+		family_forget(device);
 		device->present = true;
 		device->settled = false;
 		native->channel[n].power_asked = false;
@@ -54,7 +55,7 @@ void hunt_lost(struct native *native, struct device *device)
 	if (!device->present)
 		return;
 	device->present = false;
-	device_forget(device);
+	family_forget(device);
 	native_count(native, COUNT_LOST);
 	native_event(native, BUS_LOST, device->rom, 0, "");
 }
@@ -63,7 +64,7 @@ void hunt_restarted(struct native *native, struct device *device)
 {
 	bool settled = device->settled;
 
-	device_forget(device);
+	family_forget(device);
 	device->settled = false;
 	if (device->channel < native->channels)
 		native->channel[device->channel].power_asked = false;

@@ -3,9 +3,9 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/format.h"
 #include "hal/chips/thermometer.h"
 #include "hal/native/native.h"
-#include "hal/owfs/format.h"
 
 #define TRIES_CHECKSUM 3
 #define TRIES_SHORT 2

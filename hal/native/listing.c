@@ -5,9 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/chips/find.h"
+#include "hal/chips/format.h"
 #include "hal/native/files.h"
 #include "hal/native/native.h"
-#include "hal/owfs/format.h"
 
 static int __attribute__((format(printf, 2, 3))) add(struct job *job, const char *format, ...)
 {
@@ -52,7 +53,7 @@ static int add_below(struct job *job, const char *name)
 
 int listing_add_device(struct native *native, struct job *job, const struct device *device)
 {
-	const char *alias = native->unaliased ? "" : device_alias(&native->table, device);
+	const char *alias = native->unaliased ? "" : device_alias(device);
 	char name[ROM_TEXT_MAX];
 
 	rom_print(device->rom, ROM_F_I, name);

@@ -90,7 +90,7 @@ int64_t master_step(struct native *native, int64_t now)
 	native->up_ns = native_now(native);
 	take_all_channels(native);
 	for (unsigned i = 0; i < native->table.count; i++)
-		device_forget(&native->table.devices[i]);
+		family_forget(&native->table.devices[i]);
 	hunt_reset(native, native->up_ns);
 	native_event(native, BUS_UP, NULL, 0, "");
 	return native->up_ns;

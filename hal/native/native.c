@@ -307,30 +307,3 @@ int64_t native_step(struct bus *bus, int64_t now)
 		take_cost(native);
 	return next;
 }
-
-int native_set_alias(struct native *native, struct device *device, const char *text, size_t len)
-{
-	static const char *const words[] = {"uncached",   "alarm",     "settings",     "system",
-	                                    "statistics", "structure", "simultaneous", "interface"};
-	char *alias = device_alias(&native->table, device);
-	uint8_t rom[8];
-
-	while (len && (text[len - 1] == '\n' || text[len - 1] == ' '))
-		len--;
-	if (len > DEVICE_ALIAS_MAX || rom_parse(text, len, rom) != -EINVAL)
-		return -EINVAL;
-	for (size_t i = 0; i < len; i++)
-		if (text[i] == '/' || (unsigned char)text[i] < ' ')
-			return -EINVAL;
-	if (len >= 4 && memcmp(text, "bus.", 4) == 0)
-		return -EINVAL;
-	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
-		if (strlen(words[i]) == len && memcmp(words[i], text, len) == 0)
-			return -EINVAL;
-	struct device *other = device_by_alias(&native->table, text, len);
-	if (other)
-		device_alias(&native->table, other)[0] = '\0';
-	memcpy(alias, text, len);
-	alias[len] = '\0';
-	return 0;
-}

@@ -211,7 +211,6 @@ int64_t native_now(const struct native *native);
 void native_count(struct native *native, enum native_count what);
 void native_event(struct native *native, enum bus_news news, const uint8_t rom[8], int err,
                   const char *text);
-int native_set_alias(struct native *native, struct device *device, const char *text, size_t len);
 bool native_held(const struct native *native, unsigned channel, const struct job *job, int64_t now);
 
 /* settings.c: as they are at the start */

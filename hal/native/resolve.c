@@ -3,8 +3,9 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/find.h"
+#include "hal/chips/format.h"
 #include "hal/native/native.h"
-#include "hal/owfs/format.h"
 
 static bool slice_starts(struct path_slice slice, const char *word)
 {

@@ -114,7 +114,7 @@ static int read_aliases(struct txn *txn)
 
 	for (unsigned i = 0; i < table->count; i++) {
 		const struct device *device = &table->devices[i];
-		const char *alias = device_alias(&txn->native->table, device);
+		const char *alias = device_alias(device);
 		size_t len = 0;
 
 		if (!alias[0])

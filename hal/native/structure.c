@@ -4,8 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/chips/find.h"
+#include "hal/chips/format.h"
 #include "hal/native/native.h"
-#include "hal/owfs/format.h"
 
 const struct family *structure_family(const char *path, size_t len, size_t *used)
 {

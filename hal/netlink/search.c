@@ -10,6 +10,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/find.h"
 #include "hal/netlink/netlink.h"
 #include "hal/wire/crc.h"
 

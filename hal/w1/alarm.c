@@ -5,6 +5,7 @@
  */
 #include <errno.h>
 
+#include "hal/chips/find.h"
 #include "hal/chips/thermometer.h"
 #include "hal/w1/w1.h"
 

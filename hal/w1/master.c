@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/find.h"
 #include "hal/w1/w1.h"
 
 void w1_master_name(unsigned number, char name[24])

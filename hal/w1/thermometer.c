@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/field.h"
+#include "hal/chips/find.h"
 #include "hal/chips/thermometer.h"
 #include "hal/w1/w1.h"
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/chips/family.h"
+#include "hal/owfs/path.h"
 #include "hal/wire/device.h"
 
 int device_table_create(struct device_table *table)
@@ -50,7 +50,8 @@ static struct device *place(struct device_table *table)
 	return NULL;
 }
 
-struct device *device_add(struct device_table *table, const uint8_t rom[8], unsigned channel)
+struct device *device_add(struct device_table *table, const uint8_t rom[8],
+                          const struct family *family, unsigned channel)
 {
 	struct device *device = device_find(table, rom);
 
@@ -63,7 +64,8 @@ struct device *device_add(struct device_table *table, const uint8_t rom[8], unsi
 		device->own = table->own[device - table->devices];
 		memset(device->own, 0, DEVICE_OWN);
 		memcpy(device->rom, rom, 8);
-		device->family = family_of(rom[0]);
+		device->family = family;
+		device->table = table;
 		device->changes = changes;
 	}
 	device->channel = (uint8_t)channel;
@@ -76,15 +78,16 @@ void device_forget(struct device *device)
 	device->power = POWER_UNKNOWN;
 	device->shadow_known = false;
 	device->base_of = NULL;
-	if (device->family->forget)
-		device->family->forget(device);
-	else
-		memset(device->own, 0, DEVICE_OWN);
 }
 
-char *device_alias(struct device_table *table, const struct device *device)
+static char *alias_of(const struct device *device)
 {
-	return table->aliases[device - table->devices];
+	return device->table->aliases[device - device->table->devices];
+}
+
+const char *device_alias(const struct device *device)
+{
+	return alias_of(device);
 }
 
 struct device *device_by_alias(struct device_table *table, const char *name, size_t len)
@@ -95,4 +98,31 @@ struct device *device_by_alias(struct device_table *table, const char *name, siz
 		if (strlen(table->aliases[i]) == len && memcmp(table->aliases[i], name, len) == 0)
 			return &table->devices[i];
 	return NULL;
+}
+
+int device_set_alias(struct device *device, const char *text, size_t len)
+{
+	static const char *const words[] = {"uncached",   "alarm",     "settings",     "system",
+	                                    "statistics", "structure", "simultaneous", "interface"};
+	char *alias = alias_of(device);
+	uint8_t rom[8];
+
+	while (len && (text[len - 1] == '\n' || text[len - 1] == ' '))
+		len--;
+	if (len > DEVICE_ALIAS_MAX || rom_parse(text, len, rom) != -EINVAL)
+		return -EINVAL;
+	for (size_t i = 0; i < len; i++)
+		if (text[i] == '/' || (unsigned char)text[i] < ' ')
+			return -EINVAL;
+	if (len >= 4 && memcmp(text, "bus.", 4) == 0)
+		return -EINVAL;
+	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
+		if (strlen(words[i]) == len && memcmp(words[i], text, len) == 0)
+			return -EINVAL;
+	struct device *other = device_by_alias(device->table, text, len);
+	if (other)
+		alias_of(other)[0] = '\0';
+	memcpy(alias, text, len);
+	alias[len] = '\0';
+	return 0;
 }

@@ -57,6 +57,7 @@ struct device {
 	uint32_t readings_of; /* `changes` when they were made */
 
 	void *own; /* DEVICE_OWN bytes for a struct of the family; zero when nothing is known */
+	struct device_table *table; /* where it stands */
 };
 
 struct device_table {
@@ -73,10 +74,14 @@ struct device *device_find(struct device_table *table, const uint8_t rom[8]);
  * The device's place, a new one if need be: of a full table that of a device that is away and has
  * no alias. NULL: no place.
  */
-struct device *device_add(struct device_table *table, const uint8_t rom[8], unsigned channel);
-/* What was known of the chip's state is void: it was away or has restarted. */
+struct device *device_add(struct device_table *table, const uint8_t rom[8],
+                          const struct family *family, unsigned channel);
+/* What every family knows of the chip's state is void: family_forget() does the rest. */
 void device_forget(struct device *device);
-char *device_alias(struct device_table *table, const struct device *device);
+/* "": it has none. */
+const char *device_alias(const struct device *device);
+/* Another device of that alias loses it. -EINVAL: such a text is no alias. */
+int device_set_alias(struct device *device, const char *text, size_t len);
 struct device *device_by_alias(struct device_table *table, const char *name, size_t len);
 
 #endif

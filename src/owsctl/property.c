@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "hal/chips/family.h"
+#include "hal/chips/find.h"
 #include "hal/owfs/path.h"
 #include "src/owsctl/names.h"
 #include "src/owsctl/property.h"

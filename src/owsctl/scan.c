@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "hal/chips/family.h"
+#include "hal/chips/find.h"
 #include "src/owsctl/scan_board.h"
 #include "src/owsctl/scan_merge.h"
 #include "src/owsctl/scan_rio.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "hal/bus/time.h"
-#include "hal/owfs/format.h"
+#include "hal/chips/format.h"
 #include "src/serve/kept.h"
 #include "src/shm/reader.h"
 #include "src/signal/value.h"

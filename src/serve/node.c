@@ -4,8 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/find.h"
+#include "hal/chips/format.h"
 #include "hal/native/native.h"
-#include "hal/owfs/format.h"
 #include "src/serve/node.h"
 
 static bool is(const char *text, size_t len, const char *word)

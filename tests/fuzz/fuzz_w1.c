@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "hal/chips/family.h"
+#include "hal/chips/find.h"
 #include "hal/owfs/path.h"
 #include "hal/w1/w1.h"
 #include "tests/fuzz/bus_host.h"

@@ -17,7 +17,7 @@ import tempfile
 
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
-DECLARED = re.compile(r"^/\* (.*?):(\d+):NC \*/ extern .*?(\w+) \(", re.M)
+DECLARED = re.compile(r"^/\* (.*?):(\d+):NC \*/ extern .*?(\w+) \((?!\*)", re.M)
 FLAGS = ["-std=c17", "-D_GNU_SOURCE", "-D_FILE_OFFSET_BITS=64", "-I.", "-Wall", "-Wextra",
          "-Werror"]
 

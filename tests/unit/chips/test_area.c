@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "hal/chips/family.h"
+#include "hal/chips/field.h"
 #include "unity.h"
 
 static uint8_t chip[32];

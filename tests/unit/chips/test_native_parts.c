@@ -4,10 +4,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/chips/find.h"
 #include "unity.h"
 
 #include "hal/chips/family.h"
-#include "hal/owfs/format.h"
+#include "hal/chips/format.h"
 #include "tests/unit/aid/one_slave.h"
 
 #define VALUE_MAX 600

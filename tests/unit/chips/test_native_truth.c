@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/find.h"
 #include "unity.h"
 
 #include "tests/unit/aid/visit.h"

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "hal/chips/family.h"
+#include "hal/chips/find.h"
 #include "tests/unit/aid/native_scene.h"
 #include "unity.h"
 

@@ -4,11 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/field.h"
+#include "hal/chips/find.h"
 #include "unity.h"
 
 #include "hal/chips/family.h"
+#include "hal/chips/format.h"
 #include "hal/native/native.h"
-#include "hal/owfs/format.h"
 
 enum { FAMILY, NAME, TYPE, ARRAY, ACCESS, SIZE, LIFE, VISIBILITY, RAW, COLUMNS };
 

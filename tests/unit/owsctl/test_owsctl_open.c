@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/field.h"
+#include "hal/chips/find.h"
 #include "unity.h"
 
 #include "hal/chips/family.h"

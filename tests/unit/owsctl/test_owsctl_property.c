@@ -2,6 +2,7 @@
 /* Properties in paths, held against the families. */
 #include <stdio.h>
 
+#include "hal/chips/find.h"
 #include "unity.h"
 
 #include "hal/chips/family.h"

@@ -9,6 +9,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/chips/field.h"
+#include "hal/chips/find.h"
 #include "unity.h"
 
 #include "hal/bus/worker.h"

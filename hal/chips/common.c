@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "hal/chips/family.h"
-#include "hal/native/native.h"
 
 #define LOOKS 3
 
@@ -71,14 +70,14 @@ static int read_present(struct txn *txn)
 
 static int read_alias(struct txn *txn)
 {
-	const char *alias = device_alias(&txn->native->table, txn->device);
+	const char *alias = device_alias(txn->device);
 
 	return put(txn, alias, strlen(alias));
 }
 
 static int write_alias(struct txn *txn)
 {
-	return native_set_alias(txn->native, txn->device, (const char *)txn->data, txn->len);
+	return device_set_alias(txn->device, (const char *)txn->data, txn->len);
 }
 
 /* clang-format off */

@@ -9,7 +9,7 @@
 #include <strings.h>
 #include <time.h>
 
-#include "hal/owfs/format.h"
+#include "hal/chips/format.h"
 
 #define TEXT_ROOM 64 /* of a number or a date as text */
 

@@ -7,7 +7,7 @@
 
 #include "unity.h"
 
-#include "hal/owfs/format.h"
+#include "hal/chips/format.h"
 #include "hal/wire/crc.h"
 
 void setUp(void)

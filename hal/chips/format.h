@@ -3,10 +3,10 @@
  * The texts of OWFS: numbers right-aligned in 12 characters, printed with %G to six digits, yes/no
  * one character, elements joined by commas. Pure functions.
  */
-#ifndef HAL_OWFS_FORMAT_H
-#define HAL_OWFS_FORMAT_H
+#ifndef HAL_CHIPS_FORMAT_H
+#define HAL_CHIPS_FORMAT_H
 
-#include "hal/chips/family.h"
+#include "hal/chips/property.h"
 
 /* What stands behind the dot of an array's name; 0 and up is an element. */
 enum extension { EXTENSION_ALL = -1, EXTENSION_BYTE = -2, EXTENSION_NONE = -3 };

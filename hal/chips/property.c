@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT */
+/* What follows from the description of a property. */
+#include "hal/chips/property.h"
+
+unsigned property_size(const struct property *property)
+{
+	switch ((enum property_type)property->type) {
+	case PROPERTY_DIRECTORY:
+	case PROPERTY_ASCII:
+	case PROPERTY_BINARY:
+		return property->size;
+	case PROPERTY_DATE:
+		return 24;
+	case PROPERTY_FLOAT:
+	case PROPERTY_INTEGER:
+	case PROPERTY_PRESSURE:
+	case PROPERTY_TEMPERATURE:
+	case PROPERTY_UNSIGNED:
+		return 12;
+	case PROPERTY_ALIAS:
+		return DEVICE_ALIAS_MAX;
+	case PROPERTY_YESNO:
+	case PROPERTY_BITS:
+		return 1;
+	}
+	return 0;
+}

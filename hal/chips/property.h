@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A property of a device, as OWFS has it: name, type, array, access, size and life of the value,
+ * and the field of an area that it is, or its functions.
+ */
+#ifndef HAL_CHIPS_PROPERTY_H
+#define HAL_CHIPS_PROPERTY_H
+
+#include "hal/chips/area.h"
+
+/* The letters are those of /structure. */
+enum property_type {
+	PROPERTY_DIRECTORY = 'D',
+	PROPERTY_ASCII = 'a',
+	PROPERTY_BINARY = 'b',
+	PROPERTY_DATE = 'd',
+	PROPERTY_FLOAT = 'f',
+	PROPERTY_INTEGER = 'i',
+	PROPERTY_ALIAS = 'l',
+	PROPERTY_PRESSURE = 'p',
+	PROPERTY_TEMPERATURE = 't',
+	PROPERTY_UNSIGNED = 'u',
+	PROPERTY_YESNO = 'y',
+	PROPERTY_BITS = 'B', /* yes/no array in one word, with .BYTE; /structure says y */
+};
+
+enum property_access { ACCESS_NONE, ACCESS_READ, ACCESS_WRITE, ACCESS_BOTH };
+
+/* How long a value stays true; the letters are those of /structure. */
+enum property_life {
+	LIFE_STATIC = 'f',
+	LIFE_STABLE = 's',
+	LIFE_VOLATILE = 'v',
+	LIFE_SECOND = 't',
+};
+
+enum property_index { INDEX_NONE, INDEX_NUMBERS, INDEX_LETTERS };
+
+/* convert: a fresh reading needs a conversion, at this resolution or that of tempres. */
+#define CONVERT_TEMPRES 1
+
+typedef int property_function(struct txn *txn);
+
+struct property {
+	const char *name; /* "temperature12", "errata/die" */
+	uint8_t type, life, access;
+	bool hidden;  /* not listed */
+	bool offline; /* its functions use no wire */
+	bool flag; /* tells why a chip alarms: a visit of the alarm machine reads all such once */
+	struct {
+		uint8_t count, index;
+		bool aggregate; /* all elements come in one transaction */
+	} array;
+	uint16_t size;           /* bytes of ascii and binary; 0: that of the type */
+	bool negative;           /* unsigned, and a write may be below zero all the same */
+	const char *digits;      /* unsigned: the most that each decimal digit may be; NULL: any */
+	uint8_t convert;         /* 9 to 12, CONVERT_TEMPRES, or 0 */
+	struct field field;      /* what it is; .area NULL: it has functions */
+	const struct field *set; /* what is written, if that is another */
+	int arg;                 /* for functions that serve several properties */
+	bool (*visible)(const struct device *device); /* NULL: always; else no such property */
+	int (*read)(struct txn *txn);                 /* NULL: of the field */
+	int (*write)(struct txn *txn);
+	/* What the other elements are when one is written; NULL: what read says. */
+	int (*merge)(struct txn *txn);
+	uint16_t takes; /* bytes of binary that a write may have; 0: size */
+};
+
+/* Bytes of a whole value, of one element, as owserver states it. */
+unsigned property_size(const struct property *property);
+
+/*
+ * Rows of a family's table: PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = "331", ...).
+ * Arrays are ELEMENTS, read one by one, or AGGREGATE, read in one transaction.
+ */
+/* clang-format off */
+#define PROPERTY(text, kind, life_, access_, ...) \
+	{.name = (text), .type = PROPERTY_##kind, .life = LIFE_##life_, \
+	 .access = ACCESS_##access_, __VA_ARGS__}
+#define ELEMENTS(n, index_) .array = {(n), INDEX_##index_, false}
+#define AGGREGATE(n, index_) .array = {(n), INDEX_##index_, true}
+#define PROPERTY_DIR(path) \
+	{.name = (path), .type = PROPERTY_DIRECTORY, .life = LIFE_STATIC, .access = ACCESS_NONE}
+/* clang-format on */
+/* FIELD(registers, .at = 3, .shift = 2) in a row of a table of properties. */
+#define FIELD(...) .field = {.area = &__VA_ARGS__}
+/* The same of what is written, if that is another field. */
+#define SET(...) \
+	.set = &(const struct field) \
+	{ \
+		.area = &__VA_ARGS__ \
+	}
+/* The rows of a table that nearly every memory has: "memory", and below "pages" its pages. */
+#define AREA_MEMORY(area_, bytes_) \
+	PROPERTY("memory", BINARY, VOLATILE, BOTH, .size = (bytes_), FIELD(area_))
+#define AREA_PAGES(area_, pages_, bytes_) \
+	PROPERTY("pages/page", BINARY, VOLATILE, BOTH, ELEMENTS(pages_, NUMBERS), \
+	         .size = (bytes_), FIELD(area_))
+
+#endif
