@@ -4,7 +4,11 @@
 #include <string.h>
 
 #include "hal/chips/format.h"
-#include "hal/native/native.h"
+#include "hal/native/answer.h"
+#include "hal/native/cache.h"
+#include "hal/native/job_txn.h"
+#include "hal/native/state.h"
+#include "hal/native/statistics.h"
 
 #define FOLLOW_NS 500000
 
@@ -88,20 +92,6 @@ void job_answer_cached(struct native *native, struct job *job, const struct cach
 	native->cache.hit_bytes += answer.len;
 	native_count(native, COUNT_CACHE_HITS);
 	give(native, job, &answer);
-}
-
-int64_t property_life_ns(const struct native *native, const struct property *property)
-{
-	switch ((enum property_life)property->life) {
-	case LIFE_STATIC:
-	case LIFE_STABLE:
-		return native->stable_ns;
-	case LIFE_VOLATILE:
-		return native->volatile_ns;
-	case LIFE_SECOND:
-		return NATIVE_S;
-	}
-	return 0;
 }
 
 void job_keep(struct native *native, struct job *job)

@@ -6,10 +6,14 @@
  * channel; on a channel that has such a one, others are asked to convert one by one.
  */
 #include <errno.h>
-#include <string.h>
 
 #include "hal/chips/thermometer.h"
-#include "hal/native/native.h"
+#include "hal/native/answer.h"
+#include "hal/native/convert.h"
+#include "hal/native/limits.h"
+#include "hal/native/master.h"
+#include "hal/native/outcome.h"
+#include "hal/native/state.h"
 
 #define SKIP_ROM 0xcc
 #define GATHER_NS (3 * TXN_MS)

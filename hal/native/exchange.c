@@ -6,86 +6,13 @@
 #include "hal/chips/field.h"
 #include "hal/chips/format.h"
 #include "hal/chips/thermometer.h"
+#include "hal/native/answer.h"
+#include "hal/native/convert.h"
+#include "hal/native/exchange.h"
 #include "hal/native/files.h"
-#include "hal/native/native.h"
-
-static bool is_all(const struct job *job)
-{
-	return job->extension == EXTENSION_ALL && !job->property->array.aggregate &&
-	       job->property->type != PROPERTY_BITS;
-}
-
-static int no_file(struct txn *txn)
-{
-	(void)txn;
-	return -ENOENT;
-}
-
-static void take_functions(struct job *job)
-{
-	struct txn *txn = &job->txn;
-	const struct link_files *files = txn->link ? txn->link->files : NULL;
-
-	if (!job->property)
-		return;
-	txn->read = property_reader(job->property);
-	txn->write = property_writer(job->property);
-	if (!files || !txn->device || job->property->offline)
-		return;
-	if (files->property(txn->link, txn->device, job->property,
-	                    is_all(job) ? txn->element : job->extension, &txn->read, &txn->write))
-		txn->read = txn->write = no_file;
-}
-
-#define VISIT_NS (2 * TXN_MS)
-
-/*
- * What of that which is kept serves the request: read after it came; or within the value's life,
- * if a cached one will do. A try that failed takes nothing from before. The flags that the alarm machine
- * asks for one after the other are read once: no write fits in between, as it would take longer.
- */
-static void take_limits(const struct native *native, struct job *job)
-{
-	struct txn *txn = &job->txn;
-	int64_t now = native_now(native);
-
-	txn->since_ns = job->failures || job->req->op != BUS_READ ? INT64_MAX : job->since_ns;
-	txn->oldest_ns = INT64_MAX;
-	if (txn->since_ns == INT64_MAX || !job->property)
-		return;
-	if (!job->fresh)
-		txn->oldest_ns = now - property_life_ns(native, job->property);
-	txn->once = job->fresh && job->req->prio == BUS_ALARM && job->property->flag;
-	if (txn->once)
-		txn->oldest_ns = now - VISIT_NS;
-}
-
-void job_txn(struct native *native, struct job *job)
-{
-	struct txn *txn = &job->txn;
-	struct device *device = txn->device;
-	unsigned n = device ? device->channel : job->bus >= 0 ? (unsigned)job->bus : 0;
-
-	/* All elements are as old as the oldest. */
-	int64_t shared_ns = job->element ? txn->shared_ns : 0;
-	memset(txn, 0, sizeof(*txn));
-	txn->shared_ns = shared_ns;
-	txn->native = native;
-	txn->device = device;
-	txn->channel = n;
-	txn->link = native->channel[n].link;
-	txn->property = job->property;
-	txn->one = job->extension >= 0;
-	txn->element = is_all(job)           ? (int)job->element
-	               : job->extension >= 0 ? job->extension & 0xff
-	                                     : 0;
-	if (job->req->op == BUS_READ) {
-		txn->data = job->req->data + job->out;
-		txn->room = job->req->len - job->out;
-	}
-	take_limits(native, job);
-	take_functions(job);
-}
+#include "hal/native/job_txn.h"
+#include "hal/native/outcome.h"
+#include "hal/native/state.h"
 
 static bool is_text(const struct property *property)
 {
@@ -98,7 +25,7 @@ static int add_element(struct job *job)
 {
 	struct txn *txn = &job->txn;
 	const struct property *property = job->property;
-	bool all = is_all(job);
+	bool all = job_wants_all(job);
 
 	if (job->req->number && format_is_number(property, job->extension))
 		return 0;
@@ -153,7 +80,7 @@ static int take_value(struct job *job)
 	const char *text = (const char *)job->req->data;
 	size_t len = job->req->len;
 	size_t size = property->takes ? property->takes : property_size(property);
-	bool all = is_all(job);
+	bool all = job_wants_all(job);
 
 	if (is_text(property)) {
 		size_t skip = all ? job->element * size : 0;
@@ -187,7 +114,7 @@ static void write_done(struct native *native, struct job *job)
 	}
 	job->taken = text ? job->taken + job->txn.len : job->req->len;
 	job->tries = 0;
-	if (is_all(job) && ++job->element < job->property->array.count &&
+	if (job_wants_all(job) && ++job->element < job->property->array.count &&
 	    (!text || job->taken < job->req->len)) {
 		job_txn(native, job);
 		return;
@@ -226,25 +153,6 @@ static int run_function(struct job *job)
 	if (txn->device)
 		txn_void(txn);
 	return txn->write(txn);
-}
-
-void job_saw(struct native *native, struct job *job, int err, int64_t now)
-{
-	struct txn *txn = &job->txn;
-
-	if (!txn->on_wire)
-		return;
-	txn->on_wire = false;
-	native_count(native, COUNT_TRANSACTIONS);
-	native->channel[txn->channel].transactions++;
-	if (!txn->link_error)
-		master_good(native, txn->channel);
-	if (txn->restarted && txn->device)
-		hunt_restarted(native, txn->device);
-	txn->restarted = false;
-	if (txn->heard && err != -EBADMSG && txn->device)
-		hunt_seen(txn->device, now);
-	txn->heard = false;
 }
 
 static void hold(struct native *native, struct job *job)

@@ -8,9 +8,15 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/chips/find.h"
+#include "hal/native/answer.h"
 #include "hal/native/files.h"
-#include "hal/native/native.h"
+#include "hal/native/hunt.h"
+#include "hal/native/limits.h"
+#include "hal/native/listing.h"
+#include "hal/native/master.h"
+#include "hal/native/outcome.h"
+#include "hal/native/presence.h"
+#include "hal/native/state.h"
 
 #define PASS_NS (NATIVE_S / 10)
 #define PASS_SHARE 8 /* passes take one part in so many of the time */
@@ -20,68 +26,6 @@
 #define MISSED_MAX 2
 #define TRIES 3
 #define FULL_EVERY 16 /* alarm searches in a row: one looks for ids that are not known, too */
-
-void hunt_seen(struct device *device, int64_t now)
-{
-	device->ok_ns = now;
-	device->missed = 0;
-}
-
-static void hunt_found(struct native *native, const uint8_t rom[8], unsigned n, int64_t now)
-{
-	struct device *device = device_find(&native->table, rom);
-	bool known = device && device->present && device->channel == n;
-
-	if (!known) {
-		device = device_add(&native->table, rom, family_of(rom[0]), n);
-		if (!device) {
-			native_event(native, BUS_NOTE, NULL, -ENOSPC,
-			             "more devices than the table holds: one is left out");
-			return;
-		}
-		family_forget(device);
-		device->present = true;
-		device->settled = false;
-		native->channel[n].power_asked = false;
-		native_count(native, COUNT_FOUND);
-		native_event(native, BUS_FOUND, rom, 0, "");
-	}
-	device->seen = native->channel[n].round;
-	hunt_seen(device, now);
-}
-
-void hunt_lost(struct native *native, struct device *device)
-{
-	if (!device->present)
-		return;
-	device->present = false;
-	family_forget(device);
-	native_count(native, COUNT_LOST);
-	native_event(native, BUS_LOST, device->rom, 0, "");
-}
-
-void hunt_restarted(struct native *native, struct device *device)
-{
-	bool settled = device->settled;
-
-	family_forget(device);
-	device->settled = false;
-	if (device->channel < native->channels)
-		native->channel[device->channel].power_asked = false;
-	if (!settled)
-		return;
-	native_count(native, COUNT_RESTARTED);
-	native_event(native, BUS_POR, device->rom, 0, "");
-}
-
-void hunt_reset(struct native *native, int64_t now)
-{
-	for (unsigned n = 0; n < native->channels; n++) {
-		native->channel[n].listed = false;
-		native->channel[n].searching = false;
-		native->channel[n].search_ns = now;
-	}
-}
 
 bool hunt_initial(const struct native *native)
 {
@@ -105,7 +49,7 @@ static void end_round(struct native *native, unsigned n, int64_t now)
 		    device->ok_ns >= channel->round_ns)
 			continue;
 		if (++device->missed >= MISSED_MAX)
-			hunt_lost(native, device);
+			presence_lost(native, device);
 		else
 			channel->search_ns = now + AGAIN_NS;
 	}
@@ -138,7 +82,7 @@ static int whole_found(void *ctx, const uint8_t rom[8])
 	struct whole *whole = ctx;
 	struct native *native = whole->native;
 
-	hunt_found(native, rom, whole->n, native_now(native));
+	presence_found(native, rom, whole->n, native_now(native));
 	if (whole->job)
 		whole->err = listing_add_device(native, whole->job,
 		                                device_find(&native->table, rom));
@@ -186,7 +130,7 @@ static void pass(struct native *native, unsigned n, int64_t now)
 		told_short(native, n, false);
 	}
 	if (found > 0) {
-		hunt_found(native, channel->search.rom, n, now);
+		presence_found(native, channel->search.rom, n, now);
 		channel->search_ns = now;
 		if (channel->search.last)
 			end_round(native, n, now);
@@ -244,7 +188,7 @@ bool hunt_step(struct native *native, int64_t now, bool idle, int64_t *next)
 static void locate_end(struct native *native, struct job *job)
 {
 	if (job->txn.device)
-		hunt_lost(native, job->txn.device);
+		presence_lost(native, job->txn.device);
 	job_answer(native, job, -ENODEV);
 }
 
@@ -273,7 +217,7 @@ void hunt_locate(struct native *native, struct job *job, int64_t now)
 	}
 	master_good(native, job->channel);
 	if (there) {
-		hunt_found(native, job->path.rom, job->channel, now);
+		presence_found(native, job->path.rom, job->channel, now);
 		job->txn.device = device_find(&native->table, job->path.rom);
 		job->state = JOB_QUEUED;
 		if (!job->txn.device)
@@ -365,7 +309,7 @@ void hunt_scan(struct native *native, struct job *job, int64_t now)
 		master_good(native, job->channel);
 	}
 	if (found > 0) {
-		hunt_found(native, job->search.rom, job->channel, now);
+		presence_found(native, job->search.rom, job->channel, now);
 		struct device *device = device_find(&native->table, job->search.rom);
 		int err = device ? listing_add_device(native, job, device) : 0;
 		if (err)

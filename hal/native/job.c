@@ -4,120 +4,19 @@
 #include <string.h>
 
 #include "hal/chips/format.h"
-#include "hal/chips/thermometer.h"
-#include "hal/native/native.h"
-
-#define TRIES_CHECKSUM 3
-#define TRIES_SHORT 2
-#define TRIES_DEVICE 2
-#define TRIES_LINK 6
-
-static void failed_on_link(struct native *native, struct job *job, int err)
-{
-	unsigned channel = job->txn.channel;
-
-	job->txn.link_error = 0;
-	if (err == -ECOMM) {
-		native_count(native, COUNT_SHORTS);
-		native->channel[channel].shorts++;
-		if (++job->tries >= TRIES_SHORT)
-			job_answer(native, job, -ECOMM);
-		else
-			job_restart(native, job);
-		return;
-	}
-	if (!master_recover(native, channel, err))
-		return;
-	if (++job->tries >= TRIES_LINK)
-		job_answer(native, job, -EIO);
-	else
-		job_restart(native, job);
-}
-
-/* All ones, or nobody: is it away? Looked for once, on all channels. */
-static void look_for(struct native *native, struct job *job, int err)
-{
-	if (job->verified) {
-		job_answer(native, job, err == -ENODEV ? -EIO : err);
-		return;
-	}
-	job_restart(native, job);
-	job->verified = true;
-	job->tries = 0;
-	job->channel = job->txn.device->channel;
-	job->state = JOB_LOCATE;
-}
-
-/*
- * What was read wrong is read again: the conversion behind it was right. Not one that is over for
- * long, or that nothing is known of any more, as after the wire was opened again.
- */
-static void begin_again(struct native *native, struct job *job)
-{
-	const struct device *device = job->txn.device;
-
-	if (job->state == JOB_RUN && job->property && job->property->convert &&
-	    job->req->op == BUS_READ && thermometer_of(device)->converted_ns &&
-	    thermometer_of(device)->converted_ns + NATIVE_S > native_now(native))
-		job_reread(native, job);
-	else
-		job_restart(native, job);
-}
-
-/* What was converted is still there: the next request for it reads it, and converts nothing. */
-static void give_up_reading(struct native *native, struct job *job, int err)
-{
-	if (job->txn.device && job->property && job->property->convert)
-		thermometer_of(job->txn.device)->unread_ns =
-			thermometer_of(job->txn.device)->converted_ns;
-	job_answer(native, job, err);
-}
-
-void job_failed(struct native *native, struct job *job, int err)
-{
-	if (job->failures < UINT8_MAX)
-		job->failures++;
-	if (job->txn.link_error) {
-		failed_on_link(native, job, job->txn.link_error);
-		return;
-	}
-	switch (err) {
-	case -EBADMSG:
-		native_count(native, COUNT_CHECKSUMS);
-		native->channel[job->txn.channel].checksums++;
-		if (++job->tries < TRIES_CHECKSUM)
-			begin_again(native, job);
-		else if (job->txn.silent && job->txn.device)
-			look_for(native, job, err);
-		else
-			give_up_reading(native, job, err);
-		return;
-	case -ENODEV:
-		if (job->txn.device)
-			look_for(native, job, err);
-		else
-			job_answer(native, job, err);
-		return;
-	case -ERANGE:
-		native_count(native, COUNT_POWER_FAULTS);
-		if (!job->property->convert || ++job->faults >= 2) {
-			job_answer(native, job, err);
-			return;
-		}
-		thermometer_of(job->txn.device)->converted_ns = 0;
-		job->fresh = true;
-		job_restart(native, job);
-		return;
-	case -EIO:
-		if (++job->tries < TRIES_DEVICE)
-			job_restart(native, job);
-		else
-			job_answer(native, job, err);
-		return;
-	default:
-		job_answer(native, job, err);
-	}
-}
+#include "hal/native/answer.h"
+#include "hal/native/cache.h"
+#include "hal/native/convert.h"
+#include "hal/native/exchange.h"
+#include "hal/native/hunt.h"
+#include "hal/native/job.h"
+#include "hal/native/job_txn.h"
+#include "hal/native/listing.h"
+#include "hal/native/outcome.h"
+#include "hal/native/resolve.h"
+#include "hal/native/simultaneous.h"
+#include "hal/native/state.h"
+#include "hal/native/structure.h"
 
 static bool away(const struct native *native, const struct device *device)
 {
@@ -273,7 +172,7 @@ static void run_probe(struct native *native, struct job *job, int64_t now)
 	else if (there > 0)
 		job_answer(native, job, 0);
 	else
-		look_for(native, job, -ENODEV);
+		job_missing(native, job, -ENODEV);
 }
 
 static void begin_property(struct native *native, struct job *job, int64_t now)

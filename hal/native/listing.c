@@ -8,7 +8,9 @@
 #include "hal/chips/find.h"
 #include "hal/chips/format.h"
 #include "hal/native/files.h"
-#include "hal/native/native.h"
+#include "hal/native/listing.h"
+#include "hal/native/state.h"
+#include "hal/native/structure.h"
 
 static int __attribute__((format(printf, 2, 3))) add(struct job *job, const char *format, ...)
 {

@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* The links of the native bus: opened, grown, lost and recovered. */
 #include <errno.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "hal/chips/family.h"
 #include "hal/chips/thermometer.h"
-#include "hal/native/native.h"
+#include "hal/native/answer.h"
+#include "hal/native/limits.h"
+#include "hal/native/master.h"
+#include "hal/native/presence.h"
+#include "hal/native/state.h"
 
 #define PAUSE_MIN_NS (NATIVE_S / 5)
 #define PAUSE_MAX_NS (5 * NATIVE_S)
@@ -39,7 +43,7 @@ static void take_all_channels(struct native *native)
 	/* A chip that is missing now has taken its channels with it. */
 	for (unsigned i = 0; i < native->table.count; i++)
 		if (native->table.devices[i].channel >= native->channels)
-			hunt_lost(native, &native->table.devices[i]);
+			presence_lost(native, &native->table.devices[i]);
 }
 
 void master_grow(struct native *native, int64_t now, int64_t *next)
@@ -64,6 +68,16 @@ void master_grow(struct native *native, int64_t now, int64_t *next)
 	}
 	if (native->grow_ns < *next)
 		*next = native->grow_ns;
+}
+
+/* All channels are searched at once. */
+static void search_anew(struct native *native, int64_t now)
+{
+	for (unsigned n = 0; n < native->channels; n++) {
+		native->channel[n].listed = false;
+		native->channel[n].searching = false;
+		native->channel[n].search_ns = now;
+	}
 }
 
 int64_t master_step(struct native *native, int64_t now)
@@ -91,7 +105,7 @@ int64_t master_step(struct native *native, int64_t now)
 	take_all_channels(native);
 	for (unsigned i = 0; i < native->table.count; i++)
 		family_forget(&native->table.devices[i]);
-	hunt_reset(native, native->up_ns);
+	search_anew(native, native->up_ns);
 	native_event(native, BUS_UP, NULL, 0, "");
 	return native->up_ns;
 }
@@ -137,7 +151,7 @@ static bool reopen(struct native *native)
 		return false;
 	}
 	take_all_channels(native);
-	hunt_reset(native, native_now(native));
+	search_anew(native, native_now(native));
 	return true;
 }
 
@@ -147,7 +161,7 @@ static void power_cycled(struct native *native, unsigned channel)
 		struct device *device = &native->table.devices[i];
 
 		if (device->present && (device->channel == channel || native->master->one_supply))
-			hunt_restarted(native, device);
+			presence_restarted(native, device);
 	}
 }
 

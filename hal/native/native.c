@@ -5,7 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/native/answer.h"
+#include "hal/native/cache.h"
+#include "hal/native/convert.h"
+#include "hal/native/hunt.h"
+#include "hal/native/job.h"
+#include "hal/native/limits.h"
+#include "hal/native/master.h"
 #include "hal/native/native.h"
+#include "hal/native/settings.h"
+#include "hal/native/state.h"
+#include "hal/native/statistics.h"
 
 #define VOLATILE_NS (2 * NATIVE_S)
 #define STABLE_NS (300 * NATIVE_S)
@@ -89,16 +99,6 @@ int native_option(struct bus *bus, const char *key, const char *text, char *why,
 	                           : -ENOENT;
 }
 
-int64_t native_now(const struct native *native)
-{
-	return native->bus.env->now(native->bus.env->ctx);
-}
-
-void native_count(struct native *native, enum native_count what)
-{
-	__atomic_store_n(&native->count[what], native->count[what] + 1, __ATOMIC_RELAXED);
-}
-
 /* The reader gets copies of whole words: the names stay, the values are taken anew each time. */
 const struct bus_counter *native_counters(struct bus *bus, size_t *n)
 {
@@ -110,24 +110,6 @@ const struct bus_counter *native_counters(struct bus *bus, size_t *n)
 		                 __ATOMIC_RELAXED);
 	*n = COUNTS;
 	return native->counters;
-}
-
-void native_event(struct native *native, enum bus_news news, const uint8_t rom[8], int err,
-                  const char *text)
-{
-	struct bus_event event = {.news = (uint8_t)news, .err = err};
-
-	if (rom)
-		memcpy(event.rom, rom, sizeof(event.rom));
-	snprintf(event.text, sizeof(event.text), "%s", text);
-	native->bus.env->event(native->bus.env->ctx, &event);
-}
-
-bool native_held(const struct native *native, unsigned channel, const struct job *job, int64_t now)
-{
-	unsigned chip = native->channel[channel].link->chip % NATIVE_CHANNELS;
-
-	return native->hold_ns[chip] > now && (!job || native->holder[chip] != job);
 }
 
 int native_submit(struct bus *bus, struct bus_req *req)

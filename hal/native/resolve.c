@@ -5,7 +5,10 @@
 
 #include "hal/chips/find.h"
 #include "hal/chips/format.h"
-#include "hal/native/native.h"
+#include "hal/native/resolve.h"
+#include "hal/native/state.h"
+#include "hal/native/structure.h"
+#include "hal/native/tables.h"
 
 static bool slice_starts(struct path_slice slice, const char *word)
 {

@@ -4,7 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/native/native.h"
+#include "hal/native/limits.h"
+#include "hal/native/settings.h"
+#include "hal/native/state.h"
 #include "hal/native/virtual.h"
 
 enum { STABLE, VOLATILE, PRESENCE };

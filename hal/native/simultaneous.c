@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Writes to /simultaneous: all chips of a kind on one channel or on all convert. */
 #include <errno.h>
-#include <string.h>
 
 #include "hal/chips/ds2450.h"
-#include "hal/native/native.h"
+#include "hal/native/answer.h"
+#include "hal/native/convert.h"
+#include "hal/native/master.h"
+#include "hal/native/outcome.h"
+#include "hal/native/simultaneous.h"
+#include "hal/native/state.h"
 
 #define SKIP_ROM 0xcc
 

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* /statistics: what was asked of the bus, and how it went. */
+#include <errno.h>
 #include <string.h>
 
-#include "hal/native/native.h"
+#include "hal/native/state.h"
+#include "hal/native/statistics.h"
 #include "hal/native/virtual.h"
 
 static enum tally_kind kind_of(const struct job *job)

@@ -6,7 +6,7 @@
 
 #include "hal/chips/find.h"
 #include "hal/chips/format.h"
-#include "hal/native/native.h"
+#include "hal/native/structure.h"
 
 const struct family *structure_family(const char *path, size_t len, size_t *used)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The bus of target w1:netlink: which masters of the kernel there are, and when to look. */
+#include "hal/native/state.h"
 #include "hal/netlink/netlink.h"
 
 #define LOOK_NS (5 * NATIVE_S)

@@ -13,6 +13,7 @@
 #include "hal/chips/find.h"
 #include "hal/netlink/netlink.h"
 #include "hal/wire/crc.h"
+#include "hal/wire/search.h"
 
 #define PREFIXES 64
 #define FULL_EVERY 16 /* alarm searches: one looks at all bits, for ids that are not known */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The bus of target w1: the kernel's devices, and the events that announce changes. */
+#include "hal/native/state.h"
 #include "hal/netlink/netlink.h"
 
 #define LOOK_NS (5 * NATIVE_S)

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "hal/chips/ds2438.h"
+#include "hal/owfs/path.h"
 #include "hal/w1/w1.h"
 
 #define RECALL 0xb8

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/owfs/path.h"
 #include "hal/w1/w1.h"
 
 /* The kernel prints the six bytes of the id as one number. */

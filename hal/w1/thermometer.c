@@ -12,6 +12,7 @@
 #include "hal/chips/field.h"
 #include "hal/chips/find.h"
 #include "hal/chips/thermometer.h"
+#include "hal/owfs/path.h"
 #include "hal/w1/w1.h"
 
 #define READ_SCRATCHPAD 0xbe

@@ -6,7 +6,9 @@
 
 #include "hal/chips/find.h"
 #include "hal/chips/format.h"
-#include "hal/native/native.h"
+#include "hal/native/structure.h"
+#include "hal/native/tables.h"
+#include "hal/owfs/path.h"
 #include "src/serve/node.h"
 
 static bool is(const char *text, size_t len, const char *word)

@@ -11,6 +11,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "hal/native/state.h"
 #include "hal/netlink/netlink.h"
 #include "hal/owfs/path.h"
 #include "tests/fuzz/bus_host.h"

@@ -25,10 +25,12 @@ PUBLIC = "src/libows/ows"
 MANY = {"src/libows/ows.h", "src/owsctl/verbs.h"}
 # A list of families that is included where FAMILY is defined: no header of its own
 PARTS = {"hal/chips/families.h"}
-# What still goes up: circles inside these rooms, arrows between rooms. These lists only shrink
-KNOWN_CIRCLES = {"hal/chips", "hal/native", "hal/netlink", "hal/w1", "hal/wire"}
+# What still goes up: circles among these rooms and files, arrows between rooms. These lists only
+# shrink
+KNOWN_CIRCLES = {"hal/netlink", "hal/w1", "hal/native/files", "hal/wire/search", "hal/wire/txn",
+                 "hal/chips/area", "hal/chips/property", "hal/chips/family"}
 KNOWN_ARROWS = {("hal/netlink", "hal/w1"), ("hal/wire", "hal/native")}
-KNOWN_HEADERS = {"hal/native/native.h", "hal/netlink/netlink.h", "hal/w1/w1.h"}
+KNOWN_HEADERS = {"hal/netlink/netlink.h", "hal/w1/w1.h"}
 
 
 ROOM = re.compile(r"^- `([\w/]+)`: .*? Uses (.*?)\.\n(?=- |\n)", re.M | re.S)
@@ -60,7 +62,7 @@ def test_files_use_each_other_in_no_circle(scene):
     found = tree()
     arrows = found.without(TABLES)
     new = [found.told(arrows, circle) for circle in found.circles(arrows)
-           if not {graph.room_of(u) for u in circle} <= KNOWN_CIRCLES]
+           if not all(KNOWN_CIRCLES & {u, graph.room_of(u)} for u in circle)]
     assert not new, "\n".join(new)
 
 

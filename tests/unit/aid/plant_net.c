@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* From a bus to its simulation: apart, because engine and native bus both have a `device`. */
 #include "hal/native/native.h"
+#include "hal/native/state.h"
 #include "hal/sim/master.h"
 #include "tests/unit/aid/plant.h"
 

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/native/state.h"
 #include "unity.h"
 
 #include "hal/netlink/netlink.h"

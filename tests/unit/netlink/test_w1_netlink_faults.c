@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/socket.h>
 
+#include "hal/native/state.h"
 #include "unity.h"
 
 #include "hal/netlink/netlink.h"

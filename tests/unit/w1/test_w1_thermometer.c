@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "hal/native/state.h"
 #include "unity.h"
 
 #include "hal/native/native.h"

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+/* How a request ends, or begins again. */
+#ifndef HAL_NATIVE_ANSWER_H
+#define HAL_NATIVE_ANSWER_H
+
+#include "hal/native/state.h"
+
+void job_answer(struct native *native, struct job *job, int err);
+void job_answer_cached(struct native *native, struct job *job, const struct cache_entry *entry);
+/* The cache takes the answer. */
+void job_keep(struct native *native, struct job *job);
+/* Let go of device and pull-up. */
+void job_unlock(struct native *native, struct job *job);
+void job_restart(struct native *native, struct job *job);
+/* Begin again with what its conversion left. */
+void job_reread(struct native *native, struct job *job);
+
+#endif

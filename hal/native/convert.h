@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT */
+/* Who converts when. */
+#ifndef HAL_NATIVE_CONVERT_H
+#define HAL_NATIVE_CONVERT_H
+
+#include "hal/native/state.h"
+
+void convert_begin(struct native *native, struct job *job, int64_t now);
+/* Is the chip, as far as is known, at the resolution that the job asks for? */
+bool convert_right(const struct job *job);
+void convert_prepare(struct native *native, struct job *job, int64_t now);
+/* Start a conversion where one is due. True: did a transaction. *next: when to look again. */
+bool convert_step(struct native *native, int64_t now, int64_t *next);
+/* Convert T to all; -EBADMSG if nobody begins. strong: with the pull-up, which holds it longest ns. */
+int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t longest);
+
+#endif

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT */
+/* The transactions of a job: what they are to do, and which older readings serve it. */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/chips/field.h"
+#include "hal/chips/format.h"
+#include "hal/native/files.h"
+#include "hal/native/job_txn.h"
+#include "hal/native/limits.h"
+#include "hal/native/state.h"
+
+#define VISIT_NS (2 * TXN_MS)
+
+int64_t property_life_ns(const struct native *native, const struct property *property)
+{
+	switch ((enum property_life)property->life) {
+	case LIFE_STATIC:
+	case LIFE_STABLE:
+		return native->stable_ns;
+	case LIFE_VOLATILE:
+		return native->volatile_ns;
+	case LIFE_SECOND:
+		return NATIVE_S;
+	}
+	return 0;
+}
+
+bool job_wants_all(const struct job *job)
+{
+	return job->extension == EXTENSION_ALL && !job->property->array.aggregate &&
+	       job->property->type != PROPERTY_BITS;
+}
+
+static int no_file(struct txn *txn)
+{
+	(void)txn;
+	return -ENOENT;
+}
+
+static void take_functions(struct job *job)
+{
+	struct txn *txn = &job->txn;
+	const struct link_files *files = txn->link ? txn->link->files : NULL;
+
+	if (!job->property)
+		return;
+	txn->read = property_reader(job->property);
+	txn->write = property_writer(job->property);
+	if (!files || !txn->device || job->property->offline)
+		return;
+	if (files->property(txn->link, txn->device, job->property,
+	                    job_wants_all(job) ? txn->element : job->extension, &txn->read,
+	                    &txn->write))
+		txn->read = txn->write = no_file;
+}
+
+/*
+ * What of that which is kept serves the request: read after it came; or within the value's life,
+ * if a cached one will do. A try that failed takes nothing from before. The flags that the alarm machine
+ * asks for one after the other are read once: no write fits in between, as it would take longer.
+ */
+static void take_limits(const struct native *native, struct job *job)
+{
+	struct txn *txn = &job->txn;
+	int64_t now = native_now(native);
+
+	txn->since_ns = job->failures || job->req->op != BUS_READ ? INT64_MAX : job->since_ns;
+	txn->oldest_ns = INT64_MAX;
+	if (txn->since_ns == INT64_MAX || !job->property)
+		return;
+	if (!job->fresh)
+		txn->oldest_ns = now - property_life_ns(native, job->property);
+	txn->once = job->fresh && job->req->prio == BUS_ALARM && job->property->flag;
+	if (txn->once)
+		txn->oldest_ns = now - VISIT_NS;
+}
+
+void job_txn(struct native *native, struct job *job)
+{
+	struct txn *txn = &job->txn;
+	struct device *device = txn->device;
+	unsigned n = device ? device->channel : job->bus >= 0 ? (unsigned)job->bus : 0;
+
+	/* All elements are as old as the oldest. */
+	int64_t shared_ns = job->element ? txn->shared_ns : 0;
+	memset(txn, 0, sizeof(*txn));
+	txn->shared_ns = shared_ns;
+	txn->native = native;
+	txn->device = device;
+	txn->channel = n;
+	txn->link = native->channel[n].link;
+	txn->property = job->property;
+	txn->one = job->extension >= 0;
+	txn->element = job_wants_all(job)    ? (int)job->element
+	               : job->extension >= 0 ? job->extension & 0xff
+	                                     : 0;
+	if (job->req->op == BUS_READ) {
+		txn->data = job->req->data + job->out;
+		txn->room = job->req->len - job->out;
+	}
+	take_limits(native, job);
+	take_functions(job);
+}

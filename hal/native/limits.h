@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: MIT */
+/* How much a native bus takes on at once. */
+#ifndef HAL_NATIVE_LIMITS_H
+#define HAL_NATIVE_LIMITS_H
+
+#include <stdint.h>
+
+#define NATIVE_DEPTH 400   /* requests */
+#define NATIVE_CHANNELS 64 /* links of a master */
+#define NATIVE_S INT64_C(1000000000)
+
+#endif

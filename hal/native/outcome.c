@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: MIT */
+/* How a transaction of a job ended: what that shows of link and device, and what follows. */
+#include <errno.h>
+
+#include "hal/chips/thermometer.h"
+#include "hal/native/answer.h"
+#include "hal/native/limits.h"
+#include "hal/native/master.h"
+#include "hal/native/outcome.h"
+#include "hal/native/presence.h"
+#include "hal/native/state.h"
+
+#define TRIES_CHECKSUM 3
+#define TRIES_SHORT 2
+#define TRIES_DEVICE 2
+#define TRIES_LINK 6
+
+void job_saw(struct native *native, struct job *job, int err, int64_t now)
+{
+	struct txn *txn = &job->txn;
+
+	if (!txn->on_wire)
+		return;
+	txn->on_wire = false;
+	native_count(native, COUNT_TRANSACTIONS);
+	native->channel[txn->channel].transactions++;
+	if (!txn->link_error)
+		master_good(native, txn->channel);
+	if (txn->restarted && txn->device)
+		presence_restarted(native, txn->device);
+	txn->restarted = false;
+	if (txn->heard && err != -EBADMSG && txn->device)
+		presence_seen(txn->device, now);
+	txn->heard = false;
+}
+
+static void failed_on_link(struct native *native, struct job *job, int err)
+{
+	unsigned channel = job->txn.channel;
+
+	job->txn.link_error = 0;
+	if (err == -ECOMM) {
+		native_count(native, COUNT_SHORTS);
+		native->channel[channel].shorts++;
+		if (++job->tries >= TRIES_SHORT)
+			job_answer(native, job, -ECOMM);
+		else
+			job_restart(native, job);
+		return;
+	}
+	if (!master_recover(native, channel, err))
+		return;
+	if (++job->tries >= TRIES_LINK)
+		job_answer(native, job, -EIO);
+	else
+		job_restart(native, job);
+}
+
+/* All ones, or nobody: is it away? Looked for once, on all channels. */
+void job_missing(struct native *native, struct job *job, int err)
+{
+	if (job->verified) {
+		job_answer(native, job, err == -ENODEV ? -EIO : err);
+		return;
+	}
+	job_restart(native, job);
+	job->verified = true;
+	job->tries = 0;
+	job->channel = job->txn.device->channel;
+	job->state = JOB_LOCATE;
+}
+
+/*
+ * What was read wrong is read again: the conversion behind it was right. Not one that is over for
+ * long, or that nothing is known of any more, as after the wire was opened again.
+ */
+static void begin_again(struct native *native, struct job *job)
+{
+	const struct device *device = job->txn.device;
+
+	if (job->state == JOB_RUN && job->property && job->property->convert &&
+	    job->req->op == BUS_READ && thermometer_of(device)->converted_ns &&
+	    thermometer_of(device)->converted_ns + NATIVE_S > native_now(native))
+		job_reread(native, job);
+	else
+		job_restart(native, job);
+}
+
+/* What was converted is still there: the next request for it reads it, and converts nothing. */
+static void give_up_reading(struct native *native, struct job *job, int err)
+{
+	if (job->txn.device && job->property && job->property->convert)
+		thermometer_of(job->txn.device)->unread_ns =
+			thermometer_of(job->txn.device)->converted_ns;
+	job_answer(native, job, err);
+}
+
+void job_failed(struct native *native, struct job *job, int err)
+{
+	if (job->failures < UINT8_MAX)
+		job->failures++;
+	if (job->txn.link_error) {
+		failed_on_link(native, job, job->txn.link_error);
+		return;
+	}
+	switch (err) {
+	case -EBADMSG:
+		native_count(native, COUNT_CHECKSUMS);
+		native->channel[job->txn.channel].checksums++;
+		if (++job->tries < TRIES_CHECKSUM)
+			begin_again(native, job);
+		else if (job->txn.silent && job->txn.device)
+			job_missing(native, job, err);
+		else
+			give_up_reading(native, job, err);
+		return;
+	case -ENODEV:
+		if (job->txn.device)
+			job_missing(native, job, err);
+		else
+			job_answer(native, job, err);
+		return;
+	case -ERANGE:
+		native_count(native, COUNT_POWER_FAULTS);
+		if (!job->property->convert || ++job->faults >= 2) {
+			job_answer(native, job, err);
+			return;
+		}
+		thermometer_of(job->txn.device)->converted_ns = 0;
+		job->fresh = true;
+		job_restart(native, job);
+		return;
+	case -EIO:
+		if (++job->tries < TRIES_DEVICE)
+			job_restart(native, job);
+		else
+			job_answer(native, job, err);
+		return;
+	default:
+		job_answer(native, job, err);
+	}
+}

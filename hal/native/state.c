@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/* The state of a native bus: the time, what it reports and counts, whether a channel is held. */
+#include <stdio.h>
+#include <string.h>
+
+#include "hal/native/state.h"
+
+int64_t native_now(const struct native *native)
+{
+	return native->bus.env->now(native->bus.env->ctx);
+}
+
+void native_count(struct native *native, enum native_count what)
+{
+	__atomic_store_n(&native->count[what], native->count[what] + 1, __ATOMIC_RELAXED);
+}
+
+void native_event(struct native *native, enum bus_news news, const uint8_t rom[8], int err,
+                  const char *text)
+{
+	struct bus_event event = {.news = (uint8_t)news, .err = err};
+
+	if (rom)
+		memcpy(event.rom, rom, sizeof(event.rom));
+	snprintf(event.text, sizeof(event.text), "%s", text);
+	native->bus.env->event(native->bus.env->ctx, &event);
+}
+
+bool native_held(const struct native *native, unsigned channel, const struct job *job, int64_t now)
+{
+	unsigned chip = native->channel[channel].link->chip % NATIVE_CHANNELS;
+
+	return native->hold_ns[chip] > now && (!job || native->holder[chip] != job);
+}

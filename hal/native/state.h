@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The state of a native bus, and of each request that it has: the files of this room work on it.
+ * All of it belongs to the thread of the bus; any thread may read the counters.
+ */
+#ifndef HAL_NATIVE_STATE_H
+#define HAL_NATIVE_STATE_H
+
+#include "hal/chips/family.h"
+#include "hal/native/cache.h"
+#include "hal/native/limits.h"
+#include "hal/owfs/path.h"
+#include "hal/wire/device.h"
+#include "hal/wire/link.h"
+#include "hal/wire/search.h"
+#include "hal/wire/txn.h"
+
+#define NATIVE_IDLE_TIMEOUTS 8
+
+enum native_count {
+	COUNT_RETRIES,
+	COUNT_BUS_RESETS,
+	COUNT_CHIP_RESETS,
+	COUNT_POWER_CYCLES,
+	COUNT_REOPENS,
+	COUNT_CHECKSUMS,
+	COUNT_SHORTS,
+	COUNT_LINK_ERRORS,
+	COUNT_CONVERSIONS,
+	COUNT_SEARCHES,
+	COUNT_TRANSACTIONS,
+	COUNT_READS,
+	COUNT_WRITES,
+	COUNT_DIRECTORIES,
+	COUNT_CACHE_HITS,
+	COUNT_POWER_FAULTS,
+	COUNT_FOUND,
+	COUNT_LOST,
+	COUNT_RESTARTED,
+	COUNT_WIRE_US,
+	COUNT_I2C_TRANSFERS,
+	COUNT_SYSCALLS,
+	COUNTS,
+};
+
+enum job_kind {
+	JOB_NONE,      /* a free slot */
+	JOB_PROPERTY,  /* read or write of a property */
+	JOB_PROBE,     /* is the device there? */
+	JOB_SCAN,      /* a fresh list of devices */
+	JOB_ALARM,     /* a list of the devices in alarm */
+	JOB_LISTING,   /* a list that needs no wire */
+	JOB_STRUCTURE, /* read in /structure */
+	JOB_CONVERT,   /* write to /simultaneous/temperature or voltage */
+};
+
+enum job_state {
+	JOB_NEW,        /* not looked at */
+	JOB_QUEUED,     /* not begun, or to be begun again */
+	JOB_LOCATE,     /* the device is not in the table: look for it channel by channel */
+	JOB_PREPARE,    /* thermometer: power supply and resolution */
+	JOB_DUE,        /* thermometer: waits for the next Convert T */
+	JOB_CONVERTING, /* ... which is under way until ready_ns */
+	JOB_RUN,        /* transactions */
+};
+
+struct job {
+	struct bus_req *req;
+	uint8_t kind, state;
+	bool begun, fresh, verified, locks;
+	bool again;                 /* its conversion was unproven, and is made a second time */
+	bool waits;                 /* PREPARE: until another job has read its resolution */
+	unsigned element;           /* of a separate array, when all of it is asked for */
+	uint8_t tries;              /* transactions that failed in a row */
+	uint8_t faults;             /* power-fault readings in a row */
+	uint8_t failures;           /* how often it was begun again after an error */
+	uint8_t channel;            /* which one is being searched */
+	int bus;                    /* N of /bus.N, -1: all */
+	const struct family *table; /* of a path without device */
+	struct path path;
+	uint32_t order; /* lower came earlier */
+	int64_t since_ns;
+	const struct property *property;
+	int extension;
+	int64_t ready_ns;    /* CONVERTING */
+	size_t out;          /* bytes of the answer so far */
+	size_t taken;        /* WRITE: bytes used */
+	uint8_t families[8]; /* ALARM: only these; 0 behind the last */
+	uint8_t family_i;
+	bool merged; /* WRITE of one element: the others have been read */
+	bool searching;
+	bool heard;  /* SCAN and ALARM: a channel answered */
+	size_t mark; /* ... bytes of the answer before this channel */
+	struct search search;
+	struct txn txn;
+};
+
+enum native_simultaneous { SIMULTANEOUS_TEMPERATURE, SIMULTANEOUS_VOLTAGE, SIMULTANEOUS };
+
+struct channel {
+	struct link *link;
+	uint8_t rung;           /* the next of the recovery ladder */
+	uint8_t alarm_searches; /* since a list of the alarms was empty */
+	bool listed;            /* its devices have been searched for once */
+	bool power_asked;       /* all thermometers were asked for their supply at once */
+	bool all_external;      /* ... and none is parasitic */
+	bool is_short;
+	int64_t due_ns;    /* when the first thermometer became due; 0: none */
+	int64_t single_ns; /* when those due are asked one by one next; 0: not known yet */
+	/* End of the last conversion of all; 0: none. */
+	int64_t simultaneous_ns[SIMULTANEOUS];
+	int64_t search_ns; /* next pass of the background search */
+	uint32_t round;    /* number of the background search */
+	int64_t round_ns;  /* when it began */
+	bool searching, dirty;
+	struct search search;
+	uint64_t errors, shorts, checksums, transactions;
+};
+
+/* What /statistics tells of the requests of one kind. */
+enum tally_kind { TALLY_READ, TALLY_WRITE, TALLY_DIRECTORY, TALLY_OVERALL, TALLIES };
+
+struct tally {
+	uint64_t calls, success, bytes;
+	uint64_t tries[3];             /* taken up a first, a second, a third time */
+	uint64_t now, max, sum;        /* under way; the most; summed up at each call */
+	uint64_t entries[2], lists[2]; /* DIR: of the root and its like, of devices */
+};
+
+#define NATIVE_WHERE_MAX 128
+
+/* Who writes a member stands before it; all may read. */
+struct native {
+	/* native.c */
+	struct bus bus;
+	struct link_master *master;
+	bool failed; /* suspended: it failed with what is to be seen of it at that time */
+	uint64_t failed_mark;
+	struct job *jobs; /* NATIVE_DEPTH */
+	uint32_t order;   /* of the next job */
+	char where[NATIVE_WHERE_MAX];
+	uint64_t wire_ns,
+		wire_seen_ns[NATIVE_CHANNELS]; /* of all links so far; what each said last */
+	struct bus_counter counters[COUNTS];
+
+	/* master.c; native.c, when it suspends the bus or lets it go on */
+	bool up, told;
+	int down_err;     /* why it is down; 0: it was not opened, or let go of in order */
+	int64_t open_ns;  /* next try to open */
+	int64_t pause_ns; /* between tries */
+	int64_t up_ns;    /* when it was opened */
+	int64_t grow_ns;  /* next look for chips that were missing; INT64_MAX: none was */
+	bool grow_told;
+	unsigned channels;
+
+	/* Every file that works on a channel */
+	struct channel channel[NATIVE_CHANNELS];
+
+	/* exchange.c, convert.c and simultaneous.c; answer.c lets go */
+	int64_t hold_ns[NATIVE_CHANNELS]; /* by chip: its strong pull-up is on until then */
+	struct job *holder[NATIVE_CHANNELS];
+
+	/* answer.c; native.c takes jobs, and ends the wait */
+	unsigned lent;     /* jobs that are taken */
+	int64_t follow_ns; /* until then an alarm's next request is waited for; 0: it is not */
+
+	/* hunt.c */
+	unsigned hunter;          /* the channel whose turn to be searched is next */
+	int64_t hunt_ns, pass_ns; /* background search: its next pass; what the last took */
+
+	/* presence.c: which devices there are; the families: what is known of each */
+	struct device_table table;
+
+	/* answer.c */
+	struct cache cache;
+
+	/* settings.c */
+	int64_t volatile_ns, stable_ns; /* how long cached values live */
+	int64_t presence_ns; /* how long a device that answered is present without being asked */
+	bool uncached;       /* no request is answered from what is kept */
+	bool unaliased;      /* listings show ids, not aliases */
+	uint32_t idle_timeouts[NATIVE_IDLE_TIMEOUTS]; /* settings without effect */
+	char temperature_scale;
+	char pressure_scale[8];
+
+	/* statistics.c */
+	struct tally tally[TALLIES];
+	int64_t delay_ns; /* the longest that a request took */
+
+	/* native_count(), and native.c what the links count themselves: whole for any thread */
+	uint64_t count[COUNTS];
+};
+
+int64_t native_now(const struct native *native);
+void native_count(struct native *native, enum native_count what);
+void native_event(struct native *native, enum bus_news news, const uint8_t rom[8], int err,
+                  const char *text);
+/* A strong pull-up is on at the chip of this channel, and not for this job. */
+bool native_held(const struct native *native, unsigned channel, const struct job *job, int64_t now);
+
+#endif
