@@ -6,7 +6,7 @@
 #include "src/serve/answer.h"
 #include "src/serve/client.h"
 
-/* payload bytes are in client_room(). */
+/* The answer's payload bytes are in client_room(). */
 static void answer_data(struct serve *s, struct client *c, int32_t ret, uint32_t payload,
                         uint32_t size, int32_t offset)
 {
@@ -33,7 +33,7 @@ void answer_error(struct serve *s, struct client *c, int err)
 	answer_code(s, c, code_of(err));
 }
 
-/* len bytes of value are in the room: the part that the client wants. */
+/* Send the part of the value that the client wants; len bytes of value are in client_room(). */
 void answer_value(struct serve *s, struct client *c, uint32_t len)
 {
 	uint32_t offset = (uint32_t)c->request.offset, size = (uint32_t)c->request.size;

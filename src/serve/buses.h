@@ -17,7 +17,7 @@ struct buses {
 	unsigned count;
 	struct {
 		uint8_t target;
-		uint16_t number; /* as that target counts */
+		uint16_t number; /* the number that the target itself has for the bus */
 	} bus[BUSES_MAX];
 };
 

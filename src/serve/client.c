@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Connections: bytes in, bytes out, time limits. What a request means is not known here. */
+/* Connections: bytes in, bytes out, time limits. This file does not know what a request means. */
 #include <errno.h>
 #include <string.h>
 #include <sys/epoll.h>
@@ -20,7 +20,7 @@ static unsigned index_of(const struct serve *s, const struct client *c)
 	return (unsigned)(c - s->clients);
 }
 
-/* To be looked at in the round. */
+/* Give the client a turn in the round. */
 static void client_ready(struct serve *s, struct client *c)
 {
 	if (c->queued)
@@ -117,7 +117,7 @@ static void client_close(struct serve *s, struct client *c)
 		put_free(s, c);
 }
 
-/* The bytes behind the answered request are the next one; pages that this has not are given back. */
+/* Move the next request to the beginning of the area, and free the pages that it does not need. */
 static void drop_past(struct client *c)
 {
 	bool large = c->have > AREA_ANSWER || c->out_len > 4096 - AREA_ANSWER;
@@ -197,7 +197,7 @@ uint32_t client_room_size(struct client *c)
 	return (uint32_t)(c->area + AREA_SIZE - client_room(c));
 }
 
-/* Bytes sent, 0: none now, -1: the client has left. */
+/* Returns how many bytes were sent, 0: none now, -1: the client has left. */
 static ssize_t push(struct serve *s, struct client *c, const uint8_t *bytes, size_t len)
 {
 	ssize_t n;
@@ -211,7 +211,7 @@ static ssize_t push(struct serve *s, struct client *c, const uint8_t *bytes, siz
 	return n;
 }
 
-/* Of a keep-alive that was begun, the rest. False: not yet, or the client has left. */
+/* Send the rest of a keep-alive. False: some bytes are left, or the client has left. */
 static bool push_alive(struct serve *s, struct client *c)
 {
 	ssize_t n;
@@ -237,7 +237,7 @@ static void send_alive(struct serve *s, struct client *c)
 	push_alive(s, c);
 }
 
-/* The answer is out. What a bus still has of the request stays as it is until that is back. */
+/* The answer is sent. The area keeps the request while a bus still uses its bytes. */
 static void next_request(struct serve *s, struct client *c)
 {
 	if (!c->lent)
@@ -274,7 +274,7 @@ static void go_on_sending(struct serve *s, struct client *c)
 		c->tick_ns = s->now_ns;
 	if (c->out_at == c->out_len)
 		next_request(s, c);
-	/* the rest when the kernel says so */
+	/* epoll reports when the kernel takes the rest */
 }
 
 void client_send(struct serve *s, struct client *c, const uint8_t *bytes, uint32_t len)
@@ -288,7 +288,7 @@ void client_send(struct serve *s, struct client *c, const uint8_t *bytes, uint32
 
 /* --- In --------------------------------------------------------------------------------------- */
 
-/* As much as is there, up to the end of the request at hand. False: the client has left. */
+/* Receive what is there, up to the end of the present request. False: the client has left. */
 static bool receive(struct serve *s, struct client *c)
 {
 	size_t room = (c->need > FIRST_READ ? c->need : FIRST_READ) - c->have;
@@ -303,7 +303,7 @@ static bool receive(struct serve *s, struct client *c)
 	}
 	if (n <= 0)
 		return false;
-	/* the end behind these bytes has no event of its own */
+	/* the end of the stream, after these bytes, has no event of its own */
 	if ((size_t)n < room && !c->ended)
 		c->readable = false;
 	if (!c->have)
@@ -318,7 +318,7 @@ static bool read_request(struct serve *s, struct client *c)
 {
 	int state;
 
-	if (c->lent) /* a bus still has what is in the area */
+	if (c->lent) /* a bus still uses the bytes in the area */
 		return false;
 	state = request_parse(c->area, c->have, &c->request, &c->length);
 	if (state == 0 && c->readable) {
@@ -338,7 +338,7 @@ static bool read_request(struct serve *s, struct client *c)
 			client_ready(s, c);
 	} else {
 		count(s, COUNT_requests, 1);
-		/* which the answer says: a client that wants more queues up again */
+		/* the answer reports this: a client that wants more connects again */
 		if (s->held.is && !s->free_count && c->request.flags & FRAME_PERSIST) {
 			c->request.flags &= ~FRAME_PERSIST;
 			count(s, COUNT_not_kept, 1);
@@ -402,6 +402,6 @@ void clients_look(struct serve *s)
 			next = limit_of(c);
 	}
 	s->look_ns = next;
-	/* is one idle for long enough by now? */
+	/* one of the clients may be idle for long enough by now */
 	s->accepting |= s->held.is;
 }

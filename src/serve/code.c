@@ -23,7 +23,7 @@ int32_t code_of(int err)
 		return -95;
 	case EINVAL:
 		return -22;
-	case EDOM: /* a number that overflows, a list that has no room */
+	case EDOM: /* a number overflows, or a list has no room */
 		return -34;
 	case EROFS:
 		return CODE_READ_ONLY;
@@ -75,7 +75,9 @@ int code_texts(char *text, size_t room)
 			return -EMSGSIZE;
 		if (code)
 			text[used++] = ',';
-		/* NOLINTNEXTLINE(bugprone-not-null-terminated-result): it goes by its length */
+		/*
+		 * NOLINTNEXTLINE(bugprone-not-null-terminated-result): the text ends by its length
+		 */
 		memcpy(text + used, next, len);
 		used += len;
 	}

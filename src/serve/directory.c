@@ -7,13 +7,13 @@
 #include "hal/owfs/frame.h"
 #include "src/serve/directory.h"
 
-/* What stands in the root beside devices and buses, in the order of owserver. */
+/* The entries of the root beside devices and buses, in the order of owserver. */
 static const char *const in_root[] = {"uncached",   "settings",  "system",
                                       "statistics", "structure", "simultaneous",
                                       "alarm",      "signals",   NULL};
-#define IN_UNCACHED 1 /* from there in /uncached */
+#define IN_UNCACHED 1 /* the entries from here on are in /uncached too */
 
-/* What the protocol tells of the families in a list: as owserver answers it for each. */
+/* The flags that owserver reports with a list for each family in it. */
 enum {
 	FLAG_RESUME = 0x0001,
 	FLAG_ALARM = 0x0002,
@@ -70,7 +70,9 @@ static uint32_t hash(const char *name, size_t len)
 	return h ^ h >> 15;
 }
 
-/* True: it was there already. Names of the first target are put in when a second one comes. */
+/*
+ * True: the directory had the name. The first target's names are added when a second one answers.
+ */
 static bool seen(struct directory *directory, uint32_t at, size_t len)
 {
 	const char *name = directory->raw + at;
@@ -112,7 +114,9 @@ static bool is_in_root(const char *name, size_t len)
 	return false;
 }
 
-/* Of the root only devices: all else is there whatever the targets say. */
+/*
+ * A target's root adds only its devices: the server adds all other entries of the root by itself.
+ */
 static bool keeps(const struct node *node, struct buses *buses, unsigned target, const char *name,
                   size_t len)
 {
@@ -207,7 +211,7 @@ static bool put_header(struct directory *directory, const struct directory_form 
 	return put(directory, bytes, sizeof(bytes));
 }
 
-/* A device's name in the format asked for; others as they are. */
+/* Write a device's name in the format that the client wants, and other names unchanged. */
 static size_t as_asked(struct directory *directory, const struct directory_form *form,
                        const char **name, size_t len, char text[ROM_TEXT_MAX])
 {
@@ -238,7 +242,7 @@ static bool put_entry(struct directory *directory, const struct directory_form *
 	       put(directory, form->frames ? "" : ",", 1);
 }
 
-/* Room for the header of a DIRALL, which says what is behind it. */
+/* Keep room for the header of a DIRALL, which states the length of the names. */
 static bool begin(struct directory *directory, const struct directory_form *form)
 {
 	return form->frames || put_header(directory, form, 0, 0, 0);
@@ -252,7 +256,7 @@ static bool end(struct directory *directory, const struct directory_form *form)
 	if (form->frames)
 		return put_header(directory, form, 0, 0, directory->flags);
 	if (payload)
-		directory->out[len - 1] = '\0'; /* in place of the last comma */
+		directory->out[len - 1] = '\0'; /* the NUL replaces the last comma */
 	directory->out_len = 0;
 	ok = put_header(directory, form, payload, payload ? payload - 1 : 0, directory->flags);
 	directory->out_len = len;

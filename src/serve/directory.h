@@ -18,7 +18,7 @@ struct directory {
 	bool used;
 	uint32_t len; /* bytes of raw: names, each ended by '\n' */
 	uint32_t count;
-	uint32_t flags; /* of the devices, in the form of the protocol */
+	uint32_t flags; /* of the devices' families, as the protocol defines them */
 	uint32_t mark;  /* where the part of the present target begins in raw */
 	uint32_t out_len;
 	char raw[DIRECTORY_RAW];

@@ -29,7 +29,7 @@ void guests_wake(struct guests *g)
 	while (n < 0 && errno == EINTR);
 }
 
-/* There is room for two messages of each request that can be under way. */
+/* The queue has room for two messages of each request that can be in work. */
 static void put_message(struct guests *g, struct engine_guest *guest, bool released)
 {
 	g->told[ring_put_at(&g->back)] = (struct guests_message){guest, released};

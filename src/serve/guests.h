@@ -11,11 +11,11 @@
 
 struct guests_message {
 	struct engine_guest *guest;
-	bool released; /* the guest's memory is returned; else the guest is answered */
+	bool released; /* the bus has returned the guest's memory; else: the guest's answer */
 };
 
 struct guests {
-	struct engine_guests port; /* for the engine */
+	struct engine_guests port; /* the engine's side */
 	struct ring there, back;
 	struct engine_guest **asked;
 	struct guests_message *told;

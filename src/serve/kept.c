@@ -18,7 +18,7 @@
 #define PATH_MAX_KEPT 88
 
 struct entry {
-	int64_t until_ns; /* 0: free */
+	int64_t until_ns; /* 0: the entry is free */
 	uint8_t path_len, device_len;
 	uint8_t len;
 	char path[PATH_MAX_KEPT];
@@ -27,7 +27,7 @@ struct entry {
 
 struct kept {
 	const struct config *config;
-	uint32_t *index; /* hash of paths: item + 1 */
+	uint32_t *index; /* hash of paths: index of the item + 1 */
 	uint32_t index_size;
 	struct entry entries[SETS * WAYS];
 };
@@ -41,7 +41,7 @@ static uint32_t hash(const char *text, size_t len)
 	return h ^ h >> 15;
 }
 
-/* As clients' paths are compared. */
+/* Parse a path. True: it names a part of the targets, and no bus. */
 static bool canonical(const char *path, struct node *node)
 {
 	node_parse(path, strlen(path), node);
@@ -103,7 +103,7 @@ int kept_signal(const struct kept *kept, const char *path, bool output)
 	return -1;
 }
 
-/* Does the signal hold the property's value as it is? */
+/* Does the signal hold the property's value unchanged? */
 static bool holds(enum ows_type type, char property)
 {
 	switch (property) {
@@ -182,9 +182,7 @@ void kept_add(struct kept *kept, const struct node *node, int64_t measured_ns, c
 	size_t path_len = strlen(node->path);
 	struct entry *set, *best;
 
-	/*
-	 * what an alias means may change; of an unknown property nobody knows how long it is true
-	 */
+	/* an alias may get another meaning; the life of an unknown property is not known */
 	if (!node->has_rom || node->bus >= 0 || !node->type || path_len > PATH_MAX_KEPT ||
 	    len > KEPT_TEXT_MAX || strcmp(node->path + node->device_len, "/present") == 0 ||
 	    node->type == PROPERTY_ALIAS)
@@ -206,7 +204,7 @@ void kept_add(struct kept *kept, const struct node *node, int64_t measured_ns, c
 	memcpy(best->text, text, len);
 }
 
-/* Behind an alias it may be any. */
+/* An alias may name any device, so a write through an alias forgets all answers. */
 void kept_forget(struct kept *kept, const struct node *node)
 {
 	for (unsigned i = 0; i < SETS * WAYS; i++) {

@@ -25,10 +25,10 @@ int kept_find(struct kept *kept, const struct image *image, const struct node *n
 /* Keep the answer of a bus, if the property may be kept at all. */
 void kept_add(struct kept *kept, const struct node *node, int64_t measured_ns, const uint8_t *text,
               size_t len);
-/* Forget the answers of a device of which a property was written, or may have been. */
+/* Forget the answers of a device after a write, or a try to write, to one of its properties. */
 void kept_forget(struct kept *kept, const struct node *node);
 
-/* The signal (record of the image) with this path, output or input; -1: none. */
+/* The record of the signal that has this path as output or input; -1: there is none. */
 int kept_signal(const struct kept *kept, const char *path, bool output);
 
 #endif

@@ -17,9 +17,9 @@
 #include "src/serve/listener.h"
 #include "src/shm/owner.h"
 
-/* Those who wait for a place; the kernel's net.core.somaxconn may be less. */
+/* Connections that wait for a place; the kernel's net.core.somaxconn may be less. */
 #define BACKLOG 4096
-/* Connections that are taken in a row, before clients have their turn again. */
+/* Connections that the server accepts in a row before clients have their turn again. */
 #define ACCEPTS 16
 
 union address {
@@ -68,7 +68,7 @@ static const char *say_bind(int err)
 	}
 }
 
-/* The network may come long after the start, or never: signals do not wait for it. */
+/* Bind an address that the machine may get later or never: signals do not wait for the network. */
 static int bind_later(struct serve *s, int fd, const struct listen_address *address,
                       const union address *to, socklen_t len)
 {
@@ -86,7 +86,7 @@ static int bind_later(struct serve *s, int fd, const struct listen_address *addr
 	return 0;
 }
 
-/* [::] has those of IPv4 too, unless one of these has the port to itself. */
+/* The socket of [::] serves IPv4 too, unless an IPv4 address of the list has the same port. */
 static int is_v6_only(const struct config_serve *config, const struct listen_address *address)
 {
 	static const uint8_t any[16];
@@ -111,7 +111,7 @@ static int open_network(struct serve *s, const struct listen_address *address)
 	setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &one, sizeof(one));
 	if (address->is_v6)
 		setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &only, sizeof(only));
-	/* accepted sockets have it from here */
+	/* accepted sockets inherit both options */
 	setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &one, sizeof(one));
 	setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &one, sizeof(one));
 	err = bind(fd, &to.any, len) < 0 ? -errno : 0;
@@ -124,7 +124,7 @@ static int open_network(struct serve *s, const struct listen_address *address)
 	return err;
 }
 
-/* A socket that somebody listens at is his; what an owsd left that was killed is removed. */
+/* Remove the socket of an owsd that was killed, but no socket on which a process listens. */
 static int remove_old(const union address *to)
 {
 	struct stat st;
@@ -145,8 +145,9 @@ static int remove_old(const union address *to)
 }
 
 /*
- * Who may command outputs may use it: it carries writes. Bound it has mode 0600. In a folder that
- * others may write something else may stand there by now, whose rights are none of ours.
+ * Users who may command outputs may use the socket, because it carries writes. bind() made it with
+ * mode 0600. In a folder that others may write, another file may have taken its place by now; owsd
+ * does not change the rights of that file.
  */
 static int give_rights(const char *path)
 {
@@ -192,7 +193,7 @@ static int open_local(struct serve *s, const char *path)
 	return err;
 }
 
-/* The kernel may have no IPv6: then the other loopback address serves. */
+/* Without IPv6 in the kernel the other loopback address serves. */
 static bool may_miss(const struct serve *s, const struct listen_address *address, int err)
 {
 	return address->is_v6 && listen_is_loopback(address) && s->listener_count &&
@@ -284,7 +285,7 @@ static void refuse_peer(struct serve *s, int fd, const union address *from)
 	refuse(s, fd, COUNT_refused_peers, &s->peer_rate, reason);
 }
 
-/* All places are taken. Said when it begins; how often it did is counted. */
+/* All places are taken: hold the connection. owsd logs the first and counts them all. */
 static void hold(struct serve *s, int fd, bool network)
 {
 	char others[LOG_OTHERS];
@@ -317,7 +318,7 @@ static void meet(struct serve *s, int fd, bool network, const union address *fro
 		hold(s, fd, network);
 }
 
-/* True: nobody is held any more. */
+/* Give the held connection a place. True: no connection is held any more. */
 static bool place_held(struct serve *s)
 {
 	if (!s->held.is)
@@ -335,7 +336,7 @@ bool listeners_accept(struct serve *s)
 
 	if (!place_held(s))
 		return false;
-	/* the next time another one first: one place at a time may become free */
+	/* begin with another listener the next time: places may become free one by one */
 	s->listener_at++;
 	for (unsigned k = 0; k < s->listener_count; k++) {
 		unsigned i = (s->listener_at + k) % s->listener_count;
@@ -346,7 +347,7 @@ bool listeners_accept(struct serve *s)
 			int fd = accept4(s->listeners[i].fd, &from.any, &len,
 			                 SOCK_NONBLOCK | SOCK_CLOEXEC);
 
-			/* who cannot be taken now waits until another one goes, or comes */
+			/* the connection waits until a client leaves, or the next one comes */
 			if (fd < 0 && (errno == EAGAIN || errno == EMFILE || errno == ENFILE ||
 			               errno == ENOBUFS || errno == ENOMEM))
 				break;

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* A client's path, taken apart: is it of the targets, a signal, a return code, or nothing? */
+/*
+ * Parses a client's path: does it name a part of the targets, a signal, a return code, or nothing?
+ */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -61,7 +63,7 @@ static void take_code(struct node *node, const char *name, size_t len)
 		node->kind = NODE_CODE;
 }
 
-/* /alarm/alarm, /alarm/bus.0, /bus.0/bus.0: no tree has them, though a .rio file may say so. */
+/* /alarm/alarm, /alarm/bus.0, /bus.0/bus.0: no tree has these, though a .rio file may name them. */
 static bool branches_again(const char *text, size_t len)
 {
 	const char *end = text + len;
@@ -83,7 +85,7 @@ static bool branches_again(const char *text, size_t len)
 	return false;
 }
 
-/* There once, and not on each bus or among the alarms. */
+/* The entry stands in the root alone: not in each bus, and not among the alarms. */
 static bool is_of_the_root(const char *text, size_t len)
 {
 	return starts(text, len, "settings") || starts(text, len, "statistics") ||
@@ -196,7 +198,7 @@ void node_parse(const char *path, size_t len, struct node *node)
 		node->kind = NODE_NONE;
 }
 
-/* Of devices of families that hal/native does not know: the names that are directories only. */
+/* The directories that devices have whose families hal/chips does not know. */
 /* clang-format off */
 static const char *const subdirectories[] = {
 	"8bit", "910", "911", "B1-R1-A", "CO2", "DA5534", "DA5540", "DATANAB", "EDS0064",
@@ -213,7 +215,7 @@ static const char *const subdirectories[] = {
 };
 /* clang-format on */
 
-/* The same in what belongs to no device. */
+/* The directories that stand in no device. */
 static const char *const virtual_subdirectories[] = {
 	"bus",      "device",        "directory", "DS1WM",   "external",  "ha5",        "i2c",
 	"internal", "K1WM",          "link",      "overall", "PBM",       "persistent", "primary",
@@ -229,7 +231,7 @@ static bool is_named(const char *const *names, const char *name, size_t len)
 	return false;
 }
 
-/* /structure/28: as devices of the family have it. */
+/* /structure/28: the entries are those that devices of the family have. */
 static bool is_of_structure(const struct node *directory, const char *name, size_t len)
 {
 	static const char above[] = "/structure/";

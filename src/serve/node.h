@@ -28,19 +28,19 @@ struct node {
 	uint8_t kind;
 	bool fresh;
 	bool uncached; /* the path begins with /uncached */
-	bool devices;  /* a directory of devices: the root, /alarm, those of a bus */
+	bool devices;  /* a directory with devices: the root, /alarm, or that of a bus */
 	bool root;     /* the root directory: / or /uncached */
 	bool every;    /* each target has a part of the directory */
 	bool slash;    /* the path ends with a slash, as only the path of a directory may */
 	int bus;       /* N of bus.N as clients count them, -1: none */
 	bool has_device, has_rom;
 	uint8_t rom[ROM_LEN];
-	char type;        /* of the property: a letter of /structure, 0 not known */
-	char life;        /* likewise */
-	int code;         /* NODE_CODE: which, -1 all */
-	const char *name; /* NODE_SIGNAL: of the signal or attribute, up to the end of the path */
+	char type;           /* of the property: a letter of /structure, 0: not known */
+	char life;           /* of the property: a letter of /structure, 0: not known */
+	int code;            /* NODE_CODE: the code, -1: all codes */
+	const char *name;    /* NODE_SIGNAL: the signal or attribute, up to the end of the path */
 	uint16_t device_len; /* bytes of path up to and with the device */
-	/* For a target: without uncached and bus.N, ids as 28.551DDF030000. */
+	/* for a target: without /uncached and /bus.N, ids as 28.551DDF030000 */
 	char path[NODE_PATH_MAX];
 };
 

@@ -9,20 +9,20 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The longest frame that is taken: header, path, data, and the tokens of an owserver. */
+/* The longest frame that the server accepts: header, path, data, and the tokens of an owserver. */
 #define REQUEST_PAYLOAD_MAX (1024 + 65536)
 #define REQUEST_MAX (24 + REQUEST_PAYLOAD_MAX + 64 * 16) /* 67 608 */
 
 struct request {
-	int32_t type; /* as sent; enum frame_type if it is one */
+	int32_t type; /* as the client sent it; it may be no enum frame_type */
 	uint32_t flags;
 	int32_t size, offset;
 	uint32_t payload;
 	const char *path; /* path_len bytes, without NUL */
 	uint32_t path_len;
-	const uint8_t *data; /* WRITE */
+	const uint8_t *data; /* of a WRITE */
 	uint32_t data_len;
-	const uint8_t *tokens; /* of the servers that it came through, 16 bytes each */
+	const uint8_t *tokens; /* of the servers that the request came through, 16 bytes each */
 	uint32_t token_count;
 };
 

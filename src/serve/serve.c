@@ -22,7 +22,7 @@
 #include "src/shm/futex.h"
 
 #define STACK_SIZE (128 * 1024)
-#define TAKE_NS NS_PER_MS /* between looks whether the thread has taken a reload */
+#define TAKE_NS NS_PER_MS /* the pause between two looks whether the thread has taken the reload */
 #define EVENTS 64
 #define WAKE_EVENT SERVER_CLIENTS
 
@@ -201,8 +201,8 @@ static void *run(void *arg)
 		if (wait && !guests_sleep(&s->guests))
 			wait = 0;
 		/*
-		 * on one CPU a client that was just answered runs now: its next request saves a
-		 * sleep
+		 * with one CPU the client that was just answered runs now, and its next request
+		 * saves a sleep
 		 */
 		if (wait)
 			sched_yield();
@@ -225,7 +225,7 @@ static void *run(void *arg)
 	return NULL;
 }
 
-/* Real-time memory locking is the engine's; what the server reserves would all become memory. */
+/* mlockall() serves the engine; it would turn all that the server reserves into memory. */
 static void unlock(void *p, size_t size)
 {
 	if (munlock(p, size) == 0)
@@ -252,7 +252,7 @@ int serve_start(struct serve *s, const struct image *image)
 	if (err)
 		return -err;
 	pthread_attr_setstacksize(&attr, STACK_SIZE);
-	/* a synchronous SIGBUS is the guard's and cannot be held back */
+	/* the guard handles a synchronous SIGBUS, which a thread cannot block */
 	sigfillset(&all);
 	sigdelset(&all, SIGBUS);
 	pthread_sigmask(SIG_SETMASK, &all, &before);

@@ -20,7 +20,7 @@ struct serve_setup {
 	const struct config *config;
 	const char *instance;
 	struct log *log;
-	void (*ring)(void *ctx); /* wakes the engine; any thread */
+	void (*ring)(void *ctx); /* wakes the engine, from any thread */
 	void *ring_ctx;
 };
 
@@ -47,7 +47,7 @@ void serve_stop(struct serve *serve);
 /* Free the server, once neither engine nor bus writes to the memory of a guest any more. */
 void serve_destroy(struct serve *serve);
 
-/* Any thread. */
+/* Any thread may call this. */
 const struct bus_counter *serve_counters(const struct serve *serve, size_t *n);
 
 /* May other machines write through this server? */

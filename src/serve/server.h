@@ -22,18 +22,18 @@
 /* Time limits, as the genuine owserver has them. */
 #define REQUEST_NS (10 * NS_PER_S) /* from the first byte, or the connection, to the end */
 #define IDLE_NS (600 * NS_PER_S)   /* of a connection that asked to be kept */
-#define EVICT_NS (10 * NS_PER_S)   /* idle for so long, it goes when another waits */
+#define EVICT_NS (10 * NS_PER_S)   /* an idle client is closed when another one waits */
 #define KEEPALIVE_NS NS_PER_S
-#define SEND_NS (10 * NS_PER_S)   /* that no byte of an answer is taken */
-#define ANSWER_NS (60 * NS_PER_S) /* for the whole of an answer */
-#define APPLY_NS (10 * NS_PER_S)  /* until a commanded output is confirmed */
+#define SEND_NS (10 * NS_PER_S)   /* while the client takes no byte of an answer */
+#define ANSWER_NS (60 * NS_PER_S) /* until the client has taken the whole answer */
+#define APPLY_NS (10 * NS_PER_S)  /* until the bus has a commanded output */
 #define APPLY_LOOK_NS (10 * NS_PER_MS)
 
 /*
- * What a connection's bytes are put in: the request, and behind it what is sent. Pages of it that
- * are not touched cost nothing.
+ * The area of a connection: the request, and after it the answer. Pages that are not touched cost
+ * no memory.
  */
-#define AREA_ANSWER 2048 /* where the answer begins, at least */
+#define AREA_ANSWER 2048 /* the lowest offset at which an answer begins */
 #define AREA_SIZE (72 * 1024)
 
 enum client_state {
@@ -43,70 +43,69 @@ enum client_state {
 	CLIENT_QUEUED,   /* waits for a directory to be free */
 	CLIENT_APPLYING, /* waits for its command to reach the bus */
 	CLIENT_SENDING,
-	CLIENT_LEFT, /* gone, but the engine or a bus still has what is its */
+	CLIENT_LEFT, /* the client has left, but the engine or a bus still uses its memory */
 };
 
-/* What the engine was asked for, and so what comes next. */
+/* The question that the engine has; its answer decides what comes next. */
 enum client_step {
 	STEP_READ,
 	STEP_WRITE,
 	STEP_WRITE_EACH, /* to one target after another */
 	STEP_DIR,
-	STEP_BUSES, /* a look at the root, to learn what bus.N is */
+	STEP_BUSES, /* the list of the root, to learn which bus is bus.N */
 	STEP_PROBE,
-	STEP_REFUSE,    /* a directory cannot be read or written: is it there at all? */
-	STEP_ADDRESS,   /* of an alias */
-	STEP_FAMILY,    /* of an alias */
-	STEP_STRUCTURE, /* the type of a property that is not known here */
+	STEP_REFUSE,    /* is there a directory at all, of those that cannot be read or written? */
+	STEP_ADDRESS,   /* the address of an alias */
+	STEP_FAMILY,    /* the family of an alias */
+	STEP_STRUCTURE, /* the type of a property that the server does not know */
 };
 
 struct client {
 	int fd;
 	uint8_t state, step;
-	bool readable, ended; /* as far as the kernel has said; no more bytes come */
-	bool queued;          /* in the round */
-	bool network;         /* not a unix socket */
+	bool readable, ended; /* as epoll has reported; ended: no more bytes come */
+	bool queued;          /* the client is in the round */
+	bool network;         /* the socket is no unix socket */
 	bool is_get, lent, once_more;
-	uint8_t alive_left; /* bytes of a keep-alive that was begun */
-	unsigned target;    /* of several that are asked in turn */
-	int32_t worst;      /* of those asked so far; 1: none answered yet */
-	int64_t since_ns;   /* of the state; READING: of the first byte */
-	int64_t tick_ns;    /* of the last progress, or the last keep-alive */
-	int64_t active_ns; /* of its beginning, or of the end of a request that was more than a NOP */
-	uint64_t served;   /* requests */
+	uint8_t alive_left; /* bytes left of a keep-alive that was begun */
+	unsigned target;    /* the one that answers now, of those that are asked in turn */
+	int32_t worst;      /* the result of the targets so far; 1: none has answered yet */
+	int64_t since_ns;   /* when the state began; READING: when the first byte came */
+	int64_t tick_ns;    /* the time of the last progress, or of the last keep-alive */
+	int64_t active_ns; /* when the connection began, or the last request other than NOP ended */
+	uint64_t served;   /* requests that were answered */
 
-	size_t have, need,
-		length; /* bytes in area; of the request in it: as far as known, its end */
-	size_t past;    /* of the bytes in area: of an answered request that a bus still has */
+	size_t have, need, length; /* bytes in the area, and the request's length as far as known */
+	size_t past;               /* bytes of an answered request that a bus still uses */
 	struct request request;
 	struct node node;
-	char path[NODE_PATH_MAX + 16]; /* as the engine was given it */
+	char path[NODE_PATH_MAX + 16]; /* the path that the engine gets */
 	struct engine_guest guest;
 	struct via via;
-	uint32_t value_len; /* READ: of what is in the room for the answer */
+	uint32_t value_len; /* READ: bytes of value in client_room() */
 	struct signals_command command;
 	struct directory *directory;
-	const uint8_t *out; /* what is sent */
+	const uint8_t *out; /* the answer's bytes */
 	uint32_t out_len, out_at;
 	uint8_t *area;
 };
 
 #define SERVE_COUNTERS(X) \
-	X(connections) /* accepted */ \
-	X(clients)     /* now */ \
+	X(connections) /* connections accepted */ \
+	X(clients)     /* clients connected now */ \
 	X(requests) \
-	X(errors)       /* answered with an error */ \
+	X(errors)       /* requests answered with an error */ \
 	X(kept_answers) /* reads that needed no bus */ \
-	X(bus_requests) /* handed to the engine */ \
+	X(bus_requests) /* requests to the engine */ \
 	X(keepalives) \
-	X(full)           /* times that a new one had to wait for a place */ \
-	X(not_kept)       /* closed behind an answer, because others waited */ \
-	X(refused_peers)  /* not in ListenAllow */ \
-	X(refused_writes) /* in read-only mode */ \
-	X(came_round)     /* had been here before, by way of other servers */ \
-	X(evicted)        /* idle for long, closed because others waited */ \
+	X(full)           /* connections that had to wait for a place */ \
+	X(not_kept)       /* closed after an answer, because others waited */ \
+	X(refused_peers)  /* peers that are not in ListenAllow */ \
+	X(refused_writes) /* writes refused in read-only mode */ \
+	X(came_round)     /* requests that came here before, by way of other servers */ \
+	X(evicted)        /* idle clients closed because others waited */ \
 	X(refused_errors) /* closed at once, because the kernel lacked something */ \
-	X(garbage)        /* no requests */ \
+	X(garbage)        /* frames that are no requests */ \
 	X(timeouts)       /* half requests, answers nobody took, idle connections */ \
 	X(bytes_in) \
 	X(bytes_out)
@@ -124,8 +123,8 @@ struct serve {
 	const char *instance;
 	struct log *log;
 	struct guests guests;
-	struct kept *kept, *prepared; /* for the next reload */
-	struct serve_next {           /* of a reload, for the thread to take */
+	struct kept *kept, *prepared; /* prepared: for the next reload */
+	struct serve_next {           /* what a reload hands to the thread */
 		const struct config *config;
 		const struct image *image;
 		struct kept *kept;
@@ -134,15 +133,15 @@ struct serve {
 	struct signals *signals;
 	struct buses buses;
 	uint8_t token[BUS_TOKEN];
-	bool passes_on; /* a target is a server, which may lead back here */
+	bool passes_on; /* a target is an owserver, which may ask this server in turn */
 
 	struct {
 		int fd;
 		bool network;
 	} listeners[SERVER_LISTENERS];
-	unsigned listener_count, listener_at; /* at: accepts first */
+	unsigned listener_count, listener_at; /* listener_at: the one that accepts first */
 	bool accepting;                       /* more connections may wait */
-	/* Accepted when all places were taken: while one is held, no more are accepted. */
+	/* Accepted when all places were taken. While it is held, no more are accepted. */
 	struct {
 		bool is;
 		int fd;
@@ -154,14 +153,14 @@ struct serve {
 	bool running;
 	uint32_t stop;
 	int64_t now_ns;
-	int64_t look_ns; /* no time limit of a client ends before */
+	int64_t look_ns; /* the earliest time limit of all clients */
 
 	uint8_t *areas;
 	struct directory *directories;
 	struct client *clients;
 	uint16_t *free;
 	unsigned free_count, used; /* used: the highest ever in use + 1 */
-	uint16_t *round;           /* clients that have something to do, in turn */
+	uint16_t *round;           /* clients that have something to do, in their order */
 	unsigned round_at, round_count;
 	unsigned queued; /* clients that wait for a directory */
 	struct log_rate full_rate, error_rate, peer_rate;

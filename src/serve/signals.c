@@ -13,7 +13,9 @@
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
 
-/* How many alarms of a signal have been read; by name, as a reload gives it another record. */
+/*
+ * How many alarms of a signal clients have read. The key is the name: a reload changes the record.
+ */
 struct seen {
 	char name[SIGNAL_NAME_MAX + 1];
 	uint32_t alarms;
@@ -22,11 +24,11 @@ struct seen {
 struct signals {
 	struct ows *h;
 	bool may_set;
-	struct seen *seen; /* room for each alarm item */
+	struct seen *seen; /* one entry for each signal with an alarm */
 	size_t seen_count, seen_room;
 };
 
-/* Without memory an alarm is shown again rather than never. */
+/* Make room for all alarms. Without memory clients see an alarm again rather than never. */
 static void make_room(struct signals *signals)
 {
 	const struct ows_map *map = &signals->h->map;
@@ -44,7 +46,7 @@ static void make_room(struct signals *signals)
 	signals->seen_room = items;
 }
 
-/* After a reload; while that is going on the old image is still the one that is right. */
+/* Open the new image after a reload; until the reload is done the old image is the right one. */
 static void follow(struct signals *signals)
 {
 	if (handle_state(signals->h) && ows_reopen(signals->h) == 0)
@@ -61,7 +63,7 @@ int signals_open(const char *instance, struct signals **out)
 	} else if (signals) {
 		err = ows_open(instance, OWS_READ, &signals->h);
 	}
-	/* the one place for what a handle remembers: clients come and go, so it is reset each time */
+	/* _DGNRESET is the only name for which a handle keeps state; it is reset for each client */
 	if (!err && ows_find(signals->h, "_DGNRESET") < 0)
 		err = -ENOMEM;
 	if (err) {
@@ -119,7 +121,7 @@ int signals_record(struct signals *signals, const char *name)
 	return look_up(signals, name, &id) ? -1 : id.record;
 }
 
-/* Clients come and go: all of them are one reader, and this is what it has seen. */
+/* Clients come and go, so all of them are one reader; `seen` has what this reader has read. */
 static bool take_alarms(struct signals *signals, const char *name, uint32_t alarms)
 {
 	struct seen *seen = signals->seen;
@@ -173,7 +175,7 @@ int signals_read(struct signals *signals, const char *name, int64_t now_ns, char
 	return value.type == OWS_STRING ? (int)value.len : (int)strlen(text);
 }
 
-/* Blanks and the end of a line, as a shell puts it there, do not belong to a number. */
+/* Ignore blanks and the end of the line, which a shell adds to a number. */
 static int take_text(const char *text, size_t len, bool is_string, char out[VALUE_STRING_MAX + 1])
 {
 	if (memchr(text, '\0', len))
@@ -191,7 +193,7 @@ static int take_text(const char *text, size_t len, bool is_string, char out[VALU
 	return 0;
 }
 
-/* As in the wire's direction an output that is disabled is one that cannot be written now. */
+/* An output takes commands only while it is enabled for writing. */
 static bool takes_commands(const struct ows *h, const struct ows_id *id)
 {
 	struct ows_slot slot;
@@ -238,7 +240,7 @@ int signals_write(struct signals *signals, const char *name, int64_t now_ns, con
 		err = set(signals, &id, now_ns, text, len, command);
 	if (err != -ESTALE)
 		return err;
-	/* a reload went between: the signal's record is another one now */
+	/* a reload gave the signal another record meanwhile */
 	err = ows_reopen(signals->h) ? -EIO : look_up(signals, name, &id);
 	if (!err)
 		err = set(signals, &id, now_ns, text, len, command);
@@ -274,7 +276,7 @@ bool signals_list(struct signals *signals, struct directory *directory)
 	for (uint32_t record = 1; record < map->count; record++) {
 		const char *name = map_name(map, record);
 
-		/* a comma parts the entries of a list */
+		/* a name with a comma would be two entries of the list */
 		if (!strchr(name, ',') && !directory_add(directory, name, strlen(name)))
 			return false;
 	}

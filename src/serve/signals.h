@@ -12,8 +12,8 @@
 struct signals;
 
 /*
- * Open the segments of this instance, which are in place. Without command segment (*why says why)
- * nothing can be written. Allocates; nothing below does. 0 or a negative errno.
+ * Open the segments of this instance, which are in place. Without a command segment nothing can be
+ * written. Allocates; no function below does. 0 or a negative errno.
  */
 int signals_open(const char *instance, struct signals **signals);
 void signals_close(struct signals *signals);
@@ -32,19 +32,19 @@ int signals_read(struct signals *signals, const char *name, int64_t now_ns, char
 /* A command that is on its way. */
 struct signals_command {
 	unsigned record;     /* 0: nothing to wait for */
-	uint32_t generation; /* of the image in which the signal has this record */
+	uint32_t generation; /* the generation of the image in which the signal has this record */
 	uint32_t stamp;
 	int64_t since_ns;
 };
 /*
- * Command a signal or attribute. 0; -ENOENT, -EACCES, -EINVAL no value of its type, -EDOM its type
- * cannot hold it, -EIO.
+ * Command a signal or attribute. 0; -ENOENT, -EACCES, -EINVAL: the text is no value of its type,
+ * -EDOM: its type cannot hold the value, -EIO.
  */
 int signals_write(struct signals *signals, const char *name, int64_t now_ns, const char *text,
                   size_t len, struct signals_command *command);
 /*
- * -EAGAIN: not yet on the bus; 0 it is; else why it could not be written. name as it was commanded:
- * a reload may have given it another record, or (-ENOENT) none.
+ * Returns 0 when the bus has the command, -EAGAIN before, else the error of the write. name is the
+ * commanded name: a reload may have given the signal another record, or (-ENOENT) none.
  */
 int signals_applied(struct signals *signals, const char *name, struct signals_command *command);
 

@@ -37,7 +37,7 @@ static struct scale scale_of(char type, uint32_t flags)
 		scale = temperatures[FRAME_TEMPERATURE(flags)];
 	else if (type == 'p')
 		scale.factor = pressures[FRAME_PRESSURE(flags)];
-	if (type == 'g') /* a difference */
+	if (type == 'g') /* a difference of temperatures */
 		scale.offset = 0;
 	return scale;
 }
@@ -59,7 +59,7 @@ bool units_convert(char type, uint32_t flags)
 	return scale.factor != 1 || scale.offset != 0;
 }
 
-/* One element; the blanks of its padding do not count. */
+/* Parse one element, without the blanks of its padding. */
 static int parse(const char *text, size_t len, double *number)
 {
 	char copy[64], *end;
@@ -85,7 +85,7 @@ static size_t element(const char *text, size_t len)
 	return comma ? (size_t)(comma - text) : len;
 }
 
-/* Elements of from into to; both may be of different length. */
+/* Convert each element of `from` into `to`; the lengths may differ. */
 static int each(const struct scale *scale, bool back, const char *from, size_t len, char *to,
                 size_t room)
 {
@@ -126,7 +126,7 @@ static size_t trim(char *text, size_t len)
 	return used;
 }
 
-/* Of a property that is not known: is it surely a padded number? */
+/* Is the value of a property with unknown type surely a padded number? */
 static bool looks_padded(const char *text, size_t len)
 {
 	return len == 12 && text[0] == ' ' && text[len - 1] >= '0' && text[len - 1] <= '9' &&

@@ -15,7 +15,7 @@ void via_token(uint8_t token[BUS_TOKEN])
 	token[0] = 0;
 	if (getrandom(token + 1, BUS_TOKEN - 1, GRND_NONBLOCK) == BUS_TOKEN - 1)
 		return;
-	/* early at boot; it is no secret, only nobody else's */
+	/* the clock may be wrong early at boot; the token need not be secret, only different */
 	clock_gettime(CLOCK_REALTIME, &t);
 	mix = (uint64_t)t.tv_sec * 1000000007u + (uint64_t)t.tv_nsec;
 	for (int i = 1; i < BUS_TOKEN; i++) {

@@ -19,7 +19,7 @@ struct via {
 void via_token(uint8_t token[BUS_TOKEN]);
 /* Did the request come through this server before, or through too many servers to know? */
 bool via_came_round(const uint8_t *tokens, uint32_t count, const uint8_t token[BUS_TOKEN]);
-/* The tokens that go with the request to a target; not for a request that has come round. */
+/* Set the tokens that go with the request to a target, unless the request came here before. */
 void via_pass(struct via *via, const uint8_t *tokens, uint32_t count,
               const uint8_t token[BUS_TOKEN]);
 

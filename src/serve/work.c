@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * From a request to its answer: what its path means, what is known here, what the engine is asked
- * for, one step after another, and what the client gets.
+ * From a request to its answer: the meaning of its path, what the server knows by itself, what it
+ * asks the engine, step by step, and what the client gets.
  */
 #include <errno.h>
 
@@ -70,7 +70,7 @@ static void begin_dir(struct serve *s, struct client *c)
 		work_want_directory(s, c, STEP_DIR);
 }
 
-/* With the path understood, and its bus known. */
+/* The path is understood, and its bus is known: work on the request. */
 static void go_on(struct serve *s, struct client *c)
 {
 	while (c->node.bus >= 0 && (unsigned)c->node.bus >= s->buses.count) {
@@ -109,7 +109,7 @@ static void go_on(struct serve *s, struct client *c)
 	answer_code(s, c, 0);
 }
 
-/* What this server has was asked for when the request was here first; behind it there is no more. */
+/* The request was here before, and this server asked its targets then: nothing is left to ask. */
 static void came_round(struct serve *s, struct client *c)
 {
 	bool lists = c->request.type != FRAME_READ && c->request.type != FRAME_WRITE &&
@@ -128,7 +128,7 @@ static bool is_known(int32_t type)
 	       (type >= FRAME_PRESENT && type <= FRAME_GETSLASH);
 }
 
-/* A slash behind a property of a device, as far as its family is known. */
+/* The path has a slash after a property of a device whose family knows it as no directory. */
 static bool is_no_directory(const struct node *node)
 {
 	return node->slash && node->has_device && node->path[node->device_len] &&
@@ -179,7 +179,9 @@ void work_answered(struct serve *s, struct client *c)
 {
 	int err = c->guest.answer.err;
 
-	/* what is lent is not looked into; the answer needs a header's room only */
+	/*
+	 * a bus still uses the memory: the server does not read it, and answers with a header alone
+	 */
 	if (c->lent && !err)
 		err = -EIO;
 	switch ((enum client_step)c->step) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the engine is asked for: which path of which target, and what its answer goes on with. */
+/* Requests to the engine: the path, the target, and the step that follows the answer. */
 #include <errno.h>
 #include <stdio.h>
 
@@ -8,7 +8,7 @@
 #include "src/serve/work_ask.h"
 #include "src/shm/word.h"
 
-/* Targets are counted now as they were when the engine was asked. */
+/* Do the targets have the same numbers as when the server asked the engine? */
 bool work_same_targets(const struct serve *s, const struct client *c)
 {
 	return c->guest.generation == s->image->header->generation;
@@ -45,7 +45,7 @@ void work_ask(struct serve *s, struct client *c, enum client_step step, enum bus
 	guests_ask(&s->guests, &c->guest);
 }
 
-/* The path as the target counts its buses; the lane that has to answer. */
+/* Write the path with the bus number of the target; returns the lane that has to answer. */
 int work_path(struct serve *s, struct client *c)
 {
 	const struct node *node = &c->node;
@@ -59,14 +59,14 @@ int work_path(struct serve *s, struct client *c)
 	return s->buses.bus[node->bus].target;
 }
 
-/* A property of the device. */
+/* Write the path of a property of the device. */
 void work_device_path(struct client *c, const char *property)
 {
 	snprintf(c->path, sizeof(c->path), "%.*s%s", (int)c->node.device_len, c->node.path,
 	         property);
 }
 
-/* Of a directory that each target has a part of: the next one that is up. */
+/* Skip the targets that are down, for a directory to which each target adds its part. */
 void work_next_target(struct serve *s, struct client *c)
 {
 	while (c->target < work_targets(s) && !is_up(s, c->target))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* DIR and its kin: names from the targets, or from here, on their way to a client. */
+/* DIR and its kin: the names come from the targets or from the server, and go to a client. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -26,7 +26,7 @@ static void form_directory(struct serve *s, struct client *c)
 		form.prefix_len--;
 	if (c->node.root && c->request.flags & FRAME_BUS_LIST)
 		directory_add_rest(c->directory, &c->node, &s->buses);
-	/* which are served here, whether the targets have them or not */
+	/* the server itself has this directory, whether a target has one or not */
 	if (strcmp(c->node.path, "/settings") == 0)
 		directory_add_once(c->directory, "return_codes");
 	err = directory_form(c->directory, &form);
@@ -36,7 +36,7 @@ static void form_directory(struct serve *s, struct client *c)
 		client_send(s, c, c->directory->out, c->directory->out_len);
 }
 
-/* True: the look for buses has ended. */
+/* The directory is complete. True: the step that looks for buses has ended. */
 static bool listed(struct serve *s, struct client *c)
 {
 	if (c->step == STEP_BUSES) {
@@ -112,7 +112,7 @@ bool work_waits(struct serve *s)
 	return s->queued && free_directory(s);
 }
 
-/* The one who has waited longest. */
+/* The client that has waited longest. */
 static struct client *first_queued(struct serve *s)
 {
 	struct client *first = NULL;
@@ -134,7 +134,7 @@ struct client *work_unqueue(struct serve *s, bool *ended)
 	if (!c)
 		return NULL;
 	s->queued--;
-	c->state = CLIENT_READING; /* until its work says otherwise, now */
+	c->state = CLIENT_READING; /* begin_directory() enters the next state at once */
 	*ended = begin_directory(s, c, directory);
 	return c;
 }
@@ -156,7 +156,7 @@ bool work_listed(struct serve *s, struct client *c, int err)
 	bool buses = c->step == STEP_BUSES, every = buses || c->node.every;
 	struct node root = {.root = true};
 
-	/* neither the room nor the request is free for anything else yet */
+	/* a bus still uses the room and the request: neither can serve anything else */
 	if (c->lent) {
 		answer_error(s, c, err);
 		return false;
@@ -170,7 +170,7 @@ bool work_listed(struct serve *s, struct client *c, int err)
 		               c->guest.answer.len);
 	if (err == -ENOTDIR && c->node.slash)
 		err = -ENOENT;
-	/* of several one that knows the directory is enough */
+	/* with several targets it is enough that one of them knows the directory */
 	if (!err || c->worst == WORK_NOT_YET ||
 	    (c->worst < 0 && err != -ENOENT && err != -ENOTCONN))
 		c->worst = !err || c->worst == 0 ? 0 : err;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * DIR and its kin: names from the targets, or from here, on their way to a client. STEP_BUSES looks
- * for the buses behind the targets alone. The functions that return true say that such a look has
- * ended: the client's request goes on.
+ * DIR and its kin: the names come from the targets or from the server, and go to a client.
+ * STEP_BUSES only looks for the buses of the targets. A function that returns true has ended such a
+ * look: the client's request goes on.
  */
 #ifndef SERVE_WORK_DIRECTORY_H
 #define SERVE_WORK_DIRECTORY_H
@@ -12,7 +12,7 @@
 bool work_want_directory(struct serve *s, struct client *c, enum client_step step);
 /* The engine has answered. */
 bool work_listed(struct serve *s, struct client *c, int err);
-/* Clients that wait for a directory: is one free? */
+/* Does a client wait for a directory, and is one free? */
 bool work_waits(struct serve *s);
 /* The client that has waited longest begins. NULL: nobody waits, or no directory is free. */
 struct client *work_unqueue(struct serve *s, bool *ended);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* READ: from what is known here, or from a bus, in the units of the client. */
+/* READ: values from the server itself or from a bus, in the units of the client. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,7 +17,7 @@
 #define READ_MOST 100050
 #define LONG_VALUE 4096
 
-/* The value is in the room as the bus gave it: into the client's units, and out. */
+/* Convert the value in the room from the bus's units into the client's, and send it. */
 void work_show(struct serve *s, struct client *c)
 {
 	int n = units_show(c->node.type, c->request.flags, (char *)client_room(c), c->value_len,
@@ -40,7 +40,7 @@ void work_read_answered(struct serve *s, struct client *c, int err)
 	}
 	c->value_len = c->guest.answer.len;
 	kept_add(s->kept, &c->node, c->guest.answer.measured_ns, client_room(c), c->value_len);
-	/* no property with a scale is so long; behind the value is room for the type */
+	/* no property with a scale is so long; the type needs room after the value */
 	if (c->value_len > LONG_VALUE && !c->node.type && units_asked(c->request.flags))
 		answer_error(s, c, -EMSGSIZE);
 	else if (!work_ask_type(s, c))
@@ -51,7 +51,7 @@ static void read_target(struct serve *s, struct client *c)
 {
 	int n = -ENOENT;
 
-	/* between servers in a circle, what one remembers of the other would never end */
+	/* two servers that ask each other would renew what they keep for ever */
 	if (!(s->passes_on && c->request.token_count) && !c->node.fresh &&
 	    !(c->request.flags & FRAME_UNCACHED))
 		n = kept_find(s->kept, s->image, &c->node, s->now_ns, (char *)client_room(c),
@@ -65,7 +65,7 @@ static void read_target(struct serve *s, struct client *c)
 	work_ask(s, c, STEP_READ, BUS_READ, work_path(s, c), client_room(c), client_room_size(c));
 }
 
-/* A signal of another owsd, asked for by a server: it may be one of that one. */
+/* A server asks for a signal that is an item of another owsd: that owsd may be the one who asks. */
 static bool is_passed_on(const struct serve *s, const struct client *c)
 {
 	int record = c->request.token_count && s->passes_on

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* READ: from what is known here, or from a bus, in the units of the client. */
+/* READ: values from the server itself or from a bus, in the units of the client. */
 #ifndef SERVE_WORK_READ_H
 #define SERVE_WORK_READ_H
 
@@ -7,7 +7,7 @@
 
 void work_read(struct serve *s, struct client *c);
 void work_read_answered(struct serve *s, struct client *c, int err);
-/* The value is in the room as the bus gave it: into the client's units, and out. */
+/* Convert the value in the room from the bus's units into the client's, and send it. */
 void work_show(struct serve *s, struct client *c);
 
 #endif

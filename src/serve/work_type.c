@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What type a property has that is not known here: asked of its target, for the units of a client. */
+/* Asks a target for the type of a property that the server does not know, to convert its units. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -43,7 +43,7 @@ bool work_typed(struct serve *s, struct client *c, int err)
 	if (c->step == STEP_STRUCTURE) {
 		c->node.type = c->guest.answer.len ? (char)text[0] : 'a';
 	} else {
-		/* as a device of that family would be */
+		/* the type is that of a device of this family */
 		for (int i = 0; i < 2 && c->guest.answer.len == 2; i++)
 			rom[0] = (uint8_t)(rom[0] * 16 + (text[i] & 0xf) +
 			                   (text[i] >= 'A' ? 9 : 0));

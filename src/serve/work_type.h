@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: MIT */
-/* What type a property has that is not known here: asked of its target, for the units of a client. */
+/* Asks a target for the type of a property that the server does not know, to convert its units. */
 #ifndef SERVE_WORK_TYPE_H
 #define SERVE_WORK_TYPE_H
 
 #include "src/serve/server.h"
 
 /*
- * A scale was asked for, and whether the value has one is not known: ask what it is. False: there
- * is nothing to ask.
+ * Ask for the type when the client wants a scale and the server does not know whether the value has
+ * one. False: there is nothing to ask.
  */
 bool work_ask_type(struct serve *s, struct client *c);
-/* The engine has answered. True: the type is known now; false: asked again, or answered. */
+/*
+ * The engine has answered. True: the type is known now; false: the server asks again, or has
+ * answered the client.
+ */
 bool work_typed(struct serve *s, struct client *c, int err);
 
 #endif

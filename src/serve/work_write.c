@@ -16,7 +16,7 @@ void work_write_target(struct serve *s, struct client *c)
 	uint32_t len = c->request.data_len;
 	int lane;
 
-	/* a part of a number is another number; for a type that is not known here its target decides */
+	/* a part of a number is another number; the target decides about an unknown type */
 	if (c->request.offset && c->node.type && c->node.type != PROPERTY_BINARY) {
 		answer_error(s, c, -EINVAL);
 		return;
@@ -45,7 +45,9 @@ void work_write_target(struct serve *s, struct client *c)
 		answer_error(s, c, c->worst == WORK_NOT_YET ? -ENOTCONN : c->worst);
 }
 
-/* The signal that is commanded: by its name, or the output at this path; NULL: there is none. */
+/*
+ * The name of the signal to command: the path names it, or it is the output at the path; or NULL.
+ */
 static const char *name_of(const struct serve *s, const struct node *node)
 {
 	int record;
@@ -56,7 +58,7 @@ static const char *name_of(const struct serve *s, const struct node *node)
 	return record < 0 ? NULL : s->config->items[record - 1].name;
 }
 
-/* Look whether the command has been carried out. */
+/* Look whether the command is carried out. */
 static void applying(struct serve *s, struct client *c)
 {
 	const char *name = name_of(s, &c->node);
@@ -72,7 +74,7 @@ static void applying(struct serve *s, struct client *c)
 	}
 }
 
-/* An output of the table: its control program commands it, and so does this client. */
+/* Command an output of the table. The control program commands the same output. */
 static void command(struct serve *s, struct client *c, const char *name)
 {
 	const char *text = (const char *)c->request.data;
@@ -134,7 +136,7 @@ void work_written(struct serve *s, struct client *c, int err)
 	if (c->step == STEP_WRITE_EACH) {
 		if (c->worst == WORK_NOT_YET || !err)
 			c->worst = err;
-		/* what the targets behind it would have said is not known: no success */
+		/* the answers of the remaining targets are not known: report no success */
 		if (c->lent || !work_same_targets(s, c)) {
 			answer_error(s, c, err ? err : -EIO);
 			return;
