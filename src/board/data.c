@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The data files of boards: read, listed, and matched with the machine. */
+/* The data files of boards: reads them, lists them, and finds the one of this machine. */
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
@@ -13,7 +13,7 @@
 #define KHZ_MAX 5000
 #define ADAPTERS (1 << 20)
 
-/* A key with a text, or with the first of several that is free. */
+/* A key with a text, or with the first text of several that is free. */
 struct text_key {
 	const char *name;
 	size_t at;
@@ -76,7 +76,7 @@ static int set_number(const char *key, const char *value, long max, long *number
 	return 0;
 }
 
-/* line: without its end; it is changed. */
+/* Parse a line without its newline. The line is changed. */
 static int take_line(struct board_data *data, char *line, char *why, size_t why_size)
 {
 	char *key = line + strspn(line, " \t"), *value;

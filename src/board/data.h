@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What is known of a board or of a HAT on it: the files of board/boards, a key and its value on each
+ * The data of a board or of a HAT on it: the files of board/boards, a key and its value on each
  * line, `#` comments. Shell scripts read the same files with awk.
  */
 #ifndef BOARD_DATA_H
@@ -20,8 +20,8 @@ struct board_data {
 	char model[BOARD_MODELS][BOARD_TEXT]; /* Model: how /proc/device-tree/model begins */
 	char hat_vendor[BOARD_TEXT];          /* HatVendor, HatProduct: the EEPROM's texts */
 	char hat_product[BOARD_TEXT];
-	int i2c;                    /* I2C: the header's adapter; -1 not told */
-	unsigned khz;               /* KHz: that it can do; 0 not told */
+	int i2c;                    /* I2C: the header's adapter; -1: not given */
+	unsigned khz;               /* KHz: the highest clock of the adapter; 0: not given */
 	char pins[BOARD_TEXT];      /* Pins */
 	char combine[BOARD_TEXT];   /* Combine: any, or one-read (one read, the last) */
 	char gpio_chip[BOARD_TEXT]; /* GpioChip: its label */
@@ -37,8 +37,8 @@ struct board_data {
 int board_data_read(const char *file, struct board_data *data, char *why, size_t why_size);
 
 /*
- * All files *.board of a folder, sorted by id; at most max. Their number, or a negative errno and
- * why: one that is wrong spoils the lot.
+ * Read all files *.board of a folder, sorted by id; at most max. Returns their number, or a
+ * negative errno and why: with one wrong file all are refused.
  */
 int board_data_list(const char *folder, struct board_data *data, unsigned max, char *why,
                     size_t why_size);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The files of the machine that a look at the board reads, below a root directory. */
+/* Reads the files of the machine for a look at the board, below a root directory. */
 #include <fcntl.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -91,7 +91,7 @@ bool board_configured(const char *root, const char *line)
 	while (in && !found && fgets(text, sizeof(text), in)) {
 		char *at = text + strspn(text, " \t"), *rest, *word;
 
-		/* below a filter such as [pi4] a line is not for every board */
+		/* a line after a filter such as [pi4] is not for every board */
 		if (*at == '[')
 			all = !strncmp(at, "[all]", 5);
 		if (!all || strncmp(at, line, key))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Inside src/board: files below a root. */
+/* Inside src/board: files below a root directory. */
 #ifndef BOARD_FILES_H
 #define BOARD_FILES_H
 
@@ -7,7 +7,7 @@
 #include <stddef.h>
 
 #define BOARD_PATH 512
-#define BOARD_ROOT 256 /* at most so much of it is the root */
+#define BOARD_ROOT 256 /* the root has at most so many bytes */
 
 /* The path below the root. */
 void board_path(char *path, const char *root, const char *format, ...)
@@ -17,13 +17,13 @@ void board_text(const char *root, const char *file, char *text, size_t size);
 /* A number of the device tree, or 0. */
 unsigned board_cell(const char *root, const char *file);
 bool board_there(const char *root, const char *file);
-/* The last part of where a link leads to; "" where there is none. */
+/* The last component of a link's target; "" without such a link. */
 void board_link(const char *root, const char *file, char *name, size_t size);
-/* The firmware's config.txt as it is called on this system. */
+/* The name of the firmware's config.txt on this system. */
 const char *board_config(const char *root);
 /*
- * Has config.txt this line for every board, as "dtparam=i2c_arm=on"? Several parameters may stand on
- * one line.
+ * Does config.txt have this line for every board, as "dtparam=i2c_arm=on"? A line may hold several
+ * parameters.
  */
 bool board_configured(const char *root, const char *line);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What files of /proc and /sys, and the data of boards, say about this machine. */
+/* Finds what the files of /proc and /sys, and the data of boards, show about this machine. */
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -23,7 +23,7 @@
 struct scene {
 	const char *root;
 	struct board_report *report;
-	const struct board_data *board; /* NULL: none that is known */
+	const struct board_data *board; /* NULL: no board that is known */
 	const struct board_data *hat;
 };
 
@@ -102,8 +102,8 @@ static void tell_adapter(const struct scene *scene, unsigned number)
 	           "answers come sooner",
 	           hz / 1000, scene->board->khz);
 	if (scene->board->speed_line[0])
-		report_mend(scene->report, "echo %s | sudo tee -a %s && sudo reboot",
-		            scene->board->speed_line, board_config(scene->root));
+		report_remedy(scene->report, "echo %s | sudo tee -a %s && sudo reboot",
+		              scene->board->speed_line, board_config(scene->root));
 }
 
 static void miss_interface(const struct scene *scene, unsigned number)
@@ -116,22 +116,22 @@ static void miss_interface(const struct scene *scene, unsigned number)
 		           "there is no I2C adapter i2c-%u, though %s has %s: was it started "
 		           "since?",
 		           number, config, board->on_line);
-		report_mend(scene->report, "sudo reboot");
+		report_remedy(scene->report, "sudo reboot");
 		return;
 	}
 	report_add(scene->report, BOARD_MISSING, "I2C is off: there is no adapter i2c-%u", number);
 	if (board->enable[0])
-		report_mend(scene->report, "%s    # or %s in %s, and a reboot", board->enable,
-		            board->on_line, config);
+		report_remedy(scene->report, "%s    # or %s in %s, and a reboot", board->enable,
+		              board->on_line, config);
 }
 
 static void miss_module(const struct scene *scene, const char *which)
 {
 	report_add(scene->report, BOARD_MISSING, "there is no %s: the module i2c-dev is not loaded",
 	           which);
-	report_mend(scene->report,
-	            "sudo modprobe i2c-dev    # at each start: echo i2c-dev | sudo tee "
-	            "/etc/modules-load.d/i2c-dev.conf");
+	report_remedy(scene->report,
+	              "sudo modprobe i2c-dev    # at each start: echo i2c-dev | sudo tee "
+	              "/etc/modules-load.d/i2c-dev.conf");
 }
 
 static void miss_permission(const struct scene *scene, const char *device, const struct stat *st)
@@ -141,16 +141,16 @@ static void miss_permission(const struct scene *scene, const char *device, const
 
 	report_add(scene->report, BOARD_MISSING, "no permission for %s", device);
 	if (group && (st->st_mode & 060) == 060)
-		report_mend(scene->report, "sudo adduser %s %s    # then log in again",
-		            user ? user->pw_name : "USER", group->gr_name);
+		report_remedy(scene->report, "sudo adduser %s %s    # then log in again",
+		              user ? user->pw_name : "USER", group->gr_name);
 	else
-		report_mend(scene->report,
-		            "sudo chgrp i2c %s && sudo chmod g+rw %s    # the package's "
-		            "udev rule does it at each start",
-		            device, device);
+		report_remedy(scene->report,
+		              "sudo chgrp i2c %s && sudo chmod g+rw %s    # the package's "
+		              "udev rule does it at each start",
+		              device, device);
 }
 
-/* May the device file be opened? Else it is said. */
+/* May the device file be opened? If not, report it. */
 static bool may_use(const struct scene *scene, unsigned number)
 {
 	char path[BOARD_PATH];
@@ -182,9 +182,9 @@ static void look_for_claims(const struct scene *scene, unsigned number)
 		           "kernel's driver ds2482: target w1 reaches it, and so does auto; this "
 		           "gives it to i2c:/dev/i2c-%u",
 		           address, number, number);
-		report_mend(scene->report,
-		            "echo %u-%04x | sudo tee /sys/bus/i2c/drivers/ds2482/unbind", number,
-		            address);
+		report_remedy(scene->report,
+		              "echo %u-%04x | sudo tee /sys/bus/i2c/drivers/ds2482/unbind", number,
+		              address);
 	}
 }
 
@@ -202,7 +202,7 @@ static void look_at_header(const struct scene *scene, unsigned number)
 	look_for_claims(scene, number);
 }
 
-/* A machine of which no more is known: any adapter will do. */
+/* A machine without board data: any adapter will do. */
 static void look_at_all(const struct scene *scene)
 {
 	unsigned number[ADAPTERS], count;
@@ -259,7 +259,7 @@ static void tell_masters(const struct scene *scene)
 		           names);
 }
 
-/* A board that was named is the base, or a HAT, by what its data says. */
+/* Find the base board and the HAT; the data of a named board decide which of both it is. */
 static int find(struct scene *scene, const struct board_data *data, unsigned count, const char *id,
                 char *why, size_t why_size)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Look at the board that this machine is. */
+/* Finds out which board this machine is. */
 #ifndef BOARD_LOOK_H
 #define BOARD_LOOK_H
 
@@ -10,9 +10,9 @@ struct board_report;
 /* The folder of the board data: $OWSD_BOARDS, else beside this program. */
 void board_folder(char *folder, size_t size);
 /*
- * Look at the files below root ("" is this machine's). id names a board that does not tell what it
- * is, as the file of its data is called; NULL: none. Returns 0, or why and -ENOENT: there is no such
- * board, -ENAMETOOLONG: root is longer than 256 characters. Data that cannot be read is a note.
+ * Look at the files below root ("" is this machine's). id names the data of a board that cannot be
+ * detected; NULL: none. Returns 0, or why and -ENOENT: there is no such board, -ENAMETOOLONG: root
+ * is longer than 256 characters. Data that cannot be read is a note.
  */
 int board_look(const char *root, const char *folder, const char *id, struct board_report *report,
                char *why, size_t why_size);

@@ -22,14 +22,14 @@ void report_add(struct board_report *report, enum board_kind kind, const char *f
 		return;
 	report->count++;
 	line->kind = kind;
-	line->mend[0] = '\0';
+	line->remedy[0] = '\0';
 	va_start(args, format);
 	vsnprintf(line->text, sizeof(line->text), format, args);
 	va_end(args);
 	clean(line->text);
 }
 
-void report_mend(struct board_report *report, const char *format, ...)
+void report_remedy(struct board_report *report, const char *format, ...)
 {
 	struct board_line *line = &report->line[report->count - 1];
 	va_list args;
@@ -37,9 +37,9 @@ void report_mend(struct board_report *report, const char *format, ...)
 	if (report->full)
 		return;
 	va_start(args, format);
-	vsnprintf(line->mend, sizeof(line->mend), format, args);
+	vsnprintf(line->remedy, sizeof(line->remedy), format, args);
 	va_end(args);
-	clean(line->mend);
+	clean(line->remedy);
 }
 
 static int rank(enum board_kind kind)
@@ -79,7 +79,7 @@ void board_print(const struct board_report *report, FILE *out)
 		        : line->kind == BOARD_NOTE  ? "note: "
 		                                    : "",
 		        line->text);
-		if (line->mend[0])
-			fprintf(out, "    %s\n", line->mend);
+		if (line->remedy[0])
+			fprintf(out, "    %s\n", line->remedy);
 	}
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* owsctl alarms: which of its words it is. */
+/* owsctl alarms: calls the function of the word that follows, or lists the present alarms. */
 #include <string.h>
 
 #include "src/owsctl/alarms_ack.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* owsctl alarms ack: limit alarms acknowledged. */
+/* owsctl alarms ack: acknowledges limit alarms. */
 
 #include <errno.h>
 #include <getopt.h>
@@ -11,7 +11,7 @@
 #include "src/owsctl/alarms_ack.h"
 #include "src/owsctl/ctl.h"
 
-/* owsd takes an acknowledgement at once; longer means that it hangs. */
+/* owsd takes an acknowledgement at once; an owsd that takes longer hangs. */
 #define PATIENCE_NS (2 * NS_PER_S)
 
 static bool unacknowledged(struct ows *h, int id)
@@ -23,7 +23,7 @@ static bool unacknowledged(struct ows *h, int id)
 	       state.limit_state == OWS_LIMIT_RETURNED;
 }
 
-/* The id of an alarm to acknowledge; -1 after having said why there is none. */
+/* The id of an alarm to acknowledge; -1 after printing why there is none. */
 static int find(struct ows *h, const char *name)
 {
 	struct ows_alarm_state state = {0};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* owsctl alarms ack: limit alarms acknowledged. */
+/* owsctl alarms ack: acknowledges limit alarms. */
 #ifndef OWSCTL_ALARMS_ACK_H
 #define OWSCTL_ALARMS_ACK_H
 

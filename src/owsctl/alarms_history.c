@@ -72,7 +72,7 @@ static void add_json(struct json *json, const struct when *now, uint32_t number,
 	json_object_end(json);
 }
 
-/* All entries that are kept, the oldest first, into the table or the document. */
+/* Put all entries of the journal, the oldest first, into the table or the document. */
 static bool walk(struct ows *h, char *const *patterns, int count, struct table *table,
                  struct json *json)
 {

@@ -39,7 +39,7 @@ static const struct table_column columns[] = {
 };
 #define COLUMNS (sizeof(columns) / sizeof(columns[0]))
 
-/* When the present alarm of a signal was raised, as far as the journal goes back. */
+/* When the present alarm of a signal was raised, as far as the journal goes back; else 0. */
 static int64_t raised(struct ows *h, int signal, uint8_t kind)
 {
 	struct ows_alarm alarm;
@@ -97,7 +97,7 @@ static void add(struct live *live, const struct alarm *alarm)
 		add_json(live, alarm);
 }
 
-/* Why the alarm of the reading's signal cannot be armed, if no reading has failed since. */
+/* Why the alarm of the reading's signal is not armed, if no reading has failed since. */
 static const char *why_unarmed(const struct ows_alarm_state *state, const struct reading *reading,
                                char words[ERROR_WORDS])
 {
@@ -124,7 +124,7 @@ static const char *why_unarmed(const struct ows_alarm_state *state, const struct
 	return words;
 }
 
-/* Below the table, which they would make too wide. */
+/* Print the reasons below the table, which they would make too wide. */
 static void print_reasons(struct live *live, const struct rows *rows, char *const *patterns,
                           int pattern_count)
 {
@@ -185,7 +185,7 @@ static void look_at(struct live *live, int signal, const struct row *row)
 	}
 }
 
-/* rows: all of the table, in its order. */
+/* rows: all signals of the table, in its order. */
 static bool show(struct ows *h, const struct rows *rows, bool json, char *const *patterns,
                  int pattern_count)
 {
@@ -219,11 +219,11 @@ static bool show(struct ows *h, const struct rows *rows, bool json, char *const 
 	return live.ok;
 }
 
-/* What `owsctl alarms` takes for no pattern. */
+/* The words that `owsctl alarms` does not take for patterns. */
 static const char *const words[] = {ALARMS_HISTORY, ALARMS_ACK};
 #define WORDS (sizeof(words) / sizeof(words[0]))
 
-/* Is it one of the words, with a slip of the finger? */
+/* The word that the pattern is but for a slip of the finger, or NULL. */
 static const char *nearest_word(const char *pattern)
 {
 	for (size_t i = 0; i < WORDS; i++)

@@ -22,7 +22,7 @@ struct condition {
 	double number;
 };
 
-/* "=" "==" "!=" "<" "<=" ">" ">="; -1: none of them. */
+/* The operator "=" "==" "!=" "<" "<=" ">" ">="; -1: the text is none of them. */
 int condition_op(const char *text);
 /*
  * Make a condition for values of that type. Numbers as in `owsctl set`, but without the limits of

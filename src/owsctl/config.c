@@ -21,7 +21,7 @@ static void print_report(void *ctx, bool is_error, const char *message)
 	fprintf(stderr, "owsctl: %s\n", message);
 }
 
-/* What was wrong has been said, but for memory. */
+/* All errors but -ENOMEM are already printed. */
 static int status_of(int err)
 {
 	if (!err)
@@ -44,7 +44,7 @@ static int list(struct ctl *ctl, const char *file, char *const *patterns, int co
 	return status;
 }
 
-/* The document to edit; only add makes a file that is not there. */
+/* Open the document to edit; with `make`, which `add` alone sets, a missing file is empty. */
 static int open_document(const char *file, bool make, struct config_report *report,
                          struct rio **rio)
 {
@@ -64,8 +64,9 @@ static int open_document(const char *file, bool make, struct config_report *repo
 }
 
 /*
- * Has the family of the device the property that the path of a new item, or a new path, names? One
- * that it has not but nearly is refused; of others another server may know more than we do.
+ * Does the device's family have the property that a new path names? A name that is nearly a
+ * property is refused. Any other name is accepted: another server may know more properties than
+ * owsd.
  */
 static int check_path(const char *path)
 {
@@ -100,7 +101,7 @@ static int move(struct rio **rio, char **words, struct config_report *report)
 	return edit_move(rio, words[0], words[2], !strcmp(words[1], "--after"), report);
 }
 
-/* settings and the like are read only */
+/* the words of commands that only read are not changed */
 static const char *const *words_of(char **argv)
 {
 	return (const char *const *)(void *)argv;
@@ -137,7 +138,7 @@ static int change(const char *file, const char *action, char **words, unsigned c
 	return status_of(err);
 }
 
-/* Options behind list too, and patterns. */
+/* Run `list`: its options may follow the word `list` too, and patterns. */
 static int list_with(struct ctl *ctl, const char *file, int argc, char **argv)
 {
 	ctl_options();

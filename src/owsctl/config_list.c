@@ -92,7 +92,7 @@ static bool add_row(struct table *table, const struct config_item *item)
 	snprintf(per_factor, sizeof(per_factor), "%u", (unsigned)item->per_factor);
 	if (item->stale_after_ns)
 		snprintf(stale, sizeof(stale), "%gs", seconds(item->stale_after_ns));
-	/* Columns that say something of no item are left out */
+	/* leave out columns that have nothing for any item */
 	table->absent[SAFE] &= !item->has_safe;
 	table->absent[PER_FACTOR] &= item->per_factor == 1;
 	table->absent[STALE_AFTER] &= !item->stale_after_ns;

@@ -6,7 +6,10 @@
 #include "src/config/config.h"
 #include "src/owsctl/ctl.h"
 
-/* The items whose names match a pattern (none: all), as a table or JSON. The exit status. */
+/*
+ * Show the items whose names match a pattern (without patterns: all), as a table or JSON. Returns
+ * the exit status.
+ */
 int config_list(const struct config *config, char *const *patterns, int count, bool json);
 
 #endif

@@ -63,7 +63,7 @@ void ctl_options(void)
 	optind = 0;
 }
 
-/* The long options of the verb whose own are options. */
+/* The long options of a verb, whose short ones are `options`. */
 static const struct option *longs_of(const char *options)
 {
 	static const struct option longs[] = {

@@ -21,18 +21,18 @@ enum ctl_status {
 struct verb;
 struct ctl {
 	const char *instance;
-	bool named;         /* -n: the instance was given */
-	const char *target; /* -t; NULL: none given */
+	bool named;         /* the user gave the instance with -n */
+	const char *target; /* the target of -t; NULL: none was given */
 	bool json;
-	const struct verb *verb; /* the one in work */
+	const struct verb *verb; /* the verb that runs */
 };
 
 struct verb {
 	const char *name;
-	const char *usage; /* behind the name: "NAME..." */
+	const char *usage; /* what follows the name: "NAME..." */
 	const char *brief; /* one line for the list of verbs */
 	int (*run)(struct ctl *ctl, int argc, char **argv);
-	bool opens; /* a target itself, without owsd: knows -t */
+	bool opens; /* the verb opens a target itself, without owsd, and has the option -t */
 };
 
 /*
@@ -54,11 +54,11 @@ int ctl_fail(const char *format, ...) /* returns CTL_FAILED */
 int ctl_nothing(const char *format, ...) /* returns CTL_NOTHING */
 	__attribute__((format(printf, 1, 2)));
 
-/* The word as a message shows it: an empty one by its quotes. */
+/* The word as a message shows it: an empty word as "". */
 const char *ctl_word(const char *word);
 #define CTL_NO_TARGET "-t: a target expected, as localhost:4304, i2c:/dev/i2c-1 or w1"
 
-/* A number of seconds, at most a year; false when text is none. */
+/* Parse a number of seconds, at most a year; false: the text is none. */
 bool ctl_seconds(const char *text, int64_t *ns);
 
 /* Open the instance; CTL_DONE, or CTL_FAILED after printing why. */
@@ -71,9 +71,11 @@ void ctl_nap(void);
 void ctl_sleep(struct ows *h, uint32_t *news, int64_t timeout_ns);
 /* Print that there is no such name, with the nearest name; returns CTL_FAILED. */
 int ctl_unknown(struct ows *h, const char *name);
-/* Has the reader of stdout closed it? */
+/* Has the reader of stdout closed its end? */
 bool ctl_reader_gone(void);
-/* Flush stdout; CTL_FAILED after printing why, else status. A reader that is gone is no error. */
+/*
+ * Flush stdout. Returns CTL_FAILED after printing why, else status. A reader that left is no error.
+ */
 int ctl_flush(int status);
 /* Write at once what is printed so far; false: writing failed, which ctl_flush() reports. */
 bool ctl_flush_lines(void);

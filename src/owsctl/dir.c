@@ -22,7 +22,7 @@ static void print(const struct ctl *ctl, char *text, const char *before)
 	if (ctl->json)
 		json_array(&json, NULL);
 	for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
-		/* owserver says it, our own buses do not */
+		/* owserver prefixes its lines with /uncached, owsd's own buses do not */
 		bool said = strncmp(line, "/uncached/", 10) == 0;
 
 		if (*before && !strcmp(line, before))

@@ -49,7 +49,7 @@ static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struc
 	print_text(reading);
 	if (reading_good(reading))
 		return CTL_DONE;
-	/* In order with stdout where both go to one place. */
+	/* keep the order of stderr and stdout where both go to one place */
 	ctl_flush_lines();
 	ctl_fail("%s is not good: %s", name, reading_why(reading, words));
 	return CTL_NOT_GOOD;

@@ -13,7 +13,7 @@ enum instance_state instance_state_of(bool has_image, uint32_t state, bool alive
 		return held ? INSTANCE_HIDDEN : INSTANCE_LEFT;
 	if (state == 3)
 		return INSTANCE_STOPPED;
-	/* a heart that has stopped is seen after two seconds, a lock that was let go at once */
+	/* a stopped heart shows after two seconds, a released lock at once */
 	if (alive && lock != 0)
 		return INSTANCE_RUNNING;
 	return held ? INSTANCE_HANGS : INSTANCE_KILLED;
@@ -35,7 +35,9 @@ const char *instance_state_text(enum instance_state state)
 	return texts[state];
 }
 
-/* The argument of an option in a word: "-cFILE" or "--config=FILE"; "" when it is the next word. */
+/*
+ * The argument of -c in a word: "-cFILE" or "--config=FILE"; "" when the next word is the argument.
+ */
 static const char *option_in(const char *word)
 {
 	if (!strncmp(word, "--config", 8) && (!word[8] || word[8] == '='))
@@ -49,7 +51,7 @@ const char *instance_config_of(const char *line, size_t len)
 
 	if (!len || line[len - 1])
 		return NULL;
-	/* the last counts, as for getopt */
+	/* the last option counts, as for getopt */
 	for (const char *word = line; word < end; word += strlen(word) + 1) {
 		const char *value = word == line ? NULL : option_in(word);
 

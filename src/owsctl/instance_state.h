@@ -17,18 +17,18 @@ enum instance_state {
 };
 
 /*
- * The state of an instance, by its image (state as in ows_daemon; has_image false: none) and its
- * lock: 1: a process holds the lock; 0: the owsd of the image has released it; negative: not known,
- * because the lock was removed or belongs to another user. Then the heart decides, and process: an
- * owsd of that number exists.
+ * The state of an instance by its image (state as in ows_daemon; has_image false: there is none)
+ * and its lock: 1: a process holds the lock; 0: the owsd of the image has released it; negative:
+ * not known, because the lock was removed or belongs to another user. Then the heart decides, and
+ * `process`: an owsd with that process id exists.
  */
 enum instance_state instance_state_of(bool has_image, uint32_t state, bool alive, int lock,
                                       bool process);
-/* Does the instance's process exist? Then its files must not be removed. */
+/* Does the instance's process exist? Then nobody may remove its files. */
 bool instance_is_up(enum instance_state state);
 const char *instance_state_text(enum instance_state state);
 
-/* The configuration of a command line as in /proc/PID/cmdline; NULL: it names none. */
+/* The configuration that a command line as in /proc/PID/cmdline names; NULL: it names none. */
 const char *instance_config_of(const char *line, size_t len);
 
 #endif

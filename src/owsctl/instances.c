@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* owsctl instances and remove: which owsds run here or have run, and taking away what they left. */
+/*
+ * owsctl instances and remove: lists the owsds that run here or have run, and removes the files of
+ * those that ended.
+ */
 #include <errno.h>
 #include <getopt.h>
 #include <limits.h>
@@ -29,10 +32,10 @@ struct instance_info {
 	const char *name;
 	enum instance_state state;
 	int pid;                            /* 0: not known */
-	int64_t since_ns;                   /* it began to be so; 0: not known */
+	int64_t since_ns;                   /* when this state began; 0: not known */
 	int signals;                        /* -1: not known */
 	char targets[FIELD], config[FIELD]; /* "": not known */
-	const char *why; /* hidden: why; up: what is wrong with its lock; else NULL */
+	const char *why; /* hidden: the reason; up: the fault of its lock; else NULL */
 };
 
 static size_t read_process(int pid, const char *what, char *text, size_t size)
@@ -62,7 +65,9 @@ static bool is_owsd(int pid)
 	return state && !strncmp(state, comm, strlen(comm)) && !strchr("ZX", state[strlen(comm)]);
 }
 
-/* As it was given, or whole where the directory of the process may be looked at. */
+/*
+ * The path of the configuration: absolute where the process's directory may be read, else as given.
+ */
 static void find_config(struct instance_info *info)
 {
 	char line[4096], path[48], folder[FIELD];
@@ -113,7 +118,9 @@ static void look(const char *name, int64_t now_ns, struct instance_info *info)
 		find_targets(h, info);
 		info->since_ns = daemon.alive ? daemon.start_ns : now_ns - daemon.beat_age_ns;
 		ows_close(h);
-		/* the lock of another: that nobody holds it does not say that this owsd has ended */
+		/*
+		 * another owsd holds the lock: a free lock does not show that this owsd has ended
+		 */
 		if (!lock && holder != daemon.pid)
 			lock = -ESTALE;
 	}
@@ -223,7 +230,7 @@ int verb_instances(struct ctl *ctl, int argc, char **argv)
 	return status;
 }
 
-/* By its heart and its process too: its lock may have been removed or replaced. */
+/* Look at the heart and the process too: the lock may have been removed or replaced. */
 static bool is_up(const char *name, int *pid)
 {
 	struct instance_info info;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What owsctl prints as JSON, written as it comes. */
+/* Writes a JSON document piece by piece. */
 #include <inttypes.h>
 #include <string.h>
 

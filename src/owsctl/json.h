@@ -10,11 +10,11 @@
 
 struct json {
 	FILE *out;
-	bool inner; /* a value stands before the next one */
+	bool inner; /* the next value needs a comma */
 };
 
 void json_open(struct json *json, FILE *out);
-void json_end(struct json *json); /* newline; the writer is as after json_open() */
+void json_end(struct json *json); /* Write the newline; the writer is as after json_open(). */
 
 /* key NULL: an element of an array, or the document itself. */
 void json_object(struct json *json, const char *key);
@@ -24,7 +24,7 @@ void json_array_end(struct json *json);
 /* text NULL: null. Bytes that are not UTF-8 become U+FFFD. */
 void json_string(struct json *json, const char *key, const char *text);
 void json_bytes(struct json *json, const char *key, const char *text, size_t len);
-/* The member "value"; with "hex", all of its bytes, if they are not UTF-8. */
+/* The member "value"; also "hex", all bytes, if they are not UTF-8. */
 void json_text(struct json *json, const char *text, size_t len);
 void json_int(struct json *json, const char *key, int64_t number);
 void json_uint(struct json *json, const char *key, uint64_t number);

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Which devices of a configuration stay, are missing or are replaced, and which found are new. */
+/*
+ * Decides which devices of a configuration stay, are missing or are replaced, and which of those
+ * found are new.
+ */
 #include <string.h>
 
 #include "src/owsctl/merge.h"
@@ -52,7 +55,7 @@ static unsigned count(const struct merge_device *list, unsigned n, uint8_t famil
 	return sum;
 }
 
-/* As many of a family are new as are missing: they may have been exchanged. */
+/* Note where as many devices of a family are new as are missing: they may be replacements. */
 static void pair_up(struct merge_device *known, unsigned known_count, struct merge_device *found,
                     unsigned found_count)
 {

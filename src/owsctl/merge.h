@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a scan means for a configuration that is there: which of its devices stay, which are
- * missing, which of those found are new, and which replaces which. Pure: nothing here knows files
- * or buses.
+ * What a scan means for an existing configuration: which of its devices stay, which are missing,
+ * which of those found are new, and which replaces which. Pure functions, without files and buses.
  */
 #ifndef OWSCTL_MERGE_H
 #define OWSCTL_MERGE_H
@@ -37,7 +36,7 @@ enum merge_fault {
 	MERGE_OLD_FOUND,   /* OLD is still there */
 	MERGE_NEW_ABSENT,  /* NEW was not found */
 	MERGE_NEW_KNOWN,   /* NEW has items in the file */
-	MERGE_FAMILY,      /* they have other properties */
+	MERGE_FAMILY,      /* the two have other properties */
 	MERGE_TWICE,       /* OLD or NEW stands in two pairs */
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Names as the user writes them. */
+/* Names of signals as the user writes them: patterns, and the nearest name of the table. */
 #include <fnmatch.h>
 #include <stdio.h>
 #include <string.h>
@@ -58,7 +58,7 @@ static unsigned least(unsigned a, unsigned b)
 
 unsigned names_distance(const char *a, const char *b)
 {
-	/* Three rows of the table of distances between all beginnings of a and of b. */
+	/* three rows of the table of distances between all beginnings of a and of b */
 	unsigned rows[3][NAMES_MAX + 1];
 	size_t la = strnlen(a, NAMES_MAX), lb = strnlen(b, NAMES_MAX);
 
@@ -113,7 +113,7 @@ bool names_nearest(struct ows *h, const char *name, char best[NAMES_MAX])
 	size_t len = strlen(name);
 	struct nearest nearest = {.name = name, .best = best};
 
-	/* A third of the letters wrong is another name. */
+	/* a name with more than a third of its letters wrong is another name */
 	nearest.distance = (unsigned)(len < 3 ? 2 : len / 3 + 1);
 	if (len >= NAMES_MAX)
 		return false;

@@ -16,14 +16,18 @@ int names_lookup(struct ows *h, const char *instance, const char *name, int *sig
                  enum attribute *attribute);
 
 /*
- * The path of the signal whose value a name means, else NULL. Valid as long as that of ows_info().
+ * The path of the signal whose value the name means, else NULL. Valid as long as that of
+ * ows_info().
  */
 const char *names_path(struct ows *h, const char *instance, const char *name);
 
 /* Does one of count patterns (fnmatch) match, or is there none? */
 bool names_match(const char *name, char *const *patterns, int count);
 
-/* Single insertions, deletions, replacements and swaps of neighbours between two names. */
+/*
+ * The least number of insertions, deletions, replacements and swaps of neighbours between two
+ * names.
+ */
 unsigned names_distance(const char *a, const char *b);
 /* The name that the user probably meant; false if no name is near. */
 bool names_nearest(struct ows *h, const char *name, char nearest[NAMES_MAX]);

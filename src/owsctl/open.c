@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A target opened for the verbs that look at devices, and questions to it. */
+/* Opens a target for the verbs that look at devices, and sends requests to it. */
 #include <errno.h>
 #include <getopt.h>
 #include <poll.h>
@@ -13,8 +13,8 @@
 #include "src/owsctl/open.h"
 #include "src/owsctl/reading.h"
 
-#define GRACE_NS (2 * NS_PER_S)    /* a request ends by its deadline; this is for what does not */
-#define PROGRESS_NS (5 * NS_PER_S) /* how often the count of answers is printed */
+#define GRACE_NS (2 * NS_PER_S)    /* after its deadline the bus has this time to end a request */
+#define PROGRESS_NS (5 * NS_PER_S) /* the pause between two prints of the count of answers */
 
 static int64_t boottime(void *ctx)
 {
@@ -80,7 +80,7 @@ static void step(struct target *target, int64_t until_ns)
 	bool known = target->up || target->down;
 	int64_t next = bus_step(target->bus, boottime(NULL));
 
-	/* There is news: whoever waits for it looks first. */
+	/* an answer or an event came: return to the caller, which may wait for it */
 	if (target->answered != answered || known != (target->up || target->down))
 		return;
 	if (next > until_ns)
@@ -89,7 +89,7 @@ static void step(struct target *target, int64_t until_ns)
 		wait_fd(NULL, -1, 0, next);
 }
 
-/* CTL_DONE; or the status, and why. */
+/* Returns CTL_DONE; or the status, with the reason in why. */
 static int open_way(struct target *target, const char *name, int64_t until_ns, char *why,
                     size_t why_size)
 {
@@ -111,7 +111,7 @@ static int open_way(struct target *target, const char *name, int64_t until_ns, c
 	return CTL_FAILED;
 }
 
-/* The first way that is open, as owsd does. */
+/* Open the first way that works, as owsd does. */
 static int open_auto(struct target *target, int64_t until_ns, char *why, size_t why_size)
 {
 	size_t used = (size_t)snprintf(why, why_size, "auto finds nothing");
@@ -165,7 +165,7 @@ void target_close(struct target *target)
 	target->bus = NULL;
 }
 
-/* Of many questions, or a target that takes its time for each. */
+/* Print how many of several requests are answered, every PROGRESS_NS. */
 static void say_progress(const struct target *target, int64_t *said_ns)
 {
 	int64_t now_ns = boottime(NULL);

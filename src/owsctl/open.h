@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A target that owsctl opens itself, without owsd: a bus, run here until its answers are there.
- * Blocking, bounded by the time given.
+ * A target that owsctl opens without owsd: a bus that runs in this process until its answers have
+ * come. Blocking, up to the time given.
  */
 #ifndef OWSCTL_OPEN_H
 #define OWSCTL_OPEN_H
@@ -16,14 +16,14 @@
 #define OPEN_TIMEOUT_NS (20 * NS_PER_S)
 
 struct target {
-	const char *name;     /* as given */
-	struct served served; /* none was given: of the instance */
+	const char *name;     /* the target as given */
+	struct served served; /* without a given target: that of the instance */
 	int64_t timeout_ns;   /* for opening, and for each request */
 	struct bus *bus;
 	struct bus_env env;
 	bool up, down;
 	bool dead;             /* a request was never answered: the bus still owns it */
-	struct bus_event loss; /* down: why */
+	struct bus_event loss; /* why the target is down */
 	struct ask *asks;
 	unsigned count, answered;
 	uint32_t first_id;
@@ -46,10 +46,10 @@ void target_close(struct target *target);
  * without one by its deadline gets -ETIMEDOUT, and so does every later request of this target.
  */
 void target_ask(struct target *target, struct ask *asks, unsigned count);
-/* One request: the error of its answer. */
+/* Do one request. Returns the error of its answer. */
 int target_ask_one(struct target *target, struct ask *ask);
 
-/* Options of all verbs that open a target: -w; as ctl_option(). */
+/* The option -w of all verbs that open a target; as ctl_option(). */
 int target_option(struct ctl *ctl, int argc, char **argv, const char *options, int64_t *timeout_ns);
 
 /*
@@ -62,7 +62,7 @@ bool target_path(const char *given, char path[256], bool *fresh);
  * numbers, to 12 characters; in place; other text stays. Returns the new length.
  */
 size_t target_unpad(char *text, size_t len);
-/* Is it one number, as JSON writes them? */
+/* Is the text one number, as JSON writes them? */
 bool target_is_number(const char *text, size_t len);
 
 #endif

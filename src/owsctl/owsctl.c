@@ -36,7 +36,7 @@ static const struct verb verbs[] = {
          "list the devices, or print a configuration for them", verb_scan, .opens = true},
 };
 enum { JSON = 256 };
-#define USAGE_WIDTH 46 /* what is longer has its meaning in the next line */
+#define USAGE_WIDTH 46 /* a longer usage puts the meaning into the next line */
 #define VERBS (sizeof(verbs) / sizeof(verbs[0]))
 
 static void usage(FILE *out)
@@ -69,14 +69,14 @@ int main(int argc, char **argv)
 	char why[1024];
 	int c;
 
-	/* A reader of ours that leaves is seen as EPIPE. */
+	/* a write to a pipe without reader fails with EPIPE */
 	signal(SIGPIPE, SIG_IGN);
 	c = standard_open();
 	if (c)
 		return ctl_fail("/dev/null: %s", strerror(-c));
-	/* And a file that may not grow as EFBIG. */
+	/* a write to a file beyond its limit fails with EFBIG */
 	signal(SIGXFSZ, SIG_IGN);
-	/* getopt would say it with what stands there, which may steer the terminal. */
+	/* getopt would print the option itself, which may steer the terminal */
 	opterr = 0;
 	while ((c = getopt_long(argc, argv, "+:n:t:Vh", longs, NULL)) != -1) {
 		switch (c) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Properties that paths name, held against the tables of the families. */
+/* Looks up the properties that paths name in the tables of the families. */
 #include <stdio.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ static bool begins(const struct property *property, const char *name, size_t len
 	return !strncmp(property->name, name, len) && property->name[len] == '/';
 }
 
-/* The property itself, or the directory that it is in. */
+/* Is name the property itself, or the directory that it is in? */
 static bool has(const struct family *family, const char *name, size_t len)
 {
 	const struct property *property = NULL;
@@ -27,7 +27,9 @@ static bool has(const struct family *family, const char *name, size_t len)
 	return false;
 }
 
-/* As owsctl's other names: a third of the letters wrong is another name. */
+/*
+ * As with owsctl's other names, a name with more than a third of its letters wrong is another one.
+ */
 static void find_nearest(const struct family *family, const char *name, const char *extension,
                          char nearest[PROPERTY_NAME])
 {

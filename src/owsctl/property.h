@@ -8,9 +8,9 @@
 #define PROPERTY_NAME 64
 
 /*
- * True also where that cannot be known: a path without an id or a property, a family that owsd does
- * not have. False: nearest gets the name that the user probably meant, with the given extension; ""
- * when no name is near.
+ * True too where the answer is not known: a path without an id or a property, a family that owsd
+ * does not know. False: nearest gets the name that the user probably meant, with the given
+ * extension; "" when no name is near.
  */
 bool property_known(const char *path, char nearest[PROPERTY_NAME]);
 

@@ -71,7 +71,7 @@ static int read_one(const struct ctl *ctl, struct json *json, struct target *tar
 		print_text(len);
 	if (!err)
 		return CTL_DONE;
-	/* In order with stdout where both go to one place. */
+	/* keep the order of stderr and stdout where both go to one place */
 	if (!ctl->json)
 		fflush(stdout);
 	return ctl_fail("%s: %s", given, error_words(err, words));

@@ -76,7 +76,7 @@ const char *reading_why(const struct reading *reading, char words[READING_WORDS]
 		return words;
 	}
 	if (value->err) {
-		/* "no such property (check its spelling ...)", and no word of it twice */
+		/* do not repeat the quality: "no such property (check its spelling ...)" */
 		bool same = strcmp(ows_quality_text(value->quality), error_text(value->err)) == 0;
 
 		snprintf(error, sizeof(error), " (%s)",

@@ -15,7 +15,7 @@
 
 struct reading {
 	struct ows_value value;
-	int err;    /* of ows_get_text(); the value is of use if 0 or -ESTALE */
+	int err;    /* of ows_get_text(); the value counts if this is 0 or -ESTALE */
 	size_t len; /* bytes of text */
 	char text[READING_TEXT];
 };
@@ -28,7 +28,7 @@ int reading_get(struct ows *h, int id, int64_t now_ns, struct reading *reading);
  */
 void reading_round(struct reading *reading, const char *path);
 bool reading_good(const struct reading *reading);
-/* Is there a value to show at all? */
+/* Has the signal a value to show? */
 bool reading_filled(const struct reading *reading);
 
 #define READING_WORDS 320

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The signals that patterns select, and what is known of each. */
+/* The signals that patterns select, and the state of each. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

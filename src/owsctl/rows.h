@@ -8,14 +8,14 @@
 #include "src/signal/value.h"
 
 struct row {
-	int id; /* for ows_get(); right over ows_reopen() */
+	int id; /* for ows_get(); stays valid over ows_reopen() */
 	char *name;
 	char *path;   /* NULL: a driver signal */
 	uint8_t type; /* enum ows_type */
 	bool output, fresh, alarm;
 	struct ows_alarm_state alarms;  /* of the last row_read() */
-	char commanded[VALUE_TEXT_MAX]; /* likewise: the command; "" none, or a string */
-	bool differs;                   /* likewise: the command differs from the value */
+	char commanded[VALUE_TEXT_MAX]; /* the last row_read(): the command; "": none or a string */
+	bool differs; /* the last row_read(): the command differs from the value */
 	/* the state at the last call of row_changed() */
 	bool seen;
 	uint8_t quality;
@@ -28,7 +28,9 @@ struct rows {
 	int count;
 };
 
-/* Driver signals too if driver. 0 or -ENOMEM. Free with rows_free(). */
+/*
+ * Collect the signals, with `driver` the driver signals too. 0 or -ENOMEM. Free with rows_free().
+ */
 int rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool driver,
                  struct rows *rows);
 void rows_free(struct rows *rows);

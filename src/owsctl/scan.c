@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* owsctl scan: what is on the wires of a target, as a table, as JSON or as a configuration. */
+/* owsctl scan: prints the devices of a target as a table, as JSON or as a configuration. */
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>
@@ -19,7 +19,7 @@ static const struct table_column columns[] = {
 	{"PATH"}, {"FAMILY"}, {"TYPE"}, {"ALIAS"}, {"BUS"}, {"ALARM"}, {"VALUES"},
 };
 
-/* Does it answer an alarm search? NULL: not a family of ours. */
+/* Do devices of the family answer an alarm search? NULL: owsd does not know the family. */
 static const char *alarms(const struct scan_device *device)
 {
 	const struct family *family = family_of(device->family);
@@ -29,7 +29,7 @@ static const char *alarms(const struct scan_device *device)
 	return family->alarms ? "yes" : "no";
 }
 
-/* "temperature12=21.5 ..." */
+/* Write the values as "temperature12=21.5 ...". */
 static void show_values(const struct scan_device *device, char *out, size_t size)
 {
 	size_t used = 0;
@@ -127,7 +127,7 @@ static void print_json(const struct scan *scan)
 	json_end(&json);
 }
 
-/* Print the configuration: made of what was found, or the file that it is put into. */
+/* Print the configuration: a new one, or the given file with the devices added. */
 static int print_rio(const struct ctl *ctl, const struct target *target, const struct scan *scan,
                      struct scan_merge *merge, bool inputs_only)
 {
@@ -153,7 +153,7 @@ static int show(const struct ctl *ctl, const struct scan *scan)
 	return CTL_DONE;
 }
 
-/* Who redirects into a file finds it empty after a failure. */
+/* After a failure, warn that the file to which stdout goes is empty. */
 static void tell_of_file(void)
 {
 	struct stat out;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Nothing was found: what the board lacks for it. */
+/* Prints what the board lacks when a scan found nothing. */
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What `owsctl scan` finds: devices, and what each of them has. */
+/* The devices that `owsctl scan` finds, and the properties and values of each. */
 #ifndef OWSCTL_SCAN_DEVICE_H
 #define OWSCTL_SCAN_DEVICE_H
 
@@ -11,14 +11,14 @@ struct scan_property {
 	const char *name; /* "temperature12" */
 	const char *word; /* for the name of its signal: "temperature" */
 	enum ows_type type;
-	bool output;         /* what it has now is asked for, and kept */
-	unsigned per_factor; /* 0: as owsd does by itself */
+	bool output;         /* owsctl reads the present value, and keeps it as the initial one */
+	unsigned per_factor; /* 0: owsd's default */
 };
 
 #define SCAN_PROPERTIES 4
 struct scan_kind {
 	const char *families;                           /* "22 28" */
-	struct scan_property property[SCAN_PROPERTIES]; /* name NULL behind the last */
+	struct scan_property property[SCAN_PROPERTIES]; /* name NULL after the last */
 };
 
 struct scan_value {
@@ -33,9 +33,9 @@ struct scan_device {
 	char location[16]; /* "bus.0" */
 	uint8_t family;
 	bool simulated;
-	char type[SCAN_TYPE];         /* "" not told */
-	char alias[SCAN_ALIAS];       /* "" none */
-	const struct scan_kind *kind; /* NULL: none of ours */
+	char type[SCAN_TYPE];         /* "": the target does not report it */
+	char alias[SCAN_ALIAS];       /* "": no alias */
+	const struct scan_kind *kind; /* NULL: owsd does not know the family */
 	struct scan_value value[SCAN_PROPERTIES];
 };
 

@@ -32,7 +32,7 @@ void scan_names_free(struct scan_names *names)
 	free(names->name);
 }
 
-/* Where the name stands in the table, or would. Half of the places stay free. */
+/* The name's place in the hash table, or the free place for it. Half of the places stay free. */
 static unsigned *find(const struct scan_names *names, const char *name)
 {
 	uint32_t hash = 2166136261u; /* FNV-1a */
@@ -53,7 +53,7 @@ void scan_names_add(struct scan_names *names, const char *name)
 
 	if (names->count == names->room)
 		return;
-	memcpy(to, name, strnlen(name, SIGNAL_NAME_MAX)); /* the rest is 0 */
+	memcpy(to, name, strnlen(name, SIGNAL_NAME_MAX)); /* the other bytes are 0 */
 	place = find(names, to);
 	names->count++;
 	if (!*place)
@@ -65,7 +65,7 @@ static bool is_free(const struct scan_names *names, const char *name)
 	return !*find(names, name) && !signal_name_fault(name);
 }
 
-/* A name that was given stays given: the search goes on where it ended for this word. */
+/* The last number given for the word: the search for a free number goes on from there. */
 static unsigned *last_of(struct scan_names *names, const char *word)
 {
 	unsigned i = 0;
@@ -128,7 +128,7 @@ static void make_item(struct scan_names *names, const struct scan_device *device
 	        value_type_name(property->type), property->output ? "output" : "input", rate, init);
 }
 
-/* Is it to be in the configuration? Says why not where that is a surprise. */
+/* Does the property get an item? Prints the reason where the answer is a surprise. */
 static bool wanted(const struct scan_device *device, unsigned i, bool inputs_only)
 {
 	const struct scan_property *property = &device->kind->property[i];
@@ -160,7 +160,7 @@ int scan_add_items(struct rio **rio, struct scan_names *names)
 	return names->len ? rio_add(rio, rio_child(&(*rio)->root, "OwsDrv"), names->text) : 0;
 }
 
-/* Why what was made is no configuration; status CTL_DONE: it is one. */
+/* Why owsd would refuse the configuration; status CTL_DONE: owsd would accept it. */
 struct refusal {
 	const char *what;
 	int status;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Items of a configuration for devices that were found, under names that nobody has. */
+/* Makes items of a configuration for devices that were found, with names that are free. */
 #ifndef OWSCTL_SCAN_ITEM_H
 #define OWSCTL_SCAN_ITEM_H
 
@@ -11,36 +11,36 @@
 
 #define SCAN_WORDS 32
 
-/* The names given so far, so that none is given twice, and the items that were made for them. */
+/* The names in use, so that no name is given twice, and the items that were made. */
 struct scan_names {
 	char (*name)[SIGNAL_NAME_MAX + 1];
 	unsigned count, room;
-	unsigned *place; /* by hash of the name: its number + 1, 0 free */
+	unsigned *place; /* hash table of names: number of the name + 1, 0: free */
 	unsigned places; /* a power of two */
 	struct scan_word {
 		const char *word;
-		unsigned last; /* the number given last */
+		unsigned last; /* the last number given for the word */
 	} word[SCAN_WORDS];
 	FILE *items;
 	char *text;
 	size_t len;
 };
 
-/* Room for so many names. False: no memory. In any case free with scan_names_free(). */
+/* Make room for so many names. False: no memory. Free with scan_names_free() in any case. */
 bool scan_names_init(struct scan_names *names, size_t room);
 void scan_names_free(struct scan_names *names);
-/* One that is in use already. */
+/* Add a name that is in use already. */
 void scan_names_add(struct scan_names *names, const char *name);
 
 /*
- * Make an item for each property of the device, as its kind says; without outputs if inputs_only. An
- * output that cannot be read is left out, which is said.
+ * Make an item for each property of the device's kind; without outputs if inputs_only. An output
+ * that cannot be read gets no item, and owsctl prints that.
  */
 void scan_make_items(struct scan_names *names, const struct scan_device *device, bool inputs_only);
-/* Add all that were made at the end of the configuration, once. 0 or a negative errno. */
+/* Add all items that were made at the end of the configuration, once. 0 or a negative errno. */
 int scan_add_items(struct rio **rio, struct scan_names *names);
 
-/* Would owsd read it? CTL_DONE, or CTL_FAILED after having said that it does not. */
+/* Would owsd accept the configuration? CTL_DONE, or CTL_FAILED after printing why not. */
 int scan_check(const struct rio *rio, const char *what);
 
 #endif

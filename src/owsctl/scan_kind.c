@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* What most people want of a device, by its family. */
+/* The properties that most people want of a device, by its family. */
 #include <stdio.h>
 #include <string.h>
 
 #include "src/owsctl/scan_device.h"
 #include "src/owsctl/scan_kind.h"
 
-/* In periods of 0.1 s: measurements once a second, contacts as fast as it goes. */
+/* In periods of 0.1 s: measurements once a second, contacts in each period. */
 #define MEASURED 10
 
 static const struct scan_kind kinds[] = {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What most people want of a device, by its family. */
+/* The properties that most people want of a device, by its family. */
 #ifndef OWSCTL_SCAN_KIND_H
 #define OWSCTL_SCAN_KIND_H
 

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* scan --rio --merge FILE: the file as it is, with its new devices, and what is missing told. */
+/*
+ * scan --rio --merge FILE: prints the file with its new devices added, and reports which are
+ * missing.
+ */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,7 +22,7 @@
 /* One item of the file. */
 struct item {
 	char *name, *path;
-	int device; /* in known; -1: its path has no id, and no device of that alias was found */
+	int device; /* index in known; -1: no id in the path, no device with its alias found */
 };
 
 struct work {
@@ -27,7 +30,7 @@ struct work {
 	const struct scan *scan;
 	struct item *item;
 	unsigned item_count;
-	struct merge_device *known, *found; /* found: as scan->device */
+	struct merge_device *known, *found; /* found: the same order as scan->device */
 	unsigned known_count;
 	struct merge_pair pair[SCAN_PAIRS];
 	struct scan_names names;
@@ -96,7 +99,7 @@ static int add_known(struct work *work, const uint8_t rom[ROM_LEN])
 	return (int)work->known_count++;
 }
 
-/* Which device an item is of: by the id in its path, or by its alias if a found one has that. */
+/* The device of an item: by the id in its path, or by an alias that a found device has. */
 static int device_of(struct work *work, const char *text)
 {
 	struct path path;
@@ -297,7 +300,7 @@ static void tell_missing(const struct work *work)
 			         work->item[i].name, work->item[i].path);
 }
 
-/* The path with the new id in the place and the format of the old one, and with its bus. */
+/* Write the path with the new id, in the old one's place and format, and keep its bus. */
 static bool new_path(const char *old, const struct merge_device *device,
                      const struct scan_device *found, char *out, size_t size)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* scan --rio: a configuration made of what was found. */
+/* scan --rio: makes a configuration of the devices that were found. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -36,7 +36,7 @@ int scan_rio(const struct scan *scan, const char *target, bool several, bool inp
 	struct rio *rio = NULL;
 	int err, status = CTL_DONE;
 
-	/* several, where an owsd has them, stand as in TargetName; the name of one holds neither */
+	/* several targets are written as in TargetName, so the name of a single one has neither */
 	if (!several && strpbrk(target, ",|"))
 		return ctl_fail("%s cannot be a TargetName: it holds \",\" or \"|\"", target);
 	err = scan_names_init(&names, (size_t)scan->count * SCAN_PROPERTIES) ? 0 : -ENOMEM;

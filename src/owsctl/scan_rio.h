@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* scan --rio: a configuration made of what was found. */
+/* scan --rio: makes a configuration of the devices that were found. */
 #ifndef OWSCTL_SCAN_RIO_H
 #define OWSCTL_SCAN_RIO_H
 
@@ -8,8 +8,8 @@
 struct scan;
 
 /*
- * Print a configuration with that TargetName, which may be several; without outputs if inputs_only.
- * CTL_DONE, or CTL_FAILED after having said why; then nothing was printed.
+ * Print a configuration with that TargetName, which may be several targets; without outputs if
+ * inputs_only. CTL_DONE, or CTL_FAILED after printing why; then stdout got nothing.
  */
 int scan_rio(const struct scan *scan, const char *target, bool several, bool inputs_only);
 

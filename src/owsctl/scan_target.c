@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What owsctl scan asks a target for: its devices and their properties. */
+/* Asks a target for its devices and their properties, for owsctl scan. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 #define LISTING_MAX (256u * 1024)
 #define BUSES_MAX 256
 
-/* What is asked of a device beside the properties of its kind. */
+/* The requests for a device besides those for the properties of its kind. */
 enum { ASK_TYPE, ASK_ALIAS, ASK_PROPERTIES, ASKS = ASK_PROPERTIES + SCAN_PROPERTIES };
 
 struct question {
@@ -29,7 +29,7 @@ static int by_path(const void *a, const void *b)
 	return strcmp(x->path, y->path);
 }
 
-/* The listing of path in text (LISTING_MAX + 1 bytes); the error. */
+/* List path into text (LISTING_MAX + 1 bytes). Returns the error. */
 static int list(struct target *target, const char *path, bool fresh, char *text)
 {
 	struct ask ask = {.req = {.op = BUS_DIR,
@@ -44,7 +44,7 @@ static int list(struct target *target, const char *path, bool fresh, char *text)
 	return err;
 }
 
-/* The device of a line; false if it shows none. */
+/* Parse the device of a line; false if the line shows none. */
 static bool device_of(const char *line, struct scan_device *device)
 {
 	char rom[ROM_TEXT_MAX];
@@ -87,7 +87,7 @@ static int find(struct target *target, struct scan *scan, char *text)
 	return CTL_DONE;
 }
 
-/* Which bus each is on; buses are numbered without gaps. */
+/* Find the bus of each device; buses are numbered without gaps. */
 static void locate(struct target *target, struct scan *scan, char *text)
 {
 	char path[16], *rest;
@@ -135,7 +135,7 @@ static void take_answer(struct scan_device *device, unsigned n, struct ask *ask,
 	}
 }
 
-/* All questions at once: so all thermometers convert at the same time where the bus can do that. */
+/* Ask all requests at once: all thermometers convert at the same time where the bus can do that. */
 static int look(struct target *target, struct scan *scan)
 {
 	size_t room = (size_t)scan->count * ASKS;
@@ -173,7 +173,9 @@ static int look(struct target *target, struct scan *scan)
 			            questions[count].text);
 			count++;
 		}
-	/* A dead target is not stepped again, so nothing is written to what is still lent to it. */
+	/*
+	 * A dead target is not stepped again, so the bus writes no more to the memory freed here.
+	 */
 	free(questions);
 	free(asks);
 	return target->dead ? ctl_fail("%s does not answer any more", target->name) : CTL_DONE;

@@ -21,7 +21,7 @@
 
 #define TEXT_MAX (1024 * 1024)
 
-/* The file, locked and ours alone; -1: it cannot be had now. */
+/* Open and lock the file, which belongs to this user alone; -1: it is not available now. */
 static int open_file(const char *instance)
 {
 	char path[96];
@@ -52,7 +52,7 @@ static char *load(int fd)
 	return NULL;
 }
 
-/* The lines of text but that of signal, and this one; true: it is written. */
+/* Write the lines of text without that of the signal, and the signal's new line. True: written. */
 static bool store(int fd, char *text, int64_t start_ns, const char *signal, uint32_t occurrences)
 {
 	FILE *out = fdopen(dup(fd), "r+");
@@ -72,7 +72,7 @@ static bool store(int fd, char *text, int64_t start_ns, const char *signal, uint
 	return fclose(out) == 0 && ok;
 }
 
-/* What stands in text for this signal, if it is of this owsd. */
+/* Read the number that text has for the signal, if this owsd's START is in it. */
 static bool has_seen(const char *text, int64_t start_ns, const char *signal, uint32_t *occurrences)
 {
 	char *end;

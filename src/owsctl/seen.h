@@ -5,9 +5,10 @@
 #include "src/owsctl/reading.h"
 
 /*
- * name is the name that was read into reading, with the id. If it is an _Alarm that this user's
- * owsctl has read before, and no alarm came since, its value becomes 0; else it counts as read from
- * now on. Where that cannot be kept the value stays: an alarm is shown twice rather than never.
+ * name is the name that was read into reading, with the id. If the name is an _Alarm that this
+ * user's owsctl has read before, and no alarm came since, the value becomes 0; else the alarm
+ * counts as read from now on. Where owsctl cannot keep that, the value stays: the user sees an
+ * alarm twice rather than never.
  */
 void seen_alarm(const struct ctl *ctl, struct ows *h, const char *name, int id,
                 struct reading *reading);

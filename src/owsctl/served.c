@@ -7,10 +7,13 @@
 #include "src/owsctl/served.h"
 #include "src/owsctl/when.h"
 
-/* The shared memory has so much of a target's text. */
+/* The shared memory keeps so many bytes of a target's text. */
 #define NAME_MOST 103
 
-/* As in TargetName: a bar between ways to one wire, a comma between wires. False: not whole. */
+/*
+ * Write the targets as in TargetName: a bar between ways to one wire, a comma between wires. False:
+ * the text is cut.
+ */
 static bool copy_targets(struct ows *h, char *out, size_t size)
 {
 	bool whole = true;
@@ -43,11 +46,11 @@ int served_find(const struct ctl *ctl, struct served *served)
 
 	*served = (struct served){0};
 	err = ows_open(ctl->instance, OWS_READ, &h);
-	/* Nobody asked for an owsd, and there is none: that of owserver is meant. */
+	/* no owsd was asked for and none is there: the caller means the port of owserver */
 	if (err == -ENOENT && !ctl->named)
 		return CTL_DONE;
 	if (err)
-		return ctl_open(ctl, OWS_READ, &h); /* it says why */
+		return ctl_open(ctl, OWS_READ, &h); /* ctl_open() prints the reason */
 	ows_daemon(h, when_now().boot, &daemon);
 	served->runs = daemon.alive;
 	where = ows_served(h);

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The owserver protocol as an instance of owsd serves it: where, and what is behind it. */
+/*
+ * The owserver protocol as an instance of owsd serves it: its address, and the targets it serves.
+ */
 #ifndef OWSCTL_SERVED_H
 #define OWSCTL_SERVED_H
 
@@ -8,13 +10,13 @@
 #include "src/owsctl/ctl.h"
 
 struct served {
-	bool runs;          /* there is an owsd of that name, and it lives */
-	char target[160];   /* what reaches it; "" where it serves none */
-	char targets[1024]; /* its own, as in TargetName */
-	bool cut;           /* not all of them, or not whole */
+	bool runs;          /* an owsd of that name exists and is alive */
+	char target[160];   /* the target that reaches the protocol; "": owsd does not serve it */
+	char targets[1024]; /* the targets of owsd, as in TargetName */
+	bool cut;           /* targets is cut */
 };
 
-/* CTL_DONE, or CTL_FAILED after having said why: the instance was asked for and is not there. */
+/* CTL_DONE, or CTL_FAILED after printing why: the user named an instance that is not there. */
 int served_find(const struct ctl *ctl, struct served *served);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The verb set: values checked, set, and waited for until the bus has them. */
+/* owsctl set: checks values, sets them, and waits until the bus has them. */
 #include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
@@ -58,7 +58,7 @@ static bool is_edge(enum attribute attribute)
 	return attribute_table[attribute].writable && !attribute_table[attribute].readable;
 }
 
-/* Everything that can be wrong is looked for before the first value is set. */
+/* Check all orders before the first value is set. */
 static int prepare(const struct ctl *ctl, struct ows *h, struct order *order)
 {
 	const struct attribute_def *def;
@@ -101,7 +101,7 @@ static int put(struct ows *h, struct order *order)
 	if (value_is_float(order->type))
 		return ows_set(h, order->id, value_number(order->type, order->value),
 		               &order->stamp);
-	/* An edge is a change from 0, whatever this handle has seen before. */
+	/* an edge is a change from 0, whatever this handle has set before */
 	if (is_edge(order->attribute))
 		ows_set_integer(h, order->id, 0, NULL);
 	return ows_set_integer(h, order->id, order->value, &order->stamp);
@@ -112,7 +112,7 @@ static int send(struct ows *h, struct order *order)
 	struct ows_daemon daemon = {0};
 	int err = put(h, order);
 
-	/* owsd has just moved to new memory: say it there. */
+	/* owsd has just moved to new memory: set the value there */
 	for (int i = 0; err == -ESTALE && i < 10; i++) {
 		ctl_nap();
 		if (ows_reopen(h) == 0)
@@ -192,7 +192,7 @@ static bool write_disabled(struct ows *h, const struct order *order)
 	return id >= 0 && ows_get(h, id, ows_now(), &value) == 0 && value.integer == 0;
 }
 
-/* Of a signal that is read with success, the error is the write's. */
+/* If the signal is read with success, the error is that of the write. */
 static const char *why_not(const struct reading *reading, char words[READING_WORDS])
 {
 	char own[ERROR_WORDS];
@@ -246,7 +246,7 @@ static void print_json(const struct order *orders, int count, bool waited)
 	json_end(&json);
 }
 
-/* Of two values for one thing it would be chance which of them the device gets to see. */
+/* Refuse two values for one signal: chance would decide which of them the device gets. */
 static int refuse_twice(const struct order *orders, int count)
 {
 	for (int i = 1; i < count; i++)
@@ -257,8 +257,8 @@ static int refuse_twice(const struct order *orders, int count)
 }
 
 /*
- * A heart that has stopped is seen after two seconds, a lock that was let go at once. Who may not
- * look at the lock waits for the heart.
+ * A stopped heart shows after two seconds, a released lock at once. Without the right to look at
+ * the lock the heart decides.
  */
 static bool was_killed(const struct ctl *ctl, struct ows *h)
 {

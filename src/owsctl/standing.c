@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The alarms of a signal that stand now: its device alarm and its limit alarm, in words. */
+/* The present alarms of a signal, its device alarm and its limit alarm, in words. */
 #include <errno.h>
 #include <stdio.h>
 

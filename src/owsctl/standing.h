@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The alarms of a signal that stand now, as list and watch show them. */
+/* The present alarms of a signal, as list and watch show them. */
 #ifndef OWSCTL_STANDING_H
 #define OWSCTL_STANDING_H
 
@@ -8,23 +8,26 @@
 #include "src/libows/ows.h"
 #include "src/owsctl/json.h"
 
-/* Of the signal of an id of ows_find(); nothing stands where nothing is known, as of the driver. */
+/* The alarms of the signal of an ows_find() id; none where none are known, as for the driver. */
 struct ows_alarm_state standing_of(struct ows *h, int id);
 
-/* Can the signal have alarms at all? */
+/* Can the signal have alarms? */
 bool standing_possible(const struct ows_alarm_state *state);
 bool standing_any(const struct ows_alarm_state *state);
-/* Does one stand that nobody has acknowledged? A device alarm cannot be acknowledged. */
+/*
+ * Does the signal have an alarm that nobody has acknowledged? A device alarm cannot be
+ * acknowledged.
+ */
 bool standing_wants_eyes(const struct ows_alarm_state *state);
 
 #define STANDING_WORDS 64
 /*
- * "! high", "high, acknowledged", "! high, returned", "! device"; "-" when none stands. The mark
- * stands before what wants eyes. Returns words.
+ * "! high", "high, acknowledged", "! high, returned", "! device"; "-" without an alarm. The mark
+ * stands before an alarm that nobody has acknowledged. Returns words.
  */
 const char *standing_text(const struct ows_alarm_state *state, char words[STANDING_WORDS]);
 
-/* The member "alarms": an array with an object for each that stands. */
+/* The member "alarms": an array with an object for each present alarm. */
 void standing_json(struct json *json, const struct ows_alarm_state *state);
 
 #endif

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* owsctl stats: owsd itself, its targets and its counters; of an owsd that ended, the last ones. */
+/*
+ * owsctl stats: prints owsd's state, its targets and its counters, or the last ones of an owsd that
+ * ended.
+ */
 #include <getopt.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -30,7 +33,7 @@ static const char *target_state(uint32_t state)
 	return state < 3 ? names[state] : "unknown";
 }
 
-/* Signals of the table that are not good. */
+/* Count the signals of the table that are not good. */
 static int not_good(struct ows *h, int64_t now_ns)
 {
 	struct ows_value value;
@@ -41,7 +44,7 @@ static int not_good(struct ows *h, int64_t now_ns)
 	return count;
 }
 
-/* How many signals each target serves now. */
+/* Print how many signals each target serves now. */
 #define TARGETS 255
 static void count_served(struct ows *h, int64_t now_ns, unsigned served[TARGETS + 1])
 {

@@ -6,9 +6,9 @@
 #include "src/owsctl/table.h"
 #include "src/owsctl/text.h"
 
-#define CELL 512 /* bytes */
+#define CELL 512 /* bytes of a cell */
 #define GAP 2
-#define LEAST 4 /* a column is not made narrower than that */
+#define LEAST 4 /* a column is not cut below this width */
 
 void table_init(struct table *table, const struct table_column *columns, unsigned count)
 {
@@ -74,7 +74,7 @@ static int to_drop(const struct table *table, bool spare_only)
 	return found;
 }
 
-/* How far a column may be cut before another is left out. */
+/* The width to which a column may be cut before another one is left out. */
 static unsigned shrunk(const struct table *table, unsigned i)
 {
 	unsigned to = table->columns[i].shrink;
@@ -82,7 +82,7 @@ static unsigned shrunk(const struct table *table, unsigned i)
 	return to > 0 && to < table->width[i] ? to : table->width[i];
 }
 
-/* Columns that cutting can gain. */
+/* The columns that cutting can gain. */
 static unsigned slack(const struct table *table)
 {
 	unsigned sum = 0;
@@ -110,7 +110,7 @@ static unsigned larger(unsigned a, unsigned b)
 	return a > b ? a : b;
 }
 
-/* Columns of a plain number from its decimal point on; -1: the cell holds no such number. */
+/* The columns of a plain number from its decimal point on; -1: the cell has no such number. */
 static int fraction_of(const char *cell)
 {
 	size_t digits, len = strspn(cell, "-");
@@ -125,7 +125,7 @@ static int fraction_of(const char *cell)
 	return cell[len] == '.' && digits > 0 && !cell[len + 1 + digits] ? (int)digits + 1 : -1;
 }
 
-/* The width of a column, and how far its fractions go. */
+/* Find the width of a column, and the width of its longest fraction. */
 static void measure(struct table *table, unsigned i)
 {
 	unsigned whole = 0, other = text_columns(table->columns[i].title);
@@ -167,7 +167,7 @@ void table_fit(struct table *table, unsigned columns)
 		table->width[i]--;
 }
 
-/* Blanks behind a cell of a right column, so that the decimal points stand below each other. */
+/* Blanks after a cell of a right column, so that the decimal points stand below each other. */
 static unsigned behind(const struct table *table, unsigned i, const char *cell, unsigned pad)
 {
 	int fraction = table->columns[i].right ? fraction_of(cell) : -1;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Columns of text, as wide as their cells, fitted into a terminal by leaving out and cutting. */
+/* Columns of text, as wide as their cells, fitted into a terminal: columns are left out and cut. */
 #ifndef OWSCTL_TABLE_H
 #define OWSCTL_TABLE_H
 
@@ -13,17 +13,17 @@ struct table_column {
 	bool right;      /* aligned to the right; numbers at their decimal points */
 	unsigned drop;   /* left out in a narrow terminal, greatest first; 0: never */
 	bool spare;      /* left out before another column is cut */
-	unsigned shrink; /* cut down to that many columns before one is left out; 0: not */
-	unsigned most;   /* cut at that many columns; 0: no limit */
+	unsigned shrink; /* cut down to so many columns before another is left out; 0: not cut */
+	unsigned most;   /* cut at so many columns; 0: no limit */
 };
 
 struct table {
 	const struct table_column *columns;
 	unsigned count;
-	unsigned least[TABLE_COLUMNS];    /* not narrower than that, if there is room; caller's */
-	bool absent[TABLE_COLUMNS];       /* not shown, however much room there is; caller's */
+	unsigned least[TABLE_COLUMNS]; /* the caller's: not narrower than this, if there is room */
+	bool absent[TABLE_COLUMNS];    /* the caller's: not shown, however much room there is */
 	unsigned natural[TABLE_COLUMNS];  /* before fitting */
-	unsigned fraction[TABLE_COLUMNS]; /* of right ones: columns from the decimal point on */
+	unsigned fraction[TABLE_COLUMNS]; /* right columns: the width from the decimal point on */
 	unsigned width[TABLE_COLUMNS];
 	bool shown[TABLE_COLUMNS];
 	char **cells; /* rows * count */

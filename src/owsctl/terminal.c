@@ -35,7 +35,7 @@ static void on_stop(int number)
 
 static void on_size(int number)
 {
-	(void)number; /* only ends the sleep */
+	(void)number; /* the signal only ends the sleep */
 }
 
 static void on_signal(int number, void (*handler)(int))
@@ -62,7 +62,7 @@ static void set_raw(void)
 {
 	struct termios raw;
 
-	/* In the background it would stop us. */
+	/* in the background tcsetattr() would stop the process */
 	if (tcgetpgrp(STDIN_FILENO) != getpgrp() || tcgetattr(STDIN_FILENO, &terminal.before) != 0)
 		return;
 	raw = terminal.before;
@@ -91,7 +91,10 @@ void terminal_open(void)
 
 void terminal_close(void)
 {
-	/* Empty first: a terminal that was resized meanwhile may keep lines of the picture. */
+	/*
+	 * Empty the screen first: a terminal that was resized meanwhile may keep lines of the
+	 * picture.
+	 */
 	static const char leave[] = "\033[H\033[J\033[?7h\033[?25h\033[?1049l";
 
 	if (!terminal.open)

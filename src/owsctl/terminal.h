@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The terminal while a live table is on it, and the signals that end or change it. One terminal for
- * a process.
+ * The terminal while a live table is on it, and the signals that end or change it. A process has
+ * one.
  */
 #ifndef OWSCTL_TERMINAL_H
 #define OWSCTL_TERMINAL_H
@@ -25,17 +25,19 @@ enum terminal_key {
 void terminal_catch_signals(void);
 bool terminal_asked_to_end(void);
 
-/* Take the terminal: another screen, no echo. Given back by terminal_close(), and at exit. */
+/*
+ * Take the terminal: another screen, no echo. terminal_close() gives it back, and so does exit().
+ */
 void terminal_open(void);
 void terminal_close(void);
 
-/* Stopped by Ctrl-Z: give the terminal back, stop, take it again. Call it in each round. */
+/* After Ctrl-Z: give the terminal back, stop, and take it again. Call it in each round. */
 void terminal_suspend_if_asked(void);
 /* Lines and columns, 24 x 80 if unknown. True if the size changed since the last call. */
 bool terminal_size(unsigned *lines, unsigned *columns);
-/* Next key that was pressed; does not wait. */
+/* Return the next key that was pressed, without waiting. */
 enum terminal_key terminal_key(void);
-/* Write a whole picture; false when the terminal is gone. */
+/* Write a whole picture; false: the terminal is gone. */
 bool terminal_write(const char *text, size_t len);
 
 #endif

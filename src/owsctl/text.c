@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How many columns a text takes on a terminal, and what must not reach it. */
+/* The columns that a text takes on a terminal, and the removal of what must not reach one. */
 #include <stdbool.h>
 #include <string.h>
 

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Text on a terminal: how many columns its UTF-8 takes, in any locale, and what must not reach the
- * terminal taken out.
+ * Text on a terminal: how many columns its UTF-8 takes, in any locale, and the removal of what must
+ * not reach the terminal.
  */
 #ifndef OWSCTL_TEXT_H
 #define OWSCTL_TEXT_H
 
 #include <stddef.h>
 
-/* Columns of cleaned text. */
+/* The columns of cleaned text. */
 unsigned text_columns(const char *text);
 
 /*

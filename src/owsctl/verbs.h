@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The verbs of owsctl: each stands in the file of its name, as struct verb of ctl.h says. */
+/* The verbs of owsctl: each stands in the file of its name, as a struct verb (ctl.h). */
 #ifndef OWSCTL_VERBS_H
 #define OWSCTL_VERBS_H
 

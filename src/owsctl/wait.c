@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* owsctl wait: until a value changes or fulfils a condition. */
+/* owsctl wait: waits until a value changes or fulfils a condition. */
 #include <errno.h>
 #include <getopt.h>
 
@@ -12,7 +12,7 @@
 #include "src/owsctl/verbs.h"
 
 #define NO_LIMIT INT64_MAX
-#define SLICE (250 * NS_PER_MS) /* a value that grows old or a dead owsd sends no news */
+#define SLICE (250 * NS_PER_MS) /* an old value or a dead owsd sends no wake-up */
 
 struct waiting {
 	const struct ctl *ctl;
@@ -21,7 +21,7 @@ struct waiting {
 	int id;
 	const char *op; /* NULL: any change */
 	struct condition condition;
-	struct row row; /* what was seen first */
+	struct row row; /* the first reading */
 	struct reading *reading;
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* owsctl watch: follow signals over changes and restarts, as lines or as a live table. */
+/* owsctl watch: follows signals over changes and restarts, as lines or as a live table. */
 #include <errno.h>
 #include <getopt.h>
 #include <stdlib.h>
@@ -98,7 +98,7 @@ static void print_changes(struct watch *watch)
 
 static int watch_lines(struct watch *watch)
 {
-	/* Written round by round, so that the reason of a failure is known. */
+	/* write round by round, so that errno shows why a write failed */
 	setvbuf(stdout, NULL, _IOFBF, BUFSIZ);
 	if (!watch->alive)
 		say_event(watch, WATCH_LOST);

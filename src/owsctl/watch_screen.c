@@ -14,7 +14,7 @@
 
 #define BETWEEN_KEYS (50 * NS_PER_MS)
 #define BETWEEN_PICTURES (100 * NS_PER_MS)
-#define LONGEST_PICTURE NS_PER_S /* ages count up without news */
+#define LONGEST_PICTURE NS_PER_S /* ages grow without a wake-up */
 
 static const struct table_column columns[] = {
 	{"NAME"},
@@ -31,16 +31,16 @@ enum { ALARM = 3, TARGET = 6 };
 struct screen {
 	struct watch *watch;
 	unsigned lines, width;
-	int top;                 /* first row shown */
-	unsigned least[COLUMNS]; /* widths of the last picture, so that it does not jump */
+	int top;                 /* index of the first row on the screen */
+	unsigned least[COLUMNS]; /* widths of the last picture, so that columns do not jump */
 	int not_good, in_alarm;
-	bool alarms; /* signals may have some */
-	/* What serves them all, told in the head line; "" where there are several */
+	bool alarms; /* some signals can have alarms */
+	/* The target of all rows, for the head line; "" when there are several. */
 	char target[200];
-	const char *note; /* what happened last to owsd */
+	const char *note; /* what happened to owsd last */
 };
 
-/* Rows that fit below the two head lines; one line is kept free when not all do. */
+/* The rows that fit below the two head lines; one line stays free when not all rows fit. */
 static int room(const struct screen *screen)
 {
 	int lines = (int)screen->lines - 2;
@@ -114,7 +114,7 @@ static bool add_row(struct watch *watch, struct table *table, const struct row *
 	                                       row->path ? row->path : "", target.name});
 }
 
-/* Red for what is not good, yellow for an alarm that wants eyes; the words say both. */
+/* Red for a value that is not good, yellow for an alarm to acknowledge; the words state both. */
 static const char *style_of(const struct row *row, const struct reading *reading)
 {
 	if (getenv("NO_COLOR"))
@@ -124,7 +124,7 @@ static const char *style_of(const struct row *row, const struct reading *reading
 	                                           : "";
 }
 
-/* Who serves the rows seen so far, if that is one target: its name; -1 none yet, -2 several. */
+/* The target of the rows so far, if all have the same one; -1: none yet, -2: several. */
 static int same_target(struct ows *h, int so_far, const struct row *row,
                        const struct reading *reading)
 {

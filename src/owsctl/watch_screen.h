@@ -5,7 +5,7 @@
 
 #include "src/owsctl/watch_sleep.h"
 
-/* The table on the terminal until the end; exit status. */
+/* Show the table on the terminal until the user ends it. Returns the exit status. */
 int watch_screen(struct watch *watch);
 
 #endif

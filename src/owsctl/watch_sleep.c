@@ -8,7 +8,7 @@
 #include "src/owsctl/terminal.h"
 #include "src/owsctl/watch_sleep.h"
 
-#define LONGEST_SLEEP (500 * NS_PER_MS) /* ages and a dead owsd are seen without news */
+#define LONGEST_SLEEP (500 * NS_PER_MS) /* an age or a dead owsd sends no wake-up */
 
 bool watch_over(const struct watch *watch)
 {
@@ -27,7 +27,7 @@ int watch_collect(struct watch *watch, const struct ows_daemon *daemon)
 	return WATCH_RESTARTED;
 }
 
-/* News may come faster than anybody reads. */
+/* Changes may come faster than anybody reads them. */
 static void pause_until(int64_t until_ns)
 {
 	int64_t left = until_ns - ows_now();

@@ -22,11 +22,11 @@ struct watch {
 
 enum watch_event {
 	WATCH_NOTHING,
-	WATCH_RESTARTED, /* rows were collected anew: all changed */
-	WATCH_LOST,      /* owsd stopped or does not beat */
-	WATCH_BACK,      /* it beats again */
+	WATCH_RESTARTED, /* the rows were collected again: all of them changed */
+	WATCH_LOST,      /* owsd stopped, or its heart does not beat */
+	WATCH_BACK,      /* the heart beats again */
 };
-/* Collect the rows of this owsd. WATCH_RESTARTED or -ENOMEM. */
+/* Collect the rows of the present owsd. WATCH_RESTARTED or -ENOMEM. */
 int watch_collect(struct watch *watch, const struct ows_daemon *daemon);
 /*
  * Sleep until news, at least least_ns (below 1 s) and at most timeout_ns, and follow owsd over

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Times as owsctl prints them: local time with its offset, and spans. */
+/* Prints times as local time with its offset, and spans. */
 #include <stdio.h>
 #include <string.h>
 #include <time.h>

@@ -113,7 +113,7 @@ static const struct board_line *line_with(const char *words)
 	return NULL;
 }
 
-static void expect(enum board_kind kind, const char *words, const char *mend)
+static void expect(enum board_kind kind, const char *words, const char *remedy)
 {
 	const struct board_line *line = line_with(words);
 
@@ -123,8 +123,8 @@ static void expect(enum board_kind kind, const char *words, const char *mend)
 		return;
 	}
 	TEST_ASSERT_EQUAL_MESSAGE(kind, line->kind, line->text);
-	if (mend && !strstr(line->mend, mend))
-		TEST_FAIL_MESSAGE(line->mend);
+	if (remedy && !strstr(line->remedy, remedy))
+		TEST_FAIL_MESSAGE(line->remedy);
 }
 
 static void expect_not(const char *words)
@@ -221,7 +221,7 @@ static void look_as_nobody(void)
 		TEST_ASSERT_EQUAL(0, seteuid(0));
 }
 
-static void test_a_device_file_that_one_may_not_open_names_its_mend(void)
+static void test_a_device_file_that_one_may_not_open_names_its_remedy(void)
 {
 	good_pi();
 	device(1, 0600);
@@ -350,7 +350,7 @@ static void test_more_than_a_report_holds_leaves_its_lines_right(void)
 
 		if (sscanf(line->text, "the chip at 0x%x of i2c-%u", &address, &number) == 2) {
 			snprintf(client, sizeof(client), "echo %u-%04x ", number, address);
-			TEST_ASSERT_EQUAL_STRING_LEN(client, line->mend, strlen(client));
+			TEST_ASSERT_EQUAL_STRING_LEN(client, line->remedy, strlen(client));
 			TEST_ASSERT_NULL_MESSAGE(strstr(line->text, " kHz"), line->text);
 			claims++;
 		}
@@ -440,7 +440,7 @@ int main(void)
 	RUN_TEST(test_a_line_that_is_there_and_not_in_force_wants_a_reboot);
 	RUN_TEST(test_a_line_for_another_board_is_none_of_this_one);
 	RUN_TEST(test_an_adapter_without_a_device_file_wants_the_module);
-	RUN_TEST(test_a_device_file_that_one_may_not_open_names_its_mend);
+	RUN_TEST(test_a_device_file_that_one_may_not_open_names_its_remedy);
 	RUN_TEST(test_a_file_of_a_group_names_the_group_to_join);
 	RUN_TEST(test_a_chip_of_the_kernel_is_a_note_with_the_line_that_frees_it);
 	RUN_TEST(test_a_slow_adapter_is_a_note_with_the_line_for_config_txt);
