@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Inside the driver: errors are those of hal/wire/link.h, but io.h returns those of i2c.h. */
+/* Inside the driver. Errors are those of hal/wire/link.h; those of io.h are those of i2c.h. */
 #ifndef HAL_DS2482_CHIP_H
 #define HAL_DS2482_CHIP_H
 
@@ -8,7 +8,7 @@
 
 #define DS2482_NO_PARAMETER (-1)
 
-/* How long a wire is without supply so that all slaves forget what they knew. */
+/* How long a wire is without supply, so that all slaves forget their state. */
 #define DS2482_POWER_OFF_NS (500 * NS_PER_MS)
 #define DS2482_POWER_ON_NS (10 * NS_PER_MS)
 

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* The lock on a chip: a byte of the adapter's device file, locked by whoever drives the chip. */
+/* The lock on a chip: whoever drives the chip locks a byte of the adapter's device file. */
 #include <errno.h>
 #include <fcntl.h>
 
 #include "hal/ds2482/chip_lock.h"
 
 /*
- * The lock belongs to the descriptor (OFD), so that two targets of one process hold each other off
- * too. The kernel does not say who has such a lock; so the same process holds an ordinary one
- * beside it, 256 bytes on, which decides nothing: it goes as soon as any descriptor of the adapter
- * is closed.
+ * The lock belongs to the descriptor (OFD lock), so it also keeps two targets of one process apart.
+ * The kernel does not report the holder of such a lock. So the holder takes an ordinary lock too,
+ * 256 bytes further on, which only names the process: it goes as soon as the process closes any
+ * descriptor of the adapter.
  */
 #define NAME_OFFSET 256
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Other parts live at 0x18 to 0x1F too (thermometers, accelerometers) and would take a second
- * byte for the value of a register. So a chip has to prove itself by single-byte commands first.
+ * Detects a chip. Other parts use 0x18 to 0x1F too (thermometers, accelerometers), and would take a
+ * second byte for the value of a register. So a chip has to prove itself by single-byte commands
+ * first.
  */
 #include <errno.h>
 
@@ -36,8 +37,9 @@ static int device_reset(struct ds2482_chip *chip)
 }
 
 /*
- * After a 1-Wire reset: first busy perhaps, then idle, and never the bits of other commands. Only a
- * status that was read after the deadline tells that it stays busy: we may not have run meanwhile.
+ * After a 1-Wire reset a chip may be busy, then it is idle, and it never shows the bits of other
+ * commands. Only a status read after the deadline proves that the chip stays busy: the scheduler
+ * may have kept this thread from running.
  */
 static int prove(struct ds2482_chip *chip)
 {
@@ -139,7 +141,7 @@ int ds2482_setup(struct ds2482_chip *chip)
 	return ds2482_configure(chip, chip->master->active_pullup ? DS2482_APU : 0);
 }
 
-/* Written codes and those read back, by the data sheet's table. */
+/* The codes that select a channel, and those that the chip returns, by the data sheet's table. */
 static int select_channel(struct ds2482_chip *chip, uint8_t channel)
 {
 	static const uint8_t readback[8] = {0xB8, 0xB1, 0xAA, 0xA3, 0x9C, 0x95, 0x8E, 0x87};
@@ -172,7 +174,7 @@ int ds2482_select(struct ds2482_link *link)
 	config &= (uint8_t) ~(DS2482_1WS | DS2482_SPU);
 	if (link->speed == LINK_OVERDRIVE)
 		config |= DS2482_1WS;
-	/* A strong pull-up belongs to the channel it was given to; the chip ends it by itself. */
+	/* a strong pull-up belongs to the channel it was armed for; the chip ends it by itself */
 	if (chip->channel != link->number) {
 		err = select_channel(chip, link->number);
 		if (!err && (chip->config & DS2482_SPU))

@@ -8,13 +8,13 @@
 struct ds2482_chip;
 struct ds2482_link;
 
-/* Is a chip at chip->address? Finds its part and resets it. 0, -ENXIO nothing or another part. */
+/* Detect the part at chip->address and reset it. -ENXIO: no chip, or another part. */
 int ds2482_detect(struct ds2482_chip *chip);
 /* Device reset and configuration. */
 int ds2482_setup(struct ds2482_chip *chip);
-/* Written, with its complement, and read back. */
+/* Write the configuration with its complement, and read it back. */
 int ds2482_configure(struct ds2482_chip *chip, uint8_t config);
-/* Make the link's channel and speed the chip's. */
+/* Select the channel of the link, and set its speed. */
 int ds2482_select(struct ds2482_link *link);
 
 #endif

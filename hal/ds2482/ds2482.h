@@ -15,7 +15,7 @@
 #define DS2482_ADDRESSES 8
 
 enum ds2482_part {
-	DS2482_100, /* or a -101: they do not differ on the bus */
+	DS2482_100, /* or a -101, which the bus cannot tell apart */
 	DS2482_800,
 	DS2482_ADJUSTABLE, /* DS2483, DS2484 */
 };
@@ -35,9 +35,9 @@ struct ds2482_chip {
 	uint8_t address;
 	enum ds2482_part part;
 	unsigned channels;
-	bool lost;        /* reset or changed under us: nothing goes before a chip reset */
-	uint8_t channel;  /* the current one */
-	uint8_t config;   /* as the chip has it */
+	bool lost;        /* reset or changed by another program: it needs a chip reset */
+	uint8_t channel;  /* the selected channel */
+	uint8_t config;   /* the configuration in the chip */
 	int64_t claim_ns; /* env time of the next look whether the chip is still ours */
 	int64_t free_at;  /* env time by which the last operation has ended at the latest */
 	struct ds2482_link link[8];
@@ -53,7 +53,10 @@ struct ds2482_source {
 	 * meant is not known. NULL: that cannot be seen.
 	 */
 	int (*there)(void *ctx, const struct bus_env *env, uint8_t chips, uint64_t *mark);
-	/* What to do about a chip that a kernel driver has. NULL: there are no such drivers. */
+	/*
+	 * Write into why what to do about a chip that a kernel driver has. NULL: there are no such
+	 * drivers.
+	 */
 	void (*explain)(void *ctx, uint8_t address, char *why, size_t why_size);
 	void (*destroy)(void *ctx);
 	const char *name; /* "/dev/i2c-1", for messages */
@@ -63,17 +66,23 @@ struct ds2482_source {
 struct ds2482_master {
 	struct link_master master; /* first */
 	struct ds2482_source source;
-	/* The last rung of the recovery of a link: closed, and opened with the same chips. */
+	/*
+	 * The last rung of the recovery of a link: close the adapter, and open it with the same
+	 * chips.
+	 */
 	int (*reopen)(struct ds2482_master *master);
 	struct i2c_adapter *adapter; /* NULL while closed */
-	int address, channel;        /* only this one; -1 all */
+	int address, channel;        /* only this one; -1: all */
 	bool active_pullup;
 	int64_t byte_ns;     /* shortest time of one I2C byte, measured; 0: bytes tell no time */
-	int64_t measured_ns; /* env time when */
+	int64_t measured_ns; /* env time of the measurement */
 	unsigned measured_again; /* since the adapter was opened */
 	unsigned count;
 	struct ds2482_chip chip[DS2482_ADDRESSES];
-	/* The addresses where chips were taken, ever, in that order; and those now missing. */
+	/*
+	 * The addresses of all chips so far, in the order in which they were taken; and which are
+	 * missing.
+	 */
 	unsigned known;
 	uint8_t order[DS2482_ADDRESSES];
 	bool missing[DS2482_ADDRESSES];

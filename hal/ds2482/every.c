@@ -13,7 +13,7 @@ struct every_adapter {
 	unsigned number;
 	struct link_master *master;
 	bool open;
-	uint64_t failed_mark; /* what was seen of it when it was opened in vain */
+	uint64_t failed_mark; /* the state of the chips when opening the adapter last failed */
 };
 
 struct every_master {
@@ -41,7 +41,7 @@ static struct every_adapter *adapter_of(struct every_master *every, unsigned num
 	return adapter;
 }
 
-/* Append the links that are not known yet. Each chip has a number of its own. */
+/* Append the new links. Each chip gets its own number. */
 static void take_links(struct every_master *every, const struct every_adapter *adapter)
 {
 	unsigned n = adapter->master->ops->channels(adapter->master);
@@ -86,7 +86,7 @@ static void every_close(struct link_master *base)
 	every->links = 0;
 }
 
-/* A reason that says more than that there is no chip. */
+/* Does the error state more than that no chip answers? */
 static bool is_telling(int err)
 {
 	return err != -ENXIO && err != -EIO && err != -ENODEV;
@@ -143,7 +143,7 @@ static int grow_one(struct every_master *every, struct every_adapter *adapter, c
 	return left == -ECANCELED ? left : 0;
 }
 
-/* There may always come an adapter more. */
+/* One more adapter may always come. */
 static int every_grow(struct link_master *base, char *why, size_t why_size)
 {
 	struct every_master *every = (struct every_master *)base;

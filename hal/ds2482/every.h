@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Every DS2482 there is, as one master: `i2c:auto`. It has a master for each adapter; the links are
- * those of all of them, in the order of the adapters' numbers. Where one adapter is lost, all are
- * opened anew.
+ * Every DS2482 of the machine as one master: `i2c:auto`. It has a master for each adapter, and the
+ * links of all of them in the order of the adapters' numbers. When one adapter is lost, all are
+ * opened again.
  */
 #ifndef HAL_DS2482_EVERY_H
 #define HAL_DS2482_EVERY_H
@@ -13,12 +13,12 @@
 
 /* Where the adapters come from. */
 struct every_source {
-	/* Their numbers, rising, and how many. */
+	/* Write the adapters' numbers, rising; returns how many. */
 	unsigned (*list)(void *ctx, unsigned *numbers, unsigned max);
-	/* A master for one of them, as link_master_ops.create. */
+	/* Make a master for one adapter, as link_master_ops.create. */
 	int (*make)(void *ctx, unsigned number, const struct bus_env *env,
 	            struct link_master **master);
-	void *ctx; /* lent */
+	void *ctx; /* the caller owns it */
 };
 
 /* 0 or -ENOMEM. */

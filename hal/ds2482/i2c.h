@@ -35,11 +35,11 @@ struct i2c_adapter_ops {
 	                       uint8_t data);
 	int (*read_byte)(struct i2c_adapter *adapter, uint8_t address);
 	/*
-	 * Is the address free for us? From then on it is ours. -EBUSY a kernel driver has it;
-	 * -EADDRINUSE another target has, of the process adapter->holder.
+	 * Claim the address for this process. -EBUSY: a kernel driver has it; -EADDRINUSE: another
+	 * target has it, of process adapter->holder.
 	 */
 	int (*claim)(struct i2c_adapter *adapter, uint8_t address);
-	/* The address is not ours any more, as after close(). NULL: claims hold nobody off. */
+	/* Give the address back, as close() does. NULL: claims keep nobody out. */
 	void (*release)(struct i2c_adapter *adapter, uint8_t address);
 	void (*close)(struct i2c_adapter *adapter);
 };
@@ -51,11 +51,14 @@ enum i2c_combine {
 };
 struct i2c_adapter {
 	const struct i2c_adapter_ops *ops;
-	/* At most this; the kernel does not tell, so the driver tries it and may lower it. */
+	/*
+	 * What the adapter can combine at most; the kernel does not report it, so the driver tries
+	 * it and may lower it.
+	 */
 	enum i2c_combine combine;
 	unsigned max_messages;               /* in one transfer; 42 with i2c-dev */
 	uint64_t transfers, bytes, syscalls; /* counted by the adapter */
-	int holder;                          /* process that a claim was refused for; 0 not known */
+	int holder; /* the process that has a refused address; 0: not known */
 };
 
 #endif

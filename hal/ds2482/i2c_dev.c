@@ -23,10 +23,10 @@
 struct i2c_dev {
 	struct i2c_adapter adapter; /* first */
 	int fd;
-	int address; /* that the descriptor is set to; -1 none */
+	int address; /* the address set on the descriptor; -1: none */
 };
 
-/* Adapters' drivers name a refusal as they like. */
+/* Map the errors that adapter drivers use for a refusal to the ones of i2c.h. */
 static int plain(int err, bool first)
 {
 	switch (err) {
@@ -130,7 +130,7 @@ static int claim(struct i2c_adapter *base, uint8_t address)
 	struct i2c_dev *dev = (struct i2c_dev *)base;
 	int err;
 
-	dev->address = -1; /* the kernel is asked anew */
+	dev->address = -1; /* the next call sets the address again, and the kernel checks it */
 	err = set_address(dev, address);
 	return err ? err : chip_lock(dev->fd, address, &base->holder);
 }

@@ -78,10 +78,11 @@ int ds2482_write_read(struct ds2482_chip *chip, uint8_t command, uint8_t paramet
 }
 
 /*
- * The rate that an adapter states is not always its rate (core clocks change), and reading too
- * few bytes would read too early. The call's own time makes a byte seem longer than it is: the
- * difference of two lengths is free of it. Bytes faster than any wire, or a clock too coarse to
- * see them, mean that their number is no measure of time: then all waits are timed.
+ * Measure the time of one I2C byte. The rate that an adapter states is not always its rate (core
+ * clocks change), and reading too few bytes would read too early. The time of the call itself makes
+ * a byte seem longer, so the difference of two lengths is taken. If bytes are faster than any wire,
+ * or the clock is too coarse to show them, the number of bytes is no measure of time: then all
+ * waits are timed.
  */
 static int measure(struct ds2482_chip *chip)
 {
@@ -106,7 +107,7 @@ static int measure(struct ds2482_chip *chip)
 		if (took < shortest[i & 1])
 			shortest[i & 1] = took;
 	}
-	/* 2 % are for the measurement's error. */
+	/* 2 % for the error of the measurement */
 	master->byte_ns = (shortest[1] - shortest[0]) / MEASURE_BYTES * 98 / 100;
 	if (master->byte_ns < LEAST_NS)
 		master->byte_ns = 0;
@@ -115,8 +116,8 @@ static int measure(struct ds2482_chip *chip)
 }
 
 /*
- * So early so soon: whatever was measured, it is no measure of time. Noise on the bus looks the
- * same, but takes longer to get here; then the bus is measured again, each time more reluctantly.
+ * If bytes come too early soon after a measurement, they are no measure of time. Noise on the bus
+ * looks the same, but later; then the bus is measured again, after a longer time each time.
  */
 void ds2482_was_early(struct ds2482_chip *chip)
 {
@@ -134,7 +135,7 @@ void ds2482_was_early(struct ds2482_chip *chip)
 		master->measured_again++;
 }
 
-/* Messages that change nothing; with -EOPNOTSUPP the adapter cannot. */
+/* Send messages that change nothing; -EOPNOTSUPP: the adapter cannot. */
 static int attempt(struct ds2482_chip *chip, size_t writes, size_t reads)
 {
 	struct i2c_adapter *adapter = chip->master->adapter;

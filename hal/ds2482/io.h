@@ -14,18 +14,18 @@ int64_t ds2482_now(const struct ds2482_master *master);
 int ds2482_wait_until(const struct ds2482_master *master, int64_t t);
 int ds2482_write1(struct ds2482_chip *chip, uint8_t command);
 int ds2482_write2(struct ds2482_chip *chip, uint8_t command, uint8_t parameter);
-/* The register the read pointer is at. */
+/* Read the register at the read pointer. */
 int ds2482_read1(struct ds2482_chip *chip);
-/* Write command and parameter, read what the chip then points to. */
+/* Write command and parameter, and read the register to which the chip then points. */
 int ds2482_write_read(struct ds2482_chip *chip, uint8_t command, uint8_t parameter);
 /* Can the adapter do more than the SMBus calls? */
 bool ds2482_combines(const struct ds2482_chip *chip);
 /*
- * What the adapter takes in one transfer, by trying it, and how long an I2C byte takes at least:
- * for reading on instead of waiting. The chip is to be one for certain, and idle.
+ * Try what the adapter takes in one transfer, and measure how long an I2C byte takes at least, for
+ * reading on instead of waiting. There has to be a chip, and it has to be idle.
  */
 int ds2482_learn(struct ds2482_chip *chip);
-/* The chip was still busy where reading on should have ended: bytes come faster than measured. */
+/* Report that the chip was still busy after reading on: bytes come faster than measured. */
 void ds2482_was_early(struct ds2482_chip *chip);
 
 #endif

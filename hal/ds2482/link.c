@@ -17,7 +17,7 @@ static struct ds2482_link *self(struct link *link)
 	return (struct ds2482_link *)link;
 }
 
-/* ns of n slots at the most. */
+/* The longest time of n slots, in ns. */
 static long slots(const struct ds2482_link *link, unsigned n)
 {
 	return (long)n * ds2482_slot_max_ns[link->speed];
@@ -28,21 +28,21 @@ static void spent(struct ds2482_link *link, size_t n)
 	link->cost.wire_ns += n * (uint64_t)ds2482_slot_ns[link->speed];
 }
 
-/* The strong pull-up ends by itself with the next 1-Wire command, and its bit goes with it. */
+/* The next 1-Wire command ends the strong pull-up and clears its bit. */
 static void began(struct ds2482_chip *chip)
 {
 	chip->config &= (uint8_t)~DS2482_SPU;
 }
 
-/* SPU is to be on before the operation after whose last bit it feeds the wire. */
+/* Set SPU before the operation after whose last bit the pull-up feeds the wire. */
 static int arm(struct ds2482_chip *chip)
 {
 	return ds2482_configure(chip, chip->config | DS2482_SPU);
 }
 
 /*
- * A driver of the kernel may be bound to the chip while we work it. The chip would not tell: that
- * driver's reset and configuration leave it as ours do. The kernel does, if it is asked.
+ * A kernel driver may be bound to the chip while owsd uses it. The chip does not show that, because
+ * the driver's reset and configuration leave it as owsd's do. So owsd asks the kernel.
  */
 static bool is_ours(struct ds2482_chip *chip)
 {
@@ -92,7 +92,7 @@ static int link_write(struct link *base, const uint8_t *data, size_t n, enum lin
 		err = arm(link->chip);
 		if (!err)
 			err = ds2482_write_block(link->chip, data + before, 1, slots(link, 8));
-		/* What the pull-up feeds begins with the byte's last slot, and so does its time. */
+		/* the pull-up begins with the last slot of the byte, and so does its time */
 		if (!err)
 			err = ds2482_wait_until(link->chip->master, link->chip->free_at);
 	}
@@ -185,7 +185,9 @@ static int link_recover(struct link *base, enum link_rung rung)
 		return -ENODEV;
 	switch (rung) {
 	case LINK_RETRY:
-		/* No error is what it is to find: -EIO says that the chip answers and is well. */
+		/*
+		 * -EIO stands for "no error known": if it comes back, the chip answers and is well
+		 */
 		err = ds2482_diagnose(chip, -EIO);
 		if (err == -EIO)
 			err = ds2482_write_read(chip, DS2482_READ_POINTER, DS2482_AT_STATUS);
@@ -197,7 +199,7 @@ static int link_recover(struct link *base, enum link_rung rung)
 	case LINK_CHIP_RESET:
 		for (unsigned i = 0; i < chip->channels; i++)
 			chip->link[i].speed = LINK_STANDARD;
-		/* A kernel driver may have taken it, and then this is what its reset looks like. */
+		/* a kernel driver may have taken the chip, whose reset looks like this */
 		err = chip->master->adapter->ops->claim(chip->master->adapter, chip->address);
 		return err ? err : ds2482_setup(chip);
 	case LINK_POWER_CYCLE:
@@ -225,7 +227,10 @@ static const struct link_ops link_ops = {
 	.cost = link_cost,
 };
 
-/* Opened again a link is the one it was: who gathers adapters has given its chip a number. */
+/*
+ * A link that is opened again keeps its chip number, which the master of several adapters may have
+ * given.
+ */
 void ds2482_link_init(struct ds2482_chip *chip, unsigned number)
 {
 	const struct link *before = &chip->link[number].link;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the kernel's files show of I2C adapters and their chips. */
+/* What the kernel's files show about I2C adapters and their chips. */
 #include <dirent.h>
 #include <fcntl.h>
 #include <stdbool.h>

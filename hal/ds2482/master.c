@@ -160,8 +160,8 @@ static bool ends_all(int err)
 }
 
 /*
- * As take_chip(), and notes what is missing: a chip that was here once, or one that did not fail as
- * an address without a chip does.
+ * Call take_chip(), and note whether the chip is missing: it was here before, or it failed in
+ * another way than an address without a chip does.
  */
 static int try_chip(struct ds2482_master *master, uint8_t address)
 {
@@ -176,7 +176,10 @@ static int try_chip(struct ds2482_master *master, uint8_t address)
 	return err;
 }
 
-/* Known ones first and in their order: an adapter opened again has its channels where they were. */
+/*
+ * Take the known chips first and in their order: an adapter opened again keeps its channels'
+ * places.
+ */
 static int take_all(struct ds2482_master *master, char *why, size_t why_size)
 {
 	int worst = -ENXIO, at = -1;
@@ -262,7 +265,7 @@ void ds2482_close(struct link_master *base)
 	ds2482_rest((struct ds2482_master *)base);
 }
 
-/* The links that others hold stay the same ones. */
+/* The links stay the same structs, because others hold them. */
 static int reopen(struct ds2482_master *master)
 {
 	uint8_t address[DS2482_ADDRESSES];
@@ -276,7 +279,7 @@ static int reopen(struct ds2482_master *master)
 	err = ds2482_open(&master->master, why, sizeof(why));
 	if (err)
 		return err;
-	/* The links that others hold are to be the same ones afterwards. */
+	/* the links have to stay the same structs */
 	for (unsigned i = 0; i < count; i++) {
 		if (i >= master->count || master->chip[i].address != address[i])
 			err = -ENXIO;

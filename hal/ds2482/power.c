@@ -14,7 +14,7 @@
 #include "hal/ds2482/io.h"
 #include "hal/ds2482/power.h"
 
-/* A chip answers that long after SLPZ went high: 2 ms by the data sheet of the DS2484. */
+/* 2 ms after SLPZ goes high a chip answers, by the data sheet of the DS2484. */
 #define AWAKE_NS (5 * NS_PER_MS)
 
 static bool is_given(const struct gpio_output *output)
@@ -84,7 +84,7 @@ void ds2482_power_release(struct ds2482_master *master)
 	gpio_output_release(&master->power);
 }
 
-/* The chips may hang on the same supply, so all of them are set up. */
+/* Set up all chips, because the line may switch their supply too. */
 static int set_up_all(struct ds2482_master *master)
 {
 	int worst = 0;
@@ -108,11 +108,10 @@ int ds2482_power_cycle(struct ds2482_master *master)
 	err = gpio_output_set(&master->power, false);
 	if (!err)
 		err = pause_ns(master, master->power_off_ns);
-	/* on again whatever happened */
+	/* switch on again after any error */
 	on = gpio_output_set(&master->power, true);
 	err = err ? err : on;
-	if (err ==
-	    -ENODEV) /* the GPIO chip is gone: it is looked for when the master opens again */
+	if (err == -ENODEV) /* the GPIO chip is gone: the master looks for it when it opens again */
 		gpio_output_release(&master->power);
 	if (!err)
 		err = pause_ns(master, DS2482_POWER_ON_NS);

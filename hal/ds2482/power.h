@@ -8,12 +8,15 @@
 struct ds2482_master;
 struct link_master;
 
-/* Supply on and chips awake, as far as there are lines for it. Errors as gpio_output_take(). */
+/*
+ * Switch the supply on and wake the chips, as far as there are lines for it. Errors as
+ * gpio_output_take().
+ */
 int ds2482_power_on(struct ds2482_master *master, char *why, size_t why_size);
-/* The chips go to sleep; the supply stays on. */
+/* Let the chips sleep; the supply stays on. */
 void ds2482_rest(struct ds2482_master *master);
 void ds2482_power_release(struct ds2482_master *master);
-/* The supply off and on, then all chips are set up. -EOPNOTSUPP: no line for it. */
+/* Switch the supply off and on, then set up all chips. -EOPNOTSUPP: no line for it. */
 int ds2482_power_cycle(struct ds2482_master *master);
 
 /* The slots of link_master_ops but create. */

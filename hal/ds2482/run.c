@@ -17,14 +17,17 @@
 #include "hal/ds2482/io.h"
 #include "hal/ds2482/run.h"
 
-/* Reading on pays from here on (a byte of at most 45 us, 200 kHz). */
+/* Reading on pays with bytes of at most 45 us (200 kHz). */
 #define FAST_BYTE_NS 45000
 #define MAX_BYTES 180
 #define MAX_MESSAGES 42
 #define STUCK_NS (10 * NS_PER_MS)
 #define POLL_NS INT64_C(200000)
 
-/* Bytes to read so that the last begins max_ns after the command, given what lies between. */
+/*
+ * How many bytes to read so that the last one begins max_ns after the command. `between` bytes pass
+ * before the reading begins.
+ */
 static unsigned reading_on(const struct ds2482_chip *chip, long max_ns, unsigned between)
 {
 	int64_t byte = chip->master->byte_ns;
@@ -42,7 +45,10 @@ static int transfer(struct ds2482_chip *chip, struct i2c_message *messages, size
 	return adapter->ops->transfer(adapter, chip->address, messages, n);
 }
 
-/* Only a status that was read after the deadline tells: we may not have run meanwhile. */
+/*
+ * Only a status read after the deadline counts: the scheduler may have kept this thread from
+ * running.
+ */
 static int wait_idle(struct ds2482_chip *chip, int status)
 {
 	struct ds2482_master *master = chip->master;
@@ -87,7 +93,7 @@ int ds2482_diagnose(struct ds2482_chip *chip, int err)
 	return -EIO;
 }
 
-/* The last status of an operation, or what went wrong. */
+/* Returns the last status of an operation, or its error. */
 static int judge(struct ds2482_chip *chip, int status)
 {
 	if (status >= 0 && (status & DS2482_1WB))
@@ -146,8 +152,8 @@ int ds2482_run(struct ds2482_chip *chip, uint8_t command, int parameter, long ma
 /* --- Writing ----------------------------------------------------------------------------------- */
 
 /*
- * Two bytes of the next write go by before its command is looked at, so only the last byte is
- * waited for to its end (with last), and only then the status says something.
+ * Two bytes of the next write pass before the chip looks at its command. So only the last byte of
+ * data is read on to its end (with `last`), and only its status counts.
  */
 static int write_combined(struct ds2482_chip *chip, const uint8_t *data, size_t n, long max_ns,
                           bool last)
@@ -174,7 +180,7 @@ static int write_combined(struct ds2482_chip *chip, const uint8_t *data, size_t 
 	return last ? judge(chip, in[end - 1]) : 0;
 }
 
-/* Nothing is read: that the chip takes the next command says that it is idle. */
+/* Read no status: the chip is idle when it acknowledges the next command. */
 static int write_timed(struct ds2482_chip *chip, uint8_t byte, long max_ns)
 {
 	int64_t ahead = chip->master->byte_ns > 0 ? 2 * chip->master->byte_ns : 0;
@@ -222,8 +228,8 @@ int ds2482_write_block(struct ds2482_chip *chip, const uint8_t *data, size_t n, 
 /* --- Reading ----------------------------------------------------------------------------------- */
 
 /*
- * The pointer may be set while the operation runs, so it is the data register that is read on.
- * With check, the status is read behind it: was the chip idle, and is it still the one set up?
+ * The pointer may be set while the operation runs, so the data register is read on. With `check`
+ * the status is read after it: was the chip idle, and is it still set up?
  */
 static int read_combined(struct ds2482_chip *chip, uint8_t *data, size_t n, long max_ns, bool check)
 {

@@ -5,8 +5,8 @@
 #include "hal/owserver/talk.h"
 
 /*
- * For how long does the server answer from its cache? *cache_ns gets it, 0 where it does not tell.
- * 0, or as talk_exchange().
+ * Ask for how long the server answers from its cache. *cache_ns: the time, 0 if the server does not
+ * report it. 0, or the error of talk_exchange().
  */
 int cache_ask(struct talk *talk, int64_t deadline_ns, int64_t *cache_ns);
 

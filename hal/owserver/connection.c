@@ -85,7 +85,7 @@ static int resolve(struct connection *connection)
 {
 	const struct addrinfo hints = {
 		.ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM, .ai_flags = AI_NUMERICSERV};
-	/* The loopback addresses come without loading any name service. */
+	/* getaddrinfo() finds the loopback addresses without loading a name service */
 	bool is_local = strcmp(connection->host, DEFAULT_HOST) == 0;
 	int err = getaddrinfo(is_local ? NULL : connection->host, connection->port, &hints,
 	                      &connection->list);
@@ -128,7 +128,9 @@ static void note_peer(struct connection *connection, const struct addrinfo *addr
 	         address->ai_family == AF_INET6 ? "[%s]:%s" : "%s:%s", host, port);
 }
 
-/* A port of this machine that nobody listens on may connect to itself. */
+/*
+ * Is the socket connected to itself? That happens with a port of this machine without a listener.
+ */
 static bool is_itself(int fd)
 {
 	struct sockaddr_storage here = {0}, there = {0};
@@ -139,7 +141,9 @@ static bool is_itself(int fd)
 	       here_len == there_len && memcmp(&here, &there, here_len) == 0;
 }
 
-/* Start the next address whose connect does not fail at once. 0, or that no more are left. */
+/*
+ * Start to connect to the next address that does not fail at once. 0, or the error of the last one.
+ */
 static int try_next(struct connection *connection)
 {
 	const int on = 1;
@@ -171,7 +175,7 @@ static int try_next(struct connection *connection)
 	return connection->last_err;
 }
 
-/* A unix socket connects at once or not at all. */
+/* Connect to a unix socket, which succeeds or fails at once. */
 static int begin_local(struct connection *connection)
 {
 	struct sockaddr_un address = {.sun_family = AF_UNIX};
@@ -183,7 +187,7 @@ static int begin_local(struct connection *connection)
 	if (connection->fd >= 0 &&
 	    connect(connection->fd, (struct sockaddr *)&address, sizeof(address)) == 0)
 		return 0;
-	/* a full queue; told as no server, because -EAGAIN says to go on */
+	/* the queue is full: report it as no server, because -EAGAIN means to go on */
 	connection->last_err = errno == EAGAIN ? -ECONNREFUSED : -errno;
 	snprintf(connection->trouble, sizeof(connection->trouble), "%.60s: %.36s", connection->peer,
 	         strerror(-connection->last_err));

@@ -20,8 +20,8 @@ struct connection {
 	char host[254]; /* with a slash in front: a unix socket */
 	char port[6];
 	int fd;                       /* -1: closed */
-	struct addrinfo *list, *next; /* addresses while connecting; next is tried after this one */
-	int64_t give_up_ns;           /* this address is tried until then */
+	struct addrinfo *list, *next; /* while connecting; next is tried after this one */
+	int64_t give_up_ns;           /* the present address is tried until then */
 	int last_err;                 /* why the last address failed */
 	char peer[80];                /* "127.0.0.1:4304", once connected or tried */
 	char trouble[100];            /* why connecting failed, as a sentence */
@@ -33,24 +33,26 @@ struct connection {
  */
 int connection_init(struct connection *connection, const struct bus_env *env, const char *where,
                     char *why, size_t why_size);
-/* Resolve and start to connect. 0, or negative errno with trouble set. */
+/* Resolve the name and start to connect. 0, or a negative errno with trouble set. */
 int connection_begin(struct connection *connection);
 /*
  * Go on until connected (0) or until_ns (-EAGAIN). -ECANCELED: the host shuts down. Other errors:
  * all addresses failed, trouble says how the last one did; nothing is left open.
  */
 int connection_go_on(struct connection *connection, int64_t until_ns);
-/* Both of them; -ETIMEDOUT when not connected at until_ns. */
+/* connection_begin() and connection_go_on(); -ETIMEDOUT: not connected at until_ns. */
 int connection_open(struct connection *connection, int64_t until_ns);
 void connection_close(struct connection *connection);
 bool connection_is_open(const struct connection *connection);
 
-/* Closed by the peer, or bytes came that nobody asked for: do not use it for a request. */
+/*
+ * Did the peer close the connection, or send bytes without a request? Then no request may use it.
+ */
 bool connection_is_stale(const struct connection *connection);
-/* 0, -ETIMEDOUT, -ECANCELED, or what the socket says; *sent is set in any case. */
+/* 0, -ETIMEDOUT, -ECANCELED, or the socket's error; *sent is set in any case. */
 int connection_send(struct connection *connection, const uint8_t *bytes, size_t n, int64_t until_ns,
                     size_t *sent);
-/* Bytes received (at least 1), 0 the peer closed, or as connection_send(). */
+/* Returns the bytes received (at least 1), 0: the peer closed, or an error as connection_send(). */
 int connection_receive(struct connection *connection, uint8_t *bytes, size_t room,
                        int64_t until_ns);
 

@@ -35,7 +35,7 @@ static bool id_of_address(const uint8_t *address, uint32_t len, char id[ROM_TEXT
 	return true;
 }
 
-/* 0 and the id; 1 this is no alias; or what talk_exchange() says. */
+/* Find the id of an alias. 0; 1: the name is no alias; or the error of talk_exchange(). */
 static int find_id(struct listing *listing, struct talk *talk, const char *alias, size_t len,
                    int64_t deadline_ns, char id[ROM_TEXT_MAX])
 {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a DIRALL shows, with each device under its id. owserver shows a device that has an alias
- * under the alias only; its `address` says who it is. The names asked for are kept for a while.
+ * Lists a directory by DIRALL, with each device under its id. owserver shows a device that has an
+ * alias under the alias only; the property `address` has its id. The ids of aliases are kept for a
+ * while.
  */
 #ifndef HAL_OWSERVER_LISTING_H
 #define HAL_OWSERVER_LISTING_H
@@ -26,7 +27,8 @@ struct listing {
 
 /*
  * List req->path into req->data, each full path ended by '\n'. Returns 0 and *used; -EMSGSIZE: no
- * room; 1: the server refused, talk->reader.header.type says why; or what talk_exchange() says.
+ * room; 1: the server refused with the code talk->reader.header.type; or the error of
+ * talk_exchange().
  */
 int listing_read(struct listing *listing, struct talk *talk, struct bus_req *req, uint32_t *used);
 

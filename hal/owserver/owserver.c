@@ -24,12 +24,14 @@
 
 #define BACKOFF_MIN (200 * NS_PER_MS)
 #define BACKOFF_MAX (5000 * NS_PER_MS)
-/* Connecting and greeting together; a step waits for a slice of it, so that requests that come
-   meanwhile are told at once that the target is down. */
+/*
+ * For connecting and greeting together. A step waits for a slice of it, so that requests that come
+ * meanwhile are answered at once: the target is down.
+ */
 #define GREETING_NS (5000 * NS_PER_MS)
 #define SLICE_NS (50 * NS_PER_MS)
-#define NAMES_NS (5000 * NS_PER_MS) /* on a busy wire they stand in line */
-/* An idle connection is looked at so often, to learn that the server went. */
+#define NAMES_NS (5000 * NS_PER_MS) /* owserver answers requests on a busy wire one after another */
+/* The pause between two looks at an idle connection, to learn that the server went. */
 #define IDLE_NS (1000 * NS_PER_MS)
 #define READ_MAX 65536
 
@@ -45,7 +47,7 @@ struct owserver {
 	enum state state;
 	int64_t retry_ns, backoff_ns, give_up_ns, look_ns;
 	bool was_up, is_down_told, simulated;
-	struct bus_event loss; /* to be told by the next step, if text is set */
+	struct bus_event loss; /* the event for the next step to report, if text is set */
 	struct bus_counter counter[COUNTERS];
 	struct talk talk;
 	struct listing listing;
@@ -96,7 +98,7 @@ static int64_t now_of(const struct owserver *server)
 	return server->bus.env->now(server->bus.env->ctx);
 }
 
-/* The one way down. The event is told by the next step, so that it follows the answer. */
+/* Take the target down. The next step reports the event, so that it follows the answer. */
 static void go_down(struct owserver *server, int err, const char *text)
 {
 	connection_close(&server->talk.connection);
@@ -214,7 +216,7 @@ static void go_on_greeting(struct owserver *server)
 		out_of_time(server);
 }
 
-/* A server that closed an idle connection is asked whether it is still there. */
+/* If a server closed an idle connection, connect again to learn whether the server is there. */
 static void look_at_idle(struct owserver *server)
 {
 	struct talk *talk = &server->talk;
@@ -315,7 +317,10 @@ static int owserver_there(struct bus *bus)
 
 /* --- Requests --------------------------------------------------------------------------------- */
 
-/* PRESENT of the path's device, or of the path if it has none. 0, 1 absent, or as an exchange. */
+/*
+ * Ask PRESENT of the path's device, or of the path without one. 0, 1: absent, or the error of the
+ * exchange.
+ */
 static int present(struct owserver *server, const struct bus_req *req, bool fresh)
 {
 	char path[FRAME_PATH_MAX + 1];
@@ -336,7 +341,7 @@ static int present(struct owserver *server, const struct bus_req *req, bool fres
 	return server->talk.reader.header.type < 0;
 }
 
-/* What a negative return code means; -1: the server is asked whether the device is there. */
+/* The error for a negative return code; for -1, ask the server whether the device is there. */
 static int refused(struct owserver *server, const struct bus_req *req)
 {
 	int err = status_of(server->talk.reader.header.type, (enum bus_op)req->op);
@@ -369,7 +374,7 @@ static int do_read(struct owserver *server, struct bus_req *req, uint32_t *len)
 		return err;
 	if (reply->type < 0)
 		return refused(server, req);
-	/* to believe either, as 21 of 21.5, could be a false value */
+	/* either length could make a false value, as 21 of 21.5 */
 	if (reply->type != reply->payload) {
 		snprintf(server->talk.trouble, sizeof(server->talk.trouble),
 		         "%.60s: an answer whose length differs from its header",
@@ -396,7 +401,7 @@ static int do_write(struct owserver *server, struct bus_req *req, uint32_t *len)
 		return err;
 	if (reply->type < 0)
 		return refused(server, req);
-	/* a memory that ends before takes less, but a part of an output is another value */
+	/* a memory that ends earlier takes less, but a part of an output is another value */
 	if (reply->size < 0 || (is_output && (uint32_t)reply->size < req->len))
 		return -EIO;
 	*len = (uint32_t)reply->size < req->len ? (uint32_t)reply->size : req->len;

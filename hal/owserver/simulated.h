@@ -5,9 +5,9 @@
 #include "hal/owserver/talk.h"
 
 /*
- * Asks the server for the names of its buses, which costs it no 1-Wire transaction: *simulated is
- * set if there are buses and all are simulated (owserver --fake, --tester, --mock), cleared
- * otherwise. Returns 0, or what talk_exchange() says.
+ * Ask the server for the names of its buses, which costs it no 1-Wire transaction. *simulated:
+ * there are buses, and all are simulated (owserver --fake, --tester, --mock). Returns 0, or the
+ * error of talk_exchange().
  */
 int simulated_ask(struct talk *talk, int64_t deadline_ns, bool *simulated);
 

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* The return codes of an owserver as errors of the bus contract. */
+/* Maps the return codes of an owserver to errors of the bus contract. */
 #include <errno.h>
 
 #include "hal/owserver/status.h"
 
 /*
- * Up to 42, 74, 90 and 95 the codes are those of errno(3); 26 to 79 are also owserver's own, listed
- * in /settings/return_codes/text.ALL. Codes that mean either are read as what servers do send.
+ * Codes up to 42, 74, 90 and 95 are those of errno(3); 26 to 79 are owserver's own too, listed in
+ * /settings/return_codes/text.ALL. A code with two meanings stands for the one that servers send.
  */
 static const struct {
 	int32_t code;
-	int err, write_err; /* write_err 0: the same */
+	int err, write_err; /* write_err 0: the same as err */
 } meanings[] = {
 	{1, 1},
 	{2, 1},
@@ -41,7 +41,7 @@ static const struct {
 	{61, -EINVAL},
 	{62, -EINVAL},
 	{63, -EINVAL},
-	{34, -EMSGSIZE, -EINVAL}, /* room too small for .ALL; the number is too large */
+	{34, -EMSGSIZE, -EINVAL}, /* the room is too small for .ALL, or the number is too large */
 	{57, -EMSGSIZE},
 	{90, -EMSGSIZE},
 	{28, -EBADMSG},

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* What owserver's return codes mean to the bus contract. */
+/* Maps owserver's return codes to errors of the bus contract. */
 #ifndef HAL_OWSERVER_STATUS_H
 #define HAL_OWSERVER_STATUS_H
 
 #include "hal/bus/bus.h"
 
 /*
- * The bus error for a negative return code. -1 stands for "no such device or property", which the
- * caller tells apart: 1.
+ * The bus error for a negative return code. 1 stands for code -1, "no such device or property": the
+ * caller finds out which of them.
  */
 int status_of(int32_t code, enum bus_op op);
 

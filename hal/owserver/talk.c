@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* A request and its reply over a kept connection, and what a peer may send before the reply is whole. */
+/*
+ * Sends a request and receives its reply over a kept connection, within limits for what the peer
+ * may send.
+ */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,10 +10,12 @@
 #include "hal/bus/time.h"
 #include "hal/owserver/talk.h"
 
-/* A genuine owserver sends one keep-alive a second, also where it stands behind another. */
+/*
+ * A genuine owserver sends one keep-alive a second, also when it serves another owserver's devices.
+ */
 #define ALIVE_BURST 32u
 #define ALIVE_PER_S 20
-/* So many pieces of a reply are taken as they come, then what came within a pause together. */
+/* So many pieces of a reply are read as they come; after that, what came within a pause at once. */
 #define PIECES 16u
 #define PAUSE_NS NS_PER_MS
 
@@ -92,7 +97,7 @@ static int whole(struct talk *talk, size_t left_over)
 	return 0;
 }
 
-/* Keep-alives cost time and say nothing: more than any owserver sends are no sign of life. */
+/* Does the peer send more keep-alives than any owserver does? They cost time and carry nothing. */
 static bool is_flood(struct talk *talk)
 {
 	int64_t waited_ns = now(talk) - talk->asked_ns;
@@ -101,7 +106,10 @@ static bool is_flood(struct talk *talk)
 	return ++talk->alives > ALIVE_BURST + (uint64_t)(waited_ns * ALIVE_PER_S / NS_PER_S);
 }
 
-/* A peer that sends byte by byte costs a thousand looks a second at most. 0, or -ECANCELED. */
+/*
+ * Pause between pieces: a peer that sends byte by byte causes at most a thousand reads a second. 0,
+ * or -ECANCELED.
+ */
 static int pause_after_pieces(struct talk *talk, int64_t until_ns)
 {
 	const struct bus_env *env = talk->connection.env;
@@ -166,7 +174,7 @@ static int reopen(struct talk *talk, int64_t deadline_ns)
 	return err == -ETIMEDOUT ? err : -ECONNREFUSED;
 }
 
-/* One attempt. *again: a kept connection was found closed, and to repeat does no harm. */
+/* Try once. *again: the peer had closed the kept connection, and repeating does no harm. */
 static int attempt(struct talk *talk, const struct talk_request *request, size_t len,
                    int64_t deadline_ns, bool *again)
 {
@@ -176,7 +184,10 @@ static int attempt(struct talk *talk, const struct talk_request *request, size_t
 	int err;
 
 	*again = false;
-	/* Closed while idle; or an answer nobody asked for, which must not pass for the next one. */
+	/*
+	 * The peer closed the connection while it was idle, or sent bytes that must not pass for
+	 * the next answer.
+	 */
 	if (kept && connection_is_stale(&talk->connection)) {
 		bus_count(&talk->counter[TALK_STALE], 1);
 		kept = false;

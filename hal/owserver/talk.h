@@ -28,13 +28,13 @@ enum talk_counter {
 
 struct talk {
 	struct connection connection;
-	struct frame_reader reader;  /* reader.header: the last reply */
-	int64_t asked_ns;            /* when this reply began to be waited for */
-	uint32_t alives, pieces;     /* keep-alives and pieces since then */
+	struct frame_reader reader;  /* reader.header is that of the last reply */
+	int64_t asked_ns;            /* when the wait for this reply began */
+	uint32_t alives, pieces;     /* keep-alives and pieces of this reply */
 	bool heard;                  /* bytes came since the caller cleared it */
 	char trouble[112];           /* why an exchange failed, as a sentence */
 	struct bus_counter *counter; /* by enum talk_counter */
-	const uint8_t *tokens;       /* go with each request: the servers it came through */
+	const uint8_t *tokens;       /* sent with each request: the servers that it came through */
 	uint32_t token_count;
 	uint8_t in[4096];
 	uint8_t out[FRAME_REQUEST_MAX + FRAME_TOKENS_SENT * FRAME_TOKEN_SIZE];
@@ -48,7 +48,7 @@ struct talk_request {
 	int32_t size;        /* READ: bytes asked for */
 	const uint8_t *data; /* WRITE */
 	uint32_t data_len, offset;
-	uint8_t *room; /* where the reply's data go; NULL: not wanted */
+	uint8_t *room; /* where the reply's data go; NULL: nowhere */
 	uint32_t limit;
 };
 
@@ -64,7 +64,10 @@ struct talk_request {
  */
 int talk_exchange(struct talk *talk, const struct talk_request *request, int64_t deadline_ns);
 
-/* The two halves, on an open connection. Errors of the second as above, and -EAGAIN: not yet. */
+/*
+ * The two halves of talk_exchange(), on an open connection. Errors of the second as above, and
+ * -EAGAIN: not yet.
+ */
 int talk_send(struct talk *talk, const struct talk_request *request, int64_t until_ns);
 int talk_receive(struct talk *talk, int64_t until_ns);
 
