@@ -47,7 +47,7 @@ static int message(struct clock *clock, uint8_t address, const struct i2c_messag
 	return net->plugged ? 0 : -ENODEV;
 }
 
-/* STOP; then the caller has waited for what he started. */
+/* Send the STOP, and wait until the transaction's time is over. */
 static int end(struct clock *clock, int err)
 {
 	struct sim_adapter *adapter = clock->adapter;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The simulated network as an I2C adapter: transactions take the time that the bus's speed gives
- * them, waited for through the environment (which on a virtual clock moves it).
+ * The simulated network as an I2C adapter. A transaction takes the time that the bus's speed gives
+ * it, and waits for that time through the environment (which on a virtual clock moves it).
  */
 #ifndef HAL_SIM_ADAPTER_H
 #define HAL_SIM_ADAPTER_H
@@ -12,13 +12,13 @@
 
 struct sim_adapter {
 	struct i2c_adapter adapter;
-	struct sim_net *net; /* lent */
+	struct sim_net *net; /* the caller owns it */
 	const struct bus_env *env;
-	int64_t free_at; /* when the bus is free again */
+	int64_t free_at; /* when the last transaction ends */
 	bool open;
 };
 
-/* Limits and speed are the network's. Nothing is allocated. */
+/* Limits and speed are those of the network. Allocates nothing. */
 void sim_adapter_init(struct sim_adapter *adapter, struct sim_net *net, const struct bus_env *env);
 
 #endif

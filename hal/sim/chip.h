@@ -31,7 +31,7 @@ enum { SIM_APU = 0x01, SIM_PDN = 0x02, SIM_SPU = 0x04, SIM_1WS = 0x08 };
 enum sim_stuck {
 	SIM_FREE,
 	SIM_STUCK,      /* until a device reset */
-	SIM_STUCK_FAST, /* whatever the host does */
+	SIM_STUCK_FAST, /* the chip stays stuck whatever the host does */
 };
 
 #define SIM_PORT_PARAMETERS 5 /* tRSTL, tMSP, tW0L, tREC0, RWPU */
@@ -47,15 +47,15 @@ struct sim_chip {
 	unsigned channels;
 	enum sim_stuck stuck; /* 1WB stays set */
 	bool asleep;          /* SLPZ low (-101, DS2483, DS2484): deaf */
-	int percent; /* of the typical 1-Wire times, 95..105 by the data sheet; 0 means 100 */
+	int percent;          /* of the typical 1-Wire times, 95..105 by the data sheet; 0: 100 */
 
 	uint8_t status, config, channel, data, pointer;
 	uint8_t port[SIM_PORT_PARAMETERS][2];
 	uint8_t port_at;         /* next byte of the port configuration to read */
-	uint8_t command;         /* of this write; 0 after its parameter */
-	bool writing, parameter; /* in a write; behind its command */
+	uint8_t command;         /* the command of this write; 0 after its parameter */
+	bool writing, parameter; /* in a write; its parameter comes next */
 	/* The 1-Wire operation under way. */
-	uint8_t op, op_data; /* command code, 0 none */
+	uint8_t op, op_data; /* command code, 0: none */
 	unsigned op_slots, op_done;
 	int64_t op_start, op_end;
 	uint64_t operations; /* 1-Wire commands taken */
@@ -63,19 +63,19 @@ struct sim_chip {
 };
 
 void sim_chip_init(struct sim_chip *chip, enum sim_part part, uint8_t address);
-void sim_chip_clear(struct sim_chip *chip); /* its slaves too */
+void sim_chip_clear(struct sim_chip *chip); /* clears its slaves too */
 const char *sim_part_name(enum sim_part part);
 void sim_chip_power_on(struct sim_chip *chip, int64_t t);
 /* What the chip's 1-Wire times are now. */
 struct sim_timing sim_chip_timing(const struct sim_chip *chip);
 
-/* Do what is due up to t. */
+/* Carry out what is due up to t. */
 void sim_chip_run(struct sim_chip *chip, int64_t t);
-/* START and address byte, t at its acknowledge bit; false: refused. */
+/* START and address byte; t: its acknowledge bit. False: refused. */
 bool sim_chip_start(struct sim_chip *chip, bool read, int64_t t);
-/* A byte to the chip, t at its acknowledge bit; false: refused. */
+/* Take a byte; t: its acknowledge bit. False: refused. */
 bool sim_chip_write(struct sim_chip *chip, uint8_t byte, int64_t t);
-/* A byte from the chip; t is when it begins. */
+/* Send a byte that begins at t. */
 uint8_t sim_chip_read(struct sim_chip *chip, int64_t t);
 
 #endif

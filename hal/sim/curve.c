@@ -20,7 +20,7 @@ static int64_t phase(const struct sim_curve *curve, int64_t t)
 	return curve->span_ns > 0 ? since % curve->span_ns : since;
 }
 
-/* Of so many turns, 0 to 1. Without libm, which would cost the daemon 300 KiB for this alone. */
+/* The sine of so many turns, 0 to 1. libm would cost the daemon 300 KiB for this function alone. */
 static double sine(double turns)
 {
 	int quarter = (int)(turns * 4);
@@ -28,10 +28,7 @@ static double sine(double turns)
 
 	if (quarter & 1)
 		x = 1 - x;
-	/*
-	 * in the half of the quarter that is nearer to zero the sine's series, in the other the
-	 * cosine's
-	 */
+	/* near zero the sine's series, in the other half of the quarter the cosine's */
 	int n = x > 0.5 ? 0 : 1;
 	double angle = (n ? x : 1 - x) * HALF_PI;
 	square = angle * angle;

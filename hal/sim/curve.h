@@ -32,7 +32,7 @@ struct sim_curve {
 };
 
 struct sim_curve sim_constant(double value);
-/* The nearest whole number, halves away from zero; 2^53 beyond it, 0 of what is no number. */
+/* The nearest whole number, halves away from zero, at most 2^53 either way; 0 for a NaN. */
 int64_t sim_round(double value);
 double sim_curve_at(const struct sim_curve *curve, int64_t t);
 /* When the value jumps next after t; INT64_MAX: never (a smooth curve does not jump). */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What happens to a simulated network: a line of a scenario, read and made to happen. */
+/* Events of a simulated network: parses a line of a scenario, and carries events out. */
 #include "hal/sim/event.h"
 
 #include <errno.h>
@@ -33,7 +33,7 @@ static struct sim_slave *device(const struct sim_net *net, struct words *words,
 	return NULL;
 }
 
-/* "0x18", and with a channel "0x18.3". */
+/* Parse "0x18", or with a channel "0x18.3". */
 static void chip(const struct sim_net *net, struct words *words, struct sim_event *event)
 {
 	char *end;
@@ -91,8 +91,8 @@ static void input(const struct sim_net *net, struct words *words, struct sim_eve
 static const struct {
 	const char *name;
 	enum sim_what what;
-	bool on;   /* what the event's flag is when it begins */
-	bool once; /* has no end */
+	bool on;   /* the event's flag when it begins */
+	bool once; /* the event has no end */
 } events[] = {
 	{"set", SIM_SET, true, true},          {"unplug", SIM_PLUG, false, false},
 	{"plug", SIM_PLUG, true, true},        {"brownout", SIM_BROWNOUT, true, true},

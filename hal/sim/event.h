@@ -7,13 +7,13 @@
 #include "hal/sim/words.h"
 
 /*
- * Read what happens, to the end of the line. One event, or with "for TIME" two: the second, at_ns
- * later, ends the first. Returns how many; 0 when words failed.
+ * Parse an event, to the end of the line. "for TIME" adds a second event, at_ns later, which ends
+ * the first. Returns how many events; 0: words failed.
  */
 unsigned event_parse(const struct sim_net *net, struct words *words, struct sim_event event[2]);
 
 /*
- * Let one event happen at now: what follows "at TIME" in a scenario, as "unplug kitchen" or
+ * Carry out one event now. The line is what follows "at TIME" in a scenario, as "unplug kitchen" or
  * "short 0x18.2 for 5s". 0, -EINVAL with the reason in why, -ENOMEM.
  */
 int sim_scenario_event(struct sim_net *net, const char *line, int64_t now, char *why,

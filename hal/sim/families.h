@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* The slave families there are: a word in the list below for each. */
+/* The families of simulated slaves: a word in the list below for each. */
 #ifndef HAL_SIM_FAMILIES_H
 #define HAL_SIM_FAMILIES_H
 
 #include "hal/sim/slave.h"
 
 /* clang-format off */
-/* Of those that share a family code the first stands for it. */
+/* Of the parts with the same family code the first one stands for the code. */
 #define SIM_FAMILIES(family) \
 	/* thermometers */ \
 	family(ds18b20) family(ds18s20) family(ds1822) family(ds1825) family(ds28ea00) \

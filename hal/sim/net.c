@@ -7,7 +7,7 @@
 #include "hal/bus/time.h"
 #include "hal/sim/net.h"
 
-#define PAUSE_NS (10 * NS_PER_MS) /* at the least that is so */
+#define PAUSE_NS (10 * NS_PER_MS) /* a pause is at least so long */
 
 void sim_net_init(struct sim_net *net)
 {
@@ -44,7 +44,7 @@ int sim_net_add_event(struct sim_net *net, const struct sim_event *event)
 {
 	struct sim_event *events;
 
-	/* The place of one that is over: a simulation of weeks has many. */
+	/* take the place of an event that is over: a simulation of weeks has many */
 	for (size_t i = 0; i < net->events; i++) {
 		if (net->event[i].done) {
 			net->event[i] = *event;
@@ -177,8 +177,8 @@ static void run_chips(struct sim_net *net, int64_t t)
 }
 
 /*
- * After a pause, of what repeats only the last times: all of a day in which the machine slept would
- * keep the caller for as long as they are many.
+ * After a pause, skip all but the last times of repeating events: those of a day in which the
+ * machine slept would block the caller for too long.
  */
 static void leave_out(struct sim_net *net, int64_t t)
 {

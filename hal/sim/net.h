@@ -34,7 +34,7 @@ struct sim_event {
 	unsigned chip, channel;
 	struct sim_slave *slave;
 	unsigned input;
-	struct sim_curve curve; /* its start_ns counts from the event */
+	struct sim_curve curve; /* start_ns counts from the event */
 	uint32_t each;
 	double probability;
 	uint64_t seed;
@@ -48,23 +48,23 @@ struct sim_net {
 	uint32_t hz;
 	enum sim_combine combine;
 	unsigned max_messages;
-	bool plugged; /* the adapter itself */
+	bool plugged; /* the adapter is plugged in */
 	unsigned chips;
 	struct sim_chip chip[SIM_MAX_CHIPS];
 	struct sim_event *event;
 	size_t events;
 
 	bool started;
-	int64_t epoch, time; /* of the host's clock; ns since then, the latest seen */
+	int64_t epoch, time; /* the start on the host's clock; the latest time, ns since then */
 	struct sim_chip *selected;
 	struct refusal {
-		uint32_t each, count; /* each n-th is refused; 0 none */
+		uint32_t each, count; /* each n-th is refused; 0: none */
 	} refuse_address[SIM_MAX_CHIPS], refuse_data[SIM_MAX_CHIPS];
 };
 
 void sim_net_init(struct sim_net *net);
 void sim_net_clear(struct sim_net *net);
-/* 0, -ENOSPC, -EEXIST for the address. */
+/* Add a chip. 0, -ENOSPC, -EEXIST: the address is taken. */
 int sim_net_add_chip(struct sim_net *net, enum sim_part part, uint8_t address);
 /* 0 or -ENOMEM; the net owns the slave from then on. */
 int sim_net_add_slave(struct sim_net *net, unsigned chip, unsigned channel,
@@ -72,21 +72,21 @@ int sim_net_add_slave(struct sim_net *net, unsigned chip, unsigned channel,
 int sim_net_add_event(struct sim_net *net, const struct sim_event *event);
 struct sim_slave *sim_net_slave(const struct sim_net *net, const char *name);
 
-/* Power everything on; else the first call below does. */
+/* Power everything on; without this call the first call below does it. */
 void sim_net_start(struct sim_net *net, int64_t now);
 /*
- * Let everything happen that is due; of what repeats, and was due more than SIM_CATCH_UP times
- * since the last call (all together), the last times.
+ * Carry out all events that are due. Of repeating events that were due more than SIM_CATCH_UP times
+ * in all since the last call, only the last times are carried out.
  */
 #define SIM_CATCH_UP 100000
 void sim_net_run(struct sim_net *net, int64_t now);
 /* When the next event is due on the host's clock; INT64_MAX: never. */
 int64_t sim_net_next(const struct sim_net *net);
 
-/* I2C, byte by byte; now is the time of the acknowledge bit. */
+/* I2C, byte by byte; now: the time of the acknowledge bit. */
 bool sim_i2c_start(struct sim_net *net, uint8_t address, bool read, int64_t now);
 bool sim_i2c_write(struct sim_net *net, uint8_t byte, int64_t now);
-/* now: the byte's begin. */
+/* now: the time when the byte begins. */
 uint8_t sim_i2c_read(struct sim_net *net, int64_t now);
 
 #endif

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* The pins that drive and are driven, and the commands that read and write them. */
+/*
+ * The pins that a switch drives and that are driven from outside, and the commands that read and
+ * write them.
+ */
 #include "hal/sim/pins.h"
 
 static struct sim_pins *state(struct sim_slave *slave)
@@ -22,7 +25,7 @@ static uint8_t levels(const struct sim_slave *slave, int64_t t)
 	return (uint8_t)(level & pins->latch);
 }
 
-/* Did the outside change and change back between two looks? Few jumps settle it. */
+/* Did the input change and change back between two looks? A few jumps are enough to find it. */
 static bool jumped(const struct sim_slave *slave, unsigned input, int64_t from, int64_t to)
 {
 	bool level = outside(slave, input, from);
@@ -67,7 +70,7 @@ void sim_pins_write(struct sim_slave *slave, uint8_t latch, int64_t t)
 	sim_pins_follow(slave, t);
 }
 
-/* Two pins: pin A, latch A, pin B, latch B, and their complement above. Eight: their levels. */
+/* Send two pins as pin A, latch A, pin B, latch B, and their complement above; or eight levels. */
 void sim_pins_send(struct sim_slave *slave, int64_t t)
 {
 	const struct sim_pins *pins = slave->state;
@@ -78,7 +81,7 @@ void sim_pins_send(struct sim_slave *slave, int64_t t)
 	sim_send_byte(slave, pins->count == 8 ? pins->level : (uint8_t)(low | (~low & 15) << 4));
 }
 
-/* New latches and their complement: AAh, */
+/* Take new latches and their complement, and answer AAh, */
 void sim_pins_take(struct sim_slave *slave, int64_t t)
 {
 	if ((slave->taken[0] ^ slave->taken[1]) != 0xFF) {
@@ -89,7 +92,7 @@ void sim_pins_take(struct sim_slave *slave, int64_t t)
 	sim_send_byte(slave, 0xAA);
 }
 
-/* ... the pins as they are now, and the next two bytes. */
+/* then send the pins as they are now, and receive the next two bytes. */
 void sim_pins_taken(struct sim_slave *slave, int64_t t)
 {
 	if (slave->got == 2) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Open-drain pins of the switch families: an output latch each, and what drives it from outside.
- * The state of such a slave begins with a struct sim_pins.
+ * The open-drain pins of the switch families: each has an output latch, and a curve drives it from
+ * outside. The state of such a slave begins with a struct sim_pins.
  */
 #ifndef HAL_SIM_PINS_H
 #define HAL_SIM_PINS_H
@@ -10,17 +10,17 @@
 
 struct sim_pins {
 	uint8_t latch;         /* 1: the output transistor is off */
-	uint8_t level;         /* as it is on the pins */
-	uint8_t activity;      /* changed since it was cleared */
-	unsigned first, count; /* their inputs among the family's */
-	int64_t seen;          /* up to when they were followed */
+	uint8_t level;         /* the level of each pin */
+	uint8_t activity;      /* the pin changed since the host cleared the flag */
+	unsigned first, count; /* the pins' inputs among those of the family */
+	int64_t seen;          /* the inputs were followed up to this time */
 };
 
-/* Power-on: all transistors off, nothing happened. */
+/* Power on: all transistors off, no activity. */
 void sim_pins_start(struct sim_slave *slave, unsigned first, unsigned count, int64_t t);
 /* Follow the inputs up to t; for struct sim_family. */
 void sim_pins_follow(struct sim_slave *slave, int64_t t);
-/* Set the latches at t, up to which the pins were followed. */
+/* Set the latches at t. The pins were followed up to t. */
 void sim_pins_write(struct sim_slave *slave, uint8_t latch, int64_t t);
 
 /* PIO access of two pins, or Channel Access of eight: for struct sim_function. */

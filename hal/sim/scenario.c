@@ -19,8 +19,8 @@
 
 struct scenario {
 	struct sim_net *net;
-	unsigned channel; /* that devices go to */
-	bool adapter;     /* its line was there */
+	unsigned channel; /* for the devices that follow */
+	bool adapter;     /* the line of the adapter was there */
 	bool nomem;
 };
 
@@ -128,7 +128,7 @@ static void fill_memory(struct sim_slave *slave, struct words *words)
 	}
 }
 
-/* The properties of a device, which its line has after the name. */
+/* Parse the properties of a device, which follow its name. */
 static void properties(struct sim_slave *slave, struct words *words)
 {
 	while (words_next(words)) {
@@ -309,7 +309,10 @@ int sim_scenario_parse(const char *name, const char *text, struct sim_net *net, 
 	return scenario.nomem ? -ENOMEM : -EINVAL;
 }
 
-/* The file's text, to be freed; NULL: *err and why. What is no regular file might never end. */
+/*
+ * Returns the file's text, which the caller frees; NULL: *err and why. A file that is not regular
+ * might never end.
+ */
 static char *read_text(const char *file, char *why, size_t why_size, int *err)
 {
 	int fd = open(file, O_RDONLY | O_NONBLOCK | O_CLOEXEC);

@@ -6,11 +6,11 @@
 #include "hal/sim/net.h"
 
 /*
- * Make net of the file. 0; -errno of reading it; -EINVAL. why says what is wrong, as
- * "file:line:column: text". net is initialised here, and cleared again on error.
+ * Make a network of the file. 0; -errno of reading it; -EINVAL. why gets the error as
+ * "file:line:column: text". net is initialised here, and cleared again after an error.
  */
 int sim_scenario_read(const char *file, struct sim_net *net, char *why, size_t why_size);
-/* The same from a text; name stands for the file in messages. */
+/* Make a network of a text; name stands for the file in messages. */
 int sim_scenario_parse(const char *name, const char *text, struct sim_net *net, char *why,
                        size_t why_size);
 

@@ -89,7 +89,7 @@ void sim_receive(struct sim_slave *slave)
 	slave->bits = 0;
 }
 
-/* More of what the next checksum is of. */
+/* Add data to the next checksum. */
 static void check(struct sim_slave *slave, const uint8_t *data, size_t n)
 {
 	slave->crc = slave->family->crc8 ? sim_crc8((uint8_t)slave->crc, data, n)
@@ -228,12 +228,12 @@ void sim_slave_strong(struct sim_slave *slave, bool on, int64_t t)
 	if (slave->strong == on)
 		return;
 	slave->strong = on;
-	/* What is done now would need the current on. */
+	/* the operation under way needs the current until its end */
 	if (!on && slave->parasite && slave->busy)
 		sim_slave_power_on(slave, t);
 }
 
-/* xorshift64*: the same numbers everywhere. */
+/* xorshift64*: a seed gives the same numbers everywhere. */
 static double random_part(uint64_t *state)
 {
 	uint64_t x = *state ? *state : 88172645463325252u;
@@ -315,7 +315,7 @@ static bool rom_bit(const struct sim_slave *slave)
 	return slave->rom[slave->rom_bit / 8] >> (slave->rom_bit % 8) & 1;
 }
 
-/* One more bit of the ROM id agreed upon; true when that was the last. */
+/* Agree upon one more bit of the ROM id; true: that was the last bit. */
 static bool rom_step(struct sim_slave *slave, bool agreed)
 {
 	if (!agreed) {

@@ -39,15 +39,15 @@ struct sim_function {
 	uint8_t code, takes; /* code 0 ends a table */
 	/* All optional. */
 	void (*start)(struct sim_slave *slave, int64_t t); /* the code and its bytes are there */
-	void (*byte)(struct sim_slave *slave, uint8_t byte, int64_t t); /* a further one came */
-	/* The last bit of what was to be sent is gone: send more, receive, or nothing. */
+	void (*byte)(struct sim_slave *slave, uint8_t byte, int64_t t); /* one more byte came */
+	/* The last bit was sent: send more, receive, or do nothing. */
 	void (*next)(struct sim_slave *slave, int64_t t);
 };
 
 struct sim_family {
 	const char *name; /* "DS18B20" */
 	uint8_t code;
-	bool overdrive, resume;         /* knows these ROM commands */
+	bool overdrive, resume;         /* the slave knows these ROM commands */
 	size_t state_size;              /* zeroed at creation; sim_state() */
 	const struct sim_input *inputs; /* name NULL at the end; NULL: none */
 
@@ -58,13 +58,16 @@ struct sim_family {
 	/* All optional. */
 	void (*create)(struct sim_slave *slave); /* contents of the memories as from the factory */
 	void (*power_on)(struct sim_slave *slave, int64_t t);
-	/* Selected alone, by a Match ROM or at the end of a search: in the function layer. */
+	/*
+	 * The slave was selected alone, by a Match ROM or at the end of a search: it is in the
+	 * function layer.
+	 */
 	void (*selected)(struct sim_slave *slave, bool match, int64_t t);
 	bool (*alarm)(struct sim_slave *slave, int64_t t); /* answers a conditional search? */
 	bool (*bit)(struct sim_slave *slave, int64_t t); /* the next one in SIM_BITS; NULL: idle? */
-	void (*worked)(struct sim_slave *slave, int64_t t);  /* what sim_work() began has ended */
+	void (*worked)(struct sim_slave *slave, int64_t t);  /* the work of sim_work() has ended */
 	void (*advance)(struct sim_slave *slave, int64_t t); /* follow the inputs up to t */
-	/* A start value of the scenario. 0, -ENOENT no such option, -ERANGE. */
+	/* Take a start value of the scenario. 0, -ENOENT: no such option, -ERANGE. */
 	int (*option)(struct sim_slave *slave, const char *name, double value);
 	/* The memory that a scenario may fill. */
 	uint8_t *(*memory)(struct sim_slave *slave, size_t *size);
@@ -86,7 +89,7 @@ struct sim_slave {
 	const struct sim_family *family;
 	uint8_t rom[8];
 	char name[32];
-	bool plugged;  /* is on the wire */
+	bool plugged;  /* the slave is on the wire */
 	bool parasite; /* fed by the wire */
 	bool strong;   /* the wire's strong pull-up is on */
 	struct sim_curve input[SIM_MAX_INPUTS];
@@ -96,21 +99,21 @@ struct sim_slave {
 	double corrupt_probability;
 	uint64_t corrupt_random; /* state, the seed at first */
 	uint32_t calls;
-	int corrupt_bit; /* of this call, counted down; -1 none */
+	int corrupt_bit; /* the bit to turn over in this call, counted down; -1: none */
 
 	enum sim_layer layer;
 	enum sim_mode mode;
 	bool overdrive, resumable;
 	uint8_t rom_bit, search_phase; /* of 64; id, complement, direction */
-	uint8_t shift, bits;           /* the byte on its way, and how much of it */
+	uint8_t shift, bits;           /* the byte under way, and how many of its bits */
 	uint16_t send_at, send_count;
 	uint8_t send[SIM_MAX_SEND];
 
-	const struct sim_function *function; /* under way; NULL: its code has yet to come */
+	const struct sim_function *function; /* NULL: the function's code has yet to come */
 	uint8_t taken[3], got;
 	uint16_t address;
-	uint16_t crc; /* of all bytes since the code, or since the last checksum */
-	bool busy;    /* works from since until until */
+	uint16_t crc; /* checksum of all bytes since the code, or since the last checksum */
+	bool busy;    /* the operation runs from since to until */
 	int64_t since, until;
 
 	uint64_t power_ons, conversions; /* for the tests */
@@ -125,12 +128,12 @@ const struct sim_family *sim_family_find(const char *name, uint8_t code);
 extern const struct sim_family *const sim_families[];
 
 void sim_slave_power_on(struct sim_slave *slave, int64_t t);
-/* The supply breaks down and comes back: what was done by t stays done. */
+/* The supply breaks down and comes back; what the slave did up to t stays done. */
 void sim_slave_brownout(struct sim_slave *slave, int64_t t);
 void sim_slave_reset(struct sim_slave *slave, bool overdrive, int64_t t);
-/* The slot's begin: does the slave leave the line alone (true), or pull it low? */
+/* The slot begins: does the slave leave the line alone (true), or pull it low? */
 bool sim_slave_output(struct sim_slave *slave, int64_t t);
-/* The slot's end: line is what it was with all slaves' outputs. */
+/* The slot ends; line: its level with the outputs of all slaves. */
 void sim_slave_slot(struct sim_slave *slave, bool line, int64_t t);
 void sim_slave_strong(struct sim_slave *slave, bool on, int64_t t);
 void sim_slave_advance(struct sim_slave *slave, int64_t t);
@@ -144,15 +147,18 @@ void sim_send(struct sim_slave *slave, const uint8_t *data, size_t n);
 void sim_send_byte(struct sim_slave *slave, uint8_t byte);
 void sim_send_bits(struct sim_slave *slave); /* each slot asks family->bit() */
 void sim_end(struct sim_slave *slave);       /* deaf until the next reset */
-/* n bytes and the checksum of all that came and went since the code or the last checksum. */
+/* Send n bytes and the checksum of all bytes in both directions since the code or last checksum. */
 void sim_send_checked(struct sim_slave *slave, const uint8_t *data, size_t n);
-/* n bytes and their own CRC8. */
+/* Send n bytes and their own CRC8. */
 void sim_send_crc8(struct sim_slave *slave, const uint8_t *data, size_t n);
-/* The byte at the address, which moves on; after each page the checksum. page 0: none. */
+/*
+ * Send the byte at the address, and move the address on; after each page the checksum. page 0:
+ * none.
+ */
 void sim_send_memory(struct sim_slave *slave, const uint8_t *memory, unsigned size, unsigned page);
-/* The checksum, then stored, which is at the address; the next checksum starts with the next. */
+/* Send the checksum, then the byte now stored at the address. The next checksum starts after it. */
 void sim_send_stored(struct sim_slave *slave, uint8_t stored);
-/* Busy for a while: read slots are 0, worked() ends it. */
+/* Be busy for a while: read slots are 0, worked() ends it. */
 void sim_work(struct sim_slave *slave, int64_t takes, int64_t t);
 
 #endif

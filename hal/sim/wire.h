@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A simulated 1-Wire wire: slots from one master to the slaves on it, the line being the AND of
- * all. Slaves that went deaf drop out until the next reset, so that a hundred of them cost little.
+ * A simulated 1-Wire wire: the slots of one master reach the slaves on it, and the line is the AND
+ * of all. Deaf slaves are skipped until the next reset, so that a hundred of them cost little.
  */
 #ifndef HAL_SIM_WIRE_H
 #define HAL_SIM_WIRE_H
@@ -9,7 +9,7 @@
 #include "hal/sim/slave.h"
 
 struct sim_wire {
-	struct sim_slave **slaves, **active; /* room for all in both */
+	struct sim_slave **slaves, **active; /* both have room for all slaves */
 	size_t count, active_count;
 	bool shorted;           /* a short to ground */
 	bool unpowered;         /* the port is switched off (DS2483, DS2484) */
@@ -21,14 +21,14 @@ struct sim_wire {
 int sim_wire_add(struct sim_wire *wire, struct sim_slave *slave);
 void sim_wire_clear(struct sim_wire *wire);
 
-/* A reset pulse; true: somebody's presence pulse. A shorted line has none. */
+/* A reset pulse; true: a slave answers with its presence pulse. On a shorted line none does. */
 bool sim_wire_reset(struct sim_wire *wire, bool overdrive, int64_t t);
-/* One time slot with out written; the line's level as sampled. */
+/* One time slot in which the master writes out; returns the level as sampled. */
 bool sim_wire_slot(struct sim_wire *wire, bool out, bool overdrive, int64_t t);
 /* The level of the idle line. */
 bool sim_wire_level(const struct sim_wire *wire);
 void sim_wire_strong(struct sim_wire *wire, bool on, int64_t t);
-/* The port's supply: slaves fed by the wire restart when it comes back. */
+/* Switch the port's supply: slaves fed by the wire restart when it comes back. */
 void sim_wire_power(struct sim_wire *wire, bool on, int64_t t);
 /* A slave comes to the wire (and powers on) or leaves it. */
 void sim_wire_plug(struct sim_wire *wire, struct sim_slave *slave, bool in, int64_t t);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Words of a scenario's line: names, numbers, times and curves. */
+/* Parses the words of a scenario's line: names, numbers, times and curves. */
 #include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -82,7 +82,7 @@ bool words_take(struct words *words, const char *word)
 	return words_next(words);
 }
 
-/* Does the next word begin as a number does? It is not read. */
+/* Does the next word begin as a number does? The word stays unread. */
 static bool words_number_ahead(const struct words *words)
 {
 	const char *next = skip_blanks(words->next);
@@ -96,7 +96,7 @@ void words_end(struct words *words)
 		words_fail(words, "\"%s\" is too much here", words->word);
 }
 
-/* The number at the beginning of the word, and where it ends; the same in every locale. */
+/* Parse the number at the beginning of the word, in the same way in every locale. */
 static double decimal(const char *word, const char **end)
 {
 	double value = 0, scale = 1;

@@ -37,7 +37,7 @@ static unsigned resolution(const struct sim_slave *slave)
 	return is_s20(slave) || s->fixed ? 12 : 9u + (s->scratchpad[4] >> 5 & 3);
 }
 
-/* ns of a conversion at the resolution set. */
+/* The time of a conversion at the present resolution, in ns. */
 static int64_t sim_thermometer_conversion(const struct sim_slave *slave)
 {
 	const struct sim_thermometer *s = slave->state;
@@ -127,7 +127,7 @@ static void latch_temperature(struct sim_slave *slave, int64_t t)
 	slave->conversions++;
 }
 
-/* A copy is of what the scratchpad holds when it ends. */
+/* A copy stores what the scratchpad holds when the copy ends. */
 static void worked(struct sim_slave *slave, int64_t t)
 {
 	struct sim_thermometer *s = state(slave);

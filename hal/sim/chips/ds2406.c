@@ -15,7 +15,7 @@ enum { MEMORY = 128, STATUS = 8 };
 struct ds2406 {
 	struct sim_pins pins;
 	uint8_t memory[MEMORY], status[STATUS];
-	/* Channel access: the direction of this byte, and how many there were. */
+	/* Channel access: the direction of this byte, and the number of bytes so far. */
 	bool reading;
 	unsigned bytes;
 };
@@ -37,7 +37,7 @@ static void power_on(struct sim_slave *slave, int64_t t)
 	sim_pins_start(slave, 0, 2, t);
 }
 
-/* The channels selected, ORed, from the source selected, against the polarity. */
+/* OR the selected source of the selected channels, each against the polarity. */
 static bool alarm(struct sim_slave *slave, int64_t t)
 {
 	const struct ds2406 *s = state(slave);
@@ -123,7 +123,7 @@ static uint8_t sample(const struct sim_slave *slave)
 	}
 }
 
-/* One more byte was exchanged: does a checksum follow? */
+/* Count one more byte of the exchange; does a checksum follow? */
 static bool crc_is_due(struct sim_slave *slave)
 {
 	static const unsigned every[4] = {0, 1, 8, 32};
@@ -132,7 +132,7 @@ static bool crc_is_due(struct sim_slave *slave)
 	return ++state(slave)->bytes && n && state(slave)->bytes % n == 0;
 }
 
-/* The next byte of the exchange, in its direction. */
+/* Begin the next byte of the exchange, in its direction. */
 static void next_byte(struct sim_slave *slave, int64_t t)
 {
 	struct ds2406 *s = state(slave);
@@ -151,7 +151,7 @@ static void next_byte(struct sim_slave *slave, int64_t t)
 		sim_send_byte(slave, out);
 }
 
-/* Bit by bit; the last one for each channel stays. */
+/* Write bit by bit; the last bit for each channel stays. */
 static void write_pins(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	struct ds2406 *s = state(slave);

@@ -42,7 +42,7 @@ static bool alarm(struct sim_slave *slave, int64_t t)
 	return match;
 }
 
-/* Up to the last register; then the checksum, of command and address too. */
+/* Send the bytes up to the last register; then the checksum, of command and address too. */
 static void send_registers(struct sim_slave *slave, int64_t t)
 {
 	const struct ds2408 *s = state(slave);
@@ -62,7 +62,7 @@ static void send_registers(struct sim_slave *slave, int64_t t)
 		sim_send_memory(slave, all, END, END);
 }
 
-/* The samples are counted in the address. */
+/* Send a sample. The address counts the samples. */
 static void send_sample(struct sim_slave *slave, int64_t t)
 {
 	const struct ds2408 *s = state(slave);

@@ -55,7 +55,7 @@ static void advance(struct sim_slave *slave, int64_t t)
 	s->seen = t;
 }
 
-/* The rest of the page, its counter, four bytes of 0, checksum. */
+/* Send the rest of the page, its counter, four bytes of 0, and the checksum. */
 static void send_page(struct sim_slave *slave, int64_t t)
 {
 	const struct ds2423 *s = state(slave);

@@ -60,7 +60,9 @@ static int within(double value, int least, int most)
 	return whole < least ? least : whole > most ? most : (int)whole;
 }
 
-/* With IAD the current is measured 36.41 times a second: always fresh here. */
+/*
+ * With IAD the chip measures the current 36.41 times a second; the simulation has it fresh always.
+ */
 static void measure_current(struct sim_slave *slave, int64_t t)
 {
 	struct ds2438 *s = state(slave);

@@ -92,14 +92,14 @@ static bool alarm(struct sim_slave *slave, int64_t t)
 	return false;
 }
 
-/* After a page the checksum: of the first over command and address too. */
+/* Send a page, then the checksum; the first one covers command and address too. */
 static void send_memory(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	sim_send_memory(slave, state(slave)->memory, SIZE, PAGE);
 }
 
-/* The checksum, then the byte as it is stored; then the next address may be written. */
+/* Send the checksum, then the byte as stored; then the host may write to the next address. */
 static void write_memory(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	struct ds2450 *s = state(slave);
@@ -126,7 +126,7 @@ static void send_checksum(struct sim_slave *slave, int64_t t)
 	sim_send_checked(slave, NULL, 0);
 }
 
-/* It starts after the checksum, where a parasite's strong pull-up comes too. */
+/* The conversion starts after the checksum, where a parasite needs the strong pull-up. */
 static void convert(struct sim_slave *slave, int64_t t)
 {
 	struct ds2450 *s = state(slave);

@@ -26,14 +26,16 @@ static void create(struct sim_slave *slave)
 	state(slave)->status[7] = 0;
 }
 
-/* The CRC8 of command and address. */
+/* Send the CRC8 of command and address. */
 static void send_checksum(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
 	sim_send_checked(slave, NULL, 0);
 }
 
-/* Read Memory and Read Status have a checksum at the end; Read Data/Generate CRC after each page. */
+/*
+ * Read Memory and Read Status send a checksum at the end, Read Data/Generate CRC after each page.
+ */
 static void send(struct sim_slave *slave, int64_t t)
 {
 	struct ds2502 *s = state(slave);
@@ -46,7 +48,7 @@ static void send(struct sim_slave *slave, int64_t t)
 		                slave->function->code == READ_MEMORY ? MEMORY : PAGE);
 }
 
-/* Checksum; the pulse would come here; the byte as it is; the next data byte. */
+/* Send the checksum; the pulse would come here; send the byte as it is; the next byte follows. */
 static void write(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	struct ds2502 *s = state(slave);

@@ -10,7 +10,7 @@
 
 enum { PROTECTION = 0x00, EEPROM_REGISTER = 0x07, SPECIAL = 0x08 };
 enum { DE = 0x01, CE = 0x02, DC = 0x04, CC = 0x08, DOC = 0x10, UV = 0x40, OV = 0x80 };
-enum { LOCK = 0x40, EEC = 0x80 }; /* and a flag for each block locked from bit 0 on */
+enum { LOCK = 0x40, EEC = 0x80 }; /* below them, from bit 0 on, a flag for each locked block */
 enum { OT = 0x01, PSF = 0x80 };
 enum { BLOCKS = 2, BLOCK = 4 };
 enum { OVERVOLTAGE, UNDERVOLTAGE, OVERCURRENT, OVERTEMPERATURE, PS }; /* inputs */
@@ -20,7 +20,7 @@ enum { OVERVOLTAGE, UNDERVOLTAGE, OVERCURRENT, OVERTEMPERATURE, PS }; /* inputs 
 
 struct ds2720 {
 	uint8_t memory[256], eeprom[BLOCKS][BLOCK];
-	uint8_t copied; /* the block under way */
+	uint8_t copied; /* the block that is being copied */
 };
 
 static struct ds2720 *state(struct sim_slave *slave)
@@ -86,7 +86,7 @@ static void worked(struct sim_slave *slave, int64_t t)
 	s->memory[EEPROM_REGISTER] &= (uint8_t)~EEC;
 }
 
-/* Any other command than the lock itself takes the leave to lock away. */
+/* Any command other than the lock itself cancels the permission to lock. */
 static void forget_lock(struct sim_slave *slave)
 {
 	state(slave)->memory[EEPROM_REGISTER] &= (uint8_t)~LOCK;
@@ -112,7 +112,9 @@ static void begin_write(struct sim_slave *slave, int64_t t)
 	forget_lock(slave);
 }
 
-/* What is read-only, reserved or locked stays as it is; flags are cleared, not set. */
+/*
+ * What is read-only, reserved or locked stays unchanged; a write can clear flags but not set them.
+ */
 static void write_data(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
 	struct ds2720 *s = state(slave);

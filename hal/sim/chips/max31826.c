@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The parts of family 3B that are no DS1825: MAX31826 (data sheet 19-6264), a thermometer with 1
+ * The parts of family 3B other than the DS1825: MAX31826 (data sheet 19-6264), a thermometer with 1
  * kbit of EEPROM, and MAX31850 (19-6725), which measures a thermocouple and its cold junction.
  */
 #include <errno.h>
@@ -60,7 +60,10 @@ static int64_t part_of(struct sim_slave *slave, unsigned input, double least, do
 	return sim_round((celsius < least ? least : celsius > most ? most : celsius) * in);
 }
 
-/* 14 bits of 0.25 above two, the lowest of which is the fault; 12 of 0.0625 above four. */
+/*
+ * The thermocouple has 14 bits of 0.25 above two bits, the lower of which is the fault; the cold
+ * junction has 12 bits of 0.0625 above four.
+ */
 static void measure_thermocouple(struct sim_slave *slave, int64_t t)
 {
 	struct sim_max *s = state(slave);

@@ -38,7 +38,7 @@ void sim_scratchpad_worked(struct sim_slave *slave, int64_t t)
 	s->status |= AUTHORIZED;
 }
 
-/* While it is copied the line stays high; then 0 and 1 in turns, AAh. */
+/* During the copy the line stays high; then 0 and 1 follow in turns, as AAh. */
 bool sim_scratchpad_bit(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
@@ -72,7 +72,7 @@ void sim_scratchpad_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 		sim_send_checked(slave, NULL, 0);
 }
 
-/* Target, E/S, the bytes from the target's offset to the ending one, checksum. */
+/* Send target, E/S, the bytes from the target's offset to the ending one, and the checksum. */
 void sim_scratchpad_read(struct sim_slave *slave, int64_t t)
 {
 	struct sim_scratchpad *s = state(slave);
