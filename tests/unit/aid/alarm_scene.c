@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Switches in alarm on a scene. */
+/* Puts switches in alarm on a scene. */
 #include <string.h>
 
 #include "tests/unit/aid/alarm_scene.h"

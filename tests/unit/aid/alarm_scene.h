@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Switches in alarm on a scene, as the tests of the alarm machine have them. */
+/* Switches in alarm on a scene, for the tests of the alarm machine. */
 #ifndef TESTS_UNIT_AID_ALARM_SCENE_H
 #define TESTS_UNIT_AID_ALARM_SCENE_H
 
@@ -11,19 +11,22 @@
 #define T "/28.551DDF030000"
 #define T_TEMP T "/temperature12"
 
-/* An input with the keys of an alarm; NULL: not defined. */
+/* An input with alarm keys; NULL: the key is not set. */
 struct config_item *alarm_item(struct scene *s, const char *name, const char *path,
                                const char *latch, const char *por, const char *set,
                                const char *reset);
-/* Figure 3.3 of the manual, on D. */
+/* The item of figure 3.3 of the manual, on D. */
 struct config_item *figure_3_3(struct scene *s);
-/* What D has, and the list of those in alarm. */
+/* Set the latch and the por of D, and the list of the devices in alarm. */
 void alarm_device(struct scene *s, const char *latch, const char *por);
-/* The list made anew: D is in alarm while its latch or its por is not zero, E while its latch is. */
+/*
+ * Write the list of the devices in alarm: D while its latch or its por is not zero, E while its
+ * latch is not.
+ */
 void judge_alarm(struct scene *s);
-/* The scene's on_read, which does so before each list. */
+/* The scene's on_read: calls judge_alarm() before each read of the list. */
 void alarm_on_read(struct scene *s, const char *path);
-/* Start, and let the first values and the arming pass. */
+/* Start, and run until the first values have come and the alarms are armed. */
 void alarm_begin(struct scene *s);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Verbs of owsctl with stdout and stderr caught. */
+/* Runs verbs of owsctl and catches their stdout and stderr. */
 #ifndef TESTS_UNIT_AID_CAUGHT_H
 #define TESTS_UNIT_AID_CAUGHT_H
 
@@ -10,7 +10,7 @@ extern char *out, *err; /* of the last run */
 
 void caught_begin(const char *instance);
 void caught_end(void);
-/* Run a verb with the words, its own name first; its status. */
+/* Run a verb with these words, its own name first. Returns its status. */
 int run(int (*function)(struct ctl *, int, char **), const char *words);
 void holds(const char *text, const char *part);
 

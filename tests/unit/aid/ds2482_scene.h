@@ -12,7 +12,7 @@ extern struct ds {
 	struct sim_net net;
 	struct sim_adapter adapter;
 	struct link_master *master;
-	struct link *wire; /* the first */
+	struct link *wire; /* the first link */
 	unsigned closes;
 	char why[200];
 } ds;
@@ -21,25 +21,25 @@ extern struct ds {
 void ds_begin(void);
 void ds_end(void);
 
-/* Open the master at that place of the scenario; the error, ds.why says which. */
+/* Open the master at that place of the scenario. Returns the error, with the reason in ds.why. */
 int ds_try_open(const char *scenario, const char *where);
-/* Open whatever is there. */
+/* Open the master for all chips of the scenario. */
 void ds_start(const char *scenario);
-/* What a master of one's own is made of. */
+/* The functions for a test that makes its own master. */
 extern const struct link_master_ops ds_ops;
 int ds_open_adapter(void *ctx, const struct bus_env *env, struct i2c_adapter **out, char *text,
                     size_t size);
 void ds_forget(void *ctx);
 
-/* One thermometer "t" behind adapters of every kind. */
+/* Scenarios with one thermometer "t" behind each kind of adapter. */
 #define DS_KINDS 8
 extern const char *const ds_kinds[DS_KINDS];
 
-/* An event of the scenario language, now. */
+/* Let an event of the scenario language happen now. */
 void ds_event(const char *text);
-/* Reset, Match ROM, Read Scratchpad and its nine bytes, of the device of that name. */
+/* Send reset, Match ROM and Read Scratchpad to the named device, and read its nine bytes. */
 int ds_read_scratchpad(const char *name, uint8_t scratchpad[9]);
-/* Of the thermometer "t", as it is after power-on. */
+/* Check the scratchpad of the thermometer "t" against that after power-on. */
 void ds_check_scratchpad(void);
 
 #endif

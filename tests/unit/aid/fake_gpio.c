@@ -10,7 +10,7 @@
 
 struct fake_gpio fake_gpio;
 
-/* Their addresses are all that the code under test gets. */
+/* The code under test only gets the addresses of these. */
 struct gpio_chip {
 	char none;
 };

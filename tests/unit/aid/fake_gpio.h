@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * One GPIO chip, "/dev/gpiochip0" labelled "fake", in place of libgpiod. As with the kernel: a
- * line is one holder's, an input keeps GPIO_EDGES_KEPT edges and loses what comes then.
+ * One GPIO chip, "/dev/gpiochip0" labelled "fake", in place of libgpiod. As with the kernel, a line
+ * has one holder, and an input keeps GPIO_EDGES_KEPT edges and loses later ones.
  */
 #ifndef TESTS_UNIT_AID_FAKE_GPIO_H
 #define TESTS_UNIT_AID_FAKE_GPIO_H
@@ -12,10 +12,10 @@
 
 struct fake_line {
 	char name[GPIO_NAME_MAX];
-	char consumer[GPIO_NAME_MAX]; /* "": free */
-	bool high;                    /* the wire's level */
+	char consumer[GPIO_NAME_MAX]; /* "": the line is free */
+	bool high;                    /* the level on the wire */
 	struct gpio_setup setup;      /* of the last request */
-	bool held;                    /* by the code under test */
+	bool held;                    /* the code under test holds the line */
 	unsigned requests, sets;
 	struct gpio_edge kept[GPIO_EDGES_KEPT];
 	unsigned edges;
@@ -23,19 +23,19 @@ struct fake_line {
 
 struct fake_gpio {
 	struct fake_line line[FAKE_LINES];
-	int open_err;  /* of the chip */
-	bool gone;     /* unplugged: everything gives -ENODEV */
-	unsigned open; /* chips open now */
+	int open_err;  /* the error of opening the chip */
+	bool gone;     /* unplugged: every call returns -ENODEV */
+	unsigned open; /* how many times the chip is open now */
 	/* Called after a line was driven, by set or by request. */
 	void (*driven)(unsigned line, bool high);
 };
 extern struct fake_gpio fake_gpio;
 
-/* All lines low, free, without a name; libgpiod's place is taken. */
+/* All lines are low, free and without a name; the fake takes the place of libgpiod. */
 void fake_gpio_begin(void);
-/* Everything was given back? Then libgpiod has its place again. */
+/* Check that the code under test gave everything back, and give libgpiod its place back. */
 void fake_gpio_end(void);
-/* The wire of a line changes at that time. */
+/* Change the level on the wire of a line at that time. */
 void fake_gpio_level(unsigned line, bool high, int64_t at_ns);
 
 #endif

@@ -29,7 +29,7 @@ extern struct fs {
 /* setUp() and tearDown() */
 void fs_begin(void);
 void fs_end(void);
-/* Open the bus with a master; it comes up. */
+/* Open the bus with a master, and wait until it is up. */
 void fs_start(void);
 
 /* rm -r ROOT/WHAT */
@@ -37,31 +37,31 @@ void fs_erase(const char *what);
 void fs_put(const char *directory, const char *name, const void *bytes, size_t n);
 void fs_text(const char *directory, const char *name, const char *what);
 void fs_byte(const char *directory, const char *name, int value);
-/* The attribute fails with EIO. */
+/* Reads and writes of the attribute fail with EIO. */
 void fs_broken(const char *directory, const char *name);
 const char *fs_now_in(const char *directory, const char *name);
 
-/* As in sysfs, a slave is a directory of its master, and another name leads there. */
+/* Make the slave's directory in that of its master, and a link to it, as in sysfs. */
 void fs_slave_of(const char *master, const char *name);
 void fs_slave(const char *name);
 void fs_gone(const char *name);
 void fs_thermometer(const char *name, int raw);
-/* What a thermometer's w1_slave says; raw in sixteenths of a degree. */
+/* Write the w1_slave of a thermometer; raw in sixteenths of a degree. */
 void fs_scratchpad(const char *name, int raw, int high, int low, int config, const char *verdict);
-/* BOARD, a DS2408 */
+/* Write the files of BOARD, a DS2408. */
 void fs_board(int state, int control);
 
-/* Submit a request; n bytes of value are what a write writes. Returns its id. */
+/* Submit a request; a write writes the n bytes of value. Returns its id. */
 uint32_t fs_ask(enum bus_op op, const char *what, const void *value, size_t n);
-/* Run until it is answered, exactly once: the error. */
+/* Run until the request has its one answer. Returns the error. */
 int fs_result(uint32_t id);
 void fs_reads(const char *expected, const char *what);
 void fs_fails(int err, const char *what);
 int fs_writes(const char *what, const char *value);
-/* The same at an offset in the value. */
+/* Write at an offset in the value. */
 int fs_writes_at(uint32_t offset, const char *what, const char *value);
 void fs_lists(const char *expected, const char *what);
-/* Was it told with these words? */
+/* Was the event reported with these words? */
 bool fs_told(enum bus_news news, const char *part);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A wire with slaves, worked by hand: no chip and no driver between the test and the slave. */
+/* Works a wire with slaves by hand: no chip and no driver stand between the test and the slave. */
 #ifndef TESTS_UNIT_AID_HAND_H
 #define TESTS_UNIT_AID_HAND_H
 
@@ -15,16 +15,16 @@ struct hand {
 };
 
 void hand_clear(struct hand *hand);
-/* A slave with the id last, 0, 0, 0, 0, 0, powered on. */
+/* Add a slave with the id last, 0, 0, 0, 0, 0, and power it on. */
 struct sim_slave *hand_plug(struct hand *hand, const struct sim_family *family, uint8_t last);
 bool hand_reset(struct hand *hand);
 bool hand_bit(struct hand *hand, bool out);
 void hand_write(struct hand *hand, const uint8_t *bytes, unsigned n);
 void hand_read(struct hand *hand, uint8_t *bytes, unsigned n);
 uint8_t hand_byte(struct hand *hand);
-/* Reset, Skip ROM, and the n bytes that follow. */
+/* Send reset, Skip ROM, and the n bytes that follow. */
 void hand_skip(struct hand *hand, unsigned n, ...);
-/* Reset and Match ROM. */
+/* Send reset and Match ROM. */
 void hand_match(struct hand *hand, const struct sim_slave *slave);
 /* Does the slave answer a conditional search? */
 bool hand_in_alarm(struct hand *hand, const struct sim_slave *slave);

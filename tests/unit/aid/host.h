@@ -31,10 +31,10 @@ int64_t host_now(struct host *host);
 struct bus *host_bus(struct host *host, const char *target);
 /* Step the bus until `until` (virtual: the clock jumps from step to step). */
 void host_run(struct host *host, struct bus *bus, int64_t until_ns);
-/* Step until there are n answers or `until` has come; true when there are. */
+/* Step until there are n answers or `until` has come. Returns whether there are n. */
 bool host_run_answers(struct host *host, struct bus *bus, unsigned n, int64_t until_ns);
 bool host_run_events(struct host *host, struct bus *bus, unsigned n, int64_t until_ns);
-/* The first answer to id, NULL when there is none; how many there are. */
+/* The first answer to id, or NULL; and the number of answers to id. */
 const struct bus_answer *host_answer(const struct host *host, uint32_t id);
 unsigned host_answers(const struct host *host, uint32_t id);
 unsigned host_events(const struct host *host, enum bus_news news);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The native bus over a net of simulated slaves (wire_link.h) on a virtual clock: what the tests of
- * its parts set up alike. wire_init() and wire_add() first, then start().
+ * The native bus over a net of simulated slaves (wire_link.h) on a virtual clock: the common set-up
+ * of its tests. They call wire_init() and wire_add() first, then start().
  */
 #ifndef TESTS_UNIT_AID_NATIVE_SCENE_H
 #define TESTS_UNIT_AID_NATIVE_SCENE_H
@@ -11,30 +11,30 @@
 
 #define NATIVE_REQUESTS 256
 
-/* Of request id, as ask() returns it. */
+/* The request of an id, as ask() returns it. */
 extern struct bus_req req[NATIVE_REQUESTS];
 extern uint8_t data[NATIVE_REQUESTS][4096];
 
-/* Where writes begin in their value. */
+/* The offset of writes in their value. */
 extern uint32_t write_offset;
 
 /* setUp() and tearDown() */
 void native_begin(void);
 void native_end(void);
 
-/* Open the bus; it comes up. */
+/* Open the bus, and wait until it is up. */
 void start(void);
-/* Submit a request and go on; returns its id. text: what a write writes. */
+/* Submit a request and return its id at once. text: what a write writes. */
 uint32_t ask(enum bus_op op, enum bus_prio prio, bool fresh, const char *what, const char *text);
-/* Run until it is answered, exactly once. */
+/* Run until the request has its one answer. */
 const struct bus_answer *answer_to(uint32_t id);
-/* A read gives this text. */
+/* Read, and compare the text. */
 void expect(bool fresh, const char *what, const char *text);
-/* The answers so far are done with: there is room for as many requests again. */
+/* Forget the answers so far: there is room for as many requests again. */
 void forget(void);
-/* The error of a fresh request; 0: none. */
+/* Do a fresh request. Returns its error. */
 int result(enum bus_op op, const char *what, const char *text);
-/* "/28.01005DDF0300", and the path of a property of it; good for three calls more. */
+/* "/28.01005DDF0300", and the path of a property of the device; valid for three more calls. */
 const char *name_of(const struct sim_slave *slave);
 const char *of(const struct sim_slave *slave, const char *property);
 

@@ -82,7 +82,7 @@ void nl_start(void)
 	TEST_ASSERT_EQUAL_UINT8(BUS_UP, nl.host.event[0].news);
 }
 
-/* The answers of one bus are many: only the last is kept. */
+/* One bus gives many answers: only the last is kept. */
 const struct bus_answer *nl_ask(enum bus_op op, const char *path, const char *value)
 {
 	static struct bus_answer last;

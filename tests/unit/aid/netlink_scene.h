@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The target w1:netlink on a model of the kernel's 1-Wire core; the tests' set-up is here. */
+/* Sets up the target w1:netlink on a model of the kernel's 1-Wire core. */
 #ifndef TESTS_UNIT_AID_NETLINK_SCENE_H
 #define TESTS_UNIT_AID_NETLINK_SCENE_H
 
@@ -18,18 +18,18 @@ extern struct netlink_scene nl;
 /* In setUp() and tearDown(). */
 void nl_begin(void);
 void nl_end(void);
-/* The core has so many masters, and a directory in the place of sysfs shows them. */
+/* Give the core so many masters, and write the directory that stands for sysfs. */
 void nl_masters(unsigned masters);
 void nl_sysfs_master(unsigned number);
-void nl_erase(const char *what); /* in that directory */
-/* The bus of "w1:netlink/root=...", with rest behind. */
+void nl_erase(const char *what); /* removes a file of that directory */
+/* Create the bus of "w1:netlink/root=...", followed by rest. */
 void nl_create(const char *rest);
-/* The same, and it is up. */
+/* Create the bus, and wait until it is up. */
 void nl_start(void);
 void nl_close(void);
 struct sim_slave *nl_thermometer(unsigned channel, unsigned id, double value);
 
-/* One request past every cache; the answer is good until the next. */
+/* Do one request past every cache; the answer is valid until the next request. */
 const struct bus_answer *nl_ask(enum bus_op op, const char *path, const char *value);
 /* "/28.../property" */
 const char *nl_path(const struct sim_slave *slave, const char *property);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The one bus of a test and its host: what most tests of a bus have, and do alike. */
+/* The one bus of a test and its host: the common set-up of most tests of a bus. */
 #ifndef TESTS_UNIT_AID_ONE_BUS_H
 #define TESTS_UNIT_AID_ONE_BUS_H
 
@@ -10,7 +10,7 @@ extern struct bus *bus;
 
 /* Open sim: over this scenario, on the virtual clock. */
 void simulate(const char *scenario);
-/* A running total of the bus; fails the test when there is none of this name. */
+/* A total of the bus; fails the test when the bus has none of this name. */
 uint64_t counted(const char *name);
 /* Destroy the bus, if there is one. */
 void one_bus_end(void);

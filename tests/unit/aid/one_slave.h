@@ -1,32 +1,32 @@
 /* SPDX-License-Identifier: MIT */
-/* One slave on a wire of the native bus (one_bus.h, virtual clock), and what is asked of it. */
+/* One slave on a wire of the native bus (one_bus.h, virtual clock), and requests to it. */
 #ifndef TESTS_UNIT_AID_ONE_SLAVE_H
 #define TESTS_UNIT_AID_ONE_SLAVE_H
 
 #include "tests/unit/aid/one_bus.h"
 #include "tests/unit/aid/wire_link.h"
 
-/* Set by the test, which opens the bus as well. */
+/* The test sets it, and opens the bus. */
 extern struct sim_slave *slave;
-/* What was read. */
+/* The bytes of the last read. */
 extern uint8_t slave_data[4096];
 
 /* setUp() and tearDown() */
 void one_slave_begin(void);
 void one_slave_end(void);
 
-/* A request and its one answer. text: what a write writes. */
+/* Do a request, and wait for its one answer. text: what a write writes. */
 const struct bus_answer *exchange(enum bus_op op, enum bus_prio prio, const char *path,
                                   const char *text);
-/* The same of a property of the slave, as an output. */
+/* Do a request to a property of the slave, with the priority of an output. */
 const struct bus_answer *go(enum bus_op op, const char *property, const char *text);
-/* A write of text at an offset. */
+/* Write a text at an offset. */
 const struct bus_answer *put_at(uint32_t at, const char *property, const char *text);
-/* A property is read as text, is written, gives this error. */
+/* Check that a property is read as text, is written, or gives this error. */
 void reads(const char *property, const char *text);
 void writes(const char *property, const char *text);
 void refuses(int err, enum bus_op op, const char *property, const char *text);
-/* "/29.01005DDF0300/PIO.0"; good until the next. */
+/* "/29.01005DDF0300/PIO.0"; valid until the next call. */
 const char *slave_path(const char *property);
 
 #endif

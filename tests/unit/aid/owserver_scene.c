@@ -18,7 +18,7 @@ static uint32_t next_id;
 
 void owserver_begin(void)
 {
-	/* of a name server that does not answer */
+	/* the time-out of a name server that does not answer */
 	setenv("RES_OPTIONS", "timeout:1 attempts:1", 1);
 	host_init_real(&host);
 	is_peer_up = false;
@@ -107,7 +107,7 @@ void comes_up(void)
 	TEST_ASSERT_EQUAL_UINT8_MESSAGE(BUS_UP, event->news, event->text);
 }
 
-/* What the peer's thread does comes when that has the processor. */
+/* The peer's thread acts only when it has the processor. */
 void until_peer_saw(const unsigned *count, unsigned n)
 {
 	int64_t until = host_now(&host) + PATIENCE;

@@ -53,7 +53,7 @@ static int is_stopping(const struct peer *peer)
 	return __atomic_load_n(&peer->stopping, __ATOMIC_SEQ_CST);
 }
 
-/* 1 readable, 0 time is over, -1 told to stop. */
+/* 1: readable, 0: the time is over, -1: the peer is stopped. */
 static int wait_readable(const struct peer *peer, int fd, int ms)
 {
 	struct pollfd poll_fd = {.fd = fd, .events = POLLIN};
@@ -137,7 +137,7 @@ static void change(uint8_t *answer, size_t word, uint32_t value)
 		answer[word * 4 + (size_t)i] = (uint8_t)(value >> (24 - 8 * i));
 }
 
-/* False: this connection has ended. */
+/* False: the connection has ended. */
 static int act(const struct peer *peer, int fd, char letter, uint8_t *answer, size_t len)
 {
 	const struct linger reset = {.l_onoff = 1};
@@ -204,7 +204,7 @@ static int act(const struct peer *peer, int fd, char letter, uint8_t *answer, si
 	return letter != 'r' && letter != 'c';
 }
 
-/* A NOP, or the questions which buses there are and how old its answers may be. */
+/* Is it a NOP, or a question which buses the server has or how old its answers may be? */
 static bool is_greeting(const struct frame_header *request, const char *path)
 {
 	return request->type == FRAME_NOP || strncmp(path, "/bus.", 5) == 0 ||
@@ -300,8 +300,8 @@ static void note_port(struct peer *peer)
 }
 
 /*
- * A second socket on the port that does not listen: whoever connects is refused after peer_stop(),
- * and no other program is given the port until peer_restart().
+ * Bind a second socket to the port without listening: after peer_stop() a client is refused, and no
+ * other program gets the port until peer_restart().
  */
 static void hold_port(struct peer *peer)
 {

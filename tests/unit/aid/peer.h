@@ -28,20 +28,20 @@ struct peer {
 	char target[80];
 	pthread_t thread;
 	int stopping;
-	/* What it saw; read with peer_saw(). */
+	/* What the peer saw; read with peer_saw(). */
 	unsigned connections, requests, greetings, writes;
-	unsigned done, closed; /* what a letter says of a request; connections, by this side */
+	unsigned done, closed; /* requests done by the plan; connections that the peer closed */
 	uint32_t flags;        /* of the last request */
 	int32_t size;
 	char path[256];
 };
 
-/* family AF_INET, AF_INET6 or AF_UNIX; plan is kept. Fails the test when there is no port. */
+/* family AF_INET, AF_INET6 or AF_UNIX; plan has to stay. Fails the test when there is no port. */
 void peer_start(struct peer *peer, int family, const char *plan);
 void peer_stop(struct peer *peer);
-/* Give the port of a stopped one back. */
+/* Free the port of a stopped peer. */
 void peer_end(struct peer *peer);
-/* Begin again on the same port after peer_stop(). */
+/* Start again on the same port after peer_stop(). */
 void peer_restart(struct peer *peer, const char *plan);
 unsigned peer_saw(const unsigned *count);
 

@@ -11,7 +11,7 @@
 #include "src/signal/value.h"
 #include "tests/unit/aid/plant.h"
 
-/* A bus that wants to be called again at once for ever does nothing. */
+/* A bus that asks for so many steps without a pause does nothing useful. */
 #define IDLE_STEPS_MAX 100000
 
 static void broken(const char *why)
@@ -48,7 +48,7 @@ static struct plant_message *next_message(struct plant *p)
 	return p->message_count ? &p->message[p->message_head % PLANT_MESSAGES] : NULL;
 }
 
-/* Everything that the engine is told at this moment, then its step. */
+/* Give the engine all messages of this moment, then step it. */
 static void tell_engine(struct plant *p)
 {
 	struct plant_message *m;
@@ -66,7 +66,10 @@ static void tell_engine(struct plant *p)
 	run_engine(p);
 }
 
-/* Time goes on to until, the engine running when it has to; or to its first order. */
+/*
+ * Move the time on to until_ns, and step the engine when it is due; with till_order only to its
+ * first request.
+ */
 static void pass(struct plant *p, int64_t until_ns, bool till_order)
 {
 	for (;;) {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A plant: engine, native bus, DS2482 driver and simulator together on one virtual clock, as in
- * production but for the threads. The bus's steps take their time on the clock; the engine runs in
- * the middle of them, when its time has come or answer_delay_ns after it was told something, and
- * what it submits reaches the bus before its next step. So a bus that goes on before the engine
- * could answer does so here, too. For tests and benches; an error of the plant itself aborts.
+ * production except for the threads. The bus's steps take their time on the clock. The engine runs
+ * in the middle of them, when its time has come or answer_delay_ns after a message for it, and its
+ * requests reach the bus before the bus's next step. So a bus that goes on before the engine could
+ * answer does so here too. For tests and benches; an error of the plant itself aborts.
  */
 #ifndef TESTS_UNIT_AID_PLANT_H
 #define TESTS_UNIT_AID_PLANT_H
@@ -28,7 +28,7 @@ struct plant_message {
 struct plant {
 	int64_t now, start;      /* ns; the simulation begins at start */
 	int64_t answer_delay_ns; /* from the bus's answer to the engine's next request */
-	/* Called when something was published, may be NULL. */
+	/* Called after each publication; may be NULL. */
 	void (*published)(void *ctx);
 	void *ctx;
 
@@ -41,7 +41,7 @@ struct plant {
 	struct image image;
 	struct commands commands;
 	void *image_memory, *command_memory;
-	int64_t engine_ns; /* when it wants to run */
+	int64_t engine_ns; /* when the engine wants to run */
 	uint64_t engine_steps;
 	struct plant_message message[PLANT_MESSAGES];
 	unsigned message_head, message_count;
@@ -50,7 +50,7 @@ struct plant {
 	unsigned idle_steps;
 };
 
-/* The network is a scenario, the configuration a .rio text; its targets are not looked at. */
+/* The network is a scenario, the configuration a .rio text whose targets are ignored. */
 void plant_begin(struct plant *plant, const char *scenario, const char *rio);
 void plant_run(struct plant *plant, int64_t until_ns);
 void plant_end(struct plant *plant);
@@ -59,12 +59,12 @@ void plant_end(struct plant *plant);
 struct ows_sample plant_sample(const struct plant *plant, unsigned record);
 double plant_number(const struct plant *plant, unsigned record);
 void plant_set(struct plant *plant, unsigned record, int64_t value);
-/* A running total of the bus. */
+/* A total of the bus. */
 uint64_t plant_count(struct plant *plant, const char *name);
-/* Time of the simulation, as its curves take it. */
+/* The simulation's time, as its curves take it. */
 int64_t plant_time(const struct plant *plant, int64_t ns);
 
-/* plant_net.c: the simulation below a bus of scheme "sim". */
+/* In plant_net.c: the simulation below a bus of scheme "sim". */
 struct sim_net *plant_net(struct bus *bus);
 
 #endif

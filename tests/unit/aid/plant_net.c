@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* From a bus to its simulation: apart, because engine and native bus both have a `device`. */
+/*
+ * Finds the simulation below a bus. A file of its own, because engine and native bus both have a
+ * `device`.
+ */
 #include "hal/native/native.h"
 #include "hal/native/state.h"
 #include "hal/sim/master.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The readers of a recording: libows, the layout's header and ows.py, each of which finds all
+ * Reads a recording by libows, by the layout's header and by ows.py, each of which finds all
  * values.
  */
 #include <errno.h>

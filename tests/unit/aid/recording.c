@@ -60,7 +60,7 @@ static struct image_plan image_plan(void)
 	};
 }
 
-/* The fields of record i are functions of i, so that each is another. */
+/* The fields of record i are functions of i, so that all differ. */
 static void put(uint32_t record, int64_t value, uint8_t quality, const char *text)
 {
 	struct ows_sample sample = {
@@ -190,7 +190,7 @@ void make_commands(void)
 	commands_state(&commands, OWS_STATE_LIVE);
 }
 
-/* Rows of 32 bytes that are not all zero, with their offsets; the size stands first. */
+/* Write the size, then with their offsets the rows of 32 bytes that are not all zero. */
 static void write_recording(const char *kind, const char *memory, uint32_t size)
 {
 	static const char zero[32];

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The segments that an earlier release made of a few signals, kept in tests/unit/data, and the same
- * made by today's writer. Each field of a record is a function of its number, so that each is another.
+ * The segments of a few signals that an earlier release made, kept in tests/unit/data, and the same
+ * ones made by the present writer. Each field of a record is a function of the record's number, so
+ * that all differ.
  */
 #ifndef TESTS_UNIT_AID_RECORDING_H
 #define TESTS_UNIT_AID_RECORDING_H
@@ -35,23 +36,23 @@ enum {
 #define COUNT NEVER_
 
 extern const struct image_signal signals[COUNT];
-/* The one under whose name both segments are shown. */
+/* The name under which both segments are shown. */
 extern char instance[40];
 extern char image_memory[SIZE_MAX_], command_memory[SIZE_MAX_];
 extern struct image image;
 extern struct commands commands;
 
-/* setUp() and tearDown(): both recorded segments in memory, and shown. */
+/* setUp() and tearDown(): load both recorded segments into memory, and show them. */
 void recording_begin(void);
 void recording_end(void);
 
-/* "image" or "command"; returns the size. */
+/* Load "image" or "command". Returns the size. */
 uint32_t read_recording(const char *kind, char *memory);
 void show(const char *kind, const char *memory, uint32_t size);
-/* By today's writer, in memory. */
+/* Make the image by the present writer, in memory. */
 void make_image(void);
 void make_commands(void);
-/* Write both files again. */
+/* Write both files of the recording again. */
 void record(void);
 
 #endif

@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: MIT */
-/* One document after the other, as texts, and what is in it. */
+/* Parses .rio documents from texts, and checks what is in them. */
 #ifndef TESTS_UNIT_AID_RIO_CASE_H
 #define TESTS_UNIT_AID_RIO_CASE_H
 
 #include "src/config/rio.h"
 #include "tests/unit/aid/said.h"
 
-/* The one that was parsed last. */
+/* The last document that was parsed. */
 extern struct rio *rio;
 
 /* setUp() and tearDown() */
 void rio_case_begin(void);
 void rio_case_end(void);
 
-/* A text in which nothing is wrong; its root. */
+/* Parse a text that must be free of errors. Returns its root. */
 struct rio_node *rio_case_parse(const char *text);
-/* The first of that key in block is of that kind and value. */
+/* Check kind and value of the first entry with that key in block. */
 void rio_case_expect(const struct rio_node *block, const char *key, enum rio_kind kind,
                      const char *value);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A report of a configuration whose lines are kept, and a line that must not come. */
+/* Keeps the messages of a report, and fails the test on a message that must not come. */
 #ifndef TESTS_UNIT_AID_SAID_H
 #define TESTS_UNIT_AID_SAID_H
 
@@ -10,7 +10,7 @@ extern struct config_report report;
 extern char said[8192];
 
 void said_begin(void);
-/* The same, but a line fails the test. */
+/* Begin, and let any message fail the test. */
 void said_must_not_begin(void);
 
 #endif

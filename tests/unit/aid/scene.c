@@ -175,7 +175,7 @@ void scene_start(struct scene *s)
 		bool first = i == 0 || s->bus[i - 1].wire != bus->wire;
 
 		bus->released = !first;
-		if (bus->holds && first) { /* it opens from the start */
+		if (bus->holds && first) { /* the bus opens its hardware from the start */
 			bus->released = bus->asked = bus->wanted = true;
 			bus->when_ns = s->now_ns + bus->turn_ns;
 		}
@@ -227,7 +227,7 @@ void scene_reload(struct scene *s, void (*change)(struct config *))
 	engine_adopt(s->engine, engine, &plan, s->now_ns);
 	for (unsigned i = 0; i < s->bus_count; i++)
 		if (s->bus[i].port < config->target_count && !stays(&part->config, &s->bus[i]))
-			s->bus[i].pending_count = 0; /* it was ended */
+			s->bus[i].pending_count = 0; /* the reload ended these requests */
 	for (unsigned i = 0; i < part->config.target_count; i++)
 		bus_named(s, part->config.targets[i].text)->port = i;
 	engine_destroy(engine);

@@ -22,13 +22,13 @@
 #define SCENE_BUSES 4
 #define SCENE_NOWHERE 99
 
-/* What a wire has at a path. */
+/* A property on a wire. */
 struct scene_property {
 	const char *path;
 	unsigned wire;
 	char text[128];
-	int err;       /* not 0: answered instead */
-	int write_err; /* likewise, to writes */
+	int err;       /* not 0: the error of reads */
+	int write_err; /* not 0: the error of writes */
 };
 
 struct scene_pending {
@@ -39,17 +39,17 @@ struct scene_pending {
 struct scene_bus {
 	struct scene *scene;
 	const char *name;
-	unsigned port; /* the engine's number of it */
+	unsigned port; /* the engine's number of the bus */
 	unsigned wire;
-	unsigned depth;     /* set before scene_start(); 1 */
-	uint8_t detail;     /* of its answers */
-	bool searches;      /* likewise */
-	bool holds;         /* likewise: it has hardware, which it can be asked to let go of */
-	int64_t latency_ns; /* of each answer; 1 ms */
-	const char *slow;   /* but of this path: slow_ns */
+	unsigned depth;     /* 1 unless set before scene_start() */
+	uint8_t detail;     /* sent with its answers */
+	bool searches;      /* the bus searches for devices */
+	bool holds;         /* the bus has hardware, which it can give back */
+	int64_t latency_ns; /* the time of each answer; 1 ms unless set */
+	const char *slow;   /* answers for this path take slow_ns */
 	int64_t slow_ns;
 	bool mute;    /* the bus answers nothing */
-	bool refuses; /* submit says -EAGAIN */
+	bool refuses; /* submit returns -EAGAIN */
 	struct scene_pending pending[SCENE_DEPTH];
 	unsigned pending_count, most_pending;
 	struct bus_req *swallowed[SCENE_DEPTH]; /* requests taken while mute */
@@ -57,12 +57,12 @@ struct scene_bus {
 	unsigned reads, writes, lists, probes;
 
 	/* of a bus that holds hardware */
-	bool there;         /* its target: set by scene_reach(); told when it is opened */
-	bool released;      /* it has let go, or was never opened */
-	bool asked, wanted; /* to let go or to open, and it has not done so yet; which of them */
+	bool there;         /* scene_reach(): its target can be reached; reported when it opens */
+	bool released;      /* the bus has given the hardware back, or never opened it */
+	bool asked, wanted; /* asked, and not done yet: to open (wanted) or to give back */
 	int64_t asked_ns;
-	int64_t turn_ns; /* it takes to do so; 1 ms */
-	int64_t when_ns; /* it will have done so; INT64_MAX: nothing was asked */
+	int64_t turn_ns; /* the time that this takes; 1 ms unless set */
+	int64_t when_ns; /* when it is done; INT64_MAX: nothing was asked */
 	unsigned opened;
 };
 
@@ -85,11 +85,11 @@ struct scene {
 
 	struct engine *engine;
 	struct engine_port ports[SCENE_BUSES];
-	struct scene_part *part; /* what the engine of a reload stands on; NULL: this here */
+	struct scene_part *part; /* the parts of a reload's engine; NULL: those of this struct */
 	struct scene_bus bus[SCENE_BUSES];
 	unsigned bus_count;
-	struct log *log;                    /* set before scene_start(); NULL */
-	const struct engine_guests *guests; /* likewise */
+	struct log *log;                    /* NULL unless set before scene_start() */
+	const struct engine_guests *guests; /* NULL unless set before scene_start() */
 	struct image image;
 	struct commands commands;
 	struct command_plan command_plan;
@@ -99,15 +99,15 @@ struct scene {
 	char trace[16384]; /* "R /path\n" (r: fresh), "W /path=text\n"; "1: " before bus 1's */
 	bool no_trace;
 	unsigned reads, writes, structure_reads, lists;
-	bool trace_lists; /* "D /alarm" too */
-	/* what else happens to the devices when something is read or written; may use scene_put() */
+	bool trace_lists; /* the trace has "D /alarm" too */
+	/* called at a read or write, for what else happens to the devices; may use scene_put() */
 	void (*on_write)(struct scene *scene, const char *path, const char *data, uint32_t len);
 	void (*on_read)(struct scene *scene, const char *path);
-	/* likewise, and by which bus */
+	/* called at the end of a request, with the bus that did it */
 	void (*on_done)(struct scene_bus *bus, const struct bus_req *req);
 };
 
-/* Fill in an item with the defaults of the file; the pointers must live. */
+/* Fill in an item with the defaults of the file; the texts have to stay. */
 struct config_item *scene_input(struct scene *scene, const char *name, const char *path,
                                 enum ows_type type);
 struct config_item *scene_output(struct scene *scene, const char *name, const char *path,
@@ -117,20 +117,20 @@ struct config_item *scene_output(struct scene *scene, const char *name, const ch
  * each path ended by '\n'; without it the bus has no alarm search.
  */
 void scene_put(struct scene *scene, const char *path, const char *text, int err);
-/* Writes there fail with err, reads do not; 0: they do not any more. */
+/* Writes to path fail with err, reads do not; 0: writes succeed again. */
 void scene_refuse_writes(struct scene *scene, const char *path, int err);
 const char *scene_at(struct scene *scene, const char *path);
 
 void scene_init(struct scene *scene);
-/* One more target, on that wire; wires are numbered in the order of their first targets. */
+/* Add a target on that wire; wires are numbered in the order of their first targets. */
 struct scene_bus *scene_bus(struct scene *scene, const char *name, unsigned wire);
 /* As scene_put(), on another wire than the first. */
 void scene_put_on(struct scene *scene, unsigned wire, const char *path, const char *text, int err);
-/* All properties below path go to another wire, or SCENE_NOWHERE: "/28.551DDF030000". */
+/* Move all properties below path, as "/28.551DDF030000", to another wire, or to SCENE_NOWHERE. */
 void scene_plug(struct scene *scene, const char *path, unsigned wire);
-/* The target of a bus that holds hardware can be reached, or not; what it says follows from that. */
+/* The target of a bus that holds hardware can be reached or not; the bus reports what follows. */
 void scene_reach(struct scene *scene, unsigned bus, bool there);
-/* Tell of a device: BUS_FOUND, BUS_LOST, BUS_POR. */
+/* Report a device: BUS_FOUND, BUS_LOST, BUS_POR. */
 void scene_tell(struct scene *scene, unsigned bus, enum bus_news news, const char *path);
 /* Make memory and engine; the target is down until scene_up(). */
 void scene_start(struct scene *scene);
@@ -141,16 +141,16 @@ void scene_start(struct scene *scene);
  */
 void scene_reload(struct scene *scene, void (*change)(struct config *));
 /*
- * Another owsd with the same configuration after this one was killed: it has what the command segment
- * holds. Not after scene_reload(). The target is down, and the trace begins.
+ * Start another owsd with the same configuration, after this one was killed, on the same command
+ * segment. Not after scene_reload(). The target is down, and the trace is empty.
  */
 void scene_restart(struct scene *scene);
-/* The types are checked at once, in no time; the requests after that take theirs. */
+/* Take the target up. The types are checked in no time; later requests take theirs. */
 void scene_up(struct scene *scene);
 void scene_down(struct scene *scene, int err);
 void scene_up_on(struct scene *scene, unsigned bus);
 void scene_down_on(struct scene *scene, unsigned bus, int err);
-/* Let time pass: step the engine when it wants it, deliver answers when they are due. */
+/* Let time pass: step the engine when it is due, deliver answers when they are due. */
 void scene_run(struct scene *scene, int64_t ns);
 void scene_answer(struct scene *scene, uint32_t id, int err, const char *text, struct bus_req *req);
 void scene_answer_on(struct scene *scene, unsigned bus, uint32_t id, int err, const char *text,
@@ -158,7 +158,7 @@ void scene_answer_on(struct scene *scene, unsigned bus, uint32_t id, int err, co
 void scene_clear_trace(struct scene *scene);
 void scene_end(struct scene *scene);
 
-/* As a consumer does. record: 1 is the first item. */
+/* Set a value as a consumer does. record: 1 is the first item. */
 void scene_set(struct scene *scene, unsigned record, int64_t value);
 void scene_set_text(struct scene *scene, unsigned record, const char *text);
 struct ows_command_slot *scene_slot(struct scene *scene, unsigned record);
@@ -166,13 +166,13 @@ void scene_ring(struct scene *scene, unsigned record);
 struct ows_client *scene_client(struct scene *scene, unsigned client);
 
 struct ows_sample scene_sample(struct scene *scene, unsigned record);
-/* It has that quality, and comes from that target. */
+/* Check the signal's quality and the target that it comes from. */
 void scene_expect(struct scene *scene, unsigned record, uint8_t quality, unsigned target);
 struct ows_attrs scene_attrs(struct scene *scene, unsigned record);
 const char *scene_text(struct scene *scene, unsigned record);
 double scene_number(struct scene *scene, unsigned record);
 uint64_t scene_counter(struct scene *scene, const char *name);
-/* Of a lane. */
+/* A counter of a lane. */
 uint64_t scene_counter_of(struct scene *scene, unsigned bus, const char *name);
 uint32_t scene_target_state(struct scene *scene, unsigned bus);
 

@@ -226,13 +226,13 @@ void scene_reach(struct scene *s, unsigned number, bool there)
 	}
 }
 
-/* It has let go, or is open. */
+/* The bus has given its hardware back, or has opened it. */
 static void turn(struct scene_bus *bus)
 {
 	struct scene *s = bus->scene;
 	unsigned number = (unsigned)(bus - s->bus);
 
-	if (bus->mute) { /* it cannot */
+	if (bus->mute) { /* the target cannot be reached */
 		bus->when_ns = s->now_ns + SCENE_S;
 		return;
 	}
@@ -251,7 +251,7 @@ static void turn(struct scene_bus *bus)
 	tell(s, number, bus->there ? BUS_UP : BUS_DOWN, bus->there ? 0 : -ENOENT);
 }
 
-/* The soonest of what the buses do next, not after *until; false: nothing. */
+/* Find what the buses do next, not after *until; false: nothing. */
 static bool next_of_buses(struct scene *s, int64_t *until, struct scene_bus **which, int *pending)
 {
 	bool any = false;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A scene's segments as a consumer sees them, and what it writes there. */
+/* Reads a scene's segments as a consumer does, and writes to them. */
 #include <string.h>
 
 #include "unity.h"

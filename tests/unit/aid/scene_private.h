@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* Between the files of the scene. */
+/* What the files of the scene share. */
 #ifndef TESTS_UNIT_AID_SCENE_PRIVATE_H
 #define TESTS_UNIT_AID_SCENE_PRIVATE_H
 
 #include "tests/unit/aid/scene.h"
 
-/* NULL: nothing is there. */
+/* NULL: there is no such property. */
 struct scene_property *scene_find(struct scene *scene, unsigned wire, const char *path);
 bool scene_has_device(struct scene *scene, unsigned wire, const char *path);
 
-/* Of an engine's port; ctx is the bus. */
+/* The submit of an engine's port; ctx is the bus. */
 int scene_submit(void *ctx, struct bus_req *req);
 void scene_suspend(void *ctx, bool yes);
 

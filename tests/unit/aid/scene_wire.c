@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the wires of a scene have. */
+/* The properties on the wires of a scene. */
 #include <stdio.h>
 #include <string.h>
 
@@ -7,7 +7,7 @@
 
 #include "tests/unit/aid/scene_private.h"
 
-/* What stands under /alarm is the same property; the list of it is one of its own. */
+/* A path under /alarm means the same property; the list /alarm is a property of its own. */
 struct scene_property *scene_find(struct scene *s, unsigned wire, const char *path)
 {
 	if (strncmp(path, "/alarm/", 7) == 0)

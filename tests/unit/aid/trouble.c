@@ -9,7 +9,7 @@ void trouble_none(struct trouble *trouble)
 	*trouble = (struct trouble){.random = trouble->random ? trouble->random : 1};
 }
 
-/* xorshift64*: the same numbers everywhere. */
+/* xorshift64*: a seed gives the same numbers everywhere. */
 static bool happens(struct trouble *trouble)
 {
 	uint64_t x = trouble->random;

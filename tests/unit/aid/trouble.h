@@ -29,11 +29,11 @@ struct trouble {
 	int64_t restart_ns, every_ns;
 	/* Counted. */
 	uint32_t slots, resets;
-	bool deaf, written; /* now; the last slot was one that the master writes */
+	bool deaf, written; /* no chip hears anything now; the master wrote the last slot */
 	uint32_t turned;    /* by noise */
 };
 
-/* From here on nothing goes wrong, and it is counted. */
+/* From here on nothing goes wrong; slots and resets are counted. */
 void trouble_none(struct trouble *trouble);
 /* A reset: do the chips hear it? */
 bool trouble_heard(struct trouble *trouble);

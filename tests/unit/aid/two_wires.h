@@ -14,7 +14,7 @@
 #define SENSED D3 "/sensed.BYTE"
 
 void two_wires_begin(struct scene *s);
-/* Start, and both are up. */
+/* Start, and take both targets up. */
 void two_wires_up(struct scene *s);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Visits of a chip, troubled at each place in turn. */
+/* Visits a chip with a trouble at each place in turn. */
 #include <stdio.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@
 struct trouble trouble;
 struct sim_slave *visited;
 
-/* What a chip measured before, so that its registers hold something old. */
+/* Let the chip measure, so that its registers hold old values. */
 static void remember(const struct visit *visit)
 {
 	static const struct {
@@ -38,7 +38,7 @@ static void remember(const struct visit *visit)
 		(void)result(BUS_READ, of(visited, visit->property), NULL);
 }
 
-/* All inputs and memories of the chip get other values, different from each other. */
+/* Give all inputs and memories of the chip other values, which all differ. */
 static void change(const struct visit *visit, bool again)
 {
 	const struct sim_input *inputs = visited->family->inputs;

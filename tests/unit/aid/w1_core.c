@@ -168,7 +168,7 @@ static uint8_t byte(struct sim_wire *wire, uint8_t out)
 	return in;
 }
 
-/* As if w1_therm had read somebody's scratchpad meanwhile. */
+/* Select the first slave, as w1_therm does when another program reads it meanwhile. */
 static void intrude(struct sim_wire *wire)
 {
 	if (!wire->count || !reset(wire))
@@ -178,7 +178,7 @@ static void intrude(struct sim_wire *wire)
 		byte(wire, wire->slaves[0]->rom[i]);
 }
 
-/* A search by the tree; wire->slaves are not looked at. */
+/* Search by the tree, as a master does: wire->slaves are not used. */
 static void search(struct sim_wire *wire, const uint8_t *request, uint8_t code)
 {
 	uint8_t roms[512], rom[8] = {0};
@@ -282,7 +282,7 @@ static void serve(const uint8_t *request, size_t n)
 		unsigned count = w1_core.masters - (w1_core.gone ? 1 : 0);
 
 		put_message(request, true, 0, 4 * count);
-		/* The youngest is first. */
+		/* The youngest master is first. */
 		for (uint32_t i = w1_core.masters; i; i--)
 			if (i != w1_core.gone)
 				put(&i, sizeof(i));

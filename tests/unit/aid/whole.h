@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Records of which every field says the same number, so that a mixture of two shows, besides the
- * check words: an oracle that has nothing of the protocol under test.
+ * Records in which every field has the same number, so that a mixture of two records shows without
+ * the check words: an oracle that shares nothing with the protocol under test.
  */
 #ifndef TESTS_UNIT_AID_WHOLE_H
 #define TESTS_UNIT_AID_WHOLE_H
 
 #include "src/shm/image.h"
 
-/* Texts have up to room - 1 bytes; 0: the record has none. */
+/* Texts have up to room - 1 bytes; 0: the record has no text. */
 void whole_publish(struct image *image, uint32_t record, uint32_t n, uint32_t room);
 bool whole_sample(const struct ows_sample *sample);
 bool whole_slot(const struct ows_slot *slot);

@@ -35,7 +35,7 @@ static int spend(int64_t ns)
 	               : 0;
 }
 
-/* What was to happen by now, since the wire was used last: a restart may be in a wait. */
+/* Carry out the restarts that are due since the wire was last used: one may fall into a wait. */
 static void restart(void)
 {
 	struct trouble *trouble = wire_net.trouble;
@@ -51,12 +51,11 @@ static void restart(void)
 	}
 }
 
-/* Each call of the link. */
+/* Begin a call of the link. */
 static int begin(struct link *link)
 {
 	struct sim_wire *wire = wire_of(link);
 
-	wire_net.calls++;
 	restart();
 	for (unsigned i = 0; i < wire_net.channels; i++) {
 		if (!wire_net.wire[i].strong || links[i].chip != link->chip)
@@ -87,7 +86,7 @@ static int wire_reset(struct link *link)
 	return err ? err : presence;
 }
 
-/* What is turned over of a bit written reaches the chips so; of one read, the master. */
+/* A turned bit reaches the chips if the master wrote it, and the master if a chip did. */
 static bool slot(struct link *link, bool out, bool writes)
 {
 	restart();
@@ -150,7 +149,7 @@ static int wire_bit(struct link *link, bool out, enum link_after after)
 	return line;
 }
 
-/* As the bridge chips do it, so that it is known which slot writes. */
+/* Three slots as the bridge chips do them, so that the trouble knows which one writes. */
 static int wire_triplet(struct link *link, bool direction)
 {
 	int err = begin(link);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A link master for tests: slots straight to the simulated slaves, without a bridge chip, each
- * taking its time on the host's clock. Faults are injected at the link's calls.
+ * A link master for tests: slots reach the simulated slaves directly, without a bridge chip, and
+ * each takes its time on the host's clock. Faults are injected at the link's calls.
  */
 #ifndef TESTS_UNIT_AID_WIRE_LINK_H
 #define TESTS_UNIT_AID_WIRE_LINK_H
@@ -18,7 +18,7 @@ struct wire_net {
 	unsigned channels, chips; /* chips 1: all channels share one */
 	struct sim_wire wire[WIRE_CHANNELS];
 	struct link_cost cost;          /* of the first link */
-	struct link_master_cost shared; /* by them all */
+	struct link_master_cost shared; /* of all links together */
 	/* The next `fault_count` calls return `fault`; a recovery of fault_until or above ends it. */
 	int fault;
 	unsigned fault_count;
@@ -27,16 +27,14 @@ struct wire_net {
 	bool no_power_line;
 	int open_error;
 	unsigned opens, closes;
-	unsigned calls; /* longest run of link calls in one step of the bus is looked at by tests */
 	int64_t converts[64]; /* when a broadcast Convert T went out */
 	unsigned convert_count;
-	int64_t strong_until_call; /* a strong pull-up was on and this is when it ended */
 	unsigned strong_count;
-	int64_t strong_ns; /* how long the last one was on */
+	int64_t strong_ns; /* how long the last strong pull-up was on */
 	int64_t strong_begin;
-	void (*sent)(const uint8_t *data, size_t n); /* NULL, or told of each write */
+	void (*sent)(const uint8_t *data, size_t n); /* NULL, or called at each write */
 	struct trouble *trouble;   /* NULL: none; restarts are those of the first wire's chips */
-	void (*used)(int64_t now); /* NULL, or called ahead of each reset and slot */
+	void (*used)(int64_t now); /* NULL, or called before each reset and slot */
 };
 
 /* One network at a time. */
@@ -45,10 +43,10 @@ extern const struct bus_ops wire_bus;
 
 void wire_init(struct host *host, unsigned channels, unsigned chips);
 void wire_clear(void);
-/* A slave of the named chip, id from the number; powered on. */
+/* Add a slave of the named chip, powered on; its id is made of the number. */
 struct sim_slave *wire_add(unsigned channel, const char *chip, unsigned id);
 void wire_set(struct sim_slave *slave, const char *input, double value);
-/* The bus over it; it is not stepped. */
+/* Open the bus; the test steps it. */
 struct bus *wire_open(void);
 /* The simulation's time. */
 int64_t wire_time(void);
