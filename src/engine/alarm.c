@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "src/engine/alarm.h"
 #include "src/engine/alarm_arm.h"
 #include "src/engine/alarm_effect.h"
@@ -17,7 +18,7 @@
 #include "src/signal/value.h"
 #include "src/text/log.h"
 
-#define BYPASS_NS 20000000LL
+#define BYPASS_NS (20 * NS_PER_MS)
 
 static uint32_t defined_fact(const char *name, const char *value)
 {

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/owfs/path.h"
 #include "src/engine/alarm_effect.h"
 #include "src/engine/alarm_known.h"
@@ -11,7 +12,7 @@
 #include "src/engine/state.h"
 #include "src/text/log.h"
 
-#define LIST_WAIT_MAX 60000000000LL
+#define LIST_WAIT_MAX (60 * NS_PER_S)
 
 static void mark_listed(struct alarm_machine *m, struct lane *lane, const char *entry, size_t len)
 {

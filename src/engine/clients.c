@@ -5,6 +5,7 @@
  */
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "src/engine/clients.h"
 #include "src/engine/intake.h"
 #include "src/engine/publish.h"
@@ -13,7 +14,7 @@
 #include "src/text/log.h"
 
 /* A program that lives needs a cycle or two to learn that there is another owsd. */
-#define COME_BACK_NS 2000000000LL
+#define COME_BACK_NS (2 * NS_PER_S)
 
 static void put_safe(struct engine *e, struct signal *s)
 {
@@ -160,7 +161,7 @@ static void lose_client(struct engine *e, unsigned client)
 
 static int64_t client_patience(const struct client *known, const struct command_client *c)
 {
-	int64_t promised_ns = (c->period_ms ? c->period_ms : 1000) * 1000000LL;
+	int64_t promised_ns = (c->period_ms ? c->period_ms : 1000) * NS_PER_MS;
 
 	return known->awaited && promised_ns < COME_BACK_NS ? COME_BACK_NS : promised_ns;
 }

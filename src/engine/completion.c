@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/completion.h"
 #include "src/engine/device_back.h"
@@ -16,7 +17,7 @@
 #include "src/text/log.h"
 
 /* How often an alarm item without PerFactor is read though no alarm came. */
-#define ALARM_ITEM_NS 60000000000LL
+#define ALARM_ITEM_NS (60 * NS_PER_S)
 
 /* "no such property: check its spelling", "device error: wrong checksum"; what says all, once. */
 static void report_failed(struct engine *e, const struct signal *s, const char *what, int err,

@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <stdlib.h>
 
+#include "hal/bus/time.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/ask.h"
 #include "src/engine/clients.h"
@@ -105,7 +106,7 @@ void engine_destroy(struct engine *e)
 }
 
 /* So late nobody ran: the machine was suspended, or owsd stopped. */
-#define GAP_NS INT64_C(2000000000)
+#define GAP_NS (2 * NS_PER_S)
 
 static void begin_call(struct engine *e, int64_t now_ns)
 {

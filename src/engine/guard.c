@@ -2,10 +2,11 @@
 /* Which readings of a thermometer mean that it lacks power. */
 #include <math.h>
 
+#include "hal/bus/time.h"
 #include "src/engine/guard.h"
 
 #define NEAR_DEGREES 5.0
-#define RECENT_NS 60000000000LL
+#define RECENT_NS (60 * NS_PER_S)
 
 /*
  * 127.9375 in any rounding, from 127.9 to 128: nothing in there comes from a chip that measures up to

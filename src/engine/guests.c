@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/owfs/path.h"
 #include "src/engine/guest.h"
 #include "src/engine/guests.h"
@@ -23,7 +24,7 @@
  * How long one that came through another server waits for its turn: two servers that have each other
  * as targets may wait for each other's only connection.
  */
-#define GUEST_SERVER_NS INT64_C(2000000000)
+#define GUEST_SERVER_NS (2 * NS_PER_S)
 
 static void answer_guest(struct engine *e, struct engine_guest *g)
 {

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "src/engine/intake.h"
 #include "src/engine/limits.h"
 #include "src/engine/publish.h"
@@ -13,15 +14,15 @@
 #include "src/text/log.h"
 
 /* A writer that holds a string's claim for longer has died. */
-#define CLAIM_NS 1000000000LL
+#define CLAIM_NS NS_PER_S
 /*
  * A program that marks slots without end costs this many looks a second. An honest set waits for none
  * of it unless there is such a program; then it waits until the looks have gone round.
  */
 #define LOOKS_PER_S 100000u
 #define LOOKS_LEAST 5000u
-#define LOOKS_SPAN_NS 1000000000LL
-#define DEFER_NS 10000000LL
+#define LOOKS_SPAN_NS NS_PER_S
+#define DEFER_NS (10 * NS_PER_MS)
 
 static void refuse_command(struct engine *e, struct signal *s, int err, int64_t now_ns)
 {

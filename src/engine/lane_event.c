@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "src/engine/device_back.h"
 #include "src/engine/doubt.h"
 #include "src/engine/lane_event.h"
@@ -37,7 +38,7 @@ static void report_cached(const struct lane *lane, int64_t cache_ns)
 		           "%s: answers from a cache of %lld s, and %u of its signals (%s%s) "
 		           "are read more often: Uncached on reads the device each time, "
 		           "timeout_volatile in owfs.conf shortens the cache",
-		           lane->port->target, (long long)(cache_ns / 1000000000), count,
+		           lane->port->target, (long long)(cache_ns / NS_PER_S), count,
 		           first->item->name, count > 1 ? ", ..." : "");
 }
 

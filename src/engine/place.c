@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/bus/time.h"
 #include "hal/owfs/path.h"
 #include "src/engine/due.h"
 #include "src/engine/place.h"
@@ -14,7 +15,7 @@
 #include "src/engine/state.h"
 
 /* Between two looks for devices that are not there: the signals that are come first. */
-#define PROBE_APART_NS 200000000LL
+#define PROBE_APART_NS (200 * NS_PER_MS)
 
 int engine_places_init(struct engine *e)
 {

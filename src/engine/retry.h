@@ -9,6 +9,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "hal/bus/time.h"
+
 enum failure {
 	FAILURE_NONE,
 	FAILURE_ITEM, /* of this path: device absent, no such property, refused, not convertible */
@@ -24,8 +26,8 @@ struct retry {
 	uint16_t failures; /* in a row; 0: the last request succeeded */
 	uint8_t doublings; /* of the back-off */
 };
-#define RETRY_FIRST_NS 1000000000LL
-#define RETRY_MAX_NS 60000000000LL
+#define RETRY_FIRST_NS NS_PER_S
+#define RETRY_MAX_NS (60 * NS_PER_S)
 
 /*
  * Count one item error. Returns true when quality goes bad (or stays so); *wait_ns is then the

@@ -12,13 +12,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define ROUTE_HOLD_NS 10000000000LL      /* from the evidence to the return */
-#define ROUTE_HOLD_MAX_NS 640000000000LL /* of a bar, after returns that failed */
-#define ROUTE_DOUBT_NS 600000000000LL    /* before a failing device that is claimed is believed */
-#define ROUTE_STEADY_NS 60000000000LL /* a way that was up for so long did not fail on the return */
-#define ROUTE_RELEASE_NS 5000000000LL /* for a way to let go of its hardware */
-#define ROUTE_DWELL_NS 1000000000LL   /* on each way when all have failed; doubles */
-#define ROUTE_DWELL_MAX_NS 30000000000LL
+#include "hal/bus/time.h"
+
+#define ROUTE_HOLD_NS (10 * NS_PER_S)      /* from the evidence to the return */
+#define ROUTE_HOLD_MAX_NS (640 * NS_PER_S) /* of a bar, after returns that failed */
+#define ROUTE_DOUBT_NS (600 * NS_PER_S)    /* before a failing device that is claimed is believed */
+#define ROUTE_STEADY_NS (60 * NS_PER_S)    /* a way up for so long did not fail on the return */
+#define ROUTE_RELEASE_NS (5 * NS_PER_S)    /* for a way to let go of its hardware */
+#define ROUTE_DWELL_NS NS_PER_S            /* on each way when all have failed; doubles */
+#define ROUTE_DWELL_MAX_NS (30 * NS_PER_S)
 
 /* --- A comma: which group serves a device ---------------------------------------------------- */
 

@@ -7,6 +7,7 @@
 #define ENGINE_STATE_H
 
 #include "hal/bus/bus.h"
+#include "hal/bus/time.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/due.h"
 #include "src/engine/port.h"
@@ -26,7 +27,7 @@ struct engine_guests;
 /* Room for the path of a request; the longest is one of the alarm machine. */
 #define LANE_PATH (2 * ALARM_TEXT + 16)
 /* How long after its deadline a request is given up that the bus did not answer at all. */
-#define LANE_GRACE_NS 250000000LL
+#define LANE_GRACE_NS (250 * NS_PER_MS)
 
 /* --- A request ------------------------------------------------------------------------------- */
 

@@ -4,11 +4,12 @@
 #define ENGINE_TRACE_H
 
 #include "hal/bus/bus.h"
+#include "hal/bus/time.h"
 #include "src/text/log.h"
 
 /* At most so many lines a window of requests that succeed, and as many of those that fail. */
 #define TRACE_PER_WINDOW 100u
-#define TRACE_WINDOW_NS 1000000000LL
+#define TRACE_WINDOW_NS NS_PER_S
 
 struct lane;
 struct slot;
