@@ -51,10 +51,8 @@ int area_fetch(struct txn *txn, const struct area *area, unsigned at, uint8_t *b
 	unsigned len = address(command, area->recall, area, at);
 	int err = 0;
 
-	if (txn->link->ops->area_read) {
-		txn->on_wire = true;
-		return txn->link->ops->area_read(txn->link, txn->device->rom, area, at, bytes, n);
-	}
+	if (txn_driven(txn))
+		return txn_driver_read(txn, area, at, bytes, n);
 	if (area->recall)
 		err = txn_command(txn, command, len);
 	command[0] = area->read;
@@ -75,6 +73,13 @@ int area_fetch(struct txn *txn, const struct area *area, unsigned at, uint8_t *b
 	return -EIO;
 }
 
+/* A driver gives an area as it is. */
+static int load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
+{
+	return area->load && !txn_driven(txn) ? area->load(txn, area, at, bytes, n)
+	                                      : area_fetch(txn, area, at, bytes, n);
+}
+
 /*
  * To visit->have; TXN_MORE until enough looks agree. So long as nothing but ones is read, perhaps
  * nobody hears: the last look is made again.
@@ -83,15 +88,14 @@ static int look(struct txn *txn, const struct area *area, unsigned at, unsigned 
 {
 	struct area_visit *visit = &txn->area;
 	uint8_t again[AREA_UNIT];
-	int err = area->load ? area->load(txn, area, at, again, n)
-	                     : area_fetch(txn, area, at, again, n);
+	int err = load(txn, area, at, again, n);
 
 	if (err)
 		return err;
 	if (visit->looks && memcmp(visit->have, again, n) != 0)
 		return -EBADMSG;
 	memcpy(visit->have, again, n);
-	if (area->check == AREA_UNCHECKED && !area->load && !txn->link->ops->area_read) {
+	if (area->check == AREA_UNCHECKED && !area->load && !txn_driven(txn)) {
 		if (++visit->looks < AREA_LOOKS)
 			return TXN_MORE;
 		if (txn->silent && ++visit->blanks <= BLANK_LOOKS) {
@@ -127,7 +131,8 @@ int area_read(struct txn *txn, const struct area *area, unsigned at, uint8_t *by
 			return 0;
 		visit->begun_ns = txn_now(txn);
 	}
-	whole_blocks(area, &from, &len);
+	if (!area->parts || !txn_driven(txn))
+		whole_blocks(area, &from, &len);
 	err = look(txn, area, from, len);
 	if (err)
 		return err;
@@ -256,8 +261,7 @@ static int check_unit(struct txn *txn, const struct area *area, struct unit unit
 {
 	struct area_visit *visit = &txn->area;
 	uint8_t in[AREA_UNIT];
-	int err = area->load ? area->load(txn, area, unit.at, in, unit.n)
-	                     : area_fetch(txn, area, unit.at, in, unit.n);
+	int err = load(txn, area, unit.at, in, unit.n);
 
 	txn->silent = false;
 	if (!err && area->saw)
@@ -283,11 +287,9 @@ static int write_step(struct txn *txn, const struct area *area, struct unit unit
 		txn_void(txn);
 		if (!area->verify)
 			txn->device->shadow_known = false;
-		if (txn->link->ops->area_write) {
-			txn->on_wire = true;
+		if (txn_driven(txn)) {
 			visit->step = CHECK;
-			err = txn->link->ops->area_write(txn->link, txn->device->rom, area, unit.at,
-			                                 visit->want, unit.n);
+			err = txn_driver_write(txn, area, unit.at, visit->want, unit.n);
 			return err ? err : TXN_MORE;
 		}
 		err = area->verify ? write_row(txn, area, unit.at, visit->want)
@@ -349,7 +351,7 @@ static int prepare(struct txn *txn, const struct area *area, struct unit unit, u
 	if (area->adjust && unit.at >= area->fixed)
 		area->adjust(txn, visit->want);
 	/* Bits that do not count may be wrong as well. */
-	bool anew = again && unit.n == area->row;
+	bool anew = (again && unit.n == area->row) || (area->hidden && txn_driven(txn));
 	bool equal = !anew && memcmp(visit->have, visit->want, unit.n) == 0;
 	if (unit.at < area->fixed)
 		return equal ? 0 : -EIO;
@@ -387,7 +389,13 @@ int area_write(struct txn *txn, const struct area *area, unsigned at, const uint
 int conversion_start(struct txn *txn, const struct conversion *conversion, bool strong)
 {
 	uint8_t none;
-	int err = txn_command(txn, conversion->command, conversion->n);
+	int err;
+
+	if (txn_driven(txn)) {
+		err = txn_driver_convert(txn, conversion->name);
+		return err ? err : txn_wait(txn, 0);
+	}
+	err = txn_command(txn, conversion->command, conversion->n);
 
 	if (!err && conversion->crc16)
 		err = txn_read_crc16(txn, conversion->command, conversion->n, &none, 0);

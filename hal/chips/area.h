@@ -42,7 +42,7 @@ enum area_check {
 #define AREA_LOOKS 3
 
 struct area {
-	const char *name; /* as the data sheet calls it; a link that is no wire knows it by that */
+	const char *name; /* as the data sheet calls it; a link that is driven knows it by that */
 	uint16_t at;      /* address of its first byte */
 	uint16_t size;    /* bytes */
 	/*
@@ -51,6 +51,8 @@ struct area {
 	 */
 	uint8_t block;
 	uint8_t row;   /* bytes that one command writes; 0: none does */
+	bool parts;    /* a driver reads these bytes one by one: no more than are asked for */
+	bool hidden;   /* a driver need not show what it was told: it is written even so */
 	uint8_t fixed; /* so many at its beginning are read-only, and may be written as they are */
 	uint8_t address_bytes;             /* behind a command, low byte first: 0, 1, 2 */
 	uint8_t check;                     /* enum area_check */
@@ -93,6 +95,7 @@ struct field {
 
 /* A command after which the chip measures or computes. */
 struct conversion {
+	const char *name; /* the property that says it: a link that is driven knows it by that */
 	uint8_t command[3], n;
 	bool crc16; /* the chip answers with the CRC16 of the command */
 	int64_t ns;

@@ -14,20 +14,47 @@
 #define CONTROL_POR (1 << DS2408_POR)
 #define CONTROL_VCC (1 << DS2408_VCC)
 
-static int saw_registers(struct txn *txn, unsigned at, uint8_t *value, unsigned n)
+static void saw_control(struct txn *txn, uint8_t value)
+{
+	struct ds2408 *chip = txn->device->own;
+	bool por = value & CONTROL_POR;
+
+	txn->restarted |= por && chip->por_clear;
+	chip->por_clear = !por;
+	txn->device->power = value & CONTROL_VCC ? POWER_EXTERNAL : POWER_PARASITE;
+}
+
+static void saw_output(struct txn *txn, uint8_t value)
 {
 	struct device *device = txn->device;
-	struct ds2408 *chip = device->own;
-	bool por = value[DS2408_CONTROL] & CONTROL_POR;
 
-	(void)at, (void)n;
-	if ((por && chip->por_clear) ||
-	    (device->shadow_known && device->shadow != value[DS2408_OUTPUT]))
-		txn->restarted = true;
-	chip->por_clear = !por;
-	device->shadow = value[DS2408_OUTPUT];
+	txn->restarted |= device->shadow_known && device->shadow != value;
+	device->shadow = value;
 	device->shadow_known = true;
-	device->power = value[DS2408_CONTROL] & CONTROL_VCC ? POWER_EXTERNAL : POWER_PARASITE;
+}
+
+static int read_control(struct txn *txn)
+{
+	uint8_t value;
+	int err = area_fetch(txn, &ds2408_registers, DS2408_CONTROL, &value, 1);
+
+	if (!err)
+		saw_control(txn, value);
+	return err;
+}
+
+/*
+ * A driver's come in part, and without a checksum: all ones is also what one hears of a chip that is
+ * not there, which the control register shows.
+ */
+static int saw_registers(struct txn *txn, unsigned at, uint8_t *value, unsigned n)
+{
+	if (at <= DS2408_OUTPUT && at + n > DS2408_OUTPUT)
+		saw_output(txn, value[DS2408_OUTPUT - at]);
+	if (at <= DS2408_CONTROL && at + n > DS2408_CONTROL)
+		saw_control(txn, value[DS2408_CONTROL - at]);
+	else if (value[0] == 0xff)
+		return read_control(txn);
 	return 0;
 }
 
@@ -36,6 +63,7 @@ const struct area ds2408_registers = {
 	.at = 0x88,
 	.size = DS2408_REGISTERS,
 	.block = DS2408_REGISTERS,
+	.parts = true,
 	.address_bytes = 2,
 	.read = 0xf0,
 	.check = AREA_CRC16,
@@ -101,6 +129,13 @@ static int store_output(struct txn *txn, const struct area *area, unsigned at, c
 	return ds2408_put(txn, bytes, n);
 }
 
+static int saw_latch(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
+{
+	(void)at, (void)n;
+	saw_output(txn, bytes[0]);
+	return bytes[0] == 0xff && txn_driven(txn) ? read_control(txn) : 0;
+}
+
 const struct area ds2408_output = {
 	.name = "output",
 	.at = 0x88 + DS2408_OUTPUT,
@@ -108,6 +143,7 @@ const struct area ds2408_output = {
 	.row = 1,
 	.load = load_part,
 	.store = store_output,
+	.saw = saw_latch,
 };
 
 static int store_condition(struct txn *txn, const struct area *area, unsigned at,
@@ -125,7 +161,8 @@ static int store_condition(struct txn *txn, const struct area *area, unsigned at
 
 static int saw_condition(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
-	(void)txn, (void)at, (void)n;
+	(void)at, (void)n;
+	saw_control(txn, bytes[2]);
 	bytes[2] &= CONTROL_SETTINGS | CONTROL_POR;
 	return 0;
 }

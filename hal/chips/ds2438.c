@@ -26,6 +26,9 @@
 
 #define KNOWN 0x80 /* of a configuration */
 
+/* As a driver gives them, which sees to all that stands below. */
+static const struct area pages = {.name = "pages", .size = 64};
+
 /* A page of the EEPROM: its first byte stays as it is. */
 #define MARKED_PAGE 3
 
@@ -102,13 +105,8 @@ int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8])
 	uint8_t in[9] = {0}, *note = &ds2438_of(txn)->first[page];
 	int err;
 
-	/* A driver reads by itself. */
-	if (txn->link->files) {
-		err = recall(txn, page, in);
-		*note = page ? in[0] : KNOWN | (in[0] & CONFIGURATION);
-		memcpy(bytes, in, 8);
-		return err;
-	}
+	if (txn_driven(txn))
+		return txn_driver_read(txn, &pages, page * 8, bytes, 8);
 	switch ((enum step)ds2438_visit(txn)->step) {
 	case BEGIN:
 		if (page == 0 && !*note) {
@@ -143,6 +141,9 @@ int ds2438_select(struct txn *txn, uint8_t select)
 {
 	uint8_t configuration = ds2438_of(txn)->first[0], bytes[8];
 
+	/* A driver's conversions select what they measure. */
+	if (txn_driven(txn))
+		return 0;
 	if (!(configuration & KNOWN) || ds2438_visit(txn)->step != BEGIN) {
 		int err = ds2438_read(txn, 0, bytes);
 
@@ -155,14 +156,12 @@ int ds2438_select(struct txn *txn, uint8_t select)
 /* What is selected is a mark, too, where the memory selects the other. */
 int ds2438_read_selected(struct txn *txn, uint8_t select, uint8_t bytes[8])
 {
-	if (txn->link->files) {
-		uint8_t in[9];
-		int err = read_scratchpad(txn, 0, in);
+	if (txn_driven(txn)) {
+		int err = ds2438_read(txn, 0, bytes);
 
-		if (err || (in[0] & DS2438_AD) != select)
-			return err ? err : -EIO;
-	} else if (ds2438_visit(txn)->step == BEGIN &&
-	           (ds2438_of(txn)->first[0] & DS2438_AD) != select) {
+		return err || (bytes[0] & DS2438_AD) == select ? err : -EIO;
+	}
+	if (ds2438_visit(txn)->step == BEGIN && (ds2438_of(txn)->first[0] & DS2438_AD) != select) {
 		ds2438_visit(txn)->mark = select;
 		ds2438_visit(txn)->step = FIND_MARK;
 	}
@@ -175,7 +174,7 @@ int ds2438_mark(struct txn *txn)
 	struct ds2438_visit *visit = ds2438_visit(txn);
 	uint8_t bytes[8];
 
-	if (txn->link->files)
+	if (txn_driven(txn))
 		return 0;
 	if (!visit->marking) {
 		int err = ds2438_read(txn, MARKED_PAGE, bytes);
@@ -194,7 +193,7 @@ int ds2438_is_marked(struct txn *txn)
 {
 	uint8_t in[9];
 
-	if (txn->link->files)
+	if (txn_driven(txn))
 		return 0;
 	int err = read_scratchpad(txn, MARKED_PAGE, in);
 
@@ -239,10 +238,12 @@ static int write_page(struct txn *txn, unsigned page, const uint8_t *bytes, unsi
 	uint8_t command[] = {COPY_SCRATCHPAD, (uint8_t)page}, in[8];
 	int err;
 
+	if (txn_driven(txn))
+		return txn_driver_write(txn, &pages, page * 8, bytes, n);
 	switch (*step) {
 	case 0:
 		err = write_scratchpad(txn, page, bytes, n);
-		*step = txn->link->files ? 4 : 1;
+		*step = 1;
 		return err ? err : TXN_MORE;
 	case 1:
 	case 2:
@@ -257,12 +258,10 @@ static int write_page(struct txn *txn, unsigned page, const uint8_t *bytes, unsi
 		++*step;
 		return err ? err : txn_wait(txn, COPY_NS);
 	default:
-		err = txn->link->files ? 0 : ds2438_read(txn, page, in);
+		err = ds2438_read(txn, page, in);
 		if (err)
 			return err;
 		*step = 0;
-		if (txn->link->files)
-			return 0;
 		return is_written(page, in, bytes, n) ? 0 : -EIO;
 	}
 }

@@ -7,8 +7,13 @@
 
 #define CURRENT_NS (28 * TXN_MS) /* 36.41 measurements a second */
 
-static const struct conversion convert_t = {.command = {0x44}, .n = 1, .ns = 10 * TXN_MS};
-static const struct conversion convert_v = {.command = {0xb4}, .n = 1, .ns = 10 * TXN_MS};
+#define CONVERSION(what, code) \
+	{ \
+		.name = (what), .command = {code}, .n = 1, .ns = 10 * TXN_MS \
+	}
+static const struct conversion convert_t = CONVERSION("temperature", 0x44);
+static const struct conversion convert_vad = CONVERSION("VAD", 0xb4);
+static const struct conversion convert_vdd = CONVERSION("VDD", 0xb4);
 
 static int measure_temperature(struct txn *txn, double *value)
 {
@@ -41,7 +46,7 @@ static int measure_voltage(struct txn *txn, uint8_t select, double *value)
 		return err ? err : TXN_MORE;
 	case 1:
 		txn->phase++;
-		return conversion_start(txn, &convert_v, false);
+		return conversion_start(txn, select ? &convert_vdd : &convert_vad, false);
 	default:
 		err = ds2438_read_selected(txn, select, bytes);
 		if (err)

@@ -7,8 +7,13 @@
 #include <errno.h>
 
 #include "hal/chips/family.h"
+#include "hal/chips/field.h"
 
 #define LOOKS 3
+
+/* As a driver gives them. 1: does not conduct. */
+static const struct area output = {.name = "output", .size = 1, .row = 1, .hidden = true};
+static const struct area pin = {.name = "pin", .size = 1};
 
 /*
  * Not conducting, not there and not heard look the same: LOOKS that do not find it say that it does
@@ -26,6 +31,8 @@ static int read_pio(struct txn *txn)
 {
 	int there;
 
+	if (txn_driven(txn))
+		return field_read(txn);
 	if (txn->phase >= LOOKS)
 		return is_there(txn);
 	there = txn_verify(txn, true);
@@ -37,6 +44,8 @@ static int read_pio(struct txn *txn)
 /* A chip that the last slot of the search did not select leaves a one, too. */
 static int read_pin(struct txn *txn)
 {
+	if (txn_driven(txn))
+		return field_read(txn);
 	int err = is_there(txn), level = err ? err : txn_bit(txn);
 
 	if (level < 0)
@@ -54,6 +63,8 @@ static int write_pio(struct txn *txn)
 	bool want = txn->number[0] != 0, after = txn->phase >= AFTER;
 	int there;
 
+	if (txn_driven(txn))
+		return field_write(txn);
 	if (txn->phase == THERE)
 		return is_there(txn);
 	if (txn->phase == TURN) {
@@ -76,8 +87,9 @@ static int write_pio(struct txn *txn)
 
 /* clang-format off */
 static const struct property properties[] = {
-	PROPERTY("PIO", YESNO, STABLE, BOTH, .read = read_pio, .write = write_pio),
-	PROPERTY("sensed", YESNO, VOLATILE, READ, .read = read_pin),
+	PROPERTY("PIO", YESNO, STABLE, BOTH, FIELD(output, .bits = 1, .inverted = true),
+	         .read = read_pio, .write = write_pio),
+	PROPERTY("sensed", YESNO, VOLATILE, READ, FIELD(pin), .read = read_pin),
 };
 
 const struct family family_05 = {

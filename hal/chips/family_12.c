@@ -20,7 +20,6 @@ static bool is_checked(const uint8_t command[3], const uint8_t in[4])
 static int channel_info(struct txn *txn, uint8_t control, uint8_t *info)
 {
 	uint8_t command[] = {CHANNEL_ACCESS, control, 0xff}, in[4];
-	struct device *device = txn->device;
 	int err = txn_command(txn, command, sizeof(command));
 
 	if (!err)
@@ -31,12 +30,18 @@ static int channel_info(struct txn *txn, uint8_t control, uint8_t *info)
 		if ((control & ACCESS_RESET_LATCHES) || !is_checked(command, in))
 			err = -EBADMSG;
 	}
-	if (err)
-		return err;
-	*info = in[0];
-	if (device->shadow_known && device->shadow != (in[0] & 3))
-		txn->restarted = true;
-	device->shadow = in[0] & 3;
+	if (!err)
+		*info = in[0];
+	return err;
+}
+
+static int saw_info(struct txn *txn, unsigned at, uint8_t *info, unsigned n)
+{
+	struct device *device = txn->device;
+
+	(void)at, (void)n;
+	txn->restarted |= device->shadow_known && device->shadow != (*info & 3);
+	device->shadow = *info & 3;
 	device->shadow_known = true;
 	return 0;
 }
@@ -51,8 +56,9 @@ static int load_info(struct txn *txn, const struct area *area, unsigned at, uint
 static int write_latch(struct txn *txn)
 {
 	uint8_t info;
+	int err = channel_info(txn, ACCESS_READ_A | ACCESS_RESET_LATCHES, &info);
 
-	return channel_info(txn, ACCESS_READ_A | ACCESS_RESET_LATCHES, &info);
+	return err ? err : saw_info(txn, 0, &info, 1);
 }
 
 /* The supply is no setting. */
@@ -70,7 +76,7 @@ static const struct area memory = {
 	.address_bytes = 2,
 	.read = 0xf0,
 };
-static const struct area info = {.name = "info", .size = 1, .load = load_info};
+static const struct area info = {.name = "info", .size = 1, .load = load_info, .saw = saw_info};
 static const struct area status = {
 	.name = "status",
 	.at = 7,
@@ -83,6 +89,7 @@ static const struct area status = {
 	.row = 1,
 	.write = 0x55,
 	.write_crc16 = true,
+	.hidden = true,
 };
 
 /* Three digits: channels, source, polarity. */

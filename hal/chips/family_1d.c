@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* DS2423 (data sheet 19-5140): 4 kbit of RAM, and counters on its last four pages. */
 #include <errno.h>
+#include <string.h>
 
 #include "hal/chips/family.h"
 
@@ -20,35 +21,33 @@ static const struct area memory = {
 };
 
 /* From the page's last byte on: that byte, 32 bits of counter, 32 of zero, and the CRC16. */
-static int counter(struct txn *txn, unsigned page, uint32_t *count)
+static int load_counter(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+                        unsigned n)
 {
-	unsigned address = page * 32 + 31;
+	unsigned address = at / area->block * 32 + 31;
 	uint8_t command[] = {READ_COUNTER, (uint8_t)address, (uint8_t)(address >> 8)}, in[9];
 	int err = txn_command(txn, command, sizeof(command));
 
 	if (!err)
 		err = txn_read_crc16(txn, command, sizeof(command), in, sizeof(in));
 	if (!err)
-		*count = in[1] | in[2] << 8 | in[3] << 16 | (uint32_t)in[4] << 24;
+		memcpy(bytes, in + 1, n);
 	return err;
 }
 
-static int read_counter(struct txn *txn)
-{
-	uint32_t count = 0;
-	int err = counter(txn, (unsigned)(txn->property->arg + txn->element), &count);
-
-	txn->number[0] = count;
-	return err;
-}
+/* Four bytes for each page. */
+static const struct area counters = {
+	.name = "counters", .size = 64, .block = 4, .load = load_counter};
 
 static int read_minimum(struct txn *txn)
 {
-	uint32_t count = 0;
-	int err = counter(txn, EXTERNAL_A + txn->phase, &count);
+	unsigned page = EXTERNAL_A + txn->phase;
+	uint8_t in[4];
+	int err = area_read(txn, &counters, page * 4, in, sizeof(in));
 
 	if (err)
 		return err;
+	uint32_t count = in[0] | in[1] << 8 | in[2] << 16 | (uint32_t)in[3] << 24;
 	if (txn->phase++ == 0) {
 		txn->number[0] = count;
 		return TXN_MORE;
@@ -65,8 +64,8 @@ static int write_minimum(struct txn *txn)
 }
 
 #define COUNTERS(text, n, index_, page, ...) \
-	PROPERTY(text, UNSIGNED, VOLATILE, READ, ELEMENTS(n, index_), .arg = (page), \
-	         .read = read_counter, __VA_ARGS__)
+	PROPERTY(text, UNSIGNED, VOLATILE, READ, ELEMENTS(n, index_), \
+	         FIELD(counters, .at = 4 * (page), .stride = 4, .bytes = 4), __VA_ARGS__)
 
 static const struct property properties[] = {
 	COUNTERS("counter", 2, LETTERS, EXTERNAL_A, .hidden = false),

@@ -8,18 +8,15 @@
 #define READ_PIO 0xf5
 #define CONFIRMED 0xaa
 
-static int take_status(struct txn *txn, uint8_t status)
+int pio_saw(struct txn *txn, unsigned at, uint8_t *latches, unsigned n)
 {
 	struct device *device = txn->device;
-	uint8_t latch = (uint8_t)((status >> 1 & 1) | (status >> 2 & 2));
 
-	if ((status & 0xf) != (~status >> 4 & 0xf))
-		return -EBADMSG;
-	if (device->shadow_known && device->shadow != latch)
-		txn->restarted = true;
-	device->shadow = latch;
+	(void)at, (void)n;
+	txn->restarted |= device->shadow_known && device->shadow != (latches[0] & 3);
+	device->shadow = latches[0] & 3;
 	device->shadow_known = true;
-	return status & 0xf;
+	return 0;
 }
 
 /*
@@ -36,8 +33,8 @@ static int read_status(struct txn *txn)
 		err = txn_read(txn, status, sizeof(status));
 	if (err)
 		return err;
-	return status[1] == status[0] || status[1] == status[2] ? take_status(txn, status[1])
-	                                                        : -EBADMSG;
+	bool twice = status[1] == status[0] || status[1] == status[2];
+	return twice && (status[1] & 0xf) == (~status[1] >> 4 & 0xf) ? status[1] & 0xf : -EBADMSG;
 }
 
 /* The pins, the latches, and the nibble itself. */
@@ -45,15 +42,21 @@ static int load_status(struct txn *txn, const struct area *area, unsigned at, ui
                        unsigned n)
 {
 	int status = read_status(txn);
-	const uint8_t parts[] = {(uint8_t)((status & 1) | (status >> 1 & 2)), txn->device->shadow,
-	                         (uint8_t)status};
+	const uint8_t parts[] = {(uint8_t)((status & 1) | (status >> 1 & 2)),
+	                         (uint8_t)((status >> 1 & 1) | (status >> 2 & 2)), (uint8_t)status};
 
 	(void)area;
 	memcpy(bytes, parts + at, n);
 	return status < 0 ? status : 0;
 }
 
-const struct area pio_status = {.name = "status", .size = 3, .block = 3, .load = load_status};
+static int saw_status(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
+{
+	return pio_saw(txn, at, bytes + PIO_OUTPUTS, n);
+}
+
+const struct area pio_status = {
+	.name = "status", .size = 3, .block = 3, .load = load_status, .saw = saw_status};
 
 int pio_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
 {

@@ -13,11 +13,12 @@ extern const struct area pio_status;
 int pio_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n);
 int pio_store(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
               unsigned n);
+int pio_saw(struct txn *txn, unsigned at, uint8_t *latches, unsigned n);
 bool pio_is_written(struct txn *txn, const uint8_t *have, const uint8_t *want, unsigned n);
 
 #define PIO_LATCHES(command) \
-	.name = "latches", .size = 1, .row = 1, .write = (command), .load = pio_load, \
-	.store = pio_store, .is_written = pio_is_written
+	.name = "latches", .size = 1, .row = 1, .hidden = true, .write = (command), \
+	.load = pio_load, .store = pio_store, .saw = pio_saw, .is_written = pio_is_written
 #define PIO_BITS(text, access_, ...) \
 	PROPERTY(text, BITS, VOLATILE, access_, AGGREGATE(2, LETTERS), __VA_ARGS__)
 #define PIO_READ(part, inverted_) FIELD(pio_status, .at = (part), .inverted = (inverted_))

@@ -44,14 +44,10 @@ void thermometer_forget(struct device *device)
 	                             .raw = chip->raw};
 }
 
-int thermometer_saw(struct txn *txn, unsigned at, uint8_t *scratchpad, unsigned n)
+static int saw_config(struct txn *txn, const uint8_t scratchpad[9])
 {
 	struct thermometer *chip = txn->device->own;
 
-	(void)at, (void)n;
-	/* Nothing but zeros has a right checksum, and no such chip. */
-	if (scratchpad[SP_CONFIG] == 0 && scratchpad[SP_PER_DEGREE] == 0)
-		return -EBADMSG;
 	if (txn->device->family->fixed || chip->only_12)
 		return 0;
 	uint8_t resolution = (uint8_t)(9 + (scratchpad[SP_CONFIG] >> 5 & 3));
@@ -63,10 +59,22 @@ int thermometer_saw(struct txn *txn, unsigned at, uint8_t *scratchpad, unsigned 
 	return 0;
 }
 
+int thermometer_saw(struct txn *txn, unsigned at, uint8_t *scratchpad, unsigned n)
+{
+	/* A driver's, in part. */
+	if (at || n < SP_CRC)
+		return 0;
+	/* Nothing but zeros has a right checksum, and no such chip. */
+	if (scratchpad[SP_CONFIG] == 0 && scratchpad[SP_PER_DEGREE] == 0)
+		return -EBADMSG;
+	return saw_config(txn, scratchpad);
+}
+
 const struct area thermometer_area = {
 	.name = "scratchpad",
 	.size = 9,
 	.block = 9,
+	.parts = true,
 	.read = 0xbe,
 	.check = AREA_CRC8,
 	.saw = thermometer_saw,
@@ -77,6 +85,25 @@ int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9])
 	int err = area_fetch(txn, &thermometer_area, 0, scratchpad, 9);
 
 	return err ? err : thermometer_saw(txn, 0, scratchpad, 9);
+}
+
+/* As far as the limits and the configuration: a driver gives these without a conversion. */
+static int read_settings(struct txn *txn, uint8_t scratchpad[9])
+{
+	if (!txn_driven(txn))
+		return thermometer_scratchpad(txn, scratchpad);
+	int err = area_fetch(txn, &thermometer_area, SP_HIGH, scratchpad + SP_HIGH, 3);
+	return err ? err : saw_config(txn, scratchpad);
+}
+
+int thermometer_start(struct txn *txn)
+{
+	static const uint8_t command = THERMOMETER_CONVERT;
+
+	if (txn_driven(txn))
+		return txn_driver_convert(txn, "temperature");
+	int err = txn_command(txn, &command, 1);
+	return err ? err : txn_started(txn);
 }
 
 /* Sixteenths of a degree at the resolution that the scratchpad states. */
@@ -147,8 +174,11 @@ static int write_scratchpad(struct txn *txn, const uint8_t scratchpad[9])
 {
 	uint8_t out[4] = {WRITE_SCRATCHPAD, scratchpad[SP_HIGH], scratchpad[SP_LOW],
 	                  scratchpad[SP_CONFIG]};
+	unsigned n = txn->device->family->fixed ? 2 : 3;
 
-	return txn_command(txn, out, txn->device->family->fixed ? 3 : 4);
+	if (txn_driven(txn))
+		return txn_driver_write(txn, &thermometer_area, SP_HIGH, out + 1, n);
+	return txn_command(txn, out, 1 + n);
 }
 
 static uint8_t config_for(uint8_t config, unsigned resolution)
@@ -164,7 +194,7 @@ int thermometer_prepare(struct txn *txn, unsigned resolution)
 
 	switch (txn->phase) {
 	case 0:
-		err = thermometer_scratchpad(txn, visit_of(txn)->scratchpad);
+		err = read_settings(txn, visit_of(txn)->scratchpad);
 		if (err || thermometer_of(device)->resolution == resolution)
 			return err;
 		visit_of(txn)->scratchpad[SP_CONFIG] = config_for(
@@ -177,7 +207,7 @@ int thermometer_prepare(struct txn *txn, unsigned resolution)
 		return err ? err : TXN_MORE;
 	default:
 		thermometer_of(device)->resolution = 0;
-		err = thermometer_scratchpad(txn, scratchpad);
+		err = read_settings(txn, scratchpad);
 		thermometer_of(device)->ignores = !err &&
 		                                  thermometer_of(device)->resolution != resolution;
 		return err;
@@ -239,16 +269,23 @@ enum { WRITE = 1, VERIFY, COPY, RECALLS, CHECK = RECALLS + 3 };
 
 static int copy_settings(struct txn *txn)
 {
+	static const struct area eeprom = {.name = "eeprom", .size = 3};
 	static const uint8_t copy = COPY_SCRATCHPAD;
 
+	/* A driver's word for it is all there is. */
+	if (txn_driven(txn)) {
+		txn->phase = CHECK;
+		int err = txn_driver_write(txn, &eeprom, 0, visit_of(txn)->scratchpad + SP_HIGH, 3);
+
+		return err ? err : TXN_MORE;
+	}
 	/* Without a strong pull-up it matters who feeds the chip. */
 	if (txn->link->passive && txn->device->power == POWER_UNKNOWN) {
 		int err = thermometer_ask_power(txn);
 
 		return err < 0 ? err : TXN_MORE;
 	}
-	/* A driver's word for it is all there is. */
-	txn->phase = txn->link->files ? CHECK : RECALLS;
+	txn->phase = RECALLS;
 	return txn_command_strong(txn, &copy, 1, COPY_NS);
 }
 
@@ -272,7 +309,7 @@ static int store(struct txn *txn)
 		break;
 	case VERIFY:
 		thermometer_of(device)->resolution = 0;
-		err = thermometer_scratchpad(txn, scratchpad);
+		err = read_settings(txn, scratchpad);
 		if (!err && !is_set(txn, scratchpad))
 			return scratchpad[SP_CONFIG] != visit_of(txn)->scratchpad[SP_CONFIG]
 			               ? -EINVAL
@@ -284,7 +321,7 @@ static int store(struct txn *txn)
 		if (txn->phase < CHECK)
 			err = txn_command(txn, &recall, 1);
 		if (!err)
-			err = thermometer_scratchpad(txn, scratchpad);
+			err = read_settings(txn, scratchpad);
 		if (err)
 			return err;
 		if (!is_set(txn, scratchpad))
@@ -302,7 +339,7 @@ static int store(struct txn *txn)
 /* The scratchpad to the visit, ahead of a change of its settings. 1: one has failed before. */
 static int before_store(struct txn *txn)
 {
-	int err = thermometer_scratchpad(txn, visit_of(txn)->scratchpad);
+	int err = read_settings(txn, visit_of(txn)->scratchpad);
 
 	if (err)
 		return err;
@@ -342,7 +379,7 @@ int thermometer_write_limit(struct txn *txn)
 int thermometer_read_tempres(struct txn *txn)
 {
 	uint8_t scratchpad[9];
-	int err = thermometer_scratchpad(txn, scratchpad);
+	int err = read_settings(txn, scratchpad);
 
 	txn->number[0] = thermometer_of(txn->device)->stored;
 	return err;
@@ -368,17 +405,18 @@ int thermometer_write_tempres(struct txn *txn)
 /* Eight slots, which are all alike. */
 static int look_at_supply(struct txn *txn, uint8_t *slots)
 {
+	static const struct area supply = {.name = "supply", .size = 1};
 	static const uint8_t command = THERMOMETER_READ_POWER;
-	int err = txn_command(txn, &command, 1);
+	int err;
 
-	if (err || !txn->link->files) {
+	if (txn_driven(txn)) {
+		err = txn_driver_read(txn, &supply, 0, slots, 1);
+	} else {
+		err = txn_command(txn, &command, 1);
 		err = err ? err : txn_read(txn, slots, 1);
-		txn->silent = false;
-		return err;
 	}
-	int bit = txn_bit(txn);
-	*slots = bit > 0 ? 0xff : 0;
-	return bit < 0 ? bit : 0;
+	txn->silent = false;
+	return err;
 }
 
 /* Ones are also what one hears of a chip that did not take the command: they need more looks. */
@@ -407,7 +445,7 @@ int thermometer_read_power(struct txn *txn)
 
 	if (txn->phase == 2) {
 		txn->number[0] = 1;
-		return thermometer_scratchpad(txn, scratchpad);
+		return read_settings(txn, scratchpad);
 	}
 	bit = thermometer_ask_power(txn);
 	txn->number[0] = 0;

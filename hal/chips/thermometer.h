@@ -55,6 +55,9 @@ int64_t thermometer_convert_ns(const struct device *device);
 /* Make the chip convert at this resolution; may take several calls. */
 int thermometer_prepare(struct txn *txn, unsigned resolution);
 
+/* It converts; -EBADMSG: it has not taken the command. */
+int thermometer_start(struct txn *txn);
+
 /* Asks for the power supply and notes it: 1 external, 0 parasitic, or an error. */
 int thermometer_ask_power(struct txn *txn);
 

@@ -106,7 +106,7 @@ static int look_at_supply(struct link *link)
 	uint8_t slots;
 
 	/* A driver sees to those that are fed by the wire. */
-	if (link->files)
+	if (link->driven)
 		return 1;
 	int err = link->ops->reset(link);
 
@@ -192,8 +192,8 @@ struct plan {
 
 static struct plan look(const struct native *native, unsigned channel)
 {
-	/* A driver behind files sees to those that are fed by the wire. */
-	bool feeds = native->channel[channel].link->files;
+	/* A driver sees to those that are fed by the wire. */
+	bool feeds = native->channel[channel].link->driven;
 	struct plan plan = {0};
 	unsigned coming = UINT8_MAX, urgent = BUS_GUEST;
 
@@ -239,12 +239,15 @@ static int send_all(struct link *link, enum link_after after)
 {
 	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_CONVERT};
 	uint8_t busy;
+
+	if (link->driven)
+		return link->ops->convert(link, NULL, "temperature");
 	int err = link->ops->reset(link);
 
 	if (err <= 0)
 		return err ? err : -ENODEV;
 	err = link->ops->write(link, command, sizeof(command), after);
-	if (!err && after == LINK_IDLE && !link->files) {
+	if (!err && after == LINK_IDLE) {
 		err = link->ops->read(link, &busy, 1);
 		err = err ? err : busy ? -EBADMSG : 0;
 	}
@@ -274,10 +277,10 @@ static void fail_due(struct native *native, unsigned channel, int err)
 	}
 }
 
-/* How long after the command: a driver behind files has waited for the end itself. */
+/* How long after the command: a driver waits for the end itself. */
 static int64_t convert_ns(const struct link *link, const struct device *device)
 {
-	return link->files ? 0 : thermometer_convert_ns(device);
+	return link->driven ? 0 : thermometer_convert_ns(device);
 }
 
 static void converts(struct device *device, int64_t until, bool unseen)
@@ -337,13 +340,13 @@ int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t lo
 	int64_t now = native_now(native);
 	master_good(native, n);
 	native_count(native, COUNT_CONVERSIONS);
-	if (link->files)
+	if (link->driven)
 		longest = 0;
 	if (strong && longest) {
 		native->hold_ns[link->chip % NATIVE_CHANNELS] = now + longest;
 		native->holder[link->chip % NATIVE_CHANNELS] = NULL;
 	}
-	converting(native, n, strong && !link->files, now, longest);
+	converting(native, n, strong && !link->driven, now, longest);
 	return 0;
 }
 
@@ -364,7 +367,6 @@ static bool is_measuring(const struct native *native, const struct device *devic
 /* One by one: the first that is due and free. False: there is none. */
 static bool convert_one(struct native *native, unsigned n)
 {
-	static const uint8_t command = THERMOMETER_CONVERT;
 	struct job *first = NULL;
 
 	for (unsigned i = 0; i < NATIVE_DEPTH && !first; i++)
@@ -379,10 +381,7 @@ static bool convert_one(struct native *native, unsigned n)
 		job_failed(native, first, -EOPNOTSUPP);
 		return true;
 	}
-	int err = txn_command(&first->txn, &command, 1);
-	if (!err)
-		err = txn_started(&first->txn);
-	err = txn_end(&first->txn, err);
+	int err = txn_end(&first->txn, thermometer_start(&first->txn));
 	int64_t now = native_now(native);
 
 	job_saw(native, first, err, now);
@@ -459,7 +458,7 @@ bool convert_step(struct native *native, int64_t now, int64_t *next)
 		if (plan.parasitic && ask_one(native, n))
 			return true;
 		if (plan.parasitic ? !plan.parasitic_due || channel->link->passive
-		                   : !channel->link->files && is_single_round(channel, now)) {
+		                   : !channel->link->driven && is_single_round(channel, now)) {
 			if (!convert_one(native, n))
 				continue;
 			if (plan.due == 1)

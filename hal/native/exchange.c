@@ -9,7 +9,6 @@
 #include "hal/native/answer.h"
 #include "hal/native/convert.h"
 #include "hal/native/exchange.h"
-#include "hal/native/files.h"
 #include "hal/native/job_txn.h"
 #include "hal/native/outcome.h"
 #include "hal/native/state.h"
@@ -126,24 +125,25 @@ static void write_done(struct native *native, struct job *job)
 static bool needs_merge(const struct job *job)
 {
 	return job->req->op == BUS_WRITE && !job->merged && job->extension >= 0 &&
-	       job->property->array.count > 1 && job->txn.read && job->txn.write != field_write &&
+	       job->property->array.count > 1 && property_reader(job->property) &&
+	       property_writer(job->property) != field_write &&
 	       (job->property->array.aggregate || job->property->type == PROPERTY_BITS);
 }
 
 static int run_function(struct job *job)
 {
+	property_function *read = property_reader(job->property);
+	bool binary = job->property->type == PROPERTY_BINARY;
 	struct txn *txn = &job->txn;
 
-	bool binary = job->property->type == PROPERTY_BINARY;
-
+	if (!job->offered)
+		return -ENOENT;
 	if (job->req->op == BUS_READ && binary && txn->room < property_size(job->property))
 		return -EMSGSIZE;
 	if (job->req->op == BUS_READ)
-		return txn->read(txn);
+		return read(txn);
 	if (needs_merge(job))
-		return txn->read == property_reader(job->property) && job->property->merge
-		               ? job->property->merge(txn)
-		               : txn->read(txn);
+		return job->property->merge ? job->property->merge(txn) : read(txn);
 	if (txn->phase == 0) {
 		int err = take_value(job);
 
@@ -152,7 +152,7 @@ static int run_function(struct job *job)
 	}
 	if (txn->device)
 		txn_void(txn);
-	return txn->write(txn);
+	return property_writer(job->property)(txn);
 }
 
 static void hold(struct native *native, struct job *job)

@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "hal/native/answer.h"
-#include "hal/native/files.h"
 #include "hal/native/hunt.h"
 #include "hal/native/limits.h"
 #include "hal/native/listing.h"
@@ -102,13 +101,11 @@ static int next_device(struct native *native, unsigned n, struct search *search,
 
 	native_count(native, COUNT_SEARCHES);
 	native_count(native, COUNT_TRANSACTIONS);
-	if (!link->files && !only_whole(link))
+	if (!only_whole(link))
 		return search_next(search, link);
 	search->last = true;
 	bool alarm = search->command == ONEWIRE_ALARM_SEARCH;
-	int err = link->files
-	                  ? link->files->search(link, alarm, search->family, whole_found, &whole)
-	                  : link->ops->search(link, alarm, search->family, whole_found, &whole);
+	int err = link->ops->search(link, alarm, search->family, whole_found, &whole);
 	return whole.err ? whole.err : err < 0 ? err : 0;
 }
 

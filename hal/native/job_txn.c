@@ -5,7 +5,6 @@
 
 #include "hal/chips/field.h"
 #include "hal/chips/format.h"
-#include "hal/native/files.h"
 #include "hal/native/job_txn.h"
 #include "hal/native/limits.h"
 #include "hal/native/state.h"
@@ -32,27 +31,15 @@ bool job_wants_all(const struct job *job)
 	       job->property->type != PROPERTY_BITS;
 }
 
-static int no_file(struct txn *txn)
+/* On a link that is driven somebody else's driver says what can be had. */
+static bool is_offered(const struct job *job)
 {
-	(void)txn;
-	return -ENOENT;
-}
+	const struct txn *txn = &job->txn;
 
-static void take_functions(struct job *job)
-{
-	struct txn *txn = &job->txn;
-	const struct link_files *files = txn->link ? txn->link->files : NULL;
-
-	if (!job->property)
-		return;
-	txn->read = property_reader(job->property);
-	txn->write = property_writer(job->property);
-	if (!files || !txn->device || job->property->offline)
-		return;
-	if (files->property(txn->link, txn->device, job->property,
-	                    job_wants_all(job) ? txn->element : job->extension, &txn->read,
-	                    &txn->write))
-		txn->read = txn->write = no_file;
+	return !job->property || job->property->offline || !txn->device || !txn->link ||
+	       !txn->link->driven ||
+	       txn->link->ops->offers(txn->link, txn->device->rom, job->property->name,
+	                              job_wants_all(job) ? txn->element : job->extension);
 }
 
 /*
@@ -100,5 +87,5 @@ void job_txn(struct native *native, struct job *job)
 		txn->room = job->req->len - job->out;
 	}
 	take_limits(native, job);
-	take_functions(job);
+	job->offered = is_offered(job);
 }

@@ -7,7 +7,6 @@
 
 #include "hal/chips/find.h"
 #include "hal/chips/format.h"
-#include "hal/native/files.h"
 #include "hal/native/listing.h"
 #include "hal/native/state.h"
 #include "hal/native/structure.h"
@@ -99,17 +98,16 @@ static int list_root(struct native *native, struct job *job)
 	return err ? err : listing_add_rest(native, job);
 }
 
-/* Has a link that gives files one for this? */
-static bool has_file(struct native *native, const struct device *device,
-                     const struct property *property, int extension)
+/* Can it be had of a device whose link is driven? */
+static bool is_offered(struct native *native, const struct device *device,
+                       const struct property *property, int extension)
 {
 	struct link *link = device && native->channels > device->channel
 	                            ? native->channel[device->channel].link
 	                            : NULL;
-	property_function *read = NULL, *write = NULL;
 
-	return !link || !link->files || property->offline ||
-	       link->files->property(link, device, property, extension, &read, &write) == 0;
+	return !link || !link->driven || property->offline ||
+	       link->ops->offers(link, device->rom, property->name, extension);
 }
 
 static int add_property(struct native *native, struct job *job, const struct device *device,
@@ -123,7 +121,7 @@ static int add_property(struct native *native, struct job *job, const struct dev
 
 	for (int extension = EXTENSION_NONE; extension <= last && !err; extension++) {
 		if (!extension_fits(property, extension) ||
-		    !has_file(native, device, property, extension))
+		    !is_offered(native, device, property, extension))
 			continue;
 		extension_print(property, extension, text);
 		err = add(job, "%s%s%s", path, property->name, text);

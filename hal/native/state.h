@@ -69,6 +69,7 @@ struct job {
 	uint8_t kind, state;
 	bool begun, fresh, verified, locks;
 	bool again;                 /* its conversion was unproven, and is made a second time */
+	bool offered;               /* somebody or something can answer it */
 	bool waits;                 /* PREPARE: until another job has read its resolution */
 	unsigned element;           /* of a separate array, when all of it is asked for */
 	uint8_t tries;              /* transactions that failed in a row */

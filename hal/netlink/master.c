@@ -7,6 +7,9 @@
 #include <unistd.h>
 
 #include "hal/netlink/netlink.h"
+#include "hal/w1/master.h"
+#include "hal/w1/name.h"
+#include "hal/w1/uevent.h"
 
 static const char word[] = "netlink";
 
@@ -20,10 +23,10 @@ bool w1_is_netlink(const char *where)
 static bool has_master(void *ctx, uint32_t master)
 {
 	const struct w1_netlink *netlink = ctx;
-	char name[24];
+	char name[W1_MASTER_NAME_MAX];
 
 	w1_master_name(master, name);
-	return w1_exists((const struct w1_master *)netlink->files, name, "");
+	return w1_exists(&netlink->sysfs->tree, name, "");
 }
 
 /* Behind the word and a slash: what target w1 takes. */
@@ -35,14 +38,16 @@ static int create(const char *where, const struct bus_env *env, struct link_mast
 
 	if (!netlink)
 		return -ENOMEM;
-	int err = w1_master.create(*rest ? rest + 1 : rest, env, &netlink->files, why, why_size);
+	struct link_master *sysfs = NULL;
+	int err = w1_master.create(*rest ? rest + 1 : rest, env, &sysfs, why, why_size);
 	if (err) {
 		free(netlink);
 		return err;
 	}
 	netlink->master = (struct link_master){.ops = &w1_netlink_master, .env = env};
 	netlink->talk = (struct w1_talk){.env = env, .there = has_master, .ctx = netlink, .fd = -1};
-	netlink->only = ((struct w1_master *)netlink->files)->only;
+	netlink->sysfs = (struct w1_master *)sysfs;
+	netlink->only = netlink->sysfs->only;
 	*out = &netlink->master;
 	return 0;
 }
@@ -52,7 +57,7 @@ static void destroy(struct link_master *base)
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
 	w1_talk_close(&netlink->talk);
-	netlink->files->ops->destroy(netlink->files);
+	w1_master.destroy(&netlink->sysfs->master);
 	free(netlink);
 }
 
@@ -88,7 +93,7 @@ unsigned w1_netlink_look(struct w1_netlink *netlink)
 	uint32_t numbers[W1_MASTERS];
 
 	if (netlink->refused)
-		return w1_look_for_masters((struct w1_master *)netlink->files);
+		return w1_look_for_masters(netlink->sysfs);
 	int n = w1_talk_masters(&netlink->talk, numbers, W1_MASTERS);
 	if (n > 0)
 		add_links(netlink, numbers, (unsigned)n);
@@ -138,7 +143,7 @@ static const char *reason(const struct w1_netlink *netlink, int err)
 	}
 }
 
-static int serve_files(struct w1_netlink *netlink, int err)
+static int serve_sysfs(struct w1_netlink *netlink, int err)
 {
 	struct bus_event event = {.news = BUS_NOTE, .err = err};
 
@@ -155,7 +160,7 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 {
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 	uint32_t numbers[W1_MASTERS];
-	int n = netlink->files->ops->open(netlink->files, why, why_size);
+	int n = w1_master.open(&netlink->sysfs->master, why, why_size);
 
 	netlink->count = netlink->seen_count = 0;
 	netlink->refused = false;
@@ -163,7 +168,7 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 	if (n)
 		return n;
 	/* its own search finds devices; nobody would take what the kernel says of them */
-	w1_uevents_close((struct w1_master *)netlink->files);
+	w1_uevents_close(&netlink->sysfs->uevents);
 	n = has_no_slots() ? -EOPNOTSUPP : w1_talk_open(&netlink->talk);
 	if (!n) {
 		n = w1_talk_masters(&netlink->talk, numbers, W1_MASTERS);
@@ -177,7 +182,7 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 	}
 	w1_talk_close(&netlink->talk);
 	if (reason(netlink, n))
-		return serve_files(netlink, n);
+		return serve_sysfs(netlink, n);
 	snprintf(why, why_size, "netlink: %s", n < 0 ? strerror(-n) : "no such master any more");
 	return n < 0 ? n : -ENODEV;
 }
@@ -187,7 +192,7 @@ static void close_masters(struct link_master *base)
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
 	w1_talk_close(&netlink->talk);
-	netlink->files->ops->close(netlink->files);
+	w1_master.close(&netlink->sysfs->master);
 	netlink->count = 0;
 }
 
@@ -196,21 +201,21 @@ static int there(struct link_master *base, uint64_t *mark)
 {
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
-	return netlink->files->ops->there(netlink->files, mark);
+	return w1_master.there(&netlink->sysfs->master, mark);
 }
 
 static unsigned channels(struct link_master *base)
 {
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
-	return netlink->refused ? netlink->files->ops->channels(netlink->files) : netlink->count;
+	return netlink->refused ? w1_master.channels(&netlink->sysfs->master) : netlink->count;
 }
 
 static struct link *channel(struct link_master *base, unsigned n)
 {
 	struct w1_netlink *netlink = (struct w1_netlink *)base;
 
-	return netlink->refused ? netlink->files->ops->channel(netlink->files, n)
+	return netlink->refused ? w1_master.channel(&netlink->sysfs->master, n)
 	                        : &netlink->links[n].link;
 }
 

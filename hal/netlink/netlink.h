@@ -3,11 +3,11 @@
  * The target "w1:netlink": the kernel's 1-Wire masters as links, over the netlink connector. The
  * parts:
  *
- *   netlink_talk.c    the socket; requests of several commands and their replies
- *   netlink_link.c    one master as a link: a transaction is gathered into one request
- *   netlink_search.c  searches, made of slots whose direction is chosen before
- *   netlink_master.c  the masters there are; the files of target w1 in place of a refused netlink
- *   netlink_bus.c     the target, masters that come later
+ *   talk.c    the socket; requests of several commands and their replies
+ *   link.c    one master as a link: a transaction is gathered into one request
+ *   search.c  searches, made of slots whose direction is chosen before
+ *   master.c  the masters there are; sysfs in place of a refused netlink
+ *   bus.c     the target "w1" of both, masters that come later
  *
  * Wire format and what replies mean: the kernel's Documentation/w1/w1-netlink.rst, and seen on
  * Linux 6.1. The kernel carries out the commands of one request with the master's bus locked, so
@@ -16,7 +16,7 @@
 #ifndef HAL_NETLINK_H
 #define HAL_NETLINK_H
 
-#include "hal/w1/w1.h"
+#include "hal/w1/link.h"
 
 /* Of struct w1_netlink_cmd. */
 enum w1_code {
@@ -108,7 +108,7 @@ struct w1_netlink {
 	struct w1_netlink_link links[W1_MASTERS];
 	unsigned seen_count;
 	struct w1_seen seen[DEVICE_MAX];
-	struct link_master *files; /* target w1's, in case netlink is refused */
+	struct w1_master *sysfs; /* target w1's, in case netlink is refused */
 	bool refused, told;
 	bool answered;   /* once at least */
 	int64_t look_ns; /* when to look for masters that came later */
@@ -116,20 +116,19 @@ struct w1_netlink {
 
 extern const struct link_ops w1_netlink_link_ops;
 extern const struct link_master_ops w1_netlink_master;
-extern const struct bus_ops w1_netlink_bus;
 
-/* Is it "netlink", "netlink/...": a target of this bus? */
+/* Is it "netlink", "netlink/...", of which this bus is? */
 bool w1_is_netlink(const char *where);
 /* Masters that came since; how many. */
 unsigned w1_netlink_look(struct w1_netlink *netlink);
 
 /*
- * netlink_link.c: runs a request, which is empty afterwards. -EHOSTDOWN nobody answered its reset,
+ * link.c: runs a request, which is empty afterwards. -EHOSTDOWN nobody answered its reset,
  * -EIO also a command that the kernel refused; else as w1_request_run.
  */
 int w1_netlink_run(struct w1_netlink_link *link, struct w1_request *request);
 
-/* netlink_search.c: as the slots of link_ops. */
+/* search.c: as the slots of link_ops. */
 int w1_netlink_verify(struct link *link, const uint8_t rom[8], bool alarm);
 int w1_netlink_search(struct link *link, bool alarm, uint8_t family, link_found *found, void *ctx);
 

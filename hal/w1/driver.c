@@ -1,101 +1,107 @@
 /* SPDX-License-Identifier: MIT */
-/* Which driver has a slave, and what of its properties that driver's attributes stand for. */
+/* Which driver has a slave, and which of its properties and areas that driver's attributes stand for. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "hal/w1/w1.h"
+#include "hal/chips/find.h"
+#include "hal/w1/driver.h"
+#include "hal/w1/ds2438.h"
+#include "hal/w1/memory.h"
+#include "hal/w1/name.h"
+#include "hal/w1/switches.h"
+#include "hal/w1/thermometer.h"
 
-static const struct {
-	const struct w1_driver *drivers;
-	unsigned count;
-} tables[] = {
-	{w1_thermometers, sizeof(w1_thermometers) / sizeof(w1_thermometers[0])},
-	{w1_switches, sizeof(w1_switches) / sizeof(w1_switches[0])},
-	{w1_memories, sizeof(w1_memories) / sizeof(w1_memories[0])},
-	{w1_wired, sizeof(w1_wired) / sizeof(w1_wired[0])},
-};
-
-const struct w1_driver *w1_driver_of(const struct w1_master *master, const uint8_t rom[8])
+const struct w1_driver *w1_driver_of(const struct w1_slave *slave)
 {
-	for (size_t t = 0; t < sizeof(tables) / sizeof(tables[0]); t++) {
-		for (unsigned i = 0; i < tables[t].count; i++) {
-			const struct w1_driver *driver = &tables[t].drivers[i];
+	static const struct w1_driver *const tables[] = {w1_thermometers, w1_switches, w1_memories,
+	                                                 w1_ds2438};
 
-			if (driver->family != rom[0])
-				continue;
+	for (size_t t = 0; t < sizeof(tables) / sizeof(tables[0]); t++)
+		for (const struct w1_driver *driver = tables[t]; driver->family; driver++)
 			for (unsigned f = 0; f < 2 && driver->files[f]; f++)
-				if (w1_slave_has(master, rom, driver->files[f]))
+				if (driver->family == slave->rom[0] &&
+				    w1_slave_has(slave, driver->files[f]))
 					return driver;
-		}
-	}
 	return NULL;
 }
 
-static bool names_directory(const struct w1_way *way, const struct property *what)
+/* Is it that property, or a directory above it? */
+static bool is_named(const struct w1_property *property, const char *name)
 {
-	size_t n = strlen(what->name);
+	size_t n = strlen(name);
 
-	return what->type == PROPERTY_DIRECTORY && strncmp(way->property, what->name, n) == 0 &&
-	       way->property[n] == '/';
+	return strncmp(property->name, name, n) == 0 &&
+	       (property->name[n] == '\0' || property->name[n] == '/');
 }
 
-static bool has_element(const struct w1_way *way, int extension)
+static bool has_element(const struct w1_property *property, int element)
 {
-	return way->count == 0 || (extension >= 0 && (extension & 0xff) >= way->first &&
-	                           (extension & 0xff) < way->first + way->count);
+	return property->count == 0 || (element >= 0 && (element & 0xff) >= property->first &&
+	                                (element & 0xff) < property->first + property->count);
 }
 
 /* Raw access has no search, which a DS2405 needs, and no time for a conversion. */
-static bool fits_rw(const struct device *device)
+static bool fits_rw(const struct w1_slave *slave)
 {
-	return device->rom[0] != 0x05 && !device->family->thermometer;
+	return slave->rom[0] != 0x05 && !family_of(slave->rom[0])->thermometer;
 }
 
-static void tell_driver(struct w1_master *master, const uint8_t rom[8])
+static bool is_offered_raw(struct w1_slave *slave)
 {
-	struct w1_slave *slave = w1_slave_of(master, rom);
 	char text[96], name[W1_NAME_MAX];
 
-	w1_name(rom, name);
-	if (slave->told_driver)
-		return;
+	w1_name(slave->rom, name);
+	/* Gone: the command will tell. */
+	if (!w1_exists(slave->tree, name, "") || (w1_slave_has(slave, "rw") && fits_rw(slave)))
+		return true;
+	if (!slave->told_driver) {
+		snprintf(text, sizeof(text), "%s: no driver of the kernel has it", name);
+		w1_note(slave->tree, -ENOENT, text);
+	}
 	slave->told_driver = true;
-	snprintf(text, sizeof(text), "%s: no driver of the kernel has it", name);
-	w1_note(master, -ENOENT, text);
+	return false;
 }
 
-int w1_property(struct link *base, const struct device *device, const struct property *what,
-                int extension, property_function **read, property_function **write)
+bool w1_offers(struct w1_slave *slave, const char *name, int element)
 {
-	struct w1_master *master = ((struct w1_link *)base)->master;
-	const struct w1_driver *driver = w1_driver_of(master, device->rom);
+	const struct w1_driver *driver = w1_driver_of(slave);
 
-	if (strcmp(what->name, "present") == 0)
-		return 0;
-	if (!driver) {
-		char name[W1_NAME_MAX];
+	if (strcmp(name, "present") == 0)
+		return true;
+	if (!driver)
+		return is_offered_raw(slave);
+	for (unsigned i = 0; i < driver->property_count; i++) {
+		const struct w1_property *property = &driver->properties[i];
 
-		/* Gone: the command will tell. */
-		w1_name(device->rom, name);
-		if (!w1_exists(master, name, ""))
-			return 0;
-		if (w1_slave_has(master, device->rom, "rw") && fits_rw(device))
-			return 0;
-		tell_driver(master, device->rom);
-		return -ENOENT;
+		if (is_named(property, name) &&
+		    (property->name[strlen(name)] == '/' || has_element(property, element)) &&
+		    (!property->file || w1_slave_has(slave, property->file)))
+			return true;
 	}
-	for (unsigned i = 0; i < driver->count; i++) {
-		const struct w1_way *way = &driver->ways[i];
+	return false;
+}
 
-		if (names_directory(way, what))
-			return 0;
-		if (strcmp(way->property, what->name) != 0 || !has_element(way, extension) ||
-		    (way->file && !w1_slave_has(master, device->rom, way->file)))
-			continue;
-		*read = way->read ? way->read : *read;
-		*write = way->write ? way->write : *write;
-		return 0;
-	}
-	return -ENOENT;
+const struct w1_part *w1_part_of(const struct w1_slave *slave, const char *area)
+{
+	const struct w1_driver *driver = w1_driver_of(slave);
+
+	for (unsigned i = 0; driver && i < driver->part_count; i++)
+		if (strcmp(driver->parts[i].area, area) == 0)
+			return &driver->parts[i];
+	return NULL;
+}
+
+/* A slave that is being attached or removed has no attributes; without a driver it has `rw`. */
+static int no_attribute(const struct w1_slave *slave)
+{
+	return w1_driver_of(slave) || w1_slave_has(slave, "rw") ? -EOPNOTSUPP : -ENODEV;
+}
+
+int w1_in_alarm(struct w1_slave *slave)
+{
+	const struct w1_driver *driver = w1_driver_of(slave);
+	int in = driver && driver->alarm ? driver->alarm(slave) : -ENOENT;
+
+	return in == -ENOENT ? no_attribute(slave) : in;
 }

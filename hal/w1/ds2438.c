@@ -5,89 +5,78 @@
  */
 #include <errno.h>
 #include <string.h>
+#include <strings.h>
 
 #include "hal/chips/ds2438.h"
-#include "hal/owfs/path.h"
-#include "hal/w1/w1.h"
+#include "hal/w1/ds2438.h"
 
-#define RECALL 0xb8
-#define READ_SCRATCHPAD 0xbe
-#define WRITE_SCRATCHPAD 0x4e
-#define COPY_SCRATCHPAD 0x48
-#define CONVERT_T 0x44
-#define CONVERT_V 0xb4
-#define WRITTEN 0x80 /* in w1_slave.config: to the scratchpad, until it is recalled */
-
-static int page(struct w1_link *link, unsigned n, uint8_t bytes[8])
+static int read_page(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)
 {
-	int err = n > 1 ? -ENOENT
-	                : w1_slave_read(link->master, link->slave->rom, n ? "page1" : "page0",
-	                                bytes, 8);
+	uint8_t page[8];
+	int err = at / 8 > 1 || at % 8 + n > 8
+	                  ? -ENOENT
+	                  : w1_slave_read(slave, at / 8 ? "page1" : "page0", 0, page, sizeof(page));
 
-	return err < 0 ? err : err == 8 ? 0 : -EIO;
+	if (!err)
+		memcpy(bytes, page + at % 8, n);
+	return err;
 }
 
 /* Of the configuration the driver can change what it measures, not the accumulator's bits. */
-static int copy(struct w1_link *link)
+static int write_configuration(struct w1_slave *slave, unsigned at, const uint8_t *bytes,
+                               unsigned n)
 {
-	uint8_t bytes[8], on;
-	int err = page(link, 0, bytes);
+	uint8_t now, on = bytes[0] & DS2438_IAD;
+	int err = at || n != 1 ? -EOPNOTSUPP : read_page(slave, 0, &now, 1);
 
 	if (err)
 		return err;
-	uint8_t changed = (bytes[0] ^ link->slave->config) & 0x0f;
-	link->slave->config &= 0x0f;
-	if (changed & ~(DS2438_IAD | DS2438_AD))
+	if ((now ^ bytes[0]) & (DS2438_CA | DS2438_EE))
 		return -EOPNOTSUPP;
-	on = link->slave->config & DS2438_IAD;
-	return changed & DS2438_IAD ? w1_slave_write(link->master, link->slave->rom, "iad", &on, 1)
-	                            : 0;
+	return (now ^ bytes[0]) & DS2438_IAD ? w1_slave_write(slave, "iad", 0, &on, 1) : 0;
 }
 
-static int command(struct w1_link *link)
+/* The attributes' names are the quantities', but for the case. */
+static int convert(struct w1_slave *slave, const char *what)
 {
-	const uint8_t *bytes = link->command, *rom = link->slave->rom;
+	static const char *const files[] = {"temperature", "vad", "vdd"};
 
-	switch (bytes[0]) {
-	case RECALL:
-		if (bytes[1] == 0)
-			link->slave->config &= 0x0f;
-		return 0;
-	case READ_SCRATCHPAD:
-		return 0;
-	case WRITE_SCRATCHPAD:
-		if (bytes[1] || link->length != 3)
-			return -EOPNOTSUPP;
-		link->slave->config = (bytes[2] & 0x0f) | WRITTEN;
-		return 0;
-	case COPY_SCRATCHPAD:
-		return bytes[1] ? -EOPNOTSUPP : copy(link);
-	case CONVERT_T:
-		link->slave->config &= 0x0f;
-		return w1_slave_text(link->master, rom, "temperature");
-	case CONVERT_V:
-		link->slave->config &= 0x0f;
-		return w1_slave_text(link->master, rom,
-		                     link->slave->config & DS2438_AD ? "vdd" : "vad");
-	}
+	for (size_t i = 0; i < sizeof(files) / sizeof(files[0]); i++)
+		if (strcasecmp(files[i], what) == 0)
+			return w1_slave_text(slave, files[i]);
 	return -EOPNOTSUPP;
 }
 
-static int answer(struct w1_link *link, uint8_t *bytes, size_t n)
-{
-	int err;
+static const struct w1_part parts[] = {
+	{.area = "pages", .read = read_page, .write = write_configuration},
+};
 
-	if (link->command[0] != READ_SCRATCHPAD || n != 9)
-		return -EOPNOTSUPP;
-	err = page(link, link->command[1], bytes);
-	if (err)
-		return err;
-	if (link->command[1] == 0 && link->slave->config & WRITTEN)
-		bytes[0] = (uint8_t)((bytes[0] & 0xf0) | (link->slave->config & 0x0f));
-	else if (link->command[1] == 0)
-		link->slave->config = bytes[0] & 0x0f;
-	bytes[8] = rom_crc8(bytes, 8);
-	return 0;
-}
+static const struct w1_property properties[] = {
+	{.name = "CA"},
+	{.name = "EE"},
+	{.name = "HIH3600/humidity"},
+	{.name = "HIH4000/humidity"},
+	{.name = "HIH5030/humidity"},
+	{.name = "HTM1735/humidity"},
+	{.name = "IAD"},
+	{.name = "VAD"},
+	{.name = "VDD"},
+	{.name = "date", .file = "page1"},
+	{.name = "humidity"},
+	{.name = "latesttemp"},
+	{.name = "offset", .file = "page1"},
+	{.name = "pages/page", .first = 0, .count = 1},
+	{.name = "pages/page", .file = "page1", .first = 1, .count = 1},
+	{.name = "temperature"},
+	{.name = "udate", .file = "page1"},
+	{.name = "vis"},
+};
 
-const struct w1_wire w1_ds2438_wire = {.command = command, .answer = answer};
+const struct w1_driver w1_ds2438[] = {
+	{.family = 0x26,
+         .files = {"page0"},
+         W1_PARTS(parts),
+         W1_PROPERTIES(properties),
+         .convert = convert},
+	{.family = 0},
+};

@@ -1,218 +1,141 @@
 /* SPDX-License-Identifier: MIT */
-/* DS2405, DS2406 and DS2408: their registers are attributes, without checksums. */
+/* Switches: their registers are attributes, without checksums. */
 #include <errno.h>
 #include <string.h>
 
-#include "hal/chips/ds2408.h"
-#include "hal/w1/w1.h"
+#include "hal/w1/switches.h"
 
-#define SETTINGS 0x07 /* bits of the DS2408's control register that are written */
-#define POR 0x08
-#define NEVER_SET 0x70 /* bits of the DS2408's control register */
-#define VCC 0x80
-
-static int byte_of(struct txn *txn, const char *file, uint8_t *byte)
-{
-	int n = w1_slave_read(w1_master_of(txn), txn->device->rom, file, byte, 1);
-
-	txn->on_wire = true;
-	return n < 0 ? n : n == 1 ? 0 : -EIO;
-}
-
-static int put_byte(struct txn *txn, const char *file, uint8_t byte)
-{
-	txn->on_wire = true;
-	return w1_slave_write(w1_master_of(txn), txn->device->rom, file, &byte, 1);
-}
-
-static void saw_output(struct txn *txn, uint8_t output)
-{
-	struct device *device = txn->device;
-
-	if (device->shadow_known && device->shadow != output)
-		txn->restarted = true;
-	device->shadow = output;
-	device->shadow_known = true;
-}
+#define OLD_NS INT64_C(10000000000)
 
 /* --- DS2408 --- */
 
-static int control(struct txn *txn, uint8_t *value)
+/* Control register of the DS2408. */
+#define LATCHES 0x01 /* the condition is about the latches, not the pins */
+#define ALL_OF 0x02
+#define POR 0x08
+#define NEVER_SET 0x70
+#define VCC 0x80
+
+enum { PINS, OUTPUT, ACTIVITY, MASK, POLARITY, CONTROL, REGISTERS };
+static const char *const registers[REGISTERS] = {
+	"state",         "output", "activity", "cond_search_mask", "cond_search_polarity",
+	"status_control"};
+
+static int read_register(struct w1_slave *slave, unsigned which, uint8_t *value)
 {
-	struct ds2408 *ds2408 = txn->device->own;
-	int err = byte_of(txn, "status_control", value);
+	int err = which < REGISTERS ? w1_slave_read(slave, registers[which], 0, value, 1) : -ENOENT;
 
 	if (err)
 		return err;
-	txn->silent = *value == 0xff;
-	if (*value & NEVER_SET)
-		return -EBADMSG;
-	if (*value & POR && ds2408->por_clear)
-		txn->restarted = true;
-	ds2408->por_clear = !(*value & POR);
-	txn->device->power = *value & VCC ? POWER_EXTERNAL : POWER_PARASITE;
-	txn->heard = true;
-	return 0;
+	if (which >= MASK)
+		slave->condition[which - MASK] = *value;
+	return which == CONTROL && *value & NEVER_SET ? -EBADMSG : 0;
 }
 
-/* All ones is also what one hears of a chip that is not there: the control register tells. */
-static int reg(struct txn *txn, const char *file, uint8_t *value)
+static int read_registers(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)
 {
-	uint8_t status;
-	int err = byte_of(txn, file, value);
+	int err = 0;
 
-	return err || *value != 0xff ? err : control(txn, &status);
-}
-
-static int read_pins(struct txn *txn)
-{
-	uint8_t value = 0;
-	int err = reg(txn, "state", &value);
-
-	txn->bits = value;
+	for (unsigned i = 0; i < n && !err; i++)
+		err = read_register(slave, at + i, &bytes[i]);
 	return err;
 }
 
-static int read_latches(struct txn *txn)
+static int read_output(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)
 {
-	uint8_t value = 0;
-	int err = reg(txn, "activity", &value);
-
-	txn->bits = value;
-	return err;
+	return read_registers(slave, OUTPUT + at, bytes, n);
 }
 
-static int read_output(struct txn *txn)
+static int write_output(struct w1_slave *slave, unsigned at, const uint8_t *bytes, unsigned n)
 {
-	uint8_t value = 0;
-	int err = reg(txn, "output", &value);
-
-	if (!err)
-		saw_output(txn, value);
-	txn->bits = value ^ 0xff;
-	return err;
-}
-
-static int write_output(struct txn *txn)
-{
-	uint8_t value = (uint8_t)~txn->bits, now = 0;
-	int err = put_byte(txn, "output", value);
-
-	txn->device->shadow_known = false;
-	if (!err)
-		err = reg(txn, "output", &now);
-	if (err)
-		return err;
-	saw_output(txn, now);
-	return now == value ? 0 : -EIO;
+	return w1_slave_write(slave, "output", at, bytes, n);
 }
 
 /* Whatever is written, all latches are cleared. */
-static int clear_latches(struct txn *txn)
+static int clear_latches(struct w1_slave *slave, unsigned at, const uint8_t *bytes, unsigned n)
 {
-	return put_byte(txn, "activity", 0xff);
+	static const uint8_t ones = 0xff;
+
+	(void)at, (void)bytes, (void)n;
+	return w1_slave_write(slave, "activity", 0, &ones, 1);
 }
 
-static int read_flag(struct txn *txn)
+static int read_condition(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)
 {
-	uint8_t value = 0;
-	int err = control(txn, &value);
-
-	txn->number[0] = (value >> txn->property->field.shift & 1) != 0;
-	return err;
+	return read_registers(slave, MASK + at, bytes, n);
 }
 
 /*
- * The driver compares with what it reads back, the supply's bit included; where the compiler's char
- * has a sign it finds that bit different and tells an error, though the chip took the value.
+ * What differs from what was read last: drivers let nobody change mask and polarity, and then the
+ * attributes refuse it. With the control register the driver compares what it reads back, the
+ * supply's bit included; where the compiler's char has a sign it finds that bit different and returns
+ * an error, though the chip took the value: who writes looks what is there.
  */
-static int put_control(struct txn *txn, uint8_t value)
+static int write_condition(struct w1_slave *slave, unsigned at, const uint8_t *bytes, unsigned n)
 {
-	struct ds2408 *ds2408 = txn->device->own;
-	uint8_t now = 0;
+	int err = 0;
 
-	if (!(value & POR))
-		ds2408->por_clear = false;
-	int err = put_byte(txn, "status_control", value);
-	if (err && err != -EIO)
-		return err;
-	err = control(txn, &now);
-	return err ? err : (now ^ value) & SETTINGS || now & ~value & POR ? -EIO : 0;
+	slave->condition_ns = 0;
+	for (unsigned i = at; i < at + n && !err; i++) {
+		uint8_t now = slave->condition[i], value = bytes[i - at];
+
+		if (MASK + i == CONTROL)
+			value |= now & VCC;
+		if (value != now)
+			err = w1_slave_write(slave, registers[MASK + i], 0, &value, 1);
+		if (MASK + i == CONTROL && err == -EIO)
+			err = 0;
+	}
+	return err;
 }
 
-static int write_flag(struct txn *txn)
+static int ds2408_alarm(struct w1_slave *slave)
 {
-	uint8_t value = 0, bit = (uint8_t)(1 << txn->property->field.shift);
-	int err = control(txn, &value);
+	const uint8_t *condition = slave->condition;
+	uint8_t control, level;
+	int err = read_register(slave, CONTROL, &control);
 
 	if (err)
-		return err;
-	return put_control(txn, txn->number[0] != 0 ? value | bit : (uint8_t)(value & ~bit));
-}
-
-static int condition(struct txn *txn, uint8_t *mask, uint8_t *polarity, uint8_t *status)
-{
-	int err = control(txn, status);
-
-	if (!err)
-		err = byte_of(txn, "cond_search_mask", mask);
-	if (!err)
-		err = byte_of(txn, "cond_search_polarity", polarity);
-	return err;
-}
-
-/* A digit for each channel, 2 selected + 1 high; before them the source. */
-static int read_alarm(struct txn *txn)
-{
-	uint8_t mask = 0, polarity = 0, status = 0;
-	int err = condition(txn, &mask, &polarity, &status);
-	uint32_t digits = status & 3;
-
-	for (int i = 7; i >= 0; i--)
-		digits = 10 * digits + (mask >> i & 1) * 2u + (polarity >> i & 1);
-	txn->number[0] = digits;
-	return err;
-}
-
-/* Drivers let nobody change mask and polarity: then the attributes refuse it. */
-static int write_alarm(struct txn *txn)
-{
-	uint8_t mask = 0, polarity = 0, status = 0, new_mask = 0, new_polarity = 0;
-	uint32_t digits = (uint32_t)txn->number[0];
-	int err = condition(txn, &mask, &polarity, &status);
-
-	for (int i = 0; i < 8; i++, digits /= 10) {
-		new_mask |= (uint8_t)((digits % 10 >> 1 & 1) << i);
-		new_polarity |= (uint8_t)((digits % 10 & 1) << i);
+		return err == -EBADMSG ? -EIO : err;
+	if (control & POR) {
+		slave->condition_ns = 0;
+		return 1;
 	}
-	w1_slave_of(w1_master_of(txn), txn->device->rom)->condition_ns = 0;
-	if (!err && mask != new_mask)
-		err = put_byte(txn, "cond_search_mask", new_mask);
-	if (!err && polarity != new_polarity)
-		err = put_byte(txn, "cond_search_polarity", new_polarity);
-	if (err || (status & 3) == (digits & 3))
+	if (!slave->condition_ns || w1_now(slave->tree) - slave->condition_ns > OLD_NS) {
+		err = read_register(slave, MASK, &level);
+		if (!err)
+			err = read_register(slave, POLARITY, &level);
+		slave->condition_ns = err ? 0 : w1_now(slave->tree);
+	}
+	if (!err)
+		err = read_register(slave, control & LATCHES ? ACTIVITY : PINS, &level);
+	if (err)
 		return err;
-	return put_control(txn, (uint8_t)((status & ~3) | (digits & 3)));
+	uint8_t meets = (uint8_t) ~(level ^ condition[POLARITY - MASK]) & condition[0];
+	return control & ALL_OF ? condition[0] && meets == condition[0] : meets != 0;
 }
 
-static const struct w1_way ds2408[] = {
-	{.property = "PIO", .read = read_output, .write = write_output},
-	{.property = "latch", .file = "activity", .read = read_latches, .write = clear_latches},
-	{.property = "por", .file = "status_control", .read = read_flag, .write = write_flag},
-	{.property = "power", .file = "status_control", .read = read_flag},
-	{.property = "sensed", .file = "state", .read = read_pins},
-	{.property = "set_alarm",
-         .file = "cond_search_mask",
-         .read = read_alarm,
-         .write = write_alarm},
-	{.property = "strobe", .file = "status_control", .read = read_flag, .write = write_flag},
+static const struct w1_part ds2408[] = {
+	{.area = "registers", .read = read_registers},
+	{.area = "output", .read = read_output, .write = write_output},
+	{.area = "latches", .write = clear_latches},
+	{.area = "condition", .read = read_condition, .write = write_condition},
+};
+static const struct w1_property ds2408_properties[] = {
+	{.name = "PIO"},
+	{.name = "latch", .file = "activity"},
+	{.name = "por", .file = "status_control"},
+	{.name = "power", .file = "status_control"},
+	{.name = "sensed", .file = "state"},
+	{.name = "set_alarm", .file = "cond_search_mask"},
+	{.name = "strobe", .file = "status_control"},
 };
 
-/* --- DS2406: a digit, bit 0 and 1 the latches of A and B; 1 does not conduct. --- */
+/* --- Drivers that give digits --- */
 
-static int read_digit(struct txn *txn, const char *file, unsigned most, uint8_t *value)
+static int read_digit(struct w1_slave *slave, const char *file, unsigned most, uint8_t *value)
 {
-	int err = byte_of(txn, file, value);
+	int err = w1_slave_read(slave, file, 0, value, 1);
 
 	if (!err && (*value < '0' || *value > '0' + most))
 		err = -EIO;
@@ -220,81 +143,128 @@ static int read_digit(struct txn *txn, const char *file, unsigned most, uint8_t 
 	return err;
 }
 
-static int read_flipflop(struct txn *txn)
+static int put_digit(struct w1_slave *slave, const char *file, uint8_t value)
 {
-	uint8_t value = 0;
-	int err = read_digit(txn, "state", 3, &value);
+	value += '0';
+	return w1_slave_write(slave, file, 0, &value, 1);
+}
 
-	if (!err)
-		saw_output(txn, value);
-	txn->bits = value;
+/* --- DS2406: bit 0 and 1 are the latches of A and B; 1 does not conduct. --- */
+
+static int read_info(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)
+{
+	(void)at, (void)n;
+	return read_digit(slave, "state", 3, bytes);
+}
+
+#define STATUS_SHIFT 5
+static int read_status(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)
+{
+	int err = read_info(slave, at, bytes, n);
+
+	*bytes = (uint8_t)(*bytes << STATUS_SHIFT);
 	return err;
 }
 
-static int read_switches(struct txn *txn)
+static int write_status(struct w1_slave *slave, unsigned at, const uint8_t *bytes, unsigned n)
 {
-	int err = read_flipflop(txn);
-
-	txn->bits ^= 3;
-	return err;
+	(void)at, (void)n;
+	return put_digit(slave, "output", *bytes >> STATUS_SHIFT & 3);
 }
 
-static int write_switches(struct txn *txn)
-{
-	uint8_t value = ~txn->bits & 3, now = 0;
-	int err = put_byte(txn, "output", (uint8_t)('0' + value));
-
-	txn->device->shadow_known = false;
-	if (!err)
-		err = read_digit(txn, "state", 3, &now);
-	if (err)
-		return err;
-	saw_output(txn, now);
-	return now == value ? 0 : -EIO;
-}
-
-static const struct w1_way ds2406[] = {
-	{.property = "PIO", .read = read_switches, .write = write_switches},
-	{.property = "flipflop", .read = read_flipflop},
+static const struct w1_part ds2406[] = {
+	{.area = "info", .read = read_info},
+	{.area = "status", .read = read_status, .write = write_status},
+};
+static const struct w1_property ds2406_properties[] = {
+	{.name = "PIO"},
+	{.name = "flipflop"},
 };
 
 /* --- DS2405: the digit 0 conducts. --- */
 
-static int read_switch(struct txn *txn)
+static int read_pin(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)
 {
-	uint8_t value = 0;
-	int err = read_digit(txn, "output", 1, &value);
+	(void)at, (void)n;
+	return read_digit(slave, "state", 1, bytes);
+}
 
-	txn->number[0] = !value;
+static int read_switch(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)
+{
+	(void)at, (void)n;
+	return read_digit(slave, "output", 1, bytes);
+}
+
+static int write_switch(struct w1_slave *slave, unsigned at, const uint8_t *bytes, unsigned n)
+{
+	(void)at, (void)n;
+	return put_digit(slave, "output", *bytes & 1);
+}
+
+static int ds2405_alarm(struct w1_slave *slave)
+{
+	uint8_t digit;
+	int err = w1_slave_read(slave, "output", 0, &digit, 1);
+
+	return err ? err : digit == '0';
+}
+
+static const struct w1_part ds2405[] = {
+	{.area = "pin", .read = read_pin},
+	{.area = "output", .read = read_switch, .write = write_switch},
+};
+static const struct w1_property ds2405_properties[] = {
+	{.name = "PIO"},
+	{.name = "sensed", .file = "state"},
+};
+
+/* --- DS2413: some kernels give its whole byte, some the lower half; they have compared the two. --- */
+
+/* The pins, the latches, and the half. */
+static int read_halves(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)
+{
+	uint8_t state = 0;
+	int err = w1_slave_read(slave, "state", 0, &state, 1);
+	const uint8_t parts[] = {(uint8_t)((state & 1) | (state >> 1 & 2)),
+	                         (uint8_t)((state >> 1 & 1) | (state >> 2 & 2)), state & 0xf};
+
+	memcpy(bytes, parts + at, n);
 	return err;
 }
 
-static int read_pin(struct txn *txn)
+static int read_latches(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)
 {
-	uint8_t value = 0;
-	int err = read_digit(txn, "state", 1, &value);
-
-	txn->number[0] = value;
-	return err;
+	return read_halves(slave, 1 + at, bytes, n);
 }
 
-static int write_switch(struct txn *txn)
+static int write_latches(struct w1_slave *slave, unsigned at, const uint8_t *bytes, unsigned n)
 {
-	uint8_t want = txn->number[0] == 0, now = 0;
-	int err = put_byte(txn, "output", (uint8_t)('0' + want));
+	uint8_t byte = bytes[0] | 0xfc;
 
-	if (!err)
-		err = read_digit(txn, "output", 1, &now);
-	return err ? err : now == want ? 0 : -EIO;
+	(void)at, (void)n;
+	return w1_slave_write(slave, "output", 0, &byte, 1);
 }
 
-static const struct w1_way ds2405[] = {
-	{.property = "PIO", .read = read_switch, .write = write_switch},
-	{.property = "sensed", .file = "state", .read = read_pin},
+static const struct w1_part ds2413[] = {
+	{.area = "status", .read = read_halves},
+	{.area = "latches", .read = read_latches, .write = write_latches},
+};
+static const struct w1_property ds2413_properties[] = {
+	{.name = "PIO"},
+	{.name = "piostate"},
+	{.name = "sensed"},
 };
 
-const struct w1_driver w1_switches[3] = {
-	{.family = 0x05, .files = {"output"}, W1_WAYS(ds2405)},
-	{.family = 0x12, .files = {"output"}, W1_WAYS(ds2406)},
-	{.family = 0x29, .files = {"output"}, W1_WAYS(ds2408)},
+/* clang-format off */
+#define DRIVER(code, file, chip, alarm_) \
+	{.family = (code), .files = {file}, W1_PARTS(chip), W1_PROPERTIES(chip##_properties), \
+	 .alarm = (alarm_)}
+
+const struct w1_driver w1_switches[] = {
+	DRIVER(0x05, "output", ds2405, ds2405_alarm),
+	DRIVER(0x12, "output", ds2406, NULL),
+	DRIVER(0x29, "output", ds2408, ds2408_alarm),
+	DRIVER(0x3a, "state", ds2413, NULL),
+	{.family = 0},
 };
+/* clang-format on */

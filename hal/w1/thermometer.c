@@ -9,24 +9,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/chips/field.h"
 #include "hal/chips/find.h"
 #include "hal/chips/thermometer.h"
 #include "hal/owfs/path.h"
-#include "hal/w1/w1.h"
+#include "hal/w1/name.h"
+#include "hal/w1/thermometer.h"
 
-#define READ_SCRATCHPAD 0xbe
-#define WRITE_SCRATCHPAD 0x4e
-#define COPY_SCRATCHPAD 0x48
-#define OLD_NS (10 * NATIVE_S)
-#define REFUSED_NS (60 * NATIVE_S)
+#define OLD_NS (10000 * TXN_MS)
+#define REFUSED_NS (60000 * TXN_MS)
 /* Millidegrees that a scratchpad can hold, either way. */
 #define VALUE_MOST 128000
-
-static int64_t now_of(const struct w1_master *master)
-{
-	return master->master.env->now(master->master.env->ctx);
-}
+/* Readings that raise no alarm: they are none. */
+#define BROKEN 0x07f8
+#define POWER_ON 0x0550
+#define REMAIN_POWER_ON 0x0c
 
 static bool is_fixed(const struct w1_slave *slave)
 {
@@ -72,14 +68,14 @@ static void from_value(const struct w1_slave *slave, long millidegrees, uint8_t 
 	scratchpad[SP_MSB] = (uint8_t)(raw >> 8);
 }
 
-static int read_limits(struct w1_master *master, const uint8_t rom[8], uint8_t scratchpad[9])
+static int read_limits(struct w1_slave *slave, uint8_t scratchpad[9])
 {
-	int err = w1_slave_text(master, rom, "alarms");
+	int err = w1_slave_text(slave, "alarms");
 	char *end;
 
 	if (err)
 		return err;
-	long low = strtol(master->text, &end, 10);
+	long low = strtol(slave->tree->text, &end, 10);
 	const char *behind = end;
 	long high = strtol(behind, &end, 10);
 	if (end == behind || low < INT8_MIN || low > INT8_MAX || high < INT8_MIN || high > INT8_MAX)
@@ -89,12 +85,10 @@ static int read_limits(struct w1_master *master, const uint8_t rom[8], uint8_t s
 	return 0;
 }
 
-static int read_resolution(struct w1_master *master, const struct w1_slave *slave,
-                           uint8_t scratchpad[9])
+static int read_resolution(struct w1_slave *slave, uint8_t scratchpad[9])
 {
 	long resolution;
-	int err = is_fixed(slave) ? -ENOENT
-	                          : w1_slave_number(master, slave->rom, "resolution", &resolution);
+	int err = is_fixed(slave) ? -ENOENT : w1_slave_number(slave, "resolution", &resolution);
 
 	if (err)
 		return err == -ENOENT ? 0 : err;
@@ -105,32 +99,32 @@ static int read_resolution(struct w1_master *master, const struct w1_slave *slav
 }
 
 /* Settings as the driver tells them; the checksum to match. */
-static int read_settings(struct w1_master *master, const struct w1_slave *slave,
-                         uint8_t scratchpad[9])
+static int read_settings(struct w1_slave *slave, uint8_t scratchpad[9])
 {
-	int err = read_resolution(master, slave, scratchpad);
+	int err = read_resolution(slave, scratchpad);
 
 	if (!err)
-		err = read_limits(master, slave->rom, scratchpad);
+		err = read_limits(slave, scratchpad);
 	scratchpad[SP_CRC] = rom_crc8(scratchpad, 8);
 	return err;
 }
 
-int w1_scratchpad(struct w1_master *master, struct w1_slave *slave, uint8_t scratchpad[9])
+/* All nine bytes: of a new conversion, if none was read out since. */
+static int read_new(struct w1_slave *slave, uint8_t scratchpad[9])
 {
-	int err = w1_slave_text(master, slave->rom, "w1_slave");
+	int err = w1_slave_text(slave, "w1_slave");
 	long value;
 
 	if (!err) {
-		err = from_w1_slave(master->text, scratchpad);
+		err = from_w1_slave(slave->tree->text, scratchpad);
 	} else if (err == -ENOENT) {
-		err = w1_slave_number(master, slave->rom, "temperature", &value);
+		err = w1_slave_number(slave, "temperature", &value);
 		if (!err && (value < -VALUE_MOST || value > VALUE_MOST))
 			err = -EIO;
 		if (!err)
 			from_value(slave, value, scratchpad);
 		if (!err) {
-			err = read_settings(master, slave, scratchpad);
+			err = read_settings(slave, scratchpad);
 			err = err == -ENOENT ? 0 : err;
 		}
 	}
@@ -140,29 +134,98 @@ int w1_scratchpad(struct w1_master *master, struct w1_slave *slave, uint8_t scra
 	memcpy(slave->scratchpad, scratchpad, 9);
 	slave->due = false;
 	slave->known = true;
-	slave->read_ns = now_of(master);
+	slave->read_ns = w1_now(slave->tree);
 	return 0;
 }
 
 /* Without a conversion, as far as the driver has the settings in attributes of their own. */
-static int scratchpad_now(struct w1_master *master, struct w1_slave *slave, uint8_t scratchpad[9])
+static int read_now(struct w1_slave *slave, bool due, uint8_t scratchpad[9])
 {
-	bool settings = w1_slave_has(master, slave->rom, "alarms");
+	bool settings = w1_slave_has(slave, "alarms");
 
-	if (slave->due || (!slave->known && (!settings || slave->rom[0] == 0x3b)) ||
-	    (!settings && now_of(master) - slave->read_ns > OLD_NS))
-		return w1_scratchpad(master, slave, scratchpad);
+	if (due || (!slave->known && (!settings || slave->rom[0] == 0x3b)) ||
+	    (!settings && w1_now(slave->tree) - slave->read_ns > OLD_NS))
+		return read_new(slave, scratchpad);
 	if (slave->known)
 		memcpy(scratchpad, slave->scratchpad, 9);
 	else
 		from_value(slave, 85000, scratchpad);
-	return settings ? read_settings(master, slave, scratchpad) : 0;
+	return settings ? read_settings(slave, scratchpad) : 0;
 }
 
-static long master_number(struct w1_link *link, const char *name, const char *file, long otherwise)
+/*
+ * A conversion that is still to be read is not for who asks for settings alone. What the chip
+ * measured last, where that is not known yet, it measures now.
+ */
+static int read_scratchpad(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)
+{
+	bool is_setting = at >= SP_HIGH && at + n <= SP_5;
+	uint8_t scratchpad[9];
+	int err = read_now(slave, !is_setting && (slave->due || !slave->known), scratchpad);
+
+	if (!err)
+		memcpy(bytes, scratchpad + at, n);
+	return err;
+}
+
+static int put(struct w1_slave *slave, const char *file, const char *text)
+{
+	return w1_slave_write(slave, file, 0, text, strlen(text));
+}
+
+/* Older drivers take the resolution in w1_slave. What is so already is not written. */
+static int write_settings(struct w1_slave *slave, unsigned at, const uint8_t *bytes, unsigned n)
+{
+	uint8_t now[9] = {0};
+	char text[24];
+	bool settings = w1_slave_has(slave, "alarms");
+	int err = settings ? read_settings(slave, now) : read_now(slave, slave->due, now);
+
+	if (err || at != SP_HIGH || n < 2)
+		return err ? err : -EOPNOTSUPP;
+	if (now[SP_HIGH] != bytes[0] || now[SP_LOW] != bytes[1]) {
+		snprintf(text, sizeof(text), "%d %d\n", (int8_t)bytes[1], (int8_t)bytes[0]);
+		err = settings ? put(slave, "alarms", text) : -EOPNOTSUPP;
+	}
+	if (err || n < 3 || ((now[SP_CONFIG] ^ bytes[2]) & 0x60) == 0)
+		return err;
+	snprintf(text, sizeof(text), "%d\n", 9 + (bytes[2] >> 5 & 3));
+	bool own = w1_slave_has(slave, "resolution");
+	err = put(slave, own ? "resolution" : "w1_slave", text);
+	slave->known &= own;
+	/* Whoever may not change it reads at the resolution that the chip has. */
+	return err == -EACCES || err == -EPERM ? 0 : err;
+}
+
+/* Settings that are in the scratchpad go to the EEPROM as they are there. */
+static int save(struct w1_slave *slave, unsigned at, const uint8_t *bytes, unsigned n)
+{
+	(void)at, (void)bytes, (void)n;
+	return put(slave, "eeprom_cmd", "save\n");
+}
+
+/* All ones: nobody is fed by the wire. */
+static int read_supply(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)
+{
+	long power = 0;
+	int err = w1_slave_number(slave, "ext_power", &power);
+
+	(void)at;
+	memset(bytes, power ? 0xff : 0, n);
+	return err;
+}
+
+static int convert(struct w1_slave *slave, const char *what)
+{
+	(void)what;
+	slave->due = true;
+	return 0;
+}
+
+static long master_number(struct w1_tree *tree, const char *name, const char *file, long otherwise)
 {
 	char text[24] = "";
-	int n = w1_read(link->master, name, file, text, sizeof(text) - 1);
+	int n = w1_read(tree, name, file, 0, text, sizeof(text) - 1);
 
 	return n > 0 ? strtol(text, NULL, 10) : otherwise;
 }
@@ -172,164 +235,84 @@ static long master_number(struct w1_link *link, const char *name, const char *fi
  * null pointer: the kernel's thread dies and the wire with it. So not among others, and not before
  * the first search is over; from then on only who plugs one in meets it.
  */
-static bool converts_at_once(struct w1_link *link, const char *name)
+static bool converts_at_once(struct w1_slaves *slaves, struct w1_bulk *bulk, const char *name)
 {
-	for (unsigned i = 0; i < link->master->slave_count; i++)
-		if (link->master->slaves[i].channel == link - link->master->links &&
-		    !family_of(link->master->slaves[i].rom[0])->thermometer)
+	for (unsigned i = 0; i < slaves->count; i++)
+		if (slaves->slave[i].channel == bulk->channel &&
+		    !family_of(slaves->slave[i].rom[0])->thermometer)
 			return false;
 	/* No oftener than need be: who reads these while the master is removed hangs, and it too. */
-	link->searched = link->searched || master_number(link, name, "w1_master_attempts", 2) >= 2;
-	return link->searched || master_number(link, name, "w1_master_search", 0) == 0;
+	bulk->searched = bulk->searched ||
+	                 master_number(slaves->tree, name, "w1_master_attempts", 2) >= 2;
+	return bulk->searched || master_number(slaves->tree, name, "w1_master_search", 0) == 0;
 }
 
-void w1_convert_all(struct w1_link *link)
+void w1_convert_all(struct w1_slaves *slaves, struct w1_bulk *bulk)
 {
 	static const char trigger[8] = {'t', 'r', 'i', 'g', 'g', 'e', 'r', '\n'};
-	struct w1_master *master = link->master;
-	unsigned channel = (unsigned)(link - master->links);
-	char name[24];
+	struct w1_tree *tree = slaves->tree;
+	char name[W1_MASTER_NAME_MAX];
 
-	for (unsigned i = 0; i < master->slave_count; i++)
-		if (master->slaves[i].channel == channel)
-			master->slaves[i].due = true;
-	w1_master_name(link->number, name);
+	for (unsigned i = 0; i < slaves->count; i++)
+		if (slaves->slave[i].channel == bulk->channel)
+			slaves->slave[i].due = true;
+	w1_master_name(bulk->number, name);
 	/*
 	 * Where it fails, or is not there, each converts when it is read. What the driver refuses, it
 	 * tells its log.
 	 */
-	if (now_of(master) >= link->bulk_ns && w1_exists(master, name, "therm_bulk_read") &&
-	    converts_at_once(link, name) &&
-	    w1_write(master, name, "therm_bulk_read", trigger, sizeof(trigger)))
-		link->bulk_ns = now_of(master) + REFUSED_NS;
+	if (w1_now(tree) >= bulk->refused_ns && w1_exists(tree, name, "therm_bulk_read") &&
+	    converts_at_once(slaves, bulk, name) &&
+	    w1_write(tree, name, "therm_bulk_read", 0, trigger, sizeof(trigger)))
+		bulk->refused_ns = w1_now(tree) + REFUSED_NS;
 }
 
-static int put(struct w1_link *link, const char *file, const char *text)
+bool w1_alarm_converts(const struct w1_slave *slave)
 {
-	return w1_slave_write(link->master, link->slave->rom, file, text, strlen(text));
+	return family_of(slave->rom[0])->thermometer &&
+	       (!slave->known || w1_now(slave->tree) - slave->read_ns > OLD_NS);
 }
 
-/* Older drivers take the resolution in w1_slave. What is so already is not written. */
-static int write_settings(struct w1_link *link)
+/* The chip compares whole degrees, after each conversion. */
+static int is_in_alarm(struct w1_slave *slave)
 {
-	const uint8_t *bytes = link->command + 1;
-	uint8_t now[9] = {0};
-	char text[24];
-	bool settings = w1_slave_has(link->master, link->slave->rom, "alarms");
-	int err = settings ? read_settings(link->master, link->slave, now)
-	                   : scratchpad_now(link->master, link->slave, now);
+	uint8_t *pad = slave->scratchpad, fresh[9];
+	int err = w1_alarm_converts(slave) ? read_new(slave, fresh) : 0;
 
-	if (err || link->length < 3)
-		return err ? err : -EIO;
-	if (now[SP_HIGH] != bytes[0] || now[SP_LOW] != bytes[1]) {
-		snprintf(text, sizeof(text), "%d %d\n", (int8_t)bytes[1], (int8_t)bytes[0]);
-		err = settings ? put(link, "alarms", text) : -EOPNOTSUPP;
-	}
-	if (err || link->length < 4 || ((now[SP_CONFIG] ^ bytes[2]) & 0x60) == 0)
+	if (err)
 		return err;
-	snprintf(text, sizeof(text), "%d\n", 9 + (bytes[2] >> 5 & 3));
-	bool own = w1_slave_has(link->master, link->slave->rom, "resolution");
-	err = put(link, own ? "resolution" : "w1_slave", text);
-	link->slave->known &= own;
-	/* Whoever may not change it reads at the resolution that the chip has. */
-	return err == -EACCES || err == -EPERM ? 0 : err;
-}
-
-static int command(struct w1_link *link)
-{
-	switch (link->command[0]) {
-	case WRITE_SCRATCHPAD:
-		return write_settings(link);
-	case COPY_SCRATCHPAD:
-		return put(link, "eeprom_cmd", "save\n");
-	case THERMOMETER_CONVERT:
-		link->slave->due = true;
+	int raw = (int16_t)(pad[SP_LSB] | pad[SP_MSB] << 8), shift = is_fixed(slave) ? 1 : 4;
+	if (!is_fixed(slave) &&
+	    (raw >= BROKEN || (raw == POWER_ON && pad[SP_REMAIN] == REMAIN_POWER_ON)))
 		return 0;
-	case READ_SCRATCHPAD:
-	case THERMOMETER_READ_POWER:
-		return 0;
-	}
-	return -EOPNOTSUPP;
+	int degrees = raw >= 0 ? raw >> shift : -((-raw + (1 << shift) - 1) >> shift);
+	return degrees >= (int8_t)pad[SP_HIGH] || degrees <= (int8_t)pad[SP_LOW];
 }
 
-static int answer(struct w1_link *link, uint8_t *bytes, size_t n)
-{
-	if (link->command[0] != READ_SCRATCHPAD || n != 9)
-		return -EOPNOTSUPP;
-	return scratchpad_now(link->master, link->slave, bytes);
-}
+static const struct w1_part parts[] = {
+	{.area = "scratchpad", .read = read_scratchpad, .write = write_settings},
+	{.area = "eeprom", .write = save},
+	{.area = "supply", .read = read_supply},
+};
 
-static int bit(struct w1_link *link)
-{
-	long power;
-	int err = link->command[0] == THERMOMETER_READ_POWER
-	                  ? w1_slave_number(link->master, link->slave->rom, "ext_power", &power)
-	                  : -EOPNOTSUPP;
-
-	return err ? err : power != 0;
-}
-
-const struct w1_wire w1_thermometer_wire = {.command = command, .answer = answer, .bit = bit};
-
-/* What the chip measured last; where that is not known yet, now. */
-static int read_latest(struct txn *txn)
-{
-	struct w1_slave *slave = w1_slave_of(w1_master_of(txn), txn->device->rom);
-
-	slave->due |= !slave->known;
-	return property_reader(txn->property)(txn);
-}
-
-static int read_whole(struct txn *txn)
-{
-	w1_slave_of(w1_master_of(txn), txn->device->rom)->due = true;
-	return property_reader(txn->property)(txn);
-}
-
-/* A conversion that is still to be read is not for this. */
-static int read_setting(struct txn *txn)
-{
-	struct w1_slave *slave = w1_slave_of(w1_master_of(txn), txn->device->rom);
-	bool due = slave->due;
-
-	slave->due = false;
-	int err = property_reader(txn->property)(txn);
-	slave->due = due;
-	return err;
-}
-
-#define CONVERTED(text) \
-	{ \
-		.property = (text) \
-	}
-static const struct w1_way ways[] = {
-	{.property = "errata/die"},
-	CONVERTED("fasttemp"),
-	CONVERTED("fault"),
-	{.property = "flagfield", .read = read_setting},
-	CONVERTED("ground_short"),
-	{.property = "latesttemp", .read = read_latest},
-	CONVERTED("open_circuit"),
-	{.property = "power", .file = "ext_power"},
-	{.property = "prog_addr", .read = read_setting},
-	{.property = "scratchpad", .file = "w1_slave", .read = read_whole},
-	CONVERTED("temperature"),
-	CONVERTED("temperature10"),
-	CONVERTED("temperature11"),
-	CONVERTED("temperature12"),
-	CONVERTED("temperature9"),
-	{.property = "temphigh", .read = read_setting},
-	{.property = "templow", .read = read_setting},
-	{.property = "tempres", .read = read_setting},
-	CONVERTED("thermocouple"),
-	CONVERTED("vdd_short"),
+static const struct w1_property properties[] = {
+	{.name = "errata/die"},    {.name = "fasttemp"},
+	{.name = "fault"},         {.name = "flagfield"},
+	{.name = "ground_short"},  {.name = "latesttemp"},
+	{.name = "open_circuit"},  {.name = "power", .file = "ext_power"},
+	{.name = "prog_addr"},     {.name = "scratchpad", .file = "w1_slave"},
+	{.name = "temperature"},   {.name = "temperature10"},
+	{.name = "temperature11"}, {.name = "temperature12"},
+	{.name = "temperature9"},  {.name = "temphigh"},
+	{.name = "templow"},       {.name = "tempres"},
+	{.name = "thermocouple"},  {.name = "vdd_short"},
 };
 
 /* clang-format off */
 #define DRIVER(code) \
-	{.family = (code), .files = {"w1_slave", "temperature"}, .wire = &w1_thermometer_wire, \
-	 W1_WAYS(ways)}
+	{.family = (code), .files = {"w1_slave", "temperature"}, W1_PARTS(parts), \
+	 W1_PROPERTIES(properties), .convert = convert, .alarm = is_in_alarm}
 /* clang-format on */
-const struct w1_driver w1_thermometers[5] = {
-	DRIVER(0x10), DRIVER(0x22), DRIVER(0x28), DRIVER(0x3b), DRIVER(0x42),
+const struct w1_driver w1_thermometers[] = {
+	DRIVER(0x10), DRIVER(0x22), DRIVER(0x28), DRIVER(0x3b), DRIVER(0x42), {.family = 0},
 };

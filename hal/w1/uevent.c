@@ -6,29 +6,27 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "hal/w1/w1.h"
+#include "hal/w1/uevent.h"
 
 #define FROM_KERNEL 1 /* group; udev's own is 2 */
 #define EVENT_MAX 4096
 
-void w1_uevents_open(struct w1_master *master)
+int w1_uevents_open(void)
 {
 	struct sockaddr_nl address = {.nl_family = AF_NETLINK, .nl_groups = FROM_KERNEL};
+	int uevents = socket(AF_NETLINK, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK,
+	                     NETLINK_KOBJECT_UEVENT);
 
-	w1_uevents_close(master);
-	master->uevents = socket(AF_NETLINK, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK,
-	                         NETLINK_KOBJECT_UEVENT);
-	if (master->uevents < 0)
-		return;
-	if (bind(master->uevents, (struct sockaddr *)&address, sizeof(address)) < 0)
-		w1_uevents_close(master);
+	if (uevents >= 0 && bind(uevents, (struct sockaddr *)&address, sizeof(address)) < 0)
+		w1_uevents_close(&uevents);
+	return uevents;
 }
 
-void w1_uevents_close(struct w1_master *master)
+void w1_uevents_close(int *uevents)
 {
-	if (master->uevents >= 0)
-		close(master->uevents);
-	master->uevents = -1;
+	if (*uevents >= 0)
+		close(*uevents);
+	*uevents = -1;
 }
 
 static bool is_ours(const char *text, size_t n)
@@ -45,15 +43,15 @@ static bool is_ours(const char *text, size_t n)
 	return false;
 }
 
-bool w1_uevents_taken(struct w1_master *master)
+bool w1_uevents_taken(int uevents)
 {
 	char text[EVENT_MAX];
 	bool taken = false;
 
-	while (master->uevents >= 0) {
+	while (uevents >= 0) {
 		struct sockaddr_nl from = {0};
 		socklen_t room = sizeof(from);
-		ssize_t n = recvfrom(master->uevents, text, sizeof(text), MSG_DONTWAIT,
+		ssize_t n = recvfrom(uevents, text, sizeof(text), MSG_DONTWAIT,
 		                     (struct sockaddr *)&from, &room);
 
 		if (n < 0 && errno == ENOBUFS)

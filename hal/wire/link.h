@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The link contract: a link moves bits on one 1-Wire wire. A master (one chip) owns 1 to 8 links.
+ * The link contract: a link moves bits on one 1-Wire wire; a driven one has somebody else do that. A
+ * master (one chip) owns 1 to 8 links.
  *
  * Blocking: each call is at most one bus operation and bounded; all waits go through the
  * environment the master was created with. One thread: the native bus calls it. Errors travel in
@@ -47,7 +48,6 @@ struct link_master_cost {
 };
 
 struct link;
-struct link_files;
 struct area;
 /* One ROM id found by a search, family first. Return not 0 to end the search. */
 typedef int link_found(void *ctx, const uint8_t rom[8]);
@@ -84,14 +84,25 @@ struct link_ops {
 	 */
 	int (*flush)(struct link *link);
 	/*
-	 * Of a link that is no wire: bytes of an area of a chip (hal/chips/area.h), from byte `at` of
-	 * the area on, as area_fetch() and area_write() have them. 0 or an error: -ENOENT nothing
-	 * stands for that area. NULL: area.c speaks to the chip.
+	 * Of a driven link (below); NULL in others. Chips that have no driver are offered as far as the
+	 * link takes their commands. area: hal/chips/area.h.
+	 */
+	bool (*has_driver)(struct link *link, const uint8_t rom[8]);
+	/* Can an element (enum extension) of the property be had? */
+	bool (*offers)(struct link *link, const uint8_t rom[8], const char *property, int element);
+	/*
+	 * Bytes of an area of a chip that has a driver, from byte `at` of the area on. 0 or an error:
+	 * -ENOENT nothing stands for that area, -EOPNOTSUPP or -EACCES it cannot be written.
 	 */
 	int (*area_read)(struct link *link, const uint8_t rom[8], const struct area *area,
 	                 unsigned at, uint8_t *bytes, unsigned n);
 	int (*area_write)(struct link *link, const uint8_t rom[8], const struct area *area,
 	                  unsigned at, const uint8_t *bytes, unsigned n);
+	/*
+	 * The chip measures what a property of this name says; rom NULL: all thermometers. It is over
+	 * when this returns, or when the areas that it changes are read.
+	 */
+	int (*convert)(struct link *link, const uint8_t *rom, const char *what);
 	/* -EOPNOTSUPP. */
 	int (*speed)(struct link *link, enum link_speed speed);
 	int (*recover)(struct link *link, enum link_rung rung);
@@ -105,10 +116,11 @@ struct link {
 	/* Links with one number share a chip: a call on one ends the strong pull-up of another. */
 	unsigned chip;
 	/*
-	 * NULL: a wire. Else a driver speaks 1-Wire and gives files (hal/native/files.h): an error is
-	 * the device's, not the link's, and a conversion is over when its command returns.
+	 * No wire: drivers of somebody else (the kernel) speak to the chips. An error is the device's,
+	 * not the link's; a driver sees to the chips that the wire feeds; a conversion is over when
+	 * convert() returns.
 	 */
-	const struct link_files *files;
+	bool driven;
 	/*
 	 * There is no strong pull-up: LINK_STRONG is refused. EEPROMs are then written by the wire's
 	 * resistor, thermometers fed by the wire do not convert.

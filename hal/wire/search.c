@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/native/files.h"
 #include "hal/wire/crc.h"
 #include "hal/wire/search.h"
 
@@ -111,31 +110,8 @@ int search_next(struct search *search, struct link *link)
 	return 1;
 }
 
-struct wanted {
-	const uint8_t *rom;
-	bool there;
-};
-
-static int is_wanted(void *ctx, const uint8_t rom[8])
-{
-	struct wanted *wanted = ctx;
-
-	wanted->there = memcmp(rom, wanted->rom, 8) == 0;
-	return wanted->there;
-}
-
-static int verify_listed(struct link *link, const uint8_t rom[8], bool alarm)
-{
-	struct wanted wanted = {.rom = rom};
-	int err = link->files->search(link, alarm, rom[0], is_wanted, &wanted);
-
-	return err < 0 ? err : wanted.there;
-}
-
 int search_verify(struct link *link, const uint8_t rom[8], bool alarm)
 {
-	if (link->files)
-		return verify_listed(link, rom, alarm);
 	if (link->ops->verify)
 		return link->ops->verify(link, rom, alarm);
 

@@ -24,7 +24,7 @@ static int of_link(struct txn *txn, int result)
 		txn->silent = true;
 		return -ENODEV;
 	}
-	if (result < 0 && result != -EOPNOTSUPP && result != -EBADMSG && !txn->link->files)
+	if (result < 0 && result != -EOPNOTSUPP && result != -EBADMSG && !txn->link->driven)
 		txn->link_error = result;
 	return result;
 }
@@ -125,16 +125,21 @@ int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns
 	return hold(txn, of_link(txn, txn->link->ops->write(txn->link, bytes, n, after)), ns);
 }
 
+static void hear(struct txn *txn, const uint8_t *bytes, size_t n)
+{
+	txn->silent = true;
+	for (size_t i = 0; i < n && txn->silent; i++)
+		txn->silent = bytes[i] == 0xff;
+	txn->heard |= !txn->silent;
+}
+
 int txn_read(struct txn *txn, uint8_t *bytes, size_t n)
 {
 	int err = of_link(txn, txn->link->ops->read(txn->link, bytes, n));
 
 	if (err < 0)
 		return err;
-	txn->silent = true;
-	for (size_t i = 0; i < n && txn->silent; i++)
-		txn->silent = bytes[i] == 0xff;
-	txn->heard |= !txn->silent;
+	hear(txn, bytes, n);
 	return 0;
 }
 
@@ -153,7 +158,7 @@ int txn_started(struct txn *txn)
 	uint8_t busy;
 
 	/* A driver has waited for the end, or tells the error. */
-	if (txn->link->files)
+	if (txn->link->driven)
 		return 0;
 	int err = txn_read(txn, &busy, 1);
 
@@ -193,6 +198,37 @@ int txn_read_pages(struct txn *txn, const uint8_t *head, size_t head_n, uint8_t 
 		memcpy(bytes + i * n, page, n);
 	}
 	return 0;
+}
+
+bool txn_driven(const struct txn *txn)
+{
+	return txn->link->driven && txn->link->ops->has_driver(txn->link, txn->device->rom);
+}
+
+int txn_driver_read(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, size_t n)
+{
+	const struct link_ops *ops = txn->link->ops;
+	int err = ops->area_read(txn->link, txn->device->rom, area, at, bytes, (unsigned)n);
+
+	txn->on_wire = true;
+	if (!err)
+		hear(txn, bytes, n);
+	return err;
+}
+
+int txn_driver_write(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
+                     size_t n)
+{
+	const struct link_ops *ops = txn->link->ops;
+
+	txn->on_wire = true;
+	return ops->area_write(txn->link, txn->device->rom, area, at, bytes, (unsigned)n);
+}
+
+int txn_driver_convert(struct txn *txn, const char *what)
+{
+	txn->on_wire = true;
+	return txn->link->ops->convert(txn->link, txn->device->rom, what);
 }
 
 int txn_verify(struct txn *txn, bool alarm)

@@ -38,9 +38,6 @@ struct txn {
 	struct device *device;
 	const struct property *property;
 	unsigned channel;
-	/* Those of the property, or what the link has in their place (hal/native/files.h). */
-	int (*read)(struct txn *txn);
-	int (*write)(struct txn *txn);
 
 	/* The value: read fills it, write finds it here. */
 	int element;                /* of an array whose elements are separate; else 0 */
@@ -140,6 +137,16 @@ static inline void *txn_own(struct txn *txn)
  * what the function returned, and so is this, unless sending failed.
  */
 int txn_end(struct txn *txn, int err);
+/*
+ * Of a device that somebody else's driver speaks to (link_ops.has_driver), in place of all above: its
+ * areas (hal/chips/area.h), and what it is told to measure. As those of link_ops.
+ */
+bool txn_driven(const struct txn *txn);
+int txn_driver_read(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+                    size_t n);
+int txn_driver_write(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
+                     size_t n);
+int txn_driver_convert(struct txn *txn, const char *what);
 /*
  * Is the device there (found by search, alarm search)? Leaves it selected. 1, 0 or an error:
  * -EBADMSG the search was disturbed. 0 is also what a disturbed search may say, 1 is certain.

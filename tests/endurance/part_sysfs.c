@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include "hal/owfs/path.h"
-#include "hal/w1/w1.h"
+#include "hal/w1/name.h"
 #include "tests/endurance/part.h"
 
 #define DESCRIPTORS 256

@@ -11,7 +11,7 @@
 #include "hal/chips/family.h"
 #include "hal/chips/find.h"
 #include "hal/owfs/path.h"
-#include "hal/w1/w1.h"
+#include "hal/w1/name.h"
 #include "tests/fuzz/bus_host.h"
 #include "tests/fuzz/sysfs.h"
 

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "hal/w1/w1.h"
+#include "hal/w1/tree.h"
 #include "tests/fuzz/sysfs.h"
 
 #define FD_BASE 1000
@@ -185,4 +185,4 @@ static ssize_t sysfs_list(int fd, void *buffer, size_t room)
 #define write(fd, from, n) sysfs_write(fd, from, n)
 #define close(fd) ((void)(fd))
 #define getdents64(fd, buffer, n) sysfs_list(fd, buffer, n)
-#include "hal/w1/file.c"
+#include "hal/w1/tree.c"

@@ -37,9 +37,19 @@ static int64_t now(void *ctx)
 	return 1000;
 }
 
-static const struct link_ops ops = {.area_read = area_read_of, .area_write = area_write_of};
+static bool has_driver(struct link *link, const uint8_t rom[8])
+{
+	(void)link, (void)rom;
+	return true;
+}
+
+static const struct link_ops ops = {
+	.has_driver = has_driver,
+	.area_read = area_read_of,
+	.area_write = area_write_of,
+};
 static const struct bus_env env = {.now = now};
-static struct link link_of_areas = {.ops = &ops, .env = &env};
+static struct link link_of_areas = {.ops = &ops, .env = &env, .driven = true};
 static unsigned char own[DEVICE_OWN];
 static struct device device;
 static struct txn txn;

@@ -12,7 +12,8 @@
 
 #include "hal/native/native.h"
 #include "hal/owfs/path.h"
-#include "hal/w1/w1.h"
+#include "hal/w1/master.h"
+#include "hal/w1/name.h"
 #include "tests/unit/aid/fs_scene.h"
 
 void setUp(void)

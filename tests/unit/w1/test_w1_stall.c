@@ -15,7 +15,6 @@
 
 #include "hal/bus/worker.h"
 #include "hal/chips/family.h"
-#include "hal/native/files.h"
 #include "hal/wire/crc.h"
 
 #define S INT64_C(1000000000)
@@ -211,6 +210,12 @@ static int bit(struct link *link, bool out, enum link_after after)
 	return after == LINK_STRONG ? -EOPNOTSUPP : 1;
 }
 
+static bool has_no_driver(struct link *link, const uint8_t rom[8])
+{
+	(void)link, (void)rom;
+	return false;
+}
+
 static int64_t now(void *ctx)
 {
 	return *(int64_t *)ctx;
@@ -218,12 +223,14 @@ static int64_t now(void *ctx)
 
 static void test_a_pull_up_that_a_driver_has_not_is_no_error_of_the_master(void)
 {
-	static const struct link_ops ops = {
-		.reset = reset, .write = write_bytes, .read = read_bytes, .bit = bit};
-	static const struct link_files files;
+	static const struct link_ops ops = {.reset = reset,
+	                                    .write = write_bytes,
+	                                    .read = read_bytes,
+	                                    .bit = bit,
+	                                    .has_driver = has_no_driver};
 	int64_t time = S;
 	struct bus_env env = {.ctx = &time, .now = now};
-	struct link link = {.ops = &ops, .env = &env, .files = &files};
+	struct link link = {.ops = &ops, .env = &env, .driven = true};
 	static unsigned char own[DEVICE_OWN];
 	struct device device = {.rom = {0x20, 1}, .family = family_of(0x20), .own = own};
 	struct txn txn = {.link = &link, .device = &device};

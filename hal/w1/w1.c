@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* The bus of target w1: the kernel's devices, and the events that announce changes. */
+/* The bus over sysfs: a native bus that looks for masters and slaves that come later. */
+#include "hal/w1/w1.h"
+#include "hal/native/native.h"
 #include "hal/native/state.h"
-#include "hal/netlink/netlink.h"
+#include "hal/w1/master.h"
+#include "hal/w1/uevent.h"
 
 #define LOOK_NS (5 * NATIVE_S)
 #define UEVENTS_NS (NATIVE_S / 4)
@@ -9,9 +12,7 @@
 static int create(const char *where, const struct bus_env *env, struct bus **bus, char *why,
                   size_t why_size)
 {
-	if (w1_is_netlink(where))
-		return w1_netlink_bus.create(where, env, bus, why, why_size);
-	return native_create(&w1_bus, &w1_master, where, env, bus, why, why_size);
+	return native_create(&w1_sysfs_bus, &w1_master, where, env, bus, why, why_size);
 }
 
 /* A list that has changed is read at once. */
@@ -20,7 +21,7 @@ static void take_uevents(struct native *native, struct w1_master *master, int64_
 	if (now < master->uevents_ns)
 		return;
 	master->uevents_ns = now + UEVENTS_NS;
-	if (!w1_uevents_taken(master))
+	if (!w1_uevents_taken(master->uevents))
 		return;
 	master->look_ns = now;
 	for (unsigned n = 0; n < native->channels; n++)
@@ -56,7 +57,7 @@ static int64_t step(struct bus *bus, int64_t now)
 	return next;
 }
 
-const struct bus_ops w1_bus = {
+const struct bus_ops w1_sysfs_bus = {
 	.scheme = "w1",
 	.summary = "1-Wire devices of the kernel's drivers (sysfs)",
 	.depth = NATIVE_DEPTH,

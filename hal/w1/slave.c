@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+/* The table of slaves; an attribute of one as bytes, as text, as a number. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/w1/name.h"
+#include "hal/w1/slave.h"
+
+struct w1_slave *w1_slave_of(struct w1_slaves *slaves, const uint8_t rom[8])
+{
+	for (unsigned i = 0; i < slaves->count; i++)
+		if (memcmp(slaves->slave[i].rom, rom, 7) == 0)
+			return &slaves->slave[i];
+	/* Full of those that came and went: what is known of them can be read again. */
+	if (slaves->count == DEVICE_MAX)
+		slaves->count = 0;
+	struct w1_slave *slave = &slaves->slave[slaves->count++];
+	*slave = (struct w1_slave){.tree = slaves->tree};
+	memcpy(slave->rom, rom, 8);
+	return slave;
+}
+
+bool w1_slave_has(const struct w1_slave *slave, const char *name)
+{
+	char directory[W1_NAME_MAX];
+
+	w1_name(slave->rom, directory);
+	return w1_exists(slave->tree, directory, name);
+}
+
+int w1_slave_read(struct w1_slave *slave, const char *name, unsigned at, void *data, size_t n)
+{
+	char directory[W1_NAME_MAX];
+
+	w1_name(slave->rom, directory);
+	int got = w1_read(slave->tree, directory, name, at, data, n);
+	return got < 0 ? got : (size_t)got == n ? 0 : -EIO;
+}
+
+int w1_slave_write(struct w1_slave *slave, const char *name, unsigned at, const void *data,
+                   size_t n)
+{
+	char directory[W1_NAME_MAX];
+
+	w1_name(slave->rom, directory);
+	return w1_write(slave->tree, directory, name, at, data, n);
+}
+
+int w1_slave_text(struct w1_slave *slave, const char *name)
+{
+	char directory[W1_NAME_MAX], *text = slave->tree->text;
+
+	w1_name(slave->rom, directory);
+	int n = w1_read(slave->tree, directory, name, 0, text, W1_TEXT_MAX - 1);
+	text[n > 0 ? n : 0] = '\0';
+	return n < 0 ? n : n ? 0 : -EIO;
+}
+
+int w1_slave_number(struct w1_slave *slave, const char *name, long *number)
+{
+	int err = w1_slave_text(slave, name);
+	char *end;
+
+	if (err)
+		return err;
+	*number = strtol(slave->tree->text, &end, 10);
+	return end == slave->tree->text ? -EIO : 0;
+}
