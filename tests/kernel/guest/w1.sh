@@ -39,6 +39,8 @@ entries() {
 values() {
 	grep -v "$LATEST" $2 >/tmp/first
 	echo next | busdump $1 rounds $(cat /tmp/first) | grep -v '^round$'
+	# The one that is read at each resolution: which came last, the order of the requests says
+	grep '/28.A0B1C2000028/temperature12$' $2 | busdump $1 read >/dev/null
 	grep "$LATEST" $2 | busdump $1 read
 }
 
