@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The owserver bus: requests go to an owserver over one kept connection, one at a time. Target:
- * `host`, `host:port`, `[v6]:port`, or the same behind `owserver:`; `owserver:/path` is a unix
+ * `host`, `host:port`, `[v6]:port`, or the same after `owserver:`; `owserver:/path` is a unix
  * socket, as that of an owsd.
  *
  * Down, it connects again with back-off for ever; a connection counts as up when a NOP was
- * answered and the server has said whether its devices are simulated. Silence and loss take it
+ * answered and the server has reported whether its devices are simulated. Silence and loss take it
  * down; a server that only was too slow (it sent keep-alives) stays up, on a new connection.
  */
 #include <assert.h>
@@ -46,7 +46,7 @@ struct owserver {
 	struct bus bus;
 	enum state state;
 	int64_t retry_ns, backoff_ns, give_up_ns, look_ns;
-	bool was_up, is_down_told, simulated;
+	bool was_up, is_down_reported, simulated;
 	struct bus_event loss; /* the event for the next step to report, if text is set */
 	struct bus_counter counter[COUNTERS];
 	struct talk talk;
@@ -107,9 +107,9 @@ static void go_down(struct owserver *server, int err, const char *text)
 	server->backoff_ns *= 2;
 	if (server->backoff_ns > BACKOFF_MAX)
 		server->backoff_ns = BACKOFF_MAX;
-	if (server->is_down_told || server->bus.suspended)
+	if (server->is_down_reported || server->bus.suspended)
 		return;
-	server->is_down_told = true;
+	server->is_down_reported = true;
 	server->loss = (struct bus_event){.news = BUS_DOWN, .err = err};
 	snprintf(server->loss.text, sizeof(server->loss.text), "%s", text);
 }
@@ -122,14 +122,14 @@ static void go_up(struct owserver *server, int64_t cache_ns)
 		bus_count(&server->counter[RECONNECTS], 1);
 	server->state = UP;
 	server->was_up = true;
-	server->is_down_told = false;
+	server->is_down_reported = false;
 	server->look_ns = now_of(server) + IDLE_NS;
 	snprintf(event.text, sizeof(event.text), "connected to owserver at %s",
 	         server->talk.connection.peer);
 	server->bus.env->event(server->bus.env->ctx, &event);
 }
 
-static void tell_loss(struct owserver *server)
+static void report_loss(struct owserver *server)
 {
 	if (!server->loss.text[0])
 		return;
@@ -240,7 +240,7 @@ static int64_t owserver_step(struct bus *bus, int64_t now)
 {
 	struct owserver *server = (struct owserver *)bus;
 
-	tell_loss(server);
+	report_loss(server);
 	switch (server->state) {
 	case DOWN:
 		if (now >= server->retry_ns)
@@ -257,7 +257,7 @@ static int64_t owserver_step(struct bus *bus, int64_t now)
 			look_at_idle(server);
 		break;
 	}
-	tell_loss(server);
+	report_loss(server);
 	switch (server->state) {
 	case DOWN:
 		return server->retry_ns;
@@ -275,12 +275,12 @@ static void owserver_suspend(struct bus *bus, bool yes)
 	struct owserver *server = (struct owserver *)bus;
 
 	if (yes)
-		tell_loss(server);
+		report_loss(server);
 	connection_close(&server->talk.connection);
 	server->state = DOWN;
 	server->retry_ns = 0;
 	server->backoff_ns = BACKOFF_MIN;
-	server->was_up = server->is_down_told = false;
+	server->was_up = server->is_down_reported = false;
 }
 
 /* A NOP is answered without a look at the wire, and not by a server that hangs. */

@@ -77,13 +77,13 @@ static void name_hat(const struct scene *scene, const char *vendor, const char *
 		           product, vendor[0] ? vendor : "unknown vendor");
 }
 
-static void tell_notes(const struct scene *scene, const struct board_data *data)
+static void report_notes(const struct scene *scene, const struct board_data *data)
 {
 	for (unsigned i = 0; data && i < BOARD_NOTES && data->note[i][0]; i++)
 		report_add(scene->report, BOARD_NOTE, "%s", data->note[i]);
 }
 
-static void tell_adapter(const struct scene *scene, unsigned number)
+static void report_adapter(const struct scene *scene, unsigned number)
 {
 	char file[80];
 	unsigned hz;
@@ -197,7 +197,7 @@ static void look_at_header(const struct scene *scene, unsigned number)
 		miss_interface(scene, number);
 		return;
 	}
-	tell_adapter(scene, number);
+	report_adapter(scene, number);
 	may_use(scene, number);
 	look_for_claims(scene, number);
 }
@@ -220,7 +220,7 @@ static void look_at_all(const struct scene *scene)
 	}
 	for (unsigned i = 0; i < count; i++) {
 		if (i < 8)
-			tell_adapter(scene, number[i]);
+			report_adapter(scene, number[i]);
 		board_path(path, scene->root, I2C_DEV_ROOT "/i2c-%u", number[i]);
 		usable |= faccessat(AT_FDCWD, path, R_OK | W_OK, AT_EACCESS) == 0;
 		look_for_claims(scene, number[i]);
@@ -237,7 +237,7 @@ static void look_at_all(const struct scene *scene)
 	miss_module(scene, I2C_DEV_ROOT "/i2c-*");
 }
 
-static void tell_masters(const struct scene *scene)
+static void report_masters(const struct scene *scene)
 {
 	char path[BOARD_PATH], names[160] = "";
 	size_t used = 0;
@@ -319,9 +319,9 @@ int board_look(const char *root, const char *folder, const char *id, struct boar
 			look_at_header(&scene, (unsigned)base->i2c);
 		else
 			look_at_all(&scene);
-		tell_masters(&scene);
-		tell_notes(&scene, scene.board);
-		tell_notes(&scene, scene.hat);
+		report_masters(&scene);
+		report_notes(&scene, scene.board);
+		report_notes(&scene, scene.hat);
 		report_sort(report);
 	}
 	free(data);

@@ -323,8 +323,8 @@ int edit_add(struct rio **rio, const char *name, const char *path, const char *c
 	return err ? err : edit_count(rio);
 }
 
-static struct rio_node *find_item_or_say(const struct rio *rio, const char *name,
-                                         struct config_report *report)
+static struct rio_node *find_item_or_report(const struct rio *rio, const char *name,
+                                            struct config_report *report)
 {
 	struct rio_node *item = find_item(rio, name);
 
@@ -335,7 +335,7 @@ static struct rio_node *find_item_or_say(const struct rio *rio, const char *name
 
 int edit_remove(struct rio **rio, const char *name, struct config_report *report)
 {
-	struct rio_node *item = find_item_or_say(*rio, name, report);
+	struct rio_node *item = find_item_or_report(*rio, name, report);
 	int err = item ? rio_remove(rio, item) : -EINVAL;
 
 	return err ? err : edit_count(rio);
@@ -344,8 +344,8 @@ int edit_remove(struct rio **rio, const char *name, struct config_report *report
 int edit_move(struct rio **rio, const char *name, const char *other, bool behind,
               struct config_report *report)
 {
-	struct rio_node *item = find_item_or_say(*rio, name, report);
-	struct rio_node *there = item ? find_item_or_say(*rio, other, report) : NULL;
+	struct rio_node *item = find_item_or_report(*rio, name, report);
+	struct rio_node *there = item ? find_item_or_report(*rio, other, report) : NULL;
 	int err = there ? rio_move(rio, item, there, behind) : -EINVAL;
 
 	if (there && err == -EINVAL)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What is wrong with a file, said as "FILE:LINE:COLUMN: error: TEXT". The first 50 errors and the
+ * What is wrong with a file, reported as "FILE:LINE:COLUMN: error: TEXT". The first 50 errors and the
  * first 50 warnings are passed on, all are counted.
  */
 #ifndef CONFIG_REPORT_H

@@ -55,7 +55,7 @@ struct rio {
 /*
  * Read len bytes of text, which is copied; file is for messages and has to live as long. Returns 0
  * also when there were syntax errors: then report->errors grew and what could be read is there.
- * -EFBIG the text is longer than RIO_FILE_MAX (said); -ENOMEM. Free with rio_free().
+ * -EFBIG the text is longer than RIO_FILE_MAX (reported); -ENOMEM. Free with rio_free().
  */
 int rio_parse(const char *file, const char *text, size_t len, struct config_report *report,
               struct rio **rio);

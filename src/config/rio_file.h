@@ -8,7 +8,7 @@
 struct config_report;
 
 /*
- * Read a whole regular file into *text (malloc, NUL behind *len bytes). Errors are said through
+ * Read a whole regular file into *text (malloc, NUL behind *len bytes). Errors are reported through
  * report: negative errno; -EFBIG as above, -EILSEQ it is UTF-16, -EINVAL it is no regular file, and
  * was not opened. Blocking.
  */

@@ -20,7 +20,7 @@ extern const char *const config_auto_ways[CONFIG_AUTO_WAYS];
 void target_canonical(const char *text, char out[TARGET_CANONICAL]);
 /* Do they mean the same target? */
 bool target_same(const char *a, const char *b);
-/* "a, b | c" behind the targets there are. Errors are said at place. */
+/* Parse "a, b | c" and append the targets. Errors are reported at place. */
 void targets_add(struct build *build, const char *text, struct place place);
 
 #endif

@@ -76,7 +76,7 @@ struct alarm_request {
 struct alarm_listing {
 	uint32_t cycle;     /* lists so far */
 	bool polls;         /* the bus has no alarm search */
-	bool told;          /* that is in the log */
+	bool logged;        /* the log has a line about that */
 	int64_t next_ns;    /* earliest time of the next list */
 	int64_t wait_ns;    /* doubles while lists fail */
 	unsigned strangers; /* listed devices without alarm item that were logged */

@@ -83,10 +83,10 @@ void alarm_list_failed(struct alarm_machine *m, struct lane *lane, int err, int6
 	struct engine *e = lane->engine;
 
 	if (err == -EOPNOTSUPP) {
-		log_at(e->log, m->list.told ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,
+		log_at(e->log, m->list.logged ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,
 		       "%s: no alarm search: alarm items are read as ordinary inputs",
 		       lane->port->target);
-		m->list.polls = m->list.told = true;
+		m->list.polls = m->list.logged = true;
 		m->state = NOT_USED;
 		engine_alarm_polls(e, m);
 		return;

@@ -82,7 +82,7 @@ static void up_event(struct lane *lane, const struct bus_event *event, int64_t n
 {
 	struct route_way *way = engine_way(lane->engine, lane);
 
-	lane->state.said_up = true;
+	lane->state.reported_up = true;
 	if (lane->state.open) {
 		bool first = !lane->state.was_up;
 
@@ -124,7 +124,7 @@ void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns
 		up_event(lane, event, now_ns);
 		break;
 	case BUS_DOWN:
-		lane->state.said_up = false;
+		lane->state.reported_up = false;
 		if (lane->state.open)
 			down_event(lane, event->err, event->text, now_ns);
 		break;

@@ -35,7 +35,7 @@ static void limit_raised(struct engine *e, struct signal *s, uint8_t kind)
 	char others[LOG_OTHERS];
 
 	journal_limit(e, s, kind, OWS_ALARM_RAISED);
-	s->limit.said |= n != 0;
+	s->limit.logged |= n != 0;
 	if (n)
 		log_warning(e->log, "%s: alarm: %s%s", s->item->name, ows_alarm_kind_text(kind),
 		            log_others(n, others));
@@ -45,10 +45,10 @@ static void limit_raised(struct engine *e, struct signal *s, uint8_t kind)
 static void limit_returned(struct engine *e, struct signal *s, uint8_t kind)
 {
 	journal_limit(e, s, kind, OWS_ALARM_RETURNED);
-	if (s->limit.said)
+	if (s->limit.logged)
 		log_notice(e->log, "%s: alarm: %s: returned to normal", s->item->name,
 		           ows_alarm_kind_text(kind));
-	s->limit.said = false;
+	s->limit.logged = false;
 }
 
 static void show_limit(struct signal *s)

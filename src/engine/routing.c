@@ -52,7 +52,7 @@ static void open_way(struct engine *e, struct group *g, const struct route_step 
 	engine_publish_target(e, lane);
 	if (lane->port->suspend)
 		lane->port->suspend(lane->port->ctx, false);
-	else if (lane->state.said_up)
+	else if (lane->state.reported_up)
 		lane_up(lane, "", now_ns);
 }
 

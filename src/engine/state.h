@@ -94,7 +94,7 @@ struct lane_state {
 	/* routing.c */
 	bool open; /* the lane is the one way of its group that is open */
 	/* lane_event.c; heard_ns: lane_answer.c too */
-	bool said_up;     /* the last report of the bus was BUS_UP */
+	bool reported_up; /* the last report of the bus was BUS_UP */
 	int64_t heard_ns; /* last answer or event of the bus */
 };
 

@@ -64,7 +64,7 @@ struct signal_command {
 struct signal_limit {
 	struct limit alarm;
 	struct log_rate log;
-	bool said;        /* the log has the raised alarm, and gets its return too */
+	bool logged;      /* the log has the raised alarm, and gets its return too */
 	int64_t value[2]; /* of the update before the last, of the last */
 	uint32_t count;   /* sample.count of the last */
 	uint8_t values;   /* how many of the two are known */

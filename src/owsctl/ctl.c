@@ -19,7 +19,7 @@
 
 enum { JSON = 256 };
 
-__attribute__((format(printf, 1, 0))) static void say(const char *format, va_list args)
+__attribute__((format(printf, 1, 0))) static void print_error(const char *format, va_list args)
 {
 	char *text = printable_line(format, args);
 
@@ -32,7 +32,7 @@ int ctl_fail(const char *format, ...)
 	va_list args;
 
 	va_start(args, format);
-	say(format, args);
+	print_error(format, args);
 	va_end(args);
 	return CTL_FAILED;
 }
@@ -42,7 +42,7 @@ int ctl_nothing(const char *format, ...)
 	va_list args;
 
 	va_start(args, format);
-	say(format, args);
+	print_error(format, args);
 	va_end(args);
 	return CTL_NOTHING;
 }
@@ -52,7 +52,7 @@ int ctl_usage(const struct ctl *ctl, const char *format, ...)
 	va_list args;
 
 	va_start(args, format);
-	say(format, args);
+	print_error(format, args);
 	va_end(args);
 	fprintf(stderr, "usage: owsctl %s %s\n", ctl->verb->name, ctl->verb->usage);
 	return CTL_USAGE;

@@ -23,12 +23,12 @@ static void print(const struct ctl *ctl, char *text, const char *before)
 		json_array(&json, NULL);
 	for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
 		/* owserver prefixes its lines with /uncached, owsd's own buses do not */
-		bool said = strncmp(line, "/uncached/", 10) == 0;
+		bool prefixed = strncmp(line, "/uncached/", 10) == 0;
 
 		if (*before && !strcmp(line, before))
 			continue;
 		text_clean(line, strlen(line), sizeof(clean), clean, sizeof(clean));
-		snprintf(path, sizeof(path), "%s%s", said ? "" : before, clean);
+		snprintf(path, sizeof(path), "%s%s", prefixed ? "" : before, clean);
 		if (ctl->json)
 			json_string(&json, NULL, path);
 		else

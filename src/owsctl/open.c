@@ -166,20 +166,20 @@ void target_close(struct target *target)
 }
 
 /* Print how many of several requests are answered, every PROGRESS_NS. */
-static void say_progress(const struct target *target, int64_t *said_ns)
+static void print_progress(const struct target *target, int64_t *printed_ns)
 {
 	int64_t now_ns = boottime(NULL);
 
-	if (target->count == 1 || now_ns - *said_ns < PROGRESS_NS)
+	if (target->count == 1 || now_ns - *printed_ns < PROGRESS_NS)
 		return;
-	*said_ns = now_ns;
+	*printed_ns = now_ns;
 	fprintf(stderr, "owsctl: %u of %u answers from %s\n", target->answered, target->count,
 	        target->name);
 }
 
 void target_ask(struct target *target, struct ask *asks, unsigned count)
 {
-	int64_t said_ns = boottime(NULL);
+	int64_t printed_ns = boottime(NULL);
 	unsigned given = 0;
 	int64_t until = boottime(NULL) + target->timeout_ns + GRACE_NS;
 
@@ -202,7 +202,7 @@ void target_ask(struct target *target, struct ask *asks, unsigned count)
 			given++;
 		}
 		step(target, until);
-		say_progress(target, &said_ns);
+		print_progress(target, &printed_ns);
 		if (target->answered != answered)
 			until = boottime(NULL) + target->timeout_ns + GRACE_NS;
 	}

@@ -154,7 +154,7 @@ static int show(const struct ctl *ctl, const struct scan *scan)
 }
 
 /* After a failure, warn that the file to which stdout goes is empty. */
-static void tell_of_file(void)
+static void warn_of_empty_file(void)
 {
 	struct stat out;
 
@@ -228,7 +228,7 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 	if (!status)
 		status = look(ctl, timeout_ns, rio, inputs_only, &merge);
 	if (status && rio)
-		tell_of_file();
+		warn_of_empty_file();
 	scan_merge_close(&merge);
 	return status;
 }

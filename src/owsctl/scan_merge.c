@@ -280,7 +280,7 @@ static void suggest(const struct work *work, const struct merge_device *missing,
 	}
 }
 
-static void tell_missing(const struct work *work)
+static void report_missing(const struct work *work)
 {
 	char names[NAMES_TEXT], id[ROM_TEXT_MAX];
 
@@ -395,7 +395,7 @@ int scan_merge(struct scan_merge *merge, const struct scan *scan, bool inputs_on
 	if (!status)
 		status = scan_check(merge->rio, merge->file);
 	if (!status) {
-		tell_missing(&work);
+		report_missing(&work);
 		fwrite(merge->rio->text, 1, merge->rio->len, stdout);
 	}
 	release(&work);

@@ -206,8 +206,8 @@ static const char *why_not(const struct reading *reading, char words[READING_WOR
 	return words;
 }
 
-static void say_why(struct ows *h, const struct order *order, const char *seconds,
-                    struct reading *reading)
+static void print_why(struct ows *h, const struct order *order, const char *seconds,
+                      struct reading *reading)
 {
 	char words[READING_WORDS];
 	struct ows_daemon daemon = {0};
@@ -294,7 +294,7 @@ static int set_all(struct ctl *ctl, struct ows *h, struct order *orders, int cou
 		status = CTL_FAILED;
 		for (int i = 0; i < count; i++)
 			if (!confirmed(h, &orders[i], &reading))
-				say_why(h, &orders[i], seconds, &reading);
+				print_why(h, &orders[i], seconds, &reading);
 	}
 	if (ctl->json)
 		print_json(orders, count, seconds);

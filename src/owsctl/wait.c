@@ -53,7 +53,7 @@ static bool sleep_until_it_came(struct waiting *waiting, int64_t limit_ns)
 	return true;
 }
 
-static int say_end(struct ctl *ctl, struct waiting *waiting, bool it_came)
+static int print_end(struct ctl *ctl, struct waiting *waiting, bool it_came)
 {
 	struct reading *reading = waiting->reading;
 	struct when now = when_now();
@@ -159,7 +159,7 @@ int verb_wait(struct ctl *ctl, int argc, char **argv)
 		return status;
 	status = begin(ctl, &waiting, value);
 	if (status == CTL_DONE)
-		status = say_end(ctl, &waiting, sleep_until_it_came(&waiting, limit_ns));
+		status = print_end(ctl, &waiting, sleep_until_it_came(&waiting, limit_ns));
 	ows_close(waiting.h);
 	return status;
 }

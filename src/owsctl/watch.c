@@ -14,7 +14,7 @@
 
 #define SHORTEST_SLEEP (10 * NS_PER_MS)
 
-static void say_event(struct watch *watch, enum watch_event event)
+static void print_event(struct watch *watch, enum watch_event event)
 {
 	static const char *const words[] = {
 		[WATCH_RESTARTED] = "restarted",
@@ -101,7 +101,7 @@ static int watch_lines(struct watch *watch)
 	/* write round by round, so that errno shows why a write failed */
 	setvbuf(stdout, NULL, _IOFBF, BUFSIZ);
 	if (!watch->alive)
-		say_event(watch, WATCH_LOST);
+		print_event(watch, WATCH_LOST);
 	for (;;) {
 		int event;
 
@@ -112,7 +112,7 @@ static int watch_lines(struct watch *watch)
 		if (event < 0)
 			return ctl_fail("no memory");
 		if (event != WATCH_NOTHING)
-			say_event(watch, (enum watch_event)event);
+			print_event(watch, (enum watch_event)event);
 	}
 }
 

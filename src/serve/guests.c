@@ -14,7 +14,7 @@ static struct engine_guest *take_message(void *ctx)
 
 	if (!ring_used(&g->there))
 		return NULL;
-	guest = g->asked[ring_take_at(&g->there)];
+	guest = g->requests[ring_take_at(&g->there)];
 	ring_did_take(&g->there);
 	return guest;
 }
@@ -32,7 +32,7 @@ void guests_wake(struct guests *g)
 /* The queue has room for two messages of each request that can be in work. */
 static void put_message(struct guests *g, struct engine_guest *guest, bool released)
 {
-	g->told[ring_put_at(&g->back)] = (struct guests_message){guest, released};
+	g->answers[ring_put_at(&g->back)] = (struct guests_message){guest, released};
 	ring_did_put(&g->back);
 	if (__atomic_exchange_n(&g->sleeping, 0, __ATOMIC_SEQ_CST))
 		guests_wake(g);
@@ -54,25 +54,25 @@ int guests_create(struct guests *g, unsigned most, void (*ring)(void *ctx), void
 	g->port = (struct engine_guests){take_message, answered, released, g};
 	g->there.size = ring_size(most);
 	g->back.size = ring_size(2 * most);
-	g->asked = calloc(g->there.size, sizeof(*g->asked));
-	g->told = calloc(g->back.size, sizeof(*g->told));
+	g->requests = calloc(g->there.size, sizeof(*g->requests));
+	g->answers = calloc(g->back.size, sizeof(*g->answers));
 	g->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 	if (g->wake_fd < 0)
 		return -errno;
-	return g->asked && g->told ? 0 : -ENOMEM;
+	return g->requests && g->answers ? 0 : -ENOMEM;
 }
 
 void guests_destroy(struct guests *g)
 {
-	free(g->asked);
-	free(g->told);
+	free(g->requests);
+	free(g->answers);
 	if (g->wake_fd >= 0)
 		close(g->wake_fd);
 }
 
 void guests_ask(struct guests *g, struct engine_guest *guest)
 {
-	g->asked[ring_put_at(&g->there)] = guest;
+	g->requests[ring_put_at(&g->there)] = guest;
 	ring_did_put(&g->there);
 	g->ring(g->ring_ctx);
 }
@@ -81,7 +81,7 @@ bool guests_next(struct guests *g, struct guests_message *message)
 {
 	if (!ring_used(&g->back))
 		return false;
-	*message = g->told[ring_take_at(&g->back)];
+	*message = g->answers[ring_take_at(&g->back)];
 	ring_did_take(&g->back);
 	return true;
 }

@@ -17,8 +17,8 @@ struct guests_message {
 struct guests {
 	struct engine_guests port; /* the engine's side */
 	struct ring there, back;
-	struct engine_guest **asked;
-	struct guests_message *told;
+	struct engine_guest **requests;
+	struct guests_message *answers;
 	uint32_t sleeping;
 	int wake_fd;
 	void (*ring)(void *ctx);

@@ -56,7 +56,7 @@ static int add(struct serve *s, int fd, bool network)
 	return 0;
 }
 
-static const char *say_bind(int err)
+static const char *bind_text(int err)
 {
 	switch (-err) {
 	case EADDRINUSE:
@@ -212,7 +212,7 @@ int listeners_open(struct serve *s, char *why, size_t why_size)
 			continue;
 		listen_print(&config->addresses[i], text);
 		snprintf(why, why_size, "cannot listen at %s: %s%s", text, strerror(-err),
-		         say_bind(err));
+		         bind_text(err));
 		return err;
 	}
 	if (!config->socket)
