@@ -50,7 +50,7 @@ def read_table(path):
     body = body[:body.index("\n};")]
     rows = []
     for state, facts, none, after, ruling in re.findall(
-            r"\{ (\w+), ([\w |]+), (\w+), (\w+),\s*(RULING )?\"[^\"]*\" \}", body):
+            r"\{(\w+), ([\w |]+), (\w+), (\w+),\s*(RULING )?\"[^\"]*\"\}", body):
         names = [f.removeprefix("FACT_") for f in facts.split(" | ")]
         if none != "0":
             names.append("!" + none.removeprefix("FACT_"))
@@ -60,7 +60,7 @@ def read_table(path):
             if names == [fact] and [fact, other] in earlier:
                 words = rest
         rows.append((state, names, after, bool(ruling), words))
-    if len(rows) != body.count("\n\t{ "):
+    if len(rows) != body.count("\n\t{"):
         sys.exit(f"{path}: {body.count(chr(10) + chr(9) + '{ ')} rows, and {len(rows)} understood")
     return rows
 

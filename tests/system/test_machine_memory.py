@@ -115,7 +115,7 @@ def test_threads_that_a_reload_cannot_make_are_made_later(scene):
     until(lambda: faulty.counters(scene, daemon)["unfinished_reload"] == 1, 10, "and counted")
     until(lambda: scene.get(daemon, "room") == "21.5", 10, "what was there goes on")
     assert scene.get(daemon, "hall") is None
-    until(lambda: daemon.log().count("it is tried again") >= 2, 10, "it is tried again")
+    until(lambda: daemon.log().count("owsd tries again") >= 2, 10, "owsd tries again")
     assert faulty.happened(scene)
     block.unlink()
     until(lambda: scene.get(daemon, "hall") == "19.5", 20, "the rest follows by itself")

@@ -47,13 +47,13 @@ def build(name, compilers, command):
 def plc_program():
     """With the standard that OpenPLC's own script names."""
     here = SOURCE / "tests/system/openplc"
-    return build("plc", ("CXX", "c++"), ["-std=gnu++11", f"-I{here}", EXAMPLES / "openplc/owsd.cpp",
+    return build("plc", ("CXX", "c++"), ["-std=gnu++11", f"-I{SOURCE}", f"-I{here}", EXAMPLES / "openplc/owsd.cpp",
                                          here / "plc.cpp"])
 
 
 def hal_program():
     here = SOURCE / "tests/system/linuxcnc"
-    return build("owsd_hal", ("CC", "cc"), ["-std=gnu17", "-DULAPI", f"-I{here}",
+    return build("owsd_hal", ("CC", "cc"), ["-std=gnu17", "-DULAPI", f"-I{SOURCE}", f"-I{here}",
                                             EXAMPLES / "linuxcnc/owsd_hal.c", here / "hal.c"])
 
 
