@@ -41,7 +41,9 @@ static void complete_request(struct lane *lane, struct slot *slot, const struct 
 	case FOR_READ:
 		s = &e->table.signals[slot->row];
 		s->reading = false;
-		s->sample.tried_ns = slot->begun_ns;
+		/* a write of the signal may have begun since */
+		if (s->sample.tried_ns < slot->begun_ns)
+			s->sample.tried_ns = slot->begun_ns;
 		s->attrs.transactions += counts;
 		signal_end(s, e->time.period, slot->begun);
 		engine_read_done(e, lane, slot, answer, now_ns);

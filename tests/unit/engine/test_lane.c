@@ -317,6 +317,27 @@ static void test_a_read_back_that_differs_is_published_and_causes_no_write(void)
 	TEST_ASSERT_EQUAL_INT64(1, scene_attrs(&s, 1).commanded);
 }
 
+static void test_the_time_of_the_last_attempt_does_not_go_back_to_a_read_before_a_write(void)
+{
+	int64_t written_ns;
+
+	scene_output(&s, "relay", PIO, OWS_BYTE)->readable = true;
+	scene_put(&s, PIO, "0", 0);
+	s.bus[0].depth = 8;
+	s.bus[0].latency_ns = 60 * SCENE_MS;
+	scene_start(&s);
+	scene_up(&s);
+	scene_run(&s, 20 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].pending_count);
+	scene_set(&s, 1, 1);
+	scene_run(&s, 10 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT(2, s.bus[0].pending_count);
+	written_ns = scene_sample(&s, 1).tried_ns;
+	scene_run(&s, 40 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].pending_count);
+	TEST_ASSERT_EQUAL_INT64(written_ns, scene_sample(&s, 1).tried_ns);
+}
+
 static void test_texts_are_read_written_and_cut_where_they_are_too_long(void)
 {
 	scene_input(&s, "type", "/28.551DDF030000/type", OWS_STRING);
@@ -388,6 +409,7 @@ int main(void)
 	RUN_TEST(test_inputs_are_read_though_outputs_change_all_the_time);
 	RUN_TEST(test_an_input_that_is_writable_is_written_on_command_but_not_at_start);
 	RUN_TEST(test_a_read_back_that_differs_is_published_and_causes_no_write);
+	RUN_TEST(test_the_time_of_the_last_attempt_does_not_go_back_to_a_read_before_a_write);
 	RUN_TEST(test_texts_are_read_written_and_cut_where_they_are_too_long);
 	RUN_TEST(test_a_bus_that_takes_nothing_is_asked_again_later);
 	RUN_TEST(test_types_are_checked_before_the_first_value);
