@@ -15,6 +15,7 @@
 
 #define SETS 256
 #define WAYS 4
+#define WRITTEN 64
 #define PATH_MAX_KEPT 88
 
 struct entry {
@@ -30,6 +31,8 @@ struct kept {
 	uint32_t *index; /* hash of paths: index of the item + 1 */
 	uint32_t index_size;
 	struct entry entries[SETS * WAYS];
+	/* When a client wrote last: to a device, by the hash of its id; behind them: to any. */
+	int64_t written_ns[WRITTEN + 1];
 };
 
 static uint32_t hash(const char *text, size_t len)
@@ -103,6 +106,12 @@ int kept_signal(const struct kept *kept, const char *path, bool output)
 	return -1;
 }
 
+static int64_t *written(struct kept *kept, const struct node *node)
+{
+	return &kept->written_ns[node->has_rom ? hash(node->path, node->device_len) % WRITTEN
+	                                       : WRITTEN];
+}
+
 /* Does the signal hold the property's value unchanged? */
 static bool holds(enum ows_type type, char property)
 {
@@ -126,7 +135,7 @@ static int64_t life_ns(char life)
 	return life == LIFE_STATIC ? STATIC_NS : life == LIFE_SECOND ? NS_PER_S : VOLATILE_NS;
 }
 
-static int find_signal(const struct kept *kept, const struct image *image, const struct node *node,
+static int find_signal(struct kept *kept, const struct image *image, const struct node *node,
                        int64_t now_ns, char *text, size_t room)
 {
 	int record = kept_signal(kept, node->path, false);
@@ -138,6 +147,7 @@ static int find_signal(const struct kept *kept, const struct image *image, const
 	type = (enum ows_type)image->records[record].type;
 	if (!holds(type, node->type) || !reader_sample(&image->records[record], &sample) ||
 	    sample.quality != OWS_Q_GOOD || !sample.measured_ns ||
+	    sample.measured_ns <= *written(kept, node) ||
 	    now_ns - sample.measured_ns > life_ns(node->life))
 		return -ENOENT;
 	return format_number((uint8_t)node->type, value_number(type, sample.value), text, room);
@@ -205,8 +215,11 @@ void kept_add(struct kept *kept, const struct node *node, int64_t measured_ns, c
 }
 
 /* An alias may name any device, so a write through an alias forgets all answers. */
-void kept_forget(struct kept *kept, const struct node *node)
+void kept_forget(struct kept *kept, const struct node *node, int64_t now_ns)
 {
+	for (unsigned i = 0; !node->has_rom && i < WRITTEN; i++)
+		kept->written_ns[i] = now_ns;
+	*written(kept, node) = kept->written_ns[WRITTEN] = now_ns;
 	for (unsigned i = 0; i < SETS * WAYS; i++) {
 		struct entry *entry = &kept->entries[i];
 

@@ -25,8 +25,11 @@ int kept_find(struct kept *kept, const struct image *image, const struct node *n
 /* Keep the answer of a bus, if the property may be kept at all. */
 void kept_add(struct kept *kept, const struct node *node, int64_t measured_ns, const uint8_t *text,
               size_t len);
-/* Forget the answers of a device after a write, or a try to write, to one of its properties. */
-void kept_forget(struct kept *kept, const struct node *node);
+/*
+ * Forget the answers of a device after a write, or a try to write, to one of its properties. Inputs
+ * of the table that were measured before do not answer for it any more.
+ */
+void kept_forget(struct kept *kept, const struct node *node, int64_t now_ns);
 
 /* The record of the signal that has this path as output or input; -1: there is none. */
 int kept_signal(const struct kept *kept, const char *path, bool output);

@@ -21,7 +21,7 @@ void work_write_target(struct serve *s, struct client *c)
 		answer_error(s, c, -EINVAL);
 		return;
 	}
-	kept_forget(s->kept, &c->node);
+	kept_forget(s->kept, &c->node, s->now_ns);
 	if (units_convert(c->node.type, c->request.flags)) {
 		int n = units_take(c->node.type, c->request.flags, (const char *)data, len,
 		                   (char *)client_room(c), client_room_size(c));
@@ -65,7 +65,7 @@ static void applying(struct serve *s, struct client *c)
 	int err = name ? signals_applied(s->signals, name, &c->command) : -ENOENT;
 
 	if (err == 0) {
-		kept_forget(s->kept, &c->node);
+		kept_forget(s->kept, &c->node, s->now_ns);
 		answer_written(s, c, c->request.data_len);
 	} else if (err != -EAGAIN || s->now_ns - c->since_ns >= APPLY_NS) {
 		answer_error(s, c, err == -EAGAIN ? -EIO : err);
@@ -132,7 +132,7 @@ void work_write(struct serve *s, struct client *c)
 
 void work_written(struct serve *s, struct client *c, int err)
 {
-	kept_forget(s->kept, &c->node);
+	kept_forget(s->kept, &c->node, s->now_ns);
 	if (c->step == STEP_WRITE_EACH) {
 		if (c->worst == WORK_NOT_YET || !err)
 			c->worst = err;

@@ -237,6 +237,31 @@ static void test_an_input_of_the_table_is_answered_from_the_image(void)
 	TEST_ASSERT_EQUAL_STRING("          23", data);
 }
 
+static void test_an_input_from_before_a_write_to_its_device_does_not_answer(void)
+{
+	static uint8_t frame[FRAME_REQUEST_MAX];
+	int n = frame_request(frame, FRAME_WRITE, FLAGS, 2, "/28.551DDF030000/temphigh",
+	                      (const uint8_t *)"30", 2);
+
+	instance_put_double(&in, 1, 21.5, ows_now());
+	TEST_ASSERT_EQUAL_INT(n, send(fd, frame, (size_t)n, MSG_NOSIGNAL));
+	struct engine_guest *g = next_guest();
+	TEST_ASSERT_EQUAL_INT(BUS_WRITE, g->op);
+	instance_put_double(&in, 1, 22.5, ows_now());
+	g->answer = (struct bus_answer){.len = 2};
+	port->answered(port->ctx, g);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT32(0, answer(fd));
+	ask(fd, FRAME_READ, "/28.551DDF030000/temperature");
+	give(next_guest(), "          23");
+	TEST_ASSERT_EQUAL_INT(12, answer(fd));
+	TEST_ASSERT_EQUAL_STRING("          23", data);
+	/* What is measured after it does. */
+	instance_put_double(&in, 1, 24.5, ows_now() + INSTANCE_PATIENCE / 2);
+	ask(fd, FRAME_READ, "/28.551DDF030000/temperature");
+	TEST_ASSERT_EQUAL_INT(12, answer(fd));
+	TEST_ASSERT_EQUAL_STRING("        24.5", data);
+}
+
 static void test_one_request_of_a_client_is_worked_on_at_a_time(void)
 {
 	struct engine_guest *g;
@@ -460,6 +485,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_what_is_not_known_here_is_asked_of_the_engine_once);
 	RUN_TEST(test_an_input_of_the_table_is_answered_from_the_image);
+	RUN_TEST(test_an_input_from_before_a_write_to_its_device_does_not_answer);
 	RUN_TEST(test_one_request_of_a_client_is_worked_on_at_a_time);
 	RUN_TEST(test_who_was_given_up_waits_for_his_room_before_the_next_request);
 	RUN_TEST(test_what_a_bus_still_has_to_write_stays_as_it_was);
