@@ -10,6 +10,7 @@
 #include "hal/chips/thermometer.h"
 #include "hal/native/answer.h"
 #include "hal/native/convert.h"
+#include "hal/native/job_txn.h"
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
@@ -74,12 +75,13 @@ static void become_due(struct native *native, struct job *job, int64_t now)
  * A conversion that is under way or just over serves who does not insist on one of his own, and
  * who insists if nobody could read its result.
  */
-static bool is_served(const struct job *job, int64_t now)
+static bool is_served(const struct native *native, const struct job *job, int64_t now)
 {
 	const struct device *device = job->txn.device;
 	bool unread = thermometer_of(device)->unread_ns == thermometer_of(device)->converted_ns;
-	int64_t until = thermometer_of(device)->converted_ns +
-	                (job->fresh ? NATIVE_S : SIMULTANEOUS_NS);
+	int64_t life = property_life_ns(native, job->property);
+	int64_t cached = life < SIMULTANEOUS_NS ? life : SIMULTANEOUS_NS;
+	int64_t until = thermometer_of(device)->converted_ns + (job->fresh ? NATIVE_S : cached);
 
 	return thermometer_of(device)->converted_ns && (!job->fresh || unread) && !job->again &&
 	       until > now && convert_right(job);
@@ -89,7 +91,7 @@ void convert_begin(struct native *native, struct job *job, int64_t now)
 {
 	struct device *device = job->txn.device;
 
-	if (is_served(job, now)) {
+	if (is_served(native, job, now)) {
 		job->ready_ns = thermometer_of(device)->converted_ns;
 		job->state = JOB_CONVERTING;
 		return;

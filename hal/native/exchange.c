@@ -107,10 +107,8 @@ static void write_done(struct native *native, struct job *job)
 {
 	bool text = is_text(job->property);
 
-	if (job->txn.device && !job->property->offline) {
-		job->txn.device->changes++;
+	if (job->txn.device && !job->property->offline)
 		job->txn.device->settled = true;
-	}
 	job->taken = text ? job->taken + job->txn.len : job->req->len;
 	job->tries = 0;
 	if (job_wants_all(job) && ++job->element < job->property->array.count &&
@@ -150,8 +148,11 @@ static int run_function(struct job *job)
 		if (err)
 			return err;
 	}
-	if (txn->device)
+	/* Also of a write that fails nobody knows what it has changed. */
+	if (txn->device && !job->property->offline) {
+		txn->device->changes++;
 		txn_void(txn);
+	}
 	return property_writer(job->property)(txn);
 }
 

@@ -71,8 +71,10 @@ void job_txn(struct native *native, struct job *job)
 
 	/* All elements are as old as the oldest. */
 	int64_t shared_ns = job->element ? txn->shared_ns : 0;
+	int64_t part_ns = job->element ? txn_measured(txn) : 0;
 	memset(txn, 0, sizeof(*txn));
 	txn->shared_ns = shared_ns;
+	txn->part_ns = part_ns;
 	txn->native = native;
 	txn->device = device;
 	txn->channel = n;

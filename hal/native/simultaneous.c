@@ -71,6 +71,18 @@ static bool has_family(const struct native *native, unsigned n, const struct fam
 	return false;
 }
 
+/* What was read before is not of this conversion. */
+static void forget_kept(struct native *native, unsigned n, bool temperature)
+{
+	for (unsigned i = 0; i < native->table.count; i++) {
+		struct device *device = &native->table.devices[i];
+
+		if (device->channel == n &&
+		    (temperature ? device->family->thermometer : device->family == &family_20))
+			device->changes++;
+	}
+}
+
 void convert_all(struct native *native, struct job *job, int64_t now)
 {
 	unsigned n = job->channel;
@@ -82,6 +94,7 @@ void convert_all(struct native *native, struct job *job, int64_t now)
 	else
 		err = has_family(native, n, &family_20) ? convert_voltage(native, n) : 0;
 	job->txn.channel = n;
+	forget_kept(native, n, job->property->arg == SIMULTANEOUS_TEMPERATURE);
 	if (err < 0 && err != -ENODEV) {
 		job->txn.link_error = err == -EBADMSG || err == -EOPNOTSUPP ? 0 : err;
 		job_failed(native, job, err);

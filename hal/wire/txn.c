@@ -287,6 +287,8 @@ void txn_share(struct txn *txn, const void *what, unsigned at, const void *bytes
 	                                 .made_ns = txn->measured_ns ? txn->measured_ns
 	                                                             : txn_now(txn)};
 	memcpy(place->bytes, bytes, n);
+	if (!txn->part_ns || place->made_ns < txn->part_ns)
+		txn->part_ns = place->made_ns;
 }
 
 bool txn_shared(struct txn *txn, const void *what, unsigned at, void *bytes, size_t n)
@@ -322,5 +324,7 @@ int64_t txn_measured(const struct txn *txn)
 {
 	int64_t measured = txn->measured_ns ? txn->measured_ns : txn_now(txn);
 
+	if (txn->part_ns && txn->part_ns < measured)
+		measured = txn->part_ns;
 	return txn->shared_ns && txn->shared_ns < measured ? txn->shared_ns : measured;
 }

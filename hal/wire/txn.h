@@ -53,6 +53,7 @@ struct txn {
 	int64_t since_ns, oldest_ns;
 	bool once;         /* and then it serves nobody else */
 	int64_t shared_ns; /* when the oldest of those that served was made; 0: none did */
+	int64_t part_ns;   /* when the oldest part that this request has read was made; 0: none */
 
 	/* From call to call. */
 	unsigned phase;

@@ -165,6 +165,80 @@ static void test_what_was_read_before_a_restart_or_a_loss_serves_nobody_after_it
 	TEST_ASSERT_GREATER_THAN_UINT(0, transactions());
 }
 
+static int64_t measured(const char *property)
+{
+	uint32_t id = ask(BUS_READ, BUS_GUEST, false, of(chip, property), NULL);
+
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	return answer_to(id)->measured_ns;
+}
+
+static void test_what_was_read_before_a_write_that_fails_serves_nobody_after_it(void)
+{
+	begin("DS2408");
+	for (int ms = 10; ms < 30; ms++) {
+		expect(false, of(chip, "PIO.3"), "0");
+		uint32_t id = ask(BUS_WRITE, BUS_GUEST, true, of(chip, "PIO.3"), "1");
+		req[id].deadline_ns = host.now + ms * HOST_MS;
+		answer_to(id);
+		id = ask(BUS_READ, BUS_GUEST, false, of(chip, "PIO.3"), NULL);
+		uint32_t now = ask(BUS_READ, BUS_GUEST, true, of(chip, "PIO.3"), NULL);
+		answer_to(id);
+		answer_to(now);
+		TEST_ASSERT_EQUAL_STRING((char *)data[now], (char *)data[id]);
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(chip, "PIO.BYTE"), "0"));
+		forget();
+	}
+}
+
+static void test_what_was_read_before_all_convert_at_once_serves_nobody_after_it(void)
+{
+	begin("DS18B20");
+	wire_set(chip, "temperature", 20);
+	expect(false, of(chip, "temperature"), "          20");
+	expect(false, of(chip, "latesttemp"), "          20");
+	wire_set(chip, "temperature", 30);
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, "/simultaneous/temperature", "1"));
+	host_run(&host, bus, host.now + 800 * HOST_MS);
+	expect(false, of(chip, "latesttemp"), "          30");
+	expect(false, of(chip, "temperature"), "          30");
+}
+
+static void test_volts_from_before_all_convert_at_once_serve_nobody_after_it(void)
+{
+	begin("DS2450");
+	wire_set(chip, "volt.A", 1);
+	expect(false, of(chip, "volt.A"), "     1.00002");
+	expect(false, of(chip, "latestvolt.A"), "     1.00002");
+	wire_set(chip, "volt.A", 3);
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, "/simultaneous/voltage", "1"));
+	host_run(&host, bus, host.now + 20 * HOST_MS);
+	expect(false, of(chip, "latestvolt.A"), "     3.00005");
+}
+
+static void test_a_conversion_serves_no_longer_than_a_cached_value_lives(void)
+{
+	begin("DS18B20");
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, "/settings/timeout/volatile", "1"));
+	wire_set(chip, "temperature", 20);
+	expect(false, of(chip, "temperature"), "          20");
+	wire_set(chip, "temperature", 30);
+	host_run(&host, bus, host.now + 1500 * HOST_MS);
+	expect(false, of(chip, "temperature"), "          30");
+}
+
+static void test_a_value_of_several_parts_is_as_old_as_the_oldest(void)
+{
+	begin("DS2438");
+	int64_t humidity = measured("humidity");
+	TEST_ASSERT_LESS_OR_EQUAL_INT64(measured("temperature"), humidity);
+	TEST_ASSERT_LESS_OR_EQUAL_INT64(measured("VAD"), humidity);
+	TEST_ASSERT_LESS_OR_EQUAL_INT64(measured("VDD"), humidity);
+	int64_t page = measured("pages/page.0");
+	host_run(&host, bus, host.now + HOST_S);
+	TEST_ASSERT_EQUAL_INT64(page, measured("pages/page.ALL"));
+}
+
 static void test_humidity_leaves_the_temperature_to_those_who_ask_next(void)
 {
 	begin("DS2438");
@@ -231,6 +305,11 @@ int main(void)
 	RUN_TEST(test_what_was_read_before_a_write_serves_nobody_after_it);
 	RUN_TEST(test_requests_around_a_write_are_answered_with_what_was_true_then);
 	RUN_TEST(test_what_was_read_before_a_restart_or_a_loss_serves_nobody_after_it);
+	RUN_TEST(test_what_was_read_before_a_write_that_fails_serves_nobody_after_it);
+	RUN_TEST(test_what_was_read_before_all_convert_at_once_serves_nobody_after_it);
+	RUN_TEST(test_volts_from_before_all_convert_at_once_serve_nobody_after_it);
+	RUN_TEST(test_a_conversion_serves_no_longer_than_a_cached_value_lives);
+	RUN_TEST(test_a_value_of_several_parts_is_as_old_as_the_oldest);
 	RUN_TEST(test_humidity_leaves_the_temperature_to_those_who_ask_next);
 	RUN_TEST(test_four_volts_asked_for_at_once_are_one_conversion);
 	RUN_TEST(test_the_properties_of_each_family_are_sorted_by_name);
