@@ -22,7 +22,7 @@ struct build {
 /* A copy of the text in the arena; "" and no_memory set when there is no memory. */
 const char *build_keep(struct build *build, const char *text, size_t len);
 
-/* Zeroed room for count elements and one more; NULL and no_memory set when there is no memory. */
+/* Zeroed room for one element more than count; without memory returns NULL and sets no_memory. */
 void *build_take(struct build *build, size_t count, size_t size);
 
 #endif

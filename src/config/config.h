@@ -85,7 +85,7 @@ struct config_serve {
 	struct listen_address addresses[LISTEN_MAX];
 	unsigned address_count; /* 0: not served on the network */
 	struct listen_peers peers[LISTEN_PEERS_MAX];
-	unsigned peer_count; /* 0: everybody who reaches an address; loopback always may */
+	unsigned peer_count; /* 0: every peer may connect; loopback always may */
 	const char *socket;  /* path of a unix socket; NULL: none */
 	bool read_only;
 };

@@ -11,7 +11,7 @@
 
 #include "src/config/rio.h"
 
-/* A new item at the end; an input of type double unless the settings say otherwise. */
+/* Add an item at the end; an input of type double unless the settings give something else. */
 int edit_add(struct rio **rio, const char *name, const char *path, const char *const *settings,
              unsigned count, struct config_report *report);
 /* Change an item, or the driver's own keys: name "OwsDrv". */
@@ -21,7 +21,7 @@ int edit_set(struct rio **rio, const char *name, const char *const *settings, un
 int edit_unset(struct rio **rio, const char *name, const char *const *keys, unsigned count,
                struct config_report *report);
 int edit_remove(struct rio **rio, const char *name, struct config_report *report);
-/* Put an item before another, or behind it, with the comment lines directly above it. */
+/* Put an item, with the comment lines directly above it, before another or after it. */
 int edit_move(struct rio **rio, const char *name, const char *other, bool behind,
               struct config_report *report);
 /* Correct ItemCount, where the file has that key, to the number of items. */

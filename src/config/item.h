@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Items of the file: what their keys make of a signal, and what is wrong or odd about it. */
+/* Items of the file: makes a signal of an item's keys, and reports what is wrong or odd. */
 #ifndef CONFIG_ITEM_H
 #define CONFIG_ITEM_H
 

@@ -99,7 +99,7 @@ int option_find(enum option_place place, const char *key);
 /* The nearest known key of the place, NULL if none is near. */
 const char *option_nearest(enum option_place place, const char *key);
 
-/* One key of a block as it was read. */
+/* A key of a block as the reader found it. */
 struct option_value {
 	const struct rio_node *node; /* NULL: absent */
 	bool given;                  /* present and valid; if not, number is the default */

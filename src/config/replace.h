@@ -12,8 +12,9 @@
 int replace_file(const char *file, const char *text, size_t len);
 
 /*
- * Keep others who ask for it from replacing file, which need not be there, until the descriptor
- * that is returned is closed; -EBUSY when another has it for five seconds, or a negative errno.
+ * Lock file against replacement by other processes; it need not exist. The lock lasts until the
+ * returned descriptor is closed. -EBUSY: another process held the lock for five seconds; or another
+ * negative errno.
  */
 int replace_lock(const char *file);
 

@@ -35,12 +35,12 @@ enum rio_kind {
 
 struct rio_node {
 	enum rio_kind kind;
-	bool broken;       /* a syntax error is in it: what is missing may have been there */
+	bool broken;       /* the block has a syntax error: a missing key may have been there */
 	const char *key;   /* "" for the document itself */
 	const char *value; /* word, string: NUL-terminated; list: as written; block: "" */
 	struct place at, value_at;
-	size_t begin, end;             /* bytes of the text, from the key to behind the value */
-	size_t value_begin, value_end; /* blocks: behind "{", and where "}" is */
+	size_t begin, end;             /* bytes of the text, from the key to the end of the value */
+	size_t value_begin, value_end; /* blocks: the byte after "{", and that of "}" */
 	struct rio_node *parent, *first, *last, *next;
 };
 
@@ -64,7 +64,7 @@ void rio_free(struct rio *rio);
 /* Bytes of the line end that stands at p, which is before end: 2, 1, or 0 when there is none. */
 size_t rio_line_end_length(const char *p, const char *end);
 
-/* The first child of that key, or NULL; rio_next: the next one of the same key. */
+/* The first child with that key, or NULL; rio_next: the next one with the same key. */
 struct rio_node *rio_child(const struct rio_node *block, const char *key);
 struct rio_node *rio_next(const struct rio_node *node);
 

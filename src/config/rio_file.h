@@ -8,9 +8,9 @@
 struct config_report;
 
 /*
- * Read a whole regular file into *text (malloc, NUL behind *len bytes). Errors are reported through
- * report: negative errno; -EFBIG as above, -EILSEQ it is UTF-16, -EINVAL it is no regular file, and
- * was not opened. Blocking.
+ * Read a whole regular file into *text (malloc, with NUL at the end, which *len does not count).
+ * Errors are reported through report: a negative errno; -EFBIG as above, -EILSEQ: the file is
+ * UTF-16, -EINVAL: the file is not regular, and was not opened. Blocking.
  */
 int rio_read(const char *file, struct config_report *report, char **text, size_t *len);
 

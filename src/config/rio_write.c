@@ -160,7 +160,9 @@ static bool begins_line(const struct rio *rio, const struct rio_node *node)
 	return blank_between(rio, line_begin(rio, node->begin), node->begin);
 }
 
-/* Behind the node and what stands behind it in its line: blanks or a comment, if nothing else. */
+/*
+ * The end of the line if only blanks or a comment follow the node there; else the end of the node.
+ */
 static size_t behind_line(const struct rio *rio, const struct rio_node *node)
 {
 	size_t end = line_end_at(rio, node->end), p = node->end;
@@ -185,8 +187,8 @@ static void add_indented(struct grow *out, const char *indent, size_t indent_len
 }
 
 /*
- * The lines behind after, indented as it is; after NULL: first in the block, deeper than that. They
- * are for the place from at to end.
+ * The lines to put after the node `after`, with its indentation; without `after` they come first in
+ * the block, indented deeper than the block. They replace the text from *at to *end.
  */
 static char *lines_behind(const struct rio *rio, const struct rio_node *block,
                           const struct rio_node *after, const char *lines, size_t *at, size_t *end)
@@ -202,7 +204,7 @@ static char *lines_behind(const struct rio *rio, const struct rio_node *block,
 		grow_add(&indent, "  ", 2);
 	if (indent.text)
 		add_indented(&out, indent.text, indent.len, lines);
-	/* what stands behind it in the same line goes to one of its own */
+	/* the rest of that line goes to a line of its own */
 	if (indent.text && !blank_between(rio, *at, line_end_at(rio, *at))) {
 		grow_add(&out, "\n", 1);
 		grow_add(&out, indent.text, indent.len >= 2 ? indent.len - 2 : 0);
@@ -315,7 +317,9 @@ static size_t line_before(const struct rio *rio, size_t offset)
 	return line_begin(rio, line);
 }
 
-/* The lines of a node and of the comments directly above it; false: they hold something else. */
+/*
+ * The lines of a node and of the comments directly above it; false: other text is on these lines.
+ */
 static bool own_lines(const struct rio *rio, const struct rio_node *node, size_t *begin,
                       size_t *end)
 {

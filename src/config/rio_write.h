@@ -6,7 +6,7 @@
 #include "src/config/rio.h"
 
 #define RIO_KEY_WIDTH 24 /* REXYGEN puts values in this column behind the key's first letter */
-#define RIO_WRAP 50      /* a longer string goes on in a new one at the start of the next line */
+#define RIO_WRAP 50 /* a longer string continues as another string at the start of the next line */
 
 /* text as a quoted string, wrapped if it is long; NULL: no memory. Free with rio_quote_free(). */
 char *rio_quote(const char *text);
@@ -18,17 +18,17 @@ void rio_quote_free(char *quoted);
  * the document's own line end.
  */
 /*
- * Set a key, or add it behind the other values of the block. value is put as it is: quote strings
- * first.
+ * Set a key, or add it after the other values of the block. The value is written unchanged: quote
+ * strings first.
  */
 int rio_set(struct rio **rio, struct rio_node *block, const char *key, const char *value);
-/* Add lines behind the block's last child: `Key Value`, or a whole block. Indents every line. */
+/* Add lines after the block's last child: `Key Value`, or a whole block. Indents every line. */
 int rio_add(struct rio **rio, struct rio_node *block, const char *lines);
 /* Take a node out, with its lines if nothing else stands on them. */
 int rio_remove(struct rio **rio, struct rio_node *node);
 /*
- * Put a node before other, or behind it, with its lines and the comments directly above it; both in
- * one block. -EINVAL: something else stands on the lines of one.
+ * Put a node, with its lines and the comments directly above it, before or after other; both are in
+ * one block. -EINVAL: the lines of one of them hold other text.
  */
 int rio_move(struct rio **rio, struct rio_node *node, const struct rio_node *other, bool behind);
 
