@@ -2,7 +2,7 @@
 /* The buses of scheme "w1": over netlink if the target says so, else over sysfs. */
 #include "hal/native/native.h"
 #include "hal/native/state.h"
-#include "hal/netlink/netlink.h"
+#include "hal/netlink/master.h"
 #include "hal/w1/w1.h"
 
 #define LOOK_NS (5 * NATIVE_S)

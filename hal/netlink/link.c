@@ -6,46 +6,13 @@
  */
 #include <errno.h>
 
-#include "hal/netlink/netlink.h"
+#include "hal/netlink/link.h"
+#include "hal/netlink/run.h"
+#include "hal/netlink/search.h"
 
 static struct w1_netlink_link *self(struct link *link)
 {
 	return (struct w1_netlink_link *)link;
-}
-
-/* The master did not know the link's number: -ENODEV if none of ours is left, else -EHOSTDOWN. */
-static int w1_netlink_gone(struct w1_netlink *netlink)
-{
-	uint32_t numbers[W1_MASTERS];
-	int n = w1_talk_masters(&netlink->talk, numbers, W1_MASTERS);
-
-	for (int i = 0; i < n; i++)
-		for (unsigned k = 0; k < netlink->count; k++)
-			if (netlink->links[k].number == numbers[i])
-				return -EHOSTDOWN;
-	return -ENODEV;
-}
-
-int w1_netlink_run(struct w1_netlink_link *link, struct w1_request *request)
-{
-	bool resets = request->count && request->command[0].code == W1_RESET;
-	int err = w1_request_run(&link->netlink->talk, request);
-
-	unsigned count = request->count;
-
-	link->cost.resets += resets;
-	link->sent = true;
-	w1_request_begin(request, link->number);
-	if (err == -ENODEV)
-		return w1_netlink_gone(link->netlink);
-	if (err)
-		return err == -EPROTO ? -EIO : err;
-	if (resets && request->command[0].status == W1_STATUS_NOBODY)
-		return -EHOSTDOWN;
-	for (unsigned i = 0; i < count; i++)
-		if (request->command[i].status)
-			return -EIO;
-	return 0;
 }
 
 static int flush(struct link *base)

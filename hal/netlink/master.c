@@ -6,7 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "hal/netlink/netlink.h"
+#include "hal/netlink/link.h"
+#include "hal/netlink/master.h"
 #include "hal/w1/master.h"
 #include "hal/w1/name.h"
 #include "hal/w1/uevent.h"

@@ -11,7 +11,8 @@
 #include <string.h>
 
 #include "hal/chips/find.h"
-#include "hal/netlink/netlink.h"
+#include "hal/netlink/run.h"
+#include "hal/netlink/search.h"
 #include "hal/wire/crc.h"
 #include "hal/wire/search.h"
 

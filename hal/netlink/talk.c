@@ -13,7 +13,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "hal/netlink/netlink.h"
+#include "hal/native/limits.h"
+#include "hal/netlink/talk.h"
 #include "hal/wire/crc.h"
 
 /* The kernel's own search goes first, and lasts seconds on a full wire; so does ours. */

@@ -12,7 +12,8 @@
 #include <unistd.h>
 
 #include "hal/native/state.h"
-#include "hal/netlink/netlink.h"
+#include "hal/netlink/master.h"
+#include "hal/netlink/talk.h"
 #include "hal/owfs/path.h"
 #include "tests/fuzz/bus_host.h"
 #include "tests/fuzz/sysfs.h"

@@ -9,9 +9,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "hal/netlink/talk.h"
 #include "unity.h"
 
-#include "hal/netlink/netlink.h"
 #include "hal/wire/search.h"
 #include "tests/unit/aid/w1_core.h"
 

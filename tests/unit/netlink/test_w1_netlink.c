@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "hal/native/state.h"
+#include "hal/netlink/talk.h"
 #include "unity.h"
 
-#include "hal/netlink/netlink.h"
 #include "hal/owfs/path.h"
 #include "tests/unit/aid/netlink_scene.h"
 

@@ -5,9 +5,9 @@
 #include <sys/socket.h>
 
 #include "hal/native/state.h"
+#include "hal/netlink/talk.h"
 #include "unity.h"
 
-#include "hal/netlink/netlink.h"
 #include "tests/unit/aid/netlink_scene.h"
 
 void setUp(void)

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+/* The kernel's masters over netlink, as a link master. */
+#ifndef HAL_NETLINK_MASTER_H
+#define HAL_NETLINK_MASTER_H
+
+#include "hal/netlink/run.h"
+
+extern const struct link_master_ops w1_netlink_master;
+
+/* Is it "netlink", "netlink/...", of which this bus is? */
+bool w1_is_netlink(const char *where);
+/* Masters that came since; how many. */
+unsigned w1_netlink_look(struct w1_netlink *netlink);
+
+#endif

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The target "w1:netlink": the kernel's 1-Wire masters as links, over the netlink connector. The
+ * parts, from the top down:
+ *
+ *   bus.c     the target "w1" of both, masters that come later
+ *   master.c  the masters there are; sysfs in place of a refused netlink
+ *   link.c    one master as a link: a transaction is gathered into one request
+ *   search.c  searches, made of slots whose direction is chosen before
+ *   run.c     a request of a link, and what became of it
+ *   talk.c    the socket; requests of several commands and their replies
+ *
+ * Wire format and what replies mean: the kernel's Documentation/w1/w1-netlink.rst, and seen on
+ * Linux 6.1. The kernel carries out the commands of one request with the master's bus locked, so
+ * that neither its own search nor another program comes between.
+ */
+#ifndef HAL_NETLINK_RUN_H
+#define HAL_NETLINK_RUN_H
+
+#include "hal/netlink/talk.h"
+#include "hal/w1/link.h"
+#include "hal/wire/device.h"
+
+struct w1_netlink;
+
+/* A device that was found, for searches to guess with. */
+struct w1_seen {
+	uint8_t rom[8];
+	uint8_t channel;
+};
+
+struct w1_netlink_link {
+	struct link link;
+	struct w1_netlink *netlink;
+	uint32_t number; /* of w1_bus_masterN */
+	bool sent;       /* since the last reset a request went out */
+	int next_slot;   /* verify() has read it already; -1: not */
+	unsigned alarm_searches;
+	struct w1_request request;
+	struct link_cost cost;
+};
+
+struct w1_netlink {
+	struct link_master master;
+	struct w1_talk talk;
+	unsigned only; /* w1_bus_masterN; 0: all */
+	unsigned count;
+	struct w1_netlink_link links[W1_MASTERS];
+	unsigned seen_count;
+	struct w1_seen seen[DEVICE_MAX];
+	struct w1_master *sysfs; /* target w1's, in case netlink is refused */
+	bool refused, told;
+	bool answered;   /* once at least */
+	int64_t look_ns; /* when to look for masters that came later */
+};
+
+/*
+ * Runs a request, which is empty afterwards. -EHOSTDOWN nobody answered its reset,
+ * -EIO also a command that the kernel refused; else as w1_request_run.
+ */
+int w1_netlink_run(struct w1_netlink_link *link, struct w1_request *request);
+
+#endif
