@@ -111,9 +111,11 @@ int ds2438_read(struct txn *txn, unsigned page, uint8_t bytes[8])
 	case BEGIN:
 		if (page == 0 && !*note) {
 			err = recall(txn, page, in);
+			if (err)
+				return err;
 			*note = KNOWN | (in[0] & CONFIGURATION);
 			ds2438_visit(txn)->step = SET_MARK;
-			return err ? err : TXN_MORE;
+			return TXN_MORE;
 		}
 		/* fallthrough */
 	case SET_MARK:
