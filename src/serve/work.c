@@ -184,6 +184,9 @@ void work_answered(struct serve *s, struct client *c)
 	 */
 	if (c->lent && !err)
 		err = -EIO;
+	/* The device is gone: what was read of it before answers nobody. */
+	if (err == -ENODEV && c->node.has_rom)
+		kept_forget(s->kept, &c->node, s->now_ns);
 	switch ((enum client_step)c->step) {
 	case STEP_READ:
 		work_read_answered(s, c, err);

@@ -262,6 +262,25 @@ static void test_an_input_from_before_a_write_to_its_device_does_not_answer(void
 	TEST_ASSERT_EQUAL_STRING("        24.5", data);
 }
 
+static void test_what_was_read_before_a_device_was_found_absent_answers_nobody(void)
+{
+	struct engine_guest *g;
+
+	ask(fd, FRAME_READ, "/28.551DDF030000/templow");
+	give(next_guest(), "          10");
+	TEST_ASSERT_EQUAL_INT(12, answer(fd));
+	ask(fd, FRAME_READ, "/uncached/28.551DDF030000/id");
+	g = next_guest();
+	g->answer = (struct bus_answer){.err = -ENODEV};
+	port->answered(port->ctx, g);
+	TEST_ASSERT_LESS_THAN_INT32(0, answer(fd));
+	ask(fd, FRAME_READ, "/28.551DDF030000/templow");
+	g = next_guest();
+	g->answer = (struct bus_answer){.err = -ENODEV};
+	port->answered(port->ctx, g);
+	TEST_ASSERT_LESS_THAN_INT32(0, answer(fd));
+}
+
 static void test_one_request_of_a_client_is_worked_on_at_a_time(void)
 {
 	struct engine_guest *g;
@@ -486,6 +505,7 @@ int main(void)
 	RUN_TEST(test_what_is_not_known_here_is_asked_of_the_engine_once);
 	RUN_TEST(test_an_input_of_the_table_is_answered_from_the_image);
 	RUN_TEST(test_an_input_from_before_a_write_to_its_device_does_not_answer);
+	RUN_TEST(test_what_was_read_before_a_device_was_found_absent_answers_nobody);
 	RUN_TEST(test_one_request_of_a_client_is_worked_on_at_a_time);
 	RUN_TEST(test_who_was_given_up_waits_for_his_room_before_the_next_request);
 	RUN_TEST(test_what_a_bus_still_has_to_write_stays_as_it_was);
