@@ -50,10 +50,14 @@ struct area {
 	 * one transaction, of unchecked ones one.
 	 */
 	uint8_t block;
-	uint8_t row;   /* bytes that one command writes; 0: none does */
-	bool parts;    /* a driver reads these bytes one by one: no more than are asked for */
-	bool hidden;   /* a driver need not show what it was told: it is written even so */
-	uint8_t fixed; /* so many at its beginning are read-only, and may be written as they are */
+	uint8_t row; /* bytes that one command writes; 0: none does */
+	bool parts;  /* a driver reads these bytes one by one: no more than are asked for */
+	bool hidden; /* a driver need not show what it was told: it is written even so */
+	/*
+	 * So many at its beginning are read-only, and may be written as they are. A write of the
+	 * others reads from behind these on: so the command has to take an address.
+	 */
+	uint8_t fixed;
 	uint8_t address_bytes;             /* behind a command, low byte first: 0, 1, 2 */
 	uint8_t check;                     /* enum area_check */
 	uint8_t read, write, verify, copy; /* commands; 0: there is none */
@@ -67,10 +71,11 @@ struct area {
 	/*
 	 * All optional. begin: before anything is sent, or taken from what is kept; 0, TXN_MORE or
 	 * an error. load and store: in place of .read and .write, whole transactions; load may take
-	 * several calls. saw: of what was read, from byte `at` of the area on, it notes what that
-	 * says of the device, and blanks bits that do not count; 0 or an error. is_written: does
-	 * what is read back show that all was written? adjust: of the whole unit that is to be
-	 * written, it changes what goes with the change that was asked for.
+	 * several calls, and has to prove its bytes, for they are not looked at AREA_LOOKS times.
+	 * saw: of what was read, from byte `at` of the area on, it notes what that says of the
+	 * device, and blanks bits that do not count; 0 or an error. is_written: does what is read
+	 * back show that all was written? adjust: of the whole unit that is to be written, it
+	 * changes what goes with the change that was asked for.
 	 */
 	int (*begin)(struct txn *txn);
 	int (*load)(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
