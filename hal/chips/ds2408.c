@@ -141,6 +141,7 @@ const struct area ds2408_output = {
 	.at = 0x88 + DS2408_OUTPUT,
 	.size = 1,
 	.row = 1,
+	.hidden = true,
 	.load = load_part,
 	.store = store_output,
 	.saw = saw_latch,

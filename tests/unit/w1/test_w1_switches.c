@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of switches over the kernel's 1-Wire drivers. */
 #include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <sys/stat.h>
 
 #include "unity.h"
 
@@ -49,6 +52,24 @@ static void test_a_ds2408_is_written_and_read_back(void)
 	TEST_ASSERT_EQUAL_HEX8(0xff, (uint8_t)fs_now_in(BOARD, "activity")[0]);
 	TEST_ASSERT_EQUAL_INT(0, fs_writes(BOARD_OW "/set_alarm", "100002223"));
 	TEST_ASSERT_EQUAL_HEX8(0x81, (uint8_t)fs_now_in(BOARD, "status_control")[0]);
+}
+
+/* The attribute has no checksum: what it shows is no proof of what the chip holds. */
+static void test_a_bit_that_a_ds2408_shows_already_is_written_all_the_same(void)
+{
+	static const struct timespec long_ago[2] = {{.tv_sec = 1}, {.tv_sec = 1}};
+	char path[128];
+	struct stat now;
+
+	fs_board(0xbd, 0x88);
+	fs_start();
+	TEST_ASSERT_EQUAL_INT(0, fs_writes(BOARD_OW "/PIO.3", "1"));
+	snprintf(path, sizeof(path), "%s/" BOARD "/output", fs.root);
+	TEST_ASSERT_EQUAL_INT(0, utimensat(AT_FDCWD, path, long_ago, 0));
+	TEST_ASSERT_EQUAL_INT(0, fs_writes(BOARD_OW "/PIO.3", "1"));
+	TEST_ASSERT_EQUAL_INT(0, stat(path, &now));
+	TEST_ASSERT_GREATER_THAN_INT64(1, now.st_mtim.tv_sec);
+	TEST_ASSERT_EQUAL_HEX8(0xf7, (uint8_t)fs_now_in(BOARD, "output")[0]);
 }
 
 static void test_a_ds2408_that_restarted_is_told(void)
@@ -120,6 +141,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_ds2408_reads_its_registers);
 	RUN_TEST(test_a_ds2408_is_written_and_read_back);
+	RUN_TEST(test_a_bit_that_a_ds2408_shows_already_is_written_all_the_same);
 	RUN_TEST(test_a_ds2408_that_restarted_is_told);
 	RUN_TEST(test_a_ds2408_that_is_silent_has_no_value);
 	RUN_TEST(test_a_ds2413_reads_whole_bytes_and_halves);
