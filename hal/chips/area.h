@@ -61,8 +61,8 @@ struct area {
 	uint8_t address_bytes;             /* behind a command, low byte first: 0, 1, 2 */
 	uint8_t check;                     /* enum area_check */
 	uint8_t read, write, verify, copy; /* commands; 0: there is none */
-	uint8_t recall; /* command that has read give what is stored, not what was written; 0: none */
-	uint8_t key;    /* behind copy; 0: address and ending offset as verify gives them */
+	uint8_t recall;   /* command that makes read give what is stored, not written; 0: none */
+	uint8_t key;      /* behind copy; 0: address and ending offset as verify gives them */
 	bool write_crc16; /* the chip answers what is written, and verify, with CRC16 */
 	bool echo;        /* ... and then with the byte that it has taken */
 	bool strong;      /* the copy needs the strong pull-up */

@@ -44,8 +44,8 @@ static int read_control(struct txn *txn)
 }
 
 /*
- * A driver's come in part, and without a checksum: all ones is also what one hears of a chip that is
- * not there, which the control register shows.
+ * A driver's come in part, and without a checksum: all ones is also what one hears of a chip that
+ * is not there, which the control register shows.
  */
 static int saw_registers(struct txn *txn, unsigned at, uint8_t *value, unsigned n)
 {

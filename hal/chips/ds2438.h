@@ -16,7 +16,9 @@ enum ds2438_quantity { DS2438_TEMPERATURE, DS2438_VAD, DS2438_VDD, DS2438_VIS, D
 
 /* What is known of the chip (device.own). */
 struct ds2438 {
-	/* Of each page its first byte as it was; of page 0 the configuration and 80h. 0: not known. */
+	/*
+	 * Of each page its first byte as it was; of page 0 the configuration and 80h. 0: not known.
+	 */
 	uint8_t first[8];
 };
 static inline struct ds2438 *ds2438_of(const struct txn *txn)
@@ -67,8 +69,8 @@ int ds2438_select(struct txn *txn, uint8_t select);
 /* Page 0 after that; -EBADMSG if something else was selected. */
 int ds2438_read_selected(struct txn *txn, uint8_t select, uint8_t bytes[8]);
 /*
- * Leave a mark in a scratchpad, other than what a restart leaves there. ds2438_is_marked(): -EBADMSG
- * if the chip has restarted since, or it cannot be known.
+ * Leave a mark in a scratchpad, other than what a restart leaves there. ds2438_is_marked():
+ * -EBADMSG if the chip has restarted since, or it cannot be known.
  */
 int ds2438_mark(struct txn *txn);
 int ds2438_is_marked(struct txn *txn);

@@ -131,7 +131,9 @@ static int measure_and_prove(struct txn *txn, enum ds2438_quantity what, double 
 	return TXN_MORE;
 }
 
-/* One that was measured for another request, as far as this one allows it, is not measured again. */
+/*
+ * One that was measured for another request, as far as this one allows it, is not measured again.
+ */
 int ds2438_measure(struct txn *txn, unsigned what)
 {
 	static const char quantities[DS2438_QUANTITIES];

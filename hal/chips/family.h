@@ -19,7 +19,9 @@ struct family {
 	const char *type; /* "DS18B20" */
 	/* NULL: type. Some families hold several chips. */
 	const char *(*type_of)(const struct device *device);
-	/* Which of them? Until that is known, requests may be for properties of any. NULL: it is. */
+	/*
+	 * Which of them? Until that is known, requests may be for properties of any. NULL: it is.
+	 */
 	bool (*is_known)(const struct device *device);
 	/* The chip was away or has restarted: what of device.own is void? NULL: all of it. */
 	void (*forget)(struct device *device);

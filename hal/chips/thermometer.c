@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The thermometers' scratchpad: what it says, how it is set, whether it is of the last conversion. */
+/*
+ * The thermometers' scratchpad: what it says, how it is set, whether it is of the last conversion.
+ */
 #include <errno.h>
 #include <string.h>
 
@@ -216,8 +218,9 @@ int thermometer_prepare(struct txn *txn, unsigned resolution)
 
 /*
  * When the chip latched what it holds. While the strong pull-up is on, no chip can show that it
- * converts. If it holds something else than when it was read last, and converted once since, it did.
- * If not, a conversion may have been missed: then this is at least the result of the one before.
+ * converts. If it holds something else than when it was read last, and converted once since, it
+ * did. If not, a conversion may have been missed: then this is at least the result of the one
+ * before.
  */
 static int64_t latched_ns(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
 {
@@ -292,9 +295,10 @@ static int copy_settings(struct txn *txn)
 /*
  * The user's setting goes to the EEPROM, so that it outlives the chip's power, and with it the
  * resolution that was there, not the one that a conversion asked for. What is there already is not
- * written again: the EEPROM wears out. The copy says nothing. So the scratchpad is recalled from the
- * EEPROM then: if the copy was lost, the settings before it come back. A recall says nothing either,
- * and is made three times. What is in force is what stood there or what is wanted, at each moment.
+ * written again: the EEPROM wears out. The copy says nothing. So the scratchpad is recalled from
+ * the EEPROM then: if the copy was lost, the settings before it come back. A recall says nothing
+ * either, and is made three times. What is in force is what stood there or what is wanted, at each
+ * moment.
  */
 static int store(struct txn *txn)
 {

@@ -43,8 +43,8 @@ static inline struct thermometer *thermometer_of(const struct device *device)
 void thermometer_forget(struct device *device);
 
 /*
- * The nine bytes. What their configuration tells is noted; -EBADMSG: no such chip sends them, -ENOENT
- * it has not the property that is asked for.
+ * The nine bytes. What their configuration tells is noted; -EBADMSG: no such chip sends them,
+ * -ENOENT it has not the property that is asked for.
  */
 extern const struct area thermometer_area;
 int thermometer_saw(struct txn *txn, unsigned at, uint8_t *scratchpad, unsigned n);

@@ -49,8 +49,8 @@ struct ds2482_source {
 	int (*open)(void *ctx, const struct bus_env *env, struct i2c_adapter **adapter, char *why,
 	            size_t why_size);
 	/*
-	 * As link_master_ops.there, of the chips whose bits are set (bit 0: 0x18); 0: which ones are
-	 * meant is not known. NULL: that cannot be seen.
+	 * As link_master_ops.there, of the chips whose bits are set (bit 0: 0x18); 0: which ones
+	 * are meant is not known. NULL: that cannot be seen.
 	 */
 	int (*there)(void *ctx, const struct bus_env *env, uint8_t chips, uint64_t *mark);
 	/*
@@ -86,7 +86,9 @@ struct ds2482_master {
 	unsigned known;
 	uint8_t order[DS2482_ADDRESSES];
 	bool missing[DS2482_ADDRESSES];
-	/* The supply of the wire, and the SLPZ pins; their chip's name is "" where there is none. */
+	/*
+	 * The supply of the wire, and the SLPZ pins; their chip's name is "" where there is none.
+	 */
 	struct gpio_output power, sleep;
 	int64_t power_off_ns;
 	/* The cost before the adapter was opened again. */

@@ -27,8 +27,8 @@ struct i2c_adapter_ops {
 	int (*transfer)(struct i2c_adapter *adapter, uint8_t address, struct i2c_message *messages,
 	                size_t n);
 	/*
-	 * SMBus calls for adapters that know nothing else: write one command byte; write command and
-	 * one data byte; read one byte. 0 or the byte, or as transfer().
+	 * SMBus calls for adapters that know nothing else: write one command byte; write command
+	 * and one data byte; read one byte. 0 or the byte, or as transfer().
 	 */
 	int (*write_byte)(struct i2c_adapter *adapter, uint8_t address, uint8_t command);
 	int (*write_byte_data)(struct i2c_adapter *adapter, uint8_t address, uint8_t command,

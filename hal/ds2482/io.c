@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Single I2C calls to a chip, and what the adapter can do and how fast it is, found by trying it. */
+/*
+ * Single I2C calls to a chip, and what the adapter can do and how fast it is, found by trying it.
+ */
 #include <errno.h>
 
 #include "hal/bus/bus.h"

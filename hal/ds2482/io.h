@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Single I2C calls to a chip, and what the adapter can do and how fast it is, found by trying it. */
+/*
+ * Single I2C calls to a chip, and what the adapter can do and how fast it is, found by trying it.
+ */
 #ifndef HAL_DS2482_IO_H
 #define HAL_DS2482_IO_H
 

@@ -149,7 +149,7 @@ int ds2482_run(struct ds2482_chip *chip, uint8_t command, int parameter, long ma
 	return err ? err : judge(chip, ds2482_read1(chip));
 }
 
-/* --- Writing ----------------------------------------------------------------------------------- */
+/* --- Writing ---------------------------------------------------------------------------------- */
 
 /*
  * Two bytes of the next write pass before the chip looks at its command. So only the last byte of
@@ -225,7 +225,7 @@ int ds2482_write_block(struct ds2482_chip *chip, const uint8_t *data, size_t n, 
 	return err < 0 ? err : 0;
 }
 
-/* --- Reading ----------------------------------------------------------------------------------- */
+/* --- Reading ---------------------------------------------------------------------------------- */
 
 /*
  * The pointer may be set while the operation runs, so the data register is read on. With `check`

@@ -234,8 +234,8 @@ static struct plan look(const struct native *native, unsigned channel)
 
 /*
  * Those with a supply hold the line low while they convert: if nobody does, nobody heard. One that
- * alone did not hear is hidden by the others; the rounds one by one find it. The strong pull-up lets
- * nobody show it: thermometer.c looks at what each chip latched.
+ * alone did not hear is hidden by the others; the rounds one by one find it. The strong pull-up
+ * lets nobody show it: thermometer.c looks at what each chip latched.
  */
 static int send_all(struct link *link, enum link_after after)
 {

@@ -11,7 +11,9 @@ bool convert_right(const struct job *job);
 void convert_prepare(struct native *native, struct job *job, int64_t now);
 /* Start a conversion where one is due. True: did a transaction. *next: when to look again. */
 bool convert_step(struct native *native, int64_t now, int64_t *next);
-/* Convert T to all; -EBADMSG if nobody begins. strong: with the pull-up, which holds it longest ns. */
+/*
+ * Convert T to all; -EBADMSG if nobody begins. strong: with the pull-up, which holds it longest ns.
+ */
 int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t longest);
 
 #endif

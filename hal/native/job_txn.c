@@ -44,8 +44,9 @@ static bool is_offered(const struct job *job)
 
 /*
  * What of that which is kept serves the request: read after it came; or within the value's life,
- * if a cached one will do. A try that failed takes nothing from before. The flags that the alarm machine
- * asks for one after the other are read once: no write fits in between, as it would take longer.
+ * if a cached one will do. A try that failed takes nothing from before. The flags that the alarm
+ * machine asks for one after the other are read once: no write fits in between, as it would take
+ * longer.
  */
 static void take_limits(const struct native *native, struct job *job)
 {

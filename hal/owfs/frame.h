@@ -65,8 +65,8 @@ int frame_request(uint8_t *out, enum frame_type type, uint32_t flags, int32_t si
 /* Where in the value a request's data begin; 0 if it is not said. */
 void frame_set_offset(uint8_t *out, int32_t offset);
 /*
- * Put the tokens of count servers, up to FRAME_TOKENS_SENT, behind a request of len bytes; out has room
- * for FRAME_TOKENS_SENT * FRAME_TOKEN_SIZE more. Returns the new length.
+ * Put the tokens of count servers, up to FRAME_TOKENS_SENT, behind a request of len bytes; out has
+ * room for FRAME_TOKENS_SENT * FRAME_TOKEN_SIZE more. Returns the new length.
  */
 int frame_add_tokens(uint8_t *out, int len, const uint8_t *tokens, uint32_t count);
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A connection to one place, by TCP or on a unix socket. Nothing here blocks but through env->wait,
- * up to the deadline given (and the resolver, which knows no deadline). The name is resolved at each
- * connect, so a change of address is followed; all its addresses are tried in turn.
+ * up to the deadline given (and the resolver, which knows no deadline). The name is resolved at
+ * each connect, so a change of address is followed; all its addresses are tried in turn.
  */
 #ifndef HAL_OWSERVER_CONNECTION_H
 #define HAL_OWSERVER_CONNECTION_H

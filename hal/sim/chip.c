@@ -168,7 +168,7 @@ static void slot_result(struct sim_chip *chip, unsigned slot, bool line)
 	case WIRE_BIT:
 		set_bit(&chip->status, SIM_SBR, line);
 		break;
-	case WIRE_WRITE: /* not in the data sheet; the hardware does it, and owserver relies on it */
+	case WIRE_WRITE: /* not in the data sheet; the hardware does it, owserver relies on it */
 	case WIRE_READ:
 		chip->data = (uint8_t)(chip->data >> 1 | (line ? 0x80 : 0));
 		break;

@@ -14,7 +14,7 @@ enum sim_shape {
 	SIM_RAMP,     /* from a at start_ns to b at start_ns + span_ns, then b */
 	SIM_SINE,     /* a + b * sin(2 pi (t - start_ns) / span_ns) */
 	SIM_SQUARE,   /* a for the first half of each span_ns, b for the second */
-	SIM_STEPS, /* step[i].value from start_ns + step[i].at_ns on; repeated after span_ns if > 0 */
+	SIM_STEPS,    /* step[i].value from start_ns + step[i].at_ns on; every span_ns if > 0 */
 };
 
 #define SIM_MAX_STEPS 16

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Which driver has a slave, and which of its properties and areas that driver's attributes stand for. */
+/*
+ * Which driver has a slave, and which of its properties and areas that driver's attributes stand
+ * for.
+ */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

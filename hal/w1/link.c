@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * What a master does as a link: areas by the attributes of a slave's driver, lists of slaves and of
- * those in alarm. A slave without a driver has the attribute "rw" for commands: each is whole in one
- * write (reset, Match ROM, the command), and what is read then is its answer.
+ * those in alarm. A slave without a driver has the attribute "rw" for commands: each is whole in
+ * one write (reset, Match ROM, the command), and what is read then is its answer.
  */
 #include <errno.h>
 #include <string.h>

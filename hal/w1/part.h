@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a driver of the kernel's gives of a chip: the areas (hal/chips/area.h), by their names there,
- * that its attributes stand for, and the properties that can be had of these.
+ * What a driver of the kernel's gives of a chip: the areas (hal/chips/area.h), by their names
+ * there, that its attributes stand for, and the properties that can be had of these.
  */
 #ifndef HAL_W1_PART_H
 #define HAL_W1_PART_H

@@ -68,8 +68,8 @@ static int read_condition(struct w1_slave *slave, unsigned at, uint8_t *bytes, u
 /*
  * What differs from what was read last: drivers let nobody change mask and polarity, and then the
  * attributes refuse it. With the control register the driver compares what it reads back, the
- * supply's bit included; where the compiler's char has a sign it finds that bit different and returns
- * an error, though the chip took the value: who writes looks what is there.
+ * supply's bit included; where the compiler's char has a sign it finds that bit different and
+ * returns an error, though the chip took the value: who writes looks what is there.
  */
 static int write_condition(struct w1_slave *slave, unsigned at, const uint8_t *bytes, unsigned n)
 {
@@ -218,7 +218,7 @@ static const struct w1_property ds2405_properties[] = {
 	{.name = "sensed", .file = "state"},
 };
 
-/* --- DS2413: some kernels give its whole byte, some the lower half; they have compared the two. --- */
+/* --- DS2413: some kernels give its whole byte, some the lower half; they have compared the two. */
 
 /* The pins, the latches, and the half. */
 static int read_halves(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)

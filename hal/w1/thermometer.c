@@ -241,7 +241,9 @@ static bool converts_at_once(struct w1_slaves *slaves, struct w1_bulk *bulk, con
 		if (slaves->slave[i].channel == bulk->channel &&
 		    !family_of(slaves->slave[i].rom[0])->thermometer)
 			return false;
-	/* No oftener than need be: who reads these while the master is removed hangs, and it too. */
+	/*
+	 * No oftener than need be: who reads these while the master is removed hangs, and it too.
+	 */
 	bulk->searched = bulk->searched ||
 	                 master_number(slaves->tree, name, "w1_master_attempts", 2) >= 2;
 	return bulk->searched || master_number(slaves->tree, name, "w1_master_search", 0) == 0;
@@ -258,8 +260,8 @@ void w1_convert_all(struct w1_slaves *slaves, struct w1_bulk *bulk)
 			slaves->slave[i].due = true;
 	w1_master_name(bulk->number, name);
 	/*
-	 * Where it fails, or is not there, each converts when it is read. What the driver refuses, it
-	 * tells its log.
+	 * Where it fails, or is not there, each converts when it is read. What the driver refuses,
+	 * it tells its log.
 	 */
 	if (w1_now(tree) >= bulk->refused_ns && w1_exists(tree, name, "therm_bulk_read") &&
 	    converts_at_once(slaves, bulk, name) &&

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Netlink family KOBJECT_UEVENT: a datagram each, "add@/devices/..." and NAME=VALUE, each with NUL. */
+/*
+ * Netlink family KOBJECT_UEVENT: a datagram each, "add@/devices/..." and NAME=VALUE, each with NUL.
+ */
 #include <errno.h>
 #include <linux/netlink.h>
 #include <string.h>

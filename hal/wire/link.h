@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The link contract: a link moves bits on one 1-Wire wire; a driven one has somebody else do that. A
- * master (one chip) owns 1 to 8 links.
+ * The link contract: a link moves bits on one 1-Wire wire; a driven one has somebody else do that.
+ * A master (one chip) owns 1 to 8 links.
  *
  * Blocking: each call is at most one bus operation and bounded; all waits go through the
  * environment the master was created with. One thread: the native bus calls it. Errors travel in
@@ -66,8 +66,8 @@ struct link_ops {
 	 */
 	int (*triplet)(struct link *link, bool direction);
 	/*
-	 * A whole search, of one family or (0) of all: 0, what found returned, or an error. NULL: made
-	 * of reset, write and triplet (hal/wire/search.h).
+	 * A whole search, of one family or (0) of all: 0, what found returned, or an error. NULL:
+	 * made of reset, write and triplet (hal/wire/search.h).
 	 */
 	int (*search)(struct link *link, bool alarm, uint8_t family, link_found *found, void *ctx);
 	/*
@@ -76,31 +76,32 @@ struct link_ops {
 	 */
 	int (*verify)(struct link *link, const uint8_t rom[8], bool alarm);
 	/*
-	 * For links that share their wire, and hold it for one request at a time: such a one keeps what
-	 * is written until something is read, so that a transaction is one request. reset() says 1
-	 * then, and read(), bit() or flush() say -EHOSTDOWN if nobody was there; a write() behind a
-	 * read() of the same transaction would be a request of its own and is refused. This sends what
-	 * is kept, and so does the next reset(); 0 or an error. NULL: nothing is ever kept.
+	 * For links that share their wire, and hold it for one request at a time: such a one keeps
+	 * what is written until something is read, so that a transaction is one request. reset()
+	 * says 1 then, and read(), bit() or flush() say -EHOSTDOWN if nobody was there; a write()
+	 * behind a read() of the same transaction would be a request of its own and is refused.
+	 * This sends what is kept, and so does the next reset(); 0 or an error. NULL: nothing is
+	 * ever kept.
 	 */
 	int (*flush)(struct link *link);
 	/*
-	 * Of a driven link (below); NULL in others. Chips that have no driver are offered as far as the
-	 * link takes their commands. area: hal/chips/area.h.
+	 * Of a driven link (below); NULL in others. Chips that have no driver are offered as far as
+	 * the link takes their commands. area: hal/chips/area.h.
 	 */
 	bool (*has_driver)(struct link *link, const uint8_t rom[8]);
 	/* Can an element (enum extension) of the property be had? */
 	bool (*offers)(struct link *link, const uint8_t rom[8], const char *property, int element);
 	/*
-	 * Bytes of an area of a chip that has a driver, from byte `at` of the area on. 0 or an error:
-	 * -ENOENT nothing stands for that area, -EOPNOTSUPP or -EACCES it cannot be written.
+	 * Bytes of an area of a chip that has a driver, from byte `at` of the area on. 0 or an
+	 * error: -ENOENT nothing stands for that area, -EOPNOTSUPP or -EACCES it cannot be written.
 	 */
 	int (*area_read)(struct link *link, const uint8_t rom[8], const struct area *area,
 	                 unsigned at, uint8_t *bytes, unsigned n);
 	int (*area_write)(struct link *link, const uint8_t rom[8], const struct area *area,
 	                  unsigned at, const uint8_t *bytes, unsigned n);
 	/*
-	 * The chip measures what a property of this name says; rom NULL: all thermometers. It is over
-	 * when this returns, or when the areas that it changes are read.
+	 * The chip measures what a property of this name says; rom NULL: all thermometers. It is
+	 * over when this returns, or when the areas that it changes are read.
 	 */
 	int (*convert)(struct link *link, const uint8_t *rom, const char *what);
 	/* -EOPNOTSUPP. */
@@ -116,21 +117,23 @@ struct link {
 	/* Links with one number share a chip: a call on one ends the strong pull-up of another. */
 	unsigned chip;
 	/*
-	 * No wire: drivers of somebody else (the kernel) speak to the chips. An error is the device's,
-	 * not the link's; a driver sees to the chips that the wire feeds; a conversion is over when
-	 * convert() returns.
+	 * No wire: drivers of somebody else (the kernel) speak to the chips. An error is the
+	 * device's, not the link's; a driver sees to the chips that the wire feeds; a conversion is
+	 * over when convert() returns.
 	 */
 	bool driven;
 	/*
-	 * There is no strong pull-up: LINK_STRONG is refused. EEPROMs are then written by the wire's
-	 * resistor, thermometers fed by the wire do not convert.
+	 * There is no strong pull-up: LINK_STRONG is refused. EEPROMs are then written by the
+	 * wire's resistor, thermometers fed by the wire do not convert.
 	 */
 	bool passive;
 };
 
 struct link_master;
 struct link_master_ops {
-	/* where: the target without its scheme. Allocates all, touches nothing. As bus_ops.create. */
+	/*
+	 * where: the target without its scheme. Allocates all, touches nothing. As bus_ops.create.
+	 */
 	int (*create)(const char *where, const struct bus_env *env, struct link_master **master,
 	              char *why, size_t why_size);
 	/* Optional, as bus_ops.option. */
@@ -145,15 +148,14 @@ struct link_master_ops {
 	void (*close)(struct link_master *master);
 	/*
 	 * Closed: does it look as if open() could work? 1 or 0, never touching the hardware. *mark
-	 * differs where something else is seen than before (a device file made anew, a driver bound or
-	 * unbound). NULL: that cannot be seen.
+	 * differs where something else is seen than before (a device file made anew, a driver bound
+	 * or unbound). NULL: that cannot be seen.
 	 */
 	int (*there)(struct link_master *master, uint64_t *mark);
 	/*
-	 * Optional. Take chips that belong here and could not be taken at open(): their channels come
-	 * behind those that are there. 1: some are still missing, or may yet come, and why names one
-	 * that is; 0: none is. -ENODEV,
-	 * -ECANCELED.
+	 * Optional. Take chips that belong here and could not be taken at open(): their channels
+	 * come behind those that are there. 1: some are still missing, or may yet come, and why
+	 * names one that is; 0: none is. -ENODEV, -ECANCELED.
 	 */
 	int (*grow)(struct link_master *master, char *why, size_t why_size);
 	unsigned (*channels)(struct link_master *master); /* known after open() and grow() */

@@ -139,8 +139,8 @@ static inline void *txn_own(struct txn *txn)
  */
 int txn_end(struct txn *txn, int err);
 /*
- * Of a device that somebody else's driver speaks to (link_ops.has_driver), in place of all above: its
- * areas (hal/chips/area.h), and what it is told to measure. As those of link_ops.
+ * Of a device that somebody else's driver speaks to (link_ops.has_driver), in place of all above:
+ * its areas (hal/chips/area.h), and what it is told to measure. As those of link_ops.
  */
 bool txn_driven(const struct txn *txn);
 int txn_driver_read(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,

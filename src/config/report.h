@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What is wrong with a file, reported as "FILE:LINE:COLUMN: error: TEXT". The first 50 errors and the
- * first 50 warnings are passed on, all are counted.
+ * What is wrong with a file, reported as "FILE:LINE:COLUMN: error: TEXT". The first 50 errors and
+ * the first 50 warnings are passed on, all are counted.
  */
 #ifndef CONFIG_REPORT_H
 #define CONFIG_REPORT_H

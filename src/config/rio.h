@@ -12,8 +12,8 @@
  *       Item { Name "room1" }          a block
  *     }
  *
- * In strings \" and \\ stand for the second character; other backslashes for themselves. LF, CRLF and
- * CR end a line, also mixed.
+ * In strings \" and \\ stand for the second character; other backslashes for themselves. LF, CRLF
+ * and CR end a line, also mixed.
  */
 #ifndef CONFIG_RIO_H
 #define CONFIG_RIO_H

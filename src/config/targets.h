@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Targets as they are written: lists with commas and bars, auto, and which spellings are the same. */
+/*
+ * Targets as they are written: lists with commas and bars, auto, and which spellings are the same.
+ */
 #ifndef CONFIG_TARGETS_H
 #define CONFIG_TARGETS_H
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Which rows and targets of a configuration stay in a changed one: two configurations are compared. */
+/*
+ * Which rows and targets of a configuration stay in a changed one: two configurations are compared.
+ */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What stays over a reload: a pure comparison of two configurations, made on the supervisor's thread.
+ * What stays over a reload: a pure comparison of two configurations, made on the supervisor's
+ * thread.
  */
 #ifndef ENGINE_ADOPTION_H
 #define ENGINE_ADOPTION_H
@@ -22,8 +23,8 @@ struct adoption {
 };
 
 /*
- * Ways to one wire stay all or none: their texts, their order and their options have to be the same.
- * 0 or -ENOMEM.
+ * Ways to one wire stay all or none: their texts, their order and their options have to be the
+ * same. 0 or -ENOMEM.
  */
 int adoption_plan(struct adoption *plan, const struct config *config, const struct config *before);
 void adoption_free(struct adoption *plan);

@@ -421,7 +421,9 @@ static bool begin_collecting(struct alarm_machine *m)
 	return m->collecting >= 0;
 }
 
-/* A driver may take the 0 and leave the flag set: then the next restart would look like this one. */
+/*
+ * A driver may take the 0 and leave the flag set: then the next restart would look like this one.
+ */
 static uint32_t por_proven(struct alarm_machine *m, struct lane *lane,
                            const struct bus_answer *answer, const char *data, int64_t now_ns)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The arming of alarm items: SetAlarm compared with the chip, and a restart of a device, which is one
- * restart as long as its por cannot be cleared (docs/semantics.md, section 4, "One restart").
+ * The arming of alarm items: SetAlarm compared with the chip, and a restart of a device, which is
+ * one restart as long as its por cannot be cleared (docs/semantics.md, section 4, "One restart").
  */
 #include <errno.h>
 #include <string.h>

@@ -5,7 +5,9 @@
 
 #include "src/engine/state.h"
 
-/* Is the item looked at in this cycle? Not while its device waits for another try to clear its por. */
+/*
+ * Is the item looked at in this cycle? Not while its device waits for another try to clear its por.
+ */
 bool alarm_takes_part(const struct alarm_item *item, int64_t now_ns);
 
 /* por was read: not 0, which is a restart if none is known; 0, or 0 was written and read back. */

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Alarm items are made from the configuration here; they come to the machine of a lane and leave it. */
+/*
+ * Alarm items are made from the configuration here; they come to the machine of a lane and leave
+ * it.
+ */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

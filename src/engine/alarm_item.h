@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The alarm items of the table, and what the alarm machine of a lane knows and holds of them. Nothing
- * here asks a bus or touches a signal.
+ * The alarm items of the table, and what the alarm machine of a lane knows and holds of them.
+ * Nothing here asks a bus or touches a signal.
  */
 #ifndef ENGINE_ALARM_ITEM_H
 #define ENGINE_ALARM_ITEM_H
@@ -117,8 +117,8 @@ void alarm_free(struct alarm_machine *m);
 /* The lane serves the item from now on: it starts at ALARM_POR_READ, its SetAlarm is compared. */
 void alarm_take_item(struct alarm_machine *m, struct alarm_item *item, int64_t now_ns);
 /*
- * The lane does not serve the item any more: if the machine worked on it, the machine goes on with the
- * next alarm. True: the answer to what the machine asked last is of no interest any more.
+ * The lane does not serve the item any more: if the machine worked on it, the machine goes on with
+ * the next alarm. True: the answer to what the machine asked last is of no interest any more.
  */
 bool alarm_drop_item(struct alarm_machine *m, struct alarm_item *item);
 /* Make list_path of the families of its items. */

@@ -13,8 +13,8 @@
 /* 1, 0, or -EILSEQ: blanks trimmed; a list is non-zero if one entry is; also yes/no, on/off. */
 int alarm_non_zero(const char *text, size_t len);
 /*
- * The channels that a latch which is not zero names: the bits of a number, or the entries of a list; 1
- * where it names none.
+ * The channels that a latch which is not zero names: the bits of a number, or the entries of a
+ * list; 1 where it names none.
  */
 uint32_t alarm_channels(const char *text);
 /* Without leading blanks, cut at size - 1 and NUL-terminated. */

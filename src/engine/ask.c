@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The order of a lane: this file chooses what the lane asks its bus next, and makes that request. */
+/*
+ * The order of a lane: this file chooses what the lane asks its bus next, and makes that request.
+ */
 #include <string.h>
 
 #include "src/engine/alarm.h"

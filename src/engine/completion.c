@@ -170,8 +170,8 @@ static int take_read_value(struct lane *lane, struct signal *s, const struct slo
 }
 
 /*
- * An answer that was on its way while nobody ran may have been measured long before it was taken, and
- * its bus could not know: then it is as old as its request.
+ * An answer that was on its way while nobody ran may have been measured long before it was taken,
+ * and its bus could not know: then it is as old as its request.
  */
 static int64_t time_of_reading(const struct engine *e, const struct slot *slot,
                                const struct bus_answer *answer, int64_t now_ns)

@@ -10,8 +10,8 @@ void engine_read_done(struct engine *e, struct lane *lane, const struct slot *sl
 void engine_write_done(struct engine *e, struct lane *lane, const struct slot *slot,
                        const struct bus_answer *answer, int64_t now_ns);
 /*
- * The value of a read into the table; 0, or why it cannot be one (counted as item error). *wait_ns is
- * the back-off, 0: none.
+ * The value of a read into the table; 0, or why it cannot be one (counted as item error). *wait_ns
+ * is the back-off, 0: none.
  */
 int engine_take_reading(struct engine *e, struct lane *lane, struct signal *s,
                         const struct slot *slot, const struct bus_answer *answer, int64_t now_ns,

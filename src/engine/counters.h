@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Counters: the engine's own first, then LANE_COUNTERS for each port. The image is planned with these
- * names.
+ * Counters: the engine's own first, then LANE_COUNTERS for each port. The image is planned with
+ * these names.
  */
 #ifndef ENGINE_COUNTERS_H
 #define ENGINE_COUNTERS_H

@@ -6,8 +6,8 @@
 #include "src/engine/state.h"
 
 /*
- * The device is there again, and may have restarted: read its signals on this lane, write its outputs
- * again and arm its alarms.
+ * The device is there again, and may have restarted: read its signals on this lane, write its
+ * outputs again and arm its alarms.
  */
 void engine_device_back(struct lane *lane, struct device *device);
 

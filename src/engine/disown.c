@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What is lent to a bus while its signal moves to another lane, or while a reload goes on: the answer
- * only frees the slot.
+ * What is lent to a bus while its signal moves to another lane, or while a reload goes on: the
+ * answer only frees the slot.
  */
 #include <assert.h>
 

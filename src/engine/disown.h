@@ -20,9 +20,9 @@ void lane_disown_alarm(struct lane *lane);
 void lane_keep_reads(struct lane *lane);
 void lane_resume_reads(struct lane *lane);
 /*
- * A reload: this lane, which was never filled, goes on where `before` of another engine stands. What
- * is lent comes over and counts for nothing but its slots, and for outputs that it may still reach,
- * until readings are resumed: successors[row] is that row here, TABLE_NO_ROW: it has none.
+ * A reload: this lane, which was never filled, goes on where `before` of another engine stands.
+ * What is lent comes over and counts for nothing but its slots, and for outputs that it may still
+ * reach, until readings are resumed: successors[row] is that row here, TABLE_NO_ROW: it has none.
  */
 void lane_adopt(struct lane *lane, struct lane *before, const uint32_t *successors);
 

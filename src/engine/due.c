@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Sets of what is due, as bits under a summary of words that are not empty, and the wheel, as lists of
- * rows by the period that they wait for.
+ * Sets of what is due, as bits under a summary of words that are not empty, and the wheel, as lists
+ * of rows by the period that they wait for.
  */
 #include <assert.h>
 #include <errno.h>

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The engine: it owns the signal table, drives its lanes and publishes into the image. It does no I/O
- * and knows no clock: time is an argument, answers and events are brought to it, and requests leave
- * through the ports. One thread. So a day of its life is tested in milliseconds.
+ * The engine: it owns the signal table, drives its lanes and publishes into the image. It does no
+ * I/O and knows no clock: time is an argument, answers and events are brought to it, and requests
+ * leave through the ports. One thread. So a day of its life is tested in milliseconds.
  *
- * This room may touch src/signal, src/config/config.h, src/shm, the log, and of hal the bus contract
- * and the paths. Its files form a stack: a file uses files of its own layer and of those below it, and
- * no two files use each other. state.h has the structures that all of them work on, and says which
- * file changes what; each other header declares what its own .c defines.
+ * This room may touch src/signal, src/config/config.h, src/shm, the log, and of hal the bus
+ * contract and the paths. Its files form a stack: a file uses files of its own layer and of those
+ * below it, and no two files use each other. state.h has the structures that all of them work on,
+ * and says which file changes what; each other header declares what its own .c defines.
  *
  *   step                 engine (makes it, and takes the calls), adopt, adopt_signal (a reload)
  *   events and answers   lane_event, lane_answer (record what happened), ask (chooses what is next)
@@ -64,7 +64,9 @@ void engine_event(struct engine *engine, unsigned port, const struct bus_event *
  */
 int64_t engine_step(struct engine *engine, int64_t now_ns);
 
-/* Was anything published since the last call? The host then wakes the consumers that wait for news. */
+/*
+ * Was anything published since the last call? The host then wakes the consumers that wait for news.
+ */
 bool engine_published(struct engine *engine);
 
 /*

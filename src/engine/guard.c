@@ -9,9 +9,9 @@
 #define RECENT_NS (60 * NS_PER_S)
 
 /*
- * 127.9375 in any rounding, from 127.9 to 128: nothing in there comes from a chip that measures up to
- * 125. What is above is no rounding of it: the range of the chip excludes that, and an alias may be
- * that of a chip which measures it.
+ * 127.9375 in any rounding, from 127.9 to 128: nothing in there comes from a chip that measures
+ * up to 125. What is above is no rounding of it: the range of the chip excludes that, and an alias
+ * may be that of a chip which measures it.
  */
 #define STARVED_LEAST 127.8995
 #define STARVED_MOST 128.0005

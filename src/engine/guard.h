@@ -15,8 +15,9 @@ struct guard {
 	int64_t last_ns; /* when; 0: none yet */
 };
 /*
- * True if a reading means a power fault. 127.9375 always does, in any rounding. 85 does unless the room was near it
- * when last measured (within 5 degrees, no longer ago than 60 s): a boiler passes 85 on its way.
+ * True if a reading means a power fault. 127.9375 always does, in any rounding. 85 does unless the
+ * room was near it when last measured (within 5 degrees, no longer ago than 60 s): a boiler passes
+ * 85 on its way.
  */
 bool guard_refuses(struct guard *guard, double degrees, int64_t now_ns);
 

@@ -9,7 +9,10 @@
 
 #include "hal/bus/bus.h"
 
-/* Any lane: the lane that serves the device of the path, or each in turn if the table has no such device. */
+/*
+ * Any lane: the lane that serves the device of the path, or each in turn if the table has no such
+ * device.
+ */
 #define GUEST_ANY_LANE (-1)
 
 /*
@@ -20,8 +23,8 @@ struct engine_guest {
 	uint8_t op; /* enum bus_op */
 	bool fresh;
 	int lane; /* or GUEST_ANY_LANE */
-	uint32_t
-		generation; /* of the image that numbers the lanes as lane does; when it is answered, as served does */
+	/* Of the image that numbers the lanes as lane does; when it is answered, as served does. */
+	uint32_t generation;
 	const char *path;
 	uint8_t *data; /* as in struct bus_req */
 	uint32_t len, offset;

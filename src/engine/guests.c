@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The guests of the lanes: requests of clients of the served protocol wait here for their turns, are
- * lent to the bus and answered.
+ * The guests of the lanes: requests of clients of the served protocol wait here for their turns,
+ * are lent to the bus and answered.
  */
 #include <errno.h>
 #include <string.h>
@@ -21,8 +21,8 @@
 #define GUESTS_LENT 64
 #define GUESTS_PRESSING 16
 /*
- * How long one that came through another server waits for its turn: two servers that have each other
- * as targets may wait for each other's only connection.
+ * How long one that came through another server waits for its turn: two servers that have each
+ * other as targets may wait for each other's only connection.
  */
 #define GUEST_SERVER_NS (2 * NS_PER_S)
 
@@ -53,7 +53,10 @@ static struct engine_guest *guest_leaves(struct lane *lane)
 	return g;
 }
 
-/* The more precise of two errors: a missing property, then a missing device, then a target that is down. */
+/*
+ * The more precise of two errors: a missing property, then a missing device, then a target that is
+ * down.
+ */
 static int more_telling(int a, int b)
 {
 	static const int order[] = {-ENOTCONN, -ENODEV, -ENOENT};
@@ -157,7 +160,10 @@ void guests_take(struct engine *e, int64_t now_ns)
 			answer_guest(e, g);
 		}
 	}
-	/* in order: a request that a lane cannot serve goes to a later lane now, to an earlier one next time */
+	/*
+	 * in order: a request that a lane cannot serve goes to a later lane now, to an earlier one
+	 * next time
+	 */
 	for (unsigned i = 0; i < e->lane_count; i++)
 		if (e->lanes[i].guests.first)
 			look_at_waiting(e, &e->lanes[i], now_ns);
@@ -190,8 +196,9 @@ void guest_passed(struct lane *lane)
 }
 
 /*
- * A bus that the table keeps busy would never come to its guests. So the few requests of guests that
- * are lent beside the table's have the priority of inputs, and some of those on an idle bus too.
+ * A bus that the table keeps busy would never come to its guests. So the few requests of guests
+ * that are lent beside the table's have the priority of inputs, and some of those on an idle bus
+ * too.
  */
 bool guest_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
 {

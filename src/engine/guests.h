@@ -22,9 +22,9 @@ void guest_done(struct engine *e, struct lane *lane, struct slot *slot,
 void guest_gone(struct engine *e, struct slot *slot);
 
 /*
- * A reload. adopt: guests that wait on the lane `before`, or have something lent there, go on in a lane
- * that has taken its slots over. refuse: they learn that their target is down. release: they get back
- * what they had lent to buses that have ended.
+ * A reload. adopt: guests that wait on the lane `before`, or have something lent there, go on in a
+ * lane that has taken its slots over. refuse: they learn that their target is down. release: they
+ * get back what they had lent to buses that have ended.
  */
 void guests_adopt(struct lane *lane, struct lane *before);
 void guests_refuse(struct lane *lane);

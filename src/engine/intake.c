@@ -16,8 +16,8 @@
 /* A writer that holds a string's claim for longer has died. */
 #define CLAIM_NS NS_PER_S
 /*
- * A program that marks slots without end costs this many looks a second. An honest set waits for none
- * of it unless there is such a program; then it waits until the looks have gone round.
+ * A program that marks slots without end costs this many looks a second. An honest set waits for
+ * none of it unless there is such a program; then it waits until the looks have gone round.
  */
 #define LOOKS_PER_S 100000u
 #define LOOKS_LEAST 5000u
@@ -263,7 +263,10 @@ int64_t engine_intake_limited(struct engine *e, int64_t now_ns)
 	if (now_ns < e->defer_ns)
 		return e->defer_ns;
 	refill_looks(e, now_ns);
-	/* once round: whoever marks the first slots again and again does not keep the last ones waiting */
+	/*
+	 * once round: whoever marks the first slots again and again does not keep the last ones
+	 * waiting
+	 */
 	if (look_at_marked(e, &e->look_from, &e->looks, now_ns)) {
 		e->look_from = 0;
 		if (!begin || look_at_marked(e, &e->look_from, &e->looks, now_ns)) {

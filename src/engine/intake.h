@@ -8,8 +8,8 @@
 /* Look at all that is marked. */
 void engine_intake(struct engine *e, int64_t now_ns);
 /*
- * The same, with as many looks as programs that mark slots without end may cost; the rest is left for
- * a later step. Returns when that is due, INT64_MAX: nothing is left.
+ * The same, with as many looks as programs that mark slots without end may cost; the rest is left
+ * for a later step. Returns when that is due, INT64_MAX: nothing is left.
  */
 int64_t engine_intake_limited(struct engine *e, int64_t now_ns);
 void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns);

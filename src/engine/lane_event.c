@@ -14,8 +14,8 @@
 #include "src/text/log.h"
 
 /*
- * A server with a cache may give the same value again and again without a sign of it. The log names,
- * once for each target, the signals that are read more often than the server looks.
+ * A server with a cache may give the same value again and again without a sign of it. The log
+ * names, once for each target, the signals that are read more often than the server looks.
  */
 static void report_cached(const struct lane *lane, int64_t cache_ns)
 {

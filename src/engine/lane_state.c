@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A lane whose target goes up, fails, is stuck or answers again: what that means to the signals of the
- * lane, and the fact for the routing turn.
+ * A lane whose target goes up, fails, is stuck or answers again: what that means to the signals of
+ * the lane, and the fact for the routing turn.
  */
 #include <errno.h>
 

@@ -12,8 +12,8 @@ void lane_fail(struct lane *lane, int err, int64_t now_ns);
 /* The signals that no other lane has taken over go bad. */
 void lane_down(struct lane *lane, int err);
 /*
- * The bus has reported nothing at all since a request began, or all that it takes was given up: the bus is
- * stuck, not one device slow. And it answers again.
+ * The bus has reported nothing at all since a request began, or all that it takes was given up: the
+ * bus is stuck, not one device slow. And it answers again.
  */
 void lane_stuck(struct lane *lane, int64_t now_ns);
 void lane_unstuck(struct lane *lane, int64_t now_ns);

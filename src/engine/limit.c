@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The limit alarms of one signal: conditions, their delays, their rank, and the state of the alarm. */
+/*
+ * The limit alarms of one signal: conditions, their delays, their rank, and the state of the alarm.
+ */
 #include "src/engine/limit.h"
 
 #define BIT(kind) ((uint16_t)(1u << (kind)))

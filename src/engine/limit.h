@@ -27,7 +27,7 @@ enum ows_limit_state limit_next(enum ows_limit_state state, enum limit_event eve
 /* Bits of conditions: 1 << kind. */
 struct limit {
 	enum ows_limit_state state;
-	uint8_t kind; /* enum ows_alarm_kind that stands, or returned and is unacknowledged; 0 none */
+	uint8_t kind; /* enum ows_alarm_kind that stands, or returned unacknowledged; 0 none */
 	uint16_t in, active;
 	int64_t since_ns[OWS_ALARM_BAD + 1]; /* when in changed last */
 };

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A signal moves to another lane here and nowhere else. A value from before the move is never shown as
- * good, what was written is forgotten, and requests that the old bus still has count for nothing.
+ * A signal moves to another lane here and nowhere else. A value from before the move is never shown
+ * as good, what was written is forgotten, and requests that the old bus still has count for
+ * nothing.
  */
 #include <errno.h>
 

@@ -15,8 +15,9 @@ struct engine_port {
 	int (*submit)(void *ctx, struct bus_req *req);
 	void *ctx;
 	/*
-	 * Ways to one wire (a bar) have the same number; groups are numbered in the order in which they
-	 * are written, and so are the ways of a group. Every way but the first starts suspended.
+	 * Ways to one wire (a bar) have the same number; groups are numbered in the order in which
+	 * they are written, and so are the ways of a group. Every way but the first starts
+	 * suspended.
 	 */
 	unsigned group;
 	/* bus_ops.suspend; never blocks. NULL: nothing to let go of. */

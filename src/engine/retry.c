@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* What an error means for its signal: which kind it is, which quality it gives, and the back-off. */
+/*
+ * What an error means for its signal: which kind it is, which quality it gives, and the back-off.
+ */
 #include <errno.h>
 
 #include "src/engine/retry.h"

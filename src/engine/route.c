@@ -165,7 +165,9 @@ static int successor(const struct route_bar *bar, const struct route_way *ways)
 	return -1;
 }
 
-/* How long a way that has failed is given before the next one's turn: nothing in the first round. */
+/*
+ * How long a way that has failed is given before the next one's turn: nothing in the first round.
+ */
 static int64_t dwell(const struct route_bar *bar, const struct route_way *ways)
 {
 	unsigned rounds = (bar->failures + 1) / bar->count;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Which target serves a device: pure functions over facts. A group is a wire; its ways (a bar) are targets of
- * which one is open. Groups are different wires (a comma), all of them open, and each device is
- * served by one. The rules stand in docs/semantics.md, "Several targets"; the tests are laid beside
- * them.
+ * Which target serves a device: pure functions over facts. A group is a wire; its ways (a bar) are
+ * targets of which one is open. Groups are different wires (a comma), all of them open, and each
+ * device is served by one. The rules stand in docs/semantics.md, "Several targets"; the tests are
+ * laid beside them.
  */
 #ifndef ENGINE_ROUTE_H
 #define ENGINE_ROUTE_H

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The routing turn: acts on the facts that events and answers have recorded. It opens and leaves the
- * ways of the groups, moves devices to the groups that serve them, and sends out for those that are
- * nowhere.
+ * The routing turn: acts on the facts that events and answers have recorded. It opens and leaves
+ * the ways of the groups, moves devices to the groups that serve them, and sends out for those that
+ * are nowhere.
  */
 #include "src/engine/routing.h"
 #include "src/engine/due.h"

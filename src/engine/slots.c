@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The slots of a lane: rooms for requests. A slot is lent to the bus with its request, and comes back
- * with the answer.
+ * The slots of a lane: rooms for requests. A slot is lent to the bus with its request, and comes
+ * back with the answer.
  */
 #include <errno.h>
 #include <stdlib.h>

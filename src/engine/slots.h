@@ -5,7 +5,10 @@
 
 #include "src/engine/state.h"
 
-/* Rooms for as many requests as the bus takes. 0, or -ENOMEM: slots_free() takes back what is there. */
+/*
+ * Rooms for as many requests as the bus takes. 0, or -ENOMEM: slots_free() takes back what is
+ * there.
+ */
 int slots_init(struct lane *lane);
 void slots_free(struct lane *lane);
 

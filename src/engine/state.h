@@ -33,7 +33,10 @@ struct engine_guests;
 
 enum purpose { FOR_READ, FOR_WRITE, FOR_STRUCTURE, FOR_ALARM, FOR_PROBE, FOR_GUEST };
 
-/* A request and its room. Its id is slot | turn << 16, so that a late answer does not fit a new request. */
+/*
+ * A request and its room. Its id is slot | turn << 16, so that a late answer does not fit a new
+ * request.
+ */
 struct slot {
 	/* slots.c */
 	struct bus_req req;
@@ -255,7 +258,10 @@ struct engine {
 	uint32_t busy_slot[8];
 	int64_t busy_since_ns[8];
 	unsigned busy_count;
-	/* Of the looks at marked slots: how many are left, since when, where the next begins, not sooner. */
+	/*
+	 * Of the looks at marked slots: how many are left, since when, where the next begins, not
+	 * sooner.
+	 */
 	uint32_t looks, look_from;
 	int64_t looks_ns, defer_ns;
 	struct log_rate refused;

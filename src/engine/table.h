@@ -42,7 +42,7 @@ struct signal_reading {
 struct signal_seen {
 	uint32_t stamp, one_shots, dgn_resets, acknowledged;
 	uint32_t client; /* index + 1 of the control program that beats; 0: none */
-	bool awaited; /* the command is of before the start: nothing is written until client beats */
+	bool awaited;    /* the command is of before the start: not written until client beats */
 };
 
 /* What is to be written, what was written, and how writing goes. */

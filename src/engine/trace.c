@@ -51,7 +51,9 @@ static void quote_result(const struct slot *slot, const struct bus_answer *answe
 	}
 }
 
-/* A quick target answers thousands of times a second: the log has to stay of use, and to keep up. */
+/*
+ * A quick target answers thousands of times a second: the log has to stay of use, and to keep up.
+ */
 static bool may_show(struct engine *e, bool failed)
 {
 	struct trace *trace = &e->trace;

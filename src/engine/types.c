@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The check of types on a lane: it asks /structure of its target about the properties of its signals,
- * and reports each signal whose type cannot hold its property.
+ * The check of types on a lane: it asks /structure of its target about the properties of its
+ * signals, and reports each signal whose type cannot hold its property.
  */
 #include "src/engine/types.h"
 #include "src/engine/publish.h"

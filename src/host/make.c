@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* What a start and a reload make: what serves a configuration, and its threads beside the engine's. */
+/*
+ * What a start and a reload make: what serves a configuration, and its threads beside the engine's.
+ */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

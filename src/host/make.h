@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* What a start and a reload make: what serves a configuration, and its threads beside the engine's. */
+/*
+ * What a start and a reload make: what serves a configuration, and its threads beside the engine's.
+ */
 #ifndef HOST_MAKE_H
 #define HOST_MAKE_H
 

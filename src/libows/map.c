@@ -183,7 +183,7 @@ int map_open(const char *instance, enum ows_mode mode, struct ows_map *map)
 	err = map_file(instance, "image", false, &base, &map->image_size, &map->image_file);
 	if (err)
 		return err;
-	/* NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): errno is not 0 where it failed */
+	/* NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): errno is not 0 then */
 	map->base = base;
 	map->image = base;
 	err = check_image(map);

@@ -60,7 +60,7 @@ enum ows_quality {
 	OWS_Q_SHORT = 0x19,       /* the wire is short */
 	OWS_Q_INITIAL = 0x20,     /* never read or written */
 	OWS_Q_LAST_USABLE = 0x44, /* moved to another target, which has not answered yet */
-	OWS_Q_DISABLED = 0x44,    /* reading disabled by _ReadEnable: likewise the last usable value */
+	OWS_Q_DISABLED = 0x44,    /* disabled by _ReadEnable: likewise the last usable value */
 	OWS_Q_RANGE = 0x54,       /* out of range */
 	OWS_Q_LOW = 0x55,         /* held at the type's lower limit */
 	OWS_Q_HIGH = 0x56,        /* held at the type's upper limit */
@@ -88,7 +88,7 @@ struct ows_value {
 	int64_t age_ns;      /* now - measured; before the first value: since owsd started */
 	int32_t err;         /* 0 or negative errno: of the last read, else of the last write */
 	uint32_t count;      /* updates since owsd started */
-	uint32_t applied;    /* outputs: stamp (see ows_set) of the last command confirmed on the bus */
+	uint32_t applied;    /* outputs: stamp (see ows_set) of the last confirmed command */
 	uint32_t len;        /* strings: bytes */
 	uint8_t type;        /* enum ows_type */
 	uint8_t quality;     /* enum ows_quality, lowered by age and by a dead owsd */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The alarms that this user's owsctl has read. Each run of owsctl is a new reader to libows, but not
- * to its user: what it has read of _Alarm stands in /dev/shm/owsd.NAME.seen.UID until the next run.
+ * The alarms that this user's owsctl has read. Each run of owsctl is a new reader to libows, but
+ * not to its user: what it has read of _Alarm stands in /dev/shm/owsd.NAME.seen.UID until the next
+ * run.
  *
  *     START              of owsd, in nanoseconds: what another owsd counted means nothing
  *     OCCURRENCES NAME   of each signal whose _Alarm was read

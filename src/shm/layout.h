@@ -42,7 +42,7 @@ struct ows_sample { /* 48 bytes, 12 words */
 	int64_t value;       /* bits of a double for float and double, else the integer */
 	int64_t measured_ns; /* CLOCK_BOOTTIME; 0: never */
 	int64_t tried_ns;    /* last attempt; 0: never */
-	int32_t err;         /* 0 or negative errno: of the last reading, else of the last writing */
+	int32_t err;         /* 0 or negative errno: of the last read, else of the last write */
 	uint8_t quality;     /* enum ows_quality */
 	uint8_t detail;      /* OWS_DETAIL_ bits */
 	uint8_t target;      /* index in the target area; 255 none */
@@ -61,7 +61,7 @@ struct ows_attrs { /* 72 bytes, 18 words */
 	int64_t update_ns;   /* seconds of _Period: time between the last two updates, ns */
 	int64_t age_max_ns;  /* _AgeMax but for the running age */
 	int64_t commanded;   /* commanded value, as in sample.value, if OWS_ATTR_COMMANDED */
-	uint32_t per_base;   /* period number of the last update (before it: 0). _PerCount = now - this */
+	uint32_t per_base;   /* period of the last update (before it: 0). _PerCount = now - this */
 	uint32_t per_max;    /* _PerMax but for the running count */
 	uint32_t pend_base;  /* period number when the request in work began, if OWS_ATTR_IN_WORK */
 	uint32_t pend_last;
@@ -150,7 +150,7 @@ struct ows_counter_entry { /* 64 bytes */
 	char name[48];  /* NUL-terminated */
 	uint32_t target; /* index, 0xffffffff: owsd itself */
 	uint32_t spare;
-	uint32_t low, high; /* of the 64-bit total; for display, the two may be of different moments */
+	uint32_t low, high; /* of the 64-bit total; for display: they may be of different moments */
 };
 
 /*
@@ -210,7 +210,7 @@ struct ows_image_header { /* 256 bytes: four lines of 64 */
 /* A consumer's commands for one record; slot i belongs to record i. Slot 0: driver _DGNRESET. */
 struct ows_command_slot { /* 32 bytes */
 	uint64_t value;    /* as ows_sample.value */
-	uint32_t stamp;    /* counts commands (fetch_add after value was stored); 0: never commanded */
+	uint32_t stamp;    /* counts commands (fetch_add after value is stored); 0: never set */
 	uint32_t client;   /* index + 1 in the client table of who set it last; 0: nobody who beats;
 	                      OWS_CLIENT_SAFE: owsd put it to SafeValue */
 	uint32_t read_enable;  /* 0 not commanded, 1 off, 2 on */
@@ -264,7 +264,7 @@ struct ows_command_header { /* 256 bytes */
 	uint32_t spare1[10];
 
 	uint32_t bell;     /* the engine's futex word: fetch_add 1, wake one */
-	uint32_t awake;    /* not 0: the engine works and will look before it sleeps, no wake needed */
+	uint32_t awake;    /* not 0: the engine works and looks before it sleeps; no wake needed */
 	uint32_t spare2[14];
 
 	uint32_t spare3[16];

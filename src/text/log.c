@@ -234,7 +234,7 @@ int log_drain(struct log *log, int fd, int prefix)
 		err = write_line(fd, prefix, line->level, line->text, line->len);
 		if (err == -EAGAIN)
 			return count;
-		if (err) /* a full disk or a reader that is gone: report_lost() logs the loss later */
+		if (err) /* a full disk or no reader: report_lost() logs the loss later */
 			__atomic_fetch_add(&log->dropped, 1, __ATOMIC_RELAXED);
 		__atomic_store_n(&line->turn, turn + LINES, __ATOMIC_RELEASE);
 		log->tail++;

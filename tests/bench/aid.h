@@ -37,7 +37,9 @@ struct bench_peer {
 bool bench_peer_start(struct bench_peer *peer, unsigned devices, int cpu);
 void bench_peer_end(struct bench_peer *peer);
 
-/* A bare persistent connection: one request on its way at a time, nothing checked but the length. */
+/*
+ * A bare persistent connection: one request on its way at a time, nothing checked but the length.
+ */
 int bench_socket(int port);
 /* Returns the length of the answer or -1. */
 int bench_read(int fd, const char *path, char *data, size_t size);

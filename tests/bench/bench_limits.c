@@ -40,7 +40,9 @@ static void memory(const char *name, size_t size)
 
 	if (room == MAP_FAILED)
 		return;
-	/* a full cycle through all lines, by steps that no prefetcher knows (lines is a power of 2) */
+	/*
+	 * a full cycle through all lines, by steps that no prefetcher knows (lines is a power of 2)
+	 */
 	for (size_t i = 0, here = 0; i < lines; i++) {
 		size_t next = (here * 1664525u + 1013904223u) % lines;
 

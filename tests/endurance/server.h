@@ -67,7 +67,9 @@ static inline struct server *server_of(struct part *part)
 	return part->own;
 }
 
-/* server_lies.c: in words; a word of a frame made another; the lie in the answer that is to go out. */
+/*
+ * server_lies.c: in words; a word of a frame made another; the lie in the answer that is to go out.
+ */
 extern const char *const server_lies[LIES];
 void server_change(uint8_t *frame, unsigned word, uint32_t value);
 void server_lie(struct server_client *c, enum lie lie);

@@ -5,7 +5,10 @@
 
 #include "tests/endurance/station.h"
 
-/* station.c: when station_run() ends; when anything but this bus (NULL: at all) has to do something. */
+/*
+ * station.c: when station_run() ends; when anything but this bus (NULL: at all) has to do
+ * something.
+ */
 extern int64_t station_until;
 int64_t station_next(const struct station_bus *own);
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Texts that stand for something: values of every type, names of signals and attributes, paths,
- * device ids, addresses. What was read, printed, is read as the same. The first byte picks the type.
+ * device ids, addresses. What was read, printed, is read as the same. The first byte picks the
+ * type.
  */
 #include <errno.h>
 #include <stdio.h>
@@ -153,7 +154,9 @@ static void check_addresses(const char *text, size_t n)
 	TEST_ASSERT_EQUAL_INT_MESSAGE(0, listen_peers_parse(printed, strlen(printed), &same, &why),
 	                              printed);
 	TEST_ASSERT_EQUAL_UINT_MESSAGE(peers.bits, same.bits, printed);
-	/* An address of IPv4 is looked up in ranges of IPv4, also in the form that IPv6 has for it. */
+	/*
+	 * An address of IPv4 is looked up in ranges of IPv4, also in the form that IPv6 has for it.
+	 */
 	bool is_v4_in_v6 = peers.is_v6 && memcmp(peers.bytes, mapped, sizeof(mapped)) == 0;
 	TEST_ASSERT_TRUE_MESSAGE(
 		listen_peers_have(&same, 1, peers.is_v6, peers.bytes) != is_v4_in_v6, printed);

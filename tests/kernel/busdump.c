@@ -7,9 +7,9 @@
  *   busdump TARGET dir PATH...   the entries of each directory
  *   busdump TARGET read          the paths on standard input
  *   busdump TARGET write         "PATH VALUE" lines on standard input; \xNN is a byte of VALUE
- *   busdump TARGET rounds PATH...   for each line on standard input all paths at once (100 at a time),
- *                                   as the engine asks for what is due; then a line "round". A line
- *                                   that is a number asks for the first so many
+ *   busdump TARGET rounds PATH...   for each line on standard input all paths at once (100 at
+ *                                   a time), as the engine asks for what is due; then "round".
+ *                                   A line that is a number asks for the first so many
  */
 #include <poll.h>
 #include <stdio.h>

@@ -37,7 +37,9 @@ bool sim_tell(const char *event);
 /* --- The daemon --- */
 void daemon_start(void);
 void daemon_signal(int number);
-/* After a signal that ends it: wait, at most 60 s. Its status as of waitpid(), -1: it does not end. */
+/*
+ * After a signal that ends it: wait, at most 60 s. Its status as of waitpid(), -1: it does not end.
+ */
 int daemon_end(void);
 /* Exchange its file for the other one and have it read. */
 void daemon_reload(void);
@@ -46,7 +48,7 @@ bool daemon_lives(void);
 long daemon_memory(void);
 int daemon_descriptors(void);
 
-/* --- A client of the protocol that owsd serves: asks again and again, checks what it is told --- */
+/* --- A client of the protocol that owsd serves: asks again and again, checks what it is told */
 void client_step(void);
 unsigned client_answers(void);
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * What an owserver says, as text to compare: one line for each property, its path, a tab, and the
- * answer as it came, escaped, or "ret=-N". Speaks the protocol by itself, so that it can judge ours.
+ * answer as it came, escaped, or "ret=-N". Speaks the protocol by itself, so that it can judge
+ * ours.
  *
  *   owdump PORT dir PATH...    the entries of each directory
  *   owdump PORT walk PATH...   every property below each directory, in the order of its listing

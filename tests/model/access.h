@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Put before a source file (-include), this makes its atomic accesses and fences steps of the model.
- * The file itself is the one that the programs are built from. Each access knows where it stands, so
- * that it can be weakened there.
+ * Put before a source file (-include), this makes its atomic accesses and fences steps of the
+ * model. The file itself is the one that the programs are built from. Each access knows where it
+ * stands, so that it can be weakened there.
  */
 #ifndef TESTS_MODEL_ACCESS_H
 #define TESTS_MODEL_ACCESS_H

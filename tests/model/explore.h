@@ -15,7 +15,9 @@ struct scenario {
 	void (*setup)(void); /* before the threads: memory, explore_track(), explore_keep() */
 	unsigned threads;
 	void (*run[THREADS])(void);
-	/* may be killed once, before any access; then this runs in its place, knowing what it knew */
+	/*
+	 * may be killed once, before any access; then this runs in its place, knowing what it knew
+	 */
 	void (*reborn[THREADS])(void);
 	void (*end)(void); /* when nobody can go on */
 };

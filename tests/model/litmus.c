@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The checker checked: small programs of which it is known, and published, what RC11 allows and what
- * it forbids. x, y, z are 0 before; each thread notes what it read.
+ * The checker checked: small programs of which it is known, and published, what RC11 allows and
+ * what it forbids. x, y, z are 0 before; each thread notes what it read.
  */
 #include <stdio.h>
 #include <string.h>

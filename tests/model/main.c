@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The protocol of the shared memory, checked in every order and with everything that a weak memory
- * may show: first the checker by programs of which the answer is known, then the code, then the code
- * with each of its orders and fences weakened in turn, which must be found out.
+ * may show: first the checker by programs of which the answer is known, then the code, then the
+ * code with each of its orders and fences weakened in turn, which must be found out.
  */
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Control programs set, owsd takes: the code of src/libows/set.c, src/shm/commands.c, src/shm/carry.c,
- * and the sleep of src/host/engine_thread.c.
+ * Control programs set, owsd takes: the code of src/libows/set.c, src/shm/commands.c,
+ * src/shm/carry.c, and the sleep of src/host/engine_thread.c.
  */
 #include "src/host/engine_thread.c"
 #include "src/libows/handle.h"

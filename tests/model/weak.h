@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A weak memory, as C and C++ promise it to relaxed, release and acquire accesses and to fences: each
- * location keeps all that was ever stored to it, in the order in which it lies there, and a thread
- * may read any of it that is not older than what it knows of. What a thread knows is a view: for each
- * location the oldest message that it may still read. Messages carry the view of who released them.
- * That is RC11 in the form of views (Kang et al., POPL 2017; Dang et al., POPL 2020) without
- * promises: a load is never satisfied by a store that comes later in time.
+ * A weak memory, as C and C++ promise it to relaxed, release and acquire accesses and to fences:
+ * each location keeps all that was ever stored to it, in the order in which it lies there, and a
+ * thread may read any of it that is not older than what it knows of. What a thread knows is a view:
+ * for each location the oldest message that it may still read. Messages carry the view of who
+ * released them. That is RC11 in the form of views (Kang et al., POPL 2017; Dang et al., POPL 2020)
+ * without promises: a load is never satisfied by a store that comes later in time.
  *
  * An access that is sequentially consistent counts as release and acquire, which is weaker; only
  * fences are sequentially consistent in full.

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * sandbox CALLS FAMILIES PROGRAM [ARGUMENT]...: PROGRAM, given by its path, with no other system calls than those whose
- * numbers CALLS lists, as ranges, and no other sockets than of these address families, as systemd's
- * SystemCallFilter= and RestrictAddressFamilies= make it: EPERM and EAFNOSUPPORT.
+ * sandbox CALLS FAMILIES PROGRAM [ARGUMENT]...: PROGRAM, given by its path, with no other system
+ * calls than those whose numbers CALLS lists, as ranges, and no other sockets than of these address
+ * families, as systemd's SystemCallFilter= and RestrictAddressFamilies= make it: EPERM and
+ * EAFNOSUPPORT.
  */
 #include <errno.h>
 #include <linux/audit.h>

@@ -74,5 +74,21 @@ def test_every_c_file_begins_with_what_stands_in_it(scene):
     assert not bare, "no sentence after the SPDX line of " + ", ".join(bare)
 
 
+def test_no_comment_is_wider_than_100_columns(scene):
+    token = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|/\*.*?\*/|//[^\n]*', re.S)
+    wide = []
+    for top in ("src", "hal", "tests"):
+        for file in sorted((SOURCE / top).rglob("*.[ch]")):
+            text = file.read_text()
+            lines = text.expandtabs(8).split("\n")
+            if max(map(len, lines)) <= 100:
+                continue
+            for found in token.finditer(text):
+                first, last = (text.count("\n", 0, at) for at in found.span())
+                wide += [f"{file.relative_to(SOURCE)}:{n + 1}" for n in range(first, last + 1)
+                         if found[0].startswith("/") and len(lines[n]) > 100]
+    assert not wide, "wrap the comments in " + ", ".join(wide)
+
+
 if __name__ == "__main__":
     owsdtest.main()

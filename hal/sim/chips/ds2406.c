@@ -77,7 +77,7 @@ static void write_status(struct sim_slave *slave, int64_t t)
 	sim_send_checked(slave, NULL, 0);
 }
 
-/* --- Channel access ---------------------------------------------------------------------------- */
+/* --- Channel access --------------------------------------------------------------------------- */
 
 static unsigned channels(const struct sim_slave *slave)
 {

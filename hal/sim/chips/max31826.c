@@ -114,7 +114,7 @@ static void read_scratchpad(struct sim_slave *slave, int64_t t)
 	sim_send_crc8(slave, state(slave)->scratchpad, 8);
 }
 
-/* --- The memory of the MAX31826: pages of 8 bytes, by a second scratchpad ---------------------- */
+/* --- The memory of the MAX31826: pages of 8 bytes, by a second scratchpad --------------------- */
 
 static void read_memory(struct sim_slave *slave, int64_t t)
 {

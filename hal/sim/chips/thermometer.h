@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* What the thermometers' family files share: DS18B20 and its relatives, and what families 3B are. */
+/*
+ * What the thermometers' family files share: DS18B20 and its relatives, and what families 3B are.
+ */
 #ifndef HAL_SIM_CHIPS_THERMOMETER_H
 #define HAL_SIM_CHIPS_THERMOMETER_H
 

@@ -5,8 +5,8 @@
  *   FAULT_MEMORY=N    the N-th allocation fails (malloc, calloc, realloc, mmap); N+: all from there
  *   FAULT_THREAD=N    the N-th thread cannot be made; a path: none, while that file is there
  *   FAULT_CLOCK=FILE  two 64-bit numbers: what CLOCK_REALTIME and CLOCK_BOOTTIME are ahead, in ns
- *   FAULT_SOCKET=FILE a unix socket is a link to that file as soon as it is bound, as somebody makes
- *                     it who may write its folder
+ *   FAULT_SOCKET=FILE a unix socket is a link to that file as soon as it is bound, as somebody
+ *                     makes it who may write its folder
  *   FAULT_MARK=FILE   is made when one has happened
  */
 #define _GNU_SOURCE

@@ -113,8 +113,8 @@ struct config_item *scene_input(struct scene *scene, const char *name, const cha
 struct config_item *scene_output(struct scene *scene, const char *name, const char *path,
                                  enum ows_type type);
 /*
- * What the bus answers at path. err 0: text. Replaces. "/alarm" is the list of the devices in alarm,
- * each path ended by '\n'; without it the bus has no alarm search.
+ * What the bus answers at path. err 0: text. Replaces. "/alarm" is the list of the devices in
+ * alarm, each path ended by '\n'; without it the bus has no alarm search.
  */
 void scene_put(struct scene *scene, const char *path, const char *text, int err);
 /* Writes to path fail with err, reads do not; 0: writes succeed again. */
@@ -135,9 +135,9 @@ void scene_tell(struct scene *scene, unsigned bus, enum bus_news news, const cha
 /* Make memory and engine; the target is down until scene_up(). */
 void scene_start(struct scene *scene);
 /*
- * A reload: change() edits items, targets (by the names of buses, their count and order as it likes)
- * and the rest of the configuration; NULL: it is as it was. What the buses have is left as it is,
- * and the trace goes on.
+ * A reload: change() edits items, targets (by the names of buses, their count and order as it
+ * likes) and the rest of the configuration; NULL: it is as it was. What the buses have is left as
+ * it is, and the trace goes on.
  */
 void scene_reload(struct scene *scene, void (*change)(struct config *));
 /*

@@ -17,7 +17,7 @@ enum trouble_kind {
 	TROUBLE_ABSENT,  /* reset at: the chips hear it, the master hears no presence */
 	TROUBLE_FALSE,   /* reset at: the master hears a presence, the chips hear nothing more */
 	TROUBLE_NOISE,   /* each slot is turned over, each presence lost, with this probability */
-	TROUBLE_RESTART, /* the chips lose their power at restart_ns, and every every_ns (0: once) */
+	TROUBLE_RESTART, /* the chips lose power at restart_ns, and every every_ns (0: once) */
 };
 
 struct trouble {

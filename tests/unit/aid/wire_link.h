@@ -19,7 +19,9 @@ struct wire_net {
 	struct sim_wire wire[WIRE_CHANNELS];
 	struct link_cost cost;          /* of the first link */
 	struct link_master_cost shared; /* of all links together */
-	/* The next `fault_count` calls return `fault`; a recovery of fault_until or above ends it. */
+	/*
+	 * The next `fault_count` calls return `fault`; a recovery of fault_until or above ends it.
+	 */
 	int fault;
 	unsigned fault_count;
 	int fault_until;

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Which board, and what is missing there: trees of files as the firmware and the kernel make them. */
+/*
+ * Which board, and what is missing there: trees of files as the firmware and the kernel make them.
+ */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -103,7 +103,10 @@ static void look_once(const struct visit *visit, int64_t at, int64_t every)
 	visit_end();
 }
 
-/* One that is known without the wire has no place. measured: a register that a restart empties is no measurement. */
+/*
+ * One that is known without the wire has no place. measured: a register that a restart empties is
+ * no measurement.
+ */
 static void look(const struct visit *visit, bool measured)
 {
 	visit_begin(visit);

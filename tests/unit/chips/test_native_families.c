@@ -409,7 +409,9 @@ static void test_a_block_of_a_ds2720_is_locked_for_good(void)
 	reads("lock.1", "1");
 }
 
-/* Read Application Register has the register's own scratchpad, Read Scratchpad that of the memory. */
+/*
+ * Read Application Register has the register's own scratchpad, Read Scratchpad that of the memory.
+ */
 static void test_the_application_register_of_a_ds2430a_is_written_once(void)
 {
 	start("DS2430A");

@@ -313,7 +313,9 @@ static void slowest(struct config *config)
 	config->period_ns = 60 * SCENE_S;
 }
 
-/* So many periods that, were they as long as the new ones, owsd would have run for four centuries. */
+/*
+ * So many periods that, were they as long as the new ones, owsd would have run for four centuries.
+ */
 static void test_the_count_of_periods_goes_on_after_years(void)
 {
 	uint64_t before;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The alarm machine at work on a scripted bus. A trace is what goes over the wire: "r" reads past the
- * cache, "W" writes; expected texts are complete, so a reader can follow them beside the manual.
+ * The alarm machine at work on a scripted bus. A trace is what goes over the wire: "r" reads past
+ * the cache, "W" writes; expected texts are complete, so a reader can follow them beside the
+ * manual.
  */
 #include <stdio.h>
 #include <string.h>
@@ -285,9 +286,10 @@ static void test_latches_of_every_spelling_are_understood(void)
 }
 
 /*
- * All combinations of defined, empty and not defined of the five strings (por, set, latch, reset; of
- * sSensed, which comes from the path and so is always defined: defined, and empty as of an item that
- * is not read) for a device whose por and latch are set: what must go over the wire, from the table.
+ * All combinations of defined, empty and not defined of the five strings (por, set, latch, reset;
+ * of sSensed, which comes from the path and so is always defined: defined, and empty as of an item
+ * that is not read) for a device whose por and latch are set: what must go over the wire, from the
+ * table.
  */
 static void test_every_combination_of_defined_empty_and_not_defined(void)
 {

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Alarms that cannot be armed: one restart of a device is one restart, however long its por stands. */
+/*
+ * Alarms that cannot be armed: one restart of a device is one restart, however long its por stands.
+ */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -152,7 +154,9 @@ static void test_whatever_keeps_por_set_a_restart_is_written_and_told_once(void)
 		TEST_ASSERT_TRUE_MESSAGE(unarmed(1), c->name);
 		TEST_ASSERT_EQUAL_INT32_MESSAGE(c->err, scene_sample(&s, 1).err, c->name);
 		TEST_ASSERT_EQUAL_HEX8_MESSAGE(OWS_Q_GOOD, scene_sample(&s, 1).quality, c->name);
-		/* 1 + MaxRetries tries at once, then after 1, 2, 4 ... s; two readings each at most */
+		/*
+		 * 1 + MaxRetries tries at once, then after 1, 2, 4 ... s; two readings each at most
+		 */
 		TEST_ASSERT_LESS_OR_EQUAL_UINT_MESSAGE(2 * (1 + s.config.max_retries + 4),
 		                                       count("r " D "/por\n"), c->name);
 		s.no_trace = true;

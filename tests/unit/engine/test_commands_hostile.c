@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Programs that write past libows into the command segment: what they may not set, and what they may cost. */
+/*
+ * Programs that write past libows into the command segment: what they may not set, and what they
+ * may cost.
+ */
 #include "unity.h"
 
 #include "tests/unit/aid/scene.h"

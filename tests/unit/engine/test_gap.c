@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* While nobody runs (a suspend, a stopped process) what was measured before must not become young. */
+/*
+ * While nobody runs (a suspend, a stopped process) what was measured before must not become young.
+ */
 #include <stdlib.h>
 
 #include "unity.h"

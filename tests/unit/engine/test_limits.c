@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Limit alarms in the engine: what they do to attributes and journal, and by whom they are woken. */
+/*
+ * Limit alarms in the engine: what they do to attributes and journal, and by whom they are woken.
+ */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

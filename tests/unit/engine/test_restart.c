@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Which commands are in force after a restart of owsd, row by row of docs/semantics.md, section 3. */
+/*
+ * Which commands are in force after a restart of owsd, row by row of docs/semantics.md, section 3.
+ */
 #include <stdlib.h>
 #include <string.h>
 

@@ -144,7 +144,9 @@ static void test_no_choice_breaks_a_promise(void)
 			/* one that fails leaves a target that is up for a claim alone */
 			if (presence[current] == 'F' && state[current] != 'D')
 				TEST_ASSERT_TRUE_MESSAGE(presence[then] == 'P', message);
-			/* nowhere is it taken to a target where it fails, but for want of another */
+			/*
+			 * nowhere is it taken to a target where it fails, but for want of another
+			 */
 			for (unsigned g = 0; presence[then] == 'F' && g < 3; g++)
 				TEST_ASSERT_FALSE_MESSAGE(
 					g != current && state[g] == 'U' &&

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The machine beside Table 3.1 of the manual (the same in 2.50.11, 3.0.1 and 3.0.2 but for the words
- * of row 2, where the newest stands). Below: the manual's rows as data, then where ours depart from
- * them, each by a ruling of docs/semantics.md. What differs and is not there fails, and so does a
- * departure that is no more, a row of one without its row of the other, and a ruling without rows.
+ * The machine beside Table 3.1 of the manual (the same in 2.50.11, 3.0.1 and 3.0.2 but for the
+ * words of row 2, where the newest stands). Below: the manual's rows as data, then where ours
+ * depart from them, each by a ruling of docs/semantics.md. What differs and is not there fails, and
+ * so does a departure that is no more, a row of one without its row of the other, and a ruling
+ * without rows.
  */
 #include <stdbool.h>
 #include <stdio.h>

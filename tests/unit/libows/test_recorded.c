@@ -76,7 +76,9 @@ static void test_a_recorded_segment_can_be_commanded(void)
 	ows_close(h);
 }
 
-/* What readers in other languages rely on: not one byte elsewhere, as long as this is the layout. */
+/*
+ * What readers in other languages rely on: not one byte elsewhere, as long as this is the layout.
+ */
 static void test_todays_writer_lays_the_same_out_in_the_same_way(void)
 {
 	char recorded[SIZE_MAX_];

@@ -35,7 +35,9 @@ static unsigned list_of(const char *letters, struct merge_device *list)
 	return count;
 }
 
-/* "A+ B-1 Cr": each with its fate (+ stays, - missing, n new, r replaced), and pairs if there are. */
+/*
+ * "A+ B-1 Cr": each with its fate (+ stays, - missing, n new, r replaced), and pairs if there are.
+ */
 static void print(const struct merge_device *list, unsigned count, char *out)
 {
 	static const char fates[] = {[MERGE_STAYS] = '+',

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* What a peer can send before its reply is whole, on a virtual clock: each look at the socket is counted. */
+/*
+ * What a peer can send before its reply is whole, on a virtual clock: each look at the socket is
+ * counted.
+ */
 #include <errno.h>
 #include <string.h>
 #include <sys/socket.h>

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A writer that makes and fills the segments as owsd does, killed at random points, in its start too,
- * while a control program reads and sets; the next one takes over as owsd does. KILLS=10000 for more.
+ * A writer that makes and fills the segments as owsd does, killed at random points, in its start
+ * too, while a control program reads and sets; the next one takes over as owsd does. KILLS=10000
+ * for more.
  */
 #include <errno.h>
 #include <limits.h>

@@ -25,7 +25,9 @@ static uint64_t next_random(uint64_t *state)
 	return *state;
 }
 
-/* Of any type and any text that a bus may say: blanks, signs, digits, points, exponents, rubbish. */
+/*
+ * Of any type and any text that a bus may say: blanks, signs, digits, points, exponents, rubbish.
+ */
 static void test_what_is_good_is_the_number_that_the_text_says(void)
 {
 	static const char alphabet[] = "  +-0011223456789..eE,xn";
