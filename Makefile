@@ -154,13 +154,11 @@ $(call show,CC)
 $(Q)$(CC) $(ALL_CFLAGS) $(1) $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.c %.a,$^) $(LIBS)
 endef
 
-# --- The rooms: each has one folder, of source and of unit tests; its main header says what it is.
-# Each may use the rooms below it in this list, never one above (docs/design.md)
-SRC      := owsd host serve engine config board shm signal text
-HAL      := bus owfs wire chips native sim sim/chips ds2482 owserver w1 netlink gpio null
-# The consumers' library, and the program over it
+# --- The rooms: each is one folder, of source and of unit tests; its main header says what it is, and
+# docs/design.md which others it may use
+SOURCES  := $(wildcard src/*/*.c hal/*/*.c hal/*/*/*.c)
+# The consumers' library
 LIBOWS   := $(wildcard src/libows/*.c)
-OWSCTL   := $(wildcard src/owsctl/*.c)
 # Programs over libows to start from
 EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py)
 # Those that another program builds or loads, a folder for each
@@ -175,8 +173,7 @@ BENCH    := $(wildcard tests/bench/bench_*.c)
 BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/aid/plant.c tests/unit/aid/plant_net.c
 # ---------------------------------------------------------------------------------------------
 
-CORE     := $(filter-out src/owsd/owsd.c src/owsctl/owsctl.c, \
-            $(wildcard $(SRC:%=src/%/*.c) $(HAL:%=hal/%/*.c)) $(LIBOWS) $(OWSCTL))
+CORE     := $(filter-out src/owsd/owsd.c src/owsctl/owsctl.c,$(SOURCES))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
 UNIT     := $(patsubst %.c,$(B)/unit/%,$(notdir $(UNIT_SRC))) $(B)/unit/test_endurance
 BENCHES  := $(patsubst tests/bench/%.c,$(B)/bench/%,$(BENCH))

@@ -2,15 +2,9 @@
 /* The table of all backends of this build. */
 #include "hal/bus/bus.h"
 
-/* clang-format off */
 const struct bus_ops *const bus_backends[] = {
-	&owserver_bus,
-	&i2c_bus,
-	&w1_bus,
-	&gpio_bus,
-	&sim_bus,
-	&null_bus,
-	&late_bus,
+#define BACKEND(name) &name##_bus,
+#include "hal/bus/schemes.h"
+#undef BACKEND
 	NULL,
 };
-/* clang-format on */

@@ -235,7 +235,9 @@ struct bus {
 
 /* All backends of this build, NULL at the end. */
 extern const struct bus_ops *const bus_backends[];
-extern const struct bus_ops owserver_bus, i2c_bus, sim_bus, null_bus, late_bus, w1_bus, gpio_bus;
+#define BACKEND(name) extern const struct bus_ops name##_bus;
+#include "hal/bus/schemes.h"
+#undef BACKEND
 
 /*
  * Find the backend of a target ("owserver:localhost:4304", "null:") and create the bus. Bare

@@ -23,8 +23,8 @@ PUBLIC = "src/libows/ows"
 # Headers whose functions stand in many files, by design: the consumers' one header, and the verbs
 # of owsctl, each in the file of its name
 MANY = {"src/libows/ows.h", "src/owsctl/verbs.h"}
-# A list of families that is included where FAMILY is defined: no header of its own
-PARTS = {"hal/chips/families.h"}
+# Lists that are included where FAMILY or BACKEND is defined: no headers of their own
+PARTS = {"hal/chips/families.h", "hal/bus/schemes.h"}
 
 
 ROOM = re.compile(r"^- `([\w/]+)`: .*? Uses (.*?)\.\n(?=- |\n)", re.M | re.S)
