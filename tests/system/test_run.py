@@ -84,6 +84,12 @@ class Terminal:
                 elif self.master is None:
                     time.sleep(0.02)
                 assert time.monotonic() < deadline, f"still there: {self.group()}"
+            # what they wrote last may still be in the terminal
+            while self.master is not None and select.select([self.master], [], [], 0)[0]:
+                try:
+                    self.text += os.read(self.master, 65536).decode(errors="replace")
+                except OSError:
+                    break
         finally:
             self.end()
         with socket.socket() as s:
