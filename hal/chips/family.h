@@ -4,6 +4,8 @@
  * access, size and life of the value as OWFS has them, and the field of an area that it is
  * (property.h). What no field can say has functions (txn.h). To add a family: write the file, and
  * name it in families.h.
+ *
+ * Room hal/chips: the chip families: areas, properties, functions; values as texts. Uses hal/wire.
  */
 #ifndef HAL_CHIPS_FAMILY_H
 #define HAL_CHIPS_FAMILY_H

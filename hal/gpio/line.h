@@ -3,6 +3,8 @@
  * GPIO lines, one small interface over libgpiod 1.6 (Debian 12) and 2.x (Debian 13, Raspberry Pi
  * OS). Calls do not block, but for what the chip's driver takes (a chip behind I2C: milliseconds).
  * Errors are negative errno. One thread at a time for each chip and its lines.
+ *
+ * Room hal/gpio: GPIO lines, alone or beside a chip. Uses hal/bus.
  */
 #ifndef HAL_GPIO_LINE_H
 #define HAL_GPIO_LINE_H

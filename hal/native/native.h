@@ -23,6 +23,9 @@
  *   state.c    the state on which all work
  *
  * All of it runs on the bus's thread; but the counters, which any thread may read.
+ *
+ * Room hal/native: the native bus: requests, conversions, searches, listings. Uses hal/chips,
+ * hal/wire, hal/owfs, hal/bus.
  */
 #ifndef HAL_NATIVE_H
 #define HAL_NATIVE_H

@@ -1,5 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* The kernel's masters over netlink, as a link master. */
+/*
+ * The kernel's masters over netlink, as a link master.
+ *
+ * Room hal/netlink: the masters of the kernel, by netlink. Uses hal/w1, hal/native, hal/chips,
+ * hal/wire.
+ */
 #ifndef HAL_NETLINK_MASTER_H
 #define HAL_NETLINK_MASTER_H
 

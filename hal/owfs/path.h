@@ -8,6 +8,8 @@
  * owhttpd puts text or json in front, which owsd ignores. The leading "/" may be absent. The device
  * is a ROM id in one of the six formats of OWFS or an alias; below a DS2409 coupler the device has
  * several components (/1F.x/main/28.y). The property may have directories (HIH4000/humidity).
+ *
+ * Room hal/owfs: the paths of OWFS, and the frames of its protocol. Uses no other.
  */
 #ifndef HAL_OWFS_PATH_H
 #define HAL_OWFS_PATH_H

@@ -5,6 +5,8 @@
  * When a kept connection turns out to be closed before a byte of the answer came, as owserver does
  * to idle ones, the request is repeated once on a new connection; a WRITE only if none of it was
  * sent, because a write must not happen twice.
+ *
+ * Room hal/owserver: a genuine owserver as a target. Uses hal/owfs, hal/bus.
  */
 #ifndef HAL_OWSERVER_TALK_H
 #define HAL_OWSERVER_TALK_H

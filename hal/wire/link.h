@@ -14,6 +14,8 @@
  *   -EHOSTDOWN  nobody answered the reset, said late (see flush)
  *   -EOPNOTSUPP this link cannot: the strong pull-up, the slot, a write behind a read
  *   -ECANCELED  the host shuts down
+ *
+ * Room hal/wire: links, transactions, searches, devices. Uses hal/owfs, hal/bus.
  */
 #ifndef HAL_WIRE_LINK_H
 #define HAL_WIRE_LINK_H

@@ -2,6 +2,8 @@
 /*
  * The board that this machine is, and what the board lacks for a DS2482, as files show it: no byte
  * goes over a wire. Blocks no longer than the files of /proc and /sys do.
+ *
+ * Room src/board: which board this machine is, and what it lacks. Uses src/text, hal/ds2482.
  */
 #ifndef BOARD_H
 #define BOARD_H

@@ -2,6 +2,9 @@
 /*
  * The configuration as the engine needs it: checked, with defaults filled in. Made from a .rio
  * document (rio.h) by config_load(). Immutable after that; all strings belong to it.
+ *
+ * Room src/config: the .rio file: read, checked, edited. Uses src/text, src/signal, hal/owfs,
+ * hal/bus.
  */
 #ifndef CONFIG_H
 #define CONFIG_H

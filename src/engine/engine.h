@@ -19,6 +19,9 @@
  *   schedule, publish    schedule, publish, limits, counters
  *   slots and table      lane, slots, disown, group, trace, alarm_item, table, structure, due
  *   pure functions       route, adoption, limit, guard, retry, alarm_fsm, alarm_text
+ *
+ * Room src/engine: the table of signals, lanes, alarms; no input or output. Uses src/config,
+ * src/text, src/libows, src/shm, src/signal, hal/owfs, hal/bus.
  */
 #ifndef ENGINE_H
 #define ENGINE_H

@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* The inside of a handle of libows. Not installed. */
+/*
+ * The inside of a handle of libows. Not installed.
+ *
+ * Room src/libows: the library of the consumers. Uses src/shm, src/signal, hal/bus.
+ */
 #ifndef LIBOWS_HANDLE_H
 #define LIBOWS_HANDLE_H
 

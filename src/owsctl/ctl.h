@@ -2,6 +2,10 @@
 /*
  * What all verbs of owsctl need. A verb gets the words after its name with its own name as argv[0],
  * and returns the exit status.
+ *
+ * Room src/owsctl: the command-line tool, a program over libows; scan, read and write open a target
+ * themselves. Uses src/owsd, src/config, src/board, src/text, src/libows, src/shm, src/signal,
+ * hal/chips, hal/owfs, hal/bus.
  */
 #ifndef OWSCTL_CTL_H
 #define OWSCTL_CTL_H

@@ -1,5 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* owsd's command line, and the messages to the user who typed it. */
+/*
+ * owsd's command line, and the messages to the user who typed it.
+ *
+ * Room src/owsd: the program: options, the service manager, signals of the system. Uses src/host,
+ * src/config, src/board, src/text, src/libows, src/shm, hal/gpio, hal/bus.
+ */
 #ifndef OWSD_ARGUMENTS_H
 #define OWSD_ARGUMENTS_H
 

@@ -4,6 +4,9 @@
  * engine. The server answers what it can from the shared memory and from what was read lately, and
  * hands the rest to the engine as requests of guests (src/engine/guest.h). It allocates nothing
  * after serve_start().
+ *
+ * Room src/serve: the served owserver protocol, on a thread of its own. Uses src/engine,
+ * src/config, src/text, src/libows, src/shm, src/signal, hal/native, hal/chips, hal/owfs, hal/bus.
  */
 #ifndef SERVE_H
 #define SERVE_H

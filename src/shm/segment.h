@@ -2,6 +2,8 @@
 /*
  * The memory under image and commands, owsd's side: POSIX shared memory of an instance, the lock of
  * the instance, waiting and waking. Blocking: file-system calls only.
+ *
+ * Room src/shm: the segments in shared memory, the side of owsd. Uses hal/bus.
  */
 #ifndef SHM_SEGMENT_H
 #define SHM_SEGMENT_H

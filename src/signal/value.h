@@ -3,6 +3,8 @@
  * Values of signals and their texts. A value is 64 bits: a double's bits for float and double, a
  * signed integer for the other number types; strings have none. All functions use the C locale and
  * allocate nothing.
+ *
+ * Room src/signal: types, values and attributes of signals. Uses hal/owfs.
  */
 #ifndef SIGNAL_VALUE_H
 #define SIGNAL_VALUE_H

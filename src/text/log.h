@@ -3,6 +3,8 @@
  * The log: any thread puts lines into a bounded ring, without blocking and without a system call
  * but one wake; the supervisor writes them to stderr. The log counts the lines that find the ring
  * full.
+ *
+ * Room src/text: the log, and texts that are safe to print. Uses src/shm, src/signal, hal/bus.
  */
 #ifndef TEXT_LOG_H
 #define TEXT_LOG_H

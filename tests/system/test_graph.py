@@ -79,6 +79,18 @@ def test_no_leave_is_given_that_nobody_takes(scene):
     assert not spare, spare
 
 
+def test_the_main_header_of_a_room_says_what_the_room_is_and_what_it_may_use(scene):
+    section = (SOURCE / "docs/design.md").read_text().split("\n## Rooms\n")[1].split("\n## ")[0]
+    wrong = []
+    for room, text in re.findall(r"^- `([\w/]+)`: (.*?)\n(?=- |\n)", section + "\n\n", re.M | re.S):
+        expected = " ".join(f"Room {room}: {text}".replace("`", "").split())
+        heads = [re.sub(r"\s+\*?\s*", " ", file.read_text().split("*/")[1])
+                 for file in (SOURCE / room).glob("*.[ch]") if file.read_text().count("*/") > 1]
+        if sum(expected in head for head in heads) != 1:
+            wrong.append(f"{room}: no head comment, or several, have: {expected}")
+    assert not wrong, "\n".join(wrong)
+
+
 def test_each_header_compiles_alone_and_declares_what_its_file_defines(scene):
     found = tree()
     declared, errors = found.declared(PARTS)

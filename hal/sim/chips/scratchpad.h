@@ -2,6 +2,8 @@
 /*
  * The memories that are written through a scratchpad: target address, ending offset, a copy that
  * needs both as its key. DS2431, DS2433, DS28EC20 and DS2423 differ in sizes, codes and times.
+ *
+ * Room hal/sim/chips: simulated chips, from their data sheets. Uses hal/sim, hal/bus.
  */
 #ifndef HAL_SIM_CHIPS_SCRATCHPAD_H
 #define HAL_SIM_CHIPS_SCRATCHPAD_H
