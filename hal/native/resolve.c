@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What a request's path means: a property of a device, a directory, a table that has no device. */
 #include <errno.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "hal/chips/find.h"
@@ -82,7 +83,8 @@ static int resolve_property(struct job *job, const struct family *family,
 static int resolve_device(struct native *native, struct job *job)
 {
 	struct path *path = &job->path;
-	struct device *device, unknown = {0};
+	_Alignas(max_align_t) uint8_t own[DEVICE_OWN] = {0};
+	struct device *device, unknown = {.own = own};
 
 	if (!path->has_rom) {
 		device = device_by_alias(&native->table, path->last.text, path->last.len);

@@ -76,7 +76,7 @@ static int write_condition(struct w1_slave *slave, unsigned at, const uint8_t *b
 	int err = 0;
 
 	slave->condition_ns = 0;
-	for (unsigned i = at; i < at + n && !err; i++) {
+	for (unsigned i = at; i < at + n && i < sizeof(slave->condition) && !err; i++) {
 		uint8_t now = slave->condition[i], value = bytes[i - at];
 
 		if (MASK + i == CONTROL)

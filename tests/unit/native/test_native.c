@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of the native bus: finding, reading, listing, errors. */
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "unity.h"
 
+#include "hal/chips/find.h"
 #include "tests/unit/aid/native_scene.h"
 
 void setUp(void)
@@ -33,6 +35,32 @@ static void test_a_thermometer_is_found_and_read(void)
 	expect(true, of(slave, "tempres"), "          12");
 	expect(true, of(slave, "present"), "1");
 	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_FOUND));
+}
+
+/* Which of its properties a chip has may depend on what is known of it: nothing is. */
+static void test_no_property_of_a_device_that_was_never_seen_is_there(void)
+{
+	static const enum bus_op ops[] = {BUS_READ, BUS_WRITE, BUS_DIR, BUS_PROBE};
+	const struct family *family;
+	unsigned asked = 0;
+
+	wire_init(&host, 1, 1);
+	start();
+	for (unsigned n = 0; (family = family_nth(n)); n++) {
+		const struct property *property = NULL;
+
+		while ((property = family_next(family, NULL, property)))
+			for (unsigned k = 0; k < sizeof(ops) / sizeof(ops[0]); k++, asked++) {
+				char what[80];
+
+				snprintf(what, sizeof(what), "/%02X.AABBCCDDEEFF/%s", family->code,
+				         property->name);
+				TEST_ASSERT_LESS_THAN_INT_MESSAGE(0, result(ops[k], what, "1"),
+				                                  what);
+				forget();
+			}
+	}
+	TEST_ASSERT_GREATER_THAN_UINT(1000, asked);
 }
 
 static void test_the_listing_has_devices_and_directories(void)
@@ -146,6 +174,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_thermometer_is_found_and_read);
+	RUN_TEST(test_no_property_of_a_device_that_was_never_seen_is_there);
 	RUN_TEST(test_the_listing_has_devices_and_directories);
 	RUN_TEST(test_errors_are_those_of_the_contract);
 	RUN_TEST(test_an_alias_names_the_device);
