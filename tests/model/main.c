@@ -67,7 +67,7 @@ static const struct {
 } spare[] = {
 	{"image_alarm", "release to relaxed", "the fence in the entry does it too"},
 	{"ows_alarm_count", "acquire to relaxed", "the fence behind the entry does it too"},
-	{"ring", "seq_cst without acquire", "the fence behind it does it too"},
+	{"ring_engine", "seq_cst without acquire", "the fence behind it does it too"},
 	{"commands_awake", "seq_cst without release", "the fence behind it does it too"},
 	{"commands_state", "seq_cst without release", "the fence behind it does it too"},
 	{"commands_retire", "seq_cst without release", "the fence behind it does it too"},
