@@ -75,7 +75,7 @@ int code_texts(char *text, size_t room)
 			return -EMSGSIZE;
 		if (code)
 			text[used++] = ',';
-		/* The text ends by its length. NOLINTNEXTLINE(bugprone-not-null-terminated-result) */
+		/* its length ends it. NOLINTNEXTLINE(bugprone-not-null-terminated-result) */
 		memcpy(text + used, next, len);
 		used += len;
 	}
