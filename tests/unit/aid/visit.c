@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Visits a chip with a trouble at each place in turn. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "unity.h"
 
+#include "hal/chips/find.h"
 #include "tests/unit/aid/visit.h"
 
 struct trouble trouble;
@@ -139,4 +141,54 @@ unsigned visit_each(const struct visit *visit,
 		try(visit, (struct trouble){.kind = TROUBLE_FALSE, .at = at}, one);
 	}
 	return n;
+}
+
+/* Is the property read by the same function, or of the same area, as one before it? */
+static bool is_like_another(const struct family *family, unsigned n)
+{
+	static const char *const ways[] = {
+		"VAD",  "VDD",   "vis",       "temperature", "HTM1735/humidity",
+		"volt", "volt2", "8bit/volt", "latestvolt"};
+	const struct property *property = &family->properties[n];
+
+	for (size_t i = 0; i < sizeof(ways) / sizeof(ways[0]); i++)
+		if (strcmp(property->name, ways[i]) == 0)
+			return false;
+	for (unsigned i = 0; i < n; i++)
+		if (family->properties[i].read == property->read &&
+		    family->properties[i].field.area == property->field.area &&
+		    family->properties[i].convert == property->convert &&
+		    !strstr(family->properties[i].name, "HTM"))
+			return true;
+	return false;
+}
+
+void visit_properties(const char *chip, bool parasite, bool turned,
+                      void (*one)(struct visit *visit, const struct property *property))
+{
+	const struct family *family = family_of(sim_family_find(chip, 0)->code);
+	const char *only = getenv("ONLY");
+
+	for (unsigned i = 0; i < family->count; i++) {
+		const struct property *property = &family->properties[i];
+		char name[80];
+		struct visit visit = {.chip = chip,
+		                      .property = name,
+		                      .parasite = parasite,
+		                      .turned = turned,
+		                      .slack = strstr(property->name, "date") ? 30 : 0};
+
+		if (!(property->access & ACCESS_READ) || property->offline ||
+		    (property->visible && strcmp(chip, "DS1825") != 0) ||
+		    is_like_another(family, i))
+			continue;
+		snprintf(name, sizeof(name), "%s%s", property->name,
+		         property->type == PROPERTY_BITS          ? ".BYTE"
+		         : property->array.aggregate              ? ".ALL"
+		         : property->array.index == INDEX_LETTERS ? ".B"
+		         : property->array.index == INDEX_NUMBERS ? ".3"
+		                                                  : "");
+		if (!only || strstr(name, only))
+			one(&visit, property);
+	}
 }

@@ -63,59 +63,18 @@ static void look(const struct visit *visit)
 	visit_each(visit, one);
 }
 
-/* One of those that are read by the same function. */
-static bool is_like_another(const struct family *family, unsigned n)
+static void look_untroubled_first(struct visit *visit, const struct property *property)
 {
-	static const char *const ways[] = {"VAD", "VDD", "vis", "temperature", "HTM1735/humidity"};
-	const struct property *property = &family->properties[n];
-
-	for (size_t i = 0; i < sizeof(ways) / sizeof(ways[0]); i++)
-		if (strcmp(property->name, ways[i]) == 0)
-			return false;
-	for (unsigned i = 0; i < n; i++)
-		if (family->properties[i].read == property->read &&
-		    family->properties[i].field.area == property->field.area &&
-		    family->properties[i].convert == property->convert &&
-		    !strstr(family->properties[i].name, "HTM"))
-			return true;
-	return false;
-}
-
-/* The chip's properties from the family's table. */
-static void look_at_all(const char *chip, bool parasite, bool turned)
-{
-	const struct family *family = family_of(sim_family_find(chip, 0)->code);
-
-	for (unsigned i = 0; i < family->count; i++) {
-		const struct property *property = &family->properties[i];
-		struct visit visit = {.chip = chip, .parasite = parasite, .turned = turned};
-		char name[80];
-
-		if (!(property->access & ACCESS_READ) || property->offline ||
-		    (property->visible && strcmp(chip, "DS1825") != 0) ||
-		    is_like_another(family, i))
-			continue;
-		snprintf(name, sizeof(name), "%s%s", property->name,
-		         property->type == PROPERTY_BITS          ? ".BYTE"
-		         : property->array.aggregate              ? ".ALL"
-		         : property->array.index == INDEX_LETTERS ? ".B"
-		         : property->array.index == INDEX_NUMBERS ? ".3"
-		                                                  : "");
-		visit.property = name;
-		if (strstr(name, "date"))
-			visit.slack = 30;
-		if (getenv("ONLY") && !strstr(name, getenv("ONLY")))
-			continue;
-		visit_begin(&visit);
-		int err = answer_to(visit_go(&visit, &(struct trouble){.kind = TROUBLE_NONE}))->err;
-		visit.stride = trouble.slots > 15000  ? 211
-		               : trouble.slots > 4000 ? 13
-		               : trouble.slots > 2500 ? 5
-		                                      : 1;
-		visit_end();
-		if (!err)
-			look(&visit);
-	}
+	(void)property;
+	visit_begin(visit);
+	int err = answer_to(visit_go(visit, &(struct trouble){.kind = TROUBLE_NONE}))->err;
+	visit->stride = trouble.slots > 15000  ? 211
+	                : trouble.slots > 4000 ? 13
+	                : trouble.slots > 2500 ? 5
+	                                       : 1;
+	visit_end();
+	if (!err)
+		look(visit);
 }
 
 static void look_at(const char *chip, bool parasite)
@@ -123,9 +82,9 @@ static void look_at(const char *chip, bool parasite)
 	const struct sim_input *inputs = sim_family_find(chip, 0)->inputs;
 
 	false_values = 0;
-	look_at_all(chip, parasite, false);
+	visit_properties(chip, parasite, false, look_untroubled_first);
 	if (inputs && inputs[0].pin)
-		look_at_all(chip, parasite, true);
+		visit_properties(chip, parasite, true, look_untroubled_first);
 	TEST_ASSERT_EQUAL_UINT_MESSAGE(0, false_values, chip);
 }
 
@@ -183,48 +142,14 @@ static void test_no_trouble_makes_a_neighbour_of_one_fed_by_the_wire_say_what_is
 		look_at(chip, parasite); \
 	}
 
-LOOKS(ds18b20, "DS18B20", false)
-LOOKS(ds18b20_fed_by_the_wire, "DS18B20", true)
-LOOKS(ds18s20, "DS18S20", false)
-LOOKS(ds1822, "DS1822", false)
-LOOKS(ds1825, "DS1825", false)
-LOOKS(ds28ea00, "DS28EA00", false)
-LOOKS(ds2405, "DS2405", false)
-LOOKS(ds2406, "DS2406", false)
-LOOKS(ds2408, "DS2408", false)
-LOOKS(ds2413, "DS2413", false)
-LOOKS(ds2423, "DS2423", false)
-LOOKS(ds2430a, "DS2430A", false)
-LOOKS(ds2431, "DS2431", false)
-LOOKS(ds2433, "DS2433", false)
-LOOKS(ds2438, "DS2438", false)
-LOOKS(ds2450, "DS2450", false)
-LOOKS(ds2502, "DS2502", false)
-LOOKS(ds2720, "DS2720", false)
-LOOKS(ds28ec20, "DS28EC20", false)
+VISIT_CHIPS(LOOKS)
+
+#define RUN(name, chip, parasite) RUN_TEST(test_no_trouble_makes_a_##name##_say_what_is_not_true);
 
 int main(void)
 {
 	UNITY_BEGIN();
-	RUN_TEST(test_no_trouble_makes_a_ds18b20_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds18b20_fed_by_the_wire_say_what_is_not_true);
+	VISIT_CHIPS(RUN)
 	RUN_TEST(test_no_trouble_makes_a_neighbour_of_one_fed_by_the_wire_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds18s20_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds1822_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds1825_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds28ea00_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds2405_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds2406_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds2408_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds2413_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds2423_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds2430a_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds2431_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds2433_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds2438_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds2450_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds2502_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds2720_say_what_is_not_true);
-	RUN_TEST(test_no_trouble_makes_a_ds28ec20_say_what_is_not_true);
 	return UNITY_END();
 }
