@@ -81,8 +81,8 @@ static bool is(const struct visit *visit, const struct bus_answer *answer, const
 }
 
 /*
- * A memory comes in parts, each of one moment: the restart may lie between two of them. Each part is
- * of before it or of after it.
+ * A memory comes in parts, each of one moment: the restart may lie between two of them. Each part
+ * is of before it or of after it.
  */
 static bool is_of_parts(const struct bus_answer *answer)
 {
