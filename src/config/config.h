@@ -14,6 +14,7 @@
 
 #include "src/config/listen.h"
 #include "src/libows/ows.h"
+#include "src/signal/scale.h"
 
 enum config_limit {
 	CONFIG_LIMIT_LL,
@@ -47,7 +48,14 @@ struct config_item {
 	/* NULL: not defined, "": empty; Table 3.1 tells the two apart */
 	const char *latch_alarm, *por_alarm, *set_alarm, *reset_latch;
 	struct config_limits limits;
-	int line; /* of Item */
+	/* of engineering values; NULL: not given. An empty unit is given too */
+	const char *unit, *description;
+	const char *calibrated; /* "2026-11-22" */
+	const char *points;     /* as written */
+	int decimals;           /* -1: not given */
+	struct scale scale;
+	double filter_s, deadband; /* 0: none */
+	int line;                  /* of Item */
 };
 /* Does the item take sets? An input with Writable off never does, whatever its _WriteEnable. */
 static inline bool config_item_takes_sets(const struct config_item *item)

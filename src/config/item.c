@@ -9,6 +9,7 @@
 #include "src/config/build.h"
 #include "src/config/item.h"
 #include "src/config/limits.h"
+#include "src/config/scaling.h"
 #include "src/signal/attribute.h"
 #include "src/signal/quantity.h"
 #include "src/signal/value.h"
@@ -283,13 +284,14 @@ static void build_alarm(struct build *build, const struct rio_node *block,
 
 /*
  * Warn of an integer type for a property with decimals: its value would be bad at every fraction.
+ * A scaled value is rounded instead.
  */
 static void warn_of_decimals(struct build *build, const struct rio_node *block,
                              const struct option_value *values, const struct config_item *item)
 {
 	struct quantity quantity;
 
-	if (value_is_float(item->type) || item->type == OWS_STRING ||
+	if (value_is_float(item->type) || item->type == OWS_STRING || scale_changes(&item->scale) ||
 	    !quantity_of(item->path, &quantity) || quantity.decimals == 0)
 		return;
 	report_warning(build->report, place_of(&values[OPT_TYPE], block),
@@ -308,10 +310,11 @@ void item_build(struct build *build, const struct rio_node *block, struct config
 	build_name(build, block, values, item);
 	build_path(build, block, values, item, &path);
 	known = build_type(build, block, values, item);
-	if (known)
-		warn_of_decimals(build, block, values, item);
 	build_flags(build, values, &path, item);
 	build_values(build, values, known, item);
+	scaling_build(build, values, known, item);
+	if (known)
+		warn_of_decimals(build, block, values, item);
 	build_alarm(build, block, values, &path, item);
 	limits_build(build, values, item);
 }

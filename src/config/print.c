@@ -74,6 +74,36 @@ static void put_limits(FILE *out, const struct config_limits *limits)
 	put_seconds(out, 4, OPT_OFF_DELAY, limits->off_delay_ns);
 }
 
+static void put_text_if_given(FILE *out, enum option option, const char *text)
+{
+	if (text)
+		put_text(out, 4, option, text);
+}
+
+static void put_scaling(FILE *out, const struct config_item *item)
+{
+	const struct scale *scale = &item->scale;
+
+	put_text_if_given(out, OPT_UNIT, item->unit);
+	if (item->decimals >= 0)
+		put_word(out, 4, OPT_DECIMALS, "%d", item->decimals);
+	put_text_if_given(out, OPT_DESCRIPTION, item->description);
+	if (scale->linear) {
+		put_number(out, 4, OPT_SCALE, scale->factor);
+		put_number(out, 4, OPT_OFFSET, scale->offset);
+	}
+	put_text_if_given(out, OPT_POINTS, item->points);
+	if (scale->has_min)
+		put_number(out, 4, OPT_MIN, scale->min);
+	if (scale->has_max)
+		put_number(out, 4, OPT_MAX, scale->max);
+	if (item->filter_s > 0)
+		put_number(out, 4, OPT_FILTER, item->filter_s);
+	if (item->deadband > 0)
+		put_number(out, 4, OPT_DEADBAND, item->deadband);
+	put_text_if_given(out, OPT_CALIBRATED, item->calibrated);
+}
+
 static void put_targets(FILE *out, const struct config *config)
 {
 	static const char *const relations[] = {
@@ -161,6 +191,7 @@ static void put_item(FILE *out, const struct config_item *item)
 	if (item->reset_latch)
 		put_text(out, 4, OPT_RESET_LATCH, item->reset_latch);
 	put_limits(out, &item->limits);
+	put_scaling(out, item);
 	fputs("  }\n", out);
 }
 
