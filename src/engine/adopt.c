@@ -19,6 +19,7 @@
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
 #include "src/shm/carry.h"
+#include "src/shm/entries.h"
 
 static uint64_t wait_of(const struct due_wheel *wheel, uint32_t entry)
 {
@@ -251,7 +252,7 @@ static void take_alarms(struct engine *e, const struct engine *old, const struct
 			alarm_drop_item(&e->lanes[i].alarm, &e->alarm_items[k]);
 	for (uint32_t k = 0; k < e->alarm_count; k++)
 		take_alarm(e, &e->alarm_items[k], old, plan);
-	image_carry_alarms(e->image, old->image, plan->successors);
+	image_carry_journals(e->image, old->image, plan->successors);
 }
 
 /* --------------------------------------------------------------------------------------------- */

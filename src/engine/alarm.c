@@ -15,6 +15,7 @@
 #include "src/engine/publish.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
+#include "src/shm/entries.h"
 #include "src/signal/value.h"
 #include "src/text/log.h"
 

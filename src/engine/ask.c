@@ -107,7 +107,7 @@ static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
 	}
 	if (r->row != TABLE_NO_ROW) {
 		slot->value = e->table.signals[r->row].item->init_value;
-		slot->stamp = e->table.signals[r->row].sample.applied;
+		slot->stamp = e->table.signals[r->row].sample.confirmed;
 	}
 	if (!slot_lend(lane, slot, now_ns))
 		return false;

@@ -168,7 +168,7 @@ static int64_t client_patience(const struct client *known, const struct command_
 
 void engine_clients(struct engine *e, int64_t now_ns)
 {
-	for (unsigned i = 0; i < OWS_CLIENTS; i++) {
+	for (unsigned i = 0; i < OLD_CLIENTS; i++) {
 		struct client *known = &e->clients[i];
 		struct command_client c;
 

@@ -270,7 +270,7 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	s->command.agrees = false;
 	s->command.written = slot->value;
 	s->sample.value = slot->value;
-	s->sample.applied = slot->stamp;
+	s->sample.confirmed = slot->stamp;
 	s->sample.detail = answer->detail;
 	if (signal_is_string(s)) {
 		memcpy(s->written_text, slot->data, slot->req.len);

@@ -191,7 +191,7 @@ void engine_take_commands(struct engine *e, struct commands *commands, int64_t n
 	engine_intake(e, now_ns);
 	e->commands = commands;
 	e->counters.lost_commands++;
-	for (unsigned i = 0; i < OWS_CLIENTS; i++)
+	for (unsigned i = 0; i < OLD_CLIENTS; i++)
 		e->clients[i] = (struct client){0};
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		struct signal *s = &e->table.signals[row];

@@ -4,12 +4,13 @@
 #include "src/engine/due.h"
 #include "src/engine/limit.h"
 #include "src/engine/state.h"
+#include "src/shm/entries.h"
 #include "src/signal/value.h"
 #include "src/text/log.h"
 
 static void journal_limit(struct engine *e, const struct signal *s, uint8_t kind, uint8_t event)
 {
-	struct ows_alarm_entry entry = {
+	struct ows_journal_entry entry = {
 		.record = s->record,
 		.occurred_ns = e->time.now_ns,
 		.kind = kind,
@@ -19,11 +20,11 @@ static void journal_limit(struct engine *e, const struct signal *s, uint8_t kind
 
 	if (event != OWS_ALARM_ACKNOWLEDGED && s->limit.values) {
 		entry.after = s->limit.value[1];
-		entry.flags |= OWS_ALARM_AFTER;
+		entry.flags |= OWS_JOURNAL_AFTER;
 	}
 	if (event != OWS_ALARM_ACKNOWLEDGED && s->limit.values > 1) {
 		entry.before = s->limit.value[0];
-		entry.flags |= OWS_ALARM_BEFORE;
+		entry.flags |= OWS_JOURNAL_BEFORE;
 	}
 	image_alarm(e->image, &entry);
 	e->published = true;

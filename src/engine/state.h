@@ -267,7 +267,7 @@ struct engine {
 	struct log_rate refused;
 
 	/* clients.c */
-	struct client clients[OWS_CLIENTS];
+	struct client clients[OLD_CLIENTS];
 	/* trace.c */
 	struct trace trace;
 	struct {

@@ -203,7 +203,7 @@ bool signal_changed(const struct signal *s)
 void signal_settle(struct signal *s)
 {
 	if (s->command.given && signal_writes(s) && !s->writing && !signal_changed(s))
-		s->sample.applied = s->command.stamp;
+		s->sample.confirmed = s->command.stamp;
 }
 
 void signal_begin(struct signal *s, uint64_t period)

@@ -9,21 +9,6 @@
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
 
-#define WORDS (sizeof(struct ows_alarm_entry) / 4)
-
-static bool read_entry(const struct ows_alarm_entry *from, struct ows_alarm_entry *entry)
-{
-	for (int i = 0; i < READER_TRIES; i++) {
-		uint32_t seq = __atomic_load_n(&from->seq, __ATOMIC_ACQUIRE);
-
-		words_load_aligned(entry, from, WORDS);
-		word_fence(__ATOMIC_ACQUIRE);
-		if (seq % 2 == 0 && word_get(&from->seq) == seq)
-			return true;
-	}
-	return false;
-}
-
 uint32_t ows_alarm_count(struct ows *h)
 {
 	return __atomic_load_n(&h->map.image->alarm_head, __ATOMIC_ACQUIRE);
@@ -37,11 +22,12 @@ static void fill(uint8_t type, int64_t value, double *number, int64_t *integer)
 
 int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
 {
-	struct ows_alarm_entry e;
+	uint32_t kept = map_count(&h->map, OWS_AREA_ALARMS);
+	struct ows_journal_entry e;
 
-	if (ows_alarm_count(h) - 1 - number >= h->map.alarm_count)
+	if (ows_alarm_count(h) - 1 - number >= kept)
 		return -ENOENT;
-	if (!read_entry(map_alarm(&h->map, number), &e))
+	if (!reader_entry(map_entry(&h->map, OWS_AREA_ALARMS, number % kept), &e, sizeof(e)))
 		return -EAGAIN;
 	if (e.number != number || e.record == 0 || e.record >= h->map.count)
 		return -ENOENT;
@@ -49,8 +35,8 @@ int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
 		.signal = (int)e.record - 1,
 		.occurred_ns = e.occurred_ns,
 		.type = map_record(&h->map, e.record)->type,
-		.has_before = (e.flags & OWS_ALARM_BEFORE) != 0,
-		.has_after = (e.flags & OWS_ALARM_AFTER) != 0,
+		.has_before = (e.flags & OWS_JOURNAL_BEFORE) != 0,
+		.has_after = (e.flags & OWS_JOURNAL_AFTER) != 0,
 		.kind = e.kind,
 		.event = e.event,
 		.quality = e.quality,
@@ -59,7 +45,7 @@ int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
 		fill(alarm->type, e.before, &alarm->before, &alarm->before_integer);
 	if (alarm->has_after)
 		fill(alarm->type, e.after, &alarm->after, &alarm->after_integer);
-	memcpy(alarm->latch, e.latch, sizeof(e.latch));
+	memcpy(alarm->latch, e.text, sizeof(alarm->latch) - 1);
 	return 0;
 }
 

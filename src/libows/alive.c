@@ -32,7 +32,7 @@ bool alive_find(struct ows *h, int64_t now_ns)
 	struct ows_sample daemon;
 
 	h->alive_now = now_ns;
-	h->alive = reader_sample(h->map.records, &daemon) &&
+	h->alive = reader_sample(map_record(&h->map, 0), &daemon) &&
 	           handle_age(now_ns, daemon.measured_ns) <= h->dead_after_ns &&
 	           !handle_ahead(h, now_ns, daemon.measured_ns);
 	h->orphan = !h->alive && orphan_look(h, now_ns);

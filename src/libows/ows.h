@@ -212,6 +212,17 @@ struct ows_info {
 	uint8_t alarm;      /* 1 alarm item */
 	uint32_t per_factor;
 	int64_t stale_after_ns; /* 0: no limit */
+	/* What people say of the signal. Texts are "" where nothing is said, never NULL. */
+	const char *unit, *description;
+	const char *family;     /* the kind of device: "DS18B20" */
+	const char *device;     /* its ROM id, as in the path */
+	const char *calibrated; /* the date */
+	const char *points;     /* of the characteristic, as configured */
+	double scale, offset;   /* 1 and 0 without */
+	double min, max;        /* NaN: not set, like the limits of its alarm */
+	double limit_hh, limit_h, limit_l, limit_ll;
+	double filter_s, deadband; /* 0 without */
+	int32_t decimals;       /* -1: not known */
 };
 int ows_info(const struct ows *h, int signal, struct ows_info *info);
 /* Get the value of a signal by its index (not an id of ows_find()); otherwise as ows_get(). */
@@ -290,7 +301,7 @@ struct ows_alarm {
 	uint8_t kind;        /* enum ows_alarm_kind */
 	uint8_t event;       /* enum ows_alarm_event */
 	uint8_t quality;     /* of the signal at that moment */
-	char latch[24];      /* NUL-terminated; "" for other than device alarms */
+	char latch[64];      /* NUL-terminated; "" for other than device alarms */
 };
 /* States of a limit alarm, as in ISA-18.2. */
 enum ows_limit_state {

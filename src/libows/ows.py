@@ -32,7 +32,7 @@ import struct
 import sys
 import time
 
-MAJOR = 1
+MAJOR, COMMAND_MAJOR = 2, 1
 IMAGE_MAGIC, COMMAND_MAGIC = 0x4953574F, 0x4353574F
 BUILDING, LIVE, RETIRED, STOPPED = range(4)
 BOOL, BYTE, SHORT, LONG, WORD, DWORD, FLOAT, DOUBLE, LARGE, STRING = 1, 2, 3, 4, 5, 6, 7, 8, 10, 12
@@ -44,7 +44,7 @@ TYPE_NAMES = {BOOL: "bool", BYTE: "byte", SHORT: "short", LONG: "long", WORD: "w
               DWORD: "dword", FLOAT: "float", DOUBLE: "double", LARGE: "large", STRING: "string"}
 Q_NO_PROPERTY, Q_TYPE, Q_ACCESS = 0x04, 0x05, 0x06
 Q_STALE, Q_TARGET, Q_GOOD = 0x14, 0x18, 0xC0
-RECORD_SIZE, INFO_SIZE, SLOT_SIZE, ENTRY_SIZE, CLIENT_SIZE, CLIENTS = 256, 64, 32, 16, 32, 32
+SLOT_SIZE, ENTRY_SIZE, CLIENT_SIZE, CLIENTS = 32, 16, 32, 32
 WHOLE_TRIES = 64
 OUTPUT, FRESH, ALARM, NO_SET = 1, 2, 4, 8
 READ_ENABLE, WRITE_ENABLE, IN_WORK = 1, 2, 4
@@ -73,19 +73,22 @@ ATTRIBUTE = {a[0]: a for a in ATTRIBUTES}
 DRIVER = {"_DGNRESET": (BOOL, False, True), "_TRANSACTIONS": (LARGE, True, False),
           "_RECONNECTS": (LARGE, True, False)}
 
-# One slot: the sample's 48 bytes and the attributes' 72
+# One slot: the sample's 48 bytes and the attributes' 80
 SAMPLE = struct.Struct("<8sqqiBBBBIIII")
-ATTRS = struct.Struct("<QqqqIIIIIIIBB6xI")
-Attrs = collections.namedtuple("Attrs", "transactions update_ns age_max_ns commanded per_base "
+ATTRS = struct.Struct("<Qqqq8sIIIIIIIBBBB4xI")
+Attrs = collections.namedtuple("Attrs", "transactions update_ns age_max_ns commanded raw per_base "
                                "per_max pend_base pend_last pend_max alarms flags limit_state "
-                               "limit_condition check")
+                               "limit_condition shelved spare check")
 Header = collections.namedtuple(
-    "Header", "magic major minor size generation state pid start_id alarm_off start_ns "
-    "start_wall_ns period_ns alarm_size alarm_count record_off record_size record_count info_off "
-    "info_size name_off target_off target_size target_count counter_off counter_size "
-    "counter_count pool_off pool_size text_off text_size")
-HEADER = struct.Struct("<IHHIIIiIIqqqIIIIIIIIIIIIIIIIII")
-ALARM_ENTRY = struct.Struct("<IIq8s8sBBBB20sII")
+    "Header", "magic major minor size generation state pid start_id area_off area_count "
+    "served_off start_ns start_wall_ns period_ns")
+HEADER = struct.Struct("<IHHIIIiIIIIqqq")
+# The directory of areas, and the least size of an entry of each kind that is read here
+Area = collections.namedtuple("Area", "off size count", defaults=[0, 0, 0])
+AREA = struct.Struct("<IIII")
+RECORDS, INFOS, TARGETS, POOL, TEXTS, ALARMS = 1, 2, 4, 6, 7, 11
+ENTRY_SIZES = {RECORDS: 320, INFOS: 192, TARGETS: 128, POOL: 1, TEXTS: 1, ALARMS: 200}
+JOURNAL_ENTRY = struct.Struct("<IIq8s8sBBBBI64s80sI8xI")
 CommandHeader = collections.namedtuple(
     "CommandHeader", "magic major minor size generation state pid start_id slot_off slot_size "
     "slot_count entry_off entry_size dirty_off dirty_words client_off client_size pool_off "
@@ -233,11 +236,11 @@ class Segment:
     def word(self, offset):
         return self.words[offset >> 2]
 
-    def string(self, offset, start, size):
+    def string(self, offset, pool):
         """A text of the pool; "" for an offset that is none."""
-        if not start <= offset < start + size:
+        if not pool.off <= offset < pool.off + pool.count:
             return ""
-        end = self.memory.find(b"\0", offset, start + size)
+        end = self.memory.find(b"\0", offset, pool.off + pool.count)
         return self.memory[offset:end].decode(errors="replace") if end >= 0 else ""
 
     def replaced(self):
@@ -298,10 +301,10 @@ class Ows:
         image = command = None
         try:
             image = Segment(self.instance, "image", False)
-            header = self._check_image(image)
+            header, areas = self._check_image(image)
             if self.control:
                 command = Segment(self.instance, "command", True)
-                command_header = self._check_command(command, header)
+                command_header = self._check_command(command, header, areas)
         except BaseException:
             for segment in (image, command):
                 if segment is not None:
@@ -309,7 +312,7 @@ class Ows:
             raise
         restarted = self.image is not None and header.start_ns != self.header.start_ns
         self._drop()
-        self.image, self.header = image, header
+        self.image, self.header, self.areas = image, header, areas
         self.command, self.command_header = command, command_header if command else None
         self.dead_after_ns = max(2_000_000_000, 3 * header.period_ns)
         self.looked_ns, self.orphan = None, False
@@ -324,33 +327,34 @@ class Ows:
     @staticmethod
     def _check_image(image):
         header = Header(*HEADER.unpack_from(image.memory))
-        if (header.magic, header.major, header.size) != (IMAGE_MAGIC, MAJOR, image.size) or \
-           header.record_count == 0:
+        if (header.magic, header.major, header.size) != (IMAGE_MAGIC, MAJOR, image.size):
             raise broken()
-        # A later minor version may have larger entries
-        for size, least in ((header.record_size, RECORD_SIZE), (header.info_size, INFO_SIZE),
-                            (header.target_size, TARGET.size),
-                            (header.alarm_size, ALARM_ENTRY.size if header.alarm_count else 0)):
-            if size < least or size % 8:
+        image.inside(header.area_off, header.area_count, AREA.size)
+        areas = {kind: Area() for kind in ENTRY_SIZES}
+        for i in range(header.area_count):
+            kind, *area = AREA.unpack_from(image.memory, header.area_off + i * AREA.size)
+            area, least = Area(*area), ENTRY_SIZES.get(kind)
+            if least is None or not area.count:
+                continue
+            # A later minor version may have larger entries
+            if areas[kind].count or area.size < least or area.size % min(least, 8) or \
+               least == 1 != area.size:
                 raise broken()
-        for offset, count, size in ((header.record_off, header.record_count, header.record_size),
-                                    (header.info_off, header.record_count, header.info_size),
-                                    (header.pool_off, header.pool_size, 1),
-                                    (header.text_off, header.text_size, 1),
-                                    (header.target_off, header.target_count, header.target_size),
-                                    (header.alarm_off, header.alarm_count, header.alarm_size)):
-            image.inside(offset, count, size)
-        return header
+            image.inside(area.off, area.count, area.size)
+            areas[kind] = area
+        if not areas[RECORDS].count or areas[INFOS].count != areas[RECORDS].count:
+            raise broken()
+        return header, areas
 
     @staticmethod
-    def _check_command(command, image_header):
+    def _check_command(command, image_header, areas):
         h = CommandHeader(*COMMAND_HEADER.unpack_from(command.memory))
-        if (h.magic, h.major, h.size) != (COMMAND_MAGIC, MAJOR, command.size) or \
+        if (h.magic, h.major, h.size) != (COMMAND_MAGIC, COMMAND_MAJOR, command.size) or \
            (h.slot_size, h.entry_size, h.client_size) != (SLOT_SIZE, ENTRY_SIZE, CLIENT_SIZE):
             raise broken()
         if (h.generation, h.start_id) != (image_header.generation, image_header.start_id):
             raise FileNotFoundError(errno.ENOENT, "the command segment is just being replaced")
-        if h.slot_count != image_header.record_count:
+        if h.slot_count != areas[RECORDS].count:
             raise broken()
         for offset, count, size in ((h.slot_off, h.slot_count, SLOT_SIZE),
                                     (h.entry_off, h.slot_count, ENTRY_SIZE),
@@ -362,22 +366,27 @@ class Ows:
 
     def _read_table(self):
         """What does not change while a generation lives."""
-        h, image = self.header, self.image
+        image, texts, pool = self.image, self.areas[TEXTS], self.areas[POOL]
         self.records, self.table = {}, []
-        for record in range(h.record_count):
+        for record in range(self.areas[RECORDS].count):
             name, path, factor, _, stale = struct.unpack_from(
-                "<IIIIq", image.memory, h.info_off + record * h.info_size)
+                "<IIIIq", image.memory, self._at(INFOS, record))
             text_off, kind, flags, text_cap = struct.unpack_from(
-                "<IBBH", image.memory, h.record_off + record * h.record_size + 4)
-            if text_cap and not h.text_off <= text_off <= h.text_off + h.text_size - 2 * text_cap:
+                "<IBBH", image.memory, self._at(RECORDS, record) + 4)
+            if text_cap and not \
+               texts.off <= text_off <= texts.off + texts.count - 2 * text_cap:
                 raise broken()
-            name = image.string(name, h.pool_off, h.pool_size)
-            path = image.string(path, h.pool_off, h.pool_size)
+            name = image.string(name, pool)
+            path = image.string(path, pool)
             self.table.append((Info(name, path, kind, bool(flags & OUTPUT), bool(flags & FRESH),
                                     bool(flags & ALARM), factor, stale), text_off, text_cap,
                                bool(flags & NO_SET)))
             if record > 0:
                 self.records[name] = record
+
+    def _at(self, kind, i):
+        """Where entry i of an area is."""
+        return self.areas[kind].off + i * self.areas[kind].size
 
     def _drop(self):
         for segment in (self.image, self.command):
@@ -444,19 +453,19 @@ class Ows:
     def _slot(self, record, want_text=False):
         """A whole sample and its attributes, and the text if wanted, verified."""
         words, memory = self.image.words, self.image.memory
-        base = self.header.record_off + record * self.header.record_size
+        base = self._at(RECORDS, record)
         _, text_off, text_cap, _ = self.table[record]
         for _ in range(WHOLE_TRIES):
             seq = words[base >> 2]
             half = seq >> 1 & 1
-            raw = memory[base + 16 + 120 * half:base + 136 + 120 * half]
+            raw = memory[base + 16 + 128 * half:base + 144 + 128 * half]
             text = memory[text_off + half * text_cap:text_off + (half + 1) * text_cap] \
                 if want_text else b""
             if (words[base >> 2] - (seq & ~1)) & 0xFFFFFFFF > 2:
                 continue
-            both = struct.unpack("<30I", raw)
+            both = struct.unpack("<32I", raw)
             # A record that was never published is zero, and so are its check words
-            if seq >= 2 and (check(both[:11]) != both[11] or check(both[12:29]) != both[29]):
+            if seq >= 2 and (check(both[:11]) != both[11] or check(both[12:31]) != both[31]):
                 continue
             return SAMPLE.unpack(raw[:48]), Attrs(*ATTRS.unpack(raw[48:])), text
         raise BlockingIOError(errno.EAGAIN, "no whole sample")
@@ -558,26 +567,25 @@ class Ows:
     def alarms(self, since=0):
         """The journal of alarms from number `since` on, as far as it is kept: AlarmEntry by
         AlarmEntry. The number after the last is where to go on."""
-        h = self.header
         head = self.image.word(ALARM_HEAD_OFF)
-        first = max(since, head - h.alarm_count)
+        first = max(since, head - self.areas[ALARMS].count)
         for number in range(first, head):
             entry = self._alarm(number)
             if entry is not None:
                 yield entry
 
     def _alarm(self, number):
-        h, memory = self.header, self.image.memory
-        at = h.alarm_off + number % h.alarm_count * h.alarm_size
+        memory = self.image.memory
+        at = self._at(ALARMS, number % self.areas[ALARMS].count)
         for _ in range(WHOLE_TRIES):
-            raw = memory[at:at + ALARM_ENTRY.size]
-            words = struct.unpack("<16I", raw)
-            if words[0] % 2 == 0 and check(words[1:15]) == words[15]:
+            raw = memory[at:at + JOURNAL_ENTRY.size]
+            words = struct.unpack("<50I", raw)
+            if words[0] % 2 == 0 and check(words[1:49]) == words[49]:
                 break
         else:
             return None
-        (_, record, occurred, before, after, kind, event, quality, flags, latch, there,
-         _) = ALARM_ENTRY.unpack(raw)
+        (_, record, occurred, before, after, kind, event, quality, flags, _, text, _, there,
+         _) = JOURNAL_ENTRY.unpack(raw)
         if there != number or not 0 < record < len(self.table):
             return None
         info = self.table[record][0]
@@ -585,7 +593,7 @@ class Ows:
                           decode(info.type, before) if flags & 1 else None,
                           decode(info.type, after) if flags & 2 else None,
                           word(ALARM_KINDS, kind, "none"), word(ALARM_EVENTS, event, "unknown"),
-                          quality, latch.rstrip(b"\0").decode(errors="replace"))
+                          quality, text.rstrip(b"\0").decode(errors="replace"))
 
     def alarm_state(self, name):
         """The AlarmState of a signal: how its device's alarm and its limit alarm stand."""
@@ -601,10 +609,9 @@ class Ows:
 
     def targets(self):
         """All targets: Target by Target."""
-        h = self.header
-        for index in range(h.target_count):
+        for index in range(self.areas[TARGETS].count):
             name, state, reconnects, group, moves = TARGET.unpack_from(
-                self.image.memory, h.target_off + index * h.target_size)
+                self.image.memory, self._at(TARGETS, index))
             yield Target(index, name.split(b"\0")[0].decode(errors="replace"),
                          word(TARGET_STATES, state, "unknown"), reconnects, group, moves)
 

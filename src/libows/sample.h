@@ -25,7 +25,7 @@ static inline void value_fill(struct ows_value *value, const struct ows_sample *
 	value->tried_ns = sample->tried_ns;
 	value->err = sample->err;
 	value->count = sample->count;
-	value->applied = sample->applied;
+	value->applied = sample->confirmed;
 	value->len = sample->len;
 	value->type = type;
 	value->quality = sample->quality;

@@ -13,7 +13,7 @@
 #define ON 2
 #define OFF 1
 
-static struct ows_command_slot *slot_of(const struct ows *h, const struct ows_id *id)
+static struct old_command_slot *slot_of(const struct ows *h, const struct ows_id *id)
 {
 	return &h->map.slots[id->record];
 }
@@ -41,7 +41,7 @@ static int command_state(struct ows *h)
  */
 static int ring_engine(struct ows *h)
 {
-	struct ows_command_header *command = h->map.command;
+	struct old_command_header *command = h->map.command;
 
 	__atomic_fetch_add(&command->bell, 1, __ATOMIC_SEQ_CST);
 	word_fence(__ATOMIC_SEQ_CST);
@@ -62,7 +62,7 @@ static uint32_t giver(const struct ows *h)
 
 static uint32_t stamp_it(const struct ows *h, const struct ows_id *id)
 {
-	struct ows_command_slot *slot = slot_of(h, id);
+	struct old_command_slot *slot = slot_of(h, id);
 	uint32_t stamp;
 
 	word_set(&slot->client, giver(h));
@@ -131,7 +131,7 @@ static void count_edge(const struct ows *h, const struct ows_id *id, bool *level
 
 static void set_flag(const struct ows *h, const struct ows_id *id, bool on)
 {
-	struct ows_command_slot *slot = slot_of(h, id);
+	struct old_command_slot *slot = slot_of(h, id);
 
 	if (id->attribute == ATTR_READ_ENABLE || id->attribute == ATTR_WRITE_ENABLE) {
 		word_set(id->attribute == ATTR_READ_ENABLE ? &slot->read_enable
@@ -223,7 +223,7 @@ static int set_string(struct ows *h, const struct ows_id *id, const char *text, 
 {
 	size_t len = strlen(text), size = h->map.command_size;
 	uint32_t off = word_get(&h->map.entries[id->record].text_off), free_claim = 0, mine, got;
-	struct ows_command_text *t;
+	struct old_command_text *t;
 
 	if (len > h->map.text_cap)
 		return -ERANGE;
@@ -290,7 +290,7 @@ int ows_acknowledge(struct ows *h, int id)
 
 static int take_client(struct ows *h)
 {
-	for (int i = 0; i < OWS_CLIENTS; i++) {
+	for (int i = 0; i < OLD_CLIENTS; i++) {
 		uint32_t none = 0;
 
 		if (__atomic_compare_exchange_n(&h->map.clients[i].pid, &none, h->pid, false,
@@ -304,7 +304,7 @@ static int take_client(struct ows *h)
 
 int ows_beat(struct ows *h, uint32_t period_ms)
 {
-	struct ows_client *client;
+	struct old_client *client;
 	int err;
 
 	if (h->map.command == NULL)

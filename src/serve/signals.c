@@ -101,7 +101,7 @@ static int look_up(struct signals *signals, const char *name, struct ows_id *id)
 	id->name = NULL;
 	id->record = record;
 	id->memory = 0;
-	id->stale_after_ns = h->map.infos[record].stale_after_ns;
+	id->stale_after_ns = map_info(&h->map, record)->stale_after_ns;
 	h->memories[0].alarms_seen = 0;
 	h->memories[0].reset_level = h->memories[0].shot_level = false;
 	return 0;
@@ -198,8 +198,9 @@ static bool takes_commands(const struct ows *h, const struct ows_id *id)
 {
 	struct ows_slot slot;
 
-	return id->attribute != ATTR_VALUE || (reader_slot(&h->map.records[id->record], &slot) &&
-	                                       slot.attrs.flags & OWS_ATTR_WRITE_ENABLE);
+	return id->attribute != ATTR_VALUE ||
+	       (reader_slot(map_record(&h->map, (uint32_t)id->record), &slot) &&
+	        slot.attrs.flags & OWS_ATTR_WRITE_ENABLE);
 }
 
 static int set(struct signals *signals, struct ows_id *id, int64_t now_ns, const char *text,
@@ -208,9 +209,10 @@ static int set(struct signals *signals, struct ows_id *id, int64_t now_ns, const
 	struct ows *h = signals->h;
 	char copy[VALUE_STRING_MAX + 1];
 	uint32_t stamp = 0;
-	int err = take_text(
-		text, len,
-		id->attribute == ATTR_VALUE && h->map.records[id->record].type == OWS_STRING, copy);
+	int err = take_text(text, len,
+	                    id->attribute == ATTR_VALUE &&
+	                            map_record(&h->map, (uint32_t)id->record)->type == OWS_STRING,
+	                    copy);
 
 	if (err)
 		return err;
@@ -260,9 +262,9 @@ int signals_applied(struct signals *signals, const char *name, struct signals_co
 		command->record = (unsigned)id.record;
 		command->generation = h->map.image->generation;
 	}
-	if (!reader_sample(&signals->h->map.records[command->record], &sample))
+	if (!reader_sample(map_record(&h->map, command->record), &sample))
 		return -EAGAIN;
-	if ((int32_t)(sample.applied - command->stamp) >= 0 && sample.applied)
+	if ((int32_t)(sample.confirmed - command->stamp) >= 0 && sample.confirmed)
 		return 0;
 	if (sample.err && sample.tried_ns >= command->since_ns)
 		return sample.err;

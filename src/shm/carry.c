@@ -30,15 +30,15 @@ static bool area_inside(const struct old_segment *old, uint32_t off, uint64_t co
 
 static int open_old(const void *memory, size_t size, struct old_segment *old)
 {
-	struct ows_command_header h;
+	struct old_command_header h;
 
 	if (size < sizeof(h) || size > 0x7fffffffu)
 		return -EPROTO;
 	words_load(&h, memory, sizeof(h) / 4);
-	if (h.magic != OWS_COMMAND_MAGIC || h.major != OWS_LAYOUT_MAJOR ||
-	    h.slot_size != sizeof(struct ows_command_slot) ||
-	    h.entry_size != sizeof(struct ows_command_entry) ||
-	    h.client_size != sizeof(struct ows_client) || h.slot_count > SLOTS_MAX)
+	if (h.magic != OLD_COMMAND_MAGIC || h.major != OLD_LAYOUT_MAJOR ||
+	    h.slot_size != sizeof(struct old_command_slot) ||
+	    h.entry_size != sizeof(struct old_command_entry) ||
+	    h.client_size != sizeof(struct old_client) || h.slot_count > SLOTS_MAX)
 		return -EPROTO;
 	*old = (struct old_segment){
 		.base = memory,
@@ -49,9 +49,9 @@ static int open_old(const void *memory, size_t size, struct old_segment *old)
 		.text_cap = h.text_cap,
 		.client_off = h.client_off,
 	};
-	if (!area_inside(old, h.slot_off, h.slot_count, sizeof(struct ows_command_slot)) ||
-	    !area_inside(old, h.entry_off, h.slot_count, sizeof(struct ows_command_entry)) ||
-	    !area_inside(old, h.client_off, OWS_CLIENTS, sizeof(struct ows_client)))
+	if (!area_inside(old, h.slot_off, h.slot_count, sizeof(struct old_command_slot)) ||
+	    !area_inside(old, h.entry_off, h.slot_count, sizeof(struct old_command_entry)) ||
+	    !area_inside(old, h.client_off, OLD_CLIENTS, sizeof(struct old_client)))
 		return -EPROTO;
 	return 0;
 }
@@ -63,9 +63,9 @@ static bool same_string(const struct old_segment *old, uint32_t off, const char 
 	return off < old->size && n <= old->size - off && memcmp(old->base + off, text, n) == 0;
 }
 
-static struct ows_command_entry old_entry(const struct old_segment *old, uint32_t i)
+static struct old_command_entry old_entry(const struct old_segment *old, uint32_t i)
 {
-	struct ows_command_entry e;
+	struct old_command_entry e;
 
 	words_load(&e, old->base + old->entry_off + (size_t)i * sizeof(e), sizeof(e) / 4);
 	return e;
@@ -73,7 +73,7 @@ static struct ows_command_entry old_entry(const struct old_segment *old, uint32_
 
 /* Find a signal's slot, from a guess on, since most files change little; returns the slot or 0. */
 static uint32_t find_old(const struct old_segment *old, uint32_t guess, const char *name,
-                         const char *path, uint32_t type, struct ows_command_entry *entry)
+                         const char *path, uint32_t type, struct old_command_entry *entry)
 {
 	for (uint32_t n = 1; n < old->count; n++) {
 		if (guess == 0 || guess >= old->count)
@@ -90,7 +90,7 @@ static uint32_t find_old(const struct old_segment *old, uint32_t guess, const ch
 static bool carry_text(struct commands *to, uint32_t slot, const struct old_segment *old,
                        uint32_t off)
 {
-	struct ows_command_text head, *t = (void *)(to->base + to->text_off[slot]);
+	struct old_command_text head, *t = (void *)(to->base + to->text_off[slot]);
 	const char *from;
 	char *text;
 
@@ -118,19 +118,19 @@ static bool carry_text(struct commands *to, uint32_t slot, const struct old_segm
  */
 static uint32_t carry_giver(const struct commands *to, uint32_t client)
 {
-	const struct ows_client *clients = (const void *)(to->base + to->client_off);
+	const struct old_client *clients = (const void *)(to->base + to->client_off);
 
-	if (client == OWS_CLIENT_SAFE)
+	if (client == OLD_CLIENT_SAFE)
 		return client;
-	return client != 0 && client <= OWS_CLIENTS && clients[client - 1].pid != 0 ? client : 0;
+	return client != 0 && client <= OLD_CLIENTS && clients[client - 1].pid != 0 ? client : 0;
 }
 
 /* Carry a slot; call carry_clients() before. */
 static bool carry_slot(struct commands *to, uint32_t slot, const struct old_segment *old,
                        uint32_t from, uint32_t text_off, bool restart)
 {
-	const struct ows_command_slot *there = (const void *)(old->base + old->slot_off);
-	struct ows_command_slot was, *s;
+	const struct old_command_slot *there = (const void *)(old->base + old->slot_off);
+	struct old_command_slot was, *s;
 
 	there += from;
 	words_load(&was, there, sizeof(was) / 4);
@@ -159,9 +159,9 @@ static bool carry_slot(struct commands *to, uint32_t slot, const struct old_segm
 
 static void carry_clients(struct commands *to, const struct old_segment *old)
 {
-	struct ows_client was, *clients = (void *)(to->base + to->client_off);
+	struct old_client was, *clients = (void *)(to->base + to->client_off);
 
-	for (uint32_t i = 0; i < OWS_CLIENTS; i++) {
+	for (uint32_t i = 0; i < OLD_CLIENTS; i++) {
 		words_load(&was, old->base + old->client_off + i * sizeof(was), sizeof(was) / 4);
 		clients[i].pid = was.pid;
 		clients[i].beat = was.beat;
@@ -171,7 +171,7 @@ static void carry_clients(struct commands *to, const struct old_segment *old)
 
 int commands_carry(struct commands *to, const void *memory, size_t size, bool restart)
 {
-	const struct ows_command_entry *entries = (const void *)(to->keep + to->entry_off);
+	const struct old_command_entry *entries = (const void *)(to->keep + to->entry_off);
 	struct old_segment old;
 	uint32_t guess = 1;
 	int carried = 0, err = open_old(memory, size, &old);
@@ -182,8 +182,8 @@ int commands_carry(struct commands *to, const void *memory, size_t size, bool re
 	if (old.count > 0)
 		carry_slot(to, 0, &old, 0, 0, restart);
 	for (uint32_t i = 1; i < to->slot_count; i++) {
-		const struct ows_command_entry *e = &entries[i];
-		struct ows_command_entry was;
+		const struct old_command_entry *e = &entries[i];
+		struct old_command_entry was;
 		uint32_t found = find_old(&old, guess, to->keep + e->name_off,
 		                          to->keep + e->path_off, e->type, &was);
 

@@ -10,7 +10,7 @@
 #include "src/shm/word.h"
 
 #define COMMANDS_MAX 0x7fffffffu
-#define CONSTANT_HEADER offsetof(struct ows_command_header, bell)
+#define CONSTANT_HEADER offsetof(struct old_command_header, bell)
 
 /* The offsets of the areas of the segment, in their order. */
 struct command_areas {
@@ -37,15 +37,15 @@ static void find_areas(const struct command_plan *plan, struct command_areas *a)
 		texts += has_text(&plan->signals[i]) ? 1 : 0;
 	}
 	a->dirty_words = (uint32_t)((slots + 31) / 32);
-	a->entry = sizeof(struct ows_command_header);
-	a->pool = a->entry + slots * sizeof(struct ows_command_entry);
+	a->entry = sizeof(struct old_command_header);
+	a->pool = a->entry + slots * sizeof(struct old_command_entry);
 	a->pool_end = a->pool + pool;
 	a->dirty = align64(a->pool_end);
 	a->client = align64(a->dirty + 4 * (uint64_t)a->dirty_words);
-	a->slot = a->client + OWS_CLIENTS * sizeof(struct ows_client);
-	a->ack = a->slot + slots * sizeof(struct ows_command_slot);
+	a->slot = a->client + OLD_CLIENTS * sizeof(struct old_client);
+	a->ack = a->slot + slots * sizeof(struct old_command_slot);
 	a->text = align64(a->ack + 4 * slots);
-	a->end = align64(a->text + texts * (sizeof(struct ows_command_text) + plan->text_cap));
+	a->end = align64(a->text + texts * (sizeof(struct old_command_text) + plan->text_cap));
 }
 
 size_t commands_size(const struct command_plan *plan)
@@ -57,26 +57,26 @@ size_t commands_size(const struct command_plan *plan)
 }
 
 static void fill_header(const struct command_plan *plan, const struct command_areas *a,
-                        struct ows_command_header *h)
+                        struct old_command_header *h)
 {
-	*h = (struct ows_command_header){
-		.magic = OWS_COMMAND_MAGIC,
-		.major = OWS_LAYOUT_MAJOR,
-		.minor = OWS_LAYOUT_MINOR,
+	*h = (struct old_command_header){
+		.magic = OLD_COMMAND_MAGIC,
+		.major = OLD_LAYOUT_MAJOR,
+		.minor = OLD_LAYOUT_MINOR,
 		.size = (uint32_t)a->end,
 		.generation = plan->generation,
 		.state = OWS_STATE_BUILDING,
 		.pid = plan->pid,
 		.start_id = plan->start_id,
 		.slot_off = (uint32_t)a->slot,
-		.slot_size = sizeof(struct ows_command_slot),
+		.slot_size = sizeof(struct old_command_slot),
 		.slot_count = plan->signal_count + 1,
 		.entry_off = (uint32_t)a->entry,
-		.entry_size = sizeof(struct ows_command_entry),
+		.entry_size = sizeof(struct old_command_entry),
 		.dirty_off = (uint32_t)a->dirty,
 		.dirty_words = a->dirty_words,
 		.client_off = (uint32_t)a->client,
-		.client_size = sizeof(struct ows_client),
+		.client_size = sizeof(struct old_client),
 		.pool_off = (uint32_t)a->pool,
 		.pool_size = (uint32_t)(a->pool_end - a->pool),
 		.text_off = (uint32_t)a->text,
@@ -99,7 +99,7 @@ static uint32_t add_string(char *base, uint32_t *pool, const char *text)
 int commands_build(const struct command_plan *plan, void *memory, struct commands *commands)
 {
 	struct command_areas a;
-	struct ows_command_entry *entries;
+	struct old_command_entry *entries;
 	uint32_t pool, text;
 
 	assert(plan->text_cap % 4 == 0);
@@ -131,7 +131,7 @@ int commands_build(const struct command_plan *plan, void *memory, struct command
 	entries[0].name_off = entries[0].path_off = add_string(commands->base, &pool, "");
 	for (uint32_t i = 0; i < plan->signal_count; i++) {
 		const struct command_signal *s = &plan->signals[i];
-		struct ows_command_entry *e = &entries[i + 1];
+		struct old_command_entry *e = &entries[i + 1];
 
 		e->name_off = add_string(commands->base, &pool, s->name);
 		e->path_off = add_string(commands->base, &pool, s->path);
@@ -139,7 +139,7 @@ int commands_build(const struct command_plan *plan, void *memory, struct command
 		if (!has_text(s))
 			continue;
 		e->text_off = commands->text_off[i + 1] = text;
-		text += (uint32_t)sizeof(struct ows_command_text) + plan->text_cap;
+		text += (uint32_t)sizeof(struct old_command_text) + plan->text_cap;
 	}
 	memcpy(commands->keep, commands->base, commands->keep_size);
 	return 0;
@@ -153,20 +153,20 @@ void commands_forget(struct commands *commands)
 	commands->keep = NULL;
 }
 
-static struct ows_command_slot *slot_at(const struct commands *commands, uint32_t slot)
+static struct old_command_slot *slot_at(const struct commands *commands, uint32_t slot)
 {
 	assert(slot < commands->slot_count);
 	return (void *)(commands->base + commands->slot_off +
-	                (size_t)slot * sizeof(struct ows_command_slot));
+	                (size_t)slot * sizeof(struct old_command_slot));
 }
 
-static struct ows_command_text *text_at(const struct commands *commands, uint32_t slot)
+static struct old_command_text *text_at(const struct commands *commands, uint32_t slot)
 {
 	assert(slot < commands->slot_count && commands->text_off[slot] != 0);
 	return (void *)(commands->base + commands->text_off[slot]);
 }
 
-static struct ows_command_header *header_of(const struct commands *commands)
+static struct old_command_header *header_of(const struct commands *commands)
 {
 	return (void *)commands->base;
 }
@@ -178,7 +178,7 @@ static uint8_t checked_enable(uint32_t word)
 
 void commands_load(const struct commands *commands, uint32_t slot, struct command *command)
 {
-	struct ows_command_slot *s = slot_at(commands, slot);
+	struct old_command_slot *s = slot_at(commands, slot);
 	const uint32_t *acks = (const void *)(commands->base + commands->ack_off);
 	uint32_t client;
 
@@ -189,8 +189,8 @@ void commands_load(const struct commands *commands, uint32_t slot, struct comman
 	command->stamp = __atomic_load_n(&s->stamp, __ATOMIC_ACQUIRE);
 	command->value = (int64_t)__atomic_load_n((shm_double_word *)&s->value, __ATOMIC_RELAXED);
 	client = word_get(&s->client);
-	command->client = client <= OWS_CLIENTS ? client : 0;
-	command->safe = client == OWS_CLIENT_SAFE;
+	command->client = client <= OLD_CLIENTS ? client : 0;
+	command->safe = client == OLD_CLIENT_SAFE;
 	command->read_enable = checked_enable(word_get(&s->read_enable));
 	command->write_enable = checked_enable(word_get(&s->write_enable));
 	command->one_shot = word_get(&s->one_shot);
@@ -200,7 +200,7 @@ void commands_load(const struct commands *commands, uint32_t slot, struct comman
 
 int commands_text(const struct commands *commands, uint32_t slot, char *text)
 {
-	struct ows_command_text *t = text_at(commands, slot);
+	struct old_command_text *t = text_at(commands, slot);
 	const char *from = (const char *)(t + 1);
 	uint32_t len, check, word;
 
@@ -221,8 +221,8 @@ int commands_text(const struct commands *commands, uint32_t slot, char *text)
 static int put_command(struct commands *commands, uint32_t slot, uint32_t client, int64_t value,
                        const char *text, uint32_t len)
 {
-	struct ows_command_slot *s = slot_at(commands, slot);
-	struct ows_command_text *t;
+	struct old_command_slot *s = slot_at(commands, slot);
+	struct old_command_text *t;
 	uint32_t free_claim = 0;
 
 	word_set(&s->client, client);
@@ -258,7 +258,7 @@ int commands_put(struct commands *commands, uint32_t slot, int64_t value, const 
 int commands_put_safe(struct commands *commands, uint32_t slot, int64_t value, const char *text,
                       uint32_t len)
 {
-	return put_command(commands, slot, OWS_CLIENT_SAFE, value, text, len);
+	return put_command(commands, slot, OLD_CLIENT_SAFE, value, text, len);
 }
 
 void commands_stamp(struct commands *commands, uint32_t slot, uint32_t stamp)
@@ -291,17 +291,17 @@ int commands_next_dirty(struct commands *commands, uint32_t from)
 	return -1;
 }
 
-static struct ows_client *client_at(const struct commands *commands, unsigned client)
+static struct old_client *client_at(const struct commands *commands, unsigned client)
 {
-	struct ows_client *clients = (void *)(commands->base + commands->client_off);
+	struct old_client *clients = (void *)(commands->base + commands->client_off);
 
-	assert(client < OWS_CLIENTS);
+	assert(client < OLD_CLIENTS);
 	return &clients[client];
 }
 
 void commands_client(const struct commands *commands, unsigned client, struct command_client *c)
 {
-	struct ows_client *from = client_at(commands, client);
+	struct old_client *from = client_at(commands, client);
 
 	c->pid = __atomic_load_n(&from->pid, __ATOMIC_ACQUIRE);
 	c->beat = word_get(&from->beat);
@@ -336,7 +336,7 @@ void commands_awake(struct commands *commands, bool awake)
 
 void commands_state(struct commands *commands, enum ows_state state)
 {
-	struct ows_command_header *keep = (void *)commands->keep;
+	struct old_command_header *keep = (void *)commands->keep;
 
 	word_set(&keep->state, (uint32_t)state);
 	__atomic_store_n(&header_of(commands)->state, (uint32_t)state, __ATOMIC_SEQ_CST);
@@ -345,9 +345,9 @@ void commands_state(struct commands *commands, enum ows_state state)
 
 void commands_retire(void *old, size_t old_size)
 {
-	struct ows_command_header *h = old;
+	struct old_command_header *h = old;
 
-	if (old_size < sizeof(*h) || word_get(&h->magic) != OWS_COMMAND_MAGIC)
+	if (old_size < sizeof(*h) || word_get(&h->magic) != OLD_COMMAND_MAGIC)
 		return;
 	__atomic_store_n(&h->state, (uint32_t)OWS_STATE_RETIRED, __ATOMIC_SEQ_CST);
 	word_fence(__ATOMIC_SEQ_CST);

@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 
-#include "src/shm/layout.h"
+#include "src/shm/old_commands.h"
 
 struct command_signal {
 	const char *name;

@@ -11,11 +11,11 @@
 static bool beats;
 static uint32_t beat, stamp = 1001;
 
-static struct ows_command_slot *slot_of(uint32_t record)
+static struct old_command_slot *slot_of(uint32_t record)
 {
 	const struct commands *c = &station.now_serving->commands;
 
-	return (struct ows_command_slot *)(void *)(c->base + c->slot_off) + record;
+	return (struct old_command_slot *)(void *)(c->base + c->slot_off) + record;
 }
 
 static void mark_dirty(uint32_t record)
@@ -27,17 +27,17 @@ static void mark_dirty(uint32_t record)
 	station_ring();
 }
 
-static struct ows_client *client(void)
+static struct old_client *client(void)
 {
 	const struct commands *c = &station.now_serving->commands;
 
-	return (struct ows_client *)(void *)(c->base + c->client_off) + CLIENT;
+	return (struct old_client *)(void *)(c->base + c->client_off) + CLIENT;
 }
 
 static void set_relays(unsigned value, bool beating)
 {
 	uint32_t record = record_of("relays");
-	struct ows_command_slot *slot = slot_of(record);
+	struct old_command_slot *slot = slot_of(record);
 
 	slot->value = value;
 	slot->client = beating ? CLIENT + 1 : 0;
@@ -60,7 +60,7 @@ void program_runs(void)
 {
 	if (!beats)
 		return;
-	*client() = (struct ows_client){.pid = 42, .beat = ++beat, .period_ms = 1000 * BEAT_MS};
+	*client() = (struct old_client){.pid = 42, .beat = ++beat, .period_ms = 1000 * BEAT_MS};
 }
 
 void program_sets(unsigned value)
@@ -76,7 +76,7 @@ void program_dies(void)
 	program_runs();
 	station_run(station.now + (int64_t)world_random(20) * FIELD_S);
 	beats = false;
-	*client() = (struct ows_client){.pid = 42, .beat = beat, .period_ms = BEAT_MS};
+	*client() = (struct old_client){.pid = 42, .beat = beat, .period_ms = BEAT_MS};
 	station_run(station.now + FIELD_S);
 	commanded = 0; /* SafeValue */
 }
@@ -99,15 +99,15 @@ void program_scribbles(void)
 	}
 	for (unsigned i = 0; i < 4; i++)
 		((uint32_t *)(void *)c->base)[world_random(header)] = world_random(1 << 24);
-	((uint32_t *)(void *)(c->base + c->client_off))[world_random(OWS_CLIENTS * 8)] =
+	((uint32_t *)(void *)(c->base + c->client_off))[world_random(OLD_CLIENTS * 8)] =
 		world_random(1 << 24);
 	((uint32_t *)(void *)(c->base + c->dirty_off))[0] = world_random(1 << 24);
 	station_ring();
 	station_run(station.now + (1 + world_random(30)) * FIELD_S);
 	/* and sets it right */
-	memset(c->base + c->client_off, 0, OWS_CLIENTS * sizeof(struct ows_client));
+	memset(c->base + c->client_off, 0, OLD_CLIENTS * sizeof(struct old_client));
 	for (uint32_t record = 1; record <= n; record++) {
-		struct ows_command_slot *slot = slot_of(record);
+		struct old_command_slot *slot = slot_of(record);
 		bool output = record == record_of("relays");
 
 		slot->read_enable = output ? 1 : 2;

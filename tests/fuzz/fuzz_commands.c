@@ -18,7 +18,7 @@
 
 static struct fuzz fuzz;
 static struct scene scene;
-static struct ows_command_header header; /* as it was made */
+static struct old_command_header header; /* as it was made */
 static uint32_t text_off[SCENE_ITEMS + 1];
 static int64_t time_left;
 
@@ -110,14 +110,14 @@ static void mark(uint32_t record)
 	((uint32_t *)(void *)at(header.dirty_off))[record / 32] |= 1u << record % 32;
 }
 
-static struct ows_command_slot *slot_of(uint32_t record)
+static struct old_command_slot *slot_of(uint32_t record)
 {
-	return (struct ows_command_slot *)(void *)at(header.slot_off) + record;
+	return (struct old_command_slot *)(void *)at(header.slot_off) + record;
 }
 
 static void put_text(uint32_t record)
 {
-	struct ows_command_text *text = (void *)at(text_off[record]);
+	struct old_command_text *text = (void *)at(text_off[record]);
 	uint8_t how = fuzz_byte(&fuzz);
 	size_t n;
 	const uint8_t *bytes = fuzz_bytes(&fuzz, 255, &n);
@@ -138,7 +138,7 @@ static void put_text(uint32_t record)
 static void command(uint8_t what)
 {
 	uint32_t record = 1 + (what >> 4) % ITEMS;
-	struct ows_command_slot *slot = slot_of(record);
+	struct old_command_slot *slot = slot_of(record);
 
 	if (items[record - 1].type == OWS_STRING)
 		put_text(record);
@@ -153,7 +153,7 @@ static void command(uint8_t what)
 
 static void flags(uint8_t what)
 {
-	struct ows_command_slot *slot = slot_of((what >> 4) % (ITEMS + 1));
+	struct old_command_slot *slot = slot_of((what >> 4) % (ITEMS + 1));
 	uint8_t how = fuzz_byte(&fuzz);
 
 	slot->read_enable = how & 3;
@@ -184,7 +184,7 @@ static void happen(void)
 	static const int64_t spans[] = {1, 20, 100, 350, 1100, 5000, 60, 2000};
 	static const int errors[] = {0, -ENODEV, -EIO, -EINVAL, -EINPROGRESS, 0, -EACCES, -ERANGE};
 	uint8_t what = fuzz_byte(&fuzz);
-	struct ows_client *client;
+	struct old_client *client;
 
 	switch (what & 7) {
 	case 0:
@@ -198,7 +198,7 @@ static void happen(void)
 		flags(what);
 		break;
 	case 4:
-		client = (struct ows_client *)(void *)at(header.client_off) + (what >> 4 & 3);
+		client = (struct old_client *)(void *)at(header.client_off) + (what >> 4 & 3);
 		client->pid = fuzz_byte(&fuzz);
 		client->beat += what >> 3 & 1;
 		client->period_ms = what & 0x80 ? fuzz_word(&fuzz) : 100;

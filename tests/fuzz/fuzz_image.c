@@ -37,14 +37,10 @@ static char *copy(const char *from, size_t size)
 /* Somewhere in the segment, or near where something of the image begins. */
 static uint32_t place(const char *base, size_t size)
 {
-	const struct ows_image_header *header = heap.image.header;
-	const uint32_t areas[] = {header->record_off, header->info_off,    header->name_off,
-	                          header->target_off, header->counter_off, header->alarm_off,
-	                          header->pool_off,   header->text_off};
-	uint32_t off = fuzz_word(&fuzz);
+	uint32_t off = fuzz_word(&fuzz), area = off >> 24 & 15;
 
 	if (base == image && off >> 24)
-		off = areas[off >> 24 & 7] + (off & 0x3ff);
+		off = (area < OWS_AREAS - 1 ? heap.image.areas[area].off : 0) + (off & 0x3ff);
 	return off % (uint32_t)size;
 }
 
@@ -89,14 +85,14 @@ static void keep_ends(void)
 
 	if (!map)
 		return;
-	image[map->pool_off + map->pool_size - 1] = '\0';
-	for (uint32_t i = 0; i < map->target_count; i++) {
-		last = sizeof(map->targets[i].name) - 1;
-		image[&map->targets[i].name[last] - map->base] = '\0';
+	image[map->areas[OWS_AREA_POOL].off + map->areas[OWS_AREA_POOL].count - 1] = '\0';
+	for (uint32_t i = 0; i < map_count(map, OWS_AREA_TARGETS); i++) {
+		last = sizeof(map_target(map, i)->name) - 1;
+		image[&map_target(map, i)->name[last] - map->base] = '\0';
 	}
-	for (uint32_t i = 0; i < map->counter_count; i++) {
-		last = sizeof(map->counters[i].name) - 1;
-		image[&map->counters[i].name[last] - map->base] = '\0';
+	for (uint32_t i = 0; i < map_count(map, OWS_AREA_COUNTERS); i++) {
+		last = sizeof(map_counter(map, i)->name) - 1;
+		image[&map_counter(map, i)->name[last] - map->base] = '\0';
 	}
 }
 

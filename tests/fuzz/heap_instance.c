@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/shm/entries.h"
 #include "src/signal/value.h"
 #include "tests/fuzz/heap_instance.h"
 
@@ -44,7 +45,7 @@ void heap_put(uint32_t record, int64_t value, const char *text, int64_t measured
 	                            .tried_ns = measured_ns,
 	                            .quality = OWS_Q_GOOD,
 	                            .count = 1,
-	                            .applied = applied,
+	                            .confirmed = applied,
 	                            .len = is_text ? (uint32_t)strlen(text) : 0};
 	struct ows_attrs attrs = {.flags = OWS_ATTR_READ_ENABLE | OWS_ATTR_WRITE_ENABLE};
 
@@ -75,10 +76,10 @@ static void make(void)
 	                                .generation = 1,
 	                                .start_id = 7,
 	                                .pid = 1};
-	struct ows_alarm_entry alarm = {.record = 1,
+	struct ows_journal_entry alarm = {.record = 1,
 	                                .occurred_ns = HEAP_START,
 	                                .kind = OWS_ALARM_H,
-	                                .flags = OWS_ALARM_BEFORE};
+	                                .flags = OWS_JOURNAL_BEFORE};
 
 	for (unsigned i = 0; i < HEAP_SIGNALS; i++)
 		signals[i] = (struct image_signal){

@@ -57,15 +57,15 @@ static void make_commands(char *where, struct commands *made)
 	commands_awake(made, true);
 }
 
-static struct ows_command_slot *slot_of_next(void)
+static struct old_command_slot *slot_of_next(void)
 {
-	return (struct ows_command_slot *)(void *)(next_memory + next.slot_off) + NUMBER;
+	return (struct old_command_slot *)(void *)(next_memory + next.slot_off) + NUMBER;
 }
 
 static void setup(void)
 {
-	struct ows_command_header *header = (void *)memory;
-	struct ows_command_slot *slots;
+	struct old_command_header *header = (void *)memory;
+	struct old_command_slot *slots;
 
 	make_commands(memory, &commands);
 	make_commands(next_memory, &next);
@@ -78,9 +78,9 @@ static void setup(void)
 		handles[i] = (struct ows){
 			.map =
 				{
-					.records = records,
-					.record_size = sizeof(records[0]),
 					.count = 3,
+					.areas[OWS_AREA_RECORDS] = {(const char *)records, 0,
+		                                                    sizeof(records[0]), 3},
 					.command = header,
 					.slots = slots,
 					.entries = (void *)(memory + commands.entry_off),
@@ -106,7 +106,7 @@ static void setup(void)
 
 static void setup_number(void)
 {
-	struct ows_command_slot *slot;
+	struct old_command_slot *slot;
 
 	setup();
 	slot = &handles[0].map.slots[NUMBER];
@@ -116,7 +116,7 @@ static void setup_number(void)
 
 static void setup_text(void)
 {
-	struct ows_command_text *text;
+	struct old_command_text *text;
 
 	setup();
 	text = (void *)(memory + commands.text_off[STRING]);
@@ -255,8 +255,8 @@ static void start_after_kill(void)
 static void setup_carry(void)
 {
 	setup_number();
-	explore_track("state", &((struct ows_command_header *)(void *)memory)->state, 4);
-	explore_keep(slot_of_next(), sizeof(struct ows_command_slot));
+	explore_track("state", &((struct old_command_header *)(void *)memory)->state, 4);
+	explore_keep(slot_of_next(), sizeof(struct old_command_slot));
 }
 
 /* --- Ends ------------------------------------------------------------------------------------- */
@@ -291,7 +291,7 @@ static void text_taken(void)
 /* If the program was told that all is well, the next segment has it. */
 static void carried(void)
 {
-	const struct ows_command_slot *slot = slot_of_next();
+	const struct old_command_slot *slot = slot_of_next();
 
 	if (slot->value != 0 && slot->value != (uint64_t)number_of(0))
 		explore_fail("carried %#llx, which nobody set", (unsigned long long)slot->value);

@@ -284,7 +284,7 @@ double plant_number(const struct plant *p, unsigned record)
 
 void plant_set(struct plant *p, unsigned record, int64_t value)
 {
-	struct ows_command_slot *slots = (void *)(p->commands.base + p->commands.slot_off);
+	struct old_command_slot *slots = (void *)(p->commands.base + p->commands.slot_off);
 	uint32_t *dirty = (void *)(p->commands.base + p->commands.dirty_off);
 
 	slots[record].value = (uint64_t)value;

@@ -161,9 +161,9 @@ void scene_end(struct scene *scene);
 /* Set a value as a consumer does. record: 1 is the first item. */
 void scene_set(struct scene *scene, unsigned record, int64_t value);
 void scene_set_text(struct scene *scene, unsigned record, const char *text);
-struct ows_command_slot *scene_slot(struct scene *scene, unsigned record);
+struct old_command_slot *scene_slot(struct scene *scene, unsigned record);
 void scene_ring(struct scene *scene, unsigned record);
-struct ows_client *scene_client(struct scene *scene, unsigned client);
+struct old_client *scene_client(struct scene *scene, unsigned client);
 
 struct ows_sample scene_sample(struct scene *scene, unsigned record);
 /* Check the signal's quality and the target that it comes from. */

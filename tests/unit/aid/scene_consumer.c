@@ -8,17 +8,17 @@
 #include "src/signal/value.h"
 #include "tests/unit/aid/scene.h"
 
-struct ows_command_slot *scene_slot(struct scene *s, unsigned record)
+struct old_command_slot *scene_slot(struct scene *s, unsigned record)
 {
-	struct ows_command_header *h = s->command_memory;
+	struct old_command_header *h = s->command_memory;
 
-	return (struct ows_command_slot *)(void *)((char *)s->command_memory + h->slot_off) +
+	return (struct old_command_slot *)(void *)((char *)s->command_memory + h->slot_off) +
 	       record;
 }
 
 void scene_ring(struct scene *s, unsigned record)
 {
-	struct ows_command_header *h = s->command_memory;
+	struct old_command_header *h = s->command_memory;
 	uint32_t *dirty = (uint32_t *)(void *)((char *)s->command_memory + h->dirty_off);
 
 	dirty[record / 32] |= 1u << (record % 32);
@@ -26,7 +26,7 @@ void scene_ring(struct scene *s, unsigned record)
 
 void scene_set(struct scene *s, unsigned record, int64_t value)
 {
-	struct ows_command_slot *slot = scene_slot(s, record);
+	struct old_command_slot *slot = scene_slot(s, record);
 
 	slot->value = (uint64_t)value;
 	slot->stamp++;
@@ -35,11 +35,11 @@ void scene_set(struct scene *s, unsigned record, int64_t value)
 
 void scene_set_text(struct scene *s, unsigned record, const char *text)
 {
-	struct ows_command_header *h = s->command_memory;
-	struct ows_command_entry *entry =
-		(struct ows_command_entry *)(void *)((char *)s->command_memory + h->entry_off) +
+	struct old_command_header *h = s->command_memory;
+	struct old_command_entry *entry =
+		(struct old_command_entry *)(void *)((char *)s->command_memory + h->entry_off) +
 		record;
-	struct ows_command_text *t = (struct ows_command_text *)(void *)((char *)s->command_memory +
+	struct old_command_text *t = (struct old_command_text *)(void *)((char *)s->command_memory +
 	                                                                 entry->text_off);
 
 	t->len = (uint32_t)strlen(text);
@@ -49,11 +49,11 @@ void scene_set_text(struct scene *s, unsigned record, const char *text)
 	scene_ring(s, record);
 }
 
-struct ows_client *scene_client(struct scene *s, unsigned client)
+struct old_client *scene_client(struct scene *s, unsigned client)
 {
-	struct ows_command_header *h = s->command_memory;
+	struct old_command_header *h = s->command_memory;
 
-	return (struct ows_client *)(void *)((char *)s->command_memory + h->client_off) + client;
+	return (struct old_client *)(void *)((char *)s->command_memory + h->client_off) + client;
 }
 
 struct ows_sample scene_sample(struct scene *s, unsigned record)

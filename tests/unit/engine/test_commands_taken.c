@@ -66,17 +66,17 @@ static void test_not_a_number_is_refused(void)
 
 static void test_a_text_that_is_being_written_is_taken_when_it_is_whole(void)
 {
-	struct ows_command_header *h;
-	struct ows_command_entry *entry;
-	struct ows_command_text *text;
+	struct old_command_header *h;
+	struct old_command_entry *entry;
+	struct old_command_text *text;
 
 	scene_output(&s, "alias", "/28.551DDF030000/alias", OWS_STRING);
 	scene_put(&s, "/28.551DDF030000/alias", "", 0);
 	scene_start(&s);
 	scene_up(&s);
 	h = s.command_memory;
-	entry = (struct ows_command_entry *)(void *)((char *)s.command_memory + h->entry_off) + 1;
-	text = (struct ows_command_text *)(void *)((char *)s.command_memory + entry->text_off);
+	entry = (struct old_command_entry *)(void *)((char *)s.command_memory + h->entry_off) + 1;
+	text = (struct old_command_text *)(void *)((char *)s.command_memory + entry->text_off);
 	scene_set_text(&s, 1, "boiler");
 	text->claim = 99;
 	scene_run(&s, 500 * SCENE_MS);
@@ -88,17 +88,17 @@ static void test_a_text_that_is_being_written_is_taken_when_it_is_whole(void)
 
 static void test_a_text_whose_writer_died_is_freed_after_a_second(void)
 {
-	struct ows_command_header *h;
-	struct ows_command_entry *entry;
-	struct ows_command_text *text;
+	struct old_command_header *h;
+	struct old_command_entry *entry;
+	struct old_command_text *text;
 
 	scene_output(&s, "alias", "/28.551DDF030000/alias", OWS_STRING);
 	scene_put(&s, "/28.551DDF030000/alias", "", 0);
 	scene_start(&s);
 	scene_up(&s);
 	h = s.command_memory;
-	entry = (struct ows_command_entry *)(void *)((char *)s.command_memory + h->entry_off) + 1;
-	text = (struct ows_command_text *)(void *)((char *)s.command_memory + entry->text_off);
+	entry = (struct old_command_entry *)(void *)((char *)s.command_memory + h->entry_off) + 1;
+	text = (struct old_command_text *)(void *)((char *)s.command_memory + entry->text_off);
 	scene_set_text(&s, 1, "boiler");
 	text->claim = 99;
 	scene_run(&s, 2 * SCENE_S);
@@ -142,20 +142,20 @@ static void test_a_command_is_not_confirmed_while_writing_is_disabled(void)
 	scene_slot(&s, 2)->write_enable = 1;
 	scene_set(&s, 2, 9);
 	scene_run(&s, SCENE_S);
-	TEST_ASSERT_EQUAL_UINT32(0, scene_sample(&s, 2).applied);
+	TEST_ASSERT_EQUAL_UINT32(0, scene_sample(&s, 2).confirmed);
 	scene_slot(&s, 2)->write_enable = 2;
 	scene_ring(&s, 2);
 	scene_run(&s, 100 * SCENE_MS);
-	TEST_ASSERT_EQUAL_UINT32(1, scene_sample(&s, 2).applied);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_sample(&s, 2).confirmed);
 	/* back to what the bus has, while disabled: enabling leaves nothing to write */
 	scene_slot(&s, 2)->write_enable = 1;
 	scene_set(&s, 2, 9);
 	scene_run(&s, 100 * SCENE_MS);
-	TEST_ASSERT_EQUAL_UINT32(1, scene_sample(&s, 2).applied);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_sample(&s, 2).confirmed);
 	scene_slot(&s, 2)->write_enable = 2;
 	scene_ring(&s, 2);
 	scene_run(&s, 100 * SCENE_MS);
-	TEST_ASSERT_EQUAL_UINT32(2, scene_sample(&s, 2).applied);
+	TEST_ASSERT_EQUAL_UINT32(2, scene_sample(&s, 2).confirmed);
 	TEST_ASSERT_EQUAL_UINT(1, s.writes);
 }
 
@@ -167,9 +167,9 @@ static void test_the_same_value_set_again_during_its_write_is_confirmed_with_it(
 	scene_run(&s, 10 * SCENE_MS);
 	scene_set(&s, 2, 9);
 	scene_run(&s, 10 * SCENE_MS);
-	TEST_ASSERT_EQUAL_UINT32(0, scene_sample(&s, 2).applied);
+	TEST_ASSERT_EQUAL_UINT32(0, scene_sample(&s, 2).confirmed);
 	scene_run(&s, 200 * SCENE_MS);
-	TEST_ASSERT_EQUAL_UINT32(2, scene_sample(&s, 2).applied);
+	TEST_ASSERT_EQUAL_UINT32(2, scene_sample(&s, 2).confirmed);
 	TEST_ASSERT_EQUAL_UINT(1, s.writes);
 }
 
@@ -226,7 +226,7 @@ static void test_the_driver_reset_clears_its_counters_and_every_signal(void)
 static void test_a_program_that_stops_beating_leaves_its_outputs_safe(void)
 {
 	struct config_item *item = scene_output(&s, "out", PIO, OWS_BYTE);
-	struct ows_client *client;
+	struct old_client *client;
 
 	item->has_safe = true;
 	item->safe_value = 128;
@@ -264,7 +264,7 @@ static void test_a_program_that_stops_beating_leaves_its_outputs_safe(void)
 static void test_a_program_that_says_good_bye_leaves_its_outputs_as_they_are(void)
 {
 	struct config_item *item = scene_output(&s, "out", PIO, OWS_BYTE);
-	struct ows_client *client;
+	struct old_client *client;
 
 	item->has_safe = true;
 	item->safe_value = 128;
@@ -285,7 +285,7 @@ static void test_a_program_that_says_good_bye_leaves_its_outputs_as_they_are(voi
 static void test_a_safe_output_stays_safe_over_a_restart(void)
 {
 	struct config_item *item = scene_output(&s, "out", PIO, OWS_BYTE);
-	struct ows_client *client;
+	struct old_client *client;
 	struct command c;
 
 	item->has_safe = true;
@@ -316,7 +316,7 @@ static void test_a_truncated_segment_commands_nothing(void)
 	scene_run(&s, 300 * SCENE_MS);
 	TEST_ASSERT_EQUAL_STRING("3", scene_at(&s, PIO));
 	scene_clear_trace(&s);
-	memset(scene_slot(&s, 0), 0, 3 * sizeof(struct ows_command_slot));
+	memset(scene_slot(&s, 0), 0, 3 * sizeof(struct old_command_slot));
 	scene_ring(&s, 0);
 	scene_ring(&s, 2);
 	scene_run(&s, SCENE_S);

@@ -54,10 +54,10 @@ static uint32_t entered(void)
 	return s.image.header->alarm_head;
 }
 
-static const struct ows_alarm_entry *last(void)
+static const struct ows_journal_entry *last(void)
 {
 	TEST_ASSERT_GREATER_THAN(0, entered());
-	return &s.image.alarms[(entered() - 1) % OWS_ALARMS];
+	return &s.image.alarms[(entered() - 1) % OWS_JOURNAL];
 }
 
 static void expect(enum ows_limit_state state, uint8_t kind)
@@ -99,7 +99,7 @@ static void test_a_value_beyond_its_limit_enters_the_journal_with_both_values(vo
 	expect(OWS_LIMIT_UNACKNOWLEDGED, OWS_ALARM_H);
 	TEST_ASSERT_EQUAL(1, entered());
 	expect_last(OWS_ALARM_RAISED, OWS_ALARM_H);
-	TEST_ASSERT_EQUAL(OWS_ALARM_BEFORE | OWS_ALARM_AFTER, last()->flags);
+	TEST_ASSERT_EQUAL(OWS_JOURNAL_BEFORE | OWS_JOURNAL_AFTER, last()->flags);
 	TEST_ASSERT_EQUAL_DOUBLE(20, value_number(OWS_DOUBLE, last()->before));
 	TEST_ASSERT_EQUAL_DOUBLE(31, value_number(OWS_DOUBLE, last()->after));
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, last()->quality);
@@ -115,7 +115,7 @@ static void test_the_first_value_has_none_before_it(void)
 	scene_put(&s, T1, "31", 0);
 	start();
 	expect_last(OWS_ALARM_RAISED, OWS_ALARM_H);
-	TEST_ASSERT_EQUAL(OWS_ALARM_AFTER, last()->flags);
+	TEST_ASSERT_EQUAL(OWS_JOURNAL_AFTER, last()->flags);
 }
 
 static void test_an_alarm_that_is_acknowledged_goes_to_normal_when_it_returns(void)

@@ -53,10 +53,10 @@ static void test_a_value_is_not_applied_while_another_is_on_its_way(void)
 	scene_run(&s, 20 * SCENE_MS);
 	scene_set(&s, 1, 3);
 	scene_run(&s, 10 * SCENE_MS);
-	TEST_ASSERT_EQUAL_UINT32(1, scene_sample(&s, 1).applied);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_sample(&s, 1).confirmed);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_STRING("3", scene_at(&s, PIO));
-	TEST_ASSERT_EQUAL_UINT32(3, scene_sample(&s, 1).applied);
+	TEST_ASSERT_EQUAL_UINT32(3, scene_sample(&s, 1).confirmed);
 }
 
 static void test_a_refused_set_is_never_applied(void)
@@ -69,7 +69,7 @@ static void test_a_refused_set_is_never_applied(void)
 	shoot_once(1);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_UINT(2, s.writes);
-	TEST_ASSERT_EQUAL_UINT32(1, scene_sample(&s, 1).applied);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_sample(&s, 1).confirmed);
 }
 
 static void test_a_one_shot_that_fails_is_tried_again(void)
@@ -150,7 +150,7 @@ static void test_outputs_of_a_device_that_was_lost_and_found_are_written_again(v
 static void test_a_place_left_in_order_passes_no_outputs_on_to_who_sits_there_next(void)
 {
 	struct config_item *item = scene_output(&s, "out", PIO, OWS_BYTE);
-	struct ows_client *client;
+	struct old_client *client;
 
 	item->has_safe = true;
 	item->safe_value = 128;
@@ -158,13 +158,13 @@ static void test_a_place_left_in_order_passes_no_outputs_on_to_who_sits_there_ne
 	scene_start(&s);
 	scene_up(&s);
 	client = scene_client(&s, 0);
-	*client = (struct ows_client){.pid = 42, .period_ms = 500, .beat = 1};
+	*client = (struct old_client){.pid = 42, .period_ms = 500, .beat = 1};
 	scene_slot(&s, 1)->client = 1;
 	scene_set(&s, 1, 3);
 	scene_run(&s, 300 * SCENE_MS);
 	client->pid = 0;
 	scene_run(&s, 300 * SCENE_MS);
-	*client = (struct ows_client){.pid = 43, .period_ms = 500, .beat = 1};
+	*client = (struct old_client){.pid = 43, .period_ms = 500, .beat = 1};
 	scene_run(&s, 5 * SCENE_S);
 	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "lost_clients"));
 	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "safe_outputs"));

@@ -50,7 +50,7 @@ static void four_outputs(void)
 
 static void sit(unsigned pid, unsigned period_ms)
 {
-	*scene_client(&s, 0) = (struct ows_client){.pid = pid, .period_ms = period_ms, .beat = 1};
+	*scene_client(&s, 0) = (struct old_client){.pid = pid, .period_ms = period_ms, .beat = 1};
 }
 
 static void set_all(unsigned client, int64_t value)

@@ -48,7 +48,7 @@ static void test_an_output_is_written_again_where_its_device_is_now(void)
 static void test_a_safe_value_follows_the_device(void)
 {
 	struct config_item *pio = scene_output(&s, "pio", PIO, OWS_BYTE);
-	struct ows_client *client;
+	struct old_client *client;
 
 	pio->has_safe = true;
 	pio->safe_value = 9;

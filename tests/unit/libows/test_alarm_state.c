@@ -103,7 +103,7 @@ static void test_who_may_only_look_acknowledges_nothing(void)
 
 static void test_a_segment_of_the_first_layout_takes_no_acknowledgement(void)
 {
-	struct ows_command_header *header = (void *)in.commands.base;
+	struct old_command_header *header = (void *)in.commands.base;
 	struct ows *old;
 
 	header->minor = 0;

@@ -10,6 +10,7 @@
 
 #include "unity.h"
 
+#include "src/shm/entries.h"
 #include "src/signal/value.h"
 #include "tests/unit/aid/instance.h"
 
@@ -312,13 +313,13 @@ static void test_python_finds_its_way_from_an_orphan(void)
 
 static void test_python_refuses_rubbish(void)
 {
-	in.image.header->record_size = 128;
+	in.image.areas[OWS_AREA_RECORDS - 1].size = 128;
 	expect("print(error(ows.Ows, name))", "OSError\n");
-	in.image.header->record_size = 256;
-	in.image.header->record_count = 0x7fffffff;
+	in.image.areas[OWS_AREA_RECORDS - 1].size = 320;
+	in.image.areas[OWS_AREA_RECORDS - 1].count = 0x7fffffff;
 	expect("print(error(ows.Ows, name))", "OSError\n");
-	in.image.header->record_count = COUNT + 1;
-	((struct ows_command_header *)(void *)in.commands.base)->slot_off = 0xfffffff8u;
+	in.image.areas[OWS_AREA_RECORDS - 1].count = COUNT + 1;
+	((struct old_command_header *)(void *)in.commands.base)->slot_off = 0xfffffff8u;
 	expect("print(error(ows.Ows, name, True))", "OSError\n");
 	TEST_ASSERT_EQUAL(0, ftruncate(in.command_memory.fd, 256));
 	expect("print(error(ows.Ows, name, True))", "OSError\n");
@@ -362,24 +363,24 @@ static void test_python_sees_whole_samples_beside_a_busy_writer(void)
 
 static void test_python_reads_the_journal_of_alarms(void)
 {
-	struct ows_alarm_entry entry = {
+	struct ows_journal_entry entry = {
 		.record = ROOM,
 		.occurred_ns = 5,
 		.before = value_of_double(21.5),
 		.kind = OWS_ALARM_HH,
 		.event = OWS_ALARM_RAISED,
 		.quality = OWS_Q_GOOD,
-		.flags = OWS_ALARM_BEFORE,
+		.flags = OWS_JOURNAL_BEFORE,
 	};
 
-	for (int i = 0; i < OWS_ALARMS + 1; i++)
+	for (int i = 0; i < OWS_JOURNAL + 1; i++)
 		image_alarm(&in.image, &entry);
-	entry = (struct ows_alarm_entry){
+	entry = (struct ows_journal_entry){
 		.record = RELAY,
 		.occurred_ns = 6,
 		.kind = OWS_ALARM_DEVICE,
 		.event = OWS_ALARM_RETURNED,
-		.latch = "1,0",
+		.text = "1,0",
 	};
 	image_alarm_after(&in.image, image_alarm(&in.image, &entry), 1);
 	in.image.alarms[5].seq++;

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Segments recorded from an earlier release, read by today's libows, ows.py and owsctl, value by
- * value. Runs python3 and owsctl in the directory of the sources. `test_recorded record` writes the
+ * An image recorded from an earlier owsd, read by today's libows, ows.py and owsctl, value by
+ * value; the segments of the major version before, which they refuse. Runs python3 and owsctl in the directory of the sources. `test_recorded record` writes the
  * recording again: only for a new file.
  */
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,7 +46,7 @@ static void test_libows_reads_a_recorded_image(void)
 static void test_what_was_commanded_is_carried_from_a_recorded_segment(void)
 {
 	char recorded[SIZE_MAX_], text[TEXT_CAP + 1];
-	uint32_t size = read_recording("command", recorded);
+	uint32_t size = read_recording(RECORDED_BEFORE "command", recorded);
 	struct command c;
 
 	make_commands();
@@ -82,17 +83,30 @@ static void test_a_recorded_segment_can_be_commanded(void)
 static void test_todays_writer_lays_the_same_out_in_the_same_way(void)
 {
 	char recorded[SIZE_MAX_];
-	uint32_t size = read_recording("image", recorded);
+	uint32_t size = read_recording(RECORDED, recorded);
 
 	if (((const struct ows_image_header *)(const void *)recorded)->minor != OWS_LAYOUT_MINOR)
 		TEST_IGNORE_MESSAGE("the recording is of an earlier minor version");
 	make_image();
 	TEST_ASSERT_EQUAL(size, image.header->size);
 	TEST_ASSERT_EQUAL_MEMORY(recorded, image_memory, size);
-	size = read_recording("command", recorded);
-	make_commands();
-	TEST_ASSERT_EQUAL(size, commands.size);
-	TEST_ASSERT_EQUAL_MEMORY(recorded, command_memory, size);
+}
+
+static void test_todays_readers_refuse_the_layout_of_the_major_version_before(void)
+{
+	char recorded[SIZE_MAX_], command[512];
+	const char *runner = getenv("RUNNER");
+	struct ows *h;
+
+	show("image", recorded, read_recording(RECORDED_BEFORE "image", recorded));
+	show("command", recorded, read_recording(RECORDED_BEFORE "command", recorded));
+	TEST_ASSERT_EQUAL(-EPROTO, ows_open(instance, OWS_READ, &h));
+	TEST_ASSERT_EQUAL(-EPROTO, ows_open(instance, OWS_CONTROL, &h));
+	TEST_ASSERT_EQUAL_STRING("71\n", python("try: ows.Ows(sys.argv[1])\n"
+	                                        "except OSError as e: print(e.errno)\n"));
+	snprintf(command, sizeof(command), "%s %s/../owsctl -n %s get bool 2>&1; true",
+	         runner ? runner : "", here, instance);
+	TEST_ASSERT_NOT_NULL(strstr(output_of(command), "version"));
 }
 
 static void test_python_reads_a_recorded_image(void)
@@ -163,6 +177,7 @@ int main(int argc, char **argv)
 	}
 	UNITY_BEGIN();
 	RUN_TEST(test_libows_reads_a_recorded_image);
+	RUN_TEST(test_todays_readers_refuse_the_layout_of_the_major_version_before);
 	RUN_TEST(test_python_reads_a_recorded_image);
 	RUN_TEST(test_owsctl_reads_a_recorded_image);
 	RUN_TEST(test_a_recorded_segment_can_be_commanded);

@@ -168,7 +168,8 @@ static void expect_open(int err)
 static void test_open_refuses_what_is_not_ours(void)
 {
 	struct ows_image_header *image = in.image.header, image_was = *image;
-	struct ows_command_header *command = (void *)in.commands.base, command_was = *command;
+	struct old_command_header *command = (void *)in.commands.base, command_was = *command;
+	struct ows_area_entry *area, area_was;
 
 #define REFUSED(h, field, value, err) \
 	do { \
@@ -177,18 +178,34 @@ static void test_open_refuses_what_is_not_ours(void)
 		*h = h##_was; \
 	} while (0)
 	REFUSED(image, magic, 1, -EPROTO);
-	REFUSED(image, major, 2, -EPROTO);
+	REFUSED(image, major, 1, -EPROTO);
+	REFUSED(image, area_off, 0xfffffff8u, -EPROTO);
+	REFUSED(image, area_count, 0x10000000u, -EPROTO);
 	REFUSED(image, size, 4096 * 1024, -EPROTO);
-	REFUSED(image, record_size, 128, -EPROTO);
-	REFUSED(image, record_count, 0, -EPROTO);
-	REFUSED(image, record_count, 0xffffffffu, -EPROTO);
-	REFUSED(image, record_off, 0xfffffff8u, -EPROTO);
-	REFUSED(image, record_off, 257, -EPROTO);
-	REFUSED(image, name_off, image->size, -EPROTO);
-	REFUSED(image, pool_size, 0, -EPROTO);
-	REFUSED(image, pool_size, 0x7fffffffu, -EPROTO);
-	REFUSED(image, counter_count, 0x1000000u, -EPROTO);
-	REFUSED(image, text_size, 64, -EPROTO);
+#define REFUSED_AREA(which, field, value) \
+	do { \
+		area = &in.image.areas[OWS_AREA_##which - 1]; \
+		area_was = *area; \
+		REFUSED(area, field, value, -EPROTO); \
+	} while (0)
+	REFUSED_AREA(RECORDS, size, 128);
+	REFUSED_AREA(RECORDS, count, 0);
+	REFUSED_AREA(RECORDS, count, 0xffffffffu);
+	REFUSED_AREA(RECORDS, off, 0xfffffff8u);
+	REFUSED_AREA(RECORDS, off, 257);
+	REFUSED_AREA(RECORDS, kind, OWS_AREAS);
+	REFUSED_AREA(INFOS, count, 1);
+	REFUSED_AREA(NAMES, off, in.image.header->size);
+	REFUSED_AREA(NAMES, count, 1);
+	REFUSED_AREA(POOL, count, 0);
+	REFUSED_AREA(POOL, count, 0x7fffffffu);
+	REFUSED_AREA(POOL, size, 8);
+	REFUSED_AREA(COUNTERS, count, 0x1000000u);
+	REFUSED_AREA(TEXTS, count, 64);
+	REFUSED_AREA(ORIGINS, count, 1);
+	REFUSED_AREA(CHANGES, count, 1000);
+	REFUSED_AREA(GIVERS, kind, OWS_AREA_SHELVES);
+#undef REFUSED_AREA
 	REFUSED(command, magic, 0, -EPROTO);
 	REFUSED(command, slot_off, 0x10000000u, -EPROTO);
 	REFUSED(command, slot_count, 1, -EPROTO);
@@ -223,7 +240,7 @@ static void test_open_refuses_names_and_files_that_cannot_be(void)
 
 static void test_names_with_rubbish_offsets_end_nowhere(void)
 {
-	struct ows_name_entry *names = (void *)(in.image.base + in.image.header->name_off);
+	struct ows_name_entry *names = in.image.names;
 	struct ows *other;
 
 	for (int i = 0; i < 4; i++)

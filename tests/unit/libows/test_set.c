@@ -47,9 +47,9 @@ static struct command load(uint32_t slot)
 	return c;
 }
 
-static struct ows_client *client_at(unsigned client)
+static struct old_client *client_at(unsigned client)
 {
-	return (struct ows_client *)(void *)(in.commands.base + in.commands.client_off) + client;
+	return (struct old_client *)(void *)(in.commands.base + in.commands.client_off) + client;
 }
 
 static void test_a_set_reaches_the_engine_with_stamp_mark_and_bell(void)
@@ -190,7 +190,7 @@ static void test_a_text_arrives_with_its_check_word(void)
 
 static void test_a_claimed_text_is_busy_until_the_engine_frees_it(void)
 {
-	struct ows_command_text *t = (void *)(in.commands.base + in.commands.text_off[TEXT]);
+	struct old_command_text *t = (void *)(in.commands.base + in.commands.text_off[TEXT]);
 	char text[INSTANCE_TEXT + 1];
 	int id = ows_find(h, "text");
 
@@ -269,17 +269,17 @@ static void test_who_ends_in_order_leaves_commands_that_are_nobodys(void)
 
 static void test_the_table_of_clients_has_an_end(void)
 {
-	struct ows *many[OWS_CLIENTS + 1];
+	struct ows *many[OLD_CLIENTS + 1];
 	int i;
 
-	for (i = 0; i <= OWS_CLIENTS; i++)
+	for (i = 0; i <= OLD_CLIENTS; i++)
 		TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_CONTROL, &many[i]));
-	for (i = 0; i < OWS_CLIENTS; i++)
+	for (i = 0; i < OLD_CLIENTS; i++)
 		TEST_ASSERT_EQUAL(0, ows_beat(many[i], 100));
 	TEST_ASSERT_EQUAL(-ENOSPC, ows_beat(many[i], 100));
 	ows_close(many[0]);
 	TEST_ASSERT_EQUAL(0, ows_beat(many[i], 100));
-	for (i = 1; i <= OWS_CLIENTS; i++)
+	for (i = 1; i <= OLD_CLIENTS; i++)
 		ows_close(many[i]);
 }
 

@@ -10,6 +10,7 @@
 #include "unity.h"
 
 #include "src/owsctl/verbs.h"
+#include "src/shm/entries.h"
 #include "src/shm/futex.h"
 #include "src/signal/value.h"
 #include "tests/unit/aid/caught.h"
@@ -55,7 +56,7 @@ static void publish(uint32_t record, double value, uint32_t flags, uint8_t state
 
 static void enter(uint32_t record, uint8_t kind, uint8_t event, int64_t age_s)
 {
-	struct ows_alarm_entry entry = {
+	struct ows_journal_entry entry = {
 		.record = record,
 		.occurred_ns = ows_now() - age_s * INSTANCE_S,
 		.kind = kind,
@@ -182,7 +183,7 @@ static void test_device_and_limit_alarm_of_one_signal_are_two_lines(void)
 
 static void test_history_shows_what_was_entered_in_its_order(void)
 {
-	struct ows_alarm_entry entry = {
+	struct ows_journal_entry entry = {
 		.record = DOOR,
 		.occurred_ns = ows_now(),
 		.before = 3,
@@ -190,8 +191,8 @@ static void test_history_shows_what_was_entered_in_its_order(void)
 		.kind = OWS_ALARM_DEVICE,
 		.event = OWS_ALARM_RAISED,
 		.quality = OWS_Q_GOOD,
-		.flags = OWS_ALARM_BEFORE | OWS_ALARM_AFTER,
-		.latch = "0,\33[2J0,1",
+		.flags = OWS_JOURNAL_BEFORE | OWS_JOURNAL_AFTER,
+		.text = "0,\33[2J0,1",
 	};
 	char *first, *second;
 
@@ -218,12 +219,12 @@ static void test_history_shows_what_the_ring_keeps(void)
 	const char *line;
 	int lines = 0;
 
-	for (int i = 0; i < OWS_ALARMS + 10; i++)
+	for (int i = 0; i < OWS_JOURNAL + 10; i++)
 		enter(ROOM, OWS_ALARM_H, OWS_ALARM_RAISED, 0);
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms history"));
 	for (line = out; (line = strchr(line, '\n')) != NULL; line++)
 		lines++;
-	TEST_ASSERT_EQUAL(OWS_ALARMS + 1, lines);
+	TEST_ASSERT_EQUAL(OWS_JOURNAL + 1, lines);
 }
 
 /* owsd's part: takes acknowledgements of what is published as it would. */

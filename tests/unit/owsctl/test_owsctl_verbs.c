@@ -227,7 +227,7 @@ static void *confirm(void *arg)
 	while (!__atomic_load_n(&ended, __ATOMIC_ACQUIRE)) {
 		struct command command = commanded(2);
 		struct ows_sample sample = {.value = command.value,
-		                            .applied = command.stamp,
+		                            .confirmed = command.stamp,
 		                            .measured_ns = ows_now(),
 		                            .quality = OWS_Q_GOOD};
 		struct ows_attrs attrs = {.flags = OWS_ATTR_WRITE_ENABLE};

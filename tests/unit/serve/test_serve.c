@@ -80,7 +80,7 @@ static void fill(struct config *to, struct config_item *its, const struct instan
 static void show_output(uint32_t record, uint32_t applied)
 {
 	struct ows_sample sample = {
-		.quality = OWS_Q_GOOD, .measured_ns = ows_now(), .applied = applied};
+		.quality = OWS_Q_GOOD, .measured_ns = ows_now(), .confirmed = applied};
 	struct ows_attrs attrs = {.flags = OWS_ATTR_WRITE_ENABLE};
 
 	image_publish(&in.image, record, &sample, &attrs, NULL);

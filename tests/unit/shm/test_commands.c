@@ -71,12 +71,12 @@ void tearDown(void)
 	drop(&to);
 }
 
-static struct ows_command_slot *slot(struct commands *commands, uint32_t i)
+static struct old_command_slot *slot(struct commands *commands, uint32_t i)
 {
-	return (void *)(commands->base + commands->slot_off + i * sizeof(struct ows_command_slot));
+	return (void *)(commands->base + commands->slot_off + i * sizeof(struct old_command_slot));
 }
 
-static struct ows_command_text *text_of(struct commands *commands, uint32_t i)
+static struct old_command_text *text_of(struct commands *commands, uint32_t i)
 {
 	return (void *)(commands->base + commands->text_off[i]);
 }
@@ -89,7 +89,7 @@ static void command(struct commands *commands, uint32_t i, int64_t value)
 
 static void command_text(struct commands *commands, uint32_t i, const char *text)
 {
-	struct ows_command_text *t = text_of(commands, i);
+	struct old_command_text *t = text_of(commands, i);
 
 	t->len = (uint32_t)strlen(text);
 	memcpy(t + 1, text, t->len);
@@ -101,7 +101,7 @@ static void test_numbers_out_of_their_range_count_as_nothing(void)
 {
 	struct command c;
 
-	*slot(&to, 1) = (struct ows_command_slot){.value = 7,
+	*slot(&to, 1) = (struct old_command_slot){.value = 7,
 	                                          .stamp = 1,
 	                                          .client = 33,
 	                                          .read_enable = 3,
@@ -257,7 +257,7 @@ static void test_no_command_segment_carries_nothing(void)
 	/* room for more slots than there can be */
 	const size_t size = 0x10010 * 48 + 65536;
 	char rubbish[1024] = {0}, *large = calloc(1, size);
-	struct ows_command_header *h = (void *)large;
+	struct old_command_header *h = (void *)large;
 
 	TEST_ASSERT_NOT_NULL(large);
 	memcpy(large, from.base, sizeof(*h));
@@ -270,7 +270,7 @@ static void test_no_command_segment_carries_nothing(void)
 	h->slot_count = 0x10000;
 	TEST_ASSERT_EQUAL(0, commands_carry(&to, large, size, true));
 	free(large);
-	((struct ows_command_header *)(void *)from.base)->major++;
+	((struct old_command_header *)(void *)from.base)->major++;
 	TEST_ASSERT_EQUAL(-EPROTO, commands_carry(&to, from.base, from.size, true));
 }
 
@@ -293,7 +293,7 @@ static void rubbish_round(void)
 		at = random_word() % (area < size ? area : size) / 4;
 		words[at] = random_word() % 2 ? random_word() : random_word() % (2 * size);
 		if (random_word() % 2)
-			words[0] = OWS_COMMAND_MAGIC;
+			words[0] = OLD_COMMAND_MAGIC;
 	}
 	carried = commands_carry(&to, copy, size, random_word() % 2);
 	TEST_ASSERT_TRUE(carried == -EPROTO || (carried >= 0 && carried <= COUNT));
@@ -302,7 +302,7 @@ static void rubbish_round(void)
 		struct command c;
 
 		commands_load(&to, i, &c);
-		TEST_ASSERT_LESS_OR_EQUAL(OWS_CLIENTS, c.client);
+		TEST_ASSERT_LESS_OR_EQUAL(OLD_CLIENTS, c.client);
 		TEST_ASSERT_LESS_OR_EQUAL(2, c.read_enable);
 		if (to.text_off[i] != 0)
 			TEST_ASSERT_LESS_OR_EQUAL(CAP, commands_text(&to, i, text));
@@ -335,12 +335,12 @@ static void test_rubbish_in_the_present_segment_harms_nothing(void)
 
 			TEST_ASSERT_LESS_OR_EQUAL(COUNT, i);
 			commands_load(&to, (uint32_t)i, &c);
-			TEST_ASSERT_LESS_OR_EQUAL(OWS_CLIENTS, c.client);
+			TEST_ASSERT_LESS_OR_EQUAL(OLD_CLIENTS, c.client);
 			if (to.text_off[i] != 0)
 				TEST_ASSERT_LESS_OR_EQUAL(CAP,
 				                          commands_text(&to, (uint32_t)i, text));
 		}
-		for (unsigned i = 0; i < OWS_CLIENTS; i++)
+		for (unsigned i = 0; i < OLD_CLIENTS; i++)
 			commands_client(&to, i, &client);
 		TEST_ASSERT_TRUE(commands_repair(&to, true));
 		TEST_ASSERT_FALSE(commands_repair(&to, true));

@@ -19,6 +19,7 @@
 
 #include "src/host/memory.h"
 #include "src/libows/handle.h"
+#include "src/shm/entries.h"
 #include "src/shm/reader.h"
 #include "src/shm/word.h"
 #include "tests/unit/aid/whole.h"
@@ -92,13 +93,13 @@ static void pause_ns(int64_t ns)
 
 static void publish_all(struct image *image, uint32_t n)
 {
-	struct ows_alarm_entry alarm = {
+	struct ows_journal_entry alarm = {
 		.record = NUMBER,
 		.occurred_ns = n,
 		.before = n,
 		.kind = (uint8_t)n,
 		.quality = (uint8_t)n,
-		.flags = OWS_ALARM_BEFORE,
+		.flags = OWS_JOURNAL_BEFORE,
 	};
 
 	whole_publish(image, NUMBER, n, 0);
@@ -166,13 +167,13 @@ static void read_all(void)
 	struct ows_slot slot;
 	char text[TEXT_ROOM + 1];
 
-	if (!reader_slot(&handle->map.records[NUMBER], &slot))
+	if (!reader_slot(map_record(&handle->map, NUMBER), &slot))
 		saw.gave_up++;
 	else if (!whole_slot(&slot))
 		saw.torn++;
 	else
 		in_order(NUMBER, slot.sample.count);
-	if (!reader_text(handle->map.base, &handle->map.records[TEXT], &sample, text, sizeof(text)))
+	if (!reader_text(handle->map.base, map_record(&handle->map, TEXT), &sample, text, sizeof(text)))
 		saw.gave_up++;
 	else if (!whole_text(&sample, text, TEXT_ROOM))
 		saw.torn++;
@@ -185,7 +186,7 @@ static void read_all(void)
 /* What an earlier set that said 0 has put there has to be in every command segment. */
 static void look_for_the_set(void)
 {
-	struct ows_command_slot *slot = &handle->map.slots[OUTPUT];
+	struct old_command_slot *slot = &handle->map.slots[OUTPUT];
 	int64_t there;
 
 	there = (int64_t)__atomic_load_n((shm_double_word *)&slot->value, __ATOMIC_RELAXED);
@@ -221,11 +222,12 @@ static bool attach(void)
 static unsigned odd_words(void)
 {
 	const struct ows_image_header *h = handle->map.image;
-	const struct ows_alarm_entry *alarms = (const void *)(handle->map.base + h->alarm_off);
-	unsigned odd = handle->map.records[NUMBER].seq & 1;
+	const struct ows_journal_entry *next =
+		map_entry(&handle->map, OWS_AREA_ALARMS, h->alarm_head % OWS_JOURNAL);
+	unsigned odd = map_record(&handle->map, NUMBER)->seq & 1;
 
-	odd |= handle->map.records[TEXT].seq & 1;
-	return odd | (alarms[h->alarm_head % OWS_ALARMS].seq & 1);
+	odd |= map_record(&handle->map, TEXT)->seq & 1;
+	return odd | (next->seq & 1);
 }
 
 static pid_t start_writer(void (*publish)(struct image *image, uint32_t n))
@@ -332,7 +334,7 @@ static void test_a_writer_without_the_protocol_is_found_out_by_kills(void)
 			TEST_ASSERT_TRUE(ows_now() < give_up);
 		pause_ns(random() % 300000);
 		kill_it(child);
-		TEST_ASSERT_TRUE(reader_slot(&handle->map.records[NUMBER], &slot));
+		TEST_ASSERT_TRUE(reader_slot(map_record(&handle->map, NUMBER), &slot));
 		found = !whole_slot(&slot);
 	}
 	printf("found out by kill %u\n", kills);
