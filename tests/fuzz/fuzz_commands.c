@@ -79,7 +79,7 @@ static void check_image(void)
 		TEST_ASSERT_EQUAL_HEX32(
 			ows_check((const uint32_t *)(const void *)&slot->sample, 11),
 			slot->sample.check);
-		TEST_ASSERT_EQUAL_HEX32(ows_check((const uint32_t *)(const void *)&slot->attrs, 17),
+		TEST_ASSERT_EQUAL_HEX32(ows_check((const uint32_t *)(const void *)&slot->attrs, 19),
 		                        slot->attrs.check);
 		TEST_ASSERT_TRUE(slot->sample.len <= r->text_cap);
 		if (i && r->type != OWS_STRING) {
