@@ -422,8 +422,8 @@ install-service:
 	install -m 644 board/systemd/modules-load.conf $(SERVICE_IN)/modules-load.d/owsd.conf
 	install -m 644 board/udev/owsd.rules $(SERVICE_IN)/udev/rules.d/60-owsd.rules
 	[ -e $(D)/etc/owsd/OWS.rio ] || install -m 644 board/debian/OWS.rio $(D)/etc/owsd/OWS.rio
-	@echo 'now: systemd-sysusers; modprobe i2c-dev; udevadm trigger; systemctl daemon-reload;'
-	@echo '     systemctl enable --now owsd      (its configuration: /etc/owsd/OWS.rio)'
+	@echo 'now: systemd-sysusers; systemd-tmpfiles --create; modprobe i2c-dev; udevadm trigger;'
+	@echo '     systemctl daemon-reload; systemctl enable --now owsd      (its configuration: /etc/owsd/OWS.rio)'
 
 uninstall-service:
 	rm -f $(addprefix $(SERVICE_IN)/,$(SERVICE))

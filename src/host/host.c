@@ -63,6 +63,7 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 	}
 	h->log = setup->log;
 	h->instance = setup->instance;
+	h->place = setup->place;
 	err = create_serve(h, setup->config, why, why_size);
 	if (!err)
 		err = host_make_serving(h, setup->config, NULL, &h->now, why, why_size);

@@ -42,11 +42,11 @@ static uint32_t random_id(void)
 }
 
 /* Open the image that the previous owsd left, if this owsd may mark it retired. */
-static bool open_image_before(const char *instance, struct segment *before)
+static bool open_image_before(const struct memory *m, struct segment *before)
 {
 	const struct ows_image_header *h;
 
-	if (segment_open_old(instance, SEGMENT_IMAGE, before))
+	if (segment_open_old(m->place, m->instance, SEGMENT_IMAGE, before))
 		return false;
 	h = (const void *)before->base;
 	if (before->size >= sizeof(*h) && h->magic == OWS_IMAGE_MAGIC)
@@ -112,7 +112,8 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 			groups[i] = config->targets[i].group;
 		}
 		size = image_size(&plan);
-		err = size ? segment_create(m->instance, SEGMENT_IMAGE, size, &m->image_segment)
+		err = size ? segment_create(m->place, m->instance, SEGMENT_IMAGE, size,
+		                            &m->image_segment)
 		           : -EFBIG;
 	}
 	if (!err)
@@ -141,7 +142,8 @@ static int make_commands(struct memory *m, struct memory_commands *to)
 		signals[i] = (struct command_signal){.name = config->items[i].name,
 		                                     .path = config->items[i].path,
 		                                     .type = (uint8_t)config->items[i].type};
-	err = segment_create(m->instance, SEGMENT_COMMAND, commands_size(&plan), &to->segment);
+	err = segment_create(m->place, m->instance, SEGMENT_COMMAND, commands_size(&plan),
+	                     &to->segment);
 	if (!err)
 		err = segment_guard(&to->segment);
 	if (!err)
@@ -159,7 +161,7 @@ static void carry_commands(struct memory *m, struct log *log)
 	struct segment before;
 	int carried, err;
 
-	err = segment_open_old(m->instance, SEGMENT_COMMAND, &before);
+	err = segment_open_old(m->place, m->instance, SEGMENT_COMMAND, &before);
 	if (err) {
 		if (err != -ENOENT)
 			log_warning(log, "earlier commands are not taken over: %s", strerror(-err));
@@ -181,7 +183,8 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 	struct segment before;
 	int err;
 
-	*m = (struct memory){.instance = setup->instance, .config = setup->config};
+	*m = (struct memory){
+		.instance = setup->instance, .place = setup->place, .config = setup->config};
 	m->image_segment.fd = -1;
 	for (unsigned i = 0; i < COMMANDS; i++)
 		m->commands[i].segment.fd = -1;
@@ -190,7 +193,7 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 	m->start_wall_ns = setup->before ? setup->before->start_wall_ns : wall_ns();
 	if (setup->before) {
 		m->generation = setup->before->generation + 1;
-	} else if (open_image_before(m->instance, &before)) {
+	} else if (open_image_before(m, &before)) {
 		m->generation = ((struct ows_image_header *)(void *)before.base)->generation + 1;
 		segment_close(&before);
 	} else {
@@ -202,7 +205,7 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 		err = make_commands(m, &m->commands[0]);
 	if (err) {
 		snprintf(why, why_size, "cannot make the shared memory: %s%s", strerror(-err),
-		         segment_hint(m->instance, err, hint));
+		         segment_hint(m->place, m->instance, err, hint));
 		memory_end(m);
 		return err;
 	}
@@ -257,7 +260,7 @@ int memory_show(struct memory *m, struct log *log, char *why, size_t why_size)
 {
 	char hint[SEGMENT_HINT];
 	struct segment before;
-	bool had_before = open_image_before(m->instance, &before);
+	bool had_before = open_image_before(m, &before);
 	int err;
 
 	image_state(&m->image, OWS_STATE_LIVE);
@@ -268,7 +271,7 @@ int memory_show(struct memory *m, struct log *log, char *why, size_t why_size)
 	if (err)
 		snprintf(why, why_size,
 		         "no program sees the values: cannot put the shared memory in place: %s%s",
-		         strerror(-err), segment_hint(m->instance, err, hint));
+		         strerror(-err), segment_hint(m->place, m->instance, err, hint));
 	m->shown = !err;
 	if (!err)
 		report_private(m, log);

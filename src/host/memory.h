@@ -14,6 +14,7 @@
 
 struct memory {
 	const char *instance;
+	const struct shm_place *place;
 	const struct config *config;
 	struct segment image_segment;
 	struct image image;
@@ -30,6 +31,7 @@ struct memory {
 
 struct memory_setup {
 	const char *instance;
+	const struct shm_place *place;
 	const struct config *config;
 	const struct image_counter *counters; /* as in struct image_plan */
 	uint32_t counter_count;

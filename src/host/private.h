@@ -22,6 +22,7 @@ struct host {
 	struct engine *ended;
 	struct log *log;
 	const char *instance;
+	const struct shm_place *place;
 	struct serve *serve; /* NULL: the owserver protocol is not served */
 
 	struct indicator *indicator;

@@ -30,6 +30,7 @@ struct serving {
 struct serving_setup {
 	struct config *config;
 	const char *instance;
+	const struct shm_place *place;
 	struct log *log;
 	void (*ring)(void *ctx); /* wakes the engine; any thread */
 	void *ring_ctx;

@@ -57,9 +57,9 @@ static void look_for_image(struct host *h, int64_t now_ns)
 		return;
 	h->image_lost_ns = now_ns;
 	log_err(h->log,
-	        "/dev/shm/owsd.%s.image was removed or replaced and programs that start now do not find it: "
-	        "reload or restart owsd (of an ordinary user, logind's RemoveIPC= removes it at log-out)",
-	        h->instance);
+	        "%s/%s.image was removed or replaced and programs that start now do not find it: "
+	        "reload or restart owsd",
+	        h->place->path, h->instance);
 }
 
 static void report_unfinished(struct host *h, const char *why)
@@ -115,5 +115,5 @@ void host_tend(struct host *h)
 		log_err(h->log,
 		        "the command segment was removed and cannot be made again: %s%s: "
 		        "owsd tries again every second",
-		        strerror(-err), segment_hint(h->instance, err, hint));
+		        strerror(-err), segment_hint(h->place, h->instance, err, hint));
 }

@@ -22,7 +22,7 @@ static bool orphan_look(struct ows *h, int64_t now_ns)
 	if (now_ns >= h->looked_ns && handle_age(now_ns, h->looked_ns) < ORPHAN_LOOK_NS)
 		return h->orphan;
 	h->looked_ns = now_ns;
-	h->orphan = map_is_elsewhere(&h->map, h->instance);
+	h->orphan = map_is_elsewhere(&h->map, h->place, h->instance);
 	errno = saved;
 	return h->orphan;
 }

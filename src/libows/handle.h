@@ -85,6 +85,7 @@ struct ows {
 	uint32_t pid;
 	enum ows_mode mode;
 	char instance[SEGMENT_NAME_MAX + 1];
+	char place[PLACE_PATH]; /* the directory that it was found in */
 };
 
 /* An entry of an area; the caller has compared i with the count. */

@@ -16,20 +16,16 @@
 #include "src/shm/owner.h"
 #include "src/shm/word.h"
 
-void map_path(const char *instance, const char *kind, char path[MAP_PATH])
+static int map_file(const struct shm_place *place, const char *instance, const char *kind,
+                    bool write, void **base, size_t *size, struct ows_file *file)
 {
-	snprintf(path, MAP_PATH, "/dev/shm/owsd.%s.%s", instance, kind);
-}
-
-static int map_file(const char *instance, const char *kind, bool write, void **base, size_t *size,
-                    struct ows_file *file)
-{
-	char path[MAP_PATH];
+	char name[SEGMENT_FILE];
 	struct stat st;
 	int fd, err = 0;
 
-	map_path(instance, kind, path);
-	fd = open(path, (write ? O_RDWR : O_RDONLY) | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+	segment_file(instance, kind, name);
+	fd = openat(place->fd, name,
+	            (write ? O_RDWR : O_RDONLY) | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
 	if (fd < 0)
 		return errno == ELOOP ? -EPERM : -errno;
 	if (fstat(fd, &st) < 0)
@@ -194,29 +190,42 @@ static int check_command(struct ows_map *map)
 	return 0;
 }
 
-int map_open(const char *instance, enum ows_mode mode, struct ows_map *map)
+static int map_both(const struct shm_place *place, const char *instance, enum ows_mode mode,
+                    struct ows_map *map)
 {
 	void *base;
 	int err;
 
-	*map = (struct ows_map){0};
-	err = map_file(instance, "image", false, &base, &map->image_size, &map->image_file);
+	err = map_file(place, instance, "image", false, &base, &map->image_size, &map->image_file);
 	if (err)
 		return err;
 	/* NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): errno is not 0 then */
 	map->base = base;
 	map->image = base;
 	err = check_image(map);
-	if (!err && mode == OWS_CONTROL) {
-		err = map_file(instance, "command", true, &base, &map->command_size,
-		               &map->command_file);
-		if (!err) {
-			map->command_base = base;
-			/* Without a guard all works too, unless a consumer truncates the file */
-			guard_add(base, map->command_size, true);
-			err = check_command(map);
-		}
-	}
+	if (err || mode != OWS_CONTROL)
+		return err;
+	err = map_file(place, instance, "command", true, &base, &map->command_size,
+	               &map->command_file);
+	if (err)
+		return err;
+	map->command_base = base;
+	/* Without a guard all works too, unless a consumer truncates the file */
+	guard_add(base, map->command_size, true);
+	return check_command(map);
+}
+
+int map_open(const char *path, const char *instance, enum ows_mode mode, struct ows_map *map)
+{
+	struct shm_place place;
+	int err;
+
+	*map = (struct ows_map){0};
+	err = place_open(path, &place);
+	if (err)
+		return err;
+	err = map_both(&place, instance, mode, map);
+	place_close(&place);
 	if (err)
 		map_close(map);
 	return err;
@@ -271,17 +280,19 @@ int map_find(const struct ows_map *map, const char *name, size_t len)
 }
 
 /* Does the name lead to another file? False while there is none: the next owsd makes it. */
-static bool leads_elsewhere(const char *instance, const char *kind, const struct ows_file *file)
+static bool leads_elsewhere(const char *place, const char *instance, const char *kind,
+                            const struct ows_file *file)
 {
-	char path[MAP_PATH];
+	char path[PLACE_PATH + SEGMENT_FILE], name[SEGMENT_FILE];
 	struct stat st;
 
-	map_path(instance, kind, path);
+	snprintf(path, sizeof(path), "%s/%s", place, segment_file(instance, kind, name));
 	return lstat(path, &st) == 0 && (st.st_ino != file->inode || st.st_dev != file->device);
 }
 
-bool map_is_elsewhere(const struct ows_map *map, const char *instance)
+bool map_is_elsewhere(const struct ows_map *map, const char *place, const char *instance)
 {
-	return leads_elsewhere(instance, "image", &map->image_file) ||
-	       (map->command != NULL && leads_elsewhere(instance, "command", &map->command_file));
+	return leads_elsewhere(place, instance, "image", &map->image_file) ||
+	       (map->command != NULL &&
+	        leads_elsewhere(place, instance, "command", &map->command_file));
 }

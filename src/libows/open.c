@@ -6,9 +6,11 @@
 #include <unistd.h>
 
 #include "hal/bus/time.h"
+#include "src/libows/alive.h"
 #include "src/libows/find.h"
 #include "src/libows/handle.h"
 #include "src/libows/map.h"
+#include "src/libows/open.h"
 #include "src/shm/word.h"
 
 #define DEAD_LEAST_NS (2 * NS_PER_S)
@@ -24,32 +26,86 @@ static void take_map(struct ows *h, const struct ows_map *map)
 	                                                                        : DEAD_LEAST_NS;
 }
 
-int ows_open(const char *instance, enum ows_mode mode, struct ows **handle)
+static int try_place(struct ows *h, const char *place)
 {
 	struct ows_map map;
+	int err = map_open(place, h->instance, h->mode, &map);
+
+	if (err)
+		return err;
+	memcpy(h->place, place, strlen(place) + 1);
+	take_map(h, &map);
+	return 0;
+}
+
+/* The first place with a living owsd, else the first with an image. */
+static int find_place(struct ows *h, char places[PLACES][PLACE_PATH], int count)
+{
+	int why = -ENOENT;
+
+	for (int any = count == 1; any < 2; any++)
+		for (int i = 0; i < count; i++) {
+			int err = try_place(h, places[i]);
+
+			if (!err && (any || (alive_find(h, ows_now()) && !handle_state(h))))
+				return 0;
+			if (!err)
+				map_close(&h->map);
+			else if (why == -ENOENT)
+				why = err;
+		}
+	return why;
+}
+
+static int open_one(char places[PLACES][PLACE_PATH], int count, const char *instance,
+                    enum ows_mode mode, struct ows **handle)
+{
 	struct ows *h;
 	int err;
 
 	*handle = NULL;
-	if (instance == NULL)
-		instance = "OWS";
 	if (!segment_name_ok(instance))
 		return -EINVAL;
-	err = map_open(instance, mode, &map);
-	if (err)
-		return err;
 	h = calloc(1, sizeof(*h));
-	if (h == NULL) {
-		map_close(&map);
+	if (h == NULL)
 		return -ENOMEM;
-	}
 	memcpy(h->instance, instance, strlen(instance) + 1);
 	h->mode = mode;
 	h->client = -1;
 	h->pid = (uint32_t)getpid();
-	take_map(h, &map);
+	err = find_place(h, places, count);
+	if (err) {
+		free(h);
+		return err;
+	}
 	*handle = h;
 	return 0;
+}
+
+int ows_open(const char *instance, enum ows_mode mode, struct ows **handle)
+{
+	char places[PLACES][PLACE_PATH];
+	int count = place_list(places);
+
+	*handle = NULL;
+	return count < 0 ? count
+	                 : open_one(places, count, instance ? instance : "OWS", mode, handle);
+}
+
+int open_in(const char *place, const char *instance, enum ows_mode mode, struct ows **handle)
+{
+	char places[PLACES][PLACE_PATH];
+
+	*handle = NULL;
+	if (strlen(place) >= PLACE_PATH)
+		return -EINVAL;
+	memcpy(places[0], place, strlen(place) + 1);
+	return open_one(places, 1, instance, mode, handle);
+}
+
+const char *open_place(const struct ows *h)
+{
+	return h->place;
 }
 
 /*
@@ -94,7 +150,7 @@ int ows_reopen(struct ows *h)
 {
 	struct ows_map map;
 	bool restarted;
-	int err = map_open(h->instance, h->mode, &map);
+	int err = map_open(h->place, h->instance, h->mode, &map);
 
 	if (err == -EPROTO)
 		return h->mode == OWS_CONTROL ? -ENOENT : err;

@@ -4,7 +4,8 @@
  *
  * Reading a value takes no system call and no lock and never waits, even when owsd dies in the
  * middle of a write. Only while owsd's heart stands still, a call checks once a second whether the
- * names in /dev/shm lead to the segments of another owsd (lstat()); then the call returns -ESTALE.
+ * names in owsd's directory lead to the segments of another owsd (lstat()); then the call returns
+ * -ESTALE.
  * A handle belongs to one thread at a time. C11, C++11 and later.
  *
  *     struct ows *h;
@@ -103,10 +104,15 @@ enum ows_mode {
 
 /*
  * Open the instance (NULL: "OWS"). System calls, allocates. Free with ows_close().
+ * It is looked for in the directory that OWS_DIR of the environment names; without that in
+ * $XDG_RUNTIME_DIR/owsd (else /dev/shm/owsd-UID; neither for root) and in /run/owsd, the
+ * service's: the first with a living owsd of that name, else the first with its image. The handle
+ * stays with that directory.
  * -ENOENT: no owsd of that name has run; -EACCES: no permission (group owsd may read, group
  * owsd-control may set); -EPROTO: not a segment of owsd, or of another layout; -EPERM: the segment
- * belongs to a user who is neither root, nor owsd, nor the caller; -EINVAL: no instance can have
- * that name.
+ * or the directory belongs to a user who is neither root, nor owsd, nor the caller, or others may
+ * write into the directory; -EINVAL: no instance can have that name, or OWS_DIR is no absolute path
+ * or longer than 191 bytes.
  *
  * A user who may command may also truncate the command segment; touching it then raises SIGBUS. If
  * the process has no SIGBUS handler of its own when it opens a handle with OWS_CONTROL, libows

@@ -94,6 +94,7 @@ CommandHeader = collections.namedtuple(
     "slot_count entry_off entry_size dirty_off dirty_words client_off client_size pool_off "
     "pool_size text_off text_size text_cap ack_off")
 COMMAND_HEADER = struct.Struct("<IHHIIIiIIIIIIIIIIIIIIII")
+SERVICE = "/run/owsd"
 STATE_OFF, NEWS_OFF, ALARM_HEAD_OFF, BELL_OFF = 16, 128, 132, 128
 # How often the names of segments are looked at while owsd's heart stands still
 ORPHAN_LOOK_NS = 1_000_000_000
@@ -212,10 +213,14 @@ class Futex:
 class Segment:
     """One mapped file: its bytes, and its words as single 32- and 64-bit loads and stores."""
 
-    def __init__(self, instance, kind, writable):
-        self.path = path = f"/dev/shm/owsd.{instance}.{kind}"
-        self.fd = os.open(path, (os.O_RDWR if writable else os.O_RDONLY) | os.O_NOFOLLOW |
-                          os.O_CLOEXEC | os.O_NONBLOCK)
+    def __init__(self, place, instance, kind, writable):
+        self.path = path = f"{place}/{instance}.{kind}"
+        folder = open_place(place)
+        try:
+            self.fd = os.open(f"{instance}.{kind}", (os.O_RDWR if writable else os.O_RDONLY) |
+                              os.O_NOFOLLOW | os.O_CLOEXEC | os.O_NONBLOCK, dir_fd=folder)
+        finally:
+            os.close(folder)
         self.memory = self.words = self.doubles = None
         try:
             status = os.fstat(self.fd)
@@ -266,12 +271,45 @@ class Segment:
 
 
 def trusted(uid):
-    if uid in (0, os.geteuid()):
-        return True
+    return uid in (0, os.geteuid(), user("owsd"))
+
+
+def user(name):
     try:
-        return uid == pwd.getpwnam("owsd").pw_uid
+        return pwd.getpwnam(name).pw_uid
     except KeyError:
-        return False
+        return None
+
+
+def places():
+    """The directories where instances are, in the order of looking: as libows(3) has them."""
+    uid = os.geteuid()
+    mine = uid == os.getuid()  # a program for another user takes no directory from the caller
+    named, runtime = (mine and os.environ.get(key) for key in ("OWS_DIR", "XDG_RUNTIME_DIR"))
+    if named:
+        named = named.rstrip("/")
+        if not named.startswith("/") or len(os.fsencode(named)) > 191 or named.endswith(("/.", "/..")):
+            raise OSError(errno.EINVAL, "OWS_DIR is no absolute path of a directory", named)
+        return [named]
+    if uid in (0, user("owsd")):
+        return [SERVICE]
+    own = f"{runtime.rstrip('/')}/owsd" if runtime and runtime.startswith("/") else ""
+    return [own if 0 < len(os.fsencode(own)) < 192 else f"/dev/shm/owsd-{uid}", SERVICE]
+
+
+def open_place(path):
+    """The descriptor of a directory in which only root, owsd or this user may make files."""
+    try:
+        folder = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC)
+    except OSError as why:
+        if why.errno in (errno.ELOOP, errno.ENOTDIR):
+            raise PermissionError(errno.EPERM, "a link, or no directory", path) from None
+        raise
+    status = os.fstat(folder)
+    if trusted(status.st_uid) and not status.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+        return folder
+    os.close(folder)
+    raise PermissionError(errno.EPERM, "others may write into it", path)
 
 
 def broken():
@@ -287,7 +325,7 @@ class Ows:
         self.seen_alarms, self.levels = {}, {}
         self.client = None
         self.futex = Futex()
-        self._open()
+        self._find_place()
 
     def __enter__(self):
         return self
@@ -297,13 +335,30 @@ class Ows:
 
     # --- Opening --------------------------------------------------------------------------------
 
+    def _find_place(self):
+        """Open in the first place with a living owsd of that name, else in the first with its
+        image; reopen() stays there."""
+        where, reason = places(), None
+        for anything in (False, True) if len(where) > 1 else (True,):
+            for self.place in where:
+                try:
+                    self._open()
+                except OSError as why:
+                    if reason is None or reason.errno == errno.ENOENT:
+                        reason = why
+                    continue
+                if anything or self.alive():
+                    return
+                self._drop()
+        raise reason
+
     def _open(self):
         image = command = None
         try:
-            image = Segment(self.instance, "image", False)
+            image = Segment(self.place, self.instance, "image", False)
             header, areas = self._check_image(image)
             if self.control:
-                command = Segment(self.instance, "command", True)
+                command = Segment(self.place, self.instance, "command", True)
                 command_header = self._check_command(command, header, areas)
         except BaseException:
             for segment in (image, command):
@@ -408,7 +463,7 @@ class Ows:
     def reopen(self):
         """Map the present segments after Stale. FileNotFoundError: not there yet, try again; what
         is mapped stays readable."""
-        probe = Segment(self.instance, "image", False)
+        probe = Segment(self.place, self.instance, "image", False)
         try:
             if probe.word(STATE_OFF) != LIVE:
                 raise FileNotFoundError(errno.ENOENT, "the new image is not there yet")

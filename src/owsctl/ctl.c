@@ -14,6 +14,7 @@
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/names.h"
 #include "src/owsctl/when.h"
+#include "src/shm/place.h"
 #include "src/text/printable.h"
 #include "src/text/refused.h"
 
@@ -130,14 +131,33 @@ bool ctl_seconds(const char *text, int64_t *ns)
 	return true;
 }
 
+/* Print what is wrong with the places where instances are; CTL_DONE: nothing is. */
+static int check_places(int err)
+{
+	char places[PLACES][PLACE_PATH], fault[PLACE_FAULT];
+	struct shm_place place = {.fd = -1};
+	int count = place_list(places);
+
+	if (count < 0)
+		return ctl_fail("%s", place_fault(&place, count, fault));
+	for (int i = 0; i < count; i++) {
+		if (place_open(places[i], &place) == err)
+			return ctl_fail("%s", place_fault(&place, err, fault));
+		place_close(&place);
+	}
+	return CTL_DONE;
+}
+
 int ctl_open(const struct ctl *ctl, enum ows_mode mode, struct ows **h)
 {
 	const char *name = ctl->instance;
 	int err = ows_open(name, mode, h);
 
-	switch (-err) {
-	case 0:
+	if (!err)
 		return CTL_DONE;
+	if (err != -ENOENT && check_places(err))
+		return CTL_FAILED;
+	switch (-err) {
 	case ENOENT:
 		return ctl_fail("no owsd of the name %s has run here (-n NAME chooses another)",
 		                name);

@@ -7,12 +7,13 @@
 #include <string.h>
 
 #include "hal/bus/time.h"
+#include "src/libows/open.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/names.h"
 #include "src/owsctl/reading.h"
 #include "src/owsctl/verbs.h"
 #include "src/shm/lock.h"
-#include "src/shm/remains.h"
+#include "src/shm/place.h"
 #include "src/signal/value.h"
 
 struct order {
@@ -263,10 +264,16 @@ static int refuse_twice(const struct order *orders, int count)
 static bool was_killed(const struct ctl *ctl, struct ows *h)
 {
 	struct ows_daemon daemon = {0};
+	struct shm_place place;
+	bool killed;
 	pid_t holder;
 
 	ows_daemon(h, ows_now(), &daemon);
-	return daemon.alive && segment_lock_look(ctl->instance, &holder) == 0;
+	if (!daemon.alive || place_open(open_place(h), &place))
+		return false;
+	killed = segment_lock_look(&place, ctl->instance, &holder) == 0;
+	place_close(&place);
+	return killed;
 }
 
 static int set_all(struct ctl *ctl, struct ows *h, struct order *orders, int count,

@@ -270,6 +270,7 @@ static int run(const struct arguments *a, struct config *config, struct instance
 	struct host_setup setup = {
 		.config = config,
 		.instance = a->instance,
+		.place = &instance->place,
 		.log = log,
 		.rt_priority = a->rt_priority,
 	};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The layout of the command segment /dev/shm/owsd.NAME.command, of major version 1: consumers write
+ * The layout of the command segment NAME.command, of major version 1: consumers write
  * it; owsd believes nothing it finds there.
  */
 #ifndef SHM_OLD_COMMANDS_H

@@ -46,7 +46,7 @@ bool owner_trusted(uid_t uid)
 	return uid == 0 || uid == geteuid() || is_service(uid);
 }
 
-void owner_name(uid_t uid, char name[OWNER_NAME])
+const char *owner_name(uid_t uid, char name[OWNER_NAME])
 {
 	FILE *file = fopen("/etc/passwd", "re");
 	const struct passwd *entry;
@@ -60,6 +60,7 @@ void owner_name(uid_t uid, char name[OWNER_NAME])
 		}
 	if (file)
 		fclose(file);
+	return name;
 }
 
 bool owner_group(const char *name, gid_t *gid)

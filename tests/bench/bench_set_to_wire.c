@@ -92,6 +92,7 @@ int main(int argc, char **argv)
 	pid_t pid;
 
 	(void)argc;
+	bench_place();
 	a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
 	if (bind(listener, (void *)&a, sizeof(a)) || listen(listener, 4) ||
 	    getsockname(listener, (void *)&a, &len) || !mkdtemp(folder))
@@ -134,9 +135,5 @@ int main(int argc, char **argv)
 	snprintf(path, sizeof(path), "%s/bench.rio", folder);
 	unlink(path);
 	rmdir(folder);
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.command", instance);
-	unlink(path);
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.lock", instance);
-	unlink(path);
 	return done == SETS ? 0 : 1;
 }

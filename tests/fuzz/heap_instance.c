@@ -113,6 +113,7 @@ static void make(void)
 
 void heap_instance_reset(void)
 {
+	setenv("OWS_DIR", "/dev/null/owsd", 1); /* no directory of this machine is looked at */
 	if (!image_then)
 		make();
 	memcpy(heap.image_memory, image_then, heap.image_size);

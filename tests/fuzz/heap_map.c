@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* libows' map.c with the heap in the place of /dev/shm, where a real owsd may be. */
+/* libows' map.c with the heap in the place of files. */
 #include "tests/fuzz/heap_instance.h"
 
 #include <errno.h>
@@ -8,6 +8,8 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "src/shm/place.h"
 
 struct heap_file heap_image_file, heap_command_file;
 enum { IMAGE_FD = 1000, COMMAND_FD };
@@ -34,7 +36,9 @@ static int heap_stat(int fd, struct stat *st)
 	return 0;
 }
 
-#define open(path, flags) heap_open(path, flags)
+#define openat(place, path, flags) ((void)(place), heap_open(path, flags))
+#define place_open(path, place) ((void)(path), (place)->fd = -1, 0)
+#define place_close(place) ((void)(place))
 #define fstat(fd, st) heap_stat(fd, st)
 #define close(fd) ((void)(fd))
 #define mmap(at, size, prot, flags, fd, off) ((void *)file_of(fd)->base)

@@ -3,7 +3,7 @@
 
     private.main(users=True)
 
-/dev/shm is a small one. With users (needs root) /etc/passwd and /etc/group have, beside what they
+/dev/shm is a small one, and has the directory of owsd. With users (needs root) /etc/passwd and /etc/group have, beside what they
 had, the user and the groups of the package and the people that USERS lists; room() is a folder that
 all of them reach, and where the test's own files are; nothing of the machine is changed.
 as_user(NAME) begins a command that runs as one of them, without any right of root.
@@ -72,6 +72,8 @@ def _skip(why):
 def main(users=False, at_once=1):
     if os.environ.get(INSIDE):
         os.environ["TMPDIR"] = str(room())
+        if users:
+            os.chown(owsdtest.place(), OWSD, OWSD)
         owsdtest.main(at_once)
     root = os.geteuid() == 0
     if users and not root:
@@ -92,5 +94,5 @@ def main(users=False, at_once=1):
         except (OSError, subprocess.CalledProcessError) as why:
             _skip(f"no mount namespace of one's own: {getattr(why, 'stderr', why)}")
         status = subprocess.run([*inside, sys.executable, os.path.abspath(sys.argv[0]), *sys.argv[1:]],
-                                env=dict(os.environ, **{INSIDE: place}), check=False).returncode
+                                env=dict(os.environ, OWS_DIR="/dev/shm/owsd", **{INSIDE: place}), check=False).returncode
     sys.exit(status)

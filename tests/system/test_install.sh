@@ -90,7 +90,7 @@ for prefix in /usr/local /usr /opt /opt/owsd/ /; do
 	fi
 	if command -v systemd-sysusers >/dev/null; then
 		systemd-sysusers --root="$root" --cat-config | grep -q '^u owsd '
-		systemd-tmpfiles --root="$root" --cat-config | grep -q '^x /dev/shm/owsd'
+		systemd-tmpfiles --root="$root" --cat-config | grep -q '^d /run/owsd 0755 owsd owsd'
 	fi
 	on_copy uninstall-service PREFIX=$prefix
 	rm "$root/etc/owsd/OWS.rio"

@@ -286,7 +286,7 @@ def test_what_is_no_regular_file_is_not_waited_for(scene):
 
 def test_a_reload_that_has_to_wait_reads_the_file_once(scene):
     daemon, target = start(scene)
-    way = f"/dev/shm/owsd.{daemon.name}.command"
+    way = owsdtest.segment(daemon.name, "command")
     text = rio(target, ROOM, CELLAR, Nonsense=raw("1"))
 
     def in_the_way():

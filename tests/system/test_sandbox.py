@@ -40,7 +40,7 @@ def live(scene, *prefix):
             done = scene.owsctl(None, "-t", door, *words)
             assert done.returncode == 0, done
     # a consumer takes the command segment away
-    command = f"/dev/shm/owsd.{daemon.name}.command"
+    command = owsdtest.segment(daemon.name, "command")
     inode = os.stat(command).st_ino
     os.truncate(command, 100)
     until(lambda: os.stat(command).st_ino != inode, 30, "it is made again")

@@ -3,7 +3,6 @@
 """Consumers beside owsd: it is killed, stopped and restarted under them, and they misbehave."""
 
 import concurrent.futures
-import glob
 import os
 import random
 import shutil
@@ -57,7 +56,7 @@ def opened(scene, name, **how):
 
 
 def command_file(name):
-    return f"/dev/shm/owsd.{name}.command"
+    return owsdtest.segment(name, "command")
 
 
 def test_a_reader_of_a_killed_owsd_sees_whole_samples_that_age_and_the_next_owsd(scene):
@@ -124,16 +123,16 @@ def test_after_an_orderly_end_all_can_be_looked_at_and_nothing_set(scene):
 
 def test_a_removed_image_is_told(scene):
     daemon, _ = start(scene)
-    os.unlink(f"/dev/shm/owsd.{daemon.name}.image")
+    os.unlink(owsdtest.segment(daemon.name, "image"))
     scene.until(lambda: "restart owsd" in daemon.log(), 10, "it says what to do")
-    owsdtest.logged(daemon, f"/dev/shm/owsd.{daemon.name}.image was removed")
+    owsdtest.logged(daemon, f"{owsdtest.segment(daemon.name, 'image')} was removed")
     time.sleep(1.5)
     assert daemon.log().count("was removed") == 1
     assert daemon.stop() == 0
 
 
 def lose_image(name, how):
-    image = f"/dev/shm/owsd.{name}.image"
+    image = str(owsdtest.segment(name, "image"))
     if how == "removed":
         os.unlink(image)
     elif how == "renamed":
@@ -206,7 +205,7 @@ def sleep_until_stale(signals):
 
 
 def lock_file(name):
-    return f"/dev/shm/owsd.{name}.lock"
+    return owsdtest.segment(name, "lock")
 
 
 def test_a_removed_lock_is_taken_again_and_keeps_others_out(scene):
@@ -419,10 +418,10 @@ def test_ows_py_tells_text_from_numbers(scene):
         assert signals.set("text", "x") == 1
 
 
-def test_both_segments_and_nothing_else_stay_in_shared_memory(scene):
+def test_both_segments_and_nothing_else_stay_in_the_place(scene):
     daemon, config = start(scene)
     assert daemon.stop() == 0
-    left = sorted(p.rsplit(".", 1)[1] for p in glob.glob(f"/dev/shm/owsd.{daemon.name}.*"))
+    left = faulty.leftovers(daemon.name)
     assert left in (["command", "image"], ["command", "image", "lock"]), left
 
 

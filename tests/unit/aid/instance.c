@@ -10,6 +10,7 @@
 #include "src/shm/carry.h"
 #include "src/shm/futex.h"
 #include "src/signal/value.h"
+#include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 
 static const char *const targets[] = {"localhost:4304", "w1"};
@@ -69,11 +70,11 @@ void instance_make(struct instance *in, const char *name, uint32_t generation, i
 			.type = signals[i].type,
 		};
 	}
-	TEST_ASSERT_EQUAL(
-		0, segment_create(in->name, SEGMENT_IMAGE, image_size(&plan), &in->image_memory));
+	TEST_ASSERT_EQUAL(0, segment_create(folder_place(), in->name, SEGMENT_IMAGE,
+	                                    image_size(&plan), &in->image_memory));
 	image_build(&plan, in->image_memory.base, &in->image);
-	TEST_ASSERT_EQUAL(0, segment_create(in->name, SEGMENT_COMMAND, commands_size(&commands),
-	                                    &in->command_memory));
+	TEST_ASSERT_EQUAL(0, segment_create(folder_place(), in->name, SEGMENT_COMMAND,
+	                                    commands_size(&commands), &in->command_memory));
 	TEST_ASSERT_EQUAL(0, commands_build(&commands, in->command_memory.base, &in->commands));
 	free(image);
 	free(command);
@@ -125,8 +126,8 @@ void instance_leave(struct instance *in)
 void instance_end(struct instance *in)
 {
 	instance_leave(in);
-	segment_remove(in->name, SEGMENT_IMAGE);
-	segment_remove(in->name, SEGMENT_COMMAND);
+	segment_remove(folder_place(), in->name, SEGMENT_IMAGE);
+	segment_remove(folder_place(), in->name, SEGMENT_COMMAND);
 }
 
 void instance_beat(struct instance *in, int64_t now_ns, uint32_t period)

@@ -12,6 +12,7 @@
 #include "src/libows/ows.h"
 #include "src/shm/entries.h"
 #include "src/signal/value.h"
+#include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/recording.h"
 
 #define DATA "tests/unit/data/"
@@ -311,17 +312,9 @@ uint32_t read_recording(const char *name, char *memory)
 	return size;
 }
 
-static const char *file_of(const char *kind)
-{
-	static char path[96];
-
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.%s", instance, kind);
-	return path;
-}
-
 void show(const char *kind, const char *memory, uint32_t size)
 {
-	FILE *file = fopen(file_of(kind), "w");
+	FILE *file = fopen(folder_file(instance, kind), "w");
 
 	TEST_ASSERT_NOT_NULL(file);
 	TEST_ASSERT_EQUAL(size, fwrite(memory, 1, size, file));
@@ -338,7 +331,7 @@ void recording_begin(void)
 
 void recording_end(void)
 {
-	unlink(file_of("image"));
-	unlink(file_of("command"));
+	unlink(folder_file(instance, "image"));
+	unlink(folder_file(instance, "command"));
 	commands_forget(&commands);
 }

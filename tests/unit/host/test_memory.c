@@ -11,8 +11,9 @@
 #include "unity.h"
 
 #include "src/host/memory.h"
+#include "tests/unit/aid/folder.h"
 
-static char instance[32], path[96];
+static char instance[32], path[PLACE_PATH + 64];
 static struct config_target target = {.text = "null:"};
 static struct config_item item = {.name = "out",
                                   .path = "/29.000000000002/PIO.BYTE",
@@ -27,11 +28,11 @@ static struct config config = {.targets = &target,
                                .item_count = 1,
                                .period_ns = 100000000};
 static struct memory memory;
-static char why[256];
+static char why[512];
 
 static const char *file(const char *kind)
 {
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.%s", instance, kind);
+	snprintf(path, sizeof(path), "%s", folder_file(instance, kind));
 	return path;
 }
 
@@ -50,7 +51,10 @@ void tearDown(void)
 
 static int make(void)
 {
-	return memory_make(&memory, &(struct memory_setup){.instance = instance, .config = &config},
+	return memory_make(&memory,
+	                   &(struct memory_setup){.instance = instance,
+	                                          .place = folder_place(),
+	                                          .config = &config},
 	                   why, sizeof(why));
 }
 
@@ -87,7 +91,7 @@ static void test_a_command_segment_that_cannot_be_made_leaves_nothing_behind(voi
 
 static void test_a_directory_under_a_name_is_named_with_its_remedy(void)
 {
-	char remedy[160];
+	char remedy[PLACE_PATH + 100];
 
 	TEST_ASSERT_EQUAL_INT(0, mkdir(file("image"), 0700));
 	TEST_ASSERT_EQUAL_INT(0, make());

@@ -6,6 +6,7 @@
 
 #include "unity.h"
 
+#include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal signals[] = {
@@ -52,8 +53,8 @@ void tearDown(void)
 
 static void remove_names(void)
 {
-	TEST_ASSERT_EQUAL(0, segment_remove(first.name, SEGMENT_IMAGE));
-	TEST_ASSERT_EQUAL(0, segment_remove(first.name, SEGMENT_COMMAND));
+	TEST_ASSERT_EQUAL(0, segment_remove(folder_place(), first.name, SEGMENT_IMAGE));
+	TEST_ASSERT_EQUAL(0, segment_remove(folder_place(), first.name, SEGMENT_COMMAND));
 }
 
 /* The owsd after it, which finds nothing to retire. */
@@ -208,8 +209,9 @@ static void test_a_command_segment_alone_may_be_the_orphan(void)
 
 	kill_first(DEAD);
 	TEST_ASSERT_EQUAL(0, ows_open(first.name, OWS_READ, &reader));
-	TEST_ASSERT_EQUAL(0, segment_remove(first.name, SEGMENT_COMMAND));
-	TEST_ASSERT_EQUAL(0, segment_create(first.name, SEGMENT_COMMAND, 4096, &other));
+	TEST_ASSERT_EQUAL(0, segment_remove(folder_place(), first.name, SEGMENT_COMMAND));
+	TEST_ASSERT_EQUAL(
+		0, segment_create(folder_place(), first.name, SEGMENT_COMMAND, 4096, &other));
 	TEST_ASSERT_EQUAL(0, segment_show(first.name, &other));
 	segment_close(&other);
 	TEST_ASSERT_EQUAL(-ESTALE, ows_set(h, relay, 1, NULL));

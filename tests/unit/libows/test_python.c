@@ -12,6 +12,7 @@
 
 #include "src/shm/entries.h"
 #include "src/signal/value.h"
+#include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal signals[] = {
@@ -300,8 +301,8 @@ static void test_python_finds_its_way_from_an_orphan(void)
 	TEST_ASSERT_NOT_NULL(run);
 	TEST_ASSERT_NOT_NULL(fgets(first, sizeof(first), run));
 	TEST_ASSERT_EQUAL_STRING("False 1\n", first);
-	TEST_ASSERT_EQUAL(0, segment_remove(in.name, SEGMENT_IMAGE));
-	TEST_ASSERT_EQUAL(0, segment_remove(in.name, SEGMENT_COMMAND));
+	TEST_ASSERT_EQUAL(0, segment_remove(folder_place(), in.name, SEGMENT_IMAGE));
+	TEST_ASSERT_EQUAL(0, segment_remove(folder_place(), in.name, SEGMENT_COMMAND));
 	instance_make(&next, "python", 1, ows_now(), signals, COUNT);
 	instance_lives_on(&next);
 	instance_put(&next, RELAY, 1, ows_now());

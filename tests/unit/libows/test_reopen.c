@@ -12,6 +12,7 @@
 #include "unity.h"
 
 #include "src/shm/futex.h"
+#include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal before[] = {
@@ -101,7 +102,7 @@ static void test_reopen_waits_for_the_new_image(void)
 	instance_put(&in, 2, 1, ows_now());
 	image_state(&in.image, OWS_STATE_STOPPED);
 	TEST_ASSERT_EQUAL(-ENOENT, ows_reopen(h));
-	TEST_ASSERT_EQUAL(0, segment_remove(in.name, SEGMENT_IMAGE));
+	TEST_ASSERT_EQUAL(0, segment_remove(folder_place(), in.name, SEGMENT_IMAGE));
 	TEST_ASSERT_EQUAL(-ENOENT, ows_reopen(h));
 	TEST_ASSERT_EQUAL(-ESTALE, ows_get(h, b, ows_now(), &v));
 	TEST_ASSERT_EQUAL_INT64(1, v.integer);
@@ -220,13 +221,13 @@ static void test_open_refuses_what_is_not_ours(void)
 static void test_open_refuses_names_and_files_that_cannot_be(void)
 {
 	struct ows *other;
-	char path[80];
+	char path[PLACE_PATH + 64];
 
 	TEST_ASSERT_EQUAL(-EINVAL, ows_open("../etc", OWS_READ, &other));
 	TEST_ASSERT_EQUAL(-EINVAL, ows_open("", OWS_READ, &other));
 	TEST_ASSERT_EQUAL(-EINVAL, ows_open(".hidden", OWS_READ, &other));
 	TEST_ASSERT_EQUAL(-ENOENT, ows_open("no-such-instance", OWS_READ, &other));
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.image", in.name);
+	snprintf(path, sizeof(path), "%s", folder_file(in.name, "image"));
 	TEST_ASSERT_EQUAL(0, unlink(path));
 	TEST_ASSERT_EQUAL(0, symlink("/etc/passwd", path));
 	TEST_ASSERT_EQUAL(-EPERM, ows_open(in.name, OWS_READ, &other));

@@ -22,6 +22,7 @@
 #include "src/shm/entries.h"
 #include "src/shm/reader.h"
 #include "src/shm/word.h"
+#include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/whole.h"
 
 #define KILLS 200
@@ -60,6 +61,7 @@ static int64_t set_last;
 
 void setUp(void)
 {
+	folder_place();
 	snprintf(instance, sizeof(instance), "kill-%ld", (long)getpid());
 	memset(&saw, 0, sizeof(saw));
 	handle = NULL;
@@ -67,10 +69,7 @@ void setUp(void)
 
 static void remove_file(const char *kind)
 {
-	char path[96];
-
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.%s", instance, kind);
-	unlink(path);
+	unlink(folder_file(instance, kind));
 }
 
 void tearDown(void)
@@ -128,7 +127,9 @@ static void write_until_killed(void (*publish)(struct image *image, uint32_t n))
 	uint32_t n = 1;
 
 	prctl(PR_SET_PDEATHSIG, SIGKILL);
-	if (memory_make(&memory, &(struct memory_setup){.instance = instance, .config = &config},
+	if (memory_make(&memory,
+	                &(struct memory_setup){
+				.instance = instance, .place = folder_place(), .config = &config},
 	                why, sizeof(why)))
 		_exit(1);
 	publish_all(&memory.image, n);
