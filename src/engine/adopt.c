@@ -36,8 +36,8 @@ static void take_time(struct engine *e, const struct engine *old, int64_t now_ns
 		e->time.first = old->time.period;
 	}
 	for (uint32_t row = 0; row < e->table.count; row++)
-		due_wheel_cancel(&e->limit_wheel, row);
-	e->wheel.period = e->limit_wheel.period = e->route_wheel.period = e->time.period;
+		due_wheel_cancel(&e->time_wheel, row);
+	e->wheel.period = e->time_wheel.period = e->route_wheel.period = e->time.period;
 }
 
 static void take_counts(struct engine *e, const struct engine *old)

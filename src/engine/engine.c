@@ -44,7 +44,7 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 	if (!err)
 		err = due_wheel_init(&e->wheel, e->table.count * 2, 0);
 	if (!err)
-		err = due_wheel_init(&e->limit_wheel, e->table.count, 0);
+		err = due_wheel_init(&e->time_wheel, e->table.count, 0);
 	if (!err) {
 		e->lanes = calloc(setup->port_count, sizeof(*e->lanes));
 		err = e->lanes ? 0 : -ENOMEM;
@@ -99,8 +99,8 @@ void engine_destroy(struct engine *e)
 	free(e->alarm_items);
 	if (e->wheel.wait)
 		due_wheel_free(&e->wheel);
-	if (e->limit_wheel.wait)
-		due_wheel_free(&e->limit_wheel);
+	if (e->time_wheel.wait)
+		due_wheel_free(&e->time_wheel);
 	signal_table_free(&e->table);
 	free(e);
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The limit alarms of a signal: what is known of the signal goes in, journal and state come out. */
 #include "src/engine/limits.h"
-#include "src/engine/due.h"
 #include "src/engine/limit.h"
 #include "src/engine/state.h"
 #include "src/shm/entries.h"
@@ -69,23 +68,16 @@ static void keep_limit_value(struct signal *s)
 	s->limit.value[1] = s->sample.value;
 }
 
-void engine_limits(struct engine *e, struct signal *s)
+int64_t engine_limits(struct engine *e, struct signal *s)
 {
 	const struct config_limits *limits = &s->item->limits;
-	int64_t stale_at = INT64_MAX, next;
+	int64_t stale_at = signal_stale_at(s), next;
 	struct limit_reading reading;
 	struct limit_news news;
 
-	if (!limits->any)
-		return;
-	if (s->sample.quality == OWS_Q_DISABLED) {
-		due_wheel_cancel(&e->limit_wheel, engine_row(s));
-		return;
-	}
+	if (!limits->any || s->sample.quality == OWS_Q_DISABLED)
+		return INT64_MAX;
 	keep_limit_value(s);
-	if (s->item->stale_after_ns)
-		stale_at = s->item->stale_after_ns + 1 +
-		           (s->sample.measured_ns ? s->sample.measured_ns : s->read.known_ns);
 	reading = (struct limit_reading){
 		.value = value_number(s->item->type, s->sample.value),
 		.bad = (s->sample.quality & 0xc0) == 0 && s->sample.quality != OWS_Q_INITIAL,
@@ -98,12 +90,7 @@ void engine_limits(struct engine *e, struct signal *s)
 	if (news.raised)
 		limit_raised(e, s, news.raised);
 	show_limit(s);
-	if (!reading.bad && !reading.stale && stale_at < next)
-		next = stale_at;
-	if (next == INT64_MAX)
-		due_wheel_cancel(&e->limit_wheel, engine_row(s));
-	else
-		due_wheel_at(&e->limit_wheel, engine_row(s), engine_period_at(e, next));
+	return !reading.bad && !reading.stale && stale_at < next ? stale_at : next;
 }
 
 void engine_limits_acknowledge(struct engine *e, struct signal *s)

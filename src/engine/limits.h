@@ -5,8 +5,11 @@
 
 #include "src/engine/state.h"
 
-/* Bring the limit alarms of the signal to the present. */
-void engine_limits(struct engine *e, struct signal *s);
+/*
+ * Bring the limit alarms of the signal to the present. Returns when they change next by time alone;
+ * INT64_MAX: never.
+ */
+int64_t engine_limits(struct engine *e, struct signal *s);
 void engine_limits_acknowledge(struct engine *e, struct signal *s);
 
 #endif

@@ -65,7 +65,7 @@ static void row_ready(void *ctx, uint32_t entry)
 		engine_read_now(e, s);
 }
 
-static void limit_ready(void *ctx, uint32_t row)
+static void time_ready(void *ctx, uint32_t row)
 {
 	struct engine *e = ctx;
 
@@ -84,5 +84,5 @@ void engine_turn(struct engine *e, int64_t now_ns)
 	e->counters.periods += period - e->time.period;
 	e->time.period = period;
 	due_wheel_turn(&e->wheel, period, row_ready, e);
-	due_wheel_turn(&e->limit_wheel, period, limit_ready, e);
+	due_wheel_turn(&e->time_wheel, period, time_ready, e);
 }

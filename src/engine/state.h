@@ -208,6 +208,8 @@ struct engine_time {
 struct engine_driver {
 	uint64_t transactions, reconnects;
 	uint32_t resets; /* last seen in the command segment */
+	/* publish.c */
+	uint64_t shown; /* sum of both that the image has */
 };
 
 /* The requests that the trace has shown in its present window. */
@@ -235,8 +237,8 @@ struct engine {
 
 	/* schedule.c */
 	struct due_wheel wheel; /* row * 2: read, row * 2 + 1: write */
-	/* limits.c */
-	struct due_wheel limit_wheel; /* rows whose limit alarms change by time alone */
+	/* publish.c */
+	struct due_wheel time_wheel; /* rows that change by time alone: limit alarms, StaleAfter */
 
 	/* group.c makes, routing.c changes; facts in ways: lane_state.c, lane_event.c */
 	struct group *groups;

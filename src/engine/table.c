@@ -206,6 +206,13 @@ void signal_settle(struct signal *s)
 		s->sample.confirmed = s->command.stamp;
 }
 
+int64_t signal_stale_at(const struct signal *s)
+{
+	int64_t since = s->sample.measured_ns ? s->sample.measured_ns : s->read.known_ns;
+
+	return s->item->stale_after_ns ? since + s->item->stale_after_ns + 1 : INT64_MAX;
+}
+
 void signal_begin(struct signal *s, uint64_t period)
 {
 	s->attrs.pend_base = (uint32_t)period;

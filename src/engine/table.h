@@ -23,7 +23,7 @@
 /*
  * A reload carries over what stands in sample, attrs and in the structures of a signal that have a
  * name, each of them whole (adopt_signal.c). What stands beside them is of one engine: the place in
- * its table, and what its buses have.
+ * its table, what its buses have, and what its image's ring has.
  */
 
 /* How reading goes. */
@@ -70,6 +70,18 @@ struct signal_limit {
 	uint8_t values;   /* how many of the two are known */
 };
 
+/* What the last change in the ring of this engine's image had. */
+struct signal_entered {
+	int64_t value, commanded;
+	uint32_t count; /* of the last update, entered or not */
+	uint32_t alarms;
+	uint32_t flags; /* of attrs, that say how the signal stands */
+	int32_t err;
+	uint8_t quality, detail, target, sample_flags;
+	uint8_t limit_state, limit_condition, shelved;
+	bool stale; /* good, and older than StaleAfter */
+};
+
 struct signal {
 	const struct config_item *item;
 	uint32_t record;
@@ -82,6 +94,7 @@ struct signal {
 	bool alarming;         /* a request of the alarm machine counts for it */
 	uint16_t doubts; /* writes that may still reach it over other targets: it is not written */
 	int alarm_err;   /* why its alarm cannot be armed, if OWS_ATTR_ALARM_UNARMED */
+	struct signal_entered entered;
 
 	struct ows_sample sample; /* as published */
 	struct ows_attrs attrs;
@@ -143,6 +156,9 @@ static inline bool signal_writes(const struct signal *s)
 bool signal_changed(const struct signal *s);
 /* Is the last command what the bus has? Then it is confirmed. */
 void signal_settle(struct signal *s);
+
+/* When its value becomes older than StaleAfter; INT64_MAX: never. */
+int64_t signal_stale_at(const struct signal *s);
 
 /* A request of this signal begins, ends; an update (value read or written) was made. */
 void signal_begin(struct signal *s, uint64_t period);
