@@ -81,6 +81,9 @@ struct ows {
 	bool orphan; /* owsd is dead, and a name leads to another file; checked once a second */
 	int64_t looked_ns;
 
+	uint32_t *marks; /* changes.c: one bit for each record, all 0 between two calls */
+	uint32_t mark_words;
+
 	int client; /* index in the table of clients, -1 none */
 	uint32_t pid;
 	enum ows_mode mode;

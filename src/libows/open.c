@@ -135,6 +135,7 @@ void ows_close(struct ows *h)
 	leave_client(h);
 	map_close(&h->map);
 	find_free(h);
+	free(h->marks);
 	free(h);
 }
 

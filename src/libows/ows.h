@@ -194,6 +194,31 @@ int ows_beat(struct ows *h, uint32_t period_ms);
  */
 int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns);
 
+/* Where a program stands in the changes of its handle. All zero to begin; libows writes it. */
+struct ows_cursor {
+	uint32_t number, start_id, generation, flags;
+	int64_t looked_ns;
+};
+/*
+ * Get the signals that changed since the cursor: at most n of them, each once, as indexes of
+ * ows_info(); and move the cursor past them. Costs what changed, not what there is. Sleeps until
+ * there is a change, at most timeout_ns (0: not at all; negative: no limit). Returns how many; 0:
+ * the time is over.
+ *
+ * A change is an update (a value read or written; one that differs from the last change by less
+ * than Deadband is none), another quality, error, target, command or alarm state, and that a good
+ * value becomes older than StaleAfter. The row is at least as new as the change.
+ *
+ * -EOVERFLOW: look at all signals. The cursor is new; or so much changed that the ring of changes
+ * has not all of it any more; or owsd is lost (killed, ended, hung: all values turned bad) or back.
+ * The cursor is at the present now. A loss is reported within two seconds, or three periods if
+ * that is longer.
+ * -ESTALE: owsd has reloaded, or another owsd has started: ows_reopen(); the next call returns
+ * -EOVERFLOW. -EINVAL: n below 1. -ENOMEM (at the first use and after a reload). -EINTR.
+ */
+int ows_changes(struct ows *h, struct ows_cursor *cursor, int *signals, int n,
+                int64_t timeout_ns);
+
 /*
  * Map the present segments after -ESTALE; ids stay right. System calls, allocates.
  * -ENOENT: they do not exist yet, try again in the next cycle (the old segments stay readable). An

@@ -163,6 +163,7 @@ void instance_put(struct instance *in, uint32_t record, int64_t value, int64_t m
 
 	sample.value = value;
 	image_publish(&in->image, record, &sample, &attrs, NULL);
+	image_change(&in->image, record);
 	image_news(&in->image);
 }
 
@@ -178,5 +179,6 @@ void instance_put_text(struct instance *in, uint32_t record, const char *text, i
 
 	sample.len = (uint32_t)strlen(text);
 	image_publish(&in->image, record, &sample, &attrs, text);
+	image_change(&in->image, record);
 	image_news(&in->image);
 }
