@@ -4,8 +4,10 @@
 #include <string.h>
 
 #include "src/libows/alive.h"
+#include "src/libows/by.h"
 #include "src/libows/handle.h"
 #include "src/libows/orphan.h"
+#include "src/libows/shelved.h"
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
 
@@ -40,12 +42,13 @@ int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
 		.kind = e.kind,
 		.event = e.event,
 		.quality = e.quality,
+		.who = by_of(&e.who),
 	};
 	if (alarm->has_before)
 		fill(alarm->type, e.before, &alarm->before, &alarm->before_integer);
 	if (alarm->has_after)
 		fill(alarm->type, e.after, &alarm->after, &alarm->after_integer);
-	memcpy(alarm->latch, e.text, sizeof(alarm->latch) - 1);
+	memcpy(alarm->text, e.text, sizeof(alarm->text) - 1);
 	return 0;
 }
 
@@ -72,7 +75,10 @@ int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state)
 		.unarmed = !(a->flags & OWS_ATTR_ALARM_UNARMED) ? 0
 	                   : a->flags & OWS_ATTR_ALARM_POR      ? 2
 	                                                        : 1,
+		.shelved = a->shelved,
 	};
+	if (a->shelved)
+		shelved_of(h, (uint32_t)h->ids[id].record, state);
 	handle_orphan(h, ows_now());
 	return handle_state(h);
 }
@@ -107,6 +113,8 @@ const char *ows_alarm_event_text(uint8_t event)
 		[OWS_ALARM_RAISED] = "raised",
 		[OWS_ALARM_RETURNED] = "returned",
 		[OWS_ALARM_ACKNOWLEDGED] = "acknowledged",
+		[OWS_ALARM_SHELVED] = "shelved",
+		[OWS_ALARM_UNSHELVED] = "unshelved",
 	};
 
 	return event < sizeof(texts) / sizeof(texts[0]) && texts[event] ? texts[event] : "unknown";

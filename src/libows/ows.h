@@ -317,10 +317,21 @@ enum ows_alarm_event {
 	OWS_ALARM_RAISED = 1,
 	OWS_ALARM_RETURNED,
 	OWS_ALARM_ACKNOWLEDGED,
+	OWS_ALARM_SHELVED,
+	OWS_ALARM_UNSHELVED,
 };
 /* The words for a kind or an event ("high", "raised"); never NULL. */
 const char *ows_alarm_kind_text(uint8_t kind);
 const char *ows_alarm_event_text(uint8_t event);
+
+/* Who did something: uid and pid are the kernel's word, both names the claims of the program. */
+struct ows_by {
+	uint32_t serial; /* each connection has another; 0: owsd itself, or nobody */
+	uint32_t uid;
+	int32_t pid;     /* 0: not known */
+	char name[32];   /* of the program; NUL-terminated, like person */
+	char person[32]; /* for whom the program did it; "": for itself */
+};
 
 struct ows_alarm {
 	int signal;          /* as in ows_info() */
@@ -332,7 +343,8 @@ struct ows_alarm {
 	uint8_t kind;        /* enum ows_alarm_kind */
 	uint8_t event;       /* enum ows_alarm_event */
 	uint8_t quality;     /* of the signal at that moment */
-	char latch[64];      /* NUL-terminated; "" for other than device alarms */
+	char text[64];       /* what the latch showed, or why it was shelved; NUL-terminated */
+	struct ows_by who;   /* who acknowledged or shelved it */
 };
 /* States of a limit alarm, as in ISA-18.2. */
 enum ows_limit_state {
@@ -354,6 +366,11 @@ struct ows_alarm_state {
 	uint8_t limit_kind;   /* enum ows_alarm_kind of the limit alarm; 0: none */
 	/* The device's alarm cannot be armed: 1 for its SetAlarm, 2 for PorAlarm; err says why. */
 	uint8_t unarmed;
+	/* The limit alarm is shelved: its state is normal, its kind that of what is active. */
+	uint8_t shelved;
+	int64_t since_ns, until_ns; /* this and the next two: of the shelving */
+	struct ows_by who;
+	char why[64];               /* NUL-terminated */
 };
 /* Of the signal of an id of ows_find(). Errors as ows_get(); *state is filled with -ESTALE too. */
 int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state);
@@ -362,6 +379,15 @@ int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state);
  * Errors as ows_set(); -EOPNOTSUPP: this owsd is of a version without limit alarms.
  */
 int ows_acknowledge(struct ows *h, int id);
+/*
+ * Shelve the limit alarm of a signal for so many seconds, at most OWS_SHELVE_MAX; why: up to 63
+ * bytes, or NULL. 0: unshelve it, which does nothing if it is not shelved. Waits until owsd has
+ * done that, at most 2 seconds. Errors as ows_set(); -EOPNOTSUPP: it has no limit alarms; -ERANGE:
+ * too many seconds; -ENOSPC: 64 are shelved; -EAGAIN: too many requests, again in a second;
+ * -ETIMEDOUT.
+ */
+#define OWS_SHELVE_MAX (7 * 86400)
+int ows_shelve(struct ows *h, int id, uint32_t seconds, const char *why);
 
 /* How many alarms were entered since owsd started. */
 uint32_t ows_alarm_count(struct ows *h);
@@ -370,6 +396,33 @@ uint32_t ows_alarm_count(struct ows *h);
  * while writing it.
  */
 int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm);
+
+/* The journal of commands since owsd started, likewise. */
+enum ows_reason {
+	OWS_REASON_NONE = 0,
+	OWS_REASON_SET,      /* a program commanded it */
+	OWS_REASON_RETURNED, /* from before owsd's start; its program came back */
+	OWS_REASON_INIT,     /* owsd wrote InitValue */
+	OWS_REASON_SAFE,     /* owsd wrote SafeValue: the program that who names is lost */
+	OWS_REASON_LAST,     /* owsd wrote what was stored */
+};
+/* The words for a reason ("set", "SafeValue"); never NULL. */
+const char *ows_reason_text(uint8_t reason);
+
+struct ows_commanded {
+	int signal;        /* as in ows_info() */
+	int64_t taken_ns;
+	double number;     /* the value; of strings text */
+	int64_t integer;   /* likewise, if type is not float or double */
+	uint32_t more;     /* so many of this program to this signal were not entered before it */
+	uint8_t type;      /* enum ows_type, of the signal */
+	uint8_t reason;    /* enum ows_reason */
+	uint8_t quality;   /* of the signal at that moment */
+	char text[64];     /* NUL-terminated; may be cut */
+	struct ows_by who;
+};
+uint32_t ows_command_count(struct ows *h);
+int ows_command_entry(struct ows *h, uint32_t number, struct ows_commanded *commanded);
 
 #ifdef __cplusplus
 #pragma GCC diagnostic pop

@@ -86,16 +86,19 @@ HEADER = struct.Struct("<IHHIIIiIIIIqqq")
 # The directory of areas, and the least size of an entry of each kind that is read here
 Area = collections.namedtuple("Area", "off size count", defaults=[0, 0, 0])
 AREA = struct.Struct("<IIII")
-RECORDS, INFOS, TARGETS, POOL, TEXTS, ALARMS = 1, 2, 4, 6, 7, 11
-ENTRY_SIZES = {RECORDS: 320, INFOS: 192, TARGETS: 128, POOL: 1, TEXTS: 1, ALARMS: 200}
+RECORDS, INFOS, TARGETS, POOL, TEXTS, SHELVES, ALARMS, COMMANDS = 1, 2, 4, 6, 7, 10, 11, 12
+ENTRY_SIZES = {RECORDS: 320, INFOS: 192, TARGETS: 128, POOL: 1, TEXTS: 1, SHELVES: 184,
+               ALARMS: 200, COMMANDS: 200}
 JOURNAL_ENTRY = struct.Struct("<IIq8s8sBBBBI64s80sI8xI")
+SHELF_ENTRY = struct.Struct("<IIqq80s64s12xI")
+WHO = struct.Struct("<IIi4x32s32s")
 CommandHeader = collections.namedtuple(
     "CommandHeader", "magic major minor size generation state pid start_id slot_off slot_size "
     "slot_count entry_off entry_size dirty_off dirty_words client_off client_size pool_off "
     "pool_size text_off text_size text_cap ack_off")
 COMMAND_HEADER = struct.Struct("<IHHIIIiIIIIIIIIIIIIIIII")
 SERVICE = "/run/owsd"
-STATE_OFF, NEWS_OFF, ALARM_HEAD_OFF, BELL_OFF = 16, 128, 132, 128
+STATE_OFF, NEWS_OFF, ALARM_HEAD_OFF, COMMAND_HEAD_OFF, BELL_OFF = 16, 128, 132, 136, 128
 # How often the names of segments are looked at while owsd's heart stands still
 ORPHAN_LOOK_NS = 1_000_000_000
 
@@ -121,16 +124,26 @@ class Value(collections.namedtuple("Value", "value type quality detail target er
 ALARM_KINDS = ["none", "device", "power-on reset", "high high", "high", "low", "low low", "stale",
                "bad"]
 LIMIT_STATES = ["normal", "unacknowledged", "acknowledged", "returned to normal unacknowledged"]
-ALARM_EVENTS = ["unknown", "raised", "returned", "acknowledged"]
-# before and after: None where there is no value; kind and event: words
+ALARM_EVENTS = ["unknown", "raised", "returned", "acknowledged", "shelved", "unshelved"]
+REASONS = ["none", "set", "returned", "InitValue", "SafeValue", "last"]
+# Who did something: uid and pid are the kernel's word, name and person (for whom) the program's
+# claims; owsd itself has serial 0
+By = collections.namedtuple("By", "serial uid pid name person")
+# before and after: None where there is no value; kind and event: words; text: what the latch
+# showed, or why the alarm was shelved
 AlarmEntry = collections.namedtuple("AlarmEntry", "number name occurred_ns before after kind event "
-                                    "quality latch")
+                                    "quality text who")
+# reason: a word; more: commands of this program to this signal that were not entered before it; the
+# value of a string may be cut
+CommandEntry = collections.namedtuple("CommandEntry", "number name taken_ns value reason quality "
+                                      "more who")
 
 # How the alarms of a signal stand: occurrences of the device's alarm since owsd started, whether it
 # stands, whether the item is read as an input for want of an alarm search; limit alarms in words;
-# whether the device's alarm cannot be armed
+# whether the device's alarm cannot be armed; None, or the Shelf of a limit alarm that is shelved
 AlarmState = collections.namedtuple("AlarmState", "occurrences stands polled limits limit_state "
-                                    "limit_kind unarmed")
+                                    "limit_kind unarmed shelf")
+Shelf = collections.namedtuple("Shelf", "since_ns until_ns who why")
 
 # A way to devices; ways to one wire have the same group, all but one of them suspended; moves:
 # signals that came from another target. The index is what Value.target says
@@ -161,6 +174,16 @@ def check_bytes(text):
         h = (h ^ byte) * 0x85EBCA6B & 0xFFFFFFFF
         h ^= h >> 15
     return h
+
+
+def plain(text):
+    """A text that is filled up with NUL."""
+    return text.split(b"\0")[0].decode(errors="replace")
+
+
+def by(raw):
+    serial, uid, pid, name, person = WHO.unpack(raw)
+    return By(serial, uid, pid, plain(name), plain(person))
 
 
 class Futex:
@@ -622,33 +645,42 @@ class Ows:
     def alarms(self, since=0):
         """The journal of alarms from number `since` on, as far as it is kept: AlarmEntry by
         AlarmEntry. The number after the last is where to go on."""
-        head = self.image.word(ALARM_HEAD_OFF)
-        first = max(since, head - self.areas[ALARMS].count)
-        for number in range(first, head):
-            entry = self._alarm(number)
-            if entry is not None:
-                yield entry
+        for number, entry in self._journal(ALARMS, ALARM_HEAD_OFF, since):
+            (_, record, occurred, before, after, kind, event, quality, flags, _, text, who, _,
+             _) = entry
+            info = self.table[record][0]
+            yield AlarmEntry(number, info.name, occurred,
+                             decode(info.type, before) if flags & 1 else None,
+                             decode(info.type, after) if flags & 2 else None,
+                             word(ALARM_KINDS, kind, "none"), word(ALARM_EVENTS, event, "unknown"),
+                             quality, plain(text), by(who))
 
-    def _alarm(self, number):
-        memory = self.image.memory
-        at = self._at(ALARMS, number % self.areas[ALARMS].count)
+    def commands(self, since=0):
+        """The journal of commands, likewise: CommandEntry by CommandEntry."""
+        for number, entry in self._journal(COMMANDS, COMMAND_HEAD_OFF, since):
+            _, record, taken, _, value, reason, _, quality, _, more, text, who, _, _ = entry
+            info = self.table[record][0]
+            yield CommandEntry(number, info.name, taken,
+                               plain(text) if info.type == STRING else decode(info.type, value),
+                               word(REASONS, reason, "unknown"), quality, more, by(who))
+
+    def _journal(self, kind, head_off, since):
+        head = self.image.word(head_off)
+        for number in range(max(since, head - self.areas[kind].count), head):
+            entry = self._entry(kind, number % self.areas[kind].count, JOURNAL_ENTRY)
+            if entry is not None and entry[-2] == number and 0 < entry[1] < len(self.table):
+                yield number, entry
+
+    def _entry(self, kind, i, layout):
+        """A whole entry that begins with seq and ends with check; None: its writer was killed."""
+        at = self._at(kind, i)
         for _ in range(WHOLE_TRIES):
-            raw = memory[at:at + JOURNAL_ENTRY.size]
-            words = struct.unpack("<50I", raw)
-            if words[0] % 2 == 0 and check(words[1:49]) == words[49]:
-                break
-        else:
-            return None
-        (_, record, occurred, before, after, kind, event, quality, flags, _, text, _, there,
-         _) = JOURNAL_ENTRY.unpack(raw)
-        if there != number or not 0 < record < len(self.table):
-            return None
-        info = self.table[record][0]
-        return AlarmEntry(number, info.name, occurred,
-                          decode(info.type, before) if flags & 1 else None,
-                          decode(info.type, after) if flags & 2 else None,
-                          word(ALARM_KINDS, kind, "none"), word(ALARM_EVENTS, event, "unknown"),
-                          quality, text.rstrip(b"\0").decode(errors="replace"))
+            raw = self.image.memory[at:at + layout.size]
+            words = struct.unpack(f"<{layout.size // 4}I", raw)
+            # An entry that was never written is zero, and so is its check word
+            if words[0] % 2 == 0 and (check(words[1:-1]) == words[-1] or not any(words)):
+                return layout.unpack(raw)
+        return None
 
     def alarm_state(self, name):
         """The AlarmState of a signal: how its device's alarm and its limit alarm stand."""
@@ -660,7 +692,16 @@ class Ows:
                           bool(attrs.flags & ALARM_POLLED), bool(attrs.flags & LIMITS),
                           word(LIMIT_STATES, attrs.limit_state, "unknown"),
                           word(ALARM_KINDS, attrs.limit_condition, "none"),
-                          bool(attrs.flags & ALARM_UNARMED))
+                          bool(attrs.flags & ALARM_UNARMED),
+                          self._shelf(record) if attrs.shelved else None)
+
+    def _shelf(self, record):
+        for i in range(self.areas[SHELVES].count):
+            entry = self._entry(SHELVES, i, SHELF_ENTRY)
+            if entry is not None and entry[1] == record:
+                _, _, since, until, who, why, _ = entry
+                return Shelf(since, until, by(who), plain(why))
+        return None
 
     def targets(self):
         """All targets: Target by Target."""

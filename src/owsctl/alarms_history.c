@@ -10,12 +10,13 @@
 #include "src/owsctl/names.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/when.h"
+#include "src/owsctl/who.h"
 #include "src/signal/value.h"
 
 /* clang-format off */
 static const struct table_column columns[] = {
 	{"TIME"}, {"NAME"}, {"ALARM"}, {"EVENT"}, {"BEFORE", .right = true}, {"AFTER", .right = true},
-	{"QUALITY"}, {"LATCH"},
+	{"QUALITY"}, {"BY"}, {"REMARK"},
 };
 /* clang-format on */
 
@@ -37,13 +38,16 @@ static bool add_row(struct table *table, const struct when *now, const char *nam
 	char before[VALUE_TEXT_MAX], after[VALUE_TEXT_MAX], time[WHEN_TEXT];
 	const char *left = value_text(alarm, false, before);
 	const char *right = value_text(alarm, true, after);
+	char by[WHO_LINE] = "-";
 
+	if (alarm->event != OWS_ALARM_RAISED && alarm->event != OWS_ALARM_RETURNED)
+		who_line(&alarm->who, by);
 	return table_add(table,
 	                 (const char *const[]){when_iso(now, alarm->occurred_ns, time), name,
 	                                       ows_alarm_kind_text(alarm->kind),
 	                                       ows_alarm_event_text(alarm->event),
 	                                       left ? left : "-", right ? right : "-",
-	                                       ows_quality_text(alarm->quality), alarm->latch});
+	                                       ows_quality_text(alarm->quality), by, alarm->text});
 }
 
 static void json_value(struct json *json, const char *key, const char *text)
@@ -68,7 +72,8 @@ static void add_json(struct json *json, const struct when *now, uint32_t number,
 	json_value(json, "before", value_text(alarm, false, text));
 	json_value(json, "after", value_text(alarm, true, text));
 	json_string(json, "quality", ows_quality_text(alarm->quality));
-	json_string(json, "latch", *alarm->latch ? alarm->latch : NULL);
+	who_json(json, &alarm->who);
+	json_string(json, "remark", *alarm->text ? alarm->text : NULL);
 	json_object_end(json);
 }
 

@@ -191,19 +191,11 @@ struct ows_who { /* 80 bytes */
 /* Origin of the command that is in force; entry i belongs to record i. */
 struct ows_origin_entry { /* 104 bytes */
 	uint32_t seq;
-	uint32_t reason;  /* enum ows_reason */
+	uint32_t reason;  /* enum ows_reason (ows.h) */
 	int64_t taken_ns; /* when owsd took it; 0: no command */
 	struct ows_who who;
 	uint32_t spare;
 	uint32_t check;
-};
-enum ows_reason {
-	OWS_REASON_NONE = 0,
-	OWS_REASON_SET,      /* the giver commanded it */
-	OWS_REASON_RETURNED, /* from before owsd's start; its giver came back */
-	OWS_REASON_INIT,     /* owsd wrote InitValue */
-	OWS_REASON_SAFE,     /* owsd wrote SafeValue: the giver that who names is lost */
-	OWS_REASON_LAST,     /* owsd wrote what was stored */
 };
 
 /* A connected giver. */

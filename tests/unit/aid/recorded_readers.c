@@ -165,7 +165,7 @@ static void check_alarms(struct ows *h)
 	TEST_ASSERT_EQUAL(0, ows_alarm(h, 0, &alarm));
 	TEST_ASSERT_EQUAL(NEVER_ - 1, alarm.signal);
 	TEST_ASSERT_EQUAL_INT64(1001 * S, alarm.occurred_ns);
-	TEST_ASSERT_EQUAL_STRING("1,0,0,1", alarm.latch);
+	TEST_ASSERT_EQUAL_STRING("1,0,0,1", alarm.text);
 	TEST_ASSERT_EQUAL(OWS_ALARM_DEVICE, alarm.kind);
 	TEST_ASSERT_EQUAL(OWS_ALARM_RAISED, alarm.event);
 	TEST_ASSERT_TRUE(alarm.has_before && alarm.has_after);
@@ -179,6 +179,25 @@ static void check_alarms(struct ows *h)
 	TEST_ASSERT_TRUE(state.limits && !state.stands);
 	TEST_ASSERT_EQUAL(OWS_LIMIT_RETURNED, state.limit_state);
 	TEST_ASSERT_EQUAL(OWS_ALARM_HH, state.limit_kind);
+	TEST_ASSERT_EQUAL_INT64(2003 * S, state.until_ns);
+	TEST_ASSERT_EQUAL_STRING("sensor is being moved", state.why);
+	TEST_ASSERT_EQUAL_STRING("Jana", state.who.person);
+}
+
+static void check_commands(struct ows *h)
+{
+	struct ows_commanded command;
+
+	TEST_ASSERT_EQUAL(1, ows_command_count(h));
+	TEST_ASSERT_EQUAL(0, ows_command_entry(h, 0, &command));
+	TEST_ASSERT_EQUAL(BYTE_ - 1, command.signal);
+	TEST_ASSERT_EQUAL_INT64(255, command.integer);
+	TEST_ASSERT_EQUAL_INT64(1002 * S, command.taken_ns);
+	TEST_ASSERT_EQUAL(OWS_REASON_SET, command.reason);
+	TEST_ASSERT_EQUAL(4, command.more);
+	TEST_ASSERT_EQUAL(1000, command.who.uid);
+	TEST_ASSERT_EQUAL_STRING("hmi", command.who.name);
+	TEST_ASSERT_EQUAL(-ENOENT, ows_command_entry(h, 1, &command));
 }
 
 static void check_targets(struct ows *h)
@@ -209,6 +228,7 @@ void check_all(struct ows *h)
 		check_signal(h, record);
 	check_attributes(h);
 	check_alarms(h);
+	check_commands(h);
 	check_meta(h);
 	check_entries(h);
 	check_targets(h);

@@ -72,7 +72,7 @@ static void test_an_alarm_is_read_as_it_was_entered(void)
 	TEST_ASSERT_EQUAL(OWS_ALARM_DEVICE, alarm.kind);
 	TEST_ASSERT_EQUAL(OWS_ALARM_RAISED, alarm.event);
 	TEST_ASSERT_EQUAL(OWS_Q_GOOD, alarm.quality);
-	TEST_ASSERT_EQUAL_STRING("0,1,0,0,0,0,0,0", alarm.latch);
+	TEST_ASSERT_EQUAL_STRING("0,1,0,0,0,0,0,0", alarm.text);
 	TEST_ASSERT_EQUAL(-ENOENT, ows_alarm(h, 1, &alarm));
 }
 
@@ -100,8 +100,8 @@ static void test_a_latch_may_fill_its_room(void)
 	memset(entry.text, '1', sizeof(entry.text));
 	image_alarm(&in.image, &entry);
 	TEST_ASSERT_EQUAL(0, ows_alarm(h, 0, &alarm));
-	TEST_ASSERT_EQUAL(sizeof(entry.text) - 1, strlen(alarm.latch));
-	TEST_ASSERT_EQUAL_MEMORY(entry.text, alarm.latch, sizeof(entry.text) - 1);
+	TEST_ASSERT_EQUAL(sizeof(entry.text) - 1, strlen(alarm.text));
+	TEST_ASSERT_EQUAL_MEMORY(entry.text, alarm.text, sizeof(entry.text) - 1);
 }
 
 static void test_the_ring_keeps_the_last_entries(void)

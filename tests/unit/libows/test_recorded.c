@@ -133,9 +133,11 @@ static void test_python_reads_a_recorded_image(void)
 		"5000000002 0.5 2.0 200.0 2 3 10 402 10 True False 77 3\n"
 		"0 localhost:4304 suspended 4 0 0\n"
 		"1 i2c:/dev/i2c-1 up 5 0 6\n"
-		"0 never 1001000000000 False True device raised 192 1,0,0,1\n"
-		"1 room.temperature 1002000000000 30.5 None high high acknowledged 192 \n"
+		"0 never 1001000000000 False True device raised 192 1,0,0,1 0\n"
+		"1 room.temperature 1002000000000 30.5 None high high acknowledged 192  0\n"
+		"0 byte 1002000000000 255 set 192 4 3 1000 777 hmi Jana\n"
 		"0 False False True returned to normal unacknowledged high high False\n"
+		"1003000000000 2003000000000 sensor is being moved Jana\n"
 		"Info(name=\"long\", path=\"/1D.000000000001/a\", type=4, output=False, fresh=True,"
 		" alarm=False, per_factor=4, stale_after_ns=2000000000)\n",
 		python("s = ows.Ows(sys.argv[1])\nN = 1010 * 10**9\n"
@@ -144,8 +146,10 @@ static void test_python_reads_a_recorded_image(void)
 	               " \"ReadEnable\", \"WE\")), s.get(\"_TRANSACTIONS\", N).value,"
 	               " s.get(\"_RECONNECTS\", N).value)\n"
 	               "for t in s.targets(): print(*t)\n"
-	               "for a in s.alarms(): print(*a)\n"
-	               "print(*s.alarm_state(\"room.temperature\"))\n"
+	               "for a in s.alarms(): print(*a[:-1], a.who.serial)\n"
+	               "for c in s.commands(): print(*c[:-1], *c.who)\n"
+	               "a = s.alarm_state(\"room.temperature\")\nprint(*a[:-1])\n"
+	               "print(a.shelf.since_ns, a.shelf.until_ns, a.shelf.why, a.shelf.who.person)\n"
 	               "print(str(s.info(\"long\")).replace(chr(39), chr(34)))\n"));
 }
 
