@@ -17,9 +17,11 @@
 #include "src/engine/place.h"
 #include "src/engine/publish.h"
 #include "src/engine/schedule.h"
+#include "src/engine/shelf.h"
 #include "src/engine/state.h"
 #include "src/shm/carry.h"
 #include "src/shm/entries.h"
+#include "src/shm/shelves.h"
 
 static uint64_t wait_of(const struct due_wheel *wheel, uint32_t entry)
 {
@@ -47,6 +49,7 @@ static void take_counts(struct engine *e, const struct engine *old)
 	e->counters.reloads++;
 	memcpy(e->clients, old->clients, sizeof(e->clients));
 	e->refused = old->refused;
+	e->shelvings = old->shelvings;
 }
 
 /* --- Targets --------------------------------------------------------------------------------- */
@@ -280,6 +283,8 @@ void engine_adopt(struct engine *e, struct engine *old, const struct adoption *p
 			guests_refuse(&old->lanes[i]);
 	take_devices(e, old, plan);
 	take_signals(e, old, plan);
+	shelves_carry(e->image, old->image->base, old->image->header->size);
+	engine_shelves_resume(e);
 	take_alarms(e, old, plan);
 	for (unsigned i = 0; i < e->lane_count; i++)
 		lane_resume_reads(&e->lanes[i]);

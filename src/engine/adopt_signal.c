@@ -58,5 +58,6 @@ void signal_adopt(struct signal *s, const struct signal *was)
 	} else if (!item->limits.any) {
 		s->attrs.limit_state = 0;
 		s->attrs.limit_condition = 0;
+		s->attrs.shelved = 0;
 	}
 }

@@ -21,6 +21,7 @@
 #include "src/engine/publish.h"
 #include "src/engine/routing.h"
 #include "src/engine/schedule.h"
+#include "src/engine/shelf.h"
 #include "src/engine/state.h"
 #include "src/text/log.h"
 
@@ -76,6 +77,7 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 		engine_read_now(e, &e->table.signals[row]);
 		engine_write_check(e, &e->table.signals[row]);
 	}
+	engine_shelves_resume(e);
 	engine_resume(e, setup->start_ns);
 	for (uint32_t row = 0; row < e->table.count; row++)
 		engine_publish(e, &e->table.signals[row]);

@@ -144,6 +144,7 @@ static void take_enables(struct engine *e, struct signal *s, const struct comman
 
 void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
 {
+	static const struct ows_who nobody;
 	struct command c;
 
 	commands_load(e->commands, s->record, &c);
@@ -161,7 +162,7 @@ void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
 	}
 	if (c.acknowledged && c.acknowledged != s->seen.acknowledged) {
 		s->seen.acknowledged = c.acknowledged;
-		engine_limits_acknowledge(e, s);
+		engine_limits_acknowledge(e, s, &nobody);
 	}
 	signal_settle(s);
 	engine_write_check(e, s);

@@ -239,6 +239,11 @@ struct engine {
 	struct due_wheel wheel; /* row * 2: read, row * 2 + 1: write */
 	/* publish.c */
 	struct due_wheel time_wheel; /* rows that change by time alone: limit alarms, StaleAfter */
+	/* limits.c */
+	struct {
+		uint32_t done; /* requests to shelve; one a second is forgotten */
+		int64_t since_ns;
+	} shelvings;
 
 	/* group.c makes, routing.c changes; facts in ways: lane_state.c, lane_event.c */
 	struct group *groups;

@@ -68,6 +68,7 @@ struct signal_limit {
 	int64_t value[2]; /* of the update before the last, of the last */
 	uint32_t count;   /* sample.count of the last */
 	uint8_t values;   /* how many of the two are known */
+	uint8_t shelf;    /* shelved: its place in the image + 1 */
 };
 
 /* What the last change in the ring of this engine's image had. */

@@ -21,6 +21,7 @@
 #include "src/shm/futex.h"
 #include "src/shm/hint.h"
 #include "src/shm/owner.h"
+#include "src/shm/shelves.h"
 
 #define COMMANDS (sizeof(((struct memory *)0)->commands) / sizeof(struct memory_commands))
 
@@ -177,6 +178,16 @@ static void carry_commands(struct memory *m, struct log *log)
 	segment_close(&before);
 }
 
+static void carry_shelves(struct memory *m)
+{
+	struct segment before;
+
+	if (!open_image_before(m, &before))
+		return;
+	shelves_carry(&m->image, before.base, before.size);
+	segment_close(&before);
+}
+
 int memory_make(struct memory *m, const struct memory_setup *setup, char *why, size_t why_size)
 {
 	char hint[SEGMENT_HINT];
@@ -209,8 +220,10 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 		memory_end(m);
 		return err;
 	}
-	if (!setup->before)
+	if (!setup->before) {
 		carry_commands(m, setup->log);
+		carry_shelves(m);
+	}
 	return 0;
 }
 

@@ -8,6 +8,7 @@
 #include "src/engine/adopt.h"
 #include "src/engine/counters.h"
 #include "src/shm/carry.h"
+#include "src/shm/shelves.h"
 #include "tests/unit/aid/scene_private.h"
 
 static struct config_item *add_item(struct scene *s, const char *name, const char *path,
@@ -147,12 +148,15 @@ static struct engine *make_engine(struct scene *s, const struct config *config,
 		.guests = s->guests,
 		.start_ns = s->now_ns,
 	};
+	const struct image before = s->image;
 	struct engine *engine;
 
 	make_memory(s, config, image, commands);
-	if (left)
+	if (left) {
 		TEST_ASSERT_GREATER_OR_EQUAL_INT(
 			0, commands_carry(commands, left->base, left->size, true));
+		shelves_carry(image, before.base, before.header->size);
+	}
 	for (unsigned i = 0; i < config->target_count; i++) {
 		struct scene_bus *bus = bus_named(s, config->targets[i].text);
 
