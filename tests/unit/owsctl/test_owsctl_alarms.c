@@ -200,18 +200,22 @@ static void test_history_shows_what_was_entered_in_its_order(void)
 	enter(LABEL, OWS_ALARM_POR, OWS_ALARM_RAISED, 0);
 	enter(BOILER, OWS_ALARM_BAD, OWS_ALARM_ACKNOWLEDGED, 0);
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms history"));
-	holds(out, "  NAME    ALARM           EVENT         BEFORE  AFTER  QUALITY  LATCH\n");
+	holds(out,
+	      "  NAME    ALARM           EVENT         BEFORE  AFTER  QUALITY  BY    REMARK\n");
 	first = strstr(
-		out, "  door    device          raised             3      7  good     0,?[2J0,1\n");
-	second = strstr(out, "  boiler  bad             acknowledged       -      -  good\n");
+		out,
+		"  door    device          raised             3      7  good     -     0,?[2J0,1\n");
+	second = strstr(out,
+	                "  boiler  bad             acknowledged       -      -  good     owsd\n");
 	TEST_ASSERT_TRUE(first && second && first < second);
-	holds(out, "  label   power-on reset  raised             -      -  good\n");
+	holds(out, "  label   power-on reset  raised             -      -  good     -\n");
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms history --json do* bo*"));
 	holds(out, "[{\"number\":0,\"time\":\"");
 	holds(out,
 	      "\"name\":\"door\",\"alarm\":\"device\",\"event\":\"raised\",\"before\":3,\"after\":7,"
-	      "\"quality\":\"good\",\"latch\":\"0,\\u001b[2J0,1\"},{\"number\":2,");
-	holds(out, "\"before\":null,\"after\":null,\"quality\":\"good\",\"latch\":null}]\n");
+	      "\"quality\":\"good\",\"by\":null,\"remark\":\"0,\\u001b[2J0,1\"},{\"number\":2,");
+	holds(out,
+	      "\"before\":null,\"after\":null,\"quality\":\"good\",\"by\":null,\"remark\":null}]\n");
 }
 
 static void test_history_shows_what_the_ring_keeps(void)
@@ -225,6 +229,40 @@ static void test_history_shows_what_the_ring_keeps(void)
 	for (line = out; (line = strchr(line, '\n')) != NULL; line++)
 		lines++;
 	TEST_ASSERT_EQUAL(OWS_JOURNAL + 1, lines);
+}
+
+static void test_a_shelved_alarm_is_shown_with_who_and_why(void)
+{
+	struct ows_sample sample = {
+		.value = value_of_double(31), .measured_ns = ows_now(), .quality = OWS_Q_GOOD};
+	struct ows_attrs attrs = {
+		.flags = OWS_ATTR_LIMITS, .limit_condition = OWS_ALARM_H, .shelved = 1};
+	struct ows_shelf_entry shelf = {
+		.record = ROOM,
+		.since_ns = ows_now() - 60 * INSTANCE_S,
+		.until_ns = ows_now() + 3600 * INSTANCE_S,
+		.who = {.serial = 3,
+	                .uid = 4294967290u,
+	                .pid = 42,
+	                .name = "p\33c",
+	                .person = "Anna"},
+		.why = "moved \"\33[2J\"",
+	};
+
+	image_publish(&in.image, ROOM, &sample, &attrs, NULL);
+	image_shelf(&in.image, 5, &shelf);
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms"));
+	holds(out, "room1  high   shelved    60s     31  good\n");
+	holds(out, "\nroom1: shelved until ");
+	holds(out, " by p?c[42] (user 4294967290) for Anna: moved \"?[2J\"\n");
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms --json"));
+	holds(out, "\"alarm\":\"high\",\"state\":\"shelved\"");
+	holds(out, "\"by\":{\"program\":\"p\\u001bc\",\"pid\":42,\"uid\":4294967290,\"user\":"
+	           "\"4294967290\",\"person\":\"Anna\"},\"why\":\"moved \\\"\\u001b[2J\\\"\"");
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_list, "list room1"));
+	holds(out, "high, shelved");
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_list, "list --json room1"));
+	holds(out, "\"alarms\":[],\"shelved\":true");
 }
 
 /* owsd's part: takes acknowledgements of what is published as it would. */
@@ -320,6 +358,7 @@ int main(void)
 	RUN_TEST(test_device_and_limit_alarm_of_one_signal_are_two_lines);
 	RUN_TEST(test_history_shows_what_was_entered_in_its_order);
 	RUN_TEST(test_history_shows_what_the_ring_keeps);
+	RUN_TEST(test_a_shelved_alarm_is_shown_with_who_and_why);
 	RUN_TEST(test_ack_waits_until_owsd_took_it);
 	RUN_TEST(test_ack_of_all_takes_those_that_need_it);
 	RUN_TEST(test_ack_acknowledges_nothing_when_one_name_is_wrong);
