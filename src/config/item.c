@@ -11,6 +11,7 @@
 #include "src/config/limits.h"
 #include "src/config/scaling.h"
 #include "src/signal/attribute.h"
+#include "src/signal/family.h"
 #include "src/signal/quantity.h"
 #include "src/signal/value.h"
 
@@ -88,6 +89,10 @@ static void build_path(struct build *build, const struct rio_node *block,
 		               text);
 	item->path = normalised(build, text, strlen(text), path);
 	item->fresh = path->uncached;
+	if (!path->has_rom)
+		return;
+	item->device = build_keep(build, path->last.text, path->last.len);
+	item->family = family_name(path->rom[0]);
 }
 
 /* The meaning of IOType, before the readable keys; false: its type is no type. */

@@ -92,7 +92,7 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
                            "how long it is gone before the alarm returns, seconds"},
 	[OPT_UNIT] = {"Unit", PLACE_ITEM, OPTION_TEXT, .help = "unit of the value, such as bar"},
 	[OPT_DECIMALS] = {"Decimals", PLACE_ITEM, OPTION_COUNT, false, 0, 15, NULL,
-                          "digits after the point, where people read the value"},
+                          "most digits after the point, where people read the value"},
 	[OPT_DESCRIPTION] = {"Description", PLACE_ITEM, OPTION_TEXT,
                              .help = "what the signal is, for people"},
 	[OPT_SCALE] = {"Scale", PLACE_ITEM, OPTION_NUMBER, false, -DBL_MAX, DBL_MAX, "1",

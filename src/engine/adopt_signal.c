@@ -4,6 +4,7 @@
 
 #include "src/config/config.h"
 #include "src/engine/adopt_signal.h"
+#include "src/engine/scaling.h"
 #include "src/engine/table.h"
 
 /* What a program has set stays, unless the file says something else than before. */
@@ -53,6 +54,9 @@ void signal_adopt(struct signal *s, const struct signal *was)
 		adopt_text(s->command_text, was->command_text);
 		adopt_text(s->written_text, was->written_text);
 	}
+	s->scaling = was->scaling;
+	if (item->type != OWS_STRING)
+		signal_rescale(s, was);
 	if (item->limits.any && before->limits.any) {
 		s->limit = was->limit;
 	} else if (!item->limits.any) {

@@ -2,6 +2,7 @@
 /*
  * The order of a lane: this file chooses what the lane asks its bus next, and makes that request.
  */
+#include <errno.h>
 #include <string.h>
 
 #include "src/engine/alarm.h"
@@ -10,6 +11,7 @@
 #include "src/engine/intake.h"
 #include "src/engine/place.h"
 #include "src/engine/publish.h"
+#include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
 #include "src/engine/slots.h"
 #include "src/engine/state.h"
@@ -43,6 +45,19 @@ static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t
 	return true;
 }
 
+/* A command of before a reload, or of an earlier owsd, that the file does not allow any more. */
+static void refuse_output(struct engine *e, struct signal *s)
+{
+	log_warning(e->log, "%s: the command in force is refused: it is beyond Min and Max",
+	            s->item->name);
+	e->counters.refused_commands++;
+	s->command.given = s->command.one_shot = false;
+	s->command.err = -ERANGE;
+	s->attrs.flags &= ~(uint32_t)OWS_ATTR_COMMANDED;
+	engine_write_check(e, s);
+	engine_publish(e, s);
+}
+
 static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_t now_ns)
 {
 	struct engine *e = lane->engine;
@@ -52,6 +67,10 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 	engine_intake_signal(e, s, now_ns);
 	if (!due_set_has(&lane->outputs, row)) {
 		engine_publish(e, s);
+		return true;
+	}
+	if (!signal_is_string(s) && !signal_accepts(s, s->command.value)) {
+		refuse_output(e, s);
 		return true;
 	}
 	slot->purpose = FOR_WRITE;
@@ -66,7 +85,7 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 	} else {
 		char text[VALUE_TEXT_MAX];
 
-		slot->req.len = (uint32_t)value_to_text(s->item->type, s->command.value, text);
+		slot->req.len = signal_write_text(s, s->command.value, text);
 		memcpy(slot->data, text, slot->req.len);
 	}
 	if (!slot_lend(lane, slot, now_ns))

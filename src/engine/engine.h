@@ -17,7 +17,8 @@
  *   reading and writing  completion, device_back, intake, clients, place, doubt, types
  *   alarm items          alarm_arm, alarm_list, alarm_effect, alarm_known
  *   schedule, publish    schedule, publish, limits, counters
- *   slots and table     lane, slots, disown, group, trace, shelf, alarm_item, table, structure, due
+ *   slots                lane, slots, disown, group, trace, shelf, alarm_item
+ *   table                table, scaling, structure, due
  *   pure functions       route, adoption, limit, guard, retry, alarm_fsm, alarm_text
  *
  * Room src/engine: the table of signals, lanes, alarms; no input or output. Uses src/config,

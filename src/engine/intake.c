@@ -8,6 +8,7 @@
 #include "src/engine/limits.h"
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"
+#include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
 #include "src/signal/value.h"
@@ -35,9 +36,10 @@ static void refuse_command(struct engine *e, struct signal *s, int err, int64_t 
 	if (n)
 		log_warning(e->log, "%s: a value in the command segment was refused: %s%s",
 		            s->item->name,
-		            err == -EROFS    ? "it is an input, and Writable is off"
-		            : err == -ERANGE ? "the type cannot hold it"
-		                             : "its text is damaged",
+		            err == -EROFS ? "it is an input, and Writable is off"
+		            : err == -ERANGE
+		                    ? "the type cannot hold it, or it is beyond Min and Max"
+		                    : "its text is damaged",
 		            log_others(n, others));
 }
 
@@ -88,7 +90,7 @@ static void take_command(struct engine *e, struct signal *s, const struct comman
 		err = -EROFS;
 	else if (signal_is_string(s))
 		err = take_command_text(e, s);
-	else if (!value_holds(s->item->type, c->value))
+	else if (!signal_accepts(s, c->value))
 		err = -ERANGE;
 	if (err == -EBUSY) {
 		remember_busy(e, s->record, now_ns);

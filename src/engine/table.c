@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The signal table: a row for each item, and what a row says of itself. */
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -161,6 +162,43 @@ void signal_table_free(struct table *table)
 	free(table->device_rows);
 	free(table->texts);
 	*table = (struct table){0};
+}
+
+static double limit_of(const struct config_limits *limits, enum config_limit limit)
+{
+	return limits->has[limit] ? limits->limit[limit] : (double)NAN;
+}
+
+/* What a chip measures has a unit and a resolution by its data sheet, until it is scaled. */
+void signal_table_meta(const struct config_item *item, struct image_meta *meta)
+{
+	const struct scale *scale = &item->scale;
+	struct quantity quantity;
+	bool known = item->type != OWS_STRING && !scale_changes(scale) &&
+	             quantity_of(item->path, &quantity);
+	int decimals = item->decimals >= 0 ? item->decimals : known ? quantity.decimals : -1;
+
+	*meta = (struct image_meta){
+		.unit = item->unit ? item->unit
+	                : known    ? quantity.unit
+	                           : NULL,
+		.description = item->description,
+		.family = item->family,
+		.device = item->device,
+		.calibrated = item->calibrated,
+		.points = item->points,
+		.decimals = (uint32_t)decimals,
+		.scale = scale->linear ? scale->factor : 1,
+		.offset = scale->linear ? scale->offset : 0,
+		.min = scale->has_min ? scale->min : (double)NAN,
+		.max = scale->has_max ? scale->max : (double)NAN,
+		.limit_hh = limit_of(&item->limits, CONFIG_LIMIT_HH),
+		.limit_h = limit_of(&item->limits, CONFIG_LIMIT_H),
+		.limit_l = limit_of(&item->limits, CONFIG_LIMIT_L),
+		.limit_ll = limit_of(&item->limits, CONFIG_LIMIT_LL),
+		.filter_s = item->filter_s,
+		.deadband = item->deadband,
+	};
 }
 
 void signal_table_image(const struct config_item *item, struct image_signal *signal)

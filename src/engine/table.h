@@ -11,6 +11,7 @@
 #include "src/engine/limit.h"
 #include "src/engine/retry.h"
 #include "src/shm/image.h"
+#include "src/signal/filter.h"
 #include "src/signal/quantity.h"
 #include "src/signal/value.h"
 #include "src/text/log.h"
@@ -83,6 +84,13 @@ struct signal_entered {
 	bool stale; /* good, and older than StaleAfter */
 };
 
+/* Between raw and engineering values (scaling.c). */
+struct signal_scaling {
+	struct filter filter;
+	bool whole;      /* the property takes whole numbers only */
+	int64_t written; /* the raw value that was written last, bits of a double */
+};
+
 struct signal {
 	const struct config_item *item;
 	uint32_t record;
@@ -103,6 +111,7 @@ struct signal {
 	struct signal_seen seen;
 	struct signal_command command;
 	struct signal_limit limit;
+	struct signal_scaling scaling;
 	/* strings, TABLE_TEXT_CAP bytes each: published, to be written, written */
 	char *text, *command_text, *written_text;
 };
@@ -140,6 +149,8 @@ uint32_t table_device(const struct table *table, const uint8_t rom[8]);
 
 /* What the image and the command segment of this configuration contain. */
 void signal_table_image(const struct config_item *item, struct image_signal *signal);
+/* What people say of the signal; strings are those of the item. */
+void signal_table_meta(const struct config_item *item, struct image_meta *meta);
 
 static inline bool signal_is_string(const struct signal *s)
 {

@@ -83,6 +83,7 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 {
 	const struct config *config = m->config;
 	struct image_signal *signals = calloc((size_t)config->item_count + 1, sizeof(*signals));
+	struct image_meta *metas = calloc((size_t)config->item_count + 1, sizeof(*metas));
 	const char *targets[CONFIG_TARGETS_MAX];
 	uint32_t groups[CONFIG_TARGETS_MAX];
 	char served[160];
@@ -105,9 +106,12 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 	size_t size;
 	int err = -ENOMEM;
 
-	if (signals) {
-		for (unsigned i = 0; i < config->item_count; i++)
+	if (signals && metas) {
+		for (unsigned i = 0; i < config->item_count; i++) {
 			signal_table_image(&config->items[i], &signals[i]);
+			signal_table_meta(&config->items[i], &metas[i]);
+			signals[i].meta = &metas[i];
+		}
 		for (unsigned i = 0; i < config->target_count; i++) {
 			targets[i] = config->targets[i].text;
 			groups[i] = config->targets[i].group;
@@ -120,6 +124,7 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 	if (!err)
 		image_build(&plan, m->image_segment.base, &m->image);
 	free(signals);
+	free(metas);
 	return err;
 }
 

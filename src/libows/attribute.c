@@ -68,6 +68,7 @@ static int64_t compute(struct ows *h, struct ows_id *id, const struct ows_slot *
 		return age_ns;
 	case ATTR_AGE_MAX:
 		return larger(a->age_max_ns, age_ns);
+	case ATTR_RAW: /* ows_get() has it from the sample: it is a measurement */
 	case ATTR_DGNRESET:
 	case ATTR_WRITE_ONE_SHOT:
 	case ATTR_DRIVER_DGNRESET:

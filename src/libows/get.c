@@ -64,8 +64,28 @@ static inline int get_record(struct ows *h, unsigned record, int64_t stale_after
 	return finish_value(h, stale_after_ns, now_ns, value);
 }
 
+/* The raw value is as old and as good as the value that was made of it. */
+static int get_raw(struct ows *h, struct ows_id *e, int64_t now_ns, struct ows_value *value)
+{
+	const struct ows_record *r = map_record(&h->map, (unsigned)e->record);
+	struct ows_slot slot;
+
+	if (!reader_slot(r, &slot)) {
+		*value = (struct ows_value){.type = OWS_DOUBLE, .quality = OWS_Q_TARGET};
+		return -EAGAIN;
+	}
+	slot.sample.value = slot.attrs.raw;
+	if (r->type == OWS_STRING)
+		slot.sample.quality = OWS_Q_TYPE;
+	value_fill(value, &slot.sample, OWS_DOUBLE);
+	value->len = 0;
+	return finish_value(h, e->stale_after_ns, now_ns, value);
+}
+
 static int get_id(struct ows *h, struct ows_id *e, int64_t now_ns, struct ows_value *value)
 {
+	if (e->attribute == ATTR_RAW)
+		return get_raw(h, e, now_ns, value);
 	if (e->attribute != ATTR_VALUE)
 		return attribute_get(h, e, now_ns, value);
 	return get_record(h, (unsigned)e->record, e->stale_after_ns, now_ns, value);

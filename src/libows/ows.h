@@ -62,9 +62,9 @@ enum ows_quality {
 	OWS_Q_INITIAL = 0x20,     /* never read or written */
 	OWS_Q_LAST_USABLE = 0x44, /* moved to another target, which has not answered yet */
 	OWS_Q_DISABLED = 0x44,    /* disabled by _ReadEnable: likewise the last usable value */
-	OWS_Q_RANGE = 0x54,       /* out of range */
-	OWS_Q_LOW = 0x55,         /* held at the type's lower limit */
-	OWS_Q_HIGH = 0x56,        /* held at the type's upper limit */
+	OWS_Q_RANGE = 0x54,       /* out of range: beyond Min or Max */
+	OWS_Q_LOW = 0x55,         /* held at the lower end of the type or of Points */
+	OWS_Q_HIGH = 0x56,        /* held at the upper end */
 	OWS_Q_CUT = 0x58,         /* text cut to the room in the layout */
 	OWS_Q_GOOD = 0xc0,
 };

@@ -68,6 +68,7 @@ ATTRIBUTES = [
     ("_Period", None, DOUBLE, True, False),
     ("_Age", None, DOUBLE, True, False),
     ("_AgeMax", None, DOUBLE, True, False),
+    ("_Raw", None, DOUBLE, True, False),
 ]
 ATTRIBUTE = {a[0]: a for a in ATTRIBUTES}
 DRIVER = {"_DGNRESET": (BOOL, False, True), "_TRANSACTIONS": (LARGE, True, False),
@@ -151,8 +152,13 @@ Target = collections.namedtuple("Target", "index name state reconnects group mov
 TARGET = struct.Struct("<104sIIII8x")
 TARGET_STATES = ["down", "up", "suspended"]
 
-Info = collections.namedtuple("Info", "name path type output fresh alarm per_factor "
-                              "stale_after_ns")
+# What the file says of a signal. None: not given, not known; scale and offset are 1 and 0 without,
+# points is the text of the file
+Info = collections.namedtuple(
+    "Info", "name path type output fresh alarm per_factor stale_after_ns unit description family "
+    "device calibrated points decimals scale offset min max limit_hh limit_h limit_l limit_ll "
+    "filter deadband", defaults=[None] * 17)
+INFO = struct.Struct("<4I3q8I10d")
 
 
 def now_ns():
@@ -447,8 +453,9 @@ class Ows:
         image, texts, pool = self.image, self.areas[TEXTS], self.areas[POOL]
         self.records, self.table = {}, []
         for record in range(self.areas[RECORDS].count):
-            name, path, factor, _, stale = struct.unpack_from(
-                "<IIIIq", image.memory, self._at(INFOS, record))
+            (name, path, factor, _, stale, _, _, _, *texts_off, decimals, scale, offset,
+             minimum, maximum, hh, h, low, ll, smooth, deadband) = INFO.unpack_from(
+                 image.memory, self._at(INFOS, record))
             text_off, kind, flags, text_cap = struct.unpack_from(
                 "<IBBH", image.memory, self._at(RECORDS, record) + 4)
             if text_cap and not \
@@ -457,8 +464,12 @@ class Ows:
             name = image.string(name, pool)
             path = image.string(path, pool)
             self.table.append((Info(name, path, kind, bool(flags & OUTPUT), bool(flags & FRESH),
-                                    bool(flags & ALARM), factor, stale), text_off, text_cap,
-                               bool(flags & NO_SET)))
+                                    bool(flags & ALARM), factor, stale,
+                                    *(image.string(off, pool) or None for off in texts_off),
+                                    None if decimals == 0xFFFFFFFF else decimals, scale, offset,
+                                    *(None if number != number else number for number in
+                                      (minimum, maximum, hh, h, low, ll)), smooth, deadband),
+                               text_off, text_cap, bool(flags & NO_SET)))
             if record > 0:
                 self.records[name] = record
 
@@ -590,7 +601,11 @@ class Ows:
         sample, attrs, text = self._slot(record, is_text)
         raw, measured, tried, err, quality, detail, target, _, count, applied, length, _ = sample
         age = max(0, now - (measured or self.header.start_ns))
-        if attribute != "_Value" or record == 0:
+        if attribute == "_Raw":
+            # a measurement, as old and as good as the value that was made of it
+            kind, value = DOUBLE, decode(DOUBLE, attrs.raw)
+            quality = Q_TYPE if info.type == STRING else quality
+        elif attribute != "_Value" or record == 0:
             kind, readable = self._kind(record, attribute)
             if not readable:
                 raise PermissionError(errno.EACCES, "write-only", name)
@@ -605,7 +620,7 @@ class Ows:
             if self._state() not in (LIVE, RETIRED) or not self._beats(now) or \
                     since > now + self.dead_after_ns:
                 quality = Q_TARGET
-            elif attribute == "_Value" and record and 0 < info.stale_after_ns < age:
+            elif attribute in ("_Value", "_Raw") and record and 0 < info.stale_after_ns < age:
                 quality = Q_STALE
         return Value(value, kind, quality, detail, target, err, measured, tried, age / 1e9, count,
                      applied, data)

@@ -61,7 +61,7 @@ struct ows_attrs { /* 80 bytes, 20 words */
 	int64_t update_ns;   /* seconds of _Period: time between the last two updates, ns */
 	int64_t age_max_ns;  /* _AgeMax but for the running age */
 	int64_t commanded;   /* commanded value, as in sample.value, if OWS_ATTR_COMMANDED */
-	int64_t raw;         /* _Raw: as in sample.value, before scaling */
+	int64_t raw;         /* _Raw: bits of a double, before scaling and filter; of a string 0 */
 	uint32_t per_base;   /* period of the last update (before it: 0). _PerCount = now - this */
 	uint32_t per_max;    /* _PerMax but for the running count */
 	uint32_t pend_base;  /* period number when the request in work began, if OWS_ATTR_IN_WORK */

@@ -118,9 +118,9 @@ double scale_value(const struct scale *scale, double raw, uint8_t *quality)
 	       most = fmin(line_most(scale), DBL_MAX);
 
 	if (scale->linear)
-		value = raw * scale->factor + scale->offset;
+		value = raw * scale->factor + scale->offset + 0.0; /* no negative zero */
 	else if (scale->count)
-		value = line(scale, raw, false);
+		value = line(scale, raw, false) + 0.0;
 	value = undo_rounding(scale, raw, value);
 	*quality = value < least ? OWS_Q_LOW : value > most ? OWS_Q_HIGH : OWS_Q_GOOD;
 	value = fmin(fmax(value, least), most);
@@ -136,9 +136,9 @@ int scale_raw(const struct scale *scale, double value, double *raw)
 	if (is_beyond(scale, value) || value < line_least(scale) || value > line_most(scale))
 		return -ERANGE;
 	if (scale->linear)
-		found = (value - scale->offset) / scale->factor;
+		found = (value - scale->offset) / scale->factor + 0.0;
 	else if (scale->count)
-		found = line(scale, value, true);
+		found = line(scale, value, true) + 0.0;
 	if (!isfinite(found))
 		return -ERANGE;
 	*raw = found;

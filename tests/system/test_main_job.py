@@ -61,7 +61,7 @@ def test_every_attribute_of_the_manual_answers_with_and_without_prefix(scene):
     until(lambda: all_good(scene, daemon), 10, "all signals are good")
     readable = ["_Value", "_TRANSACTIONS", "_ReadEnable", "_RE", "_WriteEnable", "_WE", "_Alarm",
                 "_PerFactor", "_PerCount", "_PerMax", "_PendCount", "_PendLast", "_PendMax",
-                "_Period", "_Age", "_AgeMax"]
+                "_Period", "_Age", "_AgeMax", "_Raw"]
     for attribute in readable:
         for name in ("room" + attribute, f"{daemon.name}__room{attribute}"):
             float(until(lambda: scene.get(daemon, name), 10, name))

@@ -159,7 +159,9 @@ static struct ows_sample good(int64_t measured_ns)
 void instance_put(struct instance *in, uint32_t record, int64_t value, int64_t measured_ns)
 {
 	struct ows_sample sample = good(measured_ns);
-	struct ows_attrs attrs = {.flags = OWS_ATTR_READ_ENABLE};
+	enum ows_type type = (enum ows_type)in->image.records[record].type;
+	struct ows_attrs attrs = {.flags = OWS_ATTR_READ_ENABLE,
+	                          .raw = value_of_double(value_number(type, value))};
 
 	sample.value = value;
 	image_publish(&in->image, record, &sample, &attrs, NULL);

@@ -139,7 +139,10 @@ static void test_python_reads_a_recorded_image(void)
 		"0 False False True returned to normal unacknowledged high high False\n"
 		"1003000000000 2003000000000 sensor is being moved Jana\n"
 		"Info(name=\"long\", path=\"/1D.000000000001/a\", type=4, output=False, fresh=True,"
-		" alarm=False, per_factor=4, stale_after_ns=2000000000)\n",
+		" alarm=False, per_factor=4, stale_after_ns=2000000000, unit=None,"
+		" description=None, family=None, device=None, calibrated=None, points=None,"
+		" decimals=None, scale=1.0, offset=0.0, min=None, max=None, limit_hh=None,"
+		" limit_h=None, limit_l=None, limit_ll=None, filter=0.0, deadband=0.0)\n",
 		python("s = ows.Ows(sys.argv[1])\nN = 1010 * 10**9\n"
 	               "print(*(s.get(\"byte_\" + a, N).value for a in (\"TRANSACTIONS\", \"Period\", \"Age\","
 	               " \"AgeMax\", \"PerCount\", \"PerMax\", \"PendCount\", \"PendLast\", \"PendMax\","
