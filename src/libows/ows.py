@@ -88,8 +88,9 @@ HEADER = struct.Struct("<IHHIIIiIIIIqqq")
 Area = collections.namedtuple("Area", "off size count", defaults=[0, 0, 0])
 AREA = struct.Struct("<IIII")
 RECORDS, INFOS, TARGETS, POOL, TEXTS, SHELVES, ALARMS, COMMANDS = 1, 2, 4, 6, 7, 10, 11, 12
+CHANGES = 13
 ENTRY_SIZES = {RECORDS: 320, INFOS: 192, TARGETS: 128, POOL: 1, TEXTS: 1, SHELVES: 184,
-               ALARMS: 200, COMMANDS: 200}
+               ALARMS: 200, COMMANDS: 200, CHANGES: 8}
 JOURNAL_ENTRY = struct.Struct("<IIq8s8sBBBBI64s80sI8xI")
 SHELF_ENTRY = struct.Struct("<IIqq80s64s12xI")
 WHO = struct.Struct("<IIi4x32s32s")
@@ -100,6 +101,7 @@ CommandHeader = collections.namedtuple(
 COMMAND_HEADER = struct.Struct("<IHHIIIiIIIIIIIIIIIIIIII")
 SERVICE = "/run/owsd"
 STATE_OFF, NEWS_OFF, ALARM_HEAD_OFF, COMMAND_HEAD_OFF, BELL_OFF = 16, 128, 132, 136, 128
+CHANGE_HEAD_OFF = 140
 # How often the names of segments are looked at while owsd's heart stands still
 ORPHAN_LOOK_NS = 1_000_000_000
 
@@ -426,7 +428,8 @@ class Ows:
                 raise broken()
             image.inside(area.off, area.count, area.size)
             areas[kind] = area
-        if not areas[RECORDS].count or areas[INFOS].count != areas[RECORDS].count:
+        if not areas[RECORDS].count or areas[INFOS].count != areas[RECORDS].count or \
+           areas[CHANGES].count & (areas[CHANGES].count - 1):
             raise broken()
         return header, areas
 
@@ -740,6 +743,14 @@ class Ows:
             # Nobody wakes who sleeps on an orphan
             self.futex.wait(self.image.address + NEWS_OFF, now, min(left, 1))
 
+    def changes(self, seconds=math.inf):
+        """Follow what changes: an iterator of Changed, which are names of signals. It waits for
+        the next change, at most `seconds`, and gives an empty one when they are over. Begins with
+        all signals. Raises Stale: reopen(), and go on with the same iterator."""
+        if not self.areas[CHANGES].count:
+            raise OSError(errno.EOPNOTSUPP, "this owsd has no ring of changes")
+        return Changes(self, seconds)
+
     # --- Setting --------------------------------------------------------------------------------
 
     def set(self, name, value):
@@ -873,6 +884,95 @@ class Ows:
         self._set_client_word(8, period_ms)
         self._set_client_word(4, self._client_word(4) + 1)
         self._found_by_owsd()
+
+
+class Changed(list):
+    """Names of signals that changed, each once. With everything set they are all signals: at the
+    beginning, when the program fell behind, and when owsd is lost (all values turned bad) or back."""
+
+    everything = False
+
+
+class Changes:
+    """Made by Ows.changes()."""
+
+    # In that time no ring enters 2**32 changes: a number that is behind by so many looks like new
+    KEEPS_NS = 3600 * 1_000_000_000
+
+    def __init__(self, signals, seconds):
+        self.signals, self.seconds = signals, seconds
+        self.image = self.told = None
+
+    def __iter__(self):
+        return self
+
+    def __next__(self):
+        until = time.monotonic() + self.seconds
+        while True:
+            signals = self.signals
+            news = signals.image.word(NEWS_OFF)
+            changed = self._look(now_ns())
+            left = until - time.monotonic()
+            if changed or changed.everything or left <= 0:
+                return changed
+            signals.futex.wait(signals.image.address + NEWS_OFF, news, min(left, self._slice()))
+
+    def _look(self, now):
+        signals = self.signals
+        alive, state = signals._beats(now), signals._state()
+        ended = state == STOPPED
+        if state not in (LIVE, STOPPED) or signals._is_orphan() or \
+           ended and signals.image.replaced():
+            self._stale()
+        lost = ended or not alive
+        if self.image is not signals.image or lost != self.lost or now - self.looked > self.KEEPS_NS:
+            return self._everything(lost, now)
+        self.looked = now
+        return self._copy(now)
+
+    def _stale(self):
+        """A program that does not reopen, or cannot yet, does not spin."""
+        if self.told is self.signals.image:
+            time.sleep(min(self.seconds, 0.1))
+        self.told = self.signals.image
+        raise Stale
+
+    def _everything(self, lost, now):
+        self.image, self.lost, self.looked = self.signals.image, lost, now
+        self.number = self.image.word(CHANGE_HEAD_OFF)
+        changed = Changed(self.signals.names())
+        changed.everything = True
+        return changed
+
+    def _copy(self, now):
+        """The last quarter of the ring is not believed: Python has no fences, and may see an entry
+        that is being overwritten before it sees the head."""
+        ring, first, image = self.signals.areas[CHANGES], self.number, self.image
+        behind = image.word(CHANGE_HEAD_OFF) - first & 0xFFFFFFFF
+        room = ring.count - ring.count // 4
+        records = {}
+        for number in range(first, first + min(behind, room)):
+            entry = image.doubles[ring.off + number % ring.count * ring.size >> 3]
+            if entry & 0xFFFFFFFF != number & 0xFFFFFFFF:
+                return self._everything(self.lost, now)
+            records[entry >> 32] = None
+        if image.word(CHANGE_HEAD_OFF) - first & 0xFFFFFFFF >= room:
+            return self._everything(self.lost, now)
+        self.number = first + behind & 0xFFFFFFFF
+        table = self.signals.table
+        return Changed(table[r][0].name for r in records if 0 < r < len(table))
+
+    def _slice(self):
+        """The longest sleep in which nothing is missed of which nobody wakes."""
+        if self.signals._state() != LIVE:
+            return 0.1
+        if self.lost:
+            return 1
+        try:
+            beat = self.signals._slot(0)[0][1]
+        except BlockingIOError:
+            return 0.1
+        return max(0.001, min(1, (beat + self.signals.dead_after_ns - now_ns()) / 1e9 + 0.001))
 
 
 def word(words, number, other):

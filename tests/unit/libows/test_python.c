@@ -11,6 +11,7 @@
 #include "unity.h"
 
 #include "src/shm/entries.h"
+#include "src/shm/futex.h"
 #include "src/signal/value.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
@@ -312,6 +313,67 @@ static void test_python_finds_its_way_from_an_orphan(void)
 	TEST_ASSERT_EQUAL_STRING("stale True False\nStale Stale Stale\nFalse 1 True\n", output);
 }
 
+static void test_python_gives_each_change_once_and_says_when_it_fell_behind(void)
+{
+	in.image.header->change_head = UINT32_MAX - 1; /* their numbers wrap */
+	instance_put(&in, RELAY, 1, ows_now());
+	instance_put_text(&in, LABEL, "x", ows_now());
+	instance_put(&in, RELAY, 0, ows_now());
+	expect("s = ows.Ows(name)\n"
+	       "c = s.changes(0)\n"
+	       "n = next(c)\n"
+	       "print(n.everything, len(n), len(next(c)))\n"
+	       "c.number = c.number - 3 & 0xffffffff\n"
+	       "n = next(c)\n"
+	       "print(n.everything, *n, len(next(c)))\n"
+	       "c.number = c.number - 5000 & 0xffffffff\n"
+	       "n = next(c)\n"
+	       "print(n.everything, len(n), len(next(c)))\n"
+	       "c.number = c.number - 4 & 0xffffffff\n" /* the place has another number */
+	       "print(next(c).everything)\n"
+	       "c.looked -= 2 * c.KEEPS_NS\n"
+	       "print(next(c).everything)",
+	       "True 6 0\nFalse relay label 0\nTrue 6 0\nTrue\nTrue\n");
+}
+
+static void expect_line(FILE *run, const char *expected)
+{
+	char line[128];
+
+	TEST_ASSERT_NOT_NULL(fgets(line, sizeof(line), run));
+	TEST_ASSERT_EQUAL_STRING(expected, line);
+}
+
+static void test_python_follows_changes_over_a_loss_of_owsd_and_a_reload(void)
+{
+	FILE *run = python("s = ows.Ows(name)\n"
+	                   "c = s.changes(60)\n"
+	                   "def show(n): print(n.everything, *n, flush=True)\n"
+	                   "for i in range(4): show(next(c))\n"
+	                   "print(error(next, c), flush=True)\n"
+	                   "s.reopen()\n"
+	                   "for i in range(2): show(next(c))");
+
+	TEST_ASSERT_NOT_NULL(run);
+	expect_line(run, "True room1 relay count label deep room1_Age\n");
+	instance_put(&in, NUMBER, 1, ows_now());
+	segment_wake(&in.image.header->news, 1000);
+	expect_line(run, "False count\n");
+	instance_beat(&in, ows_now() - INSTANCE_PATIENCE - INSTANCE_S, 0);
+	segment_wake(&in.image.header->news, 1000);
+	expect_line(run, "True room1 relay count label deep room1_Age\n");
+	instance_beat(&in, ows_now(), 0);
+	segment_wake(&in.image.header->news, 1000);
+	expect_line(run, "True room1 relay count label deep room1_Age\n");
+	instance_reload(&in, signals, COUNT - 1);
+	instance_lives_on(&in);
+	expect_line(run, "Stale\n");
+	expect_line(run, "True room1 relay count label deep\n");
+	instance_put(&in, DEEP, 1, ows_now());
+	finish(run);
+	TEST_ASSERT_EQUAL_STRING("False deep\n", output);
+}
+
 static void test_python_refuses_rubbish(void)
 {
 	in.image.areas[OWS_AREA_RECORDS - 1].size = 128;
@@ -435,6 +497,8 @@ int main(void)
 	RUN_TEST(test_python_refuses_what_c_refuses);
 	RUN_TEST(test_python_finds_its_way_over_a_reload);
 	RUN_TEST(test_python_finds_its_way_from_an_orphan);
+	RUN_TEST(test_python_gives_each_change_once_and_says_when_it_fell_behind);
+	RUN_TEST(test_python_follows_changes_over_a_loss_of_owsd_and_a_reload);
 	RUN_TEST(test_python_refuses_rubbish);
 	RUN_TEST(test_python_sees_whole_samples_beside_a_busy_writer);
 	return UNITY_END();
