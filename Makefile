@@ -159,8 +159,8 @@ endef
 SOURCES  := $(wildcard src/*/*.c hal/*/*.c hal/*/*/*.c)
 # The consumers' library
 LIBOWS   := $(wildcard src/libows/*.c)
-# Programs over libows to start from
-EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py)
+# Programs to start from
+EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py docs/examples/*.go)
 # Those that another program builds or loads, a folder for each
 HOSTED   := $(patsubst docs/examples/%/,%,$(wildcard docs/examples/*/))
 PYTHON   := $(wildcard src/libows/*.py)

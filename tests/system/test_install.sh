@@ -44,7 +44,7 @@ cat >l.c <<'END'
 #include <ows_layout.h>
 int main(void)
 {
-	return sizeof(struct ows_record) != 256;
+	return sizeof(struct ows_record) != 320;
 }
 END
 export PKG_CONFIG_PATH="$root/opt/owsd/lib/pkgconfig" PKG_CONFIG_SYSROOT_DIR="$root"
