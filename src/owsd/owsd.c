@@ -288,6 +288,7 @@ static int run(const struct arguments *a, struct config *config, struct instance
 		complain("%s", why);
 		return EXIT_RUN;
 	}
+	instance_retire_old(instance, log);
 	report_served(host, a, log, &notify);
 	notify_send(&notify, NOTIFY_READY);
 	ours = supervise(host, a, instance, log, &notify, prefix);

@@ -178,18 +178,14 @@ int segment_lock(const struct shm_place *place, const char *instance, pid_t *pid
 	return -EBUSY;
 }
 
-int segment_lock_look(const struct shm_place *place, const char *instance, pid_t *pid)
+int lock_look(int place, const char *name, pid_t *pid)
 {
 	struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_len = 1};
-	char name[SEGMENT_FILE];
 	struct stat st;
 	int fd, held;
 
 	*pid = 0;
-	if (!segment_name_ok(instance))
-		return -EINVAL;
-	segment_file(instance, "lock", name);
-	fd = openat(place->fd, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+	fd = openat(place, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
 	if (fd < 0)
 		return errno == ELOOP || errno == ENXIO ? -EPERM : -errno;
 	held = fcntl(fd, F_OFD_GETLK, &lock) < 0 ? -errno : lock.l_type != F_UNLCK;
@@ -202,6 +198,16 @@ int segment_lock_look(const struct shm_place *place, const char *instance, pid_t
 		held = !(*pid > 0 && is_corpse(*pid));
 	close(fd);
 	return held;
+}
+
+int segment_lock_look(const struct shm_place *place, const char *instance, pid_t *pid)
+{
+	char name[SEGMENT_FILE];
+
+	*pid = 0;
+	if (!segment_name_ok(instance))
+		return -EINVAL;
+	return lock_look(place->fd, segment_file(instance, "lock", name), pid);
 }
 
 int segment_lock_any(const struct shm_place *place, const char *instance, pid_t *pid)
