@@ -8,12 +8,14 @@
 #include "src/owsctl/names.h"
 #include "src/owsctl/rows.h"
 
-static int add(struct ows *h, struct rows *rows, const char *name, const struct ows_info *info)
+static int add(struct ows *h, struct rows *rows, const char *name, int signal,
+               const struct ows_info *info)
 {
 	struct row *row = &rows->row[rows->count];
 
 	memset(row, 0, sizeof(*row));
 	row->id = ows_find(h, name);
+	row->signal = signal;
 	row->name = strdup(name);
 	if (!row->name)
 		return -ENOMEM;
@@ -41,13 +43,13 @@ int rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool d
 		const struct attribute_def *def = &attribute_table[i];
 
 		if (def->driver && def->readable && names_match(def->name, patterns, pattern_count))
-			err = add(h, rows, def->name, NULL);
+			err = add(h, rows, def->name, -1, NULL);
 	}
 	for (int i = 0; err == 0 && i < count; i++) {
 		struct ows_info info;
 
 		if (ows_info(h, i, &info) == 0 && names_match(info.name, patterns, pattern_count))
-			err = add(h, rows, info.name, &info);
+			err = add(h, rows, info.name, i, &info);
 	}
 	if (err)
 		rows_free(rows);

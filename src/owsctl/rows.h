@@ -8,7 +8,8 @@
 #include "src/signal/value.h"
 
 struct row {
-	int id; /* for ows_get(); stays valid over ows_reopen() */
+	int id;     /* for ows_get(); stays valid over ows_reopen() */
+	int signal; /* as in ows_info(); -1: a driver signal, which stand first */
 	char *name;
 	char *path;   /* NULL: a driver signal */
 	uint8_t type; /* enum ows_type */
