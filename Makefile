@@ -159,8 +159,9 @@ endef
 SOURCES  := $(wildcard src/*/*.c hal/*/*.c hal/*/*/*.c)
 # The consumers' library
 LIBOWS   := $(wildcard src/libows/*.c)
-# Programs to start from
-EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py docs/examples/*.go)
+# Programs to start from, and configurations
+EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py docs/examples/*.go \
+            docs/examples/*.rio)
 # Those that another program builds or loads, a folder for each
 HOSTED   := $(patsubst docs/examples/%/,%,$(wildcard docs/examples/*/))
 PYTHON   := $(wildcard src/libows/*.py)

@@ -195,7 +195,7 @@ static void look_at(struct live *live, int signal, const struct row *row)
 		return;
 	reading_get(live->h, row->id, live->now.boot, live->reading);
 	if (live->table)
-		reading_round(live->reading, row->path);
+		reading_round(live->reading, row_decimals(row));
 	if (state.stands || state.polled) {
 		alarm.kind = ows_alarm_kind_text(OWS_ALARM_DEVICE);
 		alarm.state = state.stands ? "stands" : "no alarm search there: read as an input";

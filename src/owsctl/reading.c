@@ -7,7 +7,6 @@
 
 #include "src/owsctl/reading.h"
 #include "src/owsctl/text.h"
-#include "src/signal/quantity.h"
 #include "src/signal/value.h"
 
 int reading_get(struct ows *h, int id, int64_t now_ns, struct reading *reading)
@@ -25,19 +24,16 @@ int reading_get(struct ows *h, int id, int64_t now_ns, struct reading *reading)
 	return reading->err;
 }
 
-void reading_round(struct reading *reading, const char *path)
+void reading_round(struct reading *reading, int decimals)
 {
-	struct quantity quantity;
 	char *text = reading->text;
 	size_t n;
 
-	if (!path || !reading_filled(reading) ||
-	    !value_is_float((enum ows_type)reading->value.type) ||
-	    !isfinite(reading->value.number) || !quantity_of(path, &quantity))
+	if (decimals < 0 || !reading_filled(reading) ||
+	    !value_is_float((enum ows_type)reading->value.type) || !isfinite(reading->value.number))
 		return;
-	n = (size_t)snprintf(text, sizeof(reading->text), "%.*f", quantity.decimals,
-	                     reading->value.number);
-	while (quantity.decimals > 0 && text[n - 1] == '0')
+	n = (size_t)snprintf(text, sizeof(reading->text), "%.*f", decimals, reading->value.number);
+	while (decimals > 0 && text[n - 1] == '0')
 		n--;
 	if (text[n - 1] == '.')
 		n--;

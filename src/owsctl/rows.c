@@ -27,7 +27,7 @@ static int add(struct ows *h, struct rows *rows, const char *name, int signal,
 	row->fresh = info->fresh;
 	row->alarm = info->alarm;
 	row->path = strdup(info->path);
-	return row->path ? 0 : -ENOMEM;
+	return row->path && meaning_of(h, info, &row->meaning) ? 0 : -ENOMEM;
 }
 
 int rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool driver,
@@ -61,6 +61,7 @@ void rows_free(struct rows *rows)
 	for (int i = 0; i < rows->count; i++) {
 		free(rows->row[i].name);
 		free(rows->row[i].path);
+		meaning_free(&rows->row[i].meaning);
 	}
 	free(rows->row);
 	rows->row = NULL;
@@ -143,7 +144,25 @@ bool row_changed(struct row *row, const struct reading *reading)
 	return changed;
 }
 
-void row_json(struct json *json, const struct row *row)
+const char *row_unit(const struct row *row)
+{
+	return row->path ? row->meaning.unit : "";
+}
+
+int row_decimals(const struct row *row)
+{
+	return row->path ? row->meaning.decimals : -1;
+}
+
+bool rows_have_units(const struct rows *rows)
+{
+	for (int i = 0; i < rows->count; i++)
+		if (*row_unit(&rows->row[i]))
+			return true;
+	return false;
+}
+
+void row_json(struct json *json, struct ows *h, const struct row *row, int64_t now_ns)
 {
 	json_string(json, "name", row->name);
 	json_string(json, "path", row->path);
@@ -156,5 +175,6 @@ void row_json(struct json *json, const struct row *row)
 		json_bool(json, "commanded", row->commanded[0] == '1');
 	else
 		json_number(json, "commanded", row->commanded);
+	meaning_json(json, h, &row->meaning, now_ns);
 	standing_json(json, &row->alarms);
 }

@@ -61,7 +61,7 @@ static void print_change(struct watch *watch, const struct row *row, const struc
 	if (watch->ctl->json) {
 		json_object(&json, NULL);
 		json_string(&json, "time", when_iso(now, now->boot, text));
-		row_json(&json, row);
+		row_json(&json, watch->h, row, now->boot);
 		reading_json(&json, watch->h, reading, now);
 		json_object_end(&json);
 		json_end(&json);
@@ -84,7 +84,7 @@ static void print_if_changed(struct watch *watch, struct row *row, const struct 
 		return;
 	row_read(watch->h, row, now->boot, watch->reading);
 	if (!watch->ctl->json)
-		reading_round(watch->reading, row->path);
+		reading_round(watch->reading, row_decimals(row));
 	if (!row_changed(row, watch->reading))
 		return;
 	print_change(watch, row, now);
