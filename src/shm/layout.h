@@ -3,16 +3,18 @@
  * The published layout of an instance, in the directory of owsd (docs/shared-memory.md):
  *
  *     NAME.image     one file: only owsd writes it, consumers map it read-only
- *     NAME.control   a socket: a program connects and becomes a giver. owsd hands each giver a memory
- *                    of its own, sealed, in which it commands; owsd believes nothing it finds there
+ *     NAME.control   a socket: a program connects and becomes a giver. owsd hands each giver a
+ *                    memory of its own, sealed, in which it commands; owsd believes nothing it
+ *                    finds there
  *
  * Fixed-size records, natural alignment, little-endian, no pointers, no locks, no allocator. All
- * words that two processes share are 32 bit. Offsets are bytes from the start of the file or memory.
- * docs/shared-memory.md describes the same in words and suffices to write a reader.
+ * words that two processes share are 32 bit. Offsets are bytes from the start of the file or
+ * memory. docs/shared-memory.md describes the same in words and suffices to write a reader.
  *
  * History
- *   2.0  a directory of areas; metadata, raw values, origins of commands, changes, shelved alarms, a
- *        journal of commands; commands in a memory for each giver. 1.x had two segments in /dev/shm
+ *   2.0  a directory of areas; metadata, raw values, origins of commands, changes, shelved alarms,
+ *        a journal of commands; commands in a memory for each giver. 1.x had two segments in
+ *        /dev/shm
  */
 #ifndef OWS_LAYOUT_H
 #define OWS_LAYOUT_H
@@ -39,7 +41,7 @@ enum ows_state {
 
 /* One value with all that belongs to it. */
 struct ows_sample { /* 48 bytes, 12 words */
-	int64_t value;       /* in engineering units; bits of a double for float and double, else the integer */
+	int64_t value;       /* in engineering units; float and double: a double's bits */
 	int64_t measured_ns; /* CLOCK_BOOTTIME; 0: never */
 	int64_t tried_ns;    /* last attempt; 0: never */
 	int32_t err;         /* 0 or negative errno: of the last read, else of the last write */
@@ -182,10 +184,10 @@ struct ows_who { /* 80 bytes */
 };
 
 /*
- * Entries that change as a whole: origins, givers, shelves, journals. Writer: seq + 1 (odd); release
- * fence; the rest; seq + 1 (release). Reader: copy as long as seq is odd or changed; 64 times at most.
- * An owsd that was killed leaves at most one entry odd for good. check: ows_check() of the words
- * between seq and check.
+ * Entries that change as a whole: origins, givers, shelves, journals. Writer: seq + 1 (odd);
+ * release fence; the rest; seq + 1 (release). Reader: copy as long as seq is odd or changed; 64
+ * times at most. An owsd that was killed leaves at most one entry odd for good. check: ows_check()
+ * of the words between seq and check.
  */
 
 /* Origin of the command that is in force; entry i belongs to record i. */
@@ -229,9 +231,9 @@ struct ows_shelf_entry { /* 184 bytes */
 };
 
 /*
- * The journals: rings of alarms and of commands. Entry number n, from 0 at owsd's start, is at place
- * n % count; the header's head counts what was ever entered, and is stored after the entry. A value
- * after an alarm comes later.
+ * The journals: rings of alarms and of commands. Entry number n, from 0 at owsd's start, is at
+ * place n % count; the header's head counts what was ever entered, and is stored after the entry. A
+ * value after an alarm comes later.
  */
 #define OWS_JOURNAL 256
 struct ows_journal_entry { /* 200 bytes */
@@ -244,8 +246,8 @@ struct ows_journal_entry { /* 200 bytes */
 	uint8_t event;       /* enum ows_alarm_event; of commands 0 */
 	uint8_t quality;     /* of the signal at that moment */
 	uint8_t flags;       /* OWS_JOURNAL_ bits */
-	uint32_t more;       /* commands: so many of this giver to this signal were not entered before it */
-	char text[OWS_TEXT]; /* device alarms: the latch; shelving: why; commands: the text of a string */
+	uint32_t more;       /* commands: so many of this giver were not entered before it */
+	char text[OWS_TEXT]; /* device alarms: the latch; shelving: why; commands: a text */
 	struct ows_who who;  /* who commanded, acknowledged, shelved */
 	uint32_t number;
 	uint32_t spare[2];
@@ -257,9 +259,10 @@ struct ows_journal_entry { /* 200 bytes */
 /*
  * Changes: a ring of published rows; change number n is at place n % count (a power of two). The
  * header's change_head counts all that were ever entered. Writer: release fence; record; number
- * (release); change_head (release). Reader: head = change_head (acquire); more than count - 1 behind:
- * it fell behind and looks at everything; copy entries; acquire fence; change_head again: if the
- * first copied is more than count - 1 behind it now, it may be overwritten, and the reader fell behind.
+ * (release); change_head (release). Reader: head = change_head (acquire); more than count - 1
+ * behind: it fell behind and looks at everything; copy entries; acquire fence; change_head again:
+ * if the first copied is more than count - 1 behind it now, it may be overwritten, and the reader
+ * fell behind.
  */
 struct ows_change_entry { /* 8 bytes */
 	uint32_t number;
@@ -313,19 +316,19 @@ struct ows_image_header { /* 256 bytes: four lines of 64 */
 	uint32_t change_head;  /* likewise changes */
 	uint32_t spare1[12];
 
-	uint32_t awake;        /* not 0: the engine works and looks before it sleeps; no bell needed */
+	uint32_t awake;        /* not 0: the engine looks before it sleeps; no bell needed */
 	uint32_t spare2[15];
 };
 
-/* --- Commands: the memory of one giver --------------------------------------------------------- */
+/* --- Commands: the memory of one giver --- */
 
 /* A giver's commands for one record; slot i belongs to record i. Slot 0: driver _DGNRESET. */
 struct ows_command_slot { /* 64 bytes */
 	/* The giver writes: */
 	uint64_t value;        /* as ows_sample.value */
-	uint32_t stamp;        /* the giver counts its commands from 1; stored (release) after the value */
+	uint32_t stamp;        /* the giver counts its commands from 1; release, after the value */
 	uint32_t person;       /* index + 1 in the persons; 0: for itself */
-	uint32_t read_enable;  /* 0 not commanded; else 4 * count + 1 off, + 2 on: count makes it new */
+	uint32_t read_enable;  /* 0 not commanded; else 4 * count + 1 off, + 2 on */
 	uint32_t write_enable; /* likewise */
 	uint32_t one_shot;     /* counts edges of _WriteOneShot */
 	uint32_t dgn_reset;    /* counts edges of _DGNRESET */
@@ -365,8 +368,8 @@ struct ows_giver_header { /* 256 bytes */
 	uint32_t generation, start_id; /* equal the image's */
 	uint32_t serial;
 	uint32_t slot_off, slot_size, slot_count;
-	uint32_t text_off, text_cap; /* text of string signal: at text_off + place * (8 + text_cap) */
-	uint32_t place_off;          /* u32 for each record: its place among the texts; 0xffffffff none */
+	uint32_t text_off, text_cap; /* of a string: at text_off + place * (8 + text_cap) */
+	uint32_t place_off;          /* u32 for each record: its text's place; 0xffffffff none */
 	uint32_t dirty_off, dirty_words; /* one bit for each slot */
 	uint32_t person_off;         /* OWS_PERSONS names of OWS_NAME bytes */
 	uint32_t shelf_off;          /* struct ows_command_shelf */
@@ -376,7 +379,7 @@ struct ows_giver_header { /* 256 bytes */
 	uint32_t spare1[15];
 
 	/* the giver writes: */
-	uint32_t marked;    /* not 0: some dirty bit may be set; the giver stores 1 after the bits */
+	uint32_t marked;    /* not 0: some dirty bit may be set; stored after the bits */
 	uint32_t beat;      /* counts */
 	uint32_t period_ms; /* promised longest time between two beats; 0: none */
 	uint32_t goodbye;   /* 1: the giver ends in order; its commands stay in force */
@@ -388,9 +391,10 @@ struct ows_giver_header { /* 256 bytes */
 
 /*
  * The socket NAME.control is of type SOCK_SEQPACKET. The program sends one hello; owsd answers with
- * one welcome. With err 0 three descriptors come along: the memory (a memfd sealed against shrinking,
- * growing and further seals), the bell and the news (eventfds). After a reload owsd sends another
- * welcome, with the memory of the new generation alone. The connection lasts as long as the giver.
+ * one welcome. With err 0 three descriptors come along: the memory (a memfd sealed against
+ * shrinking, growing and further seals), the bell and the news (eventfds). After a reload owsd
+ * sends another welcome, with the memory of the new generation alone. The connection lasts as long
+ * as the giver.
  */
 struct ows_hello { /* 128 bytes */
 	uint32_t magic;
@@ -406,7 +410,7 @@ struct ows_hello { /* 128 bytes */
 struct ows_welcome { /* 64 bytes */
 	uint32_t magic;
 	uint16_t major, minor;
-	int32_t err;         /* 0; -EACCES: may not command; -ENOSPC: too many; -EPROTO: other major */
+	int32_t err;         /* 0, -EACCES: may not command, -ENOSPC: too many, -EPROTO: major */
 	uint32_t generation, start_id;
 	uint32_t serial;
 	uint32_t size;       /* of the memory */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The image of a few signals that an earlier owsd of this major version made, kept in
- * tests/unit/data, and the same one made by the present writer, with the command segment. Each field of a record is a function of the record's number, so
- * that all differ.
+ * tests/unit/data, and the same one made by the present writer, with the command segment. Each
+ * field of a record is a function of the record's number, so that all differ.
  */
 #ifndef TESTS_UNIT_AID_RECORDING_H
 #define TESTS_UNIT_AID_RECORDING_H

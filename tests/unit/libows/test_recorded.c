@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * An image recorded from an earlier owsd, read by today's libows, ows.py and owsctl, value by
- * value; the segments of the major version before, which they refuse. Runs python3 and owsctl in the directory of the sources. `test_recorded record` writes the
- * recording again: only for a new file.
+ * value; the segments of the major version before, which they refuse. Runs python3 and owsctl in
+ * the directory of the sources. `test_recorded record` writes the recording again: only for a new
+ * file.
  */
 #include <errno.h>
 #include <stdio.h>
