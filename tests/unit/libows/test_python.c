@@ -454,8 +454,9 @@ static void test_python_reads_the_journal_of_alarms(void)
 	       "print(*[list(a) for a in s.alarms(257)])\n"
 	       "print(list(s.alarms(258)))\n",
 	       "255 2 False\n"
-	       "room1 5 21.5 None high high raised 192 \n"
-	       "[257, 'relay', 6, None, True, 'device', 'returned', 0, '1,0']\n"
+	       "room1 5 21.5 None high high raised 192  By(serial=0, uid=0, pid=0, name='', person='')\n"
+	       "[257, 'relay', 6, None, True, 'device', 'returned', 0, '1,0',"
+	       " By(serial=0, uid=0, pid=0, name='', person='')]\n"
 	       "[]\n");
 }
 
@@ -476,7 +477,7 @@ static void test_c_finds_what_python_acknowledged(void)
 	       "s.acknowledge(\"room1\")\n"
 	       "print(error(s.acknowledge, \"_TRANSACTIONS\"),"
 	       " error(ows.Ows(name).acknowledge, \"room1\"))",
-	       "3,True,False,True,returned to normal unacknowledged,low low,False\n"
+	       "3,True,False,True,returned to normal unacknowledged,low low,False,None\n"
 	       "KeyError PermissionError\n");
 	commands_load(&in.commands, ROOM, &command);
 	TEST_ASSERT_EQUAL(1, command.acknowledged);
