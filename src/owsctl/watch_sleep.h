@@ -37,8 +37,8 @@ int watch_collect(struct watch *watch, const struct ows_daemon *daemon);
 /* Free what watch_collect() made. */
 void watch_free(struct watch *watch);
 /*
- * Sleep until a signal changes, at least least_ns (below 1 s) and at most timeout_ns, and follow owsd over
- * restarts. -ENOMEM, else an event.
+ * Sleep until a signal changes, at least least_ns (below 1 s) and at most timeout_ns, and follow
+ * owsd over restarts. -ENOMEM, else an event.
  */
 int watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns);
 /* Is it time to end? */
