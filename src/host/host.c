@@ -35,6 +35,7 @@ static int create_serve(struct host *h, const struct config *config, char *why, 
 	const struct serve_setup setup = {
 		.config = config,
 		.instance = h->instance,
+		.place = h->place->path,
 		.log = h->log,
 		.ring = host_ring,
 		.ring_ctx = h,

@@ -120,7 +120,7 @@ enum serve_counter {
 struct serve {
 	const struct config *config;
 	const struct image *image;
-	const char *instance;
+	const char *instance, *place;
 	struct log *log;
 	struct guests guests;
 	struct kept *kept, *prepared; /* prepared: for the next reload */

@@ -8,6 +8,7 @@
 #include "src/libows/get.h"
 #include "src/libows/handle.h"
 #include "src/libows/map.h"
+#include "src/libows/open.h"
 #include "src/libows/set.h"
 #include "src/serve/signals.h"
 #include "src/shm/reader.h"
@@ -53,15 +54,15 @@ static void follow(struct signals *signals)
 		make_room(signals);
 }
 
-int signals_open(const char *instance, struct signals **out)
+int signals_open(const char *place, const char *instance, struct signals **out)
 {
 	struct signals *signals = calloc(1, sizeof(*signals));
-	int err = signals ? ows_open(instance, OWS_CONTROL, &signals->h) : -ENOMEM;
+	int err = signals ? open_in(place, instance, OWS_CONTROL, &signals->h) : -ENOMEM;
 
 	if (!err) {
 		signals->may_set = true;
 	} else if (signals) {
-		err = ows_open(instance, OWS_READ, &signals->h);
+		err = open_in(place, instance, OWS_READ, &signals->h);
 	}
 	/* _DGNRESET is the only name for which a handle keeps state; it is reset for each client */
 	if (!err && ows_find(signals->h, "_DGNRESET") < 0)

@@ -12,10 +12,10 @@
 struct signals;
 
 /*
- * Open the segments of this instance, which are in place. Without a command segment nothing can be
- * written. Allocates; no function below does. 0 or a negative errno.
+ * Open the segments of this instance, which are in that directory. Without a command segment
+ * nothing can be written. Allocates; no function below does. 0 or a negative errno.
  */
-int signals_open(const char *instance, struct signals **signals);
+int signals_open(const char *place, const char *instance, struct signals **signals);
 void signals_close(struct signals *signals);
 
 /* Is this the name of a signal or of an attribute? */

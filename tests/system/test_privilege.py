@@ -3,8 +3,10 @@
 """Who may look, who may act, and what everybody else can do to owsd: as real other users, who need
 not exist outside this test. owsd itself is the user owsd under the unit's filter."""
 
+import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import socket
@@ -309,6 +311,59 @@ def test_another_users_owsd_of_that_name_is_refused_and_harms_nothing(scene):
     until(lambda: scene._run([*own, "get", "relays"], 30).stdout == "3\n", 20, "and is his")
     assert ctl(scene, "reader", daemon.name, "get", "relays").stdout != "3\n"
     assert mine.stop() == 0
+
+
+WATCH = """
+import sys, time
+import ows
+s = ows.Ows(sys.argv[1])
+while True:
+    if s.stale():
+        try:
+            s.reopen()
+        except OSError:
+            pass
+    print(s.place, s.get("room").good, flush=True)
+    time.sleep(0.05)
+"""
+
+
+def test_a_user_sees_the_nearest_owsd_of_a_name_that_lives(scene):
+    shutil.copy(owsdtest.SOURCE / "src/libows/ows.py", programs())
+    service = daemon_of(scene)
+    good(scene, service.name)
+    home = folder_of("plc", private.room() / "nearest")
+    as_plc = at_home("plc", XDG_RUNTIME_DIR=home, PYTHONPATH=programs())
+    command = [*as_plc, programs() / "owsd", "-n", service.name, "-c", service.config]
+    own = scene.start(command)
+
+    def served_by(daemon):
+        done = scene._run([*as_plc, programs() / "owsctl", "-n", service.name, "--json", "stats"], 30)
+        python3 = scene._run([*as_plc, "/usr/bin/python3", "-c",
+                              f"import ows; print(ows.Ows('{service.name}').place)"], 30)
+        where = owsdtest.place() if daemon is service else home / "owsd"
+        return done.returncode == 0 and python3.stdout == f"{where}\n" and \
+            json.loads(done.stdout)["daemon"]["pid"] == daemon.pid
+
+    until(lambda: served_by(own), 20, "his own is the nearest")
+    rows = scene._run([*as_plc, programs() / "owsctl", "instances"], 30).stdout
+    for daemon, where in ((own, home / "owsd"), (service, owsdtest.place())):
+        assert re.search(rf"^{service.name} +running +{daemon.pid} .* {where}$", rows, re.M), rows
+    watch = scene.start([*as_plc, "/usr/bin/python3", "-c", WATCH, service.name])
+    until(lambda: f"{home}/owsd True" in watch.log(), 20, "it looks at his own")
+    own.kill()
+    until(lambda: served_by(service), 20, "of a dead one and a living one the living one")
+    until(lambda: watch.log().endswith("False\n"), 20, "an open handle stays where it was")
+    own = scene.start(command)
+    until(lambda: served_by(own), 20, "his own again")
+    until(lambda: watch.log().endswith("True\n"), 20, "and follows its owsd")
+    assert str(owsdtest.place()) not in watch.log()
+    assert own.stop() == 0 and service.stop() == 0
+    done = scene._run([*as_plc, programs() / "owsctl", "remove", service.name], 30)
+    assert done.returncode == 0 and list((home / "owsd").iterdir()) == [], "he removes what is his"
+    assert "image" in faulty.leftovers(service.name)
+    done = scene._run([*as_plc, programs() / "owsctl", "remove", service.name], 30)
+    assert done.returncode == 1 and "no right to remove" in done.stderr, done
 
 
 def test_a_strangers_failed_start_leaves_nothing_that_stops_owsd(scene):

@@ -13,6 +13,7 @@
 
 #include "hal/owfs/frame.h"
 #include "src/serve/serve.h"
+#include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 
 #define TYPE "/28.551DDF030000/type"
@@ -94,7 +95,8 @@ static void target_is_up(void)
 
 void setUp(void)
 {
-	struct serve_setup setup = {.config = &config, .ring = no_ring};
+	struct serve_setup setup = {
+		.config = &config, .place = folder_place()->path, .ring = no_ring};
 	char name[24], why[128];
 
 	snprintf(name, sizeof(name), "serve-%d", (int)getpid());
