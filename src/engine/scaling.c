@@ -75,20 +75,22 @@ uint32_t signal_write_text(const struct signal *s, int64_t value, char text[VALU
 void signal_written(struct signal *s, int64_t value)
 {
 	double raw = value_number(s->item->type, value);
-	uint8_t quality;
 
+	raw_of(s, value, &raw);
 	s->scaling.filter.begun = false;
-	s->sample.value = value;
-	if (!raw_of(s, value, &raw) && is_scaled(s) && s->scaling.whole)
-		s->sample.value = nearest(s->item->type,
-		                          scale_value(&s->item->scale, raw, &quality), &quality);
 	s->attrs.raw = s->scaling.written = value_of_double(raw);
+	s->sample.value = value;
 }
 
-bool signal_reads_as_written(const struct signal *s)
+bool signal_reads_as_written(struct signal *s)
 {
-	return is_scaled(s) ? s->attrs.raw == s->scaling.written
-	                    : s->sample.value == s->command.written;
+	if (!is_scaled(s))
+		return s->sample.value == s->command.written;
+	if (s->attrs.raw != s->scaling.written)
+		return false;
+	s->sample.value = s->command.written;
+	s->sample.quality = OWS_Q_GOOD;
+	return true;
 }
 
 /* --- Reload ---------------------------------------------------------------------------------- */
@@ -120,4 +122,6 @@ void signal_rescale(struct signal *s, const struct signal *was)
 	/* a command stays in force: it goes out again where it has another raw value now */
 	if (raw_of(s, s->command.value, &raw) || value_of_double(raw) != s->scaling.written)
 		s->command.confirmed = false;
+	else if (s->item->output && s->command.confirmed && is_judged(s->sample.quality))
+		signal_reads_as_written(s);
 }

@@ -24,8 +24,11 @@ bool signal_accepts(const struct signal *s, int64_t value);
 uint32_t signal_write_text(const struct signal *s, int64_t value, char text[VALUE_TEXT_MAX]);
 /* The value was written: the sample has it. */
 void signal_written(struct signal *s, int64_t value);
-/* Is what was read last what was written last? */
-bool signal_reads_as_written(const struct signal *s);
+/*
+ * Has the output that was read the raw value that was written last? Then its value is that of the
+ * command, though no raw value may give exactly that.
+ */
+bool signal_reads_as_written(struct signal *s);
 
 /* A reload has copied s from was, and may have given it another scale. */
 void signal_rescale(struct signal *s, const struct signal *was);

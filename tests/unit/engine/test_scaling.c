@@ -301,11 +301,30 @@ static void test_a_property_of_whole_numbers_gets_the_nearest(void)
 	scene_clear_trace(&s);
 	command(1, 50);
 	TEST_ASSERT_EQUAL_STRING("W " WIPER "=128\n", s.trace);
-	/* what the device has then, not what was asked for */
-	TEST_ASSERT_DOUBLE_WITHIN(1e-9, 12800 / 255.0, scene_number(&s, 1));
+	TEST_ASSERT_EQUAL_DOUBLE(50, scene_number(&s, 1));
 	TEST_ASSERT_EQUAL_DOUBLE(128, raw(1));
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_UINT(1, s.writes);
+}
+
+static void test_what_the_nearest_raw_value_gives_is_the_command_when_it_is_read_back(void)
+{
+	struct config_item *item = valve();
+
+	/* the nearest to 99.9 is 255, which is 100 and out of range by itself */
+	item->readable = item->scale.has_max = true;
+	item->scale.max = 99.9;
+	scene_put(&s, "/structure/2C/wiper", "u,000000,000001,rw,000012,s,", 0);
+	start();
+	command(1, 99.9);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_DOUBLE(99.9, scene_number(&s, 1));
+	TEST_ASSERT_EQUAL_DOUBLE(255, raw(1));
+	scene_expect(&s, 1, OWS_Q_GOOD, 0);
+	TEST_ASSERT_EQUAL_UINT(1, s.writes);
+	scene_put(&s, WIPER, "254", 0);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_DOUBLE_WITHIN(1e-9, 25400 / 255.0, scene_number(&s, 1));
 }
 
 static void test_a_command_beyond_the_range_is_refused_and_not_written(void)
@@ -568,6 +587,7 @@ int main(void)
 	RUN_TEST(test_a_value_out_of_range_shows_at_once_and_is_not_filtered);
 	RUN_TEST(test_a_command_is_written_as_its_raw_value);
 	RUN_TEST(test_a_property_of_whole_numbers_gets_the_nearest);
+	RUN_TEST(test_what_the_nearest_raw_value_gives_is_the_command_when_it_is_read_back);
 	RUN_TEST(test_a_command_beyond_the_range_is_refused_and_not_written);
 	RUN_TEST(test_a_command_beyond_min_or_max_is_refused_without_a_scale_too);
 	RUN_TEST(test_init_value_is_an_engineering_value);
