@@ -25,9 +25,9 @@
 /* clang-format off */
 static const struct table_column columns[] = {
 	{"NAME"}, {"STATE"}, {"PID", .right = true}, {"SINCE", .right = true},
-	{"SIGNALS", .right = true}, {"TARGETS"}, {"CONFIG"}, {"PLACE"},
+	{"SIGNALS", .right = true}, {"TARGETS"}, {"PLACE"}, {"CONFIG"},
 };
-#define PLACE_COLUMN 7
+#define PLACE_COLUMN 6
 /* clang-format on */
 
 struct instance_info {
@@ -151,13 +151,13 @@ static bool add_row(struct table *table, const struct instance_info *info, const
 		snprintf(signals, sizeof(signals), "%d", info->signals);
 	if (info->since_ns)
 		when_span(now->boot - info->since_ns, span);
-	return table_add(table, (const char *const[]){info->name, instance_state_text(info->state),
-	                                              pid, span, signals,
-	                                              info->targets[0] ? info->targets : "-",
-	                                              info->why         ? info->why
-	                                              : info->config[0] ? info->config
-	                                                                : "-",
-	                                              info->place});
+	return table_add(table,
+	                 (const char *const[]){info->name, instance_state_text(info->state), pid,
+	                                       span, signals,
+	                                       info->targets[0] ? info->targets : "-", info->place,
+	                                       info->why         ? info->why
+	                                       : info->config[0] ? info->config
+	                                                         : "-"});
 }
 
 static void add_json(struct json *json, const struct instance_info *info, const struct when *now)

@@ -31,8 +31,8 @@ static int take_path(const char *from, const char *more, char path[PLACE_PATH])
 		len--;
 	if (*from != '/' || len + strlen(more) >= PLACE_PATH)
 		return -EINVAL;
-	memcpy(path, from, len);
-	memcpy(path + len, more, strlen(more) + 1);
+	snprintf(path, PLACE_PATH, "%s", from);
+	snprintf(path + len, PLACE_PATH - len, "%s", more);
 	last = strrchr(path, '/') + 1;
 	return strcmp(last, "") && strcmp(last, ".") && strcmp(last, "..") ? 0 : -EINVAL;
 }
