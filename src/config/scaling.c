@@ -64,7 +64,7 @@ static void build_texts(struct build *build, const struct option_value *values,
 
 	item->unit = text_of(build, &values[OPT_UNIT], UNIT_MAX);
 	item->description = text_of(build, &values[OPT_DESCRIPTION], DESCRIPTION_MAX);
-	item->calibrated = text_of(build, calibrated, UNIT_MAX);
+	item->calibrated = text_of(build, calibrated, DESCRIPTION_MAX);
 	item->decimals = values[OPT_DECIMALS].given ? (int)values[OPT_DECIMALS].number : -1;
 	if (calibrated->given && !is_date(calibrated->text))
 		report_error(build->report, calibrated->node->value_at,

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/owsctl/digits.h"
 #include "src/owsctl/journal_entry.h"
 #include "src/owsctl/names.h"
 #include "src/owsctl/who.h"
-#include "src/signal/value.h"
 
 /* clang-format off */
 const struct table_column journal_columns[JOURNAL_COLUMNS] = {
@@ -129,7 +129,8 @@ static const char *event_text(const struct journal_entry *entry, char text[EVENT
 }
 
 /* NULL: the entry has no value, or a text. */
-static const char *value_text(const struct journal_entry *entry, char text[VALUE_TEXT_MAX])
+static const char *value_text(const struct journal_entry *entry, int decimals,
+                              char text[VALUE_TEXT_MAX])
 {
 	const struct ows_alarm *alarm = &entry->alarm;
 	enum ows_type type = (enum ows_type)alarm->type;
@@ -145,7 +146,7 @@ static const char *value_text(const struct journal_entry *entry, char text[VALUE
 	}
 	if (type == OWS_STRING)
 		return NULL;
-	value_to_text(type, value_is_float(type) ? value_of_double(number) : integer, text);
+	digits_print(type, number, integer, decimals, text);
 	return text;
 }
 
@@ -166,10 +167,11 @@ bool journal_row(struct table *table, struct ows *h, const struct when *now,
 {
 	char time[WHEN_TEXT], event[EVENT_TEXT], value[VALUE_TEXT_MAX], more[32] = "";
 	char program[WHO_TEXT] = "-", user[WHO_TEXT] = "-";
-	const char *shown = value_text(entry, value), *person = "", *remark;
-	struct ows_info info = {.name = "?"};
+	struct ows_info info = {.name = "?", .decimals = -1};
+	const char *shown, *person = "", *remark;
 
 	ows_info(h, entry->signal, &info);
+	shown = value_text(entry, info.decimals, value);
 	if (is_deed(entry)) {
 		who_program(by(entry), program);
 		who_user(by(entry), user);
@@ -189,7 +191,7 @@ bool journal_row(struct table *table, struct ows *h, const struct when *now,
 static void json_value(struct json *json, const struct journal_entry *entry)
 {
 	char value[VALUE_TEXT_MAX];
-	const char *text = value_text(entry, value);
+	const char *text = value_text(entry, -1, value);
 	uint8_t type = entry->is_command ? entry->command.type : entry->alarm.type;
 
 	if (entry->is_command && entry->command.type == OWS_STRING)

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* How owsctl prints a value, its quality and its error, for persons and as JSON. */
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "src/owsctl/digits.h"
 #include "src/owsctl/reading.h"
 #include "src/owsctl/text.h"
 #include "src/signal/value.h"
@@ -26,21 +26,13 @@ int reading_get(struct ows *h, int id, int64_t now_ns, struct reading *reading)
 
 void reading_round(struct reading *reading, int decimals)
 {
-	char *text = reading->text;
-	size_t n;
+	const struct ows_value *value = &reading->value;
 
-	if (decimals < 0 || !reading_filled(reading) ||
-	    !value_is_float((enum ows_type)reading->value.type) || !isfinite(reading->value.number))
+	if (!reading_filled(reading) || value->type == OWS_STRING)
 		return;
-	n = (size_t)snprintf(text, sizeof(reading->text), "%.*f", decimals, reading->value.number);
-	while (decimals > 0 && text[n - 1] == '0')
-		n--;
-	if (text[n - 1] == '.')
-		n--;
-	text[n] = '\0';
-	if (strcmp(text, "-0") == 0)
-		memmove(text, "0", n--);
-	reading->len = n;
+	digits_print((enum ows_type)value->type, value->number, value->integer, decimals,
+	             reading->text);
+	reading->len = strlen(reading->text);
 }
 
 bool reading_filled(const struct reading *reading)
