@@ -38,6 +38,10 @@ def rio():
         '    Type double LimitLL -10 LimitL 0 LimitH 30.5 LimitHH 40 Hysteresis 0.5 OnDelay 2\n'
         '    OffDelay 0.25 StaleAfter 2.5 PerFactor 7 InitValue "1e3"\n')))
         + "\0s t LimitH=31\nu t LimitHH LimitLL\ns t InitValue=")
+    put("rio", "scaled", driver % ("w1", item % ("p", "/20.000000000001/volt.A", (
+        '    Type double Points "1:0 3:2.5 5:6" Min -0.15 Max 6.15 Unit "bar" Decimals 2 Filter 2.5\n'
+        '    Deadband 0.1 Description "a \\"b\\"" Calibrated "2024-02-29"\n')))
+        + "\0s p Unit=\u00b0C\nu p Points\ns p Scale=-0.5 Offset=1e3")
     text = driver % ("w1", item % ("l", "/23.1/memory", (
         '    IOType 0x013C InitValue "' + "long " * 11 + '"\n    "and longer" # why\n')))
     put("rio", "large", text.replace("\n", "\r\n") + "\0s l InitValue=" + "x" * 120)
@@ -314,7 +318,8 @@ def values():
              "340282356779733661637539395458142568448", "room1_Age", "OWS__room1_WriteEnable",
              "_TRANSACTIONS", "28.551DDF030000", "2867C6697351FF68", "10.67C6697351FF.B8",
              "/uncached/bus.12/28.551DDF030000/errata/die", "/1F.010203040506/main/alias/HIH4000/t",
-             "[::1]:4304", "localhost", "fd00::/8", "192.168.1.0/24", "::ffff:1.2.3.4:1"]
+             "[::1]:4304", "localhost", "fd00::/8", "192.168.1.0/24", "::ffff:1.2.3.4:1",
+             "4:0 20:100", "0.46:90 0.85:70 1.55:50 2.5:30", "-1e-320:1e308 0:1e-300 1e308:-1"]
     for i, text in enumerate(texts):
         put("values", f"{i:02}", bytes([i % 11]) + text.encode())
 
