@@ -84,11 +84,10 @@ static int get_raw(struct ows *h, struct ows_id *e, int64_t now_ns, struct ows_v
 
 static int get_id(struct ows *h, struct ows_id *e, int64_t now_ns, struct ows_value *value)
 {
-	if (e->attribute == ATTR_RAW)
-		return get_raw(h, e, now_ns, value);
-	if (e->attribute != ATTR_VALUE)
-		return attribute_get(h, e, now_ns, value);
-	return get_record(h, (unsigned)e->record, e->stale_after_ns, now_ns, value);
+	if (e->attribute == ATTR_VALUE)
+		return get_record(h, (unsigned)e->record, e->stale_after_ns, now_ns, value);
+	return e->attribute == ATTR_RAW ? get_raw(h, e, now_ns, value)
+	                                : attribute_get(h, e, now_ns, value);
 }
 
 int ows_get(struct ows *h, int id, int64_t now_ns, struct ows_value *value)
