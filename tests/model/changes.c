@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The ring of changes: the code of src/shm/image.c and src/libows/changes.c. */
+#include <assert.h>
 #include <errno.h>
 #include <limits.h>
 #include <string.h>
@@ -10,12 +11,12 @@
 #include "src/shm/reader.h"
 #include "tests/model/suites.h"
 
-#define PLACES 4
+#define RING 4
 #define ENTERED 6 /* changes, so that the ring goes round */
 #define SIGNALS ENTERED
 #define FIRST (UINT32_MAX - 1) /* their numbers wrap */
 
-static _Alignas(64) char memory[131072];
+static _Alignas(64) char memory[1 << 18];
 static struct image image;
 static struct ows handle;
 static struct ows_cursor begin;
@@ -30,9 +31,10 @@ static void make_image(void)
 	for (int i = 0; i < SIGNALS; i++)
 		signals[i] = (struct image_signal){
 			.name = &"abcdefgh"[7 - i], .path = "/x", .type = OWS_LARGE};
+	assert(image_size(&plan) <= sizeof(memory));
 	memset(memory, 0, sizeof(memory));
 	image_build(&plan, memory, &image);
-	image.change_count = PLACES;
+	image.change_count = RING;
 	image_state(&image, OWS_STATE_LIVE);
 	image.header->news = 0;
 	image.header->change_head = FIRST;
@@ -44,9 +46,8 @@ static void make_image(void)
 	marks[0] = name = 0;
 	handle.map.areas[OWS_AREA_RECORDS] = (struct map_area){.base = (const char *)image.records,
 	                                                       .size = sizeof(*image.records)};
-	handle.map.areas[OWS_AREA_CHANGES] = (struct map_area){.base = (const char *)image.changes,
-	                                                       .size = sizeof(*image.changes),
-	                                                       .count = PLACES};
+	handle.map.areas[OWS_AREA_CHANGES] = (struct map_area){
+		.base = (const char *)image.changes, .size = sizeof(*image.changes), .count = RING};
 }
 
 /* The cursor at FIRST, as after the look at all of the beginning. */
@@ -66,8 +67,17 @@ static void setup_ring(void)
 	begin_at_first();
 	explore_keep(marks, sizeof(marks));
 	explore_track("head", &image.header->change_head, 4);
-	for (int i = 0; i < PLACES; i++)
+	for (int i = 0; i < RING; i++)
 		explore_track(names[i], &image.changes[i].record, 4);
+}
+
+static void setup_numbers(void)
+{
+	setup_ring();
+	for (int i = 0; i < RING; i++) {
+		image.changes[i].number = FIRST - RING;
+		explore_track("number", &image.changes[i].number, 4);
+	}
 }
 
 /* Change number FIRST + i is of record i + 1: each number has another. */
@@ -96,7 +106,7 @@ static void follow(int calls, int room)
 
 	for (int i = 0; i < calls; i++) {
 		uint32_t from = cursor.number;
-		int signals[PLACES], got;
+		int signals[RING], got;
 
 		got = ows_changes(&handle, &cursor, signals, room, 0);
 		if (got != -EOVERFLOW)
@@ -107,7 +117,7 @@ static void follow(int calls, int room)
 
 static void follow_all(void)
 {
-	follow(2, PLACES);
+	follow(2, RING);
 }
 
 static void follow_by_one(void)
@@ -127,7 +137,7 @@ static void setup_rows(void)
 	explore_track("head", &image.header->change_head, 4);
 	for (int i = 0; i < UPDATES; i++)
 		explore_track(i ? "place of change 1" : "place of change 0",
-		              &image.changes[(FIRST + (uint32_t)i) & (PLACES - 1)].record, 4);
+		              &image.changes[(FIRST + (uint32_t)i) & (RING - 1)].record, 4);
 	for (int i = 0; i < 2; i++)
 		explore_track(i ? "slot 1, value" : "slot 0, value", &image.records[1].slot[i], 4);
 	explore_track("seq", &image.records[1].seq, 4);
@@ -209,12 +219,26 @@ static void follow_unchecked(void)
 {
 	uint32_t head = __atomic_load_n(&image.header->change_head, __ATOMIC_ACQUIRE);
 
-	if (head - FIRST >= PLACES)
+	if (head - FIRST >= RING)
 		return;
 	for (uint32_t n = FIRST; n != head; n++) {
-		uint32_t record = word_get(&image.changes[n & (PLACES - 1)].record);
+		uint32_t record = word_get(&image.changes[n & (RING - 1)].record);
 
 		if (record != n - FIRST + 1)
+			explore_fail("change %u is of record %u", n - FIRST, record);
+	}
+}
+
+/* An entry of the number that is wanted is believed. */
+static void follow_by_number(void)
+{
+	uint32_t head = __atomic_load_n(&image.header->change_head, __ATOMIC_ACQUIRE);
+
+	for (uint32_t n = FIRST; n != head; n++) {
+		const struct ows_change_entry *entry = &image.changes[n & (RING - 1)];
+		uint32_t record = word_get(&entry->record);
+
+		if (word_get(&entry->number) == n && record != n - FIRST + 1)
 			explore_fail("change %u is of record %u", n - FIRST, record);
 	}
 }
@@ -246,6 +270,11 @@ const struct scenario wrong_changes[] = {
          setup_ring,
          2,
          {enter_all, follow_unchecked},
+         .end = NULL},
+	{"a reader of changes that goes by their numbers alone",
+         setup_numbers,
+         2,
+         {enter_all, follow_by_number},
          .end = NULL},
 	{NULL},
 };

@@ -66,7 +66,6 @@ static const struct {
 	const char *function, *way, *reason;
 } spare[] = {
 	{"enter", "release to relaxed", "the fence in the entry does it too"},
-	{"ows_changes", "acquire to relaxed", "the fence after the heartbeat does it too"},
 	{"ows_alarm_count", "acquire to relaxed", "the fence behind the entry does it too"},
 	{"ring_engine", "seq_cst without acquire", "the fence behind it does it too"},
 	{"commands_awake", "seq_cst without release", "the fence behind it does it too"},
