@@ -27,6 +27,8 @@ def some_output():
              "served_late_periods 0.00 periods", "served_periods 900 periods",
              "set_to_wire.wakes 100.00 us", "set_to_wire.wakes_loopback 120.00 us",
              "changes.waiting 0.02 %", "changes.waiting_idle 0.01 %"]
+    for n in ("futex", 1, 8, 100):
+        lines += [f"bells.{n} 8.00 us", f"bells.{n}.one_cpu 6.00 us"]
     for n in (10, 1000, 10000):
         lines += [f"changes.{n} 500.00 ns", f"changes.scan.{n} {15 * n} ns"]
     lines += [f"engine_step.{n} {n / 10 + 300:.0f} ns" for n in (10, 100, 1000, 10000)]
