@@ -171,7 +171,7 @@ UNIT_SRC := $(wildcard tests/unit/*/test_*.c)
 UNIT_AID := $(wildcard tests/unit/aid/*.c)
 ENDURANCE := $(wildcard tests/endurance/*.c)
 BENCH    := $(wildcard tests/bench/bench_*.c)
-BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/aid/plant.c tests/unit/aid/plant_net.c
+BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/aid/plant.c tests/unit/aid/plant_net.c tests/unit/aid/giving.c
 # ---------------------------------------------------------------------------------------------
 
 CORE     := $(filter-out src/owsd/owsd.c src/owsctl/owsctl.c,$(SOURCES))

@@ -205,6 +205,26 @@ static void check_string(struct build *build, const struct option_value *value)
 		             VALUE_STRING_MAX);
 }
 
+/* What an output begins with, and how long it waits for the program that it obeyed. */
+static void build_start(struct build *build, const struct option_value *values,
+                        struct config_item *item)
+{
+	const struct option_value *start = &values[OPT_START], *delay = &values[OPT_SAFE_DELAY];
+
+	item->starts_last = start->given && strcmp(start->text, "last") == 0;
+	if (start->given && !item->starts_last && strcmp(start->text, "init") != 0)
+		report_error(build->report, start->node->value_at,
+		             "Start \"%s\": expected init or last", start->text);
+	else if (item->starts_last && !item->output)
+		report_error(build->report, start->node->value_at,
+		             "Start \"last\": expected an output, and this is an input");
+	item->has_safe_delay = delay->given;
+	item->safe_delay_ns = (int64_t)(delay->number * 1e9 + 0.5);
+	if (delay->given && !item->has_safe)
+		report_warning(build->report, delay->node->at,
+		               "SafeDelay does nothing without SafeValue");
+}
+
 static void build_values(struct build *build, const struct option_value *values, bool known,
                          struct config_item *item)
 {
@@ -221,6 +241,7 @@ static void build_values(struct build *build, const struct option_value *values,
 		item->has_init = *init->text && build_value(build, init, item, &item->init_value);
 		item->has_safe = safe->given && build_value(build, safe, item, &item->safe_value);
 	}
+	build_start(build, values, item);
 	if (item->has_safe && !item->output && !item->writable)
 		report_warning(build->report, safe->node->at,
 		               "SafeValue does nothing: this input is not Writable");

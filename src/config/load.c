@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/config/allow.h"
 #include "src/config/build.h"
 #include "src/config/buses.h"
 #include "src/config/item.h"
@@ -162,6 +163,7 @@ static void build_config(struct build *build, const struct rio *rio, const char 
 		return;
 	options_read(driver, PLACE_DRIVER, values, build->report);
 	build_driver(build, values);
+	allow_build(build, driver);
 	buses_build(build, driver);
 	build_items(build, driver, &values[OPT_ITEM_COUNT]);
 }

@@ -179,6 +179,10 @@ static void put_item(FILE *out, const struct config_item *item)
 	put_text(out, 4, OPT_INIT_VALUE, item->init_text);
 	if (item->has_safe)
 		put_text(out, 4, OPT_SAFE_VALUE, item->safe_text);
+	if (item->has_safe_delay)
+		put_seconds(out, 4, OPT_SAFE_DELAY, item->safe_delay_ns);
+	if (item->starts_last)
+		put_text(out, 4, OPT_START, "last");
 	put_word(out, 4, OPT_PER_FACTOR, "%u", (unsigned)item->per_factor);
 	put_seconds(out, 4, OPT_STALE_AFTER, item->stale_after_ns);
 	put_flag(out, 4, OPT_ALARM, item->alarm);
@@ -206,6 +210,8 @@ void config_print(const struct config *config, FILE *out)
 	put_seconds(out, 2, OPT_PERIOD, config->period_ns);
 	put_seconds(out, 2, OPT_ALARM_PERIOD, config->alarm_period_ns);
 	put_serve(out, &config->serve);
+	for (unsigned i = 0; i < config->allow_count; i++)
+		put_text(out, 2, OPT_CONTROL_ALLOW, config->allows[i].text);
 	if (config->alarm_line)
 		put_text(out, 2, OPT_ALARM_LINE, config->alarm_line);
 	if (config->heartbeat_line)

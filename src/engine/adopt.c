@@ -11,15 +11,16 @@
 #include "src/engine/disown.h"
 #include "src/engine/doubt.h"
 #include "src/engine/due.h"
+#include "src/engine/givers.h"
 #include "src/engine/guests.h"
-#include "src/engine/intake.h"
+#include "src/engine/in_force.h"
 #include "src/engine/lane.h"
+#include "src/engine/origin.h"
 #include "src/engine/place.h"
 #include "src/engine/publish.h"
 #include "src/engine/schedule.h"
 #include "src/engine/shelf.h"
 #include "src/engine/state.h"
-#include "src/shm/carry.h"
 #include "src/shm/entries.h"
 #include "src/shm/shelves.h"
 
@@ -47,7 +48,6 @@ static void take_counts(struct engine *e, const struct engine *old)
 	e->driver = old->driver;
 	e->counters = old->counters;
 	e->counters.reloads++;
-	memcpy(e->clients, old->clients, sizeof(e->clients));
 	e->refused = old->refused;
 	e->shelvings = old->shelvings;
 }
@@ -198,7 +198,8 @@ static void take_signals(struct engine *e, const struct engine *old, const struc
 			continue;
 		}
 		lane->writers -= signal_writes(s);
-		signal_adopt(s, &old->table.signals[plan->rows[row]]);
+		if (signal_adopt(s, &old->table.signals[plan->rows[row]]))
+			engine_origin_carry(e, s, old, plan->rows[row] + 1);
 		lane->writers += signal_writes(s);
 		take_source(e, s, plan);
 		take_turn(e, s, old, plan->rows[row]);
@@ -263,9 +264,8 @@ static void take_alarms(struct engine *e, const struct engine *old, const struct
 void engine_adopt(struct engine *e, struct engine *old, const struct adoption *plan, int64_t now_ns)
 {
 	/* from here on a program's set fails there, so nothing is lost between the two */
-	commands_state(old->commands, OWS_STATE_RETIRED);
-	engine_intake(old, now_ns);
-	commands_carry_rows(e->commands, old->commands, plan->rows);
+	engine_givers_retire(old, e, now_ns);
+	engine_givers_adopt(e, old, plan->rows);
 	for (unsigned i = 0; i < old->lane_count; i++) {
 		lane_keep_reads(&old->lanes[i]);
 		lane_disown(&old->lanes[i], true);
@@ -288,6 +288,7 @@ void engine_adopt(struct engine *e, struct engine *old, const struct adoption *p
 	take_alarms(e, old, plan);
 	for (unsigned i = 0; i < e->lane_count; i++)
 		lane_resume_reads(&e->lanes[i]);
+	engine_in_force_adopted(e);
 	engine_doubts(e);
 	for (uint32_t row = 0; row < e->table.count; row++)
 		engine_publish(e, &e->table.signals[row]);

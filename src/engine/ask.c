@@ -77,6 +77,9 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 	slot->row = row;
 	slot->value = s->command.value;
 	slot->stamp = s->command.stamp;
+	slot->giver = s->command.giver;
+	slot->serial = s->command.giver < OWS_GIVERS ? e->givers[s->command.giver].as.who.serial
+	                                             : 0;
 	slot->one_shot = s->command.one_shot;
 	slot->req = (struct bus_req){.op = BUS_WRITE, .prio = BUS_OUTPUT, .path = s->item->path};
 	if (signal_is_string(s)) {
@@ -124,10 +127,9 @@ static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
 		memcpy(slot->data, r->data, r->len);
 		slot->req.len = r->len;
 	}
-	if (r->row != TABLE_NO_ROW) {
+	slot->stamp = 0;
+	if (r->row != TABLE_NO_ROW)
 		slot->value = e->table.signals[r->row].item->init_value;
-		slot->stamp = e->table.signals[r->row].sample.confirmed;
-	}
 	if (!slot_lend(lane, slot, now_ns))
 		return false;
 	lane->lent.alarm = slot;

@@ -8,6 +8,7 @@
 #include "src/engine/completion.h"
 #include "src/engine/device_back.h"
 #include "src/engine/guard.h"
+#include "src/engine/in_force.h"
 #include "src/engine/place.h"
 #include "src/engine/retry.h"
 #include "src/engine/scaling.h"
@@ -271,7 +272,6 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	s->command.confirmed = true;
 	s->command.agrees = false;
 	s->command.written = slot->value;
-	s->sample.confirmed = slot->stamp;
 	s->sample.detail = answer->detail;
 	if (signal_is_string(s)) {
 		memcpy(s->written_text, slot->data, slot->req.len);
@@ -284,7 +284,8 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	              now_ns);
 	retry_clear(&s->command.retry);
 	s->command.err = 0;
-	signal_settle(s);
+	engine_settle_earlier(e, s, slot);
+	engine_settle(e, s);
 	engine_write_check(e, s);
 }
 

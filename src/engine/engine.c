@@ -7,12 +7,13 @@
 #include "hal/bus/time.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/ask.h"
-#include "src/engine/clients.h"
 #include "src/engine/counters.h"
 #include "src/engine/due.h"
 #include "src/engine/engine.h"
+#include "src/engine/givers.h"
 #include "src/engine/group.h"
 #include "src/engine/guests.h"
+#include "src/engine/in_force.h"
 #include "src/engine/intake.h"
 #include "src/engine/lane.h"
 #include "src/engine/lane_answer.h"
@@ -35,12 +36,12 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 		return -ENOMEM;
 	e->config = setup->config;
 	e->image = setup->image;
-	e->commands = setup->commands;
+	e->force = setup->force;
+	e->last = setup->last;
 	e->log = setup->log;
 	e->guests = setup->guests;
 	e->time.start_ns = setup->start_ns;
 	e->time.now_ns = setup->start_ns;
-	e->looks_ns = INT64_MIN / 2; /* all are left */
 	err = signal_table_init(&e->table, e->config);
 	if (!err)
 		err = due_wheel_init(&e->wheel, e->table.count * 2, 0);
@@ -78,7 +79,7 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 		engine_write_check(e, &e->table.signals[row]);
 	}
 	engine_shelves_resume(e);
-	engine_resume(e, setup->start_ns);
+	engine_resume(e, setup->left);
 	for (uint32_t row = 0; row < e->table.count; row++)
 		engine_publish(e, &e->table.signals[row]);
 	for (unsigned i = 0; i < e->lane_count; i++)
@@ -142,12 +143,13 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 	e->counters.steps++;
 	engine_turn(e, now_ns);
 	deferred = engine_intake_limited(e, now_ns);
+	engine_look_stored(e);
 	guests_take(e, now_ns);
 	if (e->time.period != before) {
 		for (unsigned i = 0; i < e->lane_count; i++)
 			if (e->lanes[i].lent.count)
 				lane_show_reads(&e->lanes[i]);
-		engine_clients(e, now_ns);
+		engine_look_givers(e, now_ns);
 		engine_publish_counters(e);
 		engine_publish_driver(e, now_ns);
 	}
@@ -184,35 +186,4 @@ bool engine_published(struct engine *e)
 
 	e->published = false;
 	return published;
-}
-
-void engine_take_commands(struct engine *e, struct commands *commands, int64_t now_ns)
-{
-	int (*put)(struct commands *, uint32_t, int64_t, const char *, uint32_t);
-
-	engine_intake(e, now_ns);
-	e->commands = commands;
-	e->counters.lost_commands++;
-	for (unsigned i = 0; i < OLD_CLIENTS; i++)
-		e->clients[i] = (struct client){0};
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		struct signal *s = &e->table.signals[row];
-
-		s->seen.one_shots = 0;
-		s->seen.dgn_resets = 0;
-		s->seen.acknowledged = 0;
-		s->seen.client = 0;
-		if (s->seen.awaited)
-			engine_give_up(e, s);
-		/* what was commanded stands */
-		if (!s->seen.stamp)
-			continue;
-		put = s->command.safe ? commands_put_safe : commands_put;
-		put(commands, s->record, s->command.value,
-		    signal_is_string(s) ? s->command_text : NULL, s->command.len);
-		commands_stamp(commands, s->record, s->seen.stamp);
-	}
-	e->driver.resets = 0;
-	e->busy_count = 0;
-	log_warning(e->log, "a program removed the command segment: owsd made it again");
 }

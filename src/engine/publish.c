@@ -82,13 +82,17 @@ void engine_publish(struct engine *e, struct signal *s)
 	s->sample.flags = (s->command.given && signal_writes(s) && signal_changed(s)
 	                           ? OWS_SAMPLE_PENDING
 	                           : 0) |
-	                  (s->command.safe ? OWS_SAMPLE_SAFE : 0);
+	                  (s->command.reason == OWS_REASON_SAFE ? OWS_SAMPLE_SAFE : 0);
 	s->attrs.commanded = s->command.value;
 	if (s->command.given)
 		s->attrs.flags |= OWS_ATTR_COMMANDED;
+	else
+		s->attrs.flags &= ~(uint32_t)OWS_ATTR_COMMANDED;
 	sample = s->sample;
 	if (!sample.err)
 		sample.err = s->command.err;
+	if (!sample.err && s->command.storing)
+		sample.err = e->store_err;
 	if (!sample.err && !signal_writes(s)) /* else it would look like the error of a write */
 		sample.err = s->alarm_err;
 	stale = ows_good(sample.quality) && e->time.now_ns >= stale_at;

@@ -102,21 +102,17 @@ static void init_signal(struct signal *s, const struct config_item *item, uint32
 	                 (item->writable ? OWS_ATTR_WRITE_ENABLE : 0) |
 	                 (item->limits.any ? OWS_ATTR_LIMITS : 0);
 	s->measured = item->type != OWS_STRING && quantity_of(item->path, &s->quantity);
+	s->command.giver = GIVER_NOBODY;
 	if (!item->has_init)
 		return;
 	s->sample.value = item->init_value;
-	if (item->output) {
-		s->command.given = true;
-		s->command.value = item->init_value;
-	}
 	if (item->type == OWS_STRING) {
 		size_t len = strlen(item->init_text);
 
 		if (len > TABLE_TEXT_CAP)
 			len = TABLE_TEXT_CAP;
 		memcpy(s->text, item->init_text, len);
-		memcpy(s->command_text, item->init_text, len);
-		s->sample.len = s->command.len = (uint32_t)len;
+		s->sample.len = (uint32_t)len;
 	}
 }
 
@@ -217,6 +213,7 @@ void signal_table_image(const struct config_item *item, struct image_signal *sig
 		.stale_after_ns = item->stale_after_ns,
 		.has_init = item->has_init,
 		.has_safe = item->has_safe,
+		.starts_last = item->starts_last,
 		.init_value = item->init_value,
 		.safe_value = item->safe_value,
 	};
@@ -234,14 +231,14 @@ static bool differs(const struct signal *s)
 
 bool signal_changed(const struct signal *s)
 {
-	return s->command.given && !s->seen.awaited &&
+	return s->command.given && !s->command.awaited &&
 	       (s->command.one_shot || (signal_writes(s) && differs(s)));
 }
 
-void signal_settle(struct signal *s)
+bool signal_settled(const struct signal *s)
 {
-	if (s->command.given && signal_writes(s) && !s->writing && !signal_changed(s))
-		s->sample.confirmed = s->command.stamp;
+	return s->command.given && !s->command.awaited && signal_writes(s) && !s->writing &&
+	       !signal_changed(s);
 }
 
 int64_t signal_stale_at(const struct signal *s)

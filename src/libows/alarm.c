@@ -6,7 +6,6 @@
 #include "src/libows/alive.h"
 #include "src/libows/by.h"
 #include "src/libows/handle.h"
-#include "src/libows/orphan.h"
 #include "src/libows/shelved.h"
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
@@ -79,7 +78,6 @@ int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state)
 	};
 	if (a->shelved)
 		shelved_of(h, (uint32_t)h->ids[id].record, state);
-	handle_orphan(h, ows_now());
 	return handle_state(h);
 }
 

@@ -94,7 +94,7 @@ int attribute_get(struct ows *h, struct ows_id *id, int64_t now_ns, struct ows_v
 	if (!reader_slot(map_record(&h->map, (uint32_t)id->record), &slot) ||
 	    !reader_slot(map_record(&h->map, 0), &daemon))
 		return -EAGAIN;
-	value_fill(value, &slot.sample, (uint8_t)def->type);
+	value_fill(h, (uint32_t)id->record, value, &slot.sample, (uint8_t)def->type);
 	since = slot.sample.measured_ns != 0 ? slot.sample.measured_ns : h->map.image->start_ns;
 	value->age_ns = handle_age(now_ns, since);
 	result = compute(h, id, &slot, daemon.attrs.per_base, value->age_ns);

@@ -8,6 +8,7 @@
 #include "src/libows/alive.h"
 #include "src/libows/handle.h"
 #include "src/libows/map.h"
+#include "src/libows/news.h"
 #include "src/shm/futex.h"
 #include "src/shm/reader.h"
 
@@ -108,6 +109,7 @@ static int look(struct ows *h, struct ows_cursor *cursor, int *signals, int n, i
 	bool ended = state == OWS_STATE_STOPPED, lost = ended || !alive;
 	int got;
 
+	alive_look(h, now_ns);
 	if (h->orphan || (state != OWS_STATE_LIVE && !ended) || (ended && is_elsewhere(h)))
 		return -ESTALE;
 	if (!is_of_image(h, cursor) || lost != ((cursor->flags & LOST) != 0) ||
@@ -128,7 +130,7 @@ static int64_t slice(const struct ows *h, const struct ows_cursor *cursor, int64
 		return NEXT_OWSD_NS;
 	if (!(cursor->flags & LOST) && reader_sample(map_record(&h->map, 0), &beat))
 		dies_in = h->dead_after_ns - handle_age(now_ns, beat.measured_ns) + 1;
-	return dies_in < ORPHAN_LOOK_NS ? dies_in : ORPHAN_LOOK_NS;
+	return dies_in < ALIVE_LOOK_NS ? dies_in : ALIVE_LOOK_NS;
 }
 
 /* A program that does not reopen, or cannot yet, does not spin. */
@@ -166,7 +168,7 @@ int ows_changes(struct ows *h, struct ows_cursor *cursor, int *signals, int n, i
 		if (got || until <= now_ns)
 			return got;
 		left = slice(h, cursor, now_ns);
-		err = segment_wait(news, seen, until - now_ns < left ? until - now_ns : left);
+		err = news_sleep(h, seen, until - now_ns < left ? until - now_ns : left);
 		if (err && err != -ETIMEDOUT)
 			return err;
 	}

@@ -10,8 +10,10 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
+#include "src/libows/give.h"
+#include "src/libows/join.h"
 #include "src/libows/ows.h"
-#include "src/shm/old_commands.h"
+#include "src/shm/place.h"
 #include "src/shm/segment.h"
 #include "src/signal/attribute.h"
 
@@ -30,8 +32,8 @@ struct map_area {
 };
 
 /*
- * The two segments of one generation. Offsets and counts are read once and checked, so that later
- * damage to the segments leads to no other place.
+ * The image of one generation. Offsets and counts are read once and checked, so that later damage
+ * to the image leads to no other place.
  */
 struct ows_map {
 	const struct ows_image_header *image;
@@ -40,17 +42,6 @@ struct ows_map {
 	struct ows_file image_file;
 	uint32_t count; /* of records, infos and names */
 	struct map_area areas[OWS_AREAS];
-
-	struct old_command_header *command; /* NULL: OWS_READ */
-	struct old_command_slot *slots;
-	struct old_command_entry *entries;
-	struct old_client *clients;
-	uint32_t *dirty;
-	uint32_t *acks; /* NULL: the layout is older and has none */
-	char *command_base;
-	size_t command_size;
-	struct ows_file command_file;
-	uint32_t text_cap;
 };
 
 /* The state that a handle keeps for a signal, over restarts; record 0 has the empty name. */
@@ -81,15 +72,30 @@ struct ows {
 	bool orphan; /* owsd is dead, and a name leads to another file; checked once a second */
 	int64_t looked_ns;
 
+	/* The giver: of OWS_CONTROL, and of OWS_READ after ows_fd() */
+	struct join join;
+	struct give give, next;     /* next: taken, but its image is not mapped yet */
+	uint32_t *mine;             /* 1; in a forked child 0. NULL: no giver */
+	uint32_t stamp;             /* of the last command */
+	uint32_t period_ms;         /* promised; 0: none */
+	uint32_t person;            /* as in a slot */
+	uint32_t next_person;       /* the place that is replaced next */
+	char person_name[OWS_NAME]; /* "": for itself */
+	char program[OWS_NAME];
+
 	uint32_t *marks; /* changes.c: one bit for each record, all 0 between two calls */
 	uint32_t mark_words;
 
-	int client; /* index in the table of clients, -1 none */
-	uint32_t pid;
 	enum ows_mode mode;
 	char instance[SEGMENT_NAME_MAX + 1];
 	char place[PLACE_PATH]; /* the directory that it was found in */
 };
+
+/* Does the handle's connection belong to the process that this one was forked from? */
+static inline bool handle_is_forked(const struct ows *h)
+{
+	return h->mine != NULL && word_get(h->mine) == 0;
+}
 
 /* An entry of an area; the caller has compared i with the count. */
 static inline const void *map_entry(const struct ows_map *map, enum ows_area kind, uint32_t i)

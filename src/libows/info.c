@@ -55,8 +55,8 @@ int ows_daemon(struct ows *h, int64_t now_ns, struct ows_daemon *daemon)
 {
 	const struct ows_image_header *image = h->map.image;
 	struct ows_sample beat;
+	int err = alive_look(h, now_ns);
 	bool alive = handle_alive(h, now_ns);
-	int err = handle_state(h);
 
 	if (!reader_sample(map_record(&h->map, 0), &beat))
 		return -EAGAIN;

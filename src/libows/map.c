@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Maps the segments of an instance and checks them: owner, layout, and that every area lies inside.
+ * Maps the image of an instance and checks it: owner, layout, and that every area lies inside.
  */
 #include <errno.h>
 #include <fcntl.h>
@@ -12,20 +12,18 @@
 
 #include "src/libows/handle.h"
 #include "src/libows/map.h"
-#include "src/shm/guard.h"
 #include "src/shm/owner.h"
 #include "src/shm/word.h"
 
-static int map_file(const struct shm_place *place, const char *instance, const char *kind,
-                    bool write, void **base, size_t *size, struct ows_file *file)
+static int map_file(const struct shm_place *place, const char *instance, void **base, size_t *size,
+                    struct ows_file *file)
 {
 	char name[SEGMENT_FILE];
 	struct stat st;
 	int fd, err = 0;
 
-	segment_file(instance, kind, name);
-	fd = openat(place->fd, name,
-	            (write ? O_RDWR : O_RDONLY) | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+	fd = openat(place->fd, segment_file(instance, "image", name),
+	            O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
 	if (fd < 0)
 		return errno == ELOOP ? -EPERM : -errno;
 	if (fstat(fd, &st) < 0)
@@ -37,7 +35,7 @@ static int map_file(const struct shm_place *place, const char *instance, const c
 	if (!err) {
 		*size = (size_t)st.st_size;
 		*file = (struct ows_file){.device = st.st_dev, .inode = st.st_ino};
-		*base = mmap(NULL, *size, PROT_READ | (write ? PROT_WRITE : 0), MAP_SHARED, fd, 0);
+		*base = mmap(NULL, *size, PROT_READ, MAP_SHARED, fd, 0);
 		if (*base == MAP_FAILED)
 			err = -errno;
 	}
@@ -155,77 +153,23 @@ static int check_image(struct ows_map *map)
 	return counts_right(map) && entries_right(map) ? 0 : -EPROTO;
 }
 
-/* All of the group may write this segment: read every number once and then check it. */
-static int check_command(struct ows_map *map)
-{
-	struct old_command_header h;
-	size_t size = map->command_size;
-
-	words_load(&h, map->command_base, sizeof(h) / 4);
-	if (h.magic != OLD_COMMAND_MAGIC || h.major != OLD_LAYOUT_MAJOR || h.size != size ||
-	    h.slot_size != sizeof(struct old_command_slot) ||
-	    h.entry_size != sizeof(struct old_command_entry) ||
-	    h.client_size != sizeof(struct old_client))
-		return -EPROTO;
-	/*
-	 * The segments are of two generations: owsd is putting the new ones in place at the moment
-	 */
-	if (h.generation != map->image->generation || h.start_id != map->image->start_id)
-		return -ENOENT;
-	if (h.slot_count != map->count || h.dirty_words != (map->count + 31) / 32 ||
-	    !area_inside(size, h.slot_off, h.slot_count, h.slot_size) ||
-	    !area_inside(size, h.entry_off, h.slot_count, h.entry_size) ||
-	    !area_inside(size, h.dirty_off, h.dirty_words, 4) ||
-	    !area_inside(size, h.client_off, OLD_CLIENTS, h.client_size) ||
-	    !area_inside(size, h.ack_off, h.slot_count, 4) || h.text_cap > 0xffff)
-		return -EPROTO;
-	map->command = (void *)map->command_base;
-	map->slots = (void *)(map->command_base + h.slot_off);
-	map->entries = (void *)(map->command_base + h.entry_off);
-	map->dirty = (void *)(map->command_base + h.dirty_off);
-	map->clients = (void *)(map->command_base + h.client_off);
-	if (h.ack_off != 0)
-		map->acks = (void *)(map->command_base + h.ack_off);
-	map->text_cap = h.text_cap;
-	return 0;
-}
-
-static int map_both(const struct shm_place *place, const char *instance, enum ows_mode mode,
-                    struct ows_map *map)
-{
-	void *base;
-	int err;
-
-	err = map_file(place, instance, "image", false, &base, &map->image_size, &map->image_file);
-	if (err)
-		return err;
-	/* NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): errno is not 0 then */
-	map->base = base;
-	map->image = base;
-	err = check_image(map);
-	if (err || mode != OWS_CONTROL)
-		return err;
-	err = map_file(place, instance, "command", true, &base, &map->command_size,
-	               &map->command_file);
-	if (err)
-		return err;
-	map->command_base = base;
-	/* Without a guard all works too, unless a consumer truncates the file */
-	guard_add(base, map->command_size, true);
-	return check_command(map);
-}
-
-int map_open(const char *path, const char *instance, enum ows_mode mode, struct ows_map *map)
+int map_open(const char *path, const char *instance, struct ows_map *map)
 {
 	struct shm_place place;
+	void *base = NULL;
 	int err;
 
 	*map = (struct ows_map){0};
 	err = place_open(path, &place);
 	if (err)
 		return err;
-	err = map_both(&place, instance, mode, map);
+	err = map_file(&place, instance, &base, &map->image_size, &map->image_file);
 	place_close(&place);
+	if (err)
+		return err;
+	map->base = base;
+	map->image = base;
+	err = check_image(map);
 	if (err)
 		map_close(map);
 	return err;
@@ -233,10 +177,6 @@ int map_open(const char *path, const char *instance, enum ows_mode mode, struct 
 
 void map_close(struct ows_map *map)
 {
-	if (map->command_base != NULL) {
-		guard_remove(map->command_base);
-		munmap(map->command_base, map->command_size);
-	}
 	if (map->base != NULL)
 		munmap((void *)(uintptr_t)map->base, map->image_size);
 	*map = (struct ows_map){0};
@@ -279,20 +219,13 @@ int map_find(const struct ows_map *map, const char *name, size_t len)
 	return -1;
 }
 
-/* Does the name lead to another file? False while there is none: the next owsd makes it. */
-static bool leads_elsewhere(const char *place, const char *instance, const char *kind,
-                            const struct ows_file *file)
+bool map_is_elsewhere(const struct ows_map *map, const char *place, const char *instance)
 {
 	char path[PLACE_PATH + SEGMENT_FILE], name[SEGMENT_FILE];
 	struct stat st;
 
-	snprintf(path, sizeof(path), "%s/%s", place, segment_file(instance, kind, name));
-	return lstat(path, &st) == 0 && (st.st_ino != file->inode || st.st_dev != file->device);
-}
-
-bool map_is_elsewhere(const struct ows_map *map, const char *place, const char *instance)
-{
-	return leads_elsewhere(place, instance, "image", &map->image_file) ||
-	       (map->command != NULL &&
-	        leads_elsewhere(place, instance, "command", &map->command_file));
+	snprintf(path, sizeof(path), "%s/%s", place, segment_file(instance, "image", name));
+	/* False while there is none: the next owsd makes it */
+	return lstat(path, &st) == 0 &&
+	       (st.st_ino != map->image_file.inode || st.st_dev != map->image_file.device);
 }

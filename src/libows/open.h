@@ -5,8 +5,9 @@
 
 #include "src/libows/ows.h"
 
-/* As ows_open(), in this directory alone. */
-int open_in(const char *place, const char *instance, enum ows_mode mode, struct ows **h);
+/* As ows_open_as(), in this directory alone. */
+int open_in(const char *place, const char *instance, enum ows_mode mode, const char *name,
+            struct ows **h);
 /* The directory that the instance was found in; lives as long as the handle. */
 const char *open_place(const struct ows *h);
 

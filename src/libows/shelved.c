@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* Finds the shelved limit alarm of a record in the image. */
-#include <errno.h>
 #include <string.h>
 
 #include "src/libows/by.h"
@@ -23,14 +22,4 @@ void shelved_of(struct ows *h, uint32_t record, struct ows_alarm_state *state)
 		memcpy(state->why, e.why, sizeof(state->why) - 1);
 		return;
 	}
-}
-
-/* The memory of a giver takes requests to shelve; this version has none. */
-int ows_shelve(struct ows *h, int id, uint32_t seconds, const char *why)
-{
-	(void)h;
-	(void)id;
-	(void)seconds;
-	(void)why;
-	return -EOPNOTSUPP;
 }

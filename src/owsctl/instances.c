@@ -104,7 +104,7 @@ static void look(const struct shm_place *place, const char *name, int64_t now_ns
 	struct ows_daemon daemon = {0};
 	struct ows *h;
 	pid_t holder = 0;
-	int err = open_in(place->path, name, OWS_READ, &h);
+	int err = open_in(place->path, name, OWS_READ, "owsctl", &h);
 	int lock = segment_lock_look(place, name, &holder);
 
 	*info = (struct instance_info){

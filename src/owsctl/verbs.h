@@ -8,6 +8,8 @@ struct ctl;
 int verb_list(struct ctl *ctl, int argc, char **argv);
 int verb_get(struct ctl *ctl, int argc, char **argv);
 int verb_set(struct ctl *ctl, int argc, char **argv);
+int verb_control(struct ctl *ctl, int argc, char **argv);
+int verb_who(struct ctl *ctl, int argc, char **argv);
 int verb_watch(struct ctl *ctl, int argc, char **argv);
 int verb_wait(struct ctl *ctl, int argc, char **argv);
 int verb_alarms(struct ctl *ctl, int argc, char **argv);

@@ -21,7 +21,7 @@
  * The lock is the last: as long as it exists, no other owsd creates the files that are being
  * removed.
  */
-static const char *const kinds[] = {"image", "command", "lock"};
+static const char *const kinds[] = {"image", "force", "control", "lock"};
 #define KINDS (sizeof(kinds) / sizeof(kinds[0]))
 
 static unsigned look_before(const struct shm_place *place, const char *name)

@@ -8,11 +8,15 @@
 #include "src/libows/get.h"
 #include "src/libows/handle.h"
 #include "src/libows/map.h"
+#include "src/libows/meet.h"
 #include "src/libows/open.h"
 #include "src/libows/set.h"
 #include "src/serve/signals.h"
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
+
+#define NAME "served protocol"         /* of the giver that the clients of the protocol are */
+#define MEET_NS (20 * INT64_C(1000000)) /* owsd's own control room answers at once */
 
 /*
  * How many alarms of a signal clients have read. The key is the name: a reload changes the record.
@@ -24,7 +28,6 @@ struct seen {
 
 struct signals {
 	struct ows *h;
-	bool may_set;
 	struct seen *seen; /* one entry for each signal with an alarm */
 	size_t seen_count, seen_room;
 };
@@ -57,13 +60,8 @@ static void follow(struct signals *signals)
 int signals_open(const char *place, const char *instance, struct signals **out)
 {
 	struct signals *signals = calloc(1, sizeof(*signals));
-	int err = signals ? open_in(place, instance, OWS_CONTROL, &signals->h) : -ENOMEM;
+	int err = signals ? open_in(place, instance, OWS_READ, NAME, &signals->h) : -ENOMEM;
 
-	if (!err) {
-		signals->may_set = true;
-	} else if (signals) {
-		err = open_in(place, instance, OWS_READ, &signals->h);
-	}
 	/* _DGNRESET is the only name for which a handle keeps state; it is reset for each client */
 	if (!err && ows_find(signals->h, "_DGNRESET") < 0)
 		err = -ENOMEM;
@@ -71,6 +69,7 @@ int signals_open(const char *place, const char *instance, struct signals **out)
 		signals_close(signals);
 		return err;
 	}
+	signals->h->mode = OWS_CONTROL;
 	make_room(signals);
 	*out = signals;
 	return 0;
@@ -204,6 +203,16 @@ static bool takes_commands(const struct ows *h, const struct ows_id *id)
 	        slot.attrs.flags & OWS_ATTR_WRITE_ENABLE);
 }
 
+/* Become a giver, at the first write: when owsd starts its control room is not open yet. */
+static int join(struct ows *h)
+{
+	int err = h->give.base ? 0 : meet(h, &h->map, ows_now() + MEET_NS);
+
+	if (!err)
+		meet_take(h);
+	return err;
+}
+
 static int set(struct signals *signals, struct ows_id *id, int64_t now_ns, const char *text,
                size_t len, struct signals_command *command)
 {
@@ -217,9 +226,11 @@ static int set(struct signals *signals, struct ows_id *id, int64_t now_ns, const
 
 	if (err)
 		return err;
-	if (!signals->may_set || !takes_commands(h, id))
+	if (!takes_commands(h, id))
 		return -EACCES;
-	err = handle_set_text(h, id, copy, &stamp);
+	err = join(h);
+	if (!err)
+		err = handle_set_text(h, id, copy, &stamp);
 	if (err == -ERANGE)
 		return -EDOM;
 	if (err == -EROFS)
@@ -253,7 +264,9 @@ int signals_write(struct signals *signals, const char *name, int64_t now_ns, con
 int signals_applied(struct signals *signals, const char *name, struct signals_command *command)
 {
 	struct ows *h = signals->h;
+	const struct ows_command_slot *own;
 	struct ows_sample sample;
+	uint32_t applied;
 	struct ows_id id;
 
 	follow(signals);
@@ -263,10 +276,14 @@ int signals_applied(struct signals *signals, const char *name, struct signals_co
 		command->record = (unsigned)id.record;
 		command->generation = h->map.image->generation;
 	}
+	own = give_slot(&h->give, command->record);
+	applied = word_get(&own->applied);
+	if (applied && (int32_t)(applied - command->stamp) >= 0)
+		return 0;
+	if (__atomic_load_n(&own->taken, __ATOMIC_ACQUIRE) == command->stamp && own->err)
+		return -EIO; /* the engine refused it */
 	if (!reader_sample(map_record(&h->map, command->record), &sample))
 		return -EAGAIN;
-	if ((int32_t)(sample.confirmed - command->stamp) >= 0 && sample.confirmed)
-		return 0;
 	if (sample.err && sample.tried_ns >= command->since_ns)
 		return sample.err;
 	return -EAGAIN;

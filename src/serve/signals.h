@@ -12,8 +12,8 @@
 struct signals;
 
 /*
- * Open the segments of this instance, which are in that directory. Without a command segment
- * nothing can be written. Allocates; no function below does. 0 or a negative errno.
+ * Open the image of this instance, which is in place in that directory. It connects to the control
+ * room at the first write. Allocates; no function below does. 0 or a negative errno.
  */
 int signals_open(const char *place, const char *instance, struct signals **signals);
 void signals_close(struct signals *signals);

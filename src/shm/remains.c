@@ -15,7 +15,7 @@
 /* The instance of a file's name, before the last dot. False: no file of an owsd. */
 static bool instance_of(const char *file, char name[SEGMENT_NAME_MAX + 1])
 {
-	static const char *const kinds[] = {".image", ".command", ".force", ".lock"};
+	static const char *const kinds[] = {".image", ".force", ".control", ".lock"};
 	const char *end = strrchr(file, '.');
 	bool ours = false;
 

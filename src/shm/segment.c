@@ -10,7 +10,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "src/shm/guard.h"
 #include "src/shm/owner.h"
 #include "src/shm/segment.h"
 
@@ -22,7 +21,6 @@ static const struct segment_role {
 	mode_t mode;
 } roles[] = {
 	[SEGMENT_IMAGE] = {"image", "owsd", 0640},
-	[SEGMENT_COMMAND] = {"command", "owsd-control", 0660},
 	[SEGMENT_FORCE] = {"force", NULL, 0600},
 };
 
@@ -176,7 +174,6 @@ int segment_open_old(const struct shm_place *place, const char *instance, enum s
 
 void segment_close(struct segment *segment)
 {
-	segment_unguard(segment);
 	if (segment->base != NULL)
 		munmap(segment->base, segment->size);
 	if (segment->fd >= 0)
@@ -196,23 +193,4 @@ int segment_remove(const struct shm_place *place, const char *instance, enum seg
 		return -EINVAL;
 	final_name(instance, kind, name);
 	return unlinkat(place->fd, name, 0) < 0 ? -errno : 0;
-}
-
-int segment_guard(struct segment *segment)
-{
-	return guard_add(segment->base, segment->size, false);
-}
-
-void segment_unguard(struct segment *segment)
-{
-	guard_remove(segment->base);
-}
-
-bool segment_lost(const struct segment *segment)
-{
-	struct stat st;
-
-	if (guard_lost(segment->base))
-		return true;
-	return fstat(segment->fd, &st) == 0 && (size_t)st.st_size != segment->size;
 }

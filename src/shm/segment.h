@@ -8,7 +8,6 @@
 #ifndef SHM_SEGMENT_H
 #define SHM_SEGMENT_H
 
-#include <signal.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -16,8 +15,8 @@
 
 #include "src/shm/place.h"
 
-/* NAME.image, NAME.command, NAME.force: only owsd itself may open the last. */
-enum segment_kind { SEGMENT_IMAGE, SEGMENT_COMMAND, SEGMENT_FORCE };
+/* NAME.image, and NAME.force, which only owsd itself may open. */
+enum segment_kind { SEGMENT_IMAGE, SEGMENT_FORCE };
 
 /* The longest name of an instance: letters, digits, '-', '_', '.', and no dot at the beginning. */
 #define SEGMENT_NAME_MAX 32
@@ -38,8 +37,8 @@ struct segment {
 /*
  * Make a segment of size zeroed bytes under a temporary name, with all pages allocated (-ENOSPC now
  * instead of a SIGBUS later when the file system is full). The place stays open as long as the
- * segment. Mode 0640 group owsd, or 0660 group owsd-control, where those groups exist and the
- * caller may give files to them; else 0600.
+ * segment. Mode 0640 group owsd where that group exists and the caller may give files to it;
+ * else 0600.
  */
 int segment_create(const struct shm_place *place, const char *instance, enum segment_kind kind,
                    size_t size, struct segment *segment);
@@ -54,17 +53,7 @@ bool segment_named(const char *instance, const struct segment *segment);
 int segment_open_old(const struct shm_place *place, const char *instance, enum segment_kind kind,
                      struct segment *segment);
 void segment_close(struct segment *segment);
-/* Remove the name (the command segment is left in place at an ordinary end). */
+/* Remove the name. */
 int segment_remove(const struct shm_place *place, const char *instance, enum segment_kind kind);
-
-/*
- * Guard a mapping against a consumer that truncates its file: on a SIGBUS inside the mapping
- * private zero pages replace it, and the thread that touched it goes on. One guard for each
- * mapping, up to 4.
- */
-int segment_guard(struct segment *segment);
-void segment_unguard(struct segment *segment);
-/* True once the file was truncated, whether or not its memory was touched since. */
-bool segment_lost(const struct segment *segment);
 
 #endif

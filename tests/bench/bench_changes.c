@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * What it costs a consumer that 10 signals change: to find out which and to read them, with
- * ows_changes() and with a look at all; the writer publishes them on the other CPU. Beside it the CPU
- * time of a program that waits for changes: of an owsd whose heart alone beats, and of one that
+ * ows_changes() and with a look at all; the writer publishes them on the other CPU. Beside it the
+ * CPU time of a program that waits for changes: of an owsd whose heart alone beats, and of one that
  * reads 10 signals once a second.
  */
 #include <pthread.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * From ows_set() in a control program to the request of an idle owsd at its owserver: a peer of our
- * own takes the time when the write arrives, so one hop over loopback is in the figure. Beside it, in
- * turn with the sets, what it costs to wake as many threads: engine, worker, peer.
+ * own takes the time when the write arrives, so one hop over loopback is in the figure. Beside it,
+ * in turn with the sets, what it costs to wake as many threads: engine, worker, peer.
  */
 #include <arpa/inet.h>
 #include <netinet/tcp.h>

@@ -40,6 +40,8 @@ static void make_image(void)
 	image.header->change_head = FIRST;
 	handle = (struct ows){
 		.map = {.image = image.header, .base = memory, .count = SIGNALS + 1},
+		.join = {.connection = -1, .bell = -1, .news = -1},
+		.dead_after_ns = INT64_MAX,
 		.marks = marks,
 		.mark_words = 1,
 	};

@@ -67,11 +67,13 @@ static const struct {
 } spare[] = {
 	{"enter", "release to relaxed", "the fence in the entry does it too"},
 	{"ows_alarm_count", "acquire to relaxed", "the fence behind the entry does it too"},
-	{"ring_engine", "seq_cst without acquire", "the fence behind it does it too"},
-	{"commands_awake", "seq_cst without release", "the fence behind it does it too"},
-	{"commands_state", "seq_cst without release", "the fence behind it does it too"},
-	{"commands_retire", "seq_cst without release", "the fence behind it does it too"},
-	{"commands_text", "acquire to relaxed", "the check word refuses what is not whole"},
+	{"image_awake", "seq_cst without release", "the fence behind it does it too"},
+	{"image_awake", "seq_cst fence to acq_rel", "the fence of bells_close_eyes() does it too"},
+	{"image_awake", "seq_cst fence taken away", "the fence of bells_close_eyes() does it too"},
+	{"giver_state", "seq_cst without release", "the fence behind it does it too"},
+	{"ows_acknowledge", "release to relaxed", "the mark after it does it too"},
+	{"look", "acquire to relaxed", "handle_state() loads it again"},
+	{"ows_shelve", "acquire to relaxed", "no store comes before a load here"},
 };
 
 static const char *spare_reason(const struct site *site, const char *way)

@@ -74,6 +74,8 @@ static void make_image(void)
 				.base = memory,
 				.count = 2,
 			},
+		.join = {.connection = -1, .bell = -1, .news = -1},
+		.dead_after_ns = INT64_MAX,
 	};
 	handle.map.areas[OWS_AREA_RECORDS] = area_of(image.records, sizeof(*image.records), 2);
 	handle.map.areas[OWS_AREA_ALARMS] = area_of(image.alarms, sizeof(*image.alarms),

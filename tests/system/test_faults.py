@@ -3,7 +3,6 @@
 """What a target, a consumer or the system can do to owsd, and that it survives it."""
 
 import json
-import mmap
 import os
 import random
 import sys
@@ -183,40 +182,28 @@ def segment(daemon, kind):
     return owsdtest.segment(daemon.name, kind)
 
 
-def test_a_consumer_that_truncates_the_command_segment_harms_nobody(scene):
-    with lying_peer() as server:
-        daemon = scene.owsd(house(server))
-        until(lambda: good(scene, daemon), 5)
-        for value, size in enumerate((0, 100, 5000), 11):
-            inode = os.stat(segment(daemon, "command")).st_ino
-            os.truncate(segment(daemon, "command"), size)
-            until(lambda: os.stat(segment(daemon, "command")).st_ino != inode, 10,
-                  "a new command segment")
-            assert daemon.running()
-            until(lambda: good(scene, daemon), 5)
-            until(lambda: scene.owsctl(daemon, "set", "relay", str(value)).returncode == 0, 5,
-                  "sets work")
-            until(lambda: (RELAY, str(value).encode()) in server.writes, 5, "and arrive")
-
-
 def good_or_disabled(scene, daemon):
     """That an input is not read can be commanded too, if it is a rare chance of rubbish."""
     return all(quality == 0xC0 or scene.get(daemon, name + "_ReadEnable") == "0"
                for name, quality in zip(("room", "hall"), qualities(scene, daemon)))
 
 
-def test_rubbish_in_the_command_segment_harms_nobody(scene):
+def test_rubbish_in_a_givers_memory_harms_nobody(scene):
+    sys.path.insert(0, str(owsdtest.SOURCE / "src/libows"))
+    import ows
     seed = random.randrange(1 << 32)
     print("seed", seed)
     rng = random.Random(seed)
     with lying_peer() as server:
         daemon = scene.owsd(house(server))
         until(lambda: good(scene, daemon), 5)
-        with open(segment(daemon, "command"), "r+b") as f, mmap.mmap(f.fileno(), 0) as m:
+        with ows.Ows(daemon.name, control=True) as giver:
+            m, ring = giver.memory.memory, giver.door.ring
             for _ in range(200):
                 at = rng.randrange(len(m))
                 n = min(rng.choice((1, 4, 64, 4096)), len(m) - at)
                 m[at:at + n] = rng.randbytes(n)
+                ring()
                 time.sleep(0.005)
         assert daemon.running()
         # what rubbish can still command is what its type can hold

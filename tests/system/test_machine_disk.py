@@ -2,12 +2,10 @@
 # SPDX-License-Identifier: MIT
 """A full disk and a full file system under owsd's directory, each a small one in a mount namespace of this test."""
 
-import math
 import os
 import pathlib
 import signal
 import subprocess
-import time
 
 import faulty
 import owsdtest
@@ -60,7 +58,7 @@ def test_a_lock_of_before_is_taken_also_when_the_file_system_is_full(scene):
     assert daemon.wait() == 1
     owsdtest.logged(daemon, f"{PLACE} is full")
     assert "cannot lock" not in daemon.log(), daemon.log()
-    assert faulty.leftovers(before.name) == ["command", "image", "lock"]
+    assert faulty.leftovers(before.name) == ["force", "image", "lock"]
     free()
     room_is_good(scene, scene.owsd(before.config, name=before.name))
 
@@ -74,7 +72,7 @@ def test_a_reload_that_the_file_system_has_no_room_for_changes_nothing(scene):
     daemon.signal(signal.SIGHUP)
     until(lambda: "all goes on as before" in daemon.log(), 10)
     owsdtest.logged(daemon, f"{PLACE} is full")
-    until(lambda: faulty.leftovers(daemon.name) == ["command", "image", "lock"], 10, "nothing is left")
+    until(lambda: faulty.leftovers(daemon.name) == ["control", "force", "image", "lock"], 10, "nothing is left")
     assert scene.owsctl(daemon, "set", "relays", "5").returncode == 0
     until(lambda: scene.get(daemon, "relays") == "5", 10, "outputs are written")
     room_is_good(scene, daemon)
@@ -83,26 +81,6 @@ def test_a_reload_that_the_file_system_has_no_room_for_changes_nothing(scene):
     until(lambda: scene.get(daemon, "hall") == "19.5", 20, "then it is done")
     until(lambda: scene.get(daemon, "relays") == "5", 20, "as it was commanded")
     assert daemon.stop() == 0
-
-
-def test_commands_that_are_taken_away_while_it_is_full_are_made_again_later(scene):
-    daemon = scene.owsd(faulty.house(scene))
-    room_is_good(scene, daemon)
-    # else it may have made them again before there is no room for them
-    faulty.stop_all_of(daemon)
-    since = time.monotonic()
-    os.truncate(PLACE / f"{daemon.name}.command", 0)
-    free = fill(scene, PLACE)
-    daemon.thaw()
-    until(lambda: "cannot be made again" in daemon.log(), 10, "it is said")
-    room_is_good(scene, daemon)
-    # at most once a second it is tried, and said the first, the second, the fourth time
-    until(lambda: daemon.log().count("cannot be made again") >= 3, 10, "it is tried again")
-    said = daemon.log().count("cannot be made again")
-    assert said <= 1 + math.log2(1 + time.monotonic() - since), daemon.log()
-    free()
-    until(lambda: scene.owsctl(daemon, "set", "relays", "6").returncode == 0, 10, "sets work again")
-    until(lambda: scene.get(daemon, "relays") == "6", 10)
 
 
 def test_a_reload_whose_image_cannot_be_put_in_place_is_said_and_done_later(scene):
@@ -124,7 +102,7 @@ def test_a_reload_whose_image_cannot_be_put_in_place_is_said_and_done_later(scen
     until(lambda: daemon.log().count("reload:") == 2, 10, "and the reload that waited is done")
     until(lambda: faulty.counters(scene, daemon)["unfinished_reload"] == 0, 10)
     owsdtest.logged(daemon, "the rest of the reload is done")
-    until(lambda: faulty.leftovers(daemon.name) == ["command", "image", "lock"], 10, "nothing is left")
+    until(lambda: faulty.leftovers(daemon.name) == ["control", "force", "image", "lock"], 10, "nothing is left")
     assert daemon.stop() == 0
 
 

@@ -204,7 +204,7 @@ while True:
     until(lambda: server.read(path + "/temphigh") == "70", 10, "it controls")
     program.kill()
     until(lambda: server.read(path + "/temphigh") == "11", 5, "SafeValue is written")
-    owsdtest.logged(daemon, "stopped beating")
+    owsdtest.logged(daemon, "ended without a goodbye: 1 output goes to SafeValue")
 
 
 def test_two_owsd_of_one_name_do_not_meet(scene):

@@ -145,8 +145,8 @@ def wire(scene, daemon, state):
 
 def kill_without_names(daemon):
     """Its segments cannot be found by the next, who could say there that he has others."""
-    daemon.freeze()  # or it would make the commands again
-    for kind in ("image", "command"):
+    daemon.freeze()
+    for kind in ("image",):
         os.unlink(owsdtest.segment(daemon.name, kind))
     daemon.kill()
 

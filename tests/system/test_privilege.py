@@ -21,9 +21,9 @@ from owsdtest import until
 
 PROGRAMS = private.room() / "programs"
 NOWHERE = private.room() / "nowhere"
-KINDS = ("image", "command", "lock")
+KINDS = ("image", "force", "control", "lock")
 # All names that owsd makes there
-NAMES = (*KINDS, "image.new", "command.new", "force", "force.new", "control")
+NAMES = (*KINDS, "image.new", "force.new")
 
 
 def programs():
@@ -102,7 +102,9 @@ def test_who_may_look_and_who_may_act_are_two_groups(scene):
     modes = {kind: owsdtest.segment(name, kind).stat() for kind in KINDS}
     assert {kind: (oct(m.st_mode & 0o7777), m.st_uid, m.st_gid) for kind, m in modes.items()} == {
         "image": ("0o640", private.OWSD, private.OWSD),
-        "command": ("0o660", private.OWSD, private.CONTROL),
+        "force": ("0o600", private.OWSD, private.OWSD),
+        # all may connect, and are answered by who they are
+        "control": ("0o666", private.OWSD, private.OWSD),
         "lock": ("0o600", private.OWSD, private.OWSD)}
     good(scene, name)
     may = {"reader": (True, False), "plc": (True, True), "setter": (False, False),
@@ -119,7 +121,7 @@ def test_who_may_look_and_who_may_act_are_two_groups(scene):
 
 def test_a_reader_cannot_write_by_any_way(scene):
     name = daemon_of(scene).name
-    image, command, lock = (owsdtest.segment(name, kind) for kind in KINDS)
+    image, force, _, lock = (owsdtest.segment(name, kind) for kind in KINDS)
     for who in ("reader", "plc"):
         done = python(scene, who, f"os.open('{image}', os.O_RDWR)")
         assert refused(done), done
@@ -131,10 +133,9 @@ def test_a_reader_cannot_write_by_any_way(scene):
                                   f"os.open(f'/proc/self/fd/{{fd}}', os.O_RDWR)")
         assert refused(done), done
         for what in (f"os.truncate('{image}', 0)", f"os.chmod('{image}', 0o666)",
-                     f"os.open('{lock}', os.O_RDONLY)"):
+                     f"os.open('{lock}', os.O_RDONLY)", f"os.open('{force}', os.O_RDONLY)",
+                     f"os.open('{force}', os.O_RDWR)"):
             assert refused(python(scene, who, what)), (who, what)
-    for how in ("O_RDONLY", "O_RDWR"):
-        assert refused(python(scene, "reader", f"os.open('{command}', os.{how})"))
     good(scene, name)
 
 
@@ -160,7 +161,7 @@ def test_nobody_else_can_take_away_or_replace_what_stands_there(scene):
 SQUATS = {
     "a file for all": "fd = os.open({path!r}, os.O_CREAT | os.O_RDWR, 0o666); os.fchmod(fd, 0o666)",
     "a link to a file of owsd's": "os.symlink({victim!r}, {path!r})",
-    "a hard link to what he may write": "os.link({command!r}, {path!r})",
+    "a hard link to what he may connect to": "os.link({control!r}, {path!r})",
     "a link to nowhere": f"os.symlink({str(NOWHERE)!r}, {{path!r}})",
     "a pipe": "os.mkfifo({path!r}, 0o666)",
     "a directory": "os.mkdir({path!r})",
@@ -171,7 +172,7 @@ SQUATS = {
 def test_nobody_else_makes_a_name_there_by_any_way(scene):
     """Neither beside a running owsd nor for one that is not yet started; so nothing is in its way."""
     daemon = daemon_of(scene)
-    command = owsdtest.segment(daemon.name, "command")
+    control = owsdtest.segment(daemon.name, "control")
     victim = scene.file("victim", "precious\n")
     os.chown(victim, private.OWSD, private.OWSD)
     future = scene.name()
@@ -179,8 +180,10 @@ def test_nobody_else_makes_a_name_there_by_any_way(scene):
         for squat, how in SQUATS.items():
             for path in (owsdtest.segment(name, kind) for name in (daemon.name, future) for kind in NAMES):
                 done = python(scene, who, how.format(path=str(path), victim=str(victim),
-                                                     command=str(command)))
-                assert refused(done, "Permission", "not permitted", "exists", "in use"), (who, squat, path)
+                                                     control=str(control)))
+                # a socket cannot be opened as a file
+                assert refused(done, "Permission", "not permitted", "exists", "in use", "No such device"), \
+                    (who, squat, path)
     assert faulty.leftovers(future) == [] and victim.read_text() == "precious\n"
     good(scene, daemon.name)
     daemon.signal(signal.SIGHUP)
@@ -233,25 +236,34 @@ def test_a_runtime_directory_of_somebody_else_is_refused(scene):
     assert str(his) not in done.stdout + done.stderr, done
 
 
+# Whoever may set outputs does with his memory what he can; past libows, which would not
 HOSTILE = """
-import ctypes, random, time
-fd = os.open({path!r}, os.O_RDWR)
+import random, struct, time
+door = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+door.connect({path!r})
+door.send(struct.pack("<IHHII16s32s64x", 0x4853574f, 2, 0, 1, 0, b"", b"hostile"))
+_, (fd, bell, news), _, _ = socket.recv_fds(door, 64, 3)
 size = os.fstat(fd).st_size
 map = mmap.mmap(fd, size)
 random.seed({seed})
-end = time.monotonic() + 2
+end = time.monotonic() + 3
 while time.monotonic() < end:
     at = random.randrange(size)
     n = min(random.choice((1, 4, 64, 4096)), size - at)
     map[at:at + n] = random.randbytes(n)
+    map[128:132] = struct.pack("<I", 1)
+    os.write(bell, struct.pack("<Q", 1))
+for cut in (0, 100, size * 2):
+    try:
+        os.ftruncate(fd, cut)
+        raise SystemExit("cut")
+    except PermissionError:
+        pass
 fcntl.flock(fd, fcntl.LOCK_EX)
 fcntl.lockf(fd, fcntl.LOCK_EX)
-os.ftruncate(fd, 100)
-time.sleep(1)
-try:
-    os.posix_fallocate(fd, 0, 1 << 24)
-except OSError:
-    pass
+# its flags are its own: owsd's writes do not block
+fcntl.fcntl(news, fcntl.F_SETFL, 0)
+fcntl.fcntl(bell, fcntl.F_SETFL, 0)
 time.sleep(1)
 """
 
@@ -260,21 +272,25 @@ def test_whoever_may_set_outputs_can_do_no_more_than_that(scene):
     daemon = daemon_of(scene)
     good(scene, daemon.name)
     hostile = subprocess.Popen([*private.as_user("setter"), "/usr/bin/python3", "-c", "import os, mmap, "
-                                "fcntl\n" + HOSTILE.format(path=str(owsdtest.segment(daemon.name, "command")),
-                                                           seed=os.getpid())])
+                                "fcntl, socket\n" + HOSTILE.format(
+                                    path=str(owsdtest.segment(daemon.name, "control")), seed=os.getpid())])
     try:
         while hostile.poll() is None:
             done = ctl(scene, "reader", daemon.name, "get", "room")
             assert done.returncode in (0, 3), done
             assert done.returncode == 3 or done.stdout.strip() == "21.5", done
             assert daemon.running(), daemon.log()
-            time.sleep(0.05)
-        # it has held its locks, and filled the file system, as long as it lived
+            # another giver is not kept waiting
+            done = ctl(scene, "plc", daemon.name, "set", "relays", "9")
+            assert done.returncode == 0, done
         assert hostile.returncode == 0
     finally:
         hostile.kill()
         hostile.wait()
+    # it may have switched room's reading off, as it has the right to
+    until(lambda: ctl(scene, "plc", daemon.name, "set", "room_ReadEnable", "1").returncode == 0, 20)
     good(scene, daemon.name)
+    until(lambda: ctl(scene, "plc", daemon.name, "set", "relays_WriteEnable", "1").returncode == 0, 20)
     until(lambda: ctl(scene, "plc", daemon.name, "set", "relays", "9").returncode == 0, 20, "sets work")
     until(lambda: ctl(scene, "plc", daemon.name, "get", "relays").stdout.strip() == "9", 20)
     assert daemon.stop() == 0

@@ -255,7 +255,7 @@ def test_an_instance_that_is_another_s_is_left_alone(scene):
             terminal.gone()
         assert os.waitstatus_to_exitcode(terminal.status) == 1
         assert sorted(glob.glob(f"{owsdtest.place()}/{daemon.name}*")) == sorted(before)
-        assert len(before) == 4 and "was removed" not in daemon.log(), before
+        assert len(before) == 5 and "was removed" not in daemon.log(), before
     finally:
         os.unlink(near)
 

@@ -36,6 +36,7 @@ static void check_signal(struct ows *h, uint32_t record)
 {
 	const char *name = signals[record - 1].name;
 	bool never = record == NEVER_;
+	struct ows_sample sample;
 	struct ows_info info;
 	struct ows_value v;
 	char text[TEXT_CAP + 1];
@@ -50,7 +51,9 @@ static void check_signal(struct ows *h, uint32_t record)
 	TEST_ASSERT_EQUAL_INT64_MESSAGE(never ? 10 * S : record * S, v.age_ns, name);
 	TEST_ASSERT_EQUAL_MESSAGE(record == SHORT_ ? -EIO : 0, v.err, name);
 	TEST_ASSERT_EQUAL_MESSAGE(never ? 0 : 100 + record, v.count, name);
-	TEST_ASSERT_EQUAL_MESSAGE(never ? 0 : 200 + record, v.applied, name);
+	TEST_ASSERT_EQUAL_MESSAGE(0, v.applied, name); /* this handle commanded nothing */
+	TEST_ASSERT_TRUE(reader_sample(map_record(&h->map, record), &sample));
+	TEST_ASSERT_EQUAL_MESSAGE(never ? 0 : 200 + record, sample.confirmed, name);
 	TEST_ASSERT_EQUAL_MESSAGE(never ? 0 : record % 4, v.detail, name);
 	TEST_ASSERT_EQUAL_MESSAGE(never ? 0 : record % 2, v.target, name);
 	TEST_ASSERT_EQUAL(0, ows_info(h, (int)record - 1, &info));

@@ -59,9 +59,8 @@ static const uint32_t groups[] = {0, 0};
 static const struct image_counter counters[] = {{"alarms", UINT32_MAX}, {"crc_errors", 1}};
 
 char instance[40];
-_Alignas(64) char image_memory[SIZE_MAX_], command_memory[SIZE_MAX_];
+_Alignas(64) char image_memory[SIZE_MAX_];
 struct image image;
-struct commands commands;
 
 static struct image_plan image_plan(void)
 {
@@ -230,34 +229,6 @@ void make_image(void)
 	image_state(&image, OWS_STATE_LIVE);
 }
 
-void make_commands(void)
-{
-	struct command_signal command[COUNT];
-	struct command_plan plan = {
-		.signals = command,
-		.signal_count = COUNT,
-		.text_cap = TEXT_CAP,
-		.generation = 7,
-		.start_id = 0x12345679,
-		.pid = 4321,
-	};
-
-	for (uint32_t i = 0; i < COUNT; i++)
-		command[i] = (struct command_signal){signals[i].name, signals[i].path,
-		                                     signals[i].type};
-	TEST_ASSERT_LESS_THAN(sizeof(command_memory), commands_size(&plan));
-	memset(command_memory, 0, sizeof(command_memory));
-	commands_forget(&commands);
-	TEST_ASSERT_EQUAL(0, commands_build(&plan, command_memory, &commands));
-	commands_put(&commands, BYTE_, 254, NULL, 0);
-	commands_stamp(&commands, BYTE_, 202);
-	commands_put(&commands, LARGE_, INT64_MIN + 1, NULL, 0);
-	commands_stamp(&commands, LARGE_, 209);
-	commands_put(&commands, STRING_, 0, "north", 5);
-	commands_stamp(&commands, STRING_, 210);
-	commands_state(&commands, OWS_STATE_LIVE);
-}
-
 /* Write the size, then with their offsets the rows of 32 bytes that are not all zero. */
 static void write_recording(const char *name, const char *memory, uint32_t size)
 {
@@ -325,13 +296,10 @@ void recording_begin(void)
 {
 	snprintf(instance, sizeof(instance), "recorded.%ld", (long)getpid());
 	show("image", image_memory, read_recording(RECORDED, image_memory));
-	make_commands();
-	show("command", command_memory, commands.size);
 }
 
 void recording_end(void)
 {
 	unlink(folder_file(instance, "image"));
 	unlink(folder_file(instance, "command"));
-	commands_forget(&commands);
 }

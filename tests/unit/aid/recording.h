@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The image of a few signals that an earlier owsd of this major version made, kept in
- * tests/unit/data, and the same one made by the present writer, with the command segment. Each
- * field of a record is a function of the record's number, so that all differ.
+ * tests/unit/data, and the same one made by the present writer. Each field of a record is a
+ * function of the record's number, so that all differ.
  */
 #ifndef TESTS_UNIT_AID_RECORDING_H
 #define TESTS_UNIT_AID_RECORDING_H
 
-#include "src/shm/commands.h"
 #include "src/shm/image.h"
 
 #define S INT64_C(1000000000)
@@ -39,13 +38,12 @@ enum {
 #define COUNT NEVER_
 
 extern const struct image_signal signals[COUNT];
-/* The name under which both segments are shown. */
+/* The name under which the image is shown. */
 extern char instance[40];
-extern char image_memory[SIZE_MAX_], command_memory[SIZE_MAX_];
+extern char image_memory[SIZE_MAX_];
 extern struct image image;
-extern struct commands commands;
 
-/* setUp() and tearDown(): load the recorded image into memory, make commands, show both. */
+/* setUp() and tearDown(): load the recorded image into memory, and show it. */
 void recording_begin(void);
 void recording_end(void);
 
@@ -54,7 +52,6 @@ uint32_t read_recording(const char *file, char *memory);
 void show(const char *kind, const char *memory, uint32_t size);
 /* Make the image by the present writer, in memory. */
 void make_image(void);
-void make_commands(void);
 /* Write the recording again. */
 void record(void);
 

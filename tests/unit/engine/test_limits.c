@@ -75,9 +75,7 @@ static void expect_last(uint8_t event, uint8_t kind)
 
 static void acknowledge(unsigned record)
 {
-	uint32_t *acks = (void *)(s.commands.base + s.commands.ack_off);
-
-	acks[record]++;
+	scene_slot(&s, record)->acknowledged++;
 	scene_ring(&s, record);
 	scene_run(&s, SCENE_MS);
 }
@@ -230,13 +228,11 @@ static void test_a_signal_that_is_not_read_keeps_its_alarm(void)
 {
 	start();
 	measure("31");
-	scene_slot(&s, 1)->read_enable = 1;
-	scene_ring(&s, 1);
+	scene_enable_reads(&s, 1, false);
 	scene_put(&s, T1, "20", 0);
 	scene_run(&s, 10 * SCENE_S);
 	expect(OWS_LIMIT_UNACKNOWLEDGED, OWS_ALARM_H);
-	scene_slot(&s, 1)->read_enable = 2;
-	scene_ring(&s, 1);
+	scene_enable_reads(&s, 1, true);
 	scene_run(&s, SCENE_S);
 	expect(OWS_LIMIT_RETURNED, OWS_ALARM_H);
 }
@@ -265,12 +261,9 @@ static void test_a_limit_alarm_is_no_alarm_of_the_device(void)
 
 static void test_words_of_acknowledgement_overwritten_with_rubbish_do_no_harm(void)
 {
-	uint32_t *acks;
-
 	start();
 	measure("31");
-	acks = (void *)(s.commands.base + s.commands.ack_off);
-	acks[0] = acks[1] = 0xffffffffu;
+	scene_slot(&s, 0)->acknowledged = scene_slot(&s, 1)->acknowledged = 0xffffffffu;
 	scene_ring(&s, 0);
 	scene_ring(&s, 1);
 	scene_run(&s, SCENE_S);

@@ -337,7 +337,7 @@ static void test_a_command_beyond_the_range_is_refused_and_not_written(void)
 	scene_clear_trace(&s);
 	for (size_t i = 0; i < sizeof(beyond) / sizeof(beyond[0]); i++) {
 		command(1, beyond[i]);
-		TEST_ASSERT_EQUAL_INT(-ERANGE, scene_sample(&s, 1).err);
+		TEST_ASSERT_EQUAL_INT(-ERANGE, scene_slot(&s, 1)->err);
 		TEST_ASSERT_EQUAL_STRING("102", scene_at(&s, WIPER));
 		TEST_ASSERT_EQUAL_DOUBLE(40, scene_number(&s, 1));
 	}
@@ -354,7 +354,7 @@ static void test_a_command_beyond_min_or_max_is_refused_without_a_scale_too(void
 	start();
 	scene_set(&s, 1, 201);
 	scene_run(&s, SCENE_S);
-	TEST_ASSERT_EQUAL_INT(-ERANGE, scene_sample(&s, 1).err);
+	TEST_ASSERT_EQUAL_INT(-ERANGE, scene_slot(&s, 1)->err);
 	scene_set(&s, 1, 200);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_STRING("200", scene_at(&s, WIPER));

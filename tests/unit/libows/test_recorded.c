@@ -12,7 +12,6 @@
 
 #include "unity.h"
 
-#include "src/shm/carry.h"
 #include "tests/unit/aid/recorded_readers.h"
 #include "tests/unit/aid/recording.h"
 
@@ -41,40 +40,6 @@ static void test_libows_reads_a_recorded_image(void)
 	TEST_ASSERT_EQUAL_INT64(START_NS, daemon.start_ns);
 	TEST_ASSERT_EQUAL_INT64(S / 10, daemon.period_ns);
 	TEST_ASSERT_TRUE(daemon.alive);
-	ows_close(h);
-}
-
-static void test_what_was_commanded_is_carried_from_a_recorded_segment(void)
-{
-	char recorded[SIZE_MAX_], text[TEXT_CAP + 1];
-	uint32_t size = read_recording(RECORDED_BEFORE "command", recorded);
-	struct command c;
-
-	make_commands();
-	commands_put(&commands, BYTE_, 0, NULL, 0);
-	commands_stamp(&commands, BYTE_, 0);
-	commands_put(&commands, STRING_, 0, "", 0);
-	TEST_ASSERT_EQUAL(3, commands_carry(&commands, recorded, size, true));
-	commands_load(&commands, BYTE_, &c);
-	TEST_ASSERT_EQUAL_INT64(254, c.value);
-	TEST_ASSERT_EQUAL(202, c.stamp);
-	commands_load(&commands, LARGE_, &c);
-	TEST_ASSERT_EQUAL_INT64(INT64_MIN + 1, c.value);
-	TEST_ASSERT_EQUAL(5, commands_text(&commands, STRING_, text));
-	TEST_ASSERT_EQUAL_STRING("north", text);
-}
-
-static void test_a_recorded_segment_can_be_commanded(void)
-{
-	uint32_t stamp;
-	struct ows *h;
-
-	TEST_ASSERT_EQUAL(0, ows_open(instance, OWS_CONTROL, &h));
-	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "byte"), 7, &stamp));
-	TEST_ASSERT_EQUAL(203, stamp);
-	TEST_ASSERT_EQUAL(0, ows_set_text(h, ows_find(h, "label"), "south", &stamp));
-	TEST_ASSERT_EQUAL(211, stamp);
-	TEST_ASSERT_EQUAL(0, ows_acknowledge(h, ows_find(h, "room.temperature")));
 	ows_close(h);
 }
 
@@ -113,17 +78,17 @@ static void test_todays_readers_refuse_the_layout_of_the_major_version_before(vo
 static void test_python_reads_a_recorded_image(void)
 {
 	TEST_ASSERT_EQUAL_STRING(
-		"bool|True|192|1|1.0|101|201|0|1|1009000000000|1009500000000\n"
-		"byte|255|192|2|2.0|102|202|0|0|1008000000000|1009000000000\n"
-		"short|-32768|12|3|3.0|103|203|-5|1|1007000000000|1008500000000\n"
-		"long|-2147483648|20|0|4.0|104|204|0|0|1006000000000|1008000000000\n"
-		"word|65535|86|1|5.0|105|205|0|1|1005000000000|1007500000000\n"
-		"dword|4294967295|192|2|6.0|106|206|0|0|1004000000000|1007000000000\n"
-		"float|45.5|192|3|7.0|107|207|0|1|1003000000000|1006500000000\n"
-		"room.temperature|-21.0625|192|0|8.0|108|208|0|0|1002000000000|1006000000000\n"
-		"large|-9223372036854775808|192|1|9.0|109|209|0|1|1001000000000|1005500000000\n"
-		"label|" LONG_TEXT "|192|2|10.0|110|210|0|0|1000000000000|1005000000000\n"
-		"empty||192|3|11.0|111|211|0|1|999000000000|1004500000000\n"
+		"bool|True|192|1|1.0|101|0|0|1|1009000000000|1009500000000\n"
+		"byte|255|192|2|2.0|102|0|0|0|1008000000000|1009000000000\n"
+		"short|-32768|12|3|3.0|103|0|-5|1|1007000000000|1008500000000\n"
+		"long|-2147483648|20|0|4.0|104|0|0|0|1006000000000|1008000000000\n"
+		"word|65535|86|1|5.0|105|0|0|1|1005000000000|1007500000000\n"
+		"dword|4294967295|192|2|6.0|106|0|0|0|1004000000000|1007000000000\n"
+		"float|45.5|192|3|7.0|107|0|0|1|1003000000000|1006500000000\n"
+		"room.temperature|-21.0625|192|0|8.0|108|0|0|0|1002000000000|1006000000000\n"
+		"large|-9223372036854775808|192|1|9.0|109|0|0|1|1001000000000|1005500000000\n"
+		"label|" LONG_TEXT "|192|2|10.0|110|0|0|0|1000000000000|1005000000000\n"
+		"empty||192|3|11.0|111|0|0|1|999000000000|1004500000000\n"
 		"never|False|0|0|10.0|0|0|0|0|0|0\n",
 		python("s = ows.Ows(sys.argv[1])\n"
 	               "for n in s.names():\n"
@@ -188,8 +153,6 @@ int main(int argc, char **argv)
 	RUN_TEST(test_todays_readers_refuse_the_layout_of_the_major_version_before);
 	RUN_TEST(test_python_reads_a_recorded_image);
 	RUN_TEST(test_owsctl_reads_a_recorded_image);
-	RUN_TEST(test_a_recorded_segment_can_be_commanded);
-	RUN_TEST(test_what_was_commanded_is_carried_from_a_recorded_segment);
 	RUN_TEST(test_todays_writer_lays_the_same_out_in_the_same_way);
 	return UNITY_END();
 }

@@ -27,13 +27,13 @@ static struct segment segment;
 void setUp(void)
 {
 	snprintf(name, sizeof(name), "segment.%d", (int)getpid());
-	TEST_ASSERT_EQUAL(0, segment_create(folder_place(), name, SEGMENT_COMMAND, SIZE, &segment));
+	TEST_ASSERT_EQUAL(0, segment_create(folder_place(), name, SEGMENT_IMAGE, SIZE, &segment));
 }
 
 void tearDown(void)
 {
 	segment_close(&segment);
-	segment_remove(folder_place(), name, SEGMENT_COMMAND);
+	segment_remove(folder_place(), name, SEGMENT_IMAGE);
 	unlink(folder_file(name, "lock"));
 }
 
@@ -68,19 +68,19 @@ static void test_names_that_would_leave_the_directory_are_refused(void)
 
 static void test_a_segment_is_seen_only_after_it_is_shown(void)
 {
-	TEST_ASSERT_TRUE(exists("command.new"));
-	TEST_ASSERT_FALSE(exists("command"));
+	TEST_ASSERT_TRUE(exists("image.new"));
+	TEST_ASSERT_FALSE(exists("image"));
 	TEST_ASSERT_EQUAL(0, segment_show(name, &segment));
-	TEST_ASSERT_FALSE(exists("command.new"));
-	TEST_ASSERT_TRUE(exists("command"));
+	TEST_ASSERT_FALSE(exists("image.new"));
+	TEST_ASSERT_TRUE(exists("image"));
 	segment_close(&segment);
-	TEST_ASSERT_TRUE(exists("command"));
+	TEST_ASSERT_TRUE(exists("image"));
 }
 
 static void test_a_segment_never_shown_leaves_nothing_behind(void)
 {
 	segment_close(&segment);
-	TEST_ASSERT_FALSE(exists("command.new"));
+	TEST_ASSERT_FALSE(exists("image.new"));
 }
 
 static void test_a_segment_is_zeroed_whole_and_closed_to_others(void)
@@ -111,7 +111,7 @@ static void test_what_a_killed_start_left_is_no_obstacle(void)
 {
 	struct segment other;
 
-	TEST_ASSERT_EQUAL(0, segment_create(folder_place(), name, SEGMENT_COMMAND, SIZE, &other));
+	TEST_ASSERT_EQUAL(0, segment_create(folder_place(), name, SEGMENT_IMAGE, SIZE, &other));
 	segment_close(&other);
 }
 
@@ -119,27 +119,27 @@ static void test_an_old_segment_is_found_with_what_it_held(void)
 {
 	struct segment old;
 
-	TEST_ASSERT_EQUAL(-ENOENT, segment_open_old(folder_place(), name, SEGMENT_COMMAND, &old));
+	TEST_ASSERT_EQUAL(-ENOENT, segment_open_old(folder_place(), name, SEGMENT_IMAGE, &old));
 	strcpy(segment.base + 100, "kept");
 	TEST_ASSERT_EQUAL(0, segment_show(name, &segment));
-	TEST_ASSERT_EQUAL(0, segment_open_old(folder_place(), name, SEGMENT_COMMAND, &old));
+	TEST_ASSERT_EQUAL(0, segment_open_old(folder_place(), name, SEGMENT_IMAGE, &old));
 	TEST_ASSERT_EQUAL(SIZE, old.size);
 	TEST_ASSERT_EQUAL_STRING("kept", old.base + 100);
 	segment_close(&old);
 	TEST_ASSERT_EQUAL(0, ftruncate(segment.fd, 0));
-	TEST_ASSERT_EQUAL(-EPROTO, segment_open_old(folder_place(), name, SEGMENT_COMMAND, &old));
+	TEST_ASSERT_EQUAL(-EPROTO, segment_open_old(folder_place(), name, SEGMENT_IMAGE, &old));
 }
 
 static void test_a_link_or_pipe_in_the_way_is_not_opened(void)
 {
 	struct segment old;
-	const char *path = folder_file(name, "command");
+	const char *path = folder_file(name, "image");
 
 	TEST_ASSERT_EQUAL(0, symlink("/etc/passwd", path));
-	TEST_ASSERT_EQUAL(-EPERM, segment_open_old(folder_place(), name, SEGMENT_COMMAND, &old));
+	TEST_ASSERT_EQUAL(-EPERM, segment_open_old(folder_place(), name, SEGMENT_IMAGE, &old));
 	TEST_ASSERT_EQUAL(0, unlink(path));
 	TEST_ASSERT_EQUAL(0, mkfifo(path, 0600));
-	TEST_ASSERT_EQUAL(-EPERM, segment_open_old(folder_place(), name, SEGMENT_COMMAND, &old));
+	TEST_ASSERT_EQUAL(-EPERM, segment_open_old(folder_place(), name, SEGMENT_IMAGE, &old));
 }
 
 static void test_one_owsd_for_each_name(void)
@@ -297,43 +297,6 @@ static void test_a_wait_on_truncated_memory_says_so(void)
 	TEST_ASSERT_EQUAL(-EFAULT, segment_wait((void *)segment.base, 0, 1000000));
 }
 
-static void test_a_guarded_segment_survives_truncation(void)
-{
-	TEST_ASSERT_EQUAL(0, segment_guard(&segment));
-	memset(segment.base, 7, SIZE);
-	TEST_ASSERT_FALSE(segment_lost(&segment));
-	TEST_ASSERT_EQUAL(0, ftruncate(segment.fd, 0));
-	TEST_ASSERT_TRUE(segment_lost(&segment));
-	TEST_ASSERT_EQUAL(0, *(volatile char *)&segment.base[5000]);
-	TEST_ASSERT_TRUE(segment_lost(&segment));
-	memset(segment.base, 1, SIZE);
-	TEST_ASSERT_EQUAL(1, segment.base[SIZE - 1]);
-	segment_unguard(&segment);
-}
-
-/* The rest of its last page stays there, so that no touch of it would tell. */
-static void test_a_segment_that_lost_less_than_a_page_is_lost(void)
-{
-	TEST_ASSERT_FALSE(segment_lost(&segment));
-	TEST_ASSERT_EQUAL(0, ftruncate(segment.fd, SIZE - 8));
-	TEST_ASSERT_TRUE(segment_lost(&segment));
-}
-
-static void test_four_segments_have_guards_and_a_fifth_has_none(void)
-{
-	struct segment more[4];
-
-	TEST_ASSERT_EQUAL(0, segment_guard(&segment));
-	for (int i = 0; i < 4; i++) {
-		more[i] = (struct segment){
-			.base = segment.base + 4096 * (i + 10), .size = 4096, .fd = -1};
-		TEST_ASSERT_EQUAL(i < 3 ? 0 : -ENOSPC, segment_guard(&more[i]));
-	}
-	for (int i = 0; i < 3; i++)
-		segment_unguard(&more[i]);
-	segment_unguard(&segment);
-}
-
 static int run_child(void (*body)(void))
 {
 	pid_t child = fork();
@@ -355,7 +318,7 @@ static void ask_for_too_much(void)
 	signal(SIGXFSZ, SIG_IGN);
 	if (setrlimit(RLIMIT_FSIZE, &limit) < 0)
 		_exit(1);
-	_exit(segment_create(folder_place(), name, SEGMENT_IMAGE, SIZE, &other) == -EFBIG &&
+	_exit(segment_create(folder_place(), name, SEGMENT_FORCE, SIZE, &other) == -EFBIG &&
 	                      other.fd < 0
 	              ? 7
 	              : 8);
@@ -367,78 +330,7 @@ static void test_memory_that_cannot_be_had_is_an_error_now(void)
 
 	TEST_ASSERT_TRUE(WIFEXITED(status));
 	TEST_ASSERT_EQUAL(7, WEXITSTATUS(status));
-	TEST_ASSERT_FALSE(exists("image.new"));
-}
-
-static void touch_foreign(void)
-{
-	struct segment other;
-	struct sigaction by_default = {.sa_handler = SIG_DFL};
-
-	sigaction(SIGBUS, &by_default, NULL);
-	if (segment_create(folder_place(), name, SEGMENT_IMAGE, SIZE, &other) < 0 ||
-	    segment_guard(&segment) < 0 || unlinkat(other.place, other.temporary, 0) < 0 ||
-	    ftruncate(other.fd, 0) < 0)
-		_exit(1);
-	*(volatile char *)other.base = 1;
-}
-
-static void raise_it(void)
-{
-	struct sigaction by_default = {.sa_handler = SIG_DFL};
-
-	sigaction(SIGBUS, &by_default, NULL);
-	if (segment_guard(&segment) < 0)
-		_exit(1);
-	raise(SIGBUS);
-}
-
-static void exit_seven(int number)
-{
-	_exit(number == SIGBUS ? 7 : 8);
-}
-
-static void own_handler(void)
-{
-	struct sigaction mine = {.sa_handler = exit_seven};
-
-	sigaction(SIGBUS, &mine, NULL);
-	if (segment_guard(&segment) < 0)
-		_exit(1);
-	raise(SIGBUS);
-}
-
-static void own_handler_comes_back(void)
-{
-	struct sigaction mine = {.sa_handler = exit_seven};
-
-	sigaction(SIGBUS, &mine, NULL);
-	if (segment_guard(&segment) < 0)
-		_exit(1);
-	segment_unguard(&segment);
-	sigaction(SIGBUS, NULL, &mine);
-	_exit(mine.sa_handler == exit_seven ? 7 : 8);
-}
-
-static void test_a_bus_error_elsewhere_still_kills(void)
-{
-	int status = run_child(touch_foreign);
-
-	TEST_ASSERT_TRUE(WIFSIGNALED(status));
-	TEST_ASSERT_EQUAL(SIGBUS, WTERMSIG(status));
-	status = run_child(raise_it);
-	TEST_ASSERT_TRUE(WIFSIGNALED(status));
-	TEST_ASSERT_EQUAL(SIGBUS, WTERMSIG(status));
-}
-
-static void test_an_earlier_handler_is_called_for_what_is_not_ours(void)
-{
-	int status = run_child(own_handler);
-
-	TEST_ASSERT_TRUE(WIFEXITED(status));
-	TEST_ASSERT_EQUAL(7, WEXITSTATUS(status));
-	status = run_child(own_handler_comes_back);
-	TEST_ASSERT_EQUAL(7, WEXITSTATUS(status));
+	TEST_ASSERT_FALSE(exists("force.new"));
 }
 
 int main(void)
@@ -459,11 +351,6 @@ int main(void)
 	RUN_TEST(test_a_wait_ends_in_time);
 	RUN_TEST(test_a_long_wait_ends_by_a_wake_from_another_mapping);
 	RUN_TEST(test_a_wait_on_truncated_memory_says_so);
-	RUN_TEST(test_a_guarded_segment_survives_truncation);
-	RUN_TEST(test_a_segment_that_lost_less_than_a_page_is_lost);
-	RUN_TEST(test_four_segments_have_guards_and_a_fifth_has_none);
 	RUN_TEST(test_memory_that_cannot_be_had_is_an_error_now);
-	RUN_TEST(test_a_bus_error_elsewhere_still_kills);
-	RUN_TEST(test_an_earlier_handler_is_called_for_what_is_not_ours);
 	return UNITY_END();
 }
