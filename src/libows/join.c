@@ -145,8 +145,7 @@ static int receive(struct join *join, struct ows_welcome *welcome, int *memory)
 		n = recvmsg(join->connection, &message, MSG_CMSG_CLOEXEC | MSG_DONTWAIT);
 	if (n < 0)
 		return errno == EAGAIN || errno == EINTR ? -EAGAIN : -ENOTCONN;
-	err = n == 0 ? -ENOTCONN
-	             : check_welcome(join, welcome, n, take_descriptors(&message, fds));
+	err = n == 0 ? -ENOTCONN : check_welcome(join, welcome, n, take_descriptors(&message, fds));
 	if (message.msg_flags & MSG_CTRUNC)
 		err = -EMFILE; /* no room in the table of descriptors */
 	if (err) {

@@ -35,8 +35,7 @@ static int make_mine(struct ows *h)
 static bool fits(const struct give *give, const struct ows_map *map)
 {
 	return give->base != NULL && give_is_live(give) && give->slot_count == map->count &&
-	       give->generation == map->image->generation &&
-	       give->start_id == map->image->start_id;
+	       give->generation == map->image->generation && give->start_id == map->image->start_id;
 }
 
 /* Connect; nobody looks at the memory of the connection before. */
@@ -52,8 +51,8 @@ static int connect_again(struct ows *h)
 	err = place_open(h->place, &place);
 	if (err)
 		return err;
-	err = join_begin(&h->join, place.fd, segment_file(h->instance, "control", name),
-	                 h->program, h->mode == OWS_CONTROL);
+	err = join_begin(&h->join, place.fd, segment_file(h->instance, "control", name), h->program,
+	                 h->mode == OWS_CONTROL);
 	place_close(&place);
 	return err;
 }
@@ -81,7 +80,7 @@ int meet(struct ows *h, const struct ows_map *map, int64_t until_ns)
 	if (!err && connected)
 		err = connect_again(h);
 	while (!err) {
-		bool has = fits(&h->next, map) || (!h->join.new && fits(&h->give, map));
+		bool has = fits(&h->next, map) || (!h->join.new &&fits(&h->give, map));
 		struct ows_welcome welcome;
 		int memory;
 

@@ -15,9 +15,9 @@
 #include "src/shm/place.h"
 
 #define DEAD_LEAST_NS (2 * NS_PER_S)
-#define OPEN_NS DEAD_LEAST_NS       /* the longest wait of ows_open() for owsd's welcome */
+#define OPEN_NS DEAD_LEAST_NS          /* the longest wait of ows_open() for owsd's welcome */
 #define OPEN_SLICE_NS (50 * NS_PER_MS) /* then it looks whether there is another image */
-#define REOPEN_NS (20 * NS_PER_MS)  /* the longest wait of ows_reopen() */
+#define REOPEN_NS (20 * NS_PER_MS)     /* the longest wait of ows_reopen() */
 
 static void take_map(struct ows *h, const struct ows_map *map)
 {

@@ -19,8 +19,8 @@
 
 struct control {
 	struct ows *h;
-	int err;                   /* of the line */
-	const char *why;           /* what is wrong with the line itself; NULL: err says it */
+	int err;         /* of the line */
+	const char *why; /* what is wrong with the line itself; NULL: err says it */
 	char line[LINE_MAX + 256];
 };
 

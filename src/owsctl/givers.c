@@ -41,7 +41,8 @@ static const char *giver_state(const struct ows_giver *giver)
 
 static void add_giver(struct who *who, struct table *table, const struct ows_giver *giver)
 {
-	char program[WHO_TEXT], user[WHO_TEXT], since[WHEN_TEXT], beat[32], commands[16], refused[16];
+	char program[WHO_TEXT], user[WHO_TEXT], since[WHEN_TEXT], beat[32], commands[16],
+		refused[16];
 
 	snprintf(commands, sizeof(commands), "%" PRIu32, giver->commands);
 	snprintf(refused, sizeof(refused), "%" PRIu32, giver->refused);
@@ -63,12 +64,11 @@ static void add_origin(struct who *who, struct table *table, const char *name,
 	bool none = origin->reason == OWS_REASON_NONE;
 
 	who->full |= !table_add(
-		table,
-		(const char *const[]){
-			name, ows_reason_text(origin->reason),
-			none ? "-" : who_program(&origin->who, program),
-			none ? "-" : who_user(&origin->who, user), origin->who.person,
-			none ? "-" : when_span(who->now.boot - origin->taken_ns, ago)});
+		table, (const char *const[]){
+			       name, ows_reason_text(origin->reason),
+			       none ? "-" : who_program(&origin->who, program),
+			       none ? "-" : who_user(&origin->who, user), origin->who.person,
+			       none ? "-" : when_span(who->now.boot - origin->taken_ns, ago)});
 }
 
 /* The next output that the patterns select, from *signal on, with the origin of its command. */

@@ -15,7 +15,7 @@
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
 
-#define NAME "served protocol"         /* of the giver that the clients of the protocol are */
+#define NAME "served protocol"          /* of the giver that the clients of the protocol are */
 #define MEET_NS (20 * INT64_C(1000000)) /* owsd's own control room answers at once */
 
 /*

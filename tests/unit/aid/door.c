@@ -91,8 +91,7 @@ static void send_welcome(const struct door *door, const struct door_giver *giver
 	int fds[8] = {giver->memory_fd, giver->bell, giver->news, giver->bell,
 	              giver->bell,      giver->bell, giver->bell, giver->bell};
 	struct ows_welcome welcome;
-	struct iovec data = {.iov_base = &welcome,
-	                     .iov_len = fill_welcome(door, serial, &welcome)};
+	struct iovec data = {.iov_base = &welcome, .iov_len = fill_welcome(door, serial, &welcome)};
 	struct msghdr message = {.msg_iov = &data, .msg_iovlen = 1};
 
 	if (fd_count > 0) {

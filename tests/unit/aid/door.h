@@ -15,14 +15,14 @@
 
 enum door_lie {
 	DOOR_HONEST,
-	DOOR_SILENT,       /* it reads the hello and sends nothing */
-	DOOR_HANGS_UP,     /* it closes the connection instead of a welcome */
-	DOOR_REFUSES,      /* -EACCES */
+	DOOR_SILENT,   /* it reads the hello and sends nothing */
+	DOOR_HANGS_UP, /* it closes the connection instead of a welcome */
+	DOOR_REFUSES,  /* -EACCES */
 	DOOR_OTHER_MAGIC,
 	DOOR_OTHER_MAJOR,
-	DOOR_SHORT,        /* half a welcome */
-	DOOR_NO_FDS,       /* a welcome without descriptors */
-	DOOR_ONE_FD,       /* with the memory alone */
+	DOOR_SHORT,  /* half a welcome */
+	DOOR_NO_FDS, /* a welcome without descriptors */
+	DOOR_ONE_FD, /* with the memory alone */
 	DOOR_MANY_FDS,
 	DOOR_NO_SEALS,
 	DOOR_OTHER_SIZE,   /* it promises more than the memory has */
