@@ -150,6 +150,7 @@ static void setup(void)
 		make_handle(i);
 		engine.givers[i].is = GIVER_CONNECTED;
 		engine.givers[i].as.memory = givers[i];
+		engine.place_end = i + 1;
 	}
 	serving.engine = &engine;
 	serving.memory.image.header = &header;
