@@ -359,3 +359,15 @@ void control_reloaded(struct control *c)
 	pthread_mutex_unlock(&c->lock);
 	wake(c);
 }
+
+void control_replaced(struct control *c)
+{
+	pthread_mutex_lock(&c->lock);
+	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+		bool is_in = __atomic_load_n(&c->places[i].state, __ATOMIC_ACQUIRE) == CONTROL_IN;
+
+		if (is_in && write(c->places[i].news, "", 1) < 0)
+			continue; /* as in control_news() */
+	}
+	pthread_mutex_unlock(&c->lock);
+}

@@ -79,5 +79,10 @@ void control_prepare(struct control *control, const struct config *config,
 bool control_prepared(struct control *control, unsigned *place, struct control_turn *turn);
 /* The engine has adopted and uses the memories of before no more: send the givers the new ones. */
 void control_reloaded(struct control *control);
+/*
+ * The new image is in place, and the old one is retired: ring the news of all givers. They said in
+ * the memory of before that they wait.
+ */
+void control_replaced(struct control *control);
 
 #endif

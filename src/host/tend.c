@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "hal/bus/time.h"
+#include "src/control/control.h"
 #include "src/host/engine_thread.h"
 #include "src/host/last.h"
 #include "src/host/make.h"
@@ -44,10 +45,13 @@ void host_finish_reload(struct host *h)
 	bool before = h->unfinished != 0;
 	char why[512];
 
-	if (h->unshown)
+	if (h->unshown) {
 		h->unshown = memory_show(&h->now->memory, h->log, why, sizeof(why)) != 0;
-	if (h->unshown)
-		report_unfinished(h, why);
+		if (h->unshown)
+			report_unfinished(h, why);
+		else
+			control_replaced(h->control);
+	}
 	if (h->unstarted)
 		h->unstarted = host_start_workers(h->now, why, sizeof(why)) ||
 		               last_start(h->now->last) ||
