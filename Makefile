@@ -161,7 +161,7 @@ SOURCES  := $(wildcard src/*/*.c hal/*/*.c hal/*/*/*.c)
 LIBOWS   := $(wildcard src/libows/*.c)
 # Programs to start from, and configurations
 EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py docs/examples/*.go \
-            docs/examples/*.rio)
+            docs/examples/*.rio docs/examples/*.rs)
 # Those that another program builds or loads, a folder for each
 HOSTED   := $(patsubst docs/examples/%/,%,$(wildcard docs/examples/*/))
 PYTHON   := $(wildcard src/libows/*.py)
