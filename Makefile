@@ -33,8 +33,8 @@
 #                                 test-gpio-pi the same of a Raspberry Pi 3
 #   make test-image               an image for a Raspberry Pi, booted in QEMU; CASES=main for less
 
-VERSION  := 0.9.0
-SOMAJOR  := 0
+VERSION  := 0.10.0
+SOMAJOR  := 1
 B        ?= build
 PREFIX   ?= /usr/local
 DESTDIR  ?=

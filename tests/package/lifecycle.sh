@@ -31,7 +31,7 @@ does "what it needs is in the system's archive ($libraries)" \
 	sh -c "apt-get -q update && $apt install $libraries"
 everything >/tmp/before
 
-does 'the packages are installed' $apt install ./libows0_*.deb ./libows-dev_*.deb \
+does 'the packages are installed' $apt install ./libows1_*.deb ./libows-dev_*.deb \
 	./python3-ows_*.deb ./owsd_*.deb
 version=$(dpkg-query -W -f '${Version}' owsd)
 same 'their user is in the groups that it needs' 'gpio i2c owsd owsd-control' \
@@ -95,7 +95,7 @@ does 'a configuration that was deleted stays deleted' test ! -e /etc/owsd/OWS.ri
 cp /tmp/OWS.rio /etc/owsd/OWS.rio
 cp /tmp/OWS.rio /etc/owsd/HOUSE.rio
 service owsd restart
-does 'all are purged' $apt purge owsd libows0 libows-dev python3-ows
+does 'all are purged' $apt purge owsd libows1 libows-dev python3-ows
 does 'nothing runs' refused pgrep -x owsd
 same 'no segment stays' '' "$(find /run/owsd /var/lib/owsd 2>/dev/null)"
 does 'what its owner has made does' test -e /etc/owsd/HOUSE.rio

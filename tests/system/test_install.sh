@@ -13,14 +13,14 @@ on_copy() {
 [ -e "$OWSD_BUILD/libows.so" ] || { echo "libows is not built"; exit 1; }
 on_copy install
 
-for f in lib/libows.so lib/libows.so.0 lib/libows.a lib/pkgconfig/libows.pc include/ows.h \
+for f in lib/libows.so lib/libows.so.1 lib/libows.a lib/pkgconfig/libows.pc include/ows.h \
 	include/ows_layout.h share/owsd/boards/raspberry-pi-4.board \
 	share/owsd/examples/openplc/owsd.cpp share/owsd/examples/linuxcnc/owsd_hal.c; do
 	[ -s "$root/opt/owsd/$f" ] || { echo "missing: $f"; exit 1; }
 done
 
 # Only ows_* is offered, by both libraries
-nm -D --defined-only "$root/opt/owsd/lib/libows.so.0" | awk 'NF == 3 { sub(/@.*/, "", $3); print $3 }' >dynamic
+nm -D --defined-only "$root/opt/owsd/lib/libows.so.1" | awk 'NF == 3 { sub(/@.*/, "", $3); print $3 }' >dynamic
 nm -g --defined-only "$root/opt/owsd/lib/libows.a" | awk 'NF == 3 { print $3 }' >static
 for list in dynamic static; do
 	[ -s $list ]
