@@ -383,7 +383,7 @@ struct ows_giver_header { /* 256 bytes */
 	uint32_t beat;      /* counts */
 	uint32_t period_ms; /* promised longest time between two beats; 0: none */
 	uint32_t goodbye;   /* 1: the giver ends in order; its commands stay in force */
-	uint32_t waits;     /* 1: ring the eventfd of news at the next one */
+	uint32_t waits;     /* 1: write into the pipe of news at the next one */
 	uint32_t spare2[11];
 
 	uint32_t spare3[16];
@@ -392,9 +392,9 @@ struct ows_giver_header { /* 256 bytes */
 /*
  * The socket NAME.control is of type SOCK_SEQPACKET. The program sends one hello; owsd answers with
  * one welcome. With err 0 three descriptors come along: the memory (a memfd sealed against
- * shrinking, growing and further seals), the bell and the news (eventfds). After a reload owsd
- * sends another welcome, with the memory of the new generation alone. The connection lasts as long
- * as the giver.
+ * shrinking, growing and further seals), the bell (an eventfd) and the news (the end of a pipe that
+ * is read). After a reload owsd sends another welcome, with the memory of the new generation alone.
+ * The connection lasts as long as the giver.
  */
 struct ows_hello { /* 128 bytes */
 	uint32_t magic;
