@@ -144,10 +144,8 @@ static void put_own(struct engine *e, struct signal *s, enum ows_reason reason,
 	s->command.reason = reason;
 	answer_for(e, s, GIVER_NOBODY);
 	engine_origin(e, s, reason, &because, &before);
-	if (reason == OWS_REASON_SAFE) {
-		e->counters.safe_outputs++;
-		store_last(e, s);
-	}
+	e->counters.safe_outputs += reason == OWS_REASON_SAFE;
+	store_last(e, s); /* the owsd before may have been killed before it had stored it */
 }
 
 static void put_safe(struct engine *e, struct signal *s, const struct ows_who *who)
@@ -179,7 +177,8 @@ static void put_configured(struct engine *e, struct signal *s, const struct forc
 	if (item->starts_last && left && left->given)
 		put_own(e, s, OWS_REASON_LAST, &owsd_itself, left->value, left_text, left->len);
 	else if (item->starts_last && e->last &&
-	         e->last->find(e->last->ctx, engine_row(s), &value, text, sizeof(text), &len))
+	         e->last->find(e->last->ctx, engine_row(s), &value, text, sizeof(text), &len) &&
+	         (signal_is_string(s) || signal_accepts(s, value)))
 		put_own(e, s, OWS_REASON_LAST, &owsd_itself, value, text, len);
 	else if (item->output && item->has_init)
 		put_own(e, s, OWS_REASON_INIT, &owsd_itself, item->init_value, item->init_text,

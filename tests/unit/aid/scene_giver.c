@@ -107,6 +107,8 @@ static uint32_t put(void *ctx, uint32_t row, int64_t value, const char *text, ui
 	struct scene *s = ctx;
 	struct scene_stored *at = &s->disk.rows[row];
 
+	if (s->disk.full)
+		return ++s->disk.tickets;
 	at->name = s->items[row].name;
 	at->known = true;
 	at->value = value;
@@ -114,7 +116,7 @@ static uint32_t put(void *ctx, uint32_t row, int64_t value, const char *text, ui
 	if (text)
 		memcpy(at->text, text, len);
 	s->disk.tickets++;
-	if (!s->disk.waits && !s->disk.full)
+	if (!s->disk.waits)
 		s->disk.stored = s->disk.tickets;
 	return s->disk.tickets;
 }

@@ -139,6 +139,40 @@ static void test_what_was_stored_last_is_written_once_after_a_start(void)
 	}
 }
 
+static void test_what_the_owsd_before_could_not_store_is_stored_by_the_next(void)
+{
+	start();
+	s.disk.full = true;
+	scene_set(&s, 1, 7);
+	scene_run(&s, SCENE_S);
+	s.disk.full = false; /* owsd is killed before it tries again */
+	scene_restart(&s);
+	scene_up(&s);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("7", scene_at(&s, PIO));
+	scene_put(&s, PIO, "0", 0);
+	scene_reboot(&s);
+	scene_up(&s);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("7", scene_at(&s, PIO));
+}
+
+static void test_what_was_stored_and_is_beyond_max_now_gives_way_to_initvalue(void)
+{
+	start();
+	scene_set(&s, 1, 70);
+	scene_run(&s, SCENE_S);
+	s.items[0].has_init = true;
+	s.items[0].init_value = 5;
+	s.items[0].scale.has_max = true;
+	s.items[0].scale.max = 50;
+	scene_reboot(&s);
+	scene_up(&s);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("5", scene_at(&s, PIO));
+	TEST_ASSERT_EQUAL_UINT(OWS_REASON_INIT, scene_origin(&s, 1).reason);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -149,5 +183,7 @@ int main(void)
 	RUN_TEST(test_a_reload_goes_on_waiting_for_the_disk);
 	RUN_TEST(test_a_text_begins_as_it_was_last);
 	RUN_TEST(test_what_was_stored_last_is_written_once_after_a_start);
+	RUN_TEST(test_what_the_owsd_before_could_not_store_is_stored_by_the_next);
+	RUN_TEST(test_what_was_stored_and_is_beyond_max_now_gives_way_to_initvalue);
 	return UNITY_END();
 }
