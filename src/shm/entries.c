@@ -87,9 +87,11 @@ static void carry(struct ows_journal_entry *to, const struct ows_journal_entry *
 	for (uint32_t n = head > OWS_JOURNAL ? head - OWS_JOURNAL : 0; n != head; n++) {
 		struct ows_journal_entry entry = from[n % OWS_JOURNAL];
 
+		/* the place may have an entry of the new image, from before it took over */
 		if (entry.number != n || !entry.record || records[entry.record - 1] == UINT32_MAX)
-			continue;
-		entry.record = records[entry.record - 1] + 1;
+			entry = (struct ows_journal_entry){0};
+		else
+			entry.record = records[entry.record - 1] + 1;
 		write_entry(&to[n % OWS_JOURNAL], &entry, sizeof(entry));
 	}
 }

@@ -179,6 +179,25 @@ static void test_origins_and_journal_go_on_over_a_reload(void)
 	TEST_ASSERT_EQUAL_UINT32(before, entered());
 }
 
+/* The entry 0 is of "begun", which goes; "out" gets an InitValue, but not in force. */
+static void replace_begun(struct config *config)
+{
+	config->items[0].has_init = true;
+	config->items[0].init_value = 7;
+	config->items[1] = config->items[2];
+	config->item_count = 2;
+}
+
+static void test_over_a_reload_the_journal_gets_no_command_that_was_not_in_force(void)
+{
+	TEST_ASSERT_EQUAL_UINT32(1, entered());
+	scene_reload(&s, replace_begun);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(OWS_REASON_NONE, scene_origin(&s, 1).reason);
+	TEST_ASSERT_EQUAL_UINT32(1, entered());
+	TEST_ASSERT_EQUAL_UINT32(0, entry(0)->record);
+}
+
 static void test_a_refused_command_changes_neither(void)
 {
 	uint32_t before;
@@ -228,6 +247,7 @@ int main(void)
 	RUN_TEST(test_another_giver_is_an_entry_at_once_and_what_was_before_it_is_not_lost);
 	RUN_TEST(test_safevalue_names_the_giver_that_is_lost);
 	RUN_TEST(test_origins_and_journal_go_on_over_a_reload);
+	RUN_TEST(test_over_a_reload_the_journal_gets_no_command_that_was_not_in_force);
 	RUN_TEST(test_a_refused_command_changes_neither);
 	RUN_TEST(test_the_image_shows_who_is_connected);
 	return UNITY_END();
