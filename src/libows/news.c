@@ -27,13 +27,19 @@ static int await(int fd, int64_t left_ns, bool *gone)
 	return n > 0 && !*gone;
 }
 
+/* A forked child leaves its parent the news. */
+static bool has_descriptor(const struct ows *h)
+{
+	return h->join.news >= 0 && !handle_is_forked(h);
+}
+
 void news_arm(struct ows *h)
 {
 	int saved = errno;
 	char room[64];
 	bool gone;
 
-	if (h->join.news < 0)
+	if (!has_descriptor(h))
 		return;
 	while (await(h->join.news, 0, &gone) == 1)
 		if (read(h->join.news, room, sizeof(room)) <= 0)
@@ -53,9 +59,9 @@ int news_sleep(struct ows *h, uint32_t seen, int64_t left_ns)
 	news_arm(h);
 	if (word_get(word) != seen)
 		return 0;
-	n = h->join.news < 0 ? 0 : await(h->join.news, left_ns, &gone);
+	n = has_descriptor(h) ? await(h->join.news, left_ns, &gone) : 0;
 	errno = saved;
-	if (h->join.news < 0 || gone)
+	if (!has_descriptor(h) || gone)
 		return segment_wait(word, seen, left_ns);
 	return n > 0 ? 0 : n < 0 ? n : -ETIMEDOUT;
 }

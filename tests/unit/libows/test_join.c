@@ -3,6 +3,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -161,6 +162,29 @@ static void test_a_program_without_a_free_descriptor_is_told_so(void)
 	TEST_ASSERT_EQUAL(0, status);
 }
 
+static void test_a_forked_child_takes_no_news_from_its_parent(void)
+{
+	struct pollfd poll_fd = {.events = POLLIN};
+	const uint64_t one = 1;
+	struct ows *h;
+	uint32_t news = 0;
+	pid_t child;
+	int status;
+
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_CONTROL, &h));
+	poll_fd.fd = ows_fd(h);
+	TEST_ASSERT_GREATER_OR_EQUAL(0, poll_fd.fd);
+	ows_wait(h, &news, 0);
+	TEST_ASSERT_EQUAL(sizeof(one), write(door_giver(in.door, 0)->news, &one, sizeof(one)));
+	child = fork();
+	if (child == 0)
+		_exit(ows_wait(h, &news, 1000000) == 0 ? 0 : 1);
+	TEST_ASSERT_EQUAL(child, waitpid(child, &status, 0));
+	TEST_ASSERT_EQUAL(0, status);
+	TEST_ASSERT_EQUAL(1, poll(&poll_fd, 1, 0));
+	ows_close(h);
+}
+
 static void test_nobody_who_listens_is_no_owsd(void)
 {
 	struct ows *h;
@@ -213,6 +237,7 @@ int main(void)
 	RUN_TEST(test_no_descriptor_is_left_behind);
 	RUN_TEST(test_descriptors_are_closed_on_exec);
 	RUN_TEST(test_a_program_without_a_free_descriptor_is_told_so);
+	RUN_TEST(test_a_forked_child_takes_no_news_from_its_parent);
 	RUN_TEST(test_nobody_who_listens_is_no_owsd);
 	RUN_TEST(test_a_hang_up_raises_no_sigpipe);
 	RUN_TEST(test_errno_is_left_alone);
