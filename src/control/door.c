@@ -259,21 +259,34 @@ void door_event(struct control *c, struct control_place *p)
 	}
 }
 
+/* Programs of many users, and such as only want to hear of news, lock nobody else out. */
+static unsigned most_places(const struct control *c, const struct peer *peer)
+{
+	if (!peer->uid || peer->uid == c->rights.own)
+		return OWS_GIVERS;
+	return OWS_GIVERS -
+	       (rights_set_any(&c->rights, peer) ? CONTROL_KEPT : CONTROL_KEPT_FROM_READERS);
+}
+
 /* A free place for that user; NULL: all are taken, or as many as a user may have. */
-static struct control_place *find_place(struct control *c, uid_t uid)
+static struct control_place *find_place(struct control *c, const struct peer *peer)
 {
 	struct control_place *found = NULL;
-	unsigned of_user = 0;
+	unsigned of_user = 0, taken = 0;
 
 	for (unsigned i = 0; i < OWS_GIVERS; i++) {
 		struct control_place *p = &c->places[i];
 
-		if (state_of(p) == CONTROL_FREE)
+		if (state_of(p) == CONTROL_FREE) {
 			found = found ? found : p;
-		else if (p->who.uid == uid)
-			of_user++;
+			continue;
+		}
+		taken++;
+		of_user += p->who.uid == peer->uid;
 	}
-	return uid && of_user >= CONTROL_OF_USER ? NULL : found;
+	if (taken >= most_places(c, peer))
+		return NULL;
+	return peer->uid && of_user >= CONTROL_OF_USER ? NULL : found;
 }
 
 static void meet(struct control *c, int fd)
@@ -283,7 +296,7 @@ static void meet(struct control *c, int fd)
 	char byte;
 	int err = peer_look(fd, &peer);
 
-	p = err ? NULL : find_place(c, peer.uid);
+	p = err ? NULL : find_place(c, &peer);
 	if (!err && !rights_set_any(&c->rights, &peer) && !rights_read(&c->rights, &peer))
 		err = -EACCES;
 	else if (!err && !p)

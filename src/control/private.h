@@ -13,6 +13,9 @@
 
 /* Limits of a user, which do not hold for root. */
 #define CONTROL_OF_USER 32
+/* Places that are kept for root and owsd's user, and of the rest for those who may command. */
+#define CONTROL_KEPT 8
+#define CONTROL_KEPT_FROM_READERS 64
 #define CONTROL_MEMORY (64u << 20)
 /* In that time a program that connected has to say who it is. */
 #define CONTROL_HELLO_NS (2 * NS_PER_S)

@@ -17,9 +17,14 @@
 #define SOMEBODY 54321
 
 static struct control_client clients[OWS_GIVERS];
-static struct config_who somebody = {.id = SOMEBODY};
+#define USERS 5
+static struct config_who users[USERS] = {{.id = SOMEBODY},
+                                         {.id = SOMEBODY + 1},
+                                         {.id = SOMEBODY + 2},
+                                         {.id = SOMEBODY + 3},
+                                         {.id = SOMEBODY + 4}};
 static struct config_allow allow = {
-	.text = "* user:54321", .pattern = "*", .who = &somebody, .who_count = 1};
+	.text = "* user:54321", .pattern = "*", .who = users, .who_count = USERS};
 
 void setUp(void)
 {
@@ -83,13 +88,13 @@ static void test_no_more_givers_join_than_there_are_places(void)
 }
 
 /* Its result is how many joined and, if half, how many connections it could leave half open. */
-static int crowd(bool half, int hold)
+static int crowd(uint32_t uid, bool half, int hold)
 {
 	struct control_client client;
 	int joined = 0;
 	char byte;
 
-	if (setgid(SOMEBODY) < 0 || setuid(SOMEBODY) < 0)
+	if (setgid(uid) < 0 || setuid(uid) < 0)
 		return 255;
 	for (int i = 0; i < 50; i++) {
 		if (half)
@@ -114,7 +119,7 @@ static void check_crowd(bool half, int expected)
 	pid = fork();
 	if (pid == 0) {
 		close(hold[1]);
-		_exit(crowd(half, hold[0]));
+		_exit(crowd(SOMEBODY, half, hold[0]));
 	}
 	control_wait_count("control_connections", 32);
 	/* they are in nobody's way */
@@ -136,6 +141,32 @@ static void test_a_user_has_32_places_at_most(void)
 static void test_connections_that_say_nothing_count_too(void)
 {
 	check_crowd(true, 100);
+}
+
+static void test_many_users_leave_root_a_place(void)
+{
+	struct control_client client;
+	pid_t pids[USERS];
+	int hold[2];
+
+	if (getuid())
+		TEST_IGNORE_MESSAGE("only root can be another user");
+	TEST_ASSERT_EQUAL(0, pipe(hold));
+	for (unsigned i = 0; i < USERS; i++) {
+		pids[i] = fork();
+		if (pids[i] == 0) {
+			close(hold[1]);
+			_exit(crowd(users[i].id, false, hold[0]));
+		}
+	}
+	control_wait_count("control_refused_limits", USERS * 50 - (OWS_GIVERS - 8));
+	TEST_ASSERT_EQUAL(0, control_join(&client, OWS_HELLO_COMMAND, "root"));
+	control_leave(&client);
+	close(hold[1]);
+	for (unsigned i = 0; i < USERS; i++)
+		TEST_ASSERT_EQUAL(pids[i], waitpid(pids[i], NULL, 0));
+	close(hold[0]);
+	control_wait_count("control_connections", 0);
 }
 
 static void test_a_thousand_programs_at_once_each_get_an_answer(void)
@@ -183,6 +214,7 @@ int main(void)
 	RUN_TEST(test_no_more_givers_join_than_there_are_places);
 	RUN_TEST(test_a_user_has_32_places_at_most);
 	RUN_TEST(test_connections_that_say_nothing_count_too);
+	RUN_TEST(test_many_users_leave_root_a_place);
 	RUN_TEST(test_a_thousand_programs_at_once_each_get_an_answer);
 	return UNITY_END();
 }
