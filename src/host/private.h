@@ -32,6 +32,7 @@ struct host {
 	pthread_t thread;
 	bool running;
 	bool left_behind; /* a bus is stuck in the kernel, and keeps the memory that it uses */
+	bool disk_stuck;  /* a thread that stores last commands is, and may write the file yet */
 	uint32_t stop;
 	struct bells bells;
 	struct control *control;

@@ -43,12 +43,15 @@ static bool end_workers(struct serving *before, const struct serving *now,
 /* One thread at a time stores in the file. */
 static bool end_last(struct host *h, struct serving *before)
 {
-	if (last_stop(before->last, END_NS))
-		return true;
-	log_err(h->log,
-	        "the disk of the last commands is stuck; owsd stores none until it restarts");
-	last_give_up(h->now->last);
-	return false;
+	bool ended = last_stop(before->last, END_NS);
+
+	if (!ended)
+		log_err(h->log,
+		        "the disk of the last commands is stuck; owsd stores none until it restarts");
+	h->disk_stuck |= !ended;
+	if (h->disk_stuck)
+		last_give_up(h->now->last);
+	return ended;
 }
 
 /*
