@@ -108,20 +108,10 @@ void engine_destroy(struct engine *e)
 	free(e);
 }
 
-/* So late nobody ran: the machine was suspended, or owsd stopped. */
-#define GAP_NS (2 * NS_PER_S)
-
-static void begin_call(struct engine *e, int64_t now_ns)
-{
-	if (e->time.next_ns && now_ns - e->time.next_ns > GAP_NS)
-		e->time.gap_ns = now_ns;
-	e->time.now_ns = now_ns;
-}
-
 void engine_answer(struct engine *e, unsigned port, const struct bus_answer *answer, int64_t now_ns)
 {
 	assert(port < e->lane_count);
-	begin_call(e, now_ns);
+	engine_begin_call(e, now_ns);
 	lane_answer(&e->lanes[port], answer, now_ns);
 	engine_route(e, now_ns);
 }
@@ -129,7 +119,7 @@ void engine_answer(struct engine *e, unsigned port, const struct bus_answer *ans
 void engine_event(struct engine *e, unsigned port, const struct bus_event *event, int64_t now_ns)
 {
 	assert(port < e->lane_count);
-	begin_call(e, now_ns);
+	engine_begin_call(e, now_ns);
 	lane_event(&e->lanes[port], event, now_ns);
 	engine_route(e, now_ns);
 }
@@ -139,7 +129,7 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 	uint64_t before = e->time.period;
 	int64_t next, groups, deferred;
 
-	begin_call(e, now_ns);
+	engine_begin_call(e, now_ns);
 	e->counters.steps++;
 	engine_turn(e, now_ns);
 	deferred = engine_intake_limited(e, now_ns);
@@ -149,7 +139,7 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 		for (unsigned i = 0; i < e->lane_count; i++)
 			if (e->lanes[i].lent.count)
 				lane_show_reads(&e->lanes[i]);
-		engine_look_givers(e, now_ns);
+		engine_look_givers(e);
 		engine_publish_counters(e);
 		engine_publish_driver(e, now_ns);
 	}

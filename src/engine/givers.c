@@ -10,6 +10,7 @@
 #include "src/engine/givers.h"
 #include "src/engine/in_force.h"
 #include "src/engine/intake.h"
+#include "src/engine/schedule.h"
 #include "src/engine/state.h"
 #include "src/shm/entries.h"
 #include "src/text/log.h"
@@ -40,10 +41,10 @@ static const char *plural(unsigned n)
 
 /* --- The beat --------------------------------------------------------------------------------- */
 
-static void lose(struct engine *e, uint32_t giver, int64_t now_ns)
+static void lose(struct engine *e, uint32_t giver, int64_t awake_ns)
 {
 	struct known_giver *g = &e->givers[giver];
-	unsigned rows = g->rows, safe = engine_lose(e, giver, now_ns, &g->lose_ns);
+	unsigned rows = g->rows, safe = engine_lose(e, giver, awake_ns, &g->lose_ns);
 
 	if (g->rows == rows)
 		return;
@@ -62,42 +63,44 @@ static void forget(struct engine *e, uint32_t giver)
 	engine_remember_giver(e, giver);
 }
 
-static void look_at_beat(struct engine *e, uint32_t place, int64_t now_ns)
+static void look_at_beat(struct engine *e, uint32_t place, int64_t awake_ns)
 {
 	struct known_giver *g = &e->givers[place];
 	bool changes, late;
 
-	engine_hear(e, place, now_ns);
-	late = g->period_ms && now_ns - g->heard_ns > g->period_ms * NS_PER_MS;
+	engine_hear(e, place);
+	late = g->period_ms && awake_ns - g->heard_ns > g->period_ms * NS_PER_MS;
 	if (late && !g->late)
 		e->counters.lost_givers++;
 	changes = late != g->late || g->period_ms != e->image->givers[place].period_ms;
 	g->late = late;
-	if (late && g->rows && now_ns > g->lose_ns)
-		lose(e, place, now_ns);
+	if (late && g->rows && awake_ns > g->lose_ns)
+		lose(e, place, awake_ns);
 	if (changes || g->shown != g->commands + g->refused)
 		show_giver(e, place);
 }
 
-static void look_at_absent(struct engine *e, uint32_t index, int64_t now_ns)
+static void look_at_absent(struct engine *e, uint32_t index, int64_t awake_ns)
 {
 	struct known_giver *g = &e->givers[index];
 
-	if (g->rows && now_ns > g->lose_ns)
-		lose(e, index, now_ns);
+	if (g->rows && awake_ns > g->lose_ns)
+		lose(e, index, awake_ns);
 	if (g->rows)
 		return;
 	forget(e, index);
 }
 
-void engine_look_givers(struct engine *e, int64_t now_ns)
+void engine_look_givers(struct engine *e)
 {
+	int64_t awake_ns = engine_awake_ns(e);
+
 	for (uint32_t i = 0; i < e->place_end; i++)
 		if (e->givers[i].is == GIVER_CONNECTED)
-			look_at_beat(e, i, now_ns);
+			look_at_beat(e, i, awake_ns);
 	for (uint32_t i = OWS_GIVERS; i < ENGINE_GIVERS; i++)
 		if (e->givers[i].is != GIVER_FREE)
-			look_at_absent(e, i, now_ns);
+			look_at_absent(e, i, awake_ns);
 }
 
 /* --- Joining ---------------------------------------------------------------------------------- */
@@ -159,6 +162,7 @@ void engine_giver_join(struct engine *e, unsigned place, const struct engine_giv
 	uint32_t former;
 
 	assert(place < OWS_GIVERS && g->is == GIVER_FREE);
+	engine_begin_call(e, now_ns);
 	giver_beat(&giver->memory, &beat);
 	*g = (struct known_giver){
 		.is = GIVER_CONNECTED,
@@ -167,7 +171,7 @@ void engine_giver_join(struct engine *e, unsigned place, const struct engine_giv
 		.beat = beat.beat,
 		.period_ms = beat.goodbye ? 0 : beat.period_ms,
 		.joined_ns = now_ns,
-		.heard_ns = now_ns,
+		.heard_ns = engine_awake_ns(e),
 		.looks_ns = INT64_MIN / 2, /* all are left */
 	};
 	if (e->place_end <= place)
@@ -191,21 +195,21 @@ static uint32_t free_absent(const struct engine *e)
 }
 
 /* It promised a beat and said no goodbye: it may come back until its time is over. */
-static void hang_up(struct engine *e, uint32_t place, int64_t now_ns)
+static void hang_up(struct engine *e, uint32_t place, int64_t awake_ns)
 {
 	struct known_giver *g = &e->givers[place];
 	uint32_t to = free_absent(e);
 
 	e->counters.lost_givers += !g->late;
 	g->is = GIVER_HUNG_UP;
-	g->left_ns = now_ns;
+	g->left_ns = awake_ns;
 	g->lose_ns = 0;
 	if (to == GIVER_NOBODY) {
 		g->heard_ns = g->left_ns = INT64_MIN / 2; /* all of its time is over */
-		lose(e, place, now_ns);
+		lose(e, place, awake_ns);
 		return;
 	}
-	lose(e, place, now_ns); /* what has SafeDelay 0 */
+	lose(e, place, awake_ns); /* what has SafeDelay 0 */
 	e->givers[to] = *g;
 	e->givers[to].rows = 0;
 	e->givers[to].as.memory = (struct giver_memory){0};
@@ -223,12 +227,13 @@ void engine_giver_left(struct engine *e, unsigned place, int64_t now_ns)
 	assert(place < OWS_GIVERS);
 	if (g->is != GIVER_CONNECTED)
 		return;
+	engine_begin_call(e, now_ns);
 	engine_intake(e, place, now_ns);
-	engine_hear(e, place, now_ns);
+	engine_hear(e, place);
 	if (g->more)
 		e->greedy--;
 	if (g->period_ms && g->rows)
-		hang_up(e, place, now_ns);
+		hang_up(e, place, engine_awake_ns(e));
 	else
 		engine_let_go(e, place);
 	forget(e, place);

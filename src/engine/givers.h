@@ -34,8 +34,11 @@ void engine_giver_left(struct engine *e, unsigned place, int64_t now_ns);
  */
 bool engine_givers_marked(const struct engine *e);
 
-/* Once a period: who beats, who is late, whose time is over. */
-void engine_look_givers(struct engine *e, int64_t now_ns);
+/*
+ * Once a period: who beats, who is late, whose time is over. Time in which owsd did not run counts
+ * for nobody.
+ */
+void engine_look_givers(struct engine *e);
 /*
  * A reload, in this order: the givers of old can set there no more, and what they have set is
  * taken; who has no memory in e leaves. Then e goes on with them; rows as in struct adoption.

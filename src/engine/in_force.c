@@ -61,8 +61,10 @@ static void answer_for(struct engine *e, struct signal *s, uint32_t giver)
 	if (s->command.giver != GIVER_NOBODY)
 		e->givers[s->command.giver].rows--;
 	s->command.giver = giver;
-	if (giver != GIVER_NOBODY)
-		e->givers[giver].rows++;
+	if (giver == GIVER_NOBODY)
+		return;
+	e->givers[giver].rows++;
+	e->givers[giver].lose_ns = 0; /* the time of this row may be over first */
 }
 
 /* --- A new command ---------------------------------------------------------------------------- */
@@ -110,7 +112,7 @@ void engine_command(struct engine *e, struct signal *s, uint32_t giver,
 	engine_remember(e, s);
 }
 
-void engine_hear(struct engine *e, uint32_t place, int64_t now_ns)
+void engine_hear(struct engine *e, uint32_t place)
 {
 	struct known_giver *g = &e->givers[place];
 	struct giver_beat beat;
@@ -123,7 +125,7 @@ void engine_hear(struct engine *e, uint32_t place, int64_t now_ns)
 		beat.period_ms = g->period_ms;
 	changes = beat.period_ms != g->period_ms;
 	if (changes || beat.beat != g->beat) {
-		g->heard_ns = now_ns;
+		g->heard_ns = engine_awake_ns(e);
 		g->lose_ns = 0;
 	}
 	g->beat = beat.beat;
@@ -215,7 +217,7 @@ static uint32_t await(struct engine *e, const struct force_left *left, uint32_t 
 		.is = GIVER_AWAITED,
 		.as.who = was.who,
 		.period_ms = was.period_ms,
-		.heard_ns = e->time.now_ns,
+		.heard_ns = engine_awake_ns(e),
 		.joined_ns = e->time.now_ns,
 	};
 	memcpy(e->givers[at].as.token, was.token, sizeof(was.token));
@@ -301,7 +303,7 @@ static void give_up(struct engine *e, struct signal *s, const struct ows_who *wh
 	engine_publish(e, s);
 }
 
-unsigned engine_lose(struct engine *e, uint32_t giver, int64_t now_ns, int64_t *next)
+unsigned engine_lose(struct engine *e, uint32_t giver, int64_t awake_ns, int64_t *next)
 {
 	const struct known_giver *g = &e->givers[giver];
 	unsigned safe = 0;
@@ -314,7 +316,7 @@ unsigned engine_lose(struct engine *e, uint32_t giver, int64_t now_ns, int64_t *
 		if (s->command.giver != giver)
 			continue;
 		end_ns = patience_end(g, s->item);
-		if (now_ns > end_ns) {
+		if (awake_ns > end_ns) {
 			safe += s->item->has_safe;
 			give_up(e, s, &g->as.who);
 		} else if (end_ns < *next) {

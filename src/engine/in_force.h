@@ -23,7 +23,7 @@ void engine_command(struct engine *e, struct signal *s, uint32_t giver,
  * Take the beat of a connected giver, and what it promised: before its commands, so that the next
  * owsd knows it with them. A promise begins with a beat.
  */
-void engine_hear(struct engine *e, uint32_t place, int64_t now_ns);
+void engine_hear(struct engine *e, uint32_t place);
 /* If the bus has the command in force, and the disk if it has to: its giver gets to know. */
 void engine_settle(struct engine *e, struct signal *s);
 /* A write has ended well whose command is no more the one in force. */
@@ -33,9 +33,9 @@ void engine_look_stored(struct engine *e);
 
 /*
  * The giver of this index is lost: its outputs whose time is over go to SafeValue. Returns how many
- * went; *next gets when the next one's time is over, INT64_MAX: all are done.
+ * went; *next gets when the next one's time is over, INT64_MAX: all are done. Both are awake time.
  */
-unsigned engine_lose(struct engine *e, uint32_t giver, int64_t now_ns, int64_t *next);
+unsigned engine_lose(struct engine *e, uint32_t giver, int64_t awake_ns, int64_t *next);
 /* Its commands stay in force, and nobody answers for them. */
 void engine_let_go(struct engine *e, uint32_t giver);
 /* All rows of a giver go to another index. */

@@ -248,7 +248,7 @@ void engine_intake(struct engine *e, uint32_t giver, int64_t now_ns)
 	struct known_giver *g = &e->givers[giver];
 	uint32_t all = UINT32_MAX, from = 0;
 
-	engine_hear(e, giver, now_ns);
+	engine_hear(e, giver);
 	if (g->busy)
 		look_at_record(e, giver, g->busy, now_ns);
 	giver_marked(&g->as.memory);
@@ -301,7 +301,7 @@ static void look_at_giver(struct engine *e, uint32_t giver, int64_t now_ns)
 		g->more = false;
 		e->greedy--;
 	}
-	engine_hear(e, giver, now_ns);
+	engine_hear(e, giver);
 	refill_looks(e, g, now_ns);
 	if (look_round(e, giver, now_ns))
 		return;

@@ -185,7 +185,8 @@ struct known_giver {
 	struct engine_giver as; /* with a memory only while it is connected */
 	bool late, may_set;
 	uint32_t shown; /* commands and refused that the image has */
-	int64_t joined_ns, left_ns;
+	int64_t joined_ns;
+	int64_t left_ns; /* in awake time (engine_awake_ns()), like the next, and heard_ns */
 	int64_t lose_ns; /* not before does another of its outputs go to SafeValue */
 
 	/* in_force.c */
@@ -229,10 +230,11 @@ struct engine_time {
 	/* schedule.c, adopt.c */
 	int64_t start_ns;       /* of period first: since then all were of the same length */
 	uint64_t period, first; /* boundaries since owsd's start */
+	int64_t now_ns;         /* of the call in work */
+	int64_t gap_ns;         /* end of the last time in which nobody ran; 0: none */
+	int64_t paused_ns;      /* sum of all times in which nobody ran */
 	/* engine.c */
-	int64_t now_ns;  /* of the call in work */
 	int64_t next_ns; /* when engine_step() asked to be called again */
-	int64_t gap_ns;  /* end of the last time in which nobody ran; 0: none */
 };
 
 /* What record 0 shows; a reload carries it over. */
@@ -344,6 +346,12 @@ static inline struct group *engine_group(struct engine *e, const struct lane *la
 static inline struct route_way *engine_way(struct engine *e, const struct lane *lane)
 {
 	return &e->ways[lane->index];
+}
+
+/* A clock that stands still while nobody runs: nobody is late for that time. */
+static inline int64_t engine_awake_ns(const struct engine *e)
+{
+	return e->time.now_ns - e->time.paused_ns;
 }
 
 /* The lane that is open, or will be. */
