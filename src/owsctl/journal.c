@@ -133,14 +133,14 @@ int verb_journal(struct ctl *ctl, int argc, char **argv)
 	int c, status;
 
 	ctl_options();
-	while ((c = ctl_option(ctl, argc, argv, "fn:")) != -1) {
+	while ((c = ctl_option(ctl, argc, argv, "fc:")) != -1) {
 		switch (c) {
 		case 'f':
 			j.follows = true;
 			break;
-		case 'n':
+		case 'c':
 			if (!parse_count(optarg, &j.most))
-				return ctl_usage(ctl, "-n wants a number of entries, not %s",
+				return ctl_usage(ctl, "-c wants a number of entries, not %s",
 				                 ctl_word(optarg));
 			break;
 		default:

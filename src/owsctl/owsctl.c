@@ -24,7 +24,7 @@ static const struct verb verbs[] = {
          verb_wait},
 	{"alarms", "[PATTERN...] | history | ack | shelve | unshelve ...",
          "alarms that stand, and those since the start", verb_alarms},
-	{"journal", "[-f] [-n COUNT] [PATTERN...]",
+	{"journal", "[-f] [-c COUNT] [PATTERN...]",
          "who did what and when: alarms and commands since the start", verb_journal},
 	{"stats", "", "owsd itself, its targets and counters", verb_stats},
 	{"instances", "", "list the owsd that run here, and those that have run", verb_instances},

@@ -109,13 +109,13 @@ static void test_patterns_and_a_number_choose_the_entries(void)
 		commanded(i % 3 ? PUMP : LABEL, OWS_REASON_SET, i % 2, "x", 20 - i);
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_journal, "journal pu*"));
 	TEST_ASSERT_EQUAL(7, lines());
-	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_journal, "journal -n 2 pump"));
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_journal, "journal -c 2 pump"));
 	TEST_ASSERT_EQUAL(3, lines());
 	holds(out, "  pump  set        0  plc");
-	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_journal, "journal -n 0"));
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_journal, "journal -c 0"));
 	TEST_ASSERT_EQUAL(1, lines());
-	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_journal, "journal -n many"));
-	holds(err, "-n wants a number of entries, not many");
+	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_journal, "journal -c many"));
+	holds(err, "-c wants a number of entries, not many");
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_journal, "journal nothing"));
 	holds(err, "there is no nothing");
 }
