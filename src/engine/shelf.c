@@ -50,11 +50,12 @@ void engine_shelves_resume(struct engine *e)
 	}
 	for (unsigned i = 0; i < OWS_SHELVES; i++) {
 		uint32_t record = e->image->shelves[i].record;
-		struct signal *s = &e->table.signals[record - 1];
+		struct signal *s;
 
 		if (!record)
 			continue;
-		if (record > e->table.count || !s->item->limits.any || s->limit.shelf) {
+		s = record <= e->table.count ? &e->table.signals[record - 1] : NULL;
+		if (!s || !s->item->limits.any || s->limit.shelf) {
 			image_shelf(e->image, i, &none);
 			continue;
 		}

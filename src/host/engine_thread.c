@@ -107,12 +107,15 @@ static void join(struct engine *e, const struct control_turn *turn, int64_t now_
 	engine_giver_join(e, turn->place, &giver, now_ns);
 }
 
+/* Programs that connect and hang up without end do not keep the engine from its work. */
+#define TURNS (2 * OWS_GIVERS)
+
 /* Those that have connected, and those that hung up or are dead. */
 static void take_givers(struct host *h, int64_t now_ns)
 {
 	struct control_turn turn;
 
-	while (control_next(h->control, &turn)) {
+	for (unsigned n = 0; n < TURNS && control_next(h->control, &turn); n++) {
 		if (turn.joins) {
 			bells_add(&h->bells, turn.place, turn.bell);
 			join(h->now->engine, &turn, now_ns);

@@ -7,6 +7,7 @@
 
 #include "src/libows/ows.h"
 #include "src/shm/force.h"
+#include "src/shm/word.h"
 
 #define FORCE_MAGIC 0x4653574fu /* "OWSF" */
 #define FORCE_VERSION 1
@@ -165,6 +166,7 @@ void force_giver(struct force *force, uint32_t index, const struct force_giver *
 	slot->giver = *giver;
 	slot->check = CHECK_OF(slot);
 	__atomic_store_n(&g->seq, next, __ATOMIC_RELEASE);
+	word_fence(__ATOMIC_RELEASE); /* the next writes into the slot that was whole until now */
 }
 
 void force_put(struct force *force, uint32_t row, const struct force_command *command,
@@ -193,6 +195,7 @@ void force_put(struct force *force, uint32_t row, const struct force_command *co
 	}
 	slot->check = CHECK_OF(slot);
 	__atomic_store_n(&r->seq, next, __ATOMIC_RELEASE);
+	word_fence(__ATOMIC_RELEASE); /* the next writes into the slot that was whole until now */
 }
 
 /* --- Reading ---------------------------------------------------------------------------------- */
