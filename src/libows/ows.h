@@ -198,6 +198,7 @@ struct ows_command {
 	uint32_t taken;   /* the last that owsd looked at */
 	uint32_t applied; /* the last that the bus confirmed */
 	int32_t refused;  /* 0, or why owsd refused the last that it looked at */
+	uint64_t spare[4]; /* 0: room for later members */
 };
 /*
  * Of the signal of an id of ows_find(). Errors as ows_get(); *command is filled with -ESTALE too.
@@ -248,6 +249,7 @@ struct ows_origin {
 	int64_t taken_ns; /* when owsd took the command */
 	uint8_t reason;   /* enum ows_reason */
 	uint8_t own;      /* 1: this handle gave it */
+	uint64_t spare[4]; /* 0: room for later members */
 };
 /*
  * Returns 0; -ENOENT: no such id; -EIO: owsd died while it wrote this; -ESTALE as ows_get(), and
@@ -264,6 +266,7 @@ struct ows_giver {
 	uint32_t refused;
 	uint8_t may_set;     /* 1: it may command some signal */
 	uint8_t late;        /* 1: its beat is over time */
+	uint64_t spare[4]; /* 0: room for later members */
 };
 /* Who has that place, counted from 0. -ENOENT: past the last place; -EIO as ows_origin(). */
 int ows_giver(struct ows *h, int index, struct ows_giver *giver);
@@ -343,6 +346,7 @@ struct ows_info {
 	double limit_hh, limit_h, limit_l, limit_ll;
 	double filter_s, deadband; /* 0 without */
 	int32_t decimals;       /* -1: not known */
+	uint64_t spare[4]; /* 0: room for later members */
 };
 int ows_info(const struct ows *h, int signal, struct ows_info *info);
 /* Get the value of a signal by its index (not an id of ows_find()); otherwise as ows_get(). */
@@ -362,6 +366,7 @@ struct ows_daemon {
 	int64_t beat_age_ns; /* since the last heartbeat */
 	int64_t period_ns;
 	int alive;           /* state live and heart beating */
+	uint64_t spare[4]; /* 0: room for later members */
 };
 int ows_daemon(struct ows *h, int64_t now_ns, struct ows_daemon *daemon);
 
@@ -378,6 +383,7 @@ struct ows_target {
 	uint32_t reconnects;
 	uint32_t group; /* ways to the same wire have the same group */
 	uint32_t moves; /* signals that came from another target */
+	uint64_t spare[4]; /* 0: room for later members */
 };
 int ows_target(struct ows *h, int index, struct ows_target *target);
 struct ows_counter {
@@ -425,6 +431,7 @@ struct ows_alarm {
 	uint8_t quality;     /* of the signal at that moment */
 	char text[64];       /* what the latch showed, or why it was shelved; NUL-terminated */
 	struct ows_by who;   /* who acknowledged or shelved it */
+	uint64_t spare[4]; /* 0: room for later members */
 };
 /* States of a limit alarm, as in ISA-18.2. */
 enum ows_limit_state {
@@ -451,6 +458,7 @@ struct ows_alarm_state {
 	int64_t since_ns, until_ns; /* this and the next two: of the shelving */
 	struct ows_by who;
 	char why[64];               /* NUL-terminated */
+	uint64_t spare[4]; /* 0: room for later members */
 };
 /* Of the signal of an id of ows_find(). Errors as ows_get(); *state is filled with -ESTALE too. */
 int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state);
@@ -489,6 +497,7 @@ struct ows_commanded {
 	uint8_t quality;   /* of the signal at that moment */
 	char text[64];     /* NUL-terminated; may be cut */
 	struct ows_by who;
+	uint64_t spare[4]; /* 0: room for later members */
 };
 uint32_t ows_command_count(struct ows *h);
 int ows_command_entry(struct ows *h, uint32_t number, struct ows_commanded *commanded);

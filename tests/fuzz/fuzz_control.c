@@ -64,9 +64,9 @@ static const struct giver_layout *make_layout(void)
 	const struct giver_plan plan = {.types = types,
 	                                .signal_count = SIGNALS,
 	                                .text_cap = 64,
-	                                .generation = ++generation,
-	                                .start_id = generation};
-	struct giver_layout *layout = &layouts[generation % 2];
+	                                .generation = generation + 1,
+	                                .start_id = generation + 1};
+	struct giver_layout *layout = &layouts[++generation % 2];
 
 	for (unsigned i = 0; i < SIGNALS; i++)
 		types[i] = i % 7 ? OWS_BYTE : OWS_STRING;
