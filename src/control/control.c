@@ -14,6 +14,7 @@
 #include "src/control/control.h"
 #include "src/control/door.h"
 #include "src/control/grant.h"
+#include "src/control/held.h"
 #include "src/control/private.h"
 #include "src/control/socket.h"
 #include "src/libows/ows.h"
@@ -205,6 +206,7 @@ void control_destroy(struct control *c)
 	for (unsigned i = 0; i < OWS_GIVERS; i++)
 		if (c->places[i].state != CONTROL_FREE)
 			door_release(c, &c->places[i]);
+	held_forget(c);
 	if (c->wake >= 0)
 		close(c->wake);
 	if (c->epoll >= 0)
@@ -340,12 +342,12 @@ bool control_prepared(struct control *c, unsigned *place, struct control_turn *t
 static void take_next(struct control *c, struct control_place *p)
 {
 	if (__atomic_load_n(&p->state, __ATOMIC_ACQUIRE) != CONTROL_IN) {
-		grant_free(&p->next);
+		held_free(c, p->peer.uid, &p->next);
 		return;
 	}
-	grant_free(&p->now);
+	held_free(c, p->peer.uid, &p->now);
 	p->now = p->next;
-	p->next = (struct control_grant){.memfd = -1};
+	p->next = (struct control_grant){.memfd = -1, .own = -1};
 	p->welcomed = false;
 	if (!p->now.memory.base)
 		door_drop(c, p, CONTROL_refused_errors);

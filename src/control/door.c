@@ -12,6 +12,7 @@
 #include "hal/bus/time.h"
 #include "src/control/door.h"
 #include "src/control/grant.h"
+#include "src/control/held.h"
 #include "src/control/welcome.h"
 
 /* Connections accepted in a row before the givers have their turn again. */
@@ -47,8 +48,8 @@ static void free_place(struct control *c, struct control_place *p)
 
 void door_release(struct control *c, struct control_place *p)
 {
-	grant_free(&p->now);
-	grant_free(&p->next);
+	held_free(c, p->peer.uid, &p->now);
+	held_free(c, p->peer.uid, &p->next);
 	peer_forget(&p->peer);
 	close_fd(&p->death);
 	close_fd(&p->bell);
@@ -127,10 +128,11 @@ static void refuse(struct control *c, struct control_place *p, int err, enum con
 
 /* --- The hello -------------------------------------------------------------------------------- */
 
-size_t door_memory(const struct control *c, uid_t uid)
+size_t door_memory(struct control *c, uid_t uid)
 {
-	size_t sum = 0;
+	size_t sum;
 
+	held_of(c, uid, &sum);
 	for (unsigned i = 0; i < OWS_GIVERS; i++)
 		if (c->places[i].peer.uid == uid)
 			sum += c->places[i].now.size;
@@ -138,7 +140,7 @@ size_t door_memory(const struct control *c, uid_t uid)
 }
 
 /* One giver of a user has a memory of any size. */
-static bool has_room(const struct control *c, const struct control_place *p)
+static bool has_room(struct control *c, const struct control_place *p)
 {
 	size_t has = door_memory(c, p->peer.uid);
 
@@ -272,7 +274,8 @@ static unsigned most_places(const struct control *c, const struct peer *peer)
 static struct control_place *find_place(struct control *c, const struct peer *peer)
 {
 	struct control_place *found = NULL;
-	unsigned of_user = 0, taken = 0;
+	size_t bytes;
+	unsigned of_user = 0, taken = 0, held = held_of(c, peer->uid, &bytes);
 
 	for (unsigned i = 0; i < OWS_GIVERS; i++) {
 		struct control_place *p = &c->places[i];
@@ -286,7 +289,7 @@ static struct control_place *find_place(struct control *c, const struct peer *pe
 	}
 	if (taken >= most_places(c, peer))
 		return NULL;
-	return peer->uid && of_user >= CONTROL_OF_USER ? NULL : found;
+	return peer->uid && (of_user >= CONTROL_OF_USER || held >= CONTROL_HELD) ? NULL : found;
 }
 
 static void meet(struct control *c, int fd)

@@ -21,14 +21,16 @@ int grant_make(struct control_grant *grant, const struct giver_layout *layout,
 		.size = layout->size,
 		.rights = calloc((size_t)layout->slot_count / 32 + 1, sizeof(uint32_t)),
 		.memfd = -1,
+		.own = -1,
 	};
 	if (!grant->rights)
 		return -ENOMEM;
-	grant->memfd = sealed_make(grant->size, &grant->memory.base);
+	grant->memfd = sealed_make(grant->size, &grant->memory.base, &grant->own);
 	if (grant->memfd < 0) {
 		int err = grant->memfd;
 
-		grant->memfd = -1;
+		grant->memfd = grant->own = -1;
+		grant->memory.base = NULL;
 		grant_free(grant);
 		return err;
 	}
@@ -42,9 +44,11 @@ int grant_make(struct control_grant *grant, const struct giver_layout *layout,
 
 void grant_free(struct control_grant *grant)
 {
-	sealed_free(grant->memory.base, grant->size);
+	sealed_unmap(grant->memory.base, grant->size);
 	if (grant->memory.base && grant->memfd >= 0)
 		close(grant->memfd);
+	if (grant->memory.base && grant->own >= 0)
+		close(grant->own);
 	free(grant->rights);
-	*grant = (struct control_grant){.memfd = -1};
+	*grant = (struct control_grant){.memfd = -1, .own = -1};
 }

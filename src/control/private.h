@@ -16,6 +16,8 @@
 /* Places that are kept for root and owsd's user, and of the rest for those who may command. */
 #define CONTROL_KEPT 8
 #define CONTROL_KEPT_FROM_READERS 64
+/* A program that stands still at reloads has two: its own, and the next, unread. */
+#define CONTROL_HELD (2 * CONTROL_OF_USER)
 #define CONTROL_MEMORY (64u << 20)
 /* In that time a program that connected has to say who it is. */
 #define CONTROL_HELLO_NS (2 * NS_PER_S)
@@ -56,6 +58,14 @@ struct control_grant {
 	uint32_t *rights;
 	uint32_t allowed; /* how many signals */
 	int memfd;        /* until it is sent; -1 */
+	int own;          /* owsd's own descriptor of it; -1 */
+};
+
+/* A memory that its giver has kept beyond the end, or beyond a reload. */
+struct control_held {
+	int own;
+	uid_t uid;
+	size_t size;
 };
 
 struct control_place {
@@ -93,6 +103,8 @@ struct control {
 	int64_t now_ns, accept_ns; /* accept_ns: not sooner */
 	uint32_t serial;
 	struct control_place places[OWS_GIVERS];
+	struct control_held held[OWS_GIVERS];
+	unsigned held_count;
 	uint32_t turns; /* counts places that are for the engine's thread to look at */
 	struct {
 		uint32_t seen;

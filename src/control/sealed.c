@@ -2,6 +2,7 @@
 /* The memory of a giver: made by owsd, sealed, mapped by both. */
 #include <errno.h>
 #include <fcntl.h>
+#include <stdio.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -33,32 +34,69 @@ static int allocate(int fd, size_t size)
 	return -err;
 }
 
-int sealed_make(size_t size, char **base)
+/* Each open() of its own counts with the file, as a copy of a descriptor does not. */
+static int open_again(int fd)
 {
-	int fd = create(), err;
-	void *mapped;
+	char path[32];
+	int again;
+
+	snprintf(path, sizeof(path), "/proc/self/fd/%d", fd);
+	again = open(path, O_RDWR | O_CLOEXEC);
+	return again < 0 ? -errno : again;
+}
+
+static int map(int fd, size_t size, char **base)
+{
+	void *mapped = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+
+	if (mapped == MAP_FAILED)
+		return -errno;
+	*base = mapped;
+	return 0;
+}
+
+static int open_both(int fd, int *own)
+{
+	int theirs = open_again(fd);
+
+	if (theirs < 0)
+		return theirs;
+	*own = open_again(fd);
+	if (*own >= 0)
+		return theirs;
+	close(theirs);
+	return *own;
+}
+
+int sealed_make(size_t size, char **base, int *own)
+{
+	int fd = create(), err, theirs;
 
 	if (fd < 0)
 		return fd;
 	err = allocate(fd, size);
 	if (!err && fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) < 0)
 		err = -errno;
-	mapped = err ? MAP_FAILED : mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-	if (!err && mapped == MAP_FAILED)
-		err = -errno;
-	if (err) {
-		close(fd);
-		return err;
-	}
-	*base = mapped;
-	return fd;
+	if (!err)
+		err = map(fd, size, base);
+	theirs = err ? err : open_both(fd, own);
+	if (theirs < 0 && !err)
+		sealed_unmap(*base, size);
+	close(fd);
+	return theirs;
 }
 
-void sealed_free(char *base, size_t size)
+void sealed_unmap(char *base, size_t size)
 {
-	if (!base)
-		return;
-	munlock(base, size); /* of locked memory the kernel gives nothing back */
-	madvise(base, size, MADV_REMOVE);
-	munmap(base, size);
+	if (base)
+		munmap(base, size);
+}
+
+bool sealed_is_held(int own)
+{
+	/* the kernel gives a lease for writing only where nobody else has the file open or mapped */
+	if (fcntl(own, F_SETLEASE, F_WRLCK) < 0)
+		return errno == EAGAIN;
+	fcntl(own, F_SETLEASE, F_UNLCK);
+	return false;
 }

@@ -9,7 +9,7 @@ struct ows;
 
 /*
  * Does owsd let this handle command the record? Returns 0, -EACCES, or -ESTALE: owsd looks at this
- * memory no more, and may have emptied it.
+ * memory no more.
  */
 int command_allowed(const struct ows *h, uint32_t record);
 /*
