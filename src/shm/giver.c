@@ -31,7 +31,7 @@ int giver_layout_make(struct giver_layout *layout, const struct giver_plan *plan
 	person = align64(place + 4 * slots);
 	shelf = align64(person + (uint64_t)OWS_PERSONS * OWS_NAME);
 	text = align64(shelf + sizeof(struct ows_command_shelf));
-	end = align64(text + texts * (sizeof(struct ows_command_text) + plan->text_cap));
+	end = align64(text + (uint64_t)texts * (sizeof(struct ows_command_text) + plan->text_cap));
 	if (end > GIVER_MAX)
 		return -EFBIG;
 	layout->places = malloc(slots * sizeof(*layout->places));
