@@ -39,7 +39,7 @@ bool welcome_unread(const struct control_place *p)
 
 static void attach(struct msghdr *message, const int *fds, size_t n)
 {
-	struct cmsghdr *c = CMSG_FIRSTHDR(message);
+	struct cmsghdr *c = message->msg_control; /* CMSG_FIRSTHDR(): there is room for one */
 
 	c->cmsg_level = SOL_SOCKET;
 	c->cmsg_type = SCM_RIGHTS;
