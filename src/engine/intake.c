@@ -179,6 +179,8 @@ void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
 static void take_driver_reset(struct engine *e, const struct known_giver *g, int64_t now_ns)
 {
 	struct giver_command c;
+	char others[LOG_OTHERS];
+	uint64_t n;
 
 	giver_load(&g->as.memory, 0, &c);
 	if (!c.dgn_reset || !may_command(g, 0))
@@ -189,7 +191,9 @@ static void take_driver_reset(struct engine *e, const struct known_giver *g, int
 		signal_reset_diagnostics(&e->table.signals[row], e->time.period, now_ns);
 		engine_publish(e, &e->table.signals[row]);
 	}
-	log_info(e->log, "diagnostics of all signals reset");
+	n = log_rate(&e->resets, now_ns);
+	if (n)
+		log_info(e->log, "diagnostics of all signals reset%s", log_others(n, others));
 }
 
 static void look_at_record(struct engine *e, uint32_t giver, uint32_t record, int64_t now_ns)
@@ -232,13 +236,16 @@ static bool look_at_marked(struct engine *e, uint32_t giver, uint32_t *from, uin
                            int64_t now_ns)
 {
 	while (*looks) {
+		uint32_t cost;
 		int record = giver_next_dirty(&e->givers[giver].as.memory, *from);
 
 		if (record < 0)
 			return true;
+		/* the driver's slot may reset all rows */
+		cost = record ? 1 : 1 + e->table.count;
 		look_at_record(e, giver, (uint32_t)record, now_ns);
 		*from = (uint32_t)record + 1;
-		--*looks;
+		*looks -= cost < *looks ? cost : *looks;
 	}
 	return false;
 }

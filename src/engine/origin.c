@@ -9,6 +9,8 @@
 
 /* A giver that commands a signal without end has one entry a second for it. */
 #define APART_NS NS_PER_S
+/* Givers that command a signal in turn without end have so many entries at once, then one a second. */
+#define AT_ONCE 8
 
 static bool same_text(const struct signal *s, const char *text, uint32_t len)
 {
@@ -70,6 +72,17 @@ static void enter_rest(struct engine *e, struct signal *s, const struct origin_b
 	s->journal.more = 0;
 }
 
+/* May givers enter one more of this signal? What owsd does itself is always entered. */
+static bool has_room(struct signal *s, int64_t now_ns)
+{
+	int64_t from_ns = s->journal.until_ns > now_ns ? s->journal.until_ns : now_ns;
+
+	if (from_ns - now_ns > (AT_ONCE - 1) * APART_NS)
+		return false;
+	s->journal.until_ns = from_ns + APART_NS;
+	return true;
+}
+
 static void journal_command(struct engine *e, struct signal *s, enum ows_reason reason,
                             const struct ows_who *who, const struct origin_before *before)
 {
@@ -77,14 +90,18 @@ static void journal_command(struct engine *e, struct signal *s, enum ows_reason 
 
 	if (same && !before->changes)
 		return;
-	if (same && e->time.now_ns - s->journal.entered_ns < APART_NS) {
+	if ((same && e->time.now_ns - s->journal.entered_ns < APART_NS) ||
+	    (reason == OWS_REASON_SET && !has_room(s, e->time.now_ns))) {
 		s->journal.more++;
 		return;
 	}
 	if (!same && s->journal.more)
 		enter_rest(e, s, before);
 	enter_command(e, s, reason, who, before);
-	s->journal = (struct signal_journal){e->time.now_ns, who->serial, (uint32_t)reason, 0};
+	s->journal.entered_ns = e->time.now_ns;
+	s->journal.serial = who->serial;
+	s->journal.reason = (uint32_t)reason;
+	s->journal.more = 0;
 }
 
 void engine_origin(struct engine *e, struct signal *s, enum ows_reason reason,

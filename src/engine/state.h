@@ -299,7 +299,7 @@ struct engine {
 	unsigned place_end; /* one past the last place that somebody has; givers.c */
 	/* intake.c */
 	unsigned greedy; /* givers whose looks are used up */
-	struct log_rate refused;
+	struct log_rate refused, resets;
 	/* in_force.c: what was last seen of engine_last, and how many rows wait for it */
 	uint32_t stored;
 	int store_err;

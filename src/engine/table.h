@@ -66,8 +66,9 @@ struct signal_command {
 /* What the journal of commands has last of the signal. */
 struct signal_journal {
 	int64_t entered_ns;
-	uint32_t serial, reason; /* of the giver */
-	uint32_t more;           /* its commands since that were not entered */
+	int64_t until_ns; /* until then the room for entries is used up, one second for each */
+	uint32_t serial, reason; /* of the giver of the last entry */
+	uint32_t more;           /* commands since that were not entered */
 };
 
 /* The limit alarms, and what the journal and the log have of them. */

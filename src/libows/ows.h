@@ -491,7 +491,7 @@ struct ows_commanded {
 	int64_t taken_ns;
 	double number;     /* the value; of strings text */
 	int64_t integer;   /* likewise, if type is not float or double */
-	uint32_t more;     /* so many of this program to this signal were not entered before it */
+	uint32_t more;     /* so many to this signal were not entered before it */
 	uint8_t type;      /* enum ows_type, of the signal */
 	uint8_t reason;    /* enum ows_reason */
 	uint8_t quality;   /* of the signal at that moment */

@@ -155,7 +155,7 @@ By = collections.namedtuple("By", "serial uid pid name person")
 # showed, or why the alarm was shelved
 AlarmEntry = collections.namedtuple("AlarmEntry", "number name occurred_ns before after kind event "
                                     "quality text who")
-# reason: a word; more: commands of this program to this signal that were not entered before it; the
+# reason: a word; more: commands to this signal that were not entered before it; the
 # value of a string may be cut
 CommandEntry = collections.namedtuple("CommandEntry", "number name taken_ns value reason quality "
                                       "more who")

@@ -246,7 +246,7 @@ struct ows_journal_entry { /* 200 bytes */
 	uint8_t event;       /* enum ows_alarm_event; of commands 0 */
 	uint8_t quality;     /* of the signal at that moment */
 	uint8_t flags;       /* OWS_JOURNAL_ bits */
-	uint32_t more;       /* commands: so many of this giver were not entered before it */
+	uint32_t more;       /* commands: so many of the signal were not entered before it */
 	char text[OWS_TEXT]; /* device alarms: the latch; shelving: why; commands: a text */
 	struct ows_who who;  /* who commanded, acknowledged, shelved */
 	uint32_t number;

@@ -152,6 +152,24 @@ static void test_another_giver_is_an_entry_at_once_and_what_was_before_it_is_not
 	TEST_ASSERT_EQUAL_UINT32(0, entry(0)->more);
 }
 
+static void test_givers_that_fight_over_an_output_do_not_flush_the_journal(void)
+{
+	uint32_t before = entered(), all = 0;
+
+	scene_join(&s, 1, 2);
+	for (int i = 0; i < 200; i++)
+		set(i & 1, 1, i & 1);
+	/* 20 seconds: at once, then one a second, each with the one that it took the place of */
+	TEST_ASSERT_GREATER_THAN_UINT32(before + 20, entered());
+	TEST_ASSERT_LESS_THAN_UINT32(before + 2 * (8 + 21), entered());
+	for (uint32_t i = 0; i < entered() - before; i++)
+		all += 1 + entry(i)->more;
+	TEST_ASSERT_UINT_WITHIN(20, 200, all);
+	scene_join(&s, 2, 3);
+	set(2, 2, 7);
+	TEST_ASSERT_EQUAL_UINT32(2, entry(0)->record);
+}
+
 static void test_safevalue_names_the_giver_that_is_lost(void)
 {
 	giving_beat(&s.givers[0], 500);
@@ -245,6 +263,7 @@ int main(void)
 	RUN_TEST(test_the_same_value_again_is_no_entry);
 	RUN_TEST(test_a_giver_that_commands_without_end_has_an_entry_a_second);
 	RUN_TEST(test_another_giver_is_an_entry_at_once_and_what_was_before_it_is_not_lost);
+	RUN_TEST(test_givers_that_fight_over_an_output_do_not_flush_the_journal);
 	RUN_TEST(test_safevalue_names_the_giver_that_is_lost);
 	RUN_TEST(test_origins_and_journal_go_on_over_a_reload);
 	RUN_TEST(test_over_a_reload_the_journal_gets_no_command_that_was_not_in_force);
