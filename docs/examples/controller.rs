@@ -3,7 +3,7 @@
 //! Commands outputs of owsd without libows, as docs/shared-memory.md describes it: for those who
 //! write a control program in a language of their own.
 //!
-//!     rustc -O controller.rs          # the others belong to it
+//!     rustc --edition 2021 -O controller.rs       # the others belong to it
 //!     ./controller [INSTANCE [MILLISECONDS]]
 //!
 //! It takes lines from its standard input: NAME=VALUE sets a signal, and "quit" or the end of the
