@@ -225,7 +225,10 @@ static bool print_lost(struct ows *h, const struct order *order)
 		return false;
 	ows_command(h, order->id, &command);
 	if (command.taken == order->stamp && command.refused) {
-		ctl_fail("%s was refused: %s", order->name, error_words(command.refused, words));
+		ctl_fail("%s was refused: %s", order->name,
+		         command.refused == -ERANGE
+		                 ? "the type cannot hold it, or it is beyond the signal's range"
+		                 : error_words(command.refused, words));
 		return true;
 	}
 	ows_origin(h, order->id, &origin);

@@ -281,7 +281,7 @@ int signals_applied(struct signals *signals, const char *name, struct signals_co
 	if (applied && (int32_t)(applied - command->stamp) >= 0)
 		return 0;
 	if (__atomic_load_n(&own->taken, __ATOMIC_ACQUIRE) == command->stamp && own->err)
-		return -EIO; /* the engine refused it */
+		return own->err == -ERANGE ? -EDOM : -EIO; /* the engine refused it */
 	if (!reader_sample(map_record(&h->map, command->record), &sample))
 		return -EAGAIN;
 	if (sample.err && sample.tried_ns >= command->since_ns)

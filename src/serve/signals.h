@@ -43,7 +43,8 @@ struct signals_command {
 int signals_write(struct signals *signals, const char *name, int64_t now_ns, const char *text,
                   size_t len, struct signals_command *command);
 /*
- * Returns 0 when the bus has the command, -EAGAIN before, else the error of the write. name is the
+ * Returns 0 when the bus has the command, -EAGAIN before, else the error of the write; -EDOM: owsd
+ * refused it, its type cannot hold the value, or it is beyond the signal's range. name is the
  * commanded name: a reload may have given the signal another record, or (-ENOENT) none.
  */
 int signals_applied(struct signals *signals, const char *name, struct signals_command *command);
