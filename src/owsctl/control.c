@@ -85,9 +85,13 @@ static int do_for(struct control *control, char *rest)
 
 static int do_ack(struct control *control, char *rest)
 {
+	struct ows_alarm_state state = {0};
 	int id = find(control, rest);
+	int err = id < 0 ? id : ows_alarm_state(control->h, id, &state);
 
-	return id < 0 ? id : ows_acknowledge(control->h, id);
+	if (err)
+		return err;
+	return state.limits ? ows_acknowledge(control->h, id) : -EOPNOTSUPP;
 }
 
 static int do_shelve(struct control *control, char *rest)

@@ -151,6 +151,23 @@ def test_what_cannot_be_shelved_is_refused(scene):
         assert plant.state() == []
 
 
+def test_control_answers_each_line_and_acknowledges_only_what_has_limits(scene):
+    answers = {"pump=1": "ok", "pump=on": "ok", "pump=maybe": "error this is no value for it",
+               "pumpe=1": "error there is no such name",
+               "freezer=1": "error the signal is an input (Writable is off in the configuration)",
+               "beat soon": "error beat takes a number of milliseconds",
+               "ack freezer": "ok", "ack pump": "error it has no limit alarms",
+               "shelve pump 5": "error it has no limit alarms", "quit": "ok"}
+    with Plant(scene, "31") as plant:
+        plant.until_state(("high", "unacknowledged"))
+        lines = scene.file("lines", "\n".join(answers) + "\n")
+        done = scene._run(["sh", "-c", '"$0" -n "$1" control <"$2"', owsdtest.OWSCTL,
+                           plant.daemon.name, lines], 20)
+        assert done.returncode == 0, done
+        assert dict(zip(answers, done.stdout.splitlines(), strict=True)) == answers, done
+        plant.until_state(("high", "acknowledged"))
+
+
 def test_the_journal_is_followed_over_a_restart(scene):
     with Plant(scene) as plant:
         name = plant.daemon.name
