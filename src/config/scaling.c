@@ -40,6 +40,16 @@ static const char *text_of(struct build *build, const struct option_value *value
 	return build_keep(build, value->text, strlen(value->text));
 }
 
+/* The number that these digits are. */
+static int digits(const char *text, int count)
+{
+	int number = 0;
+
+	for (int i = 0; i < count; i++)
+		number = number * 10 + (text[i] - '0');
+	return number;
+}
+
 static bool is_date(const char *text)
 {
 	static const int days[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
@@ -51,7 +61,10 @@ static bool is_date(const char *text)
 	for (int i = 0; i < 10; i++)
 		if (i != 4 && i != 7 && !isdigit((unsigned char)text[i]))
 			return false;
-	if (sscanf(text, "%d-%d-%d", &year, &month, &day) != 3 || month < 1 || month > 12)
+	year = digits(text, 4);
+	month = digits(text + 5, 2);
+	day = digits(text + 8, 2);
+	if (month < 1 || month > 12)
 		return false;
 	leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
 	return year > 0 && day >= 1 && day <= days[month - 1] + (month == 2 && leap);
