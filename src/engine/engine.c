@@ -26,6 +26,28 @@
 #include "src/engine/state.h"
 #include "src/text/log.h"
 
+/* All rows begin: what was in force comes back, and the image is filled. */
+static void begin(struct engine *e, const struct engine_setup *setup)
+{
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		e->table.signals[row].read.known_ns = setup->start_ns;
+		lane_take_row(&e->lanes[0], row);
+	}
+	for (uint32_t i = 0; i < e->alarm_count; i++)
+		alarm_take_item(&e->lanes[0].alarm, &e->alarm_items[i], setup->start_ns);
+	for (uint32_t row = 0; row < e->table.count; row++) {
+		engine_read_now(e, &e->table.signals[row]);
+		engine_write_check(e, &e->table.signals[row]);
+	}
+	engine_shelves_resume(e);
+	engine_resume(e, setup->left);
+	for (uint32_t row = 0; row < e->table.count; row++)
+		engine_publish(e, &e->table.signals[row]);
+	for (unsigned i = 0; i < e->lane_count; i++)
+		engine_publish_target(e, &e->lanes[i]);
+	engine_publish_driver(e, setup->start_ns);
+}
+
 int engine_create(const struct engine_setup *setup, struct engine **engine)
 {
 	struct engine *e = calloc(1, sizeof(*e));
@@ -68,23 +90,7 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 		engine_destroy(e);
 		return err;
 	}
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		e->table.signals[row].read.known_ns = setup->start_ns;
-		lane_take_row(&e->lanes[0], row);
-	}
-	for (uint32_t i = 0; i < e->alarm_count; i++)
-		alarm_take_item(&e->lanes[0].alarm, &e->alarm_items[i], setup->start_ns);
-	for (uint32_t row = 0; row < e->table.count; row++) {
-		engine_read_now(e, &e->table.signals[row]);
-		engine_write_check(e, &e->table.signals[row]);
-	}
-	engine_shelves_resume(e);
-	engine_resume(e, setup->left);
-	for (uint32_t row = 0; row < e->table.count; row++)
-		engine_publish(e, &e->table.signals[row]);
-	for (unsigned i = 0; i < e->lane_count; i++)
-		engine_publish_target(e, &e->lanes[i]);
-	engine_publish_driver(e, setup->start_ns);
+	begin(e, setup);
 	*engine = e;
 	return 0;
 }
