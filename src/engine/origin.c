@@ -7,7 +7,7 @@
 #include "src/engine/state.h"
 #include "src/shm/entries.h"
 
-/* A giver that commands a signal without end has one entry a second for it. */
+/* A giver that commands a signal without end, for one person, has one entry a second for it. */
 #define APART_NS NS_PER_S
 /* Givers that command a signal in turn without end have so many entries at once, then one a second. */
 #define AT_ONCE 8
@@ -86,7 +86,9 @@ static bool has_room(struct signal *s, int64_t now_ns)
 static void journal_command(struct engine *e, struct signal *s, enum ows_reason reason,
                             const struct ows_who *who, const struct origin_before *before)
 {
-	bool same = s->journal.serial == who->serial && s->journal.reason == (uint32_t)reason;
+	const struct ows_who *was = &e->image->origins[s->record].who;
+	bool same = s->journal.serial == who->serial && s->journal.reason == (uint32_t)reason &&
+	            strncmp(was->person, who->person, sizeof(was->person)) == 0;
 
 	if (same && !before->changes)
 		return;

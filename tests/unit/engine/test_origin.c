@@ -94,6 +94,25 @@ static void test_a_command_for_a_person_has_that_person(void)
 	TEST_ASSERT_EQUAL_STRING("", scene_origin(&s, 1).who.person);
 }
 
+static void test_another_person_of_the_same_giver_is_an_entry_at_once(void)
+{
+	uint32_t before;
+
+	giving_name_person(&s.givers[0], 0, "anna");
+	giving_name_person(&s.givers[0], 1, "berta");
+	scene_slot(&s, 1)->person = 1;
+	set(0, 1, 5);
+	set(0, 1, 6);
+	before = entered();
+	scene_slot(&s, 1)->person = 2;
+	set(0, 1, 7);
+	TEST_ASSERT_EQUAL_UINT32(before + 2, entered());
+	TEST_ASSERT_EQUAL_STRING("anna", entry(1)->who.person);
+	TEST_ASSERT_EQUAL_INT64(6, entry(1)->after);
+	TEST_ASSERT_EQUAL_STRING("berta", entry(0)->who.person);
+	TEST_ASSERT_EQUAL_INT64(7, entry(0)->after);
+}
+
 static void test_the_journal_has_the_values_before_and_after(void)
 {
 	uint32_t before = entered();
@@ -259,6 +278,7 @@ int main(void)
 	RUN_TEST(test_initvalue_is_owsd_s_own);
 	RUN_TEST(test_a_command_has_its_giver_and_its_time);
 	RUN_TEST(test_a_command_for_a_person_has_that_person);
+	RUN_TEST(test_another_person_of_the_same_giver_is_an_entry_at_once);
 	RUN_TEST(test_the_journal_has_the_values_before_and_after);
 	RUN_TEST(test_the_same_value_again_is_no_entry);
 	RUN_TEST(test_a_giver_that_commands_without_end_has_an_entry_a_second);
