@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* The key ControlAllow of the driver block: who may command which signals. */
+#include <fnmatch.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "src/config/allow.h"
 #include "src/config/build.h"
 #include "src/shm/owner.h"
+#include "src/shm/peer.h"
 
 #define BLANK " \t"
 #define WHO_MAX 63 /* the longest name of a user or a group */
@@ -110,4 +112,29 @@ void allow_build(struct build *build, const struct rio_node *driver)
 	for (const struct rio_node *node = driver->first; node; node = node->next)
 		if (is_allow(node))
 			add_allow(build, node);
+}
+
+bool allow_names(const struct config_allow *allow, const struct peer *peer)
+{
+	for (unsigned i = 0; i < allow->who_count; i++) {
+		const struct config_who *who = &allow->who[i];
+
+		if (who->group ? peer_in_group(peer, who->id) : peer->uid == who->id)
+			return true;
+	}
+	return false;
+}
+
+enum allow_word allow_ask(const struct config *config, const struct peer *peer, const char *name)
+{
+	enum allow_word word = ALLOW_OPEN;
+
+	for (unsigned i = 0; i < config->allow_count; i++) {
+		if (fnmatch(config->allows[i].pattern, name, 0) != 0)
+			continue;
+		if (peer && allow_names(&config->allows[i], peer))
+			return ALLOW_YES;
+		word = ALLOW_NO;
+	}
+	return word;
 }

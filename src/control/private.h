@@ -6,7 +6,7 @@
 #include <pthread.h>
 
 #include "hal/bus/bus.h"
-#include "src/control/peer.h"
+#include "src/shm/peer.h"
 #include "src/control/rights.h"
 #include "src/shm/giver.h"
 #include "src/text/log.h"

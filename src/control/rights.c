@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Who may command which signal: ControlAllow of the configuration, and the rule without it. */
-#include <fnmatch.h>
 #include <unistd.h>
 
+#include "src/config/allow.h"
 #include "src/config/config.h"
 #include "src/control/rights.h"
 #include "src/shm/owner.h"
@@ -21,17 +21,6 @@ static bool has_all(const struct rights *r, const struct peer *peer)
 	return peer->uid == 0 || peer->uid == r->own;
 }
 
-static bool names_peer(const struct config_allow *allow, const struct peer *peer)
-{
-	for (unsigned i = 0; i < allow->who_count; i++) {
-		const struct config_who *who = &allow->who[i];
-
-		if (who->group ? peer_in_group(peer, who->id) : peer->uid == who->id)
-			return true;
-	}
-	return false;
-}
-
 static bool by_default(const struct rights *r, const struct peer *peer)
 {
 	return r->has_controllers && peer_in_group(peer, r->controllers);
@@ -39,20 +28,12 @@ static bool by_default(const struct rights *r, const struct peer *peer)
 
 bool rights_set(const struct rights *r, const struct peer *peer, const char *name)
 {
-	bool named = false;
+	enum allow_word word;
 
 	if (has_all(r, peer))
 		return true;
-	for (unsigned i = 0; i < r->config->allow_count; i++) {
-		const struct config_allow *allow = &r->config->allows[i];
-
-		if (fnmatch(allow->pattern, name, 0) != 0)
-			continue;
-		if (names_peer(allow, peer))
-			return true;
-		named = true;
-	}
-	return !named && by_default(r, peer);
+	word = allow_ask(r->config, peer, name);
+	return word == ALLOW_YES || (word == ALLOW_OPEN && by_default(r, peer));
 }
 
 bool rights_set_any(const struct rights *r, const struct peer *peer)
@@ -60,7 +41,7 @@ bool rights_set_any(const struct rights *r, const struct peer *peer)
 	if (has_all(r, peer) || by_default(r, peer))
 		return true;
 	for (unsigned i = 0; i < r->config->allow_count; i++)
-		if (names_peer(&r->config->allows[i], peer))
+		if (allow_names(&r->config->allows[i], peer))
 			return true;
 	return false;
 }

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "src/control/peer.h"
+#include "src/shm/peer.h"
 
 struct config;
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "src/libows/alive.h"
+#include "src/libows/command.h"
 #include "src/libows/get.h"
 #include "src/libows/handle.h"
 #include "src/libows/map.h"
@@ -15,7 +16,7 @@
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
 
-#define NAME "served protocol"          /* of the giver that the clients of the protocol are */
+#define NAME "owserver protocol"        /* of the giver that the clients of the protocol are */
 #define MEET_NS (20 * INT64_C(1000000)) /* owsd's own control room answers at once */
 
 /*
@@ -121,6 +122,15 @@ int signals_record(struct signals *signals, const char *name)
 	return look_up(signals, name, &id) ? -1 : id.record;
 }
 
+const char *signals_name(struct signals *signals, const char *name)
+{
+	struct ows_id id;
+
+	if (look_up(signals, name, &id))
+		return NULL;
+	return id.record ? map_name(&signals->h->map, (uint32_t)id.record) : "";
+}
+
 /* Clients come and go, so all of them are one reader; `seen` has what this reader has read. */
 static bool take_alarms(struct signals *signals, const char *name, uint32_t alarms)
 {
@@ -213,8 +223,22 @@ static int join(struct ows *h)
 	return err;
 }
 
-static int set(struct signals *signals, struct ows_id *id, int64_t now_ns, const char *text,
-               size_t len, struct signals_command *command)
+/*
+ * All clients are one giver, with one command for each signal: that of another client may only be
+ * replaced when owsd knows whose it was.
+ */
+static int become(struct ows *h, const struct ows_id *id, const char *person)
+{
+	const struct ows_command_slot *own = give_slot(&h->give, (uint32_t)id->record);
+
+	if (__atomic_load_n(&own->taken, __ATOMIC_ACQUIRE) != word_get(&own->stamp) &&
+	    command_ready(h) == 0)
+		return -EBUSY;
+	return ows_for(h, person);
+}
+
+static int set(struct signals *signals, const char *person, struct ows_id *id, int64_t now_ns,
+               const char *text, size_t len, struct signals_command *command)
 {
 	struct ows *h = signals->h;
 	char copy[VALUE_STRING_MAX + 1];
@@ -230,34 +254,37 @@ static int set(struct signals *signals, struct ows_id *id, int64_t now_ns, const
 		return -EACCES;
 	err = join(h);
 	if (!err)
+		err = become(h, id, person);
+	if (!err)
 		err = handle_set_text(h, id, copy, &stamp);
 	if (err == -ERANGE)
 		return -EDOM;
 	if (err == -EROFS)
 		return -EACCES;
 	if (err)
-		return err == -EINVAL || err == -EACCES || err == -ESTALE ? err : -EIO;
+		return err == -EINVAL || err == -EACCES || err == -ESTALE || err == -EBUSY ? err
+		                                                                           : -EIO;
 	if (id->attribute == ATTR_VALUE)
 		*command = (struct signals_command){(unsigned)id->record, h->map.image->generation,
 		                                    stamp, now_ns};
 	return 0;
 }
 
-int signals_write(struct signals *signals, const char *name, int64_t now_ns, const char *text,
-                  size_t len, struct signals_command *command)
+int signals_write(struct signals *signals, const char *person, const char *name, int64_t now_ns,
+                  const char *text, size_t len, struct signals_command *command)
 {
 	struct ows_id id;
 	int err = look_up(signals, name, &id);
 
 	*command = (struct signals_command){0};
 	if (!err)
-		err = set(signals, &id, now_ns, text, len, command);
+		err = set(signals, person, &id, now_ns, text, len, command);
 	if (err != -ESTALE)
 		return err;
 	/* a reload gave the signal another record meanwhile */
 	err = ows_reopen(signals->h) ? -EIO : look_up(signals, name, &id);
 	if (!err)
-		err = set(signals, &id, now_ns, text, len, command);
+		err = set(signals, person, &id, now_ns, text, len, command);
 	return err == -ESTALE ? -EIO : err;
 }
 

@@ -112,6 +112,31 @@ def test_a_reload_takes_rights_away_and_gives_them(scene):
     assert said.wait() == 0 and said.log().strip() == "0 0", said.log()
 
 
+def test_clients_of_the_served_protocol_keep_to_ControlAllow_and_are_named(scene):
+    path, port = scene.path / "served.sock", owsdtest.free_port()
+    os.chmod(scene.path, 0o777)
+    text = allow(scene, "rel* user:plc").replace(
+        "OwsDrv {\n", f'OwsDrv {{\n  Listen "{port}"\n  ListenSocket "{path}"\n', 1)
+    name = daemon_of(scene, text).name
+    good(scene, name)
+    device = faulty.RELAYS["Path"]
+
+    def write(who, target, path, value):
+        done = ctl(scene, who, name, "-t", f"owserver:{target}", "write", path, value)
+        return "" if done.returncode == 0 else done.stderr or "failed"
+
+    for who, target in (("setter", path), ("plc", f"127.0.0.1:{port}")):
+        for what in ("/signals/relays", "/signals/relays_WriteOneShot", device, "/bus.0" + device):
+            refused = write(who, target, what, "1")
+            assert "no permission" in refused, (who, what, refused)
+    assert write("plc", path, "/signals/relays", "9") == ""
+    until(lambda: ctl(scene, "reader", name, "get", "relays").stdout.strip() == "9", 20)
+    user = f"user {private.USERS['plc'][0]}"
+    for view in ("who", "journal"):
+        shown = ctl(scene, "reader", name, view).stdout
+        assert any("owserver protocol" in line and user in line for line in shown.splitlines()), shown
+
+
 def test_faults_of_ControlAllow_are_said(scene):
     for entry, fault in (("relays", "expected a pattern of signal names"),
                          ("relays plc", "expected user:NAME or group:NAME"),

@@ -8,7 +8,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "src/control/peer.h"
+#include "src/shm/peer.h"
 
 /* Younger than the headers of some machines that build owsd. */
 #ifndef SO_PEERGROUPS
@@ -21,7 +21,7 @@
 #define SYS_pidfd_open 434
 #endif
 
-int peer_look(int connection, struct peer *peer)
+static int look(int connection, struct peer *peer)
 {
 	struct ucred ucred;
 	socklen_t len = sizeof(ucred);
@@ -32,7 +32,28 @@ int peer_look(int connection, struct peer *peer)
 	peer->uid = ucred.uid;
 	peer->gid = ucred.gid;
 	peer->pid = ucred.pid > 0 ? ucred.pid : 0;
-	len = 0;
+	return 0;
+}
+
+int peer_look_into(int connection, struct peer *peer, gid_t *room, unsigned most)
+{
+	socklen_t len = (socklen_t)(most * sizeof(*room));
+	int err = look(connection, peer);
+
+	if (!err && getsockopt(connection, SOL_SOCKET, SO_PEERGROUPS, room, &len) == 0) {
+		peer->groups = room;
+		peer->group_count = (unsigned)(len / sizeof(gid_t));
+	}
+	return err;
+}
+
+int peer_look(int connection, struct peer *peer)
+{
+	socklen_t len = 0;
+	int err = look(connection, peer);
+
+	if (err)
+		return err;
 	/* a kernel that does not know it leaves the group of the process itself */
 	if (getsockopt(connection, SOL_SOCKET, SO_PEERGROUPS, NULL, &len) == 0 || errno != ERANGE)
 		return 0;

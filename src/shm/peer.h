@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Who is at the other end of a connection, by the kernel's word. */
-#ifndef CONTROL_PEER_H
-#define CONTROL_PEER_H
+#ifndef SHM_PEER_H
+#define SHM_PEER_H
 
 #include <stdbool.h>
 #include <sys/types.h>
@@ -16,6 +16,11 @@ struct peer {
 
 /* The credentials of the process that connected, of that moment. 0 or a negative errno. */
 int peer_look(int connection, struct peer *peer);
+/*
+ * As peer_look(), with the other groups in this room, so that nothing is allocated. Of a process
+ * that has more of them none is known.
+ */
+int peer_look_into(int connection, struct peer *peer, gid_t *room, unsigned most);
 void peer_forget(struct peer *peer);
 bool peer_in_group(const struct peer *peer, gid_t group);
 /*
