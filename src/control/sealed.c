@@ -94,7 +94,7 @@ void sealed_unmap(char *base, size_t size)
 
 bool sealed_is_held(int own)
 {
-	/* the kernel gives a lease for writing only where nobody else has the file open or mapped */
+	/* the kernel gives a lease for writing only where no other has the file open or mapped */
 	if (fcntl(own, F_SETLEASE, F_WRLCK) < 0)
 		return errno == EAGAIN;
 	fcntl(own, F_SETLEASE, F_UNLCK);

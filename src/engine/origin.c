@@ -9,7 +9,7 @@
 
 /* A giver that commands a signal without end, for one person, has one entry a second for it. */
 #define APART_NS NS_PER_S
-/* Givers that command a signal in turn without end have so many entries at once, then one a second. */
+/* Givers that command a signal in turn have so many entries at once, then one a second. */
 #define AT_ONCE 8
 
 static bool same_text(const struct signal *s, const char *text, uint32_t len)
