@@ -329,6 +329,18 @@ static void meet(struct control *c, int fd)
 	close(fd);
 }
 
+/* The connection waits in the socket until there is room. */
+static void report_full(struct control *c, int why)
+{
+	char others[LOG_OTHERS];
+	uint64_t n = log_rate(&c->full, c->now_ns);
+
+	count(c, CONTROL_refused_errors);
+	if (n)
+		log_warning(c->log, "no program can connect to %s: %s%s", c->name, strerror(why),
+		            log_others(n, others));
+}
+
 void door_accept(struct control *c)
 {
 	for (int i = 0; i < ACCEPTS; i++) {
@@ -342,6 +354,7 @@ void door_accept(struct control *c)
 		} else if (errno == EMFILE || errno == ENFILE || errno == ENOMEM ||
 		           errno == ENOBUFS) {
 			c->accept_ns = c->now_ns + RETRY_NS;
+			report_full(c, errno);
 			return;
 		}
 	}

@@ -28,7 +28,7 @@
 	X(refused_rights) \
 	X(refused_limits) \
 	X(refused_protocol) /* wrong words, or none in time */ \
-	X(refused_errors)   /* owsd had no memory or descriptor */ \
+	X(refused_errors)   /* owsd had no memory or descriptor; also when a connection waits */ \
 	X(hung_up) \
 	X(died) /* processes that ended while somebody held their socket */
 
@@ -111,7 +111,7 @@ struct control {
 		unsigned at;
 		struct giver_memory memories[OWS_GIVERS]; /* of those that have joined */
 	} engine;                                         /* of the engine's thread */
-	struct log_rate refused;
+	struct log_rate refused, full;
 	struct bus_counter counters[CONTROL_COUNTER_COUNT];
 };
 

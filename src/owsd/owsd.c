@@ -29,9 +29,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+/* Five for each of 128 programs that command, 512 for clients of the served protocol, and some. */
+#define DESCRIPTORS 1280
 #define STOP_NS (2 * NS_PER_S)
 #define SUPERVISE_NS (500 * NS_PER_MS)
 #define AGAIN_NS (20 * NS_PER_MS) /* a reload that has to wait */
@@ -154,6 +157,24 @@ static void catch_signals(void)
 	sigaction(SIGHUP, &action, NULL);
 	action.sa_handler = SIG_IGN;
 	sigaction(SIGPIPE, &action, NULL);
+}
+
+/* Use all descriptors that the hard limit allows. */
+static void raise_descriptors(struct log *log)
+{
+	struct rlimit files;
+
+	if (getrlimit(RLIMIT_NOFILE, &files) < 0)
+		return;
+	files.rlim_cur = files.rlim_max;
+	if (setrlimit(RLIMIT_NOFILE, &files) < 0 && getrlimit(RLIMIT_NOFILE, &files) < 0)
+		return;
+	if (files.rlim_cur < DESCRIPTORS)
+		log_warning(
+			log,
+			"at most %llu descriptors (RLIMIT_NOFILE): too few for all programs that "
+			"may connect, which need %d",
+			(unsigned long long)files.rlim_cur, DESCRIPTORS);
 }
 
 /* The targets as in the file; text ends with the number of those that do not fit. */
@@ -365,6 +386,7 @@ int main(int argc, char **argv)
 	}
 	supervisor_word = log_word(log);
 	catch_signals();
+	raise_descriptors(log);
 	if (instance_take(&instance, a.instance, log, why, sizeof(why))) {
 		complain("%s", why);
 		return EXIT_RUN;

@@ -206,6 +206,31 @@ static void test_a_thousand_programs_at_once_each_get_an_answer(void)
 	TEST_ASSERT_EQUAL_UINT(control_joined(), control_left());
 }
 
+static void test_without_a_descriptor_a_program_waits_until_there_is_one(void)
+{
+	struct ows_hello hello = control_hello(OWS_HELLO_COMMAND, "patient");
+	struct ows_welcome answer = {0};
+	struct rlimit before, full;
+	int fd = dup(STDIN_FILENO), got[3];
+
+	TEST_ASSERT_GREATER_OR_EQUAL(0, fd);
+	close(fd);
+	TEST_ASSERT_EQUAL(0, getrlimit(RLIMIT_NOFILE, &before));
+	full = before;
+	full.rlim_cur = (rlim_t)fd + 1; /* the one of the program */
+	TEST_ASSERT_EQUAL(0, setrlimit(RLIMIT_NOFILE, &full));
+	fd = control_connect();
+	control_wait_count("control_refused_errors", 1);
+	TEST_ASSERT_EQUAL(0, setrlimit(RLIMIT_NOFILE, &before));
+	send(fd, &hello, sizeof(hello), MSG_NOSIGNAL);
+	TEST_ASSERT_EQUAL(0, control_receive(fd, &answer, got));
+	TEST_ASSERT_EQUAL_INT(0, answer.err);
+	for (int i = 0; i < 3; i++)
+		close(got[i]);
+	close(fd);
+	control_wait_count("control_connections", 0);
+}
+
 int main(void)
 {
 	signal(SIGPIPE, SIG_IGN);
@@ -215,6 +240,7 @@ int main(void)
 	RUN_TEST(test_a_user_has_32_places_at_most);
 	RUN_TEST(test_connections_that_say_nothing_count_too);
 	RUN_TEST(test_many_users_leave_root_a_place);
+	RUN_TEST(test_without_a_descriptor_a_program_waits_until_there_is_one);
 	RUN_TEST(test_a_thousand_programs_at_once_each_get_an_answer);
 	return UNITY_END();
 }
