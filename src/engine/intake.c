@@ -91,6 +91,8 @@ static void take_command(struct engine *e, uint32_t giver, struct signal *s,
 	if (err) {
 		refuse_command(e, g, s, err, now_ns);
 	} else {
+		/* a promise may have come along with it: a kill finds both, or none */
+		engine_hear(e, giver);
 		engine_command(e, s, giver, c, signal_is_string(s) ? text : NULL, (uint32_t)len);
 		g->commands++;
 		e->counters.commands++;

@@ -5,6 +5,8 @@
  */
 #include "unity.h"
 
+#include "src/engine/intake.h"
+#include "src/engine/state.h"
 #include "tests/unit/aid/force_scene.h"
 
 void setUp(void)
@@ -30,6 +32,19 @@ static void test_a_giver_that_comes_back_in_time_has_its_commands_in_force(void)
 	expect_outputs(command);
 	TEST_ASSERT_EQUAL_UINT(OWS_REASON_RETURNED, scene_origin(&s, 1).reason);
 	TEST_ASSERT_EQUAL_STRING("giver1", scene_origin(&s, 1).who.name);
+}
+
+/* owsd looks at a slot just before it writes: what came since it heard the giver counts too. */
+static void test_a_promise_that_comes_along_with_a_command_is_known_with_it(void)
+{
+	giver_set_all(false);
+	giving_beat(&s.givers[1], BEAT_MS);
+	giving_set(&s.givers[1], 1, OTHER);
+	engine_intake_signal(s.engine, &s.engine->table.signals[0], s.now_ns);
+	restart_owsd();
+	come_back();
+	beat_on(SCENE_S);
+	expect_outputs((struct row){OTHER, NEXT, NEXT, NEXT, NEXT, NEXT, NEXT, NEXT});
 }
 
 static void test_a_giver_that_came_back_answers_for_its_outputs_again(void)
@@ -309,6 +324,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_giver_that_comes_back_in_time_has_its_commands_in_force);
+	RUN_TEST(test_a_promise_that_comes_along_with_a_command_is_known_with_it);
 	RUN_TEST(test_a_giver_that_came_back_answers_for_its_outputs_again);
 	RUN_TEST(test_a_giver_that_came_back_and_never_beats_is_lost);
 	RUN_TEST(test_a_giver_that_came_back_gets_to_know_that_its_command_is_applied);
