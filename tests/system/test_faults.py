@@ -283,17 +283,19 @@ def opened():
             time.sleep(0.05)
 
 with opened() as s:
-    s.beat(600000)
-    s.set("relays", 5)
+    is_set = False
     while True:
-        time.sleep(0.1)
         try:
             s.beat(600000)
-        except ows.Stale:
+            if not is_set:
+                s.set("relays", 5)
+            is_set = True
+        except ows.Stale:  # on a machine that is busy even an owsd that lives
             try:
                 s.reopen()
             except OSError:
                 pass
+        time.sleep(0.1)
 """)
     script = scene.file("script", """
         mount -t tmpfs -o size=4m tmpfs /dev/shm || exit 77
