@@ -23,5 +23,5 @@ void digits_print(enum ows_type type, double number, int64_t integer, int decima
 	if (cut[n - 1] == '.')
 		n--;
 	cut[n] = '\0';
-	strcpy(text, strcmp(cut, "-0") == 0 ? "0" : cut);
+	snprintf(text, VALUE_TEXT_MAX, "%s", strcmp(cut, "-0") == 0 ? "0" : cut);
 }
