@@ -67,6 +67,15 @@ static void add_who(struct build *build, struct config_allow *allow, const char 
 		               group ? "group" : "user", name);
 }
 
+/* A slip in the pattern would leave its signals to the group owsd-control. */
+static bool fits_some(const struct config *config, const char *pattern)
+{
+	for (unsigned i = 0; i < config->item_count; i++)
+		if (fnmatch(pattern, config->items[i].name, 0) == 0)
+			return true;
+	return config->item_count == 0;
+}
+
 static void add_allow(struct build *build, const struct rio_node *node)
 {
 	struct config *config = &build->box->config;
@@ -91,6 +100,9 @@ static void add_allow(struct build *build, const struct rio_node *node)
 		len = strcspn(text, BLANK);
 		add_who(build, allow, text, len, node->value_at);
 	}
+	if (!fits_some(config, allow->pattern))
+		report_warning(build->report, node->value_at,
+		               "ControlAllow: no signal fits the pattern %s", allow->pattern);
 	config->allow_count++;
 }
 

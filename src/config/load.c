@@ -163,9 +163,9 @@ static void build_config(struct build *build, const struct rio *rio, const char 
 		return;
 	options_read(driver, PLACE_DRIVER, values, build->report);
 	build_driver(build, values);
-	allow_build(build, driver);
 	buses_build(build, driver);
 	build_items(build, driver, &values[OPT_ITEM_COUNT]);
+	allow_build(build, driver);
 }
 
 int config_parse(const char *file, const char *text, size_t len, struct config_report *report,

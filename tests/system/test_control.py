@@ -150,6 +150,16 @@ def test_faults_of_ControlAllow_are_said(scene):
     assert done.returncode == 0, done
     assert "warning" in done.stderr and "no user nobody-of-that-name here" in done.stderr, done
     assert 'ControlAllow "relays user:nobody-of-that-name group:64712"' in " ".join(done.stdout.split()), done
+    assert "no signal fits" not in done.stderr, done
+
+
+def test_a_pattern_of_ControlAllow_that_fits_no_signal_gets_a_warning(scene):
+    config = scene.file("house.rio", allow(scene, "realys user:0", "rel[ user:0", "r?lay* user:0"))
+    done = scene._run([owsdtest.OWSD, "--check", "-c", config], 20)
+    assert done.returncode == 0 and "house.rio:2:" in done.stderr, done
+    assert "no signal fits the pattern realys" in done.stderr, done
+    assert "no signal fits the pattern rel[" in done.stderr, done
+    assert "r?lay*" not in done.stderr, done
 
 
 def test_a_stranger_is_answered_and_keeps_nobody_out(scene):
