@@ -7,7 +7,7 @@
 #include "src/engine/state.h"
 #include "src/shm/entries.h"
 
-/* A giver that commands a signal without end, for one person, has one entry a second for it. */
+/* A giver that commands a signal without end for one person has one entry a second. */
 #define APART_NS NS_PER_S
 /* Givers that command a signal in turn have so many entries at once, then one a second. */
 #define AT_ONCE 8
