@@ -186,7 +186,7 @@ void control_stop(struct control *c)
 
 		if (p->now.memory.base)
 			giver_state(&p->now.memory, OWS_STATE_STOPPED);
-		if (p->state != CONTROL_FREE && p->fd >= 0) {
+		if (__atomic_load_n(&p->state, __ATOMIC_ACQUIRE) != CONTROL_FREE && p->fd >= 0) {
 			close(p->fd);
 			p->fd = -1;
 		}
@@ -204,7 +204,7 @@ void control_destroy(struct control *c)
 		return;
 	control_stop(c);
 	for (unsigned i = 0; i < OWS_GIVERS; i++)
-		if (c->places[i].state != CONTROL_FREE)
+		if (__atomic_load_n(&c->places[i].state, __ATOMIC_ACQUIRE) != CONTROL_FREE)
 			door_release(c, &c->places[i]);
 	held_forget(c);
 	if (c->wake >= 0)

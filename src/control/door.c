@@ -292,6 +292,14 @@ static struct control_place *find_place(struct control *c, const struct peer *pe
 	return peer->uid && (of_user >= CONTROL_OF_USER || held >= CONTROL_HELD) ? NULL : found;
 }
 
+/* All of the place is new but its state, at which the engine's thread may look meanwhile. */
+static void begin_place(struct control_place *p, const struct control_place *fresh)
+{
+	size_t from = offsetof(struct control_place, fd);
+
+	memcpy((char *)p + from, (const char *)fresh + from, sizeof(*p) - from);
+}
+
 static void meet(struct control *c, int fd)
 {
 	struct control_place *p;
@@ -305,18 +313,18 @@ static void meet(struct control *c, int fd)
 	else if (!err && !p)
 		err = -ENOSPC;
 	if (!err) {
-		*p = (struct control_place){.fd = fd,
-		                            .death = -1,
-		                            .bell = -1,
-		                            .news = -1,
-		                            .news_end = -1,
-		                            .peer = peer,
-		                            .who.uid = peer.uid,
-		                            .until_ns = c->now_ns + CONTROL_HELLO_NS};
+		begin_place(p, &(struct control_place){.fd = fd,
+		                                       .death = -1,
+		                                       .bell = -1,
+		                                       .news = -1,
+		                                       .news_end = -1,
+		                                       .peer = peer,
+		                                       .who.uid = peer.uid,
+		                                       .until_ns = c->now_ns + CONTROL_HELLO_NS});
 		err = watch(c, p, fd, 0);
 	}
 	if (!err) {
-		p->state = CONTROL_HALF;
+		__atomic_store_n(&p->state, CONTROL_HALF, __ATOMIC_RELEASE);
 		count(c, CONTROL_connections);
 		return;
 	}

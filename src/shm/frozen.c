@@ -228,9 +228,9 @@ AT(ows_welcome, size, 24, 4);
 AT(ows_welcome, token, 32, 16);
 
 _Static_assert(OWS_LAYOUT_MAJOR == 2, "these are the numbers of major version 2");
-_Static_assert(OWS_JOURNAL == 256 && OWS_GIVERS == 128 && OWS_SHELVES == 64 && OWS_PERSONS == 16 &&
-                       OWS_NAME == 32 && OWS_TEXT == 64,
-               "published");
+_Static_assert(OWS_JOURNAL == 256 && OWS_GIVERS == 128 && OWS_SHELVES == 64, "published");
+_Static_assert(OWS_PERSONS == 16 && OWS_NAME == 32, "published");
+_Static_assert(OWS_TEXT == 64, "published");
 _Static_assert(OWS_IMAGE_MAGIC == 0x4953574f && OWS_GIVER_MAGIC == 0x4753574f &&
                        OWS_HELLO_MAGIC == 0x4853574f && OWS_WELCOME_MAGIC == 0x5753574f,
                "published");
