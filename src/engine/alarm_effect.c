@@ -44,7 +44,7 @@ void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item 
 	if (channels & ~item->occurrence.entered) {
 		entry = alarm_entry(s, OWS_ALARM_DEVICE, OWS_ALARM_RAISED, now_ns);
 		memcpy(entry.text, item->occurrence.latch_text,
-		       strnlen(item->occurrence.latch_text, sizeof(entry.text)));
+		       strnlen(item->occurrence.latch_text, sizeof(item->occurrence.latch_text)));
 		item->occurrence.journal = image_alarm(e->image, &entry);
 		item->occurrence.entered |= channels;
 		item->occurrence.wants_after = true;
