@@ -32,10 +32,12 @@ void person_address(const struct sockaddr *from, char name[OWS_NAME])
 		inet_ntop(family, bytes, text, sizeof(text));
 	len = strlen(text);
 	/* the end says which machine it is */
-	if (len < OWS_NAME)
-		snprintf(name, OWS_NAME, "%s", text);
-	else
-		snprintf(name, OWS_NAME, "...%s", text + len - (OWS_NAME - 4));
+	if (len < OWS_NAME) {
+		memcpy(name, text, len + 1);
+	} else {
+		memcpy(name, "...", 3);
+		memcpy(name + 3, text + len - (OWS_NAME - 4), OWS_NAME - 3);
+	}
 }
 
 void person_name(int fd, bool network, char name[OWS_NAME])

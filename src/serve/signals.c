@@ -16,8 +16,9 @@
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
 
-#define NAME "owserver protocol"        /* of the giver that the clients of the protocol are */
-#define MEET_NS (20 * INT64_C(1000000)) /* owsd's own control room answers at once */
+#define NAME "owserver protocol" /* of the giver that the clients of the protocol are */
+/* owsd's own control room answers at once, if it is not busy. */
+#define MEET_NS (20 * INT64_C(1000000))
 
 /*
  * How many alarms of a signal clients have read. The key is the name: a reload changes the record.
@@ -213,6 +214,12 @@ static bool takes_commands(const struct ows *h, const struct ows_id *id)
 	        slot.attrs.flags & OWS_ATTR_WRITE_ENABLE);
 }
 
+/* The welcome has not come yet, or the next memory: the client waits, and it is tried again. */
+static int not_yet(int err)
+{
+	return err == -EAGAIN || err == -ETIMEDOUT || err == -ENOENT ? -EBUSY : err;
+}
+
 /* Become a giver, at the first write: when owsd starts its control room is not open yet. */
 static int join(struct ows *h)
 {
@@ -220,7 +227,7 @@ static int join(struct ows *h)
 
 	if (!err)
 		meet_take(h);
-	return err;
+	return not_yet(err);
 }
 
 /*
@@ -282,7 +289,10 @@ int signals_write(struct signals *signals, const char *person, const char *name,
 	if (err != -ESTALE)
 		return err;
 	/* a reload gave the signal another record meanwhile */
-	err = ows_reopen(signals->h) ? -EIO : look_up(signals, name, &id);
+	err = not_yet(ows_reopen(signals->h));
+	if (err == -EBUSY)
+		return err;
+	err = err ? -EIO : look_up(signals, name, &id);
 	if (!err)
 		err = set(signals, person, &id, now_ns, text, len, command);
 	return err == -ESTALE ? -EIO : err;

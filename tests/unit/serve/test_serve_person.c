@@ -107,6 +107,15 @@ static void test_a_command_waits_until_owsd_has_taken_that_of_another_client(voi
 	end();
 }
 
+static void test_a_command_waits_while_owsd_has_not_welcomed_the_server(void)
+{
+	start();
+	in.door->lie = DOOR_SILENT;
+	TEST_ASSERT_EQUAL_INT(-EBUSY, set("10.0.0.1", "relay"));
+	TEST_ASSERT_EQUAL_INT(-EBUSY, set("10.0.0.1", "relay"));
+	end();
+}
+
 static void name_of(const char *address, const char *name)
 {
 	struct sockaddr_in v4 = {.sin_family = AF_INET};
@@ -190,6 +199,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_each_command_stands_for_the_client_that_gave_it);
 	RUN_TEST(test_a_command_waits_until_owsd_has_taken_that_of_another_client);
+	RUN_TEST(test_a_command_waits_while_owsd_has_not_welcomed_the_server);
 	RUN_TEST(test_a_client_over_the_network_is_its_address);
 	RUN_TEST(test_a_client_of_the_unix_socket_is_its_user);
 	RUN_TEST(test_of_the_network_nobody_commands_what_a_pattern_fits);
