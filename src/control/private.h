@@ -6,9 +6,9 @@
 #include <pthread.h>
 
 #include "hal/bus/bus.h"
-#include "src/shm/peer.h"
 #include "src/control/rights.h"
 #include "src/shm/giver.h"
+#include "src/shm/peer.h"
 #include "src/text/log.h"
 
 /* Limits of a user, which do not hold for root. */
