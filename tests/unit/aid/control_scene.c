@@ -34,6 +34,7 @@ static sem_t bell;
 static pthread_t engine;
 static bool engine_ends, reloads;
 static struct control_turn turns[OWS_GIVERS];
+static uint32_t serials[OWS_GIVERS]; /* of the givers that are inside: the test looks at them */
 static uint32_t joined, left;
 
 static void ring(void *ctx)
@@ -64,8 +65,8 @@ static void *run(void *arg)
 		while (control_next(control_room, &turn)) {
 			if (turn.joins)
 				turns[turn.place] = turn;
-			else
-				turns[turn.place].who.serial = 0;
+			__atomic_store_n(&serials[turn.place], turn.joins ? turn.who.serial : 0,
+			                 __ATOMIC_RELEASE);
 			__atomic_fetch_add(turn.joins ? &joined : &left, 1, __ATOMIC_SEQ_CST);
 			control_done(control_room, &turn);
 		}
@@ -107,6 +108,7 @@ void control_open(void)
 	setup.directory = directory_fd;
 	sem_init(&bell, 0, 0);
 	joined = left = 0;
+	memset(serials, 0, sizeof(serials));
 	engine_ends = reloads = false;
 	err = control_create(&setup, &control_room, why, sizeof(why));
 	TEST_ASSERT_EQUAL_INT_MESSAGE(0, err, why);
@@ -170,7 +172,7 @@ unsigned control_inside(void)
 const struct control_turn *control_turn_of(uint32_t serial)
 {
 	for (unsigned i = 0; i < OWS_GIVERS; i++)
-		if (turns[i].who.serial == serial)
+		if (__atomic_load_n(&serials[i], __ATOMIC_ACQUIRE) == serial)
 			return &turns[i];
 	TEST_FAIL_MESSAGE("no giver with that serial");
 	return NULL;
