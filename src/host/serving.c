@@ -8,7 +8,6 @@
 #include "hal/bus/worker.h"
 #include "src/config/load.h"
 #include "src/engine/counters.h"
-#include "src/host/last.h"
 #include "src/host/serving.h"
 #include "src/host/target.h"
 #include "src/libows/ows.h"
@@ -120,7 +119,6 @@ static int make_memory(struct serving *s, const struct serving_setup *setup, cha
 	err = memory_make(&s->memory,
 	                  &(struct memory_setup){
 				  .instance = setup->instance,
-				  .place = setup->place,
 				  .config = s->config,
 				  .counters = plan,
 				  .counter_count = count,
@@ -140,18 +138,13 @@ static int make_engine(struct serving *s, const struct serving_setup *setup)
 		.ports = s->ports,
 		.port_count = s->worker_count,
 		.image = &s->memory.image,
-		.force = &s->memory.force,
-		.left = s->memory.has_left ? &s->memory.left : NULL,
-		.last = last_seam(s->last),
+		.commands = s->commands,
 		.log = setup->log,
 		.guests = setup->guests,
 		.start_ns = s->memory.start_ns,
 	};
 
-	int err = engine_create(&engine, &s->engine);
-
-	memory_resumed(&s->memory);
-	return err;
+	return engine_create(&engine, &s->engine);
 }
 
 int serving_make(struct serving *s, const struct serving_setup *setup, char *why, size_t why_size)
@@ -163,15 +156,10 @@ int serving_make(struct serving *s, const struct serving_setup *setup, char *why
 	err = make_workers(s, setup, why, why_size);
 	if (!err)
 		err = make_memory(s, setup, why, why_size);
-	if (!err)
-		err = last_make(&(struct last_setup){.instance = setup->instance,
-		                                     .config = s->config,
-		                                     .log = setup->log,
-		                                     .ring = setup->ring,
-		                                     .ring_ctx = setup->ring_ctx},
-		                &s->last);
-	if (!err)
+	if (!err) {
+		s->commands = memory_commands(&s->memory);
 		err = make_engine(s, setup);
+	}
 	if (!err)
 		return 0;
 	for (unsigned i = 0; i < s->worker_count; i++)
@@ -253,7 +241,6 @@ void serving_free(struct serving *s)
 		if (!s->taken[i])
 			worker_destroy(s->workers[i]);
 	memory_end(&s->memory);
-	last_free(s->last);
 	free(s->workers);
 	free(s->taken);
 	free(s->ports);

@@ -31,13 +31,16 @@ int names_lookup(struct ows *h, const char *instance, const char *name, int *sig
 	return 0;
 }
 
-bool names_info(struct ows *h, const char *instance, const char *name, struct ows_info *info)
+const char *names_path(struct ows *h, const char *instance, const char *name)
 {
 	enum attribute attribute;
+	struct ows_info info;
 	int signal;
 
-	return names_lookup(h, instance, name, &signal, &attribute) == 0 &&
-	       attribute == ATTR_VALUE && ows_info(h, signal, info) == 0;
+	if (names_lookup(h, instance, name, &signal, &attribute) || attribute != ATTR_VALUE ||
+	    ows_info(h, signal, &info))
+		return NULL;
+	return info.path;
 }
 
 bool names_match(const char *name, char *const *patterns, int count)

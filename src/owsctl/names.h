@@ -15,8 +15,11 @@
 int names_lookup(struct ows *h, const char *instance, const char *name, int *signal,
                  enum attribute *attribute);
 
-/* Is it the name of a signal's value? Then *info is of that signal. */
-bool names_info(struct ows *h, const char *instance, const char *name, struct ows_info *info);
+/*
+ * The path of the signal whose value the name means, else NULL. Valid as long as that of
+ * ows_info().
+ */
+const char *names_path(struct ows *h, const char *instance, const char *name);
 
 /* Does one of count patterns (fnmatch) match, or is there none? */
 bool names_match(const char *name, char *const *patterns, int count);

@@ -4,7 +4,6 @@
  */
 #include <arpa/inet.h>
 #include <errno.h>
-#include <ftw.h>
 #include <math.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -15,7 +14,6 @@
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -46,38 +44,6 @@ bool bench_pin(int cpu)
 int bench_cpus(void)
 {
 	return (int)sysconf(_SC_NPROCESSORS_ONLN);
-}
-
-static struct shm_place place = {.fd = -1};
-static pid_t maker;
-
-static int remove_one(const char *path, const struct stat *st, int kind, struct FTW *at)
-{
-	(void)st;
-	(void)kind;
-	(void)at;
-	return remove(path);
-}
-
-static void remove_place(void)
-{
-	if (getpid() == maker)
-		nftw(place.path, remove_one, 4, FTW_DEPTH | FTW_PHYS);
-}
-
-const struct shm_place *bench_place(void)
-{
-	char path[] = "/dev/shm/owsd-bench-XXXXXX";
-
-	if (place.fd >= 0)
-		return &place;
-	if (!mkdtemp(path) || setenv("OWS_DIR", path, 1) || place_make(&place)) {
-		perror(path);
-		exit(1);
-	}
-	maker = getpid();
-	atexit(remove_place);
-	return &place;
 }
 
 void bench_line(const char *name, double value, const char *unit)

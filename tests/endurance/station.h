@@ -11,7 +11,6 @@
 #include "src/config/config.h"
 #include "src/engine/adopt.h"
 #include "src/engine/engine.h"
-#include "src/shm/giver.h"
 #include "tests/endurance/fiber.h"
 #include "tests/endurance/part.h"
 
@@ -54,8 +53,8 @@ struct generation {
 	struct station_bus *bus[STATION_PARTS];
 	unsigned port_count;
 	struct image image;
-	struct giver_layout layout;
-	void *image_memory;
+	struct commands commands;
+	void *image_memory, *command_memory;
 	struct station_bus *ending[STATION_PARTS]; /* when it is over: buses that did not stay */
 	unsigned ending_count;
 };
