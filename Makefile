@@ -33,8 +33,8 @@
 #                                 test-gpio-pi the same of a Raspberry Pi 3
 #   make test-image               an image for a Raspberry Pi, booted in QEMU; CASES=main for less
 
-VERSION  := 0.9.0
-SOMAJOR  := 0
+VERSION  := 0.10.0
+SOMAJOR  := 1
 B        ?= build
 PREFIX   ?= /usr/local
 DESTDIR  ?=
@@ -159,8 +159,9 @@ endef
 SOURCES  := $(wildcard src/*/*.c hal/*/*.c hal/*/*/*.c)
 # The consumers' library
 LIBOWS   := $(wildcard src/libows/*.c)
-# Programs over libows to start from
-EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py)
+# Programs to start from, and configurations
+EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py docs/examples/*.go \
+            docs/examples/*.rio docs/examples/*.rs)
 # Those that another program builds or loads, a folder for each
 HOSTED   := $(patsubst docs/examples/%/,%,$(wildcard docs/examples/*/))
 PYTHON   := $(wildcard src/libows/*.py)
@@ -170,7 +171,7 @@ UNIT_SRC := $(wildcard tests/unit/*/test_*.c)
 UNIT_AID := $(wildcard tests/unit/aid/*.c)
 ENDURANCE := $(wildcard tests/endurance/*.c)
 BENCH    := $(wildcard tests/bench/bench_*.c)
-BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/aid/plant.c tests/unit/aid/plant_net.c
+BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/aid/plant.c tests/unit/aid/plant_net.c tests/unit/aid/giving.c
 # ---------------------------------------------------------------------------------------------
 
 CORE     := $(filter-out src/owsd/owsd.c src/owsctl/owsctl.c,$(SOURCES))
@@ -422,8 +423,8 @@ install-service:
 	install -m 644 board/systemd/modules-load.conf $(SERVICE_IN)/modules-load.d/owsd.conf
 	install -m 644 board/udev/owsd.rules $(SERVICE_IN)/udev/rules.d/60-owsd.rules
 	[ -e $(D)/etc/owsd/OWS.rio ] || install -m 644 board/debian/OWS.rio $(D)/etc/owsd/OWS.rio
-	@echo 'now: systemd-sysusers; modprobe i2c-dev; udevadm trigger; systemctl daemon-reload;'
-	@echo '     systemctl enable --now owsd      (its configuration: /etc/owsd/OWS.rio)'
+	@echo 'now: systemd-sysusers; systemd-tmpfiles --create; modprobe i2c-dev; udevadm trigger;'
+	@echo '     systemctl daemon-reload; systemctl enable --now owsd      (its configuration: /etc/owsd/OWS.rio)'
 
 uninstall-service:
 	rm -f $(addprefix $(SERVICE_IN)/,$(SERVICE))

@@ -38,6 +38,7 @@ def record(folder):
     rio = rio.replace("sim:board/demo/house.sim", "sim:house.sim")
     rio = re.sub(r"(?<=LimitH) +\d+", " 50", rio)  # the boiler is too hot at once
     (folder / "house.rio").write_text(rio)
+    os.environ["OWS_DIR"] = str(folder / "place")
     owsd = subprocess.Popen([BUILD / "owsd", "-n", name, "-c", "house.rio"], cwd=folder,
                             stderr=subprocess.DEVNULL)
     ctl = [BUILD / "owsctl", "-n", name]
@@ -52,8 +53,6 @@ def record(folder):
     finally:
         owsd.terminate()
         owsd.wait(PATIENCE)
-        for file in pathlib.Path("/dev/shm").glob(f"owsd.{name}.*"):
-            file.unlink()
 
 
 def on_terminal(command):

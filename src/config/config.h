@@ -3,8 +3,8 @@
  * The configuration as the engine needs it: checked, with defaults filled in. Made from a .rio
  * document (rio.h) by config_load(). Immutable after that; all strings belong to it.
  *
- * Room src/config: the .rio file: read, checked, edited. Uses src/text, src/signal, hal/owfs,
- * hal/bus.
+ * Room src/config: the .rio file: read, checked, edited. Uses src/text, src/shm, src/signal,
+ * hal/owfs, hal/bus.
  */
 #ifndef CONFIG_H
 #define CONFIG_H
@@ -14,6 +14,7 @@
 
 #include "src/config/listen.h"
 #include "src/libows/ows.h"
+#include "src/signal/scale.h"
 
 enum config_limit {
 	CONFIG_LIMIT_LL,
@@ -33,12 +34,16 @@ struct config_limits {
 
 struct config_item {
 	const char *name;
-	const char *path; /* normalised: leading "/", without "/uncached" and "/alarm" */
+	const char *path;   /* normalised: leading "/", without "/uncached" and "/alarm" */
+	const char *device; /* the ROM id in path; NULL: an alias, or no device */
+	const char *family; /* the kind of chip that its code means; NULL: not known */
 	enum ows_type type;
 	bool output;
 	bool readable, writable; /* start values of _ReadEnable and _WriteEnable */
 	bool fresh;              /* Uncached, by flag or by path */
-	bool has_init, has_safe;
+	bool has_init, has_safe, has_safe_delay;
+	bool starts_last; /* Start "last"; outputs only */
+	int64_t safe_delay_ns;
 	int64_t init_value, safe_value;    /* numbers, as in src/signal/value.h */
 	const char *init_text, *safe_text; /* as written; for strings the value itself */
 	uint32_t per_factor;
@@ -47,7 +52,14 @@ struct config_item {
 	/* NULL: not defined, "": empty; Table 3.1 tells the two apart */
 	const char *latch_alarm, *por_alarm, *set_alarm, *reset_latch;
 	struct config_limits limits;
-	int line; /* of Item */
+	/* of engineering values; NULL: not given. An empty unit is given too */
+	const char *unit, *description;
+	const char *calibrated; /* "2026-11-22" */
+	const char *points;     /* as written */
+	int decimals;           /* -1: not given */
+	struct scale scale;
+	double filter_s, deadband; /* 0: none */
+	int line;                  /* of Item */
 };
 /* Does the item take sets? An input with Writable off never does, whatever its _WriteEnable. */
 static inline bool config_item_takes_sets(const struct config_item *item)
@@ -93,6 +105,19 @@ struct config_serve {
 	bool read_only;
 };
 
+/* A user or a group of ControlAllow. */
+struct config_who {
+	bool group;
+	uint32_t id;
+};
+/* An entry of ControlAllow: who may command the signals whose names fit the pattern. */
+struct config_allow {
+	const char *text; /* as written */
+	const char *pattern;
+	struct config_who *who; /* those that this machine knows */
+	unsigned who_count;
+};
+
 struct config {
 	const char *file;
 	struct config_target *targets;
@@ -106,6 +131,8 @@ struct config {
 	struct config_item *items;
 	unsigned item_count;
 	struct config_serve serve;
+	struct config_allow *allows;
+	unsigned allow_count;
 };
 
 /* Receives the errors and warnings; a message is a whole line ("house.rio:12:26: error: ..."). */

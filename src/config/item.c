@@ -9,7 +9,9 @@
 #include "src/config/build.h"
 #include "src/config/item.h"
 #include "src/config/limits.h"
+#include "src/config/scaling.h"
 #include "src/signal/attribute.h"
+#include "src/signal/family.h"
 #include "src/signal/quantity.h"
 #include "src/signal/value.h"
 
@@ -87,6 +89,10 @@ static void build_path(struct build *build, const struct rio_node *block,
 		               text);
 	item->path = normalised(build, text, strlen(text), path);
 	item->fresh = path->uncached;
+	if (!path->has_rom)
+		return;
+	item->device = build_keep(build, path->last.text, path->last.len);
+	item->family = family_name(path->rom[0]);
 }
 
 /* The meaning of IOType, before the readable keys; false: its type is no type. */
@@ -199,6 +205,26 @@ static void check_string(struct build *build, const struct option_value *value)
 		             VALUE_STRING_MAX);
 }
 
+/* What an output begins with, and how long it waits for the program that it obeyed. */
+static void build_start(struct build *build, const struct option_value *values,
+                        struct config_item *item)
+{
+	const struct option_value *start = &values[OPT_START], *delay = &values[OPT_SAFE_DELAY];
+
+	item->starts_last = start->given && strcmp(start->text, "last") == 0;
+	if (start->given && !item->starts_last && strcmp(start->text, "init") != 0)
+		report_error(build->report, start->node->value_at,
+		             "Start \"%s\": expected init or last", start->text);
+	else if (item->starts_last && !item->output)
+		report_error(build->report, start->node->value_at,
+		             "Start \"last\": expected an output, and this is an input");
+	item->has_safe_delay = delay->given;
+	item->safe_delay_ns = (int64_t)(delay->number * 1e9 + 0.5);
+	if (delay->given && !item->has_safe)
+		report_warning(build->report, delay->node->at,
+		               "SafeDelay does nothing without SafeValue");
+}
+
 static void build_values(struct build *build, const struct option_value *values, bool known,
                          struct config_item *item)
 {
@@ -215,6 +241,7 @@ static void build_values(struct build *build, const struct option_value *values,
 		item->has_init = *init->text && build_value(build, init, item, &item->init_value);
 		item->has_safe = safe->given && build_value(build, safe, item, &item->safe_value);
 	}
+	build_start(build, values, item);
 	if (item->has_safe && !item->output && !item->writable)
 		report_warning(build->report, safe->node->at,
 		               "SafeValue does nothing: this input is not Writable");
@@ -283,13 +310,14 @@ static void build_alarm(struct build *build, const struct rio_node *block,
 
 /*
  * Warn of an integer type for a property with decimals: its value would be bad at every fraction.
+ * A scaled value is rounded instead.
  */
 static void warn_of_decimals(struct build *build, const struct rio_node *block,
                              const struct option_value *values, const struct config_item *item)
 {
 	struct quantity quantity;
 
-	if (value_is_float(item->type) || item->type == OWS_STRING ||
+	if (value_is_float(item->type) || item->type == OWS_STRING || scale_changes(&item->scale) ||
 	    !quantity_of(item->path, &quantity) || quantity.decimals == 0)
 		return;
 	report_warning(build->report, place_of(&values[OPT_TYPE], block),
@@ -308,10 +336,11 @@ void item_build(struct build *build, const struct rio_node *block, struct config
 	build_name(build, block, values, item);
 	build_path(build, block, values, item, &path);
 	known = build_type(build, block, values, item);
-	if (known)
-		warn_of_decimals(build, block, values, item);
 	build_flags(build, values, &path, item);
 	build_values(build, values, known, item);
+	scaling_build(build, values, known, item);
+	if (known)
+		warn_of_decimals(build, block, values, item);
 	build_alarm(build, block, values, &path, item);
 	limits_build(build, values, item);
 }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/config/allow.h"
 #include "src/config/build.h"
 #include "src/config/buses.h"
 #include "src/config/item.h"
@@ -164,6 +165,7 @@ static void build_config(struct build *build, const struct rio *rio, const char 
 	build_driver(build, values);
 	buses_build(build, driver);
 	build_items(build, driver, &values[OPT_ITEM_COUNT]);
+	allow_build(build, driver);
 }
 
 int config_parse(const char *file, const char *text, size_t len, struct config_report *report,

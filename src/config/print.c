@@ -74,6 +74,36 @@ static void put_limits(FILE *out, const struct config_limits *limits)
 	put_seconds(out, 4, OPT_OFF_DELAY, limits->off_delay_ns);
 }
 
+static void put_text_if_given(FILE *out, enum option option, const char *text)
+{
+	if (text)
+		put_text(out, 4, option, text);
+}
+
+static void put_scaling(FILE *out, const struct config_item *item)
+{
+	const struct scale *scale = &item->scale;
+
+	put_text_if_given(out, OPT_UNIT, item->unit);
+	if (item->decimals >= 0)
+		put_word(out, 4, OPT_DECIMALS, "%d", item->decimals);
+	put_text_if_given(out, OPT_DESCRIPTION, item->description);
+	if (scale->linear) {
+		put_number(out, 4, OPT_SCALE, scale->factor);
+		put_number(out, 4, OPT_OFFSET, scale->offset);
+	}
+	put_text_if_given(out, OPT_POINTS, item->points);
+	if (scale->has_min)
+		put_number(out, 4, OPT_MIN, scale->min);
+	if (scale->has_max)
+		put_number(out, 4, OPT_MAX, scale->max);
+	if (item->filter_s > 0)
+		put_number(out, 4, OPT_FILTER, item->filter_s);
+	if (item->deadband > 0)
+		put_number(out, 4, OPT_DEADBAND, item->deadband);
+	put_text_if_given(out, OPT_CALIBRATED, item->calibrated);
+}
+
 static void put_targets(FILE *out, const struct config *config)
 {
 	static const char *const relations[] = {
@@ -149,6 +179,10 @@ static void put_item(FILE *out, const struct config_item *item)
 	put_text(out, 4, OPT_INIT_VALUE, item->init_text);
 	if (item->has_safe)
 		put_text(out, 4, OPT_SAFE_VALUE, item->safe_text);
+	if (item->has_safe_delay)
+		put_seconds(out, 4, OPT_SAFE_DELAY, item->safe_delay_ns);
+	if (item->starts_last)
+		put_text(out, 4, OPT_START, "last");
 	put_word(out, 4, OPT_PER_FACTOR, "%u", (unsigned)item->per_factor);
 	put_seconds(out, 4, OPT_STALE_AFTER, item->stale_after_ns);
 	put_flag(out, 4, OPT_ALARM, item->alarm);
@@ -161,6 +195,7 @@ static void put_item(FILE *out, const struct config_item *item)
 	if (item->reset_latch)
 		put_text(out, 4, OPT_RESET_LATCH, item->reset_latch);
 	put_limits(out, &item->limits);
+	put_scaling(out, item);
 	fputs("  }\n", out);
 }
 
@@ -175,6 +210,8 @@ void config_print(const struct config *config, FILE *out)
 	put_seconds(out, 2, OPT_PERIOD, config->period_ns);
 	put_seconds(out, 2, OPT_ALARM_PERIOD, config->alarm_period_ns);
 	put_serve(out, &config->serve);
+	for (unsigned i = 0; i < config->allow_count; i++)
+		put_text(out, 2, OPT_CONTROL_ALLOW, config->allows[i].text);
 	if (config->alarm_line)
 		put_text(out, 2, OPT_ALARM_LINE, config->alarm_line);
 	if (config->heartbeat_line)

@@ -11,14 +11,18 @@
 #include "src/engine/disown.h"
 #include "src/engine/doubt.h"
 #include "src/engine/due.h"
+#include "src/engine/givers.h"
 #include "src/engine/guests.h"
-#include "src/engine/intake.h"
+#include "src/engine/in_force.h"
 #include "src/engine/lane.h"
+#include "src/engine/origin.h"
 #include "src/engine/place.h"
 #include "src/engine/publish.h"
 #include "src/engine/schedule.h"
+#include "src/engine/shelf.h"
 #include "src/engine/state.h"
-#include "src/shm/carry.h"
+#include "src/shm/entries.h"
+#include "src/shm/shelves.h"
 
 static uint64_t wait_of(const struct due_wheel *wheel, uint32_t entry)
 {
@@ -35,8 +39,8 @@ static void take_time(struct engine *e, const struct engine *old, int64_t now_ns
 		e->time.first = old->time.period;
 	}
 	for (uint32_t row = 0; row < e->table.count; row++)
-		due_wheel_cancel(&e->limit_wheel, row);
-	e->wheel.period = e->limit_wheel.period = e->route_wheel.period = e->time.period;
+		due_wheel_cancel(&e->time_wheel, row);
+	e->wheel.period = e->time_wheel.period = e->route_wheel.period = e->time.period;
 }
 
 static void take_counts(struct engine *e, const struct engine *old)
@@ -44,8 +48,8 @@ static void take_counts(struct engine *e, const struct engine *old)
 	e->driver = old->driver;
 	e->counters = old->counters;
 	e->counters.reloads++;
-	memcpy(e->clients, old->clients, sizeof(e->clients));
 	e->refused = old->refused;
+	e->shelvings = old->shelvings;
 }
 
 /* --- Targets --------------------------------------------------------------------------------- */
@@ -194,7 +198,8 @@ static void take_signals(struct engine *e, const struct engine *old, const struc
 			continue;
 		}
 		lane->writers -= signal_writes(s);
-		signal_adopt(s, &old->table.signals[plan->rows[row]]);
+		if (signal_adopt(s, &old->table.signals[plan->rows[row]]))
+			engine_origin_carry(e, s, old, plan->rows[row] + 1);
 		lane->writers += signal_writes(s);
 		take_source(e, s, plan);
 		take_turn(e, s, old, plan->rows[row]);
@@ -251,7 +256,7 @@ static void take_alarms(struct engine *e, const struct engine *old, const struct
 			alarm_drop_item(&e->lanes[i].alarm, &e->alarm_items[k]);
 	for (uint32_t k = 0; k < e->alarm_count; k++)
 		take_alarm(e, &e->alarm_items[k], old, plan);
-	image_carry_alarms(e->image, old->image, plan->successors);
+	image_carry_journals(e->image, old->image, plan->successors);
 }
 
 /* --------------------------------------------------------------------------------------------- */
@@ -259,9 +264,8 @@ static void take_alarms(struct engine *e, const struct engine *old, const struct
 void engine_adopt(struct engine *e, struct engine *old, const struct adoption *plan, int64_t now_ns)
 {
 	/* from here on a program's set fails there, so nothing is lost between the two */
-	commands_state(old->commands, OWS_STATE_RETIRED);
-	engine_intake(old, now_ns);
-	commands_carry_rows(e->commands, old->commands, plan->rows);
+	engine_givers_retire(old, e, now_ns);
+	engine_givers_adopt(e, old, plan->rows);
 	for (unsigned i = 0; i < old->lane_count; i++) {
 		lane_keep_reads(&old->lanes[i]);
 		lane_disown(&old->lanes[i], true);
@@ -279,9 +283,12 @@ void engine_adopt(struct engine *e, struct engine *old, const struct adoption *p
 			guests_refuse(&old->lanes[i]);
 	take_devices(e, old, plan);
 	take_signals(e, old, plan);
+	shelves_carry(e->image, old->image->base, old->image->header->size);
+	engine_shelves_resume(e);
 	take_alarms(e, old, plan);
 	for (unsigned i = 0; i < e->lane_count; i++)
 		lane_resume_reads(&e->lanes[i]);
+	engine_in_force_adopted(e);
 	engine_doubts(e);
 	for (uint32_t row = 0; row < e->table.count; row++)
 		engine_publish(e, &e->table.signals[row]);

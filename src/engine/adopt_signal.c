@@ -4,6 +4,7 @@
 
 #include "src/config/config.h"
 #include "src/engine/adopt_signal.h"
+#include "src/engine/scaling.h"
 #include "src/engine/table.h"
 
 /* What a program has set stays, unless the file says something else than before. */
@@ -33,30 +34,38 @@ static void adopt_text(char *to, const char *from)
 		memcpy(to, from, TABLE_TEXT_CAP);
 }
 
-void signal_adopt(struct signal *s, const struct signal *was)
+bool signal_adopt(struct signal *s, const struct signal *was)
 {
 	const struct config_item *item = s->item, *before = was->item;
 	uint32_t flags = flags_of(s, was);
+	bool commanded = was->command.reason != OWS_REASON_NONE &&
+	                 was->command.reason != OWS_REASON_INIT;
+	bool goes_on = item->output == before->output || commanded;
 
 	s->sample = was->sample;
 	s->attrs = was->attrs;
 	s->attrs.flags = flags;
 	s->read = was->read;
-	s->seen = was->seen;
+	s->journal = was->journal;
 	adopt_text(s->text, was->text);
 	if (signal_reads(was) && !signal_reads(s) && !before->output) {
 		s->sample.quality = OWS_Q_DISABLED;
 		s->read.held = false;
 	}
-	if (item->output == before->output || was->command.stamp) {
+	if (goes_on) {
 		s->command = was->command;
 		adopt_text(s->command_text, was->command_text);
 		adopt_text(s->written_text, was->written_text);
 	}
+	s->scaling = was->scaling;
+	if (item->type != OWS_STRING)
+		signal_rescale(s, was);
 	if (item->limits.any && before->limits.any) {
 		s->limit = was->limit;
 	} else if (!item->limits.any) {
 		s->attrs.limit_state = 0;
 		s->attrs.limit_condition = 0;
+		s->attrs.shelved = 0;
 	}
+	return goes_on;
 }

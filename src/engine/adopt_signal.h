@@ -9,6 +9,6 @@
  * The signal s, new of the changed configuration, goes on where `was` of the old one stands. What
  * the file says counts where it was changed.
  */
-void signal_adopt(struct signal *s, const struct signal *was);
+bool signal_adopt(struct signal *s, const struct signal *was);
 
 #endif

@@ -13,8 +13,10 @@
 #include "src/engine/alarm_text.h"
 #include "src/engine/completion.h"
 #include "src/engine/publish.h"
+#include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
+#include "src/shm/entries.h"
 #include "src/signal/value.h"
 #include "src/text/log.h"
 
@@ -127,7 +129,8 @@ static void ask_property(struct alarm_request *r, enum bus_op op, const char *be
 static void ask_init(struct engine *e, struct alarm_machine *m, struct alarm_request *r)
 {
 	int64_t row = alarm_next_init(e, m);
-	const struct config_item *item = e->table.signals[row].item;
+	const struct signal *s = &e->table.signals[row];
+	const struct config_item *item = s->item;
 
 	r->op = BUS_WRITE;
 	r->row = (uint32_t)row;
@@ -135,7 +138,7 @@ static void ask_init(struct engine *e, struct alarm_machine *m, struct alarm_req
 	if (item->type == OWS_STRING)
 		r->len = (uint32_t)snprintf(r->data, sizeof(r->data), "%s", item->init_text);
 	else
-		r->len = (uint32_t)value_to_text(item->type, item->init_value, r->data);
+		r->len = signal_write_text(s, item->init_value, r->data);
 }
 
 /* The item whose SetAlarm is to be compared with the chip, if any is left. */

@@ -7,12 +7,13 @@
 #include "src/engine/publish.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
+#include "src/shm/entries.h"
 #include "src/text/log.h"
 
-static struct ows_alarm_entry alarm_entry(const struct signal *s, enum ows_alarm_kind kind,
-                                          enum ows_alarm_event event, int64_t now_ns)
+static struct ows_journal_entry alarm_entry(const struct signal *s, enum ows_alarm_kind kind,
+                                            enum ows_alarm_event event, int64_t now_ns)
 {
-	struct ows_alarm_entry entry = {
+	struct ows_journal_entry entry = {
 		.record = s->record,
 		.occurred_ns = now_ns,
 		.kind = (uint8_t)kind,
@@ -22,7 +23,7 @@ static struct ows_alarm_entry alarm_entry(const struct signal *s, enum ows_alarm
 
 	if (s->sample.count && !signal_is_string(s)) {
 		entry.before = s->sample.value;
-		entry.flags = OWS_ALARM_BEFORE;
+		entry.flags = OWS_JOURNAL_BEFORE;
 	}
 	return entry;
 }
@@ -32,7 +33,7 @@ void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item 
 {
 	struct signal *s = &e->table.signals[item->row];
 	uint32_t channels = alarm_channels(item->occurrence.latch_text);
-	struct ows_alarm_entry entry;
+	struct ows_journal_entry entry;
 
 	if (item->occurrence.stands)
 		return;
@@ -42,8 +43,8 @@ void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item 
 	lane->counters.alarms++;
 	if (channels & ~item->occurrence.entered) {
 		entry = alarm_entry(s, OWS_ALARM_DEVICE, OWS_ALARM_RAISED, now_ns);
-		memcpy(entry.latch, item->occurrence.latch_text,
-		       strnlen(item->occurrence.latch_text, sizeof(entry.latch)));
+		memcpy(entry.text, item->occurrence.latch_text,
+		       strnlen(item->occurrence.latch_text, sizeof(item->occurrence.latch_text)));
 		item->occurrence.journal = image_alarm(e->image, &entry);
 		item->occurrence.entered |= channels;
 		item->occurrence.wants_after = true;
@@ -66,8 +67,8 @@ void engine_alarm_ended(struct engine *e, struct alarm_item *item)
 
 void engine_alarm_rests(struct engine *e, struct alarm_item *item, int64_t now_ns)
 {
-	struct ows_alarm_entry entry = alarm_entry(&e->table.signals[item->row], OWS_ALARM_DEVICE,
-	                                           OWS_ALARM_RETURNED, now_ns);
+	struct ows_journal_entry entry = alarm_entry(&e->table.signals[item->row], OWS_ALARM_DEVICE,
+	                                             OWS_ALARM_RETURNED, now_ns);
 
 	engine_alarm_ended(e, item);
 	if (!item->occurrence.entered)
@@ -81,8 +82,8 @@ void engine_power_on_reset(struct engine *e, struct lane *lane, const struct ala
                            int64_t now_ns)
 {
 	const struct device *d = &e->table.devices[item->device];
-	struct ows_alarm_entry entry = alarm_entry(&e->table.signals[item->row], OWS_ALARM_POR,
-	                                           OWS_ALARM_RAISED, now_ns);
+	struct ows_journal_entry entry = alarm_entry(&e->table.signals[item->row], OWS_ALARM_POR,
+	                                             OWS_ALARM_RAISED, now_ns);
 
 	image_alarm(e->image, &entry);
 	e->published = true;

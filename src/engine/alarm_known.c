@@ -105,8 +105,8 @@ int64_t alarm_next_init(struct engine *e, struct alarm_machine *m)
 		const struct signal *s = &e->table.signals[row];
 
 		if ((int64_t)row > m->init_position && s->item->output && s->item->has_init &&
-		    !s->command.confirmed && signal_writes(s) && !s->doubts &&
-		    s->lane == e->table.signals[current->row].lane)
+		    !s->item->starts_last && !s->command.confirmed && signal_writes(s) &&
+		    !s->doubts && s->lane == e->table.signals[current->row].lane)
 			return row;
 	}
 	return -1;

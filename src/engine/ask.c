@@ -2,6 +2,7 @@
 /*
  * The order of a lane: this file chooses what the lane asks its bus next, and makes that request.
  */
+#include <errno.h>
 #include <string.h>
 
 #include "src/engine/alarm.h"
@@ -10,6 +11,7 @@
 #include "src/engine/intake.h"
 #include "src/engine/place.h"
 #include "src/engine/publish.h"
+#include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
 #include "src/engine/slots.h"
 #include "src/engine/state.h"
@@ -43,6 +45,19 @@ static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t
 	return true;
 }
 
+/* A command of before a reload, or of an earlier owsd, that the file does not allow any more. */
+static void refuse_output(struct engine *e, struct signal *s)
+{
+	log_warning(e->log, "%s: the command in force is refused: it is beyond Min and Max",
+	            s->item->name);
+	e->counters.refused_commands++;
+	s->command.given = s->command.one_shot = false;
+	s->command.err = -ERANGE;
+	s->attrs.flags &= ~(uint32_t)OWS_ATTR_COMMANDED;
+	engine_write_check(e, s);
+	engine_publish(e, s);
+}
+
 static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_t now_ns)
 {
 	struct engine *e = lane->engine;
@@ -54,10 +69,17 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 		engine_publish(e, s);
 		return true;
 	}
+	if (!signal_is_string(s) && !signal_accepts(s, s->command.value)) {
+		refuse_output(e, s);
+		return true;
+	}
 	slot->purpose = FOR_WRITE;
 	slot->row = row;
 	slot->value = s->command.value;
 	slot->stamp = s->command.stamp;
+	slot->giver = s->command.giver;
+	slot->serial = s->command.giver < OWS_GIVERS ? e->givers[s->command.giver].as.who.serial
+	                                             : 0;
 	slot->one_shot = s->command.one_shot;
 	slot->req = (struct bus_req){.op = BUS_WRITE, .prio = BUS_OUTPUT, .path = s->item->path};
 	if (signal_is_string(s)) {
@@ -66,7 +88,7 @@ static bool ask_write(struct lane *lane, struct slot *slot, uint32_t row, int64_
 	} else {
 		char text[VALUE_TEXT_MAX];
 
-		slot->req.len = (uint32_t)value_to_text(s->item->type, s->command.value, text);
+		slot->req.len = signal_write_text(s, s->command.value, text);
 		memcpy(slot->data, text, slot->req.len);
 	}
 	if (!slot_lend(lane, slot, now_ns))
@@ -105,10 +127,9 @@ static bool ask_alarm(struct lane *lane, struct slot *slot, int64_t now_ns)
 		memcpy(slot->data, r->data, r->len);
 		slot->req.len = r->len;
 	}
-	if (r->row != TABLE_NO_ROW) {
+	slot->stamp = 0;
+	if (r->row != TABLE_NO_ROW)
 		slot->value = e->table.signals[r->row].item->init_value;
-		slot->stamp = e->table.signals[r->row].sample.applied;
-	}
 	if (!slot_lend(lane, slot, now_ns))
 		return false;
 	lane->lent.alarm = slot;

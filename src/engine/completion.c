@@ -8,8 +8,10 @@
 #include "src/engine/completion.h"
 #include "src/engine/device_back.h"
 #include "src/engine/guard.h"
+#include "src/engine/in_force.h"
 #include "src/engine/place.h"
 #include "src/engine/retry.h"
+#include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
 #include "src/signal/error.h"
@@ -140,35 +142,6 @@ static int doubt_reading(struct lane *lane, struct signal *s, const struct bus_a
 	return 0;
 }
 
-/* The value of an answer into the sample; 0, or why it cannot be one. */
-static int take_read_value(struct lane *lane, struct signal *s, const struct slot *slot,
-                           const struct bus_answer *answer, uint8_t *quality, int64_t now_ns)
-{
-	int64_t value;
-	int err;
-
-	if (answer->err)
-		return answer->err;
-	if (signal_is_string(s)) {
-		uint32_t len = answer->len < TABLE_TEXT_CAP ? answer->len : TABLE_TEXT_CAP;
-
-		*quality = answer->len > TABLE_TEXT_CAP ? OWS_Q_CUT : OWS_Q_GOOD;
-		memcpy(s->text, slot->data, len);
-		s->sample.len = len;
-		return 0;
-	}
-	if (answer->kind == BUS_NUMBER)
-		err = value_from_number(s->item->type, answer->number, &value, quality);
-	else
-		err = value_from_text(s->item->type, (const char *)slot->data, answer->len, &value,
-		                      quality);
-	if (!err)
-		err = doubt_reading(lane, s, answer, value_number(s->item->type, value), now_ns);
-	if (!err)
-		s->sample.value = value;
-	return err;
-}
-
 /*
  * An answer that was on its way while nobody ran may have been measured long before it was taken,
  * and its bus could not know: then it is as old as its request.
@@ -182,6 +155,36 @@ static int64_t time_of_reading(const struct engine *e, const struct slot *slot,
 	                                                                       : measured_ns;
 }
 
+/* The value of an answer into the sample; 0, or why it cannot be one. */
+static int take_read_value(struct lane *lane, struct signal *s, const struct slot *slot,
+                           const struct bus_answer *answer, uint8_t *quality, int64_t now_ns)
+{
+	enum ows_type type = signal_raw_type(s);
+	int64_t raw;
+	int err;
+
+	if (answer->err)
+		return answer->err;
+	if (signal_is_string(s)) {
+		uint32_t len = answer->len < TABLE_TEXT_CAP ? answer->len : TABLE_TEXT_CAP;
+
+		*quality = answer->len > TABLE_TEXT_CAP ? OWS_Q_CUT : OWS_Q_GOOD;
+		memcpy(s->text, slot->data, len);
+		s->sample.len = len;
+		return 0;
+	}
+	if (answer->kind == BUS_NUMBER)
+		err = value_from_number(type, answer->number, &raw, quality);
+	else
+		err = value_from_text(type, (const char *)slot->data, answer->len, &raw, quality);
+	if (!err)
+		err = doubt_reading(lane, s, answer, value_number(type, raw), now_ns);
+	if (!err)
+		signal_take_raw(s, raw, time_of_reading(lane->engine, slot, answer, now_ns),
+		                quality);
+	return err;
+}
+
 /* An output that changes though nothing was written may be that of a device that has restarted. */
 static void compare_written(struct lane *lane, struct signal *s)
 {
@@ -189,7 +192,7 @@ static void compare_written(struct lane *lane, struct signal *s)
 
 	if (!s->item->output || !s->command.confirmed || s->writing || signal_is_string(s))
 		return;
-	agrees = s->sample.value == s->command.written;
+	agrees = signal_reads_as_written(s);
 	if (s->command.agrees && !agrees)
 		alarm_output_differs(&lane->alarm, s->device);
 	s->command.agrees = agrees;
@@ -269,19 +272,20 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	s->command.confirmed = true;
 	s->command.agrees = false;
 	s->command.written = slot->value;
-	s->sample.value = slot->value;
-	s->sample.applied = slot->stamp;
 	s->sample.detail = answer->detail;
 	if (signal_is_string(s)) {
 		memcpy(s->written_text, slot->data, slot->req.len);
 		memcpy(s->text, slot->data, slot->req.len);
 		s->command.written_len = s->sample.len = slot->req.len;
+	} else {
+		signal_written(s, slot->value);
 	}
 	signal_update(s, e->time.period, answer->measured_ns ? answer->measured_ns : now_ns,
 	              now_ns);
 	retry_clear(&s->command.retry);
 	s->command.err = 0;
-	signal_settle(s);
+	engine_settle_earlier(e, s, slot);
+	engine_settle(e, s);
 	engine_write_check(e, s);
 }
 

@@ -14,10 +14,12 @@
  *   routing              routing (acts on the facts: opens ways, moves devices)
  *   moves                move, lane_state (a target goes up and fails)
  *   alarm and guests     alarm (the machine), guests
- *   reading and writing  completion, device_back, intake, clients, place, doubt, types
+ *   givers               givers (they join, beat and leave)
+ *   reading and writing  completion, device_back, intake, in_force, place, doubt, types
  *   alarm items          alarm_arm, alarm_list, alarm_effect, alarm_known
- *   schedule, publish    schedule, publish, limits, counters
- *   slots and table      lane, slots, disown, group, trace, alarm_item, table, structure, due
+ *   schedule, publish    schedule, publish, origin, limits, counters
+ *   slots                lane, slots, disown, group, trace, shelf, alarm_item
+ *   table                table, scaling, structure, due
  *   pure functions       route, adoption, limit, guard, retry, alarm_fsm, alarm_text
  *
  * Room src/engine: the table of signals, lanes, alarms; no input or output. Uses src/config,
@@ -33,16 +35,21 @@
 #include "src/config/config.h"
 #include "src/engine/guest.h"
 #include "src/engine/port.h"
-#include "src/shm/commands.h"
 #include "src/shm/image.h"
 #include "src/text/log.h"
+
+struct engine_last;
+struct force;
+struct force_left;
 
 struct engine_setup {
 	const struct config *config;
 	const struct engine_port *ports;
 	unsigned port_count; /* at least 1 */
 	struct image *image;
-	struct commands *commands;
+	struct force *force;                /* for the owsd after this one; NULL: none */
+	const struct force_left *left;      /* of the owsd before; NULL: none, or a reload */
+	const struct engine_last *last;     /* Start "last"; NULL: nothing is stored */
 	struct log *log;                    /* NULL: silent */
 	const struct engine_guests *guests; /* NULL: none; lives as long as the engine */
 	int64_t start_ns;
@@ -71,11 +78,5 @@ int64_t engine_step(struct engine *engine, int64_t now_ns);
  * Was anything published since the last call? The host then wakes the consumers that wait for news.
  */
 bool engine_published(struct engine *engine);
-
-/*
- * The command segment was lost and made again: look into the old one for the last time and go on
- * with this one, which is empty and which no consumer has seen yet. What was commanded goes in.
- */
-void engine_take_commands(struct engine *engine, struct commands *commands, int64_t now_ns);
 
 #endif

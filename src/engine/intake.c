@@ -1,112 +1,104 @@
 /* SPDX-License-Identifier: MIT */
-/* The engine looks into the command segment, checks what programs have set there, and takes it. */
+/* The engine looks into the memories of givers, checks what they commanded, and takes it. */
 #include <errno.h>
 #include <string.h>
 
 #include "hal/bus/time.h"
+#include "src/engine/in_force.h"
 #include "src/engine/intake.h"
 #include "src/engine/limits.h"
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"
+#include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
 #include "src/signal/value.h"
 #include "src/text/log.h"
 
-/* A writer that holds a string's claim for longer has died. */
-#define CLAIM_NS NS_PER_S
+/* A giver that needs longer to store a text has none to store. */
+#define BUSY_NS NS_PER_S
 /*
- * A program that marks slots without end costs this many looks a second. An honest set waits for
- * none of it unless there is such a program; then it waits until the looks have gone round.
+ * Givers that mark slots without end cost this many looks a second together. Each giver has a
+ * budget of its own, so that it keeps no other waiting.
  */
 #define LOOKS_PER_S 100000u
 #define LOOKS_LEAST 5000u
 #define LOOKS_SPAN_NS NS_PER_S
 #define DEFER_NS (10 * NS_PER_MS)
 
-static void refuse_command(struct engine *e, struct signal *s, int err, int64_t now_ns)
+static void refuse_command(struct engine *e, struct known_giver *g, const struct signal *s, int err,
+                           int64_t now_ns)
 {
 	char others[LOG_OTHERS];
 	uint64_t n = log_rate(&e->refused, now_ns);
 
 	e->counters.refused_commands++;
-	if (err != -EROFS)
-		s->command.err = err;
+	g->refused++;
 	if (n)
-		log_warning(e->log, "%s: a value in the command segment was refused: %s%s",
-		            s->item->name,
-		            err == -EROFS    ? "it is an input, and Writable is off"
-		            : err == -ERANGE ? "the type cannot hold it"
-		                             : "its text is damaged",
+		log_warning(e->log, "%s: a command of %s (process %d) was refused: %s%s",
+		            s->item->name, g->as.who.name, (int)g->as.who.pid,
+		            err == -EROFS    ? "the signal is an input, and Writable is off"
+		            : err == -EACCES ? "ControlAllow does not let it command the signal"
+		            : err == -ERANGE
+		                    ? "the type cannot hold it, or it is beyond Min and Max"
+		                    : "the text is damaged",
 		            log_others(n, others));
 }
 
-/* Look at a busy string again in the next step, for a second. */
-static void remember_busy(struct engine *e, uint32_t slot, int64_t now_ns)
+static bool may_command(const struct known_giver *g, uint32_t record)
 {
-	for (unsigned i = 0; i < e->busy_count; i++)
-		if (e->busy_slot[i] == slot)
-			return;
-	if (e->busy_count == sizeof(e->busy_slot) / sizeof(e->busy_slot[0]))
-		return;
-	e->busy_slot[e->busy_count] = slot;
-	e->busy_since_ns[e->busy_count++] = now_ns;
+	return !g->as.rights || g->as.rights[record / 32] >> record % 32 & 1;
 }
 
-/* 0 taken, -EBUSY to be looked at again, other: refused. */
-static int take_command_text(struct engine *e, struct signal *s)
+/*
+ * Returns the length, -EBUSY: the giver may be just storing it, look again; -EBADMSG.
+ */
+static int take_text(struct known_giver *g, uint32_t record, char *text, int64_t now_ns)
 {
-	char text[TABLE_TEXT_CAP + 1];
-	int len = commands_text(e->commands, s->record, text);
+	int len = giver_text(&g->as.memory, record, text);
 
-	if (len < 0)
+	if (len >= 0 || (g->busy == record && now_ns - g->busy_ns > BUSY_NS)) {
+		if (g->busy == record)
+			g->busy = 0;
 		return len;
-	if (len > TABLE_TEXT_CAP)
-		return -EBADMSG;
-	memcpy(s->command_text, text, (size_t)len);
-	s->command.len = (uint32_t)len;
-	return 0;
+	}
+	if (!g->busy) {
+		g->busy = record;
+		g->busy_ns = now_ns;
+	}
+	return g->busy == record ? -EBUSY : len;
 }
 
-/* 0 for a program that has signed off: it beats no more, and its outputs stay as they are. */
-static uint32_t client_of(struct engine *e, const struct command *c)
+static void take_command(struct engine *e, uint32_t giver, struct signal *s,
+                         const struct giver_command *c, int64_t now_ns)
 {
-	struct command_client client;
+	struct known_giver *g = &e->givers[giver];
+	char text[TABLE_TEXT_CAP + 1];
+	int err = 0, len = 0;
 
-	if (!c->client)
-		return 0;
-	commands_client(e->commands, c->client - 1, &client);
-	return client.pid ? c->client : 0;
-}
-
-static void take_command(struct engine *e, struct signal *s, const struct command *c,
-                         int64_t now_ns)
-{
-	int err = 0;
-
-	if (!config_item_takes_sets(s->item))
+	if (!config_item_takes_sets(s->item)) {
 		err = -EROFS;
-	else if (signal_is_string(s))
-		err = take_command_text(e, s);
-	else if (!value_holds(s->item->type, c->value))
+	} else if (!may_command(g, s->record)) {
+		err = -EACCES;
+	} else if (signal_is_string(s)) {
+		len = take_text(g, s->record, text, now_ns);
+		err = len < 0 ? len : 0;
+	} else if (!signal_accepts(s, c->value)) {
 		err = -ERANGE;
-	if (err == -EBUSY) {
-		remember_busy(e, s->record, now_ns);
-		return;
 	}
-	s->seen.stamp = c->stamp;
-	s->seen.awaited = false;
+	if (err == -EBUSY)
+		return;
 	if (err) {
-		refuse_command(e, s, err, now_ns);
-		return;
+		refuse_command(e, g, s, err, now_ns);
+	} else {
+		/* a promise may have come along with it: a kill finds both, or none */
+		engine_hear(e, giver);
+		engine_command(e, s, giver, c, signal_is_string(s) ? text : NULL, (uint32_t)len);
+		g->commands++;
+		e->counters.commands++;
 	}
-	if (!signal_is_string(s))
-		s->command.value = c->value;
-	s->command.stamp = c->stamp;
-	s->command.given = true;
-	s->command.safe = false;
-	s->seen.client = client_of(e, c);
-	e->counters.commands++;
+	/* after the origin: who sees it finds whose command is in force */
+	giver_taken(&g->as.memory, s->record, c->stamp, err);
 }
 
 static void take_enable(struct signal *s, uint8_t commanded, uint32_t flag)
@@ -117,7 +109,7 @@ static void take_enable(struct signal *s, uint8_t commanded, uint32_t flag)
 		s->attrs.flags &= ~flag;
 }
 
-static void take_enables(struct engine *e, struct signal *s, const struct command *c)
+static void take_enables(struct engine *e, struct signal *s, const struct giver_command *c)
 {
 	bool read_before = signal_reads(s), write_before = signal_writes(s);
 
@@ -142,139 +134,207 @@ static void take_enables(struct engine *e, struct signal *s, const struct comman
 	}
 }
 
-void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
+static struct ows_who who_of(const struct known_giver *g, uint32_t person)
 {
-	struct command c;
+	struct ows_who who = g->as.who;
 
-	commands_load(e->commands, s->record, &c);
-	/* 0 is no command: a segment that a consumer truncated is all 0 */
-	if (c.stamp && c.stamp != s->seen.stamp)
-		take_command(e, s, &c, now_ns);
+	if (person)
+		giver_person(&g->as.memory, person, who.person);
+	return who;
+}
+
+static void look_at_signal(struct engine *e, uint32_t giver, struct signal *s, int64_t now_ns)
+{
+	struct known_giver *g = &e->givers[giver];
+	struct giver_command c;
+	struct ows_who who;
+
+	giver_load(&g->as.memory, s->record, &c);
+	if (c.fresh)
+		take_command(e, giver, s, &c, now_ns);
+	else if (g->busy == s->record)
+		g->busy = 0;
+	if (!may_command(g, s->record))
+		return;
 	take_enables(e, s, &c);
-	if (c.one_shot && c.one_shot != s->seen.one_shots) {
-		s->seen.one_shots = c.one_shot;
-		s->command.one_shot = s->command.given && config_item_takes_sets(s->item);
-	}
-	if (c.dgn_reset && c.dgn_reset != s->seen.dgn_resets) {
-		s->seen.dgn_resets = c.dgn_reset;
+	if (c.one_shot)
+		s->command.one_shot = s->command.given && !s->command.awaited &&
+		                      config_item_takes_sets(s->item);
+	if (c.dgn_reset)
 		signal_reset_diagnostics(s, e->time.period, now_ns);
+	if (c.acknowledged) {
+		who = who_of(g, c.person);
+		engine_limits_acknowledge(e, s, &who);
 	}
-	if (c.acknowledged && c.acknowledged != s->seen.acknowledged) {
-		s->seen.acknowledged = c.acknowledged;
-		engine_limits_acknowledge(e, s);
-	}
-	signal_settle(s);
+	engine_settle(e, s);
 	engine_write_check(e, s);
 }
 
-static void take_driver_reset(struct engine *e, int64_t now_ns)
+void engine_intake_signal(struct engine *e, struct signal *s, int64_t now_ns)
 {
-	struct command c;
+	uint32_t giver = s->command.giver;
 
-	commands_load(e->commands, 0, &c);
-	if (!c.dgn_reset || c.dgn_reset == e->driver.resets)
+	if (giver < OWS_GIVERS && e->givers[giver].is == GIVER_CONNECTED)
+		look_at_signal(e, giver, s, now_ns);
+}
+
+static void take_driver_reset(struct engine *e, const struct known_giver *g, int64_t now_ns)
+{
+	struct giver_command c;
+	char others[LOG_OTHERS];
+	uint64_t n;
+
+	giver_load(&g->as.memory, 0, &c);
+	if (!c.dgn_reset || !may_command(g, 0))
 		return;
-	e->driver.resets = c.dgn_reset;
 	e->driver.transactions = 0;
 	e->driver.reconnects = 0;
 	for (uint32_t row = 0; row < e->table.count; row++) {
 		signal_reset_diagnostics(&e->table.signals[row], e->time.period, now_ns);
 		engine_publish(e, &e->table.signals[row]);
 	}
-	log_info(e->log, "diagnostics of all signals reset");
+	n = log_rate(&e->resets, now_ns);
+	if (n)
+		log_info(e->log, "diagnostics of all signals reset%s", log_others(n, others));
 }
 
-static void look_at_slot(struct engine *e, uint32_t slot, int64_t now_ns)
+static void look_at_record(struct engine *e, uint32_t giver, uint32_t record, int64_t now_ns)
 {
 	struct signal *s;
 
-	if (slot == 0) {
-		take_driver_reset(e, now_ns);
-	} else if (slot <= e->table.count) {
-		s = &e->table.signals[slot - 1];
-		engine_intake_signal(e, s, now_ns);
+	if (record == 0) {
+		take_driver_reset(e, &e->givers[giver], now_ns);
+	} else if (record <= e->table.count) {
+		s = &e->table.signals[record - 1];
+		look_at_signal(e, giver, s, now_ns);
 		engine_publish(e, s);
 	}
 }
 
-/* Texts that a program was just writing. */
-static void look_at_busy(struct engine *e, int64_t now_ns)
+static void look_at_shelf(struct engine *e, struct known_giver *g)
 {
-	unsigned busy = e->busy_count;
+	struct giver_shelf shelf;
+	struct ows_who who;
+	int err;
 
-	e->busy_count = 0;
-	for (unsigned i = 0; i < busy; i++) {
-		uint32_t again = e->busy_slot[i];
-		int64_t since = e->busy_since_ns[i];
+	if (!giver_shelf(&g->as.memory, &shelf))
+		return;
+	who = who_of(g, shelf.person);
+	if (!shelf.record || shelf.record > e->table.count) {
+		err = -EINVAL;
+	} else if (!may_command(g, shelf.record)) {
+		err = -EACCES;
+	} else {
+		struct signal *s = &e->table.signals[shelf.record - 1];
 
-		if (now_ns - since > CLAIM_NS) {
-			commands_unclaim(e->commands, again);
-			log_warning(e->log, "%s: a program died while it set this text",
-			            e->table.signals[again - 1].item->name);
-		}
-		look_at_slot(e, again, now_ns);
-		if (e->busy_count && e->busy_slot[e->busy_count - 1] == again)
-			e->busy_since_ns[e->busy_count - 1] = since;
+		err = engine_shelve(e, s, shelf.seconds, &who, shelf.why);
+		engine_publish(e, s);
 	}
+	giver_shelf_done(&g->as.memory, shelf.count, err);
 }
 
 /* Look at the marked slots from one on, at most so many. False: there are more. */
-static bool look_at_marked(struct engine *e, uint32_t *from, uint32_t *looks, int64_t now_ns)
+static bool look_at_marked(struct engine *e, uint32_t giver, uint32_t *from, uint32_t *looks,
+                           int64_t now_ns)
 {
 	while (*looks) {
-		int slot = commands_next_dirty(e->commands, *from);
+		uint32_t cost;
+		int record = giver_next_dirty(&e->givers[giver].as.memory, *from);
 
-		if (slot < 0)
+		if (record < 0)
 			return true;
-		look_at_slot(e, (uint32_t)slot, now_ns);
-		*from = (uint32_t)slot + 1;
-		--*looks;
+		/* the driver's slot may reset all rows */
+		cost = record ? 1 : 1 + e->table.count;
+		look_at_record(e, giver, (uint32_t)record, now_ns);
+		*from = (uint32_t)record + 1;
+		*looks -= cost < *looks ? cost : *looks;
 	}
 	return false;
 }
 
-void engine_intake(struct engine *e, int64_t now_ns)
+void engine_intake(struct engine *e, uint32_t giver, int64_t now_ns)
 {
+	struct known_giver *g = &e->givers[giver];
 	uint32_t all = UINT32_MAX, from = 0;
 
-	look_at_busy(e, now_ns);
-	look_at_marked(e, &from, &all, now_ns);
+	engine_hear(e, giver);
+	if (g->busy)
+		look_at_record(e, giver, g->busy, now_ns);
+	giver_marked(&g->as.memory);
+	look_at_marked(e, giver, &from, &all, now_ns);
+	look_at_shelf(e, g);
 }
 
 /* A look that was not needed yet is kept, up to two for each slot and some. */
-static void refill_looks(struct engine *e, int64_t now_ns)
+static void refill_looks(struct engine *e, struct known_giver *g, int64_t now_ns)
 {
 	uint64_t most = 2 * (uint64_t)e->table.count + LOOKS_LEAST;
-	int64_t since_ns = now_ns - e->looks_ns;
-	uint64_t more = since_ns < LOOKS_SPAN_NS ? (uint64_t)since_ns * LOOKS_PER_S / 1000000000u
-	                                         : most;
+	uint64_t rate = LOOKS_PER_S / (e->greedy ? e->greedy : 1);
+	int64_t since_ns = now_ns - g->looks_ns;
+	uint64_t more = since_ns < LOOKS_SPAN_NS ? (uint64_t)since_ns * rate / 1000000000u : most;
 
 	if (!more)
 		return;
-	e->looks = e->looks + more < most ? (uint32_t)(e->looks + more) : (uint32_t)most;
-	e->looks_ns = now_ns;
+	g->looks = g->looks + more < most ? (uint32_t)(g->looks + more) : (uint32_t)most;
+	g->looks_ns = now_ns;
+}
+
+/*
+ * Look once round: the first slots, marked again and again, do not keep the last ones waiting.
+ * Returns whether nothing is left. That it is asked at all costs some looks too.
+ */
+static bool look_round(struct engine *e, uint32_t giver, int64_t now_ns)
+{
+	struct known_giver *g = &e->givers[giver];
+	uint32_t begin = g->look_from, cost = 1 + g->as.memory.layout->dirty_words / 64;
+
+	if (g->looks <= cost)
+		return false;
+	g->looks -= cost;
+	giver_marked(&g->as.memory);
+	look_at_shelf(e, g);
+	if (!look_at_marked(e, giver, &g->look_from, &g->looks, now_ns))
+		return false;
+	g->look_from = 0;
+	if (begin && !look_at_marked(e, giver, &g->look_from, &g->looks, now_ns))
+		return false;
+	g->look_from = 0;
+	return true;
+}
+
+static void look_at_giver(struct engine *e, uint32_t giver, int64_t now_ns)
+{
+	struct known_giver *g = &e->givers[giver];
+
+	if (g->more) {
+		g->more = false;
+		e->greedy--;
+	}
+	engine_hear(e, giver);
+	refill_looks(e, g, now_ns);
+	if (look_round(e, giver, now_ns))
+		return;
+	e->counters.deferred_commands++;
+	g->more = true;
+	e->greedy++;
+	g->defer_ns = now_ns + DEFER_NS;
 }
 
 int64_t engine_intake_limited(struct engine *e, int64_t now_ns)
 {
-	uint32_t begin = e->look_from;
+	int64_t next = INT64_MAX;
 
-	look_at_busy(e, now_ns);
-	if (now_ns < e->defer_ns)
-		return e->defer_ns;
-	refill_looks(e, now_ns);
-	/*
-	 * once round: whoever marks the first slots again and again does not keep the last ones
-	 * waiting
-	 */
-	if (look_at_marked(e, &e->look_from, &e->looks, now_ns)) {
-		e->look_from = 0;
-		if (!begin || look_at_marked(e, &e->look_from, &e->looks, now_ns)) {
-			e->look_from = 0;
-			return INT64_MAX;
-		}
+	for (uint32_t i = 0; i < e->place_end; i++) {
+		struct known_giver *g = &e->givers[i];
+
+		if (g->is != GIVER_CONNECTED)
+			continue;
+		if (g->busy)
+			look_at_record(e, i, g->busy, now_ns);
+		if (g->more ? now_ns >= g->defer_ns : giver_is_marked(&g->as.memory))
+			look_at_giver(e, i, now_ns);
+		if (g->more && g->defer_ns < next)
+			next = g->defer_ns;
 	}
-	e->counters.deferred_commands++;
-	e->defer_ns = now_ns + DEFER_NS;
-	return e->defer_ns;
+	return next;
 }

@@ -103,6 +103,10 @@ int64_t limit_evaluate(struct limit *limit, const struct config_limits *limits,
 	int64_t next = run_delays(limit, limits, conditions_in(limit, limits, reading), now_ns);
 
 	*news = (struct limit_news){0};
+	if (limit->shelved) {
+		limit->kind = highest(limit->active);
+		return next;
+	}
 	begun = limit->active & (uint16_t)~before;
 	if (stood && !(limit->active & BIT(stood)))
 		news->returned = stood;
@@ -123,8 +127,27 @@ uint8_t limit_acknowledge(struct limit *limit)
 	enum ows_limit_state before = limit->state;
 	uint8_t kind = limit->kind;
 
+	if (limit->shelved)
+		return 0;
 	limit->state = limit_next(before, LIMIT_ACKNOWLEDGE);
 	if (limit->state == OWS_LIMIT_NORMAL)
 		limit->kind = 0;
 	return limit->state != before ? kind : 0;
+}
+
+void limit_shelve(struct limit *limit)
+{
+	limit->shelved = true;
+	limit->state = OWS_LIMIT_NORMAL;
+	limit->kind = highest(limit->active);
+}
+
+uint8_t limit_unshelve(struct limit *limit)
+{
+	if (!limit->shelved)
+		return 0;
+	limit->shelved = false;
+	if (limit->active)
+		limit->state = limit_next(limit->state, LIMIT_RAISE);
+	return limit->kind;
 }

@@ -9,6 +9,9 @@
  * becomes active raises the alarm anew, also one that was acknowledged; it has returned when no
  * condition is active any more. While the value is not known (stale or bad) the conditions of the
  * value stay as they are and no delay of theirs runs.
+ *
+ * While the alarm is shelved its conditions and delays go on, and its state is normal. It is raised
+ * when it is no longer shelved and a condition is active.
  */
 #ifndef ENGINE_LIMIT_H
 #define ENGINE_LIMIT_H
@@ -28,6 +31,7 @@ enum ows_limit_state limit_next(enum ows_limit_state state, enum limit_event eve
 struct limit {
 	enum ows_limit_state state;
 	uint8_t kind; /* enum ows_alarm_kind that stands, or returned unacknowledged; 0 none */
+	bool shelved; /* state is normal; kind is that of the active condition */
 	uint16_t in, active;
 	int64_t since_ns[OWS_ALARM_BAD + 1]; /* when in changed last */
 };
@@ -53,5 +57,8 @@ int64_t limit_evaluate(struct limit *limit, const struct config_limits *limits,
                        struct limit_news *news);
 /* Returns the kind that was acknowledged, 0 if nothing was unacknowledged. */
 uint8_t limit_acknowledge(struct limit *limit);
+void limit_shelve(struct limit *limit);
+/* Returns the kind that is raised now, 0: no condition is active. */
+uint8_t limit_unshelve(struct limit *limit);
 
 #endif

@@ -1,30 +1,56 @@
 /* SPDX-License-Identifier: MIT */
 /* The limit alarms of a signal: what is known of the signal goes in, journal and state come out. */
-#include "src/engine/limits.h"
-#include "src/engine/due.h"
+#include <errno.h>
+#include <string.h>
+
+#include "hal/bus/time.h"
 #include "src/engine/limit.h"
+#include "src/engine/limits.h"
+#include "src/engine/shelf.h"
 #include "src/engine/state.h"
+#include "src/shm/entries.h"
 #include "src/signal/value.h"
 #include "src/text/log.h"
 
-static void journal_limit(struct engine *e, const struct signal *s, uint8_t kind, uint8_t event)
+/* After so many requests to shelve at once, one a second. */
+#define SHELVINGS OWS_SHELVES
+
+static struct ows_journal_entry limit_entry(const struct engine *e, const struct signal *s,
+                                            uint8_t kind, uint8_t event)
 {
-	struct ows_alarm_entry entry = {
+	return (struct ows_journal_entry){
 		.record = s->record,
 		.occurred_ns = e->time.now_ns,
 		.kind = kind,
 		.event = event,
 		.quality = s->sample.quality,
 	};
+}
 
-	if (event != OWS_ALARM_ACKNOWLEDGED && s->limit.values) {
+static void journal_limit(struct engine *e, const struct signal *s, uint8_t kind, uint8_t event)
+{
+	struct ows_journal_entry entry = limit_entry(e, s, kind, event);
+
+	if (s->limit.values) {
 		entry.after = s->limit.value[1];
-		entry.flags |= OWS_ALARM_AFTER;
+		entry.flags |= OWS_JOURNAL_AFTER;
 	}
-	if (event != OWS_ALARM_ACKNOWLEDGED && s->limit.values > 1) {
+	if (s->limit.values > 1) {
 		entry.before = s->limit.value[0];
-		entry.flags |= OWS_ALARM_BEFORE;
+		entry.flags |= OWS_JOURNAL_BEFORE;
 	}
+	image_alarm(e->image, &entry);
+	e->published = true;
+}
+
+/* Somebody did it: no value belongs to it. */
+static void journal_deed(struct engine *e, const struct signal *s, uint8_t kind, uint8_t event,
+                         const struct ows_who *who, const char why[OWS_TEXT])
+{
+	struct ows_journal_entry entry = limit_entry(e, s, kind, event);
+
+	entry.who = *who;
+	memcpy(entry.text, why, OWS_TEXT);
 	image_alarm(e->image, &entry);
 	e->published = true;
 }
@@ -55,6 +81,7 @@ static void show_limit(struct signal *s)
 {
 	s->attrs.limit_state = (uint8_t)s->limit.alarm.state;
 	s->attrs.limit_condition = s->limit.alarm.kind;
+	s->attrs.shelved = s->limit.alarm.shelved;
 }
 
 static void keep_limit_value(struct signal *s)
@@ -68,49 +95,132 @@ static void keep_limit_value(struct signal *s)
 	s->limit.value[1] = s->sample.value;
 }
 
-void engine_limits(struct engine *e, struct signal *s)
+/* Raise what stands now. */
+static void unshelve(struct engine *e, struct signal *s, const struct ows_who *who,
+                     const char why[OWS_TEXT])
 {
-	const struct config_limits *limits = &s->item->limits;
-	int64_t stale_at = INT64_MAX, next;
+	uint8_t kind = s->limit.alarm.kind;
+
+	engine_shelf_free(e, s);
+	journal_deed(e, s, kind, OWS_ALARM_UNSHELVED, who, why);
+	log_notice(e->log, "%s: alarm: no longer shelved", s->item->name);
+	kind = limit_unshelve(&s->limit.alarm);
+	if (kind)
+		limit_raised(e, s, kind);
+}
+
+/* Returns when the shelved alarm is over; INT64_MAX: it is not shelved. */
+static int64_t shelved_until(struct engine *e, struct signal *s)
+{
+	static const char over[OWS_TEXT] = "its time is over";
+	const struct ows_shelf_entry *shelf = engine_shelf(e, s);
+	const struct ows_who owsd = {0};
+
+	if (!shelf)
+		return INT64_MAX;
+	if (shelf->until_ns > e->time.now_ns)
+		return shelf->until_ns;
+	unshelve(e, s, &owsd, over);
+	return INT64_MAX;
+}
+
+/* Bring the alarm to the present. Returns when this is to be done again. */
+static int64_t evaluate(struct engine *e, struct signal *s)
+{
+	int64_t stale_at = signal_stale_at(s), next;
 	struct limit_reading reading;
 	struct limit_news news;
 
-	if (!limits->any)
-		return;
-	if (s->sample.quality == OWS_Q_DISABLED) {
-		due_wheel_cancel(&e->limit_wheel, engine_row(s));
-		return;
-	}
+	if (s->sample.quality == OWS_Q_DISABLED)
+		return INT64_MAX;
 	keep_limit_value(s);
-	if (s->item->stale_after_ns)
-		stale_at = s->item->stale_after_ns + 1 +
-		           (s->sample.measured_ns ? s->sample.measured_ns : s->read.known_ns);
 	reading = (struct limit_reading){
 		.value = value_number(s->item->type, s->sample.value),
 		.bad = (s->sample.quality & 0xc0) == 0 && s->sample.quality != OWS_Q_INITIAL,
 		.unknown = s->sample.quality == OWS_Q_INITIAL,
 	};
 	reading.stale = !reading.bad && e->time.now_ns >= stale_at;
-	next = limit_evaluate(&s->limit.alarm, limits, &reading, e->time.now_ns, &news);
+	next = limit_evaluate(&s->limit.alarm, &s->item->limits, &reading, e->time.now_ns, &news);
 	if (news.returned)
 		limit_returned(e, s, news.returned);
 	if (news.raised)
 		limit_raised(e, s, news.raised);
-	show_limit(s);
-	if (!reading.bad && !reading.stale && stale_at < next)
-		next = stale_at;
-	if (next == INT64_MAX)
-		due_wheel_cancel(&e->limit_wheel, engine_row(s));
-	else
-		due_wheel_at(&e->limit_wheel, engine_row(s), engine_period_at(e, next));
+	return !reading.bad && !reading.stale && stale_at < next ? stale_at : next;
 }
 
-void engine_limits_acknowledge(struct engine *e, struct signal *s)
+int64_t engine_limits(struct engine *e, struct signal *s)
 {
+	int64_t next, over;
+
+	if (!s->item->limits.any)
+		return INT64_MAX;
+	next = evaluate(e, s);
+	over = shelved_until(e, s);
+	if (over < next)
+		next = over;
+	show_limit(s);
+	return next;
+}
+
+void engine_limits_acknowledge(struct engine *e, struct signal *s, const struct ows_who *who)
+{
+	static const char nothing[OWS_TEXT];
 	uint8_t kind = limit_acknowledge(&s->limit.alarm);
 
 	if (!kind)
 		return;
-	journal_limit(e, s, kind, OWS_ALARM_ACKNOWLEDGED);
+	journal_deed(e, s, kind, OWS_ALARM_ACKNOWLEDGED, who, nothing);
 	show_limit(s);
+}
+
+/* A program that shelves without end would push everything else out of journal and log. */
+static bool may_shelve(struct engine *e)
+{
+	int64_t since_ns = e->time.now_ns - e->shelvings.since_ns;
+	int64_t more = since_ns / NS_PER_S;
+
+	if (more > e->shelvings.done) {
+		e->shelvings.done = 0;
+		e->shelvings.since_ns = e->time.now_ns;
+	} else {
+		e->shelvings.done -= (uint32_t)more;
+		e->shelvings.since_ns += more * NS_PER_S;
+	}
+	return e->shelvings.done < SHELVINGS && ++e->shelvings.done;
+}
+
+int engine_shelve(struct engine *e, struct signal *s, uint32_t seconds, const struct ows_who *who,
+                  const char *why)
+{
+	struct ows_shelf_entry entry = {
+		.record = s->record,
+		.since_ns = e->time.now_ns,
+		.until_ns = e->time.now_ns + seconds * NS_PER_S,
+		.who = *who,
+	};
+	int err;
+
+	memcpy(entry.why, why, strnlen(why, OWS_TEXT - 1));
+	if (!s->item->limits.any)
+		return -EOPNOTSUPP;
+	if (seconds > OWS_SHELVE_MAX)
+		return -ERANGE;
+	if (!seconds && !s->limit.shelf)
+		return 0;
+	if (!may_shelve(e))
+		return -EAGAIN;
+	if (!seconds) {
+		unshelve(e, s, who, entry.why);
+		return 0;
+	}
+	err = engine_shelf_put(e, s, &entry);
+	if (err)
+		return err;
+	journal_deed(e, s, s->limit.alarm.kind, OWS_ALARM_SHELVED, who, entry.why);
+	log_notice(e->log, "%s: alarm: shelved for %u s by %s: %s", s->item->name, seconds,
+	           *who->name ? who->name : "a program",
+	           *entry.why ? entry.why : "no reason given");
+	s->limit.logged = false;
+	limit_shelve(&s->limit.alarm);
+	return 0;
 }

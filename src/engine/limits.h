@@ -5,8 +5,19 @@
 
 #include "src/engine/state.h"
 
-/* Bring the limit alarms of the signal to the present. */
-void engine_limits(struct engine *e, struct signal *s);
-void engine_limits_acknowledge(struct engine *e, struct signal *s);
+/*
+ * Bring the limit alarms of the signal to the present. Returns when they change next by time alone;
+ * INT64_MAX: never.
+ */
+int64_t engine_limits(struct engine *e, struct signal *s);
+void engine_limits_acknowledge(struct engine *e, struct signal *s, const struct ows_who *who);
+/*
+ * Shelve the limit alarm of the signal for so many seconds; 0: unshelve it, which does nothing to
+ * one that is not shelved. why: as many of OWS_TEXT bytes as come before a NUL. The caller
+ * publishes the signal. 0; -EOPNOTSUPP: it has no limit alarms; -ERANGE: more than OWS_SHELVE_MAX;
+ * -ENOSPC: OWS_SHELVES others are shelved; -EAGAIN: too many requests, later again.
+ */
+int engine_shelve(struct engine *e, struct signal *s, uint32_t seconds, const struct ows_who *who,
+                  const char *why);
 
 #endif

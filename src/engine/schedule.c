@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* When the rows of the table are read and written: the wheel of periods and what is due. */
 #include "src/engine/schedule.h"
+#include "hal/bus/time.h"
 #include "src/engine/due.h"
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"
@@ -65,11 +66,29 @@ static void row_ready(void *ctx, uint32_t entry)
 		engine_read_now(e, s);
 }
 
-static void limit_ready(void *ctx, uint32_t row)
+static void time_ready(void *ctx, uint32_t row)
 {
 	struct engine *e = ctx;
 
 	engine_publish(e, &e->table.signals[row]);
+}
+
+/* So late nobody ran: the machine was suspended, or owsd stopped. */
+#define GAP_NS (2 * NS_PER_S)
+/* So late nobody looked, and perhaps no giver could beat. */
+#define PAUSE_NS (100 * NS_PER_MS)
+
+void engine_begin_call(struct engine *e, int64_t now_ns)
+{
+	int64_t late_ns = now_ns -
+	                  (e->time.next_ns > e->time.now_ns ? e->time.next_ns : e->time.now_ns);
+
+	if (e->time.next_ns && now_ns - e->time.next_ns > GAP_NS)
+		e->time.gap_ns = now_ns;
+	/* nobody knows when in the time since the last call the pause began */
+	if (e->time.next_ns && late_ns > PAUSE_NS)
+		e->time.paused_ns += now_ns - e->time.now_ns;
+	e->time.now_ns = now_ns;
 }
 
 void engine_turn(struct engine *e, int64_t now_ns)
@@ -84,5 +103,5 @@ void engine_turn(struct engine *e, int64_t now_ns)
 	e->counters.periods += period - e->time.period;
 	e->time.period = period;
 	due_wheel_turn(&e->wheel, period, row_ready, e);
-	due_wheel_turn(&e->limit_wheel, period, limit_ready, e);
+	due_wheel_turn(&e->time_wheel, period, time_ready, e);
 }

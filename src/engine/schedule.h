@@ -11,6 +11,8 @@ void engine_read_never(struct engine *e, struct signal *s);
 void engine_write_at(struct engine *e, struct signal *s, uint64_t period);
 /* Put the row among those to be written, or take it away, by signal_changed(). */
 void engine_write_check(struct engine *e, struct signal *s);
+/* Each call from outside begins with it: it keeps the time, and notices when nobody ran. */
+void engine_begin_call(struct engine *e, int64_t now_ns);
 /* Turn to the period of now_ns: what waited for it becomes due. */
 void engine_turn(struct engine *e, int64_t now_ns);
 

@@ -10,16 +10,19 @@
 #include "hal/bus/time.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/due.h"
+#include "src/engine/joining.h"
 #include "src/engine/port.h"
 #include "src/engine/route.h"
 #include "src/engine/structure.h"
 #include "src/engine/table.h"
-#include "src/shm/commands.h"
+#include "src/shm/force.h"
+#include "src/shm/giver.h"
 #include "src/shm/image.h"
 #include "src/text/log.h"
 
 struct engine;
 struct engine_guest;
+struct engine_last;
 struct engine_guests;
 
 /* Room for one answer or one value to be written. */
@@ -55,7 +58,8 @@ struct slot {
 	enum purpose purpose;
 	uint32_t row;  /* of the table, of structure.checks (FOR_STRUCTURE), a device (FOR_PROBE) */
 	int64_t value; /* of a write */
-	uint32_t stamp;             /* of the command written */
+	uint32_t stamp;             /* of the command written, 0: owsd's */
+	uint32_t giver, serial;     /* whose it is */
 	bool one_shot;              /* the write was that of _WriteOneShot */
 	bool pressing;              /* a guest that goes as an input */
 	bool shown;                 /* a reading: the image has it that it is in work */
@@ -162,21 +166,49 @@ struct lane {
 	X(periods) \
 	X(late_periods) /* boundaries that were more than a period late */ \
 	X(steps) \
-	X(commands)          /* values taken from the command segment */ \
+	X(commands)          /* values taken from givers */ \
 	X(refused_commands)  /* values no program should have put there */ \
 	X(deferred_commands) /* marks of commands that came too fast were left for 10 ms */ \
-	X(lost_clients)      /* control programs that stopped beating */ \
+	X(lost_givers)       /* givers that stopped beating */ \
 	X(safe_outputs)      /* outputs put to SafeValue */ \
-	X(lost_commands)     /* command segments that were taken away and made again */ \
 	X(reloads)           /* changed configurations that were taken over */
 
-/* A control program that beats. */
-struct client {
-	bool known;
-	bool awaited; /* it beat before owsd's start, and did not since */
-	uint32_t pid, beat;
+/* What the engine knows of a giver; its index is its place, or behind the places. */
+struct known_giver {
+	/* givers.c */
+	enum giver_is {
+		GIVER_FREE,
+		GIVER_CONNECTED,
+		GIVER_HUNG_UP, /* it promised a beat, and said no goodbye */
+		GIVER_AWAITED, /* it commanded before owsd's start */
+	} is;
+	struct engine_giver as; /* with a memory only while it is connected */
+	bool late, may_set;
+	uint32_t shown; /* commands and refused that the image has */
+	int64_t joined_ns;
+	int64_t left_ns; /* in awake time (engine_awake_ns()), like the next, and heard_ns */
+	int64_t lose_ns; /* not before does another of its outputs go to SafeValue */
+
+	/* in_force.c */
+	uint32_t beat;
+	uint32_t period_ms; /* promised; 0: none, or it said goodbye */
 	int64_t heard_ns;
+	uint32_t rows; /* signals whose command is its */
+
+	/* intake.c */
+	uint32_t commands, refused;
+	/*
+	 * Of the looks at marked slots: how many are left, since when, where the next begins,
+	 * whether one has to go on, and not sooner than when.
+	 */
+	uint32_t looks, look_from;
+	int64_t looks_ns, defer_ns;
+	bool more;
+	/* a text that was being written when it was looked at */
+	uint32_t busy; /* record; 0: none */
+	int64_t busy_ns;
 };
+#define ENGINE_GIVERS FORCE_GIVERS
 
 /* Which way of a group is open; a reload carries it over. */
 struct group_state {
@@ -198,16 +230,18 @@ struct engine_time {
 	/* schedule.c, adopt.c */
 	int64_t start_ns;       /* of period first: since then all were of the same length */
 	uint64_t period, first; /* boundaries since owsd's start */
+	int64_t now_ns;         /* of the call in work */
+	int64_t gap_ns;         /* end of the last time in which nobody ran; 0: none */
+	int64_t paused_ns;      /* sum of all times in which nobody ran */
 	/* engine.c */
-	int64_t now_ns;  /* of the call in work */
 	int64_t next_ns; /* when engine_step() asked to be called again */
-	int64_t gap_ns;  /* end of the last time in which nobody ran; 0: none */
 };
 
 /* What record 0 shows; a reload carries it over. */
 struct engine_driver {
 	uint64_t transactions, reconnects;
-	uint32_t resets; /* last seen in the command segment */
+	/* publish.c */
+	uint64_t shown; /* sum of both that the image has */
 };
 
 /* The requests that the trace has shown in its present window. */
@@ -221,7 +255,8 @@ struct engine {
 	/* engine.c */
 	const struct config *config;
 	struct image *image;
-	struct commands *commands;
+	struct force *force;            /* NULL: none */
+	const struct engine_last *last; /* NULL: none */
 	struct log *log;
 	const struct engine_guests *guests; /* NULL: none */
 	struct lane *lanes;
@@ -235,8 +270,13 @@ struct engine {
 
 	/* schedule.c */
 	struct due_wheel wheel; /* row * 2: read, row * 2 + 1: write */
+	/* publish.c */
+	struct due_wheel time_wheel; /* rows that change by time alone: limit alarms, StaleAfter */
 	/* limits.c */
-	struct due_wheel limit_wheel; /* rows whose limit alarms change by time alone */
+	struct {
+		uint32_t done; /* requests to shelve; one a second is forgotten */
+		int64_t since_ns;
+	} shelvings;
 
 	/* group.c makes, routing.c changes; facts in ways: lane_state.c, lane_event.c */
 	struct group *groups;
@@ -254,20 +294,17 @@ struct engine {
 	/* publish.c, limits.c, alarm_effect.c */
 	bool published;
 
-	/* intake.c: strings a consumer was writing when they were looked at */
-	uint32_t busy_slot[8];
-	int64_t busy_since_ns[8];
-	unsigned busy_count;
-	/*
-	 * Of the looks at marked slots: how many are left, since when, where the next begins, not
-	 * sooner.
-	 */
-	uint32_t looks, look_from;
-	int64_t looks_ns, defer_ns;
-	struct log_rate refused;
+	/* givers.c, in_force.c, intake.c: the places of givers, and behind them whom it awaits */
+	struct known_giver givers[ENGINE_GIVERS];
+	unsigned place_end; /* one past the last place that somebody has; givers.c */
+	/* intake.c */
+	unsigned greedy; /* givers whose looks are used up */
+	struct log_rate refused, resets;
+	/* in_force.c: what was last seen of engine_last, and how many rows wait for it */
+	uint32_t stored;
+	int store_err;
+	uint32_t storing;
 
-	/* clients.c */
-	struct client clients[OWS_CLIENTS];
 	/* trace.c */
 	struct trace trace;
 	struct {
@@ -309,6 +346,12 @@ static inline struct group *engine_group(struct engine *e, const struct lane *la
 static inline struct route_way *engine_way(struct engine *e, const struct lane *lane)
 {
 	return &e->ways[lane->index];
+}
+
+/* A clock that stands still while nobody runs: nobody is late for that time. */
+static inline int64_t engine_awake_ns(const struct engine *e)
+{
+	return e->time.now_ns - e->time.paused_ns;
 }
 
 /* The lane that is open, or will be. */

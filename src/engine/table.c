@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The signal table: a row for each item, and what a row says of itself. */
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -101,21 +102,17 @@ static void init_signal(struct signal *s, const struct config_item *item, uint32
 	                 (item->writable ? OWS_ATTR_WRITE_ENABLE : 0) |
 	                 (item->limits.any ? OWS_ATTR_LIMITS : 0);
 	s->measured = item->type != OWS_STRING && quantity_of(item->path, &s->quantity);
+	s->command.giver = GIVER_NOBODY;
 	if (!item->has_init)
 		return;
 	s->sample.value = item->init_value;
-	if (item->output) {
-		s->command.given = true;
-		s->command.value = item->init_value;
-	}
 	if (item->type == OWS_STRING) {
 		size_t len = strlen(item->init_text);
 
 		if (len > TABLE_TEXT_CAP)
 			len = TABLE_TEXT_CAP;
 		memcpy(s->text, item->init_text, len);
-		memcpy(s->command_text, item->init_text, len);
-		s->sample.len = s->command.len = (uint32_t)len;
+		s->sample.len = (uint32_t)len;
 	}
 }
 
@@ -163,6 +160,43 @@ void signal_table_free(struct table *table)
 	*table = (struct table){0};
 }
 
+static double limit_of(const struct config_limits *limits, enum config_limit limit)
+{
+	return limits->has[limit] ? limits->limit[limit] : (double)NAN;
+}
+
+/* What a chip measures has a unit and a resolution by its data sheet, until it is scaled. */
+void signal_table_meta(const struct config_item *item, struct image_meta *meta)
+{
+	const struct scale *scale = &item->scale;
+	struct quantity quantity;
+	bool known = item->type != OWS_STRING && !scale_changes(scale) &&
+	             quantity_of(item->path, &quantity);
+	int decimals = item->decimals >= 0 ? item->decimals : known ? quantity.decimals : -1;
+
+	*meta = (struct image_meta){
+		.unit = item->unit ? item->unit
+	                : known    ? quantity.unit
+	                           : NULL,
+		.description = item->description,
+		.family = item->family,
+		.device = item->device,
+		.calibrated = item->calibrated,
+		.points = item->points,
+		.decimals = (uint32_t)decimals,
+		.scale = scale->linear ? scale->factor : 1,
+		.offset = scale->linear ? scale->offset : 0,
+		.min = scale->has_min ? scale->min : (double)NAN,
+		.max = scale->has_max ? scale->max : (double)NAN,
+		.limit_hh = limit_of(&item->limits, CONFIG_LIMIT_HH),
+		.limit_h = limit_of(&item->limits, CONFIG_LIMIT_H),
+		.limit_l = limit_of(&item->limits, CONFIG_LIMIT_L),
+		.limit_ll = limit_of(&item->limits, CONFIG_LIMIT_LL),
+		.filter_s = item->filter_s,
+		.deadband = item->deadband,
+	};
+}
+
 void signal_table_image(const struct config_item *item, struct image_signal *signal)
 {
 	*signal = (struct image_signal){
@@ -179,6 +213,7 @@ void signal_table_image(const struct config_item *item, struct image_signal *sig
 		.stale_after_ns = item->stale_after_ns,
 		.has_init = item->has_init,
 		.has_safe = item->has_safe,
+		.starts_last = item->starts_last,
 		.init_value = item->init_value,
 		.safe_value = item->safe_value,
 	};
@@ -196,14 +231,21 @@ static bool differs(const struct signal *s)
 
 bool signal_changed(const struct signal *s)
 {
-	return s->command.given && !s->seen.awaited &&
+	return s->command.given && !s->command.awaited &&
 	       (s->command.one_shot || (signal_writes(s) && differs(s)));
 }
 
-void signal_settle(struct signal *s)
+bool signal_settled(const struct signal *s)
 {
-	if (s->command.given && signal_writes(s) && !s->writing && !signal_changed(s))
-		s->sample.applied = s->command.stamp;
+	return s->command.given && !s->command.awaited && signal_writes(s) && !s->writing &&
+	       !signal_changed(s);
+}
+
+int64_t signal_stale_at(const struct signal *s)
+{
+	int64_t since = s->sample.measured_ns ? s->sample.measured_ns : s->read.known_ns;
+
+	return s->item->stale_after_ns ? since + s->item->stale_after_ns + 1 : INT64_MAX;
 }
 
 void signal_begin(struct signal *s, uint64_t period)

@@ -10,7 +10,9 @@
 #include "src/engine/guard.h"
 #include "src/engine/limit.h"
 #include "src/engine/retry.h"
+#include "src/shm/force.h"
 #include "src/shm/image.h"
+#include "src/signal/filter.h"
 #include "src/signal/quantity.h"
 #include "src/signal/value.h"
 #include "src/text/log.h"
@@ -20,10 +22,13 @@
 
 #define TABLE_NO_DEVICE UINT32_MAX
 
+/* The giver of a command that nobody answers for; NAME.force says the same. */
+#define GIVER_NOBODY FORCE_NOBODY
+
 /*
  * A reload carries over what stands in sample, attrs and in the structures of a signal that have a
  * name, each of them whole (adopt_signal.c). What stands beside them is of one engine: the place in
- * its table, and what its buses have.
+ * its table, what its buses have, and what its image's ring has.
  */
 
 /* How reading goes. */
@@ -38,13 +43,6 @@ struct signal_reading {
 	int32_t held_err;
 };
 
-/* What was last seen in the command segment. */
-struct signal_seen {
-	uint32_t stamp, one_shots, dgn_resets, acknowledged;
-	uint32_t client; /* index + 1 of the control program that beats; 0: none */
-	bool awaited;    /* the command is of before the start: not written until client beats */
-};
-
 /* What is to be written, what was written, and how writing goes. */
 struct signal_command {
 	bool given;     /* there is something to write: by a program, or InitValue */
@@ -52,12 +50,25 @@ struct signal_command {
 	bool agrees;    /* it was read back as it was written */
 	bool one_shot;  /* write once more, changed or not */
 	bool forced;    /* a write in doubt ended late: the present value goes out again */
-	bool safe;      /* put to SafeValue, its client stopped beating */
+	bool awaited;   /* of before the start: not written until its giver comes back */
+	bool said;      /* confirmed on the bus, and its giver knows */
+	bool storing;   /* that waits until the value is on the disk (Start "last") */
 	int err;        /* of the last write, until one succeeds or writing is disabled */
 	int64_t value, written;
-	uint32_t stamp;            /* of value; seen.stamp may be that of a refused one */
+	enum ows_reason reason; /* how it came into force */
+	uint32_t giver;         /* an index of engine.givers, GIVER_NOBODY: nobody answers for it */
+	uint32_t stamp;         /* as its giver counts; 0: owsd gave the command */
+	uint32_t ticket; /* Start "last": what engine_last.stored() reaches when it is stored */
 	uint32_t len, written_len; /* strings: of command_text, written_text */
 	struct retry retry;
+};
+
+/* What the journal of commands has last of the signal. */
+struct signal_journal {
+	int64_t entered_ns;
+	int64_t until_ns; /* until then the room for entries is used up, one second for each */
+	uint32_t serial, reason; /* of the giver of the last entry */
+	uint32_t more;           /* commands since that were not entered */
 };
 
 /* The limit alarms, and what the journal and the log have of them. */
@@ -68,6 +79,26 @@ struct signal_limit {
 	int64_t value[2]; /* of the update before the last, of the last */
 	uint32_t count;   /* sample.count of the last */
 	uint8_t values;   /* how many of the two are known */
+	uint8_t shelf;    /* shelved: its place in the image + 1 */
+};
+
+/* What the last change in the ring of this engine's image had. */
+struct signal_entered {
+	int64_t value, commanded;
+	uint32_t count; /* of the last update, entered or not */
+	uint32_t alarms;
+	uint32_t flags; /* of attrs, that say how the signal stands */
+	int32_t err;
+	uint8_t quality, detail, target, sample_flags;
+	uint8_t limit_state, limit_condition, shelved;
+	bool stale; /* good, and older than StaleAfter */
+};
+
+/* Between raw and engineering values (scaling.c). */
+struct signal_scaling {
+	struct filter filter;
+	bool whole;      /* the property takes whole numbers only */
+	int64_t written; /* the raw value that was written last, bits of a double */
 };
 
 struct signal {
@@ -82,13 +113,15 @@ struct signal {
 	bool alarming;         /* a request of the alarm machine counts for it */
 	uint16_t doubts; /* writes that may still reach it over other targets: it is not written */
 	int alarm_err;   /* why its alarm cannot be armed, if OWS_ATTR_ALARM_UNARMED */
+	struct signal_entered entered;
 
 	struct ows_sample sample; /* as published */
 	struct ows_attrs attrs;
 	struct signal_reading read;
-	struct signal_seen seen;
 	struct signal_command command;
+	struct signal_journal journal;
 	struct signal_limit limit;
+	struct signal_scaling scaling;
 	/* strings, TABLE_TEXT_CAP bytes each: published, to be written, written */
 	char *text, *command_text, *written_text;
 };
@@ -124,8 +157,10 @@ void signal_table_free(struct table *table);
 /* The device with this ROM id, TABLE_NO_DEVICE: no row is of it. */
 uint32_t table_device(const struct table *table, const uint8_t rom[8]);
 
-/* What the image and the command segment of this configuration contain. */
+/* What the image of this configuration contains. */
 void signal_table_image(const struct config_item *item, struct image_signal *signal);
+/* What people say of the signal; strings are those of the item. */
+void signal_table_meta(const struct config_item *item, struct image_meta *meta);
 
 static inline bool signal_is_string(const struct signal *s)
 {
@@ -141,8 +176,11 @@ static inline bool signal_writes(const struct signal *s)
 }
 /* Does its commanded value have to go out? */
 bool signal_changed(const struct signal *s);
-/* Is the last command what the bus has? Then it is confirmed. */
-void signal_settle(struct signal *s);
+/* Is the command in force what the bus has? */
+bool signal_settled(const struct signal *s);
+
+/* When its value becomes older than StaleAfter; INT64_MAX: never. */
+int64_t signal_stale_at(const struct signal *s);
 
 /* A request of this signal begins, ends; an update (value read or written) was made. */
 void signal_begin(struct signal *s, uint64_t period);

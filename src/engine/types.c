@@ -3,12 +3,14 @@
  * The check of types on a lane: it asks /structure of its target about the properties of its
  * signals, and reports each signal whose type cannot hold its property.
  */
-#include "src/engine/types.h"
+#include <string.h>
+
 #include "src/engine/publish.h"
 #include "src/engine/retry.h"
 #include "src/engine/slots.h"
 #include "src/engine/state.h"
 #include "src/engine/structure.h"
+#include "src/engine/types.h"
 #include "src/text/log.h"
 
 /* The next check that a signal of this lane needs; -1: none. */
@@ -60,7 +62,10 @@ void types_done(struct lane *lane, const struct slot *slot, const struct bus_ans
 		const char *fault;
 		int err = structure_fault(&entry, s->item, &fault);
 
-		if (!err || s->lane != lane->index)
+		if (s->lane != lane->index)
+			continue;
+		s->scaling.whole = strchr("yiu", entry.type) != NULL;
+		if (!err)
 			continue;
 		s->sample.quality = failure_quality(err);
 		s->sample.err = err;

@@ -11,58 +11,41 @@
 
 #include "hal/bus/time.h"
 #include "hal/bus/worker.h"
+#include "src/control/control.h"
+#include "src/engine/givers.h"
 #include "src/host/engine_thread.h"
+#include "src/host/last.h"
 #include "src/host/private.h"
 #include "src/libows/ows.h"
 #include "src/serve/serve.h"
 #include "src/shm/futex.h"
 
 #define ENGINE_STACK (128 * 1024)
-/* After so many turns without news the engine pauses: a bell rung without end must not spin it. */
-#define IDLE_RINGS 3
-#define IDLE_NS NS_PER_MS
-
 enum {
 	COUNTER_LOG_DROPPED,
-	COUNTER_IDLE_RINGS,
-	COUNTER_REPAIRED,
+	COUNTER_MUTED_BELLS,
 	COUNTER_WORKER_STALLS,
 	COUNTER_DROPPED_EVENTS,
 	COUNTER_UNFINISHED,
+	COUNTER_UNSTORED,
 	HOST_COUNTERS,
 };
 static const char *const host_counters[HOST_COUNTERS] = {
-	[COUNTER_LOG_DROPPED] = "log_dropped",         [COUNTER_IDLE_RINGS] = "idle_rings",
-	[COUNTER_REPAIRED] = "mended_command_headers", [COUNTER_WORKER_STALLS] = "worker_stalls",
-	[COUNTER_DROPPED_EVENTS] = "dropped_events",   [COUNTER_UNFINISHED] = "unfinished_reload",
+	[COUNTER_LOG_DROPPED] = "log_dropped",      [COUNTER_MUTED_BELLS] = "muted_bells",
+	[COUNTER_WORKER_STALLS] = "worker_stalls",  [COUNTER_DROPPED_EVENTS] = "dropped_events",
+	[COUNTER_UNFINISHED] = "unfinished_reload", [COUNTER_UNSTORED] = "failed_stores",
 };
 
 void host_ring(void *ctx)
 {
 	struct host *h = ctx;
-	uint32_t *bell;
 
-	__atomic_fetch_add(&h->ringing, 1, __ATOMIC_SEQ_CST);
-	bell = __atomic_load_n(&h->bell, __ATOMIC_SEQ_CST);
-	if (bell) {
-		__atomic_fetch_add(bell, 1, __ATOMIC_SEQ_CST);
-		segment_wake(bell, 1);
-	}
-	__atomic_fetch_sub(&h->ringing, 1, __ATOMIC_SEQ_CST);
+	bells_ring(&h->bells);
 }
 
-void host_wait_for_ringers(const struct host *h)
-{
-	static const uint32_t nobody = 0;
-
-	while (__atomic_load_n(&h->ringing, __ATOMIC_SEQ_CST))
-		segment_wait(&nobody, 0, HOST_LOOK_NS);
-}
-
-static bool take_messages(struct serving *now, int64_t now_ns)
+static void take_messages(struct serving *now, int64_t now_ns)
 {
 	struct worker_message message;
-	bool any = false;
 
 	for (unsigned i = 0; i < now->worker_count; i++) {
 		/*
@@ -72,57 +55,90 @@ static bool take_messages(struct serving *now, int64_t now_ns)
 		for (unsigned n = 0; n < 2 * BUS_MAX_DEPTH; n++) {
 			if (!worker_next(now->workers[i], &message))
 				break;
-			any = true;
 			if (message.is_event)
 				engine_event(now->engine, i, &message.event, now_ns);
 			else
 				engine_answer(now->engine, i, &message.answer, now_ns);
 		}
 	}
-	return any;
 }
 
-static void publish_serve_counters(struct host *h, uint32_t index)
+static uint32_t publish_list(struct host *h, const struct bus_counter *c, size_t n, uint32_t index)
 {
-	size_t n;
-	const struct bus_counter *c = serve_counters(h->serve, &n);
-
 	for (size_t i = 0; i < n; i++)
 		image_counter(&h->now->memory.image, index++, bus_counted(&c[i]));
+	return index;
 }
 
 static void publish_counters(struct host *h)
 {
 	struct image *image = &h->now->memory.image;
 	uint32_t index = h->now->own_counters;
+	const struct bus_counter *list;
+	size_t n;
 
 	serving_publish(h->now);
 	image_counter(image, index + COUNTER_LOG_DROPPED, log_dropped(h->log));
-	image_counter(image, index + COUNTER_IDLE_RINGS, h->idle_rings);
-	image_counter(image, index + COUNTER_REPAIRED, h->mended);
+	image_counter(image, index + COUNTER_MUTED_BELLS, h->bells.mutes);
 	image_counter(image, index + COUNTER_WORKER_STALLS, serving_stalls(h->now));
 	image_counter(image, index + COUNTER_DROPPED_EVENTS, serving_dropped(h->now));
 	image_counter(image, index + COUNTER_UNFINISHED,
 	              __atomic_load_n(&h->unfinished, __ATOMIC_RELAXED));
-	if (h->serve)
-		publish_serve_counters(h, index + HOST_COUNTERS);
-}
-
-/*
- * Use the command segment that the supervisor has made again. The bell changes first: a program
- * that still rings the old bell is noticed at the next period.
- */
-static void take_renewed(struct host *h, int64_t now_ns)
-{
-	struct commands *renewed = __atomic_load_n(&h->renewed, __ATOMIC_ACQUIRE);
-
-	if (!renewed)
+	image_counter(image, index + COUNTER_UNSTORED, last_failures(h->now->last));
+	list = control_counters(h->control, &n);
+	index = publish_list(h, list, n, index + HOST_COUNTERS);
+	if (!h->serve)
 		return;
-	__atomic_store_n(&h->bell, commands_bell(renewed), __ATOMIC_RELEASE);
-	h->now->commands = renewed;
-	engine_take_commands(h->now->engine, renewed, now_ns);
-	__atomic_store_n(&h->renewed, NULL, __ATOMIC_RELEASE);
+	list = serve_counters(h->serve, &n);
+	publish_list(h, list, n, index);
 }
+
+/* --- Givers ----------------------------------------------------------------------------------- */
+
+static void join(struct engine *e, const struct control_turn *turn, int64_t now_ns)
+{
+	struct engine_giver giver = {
+		.memory = turn->memory,
+		.who = turn->who,
+		.rights = turn->rights,
+	};
+
+	memcpy(giver.token, turn->token, sizeof(giver.token));
+	engine_giver_join(e, turn->place, &giver, now_ns);
+}
+
+/* Programs that connect and hang up without end do not keep the engine from its work. */
+#define TURNS (2 * OWS_GIVERS)
+
+/* Those that have connected, and those that hung up or are dead. */
+static void take_givers(struct host *h, int64_t now_ns)
+{
+	struct control_turn turn;
+
+	for (unsigned n = 0; n < TURNS && control_next(h->control, &turn); n++) {
+		if (turn.joins) {
+			bells_add(&h->bells, turn.place, turn.bell);
+			join(h->now->engine, &turn, now_ns);
+		} else {
+			bells_remove(&h->bells, turn.place);
+			engine_giver_left(h->now->engine, turn.place, now_ns);
+		}
+		control_done(h->control, &turn);
+	}
+}
+
+/* All that have joined the engine before join the next, with their new memories. */
+static void hand_over_givers(struct host *h, struct engine *next, int64_t now_ns)
+{
+	struct control_turn turn;
+	unsigned place = 0;
+
+	take_givers(h, now_ns);
+	while (control_prepared(h->control, &place, &turn))
+		join(next, &turn, now_ns);
+}
+
+/* --- Turns ------------------------------------------------------------------------------------ */
 
 /* Take over what a reload has made, and let go of the engine that it has ended. */
 static void take_next(struct host *h, int64_t now_ns)
@@ -131,9 +147,10 @@ static void take_next(struct host *h, int64_t now_ns)
 	struct engine *ended = __atomic_load_n(&h->ended, __ATOMIC_ACQUIRE);
 
 	if (next) {
+		hand_over_givers(h, next->engine, now_ns);
 		engine_adopt(next->engine, h->now->engine, h->plan, now_ns);
 		serving_keep_counts(next, h->now, h->plan->ports);
-		__atomic_store_n(&h->bell, commands_bell(next->commands), __ATOMIC_SEQ_CST);
+		image_awake(&next->memory.image, true);
 		__atomic_store_n(&h->now, next, __ATOMIC_RELEASE);
 		__atomic_store_n(&h->next, NULL, __ATOMIC_RELEASE);
 	}
@@ -143,53 +160,56 @@ static void take_next(struct host *h, int64_t now_ns)
 	}
 }
 
-static void sleep_until(struct host *h, uint32_t seen, int64_t until_ns)
+/* Whoever rings or marks after the words are cleared wakes the thread. */
+static void sleep_until(struct host *h, int64_t until_ns)
 {
-	int64_t now_ns = ows_now();
+	struct image *image = &h->now->memory.image;
+	bool rung;
 
-	if (until_ns <= now_ns)
-		return;
-	commands_awake(h->now->commands, false);
-	segment_wait(h->bell, seen, until_ns - now_ns);
-	commands_awake(h->now->commands, true);
+	image_awake(image, false);
+	rung = bells_close_eyes(&h->bells);
+	if (!rung && !engine_givers_marked(h->now->engine))
+		bells_sleep(&h->bells, until_ns);
+	image_awake(image, true);
+	bells_open_eyes(&h->bells);
+}
+
+static void announce(struct host *h)
+{
+	struct image *image = &h->now->memory.image;
+
+	image_news(image);
+	segment_wake(&image->header->news, INT_MAX);
+	control_news(h->control);
 }
 
 static void *engine_main(void *ctx)
 {
 	struct host *h = ctx;
 	int64_t counted_ns = 0;
-	unsigned idle = 0;
 
 	while (!__atomic_load_n(&h->stop, __ATOMIC_ACQUIRE)) {
-		uint32_t *bell = h->bell, seen = __atomic_load_n(bell, __ATOMIC_ACQUIRE);
 		int64_t now_ns = ows_now(), next_ns;
-		bool busy = take_messages(h->now, now_ns);
 
+		bells_look(&h->bells);
+		take_messages(h->now, now_ns);
+		take_givers(h, now_ns);
 		next_ns = engine_step(h->now->engine, now_ns);
 		if (now_ns - counted_ns >= h->now->config->period_ns) {
 			counted_ns = now_ns;
-			h->mended += commands_repair(h->now->commands, false);
 			publish_counters(h);
-			busy = true;
 		}
-		if (engine_published(h->now->engine)) {
-			busy = true;
-			image_news(&h->now->memory.image);
-			segment_wake(&h->now->memory.image.header->news, INT_MAX);
-		}
-		take_renewed(h, now_ns);
-		take_next(h, now_ns);
-		if (bell != h->bell) /* seen was read from the bell before: read the new one */
-			continue;
-		idle = busy ? 0 : idle + 1;
-		if (idle > IDLE_RINGS) {
-			static const uint32_t nobody = 0;
-
-			h->idle_rings++;
-			segment_wait(&nobody, 0, IDLE_NS);
-		}
-		sleep_until(h, seen, next_ns);
+		if (engine_published(h->now->engine))
+			announce(h);
+		if (__atomic_load_n(&h->next, __ATOMIC_ACQUIRE) ||
+		    __atomic_load_n(&h->ended, __ATOMIC_ACQUIRE))
+			take_next(h, now_ns);
+		else
+			sleep_until(h, next_ns);
 	}
+	/* a set that was in time is remembered for the owsd after this one */
+	control_end(h->control);
+	engine_step(h->now->engine, ows_now());
 	return NULL;
 }
 
@@ -209,9 +229,7 @@ int host_start_engine(struct host *h, int rt_priority, char *why, size_t why_siz
 		if (mlockall(MCL_CURRENT | MCL_FUTURE))
 			log_warning(h->log, "--rt: memory cannot be locked: %s", strerror(errno));
 	}
-	/* a synchronous SIGBUS belongs to the guard and cannot be blocked */
 	sigfillset(&all);
-	sigdelset(&all, SIGBUS);
 	pthread_sigmask(SIG_SETMASK, &all, &before);
 	err = pthread_create(&h->thread, &attr, engine_main, h);
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
@@ -230,18 +248,21 @@ int host_start_engine(struct host *h, int rt_priority, char *why, size_t why_siz
 
 struct image_counter *host_plan_counters(const struct host *h, uint32_t *count)
 {
-	const struct bus_counter *serve = NULL;
+	const struct bus_counter *serve = NULL, *control;
 	struct image_counter *plan;
-	size_t n = 0;
+	size_t n = 0, controls;
 
+	control = control_counters(h->control, &controls);
 	if (h->serve)
 		serve = serve_counters(h->serve, &n);
-	plan = calloc(HOST_COUNTERS + n, sizeof(*plan));
+	plan = calloc(HOST_COUNTERS + controls + n, sizeof(*plan));
 	*count = 0;
 	if (!plan)
 		return NULL;
 	for (unsigned i = 0; i < HOST_COUNTERS; i++)
 		plan[(*count)++] = (struct image_counter){host_counters[i], UINT32_MAX};
+	for (size_t i = 0; i < controls; i++)
+		plan[(*count)++] = (struct image_counter){control[i].name, UINT32_MAX};
 	for (size_t i = 0; i < n; i++)
 		plan[(*count)++] = (struct image_counter){serve[i].name, UINT32_MAX};
 	return plan;

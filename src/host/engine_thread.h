@@ -13,10 +13,9 @@ struct image_counter;
 int host_start_engine(struct host *host, int rt_priority, char *why, size_t why_size);
 /* Wake the engine, from any thread. */
 void host_ring(void *host);
-/* After the bell was exchanged: wait until no thread can ring the bell before any more. */
-void host_wait_for_ringers(const struct host *host);
 /*
- * The counters that belong to no bus: the host's own, then the server's. The caller frees the plan.
+ * The counters that belong to no bus: the host's own, the control room's, then the server's. The
+ * caller frees the plan.
  */
 struct image_counter *host_plan_counters(const struct host *host, uint32_t *count);
 

@@ -10,9 +10,11 @@
 #include "hal/bus/time.h"
 #include "hal/bus/worker.h"
 #include "src/config/load.h"
+#include "src/control/control.h"
 #include "src/host/engine_thread.h"
 #include "src/host/host.h"
 #include "src/host/indicator.h"
+#include "src/host/last.h"
 #include "src/host/make.h"
 #include "src/host/private.h"
 #include "src/libows/ows.h"
@@ -22,10 +24,12 @@
 static void free_host(struct host *h)
 {
 	serve_stop(h->serve);
+	control_destroy(h->control);
 	indicator_destroy(h->indicator);
 	if (h->now)
 		serving_free(h->now);
 	serve_destroy(h->serve);
+	bells_close(&h->bells);
 	free(h->now);
 	free(h);
 }
@@ -35,6 +39,7 @@ static int create_serve(struct host *h, const struct config *config, char *why, 
 	const struct serve_setup setup = {
 		.config = config,
 		.instance = h->instance,
+		.place = h->place->path,
 		.log = h->log,
 		.ring = host_ring,
 		.ring_ctx = h,
@@ -51,6 +56,45 @@ static int create_serve(struct host *h, const struct config *config, char *why, 
 	return serve_create(&setup, &h->serve, why, why_size);
 }
 
+static int create_control(struct host *h, const struct config *config, char *why, size_t why_size)
+{
+	const struct control_setup setup = {
+		.config = config,
+		.directory = h->place->fd,
+		.instance = h->instance,
+		.log = h->log,
+		.ring = host_ring,
+		.ring_ctx = h,
+	};
+
+	return control_create(&setup, &h->control, why, why_size);
+}
+
+/* The threads beside the engine's, which runs: the server connects to the control room. */
+static int start_rest(struct host *h, char *why, size_t why_size)
+{
+	int err = control_start(h->control, &h->now->memory.layout);
+
+	if (err)
+		snprintf(why, why_size, "cannot start the thread of the control socket: %s",
+		         strerror(-err));
+	else
+		err = host_start_workers(h->now, why, why_size);
+	if (!err) {
+		err = last_start(h->now->last);
+		if (err)
+			snprintf(why, why_size, "cannot start the thread that stores commands: %s",
+			         strerror(-err));
+	}
+	if (!err && h->serve) {
+		err = serve_start(h->serve, &h->now->memory.image);
+		if (err)
+			snprintf(why, why_size, "cannot serve the owserver protocol: %s",
+			         strerror(-err));
+	}
+	return err ? err : host_start_indicator(h, why, why_size);
+}
+
 int host_start(const struct host_setup *setup, struct host **host, char *why, size_t why_size)
 {
 	struct host *h = calloc(1, sizeof(*h));
@@ -63,7 +107,14 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 	}
 	h->log = setup->log;
 	h->instance = setup->instance;
-	err = create_serve(h, setup->config, why, why_size);
+	h->place = setup->place;
+	err = bells_open(&h->bells);
+	if (err)
+		snprintf(why, why_size, "cannot make the bells of the engine: %s", strerror(-err));
+	if (!err)
+		err = create_serve(h, setup->config, why, why_size);
+	if (!err)
+		err = create_control(h, setup->config, why, why_size);
 	if (!err)
 		err = host_make_serving(h, setup->config, NULL, &h->now, why, why_size);
 	if (err) {
@@ -74,19 +125,10 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 	err = memory_show(&h->now->memory, h->log, why, why_size);
 	if (err)
 		goto fail;
-	h->bell = commands_bell(h->now->commands);
 	err = host_start_engine(h, setup->rt_priority, why, why_size);
 	if (err)
 		goto fail;
-	err = host_start_workers(h->now, why, why_size);
-	if (!err && h->serve) {
-		err = serve_start(h->serve, &h->now->memory.image);
-		if (err)
-			snprintf(why, why_size, "cannot serve the owserver protocol: %s",
-			         strerror(-err));
-	}
-	if (!err)
-		err = host_start_indicator(h, why, why_size);
+	err = start_rest(h, why, why_size);
 	if (err) {
 		host_stop(h, NS_PER_S);
 		return err;
@@ -121,12 +163,13 @@ bool host_stop(struct host *h, int64_t timeout_ns)
 		host_ring(h);
 		pthread_join(h->thread, NULL);
 	}
+	control_stop(h->control);
 	stuck = !indicator_stop(h->indicator, timeout_ns) || h->left_behind;
+	stuck |= !last_stop(h->now->last, timeout_ns);
 	stuck |= !serving_stop(h->now, timeout_ns);
 	if (stuck) {
 		/*
-		 * a thread that returns from the kernel later still rings in this memory and reads
-		 * it
+		 * a thread that returns from the kernel later still reads this memory
 		 */
 		memory_stop(&h->now->memory);
 		return false;

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The host: the engine's thread, the workers of its buses, and the one word that wakes it. The
- * thread has no descriptor, sleeps on a futex and never blocks elsewhere.
+ * The host: the engine's thread, the workers of its buses, and the bells that wake it. The thread
+ * sleeps on them and never blocks elsewhere.
  *
  * Room src/host: what runs in it: threads, shared memory, targets, a reload. Uses src/serve,
- * src/engine, src/config, src/text, src/libows, src/shm, hal/gpio, hal/bus.
+ * src/control, src/engine, src/config, src/text, src/libows, src/shm, src/signal, hal/gpio,
+ * hal/bus.
  */
 #ifndef HOST_H
 #define HOST_H
@@ -17,6 +18,7 @@ struct host;
 struct host_setup {
 	struct config *config; /* the host owns it from here on, also if host_start() fails */
 	const char *instance;
+	const struct shm_place *place; /* stays open as long as the host */
 	struct log *log;
 	int rt_priority; /* 0: ordinary scheduling */
 };

@@ -48,7 +48,7 @@ struct indicator {
 /* Does the alarm of any signal stand, or wait for its acknowledgement? */
 static bool indicator_alarm(const struct image *image)
 {
-	for (uint32_t i = 1; i < image->header->record_count; i++) {
+	for (uint32_t i = 1; i < image->record_count; i++) {
 		const struct ows_record *record = &image->records[i];
 		struct ows_slot slot;
 
@@ -68,7 +68,7 @@ static enum indicator_health indicator_health(const struct image *image, int64_t
 	if (!reader_sample(&image->records[0], &beat) || now_ns - beat.measured_ns > patience_ns ||
 	    beat.measured_ns - now_ns > patience_ns)
 		return INDICATOR_DEAD;
-	for (uint32_t i = 0; i < image->header->target_count; i++)
+	for (uint32_t i = 0; i < image->target_count; i++)
 		if (__atomic_load_n(&image->targets[i].state, __ATOMIC_RELAXED) == 1)
 			return INDICATOR_WELL;
 	return INDICATOR_ALONE;

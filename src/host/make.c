@@ -20,6 +20,7 @@ int host_make_serving(struct host *h, struct config *config, const struct adopti
 	struct serving_setup setup = {
 		.config = config,
 		.instance = h->instance,
+		.place = h->place,
 		.log = h->log,
 		.ring = host_ring,
 		.ring_ctx = h,

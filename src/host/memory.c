@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/*
- * The segments of a running owsd: made, shown, renewed when a program destroys them, and retired.
- */
+/* The files of a running owsd that belong to a configuration: made, shown and retired. */
 #include <errno.h>
 #include <limits.h>
 #include <signal.h>
@@ -17,12 +15,12 @@
 #include "src/engine/table.h"
 #include "src/host/memory.h"
 #include "src/libows/ows.h"
-#include "src/shm/carry.h"
 #include "src/shm/futex.h"
 #include "src/shm/hint.h"
 #include "src/shm/owner.h"
+#include "src/shm/shelves.h"
 
-#define COMMANDS (sizeof(((struct memory *)0)->commands) / sizeof(struct memory_commands))
+#define BOOT_ID "/proc/sys/kernel/random/boot_id"
 
 static int64_t wall_ns(void)
 {
@@ -42,11 +40,11 @@ static uint32_t random_id(void)
 }
 
 /* Open the image that the previous owsd left, if this owsd may mark it retired. */
-static bool open_image_before(const char *instance, struct segment *before)
+static bool open_image_before(const struct memory *m, struct segment *before)
 {
 	const struct ows_image_header *h;
 
-	if (segment_open_old(instance, SEGMENT_IMAGE, before))
+	if (segment_open_old(m->place, m->instance, SEGMENT_IMAGE, before))
 		return false;
 	h = (const void *)before->base;
 	if (before->size >= sizeof(*h) && h->magic == OWS_IMAGE_MAGIC)
@@ -82,6 +80,7 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 {
 	const struct config *config = m->config;
 	struct image_signal *signals = calloc((size_t)config->item_count + 1, sizeof(*signals));
+	struct image_meta *metas = calloc((size_t)config->item_count + 1, sizeof(*metas));
 	const char *targets[CONFIG_TARGETS_MAX];
 	uint32_t groups[CONFIG_TARGETS_MAX];
 	char served[160];
@@ -104,93 +103,145 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 	size_t size;
 	int err = -ENOMEM;
 
-	if (signals) {
-		for (unsigned i = 0; i < config->item_count; i++)
+	if (signals && metas) {
+		for (unsigned i = 0; i < config->item_count; i++) {
 			signal_table_image(&config->items[i], &signals[i]);
+			signal_table_meta(&config->items[i], &metas[i]);
+			signals[i].meta = &metas[i];
+		}
 		for (unsigned i = 0; i < config->target_count; i++) {
 			targets[i] = config->targets[i].text;
 			groups[i] = config->targets[i].group;
 		}
 		size = image_size(&plan);
-		err = size ? segment_create(m->instance, SEGMENT_IMAGE, size, &m->image_segment)
+		err = size ? segment_create(m->place, m->instance, SEGMENT_IMAGE, size,
+		                            &m->image_segment)
 		           : -EFBIG;
 	}
 	if (!err)
 		image_build(&plan, m->image_segment.base, &m->image);
 	free(signals);
+	free(metas);
 	return err;
 }
 
-static int make_commands(struct memory *m, struct memory_commands *to)
+/* A number of this boot of the machine: what was left by another boot is not in force. */
+static uint64_t boot_number(void)
+{
+	FILE *file = fopen(BOOT_ID, "re");
+	uint64_t number = 1;
+	int c;
+
+	while (file && (c = fgetc(file)) != EOF)
+		number = (number ^ (uint64_t)c) * UINT64_C(0x100000001b3);
+	if (file)
+		fclose(file);
+	return number;
+}
+
+static int make_force(struct memory *m, uint64_t boot)
 {
 	const struct config *config = m->config;
-	struct command_signal *signals = calloc((size_t)config->item_count + 1, sizeof(*signals));
-	struct command_plan plan = {
+	struct force_signal *signals = calloc((size_t)config->item_count + 1, sizeof(*signals));
+	const struct force_plan plan = {
 		.signals = signals,
 		.signal_count = config->item_count,
 		.text_cap = TABLE_TEXT_CAP,
-		.generation = m->generation,
-		.start_id = m->start_id,
-		.pid = getpid(),
+		.boot = boot,
 	};
+	size_t size;
 	int err;
 
 	if (!signals)
 		return -ENOMEM;
 	for (unsigned i = 0; i < config->item_count; i++)
-		signals[i] = (struct command_signal){.name = config->items[i].name,
-		                                     .path = config->items[i].path,
-		                                     .type = (uint8_t)config->items[i].type};
-	err = segment_create(m->instance, SEGMENT_COMMAND, commands_size(&plan), &to->segment);
+		signals[i] = (struct force_signal){.name = config->items[i].name,
+		                                   .path = config->items[i].path,
+		                                   .type = (uint8_t)config->items[i].type};
+	size = force_size(&plan);
+	err = size ? segment_create(m->place, m->instance, SEGMENT_FORCE, size, &m->force_segment)
+	           : -EFBIG;
 	if (!err)
-		err = segment_guard(&to->segment);
-	if (!err)
-		err = commands_build(&plan, to->segment.base, &to->commands);
+		force_build(&plan, m->force_segment.base, &m->force);
 	free(signals);
 	return err;
 }
 
-/*
- * Carry the commands over from the segment of the previous owsd. Once that segment is RETIRED, sets
- * fail there, so no command is lost between the two segments.
- */
-static void carry_commands(struct memory *m, struct log *log)
+static int make_layout(struct memory *m)
+{
+	const struct config *config = m->config;
+	uint8_t *types = calloc((size_t)config->item_count + 1, 1);
+	const struct giver_plan plan = {
+		.types = types,
+		.signal_count = config->item_count,
+		.text_cap = TABLE_TEXT_CAP,
+		.generation = m->generation,
+		.start_id = m->start_id,
+	};
+	int err;
+
+	if (!types)
+		return -ENOMEM;
+	for (unsigned i = 0; i < config->item_count; i++)
+		types[i] = (uint8_t)config->items[i].type;
+	err = giver_layout_make(&m->layout, &plan);
+	free(types);
+	return err;
+}
+
+/* What the owsd before has left; nothing after a boot. */
+static void open_left(struct memory *m, uint64_t boot, struct log *log)
+{
+	int err = segment_open_old(m->place, m->instance, SEGMENT_FORCE, &m->left_segment);
+
+	if (err == -ENOENT)
+		return;
+	if (!err)
+		err = force_open(m->left_segment.base, m->left_segment.size, boot, &m->left);
+	m->has_left = !err;
+	if (m->has_left)
+		return;
+	segment_close(&m->left_segment);
+	if (err != -ESTALE)
+		log_warning(log, "owsd does not know which commands are in force: %s",
+		            err == -EPROTO ? "what the owsd before has left is damaged"
+		                           : strerror(-err));
+}
+
+void memory_resumed(struct memory *m)
+{
+	if (m->has_left)
+		force_close(&m->left);
+	segment_close(&m->left_segment);
+	m->has_left = false;
+}
+
+static void carry_shelves(struct memory *m)
 {
 	struct segment before;
-	int carried, err;
 
-	err = segment_open_old(m->instance, SEGMENT_COMMAND, &before);
-	if (err) {
-		if (err != -ENOENT)
-			log_warning(log, "earlier commands are not taken over: %s", strerror(-err));
+	if (!open_image_before(m, &before))
 		return;
-	}
-	if (segment_guard(&before) == 0) {
-		commands_retire(before.base, before.size);
-		carried = commands_carry(memory_commands(m), before.base, before.size, true);
-		if (carried < 0)
-			log_warning(log, "earlier commands are not taken over: the old "
-			                 "command segment is damaged");
-	}
+	shelves_carry(&m->image, before.base, before.size);
 	segment_close(&before);
 }
 
 int memory_make(struct memory *m, const struct memory_setup *setup, char *why, size_t why_size)
 {
 	char hint[SEGMENT_HINT];
+	uint64_t boot = boot_number();
 	struct segment before;
 	int err;
 
-	*m = (struct memory){.instance = setup->instance, .config = setup->config};
-	m->image_segment.fd = -1;
-	for (unsigned i = 0; i < COMMANDS; i++)
-		m->commands[i].segment.fd = -1;
+	*m = (struct memory){
+		.instance = setup->instance, .place = setup->place, .config = setup->config};
+	m->image_segment.fd = m->force_segment.fd = m->left_segment.fd = -1;
 	m->start_id = random_id();
 	m->start_ns = setup->before ? setup->before->start_ns : ows_now();
 	m->start_wall_ns = setup->before ? setup->before->start_wall_ns : wall_ns();
 	if (setup->before) {
 		m->generation = setup->before->generation + 1;
-	} else if (open_image_before(m->instance, &before)) {
+	} else if (open_image_before(m, &before)) {
 		m->generation = ((struct ows_image_header *)(void *)before.base)->generation + 1;
 		segment_close(&before);
 	} else {
@@ -199,15 +250,19 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 	}
 	err = make_image(m, setup->counters, setup->counter_count);
 	if (!err)
-		err = make_commands(m, &m->commands[0]);
+		err = make_force(m, boot);
+	if (!err)
+		err = make_layout(m);
 	if (err) {
 		snprintf(why, why_size, "cannot make the shared memory: %s%s", strerror(-err),
-		         segment_hint(m->instance, err, hint));
+		         segment_hint(m->place, m->instance, err, hint));
 		memory_end(m);
 		return err;
 	}
-	if (!setup->before)
-		carry_commands(m, setup->log);
+	if (!setup->before) {
+		open_left(m, boot, setup->log);
+		carry_shelves(m);
+	}
 	return 0;
 }
 
@@ -219,20 +274,22 @@ static bool is_private(const struct segment *segment)
 }
 
 /*
- * Log that no group may use the segments: intended when a user starts owsd by hand, a fault in the
- * service, whose consumers could not open them.
+ * Log that no group may look or command: intended when a user starts owsd by hand, a fault in the
+ * service.
  */
 static void report_private(const struct memory *m, struct log *log)
 {
 	bool image = is_private(&m->image_segment);
+	gid_t gid;
 
-	if ((image || is_private(&m->commands[m->current].segment)) && owner_is_service())
-		log_warning(
-			log,
-			"no other user can %s: the shared memory cannot be given to the group %s: "
-			"is there one, and is the user owsd in it?",
-			image ? "look at the signals" : "set outputs",
-			image ? "owsd" : "owsd-control");
+	if (!owner_is_service() ||
+	    (!image && (m->config->allow_count || owner_group("owsd-control", &gid))))
+		return;
+	if (image)
+		log_warning(log, "no other user can look at the signals: the image cannot be given "
+		                 "to the group owsd: is there one, and is the user owsd in it?");
+	else
+		log_warning(log, "no other user can set outputs: there is no group owsd-control");
 }
 
 static bool process_exists(int32_t pid)
@@ -257,18 +314,17 @@ int memory_show(struct memory *m, struct log *log, char *why, size_t why_size)
 {
 	char hint[SEGMENT_HINT];
 	struct segment before;
-	bool had_before = open_image_before(m->instance, &before);
+	bool had_before = open_image_before(m, &before);
 	int err;
 
 	image_state(&m->image, OWS_STATE_LIVE);
-	commands_state(memory_commands(m), OWS_STATE_LIVE);
-	err = segment_show(m->instance, &m->commands[m->current].segment);
+	err = segment_show(m->instance, &m->force_segment);
 	if (!err)
 		err = segment_show(m->instance, &m->image_segment);
 	if (err)
 		snprintf(why, why_size,
 		         "no program sees the values: cannot put the shared memory in place: %s%s",
-		         strerror(-err), segment_hint(m->instance, err, hint));
+		         strerror(-err), segment_hint(m->place, m->instance, err, hint));
 	m->shown = !err;
 	if (!err)
 		report_private(m, log);
@@ -279,53 +335,9 @@ int memory_show(struct memory *m, struct log *log, char *why, size_t why_size)
 	return err;
 }
 
-struct commands *memory_commands(struct memory *m)
-{
-	return &m->commands[m->current].commands;
-}
-
-bool memory_commands_lost(const struct memory *m)
-{
-	const struct segment *segment = &m->commands[m->current].segment;
-
-	return segment_lost(segment) || !segment_named(m->instance, segment);
-}
-
 bool memory_image_lost(const struct memory *m)
 {
 	return !segment_named(m->instance, &m->image_segment);
-}
-
-static void release_commands(struct memory_commands *c)
-{
-	segment_close(&c->segment);
-	commands_forget(&c->commands);
-}
-
-struct commands *memory_renew_commands(struct memory *m, int *err)
-{
-	unsigned next = (m->current + 1) % COMMANDS;
-	struct memory_commands *to = &m->commands[next];
-
-	release_commands(to);
-	*err = make_commands(m, to);
-	if (*err) {
-		release_commands(to);
-		return NULL;
-	}
-	/*
-	 * consumers that still map the old segment read in its state that they have to open the new
-	 * one
-	 */
-	commands_state(memory_commands(m), OWS_STATE_RETIRED);
-	m->current = next;
-	return &to->commands;
-}
-
-int memory_show_commands(struct memory *m)
-{
-	commands_state(memory_commands(m), OWS_STATE_LIVE);
-	return segment_show(m->instance, &m->commands[m->current].segment);
 }
 
 void memory_replaced(struct memory *m)
@@ -345,8 +357,6 @@ void memory_stop(struct memory *m)
 		return;
 	image_state(&m->image, OWS_STATE_STOPPED);
 	segment_wake(&m->image.header->news, INT_MAX);
-	commands_repair(memory_commands(m), true);
-	commands_state(memory_commands(m), OWS_STATE_STOPPED);
 	m->shown = false;
 }
 
@@ -355,7 +365,8 @@ void memory_end(struct memory *m)
 	if (!m->instance)
 		return;
 	memory_stop(m);
+	memory_resumed(m);
 	segment_close(&m->image_segment);
-	for (unsigned i = 0; i < COMMANDS; i++)
-		release_commands(&m->commands[i]);
+	segment_close(&m->force_segment);
+	giver_layout_free(&m->layout);
 }

@@ -6,12 +6,15 @@
 #include <pthread.h>
 
 #include "hal/bus/time.h"
+#include "src/host/bells.h"
 #include "src/host/serving.h"
 
 /*
  * The supervisor's pause between two looks whether engine or server have taken what it gave them.
  */
 #define HOST_LOOK_NS NS_PER_MS
+
+struct control;
 
 struct host {
 	/* The engine's thread exchanges it; else only the supervisor uses it. */
@@ -22,19 +25,17 @@ struct host {
 	struct engine *ended;
 	struct log *log;
 	const char *instance;
+	const struct shm_place *place;
 	struct serve *serve; /* NULL: the owserver protocol is not served */
 
 	struct indicator *indicator;
 	pthread_t thread;
 	bool running;
 	bool left_behind; /* a bus is stuck in the kernel, and keeps the memory that it uses */
+	bool disk_stuck;  /* a thread that stores last commands is, and may write the file yet */
 	uint32_t stop;
-	struct commands *renewed; /* made by the supervisor, for the engine to take */
-	bool unseen;              /* renewed is not yet shown to consumers */
-	uint32_t *bell;           /* in the command segment */
-	uint32_t ringing;         /* how many threads have read bell and not yet rung it */
-	int64_t tend_ns;          /* not sooner */
-	struct log_rate tend_rate;
+	struct bells bells;
+	struct control *control;
 	int64_t image_lost_ns;
 	/* What a reload has not finished. */
 	bool unshown;        /* its image is not in place */
@@ -42,7 +43,6 @@ struct host {
 	uint32_t unfinished; /* how many of the two; a counter shows it */
 	int64_t finish_ns;   /* not sooner */
 	struct log_rate finish_rate;
-	uint64_t idle_rings, mended;
 };
 
 #endif

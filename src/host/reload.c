@@ -8,8 +8,10 @@
 #include <string.h>
 
 #include "hal/bus/time.h"
+#include "src/control/control.h"
 #include "src/host/engine_thread.h"
 #include "src/host/indicator.h"
+#include "src/host/last.h"
 #include "src/host/make.h"
 #include "src/host/private.h"
 #include "src/host/reload.h"
@@ -38,8 +40,25 @@ static bool end_workers(struct serving *before, const struct serving *now,
 	return serving_stop(before, END_NS);
 }
 
-/* Free what was served before. ended: its buses have ended; dark: the thread of its lamps has. */
-static void leave_before(struct host *h, struct serving *before, bool ended, bool dark)
+/* One thread at a time stores in the file. */
+static bool end_last(struct host *h, struct serving *before)
+{
+	bool ended = last_stop(before->last, END_NS);
+
+	if (!ended)
+		log_err(h->log,
+		        "the disk of the last commands is stuck; owsd stores none until it restarts");
+	h->disk_stuck |= !ended;
+	if (h->disk_stuck)
+		last_give_up(h->now->last);
+	return ended;
+}
+
+/*
+ * Free what was served before. ended: its buses have ended; stored, dark: so have its threads of
+ * the disk and of the lamps.
+ */
+static void leave_before(struct host *h, struct serving *before, bool ended, bool stored, bool dark)
 {
 	if (ended) {
 		__atomic_store_n(&h->ended, before->engine, __ATOMIC_RELEASE);
@@ -52,10 +71,9 @@ static void leave_before(struct host *h, struct serving *before, bool ended, boo
 	if (!dark)
 		log_err(h->log,
 		        "AlarmLine or HeartbeatLine is stuck in the kernel; owsd gives it up");
-	host_wait_for_ringers(h);
 	if (dark)
 		memory_replaced(&before->memory);
-	if (!ended || !dark) {
+	if (!ended || !stored || !dark) {
 		h->left_behind = true;
 		return;
 	}
@@ -82,12 +100,14 @@ static bool same_listeners(const struct config_serve *a, const struct config_ser
 static void exchange_serving(struct host *h, struct serving *next, const struct adoption *plan)
 {
 	struct serving *before = h->now;
-	bool dark;
+	bool dark, stored;
 
+	control_prepare(h->control, next->config, &next->memory.layout);
 	h->plan = plan;
 	__atomic_store_n(&h->next, next, __ATOMIC_RELEASE);
 	host_ring(h);
 	pause_until_null(&h->next);
+	control_reloaded(h->control);
 	h->plan = NULL;
 	h->unshown = true;
 	h->unstarted =
@@ -99,14 +119,15 @@ static void exchange_serving(struct host *h, struct serving *next, const struct 
 	if (dark)
 		indicator_destroy(h->indicator);
 	h->indicator = NULL;
-	leave_before(h, before, end_workers(before, next, plan), dark);
+	stored = end_last(h, before);
+	leave_before(h, before, end_workers(before, next, plan), stored, dark);
 	h->unstarted = true;
 	host_finish_reload(h);
 }
 
 bool host_may_reload(const struct host *h)
 {
-	return !h->unseen && !h->unshown && !__atomic_load_n(&h->renewed, __ATOMIC_ACQUIRE);
+	return !h->unshown;
 }
 
 int host_reload(struct host *h, struct config *config, char *why, size_t why_size)

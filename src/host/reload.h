@@ -9,7 +9,7 @@
 struct config;
 struct host;
 
-/* False while the host replaces a lost command segment. Supervisor only. */
+/* False until the image of the reload before is in place. Supervisor only. */
 bool host_may_reload(const struct host *host);
 /*
  * Serve another configuration without a gap: signals of the same name, path and type go on with

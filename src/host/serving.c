@@ -8,6 +8,7 @@
 #include "hal/bus/worker.h"
 #include "src/config/load.h"
 #include "src/engine/counters.h"
+#include "src/host/last.h"
 #include "src/host/serving.h"
 #include "src/host/target.h"
 #include "src/libows/ows.h"
@@ -119,6 +120,7 @@ static int make_memory(struct serving *s, const struct serving_setup *setup, cha
 	err = memory_make(&s->memory,
 	                  &(struct memory_setup){
 				  .instance = setup->instance,
+				  .place = setup->place,
 				  .config = s->config,
 				  .counters = plan,
 				  .counter_count = count,
@@ -138,13 +140,18 @@ static int make_engine(struct serving *s, const struct serving_setup *setup)
 		.ports = s->ports,
 		.port_count = s->worker_count,
 		.image = &s->memory.image,
-		.commands = s->commands,
+		.force = &s->memory.force,
+		.left = s->memory.has_left ? &s->memory.left : NULL,
+		.last = last_seam(s->last),
 		.log = setup->log,
 		.guests = setup->guests,
 		.start_ns = s->memory.start_ns,
 	};
 
-	return engine_create(&engine, &s->engine);
+	int err = engine_create(&engine, &s->engine);
+
+	memory_resumed(&s->memory);
+	return err;
 }
 
 int serving_make(struct serving *s, const struct serving_setup *setup, char *why, size_t why_size)
@@ -156,10 +163,15 @@ int serving_make(struct serving *s, const struct serving_setup *setup, char *why
 	err = make_workers(s, setup, why, why_size);
 	if (!err)
 		err = make_memory(s, setup, why, why_size);
-	if (!err) {
-		s->commands = memory_commands(&s->memory);
+	if (!err)
+		err = last_make(&(struct last_setup){.instance = setup->instance,
+		                                     .config = s->config,
+		                                     .log = setup->log,
+		                                     .ring = setup->ring,
+		                                     .ring_ctx = setup->ring_ctx},
+		                &s->last);
+	if (!err)
 		err = make_engine(s, setup);
-	}
 	if (!err)
 		return 0;
 	for (unsigned i = 0; i < s->worker_count; i++)
@@ -241,6 +253,7 @@ void serving_free(struct serving *s)
 		if (!s->taken[i])
 			worker_destroy(s->workers[i]);
 	memory_end(&s->memory);
+	last_free(s->last);
 	free(s->workers);
 	free(s->taken);
 	free(s->ports);

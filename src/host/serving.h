@@ -11,13 +11,14 @@
 #include "src/engine/engine.h"
 #include "src/host/memory.h"
 
+struct last;
 struct worker;
 
 struct serving {
 	struct config *config; /* owned by the serving */
 	struct memory memory;
-	struct commands *commands; /* as the engine uses them */
 	struct engine *engine;
+	struct last *last; /* Start "last"; NULL: no output has it */
 	struct engine_port *ports;
 	struct worker **workers;
 	bool *taken; /* for each worker: the serving after this one owns it now */
@@ -30,6 +31,7 @@ struct serving {
 struct serving_setup {
 	struct config *config;
 	const char *instance;
+	const struct shm_place *place;
 	struct log *log;
 	void (*ring)(void *ctx); /* wakes the engine; any thread */
 	void *ring_ctx;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* The supervisor's upkeep: repairs the shared memory, and finishes what a reload has left to do. */
+/* The supervisor's upkeep: looks for the image, and finishes what a reload has left to do. */
 #ifndef HOST_TEND_H
 #define HOST_TEND_H
 
 struct host;
 
 /*
- * The work that must not be done on the engine's thread: repair the shared memory, and finish what
- * a reload could not do. The supervisor calls it at least twice a second.
+ * The work that must not be done on the engine's thread: look whether the image is still there, and
+ * finish what a reload could not do. The supervisor calls it at least twice a second.
  */
 void host_tend(struct host *host);
 

@@ -4,25 +4,11 @@
 #include <string.h>
 
 #include "src/libows/alive.h"
+#include "src/libows/by.h"
 #include "src/libows/handle.h"
-#include "src/libows/orphan.h"
+#include "src/libows/shelved.h"
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
-
-#define WORDS (sizeof(struct ows_alarm_entry) / 4)
-
-static bool read_entry(const struct ows_alarm_entry *from, struct ows_alarm_entry *entry)
-{
-	for (int i = 0; i < READER_TRIES; i++) {
-		uint32_t seq = __atomic_load_n(&from->seq, __ATOMIC_ACQUIRE);
-
-		words_load_aligned(entry, from, WORDS);
-		word_fence(__ATOMIC_ACQUIRE);
-		if (seq % 2 == 0 && word_get(&from->seq) == seq)
-			return true;
-	}
-	return false;
-}
 
 uint32_t ows_alarm_count(struct ows *h)
 {
@@ -37,11 +23,12 @@ static void fill(uint8_t type, int64_t value, double *number, int64_t *integer)
 
 int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
 {
-	struct ows_alarm_entry e;
+	uint32_t kept = map_count(&h->map, OWS_AREA_ALARMS);
+	struct ows_journal_entry e;
 
-	if (ows_alarm_count(h) - 1 - number >= h->map.alarm_count)
+	if (ows_alarm_count(h) - 1 - number >= kept)
 		return -ENOENT;
-	if (!read_entry(map_alarm(&h->map, number), &e))
+	if (!reader_entry(map_entry(&h->map, OWS_AREA_ALARMS, number % kept), &e, sizeof(e)))
 		return -EAGAIN;
 	if (e.number != number || e.record == 0 || e.record >= h->map.count)
 		return -ENOENT;
@@ -49,17 +36,18 @@ int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
 		.signal = (int)e.record - 1,
 		.occurred_ns = e.occurred_ns,
 		.type = map_record(&h->map, e.record)->type,
-		.has_before = (e.flags & OWS_ALARM_BEFORE) != 0,
-		.has_after = (e.flags & OWS_ALARM_AFTER) != 0,
+		.has_before = (e.flags & OWS_JOURNAL_BEFORE) != 0,
+		.has_after = (e.flags & OWS_JOURNAL_AFTER) != 0,
 		.kind = e.kind,
 		.event = e.event,
 		.quality = e.quality,
+		.who = by_of(&e.who),
 	};
 	if (alarm->has_before)
 		fill(alarm->type, e.before, &alarm->before, &alarm->before_integer);
 	if (alarm->has_after)
 		fill(alarm->type, e.after, &alarm->after, &alarm->after_integer);
-	memcpy(alarm->latch, e.latch, sizeof(e.latch));
+	memcpy(alarm->text, e.text, sizeof(alarm->text) - 1);
 	return 0;
 }
 
@@ -86,8 +74,10 @@ int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state)
 		.unarmed = !(a->flags & OWS_ATTR_ALARM_UNARMED) ? 0
 	                   : a->flags & OWS_ATTR_ALARM_POR      ? 2
 	                                                        : 1,
+		.shelved = a->shelved,
 	};
-	handle_orphan(h, ows_now());
+	if (a->shelved)
+		shelved_of(h, (uint32_t)h->ids[id].record, state);
 	return handle_state(h);
 }
 
@@ -121,6 +111,8 @@ const char *ows_alarm_event_text(uint8_t event)
 		[OWS_ALARM_RAISED] = "raised",
 		[OWS_ALARM_RETURNED] = "returned",
 		[OWS_ALARM_ACKNOWLEDGED] = "acknowledged",
+		[OWS_ALARM_SHELVED] = "shelved",
+		[OWS_ALARM_UNSHELVED] = "unshelved",
 	};
 
 	return event < sizeof(texts) / sizeof(texts[0]) && texts[event] ? texts[event] : "unknown";

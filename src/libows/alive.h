@@ -8,13 +8,13 @@
 #include "hal/bus/time.h"
 #include "src/libows/handle.h"
 
-/* The time between two looks whether a name leads to another segment. */
-#define ORPHAN_LOOK_NS NS_PER_S
+/* The time between two looks whether the name leads to another image. */
+#define ALIVE_LOOK_NS NS_PER_S
 
 /* Checks the heartbeat, without the answer that is kept for this now_ns. */
 bool alive_find(struct ows *h, int64_t now_ns);
 
-/* Does owsd live, by its heartbeat? If not, also checks whether the image is an orphan. */
+/* Does owsd live, by its heartbeat? No system call. */
 static inline bool handle_alive(struct ows *h, int64_t now_ns)
 {
 	return now_ns == h->alive_now ? h->alive : alive_find(h, now_ns);
@@ -27,5 +27,11 @@ static inline int handle_state(const struct ows *h)
 
 	return state == OWS_STATE_LIVE && !h->orphan ? 0 : -ESTALE;
 }
+
+/*
+ * The same, and checks once a second, while the heart stands still, whether the name leads to
+ * another image: at most one system call.
+ */
+int alive_look(struct ows *h, int64_t now_ns);
 
 #endif

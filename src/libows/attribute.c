@@ -68,6 +68,7 @@ static int64_t compute(struct ows *h, struct ows_id *id, const struct ows_slot *
 		return age_ns;
 	case ATTR_AGE_MAX:
 		return larger(a->age_max_ns, age_ns);
+	case ATTR_RAW: /* ows_get() has it from the sample: it is a measurement */
 	case ATTR_DGNRESET:
 	case ATTR_WRITE_ONE_SHOT:
 	case ATTR_DRIVER_DGNRESET:
@@ -91,9 +92,9 @@ int attribute_get(struct ows *h, struct ows_id *id, int64_t now_ns, struct ows_v
 		return -EACCES;
 	}
 	if (!reader_slot(map_record(&h->map, (uint32_t)id->record), &slot) ||
-	    !reader_slot(h->map.records, &daemon))
+	    !reader_slot(map_record(&h->map, 0), &daemon))
 		return -EAGAIN;
-	value_fill(value, &slot.sample, (uint8_t)def->type);
+	value_fill(h, (uint32_t)id->record, value, &slot.sample, (uint8_t)def->type);
 	since = slot.sample.measured_ns != 0 ? slot.sample.measured_ns : h->map.image->start_ns;
 	value->age_ns = handle_age(now_ns, since);
 	result = compute(h, id, &slot, daemon.attrs.per_base, value->age_ns);

@@ -2,7 +2,6 @@
 /* Reads values: a whole sample of the image, its age, and its quality, lowered if owsd is dead. */
 #include <errno.h>
 #include <string.h>
-#include <time.h>
 
 #include "hal/bus/time.h"
 #include "src/libows/alive.h"
@@ -10,18 +9,9 @@
 #include "src/libows/get.h"
 #include "src/libows/handle.h"
 #include "src/libows/map.h"
-#include "src/libows/orphan.h"
 #include "src/libows/sample.h"
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
-
-int64_t ows_now(void)
-{
-	struct timespec ts;
-
-	clock_gettime(CLOCK_BOOTTIME, &ts);
-	return (int64_t)ts.tv_sec * NS_PER_S + ts.tv_nsec;
-}
 
 /* Has owsd ended, or not yet begun? */
 static bool stopped(const struct ows *h)
@@ -60,15 +50,34 @@ static inline int get_record(struct ows *h, unsigned record, int64_t stale_after
 		*value = (struct ows_value){.type = r->type, .quality = OWS_Q_TARGET};
 		return -EAGAIN;
 	}
-	value_fill(value, &sample, r->type);
+	value_fill(h, record, value, &sample, r->type);
 	return finish_value(h, stale_after_ns, now_ns, value);
+}
+
+/* The raw value is as old and as good as the value that was made of it. */
+static int get_raw(struct ows *h, struct ows_id *e, int64_t now_ns, struct ows_value *value)
+{
+	const struct ows_record *r = map_record(&h->map, (unsigned)e->record);
+	struct ows_slot slot;
+
+	if (!reader_slot(r, &slot)) {
+		*value = (struct ows_value){.type = OWS_DOUBLE, .quality = OWS_Q_TARGET};
+		return -EAGAIN;
+	}
+	slot.sample.value = slot.attrs.raw;
+	if (r->type == OWS_STRING)
+		slot.sample.quality = OWS_Q_TYPE;
+	value_fill(h, (uint32_t)e->record, value, &slot.sample, OWS_DOUBLE);
+	value->len = 0;
+	return finish_value(h, e->stale_after_ns, now_ns, value);
 }
 
 static int get_id(struct ows *h, struct ows_id *e, int64_t now_ns, struct ows_value *value)
 {
-	if (e->attribute != ATTR_VALUE)
-		return attribute_get(h, e, now_ns, value);
-	return get_record(h, (unsigned)e->record, e->stale_after_ns, now_ns, value);
+	if (e->attribute == ATTR_VALUE)
+		return get_record(h, (unsigned)e->record, e->stale_after_ns, now_ns, value);
+	return e->attribute == ATTR_RAW ? get_raw(h, e, now_ns, value)
+	                                : attribute_get(h, e, now_ns, value);
 }
 
 int ows_get(struct ows *h, int id, int64_t now_ns, struct ows_value *value)
@@ -130,7 +139,7 @@ static int get_string(struct ows *h, const struct ows_id *e, int64_t now_ns,
 		*value = (struct ows_value){.type = r->type, .quality = OWS_Q_TARGET};
 		return -EAGAIN;
 	}
-	value_fill(value, &sample, r->type);
+	value_fill(h, (uint32_t)e->record, value, &sample, r->type);
 	err = finish_value(h, e->stale_after_ns, now_ns, value);
 	return !err && sample.len >= size ? -ENOSPC : err;
 }
@@ -163,13 +172,16 @@ int ows_get_text(struct ows *h, int id, int64_t now_ns, struct ows_value *value,
 
 int ows_command(struct ows *h, int id, struct ows_command *command)
 {
+	const struct ows_command_slot *own;
 	const struct ows_record *r;
 	struct ows_slot slot;
+	uint32_t record;
 
 	*command = (struct ows_command){0};
 	if ((unsigned)id >= h->id_count || h->ids[id].record <= 0)
 		return -ENOENT;
-	r = map_record(&h->map, (uint32_t)h->ids[id].record);
+	record = (uint32_t)h->ids[id].record;
+	r = map_record(&h->map, record);
 	if (!reader_slot(r, &slot))
 		return -EAGAIN;
 	command->given = (slot.attrs.flags & OWS_ATTR_COMMANDED) != 0 && r->type != OWS_STRING;
@@ -180,6 +192,12 @@ int ows_command(struct ows *h, int id, struct ows_command *command)
 		if (!value_is_float((enum ows_type)r->type))
 			command->integer = slot.attrs.commanded;
 	}
-	handle_orphan(h, ows_now());
+	if (h->give.base != NULL) {
+		own = give_slot(&h->give, record);
+		command->applied = word_get(&own->applied);
+		/* owsd stores err before taken */
+		command->taken = __atomic_load_n(&own->taken, __ATOMIC_ACQUIRE);
+		command->refused = (int32_t)word_get((const uint32_t *)&own->err);
+	}
 	return handle_state(h);
 }

@@ -10,8 +10,10 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
+#include "src/libows/give.h"
+#include "src/libows/join.h"
 #include "src/libows/ows.h"
-#include "src/shm/layout.h"
+#include "src/shm/place.h"
 #include "src/shm/segment.h"
 #include "src/signal/attribute.h"
 
@@ -21,36 +23,25 @@ struct ows_file {
 	ino_t inode;
 };
 
+/* An area of the image; all zero: the image has none of that kind. */
+struct map_area {
+	const char *base;
+	uint32_t off;  /* of base, from the start of the image */
+	uint32_t size; /* of an entry; one of a later minor version may be larger than ours */
+	uint32_t count;
+};
+
 /*
- * The two segments of one generation. Offsets and counts are read once and checked, so that later
- * damage to the segments leads to no other place.
+ * The image of one generation. Offsets and counts are read once and checked, so that later damage
+ * to the image leads to no other place.
  */
 struct ows_map {
 	const struct ows_image_header *image;
-	const struct ows_record *records;
-	const struct ows_info_entry *infos;
-	const struct ows_name_entry *names;
-	const struct ows_target_entry *targets;
-	const struct ows_counter_entry *counters;
-	const struct ows_alarm_entry *alarms;
-	/* Entries of a later minor version may be larger: find them by map_record() and the like */
-	uint32_t record_size, info_size, target_size, counter_size, alarm_size;
-	const char *base;
+	const char *base; /* of the image */
 	size_t image_size;
 	struct ows_file image_file;
-	uint32_t count, target_count, counter_count, alarm_count;
-	uint32_t pool_off, pool_size, text_off, text_size;
-
-	struct ows_command_header *command; /* NULL: OWS_READ */
-	struct ows_command_slot *slots;
-	struct ows_command_entry *entries;
-	struct ows_client *clients;
-	uint32_t *dirty;
-	uint32_t *acks; /* NULL: the layout is older and has none */
-	char *command_base;
-	size_t command_size;
-	struct ows_file command_file;
-	uint32_t text_cap;
+	uint32_t count; /* of records, infos and names */
+	struct map_area areas[OWS_AREAS];
 };
 
 /* The state that a handle keeps for a signal, over restarts; record 0 has the empty name. */
@@ -81,38 +72,61 @@ struct ows {
 	bool orphan; /* owsd is dead, and a name leads to another file; checked once a second */
 	int64_t looked_ns;
 
-	int client; /* index in the table of clients, -1 none */
-	uint32_t pid;
+	/* The giver: of OWS_CONTROL, and of OWS_READ after ows_fd() */
+	struct join join;
+	struct give give, next;     /* next: taken, but its image is not mapped yet */
+	uint32_t *mine;             /* 1; in a forked child 0. NULL: no giver */
+	uint32_t stamp;             /* of the last command */
+	uint32_t period_ms;         /* promised; 0: none */
+	uint32_t person;            /* as in a slot */
+	uint32_t next_person;       /* the place that is replaced next */
+	char person_name[OWS_NAME]; /* "": for itself */
+	char program[OWS_NAME];
+
+	uint32_t *marks; /* changes.c: one bit for each record, all 0 between two calls */
+	uint32_t mark_words;
+
 	enum ows_mode mode;
 	char instance[SEGMENT_NAME_MAX + 1];
+	char place[PLACE_PATH]; /* the directory that it was found in */
 };
+
+/* Does the handle's connection belong to the process that this one was forked from? */
+static inline bool handle_is_forked(const struct ows *h)
+{
+	return h->mine != NULL && word_get(h->mine) == 0;
+}
+
+/* An entry of an area; the caller has compared i with the count. */
+static inline const void *map_entry(const struct ows_map *map, enum ows_area kind, uint32_t i)
+{
+	return map->areas[kind].base + (size_t)i * map->areas[kind].size;
+}
+
+static inline uint32_t map_count(const struct ows_map *map, enum ows_area kind)
+{
+	return map->areas[kind].count;
+}
 
 static inline const struct ows_record *map_record(const struct ows_map *map, uint32_t record)
 {
-	return (const void *)((const char *)map->records + (size_t)record * map->record_size);
+	return map_entry(map, OWS_AREA_RECORDS, record);
 }
 
 static inline const struct ows_info_entry *map_info(const struct ows_map *map, uint32_t record)
 {
-	return (const void *)((const char *)map->infos + (size_t)record * map->info_size);
+	return map_entry(map, OWS_AREA_INFOS, record);
 }
 
 static inline const struct ows_target_entry *map_target(const struct ows_map *map, uint32_t target)
 {
-	return (const void *)((const char *)map->targets + (size_t)target * map->target_size);
+	return map_entry(map, OWS_AREA_TARGETS, target);
 }
 
 static inline const struct ows_counter_entry *map_counter(const struct ows_map *map,
                                                           uint32_t counter)
 {
-	return (const void *)((const char *)map->counters + (size_t)counter * map->counter_size);
-}
-
-/* The place of alarm n in the ring, which may hold a later alarm by now. */
-static inline const struct ows_alarm_entry *map_alarm(const struct ows_map *map, uint32_t number)
-{
-	return (const void *)((const char *)map->alarms +
-	                      (size_t)(number % map->alarm_count) * map->alarm_size);
+	return map_entry(map, OWS_AREA_COUNTERS, counter);
 }
 
 /* The time from then to now; 0 if then is in the future; never overflows, whatever then is. */

@@ -30,6 +30,23 @@ int ows_info(const struct ows *h, int signal, struct ows_info *info)
 		.alarm = (record->flags & OWS_RECORD_ALARM) != 0,
 		.per_factor = entry->per_factor,
 		.stale_after_ns = entry->stale_after_ns,
+		.unit = map_string(&h->map, entry->unit_off),
+		.description = map_string(&h->map, entry->description_off),
+		.family = map_string(&h->map, entry->family_off),
+		.device = map_string(&h->map, entry->device_off),
+		.calibrated = map_string(&h->map, entry->calibrated_off),
+		.points = map_string(&h->map, entry->points_off),
+		.scale = entry->scale,
+		.offset = entry->offset,
+		.min = entry->min,
+		.max = entry->max,
+		.limit_hh = entry->limit_hh,
+		.limit_h = entry->limit_h,
+		.limit_l = entry->limit_l,
+		.limit_ll = entry->limit_ll,
+		.filter_s = entry->filter_s,
+		.deadband = entry->deadband,
+		.decimals = (int32_t)entry->decimals,
 	};
 	return 0;
 }
@@ -38,10 +55,10 @@ int ows_daemon(struct ows *h, int64_t now_ns, struct ows_daemon *daemon)
 {
 	const struct ows_image_header *image = h->map.image;
 	struct ows_sample beat;
+	int err = alive_look(h, now_ns);
 	bool alive = handle_alive(h, now_ns);
-	int err = handle_state(h);
 
-	if (!reader_sample(h->map.records, &beat))
+	if (!reader_sample(map_record(&h->map, 0), &beat))
 		return -EAGAIN;
 	*daemon = (struct ows_daemon){
 		.pid = image->pid,
@@ -66,7 +83,7 @@ int ows_target(struct ows *h, int index, struct ows_target *target)
 {
 	const struct ows_target_entry *entry;
 
-	if (index < 0 || (uint32_t)index >= h->map.target_count)
+	if (index < 0 || (uint32_t)index >= map_count(&h->map, OWS_AREA_TARGETS))
 		return -ENOENT;
 	entry = map_target(&h->map, (uint32_t)index);
 	*target = (struct ows_target){
@@ -84,7 +101,7 @@ int ows_counter(struct ows *h, int index, struct ows_counter *counter)
 {
 	const struct ows_counter_entry *entry;
 
-	if (index < 0 || (uint32_t)index >= h->map.counter_count)
+	if (index < 0 || (uint32_t)index >= map_count(&h->map, OWS_AREA_COUNTERS))
 		return -ENOENT;
 	entry = map_counter(&h->map, (uint32_t)index);
 	*counter = (struct ows_counter){

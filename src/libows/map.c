@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Maps the segments of an instance and checks them: owner, layout, and that every area lies inside.
+ * Maps the image of an instance and checks it: owner, layout, and that every area lies inside.
  */
 #include <errno.h>
 #include <fcntl.h>
@@ -12,24 +12,18 @@
 
 #include "src/libows/handle.h"
 #include "src/libows/map.h"
-#include "src/shm/guard.h"
 #include "src/shm/owner.h"
 #include "src/shm/word.h"
 
-void map_path(const char *instance, const char *kind, char path[MAP_PATH])
-{
-	snprintf(path, MAP_PATH, "/dev/shm/owsd.%s.%s", instance, kind);
-}
-
-static int map_file(const char *instance, const char *kind, bool write, void **base, size_t *size,
+static int map_file(const struct shm_place *place, const char *instance, void **base, size_t *size,
                     struct ows_file *file)
 {
-	char path[MAP_PATH];
+	char name[SEGMENT_FILE];
 	struct stat st;
 	int fd, err = 0;
 
-	map_path(instance, kind, path);
-	fd = open(path, (write ? O_RDWR : O_RDONLY) | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+	fd = openat(place->fd, segment_file(instance, "image", name),
+	            O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
 	if (fd < 0)
 		return errno == ELOOP ? -EPERM : -errno;
 	if (fstat(fd, &st) < 0)
@@ -41,7 +35,7 @@ static int map_file(const char *instance, const char *kind, bool write, void **b
 	if (!err) {
 		*size = (size_t)st.st_size;
 		*file = (struct ows_file){.device = st.st_dev, .inode = st.st_ino};
-		*base = mmap(NULL, *size, PROT_READ | (write ? PROT_WRITE : 0), MAP_SHARED, fd, 0);
+		*base = mmap(NULL, *size, PROT_READ, MAP_SHARED, fd, 0);
 		if (*base == MAP_FAILED)
 			err = -errno;
 	}
@@ -63,140 +57,119 @@ static bool text_ends(const char *text, size_t size)
 
 bool map_has_text(const struct ows_map *map, const struct ows_record *record)
 {
+	const struct map_area *texts = &map->areas[OWS_AREA_TEXTS];
 	uint32_t off = record->text_off, cap = record->text_cap;
 
-	return off % 4 == 0 && cap % 4 == 0 && off >= map->text_off &&
-	       off - map->text_off <= map->text_size &&
-	       2 * cap <= map->text_size - (off - map->text_off);
+	return off % 4 == 0 && cap % 4 == 0 && off >= texts->off &&
+	       off - texts->off <= texts->count && 2 * cap <= texts->count - (off - texts->off);
 }
 
-/*
- * Is an entry of `there` bytes one of ours? A later minor version may append aligned words to it.
- */
-static bool entry_fits(uint32_t there, size_t ours)
+static const struct ows_name_entry *name_entry(const struct ows_map *map, uint32_t i)
 {
-	return there >= ours && there % 8 == 0;
+	return map_entry(map, OWS_AREA_NAMES, i);
 }
 
 static bool entries_right(const struct ows_map *map)
 {
 	for (uint32_t i = 0; i < map->count; i++)
 		if ((map_record(map, i)->text_cap != 0 && !map_has_text(map, map_record(map, i))) ||
-		    map->names[i].record >= map->count)
+		    name_entry(map, i)->record >= map->count)
 			return false;
-	for (uint32_t i = 0; i < map->target_count; i++)
-		if (!text_ends(map_target(map, i)->name, sizeof(map->targets->name)))
+	for (uint32_t i = 0; i < map_count(map, OWS_AREA_TARGETS); i++)
+		if (!text_ends(map_target(map, i)->name, sizeof(map_target(map, i)->name)))
 			return false;
-	for (uint32_t i = 0; i < map->counter_count; i++)
-		if (!text_ends(map_counter(map, i)->name, sizeof(map->counters->name)))
+	for (uint32_t i = 0; i < map_count(map, OWS_AREA_COUNTERS); i++)
+		if (!text_ends(map_counter(map, i)->name, sizeof(map_counter(map, i)->name)))
 			return false;
 	return true;
+}
+
+/* The sizes of our entries. A later minor version may append aligned words to one. */
+static const uint16_t entry_size[OWS_AREAS] = {
+	[OWS_AREA_RECORDS] = sizeof(struct ows_record),
+	[OWS_AREA_INFOS] = sizeof(struct ows_info_entry),
+	[OWS_AREA_NAMES] = sizeof(struct ows_name_entry),
+	[OWS_AREA_TARGETS] = sizeof(struct ows_target_entry),
+	[OWS_AREA_COUNTERS] = sizeof(struct ows_counter_entry),
+	[OWS_AREA_POOL] = 1,
+	[OWS_AREA_TEXTS] = 1,
+	[OWS_AREA_ORIGINS] = sizeof(struct ows_origin_entry),
+	[OWS_AREA_GIVERS] = sizeof(struct ows_giver_entry),
+	[OWS_AREA_SHELVES] = sizeof(struct ows_shelf_entry),
+	[OWS_AREA_ALARMS] = sizeof(struct ows_journal_entry),
+	[OWS_AREA_COMMANDS] = sizeof(struct ows_journal_entry),
+	[OWS_AREA_CHANGES] = sizeof(struct ows_change_entry),
+};
+
+static bool entry_fits(uint32_t kind, uint32_t size)
+{
+	if (entry_size[kind] == 1)
+		return size == 1;
+	return size >= entry_size[kind] && size % 8 == 0;
+}
+
+/* Find the areas; none of a kind that is not known here, nor one without entries. */
+static bool find_areas(struct ows_map *map, const struct ows_image_header *h)
+{
+	struct ows_area_entry a = {0};
+
+	if (!area_inside(map->image_size, h->area_off, h->area_count, sizeof(a)))
+		return false;
+	for (uint32_t i = 0; i < h->area_count; i++) {
+		words_load(&a, map->base + h->area_off + i * sizeof(a), sizeof(a) / 4);
+		if (a.kind == 0 || a.kind >= OWS_AREAS || a.count == 0)
+			continue;
+		if (map->areas[a.kind].count != 0 || !entry_fits(a.kind, a.size) ||
+		    !area_inside(map->image_size, a.off, a.count, a.size))
+			return false;
+		map->areas[a.kind] = (struct map_area){map->base + a.off, a.off, a.size, a.count};
+	}
+	return true;
+}
+
+/* Are the counts of the areas such that every index which is used as one lies inside? */
+static bool counts_right(const struct ows_map *map)
+{
+	const struct map_area *pool = &map->areas[OWS_AREA_POOL];
+	uint32_t origins = map_count(map, OWS_AREA_ORIGINS);
+	uint32_t changes = map_count(map, OWS_AREA_CHANGES);
+
+	return map->count != 0 && map_count(map, OWS_AREA_INFOS) == map->count &&
+	       map_count(map, OWS_AREA_NAMES) == map->count &&
+	       (origins == 0 || origins == map->count) && (changes & (changes - 1)) == 0 &&
+	       pool->count != 0 && pool->base[pool->count - 1] == '\0';
 }
 
 static int check_image(struct ows_map *map)
 {
 	/* zeroed for the analyzer of gcc, which does not follow the loads */
 	struct ows_image_header h = {0};
-	size_t size = map->image_size;
 
 	words_load(&h, map->base, sizeof(h) / 4);
-	if (h.magic != OWS_IMAGE_MAGIC || h.major != OWS_LAYOUT_MAJOR || h.size != size ||
-	    !entry_fits(h.record_size, sizeof(struct ows_record)) ||
-	    !entry_fits(h.info_size, sizeof(struct ows_info_entry)) ||
-	    !entry_fits(h.target_size, sizeof(struct ows_target_entry)) ||
-	    !entry_fits(h.counter_size, sizeof(struct ows_counter_entry)) || h.record_count == 0)
+	if (h.magic != OWS_IMAGE_MAGIC || h.major != OWS_LAYOUT_MAJOR ||
+	    h.size != map->image_size || !find_areas(map, &h))
 		return -EPROTO;
-	if (!area_inside(size, h.record_off, h.record_count, h.record_size) ||
-	    !area_inside(size, h.info_off, h.record_count, h.info_size) ||
-	    !area_inside(size, h.name_off, h.record_count, sizeof(struct ows_name_entry)) ||
-	    !area_inside(size, h.target_off, h.target_count, h.target_size) ||
-	    !area_inside(size, h.counter_off, h.counter_count, h.counter_size) ||
-	    !area_inside(size, h.alarm_off, h.alarm_count, h.alarm_size) ||
-	    (h.alarm_count != 0 && !entry_fits(h.alarm_size, sizeof(struct ows_alarm_entry))) ||
-	    !area_inside(size, h.text_off, h.text_size, 1) ||
-	    !area_inside(size, h.pool_off, h.pool_size, 1) || h.pool_size == 0 ||
-	    map->base[h.pool_off + h.pool_size - 1] != '\0')
-		return -EPROTO;
-	map->records = (const void *)(map->base + h.record_off);
-	map->infos = (const void *)(map->base + h.info_off);
-	map->names = (const void *)(map->base + h.name_off);
-	map->targets = (const void *)(map->base + h.target_off);
-	map->counters = (const void *)(map->base + h.counter_off);
-	map->alarms = (const void *)(map->base + h.alarm_off);
-	map->record_size = h.record_size;
-	map->info_size = h.info_size;
-	map->target_size = h.target_size;
-	map->counter_size = h.counter_size;
-	map->alarm_size = h.alarm_size;
-	map->count = h.record_count;
-	map->target_count = h.target_count;
-	map->counter_count = h.counter_count;
-	map->alarm_count = h.alarm_count;
-	map->pool_off = h.pool_off;
-	map->pool_size = h.pool_size;
-	map->text_off = h.text_off;
-	map->text_size = h.text_size;
-	return entries_right(map) ? 0 : -EPROTO;
+	map->count = map_count(map, OWS_AREA_RECORDS);
+	return counts_right(map) && entries_right(map) ? 0 : -EPROTO;
 }
 
-/* All of the group may write this segment: read every number once and then check it. */
-static int check_command(struct ows_map *map)
+int map_open(const char *path, const char *instance, struct ows_map *map)
 {
-	struct ows_command_header h;
-	size_t size = map->command_size;
-
-	words_load(&h, map->command_base, sizeof(h) / 4);
-	if (h.magic != OWS_COMMAND_MAGIC || h.major != OWS_LAYOUT_MAJOR || h.size != size ||
-	    h.slot_size != sizeof(struct ows_command_slot) ||
-	    h.entry_size != sizeof(struct ows_command_entry) ||
-	    h.client_size != sizeof(struct ows_client))
-		return -EPROTO;
-	/*
-	 * The segments are of two generations: owsd is putting the new ones in place at the moment
-	 */
-	if (h.generation != map->image->generation || h.start_id != map->image->start_id)
-		return -ENOENT;
-	if (h.slot_count != map->count || h.dirty_words != (map->count + 31) / 32 ||
-	    !area_inside(size, h.slot_off, h.slot_count, h.slot_size) ||
-	    !area_inside(size, h.entry_off, h.slot_count, h.entry_size) ||
-	    !area_inside(size, h.dirty_off, h.dirty_words, 4) ||
-	    !area_inside(size, h.client_off, OWS_CLIENTS, h.client_size) ||
-	    !area_inside(size, h.ack_off, h.slot_count, 4) || h.text_cap > 0xffff)
-		return -EPROTO;
-	map->command = (void *)map->command_base;
-	map->slots = (void *)(map->command_base + h.slot_off);
-	map->entries = (void *)(map->command_base + h.entry_off);
-	map->dirty = (void *)(map->command_base + h.dirty_off);
-	map->clients = (void *)(map->command_base + h.client_off);
-	if (h.ack_off != 0)
-		map->acks = (void *)(map->command_base + h.ack_off);
-	map->text_cap = h.text_cap;
-	return 0;
-}
-
-int map_open(const char *instance, enum ows_mode mode, struct ows_map *map)
-{
-	void *base;
+	struct shm_place place;
+	void *base = NULL;
 	int err;
 
 	*map = (struct ows_map){0};
-	err = map_file(instance, "image", false, &base, &map->image_size, &map->image_file);
+	err = place_open(path, &place);
 	if (err)
 		return err;
-	/* NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): errno is not 0 then */
+	err = map_file(&place, instance, &base, &map->image_size, &map->image_file);
+	place_close(&place);
+	if (err)
+		return err;
 	map->base = base;
 	map->image = base;
 	err = check_image(map);
-	if (!err && mode == OWS_CONTROL) {
-		err = map_file(instance, "command", true, &base, &map->command_size,
-		               &map->command_file);
-		if (!err) {
-			map->command_base = base;
-			/* Without a guard all works too, unless a consumer truncates the file */
-			guard_add(base, map->command_size, true);
-			err = check_command(map);
-		}
-	}
 	if (err)
 		map_close(map);
 	return err;
@@ -204,10 +177,6 @@ int map_open(const char *instance, enum ows_mode mode, struct ows_map *map)
 
 void map_close(struct ows_map *map)
 {
-	if (map->command_base != NULL) {
-		guard_remove(map->command_base);
-		munmap(map->command_base, map->command_size);
-	}
 	if (map->base != NULL)
 		munmap((void *)(uintptr_t)map->base, map->image_size);
 	*map = (struct ows_map){0};
@@ -215,8 +184,10 @@ void map_close(struct ows_map *map)
 
 const char *map_string(const struct ows_map *map, uint32_t off)
 {
+	const struct map_area *pool = &map->areas[OWS_AREA_POOL];
+
 	/* The pool ends with a NUL, so every offset into the pool is a string */
-	return off >= map->pool_off && off - map->pool_off < map->pool_size ? map->base + off : "";
+	return off >= pool->off && off - pool->off < pool->count ? map->base + off : "";
 }
 
 const char *map_name(const struct ows_map *map, uint32_t record)
@@ -230,13 +201,13 @@ int map_find(const struct ows_map *map, const char *name, size_t len)
 
 	while (low < high) {
 		uint32_t middle = low + (high - low) / 2;
-		const char *there = map_string(map, map->names[middle].name_off);
+		const char *there = map_string(map, name_entry(map, middle)->name_off);
 		int order = strncmp(there, name, len);
 
 		if (order == 0 && there[len] != '\0')
 			order = 1;
 		if (order == 0) {
-			uint32_t record = map->names[middle].record;
+			uint32_t record = name_entry(map, middle)->record;
 
 			return record != 0 && record < map->count ? (int)record : -1;
 		}
@@ -248,18 +219,13 @@ int map_find(const struct ows_map *map, const char *name, size_t len)
 	return -1;
 }
 
-/* Does the name lead to another file? False while there is none: the next owsd makes it. */
-static bool leads_elsewhere(const char *instance, const char *kind, const struct ows_file *file)
+bool map_is_elsewhere(const struct ows_map *map, const char *place, const char *instance)
 {
-	char path[MAP_PATH];
+	char path[PLACE_PATH + SEGMENT_FILE], name[SEGMENT_FILE];
 	struct stat st;
 
-	map_path(instance, kind, path);
-	return lstat(path, &st) == 0 && (st.st_ino != file->inode || st.st_dev != file->device);
-}
-
-bool map_is_elsewhere(const struct ows_map *map, const char *instance)
-{
-	return leads_elsewhere(instance, "image", &map->image_file) ||
-	       (map->command != NULL && leads_elsewhere(instance, "command", &map->command_file));
+	snprintf(path, sizeof(path), "%s/%s", place, segment_file(instance, "image", name));
+	/* False while there is none: the next owsd makes it */
+	return lstat(path, &st) == 0 &&
+	       (st.st_ino != map->image_file.inode || st.st_dev != map->image_file.device);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The two segments of an owsd: found by name, mapped, and checked before anything of them is used.
+ * The image of an owsd: found by name, mapped, and checked before anything of it is used.
  */
 #ifndef LIBOWS_MAP_H
 #define LIBOWS_MAP_H
@@ -14,9 +14,8 @@
 struct ows_map;
 struct ows_record;
 
-#define MAP_PATH 80
-void map_path(const char *instance, const char *kind, char path[MAP_PATH]);
-int map_open(const char *instance, enum ows_mode mode, struct ows_map *map);
+/* path: of the place. */
+int map_open(const char *path, const char *instance, struct ows_map *map);
 void map_close(struct ows_map *map);
 /* The string at an offset of the image; "" for an offset outside the strings. */
 const char *map_string(const struct ows_map *map, uint32_t off);
@@ -25,7 +24,7 @@ const char *map_name(const struct ows_map *map, uint32_t record);
 bool map_has_text(const struct ows_map *map, const struct ows_record *record);
 /* Record of a signal's name, -1 if there is none. */
 int map_find(const struct ows_map *map, const char *name, size_t len);
-/* Does a name lead to another file than the mapped one? One or two system calls. */
-bool map_is_elsewhere(const struct ows_map *map, const char *instance);
+/* Does the name lead to another file than the mapped one? One system call. */
+bool map_is_elsewhere(const struct ows_map *map, const char *place, const char *instance);
 
 #endif

@@ -1,17 +1,23 @@
 /* SPDX-License-Identifier: MIT */
-/* A handle of libows: opened, closed, and opened again when owsd has other segments. */
+/* A handle of libows: opened, closed, and opened again when owsd has another image. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
+#include <time.h>
 
 #include "hal/bus/time.h"
+#include "src/libows/alive.h"
 #include "src/libows/find.h"
 #include "src/libows/handle.h"
 #include "src/libows/map.h"
-#include "src/shm/word.h"
+#include "src/libows/meet.h"
+#include "src/libows/open.h"
+#include "src/shm/place.h"
 
 #define DEAD_LEAST_NS (2 * NS_PER_S)
+#define OPEN_NS DEAD_LEAST_NS          /* the longest wait of ows_open() for owsd's welcome */
+#define OPEN_SLICE_NS (50 * NS_PER_MS) /* then it looks whether there is another image */
+#define REOPEN_NS (20 * NS_PER_MS)     /* the longest wait of ows_reopen() */
 
 static void take_map(struct ows *h, const struct ows_map *map)
 {
@@ -24,86 +30,167 @@ static void take_map(struct ows *h, const struct ows_map *map)
 	                                                                        : DEAD_LEAST_NS;
 }
 
-int ows_open(const char *instance, enum ows_mode mode, struct ows **handle)
+/* Become a giver of the image that is there, which may be replaced meanwhile. */
+static int open_joined(struct ows *h)
+{
+	const struct timespec nap = {.tv_nsec = 10 * NS_PER_MS};
+	int64_t until_ns = ows_now() + OPEN_NS;
+	int err = 0;
+
+	while (!err) {
+		int64_t slice_ns = ows_now() + OPEN_SLICE_NS;
+		struct ows_map map;
+
+		err = meet(h, &h->map, slice_ns < until_ns ? slice_ns : until_ns);
+		if (err != -EAGAIN)
+			break;
+		if (ows_now() >= until_ns)
+			return -ETIMEDOUT;
+		if (h->join.connection < 0)
+			nanosleep(&nap, NULL);
+		err = map_open(h->place, h->instance, &map);
+		if (!err) {
+			map_close(&h->map);
+			take_map(h, &map);
+		}
+	}
+	if (!err)
+		meet_take(h);
+	return err;
+}
+
+static int try_place(struct ows *h, const char *place)
 {
 	struct ows_map map;
-	struct ows *h;
-	int err;
+	int err = map_open(place, h->instance, &map);
 
-	*handle = NULL;
-	if (instance == NULL)
-		instance = "OWS";
-	if (!segment_name_ok(instance))
-		return -EINVAL;
-	err = map_open(instance, mode, &map);
 	if (err)
 		return err;
-	h = calloc(1, sizeof(*h));
-	if (h == NULL) {
-		map_close(&map);
-		return -ENOMEM;
-	}
-	memcpy(h->instance, instance, strlen(instance) + 1);
-	h->mode = mode;
-	h->client = -1;
-	h->pid = (uint32_t)getpid();
+	memcpy(h->place, place, strlen(place) + 1);
 	take_map(h, &map);
-	*handle = h;
 	return 0;
 }
 
-/*
- * Give the client's place back. Its commands stay in force, but no longer belong to the place:
- * after a restart of owsd, the beat of the next program in that place would bring them back.
- */
-static void leave_client(struct ows *h)
+/* The first place with a living owsd, else the first with an image. */
+static int find_place(struct ows *h, char places[PLACES][PLACE_PATH], int count)
 {
-	uint32_t pid = h->pid;
+	int why = -ENOENT;
 
-	if (h->client < 0 || word_get(&h->map.clients[h->client].pid) != pid)
-		return;
-	for (uint32_t i = 0; i < h->map.count; i++) {
-		uint32_t mine = (uint32_t)h->client + 1;
+	for (int any = count == 1; any < 2; any++)
+		for (int i = 0; i < count; i++) {
+			int err = try_place(h, places[i]);
 
-		__atomic_compare_exchange_n(&h->map.slots[i].client, &mine, 0, false,
-		                            __ATOMIC_RELAXED, __ATOMIC_RELAXED);
-	}
-	__atomic_compare_exchange_n(&h->map.clients[h->client].pid, &pid, 0, false,
-	                            __ATOMIC_RELEASE, __ATOMIC_RELAXED);
+			if (!err && (any || (alive_find(h, ows_now()) && !handle_state(h))))
+				return 0;
+			if (!err)
+				map_close(&h->map);
+			else if (why == -ENOENT)
+				why = err;
+		}
+	return why;
+}
+
+static int open_one(char places[PLACES][PLACE_PATH], int count, const char *instance,
+                    enum ows_mode mode, const char *program, struct ows **handle)
+{
+	int saved = errno, err;
+	struct ows *h;
+
+	if (!segment_name_ok(instance))
+		return -EINVAL;
+	h = calloc(1, sizeof(*h));
+	if (h == NULL)
+		return -ENOMEM;
+	memcpy(h->instance, instance, strlen(instance) + 1);
+	memcpy(h->program, program, strnlen(program, sizeof(h->program) - 1));
+	h->mode = mode;
+	join_none(&h->join);
+	err = find_place(h, places, count);
+	if (!err && mode == OWS_CONTROL)
+		err = open_joined(h);
+	errno = saved;
+	if (err)
+		ows_close(h);
+	else
+		*handle = h;
+	return err;
+}
+
+int ows_open_as(const char *instance, enum ows_mode mode, const char *name, struct ows **handle)
+{
+	char places[PLACES][PLACE_PATH];
+	int count = place_list(places);
+
+	*handle = NULL;
+	return count < 0 ? count
+	                 : open_one(places, count, instance ? instance : "OWS", mode, name, handle);
+}
+
+int ows_open(const char *instance, enum ows_mode mode, struct ows **handle)
+{
+	return ows_open_as(instance, mode, program_invocation_short_name, handle);
+}
+
+int open_in(const char *place, const char *instance, enum ows_mode mode, const char *name,
+            struct ows **handle)
+{
+	char places[PLACES][PLACE_PATH];
+
+	*handle = NULL;
+	if (strlen(place) >= PLACE_PATH)
+		return -EINVAL;
+	memcpy(places[0], place, strlen(place) + 1);
+	return open_one(places, 1, instance, mode, name, handle);
+}
+
+const char *open_place(const struct ows *h)
+{
+	return h->place;
 }
 
 void ows_close(struct ows *h)
 {
+	int saved = errno;
+
 	if (h == NULL)
 		return;
-	leave_client(h);
+	meet_leave(h);
 	map_close(&h->map);
 	find_free(h);
+	free(h->marks);
 	free(h);
+	errno = saved;
 }
 
-/* Is the map live? A retired one is no better than the map that the handle has. */
-static bool is_present(const struct ows_map *map)
+/* Map the present image, and get the memory that belongs to it. */
+static int open_present(struct ows *h, struct ows_map *map)
 {
+	int err = map_open(h->place, h->instance, map);
+
+	if (err)
+		return err;
+	/* A retired image is no better than the one that the handle has */
 	if (word_get(&map->image->state) != OWS_STATE_LIVE)
-		return false;
-	return map->command == NULL || word_get(&map->command->state) == OWS_STATE_LIVE;
+		err = -ENOENT;
+	else if (h->mine != NULL)
+		err = meet(h, map, ows_now() + REOPEN_NS);
+	if (err)
+		map_close(map);
+	return err == -EAGAIN ? -ENOENT : err;
 }
 
 int ows_reopen(struct ows *h)
 {
 	struct ows_map map;
+	int saved = errno, err;
 	bool restarted;
-	int err = map_open(h->instance, h->mode, &map);
 
-	if (err == -EPROTO)
-		return h->mode == OWS_CONTROL ? -ENOENT : err;
+	if (h->mine != NULL && handle_is_forked(h))
+		return -EPERM;
+	err = open_present(h, &map);
+	errno = saved;
 	if (err)
 		return err;
-	if (!is_present(&map)) {
-		map_close(&map);
-		return -ENOENT;
-	}
 	restarted = map.image->start_ns != h->map.image->start_ns;
 	map_close(&h->map);
 	take_map(h, &map);
@@ -112,13 +199,6 @@ int ows_reopen(struct ows *h)
 	for (unsigned i = 0; i < h->id_count; i++)
 		if (find_resolve(h, &h->ids[i]) == -ENOMEM)
 			err = -ENOMEM;
-	/*
-	 * owsd carries the table of clients over; in a table without our pid we have no place yet
-	 */
-	if (h->client >= 0 && word_get(&map.clients[h->client].pid) != h->pid)
-		h->client = -1;
-	/* a new owsd puts our commands in force again when we beat */
-	if (h->client >= 0)
-		__atomic_fetch_add(&map.clients[h->client].beat, 1, __ATOMIC_RELEASE);
+	meet_take(h);
 	return err;
 }

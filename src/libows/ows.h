@@ -2,10 +2,19 @@
 /*
  * libows: read and set the signals of owsd from a control program.
  *
- * Reading a value takes no system call and no lock and never waits, even when owsd dies in the
- * middle of a write. Only while owsd's heart stands still, a call checks once a second whether the
- * names in /dev/shm lead to the segments of another owsd (lstat()); then the call returns -ESTALE.
- * A handle belongs to one thread at a time. C11, C++11 and later.
+ * owsd publishes its signals in an image, which programs map read-only. A program that commands
+ * connects to owsd's control socket, and gets a memory of its own for that.
+ *
+ * A handle belongs to one thread at a time. C11, C++11 and later. Real-time threads may call
+ * ows_get(), ows_get_text(), ows_get_signal(), ows_snapshot(), ows_command(), ows_alarm_state(),
+ * ows_origin(), ows_now(): no system call, no lock, no wait, no allocation, bounded, even when owsd
+ * dies in the middle of a write; and ows_set() with its relatives, ows_acknowledge(), ows_beat():
+ * the same, but for one write() to an eventfd when owsd sleeps. They never open anything again.
+ * (ows_now() and what commands read the clock by the kernel's vDSO.) All other functions make
+ * system calls or allocate.
+ *
+ * After fork() only the parent may command: calls of the child that command return -EPERM. The
+ * child may read, and ows_close() frees what it has of the handle without a word to owsd.
  *
  *     struct ows *h;
  *     if (ows_open("OWS", OWS_READ, &h) == 0) {
@@ -61,9 +70,9 @@ enum ows_quality {
 	OWS_Q_INITIAL = 0x20,     /* never read or written */
 	OWS_Q_LAST_USABLE = 0x44, /* moved to another target, which has not answered yet */
 	OWS_Q_DISABLED = 0x44,    /* disabled by _ReadEnable: likewise the last usable value */
-	OWS_Q_RANGE = 0x54,       /* out of range */
-	OWS_Q_LOW = 0x55,         /* held at the type's lower limit */
-	OWS_Q_HIGH = 0x56,        /* held at the type's upper limit */
+	OWS_Q_RANGE = 0x54,       /* out of range: beyond Min or Max */
+	OWS_Q_LOW = 0x55,         /* held at the lower end of the type or of Points */
+	OWS_Q_HIGH = 0x56,        /* held at the upper end */
 	OWS_Q_CUT = 0x58,         /* text cut to the room in the layout */
 	OWS_Q_GOOD = 0xc0,
 };
@@ -88,7 +97,7 @@ struct ows_value {
 	int64_t age_ns;      /* now - measured; before the first value: since owsd started */
 	int32_t err;         /* 0 or negative errno: of the last read, else of the last write */
 	uint32_t count;      /* updates since owsd started */
-	uint32_t applied;    /* outputs: stamp (see ows_set) of the last confirmed command */
+	uint32_t applied;    /* stamp (see ows_set) of this handle's last confirmed command */
 	uint32_t len;        /* strings: bytes */
 	uint8_t type;        /* enum ows_type */
 	uint8_t quality;     /* enum ows_quality, lowered by age and by a dead owsd */
@@ -98,22 +107,35 @@ struct ows_value {
 
 enum ows_mode {
 	OWS_READ,    /* map the image only */
-	OWS_CONTROL, /* the command segment too: may set outputs */
+	OWS_CONTROL, /* connect to owsd too: may set outputs */
 };
 
 /*
  * Open the instance (NULL: "OWS"). System calls, allocates. Free with ows_close().
- * -ENOENT: no owsd of that name has run; -EACCES: no permission (group owsd may read, group
- * owsd-control may set); -EPROTO: not a segment of owsd, or of another layout; -EPERM: the segment
- * belongs to a user who is neither root, nor owsd, nor the caller; -EINVAL: no instance can have
- * that name.
- *
- * A user who may command may also truncate the command segment; touching it then raises SIGBUS. If
- * the process has no SIGBUS handler of its own when it opens a handle with OWS_CONTROL, libows
- * installs a handler until the last such handle is closed, for up to four handles: sets then return
- * -ESTALE. A SIGBUS from elsewhere acts as it did before.
+ * It is looked for in the directory that OWS_DIR of the environment names; without that in
+ * $XDG_RUNTIME_DIR/owsd (else /dev/shm/owsd-UID; neither for root) and in /run/owsd, the
+ * service's: the first with a living owsd of that name, else the first with its image. The handle
+ * stays with that directory.
+ * OWS_CONTROL needs an owsd that runs, and waits for its answer, 2 s at most.
+ * -ENOENT: no owsd of that name has run, or, for OWS_CONTROL, runs; -EACCES: no permission (group
+ * owsd may read; ControlAllow of the configuration, else group owsd-control, may set); -EPROTO: not
+ * of owsd, or of another layout; -EPERM: the image or the directory belongs to a user who is
+ * neither root, nor owsd, nor the caller, or others may write into the directory; -EINVAL: no
+ * instance can have that name, or OWS_DIR is no absolute path or longer than 191 bytes; -ENOSPC:
+ * too many programs command, or too many of this user; -ETIMEDOUT: owsd does not answer; -EMFILE,
+ * -ENFILE: no descriptor is left; -ENOMEM.
  */
 int ows_open(const char *instance, enum ows_mode mode, struct ows **h);
+/*
+ * The same, under another name than the program's own: owsd shows it where it shows who commanded.
+ * It is a claim, cut at 31 bytes; user and process are the kernel's word.
+ */
+int ows_open_as(const char *instance, enum ows_mode mode, const char *name, struct ows **h);
+/*
+ * Close the handle, and say goodbye to owsd: its commands stay in force, also if it had promised a
+ * beat. A program that ends without this is lost to owsd: if it had promised a beat, its outputs go
+ * to their SafeValue when the promised time is over. NULL: does nothing.
+ */
 void ows_close(struct ows *h);
 
 /* The present time, by the clock of all times here. */
@@ -127,7 +149,7 @@ int64_t ows_now(void);
 int ows_find(struct ows *h, const char *name);
 
 /*
- * Get a value. No system call (but the check above), no lock, bounded. now_ns: ows_now(), once per
+ * Get a value. No system call, no lock, bounded. now_ns: ows_now(), once per
  * cycle is enough; a now_ns older than two seconds is too old, and values newer than it are bad.
  * -ESTALE: owsd was restarted or reloaded, call ows_reopen(); *value is filled all the same, and
  * its quality is good only while the last heartbeat in the old image is younger than two seconds,
@@ -145,18 +167,24 @@ int ows_get_text(struct ows *h, int id, int64_t now_ns, struct ows_value *value,
 /*
  * Command an output (or a writable attribute). The value goes out at the signal's next write
  * turn, if it changed. At most one system call (none while the engine is awake).
- * Returns 0; -ERANGE: the type cannot hold the value; -EINVAL: NaN or infinity; -EACCES: not
- * writable, or the handle is OWS_READ; -EROFS: an input whose Writable is off in the configuration
- * (also for its _WriteEnable); -EBUSY: another program is writing this string at the moment;
- * -ESTALE: set it again after ows_reopen(). stamp, if not NULL, gets the number that `applied`
- * will reach (0 for attributes). The flags _DGNRESET and _WriteOneShot act when this handle sets
- * them from 0 to another value. After an orderly end of owsd sets return -ESTALE until its next
- * start; a set that returned 0 just before an end may be lost: `applied` says what was written.
+ * Returns 0; -ERANGE: the type cannot hold the value, or it is beyond Min or Max of the
+ * configuration; -EINVAL: NaN or infinity, or no text of such
+ * a number; -EACCES: not writable, not by this user, or the handle is OWS_READ; -EROFS: an input
+ * whose Writable is off in the configuration (also for its _WriteEnable); -EPERM: the handle is of
+ * the process that this one was forked from; -ENOENT: the id's name is not in the image any more;
+ * -ESTALE: owsd has ended, was reloaded, or its heart stands still: set it again after
+ * ows_reopen().
+ * stamp, if not NULL, gets the number that `applied` will reach (0 for attributes); each set of a
+ * handle has a greater one. The flags _DGNRESET and _WriteOneShot act when this handle sets them
+ * from 0 to another value. A set that returned 0 just before an end of owsd may be lost: `applied`
+ * says what was written, and ows_command() whether owsd took or refused it.
  */
 int ows_set(struct ows *h, int id, double value, uint32_t *stamp);
 int ows_set_integer(struct ows *h, int id, int64_t value, uint32_t *stamp);
 int ows_set_text(struct ows *h, int id, const char *text, uint32_t *stamp);
-/* n values with one ring. Stops at the first error; returns how many were set, or the error. */
+/*
+ * n values with one ring. Stops at the first error; returns how many were set, or the error.
+ */
 int ows_set_many(struct ows *h, const int *ids, const double *values, int n);
 
 /* The command that owsd has for an output; ows_get() has the value last written or read back. */
@@ -165,7 +193,12 @@ struct ows_command {
 	int64_t integer; /* likewise */
 	uint8_t given;   /* 1: there is a command; 0: none, or a string */
 	uint8_t pending; /* 1: not yet confirmed on the bus */
-	uint8_t safe;    /* 1: it is SafeValue: the client that set the output stopped beating */
+	uint8_t safe;    /* 1: it is SafeValue: the program that set the output is lost */
+	/* Of this handle's own commands for the signal, as stamps of ows_set(); 0: none. */
+	uint32_t taken;   /* the last that owsd looked at */
+	uint32_t applied; /* the last that the bus confirmed */
+	int32_t refused;  /* 0, or why owsd refused the last that it looked at */
+	uint64_t spare[4]; /* 0: room for later members */
 };
 /*
  * Of the signal of an id of ows_find(). Errors as ows_get(); *command is filled with -ESTALE too.
@@ -173,27 +206,117 @@ struct ows_command {
 int ows_command(struct ows *h, int id, struct ows_command *command);
 
 /*
- * Report that this control program lives, and promise the next call within period_ms. Without it,
- * the outputs that this program set last go to their SafeValue. No system call after the first
- * call. The commands of a program that beats outlive a restart of owsd: they are in force again
- * when the program beats, or calls ows_reopen(), within two seconds of the start, or within
- * period_ms if that is longer. -ENOSPC: the table of 32 clients is full. -ESTALE: as ows_set().
+ * Report that this program lives, and promise the next call within period_ms. When the time is over
+ * without it, the outputs that this program set last go to their SafeValue. No system call, but one
+ * when period_ms is another than before. The commands in force of a program that beats outlive a
+ * restart of owsd, if the program is back, by ows_reopen(), within two seconds of the start, or
+ * within period_ms if that is longer. Errors as ows_set(); -EINVAL: period_ms is 0.
  */
 int ows_beat(struct ows *h, uint32_t period_ms);
 
 /*
- * Sleep until owsd publishes something newer than *news, at most timeout_ns (negative: no limit).
- * Start with *news = 0. Returns 1: news, 0: the time is over, -ESTALE as ows_get(), -EINTR. Wakes
- * once a second in between, for the check above.
+ * From now on this handle commands for that person (NULL or "": for itself): a page that passes on
+ * a person's click says whose. owsd shows it with the command; it is a claim. -ERANGE: longer than
+ * 31 bytes; -EBUSY: owsd has still to look at the commands of 16 other persons; -EACCES, -EPERM as
+ * ows_set().
  */
-int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns);
+int ows_for(struct ows *h, const char *person);
+
+/* Who did something: uid and pid are the kernel's word, both names the claims of the program. */
+struct ows_by {
+	uint32_t serial; /* each connection has another; 0: owsd itself, or nobody */
+	uint32_t uid;
+	int32_t pid;     /* 0: not known */
+	char name[32];   /* of the program; NUL-terminated, like person */
+	char person[32]; /* for whom the program did it; "": for itself */
+};
+
+/* Why a command came into force. */
+enum ows_reason {
+	OWS_REASON_NONE = 0,
+	OWS_REASON_SET,      /* a program commanded it */
+	OWS_REASON_RETURNED, /* from before owsd's start; its program came back */
+	OWS_REASON_INIT,     /* owsd wrote InitValue */
+	OWS_REASON_SAFE,     /* owsd wrote SafeValue: the program that who names is lost */
+	OWS_REASON_LAST,     /* owsd wrote what was stored */
+};
+/* The words for a reason ("set", "SafeValue"); never NULL. */
+const char *ows_reason_text(uint8_t reason);
+
+/* Who has given the command that is in force, when, and why. */
+struct ows_origin {
+	struct ows_by who;
+	int64_t taken_ns; /* when owsd took the command */
+	uint8_t reason;   /* enum ows_reason */
+	uint8_t own;      /* 1: this handle gave it */
+	uint64_t spare[4]; /* 0: room for later members */
+};
+/*
+ * Returns 0; -ENOENT: no such id; -EIO: owsd died while it wrote this; -ESTALE as ows_get(), and
+ * *origin is filled all the same.
+ */
+int ows_origin(struct ows *h, int id, struct ows_origin *origin);
+
+/* A program that is connected to owsd. */
+struct ows_giver {
+	struct ows_by who;   /* serial 0: nobody has this place */
+	int64_t joined_ns;
+	uint32_t period_ms;  /* promised longest time between two beats; 0: promised none */
+	uint32_t commands;   /* taken */
+	uint32_t refused;
+	uint8_t may_set;     /* 1: it may command some signal */
+	uint8_t late;        /* 1: its beat is over time */
+	uint64_t spare[4]; /* 0: room for later members */
+};
+/* Who has that place, counted from 0. -ENOENT: past the last place; -EIO as ows_origin(). */
+int ows_giver(struct ows *h, int index, struct ows_giver *giver);
+
+/* Where a program stands in the changes of its handle. All zero to begin; libows writes it. */
+struct ows_cursor {
+	uint32_t number, start_id, generation, flags;
+	int64_t looked_ns;
+};
+/*
+ * Get the signals that changed since the cursor: at most n of them, each once, as indexes of
+ * ows_info(); and move the cursor past them. Costs what changed, not what there is. Sleeps until
+ * there is a change, at most timeout_ns (0: not at all; negative: no limit). Returns how many; 0:
+ * the time is over.
+ *
+ * A change is an update (a value read or written; one that differs from the last change by less
+ * than Deadband is none), another quality, error, target, command or alarm state, and that a good
+ * value becomes older than StaleAfter. The row is at least as new as the change.
+ *
+ * -EOVERFLOW: look at all signals. The cursor is new; or so much changed that the ring of changes
+ * has not all of it any more; or owsd is lost (killed, ended, hung: all values turned bad) or back.
+ * The cursor is at the present now. A loss is reported within two seconds, or three periods if
+ * that is longer.
+ * -ESTALE: owsd has reloaded, or another owsd has started: ows_reopen(); the next call returns
+ * -EOVERFLOW. -EINVAL: n below 1. -ENOMEM (at the first use and after a reload). -EINTR.
+ */
+int ows_changes(struct ows *h, struct ows_cursor *cursor, int *signals, int n,
+                int64_t timeout_ns);
 
 /*
- * Map the present segments after -ESTALE; ids stay right. System calls, allocates.
- * -ENOENT: they do not exist yet, try again in the next cycle (the old segments stay readable). An
- * owsd that was killed cannot report its end: its values turn bad by themselves, and when the next
- * owsd has started, every program that still maps the old image gets -ESTALE, even if that image
- * was removed.
+ * Sleep until owsd publishes something newer than *news, at most timeout_ns (negative: no limit).
+ * Start with *news = 0. Returns 1: news, 0: the time is over, -ESTALE as ows_get(), -EINTR. Wakes
+ * once a second in between, to check whether the image still has its name.
+ */
+int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns);
+/*
+ * A descriptor for poll(): readable when owsd publishes something after this call. Call it again
+ * before each poll(), and after ows_reopen(), which may bring another descriptor. Do not read or
+ * close it. An OWS_READ handle connects to owsd at the first call; errors then as
+ * ows_open(OWS_CONTROL). -ESTALE: owsd has ended; -EPERM as ows_set().
+ */
+int ows_fd(struct ows *h);
+
+/*
+ * Map the present image after -ESTALE, and get the memory for commands that belongs to it; after a
+ * restart it connects again, as the same giver, and beats if it had promised to. Ids stay right.
+ * System calls, allocates; waits for owsd's answer, 20 ms at most.
+ * -ENOENT: they do not exist yet, try again in the next cycle (the old image stays readable);
+ * -EPERM as ows_set(); all errors of ows_open(). An owsd that was killed cannot report its end: its
+ * values turn bad by themselves, and when the next owsd has started, all calls return -ESTALE.
  */
 int ows_reopen(struct ows *h);
 
@@ -212,6 +335,18 @@ struct ows_info {
 	uint8_t alarm;      /* 1 alarm item */
 	uint32_t per_factor;
 	int64_t stale_after_ns; /* 0: no limit */
+	/* What people say of the signal. Texts are "" where nothing is said, never NULL. */
+	const char *unit, *description;
+	const char *family;     /* the kind of device: "DS18B20" */
+	const char *device;     /* its ROM id, as in the path */
+	const char *calibrated; /* the date */
+	const char *points;     /* of the characteristic, as configured */
+	double scale, offset;   /* 1 and 0 without */
+	double min, max;        /* NaN: not set, like the limits of its alarm */
+	double limit_hh, limit_h, limit_l, limit_ll;
+	double filter_s, deadband; /* 0 without */
+	int32_t decimals;       /* -1: not known */
+	uint64_t spare[4]; /* 0: room for later members */
 };
 int ows_info(const struct ows *h, int signal, struct ows_info *info);
 /* Get the value of a signal by its index (not an id of ows_find()); otherwise as ows_get(). */
@@ -231,6 +366,7 @@ struct ows_daemon {
 	int64_t beat_age_ns; /* since the last heartbeat */
 	int64_t period_ns;
 	int alive;           /* state live and heart beating */
+	uint64_t spare[4]; /* 0: room for later members */
 };
 int ows_daemon(struct ows *h, int64_t now_ns, struct ows_daemon *daemon);
 
@@ -247,6 +383,7 @@ struct ows_target {
 	uint32_t reconnects;
 	uint32_t group; /* ways to the same wire have the same group */
 	uint32_t moves; /* signals that came from another target */
+	uint64_t spare[4]; /* 0: room for later members */
 };
 int ows_target(struct ows *h, int index, struct ows_target *target);
 struct ows_counter {
@@ -275,6 +412,8 @@ enum ows_alarm_event {
 	OWS_ALARM_RAISED = 1,
 	OWS_ALARM_RETURNED,
 	OWS_ALARM_ACKNOWLEDGED,
+	OWS_ALARM_SHELVED,
+	OWS_ALARM_UNSHELVED,
 };
 /* The words for a kind or an event ("high", "raised"); never NULL. */
 const char *ows_alarm_kind_text(uint8_t kind);
@@ -290,7 +429,9 @@ struct ows_alarm {
 	uint8_t kind;        /* enum ows_alarm_kind */
 	uint8_t event;       /* enum ows_alarm_event */
 	uint8_t quality;     /* of the signal at that moment */
-	char latch[24];      /* NUL-terminated; "" for other than device alarms */
+	char text[64];       /* what the latch showed, or why it was shelved; NUL-terminated */
+	struct ows_by who;   /* who acknowledged or shelved it */
+	uint64_t spare[4]; /* 0: room for later members */
 };
 /* States of a limit alarm, as in ISA-18.2. */
 enum ows_limit_state {
@@ -312,14 +453,29 @@ struct ows_alarm_state {
 	uint8_t limit_kind;   /* enum ows_alarm_kind of the limit alarm; 0: none */
 	/* The device's alarm cannot be armed: 1 for its SetAlarm, 2 for PorAlarm; err says why. */
 	uint8_t unarmed;
+	/* The limit alarm is shelved: its state is normal, its kind that of what is active. */
+	uint8_t shelved;
+	int64_t since_ns, until_ns; /* this and the next two: of the shelving */
+	struct ows_by who;
+	char why[64];               /* NUL-terminated */
+	uint64_t spare[4]; /* 0: room for later members */
 };
 /* Of the signal of an id of ows_find(). Errors as ows_get(); *state is filled with -ESTALE too. */
 int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state);
 /*
  * Acknowledge the limit alarm of a signal; does nothing if the signal has no unacknowledged alarm.
- * Errors as ows_set(); -EOPNOTSUPP: this owsd is of a version without limit alarms.
+ * Errors as ows_set().
  */
 int ows_acknowledge(struct ows *h, int id);
+/*
+ * Shelve the limit alarm of a signal for so many seconds, at most OWS_SHELVE_MAX; why: up to 63
+ * bytes, or NULL. 0: unshelve it, which does nothing if it is not shelved. Waits until owsd has
+ * done that, at most 2 seconds. Errors as ows_set(); -EOPNOTSUPP: it has no limit alarms; -ERANGE:
+ * too many seconds; -ENOSPC: 64 are shelved; -EAGAIN: too many requests, again in a second;
+ * -ETIMEDOUT.
+ */
+#define OWS_SHELVE_MAX (7 * 86400)
+int ows_shelve(struct ows *h, int id, uint32_t seconds, const char *why);
 
 /* How many alarms were entered since owsd started. */
 uint32_t ows_alarm_count(struct ows *h);
@@ -328,6 +484,23 @@ uint32_t ows_alarm_count(struct ows *h);
  * while writing it.
  */
 int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm);
+
+/* The journal of commands since owsd started, likewise. */
+struct ows_commanded {
+	int signal;        /* as in ows_info() */
+	int64_t taken_ns;
+	double number;     /* the value; of strings text */
+	int64_t integer;   /* likewise, if type is not float or double */
+	uint32_t more;     /* so many to this signal were not entered before it */
+	uint8_t type;      /* enum ows_type, of the signal */
+	uint8_t reason;    /* enum ows_reason */
+	uint8_t quality;   /* of the signal at that moment */
+	char text[64];     /* NUL-terminated; may be cut */
+	struct ows_by who;
+	uint64_t spare[4]; /* 0: room for later members */
+};
+uint32_t ows_command_count(struct ows *h);
+int ows_command_entry(struct ows *h, uint32_t number, struct ows_commanded *commanded);
 
 #ifdef __cplusplus
 #pragma GCC diagnostic pop

@@ -11,10 +11,10 @@
     with ows.Ows(control=True) as signals:        # needs the right to command
         signals.set("relay", True)
 
-Names, attributes ("room1_Age") and the meaning of every field are those of libows(3). A read takes
-no system call and no lock; each is verified by its check word. Python has no atomic operations,
-so what a set does to shared memory is arranged to do no harm to other consumers (see "Without
-atomic operations" in shared-memory.md). An Ows object belongs to one thread at a time.
+Names, attributes ("room1_Age") and the meaning of every field are those of libows(3). A reader maps
+the image alone, and a read takes no system call and no lock; each is verified by its check word. A
+program that commands is connected to owsd until close(), and has a memory of its own for that. An
+Ows object belongs to one thread at a time, and after a fork only to the parent.
 
 From a shell:  python3 ows.py [-n INSTANCE] [NAME [VALUE]]
 """
@@ -22,18 +22,21 @@ From a shell:  python3 ows.py [-n INSTANCE] [NAME [VALUE]]
 import collections
 import ctypes
 import errno
+import fcntl
 import math
 import mmap
 import os
 import platform
 import pwd
+import select
+import socket
 import stat
 import struct
 import sys
 import time
 
-MAJOR = 1
-IMAGE_MAGIC, COMMAND_MAGIC = 0x4953574F, 0x4353574F
+MAJOR = 2
+IMAGE_MAGIC, GIVER_MAGIC, HELLO_MAGIC, WELCOME_MAGIC = 0x4953574F, 0x4753574F, 0x4853574F, 0x5753574F
 BUILDING, LIVE, RETIRED, STOPPED = range(4)
 BOOL, BYTE, SHORT, LONG, WORD, DWORD, FLOAT, DOUBLE, LARGE, STRING = 1, 2, 3, 4, 5, 6, 7, 8, 10, 12
 RANGES = {
@@ -44,7 +47,6 @@ TYPE_NAMES = {BOOL: "bool", BYTE: "byte", SHORT: "short", LONG: "long", WORD: "w
               DWORD: "dword", FLOAT: "float", DOUBLE: "double", LARGE: "large", STRING: "string"}
 Q_NO_PROPERTY, Q_TYPE, Q_ACCESS = 0x04, 0x05, 0x06
 Q_STALE, Q_TARGET, Q_GOOD = 0x14, 0x18, 0xC0
-RECORD_SIZE, INFO_SIZE, SLOT_SIZE, ENTRY_SIZE, CLIENT_SIZE, CLIENTS = 256, 64, 32, 16, 32, 32
 WHOLE_TRIES = 64
 OUTPUT, FRESH, ALARM, NO_SET = 1, 2, 4, 8
 READ_ENABLE, WRITE_ENABLE, IN_WORK = 1, 2, 4
@@ -68,39 +70,66 @@ ATTRIBUTES = [
     ("_Period", None, DOUBLE, True, False),
     ("_Age", None, DOUBLE, True, False),
     ("_AgeMax", None, DOUBLE, True, False),
+    ("_Raw", None, DOUBLE, True, False),
 ]
 ATTRIBUTE = {a[0]: a for a in ATTRIBUTES}
 DRIVER = {"_DGNRESET": (BOOL, False, True), "_TRANSACTIONS": (LARGE, True, False),
           "_RECONNECTS": (LARGE, True, False)}
 
-# One slot: the sample's 48 bytes and the attributes' 72
+# One slot: the sample's 48 bytes and the attributes' 80
 SAMPLE = struct.Struct("<8sqqiBBBBIIII")
-ATTRS = struct.Struct("<QqqqIIIIIIIBB6xI")
-Attrs = collections.namedtuple("Attrs", "transactions update_ns age_max_ns commanded per_base "
+ATTRS = struct.Struct("<Qqqq8sIIIIIIIBBBB4xI")
+Attrs = collections.namedtuple("Attrs", "transactions update_ns age_max_ns commanded raw per_base "
                                "per_max pend_base pend_last pend_max alarms flags limit_state "
-                               "limit_condition check")
+                               "limit_condition shelved spare check")
 Header = collections.namedtuple(
-    "Header", "magic major minor size generation state pid start_id alarm_off start_ns "
-    "start_wall_ns period_ns alarm_size alarm_count record_off record_size record_count info_off "
-    "info_size name_off target_off target_size target_count counter_off counter_size "
-    "counter_count pool_off pool_size text_off text_size")
-HEADER = struct.Struct("<IHHIIIiIIqqqIIIIIIIIIIIIIIIIII")
-ALARM_ENTRY = struct.Struct("<IIq8s8sBBBB20sII")
-CommandHeader = collections.namedtuple(
-    "CommandHeader", "magic major minor size generation state pid start_id slot_off slot_size "
-    "slot_count entry_off entry_size dirty_off dirty_words client_off client_size pool_off "
-    "pool_size text_off text_size text_cap ack_off")
-COMMAND_HEADER = struct.Struct("<IHHIIIiIIIIIIIIIIIIIIII")
-STATE_OFF, NEWS_OFF, ALARM_HEAD_OFF, BELL_OFF = 16, 128, 132, 128
+    "Header", "magic major minor size generation state pid start_id area_off area_count "
+    "served_off start_ns start_wall_ns period_ns")
+HEADER = struct.Struct("<IHHIIIiIIIIqqq")
+# The directory of areas, and the least size of an entry of each kind that is read here
+Area = collections.namedtuple("Area", "off size count", defaults=[0, 0, 0])
+AREA = struct.Struct("<IIII")
+RECORDS, INFOS, TARGETS, POOL, TEXTS, ORIGINS, GIVERS = 1, 2, 4, 6, 7, 8, 9
+SHELVES, ALARMS, COMMANDS, CHANGES = 10, 11, 12, 13
+ENTRY_SIZES = {RECORDS: 320, INFOS: 192, TARGETS: 128, POOL: 1, TEXTS: 1, ORIGINS: 104,
+               GIVERS: 120, SHELVES: 184, ALARMS: 200, COMMANDS: 200, CHANGES: 8}
+ORIGIN_ENTRY = struct.Struct("<IIq80s4xI")
+GIVER_ENTRY = struct.Struct("<IIq80sIII8xI")
+GIVER_CONNECTED, GIVER_MAY_SET, GIVER_LATE = 1, 2, 4
+JOURNAL_ENTRY = struct.Struct("<IIq8s8sBBBBI64s80sI8xI")
+SHELF_ENTRY = struct.Struct("<IIqq80s64s12xI")
+WHO = struct.Struct("<IIi4x32s32s")
+# The memory of a giver. Words of a slot, from its beginning, and offsets of words in the header
+GiverHeader = collections.namedtuple(
+    "GiverHeader", "magic major minor size generation start_id serial slot_off slot_size slot_count "
+    "text_off text_cap place_off dirty_off dirty_words person_off shelf_off")
+GIVER_HEADER = struct.Struct("<IHHIIIIIIIIIIIIII")
+GIVER_STATE, GIVER_MARKED, GIVER_BEAT, GIVER_PERIOD, GIVER_GOODBYE, GIVER_WAITS = \
+    64, 128, 132, 136, 140, 144
+GIVER_HEADER_SIZE, COMMAND_SLOT_SIZE, SHELF_SIZE = 256, 64, 96
+(SLOT_STAMP, SLOT_PERSON, SLOT_READ_ENABLE, SLOT_WRITE_ENABLE, SLOT_ONE_SHOT, SLOT_DGN_RESET,
+ SLOT_ACKNOWLEDGED) = range(2, 9)
+SLOT_TAKEN, SLOT_APPLIED, SLOT_ERR, SLOT_ALLOWED = range(12, 16)
+PERSONS, NAME_SIZE, TEXT_SIZE = 16, 32, 64
+# The connection
+HELLO = struct.Struct("<IHHI4x16s32s64x")
+HELLO_COMMAND = 1
+Welcome = collections.namedtuple("Welcome", "magic major minor err generation start_id serial size "
+                                 "token")
+WELCOME = struct.Struct("<IHHiIIII4x16s16x")
+F_GET_SEALS, SEALS = 1034, 7
+SERVICE = "/run/owsd"
+STATE_OFF, NEWS_OFF, ALARM_HEAD_OFF, COMMAND_HEAD_OFF = 16, 128, 132, 136
+CHANGE_HEAD_OFF = 140
 # How often the names of segments are looked at while owsd's heart stands still
 ORPHAN_LOOK_NS = 1_000_000_000
 
 
 class Stale(OSError):
-    """owsd was restarted or reloaded: call reopen()."""
+    """owsd was restarted or reloaded, or (where something is set) has ended or hangs: reopen()."""
 
     def __init__(self):
-        super().__init__(errno.ESTALE, "owsd was restarted or reloaded")
+        super().__init__(errno.ESTALE, "owsd has ended, or was restarted or reloaded")
 
 
 class Value(collections.namedtuple("Value", "value type quality detail target err measured_ns "
@@ -117,16 +146,31 @@ class Value(collections.namedtuple("Value", "value type quality detail target er
 ALARM_KINDS = ["none", "device", "power-on reset", "high high", "high", "low", "low low", "stale",
                "bad"]
 LIMIT_STATES = ["normal", "unacknowledged", "acknowledged", "returned to normal unacknowledged"]
-ALARM_EVENTS = ["unknown", "raised", "returned", "acknowledged"]
-# before and after: None where there is no value; kind and event: words
+ALARM_EVENTS = ["unknown", "raised", "returned", "acknowledged", "shelved", "unshelved"]
+REASONS = ["none", "set", "returned", "InitValue", "SafeValue", "last"]
+# Who did something: uid and pid are the kernel's word, name and person (for whom) the program's
+# claims; owsd itself has serial 0
+By = collections.namedtuple("By", "serial uid pid name person")
+# before and after: None where there is no value; kind and event: words; text: what the latch
+# showed, or why the alarm was shelved
 AlarmEntry = collections.namedtuple("AlarmEntry", "number name occurred_ns before after kind event "
-                                    "quality latch")
+                                    "quality text who")
+# reason: a word; more: commands to this signal that were not entered before it; the
+# value of a string may be cut
+CommandEntry = collections.namedtuple("CommandEntry", "number name taken_ns value reason quality "
+                                      "more who")
+
+# Who gave the command in force, when owsd took it, why (a word), and whether this object gave it
+Origin = collections.namedtuple("Origin", "who taken_ns reason own")
+# A connected program; period_ms: promised longest time between two beats, 0: none; commands: taken
+Giver = collections.namedtuple("Giver", "who joined_ns period_ms commands refused may_set late")
 
 # How the alarms of a signal stand: occurrences of the device's alarm since owsd started, whether it
 # stands, whether the item is read as an input for want of an alarm search; limit alarms in words;
-# whether the device's alarm cannot be armed
+# whether the device's alarm cannot be armed; None, or the Shelf of a limit alarm that is shelved
 AlarmState = collections.namedtuple("AlarmState", "occurrences stands polled limits limit_state "
-                                    "limit_kind unarmed")
+                                    "limit_kind unarmed shelf")
+Shelf = collections.namedtuple("Shelf", "since_ns until_ns who why")
 
 # A way to devices; ways to one wire have the same group, all but one of them suspended; moves:
 # signals that came from another target. The index is what Value.target says
@@ -134,8 +178,13 @@ Target = collections.namedtuple("Target", "index name state reconnects group mov
 TARGET = struct.Struct("<104sIIII8x")
 TARGET_STATES = ["down", "up", "suspended"]
 
-Info = collections.namedtuple("Info", "name path type output fresh alarm per_factor "
-                              "stale_after_ns")
+# What the file says of a signal. None: not given, not known; scale and offset are 1 and 0 without,
+# points is the text of the file
+Info = collections.namedtuple(
+    "Info", "name path type output fresh alarm per_factor stale_after_ns unit description family "
+    "device calibrated points decimals scale offset min max limit_hh limit_h limit_l limit_ll "
+    "filter deadband", defaults=[None] * 17)
+INFO = struct.Struct("<4I3q8I10d")
 
 
 def now_ns():
@@ -157,6 +206,16 @@ def check_bytes(text):
         h = (h ^ byte) * 0x85EBCA6B & 0xFFFFFFFF
         h ^= h >> 15
     return h
+
+
+def plain(text):
+    """A text that is filled up with NUL."""
+    return text.split(b"\0")[0].decode(errors="replace")
+
+
+def by(raw):
+    serial, uid, pid, name, person = WHO.unpack(raw)
+    return By(serial, uid, pid, plain(name), plain(person))
 
 
 class Futex:
@@ -189,11 +248,6 @@ class Futex:
         ctypes.pythonapi.PyBuffer_Release(ctypes.byref(buffer))
         return address
 
-    def wake(self, address):
-        if self.number is not None:
-            self.syscall(ctypes.c_long(self.number), ctypes.c_void_p(address), ctypes.c_long(1),
-                         ctypes.c_long(1), None, None, ctypes.c_long(0))
-
     def wait(self, address, seen, seconds):
         """Sleeps while the word is as seen; without futex for a hundredth of a second."""
         if self.number is None:
@@ -206,47 +260,32 @@ class Futex:
                      ctypes.c_ulong(seen), ctypes.c_char_p(timeout), None, ctypes.c_long(0))
 
 
-class Segment:
-    """One mapped file: its bytes, and its words as single 32- and 64-bit loads and stores."""
+class Mapped:
+    """A mapped file: its bytes, and its words as single 32- and 64-bit loads and stores."""
 
-    def __init__(self, instance, kind, writable):
-        self.path = path = f"/dev/shm/owsd.{instance}.{kind}"
-        self.fd = os.open(path, (os.O_RDWR if writable else os.O_RDONLY) | os.O_NOFOLLOW |
-                          os.O_CLOEXEC | os.O_NONBLOCK)
-        self.memory = self.words = self.doubles = None
+    def __init__(self, fd, size, writable):
+        """Closes the descriptor."""
+        self.size, self.memory, self.words, self.doubles = size, None, None, None
         try:
-            status = os.fstat(self.fd)
-            if not stat.S_ISREG(status.st_mode) or not trusted(status.st_uid):
-                raise PermissionError(errno.EPERM, "belongs to another user", path)
-            if status.st_size < 256 or status.st_size % 8:
-                raise broken()
-            self.size, self.file = status.st_size, (status.st_dev, status.st_ino)
-            self.memory = mmap.mmap(self.fd, self.size, mmap.MAP_SHARED,
+            self.memory = mmap.mmap(fd, size, mmap.MAP_SHARED,
                                     mmap.PROT_READ | (mmap.PROT_WRITE if writable else 0))
             self.words = memoryview(self.memory).cast("I")
             self.doubles = memoryview(self.memory).cast("Q")
-            self.address = Futex.address(self.memory)
         except BaseException:
             self.close()
             raise
+        finally:
+            os.close(fd)
 
     def word(self, offset):
         return self.words[offset >> 2]
 
-    def string(self, offset, start, size):
+    def string(self, offset, pool):
         """A text of the pool; "" for an offset that is none."""
-        if not start <= offset < start + size:
+        if not pool.off <= offset < pool.off + pool.count:
             return ""
-        end = self.memory.find(b"\0", offset, start + size)
+        end = self.memory.find(b"\0", offset, pool.off + pool.count)
         return self.memory[offset:end].decode(errors="replace") if end >= 0 else ""
-
-    def replaced(self):
-        """Does its name lead to another file? One that is gone leads nowhere yet."""
-        try:
-            there = os.lstat(self.path)
-        except OSError:
-            return False
-        return (there.st_dev, there.st_ino) != self.file
 
     def inside(self, offset, count, size):
         if offset % 8 or offset + count * size > self.size:
@@ -257,18 +296,247 @@ class Segment:
             if view is not None:
                 view.release() if isinstance(view, memoryview) else view.close()
         self.words = self.doubles = self.memory = None
-        if self.fd >= 0:
-            os.close(self.fd)
-        self.fd = -1
 
+
+class Image(Mapped):
+    """The image of an instance."""
+
+    def __init__(self, place, instance):
+        self.path = f"{place}/{instance}.image"
+        folder = open_place(place)
+        try:
+            fd = os.open(f"{instance}.image", os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC |
+                         os.O_NONBLOCK, dir_fd=folder)
+        finally:
+            os.close(folder)
+        status = os.fstat(fd)
+        if not stat.S_ISREG(status.st_mode) or not trusted(status.st_uid):
+            os.close(fd)
+            raise PermissionError(errno.EPERM, "belongs to another user", self.path)
+        if status.st_size < 256 or status.st_size % 8:
+            os.close(fd)
+            raise broken()
+        self.file = status.st_dev, status.st_ino
+        super().__init__(fd, status.st_size, False)
+        self.address = Futex.address(self.memory)
+
+    def replaced(self):
+        """Does its name lead to another file? One that is gone leads nowhere yet."""
+        try:
+            there = os.lstat(self.path)
+        except OSError:
+            return False
+        return (there.st_dev, there.st_ino) != self.file
+
+
+class Door:
+    """The connection to owsd's control socket. It lasts as long as this program commands."""
+
+    def __init__(self, place, instance, name, command, token=bytes(16)):
+        self.bell = self.news = -1
+        self.new, self.closed = True, False
+        self.token = token
+        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        try:
+            directory = open_place(place)
+            try:
+                self.socket.connect(f"/proc/self/fd/{directory}/{instance}.control")
+            finally:
+                os.close(directory)
+            self.socket.setblocking(False)
+            self.socket.send(HELLO.pack(HELLO_MAGIC, MAJOR, 0, HELLO_COMMAND if command else 0,
+                                        token, name.encode()[:NAME_SIZE - 1]))
+        except BaseException as e:
+            self.close()
+            if isinstance(e, (ConnectionError, BlockingIOError)):
+                raise FileNotFoundError(errno.ENOENT, "owsd does not run") from None
+            raise
+
+    def receive(self, seconds):
+        """A welcome and the descriptor of its memory; None: none has come in that time."""
+        ready = select.poll()
+        ready.register(self.socket, select.POLLIN)
+        if not ready.poll(seconds * 1000):
+            return None
+        data, fds, flags, _ = socket.recv_fds(self.socket, WELCOME.size, 4,
+                                              socket.MSG_CMSG_CLOEXEC)
+        try:
+            if not data:
+                raise ConnectionResetError(errno.ENOTCONN, "owsd has hung up")
+            if len(data) < WELCOME.size:
+                raise broken()
+            welcome = Welcome(*WELCOME.unpack(data))
+            if welcome.magic != WELCOME_MAGIC or welcome.err > 0:
+                raise broken()
+            if welcome.err:
+                raise OSError(-welcome.err, os.strerror(-welcome.err))
+            if welcome.major != MAJOR or flags & socket.MSG_CTRUNC or \
+               len(fds) != (3 if self.new else 1):
+                raise broken()
+        except BaseException:
+            for fd in fds:
+                os.close(fd)
+            self.close()
+            raise
+        if self.new:
+            self.bell, self.news = fds[1:]
+        self.new, self.token = False, welcome.token
+        return welcome, fds[0]
+
+    def ring(self):
+        try:
+            os.write(self.bell, b"\1" + bytes(7))
+        except BlockingIOError:
+            pass  # it has rung already
+
+    def hung_up(self, seconds):
+        """Sleep until there are news; true: owsd is gone, and nobody wakes this any more."""
+        ready = select.poll()
+        ready.register(self.news, select.POLLIN)
+        return any(not event & select.POLLIN for _, event in ready.poll(seconds * 1000))
+
+    def drain(self):
+        ready = select.poll()
+        ready.register(self.news, select.POLLIN)
+        while any(event & select.POLLIN for _, event in ready.poll(0)):
+            os.read(self.news, 64)
+
+    def close(self):
+        self.closed = True
+        self.socket.close()
+        for fd in (self.bell, self.news):
+            if fd >= 0:
+                os.close(fd)
+        self.bell = self.news = -1
+
+
+class Memory(Mapped):
+    """The memory in which this program commands, of one generation of owsd."""
+
+    def __init__(self, fd, welcome):
+        # Without these seals an access could raise SIGBUS
+        if fcntl.fcntl(fd, F_GET_SEALS) & SEALS != SEALS or \
+           os.fstat(fd).st_size != welcome.size or welcome.size < GIVER_HEADER_SIZE:
+            os.close(fd)
+            raise broken()
+        super().__init__(fd, welcome.size, True)
+        try:
+            self.serial = welcome.serial
+            self.header = h = GiverHeader(*GIVER_HEADER.unpack_from(self.memory))
+            if (h.magic, h.major, h.size, h.generation, h.start_id) != \
+               (GIVER_MAGIC, MAJOR, self.size, welcome.generation, welcome.start_id) or \
+               h.slot_size < COMMAND_SLOT_SIZE or h.slot_size % 8 or h.text_cap % 4:
+                raise broken()
+            for offset, count, size in ((h.slot_off, h.slot_count, h.slot_size),
+                                        (h.dirty_off, (h.slot_count + 31) // 32, 4),
+                                        (h.place_off, h.slot_count, 4), (h.text_off, 0, 1),
+                                        (h.person_off, PERSONS, NAME_SIZE),
+                                        (h.shelf_off, 1, SHELF_SIZE)):
+                self.inside(offset, count, size)
+        except BaseException:
+            self.close()
+            raise
+
+    def live(self):
+        return self.word(GIVER_STATE) == LIVE
+
+    def fits(self, header, count):
+        mine = self.header
+        return self.live() and mine.slot_count == count and \
+            (mine.generation, mine.start_id) == (header.generation, header.start_id)
+
+    def slot(self, record):
+        """Where the words of a slot begin: as an index of words."""
+        return self.header.slot_off + record * self.header.slot_size >> 2
+
+    def store(self, at, value):
+        self.words[at] = value & 0xFFFFFFFF
+
+    def count(self, at):
+        self.store(at, self.words[at] + 1)
+
+    def mark(self, record):
+        # owsd clears marks meanwhile: one that comes back makes it look once more
+        self.words[(self.header.dirty_off >> 2) + record // 32] |= 1 << record % 32
+
+    def text(self, record, text):
+        h = self.header
+        place = self.words[(h.place_off >> 2) + record]
+        offset = h.text_off + place * (8 + h.text_cap)
+        if offset + 8 + h.text_cap > self.size:
+            raise broken()
+        self.store(offset >> 2, len(text))
+        self.memory[offset + 8:offset + 8 + len(text)] = text
+        self.store(offset + 4 >> 2, check_bytes(text))
+
+    def person(self, name):
+        """The place of a person's name, entered if it is not there."""
+        wanted, h = name.ljust(NAME_SIZE, b"\0"), self.header
+        places = [h.person_off + i * NAME_SIZE for i in range(PERSONS)]
+        there = [self.memory[at:at + NAME_SIZE] for at in places]
+        for word in (wanted, bytes(NAME_SIZE)):
+            if word in there:
+                place = there.index(word)
+                break
+        else:
+            place = next(iter(set(range(PERSONS)) - self._persons_in_use()), None)
+            if place is None:
+                raise BlockingIOError(errno.EBUSY, "owsd has still to look at all persons")
+        if there[place] != wanted:
+            self.memory[places[place]:places[place] + NAME_SIZE] = wanted
+        return place + 1
+
+    def _persons_in_use(self):
+        """The places of persons for whom owsd has something to look at."""
+        used = set()
+        for record in range(self.header.slot_count):
+            at = self.slot(record)
+            marks = self.words[(self.header.dirty_off >> 2) + record // 32]
+            if marks >> record % 32 & 1 or \
+               self.words[at + SLOT_STAMP] != self.words[at + SLOT_TAKEN]:
+                used.add(self.words[at + SLOT_PERSON] - 1)
+        return used
 
 def trusted(uid):
-    if uid in (0, os.geteuid()):
-        return True
+    return uid in (0, os.geteuid(), user("owsd"))
+
+
+def user(name):
     try:
-        return uid == pwd.getpwnam("owsd").pw_uid
+        return pwd.getpwnam(name).pw_uid
     except KeyError:
-        return False
+        return None
+
+
+def places():
+    """The directories where instances are, in the order of looking: as libows(3) has them."""
+    uid = os.geteuid()
+    mine = uid == os.getuid()  # a program for another user takes no directory from the caller
+    named, runtime = (mine and os.environ.get(key) for key in ("OWS_DIR", "XDG_RUNTIME_DIR"))
+    if named:
+        named = named.rstrip("/")
+        if not named.startswith("/") or len(os.fsencode(named)) > 191 or named.endswith(("/.", "/..")):
+            raise OSError(errno.EINVAL, "OWS_DIR is no absolute path of a directory", named)
+        return [named]
+    if uid in (0, user("owsd")):
+        return [SERVICE]
+    own = f"{runtime.rstrip('/')}/owsd" if runtime and runtime.startswith("/") else ""
+    return [own if 0 < len(os.fsencode(own)) < 192 else f"/dev/shm/owsd-{uid}", SERVICE]
+
+
+def open_place(path):
+    """The descriptor of a directory in which only root, owsd or this user may make files."""
+    try:
+        folder = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC)
+    except OSError as why:
+        if why.errno in (errno.ELOOP, errno.ENOTDIR):
+            raise PermissionError(errno.EPERM, "a link, or no directory", path) from None
+        raise
+    status = os.fstat(folder)
+    if trusted(status.st_uid) and not status.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+        return folder
+    os.close(folder)
+    raise PermissionError(errno.EPERM, "others may write into it", path)
 
 
 def broken():
@@ -278,13 +546,23 @@ def broken():
 class Ows:
     """An instance of owsd. All times are nanoseconds of CLOCK_BOOTTIME where the name says _ns."""
 
-    def __init__(self, instance="OWS", control=False):
+    def __init__(self, instance="OWS", control=False, name=None):
+        """name: of this program, as owsd shows it; without it the script's own."""
         self.instance, self.control = instance, control
-        self.image = self.command = None
+        self.program = name or os.path.basename(sys.argv[0] or "python")
+        self.image = self.door = self.memory = self.next = None
         self.seen_alarms, self.levels = {}, {}
-        self.client = None
+        self.stamp = self.period_ms = self.person = 0
+        self.person_name = b""
+        self.pid = os.getpid()
         self.futex = Futex()
-        self._open()
+        self._find_place()
+        if control:
+            try:
+                self._join()
+            except BaseException:
+                self.close()
+                raise
 
     def __enter__(self):
         return self
@@ -294,118 +572,190 @@ class Ows:
 
     # --- Opening --------------------------------------------------------------------------------
 
-    def _open(self):
-        image = command = None
+    def _find_place(self):
+        """Open in the first place with a living owsd of that name, else in the first with its
+        image; reopen() stays there."""
+        where, reason = places(), None
+        for anything in (False, True) if len(where) > 1 else (True,):
+            for self.place in where:
+                try:
+                    self._take(*self._map())
+                except OSError as why:
+                    if reason is None or reason.errno == errno.ENOENT:
+                        reason = why
+                    continue
+                if anything or self.alive():
+                    return
+                self.image.close()
+                self.image = None
+        raise reason
+
+    def _map(self):
+        image = Image(self.place, self.instance)
         try:
-            image = Segment(self.instance, "image", False)
-            header = self._check_image(image)
-            if self.control:
-                command = Segment(self.instance, "command", True)
-                command_header = self._check_command(command, header)
+            return image, *self._check_image(image)
         except BaseException:
-            for segment in (image, command):
-                if segment is not None:
-                    segment.close()
+            image.close()
             raise
-        restarted = self.image is not None and header.start_ns != self.header.start_ns
-        self._drop()
-        self.image, self.header = image, header
-        self.command, self.command_header = command, command_header if command else None
+
+    def _take(self, image, header, areas):
+        if self.image is not None:
+            if header.start_ns != self.header.start_ns:
+                self.seen_alarms.clear()
+            self.image.close()
+        self.image, self.header, self.areas = image, header, areas
         self.dead_after_ns = max(2_000_000_000, 3 * header.period_ns)
         self.looked_ns, self.orphan = None, False
-        if restarted:
-            self.seen_alarms.clear()
         self._read_table()
-        if self.client is not None and self._client_word(0) != os.getpid():
-            self.client = None
-        if self.client is not None:  # a new owsd repeats our commands when it hears us
-            self._set_client_word(4, self._client_word(4) + 1)
 
     @staticmethod
     def _check_image(image):
         header = Header(*HEADER.unpack_from(image.memory))
-        if (header.magic, header.major, header.size) != (IMAGE_MAGIC, MAJOR, image.size) or \
-           header.record_count == 0:
+        if (header.magic, header.major, header.size) != (IMAGE_MAGIC, MAJOR, image.size):
             raise broken()
-        # A later minor version may have larger entries
-        for size, least in ((header.record_size, RECORD_SIZE), (header.info_size, INFO_SIZE),
-                            (header.target_size, TARGET.size),
-                            (header.alarm_size, ALARM_ENTRY.size if header.alarm_count else 0)):
-            if size < least or size % 8:
+        image.inside(header.area_off, header.area_count, AREA.size)
+        areas = {kind: Area() for kind in ENTRY_SIZES}
+        for i in range(header.area_count):
+            kind, *area = AREA.unpack_from(image.memory, header.area_off + i * AREA.size)
+            area, least = Area(*area), ENTRY_SIZES.get(kind)
+            if least is None or not area.count:
+                continue
+            # A later minor version may have larger entries
+            if areas[kind].count or area.size < least or area.size % min(least, 8) or \
+               least == 1 != area.size:
                 raise broken()
-        for offset, count, size in ((header.record_off, header.record_count, header.record_size),
-                                    (header.info_off, header.record_count, header.info_size),
-                                    (header.pool_off, header.pool_size, 1),
-                                    (header.text_off, header.text_size, 1),
-                                    (header.target_off, header.target_count, header.target_size),
-                                    (header.alarm_off, header.alarm_count, header.alarm_size)):
-            image.inside(offset, count, size)
-        return header
-
-    @staticmethod
-    def _check_command(command, image_header):
-        h = CommandHeader(*COMMAND_HEADER.unpack_from(command.memory))
-        if (h.magic, h.major, h.size) != (COMMAND_MAGIC, MAJOR, command.size) or \
-           (h.slot_size, h.entry_size, h.client_size) != (SLOT_SIZE, ENTRY_SIZE, CLIENT_SIZE):
+            image.inside(area.off, area.count, area.size)
+            areas[kind] = area
+        if not areas[RECORDS].count or areas[INFOS].count != areas[RECORDS].count or \
+           areas[CHANGES].count & (areas[CHANGES].count - 1):
             raise broken()
-        if (h.generation, h.start_id) != (image_header.generation, image_header.start_id):
-            raise FileNotFoundError(errno.ENOENT, "the command segment is just being replaced")
-        if h.slot_count != image_header.record_count:
-            raise broken()
-        for offset, count, size in ((h.slot_off, h.slot_count, SLOT_SIZE),
-                                    (h.entry_off, h.slot_count, ENTRY_SIZE),
-                                    (h.dirty_off, (h.slot_count + 31) // 32, 4),
-                                    (h.ack_off, h.slot_count, 4),
-                                    (h.client_off, CLIENTS, CLIENT_SIZE)):
-            command.inside(offset, count, size)
-        return h
+        return header, areas
 
     def _read_table(self):
         """What does not change while a generation lives."""
-        h, image = self.header, self.image
+        image, texts, pool = self.image, self.areas[TEXTS], self.areas[POOL]
         self.records, self.table = {}, []
-        for record in range(h.record_count):
-            name, path, factor, _, stale = struct.unpack_from(
-                "<IIIIq", image.memory, h.info_off + record * h.info_size)
+        for record in range(self.areas[RECORDS].count):
+            (name, path, factor, _, stale, _, _, _, *texts_off, decimals, scale, offset,
+             minimum, maximum, hh, h, low, ll, smooth, deadband) = INFO.unpack_from(
+                 image.memory, self._at(INFOS, record))
             text_off, kind, flags, text_cap = struct.unpack_from(
-                "<IBBH", image.memory, h.record_off + record * h.record_size + 4)
-            if text_cap and not h.text_off <= text_off <= h.text_off + h.text_size - 2 * text_cap:
+                "<IBBH", image.memory, self._at(RECORDS, record) + 4)
+            if text_cap and not \
+               texts.off <= text_off <= texts.off + texts.count - 2 * text_cap:
                 raise broken()
-            name = image.string(name, h.pool_off, h.pool_size)
-            path = image.string(path, h.pool_off, h.pool_size)
+            name = image.string(name, pool)
+            path = image.string(path, pool)
             self.table.append((Info(name, path, kind, bool(flags & OUTPUT), bool(flags & FRESH),
-                                    bool(flags & ALARM), factor, stale), text_off, text_cap,
-                               bool(flags & NO_SET)))
+                                    bool(flags & ALARM), factor, stale,
+                                    *(image.string(off, pool) or None for off in texts_off),
+                                    None if decimals == 0xFFFFFFFF else decimals, scale, offset,
+                                    *(None if number != number else number for number in
+                                      (minimum, maximum, hh, h, low, ll)), smooth, deadband),
+                               text_off, text_cap, bool(flags & NO_SET)))
             if record > 0:
                 self.records[name] = record
 
-    def _drop(self):
-        for segment in (self.image, self.command):
-            if segment is not None:
-                segment.close()
-        self.image = self.command = None
+    def _at(self, kind, i):
+        """Where entry i of an area is."""
+        return self.areas[kind].off + i * self.areas[kind].size
 
     def close(self):
-        if self.client is not None and self._client_word(0) == os.getpid():
-            # its commands stay, but not as those of the program that takes its place next
-            for record in range(self.command_header.slot_count):
-                at = (self.command_header.slot_off + record * SLOT_SIZE + 12) >> 2
-                if self.command.words[at] == self.client + 1:
-                    self.command.words[at] = 0
-            self._set_client_word(0, 0)
-        self.client = None
-        self._drop()
+        """Say goodbye to owsd: what was set stays in force, also if a beat was promised. A program
+        that ends without this is lost to owsd."""
+        if self.memory is not None and not self._forked():
+            self.memory.store(GIVER_GOODBYE >> 2, 1)
+        for thing in (self.door, self.memory, self.next, self.image):
+            if thing is not None:
+                thing.close()
+        self.image = self.door = self.memory = self.next = None
 
     def reopen(self):
-        """Map the present segments after Stale. FileNotFoundError: not there yet, try again; what
-        is mapped stays readable."""
-        probe = Segment(self.instance, "image", False)
+        """Map the present image after Stale, and go on as the same giver. FileNotFoundError: not
+        there yet, try again; what is mapped stays readable."""
+        if self.door is not None and self._forked():
+            raise PermissionError(errno.EPERM, "belongs to the process before the fork")
+        image, header, areas = self._map()
         try:
-            if probe.word(STATE_OFF) != LIVE:
+            if image.word(STATE_OFF) != LIVE or \
+               self.door is not None and not self._meet(header, areas, 0.02):
                 raise FileNotFoundError(errno.ENOENT, "the new image is not there yet")
-        finally:
-            probe.close()
-        self._open()
+        except BaseException:
+            image.close()
+            raise
+        self._take(image, header, areas)
+        self._take_memory()
+
+    # --- Becoming a giver -----------------------------------------------------------------------
+
+    def _forked(self):
+        return os.getpid() != self.pid
+
+    def _join(self):
+        """Connect, and wait for owsd's welcome; the image may be replaced meanwhile."""
+        until = time.monotonic() + 2
+        while not self._meet(self.header, self.areas, 0.05):
+            if time.monotonic() >= until:
+                raise TimeoutError(errno.ETIMEDOUT, "owsd does not answer")
+            self._take(*self._map())
+        self._take_memory()
+
+    def _connect(self):
+        """Nobody looks at the memory of the connection before."""
+        token = bytes(16)
+        if self.door is not None:
+            token = self.door.token
+            self.door.close()
+        if self.memory is not None:
+            self.memory.store(GIVER_STATE >> 2, STOPPED)
+        if self.next is not None:
+            self.next.close()
+        self.next = None
+        self.door = Door(self.place, self.instance, self.program, self.control, token)
+
+    def _meet(self, header, areas, seconds):
+        """Get the memory that belongs to an image. False: owsd has not handed it out yet."""
+        until, count = time.monotonic() + seconds, areas[RECORDS].count
+        connected = self.door is None or self.door.closed
+        if connected:
+            self._connect()
+        while True:
+            has = self.next is not None and self.next.fits(header, count) or \
+                not self.door.new and self.memory is not None and self.memory.fits(header, count)
+            try:
+                # All that have come are taken, so that the last one stays
+                got = self.door.receive(0 if has else max(0, until - time.monotonic()))
+            except ConnectionError:
+                if connected:
+                    raise FileNotFoundError(errno.ENOENT, "owsd does not run") from None
+                connected = True
+                self._connect()
+                continue
+            if got is None:
+                return has
+            welcome, fd = got
+            try:
+                memory = Memory(fd, welcome)
+            except OSError:
+                if welcome.start_id == header.start_id:
+                    raise
+                continue  # of a generation that has gone
+            if self.next is not None:
+                self.next.close()
+            self.next = memory
+
+    def _take_memory(self):
+        if self.next is None:
+            return
+        if self.memory is not None:
+            self.memory.close()
+        self.memory, self.next = self.next, None
+        if not self.control:
+            return
+        self.person = self.memory.person(self.person_name) if self.person_name else 0
+        if self.period_ms:  # a giver that comes back beats at once
+            self._store_beat()
+            self._ring()
 
     # --- Names ----------------------------------------------------------------------------------
 
@@ -444,19 +794,19 @@ class Ows:
     def _slot(self, record, want_text=False):
         """A whole sample and its attributes, and the text if wanted, verified."""
         words, memory = self.image.words, self.image.memory
-        base = self.header.record_off + record * self.header.record_size
+        base = self._at(RECORDS, record)
         _, text_off, text_cap, _ = self.table[record]
         for _ in range(WHOLE_TRIES):
             seq = words[base >> 2]
             half = seq >> 1 & 1
-            raw = memory[base + 16 + 120 * half:base + 136 + 120 * half]
+            raw = memory[base + 16 + 128 * half:base + 144 + 128 * half]
             text = memory[text_off + half * text_cap:text_off + (half + 1) * text_cap] \
                 if want_text else b""
             if (words[base >> 2] - (seq & ~1)) & 0xFFFFFFFF > 2:
                 continue
-            both = struct.unpack("<30I", raw)
+            both = struct.unpack("<32I", raw)
             # A record that was never published is zero, and so are its check words
-            if seq >= 2 and (check(both[:11]) != both[11] or check(both[12:29]) != both[29]):
+            if seq >= 2 and (check(both[:11]) != both[11] or check(both[12:31]) != both[31]):
                 continue
             return SAMPLE.unpack(raw[:48]), Attrs(*ATTRS.unpack(raw[48:])), text
         raise BlockingIOError(errno.EAGAIN, "no whole sample")
@@ -482,13 +832,12 @@ class Ows:
         return self._state() != LIVE or self._is_orphan()
 
     def _is_orphan(self):
-        """Of an owsd that was killed when its segments had lost their names, so that the one after
-        it cannot say anything in them. Looks once a second, and only while the heart stands."""
+        """Of an owsd that was killed, and whose image lost its name before the next one could say
+        anything in it. Looks once a second, and only while the heart stands."""
         now = now_ns()
         if self.looked_ns is None or now - self.looked_ns >= ORPHAN_LOOK_NS:
             self.looked_ns = now
-            self.orphan = not self._beats(now) and (
-                self.image.replaced() or self.command is not None and self.command.replaced())
+            self.orphan = not self._beats(now) and self.image.replaced()
         return self.orphan
 
     def get(self, name, now=None):
@@ -501,9 +850,14 @@ class Ows:
         info = self.table[record][0]
         is_text, data = info.type == STRING and attribute == "_Value", None
         sample, attrs, text = self._slot(record, is_text)
-        raw, measured, tried, err, quality, detail, target, _, count, applied, length, _ = sample
+        raw, measured, tried, err, quality, detail, target, _, count, _, length, _ = sample
+        applied = self.memory.words[self.memory.slot(record) + SLOT_APPLIED] if self.memory else 0
         age = max(0, now - (measured or self.header.start_ns))
-        if attribute != "_Value" or record == 0:
+        if attribute == "_Raw":
+            # a measurement, as old and as good as the value that was made of it
+            kind, value = DOUBLE, decode(DOUBLE, attrs.raw)
+            quality = Q_TYPE if info.type == STRING else quality
+        elif attribute != "_Value" or record == 0:
             kind, readable = self._kind(record, attribute)
             if not readable:
                 raise PermissionError(errno.EACCES, "write-only", name)
@@ -518,7 +872,7 @@ class Ows:
             if self._state() not in (LIVE, RETIRED) or not self._beats(now) or \
                     since > now + self.dead_after_ns:
                 quality = Q_TARGET
-            elif attribute == "_Value" and record and 0 < info.stale_after_ns < age:
+            elif attribute in ("_Value", "_Raw") and record and 0 < info.stale_after_ns < age:
                 quality = Q_STALE
         return Value(value, kind, quality, detail, target, err, measured, tried, age / 1e9, count,
                      applied, data)
@@ -558,34 +912,42 @@ class Ows:
     def alarms(self, since=0):
         """The journal of alarms from number `since` on, as far as it is kept: AlarmEntry by
         AlarmEntry. The number after the last is where to go on."""
-        h = self.header
-        head = self.image.word(ALARM_HEAD_OFF)
-        first = max(since, head - h.alarm_count)
-        for number in range(first, head):
-            entry = self._alarm(number)
-            if entry is not None:
-                yield entry
+        for number, entry in self._journal(ALARMS, ALARM_HEAD_OFF, since):
+            (_, record, occurred, before, after, kind, event, quality, flags, _, text, who, _,
+             _) = entry
+            info = self.table[record][0]
+            yield AlarmEntry(number, info.name, occurred,
+                             decode(info.type, before) if flags & 1 else None,
+                             decode(info.type, after) if flags & 2 else None,
+                             word(ALARM_KINDS, kind, "none"), word(ALARM_EVENTS, event, "unknown"),
+                             quality, plain(text), by(who))
 
-    def _alarm(self, number):
-        h, memory = self.header, self.image.memory
-        at = h.alarm_off + number % h.alarm_count * h.alarm_size
+    def commands(self, since=0):
+        """The journal of commands, likewise: CommandEntry by CommandEntry."""
+        for number, entry in self._journal(COMMANDS, COMMAND_HEAD_OFF, since):
+            _, record, taken, _, value, reason, _, quality, _, more, text, who, _, _ = entry
+            info = self.table[record][0]
+            yield CommandEntry(number, info.name, taken,
+                               plain(text) if info.type == STRING else decode(info.type, value),
+                               word(REASONS, reason, "unknown"), quality, more, by(who))
+
+    def _journal(self, kind, head_off, since):
+        head = self.image.word(head_off)
+        for number in range(max(since, head - self.areas[kind].count), head):
+            entry = self._entry(kind, number % self.areas[kind].count, JOURNAL_ENTRY)
+            if entry is not None and entry[-2] == number and 0 < entry[1] < len(self.table):
+                yield number, entry
+
+    def _entry(self, kind, i, layout):
+        """A whole entry that begins with seq and ends with check; None: its writer was killed."""
+        at = self._at(kind, i)
         for _ in range(WHOLE_TRIES):
-            raw = memory[at:at + ALARM_ENTRY.size]
-            words = struct.unpack("<16I", raw)
-            if words[0] % 2 == 0 and check(words[1:15]) == words[15]:
-                break
-        else:
-            return None
-        (_, record, occurred, before, after, kind, event, quality, flags, latch, there,
-         _) = ALARM_ENTRY.unpack(raw)
-        if there != number or not 0 < record < len(self.table):
-            return None
-        info = self.table[record][0]
-        return AlarmEntry(number, info.name, occurred,
-                          decode(info.type, before) if flags & 1 else None,
-                          decode(info.type, after) if flags & 2 else None,
-                          word(ALARM_KINDS, kind, "none"), word(ALARM_EVENTS, event, "unknown"),
-                          quality, latch.rstrip(b"\0").decode(errors="replace"))
+            raw = self.image.memory[at:at + layout.size]
+            words = struct.unpack(f"<{layout.size // 4}I", raw)
+            # An entry that was never written is zero, and so is its check word
+            if words[0] % 2 == 0 and (check(words[1:-1]) == words[-1] or not any(words)):
+                return layout.unpack(raw)
+        return None
 
     def alarm_state(self, name):
         """The AlarmState of a signal: how its device's alarm and its limit alarm stand."""
@@ -597,16 +959,70 @@ class Ows:
                           bool(attrs.flags & ALARM_POLLED), bool(attrs.flags & LIMITS),
                           word(LIMIT_STATES, attrs.limit_state, "unknown"),
                           word(ALARM_KINDS, attrs.limit_condition, "none"),
-                          bool(attrs.flags & ALARM_UNARMED))
+                          bool(attrs.flags & ALARM_UNARMED),
+                          self._shelf(record) if attrs.shelved else None)
+
+    def _shelf(self, record):
+        for i in range(self.areas[SHELVES].count):
+            entry = self._entry(SHELVES, i, SHELF_ENTRY)
+            if entry is not None and entry[1] == record:
+                _, _, since, until, who, why, _ = entry
+                return Shelf(since, until, by(who), plain(why))
+        return None
 
     def targets(self):
         """All targets: Target by Target."""
-        h = self.header
-        for index in range(h.target_count):
+        for index in range(self.areas[TARGETS].count):
             name, state, reconnects, group, moves = TARGET.unpack_from(
-                self.image.memory, h.target_off + index * h.target_size)
+                self.image.memory, self._at(TARGETS, index))
             yield Target(index, name.split(b"\0")[0].decode(errors="replace"),
                          word(TARGET_STATES, state, "unknown"), reconnects, group, moves)
+
+    def origin(self, name):
+        """The Origin of the command that is in force for a signal."""
+        record, _ = self.find(name)
+        if record == 0:
+            raise KeyError(name)
+        entry = self._entry(ORIGINS, record, ORIGIN_ENTRY)
+        if entry is None:
+            raise OSError(errno.EIO, "owsd was killed while it wrote this")
+        _, reason, taken, who, _ = entry
+        who = by(who)
+        own = self.memory is not None and who.serial == self.memory.serial
+        return Origin(who, taken, word(REASONS, reason, "unknown"), own)
+
+    def givers(self):
+        """The programs that are connected to owsd: Giver by Giver."""
+        for place in range(self.areas[GIVERS].count):
+            entry = self._entry(GIVERS, place, GIVER_ENTRY)
+            if entry is not None and entry[1] & GIVER_CONNECTED:
+                _, flags, joined, who, period_ms, commands, refused, _ = entry
+                yield Giver(by(who), joined, period_ms, commands, refused,
+                            bool(flags & GIVER_MAY_SET), bool(flags & GIVER_LATE))
+
+    def fileno(self):
+        """A descriptor for select and poll: readable when something is published after this call.
+        Call it again before each poll, and after reopen(); do not read it. A reader connects to
+        owsd at the first call."""
+        if self.door is None:
+            self._join()
+        self._arm()
+        if self.door.news < 0:
+            raise Stale
+        return self.door.news
+
+    def _arm(self):
+        self.door.drain()
+        self.memory.store(GIVER_WAITS >> 2, 1)
+
+    def _sleep(self, news, seconds):
+        """Sleep until there are other news than these; a connected program needs no futex."""
+        if self.door is None or self.door.news < 0 or self._forked():
+            self.futex.wait(self.image.address + NEWS_OFF, news, seconds)
+            return
+        self._arm()
+        if self.image.word(NEWS_OFF) == news and self.door.hung_up(seconds):
+            self.futex.wait(self.image.address + NEWS_OFF, news, seconds)
 
     def wait(self, news=0, seconds=math.inf):
         """Sleep until something was published after `news`; returns the new number to hand in next
@@ -620,30 +1036,38 @@ class Ows:
             if now != news or left <= 0:
                 return now
             # Nobody wakes who sleeps on an orphan
-            self.futex.wait(self.image.address + NEWS_OFF, now, min(left, 1))
+            self._sleep(now, min(left, 1))
+
+    def changes(self, seconds=math.inf):
+        """Follow what changes: an iterator of Changed, which are names of signals. It waits for
+        the next change, at most `seconds`, and gives an empty one when they are over. Begins with
+        all signals. Raises Stale: reopen(), and go on with the same iterator."""
+        if not self.areas[CHANGES].count:
+            raise OSError(errno.EOPNOTSUPP, "this owsd has no ring of changes")
+        return Changes(self, seconds)
 
     # --- Setting --------------------------------------------------------------------------------
 
     def set(self, name, value):
         """Command an output or a writable attribute. Returns the stamp that Value.applied will
         reach (attributes: 0). TypeError: text where a number is expected, or the other way
-        round; ValueError: the type cannot hold it; PermissionError: not writable, with errno
-        EROFS an input whose Writable is off in the configuration;
-        BlockingIOError: another program is just writing this text; Stale."""
+        round; ValueError: the type or its range cannot hold it; PermissionError: not writable, or
+        not by this user, with errno EROFS an input whose Writable is off in the configuration,
+        with EPERM after a fork; Stale."""
         record, attribute = self.find(name)
-        if self.command is None:
+        if not self.control:
             raise PermissionError(errno.EACCES, "opened without control", name)
         if self.table[record][3] and attribute in ("_Value", "_WriteEnable", "_WriteOneShot"):
             raise PermissionError(errno.EROFS, "an input, and Writable is off", name)
-        self._there()
-        slot = self.command_header.slot_off + record * SLOT_SIZE
+        slot = self._ready(record, name)
         if attribute == "_Value" and record:
             stamp = self._set_signal(record, slot, name, value)
         else:
             stamp = 0
             need_number(value)
             self._set_flag(record, attribute, slot, name, bool(value))
-        self._ring(record)
+        self.memory.mark(record)
+        self._ring()
         return stamp
 
     def acknowledge(self, name):
@@ -651,110 +1075,226 @@ class Ows:
         record, _ = self.find(name)
         if record == 0:
             raise KeyError(name)
-        if self.command is None:
-            raise PermissionError(errno.EACCES, "opened without control", name)
-        if not self.command_header.ack_off:
-            raise OSError(errno.EOPNOTSUPP, "owsd is of a version without limit alarms")
-        self._there()
-        at = (self.command_header.ack_off >> 2) + record
-        self.command.words[at] = self.command.words[at] + 1 & 0xFFFFFFFF
-        self._ring(record)
+        slot = self._ready(record, name)
+        self.memory.store(slot + SLOT_PERSON, self.person)
+        self.memory.count(slot + SLOT_ACKNOWLEDGED)
+        self.memory.mark(record)
+        self._ring()
 
-    def _there(self):
-        """Another consumer may have truncated the file, and touching it then is a fatal signal.
-        Nobody takes what is set in a segment whose owsd has stopped, or that was replaced."""
-        if os.fstat(self.command.fd).st_size < self.command.size:
+    def shelve(self, name, seconds, why=""):
+        """Shelve the limit alarm of a signal for so many seconds; 0: unshelve it. Waits until owsd
+        has done that, two seconds at most."""
+        record, _ = self.find(name)
+        if record == 0:
+            raise KeyError(name)
+        self._ready(record, name)
+        text = why.encode()
+        if len(text) >= TEXT_SIZE or b"\0" in text:
+            raise ValueError("longer than 63 bytes, or with a NUL")
+        memory, at = self.memory, self.memory.header.shelf_off >> 2
+        count, done = memory.words[at], at + (SHELF_SIZE - 16 >> 2)
+        if memory.words[done] != count:
+            raise BlockingIOError(errno.EBUSY, "owsd has not answered the request before")
+        for i, value in enumerate((record, seconds, self.person)):
+            memory.store(at + 1 + i, value)
+        start = memory.header.shelf_off + 16
+        memory.memory[start:start + TEXT_SIZE] = text.ljust(TEXT_SIZE, b"\0")
+        memory.count(at)
+        self._ring()
+        until = time.monotonic() + 2
+        while memory.words[done] != memory.words[at]:
+            if time.monotonic() > until:
+                raise TimeoutError(errno.ETIMEDOUT, "owsd does not answer")
+            time.sleep(0.001)
+        error = -memory.words[done + 1] & 0xFFFFFFFF
+        if error:
+            raise OSError(error, os.strerror(error), name)
+
+    def for_person(self, name):
+        """From now on this object commands for that person: a claim, which owsd shows. None: for
+        itself. BlockingIOError: owsd has still to look at the commands of 16 other persons."""
+        if not self.control:
+            raise PermissionError(errno.EACCES, "opened without control")
+        if self._forked():
+            raise PermissionError(errno.EPERM, "belongs to the process before the fork")
+        text = (name or "").encode()
+        if len(text) >= NAME_SIZE or b"\0" in text:
+            raise ValueError("longer than 31 bytes, or with a NUL")
+        self.person = self.memory.person(text) if text else 0
+        self.person_name = text
+
+    def _ready(self, record, name):
+        """Where the slot's words begin. Nobody takes what is set in a memory whose owsd has ended,
+        or that was replaced."""
+        if not self.control:
+            raise PermissionError(errno.EACCES, "opened without control", name)
+        if self._forked():
+            raise PermissionError(errno.EPERM, "belongs to the process before the fork", name)
+        slot = self.memory.slot(record)
+        if not self.memory.live() or not self.alive():
             raise Stale
-        if self.command.word(STATE_OFF) != LIVE:
-            raise Stale
+        if not self.memory.words[slot + SLOT_ALLOWED]:
+            raise PermissionError(errno.EACCES, "not by this user", name)
+        return slot
 
     def _set_signal(self, record, slot, name, value):
-        info, words = self.table[record][0], self.command.words
-        writable = info.output or words[slot + 20 >> 2] == 2 or \
+        info, memory = self.table[record][0], self.memory
+        writable = info.output or memory.words[slot + SLOT_WRITE_ENABLE] % 4 == 2 or \
             self._slot(record)[1].flags & WRITE_ENABLE
         if not writable:
             raise PermissionError(errno.EACCES, "not writable", name)
         if info.type == STRING:
             if not isinstance(value, str):
                 raise TypeError(f"{name} is a string and takes text, not {value!r}")
-            self._set_text(record, value.encode())
+            text = value.encode()
+            if len(text) > memory.header.text_cap or b"\0" in text:
+                raise ValueError("longer than the room in the layout, or with a NUL")
+            memory.text(record, text)
         else:
-            self.command.doubles[slot >> 3] = encode(info.type, value)
-        mine = self.client is not None and self._client_word(0) == os.getpid()
-        words[slot + 12 >> 2] = self.client + 1 if mine else 0
-        stamp = words[slot + 8 >> 2] + 1 & 0xFFFFFFFF or 1
-        words[slot + 8 >> 2] = stamp
-        return stamp
-
-    def _set_text(self, record, text):
-        h, command = self.command_header, self.command
-        offset = command.word(h.entry_off + record * ENTRY_SIZE + 12)
-        if len(text) > h.text_cap or b"\0" in text:
-            raise ValueError("longer than the room in the layout, or with a NUL")
-        if offset == 0 or offset % 4 or offset + 16 + h.text_cap > command.size:
-            raise broken()
-        words, at = command.words, offset >> 2
-        if words[at]:
-            raise BlockingIOError(errno.EBUSY, "another program is just writing it")
-        words[at] = os.getpid()
-        words[at + 1] = len(text)
-        command.memory[offset + 16:offset + 16 + len(text)] = text
-        words[at + 2] = check_bytes(text)
-        words[at] = 0
+            word = encode(info.type, value)
+            if info.min is not None and value < info.min or \
+               info.max is not None and value > info.max:
+                raise ValueError(f"{name} is limited to {info.min} to {info.max}")
+            memory.doubles[slot >> 1] = word
+        memory.store(slot + SLOT_PERSON, self.person)
+        self.stamp = self.stamp + 1 & 0xFFFFFFFF or 1
+        memory.store(slot + SLOT_STAMP, self.stamp)
+        return self.stamp
 
     def _set_flag(self, record, attribute, slot, name, on):
         writable = DRIVER[attribute][2] if record == 0 else ATTRIBUTE[attribute][4]
         if not writable:
             raise PermissionError(errno.EACCES, "not writable", name)
-        words = self.command.words
+        memory = self.memory
+        memory.store(slot + SLOT_PERSON, self.person)
         if attribute in ("_ReadEnable", "_WriteEnable"):
-            words[slot + (16 if attribute == "_ReadEnable" else 20) >> 2] = 2 if on else 1
+            at = slot + (SLOT_READ_ENABLE if attribute == "_ReadEnable" else SLOT_WRITE_ENABLE)
+            memory.store(at, (memory.words[at] // 4 + 1) * 4 + (2 if on else 1))
             return
         key = self.table[record][0].name, attribute
         if on and not self.levels.get(key, False):
-            at = slot + (24 if attribute == "_WriteOneShot" else 28) >> 2
-            words[at] = words[at] + 1 & 0xFFFFFFFF
+            memory.count(slot + (SLOT_ONE_SHOT if attribute == "_WriteOneShot"
+                                 else SLOT_DGN_RESET))
         self.levels[key] = on
 
-    def _ring(self, record):
-        words = self.command.words
-        # All 32 marks of the word, for setting one could take away another consumer's
-        words[(self.command_header.dirty_off >> 2) + record // 32] = 0xFFFFFFFF
-        words[BELL_OFF >> 2] = words[BELL_OFF >> 2] + 0x10001 & 0xFFFFFFFF
-        self.futex.wake(self.command.address + BELL_OFF)
-        self._found_by_owsd()
-
-    def _found_by_owsd(self):
-        if self.command.word(STATE_OFF) != LIVE or self._is_orphan():
+    def _ring(self):
+        self.memory.store(GIVER_MARKED >> 2, 1)
+        # Python has no fence, and does not know whether the engine saw this before it slept
+        self.door.ring()
+        if not self.memory.live():
             raise Stale
-
-    def _client_word(self, offset):
-        return self.command.word(self.command_header.client_off + self.client * CLIENT_SIZE +
-                                 offset)
-
-    def _set_client_word(self, offset, value):
-        at = self.command_header.client_off + self.client * CLIENT_SIZE + offset
-        self.command.words[at >> 2] = value & 0xFFFFFFFF
 
     def beat(self, period_ms):
         """Say that this program lives and will say so again within period_ms; if it does not, the
         outputs it set last go to their SafeValue."""
-        if self.command is None:
+        self._ready_to_beat()
+        if period_ms <= 0:
+            raise ValueError("a period is more than 0 milliseconds")
+        new, self.period_ms = self.period_ms != period_ms, period_ms
+        self._store_beat()
+        if new:
+            self._ring()
+
+    def _ready_to_beat(self):
+        if not self.control:
             raise PermissionError(errno.EACCES, "opened without control")
-        self._there()
-        if self.client is not None and self._client_word(0) != os.getpid():
-            self.client = None
-        if self.client is None:
-            for self.client in range(CLIENTS):
-                if self._client_word(0) == 0:
-                    self._set_client_word(0, os.getpid())
-                    break
-            else:
-                self.client = None
-                raise OSError(errno.ENOSPC, "the table of clients is full")
-        self._set_client_word(8, period_ms)
-        self._set_client_word(4, self._client_word(4) + 1)
-        self._found_by_owsd()
+        if self._forked():
+            raise PermissionError(errno.EPERM, "belongs to the process before the fork")
+        if not self.memory.live() or not self.alive():
+            raise Stale
+
+    def _store_beat(self):
+        self.memory.store(GIVER_PERIOD >> 2, self.period_ms)
+        self.memory.count(GIVER_BEAT >> 2)
+
+
+class Changed(list):
+    """Names of signals that changed, each once. With everything set they are all signals: at the
+    beginning, when the program fell behind, and when owsd is lost (all values turned bad) or back."""
+
+    everything = False
+
+
+class Changes:
+    """Made by Ows.changes()."""
+
+    # In that time no ring enters 2**32 changes: a number that is behind by so many looks like new
+    KEEPS_NS = 3600 * 1_000_000_000
+
+    def __init__(self, signals, seconds):
+        self.signals, self.seconds = signals, seconds
+        self.image = self.told = None
+
+    def __iter__(self):
+        return self
+
+    def __next__(self):
+        until = time.monotonic() + self.seconds
+        while True:
+            signals = self.signals
+            news = signals.image.word(NEWS_OFF)
+            changed = self._look(now_ns())
+            left = until - time.monotonic()
+            if changed or changed.everything or left <= 0:
+                return changed
+            signals._sleep(news, min(left, self._slice()))
+
+    def _look(self, now):
+        signals = self.signals
+        alive, state = signals._beats(now), signals._state()
+        ended = state == STOPPED
+        if state not in (LIVE, STOPPED) or signals._is_orphan() or \
+           ended and signals.image.replaced():
+            self._stale()
+        lost = ended or not alive
+        if self.image is not signals.image or lost != self.lost or now - self.looked > self.KEEPS_NS:
+            return self._everything(lost, now)
+        self.looked = now
+        return self._copy(now)
+
+    def _stale(self):
+        """A program that does not reopen, or cannot yet, does not spin."""
+        if self.told is self.signals.image:
+            time.sleep(min(self.seconds, 0.1))
+        self.told = self.signals.image
+        raise Stale
+
+    def _everything(self, lost, now):
+        self.image, self.lost, self.looked = self.signals.image, lost, now
+        self.number = self.image.word(CHANGE_HEAD_OFF)
+        changed = Changed(self.signals.names())
+        changed.everything = True
+        return changed
+
+    def _copy(self, now):
+        """The last quarter of the ring is not believed: Python has no fences, and may see an entry
+        that is being overwritten before it sees the head."""
+        ring, first, image = self.signals.areas[CHANGES], self.number, self.image
+        behind = image.word(CHANGE_HEAD_OFF) - first & 0xFFFFFFFF
+        room = ring.count - ring.count // 4
+        records = {}
+        for number in range(first, first + min(behind, room)):
+            entry = image.doubles[ring.off + number % ring.count * ring.size >> 3]
+            if entry & 0xFFFFFFFF != number & 0xFFFFFFFF:
+                return self._everything(self.lost, now)
+            records[entry >> 32] = None
+        if image.word(CHANGE_HEAD_OFF) - first & 0xFFFFFFFF >= room:
+            return self._everything(self.lost, now)
+        self.number = first + behind & 0xFFFFFFFF
+        table = self.signals.table
+        return Changed(table[r][0].name for r in records if 0 < r < len(table))
+
+    def _slice(self):
+        """The longest sleep in which nothing is missed of which nobody wakes."""
+        if self.signals._state() != LIVE:
+            return 0.1
+        if self.lost:
+            return 1
+        try:
+            beat = self.signals._slot(0)[0][1]
+        except BlockingIOError:
+            return 0.1
+        return max(0.001, min(1, (beat + self.signals.dead_after_ns - now_ns()) / 1e9 + 0.001))
 
 
 def word(words, number, other):

@@ -5,11 +5,16 @@
 
 #include <string.h>
 
-#include "src/libows/ows.h"
-#include "src/shm/layout.h"
+#include "src/libows/handle.h"
 
-static inline void value_fill(struct ows_value *value, const struct ows_sample *sample,
-                              uint8_t type)
+/* The stamp of this handle's last command for the record that was confirmed; 0: none. */
+static inline uint32_t value_applied(const struct ows *h, uint32_t record)
+{
+	return h->give.base != NULL ? word_get(&give_slot(&h->give, record)->applied) : 0;
+}
+
+static inline void value_fill(const struct ows *h, uint32_t record, struct ows_value *value,
+                              const struct ows_sample *sample, uint8_t type)
 {
 	if (type == OWS_DOUBLE || type == OWS_FLOAT) {
 		memcpy(&value->number, &sample->value, sizeof(value->number));
@@ -25,7 +30,7 @@ static inline void value_fill(struct ows_value *value, const struct ows_sample *
 	value->tried_ns = sample->tried_ns;
 	value->err = sample->err;
 	value->count = sample->count;
-	value->applied = sample->applied;
+	value->applied = value_applied(h, record);
 	value->len = sample->len;
 	value->type = type;
 	value->quality = sample->quality;

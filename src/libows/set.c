@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Sets outputs and attributes: the checks, the slot of the command segment, the bell. */
+/* Sets outputs and attributes: the checks, the slot of the giver's memory, the bell. */
 #include <errno.h>
 #include <string.h>
 
+#include "src/libows/command.h"
 #include "src/libows/handle.h"
-#include "src/libows/orphan.h"
 #include "src/libows/set.h"
-#include "src/shm/futex.h"
-#include "src/shm/word.h"
 #include "src/signal/value.h"
 
 #define ON 2
@@ -15,62 +13,12 @@
 
 static struct ows_command_slot *slot_of(const struct ows *h, const struct ows_id *id)
 {
-	return &h->map.slots[id->record];
+	return give_slot(&h->give, (uint32_t)id->record);
 }
 
 static void mark(const struct ows *h, const struct ows_id *id)
 {
-	__atomic_fetch_or(&h->map.dirty[id->record / 32], 1u << id->record % 32, __ATOMIC_RELEASE);
-}
-
-/* Does an owsd read this segment? Not if owsd has stopped or the segment was replaced. */
-static bool is_live(const struct ows *h)
-{
-	return word_get(&h->map.command->state) == OWS_STATE_LIVE;
-}
-
-static int command_state(struct ows *h)
-{
-	return is_live(h) ? handle_orphan(h, ows_now()) : -ESTALE;
-}
-
-/*
- * Wake the engine unless it is awake, and return whether owsd still reads this segment. The fence
- * orders the sets before both loads; the engine clears its awake flag, and owsd marks the segment
- * retired, before they look for sets.
- */
-static int ring_engine(struct ows *h)
-{
-	struct ows_command_header *command = h->map.command;
-
-	__atomic_fetch_add(&command->bell, 1, __ATOMIC_SEQ_CST);
-	word_fence(__ATOMIC_SEQ_CST);
-	if (word_get(&command->awake) == 0)
-		segment_wake(&command->bell, 1);
-	return command_state(h);
-}
-
-/*
- * This program's client number for a slot; 0 without a place, or if owsd has dropped the program.
- */
-static uint32_t giver(const struct ows *h)
-{
-	if (h->client < 0 || word_get(&h->map.clients[h->client].pid) != h->pid)
-		return 0;
-	return (uint32_t)h->client + 1;
-}
-
-static uint32_t stamp_it(const struct ows *h, const struct ows_id *id)
-{
-	struct ows_command_slot *slot = slot_of(h, id);
-	uint32_t stamp;
-
-	word_set(&slot->client, giver(h));
-	stamp = __atomic_add_fetch(&slot->stamp, 1, __ATOMIC_RELEASE);
-	if (stamp == 0) /* 0 means never commanded: count past it */
-		stamp = __atomic_add_fetch(&slot->stamp, 1, __ATOMIC_RELEASE);
-	mark(h, id);
-	return stamp;
+	give_mark(&h->give, (uint32_t)id->record);
 }
 
 /* Does the signal take sets? An output always, an input with Writable while _WriteEnable is on. */
@@ -78,7 +26,7 @@ static bool takes_sets(const struct ows *h, const struct ows_id *id, const struc
 {
 	uint32_t seq = __atomic_load_n(&r->seq, __ATOMIC_ACQUIRE);
 
-	if (r->flags & OWS_RECORD_OUTPUT || word_get(&slot_of(h, id)->write_enable) == ON)
+	if (r->flags & OWS_RECORD_OUTPUT || word_get(&slot_of(h, id)->write_enable) % 4 == ON)
 		return true;
 	return word_get(&r->slot[seq >> 1 & 1].attrs.flags) & OWS_ATTR_WRITE_ENABLE;
 }
@@ -93,14 +41,35 @@ static bool is_of_writing(enum attribute attribute)
 static int check_set(const struct ows *h, const struct ows_id *e)
 {
 	const struct ows_record *r = map_record(&h->map, (uint32_t)e->record);
+	int err;
 
-	if (h->map.command == NULL || !attribute_table[e->attribute].writable)
+	if (h->mode != OWS_CONTROL || !attribute_table[e->attribute].writable)
 		return -EACCES;
 	if (r->flags & OWS_RECORD_NO_SET && is_of_writing((enum attribute)e->attribute))
 		return -EROFS;
-	if (e->attribute == ATTR_VALUE && !takes_sets(h, e, r))
-		return -EACCES;
-	return is_live(h) ? 0 : -ESTALE;
+	err = command_allowed(h, (uint32_t)e->record);
+	if (!err && e->attribute == ATTR_VALUE && !takes_sets(h, e, r))
+		err = -EACCES;
+	return err;
+}
+
+static enum ows_type type_of(const struct ows *h, const struct ows_id *id)
+{
+	return id->attribute == ATTR_VALUE
+	               ? (enum ows_type)map_record(&h->map, (uint32_t)id->record)->type
+	               : attribute_table[id->attribute].type;
+}
+
+/* Is the value within Min and Max? owsd checks it too; this tells the program at once. */
+static int check_range(const struct ows *h, const struct ows_id *e, int64_t value)
+{
+	const struct ows_info_entry *info = map_info(&h->map, (uint32_t)e->record);
+	double number;
+
+	if (e->attribute != ATTR_VALUE)
+		return 0;
+	number = value_number(type_of(h, e), value);
+	return number < info->min || number > info->max ? -ERANGE : 0; /* NaN: not set */
 }
 
 static int check_id(const struct ows *h, int id, const struct ows_id **e)
@@ -111,54 +80,73 @@ static int check_id(const struct ows *h, int id, const struct ows_id **e)
 	return check_set(h, *e);
 }
 
-static enum ows_type type_of(const struct ows *h, const struct ows_id *id)
+static uint32_t stamp_it(struct ows *h, const struct ows_id *id)
 {
-	return id->attribute == ATTR_VALUE
-	               ? (enum ows_type)map_record(&h->map, (uint32_t)id->record)->type
-	               : attribute_table[id->attribute].type;
+	h->stamp++;
+	if (h->stamp == 0) /* 0 means never commanded: count past it */
+		h->stamp++;
+	__atomic_store_n(&slot_of(h, id)->stamp, h->stamp, __ATOMIC_RELEASE);
+	return h->stamp;
 }
 
 /* Count a flag's edge: it acts when this handle sets it from off to on. */
-static void count_edge(const struct ows *h, const struct ows_id *id, bool *level, uint32_t *counter,
-                       bool on)
+static void count_edge(bool *level, uint32_t *counter, bool on)
 {
-	if (on && !*level) {
+	if (on && !*level)
 		__atomic_fetch_add(counter, 1, __ATOMIC_RELEASE);
-		mark(h, id);
-	}
 	*level = on;
+}
+
+static void set_enable(uint32_t *word, bool on)
+{
+	uint32_t count = word_get(word) / 4 + 1;
+
+	__atomic_store_n(word, count * 4 + (on ? ON : OFF), __ATOMIC_RELEASE);
 }
 
 static void set_flag(const struct ows *h, const struct ows_id *id, bool on)
 {
 	struct ows_command_slot *slot = slot_of(h, id);
 
-	if (id->attribute == ATTR_READ_ENABLE || id->attribute == ATTR_WRITE_ENABLE) {
-		word_set(id->attribute == ATTR_READ_ENABLE ? &slot->read_enable
-		                                           : &slot->write_enable,
-		         on ? ON : OFF);
-		mark(h, id);
-	} else if (id->attribute == ATTR_WRITE_ONE_SHOT) {
-		count_edge(h, id, &h->memories[id->memory].shot_level, &slot->one_shot, on);
-	} else {
-		count_edge(h, id, &h->memories[id->memory].reset_level, &slot->dgn_reset, on);
-	}
+	if (id->attribute == ATTR_READ_ENABLE)
+		set_enable(&slot->read_enable, on);
+	else if (id->attribute == ATTR_WRITE_ENABLE)
+		set_enable(&slot->write_enable, on);
+	else if (id->attribute == ATTR_WRITE_ONE_SHOT)
+		count_edge(&h->memories[id->memory].shot_level, &slot->one_shot, on);
+	else
+		count_edge(&h->memories[id->memory].reset_level, &slot->dgn_reset, on);
 }
 
 /* Set a number, without the ring. */
-static void put_number(const struct ows *h, const struct ows_id *id, int64_t value, uint32_t *stamp)
+static void put_number(struct ows *h, const struct ows_id *id, int64_t value, uint32_t *stamp)
 {
+	struct ows_command_slot *slot = slot_of(h, id);
 	uint32_t got = 0;
 
+	word_set(&slot->person, h->person);
 	if (id->attribute == ATTR_VALUE) {
-		__atomic_store_n((shm_double_word *)&slot_of(h, id)->value, (uint64_t)value,
+		__atomic_store_n((shm_double_word *)&slot->value, (uint64_t)value,
 		                 __ATOMIC_RELAXED);
 		got = stamp_it(h, id);
 	} else {
 		set_flag(h, id, value != 0);
 	}
+	mark(h, id);
 	if (stamp != NULL)
 		*stamp = got;
+}
+
+static int put_checked(struct ows *h, const struct ows_id *id, int64_t value, uint32_t *stamp)
+{
+	int err = check_range(h, id, value);
+
+	if (!err)
+		err = command_ready(h);
+	if (err)
+		return err;
+	put_number(h, id, value, stamp);
+	return command_ring(h);
 }
 
 int ows_set(struct ows *h, int id, double number, uint32_t *stamp)
@@ -169,10 +157,7 @@ int ows_set(struct ows *h, int id, double number, uint32_t *stamp)
 
 	if (!err)
 		err = value_set_double(type_of(h, e), number, &value);
-	if (err)
-		return err;
-	put_number(h, e, value, stamp);
-	return ring_engine(h);
+	return err ? err : put_checked(h, e, value, stamp);
 }
 
 int ows_set_integer(struct ows *h, int id, int64_t number, uint32_t *stamp)
@@ -183,67 +168,55 @@ int ows_set_integer(struct ows *h, int id, int64_t number, uint32_t *stamp)
 
 	if (!err)
 		err = value_set_integer(type_of(h, e), number, &value);
-	if (err)
-		return err;
-	put_number(h, e, value, stamp);
-	return ring_engine(h);
+	return err ? err : put_checked(h, e, value, stamp);
 }
 
 int ows_set_many(struct ows *h, const int *ids, const double *values, int n)
 {
 	const struct ows_id *e;
-	int done, err = 0, rung;
+	int done, err = n > 0 ? command_ready(h) : 0, rung;
 	int64_t value;
 
+	if (err)
+		return err;
 	for (done = 0; done < n; done++) {
 		err = check_id(h, ids[done], &e);
 		if (!err)
 			err = value_set_double(type_of(h, e), values[done], &value);
+		if (!err)
+			err = check_range(h, e, value);
 		if (err)
 			break;
 		put_number(h, e, value, NULL);
 	}
 	if (done == 0)
 		return err;
-	rung = ring_engine(h);
+	rung = command_ring(h);
 	return rung ? rung : done;
-}
-
-static void store_text(char *to, const char *text, size_t len)
-{
-	for (size_t i = 0; i < len; i += 4) {
-		uint32_t word = 0;
-
-		memcpy(&word, text + i, len - i < 4 ? len - i : 4);
-		words_store(to + i, &word, 1);
-	}
 }
 
 static int set_string(struct ows *h, const struct ows_id *id, const char *text, uint32_t *stamp)
 {
-	size_t len = strlen(text), size = h->map.command_size;
-	uint32_t off = word_get(&h->map.entries[id->record].text_off), free_claim = 0, mine, got;
 	struct ows_command_text *t;
+	size_t len = strlen(text);
+	uint32_t got;
+	int err;
 
-	if (len > h->map.text_cap)
+	if (len > h->give.text_cap)
 		return -ERANGE;
-	/* Another consumer may have overwritten the offset: check it */
-	if (off == 0 || off % 4 != 0 || off > size || sizeof(*t) + h->map.text_cap > size - off)
+	err = command_ready(h);
+	if (err)
+		return err;
+	t = give_text(&h->give, (uint32_t)id->record);
+	if (t == NULL)
 		return -EPROTO;
-	t = (void *)(h->map.command_base + off);
-	mine = h->pid;
-	if (!__atomic_compare_exchange_n(&t->claim, &free_claim, mine, false, __ATOMIC_ACQUIRE,
-	                                 __ATOMIC_RELAXED))
-		return -EBUSY;
-	word_set(&t->len, (uint32_t)len);
-	store_text((char *)(t + 1), text, len);
-	word_set(&t->check, ows_check_bytes(text, len));
-	/* Release the claim, unless owsd has taken it away because it lasted too long */
-	__atomic_compare_exchange_n(&t->claim, &mine, 0, false, __ATOMIC_RELEASE, __ATOMIC_RELAXED);
+	give_store_text(t, text, len);
+	word_set(&slot_of(h, id)->person, h->person);
 	got = stamp_it(h, id);
+	mark(h, id);
 	if (stamp != NULL)
 		*stamp = got;
-	return ring_engine(h);
+	return command_ring(h);
 }
 
 int handle_set_text(struct ows *h, const struct ows_id *e, const char *text, uint32_t *stamp)
@@ -256,10 +229,7 @@ int handle_set_text(struct ows *h, const struct ows_id *e, const char *text, uin
 	if (type_of(h, e) == OWS_STRING)
 		return set_string(h, e, text, stamp);
 	err = value_parse(type_of(h, e), text, &value);
-	if (err)
-		return err;
-	put_number(h, e, value, stamp);
-	return ring_engine(h);
+	return err ? err : put_checked(h, e, value, stamp);
 }
 
 int ows_set_text(struct ows *h, int id, const char *text, uint32_t *stamp)
@@ -268,59 +238,4 @@ int ows_set_text(struct ows *h, int id, const char *text, uint32_t *stamp)
 	int err = check_id(h, id, &e);
 
 	return err ? err : handle_set_text(h, e, text, stamp);
-}
-
-int ows_acknowledge(struct ows *h, int id)
-{
-	const struct ows_id *e;
-
-	if ((unsigned)id >= h->id_count || h->ids[id].record <= 0)
-		return -ENOENT;
-	e = &h->ids[id];
-	if (h->map.command == NULL)
-		return -EACCES;
-	if (h->map.acks == NULL)
-		return -EOPNOTSUPP;
-	if (!is_live(h))
-		return -ESTALE;
-	__atomic_fetch_add(&h->map.acks[e->record], 1, __ATOMIC_RELEASE);
-	mark(h, e);
-	return ring_engine(h);
-}
-
-static int take_client(struct ows *h)
-{
-	for (int i = 0; i < OWS_CLIENTS; i++) {
-		uint32_t none = 0;
-
-		if (__atomic_compare_exchange_n(&h->map.clients[i].pid, &none, h->pid, false,
-		                                __ATOMIC_ACQ_REL, __ATOMIC_RELAXED)) {
-			h->client = i;
-			return 0;
-		}
-	}
-	return -ENOSPC;
-}
-
-int ows_beat(struct ows *h, uint32_t period_ms)
-{
-	struct ows_client *client;
-	int err;
-
-	if (h->map.command == NULL)
-		return -EACCES;
-	if (period_ms == 0)
-		return -EINVAL;
-	/* owsd drops a client that was silent for too long */
-	if (h->client >= 0 && word_get(&h->map.clients[h->client].pid) != h->pid)
-		h->client = -1;
-	if (h->client < 0) {
-		err = take_client(h);
-		if (err)
-			return err;
-	}
-	client = &h->map.clients[h->client];
-	word_set(&client->period_ms, period_ms);
-	__atomic_fetch_add(&client->beat, 1, __ATOMIC_RELEASE);
-	return command_state(h);
 }

@@ -4,8 +4,7 @@
 
 #include "src/libows/alive.h"
 #include "src/libows/handle.h"
-#include "src/libows/orphan.h"
-#include "src/shm/futex.h"
+#include "src/libows/news.h"
 
 int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns)
 {
@@ -15,13 +14,12 @@ int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns)
 	                                                                  : now_ns + timeout_ns;
 
 	for (;; now_ns = ows_now()) {
-		int64_t left = ORPHAN_LOOK_NS; /* no owsd wakes a program that waits on an orphan */
+		int64_t left = ALIVE_LOOK_NS; /* no owsd wakes a program that waits on an orphan */
 		uint32_t seen;
 		int err;
 
-		handle_orphan(h, now_ns);
 		seen = __atomic_load_n(word, __ATOMIC_ACQUIRE);
-		if (handle_state(h))
+		if (alive_look(h, now_ns))
 			return -ESTALE;
 		if (seen != *news) {
 			*news = seen;
@@ -33,7 +31,7 @@ int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns)
 			if (until - now_ns < left)
 				left = until - now_ns;
 		}
-		err = segment_wait(word, seen, left);
+		err = news_sleep(h, seen, left);
 		if (err && err != -ETIMEDOUT)
 			return err;
 	}

@@ -6,20 +6,22 @@
 
 #include "src/owsctl/alarms_history.h"
 #include "src/owsctl/alarms_live.h"
+#include "src/owsctl/digits.h"
 #include "src/owsctl/json.h"
 #include "src/owsctl/names.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/when.h"
-#include "src/signal/value.h"
+#include "src/owsctl/who.h"
 
 /* clang-format off */
 static const struct table_column columns[] = {
 	{"TIME"}, {"NAME"}, {"ALARM"}, {"EVENT"}, {"BEFORE", .right = true}, {"AFTER", .right = true},
-	{"QUALITY"}, {"LATCH"},
+	{"QUALITY"}, {"BY"}, {"REMARK"},
 };
 /* clang-format on */
 
-static const char *value_text(const struct ows_alarm *alarm, bool after, char text[VALUE_TEXT_MAX])
+static const char *value_text(const struct ows_alarm *alarm, bool after, int decimals,
+                              char text[VALUE_TEXT_MAX])
 {
 	enum ows_type type = (enum ows_type)alarm->type;
 	double number = after ? alarm->after : alarm->before;
@@ -27,23 +29,26 @@ static const char *value_text(const struct ows_alarm *alarm, bool after, char te
 
 	if (!(after ? alarm->has_after : alarm->has_before) || type == OWS_STRING)
 		return NULL;
-	value_to_text(type, value_is_float(type) ? value_of_double(number) : integer, text);
+	digits_print(type, number, integer, decimals, text);
 	return text;
 }
 
-static bool add_row(struct table *table, const struct when *now, const char *name,
+static bool add_row(struct table *table, const struct when *now, const struct ows_info *info,
                     const struct ows_alarm *alarm)
 {
 	char before[VALUE_TEXT_MAX], after[VALUE_TEXT_MAX], time[WHEN_TEXT];
-	const char *left = value_text(alarm, false, before);
-	const char *right = value_text(alarm, true, after);
+	const char *left = value_text(alarm, false, info->decimals, before);
+	const char *right = value_text(alarm, true, info->decimals, after);
+	char by[WHO_LINE] = "-";
 
+	if (alarm->event != OWS_ALARM_RAISED && alarm->event != OWS_ALARM_RETURNED)
+		who_line(&alarm->who, by);
 	return table_add(table,
-	                 (const char *const[]){when_iso(now, alarm->occurred_ns, time), name,
+	                 (const char *const[]){when_iso(now, alarm->occurred_ns, time), info->name,
 	                                       ows_alarm_kind_text(alarm->kind),
 	                                       ows_alarm_event_text(alarm->event),
 	                                       left ? left : "-", right ? right : "-",
-	                                       ows_quality_text(alarm->quality), alarm->latch});
+	                                       ows_quality_text(alarm->quality), by, alarm->text});
 }
 
 static void json_value(struct json *json, const char *key, const char *text)
@@ -65,10 +70,11 @@ static void add_json(struct json *json, const struct when *now, uint32_t number,
 	json_string(json, "name", name);
 	json_string(json, "alarm", ows_alarm_kind_text(alarm->kind));
 	json_string(json, "event", ows_alarm_event_text(alarm->event));
-	json_value(json, "before", value_text(alarm, false, text));
-	json_value(json, "after", value_text(alarm, true, text));
+	json_value(json, "before", value_text(alarm, false, -1, text));
+	json_value(json, "after", value_text(alarm, true, -1, text));
 	json_string(json, "quality", ows_quality_text(alarm->quality));
-	json_string(json, "latch", *alarm->latch ? alarm->latch : NULL);
+	who_json(json, &alarm->who);
+	json_string(json, "remark", *alarm->text ? alarm->text : NULL);
 	json_object_end(json);
 }
 
@@ -89,7 +95,7 @@ static bool walk(struct ows *h, char *const *patterns, int count, struct table *
 		    !names_match(info.name, patterns, count))
 			continue;
 		if (table)
-			ok = add_row(table, &now, info.name, &alarm);
+			ok = add_row(table, &now, &info, &alarm);
 		else
 			add_json(json, &now, number, info.name, &alarm);
 	}

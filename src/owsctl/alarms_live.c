@@ -9,6 +9,8 @@
 #include "src/owsctl/names.h"
 #include "src/owsctl/rows.h"
 #include "src/owsctl/table.h"
+#include "src/owsctl/text.h"
+#include "src/owsctl/who.h"
 #include "src/signal/error.h"
 
 /* One line of the live table. */
@@ -18,6 +20,7 @@ struct alarm {
 	int64_t since_ns; /* 0: not known */
 	uint32_t occurrences;
 	bool device, polled;
+	const struct ows_alarm_state *shelved; /* NULL: it is not shelved */
 };
 
 struct live {
@@ -85,6 +88,11 @@ static void add_json(struct live *live, const struct alarm *alarm)
 	            alarm->since_ns ? when_iso(&live->now, alarm->since_ns, text) : NULL);
 	if (alarm->device)
 		json_uint(json, "occurrences", alarm->occurrences);
+	if (alarm->shelved) {
+		json_string(json, "until", when_iso(&live->now, alarm->shelved->until_ns, text));
+		who_json(json, &alarm->shelved->who);
+		json_string(json, "why", *alarm->shelved->why ? alarm->shelved->why : NULL);
+	}
 	reading_json(json, live->h, live->reading, &live->now);
 	json_object_end(json);
 }
@@ -124,6 +132,18 @@ static const char *why_unarmed(const struct ows_alarm_state *state, const struct
 	return words;
 }
 
+static void print_shelved(const struct live *live, const char *name,
+                          const struct ows_alarm_state *state)
+{
+	char until[WHEN_TEXT], who[WHO_LINE], line[512], clean[512];
+
+	snprintf(line, sizeof(line), "%s: shelved until %s by %s%s%s", name,
+	         when_iso(&live->now, state->until_ns, until), who_line(&state->who, who),
+	         *state->why ? ": " : "", state->why);
+	text_clean(line, strlen(line), sizeof(clean), clean, sizeof(clean));
+	puts(clean);
+}
+
 /* Print the reasons below the table, which they would make too wide. */
 static void print_reasons(struct live *live, const struct rows *rows, char *const *patterns,
                           int pattern_count)
@@ -134,10 +154,34 @@ static void print_reasons(struct live *live, const struct rows *rows, char *cons
 	for (int i = 0; i < rows->count; i++) {
 		state = (struct ows_alarm_state){0};
 		if (!names_match(rows->row[i].name, patterns, pattern_count) ||
-		    ows_alarm_state(live->h, rows->row[i].id, &state) == -EAGAIN || !state.unarmed)
+		    ows_alarm_state(live->h, rows->row[i].id, &state) == -EAGAIN)
+			continue;
+		if (state.shelved)
+			print_shelved(live, rows->row[i].name, &state);
+		if (!state.unarmed)
 			continue;
 		reading_get(live->h, rows->row[i].id, live->now.boot, live->reading);
 		printf("%s: %s\n", rows->row[i].name, why_unarmed(&state, live->reading, words));
+	}
+}
+
+static void look_at_limit(struct live *live, int signal, const char *name,
+                          const struct ows_alarm_state *state)
+{
+	struct alarm alarm = {
+		.name = name,
+		.kind = ows_alarm_kind_text(state->limit_kind),
+		.state = ows_limit_state_text(state->limit_state),
+	};
+
+	if (state->shelved) {
+		alarm.state = "shelved";
+		alarm.since_ns = state->since_ns;
+		alarm.shelved = state;
+		add(live, &alarm);
+	} else if (state->limit_state != OWS_LIMIT_NORMAL) {
+		alarm.since_ns = raised(live->h, signal, state->limit_kind);
+		add(live, &alarm);
 	}
 }
 
@@ -151,7 +195,7 @@ static void look_at(struct live *live, int signal, const struct row *row)
 		return;
 	reading_get(live->h, row->id, live->now.boot, live->reading);
 	if (live->table)
-		reading_round(live->reading, row->path);
+		reading_round(live->reading, row_decimals(row));
 	if (state.stands || state.polled) {
 		alarm.kind = ows_alarm_kind_text(OWS_ALARM_DEVICE);
 		alarm.state = state.stands ? "stands" : "no alarm search there: read as an input";
@@ -174,15 +218,7 @@ static void look_at(struct live *live, int signal, const struct row *row)
 		};
 		add(live, &alarm);
 	}
-	if (state.limit_state != OWS_LIMIT_NORMAL) {
-		alarm = (struct alarm){
-			.name = row->name,
-			.kind = ows_alarm_kind_text(state.limit_kind),
-			.state = ows_limit_state_text(state.limit_state),
-			.since_ns = raised(live->h, signal, state.limit_kind),
-		};
-		add(live, &alarm);
-	}
+	look_at_limit(live, signal, row->name, &state);
 }
 
 /* rows: all signals of the table, in its order. */
@@ -220,7 +256,7 @@ static bool show(struct ows *h, const struct rows *rows, bool json, char *const 
 }
 
 /* The words that `owsctl alarms` does not take for patterns. */
-static const char *const words[] = {ALARMS_HISTORY, ALARMS_ACK};
+static const char *const words[] = {ALARMS_HISTORY, ALARMS_ACK, ALARMS_SHELVE, ALARMS_UNSHELVE};
 #define WORDS (sizeof(words) / sizeof(words[0]))
 
 /* The word that the pattern is but for a slip of the finger, or NULL. */

@@ -168,6 +168,32 @@ static void limits_json(struct json *json, const struct config_limits *limits)
 	json_object_end(json);
 }
 
+static void scaling_json(struct json *json, const struct config_item *item)
+{
+	const struct scale *scale = &item->scale;
+
+	json_string(json, "unit", item->unit);
+	if (item->decimals >= 0)
+		json_int(json, "decimals", item->decimals);
+	else
+		json_null(json, "decimals");
+	json_string(json, "description", item->description);
+	json_double(json, "scale", scale->linear ? scale->factor : 1);
+	json_double(json, "offset", scale->linear ? scale->offset : 0);
+	json_string(json, "points", item->points);
+	if (scale->has_min)
+		json_double(json, "min", scale->min);
+	else
+		json_null(json, "min");
+	if (scale->has_max)
+		json_double(json, "max", scale->max);
+	else
+		json_null(json, "max");
+	json_double(json, "filter", item->filter_s);
+	json_double(json, "deadband", item->deadband);
+	json_string(json, "calibrated", item->calibrated);
+}
+
 static void item_json(struct json *json, const struct config_item *item)
 {
 	json_object(json, NULL);
@@ -188,6 +214,7 @@ static void item_json(struct json *json, const struct config_item *item)
 	json_string(json, "set_alarm", item->set_alarm);
 	json_string(json, "reset_latch", item->reset_latch);
 	limits_json(json, &item->limits);
+	scaling_json(json, item);
 	json_int(json, "line", item->line);
 	json_object_end(json);
 }

@@ -14,6 +14,7 @@
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/names.h"
 #include "src/owsctl/when.h"
+#include "src/shm/place.h"
 #include "src/text/printable.h"
 #include "src/text/refused.h"
 
@@ -70,6 +71,7 @@ static const struct option *longs_of(const char *options)
 		{"json", no_argument, NULL, JSON},       {"help", no_argument, NULL, 'h'},
 		{"all", no_argument, NULL, 'a'},         {"rio", no_argument, NULL, 'r'},
 		{"merge", required_argument, NULL, 'M'}, {"replace", required_argument, NULL, 'R'},
+		{"as", required_argument, NULL, 'A'},    {"follow", no_argument, NULL, 'f'},
 	};
 	static struct option had[sizeof(longs) / sizeof(longs[0]) + 1];
 	struct option *next = had;
@@ -130,21 +132,70 @@ bool ctl_seconds(const char *text, int64_t *ns)
 	return true;
 }
 
+/* Print what is wrong with the places where instances are; CTL_DONE: nothing is. */
+static int check_places(int err)
+{
+	char places[PLACES][PLACE_PATH], fault[PLACE_FAULT];
+	struct shm_place place = {.fd = -1};
+	int count = place_list(places);
+
+	if (count < 0)
+		return ctl_fail("%s", place_fault(&place, count, fault));
+	for (int i = 0; i < count; i++) {
+		if (place_open(places[i], &place) == err)
+			return ctl_fail("%s", place_fault(&place, err, fault));
+		place_close(&place);
+	}
+	return CTL_DONE;
+}
+
+/* Print why an instance cannot be commanded that can be read; CTL_DONE: it cannot. */
+static int check_control(const char *name, int err)
+{
+	struct ows *h;
+
+	if (ows_open(name, OWS_READ, &h))
+		return CTL_DONE;
+	ows_close(h);
+	switch (-err) {
+	case ENOENT:
+		return ctl_fail("owsd is not running: nothing was set");
+	case EACCES:
+		return ctl_fail("no right to set the signals of %s: that is for group "
+		                "owsd-control, or for whom ControlAllow names",
+		                name);
+	case ENOSPC:
+		return ctl_fail("owsd %s has no place for another program that commands: owsctl "
+		                "who lists them",
+		                name);
+	case ETIMEDOUT:
+		return ctl_fail("owsd does not answer: nothing was set");
+	}
+	return CTL_DONE;
+}
+
 int ctl_open(const struct ctl *ctl, enum ows_mode mode, struct ows **h)
 {
-	const char *name = ctl->instance;
-	int err = ows_open(name, mode, h);
+	return ctl_open_as(ctl, mode, "owsctl", h);
+}
 
-	switch (-err) {
-	case 0:
+int ctl_open_as(const struct ctl *ctl, enum ows_mode mode, const char *program, struct ows **h)
+{
+	const char *name = ctl->instance;
+	int err = ows_open_as(name, mode, program, h);
+
+	if (!err)
 		return CTL_DONE;
+	if (mode == OWS_CONTROL && check_control(name, err))
+		return CTL_FAILED;
+	if (err != -ENOENT && check_places(err))
+		return CTL_FAILED;
+	switch (-err) {
 	case ENOENT:
 		return ctl_fail("no owsd of the name %s has run here (-n NAME chooses another)",
 		                name);
 	case EACCES:
-		return ctl_fail("no right to %s the signals of %s: that is for group %s",
-		                mode == OWS_READ ? "see" : "set", name,
-		                mode == OWS_READ ? "owsd" : "owsd-control");
+		return ctl_fail("no right to see the signals of %s: that is for group owsd", name);
 	case EPERM:
 		return ctl_fail("the shared memory of %s belongs to another user, neither root nor "
 		                "owsd: refused",

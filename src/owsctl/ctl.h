@@ -67,6 +67,8 @@ bool ctl_seconds(const char *text, int64_t *ns);
 
 /* Open the instance; CTL_DONE, or CTL_FAILED after printing why. */
 int ctl_open(const struct ctl *ctl, enum ows_mode mode, struct ows **h);
+/* The same, as a program of another name than owsctl. */
+int ctl_open_as(const struct ctl *ctl, enum ows_mode mode, const char *program, struct ows **h);
 /* Returns whether owsd runs; prints "owsd is not running ..." on stderr when it does not. */
 bool ctl_alive(const struct ctl *ctl, struct ows *h, int64_t now_ns);
 /* The time between two looks for a new owsd. */

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "src/owsctl/ctl.h"
+#include "src/owsctl/meaning.h"
 #include "src/owsctl/names.h"
 #include "src/owsctl/reading.h"
 #include "src/owsctl/seen.h"
@@ -34,6 +35,7 @@ static int worse(int a, int b)
 static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struct reading *reading)
 {
 	char words[READING_WORDS];
+	struct ows_info info;
 	int id = ows_find(h, name);
 
 	if (id == -ENOENT)
@@ -45,7 +47,7 @@ static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struc
 	if (!reading_filled(reading))
 		return ctl_fail("%s: %s", name, error_text(reading->err));
 	seen_alarm(ctl, h, name, id, reading);
-	reading_round(reading, names_path(h, ctl->instance, name));
+	reading_round(reading, names_info(h, ctl->instance, name, &info) ? info.decimals : -1);
 	print_text(reading);
 	if (reading_good(reading))
 		return CTL_DONE;
@@ -59,6 +61,8 @@ static int get_json(const struct ctl *ctl, struct json *json, struct ows *h, con
                     struct reading *reading, const struct when *now)
 {
 	int id = ows_find(h, name), status = CTL_DONE;
+	struct meaning meaning;
+	struct ows_info info;
 
 	json_object(json, NULL);
 	json_string(json, "name", name);
@@ -77,6 +81,10 @@ static int get_json(const struct ctl *ctl, struct json *json, struct ows *h, con
 		else if (!reading_good(reading))
 			status = CTL_NOT_GOOD;
 		reading_json(json, h, reading, now);
+		if (names_info(h, ctl->instance, name, &info) && meaning_of(h, &info, &meaning)) {
+			meaning_json(json, h, &meaning, now->boot);
+			meaning_free(&meaning);
+		}
 	}
 	json_object_end(json);
 	return status;

@@ -10,6 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "src/libows/open.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/instance_state.h"
 #include "src/owsctl/json.h"
@@ -24,12 +25,13 @@
 /* clang-format off */
 static const struct table_column columns[] = {
 	{"NAME"}, {"STATE"}, {"PID", .right = true}, {"SINCE", .right = true},
-	{"SIGNALS", .right = true}, {"TARGETS"}, {"CONFIG"},
+	{"SIGNALS", .right = true}, {"TARGETS"}, {"PLACE"}, {"CONFIG"},
 };
+#define PLACE_COLUMN 6
 /* clang-format on */
 
 struct instance_info {
-	const char *name;
+	const char *name, *place;
 	enum instance_state state;
 	int pid;                            /* 0: not known */
 	int64_t since_ns;                   /* when this state began; 0: not known */
@@ -96,14 +98,17 @@ static void find_targets(struct ows *h, struct instance_info *info)
 		                         i ? ", " : "", target.name);
 }
 
-static void look(const char *name, int64_t now_ns, struct instance_info *info)
+static void look(const struct shm_place *place, const char *name, int64_t now_ns,
+                 struct instance_info *info)
 {
 	struct ows_daemon daemon = {0};
 	struct ows *h;
 	pid_t holder = 0;
-	int err = ows_open(name, OWS_READ, &h), lock = segment_lock_look(name, &holder);
+	int err = open_in(place->path, name, OWS_READ, "owsctl", &h);
+	int lock = segment_lock_look(place, name, &holder);
 
-	*info = (struct instance_info){.name = name, .pid = (int)holder, .signals = -1};
+	*info = (struct instance_info){
+		.name = name, .place = place->path, .pid = (int)holder, .signals = -1};
 	if (err && err != -ENOENT) {
 		info->state = INSTANCE_HIDDEN;
 		info->why = err == -EACCES  ? "no right to see it: that is for group owsd"
@@ -146,12 +151,13 @@ static bool add_row(struct table *table, const struct instance_info *info, const
 		snprintf(signals, sizeof(signals), "%d", info->signals);
 	if (info->since_ns)
 		when_span(now->boot - info->since_ns, span);
-	return table_add(table, (const char *const[]){info->name, instance_state_text(info->state),
-	                                              pid, span, signals,
-	                                              info->targets[0] ? info->targets : "-",
-	                                              info->why         ? info->why
-	                                              : info->config[0] ? info->config
-	                                                                : "-"});
+	return table_add(table,
+	                 (const char *const[]){info->name, instance_state_text(info->state), pid,
+	                                       span, signals,
+	                                       info->targets[0] ? info->targets : "-", info->place,
+	                                       info->why         ? info->why
+	                                       : info->config[0] ? info->config
+	                                                         : "-"});
 }
 
 static void add_json(struct json *json, const struct instance_info *info, const struct when *now)
@@ -160,6 +166,7 @@ static void add_json(struct json *json, const struct instance_info *info, const 
 
 	json_object(json, NULL);
 	json_string(json, "instance", info->name);
+	json_string(json, "place", info->place);
 	json_string(json, "state", instance_state_text(info->state));
 	if (info->pid)
 		json_int(json, "pid", info->pid);
@@ -176,7 +183,48 @@ static void add_json(struct json *json, const struct instance_info *info, const 
 	json_object_end(json);
 }
 
-static bool show(const struct remains *remains, bool as_json)
+/* The places that are there, each with its instances. */
+struct found {
+	struct shm_place place[PLACES];
+	struct remains remains[PLACES];
+	unsigned count;
+};
+
+static void close_places(struct found *found)
+{
+	for (unsigned i = 0; i < found->count; i++) {
+		remains_free(&found->remains[i]);
+		place_close(&found->place[i]);
+	}
+}
+
+/* CTL_DONE, or CTL_FAILED after printing why. One place that is refused hides no other. */
+static int open_places(struct found *found)
+{
+	char paths[PLACES][PLACE_PATH], fault[PLACE_FAULT];
+	int count = place_list(paths), status = CTL_DONE;
+
+	*found = (struct found){0};
+	if (count < 0)
+		return ctl_fail("%s", place_fault(&found->place[0], count, fault));
+	for (int i = 0; i < count; i++) {
+		struct shm_place *place = &found->place[found->count];
+		int err = place_open(paths[i], place);
+
+		if (err == -ENOENT)
+			continue;
+		if (err) {
+			status = ctl_fail("%s", place_fault(place, err, fault));
+			continue;
+		}
+		err = remains_list(place, &found->remains[found->count++]);
+		if (err)
+			status = ctl_fail("%s: %s", place->path, strerror(-err));
+	}
+	return status;
+}
+
+static bool show(const struct found *found, bool as_json)
 {
 	struct instance_info info;
 	struct when now = when_now();
@@ -186,16 +234,18 @@ static bool show(const struct remains *remains, bool as_json)
 	bool ok = true;
 
 	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
+	table.absent[PLACE_COLUMN] = !found->remains[0].count || !found->remains[1].count;
 	json_open(&json, stdout);
 	if (as_json)
 		json_array(&json, NULL);
-	for (unsigned i = 0; ok && i < remains->count; i++) {
-		look(remains->name[i], now.boot, &info);
-		if (as_json)
-			add_json(&json, &info, &now);
-		else
-			ok = add_row(&table, &info, &now);
-	}
+	for (unsigned k = 0; k < found->count; k++)
+		for (unsigned i = 0; ok && i < found->remains[k].count; i++) {
+			look(&found->place[k], found->remains[k].name[i], now.boot, &info);
+			if (as_json)
+				add_json(&json, &info, &now);
+			else
+				ok = add_row(&table, &info, &now);
+		}
 	if (as_json) {
 		json_array_end(&json);
 		json_end(&json);
@@ -211,33 +261,50 @@ static bool show(const struct remains *remains, bool as_json)
 
 int verb_instances(struct ctl *ctl, int argc, char **argv)
 {
-	struct remains remains;
-	int err, status = CTL_DONE;
+	struct found found;
+	int status;
 
 	ctl_options();
 	if (ctl_option(ctl, argc, argv, "") != -1)
 		return CTL_USAGE;
 	if (optind < argc)
 		return ctl_usage(ctl, "instances takes no operands");
-	err = remains_list(&remains);
-	if (err)
-		return ctl_fail("/dev/shm: %s", strerror(-err));
-	if (!remains.count)
+	status = open_places(&found);
+	if (status == CTL_DONE && !found.remains[0].count && !found.remains[1].count)
 		ctl_fail("no owsd has run here");
-	if (!show(&remains, ctl->json))
+	if (!show(&found, ctl->json))
 		status = ctl_fail("no memory");
-	remains_free(&remains);
+	close_places(&found);
 	return status;
 }
 
 /* Look at the heart and the process too: the lock may have been removed or replaced. */
-static bool is_up(const char *name, int *pid)
+static bool is_up(const struct shm_place *place, const char *name, int *pid)
 {
 	struct instance_info info;
 
-	look(name, ows_now(), &info);
+	look(place, name, ows_now(), &info);
 	*pid = info.pid;
 	return instance_is_up(info.state);
+}
+
+/* Remove the instance from the first place that has files of it. */
+static int remove_one(const struct found *found, const char *name, unsigned *files, int *pid)
+{
+	int err = -ENOENT;
+
+	if (!segment_name_ok(name))
+		return -EINVAL;
+	for (unsigned i = 0; i < found->count && err == -ENOENT; i++) {
+		pid_t holder = 0;
+
+		if (is_up(&found->place[i], name, pid))
+			return -EBUSY;
+		err = remains_remove(&found->place[i], name, &holder, files);
+		if (holder)
+			*pid = (int)holder;
+	}
+	return err;
 }
 
 static int refuse(const char *name, int err, int pid)
@@ -257,7 +324,7 @@ static int refuse(const char *name, int err, int pid)
 	case ENOTEMPTY:
 		return ctl_fail(
 			"not all that is left of %s is removed: a directory under one of its names "
-			"in /dev/shm has files",
+			"has files",
 			name);
 	case EINVAL:
 		return ctl_fail("%s cannot be the name of an instance", ctl_word(name));
@@ -267,28 +334,28 @@ static int refuse(const char *name, int err, int pid)
 
 int verb_remove(struct ctl *ctl, int argc, char **argv)
 {
-	int status = CTL_DONE;
+	struct found found;
 	struct json json;
+	int status;
 
 	ctl_options();
 	if (ctl_option(ctl, argc, argv, "") != -1)
 		return CTL_USAGE;
 	if (optind == argc)
 		return ctl_usage(ctl, "remove which instance? owsctl instances lists them");
+	status = open_places(&found);
+	if (status && !found.count)
+		return status;
 	json_open(&json, stdout);
 	if (ctl->json)
 		json_array(&json, NULL);
 	for (int i = optind; i < argc; i++) {
 		const char *name = argv[i];
 		unsigned files = 0;
-		int running = 0, err;
-		pid_t pid = 0;
+		int pid = 0, err = remove_one(&found, name, &files, &pid);
 
-		err = !segment_name_ok(name)  ? -EINVAL
-		      : is_up(name, &running) ? -EBUSY
-		                              : remains_remove(name, &pid, &files);
 		if (err)
-			status = refuse(name, err, pid ? (int)pid : running);
+			status = refuse(name, err, pid);
 		else if (!ctl->json)
 			printf("removed %s: %u file%s\n", name, files, files == 1 ? "" : "s");
 		if (ctl->json) {
@@ -303,5 +370,6 @@ int verb_remove(struct ctl *ctl, int argc, char **argv)
 		json_array_end(&json);
 		json_end(&json);
 	}
+	close_places(&found);
 	return status;
 }

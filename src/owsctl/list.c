@@ -10,11 +10,11 @@
 
 /* clang-format off */
 static const struct table_column columns[] = {
-	{"NAME"}, {"VALUE", .right = true, .most = 40}, {"QUALITY"}, {"ALARM"},
+	{"NAME"}, {"VALUE", .right = true, .most = 40}, {"UNIT"}, {"QUALITY"}, {"ALARM"},
 	{"AGE", .right = true}, {"TYPE"}, {"IO"}, {"TARGET"}, {"PATH"},
 };
 /* clang-format on */
-enum { ALARM = 3 };
+enum { UNIT = 2, ALARM = 4 };
 
 static bool add_row(struct table *table, struct ows *h, const struct row *row,
                     const struct reading *reading)
@@ -28,7 +28,8 @@ static bool add_row(struct table *table, struct ows *h, const struct row *row,
 	if (row->path)
 		ows_target(h, reading->value.target, &target);
 	return table_add(table,
-	                 (const char *const[]){row->name, value, row_quality(row, reading, words),
+	                 (const char *const[]){row->name, value, row_unit(row),
+	                                       row_quality(row, reading, words),
 	                                       standing_text(&row->alarms, alarm), span,
 	                                       value_type_name((enum ows_type)reading->value.type),
 	                                       !row->path    ? ""
@@ -44,10 +45,11 @@ static bool print_table(struct ows *h, struct rows *rows, struct reading *readin
 	bool ok = true;
 
 	table_init(&table, columns, sizeof(columns) / sizeof(columns[0]));
+	table.absent[UNIT] = !rows_have_units(rows);
 	table.absent[ALARM] = !rows_have_alarms(h, rows);
 	for (int i = 0; ok && i < rows->count; i++) {
 		row_read(h, &rows->row[i], ows_now(), reading);
-		reading_round(reading, rows->row[i].path);
+		reading_round(reading, row_decimals(&rows->row[i]));
 		ok = add_row(&table, h, &rows->row[i], reading);
 	}
 	table_fit(&table, 0);
@@ -69,7 +71,7 @@ static void print_json(struct ows *h, struct rows *rows, struct reading *reading
 	for (int i = 0; i < rows->count; i++) {
 		row_read(h, &rows->row[i], now.boot, reading);
 		json_object(&json, NULL);
-		row_json(&json, &rows->row[i]);
+		row_json(&json, h, &rows->row[i], now.boot);
 		reading_json(&json, h, reading, &now);
 		json_object_end(&json);
 	}

@@ -31,16 +31,13 @@ int names_lookup(struct ows *h, const char *instance, const char *name, int *sig
 	return 0;
 }
 
-const char *names_path(struct ows *h, const char *instance, const char *name)
+bool names_info(struct ows *h, const char *instance, const char *name, struct ows_info *info)
 {
 	enum attribute attribute;
-	struct ows_info info;
 	int signal;
 
-	if (names_lookup(h, instance, name, &signal, &attribute) || attribute != ATTR_VALUE ||
-	    ows_info(h, signal, &info))
-		return NULL;
-	return info.path;
+	return names_lookup(h, instance, name, &signal, &attribute) == 0 &&
+	       attribute == ATTR_VALUE && ows_info(h, signal, info) == 0;
 }
 
 bool names_match(const char *name, char *const *patterns, int count)

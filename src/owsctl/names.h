@@ -15,11 +15,8 @@
 int names_lookup(struct ows *h, const char *instance, const char *name, int *signal,
                  enum attribute *attribute);
 
-/*
- * The path of the signal whose value the name means, else NULL. Valid as long as that of
- * ows_info().
- */
-const char *names_path(struct ows *h, const char *instance, const char *name);
+/* Is it the name of a signal's value? Then *info is of that signal. */
+bool names_info(struct ows *h, const char *instance, const char *name, struct ows_info *info);
 
 /* Does one of count patterns (fnmatch) match, or is there none? */
 bool names_match(const char *name, char *const *patterns, int count);

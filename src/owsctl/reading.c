@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* How owsctl prints a value, its quality and its error, for persons and as JSON. */
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "src/owsctl/digits.h"
 #include "src/owsctl/reading.h"
 #include "src/owsctl/text.h"
-#include "src/signal/quantity.h"
 #include "src/signal/value.h"
 
 int reading_get(struct ows *h, int id, int64_t now_ns, struct reading *reading)
@@ -25,26 +24,15 @@ int reading_get(struct ows *h, int id, int64_t now_ns, struct reading *reading)
 	return reading->err;
 }
 
-void reading_round(struct reading *reading, const char *path)
+void reading_round(struct reading *reading, int decimals)
 {
-	struct quantity quantity;
-	char *text = reading->text;
-	size_t n;
+	const struct ows_value *value = &reading->value;
 
-	if (!path || !reading_filled(reading) ||
-	    !value_is_float((enum ows_type)reading->value.type) ||
-	    !isfinite(reading->value.number) || !quantity_of(path, &quantity))
+	if (!reading_filled(reading) || value->type == OWS_STRING)
 		return;
-	n = (size_t)snprintf(text, sizeof(reading->text), "%.*f", quantity.decimals,
-	                     reading->value.number);
-	while (quantity.decimals > 0 && text[n - 1] == '0')
-		n--;
-	if (text[n - 1] == '.')
-		n--;
-	text[n] = '\0';
-	if (strcmp(text, "-0") == 0)
-		memmove(text, "0", n--);
-	reading->len = n;
+	digits_print((enum ows_type)value->type, value->number, value->integer, decimals,
+	             reading->text);
+	reading->len = strlen(reading->text);
 }
 
 bool reading_filled(const struct reading *reading)

@@ -22,11 +22,8 @@ struct reading {
 
 /* Returns reading->err. The text of a number has all its digits. */
 int reading_get(struct ows *h, int id, int64_t now_ns, struct reading *reading);
-/*
- * Round the text for a person: digits beyond the resolution of the property at path (NULL: none)
- * are removed.
- */
-void reading_round(struct reading *reading, const char *path);
+/* Round the text for a person, to at most so many decimals; -1: not known, all are shown. */
+void reading_round(struct reading *reading, int decimals);
 bool reading_good(const struct reading *reading);
 /* Has the signal a value to show? */
 bool reading_filled(const struct reading *reading);

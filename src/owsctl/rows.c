@@ -8,12 +8,14 @@
 #include "src/owsctl/names.h"
 #include "src/owsctl/rows.h"
 
-static int add(struct ows *h, struct rows *rows, const char *name, const struct ows_info *info)
+static int add(struct ows *h, struct rows *rows, const char *name, int signal,
+               const struct ows_info *info)
 {
 	struct row *row = &rows->row[rows->count];
 
 	memset(row, 0, sizeof(*row));
 	row->id = ows_find(h, name);
+	row->signal = signal;
 	row->name = strdup(name);
 	if (!row->name)
 		return -ENOMEM;
@@ -25,7 +27,7 @@ static int add(struct ows *h, struct rows *rows, const char *name, const struct 
 	row->fresh = info->fresh;
 	row->alarm = info->alarm;
 	row->path = strdup(info->path);
-	return row->path ? 0 : -ENOMEM;
+	return row->path && meaning_of(h, info, &row->meaning) ? 0 : -ENOMEM;
 }
 
 int rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool driver,
@@ -41,13 +43,13 @@ int rows_collect(struct ows *h, char *const *patterns, int pattern_count, bool d
 		const struct attribute_def *def = &attribute_table[i];
 
 		if (def->driver && def->readable && names_match(def->name, patterns, pattern_count))
-			err = add(h, rows, def->name, NULL);
+			err = add(h, rows, def->name, -1, NULL);
 	}
 	for (int i = 0; err == 0 && i < count; i++) {
 		struct ows_info info;
 
 		if (ows_info(h, i, &info) == 0 && names_match(info.name, patterns, pattern_count))
-			err = add(h, rows, info.name, &info);
+			err = add(h, rows, info.name, i, &info);
 	}
 	if (err)
 		rows_free(rows);
@@ -59,6 +61,7 @@ void rows_free(struct rows *rows)
 	for (int i = 0; i < rows->count; i++) {
 		free(rows->row[i].name);
 		free(rows->row[i].path);
+		meaning_free(&rows->row[i].meaning);
 	}
 	free(rows->row);
 	rows->row = NULL;
@@ -141,7 +144,25 @@ bool row_changed(struct row *row, const struct reading *reading)
 	return changed;
 }
 
-void row_json(struct json *json, const struct row *row)
+const char *row_unit(const struct row *row)
+{
+	return row->path ? row->meaning.unit : "";
+}
+
+int row_decimals(const struct row *row)
+{
+	return row->path ? row->meaning.decimals : -1;
+}
+
+bool rows_have_units(const struct rows *rows)
+{
+	for (int i = 0; i < rows->count; i++)
+		if (*row_unit(&rows->row[i]))
+			return true;
+	return false;
+}
+
+void row_json(struct json *json, struct ows *h, const struct row *row, int64_t now_ns)
 {
 	json_string(json, "name", row->name);
 	json_string(json, "path", row->path);
@@ -154,5 +175,6 @@ void row_json(struct json *json, const struct row *row)
 		json_bool(json, "commanded", row->commanded[0] == '1');
 	else
 		json_number(json, "commanded", row->commanded);
+	meaning_json(json, h, &row->meaning, now_ns);
 	standing_json(json, &row->alarms);
 }

@@ -3,16 +3,19 @@
 #ifndef OWSCTL_ROWS_H
 #define OWSCTL_ROWS_H
 
+#include "src/owsctl/meaning.h"
 #include "src/owsctl/reading.h"
 #include "src/owsctl/standing.h"
 #include "src/signal/value.h"
 
 struct row {
-	int id; /* for ows_get(); stays valid over ows_reopen() */
+	int id;     /* for ows_get(); stays valid over ows_reopen() */
+	int signal; /* as in ows_info(); -1: a driver signal, which stand first */
 	char *name;
 	char *path;   /* NULL: a driver signal */
 	uint8_t type; /* enum ows_type */
 	bool output, fresh, alarm;
+	struct meaning meaning;         /* of a signal */
 	struct ows_alarm_state alarms;  /* of the last row_read() */
 	char commanded[VALUE_TEXT_MAX]; /* the last row_read(): the command; "": none or a string */
 	bool differs; /* the last row_read(): the command differs from the value */
@@ -47,7 +50,13 @@ const char *row_quality(const struct row *row, const struct reading *reading,
 /* Have value, quality, error or an alarm changed since the last call? */
 bool row_changed(struct row *row, const struct reading *reading);
 
+/* The unit of the value, "": none; and its decimals, -1: not known. */
+const char *row_unit(const struct row *row);
+int row_decimals(const struct row *row);
+/* Has one of the signals a unit? */
+bool rows_have_units(const struct rows *rows);
+
 /* name, output, path, alarms and the like as members of a JSON object. */
-void row_json(struct json *json, const struct row *row);
+void row_json(struct json *json, struct ows *h, const struct row *row, int64_t now_ns);
 
 #endif

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The alarms that this user's owsctl has read. Each run of owsctl is a new reader to libows, but
- * not to its user: what it has read of _Alarm stands in /dev/shm/owsd.NAME.seen.UID until the next
- * run.
+ * not to its user: what it has read of _Alarm stands in the file NAME.seen until the next run, in
+ * the place of the user's own owsd, where nobody else can write.
  *
  *     START              of owsd, in nanoseconds: what another owsd counted means nothing
  *     OCCURRENCES NAME   of each signal whose _Alarm was read
@@ -19,24 +19,27 @@
 
 #include "src/owsctl/names.h"
 #include "src/owsctl/seen.h"
+#include "src/shm/segment.h"
 
 #define TEXT_MAX (1024 * 1024)
 
 /* Open and lock the file, which belongs to this user alone; -1: it is not available now. */
 static int open_file(const char *instance)
 {
-	char path[96];
+	char name[SEGMENT_FILE];
+	struct shm_place place;
 	struct stat st;
 	int fd;
 
-	if (strchr(instance, '/'))
+	if (place_make(&place))
 		return -1;
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%.40s.seen.%u", instance, (unsigned)geteuid());
-	fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0600);
+	fd = openat(place.fd, segment_file(instance, "seen", name),
+	            O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0600);
+	place_close(&place);
 	if (fd < 0)
 		return -1;
 	if (fstat(fd, &st) == 0 && S_ISREG(st.st_mode) && st.st_uid == geteuid() &&
-	    st.st_nlink == 1 && st.st_size <= TEXT_MAX && flock(fd, LOCK_EX | LOCK_NB) == 0)
+	    st.st_size <= TEXT_MAX && flock(fd, LOCK_EX | LOCK_NB) == 0)
 		return fd;
 	close(fd);
 	return -1;

@@ -11,8 +11,7 @@
 #include "src/owsctl/names.h"
 #include "src/owsctl/reading.h"
 #include "src/owsctl/verbs.h"
-#include "src/shm/lock.h"
-#include "src/shm/remains.h"
+#include "src/owsctl/who.h"
 #include "src/signal/value.h"
 
 struct order {
@@ -23,6 +22,7 @@ struct order {
 	enum ows_type type;
 	int64_t value; /* numbers */
 	uint32_t stamp;
+	bool input; /* the value of one */
 	bool confirmed;
 };
 
@@ -78,6 +78,7 @@ static int prepare(const struct ctl *ctl, struct ows *h, struct order *order)
 		if (ows_info(h, signal, &info) != 0)
 			return ctl_fail("%s is not there any more", order->name);
 		order->type = (enum ows_type)info.type;
+		order->input = !info.output;
 	}
 	if (order->type == OWS_STRING)
 		return CTL_DONE;
@@ -107,6 +108,16 @@ static int put(struct ows *h, struct order *order)
 	return ows_set_integer(h, order->id, order->value, &order->stamp);
 }
 
+/* Is it an input, or has this user no right to it? */
+static int refuse_access(const struct order *order)
+{
+	if (order->input)
+		return ctl_fail("%s is not writable: it is an input, and its _WriteEnable is 0",
+		                order->name);
+	return ctl_fail("no right to set %s: ControlAllow in the configuration says who has it",
+	                order->name);
+}
+
 static int send(struct ows *h, struct order *order)
 {
 	struct ows_daemon daemon = {0};
@@ -127,16 +138,13 @@ static int send(struct ows *h, struct order *order)
 		               ? ctl_fail("%s: owsd is just starting again, try again", order->name)
 		               : ctl_fail("%s was not set: owsd is not running", order->name);
 	case EACCES:
-		return ctl_fail("%s is not writable: it is an input, and its _WriteEnable is 0",
-		                order->name);
+		return refuse_access(order);
 	case EROFS:
 		return ctl_fail("%s cannot be set: the signal is an input (Writable is off in the "
 		                "configuration)",
 		                order->name);
 	case ERANGE:
 		return ctl_fail("%s: %s is too long or out of range", order->name, order->text);
-	case EBUSY:
-		return ctl_fail("%s: another program is just setting it, try again", order->name);
 	}
 	return ctl_fail("%s: %s", order->name, error_text(err));
 }
@@ -206,6 +214,31 @@ static const char *why_not(const struct reading *reading, char words[READING_WOR
 	return words;
 }
 
+/* Has owsd refused it, or another program commanded something else? True after printing that. */
+static bool print_lost(struct ows *h, const struct order *order)
+{
+	struct ows_command command = {0};
+	struct ows_origin origin = {0};
+	char words[ERROR_WORDS], who[WHO_LINE];
+
+	if (order->attribute != ATTR_VALUE)
+		return false;
+	ows_command(h, order->id, &command);
+	if (command.taken == order->stamp && command.refused) {
+		ctl_fail("%s was refused: %s", order->name,
+		         command.refused == -ERANGE
+		                 ? "the type cannot hold it, or it is beyond the signal's range"
+		                 : error_words(command.refused, words));
+		return true;
+	}
+	ows_origin(h, order->id, &origin);
+	if (origin.own || !origin.who.serial || (int32_t)(command.taken - order->stamp) < 0)
+		return false;
+	ctl_fail("%s was not confirmed: %s has set it since", order->name,
+	         who_line(&origin.who, who));
+	return true;
+}
+
 static void print_why(struct ows *h, const struct order *order, const char *seconds,
                       struct reading *reading)
 {
@@ -215,6 +248,8 @@ static void print_why(struct ows *h, const struct order *order, const char *seco
 	ows_daemon(h, ows_now(), &daemon);
 	if (!daemon.alive)
 		ctl_fail("%s was not confirmed: owsd is not running", order->name);
+	else if (print_lost(h, order))
+		return;
 	else if (order->attribute == ATTR_VALUE && write_disabled(h, order))
 		ctl_fail("%s was not confirmed: writing is disabled (%s_WriteEnable is 0)",
 		         order->name, order->name);
@@ -256,19 +291,6 @@ static int refuse_twice(const struct order *orders, int count)
 	return CTL_DONE;
 }
 
-/*
- * A stopped heart shows after two seconds, a released lock at once. Without the right to look at
- * the lock the heart decides.
- */
-static bool was_killed(const struct ctl *ctl, struct ows *h)
-{
-	struct ows_daemon daemon = {0};
-	pid_t holder;
-
-	ows_daemon(h, ows_now(), &daemon);
-	return daemon.alive && segment_lock_look(ctl->instance, &holder) == 0;
-}
-
 static int set_all(struct ctl *ctl, struct ows *h, struct order *orders, int count,
                    const char *seconds, int64_t limit_ns)
 {
@@ -276,20 +298,18 @@ static int set_all(struct ctl *ctl, struct ows *h, struct order *orders, int cou
 	struct ows_daemon daemon = {0};
 	int status = CTL_DONE;
 
+	ows_daemon(h, ows_now(), &daemon);
+	if (!daemon.alive)
+		return ctl_fail("owsd is not running: nothing was set");
 	for (int i = 0; i < count; i++)
 		if (prepare(ctl, h, &orders[i]) != CTL_DONE)
 			status = CTL_FAILED;
 	if (status == CTL_DONE)
 		status = refuse_twice(orders, count);
-	if (status == CTL_DONE && was_killed(ctl, h))
-		return ctl_fail("owsd is not running: nothing was set");
 	for (int i = 0; i < count && status == CTL_DONE; i++)
 		status = send(h, &orders[i]);
 	if (status)
 		return status;
-	ows_daemon(h, ows_now(), &daemon);
-	if (!daemon.alive && !seconds)
-		return ctl_fail("owsd is not running: nothing was set");
 	if (seconds && await(h, orders, count, limit_ns, &reading) != CTL_DONE) {
 		status = CTL_FAILED;
 		for (int i = 0; i < count; i++)

@@ -41,9 +41,14 @@ const char *standing_text(const struct ows_alarm_state *state, char words[STANDI
 	} else if (state->limit_state == OWS_LIMIT_RETURNED) {
 		end = ", returned";
 	}
-	if (!standing_any(state))
+	if (state->shelved) {
+		mark = "";
+		end = state->limit_kind ? ", shelved" : "shelved";
+		kind = state->limit_kind ? kind : "";
+	}
+	if (!standing_any(state) && !state->shelved)
 		snprintf(words, STANDING_WORDS, "-");
-	else if (state->limit_state == OWS_LIMIT_NORMAL)
+	else if (state->limit_state == OWS_LIMIT_NORMAL && !state->shelved)
 		snprintf(words, STANDING_WORDS, "%s", device);
 	else
 		snprintf(words, STANDING_WORDS, "%s%s%s%s%s", device, *device ? "; " : "", mark,
@@ -71,4 +76,5 @@ void standing_json(struct json *json, const struct ows_alarm_state *state)
 		add(json, ows_alarm_kind_text(state->limit_kind),
 		    ows_limit_state_text(state->limit_state), false);
 	json_array_end(json);
+	json_bool(json, "shelved", state->shelved);
 }

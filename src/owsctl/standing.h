@@ -13,6 +13,7 @@ struct ows_alarm_state standing_of(struct ows *h, int id);
 
 /* Can the signal have alarms? */
 bool standing_possible(const struct ows_alarm_state *state);
+/* An alarm that is shelved does not stand. */
 bool standing_any(const struct ows_alarm_state *state);
 /*
  * Does the signal have an alarm that nobody has acknowledged? A device alarm cannot be
@@ -22,12 +23,12 @@ bool standing_wants_eyes(const struct ows_alarm_state *state);
 
 #define STANDING_WORDS 64
 /*
- * "! high", "high, acknowledged", "! high, returned", "! device"; "-" without an alarm. The mark
- * stands before an alarm that nobody has acknowledged. Returns words.
+ * "! high", "high, acknowledged", "! high, returned", "! device", "high, shelved"; "-" without an
+ * alarm. The mark stands before an alarm that nobody has acknowledged. Returns words.
  */
 const char *standing_text(const struct ows_alarm_state *state, char words[STANDING_WORDS]);
 
-/* The member "alarms": an array with an object for each present alarm. */
+/* The member "alarms": an array with an object for each present alarm; and the member "shelved". */
 void standing_json(struct json *json, const struct ows_alarm_state *state);
 
 #endif

@@ -17,10 +17,16 @@ void table_init(struct table *table, const struct table_column *columns, unsigne
 	table->count = count;
 }
 
-void table_free(struct table *table)
+void table_clear(struct table *table)
 {
 	for (size_t i = 0; i < table->rows * table->count; i++)
 		free(table->cells[i]);
+	table->rows = 0;
+}
+
+void table_free(struct table *table)
+{
+	table_clear(table);
 	free(table->cells);
 	table_init(table, table->columns, table->count);
 }

@@ -32,6 +32,8 @@ struct table {
 
 void table_init(struct table *table, const struct table_column *columns, unsigned count);
 void table_free(struct table *table);
+/* Remove the rows; what the caller set stays. */
+void table_clear(struct table *table);
 /* Add a row; cells are copied and cleaned. false: no memory. */
 bool table_add(struct table *table, const char *const *cells);
 /* Choose the widths; columns 0: no limit. */

@@ -58,6 +58,7 @@ static int print_end(struct ctl *ctl, struct waiting *waiting, bool it_came)
 	struct reading *reading = waiting->reading;
 	struct when now = when_now();
 	char words[READING_WORDS];
+	struct ows_info info;
 	struct json json;
 
 	if (ctl->json) {
@@ -69,7 +70,8 @@ static int print_end(struct ctl *ctl, struct waiting *waiting, bool it_came)
 		json_object_end(&json);
 		json_end(&json);
 	} else if (it_came) {
-		reading_round(reading, names_path(waiting->h, ctl->instance, waiting->name));
+		if (names_info(waiting->h, ctl->instance, waiting->name, &info))
+			reading_round(reading, info.decimals);
 		fwrite(reading->text, 1, reading->len, stdout);
 		putchar('\n');
 	}

@@ -61,7 +61,7 @@ static void print_change(struct watch *watch, const struct row *row, const struc
 	if (watch->ctl->json) {
 		json_object(&json, NULL);
 		json_string(&json, "time", when_iso(now, now->boot, text));
-		row_json(&json, row);
+		row_json(&json, watch->h, row, now->boot);
 		reading_json(&json, watch->h, reading, now);
 		json_object_end(&json);
 		json_end(&json);
@@ -78,21 +78,37 @@ static void print_change(struct watch *watch, const struct row *row, const struc
 	putchar('\n');
 }
 
+static void print_if_changed(struct watch *watch, struct row *row, const struct when *now)
+{
+	if (watch->left == 0)
+		return;
+	row_read(watch->h, row, now->boot, watch->reading);
+	if (!watch->ctl->json)
+		reading_round(watch->reading, row_decimals(row));
+	if (!row_changed(row, watch->reading))
+		return;
+	print_change(watch, row, now);
+	if (watch->left > 0)
+		watch->left--;
+}
+
 static void print_changes(struct watch *watch)
 {
+	bool all = watch->changed_count < 0;
 	struct when now = when_now();
 
-	for (int i = 0; i < watch->rows.count && watch->left != 0; i++) {
+	for (int i = 0; i < watch->rows.count; i++) {
 		struct row *row = &watch->rows.row[i];
 
-		row_read(watch->h, row, now.boot, watch->reading);
-		if (!watch->ctl->json)
-			reading_round(watch->reading, row->path);
-		if (!row_changed(row, watch->reading))
-			continue;
-		print_change(watch, row, &now);
-		if (watch->left > 0)
-			watch->left--;
+		if (!all && row->signal >= 0)
+			break;
+		print_if_changed(watch, row, &now);
+	}
+	for (int i = 0; i < watch->changed_count; i++) {
+		int row = watch->row_of[watch->changed[i]];
+
+		if (row >= 0)
+			print_if_changed(watch, &watch->rows.row[row], &now);
 	}
 }
 
@@ -125,12 +141,12 @@ static int begin(struct watch *watch, bool screen)
 	if (watch_collect(watch, &daemon) < 0)
 		return ctl_fail("no memory");
 	if (watch->rows.count == 0 && watch->pattern_count > 0) {
-		rows_free(&watch->rows);
+		watch_free(watch);
 		return ctl_fail("no signal matches");
 	}
 	terminal_catch_signals();
 	status = screen ? watch_screen(watch) : watch_lines(watch);
-	rows_free(&watch->rows);
+	watch_free(watch);
 	return status;
 }
 

@@ -19,13 +19,14 @@
 static const struct table_column columns[] = {
 	{"NAME"},
 	{"VALUE", .right = true, .most = 32},
+	{"UNIT", .drop = 4},
 	{"QUALITY", .shrink = 13}, /* "device absent" */
 	{"ALARM", .shrink = 8},
 	{"AGE", .right = true, .drop = 2},
 	{"PATH", .drop = 1, .shrink = 16}, /* "/28.551DDF030000" */
 	{"TARGET", .drop = 3, .spare = true},
 };
-enum { ALARM = 3, TARGET = 6 };
+enum { UNIT = 2, ALARM = 4, TARGET = 7 };
 #define COLUMNS (sizeof(columns) / sizeof(columns[0]))
 
 struct screen {
@@ -108,10 +109,10 @@ static bool add_row(struct watch *watch, struct table *table, const struct row *
 		when_span(reading->value.age_ns, span);
 	if (row->path)
 		ows_target(watch->h, reading->value.target, &target);
-	return table_add(table,
-	                 (const char *const[]){row->name, value, row_quality(row, reading, words),
-	                                       standing_text(&row->alarms, alarm), span,
-	                                       row->path ? row->path : "", target.name});
+	return table_add(table, (const char *const[]){row->name, value, row_unit(row),
+	                                              row_quality(row, reading, words),
+	                                              standing_text(&row->alarms, alarm), span,
+	                                              row->path ? row->path : "", target.name});
 }
 
 /* Red for a value that is not good, yellow for an alarm to acknowledge; the words state both. */
@@ -150,7 +151,7 @@ static bool fill(struct screen *screen, struct table *table, const char **styles
 		struct row *row = &watch->rows.row[i];
 
 		row_read(watch->h, row, now, watch->reading);
-		reading_round(watch->reading, row->path);
+		reading_round(watch->reading, row_decimals(row));
 		screen->not_good += !reading_good(watch->reading);
 		screen->in_alarm += standing_any(&row->alarms);
 		screen->alarms |= standing_possible(&row->alarms);
@@ -165,6 +166,7 @@ static bool fill(struct screen *screen, struct table *table, const char **styles
 	}
 	snprintf(screen->target, sizeof(screen->target), "%s",
 	         served >= 0 && ows_target(watch->h, served, &target) == 0 ? target.name : "");
+	table->absent[UNIT] = !rows_have_units(&watch->rows);
 	table->absent[ALARM] = !screen->alarms;
 	table->absent[TARGET] = screen->target[0] != '\0';
 	return true;

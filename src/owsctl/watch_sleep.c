@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* How `owsctl watch` sleeps between two looks, and follows owsd over restarts. */
 #include <errno.h>
+#include <stdlib.h>
 #include <time.h>
 
 #include "hal/bus/time.h"
@@ -8,7 +9,7 @@
 #include "src/owsctl/terminal.h"
 #include "src/owsctl/watch_sleep.h"
 
-#define LONGEST_SLEEP (500 * NS_PER_MS) /* an age or a dead owsd sends no wake-up */
+#define LONGEST_SLEEP (500 * NS_PER_MS) /* an age sends no wake-up, nor does a closed pipe */
 
 bool watch_over(const struct watch *watch)
 {
@@ -17,14 +18,46 @@ bool watch_over(const struct watch *watch)
 
 int watch_collect(struct watch *watch, const struct ows_daemon *daemon)
 {
+	int count = ows_count(watch->h);
+
 	watch->generation = daemon->generation;
 	watch->alive = daemon->alive;
-	watch->news = 0;
-	rows_free(&watch->rows);
-	if (rows_collect(watch->h, watch->patterns, watch->pattern_count, watch->driver,
-	                 &watch->rows) != 0)
+	watch->changed_count = -1;
+	watch->news++;
+	watch_free(watch);
+	watch->row_of = malloc(((size_t)count + 1) * sizeof(*watch->row_of));
+	if (!watch->row_of || rows_collect(watch->h, watch->patterns, watch->pattern_count,
+	                                   watch->driver, &watch->rows) != 0)
 		return -ENOMEM;
+	for (int i = 0; i < count; i++)
+		watch->row_of[i] = -1;
+	for (int i = 0; i < watch->rows.count; i++)
+		if (watch->rows.row[i].signal >= 0)
+			watch->row_of[watch->rows.row[i].signal] = i;
 	return WATCH_RESTARTED;
+}
+
+void watch_free(struct watch *watch)
+{
+	rows_free(&watch->rows);
+	free(watch->row_of);
+	watch->row_of = NULL;
+}
+
+/* Wait for changes, and look for a new owsd when the present one is gone. 0 or -ENOMEM. */
+static int follow(struct watch *watch, int64_t timeout_ns)
+{
+	int n = ows_changes(watch->h, &watch->cursor, watch->changed, WATCH_BATCH, timeout_ns);
+
+	if (n == -ENOMEM)
+		return n;
+	if (n == -ESTALE)
+		ows_reopen(watch->h);
+	if (n == -EINTR)
+		n = 0;
+	watch->changed_count = n < 0 ? -1 : n;
+	watch->news += n != 0;
+	return 0;
 }
 
 /* Changes may come faster than anybody reads them. */
@@ -47,8 +80,9 @@ int watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns)
 		timeout_ns = LONGEST_SLEEP;
 	if (timeout_ns > watch->end_ns - now)
 		timeout_ns = watch->end_ns - now;
-	if (timeout_ns > 0)
-		ctl_sleep(watch->h, &watch->news, timeout_ns);
+	watch->changed_count = 0;
+	if (timeout_ns > 0 && follow(watch, timeout_ns) != 0)
+		return -ENOMEM;
 	pause_until(now + least_ns);
 	err = ows_daemon(watch->h, ows_now(), &daemon);
 	if (err && err != -ESTALE)

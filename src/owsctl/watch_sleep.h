@@ -5,6 +5,8 @@
 
 #include "src/owsctl/rows.h"
 
+#define WATCH_BATCH 1024
+
 struct watch {
 	struct ctl *ctl;
 	struct ows *h;
@@ -12,7 +14,11 @@ struct watch {
 	int pattern_count;
 	bool driver;
 	struct rows rows;
-	uint32_t news;
+	int *row_of; /* of a signal: its row, -1: it is not watched */
+	struct ows_cursor cursor;
+	int changed[WATCH_BATCH]; /* signals since the last sleep began */
+	int changed_count;        /* -1: all of them */
+	uint32_t news;            /* counts sleeps that ended with a change */
 	uint32_t generation;
 	bool alive;
 	int64_t left;   /* changes to show yet; negative: no limit */
@@ -28,9 +34,11 @@ enum watch_event {
 };
 /* Collect the rows of the present owsd. WATCH_RESTARTED or -ENOMEM. */
 int watch_collect(struct watch *watch, const struct ows_daemon *daemon);
+/* Free what watch_collect() made. */
+void watch_free(struct watch *watch);
 /*
- * Sleep until news, at least least_ns (below 1 s) and at most timeout_ns, and follow owsd over
- * restarts. -ENOMEM, else an event.
+ * Sleep until a signal changes, at least least_ns (below 1 s) and at most timeout_ns, and follow
+ * owsd over restarts. -ENOMEM, else an event.
  */
 int watch_sleep(struct watch *watch, int64_t least_ns, int64_t timeout_ns);
 /* Is it time to end? */

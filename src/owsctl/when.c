@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Prints times as local time with its offset, and spans. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -53,4 +54,25 @@ const char *when_span(int64_t ns, char text[WHEN_TEXT])
 	else
 		snprintf(text, WHEN_TEXT, "%lldd", (long long)(s / 86400));
 	return text;
+}
+
+bool when_parse(const char *text, int64_t *ns)
+{
+	static const struct {
+		const char *word;
+		double seconds;
+	} units[] = {{"", 1}, {"s", 1}, {"m", 60}, {"h", 3600}, {"d", 86400}};
+	char *end;
+	double number = strtod(text, &end);
+
+	for (size_t i = 0; end != text && i < sizeof(units) / sizeof(units[0]); i++) {
+		if (strcmp(end, units[i].word) != 0)
+			continue;
+		number *= units[i].seconds;
+		if (!(number > 0) || number > 366 * 86400.0)
+			return false;
+		*ns = (int64_t)(number * 1e9);
+		return true;
+	}
+	return false;
 }

@@ -3,6 +3,7 @@
 #ifndef OWSCTL_WHEN_H
 #define OWSCTL_WHEN_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* One moment on both clocks, ns. */
@@ -16,5 +17,7 @@ struct when when_now(void);
 const char *when_iso(const struct when *now, int64_t boot_ns, char text[WHEN_TEXT]);
 /* A time span in a few characters: "0.4s" "12s" "3m" "5h" "2d". Returns text. */
 const char *when_span(int64_t ns, char text[WHEN_TEXT]);
+/* Parse a time span: a number above 0 of seconds, or one with s, m, h or d. False: it is none. */
+bool when_parse(const char *text, int64_t *ns);
 
 #endif

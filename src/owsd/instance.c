@@ -11,6 +11,8 @@
 #include "src/owsd/instance.h"
 #include "src/shm/hint.h"
 #include "src/shm/lock.h"
+#include "src/shm/owner.h"
+#include "src/shm/retire.h"
 #include "src/shm/segment.h"
 
 #define LOOK_NS NS_PER_S
@@ -19,22 +21,17 @@
  * The lock is the last: as long as it exists, no other owsd creates the files that are being
  * removed.
  */
-static const char *const kinds[] = {"image", "command", "lock"};
+static const char *const kinds[] = {"image", "force", "control", "lock"};
 #define KINDS (sizeof(kinds) / sizeof(kinds[0]))
 
-static void file_path(const char *name, unsigned kind, char path[80])
-{
-	snprintf(path, 80, "/dev/shm/owsd.%.32s.%s", name, kinds[kind]);
-}
-
-static unsigned look_before(const char *name)
+static unsigned look_before(const struct shm_place *place, const char *name)
 {
 	unsigned before = 0;
-	char path[80];
+	char file[SEGMENT_FILE];
 
 	for (unsigned i = 0; i < KINDS; i++) {
-		file_path(name, i, path);
-		if (faccessat(AT_FDCWD, path, F_OK, AT_SYMLINK_NOFOLLOW) == 0 || errno != ENOENT)
+		segment_file(name, kinds[i], file);
+		if (faccessat(place->fd, file, F_OK, AT_SYMLINK_NOFOLLOW) == 0 || errno != ENOENT)
 			before |= 1u << i;
 	}
 	return before;
@@ -43,17 +40,30 @@ static unsigned look_before(const char *name)
 int instance_take(struct instance *instance, const char *name, struct log *log, char *why,
                   size_t why_size)
 {
-	char hint[SEGMENT_HINT];
+	char hint[SEGMENT_HINT], fault[PLACE_FAULT];
 	bool stolen = false;
 	pid_t owner = 0;
-	unsigned before = look_before(name);
-	int lock = segment_lock(name, &owner, &stolen);
+	int lock, err;
 
-	*instance = (struct instance){
-		.name = name,
-		.lock = lock < 0 ? -1 : lock,
-		.before = before,
-	};
+	*instance = (struct instance){.name = name, .lock = -1};
+	err = place_make(&instance->place);
+	if (err) {
+		snprintf(why, why_size, "%s", place_fault(&instance->place, err, fault));
+		return err;
+	}
+	owner = retire_running(RETIRE_FOLDER, name);
+	if (owner) {
+		snprintf(why, why_size,
+		         "instance %s is already served by process %d, an older owsd; end it or "
+		         "choose another name with -n",
+		         name, (int)owner);
+		place_close(&instance->place);
+		return -EBUSY;
+	}
+	instance->before = look_before(&instance->place, name);
+	lock = segment_lock(&instance->place, name, &owner, &stolen);
+	if (lock >= 0)
+		instance->lock = lock;
 	if (lock == -EBUSY)
 		snprintf(why, why_size,
 		         "instance %s is already served by process %d; end it or "
@@ -61,17 +71,40 @@ int instance_take(struct instance *instance, const char *name, struct log *log, 
 		         name, (int)owner);
 	else if (lock < 0)
 		snprintf(why, why_size, "cannot lock instance %s: %s%s", name, strerror(-lock),
-		         segment_hint(name, lock, hint));
+		         segment_hint(&instance->place, name, lock, hint));
 	if (stolen)
 		log_warning(
 			log,
 			"the previous owsd is stuck in the kernel: owsd starts with a new lock");
-	return lock < 0 ? lock : 0;
+	if (lock >= 0)
+		return 0;
+	place_close(&instance->place);
+	return lock;
+}
+
+void instance_retire_old(const struct instance *instance, struct log *log)
+{
+	int count = retire_segments(RETIRE_FOLDER, instance->name);
+
+	if (count > 0)
+		log_warning(
+			log,
+			"an older owsd has left segments in " RETIRE_FOLDER
+			": programs with its library have no values and cannot set any more, until "
+			"they are built with the present one");
+	else if (count < 0 && (geteuid() == 0 || owner_is_service()))
+		log_warning(
+			log,
+			"segments that an older owsd has left in " RETIRE_FOLDER
+			" cannot be retired: %s: programs with its library may set outputs into "
+			"the void",
+			strerror(-count));
 }
 
 bool instance_keep(struct instance *instance, struct log *log)
 {
 	int64_t now_ns = ows_now();
+	const struct shm_place *place = &instance->place;
 	char hint[SEGMENT_HINT];
 	bool stolen;
 	pid_t owner = 0;
@@ -80,22 +113,22 @@ bool instance_keep(struct instance *instance, struct log *log)
 	if (now_ns < instance->look_ns)
 		return true;
 	instance->look_ns = now_ns + LOOK_NS;
-	if (segment_lock_held(instance->lock, instance->name))
+	if (segment_lock_held(&instance->place, instance->lock, instance->name))
 		return true;
-	lock = segment_lock(instance->name, &owner, &stolen);
+	lock = segment_lock(place, instance->name, &owner, &stolen);
 	if (lock >= 0) {
 		close(instance->lock);
 		instance->lock = lock;
 		instance->rate = (struct log_rate){0};
-		log_warning(log, "/dev/shm/owsd.%s.lock was removed: made again", instance->name);
+		log_warning(log, "%s/%s.lock was removed: made again", place->path, instance->name);
 	} else if (lock == -EBUSY && owner != getpid()) {
-		log_err(log,
-		        "/dev/shm/owsd.%s.lock was removed, and process %d serves the instance now",
-		        instance->name, (int)owner);
+		log_err(log, "%s/%s.lock was removed, and process %d serves the instance now",
+		        place->path, instance->name, (int)owner);
 		return false;
 	} else if (log_rate(&instance->rate, now_ns)) {
-		log_err(log, "/dev/shm/owsd.%s.lock was removed and cannot be made again: %s%s",
-		        instance->name, strerror(-lock), segment_hint(instance->name, lock, hint));
+		log_err(log, "%s/%s.lock was removed and cannot be made again: %s%s", place->path,
+		        instance->name, strerror(-lock),
+		        segment_hint(place, instance->name, lock, hint));
 	}
 	return true;
 }
@@ -105,17 +138,19 @@ void instance_leave(struct instance *instance)
 	if (instance->lock >= 0)
 		close(instance->lock);
 	instance->lock = -1;
+	place_close(&instance->place);
 }
 
 void instance_abandon(struct instance *instance)
 {
-	char path[80];
+	char file[SEGMENT_FILE];
 
-	if (instance->lock >= 0 && segment_lock_held(instance->lock, instance->name))
+	if (instance->lock >= 0 &&
+	    segment_lock_held(&instance->place, instance->lock, instance->name))
 		for (unsigned i = 0; i < KINDS; i++) {
-			file_path(instance->name, i, path);
+			segment_file(instance->name, kinds[i], file);
 			if (!(instance->before & 1u << i))
-				unlink(path);
+				unlinkat(instance->place.fd, file, 0);
 		}
 	instance_leave(instance);
 }

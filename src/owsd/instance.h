@@ -9,19 +9,26 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "src/shm/place.h"
 #include "src/text/log.h"
 
 struct instance {
 	const char *name;
-	int lock;        /* -1: not held */
-	unsigned before; /* a bit for each file that was there before the start */
-	int64_t look_ns; /* not sooner */
+	struct shm_place place; /* open as long as the lock is held */
+	int lock;               /* -1: not held */
+	unsigned before;        /* a bit for each file that was there before the start */
+	int64_t look_ns;        /* not sooner */
 	struct log_rate rate;
 };
 
-/* Returns 0, or a negative errno with the reason in why. Does not wait. */
+/*
+ * Open the place, made if it is missing, and take the lock. Returns 0, or a negative errno with the
+ * reason in why. Does not wait.
+ */
 int instance_take(struct instance *instance, const char *name, struct log *log, char *why,
                   size_t why_size);
+/* Retire what an owsd of layout 1 has left, and log it; once the new segments are in place. */
+void instance_retire_old(const struct instance *instance, struct log *log);
 /*
  * Check, once a second, that the lock's file still exists, and take the lock again if the file was
  * removed. Returns false, after logging why, when another owsd was first: then this owsd has to

@@ -29,9 +29,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+/* Five for each of 128 programs that command, 512 for clients of the served protocol, and some. */
+#define DESCRIPTORS 1280
 #define STOP_NS (2 * NS_PER_S)
 #define SUPERVISE_NS (500 * NS_PER_MS)
 #define AGAIN_NS (20 * NS_PER_MS) /* a reload that has to wait */
@@ -156,6 +159,24 @@ static void catch_signals(void)
 	sigaction(SIGPIPE, &action, NULL);
 }
 
+/* Use all descriptors that the hard limit allows. */
+static void raise_descriptors(struct log *log)
+{
+	struct rlimit files;
+
+	if (getrlimit(RLIMIT_NOFILE, &files) < 0)
+		return;
+	files.rlim_cur = files.rlim_max;
+	if (setrlimit(RLIMIT_NOFILE, &files) < 0 && getrlimit(RLIMIT_NOFILE, &files) < 0)
+		return;
+	if (files.rlim_cur < DESCRIPTORS)
+		log_warning(
+			log,
+			"at most %llu descriptors (RLIMIT_NOFILE): too few for all programs that "
+			"may connect, which need %d",
+			(unsigned long long)files.rlim_cur, DESCRIPTORS);
+}
+
 /* The targets as in the file; text ends with the number of those that do not fit. */
 static void name_targets(const struct config *config, char *text, size_t size)
 {
@@ -270,6 +291,7 @@ static int run(const struct arguments *a, struct config *config, struct instance
 	struct host_setup setup = {
 		.config = config,
 		.instance = a->instance,
+		.place = &instance->place,
 		.log = log,
 		.rt_priority = a->rt_priority,
 	};
@@ -287,6 +309,7 @@ static int run(const struct arguments *a, struct config *config, struct instance
 		complain("%s", why);
 		return EXIT_RUN;
 	}
+	instance_retire_old(instance, log);
 	report_served(host, a, log, &notify);
 	notify_send(&notify, NOTIFY_READY);
 	ours = supervise(host, a, instance, log, &notify, prefix);
@@ -363,6 +386,7 @@ int main(int argc, char **argv)
 	}
 	supervisor_word = log_word(log);
 	catch_signals();
+	raise_descriptors(log);
 	if (instance_take(&instance, a.instance, log, why, sizeof(why))) {
 		complain("%s", why);
 		return EXIT_RUN;

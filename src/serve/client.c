@@ -10,6 +10,7 @@
 #include "hal/owfs/frame.h"
 #include "src/serve/client.h"
 #include "src/serve/directory.h"
+#include "src/serve/person.h"
 
 #define FIRST_READ AREA_ANSWER
 
@@ -73,6 +74,7 @@ struct client *client_open(struct serve *s, int fd, bool network)
 	c->queued = queued;
 	c->fd = fd;
 	c->network = network;
+	person_name(fd, network, c->person);
 	c->need = FRAME_HEADER;
 	c->area = s->areas + (size_t)index * AREA_SIZE;
 	c->out_len = c->out_at = 0;

@@ -139,18 +139,19 @@ static int find_signal(struct kept *kept, const struct image *image, const struc
                        int64_t now_ns, char *text, size_t room)
 {
 	int record = kept_signal(kept, node->path, false);
-	struct ows_sample sample;
+	struct ows_slot slot;
 	enum ows_type type;
 
 	if (record < 0)
 		return -ENOENT;
 	type = (enum ows_type)image->records[record].type;
-	if (!holds(type, node->type) || !reader_sample(&image->records[record], &sample) ||
-	    sample.quality != OWS_Q_GOOD || !sample.measured_ns ||
-	    sample.measured_ns <= *written(kept, node) ||
-	    now_ns - sample.measured_ns > life_ns(node->life))
+	if (!holds(type, node->type) || !reader_slot(&image->records[record], &slot) ||
+	    slot.sample.quality != OWS_Q_GOOD || !slot.sample.measured_ns ||
+	    slot.sample.measured_ns <= *written(kept, node) ||
+	    now_ns - slot.sample.measured_ns > life_ns(node->life))
 		return -ENOENT;
-	return format_number((uint8_t)node->type, value_number(type, sample.value), text, room);
+	return format_number((uint8_t)node->type, value_number(OWS_DOUBLE, slot.attrs.raw), text,
+	                     room);
 }
 
 static struct entry *set_of(struct kept *kept, const char *path, size_t len)

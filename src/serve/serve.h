@@ -22,6 +22,7 @@ struct serve;
 struct serve_setup {
 	const struct config *config;
 	const char *instance;
+	const char *place; /* the directory of its files */
 	struct log *log;
 	void (*ring)(void *ctx); /* wakes the engine, from any thread */
 	void *ring_ctx;

@@ -13,6 +13,7 @@
 #include "src/serve/request.h"
 #include "src/serve/signals.h"
 #include "src/serve/via.h"
+#include "src/shm/layout.h"
 #include "src/text/log.h"
 
 #define SERVER_CLIENTS 512
@@ -67,11 +68,13 @@ struct client {
 	bool queued;          /* the client is in the round */
 	bool network;         /* the socket is no unix socket */
 	bool is_get, lent, once_more;
-	uint8_t alive_left; /* bytes left of a keep-alive that was begun */
-	unsigned target;    /* the one that answers now, of those that are asked in turn */
-	int32_t worst;      /* the result of the targets so far; 1: none has answered yet */
-	int64_t since_ns;   /* when the state began; READING: when the first byte came */
-	int64_t tick_ns;    /* the time of the last progress, or of the last keep-alive */
+	bool waits;            /* APPLYING: owsd has still to look at the commands of others */
+	char person[OWS_NAME]; /* who the client is */
+	uint8_t alive_left;    /* bytes left of a keep-alive that was begun */
+	unsigned target;       /* the one that answers now, of those that are asked in turn */
+	int32_t worst;         /* the result of the targets so far; 1: none has answered yet */
+	int64_t since_ns;      /* when the state began; READING: when the first byte came */
+	int64_t tick_ns;       /* the time of the last progress, or of the last keep-alive */
 	int64_t active_ns; /* when the connection began, or the last request other than NOP ended */
 	uint64_t served;   /* requests that were answered */
 
@@ -101,7 +104,7 @@ struct client {
 	X(full)           /* connections that had to wait for a place */ \
 	X(not_kept)       /* closed after an answer, because others waited */ \
 	X(refused_peers)  /* peers that are not in ListenAllow */ \
-	X(refused_writes) /* writes refused in read-only mode */ \
+	X(refused_writes) /* writes refused in read-only mode, or by ControlAllow */ \
 	X(came_round)     /* requests that came here before, by way of other servers */ \
 	X(evicted)        /* idle clients closed because others waited */ \
 	X(refused_errors) /* closed at once, because the kernel lacked something */ \
@@ -120,7 +123,7 @@ enum serve_counter {
 struct serve {
 	const struct config *config;
 	const struct image *image;
-	const char *instance;
+	const char *instance, *place;
 	struct log *log;
 	struct guests guests;
 	struct kept *kept, *prepared; /* prepared: for the next reload */

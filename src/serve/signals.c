@@ -5,13 +5,20 @@
 #include <string.h>
 
 #include "src/libows/alive.h"
+#include "src/libows/command.h"
 #include "src/libows/get.h"
 #include "src/libows/handle.h"
 #include "src/libows/map.h"
+#include "src/libows/meet.h"
+#include "src/libows/open.h"
 #include "src/libows/set.h"
 #include "src/serve/signals.h"
 #include "src/shm/reader.h"
 #include "src/signal/value.h"
+
+#define NAME "owserver protocol" /* of the giver that the clients of the protocol are */
+/* owsd's own control room answers at once, if it is not busy. */
+#define MEET_NS (20 * INT64_C(1000000))
 
 /*
  * How many alarms of a signal clients have read. The key is the name: a reload changes the record.
@@ -23,7 +30,6 @@ struct seen {
 
 struct signals {
 	struct ows *h;
-	bool may_set;
 	struct seen *seen; /* one entry for each signal with an alarm */
 	size_t seen_count, seen_room;
 };
@@ -53,16 +59,11 @@ static void follow(struct signals *signals)
 		make_room(signals);
 }
 
-int signals_open(const char *instance, struct signals **out)
+int signals_open(const char *place, const char *instance, struct signals **out)
 {
 	struct signals *signals = calloc(1, sizeof(*signals));
-	int err = signals ? ows_open(instance, OWS_CONTROL, &signals->h) : -ENOMEM;
+	int err = signals ? open_in(place, instance, OWS_READ, NAME, &signals->h) : -ENOMEM;
 
-	if (!err) {
-		signals->may_set = true;
-	} else if (signals) {
-		err = ows_open(instance, OWS_READ, &signals->h);
-	}
 	/* _DGNRESET is the only name for which a handle keeps state; it is reset for each client */
 	if (!err && ows_find(signals->h, "_DGNRESET") < 0)
 		err = -ENOMEM;
@@ -70,6 +71,7 @@ int signals_open(const char *instance, struct signals **out)
 		signals_close(signals);
 		return err;
 	}
+	signals->h->mode = OWS_CONTROL;
 	make_room(signals);
 	*out = signals;
 	return 0;
@@ -101,7 +103,7 @@ static int look_up(struct signals *signals, const char *name, struct ows_id *id)
 	id->name = NULL;
 	id->record = record;
 	id->memory = 0;
-	id->stale_after_ns = h->map.infos[record].stale_after_ns;
+	id->stale_after_ns = map_info(&h->map, record)->stale_after_ns;
 	h->memories[0].alarms_seen = 0;
 	h->memories[0].reset_level = h->memories[0].shot_level = false;
 	return 0;
@@ -119,6 +121,15 @@ int signals_record(struct signals *signals, const char *name)
 	struct ows_id id;
 
 	return look_up(signals, name, &id) ? -1 : id.record;
+}
+
+const char *signals_name(struct signals *signals, const char *name)
+{
+	struct ows_id id;
+
+	if (look_up(signals, name, &id))
+		return NULL;
+	return id.record ? map_name(&signals->h->map, (uint32_t)id.record) : "";
 }
 
 /* Clients come and go, so all of them are one reader; `seen` has what this reader has read. */
@@ -198,59 +209,101 @@ static bool takes_commands(const struct ows *h, const struct ows_id *id)
 {
 	struct ows_slot slot;
 
-	return id->attribute != ATTR_VALUE || (reader_slot(&h->map.records[id->record], &slot) &&
-	                                       slot.attrs.flags & OWS_ATTR_WRITE_ENABLE);
+	return id->attribute != ATTR_VALUE ||
+	       (reader_slot(map_record(&h->map, (uint32_t)id->record), &slot) &&
+	        slot.attrs.flags & OWS_ATTR_WRITE_ENABLE);
 }
 
-static int set(struct signals *signals, struct ows_id *id, int64_t now_ns, const char *text,
-               size_t len, struct signals_command *command)
+/* The welcome has not come yet, or the next memory: the client waits, and it is tried again. */
+static int not_yet(int err)
+{
+	return err == -EAGAIN || err == -ETIMEDOUT || err == -ENOENT ? -EBUSY : err;
+}
+
+/* Become a giver, at the first write: when owsd starts its control room is not open yet. */
+static int join(struct ows *h)
+{
+	int err = h->give.base ? 0 : meet(h, &h->map, ows_now() + MEET_NS);
+
+	if (!err)
+		meet_take(h);
+	return not_yet(err);
+}
+
+/*
+ * All clients are one giver, with one command for each signal: that of another client may only be
+ * replaced when owsd knows whose it was.
+ */
+static int become(struct ows *h, const struct ows_id *id, const char *person)
+{
+	const struct ows_command_slot *own = give_slot(&h->give, (uint32_t)id->record);
+
+	if (__atomic_load_n(&own->taken, __ATOMIC_ACQUIRE) != word_get(&own->stamp) &&
+	    command_ready(h) == 0)
+		return -EBUSY;
+	return ows_for(h, person);
+}
+
+static int set(struct signals *signals, const char *person, struct ows_id *id, int64_t now_ns,
+               const char *text, size_t len, struct signals_command *command)
 {
 	struct ows *h = signals->h;
 	char copy[VALUE_STRING_MAX + 1];
 	uint32_t stamp = 0;
-	int err = take_text(
-		text, len,
-		id->attribute == ATTR_VALUE && h->map.records[id->record].type == OWS_STRING, copy);
+	int err = take_text(text, len,
+	                    id->attribute == ATTR_VALUE &&
+	                            map_record(&h->map, (uint32_t)id->record)->type == OWS_STRING,
+	                    copy);
 
 	if (err)
 		return err;
-	if (!signals->may_set || !takes_commands(h, id))
+	if (!takes_commands(h, id))
 		return -EACCES;
-	err = handle_set_text(h, id, copy, &stamp);
+	err = join(h);
+	if (!err)
+		err = become(h, id, person);
+	if (!err)
+		err = handle_set_text(h, id, copy, &stamp);
 	if (err == -ERANGE)
 		return -EDOM;
 	if (err == -EROFS)
 		return -EACCES;
 	if (err)
-		return err == -EINVAL || err == -EACCES || err == -ESTALE ? err : -EIO;
+		return err == -EINVAL || err == -EACCES || err == -ESTALE || err == -EBUSY ? err
+		                                                                           : -EIO;
 	if (id->attribute == ATTR_VALUE)
 		*command = (struct signals_command){(unsigned)id->record, h->map.image->generation,
 		                                    stamp, now_ns};
 	return 0;
 }
 
-int signals_write(struct signals *signals, const char *name, int64_t now_ns, const char *text,
-                  size_t len, struct signals_command *command)
+int signals_write(struct signals *signals, const char *person, const char *name, int64_t now_ns,
+                  const char *text, size_t len, struct signals_command *command)
 {
 	struct ows_id id;
 	int err = look_up(signals, name, &id);
 
 	*command = (struct signals_command){0};
 	if (!err)
-		err = set(signals, &id, now_ns, text, len, command);
+		err = set(signals, person, &id, now_ns, text, len, command);
 	if (err != -ESTALE)
 		return err;
 	/* a reload gave the signal another record meanwhile */
-	err = ows_reopen(signals->h) ? -EIO : look_up(signals, name, &id);
+	err = not_yet(ows_reopen(signals->h));
+	if (err == -EBUSY)
+		return err;
+	err = err ? -EIO : look_up(signals, name, &id);
 	if (!err)
-		err = set(signals, &id, now_ns, text, len, command);
+		err = set(signals, person, &id, now_ns, text, len, command);
 	return err == -ESTALE ? -EIO : err;
 }
 
 int signals_applied(struct signals *signals, const char *name, struct signals_command *command)
 {
 	struct ows *h = signals->h;
+	const struct ows_command_slot *own;
 	struct ows_sample sample;
+	uint32_t applied;
 	struct ows_id id;
 
 	follow(signals);
@@ -260,10 +313,14 @@ int signals_applied(struct signals *signals, const char *name, struct signals_co
 		command->record = (unsigned)id.record;
 		command->generation = h->map.image->generation;
 	}
-	if (!reader_sample(&signals->h->map.records[command->record], &sample))
-		return -EAGAIN;
-	if ((int32_t)(sample.applied - command->stamp) >= 0 && sample.applied)
+	own = give_slot(&h->give, command->record);
+	applied = word_get(&own->applied);
+	if (applied && (int32_t)(applied - command->stamp) >= 0)
 		return 0;
+	if (__atomic_load_n(&own->taken, __ATOMIC_ACQUIRE) == command->stamp && own->err)
+		return own->err == -ERANGE ? -EDOM : -EIO; /* the engine refused it */
+	if (!reader_sample(map_record(&h->map, command->record), &sample))
+		return -EAGAIN;
 	if (sample.err && sample.tried_ns >= command->since_ns)
 		return sample.err;
 	return -EAGAIN;

@@ -12,14 +12,16 @@
 struct signals;
 
 /*
- * Open the segments of this instance, which are in place. Without a command segment nothing can be
- * written. Allocates; no function below does. 0 or a negative errno.
+ * Open the image of this instance, which is in place in that directory. It connects to the control
+ * room at the first write. Allocates; no function below does. 0 or a negative errno.
  */
-int signals_open(const char *instance, struct signals **signals);
+int signals_open(const char *place, const char *instance, struct signals **signals);
 void signals_close(struct signals *signals);
 
 /* Is this the name of a signal or of an attribute? */
 bool signals_has(struct signals *signals, const char *name);
+/* The signal's own name, also of an attribute, "" of the driver's; NULL: there is none. */
+const char *signals_name(struct signals *signals, const char *name);
 /* The record of the signal that has this name or attribute; -1: there is none. */
 int signals_record(struct signals *signals, const char *name);
 /*
@@ -37,13 +39,15 @@ struct signals_command {
 	int64_t since_ns;
 };
 /*
- * Command a signal or attribute. 0; -ENOENT, -EACCES, -EINVAL: the text is no value of its type,
- * -EDOM: its type cannot hold the value, -EIO.
+ * Command a signal or attribute for this person, who stands with the command in image and journal.
+ * 0; -EBUSY: owsd has still to look at the commands of others, call again soon; -ENOENT, -EACCES,
+ * -EINVAL: the text is no value of its type, -EDOM: its type cannot hold the value, -EIO.
  */
-int signals_write(struct signals *signals, const char *name, int64_t now_ns, const char *text,
-                  size_t len, struct signals_command *command);
+int signals_write(struct signals *signals, const char *person, const char *name, int64_t now_ns,
+                  const char *text, size_t len, struct signals_command *command);
 /*
- * Returns 0 when the bus has the command, -EAGAIN before, else the error of the write. name is the
+ * Returns 0 when the bus has the command, -EAGAIN before, else the error of the write; -EDOM: owsd
+ * refused it, its type cannot hold the value, or it is beyond the signal's range. name is the
  * commanded name: a reload may have given the signal another record, or (-ENOENT) none.
  */
 int signals_applied(struct signals *signals, const char *name, struct signals_command *command);

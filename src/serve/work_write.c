@@ -5,6 +5,7 @@
 #include "hal/owfs/frame.h"
 #include "src/serve/answer.h"
 #include "src/serve/client.h"
+#include "src/serve/person.h"
 #include "src/serve/units.h"
 #include "src/serve/work_ask.h"
 #include "src/serve/work_type.h"
@@ -58,11 +59,43 @@ static const char *name_of(const struct serve *s, const struct node *node)
 	return record < 0 ? NULL : s->config->items[record - 1].name;
 }
 
-/* Look whether the command is carried out. */
-static void applying(struct serve *s, struct client *c)
+/* Command an output of the table. The control program commands the same output. */
+static int give(struct serve *s, struct client *c, const char *name)
+{
+	const char *text = (const char *)c->request.data;
+	uint32_t len = c->request.data_len;
+
+	if (c->node.kind != NODE_SIGNAL && units_convert(c->node.type, c->request.flags)) {
+		char *room = (char *)client_room(c);
+		int n = units_take(c->node.type, c->request.flags, text, len, room,
+		                   client_room_size(c));
+
+		if (n < 0)
+			return n;
+		len = (uint32_t)n;
+		text = room;
+	}
+	return signals_write(s->signals, c->person, name, s->now_ns, text, len, &c->command);
+}
+
+/* Give a command that has to wait to the engine; look whether one that it has is carried out. */
+static int apply(struct serve *s, struct client *c)
 {
 	const char *name = name_of(s, &c->node);
-	int err = name ? signals_applied(s->signals, name, &c->command) : -ENOENT;
+	int err = name ? 0 : -ENOENT;
+
+	if (!err && c->waits) {
+		err = give(s, c, name);
+		c->waits = err == -EBUSY;
+		if (c->waits)
+			return -EAGAIN;
+	}
+	return err || !c->command.record ? err : signals_applied(s->signals, name, &c->command);
+}
+
+static void applying(struct serve *s, struct client *c)
+{
+	int err = apply(s, c);
 
 	if (err == 0) {
 		kept_forget(s->kept, &c->node, s->now_ns);
@@ -74,30 +107,26 @@ static void applying(struct serve *s, struct client *c)
 	}
 }
 
-/* Command an output of the table. The control program commands the same output. */
-static void command(struct serve *s, struct client *c, const char *name)
+static void command(struct serve *s, struct client *c)
 {
-	const char *text = (const char *)c->request.data;
-	uint32_t len = c->request.data_len;
-	char *room = (char *)client_room(c);
-	int err = 0;
+	c->waits = true;
+	client_enter(s, c, CLIENT_APPLYING);
+	applying(s, c);
+}
 
-	if (c->node.kind != NODE_SIGNAL && units_convert(c->node.type, c->request.flags)) {
-		err = units_take(c->node.type, c->request.flags, text, len, room,
-		                 client_room_size(c));
-		len = err < 0 ? 0 : (uint32_t)err;
-		text = room;
-	}
-	if (err >= 0)
-		err = signals_write(s->signals, name, s->now_ns, text, len, &c->command);
-	if (err)
-		answer_error(s, c, err);
-	else if (!c->command.record)
-		answer_written(s, c, c->request.data_len);
-	else
-		client_enter(s, c, CLIENT_APPLYING);
-	if (c->state == CLIENT_APPLYING)
-		applying(s, c);
+/* Does ControlAllow let the client write this signal, or a device where name is NULL? */
+static bool is_allowed(const struct serve *s, const struct client *c, const char *name)
+{
+	const char *signal = name ? signals_name(s->signals, name) : NULL;
+
+	/* what is no signal any more is refused as that */
+	return (name && !signal) || person_may(s->config, c->fd, c->network, signal);
+}
+
+static void refuse(struct serve *s, struct client *c)
+{
+	count(s, COUNT_refused_writes, 1);
+	answer_error(s, c, -EROFS);
 }
 
 void work_write(struct serve *s, struct client *c)
@@ -106,8 +135,7 @@ void work_write(struct serve *s, struct client *c)
 	const char *name;
 
 	if (s->config->serve.read_only) {
-		count(s, COUNT_refused_writes, 1);
-		answer_error(s, c, -EROFS);
+		refuse(s, c);
 		return;
 	}
 	if (!c->request.data || (uint32_t)c->request.size > c->request.data_len) {
@@ -121,10 +149,12 @@ void work_write(struct serve *s, struct client *c)
 		answer_error(s, c, -EACCES);
 	} else {
 		name = name_of(s, node);
-		if (name && c->request.offset)
+		if (!is_allowed(s, c, name))
+			refuse(s, c);
+		else if (name && c->request.offset)
 			answer_error(s, c, -EINVAL);
 		else if (name)
-			command(s, c, name);
+			command(s, c);
 		else if (!work_ask_type(s, c))
 			work_write_target(s, c);
 	}

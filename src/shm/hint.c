@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The cause of an error of /dev/shm, for the log: /dev/shm is full, or a file is in the way. */
+/* The cause of an error of the place, for the log: it is full, or a file is in the way. */
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,7 +10,7 @@
 #include "src/shm/owner.h"
 #include "src/shm/segment.h"
 
-/* Can owsd not replace this file? In a sticky directory only root and the owner replace files. */
+/* Can owsd not use this file? */
 static bool is_in_the_way(const struct stat *st)
 {
 	return !S_ISREG(st->st_mode) || !owner_trusted(st->st_uid) ||
@@ -33,19 +34,22 @@ static bool belongs_to_another(const struct stat *st)
 	return S_ISREG(st->st_mode) && (!ours || owner_trusted(st->st_uid));
 }
 
-const char *segment_hint(const char *instance, int err, char text[SEGMENT_HINT])
+const char *segment_hint(const struct shm_place *place, const char *instance, int err,
+                         char text[SEGMENT_HINT])
 {
-	static const char *const kinds[] = {"lock", "image", "command"};
-	char path[80], user[OWNER_NAME];
+	static const char *const kinds[] = {"lock", "image", "command", "force"};
+	char name[SEGMENT_FILE], user[OWNER_NAME];
 	struct stat st;
 
-	if (err == -ENOSPC)
-		return ": /dev/shm is full";
+	if (err == -ENOSPC) {
+		snprintf(text, SEGMENT_HINT, ": %s is full", place->path);
+		return text;
+	}
 	if (!segment_name_ok(instance))
 		return "";
 	for (size_t i = 0; i < sizeof(kinds) / sizeof(kinds[0]); i++) {
-		snprintf(path, sizeof(path), "/dev/shm/owsd.%s.%s", instance, kinds[i]);
-		if (lstat(path, &st) < 0 || !is_in_the_way(&st))
+		segment_file(instance, kinds[i], name);
+		if (fstatat(place->fd, name, &st, AT_SYMLINK_NOFOLLOW) < 0 || !is_in_the_way(&st))
 			continue;
 		owner_name(st.st_uid, user);
 		if (belongs_to_another(&st))
@@ -59,8 +63,8 @@ const char *segment_hint(const char *instance, int err, char text[SEGMENT_HINT])
 			         user, instance);
 		else
 			snprintf(text, SEGMENT_HINT,
-			         ": a %s of user %s is in the way: as root, rm -r %s", kind_of(&st),
-			         user, path);
+			         ": a %s of user %s is in the way: as root, rm -r %s/%s",
+			         kind_of(&st), user, place->path, name);
 		return text;
 	}
 	return "";

@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* The cause of an error of /dev/shm, for the log: /dev/shm is full, or a file is in the way. */
+/* The cause of an error of the place, for the log: it is full, or a file is in the way. */
 #ifndef SHM_HINT_H
 #define SHM_HINT_H
 
+#include "src/shm/place.h"
+
 /*
- * What stands behind an error of a function of this room, as the end of a message: /dev/shm is
+ * What stands behind an error of a function of this room, as the end of a message: the place is
  * full, the instance is another user's, or which file is in the way, whose it is and what removes
  * it. Empty where nothing is known. It never advises to remove what a running owsd may hold.
  */
-#define SEGMENT_HINT 240
-const char *segment_hint(const char *instance, int err, char text[SEGMENT_HINT]);
+#define SEGMENT_HINT (PLACE_PATH + 160)
+const char *segment_hint(const struct shm_place *place, const char *instance, int err,
+                         char text[SEGMENT_HINT]);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The image as owsd lays it out and publishes into it. */
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 #include "src/libows/ows.h"
@@ -10,11 +11,26 @@
 #define IMAGE_MAX 0x7fffffffu
 #define SAMPLE_WORDS (sizeof(struct ows_sample) / 4)
 #define ATTRS_WORDS (sizeof(struct ows_attrs) / 4)
-#define ALARM_WORDS (sizeof(struct ows_alarm_entry) / 4)
 
-/* The offsets of the areas of the segment, in their order. */
+#define CHANGES_MIN 1024u
+
+const struct image_meta image_no_meta = {
+	.decimals = UINT32_MAX,
+	.scale = 1,
+	.min = NAN,
+	.max = NAN,
+	.limit_hh = NAN,
+	.limit_h = NAN,
+	.limit_l = NAN,
+	.limit_ll = NAN,
+};
+
+/* The areas of the image, in the order of their kinds. */
 struct image_areas {
-	uint64_t record, info, name, target, counter, alarm, text, pool, end;
+	struct image_area {
+		uint64_t size, count, off;
+	} of[OWS_AREAS];
+	uint64_t end;
 };
 
 static uint64_t align64(uint64_t offset)
@@ -22,14 +38,28 @@ static uint64_t align64(uint64_t offset)
 	return (offset + 63) & ~(uint64_t)63;
 }
 
+static const struct image_meta *meta_of(const struct image_signal *signal)
+{
+	return signal->meta ? signal->meta : &image_no_meta;
+}
+
+static uint64_t string_bytes(const char *text)
+{
+	return text && *text ? strlen(text) + 1 : 0;
+}
+
 static uint64_t pool_bytes(const struct image_plan *plan)
 {
-	uint64_t n = 1; /* name and path of record 0 are the empty string */
+	uint64_t n = 2 + string_bytes(plan->served); /* 2: name and path of record 0 */
 
-	for (uint32_t i = 0; i < plan->signal_count; i++)
+	for (uint32_t i = 0; i < plan->signal_count; i++) {
+		const struct image_meta *meta = meta_of(&plan->signals[i]);
+
 		n += strlen(plan->signals[i].name) + 1 + strlen(plan->signals[i].path) + 1;
-	if (plan->served)
-		n += strlen(plan->served) + 1;
+		n += string_bytes(meta->unit) + string_bytes(meta->description) +
+		     string_bytes(meta->family) + string_bytes(meta->device) +
+		     string_bytes(meta->calibrated) + string_bytes(meta->points);
+	}
 	return n;
 }
 
@@ -42,19 +72,50 @@ static uint64_t text_bytes(const struct image_plan *plan)
 	return n;
 }
 
+/* A power of two that has room for each record four times. */
+static uint64_t changes_of(uint64_t records)
+{
+	uint64_t n = CHANGES_MIN;
+
+	while (n < 4 * records)
+		n *= 2;
+	return n;
+}
+
 static void find_areas(const struct image_plan *plan, struct image_areas *a)
 {
 	uint64_t records = (uint64_t)plan->signal_count + 1;
 
-	a->record = sizeof(struct ows_image_header);
-	a->info = a->record + records * sizeof(struct ows_record);
-	a->name = a->info + records * sizeof(struct ows_info_entry);
-	a->target = align64(a->name + records * sizeof(struct ows_name_entry));
-	a->counter = a->target + (uint64_t)plan->target_count * sizeof(struct ows_target_entry);
-	a->alarm = a->counter + (uint64_t)plan->counter_count * sizeof(struct ows_counter_entry);
-	a->text = a->alarm + OWS_ALARMS * sizeof(struct ows_alarm_entry);
-	a->pool = align64(a->text + text_bytes(plan));
-	a->end = align64(a->pool + pool_bytes(plan));
+	*a = (struct image_areas){
+		.of =
+			{
+				[OWS_AREA_RECORDS] = {sizeof(struct ows_record), records, 0},
+				[OWS_AREA_INFOS] = {sizeof(struct ows_info_entry), records, 0},
+				[OWS_AREA_NAMES] = {sizeof(struct ows_name_entry), records, 0},
+				[OWS_AREA_TARGETS] = {sizeof(struct ows_target_entry),
+	                                              plan->target_count, 0},
+				[OWS_AREA_COUNTERS] = {sizeof(struct ows_counter_entry),
+	                                               plan->counter_count, 0},
+				[OWS_AREA_POOL] = {1, pool_bytes(plan), 0},
+				[OWS_AREA_TEXTS] = {1, text_bytes(plan), 0},
+				[OWS_AREA_ORIGINS] = {sizeof(struct ows_origin_entry), records, 0},
+				[OWS_AREA_GIVERS] = {sizeof(struct ows_giver_entry), OWS_GIVERS, 0},
+				[OWS_AREA_SHELVES] = {sizeof(struct ows_shelf_entry), OWS_SHELVES,
+	                                              0},
+				[OWS_AREA_ALARMS] = {sizeof(struct ows_journal_entry), OWS_JOURNAL,
+	                                             0},
+				[OWS_AREA_COMMANDS] = {sizeof(struct ows_journal_entry),
+	                                               OWS_JOURNAL, 0},
+				[OWS_AREA_CHANGES] = {sizeof(struct ows_change_entry),
+	                                              changes_of(records), 0},
+			},
+		.end = align64(sizeof(struct ows_image_header) +
+	                       (OWS_AREAS - 1) * sizeof(struct ows_area_entry)),
+	};
+	for (unsigned kind = 1; kind < OWS_AREAS; kind++) {
+		a->of[kind].off = a->end;
+		a->end = align64(a->end + a->of[kind].size * a->of[kind].count);
+	}
 }
 
 size_t image_size(const struct image_plan *plan)
@@ -73,6 +134,12 @@ static uint32_t add_string(char *base, uint64_t *pool, const char *text)
 	memcpy(base + off, text, n);
 	*pool += n;
 	return off;
+}
+
+/* The offset of a string that may be missing: 0 then. */
+static uint32_t add_optional(char *base, uint64_t *pool, const char *text)
+{
+	return string_bytes(text) ? add_string(base, pool, text) : 0;
 }
 
 static void copy_name(char *to, size_t size, const char *from)
@@ -135,61 +202,96 @@ static void fill_header(const struct image_plan *plan, const struct image_areas 
 		.state = OWS_STATE_BUILDING,
 		.pid = plan->pid,
 		.start_id = plan->start_id,
+		.area_off = sizeof(*h),
+		.area_count = OWS_AREAS - 1,
 		.start_ns = plan->start_ns,
 		.start_wall_ns = plan->start_wall_ns,
 		.period_ns = plan->period_ns,
-		.record_off = (uint32_t)a->record,
-		.record_size = sizeof(struct ows_record),
-		.record_count = plan->signal_count + 1,
-		.info_off = (uint32_t)a->info,
-		.info_size = sizeof(struct ows_info_entry),
-		.name_off = (uint32_t)a->name,
-		.target_off = (uint32_t)a->target,
-		.target_size = sizeof(struct ows_target_entry),
-		.target_count = plan->target_count,
-		.counter_off = (uint32_t)a->counter,
-		.counter_size = sizeof(struct ows_counter_entry),
-		.counter_count = plan->counter_count,
-		.alarm_off = (uint32_t)a->alarm,
-		.alarm_size = sizeof(struct ows_alarm_entry),
-		.alarm_count = OWS_ALARMS,
-		.pool_off = (uint32_t)a->pool,
-		.pool_size = (uint32_t)(a->end - a->pool),
-		.text_off = (uint32_t)a->text,
-		.text_size = (uint32_t)text_bytes(plan),
 	};
 }
 
-void image_build(const struct image_plan *plan, void *memory, struct image *image)
+static void point_into(const struct image_plan *plan, const struct image_areas *a, char *base,
+                       struct image *image)
 {
-	struct image_areas a;
-	struct ows_info_entry *infos;
-	struct ows_name_entry *names;
-	uint64_t pool, text;
+	*image = (struct image){
+		.header = (void *)base,
+		.areas = (void *)(base + sizeof(struct ows_image_header)),
+		.records = (void *)(base + a->of[OWS_AREA_RECORDS].off),
+		.infos = (void *)(base + a->of[OWS_AREA_INFOS].off),
+		.names = (void *)(base + a->of[OWS_AREA_NAMES].off),
+		.targets = (void *)(base + a->of[OWS_AREA_TARGETS].off),
+		.counters = (void *)(base + a->of[OWS_AREA_COUNTERS].off),
+		.origins = (void *)(base + a->of[OWS_AREA_ORIGINS].off),
+		.givers = (void *)(base + a->of[OWS_AREA_GIVERS].off),
+		.shelves = (void *)(base + a->of[OWS_AREA_SHELVES].off),
+		.alarms = (void *)(base + a->of[OWS_AREA_ALARMS].off),
+		.commands = (void *)(base + a->of[OWS_AREA_COMMANDS].off),
+		.changes = (void *)(base + a->of[OWS_AREA_CHANGES].off),
+		.record_count = plan->signal_count + 1,
+		.target_count = plan->target_count,
+		.counter_count = plan->counter_count,
+		.change_count = (uint32_t)a->of[OWS_AREA_CHANGES].count,
+		.base = base,
+	};
+	for (unsigned kind = 1; kind < OWS_AREAS; kind++)
+		image->areas[kind - 1] = (struct ows_area_entry){
+			.kind = kind,
+			.off = (uint32_t)a->of[kind].off,
+			.size = (uint32_t)a->of[kind].size,
+			.count = (uint32_t)a->of[kind].count,
+		};
+}
 
-	find_areas(plan, &a);
-	assert(a.end <= IMAGE_MAX);
-	image->base = memory;
-	image->header = memory;
-	image->records = (void *)(image->base + a.record);
-	image->targets = (void *)(image->base + a.target);
-	image->counters = (void *)(image->base + a.counter);
-	image->alarms = (void *)(image->base + a.alarm);
-	infos = (void *)(image->base + a.info);
-	names = (void *)(image->base + a.name);
-	fill_header(plan, &a, image->header);
+static void fill_info(const struct image_signal *s, char *base, uint64_t *pool,
+                      struct ows_info_entry *info)
+{
+	const struct image_meta *meta = meta_of(s);
+	bool scaled = meta->scale != 1 || meta->offset != 0 || string_bytes(meta->points);
 
-	pool = a.pool;
-	text = a.text;
-	add_string(image->base, &pool, "");
-	if (plan->served)
-		image->header->served_off = add_string(image->base, &pool, plan->served);
+	*info = (struct ows_info_entry){
+		.name_off = add_string(base, pool, s->name),
+		.per_factor = s->per_factor,
+		.line = s->line,
+		.stale_after_ns = s->stale_after_ns,
+		.init_value = s->init_value,
+		.safe_value = s->safe_value,
+		.flags = (s->has_init ? OWS_INFO_INIT : 0u) | (s->has_safe ? OWS_INFO_SAFE : 0u) |
+	                 (s->starts_last ? OWS_INFO_LAST : 0u) | (scaled ? OWS_INFO_SCALED : 0u),
+		.decimals = meta->decimals,
+		.scale = meta->scale,
+		.offset = meta->offset,
+		.min = meta->min,
+		.max = meta->max,
+		.limit_hh = meta->limit_hh,
+		.limit_h = meta->limit_h,
+		.limit_l = meta->limit_l,
+		.limit_ll = meta->limit_ll,
+		.filter_s = meta->filter_s,
+		.deadband = meta->deadband,
+	};
+	info->path_off = add_string(base, pool, s->path);
+	info->unit_off = add_optional(base, pool, meta->unit);
+	info->description_off = add_optional(base, pool, meta->description);
+	info->family_off = add_optional(base, pool, meta->family);
+	info->device_off = add_optional(base, pool, meta->device);
+	info->calibrated_off = add_optional(base, pool, meta->calibrated);
+	info->points_off = add_optional(base, pool, meta->points);
+}
+
+/* Fill records, infos and names, and with them the pool. */
+static void fill_signals(const struct image_plan *plan, const struct image_areas *a,
+                         struct image *image)
+{
+	static const struct image_signal itself = {.name = "", .path = ""};
+	uint64_t pool = a->of[OWS_AREA_POOL].off, text = a->of[OWS_AREA_TEXTS].off;
+
 	image->records[0].type = OWS_LARGE;
-	infos[0].name_off = infos[0].path_off = names[0].name_off = (uint32_t)a.pool;
+	fill_info(&itself, image->base, &pool, &image->infos[0]);
+	image->names[0].name_off = image->infos[0].name_off;
+	image->header->served_off = add_optional(image->base, &pool, plan->served);
 	for (uint32_t i = 0; i < plan->signal_count; i++) {
 		const struct image_signal *s = &plan->signals[i];
 		struct ows_record *r = &image->records[i + 1];
-		struct ows_info_entry *info = &infos[i + 1];
 
 		assert(s->text_cap % 4 == 0);
 		r->type = s->type;
@@ -197,19 +299,22 @@ void image_build(const struct image_plan *plan, void *memory, struct image *imag
 		r->text_cap = s->text_cap;
 		r->text_off = s->text_cap != 0 ? (uint32_t)text : 0;
 		text += 2 * (uint64_t)s->text_cap;
-		info->name_off = add_string(image->base, &pool, s->name);
-		info->path_off = add_string(image->base, &pool, s->path);
-		info->per_factor = s->per_factor;
-		info->line = s->line;
-		info->stale_after_ns = s->stale_after_ns;
-		info->init_value = s->init_value;
-		info->safe_value = s->safe_value;
-		info->flags = (s->has_init ? OWS_INFO_INIT : 0u) |
-		              (s->has_safe ? OWS_INFO_SAFE : 0u);
-		names[i + 1].name_off = info->name_off;
-		names[i + 1].record = i + 1;
+		fill_info(s, image->base, &pool, &image->infos[i + 1]);
+		image->names[i + 1].name_off = image->infos[i + 1].name_off;
+		image->names[i + 1].record = i + 1;
 	}
-	sort_names(image->base, names, plan->signal_count + 1);
+	sort_names(image->base, image->names, image->record_count);
+}
+
+void image_build(const struct image_plan *plan, void *memory, struct image *image)
+{
+	struct image_areas a;
+
+	find_areas(plan, &a);
+	assert(a.end <= IMAGE_MAX);
+	point_into(plan, &a, memory, image);
+	fill_header(plan, &a, image->header);
+	fill_signals(plan, &a, image);
 	for (uint32_t i = 0; i < plan->target_count; i++) {
 		copy_name(image->targets[i].name, sizeof(image->targets[i].name), plan->targets[i]);
 		image->targets[i].group = plan->groups ? plan->groups[i] : i;
@@ -240,7 +345,7 @@ void image_publish(struct image *image, uint32_t record, const struct ows_sample
 	struct ows_slot *slot = &r->slot[n & 1];
 	struct ows_slot whole = {.sample = *sample, .attrs = *attrs};
 
-	assert(record < image->header->record_count);
+	assert(record < image->record_count);
 	assert(sample->len <= r->text_cap);
 	whole.sample.check = ows_check((const void *)&whole.sample, SAMPLE_WORDS - 1);
 	whole.attrs.check = ows_check((const void *)&whole.attrs, ATTRS_WORDS - 1);
@@ -254,72 +359,35 @@ void image_publish(struct image *image, uint32_t record, const struct ows_sample
 	__atomic_store_n(&r->seq, 2 * n, __ATOMIC_RELEASE);
 }
 
-/* Write all of an entry but its seq, by which a reader notices the change. */
-static void write_alarm(struct ows_alarm_entry *to, struct ows_alarm_entry *entry)
+void image_change(struct image *image, uint32_t record)
 {
-	uint32_t seq = word_get(&to->seq);
+	uint32_t number = word_get(&image->header->change_head);
+	struct ows_change_entry *entry = &image->changes[number & (image->change_count - 1)];
 
-	entry->check = ows_check(&entry->record, ALARM_WORDS - 2);
-	word_set(&to->seq, seq + 1);
+	assert(record < image->record_count);
+	/* A reader that sees a word of this entry sees the head before it too */
 	word_fence(__ATOMIC_RELEASE);
-	words_store(&to->record, &entry->record, ALARM_WORDS - 1);
-	__atomic_store_n(&to->seq, seq + 2, __ATOMIC_RELEASE);
-}
-
-uint32_t image_alarm(struct image *image, const struct ows_alarm_entry *entry)
-{
-	struct ows_alarm_entry whole = *entry;
-	uint32_t number = word_get(&image->header->alarm_head);
-
-	assert(entry->record < image->header->record_count);
-	whole.number = number;
-	write_alarm(&image->alarms[number % OWS_ALARMS], &whole);
-	__atomic_store_n(&image->header->alarm_head, number + 1, __ATOMIC_RELEASE);
-	return number;
-}
-
-void image_alarm_after(struct image *image, uint32_t number, int64_t after)
-{
-	struct ows_alarm_entry *entry = &image->alarms[number % OWS_ALARMS], whole = *entry;
-
-	if (word_get(&image->header->alarm_head) - 1 - number >= OWS_ALARMS)
-		return;
-	whole.after = after;
-	whole.flags |= OWS_ALARM_AFTER;
-	write_alarm(entry, &whole);
-}
-
-void image_carry_alarms(struct image *image, const struct image *before, const uint32_t *records)
-{
-	uint32_t head = word_get(&before->header->alarm_head);
-
-	for (uint32_t n = head > OWS_ALARMS ? head - OWS_ALARMS : 0; n != head; n++) {
-		struct ows_alarm_entry entry = before->alarms[n % OWS_ALARMS];
-
-		if (entry.number != n || !entry.record || records[entry.record - 1] == UINT32_MAX)
-			continue;
-		entry.record = records[entry.record - 1] + 1;
-		write_alarm(&image->alarms[n % OWS_ALARMS], &entry);
-	}
-	word_set(&image->header->alarm_head, head);
+	word_set(&entry->record, record);
+	__atomic_store_n(&entry->number, number, __ATOMIC_RELEASE);
+	__atomic_store_n(&image->header->change_head, number + 1, __ATOMIC_RELEASE);
 }
 
 void image_target(struct image *image, uint32_t target, uint32_t state, uint32_t reconnects)
 {
-	assert(target < image->header->target_count);
+	assert(target < image->target_count);
 	word_set(&image->targets[target].state, state);
 	word_set(&image->targets[target].reconnects, reconnects);
 }
 
 void image_moves(struct image *image, uint32_t target, uint32_t moves)
 {
-	assert(target < image->header->target_count);
+	assert(target < image->target_count);
 	word_set(&image->targets[target].moves, moves);
 }
 
 void image_counter(struct image *image, uint32_t counter, uint64_t total)
 {
-	assert(counter < image->header->counter_count);
+	assert(counter < image->counter_count);
 	word_set(&image->counters[counter].low, (uint32_t)total);
 	word_set(&image->counters[counter].high, (uint32_t)(total >> 32));
 }
@@ -327,6 +395,12 @@ void image_counter(struct image *image, uint32_t counter, uint64_t total)
 void image_news(struct image *image)
 {
 	__atomic_fetch_add(&image->header->news, 1, __ATOMIC_RELEASE);
+}
+
+void image_awake(struct image *image, bool awake)
+{
+	__atomic_store_n(&image->header->awake, awake ? 1 : 0, __ATOMIC_SEQ_CST);
+	word_fence(__ATOMIC_SEQ_CST);
 }
 
 void image_state(struct image *image, enum ows_state state)

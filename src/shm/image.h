@@ -10,6 +10,17 @@
 
 #include "src/shm/layout.h"
 
+/* What people say of a signal: it describes, and changes nothing. */
+struct image_meta {
+	const char *unit, *description, *family, *device, *calibrated, *points; /* NULL: none */
+	uint32_t decimals;    /* UINT32_MAX: not known */
+	double scale, offset; /* 1 and 0 without */
+	double min, max;      /* NAN: not set, like the limits */
+	double limit_hh, limit_h, limit_l, limit_ll;
+	double filter_s, deadband; /* 0 without */
+};
+extern const struct image_meta image_no_meta;
+
 /* What the image of a configuration contains; strings are copied. */
 struct image_signal {
 	const char *name;
@@ -22,6 +33,8 @@ struct image_signal {
 	int64_t stale_after_ns;
 	bool has_init, has_safe;
 	int64_t init_value, safe_value;
+	bool starts_last;              /* Start "last" */
+	const struct image_meta *meta; /* NULL: image_no_meta */
 };
 struct image_counter {
 	const char *name;
@@ -41,13 +54,21 @@ struct image_plan {
 	int64_t start_ns, start_wall_ns, period_ns;
 };
 
-/* A built image: pointers into its memory. */
+/* A built image: pointers into its memory, and how many entries there are. */
 struct image {
 	struct ows_image_header *header;
-	struct ows_record *records; /* [0] is owsd */
+	struct ows_area_entry *areas; /* the area of a kind is [kind - 1] */
+	struct ows_record *records;   /* [0] is owsd */
+	struct ows_info_entry *infos;
+	struct ows_name_entry *names;
 	struct ows_target_entry *targets;
 	struct ows_counter_entry *counters;
-	struct ows_alarm_entry *alarms;
+	struct ows_origin_entry *origins;
+	struct ows_giver_entry *givers;              /* OWS_GIVERS */
+	struct ows_shelf_entry *shelves;             /* OWS_SHELVES */
+	struct ows_journal_entry *alarms, *commands; /* OWS_JOURNAL each: the journals */
+	struct ows_change_entry *changes;
+	uint32_t record_count, target_count, counter_count, change_count;
 	char *base;
 };
 
@@ -62,24 +83,18 @@ void image_build(const struct image_plan *plan, void *memory, struct image *imag
  */
 void image_publish(struct image *image, uint32_t record, const struct ows_sample *sample,
                    const struct ows_attrs *attrs, const char *text);
-/*
- * Enter an alarm into the journal; seq, number and check are set here. Returns the entry's number,
- * with which image_alarm_after() adds the value after the alarm; once the ring has lost the entry,
- * that does nothing.
- */
-uint32_t image_alarm(struct image *image, const struct ows_alarm_entry *entry);
-void image_alarm_after(struct image *image, uint32_t number, int64_t after);
-/*
- * Continue the journal of the previous image in this one, with its numbers: record r of the
- * previous image is records[r - 1] + 1 here; where that is 0xffffffff, the record and its entries
- * are gone.
- */
-void image_carry_alarms(struct image *image, const struct image *before, const uint32_t *records);
+/* Enter a record into the ring of changes, after what was published of it. */
+void image_change(struct image *image, uint32_t record);
 void image_target(struct image *image, uint32_t target, uint32_t state, uint32_t reconnects);
 void image_moves(struct image *image, uint32_t target, uint32_t moves);
 void image_counter(struct image *image, uint32_t counter, uint64_t total);
 /* Count the news word up; the caller wakes sleepers (segment_wake) when it has published enough. */
 void image_news(struct image *image);
+/*
+ * Whether the engine looks for commands before it sleeps. Sequentially consistent: a giver that
+ * saw the old word and rang no bell had marked its command before; the look that follows finds it.
+ */
+void image_awake(struct image *image, bool awake);
 /* Set the state of the image; counts the news word up too. */
 void image_state(struct image *image, enum ows_state state);
 /* Retire an image that an earlier owsd left, of which only the size is known. */

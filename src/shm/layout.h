@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The published layout of the two shared-memory segments of an instance:
+ * The published layout of an instance, in the directory of owsd (docs/shared-memory.md):
  *
- *     /dev/shm/owsd.NAME.image     only owsd writes; consumers map it read-only
- *     /dev/shm/owsd.NAME.command   consumers write; owsd believes nothing it finds there
+ *     NAME.image     one file: only owsd writes it, consumers map it read-only
+ *     NAME.control   a socket: a program connects and becomes a giver. owsd hands each giver a
+ *                    memory of its own, sealed, in which it commands; owsd believes nothing it
+ *                    finds there
  *
  * Fixed-size records, natural alignment, little-endian, no pointers, no locks, no allocator. All
- * words that two processes share are 32 bit. Offsets are bytes from the start of the segment.
- * docs/shared-memory.md describes the same in words and suffices to write a reader.
+ * words that two processes share are 32 bit. Offsets are bytes from the start of the file or
+ * memory. docs/shared-memory.md describes the same in words and suffices to write a reader.
  *
  * History
- *   1.0  first layout
- *   1.1  image: a journal of alarms; in the attributes the state of limit alarms and three flags;
- *        commands: words of acknowledgement
- *   1.2  image: group and moves of a target, and where the owserver protocol is served, which
- *        were 0; a flag of alarms that cannot be armed; commands: the mark of SafeValue
+ *   2.0  a directory of areas; metadata, raw values, origins of commands, changes, shelved alarms,
+ *        a journal of commands; commands in a memory for each giver. 1.x had two segments in
+ *        /dev/shm
  */
 #ifndef OWS_LAYOUT_H
 #define OWS_LAYOUT_H
@@ -24,22 +24,24 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define OWS_LAYOUT_MAJOR 1
-#define OWS_LAYOUT_MINOR 2
+#define OWS_LAYOUT_MAJOR 2
+#define OWS_LAYOUT_MINOR 0
 
 #define OWS_IMAGE_MAGIC   0x4953574fu /* "OWSI" */
-#define OWS_COMMAND_MAGIC 0x4353574fu /* "OWSC" */
+#define OWS_GIVER_MAGIC   0x4753574fu /* "OWSG" */
+#define OWS_HELLO_MAGIC   0x4853574fu /* "OWSH" */
+#define OWS_WELCOME_MAGIC 0x5753574fu /* "OWSW" */
 
 enum ows_state {
 	OWS_STATE_BUILDING = 0,
 	OWS_STATE_LIVE = 1,
-	OWS_STATE_RETIRED = 2, /* replaced: open the segment again by name */
+	OWS_STATE_RETIRED = 2, /* replaced: open the image again by name */
 	OWS_STATE_STOPPED = 3, /* owsd ended in order */
 };
 
 /* One value with all that belongs to it. */
 struct ows_sample { /* 48 bytes, 12 words */
-	int64_t value;       /* bits of a double for float and double, else the integer */
+	int64_t value;       /* in engineering units; float and double: a double's bits */
 	int64_t measured_ns; /* CLOCK_BOOTTIME; 0: never */
 	int64_t tried_ns;    /* last attempt; 0: never */
 	int32_t err;         /* 0 or negative errno: of the last read, else of the last write */
@@ -48,19 +50,20 @@ struct ows_sample { /* 48 bytes, 12 words */
 	uint8_t target;      /* index in the target area; 255 none */
 	uint8_t flags;       /* OWS_SAMPLE_ bits */
 	uint32_t count;      /* updates since start */
-	uint32_t applied;    /* stamp of the last command confirmed on the bus */
+	uint32_t confirmed;  /* commands confirmed on the bus since start */
 	uint32_t len;        /* strings: bytes of text */
 	uint32_t check;      /* ows_check() of the eleven words before */
 };
 #define OWS_SAMPLE_PENDING 0x01 /* commanded, not yet confirmed */
-#define OWS_SAMPLE_SAFE    0x02 /* the output was put to SafeValue: its client stopped beating */
+#define OWS_SAMPLE_SAFE    0x02 /* the output was put to SafeValue: its giver is lost */
 
 /* What the attributes are made of; period numbers count from 0 at owsd's start and wrap. */
-struct ows_attrs { /* 72 bytes, 18 words */
+struct ows_attrs { /* 80 bytes, 20 words */
 	uint64_t transactions;
 	int64_t update_ns;   /* seconds of _Period: time between the last two updates, ns */
 	int64_t age_max_ns;  /* _AgeMax but for the running age */
 	int64_t commanded;   /* commanded value, as in sample.value, if OWS_ATTR_COMMANDED */
+	int64_t raw;         /* _Raw: bits of a double, before scaling and filter; of a string 0 */
 	uint32_t per_base;   /* period of the last update (before it: 0). _PerCount = now - this */
 	uint32_t per_max;    /* _PerMax but for the running count */
 	uint32_t pend_base;  /* period number when the request in work began, if OWS_ATTR_IN_WORK */
@@ -70,9 +73,10 @@ struct ows_attrs { /* 72 bytes, 18 words */
 	uint32_t flags;      /* OWS_ATTR_ bits */
 	uint8_t limit_state; /* enum ows_limit_state; 0: normal, or without limit alarms */
 	uint8_t limit_condition; /* enum ows_alarm_kind of the limit alarm; 0 none */
-	uint8_t spare0[2];
+	uint8_t shelved;     /* 1: the limit alarm is shelved */
+	uint8_t spare0;
 	uint32_t spare1;
-	uint32_t check;      /* ows_check() of the seventeen words before */
+	uint32_t check;      /* ows_check() of the nineteen words before */
 };
 #define OWS_ATTR_READ_ENABLE  0x01
 #define OWS_ATTR_WRITE_ENABLE 0x02
@@ -84,7 +88,7 @@ struct ows_attrs { /* 72 bytes, 18 words */
 #define OWS_ATTR_ALARM_UNARMED 0x80 /* the device's alarm cannot be armed */
 #define OWS_ATTR_ALARM_POR     0x100 /* that is for its PorAlarm; else for SetAlarm */
 
-struct ows_slot { /* 120 bytes */
+struct ows_slot { /* 128 bytes */
 	struct ows_sample sample;
 	struct ows_attrs attrs;
 };
@@ -95,7 +99,7 @@ struct ows_slot { /* 120 bytes */
  * Reader: s = seq (acquire); copy slot[(s >> 1) & 1]; acquire fence; s2 = seq; the copy is whole if
  * s2 - (s & ~1) <= 2 (unsigned), else again. A writer killed anywhere leaves the older slot whole.
  */
-struct ows_record { /* 256 bytes */
+struct ows_record { /* 320 bytes */
 	uint32_t seq;
 	uint32_t text_off; /* strings: two texts of text_cap bytes each, slot n's at text_off +
 	                      (n & 1) * text_cap, written under the same seq; else 0 */
@@ -104,11 +108,12 @@ struct ows_record { /* 256 bytes */
 	uint16_t text_cap; /* multiple of 4 */
 	uint32_t spare;
 	struct ows_slot slot[2];
+	uint32_t spare2[12];
 };
 #define OWS_RECORD_OUTPUT 0x01
 #define OWS_RECORD_FRESH  0x02 /* read past the cache */
 #define OWS_RECORD_ALARM  0x04
-#define OWS_RECORD_NO_SET 0x08 /* an input whose Writable is off: nothing sets it (since 1.2) */
+#define OWS_RECORD_NO_SET 0x08 /* an input whose Writable is off: nothing sets it */
 
 /*
  * Record 0 is owsd itself: type OWS_LARGE, value = _RECONNECTS, measured_ns = the heartbeat,
@@ -116,9 +121,10 @@ struct ows_record { /* 256 bytes */
  * file are records 1 and up, in its order.
  */
 
-/* What does not change while a generation lives; info i belongs to record i. */
-struct ows_info_entry { /* 64 bytes */
-	uint32_t name_off; /* NUL-terminated, in the string pool */
+/* What does not change while a generation lives; info i belongs to record i. Texts are in the pool;
+   offset 0: none. A limit that is not set is NaN. */
+struct ows_info_entry { /* 192 bytes */
+	uint32_t name_off;
 	uint32_t path_off;
 	uint32_t per_factor;
 	uint32_t line;     /* of the configuration file */
@@ -126,10 +132,23 @@ struct ows_info_entry { /* 64 bytes */
 	int64_t init_value;
 	int64_t safe_value;
 	uint32_t flags;    /* OWS_INFO_ bits */
-	uint32_t spare[5];
+	uint32_t unit_off;
+	uint32_t description_off;
+	uint32_t family_off;     /* the kind of device as the path's family code says: "DS18B20" */
+	uint32_t device_off;     /* the device's ROM id as in the path */
+	uint32_t calibrated_off; /* a date: "2026-11-22" */
+	uint32_t points_off;     /* Points as configured */
+	uint32_t decimals;       /* 0xffffffff: not known */
+	double scale, offset;    /* 1 and 0 without */
+	double min, max;         /* Min and Max */
+	double limit_hh, limit_h, limit_l, limit_ll;
+	double filter_s, deadband; /* 0 without */
+	uint32_t spare[10];
 };
-#define OWS_INFO_INIT 0x01
-#define OWS_INFO_SAFE 0x02
+#define OWS_INFO_INIT   0x01
+#define OWS_INFO_SAFE   0x02
+#define OWS_INFO_LAST   0x04 /* Start "last" */
+#define OWS_INFO_SCALED 0x08 /* Scale, Offset or Points: _Raw differs */
 
 /* Names of all records, sorted by bytes (memcmp, shorter first). */
 struct ows_name_entry { /* 8 bytes */
@@ -153,121 +172,251 @@ struct ows_counter_entry { /* 64 bytes */
 	uint32_t low, high; /* of the 64-bit total; for display: they may be of different moments */
 };
 
+/* A giver, as owsd knows it: uid and pid are the kernel's word, the two names are claims. */
+#define OWS_NAME 32 /* NUL-terminated, filled up with NUL */
+struct ows_who { /* 80 bytes */
+	uint32_t serial; /* each connection has another, from 1; 0: owsd itself */
+	uint32_t uid;
+	int32_t pid;     /* 0: unknown */
+	uint32_t spare;
+	char name[OWS_NAME];   /* of the program */
+	char person[OWS_NAME]; /* for whom the program commands; "": for itself */
+};
+
 /*
- * The journal of alarms: a ring of alarm_count entries; entry number n, from 0 at owsd's start, is
- * at place n % alarm_count. Writer: seq + 1 (odd); release fence; the rest; seq + 1 (release); for
- * a new entry then alarm_head. A value after comes later, in the same way. Reader: copy as long as
- * seq is odd or changed; the entry is the one wanted if its number is.
+ * Entries that change as a whole: origins, givers, shelves, journals. Writer: seq + 1 (odd);
+ * release fence; the rest; seq + 1 (release). Reader: copy as long as seq is odd or changed; 64
+ * times at most. An owsd that was killed leaves at most one entry odd for good. check: ows_check()
+ * of the words between seq and check.
  */
-#define OWS_ALARMS 256
-struct ows_alarm_entry { /* 64 bytes, 16 words */
+
+/* Origin of the command that is in force; entry i belongs to record i. */
+struct ows_origin_entry { /* 104 bytes */
+	uint32_t seq;
+	uint32_t reason;  /* enum ows_reason (ows.h) */
+	int64_t taken_ns; /* when owsd took it; 0: no command */
+	struct ows_who who;
+	uint32_t spare;
+	uint32_t check;
+};
+
+/* A connected giver. */
+struct ows_giver_entry { /* 120 bytes */
+	uint32_t seq;
+	uint32_t flags;      /* OWS_GIVER_ bits; 0: the entry is free */
+	int64_t joined_ns;
+	struct ows_who who;
+	uint32_t period_ms;  /* promised longest time between two beats; 0: promised none */
+	uint32_t commands;   /* taken */
+	uint32_t refused;
+	uint32_t spare[2];
+	uint32_t check;
+};
+#define OWS_GIVERS 128
+#define OWS_GIVER_CONNECTED 0x01
+#define OWS_GIVER_MAY_SET   0x02 /* ControlAllow lets it command some signal */
+#define OWS_GIVER_LATE      0x04 /* its beat is over time */
+
+/* A shelved limit alarm. */
+#define OWS_SHELVES 64
+#define OWS_TEXT 64 /* NUL-terminated, filled up with NUL */
+struct ows_shelf_entry { /* 184 bytes */
+	uint32_t seq;
+	uint32_t record;   /* 0: the entry is free */
+	int64_t since_ns, until_ns;
+	struct ows_who who;
+	char why[OWS_TEXT];
+	uint32_t spare[3];
+	uint32_t check;
+};
+
+/*
+ * The journals: rings of alarms and of commands. Entry number n, from 0 at owsd's start, is at
+ * place n % count; the header's head counts what was ever entered, and is stored after the entry. A
+ * value after an alarm comes later.
+ */
+#define OWS_JOURNAL 256
+struct ows_journal_entry { /* 200 bytes */
 	uint32_t seq;
 	uint32_t record;
 	int64_t occurred_ns; /* CLOCK_BOOTTIME */
-	int64_t before;      /* as in sample.value, if OWS_ALARM_BEFORE */
-	int64_t after;       /* likewise, if OWS_ALARM_AFTER */
-	uint8_t kind;        /* enum ows_alarm_kind */
-	uint8_t event;       /* enum ows_alarm_event */
+	int64_t before;      /* as in sample.value, if OWS_JOURNAL_BEFORE */
+	int64_t after;       /* likewise, if OWS_JOURNAL_AFTER; of commands: the commanded value */
+	uint8_t kind;        /* enum ows_alarm_kind; of commands enum ows_reason */
+	uint8_t event;       /* enum ows_alarm_event; of commands 0 */
 	uint8_t quality;     /* of the signal at that moment */
-	uint8_t flags;       /* OWS_ALARM_ bits */
-	char latch[20];      /* device alarms: text of the latch, filled up with NUL */
+	uint8_t flags;       /* OWS_JOURNAL_ bits */
+	uint32_t more;       /* commands: so many of the signal were not entered before it */
+	char text[OWS_TEXT]; /* device alarms: the latch; shelving: why; commands: a text */
+	struct ows_who who;  /* who commanded, acknowledged, shelved */
 	uint32_t number;
-	uint32_t check;      /* ows_check() of the fourteen words record .. number */
+	uint32_t spare[2];
+	uint32_t check;
 };
-#define OWS_ALARM_BEFORE 0x01
-#define OWS_ALARM_AFTER  0x02
+#define OWS_JOURNAL_BEFORE 0x01
+#define OWS_JOURNAL_AFTER  0x02
+
+/*
+ * Changes: a ring of published rows; change number n is at place n % count (a power of two). The
+ * header's change_head counts all that were ever entered. Writer: release fence; record; number
+ * (release); change_head (release). Reader: head = change_head (acquire); more than count - 1
+ * behind: it fell behind and looks at everything; copy entries; acquire fence; change_head again:
+ * if the first copied is more than count - 1 behind it now, it may be overwritten, and the reader
+ * fell behind.
+ */
+struct ows_change_entry { /* 8 bytes */
+	uint32_t number;
+	uint32_t record;
+};
+
+/* The directory of areas. An area that a reader does not know is skipped. */
+struct ows_area_entry { /* 16 bytes */
+	uint32_t kind;  /* enum ows_area */
+	uint32_t off;   /* multiple of 8 */
+	uint32_t size;  /* of an entry; a later minor version may append to it, a multiple of 8 (but
+	                   pool, texts: 1) */
+	uint32_t count;
+};
+enum ows_area {
+	OWS_AREA_RECORDS = 1,
+	OWS_AREA_INFOS = 2,
+	OWS_AREA_NAMES = 3,
+	OWS_AREA_TARGETS = 4,
+	OWS_AREA_COUNTERS = 5,
+	OWS_AREA_POOL = 6,     /* strings, each ended by NUL, and so the last byte */
+	OWS_AREA_TEXTS = 7,    /* of string signals */
+	OWS_AREA_ORIGINS = 8,
+	OWS_AREA_GIVERS = 9,
+	OWS_AREA_SHELVES = 10,
+	OWS_AREA_ALARMS = 11,   /* journal of alarms */
+	OWS_AREA_COMMANDS = 12, /* journal of commands */
+	OWS_AREA_CHANGES = 13,
+	OWS_AREAS /* one more than the last */
+};
 
 struct ows_image_header { /* 256 bytes: four lines of 64 */
 	uint32_t magic;
 	uint16_t major, minor;
-	uint32_t size;        /* of the segment */
+	uint32_t size;        /* of the file */
 	uint32_t generation;  /* changes at each start or reload */
-	uint32_t state;       /* enum ows_state; the one word here that changes */
+	uint32_t state;       /* enum ows_state; the one word in these 128 bytes that changes */
 	int32_t pid;
-	uint32_t start_id;    /* random, the same for both segments of a generation */
-	uint32_t alarm_off;   /* journal of alarms; 0 in 1.0 */
+	uint32_t start_id;    /* random, another one for each generation */
+	uint32_t area_off;    /* the directory of areas */
+	uint32_t area_count;
+	uint32_t served_off;  /* the target that reaches the served protocol, in the pool; 0 none */
 	int64_t start_ns;     /* CLOCK_BOOTTIME of owsd's start */
 	int64_t start_wall_ns; /* CLOCK_REALTIME of the same moment, for display */
 	int64_t period_ns;
-	uint32_t alarm_size, alarm_count;
+	uint32_t spare0[16];
 
-	uint32_t record_off, record_size, record_count; /* count includes record 0 */
-	uint32_t info_off, info_size;
-	uint32_t name_off;    /* record_count entries of 8 bytes */
-	uint32_t target_off, target_size, target_count;
-	uint32_t counter_off, counter_size, counter_count;
-	uint32_t pool_off, pool_size; /* strings */
-	uint32_t text_off, text_size; /* texts of string signals */
+	uint32_t news;         /* counts published batches; futex word */
+	uint32_t alarm_head;   /* alarms ever entered into their journal */
+	uint32_t command_head; /* likewise commands */
+	uint32_t change_head;  /* likewise changes */
+	uint32_t spare1[12];
 
-	uint32_t news;        /* counts published states; futex word */
-	uint32_t alarm_head;  /* number of alarms ever entered */
-	uint32_t served_off;  /* the target that reaches the served protocol, in the pool; 0 none */
-	uint32_t spare2[13];
-
-	uint32_t spare3[16];
+	uint32_t awake;        /* not 0: the engine looks before it sleeps; no bell needed */
+	uint32_t spare2[15];
 };
 
-/* A consumer's commands for one record; slot i belongs to record i. Slot 0: driver _DGNRESET. */
-struct ows_command_slot { /* 32 bytes */
-	uint64_t value;    /* as ows_sample.value */
-	uint32_t stamp;    /* counts commands (fetch_add after value is stored); 0: never set */
-	uint32_t client;   /* index + 1 in the client table of who set it last; 0: nobody who beats;
-	                      OWS_CLIENT_SAFE: owsd put it to SafeValue */
-	uint32_t read_enable;  /* 0 not commanded, 1 off, 2 on */
+/* --- Commands: the memory of one giver --- */
+
+/* A giver's commands for one record; slot i belongs to record i. Slot 0: driver _DGNRESET. */
+struct ows_command_slot { /* 64 bytes */
+	/* The giver writes: */
+	uint64_t value;        /* as ows_sample.value */
+	uint32_t stamp;        /* the giver counts its commands from 1; release, after the value */
+	uint32_t person;       /* index + 1 in the persons; 0: for itself */
+	uint32_t read_enable;  /* 0 not commanded; else 4 * count + 1 off, + 2 on */
 	uint32_t write_enable; /* likewise */
 	uint32_t one_shot;     /* counts edges of _WriteOneShot */
 	uint32_t dgn_reset;    /* counts edges of _DGNRESET */
+	uint32_t acknowledged; /* counts acknowledgements of the limit alarm */
+	uint32_t spare0[3];
+	/* owsd writes, for this giver to read: */
+	uint32_t taken;        /* stamp of the last command that owsd looked at */
+	uint32_t applied;      /* stamp of the last command confirmed on the bus */
+	int32_t err;           /* 0, or why the command of stamp taken was refused */
+	uint32_t allowed;      /* 1: this giver may command the signal */
 };
 
-#define OWS_CLIENT_SAFE 0xffffffffu
-
-/* Strings: the claim is taken by compare-and-swap from 0 to the writer's pid. */
-struct ows_command_text { /* 16 bytes, then text_cap bytes */
-	uint32_t claim;
+/* Strings: texts are whole if the check word is right; the giver stores them before the stamp. */
+struct ows_command_text { /* 8 bytes, then text_cap bytes */
 	uint32_t len;
 	uint32_t check; /* ows_check_bytes() */
-	uint32_t spare;
 };
 
-/* What a slot meant, so that values are carried over a restart by name, type and path. */
-struct ows_command_entry { /* 16 bytes */
-	uint32_t name_off;
-	uint32_t path_off;
-	uint32_t type;
-	uint32_t text_off; /* strings: offset of struct ows_command_text, else 0 */
+/* Shelving of limit alarms: one request at a time. */
+struct ows_command_shelf { /* 96 bytes */
+	uint32_t count;   /* the giver: +1 (release) after the rest */
+	uint32_t record;
+	uint32_t seconds; /* 0: unshelve */
+	uint32_t person;  /* as in a slot */
+	char why[OWS_TEXT];
+	uint32_t done;    /* owsd: the count that it acted on */
+	int32_t err;      /* owsd: 0 or why not */
+	uint32_t spare[2];
 };
 
-#define OWS_CLIENTS 32
-struct ows_client { /* 32 bytes */
-	uint32_t pid;       /* 0: free; taken by compare-and-swap */
-	uint32_t beat;      /* counts */
-	uint32_t period_ms; /* promised longest time between two beats */
-	uint32_t spare[5];
-};
-
-struct ows_command_header { /* 256 bytes */
+#define OWS_PERSONS 16
+struct ows_giver_header { /* 256 bytes */
+	/* constant; owsd keeps a copy of its own and never reads these again */
 	uint32_t magic;
 	uint16_t major, minor;
 	uint32_t size;
-	uint32_t generation;
-	uint32_t state;    /* enum ows_state, written by owsd */
-	int32_t pid;
-	uint32_t start_id;
+	uint32_t generation, start_id; /* equal the image's */
+	uint32_t serial;
 	uint32_t slot_off, slot_size, slot_count;
-	uint32_t entry_off, entry_size;
-	uint32_t dirty_off, dirty_words; /* one bit for each slot, set by consumers */
-	uint32_t client_off, client_size;
+	uint32_t text_off, text_cap; /* of a string: at text_off + place * (8 + text_cap) */
+	uint32_t place_off;          /* u32 for each record: its text's place; 0xffffffff none */
+	uint32_t dirty_off, dirty_words; /* one bit for each slot */
+	uint32_t person_off;         /* OWS_PERSONS names of OWS_NAME bytes */
+	uint32_t shelf_off;          /* struct ows_command_shelf */
 
-	uint32_t pool_off, pool_size;
-	uint32_t text_off, text_size, text_cap;
-	uint32_t ack_off;  /* one word for each slot: counts acknowledgements; 0 in 1.0 */
-	uint32_t spare1[10];
+	/* owsd writes: */
+	uint32_t state;  /* enum ows_state: RETIRED: ows_reopen() gets the next memory */
+	uint32_t spare1[15];
 
-	uint32_t bell;     /* the engine's futex word: fetch_add 1, wake one */
-	uint32_t awake;    /* not 0: the engine works and looks before it sleeps; no wake needed */
-	uint32_t spare2[14];
+	/* the giver writes: */
+	uint32_t marked;    /* not 0: some dirty bit may be set; stored after the bits */
+	uint32_t beat;      /* counts */
+	uint32_t period_ms; /* promised longest time between two beats; 0: none */
+	uint32_t goodbye;   /* 1: the giver ends in order; its commands stay in force */
+	uint32_t waits;     /* 1: write into the pipe of news at the next one */
+	uint32_t spare2[11];
 
 	uint32_t spare3[16];
+};
+
+/*
+ * The socket NAME.control is of type SOCK_SEQPACKET. The program sends one hello; owsd answers with
+ * one welcome. With err 0 three descriptors come along: the memory (a memfd sealed against
+ * shrinking, growing and further seals), the bell (an eventfd) and the news (the end of a pipe that
+ * is read). After a reload owsd sends another welcome, with the memory of the new generation alone.
+ * The connection lasts as long as the giver.
+ */
+struct ows_hello { /* 128 bytes */
+	uint32_t magic;
+	uint16_t major, minor;
+	uint32_t flags;      /* OWS_HELLO_ bits */
+	uint32_t spare0;
+	uint8_t token[16];   /* of the welcome before, when the giver comes back; else 0 */
+	char name[OWS_NAME]; /* of the program, as it shall be shown */
+	uint32_t spare[16];
+};
+#define OWS_HELLO_COMMAND 0x01 /* it wants to command; else only to hear of news */
+
+struct ows_welcome { /* 64 bytes */
+	uint32_t magic;
+	uint16_t major, minor;
+	int32_t err;         /* 0, -EACCES: may not command, -ENOSPC: too many, -EPROTO: major */
+	uint32_t generation, start_id;
+	uint32_t serial;
+	uint32_t size;       /* of the memory */
+	uint32_t spare0;
+	uint8_t token[16];   /* secret: who has it comes back as this giver */
+	uint32_t spare[4];
 };
 
 /* Check words: mixes n words; a reader without memory fences verifies what it copied by it. */
@@ -303,25 +452,32 @@ static inline uint32_t ows_check_bytes(const char *text, size_t len)
 #endif
 OWS_STATIC_ASSERT(sizeof(struct ows_sample) == 48);
 OWS_STATIC_ASSERT(offsetof(struct ows_sample, check) == 44);
-OWS_STATIC_ASSERT(sizeof(struct ows_attrs) == 72);
-OWS_STATIC_ASSERT(offsetof(struct ows_attrs, check) == 68);
-OWS_STATIC_ASSERT(sizeof(struct ows_slot) == 120);
-OWS_STATIC_ASSERT(sizeof(struct ows_record) == 256);
+OWS_STATIC_ASSERT(sizeof(struct ows_attrs) == 80);
+OWS_STATIC_ASSERT(offsetof(struct ows_attrs, check) == 76);
+OWS_STATIC_ASSERT(sizeof(struct ows_slot) == 128);
+OWS_STATIC_ASSERT(sizeof(struct ows_record) == 320);
 OWS_STATIC_ASSERT(offsetof(struct ows_record, slot) == 16);
-OWS_STATIC_ASSERT(sizeof(struct ows_info_entry) == 64);
+OWS_STATIC_ASSERT(sizeof(struct ows_info_entry) == 192);
 OWS_STATIC_ASSERT(sizeof(struct ows_name_entry) == 8);
 OWS_STATIC_ASSERT(sizeof(struct ows_target_entry) == 128);
 OWS_STATIC_ASSERT(sizeof(struct ows_counter_entry) == 64);
-OWS_STATIC_ASSERT(sizeof(struct ows_alarm_entry) == 64);
-OWS_STATIC_ASSERT(offsetof(struct ows_alarm_entry, latch) == 36);
+OWS_STATIC_ASSERT(sizeof(struct ows_who) == 80);
+OWS_STATIC_ASSERT(sizeof(struct ows_origin_entry) == 104);
+OWS_STATIC_ASSERT(sizeof(struct ows_giver_entry) == 120);
+OWS_STATIC_ASSERT(sizeof(struct ows_shelf_entry) == 184);
+OWS_STATIC_ASSERT(sizeof(struct ows_journal_entry) == 200);
+OWS_STATIC_ASSERT(sizeof(struct ows_change_entry) == 8);
+OWS_STATIC_ASSERT(sizeof(struct ows_area_entry) == 16);
 OWS_STATIC_ASSERT(sizeof(struct ows_image_header) == 256);
-OWS_STATIC_ASSERT(offsetof(struct ows_image_header, record_off) == 64);
 OWS_STATIC_ASSERT(offsetof(struct ows_image_header, news) == 128);
-OWS_STATIC_ASSERT(sizeof(struct ows_command_slot) == 32);
-OWS_STATIC_ASSERT(sizeof(struct ows_command_text) == 16);
-OWS_STATIC_ASSERT(sizeof(struct ows_command_entry) == 16);
-OWS_STATIC_ASSERT(sizeof(struct ows_client) == 32);
-OWS_STATIC_ASSERT(sizeof(struct ows_command_header) == 256);
-OWS_STATIC_ASSERT(offsetof(struct ows_command_header, bell) == 128);
+OWS_STATIC_ASSERT(offsetof(struct ows_image_header, awake) == 192);
+OWS_STATIC_ASSERT(sizeof(struct ows_command_slot) == 64);
+OWS_STATIC_ASSERT(sizeof(struct ows_command_text) == 8);
+OWS_STATIC_ASSERT(sizeof(struct ows_command_shelf) == 96);
+OWS_STATIC_ASSERT(sizeof(struct ows_giver_header) == 256);
+OWS_STATIC_ASSERT(offsetof(struct ows_giver_header, state) == 64);
+OWS_STATIC_ASSERT(offsetof(struct ows_giver_header, marked) == 128);
+OWS_STATIC_ASSERT(sizeof(struct ows_hello) == 128);
+OWS_STATIC_ASSERT(sizeof(struct ows_welcome) == 64);
 
 #endif

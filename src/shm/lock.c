@@ -15,7 +15,6 @@
 #include "src/shm/segment.h"
 
 #define LOCK_TRIES 16
-#define PATH_ROOM 80
 
 /*
  * Byte 0 is the instance. Byte 1 is held while the pid is written and while a corpse's file is
@@ -38,20 +37,21 @@ static int lock_bytes(int fd, short type, off_t start, off_t len)
 }
 
 /* Opening without O_CREAT first: the kernel refuses O_CREAT on files of others even to root. */
-static int open_lock(const char *path)
+static int open_lock(int place, const char *name)
 {
 	struct stat st;
-	int fd = open(path, O_RDWR | O_NOFOLLOW | O_CLOEXEC);
+	int fd = openat(place, name, O_RDWR | O_NOFOLLOW | O_CLOEXEC);
 
 	if (fd < 0 && errno == ENOENT) {
-		fd = open(path, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+		fd = openat(place, name, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
 		if (fd < 0 && errno == EEXIST)
 			return -EAGAIN;
 	}
 	if (fd < 0) {
 		int err = -errno;
 
-		if (err == -EACCES && lstat(path, &st) == 0 && st.st_uid != geteuid())
+		if (err == -EACCES && fstatat(place, name, &st, AT_SYMLINK_NOFOLLOW) == 0 &&
+		    st.st_uid != geteuid())
 			return -EPERM;
 		/* a link, a directory, a socket */
 		return err == -ELOOP || err == -EISDIR || err == -ENXIO ? -EPERM : err;
@@ -63,12 +63,12 @@ static int open_lock(const char *path)
 	return fd;
 }
 
-static bool still_there(int fd, const char *path)
+static bool still_there(int fd, int place, const char *name)
 {
 	struct stat a, b;
 
-	return fstat(fd, &a) == 0 && lstat(path, &b) == 0 && a.st_ino == b.st_ino &&
-	       a.st_dev == b.st_dev;
+	return fstat(fd, &a) == 0 && fstatat(place, name, &b, AT_SYMLINK_NOFOLLOW) == 0 &&
+	       a.st_ino == b.st_ino && a.st_dev == b.st_dev;
 }
 
 static pid_t read_pid(int fd)
@@ -82,7 +82,7 @@ static pid_t read_pid(int fd)
 	return (pid_t)pid;
 }
 
-/* Write over the page that exists before truncating: a full /dev/shm has no other page to give. */
+/* Write over the page that exists before truncating: a full file system has no other to give. */
 static int write_pid(int fd)
 {
 	char text[16];
@@ -117,61 +117,57 @@ static bool is_corpse(pid_t pid)
 /*
  * Replace the file that a corpse has locked; byte 1 of fd, which is locked, keeps other owsds out.
  */
-static int replace_lock(int fd, const char *path)
+static int replace_lock(int fd, int place, const char *name)
 {
 	if (lock_bytes(fd, F_WRLCK, BYTE_PID, 1) < 0 || !is_corpse(read_pid(fd)))
 		return -EBUSY;
-	if (still_there(fd, path) && unlink(path) < 0)
+	if (still_there(fd, place, name) && unlinkat(place, name, 0) < 0)
 		return -errno;
 	return 0;
 }
 
-static void lock_path(const char *instance, char path[PATH_ROOM])
-{
-	snprintf(path, PATH_ROOM, "/dev/shm/owsd.%s.lock", instance);
-}
-
-bool segment_lock_held(int lock, const char *instance)
+bool segment_lock_held(const struct shm_place *place, int lock, const char *instance)
 {
 	struct stat ours, there;
-	char path[PATH_ROOM];
+	char name[SEGMENT_FILE];
 
-	lock_path(instance, path);
+	segment_file(instance, "lock", name);
 	if (fstat(lock, &ours) < 0)
 		return true;
-	if (lstat(path, &there) < 0)
+	if (fstatat(place->fd, name, &there, AT_SYMLINK_NOFOLLOW) < 0)
 		return errno != ENOENT;
 	return ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
 }
 
-int segment_lock(const char *instance, pid_t *pid, bool *stolen)
+int segment_lock(const struct shm_place *place, const char *instance, pid_t *pid, bool *stolen)
 {
-	char path[PATH_ROOM];
+	char name[SEGMENT_FILE];
 
 	*pid = 0;
 	*stolen = false;
 	if (!segment_name_ok(instance))
 		return -EINVAL;
-	lock_path(instance, path);
+	segment_file(instance, "lock", name);
 	for (int i = 0; i < LOCK_TRIES; i++) {
-		int err, fd = open_lock(path);
+		int err, fd = open_lock(place->fd, name);
 
 		if (fd == -EAGAIN)
 			continue;
 		if (fd < 0)
 			return fd;
 		err = lock_bytes(fd, F_WRLCK, BYTE_INSTANCE, 2);
-		if (err == 0 && still_there(fd, path)) {
+		if (err == 0 && still_there(fd, place->fd, name)) {
 			err = write_pid(fd);
 			lock_bytes(fd, F_UNLCK, BYTE_PID, 1);
 			if (err == 0)
 				return fd;
-			unlink(path); /* no owsd holds it, and a waiter checks that it exists */
+			unlinkat(place->fd, name,
+			         0); /* no owsd holds it, and a waiter checks that it exists */
 		} else if (err == -EAGAIN || err == -EACCES) {
 			*pid = read_pid(fd);
 			err = -EBUSY;
 			if (*pid > 0 && is_corpse(*pid)) {
-				err = replace_lock(fd, path);
+				err = replace_lock(fd, place->fd, name);
 				*stolen = err == 0;
 			}
 		}
@@ -182,18 +178,14 @@ int segment_lock(const char *instance, pid_t *pid, bool *stolen)
 	return -EBUSY;
 }
 
-int segment_lock_look(const char *instance, pid_t *pid)
+int lock_look(int place, const char *name, pid_t *pid)
 {
 	struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_len = 1};
-	char path[PATH_ROOM];
 	struct stat st;
 	int fd, held;
 
 	*pid = 0;
-	if (!segment_name_ok(instance))
-		return -EINVAL;
-	lock_path(instance, path);
-	fd = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+	fd = openat(place, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
 	if (fd < 0)
 		return errno == ELOOP || errno == ENXIO ? -EPERM : -errno;
 	held = fcntl(fd, F_OFD_GETLK, &lock) < 0 ? -errno : lock.l_type != F_UNLCK;
@@ -208,17 +200,27 @@ int segment_lock_look(const char *instance, pid_t *pid)
 	return held;
 }
 
-int segment_lock_any(const char *instance, pid_t *pid)
+int segment_lock_look(const struct shm_place *place, const char *instance, pid_t *pid)
 {
-	char path[PATH_ROOM];
+	char name[SEGMENT_FILE];
+
+	*pid = 0;
+	if (!segment_name_ok(instance))
+		return -EINVAL;
+	return lock_look(place->fd, segment_file(instance, "lock", name), pid);
+}
+
+int segment_lock_any(const struct shm_place *place, const char *instance, pid_t *pid)
+{
+	char name[SEGMENT_FILE];
 	struct stat st;
 	int fd, err;
 
 	*pid = 0;
 	if (!segment_name_ok(instance))
 		return -EINVAL;
-	lock_path(instance, path);
-	fd = open(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+	segment_file(instance, "lock", name);
+	fd = openat(place->fd, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
 	if (fd < 0)
 		return errno == ELOOP || errno == EISDIR || errno == ENXIO ? -EPERM : -errno;
 	if (fstat(fd, &st) < 0 || !S_ISREG(st.st_mode)) {
@@ -230,7 +232,7 @@ int segment_lock_any(const char *instance, pid_t *pid)
 		*pid = read_pid(fd);
 		/* a corpse creates no files any more */
 		err = *pid > 0 && is_corpse(*pid) ? 0 : -EBUSY;
-	} else if (!err && !still_there(fd, path)) {
+	} else if (!err && !still_there(fd, place->fd, name)) {
 		err = -EBUSY; /* another process replaces or removes the file */
 	}
 	if (err) {

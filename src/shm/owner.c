@@ -14,7 +14,7 @@
  * Read from the files themselves: the user and groups of owsd are local, and getpwnam() would load
  * the name services of a directory into the daemon for nothing.
  */
-static bool user_id(const char *name, uid_t *uid)
+bool owner_user(const char *name, uid_t *uid)
 {
 	FILE *file = fopen("/etc/passwd", "re");
 	const struct passwd *entry;
@@ -33,7 +33,7 @@ static bool is_service(uid_t uid)
 {
 	uid_t owsd;
 
-	return user_id(OWNER_USER, &owsd) && uid == owsd;
+	return owner_user(OWNER_USER, &owsd) && uid == owsd;
 }
 
 bool owner_is_service(void)
@@ -46,7 +46,7 @@ bool owner_trusted(uid_t uid)
 	return uid == 0 || uid == geteuid() || is_service(uid);
 }
 
-void owner_name(uid_t uid, char name[OWNER_NAME])
+const char *owner_name(uid_t uid, char name[OWNER_NAME])
 {
 	FILE *file = fopen("/etc/passwd", "re");
 	const struct passwd *entry;
@@ -60,6 +60,7 @@ void owner_name(uid_t uid, char name[OWNER_NAME])
 		}
 	if (file)
 		fclose(file);
+	return name;
 }
 
 bool owner_group(const char *name, gid_t *gid)

@@ -12,8 +12,9 @@ bool owner_trusted(uid_t uid);
 bool owner_is_service(void);
 /* A user's name, cut to 16 bytes, and number; the number alone where /etc/passwd has no name. */
 #define OWNER_NAME 40
-void owner_name(uid_t uid, char name[OWNER_NAME]);
-/* The id of a group, false if there is none of that name. */
+const char *owner_name(uid_t uid, char name[OWNER_NAME]);
+/* The ids of a user and a group, false if there is none of that name. */
+bool owner_user(const char *name, uid_t *uid);
 bool owner_group(const char *name, gid_t *gid);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The reader's half of a record's protocol (layout.h). No system call, no lock, at most
- * READER_TRIES rounds.
+ * The reader's half of the protocols of records and of entries (layout.h). No system call, no lock,
+ * at most READER_TRIES rounds.
  */
 #ifndef SHM_READER_H
 #define SHM_READER_H
@@ -50,6 +50,25 @@ static inline bool reader_slot(const struct ows_record *record, struct ows_slot 
 
 		words_load_aligned(to, slot, sizeof(*to) / 4);
 		if (reader_end(record, seq))
+			return true;
+	}
+	return false;
+}
+
+/*
+ * Copy an entry of size bytes that changes as a whole: of the origins, givers, shelves, journals.
+ * False: owsd died while it wrote this entry.
+ */
+static inline bool reader_entry(const void *from, void *entry, size_t size)
+{
+	const shm_word *word = (const shm_word *)from;
+
+	for (int i = 0; i < READER_TRIES; i++) {
+		uint32_t seq = __atomic_load_n(word, __ATOMIC_ACQUIRE);
+
+		words_load_aligned(entry, from, size / 4);
+		word_fence(__ATOMIC_ACQUIRE);
+		if (seq % 2 == 0 && __atomic_load_n(word, __ATOMIC_RELAXED) == seq)
 			return true;
 	}
 	return false;

@@ -1,32 +1,31 @@
 /* SPDX-License-Identifier: MIT */
-/* The files that instances have in /dev/shm: found by their names, and removed under the lock. */
+/* The files that instances have in a place: found by their names, and removed under the lock. */
 #include <dirent.h>
 #include <errno.h>
-#include <glob.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "src/shm/lock.h"
 #include "src/shm/remains.h"
 
-#define FOLDER "/dev/shm"
-#define PREFIX "owsd."
-
-/* The instance of a file's name, between "owsd." and the last dot. False: no file of an owsd. */
+/* The instance of a file's name, before the last dot. False: no file of an owsd. */
 static bool instance_of(const char *file, char name[SEGMENT_NAME_MAX + 1])
 {
-	const char *end = strrchr(file, '.'), *begin = file + strlen(PREFIX);
+	static const char *const kinds[] = {".image", ".force", ".control", ".lock"};
+	const char *end = strrchr(file, '.');
+	bool ours = false;
 
-	if (strncmp(file, PREFIX, strlen(PREFIX)) != 0 || !end || end <= begin ||
-	    end - begin > SEGMENT_NAME_MAX)
+	if (!end || end == file || end - file > SEGMENT_NAME_MAX)
 		return false;
-	if (strcmp(end, ".image") != 0 && strcmp(end, ".command") != 0 && strcmp(end, ".lock") != 0)
-		return false;
-	memcpy(name, begin, (size_t)(end - begin));
-	name[end - begin] = '\0';
-	return segment_name_ok(name);
+	for (unsigned i = 0; i < sizeof(kinds) / sizeof(kinds[0]); i++)
+		ours |= strcmp(end, kinds[i]) == 0;
+	memcpy(name, file, (size_t)(end - file));
+	name[end - file] = '\0';
+	return ours && segment_name_ok(name);
 }
 
 static int by_name(const void *a, const void *b)
@@ -47,15 +46,20 @@ static void sort(struct remains *remains)
 	remains->count = kept + 1;
 }
 
-int remains_list(struct remains *remains)
+int remains_list(const struct shm_place *place, struct remains *remains)
 {
-	DIR *folder = opendir(FOLDER);
+	int fd = openat(place->fd, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	DIR *folder = fd < 0 ? NULL : fdopendir(fd);
 	const struct dirent *entry;
 	int err = 0;
 
 	*remains = (struct remains){0};
-	if (!folder)
-		return -errno;
+	if (!folder) {
+		err = -errno;
+		if (fd >= 0)
+			close(fd);
+		return err;
+	}
 	while (!err && (entry = readdir(folder)) != NULL) {
 		char name[SEGMENT_NAME_MAX + 1], (*more)[SEGMENT_NAME_MAX + 1];
 
@@ -82,38 +86,31 @@ void remains_free(struct remains *remains)
 	*remains = (struct remains){0};
 }
 
-/* The files of an instance but for its lock; a start that was killed leaves .new files. */
-static int find_files(const char *instance, glob_t *found)
-{
-	static const char *const forms[] = {
-		"image",
-		"command",
-		"image.new",
-		"command.new",
-		"image.new.????????",
-		"command.new.????????",
-	};
-	char pattern[128];
-	int err = 0;
+/* A start that was killed leaves .new files; owsctl leaves the alarms that its user has seen. */
+static const char *const others[] = {
+	"image", "command", "force", "control", "image.new", "command.new", "force.new", "seen",
+};
+#define OTHERS (sizeof(others) / sizeof(others[0]))
 
-	memset(found, 0, sizeof(*found));
-	for (unsigned i = 0; i < sizeof(forms) / sizeof(forms[0]) && !err; i++) {
-		snprintf(pattern, sizeof(pattern), FOLDER "/" PREFIX "%s.%s", instance, forms[i]);
-		err = glob(pattern, i ? GLOB_APPEND : 0, NULL, found);
-		if (err == GLOB_NOMATCH)
-			err = 0;
-	}
-	/* the alarms that this user's owsctl has seen; other users remove their own file */
-	snprintf(pattern, sizeof(pattern), FOLDER "/" PREFIX "%s.seen.%u", instance,
-	         (unsigned)geteuid());
-	if (!err)
-		err = glob(pattern, GLOB_APPEND, NULL, found);
-	return err && err != GLOB_NOMATCH ? -ENOMEM : 0;
+static bool has_other(const struct shm_place *place, const char *instance)
+{
+	char name[SEGMENT_FILE];
+	bool has = false;
+
+	for (unsigned i = 0; i < OTHERS && !has; i++)
+		has = faccessat(place->fd, segment_file(instance, others[i], name), F_OK,
+		                AT_SYMLINK_NOFOLLOW) == 0;
+	return has;
 }
 
-static int remove_file(const char *path, unsigned *files)
+static int remove_file(const struct shm_place *place, const char *instance, const char *what,
+                       unsigned *files)
 {
-	if (unlink(path) == 0 || (errno == EISDIR && rmdir(path) == 0))
+	char name[SEGMENT_FILE];
+
+	segment_file(instance, what, name);
+	if (unlinkat(place->fd, name, 0) == 0 ||
+	    (errno == EISDIR && unlinkat(place->fd, name, AT_REMOVEDIR) == 0))
 		++*files;
 	else if (errno != ENOENT)
 		return -errno;
@@ -121,26 +118,25 @@ static int remove_file(const char *path, unsigned *files)
 }
 
 /* The lock is the last: as long as it exists, no owsd creates the files that are being removed. */
-static int remove_all(const char *instance, const glob_t *found, bool lock_is_new, unsigned *files)
+static int remove_all(const struct shm_place *place, const char *instance, bool lock_is_new,
+                      unsigned *files)
 {
-	char path[128];
+	unsigned locks = 0;
 	int err = 0;
 
-	for (size_t i = 0; i < found->gl_pathc && !err; i++)
-		err = remove_file(found->gl_pathv[i], files);
-	snprintf(path, sizeof(path), FOLDER "/" PREFIX "%s.lock", instance);
+	for (unsigned i = 0; i < OTHERS && !err; i++)
+		err = remove_file(place, instance, others[i], files);
 	if (lock_is_new)
-		unlink(path);
+		remove_file(place, instance, "lock", &locks);
 	else if (!err)
-		err = remove_file(path, files);
+		err = remove_file(place, instance, "lock", files);
 	return err;
 }
 
-int remains_remove(const char *instance, pid_t *pid, unsigned *files)
+int remains_remove(const struct shm_place *place, const char *instance, pid_t *pid, unsigned *files)
 {
-	glob_t found;
 	bool stolen;
-	int lock = segment_lock_any(instance, pid), err;
+	int lock = segment_lock_any(place, instance, pid), err;
 	bool has_none = lock == -ENOENT;
 
 	*files = 0;
@@ -150,14 +146,13 @@ int remains_remove(const char *instance, pid_t *pid, unsigned *files)
 	 */
 	if (lock < 0 && !has_none && lock != -EPERM)
 		return lock;
-	err = find_files(instance, &found);
-	if (!err && has_none) {
-		lock = found.gl_pathc ? segment_lock(instance, pid, &stolen) : -ENOENT;
-		err = lock < 0 ? lock : 0;
+	if (has_none) {
+		lock = has_other(place, instance) ? segment_lock(place, instance, pid, &stolen)
+		                                  : -ENOENT;
+		if (lock < 0)
+			return lock;
 	}
-	if (!err)
-		err = remove_all(instance, &found, has_none, files);
-	globfree(&found);
+	err = remove_all(place, instance, has_none, files);
 	if (lock >= 0)
 		close(lock);
 	return err;

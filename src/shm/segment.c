@@ -1,30 +1,27 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The files of an instance in /dev/shm: made under a temporary name, shown, opened again, closed.
+ * The mapped files of an instance: made under a temporary name, shown, opened again, closed.
  */
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "src/shm/guard.h"
 #include "src/shm/owner.h"
 #include "src/shm/segment.h"
 
 #define SEGMENT_MIN 256
 #define SEGMENT_MAX 0x7fffffff
-#define NAME_TRIES 16
 
 static const struct segment_role {
 	const char *name, *group;
 	mode_t mode;
 } roles[] = {
 	[SEGMENT_IMAGE] = {"image", "owsd", 0640},
-	[SEGMENT_COMMAND] = {"command", "owsd-control", 0660},
+	[SEGMENT_FORCE] = {"force", NULL, 0600},
 };
 
 bool segment_name_ok(const char *instance)
@@ -37,10 +34,15 @@ bool segment_name_ok(const char *instance)
 	                        "0123456789-_.") == n;
 }
 
-/* shm_open() of glibc and musl means the same files, but has no rename. */
-static void final_path(const char *instance, enum segment_kind kind, char path[80])
+const char *segment_file(const char *instance, const char *what, char name[SEGMENT_FILE])
 {
-	snprintf(path, 80, "/dev/shm/owsd.%s.%s", instance, roles[kind].name);
+	snprintf(name, SEGMENT_FILE, "%.*s.%s", SEGMENT_NAME_MAX, instance, what);
+	return name;
+}
+
+static const char *final_name(const char *instance, enum segment_kind kind, char name[SEGMENT_FILE])
+{
+	return segment_file(instance, roles[kind].name, name);
 }
 
 /*
@@ -51,7 +53,7 @@ static int give_to_group(int fd, const struct segment_role *role)
 {
 	gid_t gid;
 
-	if (owner_group(role->group, &gid) && fchown(fd, (uid_t)-1, gid) == 0)
+	if (role->group && owner_group(role->group, &gid) && fchown(fd, (uid_t)-1, gid) == 0)
 		return fchmod(fd, role->mode) < 0 ? -errno : 0;
 	return fchmod(fd, 0600) < 0 ? -errno : 0;
 }
@@ -76,41 +78,28 @@ static int map(struct segment *segment)
 	return 0;
 }
 
-/*
- * The first name tried is always the same, so that the next start removes what a killed owsd left.
- * Any user can take that name; the names tried after it cannot be predicted.
- */
+/* The lock is held and nobody else makes names there: a file of that name is a leftover. */
 static int open_temporary(const char *instance, struct segment *segment)
 {
-	char path[80], suffix[12] = "";
-	uint32_t random;
+	char what[12];
 
-	final_path(instance, segment->kind, path);
-	for (int i = 0; i < NAME_TRIES; i++) {
-		snprintf(segment->temporary, sizeof(segment->temporary), "%.60s.new%s", path,
-		         suffix);
-		if (i == 0)
-			unlink(segment->temporary); /* the lock is held: the file is a leftover */
-		segment->fd = open(segment->temporary,
-		                   O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
-		if (segment->fd >= 0)
-			return 0;
-		if (errno != EEXIST)
-			break;
-		if (getrandom(&random, sizeof(random), 0) != (ssize_t)sizeof(random))
-			break;
-		snprintf(suffix, sizeof(suffix), ".%08x", (unsigned)random);
-	}
+	snprintf(what, sizeof(what), "%s.new", roles[segment->kind].name);
+	segment_file(instance, what, segment->temporary);
+	unlinkat(segment->place, segment->temporary, 0);
+	segment->fd = openat(segment->place, segment->temporary,
+	                     O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+	if (segment->fd >= 0)
+		return 0;
 	segment->temporary[0] = '\0'; /* owsd did not create it and must not remove it */
 	return errno == EEXIST ? -EPERM : -errno;
 }
 
-int segment_create(const char *instance, enum segment_kind kind, size_t size,
-                   struct segment *segment)
+int segment_create(const struct shm_place *place, const char *instance, enum segment_kind kind,
+                   size_t size, struct segment *segment)
 {
 	int err;
 
-	*segment = (struct segment){.fd = -1, .kind = kind, .size = size};
+	*segment = (struct segment){.fd = -1, .place = place->fd, .kind = kind, .size = size};
 	if (!segment_name_ok(instance) || size < SEGMENT_MIN || size > SEGMENT_MAX)
 		return -EINVAL;
 	err = open_temporary(instance, segment);
@@ -128,12 +117,12 @@ int segment_create(const char *instance, enum segment_kind kind, size_t size,
 
 int segment_show(const char *instance, struct segment *segment)
 {
-	char path[80];
+	char name[SEGMENT_FILE];
 
 	if (segment->temporary[0] == '\0')
 		return 0;
-	final_path(instance, segment->kind, path);
-	if (rename(segment->temporary, path) < 0)
+	final_name(instance, segment->kind, name);
+	if (renameat(segment->place, segment->temporary, segment->place, name) < 0)
 		return errno == EACCES ? -EPERM : -errno;
 	segment->temporary[0] = '\0';
 	return 0;
@@ -142,27 +131,28 @@ int segment_show(const char *instance, struct segment *segment)
 bool segment_named(const char *instance, const struct segment *segment)
 {
 	struct stat ours, there;
-	char path[80];
+	char name[SEGMENT_FILE];
 
 	if (segment->temporary[0] != '\0' || fstat(segment->fd, &ours) < 0)
 		return true;
-	final_path(instance, segment->kind, path);
-	if (lstat(path, &there) < 0)
+	final_name(instance, segment->kind, name);
+	if (fstatat(segment->place, name, &there, AT_SYMLINK_NOFOLLOW) < 0)
 		return errno != ENOENT;
 	return ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
 }
 
-int segment_open_old(const char *instance, enum segment_kind kind, struct segment *segment)
+int segment_open_old(const struct shm_place *place, const char *instance, enum segment_kind kind,
+                     struct segment *segment)
 {
 	struct stat st;
-	char path[80];
+	char name[SEGMENT_FILE];
 	int err;
 
-	*segment = (struct segment){.fd = -1, .kind = kind};
+	*segment = (struct segment){.fd = -1, .place = place->fd, .kind = kind};
 	if (!segment_name_ok(instance))
 		return -EINVAL;
-	final_path(instance, kind, path);
-	segment->fd = open(path, O_RDWR | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+	final_name(instance, kind, name);
+	segment->fd = openat(place->fd, name, O_RDWR | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
 	if (segment->fd < 0)
 		return errno == EACCES || errno == ELOOP ? -EPERM : -errno;
 	if (fstat(segment->fd, &st) < 0)
@@ -184,43 +174,23 @@ int segment_open_old(const char *instance, enum segment_kind kind, struct segmen
 
 void segment_close(struct segment *segment)
 {
-	segment_unguard(segment);
 	if (segment->base != NULL)
 		munmap(segment->base, segment->size);
 	if (segment->fd >= 0)
 		close(segment->fd);
 	if (segment->temporary[0] != '\0')
-		unlink(segment->temporary);
+		unlinkat(segment->place, segment->temporary, 0);
 	segment->base = NULL;
 	segment->fd = -1;
 	segment->temporary[0] = '\0';
 }
 
-int segment_remove(const char *instance, enum segment_kind kind)
+int segment_remove(const struct shm_place *place, const char *instance, enum segment_kind kind)
 {
-	char path[80];
+	char name[SEGMENT_FILE];
 
 	if (!segment_name_ok(instance))
 		return -EINVAL;
-	final_path(instance, kind, path);
-	return unlink(path) < 0 ? -errno : 0;
-}
-
-int segment_guard(struct segment *segment)
-{
-	return guard_add(segment->base, segment->size, false);
-}
-
-void segment_unguard(struct segment *segment)
-{
-	guard_remove(segment->base);
-}
-
-bool segment_lost(const struct segment *segment)
-{
-	struct stat st;
-
-	if (guard_lost(segment->base))
-		return true;
-	return fstat(segment->fd, &st) == 0 && (size_t)st.st_size != segment->size;
+	final_name(instance, kind, name);
+	return unlinkat(place->fd, name, 0) < 0 ? -errno : 0;
 }

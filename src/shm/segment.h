@@ -1,40 +1,47 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The memory under image and commands, owsd's side: POSIX shared memory of an instance, the lock of
- * the instance, waiting and waking. Blocking: file-system calls only.
+ * The memory under image and commands, owsd's side: the mapped files of an instance. Blocking:
+ * file-system calls only.
  *
  * Room src/shm: the segments in shared memory, the side of owsd. Uses hal/bus.
  */
 #ifndef SHM_SEGMENT_H
 #define SHM_SEGMENT_H
 
-#include <signal.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <sys/types.h>
 
-enum segment_kind { SEGMENT_IMAGE, SEGMENT_COMMAND };
+#include "src/shm/place.h"
+
+/* NAME.image, and NAME.force, which only owsd itself may open. */
+enum segment_kind { SEGMENT_IMAGE, SEGMENT_FORCE };
 
 /* The longest name of an instance: letters, digits, '-', '_', '.', and no dot at the beginning. */
 #define SEGMENT_NAME_MAX 32
 bool segment_name_ok(const char *instance);
+/* The name of an instance's file in its place: "OWS.image". */
+#define SEGMENT_FILE (SEGMENT_NAME_MAX + 16)
+const char *segment_file(const char *instance, const char *what, char name[SEGMENT_FILE]);
 
 struct segment {
 	char *base;
 	size_t size;
 	int fd;
-	char temporary[80]; /* name until segment_show() */
+	int place;                    /* the descriptor of its place */
+	char temporary[SEGMENT_FILE]; /* name until segment_show() */
 	enum segment_kind kind;
 };
 
 /*
- * Make a segment of size zeroed bytes under a temporary name that no other user can block, with all
- * pages allocated (-ENOSPC now instead of a SIGBUS later when /dev/shm is full). Mode 0640 group
- * owsd, or 0660 group owsd-control, where those groups exist and the caller may give files to them.
+ * Make a segment of size zeroed bytes under a temporary name, with all pages allocated (-ENOSPC now
+ * instead of a SIGBUS later when the file system is full). The place stays open as long as the
+ * segment. Mode 0640 group owsd where that group exists and the caller may give files to it;
+ * else 0600.
  */
-int segment_create(const char *instance, enum segment_kind kind, size_t size,
-                   struct segment *segment);
+int segment_create(const struct shm_place *place, const char *instance, enum segment_kind kind,
+                   size_t size, struct segment *segment);
 /* Rename the segment to its final name, in one step; does nothing if it has that name already. */
 int segment_show(const char *instance, struct segment *segment);
 /*
@@ -43,19 +50,10 @@ int segment_show(const char *instance, struct segment *segment);
  */
 bool segment_named(const char *instance, const struct segment *segment);
 /* Map a segment that an earlier owsd left, writable. -ENOENT: none; -EPERM: another user's. */
-int segment_open_old(const char *instance, enum segment_kind kind, struct segment *segment);
+int segment_open_old(const struct shm_place *place, const char *instance, enum segment_kind kind,
+                     struct segment *segment);
 void segment_close(struct segment *segment);
-/* Remove the name (the command segment is left in place at an ordinary end). */
-int segment_remove(const char *instance, enum segment_kind kind);
-
-/*
- * Guard a mapping against a consumer that truncates its file: on a SIGBUS inside the mapping
- * private zero pages replace it, and the thread that touched it goes on. One guard for each
- * mapping, up to 4.
- */
-int segment_guard(struct segment *segment);
-void segment_unguard(struct segment *segment);
-/* True once the file was truncated, whether or not its memory was touched since. */
-bool segment_lost(const struct segment *segment);
+/* Remove the name. */
+int segment_remove(const struct shm_place *place, const char *instance, enum segment_kind kind);
 
 #endif

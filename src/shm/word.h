@@ -64,6 +64,7 @@ static inline void words_load_aligned(void *to, const void *from, size_t n)
 	const shm_double_word *f = (const shm_double_word *)from;
 	shm_double_word *t = (shm_double_word *)to;
 
+#pragma GCC unroll 6
 	for (size_t i = 0; i < n / 2; i++)
 		t[i] = __atomic_load_n(&f[i], WORD_LOAD);
 #else

@@ -25,6 +25,7 @@ const struct attribute_def attribute_table[ATTR_COUNT] = {
 	[ATTR_PERIOD] = {"_Period", NULL, OWS_DOUBLE, true, false, false},
 	[ATTR_AGE] = {"_Age", NULL, OWS_DOUBLE, true, false, false},
 	[ATTR_AGE_MAX] = {"_AgeMax", NULL, OWS_DOUBLE, true, false, false},
+	[ATTR_RAW] = {"_Raw", NULL, OWS_DOUBLE, true, false, false},
 	[ATTR_DRIVER_DGNRESET] = {"_DGNRESET", NULL, OWS_BOOL, false, true, true},
 	[ATTR_DRIVER_TRANSACTIONS] = {"_TRANSACTIONS", NULL, OWS_LARGE, true, false, true},
 	[ATTR_DRIVER_RECONNECTS] = {"_RECONNECTS", NULL, OWS_LARGE, true, false, true},

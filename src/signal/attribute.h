@@ -27,6 +27,7 @@ enum attribute {
 	ATTR_PERIOD,
 	ATTR_AGE,
 	ATTR_AGE_MAX,
+	ATTR_RAW,
 	/* of the driver itself (record 0) */
 	ATTR_DRIVER_DGNRESET,
 	ATTR_DRIVER_TRANSACTIONS,

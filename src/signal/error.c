@@ -27,7 +27,8 @@ static const struct {
 	{EBADRQC, "SetAlarm is not defined, or has no '='", "write SetAlarm \"property=value\""},
 	{EUCLEAN, "it is still set after 0 was written", ""},
 	{EPERM, "no permission",
-         "a read-only server refuses writes; a file of the kernel needs root or a udev rule"},
+         "a read-only server, or ControlAllow, refuses the write; a file of the kernel needs root or "
+         "a udev rule"},
 	/* what happens on the way */
 	{EINVAL, "the target refuses this value", ""},
 	{EBADMSG, "wrong checksum", ""},

@@ -7,6 +7,7 @@
 #include "hal/owfs/path.h"
 #include "src/signal/quantity.h"
 
+#define CELSIUS "\u00b0C"
 /* DS18S20 (and DS1920), DS1822, DS18B20, DS1825 and MAX31826 and MAX31850, DS28EA00 */
 #define THERMOMETERS "\x10\x22\x28\x3b\x42"
 
@@ -22,49 +23,49 @@ static const struct {
 	/*
 	 * -55 to +125, at the ends within 2 degrees, a DS1822 within 3; 9 to 12 bits, 0.5 to 0.0625
 	 */
-	{THERMOMETERS, "temperature", {-58, 128, 4, true}},
-	{THERMOMETERS, "temperature9", {-58, 128, 1, true}},
-	{THERMOMETERS, "temperature10", {-58, 128, 2, true}},
-	{THERMOMETERS, "temperature11", {-58, 128, 3, true}},
-	{THERMOMETERS, "temperature12", {-58, 128, 4, true}},
-	{THERMOMETERS, "fasttemp", {-58, 128, 1, true}},
-	{THERMOMETERS, "latesttemp", {-58, 128, 4, true}},
+	{THERMOMETERS, "temperature", {-58, 128, 4, true, CELSIUS}},
+	{THERMOMETERS, "temperature9", {-58, 128, 1, true, CELSIUS}},
+	{THERMOMETERS, "temperature10", {-58, 128, 2, true, CELSIUS}},
+	{THERMOMETERS, "temperature11", {-58, 128, 3, true, CELSIUS}},
+	{THERMOMETERS, "temperature12", {-58, 128, 4, true, CELSIUS}},
+	{THERMOMETERS, "fasttemp", {-58, 128, 1, true, CELSIUS}},
+	{THERMOMETERS, "latesttemp", {-58, 128, 4, true, CELSIUS}},
 	/* MAX31850: 14 bits of 0.25, of which none below absolute zero */
-	{"\x3b", "thermocouple", {-273.15, 2047.75, 2, false}},
+	{"\x3b", "thermocouple", {-273.15, 2047.75, 2, false, CELSIUS}},
 	/* DS1921: G -40 to +85 within 1.3, 0.5; H and Z 0.125 */
-	{"\x21", "temperature", {-42, 87, 3, false}},
+	{"\x21", "temperature", {-42, 87, 3, false, CELSIUS}},
 	/* DS2438: -55 to +125 within 2, 0.03125; 10 bits of 10 mV; 10 bits and sign of 0.2441 mV */
-	{"\x26", "temperature", {-58, 128, 5, false}},
+	{"\x26", "temperature", {-58, 128, 5, false, CELSIUS}},
 	/* the chip runs on its VDD of 2.4 V at least: a 0 is what a restart left */
-	{"\x26", "VDD", {2, 10.23, 2, false}},
-	{"\x26", "VAD", {0, 10.23, 2, false}},
-	{"\x26", "vis", {-0.25, 0.25, 5, false}},
+	{"\x26", "VDD", {2, 10.23, 2, false, "V"}},
+	{"\x26", "VAD", {0, 10.23, 2, false, "V"}},
+	{"\x26", "vis", {-0.25, 0.25, 5, false, "V"}},
 	/* Sensors of 0 to 100 %RH within 5, and as much again for their ageing in wet air */
-	{"\x26", "humidity", {-10, 110, 2, false}},
-	{"\x26", "HIH3600/humidity", {-10, 110, 2, false}},
-	{"\x26", "HIH4000/humidity", {-10, 110, 2, false}},
-	{"\x26", "HIH5030/humidity", {-10, 110, 2, false}},
-	{"\x26", "HTM1735/humidity", {-10, 110, 2, false}},
-	{"\x26", "DATANAB/humidity", {-10, 110, 2, false}},
+	{"\x26", "humidity", {-10, 110, 2, false, "%"}},
+	{"\x26", "HIH3600/humidity", {-10, 110, 2, false, "%"}},
+	{"\x26", "HIH4000/humidity", {-10, 110, 2, false, "%"}},
+	{"\x26", "HIH5030/humidity", {-10, 110, 2, false, "%"}},
+	{"\x26", "HTM1735/humidity", {-10, 110, 2, false, "%"}},
+	{"\x26", "DATANAB/humidity", {-10, 110, 2, false, "%"}},
 	/* absolute, of any sensor: gain and offset are settings */
-	{"\x26", "B1-R1-A/pressure", {0, HUGE_VAL, 2, false}},
-	{"\x26", "S3-R1-A/illuminance", {0, HUGE_VAL, 1, false}},
+	{"\x26", "B1-R1-A/pressure", {0, HUGE_VAL, 2, false, "mbar"}},
+	{"\x26", "S3-R1-A/illuminance", {0, HUGE_VAL, 1, false, "lx"}},
 	/* DS2450: 16 bits of 5.12 or 2.56 V */
-	{"\x20", "volt", {0, 5.12, 5, false}},
-	{"\x20", "volt2", {0, 2.56, 5, false}},
-	{"\x20", "latestvolt", {0, 5.12, 5, false}},
-	{"\x20", "latestvolt2", {0, 2.56, 5, false}},
+	{"\x20", "volt", {0, 5.12, 5, false, "V"}},
+	{"\x20", "volt2", {0, 2.56, 5, false, "V"}},
+	{"\x20", "latestvolt", {0, 5.12, 5, false, "V"}},
+	{"\x20", "latestvolt2", {0, 2.56, 5, false, "V"}},
 	/* DS2760: 10 bits and sign of 0.125 */
-	{"\x30", "temperature", {-128, 127.875, 3, false}},
+	{"\x30", "temperature", {-128, 127.875, 3, false, CELSIUS}},
 	/* DS1922, DS1923: L -40 to +85, T to +125, E to +140, within 2, 0.0625; sensor as above */
-	{"\x41", "temperature", {-42, 142, 4, false}},
-	{"\x41", "humidity", {-10, 110, 2, false}},
+	{"\x41", "temperature", {-42, 142, 4, false, CELSIUS}},
+	{"\x41", "humidity", {-10, 110, 2, false, "%"}},
 	/* MS5534 on a TAI8570: -40 to +125, 10 to 1100 mbar, within 15 */
-	{"\x12", "TAI8570/temperature", {-42, 127, 2, false}},
-	{"\x12", "TAI8570/pressure", {-5, 1115, 2, false}},
+	{"\x12", "TAI8570/temperature", {-42, 127, 2, false, CELSIUS}},
+	{"\x12", "TAI8570/pressure", {-5, 1115, 2, false, "mbar"}},
 	/* DS2423: 32 bits */
-	{"\x1d", "counter", {0, UINT32_MAX, 0, false}},
-	{"\x1d", "counters", {0, UINT32_MAX, 0, false}},
+	{"\x1d", "counter", {0, UINT32_MAX, 0, false, ""}},
+	{"\x1d", "counters", {0, UINT32_MAX, 0, false, ""}},
 };
 #define ROWS (sizeof(table) / sizeof(table[0]))
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The values that a measured property of a chip family can have, by data sheet: the range that the
- * chip can measure, the decimals of its results, and whether a power fault looks like a value.
- * Units are degrees Celsius, volts, percent, millibars.
+ * chip can measure, unit and decimals of its results, and whether a power fault looks like a value.
  */
 #ifndef SIGNAL_QUANTITY_H
 #define SIGNAL_QUANTITY_H
@@ -13,6 +12,7 @@ struct quantity {
 	double least, most; /* a number outside is never a true measurement */
 	int decimals;       /* of its resolution */
 	bool starves;       /* a thermometer that reports 85 or 127.94 when it lacks power */
+	const char *unit;   /* "" for a plain number; UTF-8 */
 };
 
 /*

@@ -4,6 +4,7 @@
  */
 #include <arpa/inet.h>
 #include <errno.h>
+#include <ftw.h>
 #include <math.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -14,6 +15,7 @@
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -44,6 +46,38 @@ bool bench_pin(int cpu)
 int bench_cpus(void)
 {
 	return (int)sysconf(_SC_NPROCESSORS_ONLN);
+}
+
+static struct shm_place place = {.fd = -1};
+static pid_t maker;
+
+static int remove_one(const char *path, const struct stat *st, int kind, struct FTW *at)
+{
+	(void)st;
+	(void)kind;
+	(void)at;
+	return remove(path);
+}
+
+static void remove_place(void)
+{
+	if (getpid() == maker)
+		nftw(place.path, remove_one, 4, FTW_DEPTH | FTW_PHYS);
+}
+
+const struct shm_place *bench_place(void)
+{
+	char path[] = "/dev/shm/owsd-bench-XXXXXX";
+
+	if (place.fd >= 0)
+		return &place;
+	if (!mkdtemp(path) || setenv("OWS_DIR", path, 1) || place_make(&place)) {
+		perror(path);
+		exit(1);
+	}
+	maker = getpid();
+	atexit(remove_place);
+	return &place;
 }
 
 void bench_line(const char *name, double value, const char *unit)

@@ -11,6 +11,8 @@
 #include <stdint.h>
 #include <sys/types.h>
 
+#include "src/shm/place.h"
+
 int64_t bench_now(void); /* ns, monotonic */
 /* Keep this thread on one CPU; false when the machine has no such CPU. */
 bool bench_pin(int cpu);
@@ -25,6 +27,12 @@ double bench_percentile(double *values, size_t n, double p);
 void bench_distribution(const char *name, double *values, size_t n, const char *unit);
 /* CPU time a process has used, ns (user and system, by the kernel's ticks). */
 int64_t bench_cpu_ns(pid_t pid);
+
+/*
+ * A place of the bench's own for owsd and libows, in memory as a real one; removed with all that is
+ * in it when the bench ends.
+ */
+const struct shm_place *bench_place(void);
 
 struct bench_peer {
 	pid_t pid;

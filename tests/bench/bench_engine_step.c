@@ -40,7 +40,6 @@ static double one_step_ns(unsigned signals)
 	struct config_target target = {.text = "bench"};
 	struct config_item *items = calloc(signals, sizeof(*items));
 	struct image_signal *rows = calloc(signals, sizeof(*rows));
-	struct command_signal *names = calloc(signals, sizeof(*names));
 	char(*text)[64] = calloc(signals, sizeof(*text));
 	struct image_counter counters[64];
 	const char *targets[] = {"bench"};
@@ -61,12 +60,9 @@ static double one_step_ns(unsigned signals)
 	                          .target_count = 1,
 	                          .counters = counters,
 	                          .counter_count = engine_counter_count(1)};
-	struct command_plan command_plan = {
-		.signals = names, .signal_count = signals, .text_cap = TABLE_TEXT_CAP};
-	struct commands commands;
 	struct image image;
 	struct engine *engine;
-	void *image_memory, *command_memory;
+	void *image_memory;
 	double best[ROUNDS];
 	int64_t now = 1000000000;
 
@@ -81,18 +77,12 @@ static double one_step_ns(unsigned signals)
 		                                .init_text = "",
 		                                .safe_text = ""};
 		signal_table_image(&items[i], &rows[i]);
-		names[i] = (struct command_signal){text[i], text[i] + 32, OWS_DOUBLE};
 	}
 	engine_counter_plan(1, counters);
 	image_memory = aligned_alloc(64, (image_size(&plan) + 63) / 64 * 64);
-	command_memory = aligned_alloc(64, (commands_size(&command_plan) + 63) / 64 * 64);
 	memset(image_memory, 0, image_size(&plan));
-	memset(command_memory, 0, commands_size(&command_plan));
 	image_build(&plan, image_memory, &image);
-	if (commands_build(&command_plan, command_memory, &commands))
-		exit(1);
 	setup.image = &image;
-	setup.commands = &commands;
 	setup.start_ns = now;
 	if (engine_create(&setup, &engine))
 		exit(1);
@@ -119,12 +109,9 @@ static double one_step_ns(unsigned signals)
 		best[round] = (double)(bench_now() - begin) / REQUESTS;
 	}
 	engine_destroy(engine);
-	commands_forget(&commands);
 	free(image_memory);
-	free(command_memory);
 	free(items);
 	free(rows);
-	free(names);
 	free(text);
 	return bench_percentile(best, ROUNDS, 50);
 }

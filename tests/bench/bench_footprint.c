@@ -92,13 +92,14 @@ static bool write_file(const char *file, const struct bench_peer *peer)
 
 int main(int argc, char **argv)
 {
-	char program[512], file[128], instance[32], path[128];
+	char program[512], file[128], instance[32];
 	const char *slash = strrchr(argv[0], '/');
 	struct bench_peer peer;
 	double own, its;
 	pid_t pid;
 
 	(void)argc;
+	bench_place();
 	snprintf(program, sizeof(program), "%.*s/../owsd", slash ? (int)(slash - argv[0]) : 1,
 	         slash ? argv[0] : ".");
 	bench_line("text_size", text_size(program) / 1024, "KiB");
@@ -131,9 +132,5 @@ int main(int argc, char **argv)
 	waitpid(pid, NULL, 0);
 	unlink(file);
 	bench_peer_end(&peer);
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.command", instance);
-	unlink(path);
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.lock", instance);
-	unlink(path);
 	return 0;
 }

@@ -162,12 +162,13 @@ static bool write_file(const char *file, const struct bench_peer *peer)
 int main(int argc, char **argv)
 {
 	static const int clients[] = {1, 16, 64};
-	char program[512], file[128], instance[32], path[128], port[16];
+	char program[512], file[128], instance[32], port[16];
 	const char *slash = strrchr(argv[0], '/');
 	struct bench_peer peer;
 	struct side sides[2];
 
 	(void)argc;
+	bench_place();
 	if (!bench_peer_start(&peer, DEVICES, 0))
 		return 0;
 	snprintf(program, sizeof(program), "%.*s/../owsd", slash ? (int)(slash - argv[0]) : 1,
@@ -198,9 +199,5 @@ int main(int argc, char **argv)
 	waitpid(sides[0].pid, NULL, 0);
 	unlink(file);
 	bench_peer_end(&peer);
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.command", instance);
-	unlink(path);
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.lock", instance);
-	unlink(path);
 	return 0;
 }

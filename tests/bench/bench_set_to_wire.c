@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * From ows_set() in a control program to the request of an idle owsd at its owserver: a peer of our
- * own takes the time when the write arrives, so one hop over loopback is in the figure.
+ * own takes the time when the write arrives, so one hop over loopback is in the figure. Beside it,
+ * in turn with the sets, what it costs to wake as many threads: engine, worker, peer.
  */
 #include <arpa/inet.h>
 #include <netinet/tcp.h>
@@ -17,6 +18,7 @@
 
 #include "src/libows/ows.h"
 #include "tests/bench/aid.h"
+#include "tests/bench/wakes.h"
 
 #define SETS 500
 #define WRITE 3
@@ -80,9 +82,43 @@ static pid_t start_owsd(const char *self, const char *folder, const char *instan
 	return pid;
 }
 
+static void pause_for(int i)
+{
+	usleep(1000 + (useconds_t)(i * 7919 % 9000));
+}
+
+/* Less than 0: the set did not arrive. */
+static double set_once(struct ows *h, int id, int value)
+{
+	int64_t begin, end;
+
+	__atomic_store_n(&arrived_ns, 0, __ATOMIC_RELEASE);
+	begin = bench_now();
+	if (ows_set_integer(h, id, value, NULL))
+		return -1;
+	while (!(end = __atomic_load_n(&arrived_ns, __ATOMIC_ACQUIRE))) {
+		if (bench_now() - begin > 3000000000)
+			return -1;
+		usleep(50);
+	}
+	return (double)(end - begin) / 1e3;
+}
+
+static void report(double *us, double *wakes, double *hops)
+{
+	double set = bench_percentile(us, SETS, 50), woken = bench_percentile(wakes, SETS, 50);
+
+	bench_line("set_to_wire", set, "us");
+	bench_distribution("set_to_wire", us, SETS, "us");
+	bench_line("set_to_wire.wakes", woken, "us");
+	bench_line("set_to_wire.wakes_loopback", bench_percentile(hops, SETS, 50), "us");
+	bench_line("set_to_wire.over_wakes", set / woken, "times");
+}
+
 int main(int argc, char **argv)
 {
-	static double us[SETS];
+	static double us[SETS], wakes[SETS], hops[SETS];
+	struct bench_wakes by_eventfd, by_loopback;
 	struct sockaddr_in a = {.sin_family = AF_INET};
 	socklen_t len = sizeof(a);
 	char folder[] = "/tmp/owsd-bench-XXXXXX", instance[32], path[128];
@@ -92,6 +128,7 @@ int main(int argc, char **argv)
 	pid_t pid;
 
 	(void)argc;
+	bench_place();
 	a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
 	if (bind(listener, (void *)&a, sizeof(a)) || listen(listener, 4) ||
 	    getsockname(listener, (void *)&a, &len) || !mkdtemp(folder))
@@ -106,25 +143,23 @@ int main(int argc, char **argv)
 		if (h)
 			id = ows_find(h, "relay");
 	}
+	if (!bench_wakes_start(&by_eventfd, false) || !bench_wakes_start(&by_loopback, true))
+		return 1;
 	usleep(200000);
-	for (int i = 0; id >= 0 && i < SETS; i++) {
-		int64_t begin;
-
-		usleep(1000 + (useconds_t)(i * 7919 % 9000));
-		__atomic_store_n(&arrived_ns, 0, __ATOMIC_RELEASE);
-		begin = bench_now();
-		if (ows_set_integer(h, id, i + 1, NULL))
+	for (; id >= 0 && done < SETS; done++) {
+		pause_for(done);
+		us[done] = set_once(h, id, done + 1);
+		pause_for(done);
+		wakes[done] = bench_wakes_once(&by_eventfd);
+		pause_for(done);
+		hops[done] = bench_wakes_once(&by_loopback);
+		if (us[done] < 0 || wakes[done] < 0 || hops[done] < 0)
 			break;
-		while (!__atomic_load_n(&arrived_ns, __ATOMIC_ACQUIRE) &&
-		       bench_now() - begin < 3000000000)
-			usleep(50);
-		if (!arrived_ns)
-			break;
-		us[done++] = (double)(arrived_ns - begin) / 1e3;
 	}
+	bench_wakes_end(&by_eventfd);
+	bench_wakes_end(&by_loopback);
 	if (done == SETS) {
-		bench_line("set_to_wire", bench_percentile(us, SETS, 50), "us");
-		bench_distribution("set_to_wire", us, SETS, "us");
+		report(us, wakes, hops);
 	} else {
 		fprintf(stderr, "set_to_wire: only %d of %d sets arrived\n", done, SETS);
 	}
@@ -134,9 +169,5 @@ int main(int argc, char **argv)
 	snprintf(path, sizeof(path), "%s/bench.rio", folder);
 	unlink(path);
 	rmdir(folder);
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.command", instance);
-	unlink(path);
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.lock", instance);
-	unlink(path);
 	return done == SETS ? 0 : 1;
 }

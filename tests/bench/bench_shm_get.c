@@ -62,7 +62,7 @@ static bool open_instance(struct segment *segment, char *name, struct ows **h)
 	size_t size = image_size(&plan);
 
 	sprintf(name, "bench-%d", (int)getpid());
-	if (segment_create(name, SEGMENT_IMAGE, size, segment))
+	if (segment_create(bench_place(), name, SEGMENT_IMAGE, size, segment))
 		return false;
 	image_build(&plan, segment->base, &image);
 	publish(0);
@@ -156,7 +156,6 @@ int main(void)
 	__atomic_store_n(&stop, 1, __ATOMIC_RELAXED);
 	pthread_join(writer, NULL);
 	ows_close(h);
-	segment_remove(name, SEGMENT_IMAGE);
 	segment_close(&segment);
 	bench_line("shm_get", get, "ns");
 	read = median_read_ns();

@@ -7,15 +7,16 @@
 #include "src/engine/counters.h"
 #include "src/engine/table.h"
 #include "tests/endurance/memory.h"
+#include "tests/endurance/program.h"
 #include "tests/endurance/station_private.h"
+#include "tests/unit/aid/giving.h"
 
 static void free_generation(struct generation *g)
 {
 	engine_destroy(g->engine);
-	commands_forget(&g->commands);
+	giver_layout_free(&g->layout);
 	config_free(g->config);
 	free(g->image_memory);
-	free(g->command_memory);
 	free(g);
 }
 
@@ -66,7 +67,7 @@ static void make_memory(struct generation *g)
 	const char *targets[STATION_PARTS];
 	uint32_t groups[STATION_PARTS];
 	struct image_signal *rows = calloc(c->item_count, sizeof(*rows));
-	struct command_signal *names = calloc(c->item_count, sizeof(*names));
+	uint8_t *types = calloc(c->item_count, sizeof(*types));
 	struct image_counter *counters = calloc(engine_counter_count(c->target_count),
 	                                        sizeof(*counters));
 	struct image_plan plan = {.signals = rows,
@@ -81,19 +82,12 @@ static void make_memory(struct generation *g)
 	                          .pid = 1,
 	                          .start_ns = station.start,
 	                          .period_ns = c->period_ns};
-	struct command_plan command_plan = {.signals = names,
-	                                    .signal_count = c->item_count,
-	                                    .text_cap = TABLE_TEXT_CAP,
-	                                    .generation = (uint32_t)station.reloads + 1,
-	                                    .start_id = 7,
-	                                    .pid = 1};
 
-	if (!rows || !names || !counters)
+	if (!rows || !types || !counters)
 		world_fails("no memory", "");
 	for (unsigned i = 0; i < c->item_count; i++) {
 		signal_table_image(&c->items[i], &rows[i]);
-		names[i] = (struct command_signal){c->items[i].name, c->items[i].path,
-		                                   (uint8_t)c->items[i].type};
+		types[i] = (uint8_t)c->items[i].type;
 	}
 	for (unsigned i = 0; i < c->target_count; i++) {
 		targets[i] = c->targets[i].text;
@@ -101,12 +95,10 @@ static void make_memory(struct generation *g)
 	}
 	engine_counter_plan(c->target_count, counters);
 	g->image_memory = aligned(image_size(&plan));
-	g->command_memory = aligned(commands_size(&command_plan));
 	image_build(&plan, g->image_memory, &g->image);
-	if (commands_build(&command_plan, g->command_memory, &g->commands))
-		world_fails("no memory", "");
+	giving_layout(&g->layout, types, c->item_count);
 	free(rows);
-	free(names);
+	free(types);
 	free(counters);
 }
 
@@ -153,11 +145,11 @@ static struct generation *make_generation(const char *rio, const struct generati
 	                              .ports = g->ports,
 	                              .port_count = g->port_count,
 	                              .image = &g->image,
-	                              .commands = &g->commands,
 	                              .log = station.log,
 	                              .start_ns = station.now};
 	if (engine_create(&setup, &g->engine))
 		world_fails("no memory", "");
+	program_join(g);
 	return g;
 }
 
@@ -167,6 +159,7 @@ void station_begin(const char *rio)
 		station.bus[i].fd = -1;
 	station_log_begin();
 	station.now_serving = make_generation(rio, NULL, NULL);
+	program_moved();
 	for (unsigned i = 0; i < station.now_serving->port_count; i++)
 		station.now_serving->bus[i]->port = i;
 	station.engine_ns = station.now;
@@ -183,6 +176,7 @@ void station_reload(const char *rio)
 	memory_watch(true);
 	engine_adopt(g->engine, before->engine, &plan, station.now);
 	memory_watch(false);
+	program_moved();
 	for (unsigned i = 0; i < before->port_count; i++)
 		before->bus[i]->port = STATION_GONE;
 	for (unsigned i = 0; i < g->port_count; i++)
@@ -227,6 +221,7 @@ void station_end(void)
 		station_bus_free(b);
 	}
 	free_generation(g);
+	program_end();
 	for (unsigned i = 0; i < station.part_count; i++)
 		station.part[i].ops->end(&station.part[i]);
 	memset(&station, 0, sizeof(station));

@@ -1,54 +1,64 @@
 /* SPDX-License-Identifier: MIT */
-/* The control program of an endurance run. */
+/* The control programs of an endurance run. */
+#include <stdio.h>
 #include <string.h>
 
+#include "src/engine/givers.h"
 #include "tests/endurance/program.h"
 #include "tests/endurance/world.h"
+#include "tests/unit/aid/giving.h"
 
 #define BEAT_MS 3000
-#define CLIENT 3
+
+/* One never beats, and scribbles; the other one beats. */
+enum { QUIET, BEATING, PROGRAMS };
 
 static bool beats;
-static uint32_t beat, stamp = 1001;
+static struct giving programs[PROGRAMS], before[PROGRAMS];
+static uint32_t serials;
 
-static struct ows_command_slot *slot_of(uint32_t record)
+static void join(struct generation *g, unsigned i)
 {
-	const struct commands *c = &station.now_serving->commands;
+	struct engine_giver giver = {.who = {.uid = 1, .pid = 42}, .token = {(uint8_t)(i + 1)}};
 
-	return (struct ows_command_slot *)(void *)(c->base + c->slot_off) + record;
-}
-
-static void mark_dirty(uint32_t record)
-{
-	const struct commands *c = &station.now_serving->commands;
-	uint32_t *dirty = (uint32_t *)(void *)(c->base + c->dirty_off);
-
-	dirty[record / 32] |= 1u << record % 32;
-	station_ring();
-}
-
-static struct ows_client *client(void)
-{
-	const struct commands *c = &station.now_serving->commands;
-
-	return (struct ows_client *)(void *)(c->base + c->client_off) + CLIENT;
-}
-
-static void set_relays(unsigned value, bool beating)
-{
-	uint32_t record = record_of("relays");
-	struct ows_command_slot *slot = slot_of(record);
-
-	slot->value = value;
-	slot->client = beating ? CLIENT + 1 : 0;
-	slot->stamp = stamp += 2; /* odd: none that was scribbled */
-	mark_dirty(record);
-	commanded = (int)value;
+	/* the serial stays over a reload */
+	giver.who.serial = before[i].memory.base ? giving_header(&before[i])->serial : ++serials;
+	snprintf(giver.who.name, sizeof(giver.who.name), "program%u", i);
+	giving_make(&programs[i], &g->layout, giver.who.serial);
+	giver.memory = programs[i].memory;
+	engine_giver_join(g->engine, i, &giver, station.now);
 }
 
 void program_begin(void)
 {
 	beats = false;
+}
+
+void program_join(struct generation *g)
+{
+	for (unsigned i = 0; i < PROGRAMS; i++) {
+		before[i] = programs[i];
+		join(g, i);
+	}
+}
+
+void program_moved(void)
+{
+	for (unsigned i = 0; i < PROGRAMS; i++)
+		giving_free(&before[i]);
+}
+
+void program_end(void)
+{
+	for (unsigned i = 0; i < PROGRAMS; i++)
+		giving_free(&programs[i]);
+}
+
+static void set_relays(unsigned program, unsigned value)
+{
+	giving_set(&programs[program], record_of("relays"), value);
+	station_ring();
+	commanded = (int)value;
 }
 
 bool program_beats(void)
@@ -58,63 +68,79 @@ bool program_beats(void)
 
 void program_runs(void)
 {
-	if (!beats)
-		return;
-	*client() = (struct ows_client){.pid = 42, .beat = ++beat, .period_ms = 1000 * BEAT_MS};
+	if (beats)
+		giving_beat(&programs[BEATING], 1000 * BEAT_MS);
 }
 
 void program_sets(unsigned value)
 {
-	set_relays(value, false);
+	set_relays(QUIET, value);
 }
 
+/* It hangs, or its process ends. */
 void program_dies(void)
 {
-	world_note("the program dies");
-	set_relays(1 + world_random(15), true);
+	bool hangs = world_random(2);
+
+	world_note(hangs ? "the program hangs" : "the program dies");
+	set_relays(BEATING, 1 + world_random(15));
 	beats = true;
 	program_runs();
 	station_run(station.now + (int64_t)world_random(20) * FIELD_S);
 	beats = false;
-	*client() = (struct ows_client){.pid = 42, .beat = beat, .period_ms = BEAT_MS};
+	giving_beat(&programs[BEATING], BEAT_MS);
 	station_run(station.now + FIELD_S);
+	if (!hangs) {
+		engine_giver_left(station.now_serving->engine, BEATING, station.now);
+		giving_free(&programs[BEATING]);
+	}
+	station_run(station.now + 2 * BEAT_MS / 1000 * FIELD_S);
 	commanded = 0; /* SafeValue */
+	if (!hangs)
+		join(station.now_serving, BEATING);
 }
 
-void program_scribbles(void)
+static void scribble_slots(struct giving *g, uint32_t records)
 {
-	const struct commands *c = &station.now_serving->commands;
-	uint32_t n = station.now_serving->config->item_count, header = 256 / 4;
-
-	world_note("scribbles");
 	for (unsigned i = 0; i < 20; i++) {
-		uint32_t record = 1 + world_random(n), word = world_random(8);
-		uint32_t *slot = (uint32_t *)(void *)slot_of(record);
+		uint32_t record = 1 + world_random(records), word = world_random(16);
+		uint32_t *slot = (uint32_t *)(void *)giving_slot(g, record);
 
 		/* a table believes what it is told, also of a temperature */
 		if (world->moody && record != record_of("relays") && word == 5)
 			continue;
 		slot[word] = world_random(2) ? world_random(4) : world_random(1 << 24) << 8;
-		mark_dirty(record);
+		giving_mark(g, record);
 	}
+}
+
+void program_scribbles(void)
+{
+	struct giving *g = &programs[QUIET];
+	uint32_t n = station.now_serving->config->item_count, *words = (void *)g->memory.base;
+	uint32_t serial = giving_header(g)->serial;
+
+	world_note("scribbles");
+	scribble_slots(g, n);
 	for (unsigned i = 0; i < 4; i++)
-		((uint32_t *)(void *)c->base)[world_random(header)] = world_random(1 << 24);
-	((uint32_t *)(void *)(c->base + c->client_off))[world_random(OWS_CLIENTS * 8)] =
-		world_random(1 << 24);
-	((uint32_t *)(void *)(c->base + c->dirty_off))[0] = world_random(1 << 24);
+		words[world_random(256 / 4)] = world_random(1 << 24);
+	words[g->memory.layout->dirty_off / 4] = world_random(1 << 24);
+	words[g->memory.layout->shelf_off / 4 + world_random(24)] = world_random(1 << 24);
+	giving_header(g)->marked = 1;
 	station_ring();
 	station_run(station.now + (1 + world_random(30)) * FIELD_S);
 	/* and sets it right */
-	memset(c->base + c->client_off, 0, OWS_CLIENTS * sizeof(struct ows_client));
+	giving_header(g)->serial = serial;
+	giving_header(g)->goodbye = 0;
+	giving_beat(g, 0);
 	for (uint32_t record = 1; record <= n; record++) {
-		struct ows_command_slot *slot = slot_of(record);
 		bool output = record == record_of("relays");
 
-		slot->read_enable = output ? 1 : 2;
-		slot->write_enable = output ? 2 : 1;
-		mark_dirty(record);
+		giving_enable(&giving_slot(g, record)->read_enable, !output);
+		giving_enable(&giving_slot(g, record)->write_enable, output);
+		giving_mark(g, record);
 	}
-	set_relays(world_random(16), false);
+	set_relays(QUIET, world_random(16));
 	station_run(station.now + FIELD_S);
 	invariants_excuse();
 }

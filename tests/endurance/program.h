@@ -1,11 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* A control program: it sets the relays, beats, dies, and scribbles. */
+/* Control programs: they set the relays, beat, die, and scribble. */
 #ifndef TESTS_ENDURANCE_PROGRAM_H
 #define TESTS_ENDURANCE_PROGRAM_H
 
 #include <stdbool.h>
 
+struct generation;
+
 void program_begin(void);
+/* All programs join the engine of a generation; once it has taken over, the rest is freed. */
+void program_join(struct generation *generation);
+void program_moved(void);
+void program_end(void);
 /* Each second. It dies with the heartbeat, and what it set goes to SafeValue. */
 void program_runs(void);
 bool program_beats(void);

@@ -73,7 +73,6 @@ static void run_engine(void)
 	station.engine_ns = engine_step(g->engine, station.now);
 	engine_published(g->engine);
 	memory_watch(false);
-	commands_repair(&g->commands, false);
 	station.engine_steps++;
 	write_log();
 	if (station.engine_ns <= station.now)

@@ -19,14 +19,14 @@ REPLAYS      := $(FUZZ_TARGETS:%=$(B)/fuzz/replay_%)
 # What a target needs beside core.a, the functions of which it takes the place (__wrap_...), and
 # where its dictionary comes from: the words in quotes of these files
 FUZZ_WITH_owserver := fuzz/bus_host.o
-FUZZ_WITH_commands := tests/unit/aid/scene.o tests/unit/aid/scene_bus.o tests/unit/aid/scene_consumer.o tests/unit/aid/scene_wire.o
-FUZZ_WITH_image    := fuzz/heap_instance.o fuzz/heap_map.o
-FUZZ_WITH_serve    := fuzz/heap_instance.o fuzz/heap_map.o
+FUZZ_WITH_giver    := tests/unit/aid/giving.o $(patsubst %.c,%.o,$(wildcard tests/unit/aid/scene*.c))
+FUZZ_WITH_image    := fuzz/heap_instance.o fuzz/heap_map.o fuzz/heap_give.o
+FUZZ_WITH_serve    := fuzz/heap_instance.o fuzz/heap_map.o fuzz/heap_give.o
 FUZZ_WITH_w1       := fuzz/bus_host.o fuzz/sysfs.o
 FUZZ_WITH_netlink  := fuzz/bus_host.o fuzz/sysfs.o
 FUZZ_WITH_scenario := fuzz/bus_host.o
 FUZZ_WORDS_scenario := $(wildcard hal/sim/*.c hal/sim/chips/*.c)
-FUZZ_WITH_owsctl   := fuzz/heap_instance.o fuzz/heap_map.o fuzz/json_valid.o
+FUZZ_WITH_owsctl   := fuzz/heap_instance.o fuzz/heap_map.o fuzz/heap_give.o fuzz/json_valid.o
 # w1 and netlink have a property that is the process's number
 FUZZ_WRAP_w1       := getpid
 FUZZ_WRAP_netlink  := getpid

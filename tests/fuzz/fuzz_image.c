@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * libows on segments that are damaged: before they are opened, and while they are mapped. The input
+ * libows on an image and a giver's memory that are damaged: before they are opened, and while they
+ * are mapped. The input
  * is a list of patches and of calls. Nothing is read or written outside of the segments, and every
  * text ends.
  */
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,8 +18,8 @@
 static struct fuzz fuzz;
 static struct ows *h;
 static int64_t now_ns;
-static char *image, *command;
-static size_t image_size_now, command_size_now;
+static char *image, *giver;
+static size_t image_size_now, giver_size_now;
 
 size_t fuzz_memory(size_t n)
 {
@@ -37,14 +39,10 @@ static char *copy(const char *from, size_t size)
 /* Somewhere in the segment, or near where something of the image begins. */
 static uint32_t place(const char *base, size_t size)
 {
-	const struct ows_image_header *header = heap.image.header;
-	const uint32_t areas[] = {header->record_off, header->info_off,    header->name_off,
-	                          header->target_off, header->counter_off, header->alarm_off,
-	                          header->pool_off,   header->text_off};
-	uint32_t off = fuzz_word(&fuzz);
+	uint32_t off = fuzz_word(&fuzz), area = off >> 24 & 15;
 
 	if (base == image && off >> 24)
-		off = areas[off >> 24 & 7] + (off & 0x3ff);
+		off = (area < OWS_AREAS - 1 ? heap.image.areas[area].off : 0) + (off & 0x3ff);
 	return off % (uint32_t)size;
 }
 
@@ -89,21 +87,21 @@ static void keep_ends(void)
 
 	if (!map)
 		return;
-	image[map->pool_off + map->pool_size - 1] = '\0';
-	for (uint32_t i = 0; i < map->target_count; i++) {
-		last = sizeof(map->targets[i].name) - 1;
-		image[&map->targets[i].name[last] - map->base] = '\0';
+	image[map->areas[OWS_AREA_POOL].off + map->areas[OWS_AREA_POOL].count - 1] = '\0';
+	for (uint32_t i = 0; i < map_count(map, OWS_AREA_TARGETS); i++) {
+		last = sizeof(map_target(map, i)->name) - 1;
+		image[&map_target(map, i)->name[last] - map->base] = '\0';
 	}
-	for (uint32_t i = 0; i < map->counter_count; i++) {
-		last = sizeof(map->counters[i].name) - 1;
-		image[&map->counters[i].name[last] - map->base] = '\0';
+	for (uint32_t i = 0; i < map_count(map, OWS_AREA_COUNTERS); i++) {
+		last = sizeof(map_counter(map, i)->name) - 1;
+		image[&map_counter(map, i)->name[last] - map->base] = '\0';
 	}
 }
 
 static void damage(uint8_t what)
 {
-	char *base = what & 8 ? command : image;
-	size_t size = what & 8 ? command_size_now : image_size_now;
+	char *base = what & 8 ? giver : image;
+	size_t size = what & 8 ? giver_size_now : image_size_now;
 
 	if (what & 0x10)
 		patch(base, size);
@@ -131,7 +129,9 @@ static void look_around(void)
 	struct ows_target target;
 	struct ows_counter counter;
 	struct ows_daemon daemon;
+	struct ows_commanded command;
 	struct ows_alarm alarm;
+	struct ows_giver somebody;
 	struct ows_info info;
 	int count = ows_count(h);
 
@@ -147,6 +147,16 @@ static void look_around(void)
 		if (ows_alarm(h, ows_alarm_count(h) - i, &alarm) == 0)
 			TEST_ASSERT_TRUE(alarm.signal >= 0 && alarm.signal < count);
 	ows_alarm(h, fuzz_word(&fuzz), &alarm);
+	for (uint32_t i = 0; i < 4; i++) {
+		if (ows_command_entry(h, ows_command_count(h) - i, &command))
+			continue;
+		TEST_ASSERT_TRUE(command.signal >= 0 && command.signal < count);
+		TEST_ASSERT_NOT_NULL(memchr(command.text, '\0', sizeof(command.text)));
+		TEST_ASSERT_NOT_NULL(memchr(command.who.name, '\0', sizeof(command.who.name)));
+	}
+	for (int i = 0; i < 200; i++)
+		if (ows_giver(h, i, &somebody) == 0)
+			ended(somebody.who.name), ended(somebody.who.person);
 	ended(ows_served(h));
 	ows_daemon(h, now_ns, &daemon);
 }
@@ -154,7 +164,8 @@ static void look_around(void)
 static void read_all(void)
 {
 	struct ows_value value, values[16];
-	struct ows_alarm_state state;
+	struct ows_alarm_state state = {0};
+	struct ows_origin origin;
 	struct ows_command told;
 	char *text = malloc(40);
 
@@ -168,7 +179,9 @@ static void read_all(void)
 		ows_get(h, id, now_ns, &value);
 		ows_get_text(h, id, now_ns, &value, text, size);
 		TEST_ASSERT_NOT_NULL_MESSAGE(memchr(text, '\0', size), "a text without end");
-		ows_alarm_state(h, id, &state);
+		if (ows_alarm_state(h, id, &state) != -EAGAIN)
+			ended(state.why), ended(state.who.person);
+		ows_origin(h, id, &origin);
 		ows_command(h, id, &told);
 	}
 	ows_snapshot(h, now_ns, values, 16);
@@ -233,13 +246,13 @@ void fuzz_one(const uint8_t *bytes, size_t n)
 	h = NULL;
 	now_ns = HEAP_START;
 	image_size_now = heap.image_size;
-	command_size_now = heap.command_size;
+	giver_size_now = heap.giver_size;
 	if (mode & 2)
 		image_size_now = 256 + fuzz_word(&fuzz) % (heap.image_size - 255);
 	image = copy(heap.image_memory, image_size_now);
-	command = copy(heap.command_memory, command_size_now);
+	giver = copy(heap.giver_memory, giver_size_now);
 	heap_image_file = (struct heap_file){image, image_size_now};
-	heap_command_file = (struct heap_file){command, command_size_now};
+	heap_giver_file = (struct heap_file){giver, giver_size_now};
 	/* it says of itself what the file is */
 	((struct ows_image_header *)(void *)image)->size = (uint32_t)image_size_now;
 	for (int i = 0; i < (before & 7); i++)
@@ -252,5 +265,5 @@ void fuzz_one(const uint8_t *bytes, size_t n)
 		ows_close(h);
 	}
 	free(image);
-	free(command);
+	free(giver);
 }

@@ -318,7 +318,8 @@ static void begin(void)
 	static struct config_target targets[] = {{.text = "null:"}, {.text = "late:"}};
 	static const struct config config = {
 		.targets = targets, .target_count = 2, .items = items, .item_count = HEAP_SIGNALS};
-	struct serve_setup setup = {.config = &config, .instance = "OWS", .ring = no_ring};
+	struct serve_setup setup = {
+		.config = &config, .instance = "OWS", .place = "/", .ring = no_ring};
 	char why[128];
 
 	for (unsigned i = 0; i < HEAP_SIGNALS; i++)
@@ -334,7 +335,7 @@ static void begin(void)
 	serve->look_ns = INT64_MAX;
 	serve->kept = kept_create(&config);
 	TEST_ASSERT_NOT_NULL(serve->kept);
-	TEST_ASSERT_EQUAL_INT(0, signals_open("OWS", &serve->signals));
+	TEST_ASSERT_EQUAL_INT(0, signals_open("/", "OWS", &serve->signals));
 	guest_count = 0;
 	for (int i = 0; i < CLIENTS; i++)
 		sides[i].fd = -1;

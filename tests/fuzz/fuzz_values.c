@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Texts that stand for something: values of every type, names of signals and attributes, paths,
- * device ids, addresses. What was read, printed, is read as the same. The first byte picks the
- * type.
+ * device ids, addresses, points of a line. What was read, printed, is read as the same. The first
+ * byte picks the type.
  */
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +13,7 @@
 #include "hal/owfs/path.h"
 #include "src/config/listen.h"
 #include "src/signal/attribute.h"
+#include "src/signal/scale.h"
 #include "src/signal/value.h"
 #include "src/text/printable.h"
 #include "tests/fuzz/fuzz.h"
@@ -68,6 +70,29 @@ static void check_value(enum ows_type type, const char *text, size_t n)
 	memcpy(&value, text, sizeof(value));
 	if (value_set_integer(type, value, &value) == 0)
 		print_and_read(type, value);
+}
+
+/* A line through points is exact at them, in both directions, and finite everywhere. */
+static void check_points(const char *text)
+{
+	static const double raws[] = {0, -1, 1e300, -1e300};
+	struct scale_point points[SCALE_POINTS_MAX];
+	int count = scale_parse(text, points);
+	struct scale scale = {.points = points, .count = (unsigned)count};
+	uint8_t quality;
+	double raw;
+
+	if (count < 0)
+		return;
+	TEST_ASSERT_TRUE(count >= 2 && count <= SCALE_POINTS_MAX);
+	for (int i = 0; i < count; i++) {
+		TEST_ASSERT_TRUE(scale_value(&scale, points[i].raw, &quality) == points[i].value);
+		TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, quality);
+		TEST_ASSERT_EQUAL_INT(0, scale_raw(&scale, points[i].value, &raw));
+		TEST_ASSERT_TRUE(raw == points[i].raw);
+	}
+	for (size_t i = 0; i < sizeof(raws) / sizeof(raws[0]); i++)
+		TEST_ASSERT_TRUE(isfinite(scale_value(&scale, raws[i], &quality)));
 }
 
 /* Every second beginning of the text is the name of a signal. */
@@ -193,6 +218,7 @@ void fuzz_one(const uint8_t *bytes, size_t n)
 	if (value_type_ok((int)type))
 		check_value(type, ended, n);
 	check_name(ended);
+	check_points(ended);
 	check_rom(text, n);
 	check_path(text, len);
 	check_addresses(text, len);

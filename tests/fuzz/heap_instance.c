@@ -3,10 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/shm/entries.h"
 #include "src/signal/value.h"
 #include "tests/fuzz/heap_instance.h"
 
-const struct command_signal heap_signals[HEAP_SIGNALS] = {
+const struct heap_signal heap_signals[HEAP_SIGNALS] = {
 	{"room", "/28.551DDF030000/temperature", OWS_DOUBLE},
 	{"relay", "/29.551DDF030000/PIO.0", OWS_BOOL},
 	{"count", "/1D.551DDF030000/counters.A", OWS_LARGE},
@@ -16,7 +17,7 @@ const struct command_signal heap_signals[HEAP_SIGNALS] = {
 };
 static const bool is_output[HEAP_SIGNALS] = {false, true, false, true, true, false};
 struct heap_instance heap;
-static char *image_then, *command_then;
+static char *image_then, *giver_then;
 
 static char *zeroed(size_t size)
 {
@@ -44,9 +45,10 @@ void heap_put(uint32_t record, int64_t value, const char *text, int64_t measured
 	                            .tried_ns = measured_ns,
 	                            .quality = OWS_Q_GOOD,
 	                            .count = 1,
-	                            .applied = applied,
+	                            .confirmed = applied,
 	                            .len = is_text ? (uint32_t)strlen(text) : 0};
-	struct ows_attrs attrs = {.flags = OWS_ATTR_READ_ENABLE | OWS_ATTR_WRITE_ENABLE};
+	struct ows_attrs attrs = {.flags = OWS_ATTR_READ_ENABLE | OWS_ATTR_WRITE_ENABLE,
+	                          .shelved = record == 1};
 
 	image_publish(&heap.image, record, &sample, &attrs, is_text ? text : NULL);
 	image_news(&heap.image);
@@ -69,18 +71,23 @@ static void make(void)
 	                           .pid = 1,
 	                           .start_ns = HEAP_START,
 	                           .period_ns = 100000000};
-	struct command_plan commands = {.signals = heap_signals,
-	                                .signal_count = HEAP_SIGNALS,
-	                                .text_cap = HEAP_TEXT,
-	                                .generation = 1,
-	                                .start_id = 7,
-	                                .pid = 1};
-	struct ows_alarm_entry alarm = {.record = 1,
-	                                .occurred_ns = HEAP_START,
-	                                .kind = OWS_ALARM_H,
-	                                .flags = OWS_ALARM_BEFORE};
+	uint8_t types[HEAP_SIGNALS];
+	struct giver_plan plan = {.types = types,
+	                          .signal_count = HEAP_SIGNALS,
+	                          .text_cap = HEAP_TEXT,
+	                          .generation = 1,
+	                          .start_id = 7};
+	struct giver_memory giver = {.layout = &heap.layout};
+	const struct ows_who who = {.serial = 1, .pid = 1, .name = "plc", .person = "Anna"};
+	struct ows_journal_entry command = {.record = 2, .kind = OWS_REASON_SET, .who = who};
+	struct ows_shelf_entry shelf = {.record = 1, .who = who, .why = "moved"};
+	struct ows_journal_entry alarm = {.record = 1,
+	                                  .occurred_ns = HEAP_START,
+	                                  .kind = OWS_ALARM_H,
+	                                  .flags = OWS_JOURNAL_BEFORE};
 
-	for (unsigned i = 0; i < HEAP_SIGNALS; i++)
+	for (unsigned i = 0; i < HEAP_SIGNALS; i++) {
+		types[i] = heap_signals[i].type;
 		signals[i] = (struct image_signal){
 			.name = heap_signals[i].name,
 			.path = heap_signals[i].path,
@@ -88,14 +95,18 @@ static void make(void)
 			.per_factor = i + 1,
 			.flags = is_output[i] ? OWS_RECORD_OUTPUT : 0,
 			.text_cap = heap_signals[i].type == OWS_STRING ? HEAP_TEXT : 0};
+	}
 	heap.image_size = image_size(&image);
-	heap.command_size = commands_size(&commands);
+	TEST_ASSERT_EQUAL_INT(0, giver_layout_make(&heap.layout, &plan));
+	heap.giver_size = heap.layout.size;
 	heap.image_memory = zeroed(heap.image_size);
-	heap.command_memory = zeroed(heap.command_size);
+	heap.giver_memory = giver.base = zeroed(heap.giver_size);
 	image_build(&image, heap.image_memory, &heap.image);
-	TEST_ASSERT_EQUAL_INT(0, commands_build(&commands, heap.command_memory, &heap.commands));
+	giver_build(&giver, 1);
+	for (unsigned i = 0; i <= HEAP_SIGNALS; i++)
+		giver_allow(&giver, i, true);
 	image_state(&heap.image, OWS_STATE_LIVE);
-	commands_state(&heap.commands, OWS_STATE_LIVE);
+	giver_state(&giver, OWS_STATE_LIVE);
 	heap_beat(HEAP_START);
 	for (unsigned i = 0; i < HEAP_SIGNALS; i++)
 		heap_put(i + 1,
@@ -104,18 +115,21 @@ static void make(void)
 		                 : 1,
 		         "boiler", HEAP_START, 0);
 	image_alarm(&heap.image, &alarm);
+	image_command(&heap.image, &command);
+	image_shelf(&heap.image, 0, &shelf);
 	for (unsigned i = 0; i < 2; i++)
 		image_target(&heap.image, i, 1, i);
 	image_then = memcpy(zeroed(heap.image_size), heap.image_memory, heap.image_size);
-	command_then = memcpy(zeroed(heap.command_size), heap.command_memory, heap.command_size);
+	giver_then = memcpy(zeroed(heap.giver_size), heap.giver_memory, heap.giver_size);
 }
 
 void heap_instance_reset(void)
 {
+	setenv("OWS_DIR", "/dev/null/owsd", 1); /* no directory of this machine is looked at */
 	if (!image_then)
 		make();
 	memcpy(heap.image_memory, image_then, heap.image_size);
-	memcpy(heap.command_memory, command_then, heap.command_size);
+	memcpy(heap.giver_memory, giver_then, heap.giver_size);
 	heap_image_file = (struct heap_file){heap.image_memory, heap.image_size};
-	heap_command_file = (struct heap_file){heap.command_memory, heap.command_size};
+	heap_giver_file = (struct heap_file){heap.giver_memory, heap.giver_size};
 }

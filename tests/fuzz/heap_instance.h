@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * An instance of owsd whose two segments lie on the heap, each exactly as long as it says, and
- * libows' way to it: ows_open() maps what stands in heap_files, whatever the name.
+ * An instance of owsd whose image lies on the heap, and the memory of its giver, each exactly as
+ * long as it says; and libows' way to both: ows_open() maps what stands in the files here, whatever
+ * the name.
  */
 #ifndef TESTS_FUZZ_HEAP_INSTANCE_H
 #define TESTS_FUZZ_HEAP_INSTANCE_H
 
-#include "src/shm/commands.h"
+#include "src/shm/giver.h"
 #include "src/shm/image.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -15,20 +16,23 @@ struct heap_file {
 	char *base;
 	size_t size;
 };
-extern struct heap_file heap_image_file, heap_command_file;
+extern struct heap_file heap_image_file, heap_giver_file;
 
 #define HEAP_TEXT 64
 #define HEAP_START (INT64_C(1000) * 1000000000)
 #define HEAP_SIGNALS 6
 /* room (double), relay (bool, output), count (large), label (string, output), level (byte, output),
    warm (float) */
-extern const struct command_signal heap_signals[HEAP_SIGNALS];
+extern const struct heap_signal {
+	const char *name, *path;
+	uint8_t type;
+} heap_signals[HEAP_SIGNALS];
 
 struct heap_instance {
 	struct image image;
-	struct commands commands;
-	char *image_memory, *command_memory;
-	size_t image_size, command_size;
+	struct giver_layout layout;
+	char *image_memory, *giver_memory;
+	size_t image_size, giver_size;
 };
 extern struct heap_instance heap;
 

@@ -38,6 +38,10 @@ def rio():
         '    Type double LimitLL -10 LimitL 0 LimitH 30.5 LimitHH 40 Hysteresis 0.5 OnDelay 2\n'
         '    OffDelay 0.25 StaleAfter 2.5 PerFactor 7 InitValue "1e3"\n')))
         + "\0s t LimitH=31\nu t LimitHH LimitLL\ns t InitValue=")
+    put("rio", "scaled", driver % ("w1", item % ("p", "/20.000000000001/volt.A", (
+        '    Type double Points "1:0 3:2.5 5:6" Min -0.15 Max 6.15 Unit "bar" Decimals 2 Filter 2.5\n'
+        '    Deadband 0.1 Description "a \\"b\\"" Calibrated "2024-02-29"\n')))
+        + "\0s p Unit=\u00b0C\nu p Points\ns p Scale=-0.5 Offset=1e3")
     text = driver % ("w1", item % ("l", "/23.1/memory", (
         '    IOType 0x013C InitValue "' + "long " * 11 + '"\n    "and longer" # why\n')))
     put("rio", "large", text.replace("\n", "\r\n") + "\0s l InitValue=" + "x" * 120)
@@ -131,7 +135,7 @@ def serve():
         ask(GET, "/settings/return_codes/text.210") + ask(0xb, 0) + drain)
 
 
-def commands():
+def giver():
     def number(item, value):
         return bytes([item << 4 | 1]) + struct.pack("<qB", value, 0)
 
@@ -139,25 +143,58 @@ def commands():
         return bytes([item << 4 | 9]) + struct.pack("<bB", value, 1)
 
     def text(item, value, how=0):
-        return bytes([item << 4 | 1, how, len(value)]) + value + (b"\0" if how & 4 else b"") + b"\0"
+        return bytes([item << 4 | 1, how, len(value)]) + value + b"\0"
 
     def overlay(off, content):
         return b"\0" + struct.pack("<IB", off, len(content)) + content
     step, second = b"\x16", b"\x26"
-    put("commands", "numbers", b"\0" + number(2, 9) + step + number(2, 256) + number(3, 1) + step +
+    put("giver", "numbers", b"\0" + number(2, 9) + step + number(2, 256) + number(3, 1) + step +
         real(6, 21) + number(6, 0x7ff8 << 48) + number(8, -40000) + second + number(9, 1 << 33) +
         second)
-    put("commands", "texts", b"\1" + text(4, b"boiler") + step + text(4, b"", 1) + step +
-        text(5, b"a\0b", 3) + second + text(4, b"claimed", 4) + second + second)
-    put("commands", "flags", b"\0" + b"\x03\x01" + number(1, 5) + b"\x13\x08" + second + b"\x23\x10" +
+    put("giver", "texts", b"\1" + text(4, b"boiler") + step + text(4, b"", 1) + step +
+        text(5, b"a\0b", 3) + second + text(4, b"longer", 1) + second + second)
+    put("giver", "flags", b"\0" + b"\x03\x01" + number(1, 5) + b"\x13\x08" + second + b"\x23\x10" +
         b"\x03\x62" + second + b"\xa3\x20" + second)
-    put("commands", "beats", b"\0" + b"\x0c\5" + b"\x21" + struct.pack("<qB", 3, 1) + second +
+    put("giver", "beats", b"\0" + b"\x0c\5" + b"\x21" + struct.pack("<qB", 3, 1) + second +
         b"\x0c\5" + second + second + b"\x04\0" + second)
-    put("commands", "header", b"\0" + overlay(0, b"\xff" * 64) + step + overlay(240, b"\xff" * 64) +
-        second + b"\x27" + second + b"\2\0\0\0")
-    put("commands", "bus", b"\4" + number(2, 7) + b"\x25\1" + second + b"\x25\4" + number(2, 8) +
+    put("giver", "header", b"\0" + overlay(0, b"\xff" * 64) + step + overlay(240, b"\xff" * 64) +
+        second + b"\x07\3why\1\x3c\0\0\0" + second)
+    put("giver", "bus", b"\4" + number(2, 7) + b"\x25\1" + second + b"\x25\4" + number(2, 8) +
         second + b"\x0f" + number(3, 1) + b"\x17" + second)
-    put("commands", "cut", b"\3" + number(2, 7) + text(4, b"x") + step + struct.pack("<I", 400))
+    put("giver", "again", b"\1" + number(2, 7) + text(4, b"x") + step + b"\x0c" + step + b"\x14" + step)
+
+
+def control():
+    def connect(client):
+        return bytes([0, client])
+
+    def hello(client, how=1, off=0, content=b""):
+        return bytes([how << 3 | 2, client, off, len(content)]) + content
+
+    def welcome(how, header=(0, b""), said=(0, b""), short=0):
+        def overlay(off, content):
+            return bytes([off, len(content)]) + content
+        # each memory has a header of its own
+        return bytes([how]) + overlay(*header) * (how >> 1 & 7) + overlay(*said) + bytes([short])
+    turn, engine, late, reload = b"\6\0", b"\5\7", b"\x0e\xfa", b"\x0f\0"
+    joined = connect(0) + turn + hello(0) + turn + engine + turn
+    scribbled = bytes([4 | 8, 0, 2]) + struct.pack("<IB", 256, 8) + b"\xff" * 8 + \
+        struct.pack("<IB", 128, 4) + b"\xff" * 4
+    put("control", "join", b"\0" + joined + scribbled + engine + b"\3\0" + turn + engine + turn)
+    put("control", "protocol", b"\0" + connect(1) + turn + b"\1\1\5hello" + turn + connect(2) + turn +
+        hello(2, 1, 4, b"\1\0") + turn + connect(3) + hello(3, 3) + turn + b"\1\3\1x" + turn +
+        engine + turn)
+    put("control", "late", b"\0" + connect(1) + turn + connect(2) + late * 2 + hello(1) + late + turn)
+    put("control", "reload", b"\0" + joined + b"\4\0" + connect(1) + turn + hello(1) + turn + reload +
+        b"\4\0" + engine + reload + turn + b"\4\0\3\1" + turn + engine)
+    put("control", "token", b"\0" + joined + connect(1) + turn + hello(1, 1, 16, b"\7" * 16) + turn +
+        engine + turn + b"\4\1" + b"\x0b\1" + turn)
+    put("control", "welcomes", b"\1" + welcome(7) + welcome(3))
+    put("control", "unsealed", b"\1" + welcome(6))
+    put("control", "sizes", b"\1" + welcome(7, (8, b"\xff\xff")))
+    put("control", "offsets", b"\1" + welcome(7, (28, b"\xf8\xff\xff\xff")))
+    put("control", "refused", b"\1" + welcome(0, said=(8, struct.pack("<i", -13))))
+    put("control", "short", b"\1" + welcome(15, short=255))
 
 
 def image():
@@ -314,11 +351,12 @@ def values():
              "340282356779733661637539395458142568448", "room1_Age", "OWS__room1_WriteEnable",
              "_TRANSACTIONS", "28.551DDF030000", "2867C6697351FF68", "10.67C6697351FF.B8",
              "/uncached/bus.12/28.551DDF030000/errata/die", "/1F.010203040506/main/alias/HIH4000/t",
-             "[::1]:4304", "localhost", "fd00::/8", "192.168.1.0/24", "::ffff:1.2.3.4:1"]
+             "[::1]:4304", "localhost", "fd00::/8", "192.168.1.0/24", "::ffff:1.2.3.4:1",
+             "4:0 20:100", "0.46:90 0.85:70 1.55:50 2.5:30", "-1e-320:1e308 0:1e-300 1e308:-1"]
     for i, text in enumerate(texts):
         put("values", f"{i:02}", bytes([i % 11]) + text.encode())
 
 
 if __name__ == "__main__":
-    for target in (rio, owserver, serve, commands, image, w1, netlink, scenario, owsctl, values):
+    for target in (rio, owserver, serve, giver, control, image, w1, netlink, scenario, owsctl, values):
         target()

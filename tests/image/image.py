@@ -181,7 +181,7 @@ def packages(debs):
 def reader(compiler, debs, folder):
     """The C example, built against our packages for the guest."""
     with tempfile.TemporaryDirectory(dir=folder) as root:
-        for name in ("libows-dev", "libows0"):
+        for name in ("libows-dev", "libows1"):
             deb = glob.glob(os.path.join(debs, f"{name}_*+deb13_{ARCH}.deb"))[0]
             output("dpkg-deb", "-x", deb, root)
         # The guest's libc is newer than this machine's: it has what the library wants of it

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* What threads call: each access to a word that is tracked stops its thread. */
 #include <assert.h>
+#include <limits.h>
+#include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <unistd.h>
 
-#include "src/libows/handle.h"
-#include "src/libows/orphan.h"
 #include "src/shm/futex.h"
 #include "tests/model/search.h"
 
@@ -106,6 +107,8 @@ uint64_t combine(enum access_rmw how, uint64_t a, uint64_t b)
 		return a | b;
 	case ACCESS_AND:
 		return a & (uint32_t)b;
+	case ACCESS_SET:
+		return (uint32_t)b;
 	}
 	return 0;
 }
@@ -193,11 +196,76 @@ int segment_wake(const uint32_t *word, int how_many)
 	return (int)ask(&step)->result;
 }
 
-/* In the place of src/libows/orphan.c: there are no names, and no time passes. */
-int handle_orphan(struct ows *h, int64_t now_ns)
+/* --- Bells ------------------------------------------------------------------------------------ */
+
+static struct {
+	uint32_t *rings, *heard;
+} bells[2];
+
+void access_bell(enum access_bells bell, uint32_t *rings, uint32_t *heard)
 {
-	(void)h;
-	(void)now_ns;
+	bells[bell - ACCESS_BELL].rings = rings;
+	bells[bell - ACCESS_BELL].heard = heard;
+}
+
+static bool is_bell(int fd)
+{
+	return fd == ACCESS_BELL || fd == ACCESS_NEWS;
+}
+
+static uint32_t rings_of(int fd)
+{
+	return (uint32_t)access_load(bells[fd - ACCESS_BELL].rings, 4, __ATOMIC_RELAXED,
+	                             ACCESS_SITE);
+}
+
+ssize_t __real_write(int fd, const void *from, size_t size);
+ssize_t __wrap_write(int fd, const void *from, size_t size);
+ssize_t __wrap_read(int fd, void *to, size_t size);
+int __wrap_ppoll(struct pollfd *polled, nfds_t n, const struct timespec *limit,
+                 const sigset_t *mask);
+long __wrap_syscall(long number, ...);
+
+/* It counts, and wakes who sleeps on it. */
+ssize_t __wrap_write(int fd, const void *from, size_t size)
+{
+	uint32_t *rings;
+
+	if (!is_bell(fd))
+		return __real_write(fd, from, size);
+	rings = bells[fd - ACCESS_BELL].rings;
+	access_rmw(rings, 4, ACCESS_ADD, 1, __ATOMIC_RELAXED, ACCESS_SITE);
+	segment_wake(rings, INT_MAX);
+	return (ssize_t)size;
+}
+
+ssize_t __wrap_read(int fd, void *to, size_t size)
+{
+	(void)to;
+	*bells[fd - ACCESS_BELL].heard = rings_of(fd);
+	return (ssize_t)size;
+}
+
+int __wrap_ppoll(struct pollfd *polled, nfds_t n, const struct timespec *limit,
+                 const sigset_t *mask)
+{
+	uint32_t heard = *bells[polled->fd - ACCESS_BELL].heard;
+
+	(void)n;
+	(void)mask;
+	polled->revents = POLLIN;
+	if (limit->tv_sec == 0 && limit->tv_nsec == 0)
+		return rings_of(polled->fd) != heard;
+	segment_wait(bells[polled->fd - ACCESS_BELL].rings, heard, INT64_MAX);
+	return 1;
+}
+
+/* The one system call that is made so is epoll's wait: it ends when a bell has rung since. */
+long __wrap_syscall(long number, ...)
+{
+	(void)number;
+	segment_wait(bells[0].rings, *bells[0].heard, INT64_MAX);
+	*bells[0].heard = rings_of(ACCESS_BELL);
 	return 0;
 }
 

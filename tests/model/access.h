@@ -23,7 +23,7 @@ struct site {
 	unsigned scenarios; /* that came by: one bit for each */
 };
 
-enum access_rmw { ACCESS_ADD, ACCESS_SUB, ACCESS_OR, ACCESS_AND };
+enum access_rmw { ACCESS_ADD, ACCESS_SUB, ACCESS_OR, ACCESS_AND, ACCESS_SET };
 
 uint64_t access_load(const volatile void *at, size_t size, int order, struct site *site);
 void access_store(volatile void *at, size_t size, uint64_t value, int order, struct site *site);
@@ -33,6 +33,14 @@ uint64_t access_rmw(volatile void *at, size_t size, enum access_rmw how, uint64_
 bool access_cas(volatile void *at, size_t size, uint64_t *expected, uint64_t value, int order,
                 int failed, struct site *site);
 void access_fence(int order, struct site *site);
+
+/*
+ * Descriptors of which the model is the kernel: eventfds and pipes that wake. write() rings; epoll
+ * waits for the first, ppoll() for the second until read().
+ */
+enum access_bells { ACCESS_BELL = 1000, ACCESS_NEWS };
+/* For setup; rings counts how often it rang, heard is what the sleeper knows of that. */
+void access_bell(enum access_bells bell, uint32_t *rings, uint32_t *heard);
 
 #define ACCESS_SITE \
 	(__extension__({ \
@@ -62,6 +70,8 @@ static inline uint32_t access_change(volatile uint32_t *at, enum access_rmw how,
 	access_change((p), ACCESS_OR, (n), (order), ACCESS_SITE)
 #define __atomic_fetch_and(p, n, order) \
 	access_change((p), ACCESS_AND, (n), (order), ACCESS_SITE)
+#define __atomic_exchange_n(p, n, order) \
+	access_change((p), ACCESS_SET, (n), (order), ACCESS_SITE)
 /* clang-format on */
 #define __atomic_compare_exchange_n(p, expected, value, weak, order, failed) \
 	(__extension__({ \

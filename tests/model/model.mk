@@ -23,16 +23,19 @@ hammer-arm64:
 
 # The same sources, with each access to shared memory a step of the model: within a minute
 MODEL     := $(wildcard tests/model/*.c)
-MODEL_CODE := src/shm/image.c src/shm/reader.c src/shm/commands.c src/shm/carry.c \
-             src/libows/alive.c src/libows/get.c src/libows/set.c src/libows/wait.c src/libows/alarm.c
+MODEL_CODE := src/shm/image.c src/shm/entries.c src/shm/reader.c src/shm/giver.c src/host/bells.c \
+             src/control/control.c src/libows/alive.c src/libows/changes.c src/libows/get.c \
+             src/libows/set.c src/libows/give.c src/libows/command.c src/libows/wait.c \
+             src/libows/news.c src/libows/alarm.c src/libows/origin.c
 # What runs as a thread of the model, beside that; all else here is the model itself
-MODEL_RUN := tests/model/litmus.c tests/model/orders.c tests/model/records.c
+MODEL_RUN := tests/model/changes.c tests/model/litmus.c tests/model/orders.c tests/model/records.c
 
 $(B)/model/%.o: %.c tests/model/access.h $(B)/with/cc
 	$(call compile,$(if $(filter $<,$(MODEL_RUN) $(MODEL_CODE)),-include tests/model/access.h))
 
 $(B)/model/model: $(patsubst %.c,$(B)/model/%.o,$(MODEL) $(MODEL_CODE)) $(B)/core.a $(B)/with/ld
-	$(call link)
+	$(call link,-Wl$(comma)--wrap=write -Wl$(comma)--wrap=read -Wl$(comma)--wrap=ppoll \
+	    -Wl$(comma)--wrap=syscall -Wl$(comma)--wrap=ows_now -Wl$(comma)--wrap=nanosleep)
 
 model: all $(B)/model/model
 	@$(B)/model/model

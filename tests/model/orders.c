@@ -1,107 +1,171 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Control programs set, owsd takes: the code of src/libows/set.c, src/shm/commands.c,
- * src/shm/carry.c, and the sleep of src/host/engine_thread.c.
+ * Givers command, owsd takes: the code of src/libows/set.c and command.c, of src/shm/giver.c, and
+ * the sleep of src/host/engine_thread.c and bells.c.
  */
 #include "src/host/engine_thread.c"
+
+#include <math.h>
+
+#include "src/control/private.h"
+#include "src/engine/state.h"
 #include "src/libows/handle.h"
-#include "src/shm/carry.h"
-#include "src/shm/commands.h"
 #include "tests/model/suites.h"
 
-#define NUMBER 1 /* slots */
+#define NUMBER 1 /* records */
 #define STRING 2
+#define RECORDS 3
 #define TEXT 8
+#define GIVERS 2
 
-static _Alignas(64) char memory[8192], next_memory[8192];
-static struct commands commands, next;
-static struct ows handles[2];
+static _Alignas(64) char memories[GIVERS][4096], next_memory[4096];
+static struct giver_layout layout;
+static struct giver_memory givers[GIVERS], next;
+static struct ows handles[GIVERS];
+static struct ows_memory attributes[1];
 static struct ows_id ids[2];
-static struct ows_record records[3];
+static struct ows_record records[RECORDS];
+static struct ows_info_entry infos[RECORDS]; /* without Min and Max */
+static struct ows_image_header header;
+static struct engine engine;
 static struct serving serving;
 static struct host host;
+static struct control control;
+static uint32_t rings, news_rings, message;
 
-/* What the threads found out. */
+/* What the threads found out; put aside and back with them. */
 static struct {
-	struct command got; /* by owsd, last */
+	struct giver_command got[GIVERS]; /* by owsd, last */
 	char text[TEXT + 1];
 	bool text_got;
-	int err[2];    /* of the programs' sets */
-	uint32_t news; /* another value: owsd has seen all that it can */
+	int err[GIVERS]; /* of the programs' calls */
+	uint32_t acknowledged, message, shelf;
+	uint32_t heard, heard_news; /* of the bells, by owsd and by a giver */
+	int64_t now_ns;             /* the clock; it goes on when somebody naps */
 } found;
 
-static int64_t number_of(unsigned program)
+int64_t __wrap_ows_now(void);
+int __wrap_nanosleep(const struct timespec *time, struct timespec *left);
+
+int64_t __wrap_ows_now(void)
 {
-	return (int64_t)(0x0000000100000001u) * (program + 1);
+	static int64_t ticks; /* never twice the same; no thread asks how long it takes */
+
+	return found.now_ns + ++ticks % NS_PER_S;
 }
 
-static const char *text_of(unsigned program)
+int __wrap_nanosleep(const struct timespec *time, struct timespec *left)
 {
-	return program == 0 ? "1111" : "222";
+	(void)time;
+	(void)left;
+	found.now_ns += 10 * NS_PER_S;
+	return 0;
 }
 
-static void make_commands(char *where, struct commands *made)
+static int64_t number_of(unsigned n)
 {
-	static const struct command_signal signals[] = {
-		{"number", "/x", OWS_LARGE},
-		{"string", "/y", OWS_STRING},
-	};
-	static const struct command_plan plan = {
-		.signals = signals, .signal_count = 2, .text_cap = TEXT};
+	return (int64_t)(0x0000000100000001u) * (n + 1);
+}
 
-	commands_forget(made);
-	memset(where, 0, sizeof(memory));
-	if (commands_build(&plan, where, made) < 0)
+static const char *text_of(unsigned n)
+{
+	return n == 0 ? "1111" : "222";
+}
+
+static struct ows_giver_header *header_of(unsigned giver)
+{
+	return (void *)memories[giver];
+}
+
+static struct ows_command_slot *slot_of(char *memory, uint32_t record)
+{
+	return (struct ows_command_slot *)(void *)(memory + layout.slot_off) + record;
+}
+
+static void make_layout(void)
+{
+	static const uint8_t types[] = {OWS_LARGE, OWS_STRING};
+	static const struct giver_plan plan = {.types = types, .signal_count = 2, .text_cap = TEXT};
+
+	if (!layout.size && (giver_layout_make(&layout, &plan) || layout.size > 4096))
 		abort();
-	commands_state(made, OWS_STATE_LIVE);
-	commands_awake(made, true);
 }
 
-static struct ows_command_slot *slot_of_next(void)
+static void make_memory(char *where, struct giver_memory *made, uint32_t serial)
 {
-	return (struct ows_command_slot *)(void *)(next_memory + next.slot_off) + NUMBER;
+	memset(where, 0, 4096);
+	*made = (struct giver_memory){where, &layout};
+	giver_build(made, serial);
+	giver_allow(made, NUMBER, true);
+	giver_allow(made, STRING, true);
+	giver_state(made, OWS_STATE_LIVE);
+}
+
+static void make_handle(unsigned i)
+{
+	handles[i] = (struct ows){
+		.map = {.image = &header, .base = (char *)&header, .count = RECORDS},
+		.give = {.base = memories[i],
+	                 .size = layout.size,
+	                 .slot_off = layout.slot_off,
+	                 .slot_size = sizeof(struct ows_command_slot),
+	                 .slot_count = RECORDS,
+	                 .dirty_off = layout.dirty_off,
+	                 .text_off = layout.text_off,
+	                 .text_cap = TEXT,
+	                 .place_off = layout.place_off,
+	                 .person_off = layout.person_off,
+	                 .shelf_off = layout.shelf_off},
+		.join = {.connection = -1, .bell = ACCESS_BELL, .news = -1},
+		.mode = OWS_CONTROL,
+		.alive_now = -1,
+		.dead_after_ns = INT64_MAX,
+		.ids = ids,
+		.id_count = 2,
+		.memories = attributes,
+		.memory_count = 1,
+	};
+	handles[i].map.areas[OWS_AREA_RECORDS] = (struct map_area){
+		.base = (const char *)records, .size = sizeof(records[0]), .count = RECORDS};
+	for (unsigned r = 0; r < RECORDS; r++)
+		infos[r].min = infos[r].max = NAN;
+	handles[i].map.areas[OWS_AREA_INFOS] = (struct map_area){
+		.base = (const char *)infos, .size = sizeof(infos[0]), .count = RECORDS};
+	explore_keep(&handles[i].stamp, sizeof(handles[i].stamp));
 }
 
 static void setup(void)
 {
-	struct ows_command_header *header = (void *)memory;
-	struct ows_command_slot *slots;
-
-	make_commands(memory, &commands);
-	make_commands(next_memory, &next);
-	slots = (void *)(memory + commands.slot_off);
+	make_layout();
+	memset(&found, 0, sizeof(found));
+	explore_keep(&found, sizeof(found));
+	header = (struct ows_image_header){.state = OWS_STATE_LIVE, .awake = 1};
 	records[NUMBER] = (struct ows_record){.type = OWS_LARGE, .flags = OWS_RECORD_OUTPUT};
 	records[STRING] = (struct ows_record){.type = OWS_STRING, .flags = OWS_RECORD_OUTPUT};
 	ids[0] = (struct ows_id){.record = NUMBER, .attribute = ATTR_VALUE};
 	ids[1] = (struct ows_id){.record = STRING, .attribute = ATTR_VALUE};
-	for (uint32_t i = 0; i < 2; i++)
-		handles[i] = (struct ows){
-			.map =
-				{
-					.records = records,
-					.record_size = sizeof(records[0]),
-					.count = 3,
-					.command = header,
-					.slots = slots,
-					.entries = (void *)(memory + commands.entry_off),
-					.dirty = (void *)(memory + commands.dirty_off),
-					.command_base = memory,
-					.command_size = commands.size,
-					.text_cap = TEXT,
-				},
-			.ids = ids,
-			.id_count = 2,
-			.client = -1,
-			.pid = 100 + i,
-		};
-	serving.commands = &commands;
+	memset(&engine, 0, sizeof(engine));
+	for (unsigned i = 0; i < GIVERS; i++) {
+		make_memory(memories[i], &givers[i], i + 1);
+		make_handle(i);
+		engine.givers[i].is = GIVER_CONNECTED;
+		engine.givers[i].as.memory = givers[i];
+		engine.place_end = i + 1;
+	}
+	serving.engine = &engine;
+	serving.memory.image.header = &header;
 	host.now = &serving;
-	host.bell = &header->bell;
-	memset(&found, 0, sizeof(found));
-	explore_keep(&found, sizeof(found));
-	explore_track("dirty", handles[0].map.dirty, 4);
-	explore_track("bell", &header->bell, 4);
-	explore_track("awake", &header->awake, 4);
+	host.bells = (struct bells){.own = ACCESS_BELL, .awake = 1};
+	rings = news_rings = message = 0;
+	access_bell(ACCESS_BELL, &rings, &found.heard);
+	access_bell(ACCESS_NEWS, &news_rings, &found.heard_news);
+	explore_track("rings", &rings, 4);
+}
+
+static void track_marks(unsigned giver)
+{
+	explore_track(giver ? "dirty 1" : "dirty", give_dirty(&handles[giver].give, 0), 4);
+	explore_track(giver ? "marked 1" : "marked", &header_of(giver)->marked, 4);
 }
 
 static void setup_number(void)
@@ -109,9 +173,19 @@ static void setup_number(void)
 	struct ows_command_slot *slot;
 
 	setup();
-	slot = &handles[0].map.slots[NUMBER];
+	slot = slot_of(memories[0], NUMBER);
+	explore_track("awake", &header.awake, 4);
 	explore_track("value", &slot->value, 8);
 	explore_track("stamp", &slot->stamp, 4);
+	track_marks(0);
+}
+
+static void setup_givers(void)
+{
+	setup();
+	explore_track("awake", &header.awake, 4);
+	track_marks(0);
+	track_marks(1);
 }
 
 static void setup_text(void)
@@ -119,52 +193,44 @@ static void setup_text(void)
 	struct ows_command_text *text;
 
 	setup();
-	text = (void *)(memory + commands.text_off[STRING]);
-	explore_track("stamp", &handles[0].map.slots[STRING].stamp, 4);
-	explore_track("claim", &text->claim, 4);
+	text = give_text(&handles[0].give, STRING);
+	explore_track("awake", &header.awake, 4);
+	explore_track("stamp", &slot_of(memories[0], STRING)->stamp, 4);
 	explore_track("len", &text->len, 4);
 	explore_track("check", &text->check, 4);
 	explore_track("text", (uint32_t *)(void *)(text + 1), 4);
+	track_marks(0);
 }
 
-/* --- Control programs ------------------------------------------------------------------------- */
+/* --- Givers ----------------------------------------------------------------------------------- */
 
-static void set_number(unsigned program)
+static void set_number(unsigned giver, unsigned n)
 {
-	found.err[program] = ows_set_integer(&handles[program], 0, number_of(program), NULL);
+	found.err[giver] = ows_set_integer(&handles[giver], 0, number_of(n), NULL);
 }
 
-static void set_text(unsigned program)
+static void giver_0(void)
 {
-	found.err[program] = ows_set_text(&handles[program], 1, text_of(program), NULL);
+	set_number(0, 0);
 }
 
-static void program_0(void)
+static void giver_1(void)
 {
-	set_number(0);
+	set_number(1, 0);
 }
 
-static void program_1(void)
+static void giver_twice(void)
 {
-	set_number(1);
-}
-
-/* Its second value is number_of(1), as its stamp then is 2. */
-static void program_twice(void)
-{
-	set_number(0);
+	set_number(0, 0);
 	explore_forget(1);
-	found.err[0] = ows_set_integer(&handles[0], 0, number_of(1), NULL);
+	set_number(0, 1);
 }
 
-static void program_text_0(void)
+static void giver_texts(void)
 {
-	set_text(0);
-}
-
-static void program_text_1(void)
-{
-	set_text(1);
+	found.err[0] = ows_set_text(&handles[0], 1, text_of(0), NULL);
+	explore_forget(1);
+	found.err[0] |= ows_set_text(&handles[0], 1, text_of(1), NULL);
 }
 
 static void nobody(void)
@@ -173,149 +239,353 @@ static void nobody(void)
 
 /* --- owsd ------------------------------------------------------------------------------------- */
 
-static void look_at_number(void)
+/* As a look of src/engine/intake.c: the mark, the slots, their contents. */
+static bool is_marked(unsigned giver, uint32_t record)
 {
-	commands_load(&commands, NUMBER, &found.got);
-	if (found.got.value != 0 && found.got.value != number_of(0) &&
-	    found.got.value != number_of(1))
-		explore_fail("value %#llx, which nobody set", (unsigned long long)found.got.value);
-	if (found.got.stamp != 0 && found.got.value == 0)
-		explore_fail("stamp %u before its value", found.got.stamp);
+	giver_marked(&givers[giver]);
+	return giver_next_dirty(&givers[giver], 0) == (int)record;
 }
 
-static void look_at_own_number(void)
+static void look_at_number(unsigned giver)
 {
-	look_at_number();
-	if (found.got.stamp > 0 && found.got.value < number_of(found.got.stamp - 1))
-		explore_fail("stamp %u before its value", found.got.stamp);
+	struct giver_command *got = &found.got[giver];
+
+	if (!is_marked(giver, NUMBER))
+		return;
+	giver_load(&givers[giver], NUMBER, got);
+	if (got->value != 0 && got->value != number_of(0) && got->value != number_of(1))
+		explore_fail("value %#llx, which nobody set", (unsigned long long)got->value);
+	if (got->stamp > 0 && got->value < number_of(got->stamp - 1))
+		explore_fail("stamp %u before its value", got->stamp);
+}
+
+static void look_at_one(void)
+{
+	look_at_number(0);
+}
+
+static void look_at_both(void)
+{
+	for (unsigned i = 0; i < GIVERS; i++) {
+		found.got[i].fresh |= is_marked(i, NUMBER);
+		explore_forget(i);
+	}
 }
 
 static void look_at_text(void)
 {
 	int len;
 
-	commands_load(&commands, STRING, &found.got);
-	len = commands_text(&commands, STRING, found.text);
+	if (!is_marked(0, STRING))
+		return;
+	giver_load(&givers[0], STRING, &found.got[0]);
+	len = giver_text(&givers[0], STRING, found.text);
 	found.text_got = len >= 0;
 	if (len < 0)
 		memset(found.text, 0, sizeof(found.text));
-	else if (found.got.stamp != 0 && strcmp(found.text, text_of(0)) != 0 &&
+	else if (found.got[0].stamp != 0 && strcmp(found.text, text_of(0)) != 0 &&
 	         strcmp(found.text, text_of(1)) != 0)
 		explore_fail("text '%s', which nobody set", found.text);
 }
 
 /* The loop of engine_main() in src/host/engine_thread.c, as far as commands go. */
-static void engine(void (*look)(void), uint32_t slot)
+static void run_engine(void (*look)(void))
 {
 	for (;;) {
-		uint32_t seen = __atomic_load_n(host.bell, __ATOMIC_ACQUIRE);
-
-		if (commands_next_dirty(&commands, 0) == (int)slot)
-			look();
-		explore_forget(seen);
-		sleep_until(&host, seen, INT64_MAX);
+		bells_look(&host.bells);
+		look();
+		explore_forget(0);
+		sleep_until(&host, INT64_MAX);
 		explore_forget(0);
 	}
 }
 
-static void engine_number(void)
+static void engine_one(void)
 {
-	engine(look_at_number, NUMBER);
+	run_engine(look_at_one);
 }
 
-static void engine_own_number(void)
+static void engine_both(void)
 {
-	engine(look_at_own_number, NUMBER);
+	run_engine(look_at_both);
 }
 
 static void engine_text(void)
 {
-	engine(look_at_text, STRING);
-}
-
-/* What a reload does: retire, look once more, carry what lies there into the next segment. */
-static void reload(void)
-{
-	static const uint32_t rows[] = {NUMBER - 1, STRING - 1};
-
-	commands_state(&commands, OWS_STATE_RETIRED);
-	if (commands_next_dirty(&commands, 0) == NUMBER)
-		look_at_number();
-	explore_forget(0);
-	commands_carry_rows(&next, &commands, rows);
-}
-
-/* What a start does with what a killed owsd has left. */
-static void start_after_kill(void)
-{
-	commands_retire(memory, commands.size);
-	commands_carry(&next, memory, commands.size, true);
-}
-
-static void setup_carry(void)
-{
-	setup_number();
-	explore_track("state", &((struct ows_command_header *)(void *)memory)->state, 4);
-	explore_keep(slot_of_next(), sizeof(struct ows_command_slot));
-}
-
-/* --- Ends ------------------------------------------------------------------------------------- */
-
-static uint32_t last_stamp(uint32_t slot)
-{
-	return (uint32_t)explore_last(&handles[0].map.slots[slot].stamp);
+	run_engine(look_at_text);
 }
 
 /* owsd sleeps, and must have the last of all commands. */
 static void number_taken(void)
 {
-	uint64_t last = explore_last(&handles[0].map.slots[NUMBER].value);
+	const struct ows_command_slot *slot = slot_of(memories[0], NUMBER);
 
-	if (found.got.stamp != last_stamp(NUMBER))
-		explore_fail("owsd sleeps on stamp %u of %u", found.got.stamp, last_stamp(NUMBER));
-	if ((uint64_t)found.got.value != last)
+	if (found.err[0])
+		explore_fail("a set returned %d", found.err[0]);
+	if (found.got[0].stamp != 2 || explore_last(&slot->stamp) != 2)
+		explore_fail("owsd sleeps on stamp %u of 2", found.got[0].stamp);
+	if ((uint64_t)found.got[0].value != explore_last(&slot->value))
 		explore_fail("owsd sleeps on an older value");
+}
+
+static void both_taken(void)
+{
+	for (unsigned i = 0; i < GIVERS; i++)
+		if (found.err[i] || !found.got[i].fresh)
+			explore_fail("owsd sleeps on the set of giver %u", i);
 }
 
 static void text_taken(void)
 {
-	if (found.got.stamp != last_stamp(STRING))
-		explore_fail("owsd sleeps on stamp %u of %u", found.got.stamp, last_stamp(STRING));
-	if (!found.text_got)
-		explore_fail("owsd sleeps without the text");
-	for (unsigned i = 0; i < 2; i++)
-		if (!found.err[i] && found.err[1 - i] && strcmp(found.text, text_of(i)) != 0)
-			explore_fail("owsd has '%s', set was '%s'", found.text, text_of(i));
+	if (found.err[0])
+		explore_fail("a set returned %d", found.err[0]);
+	if (found.got[0].stamp != 2)
+		explore_fail("owsd sleeps on stamp %u of 2", found.got[0].stamp);
+	if (!found.text_got || strcmp(found.text, text_of(1)) != 0)
+		explore_fail("owsd sleeps on the text '%s'", found.text);
 }
 
-/* If the program was told that all is well, the next segment has it. */
+/* --- A reload --------------------------------------------------------------------------------- */
+
+static void setup_reload(void)
+{
+	setup_number();
+	explore_track("state", &header_of(0)->state, 4);
+	make_memory(next_memory, &next, 1);
+	explore_keep(slot_of(next_memory, NUMBER), sizeof(struct ows_command_slot));
+	explore_keep(&slot_of(memories[0], NUMBER)->taken, 3 * sizeof(uint32_t));
+}
+
+/* Retire, look for the last time, carry what lies there into the next memory. */
+static void reload(void)
+{
+	static const uint32_t rows[] = {NUMBER - 1, STRING - 1};
+
+	giver_state(&givers[0], OWS_STATE_RETIRED);
+	look_at_one();
+	if (found.got[0].stamp)
+		giver_taken(&givers[0], NUMBER, found.got[0].stamp, 0);
+	explore_forget(0);
+	giver_copy(&next, &givers[0], rows);
+}
+
+/* If the giver was told that all is well, owsd has taken it, and the next memory has it. */
 static void carried(void)
 {
-	const struct ows_command_slot *slot = slot_of_next();
+	const struct ows_command_slot *slot = slot_of(next_memory, NUMBER);
 
-	if (slot->value != 0 && slot->value != (uint64_t)number_of(0))
-		explore_fail("carried %#llx, which nobody set", (unsigned long long)slot->value);
-	if (slot->stamp == 1 && slot->value == 0)
-		explore_fail("carried a stamp before its value");
+	if (slot->taken != slot->stamp)
+		explore_fail("a command that was refused comes to life");
 	if (found.err[0] != 0 && found.err[0] != -ESTALE)
-		explore_fail("a set said %d", found.err[0]);
-	if (found.err[0] == 0 && (slot->stamp != 1 || slot->value == 0))
-		explore_fail("the set said that all is well, and is lost");
+		explore_fail("a set returned %d", found.err[0]);
+	if (found.err[0] == 0 && (found.got[0].stamp != 1 || slot->stamp != 1 || slot->err))
+		explore_fail("the set returned that all is well, and is lost");
+	if (slot->stamp == 1 && !slot->err && found.got[0].stamp != 1)
+		explore_fail("a command that owsd has not taken seems to be");
+}
+
+/* --- Acknowledgements, beats, shelving -------------------------------------------------------- */
+
+static void setup_acknowledgement(void)
+{
+	struct ows_command_slot *slot;
+
+	setup();
+	slot = slot_of(memories[0], NUMBER);
+	explore_track("awake", &header.awake, 4);
+	explore_track("acknowledged", &slot->acknowledged, 4);
+	explore_track("person", &slot->person, 4);
+	track_marks(0);
+	explore_keep(slot->spare0, sizeof(slot->spare0));
+}
+
+static void giver_acknowledges(void)
+{
+	handles[0].person = 3;
+	ows_acknowledge(&handles[0], 0);
+}
+
+static void look_for_acknowledgement(void)
+{
+	struct giver_command c;
+
+	if (!is_marked(0, NUMBER))
+		return;
+	giver_load(&givers[0], NUMBER, &c);
+	found.acknowledged += c.acknowledged;
+}
+
+static void engine_acknowledged(void)
+{
+	run_engine(look_for_acknowledgement);
+}
+
+static void acknowledged_once(void)
+{
+	if (found.acknowledged != 1)
+		explore_fail("acknowledged %u times", found.acknowledged);
+}
+
+static void setup_beat(void)
+{
+	setup();
+	explore_track("beat", &header_of(0)->beat, 4);
+	explore_track("period", &header_of(0)->period_ms, 4);
+}
+
+static void giver_beats(void)
+{
+	if (ows_beat(&handles[0], 500))
+		explore_fail("a beat failed");
+}
+
+static void hear_beat(void)
+{
+	struct giver_beat beat;
+
+	giver_beat(&givers[0], &beat);
+	if (beat.beat != 0 && beat.period_ms != 500)
+		explore_fail("a beat before its promise");
+}
+
+static void setup_shelf(void)
+{
+	struct ows_command_shelf *shelf;
+
+	setup();
+	shelf = give_shelf(&handles[0].give);
+	explore_track("awake", &header.awake, 4);
+	explore_track("marked", &header_of(0)->marked, 4);
+	explore_track("count", &shelf->count, 4);
+	explore_track("seconds", &shelf->seconds, 4);
+	explore_track("why", (uint32_t *)(void *)shelf->why, 4);
+	explore_track("done", &shelf->done, 4);
+	explore_track("err", &shelf->err, 4);
+}
+
+static void giver_shelves(void)
+{
+	int err = ows_shelve(&handles[0], 0, 60, "why");
+
+	if (err != -ENOSPC && err != -ETIMEDOUT)
+		explore_fail("the answer to a shelving is %d", err);
+}
+
+static void look_at_shelf(void)
+{
+	struct giver_shelf shelf;
+
+	giver_marked(&givers[0]);
+	if (!giver_shelf(&givers[0], &shelf))
+		return;
+	if (shelf.seconds != 60 || strcmp(shelf.why, "why") != 0)
+		explore_fail("a request before its words");
+	found.shelf = shelf.count;
+	giver_shelf_done(&givers[0], shelf.count, -ENOSPC);
+}
+
+static void engine_shelves(void)
+{
+	run_engine(look_at_shelf);
+}
+
+static void shelved(void)
+{
+	if (found.shelf != 1)
+		explore_fail("owsd sleeps on a request to shelve");
+}
+
+/* --- owsd's own threads ----------------------------------------------------------------------- */
+
+static void setup_own(void)
+{
+	setup();
+	explore_track("message", &message, 4);
+	explore_track("rung", &host.bells.rung, 4);
+	explore_track("eyes", &host.bells.awake, 4);
+}
+
+/* A worker has an answer for the engine. */
+static void worker(void)
+{
+	for (uint32_t n = 1; n <= 2; n++) {
+		word_set(&message, n);
+		host_ring(&host);
+		explore_forget(n);
+	}
+}
+
+static void look_at_message(void)
+{
+	found.message = word_get(&message);
+}
+
+static void engine_own(void)
+{
+	run_engine(look_at_message);
+}
+
+static void message_taken(void)
+{
+	if (found.message != 2)
+		explore_fail("asleep on message %u of 2", found.message);
+}
+
+/* --- News for a giver ------------------------------------------------------------------------- */
+
+static void setup_news(void)
+{
+	setup();
+	explore_track("message", &message, 4);
+	explore_track("news", &header.news, 4);
+	explore_track("waits", &header_of(0)->waits, 4);
+	explore_track("pipe", &news_rings, 4);
+	handles[0].join.news = ACCESS_NEWS;
+	memset(&control, 0, sizeof(control));
+	control.engine.memories[0] = givers[0];
+	control.places[0].news = ACCESS_NEWS;
+	host.control = &control;
+}
+
+static void engine_publishes(void)
+{
+	for (uint32_t n = 1; n <= 2; n++) {
+		word_set(&message, n);
+		announce(&host);
+		explore_forget(n);
+	}
+}
+
+static void giver_waits_for_news(void)
+{
+	uint32_t news = 0;
+
+	while (ows_wait(&handles[0], &news, -1) > 0) {
+		found.message = word_get(&message);
+		if (found.message < news)
+			explore_fail("woken by news %u, found message %u", news, found.message);
+		explore_forget(news);
+	}
 }
 
 /* clang-format off */
 const struct scenario command_scenarios[] = {
-	{"a program sets twice, owsd sleeps between", setup_number, 2,
-	 {engine_own_number, program_twice}, .end = number_taken},
-	{"two programs set one output", setup_number, 3, {engine_number, program_0, program_1},
+	{"a giver sets twice, owsd sleeps between", setup_number, 2, {engine_one, giver_twice},
 	 .end = number_taken},
-	{"a program killed while it sets", setup_number, 2, {engine_own_number, program_twice},
+	{"two givers set", setup_givers, 3, {engine_both, giver_0, giver_1}, .end = both_taken},
+	{"a giver killed while it sets", setup_number, 2, {engine_one, giver_twice},
 	 {NULL, nobody}, NULL},
-	{"two programs set one text", setup_text, 3, {engine_text, program_text_0, program_text_1},
-	 .end = text_taken},
-	{"a set while owsd reloads", setup_carry, 2, {reload, program_0}, .end = carried},
-	{"a set while owsd starts after a kill", setup_carry, 2, {start_after_kill, program_0},
-	 .end = carried},
+	{"a giver sets a text twice", setup_text, 2, {engine_text, giver_texts}, .end = text_taken},
+	{"a set while owsd reloads", setup_reload, 2, {reload, giver_0}, .end = carried},
+	{"an acknowledgement", setup_acknowledgement, 2, {engine_acknowledged, giver_acknowledges},
+	 .end = acknowledged_once},
+	{"a beat and its promise", setup_beat, 2, {hear_beat, giver_beats}, .end = NULL},
+	{"a request to shelve, and its answer", setup_shelf, 2, {engine_shelves, giver_shelves},
+	 .end = shelved},
+	{"a thread of owsd wakes the engine's", setup_own, 2, {engine_own, worker},
+	 .end = message_taken},
+	{"a giver waits for news", setup_news, 2, {engine_publishes, giver_waits_for_news},
+	 .end = message_taken},
 	{NULL},
 };
 /* clang-format on */

@@ -6,18 +6,18 @@
 #include <string.h>
 
 #include "src/libows/handle.h"
+#include "src/shm/entries.h"
 #include "src/shm/futex.h"
-#include "src/shm/image.h"
 #include "src/shm/reader.h"
 #include "tests/model/suites.h"
 
 #define SAMPLE_WORDS 12
-#define WORDS 30
+#define WORDS 32
 #define UPDATES 5      /* the last state; the first is there before the threads */
 #define SECOND_LIFE 16 /* added to the state's number by a writer that follows a killed one */
 #define TEXT 8
 
-static _Alignas(64) char memory[65536];
+static _Alignas(64) char memory[262144];
 static struct image image;
 static struct ows handle;
 /* The words of each state: no word is the same in two of them. */
@@ -35,7 +35,8 @@ static void fill_contents(void)
 			content[n][i] = (i + 1) << 8 | n;
 		content[n][10] = text_of_one_length ? TEXT : n % SECOND_LIFE;
 		content[n][11] = ows_check(content[n], SAMPLE_WORDS - 1);
-		content[n][29] = ows_check(&content[n][SAMPLE_WORDS], WORDS - SAMPLE_WORDS - 1);
+		content[n][WORDS - 1] = ows_check(&content[n][SAMPLE_WORDS],
+		                                  WORDS - SAMPLE_WORDS - 1);
 	}
 }
 
@@ -48,6 +49,11 @@ static void publish(uint32_t n)
 	memcpy(&sample, content[n], sizeof(sample));
 	memcpy(&attrs, &content[n][SAMPLE_WORDS], sizeof(attrs));
 	image_publish(&image, 1, &sample, &attrs, (const char *)text);
+}
+
+static struct map_area area_of(const void *base, size_t size, uint32_t count)
+{
+	return (struct map_area){.base = base, .size = (uint32_t)size, .count = count};
 }
 
 static void make_image(void)
@@ -65,15 +71,15 @@ static void make_image(void)
 		.map =
 			{
 				.image = image.header,
-				.records = image.records,
-				.record_size = sizeof(struct ows_record),
-				.alarms = image.alarms,
-				.alarm_size = sizeof(struct ows_alarm_entry),
-				.alarm_count = OWS_ALARMS,
 				.base = memory,
 				.count = 2,
 			},
+		.join = {.connection = -1, .bell = -1, .news = -1},
+		.dead_after_ns = INT64_MAX,
 	};
+	handle.map.areas[OWS_AREA_RECORDS] = area_of(image.records, sizeof(*image.records), 2);
+	handle.map.areas[OWS_AREA_ALARMS] = area_of(image.alarms, sizeof(*image.alarms),
+	                                            OWS_JOURNAL);
 	flag = name = 0;
 	explore_track("seq", &image.records[1].seq, 4);
 }
@@ -290,13 +296,13 @@ static void nobody_sleeps(void)
 
 /* --- The journal of alarms -------------------------------------------------------------------- */
 
-/* Number OLD lies where number OLD + OWS_ALARMS will. */
+/* Number OLD lies where number OLD + OWS_JOURNAL will. */
 #define OLD 0u
-#define NEW (OLD + OWS_ALARMS)
+#define NEW (OLD + OWS_JOURNAL)
 
-static struct ows_alarm_entry alarm_of(uint32_t n)
+static struct ows_journal_entry alarm_of(uint32_t n)
 {
-	return (struct ows_alarm_entry){
+	return (struct ows_journal_entry){
 		.record = 1,
 		.occurred_ns = n,
 		.kind = (uint8_t)n,
@@ -306,7 +312,7 @@ static struct ows_alarm_entry alarm_of(uint32_t n)
 
 static void setup_journal(void)
 {
-	struct ows_alarm_entry old = alarm_of(1);
+	struct ows_journal_entry old = alarm_of(1);
 
 	make_image();
 	image_alarm(&image, &old);
@@ -321,14 +327,14 @@ static void setup_journal(void)
 
 static void write_entry(void)
 {
-	struct ows_alarm_entry entry = alarm_of(2);
+	struct ows_journal_entry entry = alarm_of(2);
 
 	image_alarm(&image, &entry);
 }
 
 static void write_entry_and_after(void)
 {
-	struct ows_alarm_entry entry = alarm_of(2);
+	struct ows_journal_entry entry = alarm_of(2);
 
 	image_alarm_after(&image, image_alarm(&image, &entry), 7);
 }

@@ -9,7 +9,7 @@
 #include "tests/model/explore.h"
 
 #define STACK 32768
-#define KEEPS 4
+#define KEEPS 8
 #define KEPT_BYTES 512
 
 enum { LOAD, STORE, RMW, CAS, FENCE, WAIT, WOKEN, WAKE };

@@ -31,7 +31,7 @@ does "what it needs is in the system's archive ($libraries)" \
 	sh -c "apt-get -q update && $apt install $libraries"
 everything >/tmp/before
 
-does 'the packages are installed' $apt install ./libows0_*.deb ./libows-dev_*.deb \
+does 'the packages are installed' $apt install ./libows1_*.deb ./libows-dev_*.deb \
 	./python3-ows_*.deb ./owsd_*.deb
 version=$(dpkg-query -W -f '${Version}' owsd)
 same 'their user is in the groups that it needs' 'gpio i2c owsd owsd-control' \
@@ -50,8 +50,8 @@ cp /etc/owsd/OWS.rio /tmp/OWS.rio
 does 'a restart takes another configuration' service owsd restart
 does 'with values' within 90 owsctl get boiler
 same 'it runs as its user' owsd "$(ps -o user= -p "$(pid)" | tr -d ' ')"
-same 'who may look is a group' '640 owsd owsd' "$(mode /dev/shm/owsd.OWS.image)"
-same 'who may act is another' '660 owsd owsd-control' "$(mode /dev/shm/owsd.OWS.command)"
+same 'who may look is a group' '640 owsd owsd' "$(mode /run/owsd/OWS.image)"
+same 'who may act is another' '660 owsd owsd-control' "$(mode /run/owsd/OWS.command)"
 member looker owsd
 member actor owsd,owsd-control
 member stranger ''
@@ -95,9 +95,9 @@ does 'a configuration that was deleted stays deleted' test ! -e /etc/owsd/OWS.ri
 cp /tmp/OWS.rio /etc/owsd/OWS.rio
 cp /tmp/OWS.rio /etc/owsd/HOUSE.rio
 service owsd restart
-does 'all are purged' $apt purge owsd libows0 libows-dev python3-ows
+does 'all are purged' $apt purge owsd libows1 libows-dev python3-ows
 does 'nothing runs' refused pgrep -x owsd
-same 'no segment stays' '' "$(find /dev/shm -name 'owsd.*')"
+same 'no segment stays' '' "$(find /run/owsd /var/lib/owsd 2>/dev/null)"
 does 'what its owner has made does' test -e /etc/owsd/HOUSE.rio
 rm -r /etc/owsd
 everything >/tmp/after

@@ -49,9 +49,9 @@ same 'without a capability' 0000000000000000 \
 	"$(sed -n 's/^CapBnd:[[:space:]]*//p' "/proc/$(house MainPID)/status")"
 does 'through its sandbox it reads the chip' within 60 reads warm 21.0625
 same 'who may look is a group, under its filter too' '640 owsd owsd' \
-	"$(stat -c '%a %U %G' /dev/shm/owsd.HOUSE.image)"
+	"$(stat -c '%a %U %G' /run/owsd/HOUSE.image)"
 same 'who may act is another' '660 owsd owsd-control' \
-	"$(stat -c '%a %U %G' /dev/shm/owsd.HOUSE.command)"
+	"$(stat -c '%a %U %G' /run/owsd/HOUSE.command)"
 # GROUP,... COMMAND...: as a user who is in these groups and nothing else
 as_one_of() {
 	# shellcheck disable=SC2046 # names of groups are words
@@ -70,8 +70,12 @@ same 'it says what it does' 1 "$(systemctl status --no-pager owsd@HOUSE | grep -
 does 'and the chip has it' within 30 reads pins 184
 
 pid=$(house MainPID)
-does 'in its sandbox no program of /dev/shm is run' nsenter -t "$pid" -m \
-	sh -c 'cp /bin/true /dev/shm/true && ! /dev/shm/true && rm /dev/shm/true'
+for where in /dev/shm /run/owsd /var/lib/owsd; do
+	does "in its sandbox no program of $where is run" nsenter -t "$pid" -m \
+		sh -c "cp /bin/true $where/true && ! $where/true && rm $where/true"
+done
+same 'its directory is its own' '755 owsd owsd' "$(stat -c '%a %U %G' /run/owsd)"
+does 'no other user makes a name there' refused as_one_of owsd,owsd-control touch /run/owsd/HOUSE.lock.new
 cp /etc/owsd/HOUSE.rio good.rio
 sed -e 's/^\( *ItemCount *\).*/\111/' -e '$d' good.rio >more.rio
 cat >>more.rio <<'END'
@@ -153,6 +157,6 @@ does 'with InitValue' within 60 begins
 does 'removed again' dpkg -r owsd
 does 'nothing runs' refused pgrep -x owsd
 does 'and purged' dpkg -P owsd
-same 'no segment stays' '' "$(find /dev/shm -name 'owsd.*')"
+same 'no segment stays' '' "$(find /run/owsd /var/lib/owsd 2>/dev/null)"
 same 'nor what enabled it' '' "$(find /etc/systemd -name '*owsd*')"
 finish 0

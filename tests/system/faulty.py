@@ -114,9 +114,8 @@ def ctl(scene, daemon, environment, *arguments):
 
 
 def leftovers(name):
-    """What stands in /dev/shm under this name, without it."""
-    return sorted(entry.split(".", 2)[2] for entry in os.listdir("/dev/shm")
-                  if entry.startswith(f"owsd.{name}."))
+    """What stands in the place under this name, without it."""
+    return sorted(path.name.removeprefix(f"{name}.") for path in owsdtest.place().glob(f"{name}.*"))
 
 
 def counters(scene, daemon):

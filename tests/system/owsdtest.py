@@ -17,9 +17,9 @@ Every function test_* is a case; its name is the sentence that is shown. A case 
 exception (assert will do), and is skipped by owsdtest.skip("why"). Every wait has a deadline.
 """
 
+import atexit
 import concurrent.futures
 import contextlib
-import glob
 import itertools
 import os
 import pathlib
@@ -43,6 +43,27 @@ NOP, READ, WRITE, DIRALL = 1, 2, 3, 7
 PATIENCE = 90
 _serial = itertools.count(1)
 _ports = []  # names that keep the ports for us, until we end
+
+
+# What is started here has its files in a place of the test's own, not where an owsd of this machine
+# has them; tests/system/run gives one too
+if "OWS_DIR" not in os.environ:
+    _home = tempfile.mkdtemp(prefix="owsd-place-")
+    os.environ["OWS_DIR"] = f"{_home}/owsd"
+    atexit.register(shutil.rmtree, _home, ignore_errors=True)
+
+
+def place():
+    """The directory of owsd's files."""
+    return pathlib.Path(os.environ["OWS_DIR"])
+
+
+place().mkdir(mode=0o755, exist_ok=True)
+
+
+def segment(name, kind):
+    """A file of an instance."""
+    return place() / f"{name}.{kind}"
 
 
 class Skip(Exception):
@@ -343,11 +364,9 @@ class Scene:
                 print(f"--- {' '.join(program.command)}: status {program.process.returncode}")
                 print("\n".join(program.log().splitlines()[-60:]))
         for name in self.names:
-            for path in glob.glob(f"/dev/shm/owsd.{name}.*"):
-                try:
+            for path in place().glob(f"{name}.*"):
+                with contextlib.suppress(OSError):
                     os.unlink(path)
-                except OSError:
-                    pass
         shutil.rmtree(self.path, ignore_errors=True)
 
     def file(self, name, text):

@@ -3,8 +3,9 @@
 
     private.main(users=True)
 
-/dev/shm is a small one. With users (needs root) /etc/passwd and /etc/group have, beside what they
-had, the user and the groups of the package and the people that USERS lists; room() is a folder that
+/dev/shm is a small one, and has the directory of owsd. With users (needs root) that is /run/owsd, as
+the service's, in a /run of the test's own; /etc/passwd and /etc/group have, beside what they had, the
+user and the groups of the package and the people that USERS lists; room() is a folder that
 all of them reach, and where the test's own files are; nothing of the machine is changed.
 as_user(NAME) begins a command that runs as one of them, without any right of root.
 """
@@ -72,6 +73,8 @@ def _skip(why):
 def main(users=False, at_once=1):
     if os.environ.get(INSIDE):
         os.environ["TMPDIR"] = str(room())
+        if users:
+            os.chown(owsdtest.place(), OWSD, OWSD)
         owsdtest.main(at_once)
     root = os.geteuid() == 0
     if users and not root:
@@ -79,9 +82,11 @@ def main(users=False, at_once=1):
     if users and not shutil.which("setpriv"):
         _skip("setpriv is not installed")
     place = _free_room() if users else "/tmp"
+    where = "/run/owsd" if users else "/dev/shm/owsd"
     with tempfile.TemporaryDirectory() as folder:
         mounts = "mount -t tmpfs -o size=3m,mode=1777 tmpfs /dev/shm"
         if users:
+            mounts += " && mount -t tmpfs -o size=3m,mode=755 tmpfs /run"
             # programs and files where everybody reaches them
             mounts += " && " + _write_users(pathlib.Path(folder)) + \
                 f" && mount -t tmpfs -o mode=1777 tmpfs {place}"
@@ -92,5 +97,5 @@ def main(users=False, at_once=1):
         except (OSError, subprocess.CalledProcessError) as why:
             _skip(f"no mount namespace of one's own: {getattr(why, 'stderr', why)}")
         status = subprocess.run([*inside, sys.executable, os.path.abspath(sys.argv[0]), *sys.argv[1:]],
-                                env=dict(os.environ, **{INSIDE: place}), check=False).returncode
+                                env=dict(os.environ, OWS_DIR=where, **{INSIDE: place}), check=False).returncode
     sys.exit(status)

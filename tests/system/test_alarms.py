@@ -157,13 +157,13 @@ def is_cleared(scene, daemon, name):
 
 def test_the_ds2408_of_the_manual_tells_a_short_press(scene):
     daemon = example(scene, "buttons", "DS2408 29.000000000001 pin.4 steps 0:1 3s:0 3.02s:1 repeat 4s\n",
-                     lambda a: int(a["latch"]) == 16 and a["before"] == a["after"])
+                     lambda a: int(a["remark"]) == 16 and a["before"] == a["after"])
     is_cleared(scene, daemon, "buttons")
 
 
 def test_the_ds2406_of_the_manual_tells_a_short_press(scene):
     daemon = example(scene, "doorbell", "DS2406 12.000000000002 pin.A steps 0:1 3s:0 3.02s:1 repeat 4s\n",
-                     lambda a: a["latch"] == "1" and a["before"] == a["after"])
+                     lambda a: a["remark"] == "1" and a["before"] == a["after"])
     is_cleared(scene, daemon, "doorbell")
 
 

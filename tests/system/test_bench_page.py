@@ -24,7 +24,13 @@ def some_output():
              "limit.memory 120 ns", "limit.wake 30.00 us", "shm_get.owserver_read 70000 ns",
              "limit.loopback.pinned 73000 1/s", "limit.loopback.apart 20000 1/s",
              "served_rss.64_clients 3432 KiB", "served_rss.64_clients.owserver 6564 KiB",
-             "served_late_periods 0.00 periods", "served_periods 900 periods"]
+             "served_late_periods 0.00 periods", "served_periods 900 periods",
+             "set_to_wire.wakes 100.00 us", "set_to_wire.wakes_loopback 120.00 us",
+             "changes.waiting 0.02 %", "changes.waiting_idle 0.01 %"]
+    for n in ("futex", 1, 8, 100):
+        lines += [f"bells.{n} 8.00 us", f"bells.{n}.one_cpu 6.00 us"]
+    for n in (10, 1000, 10000):
+        lines += [f"changes.{n} 500.00 ns", f"changes.scan.{n} {15 * n} ns"]
     lines += [f"engine_step.{n} {n / 10 + 300:.0f} ns" for n in (10, 100, 1000, 10000)]
     for name in ("shm_get.single", "shm_get.clock", "shm_get.owserver_read", "set_to_wire",
                  "input_latency.alarm4", "input_latency.alarm10", "input_latency.cyclic"):
@@ -89,7 +95,8 @@ def test_saved_figures_become_tables_and_the_prose_is_kept(scene):
     assert prose(after) == prose(before)
     assert "Commit abc1234; Some CPU (virtual machine), 2 cores" in after
     assert "| `rss`: resident with 100 signals | 3 024 KiB | 3 024 KiB | 3 024 KiB | owserver 5 152 KiB |  | 2 MiB: **missed** |" in after
-    assert "10 ns and 3 000 times: met" in after
+    assert "10 ns, or three loads from that cache: met" in after
+    assert "1.2 times that by eventfd" in after
     assert "| 1, pinned | 4 000/s | 50.0, 99.0 us | 1 000/s | 50.0, 99.0 us | 4.0 | 73 000/s |" in after
     assert "| owsd direct | 50 | 6.00 | 3000 | 10000 | 600 | 50 | 1.34 |" in after
     assert "not quiet" not in after

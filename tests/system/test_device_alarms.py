@@ -112,7 +112,7 @@ def test_reading_the_alarm_flag_clears_it_for_this_reader_and_for_no_other(scene
 def test_what_owsctl_has_seen_is_kept_in_no_file_of_another(scene):
     daemon = scene.owsd(config(f"sim:{scene.file('press.sim', ONE_ALARM)}"))
     until(lambda: counter(scene, daemon, "alarms"), 30, "an alarm")
-    seen, other = f"/dev/shm/owsd.{daemon.name}.seen.{os.geteuid()}", scene.file("other", "kept")
+    seen, other = owsdtest.segment(daemon.name, "seen"), scene.file("other", "kept")
     os.symlink(other, seen)
     for _ in range(2):
         done = scene.owsctl(daemon, "get", "inputs_Alarm")

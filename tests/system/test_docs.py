@@ -124,7 +124,7 @@ class Stage:
                 "OWSD_SOURCE": str(SOURCE), "OWSD_BUILD": str(owsdtest.BUILD),
                 "OWSD_BOARDS": str(SOURCE / "board/boards"), "TMPDIR": str(self.path),
                 "LD_LIBRARY_PATH": str(owsdtest.BUILD), "PYTHONPATH": str(SOURCE / "src/libows"), "PYTHONDONTWRITEBYTECODE": "1",
-                **{k: v for k, v in os.environ.items() if "SAN_OPTIONS" in k or k == "EXTRA_CFLAGS"}}
+                **{k: v for k, v in os.environ.items() if "SAN_OPTIONS" in k or k in ("EXTRA_CFLAGS", "OWS_DIR")}}
 
     def own(self, text):
         """Text with the instance and the absolute paths of this stage."""
@@ -178,8 +178,9 @@ def do_console(stage, text):
 
 
 def like(expected, said):
-    """Numbers and ... stand for anything; nothing expected: the page does not show it."""
-    said = said.replace(", simulated", "")
+    """Numbers, times, users and ... stand for anything; nothing expected: the page does not show it."""
+    expected, said = (re.sub(r"\d{4}-\d\d-\d\dT[\d:.+-]+", "TIME", re.sub(r"\(user \w+\)", "(user)", text))
+                      for text in (expected, said.replace(", simulated", "")))
     pattern = re.escape(re.sub(r"-?\d+(\.\d+)?[smhd]?\b", "\0", expected.strip()))
     pattern = pattern.replace("\0", r"-?[\d.]+[smhd]?").replace(re.escape("..."), "(?s:.*)")
     pattern = re.sub(r"(\\ |\\\n|\n)+", r"\\s+", pattern)

@@ -92,7 +92,7 @@ def test_a_root_without_firmware_or_owsd_is_refused(scene):
 def debs(scene, arch="arm64", mark="deb13"):
     folder = scene.path / "debs"
     folder.mkdir(exist_ok=True)
-    for name in (f"owsd_0.1.0+{mark}_{arch}", f"libows0_0.1.0+{mark}_{arch}",
+    for name in (f"owsd_0.1.0+{mark}_{arch}", f"libows1_0.1.0+{mark}_{arch}",
                  f"python3-ows_0.1.0+{mark}_all", f"owsd_0.1.0+{mark}_other",
                  f"owsd_0.1.0+deb99_{arch}"):
         (folder / f"{name}.deb").write_text(name)
@@ -102,7 +102,7 @@ def debs(scene, arch="arm64", mark="deb13"):
 def test_of_several_versions_the_newest_packages_are_taken(scene):
     folder = debs(scene)
     for version in ("0.9.0", "0.10.0"):
-        for name in ("owsd", "libows0"):
+        for name in ("owsd", "libows1"):
             (folder / f"{name}_{version}+deb13_arm64.deb").touch()
         (folder / f"python3-ows_{version}+deb13_all.deb").touch()
     done = sh(scene, IMAGE / "debs", folder, "arm64", "trixie")
@@ -124,7 +124,7 @@ def test_the_stage_of_pi_gen_installs_our_packages_and_sets_the_root_up(scene):
     assert done.returncode == 0, done
     assert "apt-get install -y" in (top / "asked").read_text()
     assert (top / "saw").read_text().split() == [
-        "libows0_0.1.0+deb13_arm64.deb", "owsd_0.1.0+deb13_arm64.deb",
+        "libows1_0.1.0+deb13_arm64.deb", "owsd_0.1.0+deb13_arm64.deb",
         "python3-ows_0.1.0+deb13_all.deb"]
     assert not (top / "var/cache/owsd").exists()
     assert "dtoverlay=w1-gpio" in (top / "boot/firmware/config.txt").read_text()

@@ -13,14 +13,14 @@ on_copy() {
 [ -e "$OWSD_BUILD/libows.so" ] || { echo "libows is not built"; exit 1; }
 on_copy install
 
-for f in lib/libows.so lib/libows.so.0 lib/libows.a lib/pkgconfig/libows.pc include/ows.h \
+for f in lib/libows.so lib/libows.so.1 lib/libows.a lib/pkgconfig/libows.pc include/ows.h \
 	include/ows_layout.h share/owsd/boards/raspberry-pi-4.board \
 	share/owsd/examples/openplc/owsd.cpp share/owsd/examples/linuxcnc/owsd_hal.c; do
 	[ -s "$root/opt/owsd/$f" ] || { echo "missing: $f"; exit 1; }
 done
 
 # Only ows_* is offered, by both libraries
-nm -D --defined-only "$root/opt/owsd/lib/libows.so.0" | awk 'NF == 3 { sub(/@.*/, "", $3); print $3 }' >dynamic
+nm -D --defined-only "$root/opt/owsd/lib/libows.so.1" | awk 'NF == 3 { sub(/@.*/, "", $3); print $3 }' >dynamic
 nm -g --defined-only "$root/opt/owsd/lib/libows.a" | awk 'NF == 3 { print $3 }' >static
 for list in dynamic static; do
 	[ -s $list ]
@@ -44,7 +44,7 @@ cat >l.c <<'END'
 #include <ows_layout.h>
 int main(void)
 {
-	return sizeof(struct ows_record) != 256;
+	return sizeof(struct ows_record) != 320;
 }
 END
 export PKG_CONFIG_PATH="$root/opt/owsd/lib/pkgconfig" PKG_CONFIG_SYSROOT_DIR="$root"
@@ -90,7 +90,7 @@ for prefix in /usr/local /usr /opt /opt/owsd/ /; do
 	fi
 	if command -v systemd-sysusers >/dev/null; then
 		systemd-sysusers --root="$root" --cat-config | grep -q '^u owsd '
-		systemd-tmpfiles --root="$root" --cat-config | grep -q '^x /dev/shm/owsd'
+		systemd-tmpfiles --root="$root" --cat-config | grep -q '^d /run/owsd 0755 owsd owsd'
 	fi
 	on_copy uninstall-service PREFIX=$prefix
 	rm "$root/etc/owsd/OWS.rio"

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """owsctl instances, remove and stats: what runs, what has run, and taking away what it left."""
 
-import glob
+import contextlib
 import json
 import os
 import re
@@ -14,6 +14,17 @@ import tempfile
 import owsdtest
 
 TARGET = "null:"
+
+
+@contextlib.contextmanager
+def place_in(folder):
+    """Another directory of owsd, for as long."""
+    before = os.environ["OWS_DIR"]
+    os.environ["OWS_DIR"] = f"{folder}/place"
+    try:
+        yield
+    finally:
+        os.environ["OWS_DIR"] = before
 
 
 def start(scene, **options):
@@ -29,7 +40,7 @@ def instance(scene, name):
 
 
 def files(name):
-    return glob.glob(f"/dev/shm/owsd.{name}.*")
+    return [str(path) for path in owsdtest.place().glob(f"{name}.*")]
 
 
 def beats(scene, daemon, state="running"):
@@ -86,7 +97,7 @@ def test_a_running_instance_is_not_removed(scene):
         assert files(which.name) == before and done.stdout == ""
     # also when somebody took its lock away
     for which in (daemon, hanging):
-        os.unlink(f"/dev/shm/owsd.{which.name}.lock")
+        os.unlink(owsdtest.segment(which.name, "lock"))
         before = files(which.name)
         done = scene.owsctl(None, "remove", which.name)
         assert done.returncode == 1 and f"is running (process {which.pid})" in done.stderr, done
@@ -122,8 +133,8 @@ def test_neighbours_whose_names_begin_alike_stay(scene):
     other = start(scene, name=ended.name + ".image")
     scene.names.append(other.name)
     before = files(other.name)
-    for suffix in ("image.new", "command.new.0123abcd"):
-        with open(f"/dev/shm/owsd.{ended.name}.{suffix}", "w", encoding="ascii"):
+    for suffix in ("image.new", "command.new"):
+        with open(owsdtest.segment(ended.name, suffix), "w", encoding="ascii"):
             pass
     assert scene.owsctl(None, "remove", ended.name).returncode == 0
     assert sorted(files(ended.name)) == sorted(before) and before
@@ -132,24 +143,36 @@ def test_neighbours_whose_names_begin_alike_stay(scene):
 def test_what_belongs_to_another_is_not_removed(scene):
     if os.geteuid() != 0:
         owsdtest.skip("needs root to be another user")
-    daemon = start(scene)
-    daemon.stop()
     # the build, and what the tests have for their files, may lie in what is closed to others
-    with tempfile.TemporaryDirectory(dir="/var/tmp") as folder:
+    with tempfile.TemporaryDirectory(dir="/var/tmp") as folder, place_in(folder):
         os.chmod(folder, 0o755)
+        daemon = start(scene)
+        daemon.stop()
         owsctl = shutil.copy(owsdtest.OWSCTL, folder)
         # a sanitizer's options name a file of the source
         nobody = subprocess.run([owsctl, "remove", daemon.name], user=65534, group=65534,
                                 extra_groups=[], capture_output=True, text=True, check=False,
                                 timeout=owsdtest.PATIENCE, cwd=folder,
                                 env={k: v for k, v in os.environ.items() if k != "TSAN_OPTIONS"})
-    assert nobody.returncode == 1 and "no right to remove" in nobody.stderr, nobody
-    assert files(daemon.name)
-    # and root removes what a user left
-    for file in files(daemon.name):
-        os.chown(file, 65534, 65534)
-    assert scene.owsctl(None, "remove", daemon.name).returncode == 0
-    assert not files(daemon.name)
+        assert nobody.returncode == 1 and "no right to remove" in nobody.stderr, nobody
+        assert files(daemon.name)
+        # and root removes what a user left
+        for file in files(daemon.name):
+            os.chown(file, 65534, 65534)
+        assert scene.owsctl(None, "remove", daemon.name).returncode == 0
+        assert not files(daemon.name)
+
+
+def test_a_place_that_cannot_be_entered_is_named(scene):
+    with tempfile.TemporaryDirectory() as folder, place_in(folder):
+        daemon = start(scene)
+        owsdtest.place().chmod(0o777)
+        why = f"others may write into {owsdtest.place()} (mode 0777)"
+        for verb in (["list"], ["instances"], ["remove", daemon.name]):
+            done = scene.owsctl(daemon, *verb)
+            assert (done.returncode, done.stdout) == (1, "") and why in done.stderr, done
+        owsdtest.place().chmod(0o755)
+        beats(scene, daemon)
 
 
 def test_stats_of_an_owsd_that_ended_are_told_to_be_its_last(scene):

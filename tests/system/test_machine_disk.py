@@ -1,25 +1,23 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""A full disk and a full /dev/shm, each a small one in a mount namespace of this test."""
+"""A full disk and a full file system under owsd's directory, each a small one in a mount namespace of this test."""
 
-import math
 import os
 import pathlib
 import signal
 import subprocess
-import time
 
 import faulty
 import owsdtest
 import private
 from owsdtest import until
 
-SHM = pathlib.Path("/dev/shm")
+PLACE = pathlib.Path("/dev/shm/owsd")
 
 
 def fill(scene, folder):
     """Leave no page; returns how to free it again."""
-    filler = folder / f"owsd.{scene.name()}.filler"  # goes with the scene
+    filler = folder / f"{scene.name()}.filler"  # goes with the scene
     with open(filler, "wb", buffering=0) as file:
         try:
             while True:
@@ -40,41 +38,41 @@ def room_is_good(scene, daemon):
     until(lambda: scene.get(daemon, "room") == "21.5", 20, "room is good")
 
 
-def test_a_start_on_a_full_dev_shm_leaves_nothing_behind(scene):
+def test_a_start_on_a_full_file_system_leaves_nothing_behind(scene):
     name = scene.name()
-    free = fill(scene, SHM)
+    free = fill(scene, PLACE)
     daemon = scene.owsd(faulty.house(scene), name=name, ready=False)
     assert daemon.wait() == 1
-    owsdtest.logged(daemon, "/dev/shm is full")
+    owsdtest.logged(daemon, f"{PLACE} is full")
     assert faulty.leftovers(name) == []
     free()
     room_is_good(scene, scene.owsd(daemon.config, name=name))
 
 
-def test_a_lock_of_before_is_taken_also_when_dev_shm_is_full(scene):
+def test_a_lock_of_before_is_taken_also_when_the_file_system_is_full(scene):
     before = scene.owsd(faulty.house(scene))
     before.kill()
     # nothing is missing but what it would add
-    free = fill(scene, SHM)
+    free = fill(scene, PLACE)
     daemon = scene.owsd(before.config, name=before.name, ready=False)
     assert daemon.wait() == 1
-    owsdtest.logged(daemon, "/dev/shm is full")
+    owsdtest.logged(daemon, f"{PLACE} is full")
     assert "cannot lock" not in daemon.log(), daemon.log()
-    assert faulty.leftovers(before.name) == ["command", "image", "lock"]
+    assert faulty.leftovers(before.name) == ["force", "image", "lock"]
     free()
     room_is_good(scene, scene.owsd(before.config, name=before.name))
 
 
-def test_a_reload_that_dev_shm_has_no_room_for_changes_nothing(scene):
+def test_a_reload_that_the_file_system_has_no_room_for_changes_nothing(scene):
     config = scene.file("house.rio", faulty.house(scene))
     daemon = scene.owsd(config)
     room_is_good(scene, daemon)
-    free = fill(scene, SHM)
+    free = fill(scene, PLACE)
     config.write_text(faulty.house(scene, more=True))
     daemon.signal(signal.SIGHUP)
     until(lambda: "all goes on as before" in daemon.log(), 10)
-    owsdtest.logged(daemon, "/dev/shm is full")
-    until(lambda: faulty.leftovers(daemon.name) == ["command", "image", "lock"], 10, "nothing is left")
+    owsdtest.logged(daemon, f"{PLACE} is full")
+    until(lambda: faulty.leftovers(daemon.name) == ["control", "force", "image", "lock"], 10, "nothing is left")
     assert scene.owsctl(daemon, "set", "relays", "5").returncode == 0
     until(lambda: scene.get(daemon, "relays") == "5", 10, "outputs are written")
     room_is_good(scene, daemon)
@@ -85,37 +83,17 @@ def test_a_reload_that_dev_shm_has_no_room_for_changes_nothing(scene):
     assert daemon.stop() == 0
 
 
-def test_commands_that_are_taken_away_while_it_is_full_are_made_again_later(scene):
-    daemon = scene.owsd(faulty.house(scene))
-    room_is_good(scene, daemon)
-    # else it may have made them again before there is no room for them
-    faulty.stop_all_of(daemon)
-    since = time.monotonic()
-    os.truncate(SHM / f"owsd.{daemon.name}.command", 0)
-    free = fill(scene, SHM)
-    daemon.thaw()
-    until(lambda: "cannot be made again" in daemon.log(), 10, "it is said")
-    room_is_good(scene, daemon)
-    # at most once a second it is tried, and said the first, the second, the fourth time
-    until(lambda: daemon.log().count("cannot be made again") >= 3, 10, "it is tried again")
-    said = daemon.log().count("cannot be made again")
-    assert said <= 1 + math.log2(1 + time.monotonic() - since), daemon.log()
-    free()
-    until(lambda: scene.owsctl(daemon, "set", "relays", "6").returncode == 0, 10, "sets work again")
-    until(lambda: scene.get(daemon, "relays") == "6", 10)
-
-
 def test_a_reload_whose_image_cannot_be_put_in_place_is_said_and_done_later(scene):
     config = scene.file("house.rio", faulty.house(scene))
     daemon = scene.owsd(config)
     room_is_good(scene, daemon)
-    image = SHM / f"owsd.{daemon.name}.image"
+    image = PLACE / f"{daemon.name}.image"
     image.unlink()
     image.mkdir()
     config.write_text(faulty.house(scene, more=True))
     daemon.signal(signal.SIGHUP)
     until(lambda: "no program sees the values" in daemon.log(), 10, "it is said")
-    owsdtest.logged(daemon, f": a directory of user root (0) is in the way: as root, rm -r {SHM}/owsd.")
+    owsdtest.logged(daemon, f": a directory of user root (0) is in the way: as root, rm -r {PLACE}/")
     owsdtest.logged(daemon, "again every second")
     until(lambda: daemon.log().count("no program sees") >= 2, 10, "and tried again")
     daemon.signal(signal.SIGHUP)  # has to wait
@@ -124,17 +102,17 @@ def test_a_reload_whose_image_cannot_be_put_in_place_is_said_and_done_later(scen
     until(lambda: daemon.log().count("reload:") == 2, 10, "and the reload that waited is done")
     until(lambda: faulty.counters(scene, daemon)["unfinished_reload"] == 0, 10)
     owsdtest.logged(daemon, "the rest of the reload is done")
-    until(lambda: faulty.leftovers(daemon.name) == ["command", "image", "lock"], 10, "nothing is left")
+    until(lambda: faulty.leftovers(daemon.name) == ["control", "force", "image", "lock"], 10, "nothing is left")
     assert daemon.stop() == 0
 
 
 def test_a_start_whose_image_cannot_be_put_in_place_is_refused_with_a_reason(scene):
     name = scene.name()
-    (SHM / f"owsd.{name}.image").mkdir()
+    (PLACE / f"{name}.image").mkdir()
     daemon = scene.owsd(faulty.house(scene), name=name, ready=False)
     assert daemon.wait() == 1
-    owsdtest.logged(daemon, f": a directory of user root (0) is in the way: as root, rm -r {SHM}/owsd.")
-    (SHM / f"owsd.{name}.image").rmdir()
+    owsdtest.logged(daemon, f": a directory of user root (0) is in the way: as root, rm -r {PLACE}/")
+    (PLACE / f"{name}.image").rmdir()
 
 
 def test_an_edit_on_a_full_disk_leaves_the_file_as_it_was(scene):

@@ -192,12 +192,12 @@ def test_closed_standard_streams_are_taken_for_nothing_else(scene):
         until(lambda: scene.get(name, "room") == "21.5", 20, f"{closed}: good")
         for fd in (0, 1, 2):
             to = os.readlink(f"/proc/{daemon.pid}/fd/{fd}")
-            assert "owsd." not in to and "anon_inode" not in to and "socket" not in to, (closed, fd, to)
+            assert "place" not in to and "anon_inode" not in to and "socket" not in to, (closed, fd, to)
         generation = json.loads(scene.owsctl(name, "--json", "stats").stdout)["daemon"]["generation"]
         daemon.signal(signal.SIGHUP)
         until(lambda: json.loads(scene.owsctl(name, "--json", "stats").stdout)["daemon"]["generation"] >
               generation, 10, f"{closed}: it reloads")
-        with open(f"/dev/shm/owsd.{name}.lock", "rb") as lock:
+        with open(owsdtest.segment(name, "lock"), "rb") as lock:
             assert lock.read() == f"{daemon.pid}\n".encode()
         until(lambda: scene.get(name, "room") == "21.5", 20, f"{closed}: good again")
         assert daemon.stop() == 0

@@ -61,7 +61,7 @@ def test_every_attribute_of_the_manual_answers_with_and_without_prefix(scene):
     until(lambda: all_good(scene, daemon), 10, "all signals are good")
     readable = ["_Value", "_TRANSACTIONS", "_ReadEnable", "_RE", "_WriteEnable", "_WE", "_Alarm",
                 "_PerFactor", "_PerCount", "_PerMax", "_PendCount", "_PendLast", "_PendMax",
-                "_Period", "_Age", "_AgeMax"]
+                "_Period", "_Age", "_AgeMax", "_Raw"]
     for attribute in readable:
         for name in ("room" + attribute, f"{daemon.name}__room{attribute}"):
             float(until(lambda: scene.get(daemon, name), 10, name))
@@ -202,9 +202,14 @@ while True:
     time.sleep(0.1)
 """])
     until(lambda: server.read(path + "/temphigh") == "70", 10, "it controls")
-    program.kill()
+    program.freeze()
     until(lambda: server.read(path + "/temphigh") == "11", 5, "SafeValue is written")
     owsdtest.logged(daemon, "stopped beating")
+    program.thaw()
+    until(lambda: server.read(path + "/temphigh") == "70", 10, "it controls again")
+    program.kill()
+    until(lambda: server.read(path + "/temphigh") == "11", 5, "SafeValue is written")
+    owsdtest.logged(daemon, "ended without a goodbye: 1 output goes to SafeValue")
 
 
 def test_two_owsd_of_one_name_do_not_meet(scene):

@@ -1,33 +1,47 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What owsd writes when it starts: one case for each row of "A command is in force" in
-docs/semantics.md, with real programs that end, live, hang or are killed. The peer has all writes."""
+"""Which command is in force: one case for each row of the table in docs/semantics.md, with real
+programs that end, live, hang, fork, dump core or are killed, while owsd runs and over its end. The
+peer has all writes."""
 
+import os
+import signal
 import sys
 import time
 
 import owsdtest
 import peer
 
-PLAIN, INIT, SAFE, BOTH = (f"/29.00000000000{n}/PIO.0" for n in range(1, 5))
-ALL = PLAIN, INIT, SAFE, BOTH
-# Sets each output once, and beats when it promised to; "once": it ends after that, in order
+NAMES = "plain", "init", "safe", "both", "last", "last_safe"
+ALL = PLAIN, INIT, SAFE, BOTH, LAST, LAST_SAFE = [f"/29.00000000000{n}/PIO.0" for n in range(1, 7)]
+# Sets each output once, and beats when it promised to, until its fate: "once": it ends in order;
+# "stay": it lives; at a SIGUSR1 "crash": it dumps core; "fork": it dies, and its child lives on
 GIVER = """
-import sys, time
+import os, signal, sys, time
 import ows
-name, beats, once = sys.argv[1], float(sys.argv[2]), sys.argv[3] == "once"
-s = ows.Ows(name, control=True)
+name, beats, fate = sys.argv[1], float(sys.argv[2]), sys.argv[3]
+told = []
+signal.signal(signal.SIGUSR1, lambda *_: told.append(1))
+s = ows.Ows(name, control=True, name="giver")
 if beats:
     s.beat(int(beats * 1000))
-for output in ("plain", "init", "safe", "both"):
+for output in sys.argv[4:]:
     s.set(output, 1)
-while any(s.get(o).applied == 0 for o in ("plain", "init", "safe", "both")):
+while any(s.get(o).applied == 0 for o in sys.argv[4:]):
     if beats:
         s.beat(int(beats * 1000))
     time.sleep(0.05)
 print("set", flush=True)
-while not once:
+while fate != "once":
     time.sleep(0.1)
+    if told and fate == "crash":
+        signal.signal(signal.SIGSEGV, signal.SIG_DFL)
+        os.kill(os.getpid(), signal.SIGSEGV)
+    if told and fate == "fork":
+        if os.fork() == 0:
+            print("child", os.getpid(), flush=True)
+            time.sleep(600)
+        os._exit(1)
     try:
         if beats:
             s.beat(int(beats * 1000))
@@ -48,7 +62,7 @@ import sys, time
 import ows
 s = ows.Ows(sys.argv[1], control=True)
 s.beat(500)
-print("sits in place", s.client, flush=True)
+print("beats", flush=True)
 while True:
     time.sleep(0.1)
     try:
@@ -67,20 +81,21 @@ while True:
 class Plant:
     """A peer, an owsd on it and the giver of a command that is in force."""
 
-    def __init__(self, scene, server, beats=0.0, once=False):
+    def __init__(self, scene, server, beats=0.0, fate="stay", **keys):
         self.scene, self.server = scene, server
-        items = [dict(Name=name, Path=path, Type="bool", IO="output")
-                 for name, path in zip(("plain", "init", "safe", "both"), ALL)]
+        items = [dict(Name=name, Path=path, Type="bool", IO="output", **keys)
+                 for name, path in zip(NAMES, ALL)]
         items[1]["InitValue"] = items[3]["InitValue"] = "off"
-        items[2]["SafeValue"] = items[3]["SafeValue"] = "on"
+        items[2]["SafeValue"] = items[3]["SafeValue"] = items[5]["SafeValue"] = "on"
+        items[4]["Start"] = items[5]["Start"] = "last"
         self.config = scene.file("plant.rio", owsdtest.rio(server.target, items, Period=0.02))
-        self.daemon = scene.owsd(self.config)
-        self.giver = scene.start([sys.executable, "-c", GIVER, self.daemon.name, str(beats),
-                                  "once" if once else "stay"],
-                                 {"PYTHONPATH": str(owsdtest.SOURCE / "src/libows")})
+        self.environment = {"OWS_STATE_DIR": str(scene.path / "state")}
+        self.daemon = scene.owsd(self.config, env=self.environment)
+        self.giver = scene.start([sys.executable, "-c", GIVER, self.daemon.name, str(beats), fate,
+                                  *NAMES], {"PYTHONPATH": str(owsdtest.SOURCE / "src/libows")})
         owsdtest.until(lambda: "set" in self.giver.log(), 20, self.giver.log)
         owsdtest.until(lambda: all(server[path] == "1" for path in ALL), 20, "all are on")
-        if once:
+        if fate == "once":
             assert self.giver.wait() == 0
 
     def again(self, ended):
@@ -89,8 +104,11 @@ class Plant:
             assert self.daemon.stop() == 0
         else:
             self.daemon.kill()
+        if ended == "reboot":
+            for file in owsdtest.place().glob(f"{self.daemon.name}.*"):
+                file.unlink()
         self.server.requests.clear()
-        self.daemon = self.scene.owsd(self.config, name=self.daemon.name)
+        self.daemon = self.scene.owsd(self.config, name=self.daemon.name, env=self.environment)
         owsdtest.until(lambda: self.server.requests, 20, "it asks the server")
 
     def writes(self, expected, what):
@@ -103,34 +121,40 @@ class Plant:
 
 
 ENDS = "stopped", "killed"
+# Nobody comes back: InitValue once, else nothing; what was last
+ENDED = [(INIT, b"0"), (BOTH, b"0"), (LAST, b"1"), (LAST_SAFE, b"1")]
+# The giver is lost over a restart: `init` has no SafeValue, `plain` has nothing
+LOST = [(INIT, b"0"), (SAFE, b"1"), (BOTH, b"1"), (LAST, b"1"), (LAST_SAFE, b"1")]
 
 
 def values():
     return {path: "0" for path in ALL}
 
 
+# --- Over an end of owsd ---------------------------------------------------------------------------
+
 def test_what_a_program_that_ended_has_set_is_not_repeated_and_initvalue_is_written_once(scene):
     for ended in ENDS:
         for beats in (0.0, 5.0):
             with peer.Peer(values()) as server:
-                plant = Plant(scene, server, beats, once=True)
+                plant = Plant(scene, server, beats, "once")
                 plant.again(ended)
-                plant.writes([(INIT, b"0"), (BOTH, b"0")], f"{ended}, beats {beats}")
+                plant.writes(ENDED, f"{ended}, beats {beats}")
                 plant.server.requests.clear()
                 plant.again(ended)
-                plant.writes([(INIT, b"0"), (BOTH, b"0")], f"{ended} a second time")
+                plant.writes(ENDED, f"{ended} a second time")
                 assert plant.daemon.stop() == 0
 
 
 def test_what_owsctl_set_is_not_repeated_and_initvalue_is_written_once(scene):
     for ended in ENDS:
         with peer.Peer(values()) as server:
-            plant = Plant(scene, server, once=True)
-            for name in ("plain", "init", "safe", "both"):
+            plant = Plant(scene, server, fate="once")
+            for name in NAMES:
                 assert scene.owsctl(plant.daemon, "set", "-w", "10", name, "0").returncode == 0
                 assert scene.owsctl(plant.daemon, "set", "-w", "10", name, "1").returncode == 0
             plant.again(ended)
-            plant.writes([(INIT, b"0"), (BOTH, b"0")], ended)
+            plant.writes(ENDED, ended)
             assert plant.daemon.stop() == 0
 
 
@@ -145,15 +169,15 @@ def test_the_command_of_a_living_program_that_beats_stays_in_force_and_initvalue
             assert plant.daemon.stop() == 0
 
 
-def test_a_program_that_takes_the_place_of_one_that_ended_does_not_bring_its_commands_back(scene):
+def test_a_program_that_connects_after_one_that_ended_does_not_bring_its_commands_back(scene):
     for ended in ENDS:
         with peer.Peer(values()) as server:
-            plant = Plant(scene, server, beats=5.0, once=True)
+            plant = Plant(scene, server, 5.0, "once")
             follower = scene.start([sys.executable, "-c", FOLLOWER, plant.daemon.name],
                                    {"PYTHONPATH": str(owsdtest.SOURCE / "src/libows")})
-            owsdtest.until(lambda: "sits in place 0" in follower.log(), 20, follower.log)
+            owsdtest.until(lambda: "beats" in follower.log(), 20, follower.log)
             plant.again(ended)
-            plant.writes([(INIT, b"0"), (BOTH, b"0")], ended)
+            plant.writes(ENDED, ended)
             assert "reopened" in follower.log() and follower.running()
             follower.stop()
             assert plant.daemon.stop() == 0
@@ -163,23 +187,33 @@ def test_a_living_program_that_never_beats_counts_as_one_that_ended(scene):
     with peer.Peer(values()) as server:
         plant = Plant(scene, server)
         plant.again("stopped")
-        plant.writes([(INIT, b"0"), (BOTH, b"0")], "it may set again, and does not")
+        plant.writes(ENDED, "it may set again, and does not")
         assert plant.giver.running()
 
 
 def test_of_a_program_that_beat_and_hangs_or_is_dead_safevalue_is_written_else_initvalue(scene):
-    # `init` has no SafeValue: InitValue; `plain` has neither: nothing
-    expected = [(INIT, b"0"), (SAFE, b"1"), (BOTH, b"1")]
     for ended, fate in zip(ENDS, ("freeze", "kill")):
         with peer.Peer(values()) as server:
             plant = Plant(scene, server, beats=8.0)
             before = plant.daemon
             getattr(plant.giver, fate)()
             plant.again(ended)
-            assert "stopped beating" not in before.log(), "the machine is too slow for this"
+            assert "SafeValue" not in before.log(), "the machine is too slow for this"
             assert not server.writes, (fate, "before the promise is over", server.writes)
-            plant.writes(expected, f"{ended}, {fate}")
+            plant.writes(LOST, f"{ended}, {fate}")
             plant.giver.kill()
+            assert plant.daemon.stop() == 0
+
+
+def test_a_child_that_holds_the_socket_open_does_not_come_back_for_its_parent(scene):
+    for ended in ENDS:
+        with peer.Peer(values()) as server:
+            plant = Plant(scene, server, 8.0, "fork")
+            plant.giver.signal(signal.SIGUSR1)
+            assert plant.giver.wait() == 1
+            plant.again(ended)
+            plant.writes(LOST, ended)
+            end_child(plant.giver)
             assert plant.daemon.stop() == 0
 
 
@@ -188,32 +222,21 @@ def test_safevalue_that_stands_stays_over_a_restart(scene):
         with peer.Peer(values()) as server:
             plant = Plant(scene, server, beats=2.0)
             plant.giver.kill()
-            owsdtest.logged(plant.daemon, "stopped beating")
+            owsdtest.logged(plant.daemon, "to SafeValue")
             plant.again(ended)
-            plant.writes([(INIT, b"0"), (SAFE, b"1"), (BOTH, b"1")], ended)
+            plant.writes(LOST, ended)
             assert plant.daemon.stop() == 0
-
-
-def test_a_reload_leaves_every_command_in_force_and_writes_nothing(scene):
-    with peer.Peer(values()) as server:
-        plant = Plant(scene, server, once=True)
-        server.requests.clear()
-        with open(plant.config, "a", encoding="ascii") as file:
-            file.write("\n# another text\n")
-        plant.daemon.signal(1)
-        owsdtest.logged(plant.daemon, "reload: 4 signals, 4 of them go on")
-        plant.writes([], "nothing")
-        assert scene.owsctl(plant.daemon, "get", "both").stdout == "1\n"
 
 
 def test_a_superseded_command_does_not_come_back_with_its_giver(scene):
     for ended in ENDS:
         with peer.Peer(values()) as server:
             plant = Plant(scene, server, beats=5.0)
-            for name in ("plain", "init", "safe", "both"):
+            for name in NAMES:
                 assert scene.owsctl(plant.daemon, "set", "-w", "10", name, "0").returncode == 0
             plant.again(ended)
-            plant.writes([(INIT, b"0"), (BOTH, b"0")], "the last word was owsctl's, which ended")
+            plant.writes([(INIT, b"0"), (BOTH, b"0"), (LAST, b"0"), (LAST_SAFE, b"0")],
+                         "the last word was owsctl's, which ended")
             assert "reopened" in plant.giver.log()
             plant.giver.stop()
             assert plant.daemon.stop() == 0
@@ -222,17 +245,140 @@ def test_a_superseded_command_does_not_come_back_with_its_giver(scene):
 def test_what_is_set_while_owsd_is_not_there_is_refused_or_lost_but_never_written_later(scene):
     for ended in ENDS:
         with peer.Peer(values()) as server:
-            plant = Plant(scene, server, once=True)
+            plant = Plant(scene, server, fate="once")
             plant.daemon.stop() if ended == "stopped" else plant.daemon.kill()
             if ended == "killed":  # it cannot say so: its heart has to be still for a while
                 owsdtest.until(lambda: scene.owsctl(plant.daemon, "get", "plain").returncode == 3,
                                20, "its values are not good")
             done = scene.owsctl(plant.daemon, "set", "plain", "0")
-            assert done.returncode == 1 and "owsd is not running" in done.stderr, done
+            assert done.returncode == 1 and "is not running" in done.stderr, done
             server.requests.clear()
-            plant.daemon = scene.owsd(plant.config, name=plant.daemon.name)
-            plant.writes([(INIT, b"0"), (BOTH, b"0")], ended)
+            plant.daemon = scene.owsd(plant.config, name=plant.daemon.name, env=plant.environment)
+            plant.writes(ENDED, ended)
             assert plant.daemon.stop() == 0
+
+
+def test_a_damaged_memory_of_commands_is_logged_and_nothing_of_it_is_in_force(scene):
+    with peer.Peer(values()) as server:
+        plant = Plant(scene, server, beats=5.0)
+        plant.daemon.kill()
+        with open(owsdtest.segment(plant.daemon.name, "force"), "r+b") as file:
+            file.seek(64)
+            file.write(os.urandom(400))
+        plant.again("killed")
+        # and Start "last" has what was stored
+        plant.writes(ENDED, "damaged")
+        owsdtest.logged(plant.daemon, "does not know which commands are in force")
+
+
+# --- A reboot: only the disk is left ---------------------------------------------------------------
+
+def test_after_a_reboot_an_output_has_initvalue_or_what_was_stored_last(scene):
+    with peer.Peer(values()) as server:
+        plant = Plant(scene, server, beats=5.0)
+        plant.giver.kill()
+        plant.again("reboot")
+        plant.writes(ENDED, "reboot")
+
+
+def test_a_damaged_file_of_last_commands_is_logged_and_initvalue_counts(scene):
+    with peer.Peer(values()) as server:
+        plant = Plant(scene, server, fate="once")
+        assert plant.daemon.stop() == 0
+        file = scene.path / "state" / f"{plant.daemon.name}.last"
+        file.write_text(file.read_text(encoding="utf-8").replace("\t1\n", "\t0\n", 1),
+                        encoding="utf-8")
+        plant.daemon = scene.owsd(plant.config, name=plant.daemon.name, env=plant.environment)
+        plant.daemon.kill()
+        plant.again("reboot")
+        plant.writes([(INIT, b"0"), (BOTH, b"0")], "damaged")
+        owsdtest.logged(plant.daemon, "the file is damaged")
+
+
+def test_what_cannot_be_stored_is_written_and_never_applied(scene):
+    with peer.Peer(values()) as server:
+        plant = Plant(scene, server, fate="once")
+        state = scene.path / "state"
+        state.rename(scene.path / "away")
+        state.write_text("no directory", encoding="ascii")
+        done = scene.owsctl(plant.daemon, "set", "-w", "3", "last", "0")
+        assert done.returncode != 0, done
+        assert server[LAST] == "0"
+        owsdtest.logged(plant.daemon, "cannot be stored")
+        state.unlink()
+        (scene.path / "away").rename(state)
+        owsdtest.logged(plant.daemon, "stored again")
+        assert scene.owsctl(plant.daemon, "set", "-w", "10", "last", "1").returncode == 0
+
+
+# --- owsd runs -------------------------------------------------------------------------------------
+
+def end_child(giver):
+    for line in giver.log().splitlines():
+        if line.startswith("child "):
+            os.kill(int(line.split()[1]), signal.SIGKILL)
+
+
+def test_a_program_that_dies_in_any_way_leaves_safevalue_when_its_time_is_over(scene):
+    fates = {"kill": ("stay", lambda g: g.kill()),
+             "hang": ("stay", lambda g: g.freeze()),
+             "crash": ("crash", lambda g: (g.signal(signal.SIGUSR1), g.wait())),
+             "fork": ("fork", lambda g: (g.signal(signal.SIGUSR1), g.wait()))}
+    for what, (fate, lose) in fates.items():
+        with peer.Peer(values()) as server:
+            plant = Plant(scene, server, 2.0, fate)
+            text = scene.owsctl(plant.daemon, "set", "-w", "10", "plain", "1")
+            assert text.returncode == 0, text
+            lose(plant.giver)
+            owsdtest.logged(plant.daemon, "3 outputs go to SafeValue")
+            for name in NAMES:
+                whose = scene.owsctl(plant.daemon, "who", name).stdout
+                assert ("SafeValue" in whose) == (name in ("safe", "both", "last_safe")), whose
+                assert name == "plain" or "giver" in whose, whose
+            end_child(plant.giver)
+            plant.giver.thaw() if what == "hang" else None
+            assert plant.daemon.stop() == 0
+
+
+def test_a_program_that_never_beat_leaves_its_outputs_as_they_are_however_it_ends(scene):
+    with peer.Peer(values()) as server:
+        plant = Plant(scene, server)
+        server.requests.clear()
+        plant.giver.kill()
+        plant.writes([], "killed")
+        assert "SafeValue" not in plant.daemon.log()
+
+
+def test_with_safe_delay_0_safevalue_follows_a_death_at_once(scene):
+    with peer.Peer(values()) as server:
+        plant = Plant(scene, server, 300.0, SafeDelay=owsdtest.raw("0"))
+        plant.giver.kill()
+        owsdtest.logged(plant.daemon, "3 outputs go to SafeValue")
+
+
+def test_a_reload_leaves_every_command_in_force_and_writes_nothing(scene):
+    with peer.Peer(values()) as server:
+        plant = Plant(scene, server, fate="once")
+        server.requests.clear()
+        with open(plant.config, "a", encoding="ascii") as file:
+            file.write("\n# another text\n")
+        plant.daemon.signal(1)
+        owsdtest.logged(plant.daemon, "reload: 6 signals, 6 of them go on")
+        plant.writes([], "nothing")
+        assert scene.owsctl(plant.daemon, "get", "both").stdout == "1\n"
+
+
+def test_a_reload_under_a_program_that_beats_leaves_its_commands_in_force(scene):
+    with peer.Peer(values()) as server:
+        plant = Plant(scene, server, 2.0)
+        server.requests.clear()
+        with open(plant.config, "a", encoding="ascii") as file:
+            file.write("\n# another text\n")
+        plant.daemon.signal(1)
+        owsdtest.logged(plant.daemon, "reload: 6 signals, 6 of them go on")
+        plant.writes([], "nothing")
+        assert "SafeValue" not in plant.daemon.log() and "reopened" in plant.giver.log()
+        plant.giver.stop()
 
 
 if __name__ == "__main__":

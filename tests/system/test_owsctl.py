@@ -280,9 +280,9 @@ def test_an_odd_name_is_shown_and_the_reason_behind_it_too(scene):
 def test_the_live_table_follows_values_and_keys(scene):
     server, daemon, room, _ = house(scene)
     terminal = Terminal(daemon, 24, 100, "watch")
-    terminal.until(lambda s: any(re.match(r"room +21.5 +good", line) for line in s), "room")
+    terminal.until(lambda s: any(re.match(r"room +21.5 +\u00b0C +good", line) for line in s), "room")
     server.write(room + "/temperature", 23.5)
-    terminal.until(lambda s: any(re.match(r"room +23.5 +good", line) for line in s), "a change")
+    terminal.until(lambda s: any(re.match(r"room +23.5 +\u00b0C +good", line) for line in s), "a change")
     os.write(terminal.fd, b"q")
     assert terminal.end() == (0, True)
 
@@ -348,7 +348,7 @@ def test_at_80_columns_each_row_has_its_path_and_the_head_has_their_target(scene
     terminal.until(lambda s: len(s) == 5 and s[2].startswith("room"), "the rows")
     head, titles, *rows = terminal.screen()
     assert server.target in head and "3 signals" in head and "in alarm" not in head, head
-    assert titles.split() == ["NAME", "VALUE", "QUALITY", "AGE", "PATH"], titles
+    assert titles.split() == ["NAME", "VALUE", "UNIT", "QUALITY", "AGE", "PATH"], titles
     assert room[:16] in rows[0] and "/28.0102030405FF" in rows[2], rows
     assert all(len(line) <= 80 for line in terminal.screen()), terminal.screen()
     os.write(terminal.fd, b"q")
@@ -364,11 +364,11 @@ def test_the_live_table_marks_an_alarm_without_colour(scene):
     scene.until(lambda: "! high" in scene.owsctl(daemon, "list").stdout, 15, "the alarm stands")
     terminal = Terminal(daemon, 24, 80, "watch")
     terminal.until(lambda s: len(s) == 4 and "2 signals, 0 not good, 1 in alarm" in s[0]
-                   and re.match(r"boiler +31 +good, simulated +! high +", s[2])
-                   and re.match(r"outside +4 +good, simulated +- +", s[3])
+                   and re.match(r"boiler +31 +\u00b0C +good, simulated +! high +", s[2])
+                   and re.match(r"outside +4 +\u00b0C +good, simulated +- +", s[3])
                    and "/28.00000000000" in s[2], "the mark")
     assert scene.owsctl(daemon, "alarms", "ack", "-a").returncode == 0
-    terminal.until(lambda s: re.match(r"boiler +31 +good, simulated +high, ack", s[2]), "acknowledged")
+    terminal.until(lambda s: re.match(r"boiler +31 +\u00b0C +good, simulated +high, ack", s[2]), "acknowledged")
     os.write(terminal.fd, b"q")
     assert terminal.end() == (0, True)
 

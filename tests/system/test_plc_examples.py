@@ -145,9 +145,9 @@ def wire(scene, daemon, state):
 
 def kill_without_names(daemon):
     """Its segments cannot be found by the next, who could say there that he has others."""
-    daemon.freeze()  # or it would make the commands again
-    for kind in ("image", "command"):
-        os.unlink(f"/dev/shm/owsd.{daemon.name}.{kind}")
+    daemon.freeze()
+    for kind in ("image",):
+        os.unlink(owsdtest.segment(daemon.name, kind))
     daemon.kill()
 
 

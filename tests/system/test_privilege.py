@@ -3,8 +3,10 @@
 """Who may look, who may act, and what everybody else can do to owsd: as real other users, who need
 not exist outside this test. owsd itself is the user owsd under the unit's filter."""
 
+import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import socket
@@ -17,23 +19,20 @@ import private
 import sandbox
 from owsdtest import until
 
-SHM = pathlib.Path("/dev/shm")
-PLACE = private.room() / "place"
+PROGRAMS = private.room() / "programs"
 NOWHERE = private.room() / "nowhere"
-KINDS = ("image", "command", "lock")
+KINDS = ("image", "force", "control", "lock")
+# All names that owsd makes there
+NAMES = (*KINDS, "image.new", "force.new")
 
 
-def place():
+def programs():
     """Programs where every user reaches them."""
-    if not PLACE.exists():
-        PLACE.mkdir(mode=0o755)
+    if not PROGRAMS.exists():
+        PROGRAMS.mkdir(mode=0o755)
         for program in (owsdtest.OWSD, owsdtest.OWSCTL):
-            shutil.copy(program, PLACE)
-    return PLACE
-
-
-def segment(name, kind):
-    return SHM / f"owsd.{name}.{kind}"
+            shutil.copy(program, PROGRAMS)
+    return PROGRAMS
 
 
 def daemon_of(scene, text=None, name=None, ready=True):
@@ -44,10 +43,10 @@ def daemon_of(scene, text=None, name=None, ready=True):
     for path in scene.path.iterdir():
         if path.is_file():
             os.chmod(path, 0o644)
-    program = place() / "owsd"
+    program = programs() / "owsd"
     filtered = sandbox.command()
-    shutil.copy(filtered[0], place())
-    filtered[0] = str(place() / "sandbox")
+    shutil.copy(filtered[0], programs())
+    filtered[0] = str(programs() / "sandbox")
     daemon = Service(scene, config, name, [], None,
                      [*private.as_user("owsd"), "sh", "-c", 'umask 0077; exec "$@"', "sh", *filtered],
                      program)
@@ -67,8 +66,21 @@ def as_user(scene, who, *command):
     return scene._run([*private.as_user(who), *command], 30)
 
 
+def at_home(who, **environment):
+    """As he is without a word of the test: his own place, and the service's."""
+    return [*private.as_user(who), "env", "-u", "OWS_DIR", "-u", "XDG_RUNTIME_DIR",
+            *(f"{key}={value}" for key, value in environment.items())]
+
+
+def folder_of(who, where, mode=0o700):
+    where.mkdir()
+    os.chown(where, private.USERS[who][0], private.USERS[who][0])
+    where.chmod(mode)
+    return where
+
+
 def ctl(scene, who, name, *words):
-    return as_user(scene, who, place() / "owsctl", "-n", name, *words)
+    return as_user(scene, who, programs() / "owsctl", "-n", name, *words)
 
 
 def python(scene, who, text):
@@ -87,10 +99,12 @@ def good(scene, name):
 
 def test_who_may_look_and_who_may_act_are_two_groups(scene):
     name = daemon_of(scene).name
-    modes = {kind: segment(name, kind).stat() for kind in KINDS}
+    modes = {kind: owsdtest.segment(name, kind).stat() for kind in KINDS}
     assert {kind: (oct(m.st_mode & 0o7777), m.st_uid, m.st_gid) for kind, m in modes.items()} == {
         "image": ("0o640", private.OWSD, private.OWSD),
-        "command": ("0o660", private.OWSD, private.CONTROL),
+        "force": ("0o600", private.OWSD, private.OWSD),
+        # all may connect, and are answered by who they are
+        "control": ("0o666", private.OWSD, private.OWSD),
         "lock": ("0o600", private.OWSD, private.OWSD)}
     good(scene, name)
     may = {"reader": (True, False), "plc": (True, True), "setter": (False, False),
@@ -107,7 +121,7 @@ def test_who_may_look_and_who_may_act_are_two_groups(scene):
 
 def test_a_reader_cannot_write_by_any_way(scene):
     name = daemon_of(scene).name
-    image, command, lock = (segment(name, kind) for kind in KINDS)
+    image, force, _, lock = (owsdtest.segment(name, kind) for kind in KINDS)
     for who in ("reader", "plc"):
         done = python(scene, who, f"os.open('{image}', os.O_RDWR)")
         assert refused(done), done
@@ -119,115 +133,137 @@ def test_a_reader_cannot_write_by_any_way(scene):
                                   f"os.open(f'/proc/self/fd/{{fd}}', os.O_RDWR)")
         assert refused(done), done
         for what in (f"os.truncate('{image}', 0)", f"os.chmod('{image}', 0o666)",
-                     f"os.open('{lock}', os.O_RDONLY)"):
+                     f"os.open('{lock}', os.O_RDONLY)", f"os.open('{force}', os.O_RDONLY)",
+                     f"os.open('{force}', os.O_RDWR)"):
             assert refused(python(scene, who, what)), (who, what)
-    for how in ("O_RDONLY", "O_RDWR"):
-        assert refused(python(scene, "reader", f"os.open('{command}', os.{how})"))
     good(scene, name)
 
 
 def test_nobody_else_can_take_away_or_replace_what_stands_there(scene):
     name = daemon_of(scene).name
-    before = {kind: segment(name, kind).stat().st_ino for kind in KINDS}
+    here = owsdtest.place()
+    before = {kind: owsdtest.segment(name, kind).stat().st_ino for kind in KINDS}
     for who in ("reader", "plc", "setter", "stranger"):
+        own = private.room() / "own"
         for kind in KINDS:
-            path = segment(name, kind)
+            path = owsdtest.segment(name, kind)
             for what in (f"os.unlink('{path}')", f"os.rename('{path}', '{path}.away')",
-                         f"open('/dev/shm/own', 'w').close(); os.rename('/dev/shm/own', '{path}')"):
-                assert refused(python(scene, who, what)), (who, what)
-            # only whoever may write it may have another name for it; that is no harm
-            done = python(scene, who, f"os.link('{path}', '/dev/shm/link')")
-            assert refused(done) != (kind == "command" and who in ("plc", "setter")), (who, kind, done)
-            (SHM / "link").unlink(missing_ok=True)
-        (SHM / "own").unlink(missing_ok=True)
-    assert {kind: segment(name, kind).stat().st_ino for kind in KINDS} == before
+                         f"open('{own}', 'w').close(); os.rename('{own}', '{path}')",
+                         f"os.rename('{here}', '{here}.away')", f"os.rmdir('{here}')",
+                         f"os.chmod('{here}', 0o777)"):
+                done = python(scene, who, what)
+                assert refused(done, "Permission", "not permitted", "cross-device"), (who, what, done)
+        own.unlink(missing_ok=True)
+    assert {kind: owsdtest.segment(name, kind).stat().st_ino for kind in KINDS} == before
     good(scene, name)
 
 
 SQUATS = {
-    "a file for all": "fd = os.open({path!r}, os.O_CREAT | os.O_RDWR, 0o666); os.fchmod(fd, 0o666); "
-                      "os.write(fd, b'x' * 8192)",
+    "a file for all": "fd = os.open({path!r}, os.O_CREAT | os.O_RDWR, 0o666); os.fchmod(fd, 0o666)",
     "a link to a file of owsd's": "os.symlink({victim!r}, {path!r})",
+    "a hard link to what he may connect to": "os.link({control!r}, {path!r})",
     "a link to nowhere": f"os.symlink({str(NOWHERE)!r}, {{path!r}})",
-    "a pipe": "os.mkfifo({path!r}, 0o666); os.chmod({path!r}, 0o666)",
+    "a pipe": "os.mkfifo({path!r}, 0o666)",
     "a directory": "os.mkdir({path!r})",
     "a socket": "socket.socket(socket.AF_UNIX).bind({path!r})",
 }
 
 
-def test_what_a_stranger_puts_in_the_way_is_refused_and_never_used(scene):
+def test_nobody_else_makes_a_name_there_by_any_way(scene):
+    """Neither beside a running owsd nor for one that is not yet started; so nothing is in its way."""
+    daemon = daemon_of(scene)
+    control = owsdtest.segment(daemon.name, "control")
     victim = scene.file("victim", "precious\n")
     os.chown(victim, private.OWSD, private.OWSD)
-    for squat, how in SQUATS.items():
-        # what is opened; the rest is only replaced
-        others = ("command",) if "link to a" in squat else ()
-        for kind in ("lock", "image", *others):
-            name = scene.name()
-            path = segment(name, kind)
-            done = python(scene, "stranger", how.format(path=str(path), victim=str(victim)))
-            assert done.returncode == 0, done
-            inode = path.lstat().st_ino
-            daemon = daemon_of(scene, name=name, ready=False)
-            assert daemon.wait(20) == 1, (squat, kind, daemon.log())
-            remedy = f"owsctl remove {name}" if squat == "a file for all" else f"rm -r {path}"
-            owsdtest.logged(daemon, f" of user stranger ({private.USERS['stranger'][0]}) is in the "
-                                    f"way: as root, {remedy}\n")
-            assert path.lstat().st_ino == inode and victim.read_text() == "precious\n"
-            assert not NOWHERE.exists()
-            # nor does a reader believe in it
-            assert ctl(scene, "plc", name, "get", "room").returncode not in (0, 3), (squat, kind)
-            done = scene.owsctl(None, "remove", name)
-            assert done.returncode == 0 and faulty.leftovers(name) == [], (squat, kind, done)
-            assert victim.read_text() == "precious\n"
-            assert daemon_of(scene, name=name).stop() == 0, (squat, kind)
-            for rest in KINDS:
-                segment(name, rest).unlink()
+    future = scene.name()
+    for who in ("plc", "stranger"):
+        for squat, how in SQUATS.items():
+            for path in (owsdtest.segment(name, kind) for name in (daemon.name, future) for kind in NAMES):
+                done = python(scene, who, how.format(path=str(path), victim=str(victim),
+                                                     control=str(control)))
+                # a socket cannot be opened as a file
+                assert refused(done, "Permission", "not permitted", "exists", "in use", "No such device"), \
+                    (who, squat, path)
+    assert faulty.leftovers(future) == [] and victim.read_text() == "precious\n"
+    good(scene, daemon.name)
+    daemon.signal(signal.SIGHUP)
+    until(lambda: "2 of them go on" in daemon.log(), 20, daemon.log)
+    good(scene, daemon.name)
+    assert daemon_of(scene, name=future).stop() == 0
 
 
-def test_no_temporary_name_that_a_stranger_takes_keeps_owsd_from_anything(scene):
-    for squat, how in SQUATS.items():
-        name = scene.name()
-        squats = [segment(name, kind) for kind in ("image.new", "command.new")]
-        for path in squats:
-            done = python(scene, "stranger", how.format(path=str(path), victim="/etc/passwd"))
-            assert done.returncode == 0, done
-        before = [path.lstat() for path in squats]
-        daemon = daemon_of(scene, name=name)
-        good(scene, name)
-        daemon.signal(signal.SIGHUP)
-        until(lambda: "2 of them go on" in daemon.log(), 20, lambda: f"{squat}: {daemon.log()}")
-        good(scene, name)
-        os.truncate(segment(name, "command"), 0)
-        until(lambda: ctl(scene, "plc", name, "set", "relays", "6").returncode == 0, 20, squat)
-        until(lambda: ctl(scene, "plc", name, "get", "relays").stdout.strip() == "6", 20, squat)
-        assert [path.lstat() for path in squats] == before, squat
-        assert daemon.stop() == 0
-        assert faulty.leftovers(name) == ["command", "command.new", "image", "image.new", "lock"]
-        for path in squats:
-            shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
-        for rest in KINDS:
-            segment(name, rest).unlink()
+def refused_place(scene, who, why, environment):
+    """Neither owsd nor a consumer uses such a place, and both name the reason."""
+    config = scene.file("house.rio", faulty.house(scene))
+    os.chmod(scene.path, 0o777)
+    os.chmod(config, 0o644)
+    for words in (["owsd", "-n", "X", "-c", str(config)], ["owsctl", "-n", "X", "list"],
+                  ["owsctl", "instances"]):
+        done = scene._run([*at_home(who, **environment), programs() / words[0], *words[1:]], 30)
+        assert done.returncode == 1 and why in done.stderr, (words, done)
 
 
+def test_a_place_that_others_may_write_into_is_refused(scene):
+    for mode in (0o777, 0o1777, 0o775):
+        where = folder_of("plc", private.room() / f"open{mode:o}", mode)
+        refused_place(scene, "plc", f"others may write into {where} (mode {mode:04o})", {"OWS_DIR": where})
+        assert list(where.iterdir()) == []
+
+
+def test_a_place_that_another_has_made_first_is_refused(scene):
+    """In /dev/shm everybody can: then owsd has no place, and does not take his."""
+    uid, his = private.USERS["plc"][0], private.USERS["stranger"][0]
+    where = pathlib.Path(f"/dev/shm/owsd-{uid}")
+    whose = f"{where} belongs to user stranger ({his})"
+    own = folder_of("plc", private.room() / "plcs own", 0o755)
+    for how, why in ((f"os.mkdir('{where}')", whose), (f"os.mkdir('{where}', 0o700)", "Permission denied"),
+                     (f"os.symlink('{own}', '{where}')", f"{where} is a link"),
+                     (f"os.symlink('{NOWHERE}', '{where}')", f"{where} is a link"),
+                     (f"open('{where}', 'w').close()", f"{where} is no directory")):
+        done = python(scene, "stranger", how)
+        assert done.returncode == 0, done
+        refused_place(scene, "plc", why, {})
+        where.rmdir() if where.is_dir() and not where.is_symlink() else where.unlink()
+    assert list(own.iterdir()) == [] and not NOWHERE.exists()
+
+
+def test_a_runtime_directory_of_somebody_else_is_refused(scene):
+    his = folder_of("stranger", private.room() / "his", 0o755)
+    folder_of("stranger", his / "owsd", 0o755)
+    refused_place(scene, "plc", f"{his}/owsd belongs to user stranger", {"XDG_RUNTIME_DIR": his})
+    # the service has a place of its own, whatever this says
+    done = scene._run([*at_home("owsd", XDG_RUNTIME_DIR=his), programs() / "owsctl", "instances"], 30)
+    assert str(his) not in done.stdout + done.stderr, done
+
+
+# Whoever may set outputs does with his memory what he can; past libows, which would not
 HOSTILE = """
-import ctypes, random, time
-fd = os.open({path!r}, os.O_RDWR)
+import random, struct, time
+door = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+door.connect({path!r})
+door.send(struct.pack("<IHHII16s32s64x", 0x4853574f, 2, 0, 1, 0, b"", b"hostile"))
+_, (fd, bell, news), _, _ = socket.recv_fds(door, 64, 3)
 size = os.fstat(fd).st_size
 map = mmap.mmap(fd, size)
 random.seed({seed})
-end = time.monotonic() + 2
+end = time.monotonic() + 3
 while time.monotonic() < end:
     at = random.randrange(size)
     n = min(random.choice((1, 4, 64, 4096)), size - at)
     map[at:at + n] = random.randbytes(n)
+    map[128:132] = struct.pack("<I", 1)
+    os.write(bell, struct.pack("<Q", 1))
+for cut in (0, 100, size * 2):
+    try:
+        os.ftruncate(fd, cut)
+        raise SystemExit("cut")
+    except PermissionError:
+        pass
 fcntl.flock(fd, fcntl.LOCK_EX)
 fcntl.lockf(fd, fcntl.LOCK_EX)
-os.ftruncate(fd, 100)
-time.sleep(1)
-try:
-    os.posix_fallocate(fd, 0, 1 << 24)
-except OSError:
-    pass
+# its flags are its own: owsd's writes do not block
+fcntl.fcntl(news, fcntl.F_SETFL, 0)
+fcntl.fcntl(bell, fcntl.F_SETFL, 0)
 time.sleep(1)
 """
 
@@ -236,21 +272,25 @@ def test_whoever_may_set_outputs_can_do_no_more_than_that(scene):
     daemon = daemon_of(scene)
     good(scene, daemon.name)
     hostile = subprocess.Popen([*private.as_user("setter"), "/usr/bin/python3", "-c", "import os, mmap, "
-                                "fcntl\n" + HOSTILE.format(path=str(segment(daemon.name, "command")),
-                                                           seed=os.getpid())])
+                                "fcntl, socket\n" + HOSTILE.format(
+                                    path=str(owsdtest.segment(daemon.name, "control")), seed=os.getpid())])
     try:
         while hostile.poll() is None:
             done = ctl(scene, "reader", daemon.name, "get", "room")
             assert done.returncode in (0, 3), done
             assert done.returncode == 3 or done.stdout.strip() == "21.5", done
             assert daemon.running(), daemon.log()
-            time.sleep(0.05)
-        # it has held its locks, and filled /dev/shm, as long as it lived
+            # another giver is not kept waiting
+            done = ctl(scene, "plc", daemon.name, "set", "relays", "9")
+            assert done.returncode == 0, done
         assert hostile.returncode == 0
     finally:
         hostile.kill()
         hostile.wait()
+    # it may have switched room's reading off, as it has the right to
+    until(lambda: ctl(scene, "plc", daemon.name, "set", "room_ReadEnable", "1").returncode == 0, 20)
     good(scene, daemon.name)
+    until(lambda: ctl(scene, "plc", daemon.name, "set", "relays_WriteEnable", "1").returncode == 0, 20)
     until(lambda: ctl(scene, "plc", daemon.name, "set", "relays", "9").returncode == 0, 20, "sets work")
     until(lambda: ctl(scene, "plc", daemon.name, "get", "relays").stdout.strip() == "9", 20)
     assert daemon.stop() == 0
@@ -263,7 +303,7 @@ def test_the_socket_is_for_those_who_may_act(scene):
     about = door.stat()
     assert (oct(about.st_mode & 0o777), about.st_gid) == ("0o660", private.CONTROL)
     for who, may in (("plc", True), ("setter", True), ("reader", False), ("stranger", False)):
-        done = as_user(scene, who, place() / "owsctl", "-t", f"owserver:{door}", "read",
+        done = as_user(scene, who, programs() / "owsctl", "-t", f"owserver:{door}", "read",
                        "/28.A0B1C2000001/temperature9")
         assert (done.returncode == 0) == may, (who, done)
 
@@ -272,39 +312,74 @@ def test_another_users_owsd_of_that_name_is_refused_and_harms_nothing(scene):
     daemon = daemon_of(scene)
     good(scene, daemon.name)
     for who in ("stranger", "plc"):
-        done = as_user(scene, who, place() / "owsd", "-n", daemon.name, "-c", daemon.config)
+        done = as_user(scene, who, programs() / "owsd", "-n", daemon.name, "-c", daemon.config)
         assert done.returncode == 1 and "rm " not in done.stderr, done
         assert (f"instance {daemon.name} belongs to user owsd ({private.OWSD}): run owsd as that user, "
                 "or name another instance with -n") in done.stderr, done
     good(scene, daemon.name)
-    # one of his own he may have
-    own = scene.name()
-    mine = scene.start([*private.as_user("stranger"), place() / "owsd", "-n", own, "-c", daemon.config])
-    until(lambda: ctl(scene, "stranger", own, "get", "room").returncode == 0, 20, "it serves him")
-    assert ctl(scene, "plc", own, "get", "room").returncode not in (0, 3), "and nobody else believes it"
+    # in his own place he may have one of the same name, which nobody else sees
+    home = folder_of("stranger", private.room() / "home")
+    mine = scene.start([*at_home("stranger", XDG_RUNTIME_DIR=home), programs() / "owsd", "-n", daemon.name,
+                        "-c", daemon.config])
+    own = [*at_home("stranger", XDG_RUNTIME_DIR=home), programs() / "owsctl", "-n", daemon.name]
+    until(lambda: scene._run([*own, "get", "room"], 30).returncode == 0, 20, "it serves him")
+    assert scene._run([*own, "set", "relays", "3"], 30).returncode == 0
+    until(lambda: scene._run([*own, "get", "relays"], 30).stdout == "3\n", 20, "and is his")
+    assert ctl(scene, "reader", daemon.name, "get", "relays").stdout != "3\n"
     assert mine.stop() == 0
 
 
-def test_a_running_owsd_whose_lock_a_stranger_took_is_shown_and_not_removed(scene):
-    daemon = daemon_of(scene)
-    good(scene, daemon.name)
-    lock = segment(daemon.name, "lock")
-    daemon.freeze()
-    lock.unlink()
-    squat = SQUATS["a file for all"].format(path=str(lock))
-    assert python(scene, "stranger", squat).returncode == 0
-    for state in ("hangs", "running"):
-        until(lambda: f" {state} " in scene.owsctl(None, "instances").stdout, 10, state)
-        before = faulty.leftovers(daemon.name)
-        done = scene.owsctl(None, "remove", daemon.name)
-        assert done.returncode == 1 and f"is running (process {daemon.pid})" in done.stderr, done
-        assert faulty.leftovers(daemon.name) == before
-        assert "it runs without its lock" in scene.owsctl(None, "instances").stdout
-        daemon.thaw()
-    until(lambda: "cannot be made again" in daemon.log(), 10, "it is said")
-    assert "rm -" not in daemon.log()
-    assert daemon.stop() == 0
-    assert scene.owsctl(None, "remove", daemon.name).returncode == 0
+WATCH = """
+import sys, time
+import ows
+s = ows.Ows(sys.argv[1])
+while True:
+    if s.stale():
+        try:
+            s.reopen()
+        except OSError:
+            pass
+    print(s.place, s.get("room").good, flush=True)
+    time.sleep(0.05)
+"""
+
+
+def test_a_user_sees_the_nearest_owsd_of_a_name_that_lives(scene):
+    shutil.copy(owsdtest.SOURCE / "src/libows/ows.py", programs())
+    service = daemon_of(scene)
+    good(scene, service.name)
+    home = folder_of("plc", private.room() / "nearest")
+    as_plc = at_home("plc", XDG_RUNTIME_DIR=home, PYTHONPATH=programs())
+    command = [*as_plc, programs() / "owsd", "-n", service.name, "-c", service.config]
+    own = scene.start(command)
+
+    def served_by(daemon):
+        done = scene._run([*as_plc, programs() / "owsctl", "-n", service.name, "--json", "stats"], 30)
+        python3 = scene._run([*as_plc, "/usr/bin/python3", "-c",
+                              f"import ows; print(ows.Ows('{service.name}').place)"], 30)
+        where = owsdtest.place() if daemon is service else home / "owsd"
+        return done.returncode == 0 and python3.stdout == f"{where}\n" and \
+            json.loads(done.stdout)["daemon"]["pid"] == daemon.pid
+
+    until(lambda: served_by(own), 20, "his own is the nearest")
+    rows = scene._run([*as_plc, programs() / "owsctl", "instances"], 30).stdout
+    for daemon, where in ((own, home / "owsd"), (service, owsdtest.place())):
+        assert re.search(rf"^{service.name} +running +{daemon.pid} .* {where} ", rows, re.M), rows
+    watch = scene.start([*as_plc, "/usr/bin/python3", "-c", WATCH, service.name])
+    until(lambda: f"{home}/owsd True" in watch.log(), 20, "it looks at his own")
+    own.kill()
+    until(lambda: served_by(service), 20, "of a dead one and a living one the living one")
+    until(lambda: watch.log().endswith("False\n"), 20, "an open handle stays where it was")
+    own = scene.start(command)
+    until(lambda: served_by(own), 20, "his own again")
+    until(lambda: watch.log().endswith("True\n"), 20, "and follows its owsd")
+    assert str(owsdtest.place()) not in watch.log()
+    assert own.stop() == 0 and service.stop() == 0
+    done = scene._run([*as_plc, programs() / "owsctl", "remove", service.name], 30)
+    assert done.returncode == 0 and list((home / "owsd").iterdir()) == [], "he removes what is his"
+    assert "image" in faulty.leftovers(service.name)
+    done = scene._run([*as_plc, programs() / "owsctl", "remove", service.name], 30)
+    assert done.returncode == 1 and "no right to remove" in done.stderr, done
 
 
 def test_a_strangers_failed_start_leaves_nothing_that_stops_owsd(scene):
@@ -313,10 +388,11 @@ def test_a_strangers_failed_start_leaves_nothing_that_stops_owsd(scene):
     os.chmod(scene.path, 0o777)
     os.chmod(config, 0o644)
     with socket.create_server(("127.0.0.1", 0)) as taken:
-        done = as_user(scene, "stranger", place() / "owsd", "-n", name, "-c", config, "-l",
-                       str(taken.getsockname()[1]))
+        where = folder_of("stranger", private.room() / "runtime")
+        done = scene._run([*at_home("stranger", XDG_RUNTIME_DIR=where), programs() / "owsd", "-n", name,
+                           "-c", config, "-l", str(taken.getsockname()[1])], 30)
     assert done.returncode == 1 and "cannot listen" in done.stderr, done
-    assert faulty.leftovers(name) == []
+    assert faulty.leftovers(name) == [] and list((where / "owsd").iterdir()) == []
     assert daemon_of(scene, name=name).stop() == 0
 
 

@@ -286,19 +286,14 @@ def test_what_is_no_regular_file_is_not_waited_for(scene):
 
 def test_a_reload_that_has_to_wait_reads_the_file_once(scene):
     daemon, target = start(scene)
-    way = f"/dev/shm/owsd.{daemon.name}.command"
+    way = owsdtest.segment(daemon.name, "image")
     text = rio(target, ROOM, CELLAR, Nonsense=raw("1"))
 
-    def in_the_way():
-        try:
-            os.unlink(way)
-            os.mkdir(way)
-        except FileExistsError:  # owsd was quicker
-            return False
-        return True
-    until(in_the_way, 10, "a directory is there", step=0)
+    os.unlink(way)
+    os.mkdir(way)
     try:
-        until(lambda: "cannot be made again" in daemon.log(), 10)
+        daemon.signal(signal.SIGHUP)
+        until(lambda: "no program sees the values" in daemon.log(), 10)
         daemon.config.write_text(text)
         daemon.signal(signal.SIGHUP)
         time.sleep(0.5)

@@ -120,7 +120,7 @@ def shown(scene, *arguments, says=("ALL VALUES ARE SIMULATED",), row="living", *
 
 
 def nothing_in_memory(terminal):
-    assert not glob.glob(f"/dev/shm/*{terminal.name}*")
+    assert not glob.glob(f"{owsdtest.place()}/{terminal.name}*")
 
 
 def test_it_shows_values_and_ctrl_c_leaves_nothing_behind(scene):
@@ -243,26 +243,26 @@ def test_a_simulated_target_of_ones_own_is_scanned(scene):
 def test_an_instance_that_is_another_s_is_left_alone(scene):
     daemon = scene.owsd(owsdtest.SOURCE / "board/demo/house.rio", "-t",
                         f"sim:{owsdtest.SOURCE}/board/demo/house.sim")
-    near = f"/dev/shm/owsd.{daemon.name}.near.image"
+    near = str(owsdtest.segment(daemon.name, "near.image"))
     with open(near, "wb"):
         pass
     try:
-        before = glob.glob(f"/dev/shm/*{daemon.name}*")
+        before = glob.glob(f"{owsdtest.place()}/{daemon.name}*")
         terminal = Terminal(scene, name=daemon.name)
         try:
             terminal.shows(f"already served by process {daemon.pid}")
         finally:
             terminal.gone()
         assert os.waitstatus_to_exitcode(terminal.status) == 1
-        assert sorted(glob.glob(f"/dev/shm/*{daemon.name}*")) == sorted(before)
-        assert len(before) == 4 and "was removed" not in daemon.log(), before
+        assert sorted(glob.glob(f"{owsdtest.place()}/{daemon.name}*")) == sorted(before)
+        assert len(before) == 5 and "was removed" not in daemon.log(), before
     finally:
         os.unlink(near)
 
 
 def test_an_instance_with_a_longer_name_is_left_alone(scene):
     name = scene.name()
-    near = f"/dev/shm/owsd.{name}.near.image"
+    near = str(owsdtest.segment(name, "near.image"))
     with open(near, "wb"):
         pass
     try:
@@ -270,7 +270,7 @@ def test_an_instance_with_a_longer_name_is_left_alone(scene):
         terminal.shows("Ctrl-C ends it all")
         os.write(terminal.master, b"\x03")
         terminal.gone()
-        assert glob.glob(f"/dev/shm/*{name}*") == [near]
+        assert glob.glob(f"{owsdtest.place()}/{name}*") == [near]
     finally:
         os.path.exists(near) and os.unlink(near)
 

@@ -39,11 +39,6 @@ def live(scene, *prefix):
                       ("write", "/28.A0B1C2000001/temphigh", "60")):
             done = scene.owsctl(None, "-t", door, *words)
             assert done.returncode == 0, done
-    # a consumer takes the command segment away
-    command = f"/dev/shm/owsd.{daemon.name}.command"
-    inode = os.stat(command).st_ino
-    os.truncate(command, 100)
-    until(lambda: os.stat(command).st_ino != inode, 30, "it is made again")
     config.write_text(everything(scene, more=True))
     daemon.signal(signal.SIGHUP)
     until(lambda: scene.get(daemon, "hall") == "19.5", 30, "the reload is done")

@@ -39,7 +39,7 @@ def test_a_full_stderr_does_not_keep_owsd_from_ending(scene):
     reader, writer = full_pipe()
     name, process = start(scene, writer)
     try:
-        owsdtest.until(lambda: os.path.exists(f"/dev/shm/owsd.{name}.image"), 10, "image is made")
+        owsdtest.until(lambda: owsdtest.segment(name, "image").exists(), 10, "image is made")
         owsdtest.until(lambda: scene.owsctl(name, "get", "room").returncode == 3, 10, "it runs")
         time.sleep(0.5)  # its supervisor has had lines to write
         process.send_signal(signal.SIGTERM)
@@ -55,7 +55,7 @@ def test_lines_come_when_a_full_stderr_is_read_again(scene):
     reader, writer = full_pipe()
     name, process = start(scene, writer)
     try:
-        owsdtest.until(lambda: os.path.exists(f"/dev/shm/owsd.{name}.image"), 10, "image is made")
+        owsdtest.until(lambda: owsdtest.segment(name, "image").exists(), 10, "image is made")
         os.set_blocking(reader, False)
         text = b""
 

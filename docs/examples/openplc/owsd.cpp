@@ -8,11 +8,13 @@
 #include <ows.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <future>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -349,6 +351,8 @@ public:
 
 	void stop()
 	{
+		if (opening_.valid())
+			handle_ = opening_.get().handle;
 		if (!handle_)
 			return;
 		// OpenPLC has set all outputs to 0 but these
@@ -361,25 +365,49 @@ public:
 	}
 
 private:
+	struct Opened {
+		ows *handle;
+		int err;
+	};
+
+	static Opened open(const std::string &instance, ows_mode mode)
+	{
+		Opened opened = {nullptr, 0};
+
+		opened.err = ows_open(instance.c_str(), mode, &opened.handle);
+		return opened;
+	}
+
+	// ows_open() may wait 2 s for an owsd that hangs: the PLC's cycle does not
+	bool has_opened(int64_t now)
+	{
+		Opened opened;
+
+		if (!opening_.valid()) {
+			if (now < next_try_)
+				return false;
+			next_try_ = now + 1000000000;
+			opening_ = std::async(std::launch::async, open, map_.instance,
+			                      outputs_ ? OWS_CONTROL : OWS_READ);
+		}
+		if (opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+			return false;
+		opened = opening_.get();
+		handle_ = opened.handle;
+		if (opened.err && opened.err != told_)
+			say("instance " + map_.instance + ": " + std::strerror(-opened.err) +
+			    "; trying again");
+		told_ = opened.err;
+		return opened.err == 0;
+	}
+
 	void look_for(int64_t now)
 	{
-		int err;
-
 		if (stale_ && handle_ && ows_reopen(handle_) == 0)
 			find();
 		stale_ = false;
-		if (handle_ || now < next_try_)
+		if (handle_ || !has_opened(now))
 			return;
-		next_try_ = now + 1000000000;
-		err = ows_open(map_.instance.c_str(), outputs_ ? OWS_CONTROL : OWS_READ, &handle_);
-		if (err) {
-			handle_ = nullptr;
-			if (err != told_)
-				say("instance " + map_.instance + ": " + std::strerror(-err) + "; trying again");
-			told_ = err;
-			return;
-		}
-		told_ = 0;
 		say("instance " + map_.instance + " is there");
 		find();
 	}
@@ -439,6 +467,7 @@ private:
 
 	Map map_;
 	ows *handle_ = nullptr;
+	std::future<Opened> opening_;
 	int64_t next_try_ = 0;
 	int told_ = 0;
 	bool outputs_ = false, stale_ = false;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* An instance of owsd without owsd: makes and fills its segments. */
+/* An instance of owsd without owsd: makes and fills its image, and welcomes givers. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,9 +7,9 @@
 
 #include "unity.h"
 
-#include "src/shm/carry.h"
 #include "src/shm/futex.h"
 #include "src/signal/value.h"
+#include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 
 static const char *const targets[] = {"localhost:4304", "w1"};
@@ -19,7 +19,6 @@ void instance_make(struct instance *in, const char *name, uint32_t generation, i
                    const struct instance_signal *signals, uint32_t count)
 {
 	struct image_signal *image = calloc(count + 1, sizeof(*image));
-	struct command_signal *command = calloc(count + 1, sizeof(*command));
 	struct image_plan plan = {
 		.signals = image,
 		.signal_count = count,
@@ -34,17 +33,8 @@ void instance_make(struct instance *in, const char *name, uint32_t generation, i
 		.start_ns = start_ns,
 		.period_ns = INSTANCE_S / 10,
 	};
-	struct command_plan commands = {
-		.signals = command,
-		.signal_count = count,
-		.text_cap = INSTANCE_TEXT,
-		.generation = generation,
-		.start_id = 0x1000 + generation,
-		.pid = (int32_t)getpid(),
-	};
 
 	TEST_ASSERT_NOT_NULL(image);
-	TEST_ASSERT_NOT_NULL(command);
 	memset(in, 0, sizeof(*in));
 	snprintf(in->name, sizeof(in->name), "%.20s.%d", name, (int)getpid());
 	in->generation = generation;
@@ -63,28 +53,37 @@ void instance_make(struct instance *in, const char *name, uint32_t generation, i
 			.per_factor = i + 1,
 			.stale_after_ns = signals[i].stale_after_ns,
 		};
-		command[i] = (struct command_signal){
-			.name = signals[i].name,
-			.path = signals[i].path,
-			.type = signals[i].type,
-		};
 	}
-	TEST_ASSERT_EQUAL(
-		0, segment_create(in->name, SEGMENT_IMAGE, image_size(&plan), &in->image_memory));
+	TEST_ASSERT_EQUAL(0, segment_create(folder_place(), in->name, SEGMENT_IMAGE,
+	                                    image_size(&plan), &in->image_memory));
 	image_build(&plan, in->image_memory.base, &in->image);
-	TEST_ASSERT_EQUAL(0, segment_create(in->name, SEGMENT_COMMAND, commands_size(&commands),
-	                                    &in->command_memory));
-	TEST_ASSERT_EQUAL(0, commands_build(&commands, in->command_memory.base, &in->commands));
 	free(image);
-	free(command);
+}
+
+#define TYPES_MAX 256
+static const uint8_t *types_of(const struct instance *in)
+{
+	static uint8_t types[TYPES_MAX];
+
+	TEST_ASSERT_LESS_OR_EQUAL(TYPES_MAX, in->count);
+	for (uint32_t i = 0; i < in->count; i++)
+		types[i] = in->signals[i].type;
+	return types;
+}
+
+static void show_image(struct instance *in)
+{
+	image_state(&in->image, OWS_STATE_LIVE);
+	TEST_ASSERT_EQUAL(0, segment_show(in->name, &in->image_memory));
 }
 
 void instance_show(struct instance *in)
 {
-	image_state(&in->image, OWS_STATE_LIVE);
-	commands_state(&in->commands, OWS_STATE_LIVE);
-	TEST_ASSERT_EQUAL(0, segment_show(in->name, &in->command_memory));
-	TEST_ASSERT_EQUAL(0, segment_show(in->name, &in->image_memory));
+	in->door = malloc(sizeof(*in->door));
+	TEST_ASSERT_NOT_NULL(in->door);
+	door_open(in->door, in->name, in->generation, in->image.header->start_id, types_of(in),
+	          in->count, INSTANCE_TEXT);
+	show_image(in);
 }
 
 void instance_start(struct instance *in, const char *name, const struct instance_signal *signals,
@@ -97,36 +96,81 @@ void instance_start(struct instance *in, const char *name, const struct instance
 	instance_show(in);
 }
 
+/* The signal of that name before, else 0xffffffff. */
+static uint32_t row_before(const struct instance *old, const char *name)
+{
+	for (uint32_t i = 0; i < old->count; i++)
+		if (strcmp(old->signals[i].name, name) == 0)
+			return i;
+	return 0xffffffffu;
+}
+
 void instance_reload(struct instance *in, const struct instance_signal *signals, uint32_t count)
 {
 	struct instance old = *in;
 	char name[SEGMENT_NAME_MAX + 1];
+	uint32_t rows[TYPES_MAX];
 
 	memcpy(name, old.name, sizeof(name));
 	*strrchr(name, '.') = '\0';
 	instance_make(in, name, old.generation + 1, old.start_ns, signals, count);
 	instance_beat(in, ows_now(), 0);
-	commands_state(&old.commands, OWS_STATE_RETIRED);
-	TEST_ASSERT_GREATER_OR_EQUAL(
-		0, commands_carry(&in->commands, old.commands.base, old.commands.size, false));
-	instance_show(in);
+	for (uint32_t i = 0; i < count; i++)
+		rows[i] = row_before(&old, signals[i].name);
+	in->door = old.door;
+	show_image(in);
+	door_reload(in->door, in->generation, in->image.header->start_id, types_of(in), count,
+	            INSTANCE_TEXT, rows);
 	image_state(&old.image, OWS_STATE_RETIRED);
 	segment_wake(&old.image.header->news, 1000);
+	old.door = NULL;
 	instance_leave(&old);
+}
+
+void instance_kill(struct instance *in)
+{
+	if (in->door)
+		door_close(in->door);
+	free(in->door);
+	in->door = NULL;
 }
 
 void instance_leave(struct instance *in)
 {
-	commands_forget(&in->commands);
-	segment_close(&in->command_memory);
+	instance_kill(in);
 	segment_close(&in->image_memory);
 }
 
 void instance_end(struct instance *in)
 {
 	instance_leave(in);
-	segment_remove(in->name, SEGMENT_IMAGE);
-	segment_remove(in->name, SEGMENT_COMMAND);
+	segment_remove(folder_place(), in->name, SEGMENT_IMAGE);
+}
+
+struct giver_memory *instance_giver(struct instance *in, unsigned i)
+{
+	return &door_giver(in->door, i)->memory;
+}
+
+struct giver_command instance_command(struct instance *in, unsigned i, uint32_t record)
+{
+	struct giver_command command;
+
+	giver_load(instance_giver(in, i), record, &command);
+	return command;
+}
+
+struct ows_command_slot *instance_slot(struct instance *in, unsigned i, uint32_t record)
+{
+	struct giver_memory *memory = instance_giver(in, i);
+
+	return (struct ows_command_slot *)(void *)(memory->base + memory->layout->slot_off) +
+	       record;
+}
+
+unsigned instance_givers(struct instance *in)
+{
+	return door_count(in->door);
 }
 
 void instance_beat(struct instance *in, int64_t now_ns, uint32_t period)
@@ -158,10 +202,13 @@ static struct ows_sample good(int64_t measured_ns)
 void instance_put(struct instance *in, uint32_t record, int64_t value, int64_t measured_ns)
 {
 	struct ows_sample sample = good(measured_ns);
-	struct ows_attrs attrs = {.flags = OWS_ATTR_READ_ENABLE};
+	enum ows_type type = (enum ows_type)in->image.records[record].type;
+	struct ows_attrs attrs = {.flags = OWS_ATTR_READ_ENABLE,
+	                          .raw = value_of_double(value_number(type, value))};
 
 	sample.value = value;
 	image_publish(&in->image, record, &sample, &attrs, NULL);
+	image_change(&in->image, record);
 	image_news(&in->image);
 }
 
@@ -177,5 +224,6 @@ void instance_put_text(struct instance *in, uint32_t record, const char *text, i
 
 	sample.len = (uint32_t)strlen(text);
 	image_publish(&in->image, record, &sample, &attrs, text);
+	image_change(&in->image, record);
 	image_news(&in->image);
 }

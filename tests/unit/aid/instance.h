@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * An instance of owsd without owsd: makes both segments under a name of this process, and fills
- * them by the writer's functions as the engine does.
+ * An instance of owsd without owsd: makes the image under a name of this process and fills it by
+ * the writer's functions as the engine does, and welcomes givers (door.h).
  */
 #ifndef TESTS_UNIT_AID_INSTANCE_H
 #define TESTS_UNIT_AID_INSTANCE_H
 
 #include "src/libows/ows.h"
-#include "src/shm/commands.h"
 #include "src/shm/image.h"
 #include "src/shm/segment.h"
+#include "tests/unit/aid/door.h"
 
 #define INSTANCE_TEXT 64
 #define INSTANCE_S INT64_C(1000000000)
@@ -25,25 +25,35 @@ struct instance {
 	char name[SEGMENT_NAME_MAX + 1];
 	uint32_t generation;
 	int64_t start_ns;
-	struct segment image_memory, command_memory;
+	struct segment image_memory;
 	struct image image;
-	struct commands commands;
+	struct door *door; /* from instance_show() on */
 	const struct instance_signal *signals;
 	uint32_t count;
 };
 
-/* Make both segments, hidden: instance_show() puts them in place and makes them live. */
+/* Make the image, hidden: instance_show() puts it in place, makes it live, and opens the door. */
 void instance_make(struct instance *in, const char *name, uint32_t generation, int64_t start_ns,
                    const struct instance_signal *signals, uint32_t count);
 void instance_show(struct instance *in);
-/* Make and show both segments, at the present time, with a heart that beat just now. */
+/* Make and show the image, at the present time, with a heart that beat just now. */
 void instance_start(struct instance *in, const char *name, const struct instance_signal *signals,
                     uint32_t count);
-/* Retire both segments, make and show those of the next generation, and carry the commands over. */
+/* Retire the image, make and show that of the next generation, and hand out its memories. */
 void instance_reload(struct instance *in, const struct instance_signal *signals, uint32_t count);
-/* Free the memory; the names stay or are removed. */
+/* Hang up on all givers, as an owsd that is killed; the image stays. */
+void instance_kill(struct instance *in);
+/* Free the memory; the name of the image stays or is removed. */
 void instance_leave(struct instance *in);
 void instance_end(struct instance *in);
+
+/* The memory of giver i of those who ever came, and its command for a record as found. */
+struct giver_memory *instance_giver(struct instance *in, unsigned i);
+struct giver_command instance_command(struct instance *in, unsigned i, uint32_t record);
+/* Its slot itself, of which no look of the engine's side changes what the giver wrote. */
+struct ows_command_slot *instance_slot(struct instance *in, unsigned i, uint32_t record);
+/* How many givers ever came. */
+unsigned instance_givers(struct instance *in);
 
 void instance_beat(struct instance *in, int64_t now_ns, uint32_t period);
 /*

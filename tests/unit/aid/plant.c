@@ -7,6 +7,7 @@
 
 #include "src/config/load.h"
 #include "src/engine/counters.h"
+#include "src/engine/givers.h"
 #include "src/engine/table.h"
 #include "src/signal/value.h"
 #include "tests/unit/aid/plant.h"
@@ -185,7 +186,7 @@ static void make_memory(struct plant *p)
 	static const char *const targets[] = {"plant"};
 	struct config *c = p->config;
 	struct image_signal *rows = calloc(c->item_count, sizeof(*rows));
-	struct command_signal *names = calloc(c->item_count, sizeof(*names));
+	uint8_t *types = calloc(c->item_count, 1);
 	struct image_counter counters[64];
 	struct image_plan plan = {.signals = rows,
 	                          .signal_count = c->item_count,
@@ -198,35 +199,25 @@ static void make_memory(struct plant *p)
 	                          .pid = 1,
 	                          .start_ns = p->now,
 	                          .period_ns = c->period_ns};
-	struct command_plan command_plan = {.signals = names,
-	                                    .signal_count = c->item_count,
-	                                    .text_cap = TABLE_TEXT_CAP,
-	                                    .generation = 1,
-	                                    .start_id = 7,
-	                                    .pid = 1};
-	size_t image_room, command_room;
+	size_t image_room;
 
-	if (!rows || !names || plan.counter_count > 64)
+	if (!rows || !types || plan.counter_count > 64)
 		broken("no memory");
 	for (unsigned i = 0; i < c->item_count; i++) {
 		signal_table_image(&c->items[i], &rows[i]);
-		names[i] = (struct command_signal){c->items[i].name, c->items[i].path,
-		                                   (uint8_t)c->items[i].type};
+		types[i] = (uint8_t)c->items[i].type;
 	}
 	engine_counter_plan(1, counters);
 	image_room = (image_size(&plan) + 63) / 64 * 64;
-	command_room = (commands_size(&command_plan) + 63) / 64 * 64;
 	p->image_memory = aligned_alloc(64, image_room);
-	p->command_memory = aligned_alloc(64, command_room);
-	if (!p->image_memory || !p->command_memory)
+	if (!p->image_memory)
 		broken("no memory");
 	memset(p->image_memory, 0, image_room);
-	memset(p->command_memory, 0, command_room);
 	image_build(&plan, p->image_memory, &p->image);
-	if (commands_build(&command_plan, p->command_memory, &p->commands))
-		broken("no memory");
+	giving_layout(&p->layout, types, c->item_count);
+	giving_make(&p->giver, &p->layout, 1);
 	free(rows);
-	free(names);
+	free(types);
 }
 
 void plant_begin(struct plant *p, const char *scenario, const char *rio)
@@ -249,10 +240,12 @@ void plant_begin(struct plant *p, const char *scenario, const char *rio)
 	                              .ports = &p->port,
 	                              .port_count = 1,
 	                              .image = &p->image,
-	                              .commands = &p->commands,
 	                              .start_ns = p->now};
 	if (engine_create(&setup, &p->engine))
 		broken("no memory");
+	engine_giver_join(p->engine, 0,
+	                  &(struct engine_giver){.memory = p->giver.memory, .who.serial = 1},
+	                  p->now);
 	sim_net_start(p->net, p->now);
 	p->engine_ns = p->now;
 }
@@ -261,10 +254,10 @@ void plant_end(struct plant *p)
 {
 	bus_destroy(p->bus);
 	engine_destroy(p->engine);
-	commands_forget(&p->commands);
+	giving_free(&p->giver);
+	giver_layout_free(&p->layout);
 	config_free(p->config);
 	free(p->image_memory);
-	free(p->command_memory);
 	memset(p, 0, sizeof(*p));
 }
 
@@ -284,12 +277,7 @@ double plant_number(const struct plant *p, unsigned record)
 
 void plant_set(struct plant *p, unsigned record, int64_t value)
 {
-	struct ows_command_slot *slots = (void *)(p->commands.base + p->commands.slot_off);
-	uint32_t *dirty = (void *)(p->commands.base + p->commands.dirty_off);
-
-	slots[record].value = (uint64_t)value;
-	slots[record].stamp++;
-	dirty[record / 32] |= 1u << record % 32;
+	giving_set(&p->giver, record, value);
 	p->engine_ns = p->now;
 }
 

@@ -12,6 +12,7 @@
 #include "hal/sim/net.h"
 #include "src/config/config.h"
 #include "src/engine/engine.h"
+#include "tests/unit/aid/giving.h"
 
 #define PLANT_US INT64_C(1000)
 #define PLANT_MS INT64_C(1000000)
@@ -39,8 +40,9 @@ struct plant {
 	struct engine *engine;
 	struct engine_port port;
 	struct image image;
-	struct commands commands;
-	void *image_memory, *command_memory;
+	struct giver_layout layout;
+	struct giving giver; /* the program that commands */
+	void *image_memory;
 	int64_t engine_ns; /* when the engine wants to run */
 	uint64_t engine_steps;
 	struct plant_message message[PLANT_MESSAGES];

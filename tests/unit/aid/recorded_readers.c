@@ -4,10 +4,13 @@
  * values.
  */
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 
 #include "unity.h"
 
+#include "src/libows/handle.h"
+#include "src/shm/reader.h"
 #include "tests/unit/aid/recorded_readers.h"
 #include "tests/unit/aid/recording.h"
 
@@ -33,6 +36,7 @@ static void check_signal(struct ows *h, uint32_t record)
 {
 	const char *name = signals[record - 1].name;
 	bool never = record == NEVER_;
+	struct ows_sample sample;
 	struct ows_info info;
 	struct ows_value v;
 	char text[TEXT_CAP + 1];
@@ -47,7 +51,9 @@ static void check_signal(struct ows *h, uint32_t record)
 	TEST_ASSERT_EQUAL_INT64_MESSAGE(never ? 10 * S : record * S, v.age_ns, name);
 	TEST_ASSERT_EQUAL_MESSAGE(record == SHORT_ ? -EIO : 0, v.err, name);
 	TEST_ASSERT_EQUAL_MESSAGE(never ? 0 : 100 + record, v.count, name);
-	TEST_ASSERT_EQUAL_MESSAGE(never ? 0 : 200 + record, v.applied, name);
+	TEST_ASSERT_EQUAL_MESSAGE(0, v.applied, name); /* this handle commanded nothing */
+	TEST_ASSERT_TRUE(reader_sample(map_record(&h->map, record), &sample));
+	TEST_ASSERT_EQUAL_MESSAGE(never ? 0 : 200 + record, sample.confirmed, name);
 	TEST_ASSERT_EQUAL_MESSAGE(never ? 0 : record % 4, v.detail, name);
 	TEST_ASSERT_EQUAL_MESSAGE(never ? 0 : record % 2, v.target, name);
 	TEST_ASSERT_EQUAL(0, ows_info(h, (int)record - 1, &info));
@@ -58,6 +64,73 @@ static void check_signal(struct ows *h, uint32_t record)
 	TEST_ASSERT_EQUAL((signals[record - 1].flags & OWS_RECORD_OUTPUT) != 0, info.output);
 	TEST_ASSERT_EQUAL((signals[record - 1].flags & OWS_RECORD_FRESH) != 0, info.fresh);
 	TEST_ASSERT_EQUAL((signals[record - 1].flags & OWS_RECORD_ALARM) != 0, info.alarm);
+}
+
+static void check_meta(struct ows *h)
+{
+	struct ows_info info;
+
+	TEST_ASSERT_EQUAL(0, ows_info(h, DOUBLE_ - 1, &info));
+	TEST_ASSERT_EQUAL_STRING("\xc2\xb0"
+	                         "C",
+	                         info.unit);
+	TEST_ASSERT_EQUAL_STRING("cold room 3", info.description);
+	TEST_ASSERT_EQUAL_STRING("DS18B20", info.family);
+	TEST_ASSERT_EQUAL_STRING("28.000000000001", info.device);
+	TEST_ASSERT_EQUAL_STRING("2026-11-22", info.calibrated);
+	TEST_ASSERT_EQUAL_STRING("0:0 100:99.5", info.points);
+	TEST_ASSERT_EQUAL(2, info.decimals);
+	TEST_ASSERT_EQUAL_DOUBLE(1.25, info.scale);
+	TEST_ASSERT_EQUAL_DOUBLE(-0.5, info.offset);
+	TEST_ASSERT_EQUAL_DOUBLE(-40, info.min);
+	TEST_ASSERT_EQUAL_DOUBLE(60, info.max);
+	TEST_ASSERT_EQUAL_DOUBLE(30, info.limit_hh);
+	TEST_ASSERT_EQUAL_DOUBLE(20, info.limit_h);
+	TEST_ASSERT_TRUE(isnan(info.limit_l));
+	TEST_ASSERT_EQUAL_DOUBLE(-30, info.limit_ll);
+	TEST_ASSERT_EQUAL_DOUBLE(10, info.filter_s);
+	TEST_ASSERT_EQUAL_DOUBLE(0.25, info.deadband);
+	TEST_ASSERT_EQUAL(0, ows_info(h, BYTE_ - 1, &info));
+	TEST_ASSERT_EQUAL_STRING("", info.unit);
+	TEST_ASSERT_EQUAL(-1, info.decimals);
+	TEST_ASSERT_EQUAL_DOUBLE(1, info.scale);
+	TEST_ASSERT_TRUE(isnan(info.max) && isnan(info.limit_hh));
+}
+
+/* By the layout alone, as a reader in another language does. */
+static void check_entries(struct ows *h)
+{
+	const struct ows_map *map = &h->map;
+	const struct ows_change_entry *change;
+	struct ows_giver_entry giver;
+	struct ows_origin_entry origin;
+	struct ows_shelf_entry shelf;
+	struct ows_journal_entry command;
+
+	TEST_ASSERT_EQUAL(OWS_GIVERS, map_count(map, OWS_AREA_GIVERS));
+	TEST_ASSERT_TRUE(reader_entry(map_entry(map, OWS_AREA_GIVERS, 1), &giver, sizeof(giver)));
+	TEST_ASSERT_EQUAL(777, giver.who.pid);
+	TEST_ASSERT_EQUAL(12, giver.commands);
+	TEST_ASSERT_EQUAL_HEX32(ows_check(&giver.flags, 28), giver.check);
+	TEST_ASSERT_TRUE(
+		reader_entry(map_entry(map, OWS_AREA_ORIGINS, BYTE_), &origin, sizeof(origin)));
+	TEST_ASSERT_EQUAL(OWS_REASON_SET, origin.reason);
+	TEST_ASSERT_EQUAL_STRING("hmi", origin.who.name);
+	TEST_ASSERT_EQUAL_HEX32(ows_check(&origin.reason, 24), origin.check);
+	TEST_ASSERT_TRUE(reader_entry(map_entry(map, OWS_AREA_SHELVES, 0), &shelf, sizeof(shelf)));
+	TEST_ASSERT_EQUAL(DOUBLE_, shelf.record);
+	TEST_ASSERT_EQUAL_STRING("sensor is being moved", shelf.why);
+	TEST_ASSERT_EQUAL_HEX32(ows_check(&shelf.record, 44), shelf.check);
+	TEST_ASSERT_EQUAL(1, map->image->command_head);
+	TEST_ASSERT_TRUE(
+		reader_entry(map_entry(map, OWS_AREA_COMMANDS, 0), &command, sizeof(command)));
+	TEST_ASSERT_EQUAL_INT64(255, command.after);
+	TEST_ASSERT_EQUAL_STRING("Jana", command.who.person);
+	TEST_ASSERT_EQUAL_HEX32(ows_check(&command.record, 48), command.check);
+	TEST_ASSERT_EQUAL(2, map->image->change_head);
+	change = map_entry(map, OWS_AREA_CHANGES, 1);
+	TEST_ASSERT_EQUAL(1, change->number);
+	TEST_ASSERT_EQUAL(DOUBLE_, change->record);
 }
 
 static double attribute(struct ows *h, const char *name)
@@ -95,7 +168,7 @@ static void check_alarms(struct ows *h)
 	TEST_ASSERT_EQUAL(0, ows_alarm(h, 0, &alarm));
 	TEST_ASSERT_EQUAL(NEVER_ - 1, alarm.signal);
 	TEST_ASSERT_EQUAL_INT64(1001 * S, alarm.occurred_ns);
-	TEST_ASSERT_EQUAL_STRING("1,0,0,1", alarm.latch);
+	TEST_ASSERT_EQUAL_STRING("1,0,0,1", alarm.text);
 	TEST_ASSERT_EQUAL(OWS_ALARM_DEVICE, alarm.kind);
 	TEST_ASSERT_EQUAL(OWS_ALARM_RAISED, alarm.event);
 	TEST_ASSERT_TRUE(alarm.has_before && alarm.has_after);
@@ -109,6 +182,25 @@ static void check_alarms(struct ows *h)
 	TEST_ASSERT_TRUE(state.limits && !state.stands);
 	TEST_ASSERT_EQUAL(OWS_LIMIT_RETURNED, state.limit_state);
 	TEST_ASSERT_EQUAL(OWS_ALARM_HH, state.limit_kind);
+	TEST_ASSERT_EQUAL_INT64(2003 * S, state.until_ns);
+	TEST_ASSERT_EQUAL_STRING("sensor is being moved", state.why);
+	TEST_ASSERT_EQUAL_STRING("Jana", state.who.person);
+}
+
+static void check_commands(struct ows *h)
+{
+	struct ows_commanded command;
+
+	TEST_ASSERT_EQUAL(1, ows_command_count(h));
+	TEST_ASSERT_EQUAL(0, ows_command_entry(h, 0, &command));
+	TEST_ASSERT_EQUAL(BYTE_ - 1, command.signal);
+	TEST_ASSERT_EQUAL_INT64(255, command.integer);
+	TEST_ASSERT_EQUAL_INT64(1002 * S, command.taken_ns);
+	TEST_ASSERT_EQUAL(OWS_REASON_SET, command.reason);
+	TEST_ASSERT_EQUAL(4, command.more);
+	TEST_ASSERT_EQUAL(1000, command.who.uid);
+	TEST_ASSERT_EQUAL_STRING("hmi", command.who.name);
+	TEST_ASSERT_EQUAL(-ENOENT, ows_command_entry(h, 1, &command));
 }
 
 static void check_targets(struct ows *h)
@@ -139,6 +231,9 @@ void check_all(struct ows *h)
 		check_signal(h, record);
 	check_attributes(h);
 	check_alarms(h);
+	check_commands(h);
+	check_meta(h);
+	check_entries(h);
 	check_targets(h);
 }
 

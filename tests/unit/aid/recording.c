@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Makes the segments of a recording, and reads those that an earlier release made. */
+/* Makes the image of a recording, and reads one that an earlier owsd made. */
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,11 +10,33 @@
 #include "unity.h"
 
 #include "src/libows/ows.h"
+#include "src/shm/entries.h"
 #include "src/signal/value.h"
+#include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/recording.h"
 
-#define RECORDING "tests/unit/data/segments-0.1.0."
+#define DATA "tests/unit/data/"
 
+static const struct image_meta room = {
+	.unit = "\xc2\xb0"
+		"C",
+	.description = "cold room 3",
+	.family = "DS18B20",
+	.device = "28.000000000001",
+	.calibrated = "2026-11-22",
+	.points = "0:0 100:99.5",
+	.decimals = 2,
+	.scale = 1.25,
+	.offset = -0.5,
+	.min = -40,
+	.max = 60,
+	.limit_hh = 30,
+	.limit_h = 20,
+	.limit_l = NAN,
+	.limit_ll = -30,
+	.filter_s = 10,
+	.deadband = 0.25,
+};
 const struct image_signal signals[COUNT] = {
 	{"bool", "/29.000000000001/PIO.0", OWS_BOOL, OWS_RECORD_OUTPUT, 0, 1, 11, 0, true, true, 1,
          0},
@@ -25,7 +48,7 @@ const struct image_signal signals[COUNT] = {
 	{"dword", "/1D.000000000001/counters.A", OWS_DWORD, 0, 0, 6, 16, 0},
 	{"float", "/26.000000000001/humidity", OWS_FLOAT, 0, 0, 7, 17, 0},
 	{"room.temperature", "/28.000000000001/temperature", OWS_DOUBLE, 0, 0, 4294967295u, 18,
-         20 * S},
+         20 * S, .starts_last = true, .meta = &room},
 	{"large", "/null", OWS_LARGE, OWS_RECORD_OUTPUT, 0, 9, 19, 0},
 	{"label", "/23.000000000001/memory", OWS_STRING, OWS_RECORD_OUTPUT, TEXT_CAP, 10, 20, 0},
 	{"empty", "/23.000000000002/memory", OWS_STRING, 0, TEXT_CAP, 11, 21, 0},
@@ -36,9 +59,8 @@ static const uint32_t groups[] = {0, 0};
 static const struct image_counter counters[] = {{"alarms", UINT32_MAX}, {"crc_errors", 1}};
 
 char instance[40];
-_Alignas(64) char image_memory[SIZE_MAX_], command_memory[SIZE_MAX_];
+_Alignas(64) char image_memory[SIZE_MAX_];
 struct image image;
-struct commands commands;
 
 static struct image_plan image_plan(void)
 {
@@ -73,7 +95,7 @@ static void put(uint32_t record, int64_t value, uint8_t quality, const char *tex
 		.target = (uint8_t)(record % 2),
 		.flags = record == BYTE_ ? OWS_SAMPLE_PENDING : 0,
 		.count = 100 + record,
-		.applied = 200 + record,
+		.confirmed = 200 + record,
 		.len = text ? (uint32_t)strlen(text) : 0,
 	};
 	struct ows_attrs attrs = {
@@ -81,6 +103,7 @@ static void put(uint32_t record, int64_t value, uint8_t quality, const char *tex
 		.update_ns = record * S / 4,
 		.age_max_ns = record * 100 * S,
 		.commanded = value,
+		.raw = value + 1,
 		.per_base = 1000 - record,
 		.per_max = 3,
 		.pend_base = 990,
@@ -93,6 +116,7 @@ static void put(uint32_t record, int64_t value, uint8_t quality, const char *tex
 	                 (record == NEVER_ ? OWS_ATTR_ALARM_STANDS : 0),
 		.limit_state = record == DOUBLE_ ? OWS_LIMIT_RETURNED : 0,
 		.limit_condition = record == DOUBLE_ ? OWS_ALARM_HH : 0,
+		.shelved = record == DOUBLE_,
 	};
 
 	image_publish(&image, record, &sample, &attrs, text);
@@ -115,28 +139,70 @@ static void put_all(void)
 
 static void put_alarms(void)
 {
-	struct ows_alarm_entry device = {
+	struct ows_journal_entry device = {
 		.record = NEVER_,
 		.occurred_ns = 1001 * S,
 		.before = 0,
 		.kind = OWS_ALARM_DEVICE,
 		.event = OWS_ALARM_RAISED,
 		.quality = OWS_Q_GOOD,
-		.flags = OWS_ALARM_BEFORE,
-		.latch = "1,0,0,1",
+		.flags = OWS_JOURNAL_BEFORE,
+		.text = "1,0,0,1",
 	};
-	struct ows_alarm_entry limit = {
+	struct ows_journal_entry limit = {
 		.record = DOUBLE_,
 		.occurred_ns = 1002 * S,
 		.before = value_of_double(30.5),
 		.kind = OWS_ALARM_HH,
 		.event = OWS_ALARM_ACKNOWLEDGED,
 		.quality = OWS_Q_GOOD,
-		.flags = OWS_ALARM_BEFORE,
+		.flags = OWS_JOURNAL_BEFORE,
 	};
 
 	image_alarm_after(&image, image_alarm(&image, &device), 1);
 	image_alarm(&image, &limit);
+}
+
+/* What a giver leaves: itself, a command of its own and its origin, and an alarm it shelved. */
+static void put_giver(void)
+{
+	const struct ows_who who = {
+		.serial = 3, .uid = 1000, .pid = 777, .name = "hmi", .person = "Jana"};
+	struct ows_giver_entry giver = {
+		.flags = OWS_GIVER_CONNECTED | OWS_GIVER_MAY_SET,
+		.joined_ns = 1001 * S,
+		.who = who,
+		.period_ms = 500,
+		.commands = 12,
+		.refused = 1,
+	};
+	struct ows_origin_entry origin = {
+		.reason = OWS_REASON_SET, .taken_ns = 1002 * S, .who = who};
+	struct ows_journal_entry command = {
+		.record = BYTE_,
+		.occurred_ns = 1002 * S,
+		.before = 254,
+		.after = 255,
+		.kind = OWS_REASON_SET,
+		.quality = OWS_Q_GOOD,
+		.flags = OWS_JOURNAL_BEFORE | OWS_JOURNAL_AFTER,
+		.more = 4,
+		.who = who,
+	};
+	struct ows_shelf_entry shelf = {
+		.record = DOUBLE_,
+		.since_ns = 1003 * S,
+		.until_ns = 2003 * S,
+		.who = who,
+		.why = "sensor is being moved",
+	};
+
+	image_giver(&image, 1, &giver);
+	image_origin(&image, BYTE_, &origin);
+	image_command(&image, &command);
+	image_shelf(&image, 0, &shelf);
+	image_change(&image, BYTE_);
+	image_change(&image, DOUBLE_);
 }
 
 void make_image(void)
@@ -154,6 +220,7 @@ void make_image(void)
 	}
 	put(DOUBLE_, value_of_double(-21.0625), OWS_Q_GOOD, NULL);
 	put_alarms();
+	put_giver();
 	image_target(&image, 0, 2, 4);
 	image_target(&image, 1, 1, 5);
 	image_moves(&image, 1, 6);
@@ -162,42 +229,14 @@ void make_image(void)
 	image_state(&image, OWS_STATE_LIVE);
 }
 
-void make_commands(void)
-{
-	struct command_signal command[COUNT];
-	struct command_plan plan = {
-		.signals = command,
-		.signal_count = COUNT,
-		.text_cap = TEXT_CAP,
-		.generation = 7,
-		.start_id = 0x12345679,
-		.pid = 4321,
-	};
-
-	for (uint32_t i = 0; i < COUNT; i++)
-		command[i] = (struct command_signal){signals[i].name, signals[i].path,
-		                                     signals[i].type};
-	TEST_ASSERT_LESS_THAN(sizeof(command_memory), commands_size(&plan));
-	memset(command_memory, 0, sizeof(command_memory));
-	commands_forget(&commands);
-	TEST_ASSERT_EQUAL(0, commands_build(&plan, command_memory, &commands));
-	commands_put(&commands, BYTE_, 254, NULL, 0);
-	commands_stamp(&commands, BYTE_, 202);
-	commands_put(&commands, LARGE_, INT64_MIN + 1, NULL, 0);
-	commands_stamp(&commands, LARGE_, 209);
-	commands_put(&commands, STRING_, 0, "north", 5);
-	commands_stamp(&commands, STRING_, 210);
-	commands_state(&commands, OWS_STATE_LIVE);
-}
-
 /* Write the size, then with their offsets the rows of 32 bytes that are not all zero. */
-static void write_recording(const char *kind, const char *memory, uint32_t size)
+static void write_recording(const char *name, const char *memory, uint32_t size)
 {
 	static const char zero[32];
 	char path[96];
 	FILE *file;
 
-	snprintf(path, sizeof(path), RECORDING "%s", kind);
+	snprintf(path, sizeof(path), DATA "%s", name);
 	file = fopen(path, "w");
 	TEST_ASSERT_NOT_NULL(file);
 	fprintf(file, "size %x\n", size);
@@ -215,18 +254,16 @@ static void write_recording(const char *kind, const char *memory, uint32_t size)
 void record(void)
 {
 	make_image();
-	make_commands();
-	write_recording("image", image_memory, image.header->size);
-	write_recording("command", command_memory, commands.size);
+	write_recording(RECORDED, image_memory, image.header->size);
 }
 
-uint32_t read_recording(const char *kind, char *memory)
+uint32_t read_recording(const char *name, char *memory)
 {
 	char path[96], line[160];
 	uint32_t size;
 	FILE *file;
 
-	snprintf(path, sizeof(path), RECORDING "%s", kind);
+	snprintf(path, sizeof(path), DATA "%s", name);
 	file = fopen(path, "r");
 	TEST_ASSERT_NOT_NULL_MESSAGE(file, path);
 	TEST_ASSERT_NOT_NULL(fgets(line, sizeof(line), file));
@@ -246,17 +283,9 @@ uint32_t read_recording(const char *kind, char *memory)
 	return size;
 }
 
-static const char *file_of(const char *kind)
-{
-	static char path[96];
-
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.%s", instance, kind);
-	return path;
-}
-
 void show(const char *kind, const char *memory, uint32_t size)
 {
-	FILE *file = fopen(file_of(kind), "w");
+	FILE *file = fopen(folder_file(instance, kind), "w");
 
 	TEST_ASSERT_NOT_NULL(file);
 	TEST_ASSERT_EQUAL(size, fwrite(memory, 1, size, file));
@@ -266,13 +295,11 @@ void show(const char *kind, const char *memory, uint32_t size)
 void recording_begin(void)
 {
 	snprintf(instance, sizeof(instance), "recorded.%ld", (long)getpid());
-	show("image", image_memory, read_recording("image", image_memory));
-	show("command", command_memory, read_recording("command", command_memory));
+	show("image", image_memory, read_recording(RECORDED, image_memory));
 }
 
 void recording_end(void)
 {
-	unlink(file_of("image"));
-	unlink(file_of("command"));
-	commands_forget(&commands);
+	unlink(folder_file(instance, "image"));
+	unlink(folder_file(instance, "command"));
 }

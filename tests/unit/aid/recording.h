@@ -1,20 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The segments of a few signals that an earlier release made, kept in tests/unit/data, and the same
- * ones made by the present writer. Each field of a record is a function of the record's number, so
- * that all differ.
+ * The image of a few signals that an earlier owsd of this major version made, kept in
+ * tests/unit/data, and the same one made by the present writer. Each field of a record is a
+ * function of the record's number, so that all differ.
  */
 #ifndef TESTS_UNIT_AID_RECORDING_H
 #define TESTS_UNIT_AID_RECORDING_H
 
-#include "src/shm/commands.h"
 #include "src/shm/image.h"
 
 #define S INT64_C(1000000000)
 #define START_NS (1000 * S)
 #define NOW_NS (1010 * S)
 #define TEXT_CAP 64
-#define SIZE_MAX_ 65536
+#define SIZE_MAX_ 262144
+/* The files in tests/unit/data: of this major version, and of the one before. */
+#define RECORDED "image-2.0"
+#define RECORDED_BEFORE "segments-0.1.0."
 #define LONG_TEXT \
 	"K\xc3\xbchlraum 3, Verdampfer \xc2\xb0" \
 	"C: text of sixty-four bytes, all used!"
@@ -36,23 +38,21 @@ enum {
 #define COUNT NEVER_
 
 extern const struct image_signal signals[COUNT];
-/* The name under which both segments are shown. */
+/* The name under which the image is shown. */
 extern char instance[40];
-extern char image_memory[SIZE_MAX_], command_memory[SIZE_MAX_];
+extern char image_memory[SIZE_MAX_];
 extern struct image image;
-extern struct commands commands;
 
-/* setUp() and tearDown(): load both recorded segments into memory, and show them. */
+/* setUp() and tearDown(): load the recorded image into memory, and show it. */
 void recording_begin(void);
 void recording_end(void);
 
-/* Load "image" or "command". Returns the size. */
-uint32_t read_recording(const char *kind, char *memory);
+/* Load a file of tests/unit/data. Returns the size. */
+uint32_t read_recording(const char *file, char *memory);
 void show(const char *kind, const char *memory, uint32_t size);
 /* Make the image by the present writer, in memory. */
 void make_image(void);
-void make_commands(void);
-/* Write both files of the recording again. */
+/* Write the recording again. */
 void record(void);
 
 #endif

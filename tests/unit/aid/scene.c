@@ -7,7 +7,7 @@
 
 #include "src/engine/adopt.h"
 #include "src/engine/counters.h"
-#include "src/shm/carry.h"
+#include "src/shm/shelves.h"
 #include "tests/unit/aid/scene_private.h"
 
 static struct config_item *add_item(struct scene *s, const char *name, const char *path,
@@ -57,7 +57,7 @@ struct scene_bus *scene_bus(struct scene *s, const char *name, unsigned wire)
 
 void scene_init(struct scene *s)
 {
-	*s = (struct scene){.now_ns = 1000 * SCENE_S};
+	*s = (struct scene){.now_ns = 1000 * SCENE_S, .uid = 1000};
 	s->config = (struct config){
 		.file = "scene.rio",
 		.targets = s->targets,
@@ -71,12 +71,12 @@ void scene_init(struct scene *s)
 	scene_bus(s, "scene", 0);
 }
 
-static void make_memory(struct scene *s, const struct config *config, struct image *image,
-                        struct commands *commands)
+static void make_memory(struct scene *s, const struct config *config, struct image *image)
 {
 	static struct image_signal signals[SCENE_ITEMS];
-	static struct command_signal names[SCENE_ITEMS];
+	static struct force_signal names[SCENE_ITEMS];
 	static struct image_counter counters[256];
+	uint8_t types[SCENE_ITEMS];
 	const char *targets[SCENE_BUSES];
 	struct image_plan plan = {
 		.signals = signals,
@@ -91,6 +91,8 @@ static void make_memory(struct scene *s, const struct config *config, struct ima
 		.start_ns = s->now_ns,
 		.period_ns = config->period_ns,
 	};
+	const struct force_plan force = {
+		.signals = names, .signal_count = config->item_count, .text_cap = 1024};
 	size_t size;
 
 	for (unsigned i = 0; i < config->target_count; i++)
@@ -106,22 +108,41 @@ static void make_memory(struct scene *s, const struct config *config, struct ima
 			.text_cap = item->type == OWS_STRING ? 1024 : 0,
 			.per_factor = item->per_factor,
 		};
-		names[i] = (struct command_signal){item->name, item->path, (uint8_t)item->type};
+		names[i] = (struct force_signal){item->name, item->path, (uint8_t)item->type};
+		types[i] = (uint8_t)item->type;
 	}
 	size = image_size(&plan);
 	s->image_memory = aligned_alloc(64, (size + 63) / 64 * 64);
 	memset(s->image_memory, 0, size);
 	image_build(&plan, s->image_memory, image);
-	s->command_plan = (struct command_plan){.signals = names,
-	                                        .signal_count = config->item_count,
-	                                        .text_cap = 1024,
-	                                        .generation = 1,
-	                                        .start_id = 7,
-	                                        .pid = 1};
-	size = commands_size(&s->command_plan);
-	s->command_memory = aligned_alloc(64, (size + 63) / 64 * 64);
-	memset(s->command_memory, 0, size);
-	TEST_ASSERT_EQUAL_INT(0, commands_build(&s->command_plan, s->command_memory, commands));
+	s->force_size = force_size(&force);
+	s->force_memory = calloc(1, s->force_size);
+	s->force = malloc(sizeof(*s->force));
+	force_build(&force, s->force_memory, s->force);
+	s->layout = malloc(sizeof(*s->layout));
+	giving_layout(s->layout, types, config->item_count);
+}
+
+/* What belongs to an engine that was replaced. */
+static struct scene_memory {
+	void *image, *force_memory;
+	size_t force_size;
+	struct force *force;
+	struct giver_layout *layout;
+} take_memory(const struct scene *s)
+{
+	return (struct scene_memory){s->image_memory, s->force_memory, s->force_size, s->force,
+	                             s->layout};
+}
+
+static void free_memory(struct scene_memory *m)
+{
+	free(m->image);
+	free(m->force_memory);
+	free(m->force);
+	if (m->layout)
+		giver_layout_free(m->layout);
+	free(m->layout);
 }
 
 static struct scene_bus *bus_named(struct scene *s, const char *name)
@@ -135,24 +156,26 @@ static struct scene_bus *bus_named(struct scene *s, const char *name)
 
 static struct engine *make_engine(struct scene *s, const struct config *config,
                                   struct engine_port *ports, struct image *image,
-                                  struct commands *commands, const struct commands *left)
+                                  const struct force_left *left)
 {
 	struct engine_setup setup = {
 		.config = config,
 		.ports = ports,
 		.port_count = config->target_count,
 		.image = image,
-		.commands = commands,
+		.left = left,
+		.last = scene_disk(s),
 		.log = s->log,
 		.guests = s->guests,
 		.start_ns = s->now_ns,
 	};
+	const struct image before = s->image;
 	struct engine *engine;
 
-	make_memory(s, config, image, commands);
+	make_memory(s, config, image);
+	setup.force = s->force;
 	if (left)
-		TEST_ASSERT_GREATER_OR_EQUAL_INT(
-			0, commands_carry(commands, left->base, left->size, true));
+		shelves_carry(image, before.base, before.header->size);
 	for (unsigned i = 0; i < config->target_count; i++) {
 		struct scene_bus *bus = bus_named(s, config->targets[i].text);
 
@@ -180,22 +203,35 @@ void scene_start(struct scene *s)
 			bus->when_ns = s->now_ns + bus->turn_ns;
 		}
 	}
-	s->engine = make_engine(s, &s->config, s->ports, &s->image, &s->commands, NULL);
+	s->engine = make_engine(s, &s->config, s->ports, &s->image, NULL);
+	scene_join(s, 0, 1);
+}
+
+static void start_again(struct scene *s, bool machine)
+{
+	struct scene_memory before = take_memory(s);
+	struct force_left left;
+
+	engine_destroy(s->engine);
+	for (unsigned i = 0; i < SCENE_GIVERS; i++)
+		giving_free(&s->givers[i]);
+	for (unsigned i = 0; i < s->bus_count; i++)
+		s->bus[i].pending_count = 0;
+	TEST_ASSERT_EQUAL_INT(0, force_open(before.force_memory, before.force_size, 0, &left));
+	s->engine = make_engine(s, &s->config, s->ports, &s->image, machine ? NULL : &left);
+	force_close(&left);
+	free_memory(&before);
+	scene_clear_trace(s);
 }
 
 void scene_restart(struct scene *s)
 {
-	void *image_memory = s->image_memory, *command_memory = s->command_memory;
-	struct commands left = s->commands;
+	start_again(s, false);
+}
 
-	engine_destroy(s->engine);
-	for (unsigned i = 0; i < s->bus_count; i++)
-		s->bus[i].pending_count = 0;
-	s->engine = make_engine(s, &s->config, s->ports, &s->image, &s->commands, &left);
-	commands_forget(&left);
-	free(image_memory);
-	free(command_memory);
-	scene_clear_trace(s);
+void scene_reboot(struct scene *s)
+{
+	start_again(s, true);
 }
 
 static bool stays(const struct config *config, const struct scene_bus *bus)
@@ -206,13 +242,26 @@ static bool stays(const struct config *config, const struct scene_bus *bus)
 	return false;
 }
 
+/* Each giver that is connected gets a memory of the new engine. */
+static void join_anew(struct scene *s, struct giving *before)
+{
+	for (unsigned i = 0; i < SCENE_GIVERS; i++) {
+		before[i] = s->givers[i];
+		if (!before[i].memory.base)
+			continue;
+		s->givers[i].memory.base = NULL;
+		if (i != 1 || !s->dropped)
+			scene_join_again(s, i);
+	}
+}
+
 void scene_reload(struct scene *s, void (*change)(struct config *))
 {
 	struct scene_part *before = s->part, *part = calloc(1, sizeof(*part));
-	void *image_memory = s->image_memory, *command_memory = s->command_memory;
-	struct commands commands = s->commands;
+	struct scene_memory memory = take_memory(s);
 	struct engine *engine = s->engine;
 	const struct config *config = before ? &before->config : &s->config;
+	struct giving givers[SCENE_GIVERS];
 	struct adoption plan;
 
 	part->config = *config;
@@ -222,9 +271,12 @@ void scene_reload(struct scene *s, void (*change)(struct config *))
 	memcpy(part->targets, config->targets, sizeof(part->targets));
 	if (change)
 		change(&part->config);
-	s->engine = make_engine(s, &part->config, part->ports, &part->image, &part->commands, NULL);
+	s->engine = make_engine(s, &part->config, part->ports, &part->image, NULL);
+	join_anew(s, givers);
 	TEST_ASSERT_EQUAL_INT(0, adoption_plan(&plan, &part->config, config));
 	engine_adopt(s->engine, engine, &plan, s->now_ns);
+	for (unsigned i = 0; i < SCENE_GIVERS; i++)
+		giving_free(&givers[i]);
 	for (unsigned i = 0; i < s->bus_count; i++)
 		if (s->bus[i].port < config->target_count && !stays(&part->config, &s->bus[i]))
 			s->bus[i].pending_count = 0; /* the reload ended these requests */
@@ -232,13 +284,10 @@ void scene_reload(struct scene *s, void (*change)(struct config *))
 		bus_named(s, part->config.targets[i].text)->port = i;
 	engine_destroy(engine);
 	adoption_free(&plan);
-	commands_forget(&commands);
-	free(image_memory);
-	free(command_memory);
+	free_memory(&memory);
 	free(before);
 	s->part = part;
 	s->image = part->image;
-	s->commands = part->commands;
 	memcpy(s->items, part->items, sizeof(s->items));
 }
 
@@ -250,11 +299,16 @@ void scene_clear_trace(struct scene *s)
 
 void scene_end(struct scene *s)
 {
+	struct scene_memory memory = take_memory(s);
+
 	engine_destroy(s->engine);
-	commands_forget(&s->commands);
-	free(s->image_memory);
-	free(s->command_memory);
+	for (unsigned i = 0; i < SCENE_GIVERS; i++)
+		giving_free(&s->givers[i]);
+	free_memory(&memory);
 	free(s->part);
 	s->part = NULL;
 	s->engine = NULL;
+	s->layout = NULL;
+	s->image_memory = s->force_memory = NULL;
+	s->force = NULL;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A scene for engine tests: an engine with its image and commands on the heap, buses that are
+ * A scene for engine tests: an engine with its image and its givers on the heap, buses that are
  * scripted, and a clock that only moves when the test says so. Everything that goes to a bus is
  * written down in a trace that a reader can follow.
  *
@@ -12,8 +12,11 @@
 
 #include "src/config/config.h"
 #include "src/engine/engine.h"
-#include "src/shm/commands.h"
+#include "src/engine/givers.h"
+#include "src/engine/last.h"
+#include "src/shm/force.h"
 #include "src/shm/image.h"
+#include "tests/unit/aid/giving.h"
 
 #define SCENE_MS 1000000LL
 #define SCENE_S 1000000000LL
@@ -21,6 +24,7 @@
 #define SCENE_DEPTH 8
 #define SCENE_BUSES 4
 #define SCENE_NOWHERE 99
+#define SCENE_GIVERS 4
 
 /* A property on a wire. */
 struct scene_property {
@@ -73,7 +77,21 @@ struct scene_part {
 	struct config_target targets[SCENE_BUSES];
 	struct engine_port ports[SCENE_BUSES];
 	struct image image;
-	struct commands commands;
+};
+
+/* The disk of Start "last". */
+struct scene_disk {
+	bool full;  /* nothing is stored */
+	bool waits; /* nothing is stored until scene_store() */
+	uint32_t tickets, stored;
+	struct scene_stored {
+		const char *name;
+		bool known;
+		int64_t value;
+		char text[128];
+		uint32_t len;
+	} rows[SCENE_ITEMS];
+	struct engine_last seam;
 };
 
 struct scene {
@@ -91,9 +109,18 @@ struct scene {
 	struct log *log;                    /* NULL unless set before scene_start() */
 	const struct engine_guests *guests; /* NULL unless set before scene_start() */
 	struct image image;
-	struct commands commands;
-	struct command_plan command_plan;
-	void *image_memory, *command_memory;
+	void *image_memory, *force_memory;
+	size_t force_size;
+	struct force *force;                /* of the engine, on the heap */
+	struct giver_layout *layout;        /* of the givers, on the heap */
+	struct giving givers[SCENE_GIVERS]; /* by their places */
+	uint32_t tokens[SCENE_GIVERS];
+	uint32_t serials;
+	uint32_t rights[SCENE_GIVERS][SCENE_ITEMS / 32 + 1];
+	bool limited; /* scene_allow() was called: rights count */
+	bool dropped; /* at a reload there is no room for the memory of place 1 */
+	uint32_t uid; /* of givers that join; 1000 unless set */
+	struct scene_disk disk;
 	int64_t now_ns;
 
 	char trace[16384]; /* "R /path\n" (r: fresh), "W /path=text\n"; "1: " before bus 1's */
@@ -141,10 +168,14 @@ void scene_start(struct scene *scene);
  */
 void scene_reload(struct scene *scene, void (*change)(struct config *));
 /*
- * Start another owsd with the same configuration, after this one was killed, on the same command
- * segment. Not after scene_reload(). The target is down, and the trace is empty.
+ * Start another owsd with the same configuration, after this one was killed. No giver is connected,
+ * the target is down, and the trace is empty. Not after scene_reload().
  */
 void scene_restart(struct scene *scene);
+/* The same after the machine has started: only the disk is left. */
+void scene_reboot(struct scene *scene);
+/* What was put is on the disk. */
+void scene_store(struct scene *scene);
 /* Take the target up. The types are checked in no time; later requests take theirs. */
 void scene_up(struct scene *scene);
 void scene_down(struct scene *scene, int err);
@@ -158,12 +189,33 @@ void scene_answer_on(struct scene *scene, unsigned bus, uint32_t id, int err, co
 void scene_clear_trace(struct scene *scene);
 void scene_end(struct scene *scene);
 
-/* Set a value as a consumer does. record: 1 is the first item. */
+/*
+ * The giver at place 0 is there from scene_start() on; it promises no beat. record: 1 is the first
+ * item.
+ */
 void scene_set(struct scene *scene, unsigned record, int64_t value);
 void scene_set_text(struct scene *scene, unsigned record, const char *text);
 struct ows_command_slot *scene_slot(struct scene *scene, unsigned record);
 void scene_ring(struct scene *scene, unsigned record);
-struct ows_client *scene_client(struct scene *scene, unsigned client);
+/* Set _ReadEnable and _WriteEnable. */
+void scene_enable_reads(struct scene *scene, unsigned record, bool on);
+void scene_enable_writes(struct scene *scene, unsigned record, bool on);
+/* The stamp of the last command that was applied, as this giver gets to know it. */
+uint32_t scene_applied(struct scene *scene, unsigned record);
+
+/* A giver takes a place; with the token of one that was there before it comes back as that one. */
+void scene_join(struct scene *scene, unsigned place, uint32_t token);
+/* Before scene_join(): the giver of this place may command this record, and those named so far. */
+void scene_allow(struct scene *scene, unsigned place, unsigned record);
+/* The giver of the place hangs up, or is dead: with its last command taken. */
+void scene_leave(struct scene *scene, unsigned place);
+/* The same with a goodbye. */
+void scene_goodbye(struct scene *scene, unsigned place);
+void scene_set_by(struct scene *scene, unsigned place, unsigned record, int64_t value);
+/* Let time pass in which the givers of the first n places beat. */
+void scene_beat(struct scene *scene, unsigned n, uint32_t period_ms, int64_t ns);
+
+struct ows_origin_entry scene_origin(struct scene *scene, unsigned record);
 
 struct ows_sample scene_sample(struct scene *scene, unsigned record);
 /* Check the signal's quality and the target that it comes from. */

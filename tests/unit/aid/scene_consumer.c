@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Reads a scene's segments as a consumer does, and writes to them. */
+/* Reads a scene's image as a consumer does. */
 #include <string.h>
 
 #include "unity.h"
@@ -8,59 +8,16 @@
 #include "src/signal/value.h"
 #include "tests/unit/aid/scene.h"
 
-struct ows_command_slot *scene_slot(struct scene *s, unsigned record)
-{
-	struct ows_command_header *h = s->command_memory;
-
-	return (struct ows_command_slot *)(void *)((char *)s->command_memory + h->slot_off) +
-	       record;
-}
-
-void scene_ring(struct scene *s, unsigned record)
-{
-	struct ows_command_header *h = s->command_memory;
-	uint32_t *dirty = (uint32_t *)(void *)((char *)s->command_memory + h->dirty_off);
-
-	dirty[record / 32] |= 1u << (record % 32);
-}
-
-void scene_set(struct scene *s, unsigned record, int64_t value)
-{
-	struct ows_command_slot *slot = scene_slot(s, record);
-
-	slot->value = (uint64_t)value;
-	slot->stamp++;
-	scene_ring(s, record);
-}
-
-void scene_set_text(struct scene *s, unsigned record, const char *text)
-{
-	struct ows_command_header *h = s->command_memory;
-	struct ows_command_entry *entry =
-		(struct ows_command_entry *)(void *)((char *)s->command_memory + h->entry_off) +
-		record;
-	struct ows_command_text *t = (struct ows_command_text *)(void *)((char *)s->command_memory +
-	                                                                 entry->text_off);
-
-	t->len = (uint32_t)strlen(text);
-	memcpy(t + 1, text, t->len);
-	t->check = ows_check_bytes((const char *)(t + 1), t->len);
-	scene_slot(s, record)->stamp++;
-	scene_ring(s, record);
-}
-
-struct ows_client *scene_client(struct scene *s, unsigned client)
-{
-	struct ows_command_header *h = s->command_memory;
-
-	return (struct ows_client *)(void *)((char *)s->command_memory + h->client_off) + client;
-}
-
 struct ows_sample scene_sample(struct scene *s, unsigned record)
 {
 	const struct ows_record *r = &s->image.records[record];
 
 	return r->slot[(r->seq >> 1) & 1].sample;
+}
+
+struct ows_origin_entry scene_origin(struct scene *s, unsigned record)
+{
+	return s->image.origins[record];
 }
 
 void scene_expect(struct scene *s, unsigned record, uint8_t quality, unsigned target)

@@ -74,6 +74,14 @@ static void test_wrong_items_are_errors_with_what_was_expected(void)
 		{"Name x Path /a/b Type bool IO output SafeValue \"aus\"",
 	         "f:3:48: error: SafeValue \"aus\": expected 0, 1, on, off, yes, no, true or false "
 	         "(type bool)\n"},
+		{"Name x Path /a/b Type bool Start last",
+	         "f:3:34: error: Start \"last\": expected an output, and this is an input\n"},
+		{"Name x Path /a/b Type bool Writable on Start last",
+	         "f:3:46: error: Start \"last\": expected an output, and this is an input\n"},
+		{"Name x Path /a/b Type bool IO output Start first",
+	         "f:3:44: error: Start \"first\": expected init or last\n"},
+		{"Name x Path /a/b Type bool IO output SafeValue 0 SafeDelay -1",
+	         "f:3:60: error: SafeDelay \"-1\": expected seconds from 0 to 86400\n"},
 		{"Name x Path /a/b Type bool PerFactor 0",
 	         "f:3:38: error: PerFactor \"0\": expected a whole number from 1 to 1000000\n"},
 		{"Name x Path /a/b Type bool StaleAfter -1",
@@ -219,6 +227,23 @@ static void test_start_values_are_typed_and_an_empty_one_is_none(void)
 	TEST_ASSERT_EQUAL_STRING("", config->items[0].safe_text);
 }
 
+static void test_what_an_output_begins_with_and_how_long_it_waits(void)
+{
+	parse_item("Name x Path a/b Type bool IO output");
+	TEST_ASSERT_FALSE(config->items[0].starts_last);
+	TEST_ASSERT_FALSE(config->items[0].has_safe_delay);
+	parse_item("Name x Path a/b Type bool IO output Start init");
+	TEST_ASSERT_FALSE(config->items[0].starts_last);
+	parse_item("Name x Path a/b Type bool IO output Start last SafeValue 0 SafeDelay 0");
+	TEST_ASSERT_TRUE(config->items[0].starts_last);
+	TEST_ASSERT_TRUE(config->items[0].has_safe_delay);
+	TEST_ASSERT_EQUAL_INT64(0, config->items[0].safe_delay_ns);
+	parse_item("Name x Path a/b Type bool IO output SafeDelay 2.5");
+	TEST_ASSERT_EQUAL_INT64(2500000000, config->items[0].safe_delay_ns);
+	TEST_ASSERT_EQUAL_STRING("f:3:37: warning: SafeDelay does nothing without SafeValue\n",
+	                         said);
+}
+
 static void test_an_integer_for_what_has_decimals_is_warned_about(void)
 {
 	static const char *const fit[] = {
@@ -265,6 +290,7 @@ int main(void)
 	RUN_TEST(test_the_bits_of_io_type_and_the_keys_that_override_them);
 	RUN_TEST(test_paths_lose_their_flags_and_gain_a_slash);
 	RUN_TEST(test_start_values_are_typed_and_an_empty_one_is_none);
+	RUN_TEST(test_what_an_output_begins_with_and_how_long_it_waits);
 	RUN_TEST(test_an_integer_for_what_has_decimals_is_warned_about);
 	RUN_TEST(test_a_start_value_longer_than_a_string_is_an_error);
 	return UNITY_END();

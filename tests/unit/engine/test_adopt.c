@@ -119,7 +119,7 @@ static void test_what_was_commanded_just_before_is_written(void)
 	scene_reload(&s, cellar_then_pump_then_room);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_STRING("1", scene_at(&s, "/29.066418000000/PIO.0"));
-	TEST_ASSERT_EQUAL_UINT32(scene_slot(&s, 2)->stamp, scene_sample(&s, 2).applied);
+	TEST_ASSERT_EQUAL_UINT32(scene_slot(&s, 2)->stamp, scene_applied(&s, 2));
 }
 
 static void test_a_reading_in_flight_goes_on(void)
@@ -232,7 +232,7 @@ static void test_a_write_in_flight_ends_with_the_present_value(void)
 	scene_reload(&s, NULL);
 	scene_run(&s, 5 * SCENE_S);
 	TEST_ASSERT_EQUAL_STRING("0", scene_at(&s, "/29.066418000000/PIO.0"));
-	TEST_ASSERT_EQUAL_UINT32(scene_slot(&s, 2)->stamp, scene_sample(&s, 2).applied);
+	TEST_ASSERT_EQUAL_UINT32(scene_slot(&s, 2)->stamp, scene_applied(&s, 2));
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 2).quality);
 }
 
@@ -394,7 +394,7 @@ static void test_a_limit_that_is_new_knows_no_value_before_its_first(void)
 	scene_reload(&s, room_has_a_limit);
 	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_H, scene_attrs(&s, 1).limit_condition);
 	TEST_ASSERT_EQUAL_UINT32(1, s.image.header->alarm_head);
-	TEST_ASSERT_EQUAL_HEX8(OWS_ALARM_AFTER, s.image.alarms[0].flags);
+	TEST_ASSERT_EQUAL_HEX8(OWS_JOURNAL_AFTER, s.image.alarms[0].flags);
 	TEST_ASSERT_EQUAL_DOUBLE(21.5, value_number(OWS_DOUBLE, s.image.alarms[0].after));
 }
 

@@ -42,7 +42,7 @@ static void test_an_alarm_is_read_reset_and_read_once_more(void)
 
 static void test_an_alarm_stands_in_the_journal_with_the_values_before_and_after(void)
 {
-	const struct ows_alarm_entry *entry;
+	const struct ows_journal_entry *entry;
 
 	figure_3_3(&s);
 	alarm_device(&s, "0", "0");
@@ -56,7 +56,7 @@ static void test_an_alarm_stands_in_the_journal_with_the_values_before_and_after
 	TEST_ASSERT_EQUAL_UINT32(1, entry[0].record);
 	TEST_ASSERT_EQUAL_INT64(255, entry[0].before);
 	TEST_ASSERT_EQUAL_INT64(254, entry[0].after);
-	TEST_ASSERT_EQUAL_STRING("1", entry[0].latch);
+	TEST_ASSERT_EQUAL_STRING("1", entry[0].text);
 	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_RETURNED, entry[1].event);
 	TEST_ASSERT_BITS_LOW(OWS_ATTR_ALARM_STANDS, scene_attrs(&s, 1).flags);
 }

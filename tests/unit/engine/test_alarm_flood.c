@@ -148,7 +148,7 @@ static void test_another_channel_is_entered_beside_one_whose_latch_is_always_set
 	stuck = "12";
 	scene_run(&s, 10 * SCENE_S);
 	TEST_ASSERT_EQUAL_UINT(2, journal());
-	TEST_ASSERT_EQUAL_STRING("12", s.image.alarms[1].latch);
+	TEST_ASSERT_EQUAL_STRING("12", s.image.alarms[1].text);
 	/* it comes and goes: that is known */
 	for (unsigned i = 0; i < 100; i++) {
 		stuck = i & 1 ? "12" : "8";

@@ -36,7 +36,7 @@ static void one_of_each(void)
 	scene_clear_trace(&s);
 }
 
-static void test_a_value_that_the_type_cannot_hold_is_refused_and_told(void)
+static void test_a_value_that_the_type_cannot_hold_is_refused_and_its_giver_gets_to_know(void)
 {
 	one_of_each();
 	scene_set(&s, 2, 256);
@@ -44,7 +44,10 @@ static void test_a_value_that_the_type_cannot_hold_is_refused_and_told(void)
 	scene_set(&s, 2, -1);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_UINT(0, s.writes);
-	TEST_ASSERT_EQUAL_INT32(-ERANGE, scene_sample(&s, 2).err);
+	TEST_ASSERT_EQUAL_INT32(-ERANGE, scene_slot(&s, 2)->err);
+	TEST_ASSERT_EQUAL_UINT32(scene_slot(&s, 2)->stamp, scene_slot(&s, 2)->taken);
+	TEST_ASSERT_EQUAL_UINT32(0, scene_applied(&s, 2));
+	TEST_ASSERT_EQUAL_INT32(0, scene_sample(&s, 2).err); /* no harm to others */
 	TEST_ASSERT_EQUAL_UINT64(2, scene_counter(&s, "refused_commands"));
 }
 
@@ -64,59 +67,64 @@ static void test_not_a_number_is_refused(void)
 	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "refused_commands"));
 }
 
-static void test_a_text_that_is_being_written_is_taken_when_it_is_whole(void)
+static void a_text(void)
 {
-	struct ows_command_header *h;
-	struct ows_command_entry *entry;
-	struct ows_command_text *text;
-
 	scene_output(&s, "alias", "/28.551DDF030000/alias", OWS_STRING);
 	scene_put(&s, "/28.551DDF030000/alias", "", 0);
 	scene_start(&s);
 	scene_up(&s);
-	h = s.command_memory;
-	entry = (struct ows_command_entry *)(void *)((char *)s.command_memory + h->entry_off) + 1;
-	text = (struct ows_command_text *)(void *)((char *)s.command_memory + entry->text_off);
+}
+
+static void test_a_text_that_is_being_written_is_taken_when_it_is_whole(void)
+{
+	struct ows_command_text *text;
+
+	a_text();
 	scene_set_text(&s, 1, "boiler");
-	text->claim = 99;
+	text = giving_text(&s.givers[0], 1);
+	text->check++;
 	scene_run(&s, 500 * SCENE_MS);
 	TEST_ASSERT_EQUAL_UINT(0, s.writes);
-	text->claim = 0;
+	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "refused_commands"));
+	text->check--;
 	scene_run(&s, 200 * SCENE_MS);
 	TEST_ASSERT_EQUAL_STRING("W /28.551DDF030000/alias=boiler\n", s.trace);
 }
 
-static void test_a_text_whose_writer_died_is_freed_after_a_second(void)
+static void test_a_text_that_is_not_whole_after_a_second_is_refused(void)
 {
-	struct ows_command_header *h;
-	struct ows_command_entry *entry;
-	struct ows_command_text *text;
-
-	scene_output(&s, "alias", "/28.551DDF030000/alias", OWS_STRING);
-	scene_put(&s, "/28.551DDF030000/alias", "", 0);
-	scene_start(&s);
-	scene_up(&s);
-	h = s.command_memory;
-	entry = (struct ows_command_entry *)(void *)((char *)s.command_memory + h->entry_off) + 1;
-	text = (struct ows_command_text *)(void *)((char *)s.command_memory + entry->text_off);
+	a_text();
 	scene_set_text(&s, 1, "boiler");
-	text->claim = 99;
+	giving_text(&s.givers[0], 1)->check++;
 	scene_run(&s, 2 * SCENE_S);
-	TEST_ASSERT_EQUAL_UINT32(0, text->claim);
+	TEST_ASSERT_EQUAL_INT32(-EBADMSG, scene_slot(&s, 1)->err);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_slot(&s, 1)->taken);
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
+	scene_set_text(&s, 1, "boiler");
+	scene_run(&s, 200 * SCENE_MS);
 	TEST_ASSERT_EQUAL_UINT(1, s.writes);
+	TEST_ASSERT_EQUAL_INT32(0, scene_slot(&s, 1)->err);
+}
+
+static void test_a_text_that_is_longer_than_its_room_is_refused(void)
+{
+	a_text();
+	scene_set_text(&s, 1, "boiler");
+	giving_text(&s.givers[0], 1)->len = 0xfffffff0u;
+	scene_run(&s, 2 * SCENE_S);
+	TEST_ASSERT_EQUAL_INT32(-EBADMSG, scene_slot(&s, 1)->err);
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
 }
 
 static void test_reading_disabled_keeps_the_value_and_says_so(void)
 {
 	one_of_each();
-	scene_slot(&s, 1)->read_enable = 1;
-	scene_ring(&s, 1);
+	scene_enable_reads(&s, 1, false);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_UINT(0, s.reads);
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_DISABLED, scene_sample(&s, 1).quality);
 	TEST_ASSERT_EQUAL_DOUBLE(21.5, scene_number(&s, 1));
-	scene_slot(&s, 1)->read_enable = 2;
-	scene_ring(&s, 1);
+	scene_enable_reads(&s, 1, true);
 	scene_run(&s, 100 * SCENE_MS);
 	TEST_ASSERT_GREATER_OR_EQUAL_UINT(1, s.reads);
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
@@ -125,12 +133,11 @@ static void test_reading_disabled_keeps_the_value_and_says_so(void)
 static void test_writing_disabled_keeps_what_was_set_until_it_is_enabled(void)
 {
 	one_of_each();
-	scene_slot(&s, 2)->write_enable = 1;
+	scene_enable_writes(&s, 2, false);
 	scene_set(&s, 2, 9);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_UINT(0, s.writes);
-	scene_slot(&s, 2)->write_enable = 2;
-	scene_ring(&s, 2);
+	scene_enable_writes(&s, 2, true);
 	scene_run(&s, 100 * SCENE_MS);
 	TEST_ASSERT_EQUAL_UINT(1, s.writes);
 	TEST_ASSERT_EQUAL_STRING("9", scene_at(&s, PIO));
@@ -139,23 +146,21 @@ static void test_writing_disabled_keeps_what_was_set_until_it_is_enabled(void)
 static void test_a_command_is_not_confirmed_while_writing_is_disabled(void)
 {
 	one_of_each();
-	scene_slot(&s, 2)->write_enable = 1;
+	scene_enable_writes(&s, 2, false);
 	scene_set(&s, 2, 9);
 	scene_run(&s, SCENE_S);
-	TEST_ASSERT_EQUAL_UINT32(0, scene_sample(&s, 2).applied);
-	scene_slot(&s, 2)->write_enable = 2;
-	scene_ring(&s, 2);
+	TEST_ASSERT_EQUAL_UINT32(0, scene_applied(&s, 2));
+	scene_enable_writes(&s, 2, true);
 	scene_run(&s, 100 * SCENE_MS);
-	TEST_ASSERT_EQUAL_UINT32(1, scene_sample(&s, 2).applied);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_applied(&s, 2));
 	/* back to what the bus has, while disabled: enabling leaves nothing to write */
-	scene_slot(&s, 2)->write_enable = 1;
+	scene_enable_writes(&s, 2, false);
 	scene_set(&s, 2, 9);
 	scene_run(&s, 100 * SCENE_MS);
-	TEST_ASSERT_EQUAL_UINT32(1, scene_sample(&s, 2).applied);
-	scene_slot(&s, 2)->write_enable = 2;
-	scene_ring(&s, 2);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_applied(&s, 2));
+	scene_enable_writes(&s, 2, true);
 	scene_run(&s, 100 * SCENE_MS);
-	TEST_ASSERT_EQUAL_UINT32(2, scene_sample(&s, 2).applied);
+	TEST_ASSERT_EQUAL_UINT32(2, scene_applied(&s, 2));
 	TEST_ASSERT_EQUAL_UINT(1, s.writes);
 }
 
@@ -167,9 +172,9 @@ static void test_the_same_value_set_again_during_its_write_is_confirmed_with_it(
 	scene_run(&s, 10 * SCENE_MS);
 	scene_set(&s, 2, 9);
 	scene_run(&s, 10 * SCENE_MS);
-	TEST_ASSERT_EQUAL_UINT32(0, scene_sample(&s, 2).applied);
+	TEST_ASSERT_EQUAL_UINT32(0, scene_applied(&s, 2));
 	scene_run(&s, 200 * SCENE_MS);
-	TEST_ASSERT_EQUAL_UINT32(2, scene_sample(&s, 2).applied);
+	TEST_ASSERT_EQUAL_UINT32(2, scene_applied(&s, 2));
 	TEST_ASSERT_EQUAL_UINT(1, s.writes);
 }
 
@@ -183,7 +188,7 @@ static void test_one_shot_writes_once_changed_or_not_enabled_or_not(void)
 	scene_ring(&s, 2);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_UINT(1, s.writes);
-	scene_slot(&s, 2)->write_enable = 1;
+	scene_enable_writes(&s, 2, false);
 	scene_slot(&s, 2)->one_shot++;
 	scene_ring(&s, 2);
 	scene_run(&s, SCENE_S);
@@ -223,10 +228,9 @@ static void test_the_driver_reset_clears_its_counters_and_every_signal(void)
 	TEST_ASSERT_LESS_THAN(5, scene_attrs(&s, 0).transactions);
 }
 
-static void test_a_program_that_stops_beating_leaves_its_outputs_safe(void)
+static void test_a_giver_that_stops_beating_leaves_its_outputs_safe(void)
 {
 	struct config_item *item = scene_output(&s, "out", PIO, OWS_BYTE);
-	struct ows_client *client;
 
 	item->has_safe = true;
 	item->safe_value = 128;
@@ -235,15 +239,11 @@ static void test_a_program_that_stops_beating_leaves_its_outputs_safe(void)
 	scene_put(&s, PIO2, "0", 0);
 	scene_start(&s);
 	scene_up(&s);
-	client = scene_client(&s, 3);
-	client->pid = 42;
-	client->period_ms = 500;
+	scene_join(&s, 3, 7);
 	for (int i = 0; i < 20; i++) {
-		client->beat++;
-		scene_slot(&s, 1)->client = 4;
-		scene_slot(&s, 2)->client = 4;
-		scene_set(&s, 1, i);
-		scene_set(&s, 2, i);
+		giving_beat(&s.givers[3], 500);
+		scene_set_by(&s, 3, 1, i);
+		scene_set_by(&s, 3, 2, i);
 		scene_run(&s, 200 * SCENE_MS);
 	}
 	TEST_ASSERT_EQUAL_STRING("19", scene_at(&s, PIO));
@@ -251,72 +251,52 @@ static void test_a_program_that_stops_beating_leaves_its_outputs_safe(void)
 	TEST_ASSERT_EQUAL_STRING("128", scene_at(&s, PIO));
 	TEST_ASSERT_EQUAL_STRING("19", scene_at(&s, PIO2));
 	TEST_ASSERT_BITS_HIGH(OWS_SAMPLE_SAFE, scene_sample(&s, 1).flags);
-	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "lost_clients"));
+	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "lost_givers"));
 	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "safe_outputs"));
 	/* the next command counts again */
-	scene_slot(&s, 1)->client = 0;
 	scene_set(&s, 1, 7);
 	scene_run(&s, SCENE_S);
 	TEST_ASSERT_EQUAL_STRING("7", scene_at(&s, PIO));
 	TEST_ASSERT_BITS_LOW(OWS_SAMPLE_SAFE, scene_sample(&s, 1).flags);
 }
 
-static void test_a_program_that_says_good_bye_leaves_its_outputs_as_they_are(void)
+static void test_a_giver_that_says_goodbye_leaves_its_outputs_as_they_are(void)
 {
 	struct config_item *item = scene_output(&s, "out", PIO, OWS_BYTE);
-	struct ows_client *client;
 
 	item->has_safe = true;
 	item->safe_value = 128;
 	scene_put(&s, PIO, "0", 0);
 	scene_start(&s);
 	scene_up(&s);
-	client = scene_client(&s, 0);
-	client->pid = 42;
-	client->period_ms = 500;
-	scene_slot(&s, 1)->client = 1;
+	giving_beat(&s.givers[0], 500);
 	scene_set(&s, 1, 3);
 	scene_run(&s, 200 * SCENE_MS);
-	client->pid = 0;
+	scene_goodbye(&s, 0);
 	scene_run(&s, 5 * SCENE_S);
 	TEST_ASSERT_EQUAL_STRING("3", scene_at(&s, PIO));
 }
 
-static void test_a_safe_output_stays_safe_over_a_restart(void)
-{
-	struct config_item *item = scene_output(&s, "out", PIO, OWS_BYTE);
-	struct ows_client *client;
-	struct command c;
-
-	item->has_safe = true;
-	item->safe_value = 128;
-	scene_put(&s, PIO, "0", 0);
-	scene_start(&s);
-	scene_up(&s);
-	client = scene_client(&s, 0);
-	client->pid = 42;
-	client->period_ms = 500;
-	client->beat = 1;
-	scene_slot(&s, 1)->client = 1;
-	scene_set(&s, 1, 3);
-	scene_run(&s, 5 * SCENE_S);
-	TEST_ASSERT_EQUAL_STRING("128", scene_at(&s, PIO));
-	commands_load(&s.commands, 1, &c);
-	TEST_ASSERT_EQUAL_INT64(128, c.value);
-	TEST_ASSERT_EQUAL_UINT32(0, c.client);
-}
-
-/* As the guard leaves it: private pages of zeros. */
-static void test_a_truncated_segment_commands_nothing(void)
+static void test_what_is_set_just_before_the_end_is_taken(void)
 {
 	one_of_each();
-	scene_set(&s, 2, 3);
+	scene_set(&s, 2, 77);
+	scene_leave(&s, 0);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("77", scene_at(&s, PIO));
+}
+
+/* As a hole punched into the file leaves it. */
+static void test_a_memory_of_zeros_commands_nothing(void)
+{
+	one_of_each();
 	scene_slot(&s, 2)->one_shot = 7;
 	scene_slot(&s, 2)->dgn_reset = 7;
+	scene_set(&s, 2, 3);
 	scene_run(&s, 300 * SCENE_MS);
 	TEST_ASSERT_EQUAL_STRING("3", scene_at(&s, PIO));
 	scene_clear_trace(&s);
-	memset(scene_slot(&s, 0), 0, 3 * sizeof(struct ows_command_slot));
+	memset(s.givers[0].memory.base, 0, s.layout->size);
 	scene_ring(&s, 0);
 	scene_ring(&s, 2);
 	scene_run(&s, SCENE_S);
@@ -328,43 +308,42 @@ static void test_a_truncated_segment_commands_nothing(void)
 	TEST_ASSERT_GREATER_THAN_UINT64(0, scene_attrs(&s, 2).transactions);
 }
 
-static void test_a_segment_made_again_holds_what_was_commanded(void)
+static void test_between_givers_the_last_command_taken_is_in_force(void)
 {
-	void *memory;
-	size_t size;
-	static struct commands again;
-	struct command c;
+	one_of_each();
+	scene_join(&s, 1, 2);
+	scene_set(&s, 2, 3);
+	scene_run(&s, 100 * SCENE_MS);
+	scene_set_by(&s, 1, 2, 4);
+	scene_run(&s, 100 * SCENE_MS);
+	TEST_ASSERT_EQUAL_STRING("4", scene_at(&s, PIO));
+	TEST_ASSERT_EQUAL_UINT32(1, scene_applied(&s, 2));
+	TEST_ASSERT_EQUAL_UINT32(1, giving_slot(&s.givers[1], 2)->applied);
+	/* the first one's look at other things does not bring its command back */
+	scene_slot(&s, 2)->dgn_reset++;
+	scene_ring(&s, 2);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("4", scene_at(&s, PIO));
+	TEST_ASSERT_EQUAL_STRING("giver1", scene_origin(&s, 2).who.name);
+}
 
-	scene_output(&s, "out", PIO, OWS_BYTE);
-	scene_output(&s, "text", "/29.B89115000000/memory", OWS_STRING);
-	scene_put(&s, PIO, "0", 0);
-	scene_put(&s, "/29.B89115000000/memory", "", 0);
-	scene_start(&s);
-	scene_up(&s);
-	scene_set(&s, 1, 3);
-	scene_set_text(&s, 2, "on");
+static void test_a_signal_that_the_giver_may_not_command_is_refused(void)
+{
+	one_of_each();
+	scene_allow(&s, 1, 1);
+	scene_join(&s, 1, 2);
+	giving_enable(&giving_slot(&s.givers[1], 2)->write_enable, false);
+	giving_slot(&s.givers[1], 2)->one_shot++;
+	scene_set_by(&s, 1, 2, 4);
 	scene_run(&s, SCENE_S);
-	scene_set(&s, 1, 5); /* nobody has looked yet */
-	size = commands_size(&s.command_plan);
-	memory = aligned_alloc(64, (size + 63) / 64 * 64);
-	memset(memory, 0, size);
-	TEST_ASSERT_EQUAL_INT(0, commands_build(&s.command_plan, memory, &again));
-	engine_take_commands(s.engine, &again, s.now_ns);
-	commands_forget(&s.commands);
-	free(s.command_memory);
-	s.command_memory = memory;
-	s.commands = again;
-	commands_load(&s.commands, 1, &c);
-	TEST_ASSERT_EQUAL_INT64(5, c.value);
-	TEST_ASSERT_EQUAL_UINT32(2, c.stamp);
-	commands_load(&s.commands, 2, &c);
-	TEST_ASSERT_EQUAL_UINT32(1, c.stamp);
-	scene_clear_trace(&s);
-	scene_set(&s, 1, 6);
-	scene_set_text(&s, 2, "off");
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
+	TEST_ASSERT_EQUAL_INT32(-EACCES, giving_slot(&s.givers[1], 2)->err);
+	TEST_ASSERT_BITS_HIGH(OWS_ATTR_WRITE_ENABLE, scene_attrs(&s, 2).flags);
+	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "refused_commands"));
+	giving_slot(&s.givers[1], 0)->dgn_reset++;
+	giving_mark(&s.givers[1], 0);
 	scene_run(&s, SCENE_S);
-	TEST_ASSERT_EQUAL_STRING("6", scene_at(&s, PIO));
-	TEST_ASSERT_EQUAL_STRING("off", scene_at(&s, "/29.B89115000000/memory"));
+	TEST_ASSERT_GREATER_THAN_UINT64(15, scene_attrs(&s, 1).transactions);
 }
 
 static void test_per_count_and_pend_count_are_counted_in_periods(void)
@@ -417,8 +396,7 @@ static void test_transactions_count_requests_that_ended(void)
 	scene_run(&s, 2 * SCENE_S);
 	scene_put(&s, T1, NULL, -EIO);
 	scene_run(&s, 300 * SCENE_MS);
-	scene_slot(&s, 1)->read_enable = 1;
-	scene_ring(&s, 1);
+	scene_enable_reads(&s, 1, false);
 	scene_run(&s, 200 * SCENE_MS);
 	TEST_ASSERT_EQUAL_UINT64(scene_counter(&s, "requests"), scene_attrs(&s, 0).transactions);
 	TEST_ASSERT_EQUAL_UINT64(s.reads + 2, scene_attrs(&s, 1).transactions);
@@ -427,10 +405,11 @@ static void test_transactions_count_requests_that_ended(void)
 int main(void)
 {
 	UNITY_BEGIN();
-	RUN_TEST(test_a_value_that_the_type_cannot_hold_is_refused_and_told);
+	RUN_TEST(test_a_value_that_the_type_cannot_hold_is_refused_and_its_giver_gets_to_know);
 	RUN_TEST(test_not_a_number_is_refused);
 	RUN_TEST(test_a_text_that_is_being_written_is_taken_when_it_is_whole);
-	RUN_TEST(test_a_text_whose_writer_died_is_freed_after_a_second);
+	RUN_TEST(test_a_text_that_is_not_whole_after_a_second_is_refused);
+	RUN_TEST(test_a_text_that_is_longer_than_its_room_is_refused);
 	RUN_TEST(test_reading_disabled_keeps_the_value_and_says_so);
 	RUN_TEST(test_writing_disabled_keeps_what_was_set_until_it_is_enabled);
 	RUN_TEST(test_a_command_is_not_confirmed_while_writing_is_disabled);
@@ -438,11 +417,12 @@ int main(void)
 	RUN_TEST(test_one_shot_writes_once_changed_or_not_enabled_or_not);
 	RUN_TEST(test_diagnostics_are_reset_and_the_value_stays);
 	RUN_TEST(test_the_driver_reset_clears_its_counters_and_every_signal);
-	RUN_TEST(test_a_program_that_stops_beating_leaves_its_outputs_safe);
-	RUN_TEST(test_a_program_that_says_good_bye_leaves_its_outputs_as_they_are);
-	RUN_TEST(test_a_safe_output_stays_safe_over_a_restart);
-	RUN_TEST(test_a_truncated_segment_commands_nothing);
-	RUN_TEST(test_a_segment_made_again_holds_what_was_commanded);
+	RUN_TEST(test_a_giver_that_stops_beating_leaves_its_outputs_safe);
+	RUN_TEST(test_a_giver_that_says_goodbye_leaves_its_outputs_as_they_are);
+	RUN_TEST(test_what_is_set_just_before_the_end_is_taken);
+	RUN_TEST(test_a_memory_of_zeros_commands_nothing);
+	RUN_TEST(test_between_givers_the_last_command_taken_is_in_force);
+	RUN_TEST(test_a_signal_that_the_giver_may_not_command_is_refused);
 	RUN_TEST(test_per_count_and_pend_count_are_counted_in_periods);
 	RUN_TEST(test_age_and_period_are_of_the_updates_though_the_measurement_is_old);
 	RUN_TEST(test_transactions_count_requests_that_ended);

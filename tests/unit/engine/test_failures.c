@@ -220,7 +220,7 @@ static void test_a_write_that_failed_is_tried_again_until_it_succeeds_and_then_n
 	TEST_ASSERT_EQUAL_UINT(7, s.writes);
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
 	TEST_ASSERT_BITS_LOW(OWS_SAMPLE_PENDING, scene_sample(&s, 1).flags);
-	TEST_ASSERT_EQUAL_UINT32(1, scene_sample(&s, 1).applied);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_applied(&s, 1));
 }
 
 static void test_a_write_that_fails_does_not_make_a_value_bad_that_is_read(void)

@@ -226,7 +226,7 @@ static void test_only_a_change_is_written(void)
 		scene_run(&s, 100 * SCENE_MS);
 	}
 	TEST_ASSERT_EQUAL_UINT(1, s.writes);
-	TEST_ASSERT_EQUAL_UINT32(20, scene_sample(&s, 1).applied);
+	TEST_ASSERT_EQUAL_UINT32(20, scene_applied(&s, 1));
 }
 
 static void test_the_value_of_the_moment_counts_and_back_is_no_change(void)

@@ -343,6 +343,91 @@ static void test_a_kind_of_high_rank_hides_one_that_is_raised_under_it(void)
 	expect(OWS_LIMIT_UNACKNOWLEDGED, OWS_ALARM_H, OWS_ALARM_BAD, 0);
 }
 
+/* Put the alarm into a state of the diagram of ISA-18.2; HH is active where one stands. */
+static void put(enum ows_limit_state state)
+{
+	limit = (struct limit){0};
+	if (state != OWS_LIMIT_NORMAL)
+		value(45);
+	if (state == OWS_LIMIT_ACKNOWLEDGED)
+		limit_acknowledge(&limit);
+	if (state == OWS_LIMIT_RETURNED)
+		value(20);
+	TEST_ASSERT_EQUAL(state, limit.state);
+}
+
+static void test_from_each_state_shelving_leads_to_no_alarm_that_is_shown(void)
+{
+	for (int state = OWS_LIMIT_NORMAL; state <= OWS_LIMIT_RETURNED; state++) {
+		bool stands = state == OWS_LIMIT_UNACKNOWLEDGED || state == OWS_LIMIT_ACKNOWLEDGED;
+
+		put((enum ows_limit_state)state);
+		limit_shelve(&limit);
+		TEST_ASSERT_TRUE(limit.shelved);
+		TEST_ASSERT_EQUAL(OWS_LIMIT_NORMAL, limit.state);
+		TEST_ASSERT_EQUAL(stands ? OWS_ALARM_HH : 0, limit.kind);
+	}
+}
+
+static void test_from_each_state_an_alarm_that_is_unshelved_is_raised_if_it_stands(void)
+{
+	for (int state = OWS_LIMIT_NORMAL; state <= OWS_LIMIT_RETURNED; state++) {
+		bool stands = state == OWS_LIMIT_UNACKNOWLEDGED || state == OWS_LIMIT_ACKNOWLEDGED;
+
+		put((enum ows_limit_state)state);
+		limit_shelve(&limit);
+		TEST_ASSERT_EQUAL(stands ? OWS_ALARM_HH : 0, limit_unshelve(&limit));
+		TEST_ASSERT_FALSE(limit.shelved);
+		TEST_ASSERT_EQUAL(stands ? OWS_LIMIT_UNACKNOWLEDGED : OWS_LIMIT_NORMAL,
+		                  limit.state);
+	}
+}
+
+static void test_a_shelved_alarm_is_neither_raised_nor_returned(void)
+{
+	limit_shelve(&limit);
+	value(31);
+	expect(OWS_LIMIT_NORMAL, OWS_ALARM_H, 0, 0);
+	value(45);
+	expect(OWS_LIMIT_NORMAL, OWS_ALARM_HH, 0, 0);
+	see(&(struct limit_reading){.bad = true});
+	expect(OWS_LIMIT_NORMAL, OWS_ALARM_BAD, 0, 0);
+	value(20);
+	expect(OWS_LIMIT_NORMAL, 0, 0, 0);
+	TEST_ASSERT_EQUAL(0, limit_unshelve(&limit));
+}
+
+static void test_a_shelved_alarm_cannot_be_acknowledged(void)
+{
+	value(31);
+	limit_shelve(&limit);
+	TEST_ASSERT_EQUAL(0, limit_acknowledge(&limit));
+	TEST_ASSERT_EQUAL(OWS_ALARM_H, limit.kind);
+	TEST_ASSERT_EQUAL(OWS_ALARM_H, limit_unshelve(&limit));
+	TEST_ASSERT_EQUAL(OWS_LIMIT_UNACKNOWLEDGED, limit.state);
+}
+
+static void test_delays_run_while_an_alarm_is_shelved(void)
+{
+	limits.on_delay_ns = 5 * S;
+	limit_shelve(&limit);
+	TEST_ASSERT_EQUAL_INT64(now + 5 * S, value(31));
+	now += 4 * S;
+	value(31);
+	TEST_ASSERT_EQUAL(0, limit_unshelve(&limit));
+	now += S;
+	value(31);
+	expect(OWS_LIMIT_UNACKNOWLEDGED, OWS_ALARM_H, 0, OWS_ALARM_H);
+}
+
+static void test_what_is_not_shelved_stays_as_it_is_when_it_is_unshelved(void)
+{
+	value(31);
+	limit_acknowledge(&limit);
+	TEST_ASSERT_EQUAL(0, limit_unshelve(&limit));
+	TEST_ASSERT_EQUAL(OWS_LIMIT_ACKNOWLEDGED, limit.state);
+}
+
 /* Whatever happens: the state fits what is active, and a delay that runs is asked for. */
 static void test_the_state_fits_the_conditions_whatever_comes(void)
 {
@@ -359,18 +444,29 @@ static void test_the_state_fits_the_conditions_whatever_comes(void)
 			.bad = rand() % 16 == 0,
 			.stale = rand() % 16 == 0,
 		};
-		struct limit was = limit;
+		struct limit was;
 
 		limits.on_delay_ns = i / 1000 % 3 * S;
 		limits.off_delay_ns = i / 3000 % 3 * S;
 		now += rand() % (2 * S);
 		if (rand() % 8 == 0)
 			limit_acknowledge(&limit);
+		if (rand() % 64 == 0)
+			limit_shelve(&limit);
+		if (rand() % 32 == 0)
+			limit_unshelve(&limit);
+		was = limit;
 		next = see(&reading);
 		raised += news.raised != 0;
 		TEST_ASSERT_TRUE_MESSAGE(next > now, message);
 		TEST_ASSERT_EQUAL_MESSAGE((limit.in ^ limit.active) != 0, next != INT64_MAX,
 		                          message);
+		if (limit.shelved) {
+			TEST_ASSERT_EQUAL_MESSAGE(OWS_LIMIT_NORMAL, limit.state, message);
+			TEST_ASSERT_EQUAL_MESSAGE(limit.active == 0, limit.kind == 0, message);
+			TEST_ASSERT_EQUAL_MESSAGE(0, news.raised + news.returned, message);
+			continue;
+		}
 		TEST_ASSERT_EQUAL_MESSAGE(limit.active != 0,
 		                          limit.state == OWS_LIMIT_UNACKNOWLEDGED ||
 		                                  limit.state == OWS_LIMIT_ACKNOWLEDGED,
@@ -419,6 +515,12 @@ int main(void)
 	RUN_TEST(test_an_alarm_of_the_value_stands_while_the_value_is_not_known);
 	RUN_TEST(test_no_delay_of_the_value_runs_while_it_is_not_known);
 	RUN_TEST(test_a_kind_of_high_rank_hides_one_that_is_raised_under_it);
+	RUN_TEST(test_from_each_state_shelving_leads_to_no_alarm_that_is_shown);
+	RUN_TEST(test_from_each_state_an_alarm_that_is_unshelved_is_raised_if_it_stands);
+	RUN_TEST(test_a_shelved_alarm_is_neither_raised_nor_returned);
+	RUN_TEST(test_a_shelved_alarm_cannot_be_acknowledged);
+	RUN_TEST(test_delays_run_while_an_alarm_is_shelved);
+	RUN_TEST(test_what_is_not_shelved_stays_as_it_is_when_it_is_unshelved);
 	RUN_TEST(test_the_state_fits_the_conditions_whatever_comes);
 	return UNITY_END();
 }

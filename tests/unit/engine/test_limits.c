@@ -54,10 +54,10 @@ static uint32_t entered(void)
 	return s.image.header->alarm_head;
 }
 
-static const struct ows_alarm_entry *last(void)
+static const struct ows_journal_entry *last(void)
 {
 	TEST_ASSERT_GREATER_THAN(0, entered());
-	return &s.image.alarms[(entered() - 1) % OWS_ALARMS];
+	return &s.image.alarms[(entered() - 1) % OWS_JOURNAL];
 }
 
 static void expect(enum ows_limit_state state, uint8_t kind)
@@ -75,9 +75,7 @@ static void expect_last(uint8_t event, uint8_t kind)
 
 static void acknowledge(unsigned record)
 {
-	uint32_t *acks = (void *)(s.commands.base + s.commands.ack_off);
-
-	acks[record]++;
+	scene_slot(&s, record)->acknowledged++;
 	scene_ring(&s, record);
 	scene_run(&s, SCENE_MS);
 }
@@ -99,7 +97,7 @@ static void test_a_value_beyond_its_limit_enters_the_journal_with_both_values(vo
 	expect(OWS_LIMIT_UNACKNOWLEDGED, OWS_ALARM_H);
 	TEST_ASSERT_EQUAL(1, entered());
 	expect_last(OWS_ALARM_RAISED, OWS_ALARM_H);
-	TEST_ASSERT_EQUAL(OWS_ALARM_BEFORE | OWS_ALARM_AFTER, last()->flags);
+	TEST_ASSERT_EQUAL(OWS_JOURNAL_BEFORE | OWS_JOURNAL_AFTER, last()->flags);
 	TEST_ASSERT_EQUAL_DOUBLE(20, value_number(OWS_DOUBLE, last()->before));
 	TEST_ASSERT_EQUAL_DOUBLE(31, value_number(OWS_DOUBLE, last()->after));
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, last()->quality);
@@ -115,7 +113,7 @@ static void test_the_first_value_has_none_before_it(void)
 	scene_put(&s, T1, "31", 0);
 	start();
 	expect_last(OWS_ALARM_RAISED, OWS_ALARM_H);
-	TEST_ASSERT_EQUAL(OWS_ALARM_AFTER, last()->flags);
+	TEST_ASSERT_EQUAL(OWS_JOURNAL_AFTER, last()->flags);
 }
 
 static void test_an_alarm_that_is_acknowledged_goes_to_normal_when_it_returns(void)
@@ -230,13 +228,11 @@ static void test_a_signal_that_is_not_read_keeps_its_alarm(void)
 {
 	start();
 	measure("31");
-	scene_slot(&s, 1)->read_enable = 1;
-	scene_ring(&s, 1);
+	scene_enable_reads(&s, 1, false);
 	scene_put(&s, T1, "20", 0);
 	scene_run(&s, 10 * SCENE_S);
 	expect(OWS_LIMIT_UNACKNOWLEDGED, OWS_ALARM_H);
-	scene_slot(&s, 1)->read_enable = 2;
-	scene_ring(&s, 1);
+	scene_enable_reads(&s, 1, true);
 	scene_run(&s, SCENE_S);
 	expect(OWS_LIMIT_RETURNED, OWS_ALARM_H);
 }
@@ -265,12 +261,9 @@ static void test_a_limit_alarm_is_no_alarm_of_the_device(void)
 
 static void test_words_of_acknowledgement_overwritten_with_rubbish_do_no_harm(void)
 {
-	uint32_t *acks;
-
 	start();
 	measure("31");
-	acks = (void *)(s.commands.base + s.commands.ack_off);
-	acks[0] = acks[1] = 0xffffffffu;
+	scene_slot(&s, 0)->acknowledged = scene_slot(&s, 1)->acknowledged = 0xffffffffu;
 	scene_ring(&s, 0);
 	scene_ring(&s, 1);
 	scene_run(&s, SCENE_S);

@@ -48,17 +48,13 @@ static void test_an_output_is_written_again_where_its_device_is_now(void)
 static void test_a_safe_value_follows_the_device(void)
 {
 	struct config_item *pio = scene_output(&s, "pio", PIO, OWS_BYTE);
-	struct ows_client *client;
 
 	pio->has_safe = true;
 	pio->safe_value = 9;
 	scene_put_on(&s, 0, PIO, "0", 0);
 	two_wires_up(&s);
-	client = scene_client(&s, 0);
-	client->pid = 4711;
-	client->period_ms = 1000;
+	giving_beat(&s.givers[0], 1000);
 	scene_run(&s, 100 * SCENE_MS);
-	scene_slot(&s, 1)->client = 1;
 	scene_set(&s, 1, 5);
 	scene_run(&s, 500 * SCENE_MS);
 	TEST_ASSERT_EQUAL_STRING("5", scene_at(&s, PIO));

@@ -6,6 +6,7 @@
 
 #include "unity.h"
 
+#include "src/shm/entries.h"
 #include "src/signal/value.h"
 #include "tests/unit/aid/instance.h"
 
@@ -30,17 +31,17 @@ void tearDown(void)
 	instance_end(&in);
 }
 
-static struct ows_alarm_entry door_alarm(int64_t before)
+static struct ows_journal_entry door_alarm(int64_t before)
 {
-	return (struct ows_alarm_entry){
+	return (struct ows_journal_entry){
 		.record = DOOR,
 		.occurred_ns = 7 * INSTANCE_S,
 		.before = before,
 		.kind = OWS_ALARM_DEVICE,
 		.event = OWS_ALARM_RAISED,
 		.quality = OWS_Q_GOOD,
-		.flags = OWS_ALARM_BEFORE,
-		.latch = "0,1,0,0,0,0,0,0",
+		.flags = OWS_JOURNAL_BEFORE,
+		.text = "0,1,0,0,0,0,0,0",
 	};
 }
 
@@ -55,7 +56,7 @@ static void test_a_journal_begins_empty(void)
 
 static void test_an_alarm_is_read_as_it_was_entered(void)
 {
-	struct ows_alarm_entry entry = door_alarm(3);
+	struct ows_journal_entry entry = door_alarm(3);
 	struct ows_alarm alarm;
 
 	TEST_ASSERT_EQUAL(0, image_alarm(&in.image, &entry));
@@ -71,13 +72,13 @@ static void test_an_alarm_is_read_as_it_was_entered(void)
 	TEST_ASSERT_EQUAL(OWS_ALARM_DEVICE, alarm.kind);
 	TEST_ASSERT_EQUAL(OWS_ALARM_RAISED, alarm.event);
 	TEST_ASSERT_EQUAL(OWS_Q_GOOD, alarm.quality);
-	TEST_ASSERT_EQUAL_STRING("0,1,0,0,0,0,0,0", alarm.latch);
+	TEST_ASSERT_EQUAL_STRING("0,1,0,0,0,0,0,0", alarm.text);
 	TEST_ASSERT_EQUAL(-ENOENT, ows_alarm(h, 1, &alarm));
 }
 
 static void test_the_value_after_comes_later(void)
 {
-	struct ows_alarm_entry entry = {
+	struct ows_journal_entry entry = {
 		.record = ROOM, .kind = OWS_ALARM_HH, .event = OWS_ALARM_RAISED};
 	struct ows_alarm alarm;
 	uint32_t number = image_alarm(&in.image, &entry);
@@ -93,29 +94,30 @@ static void test_the_value_after_comes_later(void)
 
 static void test_a_latch_may_fill_its_room(void)
 {
-	struct ows_alarm_entry entry = door_alarm(0);
+	struct ows_journal_entry entry = door_alarm(0);
 	struct ows_alarm alarm;
 
-	memset(entry.latch, '1', sizeof(entry.latch));
+	memset(entry.text, '1', sizeof(entry.text));
 	image_alarm(&in.image, &entry);
 	TEST_ASSERT_EQUAL(0, ows_alarm(h, 0, &alarm));
-	TEST_ASSERT_EQUAL_STRING("11111111111111111111", alarm.latch);
+	TEST_ASSERT_EQUAL(sizeof(entry.text) - 1, strlen(alarm.text));
+	TEST_ASSERT_EQUAL_MEMORY(entry.text, alarm.text, sizeof(entry.text) - 1);
 }
 
 static void test_the_ring_keeps_the_last_entries(void)
 {
 	struct ows_alarm alarm;
 
-	for (int64_t i = 0; i < OWS_ALARMS + 3; i++) {
-		struct ows_alarm_entry entry = door_alarm(i % 256);
+	for (int64_t i = 0; i < OWS_JOURNAL + 3; i++) {
+		struct ows_journal_entry entry = door_alarm(i % 256);
 
 		TEST_ASSERT_EQUAL(i, image_alarm(&in.image, &entry));
 	}
-	TEST_ASSERT_EQUAL(OWS_ALARMS + 3, ows_alarm_count(h));
+	TEST_ASSERT_EQUAL(OWS_JOURNAL + 3, ows_alarm_count(h));
 	TEST_ASSERT_EQUAL(-ENOENT, ows_alarm(h, 2, &alarm));
 	TEST_ASSERT_EQUAL(0, ows_alarm(h, 3, &alarm));
 	TEST_ASSERT_EQUAL_INT64(3, alarm.before_integer);
-	TEST_ASSERT_EQUAL(0, ows_alarm(h, OWS_ALARMS + 2, &alarm));
+	TEST_ASSERT_EQUAL(0, ows_alarm(h, OWS_JOURNAL + 2, &alarm));
 	TEST_ASSERT_EQUAL_INT64(2, alarm.before_integer);
 }
 
@@ -123,14 +125,14 @@ static void test_a_value_for_an_entry_no_longer_kept_changes_nothing(void)
 {
 	struct ows_alarm alarm;
 
-	for (int64_t i = 0; i < OWS_ALARMS + 1; i++) {
-		struct ows_alarm_entry entry = door_alarm(1);
+	for (int64_t i = 0; i < OWS_JOURNAL + 1; i++) {
+		struct ows_journal_entry entry = door_alarm(1);
 
 		image_alarm(&in.image, &entry);
 	}
 	image_alarm_after(&in.image, 0, 99);
-	image_alarm_after(&in.image, OWS_ALARMS + 1, 99);
-	for (uint32_t i = 1; i < OWS_ALARMS + 1; i++) {
+	image_alarm_after(&in.image, OWS_JOURNAL + 1, 99);
+	for (uint32_t i = 1; i < OWS_JOURNAL + 1; i++) {
 		TEST_ASSERT_EQUAL(0, ows_alarm(h, i, &alarm));
 		TEST_ASSERT_FALSE(alarm.has_after);
 	}
@@ -138,7 +140,7 @@ static void test_a_value_for_an_entry_no_longer_kept_changes_nothing(void)
 
 static void test_numbers_go_on_where_they_wrap(void)
 {
-	struct ows_alarm_entry entry = door_alarm(5);
+	struct ows_journal_entry entry = door_alarm(5);
 	struct ows_alarm alarm;
 
 	in.image.header->alarm_head = UINT32_MAX;
@@ -153,7 +155,7 @@ static void test_numbers_go_on_where_they_wrap(void)
 
 static void test_an_entry_broken_off_is_not_shown(void)
 {
-	struct ows_alarm_entry entry = door_alarm(5);
+	struct ows_journal_entry entry = door_alarm(5);
 	struct ows_alarm alarm;
 
 	image_alarm(&in.image, &entry);
@@ -168,7 +170,7 @@ static int done;
 static void *write_on(void *arg)
 {
 	for (int64_t n = 0; !__atomic_load_n(&done, __ATOMIC_ACQUIRE); n++) {
-		struct ows_alarm_entry entry = door_alarm(n);
+		struct ows_journal_entry entry = door_alarm(n);
 
 		entry.occurred_ns = n;
 		image_alarm_after(&in.image, image_alarm(&in.image, &entry), n);
@@ -203,24 +205,22 @@ static void test_entries_are_whole_beside_a_busy_writer(void)
 
 static void test_an_entry_carries_its_check_word(void)
 {
-	struct ows_alarm_entry entry = door_alarm(5);
+	struct ows_journal_entry entry = door_alarm(5);
 
 	image_alarm(&in.image, &entry);
-	TEST_ASSERT_EQUAL_HEX32(ows_check(&in.image.alarms[0].record, 14),
+	TEST_ASSERT_EQUAL_HEX32(ows_check(&in.image.alarms[0].record, 48),
 	                        in.image.alarms[0].check);
 }
 
-static void test_an_image_of_the_first_layout_has_no_journal(void)
+static void test_an_image_without_a_journal_has_no_alarms(void)
 {
 	struct ows *old;
 	struct ows_alarm alarm;
 
-	in.image.header->minor = 0;
-	in.image.header->alarm_off = 0;
-	in.image.header->alarm_size = 0;
-	in.image.header->alarm_count = 0;
+	in.image.areas[OWS_AREA_ALARMS - 1].kind = OWS_AREAS;
+	in.image.header->alarm_head = 1;
 	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_READ, &old));
-	TEST_ASSERT_EQUAL(0, ows_alarm_count(old));
+	TEST_ASSERT_EQUAL(1, ows_alarm_count(old));
 	TEST_ASSERT_EQUAL(-ENOENT, ows_alarm(old, 0, &alarm));
 	ows_close(old);
 }
@@ -229,7 +229,7 @@ static void test_a_journal_outside_the_segment_is_refused(void)
 {
 	struct ows *broken;
 
-	in.image.header->alarm_count = 0x10000000;
+	in.image.areas[OWS_AREA_ALARMS - 1].count = 0x10000000;
 	TEST_ASSERT_EQUAL(-EPROTO, ows_open(in.name, OWS_READ, &broken));
 }
 
@@ -257,7 +257,7 @@ int main(void)
 	RUN_TEST(test_an_entry_broken_off_is_not_shown);
 	RUN_TEST(test_entries_are_whole_beside_a_busy_writer);
 	RUN_TEST(test_an_entry_carries_its_check_word);
-	RUN_TEST(test_an_image_of_the_first_layout_has_no_journal);
+	RUN_TEST(test_an_image_without_a_journal_has_no_alarms);
 	RUN_TEST(test_a_journal_outside_the_segment_is_refused);
 	RUN_TEST(test_every_kind_and_event_has_a_word);
 	return UNITY_END();

@@ -80,16 +80,19 @@ static void test_owsd_itself_has_no_alarms(void)
 
 static void test_an_acknowledgement_reaches_the_engines_side(void)
 {
-	struct command command;
+	struct giver_command command;
 
 	TEST_ASSERT_EQUAL(0, ows_acknowledge(h, ows_find(h, "door")));
-	TEST_ASSERT_EQUAL(DOOR, commands_next_dirty(&in.commands, 0));
-	TEST_ASSERT_EQUAL(-1, commands_next_dirty(&in.commands, 0));
-	commands_load(&in.commands, DOOR, &command);
-	TEST_ASSERT_EQUAL(1, command.acknowledged);
+	TEST_ASSERT_TRUE(giver_marked(instance_giver(&in, 0)));
+	TEST_ASSERT_EQUAL(DOOR, giver_next_dirty(instance_giver(&in, 0), 0));
+	TEST_ASSERT_EQUAL(-1, giver_next_dirty(instance_giver(&in, 0), 0));
+	command = instance_command(&in, 0, DOOR);
+	TEST_ASSERT_TRUE(command.acknowledged);
 	TEST_ASSERT_EQUAL(0, command.stamp);
-	commands_load(&in.commands, ROOM, &command);
-	TEST_ASSERT_EQUAL(0, command.acknowledged);
+	TEST_ASSERT_FALSE(instance_command(&in, 0, ROOM).acknowledged);
+	TEST_ASSERT_FALSE(instance_command(&in, 0, DOOR).acknowledged);
+	TEST_ASSERT_EQUAL(0, ows_acknowledge(h, ows_find(h, "door")));
+	TEST_ASSERT_TRUE(instance_command(&in, 0, DOOR).acknowledged);
 }
 
 static void test_who_may_only_look_acknowledges_nothing(void)
@@ -101,27 +104,13 @@ static void test_who_may_only_look_acknowledges_nothing(void)
 	ows_close(reader);
 }
 
-static void test_a_segment_of_the_first_layout_takes_no_acknowledgement(void)
-{
-	struct ows_command_header *header = (void *)in.commands.base;
-	struct ows *old;
-
-	header->minor = 0;
-	header->ack_off = 0;
-	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_CONTROL, &old));
-	TEST_ASSERT_EQUAL(-EOPNOTSUPP, ows_acknowledge(old, ows_find(old, "door")));
-	ows_close(old);
-	header->ack_off = 0x7ffffff8;
-	TEST_ASSERT_EQUAL(-EPROTO, ows_open(in.name, OWS_CONTROL, &old));
-}
-
 static void test_what_came_too_late_is_said(void)
 {
 	struct ows_alarm_state state;
 
 	publish(ROOM, &(struct ows_attrs){.flags = OWS_ATTR_LIMITS});
 	image_state(&in.image, OWS_STATE_RETIRED);
-	commands_state(&in.commands, OWS_STATE_RETIRED);
+	giver_state(instance_giver(&in, 0), OWS_STATE_RETIRED);
 	TEST_ASSERT_EQUAL(-ESTALE, ows_acknowledge(h, ows_find(h, "door")));
 	TEST_ASSERT_EQUAL(-ESTALE, ows_alarm_state(h, ows_find(h, "room1"), &state));
 	TEST_ASSERT_TRUE(state.limits);
@@ -145,7 +134,6 @@ int main(void)
 	RUN_TEST(test_owsd_itself_has_no_alarms);
 	RUN_TEST(test_an_acknowledgement_reaches_the_engines_side);
 	RUN_TEST(test_who_may_only_look_acknowledges_nothing);
-	RUN_TEST(test_a_segment_of_the_first_layout_takes_no_acknowledgement);
 	RUN_TEST(test_what_came_too_late_is_said);
 	RUN_TEST(test_every_state_has_a_word);
 	return UNITY_END();

@@ -4,6 +4,7 @@
 
 #include "unity.h"
 
+#include "src/signal/value.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal signals[] = {
@@ -123,6 +124,23 @@ static void test_age_grows_on_the_readers_clock(void)
 	TEST_ASSERT_EQUAL_DOUBLE(5.0, get("x_AgeMax").number);
 }
 
+static void test_the_raw_value_is_as_old_and_as_good_as_the_value(void)
+{
+	struct ows_sample sample = {.measured_ns = now - INSTANCE_S, .quality = OWS_Q_RANGE};
+	struct ows_attrs a = attrs;
+	struct ows_value v;
+
+	a.raw = value_of_double(3.75);
+	publish(&a, now - INSTANCE_S);
+	TEST_ASSERT_EQUAL_DOUBLE(3.75, get("x_Raw").number);
+	TEST_ASSERT_EQUAL(OWS_DOUBLE, get("x_Raw").type);
+	TEST_ASSERT_EQUAL_INT64(INSTANCE_S, get("x_Raw").age_ns);
+	image_publish(&in.image, 1, &sample, &a, NULL);
+	TEST_ASSERT_EQUAL(0, ows_get(h, ows_find(h, "x_Raw"), now, &v));
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_RANGE, v.quality);
+	TEST_ASSERT_EQUAL_DOUBLE(3.75, v.number);
+}
+
 static void test_an_alarm_is_read_once_by_each_handle(void)
 {
 	struct ows_attrs a = attrs;
@@ -187,6 +205,7 @@ int main(void)
 	RUN_TEST(test_counts_survive_the_wrap_of_the_period_number);
 	RUN_TEST(test_nothing_in_work_waits_zero_periods);
 	RUN_TEST(test_age_grows_on_the_readers_clock);
+	RUN_TEST(test_the_raw_value_is_as_old_and_as_good_as_the_value);
 	RUN_TEST(test_an_alarm_is_read_once_by_each_handle);
 	RUN_TEST(test_a_reload_keeps_what_was_seen_of_alarms);
 	RUN_TEST(test_write_only_names_refuse_reading);

@@ -44,10 +44,11 @@ static void test_numbers_of_the_header_that_change_later_lead_nowhere(void)
 	struct ows_counter counter;
 	struct ows_alarm alarm;
 
-	header->target_off = header->counter_off = header->alarm_off = 0x7ffffff0;
-	header->pool_off = header->text_off = 0;
-	header->target_count = header->counter_count = header->pool_size = 0xffffffff;
-	header->alarm_count = 0;
+	header->area_off = 0x7ffffff0;
+	header->area_count = 0xffffffff;
+	for (unsigned i = 0; i < OWS_AREAS - 1; i++)
+		in.image.areas[i] = (struct ows_area_entry){i + 1, 0x7ffffff0, 0,
+		                                            i % 2 ? UINT32_MAX : 0};
 	header->alarm_head = 1;
 	TEST_ASSERT_EQUAL(0, ows_target(h, 1, &target));
 	TEST_ASSERT_EQUAL_STRING("w1", target.name);
@@ -80,11 +81,8 @@ static void test_a_text_that_is_said_to_lie_elsewhere_is_not_read(void)
 
 static void test_a_name_that_changes_into_none_of_the_table_is_not_found(void)
 {
-	struct ows_image_header *header = in.image.header;
-	struct ows_name_entry *names = (void *)(in.image.base + header->name_off);
-
-	for (uint32_t i = 0; i < header->record_count; i++)
-		names[i].record = 1000000;
+	for (uint32_t i = 0; i < in.image.record_count; i++)
+		in.image.names[i].record = 1000000;
 	TEST_ASSERT_EQUAL(-ENOENT, ows_find(h, "room"));
 }
 

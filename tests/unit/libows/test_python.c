@@ -10,7 +10,10 @@
 
 #include "unity.h"
 
+#include "src/shm/entries.h"
+#include "src/shm/futex.h"
 #include "src/signal/value.h"
+#include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal signals[] = {
@@ -200,48 +203,135 @@ static void test_python_computes_attributes_as_c_does(void)
 	expect(code, expected);
 }
 
-static struct command load(uint32_t slot)
+static struct giver_command load(uint32_t slot)
 {
-	struct command c;
+	return instance_command(&in, 0, slot);
+}
 
-	commands_load(&in.commands, slot, &c);
-	return c;
+static struct ows_command_slot *slot_at(uint32_t record)
+{
+	return instance_slot(&in, 0, record);
 }
 
 static void test_c_finds_what_python_set(void)
 {
-	uint32_t bell = *commands_bell(&in.commands);
-	char text[INSTANCE_TEXT + 1];
-	struct command_client client;
+	char text[INSTANCE_TEXT + 1], person[OWS_NAME];
+	struct giver_command relay;
+	struct giver_beat beat;
 
-	expect("s = ows.Ows(name, control=True)\n"
+	expect("s = ows.Ows(name, control=True, name=\"plc\")\n"
 	       "s.beat(700)\ns.beat(700)\n"
 	       "print(s.set(\"relay\", True), s.set(\"relay\", 0), s.set(\"count\", 4294967295))\n"
+	       "s.for_person(\"anna\")\n"
 	       "print(s.set(\"deep\", -2**63), s.set(\"label\", \"north\"))\n"
 	       "s.set(\"relay_RE\", 1); s.set(\"relay_WE\", 0)\n"
 	       "for level in (1, 1, 0, 1): s.set(\"relay_WOS\", level)\n"
 	       "s.set(\"_DGNRESET\", 1)\n"
 	       "sys.stdout.flush(); import os; os._exit(0)",
-	       "1 2 1\n1 1\n");
-	TEST_ASSERT_EQUAL_INT64(0, load(RELAY).value);
-	TEST_ASSERT_EQUAL(2, load(RELAY).stamp);
-	TEST_ASSERT_EQUAL(1, load(RELAY).client);
-	TEST_ASSERT_EQUAL(2, load(RELAY).read_enable);
-	TEST_ASSERT_EQUAL(1, load(RELAY).write_enable);
-	TEST_ASSERT_EQUAL(2, load(RELAY).one_shot);
-	TEST_ASSERT_EQUAL(1, load(0).dgn_reset);
+	       "1 2 3\n4 5\n");
+	TEST_ASSERT_EQUAL_STRING("plc", door_giver(in.door, 0)->hello.name);
+	TEST_ASSERT_EQUAL(2, slot_at(RELAY)->one_shot);
+	TEST_ASSERT_EQUAL(1, slot_at(0)->dgn_reset);
+	relay = load(RELAY);
+	TEST_ASSERT_EQUAL_INT64(0, relay.value);
+	TEST_ASSERT_EQUAL(2, relay.stamp);
+	TEST_ASSERT_EQUAL(2, relay.read_enable);
+	TEST_ASSERT_EQUAL(1, relay.write_enable);
 	TEST_ASSERT_EQUAL_INT64(4294967295, load(NUMBER).value);
+	TEST_ASSERT_EQUAL(0, load(NUMBER).person);
 	TEST_ASSERT_EQUAL_INT64(INT64_MIN, load(DEEP).value);
-	TEST_ASSERT_EQUAL(5, commands_text(&in.commands, LABEL, text));
+	TEST_ASSERT_EQUAL(1, load(DEEP).person);
+	giver_person(instance_giver(&in, 0), 1, person);
+	TEST_ASSERT_EQUAL_STRING("anna", person);
+	TEST_ASSERT_EQUAL(5, giver_text(instance_giver(&in, 0), LABEL, text));
 	TEST_ASSERT_EQUAL_STRING("north", text);
-	commands_client(&in.commands, 0, &client);
-	TEST_ASSERT_EQUAL(2, client.beat);
-	TEST_ASSERT_EQUAL(700, client.period_ms);
-	TEST_ASSERT_NOT_EQUAL(0, client.pid);
-	TEST_ASSERT_NOT_EQUAL(bell, *commands_bell(&in.commands));
-	for (int i = 0; i <= COUNT; i++)
-		TEST_ASSERT_EQUAL(i, commands_next_dirty(&in.commands, 0));
-	TEST_ASSERT_EQUAL(-1, commands_next_dirty(&in.commands, 0));
+	giver_beat(instance_giver(&in, 0), &beat);
+	TEST_ASSERT_EQUAL(2, beat.beat);
+	TEST_ASSERT_EQUAL(700, beat.period_ms);
+	TEST_ASSERT_FALSE_MESSAGE(beat.goodbye, "it ended without close()");
+	TEST_ASSERT_GREATER_THAN(0, door_rings(in.door, 0));
+	TEST_ASSERT_TRUE(giver_marked(instance_giver(&in, 0)));
+	for (int i = 0; i <= LABEL + 1; i++)
+		if (i != ROOM)
+			TEST_ASSERT_EQUAL(i, giver_next_dirty(instance_giver(&in, 0), 0));
+	TEST_ASSERT_EQUAL(-1, giver_next_dirty(instance_giver(&in, 0), 0));
+}
+
+static void test_python_says_goodbye(void)
+{
+	struct giver_beat beat;
+
+	expect("with ows.Ows(name, control=True) as s: s.beat(500)", "");
+	giver_beat(instance_giver(&in, 0), &beat);
+	TEST_ASSERT_TRUE(beat.goodbye);
+	TEST_ASSERT_EQUAL_STRING("-c", door_giver(in.door, 0)->hello.name);
+}
+
+static void test_python_commands_nothing_after_a_fork(void)
+{
+	expect("import os\n"
+	       "s = ows.Ows(name, control=True)\n"
+	       "if os.fork() == 0:\n"
+	       "    print(error(s.set, \"relay\", 1), error(s.beat, 100), error(s.reopen),"
+	       " s.get(\"relay\").type, flush=True)\n"
+	       "    s.close()\n"
+	       "    os._exit(0)\n"
+	       "os.wait()\n"
+	       "print(s.set(\"relay\", 1))\n"
+	       "os._exit(0) if sys.stdout.flush() is None else 0",
+	       "PermissionError PermissionError PermissionError 1\n1\n");
+	TEST_ASSERT_EQUAL(1, load(RELAY).stamp);
+}
+
+static void test_python_sees_what_owsd_took_and_who_commands(void)
+{
+	const struct ows_who who = {.serial = 1, .uid = 1000, .pid = 4711, .name = "plc"};
+	const struct ows_who other = {
+		.serial = 7, .uid = 1001, .pid = 4712, .name = "hmi", .person = "anna"};
+	struct ows_origin_entry origin = {.reason = OWS_REASON_SET, .taken_ns = 5, .who = who};
+	struct ows_giver_entry giver = {
+		.flags = OWS_GIVER_CONNECTED | OWS_GIVER_LATE,
+		.joined_ns = 6,
+		.who = other,
+		.period_ms = 300,
+		.commands = 8,
+		.refused = 9,
+	};
+
+	image_origin(&in.image, RELAY, &origin);
+	origin.reason = OWS_REASON_SAFE;
+	origin.who = other;
+	image_origin(&in.image, NUMBER, &origin);
+	image_giver(&in.image, 3, &giver);
+	expect("s = ows.Ows(name, control=True)\n"
+	       "for n in (\"relay\", \"count\", \"deep\"): print(*s.origin(n))\n"
+	       "print(*[tuple(g) for g in s.givers()])\n",
+	       "By(serial=1, uid=1000, pid=4711, name='plc', person='') 5 set True\n"
+	       "By(serial=7, uid=1001, pid=4712, name='hmi', person='anna') 5 SafeValue False\n"
+	       "By(serial=0, uid=0, pid=0, name='', person='') 0 none False\n"
+	       "(By(serial=7, uid=1001, pid=4712, name='hmi', person='anna'), 6, 300, 8, 9, False,"
+	       " True)\n");
+}
+
+static void test_python_refuses_a_welcome_that_lies(void)
+{
+	static const struct {
+		enum door_lie lie;
+		const char *error;
+	} lies[] = {
+		{DOOR_OTHER_MAGIC, "OSError\n"}, {DOOR_OTHER_MAJOR, "OSError\n"},
+		{DOOR_SHORT, "OSError\n"},       {DOOR_NO_FDS, "OSError\n"},
+		{DOOR_ONE_FD, "OSError\n"},      {DOOR_MANY_FDS, "OSError\n"},
+		{DOOR_NO_SEALS, "OSError\n"},    {DOOR_OTHER_SIZE, "OSError\n"},
+		{DOOR_SMALL, "OSError\n"},       {DOOR_OTHER_MEMORY, "OSError\n"},
+		{DOOR_OUTSIDE, "OSError\n"},     {DOOR_REFUSES, "PermissionError\n"},
+		{DOOR_SILENT, "TimeoutError\n"}, {DOOR_HANGS_UP, "FileNotFoundError\n"},
+	};
+
+	for (size_t i = 0; i < sizeof(lies) / sizeof(lies[0]); i++) {
+		in.door->lie = lies[i].lie;
+		expect("print(error(ows.Ows, name, True))", lies[i].error);
+	}
 }
 
 static void test_python_refuses_what_c_refuses(void)
@@ -254,7 +344,7 @@ static void test_python_refuses_what_c_refuses(void)
 	       "PermissionError\nValueError\nValueError\nValueError\nValueError\nPermissionError\n"
 	       "KeyError\nValueError\nPermissionError FileNotFoundError\n");
 	TEST_ASSERT_EQUAL(0, load(RELAY).stamp);
-	TEST_ASSERT_EQUAL(-1, commands_next_dirty(&in.commands, 0));
+	TEST_ASSERT_EQUAL(-1, giver_next_dirty(instance_giver(&in, 0), 0));
 }
 
 static void test_python_finds_its_way_over_a_reload(void)
@@ -278,14 +368,13 @@ static void test_python_finds_its_way_over_a_reload(void)
 	TEST_ASSERT_EQUAL_STRING("stale True False\nStale\nFalse 2 0\n", output);
 }
 
-/* Killed after its segments had lost their names: nobody is left to say so in them. */
+/* Killed, and its image lost its name: nobody is left to say so in it. */
 static void test_python_finds_its_way_from_an_orphan(void)
 {
 	struct instance next;
 	FILE *run;
 	char first[64];
 
-	instance_beat(&in, ows_now() - 10 * INSTANCE_S, 0);
 	run = python("s = ows.Ows(name, control=True)\n"
 	             "print(s.stale(), s.set(\"relay\", 1), flush=True)\n"
 	             "try:\n"
@@ -299,29 +388,88 @@ static void test_python_finds_its_way_from_an_orphan(void)
 	TEST_ASSERT_NOT_NULL(run);
 	TEST_ASSERT_NOT_NULL(fgets(first, sizeof(first), run));
 	TEST_ASSERT_EQUAL_STRING("False 1\n", first);
-	TEST_ASSERT_EQUAL(0, segment_remove(in.name, SEGMENT_IMAGE));
-	TEST_ASSERT_EQUAL(0, segment_remove(in.name, SEGMENT_COMMAND));
+	instance_kill(&in);
+	TEST_ASSERT_EQUAL(0, segment_remove(folder_place(), in.name, SEGMENT_IMAGE));
 	instance_make(&next, "python", 1, ows_now(), signals, COUNT);
 	instance_lives_on(&next);
 	instance_put(&next, RELAY, 1, ows_now());
 	instance_show(&next);
+	instance_beat(&in, ows_now() - INSTANCE_PATIENCE - 10 * INSTANCE_S, 0);
 	finish(run);
 	instance_leave(&next);
-	TEST_ASSERT_EQUAL_STRING("stale True False\nStale Stale Stale\nFalse 1 True\n", output);
+	TEST_ASSERT_EQUAL_STRING("stale True False\nStale Stale Stale\nFalse 2 True\n", output);
+}
+
+static void test_python_gives_each_change_once_and_says_when_it_fell_behind(void)
+{
+	in.image.header->change_head = UINT32_MAX - 1; /* their numbers wrap */
+	instance_put(&in, RELAY, 1, ows_now());
+	instance_put_text(&in, LABEL, "x", ows_now());
+	instance_put(&in, RELAY, 0, ows_now());
+	expect("s = ows.Ows(name)\n"
+	       "c = s.changes(0)\n"
+	       "n = next(c)\n"
+	       "print(n.everything, len(n), len(next(c)))\n"
+	       "c.number = c.number - 3 & 0xffffffff\n"
+	       "n = next(c)\n"
+	       "print(n.everything, *n, len(next(c)))\n"
+	       "c.number = c.number - 5000 & 0xffffffff\n"
+	       "n = next(c)\n"
+	       "print(n.everything, len(n), len(next(c)))\n"
+	       "c.number = c.number - 4 & 0xffffffff\n" /* the place has another number */
+	       "print(next(c).everything)\n"
+	       "c.looked -= 2 * c.KEEPS_NS\n"
+	       "print(next(c).everything)",
+	       "True 6 0\nFalse relay label 0\nTrue 6 0\nTrue\nTrue\n");
+}
+
+static void expect_line(FILE *run, const char *expected)
+{
+	char line[128];
+
+	TEST_ASSERT_NOT_NULL(fgets(line, sizeof(line), run));
+	TEST_ASSERT_EQUAL_STRING(expected, line);
+}
+
+static void test_python_follows_changes_over_a_loss_of_owsd_and_a_reload(void)
+{
+	FILE *run = python("s = ows.Ows(name)\n"
+	                   "c = s.changes(60)\n"
+	                   "def show(n): print(n.everything, *n, flush=True)\n"
+	                   "for i in range(4): show(next(c))\n"
+	                   "print(error(next, c), flush=True)\n"
+	                   "s.reopen()\n"
+	                   "for i in range(2): show(next(c))");
+
+	TEST_ASSERT_NOT_NULL(run);
+	expect_line(run, "True room1 relay count label deep room1_Age\n");
+	instance_put(&in, NUMBER, 1, ows_now());
+	segment_wake(&in.image.header->news, 1000);
+	expect_line(run, "False count\n");
+	instance_beat(&in, ows_now() - INSTANCE_PATIENCE - INSTANCE_S, 0);
+	segment_wake(&in.image.header->news, 1000);
+	expect_line(run, "True room1 relay count label deep room1_Age\n");
+	instance_beat(&in, ows_now(), 0);
+	segment_wake(&in.image.header->news, 1000);
+	expect_line(run, "True room1 relay count label deep room1_Age\n");
+	instance_reload(&in, signals, COUNT - 1);
+	instance_lives_on(&in);
+	expect_line(run, "Stale\n");
+	expect_line(run, "True room1 relay count label deep\n");
+	instance_put(&in, DEEP, 1, ows_now());
+	finish(run);
+	TEST_ASSERT_EQUAL_STRING("False deep\n", output);
 }
 
 static void test_python_refuses_rubbish(void)
 {
-	in.image.header->record_size = 128;
+	in.image.areas[OWS_AREA_RECORDS - 1].size = 128;
 	expect("print(error(ows.Ows, name))", "OSError\n");
-	in.image.header->record_size = 256;
-	in.image.header->record_count = 0x7fffffff;
+	in.image.areas[OWS_AREA_RECORDS - 1].size = 320;
+	in.image.areas[OWS_AREA_RECORDS - 1].count = 0x7fffffff;
 	expect("print(error(ows.Ows, name))", "OSError\n");
-	in.image.header->record_count = COUNT + 1;
-	((struct ows_command_header *)(void *)in.commands.base)->slot_off = 0xfffffff8u;
-	expect("print(error(ows.Ows, name, True))", "OSError\n");
-	TEST_ASSERT_EQUAL(0, ftruncate(in.command_memory.fd, 256));
-	expect("print(error(ows.Ows, name, True))", "OSError\n");
+	in.image.areas[OWS_AREA_RECORDS - 1].count = COUNT + 1;
+	expect("print(error(ows.Ows, name))", "None\n");
 }
 
 static int done;
@@ -362,24 +510,24 @@ static void test_python_sees_whole_samples_beside_a_busy_writer(void)
 
 static void test_python_reads_the_journal_of_alarms(void)
 {
-	struct ows_alarm_entry entry = {
+	struct ows_journal_entry entry = {
 		.record = ROOM,
 		.occurred_ns = 5,
 		.before = value_of_double(21.5),
 		.kind = OWS_ALARM_HH,
 		.event = OWS_ALARM_RAISED,
 		.quality = OWS_Q_GOOD,
-		.flags = OWS_ALARM_BEFORE,
+		.flags = OWS_JOURNAL_BEFORE,
 	};
 
-	for (int i = 0; i < OWS_ALARMS + 1; i++)
+	for (int i = 0; i < OWS_JOURNAL + 1; i++)
 		image_alarm(&in.image, &entry);
-	entry = (struct ows_alarm_entry){
+	entry = (struct ows_journal_entry){
 		.record = RELAY,
 		.occurred_ns = 6,
 		.kind = OWS_ALARM_DEVICE,
 		.event = OWS_ALARM_RETURNED,
-		.latch = "1,0",
+		.text = "1,0",
 	};
 	image_alarm_after(&in.image, image_alarm(&in.image, &entry), 1);
 	in.image.alarms[5].seq++;
@@ -390,8 +538,9 @@ static void test_python_reads_the_journal_of_alarms(void)
 	       "print(*[list(a) for a in s.alarms(257)])\n"
 	       "print(list(s.alarms(258)))\n",
 	       "255 2 False\n"
-	       "room1 5 21.5 None high high raised 192 \n"
-	       "[257, 'relay', 6, None, True, 'device', 'returned', 0, '1,0']\n"
+	       "room1 5 21.5 None high high raised 192  By(serial=0, uid=0, pid=0, name='', person='')\n"
+	       "[257, 'relay', 6, None, True, 'device', 'returned', 0, '1,0',"
+	       " By(serial=0, uid=0, pid=0, name='', person='')]\n"
 	       "[]\n");
 }
 
@@ -404,7 +553,6 @@ static void test_c_finds_what_python_acknowledged(void)
 		.limit_state = OWS_LIMIT_RETURNED,
 		.limit_condition = OWS_ALARM_LL,
 	};
-	struct command command;
 
 	image_publish(&in.image, ROOM, &sample, &attrs, NULL);
 	expect("s = ows.Ows(name, control=True)\n"
@@ -412,28 +560,33 @@ static void test_c_finds_what_python_acknowledged(void)
 	       "s.acknowledge(\"room1\")\n"
 	       "print(error(s.acknowledge, \"_TRANSACTIONS\"),"
 	       " error(ows.Ows(name).acknowledge, \"room1\"))",
-	       "3,True,False,True,returned to normal unacknowledged,low low,False\n"
+	       "3,True,False,True,returned to normal unacknowledged,low low,False,None\n"
 	       "KeyError PermissionError\n");
-	commands_load(&in.commands, ROOM, &command);
-	TEST_ASSERT_EQUAL(1, command.acknowledged);
+	TEST_ASSERT_TRUE(load(ROOM).acknowledged);
 }
 
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_python_reads_what_c_wrote);
-	RUN_TEST(test_python_reads_the_journal_of_alarms);
-	RUN_TEST(test_c_finds_what_python_acknowledged);
 	RUN_TEST(test_python_names_the_targets);
 	RUN_TEST(test_python_looks_names_up_as_c_does);
 	RUN_TEST(test_python_lowers_quality_as_c_does);
 	RUN_TEST(test_python_takes_what_is_of_the_future_for_dead);
 	RUN_TEST(test_python_computes_attributes_as_c_does);
 	RUN_TEST(test_c_finds_what_python_set);
+	RUN_TEST(test_python_says_goodbye);
+	RUN_TEST(test_python_commands_nothing_after_a_fork);
+	RUN_TEST(test_python_sees_what_owsd_took_and_who_commands);
+	RUN_TEST(test_python_refuses_a_welcome_that_lies);
 	RUN_TEST(test_python_refuses_what_c_refuses);
 	RUN_TEST(test_python_finds_its_way_over_a_reload);
 	RUN_TEST(test_python_finds_its_way_from_an_orphan);
+	RUN_TEST(test_python_gives_each_change_once_and_says_when_it_fell_behind);
+	RUN_TEST(test_python_follows_changes_over_a_loss_of_owsd_and_a_reload);
 	RUN_TEST(test_python_refuses_rubbish);
 	RUN_TEST(test_python_sees_whole_samples_beside_a_busy_writer);
+	RUN_TEST(test_python_reads_the_journal_of_alarms);
+	RUN_TEST(test_c_finds_what_python_acknowledged);
 	return UNITY_END();
 }

@@ -2,6 +2,7 @@
 /* Tests of opening segments again after a reload or restart. */
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,6 +13,7 @@
 #include "unity.h"
 
 #include "src/shm/futex.h"
+#include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal before[] = {
@@ -42,6 +44,20 @@ void tearDown(void)
 	instance_end(&in);
 }
 
+/* Reopening waits only a moment; a busy machine may need more of them. */
+static int reopen(struct ows *handle)
+{
+	const struct timespec pause = {.tv_nsec = 1000000};
+	int err = -ENOENT;
+
+	for (int i = 0; err == -ENOENT && i < 1000; i++) {
+		err = ows_reopen(handle);
+		if (err)
+			nanosleep(&pause, NULL);
+	}
+	return err;
+}
+
 static void test_ids_stay_right_over_a_reload(void)
 {
 	struct ows_value v;
@@ -57,7 +73,7 @@ static void test_ids_stay_right_over_a_reload(void)
 	TEST_ASSERT_EQUAL(-ESTALE,
 	                  ows_get(h, b, ows_now() + INSTANCE_PATIENCE + 10 * INSTANCE_S, &v));
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, v.quality);
-	TEST_ASSERT_EQUAL(0, ows_reopen(h));
+	TEST_ASSERT_EQUAL(0, reopen(h));
 	instance_put(&in, 2, 0, ows_now());
 	instance_put_double(&in, 3, 2.5, ows_now());
 	TEST_ASSERT_EQUAL(0, ows_get(h, b, ows_now(), &v));
@@ -70,27 +86,147 @@ static void test_ids_stay_right_over_a_reload(void)
 	TEST_ASSERT_EQUAL(-ENOENT, ows_get(h, c, ows_now(), &v));
 	TEST_ASSERT_EQUAL(-ENOENT, ows_find(h, "c"));
 	instance_reload(&in, before, 3);
-	TEST_ASSERT_EQUAL(0, ows_reopen(h));
+	TEST_ASSERT_EQUAL(0, reopen(h));
 	TEST_ASSERT_EQUAL(c, ows_find(h, "c"));
 }
 
-static void test_a_commanded_value_goes_to_the_same_signal_after_a_reload(void)
+static void test_a_command_goes_to_the_same_signal_after_a_reload(void)
 {
-	struct command c;
+	struct giver_beat beat;
 	uint32_t stamp;
 
 	TEST_ASSERT_EQUAL(0, ows_beat(h, 1000));
+	TEST_ASSERT_EQUAL(0, ows_for(h, "anna"));
 	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "b"), 1, NULL));
 	instance_reload(&in, after, 3);
-	commands_load(&in.commands, 2, &c);
-	TEST_ASSERT_EQUAL_INT64(1, c.value);
-	TEST_ASSERT_EQUAL(1, c.client);
+	instance_lives_on(&in);
+	TEST_ASSERT_EQUAL_INT64(1, instance_command(&in, 0, 2).value);
 	TEST_ASSERT_EQUAL(-ESTALE, ows_set(h, ows_find(h, "b"), 0, NULL));
-	TEST_ASSERT_EQUAL(0, ows_reopen(h));
+	TEST_ASSERT_EQUAL(0, reopen(h));
 	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "b"), 0, &stamp));
 	TEST_ASSERT_EQUAL(2, stamp);
-	commands_load(&in.commands, 2, &c);
-	TEST_ASSERT_EQUAL(1, c.client);
+	TEST_ASSERT_EQUAL_INT64(0, instance_command(&in, 0, 2).value);
+	TEST_ASSERT_EQUAL(1, instance_command(&in, 0, 2).person);
+	giver_beat(instance_giver(&in, 0), &beat);
+	TEST_ASSERT_EQUAL(1000, beat.period_ms);
+	TEST_ASSERT_EQUAL(2, beat.beat);
+	TEST_ASSERT_EQUAL_MESSAGE(1, in.door->count, "it stays the same giver");
+}
+
+static void test_of_several_reloads_the_last_counts(void)
+{
+	instance_reload(&in, after, 3);
+	instance_reload(&in, before, 3);
+	instance_reload(&in, after, 3);
+	instance_lives_on(&in);
+	TEST_ASSERT_EQUAL(0, reopen(h));
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "b"), 1, NULL));
+	TEST_ASSERT_EQUAL_INT64(1, instance_command(&in, 0, 2).value);
+}
+
+/* An owsd that is killed, and the next one. */
+static void restart(void)
+{
+	instance_kill(&in);
+	image_state(&in.image, OWS_STATE_RETIRED);
+	instance_leave(&in);
+	instance_make(&in, "reopen", 1, ows_now() + 1, before, 3);
+	instance_lives_on(&in);
+	instance_show(&in);
+}
+
+static void test_after_a_restart_the_giver_comes_back_with_its_token_and_beats(void)
+{
+	struct giver_beat beat;
+	uint32_t stamp;
+
+	TEST_ASSERT_EACH_EQUAL_UINT8(0, door_giver(in.door, 0)->hello.token, 16);
+	TEST_ASSERT_EQUAL(0, ows_beat(h, 1500));
+	TEST_ASSERT_EQUAL(0, ows_for(h, "anna"));
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "b"), 1, NULL));
+	restart();
+	TEST_ASSERT_EQUAL(-ESTALE, ows_set(h, ows_find(h, "b"), 1, NULL));
+	TEST_ASSERT_EQUAL(0, reopen(h));
+	TEST_ASSERT_EQUAL_STRING("token 1", (char *)door_giver(in.door, 0)->hello.token);
+	giver_beat(instance_giver(&in, 0), &beat);
+	TEST_ASSERT_EQUAL(1500, beat.period_ms);
+	TEST_ASSERT_EQUAL(1, beat.beat);
+	TEST_ASSERT_EQUAL_MESSAGE(0, instance_command(&in, 0, 2).stamp, "it sets nothing itself");
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "b"), 0, &stamp));
+	TEST_ASSERT_EQUAL(2, stamp);
+	TEST_ASSERT_EQUAL(1, instance_command(&in, 0, 2).person);
+}
+
+static void test_a_giver_that_never_beat_comes_back_without_a_beat(void)
+{
+	struct giver_beat beat;
+
+	restart();
+	TEST_ASSERT_EQUAL(0, reopen(h));
+	giver_beat(instance_giver(&in, 0), &beat);
+	TEST_ASSERT_EQUAL(0, beat.period_ms);
+	TEST_ASSERT_EQUAL(0, beat.beat);
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "b"), 1, NULL));
+}
+
+static void test_while_nobody_listens_the_old_image_stays_readable(void)
+{
+	struct ows_value v;
+	struct ows *other;
+	int b = ows_find(h, "b");
+
+	instance_put(&in, 2, 1, ows_now());
+	instance_kill(&in);
+	TEST_ASSERT_EQUAL(-ENOENT, ows_reopen(h));
+	TEST_ASSERT_EQUAL(-ENOENT, ows_reopen(h));
+	TEST_ASSERT_EQUAL(-ENOENT, ows_open(in.name, OWS_CONTROL, &other));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_set(h, b, 1, NULL));
+	TEST_ASSERT_EQUAL(0, ows_get(h, b, ows_now(), &v));
+	TEST_ASSERT_EQUAL_INT64(1, v.integer);
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_READ, &other));
+	ows_close(other);
+}
+
+static void test_a_reader_that_asks_for_a_descriptor_is_woken_by_it(void)
+{
+	const uint64_t one = 1;
+	struct pollfd news;
+	struct ows *reader;
+	uint32_t seen = 0;
+
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_READ, &reader));
+	TEST_ASSERT_EQUAL(1, ows_wait(reader, &seen, 0));
+	news = (struct pollfd){.fd = ows_fd(reader), .events = POLLIN};
+	TEST_ASSERT_GREATER_OR_EQUAL(0, news.fd);
+	TEST_ASSERT_EQUAL(0, door_giver(in.door, 1)->hello.flags);
+	TEST_ASSERT_EQUAL(0, poll(&news, 1, 0));
+	TEST_ASSERT_TRUE(giver_waits(instance_giver(&in, 1)));
+	image_news(&in.image);
+	TEST_ASSERT_EQUAL(8, write(door_giver(in.door, 1)->news, &one, sizeof(one)));
+	TEST_ASSERT_EQUAL(1, poll(&news, 1, 60000));
+	TEST_ASSERT_EQUAL(news.fd, ows_fd(reader));
+	TEST_ASSERT_EQUAL(0, poll(&news, 1, 0));
+	TEST_ASSERT_EQUAL(-EACCES, ows_set(reader, ows_find(reader, "b"), 1, NULL));
+	instance_reload(&in, after, 3);
+	instance_lives_on(&in);
+	TEST_ASSERT_EQUAL(0, reopen(reader));
+	TEST_ASSERT_EQUAL(news.fd, ows_fd(reader));
+	ows_close(reader);
+}
+
+static void test_a_connected_sleeper_wakes_by_its_descriptor(void)
+{
+	const uint64_t one = 1;
+	uint32_t seen = 0;
+
+	TEST_ASSERT_EQUAL(1, ows_wait(h, &seen, 0));
+	image_news(&in.image);
+	TEST_ASSERT_EQUAL(8, write(door_giver(in.door, 0)->news, &one, sizeof(one)));
+	TEST_ASSERT_EQUAL(1, ows_wait(h, &seen, 60 * INSTANCE_S));
+	TEST_ASSERT_EQUAL(0, ows_wait(h, &seen, 1000000));
+	/* owsd has hung up, and the descriptor with it: the image still counts */
+	instance_kill(&in);
+	TEST_ASSERT_EQUAL(0, ows_wait(h, &seen, 1000000));
 }
 
 static void test_reopen_waits_for_the_new_image(void)
@@ -101,7 +237,7 @@ static void test_reopen_waits_for_the_new_image(void)
 	instance_put(&in, 2, 1, ows_now());
 	image_state(&in.image, OWS_STATE_STOPPED);
 	TEST_ASSERT_EQUAL(-ENOENT, ows_reopen(h));
-	TEST_ASSERT_EQUAL(0, segment_remove(in.name, SEGMENT_IMAGE));
+	TEST_ASSERT_EQUAL(0, segment_remove(folder_place(), in.name, SEGMENT_IMAGE));
 	TEST_ASSERT_EQUAL(-ENOENT, ows_reopen(h));
 	TEST_ASSERT_EQUAL(-ESTALE, ows_get(h, b, ows_now(), &v));
 	TEST_ASSERT_EQUAL_INT64(1, v.integer);
@@ -147,14 +283,17 @@ static void test_a_sleeper_wakes_for_news_and_for_retirement(void)
 {
 	uint32_t news = 0;
 	pthread_t thread;
+	struct ows *reader; /* which sleeps on the word of the image */
 
-	TEST_ASSERT_EQUAL(1, ows_wait(h, &news, 0));
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_READ, &reader));
+	TEST_ASSERT_EQUAL(1, ows_wait(reader, &news, 0));
 	TEST_ASSERT_EQUAL(0, pthread_create(&thread, NULL, publish_later, NULL));
-	TEST_ASSERT_EQUAL(1, ows_wait(h, &news, 60 * INSTANCE_S));
+	TEST_ASSERT_EQUAL(1, ows_wait(reader, &news, 60 * INSTANCE_S));
 	pthread_join(thread, NULL);
 	TEST_ASSERT_EQUAL(0, pthread_create(&thread, NULL, publish_later, &in));
-	TEST_ASSERT_EQUAL(-ESTALE, ows_wait(h, &news, INT64_MAX)); /* no limit either */
+	TEST_ASSERT_EQUAL(-ESTALE, ows_wait(reader, &news, INT64_MAX)); /* no limit either */
 	pthread_join(thread, NULL);
+	ows_close(reader);
 }
 
 static void expect_open(int err)
@@ -168,7 +307,7 @@ static void expect_open(int err)
 static void test_open_refuses_what_is_not_ours(void)
 {
 	struct ows_image_header *image = in.image.header, image_was = *image;
-	struct ows_command_header *command = (void *)in.commands.base, command_was = *command;
+	struct ows_area_entry *area, area_was;
 
 #define REFUSED(h, field, value, err) \
 	do { \
@@ -177,39 +316,47 @@ static void test_open_refuses_what_is_not_ours(void)
 		*h = h##_was; \
 	} while (0)
 	REFUSED(image, magic, 1, -EPROTO);
-	REFUSED(image, major, 2, -EPROTO);
+	REFUSED(image, major, 1, -EPROTO);
+	REFUSED(image, area_off, 0xfffffff8u, -EPROTO);
+	REFUSED(image, area_count, 0x10000000u, -EPROTO);
 	REFUSED(image, size, 4096 * 1024, -EPROTO);
-	REFUSED(image, record_size, 128, -EPROTO);
-	REFUSED(image, record_count, 0, -EPROTO);
-	REFUSED(image, record_count, 0xffffffffu, -EPROTO);
-	REFUSED(image, record_off, 0xfffffff8u, -EPROTO);
-	REFUSED(image, record_off, 257, -EPROTO);
-	REFUSED(image, name_off, image->size, -EPROTO);
-	REFUSED(image, pool_size, 0, -EPROTO);
-	REFUSED(image, pool_size, 0x7fffffffu, -EPROTO);
-	REFUSED(image, counter_count, 0x1000000u, -EPROTO);
-	REFUSED(image, text_size, 64, -EPROTO);
-	REFUSED(command, magic, 0, -EPROTO);
-	REFUSED(command, slot_off, 0x10000000u, -EPROTO);
-	REFUSED(command, slot_count, 1, -EPROTO);
-	REFUSED(command, dirty_words, 0x40000000u, -EPROTO);
-	REFUSED(command, entry_off, 4, -EPROTO);
-	REFUSED(command, text_cap, 0x10000000u, -EPROTO);
-	REFUSED(command, generation, 99, -ENOENT);
-	REFUSED(command, start_id, 99, -ENOENT);
+#define REFUSED_AREA(which, field, value) \
+	do { \
+		area = &in.image.areas[OWS_AREA_##which - 1]; \
+		area_was = *area; \
+		REFUSED(area, field, value, -EPROTO); \
+	} while (0)
+	REFUSED_AREA(RECORDS, size, 128);
+	REFUSED_AREA(RECORDS, count, 0);
+	REFUSED_AREA(RECORDS, count, 0xffffffffu);
+	REFUSED_AREA(RECORDS, off, 0xfffffff8u);
+	REFUSED_AREA(RECORDS, off, 257);
+	REFUSED_AREA(RECORDS, kind, OWS_AREAS);
+	REFUSED_AREA(INFOS, count, 1);
+	REFUSED_AREA(NAMES, off, in.image.header->size);
+	REFUSED_AREA(NAMES, count, 1);
+	REFUSED_AREA(POOL, count, 0);
+	REFUSED_AREA(POOL, count, 0x7fffffffu);
+	REFUSED_AREA(POOL, size, 8);
+	REFUSED_AREA(COUNTERS, count, 0x1000000u);
+	REFUSED_AREA(TEXTS, count, 64);
+	REFUSED_AREA(ORIGINS, count, 1);
+	REFUSED_AREA(CHANGES, count, 1000);
+	REFUSED_AREA(GIVERS, kind, OWS_AREA_SHELVES);
+#undef REFUSED_AREA
 #undef REFUSED
 }
 
 static void test_open_refuses_names_and_files_that_cannot_be(void)
 {
 	struct ows *other;
-	char path[80];
+	char path[PLACE_PATH + 64];
 
 	TEST_ASSERT_EQUAL(-EINVAL, ows_open("../etc", OWS_READ, &other));
 	TEST_ASSERT_EQUAL(-EINVAL, ows_open("", OWS_READ, &other));
 	TEST_ASSERT_EQUAL(-EINVAL, ows_open(".hidden", OWS_READ, &other));
 	TEST_ASSERT_EQUAL(-ENOENT, ows_open("no-such-instance", OWS_READ, &other));
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.image", in.name);
+	snprintf(path, sizeof(path), "%s", folder_file(in.name, "image"));
 	TEST_ASSERT_EQUAL(0, unlink(path));
 	TEST_ASSERT_EQUAL(0, symlink("/etc/passwd", path));
 	TEST_ASSERT_EQUAL(-EPERM, ows_open(in.name, OWS_READ, &other));
@@ -223,7 +370,7 @@ static void test_open_refuses_names_and_files_that_cannot_be(void)
 
 static void test_names_with_rubbish_offsets_end_nowhere(void)
 {
-	struct ows_name_entry *names = (void *)(in.image.base + in.image.header->name_off);
+	struct ows_name_entry *names = in.image.names;
 	struct ows *other;
 
 	for (int i = 0; i < 4; i++)
@@ -239,7 +386,13 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_ids_stay_right_over_a_reload);
-	RUN_TEST(test_a_commanded_value_goes_to_the_same_signal_after_a_reload);
+	RUN_TEST(test_a_command_goes_to_the_same_signal_after_a_reload);
+	RUN_TEST(test_of_several_reloads_the_last_counts);
+	RUN_TEST(test_after_a_restart_the_giver_comes_back_with_its_token_and_beats);
+	RUN_TEST(test_a_giver_that_never_beat_comes_back_without_a_beat);
+	RUN_TEST(test_while_nobody_listens_the_old_image_stays_readable);
+	RUN_TEST(test_a_reader_that_asks_for_a_descriptor_is_woken_by_it);
+	RUN_TEST(test_a_connected_sleeper_wakes_by_its_descriptor);
 	RUN_TEST(test_reopen_waits_for_the_new_image);
 	RUN_TEST(test_reopen_of_what_is_present_changes_nothing);
 	RUN_TEST(test_wait_returns_for_news_time_and_retirement);

@@ -2,15 +2,16 @@
 /* Tests of setting outputs and attributes by libows. */
 #include <errno.h>
 #include <math.h>
+#include <poll.h>
 #include <pthread.h>
 #include <sched.h>
+#include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "unity.h"
 
-#include "src/shm/futex.h"
 #include "src/signal/value.h"
 #include "tests/unit/aid/instance.h"
 
@@ -39,31 +40,92 @@ void tearDown(void)
 	instance_end(&in);
 }
 
-static struct command load(uint32_t slot)
+static struct giver_command load(uint32_t slot)
 {
-	struct command c;
-
-	commands_load(&in.commands, slot, &c);
-	return c;
+	return instance_command(&in, 0, slot);
 }
 
-static struct ows_client *client_at(unsigned client)
+static struct ows_command_slot *slot_at(uint32_t record)
 {
-	return (struct ows_client *)(void *)(in.commands.base + in.commands.client_off) + client;
+	return instance_slot(&in, 0, record);
+}
+
+static struct ows_giver_header *header(void)
+{
+	return (struct ows_giver_header *)(void *)instance_giver(&in, 0)->base;
+}
+
+static int next_dirty(void)
+{
+	return giver_next_dirty(instance_giver(&in, 0), 0);
 }
 
 static void test_a_set_reaches_the_engine_with_stamp_mark_and_bell(void)
 {
-	uint32_t stamp, bell = *commands_bell(&in.commands);
+	uint32_t stamp;
 
 	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "valve"), 0.25, &stamp));
 	TEST_ASSERT_EQUAL(1, stamp);
 	TEST_ASSERT_EQUAL_INT64(value_of_double(0.25), load(VALVE).value);
 	TEST_ASSERT_EQUAL(1, load(VALVE).stamp);
-	TEST_ASSERT_EQUAL(0, load(VALVE).client);
-	TEST_ASSERT_NOT_EQUAL(bell, *commands_bell(&in.commands));
-	TEST_ASSERT_EQUAL(VALVE, commands_next_dirty(&in.commands, 0));
-	TEST_ASSERT_EQUAL(-1, commands_next_dirty(&in.commands, 0));
+	TEST_ASSERT_TRUE(giver_marked(instance_giver(&in, 0)));
+	TEST_ASSERT_EQUAL(VALVE, next_dirty());
+	TEST_ASSERT_EQUAL(-1, next_dirty());
+	TEST_ASSERT_EQUAL(1, door_rings(in.door, 0));
+}
+
+static void test_an_engine_that_is_awake_needs_no_bell(void)
+{
+	image_awake(&in.image, true);
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "valve"), 0.25, NULL));
+	TEST_ASSERT_TRUE(giver_marked(instance_giver(&in, 0)));
+	TEST_ASSERT_EQUAL(0, door_rings(in.door, 0));
+	image_awake(&in.image, false);
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "valve"), 0.5, NULL));
+	TEST_ASSERT_EQUAL(1, door_rings(in.door, 0));
+}
+
+static void test_each_set_of_a_handle_has_a_greater_stamp(void)
+{
+	uint32_t first, second, third;
+
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "valve"), 1, &first));
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat"), 1, &second));
+	TEST_ASSERT_EQUAL(0, ows_set_text(h, ows_find(h, "text"), "x", &third));
+	TEST_ASSERT_EQUAL(1, first);
+	TEST_ASSERT_EQUAL(2, second);
+	TEST_ASSERT_EQUAL(3, third);
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat_RE"), 1, &third));
+	TEST_ASSERT_EQUAL(0, third);
+}
+
+static void test_what_owsd_took_and_confirmed_is_this_handles_own(void)
+{
+	int valve = ows_find(h, "valve");
+	struct ows_command command;
+	struct ows_value v;
+	struct ows *other;
+	uint32_t stamp;
+
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_CONTROL, &other));
+	TEST_ASSERT_EQUAL(0, ows_set(h, valve, 1, &stamp));
+	TEST_ASSERT_EQUAL(0, ows_command(h, valve, &command));
+	TEST_ASSERT_EQUAL(0, command.taken);
+	giver_taken(instance_giver(&in, 0), VALVE, stamp, 0);
+	giver_applied(instance_giver(&in, 0), VALVE, stamp);
+	TEST_ASSERT_EQUAL(0, ows_command(h, valve, &command));
+	TEST_ASSERT_EQUAL(stamp, command.taken);
+	TEST_ASSERT_EQUAL(stamp, command.applied);
+	TEST_ASSERT_EQUAL(0, command.refused);
+	TEST_ASSERT_EQUAL(0, ows_get(h, valve, ows_now(), &v));
+	TEST_ASSERT_EQUAL(stamp, v.applied);
+	TEST_ASSERT_EQUAL(0, ows_get(other, ows_find(other, "valve"), ows_now(), &v));
+	TEST_ASSERT_EQUAL(0, v.applied);
+	TEST_ASSERT_EQUAL(0, ows_set(h, valve, 2, &stamp));
+	giver_taken(instance_giver(&in, 0), VALVE, stamp, -ERANGE);
+	TEST_ASSERT_EQUAL(0, ows_command(h, valve, &command));
+	TEST_ASSERT_EQUAL(-ERANGE, command.refused);
+	ows_close(other);
 }
 
 static void test_a_value_the_type_cannot_hold_is_refused(void)
@@ -74,7 +136,7 @@ static void test_a_value_the_type_cannot_hold_is_refused(void)
 	TEST_ASSERT_EQUAL(-EINVAL, ows_set(h, ows_find(h, "valve"), (double)INFINITY, NULL));
 	TEST_ASSERT_EQUAL(0, load(SMALL).stamp);
 	TEST_ASSERT_EQUAL(0, load(VALVE).stamp);
-	TEST_ASSERT_EQUAL(-1, commands_next_dirty(&in.commands, 0));
+	TEST_ASSERT_EQUAL(-1, next_dirty());
 }
 
 static void test_an_input_takes_no_sets(void)
@@ -126,17 +188,25 @@ static void test_a_reader_may_not_set(void)
 	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_READ, &reader));
 	TEST_ASSERT_EQUAL(-EACCES, ows_set(reader, ows_find(reader, "heat"), 1, NULL));
 	TEST_ASSERT_EQUAL(-EACCES, ows_beat(reader, 1000));
+	TEST_ASSERT_EQUAL(-EACCES, ows_for(reader, "anna"));
 	ows_close(reader);
 }
 
 static void test_enables_are_commanded_by_name(void)
 {
+	struct giver_command c;
+
 	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat_RE"), 1, NULL));
 	TEST_ASSERT_EQUAL(0, ows_set_integer(h, ows_find(h, "heat_WriteEnable"), 0, NULL));
+	c = load(HEAT);
+	TEST_ASSERT_EQUAL(2, c.read_enable);
+	TEST_ASSERT_EQUAL(1, c.write_enable);
+	TEST_ASSERT_EQUAL(0, c.stamp);
+	TEST_ASSERT_EQUAL(HEAT, next_dirty());
+	/* The same once more is new all the same: another program may have set it meanwhile */
+	TEST_ASSERT_EQUAL(0, load(HEAT).read_enable);
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat_RE"), 1, NULL));
 	TEST_ASSERT_EQUAL(2, load(HEAT).read_enable);
-	TEST_ASSERT_EQUAL(1, load(HEAT).write_enable);
-	TEST_ASSERT_EQUAL(0, load(HEAT).stamp);
-	TEST_ASSERT_EQUAL(HEAT, commands_next_dirty(&in.commands, 0));
 }
 
 static void test_a_flag_acts_when_it_goes_from_off_to_on(void)
@@ -145,26 +215,25 @@ static void test_a_flag_acts_when_it_goes_from_off_to_on(void)
 
 	for (int i = 0; i < 3; i++)
 		TEST_ASSERT_EQUAL(0, ows_set(h, shot, 1, NULL));
-	TEST_ASSERT_EQUAL(1, load(HEAT).one_shot);
+	TEST_ASSERT_EQUAL(1, slot_at(HEAT)->one_shot);
 	TEST_ASSERT_EQUAL(0, ows_set(h, shot, 0, NULL));
 	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat_WriteOneShot"), 1, NULL));
-	TEST_ASSERT_EQUAL(2, load(HEAT).one_shot);
+	TEST_ASSERT_EQUAL(2, slot_at(HEAT)->one_shot);
 	TEST_ASSERT_EQUAL(0, ows_set(h, reset, 1, NULL));
 	TEST_ASSERT_EQUAL(0, ows_set(h, reset, 1, NULL));
-	TEST_ASSERT_EQUAL(1, load(0).dgn_reset);
-	TEST_ASSERT_EQUAL(0, load(HEAT).dgn_reset);
+	TEST_ASSERT_EQUAL(1, slot_at(0)->dgn_reset);
+	TEST_ASSERT_EQUAL(0, slot_at(HEAT)->dgn_reset);
 	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat_DGNRESET"), 1, NULL));
-	TEST_ASSERT_EQUAL(1, load(HEAT).dgn_reset);
+	TEST_ASSERT_EQUAL(1, slot_at(HEAT)->dgn_reset);
 }
 
 static void test_many_values_ring_once(void)
 {
 	int ids[3] = {ows_find(h, "heat"), ows_find(h, "valve"), ows_find(h, "small")};
 	double values[3] = {1, 2.5, 300};
-	uint32_t bell = *commands_bell(&in.commands);
 
 	TEST_ASSERT_EQUAL(2, ows_set_many(h, ids, values, 3));
-	TEST_ASSERT_EQUAL(bell + 1, *commands_bell(&in.commands));
+	TEST_ASSERT_EQUAL(1, door_rings(in.door, 0));
 	TEST_ASSERT_EQUAL(-ERANGE, ows_set_many(h, ids + 2, values + 2, 1));
 	TEST_ASSERT_EQUAL(0, ows_set_many(h, ids, values, 0));
 }
@@ -176,29 +245,16 @@ static void test_a_text_arrives_with_its_check_word(void)
 	int id = ows_find(h, "text");
 
 	TEST_ASSERT_EQUAL(0, ows_set_text(h, id, "on the hill", NULL));
-	TEST_ASSERT_EQUAL(11, commands_text(&in.commands, TEXT, text));
+	TEST_ASSERT_EQUAL(11, giver_text(instance_giver(&in, 0), TEXT, text));
 	TEST_ASSERT_EQUAL_STRING("on the hill", text);
 	memset(longest, 'x', sizeof(longest));
 	longest[INSTANCE_TEXT + 1] = '\0';
 	TEST_ASSERT_EQUAL(-ERANGE, ows_set_text(h, id, longest, NULL));
 	longest[INSTANCE_TEXT] = '\0';
 	TEST_ASSERT_EQUAL(0, ows_set_text(h, id, longest, NULL));
-	TEST_ASSERT_EQUAL(INSTANCE_TEXT, commands_text(&in.commands, TEXT, text));
+	TEST_ASSERT_EQUAL(INSTANCE_TEXT, giver_text(instance_giver(&in, 0), TEXT, text));
 	TEST_ASSERT_EQUAL(0, ows_set_text(h, id, "", NULL));
-	TEST_ASSERT_EQUAL(0, commands_text(&in.commands, TEXT, text));
-}
-
-static void test_a_claimed_text_is_busy_until_the_engine_frees_it(void)
-{
-	struct ows_command_text *t = (void *)(in.commands.base + in.commands.text_off[TEXT]);
-	char text[INSTANCE_TEXT + 1];
-	int id = ows_find(h, "text");
-
-	t->claim = 4711;
-	TEST_ASSERT_EQUAL(-EBUSY, ows_set_text(h, id, "x", NULL));
-	TEST_ASSERT_EQUAL(-EBUSY, commands_text(&in.commands, TEXT, text));
-	commands_unclaim(&in.commands, TEXT);
-	TEST_ASSERT_EQUAL(0, ows_set_text(h, id, "x", NULL));
+	TEST_ASSERT_EQUAL(0, giver_text(instance_giver(&in, 0), TEXT, text));
 }
 
 static void test_text_sets_a_number_too(void)
@@ -209,116 +265,240 @@ static void test_text_sets_a_number_too(void)
 	TEST_ASSERT_NOT_EQUAL(0, ows_set(h, ows_find(h, "text"), 1, NULL));
 }
 
-static void test_who_beats_is_named_in_what_he_sets(void)
+static void test_a_beat_and_its_promise_reach_the_engine(void)
 {
-	struct command_client c;
+	struct giver_beat beat;
 
+	TEST_ASSERT_EQUAL(-EINVAL, ows_beat(h, 0));
 	TEST_ASSERT_EQUAL(0, ows_beat(h, 500));
+	TEST_ASSERT_EQUAL(1, door_rings(in.door, 0));
 	TEST_ASSERT_EQUAL(0, ows_beat(h, 500));
-	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat"), 1, NULL));
-	TEST_ASSERT_EQUAL(1, load(HEAT).client);
-	commands_client(&in.commands, 0, &c);
-	TEST_ASSERT_EQUAL(getpid(), c.pid);
-	TEST_ASSERT_EQUAL(2, c.beat);
-	TEST_ASSERT_EQUAL(500, c.period_ms);
+	TEST_ASSERT_EQUAL(0, door_rings(in.door, 0));
+	giver_beat(instance_giver(&in, 0), &beat);
+	TEST_ASSERT_EQUAL(2, beat.beat);
+	TEST_ASSERT_EQUAL(500, beat.period_ms);
+	TEST_ASSERT_FALSE(beat.goodbye);
 }
 
-static void test_who_was_dropped_comes_back_with_his_next_beat(void)
+static void test_closing_says_goodbye_and_hangs_up(void)
 {
-	struct command_client c;
-
-	TEST_ASSERT_EQUAL(0, ows_beat(h, 500));
-	commands_drop_client(&in.commands, 0);
-	TEST_ASSERT_EQUAL(0, ows_beat(h, 500));
-	commands_client(&in.commands, 0, &c);
-	TEST_ASSERT_EQUAL(getpid(), c.pid);
-}
-
-static void test_who_was_dropped_sets_nothing_in_the_name_of_the_next_one(void)
-{
-	TEST_ASSERT_EQUAL(0, ows_beat(h, 500));
-	commands_drop_client(&in.commands, 0);
-	client_at(0)->pid = (uint32_t)getpid() + 1; /* another process takes the place */
-	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat"), 1, NULL));
-	TEST_ASSERT_EQUAL(0, load(HEAT).client);
-	TEST_ASSERT_EQUAL(0, ows_beat(h, 500));
-	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat"), 1, NULL));
-	TEST_ASSERT_EQUAL(2, load(HEAT).client);
-}
-
-static void test_who_ends_in_order_leaves_commands_that_are_nobodys(void)
-{
-	struct command_client c;
+	struct giver_beat beat;
 	struct ows *other;
 
-	TEST_ASSERT_EQUAL(0, ows_beat(h, 500));
 	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_CONTROL, &other));
-	TEST_ASSERT_EQUAL(0, ows_beat(other, 500));
-	TEST_ASSERT_EQUAL(0, ows_set(other, ows_find(other, "heat"), 1, NULL));
-	TEST_ASSERT_EQUAL(0, ows_set_text(other, ows_find(other, "text"), "on", NULL));
-	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "valve"), 1, NULL));
-	TEST_ASSERT_EQUAL(2, load(TEXT).client);
 	ows_close(other);
-	TEST_ASSERT_EQUAL(0, load(HEAT).client);
-	TEST_ASSERT_EQUAL(0, load(TEXT).client);
-	TEST_ASSERT_EQUAL(1, load(HEAT).stamp);
-	TEST_ASSERT_EQUAL(1, load(VALVE).client);
-	commands_client(&in.commands, 1, &c);
-	TEST_ASSERT_EQUAL(0, c.pid);
+	door_wait_gone(in.door, 1);
+	giver_beat(instance_giver(&in, 1), &beat);
+	TEST_ASSERT_TRUE(beat.goodbye);
+	giver_beat(instance_giver(&in, 0), &beat);
+	TEST_ASSERT_FALSE(beat.goodbye);
 }
 
-static void test_the_table_of_clients_has_an_end(void)
+static void test_what_this_user_may_not_command_is_refused(void)
 {
-	struct ows *many[OWS_CLIENTS + 1];
-	int i;
-
-	for (i = 0; i <= OWS_CLIENTS; i++)
-		TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_CONTROL, &many[i]));
-	for (i = 0; i < OWS_CLIENTS; i++)
-		TEST_ASSERT_EQUAL(0, ows_beat(many[i], 100));
-	TEST_ASSERT_EQUAL(-ENOSPC, ows_beat(many[i], 100));
-	ows_close(many[0]);
-	TEST_ASSERT_EQUAL(0, ows_beat(many[i], 100));
-	for (i = 1; i <= OWS_CLIENTS; i++)
-		ows_close(many[i]);
+	slot_at(HEAT)->allowed = 0;
+	TEST_ASSERT_EQUAL(-EACCES, ows_set(h, ows_find(h, "heat"), 1, NULL));
+	TEST_ASSERT_EQUAL(-EACCES, ows_set_text(h, ows_find(h, "heat"), "1", NULL));
+	TEST_ASSERT_EQUAL(-EACCES, ows_set(h, ows_find(h, "heat_RE"), 1, NULL));
+	TEST_ASSERT_EQUAL(-EACCES, ows_set(h, ows_find(h, "heat_WOS"), 1, NULL));
+	TEST_ASSERT_EQUAL(-EACCES, ows_acknowledge(h, ows_find(h, "heat")));
+	TEST_ASSERT_EQUAL(-EACCES, ows_shelve(h, ows_find(h, "heat"), 60, "repair"));
+	TEST_ASSERT_EQUAL(-1, next_dirty());
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "valve"), 1, NULL));
+	slot_at(0)->allowed = 0;
+	TEST_ASSERT_EQUAL(-EACCES, ows_set(h, ows_find(h, "_DGNRESET"), 1, NULL));
 }
 
-static void test_a_retired_segment_takes_no_sets(void)
+static void expect_void(void)
 {
-	commands_state(&in.commands, OWS_STATE_RETIRED);
-	TEST_ASSERT_EQUAL(-ESTALE, ows_set(h, ows_find(h, "heat"), 1, NULL));
-	TEST_ASSERT_EQUAL(-ESTALE, ows_beat(h, 100));
-}
+	const double value = 1;
+	int heat = ows_find(h, "heat");
 
-static void test_the_segment_of_a_stopped_owsd_takes_no_sets_and_keeps_what_was_in_force(void)
-{
-	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat"), 1, NULL));
-	commands_state(&in.commands, OWS_STATE_STOPPED);
-	TEST_ASSERT_EQUAL(-ESTALE, ows_set(h, ows_find(h, "heat"), 0, NULL));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_set(h, heat, 0, NULL));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_set_many(h, &heat, &value, 1));
 	TEST_ASSERT_EQUAL(-ESTALE, ows_set_text(h, ows_find(h, "text"), "x", NULL));
 	TEST_ASSERT_EQUAL(-ESTALE, ows_set_integer(h, ows_find(h, "heat_WOS"), 1, NULL));
-	TEST_ASSERT_EQUAL(-ESTALE, ows_acknowledge(h, ows_find(h, "heat")));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_acknowledge(h, heat));
+	TEST_ASSERT_EQUAL(-ESTALE, ows_shelve(h, heat, 60, NULL));
 	TEST_ASSERT_EQUAL(-ESTALE, ows_beat(h, 100));
-	TEST_ASSERT_EQUAL_INT64(1, load(HEAT).value);
-	TEST_ASSERT_EQUAL(1, load(HEAT).stamp);
-	TEST_ASSERT_EQUAL(0, load(HEAT).one_shot);
-	TEST_ASSERT_EQUAL(0, load(HEAT).acknowledged);
-	TEST_ASSERT_EQUAL(0, load(TEXT).stamp);
+	TEST_ASSERT_EQUAL(0, slot_at(HEAT)->stamp);
+	TEST_ASSERT_EQUAL(0, slot_at(HEAT)->one_shot);
+	TEST_ASSERT_EQUAL(0, slot_at(HEAT)->acknowledged);
+	TEST_ASSERT_EQUAL(0, slot_at(TEXT)->stamp);
+	TEST_ASSERT_EQUAL(0, header()->beat);
+	TEST_ASSERT_EQUAL(-1, next_dirty());
 }
 
-static void test_a_consumer_survives_the_truncation_by_another(void)
+static void test_a_retired_memory_takes_no_sets(void)
 {
-	/* The sanitizers have a handler of their own, which libows leaves alone */
-	struct sigaction by_default = {.sa_handler = SIG_DFL};
+	giver_state(instance_giver(&in, 0), OWS_STATE_RETIRED);
+	expect_void();
+}
 
-	TEST_ASSERT_EQUAL(0, sigaction(SIGBUS, &by_default, NULL));
+static void test_the_memory_of_a_stopped_owsd_takes_no_sets(void)
+{
+	giver_state(instance_giver(&in, 0), OWS_STATE_STOPPED);
+	expect_void();
+}
+
+/* owsd gives the pages of a memory back when it ends. */
+static void test_an_emptied_memory_takes_no_sets(void)
+{
+	memset(instance_giver(&in, 0)->base, 0, in.door->layout.size);
+	expect_void();
+}
+
+static void test_nothing_is_set_while_owsds_heart_stands_still(void)
+{
+	instance_beat(&in, ows_now() - 3 * INSTANCE_S, 0);
+	expect_void();
+	instance_beat(&in, ows_now(), 1);
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat"), 1, NULL));
+	instance_beat(&in, ows_now() + 3600 * INSTANCE_S, 2);
+	TEST_ASSERT_EQUAL(-ESTALE, ows_set(h, ows_find(h, "heat"), 0, NULL));
+}
+
+/* What the child found: a bit for each check that failed, so that the parent's assert names it. */
+static int look_as_child(void)
+{
+	int heat = ows_find(h, "heat"), wrong = 0;
+	struct ows_value v;
+
+	wrong |= ows_set(h, heat, 1, NULL) == -EPERM ? 0 : 1;
+	wrong |= ows_set_text(h, ows_find(h, "text"), "x", NULL) == -EPERM ? 0 : 2;
+	wrong |= ows_beat(h, 100) == -EPERM ? 0 : 4;
+	wrong |= ows_for(h, "x") == -EPERM ? 0 : 8;
+	wrong |= ows_reopen(h) == -EPERM ? 0 : 16;
+	wrong |= ows_get(h, heat, ows_now(), &v) == 0 ? 0 : 32;
+	wrong |= ows_acknowledge(h, heat) == -EPERM ? 0 : 64;
+	ows_close(h);
+	return wrong;
+}
+
+static void test_a_forked_child_commands_nothing_in_its_parents_name(void)
+{
+	struct giver_beat beat;
+	pid_t child = fork();
+	int status;
+
+	if (child == 0)
+		_exit(look_as_child());
+	TEST_ASSERT_EQUAL(child, waitpid(child, &status, 0));
+	TEST_ASSERT_EQUAL(0, status);
+	giver_beat(instance_giver(&in, 0), &beat);
+	TEST_ASSERT_FALSE(beat.goodbye);
+	TEST_ASSERT_EQUAL(0, beat.beat);
+	TEST_ASSERT_EQUAL(0, load(HEAT).stamp);
+	TEST_ASSERT_EQUAL(-1, next_dirty());
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat"), 1, NULL));
+}
+
+static void test_owsd_is_told_the_name_of_the_program(void)
+{
+	struct ows *other;
+
+	TEST_ASSERT_EQUAL_STRING("test_set", door_giver(in.door, 0)->hello.name);
+	TEST_ASSERT_EQUAL(OWS_HELLO_COMMAND, door_giver(in.door, 0)->hello.flags);
+	TEST_ASSERT_EQUAL(0, ows_open_as(in.name, OWS_CONTROL,
+	                                 "a name that is longer than thirty-one bytes", &other));
+	TEST_ASSERT_EQUAL_STRING("a name that is longer than thir",
+	                         door_giver(in.door, 1)->hello.name);
+	ows_close(other);
+}
+
+static void expect_person(const char *expected)
+{
+	char name[OWS_NAME] = "";
+	uint32_t person;
+
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat"), 1, NULL));
+	person = load(HEAT).person;
+	if (person)
+		giver_person(instance_giver(&in, 0), person, name);
+	TEST_ASSERT_EQUAL_STRING(expected, name);
+}
+
+static void test_a_command_says_for_whom_it_is(void)
+{
+	expect_person("");
+	TEST_ASSERT_EQUAL(0, ows_for(h, "anna"));
+	expect_person("anna");
+	TEST_ASSERT_EQUAL(0, ows_for(h, "bert"));
+	expect_person("bert");
+	TEST_ASSERT_EQUAL(-ERANGE, ows_for(h, "a name that is longer than thirty-one bytes"));
+	expect_person("bert");
+	TEST_ASSERT_EQUAL(0, ows_for(h, "anna"));
+	expect_person("anna");
+	TEST_ASSERT_EQUAL(0, ows_for(h, NULL));
+	expect_person("");
+}
+
+static void test_a_person_is_replaced_only_when_owsd_has_looked(void)
+{
+	static const char *const own[] = {"heat", "valve", "text", "small"};
+	static const uint32_t records[] = {HEAT, VALVE, TEXT, SMALL};
+	char name[16];
+
+	for (int i = 0; i < OWS_PERSONS; i++) {
+		snprintf(name, sizeof(name), "person %d", i);
+		TEST_ASSERT_EQUAL(0, ows_for(h, name));
+	}
+	/* Four of them command, and owsd does not look */
+	for (int i = 0; i < 4; i++) {
+		snprintf(name, sizeof(name), "person %d", i);
+		TEST_ASSERT_EQUAL(0, ows_for(h, name));
+		TEST_ASSERT_EQUAL(0, ows_set_text(h, ows_find(h, own[i]), "1", NULL));
+	}
+	for (int i = 0; i < 100; i++) {
+		snprintf(name, sizeof(name), "guest %d", i);
+		TEST_ASSERT_EQUAL(0, ows_for(h, name));
+	}
+	for (int i = 0; i < 4; i++) {
+		char there[OWS_NAME];
+
+		snprintf(name, sizeof(name), "person %d", i);
+		giver_person(instance_giver(&in, 0), slot_at(records[i])->person, there);
+		TEST_ASSERT_EQUAL_STRING(name, there);
+	}
+}
+
+static void *shelve_as_owsd(void *arg)
+{
+	struct giver_memory *memory = arg;
+	struct giver_shelf shelf;
+
+	while (!giver_shelf(memory, &shelf))
+		sched_yield();
+	if (shelf.record != VALVE || shelf.seconds != 60 || strcmp(shelf.why, "repair") != 0)
+		giver_shelf_done(memory, shelf.count, -EBADMSG);
+	else
+		giver_shelf_done(memory, shelf.count, -ENOSPC);
+	return NULL;
+}
+
+static void test_shelving_waits_for_owsds_answer(void)
+{
+	pthread_t thread;
+
+	TEST_ASSERT_EQUAL(0, pthread_create(&thread, NULL, shelve_as_owsd, instance_giver(&in, 0)));
+	TEST_ASSERT_EQUAL(-ENOSPC, ows_shelve(h, ows_find(h, "valve"), 60, "repair"));
+	pthread_join(thread, NULL);
+	TEST_ASSERT_EQUAL(1, door_rings(in.door, 0));
+}
+
+static void test_shelving_gives_up_where_owsd_does_not_answer(void)
+{
+	char why[OWS_TEXT + 1];
+
+	memset(why, 'x', OWS_TEXT);
+	why[OWS_TEXT] = '\0';
+	TEST_ASSERT_EQUAL(-ERANGE, ows_shelve(h, ows_find(h, "valve"), 60, why));
+	TEST_ASSERT_EQUAL(-ENOENT, ows_shelve(h, ows_find(h, "_DGNRESET"), 60, "x"));
+	instance_lives_on(&in);
 	ows_close(h);
 	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_CONTROL, &h));
-	TEST_ASSERT_EQUAL(0, ftruncate(in.command_memory.fd, 0));
-	TEST_ASSERT_EQUAL(-ESTALE, ows_set(h, ows_find(h, "heat"), 1, NULL));
-	TEST_ASSERT_EQUAL(-ESTALE, ows_set_text(h, ows_find(h, "heat"), "1", NULL));
-	TEST_ASSERT_EQUAL(-ENOENT, ows_reopen(h));
-	TEST_ASSERT_EQUAL(-ESTALE, ows_beat(h, 100));
+	TEST_ASSERT_EQUAL(-ETIMEDOUT, ows_shelve(h, ows_find(h, "valve"), 60, NULL));
+	TEST_ASSERT_EQUAL(-EBUSY, ows_shelve(h, ows_find(h, "valve"), 60, NULL));
 }
 
 struct waker {
@@ -326,25 +506,30 @@ struct waker {
 	bool stop;
 };
 
+static bool look(struct waker *w)
+{
+	struct giver_memory *memory = instance_giver(&in, 0);
+
+	if (!giver_marked(memory))
+		return false;
+	while (giver_next_dirty(memory, 0) >= 0)
+		__atomic_fetch_add(&w->wakes, 1, __ATOMIC_RELEASE);
+	return true;
+}
+
 /* The engine's side of the bell: sleeps only after it looked. */
 static void *engine(void *arg)
 {
 	struct waker *w = arg;
-	uint32_t *bell = commands_bell(&in.commands);
+	struct pollfd bell = {.fd = door_giver(in.door, 0)->bell, .events = POLLIN};
 
 	while (!__atomic_load_n(&w->stop, __ATOMIC_ACQUIRE)) {
-		uint32_t seen;
-
-		commands_awake(&in.commands, true);
-		while (commands_next_dirty(&in.commands, 0) >= 0)
-			__atomic_fetch_add(&w->wakes, 1, __ATOMIC_RELEASE);
-		seen = __atomic_load_n(bell, __ATOMIC_ACQUIRE);
-		commands_awake(&in.commands, false);
-		if (commands_next_dirty(&in.commands, 0) >= 0) {
-			__atomic_fetch_add(&w->wakes, 1, __ATOMIC_RELEASE);
-			continue;
-		}
-		segment_wait(bell, seen, -1);
+		image_awake(&in.image, true);
+		look(w);
+		door_rings(in.door, 0);
+		image_awake(&in.image, false);
+		if (!look(w))
+			poll(&bell, 1, -1);
 	}
 	return NULL;
 }
@@ -375,6 +560,9 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_set_reaches_the_engine_with_stamp_mark_and_bell);
+	RUN_TEST(test_an_engine_that_is_awake_needs_no_bell);
+	RUN_TEST(test_each_set_of_a_handle_has_a_greater_stamp);
+	RUN_TEST(test_what_owsd_took_and_confirmed_is_this_handles_own);
 	RUN_TEST(test_a_value_the_type_cannot_hold_is_refused);
 	RUN_TEST(test_an_input_takes_no_sets);
 	RUN_TEST(test_an_input_takes_sets_while_its_write_enable_is_on);
@@ -384,16 +572,20 @@ int main(void)
 	RUN_TEST(test_a_flag_acts_when_it_goes_from_off_to_on);
 	RUN_TEST(test_many_values_ring_once);
 	RUN_TEST(test_a_text_arrives_with_its_check_word);
-	RUN_TEST(test_a_claimed_text_is_busy_until_the_engine_frees_it);
 	RUN_TEST(test_text_sets_a_number_too);
-	RUN_TEST(test_who_beats_is_named_in_what_he_sets);
-	RUN_TEST(test_who_was_dropped_comes_back_with_his_next_beat);
-	RUN_TEST(test_who_was_dropped_sets_nothing_in_the_name_of_the_next_one);
-	RUN_TEST(test_who_ends_in_order_leaves_commands_that_are_nobodys);
-	RUN_TEST(test_the_table_of_clients_has_an_end);
-	RUN_TEST(test_a_retired_segment_takes_no_sets);
-	RUN_TEST(test_the_segment_of_a_stopped_owsd_takes_no_sets_and_keeps_what_was_in_force);
-	RUN_TEST(test_a_consumer_survives_the_truncation_by_another);
+	RUN_TEST(test_a_beat_and_its_promise_reach_the_engine);
+	RUN_TEST(test_closing_says_goodbye_and_hangs_up);
+	RUN_TEST(test_what_this_user_may_not_command_is_refused);
+	RUN_TEST(test_a_retired_memory_takes_no_sets);
+	RUN_TEST(test_the_memory_of_a_stopped_owsd_takes_no_sets);
+	RUN_TEST(test_an_emptied_memory_takes_no_sets);
+	RUN_TEST(test_nothing_is_set_while_owsds_heart_stands_still);
+	RUN_TEST(test_a_forked_child_commands_nothing_in_its_parents_name);
+	RUN_TEST(test_owsd_is_told_the_name_of_the_program);
+	RUN_TEST(test_a_command_says_for_whom_it_is);
+	RUN_TEST(test_a_person_is_replaced_only_when_owsd_has_looked);
+	RUN_TEST(test_shelving_waits_for_owsds_answer);
+	RUN_TEST(test_shelving_gives_up_where_owsd_does_not_answer);
 	RUN_TEST(test_no_ring_is_lost_between_awake_and_asleep);
 	return UNITY_END();
 }

@@ -10,6 +10,7 @@
 #include "unity.h"
 
 #include "src/owsctl/verbs.h"
+#include "src/shm/entries.h"
 #include "src/shm/futex.h"
 #include "src/signal/value.h"
 #include "tests/unit/aid/caught.h"
@@ -55,7 +56,7 @@ static void publish(uint32_t record, double value, uint32_t flags, uint8_t state
 
 static void enter(uint32_t record, uint8_t kind, uint8_t event, int64_t age_s)
 {
-	struct ows_alarm_entry entry = {
+	struct ows_journal_entry entry = {
 		.record = record,
 		.occurred_ns = ows_now() - age_s * INSTANCE_S,
 		.kind = kind,
@@ -182,7 +183,7 @@ static void test_device_and_limit_alarm_of_one_signal_are_two_lines(void)
 
 static void test_history_shows_what_was_entered_in_its_order(void)
 {
-	struct ows_alarm_entry entry = {
+	struct ows_journal_entry entry = {
 		.record = DOOR,
 		.occurred_ns = ows_now(),
 		.before = 3,
@@ -190,8 +191,8 @@ static void test_history_shows_what_was_entered_in_its_order(void)
 		.kind = OWS_ALARM_DEVICE,
 		.event = OWS_ALARM_RAISED,
 		.quality = OWS_Q_GOOD,
-		.flags = OWS_ALARM_BEFORE | OWS_ALARM_AFTER,
-		.latch = "0,\33[2J0,1",
+		.flags = OWS_JOURNAL_BEFORE | OWS_JOURNAL_AFTER,
+		.text = "0,\33[2J0,1",
 	};
 	char *first, *second;
 
@@ -199,18 +200,22 @@ static void test_history_shows_what_was_entered_in_its_order(void)
 	enter(LABEL, OWS_ALARM_POR, OWS_ALARM_RAISED, 0);
 	enter(BOILER, OWS_ALARM_BAD, OWS_ALARM_ACKNOWLEDGED, 0);
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms history"));
-	holds(out, "  NAME    ALARM           EVENT         BEFORE  AFTER  QUALITY  LATCH\n");
+	holds(out,
+	      "  NAME    ALARM           EVENT         BEFORE  AFTER  QUALITY  BY    REMARK\n");
 	first = strstr(
-		out, "  door    device          raised             3      7  good     0,?[2J0,1\n");
-	second = strstr(out, "  boiler  bad             acknowledged       -      -  good\n");
+		out,
+		"  door    device          raised             3      7  good     -     0,?[2J0,1\n");
+	second = strstr(out,
+	                "  boiler  bad             acknowledged       -      -  good     owsd\n");
 	TEST_ASSERT_TRUE(first && second && first < second);
-	holds(out, "  label   power-on reset  raised             -      -  good\n");
+	holds(out, "  label   power-on reset  raised             -      -  good     -\n");
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms history --json do* bo*"));
 	holds(out, "[{\"number\":0,\"time\":\"");
 	holds(out,
 	      "\"name\":\"door\",\"alarm\":\"device\",\"event\":\"raised\",\"before\":3,\"after\":7,"
-	      "\"quality\":\"good\",\"latch\":\"0,\\u001b[2J0,1\"},{\"number\":2,");
-	holds(out, "\"before\":null,\"after\":null,\"quality\":\"good\",\"latch\":null}]\n");
+	      "\"quality\":\"good\",\"by\":null,\"remark\":\"0,\\u001b[2J0,1\"},{\"number\":2,");
+	holds(out,
+	      "\"before\":null,\"after\":null,\"quality\":\"good\",\"by\":null,\"remark\":null}]\n");
 }
 
 static void test_history_shows_what_the_ring_keeps(void)
@@ -218,49 +223,86 @@ static void test_history_shows_what_the_ring_keeps(void)
 	const char *line;
 	int lines = 0;
 
-	for (int i = 0; i < OWS_ALARMS + 10; i++)
+	for (int i = 0; i < OWS_JOURNAL + 10; i++)
 		enter(ROOM, OWS_ALARM_H, OWS_ALARM_RAISED, 0);
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms history"));
 	for (line = out; (line = strchr(line, '\n')) != NULL; line++)
 		lines++;
-	TEST_ASSERT_EQUAL(OWS_ALARMS + 1, lines);
+	TEST_ASSERT_EQUAL(OWS_JOURNAL + 1, lines);
+}
+
+static void test_a_shelved_alarm_is_shown_with_who_and_why(void)
+{
+	struct ows_sample sample = {
+		.value = value_of_double(31), .measured_ns = ows_now(), .quality = OWS_Q_GOOD};
+	struct ows_attrs attrs = {
+		.flags = OWS_ATTR_LIMITS, .limit_condition = OWS_ALARM_H, .shelved = 1};
+	struct ows_shelf_entry shelf = {
+		.record = ROOM,
+		.since_ns = ows_now() - 60 * INSTANCE_S,
+		.until_ns = ows_now() + 3600 * INSTANCE_S,
+		.who = {.serial = 3,
+	                .uid = 4294967290u,
+	                .pid = 42,
+	                .name = "p\33c",
+	                .person = "Anna"},
+		.why = "moved \"\33[2J\"",
+	};
+
+	image_publish(&in.image, ROOM, &sample, &attrs, NULL);
+	image_shelf(&in.image, 5, &shelf);
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms"));
+	holds(out, "room1  high   shelved    60s     31  good\n");
+	holds(out, "\nroom1: shelved until ");
+	holds(out, " by p?c[42] (user 4294967290) for Anna: moved \"?[2J\"\n");
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, "alarms --json"));
+	holds(out, "\"alarm\":\"high\",\"state\":\"shelved\"");
+	holds(out, "\"by\":{\"program\":\"p\\u001bc\",\"pid\":42,\"uid\":4294967290,\"user\":"
+	           "\"4294967290\",\"person\":\"Anna\"},\"why\":\"moved \\\"\\u001b[2J\\\"\"");
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_list, "list room1"));
+	holds(out, "high, shelved");
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_list, "list --json room1"));
+	holds(out, "\"alarms\":[],\"shelved\":true");
 }
 
 /* owsd's part: takes acknowledgements of what is published as it would. */
 static void *take(void *arg)
 {
-	struct command command;
+	unsigned before = *(unsigned *)arg;
 
 	for (int i = 0; i < 5000; i++) {
 		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
-		commands_load(&in.commands, ROOM, &command);
-		if (!command.acknowledged)
+		if (instance_givers(&in) == before ||
+		    !instance_slot(&in, before, ROOM)->acknowledged)
 			continue;
 		publish(ROOM, 31.5, OWS_ATTR_LIMITS, OWS_LIMIT_ACKNOWLEDGED, OWS_ALARM_H);
 		segment_wake(&in.image.header->news, 100);
 		break;
 	}
-	return arg;
+	return NULL;
 }
 
 static void acknowledges(const char *words)
 {
+	unsigned before = instance_givers(&in);
 	pthread_t thread;
 
 	publish(ROOM, 31.5, OWS_ATTR_LIMITS, OWS_LIMIT_UNACKNOWLEDGED, OWS_ALARM_H);
-	TEST_ASSERT_EQUAL(0, pthread_create(&thread, NULL, take, NULL));
+	TEST_ASSERT_EQUAL(0, pthread_create(&thread, NULL, take, &before));
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_alarms, words));
 	pthread_join(thread, NULL);
 	TEST_ASSERT_EQUAL_STRING("", out);
 	TEST_ASSERT_EQUAL_STRING("", err);
 }
 
+/* Acknowledgements of all owsctl that ran. */
 static uint32_t acknowledged(uint32_t record)
 {
-	struct command command;
+	uint32_t count = 0;
 
-	commands_load(&in.commands, record, &command);
-	return command.acknowledged;
+	for (unsigned i = 0; i < instance_givers(&in); i++)
+		count += instance_slot(&in, i, record)->acknowledged;
+	return count;
 }
 
 static void test_ack_waits_until_owsd_took_it(void)
@@ -319,6 +361,7 @@ int main(void)
 	RUN_TEST(test_device_and_limit_alarm_of_one_signal_are_two_lines);
 	RUN_TEST(test_history_shows_what_was_entered_in_its_order);
 	RUN_TEST(test_history_shows_what_the_ring_keeps);
+	RUN_TEST(test_a_shelved_alarm_is_shown_with_who_and_why);
 	RUN_TEST(test_ack_waits_until_owsd_took_it);
 	RUN_TEST(test_ack_of_all_takes_those_that_need_it);
 	RUN_TEST(test_ack_acknowledges_nothing_when_one_name_is_wrong);

@@ -7,6 +7,7 @@
 
 #include "unity.h"
 
+#include "src/engine/table.h"
 #include "src/owsctl/reading.h"
 #include "src/signal/value.h"
 
@@ -30,6 +31,16 @@ static void be(enum ows_type type, double number)
 	value_to_text(type, value_is_float(type) ? value_of_double(number) : (int64_t)number,
 	              reading.text);
 	reading.len = strlen(reading.text);
+}
+
+/* As the image has them of a signal that is not scaled. */
+static int decimals_of(const char *path)
+{
+	struct config_item item = {.path = path, .type = OWS_DOUBLE, .decimals = -1};
+	struct image_meta meta;
+
+	signal_table_meta(&item, &meta);
+	return (int)meta.decimals;
 }
 
 static void test_a_number_has_the_digits_of_its_chip(void)
@@ -57,7 +68,7 @@ static void test_a_number_has_the_digits_of_its_chip(void)
 
 	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
 		be(OWS_DOUBLE, rows[i].number);
-		reading_round(&reading, rows[i].path);
+		reading_round(&reading, decimals_of(rows[i].path));
 		TEST_ASSERT_EQUAL_STRING(rows[i].text, reading.text);
 		TEST_ASSERT_EQUAL_size_t(strlen(reading.text), reading.len);
 	}
@@ -66,20 +77,20 @@ static void test_a_number_has_the_digits_of_its_chip(void)
 static void test_integers_strings_and_driver_signals_stay_as_they_are(void)
 {
 	be(OWS_LONG, 21);
-	reading_round(&reading, "/28.551DDF030000/temperature");
+	reading_round(&reading, decimals_of("/28.551DDF030000/temperature"));
 	TEST_ASSERT_EQUAL_STRING("21", reading.text);
 	be(OWS_DOUBLE, 0.123456789);
-	reading_round(&reading, NULL);
+	reading_round(&reading, -1);
 	TEST_ASSERT_EQUAL_STRING("0.123456789", reading.text);
 	be(OWS_STRING, 0);
 	strcpy(reading.text, "1.23456789");
-	reading_round(&reading, "/26.551DDF030000/VDD");
+	reading_round(&reading, decimals_of("/26.551DDF030000/VDD"));
 	TEST_ASSERT_EQUAL_STRING("1.23456789", reading.text);
 	be(OWS_DOUBLE, (double)INFINITY);
-	reading_round(&reading, "/26.551DDF030000/VDD");
+	reading_round(&reading, decimals_of("/26.551DDF030000/VDD"));
 	TEST_ASSERT_EQUAL_STRING("inf", reading.text);
 	be(OWS_DOUBLE, 1e300);
-	reading_round(&reading, "/26.551DDF030000/VDD");
+	reading_round(&reading, decimals_of("/26.551DDF030000/VDD"));
 	TEST_ASSERT_DOUBLE_WITHIN(1e285, 1e300, strtod(reading.text, NULL));
 }
 
@@ -88,7 +99,7 @@ static void test_every_step_of_a_thermometer_reads_back(void)
 {
 	for (int raw = -55 * 16; raw <= 125 * 16; raw++) {
 		be(OWS_DOUBLE, raw / 16.0);
-		reading_round(&reading, "/28.551DDF030000/temperature");
+		reading_round(&reading, decimals_of("/28.551DDF030000/temperature"));
 		TEST_ASSERT_EQUAL_DOUBLE(raw / 16.0, strtod(reading.text, NULL));
 		TEST_ASSERT_LESS_OR_EQUAL_size_t(8, strlen(reading.text));
 	}

@@ -140,12 +140,10 @@ static void test_list_shows_driver_signals_when_asked(void)
 	holds(out, "_RECONNECTS");
 }
 
-static struct command commanded(uint32_t record)
+/* What the owsctl that ran last commanded. */
+static struct ows_command_slot *commanded(uint32_t record)
 {
-	struct command command;
-
-	commands_load(&in.commands, record, &command);
-	return command;
+	return instance_slot(&in, instance_givers(&in) - 1, record);
 }
 
 static void test_set_commands_outputs(void)
@@ -154,10 +152,11 @@ static void test_set_commands_outputs(void)
 
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_set, "set relay off level 200 label hello"));
 	TEST_ASSERT_EQUAL_STRING("", err);
-	TEST_ASSERT_EQUAL(1, commanded(2).stamp);
-	TEST_ASSERT_EQUAL_INT64(0, commanded(2).value);
-	TEST_ASSERT_EQUAL_INT64(200, commanded(5).value);
-	TEST_ASSERT_EQUAL(5, commands_text(&in.commands, 4, text));
+	TEST_ASSERT_EQUAL(1, commanded(2)->stamp);
+	TEST_ASSERT_EQUAL(2, commanded(5)->stamp);
+	TEST_ASSERT_EQUAL_INT64(0, commanded(2)->value);
+	TEST_ASSERT_EQUAL_INT64(200, commanded(5)->value);
+	TEST_ASSERT_EQUAL(5, giver_text(instance_giver(&in, instance_givers(&in) - 1), 4, text));
 	TEST_ASSERT_EQUAL_STRING("hello", text);
 }
 
@@ -173,7 +172,7 @@ static void test_set_sets_nothing_when_one_of_its_values_is_wrong(void)
 	holds(err, "did you mean relay?");
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set relay 1 level 5 relay 0"));
 	holds(err, "relay is set twice: nothing was set");
-	TEST_ASSERT_EQUAL(0, commanded(2).stamp);
+	TEST_ASSERT_EQUAL(0, commanded(2)->stamp);
 }
 
 static void test_set_of_an_input_is_refused(void)
@@ -194,12 +193,13 @@ static void test_set_makes_an_edge_each_time(void)
 {
 	for (uint32_t i = 1; i <= 3; i++) {
 		TEST_ASSERT_EQUAL(CTL_DONE, run(verb_set, "set relay_WOS 1"));
-		TEST_ASSERT_EQUAL_UINT32(i, commanded(2).one_shot);
+		TEST_ASSERT_EQUAL_UINT32(1, commanded(2)->one_shot);
+		TEST_ASSERT_EQUAL(i, instance_givers(&in));
 	}
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_set, "set relay_WOS 0"));
-	TEST_ASSERT_EQUAL_UINT32(3, commanded(2).one_shot);
+	TEST_ASSERT_EQUAL_UINT32(0, commanded(2)->one_shot);
 	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_set, "set _DGNRESET 1"));
-	TEST_ASSERT_EQUAL_UINT32(1, commanded(0).dgn_reset);
+	TEST_ASSERT_EQUAL_UINT32(1, commanded(0)->dgn_reset);
 }
 
 static void test_set_while_owsd_is_dead_fails_and_says_why(void)
@@ -208,7 +208,10 @@ static void test_set_while_owsd_is_dead_fails_and_says_why(void)
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set relay 0"));
 	holds(err, "owsd is not running: nothing was set");
 	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set -w 0.05 relay 0"));
-	holds(err, "relay was not confirmed: owsd is not running");
+	holds(err, "owsd is not running: nothing was set");
+	instance_kill(&in);
+	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_set, "set relay 0"));
+	holds(err, "is not running: nothing was set");
 }
 
 static void test_set_that_is_not_confirmed_says_why(void)
@@ -225,13 +228,17 @@ static void *confirm(void *arg)
 
 	(void)arg;
 	while (!__atomic_load_n(&ended, __ATOMIC_ACQUIRE)) {
-		struct command command = commanded(2);
-		struct ows_sample sample = {.value = command.value,
-		                            .applied = command.stamp,
-		                            .measured_ns = ows_now(),
-		                            .quality = OWS_Q_GOOD};
 		struct ows_attrs attrs = {.flags = OWS_ATTR_WRITE_ENABLE};
+		struct ows_sample sample = {.measured_ns = ows_now(), .quality = OWS_Q_GOOD};
+		unsigned givers = instance_givers(&in);
 
+		if (givers > 0) {
+			struct giver_command command = instance_command(&in, givers - 1, 2);
+
+			sample.value = command.value;
+			giver_taken(instance_giver(&in, givers - 1), 2, command.stamp, 0);
+			giver_applied(instance_giver(&in, givers - 1), 2, command.stamp);
+		}
 		image_publish(&in.image, 2, &sample, &attrs, NULL);
 		image_news(&in.image);
 		segment_wake(&in.image.header->news, 1000);

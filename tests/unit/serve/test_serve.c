@@ -13,6 +13,8 @@
 
 #include "hal/owfs/frame.h"
 #include "src/serve/serve.h"
+#include "src/shm/word.h"
+#include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
 
 #define TYPE "/28.551DDF030000/type"
@@ -79,10 +81,11 @@ static void fill(struct config *to, struct config_item *its, const struct instan
 /* As the engine shows an output: enabled, and the last command that reached the bus. */
 static void show_output(uint32_t record, uint32_t applied)
 {
-	struct ows_sample sample = {
-		.quality = OWS_Q_GOOD, .measured_ns = ows_now(), .applied = applied};
+	struct ows_sample sample = {.quality = OWS_Q_GOOD, .measured_ns = ows_now()};
 	struct ows_attrs attrs = {.flags = OWS_ATTR_WRITE_ENABLE};
 
+	if (applied)
+		giver_applied(instance_giver(&in, 0), record, applied);
 	image_publish(&in.image, record, &sample, &attrs, NULL);
 	image_news(&in.image);
 }
@@ -94,7 +97,8 @@ static void target_is_up(void)
 
 void setUp(void)
 {
-	struct serve_setup setup = {.config = &config, .ring = no_ring};
+	struct serve_setup setup = {
+		.config = &config, .place = folder_place()->path, .ring = no_ring};
 	char name[24], why[128];
 
 	snprintf(name, sizeof(name), "serve-%d", (int)getpid());
@@ -401,18 +405,20 @@ static void command(const char *what)
 	TEST_ASSERT_EQUAL_INT(n, send(fd, frame, (size_t)n, MSG_NOSIGNAL));
 }
 
-/* The stamp of a record's command, when there is one. */
+/* The stamp of a record's command, when there is one, which the engine takes. */
 static uint32_t stamp_of(uint32_t record)
 {
-	struct command found = {.stamp = 0};
+	uint32_t found = 0;
 
-	for (int i = 0; i < 60000 && !found.stamp; i++) {
-		commands_load(&in.commands, record, &found);
-		if (!found.stamp)
+	for (int i = 0; i < 60000 && !found; i++) {
+		if (instance_givers(&in) > 0)
+			found = word_get(&instance_slot(&in, 0, record)->stamp);
+		if (!found)
 			usleep(1000);
 	}
-	TEST_ASSERT_NOT_EQUAL_UINT32(0, found.stamp);
-	return found.stamp;
+	TEST_ASSERT_NOT_EQUAL_UINT32(0, found);
+	giver_taken(instance_giver(&in, 0), record, found, 0);
+	return found;
 }
 
 static void test_a_command_is_waited_for_over_a_reload(void)
@@ -433,16 +439,13 @@ static void test_a_command_is_waited_for_over_a_reload(void)
 /* Just then: the new image is shown, and the server has not been told yet. */
 static void test_a_path_means_its_own_output_in_the_middle_of_a_reload(void)
 {
-	struct command relay;
-
 	instance_reload(&in, other_signals, 3);
 	show_output(1, 0);
 	show_output(3, 0);
 	command("/29.551DDF030000/PIO.1");
 	show_output(1, stamp_of(1));
 	TEST_ASSERT_EQUAL_INT(0, answer(fd));
-	commands_load(&in.commands, 3, &relay);
-	TEST_ASSERT_EQUAL_UINT32(0, relay.stamp);
+	TEST_ASSERT_EQUAL_UINT32(0, instance_slot(&in, 0, 3)->stamp);
 }
 
 static void test_who_left_in_the_middle_makes_room_when_the_engine_is_done(void)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of the image: its layout, and states that are whole wherever a write breaks off. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,7 +53,7 @@ static void test_an_image_without_signals_has_owsd_in_it(void)
 	static const struct image_plan plan = {0};
 
 	build(&plan);
-	TEST_ASSERT_EQUAL(1, image.header->record_count);
+	TEST_ASSERT_EQUAL(1, image.areas[OWS_AREA_RECORDS - 1].count);
 	TEST_ASSERT_EQUAL(OWS_LARGE, image.records[0].type);
 	TEST_ASSERT_EQUAL(OWS_STATE_BUILDING, image.header->state);
 }
@@ -87,7 +88,7 @@ static void test_names_are_sorted_by_bytes_shorter_first(void)
 			.name = names[i], .path = "/p", .type = OWS_BYTE};
 	}
 	build(&plan);
-	entry = (const void *)(image.base + image.header->name_off);
+	entry = image.names;
 	for (unsigned i = 0; i <= N; i++) {
 		seen += entry[i].record;
 		if (i > 0)
@@ -110,23 +111,102 @@ static void test_areas_do_not_overlap(void)
 	static const struct image_counter counters[] = {{"c", 0}};
 	static const struct image_plan plan = {signals, 2,        targets, 1,
 	                                       NULL,    counters, 1,       .period_ns = 1};
-	const struct ows_image_header *h;
+	const struct ows_area_entry *area;
 
 	build(&plan);
-	h = image.header;
-	TEST_ASSERT_EQUAL(256, h->record_off);
-	TEST_ASSERT_EQUAL(h->record_off + 3 * 256, h->info_off);
-	TEST_ASSERT_EQUAL(h->info_off + 3 * 64, h->name_off);
-	TEST_ASSERT_GREATER_OR_EQUAL(h->name_off + 3 * 8, h->target_off);
-	TEST_ASSERT_GREATER_OR_EQUAL(h->target_off + 128, h->counter_off);
-	TEST_ASSERT_GREATER_OR_EQUAL(h->counter_off + 64, h->alarm_off);
-	TEST_ASSERT_EQUAL(OWS_ALARMS, h->alarm_count);
-	TEST_ASSERT_GREATER_OR_EQUAL(h->alarm_off + OWS_ALARMS * 64, h->text_off);
-	TEST_ASSERT_EQUAL(2 * 4 + 2 * 12, h->text_size);
+	area = image.areas;
+	TEST_ASSERT_EQUAL(256, image.header->area_off);
+	TEST_ASSERT_EQUAL(OWS_AREAS - 1, image.header->area_count);
+	TEST_ASSERT_GREATER_OR_EQUAL(256 + 16 * (OWS_AREAS - 1), area[0].off);
+	for (uint32_t i = 0; i < OWS_AREAS - 1; i++) {
+		TEST_ASSERT_EQUAL(i + 1, area[i].kind);
+		TEST_ASSERT_EQUAL(0, area[i].off % 64);
+		if (i > 0)
+			TEST_ASSERT_GREATER_OR_EQUAL(area[i - 1].off +
+			                                     area[i - 1].size * area[i - 1].count,
+			                             area[i].off);
+	}
+	TEST_ASSERT_EQUAL(3, area[OWS_AREA_RECORDS - 1].count);
+	TEST_ASSERT_EQUAL(1, area[OWS_AREA_COUNTERS - 1].count);
+	TEST_ASSERT_EQUAL(OWS_JOURNAL, area[OWS_AREA_ALARMS - 1].count);
+	TEST_ASSERT_EQUAL(2 * 4 + 2 * 12, area[OWS_AREA_TEXTS - 1].count);
+	TEST_ASSERT_EQUAL(area[OWS_AREA_TEXTS - 1].off, image.records[1].text_off);
 	TEST_ASSERT_EQUAL(image.records[1].text_off + 8, image.records[2].text_off);
-	TEST_ASSERT_GREATER_OR_EQUAL(h->text_off + h->text_size, h->pool_off);
-	TEST_ASSERT_EQUAL(h->size, h->pool_off + h->pool_size);
-	TEST_ASSERT_EQUAL('\0', image.base[h->size - 1]);
+	area += OWS_AREA_POOL - 1;
+	TEST_ASSERT_EQUAL('\0', image.base[area->off + area->count - 1]);
+	TEST_ASSERT_EQUAL(image.infos[2].path_off + 3, area->off + area->count);
+	area += OWS_AREA_CHANGES - OWS_AREA_POOL;
+	TEST_ASSERT_GREATER_OR_EQUAL(area->off + area->size * area->count, image.header->size);
+}
+
+static const char *text_at(uint32_t off)
+{
+	return off ? image.base + off : NULL;
+}
+
+static void test_what_people_say_of_a_signal_is_in_its_info(void)
+{
+	static const struct image_meta meta = {
+		.unit = "\xc2\xb0"
+			"C",
+		.description = "flow of boiler 1",
+		.family = "DS18B20",
+		.device = "28.0123456789AB",
+		.calibrated = "2026-11-22",
+		.points = "0:0 10:10.5",
+		.decimals = 1,
+		.scale = 2,
+		.offset = -3,
+		.min = -10,
+		.max = 99,
+		.limit_hh = 90,
+		.limit_h = 80,
+		.limit_l = NAN,
+		.limit_ll = 5,
+		.filter_s = 4,
+		.deadband = 0.5,
+	};
+	static const struct image_signal signals[] = {
+		{.name = "a", .path = "/p", .type = OWS_DOUBLE, .starts_last = true, .meta = &meta},
+		{.name = "b", .path = "/p", .type = OWS_DOUBLE},
+	};
+	static const struct image_plan plan = {
+		.signals = signals, .signal_count = 2, .served = "owserver:/s"};
+	const struct ows_info_entry *info;
+
+	build(&plan);
+	info = &image.infos[1];
+	TEST_ASSERT_EQUAL_STRING(meta.unit, text_at(info->unit_off));
+	TEST_ASSERT_EQUAL_STRING(meta.description, text_at(info->description_off));
+	TEST_ASSERT_EQUAL_STRING(meta.family, text_at(info->family_off));
+	TEST_ASSERT_EQUAL_STRING(meta.device, text_at(info->device_off));
+	TEST_ASSERT_EQUAL_STRING(meta.calibrated, text_at(info->calibrated_off));
+	TEST_ASSERT_EQUAL_STRING(meta.points, text_at(info->points_off));
+	TEST_ASSERT_EQUAL_STRING("owserver:/s", text_at(image.header->served_off));
+	TEST_ASSERT_EQUAL(1, info->decimals);
+	TEST_ASSERT_EQUAL_HEX32(OWS_INFO_LAST | OWS_INFO_SCALED, info->flags);
+	TEST_ASSERT_EQUAL_MEMORY(&meta.scale, &info->scale, 10 * sizeof(double));
+	info = &image.infos[2];
+	TEST_ASSERT_NULL(text_at(info->unit_off));
+	TEST_ASSERT_EQUAL_HEX32(UINT32_MAX, info->decimals);
+	TEST_ASSERT_EQUAL_HEX32(0, info->flags);
+	TEST_ASSERT_EQUAL_MEMORY(&image_no_meta.scale, &info->scale, 10 * sizeof(double));
+}
+
+static void test_changes_go_around_their_ring(void)
+{
+	uint32_t n = 0, size;
+
+	build_two();
+	size = image.change_count;
+	TEST_ASSERT_EQUAL(0, size & (size - 1));
+	for (; n < size + 3; n++)
+		image_change(&image, n % 3);
+	TEST_ASSERT_EQUAL(n, image.header->change_head);
+	for (n = 3; n < size + 3; n++) {
+		TEST_ASSERT_EQUAL(n, image.changes[n % size].number);
+		TEST_ASSERT_EQUAL(n % 3, image.changes[n % size].record);
+	}
 }
 
 static void test_each_state_goes_to_the_other_slot(void)
@@ -146,7 +226,7 @@ static void test_each_state_goes_to_the_other_slot(void)
 		TEST_ASSERT_EQUAL_INT64(n, slot.sample.value);
 		TEST_ASSERT_EQUAL_UINT64(n, slot.attrs.transactions);
 		TEST_ASSERT_EQUAL_HEX32(ows_check((void *)&slot.sample, 11), slot.sample.check);
-		TEST_ASSERT_EQUAL_HEX32(ows_check((void *)&slot.attrs, 17), slot.attrs.check);
+		TEST_ASSERT_EQUAL_HEX32(ows_check((void *)&slot.attrs, 19), slot.attrs.check);
 	}
 }
 
@@ -234,6 +314,8 @@ int main(void)
 	RUN_TEST(test_an_image_beyond_two_gigabytes_is_refused);
 	RUN_TEST(test_names_are_sorted_by_bytes_shorter_first);
 	RUN_TEST(test_areas_do_not_overlap);
+	RUN_TEST(test_what_people_say_of_a_signal_is_in_its_info);
+	RUN_TEST(test_changes_go_around_their_ring);
 	RUN_TEST(test_each_state_goes_to_the_other_slot);
 	RUN_TEST(test_the_sequence_word_wraps);
 	RUN_TEST(test_a_write_broken_off_anywhere_leaves_the_older_state_whole);

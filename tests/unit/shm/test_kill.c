@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A writer that makes and fills the segments as owsd does, killed at random points, in its start
- * too, while a control program reads and sets; the next one takes over as owsd does. KILLS=10000
- * for more.
+ * A writer that makes and fills the files as owsd does, killed at random points, in its start too,
+ * while a program reads; the next one takes over as owsd does, and finds the command in force.
+ * KILLS=10000 for more.
  */
 #include <errno.h>
 #include <limits.h>
@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -19,8 +20,10 @@
 
 #include "src/host/memory.h"
 #include "src/libows/handle.h"
+#include "src/shm/entries.h"
 #include "src/shm/reader.h"
 #include "src/shm/word.h"
+#include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/whole.h"
 
 #define KILLS 200
@@ -48,28 +51,31 @@ static struct config config = {.targets = &target,
                                .period_ns = 100000000};
 
 static struct ows *handle;
-static int output;
+/* What writers tell: the last command that one remembered, and what those after it found. */
+static struct force_words {
+	uint32_t remembered, torn, lost;
+} * force;
 /* What the reader saw; in one generation numbers only grow. */
 static struct {
 	unsigned long reads, alarms, takeovers;
-	unsigned torn, back, gave_up, lost, in_an_update, before_shown;
+	unsigned torn, back, gave_up, in_an_update, before_shown;
 } saw;
 static uint32_t last[OUTPUT], generation;
-static int64_t set_last;
 
 void setUp(void)
 {
+	folder_place();
 	snprintf(instance, sizeof(instance), "kill-%ld", (long)getpid());
 	memset(&saw, 0, sizeof(saw));
+	force = mmap(NULL, sizeof(*force), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1,
+	             0);
+	TEST_ASSERT_TRUE(force != MAP_FAILED);
 	handle = NULL;
 }
 
 static void remove_file(const char *kind)
 {
-	char path[96];
-
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.%s", instance, kind);
-	unlink(path);
+	unlink(folder_file(instance, kind));
 }
 
 void tearDown(void)
@@ -77,8 +83,9 @@ void tearDown(void)
 	ows_close(handle);
 	remove_file("image");
 	remove_file("image.new");
-	remove_file("command");
-	remove_file("command.new");
+	remove_file("force");
+	remove_file("force.new");
+	munmap(force, sizeof(*force));
 }
 
 static void pause_ns(int64_t ns)
@@ -92,13 +99,13 @@ static void pause_ns(int64_t ns)
 
 static void publish_all(struct image *image, uint32_t n)
 {
-	struct ows_alarm_entry alarm = {
+	struct ows_journal_entry alarm = {
 		.record = NUMBER,
 		.occurred_ns = n,
 		.before = n,
 		.kind = (uint8_t)n,
 		.quality = (uint8_t)n,
-		.flags = OWS_ALARM_BEFORE,
+		.flags = OWS_JOURNAL_BEFORE,
 	};
 
 	whole_publish(image, NUMBER, n, 0);
@@ -120,21 +127,58 @@ static void publish_in_place(struct image *image, uint32_t n)
 	words_store(&r->slot[seq >> 1 & 1], &copy[NUMBER].slot[1], sizeof(copy[0].slot[0]) / 4);
 }
 
+/* The output's command in force: its value is as large as its stamp, and grows. */
+static void remember(struct memory *memory, uint32_t n)
+{
+	const struct force_command command = {
+		.value = n, .stamp = n, .given = true, .giver = FORCE_NOBODY};
+
+	force_put(&memory->force, OUTPUT - 1, &command, NULL);
+	__atomic_store_n(&force->remembered, n, __ATOMIC_SEQ_CST);
+}
+
+/* What the writer before has left, whole and no older than it said. */
+static uint32_t find_remembered(const struct memory *memory)
+{
+	const struct force_signal signal = {"output", "/29.1/PIO.BYTE", OWS_LARGE};
+	struct force_command left = {0};
+	char text[1];
+
+	if (memory->has_left)
+		force_find(&memory->left, &signal, &left, text, sizeof(text));
+	if (left.value != left.stamp)
+		__atomic_fetch_add(&force->torn, 1, __ATOMIC_SEQ_CST);
+	if (left.stamp < __atomic_load_n(&force->remembered, __ATOMIC_SEQ_CST))
+		__atomic_fetch_add(&force->lost, 1, __ATOMIC_SEQ_CST);
+	return left.stamp;
+}
+
 static void write_until_killed(void (*publish)(struct image *image, uint32_t n))
 {
 	struct memory memory;
 	char why[256];
-	uint32_t n = 1;
+	uint32_t n = 1, command;
 
 	prctl(PR_SET_PDEATHSIG, SIGKILL);
-	if (memory_make(&memory, &(struct memory_setup){.instance = instance, .config = &config},
+	if (memory_make(&memory,
+	                &(struct memory_setup){
+				.instance = instance, .place = folder_place(), .config = &config},
 	                why, sizeof(why)))
 		_exit(1);
+	command = find_remembered(&memory);
+	memory_resumed(&memory);
 	publish_all(&memory.image, n);
+	/* as an engine: the new file has what is in force before it takes the old one's place */
+	force_put(&memory.force, OUTPUT - 1,
+	          &(struct force_command){
+			  .value = command, .stamp = command, .given = true, .giver = FORCE_NOBODY},
+	          NULL);
 	if (memory_show(&memory, NULL, why, sizeof(why)))
 		_exit(2);
-	for (;;)
+	for (;;) {
 		publish(&memory.image, ++n);
+		remember(&memory, ++command);
+	}
 }
 
 /* --- The reader ------------------------------------------------------------------------------- */
@@ -166,13 +210,14 @@ static void read_all(void)
 	struct ows_slot slot;
 	char text[TEXT_ROOM + 1];
 
-	if (!reader_slot(&handle->map.records[NUMBER], &slot))
+	if (!reader_slot(map_record(&handle->map, NUMBER), &slot))
 		saw.gave_up++;
 	else if (!whole_slot(&slot))
 		saw.torn++;
 	else
 		in_order(NUMBER, slot.sample.count);
-	if (!reader_text(handle->map.base, &handle->map.records[TEXT], &sample, text, sizeof(text)))
+	if (!reader_text(handle->map.base, map_record(&handle->map, TEXT), &sample, text,
+	                 sizeof(text)))
 		saw.gave_up++;
 	else if (!whole_text(&sample, text, TEXT_ROOM))
 		saw.torn++;
@@ -182,28 +227,15 @@ static void read_all(void)
 	saw.reads++;
 }
 
-/* What an earlier set that said 0 has put there has to be in every command segment. */
-static void look_for_the_set(void)
-{
-	struct ows_command_slot *slot = &handle->map.slots[OUTPUT];
-	int64_t there;
-
-	there = (int64_t)__atomic_load_n((shm_double_word *)&slot->value, __ATOMIC_RELAXED);
-	if (there != set_last)
-		saw.lost++;
-}
-
-/* As a control program does each cycle. True: with the present image. */
+/* As a program does each cycle. True: with the present image. */
 static bool attach(void)
 {
 	struct ows *opened;
 
 	if (handle == NULL) {
-		if (ows_open(instance, OWS_CONTROL, &opened))
+		if (ows_open(instance, OWS_READ, &opened))
 			return false;
 		handle = opened;
-		output = ows_find(handle, "output");
-		set_last = 0;
 	} else if (handle->map.image->generation == generation ||
 	           word_get(&handle->map.image->state) != OWS_STATE_LIVE) {
 		if (ows_reopen(handle))
@@ -214,18 +246,18 @@ static bool attach(void)
 	generation = handle->map.image->generation;
 	memset(last, 0, sizeof(last));
 	saw.takeovers++;
-	look_for_the_set();
 	return true;
 }
 
 static unsigned odd_words(void)
 {
 	const struct ows_image_header *h = handle->map.image;
-	const struct ows_alarm_entry *alarms = (const void *)(handle->map.base + h->alarm_off);
-	unsigned odd = handle->map.records[NUMBER].seq & 1;
+	const struct ows_journal_entry *next = map_entry(&handle->map, OWS_AREA_ALARMS,
+	                                                 h->alarm_head % OWS_JOURNAL);
+	unsigned odd = map_record(&handle->map, NUMBER)->seq & 1;
 
-	odd |= handle->map.records[TEXT].seq & 1;
-	return odd | (alarms[h->alarm_head % OWS_ALARMS].seq & 1);
+	odd |= map_record(&handle->map, TEXT)->seq & 1;
+	return odd | (next->seq & 1);
 }
 
 static pid_t start_writer(void (*publish)(struct image *image, uint32_t n))
@@ -262,20 +294,16 @@ static void kill_in_the_start(void)
 	}
 }
 
-static void kill_while_it_writes(int64_t value)
+static void kill_while_it_writes(void)
 {
 	pid_t child = start_writer(publish_all);
 	int64_t give_up = ows_now() + PATIENCE, until;
-	int err;
 
 	while (!attach()) {
 		TEST_ASSERT_TRUE_MESSAGE(ows_now() < give_up, "the writer does not show its image");
 		if (handle)
 			read_all();
 	}
-	err = ows_set_integer(handle, output, value, NULL);
-	TEST_ASSERT_EQUAL(0, err);
-	set_last = value;
 	until = ows_now() + random() % 500000;
 	do {
 		read_all();
@@ -283,7 +311,6 @@ static void kill_while_it_writes(int64_t value)
 	kill_it(child);
 	saw.in_an_update += odd_words();
 	read_all();
-	look_for_the_set();
 }
 
 static unsigned kills_wanted(void)
@@ -305,15 +332,16 @@ static void test_a_writer_killed_anywhere_leaves_no_torn_sample_and_loses_no_com
 		if (i % 8 == 7)
 			kill_in_the_start();
 		else
-			kill_while_it_writes(i + 1);
+			kill_while_it_writes();
 	}
 	printf("%u kills: %u in an update, %u before the image was shown; %lu takeovers seen; "
 	       "%lu reads, %lu of alarms; %u torn, %u back, %u given up, %u commands lost\n",
 	       kills, saw.in_an_update, saw.before_shown, saw.takeovers, saw.reads, saw.alarms,
-	       saw.torn, saw.back, saw.gave_up, saw.lost);
+	       saw.torn + force->torn, saw.back, saw.gave_up, force->lost);
 	TEST_ASSERT_EQUAL(0, saw.torn);
 	TEST_ASSERT_EQUAL(0, saw.back);
-	TEST_ASSERT_EQUAL(0, saw.lost);
+	TEST_ASSERT_EQUAL(0, force->torn);
+	TEST_ASSERT_EQUAL(0, force->lost);
 	TEST_ASSERT_GREATER_THAN(kills / 20, saw.in_an_update);
 	TEST_ASSERT_LESS_THAN(saw.reads / 100 + 1, saw.gave_up);
 }
@@ -332,7 +360,7 @@ static void test_a_writer_without_the_protocol_is_found_out_by_kills(void)
 			TEST_ASSERT_TRUE(ows_now() < give_up);
 		pause_ns(random() % 300000);
 		kill_it(child);
-		TEST_ASSERT_TRUE(reader_slot(&handle->map.records[NUMBER], &slot));
+		TEST_ASSERT_TRUE(reader_slot(map_record(&handle->map, NUMBER), &slot));
 		found = !whole_slot(&slot);
 	}
 	printf("found out by kill %u\n", kills);

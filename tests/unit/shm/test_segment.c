@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Tests of the files of an instance in /dev/shm, and of its lock. */
+/* Tests of the mapped files of an instance, and of its lock. */
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -17,6 +17,7 @@
 #include "src/shm/futex.h"
 #include "src/shm/lock.h"
 #include "src/shm/segment.h"
+#include "tests/unit/aid/folder.h"
 
 #define SIZE 8192
 
@@ -26,26 +27,21 @@ static struct segment segment;
 void setUp(void)
 {
 	snprintf(name, sizeof(name), "segment.%d", (int)getpid());
-	TEST_ASSERT_EQUAL(0, segment_create(name, SEGMENT_COMMAND, SIZE, &segment));
+	TEST_ASSERT_EQUAL(0, segment_create(folder_place(), name, SEGMENT_IMAGE, SIZE, &segment));
 }
 
 void tearDown(void)
 {
-	char path[80];
-
 	segment_close(&segment);
-	segment_remove(name, SEGMENT_COMMAND);
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.lock", name);
-	unlink(path);
+	segment_remove(folder_place(), name, SEGMENT_IMAGE);
+	unlink(folder_file(name, "lock"));
 }
 
 static bool exists(const char *kind)
 {
 	struct stat st;
-	char path[80];
 
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.%s", name, kind);
-	return lstat(path, &st) == 0;
+	return lstat(folder_file(name, kind), &st) == 0;
 }
 
 static void test_names_that_would_leave_the_directory_are_refused(void)
@@ -58,10 +54,12 @@ static void test_names_that_would_leave_the_directory_are_refused(void)
 
 	for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++) {
 		TEST_ASSERT_FALSE(segment_name_ok(bad[i]));
-		TEST_ASSERT_EQUAL(-EINVAL, segment_create(bad[i], SEGMENT_IMAGE, SIZE, &s));
-		TEST_ASSERT_EQUAL(-EINVAL, segment_open_old(bad[i], SEGMENT_IMAGE, &s));
-		TEST_ASSERT_EQUAL(-EINVAL, segment_remove(bad[i], SEGMENT_IMAGE));
-		TEST_ASSERT_EQUAL(-EINVAL, segment_lock(bad[i], &pid, &stolen));
+		TEST_ASSERT_EQUAL(-EINVAL,
+		                  segment_create(folder_place(), bad[i], SEGMENT_IMAGE, SIZE, &s));
+		TEST_ASSERT_EQUAL(-EINVAL,
+		                  segment_open_old(folder_place(), bad[i], SEGMENT_IMAGE, &s));
+		TEST_ASSERT_EQUAL(-EINVAL, segment_remove(folder_place(), bad[i], SEGMENT_IMAGE));
+		TEST_ASSERT_EQUAL(-EINVAL, segment_lock(folder_place(), bad[i], &pid, &stolen));
 	}
 	TEST_ASSERT_TRUE(segment_name_ok("OWS"));
 	TEST_ASSERT_TRUE(segment_name_ok("Boiler-2_x.y"));
@@ -70,38 +68,19 @@ static void test_names_that_would_leave_the_directory_are_refused(void)
 
 static void test_a_segment_is_seen_only_after_it_is_shown(void)
 {
-	TEST_ASSERT_TRUE(exists("command.new"));
-	TEST_ASSERT_FALSE(exists("command"));
-	TEST_ASSERT_EQUAL(0, segment_show(name, &segment));
-	TEST_ASSERT_FALSE(exists("command.new"));
-	TEST_ASSERT_TRUE(exists("command"));
-	segment_close(&segment);
-	TEST_ASSERT_TRUE(exists("command"));
-}
-
-static void test_no_temporary_name_that_is_taken_is_an_obstacle(void)
-{
-	struct segment other;
-	char path[80];
-
-	/* as a file of another user, a directory is not removed */
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.image.new", name);
-	TEST_ASSERT_EQUAL(0, mkdir(path, 0700));
-	TEST_ASSERT_EQUAL(0, segment_create(name, SEGMENT_IMAGE, SIZE, &other));
-	TEST_ASSERT_EQUAL_STRING_LEN(path, other.temporary, strlen(path));
-	TEST_ASSERT_EQUAL(strlen(path) + 9, strlen(other.temporary));
-	TEST_ASSERT_EQUAL(0, segment_show(name, &other));
-	TEST_ASSERT_TRUE(exists("image"));
-	segment_close(&other);
 	TEST_ASSERT_TRUE(exists("image.new"));
-	TEST_ASSERT_EQUAL(0, rmdir(path));
-	TEST_ASSERT_EQUAL(0, segment_remove(name, SEGMENT_IMAGE));
+	TEST_ASSERT_FALSE(exists("image"));
+	TEST_ASSERT_EQUAL(0, segment_show(name, &segment));
+	TEST_ASSERT_FALSE(exists("image.new"));
+	TEST_ASSERT_TRUE(exists("image"));
+	segment_close(&segment);
+	TEST_ASSERT_TRUE(exists("image"));
 }
 
 static void test_a_segment_never_shown_leaves_nothing_behind(void)
 {
 	segment_close(&segment);
-	TEST_ASSERT_FALSE(exists("command.new"));
+	TEST_ASSERT_FALSE(exists("image.new"));
 }
 
 static void test_a_segment_is_zeroed_whole_and_closed_to_others(void)
@@ -116,11 +95,23 @@ static void test_a_segment_is_zeroed_whole_and_closed_to_others(void)
 	TEST_ASSERT_EQUAL(0, st.st_mode & 0117);
 }
 
+static void test_what_owsd_keeps_for_itself_is_closed_to_every_group(void)
+{
+	struct segment force;
+	struct stat st;
+
+	TEST_ASSERT_EQUAL(0, segment_create(folder_place(), name, SEGMENT_FORCE, SIZE, &force));
+	TEST_ASSERT_EQUAL(0, fstat(force.fd, &st));
+	TEST_ASSERT_EQUAL(0600, st.st_mode & 07777);
+	segment_close(&force);
+	TEST_ASSERT_FALSE(exists("force.new"));
+}
+
 static void test_what_a_killed_start_left_is_no_obstacle(void)
 {
 	struct segment other;
 
-	TEST_ASSERT_EQUAL(0, segment_create(name, SEGMENT_COMMAND, SIZE, &other));
+	TEST_ASSERT_EQUAL(0, segment_create(folder_place(), name, SEGMENT_IMAGE, SIZE, &other));
 	segment_close(&other);
 }
 
@@ -128,28 +119,27 @@ static void test_an_old_segment_is_found_with_what_it_held(void)
 {
 	struct segment old;
 
-	TEST_ASSERT_EQUAL(-ENOENT, segment_open_old(name, SEGMENT_COMMAND, &old));
+	TEST_ASSERT_EQUAL(-ENOENT, segment_open_old(folder_place(), name, SEGMENT_IMAGE, &old));
 	strcpy(segment.base + 100, "kept");
 	TEST_ASSERT_EQUAL(0, segment_show(name, &segment));
-	TEST_ASSERT_EQUAL(0, segment_open_old(name, SEGMENT_COMMAND, &old));
+	TEST_ASSERT_EQUAL(0, segment_open_old(folder_place(), name, SEGMENT_IMAGE, &old));
 	TEST_ASSERT_EQUAL(SIZE, old.size);
 	TEST_ASSERT_EQUAL_STRING("kept", old.base + 100);
 	segment_close(&old);
 	TEST_ASSERT_EQUAL(0, ftruncate(segment.fd, 0));
-	TEST_ASSERT_EQUAL(-EPROTO, segment_open_old(name, SEGMENT_COMMAND, &old));
+	TEST_ASSERT_EQUAL(-EPROTO, segment_open_old(folder_place(), name, SEGMENT_IMAGE, &old));
 }
 
 static void test_a_link_or_pipe_in_the_way_is_not_opened(void)
 {
 	struct segment old;
-	char path[80];
+	const char *path = folder_file(name, "image");
 
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.command", name);
 	TEST_ASSERT_EQUAL(0, symlink("/etc/passwd", path));
-	TEST_ASSERT_EQUAL(-EPERM, segment_open_old(name, SEGMENT_COMMAND, &old));
+	TEST_ASSERT_EQUAL(-EPERM, segment_open_old(folder_place(), name, SEGMENT_IMAGE, &old));
 	TEST_ASSERT_EQUAL(0, unlink(path));
 	TEST_ASSERT_EQUAL(0, mkfifo(path, 0600));
-	TEST_ASSERT_EQUAL(-EPERM, segment_open_old(name, SEGMENT_COMMAND, &old));
+	TEST_ASSERT_EQUAL(-EPERM, segment_open_old(folder_place(), name, SEGMENT_IMAGE, &old));
 }
 
 static void test_one_owsd_for_each_name(void)
@@ -158,13 +148,13 @@ static void test_one_owsd_for_each_name(void)
 	pid_t pid;
 	int first, second;
 
-	first = segment_lock(name, &pid, &stolen);
+	first = segment_lock(folder_place(), name, &pid, &stolen);
 	TEST_ASSERT_GREATER_OR_EQUAL(0, first);
-	TEST_ASSERT_EQUAL(-EBUSY, segment_lock(name, &pid, &stolen));
+	TEST_ASSERT_EQUAL(-EBUSY, segment_lock(folder_place(), name, &pid, &stolen));
 	TEST_ASSERT_EQUAL(getpid(), pid);
 	TEST_ASSERT_FALSE(stolen);
 	close(first);
-	second = segment_lock(name, &pid, &stolen);
+	second = segment_lock(folder_place(), name, &pid, &stolen);
 	TEST_ASSERT_GREATER_OR_EQUAL(0, second);
 	TEST_ASSERT_FALSE(stolen);
 	close(second);
@@ -172,22 +162,21 @@ static void test_one_owsd_for_each_name(void)
 
 static void test_a_lock_whose_file_was_removed_or_replaced_is_not_held(void)
 {
-	char path[80];
 	bool stolen;
 	pid_t pid;
 	int first, second;
 
-	snprintf(path, sizeof(path), "/dev/shm/owsd.%s.lock", name);
-	first = segment_lock(name, &pid, &stolen);
+	first = segment_lock(folder_place(), name, &pid, &stolen);
 	TEST_ASSERT_GREATER_OR_EQUAL(0, first);
-	TEST_ASSERT_TRUE(segment_lock_held(first, name));
-	TEST_ASSERT_TRUE_MESSAGE(segment_lock_held(-1, name), "a look that fails is no loss");
-	TEST_ASSERT_EQUAL(0, unlink(path));
-	TEST_ASSERT_FALSE(segment_lock_held(first, name));
-	second = segment_lock(name, &pid, &stolen);
+	TEST_ASSERT_TRUE(segment_lock_held(folder_place(), first, name));
+	TEST_ASSERT_TRUE_MESSAGE(segment_lock_held(folder_place(), -1, name),
+	                         "a look that fails is no loss");
+	TEST_ASSERT_EQUAL(0, unlink(folder_file(name, "lock")));
+	TEST_ASSERT_FALSE(segment_lock_held(folder_place(), first, name));
+	second = segment_lock(folder_place(), name, &pid, &stolen);
 	TEST_ASSERT_GREATER_OR_EQUAL(0, second);
-	TEST_ASSERT_FALSE(segment_lock_held(first, name));
-	TEST_ASSERT_TRUE(segment_lock_held(second, name));
+	TEST_ASSERT_FALSE(segment_lock_held(folder_place(), first, name));
+	TEST_ASSERT_TRUE(segment_lock_held(folder_place(), second, name));
 	close(first);
 	close(second);
 }
@@ -217,7 +206,7 @@ static void test_a_corpses_lock_is_left_behind(void)
 		pthread_t thread;
 
 		close(hold[1]);
-		if (segment_lock(name, &pid, &stolen) < 0 ||
+		if (segment_lock(folder_place(), name, &pid, &stolen) < 0 ||
 		    pthread_create(&thread, NULL, outlive, &hold[0]) != 0 ||
 		    write(ready[1], "x", 1) != 1)
 			_exit(1);
@@ -227,11 +216,11 @@ static void test_a_corpses_lock_is_left_behind(void)
 	TEST_ASSERT_EQUAL(1, read(ready[0], &c, 1));
 	fd = -1;
 	for (int64_t until = ows_now() + INT64_C(60000000000); fd < 0 && ows_now() < until;)
-		fd = segment_lock(name, &pid, &stolen);
+		fd = segment_lock(folder_place(), name, &pid, &stolen);
 	TEST_ASSERT_GREATER_OR_EQUAL(0, fd);
 	TEST_ASSERT_TRUE(stolen);
 	TEST_ASSERT_EQUAL(child, pid);
-	TEST_ASSERT_EQUAL(-EBUSY, segment_lock(name, &other, &stolen_twice));
+	TEST_ASSERT_EQUAL(-EBUSY, segment_lock(folder_place(), name, &other, &stolen_twice));
 	TEST_ASSERT_EQUAL(getpid(), other);
 	TEST_ASSERT_FALSE(stolen_twice);
 	TEST_ASSERT_EQUAL(1, write(hold[1], "x", 1));
@@ -250,10 +239,10 @@ static void test_a_dead_owners_lock_is_free(void)
 	int fd, status;
 
 	if (child == 0)
-		_exit(segment_lock(name, &pid, &stolen) < 0);
+		_exit(segment_lock(folder_place(), name, &pid, &stolen) < 0);
 	TEST_ASSERT_EQUAL(child, waitpid(child, &status, 0));
 	TEST_ASSERT_EQUAL(0, status);
-	fd = segment_lock(name, &pid, &stolen);
+	fd = segment_lock(folder_place(), name, &pid, &stolen);
 	TEST_ASSERT_GREATER_OR_EQUAL(0, fd);
 	TEST_ASSERT_FALSE(stolen);
 	close(fd);
@@ -308,43 +297,6 @@ static void test_a_wait_on_truncated_memory_says_so(void)
 	TEST_ASSERT_EQUAL(-EFAULT, segment_wait((void *)segment.base, 0, 1000000));
 }
 
-static void test_a_guarded_segment_survives_truncation(void)
-{
-	TEST_ASSERT_EQUAL(0, segment_guard(&segment));
-	memset(segment.base, 7, SIZE);
-	TEST_ASSERT_FALSE(segment_lost(&segment));
-	TEST_ASSERT_EQUAL(0, ftruncate(segment.fd, 0));
-	TEST_ASSERT_TRUE(segment_lost(&segment));
-	TEST_ASSERT_EQUAL(0, *(volatile char *)&segment.base[5000]);
-	TEST_ASSERT_TRUE(segment_lost(&segment));
-	memset(segment.base, 1, SIZE);
-	TEST_ASSERT_EQUAL(1, segment.base[SIZE - 1]);
-	segment_unguard(&segment);
-}
-
-/* The rest of its last page stays there, so that no touch of it would tell. */
-static void test_a_segment_that_lost_less_than_a_page_is_lost(void)
-{
-	TEST_ASSERT_FALSE(segment_lost(&segment));
-	TEST_ASSERT_EQUAL(0, ftruncate(segment.fd, SIZE - 8));
-	TEST_ASSERT_TRUE(segment_lost(&segment));
-}
-
-static void test_four_segments_have_guards_and_a_fifth_has_none(void)
-{
-	struct segment more[4];
-
-	TEST_ASSERT_EQUAL(0, segment_guard(&segment));
-	for (int i = 0; i < 4; i++) {
-		more[i] = (struct segment){
-			.base = segment.base + 4096 * (i + 10), .size = 4096, .fd = -1};
-		TEST_ASSERT_EQUAL(i < 3 ? 0 : -ENOSPC, segment_guard(&more[i]));
-	}
-	for (int i = 0; i < 3; i++)
-		segment_unguard(&more[i]);
-	segment_unguard(&segment);
-}
-
 static int run_child(void (*body)(void))
 {
 	pid_t child = fork();
@@ -366,7 +318,10 @@ static void ask_for_too_much(void)
 	signal(SIGXFSZ, SIG_IGN);
 	if (setrlimit(RLIMIT_FSIZE, &limit) < 0)
 		_exit(1);
-	_exit(segment_create(name, SEGMENT_IMAGE, SIZE, &other) == -EFBIG && other.fd < 0 ? 7 : 8);
+	_exit(segment_create(folder_place(), name, SEGMENT_FORCE, SIZE, &other) == -EFBIG &&
+	                      other.fd < 0
+	              ? 7
+	              : 8);
 }
 
 static void test_memory_that_cannot_be_had_is_an_error_now(void)
@@ -375,77 +330,7 @@ static void test_memory_that_cannot_be_had_is_an_error_now(void)
 
 	TEST_ASSERT_TRUE(WIFEXITED(status));
 	TEST_ASSERT_EQUAL(7, WEXITSTATUS(status));
-	TEST_ASSERT_FALSE(exists("image.new"));
-}
-
-static void touch_foreign(void)
-{
-	struct segment other;
-	struct sigaction by_default = {.sa_handler = SIG_DFL};
-
-	sigaction(SIGBUS, &by_default, NULL);
-	if (segment_create(name, SEGMENT_IMAGE, SIZE, &other) < 0 || segment_guard(&segment) < 0 ||
-	    unlink(other.temporary) < 0 || ftruncate(other.fd, 0) < 0)
-		_exit(1);
-	*(volatile char *)other.base = 1;
-}
-
-static void raise_it(void)
-{
-	struct sigaction by_default = {.sa_handler = SIG_DFL};
-
-	sigaction(SIGBUS, &by_default, NULL);
-	if (segment_guard(&segment) < 0)
-		_exit(1);
-	raise(SIGBUS);
-}
-
-static void exit_seven(int number)
-{
-	_exit(number == SIGBUS ? 7 : 8);
-}
-
-static void own_handler(void)
-{
-	struct sigaction mine = {.sa_handler = exit_seven};
-
-	sigaction(SIGBUS, &mine, NULL);
-	if (segment_guard(&segment) < 0)
-		_exit(1);
-	raise(SIGBUS);
-}
-
-static void own_handler_comes_back(void)
-{
-	struct sigaction mine = {.sa_handler = exit_seven};
-
-	sigaction(SIGBUS, &mine, NULL);
-	if (segment_guard(&segment) < 0)
-		_exit(1);
-	segment_unguard(&segment);
-	sigaction(SIGBUS, NULL, &mine);
-	_exit(mine.sa_handler == exit_seven ? 7 : 8);
-}
-
-static void test_a_bus_error_elsewhere_still_kills(void)
-{
-	int status = run_child(touch_foreign);
-
-	TEST_ASSERT_TRUE(WIFSIGNALED(status));
-	TEST_ASSERT_EQUAL(SIGBUS, WTERMSIG(status));
-	status = run_child(raise_it);
-	TEST_ASSERT_TRUE(WIFSIGNALED(status));
-	TEST_ASSERT_EQUAL(SIGBUS, WTERMSIG(status));
-}
-
-static void test_an_earlier_handler_is_called_for_what_is_not_ours(void)
-{
-	int status = run_child(own_handler);
-
-	TEST_ASSERT_TRUE(WIFEXITED(status));
-	TEST_ASSERT_EQUAL(7, WEXITSTATUS(status));
-	status = run_child(own_handler_comes_back);
-	TEST_ASSERT_EQUAL(7, WEXITSTATUS(status));
+	TEST_ASSERT_FALSE(exists("force.new"));
 }
 
 int main(void)
@@ -453,9 +338,9 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_names_that_would_leave_the_directory_are_refused);
 	RUN_TEST(test_a_segment_is_seen_only_after_it_is_shown);
-	RUN_TEST(test_no_temporary_name_that_is_taken_is_an_obstacle);
 	RUN_TEST(test_a_segment_never_shown_leaves_nothing_behind);
 	RUN_TEST(test_a_segment_is_zeroed_whole_and_closed_to_others);
+	RUN_TEST(test_what_owsd_keeps_for_itself_is_closed_to_every_group);
 	RUN_TEST(test_what_a_killed_start_left_is_no_obstacle);
 	RUN_TEST(test_an_old_segment_is_found_with_what_it_held);
 	RUN_TEST(test_a_link_or_pipe_in_the_way_is_not_opened);
@@ -466,11 +351,6 @@ int main(void)
 	RUN_TEST(test_a_wait_ends_in_time);
 	RUN_TEST(test_a_long_wait_ends_by_a_wake_from_another_mapping);
 	RUN_TEST(test_a_wait_on_truncated_memory_says_so);
-	RUN_TEST(test_a_guarded_segment_survives_truncation);
-	RUN_TEST(test_a_segment_that_lost_less_than_a_page_is_lost);
-	RUN_TEST(test_four_segments_have_guards_and_a_fifth_has_none);
 	RUN_TEST(test_memory_that_cannot_be_had_is_an_error_now);
-	RUN_TEST(test_a_bus_error_elsewhere_still_kills);
-	RUN_TEST(test_an_earlier_handler_is_called_for_what_is_not_ours);
 	return UNITY_END();
 }

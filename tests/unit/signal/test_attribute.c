@@ -141,6 +141,7 @@ static void test_a_signals_own_name_wins_over_an_attribute(void)
 	expect("x_Age", 2, ATTR_VALUE);
 	expect("OWS__x_Age", 2, ATTR_VALUE);
 	expect("x_AgeMax", 1, ATTR_AGE_MAX);
+	expect("x_Raw", 1, ATTR_RAW);
 	expect("x_Age_Age", 2, ATTR_AGE);
 	expect("OWS__x_Age_Age", 3, ATTR_VALUE);
 }

@@ -1,0 +1,375 @@
+/* SPDX-License-Identifier: MIT */
+/* The thread of the control room, its start and end, a reload, and the engine's side. */
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "hal/bus/time.h"
+#include "src/config/config.h"
+#include "src/control/control.h"
+#include "src/control/door.h"
+#include "src/control/grant.h"
+#include "src/control/held.h"
+#include "src/control/private.h"
+#include "src/control/socket.h"
+#include "src/libows/ows.h"
+#include "src/shm/word.h"
+
+#define STACK_SIZE (128 * 1024)
+#define EVENTS 64
+/* What stands in epoll's data; below it, a place * 2 + 1 if its process ended. */
+#define LISTENER (2 * OWS_GIVERS)
+#define WAKE (LISTENER + 1)
+
+static const char *const counter_names[CONTROL_COUNTER_COUNT] = {
+#define X(name) "control_" #name,
+	CONTROL_COUNTERS(X)
+#undef X
+};
+
+/* Others may connect where it is the kernel's word who they are that decides. */
+static bool is_for_all(const struct control *c)
+{
+	return c->rights.has_controllers || c->rights.has_readers || c->config->allow_count;
+}
+
+static int add(struct control *c, int fd, uint32_t data)
+{
+	struct epoll_event event = {.events = EPOLLIN | EPOLLET, .data.u32 = data};
+
+	return epoll_ctl(c->epoll, EPOLL_CTL_ADD, fd, &event) < 0 ? -errno : 0;
+}
+
+static int open_all(struct control *c)
+{
+	int err;
+
+	c->epoll = epoll_create1(EPOLL_CLOEXEC);
+	c->wake = c->epoll < 0 ? -1 : eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	if (c->wake < 0)
+		return -errno;
+	c->listener = socket_listen(c->directory, c->name, is_for_all(c), &c->inode);
+	if (c->listener < 0)
+		return c->listener;
+	err = add(c, c->listener, LISTENER);
+	return err ? err : add(c, c->wake, WAKE);
+}
+
+int control_create(const struct control_setup *setup, struct control **control, char *why,
+                   size_t why_size)
+{
+	struct control *c = calloc(1, sizeof(*c));
+	int err;
+
+	snprintf(why, why_size, "%s", strerror(ENOMEM));
+	if (!c)
+		return -ENOMEM;
+	c->config = setup->config;
+	c->directory = setup->directory;
+	c->log = setup->log;
+	c->ring = setup->ring;
+	c->ring_ctx = setup->ring_ctx;
+	c->epoll = c->wake = c->listener = -1;
+	c->engine.at = OWS_GIVERS;
+	pthread_mutex_init(&c->lock, NULL);
+	for (int i = 0; i < CONTROL_COUNTER_COUNT; i++)
+		c->counters[i].name = counter_names[i];
+	snprintf(c->name, sizeof(c->name), "%s.control", setup->instance);
+	rights_find(&c->rights, c->config);
+	err = open_all(c);
+	if (err) {
+		snprintf(why, why_size, "cannot make the socket %s: %s", c->name, strerror(-err));
+		control_destroy(c);
+		return err;
+	}
+	*control = c;
+	return 0;
+}
+
+const struct bus_counter *control_counters(const struct control *c, size_t *n)
+{
+	*n = CONTROL_COUNTER_COUNT;
+	return c->counters;
+}
+
+/* --- The thread ------------------------------------------------------------------------------- */
+
+static void take_event(struct control *c, uint32_t data)
+{
+	if (data == LISTENER)
+		c->accepts = true;
+	else if (data < LISTENER && data % 2)
+		door_died(c, &c->places[data / 2]);
+	else if (data < LISTENER)
+		door_event(c, &c->places[data / 2]);
+}
+
+static int wait_ms(const struct control *c, int64_t next_ns)
+{
+	int64_t left = next_ns - c->now_ns;
+
+	if (next_ns == INT64_MAX)
+		return -1;
+	return left <= 0 ? 0 : (int)(left / NS_PER_MS) + 1;
+}
+
+static void *run(void *arg)
+{
+	struct epoll_event events[EVENTS];
+	struct control *c = arg;
+	int64_t next_ns = INT64_MAX;
+
+	while (!__atomic_load_n(&c->stop, __ATOMIC_ACQUIRE)) {
+		int n = epoll_wait(c->epoll, events, EVENTS, wait_ms(c, next_ns));
+
+		pthread_mutex_lock(&c->lock);
+		c->now_ns = ows_now();
+		for (int i = 0; i < n; i++)
+			take_event(c, events[i].data.u32);
+		if (c->accepts && c->now_ns >= c->accept_ns)
+			door_accept(c);
+		next_ns = door_look(c);
+		pthread_mutex_unlock(&c->lock);
+	}
+	return NULL;
+}
+
+static void wake(struct control *c)
+{
+	const uint64_t one = 1;
+
+	/* it is full after 2^64 times */
+	if (write(c->wake, &one, sizeof(one)) < 0)
+		return;
+}
+
+int control_start(struct control *c, const struct giver_layout *layout)
+{
+	sigset_t all, before;
+	pthread_attr_t attr;
+	int err = pthread_attr_init(&attr);
+
+	if (err)
+		return -err;
+	c->layout = layout;
+	c->now_ns = ows_now();
+	pthread_attr_setstacksize(&attr, STACK_SIZE);
+	sigfillset(&all);
+	pthread_sigmask(SIG_SETMASK, &all, &before);
+	err = pthread_create(&c->thread, &attr, run, c);
+	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	pthread_attr_destroy(&attr);
+	if (err)
+		return -err;
+	c->running = true;
+	pthread_setname_np(c->thread, "owsd-control");
+	return 0;
+}
+
+void control_stop(struct control *c)
+{
+	if (!c)
+		return;
+	__atomic_store_n(&c->stop, 1, __ATOMIC_RELEASE);
+	if (c->running) {
+		wake(c);
+		pthread_join(c->thread, NULL);
+		c->running = false;
+	}
+	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+		struct control_place *p = &c->places[i];
+
+		if (p->now.memory.base)
+			giver_state(&p->now.memory, OWS_STATE_STOPPED);
+		if (__atomic_load_n(&p->state, __ATOMIC_ACQUIRE) != CONTROL_FREE && p->fd >= 0) {
+			close(p->fd);
+			p->fd = -1;
+		}
+	}
+	if (c->listener >= 0) {
+		socket_remove(c->directory, c->name, c->inode);
+		close(c->listener);
+	}
+	c->listener = -1;
+}
+
+void control_destroy(struct control *c)
+{
+	if (!c)
+		return;
+	control_stop(c);
+	for (unsigned i = 0; i < OWS_GIVERS; i++)
+		if (__atomic_load_n(&c->places[i].state, __ATOMIC_ACQUIRE) != CONTROL_FREE)
+			door_release(c, &c->places[i]);
+	held_forget(c);
+	if (c->wake >= 0)
+		close(c->wake);
+	if (c->epoll >= 0)
+		close(c->epoll);
+	pthread_mutex_destroy(&c->lock);
+	free(c);
+}
+
+/* --- The engine's thread ---------------------------------------------------------------------- */
+
+static void show_turn(struct control_turn *turn, const struct control *c, unsigned place,
+                      const struct control_grant *grant)
+{
+	const struct control_place *p = &c->places[place];
+
+	*turn = (struct control_turn){
+		.place = place,
+		.joins = true,
+		.memory = grant->memory,
+		.rights = grant->rights,
+		.who = p->who,
+		.bell = p->bell,
+	};
+	memcpy(turn->token, p->token, sizeof(turn->token));
+}
+
+bool control_next(struct control *c, struct control_turn *turn)
+{
+	uint32_t turns = __atomic_load_n(&c->turns, __ATOMIC_ACQUIRE);
+
+	if (turns != c->engine.seen) {
+		c->engine.seen = turns;
+		c->engine.at = 0;
+	}
+	while (c->engine.at < OWS_GIVERS) {
+		unsigned place = c->engine.at++;
+		struct control_place *p = &c->places[place];
+		uint32_t state = CONTROL_JOINING;
+
+		if (__atomic_compare_exchange_n(&p->state, &state, CONTROL_TAKEN, false,
+		                                __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE)) {
+			show_turn(turn, c, place, &p->now);
+			return true;
+		}
+		if (state == CONTROL_LEAVING) {
+			show_turn(turn, c, place, &p->now);
+			turn->joins = false;
+			return true;
+		}
+	}
+	return false;
+}
+
+void control_done(struct control *c, const struct control_turn *turn)
+{
+	c->engine.memories[turn->place] = turn->joins ? turn->memory : (struct giver_memory){0};
+	__atomic_store_n(&c->places[turn->place].state, turn->joins ? CONTROL_IN : CONTROL_LEFT,
+	                 __ATOMIC_RELEASE);
+	wake(c);
+}
+
+void control_news(struct control *c)
+{
+	/* news are counted before the look who waits; who waits says so before it looks for news */
+	word_fence(__ATOMIC_SEQ_CST);
+	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+		const struct giver_memory *memory = &c->engine.memories[i];
+
+		/* a full pipe rings already; without a reader the giver is about to leave */
+		if (memory->base && giver_waits(memory) && write(c->places[i].news, "", 1) < 0)
+			continue;
+	}
+}
+
+void control_end(struct control *c)
+{
+	for (unsigned i = 0; i < OWS_GIVERS; i++)
+		if (c->engine.memories[i].base)
+			giver_state(&c->engine.memories[i], OWS_STATE_STOPPED);
+}
+
+/* --- A reload --------------------------------------------------------------------------------- */
+
+static void prepare(struct control *c, struct control_place *p, const struct giver_layout *layout,
+                    const struct rights *rights)
+{
+	size_t has = 0;
+	int err = -ENOSPC;
+
+	for (unsigned i = 0; i < OWS_GIVERS; i++)
+		if (c->places[i].peer.uid == p->peer.uid)
+			has += c->places[i].next.size;
+	if (!p->peer.uid || !has || has + layout->size <= CONTROL_MEMORY)
+		err = grant_make(&p->next, layout, rights, p);
+	if (err)
+		log_warning(c->log, "no memory for giver %s (process %d) after the reload: %s",
+		            p->who.name, (int)p->who.pid, strerror(-err));
+}
+
+void control_prepare(struct control *c, const struct config *config,
+                     const struct giver_layout *layout)
+{
+	pthread_mutex_lock(&c->lock);
+	rights_find(&c->rights, config);
+	c->config = config;
+	c->layout = layout;
+	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+		struct control_place *p = &c->places[i];
+		uint32_t state = __atomic_load_n(&p->state, __ATOMIC_ACQUIRE);
+
+		if (state == CONTROL_JOINING || state == CONTROL_TAKEN || state == CONTROL_IN)
+			prepare(c, p, layout, &c->rights);
+	}
+}
+
+bool control_prepared(struct control *c, unsigned *place, struct control_turn *turn)
+{
+	while (*place < OWS_GIVERS) {
+		unsigned i = (*place)++;
+		const struct control_grant *next = &c->places[i].next;
+
+		if (!c->engine.memories[i].base)
+			continue;
+		c->engine.memories[i] = next->memory;
+		if (!next->memory.base)
+			continue;
+		show_turn(turn, c, i, next);
+		return true;
+	}
+	return false;
+}
+
+static void take_next(struct control *c, struct control_place *p)
+{
+	if (__atomic_load_n(&p->state, __ATOMIC_ACQUIRE) != CONTROL_IN) {
+		held_free(c, p->peer.uid, &p->next);
+		return;
+	}
+	held_free(c, p->peer.uid, &p->now);
+	p->now = p->next;
+	p->next = (struct control_grant){.memfd = -1, .own = -1};
+	p->welcomed = false;
+	if (!p->now.memory.base)
+		door_drop(c, p, CONTROL_refused_errors);
+}
+
+void control_reloaded(struct control *c)
+{
+	for (unsigned i = 0; i < OWS_GIVERS; i++)
+		take_next(c, &c->places[i]);
+	socket_open_for(c->directory, c->name, is_for_all(c));
+	pthread_mutex_unlock(&c->lock);
+	wake(c);
+}
+
+void control_replaced(struct control *c)
+{
+	pthread_mutex_lock(&c->lock);
+	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+		bool is_in = __atomic_load_n(&c->places[i].state, __ATOMIC_ACQUIRE) == CONTROL_IN;
+
+		if (is_in && write(c->places[i].news, "", 1) < 0)
+			continue; /* as in control_news() */
+	}
+	pthread_mutex_unlock(&c->lock);
+}

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The control room: programs that want to command connect to NAME.control and become givers. Its
+ * thread accepts them, looks at their credentials and rights, and makes each a memory of its own;
+ * the engine's thread takes them from here. Nothing that comes over the socket is believed.
+ *
+ * Room src/control: the control socket: connections, credentials, rights. Uses src/config,
+ * src/text, src/libows, src/shm, hal/bus.
+ */
+#ifndef CONTROL_H
+#define CONTROL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "src/shm/giver.h"
+
+struct bus_counter;
+struct config;
+struct control;
+struct log;
+
+struct control_setup {
+	const struct config *config;
+	int directory;        /* owsd's; stays open as long as the control room */
+	const char *instance; /* the caller holds its lock */
+	struct log *log;
+	void (*ring)(void *ctx); /* wakes the engine's thread, which then calls control_next() */
+	void *ring_ctx;
+};
+/* Make room for all givers, and the socket. 0, or a negative errno with the reason in why. */
+int control_create(const struct control_setup *setup, struct control **control, char *why,
+                   size_t why_size);
+/* Start the thread; layout: of the memories. 0 or a negative errno. */
+int control_start(struct control *control, const struct giver_layout *layout);
+/*
+ * End the thread, hang up on all givers and stop their memories, which stay mapped until
+ * control_destroy(): a thread of the engine may end later. NULL: does nothing; so may both be
+ * called again.
+ */
+void control_stop(struct control *control);
+void control_destroy(struct control *control);
+const struct bus_counter *control_counters(const struct control *control, size_t *n);
+
+/* --- For the engine's thread: these neither block nor allocate ------------------------------- */
+
+/* A giver that joins or leaves; which it has is valid until control_done() of its leaving. */
+struct control_turn {
+	unsigned place;
+	bool joins; /* else it leaves */
+	struct giver_memory memory;
+	const uint32_t *rights; /* a bit for each record that it may command */
+	struct ows_who who;
+	uint8_t token[16];
+	int bell; /* eventfd; for edge-triggered epoll: nobody reads it */
+};
+/* The next giver that joins or leaves; the caller calls control_done() before the next. */
+bool control_next(struct control *control, struct control_turn *turn);
+void control_done(struct control *control, const struct control_turn *turn);
+/* Ring the news of the givers that wait for it. */
+void control_news(struct control *control);
+/* The engine ends: refuse all sets from here on. What was set before, the next step finds. */
+void control_end(struct control *control);
+
+/* --- A reload, by the supervisor ------------------------------------------------------------- */
+
+/*
+ * Make the memories and rights of another configuration for all givers. Nobody joins or leaves
+ * until control_reloaded(), which the caller has to call.
+ */
+void control_prepare(struct control *control, const struct config *config,
+                     const struct giver_layout *layout);
+/*
+ * The engine's thread, after control_next() had no more and before it adopts: the next giver at or
+ * after *place that has joined, with its new memory and rights; *place is then the one after it. A
+ * giver for whom there was no room is not among them, and owsd hangs up on it.
+ */
+bool control_prepared(struct control *control, unsigned *place, struct control_turn *turn);
+/* The engine has adopted and uses the memories of before no more: send the givers the new ones. */
+void control_reloaded(struct control *control);
+/*
+ * The new image is in place, and the old one is retired: ring the news of all givers. They said in
+ * the memory of before that they wait.
+ */
+void control_replaced(struct control *control);
+
+#endif

@@ -1,0 +1,408 @@
+/* SPDX-License-Identifier: MIT */
+/* Connections: who gets a place, what was sent over them, and how they end. */
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
+#include <sys/random.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "hal/bus/time.h"
+#include "src/control/door.h"
+#include "src/control/grant.h"
+#include "src/control/held.h"
+#include "src/control/welcome.h"
+
+/* Connections accepted in a row before the givers have their turn again. */
+#define ACCEPTS 16
+/* A socket holds fewer messages. */
+#define DRAINS 512
+/* How long owsd waits with the next when it has no descriptor for it. */
+#define RETRY_NS (100 * NS_PER_MS)
+
+static void count(struct control *c, enum control_counter what)
+{
+	bus_count(&c->counters[what], 1);
+}
+
+static uint32_t state_of(const struct control_place *p)
+{
+	return __atomic_load_n(&p->state, __ATOMIC_ACQUIRE);
+}
+
+static void close_fd(int *fd)
+{
+	if (*fd >= 0)
+		close(*fd);
+	*fd = -1;
+}
+
+static void free_place(struct control *c, struct control_place *p)
+{
+	close_fd(&p->fd);
+	bus_count(&c->counters[CONTROL_connections], (uint64_t)-1);
+	__atomic_store_n(&p->state, CONTROL_FREE, __ATOMIC_RELEASE);
+}
+
+void door_release(struct control *c, struct control_place *p)
+{
+	held_free(c, p->peer.uid, &p->now);
+	held_free(c, p->peer.uid, &p->next);
+	peer_forget(&p->peer);
+	close_fd(&p->death);
+	close_fd(&p->bell);
+	close_fd(&p->news);
+	close_fd(&p->news_end);
+	/*
+	 * what lies unread in the socket of a living process counts among owsd's descriptors: its
+	 * user has one place less until then
+	 */
+	if (p->sent && welcome_unread(p))
+		__atomic_store_n(&p->state, CONTROL_UNREAD, __ATOMIC_RELEASE);
+	else
+		free_place(c, p);
+}
+
+/* --- The end ---------------------------------------------------------------------------------- */
+
+static void let_engine_look(struct control *c)
+{
+	__atomic_fetch_add(&c->turns, 1, __ATOMIC_RELEASE);
+	c->ring(c->ring_ctx);
+}
+
+static void leave(struct control *c, struct control_place *p)
+{
+	__atomic_store_n(&p->state, CONTROL_LEAVING, __ATOMIC_RELEASE);
+	let_engine_look(c);
+}
+
+/*
+ * Messages that lie in the socket may have descriptors with them: the other end of it, even. An
+ * empty one cannot be told from the end.
+ */
+static void drain(int fd)
+{
+	char byte;
+
+	for (int i = 0; i < DRAINS && recv(fd, &byte, 1, MSG_DONTWAIT) >= 0; i++)
+		;
+}
+
+void door_drop(struct control *c, struct control_place *p, enum control_counter why)
+{
+	uint32_t joining = CONTROL_JOINING;
+
+	if (p->leaves)
+		return;
+	count(c, why);
+	p->leaves = true;
+	if (p->now.memory.base)
+		giver_state(&p->now.memory, OWS_STATE_STOPPED);
+	shutdown(p->fd, SHUT_RDWR);
+	drain(p->fd);
+	if (state_of(p) == CONTROL_HALF ||
+	    __atomic_compare_exchange_n(&p->state, &joining, CONTROL_LEFT, false, __ATOMIC_ACQ_REL,
+	                                __ATOMIC_ACQUIRE))
+		door_release(c, p);
+	else if (state_of(p) == CONTROL_IN)
+		leave(c, p);
+	/* else the engine's thread takes it this moment: door_look() goes on */
+}
+
+void door_died(struct control *c, struct control_place *p)
+{
+	uint32_t state = state_of(p);
+
+	if (state == CONTROL_JOINING || state == CONTROL_TAKEN || state == CONTROL_IN)
+		door_drop(c, p, CONTROL_died);
+}
+
+static void refuse(struct control *c, struct control_place *p, int err, enum control_counter why)
+{
+	welcome_refuse(c, p->fd, &p->peer, err);
+	door_drop(c, p, why);
+}
+
+/* --- The hello -------------------------------------------------------------------------------- */
+
+size_t door_memory(struct control *c, uid_t uid)
+{
+	size_t sum;
+
+	held_of(c, uid, &sum);
+	for (unsigned i = 0; i < OWS_GIVERS; i++)
+		if (c->places[i].peer.uid == uid)
+			sum += c->places[i].now.size;
+	return sum;
+}
+
+/* One giver of a user has a memory of any size. */
+static bool has_room(struct control *c, const struct control_place *p)
+{
+	size_t has = door_memory(c, p->peer.uid);
+
+	return !p->peer.uid || !has || has + c->layout->size <= CONTROL_MEMORY;
+}
+
+static int watch(struct control *c, const struct control_place *p, int fd, uint32_t what)
+{
+	struct epoll_event event = {.events = EPOLLIN | EPOLLOUT | EPOLLRDHUP | EPOLLET};
+
+	event.data.u32 = (uint32_t)(p - c->places) * 2 + what;
+	return epoll_ctl(c->epoll, EPOLL_CTL_ADD, fd, &event) < 0 ? -errno : 0;
+}
+
+/* 0, -ESRCH: the process has ended, or another negative errno. */
+static int open_descriptors(struct control *c, struct control_place *p)
+{
+	int ends[2];
+
+	p->death = peer_death(p->fd, &p->peer);
+	if (p->death == -ESRCH)
+		return -ESRCH;
+	if (p->death >= 0 && watch(c, p, p->death, 1))
+		return -errno;
+	p->bell = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	if (p->bell < 0 || pipe2(ends, O_CLOEXEC | O_NONBLOCK) < 0)
+		return -errno;
+	p->news_end = ends[0];
+	p->news = ends[1];
+	fcntl(p->news, F_SETPIPE_SZ, 4096);
+	return 0;
+}
+
+static int identify(struct control *c, struct control_place *p, const struct ows_hello *hello)
+{
+	static const uint8_t none[sizeof(hello->token)];
+
+	p->commands = hello->flags & OWS_HELLO_COMMAND;
+	p->who = (struct ows_who){.uid = p->peer.uid, .pid = p->peer.pid};
+	giver_clean_name(p->who.name, hello->name);
+	memcpy(p->token, hello->token, sizeof(p->token));
+	if (memcmp(p->token, none, sizeof(none)) == 0 &&
+	    getrandom(p->token, sizeof(p->token), 0) != (ssize_t)sizeof(p->token))
+		return -EIO;
+	p->who.serial = ++c->serial ? c->serial : ++c->serial;
+	return 0;
+}
+
+static void join(struct control *c, struct control_place *p, const struct ows_hello *hello)
+{
+	int err = identify(c, p, hello);
+
+	if (!err)
+		err = open_descriptors(c, p);
+	if (err == -ESRCH) {
+		door_drop(c, p, CONTROL_died);
+		return;
+	}
+	if (!err)
+		err = grant_make(&p->now, c->layout, &c->rights, p);
+	if (err) {
+		refuse(c, p, err, CONTROL_refused_errors);
+		return;
+	}
+	count(c, CONTROL_joined);
+	log_info(c->log, "giver %s (process %d, user %u) may command %u signals", p->who.name,
+	         (int)p->who.pid, (unsigned)p->who.uid, p->now.allowed);
+	__atomic_store_n(&p->state, CONTROL_JOINING, __ATOMIC_RELEASE);
+	let_engine_look(c);
+}
+
+static void take_hello(struct control *c, struct control_place *p)
+{
+	struct ows_hello hello;
+	ssize_t n = recv(p->fd, &hello, sizeof(hello), MSG_DONTWAIT | MSG_TRUNC);
+
+	if (n < 0 && (errno == EAGAIN || errno == EINTR))
+		return;
+	if (n <= 0)
+		door_drop(c, p, CONTROL_hung_up);
+	else if (n != (ssize_t)sizeof(hello) || hello.magic != OWS_HELLO_MAGIC ||
+	         hello.major != OWS_LAYOUT_MAJOR)
+		refuse(c, p, -EPROTO, CONTROL_refused_protocol);
+	else if ((hello.flags & OWS_HELLO_COMMAND) && !rights_set_any(&c->rights, &p->peer))
+		refuse(c, p, -EACCES, CONTROL_refused_rights);
+	else if (!has_room(c, p))
+		refuse(c, p, -ENOSPC, CONTROL_refused_limits);
+	else
+		join(c, p, &hello);
+}
+
+/* --- Connections ------------------------------------------------------------------------------ */
+
+/* A giver sends nothing after its hello. */
+static void look_for_end(struct control *c, struct control_place *p)
+{
+	char byte;
+	ssize_t n = recv(p->fd, &byte, 1, MSG_DONTWAIT);
+
+	if (n > 0)
+		door_drop(c, p, CONTROL_refused_protocol);
+	else if (n == 0 || (errno != EAGAIN && errno != EINTR))
+		door_drop(c, p, CONTROL_hung_up);
+}
+
+void door_event(struct control *c, struct control_place *p)
+{
+	if (state_of(p) == CONTROL_HALF)
+		take_hello(c, p);
+	switch (state_of(p)) {
+	case CONTROL_JOINING: /* what came along with the hello brings no other event */
+	case CONTROL_TAKEN:
+	case CONTROL_IN:
+		look_for_end(c, p);
+		break;
+	default: /* door_look() sees what lies unread */
+		break;
+	}
+}
+
+/* Programs of many users, and such as only want to hear of news, lock nobody else out. */
+static unsigned most_places(const struct control *c, const struct peer *peer)
+{
+	if (!peer->uid || peer->uid == c->rights.own)
+		return OWS_GIVERS;
+	return OWS_GIVERS -
+	       (rights_set_any(&c->rights, peer) ? CONTROL_KEPT : CONTROL_KEPT_FROM_READERS);
+}
+
+/* A free place for that user; NULL: all are taken, or as many as a user may have. */
+static struct control_place *find_place(struct control *c, const struct peer *peer)
+{
+	struct control_place *found = NULL;
+	size_t bytes;
+	unsigned of_user = 0, taken = 0, held = held_of(c, peer->uid, &bytes);
+
+	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+		struct control_place *p = &c->places[i];
+
+		if (state_of(p) == CONTROL_FREE) {
+			found = found ? found : p;
+			continue;
+		}
+		taken++;
+		of_user += p->who.uid == peer->uid;
+	}
+	if (taken >= most_places(c, peer))
+		return NULL;
+	return peer->uid && (of_user >= CONTROL_OF_USER || held >= CONTROL_HELD) ? NULL : found;
+}
+
+/* All of the place is new but its state, at which the engine's thread may look meanwhile. */
+static void begin_place(struct control_place *p, const struct control_place *fresh)
+{
+	size_t from = offsetof(struct control_place, fd);
+
+	memcpy((char *)p + from, (const char *)fresh + from, sizeof(*p) - from);
+}
+
+static void meet(struct control *c, int fd)
+{
+	struct control_place *p;
+	struct peer peer;
+	char byte;
+	int err = peer_look(fd, &peer);
+
+	p = err ? NULL : find_place(c, &peer);
+	if (!err && !rights_set_any(&c->rights, &peer) && !rights_read(&c->rights, &peer))
+		err = -EACCES;
+	else if (!err && !p)
+		err = -ENOSPC;
+	if (!err) {
+		begin_place(p, &(struct control_place){.fd = fd,
+		                                       .death = -1,
+		                                       .bell = -1,
+		                                       .news = -1,
+		                                       .news_end = -1,
+		                                       .peer = peer,
+		                                       .who.uid = peer.uid,
+		                                       .until_ns = c->now_ns + CONTROL_HELLO_NS});
+		err = watch(c, p, fd, 0);
+	}
+	if (!err) {
+		__atomic_store_n(&p->state, CONTROL_HALF, __ATOMIC_RELEASE);
+		count(c, CONTROL_connections);
+		return;
+	}
+	count(c, err == -EACCES   ? CONTROL_refused_rights
+	         : err == -ENOSPC ? CONTROL_refused_limits
+	                          : CONTROL_refused_errors);
+	welcome_refuse(c, fd, &peer, err);
+	peer_forget(&peer);
+	recv(fd, &byte, 1, MSG_DONTWAIT); /* what is unread at close() is an error to the peer */
+	close(fd);
+}
+
+/* The connection waits in the socket until there is room. */
+static void report_full(struct control *c, int why)
+{
+	char others[LOG_OTHERS];
+	uint64_t n = log_rate(&c->full, c->now_ns);
+
+	count(c, CONTROL_refused_errors);
+	if (n)
+		log_warning(c->log, "no program can connect to %s: %s%s", c->name, strerror(why),
+		            log_others(n, others));
+}
+
+void door_accept(struct control *c)
+{
+	for (int i = 0; i < ACCEPTS; i++) {
+		int fd = accept4(c->listener, NULL, NULL, SOCK_NONBLOCK | SOCK_CLOEXEC);
+
+		if (fd >= 0) {
+			meet(c, fd);
+		} else if (errno == EAGAIN) {
+			c->accepts = false;
+			return;
+		} else if (errno == EMFILE || errno == ENFILE || errno == ENOMEM ||
+		           errno == ENOBUFS) {
+			c->accept_ns = c->now_ns + RETRY_NS;
+			report_full(c, errno);
+			return;
+		}
+	}
+}
+
+static void look(struct control *c, struct control_place *p)
+{
+	switch (state_of(p)) {
+	case CONTROL_HALF:
+		if (c->now_ns >= p->until_ns)
+			refuse(c, p, -ETIMEDOUT, CONTROL_refused_protocol);
+		break;
+	case CONTROL_IN:
+		if (p->leaves)
+			leave(c, p);
+		else if (!p->welcomed && welcome_send(p))
+			door_drop(c, p, CONTROL_hung_up);
+		break;
+	case CONTROL_LEFT:
+		door_release(c, p);
+		break;
+	case CONTROL_UNREAD:
+		if (!welcome_unread(p))
+			free_place(c, p);
+		break;
+	default:
+		break;
+	}
+}
+
+int64_t door_look(struct control *c)
+{
+	int64_t next_ns = c->accepts ? c->accept_ns : INT64_MAX;
+
+	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+		struct control_place *p = &c->places[i];
+
+		look(c, p);
+		if (state_of(p) == CONTROL_HALF && p->until_ns < next_ns)
+			next_ns = p->until_ns;
+	}
+	return next_ns;
+}

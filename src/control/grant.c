@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT */
+/* What a giver gets of a generation: its memory and its rights. */
+#include <errno.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "src/control/grant.h"
+#include "src/control/sealed.h"
+
+static void show_rights(const struct control_grant *grant)
+{
+	for (uint32_t i = 0; i < grant->memory.layout->slot_count; i++)
+		giver_allow(&grant->memory, i, grant->rights[i / 32] >> i % 32 & 1);
+}
+
+int grant_make(struct control_grant *grant, const struct giver_layout *layout,
+               const struct rights *rights, const struct control_place *place)
+{
+	*grant = (struct control_grant){
+		.memory.layout = layout,
+		.size = layout->size,
+		.rights = calloc((size_t)layout->slot_count / 32 + 1, sizeof(uint32_t)),
+		.memfd = -1,
+		.own = -1,
+	};
+	if (!grant->rights)
+		return -ENOMEM;
+	grant->memfd = sealed_make(grant->size, &grant->memory.base, &grant->own);
+	if (grant->memfd < 0) {
+		int err = grant->memfd;
+
+		grant->memfd = grant->own = -1;
+		grant->memory.base = NULL;
+		grant_free(grant);
+		return err;
+	}
+	if (place->commands)
+		grant->allowed = rights_fill(rights, &place->peer, grant->rights);
+	giver_build(&grant->memory, place->who.serial);
+	show_rights(grant);
+	giver_state(&grant->memory, OWS_STATE_LIVE);
+	return 0;
+}
+
+void grant_free(struct control_grant *grant)
+{
+	sealed_unmap(grant->memory.base, grant->size);
+	if (grant->memory.base && grant->memfd >= 0)
+		close(grant->memfd);
+	if (grant->memory.base && grant->own >= 0)
+		close(grant->own);
+	free(grant->rights);
+	*grant = (struct control_grant){.memfd = -1, .own = -1};
+}

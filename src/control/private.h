@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: MIT */
+/* The inside of the control room, which the files of this room share. */
+#ifndef CONTROL_PRIVATE_H
+#define CONTROL_PRIVATE_H
+
+#include <pthread.h>
+
+#include "hal/bus/bus.h"
+#include "src/control/rights.h"
+#include "src/shm/giver.h"
+#include "src/shm/peer.h"
+#include "src/text/log.h"
+
+/* Limits of a user, which do not hold for root. */
+#define CONTROL_OF_USER 32
+/* Places that are kept for root and owsd's user, and of the rest for those who may command. */
+#define CONTROL_KEPT 8
+#define CONTROL_KEPT_FROM_READERS 64
+/* A program that stands still at reloads has two: its own, and the next, unread. */
+#define CONTROL_HELD (2 * CONTROL_OF_USER)
+#define CONTROL_MEMORY (64u << 20)
+/* In that time a program that connected has to say who it is. */
+#define CONTROL_HELLO_NS (2 * NS_PER_S)
+
+#define CONTROL_COUNTERS(X) \
+	X(connections) /* now */ \
+	X(joined) \
+	X(refused_rights) \
+	X(refused_limits) \
+	X(refused_protocol) /* wrong words, or none in time */ \
+	X(refused_errors)   /* owsd had no memory or descriptor; also when a connection waits */ \
+	X(hung_up) \
+	X(died) /* processes that ended while somebody held their socket */
+
+enum control_counter {
+#define X(name) CONTROL_##name,
+	CONTROL_COUNTERS(X)
+#undef X
+		CONTROL_COUNTER_COUNT
+};
+
+/* Who may touch a place: the engine's thread from JOINING to IN and from LEAVING to LEFT. */
+enum control_state {
+	CONTROL_FREE,
+	CONTROL_HALF, /* connected; its hello has not come */
+	CONTROL_JOINING,
+	CONTROL_TAKEN, /* the engine's thread takes it */
+	CONTROL_IN,
+	CONTROL_LEAVING,
+	CONTROL_LEFT,
+	CONTROL_UNREAD, /* left, but for descriptors that lie unread in its socket */
+};
+
+/* What a giver gets of a generation. */
+struct control_grant {
+	struct giver_memory memory;
+	size_t size;
+	uint32_t *rights;
+	uint32_t allowed; /* how many signals */
+	int memfd;        /* until it is sent; -1 */
+	int own;          /* owsd's own descriptor of it; -1 */
+};
+
+/* A memory that its giver has kept beyond the end, or beyond a reload. */
+struct control_held {
+	int own;
+	uid_t uid;
+	size_t size;
+};
+
+struct control_place {
+	uint32_t state;           /* enum control_state */
+	int fd, death;            /* the connection; the process's pidfd, -1 unknown */
+	int bell, news, news_end; /* news: the end to write; news_end: until it is sent */
+	struct peer peer;
+	struct ows_who who;
+	uint8_t token[16];
+	int64_t until_ns; /* of CONTROL_HALF */
+	bool commands;    /* it wants to, by its hello */
+	bool leaves;      /* door_drop() was there */
+	bool sent;        /* descriptors went over the socket */
+	bool welcomed;    /* all was sent that there is to send */
+	struct control_grant now, next;
+};
+
+struct control {
+	pthread_mutex_t lock; /* places, but for what belongs to the engine's thread; config */
+	const struct config *config;
+	const struct giver_layout *layout;
+	struct rights rights;
+	int directory;
+	char name[48]; /* of the socket in it */
+	ino_t inode;
+	struct log *log;
+	void (*ring)(void *ctx);
+	void *ring_ctx;
+
+	pthread_t thread;
+	bool running;
+	uint32_t stop;
+	int epoll, listener, wake;
+	bool accepts;
+	int64_t now_ns, accept_ns; /* accept_ns: not sooner */
+	uint32_t serial;
+	struct control_place places[OWS_GIVERS];
+	struct control_held held[OWS_GIVERS];
+	unsigned held_count;
+	uint32_t turns; /* counts places that are for the engine's thread to look at */
+	struct {
+		uint32_t seen;
+		unsigned at;
+		struct giver_memory memories[OWS_GIVERS]; /* of those that have joined */
+	} engine;                                         /* of the engine's thread */
+	struct log_rate refused, full;
+	struct bus_counter counters[CONTROL_COUNTER_COUNT];
+};
+
+#endif

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT */
+/* The memory of a giver: made by owsd, sealed, mapped by both. */
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "src/control/sealed.h"
+
+/* Younger than the headers of some machines that build owsd. */
+#ifndef MFD_NOEXEC_SEAL
+#define MFD_NOEXEC_SEAL 0x0008U
+#endif
+
+static int create(void)
+{
+	int fd = memfd_create("owsd-giver", MFD_CLOEXEC | MFD_ALLOW_SEALING | MFD_NOEXEC_SEAL);
+
+	if (fd < 0 && errno == EINVAL)
+		fd = memfd_create("owsd-giver", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+	return fd < 0 ? -errno : fd;
+}
+
+static int allocate(int fd, size_t size)
+{
+	int err;
+
+	if (ftruncate(fd, (off_t)size) < 0)
+		return -errno;
+	do {
+		err = posix_fallocate(fd, 0, (off_t)size);
+	} while (err == EINTR);
+	return -err;
+}
+
+/* Each open() of its own counts with the file, as a copy of a descriptor does not. */
+static int open_again(int fd)
+{
+	char path[32];
+	int again;
+
+	snprintf(path, sizeof(path), "/proc/self/fd/%d", fd);
+	again = open(path, O_RDWR | O_CLOEXEC);
+	return again < 0 ? -errno : again;
+}
+
+static int map(int fd, size_t size, char **base)
+{
+	void *mapped = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+
+	if (mapped == MAP_FAILED)
+		return -errno;
+	*base = mapped;
+	return 0;
+}
+
+static int open_both(int fd, int *own)
+{
+	int theirs = open_again(fd);
+
+	if (theirs < 0)
+		return theirs;
+	*own = open_again(fd);
+	if (*own >= 0)
+		return theirs;
+	close(theirs);
+	return *own;
+}
+
+int sealed_make(size_t size, char **base, int *own)
+{
+	int fd = create(), err, theirs;
+
+	if (fd < 0)
+		return fd;
+	err = allocate(fd, size);
+	if (!err && fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) < 0)
+		err = -errno;
+	if (!err)
+		err = map(fd, size, base);
+	theirs = err ? err : open_both(fd, own);
+	if (theirs < 0 && !err)
+		sealed_unmap(*base, size);
+	close(fd);
+	return theirs;
+}
+
+void sealed_unmap(char *base, size_t size)
+{
+	if (base)
+		munmap(base, size);
+}
+
+bool sealed_is_held(int own)
+{
+	/* the kernel gives a lease for writing only where no other has the file open or mapped */
+	if (fcntl(own, F_SETLEASE, F_WRLCK) < 0)
+		return errno == EAGAIN;
+	fcntl(own, F_SETLEASE, F_UNLCK);
+	return false;
+}

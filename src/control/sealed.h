@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+/* The memory of a giver: made by owsd, sealed, mapped by both. */
+#ifndef CONTROL_SEALED_H
+#define CONTROL_SEALED_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/*
+ * Zeroed memory of that size, all of it allocated, mapped, and sealed against shrinking, growing
+ * and more seals. Returns the descriptor for the giver, or a negative errno; own is one that
+ * stays here.
+ */
+int sealed_make(size_t size, char **base, int *own);
+void sealed_unmap(char *base, size_t size);
+/*
+ * Whether anybody else still has the memory. owsd asks for nothing more of it: a giver that writes
+ * to the file out of memory that never comes holds its inode's lock for ever, and whoever empties
+ * the file waits for it, even against SIGKILL.
+ */
+bool sealed_is_held(int own);
+
+#endif

@@ -1,0 +1,297 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The givers that are connected, and those that owsd awaits: they join and leave, they beat, and
+ * the image shows them.
+ */
+#include <assert.h>
+#include <string.h>
+
+#include "hal/bus/time.h"
+#include "src/engine/givers.h"
+#include "src/engine/in_force.h"
+#include "src/engine/intake.h"
+#include "src/engine/schedule.h"
+#include "src/engine/state.h"
+#include "src/shm/entries.h"
+#include "src/text/log.h"
+
+static void show_giver(struct engine *e, uint32_t place)
+{
+	struct known_giver *g = &e->givers[place];
+	struct ows_giver_entry entry = {0};
+
+	if (g->is == GIVER_CONNECTED)
+		entry = (struct ows_giver_entry){
+			.flags = OWS_GIVER_CONNECTED | (g->may_set ? OWS_GIVER_MAY_SET : 0) |
+		                 (g->late ? OWS_GIVER_LATE : 0),
+			.joined_ns = g->joined_ns,
+			.who = g->as.who,
+			.period_ms = g->period_ms,
+			.commands = g->commands,
+			.refused = g->refused,
+		};
+	image_giver(e->image, place, &entry);
+	g->shown = g->commands + g->refused;
+}
+
+static const char *plural(unsigned n)
+{
+	return n == 1 ? "" : "s";
+}
+
+/* --- The beat --------------------------------------------------------------------------------- */
+
+static void lose(struct engine *e, uint32_t giver, int64_t awake_ns)
+{
+	struct known_giver *g = &e->givers[giver];
+	unsigned rows = g->rows, safe = engine_lose(e, giver, awake_ns, &g->lose_ns);
+
+	if (g->rows == rows)
+		return;
+	e->counters.lost_givers += g->is == GIVER_AWAITED;
+	log_warning(e->log, "%s (process %d) %s: %u output%s to SafeValue", g->as.who.name,
+	            (int)g->as.who.pid,
+	            g->is == GIVER_AWAITED     ? "has not come back since owsd started"
+	            : g->is == GIVER_CONNECTED ? "stopped beating"
+	                                       : "ended without a goodbye",
+	            safe, safe == 1 ? " goes" : "s go");
+}
+
+static void forget(struct engine *e, uint32_t giver)
+{
+	e->givers[giver] = (struct known_giver){0};
+	engine_remember_giver(e, giver);
+}
+
+static void look_at_beat(struct engine *e, uint32_t place, int64_t awake_ns)
+{
+	struct known_giver *g = &e->givers[place];
+	bool changes, late;
+
+	engine_hear(e, place);
+	late = g->period_ms && awake_ns - g->heard_ns > g->period_ms * NS_PER_MS;
+	if (late && !g->late)
+		e->counters.lost_givers++;
+	changes = late != g->late || g->period_ms != e->image->givers[place].period_ms;
+	g->late = late;
+	if (late && g->rows && awake_ns > g->lose_ns)
+		lose(e, place, awake_ns);
+	if (changes || g->shown != g->commands + g->refused)
+		show_giver(e, place);
+}
+
+static void look_at_absent(struct engine *e, uint32_t index, int64_t awake_ns)
+{
+	struct known_giver *g = &e->givers[index];
+
+	if (g->rows && awake_ns > g->lose_ns)
+		lose(e, index, awake_ns);
+	if (g->rows)
+		return;
+	forget(e, index);
+}
+
+void engine_look_givers(struct engine *e)
+{
+	int64_t awake_ns = engine_awake_ns(e);
+
+	for (uint32_t i = 0; i < e->place_end; i++)
+		if (e->givers[i].is == GIVER_CONNECTED)
+			look_at_beat(e, i, awake_ns);
+	for (uint32_t i = OWS_GIVERS; i < ENGINE_GIVERS; i++)
+		if (e->givers[i].is != GIVER_FREE)
+			look_at_absent(e, i, awake_ns);
+}
+
+/* --- Joining ---------------------------------------------------------------------------------- */
+
+static bool has_token(const struct known_giver *g)
+{
+	static const uint8_t none[sizeof(g->as.token)];
+
+	return memcmp(g->as.token, none, sizeof(none)) != 0;
+}
+
+static bool may_set(const struct engine_giver *giver)
+{
+	const struct giver_layout *l = giver->memory.layout;
+	uint32_t any = 0;
+
+	for (uint32_t i = 0; giver->rights && i < l->dirty_words; i++)
+		any |= giver->rights[i];
+	return !giver->rights || any;
+}
+
+/* The one that it was before, whose commands are in force. */
+static uint32_t find_former(const struct engine *e, uint32_t place)
+{
+	const struct known_giver *g = &e->givers[place];
+
+	for (uint32_t i = 0; i < ENGINE_GIVERS && has_token(g); i++) {
+		const struct known_giver *f = &e->givers[i];
+
+		if (i != place && f->is != GIVER_FREE && f->rows &&
+		    f->as.who.uid == g->as.who.uid &&
+		    memcmp(f->as.token, g->as.token, sizeof(g->as.token)) == 0)
+			return i;
+	}
+	return GIVER_NOBODY;
+}
+
+static void come_back(struct engine *e, uint32_t place, uint32_t former)
+{
+	struct known_giver *g = &e->givers[place], *f = &e->givers[former];
+
+	if (!g->period_ms)
+		g->period_ms = f->period_ms; /* until it says more: at its first beat */
+	engine_remember_giver(e, place);
+	engine_hand_over(e, former, place);
+	engine_come_back(e, place);
+	log_info(e->log, "%s (process %d) came back: its command%s of %u output%s in force",
+	         g->as.who.name, (int)g->as.who.pid, plural(g->rows), g->rows,
+	         g->rows == 1 ? " is" : "s are");
+	if (former >= OWS_GIVERS)
+		forget(e, former);
+}
+
+void engine_giver_join(struct engine *e, unsigned place, const struct engine_giver *giver,
+                       int64_t now_ns)
+{
+	struct known_giver *g = &e->givers[place];
+	struct giver_beat beat;
+	uint32_t former;
+
+	assert(place < OWS_GIVERS && g->is == GIVER_FREE);
+	engine_begin_call(e, now_ns);
+	giver_beat(&giver->memory, &beat);
+	*g = (struct known_giver){
+		.is = GIVER_CONNECTED,
+		.as = *giver,
+		.may_set = may_set(giver),
+		.beat = beat.beat,
+		.period_ms = beat.goodbye ? 0 : beat.period_ms,
+		.joined_ns = now_ns,
+		.heard_ns = engine_awake_ns(e),
+		.looks_ns = INT64_MIN / 2, /* all are left */
+	};
+	if (e->place_end <= place)
+		e->place_end = place + 1;
+	engine_remember_giver(e, place);
+	former = find_former(e, place);
+	if (former != GIVER_NOBODY)
+		come_back(e, place, former);
+	show_giver(e, place);
+	e->published = true;
+}
+
+/* --- Leaving ---------------------------------------------------------------------------------- */
+
+static uint32_t free_absent(const struct engine *e)
+{
+	for (uint32_t i = OWS_GIVERS; i < ENGINE_GIVERS; i++)
+		if (e->givers[i].is == GIVER_FREE)
+			return i;
+	return GIVER_NOBODY;
+}
+
+/* It promised a beat and said no goodbye: it may come back until its time is over. */
+static void hang_up(struct engine *e, uint32_t place, int64_t awake_ns)
+{
+	struct known_giver *g = &e->givers[place];
+	uint32_t to = free_absent(e);
+
+	e->counters.lost_givers += !g->late;
+	g->is = GIVER_HUNG_UP;
+	g->left_ns = awake_ns;
+	g->lose_ns = 0;
+	if (to == GIVER_NOBODY) {
+		g->heard_ns = g->left_ns = INT64_MIN / 2; /* all of its time is over */
+		lose(e, place, awake_ns);
+		return;
+	}
+	lose(e, place, awake_ns); /* what has SafeDelay 0 */
+	e->givers[to] = *g;
+	e->givers[to].rows = 0;
+	e->givers[to].as.memory = (struct giver_memory){0};
+	e->givers[to].as.rights = NULL;
+	engine_remember_giver(e, to);
+	engine_hand_over(e, place, to);
+	if (!e->givers[to].rows)
+		forget(e, to);
+}
+
+void engine_giver_left(struct engine *e, unsigned place, int64_t now_ns)
+{
+	struct known_giver *g = &e->givers[place];
+
+	assert(place < OWS_GIVERS);
+	if (g->is != GIVER_CONNECTED)
+		return;
+	engine_begin_call(e, now_ns);
+	engine_intake(e, place, now_ns);
+	engine_hear(e, place);
+	if (g->more)
+		e->greedy--;
+	if (g->period_ms && g->rows)
+		hang_up(e, place, engine_awake_ns(e));
+	else
+		engine_let_go(e, place);
+	forget(e, place);
+	while (e->place_end && e->givers[e->place_end - 1].is != GIVER_CONNECTED)
+		e->place_end--;
+	show_giver(e, place);
+	e->published = true;
+}
+
+bool engine_givers_marked(const struct engine *e)
+{
+	for (uint32_t i = 0; i < e->place_end; i++) {
+		const struct known_giver *g = &e->givers[i];
+
+		if (g->is == GIVER_CONNECTED && !g->more && giver_is_marked(&g->as.memory))
+			return true;
+	}
+	return false;
+}
+
+/* --- A reload --------------------------------------------------------------------------------- */
+
+void engine_givers_retire(struct engine *old, const struct engine *e, int64_t now_ns)
+{
+	for (uint32_t i = 0; i < OWS_GIVERS; i++) {
+		struct known_giver *g = &old->givers[i];
+
+		if (g->is != GIVER_CONNECTED)
+			continue;
+		giver_state(&g->as.memory, OWS_STATE_RETIRED);
+		if (e->givers[i].is == GIVER_CONNECTED)
+			engine_intake(old, i, now_ns);
+		else
+			engine_giver_left(old, i, now_ns);
+	}
+}
+
+void engine_givers_adopt(struct engine *e, const struct engine *old, const uint32_t *rows)
+{
+	for (uint32_t i = 0; i < ENGINE_GIVERS; i++) {
+		const struct known_giver *was = &old->givers[i];
+		struct known_giver *g = &e->givers[i];
+		struct engine_giver as = g->as;
+
+		if (was->is == GIVER_FREE)
+			continue;
+		if (was->is == GIVER_CONNECTED)
+			giver_copy(&as.memory, &was->as.memory, rows);
+		else
+			as = was->as;
+		*g = *was;
+		g->as = as;
+		g->rows = g->busy = g->look_from = 0;
+		g->lose_ns = 0;
+		g->more = false;
+		if (g->is != GIVER_CONNECTED)
+			continue;
+		g->may_set = may_set(&as);
+		show_giver(e, i);
+	}
+}

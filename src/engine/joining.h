@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+/* A giver as it joins the engine. */
+#ifndef ENGINE_JOINING_H
+#define ENGINE_JOINING_H
+
+#include "src/shm/giver.h"
+
+/* What the control room knows of a giver; copied. */
+struct engine_giver {
+	struct giver_memory memory; /* built and LIVE, of the engine's generation */
+	struct ows_who who;         /* serial, uid, pid, name (cleaned); person is empty */
+	uint8_t token[16]; /* of its welcome: that of the hello, if it had one, else a new one */
+	/* bit r: it may command record r (bit 0: reset the driver); NULL: all. Lives as long as
+	   memory */
+	const uint32_t *rights;
+};
+
+#endif

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT */
+/* Who did something, as the image has it and as libows shows it. */
+#ifndef LIBOWS_BY_H
+#define LIBOWS_BY_H
+
+#include <string.h>
+
+#include "src/libows/ows.h"
+#include "src/shm/layout.h"
+
+static inline struct ows_by by_of(const struct ows_who *who)
+{
+	struct ows_by by = {.serial = who->serial, .uid = who->uid, .pid = who->pid};
+
+	memcpy(by.name, who->name, sizeof(by.name) - 1);
+	memcpy(by.person, who->person, sizeof(by.person) - 1);
+	return by;
+}
+
+#endif

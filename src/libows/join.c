@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: MIT */
+/* The connection to owsd's control socket: connects, says hello, receives welcomes. */
+#include <errno.h>
+#include <poll.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "hal/bus/time.h"
+#include "src/libows/join.h"
+#include "src/libows/ows.h"
+
+#define FIRST 3 /* descriptors of the first welcome: memory, bell, news; later the memory alone */
+#define ERRNO_MAX 4095
+
+void join_none(struct join *join)
+{
+	*join = (struct join){.connection = -1, .bell = -1, .news = -1};
+}
+
+static void close_fd(int *fd)
+{
+	if (*fd >= 0)
+		close(*fd);
+	*fd = -1;
+}
+
+void join_end(struct join *join)
+{
+	close_fd(&join->connection);
+	close_fd(&join->bell);
+	close_fd(&join->news);
+}
+
+static int connect_to(int directory, const char *file, int *connection)
+{
+	struct sockaddr_un address = {.sun_family = AF_UNIX};
+	int fd, err;
+
+	/* The directory's own path may be longer than an address has room */
+	snprintf(address.sun_path, sizeof(address.sun_path), "/proc/self/fd/%d/%s", directory,
+	         file);
+	fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+	if (fd < 0)
+		return -errno;
+	if (connect(fd, (const struct sockaddr *)&address, sizeof(address)) < 0) {
+		err = errno == ECONNREFUSED || errno == EPROTOTYPE ? -ENOENT : -errno;
+		close(fd);
+		return err;
+	}
+	*connection = fd;
+	return 0;
+}
+
+/* Copy a name, cut at the room. */
+static void copy_name(char to[OWS_NAME], const char *name)
+{
+	memcpy(to, name, strnlen(name, OWS_NAME - 1));
+}
+
+int join_begin(struct join *join, int directory, const char *file, const char *program,
+               bool command)
+{
+	struct ows_hello hello = {
+		.magic = OWS_HELLO_MAGIC,
+		.major = OWS_LAYOUT_MAJOR,
+		.minor = OWS_LAYOUT_MINOR,
+		.flags = command ? OWS_HELLO_COMMAND : 0,
+	};
+	int err;
+
+	join_end(join);
+	err = connect_to(directory, file, &join->connection);
+	if (err)
+		return err;
+	memcpy(hello.token, join->token, sizeof(hello.token));
+	copy_name(hello.name, program);
+	join->new = true;
+	/* An owsd that refuses this program answers and hangs up before it reads the hello */
+	if (send(join->connection, &hello, sizeof(hello), MSG_NOSIGNAL) != sizeof(hello) &&
+	    errno != EPIPE && errno != ECONNRESET) {
+		join_end(join);
+		return -ENOENT;
+	}
+	return 0;
+}
+
+/* Copy up to FIRST descriptors of a message, and close all others; returns how many there were. */
+static unsigned take_descriptors(struct msghdr *message, int fds[FIRST])
+{
+	unsigned count = 0;
+
+	for (struct cmsghdr *c = CMSG_FIRSTHDR(message); c != NULL; c = CMSG_NXTHDR(message, c)) {
+		size_t n;
+
+		if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SCM_RIGHTS)
+			continue;
+		n = (c->cmsg_len - CMSG_LEN(0)) / sizeof(int);
+		for (size_t i = 0; i < n; i++, count++) {
+			int fd;
+
+			memcpy(&fd, CMSG_DATA(c) + i * sizeof(fd), sizeof(fd));
+			if (count < FIRST)
+				fds[count] = fd;
+			else
+				close(fd);
+		}
+	}
+	return count;
+}
+
+static int check_welcome(const struct join *join, const struct ows_welcome *welcome, ssize_t n,
+                         unsigned count)
+{
+	if (n < (ssize_t)sizeof(*welcome) || welcome->magic != OWS_WELCOME_MAGIC ||
+	    welcome->err > 0 || welcome->err < -ERRNO_MAX)
+		return -EPROTO;
+	if (welcome->err)
+		return welcome->err;
+	if (welcome->major != OWS_LAYOUT_MAJOR || count != (join->new ? FIRST : 1))
+		return -EPROTO;
+	return 0;
+}
+
+static int receive(struct join *join, struct ows_welcome *welcome, int *memory)
+{
+	union {
+		struct cmsghdr align;
+		char room[CMSG_SPACE((FIRST + 1) * sizeof(int))];
+	} control = {0};
+	struct iovec data = {.iov_base = welcome, .iov_len = sizeof(*welcome)};
+	struct msghdr message = {
+		.msg_iov = &data,
+		.msg_iovlen = 1,
+		.msg_control = control.room,
+		.msg_controllen = sizeof(control.room),
+	};
+	int fds[FIRST] = {-1, -1, -1}, err;
+	ssize_t n = recvmsg(join->connection, &message, MSG_CMSG_CLOEXEC | MSG_DONTWAIT);
+
+	if (n < 0 && errno == ECONNRESET) /* what owsd has sent lies behind that */
+		n = recvmsg(join->connection, &message, MSG_CMSG_CLOEXEC | MSG_DONTWAIT);
+	if (n < 0)
+		return errno == EAGAIN || errno == EINTR ? -EAGAIN : -ENOTCONN;
+	err = n == 0 ? -ENOTCONN : check_welcome(join, welcome, n, take_descriptors(&message, fds));
+	if (message.msg_flags & MSG_CTRUNC)
+		err = -EMFILE; /* no room in the table of descriptors */
+	if (err) {
+		for (int i = 0; i < FIRST; i++)
+			close_fd(&fds[i]);
+		return err;
+	}
+	*memory = fds[0];
+	if (join->new) {
+		join->bell = fds[1];
+		join->news = fds[2];
+	}
+	join->new = false;
+	memcpy(join->token, welcome->token, sizeof(join->token));
+	return 0;
+}
+
+/* Sleep until something is to be received; false: the time is over. */
+static bool await(int fd, int64_t until_ns)
+{
+	struct pollfd poll_fd = {.fd = fd, .events = POLLIN};
+	int64_t left = until_ns - ows_now();
+	struct timespec t = {.tv_sec = (time_t)(left / NS_PER_S), .tv_nsec = left % NS_PER_S};
+
+	if (left <= 0)
+		return false;
+	ppoll(&poll_fd, 1, &t, NULL);
+	return true;
+}
+
+int join_receive(struct join *join, int64_t until_ns, struct ows_welcome *welcome, int *memory)
+{
+	int err;
+
+	*memory = -1;
+	do
+		err = receive(join, welcome, memory);
+	while (err == -EAGAIN && await(join->connection, until_ns));
+	if (err && err != -EAGAIN)
+		join_end(join);
+	return err;
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The connection to owsd's control socket (layout.h, "The socket NAME.control"): hello, and the
+ * welcomes with their descriptors. Every wait has a deadline; nothing here raises SIGPIPE.
+ */
+#ifndef LIBOWS_JOIN_H
+#define LIBOWS_JOIN_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "src/shm/layout.h"
+
+struct join {
+	int connection, bell, news; /* descriptors; -1: none */
+	bool new;                   /* connected, and no welcome has come yet */
+	uint8_t token[16];          /* of the last welcome: it outlives the connection */
+};
+
+void join_none(struct join *join);
+/*
+ * Connect to the socket `file` in a directory, and send the hello with the program's name. Returns
+ * 0; -ENOENT: nobody listens there; -EACCES; -EAGAIN: too many wait there at the moment.
+ */
+int join_begin(struct join *join, int directory, const char *file, const char *program,
+               bool command);
+/*
+ * Receive a welcome, until then at most (by ows_now()). Returns 0 with the descriptor of a memory,
+ * which the caller closes; -EAGAIN: none has come; -ENOTCONN: owsd has closed the connection;
+ * -EPROTO: what came is no welcome; or the error that stands in the welcome. After an error other
+ * than -EAGAIN the connection is closed.
+ */
+int join_receive(struct join *join, int64_t until_ns, struct ows_welcome *welcome, int *memory);
+void join_end(struct join *join);
+
+#endif

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+/* News of owsd: by the descriptor of a connected handle, else by the word of the image. */
+#ifndef LIBOWS_NEWS_H
+#define LIBOWS_NEWS_H
+
+#include <stdint.h>
+
+struct ows;
+
+/* Make the descriptor readable at the next news, and not before. Without one it does nothing. */
+void news_arm(struct ows *h);
+/*
+ * Sleep while the image's count of news is as seen, left_ns at most. Returns 0, -ETIMEDOUT or
+ * -EINTR.
+ */
+int news_sleep(struct ows *h, uint32_t seen, int64_t left_ns);
+
+#endif

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT */
+/* Who commands: the connected givers, and the origin of each signal's command. */
+#include <errno.h>
+
+#include "src/libows/alive.h"
+#include "src/libows/by.h"
+#include "src/libows/handle.h"
+#include "src/shm/reader.h"
+
+int ows_origin(struct ows *h, int id, struct ows_origin *origin)
+{
+	struct ows_origin_entry e;
+	uint32_t record;
+
+	*origin = (struct ows_origin){0};
+	if ((unsigned)id >= h->id_count || h->ids[id].record <= 0)
+		return -ENOENT;
+	record = (uint32_t)h->ids[id].record;
+	if (record >= map_count(&h->map, OWS_AREA_ORIGINS))
+		return -ENOENT;
+	if (!reader_entry(map_entry(&h->map, OWS_AREA_ORIGINS, record), &e, sizeof(e)))
+		return -EIO;
+	*origin = (struct ows_origin){
+		.who = by_of(&e.who),
+		.taken_ns = e.taken_ns,
+		.reason = e.reason <= UINT8_MAX ? (uint8_t)e.reason : OWS_REASON_NONE,
+		.own = e.who.serial != 0 && e.who.serial == h->give.serial,
+	};
+	return handle_state(h);
+}
+
+int ows_giver(struct ows *h, int index, struct ows_giver *giver)
+{
+	struct ows_giver_entry e;
+
+	*giver = (struct ows_giver){0};
+	if (index < 0 || (uint32_t)index >= map_count(&h->map, OWS_AREA_GIVERS))
+		return -ENOENT;
+	if (!reader_entry(map_entry(&h->map, OWS_AREA_GIVERS, (uint32_t)index), &e, sizeof(e)))
+		return -EIO;
+	if (!(e.flags & OWS_GIVER_CONNECTED))
+		return 0;
+	*giver = (struct ows_giver){
+		.who = by_of(&e.who),
+		.joined_ns = e.joined_ns,
+		.period_ms = e.period_ms,
+		.commands = e.commands,
+		.refused = e.refused,
+		.may_set = (e.flags & OWS_GIVER_MAY_SET) != 0,
+		.late = (e.flags & OWS_GIVER_LATE) != 0,
+	};
+	return 0;
+}

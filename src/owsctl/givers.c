@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: MIT */
+/* owsctl who: the programs that may command, and who gave each output its command. */
+#include <getopt.h>
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "src/owsctl/ctl.h"
+#include "src/owsctl/json.h"
+#include "src/owsctl/names.h"
+#include "src/owsctl/table.h"
+#include "src/owsctl/verbs.h"
+#include "src/owsctl/when.h"
+#include "src/owsctl/who.h"
+
+/* clang-format off */
+static const struct table_column giver_columns[] = {
+	{"PROGRAM"}, {"USER"}, {"SINCE", .right = true}, {"BEAT", .right = true},
+	{"COMMANDS", .right = true}, {"REFUSED", .right = true}, {"STATE"},
+};
+static const struct table_column origin_columns[] = {
+	{"OUTPUT"}, {"COMMAND"}, {"BY"}, {"USER"}, {"FOR"}, {"AGO", .right = true},
+};
+/* clang-format on */
+#define COLUMNS(columns) (sizeof(columns) / sizeof((columns)[0]))
+
+/* What a table cannot hold is missing. */
+struct who {
+	struct ows *h;
+	char *const *patterns;
+	int count;
+	struct when now;
+	bool full; /* no memory */
+};
+
+static const char *giver_state(const struct ows_giver *giver)
+{
+	if (giver->late)
+		return "late";
+	return giver->may_set ? "" : "reads";
+}
+
+static void add_giver(struct who *who, struct table *table, const struct ows_giver *giver)
+{
+	char program[WHO_TEXT], user[WHO_TEXT], since[WHEN_TEXT], beat[32], commands[16],
+		refused[16];
+
+	snprintf(commands, sizeof(commands), "%" PRIu32, giver->commands);
+	snprintf(refused, sizeof(refused), "%" PRIu32, giver->refused);
+	if (giver->period_ms)
+		snprintf(beat, sizeof(beat), "%gs", giver->period_ms / 1e3);
+	else
+		snprintf(beat, sizeof(beat), "-");
+	who->full |= !table_add(
+		table, (const char *const[]){who_program(&giver->who, program),
+	                                     who_user(&giver->who, user),
+	                                     when_span(who->now.boot - giver->joined_ns, since),
+	                                     beat, commands, refused, giver_state(giver)});
+}
+
+static void add_origin(struct who *who, struct table *table, const char *name,
+                       const struct ows_origin *origin)
+{
+	char program[WHO_TEXT], user[WHO_TEXT], ago[WHEN_TEXT];
+	bool none = origin->reason == OWS_REASON_NONE;
+
+	who->full |= !table_add(
+		table, (const char *const[]){
+			       name, ows_reason_text(origin->reason),
+			       none ? "-" : who_program(&origin->who, program),
+			       none ? "-" : who_user(&origin->who, user), origin->who.person,
+			       none ? "-" : when_span(who->now.boot - origin->taken_ns, ago)});
+}
+
+/* The next output that the patterns select, from *signal on, with the origin of its command. */
+static bool next_output(struct who *who, int *signal, struct ows_info *info,
+                        struct ows_origin *origin)
+{
+	for (; ows_info(who->h, *signal, info) == 0; (*signal)++) {
+		bool shown = names_match(info->name, who->patterns, who->count);
+
+		if (!shown || ows_origin(who->h, ows_find(who->h, info->name), origin))
+			continue;
+		if (info->output || origin->reason != OWS_REASON_NONE) {
+			(*signal)++;
+			return true;
+		}
+	}
+	return false;
+}
+
+static void print_table(struct table *table)
+{
+	char line[4096];
+
+	table_fit(table, 0);
+	for (int row = -1; row < (int)table->rows; row++) {
+		table_line(table, row, line, sizeof(line));
+		puts(line);
+	}
+}
+
+static int print_text(struct who *who)
+{
+	struct table givers, outputs;
+	struct ows_origin origin;
+	struct ows_giver giver;
+	struct ows_info info;
+	int signal = 0;
+
+	table_init(&givers, giver_columns, COLUMNS(giver_columns));
+	table_init(&outputs, origin_columns, COLUMNS(origin_columns));
+	for (int i = 0; ows_giver(who->h, i, &giver) == 0; i++)
+		if (giver.who.serial)
+			add_giver(who, &givers, &giver);
+	while (next_output(who, &signal, &info, &origin))
+		add_origin(who, &outputs, info.name, &origin);
+	print_table(&givers);
+	putchar('\n');
+	print_table(&outputs);
+	table_free(&givers);
+	table_free(&outputs);
+	return who->full ? ctl_fail("no memory") : CTL_DONE;
+}
+
+static void giver_json(const struct who *who, struct json *json, const struct ows_giver *giver)
+{
+	char text[WHEN_TEXT];
+
+	json_object(json, NULL);
+	who_json(json, &giver->who);
+	json_string(json, "since", when_iso(&who->now, giver->joined_ns, text));
+	if (giver->period_ms)
+		json_seconds(json, "beat", giver->period_ms * INT64_C(1000000));
+	else
+		json_null(json, "beat");
+	json_bool(json, "may_set", giver->may_set);
+	json_bool(json, "late", giver->late);
+	json_uint(json, "commands", giver->commands);
+	json_uint(json, "refused", giver->refused);
+	json_object_end(json);
+}
+
+static void origin_json(const struct who *who, struct json *json, const char *name,
+                        const struct ows_origin *origin)
+{
+	char text[WHEN_TEXT];
+	bool none = origin->reason == OWS_REASON_NONE;
+
+	json_object(json, NULL);
+	json_string(json, "name", name);
+	json_string(json, "reason", none ? NULL : ows_reason_text(origin->reason));
+	json_string(json, "time", none ? NULL : when_iso(&who->now, origin->taken_ns, text));
+	who_json(json, &origin->who);
+	json_object_end(json);
+}
+
+static void print_json(struct who *who)
+{
+	struct ows_origin origin;
+	struct ows_giver giver;
+	struct ows_info info;
+	struct json json;
+	int signal = 0;
+
+	json_open(&json, stdout);
+	json_object(&json, NULL);
+	json_array(&json, "givers");
+	for (int i = 0; ows_giver(who->h, i, &giver) == 0; i++)
+		if (giver.who.serial)
+			giver_json(who, &json, &giver);
+	json_array_end(&json);
+	json_array(&json, "outputs");
+	while (next_output(who, &signal, &info, &origin))
+		origin_json(who, &json, info.name, &origin);
+	json_array_end(&json);
+	json_object_end(&json);
+	json_end(&json);
+}
+
+int verb_who(struct ctl *ctl, int argc, char **argv)
+{
+	struct who who = {0};
+	int status;
+
+	ctl_options();
+	if (ctl_option(ctl, argc, argv, "") != -1)
+		return CTL_USAGE;
+	who.patterns = argv + optind;
+	who.count = argc - optind;
+	status = ctl_open(ctl, OWS_READ, &who.h);
+	if (status)
+		return status;
+	who.now = when_now();
+	ctl_alive(ctl, who.h, who.now.boot);
+	if (ctl->json)
+		print_json(&who);
+	else
+		status = print_text(&who);
+	ows_close(who.h);
+	return status;
+}

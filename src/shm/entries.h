@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The entries of the image that change as a whole, writer's side: origins, givers, shelves, and the
+ * journals of alarms and of commands. Sequence and check words are set here. No system calls. One
+ * thread.
+ */
+#ifndef SHM_ENTRIES_H
+#define SHM_ENTRIES_H
+
+#include "src/shm/image.h"
+
+/* The origin of the command in force for a record. */
+void image_origin(struct image *image, uint32_t record, const struct ows_origin_entry *entry);
+/* The giver of a place below OWS_GIVERS. */
+void image_giver(struct image *image, uint32_t place, const struct ows_giver_entry *entry);
+/* The shelved alarm of a place below OWS_SHELVES. */
+void image_shelf(struct image *image, uint32_t place, const struct ows_shelf_entry *entry);
+
+/*
+ * Enter an alarm into its journal; the number is set here. Returns it, with which
+ * image_alarm_after() adds the value after the alarm; once the ring has lost the entry, that does
+ * nothing.
+ */
+uint32_t image_alarm(struct image *image, const struct ows_journal_entry *entry);
+void image_alarm_after(struct image *image, uint32_t number, int64_t after);
+/* Enter a command into its journal; returns its number. */
+uint32_t image_command(struct image *image, const struct ows_journal_entry *entry);
+/*
+ * Continue both journals of the previous image in this one, with their numbers: record r of the
+ * previous image is records[r - 1] + 1 here; where that is 0xffffffff, the record and its entries
+ * are gone.
+ */
+void image_carry_journals(struct image *image, const struct image *before, const uint32_t *records);
+
+#endif

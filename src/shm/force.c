@@ -1,0 +1,369 @@
+/* SPDX-License-Identifier: MIT */
+/* NAME.force as one owsd writes it and the next one reads it: layout, slots, checks, search. */
+#include <assert.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/libows/ows.h"
+#include "src/shm/force.h"
+#include "src/shm/word.h"
+
+#define FORCE_MAGIC 0x4653574fu /* "OWSF" */
+#define FORCE_VERSION 1
+#define FORCE_MAX 0x7fffffffu
+#define FORCE_ROWS_MAX 0x100000u
+#define GIVEN 0x01u
+#define SAFE 0x02u
+
+/* All of this file is of owsd alone: another version of owsd that lays it out anew counts up. */
+struct force_header { /* 64 bytes */
+	uint32_t magic, version;
+	uint64_t boot;
+	uint32_t size, row_count, text_cap;
+	uint32_t row_off, giver_off, text_off, pool_off;
+	uint32_t spare[4];
+	uint32_t check; /* of the words before */
+};
+struct row_slot { /* 40 bytes */
+	int64_t value;
+	uint32_t len, text_check; /* strings */
+	uint32_t stamp, flags, giver, serial;
+	uint32_t spare;
+	uint32_t check; /* of the words before */
+};
+/* seq counts what was written; slot[seq & 1] is the newest. */
+struct force_row { /* 112 bytes */
+	uint32_t seq;
+	uint32_t name_off, path_off;
+	uint32_t type;
+	uint32_t text_off; /* strings: two texts of text_cap bytes, of slot 0 and 1; else 0 */
+	uint32_t name_check, path_check;
+	uint32_t spare;
+	struct row_slot slot[2];
+};
+struct giver_slot { /* 112 bytes */
+	struct force_giver giver;
+	uint32_t spare;
+	uint32_t check;
+};
+struct giver_row { /* 232 bytes */
+	uint32_t seq, spare;
+	struct giver_slot slot[2];
+};
+_Static_assert(sizeof(struct force_header) == 64, "laid out by hand");
+_Static_assert(sizeof(struct row_slot) == 40, "laid out by hand");
+_Static_assert(sizeof(struct force_row) == 112, "laid out by hand");
+_Static_assert(sizeof(struct giver_slot) == 112, "laid out by hand");
+
+#define CHECK_OF(record) \
+	ows_check((const uint32_t *)(const void *)(record), sizeof(*(record)) / 4 - 1)
+
+/* --- Writing ---------------------------------------------------------------------------------- */
+
+struct force_areas {
+	uint64_t row, giver, text, pool, end;
+};
+
+static void find_areas(const struct force_plan *plan, struct force_areas *a)
+{
+	uint64_t texts = 0, pool = 0;
+
+	for (uint32_t i = 0; i < plan->signal_count; i++) {
+		pool += strlen(plan->signals[i].name) + 1 + strlen(plan->signals[i].path) + 1;
+		texts += plan->signals[i].type == OWS_STRING ? 2 : 0;
+	}
+	a->row = sizeof(struct force_header);
+	a->giver = a->row + (uint64_t)plan->signal_count * sizeof(struct force_row);
+	a->text = a->giver + FORCE_GIVERS * sizeof(struct giver_row);
+	a->pool = a->text + texts * plan->text_cap;
+	a->end = (a->pool + pool + 7) & ~(uint64_t)7;
+}
+
+size_t force_size(const struct force_plan *plan)
+{
+	struct force_areas a;
+
+	find_areas(plan, &a);
+	return a.end <= FORCE_MAX && plan->signal_count <= FORCE_ROWS_MAX ? (size_t)a.end : 0;
+}
+
+static struct force_row *row_at(const struct force *force, uint32_t row)
+{
+	assert(row < force->row_count);
+	return (struct force_row *)(void *)(force->base + force->row_off) + row;
+}
+
+static uint32_t add_string(char *base, uint64_t *pool, const char *text, uint32_t *check)
+{
+	size_t len = strlen(text);
+	uint32_t off = (uint32_t)*pool;
+
+	memcpy(base + off, text, len + 1);
+	*pool += len + 1;
+	*check = ows_check_bytes(text, len);
+	return off;
+}
+
+void force_build(const struct force_plan *plan, void *memory, struct force *force)
+{
+	struct force_header *h = memory;
+	uint64_t text, pool;
+	struct force_areas a;
+
+	assert(plan->text_cap % 4 == 0);
+	find_areas(plan, &a);
+	text = a.text;
+	pool = a.pool;
+	*force = (struct force){.base = memory,
+	                        .row_off = (uint32_t)a.row,
+	                        .row_count = plan->signal_count,
+	                        .giver_off = (uint32_t)a.giver,
+	                        .text_cap = plan->text_cap};
+	for (uint32_t i = 0; i < plan->signal_count; i++) {
+		const struct force_signal *s = &plan->signals[i];
+		struct force_row *r = row_at(force, i);
+
+		r->name_off = add_string(memory, &pool, s->name, &r->name_check);
+		r->path_off = add_string(memory, &pool, s->path, &r->path_check);
+		r->type = s->type;
+		r->slot[0].check = CHECK_OF(&r->slot[0]);
+		if (s->type != OWS_STRING)
+			continue;
+		r->text_off = (uint32_t)text;
+		text += 2 * (uint64_t)plan->text_cap;
+	}
+	for (uint32_t i = 0; i < FORCE_GIVERS; i++) {
+		struct giver_row *g = (struct giver_row *)(void *)(force->base + a.giver) + i;
+
+		g->slot[0].check = CHECK_OF(&g->slot[0]);
+	}
+	*h = (struct force_header){.magic = FORCE_MAGIC,
+	                           .version = FORCE_VERSION,
+	                           .boot = plan->boot,
+	                           .size = (uint32_t)a.end,
+	                           .row_count = plan->signal_count,
+	                           .text_cap = plan->text_cap,
+	                           .row_off = (uint32_t)a.row,
+	                           .giver_off = (uint32_t)a.giver,
+	                           .text_off = (uint32_t)a.text,
+	                           .pool_off = (uint32_t)a.pool};
+	h->check = CHECK_OF(h);
+}
+
+static struct giver_row *giver_at(const struct force *force, uint32_t index)
+{
+	assert(index < FORCE_GIVERS);
+	return (struct giver_row *)(void *)(force->base + force->giver_off) + index;
+}
+
+void force_giver(struct force *force, uint32_t index, const struct force_giver *giver)
+{
+	struct giver_row *g = giver_at(force, index);
+	uint32_t next = g->seq + 1;
+	struct giver_slot *slot = &g->slot[next & 1];
+
+	slot->giver = *giver;
+	slot->check = CHECK_OF(slot);
+	__atomic_store_n(&g->seq, next, __ATOMIC_RELEASE);
+	word_fence(__ATOMIC_RELEASE); /* the next writes into the slot that was whole until now */
+}
+
+void force_put(struct force *force, uint32_t row, const struct force_command *command,
+               const char *text)
+{
+	struct force_row *r = row_at(force, row);
+	uint32_t next = r->seq + 1;
+	struct row_slot *slot = &r->slot[next & 1];
+	const struct giver_row *g = NULL;
+
+	if (command->giver < FORCE_GIVERS)
+		g = giver_at(force, command->giver);
+	*slot = (struct row_slot){
+		.value = command->value,
+		.stamp = command->stamp,
+		.flags = (command->given ? GIVEN : 0) | (command->safe ? SAFE : 0),
+		.giver = command->giver,
+		.serial = g ? g->slot[g->seq & 1].giver.who.serial : 0,
+	};
+	if (text && r->text_off) {
+		assert(command->len <= force->text_cap);
+		memcpy(force->base + r->text_off + (next & 1) * force->text_cap, text,
+		       command->len);
+		slot->len = command->len;
+		slot->text_check = ows_check_bytes(text, command->len);
+	}
+	slot->check = CHECK_OF(slot);
+	__atomic_store_n(&r->seq, next, __ATOMIC_RELEASE);
+	word_fence(__ATOMIC_RELEASE); /* the next writes into the slot that was whole until now */
+}
+
+/* --- Reading ---------------------------------------------------------------------------------- */
+
+struct force_key {
+	const char *name, *path;
+	uint32_t type, row;
+};
+
+static int compare_keys(const void *a, const void *b)
+{
+	const struct force_key *x = a, *y = b;
+	int order = strcmp(x->name, y->name);
+
+	if (!order)
+		order = strcmp(x->path, y->path);
+	return order ? order : (x->type > y->type) - (x->type < y->type);
+}
+
+static const struct force_row *left_row(const struct force_left *left, uint32_t row)
+{
+	return (const struct force_row *)(const void *)(left->base + left->row_off) + row;
+}
+
+static const struct giver_slot *left_giver(const struct force_left *left, uint32_t index)
+{
+	const struct giver_row *g = (const struct giver_row *)(const void *)(left->base +
+	                                                                     left->giver_off) +
+	                            index;
+
+	return &g->slot[g->seq & 1];
+}
+
+static const char *left_text(const struct force_left *left, const struct force_row *r)
+{
+	return left->base + r->text_off + (r->seq & 1) * left->text_cap;
+}
+
+/* A string between off and end that is ended, and whole; NULL: it is not. */
+static const char *left_string(const char *base, uint32_t off, uint32_t pool, uint32_t end,
+                               uint32_t check)
+{
+	const char *text = base + off;
+	size_t len;
+
+	if (off < pool || off >= end)
+		return NULL;
+	len = strnlen(text, end - off);
+	return len < end - off && ows_check_bytes(text, len) == check ? text : NULL;
+}
+
+static bool row_whole(const struct force_left *left, const struct force_header *h, uint32_t row,
+                      struct force_key *key)
+{
+	const struct force_row *r = left_row(left, row);
+	const struct row_slot *slot = &r->slot[r->seq & 1];
+
+	*key = (struct force_key){
+		.name = left_string(left->base, r->name_off, h->pool_off, h->size, r->name_check),
+		.path = left_string(left->base, r->path_off, h->pool_off, h->size, r->path_check),
+		.type = r->type,
+		.row = row,
+	};
+	if (!key->name || !key->path || slot->check != CHECK_OF(slot) || slot->giver > FORCE_NOBODY)
+		return false;
+	if (r->type != OWS_STRING)
+		return r->text_off == 0 && slot->len == 0;
+	return r->text_off >= h->text_off && r->text_off <= h->pool_off &&
+	       2 * (uint64_t)left->text_cap <= h->pool_off - r->text_off &&
+	       slot->len <= left->text_cap &&
+	       (!(slot->flags & GIVEN) ||
+	        ows_check_bytes(left_text(left, r), slot->len) == slot->text_check);
+}
+
+static bool header_whole(const struct force_header *h, size_t size)
+{
+	return h->check == CHECK_OF(h) && h->size == size && h->row_count <= FORCE_ROWS_MAX &&
+	       h->row_off == sizeof(*h) &&
+	       h->giver_off == h->row_off + (uint64_t)h->row_count * sizeof(struct force_row) &&
+	       h->text_off == h->giver_off + FORCE_GIVERS * sizeof(struct giver_row) &&
+	       h->text_off <= size && h->pool_off >= h->text_off && h->pool_off <= size;
+}
+
+static bool givers_whole(const struct force_left *left)
+{
+	for (uint32_t i = 0; i < FORCE_GIVERS; i++) {
+		const struct giver_slot *slot = left_giver(left, i);
+
+		if (slot->check != CHECK_OF(slot))
+			return false;
+	}
+	return true;
+}
+
+int force_open(const void *memory, size_t size, uint64_t boot, struct force_left *left)
+{
+	const struct force_header *h = memory;
+	bool whole;
+
+	*left = (struct force_left){0};
+	if (size < sizeof(*h) || size > FORCE_MAX || h->magic != FORCE_MAGIC ||
+	    h->version != FORCE_VERSION || !header_whole(h, size))
+		return -EPROTO;
+	if (h->boot != boot)
+		return -ESTALE;
+	*left = (struct force_left){.base = memory,
+	                            .row_off = h->row_off,
+	                            .row_count = h->row_count,
+	                            .giver_off = h->giver_off,
+	                            .text_cap = h->text_cap};
+	left->keys = malloc(((size_t)h->row_count + 1) * sizeof(*left->keys));
+	if (!left->keys)
+		return -ENOMEM;
+	whole = givers_whole(left);
+	for (uint32_t row = 0; whole && row < left->row_count; row++)
+		whole = row_whole(left, h, row, &left->keys[row]);
+	if (!whole) {
+		force_close(left);
+		return -EPROTO;
+	}
+	qsort(left->keys, left->row_count, sizeof(*left->keys), compare_keys);
+	return 0;
+}
+
+void force_close(struct force_left *left)
+{
+	free(left->keys);
+	*left = (struct force_left){0};
+}
+
+bool force_find(const struct force_left *left, const struct force_signal *signal,
+                struct force_command *command, char *text, size_t room)
+{
+	const struct force_key wanted = {signal->name, signal->path, signal->type, 0};
+	const struct force_key *key = NULL;
+	const struct force_row *r;
+	const struct row_slot *slot;
+
+	if (left->row_count)
+		key = bsearch(&wanted, left->keys, left->row_count, sizeof(*key), compare_keys);
+	if (!key)
+		return false;
+	r = left_row(left, key->row);
+	slot = &r->slot[r->seq & 1];
+	if (slot->len > room)
+		return false;
+	*command = (struct force_command){
+		.value = slot->value,
+		.len = slot->len,
+		.stamp = slot->stamp,
+		.given = slot->flags & GIVEN,
+		.safe = slot->flags & SAFE,
+		.giver = slot->giver,
+	};
+	/* its entry is another's by now: nobody would come back for the command */
+	if (slot->giver < FORCE_GIVERS &&
+	    (!slot->serial || left_giver(left, slot->giver)->giver.who.serial != slot->serial))
+		command->giver = FORCE_NOBODY;
+	if (slot->len)
+		memcpy(text, left_text(left, r), slot->len);
+	return true;
+}
+
+bool force_find_giver(const struct force_left *left, uint32_t index, struct force_giver *giver)
+{
+	if (index >= FORCE_GIVERS)
+		return false;
+	*giver = left_giver(left, index)->giver;
+	giver->who.name[OWS_NAME - 1] = giver->who.person[OWS_NAME - 1] = '\0';
+	return giver->who.serial != 0;
+}

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * libows' give.c and meet.c with the heap in the place of a sealed memory: a connection is always
+ * there, and each welcome brings the memory that stands in heap_giver_file.
+ */
+#include "tests/fuzz/heap_instance.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "src/libows/join.h"
+#include "src/shm/place.h"
+
+struct heap_file heap_giver_file;
+enum { GIVER_FD = 1002 };
+
+void join_none(struct join *join)
+{
+	*join = (struct join){.connection = -1, .bell = -1, .news = -1};
+}
+
+void join_end(struct join *join)
+{
+	join->connection = join->bell = join->news = -1;
+}
+
+int join_begin(struct join *join, int directory, const char *file, const char *program,
+               bool command)
+{
+	(void)directory;
+	(void)file;
+	(void)program;
+	(void)command;
+	if (!heap_giver_file.base)
+		return -ENOENT;
+	join->connection = GIVER_FD;
+	join->new = true;
+	return 0;
+}
+
+/* The welcome says what owsd has made, whatever became of that since. */
+int join_receive(struct join *join, int64_t until_ns, struct ows_welcome *welcome, int *memory)
+{
+	(void)until_ns;
+	if (!join->new)
+		return -EAGAIN;
+	join->new = false;
+	*welcome = (struct ows_welcome){
+		.magic = OWS_WELCOME_MAGIC,
+		.major = OWS_LAYOUT_MAJOR,
+		.generation = heap.layout.generation,
+		.start_id = heap.layout.start_id,
+		.serial = 1,
+		.size = (uint32_t)heap_giver_file.size,
+	};
+	*memory = GIVER_FD;
+	return 0;
+}
+
+static int heap_stat(struct stat *st)
+{
+	*st = (struct stat){.st_size = (off_t)heap_giver_file.size};
+	return 0;
+}
+
+#define fcntl(fd, what) ((void)(fd), F_SEAL_SEAL | F_SEAL_SHRINK | F_SEAL_GROW)
+#define fstat(fd, st) ((void)(fd), heap_stat(st))
+#define close(fd) ((void)(fd))
+#define mmap(at, size, prot, flags, fd, off) ((void *)heap_giver_file.base)
+#define munmap(at, size) ((void)(at))
+#include "src/libows/give.c"
+#undef mmap
+#undef munmap
+#define place_open(path, place) ((void)(path), (place)->fd = -1, 0)
+#define place_close(place) ((void)(place))
+#include "src/libows/meet.c"

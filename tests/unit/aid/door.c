@@ -1,0 +1,295 @@
+/* SPDX-License-Identifier: MIT */
+/* The control socket of an instance without owsd: welcomes whoever connects, and can lie. */
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "unity.h"
+
+#include "tests/unit/aid/door.h"
+
+#define PATIENCE_MS 60000
+#define SEALS (F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL)
+
+static void make_layout(struct door *door, uint32_t generation, uint32_t start_id,
+                        const uint8_t *types, uint32_t count, uint16_t text_cap)
+{
+	const struct giver_plan plan = {
+		.types = types,
+		.signal_count = count,
+		.text_cap = text_cap,
+		.generation = generation,
+		.start_id = start_id,
+	};
+
+	TEST_ASSERT_EQUAL(0, giver_layout_make(&door->layout, &plan));
+}
+
+/* Make the memory of a giver; a lie may be in it. */
+static void make_memory(struct door *door, struct door_giver *giver, uint32_t serial)
+{
+	size_t size = door->layout.size;
+	struct ows_giver_header *header;
+	int fd = memfd_create("door", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+
+	TEST_ASSERT_GREATER_OR_EQUAL(0, fd);
+	TEST_ASSERT_EQUAL(0, ftruncate(fd, (off_t)size));
+	header = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+	TEST_ASSERT_TRUE(header != MAP_FAILED);
+	giver->memory_fd = fd;
+	giver->memory = (struct giver_memory){.base = (char *)header, .layout = &door->layout};
+	giver_build(&giver->memory, serial);
+	for (uint32_t i = 0; i < door->layout.slot_count; i++)
+		giver_allow(&giver->memory, i, true);
+	giver_state(&giver->memory, OWS_STATE_LIVE);
+	if (door->lie == DOOR_OTHER_MEMORY)
+		header->magic = OWS_IMAGE_MAGIC;
+	if (door->lie == DOOR_OUTSIDE)
+		header->slot_off = 0x7ffffff8;
+	if (door->lie == DOOR_SMALL)
+		TEST_ASSERT_EQUAL(0, ftruncate(fd, 128));
+	if (door->lie != DOOR_NO_SEALS)
+		TEST_ASSERT_EQUAL(0, fcntl(fd, F_ADD_SEALS, SEALS));
+}
+
+static size_t fill_welcome(const struct door *door, uint32_t serial, struct ows_welcome *welcome)
+{
+	size_t size = door->layout.size;
+
+	*welcome = (struct ows_welcome){
+		.magic = door->lie == DOOR_OTHER_MAGIC ? 1 : OWS_WELCOME_MAGIC,
+		.major = door->lie == DOOR_OTHER_MAJOR ? OWS_LAYOUT_MAJOR + 1 : OWS_LAYOUT_MAJOR,
+		.generation = door->layout.generation,
+		.start_id = door->layout.start_id,
+		.serial = serial,
+		.size = (uint32_t)(door->lie == DOOR_OTHER_SIZE ? 2 * size
+	                           : door->lie == DOOR_SMALL    ? 128
+	                                                        : size),
+	};
+	if (door->lie == DOOR_REFUSES)
+		welcome->err = -EACCES;
+	if (door->lie == DOOR_OTHER_START)
+		welcome->start_id++;
+	snprintf((char *)welcome->token, sizeof(welcome->token), "token %u", (unsigned)serial);
+	return door->lie == DOOR_SHORT ? sizeof(*welcome) / 2 : sizeof(*welcome);
+}
+
+static void send_welcome(const struct door *door, const struct door_giver *giver, uint32_t serial,
+                         unsigned fd_count)
+{
+	union {
+		struct cmsghdr header;
+		char room[CMSG_SPACE(8 * sizeof(int))];
+	} control = {0};
+	int fds[8] = {giver->memory_fd, giver->bell, giver->news, giver->bell,
+	              giver->bell,      giver->bell, giver->bell, giver->bell};
+	struct ows_welcome welcome;
+	struct iovec data = {.iov_base = &welcome, .iov_len = fill_welcome(door, serial, &welcome)};
+	struct msghdr message = {.msg_iov = &data, .msg_iovlen = 1};
+
+	if (fd_count > 0) {
+		message.msg_control = control.room;
+		message.msg_controllen = CMSG_SPACE(fd_count * sizeof(int));
+		control.header = (struct cmsghdr){
+			.cmsg_level = SOL_SOCKET,
+			.cmsg_type = SCM_RIGHTS,
+			.cmsg_len = CMSG_LEN(fd_count * sizeof(int)),
+		};
+		memcpy(CMSG_DATA(&control.header), fds, fd_count * sizeof(int));
+	}
+	sendmsg(giver->connection, &message, MSG_NOSIGNAL);
+}
+
+static unsigned fds_of(enum door_lie lie)
+{
+	switch (lie) {
+	case DOOR_NO_FDS:
+	case DOOR_REFUSES:
+		return 0;
+	case DOOR_ONE_FD:
+		return 1;
+	case DOOR_MANY_FDS:
+		return 8;
+	default:
+		return 3;
+	}
+}
+
+static void hang_up(struct door_giver *giver)
+{
+	if (giver->gone)
+		return;
+	giver->gone = true;
+	close(giver->connection);
+}
+
+static void welcome_one(struct door *door)
+{
+	struct pollfd hello = {.fd = accept4(door->listener, NULL, NULL, SOCK_CLOEXEC),
+	                       .events = POLLIN};
+	struct door_giver *giver = &door->givers[door->count];
+
+	if (hello.fd < 0)
+		return;
+	if (door->count == DOOR_GIVERS || poll(&hello, 1, PATIENCE_MS) != 1) {
+		close(hello.fd);
+		return;
+	}
+	*giver = (struct door_giver){
+		.connection = hello.fd,
+		.bell = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC),
+		.news = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC),
+	};
+	recv(hello.fd, &giver->hello, sizeof(giver->hello), 0);
+	make_memory(door, giver, door->count + 1);
+	door->count++;
+	if (door->lie == DOOR_HANGS_UP)
+		hang_up(giver);
+	else if (door->lie != DOOR_SILENT)
+		send_welcome(door, giver, door->count, fds_of(door->lie));
+}
+
+static void *keep_door(void *arg)
+{
+	struct door *door = arg;
+	struct pollfd fds[DOOR_GIVERS + 2];
+
+	pthread_mutex_lock(&door->lock);
+	while (!door->stop) {
+		unsigned n = 2;
+
+		fds[0] = (struct pollfd){.fd = door->listener, .events = POLLIN};
+		fds[1] = (struct pollfd){.fd = door->wake, .events = POLLIN};
+		for (unsigned i = 0; i < door->count; i++)
+			fds[n++] = (struct pollfd){
+				.fd = door->givers[i].gone ? -1 : door->givers[i].connection,
+				.events = POLLIN,
+			};
+		pthread_mutex_unlock(&door->lock);
+		poll(fds, n, -1);
+		pthread_mutex_lock(&door->lock);
+		for (unsigned i = 2; i < n; i++)
+			if (fds[i].revents && !door->stop)
+				hang_up(&door->givers[i - 2]);
+		if (fds[0].revents && !door->stop)
+			welcome_one(door);
+	}
+	pthread_mutex_unlock(&door->lock);
+	return NULL;
+}
+
+void door_open(struct door *door, const char *instance, uint32_t generation, uint32_t start_id,
+               const uint8_t *types, uint32_t count, uint16_t text_cap)
+{
+	struct sockaddr_un to = {.sun_family = AF_UNIX};
+
+	*door = (struct door){.lock = PTHREAD_MUTEX_INITIALIZER};
+	make_layout(door, generation, start_id, types, count, text_cap);
+	TEST_ASSERT_EQUAL(0, place_make(&door->place));
+	snprintf(door->file, sizeof(door->file), "%s.control", instance);
+	unlinkat(door->place.fd, door->file, 0);
+	snprintf(to.sun_path, sizeof(to.sun_path), "/proc/self/fd/%d/%s", door->place.fd,
+	         door->file);
+	door->listener = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+	TEST_ASSERT_EQUAL(0, bind(door->listener, (struct sockaddr *)&to, sizeof(to)));
+	TEST_ASSERT_EQUAL(0, listen(door->listener, DOOR_GIVERS));
+	door->wake = eventfd(0, EFD_CLOEXEC);
+	TEST_ASSERT_EQUAL(0, pthread_create(&door->thread, NULL, keep_door, door));
+}
+
+void door_close(struct door *door)
+{
+	const uint64_t one = 1;
+
+	pthread_mutex_lock(&door->lock);
+	door->stop = true;
+	pthread_mutex_unlock(&door->lock);
+	TEST_ASSERT_EQUAL(sizeof(one), write(door->wake, &one, sizeof(one)));
+	pthread_join(door->thread, NULL);
+	close(door->listener);
+	close(door->wake);
+	for (unsigned i = 0; i < door->count; i++) {
+		struct door_giver *giver = &door->givers[i];
+
+		hang_up(giver);
+		munmap(giver->memory.base, door->layout.size);
+		close(giver->memory_fd);
+		close(giver->bell);
+		close(giver->news);
+	}
+	unlinkat(door->place.fd, door->file, 0);
+	place_close(&door->place);
+	giver_layout_free(&door->layout);
+}
+
+void door_reload(struct door *door, uint32_t generation, uint32_t start_id, const uint8_t *types,
+                 uint32_t count, uint16_t text_cap, const uint32_t *rows)
+{
+	struct giver_layout before;
+
+	pthread_mutex_lock(&door->lock);
+	before = door->layout;
+	make_layout(door, generation, start_id, types, count, text_cap);
+	for (unsigned i = 0; i < door->count; i++) {
+		struct door_giver *giver = &door->givers[i];
+		struct giver_memory old = giver->memory;
+
+		old.layout = &before;
+		giver_state(&old, OWS_STATE_RETIRED);
+		close(giver->memory_fd);
+		make_memory(door, giver, i + 1);
+		giver_copy(&giver->memory, &old, rows);
+		munmap(old.base, before.size);
+		if (!giver->gone)
+			send_welcome(door, giver, i + 1, 1);
+	}
+	giver_layout_free(&before);
+	pthread_mutex_unlock(&door->lock);
+}
+
+struct door_giver *door_giver(struct door *door, unsigned i)
+{
+	pthread_mutex_lock(&door->lock);
+	TEST_ASSERT_LESS_THAN_MESSAGE(door->count, i, "nobody came so far");
+	pthread_mutex_unlock(&door->lock);
+	return &door->givers[i];
+}
+
+unsigned door_count(struct door *door)
+{
+	unsigned count;
+
+	pthread_mutex_lock(&door->lock);
+	count = door->count;
+	pthread_mutex_unlock(&door->lock);
+	return count;
+}
+
+void door_wait_gone(struct door *door, unsigned i)
+{
+	struct door_giver *giver = door_giver(door, i);
+	const struct timespec pause = {.tv_nsec = 1000000};
+	bool gone = false;
+
+	for (int n = 0; !gone && n < PATIENCE_MS; n++) {
+		nanosleep(&pause, NULL);
+		pthread_mutex_lock(&door->lock);
+		gone = giver->gone;
+		pthread_mutex_unlock(&door->lock);
+	}
+	TEST_ASSERT_TRUE_MESSAGE(gone, "the giver did not hang up");
+}
+
+uint64_t door_rings(struct door *door, unsigned i)
+{
+	uint64_t rings = 0;
+
+	return read(door_giver(door, i)->bell, &rings, sizeof(rings)) < 0 ? 0 : rings;
+}

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The control socket of an instance without owsd: a thread that welcomes whoever connects, with a
+ * memory that the test reads by the engine's functions. It can lie, as owsd never does.
+ */
+#ifndef TESTS_UNIT_AID_DOOR_H
+#define TESTS_UNIT_AID_DOOR_H
+
+#include <pthread.h>
+
+#include "src/shm/giver.h"
+#include "src/shm/place.h"
+
+#define DOOR_GIVERS 40
+
+enum door_lie {
+	DOOR_HONEST,
+	DOOR_SILENT,   /* it reads the hello and sends nothing */
+	DOOR_HANGS_UP, /* it closes the connection instead of a welcome */
+	DOOR_REFUSES,  /* -EACCES */
+	DOOR_OTHER_MAGIC,
+	DOOR_OTHER_MAJOR,
+	DOOR_SHORT,  /* half a welcome */
+	DOOR_NO_FDS, /* a welcome without descriptors */
+	DOOR_ONE_FD, /* with the memory alone */
+	DOOR_MANY_FDS,
+	DOOR_NO_SEALS,
+	DOOR_OTHER_SIZE,   /* it promises more than the memory has */
+	DOOR_SMALL,        /* the memory is smaller than its header */
+	DOOR_OTHER_MEMORY, /* the header is none */
+	DOOR_OTHER_START,  /* of another generation than the image */
+	DOOR_OUTSIDE,      /* its slots lie outside */
+	DOOR_LIES          /* how many there are */
+};
+
+struct door_giver {
+	int connection, memory_fd, bell, news;
+	bool gone; /* hung up */
+	struct ows_hello hello;
+	struct giver_memory memory;
+};
+
+struct door {
+	struct shm_place place;
+	char file[64];
+	int listener, wake;
+	bool stop;
+	enum door_lie lie;
+	pthread_t thread;
+	pthread_mutex_t lock;
+	struct giver_layout layout;
+	struct door_giver givers[DOOR_GIVERS];
+	unsigned count; /* of all that were ever welcomed */
+};
+
+/* Listen as NAME.control in this user's place, with memories for signals of these types. */
+void door_open(struct door *door, const char *instance, uint32_t generation, uint32_t start_id,
+               const uint8_t *types, uint32_t count, uint16_t text_cap);
+/* Hang up on all, and listen no more: as an owsd that is killed. */
+void door_close(struct door *door);
+/* Memories of another generation for all that are connected, with what they had, and welcomes. */
+void door_reload(struct door *door, uint32_t generation, uint32_t start_id, const uint8_t *types,
+                 uint32_t count, uint16_t text_cap, const uint32_t *rows);
+/* Giver i of those who were ever welcomed. */
+struct door_giver *door_giver(struct door *door, unsigned i);
+unsigned door_count(struct door *door);
+/* Wait until the giver has hung up. */
+void door_wait_gone(struct door *door, unsigned i);
+/* How often the giver rang since the last call. */
+uint64_t door_rings(struct door *door, unsigned i);
+
+#endif

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+/* A place of the test's own, instead of that of an owsd which may run on this machine. */
+#ifndef TESTS_UNIT_AID_FOLDER_H
+#define TESTS_UNIT_AID_FOLDER_H
+
+#include "src/shm/place.h"
+
+/*
+ * The place, made at the first call and named in OWS_DIR, for libows and for programs that the test
+ * starts; removed with all that is in it when the test ends.
+ */
+const struct shm_place *folder_place(void);
+/* The path of an instance's file there; overwritten by the next call. */
+const char *folder_file(const char *instance, const char *what);
+
+#endif

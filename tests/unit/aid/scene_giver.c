@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: MIT */
+/* The givers of a scene, and the disk of Start "last". */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "unity.h"
+
+#include "tests/unit/aid/scene_private.h"
+
+void scene_allow(struct scene *s, unsigned place, unsigned record)
+{
+	s->limited = true;
+	s->rights[place][record / 32] |= 1u << record % 32;
+}
+
+void scene_join_again(struct scene *s, unsigned place)
+{
+	struct engine_giver giver = {
+		.who = {.serial = s->tokens[place] ? s->tokens[place] : 1000 + place,
+	                .uid = s->uid,
+	                .pid = 100 + (int32_t)place},
+		.rights = s->limited ? s->rights[place] : NULL,
+	};
+
+	snprintf(giver.who.name, sizeof(giver.who.name), "giver%u", place);
+	memcpy(giver.token, &s->tokens[place], sizeof(s->tokens[place]));
+	giving_make(&s->givers[place], s->layout, giver.who.serial);
+	giver.memory = s->givers[place].memory;
+	engine_giver_join(s->engine, place, &giver, s->now_ns);
+}
+
+void scene_join(struct scene *s, unsigned place, uint32_t token)
+{
+	TEST_ASSERT_NULL(s->givers[place].memory.base);
+	s->tokens[place] = token;
+	scene_join_again(s, place);
+}
+
+void scene_leave(struct scene *s, unsigned place)
+{
+	engine_giver_left(s->engine, place, s->now_ns);
+	giving_free(&s->givers[place]);
+}
+
+void scene_goodbye(struct scene *s, unsigned place)
+{
+	giving_header(&s->givers[place])->goodbye = 1;
+	scene_leave(s, place);
+}
+
+struct ows_command_slot *scene_slot(struct scene *s, unsigned record)
+{
+	return giving_slot(&s->givers[0], record);
+}
+
+void scene_ring(struct scene *s, unsigned record)
+{
+	giving_mark(&s->givers[0], record);
+}
+
+void scene_set(struct scene *s, unsigned record, int64_t value)
+{
+	giving_set(&s->givers[0], record, value);
+}
+
+void scene_set_by(struct scene *s, unsigned place, unsigned record, int64_t value)
+{
+	giving_set(&s->givers[place], record, value);
+}
+
+void scene_set_text(struct scene *s, unsigned record, const char *text)
+{
+	giving_set_text(&s->givers[0], record, text);
+}
+
+void scene_enable_reads(struct scene *s, unsigned record, bool on)
+{
+	giving_enable(&scene_slot(s, record)->read_enable, on);
+	scene_ring(s, record);
+}
+
+void scene_enable_writes(struct scene *s, unsigned record, bool on)
+{
+	giving_enable(&scene_slot(s, record)->write_enable, on);
+	scene_ring(s, record);
+}
+
+uint32_t scene_applied(struct scene *s, unsigned record)
+{
+	return scene_slot(s, record)->applied;
+}
+
+void scene_beat(struct scene *s, unsigned n, uint32_t period_ms, int64_t ns)
+{
+	for (int64_t t = 0; t < ns; t += 100 * SCENE_MS) {
+		for (unsigned i = 0; i < n; i++)
+			giving_beat(&s->givers[i], period_ms);
+		scene_run(s, 100 * SCENE_MS);
+	}
+}
+
+/* --- The disk --------------------------------------------------------------------------------- */
+
+static uint32_t put(void *ctx, uint32_t row, int64_t value, const char *text, uint32_t len)
+{
+	struct scene *s = ctx;
+	struct scene_stored *at = &s->disk.rows[row];
+
+	if (s->disk.full)
+		return ++s->disk.tickets;
+	at->name = s->items[row].name;
+	at->known = true;
+	at->value = value;
+	at->len = len;
+	if (text)
+		memcpy(at->text, text, len);
+	s->disk.tickets++;
+	if (!s->disk.waits)
+		s->disk.stored = s->disk.tickets;
+	return s->disk.tickets;
+}
+
+static uint32_t stored(void *ctx)
+{
+	return ((struct scene *)ctx)->disk.stored;
+}
+
+static int error(void *ctx)
+{
+	return ((struct scene *)ctx)->disk.full ? -ENOSPC : 0;
+}
+
+static bool find(void *ctx, uint32_t row, int64_t *value, char *text, size_t room, uint32_t *len)
+{
+	const struct scene_stored *at = &((struct scene *)ctx)->disk.rows[row];
+
+	TEST_ASSERT_LESS_OR_EQUAL(room, at->len);
+	*value = at->value;
+	*len = at->len;
+	memcpy(text, at->text, at->len);
+	return at->known;
+}
+
+const struct engine_last *scene_disk(struct scene *s)
+{
+	s->disk.seam = (struct engine_last){s, put, stored, error, find};
+	return &s->disk.seam;
+}
+
+void scene_store(struct scene *s)
+{
+	s->disk.stored = s->disk.tickets;
+}
