@@ -35,7 +35,7 @@ void person_address(const struct sockaddr *from, char name[OWS_NAME])
 	if (len < OWS_NAME) {
 		memcpy(name, text, len + 1);
 	} else {
-		memcpy(name, "...", 3);
+		memset(name, '.', 3);
 		memcpy(name + 3, text + len - (OWS_NAME - 4), OWS_NAME - 3);
 	}
 }

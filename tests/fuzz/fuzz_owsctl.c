@@ -126,18 +126,41 @@ int __wrap_isatty(int fd)
 	return 0;
 }
 
-int __real_ows_open(const char *instance, enum ows_mode mode, struct ows **h);
-int __wrap_ows_open(const char *instance, enum ows_mode mode, struct ows **h);
-int __wrap_ows_open(const char *instance, enum ows_mode mode, struct ows **h)
+/* owsctl ends without closing what it opened when it is ended. */
+static int keep(int err, struct ows **h)
 {
-	int err = strcmp(instance, "nobody") ? __real_ows_open(instance, mode, h) : -ENOENT;
-
 	for (int i = 0; !err && i < HANDLES; i++)
 		if (!handles[i]) {
 			handles[i] = *h;
 			break;
 		}
 	return err;
+}
+
+int __real_ows_open(const char *instance, enum ows_mode mode, struct ows **h);
+int __wrap_ows_open(const char *instance, enum ows_mode mode, struct ows **h);
+int __wrap_ows_open(const char *instance, enum ows_mode mode, struct ows **h)
+{
+	return keep(strcmp(instance, "nobody") ? __real_ows_open(instance, mode, h) : -ENOENT, h);
+}
+
+int __real_ows_open_as(const char *instance, enum ows_mode mode, const char *name, struct ows **h);
+int __wrap_ows_open_as(const char *instance, enum ows_mode mode, const char *name, struct ows **h);
+int __wrap_ows_open_as(const char *instance, enum ows_mode mode, const char *name, struct ows **h)
+{
+	return keep(strcmp(instance, "nobody") ? __real_ows_open_as(instance, mode, name, h)
+	                                       : -ENOENT,
+	            h);
+}
+
+int __real_open_in(const char *place, const char *instance, enum ows_mode mode, const char *name,
+                   struct ows **h);
+int __wrap_open_in(const char *place, const char *instance, enum ows_mode mode, const char *name,
+                   struct ows **h);
+int __wrap_open_in(const char *place, const char *instance, enum ows_mode mode, const char *name,
+                   struct ows **h)
+{
+	return keep(__real_open_in(place, instance, mode, name, h), h);
 }
 
 void __real_ows_close(struct ows *h);

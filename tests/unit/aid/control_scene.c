@@ -32,7 +32,7 @@ static char directory[64];
 static int directory_fd = -1;
 static sem_t bell;
 static pthread_t engine;
-static bool engine_ends, reloads;
+static bool engine_ends, reloads, rings_news;
 static struct control_turn turns[OWS_GIVERS];
 static uint32_t serials[OWS_GIVERS]; /* of the givers that are inside: the test looks at them */
 static uint32_t joined, left;
@@ -55,6 +55,14 @@ static void take_reload(void)
 	__atomic_store_n(&reloads, false, __ATOMIC_RELEASE);
 }
 
+static void ring_news(void)
+{
+	if (!__atomic_load_n(&rings_news, __ATOMIC_ACQUIRE))
+		return;
+	control_news(control_room);
+	__atomic_store_n(&rings_news, false, __ATOMIC_RELEASE);
+}
+
 static void *run(void *arg)
 {
 	struct control_turn turn;
@@ -71,6 +79,7 @@ static void *run(void *arg)
 			control_done(control_room, &turn);
 		}
 		take_reload();
+		ring_news();
 	}
 	return NULL;
 }
@@ -109,7 +118,7 @@ void control_open(void)
 	sem_init(&bell, 0, 0);
 	joined = left = 0;
 	memset(serials, 0, sizeof(serials));
-	engine_ends = reloads = false;
+	engine_ends = reloads = rings_news = false;
 	err = control_create(&setup, &control_room, why, sizeof(why));
 	TEST_ASSERT_EQUAL_INT_MESSAGE(0, err, why);
 	TEST_ASSERT_EQUAL(0, pthread_create(&engine, NULL, run, NULL));
@@ -152,6 +161,16 @@ void control_reload(void)
 	while (__atomic_load_n(&reloads, __ATOMIC_ACQUIRE))
 		pause_ms(&left_ms, "the reload");
 	control_reloaded(control_room);
+}
+
+void control_ring_news(void)
+{
+	int64_t left_ms = CONTROL_SCENE_MS;
+
+	__atomic_store_n(&rings_news, true, __ATOMIC_RELEASE);
+	sem_post(&bell);
+	while (__atomic_load_n(&rings_news, __ATOMIC_ACQUIRE))
+		pause_ms(&left_ms, "the news");
 }
 
 unsigned control_joined(void)

@@ -26,6 +26,9 @@ void control_close(void);
 /* The whole of a reload, with the same configuration but for what the test has changed. */
 void control_reload(void);
 
+/* The engine's thread rings the news of the givers that wait for it. */
+void control_ring_news(void);
+
 /* How many givers the engine's thread has now, and how often one joined or left. */
 unsigned control_joined(void), control_left(void), control_inside(void);
 /* The turn in which the giver with that serial joined, or its memory of a reload. */

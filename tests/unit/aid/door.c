@@ -254,6 +254,13 @@ void door_reload(struct door *door, uint32_t generation, uint32_t start_id, cons
 	pthread_mutex_unlock(&door->lock);
 }
 
+void door_lie(struct door *door, enum door_lie lie)
+{
+	pthread_mutex_lock(&door->lock);
+	door->lie = lie;
+	pthread_mutex_unlock(&door->lock);
+}
+
 struct door_giver *door_giver(struct door *door, unsigned i)
 {
 	pthread_mutex_lock(&door->lock);

@@ -40,6 +40,7 @@ struct door_giver {
 	struct giver_memory memory;
 };
 
+/* The thread and the test share it: lie, givers and count are looked at with the lock held. */
 struct door {
 	struct shm_place place;
 	char file[64];
@@ -61,6 +62,8 @@ void door_close(struct door *door);
 /* Memories of another generation for all that are connected, with what they had, and welcomes. */
 void door_reload(struct door *door, uint32_t generation, uint32_t start_id, const uint8_t *types,
                  uint32_t count, uint16_t text_cap, const uint32_t *rows);
+/* Lie to whoever connects from now on. */
+void door_lie(struct door *door, enum door_lie lie);
 /* Giver i of those who were ever welcomed. */
 struct door_giver *door_giver(struct door *door, unsigned i);
 unsigned door_count(struct door *door);

@@ -125,10 +125,10 @@ static void test_a_giver_gets_a_sealed_memory_a_bell_and_news(void)
 	TEST_ASSERT_EQUAL_STRING("plc?", control_turn_of(h->serial)->who.name);
 	/* the news ring when it waits for them */
 	news = (struct pollfd){.fd = client.fds[2], .events = POLLIN};
-	control_news(control_room);
+	control_ring_news();
 	TEST_ASSERT_EQUAL(0, poll(&news, 1, 0));
 	((struct ows_giver_header *)(void *)client.memory)->waits = 1;
-	control_news(control_room);
+	control_ring_news();
 	TEST_ASSERT_EQUAL(1, poll(&news, 1, 0));
 	control_leave(&client);
 }

@@ -329,7 +329,7 @@ static void test_python_refuses_a_welcome_that_lies(void)
 	};
 
 	for (size_t i = 0; i < sizeof(lies) / sizeof(lies[0]); i++) {
-		in.door->lie = lies[i].lie;
+		door_lie(in.door, lies[i].lie);
 		expect("print(error(ows.Ows, name, True))", lies[i].error);
 	}
 }

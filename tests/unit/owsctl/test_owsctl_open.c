@@ -112,7 +112,7 @@ static void test_what_a_scan_reads_is_there_in_our_own_families(void)
 
 			TEST_ASSERT_NOT_NULL_MESSAGE(property, kind->property[i].name);
 			if (kind->property[i].output)
-				TEST_ASSERT_NOT_NULL(property_writer(property));
+				TEST_ASSERT_NOT_NULL(property_writer(family, property));
 			properties++;
 		}
 	}

@@ -49,7 +49,7 @@ static void test_of_what_nobody_can_know_nothing_is_said(void)
 		"/28.000000000001",
 		"/28.000000000001/",
 		"/kitchen/temprature",
-		"/FC.000000000001/temprature",
+		"/6F.000000000001/temprature",
 		"/simultaneous/temprature",
 		"gpiochip0/17",
 		"/28.0000/x",

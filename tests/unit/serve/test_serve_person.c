@@ -110,7 +110,7 @@ static void test_a_command_waits_until_owsd_has_taken_that_of_another_client(voi
 static void test_a_command_waits_while_owsd_has_not_welcomed_the_server(void)
 {
 	start();
-	in.door->lie = DOOR_SILENT;
+	door_lie(in.door, DOOR_SILENT);
 	TEST_ASSERT_EQUAL_INT(-EBUSY, set("10.0.0.1", "relay"));
 	TEST_ASSERT_EQUAL_INT(-EBUSY, set("10.0.0.1", "relay"));
 	end();
