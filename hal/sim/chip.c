@@ -194,7 +194,7 @@ static void do_slot(struct sim_chip *chip, int64_t t)
 	if (chip->op == WIRE_RESET) {
 		present = sim_wire_reset(wire(chip), overdrive, t);
 		set_bit(&chip->status, SIM_PPD, present);
-		set_bit(&chip->status, SIM_SD, !sim_wire_level(wire(chip)));
+		set_bit(&chip->status, SIM_SD, !sim_wire_level(wire(chip), t));
 		return;
 	}
 	slot_result(chip, chip->op_done,
@@ -430,7 +430,7 @@ uint8_t sim_chip_read(struct sim_chip *chip, int64_t t)
 		chip->port_at = (uint8_t)((at + 1) % 8);
 		return at < 6 ? chip->port[at / 2][at % 2] : chip->port[at - 3][0];
 	default:
-		set_bit(&chip->status, SIM_LL, sim_wire_level(wire(chip)));
+		set_bit(&chip->status, SIM_LL, sim_wire_level(wire(chip), t));
 		return (uint8_t)(chip->status | (chip->stuck != SIM_FREE ? SIM_1WB : 0));
 	}
 }

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "hal/owfs/path.h"
+#include "hal/sim/branch.h"
 #include "hal/sim/event.h"
 #include "hal/sim/families.h"
 #include "hal/sim/scenario.h"
@@ -19,8 +20,10 @@
 
 struct scenario {
 	struct sim_net *net;
-	unsigned channel; /* for the devices that follow */
-	bool adapter;     /* the line of the adapter was there */
+	unsigned channel;          /* for the devices that follow */
+	struct sim_slave *coupler; /* they are behind its branch; NULL: on the channel itself */
+	enum sim_branch_number branch;
+	bool adapter; /* the line of the adapter was there */
 	bool nomem;
 };
 
@@ -85,6 +88,7 @@ static void chip_line(struct scenario *scenario, struct words *words)
 		words_fail(words, err == -EEXIST ? "there is a chip at this address already"
 		                                 : "there are too many chips");
 	scenario->channel = 0;
+	scenario->coupler = NULL;
 	if (words_take(words, "times"))
 		scenario->net->chip[scenario->net->chips - 1].percent = (int)words_number(
 			words, "the 1-Wire times in percent", 95, 105);
@@ -101,6 +105,42 @@ static void channel_line(struct scenario *scenario, struct words *words)
 	}
 	scenario->channel = (unsigned)words_number(words, "the channel", 0,
 	                                           net->chip[net->chips - 1].channels - 1);
+	scenario->coupler = NULL;
+	words_end(words);
+}
+
+/* The channel of the last chip on which the slave is; -1: none. */
+static int channel_of(const struct sim_net *net, const struct sim_slave *slave)
+{
+	const struct sim_chip *chip = &net->chip[net->chips - 1];
+
+	for (unsigned channel = 0; channel < chip->channels; channel++) {
+		for (size_t i = 0; i < chip->wire[channel].count; i++) {
+			if (chip->wire[channel].slaves[i] == slave)
+				return (int)channel;
+		}
+	}
+	return -1;
+}
+
+static void branch_line(struct scenario *scenario, struct words *words)
+{
+	const struct sim_net *net = scenario->net;
+	struct sim_slave *coupler;
+
+	words_next(words);
+	coupler = sim_net_slave(net, words->word);
+	if (!coupler || !coupler->branches || channel_of(net, coupler) < 0) {
+		words_fail(words, "\"%s\": expected the name of a DS2409 of the last chip",
+		           words->word);
+		return;
+	}
+	words_next(words);
+	if (strcmp(words->word, "main") != 0 && strcmp(words->word, "aux") != 0)
+		words_fail(words, "\"%s\": expected main or aux", words->word);
+	scenario->coupler = coupler;
+	scenario->branch = strcmp(words->word, "aux") == 0 ? SIM_AUX : SIM_MAIN;
+	scenario->channel = (unsigned)channel_of(net, coupler);
 	words_end(words);
 }
 
@@ -175,6 +215,8 @@ static void add_device(struct scenario *scenario, const struct sim_family *famil
 		scenario->nomem = true;
 		return;
 	}
+	if (scenario->coupler)
+		sim_branch_put(slave, scenario->coupler, scenario->branch);
 	rom_print(rom, ROM_F_I, slave->name);
 	if (words_take(words, "as")) {
 		words_next(words);
@@ -273,6 +315,8 @@ static void parse_line(struct scenario *scenario, struct words *words)
 		chip_line(scenario, words);
 	else if (strcmp(words->word, "channel") == 0)
 		channel_line(scenario, words);
+	else if (strcmp(words->word, "branch") == 0)
+		branch_line(scenario, words);
 	else if (strcmp(words->word, "at") == 0)
 		at_line(scenario, words);
 	else if (family)
@@ -281,8 +325,8 @@ static void parse_line(struct scenario *scenario, struct words *words)
 		properties(slave, words);
 	else
 		words_fail(words,
-		           "\"%s\": expected i2c, chip, channel, at, a part such as DS18B20, "
-		           "or the name of a device",
+		           "\"%s\": expected i2c, chip, channel, branch, at, a part such as "
+		           "DS18B20, or the name of a device",
 		           words->word);
 }
 

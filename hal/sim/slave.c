@@ -383,13 +383,18 @@ static void sent_bit(struct sim_slave *slave, int64_t t)
 		sim_end(slave);
 }
 
+static bool is_function(const struct sim_function *function)
+{
+	return function->code || function->start || function->byte;
+}
+
 static void begin_function(struct sim_slave *slave, uint8_t code, int64_t t)
 {
 	const struct sim_function *function = slave->family->functions;
 
-	while (function && function->code && function->code != code)
+	while (function && is_function(function) && function->code != code)
 		function++;
-	if (!function || !function->code) {
+	if (!function || !is_function(function)) {
 		sim_end(slave);
 		return;
 	}

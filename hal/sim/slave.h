@@ -12,6 +12,7 @@
 
 #include "hal/sim/curve.h"
 
+struct sim_branch;
 struct sim_slave;
 
 /* A quantity that the slave measures or a pin that is driven from outside. */
@@ -36,7 +37,7 @@ struct sim_input {
  * bytes in taken, and an address of one or two of them in address.
  */
 struct sim_function {
-	uint8_t code, takes; /* code 0 ends a table */
+	uint8_t code, takes; /* zeros end a table */
 	/* All optional. */
 	void (*start)(struct sim_slave *slave, int64_t t); /* the code and its bytes are there */
 	void (*byte)(struct sim_slave *slave, uint8_t byte, int64_t t); /* one more byte came */
@@ -54,6 +55,7 @@ struct sim_family {
 	bool crc8;    /* the checksums of its functions have 8 bits, not 16 */
 	bool starves; /* fed by the wire, restarts if it works without strong pull-up */
 	const struct sim_function *functions; /* NULL: none */
+	const void *kind; /* what tells it from others with the same functions */
 
 	/* All optional. */
 	void (*create)(struct sim_slave *slave); /* contents of the memories as from the factory */
@@ -93,6 +95,9 @@ struct sim_slave {
 	bool parasite; /* fed by the wire */
 	bool strong;   /* the wire's strong pull-up is on */
 	struct sim_curve input[SIM_MAX_INPUTS];
+	struct sim_branch *branches; /* of a coupler (branch.h); NULL: it is none */
+	struct sim_branch *behind;   /* the branch it is on; NULL: on the wire itself */
+	struct sim_slave *next_behind;
 
 	/* One bit of what is sent is turned over in these function calls; 0: never. */
 	uint32_t corrupt_every;

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <stdlib.h>
 
+#include "hal/sim/branch.h"
 #include "hal/sim/wire.h"
 
 int sim_wire_add(struct sim_wire *wire, struct sim_slave *slave)
@@ -18,6 +19,7 @@ int sim_wire_add(struct sim_wire *wire, struct sim_slave *slave)
 		return -ENOMEM;
 	wire->active = slaves;
 	wire->slaves[wire->count++] = slave;
+	wire->coupled |= slave->branches != NULL;
 	return 0;
 }
 
@@ -30,21 +32,32 @@ void sim_wire_clear(struct sim_wire *wire)
 	*wire = (struct sim_wire){0};
 }
 
-static bool dead(const struct sim_wire *wire)
+/* No slot reaches anybody; a branch that is on shorts the wire with itself. */
+static bool dead(const struct sim_wire *wire, int64_t t)
 {
-	return wire->shorted || wire->unpowered;
+	bool shorted = wire->shorted;
+
+	for (size_t i = 0; wire->coupled && i < wire->count; i++) {
+		struct sim_slave *slave = wire->slaves[i];
+
+		if (!slave->branches)
+			continue;
+		sim_slave_advance(slave, t);
+		shorted |= sim_branch_connects(slave) && sim_branch_shorts(slave);
+	}
+	return shorted || wire->unpowered;
 }
 
 bool sim_wire_reset(struct sim_wire *wire, bool overdrive, int64_t t)
 {
 	wire->resets++;
 	wire->active_count = 0;
-	if (dead(wire))
+	if (dead(wire, t))
 		return false;
 	for (size_t i = 0; i < wire->count; i++) {
 		struct sim_slave *slave = wire->slaves[i];
 
-		if (!slave->plugged)
+		if (!sim_branch_connects(slave))
 			continue;
 		sim_slave_reset(slave, overdrive, t);
 		if (slave->layer != SIM_ROM_IDLE)
@@ -53,13 +66,25 @@ bool sim_wire_reset(struct sim_wire *wire, bool overdrive, int64_t t)
 	return wire->active_count > 0;
 }
 
+/* A coupler may have switched: those that hear the next slot. */
+static void regroup(struct sim_wire *wire)
+{
+	wire->active_count = 0;
+	for (size_t i = 0; i < wire->count; i++) {
+		struct sim_slave *slave = wire->slaves[i];
+
+		if (slave->layer != SIM_ROM_IDLE && sim_branch_connects(slave))
+			wire->active[wire->active_count++] = slave;
+	}
+}
+
 bool sim_wire_slot(struct sim_wire *wire, bool out, bool overdrive, int64_t t)
 {
-	bool line = out;
+	bool line = out, coupler = false;
 	size_t kept = 0;
 
 	wire->slots++;
-	if (dead(wire)) {
+	if (dead(wire, t)) {
 		wire->active_count = 0;
 		return false;
 	}
@@ -74,16 +99,19 @@ bool sim_wire_slot(struct sim_wire *wire, bool out, bool overdrive, int64_t t)
 		struct sim_slave *slave = wire->active[i];
 
 		sim_slave_slot(slave, line, t);
+		coupler |= slave->branches != NULL;
 		if (slave->layer != SIM_ROM_IDLE)
 			wire->active[kept++] = slave;
 	}
 	wire->active_count = kept;
+	if (coupler)
+		regroup(wire);
 	return line;
 }
 
-bool sim_wire_level(const struct sim_wire *wire)
+bool sim_wire_level(const struct sim_wire *wire, int64_t t)
 {
-	return !dead(wire);
+	return !dead(wire, t);
 }
 
 void sim_wire_strong(struct sim_wire *wire, bool on, int64_t t)
@@ -93,7 +121,9 @@ void sim_wire_strong(struct sim_wire *wire, bool on, int64_t t)
 	wire->strong = on;
 	for (size_t i = 0; i < wire->count; i++) {
 		if (wire->slaves[i]->plugged)
-			sim_slave_strong(wire->slaves[i], on && !dead(wire), t);
+			sim_slave_strong(
+				wire->slaves[i],
+				on && !dead(wire, t) && sim_branch_connects(wire->slaves[i]), t);
 	}
 }
 
@@ -103,7 +133,7 @@ void sim_wire_power(struct sim_wire *wire, bool on, int64_t t)
 		return;
 	wire->unpowered = !on;
 	for (size_t i = 0; on && i < wire->count; i++) {
-		if (wire->slaves[i]->plugged && wire->slaves[i]->parasite)
+		if (sim_branch_connects(wire->slaves[i]) && wire->slaves[i]->parasite)
 			sim_slave_brownout(wire->slaves[i], t);
 	}
 }
@@ -117,6 +147,8 @@ void sim_wire_plug(struct sim_wire *wire, struct sim_slave *slave, bool in, int6
 		sim_slave_advance(slave, t);
 		return;
 	}
-	slave->strong = wire->strong;
+	slave->strong = wire->strong && sim_branch_connects(slave);
 	sim_slave_power_on(slave, t);
+	if (slave->behind && !slave->behind->on)
+		slave->behind->event = true; /* its presence pulse */
 }

@@ -11,6 +11,7 @@
 struct sim_wire {
 	struct sim_slave **slaves, **active; /* both have room for all slaves */
 	size_t count, active_count;
+	bool coupled;           /* there are couplers: slaves may be behind a branch (branch.h) */
 	bool shorted;           /* a short to ground */
 	bool unpowered;         /* the port is switched off (DS2483, DS2484) */
 	bool strong;            /* the strong pull-up is on */
@@ -26,7 +27,7 @@ bool sim_wire_reset(struct sim_wire *wire, bool overdrive, int64_t t);
 /* One time slot in which the master writes out; returns the level as sampled. */
 bool sim_wire_slot(struct sim_wire *wire, bool out, bool overdrive, int64_t t);
 /* The level of the idle line. */
-bool sim_wire_level(const struct sim_wire *wire);
+bool sim_wire_level(const struct sim_wire *wire, int64_t t);
 void sim_wire_strong(struct sim_wire *wire, bool on, int64_t t);
 /* Switch the port's supply: slaves fed by the wire restart when it comes back. */
 void sim_wire_power(struct sim_wire *wire, bool on, int64_t t);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * DS18B20 (data sheet 19-7487), DS18S20 (19-5474), DS1822 (19-7486), DS1825 (19-7384), DS28EA00
- * (19-5085).
+ * (19-5085), and the clones of the DS18B20 by the kinds of the catalogue of Chris Petrich
+ * (github.com/cpetrich/counterfeit_DS18B20, whose letters name them; each takes the longest
+ * conversion seen). Not simulated: their errors and noise, and commands that no data sheet knows.
  */
 #include <errno.h>
 #include <math.h>
@@ -16,6 +18,9 @@ enum { READ_POWER = 0xB4 };
 #define FAMILY_S20 0x10
 #define FAMILY_1825 0x3B
 #define FAMILY_EA00 0x42
+
+/* A clone's busy slots begin as late as this. */
+#define LATE_NS NS_PER_MS
 
 /* tWR of the EEPROM, all data sheets: 10 ms at most. */
 #define COPY_NS (10 * NS_PER_MS)
@@ -42,7 +47,8 @@ static int64_t sim_thermometer_conversion(const struct sim_slave *slave)
 {
 	const struct sim_thermometer *s = slave->state;
 	/* tCONV: 93.75, 187.5, 375, 750 ms at most. */
-	int64_t full = (750 * NS_PER_MS) >> (12 - resolution(slave));
+	int64_t full = s->clone ? s->clone->ms[resolution(slave) - 9] * NS_PER_MS
+	                        : (750 * NS_PER_MS) >> (12 - resolution(slave));
 
 	return s->percent ? full / 100 * s->percent : full;
 }
@@ -68,10 +74,18 @@ static void recall(struct sim_slave *slave)
 	s->scratchpad[4] = is_s20(slave) ? 0xFF : config_byte(slave, s->eeprom[2]);
 }
 
+static const struct sim_clone *clone_of(const struct sim_family *family);
+
 static void create(struct sim_slave *slave)
 {
 	struct sim_thermometer *s = state(slave);
 
+	s->clone = clone_of(slave->family);
+	if (s->clone) {
+		memcpy(s->eeprom, s->clone->first + 2, 3);
+		s->fixed = s->clone->fixed;
+		return;
+	}
 	s->eeprom[0] = 75;
 	s->eeprom[1] = 70;
 	s->eeprom[2] = 0x7F;
@@ -84,12 +98,19 @@ static void power_on(struct sim_slave *slave, int64_t t)
 
 	if (slave->family->code == FAMILY_EA00)
 		sim_pins_start(slave, SIM_PIN_A, 2, t);
+	s->alarm = false;
+	if (s->clone) {
+		if (s->clone->keeps && slave->power_ons > 1)
+			return;
+		memcpy(s->scratchpad, s->clone->first, 8);
+		recall(slave);
+		return;
+	}
 	s->scratchpad[0] = (uint8_t)raw;
 	s->scratchpad[1] = (uint8_t)(raw >> 8);
 	s->scratchpad[5] = 0xFF;
 	s->scratchpad[6] = 0x0C;
 	s->scratchpad[7] = 0x10;
-	s->alarm = false;
 	recall(slave);
 }
 
@@ -118,8 +139,10 @@ static void latch_temperature(struct sim_slave *slave, int64_t t)
 		raw = whole * 2 + ((shifted & 15) >= 8);
 	} else {
 		raw &= ~((1 << (12 - resolution(slave))) - 1);
-		/* The data sheet reserves the byte; the genuine chip does this, clones do not. */
-		if (!s->fixed)
+		/* The data sheet reserves the byte; the genuine chip does this, few clones do. */
+		if (s->clone && s->clone->sixth == JOKER)
+			s->scratchpad[6] = (uint8_t)(32 - (raw & 15));
+		else if (s->clone ? s->clone->sixth == AS_GENUINE : !s->fixed)
 			s->scratchpad[6] = (uint8_t)(16 - (raw & 15));
 	}
 	s->scratchpad[0] = (uint8_t)raw;
@@ -132,29 +155,46 @@ static void worked(struct sim_slave *slave, int64_t t)
 {
 	struct sim_thermometer *s = state(slave);
 
-	if (s->copying)
-		memcpy(s->eeprom, s->scratchpad + 2, 3);
-	else
+	if (!s->copying)
 		latch_temperature(slave, t);
+	else if (!s->clone || s->clone->copies == 255 || s->copies++ < s->clone->copies)
+		memcpy(s->eeprom, s->scratchpad + 2, 3);
+}
+
+/* A clone that needs a supply line, and has none. */
+static bool is_dead(struct sim_slave *slave)
+{
+	bool dead = slave->parasite && state(slave)->clone && state(slave)->clone->no_parasite;
+
+	if (dead)
+		sim_end(slave);
+	return dead;
 }
 
 static void convert(struct sim_slave *slave, int64_t t)
 {
+	if (is_dead(slave))
+		return;
 	state(slave)->copying = false;
 	sim_work(slave, sim_thermometer_conversion(slave), t);
 }
 
 static void copy(struct sim_slave *slave, int64_t t)
 {
+	if (is_dead(slave))
+		return;
 	state(slave)->copying = true;
 	sim_work(slave, COPY_NS, t);
 }
 
 static bool bit(struct sim_slave *slave, int64_t t)
 {
-	(void)t;
+	const struct sim_clone *clone = state(slave)->clone;
+
 	if (slave->function->code == READ_POWER)
 		return !slave->parasite;
+	if (clone && (clone->never_polls || (clone->polls_late && t < slave->since + LATE_NS)))
+		return true;
 	return !slave->busy;
 }
 
@@ -174,7 +214,8 @@ static void recall_eeprom(struct sim_slave *slave, int64_t t)
 static void read_scratchpad(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	sim_send_crc8(slave, state(slave)->scratchpad, 8);
+	if (!is_dead(slave))
+		sim_send_crc8(slave, state(slave)->scratchpad, 8);
 }
 
 static void begin_write(struct sim_slave *slave, int64_t t)
@@ -185,11 +226,18 @@ static void begin_write(struct sim_slave *slave, int64_t t)
 
 static void write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
 {
+	struct sim_thermometer *s = state(slave);
+	bool overwrites = s->clone && s->clone->overwrites;
 	unsigned at = slave->address++;
 
 	(void)t;
-	state(slave)->scratchpad[at] = at == 4 ? config_byte(slave, byte) : byte;
-	if (at == (is_s20(slave) ? 3 : 4))
+	if (at <= 4)
+		s->scratchpad[at] = at == 4 ? config_byte(slave, byte) : byte;
+	else
+		s->scratchpad[at + 1] = byte;
+	if (at == 4 && overwrites)
+		s->scratchpad[6] = byte;
+	if (at == (is_s20(slave) ? 3 : overwrites ? 6 : 4))
 		sim_end(slave);
 }
 
@@ -271,3 +319,69 @@ const struct sim_family sim_ds1825 = THERMOMETER("DS1825", FAMILY_1825, PLAIN);
 const struct sim_family sim_ds28ea00 = THERMOMETER("DS28EA00", FAMILY_EA00, .inputs = ea00_inputs,
                                                    .functions = ea00_functions, .overdrive = true,
                                                    .advance = sim_pins_follow);
+
+/* --- The clones ------------------------------------------------------------------------------ */
+
+#define HALVED(full) \
+	{ \
+		(full) / 8, (full) / 4, (full) / 2, (full) \
+	}
+#define SAME(full) \
+	{ \
+		(full), (full), (full), (full) \
+	}
+#define FIRST(high, low, six, seven) \
+	{ \
+		0x50, 0x05, (high), (low), 0x7F, 0xFF, (six), (seven) \
+	}
+#define FIRST_25(five, six) \
+	{ \
+		0x90, 0x01, 0x55, 0x05, 0x7F, (five), (six), 0x66 \
+	}
+#define ENOUGH .copies = 255
+static const struct sim_clone clones[] = {
+	{&sim_ds18b20_a2, FIRST(0x12, 0x34, 0x0C, 0x10), HALVED(505), ENOUGH},
+	{&sim_ds18b20_a3, FIRST(0x7F, 0x80, 0x0C, 0x10), HALVED(621), .polls_late = true, ENOUGH},
+	{&sim_ds18b20_b1, FIRST(0x4B, 0x46, 0x0C, 0x10), HALVED(728), KEPT, .overwrites = true,
+         ENOUGH},
+	{&sim_ds18b20_b1v2, FIRST(0x4B, 0x46, 0x0C, 0x10), HALVED(650), ENOUGH},
+	{&sim_ds18b20_b2, FIRST(0x55, 0x00, 0x0C, 0x10), HALVED(697), KEPT, .overwrites = true,
+         ENOUGH},
+	{&sim_ds18b20_c, FIRST(0x55, 0x00, 0x0C, 0x10), SAME(30), KEPT, .fixed = true, .copies = 8},
+	/* a capacitor in place of an EEPROM */
+	{&sim_ds18b20_d1, FIRST_25(0x7E, 0x81), SAME(11), KEPT, .no_parasite = true, .keeps = true,
+         .copies = 0},
+	{&sim_ds18b20_d2, FIRST_25(0x7E, 0x81), SAME(523), KEPT, .no_parasite = true, ENOUGH},
+	{&sim_ds18b20_e, FIRST(0x4B, 0x46, 0x10, 0x10), SAME(25), ENOUGH},
+	{&sim_ds18b20_f, FIRST(0x55, 0x00, 0x0C, 0x10), SAME(27), KEPT, .fixed = true,
+         .never_polls = true, .copies = 0},
+	{&sim_ds18b20_g, FIRST(0x55, 0xAA, 0x0C, 0x10), HALVED(320), JOKER, .keeps = true, ENOUGH},
+	{&sim_ds18b20_h,
+         FIRST(0x55, 0xAA, 0x0C, 0x10),
+         {101, 141, 198, 279},
+         .keeps = true,
+         ENOUGH},
+};
+
+static const struct sim_clone *clone_of(const struct sim_family *family)
+{
+	for (size_t i = 0; i < sizeof(clones) / sizeof(clones[0]); i++) {
+		if (clones[i].family == family)
+			return &clones[i];
+	}
+	return NULL;
+}
+
+#define CLONE(part) THERMOMETER(part, 0x28, PLAIN)
+const struct sim_family sim_ds18b20_a2 = CLONE("DS18B20-A2");
+const struct sim_family sim_ds18b20_a3 = CLONE("DS18B20-A3");
+const struct sim_family sim_ds18b20_b1 = CLONE("DS18B20-B1");
+const struct sim_family sim_ds18b20_b1v2 = CLONE("DS18B20-B1v2");
+const struct sim_family sim_ds18b20_b2 = CLONE("DS18B20-B2");
+const struct sim_family sim_ds18b20_c = CLONE("DS18B20-C");
+const struct sim_family sim_ds18b20_d1 = CLONE("DS18B20-D1");
+const struct sim_family sim_ds18b20_d2 = CLONE("DS18B20-D2");
+const struct sim_family sim_ds18b20_e = CLONE("DS18B20-E");
+const struct sim_family sim_ds18b20_f = CLONE("DS18B20-F");
+const struct sim_family sim_ds18b20_g = CLONE("DS18B20-G");
+const struct sim_family sim_ds18b20_h = CLONE("DS18B20-H");

@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* DS2438 (data sheet, "Smart Battery Monitor"): temperature, two voltages, current, 64 bytes. */
+/*
+ * DS2438 and DS2437 (data sheets, "Smart Battery Monitor"): temperature, two voltages, current, 64
+ * bytes. The DS2437 has a clock with a crystal in place of the elapsed time meter, in the same
+ * bytes.
+ */
 #include <string.h>
 
 #include "hal/bus/time.h"
@@ -207,15 +211,13 @@ static const struct sim_input inputs[] = {
 	{0},
 };
 
-const struct sim_family sim_ds2438 = {
-	.name = "DS2438",
-	.code = 0x26,
-	.state_size = sizeof(struct ds2438),
-	.functions = functions,
-	.inputs = inputs,
-	.create = create,
-	.power_on = power_on,
-	.worked = worked,
-	.advance = advance,
-	.memory = memory,
-};
+#define MONITOR(part, family) \
+	{ \
+		.name = (part), .code = (family), .state_size = sizeof(struct ds2438), \
+		.functions = functions, .inputs = inputs, .create = create, .power_on = power_on, \
+		.worked = worked, .advance = advance, .memory = memory \
+	}
+
+const struct sim_family sim_ds2437 = MONITOR("DS2437", 0x1E);
+const struct sim_family sim_ds2438 = MONITOR("DS2438", 0x26);
+const struct sim_family sim_ds2438_a6 = MONITOR("DS2438-A6", 0xA6);

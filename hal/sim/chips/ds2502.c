@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * DS2502 (data sheet 19-5076): 1 kbit of EPROM in four pages, and eight status bytes. It is
- * programmed with 12 V, which nothing here gives: the flow chart of a write runs, no bit changes.
+ * DS2502 (data sheet 19-5076), and the same with contents from the factory, DS1982U: 1 kbit of
+ * EPROM in four pages, and eight status bytes. They are programmed with 12 V, which nothing here
+ * gives: the flow chart of a write runs, no bit changes.
  */
 #include <string.h>
 
@@ -84,12 +85,11 @@ static const struct sim_function functions[] = {
 	{0},
 };
 
-const struct sim_family sim_ds2502 = {
-	.name = "DS2502",
-	.code = 0x09,
-	.crc8 = true,
-	.state_size = sizeof(struct ds2502),
-	.functions = functions,
-	.create = create,
-	.memory = memory,
-};
+#define EPROM(part, family) \
+	{ \
+		.name = (part), .code = (family), .crc8 = true, .functions = functions, \
+		.state_size = sizeof(struct ds2502), .create = create, .memory = memory \
+	}
+
+const struct sim_family sim_ds2502 = EPROM("DS2502", 0x09);
+const struct sim_family sim_ds1982u = EPROM("DS1982U", 0x89);

@@ -4,12 +4,18 @@
 
 #include "hal/sim/chips/scratchpad.h"
 
-/* E/S register: the ending offset in the lower bits, and these. */
-enum { PARTIAL = 0x20, AUTHORIZED = 0x80 };
+/* E/S register: the ending offset in the lower bits, above them a flag, and these. */
+enum { OVERFLOW = 0x40, AUTHORIZED = 0x80 };
 
 static struct sim_scratchpad *state(struct sim_slave *slave)
 {
 	return sim_state(slave, sim_scratchpad);
+}
+
+/* The flag of a byte that came in part. */
+static uint8_t partial(const struct sim_scratchpad *s)
+{
+	return s->kind->page > 32 ? 0x40 : 0x20;
 }
 
 void sim_scratchpad_power_on(struct sim_slave *slave, int64_t t)
@@ -19,7 +25,7 @@ void sim_scratchpad_power_on(struct sim_slave *slave, int64_t t)
 	(void)t;
 	memset(s->pad, 0xFF, sizeof(s->pad));
 	s->target = 0;
-	s->status = PARTIAL | (s->kind->page - 1);
+	s->status = (uint8_t)(partial(s) | (s->kind->page - 1));
 }
 
 void sim_scratchpad_worked(struct sim_slave *slave, int64_t t)
@@ -38,12 +44,12 @@ void sim_scratchpad_worked(struct sim_slave *slave, int64_t t)
 	s->status |= AUTHORIZED;
 }
 
-/* During the copy the line stays high; then 0 and 1 follow in turns, as AAh. */
+/* During the copy the line stays high; then 0 and 1 follow in turns, as AAh, or only 0. */
 bool sim_scratchpad_bit(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	if (slave->busy)
-		return true;
+	if (slave->busy || state(slave)->kind->plain)
+		return slave->busy;
 	slave->got ^= 1;
 	return slave->got & 1;
 }
@@ -54,7 +60,7 @@ void sim_scratchpad_target(struct sim_slave *slave, int64_t t)
 
 	(void)t;
 	s->target = slave->address;
-	s->status = PARTIAL | s->target % s->kind->page;
+	s->status = (uint8_t)(partial(s) | s->target % s->kind->page);
 	s->bad_sequence = false;
 	if (s->target >= s->kind->writable)
 		sim_end(slave);
@@ -66,32 +72,40 @@ void sim_scratchpad_write(struct sim_slave *slave, uint8_t byte, int64_t t)
 	unsigned at = slave->address++ % s->kind->page;
 
 	(void)t;
+	if (at < (s->status & (s->kind->page - 1u))) {
+		s->status |= OVERFLOW;
+		sim_end(slave);
+		return;
+	}
 	s->pad[at] = byte;
 	s->status = (uint8_t)at;
-	if (at == s->kind->page - 1u)
+	if (at == s->kind->page - 1u && !s->kind->plain)
 		sim_send_checked(slave, NULL, 0);
 }
 
-/* Send target, E/S, the bytes from the target's offset to the ending one, and the checksum. */
+/* Send target, E/S, the bytes from the target's offset to the ending one, and a checksum. */
 void sim_scratchpad_read(struct sim_slave *slave, int64_t t)
 {
 	struct sim_scratchpad *s = state(slave);
 	unsigned page = s->kind->page, first = s->target % page, n = 3;
 	unsigned last = s->kind->to_end ? page - 1 : s->status % page;
-	uint8_t out[3 + 32] = {(uint8_t)s->target, (uint8_t)(s->target >> 8), s->status};
+	uint8_t out[3 + 64] = {(uint8_t)s->target, (uint8_t)(s->target >> 8), s->status};
 
 	(void)t;
 	for (unsigned i = first; i <= last; i++)
 		out[n++] = s->pad[i];
-	sim_send_checked(slave, out, n);
+	if (s->kind->plain)
+		sim_send(slave, out, n);
+	else
+		sim_send_checked(slave, out, n);
 }
 
 void sim_scratchpad_copy(struct sim_slave *slave, int64_t t)
 {
 	struct sim_scratchpad *s = state(slave);
 
-	if (slave->address != s->target || slave->taken[2] != s->status || (s->status & PARTIAL) ||
-	    (s->kind->sequence && s->bad_sequence)) {
+	if (slave->address != s->target || slave->taken[2] != s->status ||
+	    (s->status & partial(s)) || (s->kind->sequence && s->bad_sequence)) {
 		sim_end(slave);
 		return;
 	}

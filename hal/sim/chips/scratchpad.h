@@ -1,30 +1,32 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The memories that are written through a scratchpad: target address, ending offset, a copy that
- * needs both as its key. DS2431, DS2433, DS28EC20 and DS2423 differ in sizes, codes and times.
+ * needs both as its key. The chips differ in sizes, codes, checksums and times.
  *
  * Room hal/sim/chips: simulated chips, from their data sheets. Uses hal/sim, hal/bus.
  */
 #ifndef HAL_SIM_CHIPS_SCRATCHPAD_H
 #define HAL_SIM_CHIPS_SCRATCHPAD_H
 
-#include "hal/sim/slave.h"
+#include "hal/sim/pins.h"
 
 struct sim_scratchpad_kind {
 	uint16_t size;     /* of what can be read */
 	uint16_t writable; /* of it, what can be written */
-	uint8_t page;      /* bytes of the scratchpad: 8 or 32 */
+	uint8_t page;      /* bytes of the scratchpad: 8, 32 or 64 */
 	int64_t copy_ns;
 	bool whole;    /* a copy takes the whole scratchpad */
 	bool to_end;   /* the scratchpad is read to its end, whatever was written */
 	bool sequence; /* a read of the memory before the copy forbids it */
+	bool plain;    /* no checksums, an overflow flag, and zeros after the copy */
 };
 
-#define SIM_SCRATCHPAD_MEMORY 0xA40
+#define SIM_SCRATCHPAD_MEMORY 0x8000
 struct sim_scratchpad {
+	struct sim_pins pins; /* first; of a memory with pins */
 	const struct sim_scratchpad_kind *kind;
 	uint8_t memory[SIM_SCRATCHPAD_MEMORY];
-	uint8_t pad[32];
+	uint8_t pad[64];
 	uint16_t target;
 	uint8_t status; /* E/S */
 	bool bad_sequence;

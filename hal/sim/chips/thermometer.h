@@ -9,13 +9,29 @@
 
 enum { SIM_TEMPERATURE, SIM_PIN_A, SIM_PIN_B }; /* inputs */
 
+/* What a kind of clone of the DS18B20 does unlike it. */
+struct sim_clone {
+	const struct sim_family *family;
+	uint8_t first[8];                       /* the scratchpad after power-on */
+	uint16_t ms[4];                         /* a conversion of 9 to 12 bits */
+	enum { AS_GENUINE, KEPT, JOKER } sixth; /* byte 6 after a conversion */
+	bool fixed;                             /* to 12 bits */
+	bool polls_late, never_polls;           /* its busy slots */
+	bool overwrites;  /* the byte after TL gets into byte 6, two more in 6, 7 */
+	bool no_parasite; /* it does not work without a supply line */
+	bool keeps;       /* a short loss of power changes nothing */
+	uint8_t copies;   /* its EEPROM endures; 255: enough */
+};
+
 struct sim_thermometer {
-	struct sim_pins pins;  /* first; DS28EA00 */
-	uint8_t scratchpad[8]; /* temperature, TH, TL, configuration, three more */
-	uint8_t eeprom[3];     /* TH, TL, configuration */
-	uint8_t address;       /* DS1825: AD0..AD3 */
-	bool fixed;            /* a clone: stays at 12 bits, whatever is written */
-	int percent;           /* of the conversion time by the data sheet; 0 means 100 */
+	struct sim_pins pins;          /* first; DS28EA00 */
+	const struct sim_clone *clone; /* NULL: genuine */
+	uint8_t copies;                /* of the EEPROM, in a clone */
+	uint8_t scratchpad[8];         /* temperature, TH, TL, configuration, three more */
+	uint8_t eeprom[3];             /* TH, TL, configuration */
+	uint8_t address;               /* DS1825: AD0..AD3 */
+	bool fixed;                    /* a clone: stays at 12 bits, whatever is written */
+	int percent;                   /* of the conversion time by the data sheet; 0 means 100 */
 	bool alarm, copying;
 };
 

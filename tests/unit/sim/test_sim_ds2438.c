@@ -123,6 +123,15 @@ static void test_the_elapsed_time_meter_counts_seconds_from_what_was_written(voi
 	TEST_ASSERT_EQUAL_UINT(256 + 7, out[0] | out[1] << 8);
 }
 
+static void test_a_ds2437_answers_the_same_commands_with_its_own_family_code(void)
+{
+	hand_clear(&hand);
+	slave = hand_plug(&hand, &sim_ds2437, 1);
+	TEST_ASSERT_EQUAL_HEX8(0x1E, slave->rom[0]);
+	convert(0x44, TEMPERATURE, 25.0625);
+	TEST_ASSERT_EQUAL_HEX16(0x1910, out[1] | out[2] << 8);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -132,5 +141,6 @@ int main(void)
 	RUN_TEST(test_a_busy_part_says_so_in_its_status);
 	RUN_TEST(test_pages_are_kept_when_they_were_copied);
 	RUN_TEST(test_the_elapsed_time_meter_counts_seconds_from_what_was_written);
+	RUN_TEST(test_a_ds2437_answers_the_same_commands_with_its_own_family_code);
 	return UNITY_END();
 }

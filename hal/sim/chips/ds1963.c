@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * DS1963L and DS1963S (data sheet 021704): memories with a battery that count how often a page is
+ * written. The secrets of a DS1963S cannot be written here, and it computes no SHA-1. The four
+ * bytes of a DS1963L that show a break-in, 55h, are from published drivers.
+ */
+#include <string.h>
+
+#include "hal/sim/chips/scratchpad.h"
+#include "hal/sim/families.h"
+
+enum { PAGES = 16, SECRETS = 8 };
+/* Counters of the pages from 8 on, of the secrets, of the random numbers. */
+enum { HIDDEN = 0x200, COUNTERS = 0x260, SECRET_COUNTERS = 0x280, END = 0x2B0 };
+
+struct ds1963 {
+	struct sim_scratchpad memory; /* first */
+	uint32_t count[PAGES];
+	bool hide;    /* the HIDE flag of a DS1963S */
+	bool copying; /* the work under way is a copy */
+};
+
+/* tPROG of a RAM: 32 us. */
+static const struct sim_scratchpad_kind ds1963l = {
+	.size = 512, .writable = 512, .page = 32, .copy_ns = 32000, .to_end = true};
+static const struct sim_scratchpad_kind ds1963s = {
+	.size = END, .writable = 512, .page = 32, .copy_ns = 32000, .to_end = true};
+
+static struct ds1963 *state(struct sim_slave *slave)
+{
+	return sim_state(slave, ds1963);
+}
+
+static bool has_secrets(const struct sim_slave *slave)
+{
+	return slave->family->code == 0x18;
+}
+
+static void create(struct sim_slave *slave)
+{
+	struct sim_scratchpad *s = &state(slave)->memory;
+
+	s->kind = has_secrets(slave) ? &ds1963s : &ds1963l;
+	memset(s->memory + HIDDEN, 0xFF, COUNTERS - HIDDEN);
+}
+
+static void power_on(struct sim_slave *slave, int64_t t)
+{
+	sim_scratchpad_power_on(slave, t);
+	state(slave)->hide = has_secrets(slave);
+}
+
+/* The number of the first page with a counter. */
+static unsigned first_counted(const struct sim_slave *slave)
+{
+	return has_secrets(slave) ? 8 : 12;
+}
+
+static void worked(struct sim_slave *slave, int64_t t)
+{
+	struct ds1963 *s = state(slave);
+	unsigned page = s->memory.target / 32u;
+
+	if (!s->copying)
+		return;
+	sim_scratchpad_worked(slave, t);
+	if (page >= first_counted(slave) && s->count[page] < UINT32_MAX)
+		s->count[page]++;
+}
+
+static void put_count(uint8_t *to, uint32_t count)
+{
+	for (unsigned i = 0; i < 4; i++)
+		to[i] = (uint8_t)(count >> (8 * i));
+}
+
+/* Send the rest of the page, its counter, and four bytes more; then the checksum. */
+static void send_page(struct sim_slave *slave, int64_t t)
+{
+	const struct ds1963 *s = state(slave);
+	unsigned page = slave->address / 32u, n = 0;
+	uint8_t out[32 + 4 + 4];
+
+	(void)t;
+	if (page >= PAGES) {
+		sim_end(slave);
+		return;
+	}
+	do
+		out[n++] = s->memory.memory[slave->address++];
+	while (slave->address % 32);
+	put_count(out + n, page < first_counted(slave) ? UINT32_MAX : s->count[page]);
+	if (has_secrets(slave))
+		memcpy(out + n + 4, s->memory.memory + SECRET_COUNTERS + page % SECRETS * 4, 4);
+	else
+		memset(out + n + 4, 0x55, 4);
+	sim_send_checked(slave, out, n + 8);
+}
+
+/* Compute for 1 ms; then 0 and 1 in turns. The result, in the scratchpad, is hidden. */
+static void authenticate(struct sim_slave *slave, int64_t t)
+{
+	state(slave)->hide = true;
+	state(slave)->copying = false;
+	slave->got = 1;
+	sim_work(slave, 1000000, t);
+}
+
+static void erase(struct sim_slave *slave, int64_t t)
+{
+	struct ds1963 *s = state(slave);
+
+	s->hide = s->copying = false;
+	memset(s->memory.pad, 0xFF, sizeof(s->memory.pad));
+	slave->got = 1;
+	sim_work(slave, 32000, t);
+}
+
+static void write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	if (state(slave)->hide)
+		sim_end(slave);
+	else
+		sim_scratchpad_write(slave, byte, t);
+}
+
+static void read_scratchpad(struct sim_slave *slave, int64_t t)
+{
+	uint8_t pad[32];
+	struct ds1963 *s = state(slave);
+
+	memcpy(pad, s->memory.pad, sizeof(pad));
+	if (s->hide)
+		memset(s->memory.pad, 0xFF, sizeof(pad));
+	sim_scratchpad_read(slave, t);
+	memcpy(s->memory.pad, pad, sizeof(pad));
+}
+
+static void copy(struct sim_slave *slave, int64_t t)
+{
+	state(slave)->copying = true;
+	if (state(slave)->hide)
+		sim_end(slave);
+	else
+		sim_scratchpad_copy(slave, t);
+}
+
+static void dump(struct sim_slave *slave, int64_t t)
+{
+	struct ds1963 *s = state(slave);
+
+	for (unsigned i = 0; i < PAGES - 8 && has_secrets(slave); i++)
+		put_count(s->memory.memory + COUNTERS + 4 * i, s->count[8 + i]);
+	sim_scratchpad_dump(slave, t);
+}
+
+static uint8_t *memory(struct sim_slave *slave, size_t *size)
+{
+	*size = 512;
+	return state(slave)->memory.memory;
+}
+
+static const struct sim_function ds1963l_functions[] = {
+	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = write_scratchpad},
+	{.code = 0xAA, .start = read_scratchpad},
+	{.code = 0x5A, .takes = 3, .start = copy},
+	{.code = 0xF0, .takes = 2, .start = dump, .next = dump},
+	/* Read Memory and Counter */
+	{.code = 0xA5, .takes = 2, .start = send_page, .next = send_page},
+	{0},
+};
+
+static const struct sim_function ds1963s_functions[] = {
+	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = write_scratchpad},
+	{.code = 0xAA, .start = read_scratchpad},
+	{.code = 0x55, .takes = 3, .start = copy},
+	{.code = 0xF0, .takes = 2, .start = dump, .next = dump},
+	/* Read Authenticated Page, Erase Scratchpad */
+	{.code = 0xA5, .takes = 2, .start = send_page, .next = authenticate},
+	{.code = 0xC3, .takes = 2, .start = erase},
+	{0},
+};
+
+#define COUNTED(part, family, commands) \
+	{ \
+		.name = (part), .code = (family), .overdrive = true, .resume = (family) == 0x18, \
+		.state_size = sizeof(struct ds1963), .functions = (commands), .create = create, \
+		.power_on = power_on, .bit = sim_scratchpad_bit, .worked = worked, \
+		.memory = memory \
+	}
+
+const struct sim_family sim_ds1963l = COUNTED("DS1963L", 0x1A, ds1963l_functions);
+const struct sim_family sim_ds1963s = COUNTED("DS1963S", 0x18, ds1963s_functions);

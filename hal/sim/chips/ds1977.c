@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * DS1977 (data sheet, "Password-Protected 32KB EEPROM iButton"): EEPROM in pages of 64 bytes, which
+ * a password for reading and one for all can protect. The wire feeds it: reading and writing need a
+ * strong pull-up. A read ends with its page, where the chip would go on after another pull-up.
+ */
+#include <string.h>
+
+#include "hal/bus/time.h"
+#include "hal/sim/chips/scratchpad.h"
+#include "hal/sim/families.h"
+
+enum { READ_PASSWORD = 0x7FC0, FULL_PASSWORD = 0x7FC8, PASSWORD_CONTROL = 0x7FD0 };
+enum { PAGE = 64, LENGTH = 8, ENABLED = 0xAA, VERSION = 0x01 };
+enum { COPY = 0x99, READ = 0x69, VERIFY = 0xC3 };
+
+/* tSPUR: 5 ms to read a page or to compare, 10 ms to write. */
+#define READ_NS (5 * NS_PER_MS)
+
+struct ds1977 {
+	struct sim_scratchpad memory; /* first */
+	uint8_t password[LENGTH];
+	uint8_t count; /* bytes of the password that came */
+	bool copying;  /* the work under way is a copy */
+	uint16_t crc;  /* of command and address, without the password */
+};
+
+static const struct sim_scratchpad_kind kind = {
+	.size = PASSWORD_CONTROL + 1,
+	.writable = PASSWORD_CONTROL + 1,
+	.page = PAGE,
+	.copy_ns = 10 * NS_PER_MS,
+	.to_end = true,
+};
+
+static struct ds1977 *state(struct sim_slave *slave)
+{
+	return sim_state(slave, ds1977);
+}
+
+static void create(struct sim_slave *slave)
+{
+	state(slave)->memory.kind = &kind;
+}
+
+/* Does the password that came equal the one at this address? */
+static bool equals(struct sim_slave *slave, unsigned at)
+{
+	struct ds1977 *s = state(slave);
+
+	return memcmp(s->password, s->memory.memory + at, LENGTH) == 0;
+}
+
+static bool accepted(struct sim_slave *slave)
+{
+	if (slave->function->code == VERIFY)
+		return (slave->address == READ_PASSWORD || slave->address == FULL_PASSWORD) &&
+		       equals(slave, slave->address);
+	if (state(slave)->memory.memory[PASSWORD_CONTROL] != ENABLED)
+		return true;
+	return equals(slave, FULL_PASSWORD) ||
+	       (slave->function->code == READ && equals(slave, READ_PASSWORD));
+}
+
+static void begin(struct sim_slave *slave, int64_t t)
+{
+	struct ds1977 *s = state(slave);
+
+	(void)t;
+	s->count = 0;
+	s->crc = slave->crc;
+}
+
+static void take_password(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	struct ds1977 *s = state(slave);
+
+	s->password[s->count++] = byte;
+	if (s->count < LENGTH)
+		return;
+	slave->crc = s->crc;
+	s->copying = slave->function->code == COPY;
+	if (!accepted(slave)) {
+		sim_end(slave);
+	} else if (s->copying) {
+		sim_scratchpad_copy(slave, t);
+	} else {
+		slave->got = 1;
+		sim_work(slave, READ_NS, t);
+	}
+}
+
+/* Send the byte at the address; one of a password reads FFh. At the end of a page the checksum. */
+static void send(struct sim_slave *slave, int64_t t)
+{
+	struct ds1977 *s = state(slave);
+	uint8_t byte = 0xFF;
+
+	(void)t;
+	if (slave->address >= kind.size ||
+	    (slave->address % PAGE == 0 && slave->mode == SIM_SEND)) {
+		sim_end(slave);
+		return;
+	}
+	if (slave->address < READ_PASSWORD || slave->address >= PASSWORD_CONTROL)
+		byte = s->memory.memory[slave->address];
+	if (++slave->address % PAGE == 0)
+		sim_send_checked(slave, &byte, 1);
+	else
+		sim_send_byte(slave, byte);
+}
+
+static void worked(struct sim_slave *slave, int64_t t)
+{
+	if (state(slave)->copying)
+		sim_scratchpad_worked(slave, t);
+	else if (slave->function && slave->function->code == READ)
+		send(slave, t);
+}
+
+static void send_version(struct sim_slave *slave, int64_t t)
+{
+	static const uint8_t version[2] = {VERSION, VERSION};
+
+	(void)t;
+	if (slave->address == 0)
+		sim_send(slave, version, sizeof(version));
+	else
+		sim_end(slave);
+}
+
+static const struct sim_function functions[] = {
+	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = sim_scratchpad_write},
+	{.code = 0xAA, .start = sim_scratchpad_read},
+	{.code = COPY, .takes = 3, .start = begin, .byte = take_password},
+	{.code = READ, .takes = 2, .start = begin, .byte = take_password, .next = send},
+	{.code = VERIFY, .takes = 2, .start = begin, .byte = take_password},
+	{.code = 0xCC, .takes = 2, .start = send_version},
+	{0},
+};
+
+const struct sim_family sim_ds1977 = {
+	.name = "DS1977",
+	.code = 0x37,
+	.overdrive = true,
+	.resume = true,
+	.starves = true,
+	.state_size = sizeof(struct ds1977),
+	.functions = functions,
+	.create = create,
+	.power_on = sim_scratchpad_power_on,
+	.bit = sim_scratchpad_bit,
+	.worked = worked,
+	.memory = sim_scratchpad_memory,
+};

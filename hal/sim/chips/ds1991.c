@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * DS1991 (data sheet 012207) and DS1425: three subkeys, each of which a password protects, and a
+ * scratchpad. A subkey is an identifier, a password, and 48 bytes of data.
+ */
+#include <string.h>
+
+#include "hal/sim/families.h"
+
+enum { SUBKEYS = 3, AREA = 64, FIELD = 8, PASSWORD = FIELD, DATA = 2 * FIELD, BLOCKS = 9 };
+enum { WRITE_PASSWORD = 0x5A, WRITE_SUBKEY = 0x99, READ_SUBKEY = 0x66 };
+
+struct ds1991 {
+	uint8_t subkey[SUBKEYS][AREA], scratchpad[AREA];
+	uint8_t in[3 * FIELD]; /* what came after the address */
+	unsigned count;
+	uint32_t noise; /* what a wrong password reads */
+};
+
+/* Block selector codes: all 64 bytes, identifier, password, six parts of the data. */
+static const uint8_t selector[BLOCKS][FIELD] = {
+	{0x56, 0x56, 0x7F, 0x51, 0x57, 0x5D, 0x5A, 0x7F},
+	{0x9A, 0x9A, 0xB3, 0x9D, 0x64, 0x6E, 0x69, 0x4C},
+	{0x9A, 0x9A, 0x4C, 0x62, 0x9B, 0x91, 0x69, 0x4C},
+	{0x9A, 0x65, 0xB3, 0x62, 0x9B, 0x6E, 0x96, 0x4C},
+	{0x6A, 0x6A, 0x43, 0x6D, 0x6B, 0x61, 0x66, 0x43},
+	{0x95, 0x95, 0xBC, 0x92, 0x94, 0x9E, 0x99, 0xBC},
+	{0x65, 0x9A, 0x4C, 0x9D, 0x64, 0x91, 0x69, 0xB3},
+	{0x65, 0x65, 0xB3, 0x9D, 0x64, 0x6E, 0x96, 0xB3},
+	{0x65, 0x65, 0x4C, 0x62, 0x9B, 0x91, 0x96, 0xB3},
+};
+
+static struct ds1991 *state(struct sim_slave *slave)
+{
+	return sim_state(slave, ds1991);
+}
+
+/* Take the address: two bits for the area, six in it, then its complement. false: deaf. */
+static bool take_address(struct sim_slave *slave, bool scratchpad, unsigned least, unsigned most)
+{
+	unsigned at = slave->taken[0] % AREA;
+
+	state(slave)->count = 0;
+	slave->address = slave->taken[0];
+	if ((slave->taken[0] ^ slave->taken[1]) == 0xFF && at >= least && at <= most &&
+	    (slave->taken[0] / AREA == SUBKEYS) == scratchpad)
+		return true;
+	sim_end(slave);
+	return false;
+}
+
+static uint8_t *subkey(struct sim_slave *slave)
+{
+	return state(slave)->subkey[slave->taken[0] / AREA];
+}
+
+static void begin_scratchpad(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	take_address(slave, true, 0, AREA - 1);
+}
+
+static void write_scratchpad(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	(void)t;
+	state(slave)->scratchpad[slave->address % AREA] = byte;
+	if (++slave->address % AREA == 0)
+		sim_end(slave);
+}
+
+static void read_scratchpad(struct sim_slave *slave, int64_t t)
+{
+	unsigned at = slave->taken[0] % AREA;
+
+	(void)t;
+	if (take_address(slave, true, 0, AREA - 1))
+		sim_send(slave, state(slave)->scratchpad + at, AREA - at);
+}
+
+static void begin_copy(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	take_address(slave, false, 0, 0);
+}
+
+/* Keep a byte that came; true: there are n. */
+static bool take(struct sim_slave *slave, uint8_t byte, unsigned n)
+{
+	struct ds1991 *s = state(slave);
+
+	s->in[s->count++] = byte;
+	return s->count == n;
+}
+
+/* After selector and password: copy the block. */
+static void copy(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	struct ds1991 *s = state(slave);
+	unsigned block = 0;
+
+	(void)t;
+	if (!take(slave, byte, 2 * FIELD))
+		return;
+	sim_end(slave);
+	while (block < BLOCKS && memcmp(selector[block], s->in, FIELD) != 0)
+		block++;
+	if (block == BLOCKS || memcmp(subkey(slave) + PASSWORD, s->in + FIELD, FIELD) != 0)
+		return;
+	if (block == 0)
+		memcpy(subkey(slave), s->scratchpad, AREA);
+	else
+		memcpy(subkey(slave) + (block - 1) * FIELD, s->scratchpad + (block - 1) * FIELD,
+		       FIELD);
+}
+
+static void receive(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	sim_receive(slave);
+}
+
+/* All that needs a password begins with the identifier. */
+static void send_identifier(struct sim_slave *slave, int64_t t)
+{
+	bool whole = slave->function->code == WRITE_PASSWORD;
+
+	(void)t;
+	if (take_address(slave, false, whole ? 0 : DATA, whole ? 0 : AREA - 1))
+		sim_send(slave, subkey(slave), FIELD);
+}
+
+/* The identifier comes back, then a new one and a new password: the data are gone. */
+static void write_password(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	struct ds1991 *s = state(slave);
+
+	(void)t;
+	if (take(slave, byte, 3 * FIELD)) {
+		memcpy(subkey(slave), s->in + FIELD, 2 * FIELD);
+		memset(subkey(slave) + DATA, 0, AREA - DATA);
+		sim_end(slave);
+	} else if (s->count == FIELD && memcmp(s->in, subkey(slave), FIELD) != 0) {
+		sim_end(slave);
+	}
+}
+
+static void write_subkey(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	struct ds1991 *s = state(slave);
+
+	(void)t;
+	if (s->count == FIELD) {
+		subkey(slave)[slave->address % AREA] = byte;
+		if (++slave->address % AREA == 0)
+			sim_end(slave);
+	} else if (take(slave, byte, FIELD) &&
+	           memcmp(s->in, subkey(slave) + PASSWORD, FIELD) != 0) {
+		sim_end(slave);
+	}
+}
+
+/* The identifier was sent: receive the password. The data were sent: ones. */
+static void next_of_read(struct sim_slave *slave, int64_t t)
+{
+	if (state(slave)->count == 0)
+		receive(slave, t);
+}
+
+/* After the password send the data; random bytes if it is wrong. */
+static void read_subkey(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	struct ds1991 *s = state(slave);
+	unsigned at = slave->address % AREA;
+	uint8_t out[AREA];
+
+	(void)t;
+	if (!take(slave, byte, FIELD))
+		return;
+	memcpy(out, subkey(slave), AREA);
+	for (unsigned i = 0; memcmp(s->in, subkey(slave) + PASSWORD, FIELD) && i < AREA; i++) {
+		s->noise = s->noise * 1664525 + 1013904223;
+		out[i] = (uint8_t)(s->noise >> 24);
+	}
+	sim_send(slave, out + at, AREA - at);
+}
+
+static uint8_t *memory(struct sim_slave *slave, size_t *size)
+{
+	*size = SUBKEYS * AREA;
+	return state(slave)->subkey[0];
+}
+
+static const struct sim_function functions[] = {
+	{.code = 0x96, .takes = 2, .start = begin_scratchpad, .byte = write_scratchpad},
+	{.code = 0x69, .takes = 2, .start = read_scratchpad},
+	{.code = 0x3C, .takes = 2, .start = begin_copy, .byte = copy},
+	{.code = WRITE_PASSWORD,
+         .takes = 2,
+         .start = send_identifier,
+         .byte = write_password,
+         .next = receive},
+	{.code = WRITE_SUBKEY,
+         .takes = 2,
+         .start = send_identifier,
+         .byte = write_subkey,
+         .next = receive},
+	{.code = READ_SUBKEY,
+         .takes = 2,
+         .start = send_identifier,
+         .byte = read_subkey,
+         .next = next_of_read},
+	{0},
+};
+
+#define MULTIKEY(part, family) \
+	{ \
+		.name = (part), .code = (family), .functions = functions, \
+		.state_size = sizeof(struct ds1991), .memory = memory \
+	}
+
+const struct sim_family sim_ds1991 = MULTIKEY("DS1991", 0x02);
+const struct sim_family sim_ds1425 = MULTIKEY("DS1425", 0x82);

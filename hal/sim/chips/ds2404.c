@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * DS2404 (data sheet 020998) and DS1994: RAM with a battery, clock, interval timer, cycle counter,
+ * and an alarm for each. A cycle is a power-on. Neither interrupt pulses nor programmable
+ * expiration; the interval timer in automatic mode always runs, as where the wire is always high.
+ */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/sim/chips/scratchpad.h"
+#include "hal/sim/families.h"
+
+enum { STATUS = 0x200, CONTROL, CLOCK, INTERVAL = 0x207, CYCLE = 0x20C, ALARMS = 0x210 };
+enum { END = 0x21E, COUNTERS = 3 };
+/* Status register: three flags; above them, their enables: 0 enables. */
+enum { FLAGS = 0x07, ENABLES = 0x38 };
+/* Control register. */
+enum { WRITE_PROTECTED = 0x07, OSC = 0x10, AUTO = 0x20, STOP = 0x40, DSEL = 0x80 };
+
+struct ds2404 {
+	struct sim_scratchpad memory; /* first */
+	int64_t seen, part;           /* ns since the last 1/256 s */
+};
+
+/* Clock and interval timer count 1/256 s. */
+static const struct {
+	uint16_t at, alarm;
+	uint8_t bytes;
+} counters[COUNTERS] = {{CLOCK, ALARMS, 5}, {INTERVAL, 0x215, 5}, {CYCLE, 0x21A, 4}};
+
+static const struct sim_scratchpad_kind kind = {
+	.size = END,
+	.writable = END,
+	.page = 32,
+	.copy_ns = 30000,
+	.to_end = true,
+	.plain = true,
+};
+
+static struct ds2404 *state(struct sim_slave *slave)
+{
+	return sim_state(slave, ds2404);
+}
+
+static void create(struct sim_slave *slave)
+{
+	state(slave)->memory.kind = &kind;
+}
+
+static uint64_t get(const uint8_t *from, unsigned n)
+{
+	uint64_t value = 0;
+
+	while (n--)
+		value = value << 8 | from[n];
+	return value;
+}
+
+/* Count; the flag is set when the counter reaches its alarm. */
+static void count(struct sim_slave *slave, unsigned which, uint64_t by)
+{
+	uint8_t *memory = state(slave)->memory.memory;
+	unsigned at = counters[which].at, n = counters[which].bytes;
+	uint64_t old = get(memory + at, n), alarm = get(memory + counters[which].alarm, n);
+
+	for (unsigned i = 0; i < n; i++)
+		memory[at + i] = (uint8_t)((old + by) >> (8 * i));
+	if (alarm > old && alarm - old <= by)
+		memory[STATUS] |= (uint8_t)(1 << which);
+}
+
+static void advance(struct sim_slave *slave, int64_t t)
+{
+	struct ds2404 *s = state(slave);
+	uint8_t control = s->memory.memory[CONTROL];
+	int64_t span = s->part + (t - s->seen) * 256;
+
+	s->seen = t;
+	if (!(control & OSC))
+		return;
+	s->part = span % 1000000000;
+	count(slave, 0, (uint64_t)(span / 1000000000));
+	if ((control & AUTO) || !(control & STOP))
+		count(slave, 1, (uint64_t)(span / 1000000000));
+}
+
+/* The battery keeps all but the scratchpad. */
+static void power_on(struct sim_slave *slave, int64_t t)
+{
+	sim_scratchpad_power_on(slave, t);
+	state(slave)->seen = t;
+	count(slave, 2, 1);
+}
+
+static bool alarm(struct sim_slave *slave, int64_t t)
+{
+	uint8_t status = state(slave)->memory.memory[STATUS];
+
+	(void)t;
+	return status & FLAGS & ~(status >> 3);
+}
+
+/* Put back what a write protection keeps from the copy. */
+static void protect(uint8_t *memory, const uint8_t *before)
+{
+	uint8_t old = before[CONTROL - STATUS], *control = &memory[CONTROL];
+
+	if (!(old & WRITE_PROTECTED))
+		return;
+	for (unsigned i = 0; i < COUNTERS; i++) {
+		if (!(old >> i & 1))
+			continue;
+		memcpy(memory + counters[i].at, before + counters[i].at - STATUS,
+		       counters[i].bytes);
+		memcpy(memory + counters[i].alarm, before + counters[i].alarm - STATUS,
+		       counters[i].bytes);
+	}
+	*control = (uint8_t)((*control & ~0x0F) | (old & 0x0F));
+	*control |= old & OSC;
+	if (old & 2)
+		*control = (uint8_t)((*control & ~(STOP | AUTO)) | (old & AUTO));
+	if (old & 4)
+		*control = (uint8_t)((*control & ~DSEL) | (old & DSEL));
+}
+
+/* The flags of the status register can only be read. */
+static void worked(struct sim_slave *slave, int64_t t)
+{
+	uint8_t *memory = state(slave)->memory.memory;
+	uint8_t before[END - STATUS];
+
+	memcpy(before, memory + STATUS, sizeof(before));
+	sim_scratchpad_worked(slave, t);
+	memory[STATUS] = (uint8_t)((memory[STATUS] & ENABLES) | (before[0] & FLAGS));
+	protect(memory, before);
+	if (memory[CONTROL] != before[CONTROL - STATUS])
+		state(slave)->part = 0;
+}
+
+/* To read the status register clears its flags. */
+static void dump(struct sim_slave *slave, int64_t t)
+{
+	unsigned at = slave->address;
+
+	sim_scratchpad_dump(slave, t);
+	if (at == STATUS)
+		state(slave)->memory.memory[STATUS] &= ENABLES;
+}
+
+static int option(struct sim_slave *slave, const char *name, double value)
+{
+	uint8_t *memory = state(slave)->memory.memory;
+
+	if (strcmp(name, "seconds") != 0)
+		return -ENOENT;
+	if (value < 0 || value > UINT32_MAX)
+		return -ERANGE;
+	for (unsigned i = 0; i < 4; i++)
+		memory[CLOCK + 1 + i] = (uint8_t)((uint32_t)value >> (8 * i));
+	memory[CONTROL] |= OSC;
+	return 0;
+}
+
+static const struct sim_function functions[] = {
+	{.code = 0x0F, .takes = 2, .start = sim_scratchpad_target, .byte = sim_scratchpad_write},
+	{.code = 0xAA, .start = sim_scratchpad_read},
+	{.code = 0x55, .takes = 3, .start = sim_scratchpad_copy},
+	{.code = 0xF0, .takes = 2, .start = dump, .next = dump},
+	{0},
+};
+
+#define TIME_CHIP(part) \
+	{ \
+		.name = (part), .code = 0x04, .state_size = sizeof(struct ds2404), \
+		.functions = functions, .create = create, .power_on = power_on, .alarm = alarm, \
+		.bit = sim_scratchpad_bit, .worked = worked, .advance = advance, .option = option, \
+		.memory = sim_scratchpad_memory \
+	}
+
+const struct sim_family sim_ds2404 = TIME_CHIP("DS2404");
+const struct sim_family sim_ds1994 = TIME_CHIP("DS1994");

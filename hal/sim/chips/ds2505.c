@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * DS2505 and DS2506 (data sheets, "16kbit Add-Only Memory", "64kbit Add-Only Memory"), and the
+ * same with contents from the factory, DS1985U and DS1986U: EPROM in pages of 32 bytes, and status
+ * bytes. They are programmed with 12 V, which nothing here gives: the flow chart of a write runs,
+ * no bit changes.
+ */
+#include <string.h>
+
+#include "hal/sim/families.h"
+
+enum { PAGE = 32, STATUS_PAGE = 8, REDIRECTION = 0x100, MOST = 8192 + 0x200 };
+enum { READ_MEMORY = 0xF0, WRITE_STATUS = 0x55 };
+
+struct ds2505 {
+	uint8_t bytes[MOST]; /* the status bytes after the data */
+	unsigned size, status_size;
+	bool in_page; /* the redirection byte of this page was sent */
+};
+
+static struct ds2505 *state(struct sim_slave *slave)
+{
+	return sim_state(slave, ds2505);
+}
+
+/* Write protection, bitmap and redirection bytes, all from the factory as ones. */
+static void create(struct sim_slave *slave)
+{
+	struct ds2505 *s = state(slave);
+
+	s->size = (slave->family->code & 0x7F) == 0x0F ? 8192 : 2048;
+	s->status_size = REDIRECTION + s->size / PAGE;
+	memset(s->bytes, 0xFF, sizeof(s->bytes));
+}
+
+/* Read Memory has its checksum at the end of the memory. */
+static void send(struct sim_slave *slave, int64_t t)
+{
+	struct ds2505 *s = state(slave);
+
+	(void)t;
+	sim_send_memory(slave, s->bytes, s->size, s->size);
+}
+
+/* Read Status: a checksum after each eight bytes. */
+static void send_status(struct sim_slave *slave, int64_t t)
+{
+	struct ds2505 *s = state(slave);
+
+	(void)t;
+	sim_send_memory(slave, s->bytes + s->size, s->status_size, STATUS_PAGE);
+}
+
+/* Extended Read Memory: redirection byte, checksum, the rest of the page, checksum, and so on. */
+static void send_page(struct sim_slave *slave, int64_t t)
+{
+	struct ds2505 *s = state(slave);
+	unsigned page = slave->address / PAGE;
+
+	(void)t;
+	if (slave->address >= s->size) {
+		sim_end(slave);
+	} else if (!s->in_page) {
+		s->in_page = true;
+		sim_send_checked(slave, s->bytes + s->size + REDIRECTION + page, 1);
+	} else {
+		sim_send_memory(slave, s->bytes, s->size, PAGE);
+		s->in_page = slave->address % PAGE != 0;
+	}
+}
+
+static void begin_pages(struct sim_slave *slave, int64_t t)
+{
+	state(slave)->in_page = false;
+	send_page(slave, t);
+}
+
+/* Send the checksum; the pulse would come here; send the byte as it is; the next byte follows. */
+static void write(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	struct ds2505 *s = state(slave);
+	bool is_status = slave->function->code == WRITE_STATUS;
+
+	(void)byte, (void)t;
+	if (slave->address >= (is_status ? s->status_size : s->size))
+		sim_end(slave);
+	else
+		sim_send_stored(slave, s->bytes[slave->address + (is_status ? s->size : 0)]);
+}
+
+static void receive(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	sim_receive(slave);
+}
+
+static uint8_t *memory(struct sim_slave *slave, size_t *size)
+{
+	*size = state(slave)->size + state(slave)->status_size;
+	return state(slave)->bytes;
+}
+
+static const struct sim_function functions[] = {
+	{.code = READ_MEMORY, .takes = 2, .start = send, .next = send},
+	{.code = 0xA5, .takes = 2, .start = begin_pages, .next = send_page},
+	{.code = 0xAA, .takes = 2, .start = send_status, .next = send_status},
+	{.code = 0x0F, .takes = 2, .byte = write, .next = receive},
+	{.code = WRITE_STATUS, .takes = 2, .byte = write, .next = receive},
+	{0},
+};
+
+#define EPROM(part, family, fast) \
+	{ \
+		.name = (part), .code = (family), .overdrive = (fast), .functions = functions, \
+		.state_size = sizeof(struct ds2505), .create = create, .memory = memory \
+	}
+
+const struct sim_family sim_ds2505 = EPROM("DS2505", 0x0B, false);
+const struct sim_family sim_ds1985u = EPROM("DS1985U", 0x8B, false);
+const struct sim_family sim_ds2506 = EPROM("DS2506", 0x0F, true);
+const struct sim_family sim_ds1986u = EPROM("DS1986U", 0x8F, true);

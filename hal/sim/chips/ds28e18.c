@@ -1,0 +1,414 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * DS28E18, 1-Wire to I2C/SPI bridge with command sequencer. From the maker's application note 7356
+ * and published drivers; no whole data sheet was at hand. After power-on the ROM id is 56h with
+ * zeros, until Write GPIO Configuration has loaded the real one. SPI is not simulated, nor the
+ * supply of the sensors by SENS_VDD.
+ */
+#include <string.h>
+
+#include "hal/bus/time.h"
+#include "hal/sim/chips/sensors.h"
+#include "hal/sim/crc.h"
+#include "hal/sim/families.h"
+
+/* Device functions. */
+enum {
+	WRITE_SEQUENCER = 0x11,
+	READ_SEQUENCER = 0x22,
+	RUN_SEQUENCER = 0x33,
+	WRITE_CONFIGURATION = 0x55,
+	READ_CONFIGURATION = 0x6A,
+	WRITE_GPIO = 0x83,
+	READ_GPIO = 0x7C,
+	DEVICE_STATUS = 0x7A,
+};
+/* Results. */
+enum { POWER_ON = 0x44, MALFORMED = 0x55, INVALID = 0x77, REFUSED = 0x88, DONE = 0xAA };
+enum { SEQUENCE = 512, PACKET = 130, RELEASE = 0xAA, IGNORE_NACK = 0x04 };
+
+#define OPERATION_NS NS_PER_MS /* tOP */
+
+struct ds28e18 {
+	struct sim_sensors sensors; /* first */
+	uint8_t rom[8];             /* the real one */
+	uint8_t sequence[SEQUENCE];
+	bool empty;             /* of the sequencer: nothing was written since power-on */
+	bool restarted;         /* the status has not been read since power-on */
+	uint8_t packet[PACKET]; /* device function and its parameters */
+	unsigned got;
+	bool checked;           /* the packet's checksum was sent, the release byte is due */
+	bool released;          /* it has come */
+	uint8_t result[PACKET]; /* length, result, data */
+	uint8_t answer[PACKET + 3];
+	unsigned answers, sent;
+	uint8_t configuration, gpio[2][2];
+};
+
+static struct ds28e18 *state(struct sim_slave *slave)
+{
+	return sim_state(slave, ds28e18);
+}
+
+static void create(struct sim_slave *slave)
+{
+	memcpy(state(slave)->rom, slave->rom, 8);
+}
+
+static void power_on(struct sim_slave *slave, int64_t t)
+{
+	struct ds28e18 *s = state(slave);
+
+	(void)t;
+	sim_sensors_power_on(slave);
+	memset(slave->rom + 1, 0, 6);
+	slave->rom[7] = sim_crc8(0, slave->rom, 7);
+	memset(s->sequence, 0, SEQUENCE);
+	s->empty = s->restarted = true;
+	s->configuration = 0;
+	memset(s->gpio, 0, sizeof(s->gpio));
+}
+
+/* --- The sequencer ---------------------------------------------------------------------------- */
+
+struct run {
+	struct sim_slave *slave;
+	unsigned at, end;
+	int64_t t;
+	bool addressing; /* the next byte that is written follows a START */
+};
+
+/* One byte of I2C at 100, 400, 1000 kHz. */
+static void spend_byte(struct run *run)
+{
+	static const int64_t byte_ns[] = {136000, 45000, 25000, 25000};
+
+	run->t += byte_ns[state(run->slave)->configuration & 3];
+}
+
+/* False: the byte was not acknowledged. */
+static bool write_bytes(struct run *run, unsigned n)
+{
+	struct ds28e18 *s = state(run->slave);
+	bool taken = true;
+
+	while (n-- && taken) {
+		uint8_t byte = s->sequence[run->at++];
+
+		spend_byte(run);
+		taken = run->addressing ? sim_sensors_start(run->slave, byte, run->t)
+		                        : sim_sensors_write(run->slave, byte, run->t);
+		run->addressing = false;
+		taken |= (s->configuration & IGNORE_NACK) != 0;
+	}
+	return taken;
+}
+
+static void read_bytes(struct run *run, unsigned n)
+{
+	struct ds28e18 *s = state(run->slave);
+
+	while (n--) {
+		spend_byte(run);
+		s->sequence[run->at++] = sim_sensors_read(run->slave, run->t);
+	}
+}
+
+/* Bytes of a command behind its first parameter, if it has one; SEQUENCE: no such command. */
+static unsigned bytes_of(uint8_t command, uint8_t length)
+{
+	switch (command) {
+	case 0x02: /* START, STOP */
+	case 0x03:
+	case 0xCC: /* SENS_VDD on, off */
+	case 0xBB:
+		return 0;
+	case 0xE3: /* write, read, read with NACK at the end */
+	case 0xD4:
+	case 0xD3:
+		return length ? length : 256;
+	case 0xDD: /* delay, GPIO buffer write, read */
+	case 0xD1:
+	case 0x1D:
+		return 0;
+	case 0xE2: /* GPIO control write, read */
+	case 0x2E:
+		return 1;
+	default:
+		return SEQUENCE;
+	}
+}
+
+static bool is_single(uint8_t command)
+{
+	return command == 0x02 || command == 0x03 || command == 0xCC || command == 0xBB;
+}
+
+/* One command of the sequence; DONE, or the result that ends it. */
+static uint8_t step(struct run *run)
+{
+	struct ds28e18 *s = state(run->slave);
+	uint8_t command = s->sequence[run->at++];
+	uint8_t length = run->at < run->end && !is_single(command) ? s->sequence[run->at] : 0;
+	unsigned n = bytes_of(command, length);
+
+	run->at += !is_single(command);
+	if (run->at + n > run->end)
+		return MALFORMED;
+	switch (command) {
+	case 0x02:
+		run->addressing = true;
+		break;
+	case 0x03:
+		sim_sensors_stop(run->slave);
+		break;
+	case 0xE3:
+		return write_bytes(run, n) ? DONE : REFUSED;
+	case 0xD3:
+	case 0xD4:
+		read_bytes(run, n);
+		break;
+	case 0xDD:
+		run->t += NS_PER_MS << (length & 15);
+		break;
+	default:
+		run->at += n;
+		break;
+	}
+	return DONE;
+}
+
+static void answer(struct ds28e18 *s, uint8_t result)
+{
+	s->result[0] = 1;
+	s->result[1] = result;
+}
+
+static void add(struct ds28e18 *s, uint8_t byte)
+{
+	s->result[++s->result[0]] = byte;
+}
+
+/* The sequence runs at once, on a clock of its own. Returns how long it took. */
+static int64_t run_sequencer(struct sim_slave *slave, int64_t t)
+{
+	struct ds28e18 *s = state(slave);
+	unsigned length = s->packet[2] >> 1 | (s->packet[3] & 3u) << 7;
+	struct run run = {.slave = slave, .at = s->packet[1] | (s->packet[2] & 1u) << 8, .t = t};
+	uint8_t result = s->empty ? POWER_ON : DONE;
+
+	run.end = run.at + (length ? length : SEQUENCE);
+	if (run.end > SEQUENCE)
+		result = INVALID;
+	while (result == DONE && run.at < run.end)
+		result = step(&run);
+	answer(s, result);
+	if (result == REFUSED) { /* the place of the byte, from 1 on; 512 is 0 */
+		add(s, (uint8_t)run.at);
+		add(s, (uint8_t)(run.at >> 8 & 1));
+		sim_sensors_stop(slave);
+	}
+	return run.t - t;
+}
+
+/* --- Device functions ------------------------------------------------------------------------- */
+
+static void write_sequencer(struct ds28e18 *s)
+{
+	unsigned at = s->packet[1] | (s->packet[2] & 1u) << 8, n = s->got - 3;
+
+	if (at + n > SEQUENCE) {
+		answer(s, INVALID);
+		return;
+	}
+	memcpy(s->sequence + at, s->packet + 3, n);
+	s->empty = false;
+}
+
+static void read_sequencer(struct ds28e18 *s)
+{
+	unsigned at = s->packet[1] | (s->packet[2] & 1u) << 8, n = s->packet[2] >> 1;
+
+	n = n ? n : 128;
+	if (at + n > SEQUENCE)
+		answer(s, INVALID);
+	for (unsigned i = 0; at + n <= SEQUENCE && i < n; i++)
+		add(s, s->sequence[at + i]);
+}
+
+static void gpio(struct ds28e18 *s, bool write)
+{
+	uint8_t which = s->packet[1] - 0x0B;
+
+	if (which > 1) {
+		answer(s, INVALID);
+		return;
+	}
+	for (unsigned i = 0; i < 2; i++) {
+		if (write)
+			s->gpio[which][i] = s->packet[3 + i];
+		else
+			add(s, s->gpio[which][i]);
+	}
+}
+
+static void device_status(struct ds28e18 *s)
+{
+	add(s, s->restarted ? 0x02 : 0x00);
+	for (unsigned i = 0; i < 3; i++)
+		add(s, 0);
+	s->restarted = false;
+}
+
+/* Parameters of the device functions; -1: as many as come; -2: no such function. */
+static int parameters(uint8_t function)
+{
+	switch (function) {
+	case WRITE_SEQUENCER:
+		return -1;
+	case READ_SEQUENCER:
+	case READ_GPIO:
+		return 2;
+	case RUN_SEQUENCER:
+		return 3;
+	case WRITE_GPIO:
+		return 4;
+	case WRITE_CONFIGURATION:
+		return 1;
+	case READ_CONFIGURATION:
+	case DEVICE_STATUS:
+		return 0;
+	default:
+		return -2;
+	}
+}
+
+static int64_t carry_out(struct sim_slave *slave, int64_t t)
+{
+	struct ds28e18 *s = state(slave);
+	int want = parameters(s->packet[0]);
+	int64_t takes = OPERATION_NS;
+
+	answer(s, DONE);
+	if (want == -2 || (want == -1 && s->got < 4) ||
+	    (want >= 0 && s->got != 1u + (unsigned)want)) {
+		answer(s, INVALID);
+		return takes;
+	}
+	switch (s->packet[0]) {
+	case WRITE_SEQUENCER:
+		write_sequencer(s);
+		break;
+	case READ_SEQUENCER:
+		read_sequencer(s);
+		break;
+	case RUN_SEQUENCER:
+		takes += run_sequencer(slave, t);
+		break;
+	case WRITE_CONFIGURATION:
+		s->configuration = s->packet[1] & 0x3F;
+		break;
+	case READ_CONFIGURATION:
+		add(s, s->configuration);
+		break;
+	case WRITE_GPIO:
+		memcpy(slave->rom, s->rom, 8);
+		gpio(s, true);
+		break;
+	case READ_GPIO:
+		gpio(s, false);
+		break;
+	default:
+		device_status(s);
+		break;
+	}
+	return takes;
+}
+
+/* Length and packet, whose checksum the bridge sends; the release byte starts the function. */
+static void begin(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	state(slave)->got = 0;
+	state(slave)->checked = state(slave)->released = false;
+	if (slave->taken[0] == 0 || slave->taken[0] > PACKET)
+		sim_end(slave);
+}
+
+static void packet(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	struct ds28e18 *s = state(slave);
+
+	if (s->checked && byte == RELEASE) {
+		s->released = true;
+		sim_work(slave, carry_out(slave, t), t);
+	} else if (s->checked) {
+		sim_end(slave);
+	} else {
+		s->packet[s->got++] = byte;
+		s->checked = s->got == slave->taken[0];
+		if (s->checked)
+			sim_send_checked(slave, NULL, 0);
+	}
+}
+
+static void worked(struct sim_slave *slave, int64_t t)
+{
+	struct ds28e18 *s = state(slave);
+	uint16_t crc = sim_crc16(0, s->result, s->result[0] + 1u);
+
+	(void)t;
+	s->answer[0] = 0xFF; /* the dummy byte */
+	memcpy(s->answer + 1, s->result, s->result[0] + 1u);
+	s->answers = s->result[0] + 2u;
+	s->answer[s->answers++] = (uint8_t)~crc;
+	s->answer[s->answers++] = (uint8_t)(~crc >> 8);
+	s->sent = 0;
+}
+
+/* Behind the packet's checksum the release byte is due; behind the answer, nothing. */
+static void sent(struct sim_slave *slave, int64_t t)
+{
+	struct ds28e18 *s = state(slave);
+	unsigned n = s->answers - s->sent;
+
+	(void)t;
+	if (!s->released) {
+		sim_receive(slave);
+	} else if (n == 0) {
+		sim_end(slave);
+	} else {
+		n = n < SIM_MAX_SEND ? n : SIM_MAX_SEND;
+		sim_send(slave, s->answer + s->sent, n);
+		s->sent += n;
+	}
+}
+
+/* Ones while it works; then a dummy byte of ones, and length and result with their checksum. */
+static bool bit(struct sim_slave *slave, int64_t t)
+{
+	if (!slave->busy)
+		sent(slave, t);
+	return true;
+}
+
+static const struct sim_function functions[] = {
+	{.code = 0x66, .takes = 1, .start = begin, .byte = packet, .next = sent},
+	{0},
+};
+
+const struct sim_family sim_ds28e18 = {
+	.name = "DS28E18",
+	.code = 0x56,
+	.overdrive = true,
+	.resume = true,
+	.starves = true,
+	.state_size = sizeof(struct ds28e18),
+	.functions = functions,
+	.inputs = sim_sensor_inputs,
+	.create = create,
+	.power_on = power_on,
+	.bit = bit,
+	.worked = worked,
+	.option = sim_sensors_option,
+};

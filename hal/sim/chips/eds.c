@@ -1,0 +1,316 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The sensors of Embedded Data Systems, family 7E: what all kinds have in common. The first page
+ * says which kind it is; the registers are live memory; limits and enables are written through a
+ * scratchpad.
+ *
+ * The memory maps of EDS's manuals could not be had. Commands, addresses, units and flags are
+ * those of OWFS's driver and manual page, features and rates those of the manuals' first pages.
+ * Nothing says what the following does, so it is the simulation's own: command registers of the
+ * EDS0090 read 0 after they acted; flags are set by enabled limits alone; limits, enables and the
+ * relay's function outlast a power failure, the relay's state and outputs do not.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "hal/bus/time.h"
+#include "hal/sim/chips/eds.h"
+
+/* Tag of 30 characters, and the kind; the same in all. */
+enum { TAG = 0x00, TAG_SIZE = 30, ID = 0x1E };
+/* EDS0090. */
+enum { INPUT = 0x22, LATCH, OUTPUT, PULLDOWN, PULSES = 0x30, COUNTERS = 2, PINS = 8 };
+enum { PULSE_RESET = 0x54, LATCH_RESET, PULLDOWN_VALUE = 0x5B, OUTPUT_VALUE };
+/* Bits of the relay's state, each with two bits of function. */
+enum { RELAY = 0, LED = 1 };
+enum control { WHILE_ALARM = 0, UNTIL_CLEARED, AS_WRITTEN, OFF };
+
+/* Light is measured four times a second, all else more seldom: here all alike. */
+#define TICK_NS (250 * NS_PER_MS)
+/* OWFS: 700 ms after a copy the new bytes can be read. */
+#define COPY_NS (600 * NS_PER_MS)
+/* The peak of a vibration decays. */
+#define DECAY_PER_S 10.0
+
+static const struct sim_scratchpad_kind small = {
+	.size = 0x60, .writable = 0x60, .page = 32, .copy_ns = COPY_NS};
+static const struct sim_scratchpad_kind large = {
+	.size = 0xA0, .writable = 0xA0, .page = 32, .copy_ns = COPY_NS};
+
+static struct eds *state(struct sim_slave *slave)
+{
+	return sim_state(slave, eds);
+}
+
+static uint8_t *bytes_at(struct sim_slave *slave, unsigned at)
+{
+	return state(slave)->memory.memory + at;
+}
+
+static void put(uint8_t *to, unsigned bytes, int64_t value)
+{
+	for (unsigned i = 0; i < bytes; i++)
+		to[i] = (uint8_t)((uint64_t)value >> (8 * i));
+}
+
+static int64_t get(const uint8_t *from, unsigned bytes, bool is_signed)
+{
+	uint64_t value = 0;
+
+	for (unsigned i = 0; i < bytes; i++)
+		value |= (uint64_t)from[i] << (8 * i);
+	if (is_signed && value >> (8 * bytes - 1))
+		value -= UINT64_C(1) << (8 * bytes);
+	return (int64_t)value;
+}
+
+static uint16_t word(struct sim_slave *slave, unsigned at)
+{
+	unsigned bytes = state(slave)->kind->alarm_bytes;
+
+	return (uint16_t)get(bytes_at(slave, at), bytes, false);
+}
+
+static double value_of(struct sim_slave *slave, const struct eds_quantity *q, int64_t t)
+{
+	return q->derived ? q->derived(slave, t)
+	                  : sim_input_at(slave, (unsigned)sim_slave_input(slave, q->input), t);
+}
+
+/* Which of the pair of flags does the value deserve? */
+static unsigned beyond(struct sim_slave *slave, const struct eds_quantity *q, double value)
+{
+	double unit = q->coarse ? 1 : q->unit;
+	bool is_signed = q->limit_bytes != 2;
+
+	if (!q->limit_bytes)
+		return 0;
+	return (value > (double)get(bytes_at(slave, q->high), q->limit_bytes, is_signed) * unit) |
+	       (value < (double)get(bytes_at(slave, q->low), q->limit_bytes, is_signed) * unit)
+	               << 1;
+}
+
+static bool has(const struct eds_kind *kind, unsigned i)
+{
+	return kind->measures >> i & 1;
+}
+
+/* Measure all; returns the flags of what is beyond its limits now. */
+static uint16_t measure(struct sim_slave *slave, int64_t t)
+{
+	struct eds *s = state(slave);
+	uint16_t flags = 0;
+
+	for (unsigned i = 0; i < s->kind->quantity_count; i++) {
+		const struct eds_quantity *q = &s->kind->quantities[i];
+		double value;
+
+		if (!has(s->kind, i))
+			continue;
+		value = value_of(slave, q, t);
+		s->least[i] = fmin(s->least[i], value);
+		s->most[i] = fmax(s->most[i], value);
+		put(bytes_at(slave, q->at), q->bytes, sim_round(value / q->unit));
+		if (q->min)
+			put(bytes_at(slave, q->min), q->bytes, sim_round(s->least[i] / q->unit));
+		if (q->max)
+			put(bytes_at(slave, q->max), q->bytes, sim_round(s->most[i] / q->unit));
+		flags |= (uint16_t)(beyond(slave, q, value) << q->flag);
+	}
+	return flags;
+}
+
+/* Falling edges are counted and any change is latched. */
+static void follow_pin(struct sim_slave *slave, unsigned pin, int64_t t)
+{
+	struct eds *s = state(slave);
+	const struct sim_curve *curve = &slave->input[pin];
+	uint8_t mask = (uint8_t)(1 << pin), *pulses = bytes_at(slave, PULSES + 4 * pin);
+	bool pulled = *bytes_at(slave, OUTPUT) & mask;
+	bool was = s->level & mask, is = !pulled && sim_curve_at(curve, t) >= 0.5;
+	uint64_t falls = pulled ? 0 : sim_curve_falls(curve, s->followed, t);
+
+	/* The level also falls where an output or a new curve begins. */
+	if (was && (pulled || sim_curve_at(curve, s->followed) < 0.5))
+		falls++;
+	if (falls || was != is)
+		*bytes_at(slave, LATCH) |= mask;
+	if (pin < COUNTERS)
+		put(pulses, 4, get(pulses, 4, false) + (int64_t)falls);
+	s->level = (uint8_t)(is ? s->level | mask : s->level & ~mask);
+}
+
+/* The pins at t; returns the flags of those whose level is asked for. */
+static uint16_t follow(struct sim_slave *slave, int64_t t)
+{
+	struct eds *s = state(slave);
+	uint16_t flags = 0;
+
+	for (unsigned i = 0; i < PINS; i++) {
+		follow_pin(slave, i, t);
+		flags |= (uint16_t)((s->level >> i & 1 ? 1 : 2) << (2 * i));
+	}
+	*bytes_at(slave, INPUT) = s->level;
+	s->followed = t;
+	return flags;
+}
+
+/* Relay and LED: by the alarm, or as written. */
+static void switch_outputs(struct sim_slave *slave, bool beyond_now, bool flagged)
+{
+	uint8_t function = *bytes_at(slave, state(slave)->kind->relay);
+	uint8_t *out = bytes_at(slave, state(slave)->kind->relay + 1u);
+
+	for (unsigned i = RELAY; i <= LED; i++) {
+		enum control control = function >> (2 * i) & 3;
+		bool on = control == WHILE_ALARM ? beyond_now : control == UNTIL_CLEARED && flagged;
+
+		if (control != AS_WRITTEN)
+			*out = (uint8_t)((*out & ~(1 << i)) | on << i);
+	}
+}
+
+static void count_time(struct sim_slave *slave, int64_t t)
+{
+	struct eds *s = state(slave);
+	const struct eds_kind *kind = s->kind;
+
+	put(bytes_at(slave, kind->seconds), 4, (t - s->started) / NS_PER_S);
+	if (kind->samples) {
+		int64_t delay = *bytes_at(slave, kind->delay);
+		int64_t each = (delay ? delay : 1) * NS_PER_S, n = (t - s->sampled) / each;
+		uint8_t *samples = bytes_at(slave, kind->samples);
+
+		put(samples, 4, get(samples, 4, false) + n);
+		s->sampled += n * each;
+	}
+	if (kind->peak) {
+		double level = sim_input_at(slave, 0, t);
+
+		s->peak -= (double)(t - s->sampled) / (double)NS_PER_S * DECAY_PER_S;
+		s->peak = fmax(s->peak, level);
+		put(bytes_at(slave, kind->peak), 2, sim_round(s->peak));
+		s->sampled = t;
+	}
+}
+
+/* One round of the microcontroller. */
+static void work(struct sim_slave *slave, int64_t t)
+{
+	const struct eds_kind *kind = state(slave)->kind;
+	uint16_t enabled = word(slave, kind->enable), flags = word(slave, kind->alarm);
+	uint16_t now = kind->digital ? follow(slave, t) : measure(slave, t);
+
+	now &= enabled;
+	flags |= now;
+	put(bytes_at(slave, kind->alarm), kind->alarm_bytes, flags);
+	count_time(slave, t);
+	switch_outputs(slave, now, flags);
+}
+
+void eds_advance(struct sim_slave *slave, int64_t t)
+{
+	struct eds *s = state(slave);
+
+	if (t / TICK_NS == s->tick)
+		return;
+	s->tick = t / TICK_NS;
+	work(slave, t);
+}
+
+/* Minimum and maximum begin anew. */
+static void forget(struct sim_slave *slave)
+{
+	struct eds *s = state(slave);
+
+	for (unsigned i = 0; i < sizeof(s->least) / sizeof(s->least[0]); i++) {
+		s->least[i] = INFINITY;
+		s->most[i] = -INFINITY;
+	}
+	put(bytes_at(slave, s->kind->alarm), s->kind->alarm_bytes, 0);
+}
+
+static void clear_alarms(struct sim_slave *slave, int64_t t)
+{
+	forget(slave);
+	work(slave, t);
+	sim_end(slave);
+}
+
+void eds_create(struct sim_slave *slave)
+{
+	struct eds *s = state(slave);
+
+	s->kind = slave->family->kind;
+	s->memory.kind = s->kind->size == small.size ? &small : &large;
+	memset(bytes_at(slave, TAG), ' ', TAG_SIZE);
+	memcpy(bytes_at(slave, TAG), s->kind->tag, strlen(s->kind->tag));
+	put(bytes_at(slave, ID), 2, s->kind->id);
+}
+
+void eds_power_on(struct sim_slave *slave, int64_t t)
+{
+	struct eds *s = state(slave);
+
+	sim_scratchpad_power_on(slave, t);
+	memset(bytes_at(slave, ID + 2), 0, s->kind->writable - (ID + 2u));
+	*bytes_at(slave, s->kind->relay + 1u) = 0;
+	if (s->kind->digital) {
+		*bytes_at(slave, OUTPUT_VALUE) = 0;
+		s->level = 0;
+		for (unsigned i = 0; i < PINS; i++)
+			s->level |= (uint8_t)((sim_input_at(slave, i, t) >= 0.5) << i);
+	}
+	s->started = s->sampled = s->followed = t;
+	s->tick = t / TICK_NS;
+	s->peak = 0;
+	forget(slave);
+	work(slave, t);
+}
+
+/* What the host wrote into registers that act. */
+static void act(struct sim_slave *slave)
+{
+	uint8_t *reset = bytes_at(slave, PULSE_RESET);
+
+	for (unsigned i = 0; i < COUNTERS; i++)
+		if (*reset >> i & 1)
+			put(bytes_at(slave, PULSES + 4 * i), 4, 0);
+	*reset = 0;
+	*bytes_at(slave, LATCH) &= (uint8_t) ~*bytes_at(slave, LATCH_RESET);
+	*bytes_at(slave, LATCH_RESET) = 0;
+	*bytes_at(slave, OUTPUT) = *bytes_at(slave, OUTPUT_VALUE);
+	*bytes_at(slave, PULLDOWN) = *bytes_at(slave, PULLDOWN_VALUE);
+}
+
+void eds_worked(struct sim_slave *slave, int64_t t)
+{
+	struct eds *s = state(slave);
+	uint8_t fixed[0xA0];
+
+	if (s->kind->digital)
+		follow(slave, t);
+	memcpy(fixed, s->memory.memory, s->kind->writable);
+	sim_scratchpad_worked(slave, t);
+	memcpy(s->memory.memory, fixed, s->kind->writable);
+	if (s->kind->digital)
+		act(slave);
+	work(slave, t);
+}
+
+bool eds_alarm(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	return word(slave, state(slave)->kind->alarm) != 0;
+}
+
+const struct sim_function eds_functions[] = {
+	SIM_SCRATCHPAD_FUNCTIONS(0x55),
+	/* Read Memory with CRC */
+	{.code = 0xA5,
+         .takes = 2,
+         .start = sim_scratchpad_dump_pages,
+         .next = sim_scratchpad_dump_pages},
+	{.code = 0x33, .start = clear_alarms},
+	{0},
+};

@@ -1,0 +1,399 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What battery gauges with 256 addresses do, by a kind that says where a part has its registers:
+ * DS2740, DS2751, DS2755, DS2760, DS2770, DS2780, DS2781.
+ */
+#include <string.h>
+
+#include "hal/bus/time.h"
+#include "hal/sim/chips/gauge.h"
+
+/* tEEC: 10 ms at most. */
+#define COPY_NS (10 * NS_PER_MS)
+/* The accumulated current: 6.25 uVh in mV * ns. */
+#define ACR_UNIT (6.25e-3 * 3600 * NS_PER_S)
+/* The elapsed time register of the DS2770: 1024 h in 65536 counts. */
+#define TICK_NS (INT64_C(56250) * NS_PER_MS)
+
+static struct gauge *state(struct sim_slave *slave)
+{
+	return sim_state(slave, gauge);
+}
+
+static unsigned block_of(const struct gauge_kind *kind, unsigned address)
+{
+	unsigned b = 0;
+
+	while (b < GAUGE_BLOCKS && (address < kind->block[b].at ||
+	                            address >= kind->block[b].at + (unsigned)kind->block[b].size))
+		b++;
+	return b;
+}
+
+static bool locked(const struct gauge *s, unsigned block)
+{
+	return s->memory[s->kind->eeprom] >> block & 1;
+}
+
+static void put16(uint8_t *at, int value)
+{
+	at[0] = (uint8_t)(value >> 8);
+	at[1] = (uint8_t)value;
+}
+
+static int within(double value, int least, int most)
+{
+	int64_t whole = sim_round(value);
+
+	return whole < least ? least : whole > most ? most : (int)whole;
+}
+
+/* What a current bias adds to the current, in mV. */
+static double bias_mv(const struct gauge *s)
+{
+	const struct gauge_kind *k = s->kind;
+	double unit = k->fine ? 1.5625e-3 : 15.625e-3, bias;
+
+	if (!k->bias)
+		return 0;
+	bias = k->wide_bias ? (int16_t)(s->memory[k->bias] << 8 | s->memory[k->bias + 1])
+	                    : (int8_t)s->memory[k->bias];
+	return k->add_bias ? bias * unit : -bias * unit;
+}
+
+/* The current between two looks is that at sixteen times between them. */
+static void accumulate(struct sim_slave *slave, int64_t t)
+{
+	struct gauge *s = state(slave);
+	const struct gauge_kind *k = s->kind;
+	double most = 32767 * ACR_UNIT, mv = bias_mv(s);
+	int64_t step = (t - s->last) / 16;
+
+	if (k->accumbias)
+		mv += (int8_t)s->memory[k->accumbias] * (k->fine ? 1.5625e-3 : 15.625e-3);
+	for (unsigned i = 0; i < 16; i++)
+		mv += sim_input_at(slave, VIS, s->last + step * i + step / 2) / 16;
+	s->accumulated += mv * (double)(t - s->last);
+	if (s->accumulated > most)
+		s->accumulated = most;
+	if (s->accumulated < -most)
+		s->accumulated = -most;
+	s->last = t;
+	put16(s->memory + ACCUMULATED, within(s->accumulated / ACR_UNIT, -32768, 32767));
+}
+
+static void measure(struct sim_slave *slave, int64_t t)
+{
+	struct gauge *s = state(slave);
+	const struct gauge_kind *k = s->kind;
+	double mv = sim_input_at(slave, VIS, t) + bias_mv(s);
+
+	accumulate(slave, t);
+	if (k->fine)
+		put16(s->memory + CURRENT, within(mv / 1.5625e-3, -32768, 32767));
+	else
+		put16(s->memory + CURRENT, within(mv / 15.625e-3, -4096, 4095) * 8);
+	if (k->average)
+		put16(s->memory + k->average,
+		      within(mv / (k->fine ? 1.5625e-3 : 15.625e-3 / 8), -32768, 32767));
+	if (k->celsius)
+		put16(s->memory + k->celsius,
+		      within(sim_input_at(slave, TEMPERATURE, t) * 8, -1023, 1023) * 32);
+	if (k->volt > 0)
+		put16(s->memory + VOLTAGE,
+		      within(sim_input_at(slave, VOLT, t) / k->volt, 0, 1023) * 32);
+}
+
+static bool on(const struct sim_slave *slave, unsigned input, int64_t t)
+{
+	return sim_input_at(slave, input, t) >= 0.5;
+}
+
+/*
+ * DS2760: a condition sets its flag, which stays. CC and DC mirror their pins, which are high to
+ * switch off.
+ */
+static void protect(struct sim_slave *slave, int64_t t)
+{
+	static const uint8_t flags[] = {OV, UV, COC, DOC};
+	struct gauge *s = state(slave);
+	uint8_t *protection = s->memory;
+
+	for (unsigned i = 0; i < sizeof(flags); i++)
+		if (on(slave, FLAGS + i, t))
+			*protection |= flags[i];
+	if (!on(slave, FLAGS + 4, t))
+		s->memory[s->kind->special] &= 0x7F; /* PS */
+	*protection |= CC | DC;
+	if ((*protection & CE) && !(*protection & (OV | COC)))
+		*protection &= (uint8_t)~CC;
+	if ((*protection & DE) && !(*protection & (UV | DOC)))
+		*protection &= (uint8_t)~DC;
+}
+
+/* DS2770: the charge status of figure 12, and the timer. */
+static void charge(struct sim_slave *slave, int64_t t)
+{
+	struct gauge *s = state(slave);
+	bool source = on(slave, CHARGER, t);
+	uint8_t was = s->memory[STATUS] & CSTAT, status = source ? 0x80 : 0x00;
+
+	if (was == 0 && source && (s->memory[STATUS] & CINI))
+		s->charging = true;
+	s->charging = s->charging && source;
+	if (s->charging && on(slave, FULL, t)) {
+		s->charging = false;
+		s->full = true;
+	}
+	if (s->charging)
+		status = 0x40;
+	if (s->full)
+		status = CSTAT;
+	s->memory[STATUS] = (uint8_t)((s->memory[STATUS] & ~CSTAT) | status);
+	put16(s->memory + 0x02, (int)((t - s->started) / TICK_NS));
+}
+
+/* DS2780, DS2781: flags of the capacity, and the voltage below which they sleep. */
+static void watch(struct sim_slave *slave, int64_t t)
+{
+	struct gauge *s = state(slave);
+	bool high = s->kind->add_bias && (s->memory[0x60] & UVTH);
+	uint8_t *status = &s->memory[STATUS];
+
+	*status &= 0x0F;
+	for (unsigned i = 0; i < 4; i++)
+		*status |= (uint8_t)(on(slave, FLAGS + i, t) << (7 - i));
+	if (sim_input_at(slave, VOLT, t) < (high ? 4.9 : 2.45))
+		*status |= UVF;
+}
+
+void sim_gauge_advance(struct sim_slave *slave, int64_t t)
+{
+	struct gauge *s = state(slave);
+	const struct gauge_kind *k = s->kind;
+
+	measure(slave, t);
+	if (slave->family->code == 0x30)
+		protect(slave, t);
+	if (slave->family->code == 0x2E)
+		charge(slave, t);
+	if (slave->family->code == 0x32 || slave->family->code == 0x3D)
+		watch(slave, t);
+	if (!k->pio)
+		return;
+	s->memory[k->special] &= (uint8_t)~k->pio;
+	if (!s->low && on(slave, PIN, t))
+		s->memory[k->special] |= k->pio;
+}
+
+static void take_defaults(struct gauge *s, uint8_t from)
+{
+	const struct gauge_kind *k = s->kind;
+
+	if (k->defaults)
+		s->memory[STATUS] = (uint8_t)((s->memory[STATUS] & ~k->defaults) |
+		                              (from & k->defaults));
+}
+
+static void recall_block(struct sim_slave *slave, unsigned block)
+{
+	struct gauge *s = state(slave);
+	const struct gauge_kind *k = s->kind;
+
+	memcpy(s->memory + k->block[block].at, s->eeprom[block], k->block[block].size);
+	if (slave->family->code != 0x2E && k->from && block_of(k, k->from) == block)
+		take_defaults(s, s->memory[k->from]);
+	if (slave->family->code == 0x30 && block == 1)
+		s->memory[0] = (uint8_t)((s->memory[0] & ~(CE | DE)) |
+		                         (s->memory[0x30] & (CE | DE)));
+}
+
+void sim_gauge_power_on(struct sim_slave *slave, int64_t t)
+{
+	struct gauge *s = state(slave);
+	const struct gauge_kind *k = s->kind;
+	uint8_t locks = s->memory[k->eeprom] & 7;
+
+	memset(s->memory, 0, sizeof(s->memory));
+	if (k->eeprom)
+		s->memory[k->eeprom] = locks;
+	for (unsigned b = 0; b < GAUGE_BLOCKS && k->block[b].size; b++)
+		recall_block(slave, b);
+	if (slave->family->code == 0x2E)
+		take_defaults(s, s->eeprom[1][1]);
+	s->memory[k->por_at] |= k->por;
+	s->low = s->charging = s->full = false;
+	if (!k->keeps)
+		s->accumulated = 0;
+	s->last = s->started = t;
+	sim_gauge_advance(slave, t);
+}
+
+void sim_gauge_worked(struct sim_slave *slave, int64_t t)
+{
+	struct gauge *s = state(slave);
+
+	(void)t;
+	memcpy(s->eeprom[s->copied], s->memory + s->kind->block[s->copied].at,
+	       s->kind->block[s->copied].size);
+	s->memory[s->kind->eeprom] &= (uint8_t)~EEC;
+}
+
+/* Any command other than the lock itself cancels the permission to lock. */
+static void forget_lock(struct sim_slave *slave, int64_t t)
+{
+	struct gauge *s = state(slave);
+
+	(void)t;
+	if (s->kind->eeprom)
+		s->memory[s->kind->eeprom] &= (uint8_t)~LOCK;
+}
+
+static void read_data(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	sim_send_memory(slave, state(slave)->latched, 256, 0);
+}
+
+/* The bytes of a register stay as they are while one command reads them. */
+static void begin_read(struct sim_slave *slave, int64_t t)
+{
+	struct gauge *s = state(slave);
+
+	forget_lock(slave, t);
+	memcpy(s->latched, s->memory, sizeof(s->latched));
+	read_data(slave, t);
+}
+
+/* What is written has a consequence beyond its byte. */
+static void written(struct sim_slave *slave, unsigned at, uint8_t byte, int64_t t)
+{
+	struct gauge *s = state(slave);
+
+	if (at == s->kind->special && s->kind->pio)
+		s->low = !(byte & s->kind->pio);
+	if (at == ACCUMULATED || at == ACCUMULATED + 1)
+		s->accumulated = (int16_t)(s->memory[ACCUMULATED] << 8 |
+		                           s->memory[ACCUMULATED + 1]) *
+		                 ACR_UNIT;
+	if (slave->family->code != 0x2E)
+		return;
+	if (at == STATUS)
+		s->full = false;
+	if (at == 0x02 || at == 0x03)
+		s->started = t - (s->memory[2] << 8 | s->memory[3]) * TICK_NS;
+}
+
+/* What is read-only, reserved or locked stays unchanged. */
+static void write_data(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	struct gauge *s = state(slave);
+	const struct gauge_kind *k = s->kind;
+	unsigned at = slave->address, block = block_of(k, at);
+
+	if (at >= sizeof(s->memory))
+		return;
+	slave->address++;
+	if (block < GAUGE_BLOCKS && !slave->busy && !locked(s, block))
+		s->memory[at] = byte;
+	for (const struct gauge_rule *r = k->rules; r < k->rules + GAUGE_RULES; r++) {
+		uint8_t *to = &s->memory[at];
+
+		if (!r->used || at < r->first || at > r->last)
+			continue;
+		*to = (uint8_t)((byte & r->write) | (*to & ~r->write));
+		*to &= (uint8_t)(byte | ~r->clear);
+		*to |= byte & r->set;
+		written(slave, at, byte, t);
+	}
+	sim_gauge_advance(slave, t);
+}
+
+static void copy(struct sim_slave *slave, int64_t t)
+{
+	struct gauge *s = state(slave);
+	unsigned block = block_of(s->kind, slave->address);
+
+	forget_lock(slave, t);
+	if (block < GAUGE_BLOCKS && !locked(s, block)) {
+		s->copied = (uint8_t)block;
+		s->memory[s->kind->eeprom] |= EEC;
+		sim_work(slave, COPY_NS, t);
+	}
+	sim_end(slave);
+}
+
+static void recall(struct sim_slave *slave, int64_t t)
+{
+	unsigned block = block_of(state(slave)->kind, slave->address);
+
+	forget_lock(slave, t);
+	if (block < GAUGE_BLOCKS)
+		recall_block(slave, block);
+	sim_gauge_advance(slave, t);
+	sim_end(slave);
+}
+
+static void lock(struct sim_slave *slave, int64_t t)
+{
+	struct gauge *s = state(slave);
+	unsigned block = block_of(s->kind, slave->address);
+
+	if (block < GAUGE_BLOCKS && (s->memory[s->kind->eeprom] & LOCK))
+		s->memory[s->kind->eeprom] |= (uint8_t)(1 << block);
+	forget_lock(slave, t);
+	sim_end(slave);
+}
+
+static void start_charge(struct sim_slave *slave, int64_t t)
+{
+	forget_lock(slave, t);
+	state(slave)->charging = true;
+	sim_gauge_advance(slave, t);
+	sim_end(slave);
+}
+
+static void stop_charge(struct sim_slave *slave, int64_t t)
+{
+	forget_lock(slave, t);
+	state(slave)->charging = false;
+	sim_gauge_advance(slave, t);
+	sim_end(slave);
+}
+
+/* The status comes from the EEPROM itself, not from its shadow. */
+static void refresh(struct sim_slave *slave, int64_t t)
+{
+	forget_lock(slave, t);
+	take_defaults(state(slave), state(slave)->eeprom[1][1]);
+	sim_end(slave);
+}
+
+uint8_t *sim_gauge_memory(struct sim_slave *slave, size_t *size)
+{
+	*size = sizeof(state(slave)->eeprom); /* it is recalled at power-on */
+	return state(slave)->eeprom[0];
+}
+
+#define EEPROM_FUNCTIONS \
+	{.code = 0x69, .takes = 1, .start = begin_read, .next = read_data}, /* Read Data */ \
+		{.code = 0x6C, .takes = 1, .start = forget_lock, .byte = write_data}, \
+		{.code = 0x48, .takes = 1, .start = copy}, \
+		{.code = 0xB8, .takes = 1, .start = recall}, \
+	{ \
+		.code = 0x6A, .takes = 1, .start = lock \
+	}
+
+const struct sim_function sim_gauge_functions[] = {EEPROM_FUNCTIONS, {0}};
+const struct sim_function sim_ds2740_functions[] = {
+	{.code = 0x69, .takes = 1, .start = begin_read, .next = read_data},
+	{.code = 0x6C, .takes = 1, .start = forget_lock, .byte = write_data},
+	{0},
+};
+const struct sim_function sim_ds2770_functions[] = {
+	EEPROM_FUNCTIONS,
+	{.code = 0xB5, .start = start_charge},
+	{.code = 0xBE, .start = stop_charge},
+	{.code = 0x63, .start = refresh},
+	{0},
+};

@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Battery gauges with 256 addresses: DS2740, DS2751, DS2755, DS2760, DS2770, DS2780, DS2781 (data
+ * sheets), each a kind that says where the part has its registers. The DS2755's data sheet could
+ * not be had: it has the registers of the DS2756 here, without the suspend mode. Nor could the page
+ * of the DS2751's that has the power-on bit: the bit is where OWFS has it.
+ * The capacities that a DS2780 computes are not simulated, and its flags of them are inputs.
+ */
+#include "hal/sim/chips/gauge.h"
+#include "hal/sim/families.h"
+
+#define RULE(from, to, bits) \
+	{ \
+		.used = true, .first = (from), .last = (to), .write = (bits) \
+	}
+#define ACR RULE(ACCUMULATED, ACCUMULATED + 1, 0xFF)
+#define SRAM RULE(0x80, 0x8F, 0xFF)
+#define EEPROM_RULE(at) \
+	{ \
+		.used = true, .first = (at), .last = (at), .set = LOCK \
+	}
+
+static const struct gauge_kind ds2740 = {
+	.rules = {RULE(STATUS, STATUS, 0x50), RULE(0x08, 0x08, 0x40), ACR},
+	.special = 0x08,
+	.pio = 0x40,
+	.fine = true,
+};
+static const struct gauge_kind ds2751 = {
+	.block = {{0x20, 16}, {0x30, 16}},
+	.rules = {EEPROM_RULE(0x07),
+                  {.used = true, .first = 8, .last = 8, .write = 0x40, .clear = 1},
+                  ACR,
+                  SRAM},
+	.eeprom = 0x07,
+	.defaults = 0x38,
+	.from = 0x31,
+	.special = 0x08,
+	.pio = 0x40,
+	.por = 0x01,
+	.por_at = 0x08,
+	.celsius = 0x18,
+	.bias = 0x33,
+	.volt = 4.88e-3,
+};
+static const struct gauge_kind ds2755 = {
+	.block = {{0x20, 32}, {0x40, 32}, {0x60, 32}},
+	.rules = {EEPROM_RULE(0x07),
+                  {.used = true, .first = 8, .last = 8, .write = 0x44, .clear = 0x80},
+                  ACR,
+                  SRAM},
+	.eeprom = 0x07,
+	.defaults = 0xFF,
+	.from = 0x31,
+	.special = 0x08,
+	.pio = 0x40,
+	.por = 0x80,
+	.por_at = 0x08,
+	.celsius = 0x18,
+	.average = 0x1A,
+	.accumbias = 0x33,
+	.volt = 4.88e-3,
+};
+static const struct gauge_kind ds2760 = {
+	.block = {{0x20, 16}, {0x30, 16}},
+	.rules = {{.used = true,
+                   .first = 0,
+                   .last = 0,
+                   .write = CE | DE,
+                   .clear = OV | UV | COC | DOC},
+                  EEPROM_RULE(0x07),
+                  {.used = true, .first = 8, .last = 8, .write = 0x40, .set = 0x80},
+                  ACR,
+                  SRAM},
+	.eeprom = 0x07,
+	.defaults = 0x38,
+	.from = 0x31,
+	.special = 0x08,
+	.pio = 0x40,
+	.por = 0x80,
+	.por_at = 0x08,
+	.celsius = 0x18,
+	.bias = 0x33,
+	.volt = 4.88e-3,
+};
+static const struct gauge_kind ds2770 = {
+	.block = {{0x20, 16}, {0x30, 16}, {0x40, 8}},
+	.rules = {{.used = true, .first = STATUS, .last = STATUS, .clear = 0},
+                  RULE(0x02, 0x03, 0xFF),
+                  RULE(0x06, 0x06, 0xFF),
+                  EEPROM_RULE(0x07),
+                  ACR,
+                  SRAM},
+	.eeprom = 0x07,
+	.defaults = 0x33,
+	.from = 0x31,
+	.celsius = 0x18,
+	.bias = 0x32,
+	.wide_bias = true,
+	.fine = true,
+	.volt = 4.88e-3,
+};
+
+#define DS278X_RULES \
+	{ \
+		{.used = true, .first = STATUS, .last = STATUS, .clear = UVF | PORF}, ACR, \
+			RULE(0x14, 0x14, 0xFF), RULE(0x15, 0x15, 0x01), EEPROM_RULE(0x1F) \
+	}
+static const struct gauge_kind ds2780 = {
+	.block = {{0x20, 16}, {0x60, 32}},
+	.rules = DS278X_RULES,
+	.eeprom = 0x1F,
+	.special = 0x15,
+	.pio = 0x01,
+	.por = PORF,
+	.por_at = STATUS,
+	.celsius = 0x0A,
+	.average = 0x08,
+	.accumbias = 0x61,
+	.fine = true,
+	.keeps = true,
+	.volt = 4.88e-3,
+};
+static const struct gauge_kind ds2781 = {
+	.block = {{0x20, 16}, {0x60, 32}},
+	.rules = DS278X_RULES,
+	.eeprom = 0x1F,
+	.special = 0x15,
+	.pio = 0x01,
+	.por = PORF,
+	.por_at = STATUS,
+	.celsius = 0x0A,
+	.average = 0x08,
+	.bias = 0x7B,
+	.add_bias = true,
+	.accumbias = 0x61,
+	.fine = true,
+	.keeps = true,
+	.volt = 9.76e-3,
+};
+
+static void create(struct sim_slave *slave)
+{
+	static const struct {
+		uint8_t code;
+		const struct gauge_kind *kind;
+	} kinds[] = {{0x36, &ds2740}, {0x51, &ds2751}, {0x35, &ds2755}, {0x30, &ds2760},
+	             {0x2E, &ds2770}, {0x32, &ds2780}, {0x3D, &ds2781}};
+	struct gauge *s = sim_state(slave, gauge);
+
+	for (unsigned i = 0; i < sizeof(kinds) / sizeof(kinds[0]); i++)
+		if (kinds[i].code == slave->family->code)
+			s->kind = kinds[i].kind;
+	if (slave->family->code == 0x30) /* factory default: both are enabled */
+		s->eeprom[1][0] = CE | DE;
+}
+
+#define CONDITION(text) \
+	{ \
+		.name = (text), .pin = true \
+	}
+#define MEASURED \
+	[TEMPERATURE] = SIM_TEMPERATURE_INPUT, [VOLT] = {.name = "volt", .start = 3.7}, \
+	[VIS] = {.name = "vis"} /* mV across the resistor */
+
+static const struct sim_input inputs[] = {MEASURED, [PIN] = SIM_PIN("pin"), {0}};
+static const struct sim_input ds2760_inputs[] = {
+	MEASURED,
+	[PIN] = SIM_PIN("pin"),
+	[FLAGS] = CONDITION("overvoltage"),
+	CONDITION("undervoltage"),
+	CONDITION("charge_overcurrent"),
+	CONDITION("discharge_overcurrent"),
+	SIM_PIN("ps"),
+	{0},
+};
+static const struct sim_input ds2770_inputs[] = {
+	MEASURED,
+	[CHARGER] = CONDITION("charger"),
+	[FULL] = CONDITION("full"),
+	{0},
+};
+static const struct sim_input ds278x_inputs[] = {
+	MEASURED,
+	[PIN] = SIM_PIN("pin"),
+	[FLAGS] = CONDITION("charged"),
+	CONDITION("active_empty"),
+	CONDITION("standby_empty"),
+	CONDITION("learning"),
+	{0},
+};
+
+#define GAUGE(part, family, commands, measures) \
+	{ \
+		.name = (part), .code = (family), .state_size = sizeof(struct gauge), \
+		.functions = (commands), .inputs = (measures), .create = create, \
+		.power_on = sim_gauge_power_on, .worked = sim_gauge_worked, \
+		.advance = sim_gauge_advance, .memory = sim_gauge_memory \
+	}
+
+const struct sim_family sim_ds2740 = GAUGE("DS2740", 0x36, sim_ds2740_functions, inputs);
+const struct sim_family sim_ds2751 = GAUGE("DS2751", 0x51, sim_gauge_functions, inputs);
+const struct sim_family sim_ds2755 = GAUGE("DS2755", 0x35, sim_gauge_functions, inputs);
+const struct sim_family sim_ds2760 = GAUGE("DS2760", 0x30, sim_gauge_functions, ds2760_inputs);
+const struct sim_family sim_ds2770 = GAUGE("DS2770", 0x2E, sim_ds2770_functions, ds2770_inputs);
+const struct sim_family sim_ds2780 = GAUGE("DS2780", 0x32, sim_gauge_functions, ds278x_inputs);
+const struct sim_family sim_ds2781 = GAUGE("DS2781", 0x3D, sim_gauge_functions, ds278x_inputs);

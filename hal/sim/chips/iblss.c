@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * iButtonLink SmartSlave SS-WALL-TH: temperature and humidity. No data sheet can be had; the facts
+ * are those of OWFS's driver.
+ */
+#include <string.h>
+
+#include "hal/bus/time.h"
+#include "hal/sim/families.h"
+
+enum { TEMPERATURE, HUMIDITY }; /* inputs */
+/* Bytes of its page. */
+enum { SUBTYPE = 0, VERSION = 1, BUSY = 2, TEMPERATURE_AT = 4, HUMIDITY_AT = 6, VALID = 8 };
+enum { PAGE = 32 };
+
+/* The driver waits a second for a conversion. */
+#define CONVERT_NS (900 * NS_PER_MS)
+
+struct iblss {
+	uint8_t page[PAGE], led;
+	int64_t done; /* the conversion under way ends then; 0: none is */
+};
+
+static struct iblss *state(struct sim_slave *slave)
+{
+	return sim_state(slave, iblss);
+}
+
+static void power_on(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	*state(slave) = (struct iblss){.page = {[SUBTYPE] = 0x04, [VERSION] = 0x12}};
+}
+
+static void put(uint8_t *at, double value)
+{
+	int64_t whole = sim_round(value * 128);
+
+	at[0] = (uint8_t)(whole >> 8);
+	at[1] = (uint8_t)whole;
+}
+
+static void advance(struct sim_slave *slave, int64_t t)
+{
+	struct iblss *s = state(slave);
+
+	if (!s->done || t < s->done)
+		return;
+	put(s->page + TEMPERATURE_AT, sim_input_at(slave, TEMPERATURE, s->done));
+	put(s->page + HUMIDITY_AT, sim_input_at(slave, HUMIDITY, s->done));
+	s->page[BUSY] = 0;
+	s->page[VALID] = 1;
+	s->done = 0;
+	slave->conversions++;
+}
+
+static void convert(struct sim_slave *slave, int64_t t)
+{
+	state(slave)->page[BUSY] = 1;
+	state(slave)->done = t + CONVERT_NS;
+	sim_end(slave);
+}
+
+/* The checksum is that of the page alone. */
+static void read_page(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	if (slave->address) {
+		sim_end(slave);
+		return;
+	}
+	slave->crc = 0;
+	sim_send_checked(slave, state(slave)->page, PAGE);
+}
+
+static void set_led(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	if (slave->taken[0] == 0)
+		state(slave)->led = slave->taken[1];
+	sim_end(slave);
+}
+
+static uint8_t *memory(struct sim_slave *slave, size_t *size)
+{
+	*size = 1;
+	return &state(slave)->led;
+}
+
+static const struct sim_function functions[] = {
+	{.code = 0xB4, .start = convert},
+	{.code = 0xF0, .takes = 1, .start = read_page},
+	{.code = 0xA5, .takes = 2, .start = set_led},
+	{0},
+};
+
+static const struct sim_input inputs[] = {
+	[TEMPERATURE] = SIM_TEMPERATURE_INPUT,
+	[HUMIDITY] = {.name = "humidity", .start = 50, .least = 0, .most = 100},
+	{0},
+};
+
+const struct sim_family sim_iblss = {
+	.name = "IBLSS",
+	.code = 0xFE,
+	.state_size = sizeof(struct iblss),
+	.functions = functions,
+	.inputs = inputs,
+	.power_on = power_on,
+	.advance = advance,
+	.memory = memory,
+};

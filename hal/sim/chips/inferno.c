@@ -1,0 +1,488 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Soft devices of Inferno Embedded: RGBW controller, switch master, firmware updater. No data sheet
+ * can be had; the facts are those of OWFS's driver and manual page. A command is followed by its
+ * bytes and a CRC8 of the ROM id, the command and them; the device answers 0 if that is right, then
+ * data without a checksum. Numbers have their low byte first.
+ */
+#include <string.h>
+
+#include "hal/bus/time.h"
+#include "hal/sim/crc.h"
+#include "hal/sim/families.h"
+
+enum kind { RGBW = 1, UPDATER, SWITCHES };
+enum { LEDS = 4, PORTS = 2, CHANNELS = 4, RELAYS = CHANNELS, FIRMWARE = 2048 };
+enum { START = 0x2000, BLOCK = 1024, WRITTEN = 8 }; /* WRITTEN: bytes ahead of those of a block */
+enum { BOOT_UPDATER = 0xFC, STATUS, VERSION, DEVICE };
+enum { POWER_ON = 0x01, ACTIVATED = 0x02, FAIL = 0x02, SUCCESS = 0x04 }; /* status */
+
+struct light {
+	uint8_t from[4], to[4], next[4];
+	uint32_t fade_ms, next_ms;
+	int64_t since;
+};
+
+struct inferno {
+	enum kind kind, application;
+	uint8_t status;
+	uint8_t taken[WRITTEN + 1 + BLOCK + 4];
+	uint16_t got;
+	struct light light[LEDS];
+	uint8_t led[PORTS], type[PORTS][CHANNELS], active[PORTS], level[PORTS];
+	uint8_t relay[3][RELAYS]; /* states, modes, timeouts */
+	uint8_t firmware[FIRMWARE];
+};
+
+struct command {
+	uint8_t code, args;
+	void (*answer)(struct sim_slave *slave, const uint8_t *args, int64_t t);
+};
+
+static struct inferno *state(struct sim_slave *slave)
+{
+	return sim_state(slave, inferno);
+}
+
+/* 0, and n bytes. */
+static void ok(struct sim_slave *slave, const uint8_t *data, unsigned n)
+{
+	uint8_t out[1 + 16] = {0};
+
+	if (n)
+		memcpy(out + 1, data, n);
+	sim_send(slave, out, 1 + n);
+}
+
+static void refuse(struct sim_slave *slave)
+{
+	sim_send_byte(slave, 1);
+}
+
+static void put32(uint8_t *at, uint32_t value)
+{
+	for (unsigned i = 0; i < 4; i++)
+		at[i] = (uint8_t)(value >> (8 * i));
+}
+
+static uint32_t get32(const uint8_t *at)
+{
+	return at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
+}
+
+/* What a light shows; returns the ms that its fade still takes. */
+static uint32_t shown(const struct light *light, uint8_t colour[4], int64_t t)
+{
+	int64_t gone = (t - light->since) / NS_PER_MS;
+	uint32_t left = gone < light->fade_ms ? light->fade_ms - (uint32_t)gone : 0;
+
+	for (unsigned i = 0; i < 4; i++) {
+		int step = light->from[i] - light->to[i];
+
+		colour[i] = light->to[i];
+		if (left)
+			colour[i] = (uint8_t)(light->to[i] + (int64_t)step * left / light->fade_ms);
+	}
+	return left;
+}
+
+static void all_off(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	(void)args;
+	(void)t;
+	memset(state(slave)->light, 0, sizeof(state(slave)->light));
+	ok(slave, NULL, 0);
+}
+
+static void count_lights(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	(void)args;
+	(void)t;
+	ok(slave, (const uint8_t[]){LEDS}, 1);
+}
+
+static void set_light(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	struct light *light = state(slave)->light + args[0] % LEDS;
+
+	(void)t;
+	if (args[0] >= LEDS) {
+		refuse(slave);
+		return;
+	}
+	memcpy(light->next, args + 1, 4);
+	light->next_ms = args[5] | (uint32_t)args[6] << 8 | (uint32_t)args[7] << 16;
+	ok(slave, NULL, 0);
+}
+
+static void get_light(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	uint8_t out[8];
+
+	if (args[0] >= LEDS) {
+		refuse(slave);
+		return;
+	}
+	put32(out + 4, shown(state(slave)->light + args[0], out, t));
+	ok(slave, out, 7);
+}
+
+static void commit(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	(void)args;
+	for (unsigned i = 0; i < LEDS; i++) {
+		struct light *light = state(slave)->light + i;
+
+		if (memcmp(light->next, light->to, 4) == 0)
+			continue;
+		shown(light, light->from, t);
+		memcpy(light->to, light->next, 4);
+		light->fade_ms = light->next_ms;
+		light->since = t;
+	}
+	ok(slave, NULL, 0);
+}
+
+static const struct command of_rgbw[] = {
+	{0x01, 0, all_off},   {0x02, 0, count_lights}, {0x03, 8, set_light},
+	{0x04, 1, get_light}, {0x05, 0, commit},       {0},
+};
+
+static void bootloader_size(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	uint8_t out[4];
+
+	(void)args;
+	(void)t;
+	put32(out, START);
+	ok(slave, out, 4);
+}
+
+static void range(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	uint8_t out[8];
+
+	(void)args;
+	(void)t;
+	put32(out, START);
+	put32(out + 4, START + FIRMWARE);
+	ok(slave, out, 8);
+}
+
+static void erase(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	(void)args;
+	(void)t;
+	memset(state(slave)->firmware, 0xFF, FIRMWARE);
+	state(slave)->status = SUCCESS;
+	ok(slave, NULL, 0);
+}
+
+static void boot_application(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	(void)args;
+	(void)t;
+	state(slave)->kind = state(slave)->application;
+	ok(slave, NULL, 0);
+}
+
+/* A part of the firmware: an address and a number of bytes. */
+static uint8_t *part(struct sim_slave *slave, const uint8_t *args, unsigned *n)
+{
+	uint32_t at = get32(args);
+
+	*n = get32(args + 4);
+	if (at < START || at >= START + FIRMWARE || *n > START + FIRMWARE - at)
+		return NULL;
+	return state(slave)->firmware + (at - START);
+}
+
+static void write_block(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	unsigned n;
+
+	(void)t;
+	if (!part(slave, args, &n) || !n || n > BLOCK)
+		refuse(slave);
+	else
+		ok(slave, NULL, 0); /* the block may come: take_block */
+}
+
+static void firmware_crc(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	unsigned n;
+	const uint8_t *from = part(slave, args, &n);
+	uint16_t crc = from ? sim_crc16(0, from, n) : 0;
+
+	(void)t;
+	if (from)
+		ok(slave, (const uint8_t[]){(uint8_t)crc, (uint8_t)(crc >> 8)}, 2);
+	else
+		refuse(slave);
+}
+
+static const struct command of_updater[] = {
+	{0x00, 0, bootloader_size},
+	{0x01, 0, erase},
+	{0x04, 0, range},
+	{0x05, 0, boot_application},
+	{0x06, 8, write_block},
+	{0x07, 8, firmware_crc},
+	{0},
+};
+
+/* Switches, LEDs (one bit a channel), relays: ports and channels. */
+static void count_ports(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	(void)args;
+	(void)t;
+	ok(slave, (const uint8_t[]){slave->function->code == 0x03 ? 1 : PORTS, CHANNELS}, 2);
+}
+
+static void set_switch_type(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	(void)t;
+	if (args[0] >= PORTS || args[1] >= CHANNELS || args[2] > 3) {
+		refuse(slave);
+		return;
+	}
+	state(slave)->type[args[0]][args[1]] = args[2];
+	state(slave)->active[args[0]] &= (uint8_t) ~(1u << args[1]);
+	ok(slave, NULL, 0);
+}
+
+static void activated(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	struct inferno *s = state(slave);
+
+	(void)args;
+	(void)t;
+	ok(slave, s->active, PORTS);
+	for (unsigned port = 0; port < PORTS; port++)
+		for (unsigned i = 0; i < CHANNELS; i++)
+			if (s->type[port][i] >= 2) /* momentary */
+				s->active[port] &= (uint8_t) ~(1u << i);
+	s->status &= (uint8_t)~ACTIVATED;
+}
+
+static void set_led(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	uint8_t *led = state(slave)->led + args[0] % PORTS;
+
+	(void)t;
+	if (args[0] >= PORTS || args[1] >= CHANNELS) {
+		refuse(slave);
+		return;
+	}
+	*led = (uint8_t)((*led & ~(1u << args[1])) | (args[2] ? 1u << args[1] : 0));
+	ok(slave, NULL, 0);
+}
+
+static void get_led(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	(void)t;
+	if (args[0] < PORTS)
+		ok(slave, state(slave)->led + args[0], 1);
+	else
+		refuse(slave);
+}
+
+/* 09h mode, 0Ah timeout, 0Bh state; 0Ch states, 0Dh modes, 0Eh timeouts. */
+static void set_relay(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	static const uint8_t which[] = {1, 2, 0};
+
+	(void)t;
+	if (args[0] || args[1] >= RELAYS) {
+		refuse(slave);
+		return;
+	}
+	state(slave)->relay[which[slave->function->code - 0x09]][args[1]] = args[2];
+	ok(slave, NULL, 0);
+}
+
+static void get_relays(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	(void)args;
+	(void)t;
+	ok(slave, state(slave)->relay[slave->function->code - 0x0C], RELAYS);
+}
+
+static const struct command of_switches[] = {
+	{0x01, 0, count_ports}, {0x02, 0, count_ports},
+	{0x03, 0, count_ports}, {0x04, 3, set_switch_type},
+	{0x06, 0, activated},   {0x07, 3, set_led},
+	{0x08, 1, get_led},     {0x09, 3, set_relay},
+	{0x0A, 3, set_relay},   {0x0B, 3, set_relay},
+	{0x0C, 0, get_relays},  {0x0D, 0, get_relays},
+	{0x0E, 0, get_relays},  {0},
+};
+
+static void boot_updater(struct sim_slave *slave, const uint8_t *args, int64_t t)
+{
+	(void)args;
+	(void)t;
+	state(slave)->kind = UPDATER;
+	state(slave)->status = POWER_ON;
+	sim_end(slave);
+}
+
+static const struct command *find(struct sim_slave *slave)
+{
+	static const struct command *const tables[] = {
+		[RGBW] = of_rgbw, [UPDATER] = of_updater, [SWITCHES] = of_switches};
+	static const struct command boot = {BOOT_UPDATER, 0, boot_updater};
+	const struct command *c = tables[state(slave)->kind];
+
+	if (slave->function->code == BOOT_UPDATER)
+		return &boot;
+	while (c->answer && c->code != slave->function->code)
+		c++;
+	return c->answer ? c : NULL;
+}
+
+static void begin(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	state(slave)->got = 0;
+	if (!find(slave))
+		sim_end(slave);
+}
+
+/* The bytes of a block and their CRC16, four bytes of which two count. */
+static void take_block(struct sim_slave *slave)
+{
+	struct inferno *s = state(slave);
+	const uint8_t *block = s->taken + WRITTEN + 1;
+	unsigned n;
+	uint8_t *to = part(slave, s->taken, &n);
+	bool good;
+
+	if (s->got < WRITTEN + 1 + n + 4)
+		return;
+	good = sim_crc16(0, block, n) == (block[n] | block[n + 1] << 8);
+	s->status = good ? SUCCESS : FAIL;
+	if (good)
+		memcpy(to, block, n);
+	sim_send_byte(slave, !good);
+}
+
+static void take(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	struct inferno *s = state(slave);
+	const struct command *c = find(slave);
+	uint8_t crc;
+
+	s->taken[s->got++] = byte;
+	if (!c || s->got <= c->args)
+		return;
+	if (s->got > c->args + 1) {
+		take_block(slave);
+		return;
+	}
+	crc = sim_crc8(0, slave->rom, 8);
+	crc = sim_crc8(crc, &c->code, 1);
+	if (sim_crc8(crc, s->taken, c->args) == byte)
+		c->answer(slave, s->taken, t);
+	else
+		refuse(slave);
+}
+
+/* The block that a command has announced may come. */
+static void answered(struct sim_slave *slave, int64_t t)
+{
+	const struct inferno *s = state(slave);
+
+	(void)t;
+	if (s->kind == UPDATER && slave->function->code == 0x06 && s->got == WRITTEN + 1 &&
+	    slave->send[0] == 0)
+		sim_receive(slave);
+}
+
+static void identity(struct sim_slave *slave, int64_t t)
+{
+	uint8_t out[8] = {0};
+
+	(void)t;
+	if (slave->function->code == STATUS)
+		out[0] = state(slave)->status;
+	else
+		put32(out, slave->function->code == DEVICE ? (uint32_t)state(slave)->kind : 7);
+	sim_send(slave, out, slave->function->code == STATUS ? 8 : 4);
+}
+
+static void create(struct sim_slave *slave)
+{
+	struct inferno *s = state(slave);
+
+	s->application = slave->family == &sim_inferno_rgbw      ? RGBW
+	                 : slave->family == &sim_inferno_updater ? UPDATER
+	                                                         : SWITCHES;
+}
+
+static void power_on(struct sim_slave *slave, int64_t t)
+{
+	struct inferno *s = state(slave);
+
+	(void)t;
+	s->kind = s->application;
+	s->status = POWER_ON;
+	memset(s->light, 0, sizeof(s->light));
+	memset(s->led, 0, sizeof(s->led));
+	memset(s->active, 0, sizeof(s->active));
+	memset(s->relay[0], 0, RELAYS);
+}
+
+/* Types 0 and 2 are switches to VCC, 1 and 3 to ground; 2 and 3 are momentary, and latched. */
+static void advance(struct sim_slave *slave, int64_t t)
+{
+	struct inferno *s = state(slave);
+
+	for (unsigned i = 0; slave->family->inputs && i < PORTS * CHANNELS; i++) {
+		unsigned port = i / CHANNELS, channel = i % CHANNELS;
+		uint8_t type = s->type[port][channel], bit = (uint8_t)(1u << channel);
+		bool on = (sim_input_at(slave, i, t) >= 0.5) != (type & 1);
+
+		if (on && !(s->active[port] & bit))
+			s->status |= ACTIVATED;
+		if (on)
+			s->active[port] |= bit;
+		else if (type < 2)
+			s->active[port] &= (uint8_t)~bit;
+	}
+}
+
+#define COMMAND(code_) \
+	{ \
+		.code = (code_), .start = begin, .byte = take, .next = answered \
+	}
+#define IDENTITY(code_) \
+	{ \
+		.code = (code_), .start = identity \
+	}
+static const struct sim_function functions[] = {
+	COMMAND(0x00),         COMMAND(0x01),    COMMAND(0x02),     COMMAND(0x03),    COMMAND(0x04),
+	COMMAND(0x05),         COMMAND(0x06),    COMMAND(0x07),     COMMAND(0x08),    COMMAND(0x09),
+	COMMAND(0x0A),         COMMAND(0x0B),    COMMAND(0x0C),     COMMAND(0x0D),    COMMAND(0x0E),
+	COMMAND(BOOT_UPDATER), IDENTITY(STATUS), IDENTITY(VERSION), IDENTITY(DEVICE), {0},
+};
+
+#define SWITCH(text) \
+	{ \
+		.name = (text), .pin = true \
+	}
+static const struct sim_input switches[] = {
+	SWITCH("switch.0.0"), SWITCH("switch.0.1"), SWITCH("switch.0.2"),
+	SWITCH("switch.0.3"), SWITCH("switch.1.0"), SWITCH("switch.1.1"),
+	SWITCH("switch.1.2"), SWITCH("switch.1.3"), {0}};
+
+#define INFERNO(part, inputs_) \
+	{ \
+		.name = (part), .code = 0xED, .resume = true, .inputs = (inputs_), \
+		.state_size = sizeof(struct inferno), .functions = functions, .create = create, \
+		.power_on = power_on, .advance = advance \
+	}
+
+const struct sim_family sim_inferno_switches = INFERNO("IE_SWITCH_MASTER", switches);
+const struct sim_family sim_inferno_rgbw = INFERNO("IE_RGBW", NULL);
+const struct sim_family sim_inferno_updater = INFERNO("IE_UPDATER", NULL);

@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * MAX31888 and MAX30207: thermometers with a FIFO of 32 results. From the maker's summary of the
+ * MAX30207, published drivers of both, and the register map of the MAX31889, which is the same chip
+ * with I2C; no whole data sheet was at hand. A conversion begins when the two bytes of the CRC16
+ * after Convert T have been read. What an empty FIFO gives is not stated: here the last result.
+ * The conditional search and the GPIO pins are not simulated.
+ */
+#include <string.h>
+
+#include "hal/bus/time.h"
+#include "hal/sim/families.h"
+
+/* Registers. */
+enum {
+	STATUS = 0x00,
+	WRITE_POINTER = 0x04,
+	READ_POINTER = 0x05,
+	OVERFLOWS = 0x06,
+	RESULTS = 0x07,
+	FIFO = 0x08,
+	FIFO_CONFIGURATION = 0x0A,
+	SYSTEM = 0x0C,
+	ALARM_HIGH = 0x10,
+	ALARM_LOW = 0x12,
+	SETUP = 0x14,
+	PART = 0xFF,
+};
+enum { READY = 0x01, TOO_HIGH = 0x02, TOO_LOW = 0x04 }; /* STATUS, until it is read */
+enum { FLUSH = 0x10, RESET = 0x01 };
+enum { DEPTH = 32 };
+
+/* The longest of 16 bits: 17.85 ms. */
+#define CONVERT_NS (17850 * INT64_C(1000))
+/* "T = value x 0.005" */
+#define PER_DEGREE 200
+
+struct max31888 {
+	uint8_t reg[256];
+	uint16_t fifo[DEPTH];
+	bool second; /* the low byte of the result is the next to be read */
+};
+
+static struct max31888 *state(struct sim_slave *slave)
+{
+	return sim_state(slave, max31888);
+}
+
+static int16_t word(const uint8_t *at)
+{
+	return (int16_t)(at[0] << 8 | at[1]);
+}
+
+static void power_on(struct sim_slave *slave, int64_t t)
+{
+	struct max31888 *s = state(slave);
+
+	(void)t;
+	memset(s, 0, sizeof(*s));
+	s->reg[ALARM_HIGH] = 0x7F;
+	s->reg[ALARM_HIGH + 1] = 0xFF;
+	s->reg[ALARM_LOW] = 0x80;
+	s->reg[SETUP] = 0xC0;
+	s->reg[PART] = slave->family == &sim_max30207 ? 0x30 : 0x31;
+}
+
+static void worked(struct sim_slave *slave, int64_t t)
+{
+	struct max31888 *s = state(slave);
+	int16_t result = (int16_t)sim_round(sim_input_at(slave, 0, t) * PER_DEGREE);
+
+	slave->conversions++;
+	s->reg[STATUS] |= READY;
+	if (result > word(s->reg + ALARM_HIGH))
+		s->reg[STATUS] |= TOO_HIGH;
+	if (result < word(s->reg + ALARM_LOW))
+		s->reg[STATUS] |= TOO_LOW;
+	if (s->reg[RESULTS] == DEPTH) { /* it is full: the new one is lost */
+		s->reg[OVERFLOWS] += s->reg[OVERFLOWS] < DEPTH - 1;
+		return;
+	}
+	s->fifo[s->reg[WRITE_POINTER]] = (uint16_t)result;
+	s->reg[WRITE_POINTER] = (uint8_t)((s->reg[WRITE_POINTER] + 1) % DEPTH);
+	s->reg[RESULTS]++;
+}
+
+/* The next byte of the FIFO; its register does not move on. */
+static uint8_t take(struct max31888 *s)
+{
+	unsigned at = s->reg[READ_POINTER];
+
+	if (!s->reg[RESULTS])
+		at = (at + DEPTH - 1) % DEPTH;
+	s->second = !s->second;
+	if (s->second)
+		return (uint8_t)(s->fifo[at] >> 8);
+	if (s->reg[RESULTS]) {
+		s->reg[RESULTS]--;
+		s->reg[OVERFLOWS] = 0;
+		s->reg[READ_POINTER] = (uint8_t)((at + 1) % DEPTH);
+	}
+	return (uint8_t)s->fifo[at];
+}
+
+static uint8_t read_byte(struct max31888 *s, unsigned at)
+{
+	uint8_t byte = s->reg[at & 0xFF];
+
+	if (at == FIFO)
+		return take(s);
+	if (at == STATUS)
+		s->reg[STATUS] = 0;
+	return byte;
+}
+
+/* Command, register, and the count of bytes less one. */
+static void read_registers(struct sim_slave *slave, int64_t t)
+{
+	struct max31888 *s = state(slave);
+	unsigned at = slave->taken[0], n = slave->taken[1] + 1u;
+	uint8_t out[SIM_MAX_SEND - 2];
+
+	(void)t;
+	if (n > sizeof(out))
+		n = sizeof(out);
+	s->second = false;
+	for (unsigned i = 0; i < n; i++) {
+		out[i] = read_byte(s, at);
+		at += at != FIFO;
+	}
+	sim_send_checked(slave, out, n);
+}
+
+static void begin_write(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	slave->address = slave->taken[0];
+}
+
+static void flush(struct max31888 *s)
+{
+	s->reg[WRITE_POINTER] = s->reg[READ_POINTER] = 0;
+	s->reg[OVERFLOWS] = s->reg[RESULTS] = s->reg[STATUS] = 0;
+}
+
+static void write_registers(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	struct max31888 *s = state(slave);
+	unsigned at = slave->address++;
+
+	if (at == FIFO_CONFIGURATION && (byte & FLUSH))
+		flush(s);
+	if (at == SYSTEM && (byte & RESET))
+		power_on(slave, t);
+	if (at == SETUP && (byte & 1)) /* CONVERT_T clears itself */
+		sim_work(slave, CONVERT_NS, t);
+	if (at == FIFO_CONFIGURATION)
+		s->reg[at] = byte & (uint8_t)~FLUSH;
+	else if (at == SETUP)
+		s->reg[at] = byte & 0xFE;
+	else if (at != STATUS && at != SYSTEM && at < PART && (at < WRITE_POINTER || at > FIFO))
+		s->reg[at] = byte;
+	if (slave->address == slave->taken[0] + slave->taken[1] + 1u)
+		sim_send_checked(slave, NULL, 0);
+}
+
+static void confirm(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	sim_send_checked(slave, NULL, 0);
+}
+
+static void checksum_was_read(struct sim_slave *slave, int64_t t)
+{
+	sim_work(slave, CONVERT_NS, t);
+}
+
+static void reset_was_confirmed(struct sim_slave *slave, int64_t t)
+{
+	power_on(slave, t);
+	sim_end(slave);
+}
+
+/* No slot shows that it converts. */
+static bool bit(struct sim_slave *slave, int64_t t)
+{
+	(void)slave;
+	(void)t;
+	return true;
+}
+
+static const struct sim_function functions[] = {
+	{.code = 0x44, .start = confirm, .next = checksum_was_read},
+	{.code = 0x82, .start = confirm, .next = reset_was_confirmed}, /* Soft Reset */
+	{.code = 0x33, .takes = 2, .start = read_registers},
+	{.code = 0xCC, .takes = 2, .start = begin_write, .byte = write_registers},
+	{0},
+};
+
+static const struct sim_input max31888_inputs[] = {
+	{.name = "temperature", .start = 20, .least = -40, .most = 125}, {0}};
+static const struct sim_input max30207_inputs[] = {
+	{.name = "temperature", .start = 20, .least = -40, .most = 85}, {0}};
+
+#define THERMOMETER(part, input) \
+	{ \
+		.name = (part), .code = 0x54, .starves = true, \
+		.state_size = sizeof(struct max31888), .functions = functions, .inputs = (input), \
+		.power_on = power_on, .worked = worked, .bit = bit \
+	}
+
+const struct sim_family sim_max31888 = THERMOMETER("MAX31888", max31888_inputs);
+const struct sim_family sim_max30207 = THERMOMETER("MAX30207", max30207_inputs);

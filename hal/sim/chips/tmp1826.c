@@ -1,0 +1,324 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * TMP1826 and TMP1827 (data sheets SBOSA45, SBOSA15): a thermometer of 16 bits with 2 kbit of
+ * EEPROM. They answer with the family code of the DS2438. The command codes are those of the data
+ * sheets' tables and of published drivers; the time of a write is not in what could be had and is
+ * taken as 21 ms. Not simulated: pins, flexible addresses, arbitration, the modes in which the chip
+ * converts by itself, the TMP1827's SHA-256.
+ */
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+#include "hal/bus/time.h"
+#include "hal/sim/chips/tmp1826.h"
+#include "hal/sim/crc.h"
+#include "hal/sim/families.h"
+
+/* Configuration 1, configuration 2, status. */
+enum { TEMP_FMT = 0x80, ALWAYS = 0x40, LONG = 0x20, ALERT_MODE = 0x10, AVERAGE = 0x08 };
+enum { OD_EN = 0x80, LOCK_EN = 0x01 };
+enum { ALERT_HIGH = 0x80, ALERT_LOW = 0x40, RESERVED = 0x30, DATA_VALID = 0x08, FED_BY_BUS = 0x04 };
+enum { KEY = 0xA5, LOCK_PAGE = 0x80, LOCK_CODE = 0x55 };
+enum work { CONVERSION, COPY_SETTINGS, COPY_MEMORY };
+
+#define DELAY_NS 300000  /* tDELAY */
+#define SHORT_NS 3370000 /* tACT with CONV_TIME_SEL 0 and 1, at most */
+#define LONG_NS 6120000
+#define PROGRAM_NS (21 * NS_PER_MS)
+
+static struct sim_tmp1826 *state(struct sim_slave *slave)
+{
+	return sim_state(slave, sim_tmp1826);
+}
+
+static void create(struct sim_slave *slave)
+{
+	static const uint8_t factory[SIM_TMP1826_SETTINGS] = {
+		ALWAYS | LONG | ALERT_MODE, OD_EN, 0, 0x00, 0x00, 0xF0, 0x07};
+	struct sim_tmp1826 *s = state(slave);
+
+	memcpy(s->stored, factory, sizeof(factory));
+	memset(s->memory, 0xFF, sizeof(s->memory));
+}
+
+static void power_on(struct sim_slave *slave, int64_t t)
+{
+	struct sim_tmp1826 *s = state(slave);
+
+	(void)t;
+	memcpy(s->settings, s->stored, sizeof(s->settings));
+	s->temperature = 0;
+	s->status = 0;
+	s->target = SIM_TMP1826_NOWHERE;
+}
+
+/* A register of two bytes in 1/128 degrees, whatever the format. */
+static int in_128ths(const struct sim_tmp1826 *s, const uint8_t *at)
+{
+	int raw = (int16_t)(at[0] | at[1] << 8);
+
+	return s->settings[0] & TEMP_FMT ? raw : raw * 8;
+}
+
+static void measure(struct sim_slave *slave, int64_t t)
+{
+	struct sim_tmp1826 *s = state(slave);
+	double celsius = sim_input_at(slave, 0, t);
+	int raw;
+
+	celsius = celsius < -55 ? -55 : celsius > 150 ? 150 : celsius;
+	raw = (int)sim_round(celsius * 128) + in_128ths(s, s->settings + 7);
+	s->status &= (uint8_t) ~(s->settings[0] & ALERT_MODE ? ALERT_HIGH | ALERT_LOW : 0);
+	if (raw >= in_128ths(s, s->settings + 5))
+		s->status |= ALERT_HIGH;
+	if (raw <= in_128ths(s, s->settings + 3))
+		s->status |= ALERT_LOW;
+	s->status |= DATA_VALID;
+	s->temperature = (int16_t)(s->settings[0] & TEMP_FMT ? raw : (int)floor(raw / 8.0));
+	slave->conversions++;
+}
+
+static bool is_locked(const struct sim_tmp1826 *s)
+{
+	return s->locked_pages >> (s->target / SIM_TMP1826_PAGE) & 1;
+}
+
+static void worked(struct sim_slave *slave, int64_t t)
+{
+	struct sim_tmp1826 *s = state(slave);
+
+	switch (s->work) {
+	case CONVERSION:
+		measure(slave, t);
+		break;
+	case COPY_SETTINGS:
+		memcpy(s->stored, s->settings, sizeof(s->stored));
+		break;
+	case COPY_MEMORY:
+		if (s->target >> 8 == LOCK_PAGE && s->second[0] == LOCK_CODE)
+			s->locked_pages |= (uint8_t)(1u << (s->target & 7));
+		else if (s->target < SIM_TMP1826_MEMORY && !is_locked(s))
+			memcpy(s->memory + s->target, s->second, SIM_TMP1826_BLOCK);
+		break;
+	}
+}
+
+/* The host has to leave the bus idle meanwhile: no data sheet promises a busy slot. */
+static bool bit(struct sim_slave *slave, int64_t t)
+{
+	(void)slave;
+	(void)t;
+	return true;
+}
+
+static void work(struct sim_slave *slave, enum work what, int64_t takes, int64_t t)
+{
+	state(slave)->work = what;
+	sim_work(slave, takes, t);
+}
+
+static void convert(struct sim_slave *slave, int64_t t)
+{
+	const uint8_t config = state(slave)->settings[0];
+	int64_t takes = config & LONG ? LONG_NS : SHORT_NS;
+
+	work(slave, CONVERSION, DELAY_NS + (config & AVERAGE ? 8 * takes : takes), t);
+}
+
+static void copy_settings(struct sim_slave *slave, int64_t t)
+{
+	work(slave, COPY_SETTINGS, PROGRAM_NS, t);
+}
+
+/* Two times eight bytes, each with its checksum. */
+static void read_scratchpad(struct sim_slave *slave, int64_t t)
+{
+	struct sim_tmp1826 *s = state(slave);
+	uint8_t *out = s->sent;
+
+	(void)t;
+	memset(out, 0xFF, sizeof(s->sent));
+	out[0] = (uint8_t)s->temperature;
+	out[1] = (uint8_t)(s->temperature >> 8);
+	out[2] = (uint8_t)(s->status | RESERVED | (slave->parasite ? FED_BY_BUS : 0) |
+	                   (s->settings[1] & LOCK_EN));
+	memcpy(out + 4, s->settings, 3);
+	out[8] = sim_crc8(0, out, 8);
+	memcpy(out + 9, s->settings + 3, 6);
+	out[17] = sim_crc8(0, out + 9, 8);
+	slave->address = 0;
+	sim_send_byte(slave, out[0]);
+}
+
+/* The flags are cleared when the status register was read. */
+static void read_more(struct sim_slave *slave, int64_t t)
+{
+	struct sim_tmp1826 *s = state(slave);
+
+	(void)t;
+	if (slave->address == 2)
+		s->status = 0;
+	if (++slave->address < sizeof(s->sent))
+		sim_send_byte(slave, s->sent[slave->address]);
+}
+
+static void begin_settings(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	slave->address = 0;
+}
+
+static void write_settings(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	struct sim_tmp1826 *s = state(slave);
+	unsigned at = slave->address++;
+
+	(void)t;
+	s->sent[at] = byte;
+	if (at == 1)
+		byte |= OD_EN;
+	if (!(s->settings[1] & LOCK_EN))
+		s->settings[at] = byte;
+	if (at == SIM_TMP1826_SETTINGS - 1)
+		sim_send_byte(slave, sim_crc8(0, s->sent, SIM_TMP1826_SETTINGS));
+}
+
+/* --- The memory: blocks of 8 bytes by a second scratchpad; its addresses begin with the MSB. -- */
+
+static uint16_t address(const struct sim_slave *slave)
+{
+	return (uint16_t)(slave->taken[0] << 8 | slave->taken[1]);
+}
+
+static void begin_block(struct sim_slave *slave, int64_t t)
+{
+	struct sim_tmp1826 *s = state(slave);
+
+	(void)t;
+	s->target = address(slave);
+	if (s->target < SIM_TMP1826_MEMORY)
+		s->target &= (uint16_t) ~(SIM_TMP1826_BLOCK - 1);
+	slave->address = 0;
+}
+
+/* The checksum is that of the address and the bytes; of a page lock there is one byte. */
+static void send_block_crc(struct sim_slave *slave, unsigned n)
+{
+	uint8_t crc = sim_crc8(0, slave->taken, 2);
+
+	sim_send_byte(slave, sim_crc8(crc, state(slave)->second, n));
+}
+
+static void write_block(struct sim_slave *slave, uint8_t byte, int64_t t)
+{
+	struct sim_tmp1826 *s = state(slave);
+	unsigned n = s->target >> 8 == LOCK_PAGE ? 1 : SIM_TMP1826_BLOCK;
+
+	(void)t;
+	s->second[slave->address++] = byte;
+	if (slave->address == n)
+		send_block_crc(slave, n);
+}
+
+static void read_block(struct sim_slave *slave, int64_t t)
+{
+	struct sim_tmp1826 *s = state(slave);
+	unsigned n = s->target >> 8 == LOCK_PAGE ? 1 : SIM_TMP1826_BLOCK;
+
+	(void)t;
+	if (address(slave) != s->target) {
+		sim_end(slave);
+		return;
+	}
+	slave->address = 0;
+	sim_send(slave, s->second, n);
+}
+
+static void end_block(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	if (slave->address++ == 0)
+		send_block_crc(slave,
+		               state(slave)->target >> 8 == LOCK_PAGE ? 1 : SIM_TMP1826_BLOCK);
+}
+
+static void copy_block(struct sim_slave *slave, int64_t t)
+{
+	if (slave->taken[0] == KEY && state(slave)->target != SIM_TMP1826_NOWHERE)
+		work(slave, COPY_MEMORY, PROGRAM_NS, t);
+	else
+		sim_end(slave);
+}
+
+/* No checksum. Each block begins after tIDLE, in which the line stays high: not simulated. */
+static void send_memory(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	sim_send_memory(slave, state(slave)->memory, SIM_TMP1826_MEMORY, 0);
+}
+
+static void read_memory(struct sim_slave *slave, int64_t t)
+{
+	slave->address = address(slave) & (uint16_t) ~(SIM_TMP1826_BLOCK - 1);
+	send_memory(slave, t);
+}
+
+static const struct sim_function functions[] = {
+	{.code = 0x44, .start = convert},
+	/* Write, Read, Copy Scratchpad-1: temperature and settings */
+	{.code = 0x4E, .start = begin_settings, .byte = write_settings},
+	{.code = 0xBE, .start = read_scratchpad, .next = read_more},
+	{.code = 0x48, .start = copy_settings},
+	/* Write, Read, Copy Scratchpad-2, Read EEPROM */
+	{.code = 0x0F, .takes = 2, .start = begin_block, .byte = write_block},
+	{.code = 0xAA, .takes = 2, .start = read_block, .next = end_block},
+	{.code = 0x55, .takes = 1, .start = copy_block},
+	{.code = 0xF0, .takes = 2, .start = read_memory, .next = send_memory},
+	{0},
+};
+
+static bool alarm(struct sim_slave *slave, int64_t t)
+{
+	(void)t;
+	return (state(slave)->status & (ALERT_HIGH | ALERT_LOW)) != 0;
+}
+
+/* Which settings the EEPROM holds: "precise" is the format, "averaging" that of 8 conversions. */
+static int option(struct sim_slave *slave, const char *name, double value)
+{
+	uint8_t flag = strcmp(name, "precise") == 0     ? TEMP_FMT
+	               : strcmp(name, "averaging") == 0 ? AVERAGE
+	                                                : 0;
+
+	if (!flag)
+		return -ENOENT;
+	if (value != 0 && value != 1)
+		return -ERANGE;
+	state(slave)->stored[0] &= (uint8_t)~flag;
+	if (value == 1)
+		state(slave)->stored[0] |= flag;
+	return 0;
+}
+
+static uint8_t *memory(struct sim_slave *slave, size_t *size)
+{
+	*size = SIM_TMP1826_MEMORY;
+	return state(slave)->memory;
+}
+
+static const struct sim_input inputs[] = {
+	{.name = "temperature", .start = 20, .least = -55, .most = 150},
+	{0},
+};
+
+#define PART(part) \
+	{ \
+		.name = (part), .code = 0x26, .overdrive = true, .crc8 = true, \
+		.state_size = sizeof(struct sim_tmp1826), .inputs = inputs, \
+		.functions = functions, .create = create, .power_on = power_on, .alarm = alarm, \
+		.bit = bit, .worked = worked, .option = option, .memory = memory \
+	}
+
+const struct sim_family sim_tmp1826 = PART("TMP1826");
+const struct sim_family sim_tmp1827 = PART("TMP1827");
