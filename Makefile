@@ -161,7 +161,7 @@ SOURCES  := $(wildcard src/*/*.c hal/*/*.c hal/*/*/*.c)
 LIBOWS   := $(wildcard src/libows/*.c)
 # Programs to start from, and configurations
 EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py docs/examples/*.go \
-            docs/examples/*.rio docs/examples/*.rs)
+            docs/examples/*.rio docs/examples/*.rs docs/examples/*.table)
 # Those that another program builds or loads, a folder for each
 HOSTED   := $(patsubst docs/examples/%/,%,$(wildcard docs/examples/*/))
 PYTHON   := $(wildcard src/libows/*.py)
@@ -233,10 +233,14 @@ $(B)/$(SO): $(call obj,$(LIBOWS)) $(B)/libows/aid.a $(B)/libows/libows.map $(B)/
 	@ln -sf $(SO) $(B)/libows.so.$(SOMAJOR)
 	@ln -sf $(SO) $(B)/libows.so
 
+# Of a section group only the signature would be made local, and the linker would take another's
+# members for it: without groups, where the linker can
+ONE_GROUP = $(shell $(CC) -Wl,--help 2>/dev/null | grep -q force-group-allocation && \
+              echo -Wl,--force-group-allocation)
 $(B)/libows.a: $(call obj,$(LIBOWS)) $(B)/libows/aid.a
 	$(call show,AR)
 	@rm -f $@
-	$(Q)$(CC) $(filter -m%,$(CFLAGS) $(EXTRA_CFLAGS)) -r -nostdlib -o $(B)/libows/one.o $^
+	$(Q)$(CC) $(filter -m%,$(CFLAGS) $(EXTRA_CFLAGS)) -r -nostdlib $(ONE_GROUP) -o $(B)/libows/one.o $^
 	$(Q)$(OBJCOPY) --wildcard --keep-global-symbol='ows_*' $(B)/libows/one.o
 	$(Q)$(AR) rcs $@ $(B)/libows/one.o
 

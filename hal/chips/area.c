@@ -123,6 +123,8 @@ int area_read(struct txn *txn, const struct area *area, unsigned at, uint8_t *by
 	unsigned from = at, len = n;
 	int err;
 
+	if (at > area->size || n > area->size - at)
+		return -EINVAL;
 	if (!visit->begun_ns) {
 		err = area->begin ? area->begin(txn) : 0;
 		if (err)
@@ -242,7 +244,7 @@ static int verify_row(struct txn *txn, const struct area *area, struct unit unit
 
 static int copy_row(struct txn *txn, const struct area *area, struct unit unit)
 {
-	uint8_t command[4];
+	uint8_t command[4 + AREA_PASSWORD] = {0};
 	unsigned len = address(command, area->copy, area, unit.at);
 
 	if (area->key) {
@@ -251,6 +253,7 @@ static int copy_row(struct txn *txn, const struct area *area, struct unit unit)
 	} else if (area->verify) {
 		command[len++] = txn->area.ending;
 	}
+	len += area->password;
 	if (area->strong)
 		return txn_command_strong(txn, command, len, area->copy_ns);
 	int err = txn_command(txn, command, len);
@@ -375,6 +378,8 @@ int area_write(struct txn *txn, const struct area *area, unsigned at, const uint
 		return err;
 	if (!area->row)
 		return -EOPNOTSUPP;
+	if (at > area->size || n > area->size - at)
+		return -EINVAL;
 	struct unit unit = unit_of(area, at + visit->done);
 	err = visit->step == LOOK ? prepare(txn, area, unit, at, bytes, mask, n)
 	                          : write_step(txn, area, unit);

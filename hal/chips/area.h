@@ -8,10 +8,12 @@
  *		.write = 0x0f, .verify = 0xaa, .copy = 0x55, .write_crc16 = true, .strong = true,
  *		.copy_ns = 10 * TXN_MS,
  *	};
+ *	enum { MEMORY = 1 };
+ *	static const struct area *const areas[] = {[MEMORY] = &memory};
  *	static const struct property properties[] = {
- *		AREA_MEMORY(memory, 128),
+ *		AREA_MEMORY(MEMORY, 128),
  *		PROPERTY_DIR("pages"),
- *		AREA_PAGES(memory, 4, 32),
+ *		AREA_PAGES(MEMORY, 4, 32),
  *	};
  *
  * Reading: the command, the address, the bytes, and their check. What was read is kept with the
@@ -40,6 +42,7 @@ enum area_check {
  * Noise that turns over one bit in a thousand would get past two looks at a page once in 4,000.
  */
 #define AREA_LOOKS 3
+#define AREA_PASSWORD 8
 
 struct area {
 	const char *name; /* as the data sheet calls it; a link that is driven knows it by that */
@@ -63,6 +66,7 @@ struct area {
 	uint8_t read, write, verify, copy; /* commands; 0: there is none */
 	uint8_t recall;   /* command that makes read give what is stored, not written; 0: none */
 	uint8_t key;      /* behind copy; 0: address and ending offset as verify gives them */
+	uint8_t password; /* bytes of zeros behind these, AREA_PASSWORD at most */
 	bool write_crc16; /* the chip answers what is written, and verify, with CRC16 */
 	bool echo;        /* ... and then with the byte that it has taken */
 	bool strong;      /* the copy needs the strong pull-up */
@@ -88,13 +92,13 @@ struct area {
 };
 
 struct field {
-	const struct area *area;
+	uint8_t area; /* which of the family's areas; 0: none */
+	uint8_t shift;
+	uint8_t bits;            /* 0: all from shift on; of PROPERTY_BITS as many as elements */
+	unsigned char bytes : 4; /* 1 to 4; 0: 1 */
+	bool is_signed : 1, big_endian : 1, inverted : 1;
 	uint16_t at;     /* its first byte in the area */
 	uint16_t stride; /* bytes from an element to the next; of binary 0: those of an element */
-	uint8_t bytes;   /* 1 to 4; 0: 1 */
-	uint8_t shift;
-	uint8_t bits; /* 0: all from shift on; of PROPERTY_BITS as many as elements */
-	bool is_signed, big_endian, inverted;
 	double unit, offset; /* value = bits * unit + offset; unit 0: 1 */
 };
 

@@ -80,21 +80,28 @@ static int write_alias(struct txn *txn)
 	return device_set_alias(txn->device, (const char *)txn->data, txn->len);
 }
 
+enum { WAY_IDENTITY = 1, WAY_ALIAS, WAY_PRESENT };
+static const struct property_how how[] = {
+	[WAY_IDENTITY] = {.read = read_identity},
+	[WAY_ALIAS] = {.read = read_alias, .write = write_alias},
+	[WAY_PRESENT] = {.read = read_present},
+};
+
 /* clang-format off */
-#define IDENTITY(text, what, bytes)                                                       \
-	{.name = (text), .type = PROPERTY_ASCII, .life = LIFE_STATIC, .access = ACCESS_READ, \
-	 .offline = true, .size = (bytes), .arg = (what), .read = read_identity}
+#define IDENTITY(text, what, bytes) \
+	PROPERTY(text, ASCII, STATIC, READ, .offline = true, .size = (bytes), .arg = (what), \
+	         .how = WAY_IDENTITY)
 
 static const struct property properties[] = {
 	IDENTITY("address", ADDRESS, 16),
 	{.name = "alias", .type = PROPERTY_ALIAS, .life = LIFE_STATIC, .access = ACCESS_BOTH,
-	 .offline = true, .read = read_alias, .write = write_alias},
+	 .offline = true, .how = WAY_ALIAS},
 	IDENTITY("crc8", CRC, 2),
 	IDENTITY("family", FAMILY, 2),
 	IDENTITY("id", ID, 12),
 	IDENTITY("locator", LOCATOR, 16),
 	{.name = "present", .type = PROPERTY_YESNO, .life = LIFE_VOLATILE, .access = ACCESS_READ,
-	 .hidden = true, .read = read_present},
+	 .hidden = true, .how = WAY_PRESENT},
 	IDENTITY("r_address", REVERSED_ADDRESS, 16),
 	IDENTITY("r_id", REVERSED_ID, 12),
 	IDENTITY("r_locator", LOCATOR, 16),
@@ -102,4 +109,4 @@ static const struct property properties[] = {
 };
 /* clang-format on */
 
-const struct family family_common = {.type = "unknown", PROPERTIES(properties)};
+const struct family family_common = {.type = "unknown", HOW(how), PROPERTIES(properties)};

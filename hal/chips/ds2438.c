@@ -332,3 +332,16 @@ int ds2438_write_field(struct txn *txn)
 
 	return ds2438_patch(txn, field->at / 8, field->at % 8, bytes, sizeof(bytes));
 }
+
+int ds2438_write_flag(struct txn *txn)
+{
+	uint8_t bit = (uint8_t)(1 << txn->property->field.shift);
+
+	return ds2438_configure(txn, bit, txn->number[0] != 0 ? bit : 0, NULL);
+}
+
+int ds2438_write_page(struct txn *txn)
+{
+	return ds2438_patch(txn, (unsigned)txn->element, (unsigned)txn->at, txn->data,
+	                    (unsigned)txn->len);
+}

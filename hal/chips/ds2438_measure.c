@@ -163,3 +163,31 @@ int ds2438_measure(struct txn *txn, unsigned what)
 	}
 	return 0;
 }
+
+int ds2438_read_measured(struct txn *txn)
+{
+	int err = ds2438_measure(txn, 1u << txn->property->arg);
+
+	txn->number[0] = ds2438_visit(txn)->value[txn->property->arg];
+	return err;
+}
+
+/* A zero may be what a restart left: it is measured. */
+int ds2438_read_latest(struct txn *txn)
+{
+	struct ds2438_visit *visit = ds2438_visit(txn);
+	uint8_t bytes[8];
+	int err;
+
+	if (visit->measuring) {
+		err = ds2438_measure(txn, 1 << DS2438_TEMPERATURE);
+		txn->number[0] = visit->value[DS2438_TEMPERATURE];
+		return err;
+	}
+	err = area_read(txn, &ds2438_pages, 0, bytes, sizeof(bytes));
+	if (err)
+		return err;
+	txn->number[0] = (ds2438_word(bytes + 1) >> 3) / 32.0;
+	visit->measuring = txn->number[0] == 0;
+	return visit->measuring ? TXN_MORE : 0;
+}

@@ -8,7 +8,15 @@ const char *family_type(const struct device *device)
 {
 	const struct family *family = device->family;
 
-	return family->type_of ? family->type_of(device) : family->type;
+	return family->kind ? family->types[family->kind(device)] : family->type;
+}
+
+bool family_has(const struct device *device, const struct property *property)
+{
+	const struct family *family = device->family;
+	unsigned kind = family->kind ? family->kind(device) : 1;
+
+	return !property->kinds || (property->kinds & KIND(kind ? kind : 1));
 }
 
 void family_forget(struct device *device)

@@ -2,10 +2,12 @@
 /*
  * A chip family is one file that states its areas (area.h) and its properties: name, type, array,
  * access, size and life of the value as OWFS has them, and the field of an area that it is
- * (property.h). What no field can say has functions (txn.h). To add a family: write the file, and
+ * (property.h). A row of that table holds no pointer: it names its area, and what no field can say
+ * (functions, txn.h), by its number in the family's lists. To add a family: write the file, and
  * name it in families.h.
  *
- * Room hal/chips: the chip families: areas, properties, functions; values as texts. Uses hal/wire.
+ * Room hal/chips: the chip families: areas, properties, functions; values as texts. Uses hal/wire,
+ * hal/owfs.
  */
 #ifndef HAL_CHIPS_FAMILY_H
 #define HAL_CHIPS_FAMILY_H
@@ -19,22 +21,27 @@ struct family {
 	bool alarms;      /* answers the conditional search */
 	bool is_virtual;  /* no chip: a table of /statistics and the like */
 	const char *type; /* "DS18B20" */
-	/* NULL: type. Some families hold several chips. */
-	const char *(*type_of)(const struct device *device);
 	/*
-	 * Which of them? Until that is known, requests may be for properties of any. NULL: it is.
+	 * Some families hold several chips. Which of them is it? 1 and up; 0 it is not known: then
+	 * it counts as the first, but requests may be for properties of any. NULL: there is one.
 	 */
-	bool (*is_known)(const struct device *device);
+	unsigned (*kind)(const struct device *device);
+	const char *const *types; /* what each kind is called, [0] too */
 	/* The chip was away or has restarted: what of device.own is void? NULL: all of it. */
 	void (*forget)(struct device *device);
 	const struct property *properties; /* sorted by name, the hidden ones too */
-	unsigned count;
+	const struct area *const *areas;   /* what .area of a field means; [0] is none */
+	const struct property_how *how;    /* ... and .how of a property */
+	uint16_t count;
+	uint8_t area_count, how_count;
 };
 
 /* What the chip is called. */
 const char *family_type(const struct device *device);
 /* What was known of the chip is void: it was away or has restarted. */
 void family_forget(struct device *device);
+/* Is the property one that this chip of its family has? */
+bool family_has(const struct device *device, const struct property *property);
 
 extern const struct family family_common;
 #define FAMILY(code) extern const struct family family_##code;
@@ -42,5 +49,7 @@ extern const struct family family_common;
 #undef FAMILY
 
 #define PROPERTIES(table) .properties = (table), .count = sizeof(table) / sizeof((table)[0])
+#define AREAS(list) .areas = (list), .area_count = sizeof(list) / sizeof((list)[0])
+#define HOW(list) .how = (list), .how_count = sizeof(list) / sizeof((list)[0])
 
 #endif

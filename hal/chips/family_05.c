@@ -85,16 +85,26 @@ static int write_pio(struct txn *txn)
 	return after ? -EIO : TXN_MORE;
 }
 
-/* clang-format off */
+enum { OUTPUT = 1, PIN };
+static const struct area *const areas[] = {[OUTPUT] = &output, [PIN] = &pin};
+
+enum { WAY_PIO = 1, WAY_PIN };
+static const struct property_how how[] = {
+	[WAY_PIO] = {.read = read_pio, .write = write_pio},
+	[WAY_PIN] = {.read = read_pin},
+};
+
 static const struct property properties[] = {
-	PROPERTY("PIO", YESNO, STABLE, BOTH, FIELD(output, .bits = 1, .inverted = true),
-	         .read = read_pio, .write = write_pio),
-	PROPERTY("sensed", YESNO, VOLATILE, READ, FIELD(pin), .read = read_pin),
+	PROPERTY("PIO", YESNO, STABLE, BOTH, FIELD(OUTPUT, .bits = 1, .inverted = true),
+                 .how = WAY_PIO),
+	PROPERTY("sensed", YESNO, VOLATILE, READ, FIELD(PIN), .how = WAY_PIN),
 };
 
 const struct family family_05 = {
 	.code = 0x05,
 	.alarms = true,
 	.type = "DS2405",
+	AREAS(areas),
+	HOW(how),
 	PROPERTIES(properties),
 };

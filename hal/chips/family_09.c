@@ -14,10 +14,14 @@ static const struct area memory = {
 	.check = AREA_CRC8_PAGES,
 };
 
+enum { MEMORY = 1 };
+static const struct area *const areas[] = {[MEMORY] = &memory};
+
 static const struct property properties[] = {
-	AREA_MEMORY(memory, 128),
+	AREA_MEMORY(MEMORY, 128),
 	PROPERTY_DIR("pages"),
-	AREA_PAGES(memory, 4, 32),
+	AREA_PAGES(MEMORY, 4, 32),
 };
 
-const struct family family_09 = {.code = 0x09, .type = "DS2502", PROPERTIES(properties)};
+const struct family family_09 = {
+	.code = 0x09, .type = "DS2502", AREAS(areas), PROPERTIES(properties)};

@@ -4,7 +4,10 @@
 
 #define HIDDEN_TEMPERATURE(text) \
 	PROPERTY(text, TEMPERATURE, VOLATILE, READ, .hidden = true, .convert = CONVERT_TEMPRES, \
-	         .read = thermometer_read_temperature)
+	         .how = WAY_TEMPERATURE)
+
+static const struct area *const areas[] = {THERMOMETER_AREAS};
+static const struct property_how how[] = {THERMOMETER_WAYS};
 
 static const struct property properties[] = {
 	THERMOMETER_ERRATA,
@@ -26,5 +29,7 @@ const struct family family_10 = {
 	.fixed = true,
 	.type = "DS18S20",
 	THERMOMETER_FAMILY,
+	AREAS(areas),
+	HOW(how),
 	PROPERTIES(properties),
 };

@@ -119,23 +119,28 @@ static int not_there(struct txn *txn)
 	return -ENOENT;
 }
 
-static bool never(const struct device *device)
-{
-	(void)device;
-	return false;
-}
+enum { MEMORY = 1, INFO, STATUS };
+static const struct area *const areas[] = {[MEMORY] = &memory, [INFO] = &info, [STATUS] = &status};
 
-#define BITS(text, access_, shift_, writes) \
+enum { WAY_PIO = 1, WAY_LATCH, WAY_ALARM, WAY_NOT_THERE };
+static const struct property_how how[] = {
+	[WAY_PIO] = {SET(STATUS, .shift = 5, .inverted = true)},
+	[WAY_LATCH] = {.write = write_latch},
+	[WAY_ALARM] = {.read = read_alarm, .write = write_alarm},
+	[WAY_NOT_THERE] = {.read = not_there},
+};
+
+#define BITS(text, access_, shift_, how_) \
 	PROPERTY(text, BITS, VOLATILE, access_, AGGREGATE(2, LETTERS), \
-	         FIELD(info, .shift = (shift_)), .write = (writes))
+	         FIELD(INFO, .shift = (shift_)), .how = (how_))
 #define NOT_THERE(text, kind, life_, ...) \
-	PROPERTY(text, kind, life_, READ, .read = not_there, __VA_ARGS__)
+	PROPERTY(text, kind, life_, READ, .how = WAY_NOT_THERE, __VA_ARGS__)
 
 static const struct property properties[] = {
-	PROPERTY("PIO", BITS, STABLE, BOTH, AGGREGATE(2, LETTERS), FIELD(info, .inverted = true),
-                 SET(status, .shift = 5, .inverted = true)),
-	PROPERTY("T8A", DIRECTORY, STATIC, NONE, .visible = never),
-	NOT_THERE("T8A/volt", FLOAT, VOLATILE, ELEMENTS(8, NUMBERS), .visible = never),
+	PROPERTY("PIO", BITS, STABLE, BOTH, AGGREGATE(2, LETTERS), FIELD(INFO, .inverted = true),
+                 .how = WAY_PIO),
+	PROPERTY("T8A", DIRECTORY, STATIC, NONE, .kinds = KIND(0)),
+	NOT_THERE("T8A/volt", FLOAT, VOLATILE, ELEMENTS(8, NUMBERS), .kinds = KIND(0)),
 	PROPERTY_DIR("TAI8570"),
 	NOT_THERE("TAI8570/C", UNSIGNED, STATIC, AGGREGATE(6, NUMBERS), .hidden = true),
 	NOT_THERE("TAI8570/D1", UNSIGNED, VOLATILE, .hidden = true),
@@ -151,22 +156,23 @@ static const struct property properties[] = {
 	NOT_THERE("TAI8570/temperature", TEMPERATURE, VOLATILE, .size = 0),
 	PROPERTY("aux", DIRECTORY, VOLATILE, NONE, .size = 8),
 	PROPERTY("channels", UNSIGNED, STABLE, READ,
-                 FIELD(info, .shift = 6, .bits = 1, .offset = 1)),
-	BITS("flipflop", READ, 0, NULL),
-	PROPERTY("infobyte", UNSIGNED, VOLATILE, READ, FIELD(info), .hidden = true),
-	BITS("latch", BOTH, 4, write_latch),
-	AREA_MEMORY(memory, 128),
+                 FIELD(INFO, .shift = 6, .bits = 1, .offset = 1)),
+	BITS("flipflop", READ, 0, 0),
+	PROPERTY("infobyte", UNSIGNED, VOLATILE, READ, FIELD(INFO), .hidden = true),
+	BITS("latch", BOTH, 4, WAY_LATCH),
+	AREA_MEMORY(MEMORY, 128),
 	PROPERTY_DIR("pages"),
-	AREA_PAGES(memory, 4, 32),
-	PROPERTY("power", YESNO, VOLATILE, READ, FIELD(info, .shift = 7)),
-	BITS("sensed", READ, 2, NULL),
-	PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = "331", .read = read_alarm,
-                 .write = write_alarm),
+	AREA_PAGES(MEMORY, 4, 32),
+	PROPERTY("power", YESNO, VOLATILE, READ, FIELD(INFO, .shift = 7)),
+	BITS("sensed", READ, 2, 0),
+	PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = 331, .how = WAY_ALARM),
 };
 
 const struct family family_12 = {
 	.code = 0x12,
 	.alarms = true,
 	.type = "DS2406",
+	AREAS(areas),
+	HOW(how),
 	PROPERTIES(properties),
 };

@@ -32,10 +32,15 @@ static const struct area application = {
 };
 static const struct area status = {.name = "status", .size = 1, .address_bytes = 1, .read = 0x66};
 
+enum { MEMORY = 1, APPLICATION, STATUS };
+static const struct area *const areas[] = {
+	[MEMORY] = &memory, [APPLICATION] = &application, [STATUS] = &status};
+
 static const struct property properties[] = {
-	PROPERTY("application", BINARY, STABLE, BOTH, .size = 8, FIELD(application)),
-	AREA_MEMORY(memory, 32),
-	PROPERTY("status", UNSIGNED, STABLE, READ, FIELD(status)),
+	PROPERTY("application", BINARY, STABLE, BOTH, .size = 8, FIELD(APPLICATION)),
+	AREA_MEMORY(MEMORY, 32),
+	PROPERTY("status", UNSIGNED, STABLE, READ, FIELD(STATUS)),
 };
 
-const struct family family_14 = {.code = 0x14, .type = "DS2430A", PROPERTIES(properties)};
+const struct family family_14 = {
+	.code = 0x14, .type = "DS2430A", AREAS(areas), PROPERTIES(properties)};

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* DS2423 (data sheet 19-5140): 4 kbit of RAM, and counters on its last four pages. */
 #include <errno.h>
-#include <string.h>
 
+#include "hal/chips/counter.h"
 #include "hal/chips/family.h"
 
-#define READ_COUNTER 0xa5
 #define EXTERNAL_A 14
 
 static const struct area memory = {
@@ -20,30 +19,11 @@ static const struct area memory = {
 	.copy_ns = TXN_MS,
 };
 
-/* From the page's last byte on: that byte, 32 bits of counter, 32 of zero, and the CRC16. */
-static int load_counter(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
-                        unsigned n)
-{
-	unsigned address = at / area->block * 32 + 31;
-	uint8_t command[] = {READ_COUNTER, (uint8_t)address, (uint8_t)(address >> 8)}, in[9];
-	int err = txn_command(txn, command, sizeof(command));
-
-	if (!err)
-		err = txn_read_crc16(txn, command, sizeof(command), in, sizeof(in));
-	if (!err)
-		memcpy(bytes, in + 1, n);
-	return err;
-}
-
-/* Four bytes for each page. */
-static const struct area counters = {
-	.name = "counters", .size = 64, .block = 4, .load = load_counter};
-
 static int read_minimum(struct txn *txn)
 {
 	unsigned page = EXTERNAL_A + txn->phase;
 	uint8_t in[4];
-	int err = area_read(txn, &counters, page * 4, in, sizeof(in));
+	int err = area_read(txn, &counter_area, page * 4, in, sizeof(in));
 
 	if (err)
 		return err;
@@ -63,19 +43,27 @@ static int write_minimum(struct txn *txn)
 	return -EINVAL;
 }
 
-#define COUNTERS(text, n, index_, page, ...) \
-	PROPERTY(text, UNSIGNED, VOLATILE, READ, ELEMENTS(n, index_), \
-	         FIELD(counters, .at = 4 * (page), .stride = 4, .bytes = 4), __VA_ARGS__)
+enum { MEMORY = 1, COUNTS };
+static const struct area *const areas[] = {[MEMORY] = &memory, [COUNTS] = &counter_area};
+
+enum { WAY_MINIMUM = 1 };
+static const struct property_how how[] = {
+	[WAY_MINIMUM] = {.read = read_minimum, .write = write_minimum}};
 
 static const struct property properties[] = {
-	COUNTERS("counter", 2, LETTERS, EXTERNAL_A, .hidden = false),
-	COUNTERS("counters", 2, LETTERS, EXTERNAL_A, .hidden = true),
-	AREA_MEMORY(memory, 512),
-	PROPERTY("mincount", UNSIGNED, VOLATILE, BOTH, .read = read_minimum,
-                 .write = write_minimum),
+	COUNTERS("counter", COUNTS, 2, LETTERS, EXTERNAL_A, .hidden = false),
+	COUNTERS("counters", COUNTS, 2, LETTERS, EXTERNAL_A, .hidden = true),
+	AREA_MEMORY(MEMORY, 512),
+	PROPERTY("mincount", UNSIGNED, VOLATILE, BOTH, .how = WAY_MINIMUM),
 	PROPERTY_DIR("pages"),
-	COUNTERS("pages/count", 16, NUMBERS, 0, .hidden = false),
-	AREA_PAGES(memory, 16, 32),
+	COUNTERS("pages/count", COUNTS, 16, NUMBERS, 0, .hidden = false),
+	AREA_PAGES(MEMORY, 16, 32),
 };
 
-const struct family family_1d = {.code = 0x1d, .type = "DS2423", PROPERTIES(properties)};
+const struct family family_1d = {
+	.code = 0x1d,
+	.type = "DS2423",
+	AREAS(areas),
+	HOW(how),
+	PROPERTIES(properties),
+};

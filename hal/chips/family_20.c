@@ -267,54 +267,80 @@ static int read_co2_supply(struct txn *txn)
 	return err;
 }
 
-#define VOLT(text, how, reads) \
-	PROPERTY(text, FLOAT, VOLATILE, READ, AGGREGATE(4, LETTERS), .arg = (how), .read = (reads))
+enum { MEMORY = 1 };
+static const struct area *const areas[] = {[MEMORY] = &memory};
+
+enum {
+	WAY_VOLT = 1,
+	WAY_LATEST,
+	WAY_PIO,
+	WAY_POWER,
+	WAY_UNSET,
+	WAY_CO2_PPM,
+	WAY_CO2_STATUS,
+	WAY_CO2_SUPPLY,
+};
+static const struct property_how how[] = {
+	[WAY_VOLT] = {.read = read_volt},
+	[WAY_LATEST] = {.read = read_latest},
+	[WAY_PIO] = {.read = read_pio, .write = write_pio},
+	[WAY_POWER] = {.read = read_power},
+	[WAY_UNSET] = {.write = write_unset},
+	[WAY_CO2_PPM] = {.read = read_co2_ppm},
+	[WAY_CO2_STATUS] = {.read = read_co2_status},
+	[WAY_CO2_SUPPLY] = {.read = read_co2_supply},
+};
+
+#define VOLT(text, args, how_) \
+	PROPERTY(text, FLOAT, VOLATILE, READ, AGGREGATE(4, LETTERS), .arg = (args), .how = (how_))
 /* Of the channel's second control byte. */
 #define FLAG(text, life_, shift_) \
 	PROPERTY(text, YESNO, life_, BOTH, ELEMENTS(4, LETTERS), .arg = ENDS_POWER_ON, \
-	         FIELD(memory, .at = CONTROL + 1, .stride = 2, .shift = (shift_), .bits = 1))
+	         FIELD(MEMORY, .at = CONTROL + 1, .stride = 2, .shift = (shift_), .bits = 1))
 /* Steps of 20 or 10 mV. */
 #define LIMIT(text, where, unit_) \
 	PROPERTY(text, FLOAT, STABLE, BOTH, ELEMENTS(4, LETTERS), \
-	         FIELD(memory, .at = LIMITS + (where), .stride = 2, .unit = (unit_)))
+	         FIELD(MEMORY, .at = LIMITS + (where), .stride = 2, .unit = (unit_)))
 
 static const struct property properties[] = {
 	PROPERTY_DIR("8bit"),
-	VOLT("8bit/latestvolt", EIGHT_BIT, read_latest),
-	VOLT("8bit/latestvolt2", EIGHT_BIT | HALF_RANGE, read_latest),
-	VOLT("8bit/volt", EIGHT_BIT, read_volt),
-	VOLT("8bit/volt2", EIGHT_BIT | HALF_RANGE, read_volt),
+	VOLT("8bit/latestvolt", EIGHT_BIT, WAY_LATEST),
+	VOLT("8bit/latestvolt2", EIGHT_BIT | HALF_RANGE, WAY_LATEST),
+	VOLT("8bit/volt", EIGHT_BIT, WAY_VOLT),
+	VOLT("8bit/volt2", EIGHT_BIT | HALF_RANGE, WAY_VOLT),
 	PROPERTY_DIR("CO2"),
-	PROPERTY("CO2/Vdd", YESNO, VOLATILE, READ, .read = read_co2_supply),
-	PROPERTY("CO2/ppm", UNSIGNED, VOLATILE, READ, .read = read_co2_ppm),
-	PROPERTY("CO2/status", FLOAT, VOLATILE, READ, .read = read_co2_status),
+	PROPERTY("CO2/Vdd", YESNO, VOLATILE, READ, .how = WAY_CO2_SUPPLY),
+	PROPERTY("CO2/ppm", UNSIGNED, VOLATILE, READ, .how = WAY_CO2_PPM),
+	PROPERTY("CO2/status", FLOAT, VOLATILE, READ, .how = WAY_CO2_STATUS),
 	PROPERTY("PIO", YESNO, STABLE, BOTH, ELEMENTS(4, LETTERS), .arg = ENDS_POWER_ON,
-                 .read = read_pio, .write = write_pio),
+                 .how = WAY_PIO),
 	PROPERTY_DIR("alarm"),
 	FLAG("alarm/high", VOLATILE, 5),
 	FLAG("alarm/low", VOLATILE, 4),
-	VOLT("latestvolt", 0, read_latest),
-	VOLT("latestvolt2", HALF_RANGE, read_latest),
-	AREA_MEMORY(memory, 32),
+	VOLT("latestvolt", 0, WAY_LATEST),
+	VOLT("latestvolt2", HALF_RANGE, WAY_LATEST),
+	AREA_MEMORY(MEMORY, 32),
 	PROPERTY_DIR("pages"),
-	AREA_PAGES(memory, 4, 8),
+	AREA_PAGES(MEMORY, 4, 8),
 	PROPERTY("power", YESNO, STABLE, BOTH,
-                 FIELD(memory, .at = SUPPLY_AT, .unit = 1.0 / SUPPLY_ON), .read = read_power),
+                 FIELD(MEMORY, .at = SUPPLY_AT, .unit = 1.0 / SUPPLY_ON), .how = WAY_POWER),
 	PROPERTY_DIR("set_alarm"),
 	FLAG("set_alarm/high", STABLE, 3),
 	FLAG("set_alarm/low", STABLE, 2),
-	PROPERTY("set_alarm/unset", YESNO, STABLE, WRITE, .write = write_unset),
+	PROPERTY("set_alarm/unset", YESNO, STABLE, WRITE, .how = WAY_UNSET),
 	LIMIT("set_alarm/volt2high", 1, 0.01),
 	LIMIT("set_alarm/volt2low", 0, 0.01),
 	LIMIT("set_alarm/volthigh", 1, 0.02),
 	LIMIT("set_alarm/voltlow", 0, 0.02),
-	VOLT("volt", 0, read_volt),
-	VOLT("volt2", HALF_RANGE, read_volt),
+	VOLT("volt", 0, WAY_VOLT),
+	VOLT("volt2", HALF_RANGE, WAY_VOLT),
 };
 
 const struct family family_20 = {
 	.code = 0x20,
 	.alarms = true,
 	.type = "DS2450",
+	AREAS(areas),
+	HOW(how),
 	PROPERTIES(properties),
 };

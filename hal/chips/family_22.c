@@ -2,11 +2,15 @@
 /* DS1822: the properties of a DS18B20. */
 #include "hal/chips/thermometer.h"
 
+static const struct area *const areas[] = {THERMOMETER_AREAS};
+static const struct property_how how[] = {THERMOMETER_WAYS};
 static const struct property properties[] = {THERMOMETER_PROPERTIES};
 
 const struct family family_22 = {
 	.code = 0x22,
 	.type = "DS1822",
 	THERMOMETER_FAMILY,
+	AREAS(areas),
+	HOW(how),
 	PROPERTIES(properties),
 };

@@ -15,10 +15,14 @@ static const struct area memory = {
 	.copy_ns = 5 * TXN_MS,
 };
 
+enum { MEMORY = 1 };
+static const struct area *const areas[] = {[MEMORY] = &memory};
+
 static const struct property properties[] = {
-	AREA_MEMORY(memory, 512),
+	AREA_MEMORY(MEMORY, 512),
 	PROPERTY_DIR("pages"),
-	AREA_PAGES(memory, 16, 32),
+	AREA_PAGES(MEMORY, 16, 32),
 };
 
-const struct family family_23 = {.code = 0x23, .type = "DS2433", PROPERTIES(properties)};
+const struct family family_23 = {
+	.code = 0x23, .type = "DS2433", AREAS(areas), PROPERTIES(properties)};

@@ -5,7 +5,6 @@
  * pressure, light) is computed in sensors_26.c.
  */
 #include <errno.h>
-#include <string.h>
 
 #include "hal/chips/ds2438.h"
 #include "hal/chips/ds2438_measure.h"
@@ -13,40 +12,6 @@
 #include "hal/chips/sensors_26.h"
 
 #define OFFSET_AT 13 /* page 1, byte 5 */
-static int read_measured(struct txn *txn)
-{
-	int err = ds2438_measure(txn, 1u << txn->property->arg);
-
-	txn->number[0] = ds2438_visit(txn)->value[txn->property->arg];
-	return err;
-}
-
-/* A zero may be what a restart left: it is measured. */
-static int read_latest(struct txn *txn)
-{
-	struct ds2438_visit *visit = ds2438_visit(txn);
-	uint8_t bytes[8];
-	int err;
-
-	if (visit->measuring) {
-		err = ds2438_measure(txn, 1 << DS2438_TEMPERATURE);
-		txn->number[0] = visit->value[DS2438_TEMPERATURE];
-		return err;
-	}
-	err = area_read(txn, &ds2438_pages, 0, bytes, sizeof(bytes));
-	if (err)
-		return err;
-	txn->number[0] = (ds2438_word(bytes + 1) >> 3) / 32.0;
-	visit->measuring = txn->number[0] == 0;
-	return visit->measuring ? TXN_MORE : 0;
-}
-
-static int write_flag(struct txn *txn)
-{
-	uint8_t bit = (uint8_t)(1 << txn->property->field.shift);
-
-	return ds2438_configure(txn, bit, txn->number[0] != 0 ? bit : 0, NULL);
-}
 
 /* In the upper 13 bits of two bytes. */
 static int read_offset(struct txn *txn)
@@ -86,32 +51,34 @@ static int write_offset(struct txn *txn)
 	return err < 0 ? err : TXN_MORE;
 }
 
-static int put_page(struct txn *txn)
-{
-	return ds2438_patch(txn, (unsigned)txn->element, (unsigned)txn->at, txn->data,
-	                    (unsigned)txn->len);
-}
+#define MEASURED(text, kind, what) DS2438_MEASURED(text, kind, what, WAYS)
+#define FLAG(text, bit) DS2438_FLAG(text, bit, WAYS)
+#define TIME(text, kind, life_, where) DS2438_TIME(text, kind, life_, where, WAYS)
 
-#define MEASURED(text, kind, what) \
-	PROPERTY(text, kind, VOLATILE, READ, .arg = (what), .read = read_measured)
-#define FLAG(text, bit) \
-	PROPERTY(text, YESNO, STABLE, BOTH, FIELD(ds2438_pages, .shift = (bit), .bits = 1), \
-	         .write = write_flag)
-#define TIME(text, kind, life_, where) \
-	PROPERTY(text, kind, life_, BOTH, FIELD(ds2438_pages, .at = (where), .bytes = 4), \
-	         .write = ds2438_write_field)
+enum { PAGES = 1 };
+static const struct area *const areas[] = {[PAGES] = &ds2438_pages};
+
+enum { WAYS = AFTER_SENSOR_WAYS, WAY_OFFSET = WAYS + DS2438_WAY_COUNT };
+static const struct property_how how[] = {
+	SENSOR_WAYS,
+	DS2438_WAYS(WAYS),
+	[WAY_OFFSET] = {.read = read_offset, .write = write_offset},
+};
+
+/* How such a board marks itself is not documented. */
+#define DATANAB_BOARD KIND(0)
 
 static const struct property properties[] = {
 	PROPERTY_DIR("B1-R1-A"),
 	DS2438_SETTING("B1-R1-A/gain", PRESSURE, B1_GAIN),
 	DS2438_SETTING("B1-R1-A/offset", PRESSURE, B1_OFFSET),
-	PROPERTY("B1-R1-A/pressure", PRESSURE, VOLATILE, READ, .read = sensor_read_pressure),
+	PROPERTY("B1-R1-A/pressure", PRESSURE, VOLATILE, READ, .how = WAY_PRESSURE),
 	FLAG("CA", 1),
-	PROPERTY("DATANAB", DIRECTORY, STATIC, NONE, .visible = sensor_is_datanab),
-	PROPERTY("DATANAB/humidity", FLOAT, VOLATILE, READ, .arg = DATANAB,
-                 .visible = sensor_is_datanab, .read = sensor_read_humidity),
-	PROPERTY("DATANAB/reset", YESNO, STABLE, WRITE, .visible = sensor_is_datanab,
-                 .write = sensor_reset_datanab),
+	PROPERTY("DATANAB", DIRECTORY, STATIC, NONE, .kinds = DATANAB_BOARD),
+	PROPERTY("DATANAB/humidity", FLOAT, VOLATILE, READ, .arg = DATANAB, .kinds = DATANAB_BOARD,
+                 .how = WAY_HUMIDITY),
+	PROPERTY("DATANAB/reset", YESNO, STABLE, WRITE, .kinds = DATANAB_BOARD,
+                 .how = WAY_RESET_DATANAB),
 	FLAG("EE", 2),
 	PROPERTY_DIR("HIH3600"),
 	DS2438_HUMIDITY("HIH3600/humidity", HIH3600),
@@ -123,7 +90,7 @@ static const struct property properties[] = {
 	DS2438_HUMIDITY("HTM1735/humidity", HTM1735),
 	FLAG("IAD", 0),
 	PROPERTY_DIR("MultiSensor"),
-	PROPERTY("MultiSensor/type", ASCII, STABLE, READ, .size = 12, .read = sensor_read_type),
+	PROPERTY("MultiSensor/type", ASCII, STABLE, READ, .size = 12, .how = WAY_SENSOR_TYPE),
 	PROPERTY_DIR("S3-R1-A"),
 	DS2438_LIGHT("S3-R1-A/current", 0),
 	DS2438_SETTING("S3-R1-A/gain", FLOAT, S3_GAIN),
@@ -138,15 +105,28 @@ static const struct property properties[] = {
 	TIME("endcharge/date", DATE, VOLATILE, 20),
 	TIME("endcharge/udate", UNSIGNED, VOLATILE, 20),
 	DS2438_HUMIDITY("humidity", HIH3600),
-	PROPERTY("latesttemp", TEMPERATURE, VOLATILE, READ, .read = read_latest),
-	PROPERTY("offset", UNSIGNED, STABLE, BOTH, .negative = true, .read = read_offset,
-                 .write = write_offset),
+	DS2438_LATEST(WAYS),
+	PROPERTY("offset", UNSIGNED, STABLE, BOTH, .negative = true, .how = WAY_OFFSET),
 	PROPERTY_DIR("pages"),
-	PROPERTY("pages/page", BINARY, STABLE, BOTH, ELEMENTS(8, NUMBERS), .size = 8,
-                 FIELD(ds2438_pages), .write = put_page),
+	DS2438_PAGES(WAYS),
 	MEASURED("temperature", TEMPERATURE, DS2438_TEMPERATURE),
 	TIME("udate", UNSIGNED, SECOND, 8),
 	MEASURED("vis", FLOAT, DS2438_VIS),
 };
 
-const struct family family_26 = {.code = 0x26, .type = "DS2438", PROPERTIES(properties)};
+const struct family family_26 = {
+	.code = 0x26,
+	.type = "DS2438",
+	AREAS(areas),
+	HOW(how),
+	PROPERTIES(properties),
+};
+
+/* The same chip with a family code that owserver knows besides. */
+const struct family family_a6 = {
+	.code = 0xa6,
+	.type = "DS2438",
+	AREAS(areas),
+	HOW(how),
+	PROPERTIES(properties),
+};

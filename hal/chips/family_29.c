@@ -58,31 +58,47 @@ static int write_test_mode(struct txn *txn)
 
 #define FLAG(text, life_, access_, bit, ...) \
 	PROPERTY(text, YESNO, life_, access_, \
-	         FIELD(ds2408_registers, .at = DS2408_CONTROL, .shift = (bit), .bits = 1), \
-	         SET(ds2408_condition, .at = DS2408_CONTROL - DS2408_MASK, .shift = (bit), \
-	             .bits = 1), \
-	         __VA_ARGS__)
+	         FIELD(REGISTERS, .at = DS2408_CONTROL, .shift = (bit), .bits = 1), __VA_ARGS__)
+
+enum { REGISTERS = 1, OUTPUT, CONDITION };
+static const struct area *const areas[] = {
+	[REGISTERS] = &ds2408_registers,
+	[OUTPUT] = &ds2408_output,
+	[CONDITION] = &ds2408_condition,
+};
+
+#define SET_CONTROL(bit) \
+	SET(CONDITION, .at = DS2408_CONTROL - DS2408_MASK, .shift = (bit), .bits = 1)
+enum { WAY_PIO = AFTER_LCD_WAYS, WAY_LATCH, WAY_TEST_MODE, WAY_POR, WAY_STROBE, WAY_ALARM };
+static const struct property_how how[] = {
+	LCD_WAYS,
+	[WAY_PIO] = {SET(OUTPUT, .inverted = true)},
+	[WAY_LATCH] = {.write = write_latch},
+	[WAY_TEST_MODE] = {.write = write_test_mode},
+	[WAY_POR] = {SET_CONTROL(DS2408_POR)},
+	[WAY_STROBE] = {SET_CONTROL(DS2408_STROBE)},
+	[WAY_ALARM] = {.read = read_alarm, .write = write_alarm},
+};
 
 static const struct property properties[] = {
 	LCD_PROPERTIES,
 	PROPERTY("PIO", BITS, STABLE, BOTH, AGGREGATE(8, NUMBERS),
-                 FIELD(ds2408_registers, .at = DS2408_OUTPUT, .inverted = true),
-                 SET(ds2408_output, .inverted = true)),
+                 FIELD(REGISTERS, .at = DS2408_OUTPUT, .inverted = true), .how = WAY_PIO),
 	PROPERTY("latch", BITS, VOLATILE, BOTH, AGGREGATE(8, NUMBERS),
-                 FIELD(ds2408_registers, .at = DS2408_ACTIVITY), .flag = true,
-                 .write = write_latch),
-	PROPERTY("out_of_testmode", YESNO, VOLATILE, WRITE, .write = write_test_mode),
-	FLAG("por", STABLE, BOTH, DS2408_POR, .flag = true),
+                 FIELD(REGISTERS, .at = DS2408_ACTIVITY), .flag = true, .how = WAY_LATCH),
+	PROPERTY("out_of_testmode", YESNO, VOLATILE, WRITE, .how = WAY_TEST_MODE),
+	FLAG("por", STABLE, BOTH, DS2408_POR, .flag = true, .how = WAY_POR),
 	FLAG("power", VOLATILE, READ, DS2408_VCC, .flag = false),
-	PROPERTY("sensed", BITS, VOLATILE, READ, AGGREGATE(8, NUMBERS), FIELD(ds2408_registers)),
-	PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = "333333333", .read = read_alarm,
-                 .write = write_alarm),
-	FLAG("strobe", STABLE, BOTH, DS2408_STROBE, .flag = false),
+	PROPERTY("sensed", BITS, VOLATILE, READ, AGGREGATE(8, NUMBERS), FIELD(REGISTERS)),
+	PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = 333333333, .how = WAY_ALARM),
+	FLAG("strobe", STABLE, BOTH, DS2408_STROBE, .how = WAY_STROBE),
 };
 
 const struct family family_29 = {
 	.code = 0x29,
 	.alarms = true,
 	.type = "DS2408",
+	AREAS(areas),
+	HOW(how),
 	PROPERTIES(properties),
 };

@@ -16,10 +16,14 @@ static const struct area memory = {
 	.copy_ns = 10 * TXN_MS,
 };
 
+enum { MEMORY = 1 };
+static const struct area *const areas[] = {[MEMORY] = &memory};
+
 static const struct property properties[] = {
-	AREA_MEMORY(memory, 128),
+	AREA_MEMORY(MEMORY, 128),
 	PROPERTY_DIR("pages"),
-	AREA_PAGES(memory, 4, 32),
+	AREA_PAGES(MEMORY, 4, 32),
 };
 
-const struct family family_2d = {.code = 0x2d, .type = "DS2431", PROPERTIES(properties)};
+const struct family family_2d = {
+	.code = 0x2d, .type = "DS2431", AREAS(areas), PROPERTIES(properties)};

@@ -5,11 +5,26 @@
 
 static const struct area latches = {PIO_LATCHES(0x5a)};
 
-static const struct property properties[] = {
-	PIO_BITS("PIO", BOTH, PIO_READ(PIO_OUTPUTS, true), PIO_SET(latches)),
-	PROPERTY("piostate", UNSIGNED, VOLATILE, BOTH, .hidden = true, .digits = "3",
-                 PIO_READ(PIO_STATE, false), SET(latches)),
-	PIO_BITS("sensed", READ, PIO_READ(PIO_PINS, false)),
+enum { STATUS = 1, LATCHES };
+static const struct area *const areas[] = {[STATUS] = &pio_status, [LATCHES] = &latches};
+
+enum { WAY_PIO = 1, WAY_STATE };
+static const struct property_how how[] = {
+	[WAY_PIO] = {PIO_SET(LATCHES)},
+	[WAY_STATE] = {SET(LATCHES)},
 };
 
-const struct family family_3a = {.code = 0x3a, .type = "DS2413", PROPERTIES(properties)};
+static const struct property properties[] = {
+	PIO_BITS("PIO", BOTH, PIO_READ(STATUS, PIO_OUTPUTS, true), .how = WAY_PIO),
+	PROPERTY("piostate", UNSIGNED, VOLATILE, BOTH, .hidden = true, .digits = 3,
+                 PIO_READ(STATUS, PIO_STATE, false), .how = WAY_STATE),
+	PIO_BITS("sensed", READ, PIO_READ(STATUS, PIO_PINS, false)),
+};
+
+const struct family family_3a = {
+	.code = 0x3a,
+	.type = "DS2413",
+	AREAS(areas),
+	HOW(how),
+	PROPERTIES(properties),
+};

@@ -12,19 +12,17 @@ enum { UNKNOWN, DS1825, MAX31826, MAX31850 }; /* thermometer.kind */
 
 #define FAULT_ANY 1
 
-static bool is_known(const struct device *device)
+static unsigned kind_of(const struct device *device)
 {
-	return thermometer_of(device)->kind != UNKNOWN;
+	return thermometer_of(device)->kind;
 }
 
 /* Which chip it is may have become known since this property was asked for: -ENOENT. */
 static int refuse_absent(struct txn *txn)
 {
-	const struct property *property = txn->property;
+	bool absent = kind_of(txn->device) && !family_has(txn->device, txn->property);
 
-	return is_known(txn->device) && property->visible && !property->visible(txn->device)
-	               ? -ENOENT
-	               : 0;
+	return absent ? -ENOENT : 0;
 }
 
 static int saw_scratchpad(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
@@ -72,32 +70,10 @@ static int identify(struct txn *txn)
 	uint8_t bytes[9];
 	int err;
 
-	if (is_known(txn->device))
+	if (kind_of(txn->device) != UNKNOWN)
 		return refuse_absent(txn);
 	err = now(txn, bytes);
 	return err ? err : TXN_MORE;
-}
-
-static bool is_ds1825(const struct device *device)
-{
-	return !is_known(device) || thermometer_of(device)->kind == DS1825;
-}
-
-static bool is_max31826(const struct device *device)
-{
-	return thermometer_of(device)->kind == MAX31826;
-}
-
-static bool is_max31850(const struct device *device)
-{
-	return thermometer_of(device)->kind == MAX31850;
-}
-
-static const char *type_of(const struct device *device)
-{
-	static const char *const types[] = {"DS1825", "DS1825", "MAX31826", "MAX31850"};
-
-	return types[thermometer_of(device)->kind];
 }
 
 /* The MAX31850's own temperature is the cold junction's, in the upper 12 bits of bytes 2 and 3. */
@@ -108,7 +84,7 @@ static int read_temperature(struct txn *txn)
 
 	if (err)
 		return err;
-	if (!is_max31850(txn->device))
+	if (kind_of(txn->device) != MAX31850)
 		return thermometer_read_temperature(txn);
 	err = now(txn, bytes);
 	txn->number[0] = ((int16_t)(bytes[2] | bytes[3] << 8) >> 4) / 16.0;
@@ -169,50 +145,67 @@ static const struct area memory = {
 	.copy_ns = 25 * TXN_MS,
 };
 
-#define TEMPERATURE(text, resolution, when) \
-	PROPERTY(text, TEMPERATURE, VOLATILE, READ, .convert = (resolution), .visible = (when), \
-	         .read = read_temperature)
+enum { OWN = AFTER_THERMOMETER_AREAS, MEMORY };
+static const struct area *const areas[] = {
+	THERMOMETER_AREAS, [OWN] = &scratchpad, [MEMORY] = &memory};
+
+enum { WAY_OWN = AFTER_THERMOMETER_WAYS, WAY_OWN_LIMIT, WAY_FAULT, WAY_FLAGS, WAY_THERMOCOUPLE };
+static const struct property_how how[] = {
+	THERMOMETER_WAYS,
+	[WAY_OWN] = {.read = read_temperature},
+	[WAY_OWN_LIMIT] = {.write = write_limit},
+	[WAY_FAULT] = {.read = read_fault},
+	[WAY_FLAGS] = {.read = read_flags},
+	[WAY_THERMOCOUPLE] = {.read = read_thermocouple},
+};
+
+#define TEMPERATURE(text, resolution, which) \
+	PROPERTY(text, TEMPERATURE, VOLATILE, READ, .convert = (resolution), .kinds = (which), \
+	         .how = WAY_OWN)
 #define FAULT(text, byte, bit) \
 	PROPERTY(text, YESNO, VOLATILE, READ, .arg = (byte) << 8 | (bit), \
-	         .convert = CONVERT_TEMPRES, .visible = is_max31850, .read = read_fault)
+	         .convert = CONVERT_TEMPRES, .kinds = KIND(MAX31850), .how = WAY_FAULT)
 #define LIMIT(text, where) \
-	PROPERTY(text, TEMPERATURE, STABLE, BOTH, .visible = is_ds1825, \
-	         FIELD(scratchpad, .at = (where), .is_signed = true), .write = write_limit)
+	PROPERTY(text, TEMPERATURE, STABLE, BOTH, .kinds = KIND(DS1825), \
+	         FIELD(OWN, .at = (where), .is_signed = true), .how = WAY_OWN_LIMIT)
 
 static const struct property properties[] = {
-	TEMPERATURE("fasttemp", 9, is_ds1825),
+	TEMPERATURE("fasttemp", 9, KIND(DS1825)),
 	FAULT("fault", 0, FAULT_ANY),
-	PROPERTY("flagfield", UNSIGNED, VOLATILE, READ, .hidden = true, .read = read_flags),
+	PROPERTY("flagfield", UNSIGNED, VOLATILE, READ, .hidden = true, .how = WAY_FLAGS),
 	FAULT("ground_short", 2, 2),
-	TEMPERATURE("latesttemp", 0, NULL),
-	PROPERTY("memory", BINARY, VOLATILE, BOTH, .size = 128, .visible = is_max31826,
-                 FIELD(memory)),
+	TEMPERATURE("latesttemp", 0, 0),
+	PROPERTY("memory", BINARY, VOLATILE, BOTH, .size = 128, .kinds = KIND(MAX31826),
+                 FIELD(MEMORY)),
 	FAULT("open_circuit", 2, 1),
-	PROPERTY("pages", DIRECTORY, STATIC, NONE, .visible = is_max31826),
+	PROPERTY("pages", DIRECTORY, STATIC, NONE, .kinds = KIND(MAX31826)),
 	PROPERTY("pages/page", BINARY, VOLATILE, BOTH, ELEMENTS(16, NUMBERS), .size = 8,
-                 .visible = is_max31826, FIELD(memory)),
+                 .kinds = KIND(MAX31826), FIELD(MEMORY)),
 	THERMOMETER_POWER,
-	PROPERTY("prog_addr", UNSIGNED, STABLE, READ,
-                 FIELD(scratchpad, .at = SP_CONFIG, .bits = 4)),
+	PROPERTY("prog_addr", UNSIGNED, STABLE, READ, FIELD(OWN, .at = SP_CONFIG, .bits = 4)),
 	THERMOMETER_SCRATCHPAD,
-	TEMPERATURE("temperature", CONVERT_TEMPRES, NULL),
-	TEMPERATURE("temperature10", 10, is_ds1825),
-	TEMPERATURE("temperature11", 11, is_ds1825),
-	TEMPERATURE("temperature12", 12, NULL),
-	TEMPERATURE("temperature9", 9, is_ds1825),
+	TEMPERATURE("temperature", CONVERT_TEMPRES, 0),
+	TEMPERATURE("temperature10", 10, KIND(DS1825)),
+	TEMPERATURE("temperature11", 11, KIND(DS1825)),
+	TEMPERATURE("temperature12", 12, 0),
+	TEMPERATURE("temperature9", 9, KIND(DS1825)),
 	LIMIT("temphigh", SP_HIGH),
 	LIMIT("templow", SP_LOW),
 	THERMOMETER_TEMPRES,
 	PROPERTY("thermocouple", TEMPERATURE, VOLATILE, READ, .convert = CONVERT_TEMPRES,
-                 .visible = is_max31850, .read = read_thermocouple),
+                 .kinds = KIND(MAX31850), .how = WAY_THERMOCOUPLE),
 	FAULT("vdd_short", 2, 4),
 };
+
+static const char *const types[] = {"DS1825", "DS1825", "MAX31826", "MAX31850"};
 
 const struct family family_3b = {
 	.code = 0x3b,
 	.type = "DS1825",
-	.type_of = type_of,
-	.is_known = is_known,
+	.kind = kind_of,
+	.types = types,
 	THERMOMETER_FAMILY,
+	AREAS(areas),
+	HOW(how),
 	PROPERTIES(properties),
 };

@@ -5,14 +5,22 @@
 
 static const struct area latches = {PIO_LATCHES(0xa5)};
 
+enum { STATUS = AFTER_THERMOMETER_AREAS, LATCHES };
+static const struct area *const areas[] = {
+	THERMOMETER_AREAS, [STATUS] = &pio_status, [LATCHES] = &latches};
+
+enum { WAY_PIO = AFTER_THERMOMETER_WAYS };
+static const struct property_how how[] = {THERMOMETER_WAYS, [WAY_PIO] = {PIO_SET(LATCHES)}};
+
 static const struct property properties[] = {
-	PIO_BITS("PIO", BOTH, PIO_READ(PIO_PINS, true), PIO_SET(latches)),
+	PIO_BITS("PIO", BOTH, PIO_READ(STATUS, PIO_PINS, true), .how = WAY_PIO),
 	THERMOMETER_TEMPERATURE("fasttemp", 9),
-	PIO_BITS("latch", BOTH, PIO_READ(PIO_OUTPUTS, true), PIO_SET(latches)),
+	PIO_BITS("latch", BOTH, PIO_READ(STATUS, PIO_OUTPUTS, true), .how = WAY_PIO),
 	THERMOMETER_LATEST,
-	PROPERTY("piostate", UNSIGNED, VOLATILE, READ, .hidden = true, PIO_READ(PIO_STATE, false)),
+	PROPERTY("piostate", UNSIGNED, VOLATILE, READ, .hidden = true,
+                 PIO_READ(STATUS, PIO_STATE, false)),
 	THERMOMETER_POWER,
-	PIO_BITS("sensed", READ, PIO_READ(PIO_PINS, false)),
+	PIO_BITS("sensed", READ, PIO_READ(STATUS, PIO_PINS, false)),
 	THERMOMETER_TEMPERATURES,
 };
 
@@ -20,5 +28,7 @@ const struct family family_42 = {
 	.code = 0x42,
 	.type = "DS28EA00",
 	THERMOMETER_FAMILY,
+	AREAS(areas),
+	HOW(how),
 	PROPERTIES(properties),
 };

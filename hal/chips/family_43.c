@@ -18,10 +18,14 @@ static const struct area memory = {
 	.copy_ns = 10 * TXN_MS,
 };
 
+enum { MEMORY = 1 };
+static const struct area *const areas[] = {[MEMORY] = &memory};
+
 static const struct property properties[] = {
-	AREA_MEMORY(memory, 2560),
+	AREA_MEMORY(MEMORY, 2560),
 	PROPERTY_DIR("pages"),
-	AREA_PAGES(memory, 80, 32),
+	AREA_PAGES(MEMORY, 80, 32),
 };
 
-const struct family family_43 = {.code = 0x43, .type = "DS28EC20", PROPERTIES(properties)};
+const struct family family_43 = {
+	.code = 0x43, .type = "DS28EC20", AREAS(areas), PROPERTIES(properties)};

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "hal/chips/field.h"
+#include "hal/chips/how.h"
 
 #define BYTES_MAX 4
 
@@ -58,28 +59,44 @@ static unsigned place(const struct property *property, const struct field *field
 {
 	unsigned stride = field->stride || !is_binary(property) ? field->stride : property->size;
 
-	return field->at + element * stride;
+	/* of a text behind the dot (SPARSE) there is one element */
+	return field->at + (property->array.count ? element * stride : 0);
+}
+
+/* A txn's property has an area, so it has a device. */
+static const struct area *area_of(const struct txn *txn, const struct field *field)
+{
+	return family_owner(txn->device->family, txn->property)->areas[field->area];
+}
+
+static const struct field *written(const struct family *family, const struct property *property)
+{
+	const struct field *set = &family_how(family, property)->set;
+
+	return set->area ? set : &property->field;
 }
 
 int field_read(struct txn *txn)
 {
 	const struct property *property = txn->property;
 	const struct field *field = &property->field;
+	const struct area *area = area_of(txn, field);
 	unsigned at = place(property, field, (unsigned)txn->element), count = 1;
 	uint8_t bytes[AREA_UNIT];
 
 	if (is_binary(property))
-		return area_read_data(txn, field->area, at, property->size);
+		return area_read_data(txn, area, at, property->size);
 	if (property->array.aggregate && field->stride) {
 		at = field->at;
 		count = property->array.count;
 	}
-	int err = area_read(txn, field->area, at, bytes,
-	                    (count - 1) * field->stride + bytes_of(field));
+	int err = area_read(txn, area, at, bytes, (count - 1) * field->stride + bytes_of(field));
 	if (err)
 		return err;
-	txn->bits = join(field, bytes) >> field->shift ^ (field->inverted ? UINT32_MAX : 0);
-	txn->bits &= (UINT32_C(1) << property->array.count) - 1;
+	if (property->type == PROPERTY_BITS) {
+		txn->bits = join(field, bytes) >> field->shift ^ (field->inverted ? UINT32_MAX : 0);
+		txn->bits &= (UINT32_C(1) << property->array.count) - 1;
+	}
 	for (unsigned i = 0; i < count; i++)
 		txn->number[i] = value_of(field, join(field, bytes + i * field->stride));
 	return 0;
@@ -104,13 +121,14 @@ static int bits_of(const struct field *field, double value, uint32_t *bits)
 int field_write(struct txn *txn)
 {
 	const struct property *property = txn->property;
-	const struct field *field = property->set ? property->set : &property->field;
+	const struct field *field = written(txn->device->family, property);
+	const struct area *area = area_of(txn, field);
 	unsigned at = place(property, field, (unsigned)txn->element), count = 1;
 	uint8_t bytes[AREA_UNIT], which[AREA_UNIT] = {0};
 	uint32_t bits = 0, mask = mask_of(field) << field->shift;
 
 	if (is_binary(property))
-		return area_write(txn, field->area, at + (unsigned)txn->at, txn->data, NULL,
+		return area_write(txn, area, at + (unsigned)txn->at, txn->data, NULL,
 		                  (unsigned)txn->len);
 	if (property->type == PROPERTY_BITS) {
 		mask = field->bits ? mask
@@ -119,7 +137,7 @@ int field_write(struct txn *txn)
 		bits = (field->inverted ? ~txn->bits : txn->bits) << field->shift;
 		split(field, bits, bytes);
 		split(field, mask, which);
-		return area_write(txn, field->area, field->at, bytes, which, bytes_of(field));
+		return area_write(txn, area, field->at, bytes, which, bytes_of(field));
 	}
 	if (property->array.aggregate && !txn->one)
 		count = property->array.count;
@@ -132,19 +150,21 @@ int field_write(struct txn *txn)
 		split(field, bits, bytes + i * field->stride);
 		split(field, mask, which + i * field->stride);
 	}
-	return area_write(txn, field->area, at, bytes, which,
+	return area_write(txn, area, at, bytes, which,
 	                  (count - 1) * field->stride + bytes_of(field));
 }
 
-property_function *property_reader(const struct property *property)
+property_function *property_reader(const struct family *family, const struct property *property)
 {
-	return property->read || !property->field.area ? property->read : field_read;
+	property_function *read = family_how(family, property)->read;
+
+	return read || !property->field.area ? read : field_read;
 }
 
-property_function *property_writer(const struct property *property)
+property_function *property_writer(const struct family *family, const struct property *property)
 {
-	return property->write || !(property->access & ACCESS_WRITE) ||
-	                       !(property->set ? property->set : &property->field)->area
-	               ? property->write
-	               : field_write;
+	property_function *write = family_how(family, property)->write;
+	bool none = !(property->access & ACCESS_WRITE) || !written(family, property)->area;
+
+	return write || none ? write : field_write;
 }

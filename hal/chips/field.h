@@ -3,14 +3,14 @@
 #ifndef HAL_CHIPS_FIELD_H
 #define HAL_CHIPS_FIELD_H
 
-#include "hal/chips/property.h"
+#include "hal/chips/family.h"
 
 /* Of a property with .field: txn->property's element txn->element, or all. */
 int field_read(struct txn *txn);
 int field_write(struct txn *txn);
 
 /* What reads it, and what writes it: the property's function, or the field's; NULL: nothing. */
-property_function *property_reader(const struct property *property);
-property_function *property_writer(const struct property *property);
+property_function *property_reader(const struct family *family, const struct property *property);
+property_function *property_writer(const struct family *family, const struct property *property);
 
 #endif

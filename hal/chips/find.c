@@ -26,7 +26,7 @@ const struct family *family_nth(unsigned n)
 
 static bool is_visible(const struct property *property, const struct device *device)
 {
-	return !device || !property->visible || property->visible(device);
+	return !device || family_has(device, property);
 }
 
 static int order(const char *name, size_t len, const char *other)
@@ -75,7 +75,7 @@ const struct property *family_property(const struct family *family, const struct
 	if (!property || is_visible(property, device))
 		return property;
 	/* its functions look which chip it is, and refuse it then */
-	return family->is_known && !family->is_known(device) && property->type != PROPERTY_DIRECTORY
+	return family->kind && !family->kind(device) && property->type != PROPERTY_DIRECTORY
 	               ? property
 	               : NULL;
 }

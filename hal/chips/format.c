@@ -33,12 +33,10 @@ int extension_split(const char *text, size_t len, size_t *name_len)
 	if (n == 4 && strncasecmp(word, "BYTE", 4) == 0)
 		return EXTENSION_BYTE;
 	if (n == 1 && isalpha((unsigned char)*word))
-		return 256 + (toupper((unsigned char)*word) - 'A');
+		return EXTENSION_LETTERS + (toupper((unsigned char)*word) - 'A');
 	for (size_t i = 0; i < n; i++) {
-		if (n > 2 || !isdigit((unsigned char)word[i])) {
-			*name_len = len;
-			return EXTENSION_NONE;
-		}
+		if (n > 4 || !isdigit((unsigned char)word[i]))
+			return EXTENSION_WORD;
 		element = element * 10 + (word[i] - '0');
 	}
 	return element;
@@ -46,10 +44,13 @@ int extension_split(const char *text, size_t len, size_t *name_len)
 
 bool extension_fits(const struct property *property, int extension)
 {
-	int first = property->array.index == INDEX_LETTERS ? 256 : 0;
+	int first = property->array.index == INDEX_LETTERS ? EXTENSION_LETTERS : 0;
 
 	if (property->array.index == INDEX_NONE)
 		return extension == EXTENSION_NONE;
+	if (property->array.count == 0)
+		return first ? extension >= 0 || extension == EXTENSION_WORD
+		             : extension >= 0 && extension < EXTENSION_LETTERS;
 	if (extension == EXTENSION_BYTE)
 		return property->type == PROPERTY_BITS;
 	if (extension == EXTENSION_ALL)
@@ -67,9 +68,11 @@ int extension_print(const struct property *property, int extension, char text[8]
 		return snprintf(text, 8, ".ALL");
 	if (extension == EXTENSION_BYTE)
 		return snprintf(text, 8, ".BYTE");
+	if (property->array.count == 0)
+		return snprintf(text, 8, property->array.index == INDEX_LETTERS ? ".xxx" : ".000");
 	if (property->array.index == INDEX_LETTERS)
 		return snprintf(text, 8, ".%c", 'A' + (extension & 0x1f));
-	return snprintf(text, 8, ".%d", extension & 0xff);
+	return snprintf(text, 8, ".%d", extension_element(extension));
 }
 
 static int put(const char *from, int len, char *text, size_t room)
@@ -107,6 +110,7 @@ int format_number(uint8_t type, double number, char *text, size_t room)
 	case PROPERTY_DATE:
 		return format_date(number, text, room);
 	case PROPERTY_FLOAT:
+	case PROPERTY_TEMPGAP:
 	case PROPERTY_PRESSURE:
 	case PROPERTY_TEMPERATURE:
 		return put(out, snprintf(out, sizeof(out), "%12G", number), text, room);
@@ -121,7 +125,7 @@ int format_number(uint8_t type, double number, char *text, size_t room)
 
 static double element_of(const struct property *property, int element, const struct txn *txn)
 {
-	element &= 0xff;
+	element = extension_element(element);
 	if (property->type == PROPERTY_BITS)
 		return txn->bits >> element & 1;
 	return txn->number[property->array.aggregate ? element : 0];
@@ -166,6 +170,7 @@ bool format_is_number(const struct property *property, int extension)
 	case PROPERTY_DATE:
 		return false;
 	case PROPERTY_FLOAT:
+	case PROPERTY_TEMPGAP:
 	case PROPERTY_INTEGER:
 	case PROPERTY_PRESSURE:
 	case PROPERTY_TEMPERATURE:
@@ -253,14 +258,12 @@ static bool copy_trimmed(const char *text, size_t len, char copy[TEXT_ROOM])
 }
 
 /* The last digit of the number is measured by the last of the limits. */
-static bool digits_fit(const char *limits, double number)
+static bool digits_fit(uint32_t limits, double number)
 {
-	uint32_t rest = (uint32_t)number;
-
-	for (size_t i = strlen(limits); i-- > 0; rest /= 10)
-		if (rest % 10 > (uint32_t)(limits[i] - '0'))
+	for (uint32_t rest = (uint32_t)number; rest; rest /= 10, limits /= 10)
+		if (rest % 10 > limits % 10)
 			return false;
-	return rest == 0;
+	return true;
 }
 
 static int parse_unsigned(const struct property *property, const char *text, double *number)
@@ -288,6 +291,7 @@ static int parse_number(const struct property *property, const char *text, size_
 	case PROPERTY_INTEGER:
 		return parse_whole(copy, INT32_MIN, INT32_MAX, number);
 	case PROPERTY_FLOAT:
+	case PROPERTY_TEMPGAP:
 	case PROPERTY_PRESSURE:
 	case PROPERTY_TEMPERATURE:
 		return parse_decimal(copy, number);
@@ -320,7 +324,7 @@ static void set_element(const struct property *property, int element, double num
 	if (property->type == PROPERTY_BITS)
 		txn->bits = number != 0 ? txn->bits | bit : txn->bits & ~bit;
 	else
-		txn->number[property->array.aggregate ? element & 0xff : 0] = number;
+		txn->number[property->array.aggregate ? extension_element(element) : 0] = number;
 }
 
 int parse_value(const struct property *property, int extension, const char *text, size_t len,

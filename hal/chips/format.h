@@ -8,8 +8,20 @@
 
 #include "hal/chips/property.h"
 
-/* What stands behind the dot of an array's name; 0 and up is an element. */
-enum extension { EXTENSION_ALL = -1, EXTENSION_BYTE = -2, EXTENSION_NONE = -3 };
+/* What stands behind the dot of an array's name; 0 and up: an element. WORD: of SPARSE alone. */
+enum extension {
+	EXTENSION_ALL = -1,
+	EXTENSION_BYTE = -2,
+	EXTENSION_NONE = -3,
+	EXTENSION_WORD = -4
+};
+/* "A" as an extension; the letters behind it follow. */
+#define EXTENSION_LETTERS 0x10000
+/* Which element of the array it is, by number or letter. */
+static inline int extension_element(int extension)
+{
+	return extension & (EXTENSION_LETTERS - 1);
+}
 
 /*
  * Split "PIO.BYTE" (len bytes) into name length and extension as the property's array has it.

@@ -23,13 +23,17 @@ enum lcd_command {
 
 int lcd_write(struct txn *txn); /* arg: LCD_DO(board, command) */
 
+/* What stands first in the list of the family. */
+enum { WAY_LCD = 1, AFTER_LCD_WAYS };
+#define LCD_WAYS [WAY_LCD] = {.write = lcd_write}
+
 #define LCD_DO(board, command) ((board) << 8 | (command))
 #define LCD_ENTRY(text, kind, bytes, board, command) \
 	PROPERTY(text, kind, STABLE, WRITE, .size = (bytes), .arg = LCD_DO(board, command), \
-	         .write = lcd_write)
+	         .how = WAY_LCD)
 #define LCD_GLYPHS(text, bytes, command) \
 	PROPERTY(text, BINARY, STABLE, WRITE, ELEMENTS(8, NUMBERS), .size = 8, .takes = (bytes), \
-	         .arg = LCD_DO(LCD_H, command), .write = lcd_write)
+	         .arg = LCD_DO(LCD_H, command), .how = WAY_LCD)
 #define LCD_PROPERTIES \
 	PROPERTY_DIR("LCD_H"), LCD_ENTRY("LCD_H/clear", YESNO, 0, LCD_H, LCD_CLEAR), \
 		LCD_ENTRY("LCD_H/home", YESNO, 0, LCD_H, LCD_HOME), \

@@ -21,12 +21,9 @@ bool pio_is_written(struct txn *txn, const uint8_t *have, const uint8_t *want, u
 	.load = pio_load, .store = pio_store, .saw = pio_saw, .is_written = pio_is_written
 #define PIO_BITS(text, access_, ...) \
 	PROPERTY(text, BITS, VOLATILE, access_, AGGREGATE(2, LETTERS), __VA_ARGS__)
-#define PIO_READ(part, inverted_) FIELD(pio_status, .at = (part), .inverted = (inverted_))
+/* area_: which of the family's areas pio_status is. */
+#define PIO_READ(area_, part, inverted_) FIELD(area_, .at = (part), .inverted = (inverted_))
 /* A write of both gives the whole byte: what is there does not matter. */
-#define PIO_SET(area_) \
-	.set = &(const struct field) \
-	{ \
-		.area = &(area_), .bits = 8, .inverted = true \
-	}
+#define PIO_SET(area_) SET(area_, .bits = 8, .inverted = true)
 
 #endif

@@ -12,6 +12,7 @@ unsigned property_size(const struct property *property)
 	case PROPERTY_DATE:
 		return 24;
 	case PROPERTY_FLOAT:
+	case PROPERTY_TEMPGAP:
 	case PROPERTY_INTEGER:
 	case PROPERTY_PRESSURE:
 	case PROPERTY_TEMPERATURE:

@@ -15,6 +15,7 @@ enum property_type {
 	PROPERTY_BINARY = 'b',
 	PROPERTY_DATE = 'd',
 	PROPERTY_FLOAT = 'f',
+	PROPERTY_TEMPGAP = 'g',
 	PROPERTY_INTEGER = 'i',
 	PROPERTY_ALIAS = 'l',
 	PROPERTY_PRESSURE = 'p',
@@ -41,55 +42,67 @@ enum property_index { INDEX_NONE, INDEX_NUMBERS, INDEX_LETTERS };
 
 typedef int property_function(struct txn *txn);
 
+#define PROPERTY_NAME_ROOM 40
+
+/*
+ * A row of a family's table. It holds no pointer: so the tables stand in read-only memory, which
+ * all processes share, and a family that is on no wire costs nothing.
+ */
 struct property {
-	const char *name; /* "temperature12", "errata/die" */
+	char name[PROPERTY_NAME_ROOM]; /* "temperature12", "errata/die" */
 	uint8_t type, life, access;
+	uint8_t how;  /* which of the family's oddities; 0: none */
 	bool hidden;  /* not listed */
 	bool offline; /* its functions use no wire */
 	bool flag; /* tells why a chip alarms: a visit of the alarm machine reads all such once */
+	bool negative;   /* unsigned, and a write may be below zero all the same */
+	uint8_t convert; /* 9 to 12, CONVERT_TEMPRES, or 0 */
 	struct {
-		uint8_t count, index;
+		uint16_t count;
+		uint8_t index;
 		bool aggregate; /* all elements come in one transaction */
 	} array;
-	uint16_t size;           /* bytes of ascii and binary; 0: that of the type */
-	bool negative;           /* unsigned, and a write may be below zero all the same */
-	const char *digits;      /* unsigned: the most that each decimal digit may be; NULL: any */
-	uint8_t convert;         /* 9 to 12, CONVERT_TEMPRES, or 0 */
-	struct field field;      /* what it is; .area NULL: it has functions */
-	const struct field *set; /* what is written, if that is another */
-	int arg;                 /* for functions that serve several properties */
-	bool (*visible)(const struct device *device); /* NULL: always; else no such property */
-	int (*read)(struct txn *txn);                 /* NULL: of the field */
-	int (*write)(struct txn *txn);
+	uint16_t takes;     /* bytes of binary that a write may have; 0: size */
+	uint32_t size;      /* bytes of ascii and binary; 0: that of the type */
+	uint32_t digits;    /* unsigned: each decimal digit may be as high as here; 0: any */
+	uint32_t kinds;     /* KIND() of those of the family's chips that have it; 0: all have it */
+	int32_t arg;        /* for functions that serve several properties */
+	struct field field; /* what it is; .area 0: it has functions */
+};
+
+/* For property.kinds: a chip that family.kind calls n. No chip is of KIND(0). */
+#define KIND(n) (UINT32_C(1) << (n))
+
+/* What no field can say of a property. */
+struct property_how {
+	property_function *read; /* NULL: of the field */
+	property_function *write;
 	/* What the other elements are when one is written; NULL: what read says. */
-	int (*merge)(struct txn *txn);
-	uint16_t takes; /* bytes of binary that a write may have; 0: size */
+	property_function *merge;
+	struct field set; /* what is written, if that is another field than is read */
 };
 
 /* Bytes of a whole value, of one element, as owserver states it. */
 unsigned property_size(const struct property *property);
 
 /*
- * Rows of a family's table: PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = "331", ...).
+ * Rows of a family's table: PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = 331, ...).
  * Arrays are ELEMENTS, read one by one, or AGGREGATE, read in one transaction.
  */
 /* clang-format off */
 #define PROPERTY(text, kind, life_, access_, ...) \
-	{.name = (text), .type = PROPERTY_##kind, .life = LIFE_##life_, \
+	{.name = text, .type = PROPERTY_##kind, .life = LIFE_##life_, \
 	 .access = ACCESS_##access_, __VA_ARGS__}
 #define ELEMENTS(n, index_) .array = {(n), INDEX_##index_, false}
 #define AGGREGATE(n, index_) .array = {(n), INDEX_##index_, true}
-#define PROPERTY_DIR(path) \
-	{.name = (path), .type = PROPERTY_DIRECTORY, .life = LIFE_STATIC, .access = ACCESS_NONE}
+/* Any number, or any word, stands behind the dot: elements that cannot be counted. */
+#define SPARSE(index_) .array = {0, INDEX_##index_, false}
+#define PROPERTY_DIR(path) PROPERTY(path, DIRECTORY, STATIC, NONE, .hidden = false)
 /* clang-format on */
-/* FIELD(registers, .at = 3, .shift = 2) in a row of a table of properties. */
-#define FIELD(...) .field = {.area = &__VA_ARGS__}
-/* The same of what is written, if that is another field. */
-#define SET(...) \
-	.set = &(const struct field) \
-	{ \
-		.area = &__VA_ARGS__ \
-	}
+/* FIELD(REGISTERS, .at = 3, .shift = 2) in a row of a table of properties. */
+#define FIELD(...) .field = {.area = __VA_ARGS__}
+/* The same in a property_how, of what is written. */
+#define SET(...) .set = {.area = __VA_ARGS__}
 /* The rows of a table that nearly every memory has: "memory", and below "pages" its pages. */
 #define AREA_MEMORY(area_, bytes_) \
 	PROPERTY("memory", BINARY, VOLATILE, BOTH, .size = (bytes_), FIELD(area_))

@@ -151,13 +151,6 @@ int sensor_read_type(struct txn *txn)
 	return 0;
 }
 
-/* How such a board marks itself is not documented. */
-bool sensor_is_datanab(const struct device *device)
-{
-	(void)device;
-	return false;
-}
-
 int sensor_reset_datanab(struct txn *txn)
 {
 	(void)txn;

@@ -72,13 +72,39 @@ int thermometer_refuse_trim(struct txn *txn);
 int thermometer_read_trim_valid(struct txn *txn);
 int thermometer_read_trim_blanket(struct txn *txn);
 
+/* What stands first in the lists of their families; those with more begin behind the last. */
+enum { SCRATCHPAD = 1, AFTER_THERMOMETER_AREAS };
+/* NOLINTNEXTLINE(bugprone-macro-parentheses): a row of a list */
+#define THERMOMETER_AREAS [SCRATCHPAD] = &thermometer_area
+enum {
+	WAY_TEMPERATURE = 1,
+	WAY_LIMIT,
+	WAY_TEMPRES,
+	WAY_POWER,
+	WAY_DIE,
+	WAY_TRIM,
+	WAY_TRIM_BLANKET,
+	WAY_TRIM_VALID,
+	AFTER_THERMOMETER_WAYS,
+};
+/* clang-format off */
+#define THERMOMETER_WAYS \
+	[WAY_TEMPERATURE] = {.read = thermometer_read_temperature}, \
+	[WAY_LIMIT] = {.write = thermometer_write_limit}, \
+	[WAY_TEMPRES] = {.read = thermometer_read_tempres, .write = thermometer_write_tempres}, \
+	[WAY_POWER] = {.read = thermometer_read_power}, \
+	[WAY_DIE] = {.read = thermometer_read_die}, \
+	[WAY_TRIM] = {.read = thermometer_read_trim, .write = thermometer_refuse_trim}, \
+	[WAY_TRIM_BLANKET] = {.read = thermometer_read_trim_blanket, \
+	                      .write = thermometer_refuse_trim}, \
+	[WAY_TRIM_VALID] = {.read = thermometer_read_trim_valid}
+/* clang-format on */
+
 #define THERMOMETER_TEMPERATURE(text, resolution) \
-	PROPERTY(text, TEMPERATURE, VOLATILE, READ, .convert = (resolution), \
-	         .read = thermometer_read_temperature)
+	PROPERTY(text, TEMPERATURE, VOLATILE, READ, .convert = (resolution), .how = WAY_TEMPERATURE)
 #define THERMOMETER_LIMIT(text, where) \
 	PROPERTY(text, TEMPERATURE, STABLE, BOTH, \
-	         FIELD(thermometer_area, .at = (where), .is_signed = true), \
-	         .write = thermometer_write_limit)
+	         FIELD(SCRATCHPAD, .at = (where), .is_signed = true), .how = WAY_LIMIT)
 
 /*
  * Parts of the families' tables, sorted: what all have first, then (a scratchpad) and what all have
@@ -86,21 +112,15 @@ int thermometer_read_trim_blanket(struct txn *txn);
  */
 #define THERMOMETER_ERRATA \
 	PROPERTY_DIR("errata"), \
-		PROPERTY("errata/die", ASCII, STATIC, READ, .size = 2, \
-	                 .read = thermometer_read_die), \
-		PROPERTY("errata/trim", UNSIGNED, VOLATILE, BOTH, .read = thermometer_read_trim, \
-	                 .write = thermometer_refuse_trim), \
-		PROPERTY("errata/trimblanket", YESNO, VOLATILE, BOTH, \
-	                 .read = thermometer_read_trim_blanket, .write = thermometer_refuse_trim), \
-		PROPERTY("errata/trimvalid", YESNO, VOLATILE, READ, \
-	                 .read = thermometer_read_trim_valid)
+		PROPERTY("errata/die", ASCII, STATIC, READ, .size = 2, .how = WAY_DIE), \
+		PROPERTY("errata/trim", UNSIGNED, VOLATILE, BOTH, .how = WAY_TRIM), \
+		PROPERTY("errata/trimblanket", YESNO, VOLATILE, BOTH, .how = WAY_TRIM_BLANKET), \
+		PROPERTY("errata/trimvalid", YESNO, VOLATILE, READ, .how = WAY_TRIM_VALID)
 #define THERMOMETER_LATEST THERMOMETER_TEMPERATURE("latesttemp", 0)
-#define THERMOMETER_POWER PROPERTY("power", YESNO, VOLATILE, READ, .read = thermometer_read_power)
+#define THERMOMETER_POWER PROPERTY("power", YESNO, VOLATILE, READ, .how = WAY_POWER)
 #define THERMOMETER_SCRATCHPAD \
-	PROPERTY("scratchpad", BINARY, VOLATILE, READ, .size = 9, FIELD(thermometer_area))
-#define THERMOMETER_TEMPRES \
-	PROPERTY("tempres", UNSIGNED, STABLE, BOTH, .read = thermometer_read_tempres, \
-	         .write = thermometer_write_tempres)
+	PROPERTY("scratchpad", BINARY, VOLATILE, READ, .size = 9, FIELD(SCRATCHPAD))
+#define THERMOMETER_TEMPRES PROPERTY("tempres", UNSIGNED, STABLE, BOTH, .how = WAY_TEMPRES)
 /* At each resolution, the limits, and the resolution of the EEPROM. */
 #define THERMOMETER_TEMPERATURES \
 	THERMOMETER_TEMPERATURE("temperature", CONVERT_TEMPRES), \

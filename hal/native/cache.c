@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <stdlib.h>
 
+#include "hal/chips/format.h"
 #include "hal/native/cache.h"
 #include "hal/wire/device.h"
 
@@ -25,7 +26,7 @@ static struct cache_entry *set_of(struct cache *cache, const struct device *devi
                                   const struct property *property, int extension)
 {
 	uintptr_t key = (uintptr_t)device / sizeof(*device) * 31 + (uintptr_t)property / 16 * 7 +
-	                (uintptr_t)(extension & 0xff);
+	                (uintptr_t)extension_element(extension);
 
 	return cache->entries + (key ^ key >> 8) % SETS * WAYS;
 }

@@ -440,7 +440,7 @@ static bool ask_one(struct native *native, unsigned n)
 
 bool convert_step(struct native *native, int64_t now, int64_t *next)
 {
-	for (unsigned n = 0; n < native->channels; n++) {
+	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1)) {
 		struct channel *channel = &native->channel[n];
 
 		if (!channel->due_ns || native_held(native, n, NULL, now))

@@ -5,6 +5,7 @@
 
 #include "hal/chips/field.h"
 #include "hal/chips/format.h"
+#include "hal/chips/how.h"
 #include "hal/chips/thermometer.h"
 #include "hal/native/answer.h"
 #include "hal/native/convert.h"
@@ -12,6 +13,7 @@
 #include "hal/native/job_txn.h"
 #include "hal/native/outcome.h"
 #include "hal/native/state.h"
+#include "hal/native/touch.h"
 
 static bool is_text(const struct property *property)
 {
@@ -119,18 +121,32 @@ static void write_done(struct native *native, struct job *job)
 	job_answer(native, job, 0);
 }
 
+static const struct family *family_of_job(const struct job *job)
+{
+	return job->txn.device ? job->txn.device->family : job->table;
+}
+
+static property_function *reader(const struct job *job)
+{
+	return property_reader(family_of_job(job), job->property);
+}
+
+static property_function *writer(const struct job *job)
+{
+	return property_writer(family_of_job(job), job->property);
+}
+
 /* One element of an aggregate is written: the others are read first. */
 static bool needs_merge(const struct job *job)
 {
 	return job->req->op == BUS_WRITE && !job->merged && job->extension >= 0 &&
-	       job->property->array.count > 1 && property_reader(job->property) &&
-	       property_writer(job->property) != field_write &&
+	       job->property->array.count > 1 && reader(job) && writer(job) != field_write &&
 	       (job->property->array.aggregate || job->property->type == PROPERTY_BITS);
 }
 
 static int run_function(struct job *job)
 {
-	property_function *read = property_reader(job->property);
+	property_function *merge = family_how(family_of_job(job), job->property)->merge;
 	bool binary = job->property->type == PROPERTY_BINARY;
 	struct txn *txn = &job->txn;
 
@@ -138,10 +154,17 @@ static int run_function(struct job *job)
 		return -ENOENT;
 	if (job->req->op == BUS_READ && binary && txn->room < property_size(job->property))
 		return -EMSGSIZE;
+	if (job->req->op == BUS_READ && txn->device &&
+	    strcmp(job->property->name, "present") == 0 &&
+	    touch_knows(txn->native, txn->device, txn_now(txn))) {
+		txn->number[0] = 1;
+		txn->measured_ns = txn->device->ok_ns;
+		return 0;
+	}
 	if (job->req->op == BUS_READ)
-		return read(txn);
+		return reader(job)(txn);
 	if (needs_merge(job))
-		return job->property->merge ? job->property->merge(txn) : read(txn);
+		return merge ? merge(txn) : reader(job)(txn);
 	if (txn->phase == 0) {
 		int err = take_value(job);
 
@@ -153,7 +176,7 @@ static int run_function(struct job *job)
 		txn->device->changes++;
 		txn_void(txn);
 	}
-	return property_writer(job->property)(txn);
+	return writer(job)(txn);
 }
 
 static void hold(struct native *native, struct job *job)

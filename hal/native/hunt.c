@@ -8,13 +8,16 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/chips/ds28e18.h"
 #include "hal/native/answer.h"
+#include "hal/native/branches.h"
 #include "hal/native/hunt.h"
 #include "hal/native/limits.h"
 #include "hal/native/listing.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
 #include "hal/native/presence.h"
+#include "hal/native/sensors.h"
 #include "hal/native/state.h"
 
 #define PASS_NS (NATIVE_S / 10)
@@ -28,7 +31,7 @@
 
 bool hunt_initial(const struct native *native)
 {
-	for (unsigned n = 0; n < native->channels; n++)
+	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1))
 		if (!native->channel[n].listed)
 			return true;
 	return false;
@@ -59,12 +62,13 @@ static void end_round(struct native *native, unsigned n, int64_t now)
 static void told_short(struct native *native, unsigned n, bool is_short)
 {
 	struct channel *channel = &native->channel[n];
-	char text[48];
+	char name[BUS_EVENT_TEXT - 24], text[BUS_EVENT_TEXT];
 
 	if (channel->is_short == is_short)
 		return;
 	channel->is_short = is_short;
-	snprintf(text, sizeof(text), "bus.%u is %sshort%s", n, is_short ? "" : "not ",
+	branches_name(native, n, name, sizeof(name));
+	snprintf(text, sizeof(text), "%s is %sshort%s", name, is_short ? "" : "not ",
 	         is_short ? "" : " any more");
 	native_event(native, BUS_NOTE, NULL, is_short ? -ECOMM : 0, text);
 }
@@ -109,6 +113,22 @@ static int next_device(struct native *native, unsigned n, struct search *search,
 	return whole.err ? whole.err : err < 0 ? err : 0;
 }
 
+/*
+ * A bridge that has just got power has no id of its own. It gets one if the table of sensors names
+ * bridges of its kind, and the next round finds it. Returns whether the id was such a bridge's.
+ */
+static bool wake(struct native *native, unsigned n, const uint8_t rom[8])
+{
+	struct txn txn = {.native = native, .link = native->channel[n].link, .channel = n};
+
+	if (!ds28e18_asleep(rom) || !sensors_has(&native->sensors, rom[0]))
+		return false;
+	native_count(native, COUNT_TRANSACTIONS);
+	(void)txn_end(&txn, ds28e18_wake(&txn));
+	native->channel[n].dirty = true;
+	return true;
+}
+
 static void pass(struct native *native, unsigned n, int64_t now)
 {
 	struct channel *channel = &native->channel[n];
@@ -127,7 +147,8 @@ static void pass(struct native *native, unsigned n, int64_t now)
 		told_short(native, n, false);
 	}
 	if (found > 0) {
-		presence_found(native, channel->search.rom, n, now);
+		if (!wake(native, n, channel->search.rom))
+			presence_found(native, channel->search.rom, n, now);
 		channel->search_ns = now;
 		if (channel->search.last)
 			end_round(native, n, now);
@@ -162,9 +183,12 @@ bool hunt_step(struct native *native, int64_t now, bool idle, int64_t *next)
 	int64_t least = native->hunt_ns + (idle && *next - now > native->pass_ns ? 0 : OVERDUE_NS);
 	int64_t first = INT64_MAX;
 
-	for (unsigned i = 0; i < native->channels; i++) {
-		unsigned n = (native->hunter + i) % native->channels;
+	for (unsigned i = 0; i < NATIVE_ALL; i++) {
+		unsigned n = (native->hunter + i) % NATIVE_ALL;
 		struct channel *channel = &native->channel[n];
+
+		if (!native_has(native, n))
+			continue;
 		int64_t when = channel->search_ns > least ? channel->search_ns : least;
 
 		if (!channel->listed)
@@ -204,9 +228,9 @@ void hunt_locate(struct native *native, struct job *job, int64_t now)
 		job->txn.channel = job->channel;
 		job->txn.link_error = there;
 		if (there == -ECOMM && !known && job->bus < 0 &&
-		    job->channel + 1u < native->channels) {
+		    native_next(native, job->channel + 1u) < NATIVE_ALL) {
 			job->txn.link_error = 0;
-			job->channel++;
+			job->channel = (uint8_t)native_next(native, job->channel + 1u);
 			return;
 		}
 		job_failed(native, job, there);
@@ -226,7 +250,8 @@ void hunt_locate(struct native *native, struct job *job, int64_t now)
 			locate_end(native, job);
 		return;
 	}
-	if (job->bus >= 0 || ++job->channel >= native->channels)
+	job->channel = (uint8_t)native_next(native, job->channel + 1u);
+	if (job->bus >= 0 || job->channel == NATIVE_ALL)
 		locate_end(native, job);
 }
 
@@ -273,15 +298,17 @@ static void scan_on(struct native *native, struct job *job)
 	    job->families[job->family_i])
 		return;
 	job->family_i = 0;
-	if (job->bus < 0 && ++job->channel < native->channels)
+	job->channel = (uint8_t)native_next(native, job->channel + 1u);
+	if (job->bus < 0 && job->channel < (job->kind == JOB_SCAN ? native->channels : NATIVE_ALL))
 		return;
 	if (!job->heard) {
 		job_answer(native, job, -ECOMM);
 		return;
 	}
 	/* One that is not known would have been taken for a known one, and go on being found. */
-	for (unsigned n = 0; job->kind == JOB_ALARM && !job->out && n < native->channels; n++)
-		native->channel[n].alarm_searches = 0;
+	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1))
+		if (job->kind == JOB_ALARM && !job->out)
+			native->channel[n].alarm_searches = 0;
 	native_count(native, COUNT_DIRECTORIES);
 	job_answer(native, job, job->kind == JOB_SCAN ? listing_add_rest(native, job) : 0);
 }

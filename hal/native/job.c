@@ -20,7 +20,7 @@
 
 static bool away(const struct native *native, const struct device *device)
 {
-	return !device || !device->present || device->channel >= native->channels;
+	return !device || !device->present || !native_has(native, device->channel);
 }
 
 static void look_read(struct native *native, struct job *job, int64_t now)
@@ -148,7 +148,7 @@ bool job_ready(const struct native *native, const struct job *job, int64_t now, 
 			return false;
 		break;
 	}
-	if (channel < native->channels && native_held(native, channel, job, now)) {
+	if (native_has(native, channel) && native_held(native, channel, job, now)) {
 		unsigned chip = native->channel[channel].link->chip % NATIVE_CHANNELS;
 		int64_t held = native->hold_ns[chip];
 

@@ -83,7 +83,7 @@ void job_txn(struct native *native, struct job *job)
 	txn->property = job->property;
 	txn->one = job->extension >= 0;
 	txn->element = job_wants_all(job)    ? (int)job->element
-	               : job->extension >= 0 ? job->extension & 0xff
+	               : job->extension >= 0 ? extension_element(job->extension)
 	                                     : 0;
 	if (job->req->op == BUS_READ) {
 		txn->data = job->req->data + job->out;

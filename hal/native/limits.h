@@ -7,6 +7,8 @@
 
 #define NATIVE_DEPTH 400   /* requests */
 #define NATIVE_CHANNELS 64 /* links of a master */
+#define NATIVE_COUPLERS 16 /* whose branches are channels behind those */
+#define NATIVE_ALL (NATIVE_CHANNELS + 2 * NATIVE_COUPLERS)
 #define NATIVE_S INT64_C(1000000000)
 
 #endif

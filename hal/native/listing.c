@@ -7,6 +7,7 @@
 
 #include "hal/chips/find.h"
 #include "hal/chips/format.h"
+#include "hal/native/branches.h"
 #include "hal/native/listing.h"
 #include "hal/native/state.h"
 #include "hal/native/structure.h"
@@ -35,9 +36,9 @@ static int prefix_len(const struct job *job)
 	const struct path *path = &job->path;
 	const char *text = job->req->path;
 
-	if (path->device.len)
+	if (path->device.len && !job->inside)
 		return (int)(path->device.text - text);
-	if (path->property.len)
+	if (path->property.len && !job->inside)
 		return (int)(path->property.text - text);
 	return (int)strlen(text);
 }
@@ -55,10 +56,13 @@ static int add_below(struct job *job, const char *name)
 int listing_add_device(struct native *native, struct job *job, const struct device *device)
 {
 	const char *alias = native->unaliased ? "" : device_alias(device);
-	char name[ROM_TEXT_MAX];
+	char name[ROM_TEXT_MAX], way[PATH_LEN_MAX], text[PATH_LEN_MAX + DEVICE_ALIAS_MAX + 1];
 
+	if (branches_print(native, job->inside ? 0 : device->channel, way, sizeof(way)))
+		return -EMSGSIZE;
 	rom_print(device->rom, ROM_F_I, name);
-	return add_below(job, alias[0] ? alias : name);
+	snprintf(text, sizeof(text), "%s%s", way, alias[0] ? alias : name);
+	return add_below(job, text);
 }
 
 int listing_add_rest(struct native *native, struct job *job)
@@ -69,7 +73,7 @@ int listing_add_rest(struct native *native, struct job *job)
 	char name[16];
 	int err = 0;
 
-	if (job->path.alarm)
+	if (job->path.alarm || job->inside)
 		return 0;
 	if (job->bus >= 0) {
 		for (size_t i = 0; i < 3 && !err; i++)
@@ -92,7 +96,8 @@ static int list_root(struct native *native, struct job *job)
 	for (unsigned i = 0; i < native->table.count && !err; i++) {
 		const struct device *device = &native->table.devices[i];
 
-		if (device->present && (job->bus < 0 || device->channel == job->bus))
+		if (device->present && (job->bus < 0 ? device->channel < NATIVE_CHANNELS
+		                                     : device->channel == job->bus))
 			err = listing_add_device(native, job, device);
 	}
 	return err ? err : listing_add_rest(native, job);
@@ -102,7 +107,7 @@ static int list_root(struct native *native, struct job *job)
 static bool is_offered(struct native *native, const struct device *device,
                        const struct property *property, int extension)
 {
-	struct link *link = device && native->channels > device->channel
+	struct link *link = device && native_has(native, device->channel)
 	                            ? native->channel[device->channel].link
 	                            : NULL;
 
@@ -113,13 +118,16 @@ static bool is_offered(struct native *native, const struct device *device,
 static int add_property(struct native *native, struct job *job, const struct device *device,
                         const char *path, const struct property *property)
 {
-	int first = property->array.index == INDEX_LETTERS ? 256 : 0;
+	int first = property->array.index == INDEX_LETTERS ? EXTENSION_LETTERS : 0;
 	int last = property->array.index == INDEX_NONE ? EXTENSION_NONE
-	                                               : first + property->array.count - 1;
+	           : property->array.count             ? first + property->array.count - 1
+	                                               : first;
 	char text[8];
 	int err = 0;
 
 	for (int extension = EXTENSION_NONE; extension <= last && !err; extension++) {
+		if (extension == 0)
+			extension = first;
 		if (!extension_fits(property, extension) ||
 		    !is_offered(native, device, property, extension))
 			continue;
@@ -189,7 +197,7 @@ int listing(struct native *native, struct job *job)
 	const char *text = job->req->path;
 	int n;
 
-	if (!job->table && !name.len)
+	if (job->inside || (!job->table && !name.len))
 		return list_root(native, job);
 	if (!job->path.device.len && name.len >= 9 && memcmp(name.text, "structure", 9) == 0)
 		return list_structure(native, job);

@@ -6,6 +6,7 @@
 #include "hal/chips/family.h"
 #include "hal/chips/thermometer.h"
 #include "hal/native/answer.h"
+#include "hal/native/branches.h"
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
 #include "hal/native/presence.h"
@@ -23,7 +24,10 @@ static void take_channels(struct native *native, unsigned first)
 		native->channels = NATIVE_CHANNELS;
 	for (unsigned i = first; i < native->channels; i++) {
 		struct channel *channel = &native->channel[i];
-		struct channel fresh = {.link = native->master->ops->channel(native->master, i),
+		struct link *link = native->master->ops->channel(native->master, i);
+		struct channel fresh = {.link = branches_wire(native, i, link),
+		                        .trunk = channel->trunk,
+		                        .wire = (uint8_t)i,
 		                        .round = channel->round,
 		                        .errors = channel->errors,
 		                        .shorts = channel->shorts,
@@ -42,7 +46,7 @@ static void take_all_channels(struct native *native)
 	native->grow_told = false;
 	/* A chip that is missing now has taken its channels with it. */
 	for (unsigned i = 0; i < native->table.count; i++)
-		if (native->table.devices[i].channel >= native->channels)
+		if (!native_has(native, native->table.devices[i].channel))
 			presence_lost(native, &native->table.devices[i]);
 }
 
@@ -73,7 +77,7 @@ void master_grow(struct native *native, int64_t now, int64_t *next)
 /* All channels are searched at once. */
 static void search_anew(struct native *native, int64_t now)
 {
-	for (unsigned n = 0; n < native->channels; n++) {
+	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1)) {
 		native->channel[n].listed = false;
 		native->channel[n].searching = false;
 		native->channel[n].search_ns = now;
@@ -157,10 +161,13 @@ static bool reopen(struct native *native)
 
 static void power_cycled(struct native *native, unsigned channel)
 {
+	unsigned wire = native->channel[channel].wire;
+
 	for (unsigned i = 0; i < native->table.count; i++) {
 		struct device *device = &native->table.devices[i];
 
-		if (device->present && (device->channel == channel || native->master->one_supply))
+		if (device->present &&
+		    (native->channel[device->channel].wire == wire || native->master->one_supply))
 			presence_restarted(native, device);
 	}
 }

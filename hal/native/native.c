@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/sensor_table.h"
 #include "hal/native/answer.h"
 #include "hal/native/cache.h"
 #include "hal/native/convert.h"
@@ -13,13 +14,16 @@
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
 #include "hal/native/native.h"
+#include "hal/native/sensors.h"
 #include "hal/native/settings.h"
 #include "hal/native/state.h"
 #include "hal/native/statistics.h"
+#include "hal/native/touch.h"
 
 #define VOLATILE_NS (2 * NATIVE_S)
 #define STABLE_NS (300 * NATIVE_S)
 #define PRESENCE_NS (2 * NATIVE_S)
+#define REST_NS (NATIVE_S / 2) /* after an error */
 
 static const char *const count_names[COUNTS] = {
 	[COUNT_RETRIES] = "retries",
@@ -86,6 +90,7 @@ void native_destroy(struct bus *bus)
 		native->master->ops->destroy(native->master);
 	}
 	device_table_destroy(&native->table);
+	sensor_table_free(&native->sensors);
 	cache_destroy(&native->cache);
 	free(native->jobs);
 	free(native);
@@ -93,8 +98,19 @@ void native_destroy(struct bus *bus)
 
 int native_option(struct bus *bus, const char *key, const char *text, char *why, size_t why_size)
 {
-	struct link_master *master = ((struct native *)bus)->master;
+	struct native *native = (struct native *)bus;
+	struct link_master *master = native->master;
 
+	/* Where drivers of somebody else search, nobody can be that quick. */
+	if (strcmp(key, "Touch") == 0 && strcmp(bus->ops->scheme, "w1") != 0) {
+		native->touch = strcmp(text, "on") == 0;
+		if (native->touch || strcmp(text, "off") == 0)
+			return 0;
+		snprintf(why, why_size, "expected on or off");
+		return -EINVAL;
+	}
+	if (strcmp(key, "Sensors") == 0)
+		return sensors_read(&native->sensors, text, why, why_size);
 	return master->ops->option ? master->ops->option(master, key, text, why, why_size)
 	                           : -ENOENT;
 }
@@ -244,6 +260,32 @@ static bool follows(struct native *native, const struct job *job, int64_t now)
 	return native->follow_ns;
 }
 
+/*
+ * Nobody uses the branches of couplers now: they are switched off, so that a short of one does not
+ * become one of the wire. True: did that.
+ */
+static bool rest(struct native *native, int64_t now, int64_t *next)
+{
+	for (unsigned n = 0; n < native->channels; n++) {
+		struct trunk *trunk = native->channel[n].trunk;
+
+		if (!trunk || !trunk->on || native_held(native, n, NULL, now))
+			continue;
+		if (now < native->rest_ns) {
+			*next = native->rest_ns < *next ? native->rest_ns : *next;
+			continue;
+		}
+		native_count(native, COUNT_TRANSACTIONS);
+		int err = trunk_rest(trunk);
+		if (err)
+			native->rest_ns = native_now(native) + REST_NS;
+		if (err && err != -ECOMM && err != -EBADMSG)
+			master_recover(native, n, err);
+		return true;
+	}
+	return false;
+}
+
 static int64_t step(struct native *native, int64_t now)
 {
 	int64_t next = INT64_MAX;
@@ -260,12 +302,21 @@ static int64_t step(struct native *native, int64_t now)
 		job_step(native, job, now);
 		return now;
 	}
+	if (job && native->touched) {
+		native->touched = false;
+		job_step(native, job, now);
+		return now;
+	}
+	if (!hunt_initial(native) && touch_step(native, now, &next))
+		return now;
 	if (hunt_step(native, now, !job, &next) || convert_step(native, now, &next))
 		return now;
 	if (job) {
 		job_step(native, job, now);
 		return now;
 	}
+	if (rest(native, now, &next))
+		return now;
 	return next > now ? next : now;
 }
 

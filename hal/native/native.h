@@ -6,6 +6,7 @@
  *   job.c      one request on its way: what it waits for, its next step
  *   resolve.c  what a path means
  *   hunt.c     searches: background, directories, alarms
+ *   touch.c    keys that touch a wire
  *   exchange.c properties read and written
  *   simultaneous.c  writes to /simultaneous
  *   convert.c  who converts when: one Convert T for all thermometers due on a channel
@@ -18,7 +19,9 @@
  *   tables.c   the directories that belong to no device: simultaneous, interface, system
  *   settings.c, statistics.c  /settings, /statistics
  *   virtual.c  what their functions have in common
+ *   branches.c the branches of couplers as channels
  *   presence.c devices found, lost, restarted
+ *   sensors.c  the file that names the sensors behind bridges
  *   cache.c    what was read lately
  *   state.c    the state on which all work
  *
@@ -42,7 +45,7 @@ int native_create(const struct bus_ops *ops, const struct link_master_ops *maste
                   const char *where, const struct bus_env *env, struct bus **bus, char *why,
                   size_t why_size);
 void native_destroy(struct bus *bus);
-/* bus_ops.option: what the link master has. */
+/* bus_ops.option: Sensors, and what the link master has. */
 int native_option(struct bus *bus, const char *key, const char *text, char *why, size_t why_size);
 int native_submit(struct bus *bus, struct bus_req *req);
 int64_t native_step(struct bus *bus, int64_t now);

@@ -3,8 +3,9 @@
 #include <errno.h>
 
 #include "hal/chips/family.h"
-#include "hal/chips/find.h"
+#include "hal/native/branches.h"
 #include "hal/native/presence.h"
+#include "hal/native/sensors.h"
 #include "hal/native/state.h"
 
 void presence_seen(struct device *device, int64_t now)
@@ -19,7 +20,7 @@ void presence_found(struct native *native, const uint8_t rom[8], unsigned n, int
 	bool known = device && device->present && device->channel == n;
 
 	if (!known) {
-		device = device_add(&native->table, rom, family_of(rom[0]), n);
+		device = device_add(&native->table, rom, sensors_family(&native->sensors, rom), n);
 		if (!device) {
 			native_event(native, BUS_NOTE, NULL, -ENOSPC,
 			             "more devices than the table holds: one is left out");
@@ -31,6 +32,8 @@ void presence_found(struct native *native, const uint8_t rom[8], unsigned n, int
 		native->channel[n].power_asked = false;
 		native_count(native, COUNT_FOUND);
 		native_event(native, BUS_FOUND, rom, 0, "");
+		if (rom[0] == COUPLER_FAMILY)
+			branches_found(native, device);
 	}
 	device->seen = native->channel[n].round;
 	presence_seen(device, now);
@@ -44,6 +47,11 @@ void presence_lost(struct native *native, struct device *device)
 	family_forget(device);
 	native_count(native, COUNT_LOST);
 	native_event(native, BUS_LOST, device->rom, 0, "");
+	if (device->rom[0] != COUPLER_FAMILY || !branches_lost(native, device))
+		return;
+	for (unsigned i = 0; i < native->table.count; i++)
+		if (native->channel[native->table.devices[i].channel].gone)
+			presence_lost(native, &native->table.devices[i]);
 }
 
 void presence_restarted(struct native *native, struct device *device)
@@ -52,7 +60,7 @@ void presence_restarted(struct native *native, struct device *device)
 
 	family_forget(device);
 	device->settled = false;
-	if (device->channel < native->channels)
+	if (native_has(native, device->channel))
 		native->channel[device->channel].power_asked = false;
 	if (!settled)
 		return;

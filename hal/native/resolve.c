@@ -6,7 +6,9 @@
 
 #include "hal/chips/find.h"
 #include "hal/chips/format.h"
+#include "hal/native/branches.h"
 #include "hal/native/resolve.h"
+#include "hal/native/sensors.h"
 #include "hal/native/state.h"
 #include "hal/native/structure.h"
 #include "hal/native/tables.h"
@@ -80,6 +82,70 @@ static int resolve_property(struct job *job, const struct family *family,
 	return 0;
 }
 
+/* The word at the beginning, which is taken away with its slash. */
+static struct path_slice take_word(struct path_slice *rest)
+{
+	const char *slash = memchr(rest->text, '/', rest->len);
+	struct path_slice word = {rest->text, slash ? (size_t)(slash - rest->text) : rest->len};
+	size_t used = word.len + (slash != NULL);
+
+	rest->text += used;
+	rest->len -= used;
+	return word;
+}
+
+static struct device *device_named(struct native *native, struct path_slice name)
+{
+	uint8_t rom[ROM_LEN];
+
+	if (rom_parse(name.text, name.len, rom) == 0)
+		return device_find(&native->table, rom);
+	return device_by_alias(&native->table, name.text, name.len);
+}
+
+/* "1F.x/main/1F.y/aux/28.z": bus becomes the channel of the last branch. */
+static int follow(struct native *native, struct path_slice way, int *bus)
+{
+	struct path_slice name = take_word(&way);
+
+	while (way.len) {
+		const struct device *coupler = device_named(native, name);
+
+		if (!coupler || !coupler->present || (*bus >= 0 && coupler->channel != *bus))
+			return -ENODEV;
+		*bus = branches_channel(native, coupler, take_word(&way));
+		if (*bus < 0)
+			return *bus;
+		name = take_word(&way);
+	}
+	return 0;
+}
+
+static bool is_branch(struct path_slice name)
+{
+	return (name.len == 4 && memcmp(name.text, "main", 4) == 0) ||
+	       (name.len == 3 && memcmp(name.text, "aux", 3) == 0);
+}
+
+/* The directory of a branch. */
+static int resolve_branch(struct native *native, struct job *job)
+{
+	if (job->req->op == BUS_READ || job->req->op == BUS_WRITE)
+		return -EISDIR;
+	if (!job->txn.device || !job->txn.device->present)
+		return -ENODEV;
+	int channel = branches_channel(native, job->txn.device, job->path.property);
+	if (channel < 0)
+		return -EOPNOTSUPP;
+	job->kind = JOB_PROBE;
+	if (job->req->op != BUS_DIR)
+		return 0;
+	job->bus = channel;
+	job->inside = true;
+	job->kind = job->path.alarm ? JOB_ALARM : job->fresh ? JOB_SCAN : JOB_LISTING;
+	return 0;
+}
+
 static int resolve_device(struct native *native, struct job *job)
 {
 	struct path *path = &job->path;
@@ -93,20 +159,21 @@ static int resolve_device(struct native *native, struct job *job)
 		memcpy(path->rom, device->rom, sizeof(path->rom));
 		path->has_rom = true;
 	}
-	/* Devices behind a coupler are on a branch that is not switched on here. */
-	if (path->device.len != path->last.len)
+	if (follow(native, path->device, &job->bus))
 		return -ENODEV;
 	device = device_find(&native->table, path->rom);
 	if (!device) {
 		device = &unknown;
 		memcpy(device->rom, path->rom, sizeof(device->rom));
-		device->family = family_of(path->rom[0]);
+		device->family = sensors_family(&native->sensors, path->rom);
 	} else if (job->bus >= 0 && device->present && device->channel != job->bus) {
 		return -ENODEV;
 	} else {
 		job->txn.device = device;
 	}
 	job->table = device->family;
+	if (path->rom[0] == COUPLER_FAMILY && is_branch(path->property))
+		return resolve_branch(native, job);
 	if (path->property.len)
 		return resolve_property(job, device->family, device, path->property.text,
 		                        path->property.len);

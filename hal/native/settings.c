@@ -132,24 +132,28 @@ static int read_aliases(struct txn *txn)
 	return 0;
 }
 
+enum { WAY_SCALE = 1, WAY_TIMEOUT, WAY_IDLE, WAY_FLAG, WAY_ALIASES };
+static const struct property_how how[] = {
+	[WAY_SCALE] = {.read = read_scale, .write = write_scale},
+	[WAY_TIMEOUT] = {.read = read_timeout, .write = write_timeout},
+	[WAY_IDLE] = {.read = read_idle, .write = write_idle},
+	[WAY_FLAG] = {.read = read_flag, .write = write_flag},
+	[WAY_ALIASES] = {.read = read_aliases},
+};
+
 #define TIMEOUT(text, which) \
-	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, which, read_timeout, \
-	        write_timeout)
+	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, which, WAY_TIMEOUT)
 /* Of masters and servers that this bus has not: kept for those who wrote them, without effect. */
 #define IDLE(text, which) \
-	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, which, read_idle, write_idle)
-#define FLAG(text, which) \
-	VIRTUAL(text, PROPERTY_YESNO, LIFE_STATIC, ACCESS_BOTH, which, read_flag, write_flag)
-/* clang-format off */
-#define SCALE(text, bytes, which)                                                         \
-	{.name = (text), .type = PROPERTY_ASCII, .life = LIFE_STATIC, .access = ACCESS_BOTH, \
-	 .offline = true, .size = (bytes), .arg = (which), .read = read_scale,              \
-	 .write = write_scale}
-/* clang-format on */
+	VIRTUAL(text, PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_BOTH, which, WAY_IDLE)
+#define FLAG(text, which) VIRTUAL(text, PROPERTY_YESNO, LIFE_STATIC, ACCESS_BOTH, which, WAY_FLAG)
+#define SCALE(text, bytes, which) \
+	PROPERTY(text, ASCII, STATIC, BOTH, .offline = true, .size = (bytes), .arg = (which), \
+	         .how = WAY_SCALE)
 
 static const struct property properties[] = {
 	PROPERTY_DIR("alias"),
-	VIRTUAL_TEXT("alias/list", UINT16_MAX, read_aliases),
+	VIRTUAL_TEXT("alias/list", UINT16_MAX, WAY_ALIASES),
 	FLAG("alias/unaliased", UNALIASED),
 	PROPERTY_DIR("timeout"),
 	IDLE("timeout/directory", DIRECTORY),
@@ -169,4 +173,4 @@ static const struct property properties[] = {
 	SCALE("units/temperature_scale", 1, 0),
 };
 
-const struct family virtual_settings = {.is_virtual = true, PROPERTIES(properties)};
+const struct family virtual_settings = {.is_virtual = true, HOW(how), PROPERTIES(properties)};

@@ -100,7 +100,8 @@ void convert_all(struct native *native, struct job *job, int64_t now)
 		job_failed(native, job, err);
 		return;
 	}
-	if (job->bus < 0 && ++job->channel < native->channels)
+	job->channel = (uint8_t)native_next(native, job->channel + 1u);
+	if (job->bus < 0 && job->channel < NATIVE_ALL)
 		return;
 	job->taken = job->req->len;
 	job_answer(native, job, 0);

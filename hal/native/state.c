@@ -26,6 +26,23 @@ void native_event(struct native *native, enum bus_news news, const uint8_t rom[8
 	native->bus.env->event(native->bus.env->ctx, &event);
 }
 
+bool native_has(const struct native *native, unsigned channel)
+{
+	if (channel < NATIVE_CHANNELS)
+		return channel < native->channels;
+	return channel < NATIVE_ALL && native->channel[channel].link &&
+	       !native->channel[channel].gone;
+}
+
+unsigned native_next(const struct native *native, unsigned n)
+{
+	if (n >= native->channels && n < NATIVE_CHANNELS)
+		n = NATIVE_CHANNELS;
+	while (n < NATIVE_ALL && !native_has(native, n))
+		n++;
+	return n;
+}
+
 bool native_held(const struct native *native, unsigned channel, const struct job *job, int64_t now)
 {
 	unsigned chip = native->channel[channel].link->chip % NATIVE_CHANNELS;

@@ -7,9 +7,11 @@
 #define HAL_NATIVE_STATE_H
 
 #include "hal/chips/family.h"
+#include "hal/chips/sensor.h"
 #include "hal/native/cache.h"
 #include "hal/native/limits.h"
 #include "hal/owfs/path.h"
+#include "hal/wire/coupler.h"
 #include "hal/wire/device.h"
 #include "hal/wire/link.h"
 #include "hal/wire/search.h"
@@ -76,7 +78,8 @@ struct job {
 	uint8_t faults;             /* power-fault readings in a row */
 	uint8_t failures;           /* how often it was begun again after an error */
 	uint8_t channel;            /* which one is being searched */
-	int bus;                    /* N of /bus.N, -1: all */
+	int bus;                    /* N of /bus.N, the channel of a branch, -1: all */
+	bool inside;                /* the directory of a branch */
 	const struct family *table; /* of a path without device */
 	struct path path;
 	uint32_t order; /* lower came earlier */
@@ -98,8 +101,21 @@ struct job {
 
 enum native_simultaneous { SIMULTANEOUS_TEMPERATURE, SIMULTANEOUS_VOLTAGE, SIMULTANEOUS };
 
+/* Of a wire: the search for keys. */
+struct touch {
+	struct search search;
+	bool searching;
+	uint8_t family;   /* which of those that are searched for */
+	int64_t begun_ns; /* the search of this family */
+	int64_t round_ns; /* ... of the first one */
+	int64_t next_ns;  /* when to search again */
+};
+
 struct channel {
 	struct link *link;
+	struct trunk *trunk;    /* of a wire with couplers: its link */
+	uint8_t wire;           /* itself, or on which the coupler of a branch is */
+	bool gone;              /* of a branch: its coupler is lost */
 	uint8_t rung;           /* the next of the recovery ladder */
 	uint8_t alarm_searches; /* since a list of the alarms was empty */
 	bool listed;            /* its devices have been searched for once */
@@ -115,6 +131,7 @@ struct channel {
 	int64_t round_ns;  /* when it began */
 	bool searching, dirty;
 	struct search search;
+	struct touch touch;
 	uint64_t errors, shorts, checksums, transactions;
 };
 
@@ -154,8 +171,13 @@ struct native {
 	bool grow_told;
 	unsigned channels;
 
-	/* Every file that works on a channel */
-	struct channel channel[NATIVE_CHANNELS];
+	/* Every file that works on a channel: `channels` wires; branches from NATIVE_CHANNELS on */
+	struct channel channel[NATIVE_ALL];
+
+	/* branches.c; native.c switches them off */
+	struct trunk trunk[NATIVE_COUPLERS];
+	struct coupler coupler[NATIVE_COUPLERS];
+	int64_t rest_ns; /* after an error: when to switch off again */
 
 	/* exchange.c, convert.c and simultaneous.c; answer.c lets go */
 	int64_t hold_ns[NATIVE_CHANNELS]; /* by chip: its strong pull-up is on until then */
@@ -169,8 +191,14 @@ struct native {
 	unsigned hunter;          /* the channel whose turn to be searched is next */
 	int64_t hunt_ns, pass_ns; /* background search: its next pass; what the last took */
 
+	/* native.c: keys are searched for; touch.c: the wire whose turn it is */
+	bool touch;
+	bool touched; /* a search was made: a request goes first now */
+	unsigned toucher;
+
 	/* presence.c: which devices there are; the families: what is known of each */
 	struct device_table table;
+	struct sensor_table sensors; /* behind bridges: set before the first step */
 
 	/* answer.c */
 	struct cache cache;
@@ -196,6 +224,9 @@ int64_t native_now(const struct native *native);
 void native_count(struct native *native, enum native_count what);
 void native_event(struct native *native, enum bus_news news, const uint8_t rom[8], int err,
                   const char *text);
+bool native_has(const struct native *native, unsigned channel);
+/* The first channel from n on, a wire or a branch; NATIVE_ALL: there is none. */
+unsigned native_next(const struct native *native, unsigned n);
 /* A strong pull-up is on at the chip of this channel, and not for this job. */
 bool native_held(const struct native *native, unsigned channel, const struct job *job, int64_t now);
 

@@ -130,30 +130,34 @@ static int read_delay(struct txn *txn)
 	return 0;
 }
 
-#define TALLY(text, kind, what) VIRTUAL_NUMBER(text, read_tally, OF(kind, what))
-/* clang-format off */
-#define TRIES(text, kind)                                                                 \
-	{.name = (text), .type = PROPERTY_UNSIGNED, .life = LIFE_VOLATILE,                  \
-	 .access = ACCESS_READ, .offline = true, .array = {3, INDEX_NUMBERS, false},        \
-	 .arg = (kind), .read = read_tries}
-/* clang-format on */
+enum { WAY_TALLY = 1, WAY_TRIES, WAY_COUNT, WAY_CACHE, WAY_DELAY, WAY_ZERO };
+static const struct property_how how[] = {
+	[WAY_TALLY] = {.read = read_tally}, [WAY_TRIES] = {.read = read_tries},
+	[WAY_COUNT] = {.read = read_count}, [WAY_CACHE] = {.read = read_cache},
+	[WAY_DELAY] = {.read = read_delay}, [WAY_ZERO] = {.read = virtual_zero},
+};
+
+#define TALLY(text, kind, what) VIRTUAL_NUMBER(text, WAY_TALLY, OF(kind, what))
+#define TRIES(text, kind) \
+	PROPERTY(text, UNSIGNED, VOLATILE, READ, .offline = true, ELEMENTS(3, NUMBERS), \
+	         .arg = (kind), .how = WAY_TRIES)
 #define THREADS(text, kind) \
 	PROPERTY_DIR(text), TALLY(text "/max", kind, MAX), TALLY(text "/now", kind, NOW), \
 		TALLY(text "/num", kind, CALLS), TALLY(text "/sum", kind, SUM)
 
 static const struct property properties[] = {
 	PROPERTY_DIR("cache"),
-	VIRTUAL_NUMBER("cache/additions", read_cache, ADDED),
+	VIRTUAL_NUMBER("cache/additions", WAY_CACHE, ADDED),
 	PROPERTY_DIR("cache/external"),
-	VIRTUAL_NUMBER("cache/external/added", read_cache, ADDED),
-	VIRTUAL_NUMBER("cache/external/deleted", read_cache, DELETED),
-	VIRTUAL_NUMBER("cache/external/expired", read_cache, EXPIRED),
-	VIRTUAL_NUMBER("cache/external/hits", read_cache, HITS),
-	VIRTUAL_NUMBER("cache/external/tries", read_cache, TRIES),
-	VIRTUAL_NUMBER("cache/flips", virtual_zero, 0),
+	VIRTUAL_NUMBER("cache/external/added", WAY_CACHE, ADDED),
+	VIRTUAL_NUMBER("cache/external/deleted", WAY_CACHE, DELETED),
+	VIRTUAL_NUMBER("cache/external/expired", WAY_CACHE, EXPIRED),
+	VIRTUAL_NUMBER("cache/external/hits", WAY_CACHE, HITS),
+	VIRTUAL_NUMBER("cache/external/tries", WAY_CACHE, TRIES),
+	VIRTUAL_NUMBER("cache/flips", WAY_ZERO, 0),
 	PROPERTY_DIR("cache/primary"),
-	VIRTUAL_NUMBER("cache/primary/max", read_cache, HELD),
-	VIRTUAL_NUMBER("cache/primary/now", read_cache, HELD),
+	VIRTUAL_NUMBER("cache/primary/max", WAY_CACHE, HELD),
+	VIRTUAL_NUMBER("cache/primary/now", WAY_CACHE, HELD),
 	PROPERTY_DIR("directory"),
 	PROPERTY_DIR("directory/bus"),
 	TALLY("directory/bus/calls", TALLY_DIRECTORY, BUS_LISTS),
@@ -161,17 +165,16 @@ static const struct property properties[] = {
 	PROPERTY_DIR("directory/device"),
 	TALLY("directory/device/calls", TALLY_DIRECTORY, LISTS),
 	TALLY("directory/device/entries", TALLY_DIRECTORY, ENTRIES),
-	VIRTUAL_NUMBER("directory/maxdepth", virtual_zero, 0),
+	VIRTUAL_NUMBER("directory/maxdepth", WAY_ZERO, 0),
 	PROPERTY_DIR("errors"),
-	VIRTUAL_NUMBER("errors/checksum", read_count, COUNT_CHECKSUMS),
-	VIRTUAL_NUMBER("errors/link", read_count, COUNT_LINK_ERRORS),
-	VIRTUAL("errors/max_delay", PROPERTY_FLOAT, LIFE_VOLATILE, ACCESS_READ, 0, read_delay,
-                NULL),
-	VIRTUAL_NUMBER("errors/shorts", read_count, COUNT_SHORTS),
+	VIRTUAL_NUMBER("errors/checksum", WAY_COUNT, COUNT_CHECKSUMS),
+	VIRTUAL_NUMBER("errors/link", WAY_COUNT, COUNT_LINK_ERRORS),
+	VIRTUAL("errors/max_delay", PROPERTY_FLOAT, LIFE_VOLATILE, ACCESS_READ, 0, WAY_DELAY),
+	VIRTUAL_NUMBER("errors/shorts", WAY_COUNT, COUNT_SHORTS),
 	PROPERTY_DIR("read"),
 	TALLY("read/bytes", TALLY_READ, BYTES),
-	VIRTUAL_NUMBER("read/cachebytes", read_cache, HIT_BYTES),
-	VIRTUAL_NUMBER("read/cachesuccess", read_count, COUNT_CACHE_HITS),
+	VIRTUAL_NUMBER("read/cachebytes", WAY_CACHE, HIT_BYTES),
+	VIRTUAL_NUMBER("read/cachesuccess", WAY_COUNT, COUNT_CACHE_HITS),
 	TALLY("read/calls", TALLY_READ, CALLS),
 	TALLY("read/success", TALLY_READ, SUCCESS),
 	TRIES("read/tries", TALLY_READ),
@@ -187,4 +190,4 @@ static const struct property properties[] = {
 	TRIES("write/tries", TALLY_WRITE),
 };
 
-const struct family virtual_statistics = {.is_virtual = true, PROPERTIES(properties)};
+const struct family virtual_statistics = {.is_virtual = true, HOW(how), PROPERTIES(properties)};

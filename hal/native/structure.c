@@ -35,6 +35,16 @@ static unsigned whole_size(const struct property *property, int extension)
 	return property->type == PROPERTY_BINARY ? size * count : size * count + count - 1;
 }
 
+/* As owserver counts them where they cannot be counted, too. */
+static int elements(const struct property *property)
+{
+	if (property->array.index == INDEX_NONE)
+		return 1;
+	if (property->array.count == 0)
+		return property->array.index == INDEX_LETTERS ? -1 : 0;
+	return property->array.count;
+}
+
 int structure_read(const char *path, size_t len, char *text, size_t room)
 {
 	static const char *const access[] = {"oo", "ro", "wo", "rw"};
@@ -55,11 +65,11 @@ int structure_read(const char *path, size_t len, char *text, size_t room)
 		return -EISDIR;
 	char type = property->type == PROPERTY_BITS ? 'y' : (char)property->type;
 	int n = snprintf(text, room, "%c,%.6d,%.6d,%s,%.6u,%c,", type,
-	                 extension == EXTENSION_NONE ? 0
-	                 : extension < 0             ? extension
-	                                             : extension & 0xff,
-	                 property->array.count ? property->array.count : 1,
-	                 access[property->access & 3], whole_size(property, extension),
-	                 property->life);
+	                 extension == EXTENSION_NONE   ? 0
+	                 : extension == EXTENSION_WORD ? 0
+	                 : extension < 0               ? extension
+	                                               : extension_element(extension),
+	                 elements(property), access[property->access & 3],
+	                 whole_size(property, extension), property->life);
 	return n < 0 || (size_t)n >= room ? -EMSGSIZE : n;
 }

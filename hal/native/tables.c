@@ -149,53 +149,77 @@ static int read_count(struct txn *txn)
 	return virtual_count(txn, txn->native->count[txn->property->arg]);
 }
 
+/* Of all three tables. */
+enum {
+	WAY_ADDRESS = 1,
+	WAY_ZERO,
+	WAY_NAME,
+	WAY_COST,
+	WAY_ELAPSED,
+	WAY_CHANNEL,
+	WAY_COUNT,
+	WAY_SIMULTANEOUS,
+	WAY_PRESENT,
+	WAY_SINGLE,
+	WAY_NOTHING,
+	WAY_ARG,
+	WAY_VERSION,
+	WAY_BUSES,
+	WAY_PID,
+	WAY_EMPTY,
+};
+static const struct property_how how[] = {
+	[WAY_ADDRESS] = {.read = read_address},
+	[WAY_ZERO] = {.read = virtual_zero},
+	[WAY_NAME] = {.read = read_name},
+	[WAY_COST] = {.read = read_cost},
+	[WAY_ELAPSED] = {.read = read_elapsed},
+	[WAY_CHANNEL] = {.read = read_channel},
+	[WAY_COUNT] = {.read = read_count},
+	[WAY_SIMULTANEOUS] = {.read = read_simultaneous},
+	[WAY_PRESENT] = {.read = read_present},
+	[WAY_SINGLE] = {.read = read_single},
+	[WAY_NOTHING] = {.read = virtual_zero, .write = write_nothing},
+	[WAY_ARG] = {.read = read_arg},
+	[WAY_VERSION] = {.read = read_version},
+	[WAY_BUSES] = {.read = read_buses},
+	[WAY_PID] = {.read = read_pid},
+	[WAY_EMPTY] = {.read = read_empty},
+};
+
 static const struct property interface[] = {
 	PROPERTY_DIR("settings"),
-	VIRTUAL_TEXT("settings/address", 512, read_address),
-	VIRTUAL("settings/ds2404_found", PROPERTY_YESNO, LIFE_STATIC, ACCESS_READ, 0, virtual_zero,
-                NULL),
-	VIRTUAL_TEXT("settings/name", 128, read_name),
-	VIRTUAL("settings/overdrive", PROPERTY_YESNO, LIFE_STATIC, ACCESS_READ, 0, virtual_zero,
-                NULL),
-	VIRTUAL("settings/version", PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_READ, 0, virtual_zero,
-                NULL),
+	VIRTUAL_TEXT("settings/address", 512, WAY_ADDRESS),
+	VIRTUAL("settings/ds2404_found", PROPERTY_YESNO, LIFE_STATIC, ACCESS_READ, 0, WAY_ZERO),
+	VIRTUAL_TEXT("settings/name", 128, WAY_NAME),
+	VIRTUAL("settings/overdrive", PROPERTY_YESNO, LIFE_STATIC, ACCESS_READ, 0, WAY_ZERO),
+	VIRTUAL("settings/version", PROPERTY_UNSIGNED, LIFE_STATIC, ACCESS_READ, 0, WAY_ZERO),
 	PROPERTY_DIR("statistics"),
 	VIRTUAL("statistics/bus_time", PROPERTY_FLOAT, LIFE_VOLATILE, ACCESS_READ, WIRE_TIME,
-                read_cost, NULL),
-	VIRTUAL_NUMBER("statistics/elapsed_time", read_elapsed, 0),
-	VIRTUAL_NUMBER("statistics/errors", read_channel, ERRORS),
-	VIRTUAL_NUMBER("statistics/locks", read_channel, TRANSACTIONS),
+                WAY_COST),
+	VIRTUAL_NUMBER("statistics/elapsed_time", WAY_ELAPSED, 0),
+	VIRTUAL_NUMBER("statistics/errors", WAY_CHANNEL, ERRORS),
+	VIRTUAL_NUMBER("statistics/locks", WAY_CHANNEL, TRANSACTIONS),
 	PROPERTY_DIR("statistics/overdrive"),
-	VIRTUAL_NUMBER("statistics/overdrive/attempts", virtual_zero, 0),
-	VIRTUAL_NUMBER("statistics/overdrive/failures", virtual_zero, 0),
-	VIRTUAL_NUMBER("statistics/read_errors", read_channel, CHECKSUMS),
-	VIRTUAL_NUMBER("statistics/reconnects", read_count, COUNT_REOPENS),
-	VIRTUAL_NUMBER("statistics/resets", read_cost, RESETS),
-	VIRTUAL_NUMBER("statistics/shorts", read_channel, SHORTS),
-	VIRTUAL_NUMBER("statistics/timeouts", read_count, COUNT_CHIP_RESETS),
-	VIRTUAL_NUMBER("statistics/unlocks", read_channel, TRANSACTIONS),
+	VIRTUAL_NUMBER("statistics/overdrive/attempts", WAY_ZERO, 0),
+	VIRTUAL_NUMBER("statistics/overdrive/failures", WAY_ZERO, 0),
+	VIRTUAL_NUMBER("statistics/read_errors", WAY_CHANNEL, CHECKSUMS),
+	VIRTUAL_NUMBER("statistics/reconnects", WAY_COUNT, COUNT_REOPENS),
+	VIRTUAL_NUMBER("statistics/resets", WAY_COST, RESETS),
+	VIRTUAL_NUMBER("statistics/shorts", WAY_CHANNEL, SHORTS),
+	VIRTUAL_NUMBER("statistics/timeouts", WAY_COUNT, COUNT_CHIP_RESETS),
+	VIRTUAL_NUMBER("statistics/unlocks", WAY_CHANNEL, TRANSACTIONS),
 };
 
 #define CONVERTS(text, which) \
-	{ \
-		.name = (text), .type = PROPERTY_YESNO, .life = LIFE_VOLATILE, \
-		.access = ACCESS_BOTH, .offline = true, .convert = CONVERT_TEMPRES, \
-		.arg = (which), .read = read_simultaneous \
-	}
-#define PRESENT(text) \
-	{ \
-		.name = (text), .type = PROPERTY_YESNO, .life = LIFE_VOLATILE, \
-		.access = ACCESS_READ, .read = read_present \
-	}
+	PROPERTY(text, YESNO, VOLATILE, BOTH, .offline = true, .convert = CONVERT_TEMPRES, \
+	         .arg = (which), .how = WAY_SIMULTANEOUS)
+#define PRESENT(text) PROPERTY(text, YESNO, VOLATILE, READ, .how = WAY_PRESENT)
 #define SINGLE(text, command) \
-	{ \
-		.name = (text), .type = PROPERTY_ASCII, .life = LIFE_VOLATILE, \
-		.access = ACCESS_READ, .size = 18, .arg = (command), .read = read_single \
-	}
+	PROPERTY(text, ASCII, VOLATILE, READ, .size = 18, .arg = (command), .how = WAY_SINGLE)
 
 static const struct property simultaneous[] = {
-	VIRTUAL("iblss", PROPERTY_YESNO, LIFE_VOLATILE, ACCESS_BOTH, 0, virtual_zero,
-                write_nothing),
+	VIRTUAL("iblss", PROPERTY_YESNO, LIFE_VOLATILE, ACCESS_BOTH, 0, WAY_NOTHING),
 	PRESENT("present"),
 	PRESENT("present_ds2400"),
 	SINGLE("single", READ_ROM),
@@ -205,8 +229,7 @@ static const struct property simultaneous[] = {
 };
 
 /* What this build can drive. */
-#define DRIVES(text, yes) \
-	VIRTUAL(text, PROPERTY_INTEGER, LIFE_STATIC, ACCESS_READ, yes, read_arg, NULL)
+#define DRIVES(text, yes) VIRTUAL(text, PROPERTY_INTEGER, LIFE_STATIC, ACCESS_READ, yes, WAY_ARG)
 
 static const struct property systems[] = {
 	PROPERTY_DIR("configuration"),
@@ -214,20 +237,21 @@ static const struct property systems[] = {
 	DRIVES("configuration/USB", 0),
 	DRIVES("configuration/i2c", 1),
 	DRIVES("configuration/parport", 0),
-	VIRTUAL("configuration/trim", PROPERTY_YESNO, LIFE_STATIC, ACCESS_READ, 0, read_arg, NULL),
-	VIRTUAL_TEXT("configuration/version", 20, read_version),
+	VIRTUAL("configuration/trim", PROPERTY_YESNO, LIFE_STATIC, ACCESS_READ, 0, WAY_ARG),
+	VIRTUAL_TEXT("configuration/version", 20, WAY_VERSION),
 	DRIVES("configuration/zeroconf", 0),
 	PROPERTY_DIR("connections"),
-	VIRTUAL_NUMBER("connections/count_current_buses", read_buses, 0),
-	VIRTUAL_NUMBER("connections/count_outbound_connections", virtual_zero, 0),
+	VIRTUAL_NUMBER("connections/count_current_buses", WAY_BUSES, 0),
+	VIRTUAL_NUMBER("connections/count_outbound_connections", WAY_ZERO, 0),
 	PROPERTY_DIR("process"),
-	VIRTUAL_NUMBER("process/pid", read_pid, 0),
-	VIRTUAL_TEXT("process/pidfile", 128, read_empty),
+	VIRTUAL_NUMBER("process/pid", WAY_PID, 0),
+	VIRTUAL_TEXT("process/pidfile", 128, WAY_EMPTY),
 };
 
-static const struct family family_interface = {.is_virtual = true, PROPERTIES(interface)};
-static const struct family family_simultaneous = {.is_virtual = true, PROPERTIES(simultaneous)};
-static const struct family family_system = {.is_virtual = true, PROPERTIES(systems)};
+static const struct family family_interface = {.is_virtual = true, HOW(how), PROPERTIES(interface)};
+static const struct family family_simultaneous = {
+	.is_virtual = true, HOW(how), PROPERTIES(simultaneous)};
+static const struct family family_system = {.is_virtual = true, HOW(how), PROPERTIES(systems)};
 
 static const struct {
 	const char *name;

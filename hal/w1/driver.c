@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "hal/chips/find.h"
+#include "hal/chips/format.h"
 #include "hal/w1/driver.h"
 #include "hal/w1/ds2438.h"
 #include "hal/w1/memory.h"
@@ -40,8 +41,10 @@ static bool is_named(const struct w1_property *property, const char *name)
 
 static bool has_element(const struct w1_property *property, int element)
 {
-	return property->count == 0 || (element >= 0 && (element & 0xff) >= property->first &&
-	                                (element & 0xff) < property->first + property->count);
+	int n = extension_element(element);
+
+	return property->count == 0 ||
+	       (element >= 0 && n >= property->first && n < property->first + property->count);
 }
 
 /* Raw access has no search, which a DS2405 needs, and no time for a conversion. */

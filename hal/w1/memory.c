@@ -12,7 +12,7 @@ static int read_eeprom(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsi
 	return w1_slave_read(slave, "eeprom", at, bytes, n);
 }
 
-/* The driver of the DS2433 takes what comes; the others' read twice themselves. */
+/* The drivers of DS2433 and DS28E04 take what comes; the others' read twice themselves. */
 static int read_twice(struct w1_slave *slave, unsigned at, uint8_t *bytes, unsigned n)
 {
 	uint8_t again[AREA_UNIT];
@@ -77,6 +77,11 @@ static const struct w1_property eeprom_properties[] = {
 	{.name = "pages/page"},
 };
 
+/* What follows the pages is no attribute. */
+static const struct w1_property ds28e04_properties[] = {
+	{.name = "pages/page"},
+};
+
 static const struct w1_part ds2423[] = {
 	{.area = "counters", .read = read_counters},
 };
@@ -93,6 +98,7 @@ static const struct w1_property ds2423_properties[] = {
 
 const struct w1_driver w1_memories[] = {
 	EEPROM(0x14, eeprom),
+	{.family = 0x1c, .files = {"eeprom"}, W1_PARTS(ds2433), W1_PROPERTIES(ds28e04_properties)},
 	{.family = 0x1d, .files = {"w1_slave"}, W1_PARTS(ds2423), W1_PROPERTIES(ds2423_properties)},
 	EEPROM(0x23, ds2433),
 	EEPROM(0x2d, eeprom),

@@ -70,7 +70,9 @@ static int command(struct txn *txn, const uint8_t *bytes, size_t n, enum link_af
 {
 	uint8_t out[9 + BYTES_MAX] = {MATCH_ROM};
 
-	assert(n <= BYTES_MAX && txn->device);
+	assert(txn->device);
+	if (n > BYTES_MAX)
+		return -EINVAL;
 	int err = reset(txn);
 	if (err)
 		return err;
@@ -123,6 +125,19 @@ int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns
 	if (err)
 		return err;
 	return hold(txn, of_link(txn, txn->link->ops->write(txn->link, bytes, n, after)), ns);
+}
+
+int txn_write_paused(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
+{
+	const struct bus_env *env = txn->link->env;
+	enum link_after after;
+	int err = pull(txn, &after);
+
+	if (!err)
+		err = of_link(txn, txn->link->ops->write(txn->link, bytes, n, after));
+	if (!err && env->wait(env->ctx, -1, 0, env->now(env->ctx) + ns) < 0)
+		err = -ECANCELED;
+	return err;
 }
 
 static void hear(struct txn *txn, const uint8_t *bytes, size_t n)

@@ -15,7 +15,7 @@
 #include "hal/wire/link.h"
 
 #define TXN_MORE 1
-#define TXN_NUMBERS 8
+#define TXN_NUMBERS 12
 #define TXN_MS INT64_C(1000000)
 
 struct native;
@@ -88,6 +88,11 @@ int txn_raw(struct txn *txn, const uint8_t *bytes, size_t n);
 int txn_write(struct txn *txn, const uint8_t *bytes, size_t n);
 /* As txn_command_strong(). */
 int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns);
+/*
+ * The same where the chip answers behind it in the same transaction: it returns after ns, which are
+ * a few milliseconds at the most.
+ */
+int txn_write_paused(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns);
 int txn_read(struct txn *txn, uint8_t *bytes, size_t n);
 /* One read slot: 0 or 1. */
 int txn_bit(struct txn *txn);

@@ -125,6 +125,8 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
                                   "how long the supply is off, milliseconds"},
 	[OPT_BUS_SLEEP_LINE] = {"SleepLine", PLACE_BUS, OPTION_TEXT,
                                 .help = "GPIO line at the SLPZ pin of the chips"},
+	[OPT_BUS_SENSORS] = {"Sensors", PLACE_BUS, OPTION_TEXT,
+                             .help = "file of the sensors behind bridges to I2C"},
 	[OPT_BUS_ACTIVE_LOW] = {"ActiveLow", PLACE_BUS, OPTION_TEXT,
                                 .help = "lines that are 1 when low"},
 	[OPT_BUS_PULL_UP] = {"PullUp", PLACE_BUS, OPTION_TEXT, .help = "lines with pull-up"},
@@ -133,6 +135,8 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
                                 .help = "outputs that only pull low"},
 	[OPT_BUS_OPEN_SOURCE] = {"OpenSource", PLACE_BUS, OPTION_TEXT,
                                  .help = "outputs that only drive high"},
+	[OPT_BUS_TOUCH] = {"Touch", PLACE_BUS, OPTION_FLAG, .preset = "off",
+                           .help = "keys that touch the wire are noticed at once"},
 };
 
 static const char *const place_names[] = {"OwsDrv", "Item", "Bus"};

@@ -37,6 +37,9 @@ static const struct verb verbs[] = {
          verb_read, .opens = true},
 	{"write", "[-t TARGET] [-w SECONDS] PATH VALUE", "write a property of a device", verb_write,
          .opens = true},
+	{"mission",
+         "[-t TARGET] [-w SECONDS] start [-o] -i SECONDS | stop | status | download DEVICE",
+         "the mission of a logger: DS1921, DS1922, DS1923", verb_mission, .opens = true},
 	{"scan", "[-t TARGET] [-w SECONDS] [--rio [-i] [--merge FILE [--replace OLD=NEW]...]]",
          "list the devices, or print a configuration for them", verb_scan, .opens = true},
 };
@@ -53,7 +56,7 @@ static void usage(FILE *out)
 		        strlen(verbs[i].usage) > USAGE_WIDTH ? USAGE_WIDTH + 13 : 1, "",
 		        verbs[i].brief);
 	fputs("  -n NAME    instance, default OWS\n"
-	      "  -t TARGET  what dir, read, write and scan open; default: the instance where it\n"
+	      "  -t TARGET  what dir, read, write, mission and scan open; default: the instance where it\n"
 	      "             serves them, else localhost:4304 (owserver)\n"
 	      "  --json     print JSON\n"
 	      "  -V -h      print the version; this help, with a verb in front: the verb's\n"
@@ -120,10 +123,11 @@ int main(int argc, char **argv)
 		if (strcmp(verbs[i].name, argv[optind]) == 0) {
 			ctl.verb = &verbs[i];
 			if (ctl.target && !verbs[i].opens)
-				return ctl_usage(&ctl,
-				                 "-t TARGET is for dir, read, write and scan; "
-				                 "%s looks at a running owsd",
-				                 verbs[i].name);
+				return ctl_usage(
+					&ctl,
+					"-t TARGET is for dir, read, write, mission and scan; "
+					"%s looks at a running owsd",
+					verbs[i].name);
 			return ctl_flush(verbs[i].run(&ctl, argc - optind, argv + optind));
 		}
 	}

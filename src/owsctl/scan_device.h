@@ -29,7 +29,7 @@ struct scan_value {
 #define SCAN_TYPE 40
 #define SCAN_ALIAS 64
 struct scan_device {
-	char path[24];     /* "/28.551DDF030000" */
+	char path[128];    /* "/28.551DDF030000", behind a coupler "/1F.x/main/28.y" */
 	char location[16]; /* "bus.0" */
 	uint8_t family;
 	bool simulated;

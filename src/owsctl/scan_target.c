@@ -13,12 +13,13 @@
 
 #define LISTING_MAX (256u * 1024)
 #define BUSES_MAX 256
+#define COUPLER 0x1f /* DS2409 */
 
 /* The requests for a device besides those for the properties of its kind. */
 enum { ASK_TYPE, ASK_ALIAS, ASK_PROPERTIES, ASKS = ASK_PROPERTIES + SCAN_PROPERTIES };
 
 struct question {
-	char path[80];
+	char path[192];
 	char text[128];
 };
 
@@ -54,20 +55,20 @@ static bool device_of(const char *line, struct scan_device *device)
 		return false;
 	rom_print(path.rom, ROM_F_I, rom);
 	*device = (struct scan_device){.family = path.rom[0]};
-	snprintf(device->path, sizeof(device->path), "/%s", rom);
+	int way = (int)(path.last.text - path.device.text);
+	int n = snprintf(device->path, sizeof(device->path), "/%.*s%s", way, path.device.text, rom);
+	if (n < 0 || (size_t)n >= sizeof(device->path))
+		return false;
 	device->kind = scan_kind_of(device->family);
 	return true;
 }
 
-static int find(struct target *target, struct scan *scan, char *text)
+/* The devices of a listing. */
+static int take_list(struct scan *scan, char *text)
 {
 	struct scan_device *more, device;
-	unsigned kept = 0;
 	char *rest;
-	int err = list(target, "/", true, text);
 
-	if (err)
-		return ctl_fail("%s: %s", target->name, error_text(err));
 	for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
 		if (!device_of(line, &device))
 			continue;
@@ -77,9 +78,38 @@ static int find(struct target *target, struct scan *scan, char *text)
 		scan->device = more;
 		scan->device[scan->count++] = device;
 	}
-	if (!scan->count)
-		return CTL_DONE;
-	qsort(scan->device, scan->count, sizeof(device), by_path);
+	return CTL_DONE;
+}
+
+/* What is behind the couplers that were found, and behind those that are found there. */
+static int find_behind(struct target *target, struct scan *scan, char *text)
+{
+	static const char *const branches[] = {"main", "aux"};
+	char path[sizeof(scan->device->path) + 8];
+	int status = CTL_DONE;
+
+	for (unsigned i = 0; i < scan->count; i++)
+		for (unsigned n = 0; n < 2 && scan->device[i].family == COUPLER && !status; n++) {
+			snprintf(path, sizeof(path), "%s/%s", scan->device[i].path, branches[n]);
+			if (list(target, path, true, text) == 0)
+				status = take_list(scan, text);
+		}
+	return status;
+}
+
+static int find(struct target *target, struct scan *scan, char *text)
+{
+	unsigned kept = 0;
+	int err = list(target, "/", true, text);
+
+	if (err)
+		return ctl_fail("%s: %s", target->name, error_text(err));
+	int status = take_list(scan, text);
+	if (!status)
+		status = find_behind(target, scan, text);
+	if (status || !scan->count)
+		return status;
+	qsort(scan->device, scan->count, sizeof(*scan->device), by_path);
 	for (unsigned i = 1; i < scan->count; i++)
 		if (by_path(&scan->device[kept], &scan->device[i]))
 			scan->device[++kept] = scan->device[i];
@@ -87,7 +117,7 @@ static int find(struct target *target, struct scan *scan, char *text)
 	return CTL_DONE;
 }
 
-/* Find the bus of each device; buses are numbered without gaps. */
+/* Find the bus of each device on a wire itself; buses are numbered without gaps. */
 static void locate(struct target *target, struct scan *scan, char *text)
 {
 	char path[16], *rest;

@@ -51,7 +51,7 @@ does 'a restart takes another configuration' service owsd restart
 does 'with values' within 90 owsctl get boiler
 same 'it runs as its user' owsd "$(ps -o user= -p "$(pid)" | tr -d ' ')"
 same 'who may look is a group' '640 owsd owsd' "$(mode /run/owsd/OWS.image)"
-same 'who may act is another' '660 owsd owsd-control' "$(mode /run/owsd/OWS.command)"
+same 'who may act is for owsd to decide' '666 owsd owsd' "$(mode /run/owsd/OWS.control)"
 member looker owsd
 member actor owsd,owsd-control
 member stranger ''

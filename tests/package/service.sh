@@ -50,8 +50,8 @@ same 'without a capability' 0000000000000000 \
 does 'through its sandbox it reads the chip' within 60 reads warm 21.0625
 same 'who may look is a group, under its filter too' '640 owsd owsd' \
 	"$(stat -c '%a %U %G' /run/owsd/HOUSE.image)"
-same 'who may act is another' '660 owsd owsd-control' \
-	"$(stat -c '%a %U %G' /run/owsd/HOUSE.command)"
+same 'who may act is for owsd to decide' '666 owsd owsd' \
+	"$(stat -c '%a %U %G' /run/owsd/HOUSE.control)"
 # GROUP,... COMMAND...: as a user who is in these groups and nothing else
 as_one_of() {
 	# shellcheck disable=SC2046 # names of groups are words

@@ -132,7 +132,7 @@ def test_alarms_are_waited_for(scene):
 
 
 def test_every_example_of_the_manual_is_a_configuration_without_faults(scene):
-    assert len(EXAMPLES) == 7
+    assert len(EXAMPLES) == 9
     for number, text in enumerate(EXAMPLES):
         done = scene.owsd_once("-c", scene.file(f"example{number}.rio", text), "--check")
         assert (done.returncode, done.stderr) == (0, ""), (text, done.stderr)
@@ -182,6 +182,12 @@ def test_the_thermometer_of_the_manual_tells_a_high_temperature(scene):
 def test_the_ds28ea00_of_the_manual_tells_a_high_temperature(scene):
     example(scene, "pipe", "DS28EA00 42.000000000005 temperature steps 0:20 5s:35\n",
             lambda a: a["after"] == 35)
+
+
+def test_the_eds0065_of_the_manual_tells_a_high_humidity(scene):
+    # from the factory its limit is 0
+    example(scene, "cellar", "EDS0065 7E.000000000005 humidity steps 0:0 5s:80\n",
+            lambda a: a["after"] == 80)
 
 
 def test_the_ds2405_of_the_manual_tells_that_it_is_on(scene):

@@ -26,7 +26,7 @@ SENSED = item("sensed", "byte", "input", property="sensed.BYTE")
 
 def program(scene):
     """The program, built by this machine's Rust."""
-    rustc = shutil.which("rustc") or shutil.which("/root/.cargo/bin/rustc")
+    rustc = shutil.which("rustc") or shutil.which(os.path.expanduser("~/.cargo/bin/rustc"))
     if not rustc:
         owsdtest.skip("there is no rustc")
     built = scene.path / "controller"

@@ -17,7 +17,8 @@ from owsdtest import BUILD, SOURCE
 TOPS = ["src", "hal"]
 # Lists of tables of operations, and the tables in them: backends, families, simulated families. A
 # dispatcher finds in the list what stands above it; that is its purpose, so it is not counted.
-TABLES = r"bus_backends|\w+_bus|family_[0-9a-f]{2}|sim_families|sim_(ds|max)\w+"
+TABLES = r"bus_backends|\w+_bus|family_[0-9a-f]{2}|sim_families|sim_[a-z]+[0-9]\w*" \
+    r"|sim_(hb|inferno)_\w+|sim_(lcd|iblss|example_slave)"
 # The words that owsd and its consumers have in common; it includes nothing
 PUBLIC = "src/libows/ows"
 # Headers whose functions stand in many files, by design: the consumers' one header, and the verbs

@@ -46,6 +46,16 @@ def test_the_programs_link_libi2c_and_libgpiod(scene):
             assert bool(calls) == has, f"{program} links {name} and calls {calls}"
 
 
+def test_the_tables_of_the_chip_families_stand_in_read_only_memory(scene):
+    """A pointer in a row would move the whole table to memory that each process has for itself."""
+    tables = 0
+    for built in (BUILD / "hal/chips").glob("*.o"):
+        for kind in re.findall(r" ([a-zA-Z]) properties$", output("nm", built), re.M):
+            assert kind == "r", f"{built.name}: nm says {kind} of its table"
+            tables += 1
+    assert tables >= 15, tables
+
+
 def test_the_makefile_found_what_is_installed(scene):
     said = found()
     for name, header in (("libi2c", "i2c/smbus.h"), ("libgpiod", "gpiod.h")):

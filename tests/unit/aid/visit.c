@@ -9,6 +9,9 @@
 #include "hal/chips/find.h"
 #include "tests/unit/aid/visit.h"
 
+/* Of a memory that has more bytes its pages are read. */
+#define WHOLE_MAX 512
+
 struct trouble trouble;
 struct sim_slave *visited;
 
@@ -18,6 +21,12 @@ static void remember(const struct visit *visit)
 	static const struct {
 		const char *chip, *property;
 	} before[] = {
+		{"DS2436", "temperature"},
+		{"DS2436", "volts"},
+		{"DS2437", "VAD"},
+		{"DS2437", "VDD"},
+		{"DS2437", "temperature"},
+		{"DS2437", "vis"},
 		{"DS2438", "VAD"},
 		{"DS2438", "VDD"},
 		{"DS2438", "temperature"},
@@ -41,23 +50,26 @@ static void remember(const struct visit *visit)
 }
 
 /* Give all inputs and memories of the chip other values, which all differ. */
-static void change(const struct visit *visit, bool again)
+void visit_change(struct sim_slave *slave, bool again, bool turned)
 {
-	const struct sim_input *inputs = visited->family->inputs;
+	const struct sim_input *inputs = slave->family->inputs;
 	size_t size = 0;
 
 	for (unsigned i = 0; inputs && inputs[i].name; i++) {
-		double value = inputs[i].pin ? (i + again + visit->turned) % 2
+		double value = inputs[i].pin ? (i + again + turned) % 2
 		                             : (again ? 1.37 : 2.05) + 0.48 * i;
 
 		if (strcmp(inputs[i].name, "temperature") == 0)
 			value = again ? 61.5 : 20.25;
-		wire_set(visited, inputs[i].name, value);
+		wire_set(slave, inputs[i].name, value);
 	}
-	uint8_t *memory = visited->family->memory ? visited->family->memory(visited, &size) : NULL;
-	bool has_registers = strcmp(visited->family->name, "DS2438") == 0;
+	uint8_t *memory = slave->family->memory ? slave->family->memory(slave, &size) : NULL;
+	/* Registers; the first page of an EDS, which says what it is. */
+	bool has_registers = strcmp(slave->family->name, "DS2438") == 0 ||
+	                     strcmp(slave->family->name, "DS2437") == 0;
+	size_t fixed = has_registers ? 24 : slave->family->code == 0x7e ? 32 : 0;
 
-	for (size_t i = has_registers ? 24 : 0; i < size; i++)
+	for (size_t i = fixed; i < size; i++)
 		memory[i] = (uint8_t)(i * 7 + (again ? 0x35 : 0x91));
 }
 
@@ -69,12 +81,12 @@ void visit_begin(const struct visit *visit)
 	trouble_none(&trouble);
 	visited = wire_add(0, visit->chip, 1);
 	visited->parasite = visit->parasite;
-	change(visit, false);
+	visit_change(visited, false, visit->turned);
 	if (visit->turned && strcmp(visit->chip, "DS2405") == 0)
 		visited->family->selected(visited, true, wire_time());
 	start();
 	remember(visit);
-	change(visit, true);
+	visit_change(visited, true, visit->turned);
 	host_run(&host, bus, host.now + 100 * HOST_MS);
 }
 
@@ -120,7 +132,9 @@ static void try(const struct visit *visit, struct trouble what,
 unsigned visit_each(const struct visit *visit,
                     void (*one)(const struct visit *visit, const struct trouble *what))
 {
-	static const uint8_t masks[] = {0xff, 0x24, 0x42, 0x55};
+	/* All bits of Read Clock turned over are Write Clock: no master can see that. */
+	bool clock = strcmp(visit->chip, "DS2415") == 0 || strcmp(visit->chip, "DS2417") == 0;
+	const uint8_t masks[] = {clock ? 0x7f : 0xff, 0x24, 0x42, 0x55};
 	unsigned stride = visit->stride ? visit->stride : 1, n = 0;
 
 	visit_begin(visit);
@@ -155,12 +169,25 @@ static bool is_like_another(const struct family *family, unsigned n)
 		if (strcmp(property->name, ways[i]) == 0)
 			return false;
 	for (unsigned i = 0; i < n; i++)
-		if (family->properties[i].read == property->read &&
+		if (family->properties[i].size <= WHOLE_MAX &&
+		    family->properties[i].how == property->how &&
+		    family->properties[i].kinds == property->kinds &&
 		    family->properties[i].field.area == property->field.area &&
 		    family->properties[i].convert == property->convert &&
 		    !strstr(family->properties[i].name, "HTM"))
 			return true;
 	return false;
+}
+
+static bool is_clock(const char *name)
+{
+	return strstr(name, "date") || strstr(name, "seconds") || strstr(name, "samples");
+}
+
+/* The memory of an EDS shows the seconds. */
+static bool changes_by_itself(const struct family *family, const struct property *property)
+{
+	return family->code == 0x7e && property->type == PROPERTY_BINARY;
 }
 
 void visit_properties(const char *chip, bool parasite, bool turned,
@@ -176,11 +203,11 @@ void visit_properties(const char *chip, bool parasite, bool turned,
 		                      .property = name,
 		                      .parasite = parasite,
 		                      .turned = turned,
-		                      .slack = strstr(property->name, "date") ? 30 : 0};
+		                      .slack = is_clock(property->name) ? 30 : 0};
 
 		if (!(property->access & ACCESS_READ) || property->offline ||
-		    (property->visible && strcmp(chip, "DS1825") != 0) ||
-		    is_like_another(family, i))
+		    property->size > WHOLE_MAX || is_like_another(family, i) ||
+		    changes_by_itself(family, property))
 			continue;
 		snprintf(name, sizeof(name), "%s%s", property->name,
 		         property->type == PROPERTY_BITS          ? ".BYTE"

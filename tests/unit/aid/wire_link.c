@@ -68,7 +68,7 @@ static int begin(struct link *link)
 		spend(SLOT_NS);
 		return wire_net.fault;
 	}
-	return wire->shorted ? -ECOMM : 0;
+	return sim_wire_level(wire, wire_time()) ? 0 : -ECOMM;
 }
 
 static int wire_reset(struct link *link)

@@ -57,23 +57,27 @@ static struct txn txn;
 static const struct area registers = {
 	.name = "registers", .size = 32, .block = 32, .row = 8, .read = 0x69, .write = 0x6c};
 
-static const struct property word = PROPERTY("word", FLOAT, VOLATILE, BOTH,
-                                             FIELD(registers, .at = 4, .bytes = 2, .shift = 5,
-                                                   .is_signed = true, .big_endian = true,
-                                                   .unit = 0.5, .offset = 1));
-static const struct property flags = PROPERTY(
-	"flags", BITS, VOLATILE, BOTH, AGGREGATE(3, NUMBERS),
-	FIELD(registers, .at = 1, .shift = 2, .inverted = true));
-static const struct property limits = PROPERTY("limits", UNSIGNED, VOLATILE, BOTH,
-                                               ELEMENTS(4, NUMBERS),
-                                               FIELD(registers, .at = 8, .stride = 2, .bytes = 2));
-static const struct property page = PROPERTY("page", BINARY, VOLATILE, BOTH, ELEMENTS(4, NUMBERS),
-                                             .size = 8, FIELD(registers));
+enum { REGISTERS = 1 };
+static const struct area *const areas[] = {[REGISTERS] = &registers};
+
+enum { FLAGS, LIMITS, PAGE, WORD };
+static const struct property properties[] = {
+	[FLAGS] = PROPERTY("flags", BITS, VOLATILE, BOTH, AGGREGATE(3, NUMBERS),
+                           FIELD(REGISTERS, .at = 1, .shift = 2, .inverted = true)),
+	[LIMITS] = PROPERTY("limits", UNSIGNED, VOLATILE, BOTH, ELEMENTS(4, NUMBERS),
+                            FIELD(REGISTERS, .at = 8, .stride = 2, .bytes = 2)),
+	[PAGE] = PROPERTY("page", BINARY, VOLATILE, BOTH, ELEMENTS(4, NUMBERS), .size = 8,
+                          FIELD(REGISTERS)),
+	[WORD] = PROPERTY("word", FLOAT, VOLATILE, BOTH,
+                          FIELD(REGISTERS, .at = 4, .bytes = 2, .shift = 5, .is_signed = true,
+                                .big_endian = true, .unit = 0.5, .offset = 1)),
+};
+static const struct family family = {.code = 0x31, AREAS(areas), PROPERTIES(properties)};
 
 void setUp(void)
 {
 	memset(chip, 0, sizeof(chip));
-	device = (struct device){.rom = {0x31, 1}, .family = &family_common, .own = own};
+	device = (struct device){.rom = {0x31, 1}, .family = &family, .own = own};
 	reads = writes = 0;
 	fault = 0;
 }
@@ -82,13 +86,23 @@ void tearDown(void)
 {
 }
 
-static void begin(const struct property *property)
+static void begin(int property)
 {
 	txn = (struct txn){.link = &link_of_areas,
 	                   .device = &device,
-	                   .property = property,
+	                   .property = &properties[property],
 	                   .since_ns = INT64_MAX,
 	                   .oldest_ns = INT64_MAX};
+}
+
+static property_function *reader(int property)
+{
+	return property_reader(&family, &properties[property]);
+}
+
+static property_function *writer(int property)
+{
+	return property_writer(&family, &properties[property]);
 }
 
 static int end(property_function *function)
@@ -100,36 +114,36 @@ static int end(property_function *function)
 	return err;
 }
 
-static double value(const struct property *property, int element)
+static double value(int property, int element)
 {
 	begin(property);
 	txn.element = element;
-	TEST_ASSERT_EQUAL_INT(0, end(property_reader(property)));
+	TEST_ASSERT_EQUAL_INT(0, end(reader(property)));
 	return txn.number[0];
 }
 
-static int set(const struct property *property, int element, double number)
+static int set(int property, int element, double number)
 {
 	begin(property);
 	txn.element = element;
 	txn.number[0] = number;
-	return end(property_writer(property));
+	return end(writer(property));
 }
 
 static void test_a_field_is_its_bits_times_the_unit_and_the_offset(void)
 {
 	chip[4] = 0xff; /* -2, in the upper eleven bits */
 	chip[5] = 0xdf;
-	TEST_ASSERT_EQUAL_DOUBLE(0, value(&word, 0));
+	TEST_ASSERT_EQUAL_DOUBLE(0, value(WORD, 0));
 	chip[4] = 0x7f;
-	TEST_ASSERT_EQUAL_DOUBLE(1022 / 2.0 + 1, value(&word, 0));
+	TEST_ASSERT_EQUAL_DOUBLE(1022 / 2.0 + 1, value(WORD, 0));
 }
 
 static void test_a_field_that_is_written_leaves_its_neighbours(void)
 {
 	memset(chip, 0x55, sizeof(chip));
-	TEST_ASSERT_EQUAL_INT(0, set(&word, 0, -3));
-	TEST_ASSERT_EQUAL_DOUBLE(-3, value(&word, 0));
+	TEST_ASSERT_EQUAL_INT(0, set(WORD, 0, -3));
+	TEST_ASSERT_EQUAL_DOUBLE(-3, value(WORD, 0));
 	TEST_ASSERT_EQUAL_HEX8(0xff, chip[4]);
 	TEST_ASSERT_EQUAL_HEX8(0x15, chip[5]);
 	TEST_ASSERT_EQUAL_HEX8(0x55, chip[3]);
@@ -138,41 +152,41 @@ static void test_a_field_that_is_written_leaves_its_neighbours(void)
 
 static void test_a_value_that_has_no_bits_is_refused(void)
 {
-	TEST_ASSERT_EQUAL_INT(0, set(&word, 0, 512.5));
-	TEST_ASSERT_EQUAL_INT(-EINVAL, set(&word, 0, 513));
-	TEST_ASSERT_EQUAL_INT(0, set(&word, 0, -511));
-	TEST_ASSERT_EQUAL_INT(-EINVAL, set(&word, 0, -512));
-	TEST_ASSERT_EQUAL_INT(-EINVAL, set(&limits, 0, 65536));
-	TEST_ASSERT_EQUAL_INT(-EINVAL, set(&limits, 0, -1));
+	TEST_ASSERT_EQUAL_INT(0, set(WORD, 0, 512.5));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, set(WORD, 0, 513));
+	TEST_ASSERT_EQUAL_INT(0, set(WORD, 0, -511));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, set(WORD, 0, -512));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, set(LIMITS, 0, 65536));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, set(LIMITS, 0, -1));
 }
 
 static void test_one_bit_of_many_is_written_by_itself(void)
 {
 	chip[1] = 0xff;
-	begin(&flags);
+	begin(FLAGS);
 	txn.element = 1;
 	txn.one = true;
 	txn.bits = 2;
-	TEST_ASSERT_EQUAL_INT(0, end(property_writer(&flags)));
+	TEST_ASSERT_EQUAL_INT(0, end(writer(FLAGS)));
 	TEST_ASSERT_EQUAL_HEX8(0xf7, chip[1]);
-	value(&flags, 0);
+	value(FLAGS, 0);
 	TEST_ASSERT_EQUAL_HEX32(2, txn.bits);
 }
 
 static void test_elements_stand_a_stride_apart(void)
 {
-	TEST_ASSERT_EQUAL_INT(0, set(&limits, 3, 0x1234));
+	TEST_ASSERT_EQUAL_INT(0, set(LIMITS, 3, 0x1234));
 	TEST_ASSERT_EQUAL_HEX8(0x34, chip[14]);
 	TEST_ASSERT_EQUAL_HEX8(0x12, chip[15]);
-	TEST_ASSERT_EQUAL_DOUBLE(0x1234, value(&limits, 3));
-	TEST_ASSERT_EQUAL_DOUBLE(0, value(&limits, 2));
+	TEST_ASSERT_EQUAL_DOUBLE(0x1234, value(LIMITS, 3));
+	TEST_ASSERT_EQUAL_DOUBLE(0, value(LIMITS, 2));
 }
 
 static void test_what_is_there_already_is_not_written(void)
 {
-	TEST_ASSERT_EQUAL_INT(0, set(&limits, 1, 7));
+	TEST_ASSERT_EQUAL_INT(0, set(LIMITS, 1, 7));
 	TEST_ASSERT_EQUAL_UINT(1, writes);
-	TEST_ASSERT_EQUAL_INT(0, set(&limits, 1, 7));
+	TEST_ASSERT_EQUAL_INT(0, set(LIMITS, 1, 7));
 	TEST_ASSERT_EQUAL_UINT(1, writes);
 }
 
@@ -180,42 +194,42 @@ static void test_bytes_are_written_where_they_begin_in_their_element(void)
 {
 	static uint8_t text[] = "abc";
 
-	begin(&page);
+	begin(PAGE);
 	txn.element = 2;
 	txn.at = 3;
 	txn.data = text;
 	txn.len = 3;
-	TEST_ASSERT_EQUAL_INT(0, end(property_writer(&page)));
+	TEST_ASSERT_EQUAL_INT(0, end(writer(PAGE)));
 	TEST_ASSERT_EQUAL_MEMORY("\0\0\0abc\0\0", chip + 16, 8);
 }
 
 static void test_an_error_of_the_link_is_that_of_the_property(void)
 {
 	fault = -ENOENT;
-	begin(&word);
-	TEST_ASSERT_EQUAL_INT(-ENOENT, end(property_reader(&word)));
-	TEST_ASSERT_EQUAL_INT(-ENOENT, set(&word, 0, 1));
+	begin(WORD);
+	TEST_ASSERT_EQUAL_INT(-ENOENT, end(reader(WORD)));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, set(WORD, 0, 1));
 	TEST_ASSERT_EQUAL_UINT(0, writes);
 }
 
 static void test_a_reading_serves_the_other_fields_that_may_be_as_old(void)
 {
 	chip[4] = 0x7f;
-	value(&word, 0);
+	value(WORD, 0);
 	TEST_ASSERT_EQUAL_UINT(1, reads);
-	begin(&limits);
+	begin(LIMITS);
 	txn.since_ns = 1000;
-	TEST_ASSERT_EQUAL_INT(0, property_reader(&limits)(&txn));
+	TEST_ASSERT_EQUAL_INT(0, reader(LIMITS)(&txn));
 	TEST_ASSERT_EQUAL_UINT(1, reads);
-	begin(&limits);
+	begin(LIMITS);
 	txn.since_ns = 1001;
-	TEST_ASSERT_EQUAL_INT(0, property_reader(&limits)(&txn));
+	TEST_ASSERT_EQUAL_INT(0, reader(LIMITS)(&txn));
 	TEST_ASSERT_EQUAL_UINT(2, reads);
 	/* Void: the device was away. */
 	device_forget(&device);
-	begin(&limits);
+	begin(LIMITS);
 	txn.since_ns = 1000;
-	TEST_ASSERT_EQUAL_INT(0, property_reader(&limits)(&txn));
+	TEST_ASSERT_EQUAL_INT(0, reader(LIMITS)(&txn));
 	TEST_ASSERT_EQUAL_UINT(3, reads);
 }
 

@@ -14,9 +14,9 @@
 #define VALUE_MAX 600
 
 /* DS2408's and the families without a simulated chip are in files of their own. */
-static const char *const chips[] = {"DS2401", "DS2405",  "DS2406",  "DS2408", "DS2413",
-                                    "DS2423", "DS2430A", "DS2431",  "DS2433", "DS2438",
-                                    "DS2450", "DS18B20", "DS18S20", "DS1822"};
+static const char *const chips[] = {"DS2401",  "DS2405", "DS2406", "DS2408",  "DS2413", "DS2423",
+                                    "DS2430A", "DS2431", "DS2433", "DS2438",  "DS2450", "DS18B20",
+                                    "DS18S20", "DS1822", "DS1992", "DS1963S", "DS2404"};
 #define CHIPS (sizeof(chips) / sizeof(chips[0]))
 
 void setUp(void)
@@ -131,12 +131,14 @@ static void test_bytes_take_a_part_and_other_values_take_none(void)
 		start(chips[i]);
 		family = family_of(slave->rom[0]);
 		while ((property = family_next(family, NULL, property)))
-			if (property->access & ACCESS_WRITE && !property->visible)
+			if (property->access & ACCESS_WRITE && !property->kinds)
 				tried += try_property(chips[i], property);
 		tearDown();
 	}
 	/* memories of 2423, 2430A, 2431 and 2433, then pages of 2423, 2431, 2433, 2438 and 2450 */
-	TEST_ASSERT_EQUAL_UINT(4 + 16 + 4 + 16 + 4 + 1, tried);
+	unsigned before = 4 + 16 + 4 + 16 + 4 + 1;
+	/* memories and pages of 1992, 1963S and 2404 */
+	TEST_ASSERT_EQUAL_UINT(before + 3 + 4 + 16 + 16, tried);
 	setUp();
 }
 

@@ -1,21 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * No trouble on the wire makes a false value good: each property of each chip is read with each
- * command lost, each bit turned over and each presence pulse lost in turn. The answer is the truth
- * or an error.
+ * No trouble on the wire makes a false value of a thermometer or a switch good (visit_truth.h), nor
+ * of two thermometers that convert at once. Each family has a chip that is visited.
  */
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "hal/chips/find.h"
 #include "unity.h"
 
-#include "tests/unit/aid/visit.h"
-
-static char truth[4096];
-static uint32_t truth_len;
-static unsigned false_values;
+#include "tests/unit/aid/visit_truth.h"
 
 void setUp(void)
 {
@@ -25,67 +18,6 @@ void tearDown(void)
 {
 	if (bus)
 		visit_end();
-}
-
-static bool is_true(const struct visit *visit, const struct bus_answer *answer)
-{
-	double more = answer->number - strtod(truth, NULL);
-
-	if (visit->slack > 0)
-		return more >= 0 && more <= visit->slack;
-	return answer->len == truth_len && memcmp(data[answer->id], truth, truth_len) == 0;
-}
-
-static void one(const struct visit *visit, const struct trouble *what)
-{
-	char text[300];
-	const struct bus_answer *answer = answer_to(visit_go(visit, what));
-
-	if (answer->err || is_true(visit, answer))
-		return;
-	snprintf(text, sizeof(text), "%s: '%.40s' for '%.40s'", visit_says(visit, what),
-	         (char *)data[answer->id], truth);
-	TEST_MESSAGE(text);
-	false_values++;
-}
-
-static void look(const struct visit *visit)
-{
-	visit_begin(visit);
-	const struct bus_answer *answer = answer_to(
-		visit_go(visit, &(struct trouble){.kind = TROUBLE_NONE}));
-
-	TEST_ASSERT_EQUAL_INT_MESSAGE(0, answer->err, visit->property);
-	truth_len = answer->len;
-	memcpy(truth, data[answer->id], truth_len);
-	truth[truth_len] = '\0';
-	visit_end();
-	visit_each(visit, one);
-}
-
-static void look_untroubled_first(struct visit *visit, const struct property *property)
-{
-	(void)property;
-	visit_begin(visit);
-	int err = answer_to(visit_go(visit, &(struct trouble){.kind = TROUBLE_NONE}))->err;
-	visit->stride = trouble.slots > 15000  ? 211
-	                : trouble.slots > 4000 ? 13
-	                : trouble.slots > 2500 ? 5
-	                                       : 1;
-	visit_end();
-	if (!err)
-		look(visit);
-}
-
-static void look_at(const char *chip, bool parasite)
-{
-	const struct sim_input *inputs = sim_family_find(chip, 0)->inputs;
-
-	false_values = 0;
-	visit_properties(chip, parasite, false, look_untroubled_first);
-	if (inputs && inputs[0].pin)
-		visit_properties(chip, parasite, true, look_untroubled_first);
-	TEST_ASSERT_EQUAL_UINT_MESSAGE(0, false_values, chip);
 }
 
 static uint32_t both(struct sim_slave *fed, struct sim_slave *supplied, const char *what)
@@ -136,10 +68,29 @@ static void test_no_trouble_makes_a_neighbour_of_one_fed_by_the_wire_say_what_is
 	} while (what.at < slots);
 }
 
+/* Families may share a table. */
+static void test_each_family_that_has_properties_has_a_chip_that_is_visited(void)
+{
+#define NAME(name, chip, parasite) chip,
+	static const char *const chips[] = {VISIT_ALL(NAME)};
+	const struct family *family;
+
+	for (unsigned n = 0; (family = family_nth(n)); n++) {
+		bool visited_once = true;
+
+		for (unsigned i = 0; i < family->count; i++)
+			visited_once &= family->properties[i].offline;
+		for (unsigned i = 0; i < sizeof(chips) / sizeof(chips[0]); i++)
+			visited_once |= family_of(sim_family_find(chips[i], 0)->code)->properties ==
+			                family->properties;
+		TEST_ASSERT_TRUE_MESSAGE(visited_once, family->type);
+	}
+}
+
 #define LOOKS(name, chip, parasite) \
 	static void test_no_trouble_makes_a_##name##_say_what_is_not_true(void) \
 	{ \
-		look_at(chip, parasite); \
+		visit_truth(chip, parasite); \
 	}
 
 VISIT_CHIPS(LOOKS)
@@ -149,6 +100,7 @@ VISIT_CHIPS(LOOKS)
 int main(void)
 {
 	UNITY_BEGIN();
+	RUN_TEST(test_each_family_that_has_properties_has_a_chip_that_is_visited);
 	VISIT_CHIPS(RUN)
 	RUN_TEST(test_no_trouble_makes_a_neighbour_of_one_fed_by_the_wire_say_what_is_not_true);
 	return UNITY_END();

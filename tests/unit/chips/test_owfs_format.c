@@ -50,6 +50,10 @@ static const struct property bits = {
 static const struct property letters = {
 	.name = "volt", .type = PROPERTY_FLOAT, .array = {4, INDEX_LETTERS, true}};
 
+static const struct property many = {
+	.name = "log", .type = PROPERTY_FLOAT, .array = {2048, INDEX_NUMBERS, false}};
+static const struct property words = {.name = "id", .type = PROPERTY_BINARY, SPARSE(LETTERS)};
+
 static void test_arrays_are_joined_by_commas_and_bytes_are_numbers(void)
 {
 	struct txn txn = {.bits = 0xaa, .number = {72.5633, 7.66785, 17.643, 31.4219}};
@@ -80,12 +84,18 @@ static void test_extensions_are_numbers_letters_all_and_byte_in_any_case(void)
 	extension(&bits, "PIO.all", EXTENSION_ALL, true);
 	extension(&bits, "PIO.07", 7, true);
 	extension(&bits, "PIO.8", 8, false);
-	extension(&bits, "PIO.A", 256, false);
+	extension(&bits, "PIO.A", EXTENSION_LETTERS, false);
 	extension(&bits, "PIO", EXTENSION_NONE, false);
-	extension(&letters, "volt.D", 259, true);
-	extension(&letters, "volt.E", 260, false);
+	extension(&letters, "volt.D", EXTENSION_LETTERS + 3, true);
+	extension(&letters, "volt.E", EXTENSION_LETTERS + 4, false);
 	extension(&letters, "volt.1", 1, false);
 	extension(&letters, "volt.BYTE", EXTENSION_BYTE, false);
+	extension(&letters, "volt.xyz", EXTENSION_WORD, false);
+	extension(&many, "log.2047", 2047, true);
+	extension(&many, "log.2048", 2048, false);
+	extension(&many, "log.20470", EXTENSION_WORD, false);
+	extension(&words, "id.secret", EXTENSION_WORD, true);
+	extension(&words, "id", EXTENSION_NONE, false);
 }
 
 struct written {
@@ -211,7 +221,7 @@ static void test_a_list_has_as_many_elements_as_its_property(void)
 
 static void test_a_number_of_digits_has_each_of_them_in_its_range(void)
 {
-	struct property alarm = {.name = "x", .type = PROPERTY_UNSIGNED, .digits = "331"};
+	struct property alarm = {.name = "x", .type = PROPERTY_UNSIGNED, .digits = 331};
 	struct property below = {.name = "x", .type = PROPERTY_UNSIGNED, .negative = true};
 
 	takes(&alarm, EXTENSION_NONE, "331", 3, 331);

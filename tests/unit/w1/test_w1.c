@@ -307,6 +307,20 @@ static void test_eeproms_are_read_and_written(void)
 	fs_fails(-EIO, chips[2].memory);
 }
 
+static void test_a_ds28e04_has_its_pages(void)
+{
+	char bytes[512];
+
+	memset(bytes, 'a', sizeof(bytes));
+	fs_slave("1c-000000000034");
+	fs_put("1c-000000000034", "eeprom", bytes, sizeof(bytes));
+	fs_start();
+	TEST_ASSERT_EQUAL_INT(0, fs_writes("/1C.340000000000/pages/page.15", "last"));
+	TEST_ASSERT_EQUAL_STRING_LEN("alasta", fs_now_in("1c-000000000034", "eeprom") + 479, 6);
+	fs_fails(-ENOENT, "/1C.340000000000/memory");
+	fs_fails(-ENOENT, "/1C.340000000000/PIO.BYTE");
+}
+
 /* What is written to the file is as long as what is changed, so that no other row wears out. */
 static void test_an_eeprom_is_written_row_by_row(void)
 {
@@ -463,6 +477,7 @@ int main(void)
 	RUN_TEST(test_a_ds2438_measures);
 	RUN_TEST(test_a_ds2423_counts);
 	RUN_TEST(test_eeproms_are_read_and_written);
+	RUN_TEST(test_a_ds28e04_has_its_pages);
 	RUN_TEST(test_an_eeprom_is_written_row_by_row);
 	RUN_TEST(test_raw_access_serves_the_rest);
 	RUN_TEST(test_a_slave_without_driver_is_told_once);

@@ -241,7 +241,7 @@ static void test_a_pull_up_that_a_driver_has_not_is_no_error_of_the_master(void)
 			txn.property = &device.family->properties[i];
 	TEST_ASSERT_NOT_NULL(txn.property);
 	for (int i = 0; i < 30 && err == TXN_MORE; i++, time += S)
-		err = property_reader(txn.property)(&txn);
+		err = property_reader(device.family, txn.property)(&txn);
 	TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP, err);
 	TEST_ASSERT_EQUAL_INT(0, txn.link_error);
 }

@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * BAE 0910 and 0911 by Pascal Baerten: microcontrollers whose functions are registers, family FC.
+ * What a command gives has a CRC16; a command that writes is acknowledged with one, and acts when
+ * the master confirms it. Nothing shows whether the confirmation was heard.
+ */
+#ifndef HAL_CHIPS_BAE_H
+#define HAL_CHIPS_BAE_H
+
+#include "hal/chips/family.h"
+
+enum bae_kind { BAE_UNKNOWN, BAE_910, BAE_911, BAE_OTHER };
+struct bae {
+	uint8_t kind;
+	uint32_t sector; /* of the card */
+};
+unsigned bae_kind(const struct device *device);
+/* 0: it is known which kind it is; TXN_MORE not yet, -ENOENT it has no such property. */
+int bae_identify(struct txn *txn);
+
+/* Areas: blocks of memory, read and written by address. */
+int bae_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n);
+int bae_store(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
+              unsigned n);
+/* A command of n bytes, its checksum, the confirmation. */
+int bae_confirmed(struct txn *txn, const uint8_t *command, unsigned n);
+
+/* What runs in a 0911: the expander on its I2C, the card, texts (bae_run.c). */
+property_function bae_read_expander, bae_write_expander, bae_read_sector, bae_write_sector;
+property_function bae_read_sector_number, bae_write_sector_number, bae_write_text;
+
+#endif

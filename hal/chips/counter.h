@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+/* Counters that belong to the pages of a memory: DS2423, DS1963L, DS1963S. */
+#ifndef HAL_CHIPS_COUNTER_H
+#define HAL_CHIPS_COUNTER_H
+
+#include "hal/chips/area.h"
+
+/* Four bytes for each page, each read by a command of its own with a checksum. */
+extern const struct area counter_area;
+
+#define COUNTERS(text, area_, n, index_, page, ...) \
+	PROPERTY(text, UNSIGNED, VOLATILE, READ, ELEMENTS(n, index_), \
+	         FIELD(area_, .at = 4 * (page), .stride = 4, .bytes = 4), __VA_ARGS__)
+
+#endif

@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: MIT */
+/* DS1922, DS1923, DS2422: converts, writes registers, sets the clock, starts and stops missions. */
+#include "hal/chips/ds1922_mission.h"
+
+#include <errno.h>
+#include <string.h>
+#include <time.h>
+
+#include "hal/chips/ds1922.h"
+#include "hal/chips/family.h"
+#include "hal/chips/logger.h"
+
+enum { CLEAR_MEMORY = 0x96, START_MISSION = 0xcc, STOP_MISSION = 0x33 };
+
+#define CONVERT_NS (666 * TXN_MS)
+
+static const struct logger_chip chip = {.copy = 0x99, .password = true};
+
+struct visit {
+	struct logger_write write;
+	uint8_t page[PAGE]; /* the first of the registers as it was */
+	uint8_t bytes[8];   /* what is written */
+	uint8_t before[3], config;
+};
+_Static_assert(sizeof(struct visit) <= TXN_OWN, "no room for the visit");
+
+static int look(struct txn *txn, unsigned where, uint8_t page[PAGE])
+{
+	return ds1922_load(txn, &ds1922_memory, where, page, PAGE);
+}
+
+/* The first page of the registers; -EBUSY: a mission runs. */
+static int look_for_mission(struct txn *txn)
+{
+	struct visit *visit = txn_own(txn);
+	int err = look(txn, CLOCK, visit->page);
+
+	if (err)
+		return err;
+	return visit->page[STATUS - CLOCK] & MIP ? -EBUSY : 0;
+}
+
+/* arg: of which quantity. */
+static int take_latest(struct txn *txn, uint8_t config, const uint8_t *page)
+{
+	unsigned where = txn->property->arg == LOG_DATA ? LATEST_DATA : LATEST;
+	const uint8_t *latest = page + (where - CLOCK);
+
+	if (txn->property->arg == LOG_DATA)
+		txn->number[0] = ds1922_humidity(latest[1], latest[0]);
+	else
+		txn->number[0] = ds1922_celsius(config, latest[1], latest[0]);
+	return 0;
+}
+
+/*
+ * The result is new when the counter of the device has moved. Without its oscillator the chip does
+ * not convert.
+ */
+int ds1922_read_now(struct txn *txn)
+{
+	static const uint8_t convert[] = {0x55, 0xff};
+	struct visit *visit = txn_own(txn);
+	uint8_t page[PAGE];
+	int err;
+
+	switch (txn->phase++) {
+	case 0:
+		err = look_for_mission(txn);
+		if (!err && !(visit->page[OSCILLATOR - CLOCK] & EOSC))
+			err = -EIO;
+		return err ? err : TXN_MORE;
+	case 1:
+		err = look(txn, SAMPLES, page);
+		memcpy(visit->before, page + (DEVICE_SAMPLES - SAMPLES), 3);
+		visit->config = page[CONFIG - SAMPLES];
+		if (!err && ds1922_zero_of(visit->config) < 0)
+			err = -EIO;
+		if (!err && txn->property->arg == LOG_DATA && !ds1922_has_data(visit->config))
+			err = -ENOENT;
+		return err ? err : TXN_MORE;
+	case 2:
+		err = txn_command(txn, convert, sizeof(convert));
+		return err ? err : txn_wait(txn, CONVERT_NS);
+	case 3:
+		err = look(txn, SAMPLES, page);
+		if (!err && memcmp(visit->before, page + (DEVICE_SAMPLES - SAMPLES), 3) == 0)
+			err = -EBADMSG;
+		return err ? err : TXN_MORE;
+	default:
+		err = look(txn, CLOCK, page);
+		return err ? err : take_latest(txn, visit->config, page);
+	}
+}
+
+/* The general pages; the registers have properties. */
+int ds1922_write_page(struct txn *txn)
+{
+	struct visit *visit = txn_own(txn);
+	unsigned at = (unsigned)txn->element * PAGE + (unsigned)txn->at;
+
+	if (txn->len == 0)
+		return 0;
+	if (at >= GENERAL)
+		return -EOPNOTSUPP;
+	return logger_write(txn, &chip, &visit->write, at, txn->data, (unsigned)txn->len);
+}
+
+/* A field of the registers. What it is already may be written during a mission too. */
+int ds1922_write_field(struct txn *txn)
+{
+	const struct field *field = &txn->property->field;
+	struct visit *visit = txn_own(txn);
+	unsigned n = field->bytes ? field->bytes : 1, bits = field->bits ? field->bits : 8 * n;
+	uint32_t mask = (UINT32_C(1) << bits) - 1, value = (uint32_t)txn->number[0];
+	const uint8_t *now = visit->page + (field->at - CLOCK);
+	int err;
+
+	if (txn->number[0] > mask)
+		return -EINVAL;
+	if (txn->phase)
+		return logger_write(txn, &chip, &visit->write, field->at, visit->bytes, n);
+	err = look_for_mission(txn);
+	if (err && err != -EBUSY)
+		return err;
+	mask <<= field->shift;
+	value <<= field->shift;
+	for (unsigned i = 0; i < n; i++, mask >>= 8, value >>= 8)
+		visit->bytes[i] = (uint8_t)((now[i] & ~mask) | (value & mask));
+	if (memcmp(visit->bytes, now, n) == 0)
+		return 0;
+	txn->phase = 1;
+	return err ? err : TXN_MORE;
+}
+
+/* --- Clock and missions --- */
+
+/* Steps of what sets the clock or starts a mission; each is left out where it can be. */
+enum step {
+	LOOK,
+	SET_CLOCK,
+	SET_OSCILLATOR,
+	SET_RATE,
+	SET_MISSION,
+	CLEAR,
+	IS_CLEAR,
+	START,
+	IS_STARTED,
+	DONE,
+};
+enum { SETS_CLOCK = 1, RUNS_CLOCK = 2, SETS_RATE = 4, STARTS = 8 };
+
+static int put(struct txn *txn, unsigned at, unsigned n)
+{
+	struct visit *visit = txn_own(txn);
+	int err = logger_write(txn, &chip, &visit->write, at, visit->bytes, n);
+
+	if (err)
+		return err;
+	txn->phase++;
+	return TXN_MORE;
+}
+
+/* A command, its password, and a byte that starts it. */
+static int command(struct txn *txn, uint8_t code)
+{
+	uint8_t bytes[2 + LOGGER_PASSWORD] = {code};
+
+	memset(bytes + 1, 0xff, sizeof(bytes) - 1);
+	txn_void(txn);
+	int err = txn_command(txn, bytes, sizeof(bytes));
+	if (err)
+		return err;
+	txn->phase++;
+	return txn_wait(txn, TXN_MS);
+}
+
+/* Has the status the flag? */
+static int has_flag(struct txn *txn, uint8_t flag)
+{
+	uint8_t page[PAGE];
+	int err = look(txn, CLOCK, page);
+
+	if (err)
+		return err;
+	txn->phase++;
+	return page[STATUS - CLOCK] & flag ? TXN_MORE : -EIO;
+}
+
+static int set_clock(struct txn *txn, unsigned wanted)
+{
+	struct visit *visit = txn_own(txn);
+	bool stands = !(visit->page[OSCILLATOR - CLOCK] & EOSC);
+	uint8_t weekday;
+
+	if (!(wanted & SETS_CLOCK) && !(wanted & STARTS && stands)) {
+		txn->phase++;
+		return TXN_MORE;
+	}
+	if (!visit->write.step)
+		logger_bcd(wanted & SETS_CLOCK ? txn->number[0] : (double)time(NULL), visit->bytes,
+		           &weekday);
+	return put(txn, CLOCK, LOGGER_TIME);
+}
+
+/* In seconds as far as they can be counted, then in minutes. */
+static int set_oscillator(struct txn *txn, unsigned wanted)
+{
+	struct visit *visit = txn_own(txn);
+	uint8_t byte = visit->page[OSCILLATOR - CLOCK] & (EOSC | FAST);
+
+	if (wanted & (RUNS_CLOCK | STARTS))
+		byte |= EOSC;
+	if (wanted & SETS_RATE)
+		byte = (uint8_t)((byte & ~FAST) | (txn->number[0] <= RATE_MOST ? FAST : 0));
+	visit->bytes[0] = byte;
+	if (byte != visit->page[OSCILLATOR - CLOCK])
+		return put(txn, OSCILLATOR, 1);
+	txn->phase++;
+	return TXN_MORE;
+}
+
+static int set_rate(struct txn *txn, unsigned wanted)
+{
+	struct visit *visit = txn_own(txn);
+	unsigned rate = (unsigned)(txn->number[0] <= RATE_MOST ? txn->number[0]
+	                                                       : txn->number[0] / 60);
+
+	if (wanted & SETS_RATE) {
+		visit->bytes[0] = (uint8_t)rate;
+		visit->bytes[1] = (uint8_t)(rate >> 8);
+		return put(txn, RATE, 2);
+	}
+	txn->phase = wanted & STARTS ? SET_MISSION : DONE;
+	return TXN_MORE;
+}
+
+/* All quantities, as finely as they are measured; the rollover stays as it is. */
+static int set_mission(struct txn *txn)
+{
+	struct visit *visit = txn_own(txn);
+
+	visit->bytes[0] = (uint8_t)((visit->page[MISSION - CLOCK] & RO) | LOG_TEMP | WIDE |
+	                            (ds1922_has_data(visit->config) ? LOG_DATA | DATA_WIDE : 0));
+	return put(txn, MISSION, 1);
+}
+
+static int do_steps(struct txn *txn, unsigned wanted)
+{
+	int err;
+
+	switch ((enum step)txn->phase) {
+	case LOOK:
+		err = look_for_mission(txn);
+		txn->phase++;
+		return err ? err : TXN_MORE;
+	case SET_CLOCK:
+		return set_clock(txn, wanted);
+	case SET_OSCILLATOR:
+		return set_oscillator(txn, wanted);
+	case SET_RATE:
+		err = set_rate(txn, wanted);
+		txn->phase = txn->phase == SET_MISSION && !(wanted & STARTS) ? DONE : txn->phase;
+		return err;
+	case SET_MISSION:
+		return set_mission(txn);
+	case CLEAR:
+		return command(txn, CLEAR_MEMORY);
+	case IS_CLEAR:
+		return has_flag(txn, MEMCLR);
+	case START:
+		return command(txn, START_MISSION);
+	case IS_STARTED:
+		return has_flag(txn, MIP);
+	case DONE:
+		return 0;
+	}
+	return -EIO;
+}
+
+int ds1922_write_date(struct txn *txn)
+{
+	return do_steps(txn, SETS_CLOCK | RUNS_CLOCK);
+}
+
+int ds1922_write_udate(struct txn *txn)
+{
+	return do_steps(txn, SETS_CLOCK);
+}
+
+int ds1922_write_interval(struct txn *txn)
+{
+	double minutes = txn->number[0] / 60;
+
+	if (txn->number[0] < 1 || minutes > RATE_MOST ||
+	    (txn->number[0] > RATE_MOST && minutes != (unsigned)minutes))
+		return -EINVAL;
+	return do_steps(txn, SETS_RATE);
+}
+
+static int stop_mission(struct txn *txn)
+{
+	int err;
+
+	if (txn->phase == 0)
+		return command(txn, STOP_MISSION);
+	err = look_for_mission(txn);
+	return err == -EBUSY ? -EIO : err;
+}
+
+/* What its registers and its configuration say is a mission of an interval. */
+int ds1922_write_running(struct txn *txn)
+{
+	struct visit *visit = txn_own(txn);
+	uint8_t page[PAGE];
+	int err;
+
+	if (txn->number[0] == 0)
+		return stop_mission(txn);
+	if (txn->phase > LOOK)
+		return do_steps(txn, STARTS);
+	if (!visit->before[0]) {
+		err = look(txn, SAMPLES, page);
+		visit->config = page[CONFIG - SAMPLES];
+		visit->before[0] = 1;
+		return err ? err : TXN_MORE;
+	}
+	err = do_steps(txn, STARTS);
+	return err == TXN_MORE && ds1922_interval_of(visit->page) == 0 ? -EINVAL : err;
+}

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT */
+/* DS1963L (data sheet 021704): 4 kbit of RAM with a battery, and counters of its writes. */
+#include "hal/chips/counter.h"
+#include "hal/chips/family.h"
+
+static const struct area memory = {
+	.name = "memory",
+	.size = 512,
+	.address_bytes = 2,
+	.read = 0xf0,
+	.row = 32,
+	.write = 0x0f,
+	.verify = 0xaa,
+	.copy = 0x5a,
+	.copy_ns = TXN_MS,
+};
+
+enum { MEMORY = 1, COUNTS };
+static const struct area *const areas[] = {[MEMORY] = &memory, [COUNTS] = &counter_area};
+
+static const struct property properties[] = {
+	AREA_MEMORY(MEMORY, 512),
+	PROPERTY_DIR("pages"),
+	COUNTERS("pages/count", COUNTS, 16, NUMBERS, 0, .hidden = false),
+	AREA_PAGES(MEMORY, 16, 32),
+};
+
+const struct family family_1a = {
+	.code = 0x1a, .type = "DS1963L", AREAS(areas), PROPERTIES(properties)};

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT */
+/* DS2890 (data sheet, "1-Wire Digital Potentiometer"): a wiper of 256 positions, a charge pump. */
+#include <errno.h>
+
+#include "hal/chips/family.h"
+
+#define RELEASE 0x96
+
+/* The chip sends the byte back, and takes it with the release code. */
+static int store(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
+                 unsigned n)
+{
+	static const uint8_t release = RELEASE;
+	const uint8_t command[] = {area->write, bytes[1]};
+	const uint8_t whole[] = {area->write, bytes[1], 0xff, RELEASE};
+	uint8_t echo;
+	int err = txn_command(txn, command, sizeof(command));
+
+	(void)at, (void)n;
+	if (!err)
+		err = txn_read(txn, &echo, 1);
+	if (err)
+		return err;
+	if (echo != bytes[1])
+		return -EBADMSG;
+	err = txn_write(txn, &release, 1);
+	/* A link that takes no write behind a read: to read is to write ones. */
+	return err == -EOPNOTSUPP ? txn_command(txn, whole, sizeof(whole)) : err;
+}
+
+/* The wiper goes to its end when the power was away. */
+static int saw_position(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
+{
+	struct device *device = txn->device;
+
+	(void)at, (void)n;
+	txn->restarted |= device->shadow_known && device->shadow != bytes[1];
+	device->shadow = bytes[1];
+	device->shadow_known = true;
+	return 0;
+}
+
+/* A byte that is not written comes first: the control register, or what the chip can do. */
+#define REGISTER .size = 2, .block = 2, .row = 2, .store = store
+
+static const struct area position = {
+	.name = "position", REGISTER, .read = 0xf0, .write = 0x0f, .saw = saw_position};
+static const struct area control = {.name = "control", REGISTER, .read = 0xaa, .write = 0x55};
+
+enum { POSITION = 1, CONTROL };
+static const struct area *const areas[] = {[POSITION] = &position, [CONTROL] = &control};
+
+static const struct property properties[] = {
+	PROPERTY("chargepump", YESNO, STABLE, BOTH, FIELD(CONTROL, .at = 1, .shift = 6, .bits = 1)),
+	PROPERTY("wiper", UNSIGNED, STABLE, BOTH, FIELD(POSITION, .at = 1)),
+};
+
+const struct family family_2c = {
+	.code = 0x2c, .type = "DS2890", AREAS(areas), PROPERTIES(properties)};

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+/* DS1922L, DS1922T, DS1923 and DS2422: loggers of a temperature and a second quantity. */
+#include "hal/chips/ds1922.h"
+#include "hal/chips/ds1922_mission.h"
+#include "hal/chips/family.h"
+
+enum { MEMORY = 1 };
+static const struct area *const areas[] = {[MEMORY] = &ds1922_memory};
+
+enum {
+	WAY_DATE = 1,
+	WAY_UDATE,
+	WAY_STAMP,
+	WAY_FIELD,
+	WAY_RUNNING,
+	WAY_INTERVAL,
+	WAY_ELEMENTS,
+	WAY_LOG,
+	WAY_NOW,
+	WAY_PAGE,
+};
+static const struct property_how how[] = {
+	[WAY_DATE] = {.read = ds1922_read_clock, .write = ds1922_write_date},
+	[WAY_UDATE] = {.read = ds1922_read_clock, .write = ds1922_write_udate},
+	[WAY_STAMP] = {.read = ds1922_read_date},
+	[WAY_FIELD] = {.write = ds1922_write_field},
+	[WAY_RUNNING] = {.write = ds1922_write_running},
+	[WAY_INTERVAL] = {.read = ds1922_read_interval, .write = ds1922_write_interval},
+	[WAY_ELEMENTS] = {.read = ds1922_read_elements},
+	[WAY_LOG] = {.read = ds1922_read_log},
+	[WAY_NOW] = {.read = ds1922_read_now},
+	[WAY_PAGE] = {.write = ds1922_write_page},
+};
+
+#define BIT(text, life, access, where, shift_, way) \
+	PROPERTY(text, YESNO, life, access, .how = (way), \
+	         FIELD(MEMORY, .at = (where), .shift = (shift_), .bits = 1))
+/* What owserver does not have: hidden. */
+#define OWN(text, type, access, ...) \
+	PROPERTY(text, type, VOLATILE, access, .hidden = true, __VA_ARGS__)
+#define SAMPLES_OF(text, type, way, what) \
+	OWN(text, type, READ, ELEMENTS(LOG_SIZE, NUMBERS), .how = (way), .arg = (what))
+
+static const struct property properties[] = {
+	PROPERTY_DIR("clock"),
+	PROPERTY("clock/date", DATE, SECOND, BOTH, .how = WAY_DATE),
+	BIT("clock/running", STABLE, BOTH, OSCILLATOR, 0, WAY_FIELD),
+	PROPERTY("clock/udate", UNSIGNED, SECOND, BOTH, .how = WAY_UDATE),
+	PROPERTY("humidity", FLOAT, VOLATILE, READ, .how = WAY_NOW, .arg = LOG_DATA),
+	OWN("log/elements", UNSIGNED, READ, .how = WAY_ELEMENTS),
+	SAMPLES_OF("log/humidity", FLOAT, WAY_LOG, LOG_DATA),
+	SAMPLES_OF("log/temperature", TEMPERATURE, WAY_LOG, LOG_TEMP),
+	SAMPLES_OF("log/udate", UNSIGNED, WAY_STAMP, 1),
+	PROPERTY_DIR("mission"),
+	PROPERTY("mission/delay", UNSIGNED, VOLATILE, BOTH, .how = WAY_FIELD,
+                 FIELD(MEMORY, .at = DELAY, .bytes = 3)),
+	OWN("mission/interval", UNSIGNED, BOTH, .how = WAY_INTERVAL),
+	BIT("mission/rollover", STABLE, BOTH, MISSION, 4, WAY_FIELD),
+	BIT("mission/running", VOLATILE, BOTH, STATUS, 1, WAY_RUNNING),
+	OWN("mission/samples", UNSIGNED, READ, FIELD(MEMORY, .at = SAMPLES, .bytes = 3)),
+	BIT("mission/samplinghumidity", VOLATILE, READ, MISSION, 1, 0),
+	BIT("mission/samplingtemp", VOLATILE, READ, MISSION, 0, 0),
+	OWN("mission/udate", UNSIGNED, READ, .how = WAY_STAMP),
+	PROPERTY_DIR("pages"),
+	PROPERTY("pages/page", BINARY, VOLATILE, BOTH, ELEMENTS(PAGES, NUMBERS), .size = PAGE,
+                 .how = WAY_PAGE, FIELD(MEMORY)),
+	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, .how = WAY_NOW, .arg = LOG_TEMP),
+};
+
+const struct family family_41 = {
+	.code = 0x41,
+	.alarms = true,
+	.type = "DS1923",
+	AREAS(areas),
+	HOW(how),
+	PROPERTIES(properties),
+};

@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * MAX31888 and MAX30207: thermometers of 16 bits that convert in 18 ms. No whole data sheet could
+ * be had: the facts are those of the maker's summary, of published drivers, and of the register map
+ * of the MAX31889, which is the same chip with I2C. All that goes over the wire has a CRC16.
+ *
+ * A result stands in a FIFO. It is the one that was asked for if the FIFO holds one and no more:
+ * what was read is no longer there, and a restart leaves none.
+ */
+#include <errno.h>
+
+#include "hal/chips/family.h"
+#include "hal/wire/crc.h"
+
+/* Commands; behind a register stands the count of bytes less one. */
+enum { CONVERT = 0x44, READ = 0x33, WRITE = 0xcc };
+enum { FIFO_CONFIGURATION = 0x0a, LIMITS_AT = 0x10, FLUSH = 0x10 };
+/* Of what is read from register 0 on; the FIFO's register does not move on. */
+enum { RESULTS = 7, FIFO = 8, ALL = 10 };
+
+#define CONVERT_NS INT64_C(18000000)
+#define PER_DEGREE 200
+/* Beyond what either chip can measure. */
+#define LOWEST (-55)
+#define HIGHEST 150
+
+struct visit {
+	bool started, flush;
+	int64_t done_ns; /* when the conversion ends */
+};
+
+static int read_registers(struct txn *txn, uint8_t at, uint8_t *bytes, uint8_t n)
+{
+	const uint8_t command[] = {READ, at, (uint8_t)(n - 1)};
+	int err = txn_command(txn, command, sizeof(command));
+
+	return err ? err : txn_read_crc16(txn, command, sizeof(command), bytes, n);
+}
+
+/* The chip answers with the CRC16 of the command; behind its last bit the conversion begins. */
+static int start(struct txn *txn)
+{
+	static const uint8_t command = CONVERT;
+	uint16_t covered = onewire_crc16(0, &command, 1);
+	uint8_t crc[2] = {0};
+	int err = txn_command(txn, &command, 1);
+
+	if (!err)
+		err = txn_read(txn, crc, txn->link->passive ? 2 : 1);
+	for (unsigned i = 0; !err && !txn->link->passive && i < 7; i++) {
+		int bit = txn_bit(txn);
+
+		err = bit < 0 ? bit : 0;
+		crc[1] |= (uint8_t)((bit == 1) << i);
+	}
+	if (err)
+		return err;
+	/* The last one is what it has to be, or the result will not be there. */
+	if (!txn->link->passive)
+		crc[1] |= (uint8_t)(~covered >> 8 & 0x80);
+	if (!onewire_crc16_matches(covered, crc))
+		return -EBADMSG;
+	return txn->link->passive ? txn_wait(txn, CONVERT_NS) : txn_bit_strong(txn, CONVERT_NS);
+}
+
+static int flush(struct txn *txn)
+{
+	static const uint8_t command[] = {WRITE, FIFO_CONFIGURATION, 0, FLUSH};
+	uint8_t none;
+	int err = txn_command(txn, command, sizeof(command));
+
+	return err ? err : txn_read_crc16(txn, command, sizeof(command), &none, 0);
+}
+
+static int read_temperature(struct txn *txn)
+{
+	struct visit *visit = txn_own(txn);
+	uint8_t bytes[ALL];
+	int err;
+
+	if (visit->flush) {
+		err = flush(txn);
+		visit->flush = visit->started = false;
+		return err ? err : TXN_MORE;
+	}
+	if (!visit->started) {
+		err = start(txn);
+		visit->started = err == TXN_MORE;
+		visit->done_ns = txn->wake_ns;
+		return err;
+	}
+	err = read_registers(txn, 0, bytes, sizeof(bytes));
+	if (err)
+		return err;
+	if (bytes[RESULTS] != 1) {
+		/* left behind, or lost: once more with an empty FIFO */
+		visit->flush = txn->phase++ == 0;
+		return visit->flush ? TXN_MORE : -EBADMSG;
+	}
+	txn->number[0] = (int16_t)(bytes[FIFO] << 8 | bytes[FIFO + 1]) / (double)PER_DEGREE;
+	txn->measured_ns = visit->done_ns;
+	return txn->number[0] < LOWEST || txn->number[0] > HIGHEST ? -ERANGE : 0;
+}
+
+static int load_limits(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
+                       unsigned n)
+{
+	return read_registers(txn, (uint8_t)(area->at + at), bytes, (uint8_t)n);
+}
+
+/* Read-only: a disturbed address of a write would reach another register, and act at once. */
+static const struct area limits = {
+	.name = "limits",
+	.at = LIMITS_AT,
+	.size = 4,
+	.block = 4,
+	.load = load_limits,
+};
+
+enum { LIMITS = 1 };
+static const struct area *const areas[] = {[LIMITS] = &limits};
+enum { WAY_TEMPERATURE = 1 };
+static const struct property_how how[] = {[WAY_TEMPERATURE] = {.read = read_temperature}};
+
+#define LIMIT(text, at_) \
+	PROPERTY(text, TEMPERATURE, STABLE, READ, \
+	         FIELD(LIMITS, .at = (at_), .bytes = 2, .is_signed = true, .big_endian = true, \
+	               .unit = 1.0 / PER_DEGREE))
+
+static const struct property properties[] = {
+	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, .how = WAY_TEMPERATURE),
+	LIMIT("temphigh", 0),
+	LIMIT("templow", 2),
+};
+
+const struct family family_54 = {
+	.code = 0x54,
+	.type = "MAX31888",
+	AREAS(areas),
+	HOW(how),
+	PROPERTIES(properties),
+};

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * DS1982U, DS2502-E48: a DS2502 whose first bytes the factory has written (data sheet "48-Bit Node
+ * Address Chip"): a project code, and an Ethernet or FireWire address.
+ */
+#include "hal/chips/family.h"
+
+static const struct area memory = {
+	.name = "memory",
+	.size = 128,
+	.address_bytes = 2,
+	.read = 0xc3,
+	.block = 32,
+	.check = AREA_CRC8_PAGES,
+};
+
+enum { MEMORY = 1 };
+static const struct area *const areas[] = {[MEMORY] = &memory};
+
+#define PART(text, at_, bytes_) \
+	PROPERTY(text, BINARY, STABLE, READ, .size = (bytes_), FIELD(MEMORY, .at = (at_)))
+
+static const struct property properties[] = {
+	PART("mac_e", 4, 6),   PART("mac_fw", 4, 8),      AREA_MEMORY(MEMORY, 128),
+	PROPERTY_DIR("pages"), AREA_PAGES(MEMORY, 4, 32), PART("project", 0, 4),
+};
+
+const struct family family_89 = {
+	.code = 0x89, .type = "DS1982U", AREAS(areas), PROPERTIES(properties)};

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT */
+/* What a row of a family's table names by a number: found in the lists of the family. */
+#ifndef HAL_CHIPS_HOW_H
+#define HAL_CHIPS_HOW_H
+
+#include "hal/chips/family.h"
+
+/* The family whose row it is: this one or family_common. */
+const struct family *family_owner(const struct family *family, const struct property *property);
+/* What no field can say of it; never NULL. */
+const struct property_how *family_how(const struct family *family, const struct property *property);
+
+#endif

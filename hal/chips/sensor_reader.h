@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+/* Words, numbers and names of a line of a table of sensors; reasons with file and line. */
+#ifndef HAL_CHIPS_SENSOR_READER_H
+#define HAL_CHIPS_SENSOR_READER_H
+
+#include "hal/chips/sensor.h"
+
+#define SENSOR_LINE 400
+
+struct sensor_reader {
+	struct sensor_table *table;
+	const char *name;
+	unsigned line;
+	const char *at;                      /* in the line */
+	uint32_t checked[SENSOR_BYTES / 32]; /* bytes of this kind that a checksum covers */
+	uint32_t lone[SENSOR_BYTES / 32];    /* ... that were read without a register */
+	char *why;
+	size_t why_size;
+};
+
+/* Returns -EINVAL. */
+int __attribute__((format(printf, 2, 3)))
+reader_fail(struct sensor_reader *r, const char *format, ...);
+void reader_skip(struct sensor_reader *r);
+/* Is this the next word? Then it is taken. */
+bool reader_take(struct sensor_reader *r, const char *word);
+bool reader_ended(struct sensor_reader *r);
+int reader_whole(struct sensor_reader *r, unsigned least, unsigned most, unsigned *number);
+int reader_real(struct sensor_reader *r, double *number);
+int reader_name(struct sensor_reader *r, char out[FORMULA_NAME]);
+int reader_equals(struct sensor_reader *r);
+
+#endif

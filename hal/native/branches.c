@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The branches of couplers as channels behind those of the master: found, lost, called by a path,
+ * and switched off when nobody uses them, so that a short of one does not become one of the wire.
+ */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "hal/native/branches.h"
+
+static const char *const words[COUPLER_BRANCHES] = {
+	[COUPLER_MAIN] = "main",
+	[COUPLER_AUX] = "aux",
+};
+
+static unsigned channel_of(unsigned coupler, unsigned number)
+{
+	return NATIVE_CHANNELS + coupler * COUPLER_BRANCHES + number;
+}
+
+/* NULL: a wire. */
+static struct branch *branch_of(struct coupler *couplers, unsigned channel)
+{
+	unsigned n = channel - NATIVE_CHANNELS;
+
+	return channel < NATIVE_CHANNELS
+	               ? NULL
+	               : &couplers[n / COUPLER_BRANCHES].branch[n % COUPLER_BRANCHES];
+}
+
+/* The slot of a coupler; NATIVE_COUPLERS: it has none. */
+static unsigned slot_of(const struct native *native, const uint8_t rom[8])
+{
+	unsigned n = 0;
+
+	while (n < NATIVE_COUPLERS && memcmp(native->coupler[n].rom, rom, 8) != 0)
+		n++;
+	return n;
+}
+
+/* One that is free, or whose coupler is gone. */
+static unsigned free_slot(const struct native *native)
+{
+	unsigned n = 0;
+
+	while (n < NATIVE_COUPLERS && native_has(native, channel_of(n, 0)))
+		n++;
+	return n;
+}
+
+/* What stands in front of the wire, from now on. NULL: it can have no branches. */
+static struct trunk *trunk_of(struct native *native, unsigned wire)
+{
+	struct channel *channel = &native->channel[wire];
+
+	for (unsigned i = 0; !channel->trunk && i < NATIVE_COUPLERS; i++) {
+		struct trunk *trunk = &native->trunk[i];
+
+		if (trunk->relay.under || !trunk_fits(channel->link))
+			continue;
+		trunk_set(trunk, channel->link);
+		channel->trunk = trunk;
+		channel->link = &trunk->relay.link;
+	}
+	return channel->trunk;
+}
+
+/* running: nobody waits for the first list any more. */
+static void open_channel(struct native *native, unsigned n, struct branch *branch, unsigned wire,
+                         bool running)
+{
+	struct channel *channel = &native->channel[n];
+
+	*channel = (struct channel){
+		.link = &branch->relay.link,
+		.wire = (uint8_t)wire,
+		.round = channel->round,
+		.errors = channel->errors,
+		.shorts = channel->shorts,
+		.checksums = channel->checksums,
+		.transactions = channel->transactions,
+		.listed = running,
+		.search_ns = native_now(native),
+	};
+}
+
+void branches_found(struct native *native, struct device *device)
+{
+	unsigned n = slot_of(native, device->rom), wire = native->channel[device->channel].wire;
+	struct trunk *trunk = trunk_of(native, wire);
+	struct coupler *coupler;
+	bool running = true;
+
+	for (unsigned i = native_next(native, 0); i < NATIVE_ALL; i = native_next(native, i + 1))
+		running &= native->channel[i].listed;
+	if (n == NATIVE_COUPLERS)
+		n = free_slot(native);
+	if (n == NATIVE_COUPLERS || !trunk) {
+		native_event(native, BUS_NOTE, device->rom, trunk ? -ENOSPC : -EOPNOTSUPP,
+		             trunk ? "more couplers than the bus takes: its branches are left out"
+		                   : "this master cannot reach what is behind a coupler");
+		return;
+	}
+	coupler = &native->coupler[n];
+	if (coupler->trunk)
+		coupler_remove(coupler);
+	coupler_add(trunk, branch_of(native->coupler, device->channel), coupler, device->rom,
+	            device->own);
+	for (unsigned i = 0; i < COUPLER_BRANCHES; i++)
+		open_channel(native, channel_of(n, i), &coupler->branch[i], wire, running);
+}
+
+bool branches_lost(struct native *native, const struct device *device)
+{
+	unsigned n = slot_of(native, device->rom);
+
+	if (n == NATIVE_COUPLERS)
+		return false;
+	coupler_remove(&native->coupler[n]);
+	for (unsigned i = 0; i < COUPLER_BRANCHES; i++)
+		native->channel[channel_of(n, i)].gone = true;
+	return true;
+}
+
+struct link *branches_wire(struct native *native, unsigned n, struct link *link)
+{
+	struct trunk *trunk = native->channel[n].trunk;
+
+	if (!trunk)
+		return link;
+	trunk_set(trunk, link);
+	return &trunk->relay.link;
+}
+
+int branches_channel(const struct native *native, const struct device *coupler,
+                     struct path_slice word)
+{
+	unsigned n = slot_of(native, coupler->rom);
+
+	for (unsigned i = 0; n < NATIVE_COUPLERS && i < COUPLER_BRANCHES; i++)
+		if (word.len == strlen(words[i]) && memcmp(word.text, words[i], word.len) == 0 &&
+		    coupler->present && native_has(native, channel_of(n, i)))
+			return (int)channel_of(n, i);
+	return -ENODEV;
+}
+
+int branches_print(struct native *native, unsigned channel, char *text, size_t room)
+{
+	const struct branch *branch = branch_of(native->coupler, channel);
+	char part[ROM_TEXT_MAX + 8], name[ROM_TEXT_MAX];
+	size_t len = 0;
+
+	text[0] = '\0';
+	for (; branch; branch = branch->coupler->parent) {
+		rom_print(branch->coupler->rom, ROM_F_I, name);
+		int n = snprintf(part, sizeof(part), "%s/%s/", name, words[branch->number]);
+
+		if (len + (size_t)n >= room)
+			return -EMSGSIZE;
+		memmove(text + n, text, len + 1);
+		memcpy(text, part, (size_t)n);
+		len += (size_t)n;
+	}
+	return 0;
+}
+
+void branches_name(struct native *native, unsigned channel, char *text, size_t room)
+{
+	if (channel < NATIVE_CHANNELS)
+		snprintf(text, room, "bus.%u", channel);
+	else if (branches_print(native, channel, text, room) == 0)
+		text[strlen(text) - 1] = '\0';
+}

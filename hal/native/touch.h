@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT */
+/* Keys that touch a wire: families 01 and 81 are searched for all the time, where that is asked. */
+#ifndef HAL_NATIVE_TOUCH_H
+#define HAL_NATIVE_TOUCH_H
+
+#include "hal/native/state.h"
+
+/* One pass of such a search; true: did one. */
+bool touch_step(struct native *native, int64_t now, int64_t *next);
+/* Has such a search just seen this key? Then nobody needs to look whether it is there. */
+bool touch_knows(const struct native *native, const struct device *device, int64_t now);
+
+#endif

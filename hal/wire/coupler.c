@@ -1,0 +1,320 @@
+/* SPDX-License-Identifier: MIT */
+/* The links in front of a wire with couplers: what they send before a transaction begins. */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/wire/coupler.h"
+
+#define MATCH_ROM 0x55
+#define STATUS 0x5a
+#define LOOK 0x18 /* the status is not to be written */
+#define SMART_ON_MAIN 0xcc
+#define SMART_ON_AUX 0x33
+#define ALL_LINES_OFF 0x66
+#define STIMULUS 0xff
+#define SILENT 0xff
+
+/* The status of a branch is this, shifted by twice its number; events by its number. */
+#define INACTIVE 0x01
+#define LEVEL 0x02
+#define EVENT_SHIFT 4
+
+#define LOOKS 3
+#define TRIES 3
+
+static struct link *under(const struct trunk *trunk)
+{
+	return trunk->relay.under;
+}
+
+static struct branch *outer(const struct branch *branch)
+{
+	return branch->coupler->parent;
+}
+
+/* Is it the branch itself, or one that the branch is behind? */
+static bool leads_to(const struct branch *which, const struct branch *branch)
+{
+	while (branch && branch != which)
+		branch = outer(branch);
+	return branch == which;
+}
+
+static int enter(struct branch *branch);
+
+/* Reset on the wire that the coupler is on, and what it is to do. -EHOSTDOWN: nobody is there. */
+static int command(const struct coupler *coupler, const uint8_t *bytes, size_t n, uint8_t *answer,
+                   size_t answer_n)
+{
+	struct link *link = under(coupler->trunk);
+	uint8_t out[11] = {MATCH_ROM};
+	int present = coupler->parent ? enter(coupler->parent) : link->ops->reset(link);
+
+	if (present <= 0)
+		return present ? present : -EHOSTDOWN;
+	memcpy(out + 1, coupler->rom, 8);
+	memcpy(out + 9, bytes, n);
+	int err = link->ops->write(link, out, 9 + n, LINK_IDLE);
+	return err ? err : link->ops->read(link, answer, answer_n);
+}
+
+/* 1: somebody is there, 0: nobody is. -EHOSTDOWN: a coupler does not answer. */
+static int enter(struct branch *branch)
+{
+	struct trunk *trunk = branch->coupler->trunk;
+	uint8_t code = branch->number == COUPLER_MAIN ? SMART_ON_MAIN : SMART_ON_AUX, answer[2];
+	const uint8_t smart_on[] = {code, STIMULUS};
+
+	if (!leads_to(branch, trunk->on))
+		trunk->on = branch;
+	int err = command(branch->coupler, smart_on, sizeof(smart_on), answer, sizeof(answer));
+	if (err)
+		return err;
+	if (answer[0] == SILENT && answer[1] == SILENT)
+		return -EHOSTDOWN;
+	if (answer[1] != code || (answer[0] != 0x00 && answer[0] != 0xff))
+		return -EBADMSG;
+	return answer[0] == 0x00;
+}
+
+/* The status. A coupler that is silent looks like one in which every bit is set. */
+static int look(struct coupler *coupler, uint8_t *info)
+{
+	static const uint8_t status[] = {STATUS, LOOK};
+	uint8_t answer[2];
+	int err = 0;
+
+	for (int looks = 0; looks < LOOKS; looks++) {
+		err = command(coupler, status, sizeof(status), answer, sizeof(answer));
+		if (!err && answer[0] != answer[1])
+			err = -EBADMSG;
+		if (err || answer[0] != SILENT)
+			break;
+	}
+	if (err)
+		return err;
+	*info = answer[0];
+	/* silence is no event */
+	if (answer[0] != SILENT)
+		coupler->seen->events |= answer[0] >> EVENT_SHIFT & 3;
+	return 0;
+}
+
+/* 1: it is off, 0: it does not answer. */
+static int try_off(struct coupler *coupler)
+{
+	static const uint8_t off = ALL_LINES_OFF;
+	uint8_t info, answer;
+	int err = look(coupler, &info);
+
+	if (!err)
+		err = command(coupler, &off, 1, &answer, 1);
+	if (err)
+		return err == -EHOSTDOWN ? 0 : err;
+	return answer == ALL_LINES_OFF ? 1 : answer == SILENT ? 0 : -EBADMSG;
+}
+
+/*
+ * Both branches off; one that never answers is gone, and what is behind it too. If it is behind
+ * another, that one may be what does not answer.
+ */
+static int switch_off(struct coupler *coupler)
+{
+	struct trunk *trunk = coupler->trunk;
+	int done = 0;
+
+	for (int try = 0; try < TRIES && (done == 0 || done == -EBADMSG); try++)
+		done = try_off(coupler);
+	if (done < 0)
+		return done;
+	coupler->unsure = !done && coupler->parent;
+	if (trunk->on && trunk->on->coupler == coupler)
+		trunk->on = coupler->parent;
+	return 0;
+}
+
+/* Switch off what branch (NULL: the trunk) is not behind. */
+static int leave(struct trunk *trunk, const struct branch *branch)
+{
+	int err = 0;
+
+	while (!err && trunk->on && !leads_to(trunk->on, branch))
+		err = switch_off(trunk->on->coupler);
+	return err;
+}
+
+/* The couplers on this branch (NULL: on the trunk) that somebody else may have switched. */
+static int make_sure(struct trunk *trunk, const struct branch *branch)
+{
+	struct coupler *coupler = trunk->first;
+	int err = 0;
+
+	for (; coupler && !err; coupler = coupler->next)
+		if (coupler->unsure && coupler->parent == branch)
+			err = switch_off(coupler);
+	return err;
+}
+
+/* The branch and those that it is behind, from the outermost on: is one of them short? */
+static int check(struct branch *branch)
+{
+	struct trunk *trunk = branch->coupler->trunk;
+	uint8_t info = 0;
+
+	while (!leads_to(branch, trunk->on)) {
+		struct branch *next = branch;
+
+		while (outer(next) != trunk->on)
+			next = outer(next);
+		int err = look(next->coupler, &info);
+		if (err)
+			return err;
+		info >>= 2 * next->number;
+		if ((info & INACTIVE) && !(info & LEVEL))
+			return -ECOMM;
+		if (next == branch)
+			break;
+		err = enter(next);
+		if (err < 0)
+			return err;
+	}
+	return 0;
+}
+
+int trunk_rest(struct trunk *trunk)
+{
+	return leave(trunk, NULL);
+}
+
+static int trunk_reset(struct link *link)
+{
+	struct trunk *trunk = (struct trunk *)link;
+	int err = leave(trunk, NULL);
+
+	if (!err)
+		err = make_sure(trunk, NULL);
+	return err ? err : under(trunk)->ops->reset(under(trunk));
+}
+
+static int branch_reset(struct link *link)
+{
+	struct branch *branch = (struct branch *)link;
+	struct trunk *trunk = branch->coupler->trunk;
+	int err = leave(trunk, branch);
+
+	if (!err)
+		err = check(branch);
+	if (!err)
+		err = make_sure(trunk, branch);
+	if (!err)
+		err = enter(branch);
+	return err == -EHOSTDOWN ? -EBADMSG : err;
+}
+
+static struct link *beyond(const struct link *link)
+{
+	return ((const struct relay *)link)->under;
+}
+
+static int relay_write(struct link *link, const uint8_t *data, size_t n, enum link_after after)
+{
+	return beyond(link)->ops->write(beyond(link), data, n, after);
+}
+
+static int relay_read(struct link *link, uint8_t *data, size_t n)
+{
+	return beyond(link)->ops->read(beyond(link), data, n);
+}
+
+static int relay_bit(struct link *link, bool out, enum link_after after)
+{
+	return beyond(link)->ops->bit(beyond(link), out, after);
+}
+
+static int relay_triplet(struct link *link, bool direction)
+{
+	return beyond(link)->ops->triplet(beyond(link), direction);
+}
+
+static int relay_recover(struct link *link, enum link_rung rung)
+{
+	return beyond(link)->ops->recover(beyond(link), rung);
+}
+
+static void relay_cost(const struct link *link, struct link_cost *cost)
+{
+	beyond(link)->ops->cost(beyond(link), cost);
+}
+
+bool trunk_fits(const struct link *link)
+{
+	const struct link_ops *ops = link->ops;
+
+	return !link->driven && !ops->search && !ops->verify && !ops->flush;
+}
+
+static void set_branch(const struct trunk *trunk, struct branch *branch)
+{
+	branch->relay.link = *under(trunk);
+	branch->relay.link.ops = &trunk->branch_ops;
+	branch->relay.under = under(trunk);
+}
+
+void trunk_set(struct trunk *trunk, struct link *link)
+{
+	const struct link_ops *ops = link->ops;
+
+	trunk->ops = (struct link_ops){
+		.name = ops->name,
+		.reset = trunk_reset,
+		.write = relay_write,
+		.read = relay_read,
+		.bit = relay_bit,
+		.triplet = ops->triplet ? relay_triplet : NULL,
+		.recover = ops->recover ? relay_recover : NULL,
+		.cost = ops->cost ? relay_cost : NULL,
+	};
+	trunk->branch_ops = trunk->ops;
+	trunk->branch_ops.reset = branch_reset;
+	trunk->relay.link = *link;
+	trunk->relay.link.ops = &trunk->ops;
+	trunk->relay.under = link;
+	for (struct coupler *coupler = trunk->first; coupler; coupler = coupler->next) {
+		coupler->unsure = true;
+		for (unsigned i = 0; i < COUPLER_BRANCHES; i++)
+			set_branch(trunk, &coupler->branch[i]);
+	}
+}
+
+void coupler_add(struct trunk *trunk, struct branch *parent, struct coupler *coupler,
+                 const uint8_t rom[8], struct coupler_seen *seen)
+{
+	*coupler = (struct coupler){
+		.trunk = trunk,
+		.parent = parent,
+		.next = trunk->first,
+		.seen = seen,
+		.unsure = true,
+	};
+	memcpy(coupler->rom, rom, sizeof(coupler->rom));
+	for (unsigned i = 0; i < COUPLER_BRANCHES; i++) {
+		coupler->branch[i].coupler = coupler;
+		coupler->branch[i].number = (uint8_t)i;
+		set_branch(trunk, &coupler->branch[i]);
+	}
+	trunk->first = coupler;
+}
+
+void coupler_remove(struct coupler *coupler)
+{
+	struct trunk *trunk = coupler->trunk;
+	struct coupler **link = &trunk->first;
+
+	for (unsigned i = 0; i < COUPLER_BRANCHES; i++)
+		if (leads_to(&coupler->branch[i], trunk->on))
+			trunk->on = coupler->parent;
+	while (*link && *link != coupler)
+		link = &(*link)->next;
+	if (*link)
+		*link = coupler->next;
+}

@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Sensors behind bridges: the shipped table, from the file to signals; errors with file and line."""
+
+import json
+import subprocess
+
+import owsdtest
+from owsdtest import OWSD, SOURCE
+
+SHIPPED = SOURCE / "docs/examples/sensors.table"
+CHIPS = """i2c speed 400
+chip DS2482-100 0x18
+DS28E17 19.0000000000E1  sht4x 0x44 mcp23017 0x20 temperature 21.5 humidity 40
+DS28E18 56.0000000000E2  bme280 0x76 temperature -7 pressure 990
+"""
+PLACES = """at 19.0000000000E1 sht4x 0x44
+at 19.0000000000E1 mcp23017 0x20 as io
+at 56.0000000000E2 bme280 0x76
+"""
+SIGNALS = """OwsDrv {{
+  TargetName "sim:{chips}"
+  Period 0.05
+  Bus {{ Target "sim:{chips}" Sensors "{table}" }}
+  Item {{ Name "room" Path "/19.0000000000E1/temperature" Type "double" }}
+  Item {{ Name "out" Path "/19.0000000000E1/io/latch" Type "double" IO "output" }}
+  Item {{ Name "pressure" Path "/56.0000000000E2/pressure" Type "double" }}
+}}
+"""
+
+
+def configuration(scene, places):
+    chips = scene.file("net.sim", CHIPS)
+    table = scene.file("sensors.table", SHIPPED.read_text() + places)
+    return table, scene.file("bridges.rio", SIGNALS.format(chips=chips, table=table))
+
+
+def test_sensors_of_the_shipped_table_are_signals(scene):
+    _, rio = configuration(scene, PLACES)
+    daemon = scene.owsd(rio)
+
+    def listed():
+        rows = json.loads(scene.owsctl(daemon, "--json", "list").stdout)
+        return {row["name"]: row for row in rows}
+    scene.until(lambda: listed()["room"]["measured"] and listed()["pressure"]["measured"], 30,
+                listed)
+    assert abs(listed()["room"]["value"] - 21.5) < 0.01, listed()
+    assert abs(listed()["pressure"]["value"] - 990) < 0.1, listed()
+    assert scene.owsctl(daemon, "set", "out", "513").returncode == 0
+    scene.until(lambda: listed()["out"]["value"] == 513, 10, listed)
+
+
+def test_an_error_of_the_table_is_reported_with_its_file_and_line(scene):
+    table, rio = configuration(scene, "at 19.0000000000E1 nothing 0x44\n")
+    line = len(SHIPPED.read_text().split("\n"))
+    done = subprocess.run([OWSD, "--check", "-c", rio], capture_output=True, text=True, timeout=20,
+                          check=False)
+    assert done.returncode != 0, done
+    assert "bridges.rio:4:" in done.stderr and "Sensors: " in done.stderr, done.stderr
+    assert f"sensors.table:{line}: no sensor nothing stands above" in done.stderr, (table, done)
+
+
+if __name__ == "__main__":
+    owsdtest.main()

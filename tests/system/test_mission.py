@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""owsctl mission: the mission of a logger that an owsd serves."""
+
+import json
+import re
+import subprocess
+
+import owsdtest
+from owsdtest import OWSCTL, until
+
+WIRE = """
+chip DS2482-100 0x18
+DS1923  41.000000000001 as fridge  temperature 4.5 humidity 60
+DS1921G 21.000000000001 as crate   temperature 12
+DS18B20 28.000000000001 as room
+"""
+FRIDGE, CRATE, ROOM = "41.000000000001", "/21.000000000001", "28.000000000001"
+
+
+def served(scene):
+    """owsd on the simulated loggers; how they are asked."""
+    port = owsdtest.free_port()
+    scene.owsd(None, "-t", f"sim:{scene.file('loggers.sim', WIRE)}", "-l", f"127.0.0.1:{port}")
+
+    def mission(*words, options=()):
+        return subprocess.run([OWSCTL, "-t", f"127.0.0.1:{port}", *options, "mission", *words],
+                              capture_output=True, text=True, timeout=120, check=False)
+    until(lambda: mission("status", FRIDGE).returncode == 0, 20, "the logger is found")
+    return mission
+
+
+def status(mission, device):
+    done = mission("status", device, options=["--json"])
+    assert done.returncode == 0, done
+    return json.loads(done.stdout)
+
+
+def test_a_mission_is_started_followed_stopped_and_downloaded(scene):
+    mission = served(scene)
+    assert status(mission, FRIDGE)["running"] is False
+    done = mission("start", "-i", "1", FRIDGE)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", ""), done
+    now = until(lambda: (s := status(mission, FRIDGE))["logged"] >= 3 and s, 20, "it logs")
+    assert now["running"] is True and now["interval"] == 1 and now["begin"] <= now["clock"], now
+    assert mission("stop", FRIDGE).returncode == 0
+    now = status(mission, FRIDGE)
+    assert now["running"] is False and now["logged"] == now["samples"], now
+    lines = mission("download", FRIDGE).stdout.splitlines()
+    assert lines[0] == "time,temperature,humidity", lines
+    assert len(lines) == 1 + now["logged"], (lines, now)
+    for line in lines[1:]:
+        when, temperature, humidity = line.split(",")
+        assert re.fullmatch(r"20\d\d-\d\d-\d\dT\d\d:\d\d:\d\dZ", when), line
+        assert temperature == "4.5" and abs(float(humidity) - 60) < 0.1, line
+    assert lines[1].startswith(now["begin"]), (lines, now)
+    samples = json.loads(mission("download", FRIDGE, options=["--json"]).stdout)
+    assert len(samples) == now["logged"] and samples[0]["temperature"] == 4.5, samples
+    assert [s["time"] for s in samples] == sorted({s["time"] for s in samples}), samples
+
+
+def test_the_clock_is_set_and_the_interval_of_a_thermochron_is_whole_minutes(scene):
+    mission = served(scene)
+    for wrong in ("59", "90", "15360", "0"):
+        done = mission("start", "-i", wrong, CRATE)
+        assert done.returncode == 2 and "60 to 15300 seconds" in done.stderr, done
+    done = mission("start", "-o", "-i", "120", CRATE)
+    assert done.returncode == 0, done
+    text = mission("status", CRATE).stdout
+    assert re.search(r"^running +yes$", text, re.M), text
+    assert re.search(r"^interval +120 s$", text, re.M), text
+    assert re.search(r"^rollover +yes$", text, re.M), text
+    assert re.search(r"^clock +20[2-9]\d-", text, re.M), text
+    assert mission("download", CRATE).stdout == "time,temperature\n"
+
+
+def test_a_mission_that_runs_is_not_started_anew(scene):
+    mission = served(scene)
+    assert mission("start", "-i", "60", FRIDGE).returncode == 0
+    done = mission("start", "-i", "1", FRIDGE)
+    assert done.returncode == 1 and "a mission runs; stop it first" in done.stderr, done
+    assert status(mission, FRIDGE)["interval"] == 60
+
+
+def test_what_is_no_logger_and_what_is_no_word_is_refused(scene):
+    mission = served(scene)
+    done = mission("status", ROOM)
+    assert done.returncode == 1 and "no logger" in done.stderr, done
+    for words in (["begin", FRIDGE], ["status"], ["status", FRIDGE, CRATE],
+                  ["stop", "-i", "1", FRIDGE], ["start", FRIDGE]):
+        done = mission(*words)
+        assert done.returncode == 2 and done.stdout == "", (words, done)
+
+
+if __name__ == "__main__":
+    owsdtest.main()
