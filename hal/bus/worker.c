@@ -12,11 +12,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/eventfd.h>
 #include <sys/prctl.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/bus/bell.h"
 #include "hal/bus/ring.h"
 #include "hal/bus/time.h"
 #include "hal/bus/worker.h"
@@ -67,16 +67,6 @@ static bool is_stopping(const struct worker *worker)
 	return __atomic_load_n(&worker->stopping, __ATOMIC_SEQ_CST);
 }
 
-static void wake(struct worker *worker)
-{
-	uint64_t one = 1;
-	ssize_t n;
-
-	do
-		n = write(worker->wake_fd, &one, sizeof(one));
-	while (n < 0 && errno == EINTR);
-}
-
 /* One ppoll: 1 fd is ready, 0 not. Clears wake-ups; the caller looks for their reason. */
 static int poll_once(struct worker *worker, int fd, short events, int64_t until_ns)
 {
@@ -84,7 +74,6 @@ static int poll_once(struct worker *worker, int fd, short events, int64_t until_
 	                        {.fd = fd, .events = events}};
 	int64_t left = until_ns - clock_ns(CLOCK_BOOTTIME);
 	struct timespec t = {0};
-	uint64_t wakes;
 
 	if (left > LONGEST_WAIT)
 		left = LONGEST_WAIT;
@@ -93,8 +82,8 @@ static int poll_once(struct worker *worker, int fd, short events, int64_t until_
 		                      .tv_nsec = (long)(left % NS_PER_S)};
 	if (ppoll(fds, fd >= 0 ? 2 : 1, &t, NULL) <= 0)
 		return 0;
-	if (fds[0].revents && read(worker->wake_fd, &wakes, sizeof(wakes)) < 0)
-		assert(errno == EAGAIN || errno == EINTR);
+	if (fds[0].revents)
+		bell_clear(worker->wake_fd);
 	return fd >= 0 && fds[1].revents;
 }
 
@@ -258,7 +247,7 @@ int worker_create(const char *target, const char *name, worker_bell *bell, void 
 	worker->bell = bell;
 	worker->bell_ctx = ctx;
 	snprintf(worker->name, sizeof(worker->name), "%s", name);
-	worker->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	worker->wake_fd = bell_open();
 	err = worker->wake_fd < 0 ? -errno : make_lock(worker);
 	if (err) {
 		snprintf(why, why_size, "'%.80s': %s", target, strerror(-err));
@@ -329,7 +318,7 @@ int worker_submit(struct worker *worker, struct bus_req *req)
 	worker->order[ring_put_at(&worker->orders)] = req;
 	ring_did_put(&worker->orders);
 	if (__atomic_exchange_n(&worker->sleeping, 0, __ATOMIC_SEQ_CST))
-		wake(worker);
+		bell_ring(worker->wake_fd);
 	return 0;
 }
 
@@ -340,7 +329,7 @@ void worker_suspend(struct worker *worker, bool yes)
 	if ((turns & 1) == yes)
 		return;
 	__atomic_store_n(&worker->turns_asked, turns + 1, __ATOMIC_SEQ_CST);
-	wake(worker);
+	bell_ring(worker->wake_fd);
 }
 
 bool worker_next(struct worker *worker, struct worker_message *message)
@@ -362,7 +351,7 @@ int worker_stop(struct worker *worker, int64_t timeout_ns)
 	if (!worker->started)
 		return 0;
 	__atomic_store_n(&worker->stopping, 1, __ATOMIC_SEQ_CST);
-	wake(worker);
+	bell_ring(worker->wake_fd);
 	pthread_mutex_lock(&worker->mutex);
 	while (!worker->ended && !err)
 		err = pthread_cond_timedwait(&worker->ended_cond, &worker->mutex, &t);

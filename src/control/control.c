@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/epoll.h>
-#include <sys/eventfd.h>
 #include <unistd.h>
 
+#include "hal/bus/bell.h"
 #include "hal/bus/time.h"
 #include "src/config/config.h"
 #include "src/control/control.h"
@@ -50,7 +50,7 @@ static int open_all(struct control *c)
 	int err;
 
 	c->epoll = epoll_create1(EPOLL_CLOEXEC);
-	c->wake = c->epoll < 0 ? -1 : eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	c->wake = c->epoll < 0 ? -1 : bell_open();
 	if (c->wake < 0)
 		return -errno;
 	c->listener = socket_listen(c->directory, c->name, is_for_all(c), &c->inode);
@@ -139,15 +139,6 @@ static void *run(void *arg)
 	return NULL;
 }
 
-static void wake(struct control *c)
-{
-	const uint64_t one = 1;
-
-	/* it is full after 2^64 times */
-	if (write(c->wake, &one, sizeof(one)) < 0)
-		return;
-}
-
 int control_start(struct control *c, const struct giver_layout *layout)
 {
 	sigset_t all, before;
@@ -177,7 +168,7 @@ void control_stop(struct control *c)
 		return;
 	__atomic_store_n(&c->stop, 1, __ATOMIC_RELEASE);
 	if (c->running) {
-		wake(c);
+		bell_ring(c->wake);
 		pthread_join(c->thread, NULL);
 		c->running = false;
 	}
@@ -265,7 +256,7 @@ void control_done(struct control *c, const struct control_turn *turn)
 	c->engine.memories[turn->place] = turn->joins ? turn->memory : (struct giver_memory){0};
 	__atomic_store_n(&c->places[turn->place].state, turn->joins ? CONTROL_IN : CONTROL_LEFT,
 	                 __ATOMIC_RELEASE);
-	wake(c);
+	bell_ring(c->wake);
 }
 
 void control_news(struct control *c)
@@ -359,7 +350,7 @@ void control_reloaded(struct control *c)
 		take_next(c, &c->places[i]);
 	socket_open_for(c->directory, c->name, is_for_all(c));
 	pthread_mutex_unlock(&c->lock);
-	wake(c);
+	bell_ring(c->wake);
 }
 
 void control_replaced(struct control *c)

@@ -3,11 +3,11 @@
 #include <errno.h>
 #include <poll.h>
 #include <sys/epoll.h>
-#include <sys/eventfd.h>
 #include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/bus/bell.h"
 #include "hal/bus/time.h"
 #include "src/host/bells.h"
 #include "src/libows/ows.h"
@@ -35,7 +35,7 @@ int bells_open(struct bells *bells)
 		bells->givers[i].fd = -1;
 	bells->epoll = epoll_create1(EPOLL_CLOEXEC);
 	if (bells->epoll >= 0)
-		bells->own = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+		bells->own = bell_open();
 	return bells->own < 0 ? -errno : watch(bells, bells->own, OWN);
 }
 
@@ -50,14 +50,11 @@ void bells_close(struct bells *bells)
 
 void bells_ring(struct bells *bells)
 {
-	const uint64_t one = 1;
-
 	__atomic_store_n(&bells->rung, 1, __ATOMIC_RELEASE);
 	word_fence(__ATOMIC_SEQ_CST);
 	if (word_get(&bells->awake))
 		return;
-	if (write(bells->own, &one, sizeof(one)) < 0) /* it is full after 2^64 rings */
-		return;
+	bell_ring(bells->own);
 }
 
 void bells_add(struct bells *bells, unsigned place, int fd)

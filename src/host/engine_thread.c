@@ -188,10 +188,13 @@ static void *engine_main(void *ctx)
 	struct host *h = ctx;
 	int64_t counted_ns = 0;
 
-	while (!__atomic_load_n(&h->stop, __ATOMIC_ACQUIRE)) {
+	for (;;) {
 		int64_t now_ns = ows_now(), next_ns;
 
+		/* first the bell: what it rings for is looked at behind it */
 		bells_look(&h->bells);
+		if (__atomic_load_n(&h->stop, __ATOMIC_ACQUIRE))
+			break;
 		take_messages(h->now, now_ns);
 		take_givers(h, now_ns);
 		next_ns = engine_step(h->now->engine, now_ns);

@@ -20,7 +20,7 @@
 #include "src/owsd/instance.h"
 #include "src/owsd/notify.h"
 #include "src/owsd/standard.h"
-#include "src/shm/futex.h"
+#include "src/owsd/unix_signals.h"
 #include "src/text/log.h"
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -41,20 +41,6 @@
 /* From the end of a reload to the next: reloads take at most a tenth of the time */
 #define APART_LEAST_NS (200 * NS_PER_MS)
 #define APART_MOST_NS (10 * NS_PER_S)
-
-static volatile sig_atomic_t stop_signal, hangup;
-static uint32_t *supervisor_word;
-
-static void on_signal(int number)
-{
-	if (number == SIGHUP)
-		hangup = 1;
-	else
-		stop_signal = number;
-	/* makes a wait that is just beginning return at once */
-	if (supervisor_word)
-		__atomic_fetch_add(supervisor_word, 1, __ATOMIC_SEQ_CST);
-}
 
 static int print_board(const struct arguments *a)
 {
@@ -147,18 +133,6 @@ static int stderr_is_journal(void)
 	       fstat(STDERR_FILENO, &st) == 0 && st.st_dev == device && st.st_ino == inode;
 }
 
-static void catch_signals(void)
-{
-	struct sigaction action = {.sa_handler = on_signal};
-
-	sigemptyset(&action.sa_mask);
-	sigaction(SIGTERM, &action, NULL);
-	sigaction(SIGINT, &action, NULL);
-	sigaction(SIGHUP, &action, NULL);
-	action.sa_handler = SIG_IGN;
-	sigaction(SIGPIPE, &action, NULL);
-}
-
 /* Use all descriptors that the hard limit allows. */
 static void raise_descriptors(struct log *log)
 {
@@ -247,18 +221,18 @@ static int64_t reload_after(int64_t begun_ns)
  * ends owsd, false when another owsd has the instance.
  */
 static bool supervise(struct host *host, const struct arguments *a, struct instance *instance,
-                      struct log *log, const struct notify *notify, int prefix)
+                      struct log *log, const struct notify *notify, int prefix,
+                      struct unix_signals *signals)
 {
 	int64_t fed_ns = 0, reload_ns = 0, wait_ns = SUPERVISE_NS;
 
 	if (notify->watchdog_ns && notify->watchdog_ns / 4 < wait_ns)
 		wait_ns = notify->watchdog_ns / 4;
-	while (!stop_signal) {
-		uint32_t seen = __atomic_load_n(log_word(log), __ATOMIC_ACQUIRE);
+	while (!signals->end) {
 		int64_t now_ns = ows_now(), period_ns;
 
-		if (hangup && now_ns >= reload_ns && host_may_reload(host)) {
-			hangup = 0; /* a SIGHUP that comes from here on means a newer file */
+		if (signals->reload && now_ns >= reload_ns && host_may_reload(host)) {
+			signals->reload = false;
 			notify_send(notify, NOTIFY_RELOADING);
 			reload(host, a, log, notify);
 			notify_send(notify, NOTIFY_READY);
@@ -279,14 +253,13 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
 			return false;
 		host_tend(host);
 		log_drain(log, STDERR_FILENO, prefix);
-		if (!stop_signal)
-			segment_wait(log_word(log), seen, hangup ? AGAIN_NS : wait_ns);
+		unix_signals_wait(signals, log_bell(log), signals->reload ? AGAIN_NS : wait_ns);
 	}
 	return true;
 }
 
 static int run(const struct arguments *a, struct config *config, struct instance *instance,
-               struct log *log)
+               struct log *log, struct unix_signals *signals)
 {
 	struct host_setup setup = {
 		.config = config,
@@ -312,11 +285,11 @@ static int run(const struct arguments *a, struct config *config, struct instance
 	instance_retire_old(instance, log);
 	report_served(host, a, log, &notify);
 	notify_send(&notify, NOTIFY_READY);
-	ours = supervise(host, a, instance, log, &notify, prefix);
+	ours = supervise(host, a, instance, log, &notify, prefix, signals);
 	log_notice(log, "owsd ends: %s",
-	           !ours                    ? "another process serves the instance"
-	           : stop_signal == SIGTERM ? "SIGTERM"
-	                                    : "SIGINT");
+	           !ours                     ? "another process serves the instance"
+	           : signals->end == SIGTERM ? "SIGTERM"
+	                                     : "SIGINT");
 	notify_send(&notify, NOTIFY_STOPPING);
 	ended = host_stop(host, STOP_NS);
 	if (!ended)
@@ -343,6 +316,7 @@ int main(int argc, char **argv)
 	struct config *config;
 	struct arguments a;
 	struct instance instance;
+	struct unix_signals signals;
 	struct log *log;
 	char why[512];
 	int status;
@@ -381,17 +355,20 @@ int main(int argc, char **argv)
 	}
 	log = log_create(a.level);
 	if (!log) {
-		complain("no memory for the log");
+		complain("no memory or no descriptor for the log");
 		return EXIT_RUN;
 	}
-	supervisor_word = log_word(log);
-	catch_signals();
+	status = unix_signals_open(&signals);
+	if (status) {
+		complain("cannot take signals: %s", strerror(-status));
+		return EXIT_RUN;
+	}
 	raise_descriptors(log);
 	if (instance_take(&instance, a.instance, log, why, sizeof(why))) {
 		complain("%s", why);
 		return EXIT_RUN;
 	}
-	status = run(&a, config, &instance, log);
+	status = run(&a, config, &instance, log, &signals);
 	instance_leave(&instance);
 	log_destroy(log);
 	return status;

@@ -2,9 +2,9 @@
 /* The two queues between the server's thread and the engine's. */
 #include <errno.h>
 #include <stdlib.h>
-#include <sys/eventfd.h>
 #include <unistd.h>
 
+#include "hal/bus/bell.h"
 #include "src/serve/guests.h"
 
 static struct engine_guest *take_message(void *ctx)
@@ -21,12 +21,7 @@ static struct engine_guest *take_message(void *ctx)
 
 void guests_wake(struct guests *g)
 {
-	uint64_t one = 1;
-	ssize_t n;
-
-	do
-		n = write(g->wake_fd, &one, sizeof(one));
-	while (n < 0 && errno == EINTR);
+	bell_ring(g->wake_fd);
 }
 
 /* The queue has room for two messages of each request that can be in work. */
@@ -56,7 +51,7 @@ int guests_create(struct guests *g, unsigned most, void (*ring)(void *ctx), void
 	g->back.size = ring_size(2 * most);
 	g->requests = calloc(g->there.size, sizeof(*g->requests));
 	g->answers = calloc(g->back.size, sizeof(*g->answers));
-	g->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+	g->wake_fd = bell_open();
 	if (g->wake_fd < 0)
 		return -errno;
 	return g->requests && g->answers ? 0 : -ENOMEM;

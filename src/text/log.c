@@ -11,8 +11,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/bus/bell.h"
 #include "hal/bus/time.h"
-#include "src/shm/futex.h"
 #include "src/text/log.h"
 #include "src/text/printable.h"
 
@@ -34,7 +34,7 @@ struct line {
 
 struct log {
 	uint32_t head; /* next to take by a producer */
-	uint32_t word;
+	int bell;
 	uint32_t dropped;
 	uint32_t tail;     /* the reader's alone */
 	uint32_t reported; /* drops already reported, the reader's alone */
@@ -46,13 +46,20 @@ struct log *log_create(enum log_level level)
 {
 	struct log *log = calloc(1, sizeof(*log));
 
-	if (log)
-		log->level = level;
-	return log;
+	if (!log)
+		return NULL;
+	log->level = level;
+	log->bell = bell_open();
+	if (log->bell >= 0)
+		return log;
+	free(log);
+	return NULL;
 }
 
 void log_destroy(struct log *log)
 {
+	if (log)
+		close(log->bell);
 	free(log);
 }
 
@@ -127,8 +134,7 @@ void log_put(struct log *log, enum log_level level, const char *format, ...)
 	line->len = (uint8_t)len;
 	memcpy(line->text, text, len);
 	__atomic_store_n(&line->turn, turn + 1, __ATOMIC_RELEASE);
-	__atomic_fetch_add(&log->word, 1, __ATOMIC_RELEASE);
-	segment_wake(&log->word, 1);
+	bell_ring(log->bell);
 }
 
 uint64_t log_rate(struct log_rate *rate, int64_t now_ns)
@@ -223,6 +229,8 @@ int log_drain(struct log *log, int fd, int prefix)
 {
 	int count = 0;
 
+	/* a line that comes from here on rings again */
+	bell_clear(log->bell);
 	/* One round at most: producers that never stop must not keep the supervisor here. */
 	while (count < (int)LINES) {
 		struct line *line = &log->lines[log->tail % LINES];
@@ -265,9 +273,9 @@ void log_finish(struct log *log, int fd, int prefix)
 	}
 }
 
-uint32_t *log_word(struct log *log)
+int log_bell(const struct log *log)
 {
-	return &log->word;
+	return log->bell;
 }
 
 uint64_t log_dropped(const struct log *log)

@@ -4,7 +4,7 @@
  * but one wake; the supervisor writes them to stderr. The log counts the lines that find the ring
  * full.
  *
- * Room src/text: the log, and texts that are safe to print. Uses src/shm, src/signal, hal/bus.
+ * Room src/text: the log, and texts that are safe to print. Uses src/signal, hal/bus.
  */
 #ifndef TEXT_LOG_H
 #define TEXT_LOG_H
@@ -23,7 +23,9 @@ enum log_level { /* syslog's numbers */
 
 struct log;
 
-/* Allocates the ring once. Lines above level are not formatted. NULL: no memory. */
+/*
+ * Allocates the ring once. Lines above level are not formatted. NULL: no memory, or no descriptor.
+ */
 struct log *log_create(enum log_level level);
 void log_destroy(struct log *log);
 enum log_level log_level(const struct log *log);
@@ -65,8 +67,8 @@ const char *log_others(uint64_t n, char text[LOG_OTHERS]);
 int log_drain(struct log *log, int fd, int prefix);
 /* Write the last lines before the end; tries for at most 200 ms. */
 void log_finish(struct log *log, int fd, int prefix);
-/* The futex word that each line counts up; for the supervisor's wait. */
-uint32_t *log_word(struct log *log);
+/* A bell (hal/bus/bell.h), rung from the moment a line is put until the next log_drain(). */
+int log_bell(const struct log *log);
 uint64_t log_dropped(const struct log *log);
 
 #endif

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of the log's ring. */
 #include <fcntl.h>
+#include <poll.h>
 #include <pthread.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -117,13 +119,26 @@ static void test_a_cut_leaves_no_half_character(void)
 	}
 }
 
-static void test_each_line_counts_the_word_up(void)
+static void assert_bell_rings(bool rings)
 {
-	uint32_t before = *log_word(log_under_test);
+	struct pollfd bell = {.fd = log_bell(log_under_test), .events = POLLIN};
 
+	TEST_ASSERT_EQUAL(rings, poll(&bell, 1, 0));
+}
+
+static void test_the_bell_rings_from_a_line_to_the_next_drain(void)
+{
+	assert_bell_rings(false);
+	log_put(log_under_test, LOG_LEVEL_DEBUG, "not taken");
+	assert_bell_rings(false);
 	log_put(log_under_test, LOG_LEVEL_ERR, "1");
+	assert_bell_rings(true);
 	log_put(log_under_test, LOG_LEVEL_ERR, "2");
-	TEST_ASSERT_EQUAL_UINT32(before + 2, *log_word(log_under_test));
+	assert_bell_rings(true);
+	log_drain(log_under_test, pipe_fd[1], 0);
+	assert_bell_rings(false);
+	log_put(log_under_test, LOG_LEVEL_ERR, "3");
+	assert_bell_rings(true);
 }
 
 static void test_lines_that_find_the_ring_full_are_counted_and_said_once(void)
@@ -320,7 +335,7 @@ int main(void)
 	RUN_TEST(test_control_characters_become_question_marks);
 	RUN_TEST(test_a_long_line_is_cut_at_255_bytes);
 	RUN_TEST(test_a_cut_leaves_no_half_character);
-	RUN_TEST(test_each_line_counts_the_word_up);
+	RUN_TEST(test_the_bell_rings_from_a_line_to_the_next_drain);
 	RUN_TEST(test_lines_that_find_the_ring_full_are_counted_and_said_once);
 	RUN_TEST(test_lines_that_a_full_disk_does_not_take_are_counted_and_said_later);
 	RUN_TEST(test_the_ring_goes_round_many_times);
