@@ -114,6 +114,7 @@ void instance_reload(struct instance *in, const struct instance_signal *signals,
 	memcpy(name, old.name, sizeof(name));
 	*strrchr(name, '.') = '\0';
 	instance_make(in, name, old.generation + 1, old.start_ns, signals, count);
+	in->image.header->period_ns = old.image.header->period_ns;
 	instance_beat(in, ows_now(), 0);
 	for (uint32_t i = 0; i < count; i++)
 		rows[i] = row_before(&old, signals[i].name);
