@@ -86,6 +86,7 @@ struct config_target {
 /* One option of a Bus block, and where its value stands. */
 struct config_option {
 	const char *key, *text;
+	uint64_t contents; /* a hash of the file that the text names; 0: it names none */
 	int line, column;
 };
 struct config_bus {

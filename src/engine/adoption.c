@@ -67,7 +67,8 @@ static bool same_options(const struct config *config, const struct config *befor
 		return false;
 	for (unsigned i = 0; i < a->option_count; i++)
 		if (strcmp(a->options[i].key, b->options[i].key) != 0 ||
-		    strcmp(a->options[i].text, b->options[i].text) != 0)
+		    strcmp(a->options[i].text, b->options[i].text) != 0 ||
+		    a->options[i].contents != b->options[i].contents)
 			return false;
 	return true;
 }

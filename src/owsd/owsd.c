@@ -114,6 +114,7 @@ static int load(const struct arguments *a, struct log *log, struct config **conf
 	if (!err)
 		err = target_check_options(*config, &report);
 	if (!err) {
+		config_hash_files(*config);
 		config_check_buses(*config, &report);
 		return 0;
 	}

@@ -3,6 +3,7 @@
 """Sensors behind bridges: the shipped table, from the file to signals; errors with file and line."""
 
 import json
+import signal
 import subprocess
 
 import owsdtest
@@ -48,6 +49,22 @@ def test_sensors_of_the_shipped_table_are_signals(scene):
     assert abs(listed()["pressure"]["value"] - 990) < 0.1, listed()
     assert scene.owsctl(daemon, "set", "out", "513").returncode == 0
     scene.until(lambda: listed()["out"]["value"] == 513, 10, listed)
+
+
+def test_a_table_that_was_edited_is_read_again_by_a_reload(scene):
+    table, rio = configuration(scene, PLACES)
+    daemon = scene.owsd(rio)
+    scene.until(lambda: abs(float(scene.get(daemon, "room") or 0) - 21.5) < 0.01, 30, "room is good")
+    daemon.signal(signal.SIGHUP)
+    scene.until(lambda: daemon.log().count("signals from") == 2, 10, daemon.log)
+    assert daemon.log().count("from down to up") == 1, "nothing has changed"
+    table.write_text(table.read_text().replace("= -45 + 175 * u16(0)", "= -44 + 175 * u16(0)"))
+    daemon.signal(signal.SIGHUP)
+    scene.until(lambda: abs(float(scene.get(daemon, "room") or 0) - 22.5) < 0.01, 30, "room is new")
+    table.write_text(table.read_text() + "nonsense\n")
+    daemon.signal(signal.SIGHUP)
+    owsdtest.logged(daemon, "all goes on as before")
+    assert abs(float(scene.get(daemon, "room")) - 22.5) < 0.01
 
 
 def test_an_error_of_the_table_is_reported_with_its_file_and_line(scene):
