@@ -32,13 +32,20 @@ static const char *const counter_names[SERVE_COUNTER_COUNT] = {
 #undef X
 };
 
-/* Reserve address space; only the pages that are touched become memory. */
+/*
+ * Reserve address space; only the pages that are touched become memory. Small pages: where the
+ * kernel gives huge ones to all, as Debian's does, the first client would make 2 MiB of memory of
+ * it. A kernel without huge pages refuses the advice, and needs none.
+ */
 static void *reserve(size_t size)
 {
 	void *p = mmap(NULL, size, PROT_READ | PROT_WRITE,
 	               MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
 
-	return p == MAP_FAILED ? NULL : p;
+	if (p == MAP_FAILED)
+		return NULL;
+	madvise(p, size, MADV_NOHUGEPAGE);
+	return p;
 }
 
 static int allocate(struct serve *s)

@@ -104,6 +104,25 @@ def closed_by_peer(sockets):
     return [by_fd[fd] for fd, _ in poll.poll(0)]
 
 
+def test_what_is_reserved_for_clients_takes_no_huge_pages(scene):
+    """Some kernels give huge pages to all who do not refuse: the first client would cost 2 MiB."""
+    if not os.path.exists("/sys/kernel/mm/transparent_hugepage"):
+        owsdtest.skip("a kernel without huge pages")
+    server = served.owsd(scene, **SLOW)
+    large, size, writable = [], 0, False
+    with open(f"/proc/{server.program.pid}/smaps", encoding="ascii") as f:
+        for line in f:
+            words = line.split()
+            if "-" in words[0]:
+                # anonymous, and the program's own: shadow memory of a sanitizer is larger by far
+                writable = words[1] == "rw-p" and len(words) == 5
+            elif words[0] == "Size:":
+                size = int(words[1])
+            elif words[0] == "VmFlags:" and writable and 16384 <= size < 1 << 20:
+                large.append((size, "nh" in words))
+    assert large and all(refused for _, refused in large), large
+
+
 def test_900_clients_at_once_are_all_answered(scene):
     """Those that find all places taken wait for theirs."""
     many_descriptors(2048)
