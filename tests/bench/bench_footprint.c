@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * What owsd costs while it works: 100 thermometers of a genuine owserver, Period 0.1, PerFactor 10;
- * beside it the server it asks.
+ * beside it the server it asks. And what a chip family adds to the program: code and read-only
+ * tables, which all processes share, and tables with pointers, which the loader writes: each
+ * process has its own of those, whether the family is on the wire or not.
  */
 #include <dirent.h>
 #include <signal.h>
@@ -74,6 +76,55 @@ static double text_size(const char *program)
 	return text;
 }
 
+struct part {
+	double shared, own; /* bytes */
+};
+
+/* Of the objects in a folder, from what size says: text, data, bss, then the name. */
+static size_t parts(const char *folder, const char *pattern, struct part *part, size_t most)
+{
+	char command[600], line[512];
+	unsigned long text, data, bss;
+	size_t n = 0;
+	FILE *f;
+
+	snprintf(command, sizeof(command), "size '%s'/%s 2>/dev/null", folder, pattern);
+	f = popen(command, "r");
+	while (f && n < most && fgets(line, sizeof(line), f))
+		if (sscanf(line, "%lu %lu %lu", &text, &data, &bss) == 3)
+			part[n++] = (struct part){(double)text, (double)(data + bss)};
+	if (f)
+		pclose(f);
+	return n;
+}
+
+static void family_sizes(const char *folder)
+{
+	static struct part part[256];
+	double shared[256], all_shared = 0, all_own = 0, own = 0;
+	size_t n = parts(folder, "*.o", part, 256);
+
+	for (size_t i = 0; i < n; i++) {
+		all_shared += part[i].shared;
+		all_own += part[i].own;
+	}
+	n = parts(folder, "family_*.o", part, 256);
+	if (!n) {
+		bench_note("families' sizes left out: no objects of them, or no program size");
+		return;
+	}
+	for (size_t i = 0; i < n; i++) {
+		shared[i] = part[i].shared;
+		own += part[i].own;
+	}
+	bench_line("family_text.files", (double)n, "files");
+	bench_line("family_text.median", bench_percentile(shared, n, 50), "bytes");
+	bench_line("family_text.largest", shared[n - 1], "bytes");
+	bench_line("family_text.with_shared_parts", all_shared / 1024, "KiB");
+	bench_line("family_own.mean", own / (double)n, "bytes");
+	bench_line("family_own.with_shared_parts", all_own / 1024, "KiB");
+}
+
 static bool write_file(const char *file, const struct bench_peer *peer)
 {
 	FILE *f = fopen(file, "w");
@@ -92,7 +143,7 @@ static bool write_file(const char *file, const struct bench_peer *peer)
 
 int main(int argc, char **argv)
 {
-	char program[512], file[128], instance[32];
+	char program[512], folder[512], file[128], instance[32];
 	const char *slash = strrchr(argv[0], '/');
 	struct bench_peer peer;
 	double own, its;
@@ -103,6 +154,9 @@ int main(int argc, char **argv)
 	snprintf(program, sizeof(program), "%.*s/../owsd", slash ? (int)(slash - argv[0]) : 1,
 	         slash ? argv[0] : ".");
 	bench_line("text_size", text_size(program) / 1024, "KiB");
+	snprintf(folder, sizeof(folder), "%.*s/../hal/chips", slash ? (int)(slash - argv[0]) : 1,
+	         slash ? argv[0] : ".");
+	family_sizes(folder);
 	if (!bench_peer_start(&peer, SIGNALS, -1))
 		return 0;
 	snprintf(file, sizeof(file), "%s/bench.rio", peer.folder);

@@ -6,7 +6,7 @@
 KERNEL_TIME ?= 600
 RIG_FRONT   := $(B)/tests/kernel/vhci.o $(B)/tests/kernel/usbip.o $(B)/tests/kernel/tiny_usb.o \
                $(B)/tests/kernel/control.o
-RIG_OURS    := $(B)/kernel/simchip $(B)/kernel/owdump $(B)/kernel/busdump $(PROGRAMS)
+RIG_OURS    := $(B)/kernel/simchip $(B)/kernel/owdump $(B)/kernel/busdump $(B)/kernel/owwalk $(PROGRAMS)
 ENDURANCE   := $(B)/kernel/endurance
 RIG_PEERS    = $(foreach p,owserver i2cdetect i2cget i2cset i2ctransfer,\
                  $(shell PATH="$$PATH:/usr/sbin" command -v $(p)))
@@ -26,6 +26,10 @@ $(B)/kernel/owdump: $(B)/tests/kernel/owdump.o $(B)/tests/kernel/lines.o $(B)/wi
 $(B)/kernel/busdump: $(B)/tests/kernel/busdump.o $(B)/tests/kernel/lines.o $(B)/core.a $(B)/with/ld
 	$(call link)
 
+$(B)/kernel/owwalk: $(B)/tests/kernel/owwalk.o $(B)/tests/bench/walk.o $(B)/tests/bench/aid.o \
+                    $(B)/core.a $(B)/with/ld
+	$(call link)
+
 $(ENDURANCE): $(patsubst %,$(B)/tests/kernel/%.o,endurance endurance_truth endurance_daemon \
               endurance_reader control) $(B)/core.a $(B)/with/ld
 	$(call link)
@@ -42,10 +46,14 @@ test-kernel:
 	@$(MAKE) --no-print-directory kernel-programs
 	@$(call rig,$(SUITES))
 
+# Of the properties of all devices one in SHARE is read: with 1 owserver alone takes most of an hour
+SHARE ?= 10
 bench-kernel:
 	@sh board/install-deps build kernel
 	@$(MAKE) --no-print-directory kernel-programs
-	@$(call rig,bench)
+	@mkdir -p $(B)/kernel/share
+	@echo $(SHARE) >$(B)/kernel/share/devices-share
+	@$(call rig,$(or $(SUITES),bench devices)) --file $(B)/kernel/share/devices-share
 
 # owsd's life in real time: MINUTES=60 SEED=1. Its end is within two minutes of that
 MINUTES ?= 60

@@ -26,7 +26,16 @@ def some_output():
              "served_rss.64_clients 3432 KiB", "served_rss.64_clients.owserver 6564 KiB",
              "served_late_periods 0.00 periods", "served_periods 900 periods",
              "set_to_wire.wakes 100.00 us", "set_to_wire.wakes_loopback 120.00 us",
-             "changes.waiting 0.02 %", "changes.waiting_idle 0.01 %"]
+             "changes.waiting 0.02 %", "changes.waiting_idle 0.01 %",
+             "devices 85.00 devices", "devices.scan 3.95 s", "devices.read 120 s",
+             "devices.read.good 1717 properties", "devices.read.refused 431 properties",
+             "devices.read.transfers 32553 transactions",
+             "family_text.median 1576 bytes", "family_text.largest 45444 bytes",
+             "family_text.with_shared_parts 289 KiB", "family_own.mean 556 bytes",
+             "family_own.with_shared_parts 36.59 KiB"]
+    for who in ("", ".owserver"):
+        lines += [f"devices.list{who} {100 if who else 40} ms", f"devices.list.directories{who} 300 directories",
+                  f"devices.list.properties{who} 2000 properties", f"devices.list.each{who} 130 us"]
     for n in ("futex", 1, 8, 100):
         lines += [f"bells.{n} 8.00 us", f"bells.{n}.one_cpu 6.00 us"]
     for n in (10, 1000, 10000):
@@ -53,6 +62,13 @@ def some_rig():
                         "owserver, /simultaneous, 0.8 s, /uncached latesttemp",
                         "kernel w1, therm_bulk_read, then each temperature", "kernel w1, one by one")
             for n in (1, 2, 5, 10, 20, 50)]
+    for who in ("owsd", "owserver"):
+        rows += [f"# | {f'devices, {who}: {what}':54} |      85 |   4.00 |         2000 |     10000 |    1000 |     90 |"
+                 for what in ("scan", "list", "read")]
+        rows += [f"# memory | {f'{who}, {few} on the wire':30} |   600 |  3000 |"
+                 for few in ("none", "one", "all")]
+    rows += ["# one in 7 of the properties is read", "# /04.4D8A5E2D002F/memory ends owserver"]
+    rows.append("# both | 1500 | 71.5 | 240.1 | refused by owsd 60, by owserver 50")
     return "\n".join(["ok - something", "# | way | sensors |", *rows, "6 passed, 0 failed"])
 
 
@@ -99,6 +115,10 @@ def test_saved_figures_become_tables_and_the_prose_is_kept(scene):
     assert "1.2 times that by eventfd" in after
     assert "| 1, pinned | 4 000/s | 50.0, 99.0 us | 1 000/s | 50.0, 99.0 us | 4.0 | 73 000/s |" in after
     assert "| owsd direct | 50 | 6.00 | 3000 | 10000 | 600 | 50 | 1.34 |" in after
+    assert "| owsd: read | 85 | 4.00 | 2000 | 10000 | 1000 | 90 |" in after
+    assert "| owserver, all | 600 | 3 000 |" in after
+    assert "one in 7 of the properties. Both have read 1500 of them: owsd in 71.5 s," in after
+    assert "A read of `memory` of family 04 ended owserver" in after
     assert "not quiet" not in after
     again, _, same = written(scene, page)
     assert again == 0 and same == after
@@ -127,6 +147,7 @@ def test_what_was_not_measured_stays_as_it_was_and_is_said(scene):
     status, said, after = written(scene, page)
     assert status == 1
     assert "rig: owsd direct (make bench-kernel) was not measured" in said, said
+    assert "rigdevices: scan by owsd (make bench-kernel) was not measured" in said, said
 
     def rig(text):
         begun = text.index("<!-- figures rig -->")
