@@ -135,7 +135,7 @@ unsigned visit_each(const struct visit *visit,
 	/* All bits of Read Clock turned over are Write Clock: no master can see that. */
 	bool clock = strcmp(visit->chip, "DS2415") == 0 || strcmp(visit->chip, "DS2417") == 0;
 	const uint8_t masks[] = {clock ? 0x7f : 0xff, 0x24, 0x42, 0x55};
-	unsigned stride = visit->stride ? visit->stride : 1, n = 0;
+	unsigned stride = (visit->stride ? visit->stride : 1) * VISIT_STRIDE, n = 0;
 
 	visit_begin(visit);
 	visit_go(visit, &(struct trouble){.kind = TROUBLE_NONE});
@@ -150,7 +150,7 @@ unsigned visit_each(const struct visit *visit,
 			    .kind = TROUBLE_TURN, .at = at, .mask = masks[at / 8 % sizeof(masks)]},
 		    one);
 	}
-	for (uint32_t at = 0; at < resets; at++, n += 2) {
+	for (uint32_t at = 0; at < resets; at += VISIT_STRIDE, n += 2) {
 		try(visit, (struct trouble){.kind = TROUBLE_ABSENT, .at = at}, one);
 		try(visit, (struct trouble){.kind = TROUBLE_FALSE, .at = at}, one);
 	}

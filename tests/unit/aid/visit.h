@@ -10,6 +10,27 @@
 #include "hal/chips/family.h"
 #include "tests/unit/aid/native_scene.h"
 
+/*
+ * Of the places where a trouble can happen one in so many is tried; the first always is. Builds
+ * with a sanitizer and of 32 bits look for errors of memory and of sizes, in steps that the plain
+ * build tries everywhere, and need several times as long. 7 and the 8 bits of a byte have no
+ * common factor: one bit of each byte at least is turned over, each bit of a byte in its turn.
+ */
+#ifndef VISIT_STRIDE
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define VISIT_STRIDE 7
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || __SIZEOF_POINTER__ < 8
+#undef VISIT_STRIDE
+#define VISIT_STRIDE 7
+#endif
+#ifndef VISIT_STRIDE
+#define VISIT_STRIDE 1
+#endif
+#endif
+
 struct visit {
 	const char *chip;
 	const char *property; /* with its extension, ".BYTE" */
@@ -17,7 +38,7 @@ struct visit {
 	bool parasite;
 	bool turned;     /* the pins are inverted: a DS2405 conducts */
 	double slack;    /* a counting number may exceed the truth by this much */
-	unsigned stride; /* try each stride-th place; 0: each place */
+	unsigned stride; /* try each stride-th place (times VISIT_STRIDE); 0: each place */
 };
 
 /*
