@@ -25,10 +25,11 @@ enum { COUNT_SWITCHES = 0x01, COUNT_LEDS, COUNT_RELAYS, SET_TYPE, GET_ACTIVATED 
 
 struct inferno {
 	uint8_t kind;
-	bool fetched;         /* the activations */
 	uint8_t counts[3][2]; /* switches, LEDs, relays: ports, channels; 0: not known */
+	int64_t fetched_ns;   /* when the device gave the activations; 0: it has not yet */
 	uint32_t activated[PORTS];
 };
+_Static_assert(sizeof(struct inferno) <= DEVICE_OWN, "no room for what is known");
 
 /* From call to call. */
 struct asked {
@@ -223,7 +224,10 @@ int inferno_read_port(struct txn *txn)
 		return -ENOENT;
 	switch ((enum inferno_port)what_of(txn)) {
 	case INFERNO_SWITCH:
-		return of(txn)->fetched ? put_bits(txn, of(txn)->activated[port], n) : -EIO;
+		if (!of(txn)->fetched_ns)
+			return -EIO;
+		txn->measured_ns = of(txn)->fetched_ns;
+		return put_bits(txn, of(txn)->activated[port], n);
 	case INFERNO_LED:
 		err = ask(txn, codes[INFERNO_LED], &port, 1, 0, bytes);
 		for (unsigned i = 0; i < bytes && !err; i++)
@@ -331,7 +335,7 @@ int inferno_refresh(struct txn *txn)
 	memset(inferno->activated, 0, sizeof(inferno->activated));
 	for (unsigned i = 0; i < ports * each; i++)
 		inferno->activated[i / each] |= (uint32_t)bytes[i] << 8 * (i % each);
-	inferno->fetched = true;
+	inferno->fetched_ns = txn_now(txn);
 	return 0;
 }
 

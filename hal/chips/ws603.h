@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* WS603: a weather station that speaks through the memory of its DS2760. */
+/*
+ * WS603: a weather station that speaks through the memory of its DS2760. It is asked by writing to
+ * that memory, also when it is read: so what it says is hidden. Who only looks at directories does
+ * not write to a DS2760 that has no station.
+ */
 #ifndef HAL_CHIPS_WS603_H
 #define HAL_CHIPS_WS603_H
 
@@ -24,7 +28,7 @@ enum { WS603_PARAMETERS = 0xa0, WS603_DATA, WS603_LIGHTS, WS603_SET_WIND, WS603_
 	[(first) + 3] = {.write = ws603_write_lights}
 
 #define WS603_BYTE(text, access_, arg_, first) \
-	PROPERTY(text, UNSIGNED, VOLATILE, access_, .arg = (arg_), .how = (first))
+	PROPERTY(text, UNSIGNED, VOLATILE, access_, .hidden = true, .arg = (arg_), .how = (first))
 #define WS603_BYTES(text, life_, arg_, first) \
 	PROPERTY(text, BINARY, life_, READ, .size = 5, .hidden = true, .arg = (arg_), \
 	         .how = (first) + 1)
@@ -52,7 +56,7 @@ enum { WS603_PARAMETERS = 0xa0, WS603_DATA, WS603_LIGHTS, WS603_SET_WIND, WS603_
 	         FIELD(words, .at = 0x18, .bytes = 2, .big_endian = true, .is_signed = true, \
 	               .shift = 5, .unit = .125)), \
 	WS603_BYTE("WS603/volt", READ, WS603_DATA | 4 << 8, first), \
-	PROPERTY("WS603/wind_speed", FLOAT, VOLATILE, READ, .how = (first) + 2)
+	PROPERTY("WS603/wind_speed", FLOAT, VOLATILE, READ, .hidden = true, .how = (first) + 2)
 /* clang-format on */
 
 #endif

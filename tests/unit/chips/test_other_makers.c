@@ -482,6 +482,26 @@ static void test_switches_leds_and_relays_have_ports(void)
 	refuses(-EINVAL, BUS_WRITE, "set_switch_type", "0,4,1");
 }
 
+/* The device gives them once; what is read of them later is as old as that. */
+static void test_activations_of_switches_are_as_old_as_their_refresh(void)
+{
+	begin("IE_SWITCH_MASTER");
+	start();
+	int64_t before = host.now;
+
+	writes("switch_refresh_activations", "1");
+	int64_t after = host.now;
+
+	host_run(&host, bus, host.now + 60 * HOST_S);
+	const struct bus_answer *answer = go(BUS_READ, "switch_port1", NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer->err);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT64(before, answer->measured_ns);
+	TEST_ASSERT_LESS_OR_EQUAL_INT64(after, answer->measured_ns);
+	/* what is asked of the device itself is new */
+	answer = go(BUS_READ, "led_port1", NULL);
+	TEST_ASSERT_GREATER_THAN_INT64(after, answer->measured_ns);
+}
+
 static void test_the_updater_of_a_firmware_is_entered_and_left(void)
 {
 	begin("IE_SWITCH_MASTER");
@@ -519,6 +539,7 @@ int main(void)
 	RUN_TEST(test_a_bae0911_works_an_expander_a_card_and_texts);
 	RUN_TEST(test_lights_fade_to_what_is_written);
 	RUN_TEST(test_switches_leds_and_relays_have_ports);
+	RUN_TEST(test_activations_of_switches_are_as_old_as_their_refresh);
 	RUN_TEST(test_the_updater_of_a_firmware_is_entered_and_left);
 	return UNITY_END();
 }

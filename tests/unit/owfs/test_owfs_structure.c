@@ -76,6 +76,13 @@ static void check_array(const struct property *property, const char *array, cons
 	TEST_ASSERT_EQUAL_STRING_MESSAGE(array, text, name);
 }
 
+/* owserver lists these too; to read them is to write to the memory of a DS2760 (ws603.h). */
+static bool writes_when_it_is_read(char *column[COLUMNS])
+{
+	return strcmp(column[FAMILY], "30") == 0 && strncmp(column[NAME], "WS603/", 6) == 0 &&
+	       column[ACCESS][0] == 'r' && strcmp(column[NAME], "WS603/temperature") != 0;
+}
+
 static void check_row(char *column[COLUMNS])
 {
 	unsigned code = (unsigned)strtoul(column[FAMILY], NULL, 16);
@@ -96,8 +103,9 @@ static void check_row(char *column[COLUMNS])
 	TEST_ASSERT_EQUAL_CHAR_MESSAGE(
 		column[TYPE][0], property->type == PROPERTY_BITS ? 'y' : property->type, name);
 	check_array(property, column[ARRAY], name);
-	TEST_ASSERT_EQUAL_INT_MESSAGE(strcmp(column[VISIBILITY], "hidden") == 0, property->hidden,
-	                              name);
+	TEST_ASSERT_EQUAL_INT_MESSAGE(strcmp(column[VISIBILITY], "hidden") == 0 ||
+	                                      writes_when_it_is_read(column),
+	                              property->hidden, name);
 	/* Of a hidden one owserver does not state which chips have it. */
 	TEST_ASSERT_EQUAL_INT_MESSAGE(strncmp(column[VISIBILITY], "VISIBLE", 7) == 0 ||
 	                                      strncmp(column[VISIBILITY], "is_visible", 10) == 0,
