@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* The counter that belongs to a page of a memory. */
+#include <errno.h>
 #include <string.h>
 
 #include "hal/chips/counter.h"
+#include "hal/chips/field.h"
 
 #define READ_COUNTER 0xa5
 
@@ -21,3 +23,8 @@ static int load(struct txn *txn, const struct area *area, unsigned at, uint8_t *
 }
 
 const struct area counter_area = {.name = "counters", .size = 64, .block = 4, .load = load};
+
+int counter_read_page(struct txn *txn)
+{
+	return txn->element < txn->property->arg ? -ENOENT : field_read(txn);
+}

@@ -8,6 +8,7 @@
 #include "hal/chips/counter.h"
 #include "hal/chips/family.h"
 
+#define FIRST_COUNTED 8
 #define ERASE_SCRATCHPAD 0xc3
 
 /* What the chip has computed hides the scratchpad until it is erased. */
@@ -45,15 +46,18 @@ static int refuse(struct txn *txn)
 enum { MEMORY = 1, COUNTS };
 static const struct area *const areas[] = {[MEMORY] = &memory, [COUNTS] = &counter_area};
 
-enum { WAY_SECRET = 1 };
-static const struct property_how how[] = {[WAY_SECRET] = {.write = refuse}};
+enum { WAY_SECRET = 1, WAY_PAGE_COUNT };
+static const struct property_how how[] = {
+	[WAY_SECRET] = {.write = refuse},
+	[WAY_PAGE_COUNT] = {.read = counter_read_page},
+};
 
 #define SECRET(text) PROPERTY(text, BINARY, STABLE, WRITE, .size = 8, .how = WAY_SECRET)
 
 static const struct property properties[] = {
 	AREA_MEMORY(MEMORY, 512),
 	PROPERTY_DIR("pages"),
-	COUNTERS("pages/count", COUNTS, 16, NUMBERS, 0, .hidden = false),
+	PAGE_COUNTERS(COUNTS, FIRST_COUNTED, WAY_PAGE_COUNT),
 	AREA_PAGES(MEMORY, 16, 32),
 	SECRET("pages/password"),
 	SECRET("password"),

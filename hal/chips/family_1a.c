@@ -3,6 +3,8 @@
 #include "hal/chips/counter.h"
 #include "hal/chips/family.h"
 
+#define FIRST_COUNTED 12
+
 static const struct area memory = {
 	.name = "memory",
 	.size = 512,
@@ -18,12 +20,15 @@ static const struct area memory = {
 enum { MEMORY = 1, COUNTS };
 static const struct area *const areas[] = {[MEMORY] = &memory, [COUNTS] = &counter_area};
 
+enum { WAY_PAGE_COUNT = 1 };
+static const struct property_how how[] = {[WAY_PAGE_COUNT] = {.read = counter_read_page}};
+
 static const struct property properties[] = {
 	AREA_MEMORY(MEMORY, 512),
 	PROPERTY_DIR("pages"),
-	COUNTERS("pages/count", COUNTS, 16, NUMBERS, 0, .hidden = false),
+	PAGE_COUNTERS(COUNTS, FIRST_COUNTED, WAY_PAGE_COUNT),
 	AREA_PAGES(MEMORY, 16, 32),
 };
 
 const struct family family_1a = {
-	.code = 0x1a, .type = "DS1963L", AREAS(areas), PROPERTIES(properties)};
+	.code = 0x1a, .type = "DS1963L", AREAS(areas), HOW(how), PROPERTIES(properties)};

@@ -5,6 +5,7 @@
 #include "hal/chips/counter.h"
 #include "hal/chips/family.h"
 
+#define FIRST_COUNTED 12
 #define EXTERNAL_A 14
 
 static const struct area memory = {
@@ -46,9 +47,11 @@ static int write_minimum(struct txn *txn)
 enum { MEMORY = 1, COUNTS };
 static const struct area *const areas[] = {[MEMORY] = &memory, [COUNTS] = &counter_area};
 
-enum { WAY_MINIMUM = 1 };
+enum { WAY_MINIMUM = 1, WAY_PAGE_COUNT };
 static const struct property_how how[] = {
-	[WAY_MINIMUM] = {.read = read_minimum, .write = write_minimum}};
+	[WAY_MINIMUM] = {.read = read_minimum, .write = write_minimum},
+	[WAY_PAGE_COUNT] = {.read = counter_read_page},
+};
 
 static const struct property properties[] = {
 	COUNTERS("counter", COUNTS, 2, LETTERS, EXTERNAL_A, .hidden = false),
@@ -56,7 +59,7 @@ static const struct property properties[] = {
 	AREA_MEMORY(MEMORY, 512),
 	PROPERTY("mincount", UNSIGNED, VOLATILE, BOTH, .how = WAY_MINIMUM),
 	PROPERTY_DIR("pages"),
-	COUNTERS("pages/count", COUNTS, 16, NUMBERS, 0, .hidden = false),
+	PAGE_COUNTERS(COUNTS, FIRST_COUNTED, WAY_PAGE_COUNT),
 	AREA_PAGES(MEMORY, 16, 32),
 };
 

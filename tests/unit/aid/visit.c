@@ -210,11 +210,12 @@ void visit_properties(const char *chip, bool parasite, bool turned,
 		    changes_by_itself(family, property))
 			continue;
 		snprintf(name, sizeof(name), "%s%s", property->name,
-		         property->type == PROPERTY_BITS          ? ".BYTE"
-		         : property->array.aggregate              ? ".ALL"
-		         : property->array.index == INDEX_LETTERS ? ".B"
-		         : property->array.index == INDEX_NUMBERS ? ".3"
-		                                                  : "");
+		         strcmp(property->name, "pages/count") == 0 ? ".15"
+		         : property->type == PROPERTY_BITS          ? ".BYTE"
+		         : property->array.aggregate                ? ".ALL"
+		         : property->array.index == INDEX_LETTERS   ? ".B"
+		         : property->array.index == INDEX_NUMBERS   ? ".3"
+		                                                    : "");
 		if (!only || strstr(name, only))
 			one(&visit, property);
 	}

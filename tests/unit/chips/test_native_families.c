@@ -430,6 +430,7 @@ static void test_a_ds2423_counts(void)
 	reads("counters.A", "           0");
 	reads("mincount", "           0");
 	reads("pages/count.14", "           0");
+	refuses(-ENOENT, BUS_READ, "pages/count.11", NULL);
 }
 
 static void test_a_ds2450_converts_and_switches(void)
