@@ -115,17 +115,21 @@ static int next_device(struct native *native, unsigned n, struct search *search,
 
 /*
  * A bridge that has just got power has no id of its own. It gets one if the table of sensors names
- * bridges of its kind, and the next round finds it. Returns whether the id was such a bridge's.
+ * bridges of its kind, and the next round finds it. In this round the ids on the wire have changed,
+ * so it calls no device lost; where the round before was such a one too, the bridge does not wake,
+ * and the round counts. Returns whether the id was such a bridge's.
  */
 static bool wake(struct native *native, unsigned n, const uint8_t rom[8])
 {
-	struct txn txn = {.native = native, .link = native->channel[n].link, .channel = n};
+	struct channel *channel = &native->channel[n];
+	struct txn txn = {.native = native, .link = channel->link, .channel = n};
 
 	if (!ds28e18_asleep(rom) || !sensors_has(&native->sensors, rom[0]))
 		return false;
 	native_count(native, COUNT_TRANSACTIONS);
 	(void)txn_end(&txn, ds28e18_wake(&txn));
-	native->channel[n].dirty = true;
+	channel->dirty |= !channel->asleep_round || channel->asleep_round + 1 != channel->round;
+	channel->asleep_round = channel->round;
 	return true;
 }
 

@@ -126,9 +126,10 @@ struct channel {
 	int64_t single_ns; /* when those due are asked one by one next; 0: not known yet */
 	/* End of the last conversion of all; 0: none. */
 	int64_t simultaneous_ns[SIMULTANEOUS];
-	int64_t search_ns; /* next pass of the background search */
-	uint32_t round;    /* number of the background search */
-	int64_t round_ns;  /* when it began */
+	int64_t search_ns;     /* next pass of the background search */
+	uint32_t round;        /* number of the background search */
+	uint32_t asleep_round; /* the last that found a bridge without id (DS28E18); 0: none */
+	int64_t round_ns;      /* when it began */
 	bool searching, dirty;
 	struct search search;
 	struct touch touch;

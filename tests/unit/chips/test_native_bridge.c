@@ -176,6 +176,27 @@ static void test_a_bridge_that_lost_its_power_is_woken(void)
 	TEST_ASSERT_DOUBLE_WITHIN(0.01, 21.5, number("temperature"));
 }
 
+/* It gets an id again and again, which is no reason to call all searches of the wire disturbed. */
+static void test_a_bridge_that_does_not_stay_awake_keeps_no_device_that_is_lost(void)
+{
+	begin();
+	struct sim_slave *room = wire_add(0, "DS18B20", 2);
+
+	host_run(&host, bus, host.now + 20 * HOST_S);
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(room, "temperature"), NULL));
+	sim_wire_plug(&wire_net.wire[0], room, false, wire_time());
+	bool lost = false;
+	for (unsigned i = 0; i < 600; i++) {
+		host.events = 0;
+		sim_slave_brownout(bridge, wire_time());
+		host_run(&host, bus, host.now + 100 * HOST_MS);
+		for (unsigned n = 0; n < host.events; n++)
+			lost |= host.event[n].news == BUS_LOST &&
+			        host.event[n].rom[0] == room->rom[0];
+	}
+	TEST_ASSERT_TRUE(lost);
+}
+
 /* --- Trouble --------------------------------------------------------------------------------- */
 
 static const char *property;
@@ -257,6 +278,35 @@ static void test_a_sensor_with_registers_gives_no_false_value(void)
 static void test_a_sensor_with_a_calibration_gives_no_false_value(void)
 {
 	try_all("air/temperature", 59.9, 60.1, 29);
+}
+
+/* As long as a bridge is busy its read slots are ones, as those of one that has gone. */
+static void test_a_bridge_that_says_nothing_is_not_waited_for_without_end(void)
+{
+	uint32_t slots, most = 0;
+	int64_t begun, took, longest = 0;
+
+	property = "light";
+	low = 2999;
+	high = 3001;
+	wrong = 0;
+	most_slots = UINT32_MAX;
+	once((struct trouble){.kind = TROUBLE_NONE});
+	slots = trouble.slots;
+	tearDown();
+	for (uint32_t at = 0; at < slots; at += 5) {
+		begun = host.now;
+		once((struct trouble){.kind = TROUBLE_DEAF, .at = at});
+		took = host.now - begun;
+		most = trouble.slots > most ? trouble.slots : most;
+		longest = took > longest ? took : longest;
+		tearDown();
+	}
+	TEST_ASSERT_EQUAL_UINT(0, wrong);
+	/* the visit twice, and between them twice the slots of the bytes that were asked for */
+	TEST_ASSERT_LESS_THAN_UINT32(2 * slots + 300, most);
+	TEST_ASSERT_LESS_THAN_INT64(20 * HOST_S, longest);
+	begin();
 }
 
 static void test_a_write_that_succeeded_is_there_whatever_was_lost(void)
@@ -368,6 +418,7 @@ static void over_both(void)
 	RUN_TEST(test_a_sensor_with_checksums_gives_no_false_value);
 	RUN_TEST(test_a_sensor_with_registers_gives_no_false_value);
 	RUN_TEST(test_a_sensor_with_a_calibration_gives_no_false_value);
+	RUN_TEST(test_a_bridge_that_says_nothing_is_not_waited_for_without_end);
 	RUN_TEST(test_a_write_that_succeeded_is_there_whatever_was_lost);
 }
 
@@ -382,5 +433,6 @@ int main(void)
 	rom_id = "56.01005DDF0300";
 	over_both();
 	RUN_TEST(test_a_bridge_that_lost_its_power_is_woken);
+	RUN_TEST(test_a_bridge_that_does_not_stay_awake_keeps_no_device_that_is_lost);
 	return UNITY_END();
 }
