@@ -12,6 +12,8 @@
 #define AT_ONCE 32 /* samples that are asked for together: a page of a log */
 #define TRIES 3
 #define ROOM 16
+/* A cache may have the page of an older sample: it was whole that long ago. */
+#define CACHED_S (5 * 60)
 
 enum { QUANTITIES = 2 };
 static const char *const quantities[QUANTITIES] = {"temperature", "humidity"};
@@ -20,12 +22,25 @@ struct download {
 	struct mission *mission;
 	unsigned elements;
 	bool has[QUANTITIES];
-	double begin, interval;
+	double begin, interval, clock; /* clock: of the logger, when the download began */
+	bool moves; /* the log is full and rolls over: each place gets another sample */
 	struct ask ask[AT_ONCE];
 	char path[AT_ONCE][256], text[AT_ONCE][ROOM];
 	char value[QUANTITIES][AT_ONCE][ROOM];
 	struct json json;
 };
+
+/*
+ * May a cache have these samples as they were before they were logged? So it may the page that is
+ * logged to, and others whose last sample came a moment ago.
+ */
+static bool is_young(const struct download *download, unsigned first, unsigned n)
+{
+	double last = download->begin + download->interval * (first + n - 1);
+
+	return download->moves || first + n == download->elements ||
+	       !(last + CACHED_S < download->clock);
+}
 
 /* Samples of one quantity from the first on; what failed is asked for again. */
 static int ask_for(struct download *download, unsigned quantity, unsigned first, unsigned n)
@@ -47,6 +62,7 @@ static int ask_for(struct download *download, unsigned quantity, unsigned first,
 				.req = {.op = BUS_READ,
 			                .prio = BUS_GUEST,
 			                .path = download->path[i],
+			                .fresh = is_young(download, first, n),
 			                .data = (uint8_t *)download->text[i],
 			                .len = ROOM - 1}};
 		}
@@ -119,9 +135,16 @@ static int print_all(const struct ctl *ctl, struct download *download)
 static int look(struct download *download)
 {
 	struct mission *mission = download->mission;
-	double elements, logs = 0;
+	double elements, samples = 0, running = 0, logs = 0;
 	int err = mission_read(mission, "log/elements", &elements);
 
+	if (!err)
+		err = mission_read(mission, "mission/samples", &samples);
+	if (!err)
+		err = mission_read(mission, "mission/running", &running);
+	/* without it all samples are young */
+	if (!err && mission_read(mission, "clock/udate", &download->clock))
+		download->clock = 0;
 	if (!err)
 		err = mission_interval(mission, &download->interval);
 	if (!err && !mission->minutes)
@@ -131,6 +154,7 @@ static int look(struct download *download)
 	if (err)
 		return mission_failed(mission, "log", err);
 	download->elements = (unsigned)elements;
+	download->moves = running != 0 && samples > elements;
 	download->has[0] = true;
 	download->has[1] = logs != 0;
 	return CTL_DONE;

@@ -26,6 +26,11 @@ def served(scene):
     def mission(*words, options=()):
         return subprocess.run([OWSCTL, "-t", f"127.0.0.1:{port}", *options, "mission", *words],
                               capture_output=True, text=True, timeout=120, check=False)
+
+    def write(path, value):
+        return subprocess.run([OWSCTL, "-t", f"127.0.0.1:{port}", "write", path, value],
+                              capture_output=True, text=True, timeout=20, check=False)
+    mission.set = write
     until(lambda: mission("status", FRIDGE).returncode == 0, 20, "the logger is found")
     return mission
 
@@ -57,6 +62,18 @@ def test_a_mission_is_started_followed_stopped_and_downloaded(scene):
     samples = json.loads(mission("download", FRIDGE, options=["--json"]).stdout)
     assert len(samples) == now["logged"] and samples[0]["temperature"] == 4.5, samples
     assert [s["time"] for s in samples] == sorted({s["time"] for s in samples}), samples
+
+
+def test_a_download_has_what_was_logged_since_the_last_one(scene):
+    """The page that was read then is in the caches, without the samples that came into it since."""
+    mission = served(scene)
+    assert mission.set("/settings/timeout/volatile", "60").returncode == 0
+    assert mission("start", "-i", "1", FRIDGE).returncode == 0
+    for least in (2, 5, 8):
+        until(lambda: status(mission, FRIDGE)["logged"] >= least, 20, "it logs")
+        lines = mission("download", FRIDGE).stdout.splitlines()[1:]
+        assert len(lines) >= least, lines
+        assert {line.split(",")[1] for line in lines} == {"4.5"}, lines
 
 
 def test_the_clock_is_set_and_the_interval_of_a_thermochron_is_whole_minutes(scene):
