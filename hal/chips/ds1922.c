@@ -179,6 +179,7 @@ int ds1922_read_interval(struct txn *txn)
 	uint8_t page[PAGE];
 	int err = area_read(txn, &ds1922_memory, CLOCK, page, PAGE);
 
-	txn->number[0] = ds1922_interval_of(page);
+	if (!err)
+		txn->number[0] = ds1922_interval_of(page);
 	return err;
 }

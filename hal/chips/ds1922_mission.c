@@ -72,13 +72,15 @@ int ds1922_read_now(struct txn *txn)
 		return err ? err : TXN_MORE;
 	case 1:
 		err = look(txn, SAMPLES, page);
+		if (err)
+			return err;
 		memcpy(visit->before, page + (DEVICE_SAMPLES - SAMPLES), 3);
 		visit->config = page[CONFIG - SAMPLES];
-		if (!err && ds1922_zero_of(visit->config) < 0)
-			err = -EIO;
-		if (!err && txn->property->arg == LOG_DATA && !ds1922_has_data(visit->config))
-			err = -ENOENT;
-		return err ? err : TXN_MORE;
+		if (ds1922_zero_of(visit->config) < 0)
+			return -EIO;
+		if (txn->property->arg == LOG_DATA && !ds1922_has_data(visit->config))
+			return -ENOENT;
+		return TXN_MORE;
 	case 2:
 		err = txn_command(txn, convert, sizeof(convert));
 		return err ? err : txn_wait(txn, CONVERT_NS);
@@ -321,9 +323,11 @@ int ds1922_write_running(struct txn *txn)
 		return do_steps(txn, STARTS);
 	if (!visit->before[0]) {
 		err = look(txn, SAMPLES, page);
+		if (err)
+			return err;
 		visit->config = page[CONFIG - SAMPLES];
 		visit->before[0] = 1;
-		return err ? err : TXN_MORE;
+		return TXN_MORE;
 	}
 	err = do_steps(txn, STARTS);
 	return err == TXN_MORE && ds1922_interval_of(visit->page) == 0 ? -EINVAL : err;

@@ -67,7 +67,7 @@ static void print_json(const struct status *status)
 static int print_status(const struct ctl *ctl, struct mission *mission)
 {
 	char begin[MISSION_TIME] = "-", clock[MISSION_TIME];
-	struct status status;
+	struct status status = {0};
 
 	if (look(mission, &status))
 		return CTL_FAILED;

@@ -43,7 +43,8 @@ def status(mission, device):
 
 def test_a_mission_is_started_followed_stopped_and_downloaded(scene):
     mission = served(scene)
-    assert status(mission, FRIDGE)["running"] is False
+    now = status(mission, FRIDGE)
+    assert now["running"] is False and now["begin"] is None, now
     done = mission("start", "-i", "1", FRIDGE)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", ""), done
     now = until(lambda: (s := status(mission, FRIDGE))["logged"] >= 3 and s, 20, "it logs")
