@@ -214,6 +214,10 @@ static const struct property_how how[] = {
 
 #define FLAG(text, shift_) \
 	PROPERTY(text, YESNO, STABLE, BOTH, FIELD(CONTROL, .shift = (shift_), .bits = 1))
+/* STOP/START of the interval timer: 1 stops it. */
+#define START \
+	PROPERTY("start", YESNO, STABLE, BOTH, \
+	         FIELD(CONTROL, .shift = 6, .bits = 1, .inverted = true))
 #define DATE_OF(text, area_) PROPERTY(text, DATE, VOLATILE, BOTH, FIELD(area_, .at = 1, .bytes = 4))
 #define SECONDS_OF(text, area_) \
 	PROPERTY(text, UNSIGNED, SECOND, BOTH, FIELD(area_, .at = 1, .bytes = 4))
@@ -238,7 +242,7 @@ static const struct property properties[] = {
 	FLAG("readonly/memory", 3),
 	FLAG("running", 4),
 	PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = 111, .how = WAY_SET_ALARM),
-	FLAG("start", 6),
+	START,
 	PROPERTY_DIR("trigger"),
 	CYCLES_OF("trigger/cycle", CYCLE_ALARM),
 	DATE_OF("trigger/date", CLOCK_ALARM),

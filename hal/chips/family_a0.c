@@ -2,14 +2,14 @@
 /* Rotation sensor mRS001. */
 #include "hal/chips/cmciel.h"
 
-/* Below zero in reverse; owserver has no sign for it. */
+/* Below zero in reverse, though the property is unsigned: owserver says 4294967295 for -1. */
 static int read_rpm(struct txn *txn)
 {
 	uint8_t word[3];
 	int err = area_read(txn, &cmciel_reading, 0, word, sizeof(word));
 
 	if (!err)
-		txn->number[0] = (uint32_t)(int16_t)(word[0] | word[1] << 8);
+		txn->number[0] = (int16_t)(word[0] | word[1] << 8);
 	return err;
 }
 

@@ -103,8 +103,10 @@ int format_number(uint8_t type, double number, char *text, size_t room)
 	case PROPERTY_BITS:
 		return put(number != 0 ? "1" : "0", 1, text, room);
 	case PROPERTY_UNSIGNED:
-		return put(out, snprintf(out, sizeof(out), "%12lu", (unsigned long)number), text,
-		           room);
+		if (number >= 0)
+			return put(out, snprintf(out, sizeof(out), "%12lu", (unsigned long)number),
+			           text, room);
+		/* fallthrough */
 	case PROPERTY_INTEGER:
 		return put(out, snprintf(out, sizeof(out), "%12ld", (long)number), text, room);
 	case PROPERTY_DATE:

@@ -67,6 +67,17 @@ static void test_the_temperature_is_converted(void)
 	is("about/samples", "           2");
 }
 
+/* TCB of the status is 0 while it converts. */
+static void test_a_conversion_under_way_shows_as_measuring(void)
+{
+	size_t size;
+
+	is("temperature", "        21.5");
+	is("about/measuring", "0");
+	chip->family->memory(chip, &size)[0x214] &= 0x7f;
+	is("about/measuring", "1");
+}
+
 /* Of all months, the first and the last: owserver is a month late. */
 static void test_the_clock_has_the_date_that_was_set(void)
 {
@@ -241,6 +252,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_the_temperature_is_converted);
+	RUN_TEST(test_a_conversion_under_way_shows_as_measuring);
 	RUN_TEST(test_the_clock_has_the_date_that_was_set);
 	RUN_TEST(test_a_mission_logs_a_sample_at_each_interval);
 	RUN_TEST(test_a_log_that_rolls_over_begins_with_its_oldest_sample);

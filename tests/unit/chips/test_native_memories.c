@@ -271,10 +271,10 @@ static void test_a_wiper_is_put_where_it_is_told(void)
 
 static void test_the_registers_of_a_ds2404_are_written_one_by_one(void)
 {
-	static const char *const flags[] = {"auto", "delay", "start", "running"};
+	static const char *const flags[] = {"auto", "delay", "running"};
 
 	begin("DS2404");
-	for (unsigned i = 0; i < 4; i++) {
+	for (unsigned i = 0; i < 3; i++) {
 		expects(flags[i], "0");
 		put(flags[i], "1");
 		expects(flags[i], "1");
@@ -298,6 +298,31 @@ static void test_the_registers_of_a_ds2404_are_written_one_by_one(void)
 	expects("readonly/clock", "1");
 	refuses("readonly/clock", "0", -EIO);
 	refuses("udate", "4", -EIO);
+}
+
+/* Its bit in the chip stops it. */
+static void test_the_interval_timer_of_a_ds2404_counts_between_start_and_stop(void)
+{
+	begin("DS2404");
+	put("running", "1");
+	put("auto", "0");
+	put("interval/udate", "100");
+	expects("start", "1");
+	wait_s(10);
+	put("start", "0");
+	expects("start", "0");
+	TEST_ASSERT_EQUAL_HEX8(0x40, memory()[0x201] & 0x40);
+	uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(chip, "interval/udate"), NULL);
+	double stopped = answer_to(id)->number;
+
+	TEST_ASSERT_DOUBLE_WITHIN(2, 110, stopped);
+	wait_s(20);
+	id = ask(BUS_READ, BUS_INPUT, true, of(chip, "interval/udate"), NULL);
+	TEST_ASSERT_EQUAL_DOUBLE(stopped, answer_to(id)->number);
+	put("start", "1");
+	wait_s(20);
+	id = ask(BUS_READ, BUS_INPUT, true, of(chip, "interval/udate"), NULL);
+	TEST_ASSERT_DOUBLE_WITHIN(2, stopped + 20, answer_to(id)->number);
 }
 
 /* The status register loses its flags when it is read. */
@@ -382,6 +407,7 @@ int main(void)
 	RUN_TEST(test_the_other_bits_of_a_clocks_control_byte_stay);
 	RUN_TEST(test_a_wiper_is_put_where_it_is_told);
 	RUN_TEST(test_the_registers_of_a_ds2404_are_written_one_by_one);
+	RUN_TEST(test_the_interval_timer_of_a_ds2404_counts_between_start_and_stop);
 	RUN_TEST(test_an_alarm_of_a_ds2404_is_reported_once_whoever_reads_the_register);
 	RUN_TEST(test_the_switches_of_a_ds28e04);
 	RUN_TEST(test_what_follows_the_memory_of_a_ds28e04_is_not_written);

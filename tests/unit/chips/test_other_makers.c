@@ -45,8 +45,11 @@ static void test_sensors_with_one_word_are_read(void)
 	reads("RPM", "         321");
 	reads("reading", "         321");
 	wire_set(slave, "rpm", -5);
-	reads("RPM", "  4294967291");
+	reads("RPM", "          -5");
+	TEST_ASSERT_EQUAL_DOUBLE(-5, go(BUS_READ, "RPM", NULL)->number);
 	reads("reading", "       65531");
+	wire_set(slave, "rpm", -1);
+	reads("RPM", "          -1");
 	tearDown();
 	setUp();
 	begin("mCM001");
