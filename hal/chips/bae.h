@@ -2,7 +2,7 @@
 /*
  * BAE 0910 and 0911 by Pascal Baerten: microcontrollers whose functions are registers, family FC.
  * What a command gives has a CRC16; a command that writes is acknowledged with one, and acts when
- * the master confirms it. Nothing shows whether the confirmation was heard.
+ * the master confirms it. Nothing but what is read back shows whether the confirmation was heard.
  */
 #ifndef HAL_CHIPS_BAE_H
 #define HAL_CHIPS_BAE_H

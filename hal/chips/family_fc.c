@@ -15,6 +15,7 @@
 #define REGISTERS 0x7800 /* of the 0911 */
 #define GLOBALS 64
 #define ERASE_NS (25 * TXN_MS)
+#define LATE_S 2 /* between the write of a clock and a look at it */
 
 enum { READ_VERSION = 0x11, READ_TYPE, EXTENDED, ERASE = 0x16 };
 
@@ -46,8 +47,24 @@ static int write_field(struct txn *txn)
 	return err ? err : field_write(txn);
 }
 
-/* All bytes of a register at once; then read back, unless it lives. */
-static int write_register(struct txn *txn, bool lives)
+static uint32_t number_of(const uint8_t *bytes, unsigned n)
+{
+	uint32_t number = 0;
+
+	for (unsigned i = 0; i < n; i++)
+		number = number << 8 | bytes[i];
+	return number;
+}
+
+/* How what is read back shows that a register was written. */
+enum proof {
+	SAME,
+	SECONDS, /* it counts seconds, and may have gone on */
+	NONE,    /* it changes by itself, or by being written: a lost confirmation is not seen */
+};
+
+/* All bytes of a register at once; then they are read back. */
+static int write_register(struct txn *txn, enum proof proof)
 {
 	const struct field *field = &txn->property->field;
 	const struct area *area = txn->device->family->areas[field->area];
@@ -66,20 +83,27 @@ static int write_register(struct txn *txn, bool lives)
 		txn_void(txn);
 		txn->phase = 1;
 		err = bae_store(txn, area, at, bytes, n);
-		return err ? err : lives ? 0 : TXN_MORE;
+		return err ? err : proof == NONE ? 0 : TXN_MORE;
 	}
 	err = bae_load(txn, area, at, in, n);
-	return err ? err : memcmp(in, bytes, n) == 0 ? 0 : -EIO;
+	if (err)
+		return err;
+	return number_of(in, n) - (uint32_t)left <= (proof == SECONDS ? LATE_S : 0) ? 0 : -EIO;
 }
 
 static int write_kept(struct txn *txn)
 {
-	return write_register(txn, false);
+	return write_register(txn, SAME);
+}
+
+static int write_clock(struct txn *txn)
+{
+	return write_register(txn, SECONDS);
 }
 
 static int write_live(struct txn *txn)
 {
-	return write_register(txn, true);
+	return write_register(txn, NONE);
 }
 
 static int read_global(struct txn *txn)
@@ -191,6 +215,7 @@ static const struct area *const areas[] = {
 enum {
 	KEPT = 1,
 	LIVE,
+	CLOCK,
 	WAY_FIELD,
 	WAY_GLOBAL,
 	WAY_WORDS,
@@ -206,6 +231,7 @@ enum {
 static const struct property_how how[] = {
 	[KEPT] = {.read = read_field, .write = write_kept},
 	[LIVE] = {.read = read_field, .write = write_live},
+	[CLOCK] = {.read = read_field, .write = write_clock},
 	[WAY_FIELD] = {.read = read_field, .write = write_field},
 	[WAY_GLOBAL] = {.read = read_global, .write = write_global},
 	[WAY_WORDS] = {.read = read_words},
@@ -262,7 +288,7 @@ static const struct property properties[] = {
 	REGISTER_910("910/cntc", UNSIGNED, VOLATILE, BOTH, 0x3, 1, KEPT),
 	REGISTER_910("910/count", UNSIGNED, VOLATILE, BOTH, 0x2c, 4, LIVE),
 	REGISTER_910("910/cps", UNSIGNED, VOLATILE, READ, 0x1e, 2, KEPT),
-	REGISTER_910("910/date", DATE, VOLATILE, BOTH, 0x28, 4, LIVE),
+	REGISTER_910("910/date", DATE, VOLATILE, BOTH, 0x28, 4, CLOCK),
 	REGISTER_910("910/duty1", UNSIGNED, VOLATILE, BOTH, 0xe, 2, KEPT),
 	REGISTER_910("910/duty2", UNSIGNED, VOLATILE, BOTH, 0x10, 2, KEPT),
 	REGISTER_910("910/duty3", UNSIGNED, VOLATILE, BOTH, 0x12, 2, KEPT),
@@ -279,7 +305,7 @@ static const struct property properties[] = {
 	REGISTER_910("910/pc3", UNSIGNED, VOLATILE, BOTH, 0x3c, 2, LIVE),
 	REGISTER_910("910/period1", UNSIGNED, VOLATILE, BOTH, 0xa, 2, KEPT),
 	REGISTER_910("910/period2", UNSIGNED, VOLATILE, BOTH, 0xc, 2, KEPT),
-	REGISTER_910("910/pio", UNSIGNED, VOLATILE, BOTH, 0x31, 1, LIVE),
+	REGISTER_910("910/pio", UNSIGNED, VOLATILE, BOTH, 0x31, 1, KEPT),
 	REGISTER_910("910/pioc", UNSIGNED, VOLATILE, BOTH, 0x5, 1, KEPT),
 	REGISTER_910("910/resetcnt", UNSIGNED, VOLATILE, BOTH, 0x56, 2, LIVE),
 	REGISTER_910("910/rtcc", UNSIGNED, VOLATILE, BOTH, 0x7, 1, KEPT),
@@ -287,7 +313,7 @@ static const struct property properties[] = {
 	REGISTER_910("910/stalledcnt", UNSIGNED, VOLATILE, BOTH, 0x5a, 2, LIVE),
 	REGISTER_910("910/tpm1c", UNSIGNED, VOLATILE, BOTH, 0x8, 1, KEPT),
 	REGISTER_910("910/tpm2c", UNSIGNED, VOLATILE, BOTH, 0x9, 1, KEPT),
-	REGISTER_910("910/udate", UNSIGNED, SECOND, BOTH, 0x28, 4, LIVE),
+	REGISTER_910("910/udate", UNSIGNED, SECOND, BOTH, 0x28, 4, CLOCK),
 	REGISTER_910("910/usera", UNSIGNED, VOLATILE, BOTH, 0x60, 1, KEPT),
 	REGISTER_910("910/userb", UNSIGNED, VOLATILE, BOTH, 0x61, 1, KEPT),
 	REGISTER_910("910/userc", UNSIGNED, VOLATILE, BOTH, 0x62, 1, KEPT),
@@ -346,7 +372,7 @@ static const struct property properties[] = {
 	RUNS("911/lcd/text", ASCII, VOLATILE, WRITE, WAY_TEXT, .size = 255, .arg = 0),
 	FOLDER("911/pio", NEW),
 	ARRAY_911("911/pio/direction", YESNO, BOTH, 22, 0x7916, 1, KEPT),
-	ARRAY_911("911/pio/pio", YESNO, BOTH, 22, 0x7900, 1, LIVE),
+	ARRAY_911("911/pio/pio", YESNO, BOTH, 22, 0x7900, 1, KEPT),
 	ARRAY_911("911/pio/pull_down", YESNO, BOTH, 8, 0x79a0, 1, KEPT),
 	ARRAY_911("911/pio/pull_enable", YESNO, BOTH, 22, 0x7942, 1, KEPT),
 	ARRAY_911("911/pio/strength", YESNO, BOTH, 22, 0x792c, 1, KEPT),
@@ -377,7 +403,7 @@ static const struct property properties[] = {
 	REGISTER_911("911/system/poweronflags", UNSIGNED, VOLATILE, READ, 0x7a29, 1, KEPT),
 	REGISTER_911("911/system/watchdog1w", UNSIGNED, VOLATILE, BOTH, 0x7ffb, 1, KEPT),
 	FOLDER("911/timers", NEW),
-	REGISTER_911("911/timers/clock", UNSIGNED, VOLATILE, BOTH, 0x7f7a, 4, LIVE),
+	REGISTER_911("911/timers/clock", UNSIGNED, VOLATILE, BOTH, 0x7f7a, 4, CLOCK),
 	ARRAY_911("911/timers/countdown", UNSIGNED, BOTH, 32, 0x7f8b, 1, LIVE),
 	REGISTER_911("911/timers/countdown_number", UNSIGNED, VOLATILE, BOTH, 0x7a12, 1, KEPT),
 	REGISTER_911("911/timers/random", UNSIGNED, VOLATILE, READ, 0x7f7e, 1, KEPT),

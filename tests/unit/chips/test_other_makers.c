@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Devices of other makers than the chips': read what they measure, written where they can be. */
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "unity.h"
@@ -374,6 +375,41 @@ static void test_registers_of_a_bae0910_are_read_and_written(void)
 	refuses(-ENOENT, BUS_READ, "eeprom/page.2", NULL);
 }
 
+/* A write acts when its confirmation is heard, and the device says nothing of that. */
+static void test_an_output_or_a_clock_of_a_bae_is_written_though_a_confirmation_is_lost(void)
+{
+	static const struct {
+		const char *chip, *property, *value;
+		unsigned bytes;
+	} rows[] = {{"BAE0910", "910/pio", "1", 1},
+	            {"BAE0910", "910/udate", "1000000", 4},
+	            {"BAE0911", "911/pio/pio.3", "1", 1},
+	            {"BAE0911", "911/timers/clock", "1000000", 4}};
+	struct trouble trouble = {.kind = TROUBLE_NONE};
+
+	for (unsigned i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		begin(rows[i].chip);
+		start();
+		reads("version", "0C.02");
+		TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, rows[i].property, NULL)->err);
+		wire_net.trouble = &trouble;
+		trouble_none(&trouble);
+		trouble.kind = TROUBLE_DEAF;
+		/* behind the selection, the command, its checksum */
+		trouble.at = 8 * (9 + 4 + rows[i].bytes + 2);
+		writes(rows[i].property, rows[i].value);
+		trouble.kind = TROUBLE_NONE;
+		TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(
+			rows[i].bytes == 4 ? 2 : 0, strtod(rows[i].value, NULL),
+			go(BUS_READ, rows[i].property, NULL)->number, rows[i].property);
+		wire_net.trouble = NULL;
+		tearDown();
+		setUp();
+	}
+	begin("BAE0910");
+	start();
+}
+
 static void test_functions_of_a_bae0911_are_registers(void)
 {
 	begin("BAE0911");
@@ -538,6 +574,7 @@ int main(void)
 	RUN_TEST(test_a_display_shows_lines_and_screens);
 	RUN_TEST(test_a_display_has_pins_counters_and_memory);
 	RUN_TEST(test_registers_of_a_bae0910_are_read_and_written);
+	RUN_TEST(test_an_output_or_a_clock_of_a_bae_is_written_though_a_confirmation_is_lost);
 	RUN_TEST(test_functions_of_a_bae0911_are_registers);
 	RUN_TEST(test_a_bae0911_works_an_expander_a_card_and_texts);
 	RUN_TEST(test_lights_fade_to_what_is_written);
