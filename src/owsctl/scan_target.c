@@ -14,6 +14,7 @@
 #define LISTING_MAX (256u * 1024)
 #define BUSES_MAX 256
 #define COUPLER 0x1f /* DS2409 */
+#define COUPLERS_MAX 512
 
 /* The requests for a device besides those for the properties of its kind. */
 enum { ASK_TYPE, ASK_ALIAS, ASK_PROPERTIES, ASKS = ASK_PROPERTIES + SCAN_PROPERTIES };
@@ -81,19 +82,40 @@ static int take_list(struct scan *scan, char *text)
 	return CTL_DONE;
 }
 
-/* What is behind the couplers that were found, and behind those that are found there. */
+/* Was a coupler of this id found before, on another way? */
+static bool is_found_before(const struct scan *scan, unsigned i)
+{
+	const char *id = strrchr(scan->device[i].path, '/');
+
+	for (unsigned n = 0; n < i; n++)
+		if (scan->device[n].family == COUPLER &&
+		    strcmp(strrchr(scan->device[n].path, '/'), id) == 0)
+			return true;
+	return false;
+}
+
+/*
+ * What is behind the couplers that were found, and behind those that are found there. Each is
+ * looked behind once, so a server that shows one behind itself leads nowhere.
+ */
 static int find_behind(struct target *target, struct scan *scan, char *text)
 {
 	static const char *const branches[] = {"main", "aux"};
 	char path[sizeof(scan->device->path) + 8];
+	unsigned couplers = 0;
 	int status = CTL_DONE;
 
-	for (unsigned i = 0; i < scan->count; i++)
-		for (unsigned n = 0; n < 2 && scan->device[i].family == COUPLER && !status; n++) {
+	for (unsigned i = 0; i < scan->count && !status; i++) {
+		if (scan->device[i].family != COUPLER || is_found_before(scan, i))
+			continue;
+		if (++couplers > COUPLERS_MAX)
+			return ctl_fail("%s: more than %d couplers", target->name, COUPLERS_MAX);
+		for (unsigned n = 0; n < 2 && !status; n++) {
 			snprintf(path, sizeof(path), "%s/%s", scan->device[i].path, branches[n]);
 			if (list(target, path, true, text) == 0)
 				status = take_list(scan, text);
 		}
+	}
 	return status;
 }
 

@@ -281,6 +281,34 @@ def test_a_scan_that_takes_long_says_how_far_it_is(scene):
     assert len(done.stdout.splitlines()) == 9
 
 
+class Maze(peer.Peer):
+    """Behind each branch of a coupler are `couplers` couplers, of the same ids or of new ones."""
+    couplers, new = 3, False
+
+    def _list(self, path):
+        way = path.rstrip("/")
+        if way.rsplit("/", 1)[-1] not in ("main", "aux"):
+            return super()._list(path)
+        first = 1 + (len(self.requests) * self.couplers if self.new else 0)
+        return [f"{way}/1F.{first + n:012X}" for n in range(self.couplers)]
+
+
+def test_a_scan_looks_behind_each_coupler_once(scene):
+    with Maze({"/1F.000000000001/type": "DS2409"}) as server:
+        paths = [line.split()[0] for line in lines(scene, server.target, "scan")]
+        assert paths.count("/1F.000000000001/main/1F.000000000002") == 1, paths
+        behind = [r for r in server.requests
+                  if r.kind == peer.DIRALL and r.path.rstrip("/").endswith(("/main", "/aux"))]
+        assert len(behind) == 2 * server.couplers, behind
+
+
+def test_a_scan_of_couplers_without_end_fails(scene):
+    with Maze({"/1F.000000000001/type": "DS2409"}) as server:
+        server.couplers, server.new = 40, True
+        done = ctl(scene, server.target, "scan", status=1)
+        assert "more than 512 couplers" in done.stderr, done
+
+
 def test_an_alias_names_the_signals(scene):
     server = scene.owserver(mock=["28", "26"])
     battery, thermometer = server.devices()
