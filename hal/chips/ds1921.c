@@ -8,13 +8,13 @@
 #include "hal/chips/family.h"
 #include "hal/chips/logger.h"
 
-#define CHECKED .address_bytes = 2, .read = 0xa5, .block = PAGE, .check = AREA_CRC16
+#define CHECKED .address_bytes = 2, .read = 0xa5, .block = DS1921_PAGE, .check = AREA_CRC16
 
 const struct area ds1921_memory = {
 	.name = "memory",
 	.size = 512,
 	CHECKED,
-	.row = PAGE,
+	.row = DS1921_PAGE,
 	.write = 0x0f,
 	.verify = 0xaa,
 	.copy = 0x55,
@@ -22,9 +22,9 @@ const struct area ds1921_memory = {
 	.copy_ns = TXN_MS,
 };
 const struct area ds1921_registers = {
-	.name = "registers", .at = DS1921_REGISTERS, .size = REGISTERS_END, CHECKED};
+	.name = "registers", .at = DS1921_REGISTERS, .size = DS1921_REGISTERS_END, CHECKED};
 const struct area ds1921_histogram = {.name = "histogram", .at = 0x800, .size = 128, CHECKED};
-const struct area ds1921_log = {.name = "log", .at = 0x1000, .size = LOG_ROOM, CHECKED};
+const struct area ds1921_log = {.name = "log", .at = 0x1000, .size = DS1921_LOG_ROOM, CHECKED};
 
 const struct ds1921_version *ds1921_version_of(const struct device *device)
 {
@@ -60,19 +60,19 @@ int ds1921_read_version(struct txn *txn)
 	if (!version)
 		return -EIO;
 	switch (txn->property->arg) {
-	case RESOLUTION:
+	case DS1921_RESOLUTION:
 		txn->number[0] = version->step;
 		break;
-	case LEAST:
+	case DS1921_LEAST:
 		txn->number[0] = version->least;
 		break;
-	case MOST:
+	case DS1921_MOST:
 		txn->number[0] = version->most;
 		break;
-	case GAP:
+	case DS1921_GAP:
 		txn->number[0] = 4 * version->step;
 		break;
-	case BIN:
+	case DS1921_BIN:
 		txn->number[0] = ds1921_celsius(version, 4 * (unsigned)txn->element);
 		break;
 	default:
@@ -88,18 +88,18 @@ int ds1921_read_version(struct txn *txn)
 
 int ds1921_read_bins(struct txn *txn)
 {
-	txn->number[0] = BINS;
+	txn->number[0] = DS1921_BINS;
 	return 0;
 }
 
 int ds1921_read_clock(struct txn *txn)
 {
-	uint8_t bytes[CLOCK_ALARM];
-	int err = area_read(txn, &ds1921_registers, CLOCK, bytes, sizeof(bytes));
+	uint8_t bytes[DS1921_CLOCK_ALARM];
+	int err = area_read(txn, &ds1921_registers, DS1921_CLOCK, bytes, sizeof(bytes));
 
 	if (err)
 		return err;
-	memmove(bytes + WEEKDAY, bytes + WEEKDAY + 1, 3);
+	memmove(bytes + DS1921_WEEKDAY, bytes + DS1921_WEEKDAY + 1, 3);
 	return logger_date(bytes, &txn->number[0]);
 }
 
@@ -122,16 +122,16 @@ static int take_stamp(const uint8_t *stamp, double *start)
 /* dates: of a logger that has logged nothing yet there is no stamp. */
 static int read_mission(struct txn *txn, struct mission *mission, bool dates)
 {
-	uint8_t page[PAGE];
-	int err = area_read(txn, &ds1921_registers, 0, page, PAGE);
+	uint8_t page[DS1921_PAGE];
+	int err = area_read(txn, &ds1921_registers, 0, page, DS1921_PAGE);
 
 	if (err)
 		return err;
-	mission->interval = 60 * page[RATE];
-	mission->log.samples = logger_count(page + SAMPLES, 3);
-	mission->log.room = LOG_ROOM;
-	mission->log.rollover = page[CONTROL] & RO;
-	return dates ? take_stamp(page + STAMP, &mission->start) : 0;
+	mission->interval = 60 * page[DS1921_RATE];
+	mission->log.samples = logger_count(page + DS1921_SAMPLES, 3);
+	mission->log.room = DS1921_LOG_ROOM;
+	mission->log.rollover = page[DS1921_CONTROL] & DS1921_RO;
+	return dates ? take_stamp(page + DS1921_STAMP, &mission->start) : 0;
 }
 
 int ds1921_read_start(struct txn *txn)
@@ -198,22 +198,23 @@ static void take_times(struct txn *txn, const uint8_t *times, const struct missi
 	int what = txn->property->arg & 0xff;
 	unsigned used = 0;
 
-	while (used < TIMES && times[4 * used + 3])
+	while (used < DS1921_TIMES && times[4 * used + 3])
 		used++;
-	for (unsigned i = 0; i < TIMES && what != TIMES_HOW_MANY; i++) {
+	for (unsigned i = 0; i < DS1921_TIMES && what != DS1921_TIMES_HOW_MANY; i++) {
 		const uint8_t *entry = times + 4 * i;
-		double sample = logger_count(entry, 3) + (what == TIMES_END ? entry[3] : 0);
+		double sample = logger_count(entry, 3) + (what == DS1921_TIMES_END ? entry[3] : 0);
 
-		txn->number[i] = what == TIMES_COUNT ? entry[3]
-		                                     : mission->start + mission->interval * sample;
+		txn->number[i] = what == DS1921_TIMES_COUNT
+		                         ? entry[3]
+		                         : mission->start + mission->interval * sample;
 	}
-	if (what == TIMES_HOW_MANY)
+	if (what == DS1921_TIMES_HOW_MANY)
 		txn->number[0] = used;
 }
 
 struct times_visit {
 	struct mission mission;
-	uint8_t first[PAGE];
+	uint8_t first[DS1921_PAGE];
 };
 _Static_assert(sizeof(struct times_visit) <= TXN_OWN, "no room for the visit");
 
@@ -222,14 +223,15 @@ int ds1921_read_times(struct txn *txn)
 {
 	struct times_visit *visit = txn_own(txn);
 	int what = txn->property->arg & 0xff;
-	unsigned first = (unsigned)txn->property->arg >> 8, head = PAGE - first % PAGE;
-	uint8_t times[4 * TIMES];
+	unsigned first = (unsigned)txn->property->arg >> 8,
+		 head = DS1921_PAGE - first % DS1921_PAGE;
+	uint8_t times[4 * DS1921_TIMES];
 	int err;
 
 	if (txn->phase < 2) {
 		err = txn->phase == 0
 		              ? read_mission(txn, &visit->mission,
-		                             what == TIMES_BEGIN || what == TIMES_END)
+		                             what == DS1921_TIMES_BEGIN || what == DS1921_TIMES_END)
 		              : area_read(txn, &ds1921_registers, first, visit->first, head);
 		txn->phase++;
 		return err ? err : TXN_MORE;
@@ -257,7 +259,7 @@ int ds1921_read_limit(struct txn *txn)
 int ds1921_read_trigger(struct txn *txn)
 {
 	uint8_t bytes[4];
-	int err = area_read(txn, &ds1921_registers, CLOCK_ALARM, bytes, 4);
+	int err = area_read(txn, &ds1921_registers, DS1921_CLOCK_ALARM, bytes, 4);
 
 	txn->number[0] = 0;
 	for (unsigned i = 0; i < 4 && !err; i++)

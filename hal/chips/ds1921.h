@@ -12,27 +12,41 @@
 
 /* Registers, from 200h on. */
 enum {
-	CLOCK = 0x00,
-	WEEKDAY = 0x03,
-	CLOCK_ALARM = 0x07,
-	LOW = 0x0b,
-	HIGH = 0x0c,
-	RATE = 0x0d,
-	CONTROL = 0x0e,
-	READOUT = 0x11,
-	DELAY = 0x12,
-	STATUS = 0x14,
-	STAMP = 0x15,
-	SAMPLES = 0x1a,
-	DEVICE_SAMPLES = 0x1d,
-	LOW_TIMES = 0x20,
-	HIGH_TIMES = 0x50,
-	REGISTERS_END = 0x80,
+	DS1921_CLOCK = 0x00,
+	DS1921_WEEKDAY = 0x03,
+	DS1921_CLOCK_ALARM = 0x07,
+	DS1921_LOW = 0x0b,
+	DS1921_HIGH = 0x0c,
+	DS1921_RATE = 0x0d,
+	DS1921_CONTROL = 0x0e,
+	DS1921_READOUT = 0x11,
+	DS1921_DELAY = 0x12,
+	DS1921_STATUS = 0x14,
+	DS1921_STAMP = 0x15,
+	DS1921_SAMPLES = 0x1a,
+	DS1921_DEVICE_SAMPLES = 0x1d,
+	DS1921_LOW_TIMES = 0x20,
+	DS1921_HIGH_TIMES = 0x50,
+	DS1921_REGISTERS_END = 0x80,
 };
-enum { EOSC = 0x80, EMCLR = 0x40, EM = 0x10, RO = 0x08, TLS = 0x04, THS = 0x02 }; /* control */
-enum { TCB = 0x80, MEMCLR = 0x40, MIP = 0x20, CLEARED = 0x27 }; /* status; CLEARED by writing 0 */
-enum { PAGE = 32, LOG_ROOM = 2048, BINS = 63, TIMES = 12 };
-enum { CLEAR_MEMORY = 0x3c, CONVERT = 0x44 };
+/* Bits of the control register. */
+enum {
+	DS1921_EOSC = 0x80,
+	DS1921_EMCLR = 0x40,
+	DS1921_EM = 0x10,
+	DS1921_RO = 0x08,
+	DS1921_TLS = 0x04,
+	DS1921_THS = 0x02,
+};
+/* Bits of the status register; CLEARED: those that a write of 0 clears. */
+enum {
+	DS1921_TCB = 0x80,
+	DS1921_MEMCLR = 0x40,
+	DS1921_MIP = 0x20,
+	DS1921_CLEARED = 0x27,
+};
+enum { DS1921_PAGE = 32, DS1921_LOG_ROOM = 2048, DS1921_BINS = 63, DS1921_TIMES = 12 };
+enum { DS1921_CLEAR_MEMORY = 0x3c, DS1921_CONVERT = 0x44 };
 
 extern const struct area ds1921_memory, ds1921_registers, ds1921_histogram, ds1921_log;
 
@@ -48,11 +62,11 @@ const struct ds1921_version *ds1921_version_of(const struct device *device);
 double ds1921_celsius(const struct ds1921_version *version, unsigned code);
 
 /* arg of what is read of the version. */
-enum { RESOLUTION, LEAST, MOST, GAP, BIN, NAME };
+enum { DS1921_RESOLUTION, DS1921_LEAST, DS1921_MOST, DS1921_GAP, DS1921_BIN, DS1921_NAME };
 
 /* arg of the times beyond a limit: where they begin, and what of them. */
-enum { TIMES_COUNT, TIMES_BEGIN, TIMES_END, TIMES_HOW_MANY };
-#define TIMES_ARG(first, what) ((first) << 8 | (what))
+enum { DS1921_TIMES_COUNT, DS1921_TIMES_BEGIN, DS1921_TIMES_END, DS1921_TIMES_HOW_MANY };
+#define DS1921_TIMES_ARG(first, what) ((first) << 8 | (what))
 
 /* property.arg of the limits: their register. */
 int ds1921_read_version(struct txn *txn);

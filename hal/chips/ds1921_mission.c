@@ -14,30 +14,30 @@ static const struct logger_chip chip = {.copy = 0x55};
 
 struct visit {
 	struct logger_write write;
-	uint8_t page[PAGE]; /* the registers as they were */
-	uint8_t bytes[8];   /* what is written */
-	uint8_t want;       /* the rate of the mission that is to run */
+	uint8_t page[DS1921_PAGE]; /* the registers as they were */
+	uint8_t bytes[8];          /* what is written */
+	uint8_t want;              /* the rate of the mission that is to run */
 };
 _Static_assert(sizeof(struct visit) <= TXN_OWN, "no room for the visit");
 
 /* The first page of the registers as it is now. */
-static int look(struct txn *txn, uint8_t page[PAGE])
+static int look(struct txn *txn, uint8_t page[DS1921_PAGE])
 {
-	return area_fetch(txn, &ds1921_registers, 0, page, PAGE);
+	return area_fetch(txn, &ds1921_registers, 0, page, DS1921_PAGE);
 }
 
 static int refuse_mission(const struct visit *visit)
 {
-	return visit->page[STATUS] & MIP ? -EBUSY : 0;
+	return visit->page[DS1921_STATUS] & DS1921_MIP ? -EBUSY : 0;
 }
 
 /* The result of a conversion is new when the counter of the device has moved. */
 int ds1921_read_temperature(struct txn *txn)
 {
-	static const uint8_t convert = CONVERT;
+	static const uint8_t convert = DS1921_CONVERT;
 	const struct ds1921_version *version = ds1921_version_of(txn->device);
 	struct visit *visit = txn_own(txn);
-	uint8_t page[PAGE];
+	uint8_t page[DS1921_PAGE];
 	int err;
 
 	if (!version)
@@ -57,10 +57,10 @@ int ds1921_read_temperature(struct txn *txn)
 	err = look(txn, page);
 	if (err)
 		return err;
-	if (memcmp(page + DEVICE_SAMPLES, visit->page + DEVICE_SAMPLES, 3) == 0 ||
-	    !(page[STATUS] & TCB))
+	if (memcmp(page + DS1921_DEVICE_SAMPLES, visit->page + DS1921_DEVICE_SAMPLES, 3) == 0 ||
+	    !(page[DS1921_STATUS] & DS1921_TCB))
 		return -EBADMSG;
-	txn->number[0] = ds1921_celsius(version, page[READOUT]);
+	txn->number[0] = ds1921_celsius(version, page[DS1921_READOUT]);
 	return 0;
 }
 
@@ -124,26 +124,26 @@ int ds1921_write_trigger(struct txn *txn)
 		return -EINVAL;
 	for (unsigned i = number; number && i <= 4; i++)
 		value |= UINT32_C(0x80) << 8 * (i - 1);
-	return change(txn, CLOCK_ALARM, 4, 0x80808080, value);
+	return change(txn, DS1921_CLOCK_ALARM, 4, 0x80808080, value);
 }
 
 /* Flags are cleared by writing 0, and set by nothing. */
 static int clear_flags(struct txn *txn, uint8_t keep, uint8_t wanted)
 {
 	struct visit *visit = txn_own(txn);
-	uint8_t page[PAGE];
+	uint8_t page[DS1921_PAGE];
 	int err;
 
 	switch (txn->phase) {
 	case 0:
 		err = look(txn, visit->page);
-		if (err || (visit->page[STATUS] & CLEARED & ~keep) == 0)
-			return err ? err : wanted & ~visit->page[STATUS] ? -EIO : 0;
+		if (err || (visit->page[DS1921_STATUS] & DS1921_CLEARED & ~keep) == 0)
+			return err ? err : wanted & ~visit->page[DS1921_STATUS] ? -EIO : 0;
 		visit->bytes[0] = keep;
 		txn->phase = 1;
 		return TXN_MORE;
 	case 1:
-		err = logger_write(txn, &chip, &visit->write, DS1921_REGISTERS + STATUS,
+		err = logger_write(txn, &chip, &visit->write, DS1921_REGISTERS + DS1921_STATUS,
 		                   visit->bytes, 1);
 		if (err)
 			return err;
@@ -153,7 +153,9 @@ static int clear_flags(struct txn *txn, uint8_t keep, uint8_t wanted)
 		err = look(txn, page);
 		if (err)
 			return err;
-		return page[STATUS] & CLEARED & ~keep || wanted & ~page[STATUS] ? -EIO : 0;
+		return page[DS1921_STATUS] & DS1921_CLEARED & ~keep || wanted & ~page[DS1921_STATUS]
+		               ? -EIO
+		               : 0;
 	}
 }
 
@@ -163,7 +165,7 @@ int ds1921_write_status(struct txn *txn)
 
 	if (txn->number[0] > 0xff)
 		return -EINVAL;
-	return clear_flags(txn, byte, byte & CLEARED);
+	return clear_flags(txn, byte, byte & DS1921_CLEARED);
 }
 
 int ds1921_write_flag(struct txn *txn)
@@ -215,22 +217,22 @@ static void put_clock(struct visit *visit, double seconds)
 {
 	uint8_t bcd[LOGGER_TIME];
 
-	logger_bcd(seconds, bcd, &visit->bytes[WEEKDAY]);
+	logger_bcd(seconds, bcd, &visit->bytes[DS1921_WEEKDAY]);
 	memcpy(visit->bytes, bcd, 3);
-	memcpy(visit->bytes + WEEKDAY + 1, bcd + LOGGER_DATE, 3);
+	memcpy(visit->bytes + DS1921_WEEKDAY + 1, bcd + LOGGER_DATE, 3);
 }
 
 /* The command has to follow the copy at once, before any other one. */
 static int clear(struct txn *txn)
 {
-	static const uint8_t command = CLEAR_MEMORY;
+	static const uint8_t command = DS1921_CLEAR_MEMORY;
 	struct visit *visit = txn_own(txn);
 	int err;
 
 	if (txn->phase == ALLOW_CLEAR) {
-		visit->bytes[0] = visit->page[CONTROL] | EMCLR;
-		err = logger_write_only(txn, &chip, &visit->write, DS1921_REGISTERS + CONTROL,
-		                        visit->bytes, 1);
+		visit->bytes[0] = visit->page[DS1921_CONTROL] | DS1921_EMCLR;
+		err = logger_write_only(txn, &chip, &visit->write,
+		                        DS1921_REGISTERS + DS1921_CONTROL, visit->bytes, 1);
 		if (err)
 			return err;
 		txn->phase = CLEAR;
@@ -244,8 +246,10 @@ static int clear(struct txn *txn)
 	txn->phase = SET_CLOCK;
 	if (err)
 		return err;
-	return (visit->page[STATUS] & MEMCLR) && !(visit->page[CONTROL] & EMCLR) ? TXN_MORE
-	                                                                         : -EBADMSG;
+	return (visit->page[DS1921_STATUS] & DS1921_MEMCLR) &&
+	                       !(visit->page[DS1921_CONTROL] & DS1921_EMCLR)
+	               ? TXN_MORE
+	               : -EBADMSG;
 }
 
 static int begin(struct txn *txn, unsigned wanted)
@@ -255,18 +259,20 @@ static int begin(struct txn *txn, unsigned wanted)
 
 	if (err)
 		return err;
-	if (visit->page[STATUS] & MIP && !(wanted & STOPS))
+	if (visit->page[DS1921_STATUS] & DS1921_MIP && !(wanted & STOPS))
 		return -EBUSY;
-	txn->phase = visit->page[STATUS] & MIP ? STOP : wanted & CLEARS ? ALLOW_CLEAR : SET_CLOCK;
-	visit->bytes[0] = (uint8_t)~MIP;
+	txn->phase = visit->page[DS1921_STATUS] & DS1921_MIP ? STOP
+	             : wanted & CLEARS                       ? ALLOW_CLEAR
+	                                                     : SET_CLOCK;
+	visit->bytes[0] = (uint8_t)~DS1921_MIP;
 	return TXN_MORE;
 }
 
 /* Control of a mission that runs: clock on, memory not to be cleared. */
 static uint8_t control_for(uint8_t control, unsigned wanted)
 {
-	control &= (uint8_t) ~(EOSC | EMCLR);
-	return wanted & EASY ? TLS | THS : control;
+	control &= (uint8_t) ~(DS1921_EOSC | DS1921_EMCLR);
+	return wanted & EASY ? DS1921_TLS | DS1921_THS : control;
 }
 
 static int start_mission(struct txn *txn, unsigned wanted)
@@ -276,47 +282,48 @@ static int start_mission(struct txn *txn, unsigned wanted)
 	visit->bytes[0] = visit->want;
 	if (!(wanted & STARTS))
 		return 0;
-	return put(txn, RATE, 1);
+	return put(txn, DS1921_RATE, 1);
 }
 
 /* Did it start? Only a cleared memory and an enabled mission let it. */
 static int is_started(struct txn *txn, unsigned wanted)
 {
 	struct visit *visit = txn_own(txn);
-	uint8_t page[PAGE];
+	uint8_t page[DS1921_PAGE];
 	int err = look(txn, page);
 
 	if (err)
 		return err;
-	if (page[RATE] != visit->want)
+	if (page[DS1921_RATE] != visit->want)
 		return -EBADMSG;
-	return page[STATUS] & MIP || !(wanted & MUST_RUN) ? 0 : -EIO;
+	return page[DS1921_STATUS] & DS1921_MIP || !(wanted & MUST_RUN) ? 0 : -EIO;
 }
 
 static int set_clock(struct txn *txn, unsigned wanted, double seconds)
 {
 	struct visit *visit = txn_own(txn);
 
-	if (!(wanted & SETS_CLOCK) && !(wanted & STARTS && visit->page[CONTROL] & EOSC)) {
+	if (!(wanted & SETS_CLOCK) &&
+	    !(wanted & STARTS && visit->page[DS1921_CONTROL] & DS1921_EOSC)) {
 		txn->phase = RUN_CLOCK;
 		return TXN_MORE;
 	}
 	if (!visit->write.step)
 		put_clock(visit, wanted & SETS_CLOCK ? seconds : (double)time(NULL));
-	return put(txn, CLOCK, CLOCK_ALARM);
+	return put(txn, DS1921_CLOCK, DS1921_CLOCK_ALARM);
 }
 
 static int run_clock(struct txn *txn, unsigned wanted)
 {
 	struct visit *visit = txn_own(txn);
-	uint8_t control = control_for(visit->page[CONTROL], wanted);
+	uint8_t control = control_for(visit->page[DS1921_CONTROL], wanted);
 
-	if (!(wanted & (RUNS_CLOCK | STARTS)) || control == visit->page[CONTROL]) {
+	if (!(wanted & (RUNS_CLOCK | STARTS)) || control == visit->page[DS1921_CONTROL]) {
 		txn->phase = SET_DELAY;
 		return TXN_MORE;
 	}
 	visit->bytes[0] = control;
-	return put(txn, CONTROL, 1);
+	return put(txn, DS1921_CONTROL, 1);
 }
 
 static int do_steps(struct txn *txn, unsigned wanted, double seconds)
@@ -327,7 +334,7 @@ static int do_steps(struct txn *txn, unsigned wanted, double seconds)
 	case LOOK:
 		return begin(txn, wanted);
 	case STOP:
-		return put(txn, STATUS, 1);
+		return put(txn, DS1921_STATUS, 1);
 	case ALLOW_CLEAR:
 	case CLEAR:
 	case IS_CLEAR:
@@ -339,7 +346,7 @@ static int do_steps(struct txn *txn, unsigned wanted, double seconds)
 	case SET_DELAY:
 		memset(visit->bytes, 0, 2);
 		if (wanted & EASY)
-			return put(txn, DELAY, 2);
+			return put(txn, DS1921_DELAY, 2);
 		txn->phase = START;
 		return TXN_MORE;
 	case START:
@@ -370,7 +377,7 @@ int ds1921_clear_memory(struct txn *txn)
 /* It ends by a write of its flag. */
 static int stop_mission(struct txn *txn)
 {
-	return clear_flags(txn, (uint8_t)~MIP, 0);
+	return clear_flags(txn, (uint8_t)~DS1921_MIP, 0);
 }
 
 static int start_with(struct txn *txn, double rate, unsigned wanted)
@@ -398,7 +405,7 @@ int ds1921_write_running(struct txn *txn)
 	if (txn->phase == LOOK) {
 		int err = begin(txn, STARTS);
 
-		visit->want = visit->page[RATE];
+		visit->want = visit->page[DS1921_RATE];
 		return err == TXN_MORE && !visit->want ? -EINVAL : err;
 	}
 	return do_steps(txn, STARTS | MUST_RUN, 0);

@@ -19,12 +19,15 @@ int ds1922_load(struct txn *txn, const struct area *area, unsigned at, uint8_t *
 	return err ? err : txn_read_crc16(txn, command, 3, bytes, n);
 }
 
-const struct area ds1922_memory = {
-	.name = "memory", .size = PAGES * PAGE, .block = PAGE, .read = 0x69, .load = ds1922_load};
+const struct area ds1922_memory = {.name = "memory",
+                                   .size = DS1922_PAGES * DS1922_PAGE,
+                                   .block = DS1922_PAGE,
+                                   .read = 0x69,
+                                   .load = ds1922_load};
 const struct area ds1922_log = {.name = "log",
-                                .at = LOG,
-                                .size = LOG_SIZE,
-                                .block = PAGE,
+                                .at = DS1922_LOG,
+                                .size = DS1922_LOG_SIZE,
+                                .block = DS1922_PAGE,
                                 .read = 0x69,
                                 .load = ds1922_load};
 
@@ -64,9 +67,11 @@ double ds1922_humidity(uint8_t high, uint8_t low)
 
 double ds1922_interval_of(const uint8_t *page)
 {
-	unsigned rate = (page[RATE - CLOCK] | page[RATE + 1 - CLOCK] << 8) & RATE_MOST;
+	unsigned rate = (page[DS1922_RATE - DS1922_CLOCK] | page[DS1922_RATE + 1 - DS1922_CLOCK]
+	                                                            << 8) &
+	                DS1922_RATE_MOST;
 
-	return page[OSCILLATOR - CLOCK] & FAST ? rate : 60.0 * rate;
+	return page[DS1922_OSCILLATOR - DS1922_CLOCK] & DS1922_FAST ? rate : 60.0 * rate;
 }
 
 struct mission {
@@ -80,12 +85,15 @@ _Static_assert(sizeof(struct mission) <= TXN_OWN, "no room for the mission");
 /* How the samples share the log: one quantity, both alike, or one of them wide. */
 static void divide_log(struct mission *mission)
 {
-	bool wide = mission->settings & WIDE, data_wide = mission->settings & DATA_WIDE;
-	bool both = (mission->settings & (LOG_TEMP | LOG_DATA)) == (LOG_TEMP | LOG_DATA);
+	bool wide = mission->settings & DS1922_WIDE,
+	     data_wide = mission->settings & DS1922_DATA_WIDE;
+	bool both = (mission->settings & (DS1922_LOG_TEMP | DS1922_LOG_DATA)) ==
+	            (DS1922_LOG_TEMP | DS1922_LOG_DATA);
 
 	mission->data = 0;
 	if (!both) {
-		mission->log.room = (mission->settings & LOG_TEMP ? wide : data_wide) ? 4096 : 8192;
+		mission->log.room = (mission->settings & DS1922_LOG_TEMP ? wide : data_wide) ? 4096
+		                                                                             : 8192;
 		return;
 	}
 	mission->log.room = wide != data_wide ? 2560 : wide ? 2048 : 4096;
@@ -95,23 +103,24 @@ static void divide_log(struct mission *mission)
 /* Two pages, one for each call; TXN_MORE until both are read: then the phase is 2. */
 static int read_mission(struct txn *txn, struct mission *mission)
 {
-	uint8_t page[PAGE];
+	uint8_t page[DS1922_PAGE];
 	int err;
 
 	if (txn->phase == 2)
 		return 0;
-	err = area_read(txn, &ds1922_memory, txn->phase == 0 ? CLOCK : SAMPLES, page, PAGE);
+	err = area_read(txn, &ds1922_memory, txn->phase == 0 ? DS1922_CLOCK : DS1922_SAMPLES, page,
+	                DS1922_PAGE);
 	if (err)
 		return err;
 	if (txn->phase++ == 0) {
-		mission->settings = page[MISSION - CLOCK];
+		mission->settings = page[DS1922_MISSION - DS1922_CLOCK];
 		mission->interval = ds1922_interval_of(page);
-		mission->log.rollover = mission->settings & RO;
-		memcpy(mission->stamp, page + (STAMP - CLOCK), LOGGER_TIME);
+		mission->log.rollover = mission->settings & DS1922_RO;
+		memcpy(mission->stamp, page + (DS1922_STAMP - DS1922_CLOCK), LOGGER_TIME);
 		divide_log(mission);
 	} else {
 		mission->log.samples = logger_count(page, 3);
-		mission->config = page[CONFIG - SAMPLES];
+		mission->config = page[DS1922_CONFIG - DS1922_SAMPLES];
 	}
 	return TXN_MORE;
 }
@@ -146,13 +155,13 @@ int ds1922_read_date(struct txn *txn)
 int ds1922_read_log(struct txn *txn)
 {
 	struct mission *mission = txn_own(txn);
-	bool data = txn->property->arg == LOG_DATA;
+	bool data = txn->property->arg == DS1922_LOG_DATA;
 	uint8_t bytes[2] = {0};
 	int err = read_mission(txn, mission);
 
 	if (err)
 		return err;
-	unsigned size = mission->settings & (data ? DATA_WIDE : WIDE) ? 2 : 1;
+	unsigned size = mission->settings & (data ? DS1922_DATA_WIDE : DS1922_WIDE) ? 2 : 1;
 	uint32_t n = (uint32_t)txn->element;
 	if (!(mission->settings & txn->property->arg) || n >= logger_elements(&mission->log) ||
 	    ds1922_zero_of(mission->config) < 0)
@@ -169,15 +178,15 @@ int ds1922_read_log(struct txn *txn)
 int ds1922_read_clock(struct txn *txn)
 {
 	uint8_t bcd[LOGGER_TIME];
-	int err = area_read(txn, &ds1922_memory, CLOCK, bcd, LOGGER_TIME);
+	int err = area_read(txn, &ds1922_memory, DS1922_CLOCK, bcd, LOGGER_TIME);
 
 	return err ? err : logger_date(bcd, &txn->number[0]);
 }
 
 int ds1922_read_interval(struct txn *txn)
 {
-	uint8_t page[PAGE];
-	int err = area_read(txn, &ds1922_memory, CLOCK, page, PAGE);
+	uint8_t page[DS1922_PAGE];
+	int err = area_read(txn, &ds1922_memory, DS1922_CLOCK, page, DS1922_PAGE);
 
 	if (!err)
 		txn->number[0] = ds1922_interval_of(page);

@@ -10,24 +10,37 @@
 #include "hal/chips/area.h"
 
 enum {
-	CLOCK = 0x200,
-	RATE = 0x206,
-	LATEST = 0x20c,
-	LATEST_DATA = 0x20e,
-	OSCILLATOR = 0x212,
-	MISSION = 0x213,
-	STATUS = 0x215,
-	DELAY = 0x216,
-	STAMP = 0x219,
-	SAMPLES = 0x220,
-	DEVICE_SAMPLES = 0x223,
-	CONFIG = 0x226,
-	GENERAL = 0x200, /* bytes of memory before the registers */
+	DS1922_CLOCK = 0x200,
+	DS1922_RATE = 0x206,
+	DS1922_LATEST = 0x20c,
+	DS1922_LATEST_DATA = 0x20e,
+	DS1922_OSCILLATOR = 0x212,
+	DS1922_MISSION = 0x213,
+	DS1922_STATUS = 0x215,
+	DS1922_DELAY = 0x216,
+	DS1922_STAMP = 0x219,
+	DS1922_SAMPLES = 0x220,
+	DS1922_DEVICE_SAMPLES = 0x223,
+	DS1922_CONFIG = 0x226,
+	DS1922_GENERAL = 0x200, /* bytes of memory before the registers */
 };
-enum { EOSC = 0x01, FAST = 0x02 }; /* oscillator */
-enum { RO = 0x10, DATA_WIDE = 0x08, WIDE = 0x04, LOG_DATA = 0x02, LOG_TEMP = 0x01 }; /* mission */
-enum { MEMCLR = 0x08, MIP = 0x02 };                                                  /* status */
-enum { PAGE = 32, PAGES = 18, LOG = 0x1000, LOG_SIZE = 8192, RATE_MOST = 0x3fff };
+/* Bits of the registers of oscillator, mission and status. */
+enum { DS1922_EOSC = 0x01, DS1922_FAST = 0x02 };
+enum {
+	DS1922_RO = 0x10,
+	DS1922_DATA_WIDE = 0x08,
+	DS1922_WIDE = 0x04,
+	DS1922_LOG_DATA = 0x02,
+	DS1922_LOG_TEMP = 0x01,
+};
+enum { DS1922_MEMCLR = 0x08, DS1922_MIP = 0x02 };
+enum {
+	DS1922_PAGE = 32,
+	DS1922_PAGES = 18,
+	DS1922_LOG = 0x1000,
+	DS1922_LOG_SIZE = 8192,
+	DS1922_RATE_MOST = 0x3fff,
+};
 
 extern const struct area ds1922_memory, ds1922_log;
 

@@ -18,35 +18,35 @@ static const struct logger_chip chip = {.copy = 0x99, .password = true};
 
 struct visit {
 	struct logger_write write;
-	uint8_t page[PAGE]; /* the first of the registers as it was */
-	uint8_t bytes[8];   /* what is written */
+	uint8_t page[DS1922_PAGE]; /* the first of the registers as it was */
+	uint8_t bytes[8];          /* what is written */
 	uint8_t before[3], config;
 };
 _Static_assert(sizeof(struct visit) <= TXN_OWN, "no room for the visit");
 
-static int look(struct txn *txn, unsigned where, uint8_t page[PAGE])
+static int look(struct txn *txn, unsigned where, uint8_t page[DS1922_PAGE])
 {
-	return ds1922_load(txn, &ds1922_memory, where, page, PAGE);
+	return ds1922_load(txn, &ds1922_memory, where, page, DS1922_PAGE);
 }
 
 /* The first page of the registers; -EBUSY: a mission runs. */
 static int look_for_mission(struct txn *txn)
 {
 	struct visit *visit = txn_own(txn);
-	int err = look(txn, CLOCK, visit->page);
+	int err = look(txn, DS1922_CLOCK, visit->page);
 
 	if (err)
 		return err;
-	return visit->page[STATUS - CLOCK] & MIP ? -EBUSY : 0;
+	return visit->page[DS1922_STATUS - DS1922_CLOCK] & DS1922_MIP ? -EBUSY : 0;
 }
 
 /* arg: of which quantity. */
 static int take_latest(struct txn *txn, uint8_t config, const uint8_t *page)
 {
-	unsigned where = txn->property->arg == LOG_DATA ? LATEST_DATA : LATEST;
-	const uint8_t *latest = page + (where - CLOCK);
+	unsigned where = txn->property->arg == DS1922_LOG_DATA ? DS1922_LATEST_DATA : DS1922_LATEST;
+	const uint8_t *latest = page + (where - DS1922_CLOCK);
 
-	if (txn->property->arg == LOG_DATA)
+	if (txn->property->arg == DS1922_LOG_DATA)
 		txn->number[0] = ds1922_humidity(latest[1], latest[0]);
 	else
 		txn->number[0] = ds1922_celsius(config, latest[1], latest[0]);
@@ -61,36 +61,37 @@ int ds1922_read_now(struct txn *txn)
 {
 	static const uint8_t convert[] = {0x55, 0xff};
 	struct visit *visit = txn_own(txn);
-	uint8_t page[PAGE];
+	uint8_t page[DS1922_PAGE];
 	int err;
 
 	switch (txn->phase++) {
 	case 0:
 		err = look_for_mission(txn);
-		if (!err && !(visit->page[OSCILLATOR - CLOCK] & EOSC))
+		if (!err && !(visit->page[DS1922_OSCILLATOR - DS1922_CLOCK] & DS1922_EOSC))
 			err = -EIO;
 		return err ? err : TXN_MORE;
 	case 1:
-		err = look(txn, SAMPLES, page);
+		err = look(txn, DS1922_SAMPLES, page);
 		if (err)
 			return err;
-		memcpy(visit->before, page + (DEVICE_SAMPLES - SAMPLES), 3);
-		visit->config = page[CONFIG - SAMPLES];
+		memcpy(visit->before, page + (DS1922_DEVICE_SAMPLES - DS1922_SAMPLES), 3);
+		visit->config = page[DS1922_CONFIG - DS1922_SAMPLES];
 		if (ds1922_zero_of(visit->config) < 0)
 			return -EIO;
-		if (txn->property->arg == LOG_DATA && !ds1922_has_data(visit->config))
+		if (txn->property->arg == DS1922_LOG_DATA && !ds1922_has_data(visit->config))
 			return -ENOENT;
 		return TXN_MORE;
 	case 2:
 		err = txn_command(txn, convert, sizeof(convert));
 		return err ? err : txn_wait(txn, CONVERT_NS);
 	case 3:
-		err = look(txn, SAMPLES, page);
-		if (!err && memcmp(visit->before, page + (DEVICE_SAMPLES - SAMPLES), 3) == 0)
+		err = look(txn, DS1922_SAMPLES, page);
+		if (!err &&
+		    memcmp(visit->before, page + (DS1922_DEVICE_SAMPLES - DS1922_SAMPLES), 3) == 0)
 			err = -EBADMSG;
 		return err ? err : TXN_MORE;
 	default:
-		err = look(txn, CLOCK, page);
+		err = look(txn, DS1922_CLOCK, page);
 		return err ? err : take_latest(txn, visit->config, page);
 	}
 }
@@ -99,11 +100,11 @@ int ds1922_read_now(struct txn *txn)
 int ds1922_write_page(struct txn *txn)
 {
 	struct visit *visit = txn_own(txn);
-	unsigned at = (unsigned)txn->element * PAGE + (unsigned)txn->at;
+	unsigned at = (unsigned)txn->element * DS1922_PAGE + (unsigned)txn->at;
 
 	if (txn->len == 0)
 		return 0;
-	if (at >= GENERAL)
+	if (at >= DS1922_GENERAL)
 		return -EOPNOTSUPP;
 	return logger_write(txn, &chip, &visit->write, at, txn->data, (unsigned)txn->len);
 }
@@ -115,7 +116,7 @@ int ds1922_write_field(struct txn *txn)
 	struct visit *visit = txn_own(txn);
 	unsigned n = field->bytes ? field->bytes : 1, bits = field->bits ? field->bits : 8 * n;
 	uint32_t mask = (UINT32_C(1) << bits) - 1, value = (uint32_t)txn->number[0];
-	const uint8_t *now = visit->page + (field->at - CLOCK);
+	const uint8_t *now = visit->page + (field->at - DS1922_CLOCK);
 	int err;
 
 	if (txn->number[0] > mask)
@@ -180,19 +181,19 @@ static int command(struct txn *txn, uint8_t code)
 /* Has the status the flag? */
 static int has_flag(struct txn *txn, uint8_t flag)
 {
-	uint8_t page[PAGE];
-	int err = look(txn, CLOCK, page);
+	uint8_t page[DS1922_PAGE];
+	int err = look(txn, DS1922_CLOCK, page);
 
 	if (err)
 		return err;
 	txn->phase++;
-	return page[STATUS - CLOCK] & flag ? TXN_MORE : -EIO;
+	return page[DS1922_STATUS - DS1922_CLOCK] & flag ? TXN_MORE : -EIO;
 }
 
 static int set_clock(struct txn *txn, unsigned wanted)
 {
 	struct visit *visit = txn_own(txn);
-	bool stands = !(visit->page[OSCILLATOR - CLOCK] & EOSC);
+	bool stands = !(visit->page[DS1922_OSCILLATOR - DS1922_CLOCK] & DS1922_EOSC);
 	uint8_t weekday;
 
 	if (!(wanted & SETS_CLOCK) && !(wanted & STARTS && stands)) {
@@ -202,22 +203,23 @@ static int set_clock(struct txn *txn, unsigned wanted)
 	if (!visit->write.step)
 		logger_bcd(wanted & SETS_CLOCK ? txn->number[0] : (double)time(NULL), visit->bytes,
 		           &weekday);
-	return put(txn, CLOCK, LOGGER_TIME);
+	return put(txn, DS1922_CLOCK, LOGGER_TIME);
 }
 
 /* In seconds as far as they can be counted, then in minutes. */
 static int set_oscillator(struct txn *txn, unsigned wanted)
 {
 	struct visit *visit = txn_own(txn);
-	uint8_t byte = visit->page[OSCILLATOR - CLOCK] & (EOSC | FAST);
+	uint8_t byte = visit->page[DS1922_OSCILLATOR - DS1922_CLOCK] & (DS1922_EOSC | DS1922_FAST);
 
 	if (wanted & (RUNS_CLOCK | STARTS))
-		byte |= EOSC;
+		byte |= DS1922_EOSC;
 	if (wanted & SETS_RATE)
-		byte = (uint8_t)((byte & ~FAST) | (txn->number[0] <= RATE_MOST ? FAST : 0));
+		byte = (uint8_t)((byte & ~DS1922_FAST) |
+		                 (txn->number[0] <= DS1922_RATE_MOST ? DS1922_FAST : 0));
 	visit->bytes[0] = byte;
-	if (byte != visit->page[OSCILLATOR - CLOCK])
-		return put(txn, OSCILLATOR, 1);
+	if (byte != visit->page[DS1922_OSCILLATOR - DS1922_CLOCK])
+		return put(txn, DS1922_OSCILLATOR, 1);
 	txn->phase++;
 	return TXN_MORE;
 }
@@ -225,13 +227,13 @@ static int set_oscillator(struct txn *txn, unsigned wanted)
 static int set_rate(struct txn *txn, unsigned wanted)
 {
 	struct visit *visit = txn_own(txn);
-	unsigned rate = (unsigned)(txn->number[0] <= RATE_MOST ? txn->number[0]
-	                                                       : txn->number[0] / 60);
+	unsigned rate = (unsigned)(txn->number[0] <= DS1922_RATE_MOST ? txn->number[0]
+	                                                              : txn->number[0] / 60);
 
 	if (wanted & SETS_RATE) {
 		visit->bytes[0] = (uint8_t)rate;
 		visit->bytes[1] = (uint8_t)(rate >> 8);
-		return put(txn, RATE, 2);
+		return put(txn, DS1922_RATE, 2);
 	}
 	txn->phase = wanted & STARTS ? SET_MISSION : DONE;
 	return TXN_MORE;
@@ -242,9 +244,12 @@ static int set_mission(struct txn *txn)
 {
 	struct visit *visit = txn_own(txn);
 
-	visit->bytes[0] = (uint8_t)((visit->page[MISSION - CLOCK] & RO) | LOG_TEMP | WIDE |
-	                            (ds1922_has_data(visit->config) ? LOG_DATA | DATA_WIDE : 0));
-	return put(txn, MISSION, 1);
+	visit->bytes[0] = (uint8_t)((visit->page[DS1922_MISSION - DS1922_CLOCK] & DS1922_RO) |
+	                            DS1922_LOG_TEMP | DS1922_WIDE |
+	                            (ds1922_has_data(visit->config)
+	                                     ? DS1922_LOG_DATA | DS1922_DATA_WIDE
+	                                     : 0));
+	return put(txn, DS1922_MISSION, 1);
 }
 
 static int do_steps(struct txn *txn, unsigned wanted)
@@ -269,11 +274,11 @@ static int do_steps(struct txn *txn, unsigned wanted)
 	case CLEAR:
 		return command(txn, CLEAR_MEMORY);
 	case IS_CLEAR:
-		return has_flag(txn, MEMCLR);
+		return has_flag(txn, DS1922_MEMCLR);
 	case START:
 		return command(txn, START_MISSION);
 	case IS_STARTED:
-		return has_flag(txn, MIP);
+		return has_flag(txn, DS1922_MIP);
 	case DONE:
 		return 0;
 	}
@@ -294,8 +299,8 @@ int ds1922_write_interval(struct txn *txn)
 {
 	double minutes = txn->number[0] / 60;
 
-	if (txn->number[0] < 1 || minutes > RATE_MOST ||
-	    (txn->number[0] > RATE_MOST && minutes != (unsigned)minutes))
+	if (txn->number[0] < 1 || minutes > DS1922_RATE_MOST ||
+	    (txn->number[0] > DS1922_RATE_MOST && minutes != (unsigned)minutes))
 		return -EINVAL;
 	return do_steps(txn, SETS_RATE);
 }
@@ -314,7 +319,7 @@ static int stop_mission(struct txn *txn)
 int ds1922_write_running(struct txn *txn)
 {
 	struct visit *visit = txn_own(txn);
-	uint8_t page[PAGE];
+	uint8_t page[DS1922_PAGE];
 	int err;
 
 	if (txn->number[0] == 0)
@@ -322,10 +327,10 @@ int ds1922_write_running(struct txn *txn)
 	if (txn->phase > LOOK)
 		return do_steps(txn, STARTS);
 	if (!visit->before[0]) {
-		err = look(txn, SAMPLES, page);
+		err = look(txn, DS1922_SAMPLES, page);
 		if (err)
 			return err;
-		visit->config = page[CONFIG - SAMPLES];
+		visit->config = page[DS1922_CONFIG - DS1922_SAMPLES];
 		visit->before[0] = 1;
 		return TXN_MORE;
 	}

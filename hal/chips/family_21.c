@@ -65,90 +65,91 @@ static const struct property_how how[] = {
 	PROPERTY(text, UNSIGNED, STABLE, BOTH, .how = WAY_FIELD, \
 	         FIELD(REGISTERS, .at = (where), .bits = 7))
 #define EACH_TIME(text, type, first, what) \
-	PROPERTY(text, type, VOLATILE, READ, AGGREGATE(TIMES, NUMBERS), .how = WAY_TIMES, \
-	         .arg = TIMES_ARG(first, what))
+	PROPERTY(text, type, VOLATILE, READ, AGGREGATE(DS1921_TIMES, NUMBERS), .how = WAY_TIMES, \
+	         .arg = DS1921_TIMES_ARG(first, what))
 #define RATE_OF(text, life) \
-	PROPERTY(text, UNSIGNED, life, BOTH, .how = WAY_FREQUENCY, FIELD(REGISTERS, .at = RATE))
+	PROPERTY(text, UNSIGNED, life, BOTH, .how = WAY_FREQUENCY, \
+	         FIELD(REGISTERS, .at = DS1921_RATE))
 /* clang-format off */
 #define TIMES_BEYOND(name_, first, limit) \
 	PROPERTY_DIR(name_), \
-	EACH_TIME(name_ "/count", UNSIGNED, first, TIMES_COUNT), \
-	EACH_TIME(name_ "/date", DATE, first, TIMES_BEGIN), \
+	EACH_TIME(name_ "/count", UNSIGNED, first, DS1921_TIMES_COUNT), \
+	EACH_TIME(name_ "/date", DATE, first, DS1921_TIMES_BEGIN), \
 	PROPERTY(name_ "/elements", UNSIGNED, VOLATILE, READ, .how = WAY_TIMES, \
-	         .arg = TIMES_ARG(first, TIMES_HOW_MANY)), \
-	EACH_TIME(name_ "/end", DATE, first, TIMES_END), \
+	         .arg = DS1921_TIMES_ARG(first, DS1921_TIMES_HOW_MANY)), \
+	EACH_TIME(name_ "/end", DATE, first, DS1921_TIMES_END), \
 	PROPERTY(name_ "/temperature", TEMPERATURE, STABLE, BOTH, .arg = (limit), \
 	         .how = WAY_LIMIT), \
-	EACH_TIME(name_ "/udate", UNSIGNED, first, TIMES_BEGIN)
+	EACH_TIME(name_ "/udate", UNSIGNED, first, DS1921_TIMES_BEGIN)
 /* clang-format on */
 
 static const struct property properties[] = {
 	PROPERTY("ControlRegister", UNSIGNED, STABLE, BOTH, .hidden = true, .how = WAY_FIELD,
-                 FIELD(REGISTERS, .at = CONTROL)),
+                 FIELD(REGISTERS, .at = DS1921_CONTROL)),
 	PROPERTY("StatusRegister", UNSIGNED, STABLE, BOTH, .hidden = true, .how = WAY_STATUS,
-                 FIELD(REGISTERS, .at = STATUS)),
+                 FIELD(REGISTERS, .at = DS1921_STATUS)),
 	PROPERTY_DIR("about"),
 	PROPERTY("about/measuring", YESNO, VOLATILE, READ,
-                 FIELD(REGISTERS, .at = STATUS, .shift = 7, .bits = 1, .inverted = true)),
-	VERSION("about/resolution", TEMPGAP, RESOLUTION),
-	COUNT("about/samples", DEVICE_SAMPLES, 3, READ),
-	VERSION("about/temphigh", TEMPERATURE, MOST),
-	VERSION("about/templow", TEMPERATURE, LEAST),
-	PROPERTY("about/version", ASCII, STABLE, READ, .offline = true, .arg = NAME, .size = 11,
-                 .how = WAY_VERSION),
-	ALARM("alarm_dow", CLOCK_ALARM + 3),
-	ALARM("alarm_hour", CLOCK_ALARM + 2),
-	ALARM("alarm_minute", CLOCK_ALARM + 1),
-	ALARM("alarm_second", CLOCK_ALARM),
+                 FIELD(REGISTERS, .at = DS1921_STATUS, .shift = 7, .bits = 1, .inverted = true)),
+	VERSION("about/resolution", TEMPGAP, DS1921_RESOLUTION),
+	COUNT("about/samples", DS1921_DEVICE_SAMPLES, 3, READ),
+	VERSION("about/temphigh", TEMPERATURE, DS1921_MOST),
+	VERSION("about/templow", TEMPERATURE, DS1921_LEAST),
+	PROPERTY("about/version", ASCII, STABLE, READ, .offline = true, .arg = DS1921_NAME,
+                 .size = 11, .how = WAY_VERSION),
+	ALARM("alarm_dow", DS1921_CLOCK_ALARM + 3),
+	ALARM("alarm_hour", DS1921_CLOCK_ALARM + 2),
+	ALARM("alarm_minute", DS1921_CLOCK_ALARM + 1),
+	ALARM("alarm_second", DS1921_CLOCK_ALARM),
 	RATE_OF("alarm_state", STABLE),
 	PROPERTY("alarm_trigger", UNSIGNED, STABLE, BOTH, .how = WAY_TRIGGER),
 	PROPERTY_DIR("clock"),
 	PROPERTY("clock/date", DATE, SECOND, BOTH, .how = WAY_DATE),
 	PROPERTY("clock/running", YESNO, VOLATILE, BOTH, .how = WAY_FIELD,
-                 FIELD(REGISTERS, .at = CONTROL, .shift = 7, .bits = 1, .inverted = true)),
+                 FIELD(REGISTERS, .at = DS1921_CONTROL, .shift = 7, .bits = 1, .inverted = true)),
 	PROPERTY("clock/udate", UNSIGNED, SECOND, BOTH, .how = WAY_UDATE),
 	PROPERTY_DIR("histogram"),
-	PROPERTY("histogram/counts", UNSIGNED, VOLATILE, READ, ELEMENTS(BINS, NUMBERS),
+	PROPERTY("histogram/counts", UNSIGNED, VOLATILE, READ, ELEMENTS(DS1921_BINS, NUMBERS),
                  FIELD(HISTOGRAM, .stride = 2, .bytes = 2)),
 	PROPERTY("histogram/elements", UNSIGNED, STATIC, READ, .offline = true, .how = WAY_BINS),
-	VERSION("histogram/gap", TEMPGAP, GAP),
-	PROPERTY("histogram/temperature", TEMPERATURE, STATIC, READ, ELEMENTS(BINS, NUMBERS),
-                 .offline = true, .arg = BIN, .how = WAY_VERSION),
+	VERSION("histogram/gap", TEMPGAP, DS1921_GAP),
+	PROPERTY("histogram/temperature", TEMPERATURE, STATIC, READ, ELEMENTS(DS1921_BINS, NUMBERS),
+                 .offline = true, .arg = DS1921_BIN, .how = WAY_VERSION),
 	PROPERTY_DIR("log"),
-	PROPERTY("log/date", DATE, VOLATILE, READ, ELEMENTS(LOG_ROOM, NUMBERS),
+	PROPERTY("log/date", DATE, VOLATILE, READ, ELEMENTS(DS1921_LOG_ROOM, NUMBERS),
                  .how = WAY_LOG_DATE),
 	PROPERTY("log/elements", UNSIGNED, VOLATILE, READ, .how = WAY_ELEMENTS),
-	PROPERTY("log/temperature", TEMPERATURE, VOLATILE, READ, ELEMENTS(LOG_ROOM, NUMBERS),
+	PROPERTY("log/temperature", TEMPERATURE, VOLATILE, READ, ELEMENTS(DS1921_LOG_ROOM, NUMBERS),
                  .how = WAY_LOG),
-	PROPERTY("log/udate", UNSIGNED, VOLATILE, READ, ELEMENTS(LOG_ROOM, NUMBERS),
+	PROPERTY("log/udate", UNSIGNED, VOLATILE, READ, ELEMENTS(DS1921_LOG_ROOM, NUMBERS),
                  .how = WAY_LOG_DATE),
 	AREA_MEMORY(MEMORY, 512),
 	PROPERTY_DIR("mission"),
 	PROPERTY("mission/clear", YESNO, VOLATILE, WRITE, .how = WAY_CLEAR),
 	PROPERTY("mission/date", DATE, VOLATILE, READ, .how = WAY_START),
-	COUNT("mission/delay", DELAY, 2, BOTH, .how = WAY_FIELD),
+	COUNT("mission/delay", DS1921_DELAY, 2, BOTH, .how = WAY_FIELD),
 	PROPERTY("mission/easystart", UNSIGNED, STABLE, WRITE, .how = WAY_EASYSTART),
 	PROPERTY("mission/enable", YESNO, VOLATILE, BOTH, .how = WAY_FIELD,
-                 FIELD(REGISTERS, .at = CONTROL, .shift = 4, .bits = 1, .inverted = true)),
+                 FIELD(REGISTERS, .at = DS1921_CONTROL, .shift = 4, .bits = 1, .inverted = true)),
 	RATE_OF("mission/frequency", VOLATILE),
-	BIT("mission/rollover", BOTH, CONTROL, 3, .how = WAY_FIELD),
-	BIT("mission/running", BOTH, STATUS, 5, .how = WAY_RUNNING),
-	COUNT("mission/samples", SAMPLES, 3, READ),
-	BIT("mission/sampling", READ, STATUS, 4, .how = 0),
-	BIT("mission/temphigh", BOTH, STATUS, 1, .how = WAY_FLAG),
-	BIT("mission/templow", BOTH, STATUS, 2, .how = WAY_FLAG),
-	BIT("mission/timer", BOTH, STATUS, 0, .how = WAY_FLAG, .hidden = true),
+	BIT("mission/rollover", BOTH, DS1921_CONTROL, 3, .how = WAY_FIELD),
+	BIT("mission/running", BOTH, DS1921_STATUS, 5, .how = WAY_RUNNING),
+	COUNT("mission/samples", DS1921_SAMPLES, 3, READ),
+	BIT("mission/sampling", READ, DS1921_STATUS, 4, .how = 0),
+	BIT("mission/temphigh", BOTH, DS1921_STATUS, 1, .how = WAY_FLAG),
+	BIT("mission/templow", BOTH, DS1921_STATUS, 2, .how = WAY_FLAG),
+	BIT("mission/timer", BOTH, DS1921_STATUS, 0, .how = WAY_FLAG, .hidden = true),
 	PROPERTY("mission/udate", UNSIGNED, VOLATILE, READ, .how = WAY_START),
-	TIMES_BEYOND("overtemp", HIGH_TIMES, HIGH),
+	TIMES_BEYOND("overtemp", DS1921_HIGH_TIMES, DS1921_HIGH),
 	PROPERTY_DIR("pages"),
 	AREA_PAGES(MEMORY, 16, 32),
 	PROPERTY_DIR("set_alarm"),
-	BIT("set_alarm/date", BOTH, CONTROL, 0, .how = WAY_FIELD),
-	BIT("set_alarm/temphigh", BOTH, CONTROL, 1, .how = WAY_FIELD),
-	BIT("set_alarm/templow", BOTH, CONTROL, 2, .how = WAY_FIELD),
+	BIT("set_alarm/date", BOTH, DS1921_CONTROL, 0, .how = WAY_FIELD),
+	BIT("set_alarm/temphigh", BOTH, DS1921_CONTROL, 1, .how = WAY_FIELD),
+	BIT("set_alarm/templow", BOTH, DS1921_CONTROL, 2, .how = WAY_FIELD),
 	PROPERTY("set_alarm/trigger", YESNO, VOLATILE, NONE, .how = 0),
 	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, .how = WAY_TEMPERATURE),
-	TIMES_BEYOND("undertemp", LOW_TIMES, LOW),
+	TIMES_BEYOND("undertemp", DS1921_LOW_TIMES, DS1921_LOW),
 };
 
 const struct family family_21 = {

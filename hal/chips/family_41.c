@@ -39,32 +39,33 @@ static const struct property_how how[] = {
 #define OWN(text, type, access, ...) \
 	PROPERTY(text, type, VOLATILE, access, .hidden = true, __VA_ARGS__)
 #define SAMPLES_OF(text, type, way, what) \
-	OWN(text, type, READ, ELEMENTS(LOG_SIZE, NUMBERS), .how = (way), .arg = (what))
+	OWN(text, type, READ, ELEMENTS(DS1922_LOG_SIZE, NUMBERS), .how = (way), .arg = (what))
 
 static const struct property properties[] = {
 	PROPERTY_DIR("clock"),
 	PROPERTY("clock/date", DATE, SECOND, BOTH, .how = WAY_DATE),
-	BIT("clock/running", STABLE, BOTH, OSCILLATOR, 0, WAY_FIELD),
+	BIT("clock/running", STABLE, BOTH, DS1922_OSCILLATOR, 0, WAY_FIELD),
 	PROPERTY("clock/udate", UNSIGNED, SECOND, BOTH, .how = WAY_UDATE),
-	PROPERTY("humidity", FLOAT, VOLATILE, READ, .how = WAY_NOW, .arg = LOG_DATA),
+	PROPERTY("humidity", FLOAT, VOLATILE, READ, .how = WAY_NOW, .arg = DS1922_LOG_DATA),
 	OWN("log/elements", UNSIGNED, READ, .how = WAY_ELEMENTS),
-	SAMPLES_OF("log/humidity", FLOAT, WAY_LOG, LOG_DATA),
-	SAMPLES_OF("log/temperature", TEMPERATURE, WAY_LOG, LOG_TEMP),
+	SAMPLES_OF("log/humidity", FLOAT, WAY_LOG, DS1922_LOG_DATA),
+	SAMPLES_OF("log/temperature", TEMPERATURE, WAY_LOG, DS1922_LOG_TEMP),
 	SAMPLES_OF("log/udate", UNSIGNED, WAY_STAMP, 1),
 	PROPERTY_DIR("mission"),
 	PROPERTY("mission/delay", UNSIGNED, VOLATILE, BOTH, .how = WAY_FIELD,
-                 FIELD(MEMORY, .at = DELAY, .bytes = 3)),
+                 FIELD(MEMORY, .at = DS1922_DELAY, .bytes = 3)),
 	OWN("mission/interval", UNSIGNED, BOTH, .how = WAY_INTERVAL),
-	BIT("mission/rollover", STABLE, BOTH, MISSION, 4, WAY_FIELD),
-	BIT("mission/running", VOLATILE, BOTH, STATUS, 1, WAY_RUNNING),
-	OWN("mission/samples", UNSIGNED, READ, FIELD(MEMORY, .at = SAMPLES, .bytes = 3)),
-	BIT("mission/samplinghumidity", VOLATILE, READ, MISSION, 1, 0),
-	BIT("mission/samplingtemp", VOLATILE, READ, MISSION, 0, 0),
+	BIT("mission/rollover", STABLE, BOTH, DS1922_MISSION, 4, WAY_FIELD),
+	BIT("mission/running", VOLATILE, BOTH, DS1922_STATUS, 1, WAY_RUNNING),
+	OWN("mission/samples", UNSIGNED, READ, FIELD(MEMORY, .at = DS1922_SAMPLES, .bytes = 3)),
+	BIT("mission/samplinghumidity", VOLATILE, READ, DS1922_MISSION, 1, 0),
+	BIT("mission/samplingtemp", VOLATILE, READ, DS1922_MISSION, 0, 0),
 	OWN("mission/udate", UNSIGNED, READ, .how = WAY_STAMP),
 	PROPERTY_DIR("pages"),
-	PROPERTY("pages/page", BINARY, VOLATILE, BOTH, ELEMENTS(PAGES, NUMBERS), .size = PAGE,
-                 .how = WAY_PAGE, FIELD(MEMORY)),
-	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, .how = WAY_NOW, .arg = LOG_TEMP),
+	PROPERTY("pages/page", BINARY, VOLATILE, BOTH, ELEMENTS(DS1922_PAGES, NUMBERS),
+                 .size = DS1922_PAGE, .how = WAY_PAGE, FIELD(MEMORY)),
+	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, .how = WAY_NOW,
+                 .arg = DS1922_LOG_TEMP),
 };
 
 const struct family family_41 = {
