@@ -32,7 +32,7 @@ struct run {
 /* 0: it is done, and has given n bytes. */
 static int query(struct txn *txn, uint8_t *bytes, unsigned n)
 {
-	struct run *run = txn_own(txn);
+	struct run *run = txn_own(txn, struct run);
 	uint8_t head[3] = {QUERY};
 	int err = txn_command(txn, head, 1);
 
@@ -58,7 +58,7 @@ static int query(struct txn *txn, uint8_t *bytes, unsigned n)
 static int do_command(struct txn *txn, const uint8_t *command, unsigned n, uint8_t *out,
                       unsigned out_n)
 {
-	struct run *run = txn_own(txn);
+	struct run *run = txn_own(txn, struct run);
 	int err;
 
 	if (run->looks)
@@ -81,7 +81,7 @@ static int start(struct txn *txn, uint8_t function, const uint8_t *in, unsigned 
 /* The step is over; TXN_MORE: there are others. */
 static int next(struct txn *txn, int err)
 {
-	struct run *run = txn_own(txn);
+	struct run *run = txn_own(txn, struct run);
 
 	if (err)
 		return err;
@@ -93,7 +93,7 @@ static int next(struct txn *txn, int err)
 int bae_read_expander(struct txn *txn)
 {
 	const uint8_t in[] = {EXPANDER, (uint8_t)txn->property->arg};
-	struct run *run = txn_own(txn);
+	struct run *run = txn_own(txn, struct run);
 	uint8_t byte = 0, none[1];
 	int err = bae_identify(txn);
 
@@ -118,7 +118,7 @@ int bae_write_expander(struct txn *txn)
 {
 	const uint8_t value = (uint8_t)txn->number[0];
 	const uint8_t in[] = {EXPANDER, (uint8_t)txn->property->arg, value};
-	struct run *run = txn_own(txn);
+	struct run *run = txn_own(txn, struct run);
 	uint8_t byte = 0, none[1];
 	int err = bae_identify(txn);
 
@@ -166,7 +166,7 @@ static int begin_sector(struct txn *txn, uint8_t function)
 static int read_blocks(struct txn *txn, bool first)
 {
 	static const uint8_t command[] = {RECEIVE, BLOCK, CARD_READ};
-	struct run *run = txn_own(txn);
+	struct run *run = txn_own(txn, struct run);
 	uint8_t block[BLOCK], *to = txn->data + run->chunk * BLOCK;
 	int err = do_command(txn, command, sizeof(command), block, BLOCK);
 
@@ -184,7 +184,7 @@ static int read_blocks(struct txn *txn, bool first)
 /* Steps 0 to 2, again and again until the passes are made. */
 static int read_sector(struct txn *txn, unsigned from, bool compare)
 {
-	struct run *run = txn_own(txn);
+	struct run *run = txn_own(txn, struct run);
 	uint8_t none[1];
 	int err;
 
@@ -215,7 +215,7 @@ int bae_read_sector(struct txn *txn)
 /* Written, then read and compared. */
 int bae_write_sector(struct txn *txn)
 {
-	struct run *run = txn_own(txn);
+	struct run *run = txn_own(txn, struct run);
 	uint8_t command[3 + BLOCK] = {SEND, BLOCK, CARD_WRITE}, none[1];
 	int err = bae_identify(txn);
 
@@ -245,7 +245,7 @@ int bae_write_sector(struct txn *txn)
 /* arg: to whom. Nothing shows that it arrived. */
 int bae_write_text(struct txn *txn)
 {
-	struct run *run = txn_own(txn);
+	struct run *run = txn_own(txn, struct run);
 	size_t at = (size_t)run->chunk * BLOCK, n = txn->len - at < BLOCK ? txn->len - at : BLOCK;
 	uint8_t command[3 + BLOCK] = {SEND, (uint8_t)n, (uint8_t)txn->property->arg}, none[1];
 	int err = bae_identify(txn);

@@ -25,7 +25,6 @@ struct visit {
 	int64_t begun_ns;
 	uint8_t last[SENSOR_AT_ONCE];
 };
-_Static_assert(sizeof(struct visit) <= TXN_OWN, "no room for the visit");
 
 const char *bridge_type(uint8_t code)
 {
@@ -67,7 +66,7 @@ static double value_of(const struct sensor *sensor, struct formula formula, doub
 
 static int exchange(struct txn *txn, const struct i2c_transfer *transfer)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 
 	return txn->device->rom[0] == DS28E17_CODE ? ds28e17_exchange(txn, transfer)
 	                                           : ds28e18_exchange(txn, transfer, &visit->part);
@@ -103,7 +102,7 @@ static bool checksum_fits(const struct sensor_step *step, const uint8_t *bytes)
 /* A register: until three looks in a row are the same. 0 when they are. */
 static int look(struct txn *txn, const struct sensor *sensor, const struct sensor_step *step)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t in[SENSOR_AT_ONCE];
 	int err = write_bytes(txn, sensor, step->first, step->count, in, step->n);
 
@@ -134,7 +133,7 @@ static int compute(const struct sensor *sensor, const struct sensor_step *step)
 /* One step; TXN_MORE: it used the wire, or has to be waited for. */
 static int step(struct txn *txn, const struct sensor *sensor)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	const struct sensor_step *step =
 		&sensor->table->steps[sensor->kind->first_step + visit->step];
 	int err;
@@ -186,7 +185,7 @@ static bool take_shared(struct txn *txn, const struct sensor *sensor)
 
 static void share(struct txn *txn, const struct sensor *sensor)
 {
-	const struct visit *visit = txn_own(txn);
+	const struct visit *visit = txn_own(txn, struct visit);
 	unsigned n = sensor->kind->bytes;
 
 	for (unsigned at = 0; at < n; at += SHARED)
@@ -196,7 +195,7 @@ static void share(struct txn *txn, const struct sensor *sensor)
 
 static int measure(struct txn *txn, const struct sensor *sensor)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	int err = 0;
 
 	if (!visit->begun) {
@@ -250,7 +249,7 @@ static int read_value(struct txn *txn)
 /* What was written is measured and has to be the same. */
 static int write_value(struct txn *txn)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	struct sensor sensor = sensor_of(txn);
 	double want = txn->number[0], have;
 	int err;

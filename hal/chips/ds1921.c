@@ -169,7 +169,7 @@ int ds1921_read_log_date(struct txn *txn)
 int ds1921_read_log(struct txn *txn)
 {
 	const struct ds1921_version *version = ds1921_version_of(txn->device);
-	uint32_t *place = txn_own(txn);
+	uint32_t *place = txn_own(txn, uint32_t);
 	struct mission mission = {0};
 	uint8_t code;
 	int err;
@@ -216,12 +216,11 @@ struct times_visit {
 	struct mission mission;
 	uint8_t first[DS1921_PAGE];
 };
-_Static_assert(sizeof(struct times_visit) <= TXN_OWN, "no room for the visit");
 
 /* The registers, and the two pages on which the times are. */
 int ds1921_read_times(struct txn *txn)
 {
-	struct times_visit *visit = txn_own(txn);
+	struct times_visit *visit = txn_own(txn, struct times_visit);
 	int what = txn->property->arg & 0xff;
 	unsigned first = (unsigned)txn->property->arg >> 8,
 		 head = DS1921_PAGE - first % DS1921_PAGE;

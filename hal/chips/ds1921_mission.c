@@ -18,7 +18,6 @@ struct visit {
 	uint8_t bytes[8];          /* what is written */
 	uint8_t want;              /* the rate of the mission that is to run */
 };
-_Static_assert(sizeof(struct visit) <= TXN_OWN, "no room for the visit");
 
 /* The first page of the registers as it is now. */
 static int look(struct txn *txn, uint8_t page[DS1921_PAGE])
@@ -36,7 +35,7 @@ int ds1921_read_temperature(struct txn *txn)
 {
 	static const uint8_t convert = DS1921_CONVERT;
 	const struct ds1921_version *version = ds1921_version_of(txn->device);
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t page[DS1921_PAGE];
 	int err;
 
@@ -70,7 +69,7 @@ int ds1921_read_temperature(struct txn *txn)
  */
 static int change(struct txn *txn, unsigned at, unsigned n, uint32_t mask, uint32_t value)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	int err;
 
 	if (txn->phase)
@@ -130,7 +129,7 @@ int ds1921_write_trigger(struct txn *txn)
 /* Flags are cleared by writing 0, and set by nothing. */
 static int clear_flags(struct txn *txn, uint8_t keep, uint8_t wanted)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t page[DS1921_PAGE];
 	int err;
 
@@ -204,7 +203,7 @@ enum {
 
 static int put(struct txn *txn, unsigned at, unsigned n)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	int err = logger_write(txn, &chip, &visit->write, DS1921_REGISTERS + at, visit->bytes, n);
 
 	if (err)
@@ -226,7 +225,7 @@ static void put_clock(struct visit *visit, double seconds)
 static int clear(struct txn *txn)
 {
 	static const uint8_t command = DS1921_CLEAR_MEMORY;
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	int err;
 
 	if (txn->phase == ALLOW_CLEAR) {
@@ -254,7 +253,7 @@ static int clear(struct txn *txn)
 
 static int begin(struct txn *txn, unsigned wanted)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	int err = look(txn, visit->page);
 
 	if (err)
@@ -277,7 +276,7 @@ static uint8_t control_for(uint8_t control, unsigned wanted)
 
 static int start_mission(struct txn *txn, unsigned wanted)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 
 	visit->bytes[0] = visit->want;
 	if (!(wanted & STARTS))
@@ -288,7 +287,7 @@ static int start_mission(struct txn *txn, unsigned wanted)
 /* Did it start? Only a cleared memory and an enabled mission let it. */
 static int is_started(struct txn *txn, unsigned wanted)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t page[DS1921_PAGE];
 	int err = look(txn, page);
 
@@ -301,7 +300,7 @@ static int is_started(struct txn *txn, unsigned wanted)
 
 static int set_clock(struct txn *txn, unsigned wanted, double seconds)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 
 	if (!(wanted & SETS_CLOCK) &&
 	    !(wanted & STARTS && visit->page[DS1921_CONTROL] & DS1921_EOSC)) {
@@ -315,7 +314,7 @@ static int set_clock(struct txn *txn, unsigned wanted, double seconds)
 
 static int run_clock(struct txn *txn, unsigned wanted)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t control = control_for(visit->page[DS1921_CONTROL], wanted);
 
 	if (!(wanted & (RUNS_CLOCK | STARTS)) || control == visit->page[DS1921_CONTROL]) {
@@ -328,7 +327,7 @@ static int run_clock(struct txn *txn, unsigned wanted)
 
 static int do_steps(struct txn *txn, unsigned wanted, double seconds)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 
 	switch ((enum step)txn->phase) {
 	case LOOK:
@@ -382,7 +381,7 @@ static int stop_mission(struct txn *txn)
 
 static int start_with(struct txn *txn, double rate, unsigned wanted)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 
 	if (!(rate >= 1 && rate <= 255))
 		return -EINVAL;
@@ -398,7 +397,7 @@ int ds1921_write_frequency(struct txn *txn)
 /* With the rate that stands there. */
 int ds1921_write_running(struct txn *txn)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 
 	if (txn->number[0] == 0)
 		return stop_mission(txn);

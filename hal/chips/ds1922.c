@@ -80,7 +80,6 @@ struct mission {
 	unsigned data; /* where samples of the second quantity begin */
 	double interval;
 };
-_Static_assert(sizeof(struct mission) <= TXN_OWN, "no room for the mission");
 
 /* How the samples share the log: one quantity, both alike, or one of them wide. */
 static void divide_log(struct mission *mission)
@@ -127,7 +126,7 @@ static int read_mission(struct txn *txn, struct mission *mission)
 
 int ds1922_read_elements(struct txn *txn)
 {
-	struct mission *mission = txn_own(txn);
+	struct mission *mission = txn_own(txn, struct mission);
 	int err = read_mission(txn, mission);
 
 	if (!err)
@@ -138,7 +137,7 @@ int ds1922_read_elements(struct txn *txn)
 /* arg: of the mission's first sample, or of an element of the log. */
 int ds1922_read_date(struct txn *txn)
 {
-	struct mission *mission = txn_own(txn);
+	struct mission *mission = txn_own(txn, struct mission);
 	int err = read_mission(txn, mission);
 
 	if (!err)
@@ -154,7 +153,7 @@ int ds1922_read_date(struct txn *txn)
 /* A sample of one quantity; arg: LOG_TEMP or LOG_DATA. */
 int ds1922_read_log(struct txn *txn)
 {
-	struct mission *mission = txn_own(txn);
+	struct mission *mission = txn_own(txn, struct mission);
 	bool data = txn->property->arg == DS1922_LOG_DATA;
 	uint8_t bytes[2] = {0};
 	int err = read_mission(txn, mission);

@@ -22,7 +22,6 @@ struct visit {
 	uint8_t bytes[8];          /* what is written */
 	uint8_t before[3], config;
 };
-_Static_assert(sizeof(struct visit) <= TXN_OWN, "no room for the visit");
 
 static int look(struct txn *txn, unsigned where, uint8_t page[DS1922_PAGE])
 {
@@ -32,7 +31,7 @@ static int look(struct txn *txn, unsigned where, uint8_t page[DS1922_PAGE])
 /* The first page of the registers; -EBUSY: a mission runs. */
 static int look_for_mission(struct txn *txn)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	int err = look(txn, DS1922_CLOCK, visit->page);
 
 	if (err)
@@ -60,7 +59,7 @@ static int take_latest(struct txn *txn, uint8_t config, const uint8_t *page)
 int ds1922_read_now(struct txn *txn)
 {
 	static const uint8_t convert[] = {0x55, 0xff};
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t page[DS1922_PAGE];
 	int err;
 
@@ -99,7 +98,7 @@ int ds1922_read_now(struct txn *txn)
 /* The general pages; the registers have properties. */
 int ds1922_write_page(struct txn *txn)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	unsigned at = (unsigned)txn->element * DS1922_PAGE + (unsigned)txn->at;
 
 	if (txn->len == 0)
@@ -113,7 +112,7 @@ int ds1922_write_page(struct txn *txn)
 int ds1922_write_field(struct txn *txn)
 {
 	const struct field *field = &txn->property->field;
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	unsigned n = field->bytes ? field->bytes : 1, bits = field->bits ? field->bits : 8 * n;
 	uint32_t mask = (UINT32_C(1) << bits) - 1, value = (uint32_t)txn->number[0];
 	const uint8_t *now = visit->page + (field->at - DS1922_CLOCK);
@@ -155,7 +154,7 @@ enum { SETS_CLOCK = 1, RUNS_CLOCK = 2, SETS_RATE = 4, STARTS = 8 };
 
 static int put(struct txn *txn, unsigned at, unsigned n)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	int err = logger_write(txn, &chip, &visit->write, at, visit->bytes, n);
 
 	if (err)
@@ -192,7 +191,7 @@ static int has_flag(struct txn *txn, uint8_t flag)
 
 static int set_clock(struct txn *txn, unsigned wanted)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	bool stands = !(visit->page[DS1922_OSCILLATOR - DS1922_CLOCK] & DS1922_EOSC);
 	uint8_t weekday;
 
@@ -209,7 +208,7 @@ static int set_clock(struct txn *txn, unsigned wanted)
 /* In seconds as far as they can be counted, then in minutes. */
 static int set_oscillator(struct txn *txn, unsigned wanted)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t byte = visit->page[DS1922_OSCILLATOR - DS1922_CLOCK] & (DS1922_EOSC | DS1922_FAST);
 
 	if (wanted & (RUNS_CLOCK | STARTS))
@@ -226,7 +225,7 @@ static int set_oscillator(struct txn *txn, unsigned wanted)
 
 static int set_rate(struct txn *txn, unsigned wanted)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	unsigned rate = (unsigned)(txn->number[0] <= DS1922_RATE_MOST ? txn->number[0]
 	                                                              : txn->number[0] / 60);
 
@@ -242,7 +241,7 @@ static int set_rate(struct txn *txn, unsigned wanted)
 /* All quantities, as finely as they are measured; the rollover stays as it is. */
 static int set_mission(struct txn *txn)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 
 	visit->bytes[0] = (uint8_t)((visit->page[DS1922_MISSION - DS1922_CLOCK] & DS1922_RO) |
 	                            DS1922_LOG_TEMP | DS1922_WIDE |
@@ -318,7 +317,7 @@ static int stop_mission(struct txn *txn)
 /* What its registers and its configuration say is a mission of an interval. */
 int ds1922_write_running(struct txn *txn)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t page[DS1922_PAGE];
 	int err;
 

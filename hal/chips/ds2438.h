@@ -42,10 +42,9 @@ struct ds2438_visit {
 	int64_t begun_ns;      /* of the quantity; 0: it is to be begun */
 	double value[4];       /* of the quantities */
 };
-_Static_assert(sizeof(struct ds2438_visit) <= TXN_OWN, "no room for the visit");
 static inline struct ds2438_visit *ds2438_visit(struct txn *txn)
 {
-	return txn_own(txn);
+	return txn_own(txn, struct ds2438_visit);
 }
 
 /* Two bytes as they stand in the memory. */

@@ -31,7 +31,6 @@ struct visit {
 	uint8_t latches; /* before they are reset */
 	uint32_t pulses[COUNTERS];
 };
-_Static_assert(sizeof(struct visit) <= TXN_OWN, "no room for the visit");
 
 unsigned eds_kind_of(const struct device *device)
 {
@@ -80,7 +79,7 @@ static int identify(struct txn *txn)
 static int saw(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
 	struct eds *chip = txn->device->own;
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	unsigned clock = chip->kind >= EDS0080 ? 0x2c : 0x3c;
 
 	visit->at = (uint8_t)at;
@@ -118,7 +117,7 @@ static bool same(const uint8_t *have, const uint8_t *want, unsigned n, unsigned 
 
 static bool page_is_written(struct txn *txn, const uint8_t *have, const uint8_t *want, unsigned n)
 {
-	const struct visit *visit = txn_own(txn);
+	const struct visit *visit = txn_own(txn, struct visit);
 	unsigned last = is_octal(eds_kind_of(txn->device)) ? 0x80 : 0x40;
 
 	return same(have, want, n, visit->at == last ? n - 1 : n);
@@ -258,7 +257,7 @@ int eds_write_pairs(struct txn *txn)
 int eds_write_state(struct txn *txn)
 {
 	const struct field *field = &txn->property->field;
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t which = field->bits ? (uint8_t)(1 << field->shift) : 3, function, state;
 	int err;
 
@@ -283,7 +282,7 @@ static int fetch_counters(struct txn *txn, uint8_t bytes[PAGE], unsigned page)
 /* Is what was to be reset as it was before? */
 static bool is_unchanged(struct txn *txn, const uint8_t *page, unsigned first)
 {
-	const struct visit *visit = txn_own(txn);
+	const struct visit *visit = txn_own(txn, struct visit);
 	uint32_t which = txn->one ? txn->bits & 1u << txn->element : txn->bits;
 	bool unchanged = false;
 
@@ -310,7 +309,7 @@ static void note(struct visit *visit, const uint8_t *page, unsigned first)
 /* A reset leaves no trace in the register: the counters and latches before and after prove it. */
 int eds_write_reset(struct txn *txn)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	unsigned first = visit->stage % 3 ? 4 : 0;
 	uint8_t page[PAGE] = {0};
 	int err = identify(txn);
@@ -337,7 +336,7 @@ int eds_write_reset(struct txn *txn)
 int eds_write_clear(struct txn *txn)
 {
 	static const uint8_t command = CLEAR_ALARMS;
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t page[PAGE];
 	int err = identify(txn);
 

@@ -98,7 +98,7 @@ static int look_for_alarm(struct txn *txn, struct looks *looks)
 static int load_status(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
                        unsigned n)
 {
-	struct looks *looks = txn_own(txn);
+	struct looks *looks = txn_own(txn, struct looks);
 	struct ds2404 *chip = txn->device->own;
 	int err;
 

@@ -54,7 +54,7 @@ static int command(struct txn *txn, uint8_t code, int64_t ns)
 static int load_page(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
                      unsigned n)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t code = pages[at / PAGE].recall, again[PAGE];
 	int err;
 
@@ -100,7 +100,7 @@ static int write_scratchpad(struct txn *txn, unsigned at, const uint8_t *bytes, 
 /* Leave in a scratchpad what a restart does not leave there. */
 static int leave_mark(struct txn *txn)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	int err = area_read(txn, &scratchpads, MARK_AT, &visit->mark, 1);
 
 	if (err)
@@ -114,7 +114,7 @@ static int leave_mark(struct txn *txn)
 
 static int find_mark(struct txn *txn)
 {
-	const struct visit *visit = txn_own(txn);
+	const struct visit *visit = txn_own(txn, struct visit);
 	uint8_t byte;
 	int err = area_read(txn, &scratchpads, MARK_AT, &byte, 1);
 
@@ -126,7 +126,7 @@ enum step { FIRST, SECOND, TAKE, SET_MARK, LOOK };
 /* A restart empties the registers: a zero is measured again between a mark and a look at it. */
 static int measure(struct txn *txn, uint8_t code, unsigned at, int *value)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t bytes[2];
 	int err;
 
@@ -185,7 +185,7 @@ static int read_count(struct txn *txn, uint8_t bytes[2])
 /* One that failed may have counted: it counts from what stood there before it. */
 static int write_increment(struct txn *txn)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t now[2], *want = visit->bytes;
 	int err;
 

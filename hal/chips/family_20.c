@@ -34,7 +34,6 @@ struct visit {
 	uint8_t supply;
 	int64_t begun_ns;
 };
-_Static_assert(sizeof(struct visit) <= TXN_OWN, "no room for the visit");
 
 static bool power_on_flags(const uint8_t control[8])
 {
@@ -121,7 +120,7 @@ static bool is_set(int arg, const uint8_t control[8])
 
 static int look_at_settings(struct txn *txn)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t bytes[24];
 	int err = area_fetch(txn, &memory, CONTROL, bytes, sizeof(bytes));
 
@@ -137,7 +136,7 @@ static int look_at_settings(struct txn *txn)
 
 static int convert(struct txn *txn)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t bytes[16], which[8];
 	int err;
 
@@ -170,7 +169,7 @@ static int read_volt(struct txn *txn)
 {
 	static const char conversions[4];
 	const void *what = &conversions[txn->property->arg & (EIGHT_BIT | HALF_RANGE)];
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	int err;
 
 	if (!visit->begun_ns) {
@@ -190,7 +189,7 @@ static int read_volt(struct txn *txn)
  */
 static int read_latest(struct txn *txn)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t bytes[16];
 
 	if (visit->latest)

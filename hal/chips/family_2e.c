@@ -47,7 +47,7 @@ static int write_charge(struct txn *txn)
 /* The phases from first on: what the EEPROM holds, Refresh, the status. */
 static int refresh(struct txn *txn, unsigned first)
 {
-	uint8_t *stored = txn_own(txn), byte;
+	uint8_t *stored = txn_own(txn, uint8_t), byte;
 	int err;
 
 	if (txn->phase == first) {

@@ -23,7 +23,7 @@ struct visit {
 /* The command; then, with the strong pull-up over, the bytes. */
 static int begin(struct txn *txn, const struct area *area, unsigned at, uint8_t command[3])
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t bytes[3 + PASSWORD_BYTES] = {READ_WITH_PASSWORD, (uint8_t)(area->at + at),
 	                                     (uint8_t)((area->at + at) >> 8)};
 

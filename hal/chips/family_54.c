@@ -74,7 +74,7 @@ static int flush(struct txn *txn)
 
 static int read_temperature(struct txn *txn)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t bytes[ALL];
 	int err;
 

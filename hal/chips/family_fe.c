@@ -54,7 +54,7 @@ static int now(struct txn *txn, uint8_t bytes[PAGE])
 static int convert(struct txn *txn, uint8_t bytes[PAGE])
 {
 	static const uint8_t command = 0xb4;
-	int64_t *begun = txn_own(txn);
+	int64_t *begun = txn_own(txn, int64_t);
 	int err;
 
 	switch (txn->phase++) {

@@ -66,7 +66,7 @@ static int read_pad(struct txn *txn, uint8_t bytes[LCD_PAD])
 static int fetch(struct txn *txn, uint8_t code, const uint8_t *setup, unsigned setup_n,
                  uint8_t *bytes, unsigned n)
 {
-	struct pad *pad = txn_own(txn);
+	struct pad *pad = txn_own(txn, struct pad);
 	uint8_t fill[LCD_PAD], in[LCD_PAD];
 	int err;
 
@@ -232,7 +232,7 @@ static int add_counts(struct txn *txn, const uint8_t bytes[LCD_PAD])
 /* The scratchpad is all ones before; what an attempt that failed left in it is read first. */
 static int read_counts(struct txn *txn)
 {
-	struct pad *pad = txn_own(txn);
+	struct pad *pad = txn_own(txn, struct pad);
 	struct lcd *lcd = txn->device->own;
 	uint8_t ones[LCD_PAD], in[LCD_PAD];
 	int err;

@@ -71,7 +71,7 @@ static int word(const uint8_t *bytes)
 int gauge_read_couple(struct txn *txn)
 {
 	unsigned arg = (unsigned)txn->property->arg;
-	double *mv = txn_own(txn);
+	double *mv = txn_own(txn, double);
 	uint8_t bytes[2];
 	int err;
 

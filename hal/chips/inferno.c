@@ -109,7 +109,7 @@ static int command(struct txn *txn, uint8_t code, const uint8_t *args, unsigned 
 static int ask(struct txn *txn, uint8_t code, const uint8_t *args, unsigned args_n, unsigned skip,
                unsigned n)
 {
-	struct asked *asked = txn_own(txn);
+	struct asked *asked = txn_own(txn, struct asked);
 	uint8_t in[PORTS * CHANNELS];
 	int err = skip + n > sizeof(in) ? -EIO : exchange(txn, code, args, args_n, in, skip + n);
 
@@ -127,7 +127,7 @@ static int ask(struct txn *txn, uint8_t code, const uint8_t *args, unsigned args
 /* 0: it is known how many ports and channels there are of it. */
 static int count(struct txn *txn, unsigned which)
 {
-	const struct asked *asked = txn_own(txn);
+	const struct asked *asked = txn_own(txn, struct asked);
 	uint8_t *counts = of(txn)->counts[which];
 	int err = identify(txn);
 
@@ -161,7 +161,7 @@ static unsigned counted(const struct txn *txn)
 int inferno_read_count(struct txn *txn)
 {
 	static const uint8_t none;
-	const struct asked *asked = txn_own(txn);
+	const struct asked *asked = txn_own(txn, struct asked);
 	int err = identify(txn);
 
 	if (err)
@@ -210,7 +210,7 @@ static int put_bits(struct txn *txn, uint32_t bits, unsigned n)
 int inferno_read_port(struct txn *txn)
 {
 	static const uint8_t codes[] = {0, 0x08, 0x0c, 0x0d, 0x0e};
-	const struct asked *asked = txn_own(txn);
+	const struct asked *asked = txn_own(txn, struct asked);
 	const uint8_t port = (uint8_t)port_of(txn);
 	uint32_t bits = 0;
 	int err = count(txn, counted(txn));
@@ -276,7 +276,7 @@ static int check_list(const struct txn *txn, unsigned n, uint32_t most)
 int inferno_write_port(struct txn *txn)
 {
 	static const uint8_t codes[] = {0, 0x07, 0x0b, 0x09, 0x0a};
-	struct asked *asked = txn_own(txn);
+	struct asked *asked = txn_own(txn, struct asked);
 	uint32_t most = what_of(txn) == INFERNO_LED ? 1 : 255;
 	int value, err = count(txn, counted(txn));
 
@@ -343,7 +343,7 @@ int inferno_refresh(struct txn *txn)
 int inferno_read_light(struct txn *txn)
 {
 	const uint8_t channel = (uint8_t)txn->property->arg;
-	const struct asked *asked = txn_own(txn);
+	const struct asked *asked = txn_own(txn, struct asked);
 	const uint8_t *in = asked->seen;
 	char text[40];
 	int err = identify(txn);
@@ -359,7 +359,7 @@ int inferno_read_light(struct txn *txn)
 
 int inferno_write_light(struct txn *txn)
 {
-	struct asked *asked = txn_own(txn);
+	struct asked *asked = txn_own(txn, struct asked);
 	uint8_t args[ARGS] = {(uint8_t)txn->property->arg};
 	int fade, err = identify(txn);
 
@@ -408,7 +408,7 @@ int inferno_read_device(struct txn *txn)
 /* It does not answer: the device that comes up shows it. */
 int inferno_enter_update(struct txn *txn)
 {
-	struct asked *asked = txn_own(txn);
+	struct asked *asked = txn_own(txn, struct asked);
 	int err;
 
 	if (txn->number[0] == 0)
@@ -431,7 +431,7 @@ static uint32_t long_at(const uint8_t *bytes)
 
 int inferno_read_size(struct txn *txn)
 {
-	const struct asked *asked = txn_own(txn);
+	const struct asked *asked = txn_own(txn, struct asked);
 	int err = identify(txn);
 
 	if (!err)
@@ -442,7 +442,7 @@ int inferno_read_size(struct txn *txn)
 
 int inferno_read_range(struct txn *txn)
 {
-	const struct asked *asked = txn_own(txn);
+	const struct asked *asked = txn_own(txn, struct asked);
 	char text[40];
 	int err = identify(txn);
 

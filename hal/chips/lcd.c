@@ -29,7 +29,6 @@ struct lcd_visit {
 	bool begun, set_up, strobed;
 	uint8_t next; /* step */
 };
-_Static_assert(sizeof(struct lcd_visit) <= TXN_OWN, "no room for the visit");
 
 /* What a step is beside its byte. */
 enum { DATA = 0x100, NIBBLE = 0x200, SLOW = 0x400, RESET = 0x800 };
@@ -186,7 +185,7 @@ int lcd_write(struct txn *txn)
 {
 	int board = txn->property->arg >> 8, err;
 	struct ds2408 *chip = txn->device->own;
-	struct lcd_visit *visit = txn_own(txn);
+	struct lcd_visit *visit = txn_own(txn, struct lcd_visit);
 	uint8_t bytes[2 * CHUNK];
 	struct steps steps;
 	unsigned n = 0, step = 0;

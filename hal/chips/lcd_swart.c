@@ -53,7 +53,7 @@ static int send(struct txn *txn, uint8_t command, int64_t ns)
 /* A line goes to the display in chunks, each with its place ahead. 0: all are there. */
 static int print(struct txn *txn, unsigned row, const char *line)
 {
-	struct shown *shown = txn_own(txn);
+	struct shown *shown = txn_own(txn, struct shown);
 	unsigned width = (unsigned)txn->property->arg, from = shown->chunk * CHUNK;
 	unsigned n = width - from < CHUNK ? width - from : CHUNK;
 	uint8_t pad[1 + LCD_PAD] = {(uint8_t)((row & 1) * 0x40 + (row >> 1) * width + from)};
@@ -110,7 +110,7 @@ static bool line_of(const struct txn *txn, unsigned row, char line[WIDTH_MAX])
 
 int lcd_swart_screen(struct txn *txn)
 {
-	struct shown *shown = txn_own(txn);
+	struct shown *shown = txn_own(txn, struct shown);
 	unsigned rows = txn->property->arg == WIDTH_MAX ? 2 : 4;
 	char line[WIDTH_MAX];
 	int err;

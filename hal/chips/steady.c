@@ -16,7 +16,7 @@ struct looks {
 
 int steady(struct txn *txn, const uint8_t *bytes, unsigned n)
 {
-	struct looks *looks = txn_own(txn);
+	struct looks *looks = txn_own(txn, struct looks);
 
 	if (looks->all++ == 0 || memcmp(looks->bytes, bytes, n) != 0)
 		looks->same = 0;

@@ -30,10 +30,9 @@ struct visit {
 	uint8_t kept[3];       /* limits and configuration as they were */
 	uint8_t trim[4];
 };
-_Static_assert(sizeof(struct visit) <= TXN_OWN, "no room for the visit");
 static struct visit *visit_of(struct txn *txn)
 {
-	return txn_own(txn);
+	return txn_own(txn, struct visit);
 }
 
 void thermometer_forget(struct device *device)

@@ -67,7 +67,7 @@ static int give(struct txn *txn, const uint8_t *bytes, unsigned n)
 static int ask(struct txn *txn, uint8_t what, uint8_t bytes[5])
 {
 	static const uint8_t nothing[ANSWER - COMMAND + ANSWER_BYTES] = {0};
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t in[ANSWER_BYTES];
 	int err;
 
@@ -119,7 +119,7 @@ int ws603_read_bytes(struct txn *txn)
 /* Rotations times what one means in km/h, in m/s. */
 int ws603_read_wind(struct txn *txn)
 {
-	struct visit *visit = txn_own(txn);
+	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t bytes[5] = {0};
 	int err = ask(txn, visit->calibrated ? WS603_DATA : WS603_PARAMETERS, bytes);
 

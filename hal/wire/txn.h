@@ -133,11 +133,13 @@ bool txn_shared(struct txn *txn, const void *what, unsigned at, void *bytes, siz
 void txn_void(struct txn *txn);
 /* When the chip took the value that the request is answered with. */
 int64_t txn_measured(const struct txn *txn);
-/* The family's struct of TXN_OWN bytes at most, zero at the beginning. */
-static inline void *txn_own(struct txn *txn)
-{
-	return txn->own;
-}
+/*
+ * The family's object of this type, zero at the beginning. One of more than TXN_OWN bytes does not
+ * compile.
+ */
+#define txn_own(txn, type) \
+	((type *)(void *)((txn)->own + 0 * sizeof(char[sizeof(type) <= TXN_OWN ? 1 : -1])))
+
 /*
  * Behind each call of a property function: what a link keeps back is sent (link_ops.flush). err is
  * what the function returned, and so is this, unless sending failed.
