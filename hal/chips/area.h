@@ -102,6 +102,13 @@ struct field {
 	double unit, offset; /* value = bits * unit + offset; unit 0: 1 */
 };
 
+/* Four bytes of an area as a number, the low one first. */
+static inline uint32_t area_le32(const uint8_t *bytes)
+{
+	return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
+	       (uint32_t)bytes[3] << 24;
+}
+
 /* A command after which the chip measures or computes. */
 struct conversion {
 	const char *name; /* the property that says it: a link that is driven knows it by that */

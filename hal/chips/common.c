@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The properties that every device has. All but present are known without asking it. */
 #include <errno.h>
-#include <string.h>
 
 #include "hal/chips/family.h"
 
@@ -9,19 +8,10 @@
 
 enum { ADDRESS, REVERSED_ADDRESS, ID, REVERSED_ID, FAMILY, CRC, LOCATOR, TYPE };
 
-static int put(struct txn *txn, const char *text, size_t len)
-{
-	if (len > txn->room)
-		return -EMSGSIZE;
-	memcpy(txn->data, text, len);
-	txn->len = len;
-	return 0;
-}
-
 static int put_hex(struct txn *txn, unsigned first, unsigned n, bool reversed)
 {
 	static const char hex[] = "0123456789ABCDEF";
-	char text[16];
+	char text[16 + 1];
 
 	for (unsigned i = 0; i < n; i++) {
 		uint8_t byte = txn->device->rom[reversed ? first + n - 1 - i : first + i];
@@ -29,13 +19,12 @@ static int put_hex(struct txn *txn, unsigned first, unsigned n, bool reversed)
 		text[2 * i] = hex[byte >> 4];
 		text[2 * i + 1] = hex[byte & 0xf];
 	}
-	return put(txn, text, 2 * (size_t)n);
+	text[2 * n] = '\0';
+	return property_text(txn, text);
 }
 
 static int read_identity(struct txn *txn)
 {
-	const char *type;
-
 	switch (txn->property->arg) {
 	case ADDRESS:
 		return put_hex(txn, 0, 8, false);
@@ -51,10 +40,9 @@ static int read_identity(struct txn *txn)
 		return put_hex(txn, 7, 1, false);
 	case LOCATOR:
 		/* What OWFS says of a device without a LinkLocator; these are not asked for. */
-		return put(txn, "FFFFFFFFFFFFFFFF", 16);
+		return property_text(txn, "FFFFFFFFFFFFFFFF");
 	case TYPE:
-		type = family_type(txn->device);
-		return put(txn, type, strlen(type));
+		return property_text(txn, family_type(txn->device));
 	}
 	return -EIO;
 }
@@ -70,9 +58,7 @@ static int read_present(struct txn *txn)
 
 static int read_alias(struct txn *txn)
 {
-	const char *alias = device_alias(txn->device);
-
-	return put(txn, alias, strlen(alias));
+	return property_text(txn, device_alias(txn->device));
 }
 
 static int write_alias(struct txn *txn)

@@ -55,7 +55,6 @@ double ds1921_celsius(const struct ds1921_version *version, unsigned code)
 int ds1921_read_version(struct txn *txn)
 {
 	const struct ds1921_version *version = ds1921_version_of(txn->device);
-	size_t len;
 
 	if (!version)
 		return -EIO;
@@ -76,12 +75,7 @@ int ds1921_read_version(struct txn *txn)
 		txn->number[0] = ds1921_celsius(version, 4 * (unsigned)txn->element);
 		break;
 	default:
-		len = strlen(version->name);
-		if (len > txn->room)
-			return -EMSGSIZE;
-		memcpy(txn->data, version->name, len);
-		txn->len = len;
-		break;
+		return property_text(txn, version->name);
 	}
 	return 0;
 }

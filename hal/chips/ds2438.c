@@ -210,8 +210,8 @@ static bool near(unsigned now, unsigned before, unsigned most)
 /* What was written, and has gone on since where the chip counts by itself. */
 static bool is_written(unsigned page, const uint8_t *in, const uint8_t *bytes, unsigned n)
 {
-	uint32_t now = in[0] | in[1] << 8 | in[2] << 16 | (uint32_t)in[3] << 24;
-	uint32_t then = bytes[0] | bytes[1] << 8 | bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+	uint32_t now = area_le32(in);
+	uint32_t then = area_le32(bytes);
 
 	switch (page) {
 	case 0: /* the configuration and the threshold; the rest is measured */

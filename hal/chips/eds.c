@@ -10,6 +10,7 @@
 
 #include "hal/chips/eds.h"
 #include "hal/chips/family.h"
+#include "hal/chips/how.h"
 
 enum { PAGE = 32, ID_AT = 0x1e };
 enum { LATCHES_AT = 0x23, PULSES_AT = 0x30, COUNTERS = 8 };
@@ -40,12 +41,6 @@ unsigned eds_kind_of(const struct device *device)
 static bool is_octal(unsigned kind)
 {
 	return kind >= EDS0080 && kind <= EDS0085;
-}
-
-static uint32_t word32(const uint8_t *bytes)
-{
-	return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
-	       (uint32_t)bytes[3] << 24;
 }
 
 static unsigned kind_of_id(unsigned id)
@@ -84,7 +79,7 @@ static int saw(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 
 	visit->at = (uint8_t)at;
 	if (chip->kind != EDS_OTHER && at <= clock && clock + 4 <= at + n) {
-		uint32_t seconds = word32(bytes + clock - at);
+		uint32_t seconds = area_le32(bytes + clock - at);
 
 		txn->restarted |= seconds < chip->seconds;
 		chip->seconds = seconds;
@@ -219,16 +214,11 @@ int eds_write_memory(struct txn *txn)
 	                       : area_write(txn, &eds_memory, at, txn->data, NULL, n);
 }
 
-static const struct area *area_of(const struct txn *txn)
-{
-	return txn->device->family->areas[txn->property->field.area];
-}
-
 int eds_read_pairs(struct txn *txn)
 {
 	const struct field *field = &txn->property->field;
 	uint8_t bytes[2];
-	int err = area_read(txn, area_of(txn), field->at, bytes, sizeof(bytes));
+	int err = area_read(txn, family_area(txn), field->at, bytes, sizeof(bytes));
 
 	if (err)
 		return err;
@@ -251,7 +241,7 @@ int eds_write_pairs(struct txn *txn)
 		which[i / 4] |= bit;
 		bytes[i / 4] |= txn->bits >> i & 1 ? bit : 0;
 	}
-	return area_write(txn, area_of(txn), field->at, bytes, which, sizeof(bytes));
+	return area_write(txn, family_area(txn), field->at, bytes, which, sizeof(bytes));
 }
 
 int eds_write_state(struct txn *txn)
@@ -263,11 +253,11 @@ int eds_write_state(struct txn *txn)
 
 	if (visit->stage) {
 		state = (uint8_t)((unsigned)txn->number[0] << field->shift);
-		return area_write(txn, area_of(txn), field->at, &state, &which, 1);
+		return area_write(txn, family_area(txn), field->at, &state, &which, 1);
 	}
 	if (txn->number[0] > (field->bits ? 1 : 3))
 		return -EINVAL;
-	err = area_read(txn, area_of(txn), field->at - 1u, &function, 1);
+	err = area_read(txn, family_area(txn), field->at - 1u, &function, 1);
 	if (err)
 		return err;
 	visit->stage = 1;
@@ -293,7 +283,7 @@ static bool is_unchanged(struct txn *txn, const uint8_t *page, unsigned first)
 		                              : page + PULSES_AT - PAGE + 4 * i;
 
 		if (which >> i & 1 && visit->pulses[i])
-			unchanged |= word32(pulses) >= visit->pulses[i];
+			unchanged |= area_le32(pulses) >= visit->pulses[i];
 	}
 	return unchanged;
 }
@@ -303,7 +293,7 @@ static void note(struct visit *visit, const uint8_t *page, unsigned first)
 	if (!first)
 		visit->latches = page[LATCHES_AT - PAGE];
 	for (unsigned i = 0; i < 4; i++)
-		visit->pulses[first + i] = word32(page + (first ? 0 : PULSES_AT - PAGE) + 4 * i);
+		visit->pulses[first + i] = area_le32(page + (first ? 0 : PULSES_AT - PAGE) + 4 * i);
 }
 
 /* A reset leaves no trace in the register: the counters and latches before and after prove it. */

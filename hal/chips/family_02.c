@@ -3,8 +3,6 @@
  * DS1991 (data sheet 012207) and DS1425: three subkeys, each with an identifier that everybody may
  * read, and 48 bytes behind a password. Passwords are neither used nor set here.
  */
-#include <errno.h>
-
 #include "hal/chips/family.h"
 #include "hal/chips/steady.h"
 
@@ -33,19 +31,13 @@ static const struct area identifiers = {
 	.load = load,
 };
 
-static int refuse(struct txn *txn)
-{
-	(void)txn;
-	return -EOPNOTSUPP;
-}
-
 enum { IDENTIFIERS = 1 };
 static const struct area *const areas[] = {[IDENTIFIERS] = &identifiers};
 
 enum { WAY_IDENTIFIER = 1, WAY_SECRET };
 static const struct property_how how[] = {
-	[WAY_IDENTIFIER] = {.write = refuse},
-	[WAY_SECRET] = {.read = refuse, .write = refuse},
+	[WAY_IDENTIFIER] = {.write = property_refuse},
+	[WAY_SECRET] = {.read = property_refuse, .write = property_refuse},
 };
 
 #define SUBKEY(name_, n) \

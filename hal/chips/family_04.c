@@ -33,11 +33,6 @@ struct looks {
 static const struct area registers = {
 	.name = "registers", .at = 0x202, .size = 28, .address_bytes = 2, .read = 0xf0};
 
-static uint32_t number_at(const uint8_t *bytes)
-{
-	return bytes[0] | bytes[1] << 8 | bytes[2] << 16 | (uint32_t)bytes[3] << 24;
-}
-
 /* The flags whose counter has passed its alarm a moment ago. */
 static uint8_t just_set(const uint8_t *bytes)
 {
@@ -45,7 +40,7 @@ static uint8_t just_set(const uint8_t *bytes)
 	uint8_t flags = 0;
 
 	for (unsigned i = 0; i < sizeof(counter); i++)
-		if (number_at(bytes + counter[i]) - number_at(bytes + alarm[i]) <= 2)
+		if (area_le32(bytes + counter[i]) - area_le32(bytes + alarm[i]) <= 2)
 			flags |= (uint8_t)(1 << i);
 	return flags;
 }

@@ -3,8 +3,6 @@
  * DS1963S (data sheet, "SHA iButton"): 4 kbit of RAM with a battery, which counts how often it is
  * written. Its secrets are not written here.
  */
-#include <errno.h>
-
 #include "hal/chips/counter.h"
 #include "hal/chips/family.h"
 
@@ -37,18 +35,12 @@ static const struct area memory = {
 	.store = store,
 };
 
-static int refuse(struct txn *txn)
-{
-	(void)txn;
-	return -EOPNOTSUPP;
-}
-
 enum { MEMORY = 1, COUNTS };
 static const struct area *const areas[] = {[MEMORY] = &memory, [COUNTS] = &counter_area};
 
 enum { WAY_SECRET = 1, WAY_PAGE_COUNT };
 static const struct property_how how[] = {
-	[WAY_SECRET] = {.write = refuse},
+	[WAY_SECRET] = {.write = property_refuse},
 	[WAY_PAGE_COUNT] = {.read = counter_read_page},
 };
 

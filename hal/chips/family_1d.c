@@ -28,7 +28,7 @@ static int read_minimum(struct txn *txn)
 
 	if (err)
 		return err;
-	uint32_t count = in[0] | in[1] << 8 | in[2] << 16 | (uint32_t)in[3] << 24;
+	uint32_t count = area_le32(in);
 	if (txn->phase++ == 0) {
 		txn->number[0] = count;
 		return TXN_MORE;

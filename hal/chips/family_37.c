@@ -101,19 +101,13 @@ static int read_enabled(struct txn *txn)
 	return err;
 }
 
-static int refuse(struct txn *txn)
-{
-	(void)txn;
-	return -EOPNOTSUPP;
-}
-
 enum { MEMORY = 1, VERSION };
 static const struct area *const areas[] = {[MEMORY] = &memory, [VERSION] = &version};
 
 enum { WAY_ENABLED = 1, WAY_PASSWORD };
 static const struct property_how how[] = {
-	[WAY_ENABLED] = {.read = read_enabled, .write = refuse},
-	[WAY_PASSWORD] = {.write = refuse},
+	[WAY_ENABLED] = {.read = read_enabled, .write = property_refuse},
+	[WAY_PASSWORD] = {.write = property_refuse},
 };
 
 #define PASSWORD(text) PROPERTY(text, BINARY, STABLE, WRITE, .size = 8, .how = WAY_PASSWORD)

@@ -3,20 +3,11 @@
  * Soft devices of Inferno Embedded (inferno.h). No data sheet could be had: the commands are those
  * of OWFS's driver.
  */
-#include <errno.h>
-
 #include "hal/chips/inferno.h"
 
 /* Numbers have their low byte first. */
 static const struct area status = {.name = "status", .size = 8, .block = 8, .read = 0xfd};
 static const struct area version = {.name = "version", .size = 4, .block = 4, .read = 0xfe};
-
-/* Half a firmware leaves no device: not over a wire that may fail. */
-static int refuse(struct txn *txn)
-{
-	(void)txn;
-	return -EOPNOTSUPP;
-}
 
 /* It comes up as what its firmware makes of it. */
 static int exit_update(struct txn *txn)
@@ -49,7 +40,8 @@ static const struct property_how how[] = {
 	[WAY_DEVICE] = {.read = inferno_read_device},
 	[WAY_ENTER] = {.write = inferno_enter_update},
 	[WAY_EXIT] = {.write = exit_update},
-	[WAY_FIRMWARE] = {.write = refuse},
+	/* half a firmware leaves no device: not over a wire that may fail */
+	[WAY_FIRMWARE] = {.write = property_refuse},
 	[WAY_SIZE] = {.read = inferno_read_size},
 	[WAY_RANGE] = {.read = inferno_read_range},
 	[WAY_COUNT] = {.read = inferno_read_count},

@@ -9,6 +9,7 @@
 
 #include "hal/chips/bae.h"
 #include "hal/chips/field.h"
+#include "hal/chips/how.h"
 
 #define BLOCK 32
 #define PAGE 512
@@ -67,7 +68,7 @@ enum proof {
 static int write_register(struct txn *txn, enum proof proof)
 {
 	const struct field *field = &txn->property->field;
-	const struct area *area = txn->device->family->areas[field->area];
+	const struct area *area = family_area(txn);
 	unsigned n = field->bytes, at = field->at + (unsigned)txn->element * field->stride;
 	uint8_t bytes[4], in[4];
 	double left = txn->number[0];
@@ -127,11 +128,7 @@ static int read_words(struct txn *txn)
 	if (err)
 		return err;
 	snprintf(text, sizeof(text), "%.2X.%.2X", bytes[1], bytes[0]);
-	txn->len = strlen(text);
-	if (txn->len > txn->room)
-		return -EMSGSIZE;
-	memcpy(txn->data, text, txn->len);
-	return 0;
+	return property_text(txn, text);
 }
 
 /* 0: there is such a page. */
@@ -195,13 +192,6 @@ static int write_command(struct txn *txn)
 	return bae_confirmed(txn, command, (unsigned)(2 + txn->len));
 }
 
-/* Half a firmware leaves no device: not over a wire that may fail. */
-static int refuse(struct txn *txn)
-{
-	(void)txn;
-	return -EOPNOTSUPP;
-}
-
 enum { REGISTERS_910 = 1, REGISTERS_911, GENERIC, EEPROM, VERSION, TYPE };
 static const struct area *const areas[] = {
 	[REGISTERS_910] = &registers_910,
@@ -238,7 +228,8 @@ static const struct property_how how[] = {
 	[WAY_PAGE] = {.read = read_page, .write = write_page},
 	[WAY_ERASE] = {.write = erase},
 	[WAY_COMMAND] = {.write = write_command},
-	[WAY_FIRMWARE] = {.write = refuse},
+	/* half a firmware leaves no device: not over a wire that may fail */
+	[WAY_FIRMWARE] = {.write = property_refuse},
 	[WAY_EXPANDER] = {.read = bae_read_expander, .write = bae_write_expander},
 	[WAY_TEXT] = {.write = bae_write_text},
 	[WAY_SECTOR] = {.read = bae_read_sector, .write = bae_write_sector},

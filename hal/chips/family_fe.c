@@ -123,11 +123,7 @@ static int read_text(struct txn *txn)
 		return -ENOENT;
 	if (txn->property->arg == VERSION)
 		snprintf(text, sizeof(text), "%u.%u", bytes[VERSION] >> 4, bytes[VERSION] & 0xf);
-	txn->len = strlen(text);
-	if (txn->len > txn->room)
-		return -EMSGSIZE;
-	memcpy(txn->data, text, txn->len);
-	return 0;
+	return property_text(txn, text);
 }
 
 /* Nothing shows what it does. */

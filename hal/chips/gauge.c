@@ -98,12 +98,6 @@ int gauge_couple_low(struct txn *txn)
 	return 0;
 }
 
-int gauge_refuse(struct txn *txn)
-{
-	(void)txn;
-	return -EOPNOTSUPP;
-}
-
 int gauge_couple_high(struct txn *txn)
 {
 	txn->number[0] = thermocouple_high((enum thermocouple)txn->property->arg);

@@ -48,8 +48,6 @@ int gauge_write_lock(struct txn *txn);
 int gauge_read_couple(struct txn *txn);
 int gauge_couple_low(struct txn *txn);
 int gauge_couple_high(struct txn *txn);
-/* Of a bit beside that of PIO, which reads the pin and writes the output: -EOPNOTSUPP. */
-int gauge_refuse(struct txn *txn);
 
 /* V across the resistor of one step of a word: of 13 bits, left-aligned, and of 16. */
 #define GAUGE_COARSE (15.625e-6 / 8)
@@ -66,7 +64,7 @@ int gauge_refuse(struct txn *txn);
 	[WAY_COUPLE] = {.read = gauge_read_couple}, \
 	[WAY_COUPLE_LOW] = {.read = gauge_couple_low}, \
 	[WAY_COUPLE_HIGH] = {.read = gauge_couple_high}, \
-	[WAY_BESIDE_PIO] = {.write = gauge_refuse}
+	[WAY_BESIDE_PIO] = {.write = property_refuse}
 
 #define GAUGE_LOCK(n, register_, blocks) \
 	PROPERTY("lock", YESNO, STABLE, BOTH, ELEMENTS(n, NUMBERS), \

@@ -6,6 +6,7 @@
 
 #include "hal/chips/field.h"
 #include "hal/chips/hobby_boards.h"
+#include "hal/chips/how.h"
 
 const struct area hobby_type = HOBBY_VALUE("type", 1, 0x12);
 const struct area hobby_version = HOBBY_VALUE("version", 2, 0x11);
@@ -69,36 +70,20 @@ int hobby_write(struct txn *txn)
 	return err ? err : field_write(txn);
 }
 
-static int put(struct txn *txn, const char *text)
-{
-	size_t len = strlen(text);
-
-	if (len > txn->room)
-		return -EMSGSIZE;
-	memcpy(txn->data, text, len);
-	txn->len = len;
-	return 0;
-}
-
-static const struct area *area_of(const struct txn *txn)
-{
-	return txn->device->family->areas[txn->property->field.area];
-}
-
 int hobby_read_text(struct txn *txn)
 {
 	char text[AREA_UNIT + 1] = {0};
 	int err = hobby_identify(txn);
 
 	if (!err)
-		err = area_read(txn, area_of(txn), 0, (uint8_t *)text, area_of(txn)->size);
-	return err ? err : put(txn, text);
+		err = area_read(txn, family_area(txn), 0, (uint8_t *)text, family_area(txn)->size);
+	return err ? err : property_text(txn, text);
 }
 
 /* The last byte is the end of the text. */
 int hobby_write_text(struct txn *txn)
 {
-	const struct area *area = area_of(txn);
+	const struct area *area = family_area(txn);
 	uint8_t text[AREA_UNIT] = {0};
 	int err = hobby_identify(txn);
 
@@ -114,7 +99,7 @@ int hobby_read_type(struct txn *txn)
 {
 	int err = read_kind(txn);
 
-	return err ? err : put(txn, family_type(txn->device));
+	return err ? err : property_text(txn, family_type(txn->device));
 }
 
 int hobby_read_version(struct txn *txn)
@@ -126,5 +111,5 @@ int hobby_read_version(struct txn *txn)
 	if (err)
 		return err;
 	snprintf(text, sizeof(text), "%u.%u", version[1], version[0]);
-	return put(txn, text);
+	return property_text(txn, text);
 }

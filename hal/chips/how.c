@@ -16,3 +16,8 @@ const struct property_how *family_how(const struct family *family, const struct 
 
 	return property->how ? &family_owner(family, property)->how[property->how] : &none;
 }
+
+const struct area *family_area(const struct txn *txn)
+{
+	return family_owner(txn->device->family, txn->property)->areas[txn->property->field.area];
+}

@@ -10,4 +10,7 @@ const struct family *family_owner(const struct family *family, const struct prop
 /* What no field can say of it; never NULL. */
 const struct property_how *family_how(const struct family *family, const struct property *property);
 
+/* The area of the property's own field. */
+const struct area *family_area(const struct txn *txn);
+
 #endif

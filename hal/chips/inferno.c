@@ -176,17 +176,6 @@ int inferno_read_count(struct txn *txn)
 	return err;
 }
 
-static int put(struct txn *txn, const char *text)
-{
-	size_t len = strlen(text);
-
-	if (len > txn->room)
-		return -EMSGSIZE;
-	memcpy(txn->data, text, len);
-	txn->len = len;
-	return 0;
-}
-
 static int put_list(struct txn *txn, const uint8_t *values, unsigned n)
 {
 	char text[4 * CHANNELS + 1] = "";
@@ -195,7 +184,7 @@ static int put_list(struct txn *txn, const uint8_t *values, unsigned n)
 	for (unsigned i = 0; i < n; i++)
 		len += (size_t)snprintf(text + len, sizeof(text) - len, "%s%u", i ? "," : "",
 		                        values[i]);
-	return put(txn, text);
+	return property_text(txn, text);
 }
 
 static int put_bits(struct txn *txn, uint32_t bits, unsigned n)
@@ -354,7 +343,7 @@ int inferno_read_light(struct txn *txn)
 		return err;
 	snprintf(text, sizeof(text), "%3d,%3d,%3d,%3d,%8d", in[0], in[1], in[2], in[3],
 	         in[4] | in[5] << 8 | in[6] << 16);
-	return put(txn, text);
+	return property_text(txn, text);
 }
 
 int inferno_write_light(struct txn *txn)
@@ -402,7 +391,7 @@ int inferno_read_device(struct txn *txn)
 	};
 	int err = identify(txn);
 
-	return err ? err : put(txn, names[of(txn)->kind]);
+	return err ? err : property_text(txn, names[of(txn)->kind]);
 }
 
 /* It does not answer: the device that comes up shows it. */
@@ -423,12 +412,6 @@ int inferno_enter_update(struct txn *txn)
 	return err ? err : of(txn)->kind == INFERNO_UPDATER ? 0 : -EIO;
 }
 
-static uint32_t long_at(const uint8_t *bytes)
-{
-	return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
-	       (uint32_t)bytes[3] << 24;
-}
-
 int inferno_read_size(struct txn *txn)
 {
 	const struct asked *asked = txn_own(txn, struct asked);
@@ -436,7 +419,7 @@ int inferno_read_size(struct txn *txn)
 
 	if (!err)
 		err = ask(txn, BOOTLOADER_SIZE, NULL, 0, 0, 4);
-	txn->number[0] = long_at(asked->seen);
+	txn->number[0] = area_le32(asked->seen);
 	return err;
 }
 
@@ -450,7 +433,7 @@ int inferno_read_range(struct txn *txn)
 		err = ask(txn, RANGE, NULL, 0, 0, 8);
 	if (err)
 		return err;
-	snprintf(text, sizeof(text), "0x%08x,0x%08x", long_at(asked->seen),
-	         long_at(asked->seen + 4));
-	return put(txn, text);
+	snprintf(text, sizeof(text), "0x%08x,0x%08x", area_le32(asked->seen),
+	         area_le32(asked->seen + 4));
+	return property_text(txn, text);
 }

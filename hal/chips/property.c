@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* What follows from the description of a property. */
+/* What follows from the description of a property; functions that families have in common. */
+#include <errno.h>
+#include <string.h>
+
 #include "hal/chips/property.h"
 
 unsigned property_size(const struct property *property)
@@ -24,5 +27,22 @@ unsigned property_size(const struct property *property)
 	case PROPERTY_BITS:
 		return 1;
 	}
+	return 0;
+}
+
+int property_refuse(struct txn *txn)
+{
+	(void)txn;
+	return -EOPNOTSUPP;
+}
+
+int property_text(struct txn *txn, const char *text)
+{
+	size_t len = strlen(text);
+
+	if (len > txn->room)
+		return -EMSGSIZE;
+	memcpy(txn->data, text, len);
+	txn->len = len;
 	return 0;
 }

@@ -85,6 +85,11 @@ struct property_how {
 /* Bytes of a whole value, of one element, as owserver states it. */
 unsigned property_size(const struct property *property);
 
+/* A function that reads or writes nothing: -EOPNOTSUPP. */
+int property_refuse(struct txn *txn);
+/* The value of a property that is a text. -EMSGSIZE: the request has no room for it. */
+int property_text(struct txn *txn, const char *text);
+
 /*
  * Rows of a family's table: PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = 331, ...).
  * Arrays are ELEMENTS, read one by one, or AGGREGATE, read in one transaction.

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Sensors on boards with a DS2438, from the data sheets of the sensors. */
 #include <errno.h>
-#include <string.h>
 
 #include "hal/chips/ds2438.h"
 #include "hal/chips/ds2438_measure.h"
@@ -144,11 +143,7 @@ int sensor_read_type(struct txn *txn)
 		type = "MS-T";
 	else if (page[0] >= 0x19 && page[0] < 0x19 + sizeof(types) / sizeof(types[0]))
 		type = types[page[0] - 0x19];
-	txn->len = strlen(type);
-	if (txn->len > txn->room)
-		return -EMSGSIZE;
-	memcpy(txn->data, type, txn->len);
-	return 0;
+	return property_text(txn, type);
 }
 
 int sensor_reset_datanab(struct txn *txn)

@@ -37,14 +37,9 @@ int steady_clock_load(struct txn *txn, const struct area *area, unsigned at, uin
 	return err ? err : steady(txn, bytes, n);
 }
 
-static uint32_t seconds_of(const uint8_t *bytes)
-{
-	return bytes[1] | bytes[2] << 8 | bytes[3] << 16 | (uint32_t)bytes[4] << 24;
-}
-
 bool steady_clock_is_written(struct txn *txn, const uint8_t *have, const uint8_t *want, unsigned n)
 {
 	(void)txn;
 	return n == CLOCK_BYTES && have[0] == want[0] &&
-	       seconds_of(have) - seconds_of(want) <= LATE_S;
+	       area_le32(have + 1) - area_le32(want + 1) <= LATE_S;
 }

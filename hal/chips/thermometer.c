@@ -462,9 +462,7 @@ int thermometer_read_power(struct txn *txn)
  * before 2001. */
 int thermometer_read_die(struct txn *txn)
 {
-	memcpy(txn->data, "C2", 2);
-	txn->len = 2;
-	return 0;
+	return property_text(txn, "C2");
 }
 
 /*

@@ -8,6 +8,7 @@
 #include "unity.h"
 
 #include "hal/chips/format.h"
+#include "hal/chips/thermometer.h"
 #include "hal/wire/crc.h"
 
 void setUp(void)
@@ -251,6 +252,20 @@ static void test_crc16_is_that_of_the_application_note(void)
 	TEST_ASSERT_TRUE(onewire_rom_valid((const uint8_t[]){2, 0x1c, 0xb8, 1, 0, 0, 0, 0xa2}));
 }
 
+/* A request may have less room than the text of a property needs. */
+static void test_a_text_without_room_is_refused_and_nothing_is_written(void)
+{
+	uint8_t room[] = "...";
+	struct txn txn = {.data = room, .room = 1};
+
+	TEST_ASSERT_EQUAL_INT(-EMSGSIZE, thermometer_read_die(&txn));
+	TEST_ASSERT_EQUAL_STRING("...", room);
+	txn.room = 2;
+	TEST_ASSERT_EQUAL_INT(0, thermometer_read_die(&txn));
+	TEST_ASSERT_EQUAL_size_t(2, txn.len);
+	TEST_ASSERT_EQUAL_STRING("C2.", room);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -263,6 +278,7 @@ int main(void)
 	RUN_TEST(test_a_list_has_as_many_elements_as_its_property);
 	RUN_TEST(test_a_number_of_digits_has_each_of_them_in_its_range);
 	RUN_TEST(test_one_element_leaves_the_others);
+	RUN_TEST(test_a_text_without_room_is_refused_and_nothing_is_written);
 	RUN_TEST(test_crc16_is_that_of_the_application_note);
 	return UNITY_END();
 }
