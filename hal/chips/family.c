@@ -15,8 +15,13 @@ bool family_has(const struct device *device, const struct property *property)
 {
 	const struct family *family = device->family;
 	unsigned kind = family->kind ? family->kind(device) : 1;
+	uint32_t kinds = property->kinds;
 
-	return !property->kinds || (property->kinds & KIND(kind ? kind : 1));
+	/* Those of every device have no kind. */
+	if (!kinds && property >= family->properties &&
+	    property < family->properties + family->count)
+		kinds = family->plain;
+	return !kinds || (kinds & KIND(kind ? kind : 1));
 }
 
 void family_forget(struct device *device)

@@ -27,6 +27,13 @@ struct family {
 	 */
 	unsigned (*kind)(const struct device *device);
 	const char *const *types; /* what each kind is called, [0] too */
+	/*
+	 * Tells which kind it is, before any property of the family (those that every device has
+	 * are none) is read or written: 0 it is known, TXN_MORE or an error. NULL: the functions
+	 * of its properties see to that.
+	 */
+	int (*identify)(struct txn *txn);
+	uint32_t plain; /* KIND() of those that have the properties whose .kinds is 0; 0: all */
 	/* The chip was away or has restarted: what of device.own is void? NULL: all of it. */
 	void (*forget)(struct device *device);
 	const struct property *properties; /* sorted by name, the hidden ones too */

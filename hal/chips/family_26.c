@@ -3,13 +3,18 @@
  * DS2438 (data sheet 19-5099): temperature, two voltages, a current, a clock. ds2438.c reads and
  * writes its memory, ds2438_measure.c measures; what stands on boards with this chip (humidity,
  * pressure, light) is computed in sensors_26.c.
+ *
+ * TMP1826 and TMP1827 answer with the same family code: tmp1826.c tells them apart before anything
+ * else is asked of a chip, and reads them.
  */
 #include <errno.h>
 
 #include "hal/chips/ds2438.h"
 #include "hal/chips/ds2438_measure.h"
 #include "hal/chips/family.h"
+#include "hal/chips/identity.h"
 #include "hal/chips/sensors_26.h"
+#include "hal/chips/tmp1826.h"
 
 #define OFFSET_AT 13 /* page 1, byte 5 */
 
@@ -58,15 +63,39 @@ static int write_offset(struct txn *txn)
 enum { PAGES = 1 };
 static const struct area *const areas[] = {[PAGES] = &ds2438_pages};
 
-enum { WAYS = AFTER_SENSOR_WAYS, WAY_OFFSET = WAYS + DS2438_WAY_COUNT };
+/* The same row serves both. */
+static int read_temperature(struct txn *txn)
+{
+	bool other = txn->device->family->kind && tmp1826_kind(txn->device) == IS_TMP1826;
+
+	return other ? tmp1826_read_temperature(txn) : ds2438_read_measured(txn);
+}
+
+enum {
+	WAYS = AFTER_SENSOR_WAYS,
+	WAY_OFFSET = WAYS + DS2438_WAY_COUNT,
+	WAY_IDENTITY,
+	WAY_TEMPERATURE,
+	WAY_LIMIT,
+	WAY_POWER,
+	WAY_FORMAT,
+};
 static const struct property_how how[] = {
 	SENSOR_WAYS,
 	DS2438_WAYS(WAYS),
 	[WAY_OFFSET] = {.read = read_offset, .write = write_offset},
+	[WAY_IDENTITY] = {.read = identity_read_type},
+	[WAY_TEMPERATURE] = {.read = read_temperature},
+	[WAY_LIMIT] = {.read = tmp1826_read_limit},
+	[WAY_POWER] = {.read = tmp1826_read_power},
+	[WAY_FORMAT] = {.read = tmp1826_read_format},
 };
 
 /* How such a board marks itself is not documented. */
 #define DATANAB_BOARD KIND(0)
+
+#define OTHER(text, kind, life_, ...) \
+	PROPERTY(text, kind, life_, READ, .kinds = KIND(IS_TMP1826), __VA_ARGS__)
 
 static const struct property properties[] = {
 	PROPERTY_DIR("B1-R1-A"),
@@ -105,18 +134,30 @@ static const struct property properties[] = {
 	TIME("endcharge/date", DATE, VOLATILE, 20),
 	TIME("endcharge/udate", UNSIGNED, VOLATILE, 20),
 	DS2438_HUMIDITY("humidity", HIH3600),
+	IDENTITY_ROW(WAY_IDENTITY, .kinds = KIND(IS_DS2438) | KIND(IS_TMP1826) | KIND(IS_NEITHER)),
 	DS2438_LATEST(WAYS),
 	PROPERTY("offset", UNSIGNED, STABLE, BOTH, .negative = true, .how = WAY_OFFSET),
 	PROPERTY_DIR("pages"),
 	DS2438_PAGES(WAYS),
-	MEASURED("temperature", TEMPERATURE, DS2438_TEMPERATURE),
+	OTHER("power", YESNO, VOLATILE, .how = WAY_POWER),
+	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, .arg = DS2438_TEMPERATURE,
+                 .kinds = KIND(IS_DS2438) | KIND(IS_TMP1826), .how = WAY_TEMPERATURE),
+	OTHER("temphigh", TEMPERATURE, STABLE, .arg = TMP1826_HIGH, .how = WAY_LIMIT),
+	OTHER("templow", TEMPERATURE, STABLE, .arg = TMP1826_LOW, .how = WAY_LIMIT),
+	OTHER("tempres", UNSIGNED, STABLE, .how = WAY_FORMAT),
 	TIME("udate", UNSIGNED, SECOND, 8),
 	MEASURED("vis", FLOAT, DS2438_VIS),
 };
 
+static const char *const types[] = {"DS2438", "DS2438", "TMP1826", "unknown"};
+
 const struct family family_26 = {
 	.code = 0x26,
 	.type = "DS2438",
+	.kind = tmp1826_kind,
+	.types = types,
+	.identify = tmp1826_identify,
+	.plain = KIND(IS_DS2438),
 	AREAS(areas),
 	HOW(how),
 	PROPERTIES(properties),

@@ -144,6 +144,28 @@ static bool needs_merge(const struct job *job)
 	       (job->property->array.aggregate || job->property->type == PROPERTY_BITS);
 }
 
+/*
+ * Which chip it is, where the family code does not tell: known before anything is asked of it.
+ * -ENOENT: such a chip has no such property.
+ */
+static int identify(struct job *job)
+{
+	struct txn *txn = &job->txn;
+	const struct family *family = family_of_job(job);
+
+	if (!txn->device || !family->identify || job->property->offline ||
+	    family_owner(family, job->property) != family)
+		return 0;
+	if (family->kind(txn->device))
+		return family_has(txn->device, job->property) ? 0 : -ENOENT;
+	int err = family->identify(txn);
+
+	if (err)
+		return err;
+	memset(txn->own, 0, sizeof(txn->own));
+	return TXN_MORE;
+}
+
 static int run_function(struct job *job)
 {
 	property_function *merge = family_how(family_of_job(job), job->property)->merge;
@@ -161,6 +183,9 @@ static int run_function(struct job *job)
 		txn->measured_ns = txn->device->ok_ns;
 		return 0;
 	}
+	int known = identify(job);
+	if (known)
+		return known;
 	if (job->req->op == BUS_READ)
 		return reader(job)(txn);
 	if (needs_merge(job))

@@ -2,6 +2,7 @@
 /* How a transaction of a job ended: what that shows of link and device, and what follows. */
 #include <errno.h>
 
+#include "hal/chips/family.h"
 #include "hal/chips/thermometer.h"
 #include "hal/native/answer.h"
 #include "hal/native/limits.h"
@@ -107,9 +108,14 @@ void job_failed(struct native *native, struct job *job, int err)
 	case -EBADMSG:
 		native_count(native, COUNT_CHECKSUMS);
 		native->channel[job->txn.channel].checksums++;
-		if (++job->tries < TRIES_CHECKSUM)
+		if (++job->tries < TRIES_CHECKSUM) {
 			begin_again(native, job);
-		else if (job->txn.silent && job->txn.device)
+			return;
+		}
+		/* Perhaps another chip has taken its place: it is told anew. */
+		if (job->txn.device && job->txn.device->family->identify)
+			family_forget(job->txn.device);
+		if (job->txn.silent && job->txn.device)
 			job_missing(native, job, err);
 		else
 			give_up_reading(native, job, err);

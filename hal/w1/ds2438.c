@@ -63,6 +63,7 @@ static const struct w1_property properties[] = {
 	{.name = "VDD"},
 	{.name = "date", .file = "page1"},
 	{.name = "humidity"},
+	{.name = "identity"},
 	{.name = "latesttemp"},
 	{.name = "offset", .file = "page1"},
 	{.name = "pages/page", .first = 0, .count = 1},

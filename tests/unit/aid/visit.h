@@ -138,9 +138,14 @@ struct visit {
 	X(max31888, "MAX31888", false) \
 	X(max31888_fed_by_the_wire, "MAX31888", true)
 
+/* Family codes that several chips have. */
+#define VISIT_IDENTITY(X) \
+	X(tmp1826, "TMP1826", false) \
+	X(tmp1826_fed_by_the_wire, "TMP1826", true)
+
 #define VISIT_ALL(X) \
 	VISIT_CHIPS(X) VISIT_MEMORIES(X) VISIT_BATTERIES(X) VISIT_GAUGES(X) VISIT_EDS(X) \
-	VISIT_HOBBY(X) VISIT_LOGGERS(X) VISIT_BRIDGES(X)
+	VISIT_HOBBY(X) VISIT_LOGGERS(X) VISIT_BRIDGES(X) VISIT_IDENTITY(X)
 /* clang-format on */
 
 extern struct trouble trouble;

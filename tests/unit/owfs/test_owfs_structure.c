@@ -43,8 +43,12 @@ static void correct(char *column[COLUMNS])
 	static char light[] = "EDS0067/threshold/light_hi";
 	static char resistance[] = "EDS0071/set_alarm/resistance_hi";
 	static char array[] = "8:numbers:separate", raw[] = "f,000000,000008,rw,000012,s,";
+	static char of_some[] = "VISIBLE_BOTH"; /* not of every chip with that code */
 	char *limit = strstr(column[NAME], "/threshold/");
 
+	if (strcmp(column[FAMILY] + 1, "6") == 0 && strcmp(column[NAME], "temperature") == 0 &&
+	    (column[FAMILY][0] == '2' || column[FAMILY][0] == 'A'))
+		column[VISIBILITY] = of_some;
 	if (strcmp(column[FAMILY], "7E") != 0)
 		return;
 	if (strcmp(column[NAME], "EDS0067/threshold/light_hi ") == 0)

@@ -242,6 +242,28 @@ static void test_a_ds2438_measures(void)
 	fs_fails(-EIO, "/26.110000000000/temperature");
 }
 
+/* What the driver gives where a TMP1826's checksum happens to fit; it reads each page so. */
+static void test_the_values_of_a_ds2438s_driver_that_has_a_tmp1826_are_refused(void)
+{
+	static const char name[] = "26-000000000012";
+	static const uint8_t page[] = {0x01, 0x38, 0xff, 0x70, 0x80, 0x00, 0xff, 0x5a};
+	static const uint8_t again[] = {0x01, 0x30, 0xff, 0x70, 0x80, 0x00, 0xff, 0x91};
+	static const uint8_t clock[] = {0x01, 0x30, 0x02, 0x00, 0x80, 0x00, 0x00, 0x00};
+
+	fs_slave(name);
+	fs_put(name, "page0", page, 8);
+	fs_text(name, "temperature", "5760\n");
+	fs_start();
+	fs_fails(-EIO, "/26.120000000000/temperature");
+	fs_fails(-EIO, "/26.120000000000/latesttemp");
+	fs_put(name, "page1", again, 8);
+	fs_fails(-EIO, "/26.120000000000/temperature");
+	fs_fails(-EIO, "/26.120000000000/pages/page.0");
+	/* Of a DS2438 the same page 0 is a temperature below zero, and page 1 is another. */
+	fs_put(name, "page1", clock, 8);
+	fs_reads("    -0.78125", "/26.120000000000/latesttemp");
+}
+
 static void test_a_ds2423_counts(void)
 {
 	static const char name[] = "1d-000000000021";
@@ -475,6 +497,7 @@ int main(void)
 	RUN_TEST(test_a_slave_that_has_just_gone_is_no_device);
 	RUN_TEST(test_identity_needs_no_attribute);
 	RUN_TEST(test_a_ds2438_measures);
+	RUN_TEST(test_the_values_of_a_ds2438s_driver_that_has_a_tmp1826_are_refused);
 	RUN_TEST(test_a_ds2423_counts);
 	RUN_TEST(test_eeproms_are_read_and_written);
 	RUN_TEST(test_a_ds28e04_has_its_pages);

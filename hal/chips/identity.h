@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The hidden property "identity" of families whose code does not decide which chip it is: the
+ * chip's name by its behaviour, with what is odd about it ("DS18B20 clone, family B1"), or
+ * "unknown".
+ */
+#ifndef HAL_CHIPS_IDENTITY_H
+#define HAL_CHIPS_IDENTITY_H
+
+#include "hal/chips/property.h"
+
+/* A row of a family's table; how: its way, whose function ends with identity_put(). */
+#define IDENTITY_ROW(way, ...) \
+	PROPERTY("identity", ASCII, STABLE, READ, .size = 48, .hidden = true, .how = (way), \
+	         __VA_ARGS__)
+
+/* The text is the answer. -EMSGSIZE. */
+int identity_put(struct txn *txn, const char *text);
+/* For a family whose chips are told apart before anything is asked of them: what it is called. */
+int identity_read_type(struct txn *txn);
+
+#endif

@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * TMP1826 and TMP1827 (data sheets SBOSA45, SBOSA15), and what tells them from a DS2438 (19-5099).
+ *
+ * Both have Read Scratchpad (BEh), and nothing else that is a reading in both data sheets. Behind
+ * it a DS2438 takes the number of a page, and sends 8 bytes and their CRC8. A TMP1826 sends at
+ * once: 8 bytes, their CRC8, 8 bytes, their CRC8. The slots of the page's number are read slots to
+ * it, so behind them 17 of its 18 bytes come. So the number of page 0 and 17 bytes are harmless to
+ * both, and the checksums stand in different places. A look that is disturbed proves nothing: the
+ * chip is known when LOOKS in a row say the same.
+ *
+ * The drivers of the kernel (link_ops.has_driver) give pages without a checksum. A TMP1826 has the
+ * same bytes for each page's number, and a DS2438 has not.
+ */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/chips/ds2438.h"
+#include "hal/chips/tmp1826.h"
+#include "hal/owfs/path.h"
+
+#define READ_SCRATCHPAD 0xbe
+#define CONVERT 0x44
+
+#define LOOKS 3
+#define LOOKS_MOST 5
+#define FIRST 9  /* bytes of a page with its CRC8 */
+#define BYTES 17 /* behind the page's number */
+
+/* The scratchpad: temperature, status, 3 bytes of settings at 4, limits and offset from 9 on. */
+#define PAD 18
+enum { STATUS = 2, RESERVED_3, CONFIG_1, RESERVED_7 = 7, RESERVED_15 = 15, RESERVED_16 };
+enum { DATA_VALID = 0x08, FED_BY_BUS = 0x04 }; /* of the status */
+enum { PRECISE = 0x80, AVERAGES = 0x08 };      /* of CONFIG_1 */
+#define CONVERT_NS (8 * TXN_MS)                /* tDELAY and the longest tACT: 6.5 ms */
+#define AVERAGE_NS (55 * TXN_MS)               /* eight of them */
+
+struct look {
+	uint8_t bytes[BYTES];
+	uint8_t verdict, same, all;
+};
+_Static_assert(sizeof(struct look) <= TXN_OWN, "no room for the look");
+
+static bool all_are(const uint8_t *bytes, unsigned n, uint8_t byte)
+{
+	while (n && bytes[n - 1] == byte)
+		n--;
+	return n == 0;
+}
+
+/* Of bytes that begin with a TMP1826's second one: do its reserved ones stand in their places? */
+static bool is_reserved(const uint8_t *in)
+{
+	return in[RESERVED_3 - 1] == 0xff && in[RESERVED_7 - 1] == 0xff;
+}
+
+/*
+ * in: what came behind the page's number. 0: nothing is sure. The first byte of a TMP1826 is lost;
+ * where it was 0, and the low byte of the lower limit is 0, the others have a right checksum in
+ * the place of a DS2438's: so that alone proves no DS2438. Behind its page that has only ones.
+ */
+static unsigned verdict_of(const uint8_t in[BYTES])
+{
+	bool blank = all_are(in + FIRST, BYTES - FIRST, 0xff);
+	bool second = rom_crc8(in + FIRST - 1, BYTES - FIRST + 1) == 0 && !blank;
+
+	if (second && is_reserved(in) && in[RESERVED_15 - 1] == 0xff && in[RESERVED_16 - 1] == 0xff)
+		return IS_TMP1826;
+	if (rom_crc8(in, FIRST) || all_are(in, BYTES, 0))
+		return 0;
+	return blank || (!second && !is_reserved(in)) ? IS_DS2438 : 0;
+}
+
+unsigned tmp1826_kind(const struct device *device)
+{
+	return ((const struct ds2438 *)device->own)->kind;
+}
+
+/*
+ * Of a TMP1826 both pages are the same settings between reserved bytes. Old kernels have no page 1.
+ */
+static int identify_driven(struct txn *txn)
+{
+	uint8_t page[8], other[8];
+	int err = txn_driver_read(txn, &ds2438_pages, 0, page, 8);
+
+	if (err)
+		return err;
+	err = txn_driver_read(txn, &ds2438_pages, 8, other, 8);
+	if (err && err != -ENOENT)
+		return err;
+	if (is_reserved(page) && (err || memcmp(page + 2, other + 2, 5) == 0))
+		return -EIO;
+	ds2438_of(txn)->kind = IS_DS2438;
+	return 0;
+}
+
+/* One look more; TXN_MORE until it is known. A chip that always says the same is IS_NEITHER. */
+static int look_again(struct txn *txn, const uint8_t in[BYTES])
+{
+	struct look *look = txn_own(txn, struct look);
+	unsigned verdict = verdict_of(in);
+	bool blank = txn->silent || all_are(in, BYTES, 0);
+	bool same = verdict == look->verdict &&
+	            (verdict || (!blank && memcmp(in, look->bytes, BYTES) == 0));
+
+	look->same = look->all && same ? look->same + 1 : !blank;
+	look->verdict = (uint8_t)verdict;
+	memcpy(look->bytes, in, BYTES);
+	if (look->same < LOOKS)
+		return ++look->all < LOOKS_MOST ? TXN_MORE : -EBADMSG;
+	ds2438_of(txn)->kind = verdict ? (uint8_t)verdict : IS_NEITHER;
+	return 0;
+}
+
+int tmp1826_identify(struct txn *txn)
+{
+	static const uint8_t command[] = {READ_SCRATCHPAD, 0};
+	uint8_t in[BYTES];
+	int err;
+
+	if (txn_driven(txn))
+		return identify_driven(txn);
+	err = txn_command(txn, command, sizeof(command));
+	if (!err)
+		err = txn_read(txn, in, BYTES);
+	return err ? err : look_again(txn, in);
+}
+
+/* --- A TMP1826 --- */
+
+struct measurement {
+	uint8_t config, looks;
+};
+
+/* To read the status clears its flags: that there is a new result, and the alarms. */
+static int read_pad(struct txn *txn, uint8_t pad[PAD])
+{
+	static const uint8_t command = READ_SCRATCHPAD;
+	int err = txn_command(txn, &command, 1);
+
+	if (!err)
+		err = txn_read(txn, pad, PAD);
+	if (err)
+		return err;
+	if (rom_crc8(pad, FIRST) || rom_crc8(pad + FIRST, PAD - FIRST) || all_are(pad, PAD, 0))
+		return -EBADMSG;
+	txn->device->power = pad[STATUS] & FED_BY_BUS ? POWER_PARASITE : POWER_EXTERNAL;
+	return 0;
+}
+
+static double celsius(const uint8_t pad[PAD], unsigned at)
+{
+	int raw = (int16_t)(pad[at] | pad[at + 1] << 8);
+
+	return pad[CONFIG_1] & PRECISE ? raw / 128.0 : raw / 16.0;
+}
+
+/*
+ * Nothing shows that the chip converts, and an old result stays, so the flag of a new one has to be
+ * seen: it is cleared first.
+ */
+int tmp1826_read_temperature(struct txn *txn)
+{
+	static const uint8_t command = CONVERT;
+	struct measurement *visit = txn_own(txn, struct measurement);
+	uint8_t pad[PAD];
+	int err;
+
+	if (txn->phase == 1) {
+		int64_t ns = visit->config & AVERAGES ? AVERAGE_NS : CONVERT_NS;
+
+		txn->phase = 2;
+		if (txn->device->power == POWER_PARASITE)
+			return txn_command_strong(txn, &command, 1, ns);
+		err = txn_command(txn, &command, 1);
+		return err ? err : txn_wait(txn, ns);
+	}
+	err = read_pad(txn, pad);
+	if (err)
+		return err;
+	bool fresh = pad[STATUS] & DATA_VALID;
+	if (txn->phase == 2) {
+		txn->number[0] = celsius(pad, 0);
+		return fresh ? 0 : -EBADMSG;
+	}
+	visit->config = pad[CONFIG_1];
+	txn->phase = !fresh;
+	return !fresh || ++visit->looks < LOOKS ? TXN_MORE : -EBADMSG;
+}
+
+int tmp1826_read_limit(struct txn *txn)
+{
+	uint8_t pad[PAD];
+	int err = read_pad(txn, pad);
+
+	if (!err)
+		txn->number[0] = celsius(pad, (unsigned)txn->property->arg);
+	return err;
+}
+
+int tmp1826_read_power(struct txn *txn)
+{
+	uint8_t pad[PAD];
+	int err = read_pad(txn, pad);
+
+	if (!err)
+		txn->number[0] = (pad[STATUS] & FED_BY_BUS) == 0;
+	return err;
+}
+
+int tmp1826_read_format(struct txn *txn)
+{
+	uint8_t pad[PAD];
+	int err = read_pad(txn, pad);
+
+	if (!err)
+		txn->number[0] = pad[CONFIG_1] & PRECISE ? 16 : 12;
+	return err;
+}
