@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/clone.h"
 #include "hal/chips/thermometer.h"
 
 #define WRITE_SCRATCHPAD 0x4e
@@ -68,6 +69,7 @@ int thermometer_saw(struct txn *txn, unsigned at, uint8_t *scratchpad, unsigned 
 	/* Nothing but zeros has a right checksum, and no such chip. */
 	if (scratchpad[SP_CONFIG] == 0 && scratchpad[SP_PER_DEGREE] == 0)
 		return -EBADMSG;
+	thermometer_of(txn->device)->slow = txn->device->rom[0] == 0x28 && scratchpad[SP_5] != 0xff;
 	return saw_config(txn, scratchpad);
 }
 
@@ -136,8 +138,8 @@ static void learn_make(struct device *device, const uint8_t scratchpad[9])
 	if (device->family->fixed || thermometer_of(device)->resolution != 12 || low == 0 ||
 	    low == 4)
 		return;
-	thermometer_of(device)->make = scratchpad[SP_REMAIN] == 16 - low ? MAKE_GENUINE
-	                                                                 : MAKE_CLONE;
+	bool genuine = scratchpad[SP_REMAIN] == 16 - low && !clone_hides_restart(device->rom);
+	thermometer_of(device)->make = genuine ? MAKE_GENUINE : MAKE_CLONE;
 }
 
 /*
@@ -164,11 +166,19 @@ static int thermometer_guard(struct txn *txn, int raw, const uint8_t scratchpad[
 	return -ERANGE;
 }
 
+/*
+ * As the data sheet says, but for clones of the DS18B20 (clone.c): family D2 takes 523 ms at each
+ * resolution, H 101 ms for 9 bits.
+ */
 int64_t thermometer_convert_ns(const struct device *device)
 {
-	if (device->family->fixed || thermometer_of(device)->resolution < 9)
+	const struct thermometer *chip = device->own;
+
+	if (device->family->fixed || chip->resolution < 9 || chip->slow)
 		return 750 * TXN_MS;
-	return 750 * TXN_MS >> (12 - thermometer_of(device)->resolution);
+	if (chip->resolution == 9 && clone_has_id(device->rom))
+		return 110 * TXN_MS;
+	return 750 * TXN_MS >> (12 - chip->resolution);
 }
 
 static int write_scratchpad(struct txn *txn, const uint8_t scratchpad[9])

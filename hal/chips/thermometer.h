@@ -26,6 +26,7 @@ struct thermometer {
 	uint8_t resolution;   /* 9 to 12 as read back; 0: not known */
 	uint8_t stored;       /* what it was before our first change: the EEPROM's; 0: not known */
 	uint8_t kind;         /* which chip of the family it is; 0: not known */
+	bool slow;            /* a lower resolution may not make it quicker (clones) */
 	bool unseen;          /* the chip could not show that its last conversion began */
 	int16_t raw;          /* last good reading, sixteenths of a degree */
 	int64_t raw_ns;       /* when; 0: none */

@@ -240,7 +240,7 @@ static struct plan look(const struct native *native, unsigned channel)
 static int send_all(struct link *link, enum link_after after)
 {
 	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_CONVERT};
-	uint8_t busy;
+	uint8_t busy, late[LINK_LATE];
 
 	if (link->driven)
 		return link->ops->convert(link, NULL, "temperature");
@@ -251,7 +251,11 @@ static int send_all(struct link *link, enum link_after after)
 	err = link->ops->write(link, command, sizeof(command), after);
 	if (!err && after == LINK_IDLE) {
 		err = link->ops->read(link, &busy, 1);
-		err = err ? err : busy ? -EBADMSG : 0;
+		bool maybe = !err && busy && link_may_be_late(busy);
+		if (maybe)
+			err = link->ops->read(link, late, sizeof(late));
+		if (!err && busy && !(maybe && link_was_late(late)))
+			err = -EBADMSG;
 	}
 	if (!err && link->ops->flush)
 		err = link->ops->flush(link);

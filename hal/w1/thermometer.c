@@ -298,16 +298,27 @@ static const struct w1_part parts[] = {
 };
 
 static const struct w1_property properties[] = {
-	{.name = "errata/die"},    {.name = "fasttemp"},
-	{.name = "fault"},         {.name = "flagfield"},
-	{.name = "ground_short"},  {.name = "latesttemp"},
-	{.name = "open_circuit"},  {.name = "power", .file = "ext_power"},
-	{.name = "prog_addr"},     {.name = "scratchpad", .file = "w1_slave"},
-	{.name = "temperature"},   {.name = "temperature10"},
-	{.name = "temperature11"}, {.name = "temperature12"},
-	{.name = "temperature9"},  {.name = "temphigh"},
-	{.name = "templow"},       {.name = "tempres"},
-	{.name = "thermocouple"},  {.name = "vdd_short"},
+	{.name = "errata/die"},
+	{.name = "fasttemp"},
+	{.name = "fault"},
+	{.name = "flagfield"},
+	{.name = "ground_short"},
+	{.name = "identity", .file = "w1_slave"},
+	{.name = "latesttemp"},
+	{.name = "open_circuit"},
+	{.name = "power", .file = "ext_power"},
+	{.name = "prog_addr"},
+	{.name = "scratchpad", .file = "w1_slave"},
+	{.name = "temperature"},
+	{.name = "temperature10"},
+	{.name = "temperature11"},
+	{.name = "temperature12"},
+	{.name = "temperature9"},
+	{.name = "temphigh"},
+	{.name = "templow"},
+	{.name = "tempres"},
+	{.name = "thermocouple"},
+	{.name = "vdd_short"},
 };
 
 /* clang-format off */

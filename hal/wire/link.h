@@ -26,6 +26,26 @@ enum link_after {
 	LINK_IDLE,
 	LINK_STRONG, /* strong pull-up from the last bit on, until the next call on this link */
 };
+
+/*
+ * Eight read slots behind a command that takes time: the chip holds all of them low while it is at
+ * work. Some begin up to 1 ms late (clones of the DS18B20, family A3): then the first slots are
+ * ones, and LINK_LATE bytes more are worth a look. All but two of them have to be low: so many
+ * zeros no id has, which a disturbed Skip ROM makes a chip send.
+ */
+#define LINK_LATE 10
+static inline bool link_may_be_late(uint8_t slots)
+{
+	return (slots & (slots + 1)) == 0;
+}
+static inline bool link_was_late(const uint8_t slots[LINK_LATE])
+{
+	for (unsigned i = 2; i < LINK_LATE; i++)
+		if (slots[i])
+			return false;
+	return true;
+}
+
 enum link_speed { LINK_STANDARD, LINK_OVERDRIVE };
 
 /* The recovery ladder; the native bus climbs it and counts each step. */

@@ -170,14 +170,17 @@ int txn_bit_strong(struct txn *txn, int64_t ns)
 
 int txn_started(struct txn *txn)
 {
-	uint8_t busy;
+	uint8_t busy, late[LINK_LATE];
 
 	/* A driver has waited for the end, or tells the error. */
 	if (txn->link->driven)
 		return 0;
 	int err = txn_read(txn, &busy, 1);
-
-	return err ? err : busy ? -EBADMSG : 0;
+	if (err || !busy)
+		return err;
+	if (link_may_be_late(busy))
+		err = txn_read(txn, late, sizeof(late));
+	return err ? err : link_may_be_late(busy) && link_was_late(late) ? 0 : -EBADMSG;
 }
 
 int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n)

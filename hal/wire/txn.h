@@ -99,7 +99,7 @@ int txn_bit(struct txn *txn);
 /* One read slot with the strong pull-up behind it; as txn_command_strong(). */
 int txn_bit_strong(struct txn *txn, int64_t ns);
 /*
- * Behind a command that takes time: the chip holds eight read slots low while it is at work.
+ * Behind a command that takes time: the chip holds read slots low while it is at work (link.h).
  * -EBADMSG: it has not taken the command, and what it gives later is older than that.
  */
 int txn_started(struct txn *txn);

@@ -307,6 +307,110 @@ static void test_a_chip_that_is_neither_is_unknown_and_has_no_value(void)
 	TEST_ASSERT_EQUAL_UINT(0, wrong);
 }
 
+/* --- Clones of the DS18B20 --- */
+
+static struct sim_slave *plug_clone(const char *chip, const uint8_t id[6])
+{
+	native_end();
+	native_begin();
+	wire_init(&host, 1, 1);
+	warm = NULL;
+	struct sim_slave *slave = wire_add(0, chip, 1);
+	memcpy(slave->rom + 1, id, 6);
+	slave->rom[7] = rom_crc8(slave->rom, 7);
+	return slave;
+}
+
+/* Ids as in the catalogue. */
+static const struct {
+	const char *chip, *name;
+	uint8_t id[6];
+} clones[] = {
+	{"DS18B20", "DS18B20", {0xca, 0xd6, 0x10, 0x10, 0, 0}},
+	{"DS18B20-A2", "DS18B20 clone, family A2", {0x19, 0, 0, 0xb7, 0x5b, 0}},
+	{"DS18B20-A3", "DS18B20 clone, family A3", {0x06, 0x64, 0x2b, 0, 0, 0}},
+	{"DS18B20-B1", "DS18B20 clone, family B1", {0xaa, 0x3c, 0x61, 0x55, 0x14, 0x01}},
+	{"DS18B20-B1v2", "DS18B20 clone, family B1v2 or H", {0x0d, 0x72, 0x9a, 0x20, 0x23, 0x07}},
+	{"DS18B20-B2", "DS18B20 clone, family B2", {0xff, 0x7c, 0x5a, 0x61, 0x16, 0x04}},
+	{"DS18B20-C", "DS18B20 clone, family C", {0xff, 0x64, 0x1d, 0xcd, 0x96, 0xf2}},
+	{"DS18B20-D1", "DS18B20 clone, family D1", {0xb8, 0x0e, 0x77, 0x91, 0x0e, 0x02}},
+	{"DS18B20-D2", "DS18B20 clone, family D2", {0xfd, 0x58, 0x94, 0x97, 0x14, 0x03}},
+	{"DS18B20-E", "DS18B20 clone, family E", {0x00, 0x74, 0x28, 0x59, 0x43, 0x0f}},
+	{"DS18B20-G", "DS18B20 clone, family G", {0xc7, 0x9e, 0xa3, 0x59, 0x83, 0xd9}},
+	{"DS18B20-H", "DS18B20 clone, family H", {0x0c, 0x80, 0x53, 0x5c, 0xaa, 0x8e}},
+};
+#define CLONES (sizeof(clones) / sizeof(clones[0]))
+
+static void test_each_kind_of_clone_is_called_by_its_name(void)
+{
+	for (unsigned i = 0; i < CLONES; i++) {
+		struct sim_slave *slave = plug_clone(clones[i].chip, clones[i].id);
+
+		wire_set(slave, "temperature", 21.4375);
+		start();
+		expect(true, of(slave, "identity"), clones[i].name);
+		expect(true, of(slave, "type"), "DS18B20");
+		/* Here nothing tells them apart but the id. */
+		wire_set(slave, "temperature", 21.25);
+		uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(slave, "identity"), NULL);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		TEST_ASSERT_EQUAL_STRING_LEN(clones[i].name, (char *)data[id], strlen("DS18B20"));
+	}
+}
+
+/* How long a clone converts does not hurt: at no resolution an old result is taken for a new one. */
+static void test_no_clone_is_read_before_its_conversion_is_over(void)
+{
+	static const char *const properties[] = {"temperature12", "temperature9", "temperature10",
+	                                         "temperature11", "fasttemp",     "temperature"};
+
+	for (unsigned i = 0; i < CLONES; i++) {
+		struct sim_slave *slave = plug_clone(clones[i].chip, clones[i].id);
+
+		start();
+		for (unsigned round = 0; round < 12; round++) {
+			const char *property = properties[round % 6];
+			char text[16];
+
+			wire_set(slave, "temperature", 21.5 + round);
+			snprintf(text, sizeof(text), "%12G", 21.5 + round);
+			uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(slave, property), NULL);
+			TEST_ASSERT_EQUAL_INT_MESSAGE(0, answer_to(id)->err, clones[i].chip);
+			TEST_ASSERT_EQUAL_STRING_MESSAGE(text, (char *)data[id], clones[i].chip);
+		}
+	}
+}
+
+/* Family F holds no slot low, so nothing shows that it converts. */
+static void test_a_clone_that_shows_nothing_of_its_conversion_gives_no_value(void)
+{
+	static const uint8_t id[] = {0x03, 0x60, 0, 0, 0x01, 0x24};
+	struct sim_slave *slave = plug_clone("DS18B20-F", id);
+
+	start();
+	TEST_ASSERT_EQUAL_INT(-EBADMSG, read_error(slave, "temperature"));
+	TEST_ASSERT_EQUAL_INT(-EBADMSG, read_error(slave, "identity"));
+}
+
+/* The scratchpad of family E is after a restart as if 85 degrees had been measured. */
+static void test_what_a_restart_leaves_in_a_clone_is_no_reading(void)
+{
+	for (unsigned i = 0; i < CLONES; i++) {
+		struct sim_slave *slave = plug_clone(clones[i].chip, clones[i].id);
+
+		wire_set(slave, "temperature", 21.4375);
+		start();
+		expect(true, of(slave, "temperature"), "     21.4375");
+		host_run(&host, bus, host.now + HOST_S);
+		sim_slave_brownout(slave, wire_time());
+		uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(slave, "latesttemp"), NULL);
+		if (answer_to(id)->err)
+			continue;
+		/* One that keeps the last reading over it, or reads 25 degrees then. */
+		TEST_ASSERT_NOT_NULL_MESSAGE(strpbrk(clones[i].chip + 7, "DGH"), clones[i].chip);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -319,5 +423,9 @@ int main(void)
 	RUN_TEST(test_noise_takes_none_for_another);
 	RUN_TEST(test_a_chip_that_takes_the_place_of_another_is_told_anew);
 	RUN_TEST(test_a_chip_that_is_neither_is_unknown_and_has_no_value);
+	RUN_TEST(test_each_kind_of_clone_is_called_by_its_name);
+	RUN_TEST(test_no_clone_is_read_before_its_conversion_is_over);
+	RUN_TEST(test_a_clone_that_shows_nothing_of_its_conversion_gives_no_value);
+	RUN_TEST(test_what_a_restart_leaves_in_a_clone_is_no_reading);
 	return UNITY_END();
 }
