@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "hal/chips/clone.h"
+#include "hal/chips/clone_id.h"
 #include "hal/chips/identity.h"
 #include "hal/chips/thermometer.h"
 

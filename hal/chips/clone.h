@@ -8,18 +8,6 @@
 
 struct txn;
 
-/* A genuine DS18B20 has no such id. */
-static inline bool clone_has_id(const uint8_t rom[8])
-{
-	return rom[0] == 0x28 && (rom[5] || rom[6]);
-}
-
-/* Family E, 28-00-tt-tt-ss-ss-ss: byte 6 of its scratchpad says nothing of a restart. */
-static inline bool clone_hides_restart(const uint8_t rom[8])
-{
-	return clone_has_id(rom) && rom[1] == 0 && rom[3] != 0;
-}
-
 /* What a scratchpad shows; exact: it holds a result of 12 bits, not what a restart left. */
 const char *clone_name(const uint8_t rom[8], const uint8_t scratchpad[9], bool exact);
 /* For the property "identity" of family 28. */

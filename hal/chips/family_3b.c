@@ -1,14 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * DS1825, MAX31826, MAX31850 and MAX31851 have one family code. The scratchpad tells them apart:
- * only of a DS1825 the configuration byte begins with 0, and the MAX31826 has neither limits nor a
- * cold junction (bytes 2 and 3 are all ones).
+ * DS1825, MAX31825, MAX31826, MAX31850 and MAX31851 have one family code. The scratchpad tells them
+ * apart: the last three have ones in bytes 5 to 7 and a configuration (byte 4) that begins with 1,
+ * and the MAX31826 has neither limits nor a cold junction (bytes 2 and 3 are all ones). A DS1825
+ * has 0..1.... in byte 4 and 10h in byte 7; there a MAX31825 has the high bytes of its limits,
+ * which are sixteenths of a degree in 12 bits, and a 0 in bit 3 of its configuration, byte 3.
+ *
+ * Of the MAX31825 the drivers of its maker are known (Zephyr's max31825.c), and no data sheet: so
+ * nothing is written to it, and it is not asked for its supply. What it holds after a restart they
+ * do not say: a temperature of 0 is good only near another reading.
  */
 #include <errno.h>
 
+#include "hal/chips/identity.h"
 #include "hal/chips/thermometer.h"
 
-enum { UNKNOWN, DS1825, MAX31826, MAX31850 }; /* thermometer.kind */
+enum { UNKNOWN, DS1825, MAX31826, MAX31850, MAX31825 }; /* thermometer.kind */
 
 #define FAULT_ANY 1
 
@@ -25,26 +32,42 @@ static int refuse_absent(struct txn *txn)
 	return absent ? -ENOENT : 0;
 }
 
+static bool is_sign(uint8_t byte)
+{
+	return byte >> 4 == 0 || byte >> 4 == 0xf;
+}
+
+static unsigned kind_by(const uint8_t *bytes)
+{
+	if (bytes[SP_CONFIG] & 0x80 &&
+	    (bytes[SP_5] & bytes[SP_REMAIN] & bytes[SP_PER_DEGREE]) == 0xff)
+		return bytes[SP_HIGH] == 0xff && bytes[SP_LOW] == 0xff ? MAX31826 : MAX31850;
+	if ((bytes[SP_CONFIG] & 0x90) == 0x10 && bytes[SP_PER_DEGREE] == 0x10)
+		return DS1825;
+	return is_sign(bytes[SP_CONFIG]) && is_sign(bytes[SP_PER_DEGREE]) && !(bytes[SP_LOW] & 8)
+	               ? MAX31825
+	               : UNKNOWN;
+}
+
+/* Another chip than was known has taken its place, or one that nobody knows. */
 static int saw_scratchpad(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
 	struct thermometer *chip = txn->device->own;
-	int err = thermometer_saw(txn, at, bytes, n);
+	unsigned kind = at || n < SP_CRC ? chip->kind : kind_by(bytes);
 
-	if (err)
-		return err;
-	if (!(bytes[SP_CONFIG] & 0x80))
-		chip->kind = DS1825;
-	else if (bytes[SP_HIGH] == 0xff && bytes[SP_LOW] == 0xff)
-		chip->kind = MAX31826;
-	else
-		chip->kind = MAX31850;
-	/* Those have one resolution. */
-	if (chip->kind != DS1825) {
+	if (!kind || (chip->kind && chip->kind != kind)) {
+		*chip = (struct thermometer){0};
+		return -EIO;
+	}
+	chip->kind = (uint8_t)kind;
+	/* Those have one resolution, or bits in another place that say so. */
+	if (kind != DS1825) {
 		chip->ignores = chip->only_12 = true;
 		chip->resolution = 12;
 		chip->stored = 12;
 	}
-	return refuse_absent(txn);
+	int err = thermometer_saw(txn, at, bytes, n);
+	return err ? err : refuse_absent(txn);
 }
 
 static const struct area scratchpad = {
@@ -76,6 +99,27 @@ static int identify(struct txn *txn)
 	return err ? err : TXN_MORE;
 }
 
+#define NEAR_RAW (5 * 16)
+#define NEAR_NS (300 * 1000 * TXN_MS)
+
+static int read_max31825(struct txn *txn)
+{
+	struct thermometer *chip = txn->device->own;
+	uint8_t bytes[9];
+	int err = now(txn, bytes), raw = (int16_t)(bytes[0] | bytes[1] << 8);
+	int64_t at_ns = txn_now(txn);
+
+	if (err)
+		return err;
+	if (raw == 0 && (!chip->raw_ns || at_ns - chip->raw_ns >= NEAR_NS || chip->raw > NEAR_RAW ||
+	                 chip->raw < -NEAR_RAW))
+		return -ERANGE;
+	chip->raw = (int16_t)raw;
+	chip->raw_ns = at_ns;
+	txn->number[0] = raw / 16.0;
+	return 0;
+}
+
 /* The MAX31850's own temperature is the cold junction's, in the upper 12 bits of bytes 2 and 3. */
 static int read_temperature(struct txn *txn)
 {
@@ -84,6 +128,8 @@ static int read_temperature(struct txn *txn)
 
 	if (err)
 		return err;
+	if (kind_of(txn->device) == MAX31825)
+		return read_max31825(txn);
 	if (kind_of(txn->device) != MAX31850)
 		return thermometer_read_temperature(txn);
 	err = now(txn, bytes);
@@ -108,6 +154,58 @@ static int write_limit(struct txn *txn)
 	int err = identify(txn);
 
 	return err ? err : thermometer_write_limit(txn);
+}
+
+/* Four pins; of a MAX31825 six bits, by resistors. */
+static int read_address(struct txn *txn)
+{
+	uint8_t bytes[9];
+	int err = area_read(txn, &scratchpad, 0, bytes, 9);
+
+	txn->number[0] = kind_of(txn->device) == MAX31825 ? bytes[SP_HIGH] & 0x3f
+	                                                  : bytes[SP_CONFIG] & 0xf;
+	return err;
+}
+
+static int read_power(struct txn *txn)
+{
+	int err = txn->phase ? 0 : identify(txn);
+
+	if (!err && kind_of(txn->device) == MAX31825)
+		return -EOPNOTSUPP;
+	return err ? err : thermometer_read_power(txn);
+}
+
+static int read_tempres(struct txn *txn)
+{
+	static const uint8_t resolutions[] = {8, 9, 10, 12};
+	uint8_t bytes[9];
+	int err = identify(txn);
+
+	if (err || kind_of(txn->device) != MAX31825)
+		return err ? err : thermometer_read_tempres(txn);
+	err = now(txn, bytes);
+	txn->number[0] = resolutions[bytes[SP_LOW] >> 5 & 3];
+	return err;
+}
+
+static int write_tempres(struct txn *txn)
+{
+	int err = txn->phase ? 0 : identify(txn);
+
+	if (!err && kind_of(txn->device) == MAX31825)
+		return -EOPNOTSUPP;
+	return err ? err : thermometer_write_tempres(txn);
+}
+
+static int read_identity(struct txn *txn)
+{
+	uint8_t bytes[9];
+	int err = now(txn, bytes);
+
+	if (err && err != -EIO)
+		return err;
+	return identity_put(txn, err ? "unknown" : family_type(txn->device));
 }
 
 /* arg: byte and bit; of a conversion, so it is read anew. */
@@ -145,11 +243,21 @@ static const struct area memory = {
 	.copy_ns = 25 * TXN_MS,
 };
 
-enum { OWN = AFTER_THERMOMETER_AREAS, MEMORY };
-static const struct area *const areas[] = {
-	THERMOMETER_AREAS, [OWN] = &scratchpad, [MEMORY] = &memory};
+/* The functions of all thermometers see which chip it is too. */
+enum { OWN = SCRATCHPAD, MEMORY };
+static const struct area *const areas[] = {[OWN] = &scratchpad, [MEMORY] = &memory};
 
-enum { WAY_OWN = AFTER_THERMOMETER_WAYS, WAY_OWN_LIMIT, WAY_FAULT, WAY_FLAGS, WAY_THERMOCOUPLE };
+enum {
+	WAY_OWN = AFTER_THERMOMETER_WAYS,
+	WAY_OWN_LIMIT,
+	WAY_FAULT,
+	WAY_FLAGS,
+	WAY_THERMOCOUPLE,
+	WAY_ADDRESS,
+	WAY_OWN_POWER,
+	WAY_OWN_TEMPRES,
+	WAY_IDENTITY
+};
 static const struct property_how how[] = {
 	THERMOMETER_WAYS,
 	[WAY_OWN] = {.read = read_temperature},
@@ -157,6 +265,10 @@ static const struct property_how how[] = {
 	[WAY_FAULT] = {.read = read_fault},
 	[WAY_FLAGS] = {.read = read_flags},
 	[WAY_THERMOCOUPLE] = {.read = read_thermocouple},
+	[WAY_ADDRESS] = {.read = read_address},
+	[WAY_OWN_POWER] = {.read = read_power},
+	[WAY_OWN_TEMPRES] = {.read = read_tempres, .write = write_tempres},
+	[WAY_IDENTITY] = {.read = read_identity},
 };
 
 #define TEMPERATURE(text, resolution, which) \
@@ -174,6 +286,7 @@ static const struct property properties[] = {
 	FAULT("fault", 0, FAULT_ANY),
 	PROPERTY("flagfield", UNSIGNED, VOLATILE, READ, .hidden = true, .how = WAY_FLAGS),
 	FAULT("ground_short", 2, 2),
+	IDENTITY_ROW(WAY_IDENTITY, .kinds = 0),
 	TEMPERATURE("latesttemp", 0, 0),
 	PROPERTY("memory", BINARY, VOLATILE, BOTH, .size = 128, .kinds = KIND(MAX31826),
                  FIELD(MEMORY)),
@@ -181,8 +294,8 @@ static const struct property properties[] = {
 	PROPERTY("pages", DIRECTORY, STATIC, NONE, .kinds = KIND(MAX31826)),
 	PROPERTY("pages/page", BINARY, VOLATILE, BOTH, ELEMENTS(16, NUMBERS), .size = 8,
                  .kinds = KIND(MAX31826), FIELD(MEMORY)),
-	THERMOMETER_POWER,
-	PROPERTY("prog_addr", UNSIGNED, STABLE, READ, FIELD(OWN, .at = SP_CONFIG, .bits = 4)),
+	PROPERTY("power", YESNO, VOLATILE, READ, .how = WAY_OWN_POWER),
+	PROPERTY("prog_addr", UNSIGNED, STABLE, READ, .how = WAY_ADDRESS),
 	THERMOMETER_SCRATCHPAD,
 	TEMPERATURE("temperature", CONVERT_TEMPRES, 0),
 	TEMPERATURE("temperature10", 10, KIND(DS1825)),
@@ -191,13 +304,13 @@ static const struct property properties[] = {
 	TEMPERATURE("temperature9", 9, KIND(DS1825)),
 	LIMIT("temphigh", SP_HIGH),
 	LIMIT("templow", SP_LOW),
-	THERMOMETER_TEMPRES,
+	PROPERTY("tempres", UNSIGNED, STABLE, BOTH, .how = WAY_OWN_TEMPRES),
 	PROPERTY("thermocouple", TEMPERATURE, VOLATILE, READ, .convert = CONVERT_TEMPRES,
                  .kinds = KIND(MAX31850), .how = WAY_THERMOCOUPLE),
 	FAULT("vdd_short", 2, 4),
 };
 
-static const char *const types[] = {"DS1825", "DS1825", "MAX31826", "MAX31850"};
+static const char *const types[] = {"DS1825", "DS1825", "MAX31826", "MAX31850", "MAX31825"};
 
 const struct family family_3b = {
 	.code = 0x3b,

@@ -5,7 +5,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/chips/clone.h"
+#include "hal/chips/clone_id.h"
 #include "hal/chips/thermometer.h"
 
 #define WRITE_SCRATCHPAD 0x4e
@@ -85,9 +85,10 @@ const struct area thermometer_area = {
 
 int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9])
 {
-	int err = area_fetch(txn, &thermometer_area, 0, scratchpad, 9);
+	const struct area *area = txn->device->family->areas[SCRATCHPAD];
+	int err = area_fetch(txn, area, 0, scratchpad, 9);
 
-	return err ? err : thermometer_saw(txn, 0, scratchpad, 9);
+	return err ? err : area->saw(txn, 0, scratchpad, 9);
 }
 
 /* As far as the limits and the configuration: a driver gives these without a conversion. */

@@ -141,7 +141,8 @@ struct visit {
 /* Family codes that several chips have. */
 #define VISIT_IDENTITY(X) \
 	X(tmp1826, "TMP1826", false) \
-	X(tmp1826_fed_by_the_wire, "TMP1826", true)
+	X(tmp1826_fed_by_the_wire, "TMP1826", true) \
+	X(max31825, "MAX31825", false)
 
 #define VISIT_ALL(X) \
 	VISIT_CHIPS(X) VISIT_MEMORIES(X) VISIT_BATTERIES(X) VISIT_GAUGES(X) VISIT_EDS(X) \

@@ -358,7 +358,7 @@ static void test_each_kind_of_clone_is_called_by_its_name(void)
 	}
 }
 
-/* How long a clone converts does not hurt: at no resolution an old result is taken for a new one. */
+/* At no resolution an old result is taken for a new one, however long a clone converts. */
 static void test_no_clone_is_read_before_its_conversion_is_over(void)
 {
 	static const char *const properties[] = {"temperature12", "temperature9", "temperature10",
@@ -411,6 +411,66 @@ static void test_what_a_restart_leaves_in_a_clone_is_no_reading(void)
 	}
 }
 
+/* --- Family 3B --- */
+
+static void test_each_chip_of_family_3b_gets_its_own_values(void)
+{
+	static const char *const chips[] = {"DS1825", "MAX31825", "MAX31826", "MAX31850"};
+	struct sim_slave *slave[4];
+	char text[16];
+
+	for (unsigned i = 0; i < 4; i++) {
+		slave[i] = wire_add(0, chips[i], 10 + i);
+		wire_set(slave[i], "temperature", -20.0625 - i);
+	}
+	TEST_ASSERT_EQUAL_INT(0, slave[1]->family->option(slave[1], "address", 0x2a));
+	start();
+	for (unsigned i = 0; i < 4; i++) {
+		snprintf(text, sizeof(text), "%12G", -20.0625 - i);
+		expect(true, of(slave[i], "temperature"), text);
+		expect(true, of(slave[i], "identity"), chips[i]);
+		expect(true, of(slave[i], "latesttemp"), text);
+	}
+	expect(true, of(slave[1], "prog_addr"), "          42");
+	expect(true, of(slave[1], "tempres"), "          12");
+	TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP, result(BUS_WRITE, of(slave[1], "tempres"), "9"));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, result(BUS_WRITE, of(slave[1], "temphigh"), "30"));
+	TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP, read_error(slave[1], "power"));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, read_error(slave[1], "temperature9"));
+}
+
+static void test_a_zero_of_a_max31825_is_good_near_another_reading(void)
+{
+	struct sim_slave *slave = wire_add(0, "MAX31825", 10);
+
+	wire_set(slave, "temperature", 0);
+	start();
+	TEST_ASSERT_EQUAL_INT(-ERANGE, read_error(slave, "temperature"));
+	wire_set(slave, "temperature", 30);
+	expect(true, of(slave, "temperature"), "          30");
+	sim_slave_brownout(slave, wire_time());
+	TEST_ASSERT_EQUAL_INT(-ERANGE, read_error(slave, "latesttemp"));
+	wire_set(slave, "temperature", 2);
+	expect(true, of(slave, "temperature"), "           2");
+	wire_set(slave, "temperature", 0);
+	expect(true, of(slave, "temperature"), "           0");
+}
+
+/* One that has the id of another is told by each of its readings. */
+static void test_a_chip_of_family_3b_that_takes_the_place_of_another_is_told_anew(void)
+{
+	struct sim_slave *max = wire_add(0, "MAX31825", 10), *old = wire_add(0, "DS1825", 10);
+
+	wire_set(old, "temperature", 20.25);
+	wire_set(max, "temperature", -10.0625);
+	max->plugged = false;
+	start();
+	expect(true, of(old, "temperature"), "       20.25");
+	swap(old, max, "    -10.0625");
+	expect(true, of(max, "identity"), "MAX31825");
+	swap(max, old, "       20.25");
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -427,5 +487,8 @@ int main(void)
 	RUN_TEST(test_no_clone_is_read_before_its_conversion_is_over);
 	RUN_TEST(test_a_clone_that_shows_nothing_of_its_conversion_gives_no_value);
 	RUN_TEST(test_what_a_restart_leaves_in_a_clone_is_no_reading);
+	RUN_TEST(test_each_chip_of_family_3b_gets_its_own_values);
+	RUN_TEST(test_a_zero_of_a_max31825_is_good_near_another_reading);
+	RUN_TEST(test_a_chip_of_family_3b_that_takes_the_place_of_another_is_told_anew);
 	return UNITY_END();
 }
