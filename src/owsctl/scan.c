@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl scan: prints the devices of a target as a table, as JSON or as a configuration. */
+#include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>
@@ -42,6 +43,9 @@ static void show_values(const struct scan_device *device, char *out, size_t size
 
 		if (!name || used >= size)
 			break;
+		/* of another chip with the same family code */
+		if (value->err == -ENOENT && device->identity[0])
+			continue;
 		n = snprintf(out + used, size - used, "%s%s=%s%s%s", used ? " " : "", name,
 		             value->err ? "(" : "",
 		             value->err ? error_text(value->err) : value->text,
@@ -65,7 +69,9 @@ static bool print_table(const struct scan *scan)
 		snprintf(bus, sizeof(bus), "%s%s", device->location[0] ? device->location : "-",
 		         device->simulated ? " (simulated)" : "");
 		show_values(device, values, sizeof(values));
-		ok = table_add(&table, (const char *const[]){device->path, family, device->type,
+		const char *type = device->identity[0] ? device->identity : device->type;
+
+		ok = table_add(&table, (const char *const[]){device->path, family, type,
 		                                             device->alias[0] ? device->alias : "-",
 		                                             bus, alarm ? alarm : "-", values});
 	}
@@ -113,6 +119,7 @@ static void print_json(const struct scan *scan)
 		json_string(&json, "path", device->path);
 		json_string(&json, "family", family);
 		json_string(&json, "type", device->type);
+		json_string(&json, "identity", device->identity[0] ? device->identity : NULL);
 		json_string(&json, "alias", device->alias[0] ? device->alias : NULL);
 		json_string(&json, "bus", device->location[0] ? device->location : NULL);
 		if (alarm)

@@ -28,6 +28,7 @@ struct scan_value {
 
 #define SCAN_TYPE 40
 #define SCAN_ALIAS 64
+#define SCAN_IDENTITY 52
 struct scan_device {
 	char path[128];    /* "/28.551DDF030000", behind a coupler "/1F.x/main/28.y" */
 	char location[16]; /* "bus.0" */
@@ -35,6 +36,7 @@ struct scan_device {
 	bool simulated;
 	char type[SCAN_TYPE];         /* "": the target does not report it */
 	char alias[SCAN_ALIAS];       /* "": no alias */
+	char identity[SCAN_IDENTITY]; /* "DS18B20 clone, family B1"; "": the target has none */
 	const struct scan_kind *kind; /* NULL: owsd does not know the family */
 	struct scan_value value[SCAN_PROPERTIES];
 };

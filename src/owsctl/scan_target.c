@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/find.h"
 #include "hal/owfs/path.h"
 #include "src/owsctl/scan_device.h"
 #include "src/owsctl/scan_kind.h"
@@ -17,7 +18,7 @@
 #define COUPLERS_MAX 512
 
 /* The requests for a device besides those for the properties of its kind. */
-enum { ASK_TYPE, ASK_ALIAS, ASK_PROPERTIES, ASKS = ASK_PROPERTIES + SCAN_PROPERTIES };
+enum { ASK_TYPE, ASK_ALIAS, ASK_IDENTITY, ASK_PROPERTIES, ASKS = ASK_PROPERTIES + SCAN_PROPERTIES };
 
 struct question {
 	char path[192];
@@ -161,13 +162,30 @@ static void locate(struct target *target, struct scan *scan, char *text)
 	}
 }
 
+/* Where the family code does not decide which chip it is, owsd's own bus tells it. */
+static bool has_identity(const struct scan_device *device)
+{
+	return family_property(family_of(device->family), NULL, "identity", strlen("identity"));
+}
+
 static const char *property_of(const struct scan_device *device, unsigned ask)
 {
 	if (ask == ASK_TYPE)
 		return "type";
 	if (ask == ASK_ALIAS)
 		return "alias";
+	if (ask == ASK_IDENTITY)
+		return has_identity(device) ? "identity" : NULL;
 	return device->kind ? device->kind->property[ask - ASK_PROPERTIES].name : NULL;
+}
+
+/* The type was asked for before it was known which chip it is. */
+static void correct_type(struct scan_device *device)
+{
+	size_t len = strcspn(device->identity, " ");
+
+	if (len && len < sizeof(device->type) && strcmp(device->identity, "unknown") != 0)
+		snprintf(device->type, sizeof(device->type), "%.*s", (int)len, device->identity);
 }
 
 static void take_answer(struct scan_device *device, unsigned n, struct ask *ask, char *text)
@@ -180,6 +198,10 @@ static void take_answer(struct scan_device *device, unsigned n, struct ask *ask,
 		text_clean(text, len, sizeof(device->type), device->type, sizeof(device->type));
 	} else if (n == ASK_ALIAS) {
 		text_clean(text, len, sizeof(device->alias), device->alias, sizeof(device->alias));
+	} else if (n == ASK_IDENTITY) {
+		text_clean(text, len, sizeof(device->identity), device->identity,
+		           sizeof(device->identity));
+		correct_type(device);
 	} else {
 		value = &device->value[n - ASK_PROPERTIES];
 		value->err = ask->answer.err;

@@ -176,8 +176,8 @@ def test_scan_shows_every_device_with_its_values(scene):
     assert found["/26.F2FBE3467CC2"]["type"] == "DS2438"
     assert set(found["/26.F2FBE3467CC2"]["values"]) == {"temperature", "humidity", "VDD", "VAD"}
     assert found["/01.000000000001"] == dict(path="/01.000000000001", family="01", type="DS2401",
-                                             alias=None, bus="bus.0", alarm=False, simulated=True,
-                                             values={"present": 1})
+                                             identity=None, alias=None, bus="bus.0", alarm=False,
+                                             simulated=True, values={"present": 1})
 
 
 def runs(scene, text):
@@ -192,6 +192,29 @@ def runs(scene, text):
         return listed if all(row["good"] for row in listed) else None
 
     return {row["name"]: row for row in scene.until(rows, 30, "all signals are good")}
+
+
+def test_scan_says_what_a_chip_is_whose_family_code_does_not(scene):
+    target = sim(scene, """
+DS2438 26.F2FBE3467CC2 as a temperature 22 vdd 5 vad 2.3
+TMP1826 26.000000000001 as b temperature 21.5
+DS18B20-B1 28.AA3C61551401 as c temperature 21.4375
+DS18B20 28.CAD610100000 as d temperature 21.4375
+DS2401 01.000000000001 as e
+""")
+    found = {row["path"]: row for row in json.loads(ctl(scene, target, "--json", "scan").stdout)}
+    said = {path[1:3] + path[-2:]: (row["type"], row["identity"]) for path, row in found.items()}
+    assert said == {
+        "26C2": ("DS2438", "DS2438"), "2601": ("TMP1826", "TMP1826"),
+        "2801": ("DS18B20", "DS18B20 clone, family B1"), "2800": ("DS18B20", "DS18B20"),
+        "0101": ("DS2401", None)}, said
+    assert found["/26.000000000001"]["values"]["temperature"] == 21.5
+    assert found["/26.000000000001"]["values"]["VDD"] is None
+    table = ctl(scene, target, "scan").stdout
+    assert re.search(r"TMP1826 .* temperature=21.5 *$", table, re.M), table
+    assert "DS18B20 clone, family B1" in table
+    items = ctl(scene, target, "scan", "--rio").stdout
+    assert "/26.000000000001/temperature" in items and "/26.000000000001/VDD" not in items
 
 
 def test_the_configuration_of_a_scan_runs_on_simulated_chips(scene):
@@ -277,7 +300,7 @@ def test_a_scan_that_takes_long_says_how_far_it_is(scene):
     with peer.Peer(values) as server:
         server.mode = "late 0.4"
         done = ctl(scene, server.target, "scan")
-    assert re.search(rf"^owsctl: \d+ of 24 answers from {server.target}$", done.stderr, re.M), done
+    assert re.search(rf"^owsctl: \d+ of 32 answers from {server.target}$", done.stderr, re.M), done
     assert len(done.stdout.splitlines()) == 9
 
 
