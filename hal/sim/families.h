@@ -39,7 +39,7 @@
 	family(ds2506) family(ds1982u) family(ds1985u) family(ds1986u) family(ds28e04) \
 	/* clocks, potentiometer */ \
 	family(ds2404) family(ds1994) family(ds2415) family(ds2417) family(ds2890) \
-	family(ds2401) \
+	family(ds2401) family(ds1420) \
 	/* what others than Maxim make */ \
 	family(hb_uvi_meter) family(hb_moisture_meter) family(hb_hub) family(hb_barometer) \
 	family(hb_humidity) family(hb_multitemp) family(lcd) family(bae0910) family(bae0911) \

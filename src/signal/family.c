@@ -59,6 +59,7 @@ static const struct {
 	{0x54, "MAX31888"},
 	{0x56, "DS28E18"},
 	{0x7e, "EDS"},
+	{0x81, "DS1420"},
 	{0x82, "DS1425"},
 	{0x89, "DS1982U"},
 	{0x8b, "DS1985U"},
