@@ -8,6 +8,9 @@
 #                                 TESTS='test_run.py test_shm.py' these system tests alone
 #   make all unit soak system bench install uninstall clean
 #   make bench-page               make bench and bench-kernel into docs/performance.md, with plots
+#   make compare                  what owserver and owsd read of the same simulated devices, against
+#                                 what is recorded; WRITE=1 records it, PARTS='DS2438 DS2450' some
+#   make properties-page          docs/properties.md, of what is recorded
 #   make check-all                every check there is, for hours; .ci/run those that a change can
 #                                 break, in half an hour of two cores
 #   make clang sanitize m32       a second compiler, its sanitizers, 32 bits
@@ -186,7 +189,7 @@ LIBRARY  := $(B)/$(SO) $(B)/libows.a $(B)/libows.pc
 
 .PHONY: all unit soak system test run bench install uninstall install-service uninstall-service \
         deb test-package test-service test-fresh dist test-dist clean \
-        examples unit-programs benches diagrams check-all FORCE
+        examples unit-programs benches diagrams compare properties-page check-all FORCE
 all: $(PROGRAMS) $(LIBRARY) $(B)/core.a $(B)/with/libraries
 
 # Two makes may do this at once
@@ -372,6 +375,14 @@ check-all:
 diagrams:
 	python3 docs/alarm-states.py >docs/img/alarm-states.svg.new
 	mv docs/img/alarm-states.svg.new docs/img/alarm-states.svg
+
+# --- The same properties by owserver and by owsd ----------------------------------------------
+compare: all $(SYSTEM_AIDS)
+	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/compare.py $(if $(WRITE),--write) $(PARTS)
+
+properties-page: all
+	@OWSD_BUILD=$(abspath $(B)) python3 docs/properties.py >docs/properties.md.new
+	mv docs/properties.md.new docs/properties.md
 
 # --- Install ----------------------------------------------------------------------------------
 D := $(DESTDIR)

@@ -1,0 +1,217 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""properties.py: write docs/properties.md on the standard output, from
+
+- what owserver states of each property (tests/unit/data/owfs-structure.tsv),
+- what became of its text when owserver and owsd read the same simulated device
+  (tests/unit/data/compared.tsv, which tests/system/compare.py makes and checks),
+- what the owsd of this build states of it, and offers of a slave of each driver of the kernel's.
+"""
+
+import collections
+import pathlib
+import re
+import sys
+import tempfile
+import textwrap
+
+SOURCE = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(SOURCE / "tests/system"))
+import compare  # noqa: E402
+import owsdtest  # noqa: E402
+import served  # noqa: E402
+
+WIDTH = 100
+REFUSED = "cannot be had: "
+SCRATCHPAD = "50 05 4b 46 7f ff 0c 10 1c : crc=1c YES\n50 05 4b 46 7f ff 0c 10 1c t=85000\n"
+# The attributes by which owsd knows that a driver of the kernel's has a slave of this family
+THERMOMETER = {"w1_slave": SCRATCHPAD, "ext_power": "1\n"}
+SWITCH = {"state": "", "output": ""}
+DRIVEN = {"10": THERMOMETER, "22": THERMOMETER, "28": THERMOMETER, "3B": THERMOMETER,
+          "42": THERMOMETER, "05": SWITCH, "12": SWITCH, "3A": SWITCH,
+          "29": dict.fromkeys("state output activity cond_search_mask cond_search_polarity "
+                              "status_control".split(), ""),
+          "14": {"eeprom": ""}, "1C": {"eeprom": ""}, "23": {"eeprom": ""},
+          "2D": {"eeprom": ""}, "1D": {"w1_slave": ""}, "26": {"page0": "", "page1": ""}}
+MASTER = "w1_bus_master1"
+
+INTRO = """# Properties, one by one
+
+owserver 3.2p4 states {all} properties of {families} families in its `/structure`. Each was asked
+for twice: of the genuine owserver and of owsd, with the same simulated chip, alone on its wire.
+owserver reached the chip by a serial adapter (a DS9097 on a pseudo-terminal), owsd by its DS2482
+driver. `make properties-page` writes this page, and a test fails when it is not what it would be.
+
+- **same**: the texts are equal, byte for byte. Running clocks may differ by {clock} s, as may the bytes
+  of a page in which they are, and what a current adds up to by {volt:g} Vh or {amp:g} Ah: it begins
+  with 0, so its scale is not seen here. An array of more than {short} elements is compared in its first four, the middle and the last.
+- **differs**: at least one text is another, or one of the two has none. The reason is below.
+- **cannot be had**: owsd refuses it, and will. The reason is below.
+- **not compared**: there was no text of either. Most of these can only be written.
+
+Type, access, size, array and life, as `/structure` has them, are those of owserver for {stated} of
+the {all}. The others are limits of the EDS0080 to EDS0085 and two names, see family 7E.
+
+This is about reading. What is written differently, and what is refused, is in
+[native.md](native.md#not-like-owserver). The native links (a DS2482, `w1:netlink`, the simulator)
+have all of this alike, because the same code is above them. Target `w1` has what the kernel's
+drivers give: column "driver" counts the listed properties that a driver's attributes stand for, "not
+given" those that they do not. Of a chip that has no driver there (`rw`), one write and one read have to do:
+see [w1.md](w1.md#what-there-is). A driver's readings were not compared here.
+"""
+
+
+def build_states(rows):
+    """The rows whose type, access, size, array and life this build states as owserver does."""
+    raw = {}
+    with open(compare.DATA / "owfs-structure.tsv", encoding="utf-8") as file:
+        for line in list(file)[1:]:
+            columns = line.rstrip("\n").split("\t")
+            raw[columns[0], columns[1]] = columns[8]
+    part, device, line = compare.devices()[0]
+    server = compare.Server(False, line)
+    try:
+        server.wait_for(device)
+        good = set()
+        for row in rows:
+            element = compare.elements(row)[0] if row.array != "-" else ""
+            if row.array.startswith("sparse"):
+                element = ".A" if "letters" in row.array else ".0"
+            text, _ = server.text(f"/structure/{row.family}/{row.property}{element}")
+            if text is not None and text.decode() == raw[row.family, row.property]:
+                good.add((row.family, row.property))
+        return good
+    finally:
+        server.end()
+
+
+def kernel_gives():
+    """{family: the properties that are listed of a slave with that family's driver}"""
+    given = {}
+    with tempfile.TemporaryDirectory(prefix="owsd-w1-") as place:
+        root = pathlib.Path(place)
+        (root / MASTER).mkdir()
+        (root / MASTER / "uevent").write_text("")
+        for number, (family, files) in enumerate(DRIVEN.items(), 1):
+            name = f"{family.lower()}-{number:012x}"
+            slave = root / MASTER / name
+            slave.mkdir()
+            for file, text in {"name": name, **files}.items():
+                (slave / file).write_text(text)
+            (root / name).symlink_to(f"{MASTER}/{name}")
+        server = compare.Server(False, "", target=f"w1:root={root}")
+        try:
+            owsdtest.until(lambda: len(devices_of(server)) == len(DRIVEN), 30, "all are listed")
+            for device in devices_of(server):
+                given[device[:2]] = server.listed(f"/{device}")
+        finally:
+            server.end()
+    return given
+
+
+def devices_of(server):
+    try:
+        frame = server.frame(served.DIRALL, "/")
+    except (OSError, served.Closed):
+        return []
+    return re.findall(r"(?<=/)[0-9A-F]{2}\.[0-9A-F]{12}(?=[,\0]|$)", frame.data.decode())
+
+
+def names(found):
+    """Many names as a text: those that differ in a number are one."""
+    groups = collections.OrderedDict()
+    for name in found:
+        match = re.fullmatch(r"(.*?)(\d+)", name)
+        groups.setdefault(match[1] if match else name, []).append(match and match[2])
+    out = []
+    for stem, numbers in groups.items():
+        alike = len(numbers) > 2 and None not in numbers
+        many = [f"{stem}{min(numbers, key=int)}..{max(numbers, key=int)}"] if alike and \
+            sorted(map(int, numbers)) == list(range(int(min(numbers, key=int)),
+                                                    int(max(numbers, key=int)) + 1)) else \
+            [stem + (n or "") for n in numbers]
+        out += many
+    return ", ".join(f"`{n.strip()}`" for n in out)
+
+
+def item(text):
+    return textwrap.fill(text, WIDTH, initial_indent="- ", subsequent_indent="  ",
+                         break_long_words=False, break_on_hyphens=False)
+
+
+def verdict_of(record):
+    verdict, _, reason = record
+    return "cannot be had" if reason.startswith(REFUSED) else verdict
+
+
+def section(family, chip, records):
+    """What is not the same of a family, by reasons."""
+    by = collections.OrderedDict()
+    for row, record in records:
+        if record[0] != "same":
+            by.setdefault((verdict_of(record), record[2].removeprefix(REFUSED)), []).append(row.property)
+    lines = []
+    for (verdict, reason), found in by.items():
+        lines.append(item(f"{names(found)}: {verdict}; {reason}"))
+    return [f"**{family}** ({chip})", "", *lines, ""] if lines else []
+
+
+def kernel_section(family, missing):
+    return item(f"**{family}**: {names(missing)}") if missing else None
+
+
+def chips():
+    """{family: its usual chip}, of the one list of them."""
+    text = (SOURCE / "hal/chips/families.h").read_text()
+    return {code.upper(): chip for code, chip in re.findall(r"FAMILY\((\w\w)\) /\* (.*?) \*/", text)}
+
+
+def page():
+    recorded = compare.recorded()
+    rows = [r for r in compare.structure() if r.family not in compare.NO_DEVICE]
+    stated, given, chip = build_states(rows), kernel_gives(), chips()
+    families = sorted({r.family for r in rows})
+    sums = collections.Counter()
+    table, below, kernel = [], [], []
+    for family in families:
+        mine = [(r, recorded[r.family, r.property]) for r in rows if r.family == family]
+        count = collections.Counter(verdict_of(record) for _, record in mine)
+        count["all"] = len(mine)
+        listed = [r.property for r, _ in mine if r.visibility == "always"]
+        missing = [p for p in listed if p not in given[family]] if family in given else []
+        if family in given:
+            count["given"], count["missing"] = len(listed) - len(missing), len(missing)
+            kernel.append(kernel_section(family, missing))
+        sums.update(count)
+        cells = [family, chip.get(family, "")] + [
+            str(count[k] or "") for k in ("all", "same", "differs", "cannot be had", "not compared")]
+        cells += [str(count["given"]), str(count["missing"] or "")] if family in given else ["`rw`", ""]
+        table.append("| " + " | ".join(cells) + " |")
+        below += section(family, chip.get(family, ""), mine)
+    total = [str(sums[k]) for k in ("all", "same", "differs", "cannot be had", "not compared",
+                                    "given", "missing")]
+    intro = INTRO.format(all=sums["all"], families=len(families), stated=len(stated),
+                         clock=compare.CLOCK_S, short=compare.SHORT,
+                         volt=compare.SUMS["volthours"], amp=compare.SUMS["amphours"])
+    return "\n".join([
+        "\n\n".join(p if p.startswith("#") else fill(p) for p in intro.strip().split("\n\n")), "",
+        "| | usual chip | all | same | differs | cannot be had | not compared | driver | not given |",
+        "|---|---|--:|--:|--:|--:|--:|--:|--:|", *table,
+        f"| all | | {' | '.join(total)} |", "",
+        "## What is not the same, and why", "", *below,
+        "## What the kernel's drivers do not give", "",
+        fill("Of a slave that such a driver has, target `w1` does not list these. Over `w1:netlink` "
+             "they are there."), "",
+        *[k for k in kernel if k]]) + "\n"
+
+
+def fill(text):
+    """A paragraph, or a list, with lines of WIDTH columns."""
+    if text.startswith("- "):
+        return "\n".join(item(" ".join(part.split())) for part in re.split(r"^- ", text, flags=re.M)[1:])
+    return textwrap.fill(" ".join(text.split()), WIDTH, break_long_words=False,
+                         break_on_hyphens=False)
+
+
+if __name__ == "__main__":
+    sys.stdout.write(page())
