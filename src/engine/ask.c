@@ -27,6 +27,7 @@ static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row, int64_t
 	slot->purpose = FOR_READ;
 	slot->row = row;
 	slot->shown = false;
+	lane->lent.unshown = true;
 	slot->req = (struct bus_req){
 		.op = BUS_READ,
 		.prio = BUS_INPUT,
@@ -179,6 +180,7 @@ void lane_fill(struct lane *lane, int64_t now_ns)
 
 void lane_show_reads(struct lane *lane)
 {
+	lane->lent.unshown = false;
 	for (unsigned i = 0; i < lane->depth; i++) {
 		struct slot *slot = &lane->lent.slots[i];
 		struct signal *s;

@@ -6,6 +6,7 @@
 #include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "src/engine/due.h"
 
@@ -104,6 +105,7 @@ int due_wheel_init(struct due_wheel *wheel, uint32_t size, uint64_t period)
 	wheel->size = size;
 	for (unsigned i = 0; i < DUE_BUCKETS; i++)
 		wheel->bucket[i] = DUE_NONE;
+	memset(wheel->used, 0, sizeof(wheel->used));
 	wheel->wait = calloc((size_t)size + 1, sizeof(*wheel->wait));
 	return wheel->wait ? 0 : -ENOMEM;
 }
@@ -117,18 +119,22 @@ void due_wheel_free(struct due_wheel *wheel)
 void due_wheel_cancel(struct due_wheel *wheel, uint32_t row)
 {
 	struct due_wait *w;
+	uint32_t bucket;
 
 	assert(row < wheel->size);
 	w = &wheel->wait[row];
 	if (!w->waits)
 		return;
+	bucket = (uint32_t)(w->period % DUE_BUCKETS);
 	if (w->prev != DUE_NONE)
 		wheel->wait[w->prev].next = w->next;
 	else
-		wheel->bucket[w->period % DUE_BUCKETS] = w->next;
+		wheel->bucket[bucket] = w->next;
 	if (w->next != DUE_NONE)
 		wheel->wait[w->next].prev = w->prev;
 	w->waits = false;
+	if (wheel->bucket[bucket] == DUE_NONE)
+		wheel->used[bucket / 32] &= ~(1u << (bucket % 32));
 }
 
 void due_wheel_at(struct due_wheel *wheel, uint32_t row, uint64_t period)
@@ -145,6 +151,7 @@ void due_wheel_at(struct due_wheel *wheel, uint32_t row, uint64_t period)
 	if (*head != DUE_NONE)
 		wheel->wait[*head].prev = row;
 	*head = row;
+	wheel->used[period % DUE_BUCKETS / 32] |= 1u << (period % 32);
 }
 
 void due_wheel_turn(struct due_wheel *wheel, uint64_t period, due_ready *ready, void *ctx)
@@ -169,4 +176,21 @@ void due_wheel_turn(struct due_wheel *wheel, uint64_t period, due_ready *ready, 
 			row = next;
 		}
 	}
+}
+
+uint64_t due_wheel_next(const struct due_wheel *wheel, uint64_t after, uint64_t most)
+{
+	uint64_t period = after + 1;
+
+	assert(most - after < DUE_BUCKETS);
+	while (period < most) {
+		uint32_t bits = wheel->used[period % DUE_BUCKETS / 32] >> (period % 32);
+
+		if (bits) {
+			period += (uint32_t)__builtin_ctz(bits);
+			break;
+		}
+		period += 32 - period % 32;
+	}
+	return period < most ? period : most;
 }

@@ -35,6 +35,7 @@ struct due_wheel {
 	uint64_t period; /* the last one that was turned to */
 	uint32_t size;
 	uint32_t bucket[DUE_BUCKETS];
+	uint32_t used[DUE_BUCKETS / 32]; /* one bit a bucket that is not empty */
 	struct due_wait {
 		uint64_t period;
 		uint32_t next, prev; /* DUE_NONE: end; row waits while in_bucket */
@@ -50,5 +51,10 @@ void due_wheel_cancel(struct due_wheel *wheel, uint32_t row);
 /* Turn to period; ready() is called for each row whose period came. */
 typedef void due_ready(void *ctx, uint32_t row);
 void due_wheel_turn(struct due_wheel *wheel, uint64_t period, due_ready *ready, void *ctx);
+/*
+ * The first period after `after` for which a row may wait, at most `most`, which is less than
+ * DUE_BUCKETS later. It may be too soon: a row of a later round is in the same bucket.
+ */
+uint64_t due_wheel_next(const struct due_wheel *wheel, uint64_t after, uint64_t most);
 
 #endif

@@ -130,18 +130,27 @@ void engine_event(struct engine *e, unsigned port, const struct bus_event *event
 	engine_route(e, now_ns);
 }
 
+/* Does something of the lane wait for the next period, and for no event? */
+static bool waits_for_period(const struct lane *lane)
+{
+	if (lane->guests.first || (lane->lent.count && lane->lent.unshown))
+		return true;
+	return lane->state.up && !lane->lent.count &&
+	       (lane->inputs.count || lane->outputs.count || lane->checks.count);
+}
+
 int64_t engine_step(struct engine *e, int64_t now_ns)
 {
-	uint64_t before = e->time.period;
-	int64_t next, groups, deferred;
+	int64_t next = INT64_MAX, groups, deferred, turn;
+	bool turned, soon;
 
 	engine_begin_call(e, now_ns);
 	e->counters.steps++;
-	engine_turn(e, now_ns);
+	turned = engine_turn(e);
 	deferred = engine_intake_limited(e, now_ns);
 	engine_look_stored(e);
 	guests_take(e, now_ns);
-	if (e->time.period != before) {
+	if (turned) {
 		for (unsigned i = 0; i < e->lane_count; i++)
 			if (e->lanes[i].lent.count)
 				lane_show_reads(&e->lanes[i]);
@@ -149,13 +158,12 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 		engine_publish_counters(e);
 		engine_publish_driver(e, now_ns);
 	}
-	next = e->time.start_ns +
-	       (int64_t)(e->time.period - e->time.first + 1) * e->config->period_ns;
 	if (deferred < next)
 		next = deferred;
 	groups = engine_route_groups(e, now_ns);
 	if (groups < next)
 		next = groups;
+	soon = !e->givers_quiet;
 	for (unsigned i = 0; i < e->lane_count; i++) {
 		int64_t timeout = lane_timeouts(&e->lanes[i], now_ns);
 		int64_t alarm;
@@ -171,7 +179,13 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 		alarm = lane_wake(&e->lanes[i]);
 		if (alarm < next)
 			next = alarm;
+		soon |= waits_for_period(&e->lanes[i]);
 	}
+	/* what was done since the last turn is shown at the next */
+	soon |= engine_driver_changed(e);
+	turn = engine_next_turn(e, soon ? 0 : ENGINE_BEAT_NS);
+	if (turn < next)
+		next = turn;
 	e->time.next_ns = next;
 	return next;
 }

@@ -57,6 +57,12 @@ struct engine_setup {
 
 struct engine;
 
+/*
+ * Record 0 beats at the first step of each period in which there is something to do, and at least
+ * so often, or once a period where that is longer. Readers give it 2 s.
+ */
+#define ENGINE_BEAT_NS INT64_C(500000000)
+
 /* All strings of the configuration must outlive the engine. 0 or -ENOMEM. */
 int engine_create(const struct engine_setup *setup, struct engine **engine);
 /* The buses must have given back what was lent, or never will. */

@@ -94,13 +94,22 @@ static void look_at_absent(struct engine *e, uint32_t index, int64_t awake_ns)
 void engine_look_givers(struct engine *e)
 {
 	int64_t awake_ns = engine_awake_ns(e);
+	bool quiet = true;
 
-	for (uint32_t i = 0; i < e->place_end; i++)
-		if (e->givers[i].is == GIVER_CONNECTED)
-			look_at_beat(e, i, awake_ns);
-	for (uint32_t i = OWS_GIVERS; i < ENGINE_GIVERS; i++)
+	if (e->givers_quiet)
+		return;
+	for (uint32_t i = 0; i < e->place_end; i++) {
+		if (e->givers[i].is != GIVER_CONNECTED)
+			continue;
+		look_at_beat(e, i, awake_ns);
+		quiet &= !e->givers[i].period_ms && !e->givers[i].busy;
+	}
+	for (uint32_t i = OWS_GIVERS; i < ENGINE_GIVERS; i++) {
 		if (e->givers[i].is != GIVER_FREE)
 			look_at_absent(e, i, awake_ns);
+		quiet &= e->givers[i].is == GIVER_FREE;
+	}
+	e->givers_quiet = quiet;
 }
 
 /* --- Joining ---------------------------------------------------------------------------------- */
@@ -163,6 +172,7 @@ void engine_giver_join(struct engine *e, unsigned place, const struct engine_giv
 
 	assert(place < OWS_GIVERS && g->is == GIVER_FREE);
 	engine_begin_call(e, now_ns);
+	e->givers_quiet = false;
 	giver_beat(&giver->memory, &beat);
 	*g = (struct known_giver){
 		.is = GIVER_CONNECTED,
@@ -228,6 +238,7 @@ void engine_giver_left(struct engine *e, unsigned place, int64_t now_ns)
 	if (g->is != GIVER_CONNECTED)
 		return;
 	engine_begin_call(e, now_ns);
+	e->givers_quiet = false;
 	engine_intake(e, place, now_ns);
 	engine_hear(e, place);
 	if (g->more)

@@ -306,6 +306,7 @@ static void look_at_giver(struct engine *e, uint32_t giver, int64_t now_ns)
 {
 	struct known_giver *g = &e->givers[giver];
 
+	e->givers_quiet = false;
 	if (g->more) {
 		g->more = false;
 		e->greedy--;

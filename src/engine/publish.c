@@ -104,6 +104,11 @@ void engine_publish(struct engine *e, struct signal *s)
 	e->published = true;
 }
 
+bool engine_driver_changed(const struct engine *e)
+{
+	return e->driver.transactions + e->driver.reconnects != e->driver.shown;
+}
+
 void engine_publish_driver(struct engine *e, int64_t now_ns)
 {
 	struct ows_sample sample = {
@@ -121,7 +126,7 @@ void engine_publish_driver(struct engine *e, int64_t now_ns)
 
 	image_publish(e->image, 0, &sample, &attrs, NULL);
 	/* the heartbeat alone wakes nobody */
-	if (e->driver.transactions + e->driver.reconnects != e->driver.shown)
+	if (engine_driver_changed(e))
 		e->published = true;
 	e->driver.shown = e->driver.transactions + e->driver.reconnects;
 }

@@ -78,8 +78,17 @@ static void time_ready(void *ctx, uint32_t row)
 /* So late nobody looked, and perhaps no giver could beat. */
 #define PAUSE_NS (100 * NS_PER_MS)
 
+/* The period that has begun last at that time. */
+static uint64_t begun_period(const struct engine *e, int64_t ns)
+{
+	int64_t since_ns = ns - e->time.start_ns;
+
+	return e->time.first + (since_ns > 0 ? (uint64_t)(since_ns / e->config->period_ns) : 0);
+}
+
 void engine_begin_call(struct engine *e, int64_t now_ns)
 {
+	uint64_t period;
 	int64_t late_ns = now_ns -
 	                  (e->time.next_ns > e->time.now_ns ? e->time.next_ns : e->time.now_ns);
 
@@ -89,19 +98,36 @@ void engine_begin_call(struct engine *e, int64_t now_ns)
 	if (e->time.next_ns && late_ns > PAUSE_NS)
 		e->time.paused_ns += now_ns - e->time.now_ns;
 	e->time.now_ns = now_ns;
+	/* the last step may be periods ago */
+	period = begun_period(e, now_ns);
+	if (period > e->time.period)
+		e->time.period = period;
 }
 
-void engine_turn(struct engine *e, int64_t now_ns)
+bool engine_turn(struct engine *e)
 {
-	uint64_t period = e->time.first +
-	                  (uint64_t)((now_ns - e->time.start_ns) / e->config->period_ns);
+	uint64_t period = e->time.period, asked = begun_period(e, e->time.next_ns);
 
-	if (period <= e->time.period)
-		return;
-	if (period > e->time.period + 1)
-		e->counters.late_periods += period - e->time.period - 1;
-	e->counters.periods += period - e->time.period;
-	e->time.period = period;
+	if (period == e->time.turned)
+		return false;
+	if (asked <= e->time.turned)
+		asked = e->time.turned + 1;
+	if (period > asked)
+		e->counters.late_periods += period - asked;
+	e->counters.periods += period - e->time.turned;
+	e->time.turned = period;
 	due_wheel_turn(&e->wheel, period, row_ready, e);
 	due_wheel_turn(&e->time_wheel, period, time_ready, e);
+	return true;
+}
+
+int64_t engine_next_turn(const struct engine *e, int64_t at_most_ns)
+{
+	uint64_t period = e->time.period, most = (uint64_t)(at_most_ns / e->config->period_ns);
+	uint64_t next = period + (most ? most : 1);
+
+	next = due_wheel_next(&e->wheel, period, next);
+	next = due_wheel_next(&e->time_wheel, period, next);
+	next = due_wheel_next(&e->route_wheel, period, next);
+	return e->time.start_ns + (int64_t)(next - e->time.first) * e->config->period_ns;
 }

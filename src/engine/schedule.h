@@ -13,7 +13,12 @@ void engine_write_at(struct engine *e, struct signal *s, uint64_t period);
 void engine_write_check(struct engine *e, struct signal *s);
 /* Each call from outside begins with it: it keeps the time, and notices when nobody ran. */
 void engine_begin_call(struct engine *e, int64_t now_ns);
-/* Turn to the period of now_ns: what waited for it becomes due. */
-void engine_turn(struct engine *e, int64_t now_ns);
+/* Turn to the present period: what waited for it becomes due. False: it is the same as before. */
+bool engine_turn(struct engine *e);
+/*
+ * When the next turn is: at the next boundary of periods for which a row waits, after so long at
+ * the latest, or at the next boundary where that is later.
+ */
+int64_t engine_next_turn(const struct engine *e, int64_t at_most_ns);
 
 #endif

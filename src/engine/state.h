@@ -116,6 +116,8 @@ struct lane_lent {
 	/* ask.c, lane_answer.c */
 	unsigned writes;
 	struct slot *alarm; /* the request of the alarm machine */
+	/* ask.c */
+	bool unshown; /* a reading was begun that the image does not show as in work */
 };
 
 struct lane {
@@ -230,6 +232,7 @@ struct engine_time {
 	/* schedule.c, adopt.c */
 	int64_t start_ns;       /* of period first: since then all were of the same length */
 	uint64_t period, first; /* boundaries since owsd's start */
+	uint64_t turned;        /* the last period that engine_step() turned to */
 	int64_t now_ns;         /* of the call in work */
 	int64_t gap_ns;         /* end of the last time in which nobody ran; 0: none */
 	int64_t paused_ns;      /* sum of all times in which nobody ran */
@@ -299,6 +302,11 @@ struct engine {
 	unsigned place_end; /* one past the last place that somebody has; givers.c */
 	/* intake.c */
 	unsigned greedy; /* givers whose looks are used up */
+	/*
+	 * no giver has promised a beat, is awaited or has changed, so none is looked at; cleared
+	 * where a giver changes, set by givers.c
+	 */
+	bool givers_quiet;
 	struct log_rate refused, resets;
 	/* in_force.c: what was last seen of engine_last, and how many rows wait for it */
 	uint32_t stored;

@@ -11,6 +11,7 @@
 #include "hal/bus/worker.h"
 #include "src/config/load.h"
 #include "src/control/control.h"
+#include "src/engine/engine.h"
 #include "src/host/engine_thread.h"
 #include "src/host/host.h"
 #include "src/host/indicator.h"
@@ -145,6 +146,13 @@ int64_t host_beat(const struct host *host)
 	struct ows_sample sample;
 
 	return reader_sample(&host->now->memory.image.records[0], &sample) ? sample.measured_ns : 0;
+}
+
+int64_t host_beats_apart(const struct host *host)
+{
+	int64_t period_ns = host->now->config->period_ns;
+
+	return period_ns > ENGINE_BEAT_NS ? period_ns : ENGINE_BEAT_NS;
 }
 
 const struct config *host_config(const struct host *host)

@@ -31,6 +31,8 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 
 /* Time of the engine's last heartbeat, ns of CLOCK_BOOTTIME. Any thread. */
 int64_t host_beat(const struct host *host);
+/* The longest time between two heartbeats of an engine that runs. The supervisor. */
+int64_t host_beats_apart(const struct host *host);
 /* The configuration that is served. */
 const struct config *host_config(const struct host *host);
 

@@ -861,7 +861,8 @@ class Ows:
             kind, readable = self._kind(record, attribute)
             if not readable:
                 raise PermissionError(errno.EACCES, "write-only", name)
-            value, quality = self._attribute(record, attribute, sample, attrs, age), Q_GOOD
+            value, quality = self._attribute(record, attribute, sample, attrs, age, now), \
+                Q_GOOD
         else:
             kind = info.type
             data = bytes(text[:length]) if is_text else None
@@ -883,7 +884,13 @@ class Ows:
             return DRIVER[attribute][0], DRIVER[attribute][1]
         return ATTRIBUTE[attribute][2], ATTRIBUTE[attribute][3]
 
-    def _attribute(self, record, attribute, sample, attrs, age_ns):
+    def _present_period(self, now):
+        """Of owsd, whose heart may beat after several periods."""
+        sample, attrs, _ = self._slot(0)
+        since, length = now - sample[1], self.header.period_ns
+        return attrs.per_base + (since // length if since > 0 and length > 0 else 0)
+
+    def _attribute(self, record, attribute, sample, attrs, age_ns, now):
         info = self.table[record][0]
         if attribute == "_RECONNECTS":
             return decode(LARGE, sample[0])
@@ -891,7 +898,7 @@ class Ows:
             seen = self.seen_alarms.get(info.name, 0)
             self.seen_alarms[info.name] = attrs.alarms
             return attrs.alarms != seen
-        period = self._slot(0)[1].per_base
+        period = self._present_period(now)
         count = periods(period, attrs.per_base)
         pending = periods(period, attrs.pend_base) if attrs.flags & IN_WORK else 0
         return {

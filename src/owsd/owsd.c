@@ -36,7 +36,8 @@
 /* Five for each of 128 programs that command, 512 for clients of the served protocol, and some. */
 #define DESCRIPTORS 1280
 #define STOP_NS (2 * NS_PER_S)
-#define SUPERVISE_NS (500 * NS_PER_MS)
+/* How often the supervisor looks for the names of its files, and at a log that is stuck */
+#define SUPERVISE_NS NS_PER_S
 #define AGAIN_NS (20 * NS_PER_MS) /* a reload that has to wait */
 /* From the end of a reload to the next: reloads take at most a tenth of the time */
 #define APART_LEAST_NS (200 * NS_PER_MS)
@@ -230,7 +231,7 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
 	if (notify->watchdog_ns && notify->watchdog_ns / 4 < wait_ns)
 		wait_ns = notify->watchdog_ns / 4;
 	while (!signals->end) {
-		int64_t now_ns = ows_now(), period_ns;
+		int64_t now_ns = ows_now();
 
 		if (signals->reload && now_ns >= reload_ns && host_may_reload(host)) {
 			signals->reload = false;
@@ -240,13 +241,10 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
 			reload_ns = reload_after(now_ns);
 		}
 		now_ns = ows_now();
-		period_ns = host_config(host)->period_ns;
-		/*
-		 * the engine's heart beats once a period, which may be longer than the watchdog's
-		 * time
-		 */
+		/* the engine's heart may beat less often than the watchdog's time */
 		if (notify->watchdog_ns && now_ns - fed_ns >= notify->watchdog_ns / 4 &&
-		    now_ns - host_beat(host) <= 2 * period_ns + notify->watchdog_ns / 4) {
+		    now_ns - host_beat(host) <=
+		            2 * host_beats_apart(host) + notify->watchdog_ns / 4) {
 			fed_ns = now_ns;
 			notify_send(notify, NOTIFY_WATCHDOG);
 		}

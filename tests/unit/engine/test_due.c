@@ -175,6 +175,32 @@ static void test_a_wait_for_the_past_comes_with_the_next_period(void)
 	due_wheel_free(&wheel);
 }
 
+/* It may be too soon, by a row of a later round, and never too late. */
+static void test_the_next_period_for_which_a_row_waits_is_found(void)
+{
+	struct due_wheel wheel;
+	struct seen seen = {.count = 0};
+
+	due_wheel_init(&wheel, 10, 1000);
+	TEST_ASSERT_EQUAL_UINT64(1500, due_wheel_next(&wheel, 1000, 1500));
+	for (uint64_t p = 1001; p < 1500; p++) {
+		due_wheel_at(&wheel, 3, p);
+		TEST_ASSERT_EQUAL_UINT64(p, due_wheel_next(&wheel, 1000, 1500));
+	}
+	due_wheel_at(&wheel, 4, 1031);
+	due_wheel_at(&wheel, 5, 1031);
+	TEST_ASSERT_EQUAL_UINT64(1031, due_wheel_next(&wheel, 1000, 1500));
+	TEST_ASSERT_EQUAL_UINT64(1030, due_wheel_next(&wheel, 1000, 1030));
+	due_wheel_cancel(&wheel, 4);
+	TEST_ASSERT_EQUAL_UINT64(1031, due_wheel_next(&wheel, 1000, 1500));
+	due_wheel_turn(&wheel, 1031, see, &seen);
+	TEST_ASSERT_EQUAL_UINT(1, seen.count);
+	TEST_ASSERT_EQUAL_UINT64(1499, due_wheel_next(&wheel, 1031, 1500));
+	due_wheel_at(&wheel, 6, 1040 + 2 * DUE_BUCKETS);
+	TEST_ASSERT_EQUAL_UINT64(1040, due_wheel_next(&wheel, 1031, 1500));
+	due_wheel_free(&wheel);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -187,5 +213,6 @@ int main(void)
 	RUN_TEST(test_a_turn_over_many_periods_misses_nobody);
 	RUN_TEST(test_a_new_wait_replaces_the_old_one_and_a_cancelled_one_is_gone);
 	RUN_TEST(test_a_wait_for_the_past_comes_with_the_next_period);
+	RUN_TEST(test_the_next_period_for_which_a_row_waits_is_found);
 	return UNITY_END();
 }

@@ -93,6 +93,18 @@ static void test_running_counts_run(void)
 	TEST_ASSERT_EQUAL_INT64(7, get("x_PendMax").integer);
 }
 
+/* owsd sleeps through periods in which it has nothing to do; one is 0.1 s here. */
+static void test_periods_without_a_beat_count(void)
+{
+	now += INSTANCE_S / 2 + INSTANCE_S / 20;
+	TEST_ASSERT_EQUAL_INT64(15, get("x_PerCount").integer);
+	TEST_ASSERT_EQUAL_INT64(8, get("x_PendCount").integer);
+	instance_beat(&in, now, 105);
+	TEST_ASSERT_EQUAL_INT64(15, get("x_PerCount").integer);
+	now -= INSTANCE_S / 10;
+	TEST_ASSERT_EQUAL_INT64(15, get("x_PerCount").integer);
+}
+
 static void test_counts_survive_the_wrap_of_the_period_number(void)
 {
 	struct ows_attrs a = attrs;
@@ -202,6 +214,7 @@ int main(void)
 	RUN_TEST(test_counters_and_settings_come_as_published);
 	RUN_TEST(test_driver_signals_come_from_record_zero);
 	RUN_TEST(test_running_counts_run);
+	RUN_TEST(test_periods_without_a_beat_count);
 	RUN_TEST(test_counts_survive_the_wrap_of_the_period_number);
 	RUN_TEST(test_nothing_in_work_waits_zero_periods);
 	RUN_TEST(test_age_grows_on_the_readers_clock);
