@@ -89,7 +89,11 @@ HARDEN   := -fstack-protector-strong $(FORTIFY) -fPIE $(call has,-fstack-clash-p
 CPP_COMMON = -D_GNU_SOURCE -D_FILE_OFFSET_BITS=64 -I. -DOWSD_VERSION='"$(VERSION)"'
 ALL_CFLAGS = -std=c17 $(CPP_COMMON) $(WARN) $(HARDEN) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS)
 ALL_CXXFLAGS = -std=c++11 $(CPP_COMMON) $(CXXWARN) $(HARDEN) $(CPPFLAGS) $(CXXFLAGS) $(EXTRA_CFLAGS)
-ALL_LDFLAGS = -pie -Wl,-z,relro,-z,now $(LDFLAGS) $(EXTRA_CFLAGS)
+# Relocations as a bitmap, a twentieth of the table, where the C library reads them (glibc 2.36)
+RELR     := -Wl,-z,pack-relative-relocs
+RELR     := $(shell printf '\043include <stdint.h>\n\043if !defined __GLIBC__ || !__GLIBC_PREREQ(2, 36)\n\043error\n\043endif\nint main(void) { return 0; }\n' | \
+              $(CC) $(filter -m%,$(CFLAGS) $(EXTRA_CFLAGS)) -fPIE -pie -Wl,--fatal-warnings $(RELR) -x c -o /dev/null - 2>/dev/null && echo '$(RELR)')
+ALL_LDFLAGS = -pie -Wl,-z,relro,-z,now $(RELR) $(LDFLAGS) $(EXTRA_CFLAGS)
 LIBS     := -Wl,--as-needed -lm -pthread
 # Debian's musl-gcc knows its own headers alone; those of the kernel are beside glibc's
 ifneq ($(findstring musl-gcc,$(CC)),)

@@ -322,10 +322,13 @@ int main(int argc, char **argv)
 
 #ifdef __GLIBC__
 	/*
-	 * mapped blocks keep their unused pages out of memory; unset, malloc raises this limit by
-	 * itself
+	 * Large blocks are mapped, each for itself: pages that nobody touches stay out of memory,
+	 * which calloc() would touch in a block that was freed, and what reading the file took goes
+	 * back. The heap has no room in stock for large blocks to come from. Unset, malloc raises
+	 * the limit by itself.
 	 */
-	mallopt(M_MMAP_THRESHOLD, 64 * 1024);
+	mallopt(M_MMAP_THRESHOLD, 16 * 1024);
+	mallopt(M_TOP_PAD, 4096);
 #endif
 	status = standard_open();
 	if (status) {

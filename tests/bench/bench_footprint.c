@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * What owsd costs while it works: 100 thermometers of a genuine owserver, Period 0.1, PerFactor 10;
- * beside it the server it asks. And what a chip family adds to the program: code and read-only
+ * beside it the server it asks, and what the same requests cost over a bare socket. And what it
+ * costs when it has no signals, and what a chip family adds to the program: code and read-only
  * tables, which all processes share, and tables with pointers, which the loader writes: each
  * process has its own of those, whether the family is on the wire or not.
  */
@@ -19,14 +20,14 @@
 #define SIGNALS 100
 #define SECONDS_N 10
 
-/* A field of /proc/PID/status. */
-static double status_of(pid_t pid, const char *field)
+/* A field of a file of /proc/PID: status, smaps_rollup. */
+static double field_of(pid_t pid, const char *file, const char *field)
 {
 	char path[64], line[256];
 	double value = -1;
 	FILE *f;
 
-	snprintf(path, sizeof(path), "/proc/%d/status", (int)pid);
+	snprintf(path, sizeof(path), "/proc/%d/%s", (int)pid, file);
 	f = fopen(path, "r");
 	while (f && fgets(line, sizeof(line), f))
 		if (strncmp(line, field, strlen(field)) == 0)
@@ -36,12 +37,22 @@ static double status_of(pid_t pid, const char *field)
 	return value;
 }
 
-/* Time all threads ran, ns, exact where the kernel keeps it. */
-static double ran_ns(pid_t pid)
+static double status_of(pid_t pid, const char *field)
 {
-	char path[512];
-	double total = 0, ns;
+	return field_of(pid, "status", field);
+}
+
+struct spent {
+	double ns;    /* time all threads ran, exact where the kernel keeps it */
+	double wakes; /* how often one of them slept */
+};
+
+static struct spent spent_of(pid_t pid)
+{
+	struct spent spent = {0};
 	struct dirent *entry;
+	char path[512];
+	double ns;
 	DIR *folder;
 
 	snprintf(path, sizeof(path), "/proc/%d/task", (int)pid);
@@ -49,16 +60,26 @@ static double ran_ns(pid_t pid)
 	while (folder && (entry = readdir(folder)) != NULL) {
 		FILE *f;
 
+		if (entry->d_name[0] == '.')
+			continue;
+		spent.wakes += status_of(atoi(entry->d_name), "voluntary_ctxt_switches:");
 		snprintf(path, sizeof(path), "/proc/%d/task/%s/schedstat", (int)pid, entry->d_name);
-		f = entry->d_name[0] == '.' ? NULL : fopen(path, "r");
+		f = fopen(path, "r");
 		if (f && fscanf(f, "%lf", &ns) == 1)
-			total += ns;
+			spent.ns += ns;
 		if (f)
 			fclose(f);
 	}
 	if (folder)
 		closedir(folder);
-	return total > 0 ? total : (double)bench_cpu_ns(pid);
+	if (spent.ns == 0)
+		spent.ns = (double)bench_cpu_ns(pid);
+	return spent;
+}
+
+static double percent(double ns)
+{
+	return ns / SECONDS_N / 1e9 * 100;
 }
 
 static double text_size(const char *program)
@@ -125,14 +146,14 @@ static void family_sizes(const char *folder)
 	bench_line("family_own.with_shared_parts", all_own / 1024, "KiB");
 }
 
-static bool write_file(const char *file, const struct bench_peer *peer)
+static bool write_file(const char *file, const struct bench_peer *peer, unsigned signals)
 {
 	FILE *f = fopen(file, "w");
 
 	if (!f)
 		return false;
 	fprintf(f, "OwsDrv {\n  TargetName \"127.0.0.1:%d\"\n  Period 0.1\n", peer->port);
-	for (unsigned i = 0; i < peer->devices; i++)
+	for (unsigned i = 0; i < signals; i++)
 		fprintf(f,
 		        "  Item {\n    Name \"t%u\"\n    Path \"%s\"\n    Type double\n    IO input\n"
 		        "    PerFactor 10\n  }\n",
@@ -141,13 +162,80 @@ static bool write_file(const char *file, const struct bench_peer *peer)
 	return fclose(f) == 0;
 }
 
+static pid_t start_owsd(const char *program, const char *file, const char *instance)
+{
+	pid_t pid = fork();
+
+	if (pid == 0) {
+		prctl(PR_SET_PDEATHSIG, SIGKILL);
+		execl(program, program, "-c", file, "-n", instance, (char *)NULL);
+		_exit(127);
+	}
+	sleep(3);
+	return pid;
+}
+
+static void end_owsd(pid_t pid)
+{
+	kill(pid, SIGTERM);
+	waitpid(pid, NULL, 0);
+}
+
+static void with_signals(const char *program, const char *file, const char *instance, pid_t server)
+{
+	pid_t pid = start_owsd(program, file, instance);
+	struct spent own = spent_of(pid), its = spent_of(server), after;
+
+	sleep(SECONDS_N);
+	after = spent_of(pid);
+	bench_line("rss", status_of(pid, "VmRSS:"), "KiB");
+	bench_line("rss.proportional", field_of(pid, "smaps_rollup", "Pss:"), "KiB");
+	bench_line("rss.anonymous", status_of(pid, "RssAnon:"), "KiB");
+	bench_line("rss.shared_memory", status_of(pid, "RssShmem:"), "KiB");
+	bench_line("rss.owserver", status_of(server, "VmRSS:"), "KiB");
+	bench_line("threads", status_of(pid, "Threads:"), "threads");
+	bench_line("cpu_idle", percent(after.ns - own.ns), "%");
+	bench_line("cpu_idle.owserver", percent(spent_of(server).ns - its.ns), "%");
+	bench_line("wakes", (after.wakes - own.wakes) / SECONDS_N, "/s");
+	end_owsd(pid);
+}
+
+static void without_signals(const char *program, const char *file, const char *instance)
+{
+	pid_t pid = start_owsd(program, file, instance);
+	struct spent before = spent_of(pid), after;
+
+	sleep(SECONDS_N);
+	after = spent_of(pid);
+	bench_line("cpu_idle.no_signals", percent(after.ns - before.ns), "%");
+	bench_line("wakes.no_signals", (after.wakes - before.wakes) / SECONDS_N, "/s");
+	end_owsd(pid);
+}
+
+/* The same requests, one after the other once a second, and nothing is done with the answers. */
+static void bare_socket(const struct bench_peer *peer)
+{
+	int fd = bench_socket(peer->port);
+	struct spent before = spent_of(getpid());
+	char answer[64];
+
+	for (unsigned s = 0; s < SECONDS_N; s++) {
+		for (unsigned i = 0; i < peer->devices; i++)
+			if (bench_read(fd, peer->paths[i], answer, sizeof(answer)) < 0) {
+				bench_note("the bare socket was not answered");
+				return;
+			}
+		sleep(1);
+	}
+	bench_line("cpu_idle.bare_socket", percent(spent_of(getpid()).ns - before.ns), "%");
+	close(fd);
+}
+
 int main(int argc, char **argv)
 {
 	char program[512], folder[512], file[128], instance[32];
 	const char *slash = strrchr(argv[0], '/');
 	struct bench_peer peer;
-	double own, its;
-	pid_t pid;
 
 	(void)argc;
 	bench_place();
@@ -161,29 +249,13 @@ int main(int argc, char **argv)
 		return 0;
 	snprintf(file, sizeof(file), "%s/bench.rio", peer.folder);
 	snprintf(instance, sizeof(instance), "bench-%d", (int)getpid());
-	if (!write_file(file, &peer))
+	if (!write_file(file, &peer, peer.devices))
 		return 1;
-	pid = fork();
-	if (pid == 0) {
-		prctl(PR_SET_PDEATHSIG, SIGKILL);
-		execl(program, program, "-c", file, "-n", instance, (char *)NULL);
-		_exit(127);
-	}
-	sleep(3);
-	own = ran_ns(pid);
-	its = ran_ns(peer.pid);
-	sleep(SECONDS_N);
-	own = ran_ns(pid) - own;
-	its = ran_ns(peer.pid) - its;
-	bench_line("rss", status_of(pid, "VmRSS:"), "KiB");
-	bench_line("rss.anonymous", status_of(pid, "RssAnon:"), "KiB");
-	bench_line("rss.shared_memory", status_of(pid, "RssShmem:"), "KiB");
-	bench_line("rss.owserver", status_of(peer.pid, "VmRSS:"), "KiB");
-	bench_line("threads", status_of(pid, "Threads:"), "threads");
-	bench_line("cpu_idle", own / SECONDS_N / 1e9 * 100, "%");
-	bench_line("cpu_idle.owserver", its / SECONDS_N / 1e9 * 100, "%");
-	kill(pid, SIGTERM);
-	waitpid(pid, NULL, 0);
+	with_signals(program, file, instance, peer.pid);
+	if (!write_file(file, &peer, 0))
+		return 1;
+	without_signals(program, file, instance);
+	bare_socket(&peer);
 	unlink(file);
 	bench_peer_end(&peer);
 	return 0;
