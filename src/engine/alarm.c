@@ -494,9 +494,14 @@ bool alarm_holds(const struct alarm_machine *m)
 
 int64_t alarm_wake(const struct alarm_machine *m)
 {
+	int64_t arm_ns;
+
 	if (m->in_work)
 		return INT64_MAX;
-	return m->state == INIT           ? m->list.next_ns
-	       : m->state == ALARM_BYPASS ? m->bypass_ns
-	                                  : INT64_MAX;
+	if (m->state == ALARM_BYPASS)
+		return m->bypass_ns;
+	if (m->state != INIT)
+		return INT64_MAX;
+	arm_ns = alarm_to_arm_ns(m);
+	return arm_ns < m->list.next_ns ? arm_ns : m->list.next_ns;
 }

@@ -157,13 +157,27 @@ void alarm_rearm(struct alarm_machine *m, struct engine *e, uint32_t device)
 
 /* --- SetAlarm at start, and when a device comes back ------------------------------------------ */
 
+static bool wants_arming(const struct alarm_item *i)
+{
+	return i->arming.wanted && !i->restart.known;
+}
+
 int64_t alarm_to_arm(const struct alarm_machine *m, int64_t now_ns)
 {
 	for (uint32_t k = 0; k < m->count; k++)
-		if (m->items[k]->arming.wanted && !m->items[k]->restart.known &&
-		    now_ns >= m->items[k]->arming.not_before_ns)
+		if (wants_arming(m->items[k]) && now_ns >= m->items[k]->arming.not_before_ns)
 			return k;
 	return -1;
+}
+
+int64_t alarm_to_arm_ns(const struct alarm_machine *m)
+{
+	int64_t next_ns = INT64_MAX;
+
+	for (uint32_t k = 0; k < m->count; k++)
+		if (wants_arming(m->items[k]) && m->items[k]->arming.not_before_ns < next_ns)
+			next_ns = m->items[k]->arming.not_before_ns;
+	return next_ns;
 }
 
 void alarm_arm_answered(struct alarm_machine *m, struct lane *lane, const struct bus_answer *answer,

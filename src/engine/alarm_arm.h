@@ -22,6 +22,8 @@ void alarm_por_failed(struct lane *lane, struct alarm_item *item, int err, int64
 
 /* The item whose SetAlarm is to be compared with the chip now, -1: none. */
 int64_t alarm_to_arm(const struct alarm_machine *m, int64_t now_ns);
+/* When there is one, as things stand; INT64_MAX: never. */
+int64_t alarm_to_arm_ns(const struct alarm_machine *m);
 /* The answer to that, or to the write after it. */
 void alarm_arm_answered(struct alarm_machine *m, struct lane *lane, const struct bus_answer *answer,
                         const char *data, int64_t now_ns);

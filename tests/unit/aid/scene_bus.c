@@ -169,12 +169,12 @@ static void deliver(struct scene_bus *bus, unsigned index)
 		scene_answer_on(s, number, req->id, err, NULL, req);
 		return;
 	}
+	if (s->on_done)
+		s->on_done(bus, req);
 	if (req->op == BUS_WRITE && p->write_err) {
 		scene_answer_on(s, number, req->id, p->write_err, NULL, req);
 		return;
 	}
-	if (s->on_done)
-		s->on_done(bus, req);
 	if (s->on_read && req->op != BUS_WRITE)
 		s->on_read(s, req->path);
 	if (req->op == BUS_WRITE && !p->err && s->on_write)

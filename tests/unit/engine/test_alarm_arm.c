@@ -456,6 +456,34 @@ static void test_a_set_alarm_that_is_refused_at_start_is_told_and_tried_again(vo
 	TEST_ASSERT_EQUAL_STRING("133333333", scene_at(&s, D "/set_alarm"));
 }
 
+static int64_t tried_ns[16];
+static unsigned tries;
+
+static void on_done(struct scene_bus *bus, const struct bus_req *req)
+{
+	if (req->op == BUS_WRITE && strcmp(req->path, D "/set_alarm") == 0 && tries < 16)
+		tried_ns[tries++] = bus->scene->now_ns;
+}
+
+/* Nothing else wakes the engine meanwhile: the list of alarms is looked at later. */
+static void test_a_refused_set_alarm_is_tried_again_when_its_back_off_ends(void)
+{
+	struct config_item *item = refused();
+
+	item->por_alarm = "";
+	s.config.alarm_period_ns = 10 * SCENE_S;
+	alarm_device(&s, "0", "0");
+	scene_put(&s, D "/set_alarm", "100000000", 0);
+	tries = 0;
+	s.on_done = on_done;
+	alarm_begin(&s);
+	scene_run(&s, 20 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(8, tries);
+	for (unsigned i = 0; i < 4; i++)
+		TEST_ASSERT_INT64_WITHIN(20 * SCENE_MS, SCENE_S << i,
+		                         tried_ns[i + 4] - tried_ns[i + 3]);
+}
+
 static void test_a_set_alarm_that_can_only_be_written_is_written(void)
 {
 	figure_3_3(&s);
@@ -501,6 +529,7 @@ int main(void)
 	RUN_TEST(test_a_reload_that_mends_the_file_arms_it_at_once);
 	RUN_TEST(test_a_target_that_comes_and_goes_is_no_restart);
 	RUN_TEST(test_a_set_alarm_that_is_refused_at_start_is_told_and_tried_again);
+	RUN_TEST(test_a_refused_set_alarm_is_tried_again_when_its_back_off_ends);
 	RUN_TEST(test_a_set_alarm_that_can_only_be_written_is_written);
 	RUN_TEST(test_a_failure_now_and_then_is_not_told);
 	return UNITY_END();
