@@ -10,6 +10,8 @@
 
 #define THERMOMETER_CONVERT 0x44
 #define THERMOMETER_READ_POWER 0xb4
+/* It did not show so many starts in a row: it cannot, as some clones, or has no supply. */
+#define THERMOMETER_SILENT 3
 
 enum { SP_LSB, SP_MSB, SP_HIGH, SP_LOW, SP_CONFIG, SP_5, SP_REMAIN, SP_PER_DEGREE, SP_CRC };
 
@@ -27,6 +29,7 @@ struct thermometer {
 	uint8_t stored;       /* what it was before our first change: the EEPROM's; 0: not known */
 	uint8_t kind;         /* which chip of the family it is; 0: not known */
 	bool slow;            /* a lower resolution may not make it quicker (clones) */
+	uint8_t unheard;      /* starts in a row that it did not show */
 	bool unseen;          /* the chip could not show that its last conversion began */
 	int16_t raw;          /* last good reading, sixteenths of a degree */
 	int64_t raw_ns;       /* when; 0: none */

@@ -2,8 +2,9 @@
 /*
  * Who converts when. Thermometers that are due on a channel are gathered and get one Convert T
  * with Skip ROM; the next waits until the results of the last have been read, as it would overwrite
- * them. A parasitic one needs the strong pull-up for as long as it converts, which holds the
- * channel; on a channel that has such a one, others are asked to convert one by one.
+ * them. Where it is faster each gets its own as soon as it was read (schedule.h). A parasitic one
+ * needs the strong pull-up for as long as it converts, which holds the channel; on a channel that
+ * has such a one, others are asked to convert one by one.
  */
 #include <errno.h>
 
@@ -14,20 +15,16 @@
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
+#include "hal/native/schedule.h"
 #include "hal/native/state.h"
+#include "hal/native/supply.h"
 
 #define SKIP_ROM 0xcc
 #define GATHER_NS (3 * TXN_MS)
 #define GATHER_MAX_NS (3 * NATIVE_S)
 #define SIMULTANEOUS_NS (2 * NATIVE_S)
 #define SINGLE_NS (60 * NATIVE_S)
-#define LOOKS 3
 #define TRIES 3
-
-static bool is_thermometer(const struct device *device, unsigned channel)
-{
-	return device->present && device->channel == channel && device->family->thermometer;
-}
 
 static unsigned wanted(const struct job *job)
 {
@@ -87,6 +84,22 @@ static bool is_served(const struct native *native, const struct job *job, int64_
 	       until > now && convert_right(job);
 }
 
+/*
+ * While results are read a new request would wait behind them to be taken up at all. If nothing has
+ * to be asked of the chip first, it is due at once.
+ */
+void convert_early(struct native *native, struct job *job, int64_t now)
+{
+	const struct device *device = job->txn.device;
+
+	if (!schedule_early(native) || device->power == POWER_UNKNOWN || device->locked ||
+	    !convert_right(job) || native_held(native, device->channel, job, now))
+		return;
+	job->begun = true;
+	job_txn(native, job);
+	convert_begin(native, job, now);
+}
+
 void convert_begin(struct native *native, struct job *job, int64_t now)
 {
 	struct device *device = job->txn.device;
@@ -101,53 +114,13 @@ void convert_begin(struct native *native, struct job *job, int64_t now)
 	convert_prepare(native, job, now);
 }
 
-/* Read Power Supply of all at once: ones mean that nobody is parasitic, or that nobody heard. */
-static int look_at_supply(struct link *link)
-{
-	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_READ_POWER};
-	uint8_t slots;
-
-	/* A driver sees to those that are fed by the wire. */
-	if (link->driven)
-		return 1;
-	int err = link->ops->reset(link);
-
-	if (err > 0)
-		err = link->ops->write(link, command, sizeof(command), LINK_IDLE);
-	else if (!err)
-		return -ENODEV;
-	if (!err)
-		err = link->ops->read(link, &slots, 1);
-	return err == -EHOSTDOWN ? -ENODEV : err ? err : slots == 0xff;
-}
-
-static int ask_all(struct native *native, struct job *job)
-{
-	struct channel *channel = &native->channel[job->txn.channel];
-	int external = 1;
-
-	job->txn.on_wire = true;
-	for (int look = 0; look < LOOKS && external > 0; look++)
-		external = look_at_supply(channel->link);
-	if (external < 0) {
-		job->txn.link_error = external == -ENODEV ? 0 : external;
-		return external;
-	}
-	channel->power_asked = true;
-	channel->all_external = external;
-	for (unsigned i = 0; external && i < native->table.count; i++)
-		if (is_thermometer(&native->table.devices[i], job->txn.channel))
-			native->table.devices[i].power = POWER_EXTERNAL;
-	return TXN_MORE;
-}
-
 static int prepare(struct native *native, struct job *job)
 {
 	struct device *device = job->txn.device;
 
 	if (job->txn.phase == 0 && device->power == POWER_UNKNOWN) {
 		if (!native->channel[job->txn.channel].power_asked)
-			return ask_all(native, job);
+			return supply_ask_all(native, job);
 		int err = thermometer_ask_power(&job->txn);
 		return err < 0 ? err : TXN_MORE;
 	}
@@ -181,55 +154,6 @@ void convert_prepare(struct native *native, struct job *job, int64_t now)
 	device->locked = job->locks;
 	if (err == 0)
 		become_due(native, job, now);
-}
-
-struct plan {
-	unsigned due;
-	bool reading;   /* results of the last conversion are not all read */
-	bool preparing; /* others will be due soon */
-	bool locked;    /* a chip on the channel is at work */
-	bool parasitic_due, parasitic;
-	int64_t due_ns, all_ns; /* how long those that are due convert, and all */
-};
-
-static struct plan look(const struct native *native, unsigned channel)
-{
-	/* A driver sees to those that are fed by the wire. */
-	bool feeds = native->channel[channel].link->driven;
-	struct plan plan = {0};
-	unsigned coming = UINT8_MAX, urgent = BUS_GUEST;
-
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		const struct job *job = &native->jobs[i];
-		const struct device *device = job->txn.device;
-
-		if (!job->req || !device || device->channel != channel || !job->property ||
-		    !job->property->convert || job->kind != JOB_PROPERTY)
-			continue;
-		plan.reading |= job->state == JOB_CONVERTING || job->state == JOB_RUN;
-		if (job->state == JOB_PREPARE || job->state == JOB_QUEUED)
-			coming = job->waits || job->req->prio > coming ? coming : job->req->prio;
-		if (job->state != JOB_DUE)
-			continue;
-		urgent = job->req->prio < urgent ? job->req->prio : urgent;
-		int64_t ns = thermometer_convert_ns(device);
-		plan.due++;
-		plan.parasitic_due |= !feeds && device->power == POWER_PARASITE;
-		plan.due_ns = ns > plan.due_ns ? ns : plan.due_ns;
-	}
-	plan.preparing = coming <= urgent;
-	for (unsigned i = 0; plan.due && i < native->table.count; i++) {
-		const struct device *device = &native->table.devices[i];
-
-		if (device->channel == channel && device->locked)
-			plan.locked = true;
-		if (!is_thermometer(device, channel))
-			continue;
-		int64_t ns = thermometer_convert_ns(device);
-		plan.parasitic |= !feeds && device->power != POWER_EXTERNAL;
-		plan.all_ns = ns > plan.all_ns ? ns : plan.all_ns;
-	}
-	return plan;
 }
 
 /*
@@ -289,12 +213,15 @@ static int64_t convert_ns(const struct link *link, const struct device *device)
 	return link->driven ? 0 : thermometer_convert_ns(device);
 }
 
+/* One that has never shown that it converts does not show it to all either. */
 static void converts(struct device *device, int64_t until, bool unseen)
 {
+	unsigned silent = thermometer_of(device)->unheard >= THERMOMETER_SILENT;
+
 	if (thermometer_of(device)->converted_ns)
 		thermometer_of(device)->earlier_ns = thermometer_of(device)->converted_ns;
 	thermometer_of(device)->converted_ns = until;
-	thermometer_of(device)->unseen = unseen;
+	thermometer_of(device)->unseen = unseen || silent;
 }
 
 static void converting(struct native *native, unsigned n, bool unseen, int64_t now, int64_t longest)
@@ -306,7 +233,7 @@ static void converting(struct native *native, unsigned n, bool unseen, int64_t n
 	for (unsigned i = 0; i < native->table.count; i++) {
 		struct device *device = &native->table.devices[i];
 
-		if (is_thermometer(device, n))
+		if (native_thermometer(device, n))
 			converts(device, now + convert_ns(channel->link, device), unseen);
 	}
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
@@ -370,16 +297,47 @@ static bool is_measuring(const struct native *native, const struct device *devic
 	return false;
 }
 
-/* One by one: the first that is due and free. False: there is none. */
-static bool convert_one(struct native *native, unsigned n)
+/* Of those that are due and free the most urgent, and of these the one that waits longest. */
+static struct job *next_due(struct native *native, unsigned n)
 {
 	struct job *first = NULL;
 
-	for (unsigned i = 0; i < NATIVE_DEPTH && !first; i++)
-		if (native->jobs[i].req && native->jobs[i].state == JOB_DUE &&
-		    native->jobs[i].txn.channel == n &&
-		    !is_measuring(native, native->jobs[i].txn.device))
-			first = &native->jobs[i];
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (!job->req || job->state != JOB_DUE || job->txn.channel != n ||
+		    is_measuring(native, job->txn.device))
+			continue;
+		if (!first || job->req->prio < first->req->prio ||
+		    (job->req->prio == first->req->prio &&
+		     (int32_t)(job->order - first->order) < 0))
+			first = job;
+	}
+	return first;
+}
+
+/* All that wait for this chip's result. */
+static void convert_device(struct native *native, struct device *device)
+{
+	thermometer_of(device)->unheard = 0;
+	converts(device,
+	         native_now(native) + convert_ns(native->channel[device->channel].link, device),
+	         false);
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (!job->req || job->state != JOB_DUE || job->txn.device != device)
+			continue;
+		job->state = JOB_CONVERTING;
+		job->ready_ns = thermometer_of(device)->converted_ns;
+	}
+}
+
+/* One by one: the first that is due and free. False: there is none. */
+static bool convert_one(struct native *native, unsigned n)
+{
+	struct job *first = next_due(native, n);
+
 	if (!first)
 		return false;
 	struct device *device = first->txn.device;
@@ -396,50 +354,46 @@ static bool convert_one(struct native *native, unsigned n)
 		return true;
 	}
 	native_count(native, COUNT_CONVERSIONS);
-	converts(device, now + convert_ns(native->channel[n].link, device), false);
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
-
-		if (!job->req || job->state != JOB_DUE || job->txn.device != device)
-			continue;
-		job->state = JOB_CONVERTING;
-		job->ready_ns = thermometer_of(device)->converted_ns;
-	}
+	convert_device(native, device);
 	return true;
 }
 
-/*
- * Ask one thermometer for its supply that nobody asked yet: the broadcast was answered with a zero,
- * by a parasitic one or by another chip to which the command means something else. Who does not
- * answer counts as parasitic. False: all are known.
- */
-static bool ask_one(struct native *native, unsigned n)
+/* What it was known to have is true until it says otherwise: noise may hide the answer, too. */
+static void ask_silent(struct native *native, struct job *job)
 {
-	for (unsigned i = 0; i < native->table.count; i++) {
-		struct device *device = &native->table.devices[i];
-		struct txn txn = {.native = native,
-		                  .link = native->channel[n].link,
-		                  .channel = n,
-		                  .device = device};
+	int bit = txn_end(&job->txn, thermometer_ask_power(&job->txn));
 
-		if (!is_thermometer(device, n) || device->power != POWER_UNKNOWN)
-			continue;
-		int bit = -EBADMSG;
-		for (int try = 0; try < TRIES && bit == -EBADMSG; try++) {
-			bit = thermometer_ask_power(&txn);
-			native_count(native, COUNT_TRANSACTIONS);
-			if (bit == -EBADMSG)
-				native_count(native, COUNT_CHECKSUMS);
-		}
-		if (bit < 0)
-			device->power = POWER_PARASITE;
-		if (bit >= 0 || txn.link_error == 0)
-			master_good(native, n);
-		else if (txn.link_error != -ECOMM)
-			master_recover(native, n, txn.link_error);
-		return true;
+	job_saw(native, job, bit, native_now(native));
+	if (bit < 0)
+		thermometer_of(job->txn.device)->unheard--;
+	if (bit < 0 && job->txn.link_error)
+		job_failed(native, job, bit);
+}
+
+/*
+ * In turn, as schedule.c has found it faster. A chip that does not show that it converts is tried
+ * again. If it never does, it may have lost its supply, and is asked for that; or it is a clone
+ * that shows nothing, and converts with all.
+ */
+static void convert_in_turn(struct native *native, struct job *job)
+{
+	struct device *device = job->txn.device;
+	int err = txn_end(&job->txn, thermometer_start(&job->txn));
+
+	native->schedule.doing = SCHEDULE_START;
+	native->schedule.owes = true;
+	job_saw(native, job, err, native_now(native));
+	if (err == -EBADMSG && !job->txn.link_error) {
+		native_count(native, COUNT_CHECKSUMS);
+		native->channel[device->channel].checksums++;
+		if (++thermometer_of(device)->unheard == THERMOMETER_SILENT)
+			ask_silent(native, job);
+	} else if (err < 0) {
+		job_failed(native, job, err);
+	} else {
+		native_count(native, COUNT_CONVERSIONS);
+		convert_device(native, device);
 	}
-	return false;
 }
 
 bool convert_step(struct native *native, int64_t now, int64_t *next)
@@ -449,10 +403,16 @@ bool convert_step(struct native *native, int64_t now, int64_t *next)
 
 		if (!channel->due_ns || native_held(native, n, NULL, now))
 			continue;
-		struct plan plan = look(native, n);
+		struct schedule_plan plan = schedule_look(native, n);
 		if (!plan.due) {
 			channel->due_ns = 0;
 			continue;
+		}
+		struct job *first = schedule_in_turn(native, &plan, now) ? next_due(native, n)
+		                                                         : NULL;
+		if (first) {
+			convert_in_turn(native, first);
+			return true;
 		}
 		if (plan.preparing && channel->due_ns + GATHER_MAX_NS > now)
 			continue;
@@ -461,7 +421,7 @@ bool convert_step(struct native *native, int64_t now, int64_t *next)
 				*next = channel->due_ns + GATHER_NS;
 			continue;
 		}
-		if (plan.parasitic && ask_one(native, n))
+		if (plan.parasitic && supply_ask_one(native, n))
 			return true;
 		if (plan.parasitic ? !plan.parasitic_due || channel->link->passive
 		                   : !channel->link->driven && is_single_round(channel, now)) {
@@ -473,6 +433,7 @@ bool convert_step(struct native *native, int64_t now, int64_t *next)
 		}
 		if (plan.reading || plan.locked)
 			continue;
+		native->schedule.doing = SCHEDULE_FREE;
 		int err = convert_broadcast(native, n, plan.parasitic_due,
 		                            plan.parasitic_due ? plan.all_ns : plan.due_ns);
 		if (err < 0)

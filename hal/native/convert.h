@@ -5,6 +5,8 @@
 
 #include "hal/native/state.h"
 
+/* A new request of a thermometer that is there: due now, if it can be. */
+void convert_early(struct native *native, struct job *job, int64_t now);
 void convert_begin(struct native *native, struct job *job, int64_t now);
 /* Is the chip, as far as is known, at the resolution that the job asks for? */
 bool convert_right(const struct job *job);

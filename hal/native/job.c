@@ -96,8 +96,11 @@ void job_look(struct native *native, struct job *job, int64_t now)
 			look_read(native, job, now);
 		else
 			native_count(native, COUNT_WRITES);
-		if (!job->req || !job->property->offline ||
-		    (job->path.device.len && away(native, job->txn.device)))
+		if (!job->req || (job->path.device.len && away(native, job->txn.device)))
+			return;
+		if (job->property->convert && job->req->op == BUS_READ && job->txn.device)
+			convert_early(native, job, now);
+		if (!job->property->offline)
 			return;
 		while (job->req) {
 			job_txn(native, job);

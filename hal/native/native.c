@@ -14,6 +14,7 @@
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
 #include "hal/native/native.h"
+#include "hal/native/schedule.h"
 #include "hal/native/sensors.h"
 #include "hal/native/settings.h"
 #include "hal/native/state.h"
@@ -211,7 +212,14 @@ static bool goes_first(const struct job *a, const struct job *b)
 	return (int32_t)(a->order - b->order) < 0;
 }
 
-static struct job *pick(struct native *native, int64_t now, int64_t *next)
+static bool reads_result(const struct job *job)
+{
+	return job->property && job->property->convert &&
+	       (job->state == JOB_CONVERTING || job->state == JOB_RUN);
+}
+
+/* *other: the best of those that read no thermometer. */
+static struct job *pick(struct native *native, int64_t now, int64_t *next, struct job **other)
 {
 	struct job *best = NULL;
 
@@ -220,8 +228,12 @@ static struct job *pick(struct native *native, int64_t now, int64_t *next)
 
 		if (job->req && job->state == JOB_NEW)
 			job_look(native, job, now);
-		if (job->req && job_ready(native, job, now, next) && goes_first(job, best))
+		if (!job->req || !job_ready(native, job, now, next))
+			continue;
+		if (goes_first(job, best))
 			best = job;
+		if (!reads_result(job) && goes_first(job, *other))
+			*other = job;
 	}
 	return best;
 }
@@ -286,25 +298,37 @@ static bool rest(struct native *native, int64_t now, int64_t *next)
 	return false;
 }
 
+static void run(struct native *native, struct job *job, int64_t now)
+{
+	native->schedule.doing = reads_result(job) ? SCHEDULE_READ : SCHEDULE_OTHER;
+	job_step(native, job, now);
+}
+
 static int64_t step(struct native *native, int64_t now)
 {
 	int64_t next = INT64_MAX;
+	struct job *other = NULL;
 
 	master_grow(native, now, &next);
 	if (!native->up)
 		return now;
 	expire(native, now, &next);
-	struct job *job = hunt_initial(native) ? NULL : pick(native, now, &next);
+	struct job *job = hunt_initial(native) ? NULL : pick(native, now, &next, &other);
 
 	if (follows(native, job, now))
 		return native->follow_ns;
 	if (job && job->req->prio <= BUS_OUTPUT) {
-		job_step(native, job, now);
+		run(native, job, now);
 		return now;
 	}
 	if (job && native->touched) {
 		native->touched = false;
-		job_step(native, job, now);
+		run(native, job, now);
+		return now;
+	}
+	if (other && native->schedule.owes) {
+		native->schedule.owes = false;
+		run(native, other, now);
 		return now;
 	}
 	if (!hunt_initial(native) && touch_step(native, now, &next))
@@ -312,7 +336,7 @@ static int64_t step(struct native *native, int64_t now)
 	if (hunt_step(native, now, !job, &next) || convert_step(native, now, &next))
 		return now;
 	if (job) {
-		job_step(native, job, now);
+		run(native, job, now);
 		return now;
 	}
 	if (rest(native, now, &next))
@@ -335,7 +359,10 @@ int64_t native_step(struct bus *bus, int64_t now)
 			refuse_all(native);
 		return next;
 	}
+	int64_t began = native_now(native);
+	native->schedule.doing = SCHEDULE_FREE;
 	next = step(native, now);
+	schedule_took(&native->schedule, began, native_now(native));
 	if (native->up)
 		take_cost(native);
 	return next;

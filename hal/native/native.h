@@ -9,7 +9,9 @@
  *   touch.c    keys that touch a wire
  *   exchange.c properties read and written
  *   simultaneous.c  writes to /simultaneous
- *   convert.c  who converts when: one Convert T for all thermometers due on a channel
+ *   convert.c  who converts when: one Convert T for all thermometers due on a channel, or in turn
+ *   schedule.c which of the two is faster
+ *   supply.c   which thermometers are fed by the wire
  *   outcome.c  what follows from how a transaction ended
  *   master.c   open, lost, opened again; the recovery ladder
  *   answer.c   answers, and what the cache keeps of them

@@ -49,3 +49,8 @@ bool native_held(const struct native *native, unsigned channel, const struct job
 
 	return native->hold_ns[chip] > now && (!job || native->holder[chip] != job);
 }
+
+bool native_thermometer(const struct device *device, unsigned channel)
+{
+	return device->present && device->channel == channel && device->family->thermometer;
+}

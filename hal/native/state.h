@@ -136,6 +136,23 @@ struct channel {
 	uint64_t errors, shorts, checksums, transactions;
 };
 
+/* Which way of converting is faster (schedule.h). */
+enum schedule_work {
+	SCHEDULE_READ,  /* a result was read */
+	SCHEDULE_START, /* one chip was made to convert */
+	SCHEDULE_OTHER, /* a transaction of another request */
+	SCHEDULE_FREE,  /* what gives way to all else: searches, Convert T for all */
+};
+
+/* What is known of a bus; zero: nothing yet. */
+struct schedule {
+	enum schedule_work doing;   /* what the present step of the bus does */
+	int64_t took_ns[2];         /* SCHEDULE_READ and SCHEDULE_START, mean; 0: not known */
+	int64_t window_ns;          /* when the present window of `others` began */
+	int64_t others_ns, last_ns; /* SCHEDULE_OTHER in this window and in the last */
+	bool owes; /* a chip was started while others wait for the wire: one of them is next */
+};
+
 /* What /statistics tells of the requests of one kind. */
 enum tally_kind { TALLY_READ, TALLY_WRITE, TALLY_DIRECTORY, TALLY_OVERALL, TALLIES };
 
@@ -184,6 +201,9 @@ struct native {
 	int64_t hold_ns[NATIVE_CHANNELS]; /* by chip: its strong pull-up is on until then */
 	struct job *holder[NATIVE_CHANNELS];
 
+	/* schedule.c; convert.c and native.c say what a step does */
+	struct schedule schedule;
+
 	/* answer.c; native.c takes jobs, and ends the wait */
 	unsigned lent;     /* jobs that are taken */
 	int64_t follow_ns; /* until then an alarm's next request is waited for; 0: it is not */
@@ -228,6 +248,7 @@ void native_event(struct native *native, enum bus_news news, const uint8_t rom[8
 bool native_has(const struct native *native, unsigned channel);
 /* The first channel from n on, a wire or a branch; NATIVE_ALL: there is none. */
 unsigned native_next(const struct native *native, unsigned n);
+bool native_thermometer(const struct device *device, unsigned channel);
 /* A strong pull-up is on at the chip of this channel, and not for this job. */
 bool native_held(const struct native *native, unsigned channel, const struct job *job, int64_t now);
 

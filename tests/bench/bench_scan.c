@@ -4,6 +4,10 @@
  * depends on the machine. All thermometers are asked for at once, as the engine does; the time is
  * that to the last answer, the mean of several scans with the background search going on.
  *
+ * Steady: each is asked for again 100 us after its answer (the time of an engine's thread), for a
+ * minute. The figure is the mean time between two answers of the thermometer for which that is
+ * longest. Each answer is of a conversion that began after the request.
+ *
  * The limit is what the protocol cannot avoid, by the times that the data sheets call typical:
  *   reset      1184 us = tRSTL 600 + tRSTH 584   DS2482-100 rev. 19-4930, DS2482-800 19-4932
  *   time slot  69.3 us = tSLOT                    the same
@@ -22,10 +26,13 @@
 #define RESET_NS 1184000.0
 #define SLOT_NS 69300.0
 #define CONVERT_NS 750e6
+#define SHORTEST_NS INT64_C(750000000)
 #define MS INT64_C(1000000)
 #define S INT64_C(1000000000)
 #define MOST 100
 #define SCANS 8
+#define STEADY_NS (60 * S)
+#define ENGINE_NS (MS / 10)
 
 struct place {
 	struct bus_env env;
@@ -38,6 +45,11 @@ struct place {
 	struct bus_req req[MOST];
 	uint8_t data[MOST][64];
 	char path[MOST][64];
+	/* Steady. */
+	bool steady;
+	int64_t asked[MOST], again[MOST]; /* when; 0: it is asked for */
+	int64_t first[MOST], last[MOST];  /* answers, and how many lie between */
+	unsigned renewed[MOST];
 };
 
 static int64_t place_now(void *ctx)
@@ -63,6 +75,15 @@ static void place_answer(void *ctx, const struct bus_answer *answer)
 
 	p->answers++;
 	p->failures += answer->err != 0;
+	if (!p->steady)
+		return;
+	p->failures += answer->measured_ns < p->asked[answer->id] + SHORTEST_NS;
+	if (!p->first[answer->id])
+		p->first[answer->id] = p->now;
+	else
+		p->renewed[answer->id]++;
+	p->last[answer->id] = p->now;
+	p->again[answer->id] = p->now + ENGINE_NS;
 }
 
 static void place_event(void *ctx, const struct bus_event *event)
@@ -173,6 +194,45 @@ static double scan(struct place *p)
 	return (double)(p->now - begun);
 }
 
+/* Each thermometer again as soon as it was answered. */
+static double steady(struct place *p)
+{
+	int64_t end = p->now + STEADY_NS;
+	double longest = 0;
+
+	p->steady = true;
+	for (unsigned i = 0; i < p->thermometers; i++)
+		p->again[i] = p->now;
+	while (p->now < end) {
+		int64_t next = end;
+
+		for (unsigned i = 0; i < p->thermometers; i++) {
+			if (p->again[i] && p->again[i] <= p->now) {
+				p->again[i] = 0;
+				p->asked[i] = p->now;
+				ask(p, i, "temperature12");
+			}
+			if (p->again[i] && p->again[i] < next)
+				next = p->again[i];
+		}
+		int64_t step = bus_step(p->bus, p->now);
+		next = step < next ? step : next;
+		p->now = next > p->now ? next : p->now;
+	}
+	p->steady = false;
+	for (unsigned i = 0; i < p->thermometers; i++) {
+		double mean = (double)(p->last[i] - p->first[i]) / p->renewed[i];
+
+		p->failures += p->renewed[i] == 0;
+		longest = mean > longest ? mean : longest;
+	}
+	if (p->failures) {
+		fprintf(stderr, "scan: %u failed or are too old\n", p->failures);
+		exit(1);
+	}
+	return longest;
+}
+
 static double limit(const struct place *p)
 {
 	return p->channels * (RESET_NS + 2 * 8 * SLOT_NS) + CONVERT_NS +
@@ -224,6 +284,8 @@ static void measure(unsigned thermometers, unsigned channels, int khz, const cha
 	bench_line(line, sum / SCANS / limit(&p), "ratio");
 	if (cost)
 		scratchpad(&p, name);
+	snprintf(line, sizeof(line), "scan.%s.steady", name);
+	bench_line(line, steady(&p) / 1e9, "s");
 	bus_destroy(p.bus);
 }
 

@@ -49,6 +49,7 @@ def some_output():
     for net in (1, 2, 5, 10, 20, 50, 100, "80on8"):
         for case in ("400kHz", "400kHz.one-read", "100kHz", "100kHz.one-read"):
             lines += [f"scan.{net}.{case}.seconds 1.20 s", f"scan.{net}.{case}.over_limit 1.05 ratio",
+                      f"scan.{net}.{case}.steady 0.90 s",
                       f"scan.{net}.{case}.transfers 3.00 per", f"scan.{net}.{case}.syscalls 3.00 per"]
     for where in ("pinned", "apart"):
         for n in (1, 16, 64):

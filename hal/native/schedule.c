@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT */
+/* Which thermometers are asked for, what that costs, and which way is faster. */
+#include "hal/native/schedule.h"
+#include "hal/chips/thermometer.h"
+#include "hal/native/state.h"
+
+/*
+ * Before anything was measured: the slots by the data sheets of the DS2482. A reading is a reset,
+ * Match ROM, a command and nine bytes; a start a reset, Match ROM, a command and a byte of slots
+ * that show the chip busy.
+ */
+#define RESET_NS 1184000
+#define SLOT_NS 69300
+#define READ_NS (RESET_NS + 19 * 8 * SLOT_NS)
+#define START_NS (RESET_NS + 11 * 8 * SLOT_NS)
+#define MEAN_OF 8
+#define OUTLIER 4 /* the thread did not run: no cost of the wire */
+#define GAIN 20   /* in turn takes more of the wire, and has to gain one part in so many */
+#define WINDOW_NS (4 * NATIVE_S)   /* some rounds: the share differs between reading and waiting */
+#define FINE 1000                  /* in such parts of it */
+#define LEAST_NS (WINDOW_NS / 100) /* with less nothing is gained */
+
+static bool asks_to_convert(const struct job *job)
+{
+	return job->req && job->txn.device && job->property && job->property->convert &&
+	       job->kind == JOB_PROPERTY;
+}
+
+static void look_at_job(struct schedule_plan *plan, const struct job *job, bool feeds)
+{
+	const struct device *device = job->txn.device;
+	int64_t ns = thermometer_convert_ns(device);
+
+	if (job->state != JOB_DUE && job->state != JOB_CONVERTING && job->state != JOB_RUN)
+		return;
+	plan->silent |= thermometer_of(device)->unheard >= THERMOMETER_SILENT;
+	plan->longest_ns = ns > plan->longest_ns ? ns : plan->longest_ns;
+	if (job->state != JOB_DUE) {
+		plan->reading++;
+		if (job->state == JOB_CONVERTING && job->ready_ns > plan->ready_ns)
+			plan->ready_ns = job->ready_ns;
+		return;
+	}
+	plan->due++;
+	plan->parasitic_due |= !feeds && device->power == POWER_PARASITE;
+	plan->due_ns = ns > plan->due_ns ? ns : plan->due_ns;
+}
+
+static void look_at_jobs(struct schedule_plan *plan, const struct native *native, unsigned channel,
+                         bool feeds)
+{
+	unsigned coming = UINT8_MAX, urgent = BUS_GUEST;
+
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		const struct job *job = &native->jobs[i];
+
+		if (!asks_to_convert(job))
+			continue;
+		plan->asked += job->state == JOB_DUE || job->state == JOB_CONVERTING ||
+		               job->state == JOB_RUN;
+		if (job->txn.device->channel != channel)
+			continue;
+		look_at_job(plan, job, feeds);
+		if (job->state == JOB_PREPARE || job->state == JOB_QUEUED)
+			coming = job->waits || job->req->prio > coming ? coming : job->req->prio;
+		if (job->state == JOB_DUE)
+			urgent = job->req->prio < urgent ? job->req->prio : urgent;
+	}
+	plan->preparing = coming <= urgent;
+}
+
+struct schedule_plan schedule_look(const struct native *native, unsigned channel)
+{
+	/* A driver sees to those that are fed by the wire. */
+	bool feeds = native->channel[channel].link->driven;
+	struct schedule_plan plan = {0};
+
+	look_at_jobs(&plan, native, channel, feeds);
+	for (unsigned i = 0; plan.due && i < native->table.count; i++) {
+		const struct device *device = &native->table.devices[i];
+
+		if (device->channel != channel)
+			continue;
+		plan.locked |= device->locked;
+		if (!native_thermometer(device, channel))
+			continue;
+		int64_t ns = thermometer_convert_ns(device);
+		plan.parasitic |= !feeds && device->power != POWER_EXTERNAL;
+		plan.all_ns = ns > plan.all_ns ? ns : plan.all_ns;
+	}
+	return plan;
+}
+
+static int64_t longer(int64_t a, int64_t b)
+{
+	return a > b ? a : b;
+}
+
+static int64_t cost(const struct schedule *schedule, enum schedule_work what)
+{
+	if (schedule->took_ns[what])
+		return schedule->took_ns[what];
+	return what == SCHEDULE_READ ? READ_NS : START_NS;
+}
+
+/* Of WINDOW_NS. */
+static int64_t left_by_others(const struct schedule *schedule)
+{
+	int64_t others = longer(schedule->others_ns, schedule->last_ns);
+
+	return others < WINDOW_NS ? WINDOW_NS - others : 0;
+}
+
+bool schedule_early(const struct native *native)
+{
+	return left_by_others(&native->schedule) > WINDOW_NS / 4 * 3;
+}
+
+/*
+ * n thermometers of this channel and N of all are asked for without pause; a reading takes r, a
+ * start s, a conversion c, and others have the share u of the time. Then each value is new
+ *   all at once every c + n r: others, and other channels, have the time while the chips convert;
+ *   in turn     every c + s + r;
+ * but not more often than the thread comes round: N r / (1 - u), or N (r + s) / (1 - u). Of one
+ * channel at 12 bits, in turn is faster up to some 80 thermometers. Where several channels
+ * convert while others are read, all at once is, as soon as the thread has enough to do.
+ *
+ * If several became due together, they may convert sooner when the last results are read and one
+ * Convert T serves them all.
+ */
+bool schedule_in_turn(const struct native *native, const struct schedule_plan *plan, int64_t now)
+{
+	const struct schedule *schedule = &native->schedule;
+	int64_t read = cost(schedule, SCHEDULE_READ), start = cost(schedule, SCHEDULE_START);
+	int64_t left = left_by_others(schedule);
+	int64_t wait = plan->reading * read;
+
+	if (!plan->reading || plan->parasitic || plan->silent || left < LEAST_NS)
+		return false;
+	int64_t at_once = longer(plan->longest_ns + (plan->due + plan->reading) * read,
+	                         plan->asked * read * FINE / (left / (WINDOW_NS / FINE)));
+	int64_t round = plan->asked * (read + start) * FINE / (left / (WINDOW_NS / FINE));
+	int64_t in_turn = longer(plan->longest_ns + start + read, round + round / GAIN);
+	return in_turn < at_once && plan->due * start <= longer(plan->ready_ns - now, wait);
+}
+
+void schedule_took(struct schedule *schedule, int64_t began, int64_t now)
+{
+	int64_t took = now - began, *mean;
+
+	if (now - schedule->window_ns >= WINDOW_NS) {
+		schedule->last_ns = now - schedule->window_ns < 2 * WINDOW_NS ? schedule->others_ns
+		                                                              : 0;
+		schedule->others_ns = 0;
+		schedule->window_ns = now;
+	}
+	if (took <= 0 || schedule->doing == SCHEDULE_FREE)
+		return;
+	if (schedule->doing == SCHEDULE_OTHER) {
+		schedule->others_ns += took;
+		return;
+	}
+	mean = &schedule->took_ns[schedule->doing];
+	*mean = cost(schedule, schedule->doing);
+	if (took > OUTLIER * *mean)
+		took = OUTLIER * *mean;
+	*mean += (took - *mean) / MEAN_OF;
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * How the thermometers of a channel convert: all at once, or in turn.
+ *
+ *   all at once  Convert T with Skip ROM when all results are read; then each is read
+ *   in turn      a chip that was read and is asked for again converts at once, by Match ROM, while
+ *                others convert or wait to be read
+ *
+ * The facts: how many thermometers are asked for (one thread serves all channels of the bus, so
+ * those of all count); how long the slowest converts; what a reading and a verified start took
+ * lately; the share of the time that requests of other kinds took lately; how long it will be until
+ * the results that are under way on the channel are read. The rule stands at schedule_in_turn() and
+ * in docs/native.md. All times are ns.
+ *
+ * Nothing here waits, allocates or uses the wire. The thread of the bus calls it.
+ */
+#ifndef HAL_NATIVE_SCHEDULE_H
+#define HAL_NATIVE_SCHEDULE_H
+
+#include "hal/native/state.h"
+
+/* Of a channel: its thermometers that are asked for. */
+struct schedule_plan {
+	unsigned due;     /* wait for Convert T */
+	unsigned reading; /* convert, or are not read yet */
+	unsigned asked;   /* of all channels: due, converting, not read yet */
+	bool preparing;   /* others will be due soon */
+	bool locked;      /* a chip on the channel is at work */
+	bool silent;      /* one of those cannot show that it converts */
+	bool parasitic_due, parasitic;
+	int64_t due_ns, all_ns; /* how long those that are due convert, and all */
+	int64_t longest_ns;     /* ... and those that are due, convert, or are not read yet */
+	int64_t ready_ns;       /* when the last of those that convert is ready */
+};
+
+struct schedule_plan schedule_look(const struct native *native, unsigned channel);
+/*
+ * Is a new request of a thermometer due before those that came earlier are done? Not where others
+ * take much of the time: they would wait longer for that.
+ */
+bool schedule_early(const struct native *native);
+/* Do those that are due convert now, in turn, though others are not read yet? */
+bool schedule_in_turn(const struct native *native, const struct schedule_plan *plan, int64_t now);
+/* A step of the bus took from began to now, and did schedule.doing. */
+void schedule_took(struct schedule *schedule, int64_t began, int64_t now);
+
+#endif

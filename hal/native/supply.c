@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT */
+/* Read Power Supply: of all thermometers of a channel at once, or of one. */
+#include <errno.h>
+
+#include "hal/chips/thermometer.h"
+#include "hal/native/master.h"
+#include "hal/native/state.h"
+#include "hal/native/supply.h"
+
+#define SKIP_ROM 0xcc
+#define LOOKS 3
+#define TRIES 3
+
+/* Read Power Supply of all at once: ones mean that nobody is parasitic, or that nobody heard. */
+static int look_at_supply(struct link *link)
+{
+	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_READ_POWER};
+	uint8_t slots;
+
+	/* A driver sees to those that are fed by the wire. */
+	if (link->driven)
+		return 1;
+	int err = link->ops->reset(link);
+
+	if (err > 0)
+		err = link->ops->write(link, command, sizeof(command), LINK_IDLE);
+	else if (!err)
+		return -ENODEV;
+	if (!err)
+		err = link->ops->read(link, &slots, 1);
+	return err == -EHOSTDOWN ? -ENODEV : err ? err : slots == 0xff;
+}
+
+int supply_ask_all(struct native *native, struct job *job)
+{
+	struct channel *channel = &native->channel[job->txn.channel];
+	int external = 1;
+
+	job->txn.on_wire = true;
+	for (int look = 0; look < LOOKS && external > 0; look++)
+		external = look_at_supply(channel->link);
+	if (external < 0) {
+		job->txn.link_error = external == -ENODEV ? 0 : external;
+		return external;
+	}
+	channel->power_asked = true;
+	channel->all_external = external;
+	for (unsigned i = 0; external && i < native->table.count; i++)
+		if (native_thermometer(&native->table.devices[i], job->txn.channel))
+			native->table.devices[i].power = POWER_EXTERNAL;
+	return TXN_MORE;
+}
+
+bool supply_ask_one(struct native *native, unsigned n)
+{
+	for (unsigned i = 0; i < native->table.count; i++) {
+		struct device *device = &native->table.devices[i];
+		struct txn txn = {.native = native,
+		                  .link = native->channel[n].link,
+		                  .channel = n,
+		                  .device = device};
+
+		if (!native_thermometer(device, n) || device->power != POWER_UNKNOWN)
+			continue;
+		int bit = -EBADMSG;
+		for (int try = 0; try < TRIES && bit == -EBADMSG; try++) {
+			bit = thermometer_ask_power(&txn);
+			native_count(native, COUNT_TRANSACTIONS);
+			if (bit == -EBADMSG)
+				native_count(native, COUNT_CHECKSUMS);
+		}
+		if (bit < 0)
+			device->power = POWER_PARASITE;
+		if (bit >= 0 || txn.link_error == 0)
+			master_good(native, n);
+		else if (txn.link_error != -ECOMM)
+			master_recover(native, n, txn.link_error);
+		return true;
+	}
+	return false;
+}

@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: MIT */
+/* Thermometers that are asked for without pause, and whose answers are judged. */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "unity.h"
+
+#include "tests/unit/aid/fleet.h"
+
+#define DEGREES_PER_S 1.0
+#define CLIMB_S 60 /* from -20 to 40 degrees, and again */
+#define LAST_OF_ALL 0xffff
+#define STEP (1 / 16.0) /* of 12 bits, to the nearest; more than that is cut off */
+
+struct fleet fleet;
+
+static struct bus_req requests[FLEET_MAX + 8];
+static char paths[FLEET_MAX + 8][100];
+static uint8_t texts[FLEET_MAX + 8][4096];
+static int64_t asked[FLEET_MAX + 8];
+static int64_t took, renewed;
+static uint32_t awaited;
+static int error;
+static unsigned extra;
+
+/* A saw: its jumps are rare, and a value near one is not judged. */
+static double temperature(unsigned i, int64_t t)
+{
+	double s = (double)(t % (CLIMB_S * HOST_S)) / 1e9;
+
+	return -20 + s * DEGREES_PER_S + i % 7 * 0.5;
+}
+
+static void climb(unsigned i, int64_t t)
+{
+	int64_t start = t - t % (CLIMB_S * HOST_S);
+
+	fleet.slave[i]->input[0] = (struct sim_curve){
+		.shape = SIM_RAMP,
+		.a = temperature(i, start),
+		.b = temperature(i, start) + CLIMB_S * DEGREES_PER_S,
+		.start_ns = start,
+		.span_ns = CLIMB_S * HOST_S,
+	};
+}
+
+static void renew(void)
+{
+	int64_t start = host.now - host.now % (CLIMB_S * HOST_S);
+
+	if (start == renewed)
+		return;
+	renewed = start;
+	for (unsigned i = 0; i < fleet.count; i++)
+		climb(i, host.now);
+}
+
+void fleet_add_to(unsigned channel, const char *chip, unsigned count)
+{
+	for (; count--; fleet.count++) {
+		TEST_ASSERT_LESS_THAN_UINT(FLEET_MAX, fleet.count);
+		fleet.slave[fleet.count] = wire_add(channel, chip, fleet.count + 1);
+		climb(fleet.count, host.now);
+	}
+}
+
+void fleet_add(const char *chip, unsigned count)
+{
+	fleet_add_to(0, chip, count);
+}
+
+void fleet_forget(void)
+{
+	fleet.good = fleet.failed = fleet.older = fleet.wrong = 0;
+	memset(fleet.each, 0, sizeof(fleet.each));
+}
+
+static void submit(uint32_t id, enum bus_op op, enum bus_prio prio)
+{
+	asked[id] = host.now;
+	requests[id] = (struct bus_req){.id = id,
+	                                .op = (uint8_t)op,
+	                                .prio = (uint8_t)prio,
+	                                .fresh = true,
+	                                .path = paths[id],
+	                                .data = texts[id],
+	                                .len = sizeof(texts[id]),
+	                                .deadline_ns = host.now + 20 * HOST_S};
+	TEST_ASSERT_EQUAL_INT(0, bus_submit(bus, &requests[id]));
+}
+
+/* Near the saw's jump a value may be of either side. */
+static bool is_near_jump(int64_t t)
+{
+	int64_t in = t % (CLIMB_S * HOST_S);
+
+	return in < 3 * HOST_S || in > (CLIMB_S - 3) * HOST_S;
+}
+
+static void judge(unsigned i, const struct bus_answer *answer)
+{
+	double is = temperature(i, answer->measured_ns), least = is - fleet.step - STEP;
+	char text[200];
+
+	fleet.failed += answer->err != 0;
+	if (answer->err || is_near_jump(host.now))
+		return;
+	fleet.good++;
+	fleet.each[i]++;
+	fleet.older += answer->number <= temperature(i, asked[i]) - fleet.step;
+	if (answer->number < is + STEP && answer->number > least && answer->measured_ns <= host.now)
+		return;
+	fleet.wrong++;
+	snprintf(text, sizeof(text), "%u at %.3f s says %g: asked for at %.3f s (%g), stamp %.3f s",
+	         i, (double)host.now / 1e9, answer->number, (double)asked[i] / 1e9,
+	         temperature(i, asked[i]), (double)answer->measured_ns / 1e9);
+	TEST_MESSAGE(text);
+}
+
+static void take_answers(void)
+{
+	for (unsigned i = 0; i < host.answers; i++) {
+		const struct bus_answer *answer = &host.answer[i];
+
+		if (answer->id < FLEET_MAX) {
+			judge(answer->id, answer);
+			asked[answer->id] = 0;
+		} else if (answer->id == awaited) {
+			took = host.now - asked[answer->id];
+			error = answer->err;
+			awaited = LAST_OF_ALL;
+		}
+	}
+	host.answers = 0;
+}
+
+/* Step by step: what is answered is asked for again before the next. */
+static void run(int64_t until_ns, bool until_answered)
+{
+	while (host.now < until_ns && !(until_answered && awaited == LAST_OF_ALL)) {
+		renew();
+		for (unsigned i = 0; i < fleet.count && !fleet.stopped; i++) {
+			if (asked[i])
+				continue;
+			snprintf(paths[i], sizeof(paths[i]), "%s",
+			         of(fleet.slave[i],
+			            fleet.property ? fleet.property : "temperature"));
+			submit(i, BUS_READ, BUS_INPUT);
+		}
+		int64_t next = bus_step(bus, host.now);
+		next = next > until_ns ? until_ns : next;
+		if (!host.answers && next > host.now)
+			host.now = next;
+		take_answers();
+	}
+}
+
+void fleet_run(int64_t until_ns)
+{
+	run(until_ns, false);
+}
+
+uint32_t fleet_ask(enum bus_prio prio, enum bus_op op, const char *path)
+{
+	uint32_t id = FLEET_MAX + extra++ % 8;
+
+	snprintf(paths[id], sizeof(paths[id]), "%s", path);
+	submit(id, op, prio);
+	awaited = id;
+	return id;
+}
+
+int64_t fleet_answered(uint32_t id, int *err)
+{
+	awaited = id;
+	run(host.now + 20 * HOST_S, true);
+	TEST_ASSERT_EQUAL_UINT32(LAST_OF_ALL, awaited);
+	*err = error;
+	return took;
+}
+
+void fleet_begin(void)
+{
+	memset(&fleet, 0, sizeof(fleet));
+	memset(asked, 0, sizeof(asked));
+	renewed = 0;
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Thermometers that are asked for without pause: each again as soon as it was answered. Their
+ * temperature climbs all the time, so a value tells when the chip took it. Each answer is an error,
+ * or the value of the moment that it states.
+ */
+#ifndef TESTS_UNIT_AID_FLEET_H
+#define TESTS_UNIT_AID_FLEET_H
+
+#include "tests/unit/aid/native_scene.h"
+
+#define FLEET_MAX 100
+
+extern struct fleet {
+	struct sim_slave *slave[FLEET_MAX];
+	unsigned count;
+	bool stopped;             /* nothing is asked for any more */
+	const char *property;     /* NULL: "temperature" */
+	double step;              /* of its resolution; 0: that of 12 bits */
+	unsigned good, failed;    /* answers, since fleet_forget() */
+	unsigned each[FLEET_MAX]; /* good answers of each */
+	unsigned older;           /* ... of a conversion that began before the request */
+	unsigned wrong;           /* ... and values that are not true; a message tells each */
+} fleet;
+
+/* No fleet; after native_begin(). */
+void fleet_begin(void);
+/* Add the thermometers of this kind to channel 0, before start(); may be called again. */
+void fleet_add(const char *chip, unsigned count);
+void fleet_add_to(unsigned channel, const char *chip, unsigned count);
+/* Run until then. Others' requests may be under way: their ids are FLEET_MAX and above. */
+void fleet_run(int64_t until_ns);
+/* Counts begin anew. */
+void fleet_forget(void);
+/* A request besides, to be answered while the fleet runs. */
+uint32_t fleet_ask(enum bus_prio prio, enum bus_op op, const char *path);
+/* Run until it is answered, which takes a second at most. Returns how long it took. */
+int64_t fleet_answered(uint32_t id, int *err);
+
+#endif
