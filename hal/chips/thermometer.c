@@ -12,24 +12,22 @@
 #define COPY_SCRATCHPAD 0x48
 #define RECALL 0xb8
 #define COPY_NS (10 * TXN_MS)
-#define READ_TRIM_1 0x93
-#define READ_TRIM_2 0x68
-#define TRIM_BLANKET 0x9d
-#define TRIM_SECOND 0xbb
 
 #define RAW_POWER_ON 0x0550
 #define RAW_BROKEN 0x07f8 /* 127.5 and above: no chip measures that */
 #define REMAIN_POWER_ON 0x0c
+#define PER_DEGREE 0x10 /* in every DS18S20 */
+#define FAMILY_3B 0x3b
+#define CONFIG_ZERO 0x80 /* a bit that is 0 in every other chip with a resolution */
 #define NEAR_RAW (5 * 16)
 #define NEAR_NS (300 * 1000 * TXN_MS)
 #define LOOKS_ONE 3
 #define LOOKS_ZERO 2
 
-/* What a visit that changes the scratchpad, or one that reads the trim, keeps from call to call. */
+/* What a visit that changes the scratchpad keeps from call to call. */
 struct visit {
 	uint8_t scratchpad[9]; /* as it is to be */
 	uint8_t kept[3];       /* limits and configuration as they were */
-	uint8_t trim[4];
 };
 static struct visit *visit_of(struct txn *txn)
 {
@@ -61,6 +59,17 @@ static int saw_config(struct txn *txn, const uint8_t scratchpad[9])
 	return 0;
 }
 
+/*
+ * The ones of a wire on which nobody answers get a right checksum by two bits turned over. Chips of
+ * family 3B are told apart by that bit.
+ */
+static bool is_noise(const struct device *device, const uint8_t scratchpad[9])
+{
+	if (device->family->fixed)
+		return scratchpad[SP_PER_DEGREE] > PER_DEGREE;
+	return device->family->code != FAMILY_3B && (scratchpad[SP_CONFIG] & CONFIG_ZERO);
+}
+
 int thermometer_saw(struct txn *txn, unsigned at, uint8_t *scratchpad, unsigned n)
 {
 	/* A driver's, in part. */
@@ -68,6 +77,8 @@ int thermometer_saw(struct txn *txn, unsigned at, uint8_t *scratchpad, unsigned 
 		return 0;
 	/* Nothing but zeros has a right checksum, and no such chip. */
 	if (scratchpad[SP_CONFIG] == 0 && scratchpad[SP_PER_DEGREE] == 0)
+		return -EBADMSG;
+	if (is_noise(txn->device, scratchpad))
 		return -EBADMSG;
 	thermometer_of(txn->device)->slow = txn->device->rom[0] == 0x28 && scratchpad[SP_5] != 0xff;
 	return saw_config(txn, scratchpad);
@@ -467,60 +478,4 @@ int thermometer_read_power(struct txn *txn)
 		return -EBADMSG;
 	txn->phase++;
 	return bit > 0 ? TXN_MORE : bit;
-}
-
-/* Of the dies that OWFS tells apart only the last is still around: B6 and B7 left the market
- * before 2001. */
-int thermometer_read_die(struct txn *txn)
-{
-	return property_text(txn, "C2");
-}
-
-/*
- * The two bytes of the factory's trim; a chip that does not know the commands leaves ones. Without
- * a checksum both are read twice.
- */
-static int read_trim(struct txn *txn)
-{
-	static const uint8_t commands[] = {READ_TRIM_1, READ_TRIM_2};
-	int err = txn_command(txn, &commands[txn->phase % 2], 1);
-
-	if (!err)
-		err = txn_read(txn, &visit_of(txn)->trim[txn->phase], 1);
-	txn->silent = false;
-	if (err || ++txn->phase < 4)
-		return err ? err : TXN_MORE;
-	return memcmp(visit_of(txn)->trim, visit_of(txn)->trim + 2, 2) == 0 ? 0 : -EBADMSG;
-}
-
-int thermometer_read_trim(struct txn *txn)
-{
-	int err = read_trim(txn);
-
-	txn->number[0] = visit_of(txn)->trim[0] | visit_of(txn)->trim[1] << 8;
-	return err;
-}
-
-/* Only the B7 die has a trim value to repair. */
-int thermometer_refuse_trim(struct txn *txn)
-{
-	(void)txn;
-	return -EINVAL;
-}
-
-int thermometer_read_trim_valid(struct txn *txn)
-{
-	int err = read_trim(txn), low = visit_of(txn)->trim[0] & 7;
-
-	txn->number[0] = (low == 3 || low == 5) && visit_of(txn)->trim[1] == TRIM_SECOND;
-	return err;
-}
-
-int thermometer_read_trim_blanket(struct txn *txn)
-{
-	int err = read_trim(txn);
-
-	txn->number[0] = visit_of(txn)->trim[0] == TRIM_BLANKET &&
-	                 visit_of(txn)->trim[1] == TRIM_SECOND;
-	return err;
 }

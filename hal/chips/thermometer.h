@@ -7,6 +7,7 @@
 #define HAL_CHIPS_THERMOMETER_H
 
 #include "hal/chips/family.h"
+#include "hal/chips/thermometer_trim.h"
 
 #define THERMOMETER_CONVERT 0x44
 #define THERMOMETER_READ_POWER 0xb4
@@ -70,11 +71,6 @@ int thermometer_write_limit(struct txn *txn); /* of the field's byte */
 int thermometer_read_tempres(struct txn *txn);
 int thermometer_write_tempres(struct txn *txn);
 int thermometer_read_power(struct txn *txn);
-int thermometer_read_die(struct txn *txn);
-int thermometer_read_trim(struct txn *txn);
-int thermometer_refuse_trim(struct txn *txn);
-int thermometer_read_trim_valid(struct txn *txn);
-int thermometer_read_trim_blanket(struct txn *txn);
 
 /* What stands first in the lists of their families; those with more begin behind the last. */
 enum { SCRATCHPAD = 1, AFTER_THERMOMETER_AREAS };

@@ -2,6 +2,9 @@
 /* Tests of conversions shared by the thermometers of a wire. */
 #include <errno.h>
 
+#include "hal/chips/find.h"
+#include "hal/chips/thermometer.h"
+#include "hal/owfs/path.h"
 #include "unity.h"
 
 #include "tests/unit/aid/native_scene.h"
@@ -310,6 +313,22 @@ static void test_one_device_serves_two_resolutions_at_once(void)
 	}
 }
 
+/* Nobody answers, and noise turns two bits over: the checksum of these is right. */
+static void test_ones_that_noise_gave_a_right_checksum_are_no_temperature(void)
+{
+	uint8_t noise[9] = {0xfb, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xdf, 0xff};
+	static const uint8_t codes[] = {0x10, 0x22, 0x28, 0x42};
+	struct thermometer chip = {0};
+
+	TEST_ASSERT_EQUAL_UINT8(0, rom_crc8(noise, 9));
+	for (unsigned i = 0; i < sizeof(codes); i++) {
+		struct device device = {.family = family_of(codes[i]), .own = &chip};
+		struct txn txn = {.device = &device};
+
+		TEST_ASSERT_EQUAL_INT(-EBADMSG, thermometer_saw(&txn, 0, noise, 9));
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -327,5 +346,6 @@ int main(void)
 	RUN_TEST(test_the_power_on_value_is_never_good);
 	RUN_TEST(test_a_chip_that_takes_no_resolution_is_read_all_the_same);
 	RUN_TEST(test_one_device_serves_two_resolutions_at_once);
+	RUN_TEST(test_ones_that_noise_gave_a_right_checksum_are_no_temperature);
 	return UNITY_END();
 }
