@@ -408,8 +408,11 @@ bool convert_step(struct native *native, int64_t now, int64_t *next)
 			channel->due_ns = 0;
 			continue;
 		}
-		struct job *first = schedule_in_turn(native, &plan, now) ? next_due(native, n)
-		                                                         : NULL;
+		bool single = !plan.parasitic && !channel->link->driven &&
+		              is_single_round(channel, now);
+		struct job *first = !single && schedule_in_turn(native, &plan, now)
+		                            ? next_due(native, n)
+		                            : NULL;
 		if (first) {
 			convert_in_turn(native, first);
 			return true;
@@ -423,8 +426,7 @@ bool convert_step(struct native *native, int64_t now, int64_t *next)
 		}
 		if (plan.parasitic && supply_ask_one(native, n))
 			return true;
-		if (plan.parasitic ? !plan.parasitic_due || channel->link->passive
-		                   : !channel->link->driven && is_single_round(channel, now)) {
+		if (plan.parasitic ? !plan.parasitic_due || channel->link->passive : single) {
 			if (!convert_one(native, n))
 				continue;
 			if (plan.due == 1)

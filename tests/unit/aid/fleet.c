@@ -8,28 +8,35 @@
 
 #include "tests/unit/aid/fleet.h"
 
-#define DEGREES_PER_S 1.0
 #define CLIMB_S 60 /* from -20 to 40 degrees, and again */
 #define LAST_OF_ALL 0xffff
 #define STEP (1 / 16.0) /* of 12 bits, to the nearest; more than that is cut off */
 
 struct fleet fleet;
 
+double fleet_slope;
+
 static struct bus_req requests[FLEET_MAX + 8];
 static char paths[FLEET_MAX + 8][100];
 static uint8_t texts[FLEET_MAX + 8][4096];
 static int64_t asked[FLEET_MAX + 8];
+static int64_t due[FLEET_MAX];
 static int64_t took, renewed;
 static uint32_t awaited;
 static int error;
 static unsigned extra;
+
+static double slope(void)
+{
+	return fleet_slope > 0 ? fleet_slope : 1;
+}
 
 /* A saw: its jumps are rare, and a value near one is not judged. */
 static double temperature(unsigned i, int64_t t)
 {
 	double s = (double)(t % (CLIMB_S * HOST_S)) / 1e9;
 
-	return -20 + s * DEGREES_PER_S + i % 7 * 0.5;
+	return -20 + s * slope() + i % 7 * 0.5;
 }
 
 static void climb(unsigned i, int64_t t)
@@ -39,7 +46,7 @@ static void climb(unsigned i, int64_t t)
 	fleet.slave[i]->input[0] = (struct sim_curve){
 		.shape = SIM_RAMP,
 		.a = temperature(i, start),
-		.b = temperature(i, start) + CLIMB_S * DEGREES_PER_S,
+		.b = temperature(i, start) + CLIMB_S * slope(),
 		.start_ns = start,
 		.span_ns = CLIMB_S * HOST_S,
 	};
@@ -72,7 +79,7 @@ void fleet_add(const char *chip, unsigned count)
 
 void fleet_forget(void)
 {
-	fleet.good = fleet.failed = fleet.older = fleet.wrong = 0;
+	fleet.good = fleet.failed = fleet.older = fleet.newer = fleet.wrong = 0;
 	memset(fleet.each, 0, sizeof(fleet.each));
 }
 
@@ -100,7 +107,8 @@ static bool is_near_jump(int64_t t)
 
 static void judge(unsigned i, const struct bus_answer *answer)
 {
-	double is = temperature(i, answer->measured_ns), least = is - fleet.step - STEP;
+	double is = temperature(i, answer->measured_ns),
+	       least = temperature(i, answer->measured_ns - fleet.early_ns) - fleet.step - STEP;
 	char text[200];
 
 	fleet.failed += answer->err != 0;
@@ -108,8 +116,10 @@ static void judge(unsigned i, const struct bus_answer *answer)
 		return;
 	fleet.good++;
 	fleet.each[i]++;
-	fleet.older += answer->number <= temperature(i, asked[i]) - fleet.step;
-	if (answer->number < is + STEP && answer->number > least && answer->measured_ns <= host.now)
+	fleet.older += fleet_slope <= 0 && answer->number <= temperature(i, asked[i]) - fleet.step;
+	fleet.newer += answer->number >= is + STEP;
+	if (answer->number < temperature(i, host.now) + STEP && answer->number > least &&
+	    answer->measured_ns <= host.now)
 		return;
 	fleet.wrong++;
 	snprintf(text, sizeof(text), "%u at %.3f s says %g: asked for at %.3f s (%g), stamp %.3f s",
@@ -126,6 +136,7 @@ static void take_answers(void)
 		if (answer->id < FLEET_MAX) {
 			judge(answer->id, answer);
 			asked[answer->id] = 0;
+			due[answer->id] = host.now + fleet.pause_ns[answer->id];
 		} else if (answer->id == awaited) {
 			took = host.now - asked[answer->id];
 			error = answer->err;
@@ -141,7 +152,7 @@ static void run(int64_t until_ns, bool until_answered)
 	while (host.now < until_ns && !(until_answered && awaited == LAST_OF_ALL)) {
 		renew();
 		for (unsigned i = 0; i < fleet.count && !fleet.stopped; i++) {
-			if (asked[i])
+			if (asked[i] || host.now < due[i])
 				continue;
 			snprintf(paths[i], sizeof(paths[i]), "%s",
 			         of(fleet.slave[i],
@@ -150,6 +161,8 @@ static void run(int64_t until_ns, bool until_answered)
 		}
 		int64_t next = bus_step(bus, host.now);
 		next = next > until_ns ? until_ns : next;
+		for (unsigned i = 0; i < fleet.count; i++)
+			next = !asked[i] && due[i] > host.now && due[i] < next ? due[i] : next;
 		if (!host.answers && next > host.now)
 			host.now = next;
 		take_answers();
@@ -184,5 +197,7 @@ void fleet_begin(void)
 {
 	memset(&fleet, 0, sizeof(fleet));
 	memset(asked, 0, sizeof(asked));
+	memset(due, 0, sizeof(due));
+	fleet_slope = 0;
 	renewed = 0;
 }

@@ -14,15 +14,20 @@
 extern struct fleet {
 	struct sim_slave *slave[FLEET_MAX];
 	unsigned count;
-	bool stopped;             /* nothing is asked for any more */
-	const char *property;     /* NULL: "temperature" */
-	double step;              /* of its resolution; 0: that of 12 bits */
-	unsigned good, failed;    /* answers, since fleet_forget() */
+	int64_t pause_ns[FLEET_MAX]; /* between an answer and the next request */
+	bool stopped;                /* nothing is asked for any more */
+	const char *property;        /* NULL: "temperature" */
+	double step;                 /* of its resolution; 0: that of 12 bits */
+	int64_t early_ns;      /* the chips may convert by so much faster than the longest time */
+	unsigned good, failed; /* answers, since fleet_forget() */
 	unsigned each[FLEET_MAX]; /* good answers of each */
 	unsigned older;           /* ... of a conversion that began before the request */
+	unsigned newer;           /* ... that came after the moment that they state */
 	unsigned wrong;           /* ... and values that are not true; a message tells each */
 } fleet;
 
+/* It climbs by so much; 0: by a degree a second. Ahead of fleet_add(). */
+extern double fleet_slope;
 /* No fleet; after native_begin(). */
 void fleet_begin(void);
 /* Add the thermometers of this kind to channel 0, before start(); may be called again. */
