@@ -261,6 +261,20 @@ static int64_t latched_ns(struct txn *txn, const uint8_t scratchpad[9], int64_t 
 	return thermometer_of(device)->latched_ns;
 }
 
+/*
+ * The conversion seemed to end before its longest time. It did if the chip holds another
+ * temperature than when it was read last, and that was the result of the conversion before. Byte 6
+ * is no proof in a chip that lets it be written.
+ */
+static bool is_proven(const struct device *device, const uint8_t scratchpad[9])
+{
+	const struct thermometer *chip = thermometer_of(device);
+	const uint8_t *was = chip->latched;
+
+	return chip->proves && (was[0] != scratchpad[SP_LSB] || was[1] != scratchpad[SP_MSB] ||
+	                        (device->family->fixed && was[2] != scratchpad[SP_REMAIN]));
+}
+
 int thermometer_read_temperature(struct txn *txn)
 {
 	struct device *device = txn->device;
@@ -269,7 +283,13 @@ int thermometer_read_temperature(struct txn *txn)
 
 	if (err)
 		return err;
-	int64_t now = txn_now(txn);
+	int64_t now = txn_now(txn), early = thermometer_of(device)->early_ns;
+	thermometer_of(device)->early_ns = 0;
+	if (early && thermometer_of(device)->converted_ns > now) {
+		if (!is_proven(device, scratchpad))
+			return txn_wait(txn, thermometer_of(device)->converted_ns - now);
+		thermometer_of(device)->converted_ns = early;
+	}
 	int raw = thermometer_raw(device, scratchpad);
 	err = thermometer_guard(txn, raw, scratchpad, now);
 	if (err)

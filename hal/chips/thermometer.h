@@ -31,10 +31,14 @@ struct thermometer {
 	uint8_t kind;         /* which chip of the family it is; 0: not known */
 	bool slow;            /* a lower resolution may not make it quicker (clones) */
 	uint8_t unheard;      /* starts in a row that it did not show */
+	bool shows;           /* it has shown a start */
+	bool tried;           /* it may have converted since, though it did not show the start */
+	bool proves;          /* the result before the last conversion is what was read last */
 	bool unseen;          /* the chip could not show that its last conversion began */
 	int16_t raw;          /* last good reading, sixteenths of a degree */
 	int64_t raw_ns;       /* when; 0: none */
 	int64_t converted_ns; /* when its last conversion ends or ended; 0: none known */
+	int64_t early_ns;     /* it seemed to end then, which is not proven; 0: it did not */
 	int64_t unread_ns;    /* the one whose result did not come over the wire whole; 0: none */
 	int64_t earlier_ns;   /* the one before the last */
 	uint8_t latched[3];   /* what tells one conversion's result from another's, when read */

@@ -11,6 +11,7 @@
 #include "hal/chips/thermometer.h"
 #include "hal/native/answer.h"
 #include "hal/native/convert.h"
+#include "hal/native/ending.h"
 #include "hal/native/job_txn.h"
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
@@ -186,6 +187,14 @@ static int send_all(struct link *link, enum link_after after)
 	return err == -EHOSTDOWN ? -ENODEV : err;
 }
 
+/* Who did not show that it heard may have heard. */
+static void tried(struct native *native, unsigned n)
+{
+	for (unsigned i = 0; i < native->table.count; i++)
+		if (native_thermometer(&native->table.devices[i], n))
+			thermometer_of(&native->table.devices[i])->tried = true;
+}
+
 /* All jobs that are due on the channel end with err, as if it had been theirs. */
 static void fail_due(struct native *native, unsigned channel, int err)
 {
@@ -216,26 +225,36 @@ static int64_t convert_ns(const struct link *link, const struct device *device)
 /* One that has never shown that it converts does not show it to all either. */
 static void converts(struct device *device, int64_t until, bool unseen)
 {
-	unsigned silent = thermometer_of(device)->unheard >= THERMOMETER_SILENT;
+	struct thermometer *chip = thermometer_of(device);
 
-	if (thermometer_of(device)->converted_ns)
-		thermometer_of(device)->earlier_ns = thermometer_of(device)->converted_ns;
-	thermometer_of(device)->converted_ns = until;
-	thermometer_of(device)->unseen = unseen || silent;
+	chip->proves = chip->converted_ns && chip->raw_ns >= chip->converted_ns && !chip->tried;
+	if (chip->converted_ns)
+		chip->earlier_ns = chip->converted_ns;
+	chip->converted_ns = until;
+	chip->early_ns = 0;
+	chip->tried = false;
+	chip->unseen = unseen || chip->unheard >= THERMOMETER_SILENT;
 }
 
 static void converting(struct native *native, unsigned n, bool unseen, int64_t now, int64_t longest)
 {
 	struct channel *channel = &native->channel[n];
+	struct device *only = NULL;
+	unsigned count = 0;
 
 	channel->due_ns = 0;
 	channel->simultaneous_ns[SIMULTANEOUS_TEMPERATURE] = now + longest;
 	for (unsigned i = 0; i < native->table.count; i++) {
 		struct device *device = &native->table.devices[i];
 
-		if (native_thermometer(device, n))
-			converts(device, now + convert_ns(channel->link, device), unseen);
+		if (!native_thermometer(device, n))
+			continue;
+		only = count++ ? NULL : device;
+		converts(device, now + convert_ns(channel->link, device), unseen);
 	}
+	/* Nobody else could have shown it. */
+	if (only && !unseen)
+		thermometer_of(only)->shows = true;
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
 
@@ -268,8 +287,10 @@ int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t lo
 		if (err == -EBADMSG)
 			native_count(native, COUNT_CHECKSUMS);
 	}
-	if (err < 0)
+	if (err < 0) {
+		tried(native, n);
 		return err;
+	}
 	int64_t now = native_now(native);
 	master_good(native, n);
 	native_count(native, COUNT_CONVERSIONS);
@@ -280,6 +301,8 @@ int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t lo
 		native->holder[link->chip % NATIVE_CHANNELS] = NULL;
 	}
 	converting(native, n, strong && !link->driven, now, longest);
+	if (!strong && !link->driven)
+		ending_begin(native, n, longest);
 	return 0;
 }
 
@@ -320,6 +343,7 @@ static struct job *next_due(struct native *native, unsigned n)
 static void convert_device(struct native *native, struct device *device)
 {
 	thermometer_of(device)->unheard = 0;
+	thermometer_of(device)->shows = true;
 	converts(device,
 	         native_now(native) + convert_ns(native->channel[device->channel].link, device),
 	         false);
@@ -349,6 +373,7 @@ static bool convert_one(struct native *native, unsigned n)
 	int64_t now = native_now(native);
 
 	job_saw(native, first, err, now);
+	thermometer_of(device)->tried |= err < 0;
 	if (err < 0) {
 		job_failed(native, first, err);
 		return true;
@@ -383,6 +408,7 @@ static void convert_in_turn(struct native *native, struct job *job)
 	native->schedule.doing = SCHEDULE_START;
 	native->schedule.owes = true;
 	job_saw(native, job, err, native_now(native));
+	thermometer_of(device)->tried |= err < 0;
 	if (err == -EBADMSG && !job->txn.link_error) {
 		native_count(native, COUNT_CHECKSUMS);
 		native->channel[device->channel].checksums++;

@@ -9,6 +9,7 @@
 #include "hal/native/answer.h"
 #include "hal/native/cache.h"
 #include "hal/native/convert.h"
+#include "hal/native/ending.h"
 #include "hal/native/hunt.h"
 #include "hal/native/job.h"
 #include "hal/native/limits.h"
@@ -339,7 +340,7 @@ static int64_t step(struct native *native, int64_t now)
 		run(native, job, now);
 		return now;
 	}
-	if (rest(native, now, &next))
+	if (ending_step(native, now, &next) || rest(native, now, &next))
 		return now;
 	return next > now ? next : now;
 }

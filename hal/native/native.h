@@ -11,6 +11,7 @@
  *   simultaneous.c  writes to /simultaneous
  *   convert.c  who converts when: one Convert T for all thermometers due on a channel, or in turn
  *   schedule.c which of the two is faster
+ *   ending.c   when a conversion ends
  *   supply.c   which thermometers are fed by the wire
  *   outcome.c  what follows from how a transaction ended
  *   master.c   open, lost, opened again; the recovery ladder

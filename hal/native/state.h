@@ -111,6 +111,15 @@ struct touch {
 	int64_t next_ns;  /* when to search again */
 };
 
+/* Of a wire: the end of its last Convert T for all (ending.h). */
+struct ending {
+	bool asks;        /* by read slots */
+	uint64_t resets;  /* of the link since then; after another reset no chip would answer */
+	int64_t begun_ns; /* Convert T */
+	int64_t next_ns;  /* next question */
+	int64_t took_ns;  /* the conversion before, as seen; 0: not known */
+};
+
 struct channel {
 	struct link *link;
 	struct trunk *trunk;    /* of a wire with couplers: its link */
@@ -133,6 +142,7 @@ struct channel {
 	bool searching, dirty;
 	struct search search;
 	struct touch touch;
+	struct ending ending;
 	uint64_t errors, shorts, checksums, transactions;
 };
 

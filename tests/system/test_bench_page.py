@@ -51,6 +51,8 @@ def some_output():
             lines += [f"scan.{net}.{case}.seconds 1.20 s", f"scan.{net}.{case}.over_limit 1.05 ratio",
                       f"scan.{net}.{case}.steady 0.90 s",
                       f"scan.{net}.{case}.transfers 3.00 per", f"scan.{net}.{case}.syscalls 3.00 per"]
+    lines += [f"scan.{n}.400kHz.quick.{what} 0.80 s" for n in (1, 2, 5, 10, 20, 50)
+              for what in ("seconds", "steady")]
     for where in ("pinned", "apart"):
         for n in (1, 16, 64):
             for who in ("", ".owserver"):

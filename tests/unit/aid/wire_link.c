@@ -77,7 +77,7 @@ static int wire_reset(struct link *link)
 
 	if (err)
 		return err;
-	wire_net.cost.resets++;
+	wire_net.resets[link - links]++;
 	bool heard = !wire_net.trouble || trouble_heard(wire_net.trouble);
 	bool presence = heard && sim_wire_reset(wire_of(link), false, wire_time());
 	if (wire_net.trouble)
@@ -182,6 +182,7 @@ static void wire_cost(const struct link *link, struct link_cost *cost)
 	*cost = (struct link_cost){0};
 	if (link == links)
 		*cost = wire_net.cost;
+	cost->resets = wire_net.resets[link - links];
 }
 
 #define LINK_OPS \

@@ -17,7 +17,8 @@ struct wire_net {
 	struct host *host;
 	unsigned channels, chips; /* chips 1: all channels share one */
 	struct sim_wire wire[WIRE_CHANNELS];
-	struct link_cost cost;          /* of the first link */
+	struct link_cost cost; /* of the first link, but the resets */
+	uint64_t resets[WIRE_CHANNELS];
 	struct link_master_cost shared; /* of all links together */
 	/*
 	 * The next `fault_count` calls return `fault`; a recovery of fault_until or above ends it.

@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: MIT */
+/* When to ask whether a conversion has ended, and what follows. */
+#include <errno.h>
+
+#include "hal/chips/thermometer.h"
+#include "hal/native/ending.h"
+#include "hal/native/master.h"
+#include "hal/native/state.h"
+
+/* The first question, and the next ones; earlier than the last end was, as it varies a little. */
+#define FIRST_SHARE 2 /* of the longest time */
+#define AGAIN_NS (10 * TXN_MS)
+#define BEFORE_SHARE 16
+
+static uint64_t resets(const struct link *link)
+{
+	struct link_cost cost = {0};
+
+	if (link->ops->cost)
+		link->ops->cost(link, &cost);
+	return cost.resets;
+}
+
+static bool is_early(const struct job *job, unsigned n, int64_t now)
+{
+	const struct device *device = job->txn.device;
+
+	if (!job->req || job->state != JOB_CONVERTING || !device || device->channel != n ||
+	    job->ready_ns <= now + AGAIN_NS || device->power != POWER_EXTERNAL)
+		return false;
+	/* What else a family makes of a conversion looks at no proof. */
+	if (!job->property || job->property->type != PROPERTY_TEMPERATURE)
+		return false;
+	const struct thermometer *chip = thermometer_of(device);
+	return chip->shows && chip->proves && !chip->unseen;
+}
+
+void ending_begin(struct native *native, unsigned n, int64_t longest)
+{
+	struct channel *channel = &native->channel[n];
+	struct ending *ending = &channel->ending;
+	int64_t now = native_now(native), before = ending->took_ns / BEFORE_SHARE;
+
+	ending->resets = resets(channel->link);
+	ending->asks = ending->resets && !channel->trunk && !channel->link->ops->flush &&
+	               n < NATIVE_CHANNELS;
+	ending->begun_ns = now;
+	ending->next_ns = now + longest / FIRST_SHARE;
+	if (ending->took_ns - before > longest / FIRST_SHARE && ending->took_ns < longest)
+		ending->next_ns = now + ending->took_ns - before;
+}
+
+static void ended(struct native *native, unsigned n, int64_t now)
+{
+	struct ending *ending = &native->channel[n].ending;
+
+	ending->took_ns = now - ending->begun_ns;
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (!is_early(job, n, now))
+			continue;
+		thermometer_of(job->txn.device)->early_ns = now;
+		job->ready_ns = now;
+	}
+}
+
+static void ask(struct native *native, unsigned n)
+{
+	struct link *link = native->channel[n].link;
+	struct ending *ending = &native->channel[n].ending;
+	uint8_t busy;
+	int err = link->ops->read(link, &busy, 1);
+	int64_t now = native_now(native);
+
+	native_count(native, COUNT_TRANSACTIONS);
+	ending->next_ns = now + AGAIN_NS;
+	ending->asks = !err && busy != 0xff;
+	if (!err && busy == 0xff)
+		ended(native, n, now);
+	if (!err)
+		master_good(native, n);
+	else if (err != -ECOMM && err != -EHOSTDOWN)
+		master_recover(native, n, err);
+}
+
+static bool has_early(const struct native *native, unsigned n, int64_t now)
+{
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
+		if (is_early(&native->jobs[i], n, now))
+			return true;
+	return false;
+}
+
+bool ending_step(struct native *native, int64_t now, int64_t *next)
+{
+	for (unsigned n = 0; n < native->channels; n++) {
+		struct ending *ending = &native->channel[n].ending;
+
+		if (!ending->asks)
+			continue;
+		ending->asks = resets(native->channel[n].link) == ending->resets &&
+		               has_early(native, n, now);
+		if (!ending->asks)
+			continue;
+		if (ending->next_ns <= now) {
+			ask(native, n);
+			return true;
+		}
+		*next = ending->next_ns < *next ? ending->next_ns : *next;
+	}
+	return false;
+}
