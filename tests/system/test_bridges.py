@@ -3,6 +3,7 @@
 """Sensors behind bridges: the shipped table, from the file to signals; errors with file and line."""
 
 import json
+import os
 import signal
 import subprocess
 
@@ -75,6 +76,21 @@ def test_an_error_of_the_table_is_reported_with_its_file_and_line(scene):
     assert done.returncode != 0, done
     assert "bridges.rio:4:" in done.stderr and "Sensors: " in done.stderr, done.stderr
     assert f"sensors.table:{line}: no sensor nothing stands above" in done.stderr, (table, done)
+
+
+def test_a_table_that_is_a_pipe_is_refused_and_not_waited_for(scene):
+    table, rio = configuration(scene, PLACES)
+    daemon = scene.owsd(rio)
+    scene.until(lambda: scene.get(daemon, "room"), 30, "room is good")
+    table.unlink()
+    os.mkfifo(table)
+    daemon.signal(signal.SIGHUP)
+    owsdtest.logged(daemon, "sensors.table: not a regular file")
+    owsdtest.logged(daemon, "all goes on as before")
+    done = subprocess.run([OWSD, "--check", "-c", rio], capture_output=True, text=True, timeout=20,
+                          check=False)
+    assert done.returncode == 2 and "not a regular file" in done.stderr, done
+    daemon.stop()
 
 
 if __name__ == "__main__":
