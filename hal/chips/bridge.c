@@ -13,6 +13,7 @@
 #include "hal/chips/bridge.h"
 #include "hal/chips/ds28e17.h"
 #include "hal/chips/ds28e18.h"
+#include "hal/chips/find.h"
 
 #define LOOKS 3
 #define TRIES 12
@@ -288,7 +289,9 @@ static int add_row(struct sensor_bridge *bridge, const struct property *row)
 {
 	struct property *rows;
 
-	if (row_named(bridge, row->name))
+	/* one of the common name would hide what each device says of itself */
+	if (row_named(bridge, row->name) ||
+	    family_property(&family_common, NULL, row->name, strlen(row->name)))
 		return -EEXIST;
 	rows = realloc(bridge->properties, (bridge->family.count + 1u) * sizeof(*rows));
 	if (!rows)

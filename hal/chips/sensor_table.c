@@ -12,6 +12,7 @@
 #define BRIDGES_MAX 64
 #define PLACES_MAX 32
 #define KIND_VALUES 200 /* the number of one is a byte (bridge.c) */
+#define KIND_STEPS 255  /* likewise */
 #define WAIT_MAX_MS 10000
 
 #define SIZE(list) (sizeof(list) / sizeof((list)[0]))
@@ -215,6 +216,9 @@ static int read_let(struct sensor_reader *r)
 		err = reader_equals(r);
 	if (!err)
 		err = formula(r, false, &to->a);
+	for (unsigned i = 0; !err && i < kind->name_count; i++)
+		if (strcmp(kind->names[i], text) == 0)
+			err = reader_fail(r, "there is a name %s already", text);
 	if (err)
 		return err;
 	to->name = (uint8_t)kind->name_count;
@@ -312,6 +316,11 @@ static int end_kind(struct sensor_reader *r)
 		return 0;
 	if (kind->values == 0)
 		return reader_fail(r, "sensor %s of line %u has no value", kind->name, kind->line);
+	if (kind->bytes == 0)
+		return reader_fail(r, "sensor %s of line %u reads nothing", kind->name, kind->line);
+	if (kind->steps > KIND_STEPS)
+		return reader_fail(r, "sensor %s of line %u: more than %d lines to do", kind->name,
+		                   kind->line, KIND_STEPS);
 	for (unsigned i = 0; i < kind->bytes; i++)
 		if (is_set(r->lone, i) && !is_set(r->checked, i))
 			return reader_fail(
@@ -414,7 +423,8 @@ static int read_at(struct sensor_reader *r)
 	              : bridge_place(table, bridge, (unsigned)(kind - table->kinds),
 	                             (uint8_t)address, prefix);
 	return err == -EEXIST
-	               ? reader_fail(r, "the bridge has such a value already: give it a name (as)")
+	               ? reader_fail(r, "the bridge has a property of this name already: give the "
+	                                "sensor another (as)")
 	       : err == -ENAMETOOLONG ? reader_fail(r, "a name that is too long")
 	                              : err;
 }

@@ -347,7 +347,13 @@ static void test_errors_of_a_table_have_their_line_and_reason(void)
 		{"at 28.01005DDF0300 sht4x 0x44\n", ":69:", "expected the id of a bridge"},
 		{"at 19.01005DDF0300 sht4x 0x88\n", ":69:", "from 8 to 119"},
 		{"at 19.01005DDF0300 sht4x 0x44\nat 19.01005DDF0300 sht4x 0x45\n",
-	         ":70:", "such a value already"},
+	         ":70:", "of this name already"},
+		{"sensor x\n\twrite 1 read 1\n\tvalue present = 1\nat 19.01005DDF0300 x 0x44\n",
+	         ":72:", "of this name already"},
+		{"at 19.01005DDF0300 sht4x 0x44 as family\n", ":69:", "of this name already"},
+		{"sensor x\n\twrite 1 read 1\n\tlet a = 1\n\tlet a = 2\n\tvalue v = a\n",
+	         ":72:", "a name a already"},
+		{"sensor x\n\twrite 1\n\tvalue v = 1\n", ":71:", "reads nothing"},
 		{"sensor x\n\twrite 300\n", ":70:", "not from 0 to 255"},
 		{"sensor x\n\twrite 1 read 2\n\tvalue v = u16(1)\n", ":71:", "not read before"},
 		{"sensor x\n\tread 2\n\tvalue v = u16(0)\n", ":71:", "has no checksum"},
@@ -370,6 +376,25 @@ static void test_errors_of_a_table_have_their_line_and_reason(void)
 		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, tables[i].line), why);
 		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, tables[i].reason), why);
 	}
+}
+
+/* More lines than a measurement can count would never end. */
+static void test_a_sensor_has_255_lines_to_do_at_most(void)
+{
+	static const char line[] = "\tcheck 1 = 1\n";
+	char why[160] = "", lines[300 * sizeof(line)];
+
+	begin();
+	for (unsigned checks = 254; checks <= 255; checks++) {
+		int n = snprintf(lines, sizeof(lines), "sensor x\n\twrite 1 read 1\n");
+
+		for (unsigned i = 0; i < checks; i++)
+			n += snprintf(lines + n, sizeof(lines) - (size_t)n, "%s", line);
+		snprintf(lines + n, sizeof(lines) - (size_t)n, "\tvalue v = u8(0)\n");
+		TEST_ASSERT_EQUAL_INT_MESSAGE(checks == 254 ? 0 : -EINVAL,
+		                              take(lines, why, sizeof(why)), why);
+	}
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, "more than 255 lines"), why);
 }
 
 static void test_a_file_that_cannot_be_read_is_refused(void)
@@ -427,6 +452,7 @@ int main(void)
 	UNITY_BEGIN();
 	over_both();
 	RUN_TEST(test_errors_of_a_table_have_their_line_and_reason);
+	RUN_TEST(test_a_sensor_has_255_lines_to_do_at_most);
 	RUN_TEST(test_a_file_that_cannot_be_read_is_refused);
 	RUN_TEST(test_random_tables_are_refused_or_taken_but_never_crash);
 	part = "DS28E18";
