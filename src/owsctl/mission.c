@@ -87,6 +87,29 @@ static int print_status(const struct ctl *ctl, struct mission *mission)
 
 /* --- Start and stop --- */
 
+/* Another program that starts one at the same time may have written its own settings between. */
+static int check_started(struct mission *mission, double interval, bool rollover)
+{
+	double running, seconds, over;
+	int err = mission_read(mission, "mission/running", &running);
+
+	if (err)
+		return mission_failed(mission, "mission/running", err);
+	if (running == 0)
+		return ctl_fail("%s: the mission has not begun", mission->device);
+	err = mission_interval(mission, &seconds);
+	if (err)
+		return mission_failed(mission, "interval", err);
+	err = mission_read(mission, "mission/rollover", &over);
+	if (err)
+		return mission_failed(mission, "mission/rollover", err);
+	if (seconds == interval && (over != 0) == rollover)
+		return CTL_DONE;
+	return ctl_fail("%s: another program started a mission at the same time: it has an "
+	                "interval of %.0f s, %s rollover; stop it first",
+	                mission->device, seconds, over != 0 ? "with" : "without");
+}
+
 /* The one runs when its interval is written, the other when it is started. */
 static int start(struct mission *mission, double interval, bool rollover)
 {
@@ -117,10 +140,7 @@ static int start(struct mission *mission, double interval, bool rollover)
 		    mission_write(mission, steps[i].property, steps[i].value))
 			return CTL_FAILED;
 	}
-	err = mission_read(mission, "mission/running", &running);
-	if (err)
-		return mission_failed(mission, "mission/running", err);
-	return running != 0 ? CTL_DONE : ctl_fail("%s: the mission has not begun", mission->device);
+	return check_started(mission, interval, rollover);
 }
 
 static bool is_interval(const struct mission *mission, double seconds)

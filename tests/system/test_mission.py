@@ -7,6 +7,7 @@ import re
 import subprocess
 
 import owsdtest
+import peer
 from owsdtest import OWSCTL, until
 
 WIRE = """
@@ -98,6 +99,37 @@ def test_a_mission_that_runs_is_not_started_anew(scene):
     done = mission("start", "-i", "1", FRIDGE)
     assert done.returncode == 1 and "a mission runs; stop it first" in done.stderr, done
     assert status(mission, FRIDGE)["interval"] == 60
+
+
+class Spoiled(peer.Peer):
+    """An owserver with a logger: whatever is written to the one path, another program's value is in
+    it at the start."""
+    def __init__(self, path, theirs):
+        super().__init__({f"{CRATE}/{name}": "0" for name in (
+            "clock/udate", "clock/running", "mission/delay", "mission/rollover", "mission/enable",
+            "mission/clear", "mission/frequency", "mission/running")} | {f"{CRATE}/family": "21"})
+        self.path, self.theirs = path, theirs
+
+    def _answer(self, r):
+        r = r._replace(path=r.path.replace("/uncached/", "/"))
+        if r.kind == peer.WRITE and r.path == self.path:
+            r = r._replace(data=self.theirs)
+        if r.kind == peer.WRITE and r.path == f"{CRATE}/mission/frequency":
+            self[f"{CRATE}/mission/running"] = "1"
+        return super()._answer(r)
+
+
+def test_a_start_that_another_program_spoiled_is_an_error(_scene):
+    """Both have seen that none runs; the settings of the other are in the mission that began."""
+    for setting, theirs, words in (("frequency", b"7", "an interval of 420 s, without rollover"),
+                                   ("rollover", b"1", "an interval of 60 s, with rollover"),
+                                   ("delay", b"0", None)):
+        server = Spoiled(f"{CRATE}/mission/{setting}", theirs)
+        done = subprocess.run([OWSCTL, "-t", server.target, "mission", "start", "-i", "60", CRATE],
+                              capture_output=True, text=True, timeout=60, check=False)
+        server.down()
+        assert done.returncode == (1 if words else 0), done
+        assert words is None or words in done.stderr, done
 
 
 def test_what_is_no_logger_and_what_is_no_word_is_refused(scene):
