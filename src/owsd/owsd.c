@@ -346,7 +346,7 @@ int main(int argc, char **argv)
 	a.needs_no_file = a.file == a.default_file && a.target_count && a.listen_count &&
 	                  !has_file(&a);
 	if (load(&a, NULL, &config)) {
-		if (a.file == a.default_file && !has_file(&a))
+		if (a.file == a.default_file && !a.needs_no_file && !has_file(&a))
 			explain_no_file(&a);
 		return EXIT_USAGE;
 	}

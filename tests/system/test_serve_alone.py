@@ -42,6 +42,13 @@ def test_without_either_of_them_the_error_says_what_is_missing(scene):
             assert "No such file or directory" in done.stderr and what in done.stderr, done
 
 
+def test_what_is_wrong_with_a_target_says_nothing_of_the_file_that_is_not_needed(scene):
+    wrong = scene.file("wrong.sim", "chip DS2482-100 0x18\nnonsense\n")
+    done = scene.owsd_once("-n", scene.name(), "-t", f"sim:{wrong}", "-l", "0")
+    assert done.returncode == 2 and "wrong.sim:2:" in done.stderr, done
+    assert "configuration" not in done.stderr and "-l PORT" not in done.stderr, done
+
+
 def test_a_file_that_is_named_must_be_there(scene):
     missing = scene.path / "missing.rio"
     done = scene.owsd_once("-n", scene.name(), "-c", missing, "-t", "null:", "-l", "0")
