@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Reads the Bus blocks. Only the form of a value is checked here; the backend knows its meaning. */
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "src/config/build.h"
 #include "src/config/buses.h"
@@ -77,13 +79,17 @@ const struct config_bus *config_bus(const struct config *config, const char *tar
 /* FNV-1a */
 static uint64_t hash_of(const char *file)
 {
-	FILE *in = fopen(file, "re");
+	/* whoever has made it a pipe meanwhile does not hold a reload */
+	int fd = open(file, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+	FILE *in = fd < 0 ? NULL : fdopen(fd, "r");
 	uint64_t hash = 0xcbf29ce484222325;
 
 	for (int i = 0, c; in && i < FILE_MAX && (c = getc(in)) != EOF; i++)
 		hash = (hash ^ (uint64_t)c) * 0x100000001b3;
 	if (in)
 		fclose(in);
+	else if (fd >= 0)
+		close(fd);
 	return hash;
 }
 
