@@ -168,7 +168,8 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 		int64_t timeout = lane_timeouts(&e->lanes[i], now_ns);
 		int64_t alarm;
 
-		engine_route(e, now_ns);
+		/* what it leads to later, and in lanes that had their turn, is looked at soon */
+		soon |= engine_route(e, now_ns);
 		lane_fill(&e->lanes[i], now_ns);
 		/* what was lent just now included */
 		if (e->lanes[i].lent.count &&
@@ -179,8 +180,10 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 		alarm = lane_wake(&e->lanes[i]);
 		if (alarm < next)
 			next = alarm;
-		soon |= waits_for_period(&e->lanes[i]);
 	}
+	/* a lane that was filled may have got devices of a later one */
+	for (unsigned i = 0; i < e->lane_count; i++)
+		soon |= waits_for_period(&e->lanes[i]);
 	/* what was done since the last turn is shown at the next */
 	soon |= engine_driver_changed(e);
 	turn = engine_next_turn(e, soon ? 0 : ENGINE_BEAT_NS);

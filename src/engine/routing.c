@@ -206,23 +206,31 @@ static void device_ready(void *ctx, uint32_t device)
 	due_set_add(&e->routes, device);
 }
 
-static void route_devices(struct engine *e, int64_t now_ns)
+static bool route_devices(struct engine *e, int64_t now_ns)
 {
+	bool any = false;
 	int64_t device;
 
 	if (!e->places)
-		return;
+		return false;
 	due_wheel_turn(&e->route_wheel, e->time.period, device_ready, e);
 	while ((device = due_set_next(&e->routes)) >= 0) {
 		due_set_take(&e->routes, (uint32_t)device);
 		route_one(e, (uint32_t)device, now_ns);
+		any = true;
 	}
+	return any;
 }
 
-void engine_route(struct engine *e, int64_t now_ns)
+bool engine_route(struct engine *e, int64_t now_ns)
 {
-	for (unsigned i = 0; i < e->group_count; i++)
-		if (e->groups[i].asks)
-			group_turn(e, i, now_ns);
-	route_devices(e, now_ns);
+	bool any = false;
+
+	for (unsigned i = 0; i < e->group_count; i++) {
+		if (!e->groups[i].asks)
+			continue;
+		group_turn(e, i, now_ns);
+		any = true;
+	}
+	return route_devices(e, now_ns) || any;
 }

@@ -7,8 +7,9 @@
 
 /*
  * Act on what became known, of groups that ask for it and of devices. Not inside an answer's work.
+ * True: there was something; time alone may lead to more, which engine_route_groups() says.
  */
-void engine_route(struct engine *e, int64_t now_ns);
+bool engine_route(struct engine *e, int64_t now_ns);
 /* All groups, for time may lead to a step too; returns when to be called again. */
 int64_t engine_route_groups(struct engine *e, int64_t now_ns);
 

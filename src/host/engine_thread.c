@@ -43,16 +43,22 @@ void host_ring(void *ctx)
 	bells_ring(&h->bells);
 }
 
-static void take_messages(struct serving *now, int64_t now_ns)
+/* True: there may be more. */
+static bool take_messages(struct serving *now, int64_t now_ns)
 {
 	struct worker_message message;
+	bool more = false;
 
 	for (unsigned i = 0; i < now->worker_count; i++) {
 		/*
 		 * bounded, so that a bus that sends without end does not keep the other buses
 		 * waiting
 		 */
-		for (unsigned n = 0; n < 2 * BUS_MAX_DEPTH; n++) {
+		for (unsigned n = 0;; n++) {
+			if (n == 2 * BUS_MAX_DEPTH) {
+				more = true;
+				break;
+			}
 			if (!worker_next(now->workers[i], &message))
 				break;
 			if (message.is_event)
@@ -61,6 +67,7 @@ static void take_messages(struct serving *now, int64_t now_ns)
 				engine_answer(now->engine, i, &message.answer, now_ns);
 		}
 	}
+	return more;
 }
 
 static uint32_t publish_list(struct host *h, const struct bus_counter *c, size_t n, uint32_t index)
@@ -110,12 +117,14 @@ static void join(struct engine *e, const struct control_turn *turn, int64_t now_
 /* Programs that connect and hang up without end do not keep the engine from its work. */
 #define TURNS (2 * OWS_GIVERS)
 
-/* Those that have connected, and those that hung up or are dead. */
-static void take_givers(struct host *h, int64_t now_ns)
+/* Those that have connected, and those that hung up or are dead. True: there may be more. */
+static bool take_givers(struct host *h, int64_t now_ns)
 {
 	struct control_turn turn;
 
-	for (unsigned n = 0; n < TURNS && control_next(h->control, &turn); n++) {
+	for (unsigned n = 0; n < TURNS; n++) {
+		if (!control_next(h->control, &turn))
+			return false;
 		if (turn.joins) {
 			bells_add(&h->bells, turn.place, turn.bell);
 			join(h->now->engine, &turn, now_ns);
@@ -125,6 +134,7 @@ static void take_givers(struct host *h, int64_t now_ns)
 		}
 		control_done(h->control, &turn);
 	}
+	return true;
 }
 
 /* All that have joined the engine before join the next, with their new memories. */
@@ -190,13 +200,14 @@ static void *engine_main(void *ctx)
 
 	for (;;) {
 		int64_t now_ns = ows_now(), next_ns;
+		bool more;
 
 		/* first the bell: what it rings for is looked at behind it */
 		bells_look(&h->bells);
 		if (__atomic_load_n(&h->stop, __ATOMIC_ACQUIRE))
 			break;
-		take_messages(h->now, now_ns);
-		take_givers(h, now_ns);
+		more = take_messages(h->now, now_ns);
+		more |= take_givers(h, now_ns);
 		next_ns = engine_step(h->now->engine, now_ns);
 		if (now_ns - counted_ns >= h->now->config->period_ns) {
 			counted_ns = now_ns;
@@ -207,7 +218,7 @@ static void *engine_main(void *ctx)
 		if (__atomic_load_n(&h->next, __ATOMIC_ACQUIRE) ||
 		    __atomic_load_n(&h->ended, __ATOMIC_ACQUIRE))
 			take_next(h, now_ns);
-		else
+		else if (!more) /* nobody rings for what is left */
 			sleep_until(h, next_ns);
 	}
 	/* a set that was in time is remembered for the owsd after this one */
