@@ -24,6 +24,13 @@ bool family_has(const struct device *device, const struct property *property)
 	return !kinds || (kinds & KIND(kind ? kind : 1));
 }
 
+bool family_doubts(const struct device *device)
+{
+	const struct family *family = device->family;
+
+	return family->kind && family->doubted & KIND(family->kind(device));
+}
+
 void family_forget(struct device *device)
 {
 	device_forget(device);

@@ -33,6 +33,11 @@ struct family {
 	 * of its properties see to that.
 	 */
 	int (*identify)(struct txn *txn);
+	/*
+	 * KIND() of those that a disturbed wire may have made up. They are told anew at the first
+	 * request that comes FAMILY_DOUBT_NS later.
+	 */
+	uint32_t doubted;
 	uint32_t plain; /* KIND() of those that have the properties whose .kinds is 0; 0: all */
 	/* The chip was away or has restarted: what of device.own is void? NULL: all of it. */
 	void (*forget)(struct device *device);
@@ -43,10 +48,14 @@ struct family {
 	uint8_t area_count, how_count;
 };
 
+#define FAMILY_DOUBT_NS (60 * INT64_C(1000000000))
+
 /* What the chip is called. */
 const char *family_type(const struct device *device);
 /* What was known of the chip is void: it was away or has restarted. */
 void family_forget(struct device *device);
+/* Is its kind one of family.doubted? */
+bool family_doubts(const struct device *device);
 /* Is the property one that this chip of its family has? */
 bool family_has(const struct device *device, const struct property *property);
 

@@ -157,6 +157,7 @@ const struct family family_26 = {
 	.kind = tmp1826_kind,
 	.types = types,
 	.identify = tmp1826_identify,
+	.doubted = KIND(IS_NEITHER),
 	.plain = KIND(IS_DS2438),
 	AREAS(areas),
 	HOW(how),

@@ -74,10 +74,10 @@ const struct property *family_property(const struct family *family, const struct
 		property = by_name(&family_common, name, len);
 	if (!property || is_visible(property, device))
 		return property;
-	/* its functions look which chip it is, and refuse it then */
-	return family->kind && !family->kind(device) && property->type != PROPERTY_DIRECTORY
-	               ? property
-	               : NULL;
+	/* the request looks which chip it is, and is refused then */
+	bool unknown = family->kind && (!family->kind(device) || family_doubts(device));
+
+	return unknown && property->type != PROPERTY_DIRECTORY ? property : NULL;
 }
 
 /* The first of the table behind prev, if it comes before best. */

@@ -156,12 +156,17 @@ static int identify(struct job *job)
 	if (!txn->device || !family->identify || job->property->offline ||
 	    family_owner(family, job->property) != family)
 		return 0;
-	if (family->kind(txn->device))
-		return family_has(txn->device, job->property) ? 0 : -ENOENT;
+	struct device *device = txn->device;
+
+	if (family_doubts(device) && txn_now(txn) >= device->told_ns + FAMILY_DOUBT_NS)
+		family_forget(device);
+	if (family->kind(device))
+		return family_has(device, job->property) ? 0 : -ENOENT;
 	int err = family->identify(txn);
 
 	if (err)
 		return err;
+	device->told_ns = txn_now(txn);
 	memset(txn->own, 0, sizeof(txn->own));
 	return TXN_MORE;
 }

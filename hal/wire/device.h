@@ -42,6 +42,7 @@ struct device {
 	uint32_t seen;    /* number of the last full search that saw it */
 	uint32_t changes; /* grows when what is cached of it is void */
 	int64_t ok_ns;    /* last transaction that proved its presence; 0: never */
+	int64_t told_ns;  /* when family.identify told its kind; 0: never */
 
 	uint8_t power; /* enum device_power */
 

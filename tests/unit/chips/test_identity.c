@@ -307,6 +307,24 @@ static void test_a_chip_that_is_neither_is_unknown_and_has_no_value(void)
 	TEST_ASSERT_EQUAL_UINT(0, wrong);
 }
 
+/* Three looks in a row may have been disturbed alike: it is told anew after a minute. */
+static void test_a_chip_that_was_once_taken_for_neither_gets_its_values_later(void)
+{
+	struct sim_slave *other = wire_add(0, "DS18B20", 3);
+
+	memcpy(other->rom, battery->rom, sizeof(other->rom));
+	battery->plugged = false;
+	start();
+	TEST_ASSERT_EQUAL_INT(-ENOENT, read_error(battery, "temperature"));
+	expect(true, of(battery, "identity"), "unknown");
+	battery->plugged = true;
+	other->plugged = false;
+	TEST_ASSERT_EQUAL_INT(-ENOENT, read_error(battery, "temperature"));
+	host_run(&host, bus, host.now + 61 * HOST_S);
+	expect(true, of(battery, "temperature"), "       20.25");
+	expect(true, of(battery, "identity"), "DS2438");
+}
+
 /* --- Clones of the DS18B20 --- */
 
 static struct sim_slave *plug_clone(const char *chip, const uint8_t id[6])
@@ -483,6 +501,7 @@ int main(void)
 	RUN_TEST(test_noise_takes_none_for_another);
 	RUN_TEST(test_a_chip_that_takes_the_place_of_another_is_told_anew);
 	RUN_TEST(test_a_chip_that_is_neither_is_unknown_and_has_no_value);
+	RUN_TEST(test_a_chip_that_was_once_taken_for_neither_gets_its_values_later);
 	RUN_TEST(test_each_kind_of_clone_is_called_by_its_name);
 	RUN_TEST(test_no_clone_is_read_before_its_conversion_is_over);
 	RUN_TEST(test_a_clone_that_shows_nothing_of_its_conversion_gives_no_value);
