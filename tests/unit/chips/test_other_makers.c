@@ -410,6 +410,31 @@ static void test_an_output_or_a_clock_of_a_bae_is_written_though_a_confirmation_
 	start();
 }
 
+static unsigned late;
+
+/* What follows the confirmation comes five seconds late, as if other requests came between. */
+static void be_late(const uint8_t *bytes, size_t n)
+{
+	if (n != 1 || bytes[0] != 0xbc)
+		return;
+	late++;
+	host.now += 5 * HOST_S;
+}
+
+static void test_a_clock_of_a_bae_is_written_though_it_is_looked_at_late(void)
+{
+	begin("BAE0910");
+	start();
+	reads("version", "0C.02");
+	TEST_ASSERT_EQUAL_INT(0, go(BUS_READ, "910/udate", NULL)->err);
+	late = 0;
+	wire_net.sent = be_late;
+	writes("910/udate", "1000000");
+	wire_net.sent = NULL;
+	TEST_ASSERT_EQUAL_UINT(1, late);
+	TEST_ASSERT_DOUBLE_WITHIN(2, 1000005, go(BUS_READ, "910/udate", NULL)->number);
+}
+
 static void test_functions_of_a_bae0911_are_registers(void)
 {
 	begin("BAE0911");
@@ -575,6 +600,7 @@ int main(void)
 	RUN_TEST(test_a_display_has_pins_counters_and_memory);
 	RUN_TEST(test_registers_of_a_bae0910_are_read_and_written);
 	RUN_TEST(test_an_output_or_a_clock_of_a_bae_is_written_though_a_confirmation_is_lost);
+	RUN_TEST(test_a_clock_of_a_bae_is_written_though_it_is_looked_at_late);
 	RUN_TEST(test_functions_of_a_bae0911_are_registers);
 	RUN_TEST(test_a_bae0911_works_an_expander_a_card_and_texts);
 	RUN_TEST(test_lights_fade_to_what_is_written);
