@@ -7,8 +7,9 @@
  * which are sixteenths of a degree in 12 bits, and a 0 in bit 3 of its configuration, byte 3.
  *
  * Of the MAX31825 the drivers of its maker are known (Zephyr's max31825.c), and no data sheet: so
- * nothing is written to it, and it is not asked for its supply. What it holds after a restart they
- * do not say: a temperature of 0 is good only near another reading.
+ * nothing is written to it. Like each thermometer it is sent Read Power Supply (B4h) before a
+ * conversion, but what it answers to that is not documented: `power` is refused. What it holds
+ * after a restart is not documented either: a temperature of 0 is good only near another reading.
  */
 #include <errno.h>
 

@@ -114,10 +114,11 @@ static int next_device(struct native *native, unsigned n, struct search *search,
 }
 
 /*
- * A bridge that has just got power has no id of its own. It gets one if the table of sensors names
- * bridges of its kind, and the next round finds it. In this round the ids on the wire have changed,
- * so it calls no device lost; where the round before was such a one too, the bridge does not wake,
- * and the round counts. Returns whether the id was such a bridge's.
+ * A bridge that has just got power has no id of its own. It is woken if the table of sensors names
+ * bridges of its kind: it gets its id, and the next round finds it. The ids on the wire changed
+ * during this round, so the round is void: it calls no device lost. If the round before found such
+ * a bridge too, waking had no effect: then this round is not void, or a bridge that cannot be woken
+ * would keep every lost device present. Returns whether the id was such a bridge's.
  */
 static bool wake(struct native *native, unsigned n, const uint8_t rom[8])
 {

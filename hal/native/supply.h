@@ -5,7 +5,11 @@
 
 #include "hal/native/state.h"
 
-/* Asks all at once, as the job's transaction. TXN_MORE: done; or the job's error. */
+/*
+ * Asks all thermometers of the job's channel at once, in a transaction that counts as the job's.
+ * TXN_MORE: they have been asked, and the job goes on with its next transaction. Else the error
+ * that the job has.
+ */
 int supply_ask_all(struct native *native, struct job *job);
 /*
  * Ask one thermometer for its supply that nobody asked yet: the broadcast was answered with a zero,

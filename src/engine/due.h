@@ -38,8 +38,8 @@ struct due_wheel {
 	uint32_t used[DUE_BUCKETS / 32]; /* one bit a bucket that is not empty */
 	struct due_wait {
 		uint64_t period;
-		uint32_t next, prev; /* DUE_NONE: end; row waits while in_bucket */
-		bool waits;
+		uint32_t next, prev; /* rows in the list of the bucket; DUE_NONE: there is none */
+		bool waits;          /* the row is in a bucket; if not, the others mean nothing */
 	} * wait;
 };
 

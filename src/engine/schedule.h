@@ -16,8 +16,8 @@ void engine_begin_call(struct engine *e, int64_t now_ns);
 /* Turn to the present period: what waited for it becomes due. False: it is the same as before. */
 bool engine_turn(struct engine *e);
 /*
- * When the next turn is: at the next boundary of periods for which a row waits, after so long at
- * the latest, or at the next boundary where that is later.
+ * When the next turn is: the beginning of the first period for which a row waits. It is at most
+ * at_most_ns (whole periods of it, but one at least) after the beginning of the present period.
  */
 int64_t engine_next_turn(const struct engine *e, int64_t at_most_ns);
 

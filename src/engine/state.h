@@ -303,8 +303,9 @@ struct engine {
 	/* intake.c */
 	unsigned greedy; /* givers whose looks are used up */
 	/*
-	 * no giver has promised a beat, is awaited or has changed, so none is looked at; cleared
-	 * where a giver changes, set by givers.c
+	 * engine_look_givers() has nothing to do: no giver has promised a beat, no text of one is
+	 * half written, and none that has gone is awaited. That function sets it; the functions
+	 * that change a giver clear it.
 	 */
 	bool givers_quiet;
 	struct log_rate refused, resets;

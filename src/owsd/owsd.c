@@ -322,10 +322,11 @@ int main(int argc, char **argv)
 
 #ifdef __GLIBC__
 	/*
-	 * Large blocks are mapped, each for itself: pages that nobody touches stay out of memory,
-	 * which calloc() would touch in a block that was freed, and what reading the file took goes
-	 * back. The heap has no room in stock for large blocks to come from. Unset, malloc raises
-	 * the limit by itself.
+	 * Each block of 16 KiB or more is a mapping of its own. A mapping is zero when it is new,
+	 * so calloc() does not clear it, and a page that nobody uses takes no memory. free() gives
+	 * it back to the system, so what reading the file took does not stay. A limit that is set
+	 * here is fixed; without it malloc raises it with each larger block that is freed. The heap
+	 * grows by what is needed and a page, not by the 128 KiB that malloc adds otherwise.
 	 */
 	mallopt(M_MMAP_THRESHOLD, 16 * 1024);
 	mallopt(M_TOP_PAD, 4096);

@@ -117,8 +117,8 @@ struct ows_record { /* 320 bytes */
 
 /*
  * Record 0 is owsd itself: type OWS_LARGE, value = _RECONNECTS, measured_ns = the heartbeat,
- * attrs.transactions = _TRANSACTIONS, attrs.per_base = the present period number. Signals of the
- * file are records 1 and up, in its order.
+ * attrs.transactions = _TRANSACTIONS, attrs.per_base = the period number at the heartbeat. Signals
+ * of the file are records 1 and up, in its order.
  */
 
 /* What does not change while a generation lives; info i belongs to record i. Texts are in the pool;
