@@ -12,9 +12,11 @@ The verdicts are in tests/unit/data/compared.tsv, a line for each property: "sam
 compared", the number of texts that were compared, and, where it is not "same", why. The reasons are
 written by hand; the rest is this program's:
 
-    compare.py [PART...]    says what differs from that file; of all parts, or of these
-    compare.py --write      writes the file, and keeps its reasons
-    compare.py --show PART  every text of the part that is not the same
+    compare.py                    says what differs from that file
+    compare.py --show             ... and every text that is not the same
+    compare.py PART...            both, of these parts
+    compare.py --write [PART...]  writes the file, or the lines of the families of these parts; the
+                                  reasons stay
 """
 
 import collections
@@ -250,11 +252,13 @@ class Verdicts:
             return "differs", self.texts[key]
         return ("same", self.texts[key]) if self.texts[key] else ("not compared", 0)
 
-    def show(self, keys=None):
+    def show(self, keys=None, parts=()):
         for key in sorted(self.bad.keys() | self.silent.keys() if keys is None else keys):
-            for part, name, a, b in self.bad.get(key, ()):
+            bad, silent = ([text for text in texts.get(key, ()) if not parts or text[0] in parts]
+                           for texts in (self.bad, self.silent))
+            for part, name, a, b in bad:
                 print(f"  {part} {name}: owserver {str(a)[:90]!s}, owsd {str(b)[:90]!s}")
-            for part, name, a, b in self.silent.get(key, ())[:1]:
+            for part, name, a, b in silent[:1]:
                 print(f"  {part} {name}: owserver {a}, owsd {b}: no text")
 
 
@@ -279,35 +283,59 @@ def recorded():
     return {(r[0], r[1]): (r[2], int(r[3]), r[4]) for r in rows}
 
 
+def families_of(parts=()):
+    return {device[:2] for part, device, _ in devices() if not parts or part in parts}
+
+
+def whole(parts):
+    """All parts of the families of these: a line of the file is of all parts of its family."""
+    return [part for part, device, _ in devices() if device[:2] in families_of(parts)]
+
+
 def rows_of(parts=()):
-    families = {device[:2] for part, device, _ in devices() if not parts or part in parts}
+    families = families_of(parts)
     return [r for r in structure() if r.family not in NO_DEVICE and (not parts or r.family in families)]
 
 
-def write(verdicts):
-    old = recorded() if COMPARED.exists() else {}
+def lines_of(verdicts, old, parts=()):
+    """{(family, property): (verdict, texts, reason)}: of the families of the parts what the walks
+    say, of the others what the file said."""
+    families, lines = families_of(parts), {}
+    for row in rows_of():
+        key = (row.family, row.property)
+        if row.family in families:
+            verdict, texts = verdicts.of(row)
+            lines[key] = (verdict, texts, "" if verdict == "same" else old.get(key, ("", 0, ""))[2])
+        elif key in old:
+            lines[key] = old[key]
+    return lines
+
+
+def write(lines):
     with open(COMPARED, "w", encoding="utf-8") as file:
         print(*COLUMNS, sep="\t", file=file)
-        for row in rows_of():
-            verdict, texts = verdicts.of(row)
-            reason = old.get((row.family, row.property), ("", 0, ""))[2] if verdict != "same" else ""
-            print(row.family, row.property, verdict, texts, reason, sep="\t", file=file)
+        for key, line in lines.items():
+            print(*key, *line, sep="\t", file=file)
 
 
 def main():
     parts = [a for a in sys.argv[1:] if not a.startswith("--")]
+    unknown = set(parts) - {part for part, _, _ in devices()}
+    if unknown:
+        sys.exit(f"not in {DEVICES.name}: {' '.join(sorted(unknown))}")
     began = time.monotonic()
-    verdicts = run(parts)
+    verdicts = run(whole(parts))
     counted = collections.Counter(verdicts.of(row)[0] for row in rows_of(parts))
-    if "--show" in sys.argv:
-        verdicts.show()
+    old = recorded() if COMPARED.exists() else {}
+    if parts or "--show" in sys.argv:
+        verdicts.show(parts=parts)
     if "--write" in sys.argv:
-        write(verdicts)
+        write(lines_of(verdicts, old, parts))
     else:
-        old = recorded()
         for row in rows_of(parts):
-            if not parts and old.get((row.family, row.property), ("",))[0] != verdicts.of(row)[0]:
-                print(row.family, row.property, old.get((row.family, row.property)), verdicts.of(row))
+            was = old.get((row.family, row.property))
+            if not was or was[:2] != verdicts.of(row):
+                print(row.family, row.property, "recorded", was, "now", verdicts.of(row))
                 verdicts.show([(row.family, row.property)])
     print(dict(counted), f"{time.monotonic() - began:.0f} s")
 

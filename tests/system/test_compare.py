@@ -13,8 +13,8 @@ def test_the_texts_of_all_properties_compare_as_recorded(scene):
     if not shutil.which("owserver"):
         owsdtest.skip("owserver is not installed")
     now, recorded = compare.run(), compare.recorded()
-    changed = [(row, now.of(row)[0]) for row in compare.rows_of()
-               if now.of(row)[0] != recorded[row.family, row.property][0]]
+    changed = [(row, now.of(row)) for row in compare.rows_of()
+               if now.of(row) != recorded[row.family, row.property][:2]]
     now.show([(row.family, row.property) for row, _ in changed])
     assert not changed, "\n".join(f"{r.family}/{r.property}: now {v}" for r, v in changed)
 
@@ -47,6 +47,17 @@ def test_what_is_not_the_same_is_seen(scene):
     one = compare.Verdicts()
     one.add("DS18B20", "28.0", {"temperature": (None, "-22")}, {"temperature": (None, "-5")})
     assert one.of(row) == ("not compared", 0)
+
+
+def test_what_is_written_of_one_part_leaves_the_lines_of_other_families(scene):
+    old = compare.recorded()
+    lines = compare.lines_of(compare.Verdicts(), old, ["DS2438"])
+    assert list(lines) == list(old)
+    assert {key: line for key, line in lines.items() if key[0] != "26"} == \
+        {key: line for key, line in old.items() if key[0] != "26"}
+    assert {line[0] for key, line in lines.items() if key[0] == "26"} == {"not compared"}
+    assert set(compare.whole(["DS2438"])) == \
+        {part for part, device, _ in compare.devices() if device.startswith("26")}
 
 
 def test_only_what_runs_may_differ_and_not_by_much(scene):
