@@ -99,6 +99,14 @@ bool ending_step(struct native *native, int64_t now, int64_t *next)
 
 		if (!ending->asks)
 			continue;
+		/* A question would end the strong pull-up of another channel of the chip. */
+		if (native_held(native, n, NULL, now)) {
+			const struct link *link = native->channel[n].link;
+			int64_t held = native->hold_ns[link->chip % NATIVE_CHANNELS];
+
+			*next = held < *next ? held : *next;
+			continue;
+		}
 		ending->asks = resets(native->channel[n].link) == ending->resets &&
 		               has_early(native, n, now);
 		if (!ending->asks)

@@ -197,6 +197,37 @@ static void test_noise_makes_no_old_result_look_new(void)
 	TEST_ASSERT_GREATER_THAN_UINT(1000, fleet.good);
 }
 
+/* --- Two channels of one chip ----------------------------------------------------------------- */
+
+static unsigned cut;
+
+/* Any use of the chip ends the strong pull-up of each of its channels. */
+static void look_at_pull_up(int64_t now)
+{
+	for (unsigned n = 0; n < 2; n++)
+		cut += wire_net.wire[n].strong && now < wire_net.strong_begin + 750 * HOST_MS;
+}
+
+static void test_no_question_cuts_the_strong_pull_up_of_another_channel(void)
+{
+	cut = 0;
+	wire_init(&host, 2, 1);
+	wire_net.used = look_at_pull_up;
+	fleet_add_to(0, "DS18B20", 1);
+	fleet_add_to(1, "DS18B20", 1);
+	fleet.slave[1]->parasite = true;
+	fleet.early_ns = 170 * HOST_MS;
+	fleet.pause_ns[0] = 130 * HOST_MS;
+	fleet.pause_ns[1] = 470 * HOST_MS;
+	start();
+	fleet_run(host.now + 60 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(0, cut);
+	TEST_ASSERT_GREATER_THAN_UINT(20, wire_net.strong_count);
+	TEST_ASSERT_GREATER_THAN_UINT(20, fleet.each[0]);
+	TEST_ASSERT_GREATER_THAN_UINT(20, fleet.each[1]);
+	TEST_ASSERT_EQUAL_UINT(0, fleet.wrong + fleet.failed);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -207,5 +238,6 @@ int main(void)
 	RUN_TEST(test_no_trouble_at_the_question_makes_an_old_result_look_new);
 	RUN_TEST(test_no_restart_makes_an_old_result_look_new);
 	RUN_TEST(test_noise_makes_no_old_result_look_new);
+	RUN_TEST(test_no_question_cuts_the_strong_pull_up_of_another_channel);
 	return UNITY_END();
 }
