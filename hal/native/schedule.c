@@ -73,7 +73,7 @@ struct schedule_plan schedule_look(const struct native *native, unsigned channel
 {
 	/* A driver sees to those that are fed by the wire. */
 	bool feeds = native->channel[channel].link->driven;
-	struct schedule_plan plan = {0};
+	struct schedule_plan plan = {.driven = feeds};
 
 	look_at_jobs(&plan, native, channel, feeds);
 	for (unsigned i = 0; plan.due && i < native->table.count; i++) {
@@ -135,7 +135,8 @@ bool schedule_in_turn(const struct native *native, const struct schedule_plan *p
 	int64_t left = left_by_others(schedule);
 	int64_t wait = plan->reading * read;
 
-	if (!plan->reading || plan->parasitic || plan->silent || left < LEAST_NS)
+	/* A driver waits for the end of a conversion, and the thread for the driver. */
+	if (!plan->reading || plan->driven || plan->parasitic || plan->silent || left < LEAST_NS)
 		return false;
 	int64_t at_once = longer(plan->longest_ns + (plan->due + plan->reading) * read,
 	                         plan->asked * read * FINE / (left / (WINDOW_NS / FINE)));

@@ -27,6 +27,7 @@ struct schedule_plan {
 	bool preparing;   /* others will be due soon */
 	bool locked;      /* a chip on the channel is at work */
 	bool silent;      /* one of those cannot show that it converts */
+	bool driven;      /* a driver has the wire, and waits for the end of each conversion */
 	bool parasitic_due, parasitic;
 	int64_t due_ns, all_ns; /* how long those that are due convert, and all */
 	int64_t longest_ns;     /* ... and those that are due, convert, or are not read yet */

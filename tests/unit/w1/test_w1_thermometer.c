@@ -164,6 +164,18 @@ static void test_limits_are_written_and_saved(void)
 	TEST_ASSERT_EQUAL_INT(-EINVAL, fs_writes(WARM_OW "/temphigh", "300"));
 }
 
+static uint64_t conversions(void)
+{
+	size_t n;
+	const struct bus_counter *counters = bus_counters(fs.bus, &n);
+
+	for (size_t i = 0; i < n; i++)
+		if (strcmp(counters[i].name, "conversions") == 0)
+			return bus_counted(&counters[i]);
+	TEST_FAIL_MESSAGE("no counter of conversions");
+	return 0;
+}
+
 static void test_all_that_are_due_convert_at_once(void)
 {
 	uint32_t ids[3];
@@ -180,11 +192,36 @@ static void test_all_that_are_due_convert_at_once(void)
 		TEST_ASSERT_EQUAL_INT(0, fs_result(ids[i]));
 	TEST_ASSERT_EQUAL_STRING("trigger\n", fs_now_in("w1_bus_master1", "therm_bulk_read"));
 	TEST_ASSERT_EQUAL_STRING("           2", (char *)fs.data[ids[2]]);
-	size_t n;
-	const struct bus_counter *counters = bus_counters(fs.bus, &n);
-	for (size_t i = 0; i < n; i++)
-		if (strcmp(counters[i].name, "conversions") == 0)
-			TEST_ASSERT_EQUAL_UINT64(1, bus_counted(&counters[i]));
+	TEST_ASSERT_EQUAL_UINT64(1, conversions());
+}
+
+/* One that converts by itself would keep the thread waiting for as long as that takes. */
+static void test_those_asked_for_without_pause_convert_at_once(void)
+{
+	static const char *const paths[] = {WARM_OW "/temperature", "/28.A20000000000/temperature",
+	                                    "/28.A30000000000/temperature",
+	                                    "/28.A40000000000/temperature"};
+	unsigned of[FS_REQUESTS], taken = 0;
+
+	fs_thermometer(WARM, 0x151);
+	fs_thermometer("28-0000000000a2", 0x10);
+	fs_thermometer("28-0000000000a3", 0x20);
+	fs_thermometer("28-0000000000a4", 0x30);
+	fs_text("w1_bus_master1", "therm_bulk_read", "0\n");
+	fs_start();
+	for (unsigned i = 0; i < 4; i++)
+		of[fs_ask(BUS_READ, paths[i], NULL, 0)] = i;
+	while (taken < 40) {
+		TEST_ASSERT_TRUE(
+			host_run_answers(&fs.host, fs.bus, taken + 1, fs.host.now + 5 * HOST_S));
+		for (; taken < fs.host.answers; taken++) {
+			unsigned i = of[fs.host.answer[taken].id];
+
+			TEST_ASSERT_EQUAL_INT(0, fs.host.answer[taken].err);
+			of[fs_ask(BUS_READ, paths[i], NULL, 0)] = i;
+		}
+	}
+	TEST_ASSERT_LESS_OR_EQUAL_UINT64(12, conversions());
 }
 
 static void test_a_refusal_to_convert_all_at_once_is_remembered(void)
@@ -262,6 +299,7 @@ int main(void)
 	RUN_TEST(test_a_resolution_is_written_when_it_differs);
 	RUN_TEST(test_limits_are_written_and_saved);
 	RUN_TEST(test_all_that_are_due_convert_at_once);
+	RUN_TEST(test_those_asked_for_without_pause_convert_at_once);
 	RUN_TEST(test_a_refusal_to_convert_all_at_once_is_remembered);
 	RUN_TEST(test_all_convert_at_once_only_where_nothing_else_can_come);
 	RUN_TEST(test_one_that_the_wire_feeds_converts_with_the_others);
