@@ -100,6 +100,14 @@ static int identify(struct txn *txn)
 	return err ? err : TXN_MORE;
 }
 
+/* Of the last conversion, as far as the chip can show that; TXN_MORE: not yet. */
+static int converted(struct txn *txn, uint8_t bytes[9])
+{
+	int err = now(txn, bytes);
+
+	return err ? err : thermometer_ended(txn, bytes, txn_now(txn));
+}
+
 #define NEAR_RAW (5 * 16)
 #define NEAR_NS (300 * 1000 * TXN_MS)
 
@@ -107,7 +115,7 @@ static int read_max31825(struct txn *txn)
 {
 	struct thermometer *chip = txn->device->own;
 	uint8_t bytes[9];
-	int err = now(txn, bytes), raw = (int16_t)(bytes[0] | bytes[1] << 8);
+	int err = converted(txn, bytes), raw = (int16_t)(bytes[0] | bytes[1] << 8);
 	int64_t at_ns = txn_now(txn);
 
 	if (err)
@@ -115,8 +123,8 @@ static int read_max31825(struct txn *txn)
 	if (raw == 0 && (!chip->raw_ns || at_ns - chip->raw_ns >= NEAR_NS || chip->raw > NEAR_RAW ||
 	                 chip->raw < -NEAR_RAW))
 		return -ERANGE;
+	thermometer_took(txn, bytes, at_ns);
 	chip->raw = (int16_t)raw;
-	chip->raw_ns = at_ns;
 	txn->number[0] = raw / 16.0;
 	return 0;
 }
@@ -133,21 +141,27 @@ static int read_temperature(struct txn *txn)
 		return read_max31825(txn);
 	if (kind_of(txn->device) != MAX31850)
 		return thermometer_read_temperature(txn);
-	err = now(txn, bytes);
+	err = converted(txn, bytes);
+	if (err)
+		return err;
+	thermometer_took(txn, bytes, txn_now(txn));
 	txn->number[0] = ((int16_t)(bytes[2] | bytes[3] << 8) >> 4) / 16.0;
-	return err;
+	return 0;
 }
 
 /* Open or short it has no temperature, whatever the bits above say. */
 static int read_thermocouple(struct txn *txn)
 {
 	uint8_t bytes[9];
-	int err = now(txn, bytes);
+	int err = converted(txn, bytes);
 
 	if (err)
 		return err;
+	if (bytes[0] & FAULT_ANY)
+		return -EIO;
+	thermometer_took(txn, bytes, txn_now(txn));
 	txn->number[0] = ((int16_t)(bytes[0] | bytes[1] << 8) >> 2) / 4.0;
-	return bytes[0] & FAULT_ANY ? -EIO : 0;
+	return 0;
 }
 
 static int write_limit(struct txn *txn)
@@ -213,10 +227,13 @@ static int read_identity(struct txn *txn)
 static int read_fault(struct txn *txn)
 {
 	uint8_t bytes[9];
-	int err = now(txn, bytes);
+	int err = converted(txn, bytes);
 
+	if (err)
+		return err;
+	thermometer_took(txn, bytes, txn_now(txn));
 	txn->number[0] = (bytes[txn->property->arg >> 8] & txn->property->arg & 0xff) != 0;
-	return err;
+	return 0;
 }
 
 static int read_flags(struct txn *txn)

@@ -67,6 +67,14 @@ int thermometer_prepare(struct txn *txn, unsigned resolution);
 /* It converts; -EBADMSG: it has not taken the command. */
 int thermometer_start(struct txn *txn);
 
+/*
+ * Behind a reading of the scratchpad. 0: its conversion is over. TXN_MORE: it seemed to be, and
+ * nothing proves that; txn waits for the longest time, and is to read the scratchpad again.
+ */
+int thermometer_ended(struct txn *txn, const uint8_t scratchpad[9], int64_t now);
+/* What it holds was read, and is good: notes that, and from when it is (measured_ns, unproven). */
+void thermometer_took(struct txn *txn, const uint8_t scratchpad[9], int64_t now);
+
 /* Asks for the power supply and notes it: 1 external, 0 parasitic, or an error. */
 int thermometer_ask_power(struct txn *txn);
 

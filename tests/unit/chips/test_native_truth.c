@@ -35,9 +35,9 @@ static uint32_t both(struct sim_slave *fed, struct sim_slave *supplied, const ch
 }
 
 /* One Convert T with the strong pull-up serves both, and neither can show that it heard it. */
-static void test_no_trouble_makes_a_neighbour_of_one_fed_by_the_wire_say_what_is_not_true(void)
+static void look_at_neighbour(const char *chip)
 {
-	struct visit visit = {.chip = "both", .property = "temperature"};
+	struct visit visit = {.chip = chip, .property = "temperature"};
 	struct trouble what = {.kind = TROUBLE_NONE, .mask = 1};
 	uint32_t slots = 0;
 
@@ -45,8 +45,7 @@ static void test_no_trouble_makes_a_neighbour_of_one_fed_by_the_wire_say_what_is
 		native_begin();
 		wire_init(&host, 1, 1);
 		wire_net.trouble = &trouble;
-		struct sim_slave *fed = wire_add(0, "DS18B20", 1),
-				 *supplied = wire_add(0, "DS18B20", 2);
+		struct sim_slave *fed = wire_add(0, "DS18B20", 1), *supplied = wire_add(0, chip, 2);
 
 		fed->parasite = true;
 		trouble_none(&trouble);
@@ -66,6 +65,13 @@ static void test_no_trouble_makes_a_neighbour_of_one_fed_by_the_wire_say_what_is
 		what.at += what.kind == TROUBLE_DEAF;
 		what.kind = what.kind == TROUBLE_TURN ? TROUBLE_DEAF : TROUBLE_TURN;
 	} while (what.at < slots);
+}
+
+static void test_no_trouble_makes_a_neighbour_of_one_fed_by_the_wire_say_what_is_not_true(void)
+{
+	look_at_neighbour("DS18B20");
+	look_at_neighbour("MAX31825");
+	look_at_neighbour("MAX31850");
 }
 
 /* Families may share a table. */

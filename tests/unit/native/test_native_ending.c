@@ -3,6 +3,7 @@
  * Conversions that end before their longest time are read earlier, and no trouble at the question
  * makes an old result look new. The chips here take four fifths of the longest time.
  */
+#include <errno.h>
 #include <stdio.h>
 
 #include "unity.h"
@@ -72,6 +73,16 @@ static void test_a_value_that_stays_is_read_when_the_longest_time_is_over(void)
 	TEST_ASSERT_TRUE(ms < 785);
 }
 
+/* Its conversion is over after 160 ms, but 750 ms is what all of its family code are given. */
+static void test_a_max31825_whose_value_stays_is_read_when_the_longest_time_is_over(void)
+{
+	fleet_slope = 1e-6;
+	wire_init(&host, 1, 1);
+	fleet_add("MAX31825", 1);
+	fleet.early_ns = 600 * HOST_MS;
+	TEST_ASSERT_TRUE(new_each() > 750);
+}
+
 /* All asked for in one go; the first scans prove what the chips show. */
 static int64_t scan(unsigned count)
 {
@@ -116,6 +127,27 @@ static void test_a_scan_of_ten_is_over_when_all_were_ready(void)
 static void test_a_scan_of_ten_that_did_not_change_takes_the_longest_time(void)
 {
 	TEST_ASSERT_GREATER_THAN_INT64(750 * HOST_MS, quickest_scan(10, 0));
+}
+
+/* The first reads what proves nothing, and its deadline ends while it waits. */
+static void test_who_reads_after_another_gave_up_needs_the_proof_too(void)
+{
+	set_out(1, "DS18B20");
+	wire_set(fleet.slave[0], "temperature", 20);
+	start();
+	for (unsigned i = 0; i < 4; i++) {
+		scan(1);
+		host_run(&host, bus, host.now + 137 * HOST_MS);
+	}
+	int64_t begun = host.now;
+	const char *what = of(fleet.slave[0], "temperature");
+	uint32_t first = ask(BUS_READ, BUS_INPUT, true, what, NULL);
+	uint32_t second = ask(BUS_READ, BUS_INPUT, true, what, NULL);
+
+	req[first].deadline_ns = begun + 690 * HOST_MS;
+	TEST_ASSERT_EQUAL_INT(-EINPROGRESS, answer_to(first)->err);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(second)->err);
+	TEST_ASSERT_GREATER_THAN_INT64(750 * HOST_MS, host.now - begun);
 }
 
 /* The second is asked for so rarely that what it held before a conversion was not read. */
@@ -235,6 +267,8 @@ int main(void)
 	RUN_TEST(test_a_value_that_stays_is_read_when_the_longest_time_is_over);
 	RUN_TEST(test_a_scan_of_ten_is_over_when_all_were_ready);
 	RUN_TEST(test_a_scan_of_ten_that_did_not_change_takes_the_longest_time);
+	RUN_TEST(test_who_reads_after_another_gave_up_needs_the_proof_too);
+	RUN_TEST(test_a_max31825_whose_value_stays_is_read_when_the_longest_time_is_over);
 	RUN_TEST(test_no_trouble_at_the_question_makes_an_old_result_look_new);
 	RUN_TEST(test_no_restart_makes_an_old_result_look_new);
 	RUN_TEST(test_noise_makes_no_old_result_look_new);
