@@ -329,7 +329,7 @@ static struct job *next_due(struct native *native, unsigned n)
 		struct job *job = &native->jobs[i];
 
 		if (!job->req || job->state != JOB_DUE || job->txn.channel != n ||
-		    is_measuring(native, job->txn.device))
+		    job->txn.device->locked || is_measuring(native, job->txn.device))
 			continue;
 		if (!first || job->req->prio < first->req->prio ||
 		    (job->req->prio == first->req->prio &&

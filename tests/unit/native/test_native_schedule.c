@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/native/state.h"
 #include "unity.h"
 
 #include "tests/unit/aid/fleet.h"
@@ -206,6 +207,26 @@ static void test_alarms_and_guests_wait_for_one_reading(void)
 	TEST_ASSERT_EQUAL_UINT(0, fleet.wrong);
 }
 
+/* After a minute it is asked by itself: it waits until other work with it is done. */
+static void test_no_chip_is_asked_to_convert_while_it_is_at_work(void)
+{
+	set_out(1, "DS18B20");
+	start();
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(fleet.slave[0], "temperature"), NULL));
+	host_run(&host, bus, host.now + 61 * HOST_S);
+	struct device *device = device_find(&((struct native *)bus)->table, fleet.slave[0]->rom);
+
+	starts = wire_net.convert_count = 0;
+	uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(fleet.slave[0], "temperature"), NULL);
+	host_run(&host, bus, host.now + HOST_MS);
+	device->locked = true;
+	host_run(&host, bus, host.now + 50 * HOST_MS);
+	TEST_ASSERT_EQUAL_UINT(0, starts + wire_net.convert_count);
+	device->locked = false;
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_UINT(1, starts);
+}
+
 /* --- Trouble ---------------------------------------------------------------------------------- */
 
 static void three(void)
@@ -327,6 +348,7 @@ int main(void)
 	RUN_TEST(test_those_fed_by_the_wire_do_not_convert_in_turn);
 	RUN_TEST(test_a_clone_that_shows_nothing_leaves_all_to_convert_at_once);
 	RUN_TEST(test_alarms_and_guests_wait_for_one_reading);
+	RUN_TEST(test_no_chip_is_asked_to_convert_while_it_is_at_work);
 	RUN_TEST(test_no_trouble_in_any_slot_makes_an_old_result_look_new);
 	RUN_TEST(test_no_restart_at_any_moment_makes_an_old_result_look_new);
 	RUN_TEST(test_one_that_loses_its_supply_gives_no_old_result);
