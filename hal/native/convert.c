@@ -389,10 +389,10 @@ static void ask_silent(struct native *native, struct job *job)
 	int bit = txn_end(&job->txn, thermometer_ask_power(&job->txn));
 
 	job_saw(native, job, bit, native_now(native));
-	if (bit < 0)
+	if (bit < 0) {
 		thermometer_of(job->txn.device)->unheard--;
-	if (bit < 0 && job->txn.link_error)
 		job_failed(native, job, bit);
+	}
 }
 
 /*

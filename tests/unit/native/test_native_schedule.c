@@ -298,6 +298,32 @@ static void test_no_restart_at_any_moment_makes_an_old_result_look_new(void)
 	TEST_ASSERT_GREATER_THAN_UINT(3000, good);
 }
 
+static void turn_supply(const uint8_t *bytes, size_t n)
+{
+	bool asks = n == 10 && memcmp(bytes + 1, fleet.slave[4]->rom, 8) == 0 && bytes[9] == 0xb4;
+
+	trouble.kind = asks ? TROUBLE_TURN : TROUBLE_NONE;
+	trouble.mask = 1;
+	trouble.at = trouble.slots + 3;
+}
+
+/* It is not tried until its deadline of 20 s, while the results of the others wait. */
+static void test_one_that_shows_nothing_and_tells_no_supply_does_not_stop_the_others(void)
+{
+	set_out(4, "DS18B20");
+	fleet_add("DS18B20-F", 1);
+	fleet.pause_ns[4] = 5 * HOST_S;
+	wire_net.trouble = &trouble;
+	trouble_none(&trouble);
+	wire_net.sent = turn_supply;
+	start();
+	fleet_run(host.now + 5 * HOST_S);
+	fleet_forget();
+	fleet_run(host.now + 50 * HOST_S);
+	for (unsigned i = 0; i < 4; i++)
+		TEST_ASSERT_GREATER_THAN_UINT(20, fleet.each[i]);
+}
+
 /* From some moment on one of them is fed by the wire alone, and cannot convert as before. */
 static void test_one_that_loses_its_supply_gives_no_old_result(void)
 {
@@ -352,6 +378,7 @@ int main(void)
 	RUN_TEST(test_no_trouble_in_any_slot_makes_an_old_result_look_new);
 	RUN_TEST(test_no_restart_at_any_moment_makes_an_old_result_look_new);
 	RUN_TEST(test_one_that_loses_its_supply_gives_no_old_result);
+	RUN_TEST(test_one_that_shows_nothing_and_tells_no_supply_does_not_stop_the_others);
 	RUN_TEST(test_noise_makes_no_old_result_look_new);
 	return UNITY_END();
 }
