@@ -18,7 +18,7 @@ bool family_has(const struct device *device, const struct property *property)
 	uint32_t kinds = property->kinds;
 
 	/* Those of every device have no kind. */
-	if (!kinds && property >= family->properties &&
+	if (!kinds && family->count && property >= family->properties &&
 	    property < family->properties + family->count)
 		kinds = family->plain;
 	return !kinds || (kinds & KIND(kind ? kind : 1));

@@ -65,19 +65,31 @@ static bool device_of(const char *line, struct scan_device *device)
 	return true;
 }
 
+/* Room for one more. It is doubled where the count is a power of two: 40,000 move a few times. */
+static bool grow(struct scan *scan)
+{
+	size_t room = scan->count ? 2 * (size_t)scan->count : 1;
+	struct scan_device *more;
+
+	if (scan->count & (scan->count - 1))
+		return true;
+	more = realloc(scan->device, room * sizeof(*more));
+	if (more)
+		scan->device = more;
+	return more != NULL;
+}
+
 /* The devices of a listing. */
 static int take_list(struct scan *scan, char *text)
 {
-	struct scan_device *more, device;
+	struct scan_device device;
 	char *rest;
 
 	for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
 		if (!device_of(line, &device))
 			continue;
-		more = realloc(scan->device, (scan->count + 1) * sizeof(*more));
-		if (!more)
+		if (!grow(scan))
 			return ctl_fail("no memory");
-		scan->device = more;
 		scan->device[scan->count++] = device;
 	}
 	return CTL_DONE;
