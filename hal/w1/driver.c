@@ -62,7 +62,7 @@ static bool is_offered_raw(struct w1_slave *slave)
 	if (!w1_exists(slave->tree, name, "") || (w1_slave_has(slave, "rw") && fits_rw(slave)))
 		return true;
 	if (!slave->told_driver) {
-		snprintf(text, sizeof(text), "%s: no driver of the kernel has it", name);
+		snprintf(text, sizeof(text), "%s: no driver that owsd uses has it", name);
 		w1_note(slave->tree, -ENOENT, text);
 	}
 	slave->told_driver = true;

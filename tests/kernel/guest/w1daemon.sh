@@ -109,7 +109,7 @@ over "part removed"
 
 within 60 modprobe -r w1_therm
 told "module unloaded"
-does "module unloaded: which is in the log" within $told_within said "no driver of the kernel has it"
+does "module unloaded: which is in the log" within $told_within said "no driver that owsd uses has it"
 does "module unloaded: the board stays good" owsctl get pins relays
 next_value
 modprobe w1_therm

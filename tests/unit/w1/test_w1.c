@@ -413,7 +413,7 @@ static void test_a_thermometer_whose_driver_was_unloaded_is_told(void)
 	fs_text(WARM, "rw", "");
 	fs_start();
 	fs_fails(-ENOENT, WARM_OW "/temperature");
-	TEST_ASSERT_TRUE(fs_told(BUS_NOTE, WARM ": no driver of the kernel has it"));
+	TEST_ASSERT_TRUE(fs_told(BUS_NOTE, WARM ": no driver that owsd uses has it"));
 }
 
 static void test_a_directory_has_what_there_are_attributes_for(void)
