@@ -10,7 +10,7 @@ RIG_OURS    := $(B)/kernel/simchip $(B)/kernel/owdump $(B)/kernel/busdump $(B)/k
 ENDURANCE   := $(B)/kernel/endurance
 RIG_PEERS    = $(foreach p,owserver i2cdetect i2cget i2cset i2ctransfer,\
                  $(shell PATH="$$PATH:/usr/sbin" command -v $(p)))
-RIG_GUEST   := $(filter-out %/init,$(wildcard tests/kernel/guest/*))
+RIG_GUEST   := $(filter-out %/init,$(wildcard tests/kernel/guest/*)) docs/examples/sensors.table
 
 .PHONY: test-kernel bench-kernel endurance-kernel kernel-programs test-gpio test-gpio-pi gpio-libraries gpio-programs
 
@@ -40,7 +40,7 @@ rig = tests/kernel/boot --time $(KERNEL_TIME) $(if $(OR_SKIP),--or-skip) $(RIG_O
           $(RIG_GUEST:%=--file %) $(1)
 
 # With OR_SKIP=1 a package that cannot be had does not end it: boot then counts the suites as skipped
-test-kernel: SUITES ?= detect kernel owserver faults daemon ways netlink w1 w1daemon w1por
+test-kernel: SUITES ?= detect kernel owserver faults daemon ways netlink w1 w1daemon w1por drivers
 test-kernel:
 	@sh board/install-deps build kernel $(if $(OR_SKIP),|| true)
 	@$(MAKE) --no-print-directory kernel-programs

@@ -1,27 +1,7 @@
 # SPDX-License-Identifier: MIT
 # The kernel's own drivers bind to the simulated chips and read what house.sim says.
 . /rig/lib.sh
-
-W1=/sys/bus/w1/devices
-
-# FAMILY NUMBER: the kernel's name of house.sim's device; it prints the six id bytes as one number
-name() {
-	echo "$(echo $1 | tr A-F a-f)-$(echo $1 | tr A-F a-f)00${2}c2b1a0"
-}
-
-text() {
-	cat "$W1/$1" 2>/dev/null
-}
-
-# FILE: its bytes in hex, without blanks
-hex() {
-	od -An -v -t x1 "$W1/$1" 2>/dev/null | tr -d ' \n'
-}
-
-# FILE OCTAL: one byte into it
-put() {
-	printf "\\$2" >"$W1/$1"
-}
+. /rig/w1lib.sh
 
 driver_of() {
 	basename "$(readlink "$1/driver")"
@@ -31,10 +11,6 @@ driver_of() {
 devices_of() {
 	awk -v chip=$1 '$1 == "chip" { on = $3 == chip } on && /^DS[0-9A-Z]+ +[0-9A-F][0-9A-F]\./' \
 		/rig/house.sim | wc -l
-}
-
-all_found() {
-	[ "$(ls $W1 | grep -c '^[0-9a-f]*-')" = "$1" ]
 }
 
 plug house.sim

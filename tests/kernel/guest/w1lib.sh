@@ -4,6 +4,26 @@
 W1=/sys/bus/w1/devices
 i2c=/sys/bus/i2c/devices/i2c-0
 
+# FAMILY NUMBER: the kernel's name of a device of house.sim or drivers.sim; it
+# prints the six id bytes as one number
+name() {
+	echo "$(echo $1 | tr A-F a-f)-$(echo $1 | tr A-F a-f)00${2}c2b1a0"
+}
+
+text() {
+	cat "$W1/$1" 2>/dev/null
+}
+
+# FILE: its bytes in hex, without blanks
+hex() {
+	od -An -v -t x1 "$W1/$1" 2>/dev/null | tr -d ' \n'
+}
+
+# FILE OCTAL: one byte into it
+put() {
+	printf "\\$2" >"$W1/$1"
+}
+
 # [OPTION=VALUE...] of the module wire
 load_drivers() {
 	modprobe wire "$@"
