@@ -8,16 +8,15 @@
 #include <poll.h>
 #include <pthread.h>
 #include <sched.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/prctl.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "hal/bus/bell.h"
 #include "hal/bus/ring.h"
+#include "hal/bus/thread.h"
 #include "hal/bus/time.h"
 #include "hal/bus/worker.h"
 
@@ -190,7 +189,6 @@ static void *worker_main(void *arg)
 {
 	struct worker *worker = arg;
 
-	prctl(PR_SET_NAME, worker->name);
 	while (!is_stopping(worker)) {
 		uint32_t left;
 		int64_t next;
@@ -278,27 +276,12 @@ int worker_create(const char *target, const char *name, worker_bell *bell, void 
 
 int worker_start(struct worker *worker)
 {
-	sigset_t all, before;
-	pthread_attr_t attr;
 	int err;
 
 	assert(!worker->started);
-	err = pthread_attr_init(&attr);
-	if (err)
-		return -err;
-	err = pthread_attr_setstacksize(&attr, STACK_SIZE);
-	/* SIGBUS stays unblocked: for a blocked fault of a thread the kernel kills the process */
-	sigfillset(&all);
-	sigdelset(&all, SIGBUS);
-	if (!err)
-		err = pthread_sigmask(SIG_SETMASK, &all, &before);
-	if (!err) {
-		err = pthread_create(&worker->thread, &attr, worker_main, worker);
-		pthread_sigmask(SIG_SETMASK, &before, NULL);
-	}
-	pthread_attr_destroy(&attr);
+	err = thread_start(&worker->thread, worker->name, STACK_SIZE, worker_main, worker);
 	worker->started = !err;
-	return -err;
+	return err;
 }
 
 bool worker_started(const struct worker *worker)

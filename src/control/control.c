@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The thread of the control room, its start and end, a reload, and the engine's side. */
 #include <errno.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +8,7 @@
 #include <unistd.h>
 
 #include "hal/bus/bell.h"
+#include "hal/bus/thread.h"
 #include "hal/bus/time.h"
 #include "src/config/config.h"
 #include "src/control/control.h"
@@ -141,25 +141,13 @@ static void *run(void *arg)
 
 int control_start(struct control *c, const struct giver_layout *layout)
 {
-	sigset_t all, before;
-	pthread_attr_t attr;
-	int err = pthread_attr_init(&attr);
+	int err;
 
-	if (err)
-		return -err;
 	c->layout = layout;
 	c->now_ns = ows_now();
-	pthread_attr_setstacksize(&attr, STACK_SIZE);
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &before);
-	err = pthread_create(&c->thread, &attr, run, c);
-	pthread_sigmask(SIG_SETMASK, &before, NULL);
-	pthread_attr_destroy(&attr);
-	if (err)
-		return -err;
-	c->running = true;
-	pthread_setname_np(c->thread, "owsd-control");
-	return 0;
+	err = thread_start(&c->thread, "owsd-control", STACK_SIZE, run, c);
+	c->running = !err;
+	return err;
 }
 
 void control_stop(struct control *c)

@@ -2,11 +2,11 @@
 /* The lamps of owsd: the alarm output and the heartbeat, each a GPIO line, and their thread. */
 #include <errno.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/bus/thread.h"
 #include "hal/bus/time.h"
 #include "hal/gpio/line.h"
 #include "src/host/indicator.h"
@@ -226,25 +226,13 @@ static void *indicator_main(void *ctx)
 
 int indicator_start(struct indicator *indicator)
 {
-	sigset_t all, before;
-	pthread_attr_t attr;
 	int err;
 
 	if (!indicator)
 		return 0;
-	pthread_attr_init(&attr);
-	pthread_attr_setstacksize(&attr, STACK);
-	/* a synchronous SIGBUS belongs to the guard and cannot be blocked */
-	sigfillset(&all);
-	sigdelset(&all, SIGBUS);
-	pthread_sigmask(SIG_SETMASK, &all, &before);
-	err = pthread_create(&indicator->thread, &attr, indicator_main, indicator);
-	pthread_sigmask(SIG_SETMASK, &before, NULL);
-	pthread_attr_destroy(&attr);
+	err = thread_start(&indicator->thread, "owsd-lamps", STACK, indicator_main, indicator);
 	indicator->running = !err;
-	if (!err)
-		pthread_setname_np(indicator->thread, "owsd-lamps");
-	return -err;
+	return err;
 }
 
 bool indicator_stop(struct indicator *indicator, int64_t timeout_ns)

@@ -2,11 +2,11 @@
 /* The thread that stores the last commands, and what it shares with the engine. */
 #include <errno.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "hal/bus/thread.h"
 #include "hal/bus/time.h"
 #include "src/host/last.h"
 #include "src/host/last_file.h"
@@ -251,25 +251,13 @@ const struct engine_last *last_seam(const struct last *l)
 
 int last_start(struct last *l)
 {
-	sigset_t all, before;
-	pthread_attr_t attr;
 	int err;
 
 	if (!l || l->running || l->error == -EIO)
 		return 0;
-	pthread_attr_init(&attr);
-	pthread_attr_setstacksize(&attr, STACK);
-	/* a synchronous SIGBUS belongs to the guard and cannot be blocked */
-	sigfillset(&all);
-	sigdelset(&all, SIGBUS);
-	pthread_sigmask(SIG_SETMASK, &all, &before);
-	err = pthread_create(&l->thread, &attr, store_main, l);
-	pthread_sigmask(SIG_SETMASK, &before, NULL);
-	pthread_attr_destroy(&attr);
+	err = thread_start(&l->thread, "owsd-last", STACK, store_main, l);
 	l->running = !err;
-	if (!err)
-		pthread_setname_np(l->thread, "owsd-last");
-	return -err;
+	return err;
 }
 
 bool last_stop(struct last *l, int64_t timeout_ns)

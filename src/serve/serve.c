@@ -2,7 +2,6 @@
 /* The server of the owserver protocol: its thread, its start and end, and what a reload changes. */
 #include <errno.h>
 #include <sched.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,6 +9,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "hal/bus/thread.h"
 #include "hal/bus/time.h"
 #include "src/config/own.h"
 #include "src/libows/ows.h"
@@ -242,8 +242,6 @@ static void unlock(void *p, size_t size)
 
 int serve_start(struct serve *s, const struct image *image)
 {
-	sigset_t all, before;
-	pthread_attr_t attr;
 	int err;
 
 	s->image = image;
@@ -256,22 +254,9 @@ int serve_start(struct serve *s, const struct image *image)
 	unlock(s->areas, (size_t)SERVER_CLIENTS * AREA_SIZE);
 	unlock(s->directories, SERVER_DIRECTORIES * sizeof(*s->directories));
 	unlock(s->clients, SERVER_CLIENTS * sizeof(*s->clients));
-	err = pthread_attr_init(&attr);
-	if (err)
-		return -err;
-	pthread_attr_setstacksize(&attr, STACK_SIZE);
-	/* the guard handles a synchronous SIGBUS, which a thread cannot block */
-	sigfillset(&all);
-	sigdelset(&all, SIGBUS);
-	pthread_sigmask(SIG_SETMASK, &all, &before);
-	err = pthread_create(&s->thread, &attr, run, s);
-	pthread_sigmask(SIG_SETMASK, &before, NULL);
-	pthread_attr_destroy(&attr);
-	if (err)
-		return -err;
-	s->running = true;
-	pthread_setname_np(s->thread, "owsd-serve");
-	return 0;
+	err = thread_start(&s->thread, "owsd-serve", STACK_SIZE, run, s);
+	s->running = !err;
+	return err;
 }
 
 int serve_prepare(struct serve *s, const struct config *config)
