@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT */
+/* What a thread beside the engine's is started with. */
+#include <signal.h>
+
+#include "hal/bus/thread.h"
+#include "unity.h"
+
+struct seen {
+	size_t stack;
+	sigset_t blocked;
+};
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static void *look(void *ctx)
+{
+	struct seen *seen = ctx;
+	pthread_attr_t attr;
+
+	pthread_sigmask(SIG_SETMASK, NULL, &seen->blocked);
+	if (!pthread_getattr_np(pthread_self(), &attr)) {
+		pthread_attr_getstacksize(&attr, &seen->stack);
+		pthread_attr_destroy(&attr);
+	}
+	return NULL;
+}
+
+static struct seen started_with(size_t stack)
+{
+	struct seen seen = {0};
+	pthread_t thread;
+
+	TEST_ASSERT_EQUAL(0, thread_start(&thread, "a thread", stack, look, &seen));
+	TEST_ASSERT_EQUAL(0, pthread_join(thread, NULL));
+	return seen;
+}
+
+static void test_a_stack_is_as_large_as_asked(void)
+{
+	TEST_ASSERT_GREATER_OR_EQUAL(1024 * 1024, started_with(1024 * 1024).stack);
+}
+
+/* What is enough on one machine can be less than another gives a thread at least */
+static void test_a_stack_below_the_least_of_the_machine_starts_too(void)
+{
+	TEST_ASSERT_GREATER_THAN(0, started_with(1).stack);
+}
+
+static void test_signals_are_blocked_but_for_a_fault_of_memory(void)
+{
+	struct seen seen = started_with(128 * 1024);
+	sigset_t here;
+
+	TEST_ASSERT_TRUE(sigismember(&seen.blocked, SIGTERM));
+	TEST_ASSERT_TRUE(sigismember(&seen.blocked, SIGHUP));
+	TEST_ASSERT_FALSE(sigismember(&seen.blocked, SIGBUS));
+	pthread_sigmask(SIG_SETMASK, NULL, &here);
+	TEST_ASSERT_FALSE(sigismember(&here, SIGTERM));
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_stack_is_as_large_as_asked);
+	RUN_TEST(test_a_stack_below_the_least_of_the_machine_starts_too);
+	RUN_TEST(test_signals_are_blocked_but_for_a_fault_of_memory);
+	return UNITY_END();
+}
