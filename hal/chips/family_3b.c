@@ -15,6 +15,7 @@
 
 #include "hal/chips/identity.h"
 #include "hal/chips/thermometer.h"
+#include "hal/chips/thermometer_proof.h"
 
 enum { UNKNOWN, DS1825, MAX31826, MAX31850, MAX31825 }; /* thermometer.kind */
 

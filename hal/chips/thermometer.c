@@ -7,6 +7,7 @@
 
 #include "hal/chips/clone_id.h"
 #include "hal/chips/thermometer.h"
+#include "hal/chips/thermometer_proof.h"
 
 #define WRITE_SCRATCHPAD 0x4e
 #define COPY_SCRATCHPAD 0x48
@@ -235,66 +236,6 @@ int thermometer_prepare(struct txn *txn, unsigned resolution)
 		                                  thermometer_of(device)->resolution != resolution;
 		return err;
 	}
-}
-
-/* --- What it holds is of its last conversion -------------------------------------------------- */
-
-/*
- * When the chip latched what it holds. While the strong pull-up is on, no chip can show that it
- * converts. If it holds something else than when it was read last, and converted once since, it
- * did. If not, a conversion may have been missed: then this is at least the result of the one
- * before.
- */
-static int64_t latched_ns(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
-{
-	struct device *device = txn->device;
-	const uint8_t holds[3] = {scratchpad[SP_LSB], scratchpad[SP_MSB], scratchpad[SP_REMAIN]};
-	bool changed = thermometer_of(device)->raw_ns &&
-	               thermometer_of(device)->raw_ns >= thermometer_of(device)->earlier_ns &&
-	               memcmp(thermometer_of(device)->latched, holds, sizeof(holds)) != 0;
-
-	memcpy(thermometer_of(device)->latched, holds, sizeof(holds));
-	txn->unproven = thermometer_of(device)->unseen && !changed;
-	int64_t when = txn->unproven ? thermometer_of(device)->earlier_ns
-	                             : thermometer_of(device)->converted_ns;
-	/* It never becomes older than it was. */
-	if (when > thermometer_of(device)->latched_ns && when < now)
-		thermometer_of(device)->latched_ns = when;
-	return thermometer_of(device)->latched_ns;
-}
-
-/*
- * The conversion seemed to end before its longest time. It did if the chip holds another
- * temperature than when it was read last, and that was the result of the conversion before. Byte 6
- * is no proof in a chip that lets it be written.
- */
-static bool is_proven(const struct device *device, const uint8_t scratchpad[9])
-{
-	const struct thermometer *chip = thermometer_of(device);
-	const uint8_t *was = chip->latched;
-
-	return chip->proves && (was[0] != scratchpad[SP_LSB] || was[1] != scratchpad[SP_MSB] ||
-	                        (device->family->fixed && was[2] != scratchpad[SP_REMAIN]));
-}
-
-int thermometer_ended(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
-{
-	struct thermometer *chip = thermometer_of(txn->device);
-
-	if (chip->early_ns && chip->converted_ns > now) {
-		/* Whoever reads it meanwhile needs the proof, too. */
-		if (!is_proven(txn->device, scratchpad))
-			return txn_wait(txn, chip->converted_ns - now);
-		chip->converted_ns = chip->early_ns;
-	}
-	chip->early_ns = 0;
-	return 0;
-}
-
-void thermometer_took(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
-{
-	txn->measured_ns = latched_ns(txn, scratchpad, now);
-	thermometer_of(txn->device)->raw_ns = now;
 }
 
 int thermometer_read_temperature(struct txn *txn)

@@ -7,48 +7,12 @@
 #define HAL_CHIPS_THERMOMETER_H
 
 #include "hal/chips/family.h"
+#include "hal/chips/thermometer_state.h"
 #include "hal/chips/thermometer_trim.h"
 
 #define THERMOMETER_CONVERT 0x44
 #define THERMOMETER_READ_POWER 0xb4
-/* It did not show so many starts in a row: it cannot, as some clones, or has no supply. */
-#define THERMOMETER_SILENT 3
 
-enum { SP_LSB, SP_MSB, SP_HIGH, SP_LOW, SP_CONFIG, SP_5, SP_REMAIN, SP_PER_DEGREE, SP_CRC };
-
-/* Does byte 6 of a scratchpad follow the temperature, as in the genuine chip? */
-enum thermometer_make { MAKE_UNKNOWN, MAKE_GENUINE, MAKE_CLONE };
-
-/* What is known of the chip (device.own). */
-struct thermometer {
-	/* For good. */
-	uint8_t make; /* enum thermometer_make */
-	bool ignores; /* takes no other resolution (clones) */
-	bool only_12; /* has one resolution, and no bits that say so */
-	/* Until it restarts. */
-	uint8_t resolution;   /* 9 to 12 as read back; 0: not known */
-	uint8_t stored;       /* what it was before our first change: the EEPROM's; 0: not known */
-	uint8_t kind;         /* which chip of the family it is; 0: not known */
-	bool slow;            /* a lower resolution may not make it quicker (clones) */
-	uint8_t unheard;      /* starts in a row that it did not show */
-	bool shows;           /* it has shown a start */
-	bool tried;           /* it may have converted since, though it did not show the start */
-	bool proves;          /* the result before the last conversion is what was read last */
-	bool unseen;          /* the chip could not show that its last conversion began */
-	int16_t raw;          /* last good reading, sixteenths of a degree */
-	int64_t raw_ns;       /* when; 0: none */
-	int64_t converted_ns; /* when its last conversion ends or ended; 0: none known */
-	int64_t early_ns;     /* it seemed to end then, which is not proven; 0: it did not */
-	int64_t unread_ns;    /* the one whose result did not come over the wire whole; 0: none */
-	int64_t earlier_ns;   /* the one before the last */
-	uint8_t latched[3];   /* what tells one conversion's result from another's, when read */
-	int64_t latched_ns;   /* ... and of which conversion that was; 0: not known */
-};
-_Static_assert(sizeof(struct thermometer) <= DEVICE_OWN, "no room for what is known");
-static inline struct thermometer *thermometer_of(const struct device *device)
-{
-	return device->own;
-}
 void thermometer_forget(struct device *device);
 
 /*
@@ -66,14 +30,6 @@ int thermometer_prepare(struct txn *txn, unsigned resolution);
 
 /* It converts; -EBADMSG: it has not taken the command. */
 int thermometer_start(struct txn *txn);
-
-/*
- * Behind a reading of the scratchpad. 0: its conversion is over. TXN_MORE: it seemed to be, and
- * nothing proves that; txn waits for the longest time, and is to read the scratchpad again.
- */
-int thermometer_ended(struct txn *txn, const uint8_t scratchpad[9], int64_t now);
-/* What it holds was read, and is good: notes that, and from when it is (measured_ns, unproven). */
-void thermometer_took(struct txn *txn, const uint8_t scratchpad[9], int64_t now);
 
 /* Asks for the power supply and notes it: 1 external, 0 parasitic, or an error. */
 int thermometer_ask_power(struct txn *txn);

@@ -160,7 +160,7 @@ void convert_prepare(struct native *native, struct job *job, int64_t now)
 /*
  * Those with a supply hold the line low while they convert: if nobody does, nobody heard. One that
  * alone did not hear is hidden by the others; the rounds one by one find it. The strong pull-up
- * lets nobody show it: thermometer.c looks at what each chip latched.
+ * lets nobody show it: thermometer_proof.c looks at what each chip latched.
  */
 static int send_all(struct link *link, enum link_after after)
 {

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT */
+/* What is known of a thermometer with a nine-byte scratchpad, and the bytes of that. */
+#ifndef HAL_CHIPS_THERMOMETER_STATE_H
+#define HAL_CHIPS_THERMOMETER_STATE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "hal/wire/device.h"
+
+/* It did not show so many starts in a row: it cannot, as some clones, or has no supply. */
+#define THERMOMETER_SILENT 3
+
+enum { SP_LSB, SP_MSB, SP_HIGH, SP_LOW, SP_CONFIG, SP_5, SP_REMAIN, SP_PER_DEGREE, SP_CRC };
+
+/* Does byte 6 of a scratchpad follow the temperature, as in the genuine chip? */
+enum thermometer_make { MAKE_UNKNOWN, MAKE_GENUINE, MAKE_CLONE };
+
+/* What is known of the chip (device.own). */
+struct thermometer {
+	/* For good. */
+	uint8_t make; /* enum thermometer_make */
+	bool ignores; /* takes no other resolution (clones) */
+	bool only_12; /* has one resolution, and no bits that say so */
+	/* Until it restarts. */
+	uint8_t resolution;   /* 9 to 12 as read back; 0: not known */
+	uint8_t stored;       /* what it was before our first change: the EEPROM's; 0: not known */
+	uint8_t kind;         /* which chip of the family it is; 0: not known */
+	bool slow;            /* a lower resolution may not make it quicker (clones) */
+	uint8_t unheard;      /* starts in a row that it did not show */
+	bool shows;           /* it has shown a start */
+	bool tried;           /* it may have converted since, though it did not show the start */
+	bool proves;          /* the result before the last conversion is what was read last */
+	bool unseen;          /* the chip could not show that its last conversion began */
+	int16_t raw;          /* last good reading, sixteenths of a degree */
+	int64_t raw_ns;       /* when; 0: none */
+	int64_t converted_ns; /* when its last conversion ends or ended; 0: none known */
+	int64_t early_ns;     /* it seemed to end then, which is not proven; 0: it did not */
+	int64_t unread_ns;    /* the one whose result did not come over the wire whole; 0: none */
+	int64_t earlier_ns;   /* the one before the last */
+	uint8_t latched[3];   /* what tells one conversion's result from another's, when read */
+	int64_t latched_ns;   /* ... and of which conversion that was; 0: not known */
+};
+_Static_assert(sizeof(struct thermometer) <= DEVICE_OWN, "no room for what is known");
+static inline struct thermometer *thermometer_of(const struct device *device)
+{
+	return device->own;
+}
+
+#endif
