@@ -7,9 +7,9 @@
  * Ones are also what one hears of chips that have lost touch with the wire meanwhile. So the answer
  * is no proof, and only a reason to read earlier: such a result is taken if it differs from the one
  * that was read last, which shows that the chip has converted since. If it does not, it is read
- * again when the longest time is over (thermometer_proof.c). No temperature comes later than without
- * the question. But until then the chip is locked: another request of it waits for up to half of
- * the longest time, 375 ms at 12 bits.
+ * again when the longest time is over (thermometer_proof.c). No temperature comes later than it
+ * would without the question. But until then the chip is locked: another request of it waits for
+ * up to half of the longest time, 375 ms at 12 bits.
  *
  * Only for chips that have shown a start of theirs, with a supply, and read since the conversion
  * before. It is asked when the bus has nothing else to do, on links that count their resets.
