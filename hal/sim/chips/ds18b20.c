@@ -175,6 +175,11 @@ static void convert(struct sim_slave *slave, int64_t t)
 {
 	if (is_dead(slave))
 		return;
+	/* No data sheet says what it does while it converts. */
+	if (state(slave)->once && slave->busy && !state(slave)->copying) {
+		sim_send_bits(slave);
+		return;
+	}
 	state(slave)->copying = false;
 	sim_work(slave, sim_thermometer_conversion(slave), t);
 }
@@ -264,6 +269,8 @@ static int option(struct sim_slave *slave, const char *name, double value)
 		s->eeprom[name[0] == 'l'] = (uint8_t)whole;
 	} else if (strcmp(name, "fixed") == 0) {
 		s->fixed = whole != 0;
+	} else if (strcmp(name, "once") == 0) {
+		s->once = whole != 0;
 	} else if (strcmp(name, "speed") == 0) {
 		if (whole < 1 || whole > 200)
 			return -ERANGE;

@@ -33,6 +33,7 @@ struct sim_thermometer {
 	bool fixed;                    /* a clone: stays at 12 bits, whatever is written */
 	int percent;                   /* of the conversion time by the data sheet; 0 means 100 */
 	bool alarm, copying;
+	bool once; /* a Convert T while it converts is ignored; else it begins anew */
 };
 
 /* MAX31826, with its memory, and MAX31850. */
