@@ -246,13 +246,21 @@ static int read_flags(struct txn *txn)
 	return err;
 }
 
+/* No data sheet says what becomes of a conversion while the memory is used. */
+static int begin_memory(struct txn *txn)
+{
+	int err = identify(txn);
+
+	return err ? err : thermometer_rest(txn);
+}
+
 static const struct area memory = {
 	.name = "memory",
 	.size = 128,
 	.address_bytes = 1,
 	.read = 0xf0,
 	.block = 8,
-	.begin = identify,
+	.begin = begin_memory,
 	.row = 8,
 	.write = 0x0f,
 	.verify = 0xaa,

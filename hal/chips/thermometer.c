@@ -42,7 +42,9 @@ void thermometer_forget(struct device *device)
 	*chip = (struct thermometer){.make = chip->make,
 	                             .ignores = chip->ignores,
 	                             .only_12 = chip->only_12,
-	                             .raw = chip->raw};
+	                             .raw = chip->raw,
+	                             .busy_ns = chip->busy_ns,
+	                             .least_ns = chip->least_ns};
 }
 
 static int saw_config(struct txn *txn, const uint8_t scratchpad[9])
@@ -52,8 +54,10 @@ static int saw_config(struct txn *txn, const uint8_t scratchpad[9])
 	if (txn->device->family->fixed || chip->only_12)
 		return 0;
 	uint8_t resolution = (uint8_t)(9 + (scratchpad[SP_CONFIG] >> 5 & 3));
-	if (chip->resolution && chip->resolution != resolution)
+	if (chip->resolution && chip->resolution != resolution) {
 		txn->restarted = true;
+		thermometer_doubt(txn->device);
+	}
 	if (!chip->stored)
 		chip->stored = resolution;
 	chip->resolution = resolution;
@@ -226,6 +230,9 @@ int thermometer_prepare(struct txn *txn, unsigned resolution)
 		txn->phase = 1;
 		return TXN_MORE;
 	case 1:
+		err = thermometer_rest(txn);
+		if (err)
+			return err;
 		err = write_scratchpad(txn, visit_of(txn)->scratchpad);
 		txn->phase = 2;
 		return err ? err : TXN_MORE;
@@ -309,6 +316,9 @@ static int store(struct txn *txn)
 
 	switch (txn->phase) {
 	case WRITE:
+		err = thermometer_rest(txn);
+		if (err)
+			return err;
 		err = write_scratchpad(txn, visit_of(txn)->scratchpad);
 		break;
 	case VERIFY:

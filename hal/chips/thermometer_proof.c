@@ -6,6 +6,58 @@
 #include "hal/chips/thermometer_proof.h"
 #include "hal/chips/thermometer_state.h"
 
+#define LONGEST_NS (750 * TXN_MS)
+
+/* What it may have begun before goes on, if it ignores this; it ends when it is not busy now. */
+static void send(struct thermometer *chip, int64_t now, int64_t longest)
+{
+	if (now >= chip->busy_ns)
+		chip->least_ns = now + longest;
+	else if (now >= chip->least_ns)
+		chip->least_ns = now;
+	if (chip->busy_ns < now + longest)
+		chip->busy_ns = now + longest;
+}
+
+void thermometer_told(struct device *device, int64_t now, int64_t longest)
+{
+	send(device->own, now, longest);
+	thermometer_of(device)->tried = true;
+}
+
+static int64_t ended_ns(const struct thermometer *chip)
+{
+	return chip->least_ns < chip->converted_ns ? chip->least_ns : chip->converted_ns;
+}
+
+/* One that has never shown that it converts does not show it to all either. */
+void thermometer_converts(struct device *device, int64_t now, int64_t longest, bool unseen)
+{
+	struct thermometer *chip = device->own;
+
+	chip->proves = chip->converted_ns && chip->raw_ns >= chip->converted_ns && !chip->tried;
+	if (chip->converted_ns)
+		chip->earlier_ns = ended_ns(chip);
+	send(chip, now, longest);
+	chip->converted_ns = now + longest;
+	chip->early_ns = 0;
+	chip->tried = false;
+	chip->unseen = unseen || chip->unheard >= THERMOMETER_SILENT;
+}
+
+void thermometer_doubt(struct device *device)
+{
+	if (thermometer_of(device)->busy_ns)
+		thermometer_of(device)->busy_ns += LONGEST_NS;
+}
+
+int thermometer_rest(struct txn *txn)
+{
+	int64_t busy = thermometer_of(txn->device)->busy_ns, now = txn_now(txn);
+
+	return busy > now ? txn_wait(txn, busy - now) : 0;
+}
+
 /*
  * When the chip latched what it holds. While the strong pull-up is on, no chip can show that it
  * converts. If it holds something else than when it was read last, and converted once since, it
@@ -23,7 +75,7 @@ static int64_t latched_ns(struct txn *txn, const uint8_t scratchpad[9], int64_t 
 	memcpy(thermometer_of(device)->latched, holds, sizeof(holds));
 	txn->unproven = thermometer_of(device)->unseen && !changed;
 	int64_t when = txn->unproven ? thermometer_of(device)->earlier_ns
-	                             : thermometer_of(device)->converted_ns;
+	                             : ended_ns(thermometer_of(device));
 	/* It never becomes older than it was. */
 	if (when > thermometer_of(device)->latched_ns && when < now)
 		thermometer_of(device)->latched_ns = when;
@@ -52,7 +104,7 @@ int thermometer_ended(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
 		/* Whoever reads it meanwhile needs the proof, too. */
 		if (!is_proven(txn->device, scratchpad))
 			return txn_wait(txn, chip->converted_ns - now);
-		chip->converted_ns = chip->early_ns;
+		chip->converted_ns = chip->busy_ns = chip->least_ns = chip->early_ns;
 	}
 	chip->early_ns = 0;
 	return 0;

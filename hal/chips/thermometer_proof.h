@@ -1,14 +1,32 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Is what a thermometer holds the result of its last conversion? A chip may not have received
- * Convert T, and an old result has a right checksum, too. All times are ns. Nothing here uses the
- * wire.
+ * Is what a thermometer holds the result of its last conversion, and when did that end? A chip may
+ * not have received Convert T, and an old result has a right checksum, too. All times are ns.
+ * Nothing here uses the wire.
+ *
+ * No data sheet says what a chip that converts does with another Convert T. It may begin anew, or
+ * go on and ignore it; its slots show it busy either way. So the result counts as that of the
+ * earliest conversion that it can be.
  */
 #ifndef HAL_CHIPS_THERMOMETER_PROOF_H
 #define HAL_CHIPS_THERMOMETER_PROOF_H
 
 #include "hal/wire/txn.h"
 
+/* Convert T was sent to it, for longest ns; whether it heard is not known. */
+void thermometer_told(struct device *device, int64_t now, int64_t longest);
+/*
+ * Convert T was sent, and the chip, or with unseen perhaps not the chip, but another one of those
+ * that were told, has shown that it heard.
+ */
+void thermometer_converts(struct device *device, int64_t now, int64_t longest, bool unseen);
+/* It restarted, or has another resolution than was thought: it may convert for longer. */
+void thermometer_doubt(struct device *device);
+/*
+ * Ahead of a command that no data sheet allows while the chip converts. 0, or TXN_MORE: txn waits
+ * until it does not.
+ */
+int thermometer_rest(struct txn *txn);
 /*
  * Behind a reading of the scratchpad. 0: its conversion is over. TXN_MORE: it seemed to be, and
  * nothing proves that; txn waits for the longest time, and is to read the scratchpad again.

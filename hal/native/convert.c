@@ -9,6 +9,7 @@
 #include <errno.h>
 
 #include "hal/chips/thermometer.h"
+#include "hal/chips/thermometer_proof.h"
 #include "hal/native/answer.h"
 #include "hal/native/convert.h"
 #include "hal/native/ending.h"
@@ -60,6 +61,20 @@ static bool taken(const struct native *native, const struct job *job)
 	return false;
 }
 
+/* One that came earlier waits to have the device at its resolution. */
+static bool is_overtaking(const struct native *native, const struct job *job)
+{
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		const struct job *other = &native->jobs[i];
+
+		if (other->req && other->state == JOB_PREPARE && (other->waits || other->rests) &&
+		    other->txn.device == job->txn.device &&
+		    (int32_t)(other->order - job->order) < 0)
+			return true;
+	}
+	return false;
+}
+
 static void become_due(struct native *native, struct job *job, int64_t now)
 {
 	struct channel *channel = &native->channel[job->txn.channel];
@@ -94,7 +109,8 @@ void convert_early(struct native *native, struct job *job, int64_t now)
 	const struct device *device = job->txn.device;
 
 	if (!schedule_early(native) || device->power == POWER_UNKNOWN || device->locked ||
-	    !convert_right(job) || native_held(native, device->channel, job, now))
+	    !convert_right(job) || native_held(native, device->channel, job, now) ||
+	    is_overtaking(native, job))
 		return;
 	job->begun = true;
 	job_txn(native, job);
@@ -137,13 +153,21 @@ void convert_prepare(struct native *native, struct job *job, int64_t now)
 {
 	struct device *device = job->txn.device;
 
-	if (job->txn.phase == 0 && !convert_right(job) && taken(native, job)) {
+	if (job->txn.phase == 0 &&
+	    ((!convert_right(job) && taken(native, job)) || is_overtaking(native, job))) {
 		/* Its turn comes when the other resolution has been read. */
 		job->txn.wake_ns = now + GATHER_NS;
 		job->waits = true;
 		return;
 	}
 	job->waits = false;
+	/* Others may use the chip meanwhile. */
+	job->rests = job->txn.phase == 0 && !convert_right(job) &&
+	             thermometer_of(device)->busy_ns > now;
+	if (job->rests) {
+		job->txn.wake_ns = thermometer_of(device)->busy_ns;
+		return;
+	}
 	int err = txn_end(&job->txn, prepare(native, job));
 
 	job_saw(native, job, err, now);
@@ -187,12 +211,24 @@ static int send_all(struct link *link, enum link_after after)
 	return err == -EHOSTDOWN ? -ENODEV : err;
 }
 
+/* How long after the command: a driver waits for the end itself. */
+static int64_t convert_ns(const struct link *link, const struct device *device)
+{
+	return link->driven ? 0 : thermometer_convert_ns(device);
+}
+
 /* Who did not show that it heard may have heard. */
-static void tried(struct native *native, unsigned n)
+static void told(struct native *native, struct device *device)
+{
+	thermometer_told(device, native_now(native),
+	                 convert_ns(native->channel[device->channel].link, device));
+}
+
+static void told_all(struct native *native, unsigned n)
 {
 	for (unsigned i = 0; i < native->table.count; i++)
 		if (native_thermometer(&native->table.devices[i], n))
-			thermometer_of(&native->table.devices[i])->tried = true;
+			told(native, &native->table.devices[i]);
 }
 
 /* All jobs that are due on the channel end with err, as if it had been theirs. */
@@ -216,26 +252,6 @@ static void fail_due(struct native *native, unsigned channel, int err)
 	}
 }
 
-/* How long after the command: a driver waits for the end itself. */
-static int64_t convert_ns(const struct link *link, const struct device *device)
-{
-	return link->driven ? 0 : thermometer_convert_ns(device);
-}
-
-/* One that has never shown that it converts does not show it to all either. */
-static void converts(struct device *device, int64_t until, bool unseen)
-{
-	struct thermometer *chip = thermometer_of(device);
-
-	chip->proves = chip->converted_ns && chip->raw_ns >= chip->converted_ns && !chip->tried;
-	if (chip->converted_ns)
-		chip->earlier_ns = chip->converted_ns;
-	chip->converted_ns = until;
-	chip->early_ns = 0;
-	chip->tried = false;
-	chip->unseen = unseen || chip->unheard >= THERMOMETER_SILENT;
-}
-
 static void converting(struct native *native, unsigned n, bool unseen, int64_t now, int64_t longest)
 {
 	struct channel *channel = &native->channel[n];
@@ -250,15 +266,17 @@ static void converting(struct native *native, unsigned n, bool unseen, int64_t n
 		if (!native_thermometer(device, n))
 			continue;
 		only = count++ ? NULL : device;
-		converts(device, now + convert_ns(channel->link, device), unseen);
+		thermometer_converts(device, now, convert_ns(channel->link, device), unseen);
 	}
 	/* Nobody else could have shown it. */
 	if (only && !unseen)
 		thermometer_of(only)->shows = true;
+	/* Who waited for a conversion that this one cut off waits for this one. */
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
 
-		if (!job->req || job->state != JOB_DUE || job->txn.channel != n)
+		if (!job->req || (job->state != JOB_DUE && job->state != JOB_CONVERTING) ||
+		    job->txn.channel != n)
 			continue;
 		job->state = JOB_CONVERTING;
 		job->ready_ns = thermometer_of(job->txn.device)->converted_ns;
@@ -286,11 +304,11 @@ int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t lo
 		native_count(native, COUNT_TRANSACTIONS);
 		if (err == -EBADMSG)
 			native_count(native, COUNT_CHECKSUMS);
+		if (err < 0)
+			told_all(native, n);
 	}
-	if (err < 0) {
-		tried(native, n);
+	if (err < 0)
 		return err;
-	}
 	int64_t now = native_now(native);
 	master_good(native, n);
 	native_count(native, COUNT_CONVERSIONS);
@@ -299,6 +317,7 @@ int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t lo
 	if (strong && longest) {
 		native->hold_ns[link->chip % NATIVE_CHANNELS] = now + longest;
 		native->holder[link->chip % NATIVE_CHANNELS] = NULL;
+		native->schedule.owes = true;
 	}
 	converting(native, n, strong && !link->driven, now, longest);
 	if (!strong && !link->driven)
@@ -344,9 +363,8 @@ static void convert_device(struct native *native, struct device *device)
 {
 	thermometer_of(device)->unheard = 0;
 	thermometer_of(device)->shows = true;
-	converts(device,
-	         native_now(native) + convert_ns(native->channel[device->channel].link, device),
-	         false);
+	thermometer_converts(device, native_now(native),
+	                     convert_ns(native->channel[device->channel].link, device), false);
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
 
@@ -373,8 +391,8 @@ static bool convert_one(struct native *native, unsigned n)
 	int64_t now = native_now(native);
 
 	job_saw(native, first, err, now);
-	thermometer_of(device)->tried |= err < 0;
 	if (err < 0) {
+		told(native, device);
 		job_failed(native, first, err);
 		return true;
 	}
@@ -408,7 +426,8 @@ static void convert_in_turn(struct native *native, struct job *job)
 	native->schedule.doing = SCHEDULE_START;
 	native->schedule.owes = true;
 	job_saw(native, job, err, native_now(native));
-	thermometer_of(device)->tried |= err < 0;
+	if (err < 0)
+		told(native, device);
 	if (err == -EBADMSG && !job->txn.link_error) {
 		native_count(native, COUNT_CHECKSUMS);
 		native->channel[device->channel].checksums++;

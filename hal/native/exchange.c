@@ -220,6 +220,32 @@ static void hold(struct native *native, struct job *job)
 	native->holder[chip] = job;
 }
 
+/* False: at another resolution than was thought, or the chip restarted since it began. */
+static bool is_of_conversion(const struct job *job)
+{
+	const struct device *device = job->txn.device;
+
+	if (!device || !job->property->convert)
+		return true;
+	if (!convert_right(job))
+		thermometer_of(device)->converted_ns = 0;
+	return thermometer_of(device)->converted_ns != 0;
+}
+
+/* It may be of an older conversion than was asked for: it is made once more. */
+static bool is_doubtful(struct job *job)
+{
+	const struct txn *txn = &job->txn;
+
+	if (!txn->device || !txn->device->family->thermometer || job->again)
+		return false;
+	const struct thermometer *chip = thermometer_of(txn->device);
+	bool cut = job->property->convert && chip->least_ns < chip->converted_ns &&
+	           txn->measured_ns < job->since_ns;
+	job->again = (txn->unproven && (job->fresh || !chip->earlier_ns)) || (cut && job->fresh);
+	return job->again;
+}
+
 void job_run_property(struct native *native, struct job *job, int64_t now)
 {
 	struct txn *txn = &job->txn;
@@ -239,15 +265,7 @@ void job_run_property(struct native *native, struct job *job, int64_t now)
 		return;
 	}
 	job_unlock(native, job);
-	if (txn->device && job->property->convert && !convert_right(job)) {
-		/* It converted at another resolution than was thought. */
-		thermometer_of(job->txn.device)->converted_ns = 0;
-		job_restart(native, job);
-		return;
-	}
-	if (txn->device && txn->unproven && !job->again &&
-	    (job->fresh || !thermometer_of(txn->device)->earlier_ns)) {
-		job->again = true;
+	if (!is_of_conversion(job) || is_doubtful(job)) {
 		job_restart(native, job);
 		return;
 	}

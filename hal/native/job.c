@@ -123,6 +123,15 @@ static unsigned channel_of(const struct job *job)
 	return job->txn.device ? job->txn.device->channel : job->bus >= 0 ? (unsigned)job->bus : 0;
 }
 
+/* A chip is at work, and no conversion may cut that off. */
+static bool has_locked(const struct native *native, unsigned channel)
+{
+	for (unsigned i = 0; i < native->table.count; i++)
+		if (native->table.devices[i].channel == channel && native->table.devices[i].locked)
+			return true;
+	return false;
+}
+
 bool job_ready(const struct native *native, const struct job *job, int64_t now, int64_t *next)
 {
 	const struct device *device = job->txn.device;
@@ -134,7 +143,8 @@ bool job_ready(const struct native *native, const struct job *job, int64_t now, 
 	case JOB_DUE:
 		return false;
 	case JOB_QUEUED:
-		if (device && device->locked)
+		if ((device && device->locked) ||
+		    (job->kind == JOB_CONVERT && has_locked(native, channel)))
 			return false;
 		break;
 	case JOB_LOCATE:

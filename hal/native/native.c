@@ -219,7 +219,7 @@ static bool reads_result(const struct job *job)
 	       (job->state == JOB_CONVERTING || job->state == JOB_RUN);
 }
 
-/* *other: the best of those that read no thermometer. */
+/* *other: of those that read no thermometer the one that waits longest, whatever its rank. */
 static struct job *pick(struct native *native, int64_t now, int64_t *next, struct job **other)
 {
 	struct job *best = NULL;
@@ -233,7 +233,7 @@ static struct job *pick(struct native *native, int64_t now, int64_t *next, struc
 			continue;
 		if (goes_first(job, best))
 			best = job;
-		if (!reads_result(job) && goes_first(job, *other))
+		if (!reads_result(job) && (!*other || (int32_t)(job->order - (*other)->order) < 0))
 			*other = job;
 	}
 	return best;

@@ -63,6 +63,9 @@ static void look_at_jobs(struct schedule_plan *plan, const struct native *native
 		look_at_job(plan, job, feeds);
 		if (job->state == JOB_PREPARE || job->state == JOB_QUEUED)
 			coming = job->waits || job->req->prio > coming ? coming : job->req->prio;
+		/* Whatever its rank: with each conversion of all it would wait anew. */
+		if (job->state == JOB_PREPARE && job->rests)
+			coming = 0;
 		if (job->state == JOB_DUE)
 			urgent = job->req->prio < urgent ? job->req->prio : urgent;
 	}

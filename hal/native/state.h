@@ -73,6 +73,7 @@ struct job {
 	bool again;                 /* its conversion was unproven, and is made a second time */
 	bool offered;               /* somebody or something can answer it */
 	bool waits;                 /* PREPARE: until another job has read its resolution */
+	bool rests;                 /* PREPARE: until the chip does not convert */
 	unsigned element;           /* of a separate array, when all of it is asked for */
 	uint8_t tries;              /* transactions that failed in a row */
 	uint8_t faults;             /* power-fault readings in a row */
@@ -160,7 +161,8 @@ struct schedule {
 	int64_t took_ns[2];         /* SCHEDULE_READ and SCHEDULE_START, mean; 0: not known */
 	int64_t window_ns;          /* when the present window of `others` began */
 	int64_t others_ns, last_ns; /* SCHEDULE_OTHER in this window and in the last */
-	bool owes; /* a chip was started while others wait for the wire: one of them is next */
+	/* Chips convert, in turn or with the pull-up, while others wait: one of those is next. */
+	bool owes;
 };
 
 /* What /statistics tells of the requests of one kind. */

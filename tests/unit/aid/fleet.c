@@ -83,7 +83,12 @@ void fleet_forget(void)
 	memset(fleet.each, 0, sizeof(fleet.each));
 }
 
-static void submit(uint32_t id, enum bus_op op, enum bus_prio prio)
+static int64_t patience(uint32_t id)
+{
+	return id < FLEET_MAX && fleet.patience_ns[id] ? fleet.patience_ns[id] : 20 * HOST_S;
+}
+
+static void submit(uint32_t id, enum bus_op op, enum bus_prio prio, size_t len)
 {
 	asked[id] = host.now;
 	requests[id] = (struct bus_req){.id = id,
@@ -92,8 +97,8 @@ static void submit(uint32_t id, enum bus_op op, enum bus_prio prio)
 	                                .fresh = true,
 	                                .path = paths[id],
 	                                .data = texts[id],
-	                                .len = sizeof(texts[id]),
-	                                .deadline_ns = host.now + 20 * HOST_S};
+	                                .len = (uint32_t)len,
+	                                .deadline_ns = host.now + patience(id)};
 	TEST_ASSERT_EQUAL_INT(0, bus_submit(bus, &requests[id]));
 }
 
@@ -157,7 +162,7 @@ static void run(int64_t until_ns, bool until_answered)
 			snprintf(paths[i], sizeof(paths[i]), "%s",
 			         of(fleet.slave[i],
 			            fleet.property ? fleet.property : "temperature"));
-			submit(i, BUS_READ, BUS_INPUT);
+			submit(i, BUS_READ, BUS_INPUT, sizeof(texts[i]));
 		}
 		int64_t next = bus_step(bus, host.now);
 		next = next > until_ns ? until_ns : next;
@@ -174,14 +179,27 @@ void fleet_run(int64_t until_ns)
 	run(until_ns, false);
 }
 
-uint32_t fleet_ask(enum bus_prio prio, enum bus_op op, const char *path)
+static uint32_t ask_besides(enum bus_prio prio, enum bus_op op, const char *path, size_t len)
 {
 	uint32_t id = FLEET_MAX + extra++ % 8;
 
 	snprintf(paths[id], sizeof(paths[id]), "%s", path);
-	submit(id, op, prio);
+	submit(id, op, prio, len);
 	awaited = id;
 	return id;
+}
+
+uint32_t fleet_ask(enum bus_prio prio, enum bus_op op, const char *path)
+{
+	return ask_besides(prio, op, path, sizeof(texts[0]));
+}
+
+uint32_t fleet_write(enum bus_prio prio, const char *path, const char *text)
+{
+	size_t len = strlen(text);
+
+	memcpy(texts[FLEET_MAX + extra % 8], text, len);
+	return ask_besides(prio, BUS_WRITE, path, len);
 }
 
 int64_t fleet_answered(uint32_t id, int *err)

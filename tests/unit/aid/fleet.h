@@ -14,10 +14,11 @@
 extern struct fleet {
 	struct sim_slave *slave[FLEET_MAX];
 	unsigned count;
-	int64_t pause_ns[FLEET_MAX]; /* between an answer and the next request */
-	bool stopped;                /* nothing is asked for any more */
-	const char *property;        /* NULL: "temperature" */
-	double step;                 /* of its resolution; 0: that of 12 bits */
+	int64_t pause_ns[FLEET_MAX];    /* between an answer and the next request */
+	int64_t patience_ns[FLEET_MAX]; /* its requests' deadline; 0: 20 s */
+	bool stopped;                   /* nothing is asked for any more */
+	const char *property;           /* NULL: "temperature" */
+	double step;                    /* of its resolution; 0: that of 12 bits */
 	int64_t early_ns;      /* the chips may convert by so much faster than the longest time */
 	unsigned good, failed; /* answers, since fleet_forget() */
 	unsigned each[FLEET_MAX]; /* good answers of each */
@@ -39,6 +40,8 @@ void fleet_run(int64_t until_ns);
 void fleet_forget(void);
 /* A request besides, to be answered while the fleet runs. */
 uint32_t fleet_ask(enum bus_prio prio, enum bus_op op, const char *path);
+/* The same, to write this text. */
+uint32_t fleet_write(enum bus_prio prio, const char *path, const char *text);
 /* Run until it is answered, which takes a second at most. Returns how long it took. */
 int64_t fleet_answered(uint32_t id, int *err);
 

@@ -110,7 +110,7 @@ static void after_call(struct link *link, enum link_after after)
 
 static int wire_write(struct link *link, const uint8_t *data, size_t n, enum link_after after)
 {
-	int err = begin(link);
+	int err = wire_net.passive && after == LINK_STRONG ? -EOPNOTSUPP : begin(link);
 
 	if (err)
 		return err;
@@ -140,7 +140,7 @@ static int wire_read(struct link *link, uint8_t *data, size_t n)
 
 static int wire_bit(struct link *link, bool out, enum link_after after)
 {
-	int err = begin(link);
+	int err = wire_net.passive && after == LINK_STRONG ? -EOPNOTSUPP : begin(link);
 
 	if (err)
 		return err;
@@ -219,6 +219,7 @@ static int master_open(struct link_master *master, char *why, size_t why_size)
 	for (unsigned i = 0; i < wire_net.channels; i++)
 		links[i] = (struct link){.ops = wire_net.trouble ? &troubled_ops : &link_ops,
 		                         .env = master->env,
+		                         .passive = wire_net.passive,
 		                         .chip = wire_net.chips == 1 ? 0 : i};
 	return 0;
 }

@@ -28,6 +28,7 @@ struct wire_net {
 	int fault_until;
 	unsigned recovered[LINK_REOPEN + 1];
 	bool no_power_line;
+	bool passive; /* the links have no strong pull-up */
 	int open_error;
 	unsigned opens, closes;
 	int64_t converts[64]; /* when a broadcast Convert T went out */
