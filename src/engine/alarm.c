@@ -1,19 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* The alarm machine of a lane: what each state asks of the bus, and what the answer means to it. */
+/* The alarm machine of a lane: from state to state, and what each answer means. */
 #include <errno.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "hal/bus/time.h"
 #include "src/engine/alarm.h"
 #include "src/engine/alarm_arm.h"
+#include "src/engine/alarm_ask.h"
 #include "src/engine/alarm_effect.h"
 #include "src/engine/alarm_known.h"
 #include "src/engine/alarm_list.h"
 #include "src/engine/alarm_text.h"
 #include "src/engine/completion.h"
 #include "src/engine/publish.h"
-#include "src/engine/scaling.h"
 #include "src/engine/schedule.h"
 #include "src/engine/state.h"
 #include "src/shm/entries.h"
@@ -115,113 +114,7 @@ static uint32_t facts_before(struct alarm_machine *m, struct lane *lane, int64_t
 	return 0;
 }
 
-/* --- Requests -------------------------------------------------------------------------------- */
-
-static void ask_property(struct alarm_request *r, enum bus_op op, const char *before,
-                         const struct alarm_item *i, const char *property, const char *data)
-{
-	r->op = op;
-	r->row = i->row;
-	snprintf(r->path, sizeof(r->path), "%s%s/%s", before, i->strings.path, property);
-	r->len = (uint32_t)snprintf(r->data, sizeof(r->data), "%s", data);
-}
-
-static void ask_init(struct engine *e, struct alarm_machine *m, struct alarm_request *r)
-{
-	int64_t row = alarm_next_init(e, m);
-	const struct signal *s = &e->table.signals[row];
-	const struct config_item *item = s->item;
-
-	r->op = BUS_WRITE;
-	r->row = (uint32_t)row;
-	snprintf(r->path, sizeof(r->path), "%s", item->path);
-	if (item->type == OWS_STRING)
-		r->len = (uint32_t)snprintf(r->data, sizeof(r->data), "%s", item->init_text);
-	else
-		r->len = signal_write_text(s, item->init_value, r->data);
-}
-
-/* The item whose SetAlarm is to be compared with the chip, if any is left. */
-static bool ask_arm(struct alarm_machine *m, struct alarm_request *r, int64_t now_ns)
-{
-	const struct alarm_strings *s;
-
-	if (m->arming < 0)
-		m->arming = alarm_to_arm(m, now_ns);
-	if (m->arming < 0)
-		return false;
-	s = &m->items[m->arming]->strings;
-	ask_property(r, m->arm_writes ? BUS_WRITE : BUS_READ, "", m->items[m->arming], s->set,
-	             m->arm_writes ? s->set_value : "");
-	return true;
-}
-
-static bool ask_in_state(struct alarm_machine *m, struct lane *lane, struct alarm_request *r,
-                         int64_t now_ns)
-{
-	struct alarm_item *i = alarm_current(m);
-
-	if (m->collecting >= 0) {
-		i = m->items[m->collecting];
-		ask_property(r, BUS_READ, "", i, i->strings.latch, "");
-		return true;
-	}
-	if (m->proving) {
-		ask_property(r, BUS_READ, "", i, i->strings.por, "");
-		return true;
-	}
-	switch (m->state) {
-	case INIT:
-		m->position = -1;
-		if (ask_arm(m, r, now_ns))
-			return true;
-		if (now_ns < m->list.next_ns)
-			return false;
-		if (!m->named)
-			alarm_name_list(m, &lane->engine->table);
-		r->op = BUS_DIR;
-		r->row = TABLE_NO_ROW;
-		memcpy(r->path, m->list_path, sizeof(m->list_path));
-		return true;
-	case ALARM_POR_READ:
-		ask_property(r, BUS_READ, "", i, i->strings.por, "");
-		return true;
-	case ALARM_SET:
-		ask_property(r, BUS_WRITE, "", i, i->strings.set, i->strings.set_value);
-		return true;
-	case ALARM_SET_WAIT:
-		ask_init(lane->engine, m, r);
-		return true;
-	case ALARM_POR_RESET:
-		ask_property(r, BUS_WRITE, "", i, i->strings.por, "0");
-		return true;
-	case ALARM_LATCH:
-		ask_property(r, BUS_READ, "", i, i->strings.latch, "");
-		return true;
-	case ALARM_SENSED:
-		ask_property(r, BUS_READ, "/alarm", i, i->strings.sensed, "");
-		return true;
-	case ALARM_LATCH_RESET:
-		ask_property(r, BUS_WRITE, "/alarm", i, i->strings.reset, i->strings.reset_value);
-		return true;
-	case SENSED:
-		ask_property(r, BUS_READ, "", i, i->strings.sensed, "");
-		return true;
-	case NOT_USED:
-	case ALARM_DIR:
-	case ALARM_PROCESS:
-	case ALARM_POR_READ_WAIT:
-	case ALARM_INIT_WRITE_WAIT:
-	case ALARM_POR_RESET_WAIT:
-	case ALARM_LATCH_WAIT:
-	case ALARM_SENSED_WAIT:
-	case ALARM_LATCH_RESET_WAIT:
-	case SENSED_WAIT:
-	case ALARM_BYPASS:
-		break;
-	}
-	return false;
-}
+/* --- From state to state ---------------------------------------------------------------------- */
 
 static void enter_state(struct alarm_machine *m, struct lane *lane, const struct alarm_row *row)
 {
@@ -247,7 +140,7 @@ bool alarm_run(struct alarm_machine *m, struct lane *lane, struct alarm_request 
 
 		row = facts ? alarm_next(m->state, facts) : NULL;
 		if (!row)
-			return ask_in_state(m, lane, request, now_ns);
+			return alarm_ask(m, lane, request, now_ns);
 		if (m->state == ALARM_SET && facts & FACT_ND)
 			alarm_set_missing(lane, alarm_current(m), now_ns);
 		if (m->state == ALARM_LATCH && facts & FACT_KNOWN) {
