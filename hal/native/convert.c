@@ -317,7 +317,7 @@ int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t lo
 	if (strong && longest) {
 		native->hold_ns[link->chip % NATIVE_CHANNELS] = now + longest;
 		native->holder[link->chip % NATIVE_CHANNELS] = NULL;
-		native->schedule.owes = true;
+		native->schedule.owes = OWES_OTHER;
 	}
 	converting(native, n, strong && !link->driven, now, longest);
 	if (!strong && !link->driven)
@@ -424,7 +424,7 @@ static void convert_in_turn(struct native *native, struct job *job)
 	int err = txn_end(&job->txn, thermometer_start(&job->txn));
 
 	native->schedule.doing = SCHEDULE_START;
-	native->schedule.owes = true;
+	native->schedule.owes = err < 0 ? OWES_ANY : OWES_OTHER;
 	job_saw(native, job, err, native_now(native));
 	if (err < 0)
 		told(native, device);

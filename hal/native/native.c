@@ -327,9 +327,10 @@ static int64_t step(struct native *native, int64_t now)
 		run(native, job, now);
 		return now;
 	}
-	if (other && native->schedule.owes) {
-		native->schedule.owes = false;
-		run(native, other, now);
+	struct job *owed = native->schedule.owes == OWES_ANY ? job : other;
+	if (owed && native->schedule.owes) {
+		native->schedule.owes = OWES_NOTHING;
+		run(native, owed, now);
 		return now;
 	}
 	if (!hunt_initial(native) && touch_step(native, now, &next))

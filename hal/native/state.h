@@ -155,14 +155,20 @@ enum schedule_work {
 	SCHEDULE_FREE,  /* what gives way to all else: searches, Convert T for all */
 };
 
+/* Who is next, ahead of another start. */
+enum schedule_debt {
+	OWES_NOTHING,
+	OWES_OTHER, /* chips convert, in turn or with the pull-up: one that reads no thermometer */
+	OWES_ANY,   /* a start was tried in vain: whoever is ready */
+};
+
 /* What is known of a bus; zero: nothing yet. */
 struct schedule {
 	enum schedule_work doing;   /* what the present step of the bus does */
 	int64_t took_ns[2];         /* SCHEDULE_READ and SCHEDULE_START, mean; 0: not known */
 	int64_t window_ns;          /* when the present window of `others` began */
 	int64_t others_ns, last_ns; /* SCHEDULE_OTHER in this window and in the last */
-	/* Chips convert, in turn or with the pull-up, while others wait: one of those is next. */
-	bool owes;
+	uint8_t owes;               /* enum schedule_debt */
 };
 
 /* What /statistics tells of the requests of one kind. */
