@@ -219,3 +219,33 @@ void fleet_begin(void)
 	fleet_slope = 0;
 	renewed = 0;
 }
+
+void fleet_again(void)
+{
+	native_end();
+	native_begin();
+	fleet_begin();
+}
+
+unsigned fleet_restarts(void (*set_out)(unsigned count, const char *chip), unsigned count,
+                        const char *chip, int64_t settled, unsigned most_ms, unsigned step_ms)
+{
+	static struct trouble trouble;
+	unsigned good = 0;
+
+	for (unsigned ms = step_ms; ms < most_ms; ms += step_ms) {
+		fleet_again();
+		set_out(count, chip);
+		wire_net.trouble = &trouble;
+		trouble_none(&trouble);
+		start();
+		fleet_run(host.now + settled);
+		fleet_forget();
+		trouble.kind = TROUBLE_RESTART;
+		trouble.restart_ns = host.now + ms * HOST_MS;
+		fleet_run(host.now + 6 * HOST_S);
+		TEST_ASSERT_EQUAL_UINT_MESSAGE(0, fleet.wrong, chip);
+		good += fleet.good;
+	}
+	return good;
+}

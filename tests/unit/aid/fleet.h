@@ -31,6 +31,14 @@ extern struct fleet {
 extern double fleet_slope;
 /* No fleet; after native_begin(). */
 void fleet_begin(void);
+/* The bus and its wires end, and others may be set out. */
+void fleet_again(void);
+/*
+ * All chips lose power for a moment, step_ms, 2 step_ms ... up to most_ms after `settled`: each
+ * time of a fleet that set_out() made anew. No answer may be wrong; returns how many were good.
+ */
+unsigned fleet_restarts(void (*set_out)(unsigned count, const char *chip), unsigned count,
+                        const char *chip, int64_t settled, unsigned most_ms, unsigned step_ms);
 /* Add the thermometers of this kind to channel 0, before start(); may be called again. */
 void fleet_add(const char *chip, unsigned count);
 void fleet_add_to(unsigned channel, const char *chip, unsigned count);

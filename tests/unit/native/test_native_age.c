@@ -62,8 +62,7 @@ static void look_for_disturbance(const uint8_t *bytes, size_t n)
 
 static void set_out(const struct setup *setup)
 {
-	tearDown();
-	setUp();
+	fleet_again();
 	wire_init(&host, 1, 1);
 	wire_net.passive = setup->passive;
 	wire_net.sent = look_for_disturbance;

@@ -25,12 +25,6 @@ void tearDown(void)
 	native_end();
 }
 
-static void again(void)
-{
-	tearDown();
-	setUp();
-}
-
 static void set_out(unsigned count, const char *chip)
 {
 	wire_init(&host, 1, 1);
@@ -161,7 +155,7 @@ static void test_no_trouble_at_the_question_makes_an_old_result_look_new(void)
 		bool of_resets = kinds[k] == TROUBLE_ABSENT || kinds[k] == TROUBLE_FALSE;
 
 		for (uint32_t at = 0, last = 1; at <= last; at++, places++) {
-			again();
+			fleet_again();
 			set_out(2, "DS18B20");
 			wire_net.trouble = &trouble;
 			trouble_none(&trouble);
@@ -188,24 +182,10 @@ static void test_no_trouble_at_the_question_makes_an_old_result_look_new(void)
 static void test_no_restart_makes_an_old_result_look_new(void)
 {
 	static const char *const chips[] = {"DS18B20", "DS18S20", "DS1822", "DS18B20-B1"};
-	unsigned wrong = 0, good = 0;
+	unsigned good = 0;
 
 	for (unsigned c = 0; c < 4; c++)
-		for (int64_t at = 1; at < 1400; at += 9) {
-			again();
-			set_out(1, chips[c]);
-			wire_net.trouble = &trouble;
-			trouble_none(&trouble);
-			start();
-			fleet_run(host.now + 4 * HOST_S);
-			fleet_forget();
-			trouble.kind = TROUBLE_RESTART;
-			trouble.restart_ns = host.now + at * HOST_MS;
-			fleet_run(host.now + 5 * HOST_S);
-			wrong += fleet.wrong;
-			good += fleet.good;
-		}
-	TEST_ASSERT_EQUAL_UINT(0, wrong);
+		good += fleet_restarts(set_out, 1, chips[c], 4 * HOST_S, 1400, 9);
 	TEST_ASSERT_GREATER_THAN_UINT(2000, good);
 }
 
