@@ -71,7 +71,7 @@ static int all_off(struct txn *txn)
 	int err = command(txn, ALL_LINES_OFF);
 
 	if (!err)
-		seen->events = 0;
+		seen->events = seen->flags = 0;
 	return err;
 }
 

@@ -145,6 +145,45 @@ int branches_channel(const struct native *native, const struct device *coupler,
 	return -ENODEV;
 }
 
+int branches_look(struct native *native, const uint8_t rom[8])
+{
+	unsigned n = slot_of(native, rom);
+
+	return n < NATIVE_COUPLERS && native_has(native, channel_of(n, 0))
+	               ? coupler_look(&native->coupler[n])
+	               : 0;
+}
+
+bool branches_has_news(const struct native *native, unsigned channel)
+{
+	return !native->coupler[(channel - NATIVE_CHANNELS) / COUPLER_BRANCHES].parent;
+}
+
+bool branches_news(const struct native *native, unsigned channel)
+{
+	unsigned n = channel - NATIVE_CHANNELS;
+
+	return native->coupler[n / COUPLER_BRANCHES].seen->news >> n % COUPLER_BRANCHES & 1;
+}
+
+void branches_news_end(struct native *native, unsigned channel)
+{
+	unsigned n = channel - NATIVE_CHANNELS;
+
+	native->coupler[n / COUPLER_BRANCHES].seen->news &= (uint8_t) ~(1u << n % COUPLER_BRANCHES);
+}
+
+bool branches_is_on(const struct native *native, unsigned channel)
+{
+	unsigned n = channel - NATIVE_CHANNELS;
+	const struct coupler *coupler = &native->coupler[n / COUPLER_BRANCHES];
+	const struct branch *on = coupler->trunk->on;
+
+	while (on && on != &coupler->branch[n % COUPLER_BRANCHES])
+		on = on->coupler->parent;
+	return on;
+}
+
 int branches_print(struct native *native, unsigned channel, char *text, size_t room)
 {
 	const struct branch *branch = branch_of(native->coupler, channel);

@@ -102,14 +102,19 @@ struct job {
 
 enum native_simultaneous { SIMULTANEOUS_TEMPERATURE, SIMULTANEOUS_VOLTAGE, SIMULTANEOUS };
 
-/* Of a wire: the search for keys. */
+/* Of a channel: the search for keys. */
 struct touch {
 	struct search search;
 	bool searching;
 	uint8_t family;   /* which of those that are searched for */
+	uint8_t spoiled;  /* searches in a row that a checksum ended */
+	bool holds;       /* a key was there when the last round ended */
+	bool used;        /* of a branch: others have had it on since then, or it has news */
+	int64_t ended_ns; /* ... when that was */
 	int64_t begun_ns; /* the search of this family */
 	int64_t round_ns; /* ... of the first one */
 	int64_t next_ns;  /* when to search again */
+	int64_t turn_ns;  /* ... of a branch without a reason */
 };
 
 /* Of a wire: the end of its last Convert T for all (ending.h). */
@@ -230,10 +235,13 @@ struct native {
 	unsigned hunter;          /* the channel whose turn to be searched is next */
 	int64_t hunt_ns, pass_ns; /* background search: its next pass; what the last took */
 
-	/* native.c: keys are searched for; touch.c: the wire whose turn it is */
+	/* native.c: keys are searched for; touch.c: whose turn it is */
 	bool touch;
-	bool touched; /* a search was made: a request goes first now */
-	unsigned toucher;
+	bool touched;             /* a search was made: a request goes first now */
+	unsigned toucher;         /* the channel of the last round; it may not have ended */
+	unsigned next_touch[2];   /* the wire, the branch to begin with */
+	int64_t touch_ns;         /* next branch at all */
+	int64_t touch_in_turn_ns; /* next branch without a reason */
 
 	/* presence.c: which devices there are; the families: what is known of each */
 	struct device_table table;

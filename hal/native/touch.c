@@ -3,10 +3,22 @@
  * A key (DS1990, DS2401, DS1420) is on the wire for as long as somebody holds it there. With the
  * option Touch each wire is searched for these families alone, 33 times a second: where there is
  * none, that takes a reset and a few slots. What three such searches in a row did not see is gone.
+ *
+ * A branch of a coupler has to be switched on before it can be searched, and the one before it off:
+ * some 40 ms of wire. So branches are not searched all the time. The presence pulse of a key that
+ * comes to a branch that is off sets an event flag of the coupler (DS2409, data sheet 102199:
+ * "Conditional search for fast event signaling"). So each round of a wire with couplers ends with a
+ * search for couplers in alarm, and a branch with such news is searched at once. One with a key is
+ * searched for as long as the key is there. A key that comes while its branch is on is no news: so
+ * a branch is searched after others have used it. All branches take turns besides, for a key that
+ * came just when its branch was searched, and because nothing tells the news of a coupler that is
+ * behind another. All branches together get half of the time at most.
  */
 #include <errno.h>
 #include <stdio.h>
 
+#include "hal/native/branches.h"
+#include "hal/native/limits.h"
 #include "hal/native/master.h"
 #include "hal/native/presence.h"
 #include "hal/native/touch.h"
@@ -16,6 +28,12 @@
 #define PAUSE_NS (500 * TXN_MS) /* after an error */
 #define MISSED_MAX 3
 #define TOUCH_NS (100 * TXN_MS)
+#define TURN_NS (250 * TXN_MS)  /* branches without a reason */
+#define QUIET_NS NATIVE_S       /* ... one that is told of by news */
+#define TURN_SHARE 4            /* ... all of them take one part in so many of the time */
+#define HOLDS_NS (150 * TXN_MS) /* a branch with a key */
+#define USED_NS (100 * TXN_MS)  /* still on: not because of this search */
+#define SPOILED_MAX 3
 
 static const uint8_t families[] = {0x01, 0x81};
 #define FAMILIES (sizeof(families) / sizeof(families[0]))
@@ -25,12 +43,32 @@ static bool is_key(const struct device *device, unsigned n, uint8_t family)
 	return device->present && device->channel == n && device->rom[0] == family;
 }
 
+static bool is_branch(unsigned n)
+{
+	return n >= NATIVE_CHANNELS;
+}
+
+/* Has this channel's round begun, and not ended? */
+static bool is_under_way(const struct touch *touch)
+{
+	return touch->searching || touch->family;
+}
+
+static bool has_key(const struct native *native, unsigned n)
+{
+	for (unsigned i = 0; i < native->table.count; i++)
+		for (size_t k = 0; k < FAMILIES; k++)
+			if (is_key(&native->table.devices[i], n, families[k]))
+				return true;
+	return false;
+}
+
 /* True: it was not there before. */
 static bool found(struct native *native, unsigned n, const uint8_t rom[8], int64_t now)
 {
 	const struct device *device = device_find(&native->table, rom);
 	bool known = device && is_key(device, n, rom[0]);
-	char text[BUS_EVENT_TEXT], name[ROM_TEXT_MAX];
+	char text[BUS_EVENT_TEXT], name[ROM_TEXT_MAX], where[BUS_EVENT_TEXT];
 
 	presence_found(native, rom, n, now);
 	device = device_find(&native->table, rom);
@@ -38,29 +76,47 @@ static bool found(struct native *native, unsigned n, const uint8_t rom[8], int64
 		return false;
 	const char *alias = device_alias(device);
 	rom_print(rom, ROM_F_I, name);
-	snprintf(text, sizeof(text), "key %s%s%.60s%s touches bus.%u", name, alias[0] ? " (" : "",
-	         alias, alias[0] ? ")" : "", n);
+	branches_name(native, n, where, sizeof(where));
+	snprintf(text, sizeof(text), "key %s%s%.60s%s touches %.40s", name, alias[0] ? " (" : "",
+	         alias, alias[0] ? ")" : "", where);
 	native_event(native, BUS_NOTE, rom, 0, text);
 	return true;
 }
 
-/* While a key is there a search takes longer: others get half of the time even so. */
-static void end_round(struct native *native, struct touch *touch, int64_t now)
+static int64_t later(int64_t a, int64_t b)
 {
+	return a > b ? a : b;
+}
+
+/* While a key is there a search takes longer: others get half of the time even so. */
+static void end_round(struct native *native, unsigned n, int64_t now)
+{
+	struct touch *touch = &native->channel[n].touch;
 	int64_t took = now - touch->round_ns;
 
 	touch->searching = false;
 	touch->family = 0;
 	touch->next_ns = now + (took < EVERY_NS / 2 ? EVERY_NS - took : took);
 	native->touched = true;
+	native->next_touch[is_branch(n)] = n % NATIVE_CHANNELS + 1;
+	if (!is_branch(n))
+		return;
+	touch->holds = has_key(native, n);
+	touch->ended_ns = now;
+	touch->next_ns = now + later(HOLDS_NS, took);
+	touch->turn_ns = now + (branches_has_news(native, n) ? QUIET_NS : TURN_NS);
+	touch->used = false;
+	native->touch_ns = now + took;
+	native->touch_in_turn_ns = now + later(TURN_NS, (TURN_SHARE - 1) * took);
 }
 
 /* The family is through; on to the next, or a pause. */
 static void end_family(struct native *native, unsigned n, int64_t now)
 {
-	struct touch *touch = &native->channel[n].touch;
+	struct channel *channel = &native->channel[n];
+	struct touch *touch = &channel->touch;
 
-	for (unsigned i = 0; i < native->table.count; i++) {
+	for (unsigned i = 0; touch->family < FAMILIES && i < native->table.count; i++) {
 		struct device *device = &native->table.devices[i];
 
 		if (is_key(device, n, families[touch->family]) && device->ok_ns < touch->begun_ns &&
@@ -68,45 +124,77 @@ static void end_family(struct native *native, unsigned n, int64_t now)
 			presence_lost(native, device);
 	}
 	touch->searching = false;
-	if (++touch->family < FAMILIES)
+	touch->family++;
+	/* Couplers in alarm come behind the keys. */
+	if (touch->family < FAMILIES + (!is_branch(n) && channel->trunk))
 		return;
-	end_round(native, touch, now);
+	end_round(native, n, now);
 }
 
-static void pass(struct native *native, unsigned n, int64_t now)
+static int begin(struct native *native, unsigned n, int64_t now)
 {
-	struct channel *channel = &native->channel[n];
-	struct touch *touch = &channel->touch;
+	struct touch *touch = &native->channel[n].touch;
+	bool alarm = touch->family == FAMILIES;
 
 	if (!touch->searching) {
-		search_begin(&touch->search, false, families[touch->family]);
+		search_begin(&touch->search, alarm,
+		             alarm ? COUPLER_FAMILY : families[touch->family]);
 		touch->searching = true;
 		touch->begun_ns = now;
-		if (touch->family == 0)
+		if (touch->family == 0) {
 			touch->round_ns = now;
+			touch->next_ns = now;
+		}
 	}
 	native_count(native, COUNT_SEARCHES);
 	native_count(native, COUNT_TRANSACTIONS);
-	int err = search_next(&touch->search, channel->link);
-	now = native_now(native);
-	if (err >= 0) {
-		master_good(native, n);
-		/* The signals of a new key are read before anything else is searched for. */
-		if (err > 0 && found(native, n, touch->search.rom, now)) {
-			end_round(native, touch, now);
-			return;
-		}
-		if (err == 0 || touch->search.last)
-			end_family(native, n, now);
-		return;
-	}
-	/* A key that is just being put on spoils the search: the next one is at once. */
-	end_round(native, touch, now);
+	int err = search_next(&touch->search, native->channel[n].link);
+	if (err <= 0 || !alarm)
+		return err;
+	err = branches_look(native, touch->search.rom);
+	return err ? err : 1;
+}
+
+/* A search failed. A key that is just being put on spoils it: then the next one is at once. */
+static void failed(struct native *native, unsigned n, int err, int64_t now)
+{
+	struct touch *touch = &native->channel[n].touch;
+	bool again = err == -EBADMSG && ++touch->spoiled <= SPOILED_MAX;
+
+	end_round(native, n, now);
 	touch->next_ns = now + (err == -EBADMSG ? 0 : PAUSE_NS);
+	if (is_branch(n) && !again) {
+		touch->next_ns = now + PAUSE_NS;
+		touch->spoiled = 0;
+		branches_news_end(native, n);
+	}
 	if (err == -EBADMSG)
 		native_count(native, COUNT_CHECKSUMS);
 	else if (err != -ECOMM)
 		master_recover(native, n, err);
+}
+
+static void pass(struct native *native, unsigned n, int64_t now)
+{
+	struct touch *touch = &native->channel[n].touch;
+	int err = begin(native, n, now);
+
+	now = native_now(native);
+	if (err < 0) {
+		failed(native, n, err, now);
+		return;
+	}
+	master_good(native, n);
+	touch->spoiled = 0;
+	if (is_branch(n))
+		branches_news_end(native, n);
+	/* The signals of a new key are read before anything else is searched for. */
+	if (err > 0 && touch->family < FAMILIES && found(native, n, touch->search.rom, now)) {
+		end_round(native, n, now);
+		return;
+	}
+	if (err == 0 || touch->search.last)
+		end_family(native, n, now);
 }
 
 bool touch_knows(const struct native *native, const struct device *device, int64_t now)
@@ -115,25 +203,62 @@ bool touch_knows(const struct native *native, const struct device *device, int64
 
 	for (size_t i = 0; i < FAMILIES; i++)
 		key |= device->rom[0] == families[i];
-	return native->touch && key && device->present && device->channel < native->channels &&
+	return native->touch && key && device->present && native_has(native, device->channel) &&
 	       device->ok_ns + TOUCH_NS > now;
 }
 
+/* When this channel is searched next. */
+static int64_t when_due(struct native *native, unsigned n, int64_t now)
+{
+	struct channel *channel = &native->channel[n];
+	struct touch *touch = &channel->touch;
+
+	if (native_held(native, n, NULL, now))
+		return native->hold_ns[channel->link->chip % NATIVE_CHANNELS];
+	if (!is_branch(n) || is_under_way(touch))
+		return touch->next_ns;
+	touch->used |= branches_news(native, n) ||
+	               (now > touch->ended_ns + USED_NS && branches_is_on(native, n));
+	if (branches_news(native, n))
+		return native->touch_ns;
+	if (touch->holds || touch->used)
+		return later(touch->next_ns, native->touch_ns);
+	return later(touch->turn_ns, native->touch_in_turn_ns);
+}
+
+static bool try(struct native *native, unsigned n, int64_t now, int64_t *next)
+{
+	if (!native_has(native, n))
+		return false;
+	int64_t when = when_due(native, n, now);
+	if (when > now) {
+		*next = when < *next ? when : *next;
+		return false;
+	}
+	native->toucher = n;
+	pass(native, n, now);
+	return true;
+}
+
+/*
+ * What has begun goes on: another channel between two families would switch a branch off. Branches
+ * come first, because each makes all others wait, and wires do not.
+ */
 bool touch_step(struct native *native, int64_t now, int64_t *next)
 {
-	for (unsigned i = 0; native->touch && i < native->channels; i++) {
-		unsigned n = (native->toucher + i) % native->channels;
-		struct channel *channel = &native->channel[n];
-		int64_t when = channel->touch.next_ns;
+	const unsigned wires = native->channels, branches = NATIVE_ALL - NATIVE_CHANNELS;
 
-		if (native_held(native, n, NULL, now))
-			when = native->hold_ns[channel->link->chip % NATIVE_CHANNELS];
-		if (when <= now) {
-			native->toucher = n + 1;
-			pass(native, n, now);
+	if (!native->touch)
+		return false;
+	if (is_under_way(&native->channel[native->toucher].touch) &&
+	    try(native, native->toucher, now, next))
+		return true;
+	for (unsigned i = 0; i < branches; i++)
+		if (try(native, NATIVE_CHANNELS + (native->next_touch[1] + i) % branches, now,
+		        next))
 			return true;
-		}
-		*next = when < *next ? when : *next;
-	}
+	for (unsigned i = 0; i < wires; i++)
+		if (try(native, (native->next_touch[0] + i) % wires, now, next))
+			return true;
 	return false;
 }

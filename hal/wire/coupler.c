@@ -95,8 +95,14 @@ static int look(struct coupler *coupler, uint8_t *info)
 		return err;
 	*info = answer[0];
 	/* silence is no event */
-	if (answer[0] != SILENT)
-		coupler->seen->events |= answer[0] >> EVENT_SHIFT & 3;
+	if (answer[0] != SILENT) {
+		struct coupler_seen *seen = coupler->seen;
+		uint8_t flags = answer[0] >> EVENT_SHIFT & 3;
+
+		seen->events |= flags;
+		seen->news |= (uint8_t)(flags & ~seen->flags);
+		seen->flags = flags;
+	}
 	return 0;
 }
 
@@ -111,6 +117,8 @@ static int try_off(struct coupler *coupler)
 		err = command(coupler, &off, 1, &answer, 1);
 	if (err)
 		return err == -EHOSTDOWN ? 0 : err;
+	if (answer == ALL_LINES_OFF)
+		coupler->seen->flags = 0;
 	return answer == ALL_LINES_OFF ? 1 : answer == SILENT ? 0 : -EBADMSG;
 }
 
@@ -140,6 +148,18 @@ static int leave(struct trunk *trunk, const struct branch *branch)
 
 	while (!err && trunk->on && !leads_to(trunk->on, branch))
 		err = switch_off(trunk->on->coupler);
+	return err;
+}
+
+int coupler_look(struct coupler *coupler)
+{
+	uint8_t info;
+	int err = leave(coupler->trunk, NULL);
+
+	if (!err)
+		err = look(coupler, &info);
+	if (!err && !coupler->seen->news && coupler->seen->flags)
+		err = switch_off(coupler);
 	return err;
 }
 

@@ -18,9 +18,13 @@
 
 enum coupler_branch { COUPLER_MAIN, COUPLER_AUX, COUPLER_BRANCHES };
 
-/* What device.own of a coupler holds: All Lines Off clears the event flags in the chip. */
+/*
+ * What device.own of a coupler holds, by branch: All Lines Off clears the event flags in the chip.
+ */
 struct coupler_seen {
-	uint8_t events; /* by branch */
+	uint8_t events; /* since the user cleared them */
+	uint8_t flags;  /* as last seen in the chip */
+	uint8_t news;   /* flags that were not set at the look before; who acts on one clears it */
 };
 
 /* The calls that go on to the link of the wire; first member of trunk and branch. */
@@ -59,6 +63,11 @@ bool trunk_fits(const struct link *under);
 void trunk_set(struct trunk *trunk, struct link *under);
 void coupler_add(struct trunk *trunk, struct branch *parent, struct coupler *coupler,
                  const uint8_t rom[8], struct coupler_seen *seen);
+/*
+ * Its status is read, for the sake of its events, while no branch of the wire is on. If it has no
+ * news, its flags are old, and it is switched off, which clears them. 0 or an error.
+ */
+int coupler_look(struct coupler *coupler);
 /* It is gone: nothing of it is switched any more. */
 void coupler_remove(struct coupler *coupler);
 /* Switch off what is on. 0 or an error. */
