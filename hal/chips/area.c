@@ -20,8 +20,8 @@ static unsigned address(uint8_t *command, uint8_t code, const struct area *area,
 	unsigned where = area->at + at;
 
 	command[0] = code;
-	command[1] = (uint8_t)where;
-	command[2] = (uint8_t)(where >> 8);
+	command[1 + area->high_first] = (uint8_t)where;
+	command[2 - area->high_first] = (uint8_t)(where >> 8);
 	return 1u + area->address_bytes;
 }
 

@@ -62,6 +62,7 @@ struct area {
 	 */
 	uint8_t fixed;
 	uint8_t address_bytes;             /* behind a command, low byte first: 0, 1, 2 */
+	bool high_first;                   /* ... the high byte first */
 	uint8_t check;                     /* enum area_check */
 	uint8_t read, write, verify, copy; /* commands; 0: there is none */
 	uint8_t recall;   /* command that makes read give what is stored, not written; 0: none */

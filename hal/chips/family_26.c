@@ -15,6 +15,7 @@
 #include "hal/chips/identity.h"
 #include "hal/chips/sensors_26.h"
 #include "hal/chips/tmp1826.h"
+#include "hal/chips/tmp1826_memory.h"
 
 #define OFFSET_AT 13 /* page 1, byte 5 */
 
@@ -60,8 +61,8 @@ static int write_offset(struct txn *txn)
 #define FLAG(text, bit) DS2438_FLAG(text, bit, WAYS)
 #define TIME(text, kind, life_, where) DS2438_TIME(text, kind, life_, where, WAYS)
 
-enum { PAGES = 1 };
-static const struct area *const areas[] = {[PAGES] = &ds2438_pages};
+enum { PAGES = 1, MEMORY };
+static const struct area *const areas[] = {[PAGES] = &ds2438_pages, [MEMORY] = &tmp1826_memory};
 
 /* The same row serves both. */
 static int read_temperature(struct txn *txn)
@@ -79,6 +80,7 @@ enum {
 	WAY_LIMIT,
 	WAY_POWER,
 	WAY_FORMAT,
+	WAY_ALERT,
 };
 static const struct property_how how[] = {
 	SENSOR_WAYS,
@@ -86,16 +88,17 @@ static const struct property_how how[] = {
 	[WAY_OFFSET] = {.read = read_offset, .write = write_offset},
 	[WAY_IDENTITY] = {.read = identity_read_type},
 	[WAY_TEMPERATURE] = {.read = read_temperature},
-	[WAY_LIMIT] = {.read = tmp1826_read_limit},
+	[WAY_LIMIT] = {.read = tmp1826_read_limit, .write = tmp1826_write_limit},
 	[WAY_POWER] = {.read = tmp1826_read_power},
 	[WAY_FORMAT] = {.read = tmp1826_read_format},
+	[WAY_ALERT] = {.read = tmp1826_read_alert, .write = tmp1826_write_alert},
 };
 
 /* How such a board marks itself is not documented. */
 #define DATANAB_BOARD KIND(0)
 
-#define OTHER(text, kind, life_, ...) \
-	PROPERTY(text, kind, life_, READ, .kinds = KIND(IS_TMP1826), __VA_ARGS__)
+#define OTHER(text, kind, life_, access_, ...) \
+	PROPERTY(text, kind, life_, access_, .kinds = KIND(IS_TMP1826), __VA_ARGS__)
 
 static const struct property properties[] = {
 	PROPERTY_DIR("B1-R1-A"),
@@ -126,6 +129,8 @@ static const struct property properties[] = {
 	DS2438_LIGHT("S3-R1-A/illuminance", 1),
 	MEASURED("VAD", FLOAT, DS2438_VAD),
 	MEASURED("VDD", FLOAT, DS2438_VDD),
+	OTHER("alert_high", YESNO, VOLATILE, BOTH, .arg = TMP1826_ALERT_HIGH, .how = WAY_ALERT),
+	OTHER("alert_low", YESNO, VOLATILE, BOTH, .arg = TMP1826_ALERT_LOW, .how = WAY_ALERT),
 	TIME("date", DATE, VOLATILE, 8),
 	PROPERTY_DIR("disconnect"),
 	TIME("disconnect/date", DATE, VOLATILE, 16),
@@ -136,15 +141,17 @@ static const struct property properties[] = {
 	DS2438_HUMIDITY("humidity", HIH3600),
 	IDENTITY_ROW(WAY_IDENTITY, .kinds = KIND(IS_DS2438) | KIND(IS_TMP1826) | KIND(IS_NEITHER)),
 	DS2438_LATEST(WAYS),
+	OTHER("memory", BINARY, VOLATILE, BOTH, .size = 256, FIELD(MEMORY)),
 	PROPERTY("offset", UNSIGNED, STABLE, BOTH, .negative = true, .how = WAY_OFFSET),
 	PROPERTY_DIR("pages"),
 	DS2438_PAGES(WAYS),
-	OTHER("power", YESNO, VOLATILE, .how = WAY_POWER),
+	OTHER("power", YESNO, VOLATILE, READ, .how = WAY_POWER),
 	PROPERTY("temperature", TEMPERATURE, VOLATILE, READ, .arg = DS2438_TEMPERATURE,
                  .kinds = KIND(IS_DS2438) | KIND(IS_TMP1826), .how = WAY_TEMPERATURE),
-	OTHER("temphigh", TEMPERATURE, STABLE, .arg = TMP1826_HIGH, .how = WAY_LIMIT),
-	OTHER("templow", TEMPERATURE, STABLE, .arg = TMP1826_LOW, .how = WAY_LIMIT),
-	OTHER("tempres", UNSIGNED, STABLE, .how = WAY_FORMAT),
+	OTHER("temphigh", TEMPERATURE, STABLE, BOTH, .arg = TMP1826_HIGH, .how = WAY_LIMIT),
+	OTHER("templow", TEMPERATURE, STABLE, BOTH, .arg = TMP1826_LOW, .how = WAY_LIMIT),
+	OTHER("tempoffset", TEMPGAP, STABLE, BOTH, .arg = TMP1826_OFFSET, .how = WAY_LIMIT),
+	OTHER("tempres", UNSIGNED, STABLE, READ, .how = WAY_FORMAT),
 	TIME("udate", UNSIGNED, SECOND, 8),
 	MEASURED("vis", FLOAT, DS2438_VIS),
 };

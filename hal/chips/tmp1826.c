@@ -27,13 +27,13 @@
 #define FIRST 9  /* bytes of a page with its CRC8 */
 #define BYTES 17 /* behind the page's number */
 
-/* The scratchpad: temperature, status, 3 bytes of settings at 4, limits and offset from 9 on. */
-#define PAD 18
-enum { STATUS = 2, RESERVED_3, CONFIG_1, RESERVED_7 = 7, RESERVED_15 = 15, RESERVED_16 };
-enum { DATA_VALID = 0x08, FED_BY_BUS = 0x04 }; /* of the status */
-enum { PRECISE = 0x80, AVERAGES = 0x08 };      /* of CONFIG_1 */
-#define CONVERT_NS (8 * TXN_MS)                /* tDELAY and the longest tACT: 6.5 ms */
-#define AVERAGE_NS (55 * TXN_MS)               /* eight of them */
+#define PAD TMP1826_PAD
+enum { STATUS = TMP1826_STATUS, RESERVED_3, CONFIG_1 = TMP1826_SETTINGS };
+enum { RESERVED_7 = 7, RESERVED_15 = 15, RESERVED_16 };
+enum { DATA_VALID = 0x08, FED_BY_BUS = 0x04, ALERT_SHIFT = 6 }; /* of the status */
+enum { AVERAGES = 0x08 };                                       /* of CONFIG_1 */
+#define CONVERT_NS (8 * TXN_MS)  /* tDELAY and the longest tACT: 6.5 ms */
+#define AVERAGE_NS (55 * TXN_MS) /* eight of them */
 
 struct look {
 	uint8_t bytes[BYTES];
@@ -133,8 +133,7 @@ struct measurement {
 	uint8_t config, looks;
 };
 
-/* To read the status clears its flags: that there is a new result, and the alarms. */
-static int read_pad(struct txn *txn, uint8_t pad[PAD])
+int tmp1826_read_pad(struct txn *txn, uint8_t pad[PAD])
 {
 	static const uint8_t command = READ_SCRATCHPAD;
 	int err = txn_command(txn, &command, 1);
@@ -145,15 +144,16 @@ static int read_pad(struct txn *txn, uint8_t pad[PAD])
 		return err;
 	if (rom_crc8(pad, FIRST) || rom_crc8(pad + FIRST, PAD - FIRST) || all_are(pad, PAD, 0))
 		return -EBADMSG;
+	ds2438_of(txn)->alerts |= pad[STATUS] >> ALERT_SHIFT;
 	txn->device->power = pad[STATUS] & FED_BY_BUS ? POWER_PARASITE : POWER_EXTERNAL;
 	return 0;
 }
 
-static double celsius(const uint8_t pad[PAD], unsigned at)
+double tmp1826_celsius(const uint8_t pad[PAD], unsigned at)
 {
 	int raw = (int16_t)(pad[at] | pad[at + 1] << 8);
 
-	return pad[CONFIG_1] & PRECISE ? raw / 128.0 : raw / 16.0;
+	return pad[CONFIG_1] & TMP1826_PRECISE ? raw / 128.0 : raw / 16.0;
 }
 
 /*
@@ -176,12 +176,12 @@ int tmp1826_read_temperature(struct txn *txn)
 		err = txn_command(txn, &command, 1);
 		return err ? err : txn_wait(txn, ns);
 	}
-	err = read_pad(txn, pad);
+	err = tmp1826_read_pad(txn, pad);
 	if (err)
 		return err;
 	bool fresh = pad[STATUS] & DATA_VALID;
 	if (txn->phase == 2) {
-		txn->number[0] = celsius(pad, 0);
+		txn->number[0] = tmp1826_celsius(pad, 0);
 		return fresh ? 0 : -EBADMSG;
 	}
 	visit->config = pad[CONFIG_1];
@@ -192,17 +192,17 @@ int tmp1826_read_temperature(struct txn *txn)
 int tmp1826_read_limit(struct txn *txn)
 {
 	uint8_t pad[PAD];
-	int err = read_pad(txn, pad);
+	int err = tmp1826_read_pad(txn, pad);
 
 	if (!err)
-		txn->number[0] = celsius(pad, (unsigned)txn->property->arg);
+		txn->number[0] = tmp1826_celsius(pad, (unsigned)txn->property->arg);
 	return err;
 }
 
 int tmp1826_read_power(struct txn *txn)
 {
 	uint8_t pad[PAD];
-	int err = read_pad(txn, pad);
+	int err = tmp1826_read_pad(txn, pad);
 
 	if (!err)
 		txn->number[0] = (pad[STATUS] & FED_BY_BUS) == 0;
@@ -212,9 +212,9 @@ int tmp1826_read_power(struct txn *txn)
 int tmp1826_read_format(struct txn *txn)
 {
 	uint8_t pad[PAD];
-	int err = read_pad(txn, pad);
+	int err = tmp1826_read_pad(txn, pad);
 
 	if (!err)
-		txn->number[0] = pad[CONFIG_1] & PRECISE ? 16 : 12;
+		txn->number[0] = pad[CONFIG_1] & TMP1826_PRECISE ? 16 : 12;
 	return err;
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * TMP1826 and TMP1827: thermometers that answer with the family code of the DS2438. Nothing here
- * writes to such a chip but Convert T. They cannot be told from each other; both are "TMP1826".
+ * writes to such a chip but Convert T, and what a user writes. They cannot be told from each other;
+ * both are "TMP1826".
  */
 #ifndef HAL_CHIPS_TMP1826_H
 #define HAL_CHIPS_TMP1826_H
@@ -15,6 +16,18 @@ enum { IS_DS2438 = 1, IS_TMP1826, IS_NEITHER };
 int tmp1826_identify(struct txn *txn);
 unsigned tmp1826_kind(const struct device *device);
 
+/* Of the scratchpad: temperature, status, 3 bytes of settings, limits and offset; 2 checksums. */
+#define TMP1826_PAD 18
+enum { TMP1826_STATUS = 2, TMP1826_SETTINGS = 4 };
+enum { TMP1826_PRECISE = 0x80 }; /* of the first byte of the settings: 1/128 degrees, not 1/16 */
+
+/*
+ * To read the status clears its flags: that there is a new result, and the alerts, which are kept
+ * in ds2438.alerts. -EBADMSG: a checksum is wrong.
+ */
+int tmp1826_read_pad(struct txn *txn, uint8_t pad[TMP1826_PAD]);
+/* Degrees of a register. */
+double tmp1826_celsius(const uint8_t pad[TMP1826_PAD], unsigned at);
 int tmp1826_read_temperature(struct txn *txn);
 /* arg: where the register begins in the scratchpad. */
 int tmp1826_read_limit(struct txn *txn);
@@ -25,5 +38,7 @@ int tmp1826_read_format(struct txn *txn);
 /* Places in the scratchpad. */
 #define TMP1826_LOW 9
 #define TMP1826_HIGH 11
+#define TMP1826_OFFSET 13
+enum { TMP1826_ALERT_LOW = 1, TMP1826_ALERT_HIGH = 2 };
 
 #endif

@@ -2,8 +2,9 @@
 /*
  * TMP1826 and TMP1827 (data sheets SBOSA45, SBOSA15): a thermometer of 16 bits with 2 kbit of
  * EEPROM. They answer with the family code of the DS2438. The command codes are those of the data
- * sheets' tables and of published drivers; the time of a write is not in what could be had and is
- * taken as 21 ms. Not simulated: pins, flexible addresses, arbitration, the modes in which the chip
+ * sheets' tables and of published drivers, which cite the times of the EEPROM, too. The maker's
+ * pages say that a CRC8 follows each block of the EEPROM, drivers read none: the chip is either.
+ * Not simulated: pins, flexible addresses, arbitration, the modes in which the chip
  * converts by itself, the TMP1827's SHA-256.
  */
 #include <errno.h>
@@ -20,12 +21,13 @@ enum { TEMP_FMT = 0x80, ALWAYS = 0x40, LONG = 0x20, ALERT_MODE = 0x10, AVERAGE =
 enum { OD_EN = 0x80, LOCK_EN = 0x01 };
 enum { ALERT_HIGH = 0x80, ALERT_LOW = 0x40, RESERVED = 0x30, DATA_VALID = 0x08, FED_BY_BUS = 0x04 };
 enum { KEY = 0xA5, LOCK_PAGE = 0x80, LOCK_CODE = 0x55 };
-enum work { CONVERSION, COPY_SETTINGS, COPY_MEMORY };
+enum work { CONVERSION, COPY_SETTINGS, COPY_MEMORY, FETCH };
 
 #define DELAY_NS 300000  /* tDELAY */
 #define SHORT_NS 3370000 /* tACT with CONV_TIME_SEL 0 and 1, at most */
 #define LONG_NS 6120000
 #define PROGRAM_NS (21 * NS_PER_MS)
+#define READ_IDLE_NS 560000 /* tREADIDLE */
 
 static struct sim_tmp1826 *state(struct sim_slave *slave)
 {
@@ -84,6 +86,24 @@ static bool is_locked(const struct sim_tmp1826 *s)
 	return s->locked_pages >> (s->target / SIM_TMP1826_PAGE) & 1;
 }
 
+/* The block that was fetched; behind the last one are ones. */
+static void send_fetched(struct sim_slave *slave)
+{
+	struct sim_tmp1826 *s = state(slave);
+	uint8_t out[SIM_TMP1826_BLOCK + 1];
+
+	if (slave->layer != SIM_FUNCTION)
+		return;
+	if (slave->address >= SIM_TMP1826_MEMORY) {
+		sim_end(slave);
+		return;
+	}
+	memcpy(out, s->memory + slave->address, SIM_TMP1826_BLOCK);
+	out[SIM_TMP1826_BLOCK] = sim_crc8(0, out, SIM_TMP1826_BLOCK);
+	slave->address += SIM_TMP1826_BLOCK;
+	sim_send(slave, out, SIM_TMP1826_BLOCK + s->checked_blocks);
+}
+
 static void worked(struct sim_slave *slave, int64_t t)
 {
 	struct sim_tmp1826 *s = state(slave);
@@ -100,6 +120,9 @@ static void worked(struct sim_slave *slave, int64_t t)
 			s->locked_pages |= (uint8_t)(1u << (s->target & 7));
 		else if (s->target < SIM_TMP1826_MEMORY && !is_locked(s))
 			memcpy(s->memory + s->target, s->second, SIM_TMP1826_BLOCK);
+		break;
+	case FETCH:
+		send_fetched(slave);
 		break;
 	}
 }
@@ -251,17 +274,16 @@ static void copy_block(struct sim_slave *slave, int64_t t)
 		sim_end(slave);
 }
 
-/* No checksum. Each block begins after tIDLE, in which the line stays high: not simulated. */
-static void send_memory(struct sim_slave *slave, int64_t t)
+/* Before each block the line has to stay high while the chip fetches it. */
+static void fetch(struct sim_slave *slave, int64_t t)
 {
-	(void)t;
-	sim_send_memory(slave, state(slave)->memory, SIM_TMP1826_MEMORY, 0);
+	work(slave, FETCH, READ_IDLE_NS, t);
 }
 
 static void read_memory(struct sim_slave *slave, int64_t t)
 {
 	slave->address = address(slave) & (uint16_t) ~(SIM_TMP1826_BLOCK - 1);
-	send_memory(slave, t);
+	fetch(slave, t);
 }
 
 static const struct sim_function functions[] = {
@@ -274,7 +296,7 @@ static const struct sim_function functions[] = {
 	{.code = 0x0F, .takes = 2, .start = begin_block, .byte = write_block},
 	{.code = 0xAA, .takes = 2, .start = read_block, .next = end_block},
 	{.code = 0x55, .takes = 1, .start = copy_block},
-	{.code = 0xF0, .takes = 2, .start = read_memory, .next = send_memory},
+	{.code = 0xF0, .takes = 2, .start = read_memory, .next = fetch},
 	{0},
 };
 

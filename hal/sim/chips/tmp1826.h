@@ -23,6 +23,7 @@ struct sim_tmp1826 {
 	uint16_t target; /* of the second scratchpad */
 	uint8_t locked_pages;
 	uint8_t work;
+	bool checked_blocks; /* a CRC8 follows each block of the memory that is read */
 };
 
 #endif

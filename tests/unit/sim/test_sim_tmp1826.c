@@ -140,7 +140,14 @@ static void copy(uint8_t key)
 	hand.now += 22 * HAND_MS;
 }
 
-static void test_the_memory_is_written_by_blocks_of_eight_and_read_without_a_checksum(void)
+/* Read EEPROM from an address on; the line stays high for tREADIDLE. */
+static void read_from(uint8_t at)
+{
+	hand_skip(&hand, 3, 0xF0, 0, at);
+	hand.now += HAND_MS;
+}
+
+static void test_the_memory_is_written_by_blocks_of_eight_and_read_by_them(void)
 {
 	const uint8_t sent[10] = {0, 0x28, 1, 2, 3, 4, 5, 6, 7, 8};
 	uint8_t out[12];
@@ -153,13 +160,30 @@ static void test_the_memory_is_written_by_blocks_of_eight_and_read_without_a_che
 	hand_skip(&hand, 3, 0xAA, 0, 0x20);
 	TEST_ASSERT_EQUAL_HEX8_MESSAGE(0xFF, hand_byte(&hand), "another address");
 	copy(0xA4);
-	hand_skip(&hand, 3, 0xF0, 0, 0x28);
+	read_from(0x28);
 	TEST_ASSERT_EQUAL_HEX8(0xFF, hand_byte(&hand));
 	copy(0xA5);
-	hand_skip(&hand, 3, 0xF0, 0, 0x2B); /* from the beginning of the block */
+	read_from(0x2B); /* from the beginning of the block */
+	hand_read(&hand, out, 8);
+	TEST_ASSERT_EQUAL_HEX8_ARRAY(sent + 2, out, 8);
+	hand.now += HAND_MS;
+	TEST_ASSERT_EQUAL_HEX8_MESSAGE(0xFF, hand_byte(&hand), "the next block");
+	((struct sim_tmp1826 *)slave->state)->checked_blocks = true;
+	read_from(0x28);
 	hand_read(&hand, out, 9);
 	TEST_ASSERT_EQUAL_HEX8_ARRAY(sent + 2, out, 8);
-	TEST_ASSERT_EQUAL_HEX8(0xFF, out[8]);
+	TEST_ASSERT_EQUAL_HEX8(sim_crc8(0, out, 8), out[8]);
+}
+
+static void test_a_block_comes_after_the_time_that_it_takes_to_fetch_it(void)
+{
+	struct sim_tmp1826 *state = slave->state;
+
+	state->memory[0] = 0x5A;
+	hand_skip(&hand, 3, 0xF0, 0, 0);
+	TEST_ASSERT_EQUAL_HEX8(0xFF, hand_byte(&hand));
+	read_from(0);
+	TEST_ASSERT_EQUAL_HEX8(0x5A, hand_byte(&hand));
 }
 
 static void test_a_page_that_is_locked_keeps_its_bytes(void)
@@ -171,11 +195,11 @@ static void test_a_page_that_is_locked_keeps_its_bytes(void)
 	copy(0xA5);
 	stage(0x28, 9);
 	copy(0xA5);
-	hand_skip(&hand, 3, 0xF0, 0, 0x28);
+	read_from(0x28);
 	TEST_ASSERT_EQUAL_HEX8(1, hand_byte(&hand));
 	stage(0x48, 9);
 	copy(0xA5);
-	hand_skip(&hand, 3, 0xF0, 0, 0x48);
+	read_from(0x48);
 	TEST_ASSERT_EQUAL_HEX8(9, hand_byte(&hand));
 }
 
@@ -188,7 +212,8 @@ int main(void)
 	RUN_TEST(test_a_conversion_takes_its_time_and_shows_no_busy_slot);
 	RUN_TEST(test_settings_last_if_they_are_copied);
 	RUN_TEST(test_an_alert_answers_the_alarm_search);
-	RUN_TEST(test_the_memory_is_written_by_blocks_of_eight_and_read_without_a_checksum);
+	RUN_TEST(test_the_memory_is_written_by_blocks_of_eight_and_read_by_them);
+	RUN_TEST(test_a_block_comes_after_the_time_that_it_takes_to_fetch_it);
 	RUN_TEST(test_a_page_that_is_locked_keeps_its_bytes);
 	return UNITY_END();
 }
