@@ -10,7 +10,7 @@
 
 int reader_fail(struct sensor_reader *r, const char *format, ...)
 {
-	char reason[120];
+	char reason[160];
 	va_list args;
 
 	va_start(args, format);
@@ -18,6 +18,27 @@ int reader_fail(struct sensor_reader *r, const char *format, ...)
 	va_end(args);
 	snprintf(r->why, r->why_size, "%s:%u: %s", r->name, r->line, reason);
 	return -EINVAL;
+}
+
+struct sensor_kind *reader_kind(const struct sensor_reader *r)
+{
+	return &r->table->kinds[r->table->kind_count - 1];
+}
+
+int reader_line(struct sensor_reader *r, const char **text, char line[SENSOR_LINE])
+{
+	size_t all = strcspn(*text, "\r\n"), n = strcspn(*text, "#\r\n");
+
+	r->line++;
+	r->at = line;
+	line[0] = '\0';
+	if (n >= SENSOR_LINE)
+		return reader_fail(r, "a line of more than %d characters", SENSOR_LINE - 1);
+	memcpy(line, *text, n);
+	line[n] = '\0';
+	*text += all;
+	*text += (*text)[0] == '\r' && (*text)[1] == '\n' ? 2 : (*text)[0] != '\0';
+	return 0;
 }
 
 void reader_skip(struct sensor_reader *r)
@@ -97,4 +118,29 @@ int reader_equals(struct sensor_reader *r)
 		return reader_fail(r, "expected = at \"%.24s\"", r->at);
 	r->at++;
 	return 0;
+}
+
+int reader_range(struct sensor_reader *r, double *low, double *high)
+{
+	int err = reader_real(r, low);
+
+	if (!err)
+		err = reader_take(r, "to") ? reader_real(r, high) : reader_fail(r, "expected to");
+	return err || *low < *high ? err : reader_fail(r, "a range that is empty");
+}
+
+int reader_formula(struct sensor_reader *r, bool set, struct formula *out)
+{
+	const struct sensor_kind *kind = reader_kind(r);
+	const struct formula_scope scope = {.bytes = kind->bytes,
+	                                    .names = kind->names,
+	                                    .name_count = kind->name_count,
+	                                    .set = set};
+	char reason[80];
+	int err;
+
+	reader_skip(r);
+	const char *begin = r->at;
+	err = formula_parse(&r->table->pool, &scope, &r->at, out, reason, sizeof(reason));
+	return err == -EINVAL ? reader_fail(r, "%s, in the formula \"%.40s\"", reason, begin) : err;
 }

@@ -11,9 +11,9 @@
 
 #define BRIDGES_MAX 64
 #define PLACES_MAX 32
-#define KIND_VALUES 200 /* the number of one is a byte (bridge.c) */
-#define KIND_STEPS 255  /* likewise */
-#define WAIT_MAX_MS 10000
+#define KIND_VALUES 200   /* the number of one is a byte (bridge.c) */
+#define KIND_STEPS 255    /* likewise */
+#define WAIT_MAX_MS 10000 /* of one line, and of all of a sensor */
 
 #define SIZE(list) (sizeof(list) / sizeof((list)[0]))
 
@@ -32,24 +32,6 @@ static void *grow(void *list, unsigned *count, size_t size)
 	return bigger + (*count)++ * size;
 }
 
-static struct sensor_kind *kind_now(struct sensor_reader *r)
-{
-	return &r->table->kinds[r->table->kind_count - 1];
-}
-
-static int formula(struct sensor_reader *r, bool set, struct formula *out)
-{
-	const struct sensor_kind *kind = kind_now(r);
-	const struct formula_scope scope = {.bytes = kind->bytes,
-	                                    .names = kind->names,
-	                                    .name_count = kind->name_count,
-	                                    .set = set};
-	char reason[80];
-	int err = formula_parse(&r->table->pool, &scope, &r->at, out, reason, sizeof(reason));
-
-	return err == -EINVAL ? reader_fail(r, "%s", reason) : err;
-}
-
 static bool is_set(const uint32_t *bits, unsigned at)
 {
 	return bits[at / 32] >> at % 32 & 1;
@@ -64,7 +46,7 @@ static struct sensor_step *step(struct sensor_reader *r, enum sensor_step_kind k
 
 	if (step) {
 		step->kind = (uint8_t)kind;
-		kind_now(r)->steps++;
+		reader_kind(r)->steps++;
 	}
 	return step;
 }
@@ -83,7 +65,7 @@ static int written(struct sensor_reader *r, bool set, unsigned *first, unsigned 
 			return -ENOMEM;
 		if (*r->at != '(' && (*r->at < '0' || *r->at > '9'))
 			return reader_fail(r, "expected a byte at \"%.24s\"", r->at);
-		err = formula(r, set, byte);
+		err = reader_formula(r, set, byte);
 		if (!err && !formula_is_byte(&table->pool, *byte))
 			err = reader_fail(r, "a byte that is not from 0 to 255");
 	}
@@ -96,7 +78,7 @@ static int written(struct sensor_reader *r, bool set, unsigned *first, unsigned 
 /* Room for n more bytes that are read. */
 static int bytes_read(struct sensor_reader *r, struct sensor_step *to, bool lone)
 {
-	struct sensor_kind *kind = kind_now(r);
+	struct sensor_kind *kind = reader_kind(r);
 	unsigned n;
 	int err = reader_whole(r, 1, SENSOR_AT_ONCE, &n);
 
@@ -152,8 +134,12 @@ static int read_wait(struct sensor_reader *r)
 	    !(number > 0 && number <= WAIT_MAX_MS))
 		return reader_fail(r, "expected a time as 8.3ms, at most %d ms, at \"%.24s\"",
 		                   WAIT_MAX_MS, r->at);
-	r->at = end + 2;
 	to->wait_ns = (int64_t)(number * TXN_MS);
+	r->wait_ns += to->wait_ns;
+	if (r->wait_ns > WAIT_MAX_MS * TXN_MS)
+		return reader_fail(r, "a sensor that waits for more than %d ms in all",
+		                   WAIT_MAX_MS);
+	r->at = end + 2;
 	return 0;
 }
 
@@ -171,7 +157,7 @@ static int read_crc8(struct sensor_reader *r)
 		err = reader_whole(r, 0, 255, &start);
 	if (err)
 		return err;
-	if (at + n + 1 > kind_now(r)->bytes)
+	if (at + n + 1 > reader_kind(r)->bytes)
 		return reader_fail(r, "bytes that are not read before");
 	to->at = (uint8_t)at;
 	to->n = (uint8_t)n;
@@ -190,11 +176,11 @@ static int read_check(struct sensor_reader *r)
 
 	if (reader_take(r, "crc8"))
 		return read_crc8(r);
-	err = formula(r, false, &a);
+	err = reader_formula(r, false, &a);
 	if (!err)
 		err = reader_equals(r);
 	if (!err)
-		err = formula(r, false, &b);
+		err = reader_formula(r, false, &b);
 	to = err ? NULL : step(r, SENSOR_SAME);
 	if (!to)
 		return err ? err : -ENOMEM;
@@ -205,7 +191,7 @@ static int read_check(struct sensor_reader *r)
 
 static int read_let(struct sensor_reader *r)
 {
-	struct sensor_kind *kind = kind_now(r);
+	struct sensor_kind *kind = reader_kind(r);
 	struct sensor_step *to = step(r, SENSOR_LET);
 	char text[FORMULA_NAME];
 	int err = to ? reader_name(r, text) : -ENOMEM;
@@ -215,7 +201,7 @@ static int read_let(struct sensor_reader *r)
 	if (!err)
 		err = reader_equals(r);
 	if (!err)
-		err = formula(r, false, &to->a);
+		err = reader_formula(r, false, &to->a);
 	for (unsigned i = 0; !err && i < kind->name_count; i++)
 		if (strcmp(kind->names[i], text) == 0)
 			err = reader_fail(r, "there is a name %s already", text);
@@ -230,7 +216,7 @@ static int read_let(struct sensor_reader *r)
 
 static struct sensor_value *value_named(struct sensor_reader *r, const char *text)
 {
-	const struct sensor_kind *kind = kind_now(r);
+	const struct sensor_kind *kind = reader_kind(r);
 
 	for (unsigned i = 0; i < kind->values; i++) {
 		struct sensor_value *value = &r->table->values[kind->first_value + i];
@@ -256,13 +242,19 @@ static uint8_t type_of(struct sensor_reader *r)
 	return PROPERTY_FLOAT;
 }
 
+/* Its type bounds it: anything beyond is refused. Of others nobody but the author knows. */
+static bool is_bounded(uint8_t type)
+{
+	return type == PROPERTY_UNSIGNED || type == PROPERTY_INTEGER || type == PROPERTY_YESNO;
+}
+
 static int read_value(struct sensor_reader *r)
 {
 	struct sensor_table *table = r->table;
 	struct sensor_value *value, found = {0};
 	int err = reader_name(r, found.name);
 
-	if (!err && kind_now(r)->values == KIND_VALUES)
+	if (!err && reader_kind(r)->values == KIND_VALUES)
 		return reader_fail(r, "a sensor has %d values at most", KIND_VALUES);
 	if (!err && value_named(r, found.name))
 		return reader_fail(r, "there is a value %s already", found.name);
@@ -270,21 +262,20 @@ static int read_value(struct sensor_reader *r)
 	if (!err)
 		err = reader_equals(r);
 	if (!err)
-		err = formula(r, false, &found.formula);
+		err = reader_formula(r, false, &found.formula);
 	found.ranged = !err && reader_take(r, "range");
-	if (found.ranged) {
-		err = reader_real(r, &found.low);
-		if (!err)
-			err = reader_take(r, "to") ? reader_real(r, &found.high)
-			                           : reader_fail(r, "expected to");
-		if (!err && !(found.low < found.high))
-			err = reader_fail(r, "a range that is empty");
-	}
+	if (found.ranged)
+		err = reader_range(r, &found.low, &found.high);
+	else if (!err && !is_bounded(found.type))
+		err = reader_fail(r,
+		                  "value %s has no range: add range LOW to HIGH, what the "
+		                  "sensor can mean",
+		                  found.name);
 	value = err ? NULL : grow(&table->values, &table->value_count, sizeof(*value));
 	if (!value)
 		return err ? err : -ENOMEM;
 	*value = found;
-	kind_now(r)->values++;
+	reader_kind(r)->values++;
 	return 0;
 }
 
@@ -310,7 +301,7 @@ static int read_set(struct sensor_reader *r)
 /* What the kind that ends here lacks. */
 static int end_kind(struct sensor_reader *r)
 {
-	const struct sensor_kind *kind = r->table->kind_count ? kind_now(r) : NULL;
+	const struct sensor_kind *kind = r->table->kind_count ? reader_kind(r) : NULL;
 
 	if (!kind)
 		return 0;
@@ -367,6 +358,7 @@ static int read_sensor(struct sensor_reader *r)
 	kind->first_value = table->value_count;
 	memset(r->checked, 0, sizeof(r->checked));
 	memset(r->lone, 0, sizeof(r->lone));
+	r->wait_ns = 0;
 	return 0;
 }
 
@@ -459,20 +451,12 @@ int sensor_table_parse(struct sensor_table *table, const char *file, const char 
 	struct sensor_reader r = {.table = table, .name = file, .why = why, .why_size = why_size};
 	int err = 0;
 
-	while (!err && *text) {
-		char line[SENSOR_LINE];
-		size_t all = strcspn(text, "\n"), n = strcspn(text, "#\r\n");
+	char line[SENSOR_LINE];
 
-		r.line++;
-		r.at = line;
-		if (n >= sizeof(line))
-			return reader_fail(&r, "a line of more than %d characters",
-			                   SENSOR_LINE - 1);
-		memcpy(line, text, n);
-		line[n] = '\0';
-		if (!reader_ended(&r))
+	while (!err && *text) {
+		err = reader_line(&r, &text, line);
+		if (!err && !reader_ended(&r))
 			err = read_statement(&r);
-		text += all + (text[all] == '\n');
 	}
 	if (!err && !table->bridge_count)
 		err = end_kind(&r);

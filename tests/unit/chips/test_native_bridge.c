@@ -348,15 +348,15 @@ static void test_errors_of_a_table_have_their_line_and_reason(void)
 		{"at 19.01005DDF0300 sht4x 0x88\n", ":69:", "from 8 to 119"},
 		{"at 19.01005DDF0300 sht4x 0x44\nat 19.01005DDF0300 sht4x 0x45\n",
 	         ":70:", "of this name already"},
-		{"sensor x\n\twrite 1 read 1\n\tvalue present = 1\nat 19.01005DDF0300 x 0x44\n",
+		{"sensor x\n\twrite 1 read 1\n\tvalue present unsigned = 1\nat 19.01005DDF0300 x 0x44\n",
 	         ":72:", "of this name already"},
 		{"at 19.01005DDF0300 sht4x 0x44 as family\n", ":69:", "of this name already"},
-		{"sensor x\n\twrite 1 read 1\n\tlet a = 1\n\tlet a = 2\n\tvalue v = a\n",
+		{"sensor x\n\twrite 1 read 1\n\tlet a = 1\n\tlet a = 2\n\tvalue v unsigned = a\n",
 	         ":72:", "a name a already"},
-		{"sensor x\n\twrite 1\n\tvalue v = 1\n", ":71:", "reads nothing"},
+		{"sensor x\n\twrite 1\n\tvalue v unsigned = 1\n", ":71:", "reads nothing"},
 		{"sensor x\n\twrite 300\n", ":70:", "not from 0 to 255"},
 		{"sensor x\n\twrite 1 read 2\n\tvalue v = u16(1)\n", ":71:", "not read before"},
-		{"sensor x\n\tread 2\n\tvalue v = u16(0)\n", ":71:", "has no checksum"},
+		{"sensor x\n\tread 2\n\tvalue v unsigned = u16(0)\n", ":71:", "has no checksum"},
 		{"sensor x\n\twrite 1 read 40\n", ":70:", "from 1 to 32"},
 		{"sensor x\n\twait 9\n", ":70:", "a time as"},
 		{"sensor x\n\twrite 1 read 1\n\tvalue v = (u8(0)\n", ":71:", "expected )"},
@@ -366,6 +366,22 @@ static void test_errors_of_a_table_have_their_line_and_reason(void)
 		{"sensor x\n", ":69:", "has no value"},
 		{"hello\n", ":69:", "expected sensor"},
 		{"sensor x\n\twrite 1 read 1\n\tvalue v = u8(0) range 5 to 1\n", ":71:", "empty"},
+		{"sensor x\n\twrite 1 read 1\n\tvalue v = u8(0)\n", ":71:", "v has no range"},
+		{"sensor x\n\twrite 1 read 1\n\tvalue v temperature = u8(0)\n",
+	         ":71:", "v has no range"},
+		{"sensor x\n\twrite 1 read 1\n\tvalue v unsigned = 2 * u8(0) + z\n",
+	         ":71:", "no such name at \"z\", in the formula \"2 * u8(0) + z\""},
+		{"sensor x\n\twrite 1 read 1\n\tlet a = 3 * (u8(0)\n",
+	         ":71:", "in the formula \"3 * (u8(0)\""},
+		{"sensor x\n\twrite (u8(0))\n", ":70:", "in the formula \"(u8(0))\""},
+		{"sensor x\n\twrite 1 read 1\n\twait 6000ms\n\twait 4000.1ms\n",
+	         ":72:", "more than 10000 ms in all"},
+		/* Lines that end as those of other systems are lines, too. */
+		{"sensor x\r\twrite 1 read 1\r\tvalue v = 1 +\r", ":71:", "expected a number"},
+		{"sensor x\r\n\twrite 1 read 1\r\n\tvalue v = 1 +\r\n",
+	         ":71:", "expected a number"},
+		{"sensor x # a comment\rhello\r", ":70:", "expected sensor"},
+		{"sensor x\n\r\rhello\n", ":72:", "expected sensor"},
 	};
 
 	begin();
@@ -376,6 +392,19 @@ static void test_errors_of_a_table_have_their_line_and_reason(void)
 		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, tables[i].line), why);
 		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, tables[i].reason), why);
 	}
+}
+
+/* Of one sensor; the waits of another are its own. */
+static void test_a_sensor_may_wait_for_10_s_in_all(void)
+{
+	static const char lines[] = "sensor x\n\twrite 1 read 1\n\twait 6000ms\n\twait 4000ms\n"
+				    "\tvalue v unsigned = u8(0)\n"
+				    "sensor y\n\twait 10000ms\n\twrite 1 read 1\n"
+				    "\tvalue v = u8(0) / 2 range 0 to 127.5\n";
+	char why[160] = "";
+
+	begin();
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, take(lines, why, sizeof(why)), why);
 }
 
 /* More lines than a measurement can count would never end. */
@@ -390,7 +419,7 @@ static void test_a_sensor_has_255_lines_to_do_at_most(void)
 
 		for (unsigned i = 0; i < checks; i++)
 			n += snprintf(lines + n, sizeof(lines) - (size_t)n, "%s", line);
-		snprintf(lines + n, sizeof(lines) - (size_t)n, "\tvalue v = u8(0)\n");
+		snprintf(lines + n, sizeof(lines) - (size_t)n, "\tvalue v unsigned = u8(0)\n");
 		TEST_ASSERT_EQUAL_INT_MESSAGE(checks == 254 ? 0 : -EINVAL,
 		                              take(lines, why, sizeof(why)), why);
 	}
@@ -453,6 +482,7 @@ int main(void)
 	over_both();
 	RUN_TEST(test_errors_of_a_table_have_their_line_and_reason);
 	RUN_TEST(test_a_sensor_has_255_lines_to_do_at_most);
+	RUN_TEST(test_a_sensor_may_wait_for_10_s_in_all);
 	RUN_TEST(test_a_file_that_cannot_be_read_is_refused);
 	RUN_TEST(test_random_tables_are_refused_or_taken_but_never_crash);
 	part = "DS28E18";
