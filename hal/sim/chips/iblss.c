@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * iButtonLink SmartSlave SS-WALL-TH: temperature and humidity. No data sheet can be had; the facts
- * are those of OWFS's driver.
+ * are those of OWFS's driver. What its checksum covers nobody knows: the page alone, or, with the
+ * option "command" 1, what was sent before it, too; with 2 it fits neither.
  */
+#include <errno.h>
 #include <string.h>
 
 #include "hal/bus/time.h"
@@ -19,6 +21,7 @@ enum { PAGE = 32 };
 struct iblss {
 	uint8_t page[PAGE], led;
 	int64_t done; /* the conversion under way ends then; 0: none is */
+	uint8_t covers;
 };
 
 static struct iblss *state(struct sim_slave *slave)
@@ -29,7 +32,8 @@ static struct iblss *state(struct sim_slave *slave)
 static void power_on(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
-	*state(slave) = (struct iblss){.page = {[SUBTYPE] = 0x04, [VERSION] = 0x12}};
+	*state(slave) = (struct iblss){.page = {[SUBTYPE] = 0x04, [VERSION] = 0x12},
+	                               .covers = state(slave)->covers};
 }
 
 static void put(uint8_t *at, double value)
@@ -61,7 +65,16 @@ static void convert(struct sim_slave *slave, int64_t t)
 	sim_end(slave);
 }
 
-/* The checksum is that of the page alone. */
+static int option(struct sim_slave *slave, const char *name, double value)
+{
+	if (strcmp(name, "command") != 0)
+		return -ENOENT;
+	if (value != 0 && value != 1 && value != 2)
+		return -ERANGE;
+	state(slave)->covers = (uint8_t)value;
+	return 0;
+}
+
 static void read_page(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
@@ -69,7 +82,10 @@ static void read_page(struct sim_slave *slave, int64_t t)
 		sim_end(slave);
 		return;
 	}
-	slave->crc = 0;
+	if (state(slave)->covers == 0)
+		slave->crc = 0;
+	else if (state(slave)->covers == 2)
+		slave->crc ^= 0x5AA5;
 	sim_send_checked(slave, state(slave)->page, PAGE);
 }
 
@@ -108,5 +124,6 @@ const struct sim_family sim_iblss = {
 	.inputs = inputs,
 	.power_on = power_on,
 	.advance = advance,
+	.option = option,
 	.memory = memory,
 };

@@ -121,6 +121,36 @@ static void test_a_room_is_measured(void)
 	refuses(-EIO, BUS_READ, "TH/latesttemp", NULL);
 }
 
+static void set_option(const char *name, double value)
+{
+	TEST_ASSERT_EQUAL_INT(0, slave->family->option(slave, name, value));
+}
+
+static void test_a_room_whose_checksum_covers_the_command_is_measured(void)
+{
+	begin("IBLSS");
+	set_option("command", 1);
+	wire_set(slave, "temperature", 21.25);
+	start();
+	reads("TH/temperature", "       21.25");
+	reads("firmware", "1.2");
+	/* Another checksum than the one that was learned proves nothing. */
+	set_option("command", 0);
+	refuses(-EBADMSG, BUS_READ, "TH/latesttemp", NULL);
+	set_option("command", 1);
+	reads("TH/latesttemp", "       21.25");
+}
+
+static void test_a_room_with_another_checksum_has_no_value(void)
+{
+	begin("IBLSS");
+	set_option("command", 2);
+	wire_set(slave, "temperature", 21.25);
+	start();
+	refuses(-EBADMSG, BUS_READ, "TH/temperature", NULL);
+	refuses(-EBADMSG, BUS_READ, "firmware", NULL);
+}
+
 static void test_a_uvi_meter_keeps_its_offsets_below_zero_too(void)
 {
 	begin("HB_UVI_METER");
@@ -589,6 +619,8 @@ int main(void)
 	RUN_TEST(test_contacts_are_open_closed_shorted_or_interrupted);
 	RUN_TEST(test_the_example_of_owfs_answers_without_the_wire);
 	RUN_TEST(test_a_room_is_measured);
+	RUN_TEST(test_a_room_whose_checksum_covers_the_command_is_measured);
+	RUN_TEST(test_a_room_with_another_checksum_has_no_value);
 	RUN_TEST(test_a_uvi_meter_keeps_its_offsets_below_zero_too);
 	RUN_TEST(test_a_value_of_a_uvi_meter_is_refused_when_its_offset_may_be_a_disturbed_read);
 	RUN_TEST(test_a_moisture_meter_of_either_version_is_read_and_written);
