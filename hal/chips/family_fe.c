@@ -5,9 +5,9 @@
  *
  * That driver takes a page if the CRC16 of the page alone does not fit, and refuses it if it does.
  * So nobody knows what a real one computes. The memory chips of 1-Wire start their CRC16 with the
- * command and the address. A page is good with either of both checksums, but of one chip always with
- * the same: it is learned from LEARNS pages in a row. So what noise may do to get past the checksum
- * is as rare as with one. A page with neither is refused.
+ * command and the address. A page is good with either of both checksums, but of one chip always
+ * with the same: it is learned from LEARNS pages in a row. So what noise may do to get past the
+ * checksum is as rare as with one. A page with neither is refused.
  */
 #include <errno.h>
 #include <stdio.h>
