@@ -162,7 +162,8 @@ static void failed(struct native *native, unsigned n, int err, int64_t now)
 	bool again = err == -EBADMSG && ++touch->spoiled <= SPOILED_MAX;
 
 	end_round(native, n, now);
-	touch->next_ns = now + (err == -EBADMSG ? 0 : PAUSE_NS);
+	if (again || err != -EBADMSG)
+		touch->next_ns = again ? now : now + PAUSE_NS;
 	if (is_branch(n) && !again) {
 		touch->next_ns = now + PAUSE_NS;
 		touch->spoiled = 0;

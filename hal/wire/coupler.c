@@ -160,7 +160,7 @@ int coupler_look(struct coupler *coupler)
 		err = look(coupler, &info);
 	if (!err && !coupler->seen->news && coupler->seen->flags)
 		err = switch_off(coupler);
-	return err;
+	return err == -EHOSTDOWN ? -EBADMSG : err;
 }
 
 /* The couplers on this branch (NULL: on the trunk) that somebody else may have switched. */
