@@ -183,21 +183,6 @@ static int thermometer_guard(struct txn *txn, int raw, const uint8_t scratchpad[
 	return -ERANGE;
 }
 
-/*
- * As the data sheet says, but for clones of the DS18B20 (clone.c): family D2 takes 523 ms at each
- * resolution, H 101 ms for 9 bits.
- */
-int64_t thermometer_convert_ns(const struct device *device)
-{
-	const struct thermometer *chip = device->own;
-
-	if (device->family->fixed || chip->resolution < 9 || chip->slow)
-		return 750 * TXN_MS;
-	if (chip->resolution == 9 && clone_has_id(device->rom))
-		return 110 * TXN_MS;
-	return 750 * TXN_MS >> (12 - chip->resolution);
-}
-
 static int write_scratchpad(struct txn *txn, const uint8_t scratchpad[9])
 {
 	uint8_t out[4] = {WRITE_SCRATCHPAD, scratchpad[SP_HIGH], scratchpad[SP_LOW],

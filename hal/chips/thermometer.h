@@ -23,8 +23,6 @@ extern const struct area thermometer_area;
 int thermometer_saw(struct txn *txn, unsigned at, uint8_t *scratchpad, unsigned n);
 /* The scratchpad as it is now. */
 int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9]);
-/* A conversion's longest time at the device's present resolution. */
-int64_t thermometer_convert_ns(const struct device *device);
 /* Make the chip convert at this resolution; may take several calls. */
 int thermometer_prepare(struct txn *txn, unsigned resolution);
 

@@ -13,6 +13,8 @@
 
 #include "hal/wire/txn.h"
 
+/* A conversion's longest time at the device's present resolution. */
+int64_t thermometer_convert_ns(const struct device *device);
 /* Convert T was sent to it, for longest ns; whether it heard is not known. */
 void thermometer_told(struct device *device, int64_t now, int64_t longest);
 /*

@@ -35,6 +35,7 @@ struct thermometer {
 	int16_t raw;          /* last good reading, sixteenths of a degree */
 	int64_t raw_ns;       /* when; 0: none */
 	int64_t converted_ns; /* when its last conversion ends or ended; 0: none known */
+	int64_t longest_ns;   /* ... and how long after its start */
 	int64_t busy_ns;      /* until then it may convert, whatever it heard */
 	int64_t least_ns;     /* no conversion that it may be at work with ends earlier */
 	int64_t early_ns;     /* it seemed to end then, which is not proven; 0: it did not */

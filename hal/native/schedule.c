@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Which thermometers are asked for, what that costs, and which way is faster. */
 #include "hal/native/schedule.h"
-#include "hal/chips/thermometer.h"
+#include "hal/chips/thermometer_proof.h"
+#include "hal/chips/thermometer_state.h"
 #include "hal/native/state.h"
 
 /*

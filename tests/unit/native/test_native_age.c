@@ -206,6 +206,30 @@ static void test_the_same_with_other_resolutions_in_between(void)
 	check_each((struct setup){.chip = "DS18B20", .count = 4, .resolutions = true}, ROUNDS);
 }
 
+/* Before it was read once nobody knows its resolution, and so how long it takes. */
+static void test_the_first_value_of_a_chip_has_the_time_of_its_resolution(void)
+{
+	static const int64_t ms[] = {94, 188, 375, 750};
+
+	for (unsigned bits = 9; bits <= 12; bits++) {
+		fleet_again();
+		wire_init(&host, 1, 1);
+		struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+		slave->family->option(slave, "resolution", bits);
+		sim_slave_power_on(slave, host.now);
+		start();
+		int64_t begun = host.now;
+		const struct bus_answer *answer = answer_to(
+			ask(BUS_READ, BUS_INPUT, true, of(slave, "temperature"), NULL));
+
+		TEST_ASSERT_EQUAL_INT(0, answer->err);
+		TEST_ASSERT_GREATER_THAN_INT64(begun + (ms[bits - 9] - 1) * HOST_MS,
+		                               answer->measured_ns);
+		TEST_ASSERT_LESS_THAN_INT64(begun + (ms[bits - 9] + 50) * HOST_MS,
+		                            answer->measured_ns);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -214,5 +238,6 @@ int main(void)
 	RUN_TEST(test_the_same_of_many);
 	RUN_TEST(test_the_same_while_a_memory_is_written);
 	RUN_TEST(test_the_same_with_other_resolutions_in_between);
+	RUN_TEST(test_the_first_value_of_a_chip_has_the_time_of_its_resolution);
 	return UNITY_END();
 }
