@@ -24,13 +24,14 @@ struct light {
 };
 
 struct inferno {
+	struct light light[LEDS];
+	uint8_t led[PORTS], type[PORTS][CHANNELS];
+	uint8_t relay[3][RELAYS]; /* states, modes, timeouts */
+	uint8_t active[PORTS], level[PORTS];
 	enum kind kind, application;
 	uint8_t status;
 	uint8_t taken[WRITTEN + 1 + BLOCK + 4];
 	uint16_t got;
-	struct light light[LEDS];
-	uint8_t led[PORTS], type[PORTS][CHANNELS], active[PORTS], level[PORTS];
-	uint8_t relay[3][RELAYS]; /* states, modes, timeouts */
 	uint8_t firmware[FIRMWARE];
 };
 

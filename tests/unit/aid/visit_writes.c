@@ -14,7 +14,7 @@
 #include "hal/sim/pins.h"
 #include "tests/unit/aid/visit_writes.h"
 
-#define STATE_MAX 4096
+#define STATE_MAX 9216
 
 /* What the chip holds behind an untroubled write; 1 in mask: this byte differs from run to run. */
 static uint8_t truth[STATE_MAX], mask[STATE_MAX];
@@ -55,6 +55,9 @@ static bool is_gauge(void)
 #define GAUGE_STORED (offsetof(struct gauge, eeprom) - offsetof(struct gauge, memory))
 #define GAUGE_END (GAUGE_STORED + sizeof(((struct gauge *)NULL)->eeprom))
 
+/* A light of an Inferno Embedded: what it shows fades from `from` since a time. */
+enum { INFERNO_LIGHTS = 4, INFERNO_LIGHT = 32, INFERNO_FROM = 4, INFERNO_SINCE = 24 };
+
 /*
  * The protocol leaves its mark in the state: only what the chip keeps is compared.
  */
@@ -76,8 +79,10 @@ static size_t kept(const struct visit *visit, const uint8_t **state)
 	if (visited->rom[0] == 0x21 || visited->rom[0] == 0x41)
 		size = 0x280; /* of the loggers the registers too */
 	if (strcmp(visit->chip, "DS1977") == 0)
-		size = STATE_MAX;
-	if (strcmp(visit->chip, "DS2720") == 0) { /* registers, shadow, EEPROM */
+		size = 4096;
+	if (visited->rom[0] == 0xED)
+		size = INFERNO_LIGHTS * INFERNO_LIGHT + 2 + 8 + 12; /* LEDs, types, relays */
+	if (strcmp(visit->chip, "DS2720") == 0) {                   /* registers, shadow, EEPROM */
 		*state = visited->state;
 		size = 256 + 8;
 	}
@@ -135,6 +140,11 @@ static void look(const struct visit *visit)
 	/* A recall has the current measured. */
 	if (strcmp(visit->chip, "DS2438") == 0 || strcmp(visit->chip, "DS2437") == 0)
 		memset(mask + 5, 1, 2);
+	/* A commit that is sent again begins a fade anew, where the light then was. */
+	for (size_t i = 0; strncmp(visit->chip, "IE_", 3) == 0 && i < INFERNO_LIGHTS; i++) {
+		memset(mask + i * INFERNO_LIGHT, 1, INFERNO_FROM);
+		memset(mask + i * INFERNO_LIGHT + INFERNO_SINCE, 1, INFERNO_LIGHT - INFERNO_SINCE);
+	}
 	for (size_t i = 0; i < sizeof(laters) / sizeof(laters[0]); i++) {
 		visit_begin(visit);
 		TEST_ASSERT_EQUAL_INT_MESSAGE(
