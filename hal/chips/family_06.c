@@ -1,26 +1,35 @@
 /* SPDX-License-Identifier: MIT */
-/* DS1993: 4096 bits of memory with a battery (its data sheet, "Memory function commands"). */
+/*
+ * DS1992, DS1993, DS1995, DS1996: memory with a battery, alike but for its size (their data sheets,
+ * "Memory function commands").
+ */
 #include "hal/chips/family.h"
 
-static const struct area memory = {
-	.name = "memory",
-	.size = 512,
-	.address_bytes = 2,
-	.read = 0xf0,
-	.row = 32,
-	.write = 0x0f,
-	.verify = 0xaa,
-	.copy = 0x55,
-};
+enum { MEMORY = 1, PAGE = 32 };
 
-enum { MEMORY = 1 };
-static const struct area *const areas[] = {[MEMORY] = &memory};
+#define MEMORY_FAMILY(code_, part, pages) \
+	static const struct area memory_##code_ = { \
+		.name = "memory", \
+		.size = (pages)*PAGE, \
+		.address_bytes = 2, \
+		.read = 0xf0, \
+		.row = PAGE, \
+		.write = 0x0f, \
+		.verify = 0xaa, \
+		.copy = 0x55, \
+	}; \
+	static const struct area *const areas_##code_[] = {[MEMORY] = &memory_##code_}; \
+	static const struct property properties_##code_[] = { \
+		AREA_MEMORY(MEMORY, (pages)*PAGE), \
+		PROPERTY_DIR("pages"), \
+		AREA_PAGES(MEMORY, (pages), PAGE), \
+	}; \
+	const struct family family_##code_ = {.code = 0x##code_, \
+	                                      .type = (part), \
+	                                      AREAS(areas_##code_), \
+	                                      PROPERTIES(properties_##code_)};
 
-static const struct property properties[] = {
-	AREA_MEMORY(MEMORY, 512),
-	PROPERTY_DIR("pages"),
-	AREA_PAGES(MEMORY, 16, 32),
-};
-
-const struct family family_06 = {
-	.code = 0x06, .type = "DS1993", AREAS(areas), PROPERTIES(properties)};
+MEMORY_FAMILY(06, "DS1993", 16)
+MEMORY_FAMILY(08, "DS1992", 4)
+MEMORY_FAMILY(0a, "DS1995", 64)
+MEMORY_FAMILY(0c, "DS1996", 256)

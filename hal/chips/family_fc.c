@@ -266,10 +266,22 @@ static const struct property_how how[] = {
 	               .stride = (bytes_), .big_endian = true), .how = (way))
 #define RUNS(text, kind, life_, access_, way, ...) \
 	PROPERTY(text, kind, life_, access_, .kinds = NEW, .how = (way), __VA_ARGS__)
-#define WORD(text, area_, ...) \
-	PROPERTY(text, UNSIGNED, VOLATILE, READ, FIELD(area_, __VA_ARGS__), .how = WAY_FIELD)
-#define HIDDEN_WORD(text, area_, ...) \
-	PROPERTY(text, UNSIGNED, VOLATILE, READ, .hidden = true, FIELD(area_, __VA_ARGS__))
+#define PWM(folder, duty0, duty1, mode0, mode1, period, clock) \
+	FOLDER(folder, NEW), \
+	REGISTER_911(folder "/duty_ch0", UNSIGNED, VOLATILE, BOTH, duty0, 2, KEPT), \
+	REGISTER_911(folder "/duty_ch1", UNSIGNED, VOLATILE, BOTH, duty1, 2, KEPT), \
+	REGISTER_911(folder "/mode_ch0", UNSIGNED, VOLATILE, BOTH, mode0, 1, KEPT), \
+	REGISTER_911(folder "/mode_ch1", UNSIGNED, VOLATILE, BOTH, mode1, 1, KEPT), \
+	REGISTER_911(folder "/period", UNSIGNED, VOLATILE, BOTH, period, 2, KEPT), \
+	REGISTER_911(folder "/ref_clock", UNSIGNED, VOLATILE, BOTH, clock, 1, KEPT)
+/* The two bytes of the version and of the type: each alone, and together. */
+#define WORD(text, area_, byte) \
+	PROPERTY(text, UNSIGNED, VOLATILE, READ, FIELD(area_, .at = (byte)), .how = WAY_FIELD)
+#define STATE(text, area_) \
+	PROPERTY(text, UNSIGNED, VOLATILE, READ, .hidden = true, \
+	         FIELD(area_, .at = 0, .bytes = 2, .big_endian = true))
+#define DOTTED(text, area_) \
+	PROPERTY(text, ASCII, VOLATILE, READ, .size = 5, .arg = (area_), .how = WAY_WORDS)
 
 static const struct property properties[] = {
 	FOLDER("910", OLD),
@@ -378,20 +390,8 @@ static const struct property properties[] = {
 	ARRAY_911("911/pio/pull_down", YESNO, BOTH, 8, 0x79a0, 1, KEPT),
 	ARRAY_911("911/pio/pull_enable", YESNO, BOTH, 22, 0x7942, 1, KEPT),
 	ARRAY_911("911/pio/strength", YESNO, BOTH, 22, 0x792c, 1, KEPT),
-	FOLDER("911/pwm1", NEW),
-	REGISTER_911("911/pwm1/duty_ch0", UNSIGNED, VOLATILE, BOTH, 0x7a06, 2, KEPT),
-	REGISTER_911("911/pwm1/duty_ch1", UNSIGNED, VOLATILE, BOTH, 0x7a08, 2, KEPT),
-	REGISTER_911("911/pwm1/mode_ch0", UNSIGNED, VOLATILE, BOTH, 0x7a0e, 1, KEPT),
-	REGISTER_911("911/pwm1/mode_ch1", UNSIGNED, VOLATILE, BOTH, 0x7a0f, 1, KEPT),
-	REGISTER_911("911/pwm1/period", UNSIGNED, VOLATILE, BOTH, 0x7a02, 2, KEPT),
-	REGISTER_911("911/pwm1/ref_clock", UNSIGNED, VOLATILE, BOTH, 0x7a00, 1, KEPT),
-	FOLDER("911/pwm2", NEW),
-	REGISTER_911("911/pwm2/duty_ch0", UNSIGNED, VOLATILE, BOTH, 0x7a0a, 2, KEPT),
-	REGISTER_911("911/pwm2/duty_ch1", UNSIGNED, VOLATILE, BOTH, 0x7a0c, 2, KEPT),
-	REGISTER_911("911/pwm2/mode_ch0", UNSIGNED, VOLATILE, BOTH, 0x7a10, 1, KEPT),
-	REGISTER_911("911/pwm2/mode_ch1", UNSIGNED, VOLATILE, BOTH, 0x7a11, 1, KEPT),
-	REGISTER_911("911/pwm2/period", UNSIGNED, VOLATILE, BOTH, 0x7a04, 2, KEPT),
-	REGISTER_911("911/pwm2/ref_clock", UNSIGNED, VOLATILE, BOTH, 0x7a01, 1, KEPT),
+	PWM("911/pwm1", 0x7a06, 0x7a08, 0x7a0e, 0x7a0f, 0x7a02, 0x7a00),
+	PWM("911/pwm2", 0x7a0a, 0x7a0c, 0x7a10, 0x7a11, 0x7a04, 0x7a01),
 	FOLDER("911/sdcard", NEW),
 	REGISTER_911("911/sdcard/init", UNSIGNED, VOLATILE, BOTH, 0x7e04, 1, LIVE),
 	RUNS("911/sdcard/sector_data", BINARY, STABLE, BOTH, WAY_SECTOR, .size = 512),
@@ -413,11 +413,11 @@ static const struct property properties[] = {
 	ARRAY_911("911/user_registers/byte", UNSIGNED, BOTH, 16, 0x7fab, 1, KEPT),
 	ARRAY_911("911/user_registers/dword", UNSIGNED, BOTH, 8, 0x7fdb, 4, KEPT),
 	ARRAY_911("911/user_registers/word", UNSIGNED, BOTH, 16, 0x7fbb, 2, KEPT),
-	WORD("bootstrap_version", VERSION, .at = 1),
-	WORD("chip_type", TYPE, .at = 1),
+	WORD("bootstrap_version", VERSION, 1),
+	WORD("chip_type", TYPE, 1),
 	PROPERTY("command", BINARY, STABLE, WRITE, .size = 255, .how = WAY_COMMAND),
-	WORD("device_type", TYPE, .at = 0),
-	WORD("device_version", VERSION, .at = 0),
+	WORD("device_type", TYPE, 0),
+	WORD("device_version", VERSION, 0),
 	PROPERTY_DIR("eeprom"),
 	PROPERTY("eeprom/erase", YESNO, VOLATILE, WRITE, ELEMENTS(32, NUMBERS), .kinds = OLD | NEW,
 		 .how = WAY_ERASE),
@@ -429,10 +429,10 @@ static const struct property properties[] = {
 	FOLDER("generic", UNKNOWN_KIND),
 	PROPERTY("generic/memory", BINARY, VOLATILE, BOTH, .size = 128, .kinds = UNKNOWN_KIND,
 		 FIELD(GENERIC), .how = WAY_FIELD),
-	PROPERTY("localtype", ASCII, VOLATILE, READ, .size = 5, .arg = TYPE, .how = WAY_WORDS),
-	HIDDEN_WORD("typestate", TYPE, .at = 0, .bytes = 2, .big_endian = true),
-	PROPERTY("version", ASCII, VOLATILE, READ, .size = 5, .arg = VERSION, .how = WAY_WORDS),
-	HIDDEN_WORD("versionstate", VERSION, .at = 0, .bytes = 2, .big_endian = true),
+	DOTTED("localtype", TYPE),
+	STATE("typestate", TYPE),
+	DOTTED("version", VERSION),
+	STATE("versionstate", VERSION),
 };
 /* clang-format on */
 
