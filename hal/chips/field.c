@@ -84,8 +84,12 @@ int field_read(struct txn *txn)
 	unsigned at = place(property, field, (unsigned)txn->element), count = 1;
 	uint8_t bytes[AREA_UNIT];
 
-	if (is_binary(property))
-		return area_read_data(txn, area, at, property->size);
+	if (is_binary(property)) {
+		unsigned left = property->size - (unsigned)txn->at;
+
+		return area_read_data(txn, area, at + (unsigned)txn->at,
+		                      left < FIELD_CHUNK ? left : FIELD_CHUNK);
+	}
 	if (property->array.aggregate && field->stride) {
 		at = field->at;
 		count = property->array.count;

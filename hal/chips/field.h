@@ -6,6 +6,11 @@
 #include "hal/chips/family.h"
 
 /* Of a property with .field: txn->property's element txn->element, or all. */
+/*
+ * Of binary that is longer than a chunk it reads a chunk, from txn->at on: one that failed is read
+ * again alone, and others of the wire, and of the chip, come between.
+ */
+#define FIELD_CHUNK 1024
 int field_read(struct txn *txn);
 int field_write(struct txn *txn);
 

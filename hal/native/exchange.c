@@ -21,7 +21,22 @@ static bool is_text(const struct property *property)
 	       property->type == PROPERTY_ALIAS;
 }
 
-/* One element more of the answer; true: there are others. */
+static const struct family *family_of_job(const struct job *job)
+{
+	return job->txn.device ? job->txn.device->family : job->table;
+}
+
+static property_function *reader(const struct job *job)
+{
+	return property_reader(family_of_job(job), job->property);
+}
+
+static property_function *writer(const struct job *job)
+{
+	return property_writer(family_of_job(job), job->property);
+}
+
+/* One element, or chunk, more of the answer; true: there are others. */
 static int add_element(struct job *job)
 {
 	struct txn *txn = &job->txn;
@@ -34,6 +49,9 @@ static int add_element(struct job *job)
 		if (txn->len > txn->room)
 			return -EMSGSIZE;
 		job->out += txn->len;
+		if (!all && property->type == PROPERTY_BINARY && reader(job) == field_read &&
+		    job->out < property_size(property))
+			return 1;
 	} else {
 		int n = format_value(property, all ? EXTENSION_NONE : job->extension, txn,
 		                     (char *)job->req->data + job->out, job->req->len - job->out);
@@ -121,21 +139,6 @@ static void write_done(struct native *native, struct job *job)
 	job_answer(native, job, 0);
 }
 
-static const struct family *family_of_job(const struct job *job)
-{
-	return job->txn.device ? job->txn.device->family : job->table;
-}
-
-static property_function *reader(const struct job *job)
-{
-	return property_reader(family_of_job(job), job->property);
-}
-
-static property_function *writer(const struct job *job)
-{
-	return property_writer(family_of_job(job), job->property);
-}
-
 /* One element of an aggregate is written: the others are read first. */
 static bool needs_merge(const struct job *job)
 {
@@ -179,7 +182,8 @@ static int run_function(struct job *job)
 
 	if (!job->offered)
 		return -ENOENT;
-	if (job->req->op == BUS_READ && binary && txn->room < property_size(job->property))
+	if (job->req->op == BUS_READ && binary &&
+	    txn->room + txn->at < property_size(job->property))
 		return -EMSGSIZE;
 	if (job->req->op == BUS_READ && txn->device &&
 	    strcmp(job->property->name, "present") == 0 &&

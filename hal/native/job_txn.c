@@ -70,9 +70,9 @@ void job_txn(struct native *native, struct job *job)
 	struct device *device = txn->device;
 	unsigned n = device ? device->channel : job->bus >= 0 ? (unsigned)job->bus : 0;
 
-	/* All elements are as old as the oldest. */
-	int64_t shared_ns = job->element ? txn->shared_ns : 0;
-	int64_t part_ns = job->element ? txn_measured(txn) : 0;
+	/* All elements, and all chunks, are as old as the oldest. */
+	int64_t shared_ns = job->out ? txn->shared_ns : 0;
+	int64_t part_ns = job->out ? txn_measured(txn) : 0;
 	memset(txn, 0, sizeof(*txn));
 	txn->shared_ns = shared_ns;
 	txn->part_ns = part_ns;
@@ -88,6 +88,8 @@ void job_txn(struct native *native, struct job *job)
 	if (job->req->op == BUS_READ) {
 		txn->data = job->req->data + job->out;
 		txn->room = job->req->len - job->out;
+		if (job->property && job->property->type == PROPERTY_BINARY && !job_wants_all(job))
+			txn->at = job->out;
 	}
 	take_limits(native, job);
 	job->offered = is_offered(job);

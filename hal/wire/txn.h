@@ -45,7 +45,7 @@ struct txn {
 	                               element of an aggregate */
 	uint32_t bits;              /* bit fields, element 0 in bit 0 */
 	uint8_t *data;              /* binary and text: room bytes; read sets len */
-	size_t at;                  /* write of binary: data's first byte in the value or element */
+	size_t at;                  /* binary: data's first byte in the value or element */
 	size_t room, len;
 	bool one;            /* write: of an aggregate only the element is given */
 	int64_t measured_ns; /* read: when the chip took the value; 0: now */

@@ -57,10 +57,13 @@ static void slot_own_path(struct slot *slot)
 
 bool slot_lend(struct lane *lane, struct slot *slot, int64_t now_ns)
 {
+	bool guest = slot->purpose == FOR_GUEST;
+	int64_t parts = guest && slot->guest->parts ? slot->guest->parts : 1;
+
 	slot->turn++;
 	slot->req.id = (uint32_t)(slot - lane->lent.slots) | (uint32_t)slot->turn << 16;
-	slot->req.deadline_ns = now_ns + lane->engine->config->timeout_ns;
-	if (slot->purpose != FOR_GUEST)
+	slot->req.deadline_ns = now_ns + lane->engine->config->timeout_ns * parts;
+	if (!guest)
 		slot_own_path(slot);
 	if (!slot->req.tokens && lane->engine->guests && lane->engine->guests->token) {
 		slot->req.tokens = lane->engine->guests->token;

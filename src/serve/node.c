@@ -40,6 +40,10 @@ static void find_property(struct node *node, const struct family *family, const 
 		return;
 	node->type = property->type == PROPERTY_BITS ? 'y' : (char)property->type;
 	node->life = (char)property->life;
+	if (property->type == PROPERTY_BINARY)
+		node->bytes = property_size(property);
+	if (node->bytes && extension_split(name, len, &stem) == EXTENSION_ALL)
+		node->bytes *= property->array.count;
 	if (extension_split(name, len, &stem) == EXTENSION_BYTE)
 		node->type = 'u';
 }

@@ -37,6 +37,7 @@ struct node {
 	uint8_t rom[ROM_LEN];
 	char type;           /* of the property: a letter of /structure, 0: not known */
 	char life;           /* of the property: a letter of /structure, 0: not known */
+	uint32_t bytes;      /* of the property's value if it is binary, 0: not known */
 	int code;            /* NODE_CODE: the code, -1: all codes */
 	const char *name;    /* NODE_SIGNAL: the signal or attribute, up to the end of the path */
 	uint16_t device_len; /* bytes of path up to and with the device */

@@ -202,6 +202,41 @@ static void test_a_ds1977_is_read_as_long_as_no_password_is_switched_on(void)
 	TEST_ASSERT_EQUAL_MEMORY(page, memory() + 64, 32);
 }
 
+/* Slots that a read of all of the memory takes, with one turned over. */
+static uint32_t slots_of_a_read(uint32_t turned)
+{
+	static struct trouble trouble;
+
+	begin("DS1995");
+	for (unsigned i = 0; i < 2048; i++)
+		memory()[i] = (uint8_t)(i * 7 + i / 256);
+	wire_net.trouble = &trouble;
+	trouble_none(&trouble);
+	trouble.at = turned;
+	trouble.mask = 1;
+	trouble.kind = turned ? TROUBLE_TURN : TROUBLE_NONE;
+	uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(chip, "memory"), NULL);
+
+	wait_s(60);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_UINT(2048, answer_to(id)->len);
+	TEST_ASSERT_EQUAL_MEMORY(memory(), data[id], 2048);
+	wire_net.trouble = NULL;
+	uint32_t slots = trouble.slots;
+
+	end();
+	return slots;
+}
+
+static void test_of_a_large_memory_what_was_read_wrong_is_read_again_alone(void)
+{
+	uint32_t plain = slots_of_a_read(0);
+	uint32_t again = slots_of_a_read(plain - plain / 8);
+
+	TEST_ASSERT_GREATER_THAN_UINT32(plain, again);
+	TEST_ASSERT_LESS_THAN_UINT32(plain + plain / 2 + plain / 8, again);
+}
+
 static void test_a_clock_runs_when_it_is_told_to(void)
 {
 	static const char *const parts[] = {"DS2415", "DS2417", "DS2404"};
@@ -403,6 +438,7 @@ int main(void)
 	RUN_TEST(test_the_subkeys_of_a_ds1991_show_their_identifiers_alone);
 	RUN_TEST(test_a_ds2438_with_the_family_code_a6_is_one);
 	RUN_TEST(test_a_ds1977_is_read_as_long_as_no_password_is_switched_on);
+	RUN_TEST(test_of_a_large_memory_what_was_read_wrong_is_read_again_alone);
 	RUN_TEST(test_a_clock_runs_when_it_is_told_to);
 	RUN_TEST(test_the_other_bits_of_a_clocks_control_byte_stay);
 	RUN_TEST(test_a_wiper_is_put_where_it_is_told);

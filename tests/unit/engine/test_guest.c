@@ -184,6 +184,30 @@ static void test_who_is_given_up_is_told_and_gets_his_room_back_later(void)
 	TEST_ASSERT_EQUAL_PTR(g, released[0]);
 }
 
+static void test_a_long_value_has_as_many_times_the_time_as_it_has_parts(void)
+{
+	static const char memory[] = "/0C.551DDF030000/memory";
+	struct engine_guest *g;
+
+	scene_put(&s, T1, "        21.5", 0);
+	scene_put(&s, memory, "8192 bytes", 0);
+	scene_start(&s);
+	scene_up(&s);
+	s.bus[0].slow = memory;
+	s.bus[0].slow_ns = 3 * s.config.timeout_ns;
+	g = ask(BUS_READ, GUEST_ANY_LANE, memory, NULL);
+	g->parts = 4;
+	scene_run(&s, s.bus[0].slow_ns + SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(1, answered_count);
+	TEST_ASSERT_EQUAL_INT(0, g->answer.err);
+	g = ask(BUS_READ, GUEST_ANY_LANE, memory, NULL);
+	g->parts = 2;
+	scene_run(&s, s.bus[0].slow_ns + SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(2, answered_count);
+	TEST_ASSERT_NOT_EQUAL(0, g->answer.err);
+	TEST_ASSERT_TRUE(g->lent);
+}
+
 static void test_an_output_over_which_a_guest_wrote_is_written_again(void)
 {
 	scene_output(&s, "pump", PIO, OWS_BOOL);
@@ -213,6 +237,7 @@ int main(void)
 	RUN_TEST(test_neither_the_table_nor_its_guests_are_starved);
 	RUN_TEST(test_guests_take_a_part_of_a_deep_bus_only);
 	RUN_TEST(test_who_is_given_up_is_told_and_gets_his_room_back_later);
+	RUN_TEST(test_a_long_value_has_as_many_times_the_time_as_it_has_parts);
 	RUN_TEST(test_an_output_over_which_a_guest_wrote_is_written_again);
 	return UNITY_END();
 }

@@ -68,6 +68,25 @@ static void test_properties_have_the_type_and_life_of_their_family(void)
 	}
 }
 
+static void test_the_bytes_of_a_memory_are_known(void)
+{
+	static const struct {
+		const char *path;
+		uint32_t bytes;
+	} cases[] = {
+		{"/0C.551DDF030000/memory", 8192},
+		{"/37.551DDF030000/pages/page.3", 64},
+		{"/37.551DDF030000/pages/page.ALL", 32704},
+		{"/28.551DDF030000/temperature", 0},
+		{"/28.551DDF030000/type", 0},
+	};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		parse(cases[i].path);
+		TEST_ASSERT_EQUAL_UINT32_MESSAGE(cases[i].bytes, node.bytes, cases[i].path);
+	}
+}
+
 static void test_directories_of_all_targets_are_told_from_those_of_one(void)
 {
 	static const struct {
@@ -181,6 +200,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_device_has_one_name_however_it_is_written);
 	RUN_TEST(test_properties_have_the_type_and_life_of_their_family);
+	RUN_TEST(test_the_bytes_of_a_memory_are_known);
 	RUN_TEST(test_directories_of_all_targets_are_told_from_those_of_one);
 	RUN_TEST(test_signals_and_return_codes_are_served_here);
 	RUN_TEST(test_paths_that_cannot_be_are_nothing);
