@@ -386,7 +386,7 @@ static int start_with(struct txn *txn, double rate, unsigned wanted)
 	if (!(rate >= 1 && rate <= 255))
 		return -EINVAL;
 	visit->want = (uint8_t)rate;
-	return do_steps(txn, wanted, 0);
+	return do_steps(txn, wanted, (double)time(NULL));
 }
 
 int ds1921_write_frequency(struct txn *txn)

@@ -275,13 +275,26 @@ static int parse_unsigned(const struct property *property, const char *text, dou
 	return !property->digits || digits_fit(property->digits, *number) ? 0 : -EINVAL;
 }
 
+static bool is_blank(const char *text, size_t len)
+{
+	while (len && isspace((unsigned char)text[len - 1]))
+		len--;
+	return len == 0;
+}
+
 static int parse_number(const struct property *property, const char *text, size_t len,
                         double *number)
 {
 	char copy[TEXT_ROOM];
 
-	if (!copy_trimmed(text, len, copy))
-		return -EINVAL;
+	if (!copy_trimmed(text, len, copy)) {
+		/* An empty date is the present time, as in OWFS: so clocks are set by scripts. */
+		bool now = property->type == PROPERTY_DATE && len < TEXT_ROOM &&
+		           is_blank(text, len);
+
+		*number = (double)time(NULL);
+		return now ? 0 : -EINVAL;
+	}
 	switch ((enum property_type)property->type) {
 	case PROPERTY_YESNO:
 	case PROPERTY_BITS:

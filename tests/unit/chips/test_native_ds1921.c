@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "tests/unit/aid/native_scene.h"
 #include "unity.h"
@@ -175,11 +176,29 @@ static void test_a_mission_needs_a_cleared_memory(void)
 	is("mission/running", "1");
 }
 
+/* The chip runs in virtual time, a little ahead of the host's clock. */
+static void is_present_time(const char *property)
+{
+	uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(chip, property), NULL);
+
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_DOUBLE_WITHIN(3600, (double)time(NULL), strtod((char *)data[id], NULL));
+	forget();
+}
+
+static void test_a_date_that_is_written_empty_is_the_present_time(void)
+{
+	put("clock/udate", "1000000000");
+	put("clock/date", "");
+	is_present_time("clock/udate");
+}
+
 static void test_easystart_does_all_of_it(void)
 {
 	begin_mission();
 	pass(3);
 	put("mission/easystart", "5");
+	is_present_time("clock/udate");
 	is("mission/running", "1");
 	is("mission/frequency", "           5");
 	is("mission/samples", "           0");
@@ -258,6 +277,7 @@ int main(void)
 	RUN_TEST(test_a_log_that_rolls_over_begins_with_its_oldest_sample);
 	RUN_TEST(test_a_mission_that_runs_keeps_its_settings);
 	RUN_TEST(test_a_mission_needs_a_cleared_memory);
+	RUN_TEST(test_a_date_that_is_written_empty_is_the_present_time);
 	RUN_TEST(test_easystart_does_all_of_it);
 	RUN_TEST(test_times_beyond_the_limits_have_begin_and_end);
 	RUN_TEST(test_settings_are_bits_of_the_registers);

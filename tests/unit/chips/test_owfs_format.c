@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
 #include "unity.h"
 
@@ -177,9 +178,27 @@ static void test_no_type_takes_what_is_no_value(void)
 	for (size_t t = 0; t < sizeof(types); t++) {
 		struct property property = {.name = "x", .type = types[t]};
 
-		for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++)
+		/* of a date, what is blank is the present time */
+		for (size_t i = types[t] == PROPERTY_DATE ? 3 : 0;
+		     i < sizeof(texts) / sizeof(texts[0]); i++)
 			takes(&property, EXTENSION_NONE, texts[i], strlen(texts[i]), NO);
 		takes(&property, EXTENSION_NONE, "1\0abc", 5, NO);
+	}
+}
+
+static void test_a_blank_date_is_the_present_time(void)
+{
+	static const struct property date = {.name = "date", .type = PROPERTY_DATE};
+	static const char *const texts[] = {"", " ", "\n"};
+
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++) {
+		struct txn txn = {.number = {-77}};
+		double before = (double)time(NULL);
+
+		TEST_ASSERT_EQUAL_INT(
+			0, parse_value(&date, EXTENSION_NONE, texts[i], strlen(texts[i]), &txn));
+		TEST_ASSERT_TRUE(txn.number[0] >= before);
+		TEST_ASSERT_TRUE(txn.number[0] <= (double)time(NULL));
 	}
 }
 
@@ -274,6 +293,7 @@ int main(void)
 	RUN_TEST(test_extensions_are_numbers_letters_all_and_byte_in_any_case);
 	RUN_TEST(test_a_text_that_does_not_fit_its_property_is_refused);
 	RUN_TEST(test_no_type_takes_what_is_no_value);
+	RUN_TEST(test_a_blank_date_is_the_present_time);
 	RUN_TEST(test_a_byte_has_as_many_bits_as_its_property);
 	RUN_TEST(test_a_list_has_as_many_elements_as_its_property);
 	RUN_TEST(test_a_number_of_digits_has_each_of_them_in_its_range);
