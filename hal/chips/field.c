@@ -59,8 +59,10 @@ static unsigned place(const struct property *property, const struct field *field
 {
 	unsigned stride = field->stride || !is_binary(property) ? field->stride : property->size;
 
-	/* of a text behind the dot (SPARSE) there is one element */
-	return field->at + (property->array.count ? element * stride : 0);
+	bool counted = property->array.count || property->array.index == INDEX_NUMBERS;
+
+	/* of a text behind the dot (SPARSE(LETTERS)) there is one element */
+	return field->at + (counted ? element * stride : 0);
 }
 
 /* A txn's property has an area, so it has a device. */

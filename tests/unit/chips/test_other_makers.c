@@ -480,6 +480,7 @@ static void test_functions_of_a_bae0911_are_registers(void)
 	reads("911/user_registers/word.15", "         258");
 	writes("911/automation_engine/global_memory.63", "77");
 	reads("911/automation_engine/global_mem.63", "          77");
+	reads("911/automation_engine/global_memory.63", "          77");
 	refuses(-EINVAL, BUS_READ, "911/automation_engine/global_memory.64", NULL);
 	writes("eeprom/page.7", "text");
 	refuses(-EIO, BUS_WRITE, "eeprom/page.7", "\x7f");
