@@ -8,8 +8,9 @@
 #                                 TESTS='test_run.py test_shm.py' these system tests alone
 #   make all unit soak system bench install uninstall clean
 #   make bench-page               make bench and bench-kernel into docs/performance.md, with plots
-#   make compare                  what owserver and owsd read of the same simulated devices, against
-#                                 what is recorded; WRITE=1 records it, PARTS='DS2438 DS2450' some
+#   make compare                  what owserver and owsd read of the same simulated devices, and what
+#                                 becomes of what both write, against what is recorded; WRITE=1
+#                                 records it, PARTS='DS2438 DS2450' some
 #   make properties-page          docs/properties.md, of what is recorded
 #   make check-all                every check there is, for hours; .ci/run those that a change can
 #                                 break, in half an hour of two cores
@@ -383,6 +384,7 @@ diagrams:
 # --- The same properties by owserver and by owsd ----------------------------------------------
 compare: all $(SYSTEM_AIDS)
 	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/compare.py $(if $(WRITE),--write) $(PARTS)
+	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/compare_writes.py $(if $(WRITE),--write) $(PARTS)
 
 properties-page: all
 	@OWSD_BUILD=$(abspath $(B)) python3 docs/properties.py >docs/properties.md.new

@@ -5,6 +5,8 @@
 - what owserver states of each property (tests/unit/data/owfs-structure.tsv),
 - what became of its text when owserver and owsd read the same simulated device
   (tests/unit/data/compared.tsv, which tests/system/compare.py makes and checks),
+- what became of the values that both wrote to it
+  (tests/unit/data/written.tsv, which tests/system/compare_writes.py makes and checks),
 - what the owsd of this build states of it, and offers of a slave of each driver of the kernel's.
 """
 
@@ -18,11 +20,15 @@ import textwrap
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(SOURCE / "tests/system"))
 import compare  # noqa: E402
+import compare_writes  # noqa: E402
 import owsdtest  # noqa: E402
 import served  # noqa: E402
 
 WIDTH = 100
+COUNTED = ("all", "same", "differs", "cannot be had", "not compared", "write-only", "written same",
+           "written differs", "written not written")
 REFUSED = "cannot be had: "
+WRITE_ONLY = "can only be written"
 SCRATCHPAD = "50 05 4b 46 7f ff 0c 10 1c : crc=1c YES\n50 05 4b 46 7f ff 0c 10 1c t=85000\n"
 # The attributes by which owsd knows that a driver of the kernel's has a slave of this family
 THERMOMETER = {"w1_slave": SCRATCHPAD, "ext_power": "1\n"}
@@ -47,13 +53,23 @@ driver. `make properties-page` writes this page, and a test fails when it is not
   with 0, so its scale is not seen here. An array of more than {short} elements is compared in its first four, the middle and the last.
 - **differs**: at least one text is another, or one of the two has none. The reason is below.
 - **cannot be had**: owsd refuses it, and will. The reason is below.
-- **not compared**: there was no text of either. Most of these can only be written.
+- **not compared**: there was no text of either, or no such part is simulated. The reason is below.
+- **write-only**: it cannot be read.
+
+{writable} of them can be written. The same values, two or more of each element that was chosen, were
+written by owserver to one chip and by owsd to another, and read back past the caches:
+
+- **written same**: both accepted the same values, and then read the same; of what can only be written,
+  from what can be read beside it.
+- **written differs**: one of the two refused a value, or read another one then. The reason is below.
+- **not written**: owsd refuses it. The reason is below.
+- What is no legal value was written too: nothing, another type, out of range, too long, behind the end. Where the
+  two differ there alone, the property counts as "written same", and the last section has it.
 
 Type, access, size, array and life, as `/structure` has them, are those of owserver for {stated} of
 the {all}. The others are limits of the EDS0080 to EDS0085 and two names, see family 7E.
 
-This is about reading. What is written differently, and what is refused, is in
-[native.md](native.md#not-like-owserver). The native links (a DS2482, `w1:netlink`, the simulator)
+What a user notices of all that is in [native.md](native.md#not-like-owserver). The native links (a DS2482, `w1:netlink`, the simulator)
 have all of this alike, because the same code is above them. Target `w1` has what the kernel's
 drivers give: column "driver" counts the listed properties that a driver's attributes stand for, "not
 given" those that they do not. Of a chip that has no driver there (`rw`), one write and one read have to do:
@@ -141,19 +157,41 @@ def item(text):
 
 def verdict_of(record):
     verdict, _, reason = record
-    return "cannot be had" if reason.startswith(REFUSED) else verdict
+    return "cannot be had" if reason.startswith(REFUSED) else \
+        "write-only" if reason == WRITE_ONLY else verdict
 
 
 def section(family, chip, records):
     """What is not the same of a family, by reasons."""
     by = collections.OrderedDict()
     for row, record in records:
-        if record[0] != "same":
+        if verdict_of(record) not in ("same", "write-only"):
             by.setdefault((verdict_of(record), record[2].removeprefix(REFUSED)), []).append(row.property)
     lines = []
     for (verdict, reason), found in by.items():
         lines.append(item(f"{names(found)}: {verdict}; {reason}"))
     return [f"**{family}** ({chip})", "", *lines, ""] if lines else []
+
+
+def written_section(family, chip, records):
+    """What was written of a family and is not the same, by reasons."""
+    by = collections.OrderedDict()
+    for name, line in records:
+        if line.verdict != "same":
+            by.setdefault((line.verdict, line.reason), []).append(name)
+    lines = [item(f"{names(found)}: {verdict}; {reason}") for (verdict, reason), found in by.items()]
+    return [f"**{family}** ({chip})", "", *lines, ""] if lines else []
+
+
+def others(written):
+    """[a line of each way in which what is no legal value differs]"""
+    by = collections.OrderedDict()
+    for (family, name), line in written.items():
+        for other in line.others.split(", ") if line.verdict == "same" != line.others else ():
+            by.setdefault(other, collections.OrderedDict()).setdefault(family, []).append(name)
+    return [item(f"**{other}**: {compare_writes.OTHERS[other]} ("
+                 f"{sum(map(len, of.values()))} properties of {len(of)} families)")
+            for other, of in sorted(by.items())]
 
 
 def kernel_section(family, missing):
@@ -167,16 +205,18 @@ def chips():
 
 
 def page():
-    recorded = compare.recorded()
+    recorded, written = compare.recorded(), compare_writes.recorded()
     rows = [r for r in compare.structure() if r.family not in compare.NO_DEVICE]
     stated, given, chip = build_states(rows), kernel_gives(), chips()
     families = sorted({r.family for r in rows})
     sums = collections.Counter()
-    table, below, kernel = [], [], []
+    table, below, below_written, kernel = [], [], [], []
     for family in families:
         mine = [(r, recorded[r.family, r.property]) for r in rows if r.family == family]
         count = collections.Counter(verdict_of(record) for _, record in mine)
         count["all"] = len(mine)
+        puts = [(name, line) for (of, name), line in written.items() if of == family]
+        count.update("written " + line.verdict for _, line in puts)
         listed = [r.property for r, _ in mine if r.visibility == "always"]
         missing = [p for p in listed if p not in given[family]] if family in given else []
         if family in given:
@@ -184,21 +224,28 @@ def page():
             kernel.append(kernel_section(family, missing))
         sums.update(count)
         cells = [family, chip.get(family, "")] + [
-            str(count[k] or "") for k in ("all", "same", "differs", "cannot be had", "not compared")]
+            str(count[k] or "") for k in COUNTED]
         cells += [str(count["given"]), str(count["missing"] or "")] if family in given else ["`rw`", ""]
         table.append("| " + " | ".join(cells) + " |")
         below += section(family, chip.get(family, ""), mine)
-    total = [str(sums[k]) for k in ("all", "same", "differs", "cannot be had", "not compared",
-                                    "given", "missing")]
-    intro = INTRO.format(all=sums["all"], families=len(families), stated=len(stated),
+        below_written += written_section(family, chip.get(family, ""), puts)
+    total = [str(sums[k]) for k in (*COUNTED, "given", "missing")]
+    intro = INTRO.format(all=sums["all"], writable=len(written), families=len(families), stated=len(stated),
                          clock=compare.CLOCK_S, short=compare.SHORT,
                          volt=compare.SUMS["volthours"], amp=compare.SUMS["amphours"])
     return "\n".join([
         "\n\n".join(p if p.startswith("#") else fill(p) for p in intro.strip().split("\n\n")), "",
-        "| | usual chip | all | same | differs | cannot be had | not compared | driver | not given |",
-        "|---|---|--:|--:|--:|--:|--:|--:|--:|", *table,
+        "| | usual chip | all | same | differs | cannot be had | not compared | write-only "
+        "| written same | differs "
+        "| not written | driver | not given |",
+        "|---|---|" + "--:|" * 11, *table,
         f"| all | | {' | '.join(total)} |", "",
-        "## What is not the same, and why", "", *below,
+        "## What is not read the same, and why", "", *below,
+        "## What is not written the same, and why", "", *below_written,
+        "## What is no legal value", "",
+        fill("Only what differs. owsd refuses what it cannot take as it is: a number that means "
+             "something else, cut or wrapped, would be a false value in the chip."), "",
+        *others(written), "",
         "## What the kernel's drivers do not give", "",
         fill("Of a slave that such a driver has, target `w1` does not list these. Over `w1:netlink` "
              "they are there."), "",

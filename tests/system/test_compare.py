@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The genuine owserver and owsd read the same simulated devices: compare.py."""
+"""The genuine owserver and owsd read, and write, the same simulated devices: compare.py and
+compare_writes.py."""
 
 import shutil
 
 import compare
+import compare_writes
 import owsdtest
 from owsdtest import SOURCE
 
@@ -74,6 +76,53 @@ def test_only_what_runs_may_differ_and_not_by_much(scene):
     assert not compare.same("26", "pages/page.1", page, page[:8] + b"\x88\x09" + page[10:])
     assert not compare.same("26", "pages/page.1", page, bytes(6) + page[6:])
     assert not compare.same("2D", "pages/page.1", page, page[:8] + b"\x0a\x09" + page[10:])
+
+
+# Of what is written a sample: `make compare` has all
+SAMPLE = ("DS18B20", "DS2413", "DS2890")
+
+
+def test_what_is_written_compares_as_recorded(scene):
+    if not shutil.which("owserver"):
+        owsdtest.skip("owserver is not installed")
+    now, recorded = compare_writes.run(SAMPLE), compare_writes.recorded()
+    changed = [key for key, outcome in now.items() if outcome.line()[:3] != recorded[key][:3]]
+    for key in changed:
+        compare_writes.show(now[key])
+    assert len(now) > 6 and not changed, "\n".join(f"{k}: now {now[k].line()}" for k in changed)
+
+
+def test_each_property_that_can_be_written_has_a_verdict_and_a_reason(scene):
+    recorded = compare_writes.recorded()
+    assert list(recorded) == compare_writes.keys()
+    for key, line in recorded.items():
+        assert line.verdict in ("same", "differs", "not written"), key
+        assert (line.reason == "") == (line.verdict == "same"), f"{key}: {line}"
+        assert line.verdict == "not written" or line.values, key
+        others = set(line.others.split(", "))
+        assert others == ({"-"} if line.verdict != "same" else {"same"}) or \
+            line.verdict == "same" and others <= set(compare_writes.OTHERS), key
+
+
+def test_what_is_not_written_the_same_is_seen(scene):
+    seen = ("DS18B20", "templow", (b"1", 0), "", ["", ""], [], [])
+    outcome = compare_writes.Outcome()
+    outcome.add("", True, False, seen)
+    outcome.add("range", True, True, seen)
+    assert outcome.line("why") == ("same", 1, "same", "")
+    outcome.add("range", False, True, seen)
+    assert outcome.line("why") == ("same", 1, "range", "")
+    outcome.add("", False, True, seen)
+    assert outcome.line("why") == ("differs", 2, "-", "why")
+    outcome = compare_writes.Outcome()
+    outcome.add("", False, True, seen)
+    assert outcome.line("why") == ("not written", 1, "-", "why")
+    assert compare_writes.Outcome().line("why") == ("not written", 0, "-", "why")
+    theirs, ours = [("templow", b"1", "")], [("templow", b"2", "")]
+    assert compare_writes.alike("28", theirs, theirs)
+    assert not compare_writes.alike("28", theirs, ours)
+    assert not compare_writes.alike("28", theirs, [("templow", None, "-5")])
+    assert compare_writes.alike("28", [("templow", None, "-22")], [("templow", None, "-5")])
 
 
 def test_the_page_is_made_of_this(scene):
