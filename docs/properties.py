@@ -25,8 +25,8 @@ import owsdtest  # noqa: E402
 import served  # noqa: E402
 
 WIDTH = 100
-COUNTED = ("all", "same", "differs", "cannot be had", "not compared", "write-only", "written same",
-           "written differs", "written not written")
+COUNTED = ("all", "same", "differs", "cannot be had", "not compared", "write-only")
+PUT = ("same", "differs", "not written")
 REFUSED = "cannot be had: "
 WRITE_ONLY = "can only be written"
 SCRATCHPAD = "50 05 4b 46 7f ff 0c 10 1c : crc=1c YES\n50 05 4b 46 7f ff 0c 10 1c t=85000\n"
@@ -194,6 +194,10 @@ def others(written):
             for other, of in sorted(by.items())]
 
 
+def row_of(cells):
+    return "| " + " | ".join(str(c or "") for c in cells) + " |"
+
+
 def kernel_section(family, missing):
     return item(f"**{family}**: {names(missing)}") if missing else None
 
@@ -210,7 +214,7 @@ def page():
     stated, given, chip = build_states(rows), kernel_gives(), chips()
     families = sorted({r.family for r in rows})
     sums = collections.Counter()
-    table, below, below_written, kernel = [], [], [], []
+    table, table_written, below, below_written, kernel = [], [], [], [], []
     for family in families:
         mine = [(r, recorded[r.family, r.property]) for r in rows if r.family == family]
         count = collections.Counter(verdict_of(record) for _, record in mine)
@@ -227,19 +231,25 @@ def page():
             str(count[k] or "") for k in COUNTED]
         cells += [str(count["given"]), str(count["missing"] or "")] if family in given else ["`rw`", ""]
         table.append("| " + " | ".join(cells) + " |")
+        if puts:
+            table_written.append(row_of([family, chip.get(family, ""), len(puts)] +
+                                        [count["written " + verdict] for verdict in PUT]))
         below += section(family, chip.get(family, ""), mine)
         below_written += written_section(family, chip.get(family, ""), puts)
+    all_written = row_of(["all", "", len(written)] + [sums["written " + v] for v in PUT])
     total = [str(sums[k]) for k in (*COUNTED, "given", "missing")]
     intro = INTRO.format(all=sums["all"], writable=len(written), families=len(families), stated=len(stated),
                          clock=compare.CLOCK_S, short=compare.SHORT,
                          volt=compare.SUMS["volthours"], amp=compare.SUMS["amphours"])
     return "\n".join([
         "\n\n".join(p if p.startswith("#") else fill(p) for p in intro.strip().split("\n\n")), "",
-        "| | usual chip | all | same | differs | cannot be had | not compared | write-only "
-        "| written same | differs "
-        "| not written | driver | not given |",
-        "|---|---|" + "--:|" * 11, *table,
+        "| | chip | all | same | differs | cannot be had | not compared | write-only | driver "
+        "| not given |",
+        "|---|---|" + "--:|" * 8, *table,
         f"| all | | {' | '.join(total)} |", "",
+        "Of those that can be written:", "",
+        "| | chip | can be written | written same | differs | not written |",
+        "|---|---|" + "--:|" * 4, *table_written, all_written, "",
         "## What is not read the same, and why", "", *below,
         "## What is not written the same, and why", "", *below_written,
         "## What is no legal value", "",
