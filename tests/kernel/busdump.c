@@ -9,7 +9,10 @@
  *   busdump TARGET write         "PATH VALUE" lines on standard input; \xNN is a byte of VALUE
  *   busdump TARGET rounds PATH...   for each line on standard input all paths at once (100 at
  *                                   a time), as the engine asks for what is due; then "round".
- *                                   A line that is a number asks for the first so many
+ *                                   A line that is a number asks for the first so many;
+ *                                   "steady SECONDS" asks for each of the first 100 again as soon
+ *                                   as it was answered, and ends: PATH, a tab, and the mean
+ *                                   seconds between two answers
  */
 #include <poll.h>
 #include <stdio.h>
@@ -35,6 +38,11 @@ static uint8_t round_data[ROUND_MAX][VALUE_ROOM];
 static int round_ret[ROUND_MAX];
 static int round_left;
 
+/* Steady. */
+static bool is_steady;
+static int64_t round_asked[ROUND_MAX], round_first[ROUND_MAX], round_last[ROUND_MAX];
+static unsigned round_count[ROUND_MAX], round_old;
+
 static int64_t now(void *ctx)
 {
 	struct timespec time;
@@ -56,9 +64,27 @@ static int wait_until(void *ctx, int fd, short events, int64_t until_ns)
 	return ppoll(&poll_fd, fd >= 0, &timeout, NULL) > 0;
 }
 
+static void take_steady(const struct bus_answer *answer)
+{
+	uint32_t i = answer->id;
+
+	round_ret[i] = answer->err ? answer->err : (int)answer->len;
+	round_old += answer->err || answer->measured_ns < round_asked[i];
+	round_last[i] = now(NULL);
+	if (!round_first[i])
+		round_first[i] = round_last[i];
+	else
+		round_count[i]++;
+	round_asked[i] = 0;
+}
+
 static void take_answer(void *ctx, const struct bus_answer *answer)
 {
 	(void)ctx;
+	if (is_steady) {
+		take_steady(answer);
+		return;
+	}
 	if (round_left) {
 		round_ret[answer->id] = answer->err ? answer->err : (int)answer->len;
 		answered = --round_left == 0;
@@ -150,19 +176,23 @@ static void dir(const char *path)
 		fwrite(data, 1, (size_t)ret, stdout);
 }
 
+static void ask_for(char **paths, int i)
+{
+	round_req[i] = make_request(BUS_READ, paths[i], round_data[i], VALUE_ROOM);
+	round_req[i].id = (uint32_t)i;
+	round_req[i].prio = BUS_INPUT;
+	if (bus_submit(bus, &round_req[i])) {
+		fprintf(stderr, "busdump: %s: not taken\n", paths[i]);
+		exit(1);
+	}
+}
+
 static void one_round(char **paths, int n)
 {
 	answered = false;
 	round_left = n;
-	for (int i = 0; i < n; i++) {
-		round_req[i] = make_request(BUS_READ, paths[i], round_data[i], VALUE_ROOM);
-		round_req[i].id = (uint32_t)i;
-		round_req[i].prio = BUS_INPUT;
-		if (bus_submit(bus, &round_req[i])) {
-			fprintf(stderr, "busdump: %s: not taken\n", paths[i]);
-			exit(1);
-		}
-	}
+	for (int i = 0; i < n; i++)
+		ask_for(paths, i);
 	run_until(&answered, now(NULL) + 2 * PATIENCE);
 	if (round_left) {
 		fprintf(stderr, "busdump: %d of %d answers are missing\n", round_left, n);
@@ -173,13 +203,50 @@ static void one_round(char **paths, int n)
 		             round_ret[i] < 0 ? 0 : (size_t)round_ret[i]);
 }
 
+/* Each answer is of a conversion that began after its request, or this ends with status 1. */
+static void steady(char **paths, int n, int seconds)
+{
+	int64_t end = now(NULL) + seconds * SECOND;
+
+	is_steady = true;
+	round_old = 0;
+	for (int i = 0; i < n; i++) {
+		round_asked[i] = round_first[i] = 0;
+		round_count[i] = 0;
+	}
+	while (now(NULL) < end) {
+		for (int i = 0; i < n; i++) {
+			if (round_asked[i])
+				continue;
+			round_asked[i] = now(NULL);
+			ask_for(paths, i);
+		}
+		int64_t again = bus_step(bus, now(NULL));
+
+		if (again > now(NULL))
+			wait_until(NULL, -1, 0, again < end ? again : end);
+	}
+	for (int i = 0; i < n; i++) {
+		if (round_old || !round_count[i]) {
+			fprintf(stderr, "busdump: %u failed or are too old, %s has %u\n", round_old,
+			        paths[i], round_count[i]);
+			exit(1);
+		}
+		printf("%s\t%.3f\n", paths[i],
+		       (double)(round_last[i] - round_first[i]) / round_count[i] / SECOND);
+	}
+	exit(fflush(stdout) ? 1 : 0);
+}
+
 static void rounds(char **paths, int n)
 {
 	char line[16];
 
 	while (n > 0 && fgets(line, sizeof(line), stdin)) {
-		int few = atoi(line), count = few > 0 && few < n ? few : n;
+		int few = atoi(line), count = few > 0 && few < n ? few : n, seconds;
 
+		if (sscanf(line, "steady %d", &seconds) == 1)
+			steady(paths, n < ROUND_MAX ? n : ROUND_MAX, seconds);
 		for (int i = 0; i < count; i += ROUND_MAX)
 			one_round(paths + i, count - i < ROUND_MAX ? count - i : ROUND_MAX);
 		puts("round");

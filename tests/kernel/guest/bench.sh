@@ -7,6 +7,7 @@
 SENSORS=50
 COUNTS='1 2 5 10 20 50'
 FEW=10
+STEADY=30
 PORT=4304
 W1=/sys/bus/w1/devices
 i2c=/sys/bus/i2c/devices/i2c-0
@@ -83,6 +84,24 @@ one_round() {
 	awk '/^round$/ { exit } { print }' <&4 | values
 }
 
+# From its start on; nothing is known of the wire
+from_start() {
+	echo | busdump i2c:/dev/i2c-0 rounds $(paths temperature12) 2>/tmp/log/busdump | values
+}
+
+# What the one asked for least often waits for a new value. It says in which conversion each began
+by_owsd_steady() {
+	printf 'round\nsteady %d\n' $STEADY | busdump i2c:/dev/i2c-0 rounds \
+		$(paths temperature12) 2>/tmp/log/busdump >/tmp/steady
+	local status=$?
+	same "owsd, steady: each value is of a conversion of its own" 0 $status
+	awk -v count=$SENSORS '/^round$/ { on = 1; next }
+		on && $2 > longest { longest = $2 }
+		END { printf "# | %-54s | %7d | %6.2f | %12s | %9s | %7s | %6s |\n",
+			"owsd direct, steady", count, longest, "", "", "", "" }' \
+		/tmp/steady >>/tmp/table
+}
+
 by_owsd() {
 	mkfifo /tmp/next /tmp/said
 	exec 4<>/tmp/said
@@ -98,6 +117,44 @@ by_owsd() {
 	done
 	exec 3>&- 4>&-
 	wait $busdump
+	change $SENSORS
+	row "owsd direct, from its start to all values" $SENSORS from_start
+	by_owsd_steady
+}
+
+# All 50 as signals of the daemon, from its start until the last is good
+first_good() {
+	owsd -c /tmp/bench.rio >/tmp/log/owsd 2>&1 &
+	daemon=$!
+	names=$(awk '{ print "t" $1 }' /tmp/sensors)
+	for try in $(seq 240); do
+		owsctl get $names >/dev/null 2>&1 && return
+		usleep 500000
+	done
+}
+
+signals_have() {
+	owsctl get $(awk '{ print "t" $1 }' /tmp/sensors) >/tmp/got
+	paste -d ' ' /tmp/sensors /tmp/got | awk '{ printf "%s %g\n", $2, $NF }' >/tmp/have
+}
+
+by_daemon() {
+	{
+		echo 'OwsDrv { TargetName "i2c:/dev/i2c-0" MaxRetries 2 Timeout 10 Period 0.1'
+		echo "ItemCount $SENSORS"
+		awk '{ printf "Item { Name \"t%d\" Path \"/%s/temperature12\" Type \"double\" " \
+			"IO \"input\" InitValue \"0\" Uncached \"on\" }\n", $1, $2 }' /tmp/sensors
+		echo '}'
+	} >/tmp/bench.rio
+	change $SENSORS
+	row "owsd, the daemon: from its start to all values" $SENSORS daemon_values
+	kill $daemon
+	wait $daemon 2>/dev/null
+}
+
+daemon_values() {
+	first_good
+	signals_have
 }
 
 # --- the genuine owserver
@@ -181,6 +238,7 @@ by_kernel() {
 
 plug bench.sim
 by_owsd
+by_daemon
 by_owserver
 by_kernel
 echo "# | way                                                    | sensors | wall s | transactions |" \
