@@ -17,6 +17,7 @@
 #define SETTLE_NS NS_PER_MS /* a device reset takes 0.5 us */
 #define BUSY_NS (5 * NS_PER_MS)
 #define TRIES 2
+#define CLAIM_NS (250 * NS_PER_MS)
 
 static bool just_reset(int status)
 {
@@ -183,4 +184,26 @@ int ds2482_select(struct ds2482_link *link)
 	if (!err && ((chip->config ^ config) & DS2482_1WS))
 		err = ds2482_configure(chip, config);
 	return err;
+}
+
+/*
+ * A kernel driver may be bound to the chip while owsd uses it. The chip does not show that, because
+ * the driver's reset and configuration leave it as owsd's do. So owsd asks the kernel.
+ */
+bool ds2482_claimed(struct ds2482_chip *chip)
+{
+	struct i2c_adapter *adapter = chip->master->adapter;
+	int64_t now = ds2482_now(chip->master);
+
+	if (!adapter || now < chip->claim_ns)
+		return true;
+	chip->claim_ns = now + CLAIM_NS;
+	if (adapter->ops->claim(adapter, chip->address) == -EBUSY)
+		chip->lost = true;
+	return !chip->lost;
+}
+
+void ds2482_began(struct ds2482_chip *chip)
+{
+	chip->config &= (uint8_t)~DS2482_SPU;
 }

@@ -15,6 +15,7 @@
 
 #define DS2482_FIRST_ADDRESS 0x18
 #define DS2482_ADDRESSES 8
+#define DS2482_TOGETHER 8 /* transactions at the same time, at most */
 
 enum ds2482_part {
 	DS2482_100, /* or a -101, which the bus cannot tell apart */
@@ -79,6 +80,11 @@ struct ds2482_master {
 	int64_t byte_ns;     /* shortest time of one I2C byte, measured; 0: bytes tell no time */
 	int64_t measured_ns; /* env time of the measurement */
 	unsigned measured_again; /* since the adapter was opened */
+	/*
+	 * What a transaction takes of the I2C bus when others have theirs meanwhile, mean; 0: not
+	 * known.
+	 */
+	int64_t visit_ns;
 	unsigned count;
 	struct ds2482_chip chip[DS2482_ADDRESSES];
 	/*

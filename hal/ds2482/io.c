@@ -174,5 +174,6 @@ int ds2482_learn(struct ds2482_chip *chip)
 		}
 	}
 	chip->master->measured_again = 0;
+	chip->master->visit_ns = 0;
 	return err ? err : measure(chip);
 }

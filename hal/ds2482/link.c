@@ -9,8 +9,7 @@
 #include "hal/ds2482/link.h"
 #include "hal/ds2482/power.h"
 #include "hal/ds2482/run.h"
-
-#define CLAIM_NS (250 * NS_PER_MS)
+#include "hal/ds2482/together.h"
 
 static struct ds2482_link *self(struct link *link)
 {
@@ -28,39 +27,16 @@ static void spent(struct ds2482_link *link, size_t n)
 	link->cost.wire_ns += n * (uint64_t)ds2482_slot_ns[link->speed];
 }
 
-/* The next 1-Wire command ends the strong pull-up and clears its bit. */
-static void began(struct ds2482_chip *chip)
-{
-	chip->config &= (uint8_t)~DS2482_SPU;
-}
-
 /* Set SPU before the operation after whose last bit the pull-up feeds the wire. */
 static int arm(struct ds2482_chip *chip)
 {
 	return ds2482_configure(chip, chip->config | DS2482_SPU);
 }
 
-/*
- * A kernel driver may be bound to the chip while owsd uses it. The chip does not show that, because
- * the driver's reset and configuration leave it as owsd's do. So owsd asks the kernel.
- */
-static bool is_ours(struct ds2482_chip *chip)
-{
-	struct i2c_adapter *adapter = chip->master->adapter;
-	int64_t now = ds2482_now(chip->master);
-
-	if (!adapter || now < chip->claim_ns)
-		return true;
-	chip->claim_ns = now + CLAIM_NS;
-	if (adapter->ops->claim(adapter, chip->address) == -EBUSY)
-		chip->lost = true;
-	return !chip->lost;
-}
-
 static int link_reset(struct link *base)
 {
 	struct ds2482_link *link = self(base);
-	int status = is_ours(link->chip) ? ds2482_select(link) : -ENXIO;
+	int status = ds2482_claimed(link->chip) ? ds2482_select(link) : -ENXIO;
 
 	if (status < 0)
 		return status;
@@ -68,7 +44,7 @@ static int link_reset(struct link *base)
 	                    ds2482_reset_max_ns[link->speed]);
 	if (status < 0)
 		return status;
-	began(link->chip);
+	ds2482_began(link->chip);
 	link->cost.resets++;
 	link->cost.wire_ns += (uint64_t)ds2482_reset_ns[link->speed];
 	if (status & DS2482_SD)
@@ -86,7 +62,7 @@ static int link_write(struct link *base, const uint8_t *data, size_t n, enum lin
 
 	if (!err && before > 0) {
 		err = ds2482_write_block(link->chip, data, before, slots(link, 8));
-		began(link->chip);
+		ds2482_began(link->chip);
 	}
 	if (!err && before < n) {
 		err = arm(link->chip);
@@ -110,7 +86,7 @@ static int link_read(struct link *base, uint8_t *data, size_t n)
 		err = ds2482_read_block(link->chip, data, n, slots(link, 8));
 	if (err)
 		return err;
-	began(link->chip);
+	ds2482_began(link->chip);
 	spent(link, 8 * n);
 	return 0;
 }
@@ -127,7 +103,7 @@ static int link_bit(struct link *base, bool out, enum link_after after)
 	if (status < 0)
 		return status;
 	if (after != LINK_STRONG)
-		began(link->chip);
+		ds2482_began(link->chip);
 	spent(link, 1);
 	return status & DS2482_SBR ? 1 : 0;
 }
@@ -142,7 +118,7 @@ static int link_triplet(struct link *base, bool direction)
 	status = ds2482_run(link->chip, DS2482_TRIPLET, direction ? 0x80 : 0, slots(link, 3));
 	if (status < 0)
 		return status;
-	began(link->chip);
+	ds2482_began(link->chip);
 	spent(link, 3);
 	return (status & DS2482_SBR ? 1 : 0) | (status & DS2482_TSB ? 2 : 0) |
 	       (status & DS2482_DIR ? 4 : 0);
@@ -222,6 +198,8 @@ static const struct link_ops link_ops = {
 	.read = link_read,
 	.bit = link_bit,
 	.triplet = link_triplet,
+	.together = ds2482_together,
+	.abreast = ds2482_abreast,
 	.speed = link_speed,
 	.recover = link_recover,
 	.cost = link_cost,

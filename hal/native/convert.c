@@ -218,7 +218,7 @@ static int64_t convert_ns(const struct link *link, const struct device *device)
 }
 
 /* Who did not show that it heard may have heard. */
-static void told(struct native *native, struct device *device)
+void convert_told(struct native *native, struct device *device)
 {
 	thermometer_told(device, native_now(native),
 	                 convert_ns(native->channel[device->channel].link, device));
@@ -228,7 +228,7 @@ static void told_all(struct native *native, unsigned n)
 {
 	for (unsigned i = 0; i < native->table.count; i++)
 		if (native_thermometer(&native->table.devices[i], n))
-			told(native, &native->table.devices[i]);
+			convert_told(native, &native->table.devices[i]);
 }
 
 /* All jobs that are due on the channel end with err, as if it had been theirs. */
@@ -359,12 +359,12 @@ static struct job *next_due(struct native *native, unsigned n)
 }
 
 /* All that wait for this chip's result. */
-static void convert_device(struct native *native, struct device *device)
+static void convert_device(struct native *native, struct device *device, int64_t now)
 {
 	thermometer_of(device)->unheard = 0;
 	thermometer_of(device)->shows = true;
-	thermometer_converts(device, native_now(native),
-	                     convert_ns(native->channel[device->channel].link, device), false);
+	thermometer_converts(device, now, convert_ns(native->channel[device->channel].link, device),
+	                     false);
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
 
@@ -392,12 +392,12 @@ static bool convert_one(struct native *native, unsigned n)
 
 	job_saw(native, first, err, now);
 	if (err < 0) {
-		told(native, device);
+		convert_told(native, device);
 		job_failed(native, first, err);
 		return true;
 	}
 	native_count(native, COUNT_CONVERSIONS);
-	convert_device(native, device);
+	convert_device(native, device, now);
 	return true;
 }
 
@@ -418,7 +418,7 @@ static void ask_silent(struct native *native, struct job *job)
  * again. If it never does, it may have lost its supply, and is asked for that; or it is a clone
  * that shows nothing, and converts with all.
  */
-static void convert_in_turn(struct native *native, struct job *job)
+void convert_in_turn(struct native *native, struct job *job)
 {
 	struct device *device = job->txn.device;
 	int err = txn_end(&job->txn, thermometer_start(&job->txn));
@@ -427,7 +427,7 @@ static void convert_in_turn(struct native *native, struct job *job)
 	native->schedule.owes = err < 0 ? OWES_ANY : OWES_OTHER;
 	job_saw(native, job, err, native_now(native));
 	if (err < 0)
-		told(native, device);
+		convert_told(native, device);
 	if (err == -EBADMSG && !job->txn.link_error) {
 		native_count(native, COUNT_CHECKSUMS);
 		native->channel[device->channel].checksums++;
@@ -437,11 +437,24 @@ static void convert_in_turn(struct native *native, struct job *job)
 		job_failed(native, job, err);
 	} else {
 		native_count(native, COUNT_CONVERSIONS);
-		convert_device(native, device);
+		convert_device(native, device, txn_ended(&job->txn));
 	}
 }
 
-bool convert_step(struct native *native, int64_t now, int64_t *next)
+struct job *convert_next_in_turn(struct native *native, unsigned n, int64_t now)
+{
+	struct channel *channel = &native->channel[n];
+
+	if (!channel->due_ns || native_held(native, n, NULL, now))
+		return NULL;
+	struct schedule_plan plan = schedule_look(native, n);
+	bool single = !plan.parasitic && !channel->link->driven && is_single_round(channel, now);
+
+	return plan.due && !single && schedule_in_turn(native, &plan, now) ? next_due(native, n)
+	                                                                   : NULL;
+}
+
+bool convert_step(struct native *native, int64_t now, int64_t *next, struct job **in_turn)
 {
 	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1)) {
 		struct channel *channel = &native->channel[n];
@@ -453,15 +466,9 @@ bool convert_step(struct native *native, int64_t now, int64_t *next)
 			channel->due_ns = 0;
 			continue;
 		}
-		bool single = !plan.parasitic && !channel->link->driven &&
-		              is_single_round(channel, now);
-		struct job *first = !single && schedule_in_turn(native, &plan, now)
-		                            ? next_due(native, n)
-		                            : NULL;
-		if (first) {
-			convert_in_turn(native, first);
+		*in_turn = convert_next_in_turn(native, n, now);
+		if (*in_turn)
 			return true;
-		}
 		if (plan.preparing && channel->due_ns + GATHER_MAX_NS > now)
 			continue;
 		if (channel->due_ns + GATHER_NS > now) {
@@ -471,7 +478,8 @@ bool convert_step(struct native *native, int64_t now, int64_t *next)
 		}
 		if (plan.parasitic && supply_ask_one(native, n))
 			return true;
-		if (plan.parasitic ? !plan.parasitic_due || channel->link->passive : single) {
+		if (plan.parasitic ? !plan.parasitic_due || channel->link->passive
+		                   : !channel->link->driven && is_single_round(channel, now)) {
 			if (!convert_one(native, n))
 				continue;
 			if (plan.due == 1)

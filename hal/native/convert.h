@@ -11,8 +11,16 @@ void convert_begin(struct native *native, struct job *job, int64_t now);
 /* Is the chip, as far as is known, at the resolution that the job asks for? */
 bool convert_right(const struct job *job);
 void convert_prepare(struct native *native, struct job *job, int64_t now);
-/* Start a conversion where one is due. True: did a transaction. *next: when to look again. */
-bool convert_step(struct native *native, int64_t now, int64_t *next);
+/*
+ * Start a conversion where one is due. True: did a transaction, or *in_turn is the job whose chip
+ * is to convert in turn now, by convert_in_turn(). *next: when to look again.
+ */
+bool convert_step(struct native *native, int64_t now, int64_t *next, struct job **in_turn);
+/* The job of a channel whose chip converts in turn next, now. NULL: none does. */
+struct job *convert_next_in_turn(struct native *native, unsigned n, int64_t now);
+void convert_in_turn(struct native *native, struct job *job);
+/* Convert T was sent to the chip, and whether it heard is not known. */
+void convert_told(struct native *native, struct device *device);
 /*
  * Convert T to all; -EBADMSG if nobody begins. strong: with the pull-up, which holds it longest ns.
  */

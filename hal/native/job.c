@@ -174,6 +174,13 @@ bool job_ready(const struct native *native, const struct job *job, int64_t now, 
 	return true;
 }
 
+bool job_goes_first(const struct job *a, const struct job *b)
+{
+	if (!b || a->req->prio != b->req->prio)
+		return !b || a->req->prio < b->req->prio;
+	return (int32_t)(a->order - b->order) < 0;
+}
+
 static void run_probe(struct native *native, struct job *job, int64_t now)
 {
 	job_txn(native, job);

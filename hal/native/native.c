@@ -20,6 +20,7 @@
 #include "hal/native/settings.h"
 #include "hal/native/state.h"
 #include "hal/native/statistics.h"
+#include "hal/native/together.h"
 #include "hal/native/touch.h"
 
 #define VOLATILE_NS (2 * NATIVE_S)
@@ -206,19 +207,6 @@ static void expire(struct native *native, int64_t now, int64_t *next)
 	}
 }
 
-static bool goes_first(const struct job *a, const struct job *b)
-{
-	if (!b || a->req->prio != b->req->prio)
-		return !b || a->req->prio < b->req->prio;
-	return (int32_t)(a->order - b->order) < 0;
-}
-
-static bool reads_result(const struct job *job)
-{
-	return job->property && job->property->convert &&
-	       (job->state == JOB_CONVERTING || job->state == JOB_RUN);
-}
-
 /* *other: of those that read no thermometer the one that waits longest, whatever its rank. */
 static struct job *pick(struct native *native, int64_t now, int64_t *next, struct job **other)
 {
@@ -231,9 +219,10 @@ static struct job *pick(struct native *native, int64_t now, int64_t *next, struc
 			job_look(native, job, now);
 		if (!job->req || !job_ready(native, job, now, next))
 			continue;
-		if (goes_first(job, best))
+		if (job_goes_first(job, best))
 			best = job;
-		if (!reads_result(job) && (!*other || (int32_t)(job->order - (*other)->order) < 0))
+		if (!schedule_reads(job) &&
+		    (!*other || (int32_t)(job->order - (*other)->order) < 0))
 			*other = job;
 	}
 	return best;
@@ -301,14 +290,19 @@ static bool rest(struct native *native, int64_t now, int64_t *next)
 
 static void run(struct native *native, struct job *job, int64_t now)
 {
-	native->schedule.doing = reads_result(job) ? SCHEDULE_READ : SCHEDULE_OTHER;
-	job_step(native, job, now);
+	bool reads = schedule_reads(job);
+
+	native->schedule.doing = reads ? SCHEDULE_READ : SCHEDULE_OTHER;
+	if (reads)
+		together_step(native, job, now);
+	else
+		job_step(native, job, now);
 }
 
 static int64_t step(struct native *native, int64_t now)
 {
 	int64_t next = INT64_MAX;
-	struct job *other = NULL;
+	struct job *other = NULL, *in_turn = NULL;
 
 	master_grow(native, now, &next);
 	if (!native->up)
@@ -329,14 +323,19 @@ static int64_t step(struct native *native, int64_t now)
 	}
 	struct job *owed = native->schedule.owes == OWES_ANY ? job : other;
 	if (owed && native->schedule.owes) {
-		native->schedule.owes = OWES_NOTHING;
+		/* A thermometer's new request becomes due by that, without the wire */
+		if (owed->state != JOB_QUEUED || !schedule_asks(owed))
+			native->schedule.owes = OWES_NOTHING;
 		run(native, owed, now);
 		return now;
 	}
 	if (!hunt_initial(native) && touch_step(native, now, &next))
 		return now;
-	if (hunt_step(native, now, !job, &next) || convert_step(native, now, &next))
+	if (hunt_step(native, now, !job, &next) || convert_step(native, now, &next, &in_turn)) {
+		if (in_turn)
+			together_step(native, in_turn, now);
 		return now;
+	}
 	if (job) {
 		run(native, job, now);
 		return now;

@@ -11,6 +11,7 @@
  *   simultaneous.c  writes to /simultaneous
  *   convert.c  who converts when: one Convert T for all thermometers due on a channel, or in turn
  *   schedule.c which of the two is faster
+ *   together.c thermometers on several chips of the master at the same time
  *   ending.c   when a conversion ends
  *   supply.c   which thermometers are fed by the wire
  *   outcome.c  what follows from how a transaction ended

@@ -21,7 +21,7 @@
 #define FINE 1000                  /* in such parts of it */
 #define LEAST_NS (WINDOW_NS / 100) /* with less nothing is gained */
 
-static bool asks_to_convert(const struct job *job)
+bool schedule_asks(const struct job *job)
 {
 	return job->req && job->txn.device && job->property && job->property->convert &&
 	       job->kind == JOB_PROPERTY;
@@ -47,18 +47,47 @@ static void look_at_job(struct schedule_plan *plan, const struct job *job, bool 
 	plan->due_ns = ns > plan->due_ns ? ns : plan->due_ns;
 }
 
+/* The thermometers that are asked for, by the chip of the master; and those that are read alone. */
+struct load {
+	unsigned alone, together, most, width, chip[NATIVE_CHANNELS];
+};
+
+static void add_load(struct load *load, const struct native *native, unsigned channel)
+{
+	const struct link *link = native_abreast(native, channel);
+	unsigned width = link ? link->ops->abreast(link) : 1, *chip;
+
+	if (!link || width < 2) {
+		load->alone++;
+		return;
+	}
+	load->together++;
+	load->width = load->width && load->width < width ? load->width : width;
+	chip = &load->chip[link->chip % NATIVE_CHANNELS];
+	load->most = ++*chip > load->most ? *chip : load->most;
+}
+
+/* In each group there is one of a chip at most. */
+static unsigned rounds(const struct load *load)
+{
+	unsigned groups = load->width ? (load->together + load->width - 1) / load->width : 0;
+
+	return load->alone + (groups > load->most ? groups : load->most);
+}
+
 static void look_at_jobs(struct schedule_plan *plan, const struct native *native, unsigned channel,
                          bool feeds)
 {
 	unsigned coming = UINT8_MAX, urgent = BUS_GUEST;
+	struct load load = {0};
 
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		const struct job *job = &native->jobs[i];
 
-		if (!asks_to_convert(job))
+		if (!schedule_asks(job))
 			continue;
-		plan->asked += job->state == JOB_DUE || job->state == JOB_CONVERTING ||
-		               job->state == JOB_RUN;
+		if (job->state == JOB_DUE || job->state == JOB_CONVERTING || job->state == JOB_RUN)
+			add_load(&load, native, job->txn.device->channel);
 		if (job->txn.device->channel != channel)
 			continue;
 		look_at_job(plan, job, feeds);
@@ -71,6 +100,7 @@ static void look_at_jobs(struct schedule_plan *plan, const struct native *native
 			urgent = job->req->prio < urgent ? job->req->prio : urgent;
 	}
 	plan->preparing = coming <= urgent;
+	plan->rounds = rounds(&load);
 }
 
 struct schedule_plan schedule_look(const struct native *native, unsigned channel)
@@ -125,7 +155,8 @@ bool schedule_early(const struct native *native)
  * start s, a conversion c, and others have the share u of the time. Then each value is new
  *   all at once every c + n r: others, and other channels, have the time while the chips convert;
  *   in turn     every c + s + r;
- * but not more often than the thread comes round: N r / (1 - u), or N (r + s) / (1 - u). Of one
+ * but not more often than the thread comes round: N r / (1 - u), or N (r + s) / (1 - u). Where
+ * chips of the master are read together, N is the number of those rounds. Of one
  * channel at 12 bits, in turn is faster up to some 80 thermometers. Where several channels
  * convert while others are read, all at once is, as soon as the thread has enough to do.
  *
@@ -143,10 +174,16 @@ bool schedule_in_turn(const struct native *native, const struct schedule_plan *p
 	if (!plan->reading || plan->driven || plan->parasitic || plan->silent || left < LEAST_NS)
 		return false;
 	int64_t at_once = longer(plan->longest_ns + (plan->due + plan->reading) * read,
-	                         plan->asked * read * FINE / (left / (WINDOW_NS / FINE)));
-	int64_t round = plan->asked * (read + start) * FINE / (left / (WINDOW_NS / FINE));
+	                         plan->rounds * read * FINE / (left / (WINDOW_NS / FINE)));
+	int64_t round = plan->rounds * (read + start) * FINE / (left / (WINDOW_NS / FINE));
 	int64_t in_turn = longer(plan->longest_ns + start + read, round + round / GAIN);
 	return in_turn < at_once && plan->due * start <= longer(plan->ready_ns - now, wait);
+}
+
+bool schedule_reads(const struct job *job)
+{
+	return job->property && job->property->convert &&
+	       (job->state == JOB_CONVERTING || job->state == JOB_RUN);
 }
 
 void schedule_took(struct schedule *schedule, int64_t began, int64_t now)

@@ -23,11 +23,12 @@
 struct schedule_plan {
 	unsigned due;     /* wait for Convert T */
 	unsigned reading; /* convert, or are not read yet */
-	unsigned asked;   /* of all channels: due, converting, not read yet */
-	bool preparing;   /* others will be due soon */
-	bool locked;      /* a chip on the channel is at work */
-	bool silent;      /* one of those cannot show that it converts */
-	bool driven;      /* a driver has the wire, and waits for the end of each conversion */
+	/* Of all channels: how often the thread reads until all that are due or under way are. */
+	unsigned rounds;
+	bool preparing; /* others will be due soon */
+	bool locked;    /* a chip on the channel is at work */
+	bool silent;    /* one of those cannot show that it converts */
+	bool driven;    /* a driver has the wire, and waits for the end of each conversion */
 	bool parasitic_due, parasitic;
 	int64_t due_ns, all_ns; /* how long those that are due convert, and all */
 	int64_t longest_ns;     /* ... and those that are due, convert, or are not read yet */
@@ -42,6 +43,10 @@ struct schedule_plan schedule_look(const struct native *native, unsigned channel
 bool schedule_early(const struct native *native);
 /* Do those that are due convert now, in turn, though others are not read yet? */
 bool schedule_in_turn(const struct native *native, const struct schedule_plan *plan, int64_t now);
+/* Is this job one of a thermometer that is to convert? */
+bool schedule_asks(const struct job *job);
+/* Does this job, of a thermometer, read a result? */
+bool schedule_reads(const struct job *job);
 /* A step of the bus took from began to now, and did schedule.doing. */
 void schedule_took(struct schedule *schedule, int64_t began, int64_t now);
 

@@ -54,3 +54,10 @@ bool native_thermometer(const struct device *device, unsigned channel)
 {
 	return device->present && device->channel == channel && device->family->thermometer;
 }
+
+struct link *native_abreast(const struct native *native, unsigned channel)
+{
+	struct link *link = channel < native->channels ? native->channel[channel].link : NULL;
+
+	return link && link->ops->together && !native->channel[channel].trunk ? link : NULL;
+}

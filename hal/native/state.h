@@ -72,6 +72,7 @@ struct job {
 	bool begun, fresh, verified, locks;
 	bool again;                 /* its conversion was unproven, and is made a second time */
 	bool offered;               /* somebody or something can answer it */
+	bool alone;                 /* its next transaction is made with no others (together.h) */
 	bool waits;                 /* PREPARE: until another job has read its resolution */
 	bool rests;                 /* PREPARE: until the chip does not convert */
 	unsigned element;           /* of a separate array, when all of it is asked for */
@@ -275,6 +276,8 @@ bool native_has(const struct native *native, unsigned channel);
 /* The first channel from n on, a wire or a branch; NATIVE_ALL: there is none. */
 unsigned native_next(const struct native *native, unsigned n);
 bool native_thermometer(const struct device *device, unsigned channel);
+/* The link of a channel, if it takes part in transactions at the same time (link_ops.together). */
+struct link *native_abreast(const struct native *native, unsigned channel);
 /* A strong pull-up is on at the chip of this channel, and not for this job. */
 bool native_held(const struct native *native, unsigned channel, const struct job *job, int64_t now);
 

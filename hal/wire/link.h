@@ -3,9 +3,9 @@
  * The link contract: a link moves bits on one 1-Wire wire; a driven one has somebody else do that.
  * A master (one chip) owns 1 to 8 links.
  *
- * Blocking: each call is at most one bus operation and bounded; all waits go through the
- * environment the master was created with. One thread: the native bus calls it. Errors travel in
- * the return value, never in the data:
+ * Blocking: each call is at most one bus operation, or several at the same time, and bounded; all
+ * waits go through the environment the master was created with. One thread: the native bus calls
+ * it. Errors travel in the return value, never in the data:
  *   -ECOMM      the wire is short
  *   -ETIMEDOUT  the master chip is stuck (busy for longer than any operation takes)
  *   -EIO        the way to the chip failed once (refused byte, refused address)
@@ -74,6 +74,19 @@ struct area;
 /* One ROM id found by a search, family first. Return not 0 to end the search. */
 typedef int link_found(void *ctx, const uint8_t rom[8]);
 
+/*
+ * A whole transaction: a reset, out_n bytes written, in_n bytes read; neither is 0. err: what came
+ * of it, as of reset(), write() and read(), -ENODEV: nobody answered the reset.
+ */
+struct link_visit {
+	struct link *link;
+	const uint8_t *out;
+	uint8_t *in;
+	uint8_t out_n, in_n;
+	int err;
+	int64_t ended_ns; /* env time behind the last byte */
+};
+
 struct link_ops {
 	const char *name;
 	/* 1 presence, 0 nobody there. */
@@ -87,6 +100,15 @@ struct link_ops {
 	 * bit 2: the direction taken. NULL: made of bit().
 	 */
 	int (*triplet)(struct link *link, bool direction);
+	/*
+	 * n transactions at the same time, on links with this function, each of another chip. None
+	 * waits for another beyond what it takes of the way to the chips. An error other than
+	 * -ENODEV is not judged: the transaction is made again by the functions above, which judge
+	 * it. NULL, together with abreast: there is no such thing.
+	 */
+	void (*together)(struct link_visit *visits, unsigned n);
+	/* How many at most do not take much longer than one does; 1: do not use it. */
+	unsigned (*abreast)(const struct link *link);
 	/*
 	 * A whole search, of one family or (0) of all: 0, what found returned, or an error. NULL:
 	 * made of reset, write and triplet (hal/wire/search.h).

@@ -49,8 +49,53 @@ int txn_wait(struct txn *txn, int64_t ns)
 	return TXN_MORE;
 }
 
+void txn_done(struct txn *txn, const struct link_visit *done)
+{
+	txn->done = done;
+	txn->done_begun = false;
+	txn->done_in = 0;
+}
+
+int64_t txn_ended(const struct txn *txn)
+{
+	return txn->done && txn->done_begun ? txn->done->ended_ns : txn_now(txn);
+}
+
+/* What follows goes to the wire. Bytes that were read and are left over are not to be believed. */
+static int leave_done(struct txn *txn)
+{
+	bool left = txn->done && txn->done_begun && txn->done_in < txn->done->in_n;
+
+	txn->done = NULL;
+	return left ? -EBADMSG : 0;
+}
+
+static bool was_sent(struct txn *txn, const uint8_t *out, size_t n, enum link_after after)
+{
+	const struct link_visit *done = txn->done;
+
+	if (!done || txn->done_begun || after != LINK_IDLE || done->out_n != n ||
+	    memcmp(done->out, out, n) != 0)
+		return false;
+	txn->done_begun = txn->on_wire = true;
+	return true;
+}
+
+static bool was_read(struct txn *txn, uint8_t *bytes, size_t n)
+{
+	const struct link_visit *done = txn->done;
+
+	if (!done || !txn->done_begun || n > (size_t)(done->in_n - txn->done_in))
+		return false;
+	memcpy(bytes, done->in + txn->done_in, n);
+	txn->done_in = (uint8_t)(txn->done_in + n);
+	return true;
+}
+
 static int reset(struct txn *txn)
 {
+	/* It is over, or another comes first. */
+	txn->done = NULL;
 	int present = of_link(txn, txn->link->ops->reset(txn->link));
 
 	if (present)
@@ -73,12 +118,14 @@ static int command(struct txn *txn, const uint8_t *bytes, size_t n, enum link_af
 	assert(txn->device);
 	if (n > BYTES_MAX)
 		return -EINVAL;
-	int err = reset(txn);
-	if (err)
-		return err;
 	memcpy(out + 1, txn->device->rom, 8);
 	if (n)
 		memcpy(out + 9, bytes, n);
+	if (was_sent(txn, out, 9 + n, after))
+		return 0;
+	int err = reset(txn);
+	if (err)
+		return err;
 	return of_link(txn, txn->link->ops->write(txn->link, out, 9 + n, after));
 }
 
@@ -114,7 +161,9 @@ int txn_command_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t 
 
 int txn_write(struct txn *txn, const uint8_t *bytes, size_t n)
 {
-	return of_link(txn, txn->link->ops->write(txn->link, bytes, n, LINK_IDLE));
+	int err = leave_done(txn);
+
+	return err ? err : of_link(txn, txn->link->ops->write(txn->link, bytes, n, LINK_IDLE));
 }
 
 int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
@@ -122,6 +171,8 @@ int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns
 	enum link_after after;
 	int err = pull(txn, &after);
 
+	if (!err)
+		err = leave_done(txn);
 	if (err)
 		return err;
 	return hold(txn, of_link(txn, txn->link->ops->write(txn->link, bytes, n, after)), ns);
@@ -133,6 +184,8 @@ int txn_write_paused(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns
 	enum link_after after;
 	int err = pull(txn, &after);
 
+	if (!err)
+		err = leave_done(txn);
 	if (!err)
 		err = of_link(txn, txn->link->ops->write(txn->link, bytes, n, after));
 	if (!err && env->wait(env->ctx, -1, 0, env->now(env->ctx) + ns) < 0)
@@ -150,8 +203,13 @@ static void hear(struct txn *txn, const uint8_t *bytes, size_t n)
 
 int txn_read(struct txn *txn, uint8_t *bytes, size_t n)
 {
-	int err = of_link(txn, txn->link->ops->read(txn->link, bytes, n));
+	int err = 0;
 
+	if (!was_read(txn, bytes, n)) {
+		err = leave_done(txn);
+		if (!err)
+			err = of_link(txn, txn->link->ops->read(txn->link, bytes, n));
+	}
 	if (err < 0)
 		return err;
 	hear(txn, bytes, n);
@@ -160,12 +218,18 @@ int txn_read(struct txn *txn, uint8_t *bytes, size_t n)
 
 int txn_bit(struct txn *txn)
 {
-	return of_link(txn, txn->link->ops->bit(txn->link, true, LINK_IDLE));
+	int err = leave_done(txn);
+
+	return err ? err : of_link(txn, txn->link->ops->bit(txn->link, true, LINK_IDLE));
 }
 
 int txn_bit_strong(struct txn *txn, int64_t ns)
 {
-	return hold(txn, of_link(txn, txn->link->ops->bit(txn->link, true, LINK_STRONG)), ns);
+	int err = leave_done(txn);
+
+	if (!err)
+		err = of_link(txn, txn->link->ops->bit(txn->link, true, LINK_STRONG));
+	return hold(txn, err, ns);
 }
 
 int txn_started(struct txn *txn)

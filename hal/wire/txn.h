@@ -62,6 +62,10 @@ struct txn {
 	int64_t wake_ns;                  /* not to be called before */
 	bool strong; /* the strong pull-up is on until then: the channel is held */
 
+	const struct link_visit *done; /* txn_done() */
+	uint8_t done_in;               /* bytes of it that were taken */
+	bool done_begun;
+
 	/* Found out on the way. */
 	bool on_wire;   /* something was sent */
 	int link_error; /* the error is the link's, not the device's */
@@ -139,6 +143,15 @@ int64_t txn_measured(const struct txn *txn);
  */
 #define txn_own(txn, type) \
 	((type *)(void *)((txn)->own + 0 * sizeof(char[sizeof(type) <= TXN_OWN ? 1 : -1])))
+
+/*
+ * The next transaction has been made already, with others (link_ops.together); NULL: it has not.
+ * The command that comes next takes it up if it is what was sent, else it is dropped. Call it again
+ * with NULL behind that.
+ */
+void txn_done(struct txn *txn, const struct link_visit *done);
+/* When the last transaction ended: this moment, if it was not made already. */
+int64_t txn_ended(const struct txn *txn);
 
 /*
  * Behind each call of a property function: what a link keeps back is sent (link_ops.flush). err is

@@ -41,7 +41,7 @@ struct place {
 	char file[32];
 	int64_t now;
 	uint64_t waits; /* those of the simulated adapter included */
-	unsigned answers, failures, channels, thermometers;
+	unsigned answers, failures, channels, chips, thermometers;
 	bool up;
 	struct bus_req req[MOST];
 	uint8_t data[MOST][64];
@@ -108,14 +108,18 @@ static void run(struct place *p, unsigned answers, int64_t until_ns)
 }
 
 /* quick: chips that take four fifths of the longest time, at temperatures that change. */
-static void describe(FILE *f, unsigned thermometers, unsigned channels, int khz,
+static void describe(FILE *f, unsigned thermometers, unsigned channels, unsigned chips, int khz,
                      const char *combine, bool quick)
 {
-	fprintf(f, "i2c speed %d combine %s\nchip DS2482-%d 0x18\n", khz, combine,
-	        channels > 1 ? 800 : 100);
+	fprintf(f, "i2c speed %d combine %s\n", khz, combine);
 	for (unsigned i = 0; i < thermometers; i++) {
+		unsigned wire = i / (thermometers / channels), each = channels / chips;
+
+		if (i % (thermometers / chips) == 0)
+			fprintf(f, "chip DS2482-%d 0x%x\n", each > 1 ? 800 : 100,
+			        0x18 + wire / each);
 		if (i % (thermometers / channels) == 0)
-			fprintf(f, "channel %u\n", i / (thermometers / channels));
+			fprintf(f, "channel %u\n", wire % each);
 		/* Ids differ in all bits, as those of a real delivery do. */
 		fprintf(f, "DS18B20 28.%08X%04X as t%u", (i + 1) * 2654435761u, i, i);
 		fprintf(f, quick ? " speed 80 temperature ramp %u 120 600s\n" : " temperature %u\n",
@@ -123,8 +127,8 @@ static void describe(FILE *f, unsigned thermometers, unsigned channels, int khz,
 	}
 }
 
-static void begin(struct place *p, unsigned thermometers, unsigned channels, int khz,
-                  const char *combine, bool quick)
+static void begin(struct place *p, unsigned thermometers, unsigned channels, unsigned chips,
+                  int khz, const char *combine, bool quick)
 {
 	char target[48], why[200] = "";
 	int fd;
@@ -144,7 +148,7 @@ static void begin(struct place *p, unsigned thermometers, unsigned channels, int
 	f = fd < 0 ? NULL : fdopen(fd, "w");
 	if (!f)
 		exit(1);
-	describe(f, thermometers, channels, khz, combine, quick);
+	describe(f, thermometers, channels, chips, khz, combine, quick);
 	p->quick = quick;
 	fclose(f);
 	snprintf(target, sizeof(target), "sim:%s", p->file);
@@ -268,14 +272,14 @@ static void scratchpad(struct place *p, const char *name)
 	bench_line(line, bench_percentile(calls, SCANS, 50), "per_scratchpad");
 }
 
-static void measure(unsigned thermometers, unsigned channels, int khz, const char *combine,
-                    bool cost, bool quick)
+static void measure(unsigned thermometers, unsigned channels, unsigned chips, int khz,
+                    const char *combine, bool cost, bool quick)
 {
 	static struct place p;
 	double sum = 0;
-	char name[40], line[64];
+	char name[40], line[64], wires[16];
 
-	begin(&p, thermometers, channels, khz, combine, quick);
+	begin(&p, thermometers, channels, chips, khz, combine, quick);
 	scan(&p); /* supply and resolution are asked for once */
 	/* Each minute one scan asks one by one, and learns what the chips show. */
 	for (int i = 0; i < 3 && quick; i++) {
@@ -286,7 +290,8 @@ static void measure(unsigned thermometers, unsigned channels, int khz, const cha
 		sum += scan(&p);
 		run(&p, UINT32_MAX, p.now + 137 * MS * (i + 1));
 	}
-	snprintf(name, sizeof(name), "%u%s.%dkHz%s%s", thermometers, channels > 1 ? "on8" : "", khz,
+	snprintf(wires, sizeof(wires), chips > 1 ? "on%uchips" : "on%u", channels);
+	snprintf(name, sizeof(name), "%u%s.%dkHz%s%s", thermometers, channels > 1 ? wires : "", khz,
 	         strcmp(combine, "any") == 0 ? "" : ".one-read", quick ? ".quick" : "");
 	snprintf(line, sizeof(line), "scan.%s.seconds", name);
 	bench_line(line, sum / SCANS / 1e9, "s");
@@ -302,17 +307,18 @@ static void measure(unsigned thermometers, unsigned channels, int khz, const cha
 int main(void)
 {
 	static const struct {
-		unsigned thermometers, channels;
-	} nets[] = {{1, 1}, {2, 1}, {5, 1}, {10, 1}, {20, 1}, {50, 1}, {100, 1}, {80, 8}};
+		unsigned thermometers, channels, chips;
+	} nets[] = {{1, 1, 1},  {2, 1, 1},   {5, 1, 1},  {10, 1, 1}, {20, 1, 1},
+	            {50, 1, 1}, {100, 1, 1}, {80, 8, 1}, {80, 4, 4}, {80, 8, 8}};
 	static const char *const combines[] = {"any", "one-read"};
 	static const int speeds[] = {400, 100};
 
 	for (unsigned s = 0; s < 2; s++)
 		for (unsigned c = 0; c < 2; c++)
 			for (unsigned i = 0; i < sizeof(nets) / sizeof(nets[0]); i++)
-				measure(nets[i].thermometers, nets[i].channels, speeds[s],
-				        combines[c], nets[i].thermometers == 50, false);
+				measure(nets[i].thermometers, nets[i].channels, nets[i].chips,
+				        speeds[s], combines[c], nets[i].thermometers == 50, false);
 	for (unsigned i = 0; i < 6; i++)
-		measure(nets[i].thermometers, 1, 400, "any", false, true);
+		measure(nets[i].thermometers, 1, 1, 400, "any", false, true);
 	return 0;
 }

@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: MIT */
+/* Transactions of several chips at the same time, operation by operation. */
+#include <assert.h>
+#include <errno.h>
+
+#include "hal/bus/time.h"
+#include "hal/ds2482/chip.h"
+#include "hal/ds2482/detect.h"
+#include "hal/ds2482/ds2482.h"
+#include "hal/ds2482/io.h"
+#include "hal/ds2482/together.h"
+
+/* All others wait so long for a group of transactions, which is little more than for one. */
+#define GROUP_NS (20 * NS_PER_MS)
+/* Bytes on the I2C bus of a transaction that reads a scratchpad, conditions included. */
+#define VISIT_BYTES 105
+#define MEAN_OF 8
+#define STUCK_NS (10 * NS_PER_MS)
+#define POLL_NS INT64_C(200000)
+
+/* What a chip's next I2C transaction is. */
+enum step { STEP_BEGIN, STEP_PRESENCE, STEP_WRITE, STEP_READ, STEP_FETCH, STEP_DONE };
+
+/* A transaction on its way. */
+struct course {
+	struct link_visit *visit;
+	struct ds2482_link *link;
+	enum step step;
+	unsigned at;      /* bytes written, then bytes read */
+	int64_t ready_ns; /* when the next step may be made */
+	int64_t stuck_ns; /* reset: a chip that is busy after that stays so */
+};
+
+static struct ds2482_link *self(struct link *link)
+{
+	return (struct ds2482_link *)link;
+}
+
+static void end(struct course *course, int err)
+{
+	course->visit->err = err;
+	course->visit->ended_ns = ds2482_now(course->link->chip->master);
+	course->step = STEP_DONE;
+}
+
+/*
+ * One message, with its address: the SMBus calls of i2c-dev would have the address set anew for
+ * each other chip.
+ */
+static int message(struct ds2482_chip *chip, uint16_t flags, uint8_t *data, uint16_t n)
+{
+	struct i2c_adapter *adapter = chip->master->adapter;
+	struct i2c_message one = {.flags = flags, .len = n, .data = data};
+
+	if (adapter->combine != I2C_SMBUS_ONLY)
+		return adapter->ops->transfer(adapter, chip->address, &one, 1);
+	if (!flags)
+		return n == 1 ? ds2482_write1(chip, data[0])
+		              : ds2482_write2(chip, data[0], data[1]);
+	int byte = ds2482_read1(chip);
+	if (byte >= 0)
+		data[0] = (uint8_t)byte;
+	return byte < 0 ? byte : 0;
+}
+
+static int command(struct ds2482_chip *chip, uint8_t code)
+{
+	return message(chip, 0, &code, 1);
+}
+
+/*
+ * An operation of at most max_ns has begun. The next step may begin so many bytes before its end as
+ * pass on the I2C bus before the chip looks at it.
+ */
+static void works(struct course *course, enum step next, int64_t max_ns, unsigned ahead)
+{
+	struct ds2482_chip *chip = course->link->chip;
+	int64_t byte_ns = chip->master->byte_ns;
+
+	chip->free_at = ds2482_now(chip->master) + max_ns;
+	course->ready_ns = chip->free_at - ahead * byte_ns;
+	course->step = next;
+}
+
+static int begin(struct course *course)
+{
+	struct ds2482_link *link = course->link;
+	int err = ds2482_claimed(link->chip) ? ds2482_select(link) : -ENXIO;
+
+	if (!err)
+		err = ds2482_wait_until(link->chip->master, link->chip->free_at);
+	if (!err)
+		err = command(link->chip, DS2482_RESET);
+	if (err)
+		return err;
+	ds2482_began(link->chip);
+	works(course, STEP_PRESENCE, ds2482_reset_max_ns[link->speed], 0);
+	course->stuck_ns = link->chip->free_at + STUCK_NS;
+	return 0;
+}
+
+static int write_next(struct course *course)
+{
+	struct ds2482_link *link = course->link;
+	const struct link_visit *visit = course->visit;
+	uint8_t bytes[2] = {DS2482_WRITE, visit->out[course->at]};
+	int err = message(link->chip, 0, bytes, sizeof(bytes));
+
+	if (err)
+		return err;
+	bool last = ++course->at == visit->out_n;
+	works(course, last ? STEP_READ : STEP_WRITE, 8 * ds2482_slot_max_ns[link->speed], 2);
+	if (last)
+		course->at = 0;
+	return 0;
+}
+
+static int read_next(struct course *course)
+{
+	struct ds2482_link *link = course->link;
+	int err = command(link->chip, DS2482_READ);
+
+	/* the register is read behind the pointer and two addresses */
+	if (!err)
+		works(course, STEP_FETCH, 8 * ds2482_slot_max_ns[link->speed], 4);
+	return err;
+}
+
+static int look_for_presence(struct course *course)
+{
+	struct ds2482_link *link = course->link;
+	bool late = ds2482_now(link->chip->master) >= course->stuck_ns;
+	uint8_t status;
+	int err = message(link->chip, I2C_MESSAGE_READ, &status, 1);
+
+	if (err)
+		return err;
+	if (status & DS2482_1WB) {
+		course->ready_ns = ds2482_now(link->chip->master) + POLL_NS;
+		return late ? -ETIMEDOUT : 0;
+	}
+	if (status & DS2482_RST)
+		return -ENXIO;
+	link->cost.resets++;
+	link->cost.wire_ns += (uint64_t)ds2482_reset_ns[link->speed];
+	if (status & DS2482_SD)
+		return -ECOMM;
+	return status & DS2482_PPD ? write_next(course) : -ENODEV;
+}
+
+/* One byte is fetched; behind the last the status says whether the chip was idle, and is set up. */
+static int fetch(struct course *course)
+{
+	struct ds2482_link *link = course->link;
+	struct link_visit *visit = course->visit;
+	int byte = ds2482_write_read(link->chip, DS2482_READ_POINTER, DS2482_AT_DATA), status;
+
+	if (byte < 0)
+		return byte;
+	visit->in[course->at++] = (uint8_t)byte;
+	if (course->at < visit->in_n)
+		return read_next(course);
+	status = ds2482_write_read(link->chip, DS2482_READ_POINTER, DS2482_AT_STATUS);
+	if (status < 0)
+		return status;
+	if (status & (DS2482_1WB | DS2482_RST))
+		return -EIO;
+	link->chip->free_at = 0;
+	link->cost.wire_ns += 8u * (visit->out_n + visit->in_n) *
+	                      (uint64_t)ds2482_slot_ns[link->speed];
+	end(course, 0);
+	return 0;
+}
+
+static void go_on(struct course *course)
+{
+	int err = 0;
+
+	switch (course->step) {
+	case STEP_BEGIN:
+		err = begin(course);
+		break;
+	case STEP_PRESENCE:
+		err = look_for_presence(course);
+		break;
+	case STEP_WRITE:
+		err = write_next(course);
+		break;
+	case STEP_READ:
+		err = read_next(course);
+		break;
+	case STEP_FETCH:
+		err = fetch(course);
+		break;
+	case STEP_DONE:
+		break;
+	}
+	if (err)
+		end(course, err);
+}
+
+/* NULL: all are done. */
+static struct course *soonest(struct course *courses, unsigned n)
+{
+	struct course *first = NULL;
+
+	for (unsigned i = 0; i < n; i++)
+		if (courses[i].step != STEP_DONE &&
+		    (!first || courses[i].ready_ns < first->ready_ns))
+			first = &courses[i];
+	return first;
+}
+
+/* What one of n transactions takes of the I2C bus, waits for the chips left out. */
+static void learn(struct ds2482_master *master, int64_t busy_ns, unsigned n)
+{
+	int64_t each_ns = busy_ns / n;
+
+	if (!master->visit_ns)
+		master->visit_ns = each_ns;
+	master->visit_ns += (each_ns - master->visit_ns) / MEAN_OF;
+}
+
+void ds2482_together(struct link_visit *visits, unsigned n)
+{
+	struct course courses[DS2482_TOGETHER], *course;
+	struct ds2482_master *master = self(visits[0].link)->chip->master;
+	int64_t busy_ns = 0;
+
+	assert(n > 0 && n <= DS2482_TOGETHER);
+	for (unsigned i = 0; i < n; i++) {
+		assert(visits[i].out_n > 0 && visits[i].in_n > 0);
+		courses[i] = (struct course){.visit = &visits[i], .link = self(visits[i].link)};
+	}
+	while ((course = soonest(courses, n))) {
+		int err = ds2482_wait_until(master, course->ready_ns);
+		int64_t begun_ns = ds2482_now(master);
+
+		if (err)
+			end(course, err);
+		else
+			go_on(course);
+		busy_ns += ds2482_now(master) - begun_ns;
+	}
+	learn(master, busy_ns, n);
+}
+
+/*
+ * As many as take no more of the I2C bus than GROUP_NS. What the bus takes for a call is not known
+ * before there was a group; where bytes alone leave room for two, two are always worth it.
+ */
+unsigned ds2482_abreast(const struct link *link)
+{
+	const struct ds2482_master *master = ((const struct ds2482_link *)link)->chip->master;
+	int64_t least_ns = VISIT_BYTES * master->byte_ns, n;
+
+	if (!master->adapter || least_ns <= 0 || 2 * least_ns > GROUP_NS)
+		return 1;
+	n = GROUP_NS / (master->visit_ns > least_ns ? master->visit_ns : least_ns);
+	if (n < 2)
+		return 2;
+	return n > DS2482_TOGETHER ? DS2482_TOGETHER : (unsigned)n;
+}

@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: MIT */
+/* Transactions of several thermometers at the same time, each on another chip of the master. */
+#include <string.h>
+
+#include "hal/chips/thermometer.h"
+#include "hal/native/convert.h"
+#include "hal/native/job.h"
+#include "hal/native/schedule.h"
+#include "hal/native/together.h"
+
+#define MOST 8
+#define MATCH_ROM 0x55
+#define READ_SCRATCHPAD 0xbe
+#define SCRATCHPAD_SIZE 9
+
+struct group {
+	unsigned n;
+	struct job *job[MOST];
+	struct device *device[MOST];
+	const struct bus_req *req[MOST]; /* whose job it was */
+	uint8_t state[MOST];             /* ... and its state */
+	struct link_visit visit[MOST];
+	uint8_t out[MOST][10], in[MOST][SCRATCHPAD_SIZE];
+};
+
+static void add(const struct native *native, struct group *group, struct job *job)
+{
+	unsigned i = group->n++;
+	bool starts = job->state == JOB_DUE;
+
+	group->job[i] = job;
+	group->device[i] = job->txn.device;
+	group->req[i] = job->req;
+	group->state[i] = job->state;
+	group->out[i][0] = MATCH_ROM;
+	memcpy(group->out[i] + 1, job->txn.device->rom, 8);
+	group->out[i][9] = starts ? THERMOMETER_CONVERT : READ_SCRATCHPAD;
+	group->visit[i] = (struct link_visit){
+		.link = native_abreast(native, job->txn.device->channel),
+		.out = group->out[i],
+		.out_n = sizeof(group->out[i]),
+		.in = group->in[i],
+		.in_n = starts ? 1 : SCRATCHPAD_SIZE,
+	};
+}
+
+/* A group with this job. false: it makes its transaction alone. */
+static bool begin(const struct native *native, struct group *group, struct job *job)
+{
+	struct link *link = native_abreast(native, job->txn.device->channel);
+
+	group->n = 0;
+	if (!link || job->alone || job->req->prio <= BUS_OUTPUT || link->ops->abreast(link) < 2)
+		return false;
+	add(native, group, job);
+	return true;
+}
+
+/* Is there room for a job on this channel? */
+static bool fits(const struct native *native, const struct group *group, unsigned channel)
+{
+	const struct link *link = native_abreast(native, channel), *first = group->visit[0].link;
+
+	if (!link || link->ops->together != first->ops->together || group->n == MOST ||
+	    group->n >= first->ops->abreast(first))
+		return false;
+	for (unsigned i = 0; i < group->n; i++)
+		if (group->visit[i].link->chip == link->chip)
+			return false;
+	return true;
+}
+
+/*
+ * Does the i-th job find its transaction done now? What befell a job before it may have answered
+ * it, or made it begin again.
+ */
+static bool take(const struct native *native, struct group *group, unsigned i)
+{
+	struct job *job = group->job[i];
+
+	if (!native->up || job->req != group->req[i] || job->state != group->state[i] ||
+	    group->visit[i].err)
+		return false;
+	txn_done(&job->txn, &group->visit[i]);
+	return true;
+}
+
+/* Behind its step: the slot may be another request's by now. */
+static void over(struct group *group, unsigned i)
+{
+	txn_done(&group->job[i]->txn, NULL);
+}
+
+static bool reads_scratchpad(const struct job *job)
+{
+	return schedule_reads(job) && job->txn.device && job->txn.device->family->thermometer &&
+	       job->txn.phase == 0 && job->req->op == BUS_READ;
+}
+
+/* Of those that are ready on chips that are not in the group yet, the one that goes first. */
+static struct job *next_reading(struct native *native, const struct group *group, int64_t now)
+{
+	struct job *best = NULL;
+	int64_t next = INT64_MAX;
+
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (!job->req || job->alone || !reads_scratchpad(job) ||
+		    !fits(native, group, job->txn.device->channel) ||
+		    !job_ready(native, job, now, &next))
+			continue;
+		if (job_goes_first(job, best))
+			best = job;
+	}
+	return best;
+}
+
+/* The starts first: until then a chip waits, and until a reading its result does. */
+static void gather(struct native *native, struct group *group, int64_t now)
+{
+	struct job *job;
+
+	for (unsigned n = 0; n < native->channels && n < NATIVE_CHANNELS; n++) {
+		job = fits(native, group, n) ? convert_next_in_turn(native, n, now) : NULL;
+		if (job && !job->alone)
+			add(native, group, job);
+	}
+	while ((job = next_reading(native, group, now)))
+		add(native, group, job);
+}
+
+static void step(struct native *native, struct job *job, int64_t now)
+{
+	job->alone = false;
+	if (job->state == JOB_DUE)
+		convert_in_turn(native, job);
+	else
+		job_step(native, job, now);
+}
+
+void together_step(struct native *native, struct job *job, int64_t now)
+{
+	struct group group;
+	bool reads = false;
+
+	if ((job->state != JOB_DUE && !reads_scratchpad(job)) || !begin(native, &group, job)) {
+		step(native, job, now);
+		return;
+	}
+	gather(native, &group, now);
+	if (group.n == 1) {
+		step(native, job, now);
+		return;
+	}
+	group.visit[0].link->ops->together(group.visit, group.n);
+	for (unsigned i = 0; i < group.n; i++)
+		group.job[i]->alone = group.visit[i].err != 0;
+	for (unsigned i = 0; i < group.n; i++) {
+		reads |= group.state[i] != JOB_DUE;
+		if (!take(native, &group, i)) {
+			if (group.state[i] == JOB_DUE)
+				convert_told(native, group.device[i]);
+			continue;
+		}
+		step(native, group.job[i], native_now(native));
+		over(&group, i);
+	}
+	native->schedule.doing = reads ? SCHEDULE_READ : SCHEDULE_START;
+}
