@@ -77,8 +77,13 @@ struct ds2482_master {
 	struct i2c_adapter *adapter; /* NULL while closed */
 	int address, channel;        /* only this one; -1: all */
 	bool active_pullup;
-	int64_t byte_ns;     /* shortest time of one I2C byte, measured; 0: bytes tell no time */
-	int64_t measured_ns; /* env time of the measurement */
+	int64_t byte_ns; /* shortest time of one I2C byte, measured; 0: bytes tell no time */
+	/*
+	 * Shortest time of one more message of two bytes in a transfer, measured; 0: not known. It
+	 * is longer than its bytes where the adapter takes time for each message, as over USB.
+	 */
+	int64_t message_ns;
+	int64_t measured_ns;     /* env time of the measurement */
 	unsigned measured_again; /* since the adapter was opened */
 	/*
 	 * What a transaction takes of the I2C bus when others have theirs meanwhile, mean; 0: not

@@ -6,7 +6,11 @@
  *
  * Slow buses take 90 us a byte, too coarse a step: there, where writes are transactions of their
  * own, each begins so early after a timed wait that its command byte arrives just when the
- * operation before has ended at the latest.
+ * operation before has ended at the latest. So it is where an adapter takes time for each message,
+ * as over USB: a message to read on would take more than the wait. What the adapter takes between
+ * two messages is part of that wait, as far as the chip itself shows when that was too early: it
+ * refuses a command, or its status says busy. The data that a chip has read shows nothing: there
+ * only the bytes on the wire count.
  */
 #include <assert.h>
 #include <errno.h>
@@ -19,6 +23,7 @@
 
 /* Reading on pays with bytes of at most 45 us (200 kHz). */
 #define FAST_BYTE_NS 45000
+#define BETWEEN_NS 100000
 #define MAX_BYTES 180
 #define MAX_MESSAGES 42
 #define STUCK_NS (10 * NS_PER_MS)
@@ -26,7 +31,7 @@
 
 /*
  * How many bytes to read so that the last one begins max_ns after the command. `between` bytes pass
- * before the reading begins.
+ * before the reading begins. What the adapter takes between messages is left out: it may take less.
  */
 static unsigned reading_on(const struct ds2482_chip *chip, long max_ns, unsigned between)
 {
@@ -36,6 +41,14 @@ static unsigned reading_on(const struct ds2482_chip *chip, long max_ns, unsigned
 	if (max_ns <= between * byte)
 		return 1;
 	return n > MAX_BYTES ? MAX_BYTES : (unsigned)n;
+}
+
+/* The same for a status behind the command, which shows whether that was too early. */
+static unsigned reading_status(const struct ds2482_chip *chip, long max_ns)
+{
+	int64_t left = max_ns - ds2482_between(chip);
+
+	return reading_on(chip, left > 0 ? (long)left : 0, 1);
 }
 
 static int transfer(struct ds2482_chip *chip, struct i2c_message *messages, size_t n)
@@ -137,7 +150,7 @@ int ds2482_run(struct ds2482_chip *chip, uint8_t command, int parameter, long ma
 	if (err)
 		return err;
 	if (ds2482_combines(chip)) {
-		messages[1].len = (uint16_t)reading_on(chip, max_ns, 1);
+		messages[1].len = (uint16_t)reading_status(chip, max_ns);
 		err = transfer(chip, messages, 2);
 		return err ? ds2482_diagnose(chip, err) : judge(chip, in[messages[1].len - 1]);
 	}
@@ -152,31 +165,49 @@ int ds2482_run(struct ds2482_chip *chip, uint8_t command, int parameter, long ma
 /* --- Writing ---------------------------------------------------------------------------------- */
 
 /*
+ * Does a message take longer than the chip does for a byte? If it does not after all, the chip
+ * refuses the next command.
+ */
+static bool is_slow(const struct ds2482_chip *chip, long max_ns)
+{
+	return chip->master->message_ns > max_ns;
+}
+
+/*
  * Two bytes of the next write pass before the chip looks at its command. So only the last byte of
- * data is read on to its end (with `last`), and only its status counts.
+ * data is read on to its end (with `last`), and only its status counts. Between two bytes nothing
+ * is read where messages are slow.
  */
 static int write_combined(struct ds2482_chip *chip, const uint8_t *data, size_t n, long max_ns,
                           bool last)
 {
 	struct i2c_message messages[MAX_MESSAGES];
-	uint8_t out[MAX_MESSAGES / 2][2], in[MAX_BYTES];
-	unsigned between = reading_on(chip, max_ns, 4), end = reading_on(chip, max_ns, 1);
+	uint8_t out[MAX_MESSAGES][2], in[MAX_BYTES];
+	unsigned between = reading_on(chip, max_ns, 4), end = reading_status(chip, max_ns);
+	bool slow = is_slow(chip, max_ns);
+	size_t count = 0;
 	int err;
 
-	assert(n <= MAX_MESSAGES / 2);
+	assert(slow ? n < MAX_MESSAGES : n <= MAX_MESSAGES / 2);
 	for (size_t i = 0; i < n; i++) {
 		bool whole = last && i + 1 == n;
 
 		out[i][0] = DS2482_WRITE;
 		out[i][1] = data[i];
-		messages[2 * i] = (struct i2c_message){.len = 2, .data = out[i]};
-		messages[2 * i + 1] = (struct i2c_message){.flags = I2C_MESSAGE_READ,
-		                                           .len = (uint16_t)(whole ? end : between),
-		                                           .data = in};
+		messages[count++] = (struct i2c_message){.len = 2, .data = out[i]};
+		if (whole || !slow)
+			messages[count++] = (struct i2c_message){
+				.flags = I2C_MESSAGE_READ,
+				.len = (uint16_t)(whole ? end : between),
+				.data = in};
 	}
-	err = transfer(chip, messages, 2 * n);
+	err = transfer(chip, messages, count);
+	if (err == -EIO && slow)
+		ds2482_was_refused(chip);
 	if (err)
 		return ds2482_diagnose(chip, err);
+	if (slow && !last)
+		chip->free_at = ds2482_now(chip->master) + max_ns;
 	return last ? judge(chip, in[end - 1]) : 0;
 }
 
@@ -184,11 +215,13 @@ static int write_combined(struct ds2482_chip *chip, const uint8_t *data, size_t 
 static int write_timed(struct ds2482_chip *chip, uint8_t byte, long max_ns)
 {
 	int64_t ahead = chip->master->byte_ns > 0 ? 2 * chip->master->byte_ns : 0;
-	int err = wait_free(chip, ahead);
+	int err = wait_free(chip, ahead + ds2482_between(chip));
 
 	if (err)
 		return err;
 	err = ds2482_write2(chip, DS2482_WRITE, byte);
+	if (err == -EIO)
+		ds2482_was_refused(chip);
 	if (err)
 		return ds2482_diagnose(chip, err);
 	ends_within(chip, max_ns);
@@ -206,19 +239,26 @@ static size_t batch(const struct ds2482_chip *chip, unsigned messages_each)
 int ds2482_write_block(struct ds2482_chip *chip, const uint8_t *data, size_t n, long max_ns)
 {
 	bool combined = ds2482_combines(chip), fast = chip->master->byte_ns <= FAST_BYTE_NS;
-	size_t most = batch(chip, 2);
+	size_t most = batch(chip, is_slow(chip, max_ns) ? 1 : 2);
 	int err = 0;
 
+	/* A message between takes longer than what is left to wait. */
+	if (ds2482_between(chip) > BETWEEN_NS && !is_slow(chip, max_ns))
+		combined = false;
 	if (!combined || (!fast && most == 1)) {
 		while (n-- > 0 && err >= 0)
 			err = write_timed(chip, *data++, max_ns);
 		return err;
 	}
-	err = wait_free(chip, 0);
+	/* The last has a status behind it. */
+	if (is_slow(chip, max_ns) && most > 1)
+		most--;
 	while (n > 0 && err >= 0) {
 		size_t now = n < most ? n : most;
 
-		err = write_combined(chip, data, now, max_ns, now == n);
+		err = wait_free(chip, 0);
+		if (!err)
+			err = write_combined(chip, data, now, max_ns, now == n);
 		data += now;
 		n -= now;
 	}

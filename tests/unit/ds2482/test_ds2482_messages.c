@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Adapters that take long for each message of a transfer, as over USB: few messages, and nothing
+ * false where they become quicker.
+ */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/ds2482/master.h"
+#include "unity.h"
+
+#include "hal/sim/scenario.h"
+#include "tests/unit/aid/ds2482_scene.h"
+
+#define US INT64_C(1000)
+
+static struct i2c_adapter_ops ops;
+static const struct i2c_adapter_ops *true_ops;
+static int64_t between_ns;
+static uint32_t jitter; /* 0: none */
+static unsigned messages;
+
+void setUp(void)
+{
+	ds_begin();
+	jitter = 0;
+	messages = 0;
+}
+
+void tearDown(void)
+{
+	ds_end();
+}
+
+static void pass(void)
+{
+	int64_t ns = between_ns;
+
+	messages++;
+	if (jitter) {
+		jitter = jitter * 1664525 + 1013904223;
+		ns += (jitter >> 16) % 1000 * US;
+	}
+	ds.host.now += ns;
+}
+
+/* Message by message, as the kernel's driver of such an adapter sends them. */
+static int transfer(struct i2c_adapter *adapter, uint8_t address, struct i2c_message *list,
+                    size_t n)
+{
+	int err = 0;
+
+	for (size_t i = 0; !err && i < n; i++) {
+		err = true_ops->transfer(adapter, address, &list[i], 1);
+		pass();
+	}
+	return err;
+}
+
+static int write_byte(struct i2c_adapter *adapter, uint8_t address, uint8_t command)
+{
+	int err = true_ops->write_byte(adapter, address, command);
+
+	pass();
+	return err;
+}
+
+static int write_byte_data(struct i2c_adapter *adapter, uint8_t address, uint8_t command,
+                           uint8_t byte)
+{
+	int err = true_ops->write_byte_data(adapter, address, command, byte);
+
+	pass();
+	return err;
+}
+
+static int read_byte(struct i2c_adapter *adapter, uint8_t address)
+{
+	int err = true_ops->read_byte(adapter, address);
+
+	pass();
+	return err;
+}
+
+static int open_slow(void *ctx, const struct bus_env *env, struct i2c_adapter **out, char *text,
+                     size_t size)
+{
+	int err = ds_open_adapter(ctx, env, out, text, size);
+
+	if (err)
+		return err;
+	true_ops = (*out)->ops;
+	ops = *true_ops;
+	ops.transfer = transfer;
+	ops.write_byte = write_byte;
+	ops.write_byte_data = write_byte_data;
+	ops.read_byte = read_byte;
+	(*out)->ops = &ops;
+	return 0;
+}
+
+static void begin(int64_t ns)
+{
+	const struct ds2482_source source = {
+		.open = open_slow, .destroy = ds_forget, .name = "test"};
+
+	between_ns = ns;
+	TEST_ASSERT_EQUAL_INT_MESSAGE(
+		0, sim_scenario_parse("test", ds_kinds[2], &ds.net, ds.why, sizeof(ds.why)),
+		ds.why);
+	TEST_ASSERT_EQUAL_INT(0, ds2482_create(&ds_ops, &ds.host.env, &source, "", &ds.master,
+	                                       ds.why, sizeof(ds.why)));
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, ds.master->ops->open(ds.master, ds.why, sizeof(ds.why)),
+	                              ds.why);
+	ds.wire = ds.master->ops->channel(ds.master, 0);
+}
+
+/*
+ * Reset and ten bytes written, one message each; nine bytes read, three each; three statuses. The
+ * messages themselves take 0.28 ms and what the adapter takes.
+ */
+static void test_where_messages_are_slow_a_written_byte_is_one(void)
+{
+	static const struct {
+		int64_t between_us, most_ms;
+	} paces[] = {{150, 26}, {250, 29}, {350, 34}, {400, 36}, {1000, 64}};
+
+	for (unsigned i = 0; i < sizeof(paces) / sizeof(paces[0]); i++) {
+		begin(paces[i].between_us * US);
+		messages = 0;
+		int64_t begun = ds.host.now;
+
+		ds_check_scratchpad();
+		TEST_ASSERT_LESS_OR_EQUAL_UINT(1 + 10 + 3 * 9 + 2 + 2, messages);
+		TEST_ASSERT_LESS_THAN_INT64(paces[i].most_ms * HOST_MS, ds.host.now - begun);
+		tearDown();
+		setUp();
+	}
+}
+
+/* Then the time of a byte is waited for by reading on. */
+static void test_where_messages_are_quick_there_is_one_more_between(void)
+{
+	begin(0);
+	messages = 0;
+	ds_check_scratchpad();
+	TEST_ASSERT_GREATER_OR_EQUAL_UINT(1 + 2 * 10 + 3 * 9, messages);
+}
+
+/* Some errors at first, and then it works as ever; what is read is right. */
+static void check_settles(void)
+{
+	static const uint8_t expect[5] = {0x50, 0x05, 75, 70, 0x7F};
+	unsigned errors = 0, last = 0;
+
+	for (unsigned n = 1; n <= 60; n++) {
+		uint8_t scratchpad[9];
+
+		if (ds_read_scratchpad("t", scratchpad)) {
+			errors++;
+			last = n;
+			TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_RETRY));
+			continue;
+		}
+		TEST_ASSERT_EQUAL_HEX8_ARRAY(expect, scratchpad, 5);
+	}
+	TEST_ASSERT_LESS_OR_EQUAL_UINT(8, errors);
+	TEST_ASSERT_LESS_OR_EQUAL_UINT(jitter ? 45 : 12, last);
+	tearDown();
+	setUp();
+}
+
+/* Slow while it is measured, then of any pace. */
+static void test_an_adapter_that_becomes_quick_gives_errors_and_no_false_bytes(void)
+{
+	static const int64_t later[] = {0, 50, 100, 200, 250, 300, 350, 380};
+
+	for (unsigned i = 0; i < sizeof(later) / sizeof(later[0]); i++) {
+		begin(400 * US);
+		between_ns = later[i] * US;
+		check_settles();
+		begin(250 * US);
+		between_ns = later[i] / 2 * US;
+		check_settles();
+	}
+}
+
+static void test_an_adapter_of_changing_pace_is_right_too(void)
+{
+	for (uint32_t seed = 1; seed <= 60; seed++) {
+		jitter = seed;
+		begin(seed % 5 * 100 * US);
+		check_settles();
+	}
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_where_messages_are_slow_a_written_byte_is_one);
+	RUN_TEST(test_where_messages_are_quick_there_is_one_more_between);
+	RUN_TEST(test_an_adapter_that_becomes_quick_gives_errors_and_no_false_bytes);
+	RUN_TEST(test_an_adapter_of_changing_pace_is_right_too);
+	return UNITY_END();
+}
