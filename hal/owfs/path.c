@@ -8,12 +8,15 @@
 
 uint8_t rom_crc8(const uint8_t *data, size_t len)
 {
+	/* what four bits add: x^8 + x^5 + x^4 + 1, the low bit first */
+	static const uint8_t four[16] = {0x00, 0x9d, 0x23, 0xbe, 0x46, 0xdb, 0x65, 0xf8,
+	                                 0x8c, 0x11, 0xaf, 0x32, 0xca, 0x57, 0xe9, 0x74};
 	uint8_t crc = 0;
 
 	while (len--) {
 		crc ^= *data++;
-		for (int bit = 0; bit < 8; bit++)
-			crc = (uint8_t)(crc & 1 ? crc >> 1 ^ 0x8c : crc >> 1);
+		crc = crc >> 4 ^ four[crc & 0xf];
+		crc = crc >> 4 ^ four[crc & 0xf];
 	}
 	return crc;
 }
@@ -61,16 +64,17 @@ static int form_parse(size_t form, const char *text, size_t len, uint8_t rom[ROM
 
 int rom_parse(const char *text, size_t len, uint8_t rom[ROM_LEN])
 {
-	uint8_t raw[ROM_LEN] = {0};
+	uint8_t raw[ROM_LEN] = {0}, crc;
 	int bytes = 0;
 
 	for (size_t form = 0; form < FORMS && !bytes; form++)
 		bytes = form_parse(form, text, len, raw);
 	if (!bytes)
 		return -EINVAL;
+	crc = rom_crc8(raw, ROM_LEN - 1);
 	if (bytes == ROM_LEN - 1)
-		raw[ROM_LEN - 1] = rom_crc8(raw, ROM_LEN - 1);
-	if (!raw[0] || rom_crc8(raw, ROM_LEN))
+		raw[ROM_LEN - 1] = crc;
+	if (!raw[0] || raw[ROM_LEN - 1] != crc)
 		return -EBADMSG;
 	memcpy(rom, raw, ROM_LEN);
 	return 0;

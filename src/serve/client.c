@@ -10,7 +10,6 @@
 #include "hal/owfs/frame.h"
 #include "src/serve/client.h"
 #include "src/serve/directory.h"
-#include "src/serve/person.h"
 
 #define FIRST_READ AREA_ANSWER
 
@@ -57,16 +56,12 @@ void client_enter(struct serve *s, struct client *c, enum client_state state)
 		s->look_ns = limit_of(c);
 }
 
-struct client *client_open(struct serve *s, int fd, bool network)
+void client_open(struct serve *s, int fd, bool network, const struct sockaddr_in6 *peer)
 {
-	struct epoll_event event = {.events = EPOLLIN | EPOLLOUT | EPOLLRDHUP | EPOLLET};
 	unsigned index = s->free[s->free_count - 1];
 	struct client *c = &s->clients[index];
 	bool queued = c->queued;
 
-	event.data.u32 = index;
-	if (epoll_ctl(s->epoll_fd, EPOLL_CTL_ADD, fd, &event) < 0)
-		return NULL;
 	s->free_count--;
 	if (index >= s->used)
 		s->used = index + 1;
@@ -74,7 +69,8 @@ struct client *client_open(struct serve *s, int fd, bool network)
 	c->queued = queued;
 	c->fd = fd;
 	c->network = network;
-	person_name(fd, network, c->person);
+	c->peer = *peer;
+	c->readable = true;
 	c->need = FRAME_HEADER;
 	c->area = s->areas + (size_t)index * AREA_SIZE;
 	c->out_len = c->out_at = 0;
@@ -82,14 +78,14 @@ struct client *client_open(struct serve *s, int fd, bool network)
 	c->active_ns = s->now_ns;
 	client_enter(s, c, CLIENT_READING);
 	count(s, COUNT_clients, 1);
-	return c;
+	client_ready(s, c);
 }
 
 static void put_free(struct serve *s, struct client *c)
 {
 	c->state = CLIENT_FREE;
 	s->free[s->free_count++] = (uint16_t)index_of(s, c);
-	s->accepting = true;
+	accept_again(s);
 }
 
 static void release_directory(struct client *c)
@@ -107,7 +103,7 @@ static void client_close(struct serve *s, struct client *c)
 		return;
 	close(c->fd);
 	c->fd = -1;
-	s->accepting = true;
+	accept_again(s);
 	count(s, COUNT_clients, (uint64_t)-1);
 	if (c->state == CLIENT_QUEUED)
 		s->queued--;
@@ -117,6 +113,33 @@ static void client_close(struct serve *s, struct client *c)
 		c->state = CLIENT_LEFT;
 	else
 		put_free(s, c);
+}
+
+void client_refused(struct serve *s, enum serve_counter what, struct log_rate *rate,
+                    const char *reason)
+{
+	char others[LOG_OTHERS];
+	uint64_t n;
+
+	count(s, what, 1);
+	n = log_rate(rate, s->now_ns);
+	if (n)
+		log_warning(s->log, "a client of the owserver protocol was refused: %s%s", reason,
+		            log_others(n, others));
+}
+
+void client_watch(struct serve *s, struct client *c)
+{
+	struct epoll_event event = {.events = EPOLLIN | EPOLLOUT | EPOLLRDHUP | EPOLLET};
+
+	if (c->watched || c->fd < 0)
+		return;
+	event.data.u32 = index_of(s, c);
+	c->watched = epoll_ctl(s->epoll_fd, EPOLL_CTL_ADD, c->fd, &event) == 0;
+	if (c->watched)
+		return;
+	client_refused(s, COUNT_refused_errors, &s->error_rate, strerror(errno));
+	client_close(s, c);
 }
 
 /* Move the next request to the beginning of the area, and free the pages that it does not need. */
@@ -200,12 +223,12 @@ uint32_t client_room_size(struct client *c)
 }
 
 /* Returns how many bytes were sent, 0: none now, -1: the client has left. */
-static ssize_t push(struct serve *s, struct client *c, const uint8_t *bytes, size_t len)
+static ssize_t push(struct serve *s, struct client *c, const uint8_t *bytes, size_t len, int flags)
 {
 	ssize_t n;
 
 	do
-		n = send(c->fd, bytes, len, MSG_NOSIGNAL | MSG_DONTWAIT);
+		n = send(c->fd, bytes, len, MSG_NOSIGNAL | MSG_DONTWAIT | flags);
 	while (n < 0 && errno == EINTR);
 	if (n < 0)
 		return errno == EAGAIN || errno == EWOULDBLOCK ? 0 : -1;
@@ -220,7 +243,7 @@ static bool push_alive(struct serve *s, struct client *c)
 
 	if (!c->alive_left)
 		return true;
-	n = push(s, c, alive_frame + FRAME_HEADER - c->alive_left, c->alive_left);
+	n = push(s, c, alive_frame + FRAME_HEADER - c->alive_left, c->alive_left, 0);
 	if (n < 0)
 		client_close(s, c);
 	if (n <= 0)
@@ -260,13 +283,22 @@ static void next_request(struct serve *s, struct client *c)
 		client_ready(s, c);
 }
 
+/*
+ * The connection ends with this answer: one packet carries the answer's end and that of the
+ * connection. Where the client has sent more, the kernel would drop the answer then.
+ */
+static bool is_last(const struct client *c)
+{
+	return !(c->request.flags & FRAME_PERSIST) && !c->readable && c->have == c->length;
+}
+
 static void go_on_sending(struct serve *s, struct client *c)
 {
 	ssize_t n;
 
 	if (!push_alive(s, c))
 		return;
-	n = push(s, c, c->out + c->out_at, c->out_len - c->out_at);
+	n = push(s, c, c->out + c->out_at, c->out_len - c->out_at, is_last(c) ? MSG_MORE : 0);
 	if (n < 0) {
 		client_close(s, c);
 		return;

@@ -7,7 +7,16 @@
 
 #include "src/serve/server.h"
 
-struct client *client_open(struct serve *s, int fd, bool network);
+/*
+ * A new connection has the next free place. Its request is mostly there by now: the server reads it
+ * before epoll learns of the connection.
+ */
+void client_open(struct serve *s, int fd, bool network, const struct sockaddr_in6 *peer);
+/* Have epoll report on the connection, if it is open and epoll does not yet. */
+void client_watch(struct serve *s, struct client *c);
+/* Count and log a connection that was closed at once. */
+void client_refused(struct serve *s, enum serve_counter what, struct log_rate *rate,
+                    const char *reason);
 /* The engine and the buses have returned all memory of the client that they used. */
 void client_back(struct serve *s, struct client *c);
 void client_event(struct serve *s, struct client *c, uint32_t events);

@@ -99,8 +99,11 @@ int kept_signal(const struct kept *kept, const char *path, bool output)
 		const struct config_item *item = &kept->config->items[slot - 1];
 
 		at++;
-		if (item->output == output && canonical(item->path, &node) &&
-		    strcmp(node.path, path) == 0)
+		if (item->output != output)
+			continue;
+		/* most items have the path as the server writes it, and need no parser */
+		if (strcmp(item->path, path) == 0 ||
+		    (canonical(item->path, &node) && strcmp(node.path, path) == 0))
 			return (int)slot;
 	}
 	return -1;

@@ -259,20 +259,6 @@ static bool is_allowed(struct serve *s, const union address *from)
 	       listen_peers_have(config->peers, config->peer_count, peer.is_v6, peer.bytes);
 }
 
-static void refuse(struct serve *s, int fd, enum serve_counter what, struct log_rate *rate,
-                   const char *reason)
-{
-	char others[LOG_OTHERS];
-	uint64_t n;
-
-	close(fd);
-	count(s, what, 1);
-	n = log_rate(rate, s->now_ns);
-	if (n)
-		log_warning(s->log, "a client of the owserver protocol was refused: %s%s", reason,
-		            log_others(n, others));
-}
-
 static void refuse_peer(struct serve *s, int fd, const union address *from)
 {
 	bool is_v6 = from->any.sa_family == AF_INET6;
@@ -282,11 +268,12 @@ static void refuse_peer(struct serve *s, int fd, const union address *from)
 	          is_v6 ? (const void *)&from->v6.sin6_addr : (const void *)&from->v4.sin_addr,
 	          address, sizeof(address));
 	snprintf(reason, sizeof(reason), "%s is not in ListenAllow", address);
-	refuse(s, fd, COUNT_refused_peers, &s->peer_rate, reason);
+	close(fd);
+	client_refused(s, COUNT_refused_peers, &s->peer_rate, reason);
 }
 
 /* All places are taken: hold the connection. owsd logs the first and counts them all. */
-static void hold(struct serve *s, int fd, bool network)
+static void hold(struct serve *s, int fd, bool network, const struct sockaddr_in6 *peer)
 {
 	char others[LOG_OTHERS];
 	uint64_t n = log_rate(&s->full_rate, s->now_ns);
@@ -294,18 +281,17 @@ static void hold(struct serve *s, int fd, bool network)
 	s->held.is = true;
 	s->held.fd = fd;
 	s->held.network = network;
+	s->held.peer = *peer;
 	count(s, COUNT_full, 1);
 	if (n)
 		log_warning(s->log, "%d clients of the owserver protocol are there, others wait%s",
 		            SERVER_CLIENTS, log_others(n, others));
 }
 
-static void take_client(struct serve *s, int fd, bool network)
+static void take_client(struct serve *s, int fd, bool network, const struct sockaddr_in6 *peer)
 {
-	if (client_open(s, fd, network))
-		count(s, COUNT_connections, 1);
-	else
-		refuse(s, fd, COUNT_refused_errors, &s->error_rate, strerror(errno));
+	client_open(s, fd, network, peer);
+	count(s, COUNT_connections, 1);
 }
 
 static void meet(struct serve *s, int fd, bool network, const union address *from)
@@ -313,9 +299,9 @@ static void meet(struct serve *s, int fd, bool network, const union address *fro
 	if (network && !is_allowed(s, from))
 		refuse_peer(s, fd, from);
 	else if (s->free_count || client_evict(s))
-		take_client(s, fd, network);
+		take_client(s, fd, network, &from->v6);
 	else
-		hold(s, fd, network);
+		hold(s, fd, network, &from->v6);
 }
 
 /* Give the held connection a place. True: no connection is held any more. */
@@ -326,7 +312,7 @@ static bool place_held(struct serve *s)
 	if (!s->free_count && !client_evict(s))
 		return false;
 	s->held.is = false;
-	take_client(s, s->held.fd, s->held.network);
+	take_client(s, s->held.fd, s->held.network, &s->held.peer);
 	return true;
 }
 
@@ -341,12 +327,14 @@ bool listeners_accept(struct serve *s)
 	for (unsigned k = 0; k < s->listener_count; k++) {
 		unsigned i = (s->listener_at + k) % s->listener_count;
 
-		for (int n = 0; n < ACCEPTS && !s->held.is; n++) {
+		for (int n = 0; n < ACCEPTS && !s->held.is && s->waiting >> i & 1; n++) {
 			union address from = {.any = {.sa_family = AF_UNSPEC}};
 			socklen_t len = sizeof(from);
 			int fd = accept4(s->listeners[i].fd, &from.any, &len,
 			                 SOCK_NONBLOCK | SOCK_CLOEXEC);
 
+			if (fd < 0 && errno == EAGAIN)
+				s->waiting &= ~((uint32_t)1 << i);
 			/* the connection waits until a client leaves, or the next one comes */
 			if (fd < 0 && (errno == EAGAIN || errno == EMFILE || errno == ENFILE ||
 			               errno == ENOBUFS || errno == ENOMEM))
@@ -356,5 +344,5 @@ bool listeners_accept(struct serve *s)
 				meet(s, fd, s->listeners[i].network, &from);
 		}
 	}
-	return any && !s->held.is;
+	return any && s->waiting && !s->held.is;
 }

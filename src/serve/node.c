@@ -139,25 +139,39 @@ static void take_virtual(struct node *node, const struct path *split)
 		find_property(node, virtual_family(text, word), slash + 1, len - word - 1);
 }
 
+static void append(struct node *node, size_t *at, const char *text, size_t len)
+{
+	size_t room = sizeof(node->path) - 1 - *at;
+
+	if (len > room)
+		len = room;
+	if (len)
+		memcpy(node->path + *at, text, len);
+	*at += len;
+}
+
 static void print_path(struct node *node, const struct path *split)
 {
 	const char *alarm = split->alarm && !split->device.len ? "/alarm" : "";
 	struct path_slice device = split->device;
 	char id[ROM_TEXT_MAX];
-	int n;
+	size_t n = 0;
 
 	if (split->has_rom && split->device.len == split->last.len) {
 		device.len = (size_t)rom_print(split->rom, ROM_F_I, id);
 		device.text = id;
 	}
-	n = snprintf(node->path, sizeof(node->path), "%s%s%.*s", alarm, device.len ? "/" : "",
-	             (int)device.len, device.len ? device.text : "");
+	append(node, &n, alarm, strlen(alarm));
+	if (device.len) {
+		append(node, &n, "/", 1);
+		append(node, &n, device.text, device.len);
+	}
 	node->device_len = (uint16_t)n;
-	snprintf(node->path + n, sizeof(node->path) - (size_t)n, "%s%.*s",
-	         split->property.len ? "/" : "", (int)split->property.len,
-	         split->property.len ? split->property.text : "");
-	if (!node->path[0])
-		memcpy(node->path, "/", 2);
+	if (split->property.len || !n) {
+		append(node, &n, "/", 1);
+		append(node, &n, split->property.text, split->property.len);
+	}
+	node->path[n] = '\0';
 }
 
 void node_parse(const char *path, size_t len, struct node *node)

@@ -40,21 +40,16 @@ void person_address(const struct sockaddr *from, char name[OWS_NAME])
 	}
 }
 
-void person_name(int fd, bool network, char name[OWS_NAME])
+void person_name(int fd, bool network, const struct sockaddr_in6 *peer, char name[OWS_NAME])
 {
-	struct sockaddr_storage from = {.ss_family = AF_UNSPEC};
-	socklen_t len = sizeof(from);
-	struct peer peer;
+	struct peer user;
 
-	if (network) {
-		if (getpeername(fd, (void *)&from, &len) < 0)
-			from.ss_family = AF_UNSPEC;
-		person_address((void *)&from, name);
-	} else if (peer_look_into(fd, &peer, NULL, 0) == 0) {
-		snprintf(name, OWS_NAME, "user %lu", (unsigned long)peer.uid);
-	} else {
+	if (network)
+		person_address((const void *)peer, name);
+	else if (peer_look_into(fd, &user, NULL, 0) == 0)
+		snprintf(name, OWS_NAME, "user %lu", (unsigned long)user.uid);
+	else
 		snprintf(name, OWS_NAME, "unknown");
-	}
 }
 
 static bool all_name(const struct config *config, const struct peer *peer)

@@ -3,6 +3,7 @@
 #ifndef SERVE_PERSON_H
 #define SERVE_PERSON_H
 
+#include <netinet/in.h>
 #include <stdbool.h>
 #include <sys/socket.h>
 
@@ -11,7 +12,7 @@
 struct config;
 
 /* The client's name in image and journal: "user 1000" of the unix socket, else its address. */
-void person_name(int fd, bool network, char name[OWS_NAME]);
+void person_name(int fd, bool network, const struct sockaddr_in6 *peer, char name[OWS_NAME]);
 /* The text of an address; of a long one "..." and its end. */
 void person_address(const struct sockaddr *from, char name[OWS_NAME]);
 /*

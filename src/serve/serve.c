@@ -129,8 +129,10 @@ static void take_events(struct serve *s, const struct epoll_event *events, int n
 
 		if (who < SERVER_CLIENTS)
 			client_event(s, &s->clients[who], events[i].events);
-		else if (who > WAKE_EVENT)
-			s->accepting = true;
+		if (who <= WAKE_EVENT)
+			continue;
+		s->waiting |= (uint32_t)1 << (who - WAKE_EVENT - 1);
+		s->accepting = true;
 	}
 }
 
@@ -170,6 +172,7 @@ static void serve_round(struct serve *s)
 		c->queued = false;
 		if (client_turn(s, c))
 			work_begin(s, c);
+		client_watch(s, c);
 	}
 }
 

@@ -3,6 +3,7 @@
 #ifndef SERVE_SERVER_H
 #define SERVE_SERVER_H
 
+#include <netinet/in.h>
 #include <pthread.h>
 
 #include "hal/bus/time.h"
@@ -67,14 +68,15 @@ struct client {
 	bool readable, ended; /* as epoll has reported; ended: no more bytes come */
 	bool queued;          /* the client is in the round */
 	bool network;         /* the socket is no unix socket */
+	bool watched;         /* epoll reports on the socket */
 	bool is_get, lent, once_more;
-	bool waits;            /* APPLYING: owsd has still to look at the commands of others */
-	char person[OWS_NAME]; /* who the client is */
-	uint8_t alive_left;    /* bytes left of a keep-alive that was begun */
-	unsigned target;       /* the one that answers now, of those that are asked in turn */
-	int32_t worst;         /* the result of the targets so far; 1: none has answered yet */
-	int64_t since_ns;      /* when the state began; READING: when the first byte came */
-	int64_t tick_ns;       /* the time of the last progress, or of the last keep-alive */
+	bool waits;               /* APPLYING: owsd has still to look at the commands of others */
+	struct sockaddr_in6 peer; /* the client's address, maybe a sockaddr_in, if network */
+	uint8_t alive_left;       /* bytes left of a keep-alive that was begun */
+	unsigned target;          /* the one that answers now, of those that are asked in turn */
+	int32_t worst;            /* the result of the targets so far; 1: none has answered yet */
+	int64_t since_ns;         /* when the state began; READING: when the first byte came */
+	int64_t tick_ns;          /* the time of the last progress, or of the last keep-alive */
 	int64_t active_ns; /* when the connection began, or the last request other than NOP ended */
 	uint64_t served;   /* requests that were answered */
 
@@ -143,12 +145,14 @@ struct serve {
 		bool network;
 	} listeners[SERVER_LISTENERS];
 	unsigned listener_count, listener_at; /* listener_at: the one that accepts first */
-	bool accepting;                       /* more connections may wait */
+	uint32_t waiting; /* listeners that may have connections, one bit each */
+	bool accepting;   /* and the server may accept them now */
 	/* Accepted when all places were taken. While it is held, no more are accepted. */
 	struct {
 		bool is;
 		int fd;
 		bool network;
+		struct sockaddr_in6 peer;
 	} held;
 	int epoll_fd;
 
@@ -169,6 +173,12 @@ struct serve {
 	struct log_rate full_rate, error_rate, peer_rate;
 	struct bus_counter counters[SERVE_COUNTER_COUNT];
 };
+
+/* A place or a descriptor is free. */
+static inline void accept_again(struct serve *s)
+{
+	s->accepting |= s->held.is || s->waiting;
+}
 
 static inline void count(struct serve *s, enum serve_counter what, uint64_t by)
 {

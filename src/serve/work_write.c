@@ -64,6 +64,7 @@ static int give(struct serve *s, struct client *c, const char *name)
 {
 	const char *text = (const char *)c->request.data;
 	uint32_t len = c->request.data_len;
+	char person[OWS_NAME];
 
 	if (c->node.kind != NODE_SIGNAL && units_convert(c->node.type, c->request.flags)) {
 		char *room = (char *)client_room(c);
@@ -75,7 +76,8 @@ static int give(struct serve *s, struct client *c, const char *name)
 		len = (uint32_t)n;
 		text = room;
 	}
-	return signals_write(s->signals, c->person, name, s->now_ns, text, len, &c->command);
+	person_name(c->fd, c->network, &c->peer, person);
+	return signals_write(s->signals, person, name, s->now_ns, text, len, &c->command);
 }
 
 /* Give a command that has to wait to the engine; look whether one that it has is carried out. */

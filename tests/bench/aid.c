@@ -156,14 +156,20 @@ int bench_port(void)
 	return port;
 }
 
-int bench_socket(int port)
+static int connect_from(uint32_t address, int port)
 {
-	struct sockaddr_in a = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)};
+	struct sockaddr_in a = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)},
+			   own = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(address)};
 	int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0), on = 1;
 
 	a.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
 	if (fd < 0)
 		return -1;
+	if (address) {
+		setsockopt(fd, IPPROTO_IP, IP_BIND_ADDRESS_NO_PORT, &on, sizeof(on));
+		if (bind(fd, (void *)&own, sizeof(own)))
+			perror("bind");
+	}
 	if (connect(fd, (void *)&a, sizeof(a))) {
 		close(fd);
 		return -1;
@@ -172,7 +178,20 @@ int bench_socket(int port)
 	return fd;
 }
 
-static bool request(int fd, uint32_t type, const char *path, size_t size)
+int bench_socket(int port)
+{
+	return connect_from(0, port);
+}
+
+int bench_socket_once(int port)
+{
+	static uint32_t turn;
+
+	turn = turn % 0xfffe + 1;
+	return connect_from(0x7f010000 + turn, port);
+}
+
+static bool request(int fd, uint32_t type, uint32_t flags, const char *path, size_t size)
 {
 	char frame[24 + 256];
 	uint32_t len = (uint32_t)strlen(path) + 1, word[6];
@@ -180,7 +199,7 @@ static bool request(int fd, uint32_t type, const char *path, size_t size)
 	word[0] = 0;
 	word[1] = htonl(len);
 	word[2] = htonl(type);
-	word[3] = htonl(FLAG_PERSIST | 0x100);
+	word[3] = htonl(flags | 0x100);
 	word[4] = htonl((uint32_t)size);
 	word[5] = 0;
 	memcpy(frame, word, 24);
@@ -190,7 +209,12 @@ static bool request(int fd, uint32_t type, const char *path, size_t size)
 
 bool bench_send(int fd, const char *path)
 {
-	return request(fd, TYPE_READ, path, 64);
+	return request(fd, TYPE_READ, FLAG_PERSIST, path, 64);
+}
+
+bool bench_send_once(int fd, const char *path)
+{
+	return request(fd, TYPE_READ, 0, path, 64);
 }
 
 int bench_receive(int fd, char *data, size_t size)
@@ -219,7 +243,7 @@ int bench_receive(int fd, char *data, size_t size)
 
 static int ask(int fd, uint32_t type, const char *path, char *data, size_t size)
 {
-	return request(fd, type, path, size) ? bench_receive(fd, data, size) : -1;
+	return request(fd, type, FLAG_PERSIST, path, size) ? bench_receive(fd, data, size) : -1;
 }
 
 int bench_read(int fd, const char *path, char *data, size_t size)

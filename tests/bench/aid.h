@@ -49,10 +49,17 @@ void bench_peer_end(struct bench_peer *peer);
  * A bare persistent connection: one request on its way at a time, nothing checked but the length.
  */
 int bench_socket(int port);
+/*
+ * A connection for one read. They come from addresses of 127.1.0.0/16 in turn: where many
+ * connections of one address have just ended, the kernel looks long for a free port.
+ */
+int bench_socket_once(int port);
 /* Returns the length of the answer or -1. */
 int bench_read(int fd, const char *path, char *data, size_t size);
 /* Its two halves. */
 bool bench_send(int fd, const char *path);
+/* The connection ends with the answer. */
+bool bench_send_once(int fd, const char *path);
 int bench_receive(int fd, char *data, size_t size);
 /* A port that is free now. */
 int bench_port(void);

@@ -2,8 +2,8 @@
 /*
  * Reads per second and latency of the served protocol beside the genuine owserver: the same paths
  * of the same simulated network, over 1, 16 and 64 kept connections, each with one request on its
- * way; on one CPU with the server, and on another. And what 64 clients cost in memory, and whether
- * they make the engine late.
+ * way, and over a new connection for each read; on one CPU with the server, and on another. And
+ * what 64 clients cost in memory, and whether they make the engine late.
  */
 #include <signal.h>
 #include <stdio.h>
@@ -61,18 +61,44 @@ static double run(const struct side *side, const struct bench_peer *peer, int n,
 	return ok ? done / ((double)(now - begun) / SECOND) : 0;
 }
 
-/* The best of three. */
+/* A new connection for each read, one after the other, for a second. */
+static double run_once_each(const struct side *side, const struct bench_peer *peer, size_t *samples)
+{
+	int64_t begun = bench_now(), now = begun;
+	unsigned done = 0;
+
+	for (*samples = 0; now - begun < SECOND; done++) {
+		int64_t begin = now;
+		char data[64];
+		int fd = bench_socket_once(side->port);
+		bool ok = fd >= 0 && bench_send_once(fd, peer->paths[done % DEVICES]) &&
+		          bench_receive(fd, data, sizeof(data)) == 12;
+
+		close(fd);
+		if (!ok)
+			return 0;
+		now = bench_now();
+		if (*samples < SAMPLES)
+			latency[(*samples)++] = (double)(now - begin) / 1000;
+	}
+	return done / ((double)(now - begun) / SECOND);
+}
+
+/* n connections; 0: a new one for each read. The best of three. */
 static void compare(const struct side *sides, const struct bench_peer *peer, const char *where,
                     int n)
 {
-	char name[64];
+	char name[64], count[16] = "new";
 
+	if (n)
+		snprintf(count, sizeof(count), "%d", n);
 	for (int i = 0; i < 2; i++) {
 		double best = 0, p50 = 0, p99 = 0;
 
 		for (int round = 0; round < 3; round++) {
 			size_t samples;
-			double rate = run(&sides[i], peer, n, &samples);
+			double rate = n ? run(&sides[i], peer, n, &samples)
+			                : run_once_each(&sides[i], peer, &samples);
 
 			if (rate <= best)
 				continue;
@@ -80,11 +106,11 @@ static void compare(const struct side *sides, const struct bench_peer *peer, con
 			p50 = bench_percentile(latency, samples, 50);
 			p99 = bench_percentile(latency, samples, 99);
 		}
-		snprintf(name, sizeof(name), "served_reads.%s.%d%s", where, n, sides[i].name);
+		snprintf(name, sizeof(name), "served_reads.%s.%s%s", where, count, sides[i].name);
 		bench_line(name, best, "1/s");
-		snprintf(name, sizeof(name), "served_p50.%s.%d%s", where, n, sides[i].name);
+		snprintf(name, sizeof(name), "served_p50.%s.%s%s", where, count, sides[i].name);
 		bench_line(name, p50, "us");
-		snprintf(name, sizeof(name), "served_p99.%s.%d%s", where, n, sides[i].name);
+		snprintf(name, sizeof(name), "served_p99.%s.%s%s", where, count, sides[i].name);
 		bench_line(name, p99, "us");
 	}
 }
@@ -161,7 +187,7 @@ static bool write_file(const char *file, const struct bench_peer *peer)
 
 int main(int argc, char **argv)
 {
-	static const int clients[] = {1, 16, 64};
+	static const int clients[] = {0, 1, 16, 64};
 	char program[512], file[128], instance[32], port[16];
 	const char *slash = strrchr(argv[0], '/');
 	struct bench_peer peer;
@@ -191,7 +217,7 @@ int main(int argc, char **argv)
 	memory(sides, &peer);
 	for (int cpu = 0; cpu < 2 && cpu < bench_cpus(); cpu++) {
 		bench_pin(cpu);
-		for (int i = 0; i < 3; i++)
+		for (int i = 0; i < 4; i++)
 			compare(sides, &peer, cpu ? "apart" : "pinned", clients[i]);
 	}
 	lateness(instance);

@@ -77,12 +77,13 @@ static void turn(void)
 
 static void join(struct other_side *side)
 {
+	static const struct sockaddr_in6 nobody;
 	int pair[2], small = 4096;
 
 	TEST_ASSERT_EQUAL_INT(0, socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, pair));
 	setsockopt(pair[1], SOL_SOCKET, SO_SNDBUF, &small, sizeof(small));
 	*side = (struct other_side){.fd = pair[0]};
-	TEST_ASSERT_NOT_NULL(client_open(serve, pair[1], false));
+	client_open(serve, pair[1], false, &nobody);
 }
 
 /* What the server sends is frames, one behind the other. */

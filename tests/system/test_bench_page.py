@@ -25,6 +25,7 @@ def some_output():
              "limit.cache 1.40 ns",
              "limit.memory 120 ns", "limit.wake 30.00 us", "shm_get.owserver_read 70000 ns",
              "limit.loopback.pinned 73000 1/s", "limit.loopback.apart 20000 1/s",
+             "limit.loopback.pinned.new 30000 1/s", "limit.loopback.pinned.16 90000 1/s",
              "served_rss.64_clients 3432 KiB", "served_rss.64_clients.owserver 6564 KiB",
              "served_late_periods 0.00 periods", "served_periods 900 periods",
              "set_to_wire.wakes 100.00 us", "set_to_wire.wakes_loopback 120.00 us",
@@ -54,7 +55,7 @@ def some_output():
     lines += [f"scan.{n}.400kHz.quick.{what} 0.80 s" for n in (1, 2, 5, 10, 20, 50)
               for what in ("seconds", "steady")]
     for where in ("pinned", "apart"):
-        for n in (1, 16, 64):
+        for n in ("new", 1, 16, 64):
             for who in ("", ".owserver"):
                 lines += [f"served_reads.{where}.{n}{who} {1000 if who else 4000} 1/s",
                           f"served_p50.{where}.{n}{who} 50.00 us", f"served_p99.{where}.{n}{who} 99.00 us"]

@@ -151,7 +151,7 @@ static void test_a_client_of_the_unix_socket_is_its_user(void)
 
 	TEST_ASSERT_EQUAL_INT(0, socketpair(AF_UNIX, SOCK_STREAM, 0, pair));
 	snprintf(expected, sizeof(expected), "user %lu", (unsigned long)getuid());
-	person_name(pair[0], false, text);
+	person_name(pair[0], false, NULL, text);
 	TEST_ASSERT_EQUAL_STRING(expected, text);
 	close(pair[0]);
 	close(pair[1]);
