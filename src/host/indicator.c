@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* The lamps of owsd: the alarm output and the heartbeat, each a GPIO line, and their thread. */
 #include <errno.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/bus/thread.h"
 #include "hal/bus/time.h"
 #include "hal/gpio/line.h"
 #include "src/host/indicator.h"
+#include "src/host/own_thread.h"
 #include "src/libows/ows.h"
 #include "src/shm/futex.h"
 #include "src/shm/reader.h"
@@ -40,9 +39,7 @@ struct indicator {
 	int64_t period_ns, look_ns;
 	bool alarm;
 	struct lamp alarm_lamp, heartbeat_lamp;
-	pthread_t thread;
-	bool running;
-	uint32_t stop, ended;
+	struct own_thread thread;
 };
 
 /* Does the alarm of any signal stand, or wait for its acknowledgement? */
@@ -212,45 +209,25 @@ static void *indicator_main(void *ctx)
 {
 	struct indicator *indicator = ctx;
 
-	while (!__atomic_load_n(&indicator->stop, __ATOMIC_ACQUIRE)) {
+	while (!own_thread_stops(&indicator->thread)) {
 		int64_t next_ns = indicator_step(indicator, ows_now());
 		int64_t left_ns = next_ns - ows_now();
 
 		if (left_ns > 0)
-			segment_wait(&indicator->stop, 0, left_ns);
+			segment_wait(&indicator->thread.stop, 0, left_ns);
 	}
-	__atomic_store_n(&indicator->ended, 1, __ATOMIC_RELEASE);
-	segment_wake(&indicator->ended, 1);
+	own_thread_ends(&indicator->thread);
 	return NULL;
 }
 
 int indicator_start(struct indicator *indicator)
 {
-	int err;
-
-	if (!indicator)
-		return 0;
-	err = thread_start(&indicator->thread, "owsd-lamps", STACK, indicator_main, indicator);
-	indicator->running = !err;
-	return err;
+	return indicator ? own_thread_start(&indicator->thread, "owsd-lamps", STACK, indicator_main,
+	                                    indicator)
+	                 : 0;
 }
 
 bool indicator_stop(struct indicator *indicator, int64_t timeout_ns)
 {
-	int64_t until_ns = ows_now() + timeout_ns, left_ns = timeout_ns;
-
-	if (!indicator || !indicator->running)
-		return true;
-	__atomic_store_n(&indicator->stop, 1, __ATOMIC_RELEASE);
-	segment_wake(&indicator->stop, 1);
-	/* pthread_timedjoin_np() uses the wall clock, which somebody may set meanwhile */
-	while (!__atomic_load_n(&indicator->ended, __ATOMIC_ACQUIRE)) {
-		if (left_ns <= 0)
-			return false;
-		segment_wait(&indicator->ended, 0, left_ns);
-		left_ns = until_ns - ows_now();
-	}
-	pthread_join(indicator->thread, NULL);
-	indicator->running = false;
-	return true;
+	return !indicator || own_thread_stop(&indicator->thread, NULL, timeout_ns);
 }

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* The thread that stores the last commands, and what it shares with the engine. */
 #include <errno.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "hal/bus/thread.h"
 #include "hal/bus/time.h"
 #include "src/host/last.h"
 #include "src/host/last_file.h"
+#include "src/host/own_thread.h"
 #include "src/libows/ows.h"
 #include "src/shm/futex.h"
 #include "src/shm/word.h"
@@ -39,11 +38,9 @@ struct last {
 	uint32_t tickets; /* given; futex word */
 	uint32_t stored;
 	int error;
-	uint32_t stop, ended;
 	uint64_t failures;
 	/* the thread */
-	pthread_t thread;
-	bool running;
+	struct own_thread thread;
 	bool logged; /* the log has the failure that lasts */
 };
 
@@ -154,7 +151,7 @@ static void *store_main(void *ctx)
 {
 	struct last *l = ctx;
 
-	while (!__atomic_load_n(&l->stop, __ATOMIC_ACQUIRE)) {
+	while (!own_thread_stops(&l->thread)) {
 		uint32_t ticket = __atomic_load_n(&l->tickets, __ATOMIC_ACQUIRE);
 
 		if (ticket == l->stored) {
@@ -162,12 +159,11 @@ static void *store_main(void *ctx)
 			continue;
 		}
 		store_up_to(l, ticket);
-		segment_wait(&l->stop, 0, APART_NS);
+		segment_wait(&l->thread.stop, 0, APART_NS);
 	}
 	if (l->tickets != l->stored)
 		store_up_to(l, l->tickets);
-	__atomic_store_n(&l->ended, 1, __ATOMIC_RELEASE);
-	segment_wake(&l->ended, 1);
+	own_thread_ends(&l->thread);
 	return NULL;
 }
 
@@ -251,33 +247,14 @@ const struct engine_last *last_seam(const struct last *l)
 
 int last_start(struct last *l)
 {
-	int err;
-
-	if (!l || l->running || l->error == -EIO)
+	if (!l || l->thread.running || l->error == -EIO)
 		return 0;
-	err = thread_start(&l->thread, "owsd-last", STACK, store_main, l);
-	l->running = !err;
-	return err;
+	return own_thread_start(&l->thread, "owsd-last", STACK, store_main, l);
 }
 
 bool last_stop(struct last *l, int64_t timeout_ns)
 {
-	int64_t until_ns = ows_now() + timeout_ns, left_ns = timeout_ns;
-
-	if (!l || !l->running)
-		return true;
-	__atomic_store_n(&l->stop, 1, __ATOMIC_RELEASE);
-	segment_wake(&l->stop, 1);
-	segment_wake(&l->tickets, 1);
-	while (!__atomic_load_n(&l->ended, __ATOMIC_ACQUIRE)) {
-		if (left_ns <= 0)
-			return false;
-		segment_wait(&l->ended, 0, left_ns);
-		left_ns = until_ns - ows_now();
-	}
-	pthread_join(l->thread, NULL);
-	l->running = false;
-	return true;
+	return !l || own_thread_stop(&l->thread, &l->tickets, timeout_ns);
 }
 
 void last_give_up(struct last *l)
