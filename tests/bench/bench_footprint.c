@@ -162,12 +162,14 @@ static bool write_file(const char *file, const struct bench_peer *peer, unsigned
 	return fclose(f) == 0;
 }
 
-static pid_t start_owsd(const char *program, const char *file, const char *instance)
+static pid_t start_owsd(const char *program, const char *file, const char *instance, int cpu)
 {
 	pid_t pid = fork();
 
 	if (pid == 0) {
 		prctl(PR_SET_PDEATHSIG, SIGKILL);
+		if (cpu >= 0)
+			bench_pin(cpu);
 		execl(program, program, "-c", file, "-n", instance, (char *)NULL);
 		_exit(127);
 	}
@@ -183,7 +185,7 @@ static void end_owsd(pid_t pid)
 
 static void with_signals(const char *program, const char *file, const char *instance, pid_t server)
 {
-	pid_t pid = start_owsd(program, file, instance);
+	pid_t pid = start_owsd(program, file, instance, -1);
 	struct spent own = spent_of(pid), its = spent_of(server), after;
 
 	sleep(SECONDS_N);
@@ -200,9 +202,20 @@ static void with_signals(const char *program, const char *file, const char *inst
 	end_owsd(pid);
 }
 
+/* Its threads wake each other without another processor, which may sleep deeply. */
+static void on_one_cpu(const char *program, const char *file, const char *instance)
+{
+	pid_t pid = start_owsd(program, file, instance, 0);
+	struct spent before = spent_of(pid);
+
+	sleep(SECONDS_N);
+	bench_line("cpu_idle.one_cpu", percent(spent_of(pid).ns - before.ns), "%");
+	end_owsd(pid);
+}
+
 static void without_signals(const char *program, const char *file, const char *instance)
 {
-	pid_t pid = start_owsd(program, file, instance);
+	pid_t pid = start_owsd(program, file, instance, -1);
 	struct spent before = spent_of(pid), after;
 
 	sleep(SECONDS_N);
@@ -252,6 +265,7 @@ int main(int argc, char **argv)
 	if (!write_file(file, &peer, peer.devices))
 		return 1;
 	with_signals(program, file, instance, peer.pid);
+	on_one_cpu(program, file, instance);
 	if (!write_file(file, &peer, 0))
 		return 1;
 	without_signals(program, file, instance);

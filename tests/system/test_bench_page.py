@@ -21,7 +21,7 @@ def some_output():
              "owserver_reads.cpu 10.40 us/read", "owserver_reads.bare_socket 18000 reads/s",
              "owserver_reads.bare_socket.cpu 9.60 us/read", "rss 3024 KiB", "rss.owserver 5152 KiB",
              "text_size 535 KiB", "cpu_idle 0.57 %", "cpu_idle.owserver 0.46 %", "cpu_idle.bare_socket 0.21 %",
-             "cpu_idle.no_signals 0.02 %", "wakes.no_signals 3.10 /s", "rss.proportional 1402 KiB",
+             "cpu_idle.no_signals 0.02 %", "cpu_idle.one_cpu 0.10 %", "wakes.no_signals 3.10 /s", "rss.proportional 1402 KiB",
              "limit.cache 1.40 ns",
              "limit.memory 120 ns", "limit.wake 30.00 us", "shm_get.owserver_read 70000 ns",
              "limit.loopback.pinned 73000 1/s", "limit.loopback.apart 20000 1/s",
@@ -44,6 +44,12 @@ def some_output():
     for n in (10, 1000, 10000):
         lines += [f"changes.{n} 500.00 ns", f"changes.scan.{n} {15 * n} ns"]
     lines += [f"engine_step.{n} {n / 10 + 300:.0f} ns" for n in (10, 100, 1000, 10000)]
+    lines += [f"engine_step.{n} 400 ns" for n in ("targets.8", "targets.16", "quiet.10", "quiet.10000",
+                                                  "quiet.targets.16")]
+    for of in ("signals.10", "signals.100", "signals.1000", "signals.10000", "targets.8", "targets.16",
+               "consumers.100"):
+        lines += [f"growth.{of}.{what} 8.00 ms" for what in ("start", "reload", "memory", "reading", "wakes",
+                                                             "quiet", "quiet_wakes")]
     for name in ("shm_get.single", "shm_get.clock", "shm_get.owserver_read", "set_to_wire",
                  "input_latency.alarm4", "input_latency.alarm10", "input_latency.cyclic"):
         lines += [f"{name}.p{p} {10 + p:.2f} ns" for p in POINTS]
@@ -118,6 +124,7 @@ def test_saved_figures_become_tables_and_the_prose_is_kept(scene):
     assert "Commit abc1234; Some CPU (virtual machine), 2 cores" in after
     assert "| `rss`: resident with 100 signals | 3 024 KiB | 3 024 KiB | 3 024 KiB | owserver 5 152 KiB |  | 2 MiB: **missed** |" in after
     assert "10 ns, or three loads from that cache: met" in after
+    assert "| 1 000, 16 targets | 8.0 ms | 8.0 ms | 8.0 KiB | 8.0 us | 8.0 | 8.0 % | 8.0 /s |" in after
     assert "1.2 times that by eventfd" in after
     assert "| 1, pinned | 4 000/s | 50.0, 99.0 us | 1 000/s | 50.0, 99.0 us | 4.0 | 73 000/s |" in after
     assert "| owsd direct | 50 | 6.00 | 3000 | 10000 | 600 | 50 | 1.34 |" in after
@@ -134,7 +141,7 @@ def test_plots_are_small_and_are_for_light_and_dark(scene):
     status, said, _ = written(scene, saved(scene))
     assert status == 0, said
     files = sorted((scene.path / "docs/img").glob("*.svg"))
-    assert [f.name for f in files] == ["change.svg", "latency.svg", "scan.svg"]
+    assert [f.name for f in files] == ["change.svg", "growth.svg", "latency.svg", "scan.svg"]
     for file in files:
         assert file.stat().st_size < 60000, file
         root = ET.parse(file).getroot()
