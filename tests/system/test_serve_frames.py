@@ -284,6 +284,20 @@ def test_requests_in_one_piece_are_answered_in_their_order(scene):
             assert [served.receive(s).data for _ in names] == alone
 
 
+def test_the_last_answer_comes_whole_whatever_was_sent_behind_its_request(scene):
+    server = served.owsd(scene)
+    last = served.request(READ, T + "/type")
+    for behind in (b"", last, b"\0" * 5000):
+        for _ in range(20):
+            with server.connect() as s:
+                s.sendall(last + behind)
+                assert served.receive(s).data == b"DS18B20", behind
+                try:
+                    assert s.recv(1) == b"", behind
+                except ConnectionResetError:
+                    assert behind
+
+
 def test_a_request_may_come_byte_by_byte(scene):
     for server in (served.owserver(scene), served.owsd(scene)):
         with server.connect() as s:
