@@ -183,7 +183,8 @@ def test_directories(scene):
                  "/text/settings/units"):
         pair.entries(path)
     # the TMP1826 has that family code too, and owserver knows nothing of it
-    pair.entries("/structure/26", drop=("/power", "/temphigh", "/templow", "/tempres"))
+    pair.entries("/structure/26", drop=["/" + name for name in (
+        "alert_high", "alert_low", "memory", "power", "temphigh", "templow", "tempoffset", "tempres")])
     for path in ("/text", "/json/uncached", "/uncached/text"):
         pair.entries(path, drop=("/signals",))
     # What docs/native.md says is not there
