@@ -181,11 +181,14 @@ int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns
 int txn_write_paused(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
 {
 	const struct bus_env *env = txn->link->env;
-	enum link_after after;
-	int err = pull(txn, &after);
+	bool external = txn->device && txn->device->power == POWER_EXTERNAL;
 
-	if (!err)
-		err = leave_done(txn);
+	/* What is kept back would be sent behind the pause, with what is to come after it. */
+	if (txn->link->ops->flush || (txn->link->passive && !external))
+		return -EOPNOTSUPP;
+	enum link_after after = txn->link->passive ? LINK_IDLE : LINK_STRONG;
+	int err = leave_done(txn);
+
 	if (!err)
 		err = of_link(txn, txn->link->ops->write(txn->link, bytes, n, after));
 	if (!err && env->wait(env->ctx, -1, 0, env->now(env->ctx) + ns) < 0)

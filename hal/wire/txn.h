@@ -93,8 +93,10 @@ int txn_write(struct txn *txn, const uint8_t *bytes, size_t n);
 /* As txn_command_strong(). */
 int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns);
 /*
- * The same where the chip answers behind it in the same transaction: it returns after ns, which are
- * a few milliseconds at the most.
+ * The same where the chip answers after it in the same transaction: it returns after ns, which are
+ * a few milliseconds at the most. -EOPNOTSUPP on a link that keeps back what is written
+ * (link_ops.flush): it would make no pause. Without a strong pull-up only for a device that is
+ * known to have a supply of its own.
  */
 int txn_write_paused(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns);
 int txn_read(struct txn *txn, uint8_t *bytes, size_t n);

@@ -9,6 +9,7 @@
 #include "unity.h"
 
 #include "hal/owfs/path.h"
+#include "hal/sim/chips/tmp1826.h"
 #include "tests/unit/aid/netlink_scene.h"
 
 void setUp(void)
@@ -219,6 +220,30 @@ static void test_a_converter_without_supply_is_refused(void)
 
 /* --- Alarms --- */
 
+/*
+ * The EEPROM of a TMP1826 needs a pause within a transaction, and the kernel makes a transaction
+ * without one. Neither a value nor a write that is made of false bytes comes of that.
+ */
+static void test_an_eeprom_that_needs_a_pause_is_refused(void)
+{
+	uint8_t before[SIM_TMP1826_MEMORY];
+
+	nl_masters(1);
+	struct sim_slave *slave = wire_add(0, "TMP1826", 1);
+	struct sim_tmp1826 *state = slave->state;
+
+	for (unsigned i = 0; i < sizeof(before); i++)
+		state->memory[i] = before[i] = (uint8_t)(i * 7 + 3);
+	nl_start();
+	for (unsigned known = 0; known < 2; known++) {
+		TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP, nl_read(slave, "memory"));
+		TEST_ASSERT_EQUAL_INT(-EOPNOTSUPP, nl_write(slave, "memory", "ABC"));
+		TEST_ASSERT_EQUAL_HEX8_ARRAY(before, state->memory, sizeof(before));
+		wire_set(slave, "temperature", 21.5);
+		nl_reads(slave, "temperature", "        21.5");
+	}
+}
+
 static void test_nobody_in_alarm_costs_one_short_request(void)
 {
 	nl_masters(1);
@@ -291,6 +316,7 @@ int main(void)
 	RUN_TEST(test_a_display_takes_its_bytes_one_by_one);
 	RUN_TEST(test_thermometers_fed_by_the_wire_are_refused_and_others_not);
 	RUN_TEST(test_a_converter_without_supply_is_refused);
+	RUN_TEST(test_an_eeprom_that_needs_a_pause_is_refused);
 	RUN_TEST(test_nobody_in_alarm_costs_one_short_request);
 	RUN_TEST(test_random_alarms_are_all_found);
 	RUN_TEST(test_an_unknown_device_in_alarm_is_found_and_read);
