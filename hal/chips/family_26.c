@@ -8,6 +8,7 @@
  * else is asked of a chip, and reads them.
  */
 #include <errno.h>
+#include <string.h>
 
 #include "hal/chips/ds2438.h"
 #include "hal/chips/ds2438_measure.h"
@@ -156,6 +157,16 @@ static const struct property properties[] = {
 	MEASURED("vis", FLOAT, DS2438_VIS),
 };
 
+/* The alerts of a TMP1826 stay: reading has cleared them in the chip, and nobody has seen them. */
+static void forget(struct device *device)
+{
+	struct ds2438 *chip = device->own;
+	uint8_t alerts = chip->alerts;
+
+	memset(chip, 0, sizeof(*chip));
+	chip->alerts = alerts;
+}
+
 static const char *const types[] = {"DS2438", "DS2438", "TMP1826", "unknown"};
 
 const struct family family_26 = {
@@ -164,6 +175,7 @@ const struct family family_26 = {
 	.kind = tmp1826_kind,
 	.types = types,
 	.identify = tmp1826_identify,
+	.forget = forget,
 	.doubted = KIND(IS_NEITHER),
 	.plain = KIND(IS_DS2438),
 	AREAS(areas),

@@ -38,6 +38,8 @@ enum { AVERAGES = 0x08 };                                       /* of CONFIG_1 *
 struct look {
 	uint8_t bytes[BYTES];
 	uint8_t verdict, same, all;
+	bool chip; /* the bytes of an earlier look were a TMP1826's, with these: */
+	uint8_t lost, status;
 };
 _Static_assert(sizeof(struct look) <= TXN_OWN, "no room for the look");
 
@@ -95,6 +97,32 @@ static int identify_driven(struct txn *txn)
 	return 0;
 }
 
+/* The byte ahead of a TMP1826's, which went with the page's number: the CRC8 says which it was. */
+static uint8_t lost_byte(const uint8_t in[BYTES])
+{
+	uint8_t first[FIRST] = {0};
+
+	memcpy(first + 1, in, FIRST - 1);
+	for (unsigned byte = 0; byte < 0xff && rom_crc8(first, FIRST); byte++)
+		first[0] = (uint8_t)(byte + 1);
+	return first[0];
+}
+
+/*
+ * A look clears the alerts in the chip, so they are kept. As the CRC8 is spent on the lost byte,
+ * they count when another look says the same byte: a status that was disturbed makes it another.
+ */
+static void keep_alerts(struct txn *txn, struct look *look, const uint8_t in[BYTES])
+{
+	uint8_t lost = lost_byte(in), status = in[STATUS - 1];
+
+	if (look->chip && look->lost == lost)
+		ds2438_of(txn)->alerts |= (look->status | status) >> ALERT_SHIFT;
+	look->chip = true;
+	look->lost = lost;
+	look->status = status;
+}
+
 /* One look more; TXN_MORE until it is known. A chip that always says the same is IS_NEITHER. */
 static int look_again(struct txn *txn, const uint8_t in[BYTES])
 {
@@ -107,6 +135,8 @@ static int look_again(struct txn *txn, const uint8_t in[BYTES])
 	look->same = look->all && same ? look->same + 1 : !blank;
 	look->verdict = (uint8_t)verdict;
 	memcpy(look->bytes, in, BYTES);
+	if (verdict == IS_TMP1826)
+		keep_alerts(txn, look, in);
 	if (look->same < LOOKS)
 		return ++look->all < LOOKS_MOST ? TXN_MORE : -EBADMSG;
 	ds2438_of(txn)->kind = verdict ? (uint8_t)verdict : IS_NEITHER;

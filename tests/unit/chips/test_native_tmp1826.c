@@ -154,6 +154,47 @@ static void test_alerts_are_kept_until_they_are_cleared(void)
 	expect(true, of(chip, "alert_high"), "1");
 }
 
+static void set_off_an_alert(void)
+{
+	TEST_ASSERT_EQUAL_INT(0, set("temphigh", "30"));
+	wire_set(chip, "temperature", 31);
+	expect(true, of(chip, "temperature"), "          31");
+	wire_set(chip, "temperature", 21.5);
+	forget();
+}
+
+/* After three wrong checksums it is told anew which chip it is. */
+static void lose_what_is_known(void)
+{
+	chip->corrupt_probability = 1;
+	chip->corrupt_random = 1;
+	TEST_ASSERT_EQUAL_INT(-EBADMSG, result(BUS_READ, of(chip, "temperature"), NULL));
+	chip->corrupt_probability = 0;
+	forget();
+}
+
+static void test_an_alert_outlives_wrong_checksums_and_a_loss_of_power(void)
+{
+	set_off_an_alert();
+	lose_what_is_known();
+	expect(true, of(chip, "alert_high"), "1");
+	power_cycle();
+	expect(true, of(chip, "alert_high"), "1");
+	expect(true, of(chip, "alert_low"), "0");
+	TEST_ASSERT_EQUAL_INT(0, set("alert_high", "0"));
+	lose_what_is_known();
+	expect(true, of(chip, "alert_high"), "0");
+}
+
+/* The looks that tell which chip it is clear its alerts. */
+static void test_an_alert_is_not_lost_when_it_is_told_which_chip_it_is(void)
+{
+	lose_what_is_known();
+	state->status |= 0x40;
+	expect(true, of(chip, "alert_low"), "1");
+	expect(true, of(chip, "alert_high"), "0");
+}
+
 static void fill(void)
 {
 	for (unsigned i = 0; i < SIM_TMP1826_MEMORY; i++)
@@ -229,6 +270,8 @@ int main(void)
 	RUN_TEST(test_a_chip_whose_settings_are_locked_refuses);
 	RUN_TEST(test_a_disturbed_write_changes_nothing_else);
 	RUN_TEST(test_alerts_are_kept_until_they_are_cleared);
+	RUN_TEST(test_an_alert_outlives_wrong_checksums_and_a_loss_of_power);
+	RUN_TEST(test_an_alert_is_not_lost_when_it_is_told_which_chip_it_is);
 	RUN_TEST(test_the_memory_is_read_whether_checksums_stand_in_it_or_not);
 	RUN_TEST(test_a_part_of_the_memory_is_written_and_the_rest_of_its_blocks_stays);
 	RUN_TEST(test_a_locked_page_refuses);
