@@ -5,10 +5,10 @@
 
 #include "hal/chips/family.h"
 
-/* Of a property with .field: txn->property's element txn->element, or all. */
 /*
- * Of binary that is longer than a chunk it reads a chunk, from txn->at on: one that failed is read
- * again alone, and others of the wire, and of the chip, come between.
+ * Of a property with .field: txn->property's element txn->element, or all. Of binary that is longer
+ * than FIELD_CHUNK bytes it reads a chunk, from txn->at on: one that failed is read again alone,
+ * and requests for other chips, and for this one, come between. Elements of arrays have no more.
  */
 #define FIELD_CHUNK 1024
 int field_read(struct txn *txn);

@@ -36,6 +36,26 @@ static property_function *writer(const struct job *job)
 	return property_writer(family_of_job(job), job->property);
 }
 
+/*
+ * After a chunk of a long binary: is there another to be read? When the chip was written since the
+ * first one, between the transactions of this job, that is the first again (until the request's
+ * deadline): no answer is partly old.
+ */
+static bool next_chunk(struct job *job)
+{
+	const struct property *property = job->property;
+	const struct txn *txn = &job->txn;
+
+	if (property->type != PROPERTY_BINARY || !property->field.area ||
+	    property_size(property) <= FIELD_CHUNK)
+		return false;
+	if (job->out == txn->len)
+		job->changes = txn->device->changes;
+	else if (job->changes != txn->device->changes)
+		job->out = 0;
+	return txn->len && job->out < property_size(property);
+}
+
 /* One element, or chunk, more of the answer; true: there are others. */
 static int add_element(struct job *job)
 {
@@ -49,8 +69,7 @@ static int add_element(struct job *job)
 		if (txn->len > txn->room)
 			return -EMSGSIZE;
 		job->out += txn->len;
-		if (!all && property->type == PROPERTY_BINARY && reader(job) == field_read &&
-		    job->out < property_size(property))
+		if (!all && next_chunk(job))
 			return 1;
 	} else {
 		int n = format_value(property, all ? EXTENSION_NONE : job->extension, txn,

@@ -90,6 +90,7 @@ struct job {
 	int extension;
 	int64_t ready_ns;    /* CONVERTING */
 	size_t out;          /* bytes of the answer so far */
+	uint32_t changes;    /* the device's, when the first part of a long answer was read */
 	size_t taken;        /* WRITE: bytes used */
 	uint8_t families[8]; /* ALARM: only these; 0 behind the last */
 	uint8_t family_i;

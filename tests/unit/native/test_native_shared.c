@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "hal/chips/family.h"
+#include "hal/chips/field.h"
 #include "hal/chips/find.h"
 #include "tests/unit/aid/native_scene.h"
 #include "unity.h"
@@ -275,6 +276,40 @@ static void test_four_volts_asked_for_at_once_are_one_conversion(void)
 	TEST_ASSERT_EQUAL_UINT(3, transactions());
 }
 
+/* Writes twice, the second time between the parts in which 2560 bytes are read. */
+static void test_a_long_memory_that_is_written_meanwhile_is_not_half_old(void)
+{
+	static char text[2560];
+	unsigned between = 0;
+
+	begin("DS28EC20");
+	for (unsigned moment = 0; moment < 8; moment++) {
+		write_offset = 0;
+		memset(text, 'a', sizeof(text));
+		text[sizeof(text) - 1] = '\0';
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(chip, "memory"), text));
+		forget();
+		uint32_t id = ask(BUS_READ, BUS_GUEST, true, of(chip, "memory"), NULL);
+
+		host_run(&host, bus, host.now + (1 + moment) * 200 * HOST_MS);
+		uint32_t early = ask(BUS_WRITE, BUS_INPUT, true, of(chip, "pages/page.0"), "b");
+
+		write_offset = 31;
+		uint32_t late = ask(BUS_WRITE, BUS_INPUT, true, of(chip, "pages/page.77"), "b");
+
+		write_offset = 0;
+		between += !host_answer(&host, id);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(early)->err);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(late)->err);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		/* page 0 is written first: the other is new only where that is, too */
+		if (data[id][77 * 32 + 31] == 'b')
+			TEST_ASSERT_EQUAL_CHAR('b', data[id][0]);
+		forget();
+	}
+	TEST_ASSERT_GREATER_THAN_UINT(3, between);
+}
+
 /* What of two requests is out of one row is still found: the tables are searched by halves. */
 static void test_the_properties_of_each_family_are_sorted_by_name(void)
 {
@@ -286,6 +321,25 @@ static void test_the_properties_of_each_family_are_sorted_by_name(void)
 				0,
 				strcmp(family->properties[i - 1].name, family->properties[i].name),
 				family->properties[i].name);
+}
+
+/* All elements at once are read one by one, and each of those in one part (exchange.c). */
+static void test_no_array_has_elements_that_are_read_in_parts(void)
+{
+	const struct family *family;
+	unsigned arrays = 0;
+
+	for (unsigned n = 0; (family = family_nth(n)); n++)
+		for (unsigned i = 0; i < family->count; i++) {
+			const struct property *property = &family->properties[i];
+
+			if (property->type != PROPERTY_BINARY || !property->array.count)
+				continue;
+			arrays++;
+			TEST_ASSERT_LESS_OR_EQUAL_UINT_MESSAGE(FIELD_CHUNK, property->size,
+			                                       property->name);
+		}
+	TEST_ASSERT_GREATER_THAN_UINT(10, arrays);
 }
 
 static void test_the_families_are_in_the_order_of_their_codes(void)
@@ -312,7 +366,9 @@ int main(void)
 	RUN_TEST(test_a_value_of_several_parts_is_as_old_as_the_oldest);
 	RUN_TEST(test_humidity_leaves_the_temperature_to_those_who_ask_next);
 	RUN_TEST(test_four_volts_asked_for_at_once_are_one_conversion);
+	RUN_TEST(test_a_long_memory_that_is_written_meanwhile_is_not_half_old);
 	RUN_TEST(test_the_properties_of_each_family_are_sorted_by_name);
+	RUN_TEST(test_no_array_has_elements_that_are_read_in_parts);
 	RUN_TEST(test_the_families_are_in_the_order_of_their_codes);
 	return UNITY_END();
 }
