@@ -4,11 +4,11 @@
 
 #include <errno.h>
 #include <string.h>
-#include <time.h>
 
 #include "hal/chips/ds1921.h"
 #include "hal/chips/family.h"
 #include "hal/chips/logger.h"
+#include "hal/chips/present.h"
 
 static const struct logger_chip chip = {.copy = 0x55};
 
@@ -307,8 +307,13 @@ static int set_clock(struct txn *txn, unsigned wanted, double seconds)
 		txn->phase = RUN_CLOCK;
 		return TXN_MORE;
 	}
-	if (!visit->write.step)
-		put_clock(visit, wanted & SETS_CLOCK ? seconds : (double)time(NULL));
+	if (!visit->write.step) {
+		int err = wanted & SETS_CLOCK ? 0 : present_time(&seconds);
+
+		if (err)
+			return err;
+		put_clock(visit, seconds);
+	}
 	return put(txn, DS1921_CLOCK, DS1921_CLOCK_ALARM);
 }
 
@@ -386,7 +391,9 @@ static int start_with(struct txn *txn, double rate, unsigned wanted)
 	if (!(rate >= 1 && rate <= 255))
 		return -EINVAL;
 	visit->want = (uint8_t)rate;
-	return do_steps(txn, wanted, (double)time(NULL));
+	double now = 0;
+	int err = wanted & SETS_CLOCK ? present_time(&now) : 0;
+	return err ? err : do_steps(txn, wanted, now);
 }
 
 int ds1921_write_frequency(struct txn *txn)

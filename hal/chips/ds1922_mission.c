@@ -4,11 +4,11 @@
 
 #include <errno.h>
 #include <string.h>
-#include <time.h>
 
 #include "hal/chips/ds1922.h"
 #include "hal/chips/family.h"
 #include "hal/chips/logger.h"
+#include "hal/chips/present.h"
 
 enum { CLEAR_MEMORY = 0x96, START_MISSION = 0xcc, STOP_MISSION = 0x33 };
 
@@ -199,9 +199,14 @@ static int set_clock(struct txn *txn, unsigned wanted)
 		txn->phase++;
 		return TXN_MORE;
 	}
-	if (!visit->write.step)
-		logger_bcd(wanted & SETS_CLOCK ? txn->number[0] : (double)time(NULL), visit->bytes,
-		           &weekday);
+	if (!visit->write.step) {
+		double seconds = txn->number[0];
+		int err = wanted & SETS_CLOCK ? 0 : present_time(&seconds);
+
+		if (err)
+			return err;
+		logger_bcd(seconds, visit->bytes, &weekday);
+	}
 	return put(txn, DS1922_CLOCK, LOGGER_TIME);
 }
 
