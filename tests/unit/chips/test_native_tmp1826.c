@@ -118,7 +118,7 @@ static void test_a_disturbed_write_changes_nothing_else(void)
 		int16_t want = (int16_t)(20 + round % 50);
 
 		snprintf(text, sizeof(text), "%d", want);
-		chip->corrupt_probability = 0.02;
+		chip->corrupt_probability = 0.2;
 		chip->corrupt_random = round + 1;
 		int err = set("temphigh", text);
 		chip->corrupt_probability = 0;
@@ -132,7 +132,8 @@ static void test_a_disturbed_write_changes_nothing_else(void)
 		TEST_ASSERT_EQUAL_HEX8_ARRAY(before + 7, state->settings + 7, 2);
 		TEST_ASSERT_EQUAL_HEX8_ARRAY(state->settings, state->stored, sizeof(before));
 	}
-	TEST_ASSERT_GREATER_THAN_UINT(0, written);
+	/* 51: most are made again by the bus, and some are too much disturbed for that */
+	TEST_ASSERT_UINT_WITHIN(8, 51, written);
 }
 
 static void test_alerts_are_kept_until_they_are_cleared(void)
@@ -247,7 +248,7 @@ static void test_a_noisy_wire_makes_no_false_memory(void)
 	unsigned good = 0;
 
 	fill();
-	chip->corrupt_probability = 0.01;
+	chip->corrupt_probability = 0.25;
 	chip->corrupt_random = 7;
 	for (unsigned round = 0; round < 20; round++) {
 		uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(chip, "memory"), NULL);
@@ -258,7 +259,7 @@ static void test_a_noisy_wire_makes_no_false_memory(void)
 		}
 		forget();
 	}
-	TEST_ASSERT_GREATER_THAN_UINT(0, good);
+	TEST_ASSERT_UINT_WITHIN(5, 10, good);
 }
 
 int main(void)
