@@ -29,16 +29,15 @@
 #define READ_IDLE_NS TXN_MS
 
 #define SETTINGS 9
-#define VOLATILE_SETTINGS \
-	3 /* in the first half of the scratchpad; the others are behind its CRC8 */
+#define FIRST_HALF 3 /* settings that stand ahead of the scratchpad's first CRC8 */
 #define BLOCK 8
 #define BEHIND 2 /* bytes that are read behind a block: longer than tREADIDLE */
 
 /* All settings, in the order in which they are written. */
 static void settings_of(const uint8_t pad[TMP1826_PAD], uint8_t settings[SETTINGS])
 {
-	memcpy(settings, pad + TMP1826_SETTINGS, VOLATILE_SETTINGS);
-	memcpy(settings + VOLATILE_SETTINGS, pad + TMP1826_LOW, SETTINGS - VOLATILE_SETTINGS);
+	memcpy(settings, pad + TMP1826_SETTINGS, FIRST_HALF);
+	memcpy(settings + FIRST_HALF, pad + TMP1826_LOW, SETTINGS - FIRST_HALF);
 }
 
 static int in_range(double raw, int16_t *out)
@@ -52,7 +51,7 @@ static int in_range(double raw, int16_t *out)
 /* What the settings are to be; of a write that failed before, from those before it. */
 static int wanted(struct txn *txn, const uint8_t have[SETTINGS], uint8_t want[SETTINGS])
 {
-	unsigned at = VOLATILE_SETTINGS + (unsigned)txn->property->arg - TMP1826_LOW;
+	unsigned at = FIRST_HALF + (unsigned)txn->property->arg - TMP1826_LOW;
 	int16_t raw = 0;
 
 	memcpy(want, have, SETTINGS);
