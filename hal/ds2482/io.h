@@ -29,7 +29,7 @@ bool ds2482_combines(const struct ds2482_chip *chip);
 int ds2482_learn(struct ds2482_chip *chip);
 /* The time that passes between two messages of a transfer, by the adapter's doing; 0: none. */
 int64_t ds2482_between(const struct ds2482_chip *chip);
-/* Report that a command came too early, behind another one: messages come faster than measured. */
+/* Report that a command came too early, after another one: messages come faster than measured. */
 void ds2482_was_refused(struct ds2482_chip *chip);
 /*
  * Report that the chip was still busy after reading on: messages or bytes come faster than

@@ -125,7 +125,7 @@ static void end_family(struct native *native, unsigned n, int64_t now)
 	}
 	touch->searching = false;
 	touch->family++;
-	/* Couplers in alarm come behind the keys. */
+	/* Couplers in alarm come after the keys. */
 	if (touch->family < FAMILIES + (!is_branch(n) && channel->trunk))
 		return;
 	end_round(native, n, now);

@@ -102,10 +102,10 @@ int txn_write_paused(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns
 int txn_read(struct txn *txn, uint8_t *bytes, size_t n);
 /* One read slot: 0 or 1. */
 int txn_bit(struct txn *txn);
-/* One read slot with the strong pull-up behind it; as txn_command_strong(). */
+/* One read slot with the strong pull-up after it; as txn_command_strong(). */
 int txn_bit_strong(struct txn *txn, int64_t ns);
 /*
- * Behind a command that takes time: the chip holds read slots low while it is at work (link.h).
+ * After a command that takes time: the chip holds read slots low while it is at work (link.h).
  * -EBADMSG: it has not taken the command, and what it gives later is older than that.
  */
 int txn_started(struct txn *txn);
@@ -149,14 +149,14 @@ int64_t txn_measured(const struct txn *txn);
 /*
  * The next transaction has been made already, with others (link_ops.together); NULL: it has not.
  * The command that comes next takes it up if it is what was sent, else it is dropped. Call it again
- * with NULL behind that.
+ * with NULL after that.
  */
 void txn_done(struct txn *txn, const struct link_visit *done);
 /* When the last transaction ended: this moment, if it was not made already. */
 int64_t txn_ended(const struct txn *txn);
 
 /*
- * Behind each call of a property function: what a link keeps back is sent (link_ops.flush). err is
+ * After each call of a property function: what a link keeps back is sent (link_ops.flush). err is
  * what the function returned, and so is this, unless sending failed.
  */
 int txn_end(struct txn *txn, int err);
