@@ -21,9 +21,6 @@ struct ds2438 {
 	 */
 	uint8_t first[8];
 	uint8_t kind; /* with family code 26: which chip it is (tmp1826.h) */
-	/* Of a TMP1826: alerts that were read, which clears them; its EEPROM has its settings. */
-	uint8_t alerts;
-	bool kept;
 };
 static inline struct ds2438 *ds2438_of(const struct txn *txn)
 {

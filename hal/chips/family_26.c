@@ -17,6 +17,7 @@
 #include "hal/chips/sensors_26.h"
 #include "hal/chips/tmp1826.h"
 #include "hal/chips/tmp1826_memory.h"
+#include "hal/chips/tmp1826_settings.h"
 
 #define OFFSET_AT 13 /* page 1, byte 5 */
 
@@ -160,7 +161,7 @@ static const struct property properties[] = {
 /* The alerts of a TMP1826 stay: reading has cleared them in the chip, and nobody has seen them. */
 static void forget(struct device *device)
 {
-	struct ds2438 *chip = device->own;
+	struct tmp1826 *chip = device->own;
 	uint8_t alerts = chip->alerts;
 
 	memset(chip, 0, sizeof(*chip));

@@ -117,7 +117,7 @@ static void keep_alerts(struct txn *txn, struct look *look, const uint8_t in[BYT
 	uint8_t lost = lost_byte(in), status = in[STATUS - 1];
 
 	if (look->chip && look->lost == lost)
-		ds2438_of(txn)->alerts |= (look->status | status) >> ALERT_SHIFT;
+		tmp1826_of(txn)->alerts |= (look->status | status) >> ALERT_SHIFT;
 	look->chip = true;
 	look->lost = lost;
 	look->status = status;
@@ -174,7 +174,7 @@ int tmp1826_read_pad(struct txn *txn, uint8_t pad[PAD])
 		return err;
 	if (rom_crc8(pad, FIRST) || rom_crc8(pad + FIRST, PAD - FIRST) || all_are(pad, PAD, 0))
 		return -EBADMSG;
-	ds2438_of(txn)->alerts |= pad[STATUS] >> ALERT_SHIFT;
+	tmp1826_of(txn)->alerts |= pad[STATUS] >> ALERT_SHIFT;
 	txn->device->power = pad[STATUS] & FED_BY_BUS ? POWER_PARASITE : POWER_EXTERNAL;
 	return 0;
 }
@@ -217,16 +217,6 @@ int tmp1826_read_temperature(struct txn *txn)
 	visit->config = pad[CONFIG_1];
 	txn->phase = !fresh;
 	return !fresh || ++visit->looks < LOOKS ? TXN_MORE : -EBADMSG;
-}
-
-int tmp1826_read_limit(struct txn *txn)
-{
-	uint8_t pad[PAD];
-	int err = tmp1826_read_pad(txn, pad);
-
-	if (!err)
-		txn->number[0] = tmp1826_celsius(pad, (unsigned)txn->property->arg);
-	return err;
 }
 
 int tmp1826_read_power(struct txn *txn)
