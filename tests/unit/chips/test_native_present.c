@@ -84,14 +84,15 @@ static void test_a_mission_that_sets_the_clock_is_refused(void)
 	refuses("DS1921G", "clock/udate", "mission/easystart", "5");
 }
 
-/* A mission starts the clock where it stands. */
-static void starts_a_clock(const char *name, const char *property)
+/* A mission of a minute's interval starts the clock where it stands. */
+static void starts_a_clock(const char *name, const char *property, const char *first)
 {
 	struct sim_slave *chip = wire_add(0, name, 1);
 
 	start();
-	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(chip, "mission/enable"), "1"));
-	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(chip, "mission/clear"), "1"));
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(chip, first), "1"));
+	if (name[5] == '1') /* a DS1922 clears at each start */
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(chip, "mission/clear"), "1"));
 	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(chip, "clock/running"), "0"));
 	host_says = 86400;
 	TEST_ASSERT_EQUAL_INT(-EAGAIN, result(BUS_WRITE, of(chip, property), "1"));
@@ -102,7 +103,12 @@ static void starts_a_clock(const char *name, const char *property)
 
 static void test_a_mission_that_starts_the_clock_is_refused(void)
 {
-	starts_a_clock("DS1921G", "mission/frequency");
+	starts_a_clock("DS1921G", "mission/frequency", "mission/enable");
+}
+
+static void test_a_mission_of_seconds_that_starts_the_clock_is_refused(void)
+{
+	starts_a_clock("DS1922L", "mission/running", "mission/interval");
 }
 
 int main(void)
@@ -113,5 +119,6 @@ int main(void)
 	RUN_TEST(test_an_empty_date_of_a_logger_is_refused);
 	RUN_TEST(test_a_mission_that_sets_the_clock_is_refused);
 	RUN_TEST(test_a_mission_that_starts_the_clock_is_refused);
+	RUN_TEST(test_a_mission_of_seconds_that_starts_the_clock_is_refused);
 	return UNITY_END();
 }
