@@ -106,7 +106,7 @@ static int converted(struct txn *txn, uint8_t bytes[9])
 {
 	int err = now(txn, bytes);
 
-	return err ? err : thermometer_ended(txn, bytes, txn_now(txn));
+	return err ? err : thermometer_ended(txn, bytes, txn_ended(txn));
 }
 
 #define NEAR_RAW (5 * 16)
@@ -117,7 +117,7 @@ static int read_max31825(struct txn *txn)
 	struct thermometer *chip = txn->device->own;
 	uint8_t bytes[9];
 	int err = converted(txn, bytes), raw = (int16_t)(bytes[0] | bytes[1] << 8);
-	int64_t at_ns = txn_now(txn);
+	int64_t at_ns = txn_ended(txn);
 
 	if (err)
 		return err;
@@ -145,7 +145,7 @@ static int read_temperature(struct txn *txn)
 	err = converted(txn, bytes);
 	if (err)
 		return err;
-	thermometer_took(txn, bytes, txn_now(txn));
+	thermometer_took(txn, bytes, txn_ended(txn));
 	txn->number[0] = ((int16_t)(bytes[2] | bytes[3] << 8) >> 4) / 16.0;
 	return 0;
 }
@@ -160,7 +160,7 @@ static int read_thermocouple(struct txn *txn)
 		return err;
 	if (bytes[0] & FAULT_ANY)
 		return -EIO;
-	thermometer_took(txn, bytes, txn_now(txn));
+	thermometer_took(txn, bytes, txn_ended(txn));
 	txn->number[0] = ((int16_t)(bytes[0] | bytes[1] << 8) >> 2) / 4.0;
 	return 0;
 }
@@ -232,7 +232,7 @@ static int read_fault(struct txn *txn)
 
 	if (err)
 		return err;
-	thermometer_took(txn, bytes, txn_now(txn));
+	thermometer_took(txn, bytes, txn_ended(txn));
 	txn->number[0] = (bytes[txn->property->arg >> 8] & txn->property->arg & 0xff) != 0;
 	return 0;
 }

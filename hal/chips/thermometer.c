@@ -238,7 +238,7 @@ int thermometer_read_temperature(struct txn *txn)
 
 	if (err)
 		return err;
-	int64_t now = txn_now(txn);
+	int64_t now = txn_ended(txn);
 	err = thermometer_ended(txn, scratchpad, now);
 	if (err)
 		return err;

@@ -30,7 +30,8 @@ void thermometer_doubt(struct device *device);
  */
 int thermometer_rest(struct txn *txn);
 /*
- * Behind a reading of the scratchpad. 0: its conversion is over. TXN_MORE: it seemed to be, and
+ * After a reading of the scratchpad, which ended at now (txn_ended()): it may be judged later than
+ * that. 0: its conversion is over. TXN_MORE: it seemed to be, and
  * nothing proves that; txn waits for the longest time, and is to read the scratchpad again.
  */
 int thermometer_ended(struct txn *txn, const uint8_t scratchpad[9], int64_t now);

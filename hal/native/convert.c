@@ -218,17 +218,16 @@ static int64_t convert_ns(const struct link *link, const struct device *device)
 }
 
 /* Who did not show that it heard may have heard. */
-void convert_told(struct native *native, struct device *device)
+void convert_unverified(const struct native *native, struct device *device, int64_t now)
 {
-	thermometer_told(device, native_now(native),
-	                 convert_ns(native->channel[device->channel].link, device));
+	thermometer_told(device, now, convert_ns(native->channel[device->channel].link, device));
 }
 
 static void told_all(struct native *native, unsigned n)
 {
 	for (unsigned i = 0; i < native->table.count; i++)
 		if (native_thermometer(&native->table.devices[i], n))
-			convert_told(native, &native->table.devices[i]);
+			convert_unverified(native, &native->table.devices[i], native_now(native));
 }
 
 /* All jobs that are due on the channel end with err, as if it had been theirs. */
@@ -392,7 +391,7 @@ static bool convert_one(struct native *native, unsigned n)
 
 	job_saw(native, first, err, now);
 	if (err < 0) {
-		convert_told(native, device);
+		convert_unverified(native, device, now);
 		job_failed(native, first, err);
 		return true;
 	}
@@ -427,7 +426,7 @@ void convert_in_turn(struct native *native, struct job *job)
 	native->schedule.owes = err < 0 ? OWES_ANY : OWES_OTHER;
 	job_saw(native, job, err, native_now(native));
 	if (err < 0)
-		convert_told(native, device);
+		convert_unverified(native, device, txn_ended(&job->txn));
 	if (err == -EBADMSG && !job->txn.link_error) {
 		native_count(native, COUNT_CHECKSUMS);
 		native->channel[device->channel].checksums++;

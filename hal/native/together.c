@@ -160,7 +160,8 @@ void together_step(struct native *native, struct job *job, int64_t now)
 		reads |= group.state[i] != JOB_DUE;
 		if (!take(native, &group, i)) {
 			if (group.state[i] == JOB_DUE)
-				convert_told(native, group.device[i]);
+				convert_unverified(native, group.device[i],
+				                   group.visit[i].ended_ns);
 			continue;
 		}
 		step(native, group.job[i], native_now(native));
