@@ -316,7 +316,7 @@ int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t lo
 	if (strong && longest) {
 		native->hold_ns[link->chip % NATIVE_CHANNELS] = now + longest;
 		native->holder[link->chip % NATIVE_CHANNELS] = NULL;
-		native->schedule.owes = OWES_OTHER;
+		schedule_owe(&native->schedule, OWES_OTHER);
 	}
 	converting(native, n, strong && !link->driven, now, longest);
 	if (!strong && !link->driven)
@@ -423,7 +423,7 @@ void convert_in_turn(struct native *native, struct job *job)
 	int err = txn_end(&job->txn, thermometer_start(&job->txn));
 
 	native->schedule.doing = SCHEDULE_START;
-	native->schedule.owes = err < 0 ? OWES_ANY : OWES_OTHER;
+	schedule_owe(&native->schedule, err < 0 ? OWES_ANY : OWES_OTHER);
 	job_saw(native, job, err, native_now(native));
 	if (err < 0)
 		convert_unverified(native, device, txn_ended(&job->txn));

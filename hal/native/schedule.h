@@ -47,6 +47,12 @@ bool schedule_in_turn(const struct native *native, const struct schedule_plan *p
 bool schedule_asks(const struct job *job);
 /* Does this job, of a thermometer, read a result? */
 bool schedule_reads(const struct job *job);
+/* Owe this; not less than what is owed already: a group makes several starts in one step. */
+static inline void schedule_owe(struct schedule *schedule, enum schedule_debt debt)
+{
+	if (schedule->owes < debt)
+		schedule->owes = (uint8_t)debt;
+}
 /* A step of the bus took from began to now, and did schedule.doing. */
 void schedule_took(struct schedule *schedule, int64_t began, int64_t now);
 

@@ -85,8 +85,8 @@ static bool take(const struct native *native, struct group *group, unsigned i)
 	return true;
 }
 
-/* Behind its step: the slot may be another request's by now. */
-static void over(struct group *group, unsigned i)
+/* After its step the slot may be another request's: the visit is no longer its. */
+static void drop_visit(struct group *group, unsigned i)
 {
 	txn_done(&group->job[i]->txn, NULL);
 }
@@ -165,7 +165,7 @@ void together_step(struct native *native, struct job *job, int64_t now)
 			continue;
 		}
 		step(native, group.job[i], native_now(native));
-		over(&group, i);
+		drop_visit(&group, i);
 	}
 	native->schedule.doing = reads ? SCHEDULE_READ : SCHEDULE_START;
 }
