@@ -12,4 +12,8 @@
 #define DS2482_POWER_OFF_NS (500 * NS_PER_MS)
 #define DS2482_POWER_ON_NS (10 * NS_PER_MS)
 
+/* A chip that is busy for so much longer than it may be stays so; and how often to look. */
+#define DS2482_STUCK_NS (10 * NS_PER_MS)
+#define DS2482_POLL_NS INT64_C(200000)
+
 #endif

@@ -26,8 +26,6 @@
 #define BETWEEN_NS 100000
 #define MAX_BYTES 180
 #define MAX_MESSAGES 42
-#define STUCK_NS (10 * NS_PER_MS)
-#define POLL_NS INT64_C(200000)
 
 /*
  * How many bytes to read so that the last one begins max_ns after the command. `between` bytes pass
@@ -65,7 +63,7 @@ static int transfer(struct ds2482_chip *chip, struct i2c_message *messages, size
 static int wait_idle(struct ds2482_chip *chip, int status)
 {
 	struct ds2482_master *master = chip->master;
-	int64_t stuck = ds2482_now(master) + STUCK_NS;
+	int64_t stuck = ds2482_now(master) + DS2482_STUCK_NS;
 	bool late = false;
 
 	while (status >= 0 && (status & DS2482_1WB)) {
@@ -73,7 +71,7 @@ static int wait_idle(struct ds2482_chip *chip, int status)
 
 		if (late)
 			return -ETIMEDOUT;
-		err = ds2482_wait_until(master, ds2482_now(master) + POLL_NS);
+		err = ds2482_wait_until(master, ds2482_now(master) + DS2482_POLL_NS);
 		if (err)
 			return err;
 		late = ds2482_now(master) >= stuck;

@@ -14,14 +14,13 @@
 #define GROUP_NS (20 * NS_PER_MS)
 /* Bytes on the I2C bus of a transaction that reads a scratchpad, conditions included. */
 #define VISIT_BYTES 105
+#define VISIT_MESSAGES 41
 #define MEAN_OF 8
-#define STUCK_NS (10 * NS_PER_MS)
-#define POLL_NS INT64_C(200000)
 
 /* What a chip's next I2C transaction is. */
 enum step { STEP_BEGIN, STEP_PRESENCE, STEP_WRITE, STEP_READ, STEP_FETCH, STEP_DONE };
 
-/* A transaction on its way. */
+/* A transaction on its way, from step to step. */
 struct course {
 	struct link_visit *visit;
 	struct ds2482_link *link;
@@ -29,6 +28,7 @@ struct course {
 	unsigned at;      /* bytes written, then bytes read */
 	int64_t ready_ns; /* when the next step may be made */
 	int64_t stuck_ns; /* reset: a chip that is busy after that stays so */
+	int64_t busy_ns;  /* of the I2C bus, so far */
 };
 
 static struct ds2482_link *self(struct link *link)
@@ -45,25 +45,17 @@ static void end(struct course *course, int err)
 
 /*
  * One message, with its address: the SMBus calls of i2c-dev would have the address set anew for
- * each other chip.
+ * each other chip. Adapters that have nothing else take no group (ds2482_abreast()).
  */
-static int message(struct ds2482_chip *chip, uint16_t flags, uint8_t *data, uint16_t n)
+static int message(const struct ds2482_chip *chip, uint16_t flags, uint8_t *data, uint16_t n)
 {
 	struct i2c_adapter *adapter = chip->master->adapter;
 	struct i2c_message one = {.flags = flags, .len = n, .data = data};
 
-	if (adapter->combine != I2C_SMBUS_ONLY)
-		return adapter->ops->transfer(adapter, chip->address, &one, 1);
-	if (!flags)
-		return n == 1 ? ds2482_write1(chip, data[0])
-		              : ds2482_write2(chip, data[0], data[1]);
-	int byte = ds2482_read1(chip);
-	if (byte >= 0)
-		data[0] = (uint8_t)byte;
-	return byte < 0 ? byte : 0;
+	return adapter->ops->transfer(adapter, chip->address, &one, 1);
 }
 
-static int command(struct ds2482_chip *chip, uint8_t code)
+static int command(const struct ds2482_chip *chip, uint8_t code)
 {
 	return message(chip, 0, &code, 1);
 }
@@ -95,7 +87,7 @@ static int begin(struct course *course)
 		return err;
 	ds2482_began(link->chip);
 	works(course, STEP_PRESENCE, ds2482_reset_max_ns[link->speed], 0);
-	course->stuck_ns = link->chip->free_at + STUCK_NS;
+	course->stuck_ns = link->chip->free_at + DS2482_STUCK_NS;
 	return 0;
 }
 
@@ -120,7 +112,7 @@ static int read_next(struct course *course)
 	struct ds2482_link *link = course->link;
 	int err = command(link->chip, DS2482_READ);
 
-	/* the register is read behind the pointer and two addresses */
+	/* the register is read after the pointer and two addresses */
 	if (!err)
 		works(course, STEP_FETCH, 8 * ds2482_slot_max_ns[link->speed], 4);
 	return err;
@@ -136,8 +128,8 @@ static int look_for_presence(struct course *course)
 	if (err)
 		return err;
 	if (status & DS2482_1WB) {
-		course->ready_ns = ds2482_now(link->chip->master) + POLL_NS;
-		return late ? -ETIMEDOUT : 0;
+		course->ready_ns = ds2482_now(link->chip->master) + DS2482_POLL_NS;
+		return late ? -EIO : 0; /* of this chip alone */
 	}
 	if (status & DS2482_RST)
 		return -ENXIO;
@@ -145,10 +137,10 @@ static int look_for_presence(struct course *course)
 	link->cost.wire_ns += (uint64_t)ds2482_reset_ns[link->speed];
 	if (status & DS2482_SD)
 		return -ECOMM;
-	return status & DS2482_PPD ? write_next(course) : -ENODEV;
+	return status & DS2482_PPD ? write_next(course) : -EHOSTDOWN;
 }
 
-/* One byte is fetched; behind the last the status says whether the chip was idle, and is set up. */
+/* One byte is fetched; after the last the status says whether the chip was idle, and is set up. */
 static int fetch(struct course *course)
 {
 	struct ds2482_link *link = course->link;
@@ -211,21 +203,36 @@ static struct course *soonest(struct course *courses, unsigned n)
 	return first;
 }
 
-/* What one of n transactions takes of the I2C bus, waits for the chips left out. */
-static void learn(struct ds2482_master *master, int64_t busy_ns, unsigned n)
+/* What a transaction takes of its own I2C bus, waits for the chips left out. */
+static void learn(const struct course *course)
 {
-	int64_t each_ns = busy_ns / n;
+	struct ds2482_master *master = course->link->chip->master;
 
 	if (!master->visit_ns)
-		master->visit_ns = each_ns;
-	master->visit_ns += (each_ns - master->visit_ns) / MEAN_OF;
+		master->visit_ns = course->busy_ns;
+	master->visit_ns += (course->busy_ns - master->visit_ns) / MEAN_OF;
+}
+
+/*
+ * Each transfer on a bus that somebody holds takes the kernel's time-out. So one is enough: all
+ * others of that adapter end with it.
+ */
+static void end_others(struct course *courses, unsigned n, const struct course *failed)
+{
+	for (unsigned i = 0; i < n; i++)
+		if (courses[i].step != STEP_DONE &&
+		    courses[i].link->chip->master == failed->link->chip->master)
+			end(&courses[i], failed->visit->err);
+}
+
+static bool is_of_adapter(int err)
+{
+	return err == -ETIMEDOUT || err == -ENODEV || err == -ECANCELED;
 }
 
 void ds2482_together(struct link_visit *visits, unsigned n)
 {
 	struct course courses[DS2482_TOGETHER], *course;
-	struct ds2482_master *master = self(visits[0].link)->chip->master;
-	int64_t busy_ns = 0;
 
 	assert(n > 0 && n <= DS2482_TOGETHER);
 	for (unsigned i = 0; i < n; i++) {
@@ -233,6 +240,7 @@ void ds2482_together(struct link_visit *visits, unsigned n)
 		courses[i] = (struct course){.visit = &visits[i], .link = self(visits[i].link)};
 	}
 	while ((course = soonest(courses, n))) {
+		const struct ds2482_master *master = course->link->chip->master;
 		int err = ds2482_wait_until(master, course->ready_ns);
 		int64_t begun_ns = ds2482_now(master);
 
@@ -240,20 +248,26 @@ void ds2482_together(struct link_visit *visits, unsigned n)
 			end(course, err);
 		else
 			go_on(course);
-		busy_ns += ds2482_now(master) - begun_ns;
+		course->busy_ns += ds2482_now(master) - begun_ns;
+		if (course->step == STEP_DONE && is_of_adapter(course->visit->err))
+			end_others(courses, n, course);
 	}
-	learn(master, busy_ns, n);
+	for (unsigned i = 0; i < n; i++)
+		if (!visits[i].err)
+			learn(&courses[i]);
 }
 
 /*
- * As many as take no more of the I2C bus than GROUP_NS. What the bus takes for a call is not known
- * before there was a group; where bytes alone leave room for two, two are always worth it.
+ * As many as take no more of the I2C bus than GROUP_NS. What the calls take is not known before
+ * there was a group; where bytes and messages alone leave room for two, two are always worth it.
  */
 unsigned ds2482_abreast(const struct link *link)
 {
-	const struct ds2482_master *master = ((const struct ds2482_link *)link)->chip->master;
+	const struct ds2482_chip *chip = ((const struct ds2482_link *)link)->chip;
+	const struct ds2482_master *master = chip->master;
 	int64_t least_ns = VISIT_BYTES * master->byte_ns, n;
 
+	least_ns += VISIT_MESSAGES * ds2482_between(chip);
 	if (!master->adapter || least_ns <= 0 || 2 * least_ns > GROUP_NS)
 		return 1;
 	n = GROUP_NS / (master->visit_ns > least_ns ? master->visit_ns : least_ns);

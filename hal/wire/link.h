@@ -75,8 +75,8 @@ struct area;
 typedef int link_found(void *ctx, const uint8_t rom[8]);
 
 /*
- * A whole transaction: a reset, out_n bytes written, in_n bytes read; neither is 0. err: what came
- * of it, as of reset(), write() and read(), -ENODEV: nobody answered the reset.
+ * A whole transaction: a reset, out_n bytes written, in_n bytes read; neither is 0. err: 0, or
+ * an error by which nothing is judged: the transaction is made again by the functions below.
  */
 struct link_visit {
 	struct link *link;
@@ -84,7 +84,7 @@ struct link_visit {
 	uint8_t *in;
 	uint8_t out_n, in_n;
 	int err;
-	int64_t ended_ns; /* env time behind the last byte */
+	int64_t ended_ns; /* env time after the last byte */
 };
 
 struct link_ops {
@@ -102,9 +102,9 @@ struct link_ops {
 	int (*triplet)(struct link *link, bool direction);
 	/*
 	 * n transactions at the same time, on links with this function, each of another chip. None
-	 * waits for another beyond what it takes of the way to the chips. An error other than
-	 * -ENODEV is not judged: the transaction is made again by the functions above, which judge
-	 * it. NULL, together with abreast: there is no such thing.
+	 * waits for another beyond what it takes of the way to the chips. After any error the
+	 * transaction is made again by the functions above, which judge it. NULL, together with
+	 * abreast: there is no such thing.
 	 */
 	void (*together)(struct link_visit *visits, unsigned n);
 	/* How many at most do not take much longer than one does; 1: do not use it. */

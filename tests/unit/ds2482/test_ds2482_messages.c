@@ -138,6 +138,17 @@ static void test_where_messages_are_slow_a_written_byte_is_one(void)
 	}
 }
 
+/* A transaction of a group has some 40 messages: two of those take longer than others may wait. */
+static void test_where_messages_are_slow_there_are_no_groups(void)
+{
+	begin(1000 * US);
+	TEST_ASSERT_EQUAL_UINT(1, ds.wire->ops->abreast(ds.wire));
+	tearDown();
+	setUp();
+	begin(0);
+	TEST_ASSERT_GREATER_OR_EQUAL_UINT(2, ds.wire->ops->abreast(ds.wire));
+}
+
 /* Then the time of a byte is waited for by reading on. */
 static void test_where_messages_are_quick_there_is_one_more_between(void)
 {
@@ -198,6 +209,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_where_messages_are_slow_a_written_byte_is_one);
+	RUN_TEST(test_where_messages_are_slow_there_are_no_groups);
 	RUN_TEST(test_where_messages_are_quick_there_is_one_more_between);
 	RUN_TEST(test_an_adapter_that_becomes_quick_gives_errors_and_no_false_bytes);
 	RUN_TEST(test_an_adapter_of_changing_pace_is_right_too);
