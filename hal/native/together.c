@@ -62,7 +62,7 @@ static bool fits(const struct native *native, const struct group *group, unsigne
 	const struct link *link = native_abreast(native, channel), *first = group->visit[0].link;
 
 	if (!link || link->ops->together != first->ops->together || group->n == MOST ||
-	    group->n >= first->ops->abreast(first))
+	    group->n >= first->ops->abreast(first) || group->n >= link->ops->abreast(link))
 		return false;
 	for (unsigned i = 0; i < group->n; i++)
 		if (group->visit[i].link->chip == link->chip)
@@ -74,7 +74,7 @@ static bool fits(const struct native *native, const struct group *group, unsigne
  * Does the i-th job find its transaction done now? What befell a job before it may have answered
  * it, or made it begin again.
  */
-static bool take(const struct native *native, struct group *group, unsigned i)
+static bool take_visit(const struct native *native, struct group *group, unsigned i)
 {
 	struct job *job = group->job[i];
 
@@ -154,11 +154,16 @@ void together_step(struct native *native, struct job *job, int64_t now)
 		return;
 	}
 	group.visit[0].link->ops->together(group.visit, group.n);
-	for (unsigned i = 0; i < group.n; i++)
+	for (unsigned i = 0; i < group.n; i++) {
 		group.job[i]->alone = group.visit[i].err != 0;
+		if (!group.visit[i].err)
+			continue;
+		native_count(native, COUNT_TRANSACTIONS);
+		native->channel[group.device[i]->channel].transactions++;
+	}
 	for (unsigned i = 0; i < group.n; i++) {
 		reads |= group.state[i] != JOB_DUE;
-		if (!take(native, &group, i)) {
+		if (!take_visit(native, &group, i)) {
 			if (group.state[i] == JOB_DUE)
 				convert_unverified(native, group.device[i],
 				                   group.visit[i].ended_ns);
