@@ -171,6 +171,12 @@ static bool is_slow(const struct ds2482_chip *chip, long max_ns)
 	return chip->master->message_ns > max_ns;
 }
 
+/* Some drivers of adapters report a refused byte as a refused address. */
+static bool is_refused(int err)
+{
+	return err == -EIO || err == -ENXIO;
+}
+
 /*
  * Two bytes of the next write pass before the chip looks at its command. So only the last byte of
  * data is read on to its end (with `last`), and only its status counts. Between two bytes nothing
@@ -200,7 +206,7 @@ static int write_combined(struct ds2482_chip *chip, const uint8_t *data, size_t 
 				.data = in};
 	}
 	err = transfer(chip, messages, count);
-	if (err == -EIO && slow)
+	if (is_refused(err) && slow)
 		ds2482_was_refused(chip);
 	if (err)
 		return ds2482_diagnose(chip, err);
@@ -218,7 +224,7 @@ static int write_timed(struct ds2482_chip *chip, uint8_t byte, long max_ns)
 	if (err)
 		return err;
 	err = ds2482_write2(chip, DS2482_WRITE, byte);
-	if (err == -EIO)
+	if (is_refused(err))
 		ds2482_was_refused(chip);
 	if (err)
 		return ds2482_diagnose(chip, err);

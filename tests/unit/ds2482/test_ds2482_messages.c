@@ -19,6 +19,7 @@ static const struct i2c_adapter_ops *true_ops;
 static int64_t between_ns;
 static uint32_t jitter; /* 0: none */
 static unsigned messages;
+static bool is_plain; /* the driver knows one error for whatever is refused */
 
 void setUp(void)
 {
@@ -54,7 +55,7 @@ static int transfer(struct i2c_adapter *adapter, uint8_t address, struct i2c_mes
 		err = true_ops->transfer(adapter, address, &list[i], 1);
 		pass();
 	}
-	return err;
+	return err == -EIO && is_plain ? -ENXIO : err;
 }
 
 static int write_byte(struct i2c_adapter *adapter, uint8_t address, uint8_t command)
@@ -182,7 +183,7 @@ static void check_settles(void)
 }
 
 /* Slow while it is measured, then of any pace. */
-static void test_an_adapter_that_becomes_quick_gives_errors_and_no_false_bytes(void)
+static void become_quick(void)
 {
 	static const int64_t later[] = {0, 50, 100, 200, 250, 300, 350, 380};
 
@@ -194,6 +195,19 @@ static void test_an_adapter_that_becomes_quick_gives_errors_and_no_false_bytes(v
 		between_ns = later[i] / 2 * US;
 		check_settles();
 	}
+}
+
+static void test_an_adapter_that_becomes_quick_gives_errors_and_no_false_bytes(void)
+{
+	is_plain = false;
+	become_quick();
+}
+
+static void test_a_refused_command_is_noticed_by_either_error(void)
+{
+	is_plain = true;
+	become_quick();
+	is_plain = false;
 }
 
 static void test_an_adapter_of_changing_pace_is_right_too(void)
@@ -212,6 +226,7 @@ int main(void)
 	RUN_TEST(test_where_messages_are_slow_there_are_no_groups);
 	RUN_TEST(test_where_messages_are_quick_there_is_one_more_between);
 	RUN_TEST(test_an_adapter_that_becomes_quick_gives_errors_and_no_false_bytes);
+	RUN_TEST(test_a_refused_command_is_noticed_by_either_error);
 	RUN_TEST(test_an_adapter_of_changing_pace_is_right_too);
 	return UNITY_END();
 }
