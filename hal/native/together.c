@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Transactions of several thermometers at the same time, each on another chip of the master. */
-#include <string.h>
-
+#include "hal/native/together.h"
 #include "hal/chips/thermometer.h"
 #include "hal/native/convert.h"
 #include "hal/native/job.h"
 #include "hal/native/schedule.h"
-#include "hal/native/together.h"
 
 #define MOST 8
-#define MATCH_ROM 0x55
 #define READ_SCRATCHPAD 0xbe
 #define SCRATCHPAD_SIZE 9
 
@@ -20,25 +17,23 @@ struct group {
 	const struct bus_req *req[MOST]; /* whose job it was */
 	uint8_t state[MOST];             /* ... and its state */
 	struct link_visit visit[MOST];
-	uint8_t out[MOST][10], in[MOST][SCRATCHPAD_SIZE];
+	uint8_t out[MOST][TXN_SELECT + 1], in[MOST][SCRATCHPAD_SIZE];
 };
 
 static void add(const struct native *native, struct group *group, struct job *job)
 {
 	unsigned i = group->n++;
 	bool starts = job->state == JOB_DUE;
+	uint8_t command = starts ? THERMOMETER_CONVERT : READ_SCRATCHPAD;
 
 	group->job[i] = job;
 	group->device[i] = job->txn.device;
 	group->req[i] = job->req;
 	group->state[i] = job->state;
-	group->out[i][0] = MATCH_ROM;
-	memcpy(group->out[i] + 1, job->txn.device->rom, 8);
-	group->out[i][9] = starts ? THERMOMETER_CONVERT : READ_SCRATCHPAD;
 	group->visit[i] = (struct link_visit){
 		.link = native_abreast(native, job->txn.device->channel),
 		.out = group->out[i],
-		.out_n = sizeof(group->out[i]),
+		.out_n = (uint8_t)txn_select(job->txn.device, &command, 1, group->out[i]),
 		.in = group->in[i],
 		.in_n = starts ? 1 : SCRATCHPAD_SIZE,
 	};

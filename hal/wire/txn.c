@@ -111,22 +111,29 @@ int txn_raw(struct txn *txn, const uint8_t *bytes, size_t n)
 	return err ? err : txn_write(txn, bytes, n);
 }
 
+size_t txn_select(const struct device *device, const uint8_t *bytes, size_t n, uint8_t *out)
+{
+	out[0] = MATCH_ROM;
+	memcpy(out + 1, device->rom, 8);
+	if (n)
+		memcpy(out + TXN_SELECT, bytes, n);
+	return TXN_SELECT + n;
+}
+
 static int command(struct txn *txn, const uint8_t *bytes, size_t n, enum link_after after)
 {
-	uint8_t out[9 + BYTES_MAX] = {MATCH_ROM};
+	uint8_t out[TXN_SELECT + BYTES_MAX];
 
 	assert(txn->device);
 	if (n > BYTES_MAX)
 		return -EINVAL;
-	memcpy(out + 1, txn->device->rom, 8);
-	if (n)
-		memcpy(out + 9, bytes, n);
-	if (was_sent(txn, out, 9 + n, after))
+	size_t out_n = txn_select(txn->device, bytes, n, out);
+	if (was_sent(txn, out, out_n, after))
 		return 0;
 	int err = reset(txn);
 	if (err)
 		return err;
-	return of_link(txn, txn->link->ops->write(txn->link, out, 9 + n, after));
+	return of_link(txn, txn->link->ops->write(txn->link, out, out_n, after));
 }
 
 /* The strong pull-up, or what takes its place. */

@@ -146,6 +146,9 @@ int64_t txn_measured(const struct txn *txn);
 #define txn_own(txn, type) \
 	((type *)(void *)((txn)->own + 0 * sizeof(char[sizeof(type) <= TXN_OWN ? 1 : -1])))
 
+/* Match ROM, the device's id and n bytes. Returns how many bytes of out that are. */
+#define TXN_SELECT 9
+size_t txn_select(const struct device *device, const uint8_t *bytes, size_t n, uint8_t *out);
 /*
  * The next transaction has been made already, with others (link_ops.together); NULL: it has not.
  * The command that comes next takes it up if it is what was sent, else it is dropped. Call it again
