@@ -17,7 +17,6 @@
 #define SETTLE_NS NS_PER_MS /* a device reset takes 0.5 us */
 #define BUSY_NS (5 * NS_PER_MS)
 #define TRIES 2
-#define CLAIM_NS (250 * NS_PER_MS)
 
 static bool just_reset(int status)
 {
@@ -140,70 +139,4 @@ int ds2482_setup(struct ds2482_chip *chip)
 	if (err)
 		return err;
 	return ds2482_configure(chip, chip->master->active_pullup ? DS2482_APU : 0);
-}
-
-/* The codes that select a channel, and those that the chip returns, by the data sheet's table. */
-static int select_channel(struct ds2482_chip *chip, uint8_t channel)
-{
-	static const uint8_t readback[8] = {0xB8, 0xB1, 0xAA, 0xA3, 0x9C, 0x95, 0x8E, 0x87};
-	int err = ds2482_wait_until(chip->master, chip->free_at);
-	int back;
-
-	if (err)
-		return err;
-	back = ds2482_write_read(chip, DS2482_CHANNEL, (uint8_t)((15 - channel) << 4 | channel));
-	if (back < 0)
-		return ds2482_diagnose(chip, back);
-	if (back != readback[channel]) {
-		chip->lost = true;
-		return -ENXIO;
-	}
-	chip->channel = channel;
-	return 0;
-}
-
-int ds2482_select(struct ds2482_link *link)
-{
-	struct ds2482_chip *chip = link->chip;
-	uint8_t config = chip->config;
-	int err = 0;
-
-	if (!chip->master->adapter)
-		return -ENODEV;
-	if (chip->lost)
-		return -ENXIO;
-	config &= (uint8_t) ~(DS2482_1WS | DS2482_SPU);
-	if (link->speed == LINK_OVERDRIVE)
-		config |= DS2482_1WS;
-	/* a strong pull-up belongs to the channel it was armed for; the chip ends it by itself */
-	if (chip->channel != link->number) {
-		err = select_channel(chip, link->number);
-		if (!err && (chip->config & DS2482_SPU))
-			err = ds2482_configure(chip, config);
-	}
-	if (!err && ((chip->config ^ config) & DS2482_1WS))
-		err = ds2482_configure(chip, config);
-	return err;
-}
-
-/*
- * A kernel driver may be bound to the chip while owsd uses it. The chip does not show that, because
- * the driver's reset and configuration leave it as owsd's do. So owsd asks the kernel.
- */
-bool ds2482_claimed(struct ds2482_chip *chip)
-{
-	struct i2c_adapter *adapter = chip->master->adapter;
-	int64_t now = ds2482_now(chip->master);
-
-	if (!adapter || now < chip->claim_ns)
-		return true;
-	chip->claim_ns = now + CLAIM_NS;
-	if (adapter->ops->claim(adapter, chip->address) == -EBUSY)
-		chip->lost = true;
-	return !chip->lost;
-}
-
-void ds2482_began(struct ds2482_chip *chip)
-{
-	chip->config &= (uint8_t)~DS2482_SPU;
 }

@@ -9,6 +9,7 @@
 #include "hal/ds2482/link.h"
 #include "hal/ds2482/power.h"
 #include "hal/ds2482/run.h"
+#include "hal/ds2482/select.h"
 #include "hal/ds2482/together.h"
 
 static struct ds2482_link *self(struct link *link)

@@ -5,9 +5,9 @@
 
 #include "hal/bus/time.h"
 #include "hal/ds2482/chip.h"
-#include "hal/ds2482/detect.h"
 #include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/io.h"
+#include "hal/ds2482/select.h"
 #include "hal/ds2482/together.h"
 
 /* All others wait so long for a group of transactions, which is little more than for one. */

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: MIT */
+/* What precedes an operation on a link, and what its beginning changes in the chip. */
+#ifndef HAL_DS2482_SELECT_H
+#define HAL_DS2482_SELECT_H
+
+#include <stdbool.h>
+
+struct ds2482_chip;
+struct ds2482_link;
+
+/* Select the channel of the link, and set its speed. */
+int ds2482_select(struct ds2482_link *link);
+/*
+ * Before a transaction: is the chip still ours? Asked of the kernel now and then. false: the chip
+ * is lost.
+ */
+bool ds2482_claimed(struct ds2482_chip *chip);
+/* A 1-Wire command has begun: it ends the strong pull-up and clears its bit. */
+void ds2482_began(struct ds2482_chip *chip);
+
+#endif
