@@ -56,7 +56,7 @@ static int saw_config(struct txn *txn, const uint8_t scratchpad[9])
 	uint8_t resolution = (uint8_t)(9 + (scratchpad[SP_CONFIG] >> 5 & 3));
 	if (chip->resolution && chip->resolution != resolution) {
 		txn->restarted = true;
-		thermometer_doubt(txn->device);
+		thermometer_doubt(txn->device, txn_now(txn));
 	}
 	if (!chip->stored)
 		chip->stored = resolution;

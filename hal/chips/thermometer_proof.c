@@ -68,10 +68,12 @@ void thermometer_converts(struct device *device, int64_t now, int64_t longest, b
 	chip->unseen = unseen || chip->unheard >= THERMOMETER_SILENT;
 }
 
-void thermometer_doubt(struct device *device)
+void thermometer_doubt(struct device *device, int64_t now)
 {
-	if (thermometer_of(device)->busy_ns)
-		thermometer_of(device)->busy_ns += LONGEST_NS;
+	struct thermometer *chip = device->own;
+
+	if (chip->busy_ns && chip->busy_ns < now + LONGEST_NS)
+		chip->busy_ns = now + LONGEST_NS;
 }
 
 int thermometer_rest(struct txn *txn)

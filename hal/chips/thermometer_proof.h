@@ -23,9 +23,9 @@ void thermometer_told(struct device *device, int64_t now, int64_t longest);
  */
 void thermometer_converts(struct device *device, int64_t now, int64_t longest, bool unseen);
 /* It restarted, or has another resolution than was thought: it may convert for longer. */
-void thermometer_doubt(struct device *device);
+void thermometer_doubt(struct device *device, int64_t now);
 /*
- * Ahead of a command that no data sheet allows while the chip converts. 0, or TXN_MORE: txn waits
+ * Before a command that no data sheet allows while the chip converts. 0, or TXN_MORE: txn waits
  * until it does not.
  */
 int thermometer_rest(struct txn *txn);

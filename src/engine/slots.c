@@ -58,7 +58,9 @@ static void slot_own_path(struct slot *slot)
 bool slot_lend(struct lane *lane, struct slot *slot, int64_t now_ns)
 {
 	bool guest = slot->purpose == FOR_GUEST;
-	int64_t parts = guest && slot->guest->parts ? slot->guest->parts : 1;
+	/* where only one request is under way, all others of the bus would wait for so long, too */
+	bool longer = guest && slot->guest->parts && lane->depth > 1;
+	int64_t parts = longer ? slot->guest->parts : 1;
 
 	slot->turn++;
 	slot->req.id = (uint32_t)(slot - lane->lent.slots) | (uint32_t)slot->turn << 16;

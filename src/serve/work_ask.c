@@ -28,8 +28,8 @@ static bool is_up(const struct serve *s, unsigned target)
 }
 
 /*
- * A memory of some kilobytes takes longer than any other value: that of a DS1977 half a minute to
- * read, that of a DS1996 a minute to write.
+ * A memory of some kilobytes takes longer than any other value: that of a DS1977 more than a minute
+ * to read, that of a DS1996 half a minute.
  */
 static uint16_t parts(const struct client *c, enum client_step step, uint32_t len)
 {

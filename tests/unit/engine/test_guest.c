@@ -191,6 +191,7 @@ static void test_a_long_value_has_as_many_times_the_time_as_it_has_parts(void)
 
 	scene_put(&s, T1, "        21.5", 0);
 	scene_put(&s, memory, "8192 bytes", 0);
+	s.bus[0].depth = 2;
 	scene_start(&s);
 	scene_up(&s);
 	s.bus[0].slow = memory;
@@ -206,6 +207,24 @@ static void test_a_long_value_has_as_many_times_the_time_as_it_has_parts(void)
 	TEST_ASSERT_EQUAL_UINT(2, answered_count);
 	TEST_ASSERT_NOT_EQUAL(0, g->answer.err);
 	TEST_ASSERT_TRUE(g->lent);
+}
+
+/* An owserver that hangs would keep all else of the target from its failover for so long. */
+static void test_a_bus_that_does_one_thing_at_a_time_has_once_the_time_for_all(void)
+{
+	static const char memory[] = "/37.551DDF030000/memory";
+	struct engine_guest *g;
+
+	scene_put(&s, T1, "        21.5", 0);
+	scene_put(&s, memory, "32768 bytes", 0);
+	scene_start(&s);
+	scene_up(&s);
+	s.bus[0].mute = true;
+	g = ask(BUS_READ, GUEST_ANY_LANE, memory, NULL);
+	g->parts = 32;
+	scene_run(&s, s.config.timeout_ns + 2 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(1, answered_count);
+	TEST_ASSERT_NOT_EQUAL(0, g->answer.err);
 }
 
 static void test_an_output_over_which_a_guest_wrote_is_written_again(void)
@@ -238,6 +257,7 @@ int main(void)
 	RUN_TEST(test_guests_take_a_part_of_a_deep_bus_only);
 	RUN_TEST(test_who_is_given_up_is_told_and_gets_his_room_back_later);
 	RUN_TEST(test_a_long_value_has_as_many_times_the_time_as_it_has_parts);
+	RUN_TEST(test_a_bus_that_does_one_thing_at_a_time_has_once_the_time_for_all);
 	RUN_TEST(test_an_output_over_which_a_guest_wrote_is_written_again);
 	return UNITY_END();
 }
