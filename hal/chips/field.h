@@ -10,7 +10,7 @@
  * than FIELD_CHUNK bytes it reads a chunk, from txn->at on: one that failed is read again alone,
  * and requests for other chips, and for this one, come between. Elements of arrays have no more.
  */
-#define FIELD_CHUNK 1024
+#define FIELD_CHUNK 512
 int field_read(struct txn *txn);
 int field_write(struct txn *txn);
 

@@ -15,6 +15,9 @@
 #include "hal/native/state.h"
 #include "hal/native/touch.h"
 
+/* Transactions of one request until others of its rank have their turn. */
+#define TURN 8
+
 static bool is_text(const struct property *property)
 {
 	return property->type == PROPERTY_ASCII || property->type == PROPERTY_BINARY ||
@@ -88,6 +91,13 @@ static int add_element(struct job *job)
 	return 1;
 }
 
+/* After a part of much, those of its rank that came later have their turn. */
+static void queue_again(struct native *native, struct job *job)
+{
+	job->steps = 0;
+	job->order = native->order++;
+}
+
 static void read_done(struct native *native, struct job *job)
 {
 	int more = add_element(job);
@@ -103,6 +113,7 @@ static void read_done(struct native *native, struct job *job)
 			thermometer_of(job->txn.device)->unread_ns = 0;
 	}
 	if (more) {
+		queue_again(native, job);
 		job_txn(native, job);
 		return;
 	}
@@ -280,6 +291,8 @@ void job_run_property(struct native *native, struct job *job, int64_t now)
 		return;
 	}
 	if (err == TXN_MORE) {
+		if (++job->steps == TURN)
+			queue_again(native, job);
 		hold(native, job);
 		if (txn->device && !job->locks) {
 			job->locks = true;

@@ -84,7 +84,8 @@ struct job {
 	bool inside;                /* the directory of a branch */
 	const struct family *table; /* of a path without device */
 	struct path path;
-	uint32_t order; /* lower came earlier */
+	uint32_t order; /* lower came earlier, or has waited longer for its next part */
+	uint8_t steps;  /* transactions since then */
 	int64_t since_ns;
 	const struct property *property;
 	int extension;

@@ -428,6 +428,45 @@ static void test_the_memory_of_a_ds2404_is_one_with_its_pages(void)
 	TEST_ASSERT_EQUAL_MEMORY(page, data[id] + 32, 32);
 }
 
+/* Six seconds of the wire: who comes later waits for a part of them. */
+static void others_have_their_turn_during(enum bus_op op, const char *property, const char *text)
+{
+	int64_t longest = 0, begun;
+	unsigned n = 0;
+
+	native_begin();
+	wire_init(&host, 1, 1);
+	chip = wire_add(0, "DS1995", 1);
+	struct sim_slave *input = wire_add(0, "DS2413", 2);
+	start();
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(input, "sensed.BYTE"), NULL));
+	begun = host.now;
+	uint32_t id = ask(op, BUS_INPUT, true, of(chip, property), text);
+	while (!host_answer(&host, id) && n < 200) {
+		int64_t asked = host.now;
+
+		n++;
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(input, "sensed.BYTE"), NULL));
+		if (host.now - asked > longest)
+			longest = host.now - asked;
+	}
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_GREATER_THAN_INT64(2 * HOST_S, host.now - begun);
+	TEST_ASSERT_LESS_THAN_INT64(3 * HOST_S / 4, longest);
+	native_end();
+}
+
+static void test_who_reads_or_writes_much_lets_others_have_their_turn(void)
+{
+	char text[2001];
+
+	memset(text, 'x', sizeof(text) - 1);
+	text[sizeof(text) - 1] = '\0';
+	others_have_their_turn_during(BUS_READ, "memory", NULL);
+	others_have_their_turn_during(BUS_READ, "pages/page.ALL", NULL);
+	others_have_their_turn_during(BUS_WRITE, "memory", text);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -448,5 +487,6 @@ int main(void)
 	RUN_TEST(test_the_switches_of_a_ds28e04);
 	RUN_TEST(test_what_follows_the_memory_of_a_ds28e04_is_not_written);
 	RUN_TEST(test_the_memory_of_a_ds2404_is_one_with_its_pages);
+	RUN_TEST(test_who_reads_or_writes_much_lets_others_have_their_turn);
 	return UNITY_END();
 }
