@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Words, numbers and names of a line of a table of sensors. */
 #include <errno.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -86,7 +87,7 @@ int reader_real(struct sensor_reader *r, double *number)
 
 	reader_skip(r);
 	*number = strtod(r->at, &end);
-	if (end == r->at || !strchr(" \t", *end))
+	if (end == r->at || !strchr(" \t", *end) || !isfinite(*number))
 		return reader_fail(r, "expected a number at \"%.24s\"", r->at);
 	r->at = end;
 	return 0;

@@ -366,6 +366,8 @@ static void test_errors_of_a_table_have_their_line_and_reason(void)
 		{"sensor x\n", ":69:", "has no value"},
 		{"hello\n", ":69:", "expected sensor"},
 		{"sensor x\n\twrite 1 read 1\n\tvalue v = u8(0) range 5 to 1\n", ":71:", "empty"},
+		{"sensor x\n\twrite 1 read 1\n\tvalue v = u8(0) range -inf to inf\n",
+	         ":71:", "expected a number"},
 		{"sensor x\n\twrite 1 read 1\n\tvalue v = u8(0)\n", ":71:", "v has no range"},
 		{"sensor x\n\twrite 1 read 1\n\tvalue v temperature = u8(0)\n",
 	         ":71:", "v has no range"},
