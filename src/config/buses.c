@@ -12,9 +12,14 @@
 static void keep_option(struct build *build, struct config_bus *bus, enum option option,
                         const struct option_value *value)
 {
+	const char *text = value->text;
+
+	/* a backend knows these two words of all that mean them */
+	if (option_table[option].kind == OPTION_FLAG)
+		text = value->number ? "on" : "off";
 	bus->options[bus->option_count++] = (struct config_option){
 		.key = option_table[option].key,
-		.text = build_keep(build, value->text, strlen(value->text)),
+		.text = build_keep(build, text, strlen(text)),
 		.line = value->node->value_at.line,
 		.column = value->node->value_at.column,
 	};

@@ -100,6 +100,24 @@ static void test_wrong_driver_values_are_errors_with_what_was_expected(void)
 	expect_errors(cases, COUNT(cases), parse_driver);
 }
 
+static void test_each_word_for_a_flag_is_one_for_a_bus(void)
+{
+	static const struct {
+		const char *line, *text;
+	} rows[] = {
+		{"Bus { Target w1 Touch yes }", "on"},  {"Bus { Target w1 Touch 1 }", "on"},
+		{"Bus { Target w1 Touch True }", "on"}, {"Bus { Target w1 Touch on }", "on"},
+		{"Bus { Target w1 Touch no }", "off"},  {"Bus { Target w1 Touch 0 }", "off"},
+		{"Bus { Target w1 Touch OFF }", "off"},
+	};
+
+	for (unsigned i = 0; i < COUNT(rows); i++) {
+		parse_driver(rows[i].line);
+		TEST_ASSERT_EQUAL_STRING_MESSAGE(rows[i].text, config->buses[0].options[0].text,
+		                                 rows[i].line);
+	}
+}
+
 static void test_what_can_be_understood_is_only_warned_about(void)
 {
 	static const struct line cases[] = {
@@ -163,6 +181,7 @@ int main(void)
 	RUN_TEST(test_defaults_are_those_of_the_manual);
 	RUN_TEST(test_a_file_of_something_else_is_refused);
 	RUN_TEST(test_wrong_driver_values_are_errors_with_what_was_expected);
+	RUN_TEST(test_each_word_for_a_flag_is_one_for_a_bus);
 	RUN_TEST(test_what_can_be_understood_is_only_warned_about);
 	RUN_TEST(test_all_errors_of_a_file_are_said_in_one_go);
 	RUN_TEST(test_bytes_of_the_file_cannot_steer_the_terminal);
