@@ -22,6 +22,13 @@ enum { READ_POWER = 0xB4 };
 /* A clone's busy slots begin as late as this. */
 #define LATE_NS NS_PER_MS
 
+/*
+ * What genuine chips took at 12 bits in the catalogue's measurements: each chip its own time within
+ * these, each conversion up to one hundredth more.
+ */
+#define SPREAD_MS 590
+#define SPREAD_MORE_MS 19
+
 /* tWR of the EEPROM, all data sheets: 10 ms at most. */
 #define COPY_NS (10 * NS_PER_MS)
 
@@ -42,10 +49,38 @@ static unsigned resolution(const struct sim_slave *slave)
 	return is_s20(slave) || s->fixed ? 12 : 9u + (s->scratchpad[4] >> 5 & 3);
 }
 
+/* xorshift64*: a seed gives the same numbers everywhere. */
+static unsigned random_below(struct sim_thermometer *s, unsigned most)
+{
+	uint64_t x = s->random;
+
+	x ^= x >> 12;
+	x ^= x << 25;
+	x ^= x >> 27;
+	s->random = x;
+	return (unsigned)((x * 2685821657736338717u) >> 40) % most;
+}
+
+static int64_t spread_time(struct sim_slave *slave)
+{
+	struct sim_thermometer *s = state(slave);
+	unsigned sum = 0;
+
+	for (unsigned i = 1; i < 7; i++)
+		sum = sum * 31 + slave->rom[i];
+	if (!s->random)
+		s->random = sum + 1;
+	int64_t full = (SPREAD_MS + sum % (SPREAD_MORE_MS + 1)) * NS_PER_MS;
+	full += full / 100000 * random_below(s, 1000);
+	return full >> (12 - resolution(slave));
+}
+
 /* The time of a conversion at the present resolution, in ns. */
-static int64_t sim_thermometer_conversion(const struct sim_slave *slave)
+static int64_t sim_thermometer_conversion(struct sim_slave *slave)
 {
 	const struct sim_thermometer *s = slave->state;
+	if (s->spread)
+		return spread_time(slave);
 	/* tCONV: 93.75, 187.5, 375, 750 ms at most. */
 	int64_t full = s->clone ? s->clone->ms[resolution(slave) - 9] * NS_PER_MS
 	                        : (750 * NS_PER_MS) >> (12 - resolution(slave));
@@ -216,11 +251,19 @@ static void recall_eeprom(struct sim_slave *slave, int64_t t)
 	sim_send_bits(slave);
 }
 
+/* The checksum is that of what is sent, so it is right whatever was disturbed. */
 static void read_scratchpad(struct sim_slave *slave, int64_t t)
 {
+	const struct sim_thermometer *s = slave->state;
+	uint8_t bytes[8];
+
 	(void)t;
-	if (!is_dead(slave))
-		sim_send_crc8(slave, state(slave)->scratchpad, 8);
+	if (is_dead(slave))
+		return;
+	memcpy(bytes, s->scratchpad, sizeof(bytes));
+	if (s->upset && slave->busy && !s->copying)
+		bytes[0] ^= 0x06;
+	sim_send_crc8(slave, bytes, 8);
 }
 
 static void begin_write(struct sim_slave *slave, int64_t t)
@@ -275,6 +318,10 @@ static int option(struct sim_slave *slave, const char *name, double value)
 		if (whole < 1 || whole > 200)
 			return -ERANGE;
 		s->percent = (int)whole;
+	} else if (strcmp(name, "spread") == 0 && !is_s20(slave)) {
+		s->spread = whole != 0;
+	} else if (strcmp(name, "upset") == 0) {
+		s->upset = whole != 0;
 	} else if (strcmp(name, "address") == 0 && slave->family->code == FAMILY_1825) {
 		if (whole < 0 || whole > 15)
 			return -ERANGE;
