@@ -183,7 +183,7 @@ static int thermometer_guard(struct txn *txn, int raw, const uint8_t scratchpad[
 	return -ERANGE;
 }
 
-static int write_scratchpad(struct txn *txn, const uint8_t scratchpad[9])
+int thermometer_write_settings(struct txn *txn, const uint8_t scratchpad[9])
 {
 	uint8_t out[4] = {WRITE_SCRATCHPAD, scratchpad[SP_HIGH], scratchpad[SP_LOW],
 	                  scratchpad[SP_CONFIG]};
@@ -218,7 +218,7 @@ int thermometer_prepare(struct txn *txn, unsigned resolution)
 		err = thermometer_rest(txn);
 		if (err)
 			return err;
-		err = write_scratchpad(txn, visit_of(txn)->scratchpad);
+		err = thermometer_write_settings(txn, visit_of(txn)->scratchpad);
 		txn->phase = 2;
 		return err ? err : TXN_MORE;
 	default:
@@ -304,7 +304,7 @@ static int store(struct txn *txn)
 		err = thermometer_rest(txn);
 		if (err)
 			return err;
-		err = write_scratchpad(txn, visit_of(txn)->scratchpad);
+		err = thermometer_write_settings(txn, visit_of(txn)->scratchpad);
 		break;
 	case VERIFY:
 		thermometer_of(device)->resolution = 0;

@@ -23,6 +23,8 @@ extern const struct area thermometer_area;
 int thermometer_saw(struct txn *txn, unsigned at, uint8_t *scratchpad, unsigned n);
 /* The scratchpad as it is now. */
 int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9]);
+/* Limits and configuration of these nine bytes to the scratchpad, not to the EEPROM. */
+int thermometer_write_settings(struct txn *txn, const uint8_t scratchpad[9]);
 /* Make the chip convert at this resolution; may take several calls. */
 int thermometer_prepare(struct txn *txn, unsigned resolution);
 

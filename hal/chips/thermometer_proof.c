@@ -83,6 +83,40 @@ int thermometer_rest(struct txn *txn)
 	return busy > now ? txn_wait(txn, busy - now) : 0;
 }
 
+/* A reading of the scratchpad takes less, at the speed of standard slots. */
+#define READING_NS (20 * TXN_MS)
+
+/* It converts, and what was read until now is the result of the conversion before. */
+static bool is_held(const struct thermometer *chip, int64_t now)
+{
+	return chip->held_until_ns && now <= chip->held_until_ns + READING_NS &&
+	       chip->converted_ns > now;
+}
+
+/*
+ * The same where the chip converts with all others of a double buffer's channel, which does not
+ * show whether it heard. It did if it showed the start of its own, or if it holds something else
+ * than when it was read last and converted once since. Else what it holds is as old as it was.
+ */
+static int64_t strict_ns(struct txn *txn, const uint8_t holds[3], int64_t now)
+{
+	struct thermometer *chip = thermometer_of(txn->device);
+	bool held = is_held(chip, now);
+	uint8_t conversion = (uint8_t)(chip->conversion - held);
+	bool next = (uint8_t)(conversion - chip->read_of) <= 1;
+	bool differs = memcmp(chip->latched, holds, sizeof(chip->latched)) != 0;
+	bool own = held ? chip->held_own : chip->own;
+	int64_t when = held ? chip->held_ns : chip->ended_ns;
+
+	memcpy(chip->latched, holds, sizeof(chip->latched));
+	chip->read_of = conversion;
+	chip->changes = differs;
+	txn->held = held;
+	if ((own || (differs && next)) && when > chip->latched_ns && when < now)
+		chip->latched_ns = when;
+	return chip->latched_ns;
+}
+
 /*
  * When the chip latched what it holds. While the strong pull-up is on, no chip can show that it
  * converts. If it holds something else than when it was read last, and converted once since, it
@@ -97,6 +131,10 @@ static int64_t latched_ns(struct txn *txn, const uint8_t scratchpad[9], int64_t 
 	               thermometer_of(device)->raw_ns >= thermometer_of(device)->earlier_ns &&
 	               memcmp(thermometer_of(device)->latched, holds, sizeof(holds)) != 0;
 
+	if (thermometer_of(device)->strict && thermometer_of(device)->latched_ns &&
+	    thermometer_of(device)->converted_ns)
+		return strict_ns(txn, holds, now);
+	thermometer_of(device)->read_of = thermometer_of(device)->conversion;
 	memcpy(thermometer_of(device)->latched, holds, sizeof(holds));
 	txn->unproven = thermometer_of(device)->unseen && !changed;
 	int64_t when = txn->unproven ? thermometer_of(device)->earlier_ns : ended_ns(device);
@@ -120,10 +158,38 @@ static bool is_proven(const struct device *device, const uint8_t scratchpad[9])
 	                        (device->family->fixed && was[2] != scratchpad[SP_REMAIN]));
 }
 
+/* Byte 6 follows the temperature in each chip of which results are read while it converts. */
+static bool is_whole(const uint8_t scratchpad[9])
+{
+	unsigned low = scratchpad[SP_LSB] & 0xf;
+
+	return scratchpad[SP_REMAIN] == 16 - low;
+}
+
+/* Since its last reading but one conversion may have ended. */
+static bool has_changed(const struct thermometer *chip, const uint8_t scratchpad[9])
+{
+	return chip->read_of == (uint8_t)(chip->conversion - 1) &&
+	       (chip->latched[0] != scratchpad[SP_LSB] || chip->latched[1] != scratchpad[SP_MSB]);
+}
+
 int thermometer_ended(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
 {
 	struct thermometer *chip = thermometer_of(txn->device);
 
+	if (chip->strict && !chip->early_ns && chip->converted_ns > now) {
+		/* Near the end nobody knows which result it was, or whether it was a whole one. */
+		bool likely = now >= thermometer_likely_ns(chip) && has_changed(chip, scratchpad);
+
+		if (!is_whole(scratchpad) || !(is_held(chip, now) || likely))
+			return txn_wait(txn, chip->converted_ns - now);
+		if (likely) {
+			chip->converted_ns = chip->busy_ns = now;
+			chip->least_ns = chip->ended_ns;
+			chip->longest_ns = 0;
+		}
+		return 0;
+	}
 	if (chip->early_ns && chip->converted_ns > now) {
 		/* Whoever reads it meanwhile needs the proof, too. */
 		if (!is_proven(txn->device, scratchpad))

@@ -9,10 +9,10 @@
 #include <errno.h>
 
 #include "hal/chips/thermometer.h"
-#include "hal/chips/thermometer_proof.h"
 #include "hal/native/answer.h"
+#include "hal/native/broadcast.h"
 #include "hal/native/convert.h"
-#include "hal/native/ending.h"
+#include "hal/native/double_buffer.h"
 #include "hal/native/job_txn.h"
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
@@ -21,12 +21,10 @@
 #include "hal/native/state.h"
 #include "hal/native/supply.h"
 
-#define SKIP_ROM 0xcc
 #define GATHER_NS (3 * TXN_MS)
 #define GATHER_MAX_NS (3 * NATIVE_S)
 #define SIMULTANEOUS_NS (2 * NATIVE_S)
 #define SINGLE_NS (60 * NATIVE_S)
-#define TRIES 3
 
 static unsigned wanted(const struct job *job)
 {
@@ -121,7 +119,8 @@ void convert_begin(struct native *native, struct job *job, int64_t now)
 {
 	struct device *device = job->txn.device;
 
-	if (is_served(native, job, now)) {
+	if (is_served(native, job, now) ||
+	    (convert_right(job) && double_buffer_serves(native, job, now))) {
 		job->ready_ns = thermometer_of(device)->converted_ns;
 		job->state = JOB_CONVERTING;
 		return;
@@ -181,55 +180,6 @@ void convert_prepare(struct native *native, struct job *job, int64_t now)
 		become_due(native, job, now);
 }
 
-/*
- * Those with a supply hold the line low while they convert: if nobody does, nobody heard. One that
- * alone did not hear is hidden by the others; the rounds one by one find it. The strong pull-up
- * lets nobody show it: thermometer_proof.c looks at what each chip latched.
- */
-static int send_all(struct link *link, enum link_after after)
-{
-	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_CONVERT};
-	uint8_t busy, late[LINK_LATE];
-
-	if (link->driven)
-		return link->ops->convert(link, NULL, "temperature");
-	int err = link->ops->reset(link);
-
-	if (err <= 0)
-		return err ? err : -ENODEV;
-	err = link->ops->write(link, command, sizeof(command), after);
-	if (!err && after == LINK_IDLE) {
-		err = link->ops->read(link, &busy, 1);
-		bool maybe = !err && busy && link_may_be_late(busy);
-		if (maybe)
-			err = link->ops->read(link, late, sizeof(late));
-		if (!err && busy && !(maybe && link_was_late(late)))
-			err = -EBADMSG;
-	}
-	if (!err && link->ops->flush)
-		err = link->ops->flush(link);
-	return err == -EHOSTDOWN ? -ENODEV : err;
-}
-
-/* How long after the command: a driver waits for the end itself. */
-static int64_t convert_ns(const struct link *link, const struct device *device)
-{
-	return link->driven ? 0 : thermometer_convert_ns(device);
-}
-
-/* Who did not show that it heard may have heard. */
-void convert_unverified(const struct native *native, struct device *device, int64_t now)
-{
-	thermometer_told(device, now, convert_ns(native->channel[device->channel].link, device));
-}
-
-static void told_all(struct native *native, unsigned n)
-{
-	for (unsigned i = 0; i < native->table.count; i++)
-		if (native_thermometer(&native->table.devices[i], n))
-			convert_unverified(native, &native->table.devices[i], native_now(native));
-}
-
 /* All jobs that are due on the channel end with err, as if it had been theirs. */
 static void fail_due(struct native *native, unsigned channel, int err)
 {
@@ -251,37 +201,6 @@ static void fail_due(struct native *native, unsigned channel, int err)
 	}
 }
 
-static void converting(struct native *native, unsigned n, bool unseen, int64_t now, int64_t longest)
-{
-	struct channel *channel = &native->channel[n];
-	struct device *only = NULL;
-	unsigned count = 0;
-
-	channel->due_ns = 0;
-	channel->simultaneous_ns[SIMULTANEOUS_TEMPERATURE] = now + longest;
-	for (unsigned i = 0; i < native->table.count; i++) {
-		struct device *device = &native->table.devices[i];
-
-		if (!native_thermometer(device, n))
-			continue;
-		only = count++ ? NULL : device;
-		thermometer_converts(device, now, convert_ns(channel->link, device), unseen);
-	}
-	/* Nobody else could have shown it. */
-	if (only && !unseen)
-		thermometer_of(only)->shows = true;
-	/* Who waited for a conversion that this one cut off waits for this one. */
-	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
-		struct job *job = &native->jobs[i];
-
-		if (!job->req || (job->state != JOB_DUE && job->state != JOB_CONVERTING) ||
-		    job->txn.channel != n)
-			continue;
-		job->state = JOB_CONVERTING;
-		job->ready_ns = thermometer_of(job->txn.device)->converted_ns;
-	}
-}
-
 /*
  * Now and then all that are due are asked one by one, so that what each holds is no older than
  * that even if it is deaf to the broadcast. It costs the wire's time while they convert.
@@ -291,37 +210,6 @@ static bool is_single_round(struct channel *channel, int64_t now)
 	if (!channel->single_ns)
 		channel->single_ns = now + SINGLE_NS;
 	return now >= channel->single_ns;
-}
-
-int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t longest)
-{
-	struct link *link = native->channel[n].link;
-	int err = -EBADMSG;
-
-	for (int try = 0; try < TRIES && err == -EBADMSG; try++) {
-		err = send_all(link, strong ? LINK_STRONG : LINK_IDLE);
-		native_count(native, COUNT_TRANSACTIONS);
-		if (err == -EBADMSG)
-			native_count(native, COUNT_CHECKSUMS);
-		if (err < 0)
-			told_all(native, n);
-	}
-	if (err < 0)
-		return err;
-	int64_t now = native_now(native);
-	master_good(native, n);
-	native_count(native, COUNT_CONVERSIONS);
-	if (link->driven)
-		longest = 0;
-	if (strong && longest) {
-		native->hold_ns[link->chip % NATIVE_CHANNELS] = now + longest;
-		native->holder[link->chip % NATIVE_CHANNELS] = NULL;
-		schedule_owe(&native->schedule, OWES_OTHER);
-	}
-	converting(native, n, strong && !link->driven, now, longest);
-	if (!strong && !link->driven)
-		ending_begin(native, n, longest);
-	return 0;
 }
 
 /* The result of another job's conversion has not been read yet: the next would overwrite it. */
@@ -362,8 +250,7 @@ static void convert_device(struct native *native, struct device *device, int64_t
 {
 	thermometer_of(device)->unheard = 0;
 	thermometer_of(device)->shows = true;
-	thermometer_converts(device, now, convert_ns(native->channel[device->channel].link, device),
-	                     false);
+	broadcast_converts(native, device, true, false, now);
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
 
@@ -391,7 +278,7 @@ static bool convert_one(struct native *native, unsigned n)
 
 	job_saw(native, first, err, now);
 	if (err < 0) {
-		convert_unverified(native, device, now);
+		broadcast_told(native, device, now);
 		job_failed(native, first, err);
 		return true;
 	}
@@ -426,7 +313,7 @@ void convert_in_turn(struct native *native, struct job *job)
 	schedule_owe(&native->schedule, err < 0 ? OWES_ANY : OWES_OTHER);
 	job_saw(native, job, err, native_now(native));
 	if (err < 0)
-		convert_unverified(native, device, txn_ended(&job->txn));
+		broadcast_told(native, device, txn_ended(&job->txn));
 	if (err == -EBADMSG && !job->txn.link_error) {
 		native_count(native, COUNT_CHECKSUMS);
 		native->channel[device->channel].checksums++;
@@ -440,17 +327,44 @@ void convert_in_turn(struct native *native, struct job *job)
 	}
 }
 
+/*
+ * Do those that are due start one by one now? Not with the strong pull-up, nor where a driver sees
+ * to it.
+ */
+static bool starts_single(struct native *native, unsigned n, const struct schedule_plan *plan,
+                          int64_t now)
+{
+	struct channel *channel = &native->channel[n];
+
+	if (plan->parasitic || channel->link->driven)
+		return false;
+	return double_buffer_runs(native, n) ? double_buffer_single(native, n)
+	                                     : is_single_round(channel, now);
+}
+
 struct job *convert_next_in_turn(struct native *native, unsigned n, int64_t now)
 {
 	struct channel *channel = &native->channel[n];
 
-	if (!channel->due_ns || native_held(native, n, NULL, now))
+	if (!channel->due_ns || double_buffer_runs(native, n) || native_held(native, n, NULL, now))
 		return NULL;
 	struct schedule_plan plan = schedule_look(native, n);
-	bool single = !plan.parasitic && !channel->link->driven && is_single_round(channel, now);
 
-	return plan.due && !single && schedule_in_turn(native, &plan, now) ? next_due(native, n)
-	                                                                   : NULL;
+	return plan.due && !starts_single(native, n, &plan, now) &&
+	                       schedule_in_turn(native, &plan, now)
+	               ? next_due(native, n)
+	               : NULL;
+}
+
+/* Results are left to be read while all convert: 12 bits, and all have a supply. */
+static bool begin_ahead(struct native *native, unsigned n)
+{
+	int err = broadcast_convert(native, n, false, 750 * TXN_MS);
+
+	double_buffer_begun(native, n, err);
+	if (err < 0)
+		fail_due(native, n, err);
+	return true;
 }
 
 bool convert_step(struct native *native, int64_t now, int64_t *next, struct job **in_turn)
@@ -458,9 +372,14 @@ bool convert_step(struct native *native, int64_t now, int64_t *next, struct job 
 	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1)) {
 		struct channel *channel = &native->channel[n];
 
-		if (!channel->due_ns || native_held(native, n, NULL, now))
+		if (native_held(native, n, NULL, now))
+			continue;
+		if (double_buffer_begins(native, n, now))
+			return begin_ahead(native, n);
+		if (!channel->due_ns)
 			continue;
 		struct schedule_plan plan = schedule_look(native, n);
+		double_buffer_choose(native, n, &plan, now);
 		if (!plan.due) {
 			channel->due_ns = 0;
 			continue;
@@ -478,17 +397,20 @@ bool convert_step(struct native *native, int64_t now, int64_t *next, struct job 
 		if (plan.parasitic && supply_ask_one(native, n))
 			return true;
 		if (plan.parasitic ? !plan.parasitic_due || channel->link->passive
-		                   : !channel->link->driven && is_single_round(channel, now)) {
+		                   : starts_single(native, n, &plan, now)) {
 			if (!convert_one(native, n))
 				continue;
-			if (plan.due == 1)
+			if (plan.due == 1) {
 				channel->single_ns = now + SINGLE_NS;
+				double_buffer_single_over(native, n);
+			}
 			return true;
 		}
 		if (plan.reading || plan.locked)
 			continue;
 		native->schedule.doing = SCHEDULE_FREE;
-		int err = convert_broadcast(native, n, plan.parasitic_due,
+		double_buffer_restarts(native, n);
+		int err = broadcast_convert(native, n, plan.parasitic_due,
 		                            plan.parasitic_due ? plan.all_ns : plan.due_ns);
 		if (err < 0)
 			fail_due(native, n, err);

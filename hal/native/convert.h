@@ -19,11 +19,5 @@ bool convert_step(struct native *native, int64_t now, int64_t *next, struct job 
 /* The job of a channel whose chip converts in turn next, now. NULL: none does. */
 struct job *convert_next_in_turn(struct native *native, unsigned n, int64_t now);
 void convert_in_turn(struct native *native, struct job *job);
-/* Convert T was sent to the chip until `now` at the latest, and whether it heard is not known. */
-void convert_unverified(const struct native *native, struct device *device, int64_t now);
-/*
- * Convert T to all; -EBADMSG if nobody begins. strong: with the pull-up, which holds it longest ns.
- */
-int convert_broadcast(struct native *native, unsigned n, bool strong, int64_t longest);
 
 #endif

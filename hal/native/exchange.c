@@ -107,6 +107,8 @@ static void read_done(struct native *native, struct job *job)
 		return;
 	}
 	job->tries = 0;
+	if (job->txn.held)
+		native_count(native, COUNT_AHEAD);
 	if (job->txn.device) {
 		job->txn.device->settled |= !job->property->offline;
 		if (job->property->convert)

@@ -9,6 +9,7 @@
 #include "hal/native/answer.h"
 #include "hal/native/cache.h"
 #include "hal/native/convert.h"
+#include "hal/native/double_buffer.h"
 #include "hal/native/ending.h"
 #include "hal/native/hunt.h"
 #include "hal/native/job.h"
@@ -22,6 +23,7 @@
 #include "hal/native/statistics.h"
 #include "hal/native/together.h"
 #include "hal/native/touch.h"
+#include "hal/native/trial.h"
 
 #define VOLATILE_NS (2 * NATIVE_S)
 #define STABLE_NS (300 * NATIVE_S)
@@ -51,6 +53,9 @@ static const char *const count_names[COUNTS] = {
 	[COUNT_WIRE_US] = "wire_us",
 	[COUNT_I2C_TRANSFERS] = "i2c_transfers",
 	[COUNT_SYSCALLS] = "syscalls",
+	[COUNT_AHEAD] = "experimental_early_reads",
+	[COUNT_TRIALS] = "experimental_trials",
+	[COUNT_DOUBTS] = "experimental_doubts",
 };
 
 int native_create(const struct bus_ops *ops, const struct link_master_ops *master,
@@ -99,19 +104,25 @@ void native_destroy(struct bus *bus)
 	free(native);
 }
 
+static int take_flag(bool *flag, const char *text, char *why, size_t why_size)
+{
+	*flag = strcmp(text, "on") == 0;
+	if (*flag || strcmp(text, "off") == 0)
+		return 0;
+	snprintf(why, why_size, "expected on or off");
+	return -EINVAL;
+}
+
 int native_option(struct bus *bus, const char *key, const char *text, char *why, size_t why_size)
 {
 	struct native *native = (struct native *)bus;
 	struct link_master *master = native->master;
 
-	/* Where drivers of somebody else search, nobody can be that quick. */
-	if (strcmp(key, "Touch") == 0 && strcmp(bus->ops->scheme, "w1") != 0) {
-		native->touch = strcmp(text, "on") == 0;
-		if (native->touch || strcmp(text, "off") == 0)
-			return 0;
-		snprintf(why, why_size, "expected on or off");
-		return -EINVAL;
-	}
+	/* Where drivers of somebody else search or convert, nobody can be that quick. */
+	if (strcmp(key, "Touch") == 0 && strcmp(bus->ops->scheme, "w1") != 0)
+		return take_flag(&native->touch, text, why, why_size);
+	if (strcmp(key, "DoubleBuffer") == 0 && strcmp(bus->ops->scheme, "w1") != 0)
+		return take_flag(&native->double_buffer, text, why, why_size);
 	if (strcmp(key, "Sensors") == 0)
 		return sensors_read(&native->sensors, text, why, why_size);
 	return master->ops->option ? master->ops->option(master, key, text, why, why_size)
@@ -207,6 +218,15 @@ static void expire(struct native *native, int64_t now, int64_t *next)
 	}
 }
 
+/* What cannot be read while it converts anew is read first. */
+static bool is_read_first(const struct job *a, const struct job *b)
+{
+	if (b && a->req->prio == b->req->prio && schedule_reads(a) && schedule_reads(b) &&
+	    double_buffer_may_wait(a) != double_buffer_may_wait(b))
+		return double_buffer_may_wait(b);
+	return job_goes_first(a, b);
+}
+
 /* *other: of those that read no thermometer the one that waits longest, whatever its rank. */
 static struct job *pick(struct native *native, int64_t now, int64_t *next, struct job **other)
 {
@@ -219,7 +239,7 @@ static struct job *pick(struct native *native, int64_t now, int64_t *next, struc
 			job_look(native, job, now);
 		if (!job->req || !job_ready(native, job, now, next))
 			continue;
-		if (job_goes_first(job, best))
+		if (is_read_first(job, best))
 			best = job;
 		if (!schedule_reads(job) &&
 		    (!*other || (int32_t)(job->order - (*other)->order) < 0))
@@ -308,6 +328,7 @@ static int64_t step(struct native *native, int64_t now)
 	if (!native->up)
 		return now;
 	expire(native, now, &next);
+	double_buffer_expire(native, now);
 	struct job *job = hunt_initial(native) ? NULL : pick(native, now, &next, &other);
 
 	if (follows(native, job, now))
@@ -331,7 +352,11 @@ static int64_t step(struct native *native, int64_t now)
 	}
 	if (!hunt_initial(native) && touch_step(native, now, &next))
 		return now;
-	if (hunt_step(native, now, !job, &next) || convert_step(native, now, &next, &in_turn)) {
+	if (trial_step(native, now, &next) || double_buffer_step(native, now, false))
+		return now;
+	if (!double_buffer_hurries(native, now) && hunt_step(native, now, !job, &next))
+		return now;
+	if (convert_step(native, now, &next, &in_turn)) {
 		if (in_turn)
 			together_step(native, in_turn, now);
 		return now;
@@ -340,9 +365,19 @@ static int64_t step(struct native *native, int64_t now)
 		run(native, job, now);
 		return now;
 	}
-	if (ending_step(native, now, &next) || rest(native, now, &next))
+	if (double_buffer_step(native, now, true) || ending_step(native, now, &next) ||
+	    rest(native, now, &next))
 		return now;
 	return next > now ? next : now;
+}
+
+static void tell_experimental(struct native *native)
+{
+	if (native->double_buffer && !native->experimental_told)
+		native_event(native, BUS_NOTE, NULL, 0,
+		             "DoubleBuffer is on, which is experimental: so far only simulators "
+		             "have seen it");
+	native->experimental_told = true;
 }
 
 int64_t native_step(struct bus *bus, int64_t now)
@@ -358,6 +393,8 @@ int64_t native_step(struct bus *bus, int64_t now)
 		next = master_step(native, now);
 		if (!native->up)
 			refuse_all(native);
+		else
+			tell_experimental(native);
 		return next;
 	}
 	int64_t began = native_now(native);

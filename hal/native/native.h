@@ -10,8 +10,11 @@
  *   exchange.c properties read and written
  *   simultaneous.c  writes to /simultaneous
  *   convert.c  who converts when: one Convert T for all thermometers due on a channel, or in turn
- *   schedule.c which of the two is faster
+ *   broadcast.c  Convert T for all of a channel
+ *   schedule.c which of these is faster
  *   together.c thermometers on several chips of the master at the same time
+ *   double_buffer.c  experimental: results are read while their chips convert anew
+ *   trial.c    ... which chips keep a result for so long
  *   ending.c   when a conversion ends
  *   supply.c   which thermometers are fed by the wire
  *   outcome.c  what follows from how a transaction ended

@@ -4,7 +4,7 @@
 
 #include "hal/chips/ds2450.h"
 #include "hal/native/answer.h"
-#include "hal/native/convert.h"
+#include "hal/native/broadcast.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
 #include "hal/native/simultaneous.h"
@@ -54,7 +54,7 @@ static int convert_temperature(struct native *native, unsigned n)
 		parasitic |= device->power != POWER_EXTERNAL;
 	}
 	if (any)
-		return convert_broadcast(native, n, parasitic, 750 * TXN_MS);
+		return broadcast_convert(native, n, parasitic, 750 * TXN_MS);
 	native->channel[n].simultaneous_ns[SIMULTANEOUS_TEMPERATURE] = native_now(native) +
 	                                                               750 * TXN_MS;
 	return 0;

@@ -42,6 +42,9 @@ enum native_count {
 	COUNT_WIRE_US,
 	COUNT_I2C_TRANSFERS,
 	COUNT_SYSCALLS,
+	COUNT_AHEAD,
+	COUNT_TRIALS,
+	COUNT_DOUBTS,
 	COUNTS,
 };
 
@@ -129,6 +132,39 @@ struct ending {
 	int64_t took_ns;  /* the conversion before, as seen; 0: not known */
 };
 
+/* Of a wire with the option DoubleBuffer (double_buffer.h). */
+struct double_buffer {
+	bool runs;     /* its way now */
+	bool auditing; /* the present conversion is looked at */
+	bool single;   /* ... and begins chip by chip */
+	uint8_t cycle; /* starts since the last audit */
+	/* The next devices of the table to be audited, and to be asked for their supply. */
+	unsigned audit_i, supply_i;
+	unsigned supplies; /* how many may be asked in this cycle */
+	int64_t audit_ns;  /* when the last audit began */
+};
+
+/* The trial under way (trial.h); device NULL: none. */
+struct trial {
+	struct device *device;
+	uint8_t step, tries, misses; /* of this step */
+	uint8_t begin[9];            /* the scratchpad at the beginning */
+	uint8_t point, old;          /* points that were read; those that were as before */
+	const char *refused;         /* why, when its resolution is back; NULL: it is not */
+	uint8_t changed;             /* points that showed something else */
+	bool late;                   /* a point was read when nothing can be said of it */
+	uint8_t conversion; /* the chip's when the part began: nobody else makes it convert */
+	uint8_t held[8];    /* what the scratchpad is to show */
+	uint8_t other[8];   /* what it showed instead */
+	int64_t begun_ns;   /* this part */
+	int64_t started_ns; /* Convert T at 12 bits */
+	int64_t next_ns;    /* next transaction; of no trial: the next one */
+	int64_t from_ns, until_ns; /* of the points, since the start */
+	int64_t last_old_ns;       /* the last point that was as before, since the start */
+	unsigned cursor;
+	struct txn txn;
+};
+
 struct channel {
 	struct link *link;
 	struct trunk *trunk;    /* of a wire with couplers: its link */
@@ -152,6 +188,7 @@ struct channel {
 	struct search search;
 	struct touch touch;
 	struct ending ending;
+	struct double_buffer buffer;
 	uint64_t errors, shorts, checksums, transactions;
 };
 
@@ -229,6 +266,11 @@ struct native {
 
 	/* schedule.c; convert.c and native.c say what a step does */
 	struct schedule schedule;
+
+	/* native.c sets it once; trial.c */
+	bool double_buffer;     /* the option */
+	bool experimental_told; /* the log says so */
+	struct trial trial;
 
 	/* answer.c; native.c takes jobs, and ends the wait */
 	unsigned lent;     /* jobs that are taken */

@@ -2,7 +2,9 @@
 /* Transactions of several thermometers at the same time, each on another chip of the master. */
 #include "hal/native/together.h"
 #include "hal/chips/thermometer.h"
+#include "hal/native/broadcast.h"
 #include "hal/native/convert.h"
+#include "hal/native/double_buffer.h"
 #include "hal/native/job.h"
 #include "hal/native/schedule.h"
 
@@ -86,10 +88,14 @@ static void drop_visit(struct group *group, unsigned i)
 	txn_done(&group->job[i]->txn, NULL);
 }
 
+/*
+ * What may be read while its chip converts anew is judged by the time of its reading, which has to
+ * be as short as that of one alone.
+ */
 static bool reads_scratchpad(const struct job *job)
 {
 	return schedule_reads(job) && job->txn.device && job->txn.device->family->thermometer &&
-	       job->txn.phase == 0 && job->req->op == BUS_READ;
+	       job->txn.phase == 0 && job->req->op == BUS_READ && !double_buffer_may_wait(job);
 }
 
 /* Of those that are ready on chips that are not in the group yet, the one that goes first. */
@@ -160,8 +166,7 @@ void together_step(struct native *native, struct job *job, int64_t now)
 		reads |= group.state[i] != JOB_DUE;
 		if (!take_visit(native, &group, i)) {
 			if (group.state[i] == JOB_DUE)
-				convert_unverified(native, group.device[i],
-				                   group.visit[i].ended_ns);
+				broadcast_told(native, group.device[i], group.visit[i].ended_ns);
 			continue;
 		}
 		step(native, group.job[i], native_now(native));

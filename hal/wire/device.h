@@ -29,7 +29,7 @@ struct device_reading {
 	int64_t begun_ns, made_ns;
 	uint8_t bytes[32];
 };
-#define DEVICE_OWN 128
+#define DEVICE_OWN 144
 
 struct device {
 	const struct family *family;

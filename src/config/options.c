@@ -137,6 +137,9 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
                                  .help = "outputs that only drive high"},
 	[OPT_BUS_TOUCH] = {"Touch", PLACE_BUS, OPTION_FLAG, .preset = "off",
                            .help = "keys that touch the wire are noticed at once"},
+	[OPT_BUS_DOUBLE_BUFFER] =
+		{"DoubleBuffer", PLACE_BUS, OPTION_FLAG, .preset = "off",
+                 .help = "experimental: thermometers are read while they convert"},
 };
 
 static const char *const place_names[] = {"OwsDrv", "Item", "Bus"};

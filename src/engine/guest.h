@@ -28,7 +28,7 @@ struct engine_guest {
 	const char *path;
 	uint8_t *data; /* as in struct bus_req */
 	uint32_t len, offset;
-	uint16_t parts; /* so many times the time of a request, on a bus that takes several; 0: once */
+	uint16_t parts; /* so many times the time, on a bus that takes several requests; 0: once */
 	const uint8_t *tokens; /* as in struct bus_req; NULL: the guest is no server */
 	uint32_t token_count;
 

@@ -8,6 +8,10 @@
  * minute. The figure is the mean time between two answers of the thermometer for which that is
  * longest. Each answer is of a conversion that began after the request.
  *
+ * Double: the experimental option DoubleBuffer, with chips of the times and the spread of genuine
+ * ones, at temperatures that change; after the trials of all chips, eight minutes. There each
+ * answer is of a conversion that ended after the request.
+ *
  * The limit is what the protocol cannot avoid, by the times that the data sheets call typical:
  *   reset      1184 us = tRSTL 600 + tRSTH 584   DS2482-100 rev. 19-4930, DS2482-800 19-4932
  *   time slot  69.3 us = tSLOT                    the same
@@ -33,8 +37,11 @@
 #define MOST 100
 #define SCANS 8
 #define STEADY_NS (60 * S)
+#define TRIALS_NS (480 * S)
 #define ENGINE_NS (MS / 10)
 
+/* Temperatures that stay, or chips that take four fifths of the longest time, or genuine ones. */
+enum kind { PLAIN, QUICK, DOUBLE };
 struct place {
 	struct bus_env env;
 	struct bus *bus;
@@ -47,7 +54,8 @@ struct place {
 	uint8_t data[MOST][64];
 	char path[MOST][64];
 	/* Steady. */
-	bool steady, quick;
+	bool steady;
+	enum kind kind;
 	int64_t asked[MOST], again[MOST]; /* when; 0: it is asked for */
 	int64_t first[MOST], last[MOST];  /* answers, and how many lie between */
 	unsigned renewed[MOST];
@@ -78,8 +86,8 @@ static void place_answer(void *ctx, const struct bus_answer *answer)
 	p->failures += answer->err != 0;
 	if (!p->steady)
 		return;
-	p->failures += answer->measured_ns <
-	               p->asked[answer->id] + (p->quick ? QUICKEST_NS : SHORTEST_NS);
+	int64_t least = p->kind == DOUBLE ? 0 : p->kind == QUICK ? QUICKEST_NS : SHORTEST_NS;
+	p->failures += answer->measured_ns < p->asked[answer->id] + least;
 	if (!p->first[answer->id])
 		p->first[answer->id] = p->now;
 	else
@@ -107,9 +115,8 @@ static void run(struct place *p, unsigned answers, int64_t until_ns)
 	}
 }
 
-/* quick: chips that take four fifths of the longest time, at temperatures that change. */
 static void describe(FILE *f, unsigned thermometers, unsigned channels, unsigned chips, int khz,
-                     const char *combine, bool quick)
+                     const char *combine, enum kind kind)
 {
 	fprintf(f, "i2c speed %d combine %s\n", khz, combine);
 	for (unsigned i = 0; i < thermometers; i++) {
@@ -121,14 +128,18 @@ static void describe(FILE *f, unsigned thermometers, unsigned channels, unsigned
 		if (i % (thermometers / channels) == 0)
 			fprintf(f, "channel %u\n", wire % each);
 		/* Ids differ in all bits, as those of a real delivery do. */
-		fprintf(f, "DS18B20 28.%08X%04X as t%u", (i + 1) * 2654435761u, i, i);
-		fprintf(f, quick ? " speed 80 temperature ramp %u 120 600s\n" : " temperature %u\n",
-		        i % 60);
+		fprintf(f, "DS18B20 28.%08X%04X as t%u ", (i + 1) * 2654435761u, i, i);
+		if (kind == PLAIN)
+			fprintf(f, "temperature %u\n", i % 60);
+		else if (kind == QUICK)
+			fprintf(f, "speed 80 temperature ramp %u 120 600s\n", i % 60);
+		else
+			fprintf(f, "spread 1 temperature ramp %u 120 900s\n", i % 60);
 	}
 }
 
 static void begin(struct place *p, unsigned thermometers, unsigned channels, unsigned chips,
-                  int khz, const char *combine, bool quick)
+                  int khz, const char *combine, enum kind kind)
 {
 	char target[48], why[200] = "";
 	int fd;
@@ -148,8 +159,8 @@ static void begin(struct place *p, unsigned thermometers, unsigned channels, uns
 	f = fd < 0 ? NULL : fdopen(fd, "w");
 	if (!f)
 		exit(1);
-	describe(f, thermometers, channels, chips, khz, combine, quick);
-	p->quick = quick;
+	describe(f, thermometers, channels, chips, khz, combine, kind);
+	p->kind = kind;
 	fclose(f);
 	snprintf(target, sizeof(target), "sim:%s", p->file);
 	if (bus_create(target, &p->env, &p->bus, why, sizeof(why))) {
@@ -203,10 +214,10 @@ static double scan(struct place *p)
 	return (double)(p->now - begun);
 }
 
-/* Each thermometer again as soon as it was answered. */
-static double steady(struct place *p)
+/* Each thermometer again as soon as it was answered; the time before is not judged. */
+static double steady(struct place *p, int64_t before)
 {
-	int64_t end = p->now + STEADY_NS;
+	int64_t judged = p->now + before, end = judged + STEADY_NS;
 	double longest = 0;
 
 	p->steady = true;
@@ -214,6 +225,12 @@ static double steady(struct place *p)
 		p->again[i] = p->now;
 	while (p->now < end) {
 		int64_t next = end;
+
+		if (p->now < judged) {
+			memset(p->first, 0, sizeof(p->first));
+			memset(p->renewed, 0, sizeof(p->renewed));
+			p->failures = 0;
+		}
 
 		for (unsigned i = 0; i < p->thermometers; i++) {
 			if (p->again[i] && p->again[i] <= p->now) {
@@ -240,6 +257,27 @@ static double steady(struct place *p)
 		exit(1);
 	}
 	return longest;
+}
+
+static void option(struct place *p, const char *key)
+{
+	char why[200] = "";
+
+	if (bus_option(p->bus, key, "on", why, sizeof(why)))
+		exit(1);
+}
+
+static void measure_double(unsigned thermometers)
+{
+	static struct place p;
+	char line[64];
+
+	begin(&p, thermometers, 1, 1, 400, "any", DOUBLE);
+	option(&p, "DoubleBuffer");
+	scan(&p);
+	snprintf(line, sizeof(line), "scan.%u.400kHz.double.steady", thermometers);
+	bench_line(line, steady(&p, TRIALS_NS) / 1e9, "s");
+	bus_destroy(p.bus);
 }
 
 static double limit(const struct place *p)
@@ -279,7 +317,7 @@ static void measure(unsigned thermometers, unsigned channels, unsigned chips, in
 	double sum = 0;
 	char name[40], line[64], wires[16];
 
-	begin(&p, thermometers, channels, chips, khz, combine, quick);
+	begin(&p, thermometers, channels, chips, khz, combine, quick ? QUICK : PLAIN);
 	scan(&p); /* supply and resolution are asked for once */
 	/* Each minute one scan asks one by one, and learns what the chips show. */
 	for (int i = 0; i < 3 && quick; i++) {
@@ -300,7 +338,7 @@ static void measure(unsigned thermometers, unsigned channels, unsigned chips, in
 	if (cost)
 		scratchpad(&p, name);
 	snprintf(line, sizeof(line), "scan.%s.steady", name);
-	bench_line(line, steady(&p) / 1e9, "s");
+	bench_line(line, steady(&p, 0) / 1e9, "s");
 	bus_destroy(p.bus);
 }
 
@@ -320,5 +358,7 @@ int main(void)
 				        speeds[s], combines[c], nets[i].thermometers == 50, false);
 	for (unsigned i = 0; i < 6; i++)
 		measure(nets[i].thermometers, 1, 1, 400, "any", false, true);
+	for (unsigned i = 2; i < 6; i++)
+		measure_double(nets[i].thermometers);
 	return 0;
 }

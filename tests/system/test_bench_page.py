@@ -53,6 +53,7 @@ def some_output():
     for name in ("shm_get.single", "shm_get.clock", "shm_get.owserver_read", "set_to_wire",
                  "input_latency.alarm4", "input_latency.alarm10", "input_latency.cyclic"):
         lines += [f"{name}.p{p} {10 + p:.2f} ns" for p in POINTS]
+    lines += [f"scan.{n}.400kHz.double.steady 0.80 s" for n in (5, 10, 20, 50)]
     for net in (1, 2, 5, 10, 20, 50, 100, "80on8", "80on4chips", "80on8chips"):
         for case in ("400kHz", "400kHz.one-read", "100kHz", "100kHz.one-read"):
             lines += [f"scan.{net}.{case}.seconds 1.20 s", f"scan.{net}.{case}.over_limit 1.05 ratio",

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: MIT */
+/* Convert T for all thermometers of a channel, and what is known of those that were told. */
+#include <errno.h>
+
+#include "hal/chips/thermometer.h"
+#include "hal/chips/thermometer_proof.h"
+#include "hal/native/broadcast.h"
+#include "hal/native/double_buffer.h"
+#include "hal/native/ending.h"
+#include "hal/native/master.h"
+#include "hal/native/schedule.h"
+
+#define SKIP_ROM 0xcc
+#define TRIES 3
+
+/*
+ * Those with a supply hold the line low while they convert: if nobody does, nobody heard. One that
+ * alone did not hear is hidden by the others; the rounds one by one find it. The strong pull-up
+ * lets nobody show it: thermometer_proof.c looks at what each chip latched.
+ */
+static int send_all(struct link *link, enum link_after after)
+{
+	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_CONVERT};
+	uint8_t busy, late[LINK_LATE];
+
+	if (link->driven)
+		return link->ops->convert(link, NULL, "temperature");
+	int err = link->ops->reset(link);
+
+	if (err <= 0)
+		return err ? err : -ENODEV;
+	err = link->ops->write(link, command, sizeof(command), after);
+	if (!err && after == LINK_IDLE) {
+		err = link->ops->read(link, &busy, 1);
+		bool maybe = !err && busy && link_may_be_late(busy);
+		if (maybe)
+			err = link->ops->read(link, late, sizeof(late));
+		if (!err && busy && !(maybe && link_was_late(late)))
+			err = -EBADMSG;
+	}
+	if (!err && link->ops->flush)
+		err = link->ops->flush(link);
+	return err == -EHOSTDOWN ? -ENODEV : err;
+}
+
+/* How long after the command: a driver waits for the end itself. */
+static int64_t convert_ns(const struct link *link, const struct device *device)
+{
+	return link->driven ? 0 : thermometer_convert_ns(device);
+}
+
+/* Who did not show that it heard may have heard. */
+void broadcast_told(const struct native *native, struct device *device, int64_t now)
+{
+	thermometer_told(device, now, convert_ns(native->channel[device->channel].link, device));
+}
+
+static void told_all(struct native *native, unsigned n)
+{
+	for (unsigned i = 0; i < native->table.count; i++)
+		if (native_thermometer(&native->table.devices[i], n))
+			broadcast_told(native, &native->table.devices[i], native_now(native));
+}
+
+void broadcast_converts(struct native *native, struct device *device, bool own, bool unseen,
+                        int64_t now)
+{
+	double_buffer_converts(native, device, own, now);
+	thermometer_converts(device, now, convert_ns(native->channel[device->channel].link, device),
+	                     unseen);
+}
+
+static void converting(struct native *native, unsigned n, bool unseen, int64_t now, int64_t longest)
+{
+	struct channel *channel = &native->channel[n];
+	struct device *only = NULL;
+	unsigned count = 0;
+
+	channel->due_ns = 0;
+	channel->simultaneous_ns[SIMULTANEOUS_TEMPERATURE] = now + longest;
+	for (unsigned i = 0; i < native->table.count; i++) {
+		struct device *device = &native->table.devices[i];
+
+		if (!native_thermometer(device, n))
+			continue;
+		only = count++ ? NULL : device;
+		broadcast_converts(native, device, false, unseen, now);
+	}
+	/* Nobody else could have shown it. */
+	if (only && !unseen)
+		thermometer_of(only)->shows = true;
+	/* Who waited for a conversion that this one cut off waits for this one. */
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (!job->req || (job->state != JOB_DUE && job->state != JOB_CONVERTING) ||
+		    job->txn.channel != n || double_buffer_holds(job, now))
+			continue;
+		job->state = JOB_CONVERTING;
+		job->ready_ns = thermometer_of(job->txn.device)->converted_ns;
+	}
+}
+
+int broadcast_convert(struct native *native, unsigned n, bool strong, int64_t longest)
+{
+	struct link *link = native->channel[n].link;
+	int err = -EBADMSG;
+
+	for (int try = 0; try < TRIES && err == -EBADMSG; try++) {
+		err = send_all(link, strong ? LINK_STRONG : LINK_IDLE);
+		native_count(native, COUNT_TRANSACTIONS);
+		if (err == -EBADMSG)
+			native_count(native, COUNT_CHECKSUMS);
+		if (err < 0)
+			told_all(native, n);
+	}
+	if (err < 0)
+		return err;
+	int64_t now = native_now(native);
+	master_good(native, n);
+	native_count(native, COUNT_CONVERSIONS);
+	if (link->driven)
+		longest = 0;
+	if (strong && longest) {
+		native->hold_ns[link->chip % NATIVE_CHANNELS] = now + longest;
+		native->holder[link->chip % NATIVE_CHANNELS] = NULL;
+		schedule_owe(&native->schedule, OWES_OTHER);
+	}
+	converting(native, n, strong && !link->driven, now, longest);
+	if (!strong && !link->driven)
+		ending_begin(native, n, longest);
+	return 0;
+}

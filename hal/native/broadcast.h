@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Convert T for all thermometers of a channel, and what follows for a chip that was told to
+ * convert. All times are ns. The thread of the bus calls it; a broadcast takes some ms.
+ */
+#ifndef HAL_NATIVE_BROADCAST_H
+#define HAL_NATIVE_BROADCAST_H
+
+#include "hal/native/state.h"
+
+/*
+ * Convert T to all; -EBADMSG if nobody begins. strong: with the pull-up, which holds it longest ns.
+ * The requests that are due wait for the end then.
+ */
+int broadcast_convert(struct native *native, unsigned n, bool strong, int64_t longest);
+/* The chip began to convert at now. own: it has shown that itself; unseen: it cannot. */
+void broadcast_converts(struct native *native, struct device *device, bool own, bool unseen,
+                        int64_t now);
+/* It was told to convert, at now at the latest, and whether it heard is not known. */
+void broadcast_told(const struct native *native, struct device *device, int64_t now);
+
+#endif
