@@ -55,8 +55,16 @@ static bool is_gauge(void)
 #define GAUGE_STORED (offsetof(struct gauge, eeprom) - offsetof(struct gauge, memory))
 #define GAUGE_END (GAUGE_STORED + sizeof(((struct gauge *)NULL)->eeprom))
 
-/* A light of an Inferno Embedded: what it shows fades from `from` since a time. */
-enum { INFERNO_LIGHTS = 4, INFERNO_LIGHT = 32, INFERNO_FROM = 4, INFERNO_SINCE = 24 };
+/* A light of a simulated Inferno Embedded: what it shows fades from `from` since a time. */
+struct inferno_light {
+	uint8_t from[4], to[4], next[4];
+	uint32_t fade_ms, next_ms;
+	int64_t since;
+};
+#define INFERNO_LIGHTS 4
+#define INFERNO_LIGHT sizeof(struct inferno_light)
+#define INFERNO_FROM sizeof(((struct inferno_light *)NULL)->from)
+#define INFERNO_SINCE offsetof(struct inferno_light, since)
 
 /*
  * The protocol leaves its mark in the state: only what the chip keeps is compared.
