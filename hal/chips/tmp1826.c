@@ -32,6 +32,10 @@ enum { STATUS = TMP1826_STATUS, RESERVED_3, CONFIG_1 = TMP1826_SETTINGS };
 enum { RESERVED_7 = 7, RESERVED_15 = 15, RESERVED_16 };
 enum { DATA_VALID = 0x08, FED_BY_BUS = 0x04, ALERT_SHIFT = 6 }; /* of the status */
 enum { AVERAGES = 0x08 };                                       /* of CONFIG_1 */
+/* What it measures; an offset or noise makes others. */
+#define LOWEST (-55)
+#define HIGHEST 150
+
 #define CONVERT_NS (8 * TXN_MS)  /* tDELAY and the longest tACT: 6.5 ms */
 #define AVERAGE_NS (55 * TXN_MS) /* eight of them */
 
@@ -212,7 +216,9 @@ int tmp1826_read_temperature(struct txn *txn)
 	bool fresh = pad[STATUS] & DATA_VALID;
 	if (txn->phase == 2) {
 		txn->number[0] = tmp1826_celsius(pad, 0);
-		return fresh ? 0 : -EBADMSG;
+		if (!fresh)
+			return -EBADMSG;
+		return txn->number[0] < LOWEST || txn->number[0] > HIGHEST ? -ERANGE : 0;
 	}
 	visit->config = pad[CONFIG_1];
 	txn->phase = !fresh;

@@ -65,6 +65,19 @@ static void test_a_limit_is_in_the_chip_and_outlives_a_loss_of_power(void)
 	expect(true, of(chip, "temperature"), "       21.75");
 }
 
+static void test_an_offset_makes_no_temperature_that_the_chip_does_not_measure(void)
+{
+	static const char *const offsets[] = {"1000", "-256", "2047.9", "2030", "129", "-80"};
+
+	for (unsigned i = 0; i < sizeof(offsets) / sizeof(offsets[0]); i++) {
+		TEST_ASSERT_EQUAL_INT(0, set("tempoffset", offsets[i]));
+		TEST_ASSERT_EQUAL_INT_MESSAGE(
+			-ERANGE, result(BUS_READ, of(chip, "temperature"), NULL), offsets[i]);
+	}
+	TEST_ASSERT_EQUAL_INT(0, set("tempoffset", "0.25"));
+	expect(true, of(chip, "temperature"), "       21.75");
+}
+
 static void test_limits_of_the_precise_format_have_128_steps_a_degree(void)
 {
 	state->settings[0] |= 0x80;
@@ -266,6 +279,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_limit_is_in_the_chip_and_outlives_a_loss_of_power);
+	RUN_TEST(test_an_offset_makes_no_temperature_that_the_chip_does_not_measure);
 	RUN_TEST(test_limits_of_the_precise_format_have_128_steps_a_degree);
 	RUN_TEST(test_the_eeprom_is_written_only_when_the_user_writes_something_new);
 	RUN_TEST(test_a_chip_whose_settings_are_locked_refuses);
