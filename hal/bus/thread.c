@@ -1,13 +1,36 @@
 /* SPDX-License-Identifier: MIT */
 /* A new thread has the signals blocked that its maker has blocked. */
+#include <errno.h>
+#include <semaphore.h>
 #include <signal.h>
 #include <unistd.h>
 
 #include "hal/bus/thread.h"
 
+/* On the maker's stack, until the thread has taken it. */
+struct start {
+	const char *name;
+	void *(*run)(void *ctx);
+	void *ctx;
+	sem_t taken;
+};
+
+/* A thread names itself: with its first line in run it has its name. */
+static void *begin(void *arg)
+{
+	struct start *start = arg;
+	void *(*run)(void *ctx) = start->run;
+	void *ctx = start->ctx;
+
+	pthread_setname_np(pthread_self(), start->name);
+	sem_post(&start->taken);
+	return run(ctx);
+}
+
 int thread_start(pthread_t *thread, const char *name, size_t stack, void *(*run)(void *ctx),
                  void *ctx)
 {
+	struct start start = {.name = name, .run = run, .ctx = ctx};
 	sigset_t all, before;
 	pthread_attr_t attr;
 	long least;
@@ -25,11 +48,13 @@ int thread_start(pthread_t *thread, const char *name, size_t stack, void *(*run)
 	if (!err)
 		err = pthread_sigmask(SIG_SETMASK, &all, &before);
 	if (!err) {
-		err = pthread_create(thread, &attr, run, ctx);
+		sem_init(&start.taken, 0, 0);
+		err = pthread_create(thread, &attr, begin, &start);
 		pthread_sigmask(SIG_SETMASK, &before, NULL);
+		while (!err && sem_wait(&start.taken) && errno == EINTR)
+			;
+		sem_destroy(&start.taken);
 	}
 	pthread_attr_destroy(&attr);
-	if (!err)
-		pthread_setname_np(*thread, name);
 	return -err;
 }

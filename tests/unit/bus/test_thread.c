@@ -7,6 +7,7 @@
 
 struct seen {
 	size_t stack;
+	char name[16];
 	sigset_t blocked;
 };
 
@@ -23,6 +24,7 @@ static void *look(void *ctx)
 	struct seen *seen = ctx;
 	pthread_attr_t attr;
 
+	pthread_getname_np(pthread_self(), seen->name, sizeof(seen->name));
 	pthread_sigmask(SIG_SETMASK, NULL, &seen->blocked);
 	if (!pthread_getattr_np(pthread_self(), &attr)) {
 		pthread_attr_getstacksize(&attr, &seen->stack);
@@ -52,6 +54,12 @@ static void test_a_stack_below_the_least_of_the_machine_starts_too(void)
 	TEST_ASSERT_GREATER_THAN(0, started_with(1).stack);
 }
 
+static void test_a_thread_has_its_name_from_the_beginning(void)
+{
+	for (int i = 0; i < 200; i++)
+		TEST_ASSERT_EQUAL_STRING("a thread", started_with(128 * 1024).name);
+}
+
 static void test_signals_are_blocked_but_for_a_fault_of_memory(void)
 {
 	struct seen seen = started_with(128 * 1024);
@@ -69,6 +77,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_stack_is_as_large_as_asked);
 	RUN_TEST(test_a_stack_below_the_least_of_the_machine_starts_too);
+	RUN_TEST(test_a_thread_has_its_name_from_the_beginning);
 	RUN_TEST(test_signals_are_blocked_but_for_a_fault_of_memory);
 	return UNITY_END();
 }
