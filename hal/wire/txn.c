@@ -252,9 +252,11 @@ int txn_started(struct txn *txn)
 	int err = txn_read(txn, &busy, 1);
 	if (err || !busy)
 		return err;
-	if (link_may_be_late(busy))
-		err = txn_read(txn, late, sizeof(late));
-	return err ? err : link_may_be_late(busy) && link_was_late(late) ? 0 : -EBADMSG;
+	if (!link_may_be_late(busy))
+		return -EBADMSG;
+	memset(late, 0xff, sizeof(late));
+	err = txn_read(txn, late, sizeof(late));
+	return err ? err : link_was_late(late) ? 0 : -EBADMSG;
 }
 
 int txn_read_crc8(struct txn *txn, uint8_t *bytes, size_t n)
