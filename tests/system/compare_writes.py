@@ -47,6 +47,7 @@ OTHERS = {
     "too long": "one of the two cuts what is too long, the other refuses it",
 }
 SECONDS = 25  # for one write
+NO_ANSWER = f"no answer in {SECONDS} s"
 LONG = 512  # of a longer memory its first page is read
 
 Line = collections.namedtuple("Line", COLUMNS[2:])
@@ -78,9 +79,9 @@ class Pair:
             self.begin()
         return [ask(server) for server in self.servers]
 
-    def ended(self):
-        """Has a write ended one of them? That happens to owserver."""
-        return any(s.started[-1].poll() is not None for s in self.servers)
+    def ended(self, errors):
+        """Has a write ended one of them, or does it never end? Both happen to owserver."""
+        return NO_ANSWER in errors or any(s.started[-1].poll() is not None for s in self.servers)
 
     def end(self):
         for server in self.servers:
@@ -100,7 +101,7 @@ def result(s):
         _, payload, ret, *_ = struct.unpack(">6i", served.exactly(s, 24))
         if payload >= 0:
             return ret
-    raise TimeoutError(f"no answer in {SECONDS} s")
+    raise TimeoutError(NO_ANSWER)
 
 
 def put(server, device, name, value):
@@ -208,8 +209,12 @@ def read_beside(pair, row):
 
 
 def one_value(pair, row, name, value, other, outcome, beside):
-    """True: both are as they were, or the same happened to them."""
+    """True: both are as they were, or the same happened to them. They begin anew after what ended one."""
     errors = pair.both(lambda s: put(s, pair.device, name, value))
+    if pair.ended(errors):
+        pair.begin()
+        outcome.add(other, False, bool(errors[1]), (pair.part, name, value, other, errors, [], []))
+        return True
     theirs, ours = seen_after(pair, row, name, beside)
     same = bool(errors[0]) == bool(errors[1]) and alike(row.family, theirs, ours)
     outcome.add(other, same, bool(errors[1]),
@@ -242,8 +247,7 @@ def walk(part, device, line):
             for name in targets(row, compare.elements):
                 for other, value in values(row, name, SIZES[row]):
                     same = one_value(pair, row, name, value, other, outcome, beside)
-                    if pair.ended() or not (
-                            same or other and alike_again(pair, row, name, beside)):
+                    if not same and not (other and alike_again(pair, row, name, beside)):
                         pair.begin()
             if (part, row.property) in DISTURBS or row.property in DISTURBS:
                 pair.begin()
