@@ -220,6 +220,9 @@ def one_value(pair, row, name, value, other, outcome, beside):
     outcome.add(other, same, bool(errors[1]),
                 (pair.part, name, value, other, errors, [t[1:] for t in theirs[:3]],
                  [o[1:] for o in ours[:3]]))
+    if pair.ended(errors):
+        pair.begin()
+        return True
     return same
 
 
