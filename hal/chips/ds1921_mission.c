@@ -7,8 +7,8 @@
 
 #include "hal/chips/ds1921.h"
 #include "hal/chips/family.h"
+#include "hal/chips/host_clock.h"
 #include "hal/chips/logger.h"
-#include "hal/chips/present.h"
 
 static const struct logger_chip chip = {.copy = 0x55};
 
@@ -308,7 +308,7 @@ static int set_clock(struct txn *txn, unsigned wanted, double seconds)
 		return TXN_MORE;
 	}
 	if (!visit->write.step) {
-		int err = wanted & SETS_CLOCK ? 0 : present_time(&seconds);
+		int err = wanted & SETS_CLOCK ? 0 : host_clock(&seconds);
 
 		if (err)
 			return err;
@@ -392,7 +392,7 @@ static int start_with(struct txn *txn, double rate, unsigned wanted)
 		return -EINVAL;
 	visit->want = (uint8_t)rate;
 	double now = 0;
-	int err = wanted & SETS_CLOCK ? present_time(&now) : 0;
+	int err = wanted & SETS_CLOCK ? host_clock(&now) : 0;
 	return err ? err : do_steps(txn, wanted, now);
 }
 

@@ -7,8 +7,8 @@
 
 #include "hal/chips/ds1922.h"
 #include "hal/chips/family.h"
+#include "hal/chips/host_clock.h"
 #include "hal/chips/logger.h"
-#include "hal/chips/present.h"
 
 enum { CLEAR_MEMORY = 0x96, START_MISSION = 0xcc, STOP_MISSION = 0x33 };
 
@@ -201,7 +201,7 @@ static int set_clock(struct txn *txn, unsigned wanted)
 	}
 	if (!visit->write.step) {
 		double seconds = txn->number[0];
-		int err = wanted & SETS_CLOCK ? 0 : present_time(&seconds);
+		int err = wanted & SETS_CLOCK ? 0 : host_clock(&seconds);
 
 		if (err)
 			return err;

@@ -10,7 +10,7 @@
 #include <time.h>
 
 #include "hal/chips/format.h"
-#include "hal/chips/present.h"
+#include "hal/chips/host_clock.h"
 
 #define TEXT_ROOM 64 /* of a number or a date as text */
 
@@ -293,7 +293,7 @@ static int parse_number(const struct property *property, const char *text, size_
 		bool now = property->type == PROPERTY_DATE && len < TEXT_ROOM &&
 		           is_blank(text, len);
 
-		return now ? present_time(number) : -EINVAL;
+		return now ? host_clock(number) : -EINVAL;
 	}
 	switch ((enum property_type)property->type) {
 	case PROPERTY_YESNO:

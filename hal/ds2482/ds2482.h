@@ -15,7 +15,6 @@
 
 #define DS2482_FIRST_ADDRESS 0x18
 #define DS2482_ADDRESSES 8
-#define DS2482_TOGETHER 8 /* transactions at the same time, at most */
 
 enum ds2482_part {
 	DS2482_100, /* or a -101, which the bus cannot tell apart */

@@ -232,9 +232,9 @@ static bool is_of_adapter(int err)
 
 void ds2482_together(struct link_visit *visits, unsigned n)
 {
-	struct course courses[DS2482_TOGETHER], *course;
+	struct course courses[LINK_TOGETHER], *course;
 
-	assert(n > 0 && n <= DS2482_TOGETHER);
+	assert(n > 0 && n <= LINK_TOGETHER);
 	for (unsigned i = 0; i < n; i++) {
 		assert(visits[i].out_n > 0 && visits[i].in_n > 0);
 		courses[i] = (struct course){.visit = &visits[i], .link = self(visits[i].link)};
@@ -273,5 +273,5 @@ unsigned ds2482_abreast(const struct link *link)
 	n = GROUP_NS / (master->visit_ns > least_ns ? master->visit_ns : least_ns);
 	if (n < 2)
 		return 2;
-	return n > DS2482_TOGETHER ? DS2482_TOGETHER : (unsigned)n;
+	return n > LINK_TOGETHER ? LINK_TOGETHER : (unsigned)n;
 }

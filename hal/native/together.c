@@ -8,18 +8,17 @@
 #include "hal/native/job.h"
 #include "hal/native/schedule.h"
 
-#define MOST 8
 #define READ_SCRATCHPAD 0xbe
 #define SCRATCHPAD_SIZE 9
 
 struct group {
 	unsigned n;
-	struct job *job[MOST];
-	struct device *device[MOST];
-	const struct bus_req *req[MOST]; /* whose job it was */
-	uint8_t state[MOST];             /* ... and its state */
-	struct link_visit visit[MOST];
-	uint8_t out[MOST][TXN_SELECT + 1], in[MOST][SCRATCHPAD_SIZE];
+	struct job *job[LINK_TOGETHER];
+	struct device *device[LINK_TOGETHER];
+	const struct bus_req *req[LINK_TOGETHER]; /* whose job it was */
+	uint8_t state[LINK_TOGETHER];             /* ... and its state */
+	struct link_visit visit[LINK_TOGETHER];
+	uint8_t out[LINK_TOGETHER][TXN_SELECT + 1], in[LINK_TOGETHER][SCRATCHPAD_SIZE];
 };
 
 static void add(const struct native *native, struct group *group, struct job *job)
@@ -58,7 +57,7 @@ static bool fits(const struct native *native, const struct group *group, unsigne
 {
 	const struct link *link = native_abreast(native, channel), *first = group->visit[0].link;
 
-	if (!link || link->ops->together != first->ops->together || group->n == MOST ||
+	if (!link || link->ops->together != first->ops->together || group->n == LINK_TOGETHER ||
 	    group->n >= first->ops->abreast(first) || group->n >= link->ops->abreast(link))
 		return false;
 	for (unsigned i = 0; i < group->n; i++)

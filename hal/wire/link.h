@@ -74,6 +74,8 @@ struct area;
 /* One ROM id found by a search, family first. Return not 0 to end the search. */
 typedef int link_found(void *ctx, const uint8_t rom[8]);
 
+#define LINK_TOGETHER 8 /* transactions of one group (link_ops.together) */
+
 /*
  * A whole transaction: a reset, out_n bytes written, in_n bytes read; neither is 0. err: 0, or
  * an error by which nothing is judged: the transaction is made again by the functions below.
@@ -101,10 +103,10 @@ struct link_ops {
 	 */
 	int (*triplet)(struct link *link, bool direction);
 	/*
-	 * n transactions at the same time, on links with this function, each of another chip. None
-	 * waits for another beyond what it takes of the way to the chips. After any error the
-	 * transaction is made again by the functions above, which judge it. NULL, together with
-	 * abreast: there is no such thing.
+	 * n transactions at the same time, LINK_TOGETHER at most, on links with this function,
+	 * each of another chip. None waits for another beyond what it takes of the way to the
+	 * chips. After any error the transaction is made again by the functions above, which
+	 * judge it. NULL, together with abreast: there is no such thing.
 	 */
 	void (*together)(struct link_visit *visits, unsigned n);
 	/* How many at most do not take much longer than one does; 1: do not use it. */

@@ -249,3 +249,36 @@ unsigned fleet_restarts(void (*set_out)(unsigned count, const char *chip), unsig
 	}
 	return good;
 }
+
+unsigned fleet_troubles(struct trouble *trouble, void (*begin)(void), void (*go_on)(int64_t ns),
+                        int64_t round_ns, uint32_t *slots)
+{
+	static const struct {
+		enum trouble_kind kind;
+		uint8_t mask;
+	} kinds[] = {
+		{TROUBLE_TURN, 1},   {TROUBLE_TURN, 0xff}, {TROUBLE_DEAF, 1},
+		{TROUBLE_ABSENT, 1}, {TROUBLE_FALSE, 1},
+	};
+	unsigned wrong = 0, good = 0;
+
+	begin();
+	go_on(round_ns);
+	*slots = trouble->slots;
+	uint32_t resets = trouble->resets;
+	for (unsigned k = 0; k < sizeof(kinds) / sizeof(kinds[0]); k++) {
+		bool of_resets = kinds[k].kind == TROUBLE_ABSENT || kinds[k].kind == TROUBLE_FALSE;
+
+		for (uint32_t at = 0; at < (of_resets ? resets : *slots); at++) {
+			begin();
+			trouble->kind = kinds[k].kind;
+			trouble->mask = kinds[k].mask;
+			trouble->at = at;
+			go_on(4 * HOST_S);
+			wrong += fleet.wrong;
+			good += fleet.good;
+		}
+	}
+	TEST_ASSERT_EQUAL_UINT(0, wrong);
+	return good;
+}

@@ -39,6 +39,13 @@ void fleet_again(void);
  */
 unsigned fleet_restarts(void (*set_out)(unsigned count, const char *chip), unsigned count,
                         const char *chip, int64_t settled, unsigned most_ms, unsigned step_ms);
+/*
+ * Each slot and each reset of round_ns is disturbed in turn, in each way: begin() makes the fleet
+ * anew each time, go_on() runs it for so many ns. No answer may be wrong; returns how many were
+ * good. *slots: how many there were.
+ */
+unsigned fleet_troubles(struct trouble *trouble, void (*begin)(void), void (*go_on)(int64_t ns),
+                        int64_t round_ns, uint32_t *slots);
 /* Add the thermometers of this kind to channel 0, before start(); may be called again. */
 void fleet_add(const char *chip, unsigned count);
 void fleet_add_to(unsigned channel, const char *chip, unsigned count);

@@ -3,11 +3,11 @@
 #include <errno.h>
 #include <time.h>
 
-#include "hal/chips/present.h"
+#include "hal/chips/host_clock.h"
 
 #define WRITTEN 1767225600 /* 2026-01-01 00:00:00 UTC */
 
-int present_time(double *seconds)
+int host_clock(double *seconds)
 {
 	time_t now = time(NULL);
 
