@@ -13,7 +13,7 @@
 #                                 records it, PARTS='DS2438 DS2450' some
 #   make properties-page          docs/properties.md, of what is recorded
 #   make check-all                every check there is, for hours; .ci/run those that a change can
-#                                 break, in half an hour of two cores
+#                                 break, within three quarters of an hour of two cores
 #   make clang sanitize m32       a second compiler, its sanitizers, 32 bits
 #   make fuzz                     libFuzzer on what comes from outside; FUZZ=rio one of its targets,
 #                                 FUZZ_SECONDS=60 for each
@@ -126,6 +126,12 @@ CPP_COMMON += -DOWSD_LIBGPIOD=$(LIBGPIOD) $(LIBGPIOD_CFLAGS)
 LIBS     += $(LIBGPIOD_LIBS)
 endif
 
+# owsd-web, where libmicrohttpd is there for this compiler; LIBMICROHTTPD=0 leaves it out
+LIBMICROHTTPD ?= $(shell printf '\043include <stdint.h>\n\043include <microhttpd.h>\nint main(void) { return !MHD_get_version(); }\n' | \
+              $(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -x c -o /dev/null - -lmicrohttpd 2>/dev/null && echo 1)
+LIBMICROHTTPD := $(LIBMICROHTTPD)
+HTTPD    := $(filter 1,$(LIBMICROHTTPD))
+
 comma    := ,
 
 # With what is compiled and linked: a file for each, written when that has changed, and never else.
@@ -134,7 +140,8 @@ version_of = $(shell $(1) --version 2>/dev/null | head -n 1)
 with_cc  := $(CC): $(call version_of,$(CC)): $(ALL_CFLAGS)
 with_cxx := $(CXX): $(call version_of,$(CXX)): $(ALL_CXXFLAGS)
 with_ld  := $(CC): $(ALL_LDFLAGS) $(LIBS)
-with_libraries := libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no)
+with_libraries := libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no) \
+    libmicrohttpd $(if $(HTTPD),yes,no owsd-web left-out)
 WITH     := $(patsubst %,$(B)/with/%,cc cxx ld libraries)
 same      = $(and $(findstring x$(1)x,x$(2)x),$(findstring x$(2)x,x$(1)x))
 $(foreach f,$(WITH),$(if $(call same,$(strip $(with_$(notdir $(f)))),$(strip $(file <$(f)))),,$(eval $(f): FORCE)))
@@ -165,6 +172,9 @@ endef
 # --- The rooms: each is one folder, of source and of unit tests; its main header says what it is, and
 # docs/design.md which others it may use
 SOURCES  := $(wildcard src/*/*.c hal/*/*.c hal/*/*/*.c)
+# Of owsd-web: what calls libmicrohttpd; its main(), and what must be in no other program
+WEB_MAIN := src/web/owsd_web.c src/web/no_tls.c
+WEB_HTTP := $(WEB_MAIN) $(patsubst %,src/web/%.c,api command devices draft events guard http lists past save stored stream)
 # The consumers' library
 LIBOWS   := $(wildcard src/libows/*.c)
 # Programs to start from, and configurations
@@ -173,6 +183,9 @@ EXAMPLES := $(wildcard docs/examples/*.c docs/examples/*.cpp docs/examples/*.py 
 # Those that another program builds or loads, a folder for each
 HOSTED   := $(patsubst docs/examples/%/,%,$(wildcard docs/examples/*/))
 PYTHON   := $(wildcard src/libows/*.py)
+# What the browser gets of owsd-web, as names below src/web/page
+PAGE     := $(patsubst src/web/page/%,%,$(foreach e,html css js svg png webmanifest,\
+            $(wildcard src/web/page/*.$(e) src/web/page/*/*.$(e))))
 MAN      := $(wildcard docs/*.[1-8])
 # Tests
 UNIT_SRC := $(wildcard tests/unit/*/test_*.c)
@@ -182,15 +195,17 @@ BENCH    := $(wildcard tests/bench/bench_*.c)
 BENCH_AID := $(filter-out $(BENCH),$(wildcard tests/bench/*.c)) tests/unit/aid/plant.c tests/unit/aid/plant_net.c tests/unit/aid/giving.c
 # ---------------------------------------------------------------------------------------------
 
-CORE     := $(filter-out src/owsd/owsd.c src/owsctl/owsctl.c,$(SOURCES))
+CORE     := $(filter-out src/owsd/owsd.c src/owsctl/owsctl.c src/writer/owsd_config.c \
+            $(if $(HTTPD),$(WEB_MAIN),$(WEB_HTTP)),$(SOURCES))
 obj       = $(patsubst %.c,$(B)/%.o,$(1))
 UNIT     := $(patsubst %.c,$(B)/unit/%,$(notdir $(UNIT_SRC))) $(B)/unit/test_endurance
 BENCHES  := $(patsubst tests/bench/%.c,$(B)/bench/%,$(BENCH))
 SAMPLES  := $(patsubst docs/examples/%.c,$(B)/examples/%,$(filter %.c,$(EXAMPLES))) \
             $(patsubst docs/examples/%.cpp,$(B)/examples/%,$(filter %.cpp,$(EXAMPLES)))
-PROGRAMS := $(B)/owsd $(B)/owsctl
-SO       := libows.so.$(VERSION)
-LIBRARY  := $(B)/$(SO) $(B)/libows.a $(B)/libows.pc
+FACES    := owsd-config $(if $(HTTPD),owsd-web)
+PROGRAMS := $(B)/owsd $(B)/owsctl $(FACES:%=$(B)/%)
+LIBRARIES := libows
+LIBRARY  := $(foreach l,$(LIBRARIES),$(B)/$(l).so.$(VERSION) $(B)/$(l).a $(B)/$(l).pc)
 
 .PHONY: all unit soak system test run bench install uninstall install-service uninstall-service \
         deb test-package test-service test-fresh dist test-dist clean \
@@ -217,11 +232,16 @@ $(PROGRAMS): $(B)/core.a $(B)/with/ld
 	$(call link)
 $(B)/owsd: $(B)/src/owsd/owsd.o
 $(B)/owsctl: $(B)/src/owsctl/owsctl.o
+$(B)/owsd-config: $(B)/src/writer/owsd_config.o
+$(B)/owsd-web: $(call obj,$(WEB_MAIN))
+$(B)/owsd-web: LIBS += -lmicrohttpd -Wl,--export-dynamic-symbol=_gnutls_global_init_skip
 
-# --- libows: exports ows_* and nothing else ---------------------------------------------------
-# Of the daemon's sources it takes what it needs out of these; they go into the programs as they are
+# --- libows exports ows_* and nothing else -------------------------------------------------
+# Of the daemon's sources they take what they need out of these; they go into the programs as they are
 LIBOWS_AID := $(call obj,$(wildcard src/shm/*.c src/signal/*.c))
 $(call obj,$(LIBOWS)) $(LIBOWS_AID): PIC := -fPIC -fno-semantic-interposition
+libows_EXPORTS := ows_*
+$(B)/libows.so.$(VERSION) $(B)/libows.a: $(call obj,$(LIBOWS)) $(B)/libows/aid.a
 
 $(B)/libows/aid.a: $(LIBOWS_AID)
 	@mkdir -p $(@D)
@@ -229,35 +249,36 @@ $(B)/libows/aid.a: $(LIBOWS_AID)
 	$(call show,AR)
 	$(Q)$(AR) rcs $@ $^
 
-$(B)/libows/libows.map:
+$(B)/libows/%.map:
 	@mkdir -p $(@D)
-	@echo '{ global: ows_*; local: *; };' > $@
+	@echo '{ global: $($*_EXPORTS); local: *; };' > $@
 
-$(B)/$(SO): $(call obj,$(LIBOWS)) $(B)/libows/aid.a $(B)/libows/libows.map $(B)/with/ld
+$(LIBRARIES:%=$(B)/%.so.$(VERSION)): $(B)/%.so.$(VERSION): $(B)/libows/%.map $(B)/with/ld
 	$(call show,LD)
-	$(Q)$(CC) -shared -Wl,-soname,libows.so.$(SOMAJOR) -Wl,--version-script,$(B)/libows/libows.map \
+	$(Q)$(CC) -shared -Wl,-soname,$*.so.$(SOMAJOR) -Wl,--version-script,$(B)/libows/$*.map \
 	    -Wl,-z,relro,-z,now $(if $(findstring sanitize,$(EXTRA_CFLAGS)),,-Wl,-z,defs) \
 	    $(LDFLAGS) $(EXTRA_CFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LIBS)
-	@ln -sf $(SO) $(B)/libows.so.$(SOMAJOR)
-	@ln -sf $(SO) $(B)/libows.so
+	@ln -sf $(@F) $(B)/$*.so.$(SOMAJOR)
+	@ln -sf $(@F) $(B)/$*.so
 
 # Of a section group only the signature would be made local, and the linker would take another's
 # members for it: without groups, where the linker can
 ONE_GROUP = $(shell $(CC) -Wl,--help 2>/dev/null | grep -q force-group-allocation && \
               echo -Wl,--force-group-allocation)
-$(B)/libows.a: $(call obj,$(LIBOWS)) $(B)/libows/aid.a
+$(LIBRARIES:%=$(B)/%.a): $(B)/%.a:
 	$(call show,AR)
 	@rm -f $@
-	$(Q)$(CC) $(filter -m%,$(CFLAGS) $(EXTRA_CFLAGS)) -r -nostdlib $(ONE_GROUP) -o $(B)/libows/one.o $^
-	$(Q)$(OBJCOPY) --wildcard --keep-global-symbol='ows_*' $(B)/libows/one.o
-	$(Q)$(AR) rcs $@ $(B)/libows/one.o
+	$(Q)$(CC) $(filter -m%,$(CFLAGS) $(EXTRA_CFLAGS)) -r -nostdlib $(ONE_GROUP) -o $(B)/libows/$*-one.o $^
+	$(Q)$(OBJCOPY) --wildcard --keep-global-symbol='$($*_EXPORTS)' $(B)/libows/$*-one.o
+	$(Q)$(AR) rcs $@ $(B)/libows/$*-one.o
 
 # PREFIX may differ from one call to the next, and two makes may do this at once
-$(B)/libows.pc: FORCE
+libows_SAYS := Signals of owsd, the 1-Wire daemon, in shared memory
+$(LIBRARIES:%=$(B)/%.pc): $(B)/%.pc: FORCE
 	@mkdir -p $(@D)
 	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$${prefix}/include' '' \
-	    'Name: libows' 'Description: Signals of owsd, the 1-Wire daemon, in shared memory' \
-	    'Version: $(VERSION)' 'Libs: -L$${libdir} -lows' 'Libs.private: -lm -pthread' \
+	    'Name: $*' 'Description: $($*_SAYS)' \
+	    'Version: $(VERSION)' 'Libs: -L$${libdir} -l$(*:lib%=%)' 'Libs.private: -lm -pthread' \
 	    'Cflags: -I$${includedir}' >$@.$$$$ && mv $@.$$$$ $@
 
 # --- Examples ---------------------------------------------------------------------------------
@@ -308,8 +329,9 @@ unit-programs: $(UNIT) replays
 # RUNNER runs programs of another architecture: RUNNER=qemu-aarch64-static.
 # UNIT_WITHOUT=test_rio leaves programs out
 unit: export RUNNER := $(RUNNER)
-unit: all $(UNIT) replays
-	@sh tests/unit/run $(filter-out $(UNIT_WITHOUT:%=$(B)/unit/%),$(UNIT)) $(REPLAYS)
+UNIT_RUN := $(filter-out $(UNIT_WITHOUT:%=$(B)/unit/%),$(UNIT))
+unit: all $(UNIT_RUN) replays
+	@sh tests/unit/run $(UNIT_RUN) $(REPLAYS)
 
 # A month of faults in virtual time on every backend, five minutes of a processor; HOURS=168 is a
 # week in one. SEED=1, WORLD=native for one of them
@@ -372,7 +394,7 @@ include tests/image/image.mk
 include tests/fuzz/fuzz.mk
 include tests/analyze/analyze.mk
 
-# .ci/run is half an hour; this goes on for hours, with what is rarely broken
+# .ci/run is less than an hour; this goes on for hours, with what is rarely broken
 check-all:
 	@bash .ci/run --all
 
@@ -392,17 +414,25 @@ properties-page: all
 
 # --- Install ----------------------------------------------------------------------------------
 D := $(DESTDIR)
+# The page for Cockpit: the same files, and Cockpit's own library
+COCKPIT := $(D)$(PREFIX)/share/cockpit/owsd
 install: all
 	install -d $(D)$(PREFIX)/bin $(D)$(PREFIX)/sbin $(D)$(PREFIX)/include $(D)$(LIBDIR)/pkgconfig \
 	    $(D)$(DATADIR)/examples $(D)$(DATADIR)/boards
-	install -m 755 $(B)/owsd $(D)$(PREFIX)/sbin/owsd
+	install -m 755 $(B)/owsd $(FACES:%=$(B)/%) $(D)$(PREFIX)/sbin
+	@set -e; for f in $(PAGE); do d=$(D)$(DATADIR)/web/$$(dirname $$f); install -d $$d; \
+	    install -m 644 src/web/page/$$f $$d; done
+	@set -e; for f in $(PAGE); do d=$(COCKPIT)/$$(dirname $$f); install -d $$d; \
+	    install -m 644 src/web/page/$$f $$d; done
+	sed 's,^<script type="module" async,<script src="../base1/cockpit.js"></script>\n&,' \
+	    src/web/page/index.html >$(COCKPIT)/index.html
+	install -m 644 board/cockpit/manifest.json $(COCKPIT)
 	install -m 755 $(B)/owsctl $(D)$(PREFIX)/bin/owsctl
-	install -m 644 $(B)/$(SO) $(D)$(LIBDIR)/$(SO)
-	ln -sf $(SO) $(D)$(LIBDIR)/libows.so.$(SOMAJOR)
-	ln -sf $(SO) $(D)$(LIBDIR)/libows.so
-	install -m 644 $(B)/libows.a $(D)$(LIBDIR)/libows.a
-	install -m 644 $(B)/libows.pc $(D)$(LIBDIR)/pkgconfig/libows.pc
-	install -m 644 src/libows/ows.h $(D)$(PREFIX)/include/ows.h
+	@set -e; for l in $(LIBRARIES); do so=$$l.so.$(VERSION); \
+	    install -m 644 $(B)/$$so $(B)/$$l.a $(D)$(LIBDIR); \
+	    ln -sf $$so $(D)$(LIBDIR)/$$l.so.$(SOMAJOR); ln -sf $$so $(D)$(LIBDIR)/$$l.so; \
+	    install -m 644 $(B)/$$l.pc $(D)$(LIBDIR)/pkgconfig; done
+	install -m 644 src/libows/ows.h $(D)$(PREFIX)/include
 	install -m 644 src/shm/layout.h $(D)$(PREFIX)/include/ows_layout.h
 	install -m 644 $(EXAMPLES) $(D)$(DATADIR)/examples
 	@set -e; for h in $(HOSTED); do d=$(D)$(DATADIR)/examples/$$h; install -d $$d; \
@@ -414,17 +444,21 @@ install: all
 	$(if $(D),,-@ldconfig 2>/dev/null || true)
 
 uninstall:
-	rm -f $(D)$(PREFIX)/sbin/owsd $(D)$(PREFIX)/bin/owsctl $(D)$(LIBDIR)/$(SO) \
-	    $(D)$(LIBDIR)/libows.so.$(SOMAJOR) $(D)$(LIBDIR)/libows.so $(D)$(LIBDIR)/libows.a \
-	    $(D)$(LIBDIR)/pkgconfig/libows.pc $(D)$(PREFIX)/include/ows.h \
-	    $(D)$(PREFIX)/include/ows_layout.h
+	rm -f $(addprefix $(D)$(PREFIX)/sbin/,owsd owsd-config owsd-web) $(D)$(PREFIX)/bin/owsctl \
+	    $(foreach l,$(LIBRARIES),$(foreach s,so.$(VERSION) so.$(SOMAJOR) so a,$(D)$(LIBDIR)/$(l).$(s)) \
+	    $(D)$(LIBDIR)/pkgconfig/$(l).pc) \
+	    $(D)$(PREFIX)/include/ows.h $(D)$(PREFIX)/include/ows_layout.h
 	rm -f $(foreach m,$(MAN),$(D)$(MANDIR)/man$(patsubst .%,%,$(suffix $(m)))/$(notdir $(m)))
-	rm -rf $(D)$(DATADIR)
+	rm -rf $(D)$(DATADIR) $(COCKPIT)
 
 # The service, where systemd and udev look: below PREFIX they do in /usr and /usr/local, else in /etc.
 # The unit names the owsd of PREFIX; what has to be done once is said
 SERVICE   := systemd/system/owsd@.service systemd/system/owsd.service sysusers.d/owsd.conf \
-             tmpfiles.d/owsd.conf modules-load.d/owsd.conf udev/rules.d/60-owsd.rules
+             tmpfiles.d/owsd.conf modules-load.d/owsd.conf udev/rules.d/60-owsd.rules \
+             $(foreach f,owsd-config owsd-web,systemd/system/$f@.service systemd/system/$f@.socket \
+             sysusers.d/$f.conf) tmpfiles.d/owsd-config.conf
+# Started by their sockets
+SOCKETED  := owsd-config owsd-web
 SERVICE_PREFIX := $(abspath $(PREFIX))
 SERVICE_IN := $(D)$(if $(filter /usr /usr/local,$(SERVICE_PREFIX)),$(SERVICE_PREFIX)/lib,/etc)
 install-service:
@@ -436,16 +470,23 @@ install-service:
 	    echo "install-service: PREFIX is '$(PREFIX)': the service sees no home and no /tmp; take another, as /opt"; \
 	    exit 1; esac
 	install -d $(addprefix $(SERVICE_IN)/,$(sort $(dir $(SERVICE)))) $(D)/etc/owsd
-	sed 's,@SBINDIR@,$(SERVICE_PREFIX:/=)/sbin,' board/systemd/owsd@.service >$(SERVICE_IN)/systemd/system/owsd@.service
-	chmod 644 $(SERVICE_IN)/systemd/system/owsd@.service
-	install -m 644 board/systemd/owsd.service $(SERVICE_IN)/systemd/system/owsd.service
+	@set -e; for u in owsd $(filter-out $(SOCKETED),$(FACES)); do f=$(SERVICE_IN)/systemd/system/$$u; \
+	    sed 's,@SBINDIR@,$(SERVICE_PREFIX:/=)/sbin,' board/systemd/$$u@.service >$$f@.service; \
+	    chmod 644 $$f@.service; install -m 644 board/systemd/$$u.service $$f.service; done
 	install -m 644 board/systemd/sysusers.conf $(SERVICE_IN)/sysusers.d/owsd.conf
+	@set -e; for f in $(FACES); do \
+	    install -m 644 board/systemd/$$f-sysusers.conf $(SERVICE_IN)/sysusers.d/$$f.conf; done
+	@set -e; for f in $(filter $(SOCKETED),$(FACES)); do u=$(SERVICE_IN)/systemd/system/$$f; \
+	    sed 's,@SBINDIR@,$(SERVICE_PREFIX:/=)/sbin,' board/systemd/$$f@.service >$$u@.service; \
+	    chmod 644 $$u@.service; install -m 644 board/systemd/$$f@.socket $$u@.socket; done
 	install -m 644 board/systemd/tmpfiles.conf $(SERVICE_IN)/tmpfiles.d/owsd.conf
+	install -m 644 board/systemd/owsd-config-tmpfiles.conf $(SERVICE_IN)/tmpfiles.d/owsd-config.conf
 	install -m 644 board/systemd/modules-load.conf $(SERVICE_IN)/modules-load.d/owsd.conf
 	install -m 644 board/udev/owsd.rules $(SERVICE_IN)/udev/rules.d/60-owsd.rules
 	[ -e $(D)/etc/owsd/OWS.rio ] || install -m 644 board/debian/OWS.rio $(D)/etc/owsd/OWS.rio
 	@echo 'now: systemd-sysusers; systemd-tmpfiles --create; modprobe i2c-dev; udevadm trigger;'
 	@echo '     systemctl daemon-reload; systemctl enable --now owsd      (its configuration: /etc/owsd/OWS.rio)'
+	@echo '     and for the page: systemctl enable --now owsd-web@OWS.socket'
 
 uninstall-service:
 	rm -f $(addprefix $(SERVICE_IN)/,$(SERVICE))

@@ -38,7 +38,7 @@ DRIVEN = {"10": THERMOMETER, "22": THERMOMETER, "28": THERMOMETER, "3B": THERMOM
           "29": dict.fromkeys("state output activity cond_search_mask cond_search_polarity "
                               "status_control".split(), ""),
           "14": {"eeprom": ""}, "1C": {"eeprom": ""}, "23": {"eeprom": ""},
-          "2D": {"eeprom": ""}, "1D": {"w1_slave": ""}, "26": {"page0": "", "page1": ""}}
+          "2D": {"eeprom": ""}, "1D": {"w1_slave": ""}, "26": {"page0": "\x08@\x15d\x02 \x01\0", "page1": "\1\2\3\4\5\6\7\0"}}
 MASTER = "w1_bus_master1"
 
 INTRO = """# Properties, one by one

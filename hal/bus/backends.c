@@ -1,5 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* The table of all backends of this build. */
+/* The table of all backends of this build, and the backend that a target names. */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "hal/bus/backends.h"
 #include "hal/bus/bus.h"
 
 const struct bus_ops *const bus_backends[] = {
@@ -8,3 +14,124 @@ const struct bus_ops *const bus_backends[] = {
 #undef BACKEND
 	NULL,
 };
+
+static const struct bus_ops *backend_of(const char *word, size_t len)
+{
+	for (const struct bus_ops *const *ops = bus_backends; *ops; ops++)
+		if (strlen((*ops)->scheme) == len && memcmp((*ops)->scheme, word, len) == 0)
+			return *ops;
+	return NULL;
+}
+
+/* Does WORD:REST mean HOST:PORT, even with a wrong port? */
+static bool is_host_and_port(const char *target, const char *colon)
+{
+	const char *rest = colon + 1 + strspn(colon + 1, " \t+-");
+	size_t len = (size_t)(colon - target);
+
+	return len == 0 || (*rest >= '0' && *rest <= '9') || memchr(target, '.', len) ||
+	       (len == 9 && memcmp(target, "localhost", len) == 0);
+}
+
+/* Is the target an IPv6 address without its brackets? */
+static bool is_bare_ipv6(const char *target, const char *colon)
+{
+	return strchr(colon + 1, ':') && target[strspn(target, "0123456789abcdefABCDEF:.")] == '\0';
+}
+
+/*
+ * Is the word an adapter of OWFS that owsd reaches only by another target? Then why has the remedy.
+ */
+static bool is_others_adapter(const char *word, size_t len, char *why, size_t why_size)
+{
+	static const char *const usb[] = {"usb", "ds9490", "ds9490r", "ds2490"};
+	static const char *const serial[] = {"serial", "link",    "linkusb",
+	                                     "ds9097", "ds9097u", "ds2480b"};
+	bool found = false;
+
+	for (size_t i = 0; i < sizeof(usb) / sizeof(usb[0]) && !found; i++) {
+		found = strlen(usb[i]) == len && strncasecmp(word, usb[i], len) == 0;
+		if (found)
+			snprintf(why, why_size,
+			         "%s is a USB adapter: take target w1, which has a DS9490R "
+			         "by the kernel's ds2490, or an owserver (a host: owserver:%s)",
+			         usb[i], usb[i]);
+	}
+	for (size_t i = 0; i < sizeof(serial) / sizeof(serial[0]) && !found; i++) {
+		found = strlen(serial[i]) == len && strncasecmp(word, serial[i], len) == 0;
+		if (found)
+			snprintf(why, why_size,
+			         "%s is a serial adapter: let an owserver have it, and "
+			         "name that: localhost:4304 (a host: owserver:%s)",
+			         serial[i], serial[i]);
+	}
+	return found;
+}
+
+static int no_backend(const char *word, size_t word_len, char *why, size_t why_size)
+{
+	char names[160] = "";
+	size_t used = 0;
+
+	for (const struct bus_ops *const *ops = bus_backends; *ops; ops++) {
+		int n = snprintf(names + used, sizeof(names) - used, " %s:", (*ops)->scheme);
+
+		if (n < 0 || (size_t)n >= sizeof(names) - used)
+			break;
+		used += (size_t)n;
+	}
+	snprintf(why, why_size,
+	         "'%.*s' is an unknown kind of target; there are%s, "
+	         "and HOST, HOST:PORT, [IPv6]:PORT for an owserver",
+	         (int)(word_len > 40 ? 40 : word_len), word, names);
+	return -EPROTONOSUPPORT;
+}
+
+int bus_create(const char *target, const struct bus_env *env, struct bus **bus, char *why,
+               size_t why_size)
+{
+	const char *colon = strchr(target, ':');
+	size_t word_len = colon ? (size_t)(colon - target) : strlen(target);
+	const struct bus_ops *ops = backend_of(target, word_len);
+	const char *where = colon ? colon + 1 : "";
+	int err;
+
+	if (why_size)
+		why[0] = '\0';
+	if (strcmp(target, "auto") == 0) {
+		snprintf(why, why_size, "auto stands for several targets: name one of them");
+		return -EINVAL;
+	}
+	if (!ops && !(colon && is_host_and_port(target, colon)) &&
+	    is_others_adapter(target, word_len, why, why_size))
+		return -EINVAL;
+	if (!ops) {
+		if (target[0] != '[' && colon && is_bare_ipv6(target, colon)) {
+			snprintf(why, why_size,
+			         "an IPv6 address is written in brackets, as in [::1]:4304");
+			return -EINVAL;
+		}
+		if (strncmp(target, "/dev/tty", 8) == 0) {
+			snprintf(why, why_size,
+			         "a serial adapter (DS9097U, LinkUSB): let an owserver "
+			         "have it, and name that: localhost:4304");
+			return -EINVAL;
+		}
+		if (target[0] == '/') {
+			snprintf(why, why_size,
+			         "a path has its way in front: i2c:/dev/i2c-1, "
+			         "owserver:/SOCKET");
+			return -EINVAL;
+		}
+		if (target[0] != '[' && colon && !is_host_and_port(target, colon))
+			return no_backend(target, word_len, why, why_size);
+		ops = backend_of("owserver", strlen("owserver"));
+		if (!ops)
+			return no_backend(target, word_len, why, why_size);
+		where = target;
+	}
+	err = ops->create(where, env, bus, why, why_size);
+	if (err == -ENOMEM)
+		snprintf(why, why_size, "out of memory");
+	return err;
+}

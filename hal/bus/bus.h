@@ -71,6 +71,13 @@ struct bus_req {
 	                    A value that is no bytes cannot be written in parts: -EINVAL */
 	uint8_t *data;
 	/*
+	 * Not 0 as soon as nobody wants the answer any more; any thread may set it while the bus
+	 * has the request. What is not begun of it is left out then, at once or at the end of the
+	 * part that is under way, and the answer is -ECANCELED. A WRITE goes on to its end, and a
+	 * bus may do so with all. NULL: the answer is wanted.
+	 */
+	const uint32_t *unwanted;
+	/*
 	 * For a target that is a server of the same protocol: the servers that the request came
 	 * through, this process last, BUS_TOKEN bytes for each. A server that finds its own token
 	 * has been asked in a circle. NULL: the target cannot lead back to this process.
@@ -79,13 +86,29 @@ struct bus_req {
 	uint32_t token_count; /* up to BUS_TOKENS_MAX */
 };
 
+/* May it end without having been done? */
+static inline bool bus_req_unwanted(const struct bus_req *req)
+{
+	return req->op != BUS_WRITE && req->unwanted &&
+	       __atomic_load_n(req->unwanted, __ATOMIC_RELAXED);
+}
+
 #define BUS_TOKEN 16
 #define BUS_TOKENS_MAX 8
+
+/* How a device gets its power. */
+enum bus_supply {
+	BUS_SUPPLY_UNKNOWN,
+	BUS_SUPPLY_PARASITE, /* from the data line */
+	BUS_SUPPLY_EXTERNAL,
+};
 
 /*
  * Exactly one for each request that was accepted. Values of err:
  *   0             done
  *   -ENODEV       no such device on this target
+ *   -ENXIO        the device was not found, and a part of the target does not answer: one of
+ *                 several bridge chips, which may be the one that has it
  *   -ENOENT       the device has no such property
  *   -EACCES       the property cannot be read, or cannot be written, by any process
  *   -EPERM        no permission: for the file of the kernel, or from a server that refuses writes
@@ -101,7 +124,7 @@ struct bus_req {
  *   -EOPNOTSUPP   this bus has no such operation (DIR of /alarm on some)
  *   -ETIME        not begun before its deadline, no effect
  *   -EINPROGRESS  the target lives but had no answer by the deadline; a write is in doubt
- *   -ECANCELED    the host shuts down
+ *   -ECANCELED    the host shuts down, or nobody wants the answer (bus_req.unwanted)
  *   -ENOTCONN     the target is down; nothing was sent
  *   -ETIMEDOUT    the target fell silent; a BUS_DOWN follows; a write is in doubt
  *   -ECONNRESET   the target was lost on the way; a BUS_DOWN follows; a write is in doubt
@@ -112,15 +135,25 @@ struct bus_answer {
 	int32_t err;
 	uint8_t kind;        /* enum bus_kind */
 	uint8_t detail;      /* BUS_DETAIL_* */
+	uint8_t retries;     /* how often the bus did it again after an error; at most 255 */
+	uint8_t supply;      /* enum bus_supply, of the path's device */
 	uint32_t len;        /* READ and DIR: bytes in req->data; WRITE: bytes taken */
 	int64_t measured_ns; /* when the chip latched the value, else when the answer came */
 	double number;       /* if kind is BUS_NUMBER */
+	/*
+	 * What a bus knows besides: nothing is asked of a device for it. Which chip the path's
+	 * device is by its behaviour ("DS18B20 clone, family B1"), a text that lives as long as the
+	 * program; NULL: not known. And the time that the request took of the wire, in microseconds
+	 * of its slots, without what served several requests; 0: not known.
+	 */
+	const char *identity;
+	uint32_t wire_us;
 };
 
 #define BUS_DETAIL_SIMULATED 0x01 /* the device is not real */
 #define BUS_DETAIL_CACHED 0x02    /* from a cache: measured_ns is older than the answer */
 
-#define BUS_EVENT_TEXT 140
+#define BUS_EVENT_TEXT 200
 struct bus_event {
 	uint8_t news; /* enum bus_news */
 	uint8_t rom[8];
@@ -219,6 +252,12 @@ struct bus_ops {
 	 * changed. NULL: always.
 	 */
 	int (*there)(struct bus *bus);
+	/*
+	 * While the bus waits for its next step: a descriptor that can be read, or has hung up,
+	 * when there is something to do sooner; -1: none. The host sets `stirred` then, which the
+	 * step takes back. NULL: none.
+	 */
+	int (*watch)(struct bus *bus);
 	/* The running totals, to be read with bus_counted(); *n gets their count. NULL: none. */
 	const struct bus_counter *(*counters)(struct bus *bus, size_t *n);
 };
@@ -232,6 +271,7 @@ struct bus {
 	unsigned head, count;
 	bool told_up; /* simple tier without step: BUS_UP was reported at its first step */
 	bool suspended;
+	bool stirred;    /* what watch() returned can be read: for the next step */
 	bool there;      /* suspended: BUS_BACK was reported */
 	int64_t look_ns; /* suspended: when to look for the target again */
 };
@@ -242,15 +282,6 @@ extern const struct bus_ops *const bus_backends[];
 #include "hal/bus/schemes.h"
 #undef BACKEND
 
-/*
- * Find the backend of a target ("owserver:localhost:4304", "null:") and create the bus. Bare
- * `host`, `host:port` and `[v6]:port` mean owserver, and so does an empty target (localhost). A
- * word that is a scheme means the scheme, with or without a colon. Returns as bus_ops.create;
- * -EPROTONOSUPPORT when no backend of this build has the scheme (why names the schemes of this
- * build). why is the end of a message that names the target before.
- */
-int bus_create(const char *target, const struct bus_env *env, struct bus **bus, char *why,
-               size_t why_size);
 /* As bus_ops.option, with a reason for each error. */
 int bus_option(struct bus *bus, const char *key, const char *text, char *why, size_t why_size);
 /* For create() of a backend: fill the shared part. Returns 0 or -ENOMEM. */
@@ -271,6 +302,8 @@ int64_t bus_step(struct bus *bus, int64_t now);
  * BUS_DOWN follows.
  */
 void bus_suspend(struct bus *bus, bool yes);
+/* As bus_ops.watch; -1 for a suspended bus, too. */
+int bus_watch(struct bus *bus);
 const struct bus_counter *bus_counters(struct bus *bus, size_t *n);
 
 #endif

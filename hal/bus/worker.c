@@ -14,6 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/bus/backends.h"
 #include "hal/bus/bell.h"
 #include "hal/bus/ring.h"
 #include "hal/bus/thread.h"
@@ -181,7 +182,7 @@ static void sleep_until(struct worker *worker, int64_t until_ns)
 		return;
 	__atomic_store_n(&worker->sleeping, 1, __ATOMIC_SEQ_CST);
 	if (!ring_used(&worker->orders) && !has_turn(worker) && !is_stopping(worker))
-		poll_once(worker, -1, 0, until_ns);
+		worker->bus->stirred = poll_once(worker, bus_watch(worker->bus), POLLIN, until_ns);
 	__atomic_store_n(&worker->sleeping, 0, __ATOMIC_SEQ_CST);
 }
 

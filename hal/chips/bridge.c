@@ -220,15 +220,19 @@ static bool is_whole(uint8_t type)
 	return type == PROPERTY_UNSIGNED || type == PROPERTY_INTEGER || type == PROPERTY_YESNO;
 }
 
+void bridge_bounds(uint8_t type, double *least, double *most)
+{
+	*least = type == PROPERTY_INTEGER ? -2147483648.0 : 0;
+	*most = type == PROPERTY_INTEGER ? 2147483647.0 : type == PROPERTY_YESNO ? 1 : 4294967295.0;
+}
+
 /* The value of what was measured; -ERANGE: it is none that the sensor can mean. */
 static int result(const struct sensor *sensor, double *number)
 {
 	const struct sensor_value *value = sensor->value;
-	double least = value->type == PROPERTY_INTEGER ? -2147483648.0 : 0;
-	double most = value->type == PROPERTY_INTEGER ? 2147483647.0
-	              : value->type == PROPERTY_YESNO ? 1
-	                                              : 4294967295.0;
+	double least, most;
 
+	bridge_bounds(value->type, &least, &most);
 	*number = value_of(sensor, value->formula, 0);
 	if (!isfinite(*number) ||
 	    (value->ranged && (*number < value->low || *number > value->high)))

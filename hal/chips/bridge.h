@@ -5,6 +5,8 @@
 
 #include "hal/chips/sensor.h"
 
+/* What a whole number or a yesno of a table can be. */
+void bridge_bounds(uint8_t type, double *least, double *most);
 /* "DS28E17"; NULL: devices with this family code are no bridges. */
 const char *bridge_type(uint8_t code);
 /*

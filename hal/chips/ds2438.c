@@ -6,7 +6,9 @@
  * Its checksum covers neither the command nor the page's number, and Recall says nothing: if it is
  * lost, the scratchpad's old contents come with a right checksum. So the scratchpad's first byte is
  * changed before and read back (the mark): who finds the memory's byte there knows of the Recall.
- * What is read is read twice, as the number of another page may have reached the chip.
+ * What is read is read twice, as the number of another page may have reached the chip; it may be
+ * the same one twice. The measurements are in page 0: there the configuration must be the known
+ * one.
  */
 #include <errno.h>
 #include <string.h>
@@ -82,6 +84,8 @@ static int take(struct txn *txn, unsigned page, uint8_t bytes[8])
 	if (!err)
 		err = read_scratchpad(txn, page, again);
 	if (!err && memcmp(in, again, sizeof(in)) != 0)
+		err = -EBADMSG;
+	if (!err && page == 0 && ((in[0] & BUSY) || ((in[0] ^ *note) & CONFIGURATION)))
 		err = -EBADMSG;
 	if (err)
 		return err;
@@ -257,6 +261,8 @@ static int write_page(struct txn *txn, unsigned page, const uint8_t *bytes, unsi
 		return err ? err : TXN_MORE;
 	case 4:
 		err = txn_command(txn, command, sizeof(command));
+		if (page == 0)
+			ds2438_of(txn)->first[0] = KNOWN | (bytes[0] & CONFIGURATION);
 		++*step;
 		return err ? err : txn_wait(txn, COPY_NS);
 	default:

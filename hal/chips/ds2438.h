@@ -20,7 +20,8 @@ struct ds2438 {
 	 * Of each page its first byte as it was; of page 0 the configuration and 80h. 0: not known.
 	 */
 	uint8_t first[8];
-	uint8_t kind; /* with family code 26: which chip it is (tmp1826.h) */
+	int64_t temperature_ns; /* its last conversion of the temperature; 0: none is known */
+	uint8_t kind;           /* with family code 26: which chip it is (tmp1826.h) */
 };
 static inline struct ds2438 *ds2438_of(const struct txn *txn)
 {

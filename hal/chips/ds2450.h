@@ -8,4 +8,14 @@
 /* All four channels with 16 bits. */
 extern const struct conversion ds2450_conversion;
 
+/* What is known of the chip (device.own). */
+struct ds2450 {
+	bool por_clear;      /* no channel's power-on flag is set */
+	int64_t measured_ns; /* when its last conversion began; 0: none is known */
+};
+static inline struct ds2450 *ds2450_of(const struct device *device)
+{
+	return device->own;
+}
+
 #endif

@@ -54,8 +54,7 @@ static unsigned kind_of_id(unsigned id)
 	return kind;
 }
 
-/* 0: it is known which sensor this is; TXN_MORE it is now; -ENOENT it has no such property. */
-static int identify(struct txn *txn)
+int eds_identify(struct txn *txn)
 {
 	struct eds *chip = txn->device->own;
 	uint8_t page[PAGE];
@@ -143,8 +142,8 @@ static void reset_nothing_else(struct txn *txn, uint8_t *want)
  * within 700 ms, and the old bytes are read until then.
  */
 #define PAGES \
-	.address_bytes = 2, .read = 0xa5, .check = AREA_CRC16, .begin = identify, .write = 0x0f, \
-	.verify = 0xaa, .copy = 0x55, .write_crc16 = true, .copy_ns = 700 * TXN_MS
+	.address_bytes = 2, .read = 0xa5, .check = AREA_CRC16, .begin = eds_identify, \
+	.write = 0x0f, .verify = 0xaa, .copy = 0x55, .write_crc16 = true, .copy_ns = 700 * TXN_MS
 
 const struct area eds_memory = {
 	.name = "memory",
@@ -201,7 +200,7 @@ int eds_write_memory(struct txn *txn)
 {
 	unsigned at = (unsigned)txn->element * PAGE + (unsigned)txn->at, kind;
 	unsigned n = (unsigned)txn->len, first, end;
-	int err = identify(txn);
+	int err = eds_identify(txn);
 
 	if (err)
 		return err;
@@ -302,7 +301,7 @@ int eds_write_reset(struct txn *txn)
 	struct visit *visit = txn_own(txn, struct visit);
 	unsigned first = visit->stage % 3 ? 4 : 0;
 	uint8_t page[PAGE] = {0};
-	int err = identify(txn);
+	int err = eds_identify(txn);
 
 	if (err)
 		return err;
@@ -328,7 +327,7 @@ int eds_write_clear(struct txn *txn)
 	static const uint8_t command = CLEAR_ALARMS;
 	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t page[PAGE];
-	int err = identify(txn);
+	int err = eds_identify(txn);
 
 	if (err || txn->number[0] == 0)
 		return err;

@@ -29,6 +29,8 @@ extern const struct area eds_memory, eds_switches;
 enum { EDS_SWITCHES_AT = 0x50 };
 
 unsigned eds_kind_of(const struct device *device);
+/* 0: it is known which sensor this is; TXN_MORE it is now; -ENOENT it has no such property. */
+int eds_identify(struct txn *txn);
 int eds_read_tag(struct txn *txn);
 int eds_read_type(struct txn *txn);
 int eds_write_memory(struct txn *txn);

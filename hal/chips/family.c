@@ -11,17 +11,46 @@ const char *family_type(const struct device *device)
 	return family->kind ? family->types[family->kind(device)] : family->type;
 }
 
+const char *family_identity(const struct device *device)
+{
+	const struct family *family = device->family;
+
+	if (family->name)
+		return device->identity;
+	return family->kind && !family->kind(device) ? NULL : family_type(device);
+}
+
+bool family_untold(const struct device *device)
+{
+	const struct family *family = device->family;
+
+	return family->kind && (family->identify || family->tell) && !family->kind(device);
+}
+
+/* All kinds that a chip of the family may turn out to be. */
+static uint32_t candidates(const struct family *family)
+{
+	uint32_t kinds = family->plain;
+
+	for (unsigned i = 0; i < family->count; i++)
+		kinds |= family->properties[i].kinds;
+	return kinds & ~(family->doubted | KIND(0));
+}
+
 bool family_has(const struct device *device, const struct property *property)
 {
 	const struct family *family = device->family;
 	unsigned kind = family->kind ? family->kind(device) : 1;
-	uint32_t kinds = property->kinds;
+	uint32_t kinds = property->kinds, all;
 
 	/* Those of every device have no kind. */
 	if (!kinds && family->count && property >= family->properties &&
 	    property < family->properties + family->count)
 		kinds = family->plain;
-	return !kinds || (kinds & KIND(kind ? kind : 1));
+	if (!kinds)
+		return true;
+	all = kind ? KIND(kind) : candidates(family);
+	return (kinds & all) == all;
 }
 
 bool family_doubts(const struct device *device)

@@ -23,7 +23,8 @@ struct family {
 	const char *type; /* "DS18B20" */
 	/*
 	 * Some families hold several chips. Which of them is it? 1 and up; 0 it is not known: then
-	 * it counts as the first, but requests may be for properties of any. NULL: there is one.
+	 * requests may be for properties of any, and a list has what all of them have.
+	 * NULL: there is one.
 	 */
 	unsigned (*kind)(const struct device *device);
 	const char *const *types; /* what each kind is called, [0] too */
@@ -34,10 +35,20 @@ struct family {
 	 */
 	int (*identify)(struct txn *txn);
 	/*
+	 * The same for a list of its properties, where identify is NULL. It may also return
+	 * TXN_MORE once when it is known. NULL: a list does not ask.
+	 */
+	int (*tell)(struct txn *txn);
+	/*
 	 * KIND() of those that a disturbed wire may have made up. They are told anew at the first
 	 * request that comes FAMILY_DOUBT_NS later.
 	 */
 	uint32_t doubted;
+	/*
+	 * Of a thermometer: which chip it is by a scratchpad after a conversion; exact: of 12 bits
+	 * (clone.h). NULL: a scratchpad shows nothing of that.
+	 */
+	const char *(*name)(const uint8_t rom[8], const uint8_t scratchpad[9], bool exact);
 	uint32_t plain; /* KIND() of those that have the properties whose .kinds is 0; 0: all */
 	/* The chip was away or has restarted: what of device.own is void? NULL: all of it. */
 	void (*forget)(struct device *device);
@@ -52,11 +63,18 @@ struct family {
 
 /* What the chip is called. */
 const char *family_type(const struct device *device);
+/*
+ * Which chip it is, by its behaviour where its family code does not decide that; a text that lives
+ * as long as the program. NULL: not known, or not yet. Asks nothing of the chip.
+ */
+const char *family_identity(const struct device *device);
 /* What was known of the chip is void: it was away or has restarted. */
 void family_forget(struct device *device);
 /* Is its kind one of family.doubted? */
 bool family_doubts(const struct device *device);
-/* Is the property one that this chip of its family has? */
+/* Would a list of its properties not know which chip it is, and can that be asked? */
+bool family_untold(const struct device *device);
+/* Is the property one that this chip of its family has? Not known which: that all of them have. */
 bool family_has(const struct device *device, const struct property *property);
 
 extern const struct family family_common;

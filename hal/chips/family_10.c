@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* DS18S20 and DS1920: one resolution, and what is below half a degree comes from COUNT_REMAIN. */
 #include "hal/chips/thermometer.h"
+#include "hal/chips/thermometer_store.h"
 
 #define HIDDEN_TEMPERATURE(text) \
 	PROPERTY(text, TEMPERATURE, VOLATILE, READ, .hidden = true, .convert = CONVERT_TEMPRES, \

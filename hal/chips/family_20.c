@@ -22,11 +22,6 @@ enum { RESULTS = 0, CONTROL = 8, LIMITS = 16 }; /* pages of 8 bytes */
 /* arg of settings: they end what the power-on flags tell. */
 #define ENDS_POWER_ON 4
 
-/* What is known of the chip (device.own). */
-struct ds2450 {
-	bool por_clear; /* no channel's power-on flag is set */
-};
-
 struct visit {
 	bool set;     /* the settings of a conversion are as wanted */
 	bool started; /* it is under way or over */
@@ -42,7 +37,7 @@ static bool power_on_flags(const uint8_t control[8])
 
 static int saw_pages(struct txn *txn, unsigned at, uint8_t *bytes, unsigned n)
 {
-	struct ds2450 *chip = txn->device->own;
+	struct ds2450 *chip = ds2450_of(txn->device);
 
 	if (at > CONTROL || at + n < CONTROL + 8)
 		return 0;
@@ -118,6 +113,16 @@ static bool is_set(int arg, const uint8_t control[8])
 	return set;
 }
 
+/* The results are fractions of it. */
+static bool is_range(int arg, const uint8_t control[8])
+{
+	bool is = true;
+
+	for (int i = 1; i < 8; i += 2)
+		is &= (control[i] & RANGE_HIGH) == (arg & HALF_RANGE ? 0 : RANGE_HIGH);
+	return is;
+}
+
 static int look_at_settings(struct txn *txn)
 {
 	struct visit *visit = txn_own(txn, struct visit);
@@ -180,10 +185,14 @@ static int read_volt(struct txn *txn)
 	err = convert(txn);
 	if (!err)
 		txn_share(txn, what, 0, txn->number, 4 * sizeof(txn->number[0]), visit->begun_ns);
+	if (!err)
+		ds2450_of(txn->device)->measured_ns = visit->begun_ns;
 	return err;
 }
 
 /*
+ * Of when a result is that the bus has not asked for, nobody knows, and one of another range would
+ * be twice as much or half: a conversion gives the truth.
  * A restart leaves zeros as results. Nothing but zeros may be of one whose flags a setting has
  * cleared since: a conversion gives the truth.
  */
@@ -198,9 +207,12 @@ static int read_latest(struct txn *txn)
 	if (err || power_on_flags(bytes + CONTROL))
 		return err ? err : -EIO;
 	take_volts(txn, bytes);
-	for (int i = 0; i < 8; i++)
+	txn->measured_ns = ds2450_of(txn->device)->measured_ns;
+	bool known = txn->measured_ns && is_range(txn->property->arg, bytes + CONTROL);
+	for (int i = 0; i < 8 && known; i++)
 		if (bytes[i] != 0)
 			return 0;
+	txn->measured_ns = 0;
 	visit->latest = true;
 	return TXN_MORE;
 }

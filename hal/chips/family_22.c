@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* DS1822: the properties of a DS18B20. */
 #include "hal/chips/thermometer.h"
+#include "hal/chips/thermometer_store.h"
 
 static const struct area *const areas[] = {THERMOMETER_AREAS};
 static const struct property_how how[] = {THERMOMETER_WAYS};

@@ -3,6 +3,7 @@
 #include "hal/chips/clone.h"
 #include "hal/chips/identity.h"
 #include "hal/chips/thermometer.h"
+#include "hal/chips/thermometer_store.h"
 
 static const struct area *const areas[] = {THERMOMETER_AREAS};
 enum { WAY_IDENTITY = AFTER_THERMOMETER_WAYS };
@@ -23,6 +24,7 @@ static const struct property properties[] = {
 const struct family family_28 = {
 	.code = 0x28,
 	.type = "DS18B20",
+	.name = clone_name,
 	THERMOMETER_FAMILY,
 	AREAS(areas),
 	HOW(how),

@@ -20,7 +20,11 @@ struct visit {
 	bool sent;
 };
 
-/* The command; then, with the strong pull-up over, the bytes. */
+/*
+ * The command; after its strong pull-up the bytes come in the same transaction. Nothing else may
+ * use the wire in between: another reset ends what the chip sends. Where the pull-up cannot be held
+ * so long, as there is none (w1), it is left to luck, and the checksum tells.
+ */
 static int begin(struct txn *txn, const struct area *area, unsigned at, uint8_t command[3])
 {
 	struct visit *visit = txn_own(txn, struct visit);
@@ -28,8 +32,12 @@ static int begin(struct txn *txn, const struct area *area, unsigned at, uint8_t 
 	                                     (uint8_t)((area->at + at) >> 8)};
 
 	memcpy(command, bytes, 3);
-	visit->sent = !visit->sent;
-	return visit->sent ? txn_command_strong(txn, bytes, sizeof(bytes), READ_NS) : 0;
+	if (txn->link->passive) {
+		visit->sent = !visit->sent;
+		return visit->sent ? txn_command_strong(txn, bytes, sizeof(bytes), READ_NS) : 0;
+	}
+	int err = txn_command(txn, bytes, 1);
+	return err ? err : txn_write_paused(txn, bytes + 1, sizeof(bytes) - 1, READ_NS);
 }
 
 /* The checksum is at the end of the page. */

@@ -16,6 +16,7 @@
 #include "hal/chips/identity.h"
 #include "hal/chips/thermometer.h"
 #include "hal/chips/thermometer_proof.h"
+#include "hal/chips/thermometer_store.h"
 
 enum { UNKNOWN, DS1825, MAX31826, MAX31850, MAX31825 }; /* thermometer.kind */
 
@@ -124,10 +125,10 @@ static int read_max31825(struct txn *txn)
 	if (raw == 0 && (!chip->raw_ns || at_ns - chip->raw_ns >= NEAR_NS || chip->raw > NEAR_RAW ||
 	                 chip->raw < -NEAR_RAW))
 		return -ERANGE;
-	thermometer_took(txn, bytes, at_ns);
+	err = thermometer_took(txn, bytes, at_ns);
 	chip->raw = (int16_t)raw;
 	txn->number[0] = raw / 16.0;
-	return 0;
+	return err;
 }
 
 /* The MAX31850's own temperature is the cold junction's, in the upper 12 bits of bytes 2 and 3. */
@@ -145,9 +146,8 @@ static int read_temperature(struct txn *txn)
 	err = converted(txn, bytes);
 	if (err)
 		return err;
-	thermometer_took(txn, bytes, txn_ended(txn));
 	txn->number[0] = ((int16_t)(bytes[2] | bytes[3] << 8) >> 4) / 16.0;
-	return 0;
+	return thermometer_took(txn, bytes, txn_ended(txn));
 }
 
 /* Open or short it has no temperature, whatever the bits above say. */
@@ -160,9 +160,8 @@ static int read_thermocouple(struct txn *txn)
 		return err;
 	if (bytes[0] & FAULT_ANY)
 		return -EIO;
-	thermometer_took(txn, bytes, txn_ended(txn));
 	txn->number[0] = ((int16_t)(bytes[0] | bytes[1] << 8) >> 2) / 4.0;
-	return 0;
+	return thermometer_took(txn, bytes, txn_ended(txn));
 }
 
 static int write_limit(struct txn *txn)
@@ -232,9 +231,8 @@ static int read_fault(struct txn *txn)
 
 	if (err)
 		return err;
-	thermometer_took(txn, bytes, txn_ended(txn));
 	txn->number[0] = (bytes[txn->property->arg >> 8] & txn->property->arg & 0xff) != 0;
-	return 0;
+	return thermometer_took(txn, bytes, txn_ended(txn));
 }
 
 static int read_flags(struct txn *txn)
@@ -343,6 +341,7 @@ const struct family family_3b = {
 	.code = 0x3b,
 	.type = "DS1825",
 	.kind = kind_of,
+	.tell = identify,
 	.types = types,
 	THERMOMETER_FAMILY,
 	AREAS(areas),

@@ -2,6 +2,7 @@
 /* DS28EA00: a DS18B20 with two switches. PIO is what the pins are, latch what they are set to. */
 #include "hal/chips/pio.h"
 #include "hal/chips/thermometer.h"
+#include "hal/chips/thermometer_store.h"
 
 static const struct area latches = {PIO_LATCHES(0xa5)};
 

@@ -244,6 +244,7 @@ const struct family family_7e = {
 	.alarms = true,
 	.type = "EDS",
 	.kind = eds_kind_of,
+	.tell = eds_identify,
 	.types = types,
 	AREAS(areas),
 	HOW(how),

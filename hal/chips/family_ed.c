@@ -169,6 +169,7 @@ const struct family family_ed = {
 	.code = 0xed,
 	.type = "InfernoEmbedded",
 	.kind = inferno_kind,
+	.tell = inferno_identify,
 	.types = types,
 	AREAS(areas),
 	HOW(how),

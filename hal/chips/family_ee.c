@@ -94,6 +94,7 @@ const struct family family_ee = {
 	.code = 0xee,
 	.type = "HobbyBoards_EE",
 	.kind = hobby_kind,
+	.tell = hobby_identify,
 	.types = types,
 	AREAS(areas),
 	HOW(how),

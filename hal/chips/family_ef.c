@@ -338,6 +338,7 @@ const struct family family_ef = {
 	.code = 0xef,
 	.type = "HobbyBoards_EF",
 	.kind = hobby_kind,
+	.tell = hobby_identify,
 	.types = types,
 	AREAS(areas),
 	HOW(how),

@@ -442,6 +442,7 @@ const struct family family_fc = {
 	.code = 0xfc,
 	.type = "BAE",
 	.kind = bae_kind,
+	.tell = bae_identify,
 	.types = types,
 	AREAS(areas),
 	HOW(how),

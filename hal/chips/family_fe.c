@@ -30,6 +30,8 @@ enum { SUBTYPE, VERSION, BUSY, TEMPERATURE_AT = 4, HUMIDITY_AT = 6, VALID = 8 };
 enum { NOT_KNOWN, PAGE_ALONE, COMMAND_AND_PAGE };
 struct smart_slave {
 	uint8_t covers;
+	uint8_t learning, pages; /* what that seems to be; of how many pages in a row */
+	int64_t measured_ns;     /* its last conversion that was verified; 0: none is known */
 };
 
 static int fetch(struct txn *txn, uint8_t bytes[PAGE], unsigned *covers)
@@ -51,25 +53,25 @@ static int fetch(struct txn *txn, uint8_t bytes[PAGE], unsigned *covers)
 	return *covers ? 0 : -EBADMSG;
 }
 
+/* One page; TXN_MORE: which checksum it has is not known yet, and another is to be read. */
 static int load_page(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
                      unsigned n)
 {
 	struct smart_slave *slave = txn->device->own;
-	unsigned covers = NOT_KNOWN, first = NOT_KNOWN;
+	unsigned covers = NOT_KNOWN;
 	uint8_t page[PAGE];
-	int err = 0;
+	int err = fetch(txn, page, &covers);
 
 	(void)area;
-	for (unsigned i = 0; !err && i < (slave->covers ? 1 : LEARNS); i++) {
-		err = fetch(txn, page, &covers);
-		first = i ? first : covers;
-		if (!err && covers != first)
-			err = -EBADMSG;
-	}
-	if (!err && slave->covers && covers != slave->covers)
+	if (!err && (slave->covers || slave->pages) && covers != slave->learning)
 		err = -EBADMSG;
+	if (err && !slave->covers)
+		slave->pages = 0;
 	if (err)
 		return err;
+	slave->learning = (uint8_t)covers;
+	if (!slave->covers && ++slave->pages < LEARNS)
+		return TXN_MORE;
 	slave->covers = (uint8_t)covers;
 	memcpy(bytes, page + at, n);
 	return 0;
@@ -107,11 +109,13 @@ static int convert(struct txn *txn, uint8_t bytes[PAGE])
 		return err ? err : txn_wait(txn, SOON_NS);
 	case 1:
 		err = now(txn, bytes);
+		txn->phase -= err == TXN_MORE;
 		if (err)
 			return err;
 		return is_busy(bytes) ? txn_wait(txn, CONVERT_NS) : -EBADMSG;
 	default:
 		err = now(txn, bytes);
+		txn->phase -= err == TXN_MORE;
 		if (err)
 			return err;
 		if (is_busy(bytes))
@@ -119,6 +123,7 @@ static int convert(struct txn *txn, uint8_t bytes[PAGE])
 		if (!bytes[VALID])
 			return -EBADMSG; /* it restarted */
 		txn_share(txn, &measured, 0, bytes, PAGE, *begun);
+		((struct smart_slave *)txn->device->own)->measured_ns = *begun;
 		return 0;
 	}
 }
@@ -139,8 +144,10 @@ static int read_measured(struct txn *txn)
 	return err;
 }
 
+/* Of when a conversion is that the bus did not ask for, nobody knows. */
 static int read_latest(struct txn *txn)
 {
+	const struct smart_slave *slave = txn->device->own;
 	uint8_t bytes[PAGE];
 	int err = area_read(txn, &page, 0, bytes, PAGE);
 
@@ -149,7 +156,8 @@ static int read_latest(struct txn *txn)
 	if (bytes[SUBTYPE] != SUBTYPE_TH)
 		return -ENOENT;
 	txn->number[0] = value(bytes + txn->property->arg);
-	return !bytes[VALID] || is_busy(bytes) ? -EIO : 0;
+	txn->measured_ns = slave->measured_ns;
+	return !bytes[VALID] || is_busy(bytes) || !slave->measured_ns ? -EIO : 0;
 }
 
 static int read_text(struct txn *txn)

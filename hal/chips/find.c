@@ -77,7 +77,7 @@ const struct property *family_property(const struct family *family, const struct
 	/* the request looks which chip it is, and is refused then */
 	bool unknown = family->kind && (!family->kind(device) || family_doubts(device));
 
-	return unknown && property->type != PROPERTY_DIRECTORY ? property : NULL;
+	return unknown ? property : NULL;
 }
 
 /* The first of the table behind prev, if it comes before best. */

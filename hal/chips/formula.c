@@ -217,6 +217,18 @@ static int unary(struct parser *p)
 	return err || !negative ? err : add(p, NEGATE, 0, 0);
 }
 
+/* It says the same whatever is read or written. */
+static bool is_constant(const struct formula_pool *pool, struct formula formula)
+{
+	for (unsigned i = 0; i < formula.count; i++) {
+		uint8_t code = pool->ops[formula.first + i].code;
+
+		if (code == SET || code == NAME || code >= FIELD_0)
+			return false;
+	}
+	return true;
+}
+
 static int product(struct parser *p)
 {
 	int err = unary(p);
@@ -226,7 +238,12 @@ static int product(struct parser *p)
 
 		if (code == NUMBER)
 			break;
+		struct formula divisor = {.first = p->pool->count};
 		err = unary(p);
+		divisor.count = p->pool->count - divisor.first;
+		if (!err && code == DIVIDE && is_constant(p->pool, divisor) &&
+		    formula_value(p->pool, divisor, &(struct formula_input){0}) == 0)
+			err = fail(p, "a division by 0");
 		err = err ? err : add(p, (uint8_t)code, 0, -1);
 	}
 	return err;
@@ -258,6 +275,9 @@ int formula_parse(struct formula_pool *pool, const struct formula_scope *scope, 
 	err = sum(&p);
 	formula->count = pool->count - formula->first;
 	skip(&p);
+	if (!err && is_constant(pool, *formula) &&
+	    !isfinite(formula_value(pool, *formula, &(struct formula_input){0})))
+		err = fail(&p, "a formula that is never a number, before");
 	*text = p.at;
 	return err;
 }
@@ -343,14 +363,8 @@ double formula_value(const struct formula_pool *pool, struct formula formula,
 
 bool formula_is_byte(const struct formula_pool *pool, struct formula formula)
 {
-	double value;
-
-	for (unsigned i = 0; i < formula.count; i++) {
-		uint8_t code = pool->ops[formula.first + i].code;
-
-		if (code == SET || code == NAME || code >= FIELD_0)
-			return true;
-	}
-	value = formula_value(pool, formula, &(struct formula_input){0});
+	if (!is_constant(pool, formula))
+		return true;
+	double value = formula_value(pool, formula, &(struct formula_input){0});
 	return value >= 0 && value <= 255 && value == floor(value);
 }

@@ -49,8 +49,7 @@ unsigned inferno_kind(const struct device *device)
 	return ((const struct inferno *)device->own)->kind;
 }
 
-/* 0: it is known which device it is. */
-static int identify(struct txn *txn)
+int inferno_identify(struct txn *txn)
 {
 	uint8_t bytes[4];
 	int err;
@@ -69,7 +68,7 @@ static int identify(struct txn *txn)
 
 int inferno_read(struct txn *txn)
 {
-	int err = identify(txn);
+	int err = inferno_identify(txn);
 
 	return err ? err : field_read(txn);
 }
@@ -129,7 +128,7 @@ static int count(struct txn *txn, unsigned which)
 {
 	const struct asked *asked = txn_own(txn, struct asked);
 	uint8_t *counts = of(txn)->counts[which];
-	int err = identify(txn);
+	int err = inferno_identify(txn);
 
 	if (err || counts[0])
 		return err;
@@ -162,7 +161,7 @@ int inferno_read_count(struct txn *txn)
 {
 	static const uint8_t none;
 	const struct asked *asked = txn_own(txn, struct asked);
-	int err = identify(txn);
+	int err = inferno_identify(txn);
 
 	if (err)
 		return err;
@@ -335,7 +334,7 @@ int inferno_read_light(struct txn *txn)
 	const struct asked *asked = txn_own(txn, struct asked);
 	const uint8_t *in = asked->seen;
 	char text[40];
-	int err = identify(txn);
+	int err = inferno_identify(txn);
 
 	if (!err)
 		err = ask(txn, GET_LIGHT, &channel, 1, 0, 7);
@@ -350,7 +349,7 @@ int inferno_write_light(struct txn *txn)
 {
 	struct asked *asked = txn_own(txn, struct asked);
 	uint8_t args[ARGS] = {(uint8_t)txn->property->arg};
-	int fade, err = identify(txn);
+	int fade, err = inferno_identify(txn);
 
 	if (err)
 		return err;
@@ -373,7 +372,7 @@ int inferno_write_light(struct txn *txn)
 
 int inferno_command(struct txn *txn)
 {
-	int err = identify(txn);
+	int err = inferno_identify(txn);
 
 	if (!err && txn->number[0] != 0)
 		err = command(txn, (uint8_t)txn->property->arg, NULL, 0);
@@ -389,7 +388,7 @@ int inferno_read_device(struct txn *txn)
 		[INFERNO_SWITCHES] = "Inferno Embedded Switch Master",
 		[INFERNO_OTHER] = "unknown",
 	};
-	int err = identify(txn);
+	int err = inferno_identify(txn);
 
 	return err ? err : property_text(txn, names[of(txn)->kind]);
 }
@@ -408,14 +407,14 @@ int inferno_enter_update(struct txn *txn)
 		err = command(txn, BOOT_UPDATER, NULL, 0);
 		return err ? err : txn_wait(txn, BOOT_NS);
 	}
-	err = identify(txn);
+	err = inferno_identify(txn);
 	return err ? err : of(txn)->kind == INFERNO_UPDATER ? 0 : -EIO;
 }
 
 int inferno_read_size(struct txn *txn)
 {
 	const struct asked *asked = txn_own(txn, struct asked);
-	int err = identify(txn);
+	int err = inferno_identify(txn);
 
 	if (!err)
 		err = ask(txn, BOOTLOADER_SIZE, NULL, 0, 0, 4);
@@ -427,7 +426,7 @@ int inferno_read_range(struct txn *txn)
 {
 	const struct asked *asked = txn_own(txn, struct asked);
 	char text[40];
-	int err = identify(txn);
+	int err = inferno_identify(txn);
 
 	if (!err)
 		err = ask(txn, RANGE, NULL, 0, 0, 8);

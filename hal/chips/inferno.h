@@ -17,6 +17,8 @@ enum inferno_kind {
 	INFERNO_OTHER,
 };
 unsigned inferno_kind(const struct device *device);
+/* 0: it is known which device it is; TXN_MORE it is now; -ENOENT it has no such property. */
+int inferno_identify(struct txn *txn);
 extern const struct area inferno_device;
 
 property_function inferno_read, inferno_read_device, inferno_enter_update;

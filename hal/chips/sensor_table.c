@@ -248,6 +248,20 @@ static bool is_bounded(uint8_t type)
 	return type == PROPERTY_UNSIGNED || type == PROPERTY_INTEGER || type == PROPERTY_YESNO;
 }
 
+/* The rest of a range beyond what the type can have could never be a value. */
+static int check_range(struct sensor_reader *r, const struct sensor_value *value)
+{
+	double least, most;
+
+	if (!is_bounded(value->type))
+		return 0;
+	bridge_bounds(value->type, &least, &most);
+	return value->low >= least && value->high <= most
+	               ? 0
+	               : reader_fail(r, "a range beyond that of the type, %.0f to %.0f", least,
+	                             most);
+}
+
 static int read_value(struct sensor_reader *r)
 {
 	struct sensor_table *table = r->table;
@@ -264,9 +278,10 @@ static int read_value(struct sensor_reader *r)
 	if (!err)
 		err = reader_formula(r, false, &found.formula);
 	found.ranged = !err && reader_take(r, "range");
-	if (found.ranged)
+	if (found.ranged) {
 		err = reader_range(r, &found.low, &found.high);
-	else if (!err && !is_bounded(found.type))
+		err = err ? err : check_range(r, &found);
+	} else if (!err && !is_bounded(found.type))
 		err = reader_fail(r,
 		                  "value %s has no range: add range LOW to HIGH, what the "
 		                  "sensor can mean",

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The thermometers' scratchpad: what it says, and how it is set.
+ * The thermometers' scratchpad: what it says, and how a conversion's resolution is set.
  */
 #include <errno.h>
 #include <string.h>
@@ -10,9 +10,7 @@
 #include "hal/chips/thermometer_proof.h"
 
 #define WRITE_SCRATCHPAD 0x4e
-#define COPY_SCRATCHPAD 0x48
 #define RECALL 0xb8
-#define COPY_NS (10 * TXN_MS)
 
 #define RAW_POWER_ON 0x0550
 #define RAW_BROKEN 0x07f8 /* 127.5 and above: no chip measures that */
@@ -25,10 +23,9 @@
 #define LOOKS_ONE 3
 #define LOOKS_ZERO 2
 
-/* What a visit that changes the scratchpad keeps from call to call. */
+/* What thermometer_prepare() keeps from call to call. */
 struct visit {
 	uint8_t scratchpad[9]; /* as it is to be */
-	uint8_t kept[3];       /* limits and configuration as they were */
 };
 static struct visit *visit_of(struct txn *txn)
 {
@@ -107,8 +104,7 @@ int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9])
 	return err ? err : area->saw(txn, 0, scratchpad, 9);
 }
 
-/* As far as the limits and the configuration: a driver gives these without a conversion. */
-static int read_settings(struct txn *txn, uint8_t scratchpad[9])
+int thermometer_settings(struct txn *txn, uint8_t scratchpad[9])
 {
 	if (!txn_driven(txn))
 		return thermometer_scratchpad(txn, scratchpad);
@@ -159,6 +155,17 @@ static void learn_make(struct device *device, const uint8_t scratchpad[9])
 	thermometer_of(device)->make = genuine ? MAKE_GENUINE : MAKE_CLONE;
 }
 
+/* A result that ends as after a restart is the same in all of them: it takes nothing back. */
+static void learn_name(struct device *device, const uint8_t scratchpad[9])
+{
+	bool exact = thermometer_of(device)->resolution == 12;
+
+	if (!device->family->name ||
+	    (device->identity && (!exact || (scratchpad[SP_LSB] & 0xf) == 4)))
+		return;
+	device->identity = device->family->name(device->rom, scratchpad, exact);
+}
+
 /*
  * Is the reading one of a chip that had no power (85 at power-on, 127.94)? -ERANGE, and
  * txn->restarted where the scratchpad proves it; else 0. now: when it was read.
@@ -194,7 +201,7 @@ int thermometer_write_settings(struct txn *txn, const uint8_t scratchpad[9])
 	return txn_command(txn, out, 1 + n);
 }
 
-static uint8_t config_for(uint8_t config, unsigned resolution)
+uint8_t thermometer_config(uint8_t config, unsigned resolution)
 {
 	return (uint8_t)((config & ~0x60) | (resolution - 9) << 5);
 }
@@ -207,10 +214,10 @@ int thermometer_prepare(struct txn *txn, unsigned resolution)
 
 	switch (txn->phase) {
 	case 0:
-		err = read_settings(txn, visit_of(txn)->scratchpad);
+		err = thermometer_settings(txn, visit_of(txn)->scratchpad);
 		if (err || thermometer_of(device)->resolution == resolution)
 			return err;
-		visit_of(txn)->scratchpad[SP_CONFIG] = config_for(
+		visit_of(txn)->scratchpad[SP_CONFIG] = thermometer_config(
 			visit_of(txn)->scratchpad[SP_CONFIG], resolution);
 		txn->phase = 1;
 		return TXN_MORE;
@@ -223,7 +230,7 @@ int thermometer_prepare(struct txn *txn, unsigned resolution)
 		return err ? err : TXN_MORE;
 	default:
 		thermometer_of(device)->resolution = 0;
-		err = read_settings(txn, scratchpad);
+		err = thermometer_settings(txn, scratchpad);
 		thermometer_of(device)->ignores = !err &&
 		                                  thermometer_of(device)->resolution != resolution;
 		return err;
@@ -247,158 +254,45 @@ int thermometer_read_temperature(struct txn *txn)
 	if (err)
 		return err;
 	learn_make(device, scratchpad);
-	thermometer_took(txn, scratchpad, now);
+	learn_name(device, scratchpad);
+	err = thermometer_took(txn, scratchpad, now);
 	thermometer_of(device)->raw = (int16_t)raw;
 	txn->number[0] = raw / 16.0;
-	return 0;
-}
-
-static bool is_set(struct txn *txn, const uint8_t scratchpad[9])
-{
-	return memcmp(scratchpad + SP_HIGH, visit_of(txn)->scratchpad + SP_HIGH,
-	              txn->device->family->fixed ? 2 : 3) == 0;
-}
-
-/* The steps of store(). */
-enum { WRITE = 1, VERIFY, COPY, RECALLS, CHECK = RECALLS + 3 };
-
-static int copy_settings(struct txn *txn)
-{
-	static const struct area eeprom = {.name = "eeprom", .size = 3};
-	static const uint8_t copy = COPY_SCRATCHPAD;
-
-	/* A driver's word for it is all there is. */
-	if (txn_driven(txn)) {
-		txn->phase = CHECK;
-		int err = txn_driver_write(txn, &eeprom, 0, visit_of(txn)->scratchpad + SP_HIGH, 3);
-
-		return err ? err : TXN_MORE;
-	}
-	/* Without a strong pull-up it matters who feeds the chip. */
-	if (txn->link->passive && txn->device->power == POWER_UNKNOWN) {
-		int err = thermometer_ask_power(txn);
-
-		return err < 0 ? err : TXN_MORE;
-	}
-	txn->phase = RECALLS;
-	return txn_command_strong(txn, &copy, 1, COPY_NS);
+	return err;
 }
 
 /*
- * The user's setting goes to the EEPROM, so that it outlives the chip's power, and with it the
- * resolution that was there, not the one that a conversion asked for. What is there already is not
- * written again: the EEPROM wears out. The copy says nothing. So the scratchpad is recalled from
- * the EEPROM then: if the copy was lost, the settings before it come back. A recall says nothing
- * either, and is made three times. What is in force is what stood there or what is wanted, at each
- * moment.
+ * Nine bits at the first look may be those of a mark that an owsd which was killed has left
+ * (thermometer_proof.h): what stands in the EEPROM counts.
  */
-static int store(struct txn *txn)
+bool thermometer_forgot(const struct device *device)
 {
-	static const uint8_t recall = RECALL;
-	struct device *device = txn->device;
-	uint8_t scratchpad[9];
-	int err = 0;
+	const struct thermometer *chip = thermometer_of(device);
 
-	switch (txn->phase) {
-	case WRITE:
-		err = thermometer_rest(txn);
-		if (err)
-			return err;
-		err = thermometer_write_settings(txn, visit_of(txn)->scratchpad);
-		break;
-	case VERIFY:
-		thermometer_of(device)->resolution = 0;
-		err = read_settings(txn, scratchpad);
-		if (!err && !is_set(txn, scratchpad))
-			return scratchpad[SP_CONFIG] != visit_of(txn)->scratchpad[SP_CONFIG]
-			               ? -EINVAL
-			               : -EBADMSG;
-		break;
-	case COPY:
-		return copy_settings(txn);
-	default:
-		if (txn->phase < CHECK)
-			err = txn_command(txn, &recall, 1);
-		if (!err)
-			err = read_settings(txn, scratchpad);
-		if (err)
-			return err;
-		if (!is_set(txn, scratchpad))
-			return -EIO;
-		if (txn->phase + 1 < CHECK)
-			break;
-		txn_changed(txn);
-		thermometer_of(device)->stored = thermometer_of(device)->resolution;
-		return 0;
-	}
-	txn->phase++;
-	return err ? err : TXN_MORE;
+	return chip->stored == THERMOMETER_MARK && !chip->recalled && chip->unseen;
 }
 
-/* The scratchpad to the visit, ahead of a change of its settings. 1: one has failed before. */
-static int before_store(struct txn *txn)
+int thermometer_recall(struct txn *txn)
 {
-	int err = read_settings(txn, visit_of(txn)->scratchpad);
+	static const uint8_t recall = RECALL;
+	struct thermometer *chip = thermometer_of(txn->device);
+	int err = thermometer_rest(txn);
 
 	if (err)
 		return err;
-	bool failed = txn_base(txn, &thermometer_area, visit_of(txn)->scratchpad + SP_HIGH, 3);
-	memcpy(visit_of(txn)->kept, visit_of(txn)->scratchpad + SP_HIGH, 3);
-	if (!txn->device->family->fixed)
-		visit_of(txn)->scratchpad[SP_CONFIG] = config_for(
-			visit_of(txn)->scratchpad[SP_CONFIG], thermometer_of(txn->device)->stored);
-	return failed;
-}
-
-static int begin_store(struct txn *txn)
-{
-	txn_keep(txn, &thermometer_area, visit_of(txn)->kept, 3);
-	txn->phase = 1;
-	return TXN_MORE;
-}
-
-int thermometer_write_limit(struct txn *txn)
-{
-	double value = txn->number[0];
-	int failed;
-
-	if (txn->phase)
-		return store(txn);
-	if (!(value > -128.5 && value < 127.5))
-		return -EINVAL;
-	int limit = (int)(value < 0 ? value - 0.5 : value + 0.5);
-	failed = before_store(txn);
-	if (failed < 0 ||
-	    (!failed && (int8_t)visit_of(txn)->scratchpad[txn->property->field.at] == limit))
-		return failed;
-	visit_of(txn)->scratchpad[txn->property->field.at] = (uint8_t)limit;
-	return begin_store(txn);
+	chip->recalled = true;
+	chip->resolution = chip->stored = 0;
+	err = txn_command(txn, &recall, 1);
+	return err ? err : TXN_MORE;
 }
 
 int thermometer_read_tempres(struct txn *txn)
 {
 	uint8_t scratchpad[9];
-	int err = read_settings(txn, scratchpad);
+	int err = thermometer_settings(txn, scratchpad);
 
 	txn->number[0] = thermometer_of(txn->device)->stored;
 	return err;
-}
-
-int thermometer_write_tempres(struct txn *txn)
-{
-	int failed;
-
-	if (txn->phase)
-		return store(txn);
-	if (!(txn->number[0] >= 9 && txn->number[0] <= 12))
-		return -EINVAL;
-	unsigned resolution = (unsigned)txn->number[0];
-	failed = before_store(txn);
-	if (failed < 0 || (!failed && thermometer_of(txn->device)->stored == resolution))
-		return failed;
-	visit_of(txn)->scratchpad[SP_CONFIG] = config_for(visit_of(txn)->scratchpad[SP_CONFIG],
-	                                                  resolution);
-	return begin_store(txn);
 }
 
 /* Eight slots, which are all alike. */
@@ -444,7 +338,7 @@ int thermometer_read_power(struct txn *txn)
 
 	if (txn->phase == 2) {
 		txn->number[0] = 1;
-		return read_settings(txn, scratchpad);
+		return thermometer_settings(txn, scratchpad);
 	}
 	bit = thermometer_ask_power(txn);
 	txn->number[0] = 0;

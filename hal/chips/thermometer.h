@@ -25,8 +25,19 @@ int thermometer_saw(struct txn *txn, unsigned at, uint8_t *scratchpad, unsigned 
 int thermometer_scratchpad(struct txn *txn, uint8_t scratchpad[9]);
 /* Limits and configuration of these nine bytes to the scratchpad, not to the EEPROM. */
 int thermometer_write_settings(struct txn *txn, const uint8_t scratchpad[9]);
+/*
+ * The scratchpad as far as the limits and the configuration: a driver gives these without a
+ * conversion.
+ */
+int thermometer_settings(struct txn *txn, uint8_t scratchpad[9]);
+/* The configuration with another resolution. */
+uint8_t thermometer_config(uint8_t config, unsigned resolution);
 /* Make the chip convert at this resolution; may take several calls. */
 int thermometer_prepare(struct txn *txn, unsigned resolution);
+
+/* Is its resolution perhaps not that of its EEPROM? That is recalled once; TXN_MORE: done. */
+bool thermometer_forgot(const struct device *device);
+int thermometer_recall(struct txn *txn);
 
 /* It converts; -EBADMSG: it has not taken the command. */
 int thermometer_start(struct txn *txn);
@@ -35,9 +46,7 @@ int thermometer_start(struct txn *txn);
 int thermometer_ask_power(struct txn *txn);
 
 int thermometer_read_temperature(struct txn *txn);
-int thermometer_write_limit(struct txn *txn); /* of the field's byte */
 int thermometer_read_tempres(struct txn *txn);
-int thermometer_write_tempres(struct txn *txn);
 int thermometer_read_power(struct txn *txn);
 
 /* What stands first in the lists of their families; those with more begin behind the last. */

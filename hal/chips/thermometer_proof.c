@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* When the result that a thermometer holds was taken, and what proves that it is a new one. */
+#include <errno.h>
 #include <string.h>
 
 #include "hal/chips/clone_id.h"
@@ -8,6 +9,7 @@
 #include "hal/chips/thermometer_state.h"
 
 #define LONGEST_NS (750 * TXN_MS)
+#define FULL_BITS 12
 
 /*
  * As the data sheet says, but for clones of the DS18B20 (clone.c): family D2 takes 523 ms at each
@@ -83,45 +85,52 @@ int thermometer_rest(struct txn *txn)
 	return busy > now ? txn_wait(txn, busy - now) : 0;
 }
 
-/* A reading of the scratchpad takes less, at the speed of standard slots. */
-#define READING_NS (20 * TXN_MS)
-
-/* It converts, and what was read until now is the result of the conversion before. */
-static bool is_held(const struct thermometer *chip, int64_t now)
+/* The bits below the resolution, which a result at it has not. */
+static uint8_t below(unsigned resolution)
 {
-	return chip->held_until_ns && now <= chip->held_until_ns + READING_NS &&
-	       chip->converted_ns > now;
+	return (uint8_t)((1 << (FULL_BITS - resolution)) - 1);
+}
+
+static bool is_adjustable(const struct device *device)
+{
+	const struct thermometer *chip = thermometer_of(device);
+
+	return !device->family->fixed && !chip->ignores && !chip->only_12 && chip->resolution;
+}
+
+bool thermometer_marks(const struct device *device)
+{
+	const struct thermometer *chip = thermometer_of(device);
+
+	return is_adjustable(device) && chip->raw_ns &&
+	       (chip->latched[0] & below(THERMOMETER_MARK) & ~below(chip->resolution));
 }
 
 /*
- * The same where the chip converts with all others of a double buffer's channel, which does not
- * show whether it heard. It did if it showed the start of its own, or if it holds something else
- * than when it was read last and converted once since. Else what it holds is as old as it was.
+ * Nothing shows that it converted, and it holds what was read last. Did it convert at fewer bits
+ * than that has, it would hold something else; at more bits it may hold what is too coarse, but for
+ * the second time at the most.
  */
-static int64_t strict_ns(struct txn *txn, const uint8_t holds[3], int64_t now)
+static void compare_bits(struct txn *txn)
 {
 	struct thermometer *chip = thermometer_of(txn->device);
-	bool held = is_held(chip, now);
-	uint8_t conversion = (uint8_t)(chip->conversion - held);
-	bool next = (uint8_t)(conversion - chip->read_of) <= 1;
-	bool differs = memcmp(chip->latched, holds, sizeof(chip->latched)) != 0;
-	bool own = held ? chip->held_own : chip->own;
-	int64_t when = held ? chip->held_ns : chip->ended_ns;
+	uint8_t was = chip->latched_bits;
 
-	memcpy(chip->latched, holds, sizeof(chip->latched));
-	chip->read_of = conversion;
-	chip->changes = differs;
-	txn->held = held;
-	if ((own || (differs && next)) && when > chip->latched_ns && when < now)
-		chip->latched_ns = when;
-	return chip->latched_ns;
+	chip->coarse = false;
+	if (!is_adjustable(txn->device))
+		return;
+	if (txn->unproven && was > chip->resolution)
+		txn->unheard = chip->latched[0] & below(chip->resolution) & ~below(was);
+	chip->coarse = txn->unproven && was && was < chip->resolution;
+	if (!txn->unheard)
+		chip->latched_bits = chip->resolution;
 }
 
 /*
  * When the chip latched what it holds. While the strong pull-up is on, no chip can show that it
  * converts. If it holds something else than when it was read last, and converted once since, it
- * did. If not, a conversion may have been missed: then this is at least the result of the one
- * before.
+ * did. If not, this is what was proven to be its result before. Where nothing can be made to differ
+ * (thermometer_marks()), it is taken for the result of the conversion before the last.
  */
 static int64_t latched_ns(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
 {
@@ -131,13 +140,12 @@ static int64_t latched_ns(struct txn *txn, const uint8_t scratchpad[9], int64_t 
 	               thermometer_of(device)->raw_ns >= thermometer_of(device)->earlier_ns &&
 	               memcmp(thermometer_of(device)->latched, holds, sizeof(holds)) != 0;
 
-	if (thermometer_of(device)->strict && thermometer_of(device)->latched_ns &&
-	    thermometer_of(device)->converted_ns)
-		return strict_ns(txn, holds, now);
-	thermometer_of(device)->read_of = thermometer_of(device)->conversion;
 	memcpy(thermometer_of(device)->latched, holds, sizeof(holds));
 	txn->unproven = thermometer_of(device)->unseen && !changed;
-	int64_t when = txn->unproven ? thermometer_of(device)->earlier_ns : ended_ns(device);
+	compare_bits(txn);
+	int64_t when = ended_ns(device);
+	if (txn->unproven)
+		when = thermometer_marks(device) ? 0 : thermometer_of(device)->earlier_ns;
 	/* It never becomes older than it was. */
 	if (when > thermometer_of(device)->latched_ns && when < now)
 		thermometer_of(device)->latched_ns = when;
@@ -158,38 +166,10 @@ static bool is_proven(const struct device *device, const uint8_t scratchpad[9])
 	                        (device->family->fixed && was[2] != scratchpad[SP_REMAIN]));
 }
 
-/* Byte 6 follows the temperature in each chip of which results are read while it converts. */
-static bool is_whole(const uint8_t scratchpad[9])
-{
-	unsigned low = scratchpad[SP_LSB] & 0xf;
-
-	return scratchpad[SP_REMAIN] == 16 - low;
-}
-
-/* Since its last reading but one conversion may have ended. */
-static bool has_changed(const struct thermometer *chip, const uint8_t scratchpad[9])
-{
-	return chip->read_of == (uint8_t)(chip->conversion - 1) &&
-	       (chip->latched[0] != scratchpad[SP_LSB] || chip->latched[1] != scratchpad[SP_MSB]);
-}
-
 int thermometer_ended(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
 {
 	struct thermometer *chip = thermometer_of(txn->device);
 
-	if (chip->strict && !chip->early_ns && chip->converted_ns > now) {
-		/* Near the end nobody knows which result it was, or whether it was a whole one. */
-		bool likely = now >= thermometer_likely_ns(chip) && has_changed(chip, scratchpad);
-
-		if (!is_whole(scratchpad) || !(is_held(chip, now) || likely))
-			return txn_wait(txn, chip->converted_ns - now);
-		if (likely) {
-			chip->converted_ns = chip->busy_ns = now;
-			chip->least_ns = chip->ended_ns;
-			chip->longest_ns = 0;
-		}
-		return 0;
-	}
 	if (chip->early_ns && chip->converted_ns > now) {
 		/* Whoever reads it meanwhile needs the proof, too. */
 		if (!is_proven(txn->device, scratchpad))
@@ -201,8 +181,9 @@ int thermometer_ended(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
 	return 0;
 }
 
-void thermometer_took(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
+int thermometer_took(struct txn *txn, const uint8_t scratchpad[9], int64_t now)
 {
 	txn->measured_ns = latched_ns(txn, scratchpad, now);
 	thermometer_of(txn->device)->raw_ns = now;
+	return txn->measured_ns > 0 || txn->property->convert ? 0 : -EIO;
 }

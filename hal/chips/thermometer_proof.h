@@ -22,6 +22,14 @@ void thermometer_told(struct device *device, int64_t now, int64_t longest);
  * that were told, has shown that it heard.
  */
 void thermometer_converts(struct device *device, int64_t now, int64_t longest, bool unseen);
+/*
+ * Would a conversion at THERMOMETER_MARK bits change what it holds, whatever the temperature is?
+ * Then that proves that it hears Convert T, also with the strong pull-up, and the result of the
+ * next one at more bits differs from that in turn. Of no chip whose resolution is fixed, and of no
+ * temperature that THERMOMETER_MARK bits can show: seven of eight at 12 bits are others.
+ */
+#define THERMOMETER_MARK 9
+bool thermometer_marks(const struct device *device);
 /* It restarted, or has another resolution than was thought: it may convert for longer. */
 void thermometer_doubt(struct device *device, int64_t now);
 /*
@@ -35,7 +43,10 @@ int thermometer_rest(struct txn *txn);
  * nothing proves that; txn waits for the longest time, and is to read the scratchpad again.
  */
 int thermometer_ended(struct txn *txn, const uint8_t scratchpad[9], int64_t now);
-/* What it holds was read, and is good: notes that, and from when it is (measured_ns, unproven). */
-void thermometer_took(struct txn *txn, const uint8_t scratchpad[9], int64_t now);
+/*
+ * What it holds was read, and is good: notes that, and from when it is (measured_ns, unproven).
+ * -EIO: nothing was to be converted for it, and no conversion is known that it can be of.
+ */
+int thermometer_took(struct txn *txn, const uint8_t scratchpad[9], int64_t now);
 
 #endif

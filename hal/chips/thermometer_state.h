@@ -16,9 +16,6 @@ enum { SP_LSB, SP_MSB, SP_HIGH, SP_LOW, SP_CONFIG, SP_5, SP_REMAIN, SP_PER_DEGRE
 /* Does byte 6 of a scratchpad follow the temperature, as in the genuine chip? */
 enum thermometer_make { MAKE_UNKNOWN, MAKE_GENUINE, MAKE_CLONE };
 
-/* Is what the chip holds read while it converts anew (hal/native/double_buffer.h)? */
-enum thermometer_ahead { AHEAD_UNTRIED, AHEAD_TRUSTED, AHEAD_REFUSED };
-
 /* What is known of the chip (device.own). */
 struct thermometer {
 	/* For good. */
@@ -45,35 +42,15 @@ struct thermometer {
 	int64_t unread_ns;    /* the one whose result did not come over the wire whole; 0: none */
 	int64_t earlier_ns;   /* the one before the last */
 	uint8_t latched[3];   /* what tells one conversion's result from another's, when read */
+	uint8_t latched_bits; /* ... and the resolution that was to be; 0: not known */
+	bool coarse;          /* it may be a result at fewer bits than it is to have */
+	bool recalled;        /* its EEPROM was recalled: `stored` is what stands there */
 	int64_t latched_ns;   /* ... and of which conversion that was; 0: not known */
-	/* Double buffer: hal/native/trial.c and double_buffer.c write these. */
-	uint8_t ahead;        /* enum thermometer_ahead */
-	uint8_t trials;       /* parts of the trial that it has passed */
-	uint8_t inconclusive; /* parts in a row that showed nothing */
-	bool strict;          /* its last conversion was one for all of a double buffer's channel */
-	bool own, held_own;   /* the chip itself showed the start; ... of the conversion before */
-	bool changes;         /* its last reading differed from the one before */
-	bool audited;         /* since the channel's last audit began */
-	uint8_t conversion;   /* number of its last conversion */
-	uint8_t read_of;      /* ... and of the one whose result was read last */
-	uint32_t shortest_us; /* the shortest time that it took at 12 bits; 0: not known */
-	int64_t ended_ns;     /* start of its last conversion and that time */
-	int64_t held_ns; /* the same of the conversion before, whose result it still holds ... */
-	int64_t held_until_ns; /* ... in readings that begin by then, while it converts; 0: none */
 };
 _Static_assert(sizeof(struct thermometer) <= DEVICE_OWN, "no room for what is known");
 static inline struct thermometer *thermometer_of(const struct device *device)
 {
 	return device->own;
-}
-
-/*
- * Double buffer: when its conversion is over if it takes as long as in its trial, with a sixteenth
- * more.
- */
-static inline int64_t thermometer_likely_ns(const struct thermometer *chip)
-{
-	return chip->ended_ns + (int64_t)chip->shortest_us * 1000 / 16;
 }
 
 #endif

@@ -42,6 +42,8 @@ enum ds2482_config {
 };
 
 /* ns; "1-Wire timing" of the electrical characteristics, [0] standard, [1] overdrive. */
+static const long ds2482_slot_min_ns = 65800;
+static const long ds2482_reset_min_ns = 1124800;
 static const long ds2482_slot_ns[2] = {69300, 10500};
 static const long ds2482_slot_max_ns[2] = {72800, 11100};
 static const long ds2482_reset_ns[2] = {1184000, 146000};

@@ -9,6 +9,7 @@
 #define HAL_DS2482_H
 
 #include "hal/ds2482/codes.h"
+#include "hal/ds2482/ends.h"
 #include "hal/ds2482/i2c.h"
 #include "hal/gpio/line.h"
 #include "hal/wire/link.h"
@@ -37,11 +38,12 @@ struct ds2482_chip {
 	uint8_t address;
 	enum ds2482_part part;
 	unsigned channels;
-	bool lost;        /* reset or changed by another program: it needs a chip reset */
-	uint8_t channel;  /* the selected channel */
-	uint8_t config;   /* the configuration in the chip */
-	int64_t claim_ns; /* env time of the next look whether the chip is still ours */
-	int64_t free_at;  /* env time by which the last operation has ended at the latest */
+	bool lost;               /* reset or changed by another program: it needs a chip reset */
+	uint8_t channel;         /* the selected channel */
+	uint8_t config;          /* the configuration in the chip */
+	int64_t claim_ns;        /* env time of the next look whether the chip is still ours */
+	int64_t free_at;         /* env time by which the last operation has ended at the latest */
+	struct ds2482_ends ends; /* when its operations really end */
 	struct ds2482_link link[8];
 };
 

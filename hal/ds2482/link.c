@@ -11,6 +11,7 @@
 #include "hal/ds2482/run.h"
 #include "hal/ds2482/select.h"
 #include "hal/ds2482/together.h"
+#include "hal/ds2482/visit.h"
 
 static struct ds2482_link *self(struct link *link)
 {
@@ -201,6 +202,7 @@ static const struct link_ops link_ops = {
 	.triplet = link_triplet,
 	.together = ds2482_together,
 	.abreast = ds2482_abreast,
+	.visits = ds2482_visits,
 	.speed = link_speed,
 	.recover = link_recover,
 	.cost = link_cost,

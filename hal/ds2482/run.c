@@ -18,20 +18,18 @@
 
 #include "hal/bus/time.h"
 #include "hal/ds2482/chip.h"
+#include "hal/ds2482/ends.h"
 #include "hal/ds2482/io.h"
 #include "hal/ds2482/run.h"
 
 /* Reading on pays with bytes of at most 45 us (200 kHz). */
 #define FAST_BYTE_NS 45000
 #define BETWEEN_NS 100000
-#define MAX_BYTES 180
-#define MAX_MESSAGES 42
+#define MAX_BYTES DS2482_MAX_BYTES
+#define MAX_MESSAGES DS2482_MAX_MESSAGES
 
-/*
- * How many bytes to read so that the last one begins max_ns after the command. `between` bytes pass
- * before the reading begins. What the adapter takes between messages is left out: it may take less.
- */
-static unsigned reading_on(const struct ds2482_chip *chip, long max_ns, unsigned between)
+/* What the adapter takes between messages is left out: it may take less. */
+unsigned ds2482_reading_on(const struct ds2482_chip *chip, long max_ns, unsigned between)
 {
 	int64_t byte = chip->master->byte_ns;
 	int64_t n = 1 + (max_ns - between * byte + byte - 1) / byte;
@@ -41,12 +39,12 @@ static unsigned reading_on(const struct ds2482_chip *chip, long max_ns, unsigned
 	return n > MAX_BYTES ? MAX_BYTES : (unsigned)n;
 }
 
-/* The same for a status behind the command, which shows whether that was too early. */
-static unsigned reading_status(const struct ds2482_chip *chip, long max_ns)
+/* The status shows whether that was too early. */
+unsigned ds2482_reading_status(const struct ds2482_chip *chip, long max_ns)
 {
 	int64_t left = max_ns - ds2482_between(chip);
 
-	return reading_on(chip, left > 0 ? (long)left : 0, 1);
+	return ds2482_reading_on(chip, left > 0 ? (long)left : 0, 1);
 }
 
 static int transfer(struct ds2482_chip *chip, struct i2c_message *messages, size_t n)
@@ -148,9 +146,12 @@ int ds2482_run(struct ds2482_chip *chip, uint8_t command, int parameter, long ma
 	if (err)
 		return err;
 	if (ds2482_combines(chip)) {
-		messages[1].len = (uint16_t)reading_status(chip, max_ns);
+		messages[1].len = (uint16_t)ds2482_reading_status(chip, max_ns);
 		err = transfer(chip, messages, 2);
-		return err ? ds2482_diagnose(chip, err) : judge(chip, in[messages[1].len - 1]);
+		if (err)
+			return ds2482_diagnose(chip, err);
+		ds2482_saw_end(&chip->ends, max_ns, in, messages[1].len);
+		return judge(chip, in[messages[1].len - 1]);
 	}
 	err = start(chip, command, parameter);
 	if (err)
@@ -162,17 +163,14 @@ int ds2482_run(struct ds2482_chip *chip, uint8_t command, int parameter, long ma
 
 /* --- Writing ---------------------------------------------------------------------------------- */
 
-/*
- * Does a message take longer than the chip does for a byte? If it does not after all, the chip
- * refuses the next command.
- */
-static bool is_slow(const struct ds2482_chip *chip, long max_ns)
+/* If it does not after all, the chip refuses the next command. */
+bool ds2482_is_slow(const struct ds2482_chip *chip, long max_ns)
 {
 	return chip->master->message_ns > max_ns;
 }
 
 /* Some drivers of adapters report a refused byte as a refused address. */
-static bool is_refused(int err)
+bool ds2482_is_refused(int err)
 {
 	return err == -EIO || err == -ENXIO;
 }
@@ -187,8 +185,9 @@ static int write_combined(struct ds2482_chip *chip, const uint8_t *data, size_t 
 {
 	struct i2c_message messages[MAX_MESSAGES];
 	uint8_t out[MAX_MESSAGES][2], in[MAX_BYTES];
-	unsigned between = reading_on(chip, max_ns, 4), end = reading_status(chip, max_ns);
-	bool slow = is_slow(chip, max_ns);
+	unsigned between = ds2482_reading_on(chip, max_ns, 4),
+		 end = ds2482_reading_status(chip, max_ns);
+	bool slow = ds2482_is_slow(chip, max_ns);
 	size_t count = 0;
 	int err;
 
@@ -206,12 +205,14 @@ static int write_combined(struct ds2482_chip *chip, const uint8_t *data, size_t 
 				.data = in};
 	}
 	err = transfer(chip, messages, count);
-	if (is_refused(err) && slow)
+	if (ds2482_is_refused(err) && slow)
 		ds2482_was_refused(chip);
 	if (err)
 		return ds2482_diagnose(chip, err);
 	if (slow && !last)
 		chip->free_at = ds2482_now(chip->master) + max_ns;
+	if (last)
+		ds2482_saw_end(&chip->ends, max_ns, in, end);
 	return last ? judge(chip, in[end - 1]) : 0;
 }
 
@@ -224,7 +225,7 @@ static int write_timed(struct ds2482_chip *chip, uint8_t byte, long max_ns)
 	if (err)
 		return err;
 	err = ds2482_write2(chip, DS2482_WRITE, byte);
-	if (is_refused(err))
+	if (ds2482_is_refused(err))
 		ds2482_was_refused(chip);
 	if (err)
 		return ds2482_diagnose(chip, err);
@@ -232,7 +233,7 @@ static int write_timed(struct ds2482_chip *chip, uint8_t byte, long max_ns)
 	return 0;
 }
 
-static size_t batch(const struct ds2482_chip *chip, unsigned messages_each)
+size_t ds2482_batch(const struct ds2482_chip *chip, unsigned messages_each)
 {
 	const struct i2c_adapter *adapter = chip->master->adapter;
 	unsigned room = adapter->max_messages < MAX_MESSAGES ? adapter->max_messages : MAX_MESSAGES;
@@ -240,22 +241,28 @@ static size_t batch(const struct ds2482_chip *chip, unsigned messages_each)
 	return adapter->combine == I2C_ANY && room > messages_each ? room / messages_each : 1;
 }
 
-int ds2482_write_block(struct ds2482_chip *chip, const uint8_t *data, size_t n, long max_ns)
+bool ds2482_reads_on(const struct ds2482_chip *chip, long max_ns)
 {
-	bool combined = ds2482_combines(chip), fast = chip->master->byte_ns <= FAST_BYTE_NS;
-	size_t most = batch(chip, is_slow(chip, max_ns) ? 1 : 2);
-	int err = 0;
+	bool slow = ds2482_is_slow(chip, max_ns);
 
 	/* A message between takes longer than what is left to wait. */
-	if (ds2482_between(chip) > BETWEEN_NS && !is_slow(chip, max_ns))
-		combined = false;
-	if (!combined || (!fast && most == 1)) {
+	if (!ds2482_combines(chip) || (ds2482_between(chip) > BETWEEN_NS && !slow))
+		return false;
+	return chip->master->byte_ns <= FAST_BYTE_NS || ds2482_batch(chip, slow ? 1 : 2) > 1;
+}
+
+int ds2482_write_block(struct ds2482_chip *chip, const uint8_t *data, size_t n, long max_ns)
+{
+	size_t most = ds2482_batch(chip, ds2482_is_slow(chip, max_ns) ? 1 : 2);
+	int err = 0;
+
+	if (!ds2482_reads_on(chip, max_ns)) {
 		while (n-- > 0 && err >= 0)
 			err = write_timed(chip, *data++, max_ns);
 		return err;
 	}
 	/* The last has a status behind it. */
-	if (is_slow(chip, max_ns) && most > 1)
+	if (ds2482_is_slow(chip, max_ns) && most > 1)
 		most--;
 	while (n > 0 && err >= 0) {
 		size_t now = n < most ? n : most;
@@ -282,7 +289,7 @@ static int read_combined(struct ds2482_chip *chip, uint8_t *data, size_t n, long
 	static const uint8_t at_status[2] = {DS2482_READ_POINTER, DS2482_AT_STATUS};
 	struct i2c_message messages[MAX_MESSAGES];
 	uint8_t out[3][2], in[MAX_MESSAGES / 3][MAX_BYTES], status = 0;
-	unsigned wait = reading_on(chip, max_ns, 4);
+	unsigned wait = ds2482_reading_on(chip, max_ns, 4);
 	size_t count = 0;
 	int err;
 
@@ -325,7 +332,7 @@ static int read_timed(struct ds2482_chip *chip, uint8_t *byte, long max_ns)
 int ds2482_read_block(struct ds2482_chip *chip, uint8_t *data, size_t n, long max_ns)
 {
 	size_t most = (MAX_MESSAGES - 2) / 3;
-	bool any = batch(chip, 3) > 1;
+	bool any = ds2482_batch(chip, 3) > 1;
 	int err = 0, status;
 
 	if (!ds2482_combines(chip)) {

@@ -3,8 +3,12 @@
 #ifndef HAL_DS2482_RUN_H
 #define HAL_DS2482_RUN_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+#define DS2482_MAX_BYTES 180
+#define DS2482_MAX_MESSAGES 42
 
 struct ds2482_chip;
 
@@ -17,5 +21,20 @@ int ds2482_read_block(struct ds2482_chip *chip, uint8_t *data, size_t n, long ma
  * reset, -ENODEV, -EIO.
  */
 int ds2482_diagnose(struct ds2482_chip *chip, int err);
+
+/*
+ * How many bytes to read so that the last one begins max_ns after the command; `between` bytes pass
+ * before the reading begins. And so that a status behind the command is read then.
+ */
+unsigned ds2482_reading_on(const struct ds2482_chip *chip, long max_ns, unsigned between);
+unsigned ds2482_reading_status(const struct ds2482_chip *chip, long max_ns);
+/* Does a message take longer than an operation of max_ns? Then nothing is read between two. */
+bool ds2482_is_slow(const struct ds2482_chip *chip, long max_ns);
+/* Did the chip refuse a command? */
+bool ds2482_is_refused(int err);
+/* Is time passed by reading on, and not by timed waits, between bytes that are written? */
+bool ds2482_reads_on(const struct ds2482_chip *chip, long max_ns);
+/* How many operations of so many messages fit in one transfer; 1 at least. */
+size_t ds2482_batch(const struct ds2482_chip *chip, unsigned messages_each);
 
 #endif

@@ -9,6 +9,7 @@
 #include "hal/ds2482/io.h"
 #include "hal/ds2482/select.h"
 #include "hal/ds2482/together.h"
+#include "hal/ds2482/visit.h"
 
 /* All others wait so long for a group of transactions, which is little more than for one. */
 #define GROUP_NS (20 * NS_PER_MS)
@@ -235,6 +236,10 @@ void ds2482_together(struct link_visit *visits, unsigned n)
 	struct course courses[LINK_TOGETHER], *course;
 
 	assert(n > 0 && n <= LINK_TOGETHER);
+	if (n == 1 && ds2482_visits(visits->link)) {
+		ds2482_visit(visits);
+		return;
+	}
 	for (unsigned i = 0; i < n; i++) {
 		assert(visits[i].out_n > 0 && visits[i].in_n > 0);
 		courses[i] = (struct course){.visit = &visits[i], .link = self(visits[i].link)};

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/chips/family.h"
 #include "hal/chips/format.h"
 #include "hal/native/answer.h"
 #include "hal/native/cache.h"
@@ -22,9 +23,34 @@ void job_unlock(struct native *native, struct job *job)
 	job->locks = false;
 }
 
-static void give(struct native *native, struct job *job, const struct bus_answer *answer)
+/* Which supply a driver sees to is its affair: nobody asked the chip. */
+static uint8_t supply_of(const struct native *native, const struct device *device)
 {
+	const struct link *link = native->channel[device->channel].link;
+
+	switch ((enum device_power)device->power) {
+	case POWER_UNKNOWN:
+		break;
+	case POWER_PARASITE:
+		return BUS_SUPPLY_PARASITE;
+	case POWER_EXTERNAL:
+		return link && link->driven ? BUS_SUPPLY_UNKNOWN : BUS_SUPPLY_EXTERNAL;
+	}
+	return BUS_SUPPLY_UNKNOWN;
+}
+
+static void give(struct native *native, struct job *job, struct bus_answer *answer)
+{
+	const struct device *device = job->txn.device;
+	uint64_t us = job->wire_ns / 1000;
+
 	tally_end(native, job, answer);
+	answer->retries = job->retries;
+	answer->wire_us = us < UINT32_MAX ? (uint32_t)us : UINT32_MAX;
+	if (device) {
+		answer->supply = supply_of(native, device);
+		answer->identity = family_identity(device);
+	}
 	job->req = NULL;
 	native->lent--;
 	native->bus.env->answer(native->bus.env->ctx, answer);
@@ -94,6 +120,20 @@ void job_answer_cached(struct native *native, struct job *job, const struct cach
 	give(native, job, &answer);
 }
 
+bool job_answer_own(struct native *native, struct job *job)
+{
+	struct bus_answer answer = {
+		.id = job->req->id, .kind = BUS_TEXT, .measured_ns = native_now(native)};
+
+	if (!native->master->ops->own ||
+	    !native->master->ops->own(native->master, job->req, &answer))
+		return false;
+	if (native->master->ops->simulated)
+		answer.detail |= BUS_DETAIL_SIMULATED;
+	give(native, job, &answer);
+	return true;
+}
+
 void job_keep(struct native *native, struct job *job)
 {
 	const struct property *property = job->property;
@@ -122,8 +162,21 @@ void job_restart(struct native *native, struct job *job)
 	job->txn.wake_ns = 0;
 }
 
+void job_count_retry(struct job *job)
+{
+	if (job->retries < UINT8_MAX)
+		job->retries++;
+}
+
+void job_again(struct native *native, struct job *job)
+{
+	job_count_retry(job);
+	job_restart(native, job);
+}
+
 void job_reread(struct native *native, struct job *job)
 {
+	job_count_retry(job);
 	job_unlock(native, job);
 	job_txn(native, job);
 	job->state = JOB_CONVERTING;

@@ -206,8 +206,17 @@ int branches_print(struct native *native, unsigned channel, char *text, size_t r
 
 void branches_name(struct native *native, unsigned channel, char *text, size_t room)
 {
-	if (channel < NATIVE_CHANNELS)
+	static const char cut[] = ".../";
+	const size_t n = sizeof(cut) - 1;
+
+	if (channel < NATIVE_CHANNELS) {
 		snprintf(text, room, "bus.%u", channel);
-	else if (branches_print(native, channel, text, room) == 0)
-		text[strlen(text) - 1] = '\0';
+		return;
+	}
+	/* What is left of it is the end. */
+	if (branches_print(native, channel, text + n, room - n))
+		memcpy(text, cut, n);
+	else
+		memmove(text, text + n, strlen(text + n) + 1);
+	text[strlen(text) - 1] = '\0';
 }

@@ -25,9 +25,12 @@ bool branches_news(const struct native *native, unsigned channel);
 void branches_news_end(struct native *native, unsigned channel);
 /* Is this branch on now? */
 bool branches_is_on(const struct native *native, unsigned channel);
-/* "1F.000000000001/main/" with all couplers on the way; "" of a wire. 0 or -EMSGSIZE. */
+/*
+ * "1F.000000000001/main/" with all couplers on the way; "" of a wire. 0, or -EMSGSIZE: text has the
+ * last ones only.
+ */
 int branches_print(struct native *native, unsigned channel, char *text, size_t room);
-/* What bus.N is called in a message: "bus.0", "1F.000000000001/main". */
+/* What bus.N is called in a message: "bus.0", "1F.000000000001/main", ".../1F.000000000009/aux". */
 void branches_name(struct native *native, unsigned channel, char *text, size_t room);
 
 #endif

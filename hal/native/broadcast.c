@@ -5,7 +5,6 @@
 #include "hal/chips/thermometer.h"
 #include "hal/chips/thermometer_proof.h"
 #include "hal/native/broadcast.h"
-#include "hal/native/double_buffer.h"
 #include "hal/native/ending.h"
 #include "hal/native/master.h"
 #include "hal/native/schedule.h"
@@ -62,10 +61,8 @@ static void told_all(struct native *native, unsigned n)
 			broadcast_told(native, &native->table.devices[i], native_now(native));
 }
 
-void broadcast_converts(struct native *native, struct device *device, bool own, bool unseen,
-                        int64_t now)
+void broadcast_converts(struct native *native, struct device *device, bool unseen, int64_t now)
 {
-	double_buffer_converts(native, device, own, now);
 	thermometer_converts(device, now, convert_ns(native->channel[device->channel].link, device),
 	                     unseen);
 }
@@ -84,7 +81,7 @@ static void converting(struct native *native, unsigned n, bool unseen, int64_t n
 		if (!native_thermometer(device, n))
 			continue;
 		only = count++ ? NULL : device;
-		broadcast_converts(native, device, false, unseen, now);
+		broadcast_converts(native, device, unseen, now);
 	}
 	/* Nobody else could have shown it. */
 	if (only && !unseen)
@@ -94,7 +91,7 @@ static void converting(struct native *native, unsigned n, bool unseen, int64_t n
 		struct job *job = &native->jobs[i];
 
 		if (!job->req || (job->state != JOB_DUE && job->state != JOB_CONVERTING) ||
-		    job->txn.channel != n || double_buffer_holds(job, now))
+		    job->txn.channel != n)
 			continue;
 		job->state = JOB_CONVERTING;
 		job->ready_ns = thermometer_of(job->txn.device)->converted_ns;

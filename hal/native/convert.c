@@ -9,10 +9,10 @@
 #include <errno.h>
 
 #include "hal/chips/thermometer.h"
+#include "hal/chips/thermometer_proof.h"
 #include "hal/native/answer.h"
 #include "hal/native/broadcast.h"
 #include "hal/native/convert.h"
-#include "hal/native/double_buffer.h"
 #include "hal/native/job_txn.h"
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
@@ -30,6 +30,8 @@ static unsigned wanted(const struct job *job)
 {
 	const struct device *device = job->txn.device;
 
+	if (job->again == AGAIN_MARK)
+		return THERMOMETER_MARK;
 	return job->property->convert == CONVERT_TEMPRES ? thermometer_of(device)->stored
 	                                                 : job->property->convert;
 }
@@ -119,8 +121,7 @@ void convert_begin(struct native *native, struct job *job, int64_t now)
 {
 	struct device *device = job->txn.device;
 
-	if (is_served(native, job, now) ||
-	    (convert_right(job) && double_buffer_serves(native, job, now))) {
+	if (is_served(native, job, now)) {
 		job->ready_ns = thermometer_of(device)->converted_ns;
 		job->state = JOB_CONVERTING;
 		return;
@@ -140,6 +141,8 @@ static int prepare(struct native *native, struct job *job)
 		int err = thermometer_ask_power(&job->txn);
 		return err < 0 ? err : TXN_MORE;
 	}
+	if (job->txn.phase == 0 && thermometer_forgot(device))
+		return thermometer_recall(&job->txn);
 	if (job->txn.phase == 0 && convert_right(job))
 		return 0;
 	int err = thermometer_prepare(&job->txn, wanted(job));
@@ -250,7 +253,7 @@ static void convert_device(struct native *native, struct device *device, int64_t
 {
 	thermometer_of(device)->unheard = 0;
 	thermometer_of(device)->shows = true;
-	broadcast_converts(native, device, true, false, now);
+	broadcast_converts(native, device, false, now);
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
 
@@ -338,15 +341,14 @@ static bool starts_single(struct native *native, unsigned n, const struct schedu
 
 	if (plan->parasitic || channel->link->driven)
 		return false;
-	return double_buffer_runs(native, n) ? double_buffer_single(native, n)
-	                                     : is_single_round(channel, now);
+	return is_single_round(channel, now);
 }
 
 struct job *convert_next_in_turn(struct native *native, unsigned n, int64_t now)
 {
 	struct channel *channel = &native->channel[n];
 
-	if (!channel->due_ns || double_buffer_runs(native, n) || native_held(native, n, NULL, now))
+	if (!channel->due_ns || native_held(native, n, NULL, now))
 		return NULL;
 	struct schedule_plan plan = schedule_look(native, n);
 
@@ -356,17 +358,6 @@ struct job *convert_next_in_turn(struct native *native, unsigned n, int64_t now)
 	               : NULL;
 }
 
-/* Results are left to be read while all convert: 12 bits, and all have a supply. */
-static bool begin_ahead(struct native *native, unsigned n)
-{
-	int err = broadcast_convert(native, n, false, 750 * TXN_MS);
-
-	double_buffer_begun(native, n, err);
-	if (err < 0)
-		fail_due(native, n, err);
-	return true;
-}
-
 bool convert_step(struct native *native, int64_t now, int64_t *next, struct job **in_turn)
 {
 	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1)) {
@@ -374,12 +365,9 @@ bool convert_step(struct native *native, int64_t now, int64_t *next, struct job 
 
 		if (native_held(native, n, NULL, now))
 			continue;
-		if (double_buffer_begins(native, n, now))
-			return begin_ahead(native, n);
 		if (!channel->due_ns)
 			continue;
 		struct schedule_plan plan = schedule_look(native, n);
-		double_buffer_choose(native, n, &plan, now);
 		if (!plan.due) {
 			channel->due_ns = 0;
 			continue;
@@ -400,16 +388,13 @@ bool convert_step(struct native *native, int64_t now, int64_t *next, struct job 
 		                   : starts_single(native, n, &plan, now)) {
 			if (!convert_one(native, n))
 				continue;
-			if (plan.due == 1) {
+			if (plan.due == 1)
 				channel->single_ns = now + SINGLE_NS;
-				double_buffer_single_over(native, n);
-			}
 			return true;
 		}
 		if (plan.reading || plan.locked)
 			continue;
 		native->schedule.doing = SCHEDULE_FREE;
-		double_buffer_restarts(native, n);
 		int err = broadcast_convert(native, n, plan.parasitic_due,
 		                            plan.parasitic_due ? plan.all_ns : plan.due_ns);
 		if (err < 0)

@@ -7,16 +7,25 @@
 #include "hal/chips/format.h"
 #include "hal/chips/how.h"
 #include "hal/chips/thermometer.h"
+#include "hal/chips/thermometer_proof.h"
 #include "hal/native/answer.h"
 #include "hal/native/convert.h"
 #include "hal/native/exchange.h"
 #include "hal/native/job_txn.h"
+#include "hal/native/listing.h"
 #include "hal/native/outcome.h"
+#include "hal/native/resolve.h"
 #include "hal/native/state.h"
 #include "hal/native/touch.h"
 
 /* Transactions of one request until others of its rank have their turn. */
 #define TURN 8
+/* Conversions in a row that a chip did not make, as what it holds shows. */
+#define TRIES_UNHEARD 3
+/* What a thermometer that cannot show its conversions was proven to hold counts for that long. */
+#define PROVEN_NS (5 * NATIVE_S)
+/* A list waits for as many tries with a wrong checksum. */
+#define TRIES_TOLD 3
 
 static bool is_text(const struct property *property)
 {
@@ -107,8 +116,6 @@ static void read_done(struct native *native, struct job *job)
 		return;
 	}
 	job->tries = 0;
-	if (job->txn.held)
-		native_count(native, COUNT_AHEAD);
 	if (job->txn.device) {
 		job->txn.device->settled |= !job->property->offline;
 		if (job->property->convert)
@@ -179,6 +186,13 @@ static bool needs_merge(const struct job *job)
 	       (job->property->array.aggregate || job->property->type == PROPERTY_BITS);
 }
 
+/* What a disturbed wire may have made of it does not count for long. */
+static void forget_doubtful(struct device *device, int64_t now)
+{
+	if (family_doubts(device) && now >= device->told_ns + FAMILY_DOUBT_NS)
+		family_forget(device);
+}
+
 /*
  * Which chip it is, where the family code does not tell: known before anything is asked of it.
  * -ENOENT: such a chip has no such property.
@@ -193,8 +207,7 @@ static int identify(struct job *job)
 		return 0;
 	struct device *device = txn->device;
 
-	if (family_doubts(device) && txn_now(txn) >= device->told_ns + FAMILY_DOUBT_NS)
-		family_forget(device);
+	forget_doubtful(device, txn_now(txn));
 	if (family->kind(device))
 		return family_has(device, job->property) ? 0 : -ENOENT;
 	int err = family->identify(txn);
@@ -268,18 +281,120 @@ static bool is_of_conversion(const struct job *job)
 	return thermometer_of(device)->converted_ns != 0;
 }
 
+/* Nothing proves that the chip made its last conversion: is what was proven before too little? */
+static bool is_unproven(const struct job *job)
+{
+	const struct txn *txn = &job->txn;
+	const struct thermometer *chip = thermometer_of(txn->device);
+
+	return txn->unproven && (job->fresh || !chip->earlier_ns || chip->coarse ||
+	                         !chip->latched_ns || chip->latched_ns + PROVEN_NS < txn_now(txn));
+}
+
 /* It may be of an older conversion than was asked for: it is made once more. */
 static bool is_doubtful(struct job *job)
 {
 	const struct txn *txn = &job->txn;
 
-	if (!txn->device || !txn->device->family->thermometer || job->again)
+	if (!job->property->convert || !txn->device || !txn->device->family->thermometer)
 		return false;
 	const struct thermometer *chip = thermometer_of(txn->device);
-	bool cut = job->property->convert && chip->least_ns < chip->converted_ns &&
-	           txn->measured_ns < job->since_ns;
-	job->again = (txn->unproven && (job->fresh || !chip->earlier_ns)) || (cut && job->fresh);
-	return job->again;
+	bool cut = chip->least_ns < chip->converted_ns && txn->measured_ns < job->since_ns;
+
+	switch ((enum job_again)job->again) {
+	case AGAIN_NO:
+		if (is_unproven(job))
+			job->again = thermometer_marks(txn->device) ? AGAIN_MARK : AGAIN_LAST;
+		else if (cut && job->fresh)
+			job->again = AGAIN_LAST;
+		return job->again != AGAIN_NO;
+	case AGAIN_MARK:
+		/* What it shows now is to be told from the next result alone. */
+		job->again = AGAIN_MARKED;
+		return true;
+	case AGAIN_MARKED:
+		job->again = AGAIN_LAST;
+		return txn->unproven;
+	case AGAIN_LAST:
+		break;
+	}
+	return false;
+}
+
+/* A result that nothing proves, of a conversion that nobody knows: it would be stated as of now. */
+static bool has_no_time(const struct job *job)
+{
+	const struct txn *txn = &job->txn;
+
+	return job->req->op == BUS_READ && job->property->convert && txn->device &&
+	       txn->device->family->thermometer && txn->unproven && !txn->measured_ns;
+}
+
+/* The function has to be called again, and the chip is nobody else's until then. */
+static void run_again(struct native *native, struct job *job)
+{
+	if (++job->steps == TURN)
+		queue_again(native, job);
+	hold(native, job);
+	if (job->txn.device && !job->locks) {
+		job->locks = true;
+		job->txn.device->locked = true;
+	}
+}
+
+bool job_asks_first(const struct job *job, int64_t now)
+{
+	struct device *device = job->txn.device;
+
+	if (!device || job->req->op != BUS_DIR)
+		return false;
+	forget_doubtful(device, now);
+	return family_untold(device);
+}
+
+/* The path may name a directory that such a chip has not. */
+static void answer_list(struct native *native, struct job *job)
+{
+	int err = resolve(native, job);
+
+	job_answer(native, job, err ? err : listing(native, job));
+}
+
+/* It is there, and does not say what it is: the list has what all have that it may be. */
+static void untold(struct native *native, struct job *job, int err)
+{
+	bool silent = job->txn.silent || err == -ENODEV;
+
+	if (job->txn.link_error)
+		job_failed(native, job, err);
+	else if (err == -EBADMSG && ++job->tries < TRIES_TOLD)
+		job_again(native, job);
+	else if (silent && !job->verified)
+		job_missing(native, job, err);
+	else
+		answer_list(native, job);
+}
+
+void job_run_listing(struct native *native, struct job *job, int64_t now)
+{
+	const struct family *family = job->txn.device->family;
+	struct txn *txn = &job->txn;
+	int err;
+
+	/* one that each device has: no chip refuses it */
+	txn->property = family_common.properties;
+	err = txn_end(txn, (family->identify ? family->identify : family->tell)(txn));
+	job_saw(native, job, err, now);
+	if (err < 0) {
+		untold(native, job, err);
+		return;
+	}
+	if (err == TXN_MORE && !family->kind(txn->device)) {
+		run_again(native, job);
+		return;
+	}
+	txn->device->told_ns = now;
+	answer_list(native, job);
 }
 
 void job_run_property(struct native *native, struct job *job, int64_t now)
@@ -293,18 +408,21 @@ void job_run_property(struct native *native, struct job *job, int64_t now)
 		return;
 	}
 	if (err == TXN_MORE) {
-		if (++job->steps == TURN)
-			queue_again(native, job);
-		hold(native, job);
-		if (txn->device && !job->locks) {
-			job->locks = true;
-			txn->device->locked = true;
-		}
+		run_again(native, job);
 		return;
 	}
 	job_unlock(native, job);
-	if (!is_of_conversion(job) || is_doubtful(job)) {
+	if (txn->unheard && job->property->convert && ++job->tries >= TRIES_UNHEARD) {
+		job_answer(native, job, -EBADMSG);
+		return;
+	}
+	if (!is_of_conversion(job) || (txn->unheard && job->property->convert) ||
+	    is_doubtful(job)) {
 		job_restart(native, job);
+		return;
+	}
+	if (has_no_time(job)) {
+		job_answer(native, job, -EBADMSG);
 		return;
 	}
 	if (needs_merge(job)) {

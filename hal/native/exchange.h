@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A property is read or written. */
+/* A property is read or written, or a chip says what it is before its properties are listed. */
 #ifndef HAL_NATIVE_EXCHANGE_H
 #define HAL_NATIVE_EXCHANGE_H
 
@@ -7,5 +7,9 @@
 
 /* One transaction of it, or the answer. */
 void job_run_property(struct native *native, struct job *job, int64_t now);
+/* A list of a device's properties: has the device to say first which chip of its family it is? */
+bool job_asks_first(const struct job *job, int64_t now);
+/* Then: one transaction of that, or the list. */
+void job_run_listing(struct native *native, struct job *job, int64_t now);
 
 #endif

@@ -37,13 +37,16 @@ bool hunt_initial(const struct native *native)
 	return false;
 }
 
-static void end_round(struct native *native, unsigned n, int64_t now)
+/* whole: it was right to its end. */
+static void end_round(struct native *native, unsigned n, bool whole, int64_t now)
 {
 	struct channel *channel = &native->channel[n];
 
 	channel->searching = false;
 	channel->listed = true;
 	channel->search_ns = now + ROUND_NS;
+	if (whole && !channel->dirty)
+		channel->whole_ns = channel->round_ns;
 	for (unsigned i = 0; !channel->dirty && i < native->table.count; i++) {
 		struct device *device = &native->table.devices[i];
 
@@ -156,7 +159,7 @@ static void pass(struct native *native, unsigned n, int64_t now)
 			presence_found(native, channel->search.rom, n, now);
 		channel->search_ns = now;
 		if (channel->search.last)
-			end_round(native, n, now);
+			end_round(native, n, true, now);
 		return;
 	}
 	channel->dirty = found < 0;
@@ -169,7 +172,7 @@ static void pass(struct native *native, unsigned n, int64_t now)
 	} else if (found < 0 && found != -EBADMSG && !master_recover(native, n, found)) {
 		return;
 	}
-	end_round(native, n, now);
+	end_round(native, n, found == 0, now);
 }
 
 static void timed_pass(struct native *native, unsigned n, int64_t now)
@@ -209,55 +212,6 @@ bool hunt_step(struct native *native, int64_t now, bool idle, int64_t *next)
 	if (first < *next)
 		*next = first;
 	return false;
-}
-
-static void locate_end(struct native *native, struct job *job)
-{
-	if (job->txn.device)
-		presence_lost(native, job->txn.device);
-	job_answer(native, job, -ENODEV);
-}
-
-void hunt_locate(struct native *native, struct job *job, int64_t now)
-{
-	struct channel *channel = &native->channel[job->channel];
-
-	native_count(native, COUNT_TRANSACTIONS);
-	int there = search_verify(channel->link, job->path.rom, false);
-
-	if (there == -EBADMSG)
-		there = 0;
-	if (there < 0) {
-		bool known = job->verified;
-
-		job->txn.channel = job->channel;
-		job->txn.link_error = there;
-		if (there == -ECOMM && !known && job->bus < 0 &&
-		    native_next(native, job->channel + 1u) < NATIVE_ALL) {
-			job->txn.link_error = 0;
-			job->channel = (uint8_t)native_next(native, job->channel + 1u);
-			return;
-		}
-		job_failed(native, job, there);
-		return;
-	}
-	master_good(native, job->channel);
-	if (there) {
-		presence_found(native, job->path.rom, job->channel, now);
-		job->txn.device = device_find(&native->table, job->path.rom);
-		job->state = JOB_QUEUED;
-		if (!job->txn.device)
-			job_answer(native, job, -ENODEV);
-		return;
-	}
-	if (job->verified) {
-		if (++job->tries >= TRIES)
-			locate_end(native, job);
-		return;
-	}
-	job->channel = (uint8_t)native_next(native, job->channel + 1u);
-	if (job->bus >= 0 || job->channel == NATIVE_ALL)
-		locate_end(native, job);
 }
 
 struct lone {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Searches: in the background, for directories and alarms, for one device. */
+/* Searches: in the background, for directories and alarms. */
 #ifndef HAL_NATIVE_HUNT_H
 #define HAL_NATIVE_HUNT_H
 
@@ -8,7 +8,6 @@
 /* One pass of a background search; true: did one. initial: at once, for the first list. */
 bool hunt_step(struct native *native, int64_t now, bool idle, int64_t *next);
 bool hunt_initial(const struct native *native);
-void hunt_locate(struct native *native, struct job *job, int64_t now);
 void hunt_scan(struct native *native, struct job *job, int64_t now);
 
 #endif

@@ -12,6 +12,7 @@
 #include "hal/native/job.h"
 #include "hal/native/job_txn.h"
 #include "hal/native/listing.h"
+#include "hal/native/locate.h"
 #include "hal/native/outcome.h"
 #include "hal/native/resolve.h"
 #include "hal/native/simultaneous.h"
@@ -59,13 +60,17 @@ static void look_convert(struct native *native, struct job *job)
 
 void job_look(struct native *native, struct job *job, int64_t now)
 {
-	int err = resolve(native, job);
+	int err;
 
+	if (job_answer_own(native, job))
+		return;
+	err = resolve(native, job);
 	job->state = JOB_QUEUED;
 	if (err) {
 		job_answer(native, job, err);
 		return;
 	}
+	bool lost = job->path.device.len && away(native, job->txn.device);
 	switch ((enum job_kind)job->kind) {
 	case JOB_NONE:
 		return;
@@ -80,24 +85,26 @@ void job_look(struct native *native, struct job *job, int64_t now)
 		look_structure(native, job);
 		return;
 	case JOB_LISTING:
-		if (job->path.device.len && away(native, job->txn.device))
-			return;
+		if (lost)
+			break;
 		native_count(native, COUNT_DIRECTORIES);
+		if (job_asks_first(job, now))
+			return;
 		job_answer(native, job, job->req->op == BUS_DIR ? listing(native, job) : 0);
 		return;
 	case JOB_PROBE:
 		if (job->path.device.len == 0 ||
-		    (!job->fresh && !away(native, job->txn.device) &&
-		     job->txn.device->ok_ns + native->presence_ns > now && job->txn.device->ok_ns))
+		    (!job->fresh && !lost && job->txn.device->ok_ns + native->presence_ns > now &&
+		     job->txn.device->ok_ns))
 			job_answer(native, job, 0);
-		return;
+		break;
 	case JOB_PROPERTY:
 		if (job->req->op == BUS_READ)
 			look_read(native, job, now);
 		else
 			native_count(native, COUNT_WRITES);
-		if (!job->req || (job->path.device.len && away(native, job->txn.device)))
-			return;
+		if (!job->req || lost)
+			break;
 		if (job->property->convert && job->req->op == BUS_READ && job->txn.device)
 			convert_early(native, job, now);
 		if (!job->property->offline)
@@ -107,6 +114,8 @@ void job_look(struct native *native, struct job *job, int64_t now)
 			job_run_property(native, job, now);
 		}
 	}
+	if (job->req && lost)
+		locate_wait(native, job, now);
 }
 
 static void later(int64_t when, int64_t *next)
@@ -132,6 +141,19 @@ static bool has_locked(const struct native *native, unsigned channel)
 	return false;
 }
 
+/*
+ * A request for all to convert waits until no chip of its channel is at work. So those that came
+ * later do not put another one to work before that, but for alarms and outputs.
+ */
+static bool waits_for_all(const struct native *native, const struct job *job, unsigned channel)
+{
+	const struct job *all = native->all;
+
+	return all && all->req && all->kind == JOB_CONVERT && all->state == JOB_QUEUED &&
+	       channel_of(all) == channel && job->req->prio > BUS_OUTPUT && !job->locks &&
+	       (int32_t)(all->order - job->order) < 0 && has_locked(native, channel);
+}
+
 bool job_ready(const struct native *native, const struct job *job, int64_t now, int64_t *next)
 {
 	const struct device *device = job->txn.device;
@@ -144,10 +166,13 @@ bool job_ready(const struct native *native, const struct job *job, int64_t now, 
 		return false;
 	case JOB_QUEUED:
 		if ((device && device->locked) ||
-		    (job->kind == JOB_CONVERT && has_locked(native, channel)))
+		    (job->kind == JOB_CONVERT && has_locked(native, channel)) ||
+		    waits_for_all(native, job, channel))
 			return false;
 		break;
 	case JOB_LOCATE:
+		if (!job->verified)
+			return false;
 		break;
 	case JOB_CONVERTING:
 		when = job->ready_ns;
@@ -157,7 +182,8 @@ bool job_ready(const struct native *native, const struct job *job, int64_t now, 
 	case JOB_PREPARE:
 	case JOB_RUN:
 		when = job->txn.wake_ns;
-		if (device && device->locked && !job->locks)
+		if ((device && device->locked && !job->locks) ||
+		    (job->state == JOB_RUN && waits_for_all(native, job, channel)))
 			return false;
 		break;
 	}
@@ -195,15 +221,15 @@ static void run_probe(struct native *native, struct job *job, int64_t now)
 		job_missing(native, job, -ENODEV);
 }
 
-static void begin_property(struct native *native, struct job *job, int64_t now)
+/* had_begun: before the step that this is */
+static void begin_property(struct native *native, struct job *job, bool had_begun, int64_t now)
 {
 	if (job->path.device.len && away(native, job->txn.device)) {
-		job->state = JOB_LOCATE;
-		job->channel = job->bus >= 0 ? (uint8_t)job->bus : 0;
-		hunt_locate(native, job, now);
+		job->begun = had_begun;
+		locate_wait(native, job, now);
 		return;
 	}
-	if (job->kind == JOB_LISTING) {
+	if (job->kind == JOB_LISTING && !job_asks_first(job, now)) {
 		job_answer(native, job, listing(native, job));
 		return;
 	}
@@ -212,6 +238,11 @@ static void begin_property(struct native *native, struct job *job, int64_t now)
 		return;
 	}
 	job_txn(native, job);
+	if (job->kind == JOB_LISTING) {
+		job->state = JOB_RUN;
+		job_run_listing(native, job, now);
+		return;
+	}
 	if (job->property->convert && job->req->op == BUS_READ) {
 		convert_begin(native, job, now);
 		return;
@@ -222,6 +253,8 @@ static void begin_property(struct native *native, struct job *job, int64_t now)
 
 void job_step(struct native *native, struct job *job, int64_t now)
 {
+	bool had_begun = job->begun;
+
 	job->begun = true;
 	switch ((enum job_state)job->state) {
 	case JOB_NEW:
@@ -233,10 +266,10 @@ void job_step(struct native *native, struct job *job, int64_t now)
 		else if (job->kind == JOB_CONVERT)
 			convert_all(native, job, now);
 		else
-			begin_property(native, job, now);
+			begin_property(native, job, had_begun, now);
 		return;
 	case JOB_LOCATE:
-		hunt_locate(native, job, now);
+		locate_missing(native, job, now);
 		return;
 	case JOB_PREPARE:
 		convert_prepare(native, job, now);
@@ -246,6 +279,9 @@ void job_step(struct native *native, struct job *job, int64_t now)
 		job_run_property(native, job, now);
 		return;
 	case JOB_RUN:
-		job_run_property(native, job, now);
+		if (job->kind == JOB_LISTING)
+			job_run_listing(native, job, now);
+		else
+			job_run_property(native, job, now);
 	}
 }

@@ -7,6 +7,7 @@
 #include "hal/chips/thermometer.h"
 #include "hal/native/answer.h"
 #include "hal/native/branches.h"
+#include "hal/native/first_wire.h"
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
 #include "hal/native/presence.h"
@@ -14,7 +15,8 @@
 
 #define PAUSE_MIN_NS (NATIVE_S / 5)
 #define PAUSE_MAX_NS (5 * NATIVE_S)
-#define GROW_NS (10 * NATIVE_S)
+#define GROW_MIN_NS NATIVE_S
+#define GROW_MAX_NS (10 * NATIVE_S)
 
 /* From the first on; those before are known. */
 static void take_channels(struct native *native, unsigned first)
@@ -43,6 +45,7 @@ static void take_all_channels(struct native *native)
 	memset(native->hold_ns, 0, sizeof(native->hold_ns));
 	memset(native->holder, 0, sizeof(native->holder));
 	native->grow_ns = native->master->ops->grow ? native_now(native) : INT64_MAX;
+	native->grow_pause_ns = GROW_MIN_NS;
 	native->grow_told = false;
 	/* A chip that is missing now has taken its channels with it. */
 	for (unsigned i = 0; i < native->table.count; i++)
@@ -62,7 +65,10 @@ void master_grow(struct native *native, int64_t now, int64_t *next)
 			master_down(native, left, why);
 			return;
 		}
-		native->grow_ns = left ? native_now(native) + GROW_NS : INT64_MAX;
+		native->grow_ns = left ? native_now(native) + native->grow_pause_ns : INT64_MAX;
+		native->grow_pause_ns = native->grow_pause_ns * 2 < GROW_MAX_NS
+		                                ? native->grow_pause_ns * 2
+		                                : GROW_MAX_NS;
 		take_channels(native, before);
 		for (unsigned n = before; n < native->channels; n++)
 			native->channel[n].search_ns = now;
@@ -81,6 +87,7 @@ static void search_anew(struct native *native, int64_t now)
 		native->channel[n].listed = false;
 		native->channel[n].searching = false;
 		native->channel[n].search_ns = now;
+		native->channel[n].first = (struct first){.tried = false};
 	}
 }
 
@@ -136,6 +143,7 @@ void master_down(struct native *native, int err, const char *why)
 /* Conversions that were under way are void. */
 static void convert_again(struct native *native)
 {
+	first_void(native);
 	for (unsigned i = 0; i < native->table.count; i++)
 		if (native->table.devices[i].family->thermometer)
 			thermometer_of(&native->table.devices[i])->converted_ns = 0;

@@ -9,11 +9,13 @@
 #include "hal/native/answer.h"
 #include "hal/native/cache.h"
 #include "hal/native/convert.h"
-#include "hal/native/double_buffer.h"
+#include "hal/native/cost.h"
 #include "hal/native/ending.h"
+#include "hal/native/first.h"
 #include "hal/native/hunt.h"
 #include "hal/native/job.h"
 #include "hal/native/limits.h"
+#include "hal/native/locate.h"
 #include "hal/native/master.h"
 #include "hal/native/native.h"
 #include "hal/native/schedule.h"
@@ -23,7 +25,6 @@
 #include "hal/native/statistics.h"
 #include "hal/native/together.h"
 #include "hal/native/touch.h"
-#include "hal/native/trial.h"
 
 #define VOLATILE_NS (2 * NATIVE_S)
 #define STABLE_NS (300 * NATIVE_S)
@@ -53,9 +54,6 @@ static const char *const count_names[COUNTS] = {
 	[COUNT_WIRE_US] = "wire_us",
 	[COUNT_I2C_TRANSFERS] = "i2c_transfers",
 	[COUNT_SYSCALLS] = "syscalls",
-	[COUNT_AHEAD] = "experimental_early_reads",
-	[COUNT_TRIALS] = "experimental_trials",
-	[COUNT_DOUBTS] = "experimental_doubts",
 };
 
 int native_create(const struct bus_ops *ops, const struct link_master_ops *master,
@@ -121,8 +119,6 @@ int native_option(struct bus *bus, const char *key, const char *text, char *why,
 	/* Where drivers of somebody else search or convert, nobody can be that quick. */
 	if (strcmp(key, "Touch") == 0 && strcmp(bus->ops->scheme, "w1") != 0)
 		return take_flag(&native->touch, text, why, why_size);
-	if (strcmp(key, "DoubleBuffer") == 0 && strcmp(bus->ops->scheme, "w1") != 0)
-		return take_flag(&native->double_buffer, text, why, why_size);
 	if (strcmp(key, "Sensors") == 0)
 		return sensors_read(&native->sensors, text, why, why_size);
 	return master->ops->option ? master->ops->option(master, key, text, why, why_size)
@@ -204,6 +200,13 @@ int native_there(struct bus *bus)
 	return there > 0 && !native->failed;
 }
 
+/* It is looked for, and no part of it was written before. */
+static bool is_looked_for(const struct job *job)
+{
+	return job->state == JOB_LOCATE && !job->verified &&
+	       (!job->begun || job->req->op != BUS_WRITE);
+}
+
 static void expire(struct native *native, int64_t now, int64_t *next)
 {
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
@@ -211,64 +214,46 @@ static void expire(struct native *native, int64_t now, int64_t *next)
 
 		if (!job->req)
 			continue;
-		if (job->req->deadline_ns <= now)
-			job_answer(native, job, job->begun ? -EINPROGRESS : -ETIME);
+		if (bus_req_unwanted(job->req))
+			job_answer(native, job, -ECANCELED);
+		else if (job->req->deadline_ns <= now)
+			job_answer(native, job,
+			           is_looked_for(job) ? locate_expired(native, job)
+			           : job->begun       ? -EINPROGRESS
+			                              : -ETIME);
 		else if (job->req->deadline_ns < *next)
 			*next = job->req->deadline_ns;
 	}
 }
 
-/* What cannot be read while it converts anew is read first. */
-static bool is_read_first(const struct job *a, const struct job *b)
-{
-	if (b && a->req->prio == b->req->prio && schedule_reads(a) && schedule_reads(b) &&
-	    double_buffer_may_wait(a) != double_buffer_may_wait(b))
-		return double_buffer_may_wait(b);
-	return job_goes_first(a, b);
-}
-
 /* *other: of those that read no thermometer the one that waits longest, whatever its rank. */
 static struct job *pick(struct native *native, int64_t now, int64_t *next, struct job **other)
 {
-	struct job *best = NULL;
+	struct job *best = NULL, *all = NULL;
 
+	native->locate.waits = native->locate.urgent = false;
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
 		struct job *job = &native->jobs[i];
 
 		if (job->req && job->state == JOB_NEW)
 			job_look(native, job, now);
+		if (job->req && job->state == JOB_LOCATE && !job->verified) {
+			native->locate.waits = true;
+			native->locate.urgent |= job->req->prio <= BUS_OUTPUT;
+		}
+		if (job->req && job->kind == JOB_CONVERT &&
+		    (!all || (int32_t)(job->order - all->order) < 0))
+			all = job;
 		if (!job->req || !job_ready(native, job, now, next))
 			continue;
-		if (is_read_first(job, best))
+		if (job_goes_first(job, best))
 			best = job;
 		if (!schedule_reads(job) &&
 		    (!*other || (int32_t)(job->order - (*other)->order) < 0))
 			*other = job;
 	}
+	native->all = all;
 	return best;
-}
-
-static void take_cost(struct native *native)
-{
-	struct link_master_cost shared = {0};
-
-	for (unsigned i = 0; i < native->channels; i++) {
-		struct link_cost one = {0};
-		struct link *link = native->channel[i].link;
-
-		if (link->ops->cost)
-			link->ops->cost(link, &one);
-		/* The master may open with fewer channels than before, or begin anew to count. */
-		native->wire_ns += one.wire_ns - (one.wire_ns < native->wire_seen_ns[i]
-		                                          ? 0
-		                                          : native->wire_seen_ns[i]);
-		native->wire_seen_ns[i] = one.wire_ns;
-	}
-	if (native->master->ops->cost)
-		native->master->ops->cost(native->master, &shared);
-	__atomic_store_n(&native->count[COUNT_WIRE_US], native->wire_ns / 1000, __ATOMIC_RELAXED);
-	__atomic_store_n(&native->count[COUNT_I2C_TRANSFERS], shared.transfers, __ATOMIC_RELAXED);
-	__atomic_store_n(&native->count[COUNT_SYSCALLS], shared.syscalls, __ATOMIC_RELAXED);
 }
 
 /*
@@ -328,8 +313,13 @@ static int64_t step(struct native *native, int64_t now)
 	if (!native->up)
 		return now;
 	expire(native, now, &next);
-	double_buffer_expire(native, now);
+	if (first_step(native, now, &next))
+		return now;
 	struct job *job = hunt_initial(native) ? NULL : pick(native, now, &next, &other);
+	/* Others have waited for the search: they and the first readings take turns. */
+	if (job && job->first == FIRST_TAKES_PART && other &&
+	    (native->first_turn = !native->first_turn))
+		job = other;
 
 	if (follows(native, job, now))
 		return native->follow_ns;
@@ -350,34 +340,26 @@ static int64_t step(struct native *native, int64_t now)
 		run(native, owed, now);
 		return now;
 	}
-	if (!hunt_initial(native) && touch_step(native, now, &next))
+	if (!hunt_initial(native) &&
+	    ((native->locate.urgent && locate_step(native, now, !job, &next)) ||
+	     touch_step(native, now, &next)))
 		return now;
-	if (trial_step(native, now, &next) || double_buffer_step(native, now, false))
-		return now;
-	if (!double_buffer_hurries(native, now) && hunt_step(native, now, !job, &next))
+	if (hunt_step(native, now, !job, &next))
 		return now;
 	if (convert_step(native, now, &next, &in_turn)) {
 		if (in_turn)
 			together_step(native, in_turn, now);
 		return now;
 	}
+	if (!hunt_initial(native) && locate_step(native, now, !job, &next))
+		return now;
 	if (job) {
 		run(native, job, now);
 		return now;
 	}
-	if (double_buffer_step(native, now, true) || ending_step(native, now, &next) ||
-	    rest(native, now, &next))
+	if (ending_step(native, now, &next) || rest(native, now, &next))
 		return now;
 	return next > now ? next : now;
-}
-
-static void tell_experimental(struct native *native)
-{
-	if (native->double_buffer && !native->experimental_told)
-		native_event(native, BUS_NOTE, NULL, 0,
-		             "DoubleBuffer is on, which is experimental: so far only simulators "
-		             "have seen it");
-	native->experimental_told = true;
 }
 
 int64_t native_step(struct bus *bus, int64_t now)
@@ -393,8 +375,6 @@ int64_t native_step(struct bus *bus, int64_t now)
 		next = master_step(native, now);
 		if (!native->up)
 			refuse_all(native);
-		else
-			tell_experimental(native);
 		return next;
 	}
 	int64_t began = native_now(native);
@@ -402,6 +382,6 @@ int64_t native_step(struct bus *bus, int64_t now)
 	next = step(native, now);
 	schedule_took(&native->schedule, began, native_now(native));
 	if (native->up)
-		take_cost(native);
+		cost_take(native);
 	return next;
 }

@@ -6,6 +6,9 @@
  *   job.c      one request on its way: what it waits for, its next step
  *   resolve.c  what a path means
  *   hunt.c     searches: background, directories, alarms
+ *   locate.c   devices that requests name and nobody knows
+ *   first.c    first values, before the first search has ended
+ *   first_wire.c  ... of devices that are found meanwhile
  *   touch.c    keys that touch a wire
  *   exchange.c properties read and written
  *   simultaneous.c  writes to /simultaneous
@@ -13,8 +16,7 @@
  *   broadcast.c  Convert T for all of a channel
  *   schedule.c which of these is faster
  *   together.c thermometers on several chips of the master at the same time
- *   double_buffer.c  experimental: results are read while their chips convert anew
- *   trial.c    ... which chips keep a result for so long
+ *   watch.c    ... the limits beyond which they do
  *   ending.c   when a conversion ends
  *   supply.c   which thermometers are fed by the wire
  *   outcome.c  what follows from how a transaction ended

@@ -5,6 +5,7 @@
 #include "hal/chips/family.h"
 #include "hal/chips/thermometer.h"
 #include "hal/native/answer.h"
+#include "hal/native/cost.h"
 #include "hal/native/limits.h"
 #include "hal/native/master.h"
 #include "hal/native/outcome.h"
@@ -25,6 +26,7 @@ void job_saw(struct native *native, struct job *job, int err, int64_t now)
 	txn->on_wire = false;
 	native_count(native, COUNT_TRANSACTIONS);
 	native->channel[txn->channel].transactions++;
+	cost_of_job(native, job);
 	if (!txn->link_error)
 		master_good(native, txn->channel);
 	if (txn->restarted && txn->device)
@@ -46,7 +48,7 @@ static void failed_on_link(struct native *native, struct job *job, int err)
 		if (++job->tries >= TRIES_SHORT)
 			job_answer(native, job, -ECOMM);
 		else
-			job_restart(native, job);
+			job_again(native, job);
 		return;
 	}
 	if (!master_recover(native, channel, err))
@@ -54,7 +56,7 @@ static void failed_on_link(struct native *native, struct job *job, int err)
 	if (++job->tries >= TRIES_LINK)
 		job_answer(native, job, -EIO);
 	else
-		job_restart(native, job);
+		job_again(native, job);
 }
 
 /* All ones, or nobody: is it away? Looked for once, on all channels. */
@@ -64,7 +66,7 @@ void job_missing(struct native *native, struct job *job, int err)
 		job_answer(native, job, err == -ENODEV ? -EIO : err);
 		return;
 	}
-	job_restart(native, job);
+	job_again(native, job);
 	job->verified = true;
 	job->tries = 0;
 	job->channel = job->txn.device->channel;
@@ -84,7 +86,7 @@ static void begin_again(struct native *native, struct job *job)
 	    thermometer_of(device)->converted_ns + NATIVE_S > native_now(native))
 		job_reread(native, job);
 	else
-		job_restart(native, job);
+		job_again(native, job);
 }
 
 /* What was converted is still there: the next request for it reads it, and converts nothing. */
@@ -134,11 +136,11 @@ void job_failed(struct native *native, struct job *job, int err)
 		}
 		thermometer_of(job->txn.device)->converted_ns = 0;
 		job->fresh = true;
-		job_restart(native, job);
+		job_again(native, job);
 		return;
 	case -EIO:
 		if (++job->tries < TRIES_DEVICE)
-			job_restart(native, job);
+			job_again(native, job);
 		else
 			job_answer(native, job, err);
 		return;

@@ -4,6 +4,7 @@
 
 #include "hal/chips/family.h"
 #include "hal/native/branches.h"
+#include "hal/native/first_wire.h"
 #include "hal/native/presence.h"
 #include "hal/native/sensors.h"
 #include "hal/native/state.h"
@@ -34,6 +35,7 @@ void presence_found(struct native *native, const uint8_t rom[8], unsigned n, int
 		native_event(native, BUS_FOUND, rom, 0, "");
 		if (rom[0] == COUPLER_FAMILY)
 			branches_found(native, device);
+		first_found(native, device);
 	}
 	device->seen = native->channel[n].round;
 	presence_seen(device, now);

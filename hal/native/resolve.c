@@ -27,6 +27,9 @@ static bool is_directory(const struct family *family, const struct device *devic
 {
 	const struct property *property = NULL;
 
+	/* before it is known which chip it is: of any */
+	if (device && family_untold(device))
+		device = NULL;
 	while ((property = family_next(family, device, property)))
 		if (strncmp(property->name, name, len) == 0 && property->name[len] == '/')
 			return true;

@@ -130,7 +130,8 @@ static int64_t longer(int64_t a, int64_t b)
 	return a > b ? a : b;
 }
 
-int64_t schedule_cost(const struct schedule *schedule, enum schedule_work what)
+/* Of a reading, or the start of one chip. */
+static int64_t mean_cost(const struct schedule *schedule, enum schedule_work what)
 {
 	if (schedule->took_ns[what])
 		return schedule->took_ns[what];
@@ -166,8 +167,8 @@ bool schedule_early(const struct native *native)
 bool schedule_in_turn(const struct native *native, const struct schedule_plan *plan, int64_t now)
 {
 	const struct schedule *schedule = &native->schedule;
-	int64_t read = schedule_cost(schedule, SCHEDULE_READ),
-		start = schedule_cost(schedule, SCHEDULE_START);
+	int64_t read = mean_cost(schedule, SCHEDULE_READ),
+		start = mean_cost(schedule, SCHEDULE_START);
 	int64_t left = left_by_others(schedule);
 	int64_t wait = plan->reading * read;
 
@@ -187,29 +188,6 @@ bool schedule_reads(const struct job *job)
 	       (job->state == JOB_CONVERTING || job->state == JOB_RUN);
 }
 
-/*
- * Of n thermometers k are read early: a value is new every c + s + (n - k) r, where the thread has
- * time for n r besides. The other ways are as above.
- */
-unsigned schedule_ahead(const struct native *native, const struct schedule_plan *plan,
-                        unsigned early, int64_t early_ns)
-{
-	const struct schedule *schedule = &native->schedule;
-	int64_t read = schedule_cost(schedule, SCHEDULE_READ);
-	int64_t start = schedule_cost(schedule, SCHEDULE_START);
-	int64_t left = left_by_others(schedule), n = plan->due + plan->reading;
-
-	if (!n || plan->driven || left < WINDOW_NS / 2)
-		return 0;
-	int64_t fit = early_ns * (left / (WINDOW_NS / FINE)) / FINE / read + 1;
-	int64_t k = fit < (int64_t)early ? fit : (int64_t)early;
-	int64_t ahead = longer(plan->longest_ns + start + (n - k) * read, n * read);
-	int64_t in_turn = longer(plan->longest_ns + start + read,
-	                         n * (read + start) + n * (read + start) / GAIN);
-	bool faster = ahead < in_turn && ahead < plan->longest_ns + n * read;
-	return faster ? (unsigned)k : 0;
-}
-
 void schedule_took(struct schedule *schedule, int64_t began, int64_t now)
 {
 	int64_t took = now - began, *mean;
@@ -227,7 +205,7 @@ void schedule_took(struct schedule *schedule, int64_t began, int64_t now)
 		return;
 	}
 	mean = &schedule->took_ns[schedule->doing];
-	*mean = schedule_cost(schedule, schedule->doing);
+	*mean = mean_cost(schedule, schedule->doing);
 	if (took > OUTLIER * *mean)
 		took = OUTLIER * *mean;
 	*mean += (took - *mean) / MEAN_OF;

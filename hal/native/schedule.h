@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How the thermometers of a channel convert: all at once, in turn, or ahead (double_buffer.h).
+ * How the thermometers of a channel convert: all at once, or in turn.
  *
  *   all at once  Convert T with Skip ROM when all results are read; then each is read
  *   in turn      a chip that was read and is asked for again converts at once, by Match ROM, while
@@ -53,15 +53,6 @@ static inline void schedule_owe(struct schedule *schedule, enum schedule_debt de
 	if (schedule->owes < debt)
 		schedule->owes = (uint8_t)debt;
 }
-/*
- * How many results of the channel may be left to be read while their chips convert anew
- * (double_buffer.h); 0: another way is not slower. early: so many can be read early, the last of
- * them early_ns after the start. No other channel has a thermometer.
- */
-unsigned schedule_ahead(const struct native *native, const struct schedule_plan *plan,
-                        unsigned early, int64_t early_ns);
-/* A mean reading of a result, and the start of one chip. */
-int64_t schedule_cost(const struct schedule *schedule, enum schedule_work what);
 /* A step of the bus took from began to now, and did schedule.doing. */
 void schedule_took(struct schedule *schedule, int64_t began, int64_t now);
 

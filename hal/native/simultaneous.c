@@ -20,6 +20,7 @@ static int convert_voltage(struct native *native, unsigned n)
 	struct channel *channel = &native->channel[n];
 	struct txn txn = {.native = native, .link = channel->link, .channel = n};
 	uint8_t none;
+	int64_t begun = native_now(native);
 	int err = txn_raw(&txn, &skip, 1);
 
 	if (!err)
@@ -33,6 +34,12 @@ static int convert_voltage(struct native *native, unsigned n)
 	if (err < 0)
 		return txn.link_error ? txn.link_error : err;
 	master_good(native, n);
+	for (unsigned i = 0; i < native->table.count; i++) {
+		struct device *device = &native->table.devices[i];
+
+		if (device->present && device->channel == n && device->family == &family_20)
+			ds2450_of(device)->measured_ns = begun;
+	}
 	int64_t end = native_now(native) + conversion->ns;
 	channel->simultaneous_ns[SIMULTANEOUS_VOLTAGE] = end;
 	native->hold_ns[channel->link->chip % NATIVE_CHANNELS] = end;

@@ -42,9 +42,6 @@ enum native_count {
 	COUNT_WIRE_US,
 	COUNT_I2C_TRANSFERS,
 	COUNT_SYSCALLS,
-	COUNT_AHEAD,
-	COUNT_TRIALS,
-	COUNT_DOUBTS,
 	COUNTS,
 };
 
@@ -54,7 +51,7 @@ enum job_kind {
 	JOB_PROBE,     /* is the device there? */
 	JOB_SCAN,      /* a fresh list of devices */
 	JOB_ALARM,     /* a list of the devices in alarm */
-	JOB_LISTING,   /* a list that needs no wire */
+	JOB_LISTING,   /* a list that needs no wire, but for what chip it is of */
 	JOB_STRUCTURE, /* read in /structure */
 	JOB_CONVERT,   /* write to /simultaneous/temperature or voltage */
 };
@@ -62,27 +59,45 @@ enum job_kind {
 enum job_state {
 	JOB_NEW,        /* not looked at */
 	JOB_QUEUED,     /* not begun, or to be begun again */
-	JOB_LOCATE,     /* the device is not in the table: look for it channel by channel */
+	JOB_LOCATE,     /* the device did not answer, or (!verified) nobody knows where it is */
 	JOB_PREPARE,    /* thermometer: power supply and resolution */
 	JOB_DUE,        /* thermometer: waits for the next Convert T */
 	JOB_CONVERTING, /* ... which is under way until ready_ns */
 	JOB_RUN,        /* transactions */
 };
 
+/* Its conversion is made again (thermometer_proof.h): nothing proved that the chip made it. */
+enum job_again {
+	AGAIN_NO,
+	AGAIN_MARK,   /* at few bits, so that the next result differs */
+	AGAIN_MARKED, /* ... and that has been read */
+	AGAIN_LAST,   /* for the last time */
+};
+
+/* Of a job of a thermometer, while wires are searched for the first time (first.h). */
+enum job_first {
+	FIRST_NO,
+	FIRST_TAKES_PART, /* in the conversion for all of its wire */
+	FIRST_LEFT,       /* to the search: it did not answer */
+};
+
 struct job {
 	struct bus_req *req;
 	uint8_t kind, state;
 	bool begun, fresh, verified, locks;
-	bool again;                 /* its conversion was unproven, and is made a second time */
+	uint8_t again;              /* enum job_again */
 	bool offered;               /* somebody or something can answer it */
 	bool alone;                 /* its next transaction is made with no others (together.h) */
+	bool sought;                /* LOCATE: the look under way has not decided it yet */
+	uint8_t first;              /* enum job_first */
 	bool waits;                 /* PREPARE: until another job has read its resolution */
 	bool rests;                 /* PREPARE: until the chip does not convert */
 	unsigned element;           /* of a separate array, when all of it is asked for */
 	uint8_t tries;              /* transactions that failed in a row */
 	uint8_t faults;             /* power-fault readings in a row */
-	uint8_t failures;           /* how often it was begun again after an error */
-	uint8_t channel;            /* which one is being searched */
+	uint8_t failures;           /* how often a transaction of it failed */
+	uint8_t retries;            /* how often it was begun again after an error */
+	uint8_t channel;            /* which one is being searched, or converts */
 	int bus;                    /* N of /bus.N, the channel of a branch, -1: all */
 	bool inside;                /* the directory of a branch */
 	const struct family *table; /* of a path without device */
@@ -90,6 +105,8 @@ struct job {
 	uint32_t order; /* lower came earlier, or has waited longer for its next part */
 	uint8_t steps;  /* transactions since then */
 	int64_t since_ns;
+	uint64_t wire_ns;  /* slots of its own transactions (cost.h) */
+	int64_t locate_ns; /* LOCATE: since then */
 	const struct property *property;
 	int extension;
 	int64_t ready_ns;    /* CONVERTING */
@@ -119,8 +136,16 @@ struct touch {
 	int64_t ended_ns; /* ... when that was */
 	int64_t begun_ns; /* the search of this family */
 	int64_t round_ns; /* ... of the first one */
+	int64_t whole_ns; /* ... of the first one of the last round that was right to its end */
 	int64_t next_ns;  /* when to search again */
 	int64_t turn_ns;  /* ... of a branch without a reason */
+};
+
+/* Of a wire: the conversions that begin before its first search has ended (first.h). */
+struct first {
+	bool tried;
+	bool refused;     /* the last start of them failed: there are no more */
+	int64_t ready_ns; /* 0: there are none */
 };
 
 /* Of a wire: the end of its last Convert T for all (ending.h). */
@@ -130,39 +155,6 @@ struct ending {
 	int64_t begun_ns; /* Convert T */
 	int64_t next_ns;  /* next question */
 	int64_t took_ns;  /* the conversion before, as seen; 0: not known */
-};
-
-/* Of a wire with the option DoubleBuffer (double_buffer.h). */
-struct double_buffer {
-	bool runs;     /* its way now */
-	bool auditing; /* the present conversion is looked at */
-	bool single;   /* ... and begins chip by chip */
-	uint8_t cycle; /* starts since the last audit */
-	/* The next devices of the table to be audited, and to be asked for their supply. */
-	unsigned audit_i, supply_i;
-	unsigned supplies; /* how many may be asked in this cycle */
-	int64_t audit_ns;  /* when the last audit began */
-};
-
-/* The trial under way (trial.h); device NULL: none. */
-struct trial {
-	struct device *device;
-	uint8_t step, tries, misses; /* of this step */
-	uint8_t begin[9];            /* the scratchpad at the beginning */
-	uint8_t point, old;          /* points that were read; those that were as before */
-	const char *refused;         /* why, when its resolution is back; NULL: it is not */
-	uint8_t changed;             /* points that showed something else */
-	bool late;                   /* a point was read when nothing can be said of it */
-	uint8_t conversion; /* the chip's when the part began: nobody else makes it convert */
-	uint8_t held[8];    /* what the scratchpad is to show */
-	uint8_t other[8];   /* what it showed instead */
-	int64_t begun_ns;   /* this part */
-	int64_t started_ns; /* Convert T at 12 bits */
-	int64_t next_ns;    /* next transaction; of no trial: the next one */
-	int64_t from_ns, until_ns; /* of the points, since the start */
-	int64_t last_old_ns;       /* the last point that was as before, since the start */
-	unsigned cursor;
-	struct txn txn;
 };
 
 struct channel {
@@ -182,13 +174,15 @@ struct channel {
 	int64_t simultaneous_ns[SIMULTANEOUS];
 	int64_t search_ns;     /* next pass of the background search */
 	uint32_t round;        /* number of the background search */
+	int64_t whole_ns;      /* when the last one began that was right to its end; 0: none was */
+	int64_t looked_ns;     /* ... look for those that requests name (locate.h) */
 	uint32_t asleep_round; /* the last that found a bridge without id (DS28E18); 0: none */
 	int64_t round_ns;      /* when it began */
 	bool searching, dirty;
 	struct search search;
 	struct touch touch;
+	struct first first;
 	struct ending ending;
-	struct double_buffer buffer;
 	uint64_t errors, shorts, checksums, transactions;
 };
 
@@ -216,6 +210,20 @@ struct schedule {
 	uint8_t owes;               /* enum schedule_debt */
 };
 
+/* Looks for devices that nobody knows (locate.h). */
+struct locate {
+	bool waits, urgent; /* a request waits for one; ... of an alarm or an output */
+	bool looking;       /* a look at `channel` is under way */
+	unsigned channel;   /* the last one that was looked at */
+	uint8_t tries;      /* errors of this look */
+	int64_t begun_ns;   /* this look */
+	int64_t credit_ns;  /* wire that looks may take; less than 0: they took more */
+	int64_t counted_ns; /* ... as of then */
+	int64_t idle_ns;    /* when nobody else needs the wire: the next one */
+	int64_t took_ns;    /* the last transaction */
+	uint64_t found;     /* COUNT_FOUND when the requests were looked at last */
+};
+
 /* What /statistics tells of the requests of one kind. */
 enum tally_kind { TALLY_READ, TALLY_WRITE, TALLY_DIRECTORY, TALLY_OVERALL, TALLIES };
 
@@ -236,20 +244,24 @@ struct native {
 	bool failed; /* suspended: it failed with what is to be seen of it at that time */
 	uint64_t failed_mark;
 	struct job *jobs; /* NATIVE_DEPTH */
+	struct job *all;  /* the JOB_CONVERT that waits longest; it may be over */
 	uint32_t order;   /* of the next job */
 	char where[NATIVE_WHERE_MAX];
+	struct bus_counter counters[COUNTS];
+
+	/* cost.c */
 	uint64_t wire_ns,
 		wire_seen_ns[NATIVE_CHANNELS]; /* of all links so far; what each said last */
-	struct bus_counter counters[COUNTS];
 
 	/* master.c; native.c, when it suspends the bus or lets it go on */
 	bool up, told;
-	int down_err;     /* why it is down; 0: it was not opened, or let go of in order */
-	int64_t open_ns;  /* next try to open */
-	int64_t pause_ns; /* between tries */
-	int64_t up_ns;    /* when it was opened */
-	int64_t grow_ns;  /* next look for chips that were missing; INT64_MAX: none was */
-	bool grow_told;
+	int down_err;          /* why it is down; 0: it was not opened, or let go of in order */
+	int64_t open_ns;       /* next try to open */
+	int64_t pause_ns;      /* between tries */
+	int64_t up_ns;         /* when it was opened */
+	int64_t grow_ns;       /* next look for chips that were missing; INT64_MAX: none was */
+	int64_t grow_pause_ns; /* until the one after that */
+	bool grow_told;        /* one is missing, and the log says so */
 	unsigned channels;
 
 	/* Every file that works on a channel: `channels` wires; branches from NATIVE_CHANNELS on */
@@ -267,11 +279,6 @@ struct native {
 	/* schedule.c; convert.c and native.c say what a step does */
 	struct schedule schedule;
 
-	/* native.c sets it once; trial.c */
-	bool double_buffer;     /* the option */
-	bool experimental_told; /* the log says so */
-	struct trial trial;
-
 	/* answer.c; native.c takes jobs, and ends the wait */
 	unsigned lent;     /* jobs that are taken */
 	int64_t follow_ns; /* until then an alarm's next request is waited for; 0: it is not */
@@ -280,9 +287,15 @@ struct native {
 	unsigned hunter;          /* the channel whose turn to be searched is next */
 	int64_t hunt_ns, pass_ns; /* background search: its next pass; what the last took */
 
+	/* locate.c; native.c says who waits */
+	struct locate locate;
+	/* first.c */
+	bool first_turn; /* a reading has had its turn, another thing is next; native.c, too */
+	bool first_left; /* a wire's first conversions have begun, and not all is done */
+
 	/* native.c: keys are searched for; touch.c: whose turn it is */
 	bool touch;
-	bool touched;             /* a search was made: a request goes first now */
+	bool touched; /* a search was made, or a look: a request goes first now. Also locate.c */
 	unsigned toucher;         /* the channel of the last round; it may not have ended */
 	unsigned next_touch[2];   /* the wire, the branch to begin with */
 	int64_t touch_ns;         /* next branch at all */

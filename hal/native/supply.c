@@ -31,14 +31,21 @@ static int look_at_supply(struct link *link)
 	return err == -EHOSTDOWN ? -ENODEV : err ? err : slots == 0xff;
 }
 
+int supply_look(struct native *native, unsigned n)
+{
+	int external = 1;
+
+	for (int look = 0; look < LOOKS && external > 0; look++)
+		external = look_at_supply(native->channel[n].link);
+	return external;
+}
+
 int supply_ask_all(struct native *native, struct job *job)
 {
 	struct channel *channel = &native->channel[job->txn.channel];
-	int external = 1;
 
 	job->txn.on_wire = true;
-	for (int look = 0; look < LOOKS && external > 0; look++)
-		external = look_at_supply(channel->link);
+	int external = supply_look(native, job->txn.channel);
 	if (external < 0) {
 		job->txn.link_error = external == -ENODEV ? 0 : external;
 		return external;

@@ -6,6 +6,11 @@
 #include "hal/native/state.h"
 
 /*
+ * Asks all thermometers of a channel at once, some times. 1: none is fed by the wire; 0: one is, or
+ * another chip made it seem so; -ENODEV nobody is there, or an error of the link.
+ */
+int supply_look(struct native *native, unsigned n);
+/*
  * Asks all thermometers of the job's channel at once, in a transaction that counts as the job's.
  * TXN_MORE: they have been asked, and the job goes on with its next transaction. Else the error
  * that the job has.

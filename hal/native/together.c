@@ -2,9 +2,10 @@
 /* Transactions of several thermometers at the same time, each on another chip of the master. */
 #include "hal/native/together.h"
 #include "hal/chips/thermometer.h"
+#include "hal/native/answer.h"
 #include "hal/native/broadcast.h"
 #include "hal/native/convert.h"
-#include "hal/native/double_buffer.h"
+#include "hal/native/cost.h"
 #include "hal/native/job.h"
 #include "hal/native/schedule.h"
 
@@ -40,16 +41,22 @@ static void add(const struct native *native, struct group *group, struct job *jo
 	};
 }
 
-/* A group with this job. false: it makes its transaction alone. */
+/* A group with this job. false: there is none. */
 static bool begin(const struct native *native, struct group *group, struct job *job)
 {
-	struct link *link = native_abreast(native, job->txn.device->channel);
-
 	group->n = 0;
-	if (!link || job->alone || job->req->prio <= BUS_OUTPUT || link->ops->abreast(link) < 2)
+	if (!native_abreast(native, job->txn.device->channel) || job->alone)
 		return false;
 	add(native, group, job);
 	return true;
+}
+
+/* false: the transaction is made by the job's own steps, as it is not quicker so. */
+static bool is_worth_it(const struct group *group)
+{
+	const struct link *link = group->visit[0].link;
+
+	return group->n > 1 || link->ops->visits(link);
 }
 
 /* Is there room for a job on this channel? */
@@ -87,14 +94,10 @@ static void drop_visit(struct group *group, unsigned i)
 	txn_done(&group->job[i]->txn, NULL);
 }
 
-/*
- * What may be read while its chip converts anew is judged by the time of its reading, which has to
- * be as short as that of one alone.
- */
 static bool reads_scratchpad(const struct job *job)
 {
 	return schedule_reads(job) && job->txn.device && job->txn.device->family->thermometer &&
-	       job->txn.phase == 0 && job->req->op == BUS_READ && !double_buffer_may_wait(job);
+	       job->txn.phase == 0 && job->req->op == BUS_READ;
 }
 
 /* Of those that are ready on chips that are not in the group yet, the one that goes first. */
@@ -148,8 +151,10 @@ void together_step(struct native *native, struct job *job, int64_t now)
 		step(native, job, now);
 		return;
 	}
-	gather(native, &group, now);
-	if (group.n == 1) {
+	/* Not with others: an alarm or an output, which would wait for them. */
+	if (job->req->prio > BUS_OUTPUT)
+		gather(native, &group, now);
+	if (!is_worth_it(&group)) {
 		step(native, job, now);
 		return;
 	}
@@ -158,6 +163,8 @@ void together_step(struct native *native, struct job *job, int64_t now)
 		group.job[i]->alone = group.visit[i].err != 0;
 		if (!group.visit[i].err)
 			continue;
+		job_count_retry(group.job[i]);
+		cost_of_job(native, group.job[i]);
 		native_count(native, COUNT_TRANSACTIONS);
 		native->channel[group.device[i]->channel].transactions++;
 	}

@@ -16,6 +16,7 @@
  */
 #include <errno.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "hal/native/branches.h"
 #include "hal/native/limits.h"
@@ -68,7 +69,7 @@ static bool found(struct native *native, unsigned n, const uint8_t rom[8], int64
 {
 	const struct device *device = device_find(&native->table, rom);
 	bool known = device && is_key(device, n, rom[0]);
-	char text[BUS_EVENT_TEXT], name[ROM_TEXT_MAX], where[BUS_EVENT_TEXT];
+	char text[BUS_EVENT_TEXT], name[ROM_TEXT_MAX];
 
 	presence_found(native, rom, n, now);
 	device = device_find(&native->table, rom);
@@ -76,9 +77,10 @@ static bool found(struct native *native, unsigned n, const uint8_t rom[8], int64
 		return false;
 	const char *alias = device_alias(device);
 	rom_print(rom, ROM_F_I, name);
-	branches_name(native, n, where, sizeof(where));
-	snprintf(text, sizeof(text), "key %s%s%.60s%s touches %.40s", name, alias[0] ? " (" : "",
-	         alias, alias[0] ? ")" : "", where);
+	int len = snprintf(text, sizeof(text), "key %s%s%.60s%s touches ", name,
+	                   alias[0] ? " (" : "", alias,
+	                   alias[0] ? strlen(alias) > 60 ? "...)" : ")" : "");
+	branches_name(native, n, text + len, sizeof(text) - (size_t)len);
 	native_event(native, BUS_NOTE, rom, 0, text);
 	return true;
 }
@@ -128,6 +130,7 @@ static void end_family(struct native *native, unsigned n, int64_t now)
 	/* Couplers in alarm come after the keys. */
 	if (touch->family < FAMILIES + (!is_branch(n) && channel->trunk))
 		return;
+	touch->whole_ns = touch->round_ns;
 	end_round(native, n, now);
 }
 
@@ -198,14 +201,19 @@ static void pass(struct native *native, unsigned n, int64_t now)
 		end_family(native, n, now);
 }
 
-bool touch_knows(const struct native *native, const struct device *device, int64_t now)
+bool touch_seeks(const struct native *native, const uint8_t rom[8])
 {
 	bool key = false;
 
 	for (size_t i = 0; i < FAMILIES; i++)
-		key |= device->rom[0] == families[i];
-	return native->touch && key && device->present && native_has(native, device->channel) &&
-	       device->ok_ns + TOUCH_NS > now;
+		key |= rom[0] == families[i];
+	return native->touch && key;
+}
+
+bool touch_knows(const struct native *native, const struct device *device, int64_t now)
+{
+	return touch_seeks(native, device->rom) && device->present &&
+	       native_has(native, device->channel) && device->ok_ns + TOUCH_NS > now;
 }
 
 /* When this channel is searched next. */

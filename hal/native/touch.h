@@ -10,4 +10,7 @@ bool touch_step(struct native *native, int64_t now, int64_t *next);
 /* Has such a search just seen this key? Then nobody needs to look whether it is there. */
 bool touch_knows(const struct native *native, const struct device *device, int64_t now);
 
+/* Are ids of this family searched for all the time? */
+bool touch_seeks(const struct native *native, const uint8_t rom[8]);
+
 #endif

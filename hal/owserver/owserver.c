@@ -31,8 +31,8 @@
 #define GREETING_NS (5000 * NS_PER_MS)
 #define SLICE_NS (50 * NS_PER_MS)
 #define NAMES_NS (5000 * NS_PER_MS) /* owserver answers requests on a busy wire one after another */
-/* The pause between two looks at an idle connection, to learn that the server went. */
-#define IDLE_NS (1000 * NS_PER_MS)
+/* For the next connection when the server closed an idle one. */
+#define REOPEN_NS (1000 * NS_PER_MS)
 #define READ_MAX 65536
 
 static_assert(BUS_TOKEN == FRAME_TOKEN_SIZE && BUS_TOKENS_MAX == FRAME_TOKENS_SENT,
@@ -45,7 +45,7 @@ enum own_counter { RECONNECTS = TALK_COUNTERS, COUNTERS };
 struct owserver {
 	struct bus bus;
 	enum state state;
-	int64_t retry_ns, backoff_ns, give_up_ns, look_ns;
+	int64_t retry_ns, backoff_ns, give_up_ns;
 	bool was_up, is_down_reported, simulated;
 	struct bus_event loss; /* the event for the next step to report, if text is set */
 	struct bus_counter counter[COUNTERS];
@@ -123,7 +123,6 @@ static void go_up(struct owserver *server, int64_t cache_ns)
 	server->state = UP;
 	server->was_up = true;
 	server->is_down_reported = false;
-	server->look_ns = now_of(server) + IDLE_NS;
 	snprintf(event.text, sizeof(event.text), "connected to owserver at %s",
 	         server->talk.connection.peer);
 	server->bus.env->event(server->bus.env->ctx, &event);
@@ -222,11 +221,10 @@ static void look_at_idle(struct owserver *server)
 	struct talk *talk = &server->talk;
 	int err = 0;
 
-	server->look_ns = now_of(server) + IDLE_NS;
 	if (!connection_is_open(&talk->connection) || !connection_is_stale(&talk->connection))
 		return;
 	bus_count(&server->counter[TALK_STALE], 1);
-	err = connection_open(&talk->connection, server->look_ns);
+	err = connection_open(&talk->connection, now_of(server) + REOPEN_NS);
 	if (err == -ECANCELED)
 		return;
 	if (err) {
@@ -253,10 +251,11 @@ static int64_t owserver_step(struct bus *bus, int64_t now)
 		go_on_greeting(server);
 		break;
 	case UP:
-		if (now >= server->look_ns)
+		if (bus->stirred)
 			look_at_idle(server);
 		break;
 	}
+	bus->stirred = false;
 	report_loss(server);
 	switch (server->state) {
 	case DOWN:
@@ -265,9 +264,18 @@ static int64_t owserver_step(struct bus *bus, int64_t now)
 	case GREETING:
 		return now;
 	case UP:
-		return server->look_ns;
+		break;
 	}
 	return INT64_MAX;
+}
+
+/* A server that goes closes the connection. */
+static int owserver_watch(struct bus *bus)
+{
+	const struct owserver *server = (struct owserver *)bus;
+	const struct connection *connection = &server->talk.connection;
+
+	return server->state == UP && connection_is_open(connection) ? connection->fd : -1;
 }
 
 static void owserver_suspend(struct bus *bus, bool yes)
@@ -481,5 +489,6 @@ const struct bus_ops owserver_bus = {
 	.step = owserver_step,
 	.suspend = owserver_suspend,
 	.there = owserver_there,
+	.watch = owserver_watch,
 	.counters = owserver_counters,
 };

@@ -168,6 +168,28 @@ unsigned event_parse(const struct sim_net *net, struct words *words, struct sim_
 	return words->failed ? 0 : n;
 }
 
+bool event_is_held(const struct sim_event *event)
+{
+	switch (event->what) {
+	case SIM_PLUG:
+		return !event->on;
+	case SIM_CORRUPT:
+	case SIM_SHORT:
+		return event->on;
+	case SIM_SET:
+	case SIM_BROWNOUT:
+	case SIM_STICK:
+	case SIM_JAM:
+	case SIM_CHIP_RESET:
+	case SIM_CHIP_SLEEP:
+	case SIM_REFUSE:
+	case SIM_REFUSE_DATA:
+	case SIM_ADAPTER:
+		break;
+	}
+	return false;
+}
+
 int sim_scenario_event(struct sim_net *net, const char *line, int64_t now, char *why,
                        size_t why_size)
 {

@@ -13,6 +13,12 @@
 unsigned event_parse(const struct sim_net *net, struct words *words, struct sim_event event[2]);
 
 /*
+ * May a button hold the event (button.h)? It lasts until it is ended. What befalls a bridge chip
+ * does not: owsd ends it, or it takes the target away, and the button with it.
+ */
+bool event_is_held(const struct sim_event *event);
+
+/*
  * Carry out one event now. The line is what follows "at TIME" in a scenario, as "unplug kitchen" or
  * "short 0x18.2 for 5s". 0, -EINVAL with the reason in why, -ENOMEM.
  */

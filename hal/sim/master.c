@@ -9,6 +9,7 @@
 #include "hal/ds2482/master.h"
 #include "hal/ds2482/power.h"
 #include "hal/sim/adapter.h"
+#include "hal/sim/button.h"
 #include "hal/sim/master.h"
 #include "hal/sim/scenario.h"
 
@@ -95,6 +96,12 @@ struct sim_net *sim_master_net(struct link_master *master)
 	return &((struct simulation *)driver->source.ctx)->net;
 }
 
+static bool own(struct link_master *master, struct bus_req *req, struct bus_answer *answer)
+{
+	return button_answer(sim_master_net(master), req, master->env->now(master->env->ctx),
+	                     answer);
+}
+
 const struct link_master_ops sim_master = {
 	.create = sim_master_create,
 	.option = ds2482_option,
@@ -105,6 +112,7 @@ const struct link_master_ops sim_master = {
 	.channels = ds2482_channels,
 	.channel = ds2482_channel,
 	.cost = ds2482_cost,
+	.own = own,
 	.destroy = ds2482_destroy,
 	.simulated = true,
 };

@@ -157,6 +157,36 @@ static void apply(struct sim_net *net, const struct sim_event *event, int64_t t)
 	}
 }
 
+void sim_net_apply(struct sim_net *net, const struct sim_event *event)
+{
+	apply(net, event, net->time);
+}
+
+bool sim_net_lasts(const struct sim_net *net, const struct sim_event *event)
+{
+	const struct sim_slave *slave = event->slave;
+
+	switch (event->what) {
+	case SIM_PLUG:
+		return !slave->plugged;
+	case SIM_CORRUPT:
+		return slave->corrupt_every || slave->corrupt_probability > 0;
+	case SIM_SHORT:
+		return net->chip[event->chip].wire[event->channel].shorted;
+	case SIM_SET:
+	case SIM_BROWNOUT:
+	case SIM_STICK:
+	case SIM_JAM:
+	case SIM_CHIP_RESET:
+	case SIM_CHIP_SLEEP:
+	case SIM_REFUSE:
+	case SIM_REFUSE_DATA:
+	case SIM_ADAPTER:
+		break;
+	}
+	return false;
+}
+
 static struct sim_event *next_event(const struct sim_net *net)
 {
 	struct sim_event *next = NULL;

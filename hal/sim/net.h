@@ -43,6 +43,14 @@ struct sim_event {
 	uint64_t seed;
 };
 
+/* An event on demand (button.h). */
+#define SIM_BUTTON_NAME 32
+#define SIM_MAX_BUTTONS 16
+struct sim_button {
+	char name[SIM_BUTTON_NAME];
+	struct sim_event event;
+};
+
 /* As enum i2c_combine. */
 enum sim_combine { SIM_SMBUS_ONLY, SIM_ONE_READ_LAST, SIM_ANY_MESSAGES };
 
@@ -56,6 +64,8 @@ struct sim_net {
 	struct sim_chip chip[SIM_MAX_CHIPS];
 	struct sim_event *event;
 	size_t events;
+	struct sim_button button[SIM_MAX_BUTTONS];
+	unsigned buttons;
 
 	bool started;
 	int64_t epoch, time; /* the start on the host's clock; the latest time, ns since then */
@@ -83,6 +93,12 @@ void sim_net_start(struct sim_net *net, int64_t now);
  */
 #define SIM_CATCH_UP 100000
 void sim_net_run(struct sim_net *net, int64_t now);
+/* Carry out an event at once, whatever its own time is. Allocates nothing. */
+void sim_net_apply(struct sim_net *net, const struct sim_event *event);
+/*
+ * Is there now what an event that a button may hold (event.h) begins, by that event or by another?
+ */
+bool sim_net_lasts(const struct sim_net *net, const struct sim_event *event);
 /* When the next event is due on the host's clock; INT64_MAX: never. */
 int64_t sim_net_next(const struct sim_net *net);
 

@@ -12,6 +12,7 @@
 
 #include "hal/owfs/path.h"
 #include "hal/sim/branch.h"
+#include "hal/sim/button.h"
 #include "hal/sim/event.h"
 #include "hal/sim/families.h"
 #include "hal/sim/scenario.h"
@@ -319,14 +320,16 @@ static void parse_line(struct scenario *scenario, struct words *words)
 		branch_line(scenario, words);
 	else if (strcmp(words->word, "at") == 0)
 		at_line(scenario, words);
+	else if (strcmp(words->word, "button") == 0)
+		button_parse(scenario->net, words);
 	else if (family)
 		device_line(scenario, family, words);
 	else if (slave)
 		properties(slave, words);
 	else
 		words_fail(words,
-		           "\"%s\": expected i2c, chip, channel, branch, at, a part such as "
-		           "DS18B20, or the name of a device",
+		           "\"%s\": expected i2c, chip, channel, branch, at, button, a part such "
+		           "as DS18B20, or the name of a device",
 		           words->word);
 }
 

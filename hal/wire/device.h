@@ -29,7 +29,7 @@ struct device_reading {
 	int64_t begun_ns, made_ns;
 	uint8_t bytes[32];
 };
-#define DEVICE_OWN 144
+#define DEVICE_OWN 96
 
 struct device {
 	const struct family *family;
@@ -44,7 +44,8 @@ struct device {
 	int64_t ok_ns;    /* last transaction that proved its presence; 0: never */
 	int64_t told_ns;  /* when family.identify told its kind; 0: never */
 
-	uint8_t power; /* enum device_power */
+	uint8_t power;        /* enum device_power */
+	const char *identity; /* what readings have shown that it is; NULL: nothing so far */
 
 	/* Switches: the output byte that was last written and verified. */
 	uint8_t shadow;

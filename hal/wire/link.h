@@ -106,11 +106,13 @@ struct link_ops {
 	 * n transactions at the same time, LINK_TOGETHER at most, on links with this function,
 	 * each of another chip. None waits for another beyond what it takes of the way to the
 	 * chips. After any error the transaction is made again by the functions above, which
-	 * judge it. NULL, together with abreast: there is no such thing.
+	 * judge it. NULL, together with abreast and visits: there is no such thing.
 	 */
 	void (*together)(struct link_visit *visits, unsigned n);
-	/* How many at most do not take much longer than one does; 1: do not use it. */
+	/* How many at most do not take much longer than one does; 1: do not use it for more. */
 	unsigned (*abreast)(const struct link *link);
+	/* Does together() make one alone quicker than the functions above do? */
+	bool (*visits)(const struct link *link);
 	/*
 	 * A whole search, of one family or (0) of all: 0, what found returned, or an error. NULL:
 	 * made of reset, write and triplet (hal/wire/search.h).
@@ -208,6 +210,12 @@ struct link_master_ops {
 	struct link *(*channel)(struct link_master *master, unsigned n);
 	/* Optional; also while closed. */
 	void (*cost)(const struct link_master *master, struct link_master_cost *cost);
+	/*
+	 * Optional. The answer to a request for what the master has beside its wires: err, len,
+	 * kind and number; the rest of *answer is filled. False: the master has no such path. Uses
+	 * no wire, never blocks.
+	 */
+	bool (*own)(struct link_master *master, struct bus_req *req, struct bus_answer *answer);
 	void (*destroy)(struct link_master *master);
 	bool simulated; /* its devices are not real: answers say BUS_DETAIL_SIMULATED */
 };

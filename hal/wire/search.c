@@ -110,6 +110,49 @@ int search_next(struct search *search, struct link *link)
 	return 1;
 }
 
+static bool same_start(const uint8_t a[8], const uint8_t b[8], unsigned bits)
+{
+	unsigned bytes = bits / 8;
+
+	if (memcmp(a, b, bytes) != 0)
+		return false;
+	return bits % 8 == 0 || ((a[bytes] ^ b[bytes]) & ((1 << bits % 8) - 1)) == 0;
+}
+
+/* Those that begin like roms[0], and whose next bit nobody has. */
+static void exclude(const uint8_t *const roms[], bool away[], unsigned n, unsigned position,
+                    int bits)
+{
+	for (unsigned i = 0; i < n; i++)
+		if (!away[i] && bits >> rom_bit(roms[i], position) & 1)
+			away[i] = same_start(roms[i], roms[0], position - 1);
+}
+
+int search_among(struct link *link, const uint8_t *const roms[], bool away[], unsigned n)
+{
+	int present = link->ops->verify ? link->ops->verify(link, roms[0], false)
+	                                : start(link, ONEWIRE_SEARCH);
+
+	if (present == 0)
+		for (unsigned i = 0; i < (link->ops->verify ? 1 : n); i++)
+			away[i] = true;
+	if (present <= 0 || link->ops->verify)
+		return present;
+	for (unsigned position = 1; position <= 64; position++) {
+		int bits = triplet(link, rom_bit(roms[0], position));
+
+		if (bits < 0)
+			return bits;
+		/* Somebody answered the bit before. */
+		if ((bits & 3) == 3 && position > 1)
+			return -EBADMSG;
+		exclude(roms, away, n, position, bits);
+		if (away[0])
+			return 0;
+	}
+	return 1;
+}
+
 int search_verify(struct link *link, const uint8_t rom[8], bool alarm)
 {
 	if (link->ops->verify)

@@ -72,8 +72,8 @@ struct txn {
 	bool silent;    /* nothing but ones was read */
 	bool heard;     /* the device itself answered */
 	bool restarted; /* the chip lost its state: its power was away */
-	bool held;      /* the reading was of the conversion before, as the chip converts again */
 	bool unproven;  /* a reading that may be of an older conversion than the last */
+	bool unheard;   /* ... that is of an older one: its resolution was another */
 };
 
 int64_t txn_now(const struct txn *txn);

@@ -7,6 +7,7 @@
 
 #include "src/config/build.h"
 #include "src/config/buses.h"
+#include "src/config/tag.h"
 #include "src/config/targets.h"
 
 static void keep_option(struct build *build, struct config_bus *bus, enum option option,
@@ -48,7 +49,7 @@ static void bus_build(struct build *build, const struct rio_node *block)
 	bus->column = target->node->value_at.column;
 	bus->options = build_take(build, OPTION_COUNT_ALL - OPT_BUS_TARGET, sizeof(*bus->options));
 	for (int i = OPT_BUS_TARGET + 1; bus->options && i < OPTION_COUNT_ALL; i++)
-		if (values[i].given)
+		if (option_table[i].place == PLACE_BUS && values[i].given)
 			keep_option(build, bus, (enum option)i, &values[i]);
 	config->bus_count++;
 }
@@ -81,16 +82,15 @@ const struct config_bus *config_bus(const struct config *config, const char *tar
 
 #define FILE_MAX 1000000
 
-/* FNV-1a */
 static uint64_t hash_of(const char *file)
 {
 	/* whoever has made it a pipe meanwhile does not hold a reload */
 	int fd = open(file, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
 	FILE *in = fd < 0 ? NULL : fdopen(fd, "r");
-	uint64_t hash = 0xcbf29ce484222325;
+	uint64_t hash = TAG_BEGIN;
 
 	for (int i = 0, c; in && i < FILE_MAX && (c = getc(in)) != EOF; i++)
-		hash = (hash ^ (uint64_t)c) * 0x100000001b3;
+		hash = tag_add(hash, (unsigned char)c);
 	if (in)
 		fclose(in);
 	else if (fd >= 0)

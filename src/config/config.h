@@ -43,6 +43,7 @@ struct config_item {
 	bool fresh;              /* Uncached, by flag or by path */
 	bool has_init, has_safe, has_safe_delay;
 	bool starts_last; /* Start "last"; outputs only */
+	bool confirm;     /* pages ask a person once more before a set */
 	int64_t safe_delay_ns;
 	int64_t init_value, safe_value;    /* numbers, as in src/signal/value.h */
 	const char *init_text, *safe_text; /* as written; for strings the value itself */
@@ -72,7 +73,7 @@ enum config_relation {
 	CONFIG_COMMA, /* another wire */
 	CONFIG_BAR,   /* another way to the wire of the target before it */
 };
-#define CONFIG_TARGETS_MAX 16
+#define CONFIG_TARGETS_MAX 64
 /* "auto" stands for its ways: an owserver here, else every DS2482, else the kernel's masters. */
 #define CONFIG_AUTO_WAYS 3u
 struct config_target {
@@ -106,6 +107,20 @@ struct config_serve {
 	bool read_only;
 };
 
+/* The Web block, for owsd-web; with the defaults where the file has none. */
+struct config_web {
+	bool given;
+	struct listen_address addresses[LISTEN_MAX];
+	unsigned address_count;
+	const char *listen;           /* as written; NULL: at no address */
+	const char *hosts;            /* a list with commas; NULL: none */
+	const char *proxy;            /* a user or an address; NULL: none */
+	const char *files;            /* NULL: the program's own */
+	uint32_t proxy_uid;           /* if has_proxy: this machine knows the user */
+	struct listen_peers proxy_at; /* one address; bits 0: it is a user, or none */
+	bool has_proxy, write, configure;
+};
+
 /* A user or a group of ControlAllow. */
 struct config_who {
 	bool group;
@@ -134,11 +149,14 @@ struct config {
 	struct config_serve serve;
 	struct config_allow *allows;
 	unsigned allow_count;
+	struct config_web web;
 };
 
 /* Receives the errors and warnings; a message is a whole line ("house.rio:12:26: error: ..."). */
 struct config_report {
 	void (*line)(void *ctx, bool is_error, const char *message);
+	/* The same in parts, in place of line; line and column 0: the file as a whole. */
+	void (*problem)(void *ctx, bool is_error, int line, int column, const char *text);
 	void *ctx;
 	unsigned errors, warnings;
 };

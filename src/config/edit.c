@@ -7,13 +7,11 @@
 #include <sys/stat.h>
 
 #include "src/config/edit.h"
+#include "src/config/edit_block.h"
 #include "src/config/load.h"
-#include "src/config/options.h"
 #include "src/config/replace.h"
 #include "src/config/rio_write.h"
 #include "src/signal/value.h"
-
-#define DRIVER "OwsDrv"
 
 const char edit_empty[] = "OwsDrv {\n"
 			  "  Version                 1.00\n"
@@ -26,45 +24,6 @@ const char edit_empty[] = "OwsDrv {\n"
 
 /* The place of errors in edits: the command line, not a place in the file. */
 static const struct place command_line;
-
-static struct rio_node *find_driver(const struct rio *rio)
-{
-	struct rio_node *node = rio_child(&rio->root, DRIVER);
-
-	return node && node->kind == RIO_BLOCK ? node : NULL;
-}
-
-static struct rio_node *find_item(const struct rio *rio, const char *name)
-{
-	struct rio_node *driver = find_driver(rio);
-	struct rio_node *item = driver ? rio_child(driver, option_table[OPT_ITEM].key) : NULL;
-
-	for (; item; item = rio_next(item)) {
-		const struct rio_node *found = rio_child(item, option_table[OPT_NAME].key);
-
-		if (item->kind == RIO_BLOCK && found && !strcmp(found->value, name))
-			return item;
-	}
-	return NULL;
-}
-
-/* The block of that name; reports an error if there is none. */
-static struct rio_node *find_block(const struct rio *rio, const char *name,
-                                   enum option_place *place, struct config_report *report)
-{
-	struct rio_node *block = find_item(rio, name);
-
-	*place = PLACE_ITEM;
-	if (block)
-		return block;
-	if (!strcmp(name, DRIVER)) {
-		*place = PLACE_DRIVER;
-		block = find_driver(rio);
-	}
-	if (!block)
-		report_error(report, command_line, "there is no item \"%s\"", name);
-	return block;
-}
 
 static bool has_control(const char *text)
 {
@@ -177,12 +136,12 @@ static int apply(struct rio **rio, struct rio_node *block, enum option option, c
 /* Refuse the name of the driver for an item: it would hide the driver's own keys. */
 static bool is_driver_name(const char *name, struct config_report *report)
 {
-	if (strcmp(name, DRIVER) != 0)
+	if (strcmp(name, EDIT_DRIVER) != 0)
 		return false;
 	report_error(report, command_line,
-	             "no item can be named " DRIVER
+	             "no item can be named " EDIT_DRIVER
 	             ": that stands for the driver itself, whose keys are "
-	             "changed by config FILE set " DRIVER " KEY=VALUE");
+	             "changed by config FILE set " EDIT_DRIVER " KEY=VALUE");
 	return true;
 }
 
@@ -206,7 +165,7 @@ static int check_once(const char *const *settings, unsigned count, struct config
 int edit_set(struct rio **rio, const char *name, const char *const *settings, unsigned count,
              struct config_report *report)
 {
-	char current[RIO_VALUE_MAX + 1];
+	char current[RIO_VALUE_MAX + sizeof(EDIT_BUS)];
 	int err = check_once(settings, count, report);
 
 	if (strlen(name) >= sizeof(current)) {
@@ -214,9 +173,11 @@ int edit_set(struct rio **rio, const char *name, const char *const *settings, un
 		return -EINVAL;
 	}
 	memcpy(current, name, strlen(name) + 1);
+	if (!err)
+		err = edit_make_block(rio, name);
 	for (unsigned i = 0; i < count && !err; i++) {
 		enum option_place place;
-		struct rio_node *block = find_block(*rio, current, &place, report);
+		struct rio_node *block = edit_block(*rio, current, &place, report);
 		char *setting = block ? strdup(settings[i]) : NULL;
 		const char *value;
 		enum option option;
@@ -232,6 +193,8 @@ int edit_set(struct rio **rio, const char *name, const char *const *settings, un
 		/* the item has its new name from here on */
 		if (!err && option == OPT_NAME)
 			snprintf(current, sizeof(current), "%s", value);
+		if (!err && option == OPT_BUS_TARGET)
+			snprintf(current, sizeof(current), EDIT_BUS "%s", value);
 		free(setting);
 	}
 	return err;
@@ -244,7 +207,7 @@ int edit_unset(struct rio **rio, const char *name, const char *const *keys, unsi
 
 	for (unsigned i = 0; i < count && !err; i++) {
 		enum option_place place;
-		struct rio_node *block = find_block(*rio, name, &place, report);
+		struct rio_node *block = edit_block(*rio, name, &place, report);
 		struct rio_node *node = block ? rio_child(block, keys[i]) : NULL;
 
 		if (!block)
@@ -260,7 +223,7 @@ int edit_unset(struct rio **rio, const char *name, const char *const *keys, unsi
 
 int edit_count(struct rio **rio)
 {
-	struct rio_node *driver = find_driver(*rio);
+	struct rio_node *driver = edit_driver(*rio);
 	unsigned items = 0;
 	char text[16];
 
@@ -297,17 +260,17 @@ static char *item_text(const char *name, const char *path)
 int edit_add(struct rio **rio, const char *name, const char *path, const char *const *settings,
              unsigned count, struct config_report *report)
 {
-	struct rio_node *driver = find_driver(*rio);
+	struct rio_node *driver = edit_driver(*rio);
 	char *text;
 	int err;
 
 	if (!driver) {
-		report_error(report, command_line, "the file has no block " DRIVER);
+		report_error(report, command_line, "the file has no block " EDIT_DRIVER);
 		return -EINVAL;
 	}
 	if (is_driver_name(name, report))
 		return -EINVAL;
-	if (find_item(*rio, name)) {
+	if (edit_item(*rio, name)) {
 		report_error(report, command_line, "there is an item \"%s\" already", name);
 		return -EINVAL;
 	}
@@ -326,7 +289,7 @@ int edit_add(struct rio **rio, const char *name, const char *path, const char *c
 static struct rio_node *find_item_or_report(const struct rio *rio, const char *name,
                                             struct config_report *report)
 {
-	struct rio_node *item = find_item(rio, name);
+	struct rio_node *item = edit_item(rio, name);
 
 	if (!item)
 		report_error(report, command_line, "there is no item \"%s\"", name);
@@ -335,9 +298,14 @@ static struct rio_node *find_item_or_report(const struct rio *rio, const char *n
 
 int edit_remove(struct rio **rio, const char *name, struct config_report *report)
 {
-	struct rio_node *item = find_item_or_report(*rio, name, report);
-	int err = item ? rio_remove(rio, item) : -EINVAL;
+	enum option_place place;
+	struct rio_node *block = edit_block(*rio, name, &place, report);
+	int err = -EINVAL;
 
+	if (block && place == PLACE_DRIVER)
+		report_error(report, command_line, EDIT_DRIVER " cannot be removed");
+	else if (block)
+		err = rio_remove(rio, block);
 	return err ? err : edit_count(rio);
 }
 

@@ -14,12 +14,16 @@
 /* Add an item at the end; an input of type double unless the settings give something else. */
 int edit_add(struct rio **rio, const char *name, const char *path, const char *const *settings,
              unsigned count, struct config_report *report);
-/* Change an item, or the driver's own keys: name "OwsDrv". */
+/*
+ * Change an item, or the driver's own keys: name "OwsDrv"; or, if no item is called so, those of
+ * the block "Web" or "Bus:TARGET", which is made if there is none.
+ */
 int edit_set(struct rio **rio, const char *name, const char *const *settings, unsigned count,
              struct config_report *report);
 /* Remove keys, so that they are not defined. */
 int edit_unset(struct rio **rio, const char *name, const char *const *keys, unsigned count,
                struct config_report *report);
+/* Remove an item, or one of these blocks; not the driver's. */
 int edit_remove(struct rio **rio, const char *name, struct config_report *report);
 /* Put an item, with the comment lines directly above it, before another or after it. */
 int edit_move(struct rio **rio, const char *name, const char *other, bool behind,

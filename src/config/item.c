@@ -15,10 +15,6 @@
 #include "src/signal/quantity.h"
 #include "src/signal/value.h"
 
-#define IO_TYPE_CODE 0x0fu
-#define IO_TYPE_INPUT 0x10u
-#define IO_TYPE_OUTPUT 0x20u
-#define IO_TYPE_UNCACHED 0x100u
 #define IO_TYPE_KNOWN (IO_TYPE_CODE | IO_TYPE_INPUT | IO_TYPE_OUTPUT | IO_TYPE_UNCACHED)
 
 /* Where a key's value stands, or the item if the key is absent. */
@@ -223,6 +219,10 @@ static void build_start(struct build *build, const struct option_value *values,
 	if (delay->given && !item->has_safe)
 		report_warning(build->report, delay->node->at,
 		               "SafeDelay does nothing without SafeValue");
+	item->confirm = values[OPT_CONFIRM].number != 0;
+	if (item->confirm && !config_item_takes_sets(item))
+		report_warning(build->report, values[OPT_CONFIRM].node->at,
+		               "Confirm does nothing: nobody sets this input");
 }
 
 static void build_values(struct build *build, const struct option_value *values, bool known,

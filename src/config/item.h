@@ -3,6 +3,12 @@
 #ifndef CONFIG_ITEM_H
 #define CONFIG_ITEM_H
 
+/* The bits of IOType. */
+#define IO_TYPE_CODE 0x0fu
+#define IO_TYPE_INPUT 0x10u
+#define IO_TYPE_OUTPUT 0x20u
+#define IO_TYPE_UNCACHED 0x100u
+
 struct build;
 struct config_item;
 struct place;

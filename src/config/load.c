@@ -13,6 +13,7 @@
 #include "src/config/rio_file.h"
 #include "src/config/serve.h"
 #include "src/config/targets.h"
+#include "src/config/web.h"
 #include "src/signal/value.h"
 
 #define DRIVER "OwsDrv"
@@ -164,6 +165,7 @@ static void build_config(struct build *build, const struct rio *rio, const char 
 	options_read(driver, PLACE_DRIVER, values, build->report);
 	build_driver(build, values);
 	buses_build(build, driver);
+	web_build(build, values[OPT_WEB].node);
 	build_items(build, driver, &values[OPT_ITEM_COUNT]);
 	allow_build(build, driver);
 }

@@ -45,6 +45,8 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
 	[OPT_HEARTBEAT_LINE] = {"HeartbeatLine", PLACE_DRIVER, OPTION_TEXT,
                                 .help = "GPIO line that blinks while owsd is well"},
 	[OPT_BUS] = {"Bus", PLACE_DRIVER, OPTION_BLOCK, true, .help = "options of one target"},
+	[OPT_WEB] = {"Web", PLACE_DRIVER, OPTION_BLOCK,
+                     .help = "options of owsd-web, which shows the signals in a browser"},
 	[OPT_ITEM] = {"Item", PLACE_DRIVER, OPTION_BLOCK, true, .help = "one signal"},
 
 	[OPT_NAME] = {"Name", PLACE_ITEM, OPTION_TEXT, .help = "name of the signal"},
@@ -68,6 +70,8 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
                             "how long SafeValue waits for a control program that is lost, seconds"},
 	[OPT_START] = {"Start", PLACE_ITEM, OPTION_TEXT, .preset = "init",
                        .help = "what an output begins with: init (InitValue) or last (as it was)"},
+	[OPT_CONFIRM] = {"Confirm", PLACE_ITEM, OPTION_FLAG, .preset = "off",
+                         .help = "a person is asked once more before a set by hand"},
 	[OPT_PER_FACTOR] = {"PerFactor", PLACE_ITEM, OPTION_COUNT, false, 1, 1e6, "1",
                             "read again no sooner than that many periods later"},
 	[OPT_STALE_AFTER] = {"StaleAfter", PLACE_ITEM, OPTION_SECONDS, false, 0, 365 * DAY, "0",
@@ -137,12 +141,22 @@ const struct option_def option_table[OPTION_COUNT_ALL] = {
                                  .help = "outputs that only drive high"},
 	[OPT_BUS_TOUCH] = {"Touch", PLACE_BUS, OPTION_FLAG, .preset = "off",
                            .help = "keys that touch the wire are noticed at once"},
-	[OPT_BUS_DOUBLE_BUFFER] =
-		{"DoubleBuffer", PLACE_BUS, OPTION_FLAG, .preset = "off",
-                 .help = "experimental: thermometers are read while they convert"},
+
+	[OPT_WEB_LISTEN] = {"Listen", PLACE_WEB, OPTION_TEXT,
+                            .help = "addresses where the page is served, besides its socket"},
+	[OPT_WEB_HOSTS] = {"Hosts", PLACE_WEB, OPTION_TEXT,
+                           .help = "more names under which a browser may ask for the page"},
+	[OPT_WEB_WRITE] = {"Write", PLACE_WEB, OPTION_FLAG, .preset = "off",
+                           .help = "let the page set outputs and acknowledge alarms"},
+	[OPT_WEB_CONFIGURE] = {"Configure", PLACE_WEB, OPTION_FLAG, .preset = "off",
+                               .help = "let the page edit and save the configuration"},
+	[OPT_WEB_PROXY] = {"Proxy", PLACE_WEB, OPTION_TEXT,
+                           .help = "user or address of the reverse proxy that names the person"},
+	[OPT_WEB_FILES] = {"Files", PLACE_WEB, OPTION_TEXT,
+                           .help = "where the files of the page are"},
 };
 
-static const char *const place_names[] = {"OwsDrv", "Item", "Bus"};
+static const char *const place_names[] = {"OwsDrv", "Item", "Bus", "Web"};
 
 int option_find(enum option_place place, const char *key)
 {

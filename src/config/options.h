@@ -14,6 +14,7 @@ enum option_place {
 	PLACE_DRIVER,
 	PLACE_ITEM,
 	PLACE_BUS,
+	PLACE_WEB,
 };
 
 enum option_kind {
@@ -45,6 +46,7 @@ enum option {
 	OPT_ALARM_LINE,
 	OPT_HEARTBEAT_LINE,
 	OPT_BUS,
+	OPT_WEB,
 	OPT_ITEM,
 	/* of an item */
 	OPT_NAME,
@@ -59,6 +61,7 @@ enum option {
 	OPT_SAFE_VALUE,
 	OPT_SAFE_DELAY,
 	OPT_START,
+	OPT_CONFIRM,
 	OPT_PER_FACTOR,
 	OPT_STALE_AFTER,
 	OPT_ALARM,
@@ -96,7 +99,13 @@ enum option {
 	OPT_BUS_OPEN_DRAIN,
 	OPT_BUS_OPEN_SOURCE,
 	OPT_BUS_TOUCH,
-	OPT_BUS_DOUBLE_BUFFER,
+	/* of the Web block */
+	OPT_WEB_LISTEN,
+	OPT_WEB_HOSTS,
+	OPT_WEB_WRITE,
+	OPT_WEB_CONFIGURE,
+	OPT_WEB_PROXY,
+	OPT_WEB_FILES,
 	OPTION_COUNT_ALL,
 };
 

@@ -133,6 +133,20 @@ static void put_bus(FILE *out, const struct config_bus *bus)
 	fputs("  }\n", out);
 }
 
+static void put_web(FILE *out, const struct config_web *web)
+{
+	if (!web->given)
+		return;
+	fprintf(out, "  %s {\n", option_table[OPT_WEB].key);
+	put_text_if_given(out, OPT_WEB_LISTEN, web->listen);
+	put_text_if_given(out, OPT_WEB_HOSTS, web->hosts);
+	put_flag(out, 4, OPT_WEB_WRITE, web->write);
+	put_flag(out, 4, OPT_WEB_CONFIGURE, web->configure);
+	put_text_if_given(out, OPT_WEB_PROXY, web->proxy);
+	put_text_if_given(out, OPT_WEB_FILES, web->files);
+	fputs("  }\n", out);
+}
+
 static void put_peers(FILE *out, const struct config_serve *serve)
 {
 	fprintf(out, "  %-*s \"", RIO_KEY_WIDTH - 1, option_table[OPT_LISTEN_ALLOW].key);
@@ -183,6 +197,8 @@ static void put_item(FILE *out, const struct config_item *item)
 		put_seconds(out, 4, OPT_SAFE_DELAY, item->safe_delay_ns);
 	if (item->starts_last)
 		put_text(out, 4, OPT_START, "last");
+	if (item->confirm)
+		put_flag(out, 4, OPT_CONFIRM, true);
 	put_word(out, 4, OPT_PER_FACTOR, "%u", (unsigned)item->per_factor);
 	put_seconds(out, 4, OPT_STALE_AFTER, item->stale_after_ns);
 	put_flag(out, 4, OPT_ALARM, item->alarm);
@@ -218,6 +234,7 @@ void config_print(const struct config *config, FILE *out)
 		put_text(out, 2, OPT_HEARTBEAT_LINE, config->heartbeat_line);
 	for (unsigned i = 0; i < config->bus_count; i++)
 		put_bus(out, &config->buses[i]);
+	put_web(out, &config->web);
 	put_word(out, 2, OPT_ITEM_COUNT, "%u", config->item_count);
 	for (unsigned i = 0; i < config->item_count; i++)
 		put_item(out, &config->items[i]);

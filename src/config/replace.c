@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +14,7 @@
 
 #include "hal/bus/time.h"
 #include "src/config/replace.h"
+#include "src/shm/owner.h"
 
 #define SUFFIX ".XXXXXX"
 #define LOCK_TRIES 250
@@ -46,6 +48,37 @@ static int copy_owner(int fd, const struct stat *old)
 	return fchmod(fd, old->st_mode & 07777) ? -errno : 0;
 }
 
+/* Can the user who owned the file until now read it, though another owns it? */
+static bool owner_reads_on(const struct stat *old, bool group_kept, mode_t mode)
+{
+	if (!old->st_uid || !(old->st_mode & S_IRUSR) || (mode & S_IROTH))
+		return true;
+	return group_kept && (mode & S_IRGRP) && owner_in_group(old->st_uid, old->st_gid);
+}
+
+/* As copy_owner(), but the caller owns the new file where the old owner cannot be kept. */
+static int take_over(int fd, const struct stat *old)
+{
+	mode_t mode = old->st_mode & 0777;
+	bool kept = true;
+	struct stat made;
+
+	if (copy_owner(fd, old) == 0)
+		return 0;
+	if (fstat(fd, &made))
+		return -errno;
+	if (made.st_gid != old->st_gid && fchown(fd, (uid_t)-1, old->st_gid))
+		kept = false;
+	/* the group is another: who had rights by the old one keeps those of all */
+	if (!kept && (mode & S_IRGRP) && !(mode & S_IROTH))
+		return -EPERM;
+	if (!kept)
+		mode &= ~(mode_t)S_IRWXG | (mode & S_IRWXO) << 3;
+	if (!owner_reads_on(old, kept, mode))
+		return -EPERM;
+	return fchmod(fd, mode) ? -errno : 0;
+}
+
 static int mode_of_new_file(int fd)
 {
 	mode_t mask = umask(0);
@@ -54,9 +87,10 @@ static int mode_of_new_file(int fd)
 	return fchmod(fd, 0666 & ~mask) ? -errno : 0;
 }
 
-static int fill(int fd, const struct stat *old, const char *text, size_t len)
+static int fill(int fd, const struct stat *old, int (*give)(int fd, const struct stat *old),
+                const char *text, size_t len)
 {
-	int err = old ? copy_owner(fd, old) : mode_of_new_file(fd);
+	int err = old ? give(fd, old) : mode_of_new_file(fd);
 
 	if (!err)
 		err = write_all(fd, text, len);
@@ -86,46 +120,82 @@ static void sync_directory(char *path)
 	close(fd);
 }
 
-static int replace_path(char *path, const struct stat *old, const char *text, size_t len)
+/* Write the file out beside replacement->path. */
+static int write_beside(struct replacement *replacement, const struct stat *old,
+                        int (*give)(int fd, const struct stat *old), const char *text, size_t len)
 {
-	char temporary[PATH_MAX + sizeof(SUFFIX)];
 	int fd, err;
 
-	snprintf(temporary, sizeof(temporary), "%s" SUFFIX, path);
-	fd = mkostemp(temporary, O_CLOEXEC);
+	snprintf(replacement->temporary, sizeof(replacement->temporary), "%s" SUFFIX,
+	         replacement->path);
+	fd = mkostemp(replacement->temporary, O_CLOEXEC);
 	if (fd < 0)
 		return -errno;
-	err = fill(fd, old, text, len);
+	err = fill(fd, old, give, text, len);
 	if (close(fd) && !err)
 		err = -errno;
-	if (!err && rename(temporary, path))
-		err = -errno;
 	if (err)
-		unlink(temporary);
-	else
-		sync_directory(path);
+		replace_abandon(replacement);
 	return err;
+}
+
+int replace_commit(struct replacement *replacement)
+{
+	int err = rename(replacement->temporary, replacement->path) ? -errno : 0;
+
+	if (err)
+		replace_abandon(replacement);
+	else
+		sync_directory(replacement->path);
+	return err;
+}
+
+void replace_abandon(struct replacement *replacement)
+{
+	unlink(replacement->temporary);
+}
+
+/* The file that a link leads to; of one that is not there *is_new. */
+static int find_path(const char *file, char path[PATH_MAX], bool *is_new)
+{
+	struct stat st;
+
+	*is_new = !realpath(file, path);
+	if (!*is_new)
+		return 0;
+	/* owsd does not create the missing target of a link */
+	if (errno != ENOENT || !lstat(file, &st))
+		return -errno;
+	if (strlen(file) >= PATH_MAX)
+		return -ENAMETOOLONG;
+	memcpy(path, file, strlen(file) + 1);
+	return 0;
+}
+
+int replace_prepare(struct replacement *replacement, const char *file, const struct stat *like,
+                    const char *text, size_t len)
+{
+	bool is_new;
+	int err = find_path(file, replacement->path, &is_new);
+
+	return err ? err : write_beside(replacement, like, take_over, text, len);
 }
 
 int replace_file(const char *file, const char *text, size_t len)
 {
-	char path[PATH_MAX];
+	struct replacement replacement;
 	struct stat old;
+	bool is_new;
+	int err = find_path(file, replacement.path, &is_new);
 
-	if (!realpath(file, path)) {
-		/* owsd does not create the missing target of a link */
-		if (errno != ENOENT || !lstat(file, &old))
-			return -errno;
-		if (strlen(file) >= sizeof(path))
-			return -ENAMETOOLONG;
-		memcpy(path, file, strlen(file) + 1);
-		return replace_path(path, NULL, text, len);
-	}
-	if (stat(path, &old))
+	if (err)
+		return err;
+	if (!is_new && stat(replacement.path, &old))
 		return -errno;
-	if (!S_ISREG(old.st_mode))
+	if (!is_new && !S_ISREG(old.st_mode))
 		return S_ISDIR(old.st_mode) ? -EISDIR : -EINVAL;
-	return replace_path(path, &old, text, len);
+	err = write_beside(&replacement, is_new ? NULL : &old, copy_owner, text, len);
+	return err ? err : replace_commit(&replacement);
 }
 
 int replace_lock(const char *file)

@@ -2,7 +2,10 @@
 #ifndef CONFIG_REPLACE_H
 #define CONFIG_REPLACE_H
 
+#include <limits.h>
 #include <stddef.h>
+
+struct stat;
 
 /*
  * Put len bytes in the place of file in one step, keeping its owner and mode; the target of a
@@ -10,6 +13,22 @@
  * errno; file is then as it was. Blocking.
  */
 int replace_file(const char *file, const char *text, size_t len);
+
+/*
+ * The same in two steps, for several files, of which none is to be replaced before all are written
+ * out. Only root can keep the owner of a file that is another's: here the caller becomes the owner
+ * where that has to be. Mode and group stay then, or the group has no more rights than all have.
+ * Whoever could read the file as its owner or by its group still can, else -EPERM.
+ * like: whose owner, group and mode the file gets; NULL: it is new, 0666 without the umask.
+ * replace_commit() or replace_abandon() ends it. 0 or a negative errno, which ends it. Blocking.
+ */
+struct replacement {
+	char path[PATH_MAX], temporary[PATH_MAX + 8];
+};
+int replace_prepare(struct replacement *replacement, const char *file, const struct stat *like,
+                    const char *text, size_t len);
+int replace_commit(struct replacement *replacement);
+void replace_abandon(struct replacement *replacement);
 
 /*
  * Lock file against replacement by other processes; it need not exist. The lock lasts until the

@@ -17,17 +17,20 @@ static void put_line(struct config_report *report, struct place place, bool is_e
 {
 	unsigned *count = is_error ? &report->errors : &report->warnings;
 	const char *kind = is_error ? "error" : "warning";
-	char message[MESSAGE_MAX], *text = NULL;
-	int n = 0;
+	char message[MESSAGE_MAX] = "", *text = NULL;
+	int n;
 
-	if (++*count > REPORT_MAX + 1 || !report->line)
+	if (++*count > REPORT_MAX + 1 || (!report->line && !report->problem))
 		return;
-	if (place.file && place.line)
-		n = snprintf(message, sizeof(message), "%.200s:%d:%d: ", place.file, place.line,
-		             place.column);
+	if (report->problem)
+		n = 0;
+	else if (place.file && place.line)
+		n = snprintf(message, sizeof(message), "%.200s:%d:%d: %s: ", place.file, place.line,
+		             place.column, kind);
 	else if (place.file)
-		n = snprintf(message, sizeof(message), "%.200s: ", place.file);
-	n += snprintf(message + n, sizeof(message) - (size_t)n, "%s: ", kind);
+		n = snprintf(message, sizeof(message), "%.200s: %s: ", place.file, kind);
+	else
+		n = snprintf(message, sizeof(message), "%s: ", kind);
 	if (*count > REPORT_MAX)
 		snprintf(message + n, sizeof(message) - (size_t)n,
 		         "more than %d %ss, the rest is not shown", REPORT_MAX, kind);
@@ -36,7 +39,12 @@ static void put_line(struct config_report *report, struct place place, bool is_e
 	free(text);
 	/* the message quotes values of the file, which may hold control characters */
 	message[printable(message, strlen(message))] = '\0';
-	report->line(report->ctx, is_error, message);
+	if (!report->problem)
+		report->line(report->ctx, is_error, message);
+	else if (*count > REPORT_MAX)
+		report->problem(report->ctx, is_error, 0, 0, message);
+	else
+		report->problem(report->ctx, is_error, place.line, place.column, message);
 }
 
 void report_error(struct config_report *report, struct place place, const char *format, ...)

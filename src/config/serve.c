@@ -25,26 +25,32 @@ static bool next_part(const char **text, const char **part, size_t *len)
 	return true;
 }
 
-static void add_address(struct build *build, const struct listen_address *address, const char *part,
-                        size_t len, struct place place)
-{
-	struct config_serve *serve = &build->box->config.serve;
+struct addresses {
+	struct listen_address *all; /* LISTEN_MAX */
+	unsigned *count;
+};
 
-	for (unsigned i = 0; i < serve->address_count; i++)
-		if (address->port && listen_same(&serve->addresses[i], address)) {
+static void add_address(struct build *build, const struct addresses *to,
+                        const struct listen_address *address, const char *part, size_t len,
+                        struct place place)
+{
+	for (unsigned i = 0; i < *to->count; i++)
+		if (address->port && listen_same(&to->all[i], address)) {
 			report_error(build->report, place, "Listen \"%.*s\": is given twice",
 			             (int)len, part);
 			return;
 		}
-	if (serve->address_count == LISTEN_MAX) {
+	if (*to->count == LISTEN_MAX) {
 		report_error(build->report, place, "Listen: more than %d addresses", LISTEN_MAX);
 		return;
 	}
-	serve->addresses[serve->address_count++] = *address;
+	to->all[(*to->count)++] = *address;
 }
 
-static void add_listens(struct build *build, const char *text, struct place place)
+void serve_addresses(struct build *build, const char *text, struct place place,
+                     struct listen_address *all, unsigned *count)
 {
+	const struct addresses to = {.all = all, .count = count};
 	struct listen_address addresses[2];
 	const char *part, *why = "";
 	size_t len;
@@ -56,8 +62,15 @@ static void add_listens(struct build *build, const char *text, struct place plac
 			report_error(build->report, place, "Listen \"%.*s\": %s", (int)len, part,
 			             why);
 		for (int i = 0; i < n; i++)
-			add_address(build, &addresses[i], part, len, place);
+			add_address(build, &to, &addresses[i], part, len, place);
 	}
+}
+
+static void add_listens(struct build *build, const char *text, struct place place)
+{
+	struct config_serve *serve = &build->box->config.serve;
+
+	serve_addresses(build, text, place, serve->addresses, &serve->address_count);
 }
 
 static void add_peers(struct build *build, const struct option_value *allow)

@@ -11,6 +11,7 @@
 #include "hal/bus/thread.h"
 #include "hal/bus/time.h"
 #include "src/config/config.h"
+#include "src/control/ask.h"
 #include "src/control/control.h"
 #include "src/control/door.h"
 #include "src/control/grant.h"
@@ -35,7 +36,8 @@ static const char *const counter_names[CONTROL_COUNTER_COUNT] = {
 /* Others may connect where it is the kernel's word who they are that decides. */
 static bool is_for_all(const struct control *c)
 {
-	return c->rights.has_controllers || c->rights.has_readers || c->config->allow_count;
+	return c->rights.has_controllers || c->rights.has_readers || c->rights.has_configurers ||
+	       c->config->allow_count;
 }
 
 static int add(struct control *c, int fd, uint32_t data)
@@ -51,7 +53,8 @@ static int open_all(struct control *c)
 
 	c->epoll = epoll_create1(EPOLL_CLOEXEC);
 	c->wake = c->epoll < 0 ? -1 : bell_open();
-	if (c->wake < 0)
+	c->asked = c->wake < 0 ? -1 : bell_open();
+	if (c->asked < 0)
 		return -errno;
 	c->listener = socket_listen(c->directory, c->name, is_for_all(c), &c->inode);
 	if (c->listener < 0)
@@ -74,7 +77,7 @@ int control_create(const struct control_setup *setup, struct control **control, 
 	c->log = setup->log;
 	c->ring = setup->ring;
 	c->ring_ctx = setup->ring_ctx;
-	c->epoll = c->wake = c->listener = -1;
+	c->epoll = c->wake = c->asked = c->listener = -1;
 	c->engine.at = OWS_GIVERS;
 	pthread_mutex_init(&c->lock, NULL);
 	for (int i = 0; i < CONTROL_COUNTER_COUNT; i++)
@@ -186,6 +189,8 @@ void control_destroy(struct control *c)
 		if (__atomic_load_n(&c->places[i].state, __ATOMIC_ACQUIRE) != CONTROL_FREE)
 			door_release(c, &c->places[i]);
 	held_forget(c);
+	if (c->asked >= 0)
+		close(c->asked);
 	if (c->wake >= 0)
 		close(c->wake);
 	if (c->epoll >= 0)
@@ -242,6 +247,10 @@ bool control_next(struct control *c, struct control_turn *turn)
 void control_done(struct control *c, const struct control_turn *turn)
 {
 	c->engine.memories[turn->place] = turn->joins ? turn->memory : (struct giver_memory){0};
+	if (turn->joins && c->engine.end <= turn->place)
+		c->engine.end = turn->place + 1;
+	while (c->engine.end && !c->engine.memories[c->engine.end - 1].base)
+		c->engine.end--;
 	__atomic_store_n(&c->places[turn->place].state, turn->joins ? CONTROL_IN : CONTROL_LEFT,
 	                 __ATOMIC_RELEASE);
 	bell_ring(c->wake);
@@ -251,7 +260,7 @@ void control_news(struct control *c)
 {
 	/* news are counted before the look who waits; who waits says so before it looks for news */
 	word_fence(__ATOMIC_SEQ_CST);
-	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+	for (unsigned i = 0; i < c->engine.end; i++) {
 		const struct giver_memory *memory = &c->engine.memories[i];
 
 		/* a full pipe rings already; without a reader the giver is about to leave */
@@ -268,6 +277,55 @@ void control_end(struct control *c)
 }
 
 /* --- A reload --------------------------------------------------------------------------------- */
+
+int control_asked_bell(const struct control *c)
+{
+	return c->asked;
+}
+
+static bool is(const struct control_place *p, enum control_state state)
+{
+	return __atomic_load_n(&p->state, __ATOMIC_ACQUIRE) == (uint32_t)state;
+}
+
+bool control_asked(struct control *c)
+{
+	bool asked = false;
+
+	bell_clear(c->asked);
+	for (unsigned i = 0; i < OWS_GIVERS; i++)
+		asked |= is(&c->places[i], CONTROL_ASKING);
+	return asked;
+}
+
+void control_take_askers(struct control *c)
+{
+	pthread_mutex_lock(&c->lock);
+	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+		struct control_place *p = &c->places[i];
+
+		if (!is(p, CONTROL_ASKING))
+			continue;
+		__atomic_store_n(&p->state, CONTROL_ASKED, __ATOMIC_RELEASE);
+		log_notice(c->log, "reload: asked for by %s (process %d, user %u)", p->who.name,
+		           (int)p->who.pid, (unsigned)p->who.uid);
+	}
+	pthread_mutex_unlock(&c->lock);
+}
+
+void control_answer(struct control *c, int err, const char *why)
+{
+	pthread_mutex_lock(&c->lock);
+	for (unsigned i = 0; i < OWS_GIVERS; i++) {
+		struct control_place *p = &c->places[i];
+
+		if (!is(p, CONTROL_ASKED))
+			continue;
+		ask_answer(c, p, err, why);
+		door_drop(c, p, CONTROL_asked);
+	}
+	pthread_mutex_unlock(&c->lock);
+}
 
 static void prepare(struct control *c, struct control_place *p, const struct giver_layout *layout,
                     const struct rights *rights)

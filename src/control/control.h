@@ -65,6 +65,17 @@ void control_end(struct control *control);
 
 /* --- A reload, by the supervisor ------------------------------------------------------------- */
 
+/* A bell (hal/bus/bell.h) that rings when a program asks for a reload. */
+int control_asked_bell(const struct control *control);
+/* Does a program wait for a reload? Silences the bell. */
+bool control_asked(struct control *control);
+/*
+ * A reload begins for all that ask by now; the others wait for the next. control_answer() ends it:
+ * answers those programs and hangs up on them. err: 0, or why it was refused, and why in words.
+ */
+void control_take_askers(struct control *control);
+void control_answer(struct control *control, int err, const char *why);
+
 /*
  * Make the memories and rights of another configuration for all givers. Nobody joins or leaves
  * until control_reloaded(), which the caller has to call.

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "hal/bus/time.h"
+#include "src/control/ask.h"
 #include "src/control/door.h"
 #include "src/control/grant.h"
 #include "src/control/held.h"
@@ -103,7 +104,7 @@ void door_drop(struct control *c, struct control_place *p, enum control_counter 
 		giver_state(&p->now.memory, OWS_STATE_STOPPED);
 	shutdown(p->fd, SHUT_RDWR);
 	drain(p->fd);
-	if (state_of(p) == CONTROL_HALF ||
+	if (state_of(p) == CONTROL_HALF || ask_waits(p) ||
 	    __atomic_compare_exchange_n(&p->state, &joining, CONTROL_LEFT, false, __ATOMIC_ACQ_REL,
 	                                __ATOMIC_ACQUIRE))
 		door_release(c, p);
@@ -212,6 +213,21 @@ static void join(struct control *c, struct control_place *p, const struct ows_he
 	let_engine_look(c);
 }
 
+static void ask(struct control *c, struct control_place *p, const struct ows_hello *hello)
+{
+	if (!rights_reload(&c->rights, &p->peer))
+		refuse(c, p, -EACCES, CONTROL_refused_rights);
+	else if (ask_begin(c, p, hello))
+		refuse(c, p, -ENOSPC, CONTROL_refused_limits);
+}
+
+static bool may_join(const struct control *c, const struct control_place *p,
+                     const struct ows_hello *hello)
+{
+	return rights_set_any(&c->rights, &p->peer) ||
+	       (!(hello->flags & OWS_HELLO_COMMAND) && rights_read(&c->rights, &p->peer));
+}
+
 static void take_hello(struct control *c, struct control_place *p)
 {
 	struct ows_hello hello;
@@ -224,7 +240,9 @@ static void take_hello(struct control *c, struct control_place *p)
 	else if (n != (ssize_t)sizeof(hello) || hello.magic != OWS_HELLO_MAGIC ||
 	         hello.major != OWS_LAYOUT_MAJOR)
 		refuse(c, p, -EPROTO, CONTROL_refused_protocol);
-	else if ((hello.flags & OWS_HELLO_COMMAND) && !rights_set_any(&c->rights, &p->peer))
+	else if (hello.flags & OWS_HELLO_RELOAD)
+		ask(c, p, &hello);
+	else if (!may_join(c, p, &hello))
 		refuse(c, p, -EACCES, CONTROL_refused_rights);
 	else if (!has_room(c, p))
 		refuse(c, p, -ENOSPC, CONTROL_refused_limits);
@@ -234,7 +252,7 @@ static void take_hello(struct control *c, struct control_place *p)
 
 /* --- Connections ------------------------------------------------------------------------------ */
 
-/* A giver sends nothing after its hello. */
+/* A program sends nothing after its hello. */
 static void look_for_end(struct control *c, struct control_place *p)
 {
 	char byte;
@@ -251,6 +269,8 @@ void door_event(struct control *c, struct control_place *p)
 	if (state_of(p) == CONTROL_HALF)
 		take_hello(c, p);
 	switch (state_of(p)) {
+	case CONTROL_ASKING:
+	case CONTROL_ASKED:
 	case CONTROL_JOINING: /* what came along with the hello brings no other event */
 	case CONTROL_TAKEN:
 	case CONTROL_IN:
@@ -308,7 +328,8 @@ static void meet(struct control *c, int fd)
 	int err = peer_look(fd, &peer);
 
 	p = err ? NULL : find_place(c, &peer);
-	if (!err && !rights_set_any(&c->rights, &peer) && !rights_read(&c->rights, &peer))
+	if (!err && !rights_set_any(&c->rights, &peer) && !rights_read(&c->rights, &peer) &&
+	    !rights_reload(&c->rights, &peer))
 		err = -EACCES;
 	else if (!err && !p)
 		err = -ENOSPC;
@@ -375,6 +396,13 @@ static void look(struct control *c, struct control_place *p)
 		if (c->now_ns >= p->until_ns)
 			refuse(c, p, -ETIMEDOUT, CONTROL_refused_protocol);
 		break;
+	case CONTROL_ASKING:
+	case CONTROL_ASKED:
+		if (c->now_ns < p->until_ns)
+			break;
+		ask_answer(c, p, -ETIMEDOUT, "");
+		door_drop(c, p, CONTROL_asked);
+		break;
 	case CONTROL_IN:
 		if (p->leaves)
 			leave(c, p);
@@ -401,7 +429,7 @@ int64_t door_look(struct control *c)
 		struct control_place *p = &c->places[i];
 
 		look(c, p);
-		if (state_of(p) == CONTROL_HALF && p->until_ns < next_ns)
+		if ((state_of(p) == CONTROL_HALF || ask_waits(p)) && p->until_ns < next_ns)
 			next_ns = p->until_ns;
 	}
 	return next_ns;

@@ -21,10 +21,14 @@
 #define CONTROL_MEMORY (64u << 20)
 /* In that time a program that connected has to say who it is. */
 #define CONTROL_HELLO_NS (2 * NS_PER_S)
+/* Programs that wait for a reload, and how long. */
+#define CONTROL_ASKERS 4
+#define CONTROL_ASK_NS (30 * NS_PER_S)
 
 #define CONTROL_COUNTERS(X) \
 	X(connections) /* now */ \
 	X(joined) \
+	X(asked) /* for a reload, and were answered */ \
 	X(refused_rights) \
 	X(refused_limits) \
 	X(refused_protocol) /* wrong words, or none in time */ \
@@ -42,7 +46,9 @@ enum control_counter {
 /* Who may touch a place: the engine's thread from JOINING to IN and from LEAVING to LEFT. */
 enum control_state {
 	CONTROL_FREE,
-	CONTROL_HALF, /* connected; its hello has not come */
+	CONTROL_HALF,   /* connected; its hello has not come */
+	CONTROL_ASKING, /* it waits for a reload */
+	CONTROL_ASKED,  /* that reload has begun */
 	CONTROL_JOINING,
 	CONTROL_TAKEN, /* the engine's thread takes it */
 	CONTROL_IN,
@@ -75,7 +81,7 @@ struct control_place {
 	struct peer peer;
 	struct ows_who who;
 	uint8_t token[16];
-	int64_t until_ns; /* of CONTROL_HALF */
+	int64_t until_ns; /* of CONTROL_HALF, CONTROL_ASKING, CONTROL_ASKED */
 	bool commands;    /* it wants to, by its hello */
 	bool leaves;      /* door_drop() was there */
 	bool sent;        /* descriptors went over the socket */
@@ -99,6 +105,7 @@ struct control {
 	bool running;
 	uint32_t stop;
 	int epoll, listener, wake;
+	int asked; /* the bell of those that ask for a reload */
 	bool accepts;
 	int64_t now_ns, accept_ns; /* accept_ns: not sooner */
 	uint32_t serial;
@@ -109,6 +116,7 @@ struct control {
 	struct {
 		uint32_t seen;
 		unsigned at;
+		unsigned end;                             /* no memory stands at or after it */
 		struct giver_memory memories[OWS_GIVERS]; /* of those that have joined */
 	} engine;                                         /* of the engine's thread */
 	struct log_rate refused, full;

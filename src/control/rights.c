@@ -14,6 +14,7 @@ void rights_find(struct rights *r, const struct config *config)
 	*r = (struct rights){.config = config, .own = geteuid()};
 	r->has_controllers = service && owner_group("owsd-control", &r->controllers);
 	r->has_readers = service && owner_group("owsd", &r->readers);
+	r->has_configurers = service && owner_group("owsd-config", &r->configurers);
 }
 
 static bool has_all(const struct rights *r, const struct peer *peer)
@@ -49,6 +50,11 @@ bool rights_set_any(const struct rights *r, const struct peer *peer)
 bool rights_read(const struct rights *r, const struct peer *peer)
 {
 	return has_all(r, peer) || (r->has_readers && peer_in_group(peer, r->readers));
+}
+
+bool rights_reload(const struct rights *r, const struct peer *peer)
+{
+	return has_all(r, peer) || (r->has_configurers && peer_in_group(peer, r->configurers));
 }
 
 uint32_t rights_fill(const struct rights *r, const struct peer *peer, uint32_t *bits)

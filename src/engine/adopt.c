@@ -8,6 +8,7 @@
 #include "src/engine/adopt_signal.h"
 #include "src/engine/alarm_item.h"
 #include "src/engine/counters.h"
+#include "src/engine/device_facts.h"
 #include "src/engine/disown.h"
 #include "src/engine/doubt.h"
 #include "src/engine/due.h"
@@ -125,6 +126,7 @@ static void take_device(struct engine *e, uint32_t index, const struct engine *o
 	                 : old->table.signals[before].device;
 	was = &old->table.devices[before];
 	d->absent = was->absent;
+	d->found = was->found;
 	d->moved_ns = was->moved_ns;
 	if (e->places)
 		take_places(e, index, old, before, plan);
@@ -135,6 +137,11 @@ static void take_device(struct engine *e, uint32_t index, const struct engine *o
 
 static void take_devices(struct engine *e, const struct engine *old, const struct adoption *plan)
 {
+	int lanes[CONFIG_TARGETS_MAX];
+
+	for (unsigned i = 0; i < old->lane_count; i++)
+		lanes[i] = new_lane(e, plan, i);
+	engine_facts_adopt(e, old, lanes);
 	for (uint32_t i = 0; i <= e->table.device_count; i++) {
 		struct device *d = &e->table.devices[i];
 
@@ -193,6 +200,7 @@ static void take_signals(struct engine *e, const struct engine *old, const struc
 		if (plan->rows[row] == ADOPT_NEW) {
 			s->read.known_ns = e->time.now_ns;
 			s->attrs.per_base = (uint32_t)e->time.period;
+			engine_origin_begin(e, s);
 			engine_read_now(e, s);
 			engine_write_check(e, s);
 			continue;
@@ -200,6 +208,8 @@ static void take_signals(struct engine *e, const struct engine *old, const struc
 		lane->writers -= signal_writes(s);
 		if (signal_adopt(s, &old->table.signals[plan->rows[row]]))
 			engine_origin_carry(e, s, old, plan->rows[row] + 1);
+		else
+			engine_origin_begin(e, s);
 		lane->writers += signal_writes(s);
 		take_source(e, s, plan);
 		take_turn(e, s, old, plan->rows[row]);
@@ -256,7 +266,6 @@ static void take_alarms(struct engine *e, const struct engine *old, const struct
 			alarm_drop_item(&e->lanes[i].alarm, &e->alarm_items[k]);
 	for (uint32_t k = 0; k < e->alarm_count; k++)
 		take_alarm(e, &e->alarm_items[k], old, plan);
-	image_carry_journals(e->image, old->image, plan->successors);
 }
 
 /* --------------------------------------------------------------------------------------------- */
@@ -282,6 +291,7 @@ void engine_adopt(struct engine *e, struct engine *old, const struct adoption *p
 		if (new_lane(e, plan, i) < 0)
 			guests_refuse(&old->lanes[i]);
 	take_devices(e, old, plan);
+	image_carry_journals(e->image, old->image, plan->successors);
 	take_signals(e, old, plan);
 	shelves_carry(e->image, old->image->base, old->image->header->size);
 	engine_shelves_resume(e);
@@ -295,6 +305,7 @@ void engine_adopt(struct engine *e, struct engine *old, const struct adoption *p
 	for (unsigned i = 0; i < e->lane_count; i++)
 		engine_publish_target(e, &e->lanes[i]);
 	engine_publish_counters(e);
+	engine_publish_devices(e);
 	engine_publish_driver(e, now_ns);
 }
 

@@ -5,6 +5,17 @@
 
 #include "src/engine/state.h"
 
+/*
+ * Nothing is lent, nothing is there that lane_fill() could ask, and time alone brings nothing: most
+ * lanes of many, at most steps.
+ */
+static inline bool lane_rests(const struct lane *lane)
+{
+	return !lane->lent.count && !lane->inputs.count && !lane->outputs.count &&
+	       !lane->checks.count && !lane->probes.count && !lane->guests.first &&
+	       lane->alarm.state == NOT_USED;
+}
+
 /* Submit as much as the order of the lane and the depth of its bus allow. */
 void lane_fill(struct lane *lane, int64_t now_ns);
 /* A new period: the image shows which readings have outlasted one. */

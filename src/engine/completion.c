@@ -7,6 +7,7 @@
 #include "src/engine/alarm_item.h"
 #include "src/engine/completion.h"
 #include "src/engine/device_back.h"
+#include "src/engine/device_facts.h"
 #include "src/engine/guard.h"
 #include "src/engine/in_force.h"
 #include "src/engine/place.h"
@@ -67,6 +68,7 @@ static int64_t fail_read(struct engine *e, struct lane *lane, struct signal *s, 
 	int64_t wait_ns;
 
 	lane->counters.item_errors++;
+	engine_facts_failed(e, s);
 	s->sample.err = err;
 	if (!retry_fail(&s->read.retry, e->config->max_retries, &wait_ns))
 		return 0;
@@ -88,6 +90,7 @@ static int64_t fail_write(struct engine *e, struct lane *lane, struct signal *s,
 	int64_t wait_ns;
 
 	lane->counters.item_errors++;
+	engine_facts_failed(e, s);
 	s->command.err = err;
 	if (!retry_fail(&s->command.retry, e->config->max_retries, &wait_ns))
 		return 0;
@@ -112,6 +115,7 @@ static void request_succeeded(struct engine *e, struct lane *lane, struct signal
 	s->sample.quality = quality;
 	s->sample.err = 0;
 	s->sample.target = (uint8_t)lane->index;
+	engine_facts_good(e, s);
 	if (proven)
 		engine_place(e, lane, s->device, ROUTE_PRESENT);
 	else

@@ -8,6 +8,7 @@
 #include "src/engine/alarm_item.h"
 #include "src/engine/ask.h"
 #include "src/engine/counters.h"
+#include "src/engine/device_facts.h"
 #include "src/engine/due.h"
 #include "src/engine/engine.h"
 #include "src/engine/givers.h"
@@ -45,6 +46,7 @@ static void begin(struct engine *e, const struct engine_setup *setup)
 		engine_publish(e, &e->table.signals[row]);
 	for (unsigned i = 0; i < e->lane_count; i++)
 		engine_publish_target(e, &e->lanes[i]);
+	engine_publish_devices(e);
 	engine_publish_driver(e, setup->start_ns);
 }
 
@@ -76,6 +78,8 @@ int engine_create(const struct engine_setup *setup, struct engine **engine)
 	if (!err)
 		err = structure_init(&e->structure, &e->table);
 	if (!err)
+		err = engine_facts_init(e);
+	if (!err)
 		err = alarm_items_init(&e->table, &e->alarm_items, &e->alarm_count);
 	for (unsigned i = 0; !err && i < setup->port_count; i++) {
 		err = lane_init(&e->lanes[i], e, &setup->ports[i], i);
@@ -105,6 +109,7 @@ void engine_destroy(struct engine *e)
 	engine_groups_free(e);
 	engine_places_free(e);
 	structure_free(&e->structure);
+	engine_facts_free(e);
 	free(e->alarm_items);
 	if (e->wheel.wait)
 		due_wheel_free(&e->wheel);
@@ -156,6 +161,7 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 				lane_show_reads(&e->lanes[i]);
 		engine_look_givers(e);
 		engine_publish_counters(e);
+		engine_publish_devices(e);
 		engine_publish_driver(e, now_ns);
 	}
 	if (deferred < next)
@@ -164,10 +170,13 @@ int64_t engine_step(struct engine *e, int64_t now_ns)
 	if (groups < next)
 		next = groups;
 	soon = !e->givers_quiet;
+	soon |= engine_route(e, now_ns);
 	for (unsigned i = 0; i < e->lane_count; i++) {
-		int64_t timeout = lane_timeouts(&e->lanes[i], now_ns);
-		int64_t alarm;
+		int64_t timeout, alarm;
 
+		if (lane_rests(&e->lanes[i]))
+			continue;
+		timeout = lane_timeouts(&e->lanes[i], now_ns);
 		/* what it leads to later, and in lanes that had their turn, is looked at soon */
 		soon |= engine_route(e, now_ns);
 		lane_fill(&e->lanes[i], now_ns);

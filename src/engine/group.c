@@ -29,6 +29,7 @@ int engine_groups_init(struct engine *e, const struct engine_port *ports)
 		e->states[group] = (struct route_group){.state = ROUTE_OPENING,
 		                                        .since_ns = e->time.start_ns};
 		e->lanes[i].state.open = true;
+		e->bars |= count > 1;
 		for (unsigned w = 1; w < count; w++)
 			e->ways[i + w].released = true;
 		i += count;
@@ -42,4 +43,12 @@ void engine_groups_free(struct engine *e)
 	free(e->ways);
 	free(e->groups);
 	free(e->states);
+}
+
+void engine_group_asks(struct lane *lane)
+{
+	struct group *g = engine_group(lane->engine, lane);
+
+	lane->engine->asking += !g->asks;
+	g->asks = true;
 }

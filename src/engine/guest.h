@@ -31,6 +31,8 @@ struct engine_guest {
 	uint16_t parts; /* so many times the time, on a bus that takes several requests; 0: once */
 	const uint8_t *tokens; /* as in struct bus_req; NULL: the guest is no server */
 	uint32_t token_count;
+	/* As bus_req.unwanted: the guest may set it, atomically, until it has the request again. */
+	uint32_t unwanted;
 
 	struct bus_answer answer; /* its id says nothing */
 	unsigned served;          /* index of the lane that answered */

@@ -59,10 +59,10 @@ static struct engine_guest *guest_leaves(struct lane *lane)
  */
 static int more_telling(int a, int b)
 {
-	static const int order[] = {-ENOTCONN, -ENODEV, -ENOENT};
+	static const int order[] = {-ENOTCONN, -ENODEV, -ENXIO, -ENOENT};
 	int at_a = -1, at_b = -1;
 
-	for (int i = 0; i < 3; i++) {
+	for (int i = 0; i < 4; i++) {
 		at_a = order[i] == a ? i : at_a;
 		at_b = order[i] == b ? i : at_b;
 	}
@@ -72,7 +72,8 @@ static int more_telling(int a, int b)
 /* May another lane have what this one has not? Nothing was done there. */
 static bool guest_goes_on(const struct engine_guest *g, int err)
 {
-	return g->lane == GUEST_ANY_LANE && (err == -ENODEV || err == -ENOENT || err == -ENOTCONN);
+	return g->lane == GUEST_ANY_LANE &&
+	       (err == -ENODEV || err == -ENXIO || err == -ENOENT || err == -ENOTCONN);
 }
 
 /* The next lane that is asked; false: there is none. */
@@ -123,6 +124,8 @@ static void look_at_waiting(struct engine *e, struct lane *lane, int64_t now_ns)
 
 		if (!lane->state.up || lane->state.stuck)
 			guest_failed(e, g, -ENOTCONN);
+		else if (g->op != BUS_WRITE && __atomic_load_n(&g->unwanted, __ATOMIC_RELAXED))
+			guest_failed(e, g, -ECANCELED);
 		else if (now_ns >= g->until_ns)
 			guest_failed(e, g, -ETIME);
 		else
@@ -215,6 +218,7 @@ bool guest_ask(struct lane *lane, struct slot *slot, int64_t now_ns)
 	                             .len = g->len,
 	                             .offset = g->offset,
 	                             .data = g->data,
+	                             .unwanted = &g->unwanted,
 	                             .tokens = g->tokens,
 	                             .token_count = g->token_count};
 	if (!slot_lend(lane, slot, now_ns))

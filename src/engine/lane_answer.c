@@ -4,6 +4,7 @@
 
 #include "src/engine/alarm.h"
 #include "src/engine/completion.h"
+#include "src/engine/device_facts.h"
 #include "src/engine/doubt.h"
 #include "src/engine/guests.h"
 #include "src/engine/lane_answer.h"
@@ -75,6 +76,12 @@ static void complete_request(struct lane *lane, struct slot *slot, const struct 
 	}
 }
 
+static bool is_for_a_row(const struct slot *slot)
+{
+	return slot->purpose == FOR_READ || slot->purpose == FOR_WRITE ||
+	       (slot->purpose == FOR_ALARM && slot->row != TABLE_NO_ROW);
+}
+
 void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now_ns)
 {
 	struct slot *slot = slot_of_id(lane, answer->id);
@@ -88,6 +95,8 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer, int64_t now
 	if (trace_is_on(e->log))
 		trace_answer(lane, slot, answer, now_ns);
 	slot_give_back(lane, slot);
+	if (!slot->moved && is_for_a_row(slot))
+		engine_facts_answer(e, lane, slot->row, answer);
 	if (!slot->given_up && !slot->moved) {
 		complete_request(lane, slot, answer, now_ns);
 	} else {

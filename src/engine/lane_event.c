@@ -6,6 +6,7 @@
 #include "hal/bus/time.h"
 #include "src/engine/device_back.h"
 #include "src/engine/doubt.h"
+#include "src/engine/group.h"
 #include "src/engine/lane_event.h"
 #include "src/engine/lane_state.h"
 #include "src/engine/place.h"
@@ -113,7 +114,7 @@ static void suspended_event(struct lane *lane, const struct bus_event *event, in
 		engine_publish_target(e, lane);
 		engine_doubts(e);
 	}
-	engine_group(e, lane)->asks = true;
+	engine_group_asks(lane);
 }
 
 void lane_event(struct lane *lane, const struct bus_event *event, int64_t now_ns)

@@ -8,6 +8,7 @@
 #include "src/engine/alarm_item.h"
 #include "src/engine/alarm_list.h"
 #include "src/engine/disown.h"
+#include "src/engine/group.h"
 #include "src/engine/lane_state.h"
 #include "src/engine/place.h"
 #include "src/engine/publish.h"
@@ -62,7 +63,7 @@ void lane_up(struct lane *lane, const char *text, int64_t now_ns)
 	engine_publish_target(e, lane);
 	engine_publish_driver(e, now_ns);
 	refresh_signals(lane, now_ns);
-	engine_group(e, lane)->asks = true;
+	engine_group_asks(lane);
 }
 
 void lane_fail(struct lane *lane, int err, int64_t now_ns)
@@ -77,7 +78,7 @@ void lane_fail(struct lane *lane, int err, int64_t now_ns)
 	engine_probes_forget(lane);
 	lane_disown_alarm(lane);
 	lane->state.fell = err;
-	engine_group(e, lane)->asks = true;
+	engine_group_asks(lane);
 }
 
 void lane_down(struct lane *lane, int err)
@@ -125,5 +126,5 @@ void lane_unstuck(struct lane *lane, int64_t now_ns)
 	way->up = true;
 	way->up_ns = now_ns;
 	refresh_signals(lane, now_ns);
-	engine_group(e, lane)->asks = true;
+	engine_group_asks(lane);
 }

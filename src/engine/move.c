@@ -92,14 +92,25 @@ static bool has_alarms(const struct engine *e, const struct device *d)
 	return false;
 }
 
+/* Is it moved only to learn whether it is there? With many targets that are many moves. */
+static bool is_looked_for(struct engine *e, const struct device *d, const struct lane *from,
+                          const struct lane *to)
+{
+	uint32_t index = (uint32_t)(d - e->table.devices);
+
+	if (!from->state.up || !e->places || index == e->table.device_count)
+		return false;
+	return !d->found || engine_places(e, index)[to->port->group].presence == ROUTE_UNKNOWN;
+}
+
 static void report_move(struct engine *e, const struct device *d, const struct lane *from,
                         const struct lane *to, const char *why)
 {
 	const struct signal *s = &e->table.signals[e->table.device_rows[d->first]];
 
-	log_notice(e->log, "%s%s (%u signal%s): from %s to %s: %s", s->item->path,
-	           d->count > 1 ? " ..." : "", d->count, d->count == 1 ? "" : "s",
-	           from->port->target, to->port->target, why);
+	log_at(e->log, is_looked_for(e, d, from, to) ? LOG_LEVEL_DEBUG : LOG_LEVEL_NOTICE,
+	       "%s%s (%u signal%s): from %s to %s: %s", s->item->path, d->count > 1 ? " ..." : "",
+	       d->count, d->count == 1 ? "" : "s", from->port->target, to->port->target, why);
 }
 
 void engine_move_device(struct engine *e, struct device *d, struct lane *to, const char *why,

@@ -125,3 +125,16 @@ void engine_origin_carry(struct engine *e, const struct signal *s, const struct 
 {
 	image_origin(e->image, s->record, &old->image->origins[record]);
 }
+
+void engine_origin_begin(struct engine *e, struct signal *s)
+{
+	struct ows_origin_entry entry = e->image->origins[s->record];
+	const struct origin_before before = {.changes = true};
+
+	if (entry.reason == OWS_REASON_NONE)
+		return;
+	entry.taken_ns = e->time.now_ns;
+	s->journal = (struct signal_journal){.reason = entry.reason, .entered_ns = entry.taken_ns};
+	enter_command(e, s, (enum ows_reason)entry.reason, &entry.who, &before);
+	image_origin(e->image, s->record, &entry);
+}

@@ -19,5 +19,7 @@ void engine_origin(struct engine *e, struct signal *s, enum ows_reason reason,
 /* A reload: the origin of what was command record was before. */
 void engine_origin_carry(struct engine *e, const struct signal *s, const struct engine *old,
                          uint32_t record);
+/* A reload: owsd itself begins s with the command in force, which engine_resume() made. */
+void engine_origin_begin(struct engine *e, struct signal *s);
 
 #endif

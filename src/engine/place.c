@@ -43,6 +43,8 @@ static void know_presence(struct engine *e, uint32_t device, unsigned group,
 {
 	struct route_place *place = engine_places(e, device) + group;
 
+	if (presence == ROUTE_PRESENT)
+		e->table.devices[device].found = true;
 	if (place->presence == presence)
 		return;
 	*place = (struct route_place){presence, e->time.now_ns};

@@ -46,6 +46,7 @@ uint8_t failure_quality(int err)
 		return OWS_Q_SENSOR;
 	case ECOMM:
 		return OWS_Q_SHORT;
+	case ENXIO:
 	case ENOTCONN:
 	case ETIMEDOUT:
 	case ECONNRESET:

@@ -100,6 +100,7 @@ static int64_t group_turn(struct engine *e, unsigned group, int64_t now_ns)
 	struct group *g = &e->groups[group];
 	struct route_step step;
 
+	e->asking -= g->asks;
 	g->asks = false;
 	/* a step leads to one more at most: to let go, to open */
 	for (;;) {
@@ -122,12 +123,16 @@ int64_t engine_route_groups(struct engine *e, int64_t now_ns)
 {
 	int64_t next = INT64_MAX;
 
+	/* whether a way has let go of what was lent is seen by a look only */
+	if (!e->asking && !e->bars && now_ns < e->group_turn_ns)
+		return e->group_turn_ns;
 	for (unsigned i = 0; i < e->group_count; i++) {
 		int64_t again = group_turn(e, i, now_ns);
 
 		if (again < next)
 			next = again;
 	}
+	e->group_turn_ns = next;
 	return next;
 }
 
@@ -211,7 +216,7 @@ static bool route_devices(struct engine *e, int64_t now_ns)
 	bool any = false;
 	int64_t device;
 
-	if (!e->places)
+	if (!e->places || (!e->routes.count && e->route_wheel.period == e->time.period))
 		return false;
 	due_wheel_turn(&e->route_wheel, e->time.period, device_ready, e);
 	while ((device = due_set_next(&e->routes)) >= 0) {
@@ -226,10 +231,11 @@ bool engine_route(struct engine *e, int64_t now_ns)
 {
 	bool any = false;
 
-	for (unsigned i = 0; i < e->group_count; i++) {
+	for (unsigned i = 0; e->asking && i < e->group_count; i++) {
 		if (!e->groups[i].asks)
 			continue;
 		group_turn(e, i, now_ns);
+		e->group_turn_ns = 0;
 		any = true;
 	}
 	return route_devices(e, now_ns) || any;

@@ -222,7 +222,8 @@ struct group_state {
 /* The ways to one wire; lanes[first ..] in the order in which they are written. */
 struct group {
 	unsigned first;
-	bool asks; /* a fact of its ways changed: routing.c has to act on it */
+	/* group.c; routing.c: a fact of its ways changed, and routing.c has to act on it */
+	bool asks;
 	struct route_way *ways;
 	struct group_state state;
 };
@@ -286,11 +287,18 @@ struct engine {
 	struct route_group *states; /* of the groups */
 	unsigned group_count;
 	struct route_way *ways;
+	unsigned asking; /* groups that ask */
+	bool bars;       /* a group has several ways */
+	/* routing.c: when time alone leads to a step of a group; 0: not known */
+	int64_t group_turn_ns;
 	/* place.c, and routing.c takes the devices out that it routes */
 	struct route_place *places; /* device * group_count + group; NULL: one group */
 	struct due_set routes;      /* devices of which something became known, as in route_wheel */
 	struct due_wheel
 		route_wheel; /* devices to be routed again, the one of no device behind them */
+
+	/* device_facts.c */
+	struct due_set facts; /* devices whose facts the image does not show yet */
 
 	/* lane_answer.c, lane_state.c; intake.c resets it */
 	struct engine_driver driver;

@@ -44,30 +44,56 @@ static int order_keys(const void *a, const void *b)
 	return order ? order : (x->row > y->row) - (x->row < y->row);
 }
 
-/* Group the rows by device. */
-static int find_devices(struct table *table)
+/* The rows that have a device, by devices; *n gets their count. NULL: no memory. */
+static struct device_key *keys_of(const struct config *config, uint32_t *n)
 {
-	struct device_key *keys = calloc((size_t)table->count + 1, sizeof(*keys));
-	uint32_t n = 0;
+	struct device_key *keys = calloc((size_t)config->item_count + 1, sizeof(*keys));
 
-	if (!keys)
-		return -ENOMEM;
-	for (uint32_t row = 0; row < table->count; row++) {
-		const char *text = table->signals[row].item->path;
+	*n = 0;
+	for (uint32_t row = 0; keys && row < config->item_count; row++) {
+		const char *text = config->items[row].path;
+		struct device_key *key = &keys[*n];
 		struct path path;
-
-		table->signals[row].device = TABLE_NO_DEVICE;
 
 		if (path_split(text, strlen(text), &path) || !path.device.len)
 			continue;
-		keys[n].has_rom = path.has_rom;
-		memcpy(keys[n].rom, path.rom, sizeof(keys[n].rom));
-		keys[n].alias = path.last.text;
-		keys[n].alias_len = path.last.len;
-		keys[n].row = row;
-		n++;
+		key->has_rom = path.has_rom;
+		memcpy(key->rom, path.rom, sizeof(key->rom));
+		key->alias = path.last.text;
+		key->alias_len = path.last.len;
+		key->row = row;
+		(*n)++;
 	}
-	qsort(keys, n, sizeof(*keys), order_keys);
+	if (keys)
+		qsort(keys, *n, sizeof(*keys), order_keys);
+	return keys;
+}
+
+int table_image_devices(const struct config *config, uint32_t *first)
+{
+	uint32_t n;
+	struct device_key *keys = keys_of(config, &n);
+	int count = 0;
+
+	if (!keys)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < n && keys[i].has_rom; i++)
+		if (i == 0 || compare_keys(&keys[i - 1], &keys[i]) != 0)
+			first[count++] = keys[i].row;
+	free(keys);
+	return count;
+}
+
+/* Group the rows by device. */
+static int find_devices(struct table *table, const struct config *config)
+{
+	uint32_t n;
+	struct device_key *keys = keys_of(config, &n);
+
+	if (!keys)
+		return -ENOMEM;
+	for (uint32_t row = 0; row < table->count; row++)
+		table->signals[row].device = TABLE_NO_DEVICE;
 	for (uint32_t i = 0; i < n; i++) {
 		struct device *d;
 
@@ -144,7 +170,7 @@ int signal_table_init(struct table *table, const struct config *config)
 		}
 		init_signal(s, &config->items[row], row);
 	}
-	if (find_devices(table)) {
+	if (find_devices(table, config)) {
 		signal_table_free(table);
 		return -ENOMEM;
 	}
@@ -214,6 +240,7 @@ void signal_table_image(const struct config_item *item, struct image_signal *sig
 		.has_init = item->has_init,
 		.has_safe = item->has_safe,
 		.starts_last = item->starts_last,
+		.confirm = item->confirm,
 		.init_value = item->init_value,
 		.safe_value = item->safe_value,
 	};

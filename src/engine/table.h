@@ -126,14 +126,25 @@ struct signal {
 	char *text, *command_text, *written_text;
 };
 
+/* What is known of a device by the answers for its signals; a reload carries it over. */
+struct device_facts {
+	const char *identity; /* NULL: not known; else as in struct bus_answer */
+	uint8_t supply;       /* enum bus_supply */
+	uint32_t lane;        /* which answered last; UINT32_MAX: none */
+	uint64_t answers, errors, retries, wire_us;
+	int64_t ok_ns; /* last good answer; 0: none */
+};
+
 struct device {
 	uint8_t rom[8];
-	bool has_rom;          /* false: an alias */
-	bool absent;           /* a signal of it went bad with "no such device" */
-	uint32_t first, count; /* rows in table.device_rows */
+	bool has_rom;              /* false: an alias */
+	bool absent;               /* a signal of it went bad with "no such device" */
+	uint32_t first, count;     /* rows in table.device_rows */
+	struct device_facts facts; /* device_facts.c */
 
 	/* where it is served, and looked for (place.c, routing.c) */
 	unsigned group;
+	bool found; /* a target had it once */
 	int64_t moved_ns;
 	bool probing;    /* queued or with a bus */
 	unsigned probed; /* the last group it was looked for on */
@@ -156,6 +167,12 @@ void signal_table_free(struct table *table);
 
 /* The device with this ROM id, TABLE_NO_DEVICE: no row is of it. */
 uint32_t table_device(const struct table *table, const uint8_t rom[8]);
+
+/*
+ * The devices of the image: those with a ROM id, in the order of the table. first: room for as many
+ * as there are items; gets the first row of each. Their count, or -ENOMEM.
+ */
+int table_image_devices(const struct config *config, uint32_t *first);
 
 /* What the image of this configuration contains. */
 void signal_table_image(const struct config_item *item, struct image_signal *signal);

@@ -20,6 +20,7 @@
 #include "src/host/private.h"
 #include "src/libows/ows.h"
 #include "src/serve/serve.h"
+#include "src/shm/entries.h"
 #include "src/shm/reader.h"
 
 static void free_host(struct host *h)
@@ -41,13 +42,12 @@ static int create_serve(struct host *h, const struct config *config, char *why, 
 		.config = config,
 		.instance = h->instance,
 		.place = h->place->path,
+		.directory = h->place->fd,
 		.log = h->log,
 		.ring = host_ring,
 		.ring_ctx = h,
 	};
 
-	if (!config->serve.address_count && !config->serve.socket)
-		return 0;
 	if (serve_is_open(&config->serve))
 		log_warning(
 			h->log,
@@ -139,6 +139,18 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 fail:
 	free_host(h);
 	return err;
+}
+
+static void see_line(void *ctx, int64_t time_ns, enum log_level level, const char *text, size_t len)
+{
+	struct host *h = ctx;
+
+	image_log(&h->now->memory.image, time_ns, level, text, len);
+}
+
+void host_show_log(struct host *host, bool on)
+{
+	log_show(host->log, on ? see_line : NULL, host);
 }
 
 int64_t host_beat(const struct host *host)

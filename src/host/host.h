@@ -29,6 +29,9 @@ struct host_setup {
  */
 int host_start(const struct host_setup *setup, struct host **host, char *why, size_t why_size);
 
+/* Lines of the log that consumers see: log_drain() puts them into the image. The supervisor. */
+void host_show_log(struct host *host, bool on);
+
 /* Time of the engine's last heartbeat, ns of CLOCK_BOOTTIME. Any thread. */
 int64_t host_beat(const struct host *host);
 /* The longest time between two heartbeats of an engine that runs. The supervisor. */

@@ -15,6 +15,7 @@
 #include "src/engine/table.h"
 #include "src/host/memory.h"
 #include "src/libows/ows.h"
+#include "src/shm/entries.h"
 #include "src/shm/futex.h"
 #include "src/shm/hint.h"
 #include "src/shm/owner.h"
@@ -75,12 +76,17 @@ static const char *served_target(const struct config_serve *serve, char *text, s
 	return text;
 }
 
+/* How many lines of the log consumers see: some minutes of trouble, and 18 KB. */
+#define LOG_LINES 64
+
 static int make_image(struct memory *m, const struct image_counter *counters,
                       uint32_t counter_count)
 {
 	const struct config *config = m->config;
 	struct image_signal *signals = calloc((size_t)config->item_count + 1, sizeof(*signals));
 	struct image_meta *metas = calloc((size_t)config->item_count + 1, sizeof(*metas));
+	uint32_t *devices = calloc((size_t)config->item_count + 1, sizeof(*devices));
+	int device_count = devices ? table_image_devices(config, devices) : -ENOMEM;
 	const char *targets[CONFIG_TARGETS_MAX];
 	uint32_t groups[CONFIG_TARGETS_MAX];
 	char served[160];
@@ -93,6 +99,9 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 		.groups = groups,
 		.counters = counters,
 		.counter_count = counter_count,
+		.devices = devices,
+		.device_count = device_count < 0 ? 0 : (uint32_t)device_count,
+		.log_lines = LOG_LINES,
 		.generation = m->generation,
 		.start_id = m->start_id,
 		.pid = getpid(),
@@ -103,7 +112,7 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 	size_t size;
 	int err = -ENOMEM;
 
-	if (signals && metas) {
+	if (signals && metas && device_count >= 0) {
 		for (unsigned i = 0; i < config->item_count; i++) {
 			signal_table_image(&config->items[i], &signals[i]);
 			signal_table_meta(&config->items[i], &metas[i]);
@@ -122,6 +131,7 @@ static int make_image(struct memory *m, const struct image_counter *counters,
 		image_build(&plan, m->image_segment.base, &m->image);
 	free(signals);
 	free(metas);
+	free(devices);
 	return err;
 }
 
@@ -259,7 +269,9 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 		memory_end(m);
 		return err;
 	}
-	if (!setup->before) {
+	if (setup->before) {
+		image_carry_log(&m->image, &setup->before->image);
+	} else {
 		open_left(m, boot, setup->log);
 		carry_shelves(m);
 	}

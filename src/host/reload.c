@@ -130,6 +130,26 @@ bool host_may_reload(const struct host *h)
 	return !h->unshown;
 }
 
+int host_asked_bell(const struct host *h)
+{
+	return control_asked_bell(h->control);
+}
+
+bool host_asked(struct host *h)
+{
+	return control_asked(h->control);
+}
+
+void host_take_askers(struct host *h)
+{
+	control_take_askers(h->control);
+}
+
+void host_answer(struct host *h, int err, const char *why)
+{
+	control_answer(h->control, err, why);
+}
+
 int host_reload(struct host *h, struct config *config, char *why, size_t why_size)
 {
 	struct adoption plan;

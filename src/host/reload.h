@@ -11,6 +11,16 @@ struct host;
 
 /* False until the image of the reload before is in place. Supervisor only. */
 bool host_may_reload(const struct host *host);
+/* A bell (hal/bus/bell.h) that rings when a program asks for a reload at the control socket. */
+int host_asked_bell(const struct host *host);
+/* Does a program wait for a reload? Silences the bell. Supervisor only. */
+bool host_asked(struct host *host);
+/*
+ * Around a reload, for the programs that ask for one before it begins: host_answer() reports them
+ * what came of it: 0, or a negative errno with the reason in why. Supervisor only.
+ */
+void host_take_askers(struct host *host);
+void host_answer(struct host *host, int err, const char *why);
 /*
  * Serve another configuration without a gap: signals of the same name, path and type go on with
  * value, quality, alarms and retries, targets with the same options stay open. Blocks until the

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/bus/backends.h"
 #include "hal/bus/bus.h"
 #include "hal/gpio/line.h"
 #include "src/config/buses.h"

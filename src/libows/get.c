@@ -170,6 +170,20 @@ int ows_get_text(struct ows *h, int id, int64_t now_ns, struct ows_value *value,
 	return handle_get_text(h, &h->ids[id], now_ns, value, text, size);
 }
 
+int ows_get_signal_text(struct ows *h, int signal, int64_t now_ns, struct ows_value *value,
+                        char *text, size_t size)
+{
+	struct ows_id id = {.record = signal + 1, .attribute = ATTR_VALUE};
+
+	if (size == 0)
+		return -ENOSPC;
+	text[0] = '\0';
+	if (signal < 0 || signal >= ows_count(h))
+		return ows_get_signal(h, signal, now_ns, value);
+	id.stale_after_ns = map_info(&h->map, (unsigned)signal + 1)->stale_after_ns;
+	return handle_get_text(h, &id, now_ns, value, text, size);
+}
+
 int ows_command(struct ows *h, int id, struct ows_command *command)
 {
 	const struct ows_command_slot *own;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* What libows returns about signals, targets, counters and the daemon itself. */
+/* What libows returns about signals, targets, devices, counters and the daemon itself. */
 #include <errno.h>
+#include <string.h>
 
 #include "src/libows/alive.h"
 #include "src/libows/handle.h"
@@ -47,6 +48,7 @@ int ows_info(const struct ows *h, int signal, struct ows_info *info)
 		.filter_s = entry->filter_s,
 		.deadband = entry->deadband,
 		.decimals = (int32_t)entry->decimals,
+		.confirm = (entry->flags & OWS_INFO_CONFIRM) != 0,
 	};
 	return 0;
 }
@@ -109,6 +111,66 @@ int ows_counter(struct ows *h, int index, struct ows_counter *counter)
 		.target = (int)(int32_t)entry->target,
 		.value = (uint64_t)word_get(&entry->high) << 32 | word_get(&entry->low),
 	};
+	return 0;
+}
+
+int ows_device(struct ows *h, int index, struct ows_device *device)
+{
+	struct ows_device_entry e;
+
+	*device = (struct ows_device){.target = -1};
+	if (index < 0 || (uint32_t)index >= map_count(&h->map, OWS_AREA_DEVICES))
+		return -ENOENT;
+	if (!reader_entry(map_entry(&h->map, OWS_AREA_DEVICES, (uint32_t)index), &e, sizeof(e)))
+		return -EIO;
+	*device = (struct ows_device){
+		.id = map_string(&h->map, e.id_off),
+		.family = map_string(&h->map, e.family_off),
+		.target = e.target < map_count(&h->map, OWS_AREA_TARGETS) ? (int)e.target : -1,
+		.power = e.power <= OWS_POWER_EXTERNAL ? e.power : OWS_POWER_UNKNOWN,
+		.answers = e.answers,
+		.errors = e.errors,
+		.retries = e.retries,
+		.wire_us = e.wire_us,
+		.ok_ns = e.ok_ns,
+	};
+	memcpy(device->identity, e.identity, sizeof(device->identity));
+	device->identity[sizeof(device->identity) - 1] = '\0';
+	return 0;
+}
+
+static int log_entry(struct ows *h, uint32_t place, struct ows_log_entry *entry)
+{
+	return reader_entry(map_entry(&h->map, OWS_AREA_LOG, place), entry, sizeof(*entry)) ? 0
+	                                                                                    : -EIO;
+}
+
+uint32_t ows_log_last(struct ows *h)
+{
+	uint32_t last = 0;
+	struct ows_log_entry e;
+
+	for (uint32_t i = 0; i < map_count(&h->map, OWS_AREA_LOG); i++)
+		if (log_entry(h, i, &e) == 0 && e.number > last)
+			last = e.number;
+	return last;
+}
+
+int ows_log_line(struct ows *h, uint32_t number, struct ows_log_line *line)
+{
+	uint32_t count = map_count(&h->map, OWS_AREA_LOG);
+	struct ows_log_entry e;
+	int err;
+
+	if (!count || !number)
+		return -ENOENT;
+	err = log_entry(h, number % count, &e);
+	if (err)
+		return err;
+	if (e.number != number)
+		return -ENOENT;
+	*line = (struct ows_log_line){.number = number, .level = e.level, .time_ns = e.time_ns};
+	memcpy(line->text, e.text, sizeof(line->text) - 1);
 	return 0;
 }
 

@@ -62,13 +62,13 @@ static void copy_name(char to[OWS_NAME], const char *name)
 }
 
 int join_begin(struct join *join, int directory, const char *file, const char *program,
-               bool command)
+               uint32_t flags)
 {
 	struct ows_hello hello = {
 		.magic = OWS_HELLO_MAGIC,
 		.major = OWS_LAYOUT_MAJOR,
 		.minor = OWS_LAYOUT_MINOR,
-		.flags = command ? OWS_HELLO_COMMAND : 0,
+		.flags = flags,
 	};
 	int err;
 
@@ -163,8 +163,7 @@ static int receive(struct join *join, struct ows_welcome *welcome, int *memory)
 	return 0;
 }
 
-/* Sleep until something is to be received; false: the time is over. */
-static bool await(int fd, int64_t until_ns)
+bool join_await(int fd, int64_t until_ns)
 {
 	struct pollfd poll_fd = {.fd = fd, .events = POLLIN};
 	int64_t left = until_ns - ows_now();
@@ -183,7 +182,7 @@ int join_receive(struct join *join, int64_t until_ns, struct ows_welcome *welcom
 	*memory = -1;
 	do
 		err = receive(join, welcome, memory);
-	while (err == -EAGAIN && await(join->connection, until_ns));
+	while (err == -EAGAIN && join_await(join->connection, until_ns));
 	if (err && err != -EAGAIN)
 		join_end(join);
 	return err;

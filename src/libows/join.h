@@ -19,11 +19,12 @@ struct join {
 
 void join_none(struct join *join);
 /*
- * Connect to the socket `file` in a directory, and send the hello with the program's name. Returns
+ * Connect to the socket `file` in a directory, and send the hello with the program's name and
+ * OWS_HELLO_ flags. Returns
  * 0; -ENOENT: nobody listens there; -EACCES; -EAGAIN: too many wait there at the moment.
  */
 int join_begin(struct join *join, int directory, const char *file, const char *program,
-               bool command);
+               uint32_t flags);
 /*
  * Receive a welcome, until then at most (by ows_now()). Returns 0 with the descriptor of a memory,
  * which the caller closes; -EAGAIN: none has come; -ENOTCONN: owsd has closed the connection;
@@ -31,6 +32,8 @@ int join_begin(struct join *join, int directory, const char *file, const char *p
  * than -EAGAIN the connection is closed.
  */
 int join_receive(struct join *join, int64_t until_ns, struct ows_welcome *welcome, int *memory);
+/* Sleep until the connection has something to receive, or for less; false: the time is over. */
+bool join_await(int connection, int64_t until_ns);
 void join_end(struct join *join);
 
 #endif

@@ -52,7 +52,7 @@ static int connect_again(struct ows *h)
 	if (err)
 		return err;
 	err = join_begin(&h->join, place.fd, segment_file(h->instance, "control", name), h->program,
-	                 h->mode == OWS_CONTROL);
+	                 h->mode == OWS_CONTROL ? OWS_HELLO_COMMAND : 0);
 	place_close(&place);
 	return err;
 }

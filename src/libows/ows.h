@@ -6,12 +6,12 @@
  * connects to owsd's control socket, and gets a memory of its own for that.
  *
  * A handle belongs to one thread at a time. C11, C++11 and later. Real-time threads may call
- * ows_get(), ows_get_text(), ows_get_signal(), ows_snapshot(), ows_command(), ows_alarm_state(),
- * ows_origin(), ows_now(): no system call, no lock, no wait, no allocation, bounded, even when owsd
- * dies in the middle of a write; and ows_set() with its relatives, ows_acknowledge(), ows_beat():
- * the same, but for one write() to an eventfd when owsd sleeps. They never open anything again.
- * (ows_now() and what commands read the clock by the kernel's vDSO.) All other functions make
- * system calls or allocate.
+ * ows_get(), ows_get_text(), ows_get_signal(), ows_get_signal_text(), ows_snapshot(),
+ * ows_command(), ows_alarm_state(), ows_origin(), ows_now(): no system call, no lock, no wait, no
+ * allocation, bounded, even when owsd dies in the middle of a write; and ows_set() with its
+ * relatives, ows_acknowledge(), ows_beat(): the same, but for one write() to an eventfd when owsd
+ * sleeps. They never open anything again. (ows_now() and what commands read the clock by the
+ * kernel's vDSO.) All other functions make system calls or allocate.
  *
  * After fork() only the parent may command: calls of the child that command return -EPERM. The
  * child may read, and ows_close() frees what it has of the handle without a word to owsd.
@@ -321,6 +321,18 @@ int ows_fd(struct ows *h);
 int ows_reopen(struct ows *h);
 
 /*
+ * Ask the owsd of that instance (NULL: "OWS") to load its configuration again, and wait until it
+ * serves it, at most timeout_ns (negative: no limit): owsd leaves up to ten seconds between two
+ * reloads. Needs no handle. Root, owsd's own user and, of the service, the group owsd-config may.
+ * Returns 0: done. A negative errno, and a reason in why (NULL: not wanted; else NUL-terminated,
+ * cut at size bytes, without control characters): owsd refuses the configuration, and all goes on
+ * as before. An empty reason: there was no reload, or not in time. -ENOENT: no owsd of that name
+ * runs; -EACCES: this user may not ask; -ENOSPC: too many programs ask; -ETIMEDOUT; -ENOTCONN: owsd
+ * has ended meanwhile; -EPROTO: it is too old to be asked; others as ows_open().
+ */
+int ows_reload(const char *instance, int64_t timeout_ns, char *why, size_t size);
+
+/*
  * How many signals there are: signals are 0 .. ows_count() - 1 in the order of the file; valid
  * until ows_reopen().
  */
@@ -346,11 +358,15 @@ struct ows_info {
 	double limit_hh, limit_h, limit_l, limit_ll;
 	double filter_s, deadband; /* 0 without */
 	int32_t decimals;       /* -1: not known */
+	uint8_t confirm;        /* 1 ask a person once more before a set */
 	uint64_t spare[4]; /* 0: room for later members */
 };
 int ows_info(const struct ows *h, int signal, struct ows_info *info);
 /* Get the value of a signal by its index (not an id of ows_find()); otherwise as ows_get(). */
 int ows_get_signal(struct ows *h, int signal, int64_t now_ns, struct ows_value *value);
+/* The same with the text of the value, as ows_get_text(). */
+int ows_get_signal_text(struct ows *h, int signal, int64_t now_ns, struct ows_value *value,
+                        char *text, size_t size);
 /*
  * Get the values of the first n signals; returns how many. Each value is whole in itself; the
  * values may be of different moments.
@@ -372,7 +388,8 @@ int ows_daemon(struct ows *h, int64_t now_ns, struct ows_daemon *daemon);
 
 /*
  * The target that reaches the owserver protocol which owsd serves, as "127.0.0.1:4304" or
- * "owserver:/run/owsd/OWS.sock"; NULL: owsd does not serve it. Valid until ows_reopen().
+ * "owserver:/run/owsd/owserver.sock"; NULL: owsd serves it at NAME.sock alone, which takes no
+ * writes. Valid until ows_reopen().
  */
 const char *ows_served(const struct ows *h);
 
@@ -392,6 +409,48 @@ struct ows_counter {
 	uint64_t value;
 };
 int ows_counter(struct ows *h, int index, struct ows_counter *counter);
+
+/*
+ * The devices that signals name by their ROM ids, in the order of these: what owsd knows of each,
+ * and what it has counted since its start of the requests for its signals. owsd asks nothing of a
+ * device for it, so a target that does not know leaves out identity, power, retries and wire_us.
+ * -ENOENT past the end, -EIO if owsd died while it wrote this.
+ */
+enum ows_power {
+	OWS_POWER_UNKNOWN,
+	OWS_POWER_PARASITE, /* from the data line */
+	OWS_POWER_EXTERNAL,
+};
+struct ows_device {
+	const char *id;     /* "28.551DDF030000", as in the configuration */
+	const char *family; /* the kind that its family code names: "DS18B20"; "" none */
+	char identity[48];  /* which chip it is by its behaviour; "" not known */
+	int target;         /* which answered last, for ows_target(); -1: none */
+	uint32_t power;     /* enum ows_power */
+	uint64_t answers;   /* good and bad */
+	uint64_t errors;    /* requests that failed, those without an answer too */
+	uint64_t retries;   /* how often the target did it again after an error */
+	uint64_t wire_us;   /* what the requests took of the wire; without what served several */
+	int64_t ok_ns;      /* last good answer; 0: none */
+	uint64_t spare[4];  /* 0: room for later members */
+};
+int ows_device(struct ows *h, int index, struct ows_device *device);
+
+/*
+ * The last lines of owsd's log: they count from 1 at owsd's start, and the last 64 are kept, also
+ * after its end. Lines that owsd does not log (owsd -v) are not here either. ows_log_last(): the
+ * number of the newest, 0 if there is none. -ENOENT: the line is not kept; -EIO: owsd died while it
+ * wrote this.
+ */
+struct ows_log_line {
+	uint32_t number;
+	uint32_t level;    /* 3 error, 4 warning, 5 notice, 6 info, 7 debug, 8 trace */
+	int64_t time_ns;   /* CLOCK_BOOTTIME */
+	char text[256];    /* printable UTF-8 */
+	uint64_t spare[2]; /* 0: room for later members */
+};
+uint32_t ows_log_last(struct ows *h);
+int ows_log_line(struct ows *h, uint32_t number, struct ows_log_line *line);
 
 /*
  * The journal of alarms since owsd started: entries count from 0; the last 256 are kept. The entry

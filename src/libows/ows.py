@@ -49,6 +49,7 @@ Q_NO_PROPERTY, Q_TYPE, Q_ACCESS = 0x04, 0x05, 0x06
 Q_STALE, Q_TARGET, Q_GOOD = 0x14, 0x18, 0xC0
 WHOLE_TRIES = 64
 OUTPUT, FRESH, ALARM, NO_SET = 1, 2, 4, 8
+CONFIRM = 16  # of an info
 READ_ENABLE, WRITE_ENABLE, IN_WORK = 1, 2, 4
 ALARM_POLLED, ALARM_STANDS, LIMITS, ALARM_UNARMED = 16, 32, 64, 128
 
@@ -90,13 +91,14 @@ HEADER = struct.Struct("<IHHIIIiIIIIqqq")
 Area = collections.namedtuple("Area", "off size count", defaults=[0, 0, 0])
 AREA = struct.Struct("<IIII")
 RECORDS, INFOS, TARGETS, POOL, TEXTS, ORIGINS, GIVERS = 1, 2, 4, 6, 7, 8, 9
-SHELVES, ALARMS, COMMANDS, CHANGES = 10, 11, 12, 13
+SHELVES, ALARMS, COMMANDS, CHANGES, DEVICES = 10, 11, 12, 13, 14
 ENTRY_SIZES = {RECORDS: 320, INFOS: 192, TARGETS: 128, POOL: 1, TEXTS: 1, ORIGINS: 104,
-               GIVERS: 120, SHELVES: 184, ALARMS: 200, COMMANDS: 200, CHANGES: 8}
+               GIVERS: 120, SHELVES: 184, ALARMS: 200, COMMANDS: 200, CHANGES: 8, DEVICES: 128}
 ORIGIN_ENTRY = struct.Struct("<IIq80s4xI")
 GIVER_ENTRY = struct.Struct("<IIq80sIII8xI")
 GIVER_CONNECTED, GIVER_MAY_SET, GIVER_LATE = 1, 2, 4
 JOURNAL_ENTRY = struct.Struct("<IIq8s8sBBBBI64s80sI8xI")
+DEVICE_ENTRY = struct.Struct("<IIIIQQQQqI4x48s12xI")
 SHELF_ENTRY = struct.Struct("<IIqq80s64s12xI")
 WHO = struct.Struct("<IIi4x32s32s")
 # The memory of a giver. Words of a slot, from its beginning, and offsets of words in the header
@@ -176,6 +178,14 @@ Shelf = collections.namedtuple("Shelf", "since_ns until_ns who why")
 # signals that came from another target. The index is what Value.target says
 Target = collections.namedtuple("Target", "index name state reconnects group moves")
 TARGET = struct.Struct("<104sIIII8x")
+
+# A device that signals name by its ROM id. identity: which chip it is by its behaviour; power:
+# "parasite", "external"; both None: not known. target: the index of the one that answered last,
+# None: none yet. Counted since owsd's start: answers good and bad, errors of requests, retries,
+# microseconds of the wire. ok_ns: last good answer; 0: none
+Device = collections.namedtuple("Device", "id family identity power target answers errors retries "
+                                "wire_us ok_ns")
+POWERS = {1: "parasite", 2: "external"}
 TARGET_STATES = ["down", "up", "suspended"]
 
 # What the file says of a signal. None: not given, not known; scale and offset are 1 and 0 without,
@@ -183,7 +193,7 @@ TARGET_STATES = ["down", "up", "suspended"]
 Info = collections.namedtuple(
     "Info", "name path type output fresh alarm per_factor stale_after_ns unit description family "
     "device calibrated points decimals scale offset min max limit_hh limit_h limit_l limit_ll "
-    "filter deadband", defaults=[None] * 17)
+    "filter deadband confirm", defaults=[None] * 17 + [False])
 INFO = struct.Struct("<4I3q8I10d")
 
 
@@ -636,7 +646,7 @@ class Ows:
         image, texts, pool = self.image, self.areas[TEXTS], self.areas[POOL]
         self.records, self.table = {}, []
         for record in range(self.areas[RECORDS].count):
-            (name, path, factor, _, stale, _, _, _, *texts_off, decimals, scale, offset,
+            (name, path, factor, _, stale, _, _, said, *texts_off, decimals, scale, offset,
              minimum, maximum, hh, h, low, ll, smooth, deadband) = INFO.unpack_from(
                  image.memory, self._at(INFOS, record))
             text_off, kind, flags, text_cap = struct.unpack_from(
@@ -651,7 +661,8 @@ class Ows:
                                     *(image.string(off, pool) or None for off in texts_off),
                                     None if decimals == 0xFFFFFFFF else decimals, scale, offset,
                                     *(None if number != number else number for number in
-                                      (minimum, maximum, hh, h, low, ll)), smooth, deadband),
+                                      (minimum, maximum, hh, h, low, ll)), smooth, deadband,
+                                    bool(said & CONFIRM)),
                                text_off, text_cap, bool(flags & NO_SET)))
             if record > 0:
                 self.records[name] = record
@@ -984,6 +995,21 @@ class Ows:
                 self.image.memory, self._at(TARGETS, index))
             yield Target(index, name.split(b"\0")[0].decode(errors="replace"),
                          word(TARGET_STATES, state, "unknown"), reconnects, group, moves)
+
+    def devices(self):
+        """What owsd knows of each device that signals name, by ROM id: Device by Device."""
+        for index in range(self.areas[DEVICES].count):
+            entry = self._entry(DEVICES, index, DEVICE_ENTRY)
+            if entry is None:
+                continue
+            _, name, family, target, answers, errors, retries, wire_us, ok_ns, power, identity, _ = \
+                entry
+            yield Device(*(self.image.string(off, self.areas[POOL]) or None
+                           for off in (name, family)),
+                         identity.split(b"\0")[0].decode(errors="replace") or None,
+                         POWERS.get(power),
+                         target if target < self.areas[TARGETS].count else None,
+                         answers, errors, retries, wire_us, ok_ns)
 
     def origin(self, name):
         """The Origin of the command that is in force for a signal."""

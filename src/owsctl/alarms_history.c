@@ -6,12 +6,12 @@
 
 #include "src/owsctl/alarms_history.h"
 #include "src/owsctl/alarms_live.h"
-#include "src/owsctl/digits.h"
-#include "src/owsctl/json.h"
-#include "src/owsctl/names.h"
 #include "src/owsctl/table.h"
-#include "src/owsctl/when.h"
-#include "src/owsctl/who.h"
+#include "src/show/digits.h"
+#include "src/show/json.h"
+#include "src/show/names.h"
+#include "src/show/when.h"
+#include "src/show/who.h"
 
 /* clang-format off */
 static const struct table_column columns[] = {

@@ -6,22 +6,13 @@
 #include <string.h>
 
 #include "src/owsctl/alarms_live.h"
-#include "src/owsctl/names.h"
 #include "src/owsctl/rows.h"
 #include "src/owsctl/table.h"
-#include "src/owsctl/text.h"
-#include "src/owsctl/who.h"
+#include "src/show/names.h"
+#include "src/show/present.h"
+#include "src/show/text.h"
+#include "src/show/who.h"
 #include "src/signal/error.h"
-
-/* One line of the live table. */
-struct alarm {
-	const char *name;
-	const char *kind, *state;
-	int64_t since_ns; /* 0: not known */
-	uint32_t occurrences;
-	bool device, polled;
-	const struct ows_alarm_state *shelved; /* NULL: it is not shelved */
-};
 
 struct live {
 	struct ows *h;
@@ -42,94 +33,33 @@ static const struct table_column columns[] = {
 };
 #define COLUMNS (sizeof(columns) / sizeof(columns[0]))
 
-/* When the present alarm of a signal was raised, as far as the journal goes back; else 0. */
-static int64_t raised(struct ows *h, int signal, uint8_t kind)
-{
-	struct ows_alarm alarm;
-	int err;
-
-	for (uint32_t number = ows_alarm_count(h); number-- > 0;) {
-		err = ows_alarm(h, number, &alarm);
-		if (err == -ENOENT)
-			break;
-		if (err || alarm.signal != signal || alarm.event != OWS_ALARM_RAISED)
-			continue;
-		if (alarm.kind == kind)
-			return alarm.occurred_ns;
-	}
-	return 0;
-}
-
-static void add_row(struct live *live, const struct alarm *alarm)
+static void add_row(struct live *live, const struct present *alarm)
 {
 	char value[128], words[READING_WORDS], span[WHEN_TEXT] = "-";
+	const char *state = alarm->unarmed ? "cannot be armed" : alarm->state;
 
+	reading_round(live->reading, alarm->decimals);
 	reading_show(live->reading, value, sizeof(value));
 	if (alarm->since_ns)
 		when_span(live->now.boot - alarm->since_ns, span);
 	if (!table_add(live->table,
-	               (const char *const[]){alarm->name, alarm->kind, alarm->state, span, value,
+	               (const char *const[]){alarm->name, alarm->kind, state, span, value,
 	                                     reading_quality(live->reading, words)}))
 		live->ok = false;
 }
 
-static void add_json(struct live *live, const struct alarm *alarm)
+static void add(void *ctx, const struct present *alarm)
 {
-	struct json *json = &live->json;
-	char text[WHEN_TEXT];
+	struct live *live = ctx;
 
-	json_object(json, NULL);
-	json_string(json, "name", alarm->name);
-	json_string(json, "alarm", alarm->kind);
-	json_string(json, "state", alarm->state);
-	json_bool(json, "device", alarm->device);
-	json_bool(json, "polled", alarm->polled);
-	json_string(json, "since",
-	            alarm->since_ns ? when_iso(&live->now, alarm->since_ns, text) : NULL);
-	if (alarm->device)
-		json_uint(json, "occurrences", alarm->occurrences);
-	if (alarm->shelved) {
-		json_string(json, "until", when_iso(&live->now, alarm->shelved->until_ns, text));
-		who_json(json, &alarm->shelved->who);
-		json_string(json, "why", *alarm->shelved->why ? alarm->shelved->why : NULL);
-	}
-	reading_json(json, live->h, live->reading, &live->now);
-	json_object_end(json);
-}
-
-static void add(struct live *live, const struct alarm *alarm)
-{
-	if (live->table)
+	if (live->table) {
 		add_row(live, alarm);
-	else
-		add_json(live, alarm);
-}
-
-/* Why the alarm of the reading's signal is not armed, if no reading has failed since. */
-static const char *why_unarmed(const struct ows_alarm_state *state, const struct reading *reading,
-                               char words[ERROR_WORDS])
-{
-	const char *key = state->unarmed == 2 ? "PorAlarm" : "SetAlarm";
-	int error = reading_good(reading) ? reading->value.err : 0;
-
-	switch (-error) {
-	case 0:
-		snprintf(words, ERROR_WORDS, "cannot be armed");
-		break;
-	case EACCES:
-		snprintf(words, ERROR_WORDS, "cannot be armed: %s cannot be written", key);
-		break;
-	case EBADRQC:
-		snprintf(words, ERROR_WORDS, "cannot be armed: %s", error_text(error));
-		break;
-	case EUCLEAN:
-		snprintf(words, ERROR_WORDS, "cannot be armed: %s is still set after 0 was written",
-		         key);
-		break;
-	default:
-		snprintf(words, ERROR_WORDS, "cannot be armed: %s: %s", key, error_text(error));
+		return;
 	}
-	return words;
+	json_object(&live->json, NULL);
+	present_json(&live->json, alarm, &live->now);
+	reading_json(&live->json, live->h, live->reading, &live->now);
+	json_object_end(&live->json);
 }
 
 static void print_shelved(const struct live *live, const char *name,
@@ -161,64 +91,9 @@ static void print_reasons(struct live *live, const struct rows *rows, char *cons
 		if (!state.unarmed)
 			continue;
 		reading_get(live->h, rows->row[i].id, live->now.boot, live->reading);
-		printf("%s: %s\n", rows->row[i].name, why_unarmed(&state, live->reading, words));
+		printf("%s: %s\n", rows->row[i].name,
+		       present_unarmed(&state, live->reading, words));
 	}
-}
-
-static void look_at_limit(struct live *live, int signal, const char *name,
-                          const struct ows_alarm_state *state)
-{
-	struct alarm alarm = {
-		.name = name,
-		.kind = ows_alarm_kind_text(state->limit_kind),
-		.state = ows_limit_state_text(state->limit_state),
-	};
-
-	if (state->shelved) {
-		alarm.state = "shelved";
-		alarm.since_ns = state->since_ns;
-		alarm.shelved = state;
-		add(live, &alarm);
-	} else if (state->limit_state != OWS_LIMIT_NORMAL) {
-		alarm.since_ns = raised(live->h, signal, state->limit_kind);
-		add(live, &alarm);
-	}
-}
-
-static void look_at(struct live *live, int signal, const struct row *row)
-{
-	struct ows_alarm_state state = {0};
-	struct alarm alarm = {.name = row->name};
-	char unarmed[ERROR_WORDS];
-
-	if (ows_alarm_state(live->h, row->id, &state) == -EAGAIN)
-		return;
-	reading_get(live->h, row->id, live->now.boot, live->reading);
-	if (live->table)
-		reading_round(live->reading, row_decimals(row));
-	if (state.stands || state.polled) {
-		alarm.kind = ows_alarm_kind_text(OWS_ALARM_DEVICE);
-		alarm.state = state.stands ? "stands" : "no alarm search there: read as an input";
-		alarm.device = true;
-		alarm.polled = state.polled;
-		alarm.occurrences = state.occurrences;
-		if (state.stands)
-			alarm.since_ns = raised(live->h, signal, OWS_ALARM_DEVICE);
-		add(live, &alarm);
-	}
-	if (state.unarmed) {
-		alarm = (struct alarm){
-			.name = row->name,
-			.kind = ows_alarm_kind_text(OWS_ALARM_DEVICE),
-			.state = live->table ? "cannot be armed"
-		                             : why_unarmed(&state, live->reading, unarmed),
-			.device = true,
-			.polled = state.polled,
-			.occurrences = state.occurrences,
-		};
-		add(live, &alarm);
-	}
-	look_at_limit(live, signal, row->name, &state);
 }
 
 /* rows: all signals of the table, in its order. */
@@ -239,7 +114,7 @@ static bool show(struct ows *h, const struct rows *rows, bool json, char *const 
 	}
 	for (int i = 0; live.ok && i < rows->count; i++)
 		if (names_match(rows->row[i].name, patterns, pattern_count))
-			look_at(&live, i, &rows->row[i]);
+			present_each(h, i, rows->row[i].id, live.now.boot, &reading, add, &live);
 	if (json) {
 		json_array_end(&live.json);
 		json_end(&live.json);

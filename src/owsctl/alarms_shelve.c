@@ -7,7 +7,7 @@
 #include "hal/bus/time.h"
 #include "src/owsctl/alarms_shelve.h"
 #include "src/owsctl/ctl.h"
-#include "src/owsctl/when.h"
+#include "src/show/when.h"
 
 static int fail(const char *name, bool shelve, int err)
 {

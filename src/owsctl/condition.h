@@ -3,7 +3,7 @@
 #ifndef OWSCTL_CONDITION_H
 #define OWSCTL_CONDITION_H
 
-#include "src/owsctl/reading.h"
+#include "src/show/reading.h"
 
 enum condition_op {
 	CONDITION_EQ,

@@ -3,9 +3,9 @@
 #include <stdio.h>
 
 #include "src/owsctl/config_list.h"
-#include "src/owsctl/json.h"
-#include "src/owsctl/names.h"
 #include "src/owsctl/table.h"
+#include "src/show/json.h"
+#include "src/show/names.h"
 #include "src/signal/value.h"
 
 enum {

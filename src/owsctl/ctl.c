@@ -12,9 +12,9 @@
 
 #include "hal/bus/time.h"
 #include "src/owsctl/ctl.h"
-#include "src/owsctl/names.h"
-#include "src/owsctl/when.h"
 #include "src/shm/place.h"
+#include "src/show/names.h"
+#include "src/show/when.h"
 #include "src/text/printable.h"
 #include "src/text/refused.h"
 

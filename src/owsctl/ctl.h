@@ -4,8 +4,8 @@
  * and returns the exit status.
  *
  * Room src/owsctl: the command-line tool, a program over libows; scan, read and write open a target
- * themselves. Uses src/owsd, src/config, src/board, src/text, src/libows, src/shm, src/signal,
- * hal/chips, hal/owfs, hal/bus.
+ * themselves. Uses src/scan, src/show, src/config, src/board, src/text, src/libows,
+ * src/service, src/shm, src/signal, hal/chips, hal/owfs, hal/bus.
  */
 #ifndef OWSCTL_CTL_H
 #define OWSCTL_CTL_H
@@ -36,7 +36,8 @@ struct verb {
 	const char *usage; /* what follows the name: "NAME..." */
 	const char *brief; /* one line for the list of verbs */
 	int (*run)(struct ctl *ctl, int argc, char **argv);
-	bool opens; /* the verb opens a target itself, without owsd, and has the option -t */
+	bool opens;  /* the verb opens a target itself, without owsd, and has the option -t */
+	bool writes; /* and writes to it */
 };
 
 /*

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/owsctl/json.h"
 #include "src/owsctl/open.h"
-#include "src/owsctl/text.h"
 #include "src/owsctl/verbs.h"
+#include "src/show/json.h"
+#include "src/show/text.h"
 
 #define LISTING_MAX (256u * 1024)
 
@@ -44,6 +44,7 @@ int verb_dir(struct ctl *ctl, int argc, char **argv)
 {
 	int64_t timeout_ns = OPEN_TIMEOUT_NS;
 	struct target target;
+	struct served served;
 	char path[256];
 	bool fresh;
 	char *text;
@@ -57,7 +58,7 @@ int verb_dir(struct ctl *ctl, int argc, char **argv)
 		return ctl_usage(ctl, "one directory at a time");
 	if (!target_path(optind < argc ? argv[optind] : "/", path, &fresh))
 		return ctl_usage(ctl, "the path is longer than %d bytes", 255);
-	status = target_open(ctl, timeout_ns, &target);
+	status = open_target(ctl, timeout_ns, &target, &served);
 	if (status)
 		return status;
 	text = malloc(LISTING_MAX + 1);

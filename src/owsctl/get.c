@@ -7,11 +7,11 @@
 
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/meaning.h"
-#include "src/owsctl/names.h"
-#include "src/owsctl/reading.h"
 #include "src/owsctl/seen.h"
-#include "src/owsctl/text.h"
 #include "src/owsctl/verbs.h"
+#include "src/show/names.h"
+#include "src/show/reading.h"
+#include "src/show/text.h"
 
 /* Bytes from the bus go to a program as they are, and to a terminal without control characters. */
 static void print_text(const struct reading *reading)

@@ -5,12 +5,12 @@
 #include <stdio.h>
 
 #include "src/owsctl/ctl.h"
-#include "src/owsctl/json.h"
-#include "src/owsctl/names.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/verbs.h"
-#include "src/owsctl/when.h"
-#include "src/owsctl/who.h"
+#include "src/show/json.h"
+#include "src/show/names.h"
+#include "src/show/when.h"
+#include "src/show/who.h"
 
 /* clang-format off */
 static const struct table_column giver_columns[] = {

@@ -13,12 +13,12 @@
 #include "src/libows/open.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/instance_state.h"
-#include "src/owsctl/json.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/verbs.h"
-#include "src/owsctl/when.h"
 #include "src/shm/lock.h"
 #include "src/shm/remains.h"
+#include "src/show/json.h"
+#include "src/show/when.h"
 
 #define FIELD 400
 

@@ -9,7 +9,7 @@
 #include "hal/bus/time.h"
 #include "src/owsctl/alarms_live.h"
 #include "src/owsctl/ctl.h"
-#include "src/owsctl/journal_entry.h"
+#include "src/owsctl/journal_row.h"
 #include "src/owsctl/terminal.h"
 #include "src/owsctl/verbs.h"
 
@@ -34,7 +34,7 @@ static bool print_rows(struct journal *j, unsigned from, bool titled)
 	bool ok = true;
 
 	for (unsigned i = from; ok && i < j->entries.count; i++)
-		ok = journal_row(&j->table, j->h, &now, &j->entries.entry[i]);
+		ok = journal_row(&j->table, &now, &j->entries.entry[i]);
 	table_fit(&j->table, 0);
 	for (int i = titled ? -1 : 0; ok && i < (int)j->table.rows; i++) {
 		table_line(&j->table, i, line, sizeof(line));
@@ -56,7 +56,7 @@ static void print_json(struct journal *j, unsigned from)
 	if (!j->follows)
 		json_array(&json, NULL);
 	for (unsigned i = from; i < j->entries.count; i++) {
-		journal_json(&json, j->h, &now, &j->entries.entry[i]);
+		journal_json(&json, &now, &j->entries.entry[i]);
 		if (j->follows)
 			json_end(&json);
 	}

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "src/owsctl/meaning.h"
-#include "src/owsctl/names.h"
+#include "src/show/names.h"
 #include "src/signal/value.h"
 
 bool meaning_of(struct ows *h, const struct ows_info *info, struct meaning *meaning)

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 #include "src/libows/ows.h"
-#include "src/owsctl/json.h"
+#include "src/show/json.h"
 
 struct meaning {
 	char *unit, *description; /* "": none */

@@ -4,12 +4,12 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
-#include "src/owsctl/json.h"
+#include "hal/chips/host_clock.h"
 #include "src/owsctl/mission_ask.h"
 #include "src/owsctl/mission_download.h"
 #include "src/owsctl/verbs.h"
+#include "src/show/json.h"
 
 /* --- Status --- */
 
@@ -113,12 +113,18 @@ static int check_started(struct mission *mission, double interval, bool rollover
 /* The one runs when its interval is written, the other when it is started. */
 static int start(struct mission *mission, double interval, bool rollover)
 {
+	double now;
+
+	if (host_clock(&now))
+		return ctl_fail("%s: the clock of this computer is not set: no mission can be "
+		                "given its time",
+		                mission->device);
 	const struct {
 		const char *property;
 		double value;
 		bool for_minutes, for_seconds;
 	} steps[] = {
-		{"clock/udate", (double)time(NULL), true, true},
+		{"clock/udate", now, true, true},
 		{"clock/running", 1, true, true},
 		{"mission/delay", 0, true, true},
 		{"mission/rollover", rollover, true, true},

@@ -69,10 +69,11 @@ int mission_open(const struct ctl *ctl, const char *device, int64_t timeout_ns,
                  struct mission *mission)
 {
 	char family[VALUE_MAX];
+	struct served served;
 	int status, err;
 
 	*mission = (struct mission){.device = device};
-	status = target_open(ctl, timeout_ns, &mission->target);
+	status = open_target(ctl, timeout_ns, &mission->target, &served);
 	if (status)
 		return status;
 	err = read_text(mission, "family", family);

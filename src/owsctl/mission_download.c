@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "src/owsctl/json.h"
+#include "src/show/json.h"
 
 #define AT_ONCE 32 /* samples that are asked for together: a page of a log */
 #define TRIES 3

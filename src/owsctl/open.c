@@ -1,118 +1,32 @@
 /* SPDX-License-Identifier: MIT */
-/* Opens a target for the verbs that look at devices, and sends requests to it. */
+/* Opens the target of a verb: the one that is named, or that of the instance. */
 #include <errno.h>
 #include <getopt.h>
-#include <poll.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
-#include "hal/bus/time.h"
+#include "hal/bus/backends.h"
 #include "src/config/config.h"
 #include "src/config/targets.h"
 #include "src/owsctl/open.h"
-#include "src/owsctl/reading.h"
+#include "src/show/when.h"
 
-#define GRACE_NS (2 * NS_PER_S)    /* after its deadline the bus has this time to end a request */
 #define PROGRESS_NS (5 * NS_PER_S) /* the pause between two prints of the count of answers */
 
-static int64_t boottime(void *ctx)
-{
-	struct timespec t;
-
-	(void)ctx;
-	clock_gettime(CLOCK_BOOTTIME, &t);
-	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
-}
-
-static int wait_fd(void *ctx, int fd, short events, int64_t until_ns)
-{
-	struct pollfd poll_fd = {.fd = fd, .events = events};
-	int64_t left;
-
-	while ((left = until_ns - boottime(ctx)) > 0) {
-		struct timespec t = {.tv_sec = (time_t)(left / NS_PER_S),
-		                     .tv_nsec = (long)(left % NS_PER_S)};
-
-		if (ppoll(&poll_fd, 1, &t, NULL) > 0)
-			return 1;
-	}
-	return ppoll(&poll_fd, 1, &(struct timespec){0}, NULL) > 0;
-}
-
-static void take_answer(void *ctx, const struct bus_answer *answer)
-{
-	struct target *target = ctx;
-	uint32_t i = answer->id - target->first_id;
-
-	if (i >= target->count)
-		return;
-	target->asks[i].answer = *answer;
-	target->answered++;
-}
-
-static void take_event(void *ctx, const struct bus_event *event)
-{
-	struct target *target = ctx;
-
-	switch ((enum bus_news)event->news) {
-	case BUS_UP:
-		target->up = true;
-		break;
-	case BUS_DOWN:
-		target->down = true;
-		target->loss = *event;
-		break;
-	case BUS_FOUND:
-	case BUS_LOST:
-	case BUS_POR:
-	case BUS_NOTE:
-	case BUS_RELEASED:
-	case BUS_BACK:
-		break;
-	}
-}
-
-/* Step the bus, and sleep until it wants more, but not past until_ns. */
-static void step(struct target *target, int64_t until_ns)
-{
-	unsigned answered = target->answered;
-	bool known = target->up || target->down;
-	int64_t next = bus_step(target->bus, boottime(NULL));
-
-	/* an answer or an event came: return to the caller, which may wait for it */
-	if (target->answered != answered || known != (target->up || target->down))
-		return;
-	if (next > until_ns)
-		next = until_ns;
-	if (next > boottime(NULL))
-		wait_fd(NULL, -1, 0, next);
-}
-
 /* Returns CTL_DONE; or the status, with the reason in why. */
-static int open_way(struct target *target, const char *name, int64_t until_ns, char *why,
-                    size_t why_size)
+static int open_way(struct target *target, const char *name, char *why, size_t why_size)
 {
-	int err = bus_create(name, &target->env, &target->bus, why, why_size);
+	int err;
 
-	target->up = target->down = false;
-	if (err) {
-		if (!why[0])
-			snprintf(why, why_size, "%s", strerror(-err));
-		return err == -ENOMEM ? CTL_FAILED : CTL_USAGE;
-	}
-	while (!target->up && !target->down && boottime(NULL) < until_ns)
-		step(target, until_ns);
-	if (target->up)
+	target->name = name;
+	err = target_connect(target, why, why_size);
+	if (!err)
 		return CTL_DONE;
-	snprintf(why, why_size, "cannot open %s: %s", name,
-	         target->down ? target->loss.text : "no answer in time");
-	target_close(target);
-	return CTL_FAILED;
+	return err == -ENOMEM || err == -ENOTCONN ? CTL_FAILED : CTL_USAGE;
 }
 
 /* Open the first way that works, as owsd does. */
-static int open_auto(struct target *target, int64_t until_ns, char *why, size_t why_size)
+static int open_auto(struct target *target, char *why, size_t why_size)
 {
 	size_t used = (size_t)snprintf(why, why_size, "auto finds nothing");
 
@@ -120,7 +34,7 @@ static int open_auto(struct target *target, int64_t until_ns, char *why, size_t 
 		char reason[200] = "";
 		int n;
 
-		if (open_way(target, config_auto_ways[i], until_ns, reason, sizeof(reason)) == 0)
+		if (open_way(target, config_auto_ways[i], reason, sizeof(reason)) == 0)
 			return CTL_DONE;
 		n = snprintf(why + used, why_size - used, "%s%s", i ? "; " : ": ", reason);
 		used = n < 0 || (size_t)n >= why_size - used ? why_size - 1 : used + (size_t)n;
@@ -128,91 +42,44 @@ static int open_auto(struct target *target, int64_t until_ns, char *why, size_t 
 	return CTL_FAILED;
 }
 
-int target_open(const struct ctl *ctl, int64_t timeout_ns, struct target *target)
-{
-	int64_t until = boottime(NULL) + timeout_ns;
-	const char *name = ctl->target;
-	char why[700] = "";
-	int status;
-
-	*target = (struct target){.timeout_ns = timeout_ns};
-	if (!name && served_find(ctl, &target->served))
-		return CTL_FAILED;
-	if (!name)
-		name = target->served.target[0] ? target->served.target : OPEN_DEFAULT_TARGET;
-	target->name = name;
-	target->env = (struct bus_env){.ctx = target,
-	                               .now = boottime,
-	                               .wait = wait_fd,
-	                               .answer = take_answer,
-	                               .event = take_event};
-	status = strcmp(name, "auto") ? open_way(target, name, until, why, sizeof(why))
-	                              : open_auto(target, until, why, sizeof(why));
-	if (status)
-		ctl_fail("%s%s", why,
-		         status == CTL_USAGE || ctl->target ? ""
-		         : !target->served.runs             ? " (-t TARGET names another target)"
-		         : target->served.target[0]
-		                 ? ""
-		                 : " (and the owsd that runs here serves no clients: "
-		                   "ListenSocket in its configuration lets it)");
-	return status;
-}
-
-void target_close(struct target *target)
-{
-	bus_destroy(target->bus);
-	target->bus = NULL;
-}
-
 /* Print how many of several requests are answered, every PROGRESS_NS. */
-static void print_progress(const struct target *target, int64_t *printed_ns)
+static void print_progress(struct target *target)
 {
-	int64_t now_ns = boottime(NULL);
+	int64_t now_ns = when_now().boot;
 
-	if (target->count == 1 || now_ns - *printed_ns < PROGRESS_NS)
+	if (now_ns - target->printed_ns < PROGRESS_NS)
 		return;
-	*printed_ns = now_ns;
+	target->printed_ns = now_ns;
 	fprintf(stderr, "owsctl: %u of %u answers from %s\n", target->answered, target->count,
 	        target->name);
 }
 
-void target_ask(struct target *target, struct ask *asks, unsigned count)
+int open_target(const struct ctl *ctl, int64_t timeout_ns, struct target *target,
+                struct served *served)
 {
-	int64_t printed_ns = boottime(NULL);
-	unsigned given = 0;
-	int64_t until = boottime(NULL) + target->timeout_ns + GRACE_NS;
+	const char *name = ctl->target;
+	char why[700] = "";
+	int status;
 
-	target->first_id += target->count;
-	target->asks = asks;
-	target->count = count;
-	target->answered = 0;
-	for (unsigned i = 0; i < count; i++)
-		asks[i].answer = (struct bus_answer){.err = -ETIMEDOUT};
-	while (!target->dead && target->answered < count && boottime(NULL) < until) {
-		unsigned answered = target->answered;
-
-		while (given < count) {
-			struct bus_req *req = &asks[given].req;
-
-			req->id = target->first_id + given;
-			req->deadline_ns = boottime(NULL) + target->timeout_ns;
-			if (bus_submit(target->bus, req))
-				break;
-			given++;
-		}
-		step(target, until);
-		print_progress(target, &printed_ns);
-		if (target->answered != answered)
-			until = boottime(NULL) + target->timeout_ns + GRACE_NS;
-	}
-	target->dead = target->answered < count;
-}
-
-int target_ask_one(struct target *target, struct ask *ask)
-{
-	target_ask(target, ask, 1);
-	return ask->answer.err;
+	*target = (struct target){
+		.timeout_ns = timeout_ns, .create = bus_create, .progress = print_progress};
+	*served = (struct served){0};
+	if (!name && served_find(ctl, served))
+		return CTL_FAILED;
+	if (!name)
+		name = served->target[0] ? served->target : OPEN_DEFAULT_TARGET;
+	status = strcmp(name, "auto") ? open_way(target, name, why, sizeof(why))
+	                              : open_auto(target, why, sizeof(why));
+	if (strcmp(name, "auto") == 0)
+		target->name = name;
+	if (status)
+		ctl_fail("%s%s", why,
+		         status == CTL_USAGE || ctl->target ? ""
+		         : !served->runs                    ? " (-t TARGET names another target)"
+		         : served->target[0]                ? ""
+		                             : " (and the owsd that runs here serves no clients: "
+		                               "ListenSocket in its configuration lets it)");
+	return status;
 }
 
 int target_option(struct ctl *ctl, int argc, char **argv, const char *options, int64_t *timeout_ns)
@@ -229,82 +96,4 @@ int target_option(struct ctl *ctl, int argc, char **argv, const char *options, i
 		return '?';
 	}
 	return c;
-}
-
-bool target_path(const char *given, char path[256], bool *fresh)
-{
-	static const char word[] = "/uncached";
-	size_t len = sizeof(word) - 1;
-	int n = snprintf(path, 256, "%s%s", *given == '/' ? "" : "/", given);
-
-	if (n < 0 || n >= 256)
-		return false;
-	*fresh = strncmp(path, word, len) == 0 && (!path[len] || path[len] == '/');
-	if (*fresh)
-		memmove(path, path + len, strlen(path + len) + 1);
-	if (!*path)
-		snprintf(path, 256, "/");
-	return true;
-}
-
-#define PADDED 12
-
-static bool is_digit(char c)
-{
-	return c >= '0' && c <= '9';
-}
-
-/* -?D+(.D+)?([eE][+-]?D+)? */
-bool target_is_number(const char *text, size_t len)
-{
-	size_t i = 0, from;
-
-	i += i < len && text[i] == '-';
-	for (from = i; i < len && is_digit(text[i]);)
-		i++;
-	if (i == from || (text[from] == '0' && i > from + 1))
-		return false;
-	if (i < len && text[i] == '.') {
-		for (from = ++i; i < len && is_digit(text[i]);)
-			i++;
-		if (i == from)
-			return false;
-	}
-	if (i < len && (text[i] == 'e' || text[i] == 'E')) {
-		i++;
-		i += i < len && (text[i] == '-' || text[i] == '+');
-		for (from = i; i < len && is_digit(text[i]);)
-			i++;
-		if (i == from)
-			return false;
-	}
-	return i == len;
-}
-
-static size_t blanks(const char *text, size_t len)
-{
-	size_t n = 0;
-
-	while (n < len && text[n] == ' ')
-		n++;
-	return n;
-}
-
-size_t target_unpad(char *text, size_t len)
-{
-	size_t out = 0;
-
-	for (size_t at = 0, n; at <= len; at += n + 1) {
-		const char *comma = memchr(text + at, ',', len - at);
-		size_t lead = blanks(text + at, len - at);
-
-		n = comma ? (size_t)(comma - text) - at : len - at;
-		if (lead > n || (lead && n != PADDED) ||
-		    !target_is_number(text + at + lead, n - lead))
-			return len;
-	}
-	for (size_t at = 0; at < len; at++)
-		if (text[at] != ' ')
-			text[out++] = text[at];
-	return out;
 }

@@ -7,7 +7,7 @@
 
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/verbs.h"
-#include "src/owsd/standard.h"
+#include "src/service/standard.h"
 #include "src/text/refused.h"
 
 static const struct verb verbs[] = {
@@ -27,19 +27,24 @@ static const struct verb verbs[] = {
 	{"journal", "[-f] [-c COUNT] [PATTERN...]",
          "who did what and when: alarms and commands since the start", verb_journal},
 	{"stats", "", "owsd itself, its targets and counters", verb_stats},
+	{"metrics", "[-p] [PATTERN...]", "values, quality, targets and counters as OpenMetrics",
+         verb_metrics},
 	{"instances", "", "list the owsd that run here, and those that have run", verb_instances},
 	{"remove", "NAME...", "remove the files of an instance that has ended", verb_remove},
 	{"config", "FILE list | add | set | unset | remove | move ...",
          "look at a configuration and edit it", verb_config},
+	{"reload", "[-w SECONDS]", "have owsd load its configuration again, and wait for that",
+         verb_reload},
 	{"dir", "[-t TARGET] [-w SECONDS] [PATH]", "list a directory of a target", verb_dir,
          .opens = true},
 	{"read", "[-t TARGET] [-w SECONDS] PATH...", "properties of devices, one line for each",
          verb_read, .opens = true},
 	{"write", "[-t TARGET] [-w SECONDS] PATH VALUE", "write a property of a device", verb_write,
-         .opens = true},
+         .opens = true, .writes = true},
 	{"mission",
          "[-t TARGET] [-w SECONDS] start [-o] -i SECONDS | stop | status | download DEVICE",
-         "the mission of a logger: DS1921, DS1922, DS1923", verb_mission, .opens = true},
+         "the mission of a logger: DS1921, DS1922, DS1923", verb_mission, .opens = true,
+         .writes = true},
 	{"scan", "[-t TARGET] [-w SECONDS] [--rio [-i] [--merge FILE [--replace OLD=NEW]...]]",
          "list the devices, or print a configuration for them", verb_scan, .opens = true},
 };

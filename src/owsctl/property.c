@@ -6,8 +6,8 @@
 #include "hal/chips/family.h"
 #include "hal/chips/find.h"
 #include "hal/owfs/path.h"
-#include "src/owsctl/names.h"
 #include "src/owsctl/property.h"
+#include "src/show/names.h"
 
 static bool begins(const struct property *property, const char *name, size_t len)
 {

@@ -3,10 +3,10 @@
 #include <getopt.h>
 #include <unistd.h>
 
-#include "src/owsctl/json.h"
 #include "src/owsctl/open.h"
-#include "src/owsctl/text.h"
 #include "src/owsctl/verbs.h"
+#include "src/show/json.h"
+#include "src/show/text.h"
 
 #define TEXT_MAX 65536
 
@@ -81,6 +81,7 @@ int verb_read(struct ctl *ctl, int argc, char **argv)
 {
 	int64_t timeout_ns = OPEN_TIMEOUT_NS;
 	struct target target;
+	struct served served;
 	struct json json;
 	int status;
 
@@ -89,7 +90,7 @@ int verb_read(struct ctl *ctl, int argc, char **argv)
 		return CTL_USAGE;
 	if (optind == argc)
 		return ctl_usage(ctl, "read what?");
-	status = target_open(ctl, timeout_ns, &target);
+	status = open_target(ctl, timeout_ns, &target, &served);
 	if (status)
 		return status;
 	json_open(&json, stdout);

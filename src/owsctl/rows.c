@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/owsctl/names.h"
 #include "src/owsctl/rows.h"
+#include "src/show/names.h"
 
 static int add(struct ows *h, struct rows *rows, const char *name, int signal,
                const struct ows_info *info)

@@ -4,8 +4,8 @@
 #define OWSCTL_ROWS_H
 
 #include "src/owsctl/meaning.h"
-#include "src/owsctl/reading.h"
-#include "src/owsctl/standing.h"
+#include "src/show/reading.h"
+#include "src/show/standing.h"
 #include "src/signal/value.h"
 
 struct row {

@@ -9,12 +9,14 @@
 
 #include "hal/chips/family.h"
 #include "hal/chips/find.h"
+#include "src/owsctl/open.h"
 #include "src/owsctl/scan_board.h"
 #include "src/owsctl/scan_merge.h"
 #include "src/owsctl/scan_rio.h"
-#include "src/owsctl/scan_target.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/verbs.h"
+#include "src/scan/scan.h"
+#include "src/show/json.h"
 
 static const struct table_column columns[] = {
 	{"PATH"}, {"FAMILY"}, {"TYPE"}, {"ALIAS"}, {"BUS"}, {"ALARM"}, {"VALUES"},
@@ -135,11 +137,10 @@ static void print_json(const struct scan *scan)
 }
 
 /* Print the configuration: a new one, or the given file with the devices added. */
-static int print_rio(const struct ctl *ctl, const struct target *target, const struct scan *scan,
-                     struct scan_merge *merge, bool inputs_only)
+static int print_rio(const struct ctl *ctl, const struct target *target,
+                     const struct served *served, const struct scan *scan, struct scan_merge *merge,
+                     bool inputs_only)
 {
-	const struct served *served = &target->served;
-
 	if (merge->file)
 		return scan_merge(merge, scan, inputs_only);
 	if (served->target[0] && served->cut)
@@ -169,20 +170,36 @@ static void warn_of_empty_file(void)
 		ctl_fail("no configuration was made: the file that the output goes to is empty");
 }
 
+static int find_devices(struct target *target, struct scan *scan)
+{
+	int err = scan_find(target, scan);
+
+	if (err == -E2BIG)
+		return ctl_fail("%s: more than 512 couplers", target->name);
+	if (err && err != -ENOMEM)
+		return ctl_fail("%s: %s", target->name, error_text(err));
+	if (!err)
+		err = scan_read(target, scan->device, scan->count, false);
+	if (err == -ENOMEM)
+		return ctl_fail("no memory");
+	return err ? ctl_fail("%s does not answer any more", target->name) : CTL_DONE;
+}
+
 static int look(struct ctl *ctl, int64_t timeout_ns, bool rio, bool inputs_only,
                 struct scan_merge *merge)
 {
 	struct target target;
+	struct served served;
 	struct scan scan;
-	int status = target_open(ctl, timeout_ns, &target);
+	int status = open_target(ctl, timeout_ns, &target, &served);
 
 	if (status) {
 		scan_board(target.name);
 		return status;
 	}
-	status = scan_target(&target, &scan);
+	status = find_devices(&target, &scan);
 	if (!status && (scan.count || !rio))
-		status = rio ? print_rio(ctl, &target, &scan, merge, inputs_only)
+		status = rio ? print_rio(ctl, &target, &served, &scan, merge, inputs_only)
 		             : show(ctl, &scan);
 	if (!status && !scan.count) {
 		status = ctl_nothing(

@@ -8,7 +8,9 @@
 #include "src/config/config.h"
 #include "src/config/load.h"
 #include "src/config/rio_write.h"
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/scan_item.h"
+#include "src/signal/error.h"
 #include "src/signal/value.h"
 
 bool scan_names_init(struct scan_names *names, size_t room)

@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 #include "src/config/rio.h"
-#include "src/owsctl/scan_device.h"
+#include "src/scan/device.h"
 #include "src/signal/attribute.h"
 
 #define SCAN_WORDS 32

@@ -11,8 +11,10 @@
 #include <unistd.h>
 
 #include "src/config/edit.h"
+#include "src/config/edit_device.h"
 #include "src/config/load.h"
 #include "src/config/rio_file.h"
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/merge.h"
 #include "src/owsctl/scan_item.h"
 #include "src/owsctl/scan_merge.h"
@@ -300,54 +302,17 @@ static void report_missing(const struct work *work)
 			         work->item[i].name, work->item[i].path);
 }
 
-/* Write the path with the new id, in the old one's place and format, and keep its bus. */
-static bool new_path(const char *old, const struct merge_device *device,
-                     const struct scan_device *found, char *out, size_t size)
-{
-	char before[ROM_TEXT_MAX], after[ROM_TEXT_MAX];
-	const char *bus, *rest;
-	struct path path;
-	enum rom_format format;
-	int head, n;
-
-	if (path_split(old, strlen(old), &path) || !path.has_rom)
-		return false;
-	for (format = ROM_F_I; format < ROM_FIC; format++)
-		if (rom_print(path.rom, format, before) == (int)path.last.len &&
-		    !strncasecmp(before, path.last.text, path.last.len))
-			break;
-	rom_print(device->rom, format, after);
-	head = (int)(path.last.text - old);
-	rest = path.last.text + path.last.len;
-	bus = strstr(old, "bus.");
-	if (path.bus < 0 || !bus || bus > path.last.text || !found->location[0])
-		n = snprintf(out, size, "%.*s%s%s", head, old, after, rest);
-	else
-		n = snprintf(out, size, "%.*s%s%.*s%s%s", (int)(bus - old), old, found->location,
-		             (int)(path.last.text - bus - (long)strcspn(bus, "/")),
-		             bus + strcspn(bus, "/"), after, rest);
-	return n >= 0 && (size_t)n < size;
-}
-
 static int replace_device(struct work *work, unsigned known)
 {
-	const struct merge_device *new = &work->found[work->known[known].other];
-	const struct scan_device *found = &work->scan->device[work->known[known].other];
-	char setting[PATH_LEN_MAX + 64] = "Path=", names[NAMES_TEXT], id[2][ROM_TEXT_MAX];
-	const char *const settings[] = {setting};
+	const struct merge_device *old = &work->known[known], *new = &work->found[old->other];
+	char names[NAMES_TEXT], id[2][ROM_TEXT_MAX];
 	struct config_report report = {.line = print_report};
-	int err = 0;
+	int err = edit_replace(&work->merge->rio, old->rom, new->rom,
+	                       work->scan->device[old->other].location, &report);
 
-	for (unsigned i = 0; i < work->item_count && !err; i++) {
-		const struct item *item = &work->item[i];
-
-		if (item->device == (int)known &&
-		    new_path(item->path, new, found, setting + 5, sizeof(setting) - 5))
-			err = edit_set(&work->merge->rio, item->name, settings, 1, &report);
-	}
 	if (!err)
 		ctl_fail("replaced: %s: %s by %s", names_of(work, (int)known, names),
-		         id_of(&work->known[known], id[0]), id_of(new, id[1]));
+		         id_of(old, id[0]), id_of(new, id[1]));
 	return err;
 }
 

@@ -4,7 +4,7 @@
 #define OWSCTL_SCAN_MERGE_H
 
 #include "src/config/rio.h"
-#include "src/owsctl/scan_device.h"
+#include "src/scan/device.h"
 
 #define SCAN_PAIRS 64
 

@@ -6,6 +6,7 @@
 
 #include "src/config/edit.h"
 #include "src/config/rio_write.h"
+#include "src/owsctl/ctl.h"
 #include "src/owsctl/scan_item.h"
 #include "src/owsctl/scan_rio.h"
 

@@ -17,9 +17,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "src/owsctl/names.h"
 #include "src/owsctl/seen.h"
 #include "src/shm/segment.h"
+#include "src/show/names.h"
 
 #define TEXT_MAX (1024 * 1024)
 

@@ -2,7 +2,8 @@
 #ifndef OWSCTL_SEEN_H
 #define OWSCTL_SEEN_H
 
-#include "src/owsctl/reading.h"
+#include "src/owsctl/ctl.h"
+#include "src/show/reading.h"
 
 /*
  * name is the name that was read into reading, with the id. If the name is an _Alarm that this

@@ -8,10 +8,10 @@
 
 #include "hal/bus/time.h"
 #include "src/owsctl/ctl.h"
-#include "src/owsctl/names.h"
-#include "src/owsctl/reading.h"
 #include "src/owsctl/verbs.h"
-#include "src/owsctl/who.h"
+#include "src/show/names.h"
+#include "src/show/reading.h"
+#include "src/show/who.h"
 #include "src/signal/value.h"
 
 struct order {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "src/owsctl/table.h"
-#include "src/owsctl/text.h"
+#include "src/show/text.h"
 
 #define CELL 512 /* bytes of a cell */
 #define GAP 2

@@ -6,10 +6,10 @@
 #include "hal/bus/time.h"
 #include "src/owsctl/condition.h"
 #include "src/owsctl/ctl.h"
-#include "src/owsctl/names.h"
 #include "src/owsctl/rows.h"
 #include "src/owsctl/seen.h"
 #include "src/owsctl/verbs.h"
+#include "src/show/names.h"
 
 #define NO_LIMIT INT64_MAX
 #define SLICE (250 * NS_PER_MS) /* an old value or a dead owsd sends no wake-up */

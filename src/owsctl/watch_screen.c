@@ -9,8 +9,8 @@
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/terminal.h"
-#include "src/owsctl/text.h"
 #include "src/owsctl/watch_screen.h"
+#include "src/show/text.h"
 
 #define BETWEEN_KEYS (50 * NS_PER_MS)
 #define BETWEEN_PICTURES (100 * NS_PER_MS)

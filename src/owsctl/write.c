@@ -10,6 +10,7 @@ int verb_write(struct ctl *ctl, int argc, char **argv)
 {
 	int64_t timeout_ns = OPEN_TIMEOUT_NS;
 	struct target target;
+	struct served served;
 	char path[256], words[ERROR_WORDS];
 	bool fresh;
 	struct ask ask = {.req = {.op = BUS_WRITE, .prio = BUS_OUTPUT, .path = path}};
@@ -23,7 +24,7 @@ int verb_write(struct ctl *ctl, int argc, char **argv)
 		return ctl_usage(ctl, "expected a path and a value");
 	if (!target_path(argv[optind], path, &fresh))
 		return ctl_usage(ctl, "the path is longer than %d bytes", 255);
-	status = target_open(ctl, timeout_ns, &target);
+	status = open_target(ctl, timeout_ns, &target, &served);
 	if (status)
 		return status;
 	ask.req.fresh = fresh;

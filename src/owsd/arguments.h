@@ -2,8 +2,8 @@
 /*
  * owsd's command line, and the messages to the user who typed it.
  *
- * Room src/owsd: the program: options, the service manager, signals of the system. Uses src/host,
- * src/config, src/board, src/text, src/libows, src/shm, hal/gpio, hal/bus.
+ * Room src/owsd: the program: options, start-up, supervision, reload and end. Uses src/host,
+ * src/config, src/board, src/text, src/libows, src/service, src/shm, hal/gpio, hal/bus.
  */
 #ifndef OWSD_ARGUMENTS_H
 #define OWSD_ARGUMENTS_H

@@ -18,9 +18,10 @@
 #include "src/libows/ows.h"
 #include "src/owsd/arguments.h"
 #include "src/owsd/instance.h"
-#include "src/owsd/notify.h"
-#include "src/owsd/standard.h"
-#include "src/owsd/unix_signals.h"
+#include "src/service/journal.h"
+#include "src/service/notify.h"
+#include "src/service/standard.h"
+#include "src/service/unix_signals.h"
 #include "src/text/log.h"
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -30,7 +31,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 /* Five for each of 128 programs that command, 512 for clients of the served protocol, and some. */
@@ -59,15 +59,25 @@ static int print_board(const struct arguments *a)
 	return report.missing ? EXIT_RUN : status;
 }
 
-/* Print a message about the configuration. ctx: a log; NULL: stderr */
+/* Where the messages about a configuration go. */
+struct told {
+	struct log *log; /* NULL: stderr */
+	char *why;       /* the first error; NULL: nobody asks */
+	size_t why_size;
+};
+
 static void report_line(void *ctx, bool is_error, const char *message)
 {
-	if (!ctx)
+	struct told *told = ctx;
+
+	if (!told->log)
 		fprintf(stderr, "%s\n", message);
 	else if (is_error)
-		log_err(ctx, "%s", message);
+		log_err(told->log, "%s", message);
 	else
-		log_warning(ctx, "%s", message);
+		log_warning(told->log, "%s", message);
+	if (is_error && told->why && !*told->why)
+		snprintf(told->why, told->why_size, "%s", message);
 }
 
 static int check_target(const struct config *config, const struct config_target *target,
@@ -97,9 +107,9 @@ static int read_file(const struct arguments *a, struct config_report *report,
 	return config_parse("no file", empty, sizeof(empty) - 1, report, config);
 }
 
-static int load(const struct arguments *a, struct log *log, struct config **config)
+static int load(const struct arguments *a, struct told *told, struct config **config)
 {
-	struct config_report report = {.line = report_line, .ctx = log};
+	struct config_report report = {.line = report_line, .ctx = told};
 	int err = read_file(a, &report, config);
 
 	if (err)
@@ -121,18 +131,6 @@ static int load(const struct arguments *a, struct log *log, struct config **conf
 	}
 	config_free(*config);
 	return err;
-}
-
-/* Does stderr go to the journal, which reads levels from "<4>" prefixes? */
-static int stderr_is_journal(void)
-{
-	const char *stream = getenv("JOURNAL_STREAM");
-	unsigned long long device, inode;
-	struct stat st;
-
-	/* NOLINTNEXTLINE(cert-err34-c): a number out of range is none of ours either */
-	return stream && sscanf(stream, "%llu:%llu", &device, &inode) == 2 &&
-	       fstat(STDERR_FILENO, &st) == 0 && st.st_dev == device && st.st_ino == inode;
 }
 
 /* Use all descriptors that the hard limit allows. */
@@ -190,22 +188,38 @@ static void report_served(const struct host *host, const struct arguments *a, st
 }
 
 /* Load the file again and serve it; a file that is refused changes nothing. */
+static int reload_file(struct host *host, const struct arguments *a, struct log *log, char *why,
+                       size_t why_size)
+{
+	struct told told = {.log = log, .why = why, .why_size = why_size};
+	struct config *config;
+	int err = load(a, &told, &config);
+
+	if (err) {
+		log_err(log, "reload: %s is refused: all goes on as before", a->file);
+		return err;
+	}
+	err = host_reload(host, config, why, why_size);
+	if (err) {
+		config_free(config);
+		log_err(log, "reload: %s: all goes on as before", why);
+	}
+	return err;
+}
+
 static void reload(struct host *host, const struct arguments *a, struct log *log,
                    const struct notify *notify)
 {
-	struct config *config;
-	char why[512];
+	char why[512] = "";
+	int err;
 
-	if (load(a, log, &config)) {
-		log_err(log, "reload: %s is refused: all goes on as before", a->file);
-		return;
-	}
-	if (host_reload(host, config, why, sizeof(why))) {
-		config_free(config);
-		log_err(log, "reload: %s: all goes on as before", why);
-		return;
-	}
-	report_served(host, a, log, notify);
+	notify_send(notify, NOTIFY_RELOADING);
+	host_take_askers(host);
+	err = reload_file(host, a, log, why, sizeof(why));
+	if (!err)
+		report_served(host, a, log, notify);
+	host_answer(host, err, err ? why : "");
+	notify_send(notify, NOTIFY_READY);
 }
 
 /* When the next reload may begin. */
@@ -226,18 +240,19 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
                       struct log *log, const struct notify *notify, int prefix,
                       struct unix_signals *signals)
 {
+	const int bells[] = {log_bell(log), host_asked_bell(host)};
 	int64_t fed_ns = 0, reload_ns = 0, wait_ns = SUPERVISE_NS;
+	bool wanted;
 
 	if (notify->watchdog_ns && notify->watchdog_ns / 4 < wait_ns)
 		wait_ns = notify->watchdog_ns / 4;
 	while (!signals->end) {
 		int64_t now_ns = ows_now();
 
-		if (signals->reload && now_ns >= reload_ns && host_may_reload(host)) {
-			signals->reload = false;
-			notify_send(notify, NOTIFY_RELOADING);
+		wanted = host_asked(host) || signals->reload;
+		if (wanted && now_ns >= reload_ns && host_may_reload(host)) {
+			signals->reload = wanted = false;
 			reload(host, a, log, notify);
-			notify_send(notify, NOTIFY_READY);
 			reload_ns = reload_after(now_ns);
 		}
 		now_ns = ows_now();
@@ -252,7 +267,7 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
 			return false;
 		host_tend(host);
 		log_drain(log, STDERR_FILENO, prefix);
-		unix_signals_wait(signals, log_bell(log), signals->reload ? AGAIN_NS : wait_ns);
+		unix_signals_wait(signals, bells, wanted ? AGAIN_NS : wait_ns);
 	}
 	return true;
 }
@@ -267,7 +282,7 @@ static int run(const struct arguments *a, struct config *config, struct instance
 		.log = log,
 		.rt_priority = a->rt_priority,
 	};
-	int prefix = stderr_is_journal();
+	int prefix = journal_is_stderr();
 	struct notify notify;
 	struct host *host;
 	char why[512];
@@ -282,6 +297,7 @@ static int run(const struct arguments *a, struct config *config, struct instance
 		return EXIT_RUN;
 	}
 	instance_retire_old(instance, log);
+	host_show_log(host, true);
 	report_served(host, a, log, &notify);
 	notify_send(&notify, NOTIFY_READY);
 	ours = supervise(host, a, instance, log, &notify, prefix, signals);
@@ -290,6 +306,8 @@ static int run(const struct arguments *a, struct config *config, struct instance
 	           : signals->end == SIGTERM ? "SIGTERM"
 	                                     : "SIGINT");
 	notify_send(&notify, NOTIFY_STOPPING);
+	log_drain(log, STDERR_FILENO, prefix);
+	host_show_log(host, false);
 	ended = host_stop(host, STOP_NS);
 	if (!ended)
 		log_err(log, "a bus is stuck in the kernel; owsd gives it up");
@@ -312,6 +330,7 @@ static void explain_no_file(const struct arguments *a)
 
 int main(int argc, char **argv)
 {
+	struct told told = {0};
 	struct config *config;
 	struct arguments a;
 	struct instance instance;
@@ -326,10 +345,12 @@ int main(int argc, char **argv)
 	 * so calloc() does not clear it, and a page that nobody uses takes no memory. free() gives
 	 * it back to the system, so what reading the file took does not stay. A limit that is set
 	 * here is fixed; without it malloc raises it with each larger block that is freed. The heap
-	 * grows by what is needed and a page, not by the 128 KiB that malloc adds otherwise.
+	 * grows by what is needed and a page, not by the 128 KiB that malloc adds otherwise. All
+	 * threads share it: they allocate when they connect, if ever.
 	 */
 	mallopt(M_MMAP_THRESHOLD, 16 * 1024);
 	mallopt(M_TOP_PAD, 4096);
+	mallopt(M_ARENA_MAX, 1);
 #endif
 	status = standard_open();
 	if (status) {
@@ -346,7 +367,7 @@ int main(int argc, char **argv)
 	/* decided once: when the file is removed later, a reload reports it as missing */
 	a.needs_no_file = a.file == a.default_file && a.target_count && a.listen_count &&
 	                  !has_file(&a);
-	if (load(&a, NULL, &config)) {
+	if (load(&a, &told, &config)) {
 		if (a.file == a.default_file && !a.needs_no_file && !has_file(&a))
 			explain_no_file(&a);
 		return EXIT_USAGE;

@@ -56,7 +56,8 @@ void client_enter(struct serve *s, struct client *c, enum client_state state)
 		s->look_ns = limit_of(c);
 }
 
-void client_open(struct serve *s, int fd, bool network, const struct sockaddr_in6 *peer)
+void client_open(struct serve *s, int fd, const struct listener *from,
+                 const struct sockaddr_in6 *peer)
 {
 	unsigned index = s->free[s->free_count - 1];
 	struct client *c = &s->clients[index];
@@ -68,7 +69,8 @@ void client_open(struct serve *s, int fd, bool network, const struct sockaddr_in
 	memset(c, 0, offsetof(struct client, request));
 	c->queued = queued;
 	c->fd = fd;
-	c->network = network;
+	c->network = from->network;
+	c->own = from->own;
 	c->peer = *peer;
 	c->readable = true;
 	c->need = FRAME_HEADER;
@@ -109,10 +111,13 @@ static void client_close(struct serve *s, struct client *c)
 		s->queued--;
 	if (!engine_has_it)
 		release_directory(c);
-	if (engine_has_it)
+	/* What it has asked to read nobody waits for; what it has asked to write is written. */
+	if (engine_has_it) {
+		__atomic_store_n(&c->guest.unwanted, 1, __ATOMIC_RELAXED);
 		c->state = CLIENT_LEFT;
-	else
+	} else {
 		put_free(s, c);
+	}
 }
 
 void client_refused(struct serve *s, enum serve_counter what, struct log_rate *rate,

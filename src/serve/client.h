@@ -11,7 +11,8 @@
  * A new connection has the next free place. Its request is mostly there by now: the server reads it
  * before epoll learns of the connection.
  */
-void client_open(struct serve *s, int fd, bool network, const struct sockaddr_in6 *peer);
+void client_open(struct serve *s, int fd, const struct listener *from,
+                 const struct sockaddr_in6 *peer);
 /* Have epoll report on the connection, if it is open and epoll does not yet. */
 void client_watch(struct serve *s, struct client *c);
 /* Count and log a connection that was closed at once. */

@@ -16,6 +16,7 @@
 #include "src/serve/client.h"
 #include "src/serve/listener.h"
 #include "src/shm/owner.h"
+#include "src/shm/segment.h"
 
 /* Connections that wait for a place; the kernel's net.core.somaxconn may be less. */
 #define BACKLOG 4096
@@ -44,15 +45,15 @@ static socklen_t fill(const struct listen_address *from, union address *to)
 	return sizeof(to->v4);
 }
 
-static int add(struct serve *s, int fd, bool network)
+static int add(struct serve *s, int fd, struct listener as)
 {
 	struct epoll_event event = {.events = EPOLLIN | EPOLLET};
 
 	event.data.u32 = SERVER_CLIENTS + 1 + s->listener_count;
 	if (listen(fd, BACKLOG) < 0 || epoll_ctl(s->epoll_fd, EPOLL_CTL_ADD, fd, &event) < 0)
 		return -errno;
-	s->listeners[s->listener_count].fd = fd;
-	s->listeners[s->listener_count++].network = network;
+	as.fd = fd;
+	s->listeners[s->listener_count++] = as;
 	return 0;
 }
 
@@ -118,7 +119,7 @@ static int open_network(struct serve *s, const struct listen_address *address)
 	if (err == -EADDRNOTAVAIL && !listen_is_loopback(address))
 		err = bind_later(s, fd, address, &to, len);
 	if (!err)
-		err = add(s, fd, true);
+		err = add(s, fd, (struct listener){.network = true});
 	if (err)
 		close(fd);
 	return err;
@@ -145,11 +146,10 @@ static int remove_old(const union address *to)
 }
 
 /*
- * Users who may command outputs may use the socket, because it carries writes. bind() made it with
- * mode 0600. In a folder that others may write, another file may have taken its place by now; owsd
- * does not change the rights of that file.
+ * The group may use the socket. bind() made it with mode 0600. In a folder that others may write,
+ * another file may have taken its place by now; owsd does not change the rights of that file.
  */
-static int give_rights(const char *path)
+static int give_rights(const char *path, const char *group)
 {
 	int fd = open(path, O_PATH | O_NOFOLLOW | O_CLOEXEC), err = 0;
 	char self[32];
@@ -161,36 +161,69 @@ static int give_rights(const char *path)
 	snprintf(self, sizeof(self), "/proc/self/fd/%d", fd);
 	if (fstat(fd, &st) < 0 || !S_ISSOCK(st.st_mode) || st.st_uid != geteuid())
 		err = -EPERM;
-	else if (owner_group("owsd-control", &gid) &&
-	         fchownat(fd, "", (uid_t)-1, gid, AT_EMPTY_PATH) == 0 && chmod(self, 0660) < 0)
+	else if (owner_group(group, &gid) && fchownat(fd, "", (uid_t)-1, gid, AT_EMPTY_PATH) == 0 &&
+	         chmod(self, 0660) < 0)
 		err = -errno;
 	close(fd);
+	return err;
+}
+
+/* A socket of that path, which does not exist, for this user and the group. */
+static int bind_local(struct serve *s, const union address *to, const char *group, bool own)
+{
+	mode_t mask;
+	int fd, err;
+
+	fd = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+	if (fd < 0)
+		return -errno;
+	mask = umask(0177);
+	err = bind(fd, &to->any, sizeof(to->local)) < 0 ? -errno : 0;
+	umask(mask);
+	if (!err)
+		err = give_rights(to->local.sun_path, group);
+	if (!err)
+		err = add(s, fd, (struct listener){.own = own});
+	if (err)
+		close(fd);
 	return err;
 }
 
 static int open_local(struct serve *s, const char *path)
 {
 	union address to = {.local = {.sun_family = AF_UNIX}};
-	mode_t mask;
-	int fd, err;
+	int err;
 
 	snprintf(to.local.sun_path, sizeof(to.local.sun_path), "%s", path);
 	err = remove_old(&to);
-	if (err)
-		return err;
-	fd = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-	if (fd < 0)
+	return err ? err : bind_local(s, &to, "owsd-control", false);
+}
+
+/* Is ListenSocket that socket? Then it is served as the configuration has it. */
+static bool is_listen_socket(const struct serve *s, const char *name)
+{
+	struct stat own, other;
+
+	return s->config->serve.socket && stat(s->config->serve.socket, &other) == 0 &&
+	       fstatat(s->directory, name, &own, AT_SYMLINK_NOFOLLOW) == 0 &&
+	       own.st_dev == other.st_dev && own.st_ino == other.st_ino;
+}
+
+/* NAME.sock in the directory of owsd's files. One that is there is of an owsd that was killed. */
+static int open_own(struct serve *s)
+{
+	union address to = {.local = {.sun_family = AF_UNIX}};
+	char name[SEGMENT_FILE];
+
+	segment_file(s->instance, "sock", name);
+	if (s->directory < 0 || is_listen_socket(s, name))
+		return 0;
+	/* the path of the directory may be longer than an address has room */
+	snprintf(to.local.sun_path, sizeof(to.local.sun_path), "/proc/self/fd/%d/%s", s->directory,
+	         name);
+	if (unlinkat(s->directory, name, 0) < 0 && errno != ENOENT)
 		return -errno;
-	mask = umask(0177);
-	err = bind(fd, &to.any, sizeof(to.local)) < 0 ? -errno : 0;
-	umask(mask);
-	if (!err)
-		err = give_rights(path);
-	if (!err)
-		err = add(s, fd, false);
-	if (err)
-		close(fd);
-	return err;
+	return bind_local(s, &to, "owsd-config", true);
 }
 
 /* Without IPv6 in the kernel the other loopback address serves. */
@@ -200,7 +233,7 @@ static bool may_miss(const struct serve *s, const struct listen_address *address
 	       (err == -EAFNOSUPPORT || err == -EADDRNOTAVAIL);
 }
 
-int listeners_open(struct serve *s, char *why, size_t why_size)
+static int open_configured(struct serve *s, char *why, size_t why_size)
 {
 	const struct config_serve *config = &s->config->serve;
 	char text[LISTEN_TEXT_MAX];
@@ -227,11 +260,28 @@ int listeners_open(struct serve *s, char *why, size_t why_size)
 	return err;
 }
 
+int listeners_open(struct serve *s, char *why, size_t why_size)
+{
+	int err = open_configured(s, why, why_size);
+
+	if (err)
+		return err;
+	err = open_own(s);
+	if (err)
+		snprintf(why, why_size, "cannot listen at %s/%s.sock: %s", s->place, s->instance,
+		         strerror(-err));
+	return err;
+}
+
 void listeners_close(struct serve *s)
 {
+	char name[SEGMENT_FILE];
+
 	for (unsigned i = 0; i < s->listener_count; i++) {
 		close(s->listeners[i].fd);
-		if (!s->listeners[i].network)
+		if (s->listeners[i].own)
+			unlinkat(s->directory, segment_file(s->instance, "sock", name), 0);
+		else if (!s->listeners[i].network)
 			unlink(s->config->serve.socket);
 	}
 	s->listener_count = 0;
@@ -273,14 +323,15 @@ static void refuse_peer(struct serve *s, int fd, const union address *from)
 }
 
 /* All places are taken: hold the connection. owsd logs the first and counts them all. */
-static void hold(struct serve *s, int fd, bool network, const struct sockaddr_in6 *peer)
+static void hold(struct serve *s, int fd, const struct listener *from,
+                 const struct sockaddr_in6 *peer)
 {
 	char others[LOG_OTHERS];
 	uint64_t n = log_rate(&s->full_rate, s->now_ns);
 
 	s->held.is = true;
 	s->held.fd = fd;
-	s->held.network = network;
+	s->held.from = *from;
 	s->held.peer = *peer;
 	count(s, COUNT_full, 1);
 	if (n)
@@ -288,20 +339,21 @@ static void hold(struct serve *s, int fd, bool network, const struct sockaddr_in
 		            SERVER_CLIENTS, log_others(n, others));
 }
 
-static void take_client(struct serve *s, int fd, bool network, const struct sockaddr_in6 *peer)
+static void take_client(struct serve *s, int fd, const struct listener *from,
+                        const struct sockaddr_in6 *peer)
 {
-	client_open(s, fd, network, peer);
+	client_open(s, fd, from, peer);
 	count(s, COUNT_connections, 1);
 }
 
-static void meet(struct serve *s, int fd, bool network, const union address *from)
+static void meet(struct serve *s, int fd, const struct listener *at, const union address *from)
 {
-	if (network && !is_allowed(s, from))
+	if (at->network && !is_allowed(s, from))
 		refuse_peer(s, fd, from);
 	else if (s->free_count || client_evict(s))
-		take_client(s, fd, network, &from->v6);
+		take_client(s, fd, at, &from->v6);
 	else
-		hold(s, fd, network, &from->v6);
+		hold(s, fd, at, &from->v6);
 }
 
 /* Give the held connection a place. True: no connection is held any more. */
@@ -312,7 +364,7 @@ static bool place_held(struct serve *s)
 	if (!s->free_count && !client_evict(s))
 		return false;
 	s->held.is = false;
-	take_client(s, s->held.fd, s->held.network, &s->held.peer);
+	take_client(s, s->held.fd, &s->held.from, &s->held.peer);
 	return true;
 }
 
@@ -341,7 +393,7 @@ bool listeners_accept(struct serve *s)
 				break;
 			any = true;
 			if (fd >= 0)
-				meet(s, fd, s->listeners[i].network, &from);
+				meet(s, fd, &s->listeners[i], &from);
 		}
 	}
 	return any && s->waiting && !s->held.is;

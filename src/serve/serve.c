@@ -11,6 +11,7 @@
 
 #include "hal/bus/thread.h"
 #include "hal/bus/time.h"
+#include "hal/owfs/frame.h"
 #include "src/config/own.h"
 #include "src/libows/ows.h"
 #include "src/serve/client.h"
@@ -86,6 +87,7 @@ int serve_create(const struct serve_setup *setup, struct serve **serve, char *wh
 	s->config = setup->config;
 	s->instance = setup->instance;
 	s->place = setup->place;
+	s->directory = setup->directory;
 	s->log = setup->log;
 	s->guests.ring = setup->ring;
 	s->guests.ring_ctx = setup->ring_ctx;
@@ -170,7 +172,15 @@ static void serve_round(struct serve *s)
 		s->round_at = (s->round_at + 1) % SERVER_CLIENTS;
 		s->round_count--;
 		c->queued = false;
-		if (client_turn(s, c))
+		bool has_request = client_turn(s, c);
+		/*
+		 * The first request of most is answered, and the connection closed, before epoll
+		 * has to know of it. But a write would be done, and its client not learn it, where
+		 * the kernel refuses to watch the connection.
+		 */
+		if (has_request && c->request.type == FRAME_WRITE)
+			client_watch(s, c);
+		if (has_request && c->fd >= 0)
 			work_begin(s, c);
 		client_watch(s, c);
 	}

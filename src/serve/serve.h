@@ -23,14 +23,15 @@ struct serve_setup {
 	const struct config *config;
 	const char *instance;
 	const char *place; /* the directory of its files */
+	int directory;     /* the same, open, where NAME.sock is made; -1: none is made */
 	struct log *log;
 	void (*ring)(void *ctx); /* wakes the engine, from any thread */
 	void *ring_ctx;
 };
 
 /*
- * Listen at the addresses, and allocate. 0, or a negative errno (-EADDRINUSE) with the reason in
- * why. config has at least one address or a socket.
+ * Listen at the addresses of config and at NAME.sock, which takes no writes, and allocate. 0, or a
+ * negative errno (-EADDRINUSE) with the reason in why.
  */
 int serve_create(const struct serve_setup *setup, struct serve **serve, char *why, size_t why_size);
 const struct engine_guests *serve_guests(struct serve *serve);

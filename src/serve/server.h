@@ -19,7 +19,7 @@
 
 #define SERVER_CLIENTS 512
 #define SERVER_DIRECTORIES 4
-#define SERVER_LISTENERS (LISTEN_MAX + 1)
+#define SERVER_LISTENERS (LISTEN_MAX + 2)
 
 /* Time limits, as the genuine owserver has them. */
 #define REQUEST_NS (10 * NS_PER_S) /* from the first byte, or the connection, to the end */
@@ -68,6 +68,7 @@ struct client {
 	bool readable, ended; /* as epoll has reported; ended: no more bytes come */
 	bool queued;          /* the client is in the round */
 	bool network;         /* the socket is no unix socket */
+	bool own;             /* the socket is NAME.sock, which takes no writes */
 	bool watched;         /* epoll reports on the socket */
 	bool is_get, lent, once_more;
 	bool waits;               /* APPLYING: owsd has still to look at the commands of others */
@@ -126,6 +127,7 @@ struct serve {
 	const struct config *config;
 	const struct image *image;
 	const char *instance, *place;
+	int directory; /* the place, open */
 	struct log *log;
 	struct guests guests;
 	struct kept *kept, *prepared; /* prepared: for the next reload */
@@ -140,9 +142,9 @@ struct serve {
 	uint8_t token[BUS_TOKEN];
 	bool passes_on; /* a target is an owserver, which may ask this server in turn */
 
-	struct {
+	struct listener {
 		int fd;
-		bool network;
+		bool network, own; /* own: NAME.sock in the directory of owsd's files */
 	} listeners[SERVER_LISTENERS];
 	unsigned listener_count, listener_at; /* listener_at: the one that accepts first */
 	uint32_t waiting; /* listeners that may have connections, one bit each */
@@ -151,7 +153,7 @@ struct serve {
 	struct {
 		bool is;
 		int fd;
-		bool network;
+		struct listener from;
 		struct sockaddr_in6 peer;
 	} held;
 	int epoll_fd;

@@ -136,7 +136,7 @@ void work_write(struct serve *s, struct client *c)
 	const struct node *node = &c->node;
 	const char *name;
 
-	if (s->config->serve.read_only) {
+	if (s->config->serve.read_only || c->own) {
 		refuse(s, c);
 		return;
 	}

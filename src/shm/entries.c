@@ -7,12 +7,14 @@
 #include "src/shm/word.h"
 
 /* The first word of an entry is its sequence word, the last its check word. */
-#define WORDS_MAX (sizeof(struct ows_journal_entry) / 4)
+#define WORDS_MAX (sizeof(struct ows_log_entry) / 4)
 
-_Static_assert(sizeof(struct ows_origin_entry) <= 4 * WORDS_MAX &&
+_Static_assert(sizeof(struct ows_journal_entry) <= 4 * WORDS_MAX &&
+                       sizeof(struct ows_origin_entry) <= 4 * WORDS_MAX &&
                        sizeof(struct ows_giver_entry) <= 4 * WORDS_MAX &&
-                       sizeof(struct ows_shelf_entry) <= 4 * WORDS_MAX,
-               "the journal's entry is the largest");
+                       sizeof(struct ows_shelf_entry) <= 4 * WORDS_MAX &&
+                       sizeof(struct ows_device_entry) <= 4 * WORDS_MAX,
+               "the log's entry is the largest");
 
 static void write_entry(void *to, const void *entry, size_t size)
 {
@@ -44,6 +46,46 @@ void image_shelf(struct image *image, uint32_t place, const struct ows_shelf_ent
 {
 	assert(place < OWS_SHELVES && entry->record < image->record_count);
 	write_entry(&image->shelves[place], entry, sizeof(*entry));
+}
+
+void image_device(struct image *image, uint32_t place, const struct ows_device_entry *entry)
+{
+	struct ows_device_entry whole = *entry;
+
+	assert(place < image->device_count);
+	whole.id_off = image->devices[place].id_off;
+	whole.family_off = image->devices[place].family_off;
+	write_entry(&image->devices[place], &whole, sizeof(whole));
+}
+
+/* The number of the newest line; 0: there is none. */
+static uint32_t last_line(const struct image *image)
+{
+	uint32_t last = 0;
+
+	for (uint32_t i = 0; i < image->log_lines; i++)
+		if (image->log[i].number > last)
+			last = image->log[i].number;
+	return last;
+}
+
+void image_log(struct image *image, int64_t time_ns, uint32_t level, const char *text, size_t len)
+{
+	struct ows_log_entry entry = {.time_ns = time_ns, .level = level};
+
+	if (!image->log_lines)
+		return;
+	entry.number = last_line(image) + 1;
+	memcpy(entry.text, text, len < OWS_LINE ? len : OWS_LINE - 1);
+	write_entry(&image->log[entry.number % image->log_lines], &entry, sizeof(entry));
+}
+
+void image_carry_log(struct image *image, const struct image *before)
+{
+	if (image->log_lines != before->log_lines)
+		return;
+	for (uint32_t i = 0; i < image->log_lines; i++)
+		write_entry(&image->log[i], &before->log[i], sizeof(before->log[i]));
 }
 
 /* Enter an entry into a journal, whose head is a word of the header. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The entries of the image that change as a whole, writer's side: origins, givers, shelves, and the
- * journals of alarms and of commands. Sequence and check words are set here. No system calls. One
- * thread.
+ * The entries of the image that change as a whole, writer's side: origins, givers, shelves,
+ * devices, the log, and the journals of alarms and of commands. Sequence and check words are set
+ * here. No system calls. One thread.
  */
 #ifndef SHM_ENTRIES_H
 #define SHM_ENTRIES_H
@@ -15,6 +15,14 @@ void image_origin(struct image *image, uint32_t record, const struct ows_origin_
 void image_giver(struct image *image, uint32_t place, const struct ows_giver_entry *entry);
 /* The shelved alarm of a place below OWS_SHELVES. */
 void image_shelf(struct image *image, uint32_t place, const struct ows_shelf_entry *entry);
+
+/* The device of a place, but for its id and family, which stay. */
+void image_device(struct image *image, uint32_t place, const struct ows_device_entry *entry);
+
+/* A line of the log, cut to the room for it; the number is set here, after that of the last. */
+void image_log(struct image *image, int64_t time_ns, uint32_t level, const char *text, size_t len);
+/* Continue the log of the previous image in this one, with its numbers. */
+void image_carry_log(struct image *image, const struct image *before);
 
 /*
  * Enter an alarm into its journal; the number is set here. Returns it, with which

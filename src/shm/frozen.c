@@ -119,6 +119,26 @@ AT(ows_shelf_entry, who, 24, 80);
 AT(ows_shelf_entry, why, 104, 64);
 AT(ows_shelf_entry, check, 180, 4);
 
+AT(ows_device_entry, seq, 0, 4);
+AT(ows_device_entry, id_off, 4, 4);
+AT(ows_device_entry, family_off, 8, 4);
+AT(ows_device_entry, target, 12, 4);
+AT(ows_device_entry, answers, 16, 8);
+AT(ows_device_entry, errors, 24, 8);
+AT(ows_device_entry, retries, 32, 8);
+AT(ows_device_entry, wire_us, 40, 8);
+AT(ows_device_entry, ok_ns, 48, 8);
+AT(ows_device_entry, power, 56, 4);
+AT(ows_device_entry, identity, 64, 48);
+AT(ows_device_entry, check, 124, 4);
+
+AT(ows_log_entry, seq, 0, 4);
+AT(ows_log_entry, number, 4, 4);
+AT(ows_log_entry, time_ns, 8, 8);
+AT(ows_log_entry, level, 16, 4);
+AT(ows_log_entry, text, 20, 256);
+AT(ows_log_entry, check, 276, 4);
+
 AT(ows_journal_entry, seq, 0, 4);
 AT(ows_journal_entry, record, 4, 4);
 AT(ows_journal_entry, occurred_ns, 8, 8);
@@ -241,5 +261,5 @@ _Static_assert(OWS_AREA_RECORDS == 1 && OWS_AREA_INFOS == 2 && OWS_AREA_NAMES ==
                        OWS_AREA_TARGETS == 4 && OWS_AREA_COUNTERS == 5 && OWS_AREA_POOL == 6 &&
                        OWS_AREA_TEXTS == 7 && OWS_AREA_ORIGINS == 8 && OWS_AREA_GIVERS == 9 &&
                        OWS_AREA_SHELVES == 10 && OWS_AREA_ALARMS == 11 && OWS_AREA_COMMANDS == 12 &&
-                       OWS_AREA_CHANGES == 13,
+                       OWS_AREA_CHANGES == 13 && OWS_AREA_DEVICES == 14 && OWS_AREA_LOG == 15,
                "published");

@@ -108,6 +108,9 @@ static void find_areas(const struct image_plan *plan, struct image_areas *a)
 	                                               OWS_JOURNAL, 0},
 				[OWS_AREA_CHANGES] = {sizeof(struct ows_change_entry),
 	                                              changes_of(records), 0},
+				[OWS_AREA_DEVICES] = {sizeof(struct ows_device_entry),
+	                                              plan->device_count, 0},
+				[OWS_AREA_LOG] = {sizeof(struct ows_log_entry), plan->log_lines, 0},
 			},
 		.end = align64(sizeof(struct ows_image_header) +
 	                       (OWS_AREAS - 1) * sizeof(struct ows_area_entry)),
@@ -190,6 +193,19 @@ static void sort_names(const char *base, struct ows_name_entry *names, uint32_t 
 	}
 }
 
+/*
+ * Areas that came later are left out of the directory while they are empty: such an image is that
+ * of the first owsd of this major version, byte for byte.
+ */
+static uint32_t area_count(const struct image_areas *a)
+{
+	uint32_t count = OWS_AREAS - 1;
+
+	while (count > OWS_AREA_CHANGES && a->of[count].count == 0)
+		count--;
+	return count;
+}
+
 static void fill_header(const struct image_plan *plan, const struct image_areas *a,
                         struct ows_image_header *h)
 {
@@ -203,7 +219,7 @@ static void fill_header(const struct image_plan *plan, const struct image_areas 
 		.pid = plan->pid,
 		.start_id = plan->start_id,
 		.area_off = sizeof(*h),
-		.area_count = OWS_AREAS - 1,
+		.area_count = area_count(a),
 		.start_ns = plan->start_ns,
 		.start_wall_ns = plan->start_wall_ns,
 		.period_ns = plan->period_ns,
@@ -227,13 +243,17 @@ static void point_into(const struct image_plan *plan, const struct image_areas *
 		.alarms = (void *)(base + a->of[OWS_AREA_ALARMS].off),
 		.commands = (void *)(base + a->of[OWS_AREA_COMMANDS].off),
 		.changes = (void *)(base + a->of[OWS_AREA_CHANGES].off),
+		.devices = (void *)(base + a->of[OWS_AREA_DEVICES].off),
+		.log = (void *)(base + a->of[OWS_AREA_LOG].off),
 		.record_count = plan->signal_count + 1,
 		.target_count = plan->target_count,
 		.counter_count = plan->counter_count,
 		.change_count = (uint32_t)a->of[OWS_AREA_CHANGES].count,
+		.device_count = plan->device_count,
+		.log_lines = plan->log_lines,
 		.base = base,
 	};
-	for (unsigned kind = 1; kind < OWS_AREAS; kind++)
+	for (unsigned kind = 1; kind <= area_count(a); kind++)
 		image->areas[kind - 1] = (struct ows_area_entry){
 			.kind = kind,
 			.off = (uint32_t)a->of[kind].off,
@@ -256,7 +276,8 @@ static void fill_info(const struct image_signal *s, char *base, uint64_t *pool,
 		.init_value = s->init_value,
 		.safe_value = s->safe_value,
 		.flags = (s->has_init ? OWS_INFO_INIT : 0u) | (s->has_safe ? OWS_INFO_SAFE : 0u) |
-	                 (s->starts_last ? OWS_INFO_LAST : 0u) | (scaled ? OWS_INFO_SCALED : 0u),
+	                 (s->starts_last ? OWS_INFO_LAST : 0u) | (scaled ? OWS_INFO_SCALED : 0u) |
+	                 (s->confirm ? OWS_INFO_CONFIRM : 0u),
 		.decimals = meta->decimals,
 		.scale = meta->scale,
 		.offset = meta->offset,
@@ -323,6 +344,13 @@ void image_build(const struct image_plan *plan, void *memory, struct image *imag
 		copy_name(image->counters[i].name, sizeof(image->counters[i].name),
 		          plan->counters[i].name);
 		image->counters[i].target = plan->counters[i].target;
+	}
+	for (uint32_t i = 0; i < plan->device_count; i++) {
+		const struct ows_info_entry *info = &image->infos[plan->devices[i] + 1];
+
+		image->devices[i].id_off = info->device_off;
+		image->devices[i].family_off = info->family_off;
+		image->devices[i].target = UINT32_MAX;
 	}
 }
 

@@ -33,7 +33,8 @@ struct image_signal {
 	int64_t stale_after_ns;
 	bool has_init, has_safe;
 	int64_t init_value, safe_value;
-	bool starts_last;              /* Start "last" */
+	bool starts_last; /* Start "last" */
+	bool confirm;
 	const struct image_meta *meta; /* NULL: image_no_meta */
 };
 struct image_counter {
@@ -48,6 +49,9 @@ struct image_plan {
 	const uint32_t *groups; /* of the targets; NULL: each is a wire of its own */
 	const struct image_counter *counters;
 	uint32_t counter_count;
+	const uint32_t *devices; /* of each device its first signal, an index of signals */
+	uint32_t device_count;
+	uint32_t log_lines;
 	const char *served; /* the target that reaches the served protocol; NULL: none */
 	uint32_t generation, start_id;
 	int32_t pid;
@@ -68,7 +72,9 @@ struct image {
 	struct ows_shelf_entry *shelves;             /* OWS_SHELVES */
 	struct ows_journal_entry *alarms, *commands; /* OWS_JOURNAL each: the journals */
 	struct ows_change_entry *changes;
-	uint32_t record_count, target_count, counter_count, change_count;
+	struct ows_device_entry *devices;
+	struct ows_log_entry *log;
+	uint32_t record_count, target_count, counter_count, change_count, device_count, log_lines;
 	char *base;
 };
 

@@ -13,8 +13,8 @@
  *
  * History
  *   2.0  a directory of areas; metadata, raw values, origins of commands, changes, shelved alarms,
- *        a journal of commands; commands in a memory for each giver. 1.x had two segments in
- *        /dev/shm
+ *        a journal of commands; commands in a memory for each giver; devices; the log. 1.x had
+ *        two segments in /dev/shm
  */
 #ifndef OWS_LAYOUT_H
 #define OWS_LAYOUT_H
@@ -149,6 +149,7 @@ struct ows_info_entry { /* 192 bytes */
 #define OWS_INFO_SAFE   0x02
 #define OWS_INFO_LAST   0x04 /* Start "last" */
 #define OWS_INFO_SCALED 0x08 /* Scale, Offset or Points: _Raw differs */
+#define OWS_INFO_CONFIRM 0x10 /* Confirm: ask a person once more before a set */
 
 /* Names of all records, sorted by bytes (memcmp, shorter first). */
 struct ows_name_entry { /* 8 bytes */
@@ -184,10 +185,10 @@ struct ows_who { /* 80 bytes */
 };
 
 /*
- * Entries that change as a whole: origins, givers, shelves, journals. Writer: seq + 1 (odd);
- * release fence; the rest; seq + 1 (release). Reader: copy as long as seq is odd or changed; 64
- * times at most. An owsd that was killed leaves at most one entry odd for good. check: ows_check()
- * of the words between seq and check.
+ * Entries that change as a whole: origins, givers, shelves, journals, devices, log. Writer: seq + 1
+ * (odd); release fence; the rest; seq + 1 (release). Reader: copy as long as seq is odd or changed;
+ * 64 times at most. An owsd that was killed leaves at most one entry odd for good. check:
+ * ows_check() of the words between seq and check.
  */
 
 /* Origin of the command that is in force; entry i belongs to record i. */
@@ -227,6 +228,39 @@ struct ows_shelf_entry { /* 184 bytes */
 	struct ows_who who;
 	char why[OWS_TEXT];
 	uint32_t spare[3];
+	uint32_t check;
+};
+
+/*
+ * A device that signals name by its ROM id, in the order of these; and what owsd counted of the
+ * requests for its signals.
+ */
+#define OWS_IDENTITY 48 /* NUL-terminated, filled up with NUL */
+struct ows_device_entry { /* 128 bytes */
+	uint32_t seq;
+	uint32_t id_off;     /* in the pool, as in the configuration; constant */
+	uint32_t family_off; /* the kind that its family code names; 0 none; constant */
+	uint32_t target;     /* which answered last, index; 0xffffffff: none yet */
+	uint64_t answers;    /* good and bad */
+	uint64_t errors;     /* requests that failed, those without an answer too */
+	uint64_t retries;    /* of the bus, after errors that it made good or not */
+	uint64_t wire_us;    /* what its requests took of the wire, as far as the bus knows */
+	int64_t ok_ns;       /* last good answer; 0: none */
+	uint32_t power;      /* enum ows_power (ows.h) */
+	uint32_t spare;
+	char identity[OWS_IDENTITY]; /* which chip it is by its behaviour; "": not known */
+	uint32_t spare2[3];
+	uint32_t check;
+};
+
+/* A line of owsd's log: number n, from 1 at owsd's start, is at place n % count. */
+#define OWS_LINE 256 /* NUL-terminated, filled up with NUL */
+struct ows_log_entry { /* 280 bytes */
+	uint32_t seq;
+	uint32_t number; /* 0: the entry is free */
+	int64_t time_ns; /* CLOCK_BOOTTIME */
+	uint32_t level;  /* of syslog(3): 3 error, 4 warning, 5 notice, 6 info, 7 debug; 8 trace */
+	char text[OWS_LINE];
 	uint32_t check;
 };
 
@@ -291,6 +325,8 @@ enum ows_area {
 	OWS_AREA_ALARMS = 11,   /* journal of alarms */
 	OWS_AREA_COMMANDS = 12, /* journal of commands */
 	OWS_AREA_CHANGES = 13,
+	OWS_AREA_DEVICES = 14,
+	OWS_AREA_LOG = 15,
 	OWS_AREAS /* one more than the last */
 };
 
@@ -395,6 +431,11 @@ struct ows_giver_header { /* 256 bytes */
  * shrinking, growing and further seals), the bell (an eventfd) and the news (the end of a pipe that
  * is read). After a reload owsd sends another welcome, with the memory of the new generation alone.
  * The connection lasts as long as the giver.
+ *
+ * A hello with OWS_HELLO_RELOAD makes no giver: it asks owsd to load its configuration again, which
+ * root, owsd's user and the group owsd-config may. owsd answers with one welcome of size 0, without
+ * descriptors, when it serves the configuration (err 0; its generation) or has refused it; in the
+ * same message the reason follows in words, OWS_WHY bytes at most, without NUL. Then owsd hangs up.
  */
 struct ows_hello { /* 128 bytes */
 	uint32_t magic;
@@ -406,6 +447,7 @@ struct ows_hello { /* 128 bytes */
 	uint32_t spare[16];
 };
 #define OWS_HELLO_COMMAND 0x01 /* it wants to command; else only to hear of news */
+#define OWS_HELLO_RELOAD  0x02 /* it asks for a reload, and for nothing else */
 
 struct ows_welcome { /* 64 bytes */
 	uint32_t magic;
@@ -413,11 +455,12 @@ struct ows_welcome { /* 64 bytes */
 	int32_t err;         /* 0, -EACCES: may not command, -ENOSPC: too many, -EPROTO: major */
 	uint32_t generation, start_id;
 	uint32_t serial;
-	uint32_t size;       /* of the memory */
+	uint32_t size;       /* of the memory; 0: the answer to a program that asked for a reload */
 	uint32_t spare0;
 	uint8_t token[16];   /* secret: who has it comes back as this giver */
 	uint32_t spare[4];
 };
+#define OWS_WHY 240
 
 /* Check words: mixes n words; a reader without memory fences verifies what it copied by it. */
 static inline uint32_t ows_check(const uint32_t *word, size_t n)
@@ -465,6 +508,8 @@ OWS_STATIC_ASSERT(sizeof(struct ows_who) == 80);
 OWS_STATIC_ASSERT(sizeof(struct ows_origin_entry) == 104);
 OWS_STATIC_ASSERT(sizeof(struct ows_giver_entry) == 120);
 OWS_STATIC_ASSERT(sizeof(struct ows_shelf_entry) == 184);
+OWS_STATIC_ASSERT(sizeof(struct ows_device_entry) == 128);
+OWS_STATIC_ASSERT(sizeof(struct ows_log_entry) == 280);
 OWS_STATIC_ASSERT(sizeof(struct ows_journal_entry) == 200);
 OWS_STATIC_ASSERT(sizeof(struct ows_change_entry) == 8);
 OWS_STATIC_ASSERT(sizeof(struct ows_area_entry) == 16);

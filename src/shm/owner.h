@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Who may own a segment that owsd uses. Blocking: reads /etc/passwd and /etc/group; one thread. */
+/* Who may own a segment that owsd uses. Blocking: reads /etc/passwd and /etc/group. */
 #ifndef SHM_OWNER_H
 #define SHM_OWNER_H
 
@@ -16,5 +16,7 @@ const char *owner_name(uid_t uid, char name[OWNER_NAME]);
 /* The ids of a user and a group, false if there is none of that name. */
 bool owner_user(const char *name, uid_t *uid);
 bool owner_group(const char *name, gid_t *gid);
+/* Is the user in that group, by its own entry or by that of the group? */
+bool owner_in_group(uid_t uid, gid_t gid);
 
 #endif

@@ -15,7 +15,7 @@
 /* The instance of a file's name, before the last dot. False: no file of an owsd. */
 static bool instance_of(const char *file, char name[SEGMENT_NAME_MAX + 1])
 {
-	static const char *const kinds[] = {".image", ".force", ".control", ".lock"};
+	static const char *const kinds[] = {".image", ".force", ".control", ".sock", ".lock"};
 	const char *end = strrchr(file, '.');
 	bool ours = false;
 
@@ -88,7 +88,8 @@ void remains_free(struct remains *remains)
 
 /* A start that was killed leaves .new files; owsctl leaves the alarms that its user has seen. */
 static const char *const others[] = {
-	"image", "command", "force", "control", "image.new", "command.new", "force.new", "seen",
+	"image",     "command",     "force",     "control", "sock",
+	"image.new", "command.new", "force.new", "seen",
 };
 #define OTHERS (sizeof(others) / sizeof(others[0]))
 

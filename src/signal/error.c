@@ -26,6 +26,8 @@ static const struct {
          "IO input reads it; IO output without Readable writes it"},
 	{EBADRQC, "SetAlarm is not defined, or has no '='", "write SetAlarm \"property=value\""},
 	{EUCLEAN, "it is still set after 0 was written", ""},
+	{ENXIO, "not found, and a bridge chip of the target does not answer",
+         "look at its supply, SDA, SCL"},
 	{EPERM, "no permission",
          "a read-only server, or ControlAllow, refuses the write; a file of the kernel needs root or "
          "a udev rule"},

@@ -29,6 +29,7 @@ struct line {
 	uint32_t turn;
 	uint8_t level;
 	uint8_t len;
+	int64_t time_ns;
 	char text[LINE_BYTES + 1];
 };
 
@@ -38,6 +39,8 @@ struct log {
 	uint32_t dropped;
 	uint32_t tail;     /* the reader's alone */
 	uint32_t reported; /* drops already reported, the reader's alone */
+	log_see *see;      /* and these two */
+	void *see_ctx;
 	enum log_level level;
 	struct line lines[LINES];
 };
@@ -66,6 +69,14 @@ void log_destroy(struct log *log)
 enum log_level log_level(const struct log *log)
 {
 	return log->level;
+}
+
+static int64_t clock_ns(clockid_t clock)
+{
+	struct timespec t;
+
+	clock_gettime(clock, &t);
+	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
 }
 
 static struct line *claim_line(struct log *log, uint32_t *turn)
@@ -130,6 +141,7 @@ void log_put(struct log *log, enum log_level level, const char *format, ...)
 		__atomic_fetch_add(&log->dropped, 1, __ATOMIC_RELAXED);
 		return;
 	}
+	line->time_ns = clock_ns(CLOCK_BOOTTIME);
 	line->level = (uint8_t)level;
 	line->len = (uint8_t)len;
 	memcpy(line->text, text, len);
@@ -225,6 +237,12 @@ static bool has_lines(const struct log *log)
 	return __atomic_load_n(&line->turn, __ATOMIC_ACQUIRE) == turn + 1;
 }
 
+void log_show(struct log *log, log_see *see, void *ctx)
+{
+	log->see = see;
+	log->see_ctx = ctx;
+}
+
 int log_drain(struct log *log, int fd, int prefix)
 {
 	int count = 0;
@@ -244,6 +262,9 @@ int log_drain(struct log *log, int fd, int prefix)
 			return count;
 		if (err) /* a full disk or no reader: report_lost() logs the loss later */
 			__atomic_fetch_add(&log->dropped, 1, __ATOMIC_RELAXED);
+		if (log->see)
+			log->see(log->see_ctx, line->time_ns, (enum log_level)line->level,
+			         line->text, line->len);
 		__atomic_store_n(&line->turn, turn + LINES, __ATOMIC_RELEASE);
 		log->tail++;
 		count++;
@@ -254,10 +275,7 @@ int log_drain(struct log *log, int fd, int prefix)
 
 static int64_t clock_ms(void)
 {
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (int64_t)t.tv_sec * 1000 + t.tv_nsec / NS_PER_MS;
+	return clock_ns(CLOCK_MONOTONIC) / NS_PER_MS;
 }
 
 void log_finish(struct log *log, int fd, int prefix)

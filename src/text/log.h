@@ -9,6 +9,7 @@
 #ifndef TEXT_LOG_H
 #define TEXT_LOG_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 enum log_level { /* syslog's numbers */
@@ -60,6 +61,13 @@ uint64_t log_rate(struct log_rate *rate, int64_t now_ns);
 #define LOG_OTHERS 64
 const char *log_others(uint64_t n, char text[LOG_OTHERS]);
 
+/*
+ * Show each line that log_drain() takes to see, too; text has len bytes and no NUL. time_ns is
+ * CLOCK_BOOTTIME. NULL: no more. Supervisor only.
+ */
+typedef void log_see(void *ctx, int64_t time_ns, enum log_level level, const char *text,
+                     size_t len);
+void log_show(struct log *log, log_see *see, void *ctx);
 /*
  * Supervisor only: write the lines to fd (with "<4>" levels if prefix) as long as fd takes them
  * without blocking; the other lines stay in the ring. Returns how many were written.

@@ -17,6 +17,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/bus/backends.h"
 #include "hal/bus/bus.h"
 #include "tests/bench/aid.h"
 #include "tests/bench/walk.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The engine's cost of one request, from due to published, and of a step when nothing is due, for
- * tables of different length, with 1 to 16 targets.
+ * tables of different length, with 1 to 64 targets.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 
 #define REQUESTS 200000
 #define ROUNDS 7
-#define TARGETS 16
+#define TARGETS 64
 
 static struct bus_req *pending[TARGETS];
 
@@ -65,7 +65,7 @@ static double one_step_ns(unsigned signals, unsigned targets, bool quiet)
 	struct config_item *items = calloc(signals, sizeof(*items));
 	struct image_signal *rows = calloc(signals, sizeof(*rows));
 	char(*text)[64] = calloc(signals, sizeof(*text));
-	struct image_counter counters[512];
+	struct image_counter counters[2048];
 	const char *names[TARGETS];
 	struct config config = {.file = "bench",
 	                        .targets = target,
@@ -93,8 +93,11 @@ static double one_step_ns(unsigned signals, unsigned targets, bool quiet)
 	for (unsigned i = 0; i < targets; i++) {
 		names[i] = "bench";
 		target[i] = (struct config_target){.text = "bench"};
-		port[i] = (struct engine_port){
-			.target = "bench", .depth = 1, .ctx = &pending[i], .submit = submit};
+		port[i] = (struct engine_port){.target = "bench",
+		                               .depth = 1,
+		                               .ctx = &pending[i],
+		                               .group = i,
+		                               .submit = submit};
 		pending[i] = NULL;
 	}
 	for (unsigned i = 0; i < signals; i++) {
@@ -158,8 +161,10 @@ int main(void)
 	measure("10000", 10000, 1, false);
 	measure("targets.8", 1000, 8, false);
 	measure("targets.16", 1000, 16, false);
+	measure("targets.64", 1000, 64, false);
 	measure("quiet.10", 10, 1, true);
 	measure("quiet.10000", 10000, 1, true);
 	measure("quiet.targets.16", 1000, 16, true);
+	measure("quiet.targets.64", 1000, 64, true);
 	return 0;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How owsd grows: 10 to 10 000 signals; 1 000 of them with 1 to 16 targets, as many as owsd takes,
- * and with 100 programs that may command. For each: the time until the image is there, what a
+ * How owsd grows: 10 to 10 000 signals; 1 000 of them with 1 to 64 targets, as many as owsd takes,
+ * and with 1 and 100 programs that may command. For each: the time until the image is there, what a
  * reading costs while each signal is read once in three seconds, how long a reload takes, its
  * memory, and what it costs when nothing is due. The targets are an owserver of the bench's own,
  * which answers at once. All on one CPU: what it costs to wake a thread on another one depends on
@@ -24,7 +24,7 @@
 #include "src/libows/ows.h"
 #include "tests/bench/aid.h"
 
-#define TARGETS 16
+#define TARGETS 64
 #define CONSUMERS 100
 #define APART 3         /* seconds from reading to reading */
 #define PERIODS_A_S 10  /* Period 0.1 */
@@ -39,8 +39,10 @@ struct size {
 };
 
 static const struct size sizes[] = {
-	{"signals.10", 10, 1, 0},        {"signals.100", 100, 1, 0}, {"signals.1000", 1000, 1, 0},
-	{"signals.10000", 10000, 1, 0},  {"targets.8", 1000, 8, 0},  {"targets.16", 1000, 16, 0},
+	{"signals.10", 10, 1, 0},        {"signals.100", 100, 1, 0},
+	{"signals.1000", 1000, 1, 0},    {"signals.10000", 10000, 1, 0},
+	{"targets.8", 1000, 8, 0},       {"targets.16", 1000, 16, 0},
+	{"targets.64", 1000, 64, 0},     {"consumers.1", 1000, 1, 1},
 	{"consumers.100", 1000, 1, 100},
 };
 

@@ -13,6 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/bus/backends.h"
 #include "hal/bus/bus.h"
 #include "tests/bench/aid.h"
 

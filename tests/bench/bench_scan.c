@@ -8,10 +8,6 @@
  * minute. The figure is the mean time between two answers of the thermometer for which that is
  * longest. Each answer is of a conversion that began after the request.
  *
- * Double: the experimental option DoubleBuffer, with chips of the times and the spread of genuine
- * ones, at temperatures that change; after the trials of all chips, eight minutes. There each
- * answer is of a conversion that ended after the request.
- *
  * The limit is what the protocol cannot avoid, by the times that the data sheets call typical:
  *   reset      1184 us = tRSTL 600 + tRSTH 584   DS2482-100 rev. 19-4930, DS2482-800 19-4932
  *   time slot  69.3 us = tSLOT                    the same
@@ -24,6 +20,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "hal/bus/backends.h"
 #include "hal/bus/bus.h"
 #include "tests/bench/aid.h"
 
@@ -37,11 +34,11 @@
 #define MOST 100
 #define SCANS 8
 #define STEADY_NS (60 * S)
-#define TRIALS_NS (480 * S)
 #define ENGINE_NS (MS / 10)
+#define START_NS (1000 * S)
 
-/* Temperatures that stay, or chips that take four fifths of the longest time, or genuine ones. */
-enum kind { PLAIN, QUICK, DOUBLE };
+/* Temperatures that stay, or chips that take four fifths of the longest time. */
+enum kind { PLAIN, QUICK };
 struct place {
 	struct bus_env env;
 	struct bus *bus;
@@ -86,7 +83,7 @@ static void place_answer(void *ctx, const struct bus_answer *answer)
 	p->failures += answer->err != 0;
 	if (!p->steady)
 		return;
-	int64_t least = p->kind == DOUBLE ? 0 : p->kind == QUICK ? QUICKEST_NS : SHORTEST_NS;
+	int64_t least = p->kind == QUICK ? QUICKEST_NS : SHORTEST_NS;
 	p->failures += answer->measured_ns < p->asked[answer->id] + least;
 	if (!p->first[answer->id])
 		p->first[answer->id] = p->now;
@@ -131,10 +128,8 @@ static void describe(FILE *f, unsigned thermometers, unsigned channels, unsigned
 		fprintf(f, "DS18B20 28.%08X%04X as t%u ", (i + 1) * 2654435761u, i, i);
 		if (kind == PLAIN)
 			fprintf(f, "temperature %u\n", i % 60);
-		else if (kind == QUICK)
-			fprintf(f, "speed 80 temperature ramp %u 120 600s\n", i % 60);
 		else
-			fprintf(f, "spread 1 temperature ramp %u 120 900s\n", i % 60);
+			fprintf(f, "speed 80 temperature ramp %u 120 600s\n", i % 60);
 	}
 }
 
@@ -146,7 +141,7 @@ static void begin(struct place *p, unsigned thermometers, unsigned channels, uns
 	FILE *f;
 
 	memset(p, 0, sizeof(*p));
-	p->now = 1000 * S;
+	p->now = START_NS;
 	p->channels = channels;
 	p->thermometers = thermometers;
 	p->env = (struct bus_env){.ctx = p,
@@ -168,7 +163,6 @@ static void begin(struct place *p, unsigned thermometers, unsigned channels, uns
 		exit(1);
 	}
 	unlink(p->file);
-	run(p, 1, p->now + 60 * S);
 }
 
 static uint64_t counter(struct place *p, const char *name)
@@ -214,10 +208,31 @@ static double scan(struct place *p)
 	return (double)(p->now - begun);
 }
 
-/* Each thermometer again as soon as it was answered; the time before is not judged. */
-static double steady(struct place *p, int64_t before)
+/* From the opening of the bus to the last answer of all that are asked for as soon as it is up. */
+static void measure_first(unsigned thermometers, unsigned channels)
 {
-	int64_t judged = p->now + before, end = judged + STEADY_NS;
+	static struct place p;
+	char line[64], wires[16];
+
+	begin(&p, thermometers, channels, 1, 400, "any", PLAIN);
+	int64_t begun = p.now;
+	while (!p.up && p.now < begun + 60 * S) {
+		int64_t next = bus_step(p.bus, p.now);
+
+		p.now = next > p.now ? next : p.now;
+	}
+	(void)scan(&p);
+	snprintf(wires, sizeof(wires), "on%u", channels);
+	snprintf(line, sizeof(line), "scan.%u%s.400kHz.first", thermometers,
+	         channels > 1 ? wires : "");
+	bench_line(line, (double)(p.now - begun) / 1e9, "s");
+	bus_destroy(p.bus);
+}
+
+/* Each thermometer again as soon as it was answered. */
+static double steady(struct place *p)
+{
+	int64_t end = p->now + STEADY_NS;
 	double longest = 0;
 
 	p->steady = true;
@@ -225,12 +240,6 @@ static double steady(struct place *p, int64_t before)
 		p->again[i] = p->now;
 	while (p->now < end) {
 		int64_t next = end;
-
-		if (p->now < judged) {
-			memset(p->first, 0, sizeof(p->first));
-			memset(p->renewed, 0, sizeof(p->renewed));
-			p->failures = 0;
-		}
 
 		for (unsigned i = 0; i < p->thermometers; i++) {
 			if (p->again[i] && p->again[i] <= p->now) {
@@ -257,27 +266,6 @@ static double steady(struct place *p, int64_t before)
 		exit(1);
 	}
 	return longest;
-}
-
-static void option(struct place *p, const char *key)
-{
-	char why[200] = "";
-
-	if (bus_option(p->bus, key, "on", why, sizeof(why)))
-		exit(1);
-}
-
-static void measure_double(unsigned thermometers)
-{
-	static struct place p;
-	char line[64];
-
-	begin(&p, thermometers, 1, 1, 400, "any", DOUBLE);
-	option(&p, "DoubleBuffer");
-	scan(&p);
-	snprintf(line, sizeof(line), "scan.%u.400kHz.double.steady", thermometers);
-	bench_line(line, steady(&p, TRIALS_NS) / 1e9, "s");
-	bus_destroy(p.bus);
 }
 
 static double limit(const struct place *p)
@@ -318,6 +306,7 @@ static void measure(unsigned thermometers, unsigned channels, unsigned chips, in
 	char name[40], line[64], wires[16];
 
 	begin(&p, thermometers, channels, chips, khz, combine, quick ? QUICK : PLAIN);
+	run(&p, 1, p.now + 60 * S);
 	scan(&p); /* supply and resolution are asked for once */
 	/* Each minute one scan asks one by one, and learns what the chips show. */
 	for (int i = 0; i < 3 && quick; i++) {
@@ -338,7 +327,7 @@ static void measure(unsigned thermometers, unsigned channels, unsigned chips, in
 	if (cost)
 		scratchpad(&p, name);
 	snprintf(line, sizeof(line), "scan.%s.steady", name);
-	bench_line(line, steady(&p, 0) / 1e9, "s");
+	bench_line(line, steady(&p) / 1e9, "s");
 	bus_destroy(p.bus);
 }
 
@@ -358,7 +347,9 @@ int main(void)
 				        speeds[s], combines[c], nets[i].thermometers == 50, false);
 	for (unsigned i = 0; i < 6; i++)
 		measure(nets[i].thermometers, 1, 1, 400, "any", false, true);
-	for (unsigned i = 2; i < 6; i++)
-		measure_double(nets[i].thermometers);
+	measure_first(1, 1);
+	measure_first(10, 1);
+	measure_first(50, 1);
+	measure_first(80, 8);
 	return 0;
 }

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "hal/bus/backends.h"
 #include "tests/endurance/station_private.h"
 
 #define ANSWER_NS (100 * 1000)

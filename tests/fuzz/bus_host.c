@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/bus/backends.h"
 #include "tests/fuzz/bus_host.h"
 
 /* A bus works at most so often without that time passes. */

@@ -35,6 +35,8 @@ FUZZ_WRAP_owsctl   := getpid clock_gettime time exit ows_now segment_wait nanosl
                       ows_close board_look replace_file replace_lock rio_read bus_create
 FUZZ_WORDS_owsctl  := src/owsctl/owsctl.c src/signal/attribute.c src/config/options.c src/owsctl/condition.c
 FUZZ_WORDS_values  := src/signal/attribute.c src/signal/value.c hal/owfs/path.c src/config/listen.c
+FUZZ_WORDS_web     := src/web/head.c src/web/body.c src/web/origin.c src/web/command.c
+FUZZ_WORDS_writer  := src/writer/order.c
 FUZZ_WORDS_rio     := src/config/options.c src/config/targets.c src/signal/value.c hal/native/native.c
 FUZZ_WORDS_serve   := src/serve/node.c src/serve/directory.c src/signal/attribute.c hal/owfs/path.c
 

@@ -137,12 +137,15 @@ static void reload(void)
 	struct control_turn turn;
 	unsigned place = 0, prepared = 0;
 
+	control_asked(room);
+	control_take_askers(room);
 	control_prepare(room, &config, make_layout());
 	turn_engine(OWS_GIVERS + 1);
 	for (; control_prepared(room, &place, &turn); prepared++)
 		TEST_ASSERT_EQUAL_PTR(&layouts[generation % 2], turn.memory.layout);
 	TEST_ASSERT_TRUE(prepared <= inside);
 	control_reloaded(room);
+	control_answer(room, 0, "");
 }
 
 static void check_room(void)
@@ -214,7 +217,8 @@ static void say_hello(int to, uint8_t how)
 {
 	struct ows_hello hello = {.magic = OWS_HELLO_MAGIC,
 	                          .major = OWS_LAYOUT_MAJOR,
-	                          .flags = how & 1,
+	                          .flags = (how & 1 ? OWS_HELLO_COMMAND : 0) |
+	                                   (how & 4 ? OWS_HELLO_RELOAD : 0),
 	                          .name = "fuzz"};
 	const int fds[] = {to, room->epoll};
 
@@ -259,7 +263,7 @@ static void receive(int from, bool writes)
 		return;
 	TEST_ASSERT_EQUAL_HEX32(OWS_WELCOME_MAGIC, welcome.magic);
 	c = CMSG_FIRSTHDR(&message);
-	TEST_ASSERT_EQUAL_MESSAGE(welcome.err == 0, c != NULL, "descriptors");
+	TEST_ASSERT_EQUAL_MESSAGE(welcome.err == 0 && welcome.size, c != NULL, "descriptors");
 	if (!c)
 		return;
 	memcpy(fds, CMSG_DATA(c), c->cmsg_len - CMSG_LEN(0));

@@ -128,6 +128,7 @@ static void look_around(void)
 {
 	struct ows_target target;
 	struct ows_counter counter;
+	struct ows_device device;
 	struct ows_daemon daemon;
 	struct ows_commanded command;
 	struct ows_alarm alarm;
@@ -143,6 +144,15 @@ static void look_around(void)
 		ended(target.name);
 	for (int i = 0; i < 300 && ows_counter(h, i, &counter) == 0; i++)
 		ended(counter.name);
+	for (int i = 0; i < 300; i++) {
+		if (ows_device(h, i, &device) != 0)
+			continue;
+		ended(device.id), ended(device.family);
+		TEST_ASSERT_NOT_NULL(memchr(device.identity, '\0', sizeof(device.identity)));
+		TEST_ASSERT_TRUE(device.power <= OWS_POWER_EXTERNAL);
+		if (device.target >= 0)
+			TEST_ASSERT_EQUAL(0, ows_target(h, device.target, &target));
+	}
 	for (uint32_t i = 0; i < 4; i++)
 		if (ows_alarm(h, ows_alarm_count(h) - i, &alarm) == 0)
 			TEST_ASSERT_TRUE(alarm.signal >= 0 && alarm.signal < count);

@@ -108,6 +108,9 @@ static void serve(const char *text)
 	bus_host_ask(&host, BUS_READ, "/28.000000000001/temperature", true, NULL, 256, BUS_HOST_S);
 	bus_host_ask(&host, BUS_READ, "/29.000000000001/PIO.ALL", true, NULL, 256, BUS_HOST_S);
 	bus_host_ask(&host, BUS_DIR, "/alarm", true, NULL, 4096, BUS_HOST_S);
+	bus_host_ask(&host, BUS_DIR, "/simulator", true, NULL, 4096, BUS_HOST_S);
+	bus_host_ask(&host, BUS_WRITE, "/simulator/b", true, "1", 1, BUS_HOST_S);
+	bus_host_ask(&host, BUS_READ, "/simulator/b", true, NULL, 1, BUS_HOST_S);
 	bus_host_run(&host, 3 * BUS_HOST_S, true);
 	TEST_ASSERT_EQUAL_UINT_MESSAGE(0, host.lent, "a request was never answered");
 	bus_host_end(&host);

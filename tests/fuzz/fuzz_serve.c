@@ -83,7 +83,7 @@ static void join(struct other_side *side)
 	TEST_ASSERT_EQUAL_INT(0, socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, pair));
 	setsockopt(pair[1], SOL_SOCKET, SO_SNDBUF, &small, sizeof(small));
 	*side = (struct other_side){.fd = pair[0]};
-	client_open(serve, pair[1], false, &nobody);
+	client_open(serve, pair[1], &(struct listener){0}, &nobody);
 }
 
 /* What the server sends is frames, one behind the other. */
@@ -319,8 +319,11 @@ static void begin(void)
 	static struct config_target targets[] = {{.text = "null:"}, {.text = "late:"}};
 	static const struct config config = {
 		.targets = targets, .target_count = 2, .items = items, .item_count = HEAP_SIGNALS};
-	struct serve_setup setup = {
-		.config = &config, .instance = "OWS", .place = "/", .ring = no_ring};
+	struct serve_setup setup = {.config = &config,
+	                            .instance = "OWS",
+	                            .place = "/",
+	                            .directory = -1,
+	                            .ring = no_ring};
 	char why[128];
 
 	for (unsigned i = 0; i < HEAP_SIGNALS; i++)

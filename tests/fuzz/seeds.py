@@ -306,6 +306,9 @@ def scenario():
     put("scenario", "refusals", chip + "DS2413 3A.000000000001 as s\nDS2406 12.000000000001\n"
         "DS2405 05.000000000001\nat 0s refuse 0x18 each 3\nat 10ms every 2us corrupt s chance 0.5 seed 7\n"
         "at 1s remove adapter for 1s\nat 50ms refuse-data 0x18 for 1ms\n\0sleep 0x18\n")
+    put("scenario", "buttons", chip + "DS18B20 28.000000000001 as t\nbutton a unplug t\n"
+        "button b short 0x18\nbutton c-1 corrupt t each 2\nat 1s every 2s short 0x18 for 1s\n"
+        "\0end short 0x18\nplug t\n")
     demo = (HERE.parent.parent / "board" / "demo" / "house.sim").read_text()
     put("scenario", "house", demo[:3000].rpartition("\n")[0] + "\n")
     put("scenario", "full", chip + "DS2430A 14.000000000001 memory 31 aabb\n")
@@ -357,6 +360,32 @@ def values():
         put("values", f"{i:02}", bytes([i % 11]) + text.encode())
 
 
+def writer():
+    head, tag = b"owsd-config 1\n", b"base: 9f3a00c417d2e5b1\n"
+    put("writer", "replace", head + b"do: replace\n" + tag + b"for: anna\nlength: 11\n\nOwsDrv {\n}\n")
+    put("writer", "first", head + b"do:replace\nbase:\nlength:0\n\n")
+    put("writer", "restore", head + tag + b"do: restore\n\n")
+    put("writer", "half", head + b"do: replace\n" + tag)
+    put("writer", "long", head + b"for: " + b"x" * 1100)
+    put("writer", "bytes", head + b"for: \xc5\xbdan\xff\x00\n" + tag + b"do: restore\n\n")
+
+
+def web():
+    head = b"\0GET /api/events HTTP/1.1\r\nHost: localhost:8080\r\nLast-Event-ID: 1:2\r\n"
+    put("web", "get", head + b"\r\n")
+    put("web", "folded", head + b"X: a\r\n b\r\n\r\n")
+    post = b"\0POST /api/set HTTP/1.1\r\nHost: a\r\nX-Owsd: 1\r\nContent-Type: application/json\r\n"
+    put("web", "post", post + b"Content-Length: 2\r\n\r\n{}")
+    put("web", "twice", post + b"Content-Length: 2\r\nContent-Length: 2\r\n\r\n{}")
+    put("web", "chunked", post + b"Transfer-Encoding: chunked\r\n\r\n0\r\n\r\n")
+    put("web", "set", b'\1{"name":"pump","value":true}')
+    put("web", "alarm", b'\1 { "name" : "r\\u00e4\\ud83d\\ude00\\n", "do":"shelve", "seconds":-1.5e+3, "x":null}')
+    put("web", "same", b"\2localhost:8080\nhttp://localhost:8080\n")
+    put("web", "mdns", b"\2pi.local\nhttps://pi.local\n")
+    put("web", "six", b"\2[::1]:80\nhttp://[::1]:80\n")
+
+
 if __name__ == "__main__":
-    for target in (rio, owserver, serve, giver, control, image, w1, netlink, scenario, owsctl, values):
+    for target in (rio, owserver, serve, giver, control, image, w1, netlink, scenario, owsctl,
+                   values, web, writer):
         target()

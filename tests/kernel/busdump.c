@@ -20,6 +20,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "hal/bus/backends.h"
 #include "hal/bus/bus.h"
 #include "tests/kernel/lines.h"
 

@@ -3,7 +3,7 @@
 # SUITES picks from tests/kernel/guest; KERNEL_TIME bounds each guest, in seconds; OR_SKIP=1 counts
 # suites as skipped that cannot run for want of QEMU, the kernel's package or the peers.
 
-KERNEL_TIME ?= 600
+KERNEL_TIME ?= 1200
 RIG_FRONT   := $(B)/tests/kernel/vhci.o $(B)/tests/kernel/usbip.o $(B)/tests/kernel/tiny_usb.o \
                $(B)/tests/kernel/control.o
 RIG_OURS    := $(B)/kernel/simchip $(B)/kernel/owdump $(B)/kernel/busdump $(B)/kernel/owwalk $(PROGRAMS)

@@ -543,6 +543,7 @@ static void setup_news(void)
 	handles[0].join.news = ACCESS_NEWS;
 	memset(&control, 0, sizeof(control));
 	control.engine.memories[0] = givers[0];
+	control.engine.end = 1;
 	control.places[0].news = ACCESS_NEWS;
 	host.control = &control;
 }

@@ -25,14 +25,14 @@ as_user() { user=$1 && shift && setpriv --reuid "$user" --regid nogroup --init-g
 refused() { ! "$@"; }
 
 # The libraries first, so that what is compared is ours
-libraries=$(dpkg-deb -f owsd_*.deb Depends | tr ',' '\n' | sed -n 's/^ *\(lib[a-z0-9.+-]*\).*/\1/p' |
-	grep -v '^libows\|^libc6$' | tr '\n' ' ')
+libraries=$(for p in owsd_*.deb owsd-web_*.deb owsd-cockpit_*.deb; do dpkg-deb -f "$p" Depends; done |
+	tr ',' '\n' | sed -n 's/^ *\(lib[a-z0-9.+-]*\|cockpit-bridge\).*/\1/p' | grep -v '^libows\|^libc6$' | sort -u | tr '\n' ' ')
 does "what it needs is in the system's archive ($libraries)" \
 	sh -c "apt-get -q update && $apt install $libraries"
 everything >/tmp/before
 
 does 'the packages are installed' $apt install ./libows1_*.deb ./libows-dev_*.deb \
-	./python3-ows_*.deb ./owsd_*.deb
+	./python3-ows_*.deb ./owsd_*.deb ./owsd-web_*.deb ./owsd-cockpit_*.deb
 version=$(dpkg-query -W -f '${Version}' owsd)
 same 'their user is in the groups that it needs' 'gpio i2c owsd owsd-control' \
 	"$(id -nG owsd | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/ $//')"
@@ -52,6 +52,7 @@ does 'with values' within 90 owsctl get boiler
 same 'it runs as its user' owsd "$(ps -o user= -p "$(pid)" | tr -d ' ')"
 same 'who may look is a group' '640 owsd owsd' "$(mode /run/owsd/OWS.image)"
 same 'who may act is for owsd to decide' '666 owsd owsd' "$(mode /run/owsd/OWS.control)"
+does 'Cockpit has the page' sh -c 'cockpit-bridge --packages | grep -q "^owsd  *1-Wire "'
 member looker owsd
 member actor owsd,owsd-control
 member stranger ''
@@ -60,6 +61,14 @@ does 'but does not set' refused as_user looker owsctl set pump 1
 does 'a member of both sets' as_user actor owsctl set pump 1
 does 'others do not even read' refused as_user stranger owsctl get boiler
 does 'the output is there' within 90 reads pump 1
+same 'owsd-config has a user of its own, who may read' 'owsd owsd-config' \
+	"$(id -nG owsd-config | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/ $//')"
+does 'the page may not write the configuration' refused sh -c 'id -nG owsd-web | grep -q -w owsd-config'
+for u in service socket; do
+	does "its $u is there" test -e /usr/lib/systemd/system/owsd-config@.$u
+done
+does 'and nothing of it is enabled' refused sh -c 'find /etc/systemd/system | grep owsd-config'
+does 'its directory gets its user at the next start' test -e /usr/lib/tmpfiles.d/owsd-web.conf
 does 'Python reads it' python3 -c 'import ows
 with ows.Ows() as signals:
     assert signals.get("pump").value == 1 and signals.get("pump").good'
@@ -95,7 +104,7 @@ does 'a configuration that was deleted stays deleted' test ! -e /etc/owsd/OWS.ri
 cp /tmp/OWS.rio /etc/owsd/OWS.rio
 cp /tmp/OWS.rio /etc/owsd/HOUSE.rio
 service owsd restart
-does 'all are purged' $apt purge owsd libows1 libows-dev python3-ows
+does 'all are purged' $apt purge owsd owsd-web owsd-cockpit libows1 libows-dev python3-ows
 does 'nothing runs' refused pgrep -x owsd
 same 'no segment stays' '' "$(find /run/owsd /var/lib/owsd 2>/dev/null)"
 does 'what its owner has made does' test -e /etc/owsd/HOUSE.rio

@@ -53,6 +53,7 @@ import owsdtest
 
 NOP, READ, WRITE, DIR, PRESENT, DIRALL = 1, 2, 3, 4, 6, 7
 PERSIST = 0x4
+SERVERMESSAGE, TOKEN = 0x10000, 16
 KEEP_ALIVE = struct.pack(">6i", 0, -1, 0, 0, 0, 0)
 MODES = {"normal", "refuse", "fragments", "slow", "late", "alive", "hang", "kill", "stall", "close",
          "flood", "reset", "close_after", "garbage", "trailing", "negative", "huge", "version", "long",
@@ -171,10 +172,12 @@ class Peer:
             s.close()
 
     def _one(self, s, stop):
-        _, length, kind, flags, size, _ = struct.unpack(">6i", _exactly(s, 24))
+        version, length, kind, flags, size, _ = struct.unpack(">6i", _exactly(s, 24))
         if not 0 <= length <= 100050:
             return False
         path, _, data = _exactly(s, length).partition(b"\0")
+        if version & SERVERMESSAGE:  # the servers that it came through
+            _exactly(s, TOKEN * (version & 0xffff))
         request = Request(kind, path.decode("latin-1"), data, flags, size)
         mode = self._mode
         greeting = kind == NOP or request.path.startswith(("/bus.", "/settings/timeout/"))

@@ -22,7 +22,7 @@ import owsdtest
 INSIDE = "OWSD_TEST_IN_NAMESPACE"
 # Whose contents nobody misses while an empty file system is over one of them
 ROOMS = ("/tmp", "/mnt", "/media", "/srv", "/var/tmp")
-OWSD, CONTROL = 64711, 64712
+OWSD, CONTROL, CONFIG = 64711, 64712, 64713
 # name: user id, groups; the first group is his own
 USERS = {
     "owsd": (OWSD, (OWSD, CONTROL)),
@@ -30,6 +30,8 @@ USERS = {
     "plc": (64722, (64722, OWSD, CONTROL)),
     "setter": (64723, (64723, CONTROL)),
     "stranger": (64724, (64724,)),
+    "editor": (64725, (64725, CONFIG)),
+    "owsd-config": (64726, (CONFIG, OWSD)),
 }
 
 
@@ -54,7 +56,7 @@ def _free_room():
 
 
 def _write_users(folder):
-    groups = {"owsd": OWSD, "owsd-control": CONTROL}
+    groups = {"owsd": OWSD, "owsd-control": CONTROL, "owsd-config": CONFIG}
     for kind, lines in (("passwd", [f"{name}:x:{uid}:{g[0]}::/nonexistent:/bin/sh"
                                     for name, (uid, g) in USERS.items()]),
                         ("group", [f"{name}:x:{gid}:" for name, gid in groups.items()])):

@@ -3,6 +3,7 @@
 
     sandbox.calls()            names that SystemCallFilter= of the unit leaves
     sandbox.command()          the program, with arguments, that runs another under those rules
+    sandbox.command(unit)      the same under the rules of another unit
 """
 
 import re
@@ -12,13 +13,14 @@ import subprocess
 import faulty
 import owsdtest
 
-UNIT = owsdtest.SOURCE / "board/systemd/owsd@.service"
+UNITS = owsdtest.SOURCE / "board/systemd"
+UNIT = UNITS / "owsd@.service"
 SANDBOX = owsdtest.BUILD / "system" / "sandbox"
 
 
-def settings(key):
+def settings(key, unit=UNIT):
     """All values of a key of the unit, in order."""
-    return re.findall(rf"^{key}=(.*)$", UNIT.read_text(), re.M)
+    return re.findall(rf"^{key}=(.*)$", unit.read_text(), re.M)
 
 
 def _group(name):
@@ -39,12 +41,12 @@ def _expand(words):
     return names
 
 
-def calls():
+def calls(unit=UNIT):
     """As systemd reads it: the first line is the list, each later one adds to it or, with ~, takes
     away."""
     faulty.not_sanitized("the sanitizer's own calls are not the program's")
     allowed = set()
-    for line in settings("SystemCallFilter"):
+    for line in settings("SystemCallFilter", unit):
         names = _expand(line.lstrip("~").split())
         allowed = allowed - names if line.startswith("~") else allowed | names
     assert allowed, "the unit has no SystemCallFilter"
@@ -71,11 +73,11 @@ def _ranges(numbers_in_order):
     return ",".join(f"{first}-{last}" for first, last in ranges)
 
 
-def command():
+def command(unit=UNIT):
     owsdtest.need(SANDBOX)
     number = numbers()
     # what starts a program is systemd's, before the rules hold
-    wanted = sorted(int(number[name]) for name in calls() | {"execve"} if name in number)
+    wanted = sorted(int(number[name]) for name in calls(unit) | {"execve"} if name in number)
     families = [int(getattr(socket, name))
-                for line in settings("RestrictAddressFamilies") for name in line.split()]
+                for line in settings("RestrictAddressFamilies", unit) for name in line.split()]
     return [str(SANDBOX), _ranges(wanted), _ranges(sorted(families))]

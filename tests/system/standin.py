@@ -29,8 +29,8 @@ HARDWARE = re.compile(r"^(i2c:(auto|/dev/i2c-\d(:0x[0-9a-f]{2}(\.\d)?)?)|w1(:.*)
 OURS = set(re.findall(r"^Package: (\S+)$", (SOURCE / "board/debian/control").read_text(), re.M))
 DEBIAN = {"owserver", "ow-shell", "libgpiod-dev", "i2c-tools", "linuxcnc-uspace",
           "linuxcnc-uspace-dev"} | OURS
-UNIT = r"(owsd(-firstboot|@\w+)?|owserver(\.socket|\.service)?)"
-GROUPS = "(i2c|gpio|owsd|owsd-control)"
+UNIT = r"(owsd(-firstboot|@\w+|-(web|config)@\w+(\.socket|\.service)?)?|owserver(\.socket|\.service)?)"
+GROUPS = "(i2c|gpio|owsd|owsd-control|owsd-config)"
 
 # What may be said to programs that are not run: the whole of their arguments
 LOOKED_AT = {
@@ -40,6 +40,7 @@ LOOKED_AT = {
     "journalctl": [rf"-u {UNIT}( -f| -e)?"],
     "systemd-analyze": [rf"security {UNIT}"],
     "adduser": [rf"\w+ {GROUPS}"],
+    "usermod": [rf"-aG {GROUPS} [\w-]+"],
     "raspi-config": ["", "nonint do_i2c 0"],
     "modprobe": ["i2c-dev", "ds2482", "w1-gpio", "w1_therm"],
     "udevadm": ["trigger", "control --reload"],
@@ -100,6 +101,30 @@ def owsd(arguments):
     if "-n" not in words:
         words += ["-n", NAME + "d"]
     sys.exit(until_ready([str(BUILD / "owsd"), *words], owsdtest.PATIENCE))
+
+
+def face(program):
+    """It waits for an owsd that is not there."""
+    def run(arguments):
+        import owsdtest
+        words = [place(a) for a in arguments]
+        if "-n" not in words:
+            words += ["-n", NAME + "r"]
+        sys.exit(until_ready([str(BUILD / program), *words], owsdtest.PATIENCE))
+    return run
+
+
+def owsd_web(arguments):
+    """It waits for an owsd that is not there."""
+    import owsdtest
+    words = [place(a) for a in arguments]
+    for at in (i + 1 for i, w in enumerate(words) if w == "-l"):
+        words[at] = f"127.0.0.1:{owsdtest.free_port()}"
+    if "-c" not in words:
+        words += ["-c", str(STAGE / "root/etc/owsd/OWS.rio")]
+    if "-n" not in words:
+        words += ["-n", NAME + "w"]
+    sys.exit(until_ready([str(BUILD / "owsd-web"), *words], owsdtest.PATIENCE))
 
 
 def until_ready(command, seconds):
@@ -202,7 +227,7 @@ def man(arguments):
         fail(f"no page {page}")
 
 
-RUN = {"owsctl": owsctl, "owsd": owsd, "sudo": sudo, "make": make, "apt": apt, "apt-get": apt,
+RUN = {"owsctl": owsctl, "owsd": owsd, "owsd-config": face("owsd-config"), "owsd-web": owsd_web, "sudo": sudo, "make": make, "apt": apt, "apt-get": apt,
        "pkg-config": pkg_config, "jq": jq, "man": man, "cc": compiler("gcc"), "c++": compiler("g++")}
 SHELL = ["owdir", "owread", "owwrite"]
 OWFS = ["owserver", "owfs", "owhttpd"]

@@ -39,21 +39,30 @@ def some_output():
     for who in ("", ".owserver"):
         lines += [f"devices.list{who} {100 if who else 40} ms", f"devices.list.directories{who} 300 directories",
                   f"devices.list.properties{who} 2000 properties", f"devices.list.each{who} 130 us"]
+    lines += ["page.idle.rss 4400 KiB", "page.idle.rss.own 700 KiB", "page.owhttpd.rss 5500 KiB",
+              "page.owhttpd.rss.own 1200 KiB", "page.paint.first 90 ms", "page.paint.paint 150 ms",
+              "page.paint.again 210 ms", "page.streams.0.cpu 0.20 %", "page.streams.0.rss 26000 KiB"]
+    for name in ("streams.1", "streams.100", "quiet.100"):
+        lines += [f"page.{name}.cpu 1.50 %", f"page.{name}.rss 26112 KiB", f"page.{name}.bytes 45.00 kB/s"]
+    for name in ("streams.1.age", "streams.100.age", "quiet.100.age", "screen", "screen.quiet"):
+        lines += [f"page.{name}.p{p} {p + (30 if name == 'screen' else 0)} ms" for p in (50, 95, 99)]
+    for name in ("signals", "owhttpd.uncached", "owhttpd.cached"):
+        lines += [f"page.{name}.bytes 2494 bytes", f"page.{name}.p50 4.50 ms", f"page.{name}.rate 200 1/s"]
     for n in ("futex", 1, 8, 100):
         lines += [f"bells.{n} 8.00 us", f"bells.{n}.one_cpu 6.00 us"]
     for n in (10, 1000, 10000):
         lines += [f"changes.{n} 500.00 ns", f"changes.scan.{n} {15 * n} ns"]
     lines += [f"engine_step.{n} {n / 10 + 300:.0f} ns" for n in (10, 100, 1000, 10000)]
-    lines += [f"engine_step.{n} 400 ns" for n in ("targets.8", "targets.16", "quiet.10", "quiet.10000",
-                                                  "quiet.targets.16")]
+    lines += [f"engine_step.{n} 400 ns" for n in ("targets.8", "targets.16", "targets.64", "quiet.10",
+                                                  "quiet.10000", "quiet.targets.16", "quiet.targets.64")]
     for of in ("signals.10", "signals.100", "signals.1000", "signals.10000", "targets.8", "targets.16",
-               "consumers.100"):
+               "targets.64", "consumers.1", "consumers.100"):
         lines += [f"growth.{of}.{what} 8.00 ms" for what in ("start", "reload", "memory", "reading", "wakes",
                                                              "quiet", "quiet_wakes")]
     for name in ("shm_get.single", "shm_get.clock", "shm_get.owserver_read", "set_to_wire",
                  "input_latency.alarm4", "input_latency.alarm10", "input_latency.cyclic"):
         lines += [f"{name}.p{p} {10 + p:.2f} ns" for p in POINTS]
-    lines += [f"scan.{n}.400kHz.double.steady 0.80 s" for n in (5, 10, 20, 50)]
+    lines += [f"scan.{n}.400kHz.first 1.25 s" for n in (1, 10, 50, "80on8")]
     for net in (1, 2, 5, 10, 20, 50, 100, "80on8", "80on4chips", "80on8chips"):
         for case in ("400kHz", "400kHz.one-read", "100kHz", "100kHz.one-read"):
             lines += [f"scan.{net}.{case}.seconds 1.20 s", f"scan.{net}.{case}.over_limit 1.05 ratio",
@@ -126,6 +135,9 @@ def test_saved_figures_become_tables_and_the_prose_is_kept(scene):
     assert "| `rss`: resident with 100 signals | 3 024 KiB | 3 024 KiB | 3 024 KiB | owserver 5 152 KiB |  | 2 MiB: **missed** |" in after
     assert "10 ns, or three loads from that cache: met" in after
     assert "| 1 000, 16 targets | 8.0 ms | 8.0 ms | 8.0 KiB | 8.0 us | 8.0 | 8.0 % | 8.0 /s |" in after
+    assert "| 1 000, 64 targets | 8.0 ms |" in after
+    assert "| 80 on 8 channels | 1.25 s |" in after
+    assert "| oldest value | 50.0 s | 50.0 s |" in after
     assert "1.2 times that by eventfd" in after
     assert "| 1, pinned | 4 000/s | 50.0, 99.0 us | 1 000/s | 50.0, 99.0 us | 4.0 | 73 000/s |" in after
     assert "| owsd direct | 50 | 6.00 | 3000 | 10000 | 600 | 50 | 1.34 |" in after
@@ -133,6 +145,12 @@ def test_saved_figures_become_tables_and_the_prose_is_kept(scene):
     assert "| owserver, all | 600 | 3 000 |" in after
     assert "one in 7 of the properties. Both have read 1500 of them: owsd in 71.5 s," in after
     assert "A read of `memory` of family 04 ended owserver" in after
+    assert "| resident with 100 signals, nobody looks | 4 400 KiB | 5 MB: met |" in after
+    assert "have values | 150 ms | 200 ms: met |" in after
+    assert "| 100, 15 % | 1.50 % | 25.5 MiB | 45.0 kB/s | 50.0, 95.0, 99.0 ms |" in after
+    assert "| 15 % change each second | 80.0, 125, 129 ms | p95 100 ms and a frame: **missed** |" in after
+    assert "| one signal changes | 50.0, 95.0, 99.0 ms | p95 100 ms and a frame: met |" in after
+    assert "| owhttpd: one of 100 thermometers, uncached | 2 494 | 4.5 ms | 200/s |" in after
     assert "not quiet" not in after
     again, _, same = written(scene, page)
     assert again == 0 and same == after
@@ -142,7 +160,8 @@ def test_plots_are_small_and_are_for_light_and_dark(scene):
     status, said, _ = written(scene, saved(scene))
     assert status == 0, said
     files = sorted((scene.path / "docs/img").glob("*.svg"))
-    assert [f.name for f in files] == ["change.svg", "growth.svg", "latency.svg", "scan.svg"]
+    assert [f.name for f in files] == ["change.svg", "growth-users.svg", "growth.svg", "latency.svg",
+                                       "scan.svg"]
     for file in files:
         assert file.stat().st_size < 60000, file
         root = ET.parse(file).getroot()

@@ -278,8 +278,8 @@ def test_each_of_several_targets_is_checked(scene):
     done = scene.owsd_once("--check", "-c", path, "-t", "null:, auto", "-t", "far:4304")
     assert done.returncode == 0, done
     assert '"null:, localhost:4304 | i2c:auto | w1, far:4304"' in done.stdout, done.stdout
-    done = scene.owsd_once("--check", "-c", path, "-t", ",".join(f"h{i}" for i in range(17)))
-    assert done.returncode == 2 and "at most 16 targets" in done.stderr, done
+    done = scene.owsd_once("--check", "-c", path, "-t", ",".join(f"h{i}" for i in range(65)))
+    assert done.returncode == 2 and "at most 64 targets" in done.stderr, done
 
 
 def test_owserver_without_a_host_is_warned_of(scene):

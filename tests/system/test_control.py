@@ -112,6 +112,30 @@ def test_a_reload_takes_rights_away_and_gives_them(scene):
     assert said.wait() == 0 and said.log().strip() == "0 0", said.log()
 
 
+def test_a_reload_is_for_the_group_owsd_config_and_gives_no_other_right(scene):
+    daemon = daemon_of(scene)
+    name = daemon.name
+    good(scene, name)
+    for who in ("reader", "plc", "setter", "stranger"):
+        refused = ctl(scene, who, name, "reload")
+        assert refused.returncode == 1 and "no right to reload" in refused.stderr, (who, refused)
+    assert "reload" not in daemon.log(), daemon.log()
+    done = ctl(scene, "editor", name, "reload")
+    assert done.returncode == 0 and done.stdout + done.stderr == "", done
+    user = private.USERS["editor"][0]
+    until(lambda: f", user {user})" in daemon.log(), 20, daemon.log)
+    assert "reload: asked for by owsctl (process" in daemon.log(), daemon.log()
+    daemon.config.write_text("OwsDrv {\n  No such thing\n")
+    refused = ctl(scene, "editor", name, "reload")
+    assert refused.returncode == 1 and "owsd refuses the configuration" in refused.stderr, refused
+    assert f"{daemon.config}:2:" in refused.stderr, refused
+    # a hello for anything else is refused, though the door is open to him
+    for flags in (0, 1):
+        said = program(scene, "editor", name, f"print(hello(path, {flags})[1])")
+        assert said.wait() == 0 and said.log().strip() == "-13", said.log()
+    good(scene, name)
+
+
 def test_clients_of_the_served_protocol_keep_to_ControlAllow_and_are_named(scene):
     path, port = scene.path / "served.sock", owsdtest.free_port()
     os.chmod(scene.path, 0o777)

@@ -10,6 +10,7 @@ python       run
 rio, sim     read by owsd --check; by owsctl dir
 json         parsed
 conf         owfs.conf: keys that the genuine owserver knows
+nginx        directives and blocks that end; test_web.py has nginx itself run it
 udev         lines that board/udev has
 text         anything but commands
 
@@ -201,7 +202,8 @@ def compiled(stage, text, compiler, suffix, flags):
     output = stage.path / "snippet"
     library = [f"-L{owsdtest.BUILD}", "-lows"] if whole else ["-c"]
     done = stage.run([compiler, *flags, *WARN, "-D_GNU_SOURCE", f"-I{SOURCE}/src/libows",
-                      f"-I{SOURCE}", "-isystem", HERE / "docs", source, *library, "-o", output])
+                      f"-I{SOURCE}", "-isystem", HERE / "docs", source,
+                      *library, "-o", output])
     assert done.returncode == 0, done.stderr
     return output if whole else None
 
@@ -238,6 +240,12 @@ def do_sim(stage, text):
 
 def do_json(_stage, text):
     json.loads(text)
+
+
+def do_nginx(_stage, text):
+    assert text.count("{") == text.count("}"), text
+    loose = [line for line in text.split("\n") if line.strip() and line.rstrip()[-1] not in "{};"]
+    assert not loose, loose
 
 
 def do_conf(_stage, text):

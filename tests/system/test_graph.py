@@ -21,7 +21,7 @@ TABLES = r"bus_backends|\w+_bus|family_[0-9a-f]{2}|sim_families|sim_[a-z]+[0-9]\
     r"|sim_(hb|inferno)_\w+|sim_(lcd|iblss|example_slave)"
 # The words that owsd and its consumers have in common; it includes nothing
 PUBLIC = "src/libows/ows"
-# Headers whose functions stand in many files, by design: the consumers' one header, and the verbs
+# Headers whose functions stand in many files, by design: the consumers' headers, and the verbs
 # of owsctl, each in the file of its name
 MANY = {"src/libows/ows.h", "src/owsctl/verbs.h"}
 # Lists that are included where FAMILY or BACKEND is defined: no headers of their own

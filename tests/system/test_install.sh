@@ -18,8 +18,23 @@ for f in lib/libows.so lib/libows.so.1 lib/libows.a lib/pkgconfig/libows.pc incl
 	share/owsd/examples/openplc/owsd.cpp share/owsd/examples/linuxcnc/owsd_hal.c; do
 	[ -s "$root/opt/owsd/$f" ] || { echo "missing: $f"; exit 1; }
 done
+if [ -e "$OWSD_BUILD/owsd-web" ]; then
+	"$root/opt/owsd/sbin/owsd-web" -V | grep -q '^owsd-web '
+	[ ! -e "$OWSD_SOURCE/src/web/page/index.html" ] || [ -s "$root/opt/owsd/share/owsd/web/index.html" ]
+fi
 
-# Only ows_* is offered, by both libraries
+# Cockpit gets the same files; its own library stands in index.html alone
+page=$root/opt/owsd/share/cockpit/owsd
+python3 -c 'import json, sys; json.load(open(sys.argv[1]))' "$page/manifest.json"
+diff -r -q "$root/opt/owsd/share/owsd/web" "$page" >differences || true
+[ "$(wc -l <differences)" = 2 ] && grep -q 'index.html differ$' differences && grep -q ': manifest.json$' differences
+[ "$(diff "$OWSD_SOURCE/src/web/page/index.html" "$page/index.html" | grep -v '^[0-9]')" = '> <script src="../base1/cockpit.js"></script>' ]
+
+for face in "$OWSD_BUILD"/owsd-*; do
+	[ -x "$root/opt/owsd/sbin/${face##*/}" ] || { echo "missing: ${face##*/}"; exit 1; }
+done
+
+# Only ows_* is offered, in both forms
 nm -D --defined-only "$root/opt/owsd/lib/libows.so.1" | awk 'NF == 3 { sub(/@.*/, "", $3); print $3 }' >dynamic
 nm -g --defined-only "$root/opt/owsd/lib/libows.a" | awk 'NF == 3 { print $3 }' >static
 for list in dynamic static; do
@@ -78,6 +93,9 @@ for prefix in /usr/local /usr /opt /opt/owsd/ /; do
 	esac
 	on_copy install-service PREFIX=$prefix >said
 	for f in systemd/system/owsd.service sysusers.d/owsd.conf tmpfiles.d/owsd.conf \
+		systemd/system/owsd-web@.socket sysusers.d/owsd-web.conf \
+		systemd/system/owsd-config@.service systemd/system/owsd-config@.socket \
+		sysusers.d/owsd-config.conf tmpfiles.d/owsd-config.conf \
 		modules-load.d/owsd.conf udev/rules.d/60-owsd.rules; do
 		[ -s "$in/$f" ] || { echo "PREFIX=$prefix: missing: $in/$f"; exit 1; }
 	done
@@ -91,6 +109,7 @@ for prefix in /usr/local /usr /opt /opt/owsd/ /; do
 	if command -v systemd-sysusers >/dev/null; then
 		systemd-sysusers --root="$root" --cat-config | grep -q '^u owsd '
 		systemd-tmpfiles --root="$root" --cat-config | grep -q '^d /run/owsd 0755 owsd owsd'
+		systemd-tmpfiles --root="$root" --cat-config | grep -q '^d /etc/owsd 0755 owsd-config root'
 	fi
 	on_copy uninstall-service PREFIX=$prefix
 	rm "$root/etc/owsd/OWS.rio"

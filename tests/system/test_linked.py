@@ -46,6 +46,15 @@ def test_the_programs_link_libi2c_and_libgpiod(scene):
             assert bool(calls) == has, f"{program} links {name} and calls {calls}"
 
 
+def test_owsd_web_alone_links_a_library_for_the_network(scene):
+    if found()["libmicrohttpd"] == "no":
+        assert not (BUILD / "owsd-web").exists()
+        skip("there is no libmicrohttpd here: owsd-web is left out")
+    for program in ("owsd", "owsctl", "owsd-config", "owsd-web"):
+        has = any(name.startswith("libmicrohttpd.so.") for name in needed(BUILD / program))
+        assert has == (program == "owsd-web"), (program, needed(BUILD / program))
+
+
 def test_the_tables_of_the_chip_families_stand_in_read_only_memory(scene):
     """A pointer in a row would move the whole table to memory that each process has for itself."""
     tables = 0
@@ -58,7 +67,7 @@ def test_the_tables_of_the_chip_families_stand_in_read_only_memory(scene):
 
 def test_the_makefile_found_what_is_installed(scene):
     said = found()
-    for name, header in (("libi2c", "i2c/smbus.h"), ("libgpiod", "gpiod.h")):
+    for name, header in (("libi2c", "i2c/smbus.h"), ("libgpiod", "gpiod.h"), ("libmicrohttpd", "microhttpd.h")):
         if os.path.exists(f"/usr/include/{header}"):
             assert said[name] != "no", f"{header} is here; was {name.upper()}=0 given?"
     version = owsdtest.OWSD

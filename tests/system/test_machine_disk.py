@@ -13,6 +13,7 @@ import private
 from owsdtest import until
 
 PLACE = pathlib.Path("/dev/shm/owsd")
+OF_A_RUNNING_OWSD = ["control", "force", "image", "lock", "sock"]
 
 
 def fill(scene, folder):
@@ -72,7 +73,7 @@ def test_a_reload_that_the_file_system_has_no_room_for_changes_nothing(scene):
     daemon.signal(signal.SIGHUP)
     until(lambda: "all goes on as before" in daemon.log(), 10)
     owsdtest.logged(daemon, f"{PLACE} is full")
-    until(lambda: faulty.leftovers(daemon.name) == ["control", "force", "image", "lock"], 10, "nothing is left")
+    until(lambda: faulty.leftovers(daemon.name) == OF_A_RUNNING_OWSD, 10, "nothing is left")
     assert scene.owsctl(daemon, "set", "relays", "5").returncode == 0
     until(lambda: scene.get(daemon, "relays") == "5", 10, "outputs are written")
     room_is_good(scene, daemon)
@@ -102,7 +103,7 @@ def test_a_reload_whose_image_cannot_be_put_in_place_is_said_and_done_later(scen
     until(lambda: daemon.log().count("reload:") == 2, 10, "and the reload that waited is done")
     until(lambda: faulty.counters(scene, daemon)["unfinished_reload"] == 0, 10)
     owsdtest.logged(daemon, "the rest of the reload is done")
-    until(lambda: faulty.leftovers(daemon.name) == ["control", "force", "image", "lock"], 10, "nothing is left")
+    until(lambda: faulty.leftovers(daemon.name) == OF_A_RUNNING_OWSD, 10, "nothing is left")
     assert daemon.stop() == 0
 
 

@@ -262,7 +262,7 @@ def test_a_wrong_option_is_named_and_steers_no_terminal(scene):
                             (("-c",), "option without its argument: -c"),
                             (("house.rio",), "unexpected argument 'house.rio'"),
                             (("--root", "/"), "--root goes with --board"),
-                            (("-t", "null:") * 17, "-t null:: at most"),
+                            (("-t", "null:") * 65, "-t null:: at most"),
                             (("-t", ""), "-t: a target expected"),
                             (("-l", "4304") * 17, "-l 4304: at most")):
         done = scene.owsd_once(*words)

@@ -149,7 +149,7 @@ CHANGES = {
 SOME = {"CXX": r"examples/", "CXXFLAGS": r"examples/", "LDFLAGS": r"(?!.*\.o$)"}
 
 # They have some of the flags, and are made again for all of them
-WITHOUT_ALL = {"b/system/faults.so", "b/unit/unity.o"}
+WITHOUT_ALL = {"b/unit/unity.o"} | {f"b/system/{p.stem}.so" for p in (SOURCE / "tests/system/preload").glob("*.c")}
 
 
 def test_what_a_change_touches_is_made_again_and_nothing_else(scene):

@@ -8,8 +8,8 @@ unset MAKEFLAGS MFLAGS MAKELEVEL MAKEOVERRIDES
 mkdir tree bin
 tree=$PWD/tree
 (cd "$OWSD_SOURCE" && cp -r Makefile LICENSE ./*.md board "$tree" &&
-	find tests -name '*.mk' -exec cp --parents '{}' "$tree" ';')
-mkdir tree/src tree/hal tree/docs
+	find tests src \( -name '*.mk' -o -name LICENSE \) -exec cp --parents '{}' "$tree" ';')
+mkdir tree/hal tree/docs
 # Nothing is installed, and the clean system is this one that says what it was given
 printf '#!/bin/sh\n' >tree/board/install-deps
 cat >bin/mmdebstrap <<END

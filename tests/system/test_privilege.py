@@ -409,7 +409,7 @@ def test_owsd_has_no_right_and_gets_none(scene):
 def test_segments_that_no_group_gets_are_told(scene):
     """As a filter without these calls, or a user who is not in the group, would have it."""
     real = sandbox.calls
-    sandbox.calls = lambda: real() - {"fchown", "chown", "fchownat"}
+    sandbox.calls = lambda _unit: real() - {"fchown", "chown", "fchownat"}
     try:
         daemon = daemon_of(scene)
     finally:

@@ -97,6 +97,44 @@ def test_signals_that_stay_go_on_and_others_come_and_go(scene):
     until(lambda: get(scene, daemon, "room") == "21.5", 10, "room goes on")
 
 
+def test_owsctl_asks_for_a_reload_and_knows_when_it_is_done(scene):
+    daemon, target = start(scene)
+    daemon.config.write_text(rio(target, ROOM, CELLAR))
+    done = scene.owsctl(daemon, "reload")
+    assert done.returncode == 0 and done.stdout + done.stderr == "", done
+    assert scene.owsctl(daemon, "list", "cellar").returncode == 0, "it is there at once"
+    until(lambda: "reload: asked for by owsctl (process" in daemon.log(), 10, daemon.log)
+    until(lambda: get(scene, daemon, "cellar") == "12", 10, "the new one is read")
+    # many at once are answered by a reload each, or by one together
+    askers = [scene.start([owsdtest.OWSCTL, "-n", daemon.name, "reload"]) for _ in range(4)]
+    assert [asker.wait() for asker in askers] == [0] * 4, [asker.log() for asker in askers]
+
+
+def test_a_reload_that_is_refused_says_why_to_who_asked(scene):
+    daemon, target = start(scene)
+    daemon.config.write_text(rio(target, ROOM) + "Driver {\n")
+    refused = scene.owsctl(daemon, "reload")
+    assert refused.returncode == 1 and f"{daemon.config}:" in refused.stderr, refused
+    assert "goes on as before" in refused.stderr, refused
+    daemon.config.write_text(rio(target, ROOM, Listen=str(owsdtest.free_port())))
+    refused = scene.owsctl(daemon, "reload")
+    assert refused.returncode == 1 and "change by a restart only" in refused.stderr, refused
+    assert get(scene, daemon, "room") == "21.5"
+
+
+def test_a_reload_of_an_owsd_that_is_not_there_or_hangs_fails(scene):
+    daemon, _ = start(scene)
+    daemon.freeze()
+    refused = scene.owsctl(daemon, "reload", "-w", "0.2")
+    assert refused.returncode == 1 and "has not reloaded in time" in refused.stderr, refused
+    daemon.thaw()
+    daemon.kill()
+    refused = scene.owsctl(daemon, "reload")
+    assert refused.returncode == 1 and "is not running" in refused.stderr, refused
+    for words in (["-w", "soon"], ["now"]):
+        assert scene.owsctl(daemon, "reload", *words).returncode == 2
+
+
 def test_a_storm_of_reloads_is_bounded_and_inputs_arrive_in_it(scene):
     daemon, target = start(scene)
     begun, asked = time.monotonic(), 0

@@ -13,10 +13,18 @@ import shutil
 import signal
 import socket
 import time
+import urllib.request
 
 import owsdtest
 
 RUN = owsdtest.SOURCE / "board/demo/run"
+
+
+def asked(url, **command):
+    headers = {"X-Owsd": "1", "Content-Type": "application/json"} if command else {}
+    request = urllib.request.Request(url, json.dumps(command).encode() if command else None, headers)
+    with urllib.request.urlopen(request, timeout=20) as answer:
+        return answer.read().decode()
 
 
 class Terminal:
@@ -119,15 +127,16 @@ def shown(scene, *arguments, says=("ALL VALUES ARE SIMULATED",), row="living", *
     return terminal
 
 
-def nothing_in_memory(terminal):
+def nothing_is_left(terminal):
     assert not glob.glob(f"{owsdtest.place()}/{terminal.name}*")
+    assert not glob.glob(f"{owsdtest.BUILD}/*{terminal.name}*")
 
 
 def test_it_shows_values_and_ctrl_c_leaves_nothing_behind(scene):
     terminal = shown(scene)
     os.write(terminal.master, b"\x03")
     terminal.gone()
-    nothing_in_memory(terminal)
+    nothing_is_left(terminal)
 
 
 def test_the_commands_that_it_names_work_as_typed_and_are_named_again_at_its_end(scene):
@@ -142,7 +151,7 @@ def test_the_commands_that_it_names_work_as_typed_and_are_named_again_at_its_end
             assert len(commands) >= 2 and all(c.startswith(begins) for c in commands), commands
             for command in commands:
                 done = scene._run(["sh", "-c", f"cd {checkout} && {command}"], 30)
-                assert done.returncode == 0, (command, done)
+                assert done.returncode == 0, done
         finally:
             os.write(terminal.master, b"\x03")
             terminal.gone()
@@ -155,14 +164,14 @@ def test_sigterm_leaves_nothing_behind(scene):
     terminal = shown(scene)
     os.kill(terminal.pid, signal.SIGTERM)
     terminal.gone()
-    nothing_in_memory(terminal)
+    nothing_is_left(terminal)
 
 
 def test_a_closed_terminal_leaves_nothing_behind(scene):
     terminal = shown(scene)
     terminal.hang_up()
     terminal.gone()
-    nothing_in_memory(terminal)
+    nothing_is_left(terminal)
 
 
 def test_sigkill_leaves_no_process_behind(scene):
@@ -190,6 +199,26 @@ def test_it_needs_no_owserver_and_shows_good_values_marked_as_simulated(scene):
         terminal.gone()
 
 
+def test_its_page_shows_the_house_and_switches_the_light(scene):
+    owsdtest.need(owsdtest.BUILD / "owsd-web")
+    terminal = shown(scene)
+    try:
+        page = re.search(r"Open it in a browser: (http://127\.0\.0\.1:\d+/)", terminal.text).group(1)
+        assert "<title>" in asked(page)
+
+        def value(name):
+            return {s["name"]: s for s in json.loads(asked(page + "api/signals"))["signals"]}[name]["value"]
+        scene.until(lambda: isinstance(value("boiler"), float), 20, "the boiler is good")
+        scene.until(lambda: value("light") is False, 20, "the light is off")
+        assert json.loads(asked(page + "api/set", name="light", value=True))["ok"]
+        scene.until(lambda: value("light") is True, 20, "the light is on")
+        scene.until(lambda: value("lamp") is True, 20, "the lamp follows")
+    finally:
+        os.write(terminal.master, b"\x03")
+        terminal.gone()
+    nothing_is_left(terminal)
+
+
 def test_the_house_has_a_limit_alarm_and_a_device_alarm_that_come_and_go(scene):
     demo = owsdtest.SOURCE / "board/demo"
     wire = (demo / "house.sim").read_text().replace("sine 60 6 2m", "sine 60 6 16s")
@@ -210,13 +239,65 @@ def test_the_house_has_a_limit_alarm_and_a_device_alarm_that_come_and_go(scene):
     assert scene.owsctl(daemon, "alarms", "ack", "boiler").returncode == 0
 
 
+def test_each_fault_on_demand_is_seen_and_survived(scene):
+    terminal = shown(scene)
+    try:
+        def qualities(*names):
+            listed = scene.owsctl(terminal.name, "--json", "list", *names).stdout
+            return {row["name"]: row["quality"] for row in json.loads(listed or "[]")}
+
+        def are(quality, *names):
+            return set(qualities(*names).values()) == {quality}
+        others = ("bedroom", "outside", "door", "lamp")
+        all_names = ("living", "cellar", *others)
+        scene.until(lambda: are("good", *all_names), 30, lambda: qualities(*all_names))
+        for fault, quality, names in (("fault_unplug", "device absent", ["living"]),
+                                      ("fault_noise", "device error", ["cellar"]),
+                                      ("fault_short", "wire short", all_names)):
+            assert scene.owsctl(terminal.name, "set", "-w", "20", fault, "on").returncode == 0
+            scene.until(lambda q=quality, n=names: are(q, *n), 60,
+                        lambda f=fault, n=names: f"{f}: {qualities(*n)}")
+            if names != all_names:
+                assert are("good", *others), (fault, qualities(*others))
+            assert scene.get(terminal.name, fault) == "1"
+            assert scene.owsctl(terminal.name, "set", "-w", "20", fault, "off").returncode == 0
+            scene.until(lambda: are("good", *all_names), 60,
+                        lambda f=fault: f"after {f}: {qualities(*all_names)}")
+    finally:
+        os.write(terminal.master, b"\x03")
+        terminal.gone()
+    nothing_is_left(terminal)
+
+
+def test_its_page_edits_a_copy_of_the_configuration(scene):
+    for program in ("owsd-web", "owsd-config"):
+        owsdtest.need(owsdtest.BUILD / program)
+    demo = owsdtest.SOURCE / "board/demo/house.rio"
+    before = demo.read_bytes()
+    terminal = shown(scene)
+    try:
+        page = re.search(r"Open it in a browser: (http://127\.0\.0\.1:\d+/)", terminal.text).group(1)
+        config = json.loads(asked(page + "api/config"))
+        assert config["configurable"] and "house.sim" in config["text"], config
+        text = config["text"].replace('"Living room"', '"The best room"')
+        saved = json.loads(asked(page + "api/config/save", text=text, base=config["tag"]))
+        assert saved["reload"] == "done", saved
+        scene.until(lambda: "The best room" in asked(page + "api/signals"), 20, "the reload")
+        scene.until(lambda: scene.get(terminal.name, "living"), 20, "living is good again")
+        assert demo.read_bytes() == before, "the demonstration's own file is as it was"
+    finally:
+        os.write(terminal.master, b"\x03")
+        terminal.gone()
+    nothing_is_left(terminal)
+
+
 def test_an_owserver_with_simulated_devices_is_started_and_ended(scene):
     if shutil.which("owserver") is None:
         owsdtest.skip("owserver is not installed")
     terminal = shown(scene, "owserver", row="valve")
     os.write(terminal.master, b"\x03")
     terminal.gone()
-    nothing_in_memory(terminal)
+    nothing_is_left(terminal)
 
 
 def test_an_owserver_that_was_there_is_read_and_left_alone(scene):
@@ -227,7 +308,7 @@ def test_an_owserver_that_was_there_is_read_and_left_alone(scene):
     assert {row["io"] for row in listed} == {"input"}, listed
     os.write(terminal.master, b"\x03")
     terminal.gone()
-    nothing_in_memory(terminal)
+    nothing_is_left(terminal)
     assert server.answers()
 
 
@@ -255,7 +336,7 @@ def test_an_instance_that_is_another_s_is_left_alone(scene):
             terminal.gone()
         assert os.waitstatus_to_exitcode(terminal.status) == 1
         assert sorted(glob.glob(f"{owsdtest.place()}/{daemon.name}*")) == sorted(before)
-        assert len(before) == 5 and "was removed" not in daemon.log(), before
+        assert len(before) == 6 and "was removed" not in daemon.log(), before
     finally:
         os.unlink(near)
 

@@ -9,7 +9,7 @@ import threading
 import faulty
 import owsdtest
 from owsdtest import until
-from test_serve import NOP, READ, Link, ask, house, served, stat
+from test_serve import NOP, READ, WRITE, Link, ask, house, served, stat
 
 def header(payload=0, kind=NOP, flags=0x10A, size=0, version=0):
     return struct.pack(">6i", version, payload, kind, flags, size, 0)
@@ -52,6 +52,30 @@ def test_a_link_that_takes_the_place_of_the_socket_gives_no_other_file_to_the_gr
     assert faulty.happened(scene)
     status = victim.stat()
     assert status.st_mode & 0o777 == 0o400, oct(status.st_mode)
+
+
+def test_of_a_client_that_cannot_be_watched_nothing_is_written(scene):
+    """Before, its first request was done, and the connection was closed without an answer."""
+    full = scene.path / "full"
+    daemon, port = served(scene, faulty.house(scene), env=faulty.env(scene, watch=full))
+    until(lambda: scene.get(daemon, "room") == "21.5", 20)
+    low, pins = "/uncached/28.A0B1C2000001/templow", "/uncached/29.A0B1C2000004/PIO.BYTE"
+    before = [ask(port, READ, path)[4] for path in (low, pins)]
+    full.touch()
+    for path, data in ((low, b"33"), (pins, b"5"), ("/signals/relays", b"6")):
+        with Link(port) as link:
+            link.send(WRITE, path, data)
+            try:
+                raise AssertionError(f"{path}: {link.answer()}")
+            except (EOFError, ConnectionError):
+                pass
+    assert faulty.happened(scene)
+    full.unlink()
+    until(lambda: stat(scene, daemon, "served_refused_errors") == 3, 10, "it is counted")
+    owsdtest.logged(daemon, "a client of the owserver protocol was refused: No space left")
+    assert [ask(port, READ, path)[4] for path in (low, pins)] == before
+    assert ask(port, WRITE, low, b"33")[0] == 0
+    assert ask(port, READ, low)[4].strip() == b"33"
 
 
 def test_a_busy_table_starves_no_client_and_clients_starve_no_table(scene):

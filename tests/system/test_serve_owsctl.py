@@ -49,6 +49,20 @@ def test_without_target_owsctl_asks_the_instance_on_its_socket(scene):
         assert what in ctl(scene, daemon, *words, status=1).stderr
 
 
+def test_the_first_list_of_a_chip_has_what_it_has_though_another_shares_its_family_code(scene):
+    wire = "i2c speed 400\nchip DS2482-100 0x18\nTMP1826 26.0000000000E1 temperature 21.5\n" \
+        "DS2438 26.0000000000E2\n"
+    path = scene.path / "owsd.sock"
+    daemon = scene.owsd(owsdtest.rio(f"sim:{scene.file('two.sim', wire)}", [],
+                                     ListenSocket=str(path)))
+    thermometer, battery = "/26.0000000000E1", "/26.0000000000E2"
+    owsdtest.until(lambda: {thermometer, battery} <= set(scene.owsctl(daemon, "dir").stdout.split()),
+                   20, "both are there")
+    first, other = lines(scene, daemon, "dir", thermometer), lines(scene, daemon, "dir", battery)
+    assert thermometer + "/temphigh" in first and thermometer + "/VDD" not in first, first
+    assert battery + "/VDD" in other and battery + "/temphigh" not in other, other
+
+
 def test_a_value_that_does_not_fit_is_refused_and_nothing_is_written(scene):
     pair, switch = "/12.765A2E63339F", "/3A.C99A66320DB7"
     wrong = ("-1", "256", "300", "3.7", "12abc", "1,1", "0x10", "")
@@ -120,13 +134,21 @@ def test_targets_that_an_instance_cannot_tell_whole_make_no_configuration(scene)
     assert THERMOMETER in ctl(scene, daemon, "scan").stdout
 
 
-def test_who_serves_nobody_says_so_when_asked_by_name(scene):
+def test_who_serves_nobody_is_read_at_its_own_socket_and_takes_no_write(scene):
     target = f"sim:{scene.file('served.sim', served.WIRE)}"
     daemon = scene.owsd(owsdtest.rio(target, served.SIGNALS))
-    done = ctl(scene, daemon, "dir", status=1)
-    assert "ListenSocket" in done.stderr, done
+    door = owsdtest.place() / f"{daemon.name}.sock"
+    owsdtest.until(lambda: THERMOMETER in scene.owsctl(daemon, "dir").stdout, 20, "the bus is up")
+    assert THERMOMETER in ctl(scene, daemon, "scan").stdout
+    done = ctl(scene, daemon, "write", SWITCH + "/PIO.BYTE", "9", status=1)
+    assert "read-only" in done.stderr and "ListenSocket" in done.stderr, done
+    before = ctl(scene, daemon, "read", SWITCH + "/PIO.BYTE").stdout
+    forced = scene.owsctl(None, "-t", f"owserver:{door}", "write", SWITCH + "/PIO.BYTE", "9")
+    assert forced.returncode == 1, forced
+    assert ctl(scene, daemon, "read", "/uncached" + SWITCH + "/PIO.BYTE").stdout == before
+    assert door.stat().st_mode & 0o007 == 0
     assert json.loads(ctl(scene, daemon, "--json", "stats").stdout)["served"] is None
-    assert daemon.stop() == 0
+    assert daemon.stop() == 0 and not door.exists()
     assert "not running" in ctl(scene, daemon, "dir", status=1).stderr
     assert "no owsd of the name" in scene.owsctl(scene.name(), "dir").stderr
 

@@ -3,6 +3,9 @@
 """Writes at an offset: owsd on a simulated wire, and owsd with a genuine owserver as its target,
 beside the genuine owserver."""
 
+import json
+import time
+
 import owsdtest
 import served
 from owsdtest import until
@@ -74,6 +77,24 @@ def test_a_part_of_what_is_no_bytes_is_refused_and_changes_nothing(scene):
         assert server.frame(READ, "/uncached" + path).data == before.data, path
         if not path.startswith("/signals"):
             assert through.frame(WRITE, path, data=data, offset=offset).ret == -22, path
+
+
+def test_a_client_that_hangs_up_ends_its_reading_of_a_large_memory(scene):
+    """All of it takes 79 seconds; other requests are served meanwhile and prove nothing."""
+    wire = scene.file("large.sim", "chip DS2482-100 0x18\nDS1977 37.000000000001\n")
+    server = served.owsd_of(scene, f"sim:{wire}", items=[])
+    until(lambda: server.has(["/37.000000000001"]), 20, "the chip is there")
+
+    def errors():
+        stats = json.loads(scene.owsctl(server.program, "--json", "stats").stdout)
+        return sum(c["value"] for c in stats["counters"] if c["name"] == "guest_errors")
+
+    before = errors()
+    with server.connect() as client:
+        client.sendall(served.request(READ, "/uncached/37.000000000001/memory", size=32704))
+        time.sleep(1)
+        assert errors() == before
+    until(lambda: errors() == before + 1, 20, "the reading has ended")
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@
 import itertools
 import json
 import os
+import signal
 import socket
 import sys
 import threading
@@ -85,6 +86,24 @@ def test_two_wires_are_one_table(scene):
             return set()
     until(lambda: {"owsd-engine", "owsd-bus0", "owsd-bus1"} <= threads(), 5, threads)
     assert scene.owsctl(daemon, "stats").stdout.count("search_passes of sim:") == 2
+
+
+def test_sixty_four_wires_are_one_table(scene):
+    wires = [wire(scene, f"{n}.sim", f"DS18B20 28.A0B1C20001{n:02X} temperature {n}") for n in range(64)]
+    paths = {f"t{n}": f"/28.A0B1C20001{n:02X}/temperature" for n in range(64)}
+    daemon = scene.owsd(table(", ".join(wires), paths))
+
+    def others():
+        shown = listed(scene, daemon)
+        return {name: s for n, (name, s) in enumerate(shown.items())
+                if not s["good"] or s["value"] != n or s["target"] != wires[n]}
+    # rarely asked, as each time costs a machine with sanitizers more than owsd needs
+    until(lambda: not others(), 120, lambda: str(others())[:2000], step=0.5)
+    assert [t["wire"] for t in targets(scene, daemon).values()] == list(range(64))
+    assert daemon.log().count("absent there") <= 64, "each device's last move is news, no other"
+    daemon.signal(signal.SIGHUP)
+    until(lambda: "64 targets, 64 of them" in daemon.log(), 20, "all stay")
+    until(lambda: not others(), 30, lambda: str(others())[:2000], step=0.5)
 
 
 def test_targets_of_the_command_line_are_wires_with_ways(scene):

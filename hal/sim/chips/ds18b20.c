@@ -247,6 +247,10 @@ static void send_bits(struct sim_slave *slave, int64_t t)
 static void recall_eeprom(struct sim_slave *slave, int64_t t)
 {
 	(void)t;
+	if (state(slave)->no_recall) {
+		sim_end(slave);
+		return;
+	}
 	recall(slave);
 	sim_send_bits(slave);
 }
@@ -320,6 +324,8 @@ static int option(struct sim_slave *slave, const char *name, double value)
 		s->percent = (int)whole;
 	} else if (strcmp(name, "spread") == 0 && !is_s20(slave)) {
 		s->spread = whole != 0;
+	} else if (strcmp(name, "recall") == 0) {
+		s->no_recall = whole == 0;
 	} else if (strcmp(name, "upset") == 0) {
 		s->upset = whole != 0;
 	} else if (strcmp(name, "address") == 0 && slave->family->code == FAMILY_1825) {

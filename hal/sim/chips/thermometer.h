@@ -37,6 +37,7 @@ struct sim_thermometer {
 	bool spread;     /* conversions take 590 to 615 ms at 12 bits, as those of genuine chips */
 	uint64_t random; /* ... how long the next one does */
 	bool upset;      /* while it converts, the temperature in the scratchpad is not the last */
+	bool no_recall;  /* a clone: does not know Recall E2 */
 };
 
 /* MAX31826, with its memory, and MAX31850. */

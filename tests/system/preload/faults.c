@@ -7,6 +7,7 @@
  *   FAULT_CLOCK=FILE  two 64-bit numbers: what CLOCK_REALTIME and CLOCK_BOOTTIME are ahead, in ns
  *   FAULT_SOCKET=FILE a unix socket is a link to that file as soon as it is bound, as somebody
  *                     makes it who may write its folder
+ *   FAULT_WATCH=FILE  epoll takes no descriptor, while that file is there
  *   FAULT_MARK=FILE   is made when one has happened
  */
 #define _GNU_SOURCE
@@ -17,6 +18,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/epoll.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -29,10 +31,11 @@ extern void *__libc_realloc(void *old, size_t size);
 
 static unsigned long memory_at, memory_count, thread_at, thread_count;
 static int memory_on;
-static const char *thread_file, *mark, *socket_file;
+static const char *thread_file, *mark, *socket_file, *watch_file;
 static const volatile int64_t *ahead;
 static int (*next_thread)(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);
 static int (*next_clock)(clockid_t, struct timespec *);
+static int (*next_epoll_ctl)(int, int, int, struct epoll_event *);
 static int (*next_bind)(int, const struct sockaddr *, socklen_t);
 static void *(*next_mmap)(void *, size_t, int, int, int, off_t);
 
@@ -45,9 +48,11 @@ __attribute__((constructor)) static void prepare(void)
 	*(void **)&next_thread = dlsym(RTLD_NEXT, "pthread_create");
 	*(void **)&next_clock = dlsym(RTLD_NEXT, "clock_gettime");
 	*(void **)&next_mmap = dlsym(RTLD_NEXT, "mmap");
+	*(void **)&next_epoll_ctl = dlsym(RTLD_NEXT, "epoll_ctl");
 	*(void **)&next_bind = dlsym(RTLD_NEXT, "bind");
 	mark = getenv("FAULT_MARK");
 	socket_file = getenv("FAULT_SOCKET");
+	watch_file = getenv("FAULT_WATCH");
 	thread_file = getenv("FAULT_THREAD");
 	if (thread_file && *thread_file != '/')
 		thread_at = strtoul(thread_file, NULL, 10);
@@ -141,6 +146,14 @@ int bind(int fd, __CONST_SOCKADDR_ARG address, socklen_t size)
 	    symlink(socket_file, local->sun_path) == 0)
 		happens();
 	return err;
+}
+
+int epoll_ctl(int epoll, int op, int fd, struct epoll_event *event)
+{
+	if (op != EPOLL_CTL_ADD || !watch_file || access(watch_file, F_OK) != 0 || !happens())
+		return next_epoll_ctl(epoll, op, fd, event);
+	errno = ENOSPC;
+	return -1;
 }
 
 int clock_gettime(clockid_t clock, struct timespec *now)

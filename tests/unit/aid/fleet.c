@@ -79,7 +79,7 @@ void fleet_add(const char *chip, unsigned count)
 
 void fleet_forget(void)
 {
-	fleet.good = fleet.failed = fleet.older = fleet.newer = fleet.wrong = 0;
+	fleet.good = fleet.failed = fleet.older = fleet.newer = fleet.wrong = fleet.halves = 0;
 	memset(fleet.each, 0, sizeof(fleet.each));
 }
 
@@ -127,6 +127,7 @@ static void judge(unsigned i, const struct bus_answer *answer)
 	    answer->measured_ns <= host.now)
 		return;
 	fleet.wrong++;
+	fleet.halves += answer->number * 2 == (int)(answer->number * 2);
 	snprintf(text, sizeof(text), "%u at %.3f s says %g: asked for at %.3f s (%g), stamp %.3f s",
 	         i, (double)host.now / 1e9, answer->number, (double)asked[i] / 1e9,
 	         temperature(i, asked[i]), (double)answer->measured_ns / 1e9);

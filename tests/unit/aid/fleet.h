@@ -25,6 +25,7 @@ extern struct fleet {
 	unsigned older;           /* ... of a conversion that began before the request */
 	unsigned newer;           /* ... that came after the moment that they state */
 	unsigned wrong;           /* ... and values that are not true; a message tells each */
+	unsigned halves; /* ... of them those that a conversion at 9 bits could have given */
 } fleet;
 
 /* It climbs by so much; 0: by a degree a second. Ahead of fleet_add(). */

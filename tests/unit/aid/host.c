@@ -7,6 +7,7 @@
 
 #include "unity.h"
 
+#include "hal/bus/backends.h"
 #include "tests/unit/aid/host.h"
 
 static int64_t boottime(void)
@@ -135,7 +136,7 @@ static void run(struct host *host, struct bus *bus, unsigned answers, unsigned e
 		if (next > until_ns)
 			next = until_ns;
 		if (next > host_now(host))
-			host->env.wait(host, -1, 0, next);
+			bus->stirred = host->env.wait(host, bus_watch(bus), POLLIN, next) > 0;
 	}
 }
 

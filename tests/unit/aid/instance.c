@@ -19,6 +19,8 @@ void instance_make(struct instance *in, const char *name, uint32_t generation, i
                    const struct instance_signal *signals, uint32_t count)
 {
 	struct image_signal *image = calloc(count + 1, sizeof(*image));
+	struct image_meta *metas = calloc(count + 1, sizeof(*metas));
+	uint32_t *devices = calloc(count + 1, sizeof(*devices));
 	struct image_plan plan = {
 		.signals = image,
 		.signal_count = count,
@@ -26,6 +28,8 @@ void instance_make(struct instance *in, const char *name, uint32_t generation, i
 		.target_count = 2,
 		.counters = counters,
 		.counter_count = 2,
+		.devices = devices,
+		.log_lines = 8,
 		.served = "owserver:/run/owsd/T.sock",
 		.generation = generation,
 		.start_id = 0x1000 + generation,
@@ -34,7 +38,7 @@ void instance_make(struct instance *in, const char *name, uint32_t generation, i
 		.period_ns = INSTANCE_S / 10,
 	};
 
-	TEST_ASSERT_NOT_NULL(image);
+	TEST_ASSERT_TRUE(image && metas && devices);
 	memset(in, 0, sizeof(*in));
 	snprintf(in->name, sizeof(in->name), "%.20s.%d", name, (int)getpid());
 	in->generation = generation;
@@ -52,12 +56,20 @@ void instance_make(struct instance *in, const char *name, uint32_t generation, i
 			.text_cap = text ? INSTANCE_TEXT : 0,
 			.per_factor = i + 1,
 			.stale_after_ns = signals[i].stale_after_ns,
+			.meta = &metas[i],
 		};
+		metas[i] = image_no_meta;
+		metas[i].device = signals[i].device;
+		metas[i].family = signals[i].device ? "DS18B20" : NULL;
+		if (signals[i].device)
+			devices[plan.device_count++] = i;
 	}
 	TEST_ASSERT_EQUAL(0, segment_create(folder_place(), in->name, SEGMENT_IMAGE,
 	                                    image_size(&plan), &in->image_memory));
 	image_build(&plan, in->image_memory.base, &in->image);
 	free(image);
+	free(metas);
+	free(devices);
 }
 
 #define TYPES_MAX 256

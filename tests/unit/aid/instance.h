@@ -19,6 +19,7 @@ struct instance_signal {
 	uint8_t type;
 	bool output;
 	int64_t stale_after_ns;
+	const char *device; /* a ROM id, of no other signal; NULL: none */
 };
 
 struct instance {

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "hal/bus/backends.h"
 #include "src/config/load.h"
 #include "src/engine/counters.h"
 #include "src/engine/givers.h"

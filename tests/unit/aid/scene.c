@@ -7,6 +7,7 @@
 
 #include "src/engine/adopt.h"
 #include "src/engine/counters.h"
+#include "src/engine/table.h"
 #include "src/shm/shelves.h"
 #include "tests/unit/aid/scene_private.h"
 
@@ -76,6 +77,7 @@ static void make_memory(struct scene *s, const struct config *config, struct ima
 	static struct image_signal signals[SCENE_ITEMS];
 	static struct force_signal names[SCENE_ITEMS];
 	static struct image_counter counters[256];
+	static uint32_t devices[SCENE_ITEMS];
 	uint8_t types[SCENE_ITEMS];
 	const char *targets[SCENE_BUSES];
 	struct image_plan plan = {
@@ -85,6 +87,8 @@ static void make_memory(struct scene *s, const struct config *config, struct ima
 		.target_count = config->target_count,
 		.counters = counters,
 		.counter_count = engine_counter_count(config->target_count),
+		.devices = devices,
+		.device_count = (uint32_t)table_image_devices(config, devices),
 		.generation = 1,
 		.start_id = 7,
 		.pid = 1,

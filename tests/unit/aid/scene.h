@@ -45,12 +45,13 @@ struct scene_bus {
 	const char *name;
 	unsigned port; /* the engine's number of the bus */
 	unsigned wire;
-	unsigned depth;     /* 1 unless set before scene_start() */
-	uint8_t detail;     /* sent with its answers */
-	bool searches;      /* the bus searches for devices */
-	bool holds;         /* the bus has hardware, which it can give back */
-	int64_t latency_ns; /* the time of each answer; 1 ms unless set */
-	const char *slow;   /* answers for this path take slow_ns */
+	unsigned depth;            /* 1 unless set before scene_start() */
+	uint8_t detail;            /* sent with its answers */
+	struct bus_answer besides; /* retries, supply, identity and wire_us of its answers */
+	bool searches;             /* the bus searches for devices */
+	bool holds;                /* the bus has hardware, which it can give back */
+	int64_t latency_ns;        /* the time of each answer; 1 ms unless set */
+	const char *slow;          /* answers for this path take slow_ns */
 	int64_t slow_ns;
 	bool mute;    /* the bus answers nothing */
 	bool refuses; /* submit returns -EAGAIN */
@@ -221,6 +222,8 @@ struct ows_sample scene_sample(struct scene *scene, unsigned record);
 /* Check the signal's quality and the target that it comes from. */
 void scene_expect(struct scene *scene, unsigned record, uint8_t quality, unsigned target);
 struct ows_attrs scene_attrs(struct scene *scene, unsigned record);
+/* As the image shows a device, in the order of the ROM ids. */
+struct ows_device_entry scene_device(struct scene *scene, unsigned index);
 const char *scene_text(struct scene *scene, unsigned record);
 double scene_number(struct scene *scene, unsigned record);
 uint64_t scene_counter(struct scene *scene, const char *name);

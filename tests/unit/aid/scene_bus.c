@@ -97,8 +97,12 @@ void scene_suspend(void *ctx, bool yes)
 void scene_answer_on(struct scene *s, unsigned bus, uint32_t id, int err, const char *text,
                      struct bus_req *req)
 {
-	struct bus_answer answer = {
-		.id = id, .err = err, .measured_ns = s->now_ns, .detail = s->bus[bus].detail};
+	struct bus_answer answer = s->bus[bus].besides;
+
+	answer.id = id;
+	answer.err = err;
+	answer.measured_ns = s->now_ns;
+	answer.detail = s->bus[bus].detail;
 
 	if (!err && text && req && (req->op == BUS_READ || req->op == BUS_DIR)) {
 		answer.len = (uint32_t)strlen(text);

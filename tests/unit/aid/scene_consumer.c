@@ -5,6 +5,7 @@
 #include "unity.h"
 
 #include "src/engine/counters.h"
+#include "src/shm/reader.h"
 #include "src/signal/value.h"
 #include "tests/unit/aid/scene.h"
 
@@ -26,6 +27,15 @@ void scene_expect(struct scene *s, unsigned record, uint8_t quality, unsigned ta
 
 	TEST_ASSERT_EQUAL_HEX8(quality, sample.quality);
 	TEST_ASSERT_EQUAL_UINT(target, sample.target);
+}
+
+struct ows_device_entry scene_device(struct scene *s, unsigned index)
+{
+	struct ows_device_entry entry;
+
+	TEST_ASSERT_LESS_THAN_UINT32(s->image.device_count, index);
+	TEST_ASSERT_TRUE(reader_entry(&s->image.devices[index], &entry, sizeof(entry)));
+	return entry;
 }
 
 struct ows_attrs scene_attrs(struct scene *s, unsigned record)

@@ -116,6 +116,8 @@ static int wire_write(struct link *link, const uint8_t *data, size_t n, enum lin
 		return err;
 	if (n == 2 && data[0] == 0xcc && data[1] == 0x44)
 		wire_net.converts[wire_net.convert_count++ % 64] = wire_time();
+	if (wire_net.sends)
+		wire_net.sends(data, n);
 	for (size_t i = 0; i < n; i++)
 		for (int bit = 0; bit < 8; bit++)
 			slot(link, data[i] >> bit & 1, true);

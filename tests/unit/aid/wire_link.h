@@ -36,7 +36,8 @@ struct wire_net {
 	unsigned strong_count;
 	int64_t strong_ns; /* how long the last strong pull-up was on */
 	int64_t strong_begin;
-	void (*sent)(const uint8_t *data, size_t n); /* NULL, or called at each write */
+	void (*sent)(const uint8_t *data, size_t n);  /* NULL, or called at each write */
+	void (*sends)(const uint8_t *data, size_t n); /* the same, ahead of its slots */
 	struct trouble *trouble;   /* NULL: none; restarts are those of the first wire's chips */
 	void (*used)(int64_t now); /* NULL, or called before each reset and slot */
 };

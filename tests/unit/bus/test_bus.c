@@ -6,6 +6,7 @@
 
 #include "unity.h"
 
+#include "hal/bus/backends.h"
 #include "tests/unit/aid/host.h"
 
 static struct host host;
@@ -232,6 +233,23 @@ static void test_a_request_past_its_deadline_is_not_begun(void)
 	TEST_ASSERT_EQUAL_INT(-ETIME, host_answer(&host, 2)->err);
 }
 
+static void test_a_reading_that_nobody_wants_is_not_begun_but_a_write_is(void)
+{
+	const uint32_t gone = 1;
+	struct bus_req a = request(1, BUS_INPUT), b = request(2, BUS_INPUT);
+
+	make(&note);
+	a.unwanted = b.unwanted = &gone;
+	b.op = BUS_WRITE;
+	bus_submit(bus, &a);
+	bus_submit(bus, &b);
+	TEST_ASSERT_TRUE(host_run_answers(&host, bus, 2, host.now + HOST_S));
+	TEST_ASSERT_EQUAL_INT(-ECANCELED, host_answer(&host, 1)->err);
+	TEST_ASSERT_EQUAL_INT(0, host_answer(&host, 2)->err);
+	TEST_ASSERT_EQUAL_UINT(1, n_asked);
+	TEST_ASSERT_EQUAL_UINT32(2, asked[0]);
+}
+
 static void test_a_simple_bus_with_step_is_stepped_before_each_request_and_when_idle(void)
 {
 	struct bus_req a = request(1, BUS_INPUT);
@@ -298,6 +316,7 @@ int main(void)
 	RUN_TEST(test_one_step_does_one_request);
 	RUN_TEST(test_the_lowest_prio_goes_first_and_equals_keep_their_order);
 	RUN_TEST(test_a_request_past_its_deadline_is_not_begun);
+	RUN_TEST(test_a_reading_that_nobody_wants_is_not_begun_but_a_write_is);
 	RUN_TEST(test_a_simple_bus_with_step_is_stepped_before_each_request_and_when_idle);
 	RUN_TEST(test_the_queue_holds_any_mix_of_submit_and_step);
 	RUN_TEST(test_a_simple_bus_without_step_is_up_from_its_first_step_and_says_so_once);

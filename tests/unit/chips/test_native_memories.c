@@ -84,6 +84,43 @@ static void test_a_memory_with_a_battery_is_read_and_written_by_pages(void)
 	}
 }
 
+/* Of a long reading what is not begun is left out when its client is gone; a write goes on. */
+static void test_a_long_reading_that_nobody_wants_any_more_ends(void)
+{
+	static char text[2001];
+	static uint32_t gone;
+
+	begin("DS1995");
+	memset(text, 'x', sizeof(text) - 1);
+	gone = 0;
+	uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(chip, "memory"), NULL);
+	req[id].unwanted = &gone;
+	wait_s(2);
+	TEST_ASSERT_NULL(host_answer(&host, id));
+	gone = 1;
+	int64_t then = host.now;
+	TEST_ASSERT_EQUAL_INT(-ECANCELED, answer_to(id)->err);
+	TEST_ASSERT_LESS_THAN_INT64(then + HOST_S, host.now);
+	/* One that has not begun */
+	id = ask(BUS_READ, BUS_INPUT, true, of(chip, "memory"), NULL);
+	req[id].unwanted = &gone;
+	then = host.now;
+	TEST_ASSERT_EQUAL_INT(-ECANCELED, answer_to(id)->err);
+	TEST_ASSERT_LESS_THAN_INT64(then + HOST_S / 10, host.now);
+	/* The chip is not left locked. */
+	put("pages/page.63", page);
+	gone = 0;
+	id = ask(BUS_WRITE, BUS_INPUT, true, of(chip, "memory"), text);
+	req[id].unwanted = &gone;
+	wait_s(1);
+	TEST_ASSERT_NULL(host_answer(&host, id));
+	gone = 1;
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_UINT32(2000, answer_to(id)->len);
+	TEST_ASSERT_EQUAL_MEMORY(text, memory(), 2000);
+	end();
+}
+
 static void test_an_eprom_is_read_and_refuses_to_be_written(void)
 {
 	static const struct {
@@ -471,6 +508,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_memory_with_a_battery_is_read_and_written_by_pages);
+	RUN_TEST(test_a_long_reading_that_nobody_wants_any_more_ends);
 	RUN_TEST(test_an_eprom_is_read_and_refuses_to_be_written);
 	RUN_TEST(test_a_page_that_is_written_counts_where_the_chip_counts_it);
 	RUN_TEST(test_a_secret_is_refused);

@@ -17,6 +17,7 @@ static struct link wire;
 static struct thermometer known;
 static struct device device;
 static struct txn txn;
+static const struct property property = {.convert = CONVERT_TEMPRES};
 static uint8_t out[10] = {0x55, 0x28, 1, 0, 0, 0, 0, 0, 0, 0xbe};
 static uint8_t in[9] = {0x60, 0x01, 0x4b, 0x46, 0x7f, 0xff, 0x10, 0x10};
 static struct link_visit visit;
@@ -43,7 +44,7 @@ void setUp(void)
 	                            .in = in,
 	                            .in_n = sizeof(in),
 	                            .ended_ns = host.now};
-	txn = (struct txn){.link = &wire, .device = &device};
+	txn = (struct txn){.link = &wire, .device = &device, .property = &property};
 	txn_done(&txn, &visit);
 }
 

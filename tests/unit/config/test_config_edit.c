@@ -13,6 +13,7 @@
 #include "unity.h"
 
 #include "src/config/edit.h"
+#include "src/config/edit_device.h"
 #include "src/config/replace.h"
 #include "tests/unit/aid/said.h"
 
@@ -392,6 +393,92 @@ static void test_only_plain_files_are_replaced(void)
 	TEST_ASSERT_EQUAL_INT(-ENOENT, replace_file("/nonexistent/dir/x.rio", "x", 1));
 }
 
+static void test_a_bus_block_is_made_changed_and_removed_by_its_target(void)
+{
+	static const char made[] = "  Bus {\n"
+				   "    Target                  \"i2c:auto\"\n"
+				   "    PowerOffMs              700\n"
+				   "  }\n"
+				   "}\n";
+	const char *const twice[] = {"Target=host", "Touch=on"};
+
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(0, set("Bus:i2c:auto", "PowerOffMs=700"));
+	TEST_ASSERT_EQUAL_STRING(made, rio->text + strlen(rio->text) - strlen(made));
+	TEST_ASSERT_EQUAL_INT(0, edit_set(&rio, "Bus:i2c:auto", twice, 2, &report));
+	TEST_ASSERT_NOT_NULL(strstr(rio->text, "\"host\"\n"));
+	/* another spelling of the same target */
+	TEST_ASSERT_EQUAL_INT(0, edit_unset(&rio, "Bus:owserver:host:4304",
+	                                    (const char *const[]){"Touch"}, 1, &report));
+	TEST_ASSERT_NULL(strstr(rio->text, "Touch"));
+	TEST_ASSERT_EQUAL_INT(0, edit_remove(&rio, "Bus:host", &report));
+	expect_text(genuine);
+	TEST_ASSERT_EQUAL_STRING("", said);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_remove(&rio, "Bus:host", &report));
+	TEST_ASSERT_NOT_NULL(strstr(said, "there is no Bus for \"host\""));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, set("Bus:host", "Unit=K"));
+	TEST_ASSERT_NOT_NULL(strstr(said, "there is no key Unit"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_remove(&rio, "OwsDrv", &report));
+	TEST_ASSERT_NOT_NULL(strstr(said, "OwsDrv cannot be removed"));
+}
+
+static int replace(const char *before, const char *after, const char *location)
+{
+	uint8_t old[ROM_LEN], new[ROM_LEN];
+
+	TEST_ASSERT_EQUAL_INT(0, rom_parse(before, strlen(before), old));
+	TEST_ASSERT_EQUAL_INT(0, rom_parse(after, strlen(after), new));
+	return edit_replace(&rio, old, new, location, &report);
+}
+
+static void test_a_replaced_device_changes_the_paths_of_its_items_only(void)
+{
+	static const char two[] = "OwsDrv {\n"
+				  "  Item { Name \"a\" # warm\n"
+				  "    Path \"/28.551DDF030000/temperature\" Unit \"K\" }\n"
+				  "  Item { Name b Path \"/bus.1/28551ddf030000/power\" }\n"
+				  "}\n";
+
+	parse(two);
+	TEST_ASSERT_EQUAL_INT(0, replace("28.551DDF030000", "28.67C6697351FF", "bus.0"));
+	expect_text("OwsDrv {\n"
+	            "  Item { Name \"a\" # warm\n"
+	            "    Path \"/28.67C6697351FF/temperature\" Unit \"K\" }\n"
+	            "  Item { Name b Path \"/bus.0/2867C6697351FF/power\" }\n"
+	            "}\n");
+	TEST_ASSERT_EQUAL_INT(0, replace("28.67C6697351FF", "28.551DDF030000", ""));
+	TEST_ASSERT_NOT_NULL(strstr(rio->text, "/bus.0/28551DDF030000/power"));
+	TEST_ASSERT_EQUAL_STRING("", said);
+}
+
+static void test_a_replacement_that_cannot_be_meant_is_refused(void)
+{
+	parse(genuine);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, replace("28.000000000001", "28.67C6697351FF", ""));
+	TEST_ASSERT_NOT_NULL(strstr(said, "no item has the device 28.000000000001"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, replace("28.551DDF030000", "29.B89115000000", ""));
+	TEST_ASSERT_NOT_NULL(strstr(said, "the device 29.B89115000000 has items already"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, replace("28.551DDF030000", "10.67C6697351FF", ""));
+	TEST_ASSERT_NOT_NULL(strstr(said, "different families"));
+	expect_text(genuine);
+}
+
+static void test_a_device_with_more_items_than_any_has_is_not_replaced(void)
+{
+	static char many[64 + (EDIT_REPLACE_MAX + 1) * 40] = "OwsDrv {\n";
+
+	for (int i = 0; i < EDIT_REPLACE_MAX; i++)
+		strcat(many, "Item { Path /28.551DDF030000/power }\n");
+	strcat(many, "# }\n}\n");
+	parse(many);
+	TEST_ASSERT_EQUAL_INT(0, replace("28.551DDF030000", "28.67C6697351FF", ""));
+	memcpy(strrchr(many, '#'), "Item { Path /28.551DDF030000/power }\n}\n", 40);
+	parse(many);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, replace("28.551DDF030000", "28.67C6697351FF", ""));
+	TEST_ASSERT_NOT_NULL(strstr(said, "more than 256 items have the device 28.551DDF030000"));
+	TEST_ASSERT_NULL(strstr(rio->text, "28.67C6697351FF"));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -411,5 +498,9 @@ int main(void)
 	RUN_TEST(test_a_symbolic_link_stays_and_its_target_is_replaced);
 	RUN_TEST(test_when_writing_fails_the_old_file_stays_and_nothing_is_left_over);
 	RUN_TEST(test_only_plain_files_are_replaced);
+	RUN_TEST(test_a_bus_block_is_made_changed_and_removed_by_its_target);
+	RUN_TEST(test_a_replaced_device_changes_the_paths_of_its_items_only);
+	RUN_TEST(test_a_replacement_that_cannot_be_meant_is_refused);
+	RUN_TEST(test_a_device_with_more_items_than_any_has_is_not_replaced);
 	return UNITY_END();
 }

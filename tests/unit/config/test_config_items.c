@@ -238,6 +238,12 @@ static void test_what_an_output_begins_with_and_how_long_it_waits(void)
 	TEST_ASSERT_TRUE(config->items[0].starts_last);
 	TEST_ASSERT_TRUE(config->items[0].has_safe_delay);
 	TEST_ASSERT_EQUAL_INT64(0, config->items[0].safe_delay_ns);
+	TEST_ASSERT_FALSE(config->items[0].confirm);
+	parse_item("Name x Path a/b Type bool IO output Confirm on");
+	TEST_ASSERT_TRUE(config->items[0].confirm);
+	parse_item("Name x Path a/b Type bool Confirm on");
+	TEST_ASSERT_EQUAL_STRING("f:3:27: warning: Confirm does nothing: nobody sets this input\n",
+	                         said);
 	parse_item("Name x Path a/b Type bool IO output SafeDelay 2.5");
 	TEST_ASSERT_EQUAL_INT64(2500000000, config->items[0].safe_delay_ns);
 	TEST_ASSERT_EQUAL_STRING("f:3:37: warning: SafeDelay does nothing without SafeValue\n",

@@ -62,6 +62,7 @@ static void equal_items(const struct config_item *a, const struct config_item *b
 	TEST_ASSERT_EQUAL(a->has_safe_delay, b->has_safe_delay);
 	TEST_ASSERT_EQUAL_INT64(a->safe_delay_ns, b->safe_delay_ns);
 	TEST_ASSERT_EQUAL(a->starts_last, b->starts_last);
+	TEST_ASSERT_EQUAL(a->confirm, b->confirm);
 	TEST_ASSERT_EQUAL_INT64(a->init_value, b->init_value);
 	TEST_ASSERT_EQUAL_INT64(a->safe_value, b->safe_value);
 	equal_text(a->init_text, b->init_text);
@@ -121,7 +122,7 @@ static void test_every_key_survives_being_printed_and_read(void)
 		"Item { Name \"l\" Path \"a/d\" Type double LimitLL -1e-3 LimitL 0 LimitH 1.7\n"
 		"LimitHH 1e300 Hysteresis 0.1 OnDelay 0.5 OffDelay 86400 }\n"
 		"Item { Name \"o\" Path \"/a/b\" Type float IO output Readable on Writable off\n"
-		"InitValue \"1e-3\" SafeValue \" .5 \" SafeDelay 0.5 Start last }\n"
+		"InitValue \"1e-3\" SafeValue \" .5 \" SafeDelay 0.5 Start last Confirm on }\n"
 		"Item { Name \"t\" Path \"/a/c\" Type string IO output InitValue \"say \\\"x\\\" in a text "
 		"that is longer than the fifty characters of a line\" SafeValue \"\" } }";
 

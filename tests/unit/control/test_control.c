@@ -74,7 +74,7 @@ static void test_a_hello_of_another_kind_or_version_is_refused(void)
 
 static void test_a_later_minor_version_with_flags_that_are_not_known_is_welcome(void)
 {
-	struct ows_hello hello = control_hello(0xffffffff, "later");
+	struct ows_hello hello = control_hello(~(uint32_t)OWS_HELLO_RELOAD, "later");
 	struct ows_welcome welcome;
 	int fds[3], fd = control_connect();
 

@@ -16,6 +16,7 @@ enum {
 	STRANGER = 300,
 	CONTROLLERS = 400,
 	READERS = 401,
+	CONFIGURERS = 403,
 	OPS = 402
 };
 
@@ -45,8 +46,10 @@ static struct rights of(const struct config *config, bool service)
 		.own = OWN,
 		.has_controllers = service,
 		.has_readers = service,
+		.has_configurers = service,
 		.controllers = CONTROLLERS,
 		.readers = READERS,
+		.configurers = CONFIGURERS,
 	};
 }
 
@@ -136,6 +139,25 @@ static void test_readers_may_hear_of_news_and_command_nothing(void)
 	TEST_ASSERT_FALSE(rights_read(&rights, &plain));
 }
 
+static void test_a_reload_is_for_root_for_owsds_user_and_for_a_group_of_its_own(void)
+{
+	struct rights service = of(&with, true), user = of(&with, false);
+	struct peer root = peer_of(ROOT, 0), own = peer_of(OWN, OWN),
+		    group = peer_of(STRANGER, CONFIGURERS),
+		    controller = peer_of(STRANGER, CONTROLLERS), reader = peer_of(PLC, READERS);
+
+	TEST_ASSERT_TRUE(rights_reload(&service, &root));
+	TEST_ASSERT_TRUE(rights_reload(&service, &own));
+	TEST_ASSERT_TRUE(rights_reload(&service, &group));
+	TEST_ASSERT_FALSE(rights_reload(&service, &controller));
+	TEST_ASSERT_FALSE(rights_reload(&service, &reader));
+	TEST_ASSERT_FALSE(rights_reload(&user, &group));
+	TEST_ASSERT_TRUE(rights_reload(&user, &own));
+	/* and it gives no other right */
+	TEST_ASSERT_FALSE(rights_set_any(&service, &group));
+	TEST_ASSERT_FALSE(rights_read(&service, &group));
+}
+
 static void test_a_stranger_is_refused_and_takes_no_place(void)
 {
 	if (getuid())
@@ -186,6 +208,7 @@ static void test_the_memory_shows_what_its_giver_may_command(void)
 	for (int i = 0; i < 4; i++)
 		TEST_ASSERT_EQUAL_UINT(0, slots[i].allowed);
 	TEST_ASSERT_EQUAL_HEX32(0, control_turn_of(client.welcome.serial)->rights[0]);
+	control_close(); /* whose thread frees the rights of one that has left, at any time */
 	control_leave(&client);
 }
 
@@ -196,6 +219,7 @@ int main(void)
 	RUN_TEST(test_ControlAllow_names_who_may_command_the_signals_of_a_pattern);
 	RUN_TEST(test_the_rights_of_a_giver_are_a_bit_for_each_record);
 	RUN_TEST(test_readers_may_hear_of_news_and_command_nothing);
+	RUN_TEST(test_a_reload_is_for_root_for_owsds_user_and_for_a_group_of_its_own);
 	RUN_TEST(test_a_stranger_is_refused_and_takes_no_place);
 	RUN_TEST(test_the_other_groups_of_a_process_count);
 	RUN_TEST(test_the_memory_shows_what_its_giver_may_command);

@@ -20,12 +20,14 @@ static int64_t between_ns;
 static uint32_t jitter; /* 0: none */
 static unsigned messages;
 static bool is_plain; /* the driver knows one error for whatever is refused */
+static bool is_whole; /* read in a transaction that is made as a whole (link_ops.together) */
 
 void setUp(void)
 {
 	ds_begin();
 	jitter = 0;
 	messages = 0;
+	is_whole = false;
 }
 
 void tearDown(void)
@@ -139,6 +141,36 @@ static void test_where_messages_are_slow_a_written_byte_is_one(void)
 	}
 }
 
+static int visit(uint8_t scratchpad[9])
+{
+	uint8_t out[10] = {0x55};
+	struct link_visit one = {
+		.link = ds.wire, .out = out, .out_n = 10, .in = scratchpad, .in_n = 9};
+
+	memcpy(out + 1, sim_net_slave(&ds.net, "t")->rom, 8);
+	out[9] = 0xbe;
+	ds.wire->ops->together(&one, 1);
+	return one.err;
+}
+
+/* As a whole there is one status at the end. */
+static void test_where_messages_are_slow_a_whole_reading_has_the_fewest(void)
+{
+	static const uint8_t expect[5] = {0x50, 0x05, 75, 70, 0x7F};
+	uint8_t scratchpad[9];
+
+	for (int64_t between = 600; between <= 1800; between += 600) {
+		begin(between * US);
+		TEST_ASSERT_TRUE(ds.wire->ops->visits(ds.wire));
+		messages = 0;
+		TEST_ASSERT_EQUAL_INT(0, visit(scratchpad));
+		TEST_ASSERT_EQUAL_HEX8_ARRAY(expect, scratchpad, 5);
+		TEST_ASSERT_EQUAL_UINT(1 + (between < 1200) + 10 + 3 * 9 + 2, messages);
+		tearDown();
+		setUp();
+	}
+}
+
 /* A transaction of a group has some 40 messages: two of those take longer than others may wait. */
 static void test_where_messages_are_slow_there_are_no_groups(void)
 {
@@ -168,7 +200,7 @@ static void check_settles(void)
 	for (unsigned n = 1; n <= 60; n++) {
 		uint8_t scratchpad[9];
 
-		if (ds_read_scratchpad("t", scratchpad)) {
+		if (is_whole ? visit(scratchpad) : ds_read_scratchpad("t", scratchpad)) {
 			errors++;
 			last = n;
 			TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_RETRY));
@@ -193,6 +225,18 @@ static void become_quick(void)
 		check_settles();
 		begin(250 * US);
 		between_ns = later[i] / 2 * US;
+		check_settles();
+	}
+}
+
+static void test_a_whole_reading_becomes_quick_the_same_way(void)
+{
+	static const int64_t later[] = {0, 50, 100, 200, 250, 300, 350, 380};
+
+	for (unsigned i = 0; i < 2 * sizeof(later) / sizeof(later[0]); i++) {
+		begin((i & 1 ? 600 : 400) * US);
+		between_ns = later[i / 2] * US;
+		is_whole = true;
 		check_settles();
 	}
 }
@@ -223,8 +267,10 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_where_messages_are_slow_a_written_byte_is_one);
+	RUN_TEST(test_where_messages_are_slow_a_whole_reading_has_the_fewest);
 	RUN_TEST(test_where_messages_are_slow_there_are_no_groups);
 	RUN_TEST(test_where_messages_are_quick_there_is_one_more_between);
+	RUN_TEST(test_a_whole_reading_becomes_quick_the_same_way);
 	RUN_TEST(test_an_adapter_that_becomes_quick_gives_errors_and_no_false_bytes);
 	RUN_TEST(test_a_refused_command_is_noticed_by_either_error);
 	RUN_TEST(test_an_adapter_of_changing_pace_is_right_too);

@@ -247,6 +247,37 @@ static void test_an_output_over_which_a_guest_wrote_is_written_again(void)
 	TEST_ASSERT_EQUAL_STRING("W /29.B89115000000/PIO.BYTE=0\nW " PIO "=1\n", s.trace);
 }
 
+/* Nobody waits for what a guest asks that has left; what it writes is written. */
+static void test_who_left_is_asked_for_nothing_more_but_what_he_wrote(void)
+{
+	struct engine_guest *reads, *lists, *writes;
+
+	scene_put(&s, T1, "        21.5", 0);
+	scene_put(&s, PIO, "0", 0);
+	s.bus[0].latency_ns = 100 * SCENE_MS;
+	scene_start(&s);
+	scene_up(&s);
+	struct engine_guest *first = ask(BUS_READ, GUEST_ANY_LANE, T1, NULL);
+	reads = ask(BUS_READ, GUEST_ANY_LANE, T2, NULL);
+	lists = ask(BUS_DIR, GUEST_ANY_LANE, "/", NULL);
+	writes = ask(BUS_WRITE, GUEST_ANY_LANE, PIO, "1");
+	scene_run(&s, 10 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].pending_count);
+	const struct bus_req *lent = s.bus[0].pending[0].req;
+	TEST_ASSERT_EQUAL_STRING(T1, lent->path);
+	TEST_ASSERT_FALSE(bus_req_unwanted(lent));
+	first->unwanted = reads->unwanted = lists->unwanted = writes->unwanted = 1;
+	TEST_ASSERT_TRUE(bus_req_unwanted(lent));
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(4, answered_count);
+	TEST_ASSERT_EQUAL_INT(-ECANCELED, reads->answer.err);
+	TEST_ASSERT_EQUAL_INT(-ECANCELED, lists->answer.err);
+	TEST_ASSERT_EQUAL_INT(0, writes->answer.err);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].reads);
+	TEST_ASSERT_EQUAL_UINT(0, s.bus[0].lists);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].writes);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -259,5 +290,6 @@ int main(void)
 	RUN_TEST(test_a_long_value_has_as_many_times_the_time_as_it_has_parts);
 	RUN_TEST(test_a_bus_that_does_one_thing_at_a_time_has_once_the_time_for_all);
 	RUN_TEST(test_an_output_over_which_a_guest_wrote_is_written_again);
+	RUN_TEST(test_who_left_is_asked_for_nothing_more_but_what_he_wrote);
 	return UNITY_END();
 }

@@ -271,6 +271,64 @@ static void test_the_image_shows_who_is_connected(void)
 	TEST_ASSERT_EQUAL_HEX32(OWS_GIVER_CONNECTED, g->flags);
 }
 
+static void a_new_output(struct config *config)
+{
+	config->items[config->item_count] = config->items[1];
+	config->items[config->item_count].name = "new";
+	config->items[config->item_count++].path = "/29.000000000004/PIO.BYTE";
+}
+
+static void test_what_a_reload_begins_with_has_an_entry_and_the_time_of_the_reload(void)
+{
+	int64_t set_ns, begun_ns = scene_origin(&s, 2).taken_ns;
+	uint32_t before;
+
+	set(0, 1, 5);
+	set_ns = scene_origin(&s, 1).taken_ns;
+	before = entered();
+	scene_run(&s, 60 * SCENE_S);
+	scene_reload(&s, a_new_output);
+	TEST_ASSERT_EQUAL_UINT32(before + 1, entered());
+	TEST_ASSERT_EQUAL_UINT32(4, entry(0)->record);
+	TEST_ASSERT_EQUAL_UINT(OWS_REASON_INIT, entry(0)->kind);
+	TEST_ASSERT_EQUAL_INT64(s.now_ns, entry(0)->occurred_ns);
+	TEST_ASSERT_EQUAL_INT64(3, entry(0)->after);
+	TEST_ASSERT_EQUAL_UINT(0, entry(0)->flags & OWS_JOURNAL_BEFORE);
+	TEST_ASSERT_EQUAL_UINT(OWS_REASON_INIT, scene_origin(&s, 4).reason);
+	TEST_ASSERT_EQUAL_INT64(s.now_ns, scene_origin(&s, 4).taken_ns);
+	/* what goes on has neither */
+	TEST_ASSERT_EQUAL_INT64(set_ns, scene_origin(&s, 1).taken_ns);
+	TEST_ASSERT_EQUAL_INT64(begun_ns, scene_origin(&s, 2).taken_ns);
+	scene_reload(&s, NULL);
+	TEST_ASSERT_EQUAL_UINT32(before + 1, entered());
+}
+
+static void begun_is_an_input(struct config *config)
+{
+	config->items[1].output = config->items[1].has_init = false;
+	config->items[1].readable = true;
+}
+
+static void begun_is_an_output(struct config *config)
+{
+	config->items[1].output = config->items[1].has_init = true;
+}
+
+static void test_an_input_that_becomes_an_output_has_an_entry_of_its_initvalue(void)
+{
+	uint32_t before;
+
+	scene_reload(&s, begun_is_an_input);
+	TEST_ASSERT_EQUAL_UINT(OWS_REASON_NONE, scene_origin(&s, 2).reason);
+	before = entered();
+	scene_run(&s, 60 * SCENE_S);
+	scene_reload(&s, begun_is_an_output);
+	TEST_ASSERT_EQUAL_UINT32(before + 1, entered());
+	TEST_ASSERT_EQUAL_UINT32(2, entry(0)->record);
+	TEST_ASSERT_EQUAL_UINT(OWS_REASON_INIT, entry(0)->kind);
+	TEST_ASSERT_EQUAL_INT64(s.now_ns, scene_origin(&s, 2).taken_ns);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -289,5 +347,7 @@ int main(void)
 	RUN_TEST(test_over_a_reload_the_journal_gets_no_command_that_was_not_in_force);
 	RUN_TEST(test_a_refused_command_changes_neither);
 	RUN_TEST(test_the_image_shows_who_is_connected);
+	RUN_TEST(test_what_a_reload_begins_with_has_an_entry_and_the_time_of_the_reload);
+	RUN_TEST(test_an_input_that_becomes_an_output_has_an_entry_of_its_initvalue);
 	return UNITY_END();
 }

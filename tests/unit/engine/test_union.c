@@ -111,6 +111,46 @@ static void test_between_two_wires_the_last_value_is_usable_and_not_good(void)
 	TEST_ASSERT_EQUAL_DOUBLE(23, scene_number(&s, 1));
 }
 
+/*
+ * A step looks at the lanes in their order. The silence of a later one ends behind the turn of the
+ * earlier one, and nobody rings for what that leads to: the engine has to ask for the next period.
+ * The silent request is of a signal that has moved before, which nothing else shows.
+ */
+static void test_what_a_later_target_loses_is_asked_of_an_earlier_one_in_the_next_period(void)
+{
+	int64_t moved_ns = 0;
+
+	scene_input(&s, "t1", T1, OWS_DOUBLE)->per_factor = 1000;
+	scene_input(&s, "t2", T2, OWS_DOUBLE)->per_factor = 1000;
+	s.config.timeout_ns = 2 * SCENE_S;
+	scene_put_on(&s, SCENE_NOWHERE, T1, "21.5", 0);
+	scene_put_on(&s, SCENE_NOWHERE, T2, "22.5", 0);
+	two_wires_up(&s);
+	s.bus[1].mute = true;
+	for (unsigned i = 0; i < 2000 && scene_sample(&s, 2).target != 1; i++)
+		scene_run(&s, SCENE_MS);
+	scene_run(&s, s.config.period_ns);
+	TEST_ASSERT_NOT_NULL(strstr(s.trace, "1: R " T1));
+	TEST_ASSERT_NULL(strstr(s.trace, "1: R " T2));
+	/* both are on the first wire meanwhile; the one that was not asked would wait for a hold */
+	scene_plug(&s, D1, 0);
+	scene_plug(&s, D2, 0);
+	scene_tell(&s, 0, BUS_FOUND, D1);
+	scene_tell(&s, 1, BUS_LOST, D1);
+	scene_tell(&s, 0, BUS_FOUND, D2);
+	scene_run(&s, SCENE_S);
+	scene_expect(&s, 1, OWS_Q_GOOD, 0);
+	for (unsigned i = 0; i < 100 && scene_sample(&s, 2).target == 1; i++) {
+		moved_ns = s.now_ns;
+		s.now_ns = engine_step(s.engine, s.now_ns);
+	}
+	TEST_ASSERT_EQUAL_UINT8(0, scene_sample(&s, 2).target);
+	TEST_ASSERT_EQUAL_UINT(0, s.bus[0].pending_count);
+	TEST_ASSERT_LESS_OR_EQUAL_INT64(moved_ns + s.config.period_ns, s.now_ns);
+	engine_step(s.engine, s.now_ns);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].pending_count);
+}
+
 static void test_an_answer_that_comes_after_the_move_is_not_believed(void)
 {
 	scene_input(&s, "t1", T1, OWS_DOUBLE);
@@ -303,6 +343,7 @@ int main(void)
 	RUN_TEST(test_a_device_that_is_plugged_to_another_wire_is_found_there);
 	RUN_TEST(test_between_two_wires_the_last_value_is_usable_and_not_good);
 	RUN_TEST(test_an_answer_that_comes_after_the_move_is_not_believed);
+	RUN_TEST(test_what_a_later_target_loses_is_asked_of_an_earlier_one_in_the_next_period);
 	RUN_TEST(test_an_absent_device_stays_with_the_first_and_is_found_wherever_it_turns_up);
 	RUN_TEST(test_a_bus_that_searches_brings_an_absent_device_back_at_once);
 	RUN_TEST(test_a_target_that_is_down_keeps_the_devices_it_had);

@@ -6,6 +6,7 @@
 
 #include "unity.h"
 
+#include "hal/bus/backends.h"
 #include "tests/unit/aid/fake_gpio.h"
 #include "tests/unit/aid/one_bus.h"
 

@@ -17,12 +17,12 @@
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal signals[] = {
-	{"room1", "/28.1/temperature", OWS_DOUBLE, false, 10 * INSTANCE_S},
+	{"room1", "/28.1/temperature", OWS_DOUBLE, false, 10 * INSTANCE_S, "28.000000000001"},
 	{"relay", "/29.1/PIO.0", OWS_BOOL, true, 0},
 	{"count", "/1D.1/counters.A", OWS_DWORD, true, 0},
 	{"label", "/23.1/memory", OWS_STRING, true, 0},
 	{"deep", "/20.1/x", OWS_LARGE, true, 0},
-	{"room1_Age", "/28.2/temperature", OWS_FLOAT, false, 0},
+	{"room1_Age", "/28.2/temperature", OWS_FLOAT, false, 0, "28.000000000002"},
 };
 #define COUNT 6
 enum { ROOM = 1, RELAY, NUMBER, LABEL, DEEP, ROOM_AGE };
@@ -313,6 +313,25 @@ static void test_python_sees_what_owsd_took_and_who_commands(void)
 	       " True)\n");
 }
 
+static void test_python_reads_what_owsd_knows_of_devices(void)
+{
+	const struct ows_device_entry known = {.target = 1,
+	                                       .answers = 0x100000001,
+	                                       .errors = 2,
+	                                       .retries = 3,
+	                                       .wire_us = 4,
+	                                       .ok_ns = 5,
+	                                       .power = OWS_POWER_PARASITE,
+	                                       .identity = "DS18B20 clone, family B1"};
+	const struct ows_device_entry unknown = {.target = UINT32_MAX, .power = 9};
+
+	image_device(&in.image, 0, &known);
+	image_device(&in.image, 1, &unknown);
+	expect("for d in ows.Ows(name).devices(): print(*d, sep=\"|\")\n",
+	       "28.000000000001|DS18B20|DS18B20 clone, family B1|parasite|1|4294967297|2|3|4|5\n"
+	       "28.000000000002|DS18B20|None|None|None|0|0|0|0|0\n");
+}
+
 static void test_python_refuses_a_welcome_that_lies(void)
 {
 	static const struct {
@@ -578,6 +597,7 @@ int main(void)
 	RUN_TEST(test_python_says_goodbye);
 	RUN_TEST(test_python_commands_nothing_after_a_fork);
 	RUN_TEST(test_python_sees_what_owsd_took_and_who_commands);
+	RUN_TEST(test_python_reads_what_owsd_knows_of_devices);
 	RUN_TEST(test_python_refuses_a_welcome_that_lies);
 	RUN_TEST(test_python_refuses_what_c_refuses);
 	RUN_TEST(test_python_finds_its_way_over_a_reload);

@@ -6,6 +6,7 @@
 
 #include "unity.h"
 
+#include "hal/bus/backends.h"
 #include "hal/chips/find.h"
 #include "tests/unit/aid/native_scene.h"
 

@@ -217,7 +217,8 @@ static unsigned cut;
 static void look_at_pull_up(int64_t now)
 {
 	for (unsigned n = 0; n < 2; n++)
-		cut += wire_net.wire[n].strong && now < wire_net.strong_begin + 750 * HOST_MS;
+		cut += wire_net.wire[n].strong && fleet.slave[n]->busy &&
+		       now < fleet.slave[n]->until;
 }
 
 static void test_no_question_cuts_the_strong_pull_up_of_another_channel(void)

@@ -348,6 +348,37 @@ static void test_the_families_are_in_the_order_of_their_codes(void)
 		TEST_ASSERT_GREATER_THAN_UINT(family_nth(n - 1)->code, family_nth(n)->code);
 }
 
+/* Chips of which one or another is always between two transactions of a measurement. */
+static void test_all_convert_at_once_though_chips_are_at_work_all_the_time(void)
+{
+	struct sim_slave *slave[6];
+	uint32_t id[6];
+
+	for (unsigned i = 0; i < 6; i++)
+		slave[i] = wire_add(0, "DS1922L", i + 1);
+	wire_add(0, "DS18B20", 9);
+	start();
+	host_run(&host, bus, host.now + 2 * HOST_S);
+	forget();
+	for (unsigned i = 0; i < 6; i++)
+		id[i] = ask(BUS_READ, BUS_INPUT, true, of(slave[i], "temperature"), NULL);
+	uint32_t all = ask(BUS_WRITE, BUS_INPUT, true, "/simultaneous/temperature", "1");
+	for (unsigned asked = 7; asked < NATIVE_REQUESTS - 6 && !host_answer(&host, all);) {
+		host_run(&host, bus, host.now + HOST_MS);
+		for (unsigned i = 0; i < 6; i++)
+			if (host_answer(&host, id[i])) {
+				TEST_ASSERT_EQUAL_INT(0, host_answer(&host, id[i])->err);
+				id[i] = ask(BUS_READ, BUS_INPUT, true, of(slave[i], "temperature"),
+				            NULL);
+				asked++;
+			}
+	}
+	TEST_ASSERT_NOT_NULL(host_answer(&host, all));
+	TEST_ASSERT_EQUAL_INT(0, host_answer(&host, all)->err);
+	for (unsigned i = 0; i < 6; i++)
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id[i])->err);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -370,5 +401,6 @@ int main(void)
 	RUN_TEST(test_the_properties_of_each_family_are_sorted_by_name);
 	RUN_TEST(test_no_array_has_elements_that_are_read_in_parts);
 	RUN_TEST(test_the_families_are_in_the_order_of_their_codes);
+	RUN_TEST(test_all_convert_at_once_though_chips_are_at_work_all_the_time);
 	return UNITY_END();
 }

@@ -258,6 +258,59 @@ static void test_a_touch_on_a_branch_names_the_branch(void)
 	                         host.event[1].text);
 }
 
+static const char *text_of_touch(void)
+{
+	for (unsigned i = 0; i < host.events; i++)
+		if (host.event[i].news == BUS_NOTE && strstr(host.event[i].text, " touches "))
+			return host.event[i].text;
+	return "";
+}
+
+/* The key touches a branch: on the main branch of so many couplers, each on that of another. */
+static const char *touched_behind(unsigned couplers, const char *alias)
+{
+	struct sim_slave *before = NULL, *inner_key;
+
+	native_end();
+	setUp();
+	for (unsigned i = 0; i < couplers; i++) {
+		struct sim_slave *next = wire_add(0, "DS2409", 30 + i);
+
+		if (before)
+			sim_branch_put(next, before, SIM_MAIN);
+		before = next;
+	}
+	inner_key = wire_add(0, "DS2401", 60);
+	sim_branch_put(inner_key, before, SIM_MAIN);
+	begin("on");
+	host_run(&host, bus, host.now + 60 * HOST_S);
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(inner_key, "alias"), alias));
+	/* The search in the background may be the first to find it. */
+	for (unsigned round = 0; round < 20 && !*text_of_touch(); round++) {
+		put(inner_key, 0, false);
+		host_run(&host, bus, host.now + 60 * HOST_S);
+		host.events = 0;
+		put(inner_key, 0, true);
+		host_run(&host, bus, host.now + (60000 + 77 * round) * HOST_MS);
+	}
+	return text_of_touch();
+}
+
+static void test_a_long_way_is_named_whole_or_says_that_it_is_cut(void)
+{
+	static const char alias[] = "the key of somebody with a long name, and where he has to be "
+				    "found when it is lost";
+
+	TEST_ASSERT_EQUAL_STRING(
+		"key 01.3C005DDF0300 touches 1F.1E005DDF0300/main/1F.1F005DDF0300/main",
+		touched_behind(2, ""));
+	TEST_ASSERT_EQUAL_STRING("key 01.3C005DDF0300 (the key of somebody with a long name, and "
+	                         "where he has to be...) touches .../1F.1F005DDF0300/main/"
+	                         "1F.20005DDF0300/main/1F.21005DDF0300/main/"
+	                         "1F.22005DDF0300/main",
+	                         touched_behind(5, alias));
+}
+
 /* A short makes edges, but no key: the branch stays off, and all else goes on. */
 static void test_a_short_of_a_branch_does_not_stop_keys(void)
 {
@@ -305,6 +358,7 @@ int main(void)
 	RUN_TEST(test_a_key_on_a_branch_is_found_within_300_ms);
 	RUN_TEST(test_a_key_behind_two_couplers_is_found_in_turn);
 	RUN_TEST(test_a_touch_on_a_branch_names_the_branch);
+	RUN_TEST(test_a_long_way_is_named_whole_or_says_that_it_is_cut);
 	RUN_TEST(test_a_short_of_a_branch_does_not_stop_keys);
 	RUN_TEST(test_keys_that_stay_on_branches_leave_time);
 	RUN_TEST(test_a_touch_is_in_the_log_with_key_alias_and_wire);

@@ -96,6 +96,13 @@ static void power(const struct sim_slave *slave)
 		TEST_ASSERT_EQUAL_INT(0, nl_write(slave, "power", "1"));
 }
 
+/* A TMP1826's memory needs pauses between the bytes, which the kernel's messages have not. */
+static int expected(const struct kept *of)
+{
+	return strncmp(of->path, "/26.", 4) == 0 && strstr(of->path, "memory") ? -EOPNOTSUPP
+	                                                                       : of->err;
+}
+
 static void compare_family(const char *name)
 {
 	kept_count = 0;
@@ -112,7 +119,7 @@ static void compare_family(const char *name)
 	for (unsigned i = 0; i < kept_count; i++) {
 		const struct bus_answer *answer = nl_ask(BUS_READ, kept[i].path, NULL);
 
-		TEST_ASSERT_EQUAL_INT_MESSAGE(kept[i].err, answer->err, kept[i].path);
+		TEST_ASSERT_EQUAL_INT_MESSAGE(expected(&kept[i]), answer->err, kept[i].path);
 		if (!answer->err && !differs_by_time(kept[i].path))
 			TEST_ASSERT_EQUAL_MEMORY_MESSAGE(kept[i].text, nl.data, sizeof(kept->text),
 			                                 kept[i].path);

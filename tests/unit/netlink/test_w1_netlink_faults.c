@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/socket.h>
 
+#include "hal/bus/backends.h"
 #include "hal/native/state.h"
 #include "hal/netlink/talk.h"
 #include "unity.h"

@@ -6,7 +6,7 @@
 #include "unity.h"
 
 #include "src/owsctl/table.h"
-#include "src/owsctl/text.h"
+#include "src/show/text.h"
 
 /* clang-format off */
 static const struct table_column columns[] = {

@@ -321,6 +321,22 @@ static void test_stats_show_owsd_targets_and_counters(void)
 	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_stats, "stats more"));
 }
 
+static void test_metrics_have_one_family_for_the_counters_of_all_targets(void)
+{
+	image_target(&in.image, 0, 1, 2);
+	image_counter(&in.image, 1, UINT64_C(5000000000));
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_metrics, "metrics"));
+	holds(out, "ows_up{owsd=\"");
+	holds(out, "# TYPE ows_keepalives counter\n");
+	holds(out, ",target=\"localhost:4304\"} 5000000000\n");
+	holds(out, "\n# EOF\n");
+	TEST_ASSERT_EQUAL(CTL_DONE, run(verb_metrics, "metrics -p"));
+	holds(out, "# TYPE ows_keepalives_total counter\n");
+	TEST_ASSERT_NULL(strstr(out, "# EOF"));
+	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_metrics, "metrics -x"));
+	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_metrics, "metrics --json"));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -349,5 +365,6 @@ int main(void)
 	RUN_TEST(test_watch_prints_a_line_for_each_signal);
 	RUN_TEST(test_watch_refuses_a_count_that_is_none);
 	RUN_TEST(test_stats_show_owsd_targets_and_counters);
+	RUN_TEST(test_metrics_have_one_family_for_the_counters_of_all_targets);
 	return UNITY_END();
 }

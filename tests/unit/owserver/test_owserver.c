@@ -7,6 +7,7 @@
 
 #include "unity.h"
 
+#include "hal/bus/backends.h"
 #include "tests/unit/aid/owserver_scene.h"
 
 void setUp(void)

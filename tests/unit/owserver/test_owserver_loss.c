@@ -2,6 +2,7 @@
 /* The owserver bus when its server is silent, lost, not there or not wanted, and back again. */
 #include <errno.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -9,6 +10,7 @@
 
 #include "unity.h"
 
+#include "hal/bus/worker.h"
 #include "tests/unit/aid/owserver_scene.h"
 
 void setUp(void)
@@ -135,6 +137,63 @@ static void test_a_server_that_goes_while_idle_is_noticed(void)
 	TEST_ASSERT_EQUAL_INT(-ENOTCONN, read_temperature());
 }
 
+static void test_an_idle_bus_has_nothing_to_do_until_its_server_closes(void)
+{
+	struct pollfd watched = {.events = POLLIN};
+
+	serve("ac");
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+	TEST_ASSERT_EQUAL_INT64(INT64_MAX, bus_step(bus, host_now(&host)));
+	watched.fd = bus_watch(bus);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, watched.fd);
+	TEST_ASSERT_EQUAL_INT(0, poll(&watched, 1, 0));
+	TEST_ASSERT_EQUAL_INT(0, read_temperature());
+	/* the host watches the descriptor meanwhile */
+	until_peer_saw(&peer.closed, 1);
+	TEST_ASSERT_EQUAL_INT64(INT64_MAX, bus_step(bus, host_now(&host)));
+	TEST_ASSERT_EQUAL_UINT64(1, counted("stale_connection"));
+	TEST_ASSERT_EQUAL_UINT64(2, counted("connections"));
+	/* it is connected again, and waits */
+	watched.fd = bus_watch(bus);
+	TEST_ASSERT_EQUAL_INT(0, poll(&watched, 1, 0));
+	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_DOWN));
+	bus_suspend(bus, true);
+	TEST_ASSERT_EQUAL_INT(-1, bus_watch(bus));
+}
+
+static bool worker_says(struct worker *worker, enum bus_news news)
+{
+	struct worker_message message;
+
+	for (int64_t until = host_now(&host) + PATIENCE; host_now(&host) < until; usleep(1000))
+		while (worker_next(worker, &message))
+			if (message.is_event && message.event.news == news)
+				return true;
+	return false;
+}
+
+static void test_a_worker_that_sleeps_notices_that_the_server_goes(void)
+{
+	struct worker *worker;
+	char why[200] = "";
+	bool up, down;
+
+	peer_start(&peer, AF_INET, "");
+	is_peer_up = true;
+	TEST_ASSERT_EQUAL_INT(0, worker_create(peer.target, "bus-under-test", NULL, NULL, &worker,
+	                                       why, sizeof(why)));
+	TEST_ASSERT_EQUAL_INT(0, worker_start(worker));
+	up = worker_says(worker, BUS_UP);
+	/* most likely it sleeps then */
+	usleep(50000);
+	stop_peer();
+	down = worker_says(worker, BUS_DOWN);
+	TEST_ASSERT_EQUAL_INT(0, worker_stop(worker, PATIENCE));
+	worker_destroy(worker);
+	TEST_ASSERT_TRUE(up);
+	TEST_ASSERT_TRUE(down);
+}
+
 static void test_an_unknown_name_says_so(void)
 {
 	bus = host_bus(&host, "no-such-host.invalid:4304");
@@ -227,6 +286,8 @@ int main(void)
 	RUN_TEST(test_a_reset_is_a_loss);
 	RUN_TEST(test_a_target_that_is_not_there_is_tried_for_ever_and_told_once);
 	RUN_TEST(test_a_server_that_goes_while_idle_is_noticed);
+	RUN_TEST(test_an_idle_bus_has_nothing_to_do_until_its_server_closes);
+	RUN_TEST(test_a_worker_that_sleeps_notices_that_the_server_goes);
 	RUN_TEST(test_an_unknown_name_says_so);
 	RUN_TEST(test_shutdown_ends_a_request_at_once);
 	RUN_TEST(test_a_suspended_bus_lets_go_of_the_connection);

@@ -97,8 +97,10 @@ static void target_is_up(void)
 
 void setUp(void)
 {
-	struct serve_setup setup = {
-		.config = &config, .place = folder_place()->path, .ring = no_ring};
+	struct serve_setup setup = {.config = &config,
+	                            .place = folder_place()->path,
+	                            .directory = folder_place()->fd,
+	                            .ring = no_ring};
 	char name[24], why[128];
 
 	snprintf(name, sizeof(name), "serve-%d", (int)getpid());
@@ -324,6 +326,30 @@ static void test_who_was_given_up_waits_for_his_room_before_the_next_request(voi
 	TEST_ASSERT_EQUAL_INT(0, reply.payload);
 }
 
+/* The engine learns of it while it works on the request. */
+static void test_who_hangs_up_wants_no_answer(void)
+{
+	struct engine_guest *g;
+
+	ask(fd, FRAME_READ, TYPE);
+	g = next_guest();
+	TEST_ASSERT_EQUAL_UINT32(0, __atomic_load_n(&g->unwanted, __ATOMIC_RELAXED));
+	close(fd);
+	for (int i = 0; i < 60000 && !__atomic_load_n(&g->unwanted, __ATOMIC_RELAXED); i++)
+		usleep(1000);
+	TEST_ASSERT_EQUAL_UINT32(1, __atomic_load_n(&g->unwanted, __ATOMIC_RELAXED));
+	g->answer = (struct bus_answer){.err = -ECANCELED};
+	port->answered(port->ctx, g);
+	wait_for("served_clients", 0);
+	/* The place of the connection serves the next one. */
+	fd = connect_to_it();
+	ask(fd, FRAME_READ, TYPE);
+	g = next_guest();
+	TEST_ASSERT_EQUAL_UINT32(0, __atomic_load_n(&g->unwanted, __ATOMIC_RELAXED));
+	give(g, "DS18B20");
+	TEST_ASSERT_EQUAL_INT(7, answer(fd));
+}
+
 static void give_up(struct engine_guest *g)
 {
 	g->answer = (struct bus_answer){.err = -ETIMEDOUT};
@@ -519,5 +545,6 @@ int main(void)
 	RUN_TEST(test_a_path_means_its_own_output_in_the_middle_of_a_reload);
 	RUN_TEST(test_who_left_in_the_middle_makes_room_when_the_engine_is_done);
 	RUN_TEST(test_directories_wait_for_each_other_when_all_rooms_are_taken);
+	RUN_TEST(test_who_hangs_up_wants_no_answer);
 	return UNITY_END();
 }

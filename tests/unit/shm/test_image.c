@@ -109,8 +109,17 @@ static void test_areas_do_not_overlap(void)
 	};
 	static const char *const targets[] = {"t"};
 	static const struct image_counter counters[] = {{"c", 0}};
-	static const struct image_plan plan = {signals, 2,        targets, 1,
-	                                       NULL,    counters, 1,       .period_ns = 1};
+	static const uint32_t devices[] = {1};
+	static const struct image_plan plan = {.signals = signals,
+	                                       .signal_count = 2,
+	                                       .targets = targets,
+	                                       .target_count = 1,
+	                                       .counters = counters,
+	                                       .counter_count = 1,
+	                                       .devices = devices,
+	                                       .device_count = 1,
+	                                       .log_lines = 2,
+	                                       .period_ns = 1};
 	const struct ows_area_entry *area;
 
 	build(&plan);
@@ -135,7 +144,8 @@ static void test_areas_do_not_overlap(void)
 	area += OWS_AREA_POOL - 1;
 	TEST_ASSERT_EQUAL('\0', image.base[area->off + area->count - 1]);
 	TEST_ASSERT_EQUAL(image.infos[2].path_off + 3, area->off + area->count);
-	area += OWS_AREA_CHANGES - OWS_AREA_POOL;
+	area += OWS_AREA_DEVICES - OWS_AREA_POOL;
+	TEST_ASSERT_EQUAL(1, area->count);
 	TEST_ASSERT_GREATER_OR_EQUAL(area->off + area->size * area->count, image.header->size);
 }
 
@@ -167,7 +177,12 @@ static void test_what_people_say_of_a_signal_is_in_its_info(void)
 		.deadband = 0.5,
 	};
 	static const struct image_signal signals[] = {
-		{.name = "a", .path = "/p", .type = OWS_DOUBLE, .starts_last = true, .meta = &meta},
+		{.name = "a",
+	         .path = "/p",
+	         .type = OWS_DOUBLE,
+	         .starts_last = true,
+	         .confirm = true,
+	         .meta = &meta},
 		{.name = "b", .path = "/p", .type = OWS_DOUBLE},
 	};
 	static const struct image_plan plan = {
@@ -184,7 +199,7 @@ static void test_what_people_say_of_a_signal_is_in_its_info(void)
 	TEST_ASSERT_EQUAL_STRING(meta.points, text_at(info->points_off));
 	TEST_ASSERT_EQUAL_STRING("owserver:/s", text_at(image.header->served_off));
 	TEST_ASSERT_EQUAL(1, info->decimals);
-	TEST_ASSERT_EQUAL_HEX32(OWS_INFO_LAST | OWS_INFO_SCALED, info->flags);
+	TEST_ASSERT_EQUAL_HEX32(OWS_INFO_LAST | OWS_INFO_SCALED | OWS_INFO_CONFIRM, info->flags);
 	TEST_ASSERT_EQUAL_MEMORY(&meta.scale, &info->scale, 10 * sizeof(double));
 	info = &image.infos[2];
 	TEST_ASSERT_NULL(text_at(info->unit_off));

@@ -346,6 +346,8 @@ static void test_random_text_is_refused_or_taken_but_never_crashes(void)
 		"pin.0",
 		"parasite",
 		"end",
+		"button",
+		"short",
 	};
 	uint32_t seed = 20260101;
 	char text[2000], message[40];

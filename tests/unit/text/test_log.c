@@ -54,6 +54,28 @@ static void test_lines_come_out_in_order_with_a_newline_each(void)
 	TEST_ASSERT_EQUAL(0, log_drain(log_under_test, pipe_fd[1], 0));
 }
 
+static char seen[64];
+
+static void see(void *ctx, int64_t time_ns, enum log_level level, const char *line, size_t len)
+{
+	TEST_ASSERT_EQUAL_PTR(&seen, ctx);
+	TEST_ASSERT_GREATER_THAN_INT64(0, time_ns);
+	snprintf(seen, sizeof(seen), "%d %.*s", level, (int)len, line);
+}
+
+static void test_a_line_is_shown_as_it_is_written(void)
+{
+	log_show(log_under_test, see, &seen);
+	log_put(log_under_test, LOG_LEVEL_WARNING, "odd");
+	TEST_ASSERT_EQUAL_STRING("", seen);
+	log_drain(log_under_test, pipe_fd[1], 1);
+	TEST_ASSERT_EQUAL_STRING("4 odd", seen);
+	log_show(log_under_test, NULL, NULL);
+	log_put(log_under_test, LOG_LEVEL_WARNING, "even");
+	log_drain(log_under_test, pipe_fd[1], 1);
+	TEST_ASSERT_EQUAL_STRING("4 odd", seen);
+}
+
 static void test_levels_are_prefixed_for_the_journal(void)
 {
 	log_put(log_under_test, LOG_LEVEL_WARNING, "w");
@@ -329,6 +351,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_lines_come_out_in_order_with_a_newline_each);
+	RUN_TEST(test_a_line_is_shown_as_it_is_written);
 	RUN_TEST(test_levels_are_prefixed_for_the_journal);
 	RUN_TEST(test_lines_above_the_level_are_not_made);
 	RUN_TEST(test_no_log_is_no_error);

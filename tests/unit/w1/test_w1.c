@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "hal/bus/backends.h"
 #include "hal/native/state.h"
 #include "unity.h"
 

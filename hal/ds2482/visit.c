@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: MIT */
+/* A reset, bytes written and bytes read, in as few I2C transfers as the adapter takes. */
+#include "hal/ds2482/visit.h"
+
+#include <errno.h>
+
+#include "hal/ds2482/chip.h"
+#include "hal/ds2482/ends.h"
+#include "hal/ds2482/io.h"
+#include "hal/ds2482/run.h"
+#include "hal/ds2482/select.h"
+
+/* No byte is read across two transfers, and a transfer has the messages of one byte at least. */
+#define READS (DS2482_MAX_MESSAGES / 3)
+/* The I2C bus is not held for longer than by a block of bytes: more are read in a transfer anew. */
+#define FEW_READS 2
+#define LEAST 3
+/* Bytes on the I2C bus between a pause and the chip's look at the next command. */
+#define TO_COMMAND 4
+
+/* The messages that are gathered for the next transfer. */
+struct train {
+	struct ds2482_chip *chip;
+	struct i2c_message message[DS2482_MAX_MESSAGES];
+	uint8_t out[DS2482_MAX_MESSAGES][2];
+	uint8_t in[READS][DS2482_MAX_BYTES], pause[DS2482_MAX_BYTES];
+	uint8_t *byte[READS]; /* where the last byte of each in[] belongs */
+	unsigned count, reads, wait;
+	long max_ns; /* of the operation with which it ends; 0: that has ended */
+	bool any, slow;
+	bool read_last; /* the last message is a read */
+};
+
+/* A slow adapter takes longer for a message than an operation does. */
+static bool is_slow(const struct ds2482_chip *chip)
+{
+	return ds2482_is_slow(chip, 8 * ds2482_slot_max_ns[0]);
+}
+
+bool ds2482_visits(const struct link *base)
+{
+	const struct ds2482_link *link = (const struct ds2482_link *)base;
+	const struct ds2482_chip *chip = link->chip;
+	const struct i2c_adapter *adapter = chip->master->adapter;
+
+	return adapter && link->speed == LINK_STANDARD &&
+	       ds2482_reads_on(chip, 8 * ds2482_slot_max_ns[0]) &&
+	       (adapter->combine != I2C_ANY || adapter->max_messages >= LEAST);
+}
+
+static void out(struct train *train, uint8_t command, int parameter)
+{
+	uint8_t *bytes = train->out[train->count];
+
+	bytes[0] = command;
+	bytes[1] = (uint8_t)parameter;
+	train->message[train->count++] = (struct i2c_message){.len = parameter < 0 ? 1 : 2,
+	                                                      .data = bytes};
+	train->read_last = false;
+}
+
+static void in(struct train *train, uint8_t *bytes, unsigned n)
+{
+	train->message[train->count++] = (struct i2c_message){
+		.flags = I2C_MESSAGE_READ, .len = (uint16_t)n, .data = bytes};
+	train->read_last = true;
+}
+
+/* Transfer what was gathered. */
+static int send(struct train *train)
+{
+	struct ds2482_chip *chip = train->chip;
+	struct i2c_adapter *adapter = chip->master->adapter;
+	int err = train->count ? ds2482_wait_until(chip->master, chip->free_at) : 0;
+
+	if (!err && train->count)
+		err = adapter->ops->transfer(adapter, chip->address, train->message, train->count);
+	if (ds2482_is_refused(err)) {
+		if (train->slow)
+			ds2482_was_refused(chip);
+		else
+			ds2482_forget_ends(&chip->ends);
+	}
+	for (unsigned i = 0; !err && i < train->reads; i++)
+		*train->byte[i] = train->in[i][train->wait - 1];
+	chip->free_at = ds2482_now(chip->master) + train->max_ns;
+	train->count = train->reads = 0;
+	train->max_ns = 0;
+	return err;
+}
+
+/* Room for another operation of so many messages. A read ends what a bcm2835 can combine. */
+static int make_room(struct train *train, unsigned messages)
+{
+	const struct i2c_adapter *adapter = train->chip->master->adapter;
+	unsigned room = adapter->max_messages < DS2482_MAX_MESSAGES ? adapter->max_messages
+	                                                            : DS2482_MAX_MESSAGES;
+
+	if (train->count + messages <= room && (train->any || !train->read_last))
+		return 0;
+	return train->count ? send(train) : 0;
+}
+
+/* Let the time of an operation pass, unless the next message takes longer anyway. */
+static void pass(struct train *train, enum ds2482_operation operation, long min_ns, long max_ns)
+{
+	struct ds2482_chip *chip = train->chip;
+	unsigned most = ds2482_reading_on(chip, max_ns, TO_COMMAND);
+
+	if (ds2482_is_slow(chip, max_ns)) {
+		train->max_ns = max_ns;
+		return;
+	}
+	if (!train->slow)
+		most = ds2482_pause(&chip->ends, operation,
+		                    ds2482_reading_on(chip, min_ns, TO_COMMAND), most);
+	in(train, train->pause, most);
+	train->max_ns = 0;
+}
+
+static int reset(struct train *train)
+{
+	out(train, DS2482_RESET, DS2482_NO_PARAMETER);
+	pass(train, DS2482_OF_RESET, ds2482_reset_min_ns, ds2482_reset_max_ns[0]);
+	return 0;
+}
+
+static int write(struct train *train, uint8_t byte)
+{
+	int err = make_room(train, 2);
+
+	if (err)
+		return err;
+	out(train, DS2482_WRITE, byte);
+	pass(train, DS2482_OF_BYTE, 8 * ds2482_slot_min_ns, 8 * ds2482_slot_max_ns[0]);
+	return 0;
+}
+
+static int read(struct train *train, uint8_t *byte)
+{
+	int err = train->reads == READS ? send(train) : make_room(train, 3);
+
+	if (err)
+		return err;
+	out(train, DS2482_READ, DS2482_NO_PARAMETER);
+	out(train, DS2482_READ_POINTER, DS2482_AT_DATA);
+	train->byte[train->reads] = byte;
+	in(train, train->in[train->reads++], train->wait);
+	train->max_ns = 0;
+	return 0;
+}
+
+/* Was the chip idle, is it still set up, and who answered the reset? */
+static int look(struct train *train)
+{
+	uint8_t status;
+	int err = make_room(train, 2);
+
+	if (err)
+		return err;
+	out(train, DS2482_READ_POINTER, DS2482_AT_STATUS);
+	in(train, &status, 1);
+	err = send(train);
+	if (err)
+		return err;
+	if (status & DS2482_1WB)
+		ds2482_was_early(train->chip);
+	if (status & (DS2482_1WB | DS2482_RST))
+		return -EIO;
+	if (status & DS2482_SD)
+		return -ECOMM;
+	return status & DS2482_PPD ? 0 : -EHOSTDOWN;
+}
+
+static int run(struct train *train, const struct link_visit *visit)
+{
+	bool few = train->slow || visit->in_n <= FEW_READS;
+	int err = reset(train);
+
+	for (unsigned i = 0; !err && i < visit->out_n; i++)
+		err = write(train, visit->out[i]);
+	if (!err && !few)
+		err = send(train);
+	for (unsigned i = 0; !err && i < visit->in_n; i++)
+		err = read(train, &visit->in[i]);
+	return err ? err : look(train);
+}
+
+/* The adapter is open: ds2482_visits() has looked. */
+void ds2482_visit(struct link_visit *visit)
+{
+	struct ds2482_link *link = (struct ds2482_link *)visit->link;
+	struct ds2482_chip *chip = link->chip;
+	struct train train;
+	int err = ds2482_claimed(chip) ? ds2482_select(link) : -ENXIO;
+
+	train.chip = chip;
+	train.count = train.reads = 0;
+	train.max_ns = 0;
+	train.any = chip->master->adapter->combine == I2C_ANY;
+	train.slow = is_slow(chip);
+	train.wait = ds2482_reading_on(chip, 8 * ds2482_slot_max_ns[0], TO_COMMAND);
+	if (!err)
+		err = run(&train, visit);
+	if (!err)
+		chip->free_at = 0;
+	else
+		chip->free_at = ds2482_now(chip->master) + ds2482_reset_max_ns[0];
+	if (!err) {
+		link->cost.resets++;
+		link->cost.wire_ns += (uint64_t)ds2482_reset_ns[0];
+		link->cost.wire_ns += 8u * (visit->out_n + visit->in_n) *
+		                      (uint64_t)ds2482_slot_ns[0];
+	}
+	ds2482_began(chip);
+	visit->err = err;
+	visit->ended_ns = ds2482_now(chip->master);
+}

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A whole transaction of one chip, a reset, bytes written, bytes read, in as few I2C transfers as
+ * the adapter takes (mostly two). By the data sheet of the DS2482:
+ *
+ *   - a command for the wire that comes while the chip works is refused, and not executed: so
+ *     nothing has to be read between two of them but to pass the time;
+ *   - the bits of the status that say who answered a reset stay until the next reset: so one
+ *     status, at the end, tells that and whether the chip was idle.
+ *
+ * How long a reset and a byte take is learnt of each chip (ends.h). The bytes that were read count
+ * on the longest time of the data sheet, as nothing shows that a register was read too early.
+ */
+#ifndef HAL_DS2482_VISIT_H
+#define HAL_DS2482_VISIT_H
+
+#include <stdbool.h>
+
+struct link;
+struct link_visit;
+
+/* As link_ops.visits: can the adapter do that? */
+bool ds2482_visits(const struct link *link);
+/* As link_ops.together, of one. Blocks for the time of the transaction, some 15 ms at 400 kHz. */
+void ds2482_visit(struct link_visit *visit);
+
+#endif

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+/* What the work of a bus has cost: time of its wires, calls of the system. */
+#ifndef HAL_NATIVE_COST_H
+#define HAL_NATIVE_COST_H
+
+#include "hal/native/state.h"
+
+/*
+ * What the job's wire did since it was looked at last was a transaction of this job. For what
+ * serves several devices (searches, Convert T for all) nobody calls this.
+ */
+void cost_of_job(struct native *native, struct job *job);
+/* At the end of a step: the counters have all that was done. */
+void cost_take(struct native *native);
+
+#endif

@@ -1,0 +1,380 @@
+/* SPDX-License-Identifier: MIT */
+/* The first values of thermometers, before the first search of their wire has ended. */
+#include <string.h>
+
+#include "hal/chips/find.h"
+#include "hal/chips/thermometer.h"
+#include "hal/native/broadcast.h"
+#include "hal/native/first.h"
+#include "hal/native/first_wire.h"
+#include "hal/native/hunt.h"
+#include "hal/native/job.h"
+#include "hal/native/job_txn.h"
+#include "hal/native/presence.h"
+#include "hal/native/sensors.h"
+#include "hal/native/supply.h"
+#include "hal/native/together.h"
+#include "hal/wire/crc.h"
+
+#define FRESH_NS (5 * NATIVE_S) /* a result serves a request for so long */
+#define READ_SCRATCHPAD 0xbe
+#define SCRATCHPAD_SIZE 9
+#define TRIES 2
+
+/* Is it certain without the chip's help which chip it is? */
+static bool is_plain(const struct family *family)
+{
+	return family && family->thermometer && !family->kind && !family->identify;
+}
+
+/* Does a request that was not looked at ask for the temperature of a device that its id names? */
+static bool names_one(const struct native *native, const struct job *job, struct path *path)
+{
+	if (!job->req || job->state != JOB_NEW || job->req->op != BUS_READ ||
+	    job->req->prio <= BUS_OUTPUT ||
+	    path_split(job->req->path, strlen(job->req->path), path) || !path->has_rom ||
+	    path->last.len != path->device.len || path->alarm)
+		return false;
+	const struct family *family = sensors_family(&native->sensors, path->rom);
+
+	if (!is_plain(family))
+		return false;
+	const struct property *property = family_property(family, NULL, path->property.text,
+	                                                  path->property.len);
+	return property && property->convert;
+}
+
+static bool is_on(const struct path *path, unsigned n)
+{
+	return path->bus < 0 || path->bus == (int)n;
+}
+
+/* Have all that waited for the conversions of a wire got their readings? */
+static bool are_served(const struct native *native, unsigned n)
+{
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		const struct job *job = &native->jobs[i];
+		struct path path;
+
+		if (!job->req || job->first != FIRST_TAKES_PART)
+			continue;
+		if (job->state != JOB_NEW ? job->txn.device && job->txn.device->channel == n
+		                          : names_one(native, job, &path) && is_on(&path, n))
+			return false;
+	}
+	return true;
+}
+
+/* Not yet, or once more, for those that asked since then. */
+static bool may_convert(const struct native *native, unsigned n, int64_t now)
+{
+	const struct channel *channel = &native->channel[n];
+	const struct first *first = &channel->first;
+
+	if (channel->listed || !channel->searching || !native_abreast(native, n) ||
+	    channel->link->driven || channel->link->passive)
+		return false;
+	return !first->tried || (!first->refused && first->ready_ns && first->ready_ns <= now &&
+	                         are_served(native, n));
+}
+
+static bool has_thermometer(const struct native *native, unsigned n)
+{
+	for (unsigned i = 0; i < native->table.count; i++)
+		if (native_thermometer(&native->table.devices[i], n) &&
+		    native->table.devices[i].seen == native->channel[n].round)
+			return true;
+	return false;
+}
+
+static void know_supply(struct native *native, unsigned n, enum device_power power)
+{
+	for (unsigned i = 0; i < native->table.count; i++)
+		if (native_thermometer(&native->table.devices[i], n))
+			native->table.devices[i].power = power;
+}
+
+/* What goes wrong here is seen to by the search, and by the conversions after it. */
+static void convert(struct native *native, unsigned n)
+{
+	struct channel *channel = &native->channel[n];
+	struct path path;
+
+	channel->first.tried = channel->first.refused = true;
+	if (supply_look(native, n) <= 0)
+		return;
+	know_supply(native, n, POWER_EXTERNAL);
+	if (broadcast_convert(native, n, false, FIRST_LONGEST_NS) < 0)
+		return;
+	channel->first.refused = false;
+	native->first_left = true;
+	channel->first.ready_ns = channel->simultaneous_ns[SIMULTANEOUS_TEMPERATURE];
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
+		if (native->jobs[i].first != FIRST_LEFT &&
+		    names_one(native, &native->jobs[i], &path) && is_on(&path, n))
+			native->jobs[i].first = FIRST_TAKES_PART;
+}
+
+static bool is_asked(const struct native *native, unsigned n)
+{
+	struct path path;
+
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
+		if (native->jobs[i].first != FIRST_LEFT &&
+		    names_one(native, &native->jobs[i], &path) && is_on(&path, n))
+			return true;
+	return false;
+}
+
+/* What a table of the program answers waits for no wire. */
+static bool needs_no_wire(const struct job *job, struct path *path)
+{
+	static const char name[] = "structure/";
+
+	return job->req && job->state == JOB_NEW &&
+	       !path_split(job->req->path, strlen(job->req->path), path) && !path->device.len &&
+	       path->property.len >= strlen(name) &&
+	       memcmp(path->property.text, name, strlen(name)) == 0;
+}
+
+/*
+ * What came after the start of the conversions, and does not insist on one of its own, takes part
+ * in them.
+ */
+static void take_new(struct native *native, int64_t now)
+{
+	struct path path;
+
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (needs_no_wire(job, &path))
+			job_look(native, job, now);
+		else if (native->first_left && !job->first && names_one(native, job, &path))
+			job->first = job->req->fresh || path.uncached || native->uncached
+			                     ? FIRST_NO
+			                     : FIRST_TAKES_PART;
+	}
+}
+
+static bool was_read(const struct device *device)
+{
+	return thermometer_of(device)->raw_ns >= thermometer_of(device)->converted_ns;
+}
+
+/* It waits for the result of the conversion that has begun for all, and for no other. */
+static void attach(struct native *native, struct job *job, struct device *device)
+{
+	job->txn.device = device;
+	job->begun = true;
+	job->first = FIRST_TAKES_PART;
+	job_txn(native, job);
+	job->state = JOB_CONVERTING;
+	job->ready_ns = thermometer_of(device)->converted_ns;
+}
+
+/*
+ * Read an id that nobody has found yet. Its answer proves it, and is the request's reading. Who
+ * does not answer is left to the search.
+ */
+static void read_unknown(struct native *native, struct job *job, unsigned n, int64_t now)
+{
+	_Alignas(max_align_t) uint8_t own[DEVICE_OWN] = {0};
+	const uint8_t command = READ_SCRATCHPAD;
+	struct device stranger = {.own = own, .channel = (uint8_t)n};
+	struct txn txn = {.native = native,
+	                  .link = native->channel[n].link,
+	                  .channel = n,
+	                  .device = &stranger};
+	uint8_t out[TXN_SELECT + 1], in[SCRATCHPAD_SIZE];
+	struct link_visit visit = {.link = txn.link, .out = out, .in = in, .in_n = sizeof(in)};
+	bool whole = txn.link->ops->visits(txn.link);
+	int err = 0;
+
+	memcpy(stranger.rom, job->path.rom, sizeof(stranger.rom));
+	stranger.family = sensors_family(&native->sensors, stranger.rom);
+	visit.out_n = (uint8_t)txn_select(&stranger, &command, 1, out);
+	native_count(native, COUNT_TRANSACTIONS);
+	if (whole) {
+		visit.link->ops->together(&visit, 1);
+		err = visit.err;
+		txn_done(&txn, err ? NULL : &visit);
+	}
+	if (!err)
+		err = txn_command(&txn, &command, 1);
+	if (!err)
+		err = txn_read_crc8(&txn, in, sizeof(in));
+	if (!err)
+		err = thermometer_saw(&txn, 0, in, sizeof(in));
+	if (err) {
+		if (txn.silent || ++job->tries == TRIES) {
+			job->first = FIRST_LEFT;
+			job->tries = 0;
+		}
+		return;
+	}
+	presence_found(native, stranger.rom, n, now);
+	struct device *device = device_find(&native->table, stranger.rom);
+	if (!device || !first_took_part(native, device)) {
+		job->first = FIRST_LEFT;
+		return;
+	}
+	job->tries = 0;
+	attach(native, job, device);
+	if (!whole)
+		return;
+	txn_done(&job->txn, &visit);
+	job_step(native, job, native_now(native));
+	/* After its step the slot may be another request's. */
+	txn_done(&job->txn, NULL);
+}
+
+/* Whether a request that waits for the first conversions can be read now, and on which wire. */
+static bool is_ready(struct native *native, struct job *job, int64_t now, int64_t *next,
+                     unsigned *n)
+{
+	struct path path;
+
+	if (!job->req || job->first != FIRST_TAKES_PART)
+		return false;
+	if (job->state != JOB_NEW) {
+		*n = job->txn.device ? job->txn.device->channel : 0;
+		return (job->state == JOB_CONVERTING || job->state == JOB_RUN) &&
+		       job_ready(native, job, now, next);
+	}
+	*n = 0;
+	/* The only wire is the one on which an id that nobody knows may be. */
+	bool only = native_next(native, 1) == NATIVE_ALL;
+	if (!names_one(native, job, &path))
+		return false;
+	const struct device *device = device_find(&native->table, path.rom);
+	bool known = device && device->present;
+	if (known)
+		*n = device->channel;
+	else if (!only)
+		return false;
+	int64_t ready_ns = native->channel[*n].first.ready_ns;
+
+	if (ready_ns > now && ready_ns < *next)
+		*next = ready_ns;
+	return ready_ns && ready_ns <= now && ready_ns + FRESH_NS > now && is_on(&path, *n) &&
+	       (!known || (first_took_part(native, device) && !was_read(device)));
+}
+
+static void read_one(struct native *native, struct job *job, unsigned n, int64_t now)
+{
+	if (job->state == JOB_NEW) {
+		job_look(native, job, now);
+		if (!job->req)
+			return;
+		struct device *device = job->txn.device;
+
+		if (!device || !device->present) {
+			/* Looked at again, if it is not there. */
+			job->state = JOB_NEW;
+			read_unknown(native, job, n, now);
+			return;
+		}
+		attach(native, job, device);
+	}
+	native->schedule.doing = SCHEDULE_READ;
+	together_step(native, job, now);
+}
+
+/*
+ * Some request waits for the end of the search; urgent: it may not wait longer for that. One for a
+ * temperature waits for the next conversions.
+ */
+static bool others_wait(const struct native *native, bool *urgent)
+{
+	struct path path;
+	bool wait = false;
+
+	*urgent = false;
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		const struct job *job = &native->jobs[i];
+
+		if (!job->req || job->first || names_one(native, job, &path))
+			continue;
+		wait = true;
+		*urgent |= job->req->prio <= BUS_OUTPUT;
+	}
+	return wait;
+}
+
+static bool read_next(struct native *native, int64_t now, int64_t *next)
+{
+	struct job *best = NULL;
+	unsigned n = 0, best_n = 0;
+	bool urgent;
+
+	take_new(native, now);
+	bool wait = others_wait(native, &urgent);
+
+	native->first_turn = !native->first_turn;
+	if (urgent || (wait && native->first_turn))
+		return false;
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (is_ready(native, job, now, next, &n) && job_goes_first(job, best)) {
+			best = job;
+			best_n = n;
+		}
+	}
+	if (best)
+		read_one(native, best, best_n, now);
+	return best;
+}
+
+/* All searches have ended: requests for devices that were found wait for the first conversions. */
+static void attach_all(struct native *native, int64_t now)
+{
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (!job->req || job->first != FIRST_TAKES_PART || job->state != JOB_NEW)
+			continue;
+		job->first = FIRST_NO;
+		job_look(native, job, now);
+		struct device *device = job->req ? job->txn.device : NULL;
+		if (device && first_took_part(native, device) &&
+		    thermometer_of(device)->converted_ns + FRESH_NS > now)
+			attach(native, job, device);
+	}
+}
+
+/* A device that was found meanwhile was not asked for its supply. */
+static bool end(struct native *native, int64_t now)
+{
+	take_new(native, now);
+	attach_all(native, now);
+	for (unsigned n = 0; n < native->channels; n++) {
+		struct channel *channel = &native->channel[n];
+
+		if (!channel->first.ready_ns)
+			continue;
+		channel->first.ready_ns = 0;
+		bool external = supply_look(native, n) > 0;
+		if (!external)
+			know_supply(native, n, POWER_UNKNOWN);
+		channel->power_asked = channel->all_external = external;
+		return true;
+	}
+	native->first_left = false;
+	return false;
+}
+
+bool first_step(struct native *native, int64_t now, int64_t *next)
+{
+	if (!hunt_initial(native))
+		return native->first_left && end(native, now);
+	for (unsigned n = 0; n < native->channels; n++) {
+		if (!may_convert(native, n, now) || !has_thermometer(native, n) ||
+		    !is_asked(native, n))
+			continue;
+		convert(native, n);
+		return true;
+	}
+	return read_next(native, now, next);
+}

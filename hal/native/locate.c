@@ -1,0 +1,329 @@
+/* SPDX-License-Identifier: MIT */
+/* Looks for devices that did not answer, and for those that nobody knows. */
+#include <errno.h>
+#include <string.h>
+
+#include "hal/native/answer.h"
+#include "hal/native/limits.h"
+#include "hal/native/locate.h"
+#include "hal/native/master.h"
+#include "hal/native/outcome.h"
+#include "hal/native/presence.h"
+#include "hal/native/state.h"
+#include "hal/native/touch.h"
+
+#define SHARE 10 /* looks take one part in so many of the time */
+#define IDLE_SHARE 4
+#define SAVED_NS NATIVE_S
+#define TOUCH_NS (2 * NATIVE_S)
+#define TRIES 3
+#define TRIES_LINK 6
+
+/* Where a chip of the master does not answer, nobody knows what is behind it. */
+static int not_found(const struct native *native)
+{
+	return native->grow_told ? -ENXIO : -ENODEV;
+}
+
+static void missing_end(struct native *native, struct job *job)
+{
+	presence_lost(native, job->txn.device);
+	job_answer(native, job, not_found(native));
+}
+
+void locate_missing(struct native *native, struct job *job, int64_t now)
+{
+	native_count(native, COUNT_TRANSACTIONS);
+	int there = search_verify(native->channel[job->channel].link, job->path.rom, false);
+
+	if (there == -EBADMSG)
+		there = 0;
+	if (there < 0) {
+		job->txn.channel = job->channel;
+		job->txn.link_error = there;
+		job_failed(native, job, there);
+		return;
+	}
+	master_good(native, job->channel);
+	if (there) {
+		presence_found(native, job->path.rom, job->channel, now);
+		job->state = JOB_QUEUED;
+	} else if (++job->tries >= TRIES) {
+		missing_end(native, job);
+	}
+}
+
+static bool is_waiting(const struct job *job)
+{
+	return job->req && job->state == JOB_LOCATE && !job->verified;
+}
+
+static bool is_for(const struct job *job, unsigned n)
+{
+	return job->bus < 0 || (unsigned)job->bus == n;
+}
+
+/* It takes part in looks from then on. Keys that are searched for all the time need none first. */
+static int64_t looked_from(const struct native *native, const struct job *job)
+{
+	return job->locate_ns + (touch_seeks(native, job->path.rom) ? TOUCH_NS : 0);
+}
+
+/* Was the channel searched as a whole, or for all keys, since the request came? */
+static bool is_searched(const struct native *native, const struct job *job, unsigned n)
+{
+	const struct channel *channel = &native->channel[n];
+
+	return channel->whole_ns >= job->since_ns ||
+	       (touch_seeks(native, job->path.rom) && channel->touch.whole_ns >= job->since_ns);
+}
+
+/* Has this channel still to be looked at for the job? */
+static bool lacks(const struct native *native, const struct job *job, unsigned n)
+{
+	return is_for(job, n) && !is_searched(native, job, n) &&
+	       native->channel[n].looked_ns < looked_from(native, job);
+}
+
+static bool lacks_any(const struct native *native, const struct job *job)
+{
+	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1))
+		if (lacks(native, job, n))
+			return true;
+	return false;
+}
+
+/* Every channel that it could be on has been looked at, or was found to be short. */
+static void answer_away(struct native *native, struct job *job)
+{
+	bool heard = job->heard;
+
+	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1))
+		heard |= is_for(job, n) && is_searched(native, job, n);
+	job_answer(native, job, heard ? not_found(native) : -ECOMM);
+}
+
+int locate_expired(const struct native *native, const struct job *job)
+{
+	for (unsigned n = native_next(native, 0); n < NATIVE_ALL; n = native_next(native, n + 1))
+		if (is_for(job, n) && !native->channel[n].whole_ns)
+			return -ETIME;
+	return not_found(native);
+}
+
+void locate_wait(struct native *native, struct job *job, int64_t now)
+{
+	job->state = JOB_LOCATE;
+	job->sought = job->heard = false;
+	job->locate_ns = now;
+	if (!lacks_any(native, job))
+		answer_away(native, job);
+}
+
+/* Somebody has found its device meanwhile. */
+static bool is_found(struct native *native, struct job *job)
+{
+	struct device *device = device_find(&native->table, job->path.rom);
+
+	if (!device || !device->present || (job->bus >= 0 && device->channel != job->bus))
+		return false;
+	job->txn.device = device;
+	job->state = JOB_QUEUED;
+	return true;
+}
+
+/* The requests that need no look any more go on. */
+static void let_go(struct native *native)
+{
+	bool found = native->locate.found != native->count[COUNT_FOUND];
+
+	native->locate.found = native->count[COUNT_FOUND];
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (is_waiting(job) && !(found && is_found(native, job)) && !lacks_any(native, job))
+			answer_away(native, job);
+	}
+}
+
+/* Those that wait for this channel. Returns whether there are any. */
+static bool gather(struct native *native, unsigned n, int64_t now, bool begin)
+{
+	bool any = false;
+
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+		bool wanted = is_waiting(job) && lacks(native, job, n) &&
+		              looked_from(native, job) <= now;
+
+		any |= wanted;
+		if (begin)
+			job->sought = wanted;
+	}
+	return any;
+}
+
+/* A strong pull-up feeds somebody: no search may cut it. */
+static bool is_held(const struct native *native, unsigned n, int64_t now, int64_t *next)
+{
+	int64_t until = native->hold_ns[native->channel[n].link->chip % NATIVE_CHANNELS];
+
+	if (!native_held(native, n, NULL, now))
+		return false;
+	*next = until < *next ? until : *next;
+	return true;
+}
+
+/* A channel to look at, the next in turn; false: there is none now. */
+static bool begin(struct native *native, int64_t now, int64_t *next)
+{
+	struct locate *locate = &native->locate;
+
+	for (unsigned i = 1; i <= NATIVE_ALL; i++) {
+		unsigned n = (locate->channel + i) % NATIVE_ALL;
+
+		if (!native_has(native, n) || !gather(native, n, now, false) ||
+		    is_held(native, n, now, next))
+			continue;
+		gather(native, n, now, true);
+		locate->looking = true;
+		locate->channel = n;
+		locate->tries = 0;
+		locate->begun_ns = now;
+		return true;
+	}
+	return false;
+}
+
+/* heard: the channel is not short. */
+static void end(struct native *native, bool heard)
+{
+	struct locate *locate = &native->locate;
+
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (is_waiting(job) && looked_from(native, job) <= locate->begun_ns &&
+		    lacks(native, job, locate->channel))
+			job->heard |= heard;
+	}
+	locate->looking = false;
+	native->channel[locate->channel].looked_ns = locate->begun_ns;
+	let_go(native);
+}
+
+/* The look failed for good. */
+static void give_up(struct native *native, int err)
+{
+	native->locate.looking = false;
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++)
+		if (is_waiting(&native->jobs[i]) && native->jobs[i].sought)
+			job_answer(native, &native->jobs[i], err);
+}
+
+static void failed(struct native *native, int err)
+{
+	struct locate *locate = &native->locate;
+
+	locate->tries++;
+	if (err == -ECOMM) {
+		native_count(native, COUNT_SHORTS);
+		native->channel[locate->channel].shorts++;
+		end(native, false);
+	} else if (err == -EBADMSG) {
+		native_count(native, COUNT_CHECKSUMS);
+		if (locate->tries >= TRIES)
+			end(native, true);
+	} else if (master_recover(native, locate->channel, err) && locate->tries >= TRIES_LINK) {
+		give_up(native, -EIO);
+	}
+}
+
+/* One search, for all that are not decided yet. True: it found one. */
+static bool look(struct native *native, int64_t now)
+{
+	struct locate *locate = &native->locate;
+	const uint8_t *roms[NATIVE_DEPTH];
+	struct job *jobs[NATIVE_DEPTH];
+	bool away[NATIVE_DEPTH] = {false};
+	unsigned n = 0, left = 0;
+
+	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {
+		struct job *job = &native->jobs[i];
+
+		if (!is_waiting(job) || !job->sought)
+			continue;
+		jobs[n] = job;
+		roms[n++] = job->path.rom;
+	}
+	if (!n) {
+		end(native, true);
+		return false;
+	}
+	native_count(native, COUNT_TRANSACTIONS);
+	int there = search_among(native->channel[locate->channel].link, roms, away, n);
+	if (there < 0) {
+		failed(native, there);
+		return false;
+	}
+	locate->tries = 0;
+	master_good(native, locate->channel);
+	if (there)
+		presence_found(native, roms[0], locate->channel, now);
+	for (unsigned i = 0; i < n; i++) {
+		if (there && memcmp(roms[i], roms[0], ROM_LEN) == 0 && !is_found(native, jobs[i]))
+			job_answer(native, jobs[i], -ENODEV); /* the table is full */
+		jobs[i]->sought &= !away[i];
+		left += is_waiting(jobs[i]) && jobs[i]->sought;
+	}
+	if (!left)
+		end(native, true);
+	return there;
+}
+
+static void save(struct locate *locate, int64_t now)
+{
+	int64_t saved = locate->credit_ns + (now - locate->counted_ns) / SHARE;
+
+	locate->credit_ns = saved < SAVED_NS ? saved : SAVED_NS;
+	locate->counted_ns = now;
+}
+
+/* When the next search may be made. */
+static int64_t when_due(const struct locate *locate, int64_t now, bool idle)
+{
+	int64_t least = locate->urgent ? -SAVED_NS : 0;
+	int64_t when = locate->credit_ns >= least ? now : now + (least - locate->credit_ns) * SHARE;
+
+	return idle && locate->idle_ns < when ? locate->idle_ns : when;
+}
+
+bool locate_step(struct native *native, int64_t now, bool idle, int64_t *next)
+{
+	struct locate *locate = &native->locate;
+
+	locate->looking &= locate->waits && native_has(native, locate->channel);
+	if (!locate->waits)
+		return false;
+	save(locate, now);
+	/* Others may have found devices, or searched a channel as a whole. */
+	let_go(native);
+	int64_t when = when_due(locate, now, idle && *next - now > locate->took_ns);
+	if (when > now) {
+		*next = when < *next ? when : *next;
+		return false;
+	}
+	/* Between two searches others have had the wire. */
+	if (locate->looking ? is_held(native, locate->channel, now, next)
+	                    : !begin(native, now, next))
+		return false;
+	bool found = look(native, now);
+	locate->took_ns = native_now(native) - now;
+	/* A whole wire that comes back is not to wait. */
+	if (!found) {
+		locate->credit_ns -= locate->took_ns;
+		locate->idle_ns = now + IDLE_SHARE * locate->took_ns;
+	}
+	native->touched = true;
+	return true;
+}

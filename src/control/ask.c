@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT */
+/* Programs that ask for a reload: how they wait, and the answer. */
+#include <errno.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
+
+#include "hal/bus/bell.h"
+#include "hal/bus/time.h"
+#include "src/control/ask.h"
+
+static uint32_t state_of(const struct control_place *p)
+{
+	return __atomic_load_n(&p->state, __ATOMIC_ACQUIRE);
+}
+
+bool ask_waits(const struct control_place *p)
+{
+	uint32_t state = state_of(p);
+
+	return state == CONTROL_ASKING || state == CONTROL_ASKED;
+}
+
+int ask_begin(struct control *c, struct control_place *p, const struct ows_hello *hello)
+{
+	unsigned waiting = 0;
+
+	for (unsigned i = 0; i < OWS_GIVERS; i++)
+		waiting += ask_waits(&c->places[i]);
+	if (waiting >= CONTROL_ASKERS)
+		return -ENOSPC;
+	p->who = (struct ows_who){.uid = p->peer.uid, .pid = p->peer.pid};
+	giver_clean_name(p->who.name, hello->name);
+	p->until_ns = c->now_ns + CONTROL_ASK_NS;
+	__atomic_store_n(&p->state, CONTROL_ASKING, __ATOMIC_RELEASE);
+	bell_ring(c->asked);
+	return 0;
+}
+
+void ask_answer(const struct control *c, const struct control_place *p, int err, const char *why)
+{
+	struct ows_welcome answer = {
+		.magic = OWS_WELCOME_MAGIC,
+		.major = OWS_LAYOUT_MAJOR,
+		.minor = OWS_LAYOUT_MINOR,
+		.err = err,
+		.generation = c->layout->generation,
+		.start_id = c->layout->start_id,
+	};
+	char words[OWS_WHY];
+	struct iovec parts[] = {{.iov_base = &answer, .iov_len = sizeof(answer)},
+	                        {.iov_base = words, .iov_len = strnlen(why, sizeof(words))}};
+	struct msghdr message = {.msg_iov = parts, .msg_iovlen = 2};
+
+	memcpy(words, why, parts[1].iov_len);
+	sendmsg(p->fd, &message, MSG_DONTWAIT | MSG_NOSIGNAL);
+}

@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: MIT */
+/* The program of a face: its start, its loop, its end. */
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "hal/bus/time.h"
+#include "src/face/load.h"
+#include "src/face/look.h"
+#include "src/face/loop.h"
+#include "src/service/journal.h"
+#include "src/service/standard.h"
+#include "src/service/unix_signals.h"
+
+int face_watch(struct face *face, int fd, short events)
+{
+	if (face->fd_count == FACE_DESCRIPTORS)
+		return -ENOSPC;
+	face->fds[face->fd_count] = fd;
+	face->wanted[face->fd_count++] = events;
+	return 0;
+}
+
+void face_ignore(struct face *face, int fd)
+{
+	for (unsigned i = 0; i < face->fd_count; i++)
+		if (face->fds[i] == fd) {
+			face->fd_count--;
+			face->fds[i] = face->fds[face->fd_count];
+			face->wanted[i] = face->wanted[face->fd_count];
+			return;
+		}
+}
+
+void face_status(struct face *face, const char *format, ...)
+{
+	char text[sizeof(face->status)];
+	va_list args;
+
+	va_start(args, format);
+	vsnprintf(text, sizeof(text), format, args);
+	va_end(args);
+	if (strcmp(text, face->status) == 0)
+		return;
+	memcpy(face->status, text, sizeof(text));
+	notify_status(&face->notify, "%s", text);
+}
+
+static void feed(struct face *face, int64_t now_ns)
+{
+	if (!face->notify.watchdog_ns || now_ns - face->fed_ns < face->notify.watchdog_ns / 4)
+		return;
+	face->fed_ns = now_ns;
+	notify_send(&face->notify, NOTIFY_WATCHDOG);
+}
+
+static int64_t earlier(int64_t a, int64_t b)
+{
+	return a < b ? a : b;
+}
+
+/* Sleep until something is ready or the next thing is due, then give what is ready to the face. */
+static void wait_and_take(struct face *face, struct unix_signals *signals, int64_t now_ns)
+{
+	struct pollfd fds[3 + FACE_DESCRIPTORS] = {
+		{.fd = signals->fd, .events = POLLIN},
+		{.fd = log_bell(face->log), .events = POLLIN},
+		{.fd = look_descriptor(face, now_ns), .events = POLLIN},
+	};
+	unsigned count = face->fd_count;
+	int64_t until = earlier(face->tick_ns, look_next(face, now_ns)), left;
+	struct timespec t;
+
+	if (face->notify.watchdog_ns)
+		until = earlier(until, face->fed_ns + face->notify.watchdog_ns / 4);
+	left = until > now_ns ? until - now_ns : 0;
+	t = (struct timespec){.tv_sec = (time_t)(left / NS_PER_S),
+	                      .tv_nsec = (long)(left % NS_PER_S)};
+	for (unsigned i = 0; i < count; i++)
+		fds[3 + i] = (struct pollfd){.fd = face->fds[i], .events = face->wanted[i]};
+	if (ppoll(fds, 3 + count, &t, NULL) <= 0)
+		return;
+	if (fds[0].revents)
+		unix_signals_take(signals);
+	for (unsigned i = 3; i < 3 + count; i++)
+		if (fds[i].revents)
+			face->ops->event(face, &(struct face_event){.news = FACE_DESCRIPTOR,
+			                                            .fd = fds[i].fd,
+			                                            .ready = fds[i].revents});
+}
+
+static void loop(struct face *face, struct unix_signals *signals, int prefix)
+{
+	while (!signals->end) {
+		int64_t now_ns = ows_now();
+
+		if (signals->reload) {
+			signals->reload = false;
+			notify_send(&face->notify, NOTIFY_RELOADING);
+			load_again(face);
+			face->ops->event(face, &(struct face_event){.news = FACE_FILE});
+			notify_send(&face->notify, NOTIFY_READY);
+		}
+		look(face, now_ns);
+		if (now_ns >= face->tick_ns)
+			face->ops->tick(face, now_ns);
+		feed(face, now_ns);
+		log_drain(face->log, STDERR_FILENO, prefix);
+		wait_and_take(face, signals, ows_now());
+	}
+	/* what changed within the face's pace, and before the end */
+	face->look_ns = 0;
+	look(face, ows_now());
+	log_notice(face->log, "%s ends: %s", face->ops->program,
+	           signals->end == SIGTERM ? "SIGTERM" : "SIGINT");
+}
+
+static int run(struct face *face, struct unix_signals *signals)
+{
+	int prefix = journal_is_stderr(), err;
+
+	if (notify_open(&face->notify))
+		log_warning(face->log, "NOTIFY_SOCKET cannot be used");
+	err = face->ops->open(face);
+	if (!err) {
+		log_notice(face->log, "%s %s: instance %s, configuration %s", face->ops->program,
+		           OWSD_VERSION, face->arguments->instance, face->arguments->file);
+		notify_send(&face->notify, NOTIFY_READY);
+		loop(face, signals, prefix);
+		notify_send(&face->notify, NOTIFY_STOPPING);
+		face->ops->close(face);
+	}
+	log_finish(face->log, STDERR_FILENO, prefix);
+	ows_close(face->ows);
+	notify_close(&face->notify);
+	return err ? FACE_EXIT_RUN : EXIT_SUCCESS;
+}
+
+int face_main(const struct face_ops *ops, int argc, char **argv)
+{
+	struct face_arguments arguments;
+	struct unix_signals signals;
+	struct face face = {
+		.ops = ops, .arguments = &arguments, .tick_ns = INT64_MAX, .notify.fd = -1};
+	int status = standard_open();
+
+	if (status) {
+		face_complain(ops->program, "/dev/null: %s", strerror(-status));
+		return FACE_EXIT_RUN;
+	}
+	/* a write beyond the file size limit then fails with an error instead of ending the face */
+	signal(SIGXFSZ, SIG_IGN);
+	status = face_arguments_parse(ops->program, &ops->option, argc, argv, &arguments);
+	if (status >= 0)
+		return status;
+	if (load_first(&face))
+		return FACE_EXIT_USAGE;
+	face.log = log_create(arguments.level);
+	status = unix_signals_open(&signals);
+	if (!face.log || status) {
+		face_complain(ops->program, "cannot start: %s",
+		              face.log ? strerror(-status) : "no memory for the log");
+		status = FACE_EXIT_RUN;
+	} else {
+		status = run(&face, &signals);
+		close(signals.fd);
+	}
+	log_destroy(face.log);
+	load_free(&face);
+	return status;
+}

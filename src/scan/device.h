@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The devices that a scan finds, and the properties and values of each.
+ *
+ * Room src/scan: a target opened without an engine: its devices, and what they have. Uses src/show,
+ * hal/owfs, hal/bus.
+ */
+#ifndef SCAN_DEVICE_H
+#define SCAN_DEVICE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "src/libows/ows.h"
+
+/* What most people want of a device of some families. */
+struct scan_property {
+	const char *name; /* "temperature12" */
+	const char *word; /* for the name of its signal: "temperature" */
+	enum ows_type type;
+	bool output;         /* a scan reads the present value past the cache */
+	unsigned per_factor; /* 0: owsd's default */
+};
+
+#define SCAN_PROPERTIES 4
+struct scan_kind {
+	const char *families;                           /* "22 28" */
+	struct scan_property property[SCAN_PROPERTIES]; /* name NULL after the last */
+};
+
+struct scan_value {
+	int err;
+	char text[64];
+};
+
+#define SCAN_TYPE 40
+#define SCAN_ALIAS 64
+#define SCAN_IDENTITY 52
+struct scan_device {
+	char path[128];    /* "/28.551DDF030000", behind a coupler "/1F.x/main/28.y" */
+	char location[16]; /* "bus.0" */
+	uint8_t family;
+	bool simulated;
+	char type[SCAN_TYPE];         /* "": the target does not report it */
+	char alias[SCAN_ALIAS];       /* "": no alias */
+	char identity[SCAN_IDENTITY]; /* "DS18B20 clone, family B1"; "": the target has none */
+	const struct scan_kind *kind; /* NULL: owsd does not know the family */
+	struct scan_value value[SCAN_PROPERTIES];
+};
+
+struct scan {
+	struct scan_device *device; /* sorted by path */
+	unsigned count;
+};
+
+#endif

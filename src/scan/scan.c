@@ -1,0 +1,286 @@
+/* SPDX-License-Identifier: MIT */
+/* Asks a target for its devices and their properties. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/owfs/path.h"
+#include "src/scan/device.h"
+#include "src/scan/kind.h"
+#include "src/scan/scan.h"
+#include "src/scan/target.h"
+#include "src/show/text.h"
+
+#define LISTING_MAX (256u * 1024)
+#define BUSES_MAX 256
+#define COUPLER 0x1f /* DS2409 */
+#define COUPLERS_MAX 512
+
+/* The requests for a device besides those for the properties of its kind. */
+enum { ASK_TYPE, ASK_ALIAS, ASK_IDENTITY, ASK_PROPERTIES, ASKS = ASK_PROPERTIES + SCAN_PROPERTIES };
+
+struct question {
+	char path[192];
+	char text[128];
+};
+
+static int by_path(const void *a, const void *b)
+{
+	const struct scan_device *x = a, *y = b;
+
+	return strcmp(x->path, y->path);
+}
+
+/* List path into text (LISTING_MAX + 1 bytes). Returns the error. */
+static int list(struct target *target, const char *path, bool fresh, char *text)
+{
+	struct ask ask = {.req = {.op = BUS_DIR,
+	                          .prio = BUS_GUEST,
+	                          .path = path,
+	                          .fresh = fresh,
+	                          .data = (uint8_t *)text,
+	                          .len = LISTING_MAX}};
+	int err = target_ask_one(target, &ask);
+
+	text[err ? 0 : ask.answer.len] = '\0';
+	return err;
+}
+
+/* Parse the device of a line; false if the line shows none. */
+static bool device_of(const char *line, struct scan_device *device)
+{
+	char rom[ROM_TEXT_MAX];
+	struct path path;
+
+	if (path_split(line, strlen(line), &path) || !path.has_rom || path.property.len)
+		return false;
+	rom_print(path.rom, ROM_F_I, rom);
+	*device = (struct scan_device){.family = path.rom[0]};
+	int way = (int)(path.last.text - path.device.text);
+	int n = snprintf(device->path, sizeof(device->path), "/%.*s%s", way, path.device.text, rom);
+	if (n < 0 || (size_t)n >= sizeof(device->path))
+		return false;
+	device->kind = scan_kind_of(device->family);
+	return true;
+}
+
+/* Room for one more. It is doubled where the count is a power of two: 40,000 move a few times. */
+static bool grow(struct scan *scan)
+{
+	size_t room = scan->count ? 2 * (size_t)scan->count : 1;
+	struct scan_device *more;
+
+	if (scan->count & (scan->count - 1))
+		return true;
+	more = realloc(scan->device, room * sizeof(*more));
+	if (more)
+		scan->device = more;
+	return more != NULL;
+}
+
+/* The devices of a listing. */
+static int take_list(struct scan *scan, char *text)
+{
+	struct scan_device device;
+	char *rest;
+
+	for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+		if (!device_of(line, &device))
+			continue;
+		if (!grow(scan))
+			return -ENOMEM;
+		scan->device[scan->count++] = device;
+	}
+	return 0;
+}
+
+/* Was a coupler of this id found before, on another way? */
+static bool is_found_before(const struct scan *scan, unsigned i)
+{
+	const char *id = strrchr(scan->device[i].path, '/');
+
+	for (unsigned n = 0; n < i; n++)
+		if (scan->device[n].family == COUPLER &&
+		    strcmp(strrchr(scan->device[n].path, '/'), id) == 0)
+			return true;
+	return false;
+}
+
+/*
+ * What is behind the couplers that were found, and behind those that are found there. Each is
+ * looked behind once, so a server that shows one behind itself leads nowhere.
+ */
+static int find_behind(struct target *target, struct scan *scan, char *text)
+{
+	static const char *const branches[] = {"main", "aux"};
+	char path[sizeof(scan->device->path) + 8];
+	unsigned couplers = 0;
+	int err = 0;
+
+	for (unsigned i = 0; i < scan->count && !err; i++) {
+		if (scan->device[i].family != COUPLER || is_found_before(scan, i))
+			continue;
+		if (++couplers > COUPLERS_MAX)
+			return -E2BIG;
+		for (unsigned n = 0; n < 2 && !err; n++) {
+			snprintf(path, sizeof(path), "%s/%s", scan->device[i].path, branches[n]);
+			if (list(target, path, true, text) == 0)
+				err = take_list(scan, text);
+		}
+	}
+	return err;
+}
+
+static int find(struct target *target, struct scan *scan, char *text)
+{
+	unsigned kept = 0;
+	int err = list(target, "/", true, text);
+
+	if (!err)
+		err = take_list(scan, text);
+	if (!err)
+		err = find_behind(target, scan, text);
+	if (err || !scan->count)
+		return err;
+	qsort(scan->device, scan->count, sizeof(*scan->device), by_path);
+	for (unsigned i = 1; i < scan->count; i++)
+		if (by_path(&scan->device[kept], &scan->device[i]))
+			scan->device[++kept] = scan->device[i];
+	scan->count = kept + 1;
+	return 0;
+}
+
+/* Find the bus of each device on a wire itself; buses are numbered without gaps. */
+static void locate(struct target *target, struct scan *scan, char *text)
+{
+	char path[16], *rest;
+
+	for (unsigned bus = 0; scan->count && bus < BUSES_MAX; bus++) {
+		snprintf(path, sizeof(path), "/bus.%u", bus);
+		if (list(target, path, false, text))
+			return;
+		for (char *line = strtok_r(text, "\n", &rest); line;
+		     line = strtok_r(NULL, "\n", &rest)) {
+			struct scan_device key, *found;
+
+			if (!device_of(line, &key))
+				continue;
+			found = bsearch(&key, scan->device, scan->count, sizeof(key), by_path);
+			if (found)
+				snprintf(found->location, sizeof(found->location), "%s", path + 1);
+		}
+	}
+}
+
+static const char *property_of(const struct scan_device *device, unsigned ask)
+{
+	if (ask == ASK_TYPE)
+		return "type";
+	if (ask == ASK_ALIAS)
+		return "alias";
+	if (ask == ASK_IDENTITY)
+		return scan_has_identity(device->family) ? "identity" : NULL;
+	return device->kind ? device->kind->property[ask - ASK_PROPERTIES].name : NULL;
+}
+
+/* The type was asked for before it was known which chip it is. */
+static void correct_type(struct scan_device *device)
+{
+	size_t len = strcspn(device->identity, " ");
+
+	if (len && len < sizeof(device->type) && strcmp(device->identity, "unknown") != 0)
+		snprintf(device->type, sizeof(device->type), "%.*s", (int)len, device->identity);
+}
+
+static void take_answer(struct scan_device *device, unsigned n, struct ask *ask, char *text)
+{
+	struct scan_value *value;
+	size_t len = ask->answer.err ? 0 : target_unpad(text, ask->answer.len);
+
+	if (n == ASK_TYPE) {
+		device->simulated = ask->answer.detail & BUS_DETAIL_SIMULATED;
+		text_clean(text, len, sizeof(device->type), device->type, sizeof(device->type));
+	} else if (n == ASK_ALIAS) {
+		text_clean(text, len, sizeof(device->alias), device->alias, sizeof(device->alias));
+	} else if (n == ASK_IDENTITY) {
+		text_clean(text, len, sizeof(device->identity), device->identity,
+		           sizeof(device->identity));
+		correct_type(device);
+	} else {
+		value = &device->value[n - ASK_PROPERTIES];
+		value->err = ask->answer.err;
+		text_clean(text, len, sizeof(value->text), value->text, sizeof(value->text));
+	}
+}
+
+int scan_read(struct target *target, struct scan_device *devices, unsigned device_count, bool fresh)
+{
+	size_t room = (size_t)device_count * ASKS;
+	struct question *questions = calloc(room + 1, sizeof(*questions));
+	struct ask *asks = calloc(room + 1, sizeof(*asks));
+	unsigned count = 0;
+
+	if (!questions || !asks) {
+		free(questions);
+		free(asks);
+		return -ENOMEM;
+	}
+	for (unsigned i = 0; i < room; i++) {
+		struct scan_device *device = &devices[i / ASKS];
+		const char *name = property_of(device, i % ASKS);
+		struct question *question = &questions[count];
+
+		if (!name)
+			continue;
+		snprintf(question->path, sizeof(question->path), "%s/%s", device->path, name);
+		asks[count++].req = (struct bus_req){
+			.op = BUS_READ,
+			.prio = BUS_GUEST,
+			.path = question->path,
+			.fresh = i % ASKS >= ASK_PROPERTIES &&
+		                 (fresh ||
+		                  device->kind->property[i % ASKS - ASK_PROPERTIES].output),
+			.data = (uint8_t *)question->text,
+			.len = sizeof(question->text)};
+	}
+	target_ask(target, asks, count);
+	count = 0;
+	for (unsigned i = 0; i < room; i++)
+		if (property_of(&devices[i / ASKS], i % ASKS)) {
+			take_answer(&devices[i / ASKS], i % ASKS, &asks[count],
+			            questions[count].text);
+			count++;
+		}
+	/*
+	 * A dead target is not stepped again, so the bus writes no more to the memory freed here.
+	 */
+	free(questions);
+	free(asks);
+	return target->dead ? -ETIMEDOUT : 0;
+}
+
+int scan_find(struct target *target, struct scan *scan)
+{
+	char *text = malloc(LISTING_MAX + 1);
+	int err;
+
+	*scan = (struct scan){0};
+	if (!text)
+		return -ENOMEM;
+	err = find(target, scan, text);
+	if (!err)
+		locate(target, scan, text);
+	free(text);
+	return err;
+}
+
+bool scan_device_of(const char *path, struct scan_device *device)
+{
+	return device_of(path, device);
+}
+
+void scan_free(struct scan *scan)
+{
+	free(scan->device);
+}

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT */
+/* Numbers as persons read them: cut to the decimals that mean something. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "src/show/digits.h"
+
+void digits_print(enum ows_type type, double number, int64_t integer, int decimals,
+                  char text[VALUE_TEXT_MAX])
+{
+	char cut[VALUE_TEXT_MAX];
+	int n;
+
+	value_to_text(type, value_is_float(type) ? value_of_double(number) : integer, text);
+	if (decimals < 0 || !value_is_float(type) || !isfinite(number))
+		return;
+	n = snprintf(cut, sizeof(cut), "%.*f", decimals, number);
+	if (n >= (int)sizeof(cut)) /* so great that decimals do not matter */
+		return;
+	while (decimals > 0 && cut[n - 1] == '0')
+		n--;
+	if (cut[n - 1] == '.')
+		n--;
+	cut[n] = '\0';
+	snprintf(text, VALUE_TEXT_MAX, "%s", strcmp(cut, "-0") == 0 ? "0" : cut);
+}

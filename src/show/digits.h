@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+/* Numbers as persons read them. */
+#ifndef SHOW_DIGITS_H
+#define SHOW_DIGITS_H
+
+#include "src/signal/value.h"
+
+/*
+ * The text of a number, whose value is in integer if type is not float or double: with at most so
+ * many decimals, -1: with all. Not of strings.
+ */
+void digits_print(enum ows_type type, double number, int64_t integer, int decimals,
+                  char text[VALUE_TEXT_MAX]);
+
+#endif

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: MIT */
+/* Writes a JSON document piece by piece. */
+#include <inttypes.h>
+#include <string.h>
+
+#include "hal/bus/time.h"
+#include "src/show/json.h"
+#include "src/signal/utf8.h"
+
+void json_open(struct json *json, FILE *out)
+{
+	json->out = out;
+	json->inner = false;
+}
+
+void json_end(struct json *json)
+{
+	putc('\n', json->out);
+	json->inner = false;
+}
+
+static void put_string(FILE *out, const char *text, size_t len)
+{
+	putc('"', out);
+	while (len > 0) {
+		const char *at = text;
+		int32_t c = utf8_next(&text, &len);
+
+		if (c < 0)
+			fputs("\xef\xbf\xbd", out);
+		else if (c == '"' || c == '\\')
+			fprintf(out, "\\%c", (char)c);
+		else if (c == '\n')
+			fputs("\\n", out);
+		else if (c < 0x20 || (c >= 0x7f && c < 0xa0))
+			fprintf(out, "\\u%04x", (unsigned)c);
+		else
+			fwrite(at, 1, (size_t)(text - at), out);
+	}
+	putc('"', out);
+}
+
+static void begin(struct json *json, const char *key)
+{
+	if (json->inner)
+		putc(',', json->out);
+	json->inner = true;
+	if (key) {
+		put_string(json->out, key, strlen(key));
+		putc(':', json->out);
+	}
+}
+
+void json_key(struct json *json, const char *key)
+{
+	begin(json, key);
+	json->inner = false;
+}
+
+void json_object(struct json *json, const char *key)
+{
+	begin(json, key);
+	putc('{', json->out);
+	json->inner = false;
+}
+
+void json_object_end(struct json *json)
+{
+	putc('}', json->out);
+	json->inner = true;
+}
+
+void json_array(struct json *json, const char *key)
+{
+	begin(json, key);
+	putc('[', json->out);
+	json->inner = false;
+}
+
+void json_array_end(struct json *json)
+{
+	putc(']', json->out);
+	json->inner = true;
+}
+
+void json_string(struct json *json, const char *key, const char *text)
+{
+	if (text)
+		json_bytes(json, key, text, strlen(text));
+	else
+		json_null(json, key);
+}
+
+void json_bytes(struct json *json, const char *key, const char *text, size_t len)
+{
+	begin(json, key);
+	put_string(json->out, text, len);
+}
+
+static bool is_utf8(const char *text, size_t len)
+{
+	while (len > 0)
+		if (utf8_next(&text, &len) < 0)
+			return false;
+	return true;
+}
+
+void json_text(struct json *json, const char *text, size_t len)
+{
+	json_bytes(json, "value", text, len);
+	if (is_utf8(text, len))
+		return;
+	begin(json, "hex");
+	putc('"', json->out);
+	for (size_t i = 0; i < len; i++)
+		fprintf(json->out, "%02x", (unsigned char)text[i]);
+	putc('"', json->out);
+}
+
+void json_int(struct json *json, const char *key, int64_t number)
+{
+	begin(json, key);
+	fprintf(json->out, "%" PRId64, number);
+}
+
+void json_uint(struct json *json, const char *key, uint64_t number)
+{
+	begin(json, key);
+	fprintf(json->out, "%" PRIu64, number);
+}
+
+void json_bool(struct json *json, const char *key, bool value)
+{
+	begin(json, key);
+	fputs(value ? "true" : "false", json->out);
+}
+
+void json_null(struct json *json, const char *key)
+{
+	begin(json, key);
+	fputs("null", json->out);
+}
+
+void json_seconds(struct json *json, const char *key, int64_t ns)
+{
+	int64_t ms = ns / NS_PER_MS;
+
+	begin(json, key);
+	if (ms < 0)
+		putc('-', json->out);
+	fprintf(json->out, "%" PRIu64 ".%03u", (uint64_t)imaxabs(ms / 1000),
+	        (unsigned)imaxabs(ms % 1000));
+}
+
+static bool digits(const char **at)
+{
+	const char *first = *at;
+
+	while (**at >= '0' && **at <= '9')
+		(*at)++;
+	return *at > first;
+}
+
+static bool is_number(const char *at)
+{
+	const char *first;
+
+	if (*at == '-')
+		at++;
+	first = at;
+	if (!digits(&at) || (*first == '0' && at - first > 1))
+		return false;
+	if (*at == '.') {
+		at++;
+		if (!digits(&at))
+			return false;
+	}
+	if (*at == 'e' || *at == 'E') {
+		at++;
+		if (*at == '+' || *at == '-')
+			at++;
+		if (!digits(&at))
+			return false;
+	}
+	return *at == '\0';
+}
+
+void json_number(struct json *json, const char *key, const char *text)
+{
+	begin(json, key);
+	fputs(is_number(text) ? text : "null", json->out);
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT */
+/* A JSON writer: one document on one line, valid by RFC 8259 whatever the strings contain. */
+#ifndef SHOW_JSON_H
+#define SHOW_JSON_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+struct json {
+	FILE *out;
+	bool inner; /* the next value needs a comma */
+};
+
+void json_open(struct json *json, FILE *out);
+void json_end(struct json *json); /* Write the newline; the writer is as after json_open(). */
+
+/* Of a member whose value is written as an element. */
+void json_key(struct json *json, const char *key);
+/* key NULL: an element of an array, or the document itself. */
+void json_object(struct json *json, const char *key);
+void json_object_end(struct json *json);
+void json_array(struct json *json, const char *key);
+void json_array_end(struct json *json);
+/* text NULL: null. Bytes that are not UTF-8 become U+FFFD. */
+void json_string(struct json *json, const char *key, const char *text);
+void json_bytes(struct json *json, const char *key, const char *text, size_t len);
+/* The member "value"; also "hex", all bytes, if they are not UTF-8. */
+void json_text(struct json *json, const char *text, size_t len);
+void json_int(struct json *json, const char *key, int64_t number);
+void json_uint(struct json *json, const char *key, uint64_t number);
+void json_bool(struct json *json, const char *key, bool value);
+void json_null(struct json *json, const char *key);
+/* Nanoseconds as seconds with three digits. */
+void json_seconds(struct json *json, const char *key, int64_t ns);
+/* A number that is already text; null if JSON has no such number (nan, inf). */
+void json_number(struct json *json, const char *key, const char *text);
+
+#endif

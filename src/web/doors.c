@@ -1,0 +1,326 @@
+/* SPDX-License-Identifier: MIT */
+/* Listens, accepts, and lets in whoever sends a proper head in time. */
+#include <errno.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/epoll.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "hal/bus/time.h"
+#include "src/service/inherited.h"
+#include "src/web/doors.h"
+#include "src/web/head.h"
+
+#define BACKLOG 1024
+#define BATCH 64
+#define SEND_BUFFER (32 * 1024) /* bytes; the kernel takes twice that, with its own data */
+#define PAUSE_NS (200 * NS_PER_MS)
+
+struct visitor {
+	bool used; /* the place; fd counts then */
+	int fd;
+	int64_t until_ns;
+	socklen_t len;
+	struct sockaddr_storage address;
+};
+
+int doors_open(struct doors *doors)
+{
+	doors->visitors = calloc(DOORS_CONNECTIONS, sizeof(*doors->visitors));
+	doors->epoll = epoll_create1(EPOLL_CLOEXEC);
+	if (!doors->visitors)
+		return -ENOMEM;
+	return doors->epoll < 0 ? -errno : 0;
+}
+
+/* Numbers of epoll: a door, or after the doors a visitor. */
+static int watch(struct doors *doors, int fd, unsigned number, uint32_t how)
+{
+	struct epoll_event event = {.events = EPOLLIN | how, .data.u32 = number};
+
+	return epoll_ctl(doors->epoll, EPOLL_CTL_ADD, fd, &event) ? -errno : 0;
+}
+
+/* Takes fd in any case. */
+static int add(struct doors *doors, int fd)
+{
+	int err = doors->count == DOORS ? -ENOSPC : watch(doors, fd, doors->count, 0);
+
+	if (err)
+		close(fd);
+	else
+		doors->fds[doors->count++] = fd;
+	return err;
+}
+
+int doors_inherit(struct doors *doors)
+{
+	int fds[DOORS], count = inherited_sockets(fds, DOORS);
+
+	for (int i = 0; i < count; i++) {
+		int err = add(doors, fds[i]);
+
+		if (err)
+			return err;
+	}
+	return count;
+}
+
+static int listen_at(struct doors *doors, int fd, const struct sockaddr *address, socklen_t len)
+{
+	int one = 1, err = 0;
+
+	if (fd < 0)
+		return -errno;
+	if (address->sa_family != AF_UNIX)
+		setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &one, sizeof(one));
+	if (address->sa_family == AF_INET6)
+		setsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &one, sizeof(one));
+	if (bind(fd, address, len) ||
+	    (address->sa_family == AF_UNIX &&
+	     chmod(((const struct sockaddr_un *)(const void *)address)->sun_path, 0660)) ||
+	    listen(fd, BACKLOG))
+		err = -errno;
+	if (!err)
+		return add(doors, fd);
+	close(fd);
+	return err;
+}
+
+int doors_socket(struct doors *doors, const char *path)
+{
+	struct sockaddr_un address = {.sun_family = AF_UNIX};
+	int err;
+
+	if (strlen(path) >= sizeof(address.sun_path))
+		return -ENAMETOOLONG;
+	memcpy(address.sun_path, path, strlen(path));
+	if (socket_answers(&address))
+		return -EADDRINUSE;
+	if (unlink(path) && errno != ENOENT)
+		return -errno;
+	err = listen_at(doors, socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0),
+	                (const struct sockaddr *)&address, sizeof(address));
+	if (!err)
+		memcpy(doors->path, address.sun_path, sizeof(doors->path));
+	return err;
+}
+
+int doors_address(struct doors *doors, struct listen_address *address)
+{
+	struct sockaddr_in6 v6 = {.sin6_family = AF_INET6, .sin6_port = htons(address->port)};
+	struct sockaddr_in v4 = {.sin_family = AF_INET, .sin_port = htons(address->port)};
+	struct sockaddr *any = address->is_v6 ? (struct sockaddr *)&v6 : (struct sockaddr *)&v4;
+	socklen_t len = address->is_v6 ? sizeof(v6) : sizeof(v4);
+	int err;
+
+	memcpy(&v6.sin6_addr, address->bytes, sizeof(v6.sin6_addr));
+	memcpy(&v4.sin_addr, address->bytes, sizeof(v4.sin_addr));
+	err = listen_at(doors,
+	                socket(any->sa_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0), any,
+	                len);
+	if (!err && getsockname(doors->fds[doors->count - 1], any, &len) == 0)
+		address->port = ntohs(address->is_v6 ? v6.sin6_port : v4.sin_port);
+	return err;
+}
+
+/* --- Visitors -------------------------------------------------------------------------------- */
+
+static void let_go(struct doors *doors, struct visitor *visitor, bool inside)
+{
+	epoll_ctl(doors->epoll, EPOLL_CTL_DEL, visitor->fd, NULL);
+	if (!inside)
+		close(visitor->fd);
+	visitor->used = false;
+	doors->visitor_count--;
+}
+
+/* An answer that needs no reading of the request. A visitor who does not take it goes without. */
+static void refuse(int fd, int status, const char *why)
+{
+	char body[160], text[320];
+	int len = snprintf(body, sizeof(body), "{\"error\":\"%s\"}\n", why);
+
+	len = snprintf(text, sizeof(text),
+	               "HTTP/1.1 %d Refused\r\nContent-Type: application/json\r\n"
+	               "Content-Length: %d\r\nConnection: close\r\n\r\n%s",
+	               status, len, body);
+	send(fd, text, (size_t)len, MSG_NOSIGNAL | MSG_DONTWAIT);
+	shutdown(fd, SHUT_WR);
+	/* unread bytes would make the kernel take the answer back */
+	for (int i = 0; i < 4 && recv(fd, text, sizeof(text), MSG_DONTWAIT | MSG_TRUNC) > 0; i++)
+		continue;
+}
+
+static bool same_host(const struct sockaddr_storage *a, const struct sockaddr_storage *b)
+{
+	const struct sockaddr_in *a4 = (const void *)a, *b4 = (const void *)b;
+	const struct sockaddr_in6 *a6 = (const void *)a, *b6 = (const void *)b;
+
+	if (a->ss_family != b->ss_family)
+		return false;
+	if (a->ss_family == AF_INET)
+		return a4->sin_addr.s_addr == b4->sin_addr.s_addr;
+	return a->ss_family == AF_INET6 &&
+	       memcmp(&a6->sin6_addr, &b6->sin6_addr, sizeof(a6->sin6_addr)) == 0;
+}
+
+static unsigned waiting_of(const struct doors *doors, const struct sockaddr_storage *address)
+{
+	unsigned count = 0;
+
+	for (unsigned i = 0; i < DOORS_CONNECTIONS; i++)
+		count += doors->visitors[i].used && same_host(&doors->visitors[i].address, address);
+	return count;
+}
+
+static void admit(struct doors *doors, struct visitor *visitor)
+{
+	int fd = visitor->fd;
+
+	let_go(doors, visitor, true);
+	doors->welcome(doors->ctx, fd, (const struct sockaddr *)&visitor->address, visitor->len);
+}
+
+/* gone: it sends no more. What it sent before is read all the same. */
+static void look_at(struct doors *doors, struct visitor *visitor, bool gone)
+{
+	static char head[HEAD_MAX + 1];
+	ssize_t got = recv(visitor->fd, head, sizeof(head), MSG_PEEK | MSG_DONTWAIT);
+	const char *why;
+	int status;
+
+	if (got < 0 && (errno == EAGAIN || errno == EINTR))
+		return;
+	if (got <= 0) {
+		let_go(doors, visitor, false);
+		return;
+	}
+	status = head_check(head, (size_t)got, &why);
+	if (status == 200) {
+		admit(doors, visitor);
+	} else if (status) {
+		refuse(visitor->fd, status, why);
+		let_go(doors, visitor, false);
+	} else if (gone) {
+		let_go(doors, visitor, false);
+	}
+}
+
+static void welcome(struct doors *doors, const struct visitor *new, int64_t now_ns)
+{
+	unsigned i = 0;
+
+	if (doors->visitor_count + doors->count_inside(doors->ctx) >= DOORS_CONNECTIONS ||
+	    waiting_of(doors, &new->address) >= DOORS_PER_PEER) {
+		refuse(new->fd, 503, "too many connections: try again later");
+		close(new->fd);
+		return;
+	}
+	while (doors->visitors[i].used)
+		i++;
+	if (watch(doors, new->fd, DOORS + i, EPOLLET | EPOLLRDHUP)) {
+		close(new->fd);
+		return;
+	}
+	doors->visitors[i] = *new;
+	doors->visitors[i].until_ns = now_ns + DOORS_IDLE_S * NS_PER_S;
+	doors->visitor_count++;
+}
+
+/* No descriptor is left: connections wait with the kernel for a moment. */
+static void pause_doors(struct doors *doors, int64_t now_ns)
+{
+	doors->paused_ns = now_ns + PAUSE_NS;
+	for (unsigned i = 0; i < doors->count; i++)
+		epoll_ctl(doors->epoll, EPOLL_CTL_DEL, doors->fds[i], NULL);
+}
+
+/* What the kernel keeps of an answer counts as memory of this program: 1200 of these are 75 MB. */
+static void bound(int fd)
+{
+	int size = SEND_BUFFER;
+
+	setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &size, sizeof(size));
+}
+
+static void accept_some(struct doors *doors, int door, int64_t now_ns)
+{
+	for (int i = 0; i < BATCH; i++) {
+		struct visitor new = {.used = true, .len = sizeof(new.address)};
+
+		new.fd = accept4(door, (struct sockaddr *)&new.address, &new.len,
+		                 SOCK_CLOEXEC | SOCK_NONBLOCK);
+		if (new.fd < 0 &&
+		    (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM))
+			pause_doors(doors, now_ns);
+		if (new.fd < 0)
+			return;
+		bound(new.fd);
+		welcome(doors, &new, now_ns);
+	}
+}
+
+static void end_late(struct doors *doors, int64_t now_ns)
+{
+	for (unsigned i = 0; i < DOORS_CONNECTIONS && doors->visitor_count; i++) {
+		struct visitor *visitor = &doors->visitors[i];
+
+		if (!visitor->used || visitor->until_ns > now_ns)
+			continue;
+		refuse(visitor->fd, 408, "the request took longer than 30 seconds");
+		let_go(doors, visitor, false);
+	}
+}
+
+void doors_take(struct doors *doors, int64_t now_ns)
+{
+	struct epoll_event events[BATCH];
+	int n = epoll_wait(doors->epoll, events, BATCH, 0);
+
+	for (int i = 0; i < n; i++) {
+		unsigned number = events[i].data.u32;
+
+		if (number < DOORS)
+			accept_some(doors, doors->fds[number], now_ns);
+		else if (doors->visitors[number - DOORS].used)
+			look_at(doors, &doors->visitors[number - DOORS],
+			        events[i].events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR));
+	}
+	if (now_ns >= doors_next(doors))
+		end_late(doors, now_ns);
+	if (doors->paused_ns && now_ns >= doors->paused_ns) {
+		doors->paused_ns = 0;
+		for (unsigned i = 0; i < doors->count; i++)
+			watch(doors, doors->fds[i], i, 0);
+	}
+}
+
+int64_t doors_next(const struct doors *doors)
+{
+	int64_t next_ns = doors->paused_ns ? doors->paused_ns : INT64_MAX;
+
+	for (unsigned i = 0; doors->visitor_count && i < DOORS_CONNECTIONS; i++)
+		if (doors->visitors[i].used && doors->visitors[i].until_ns < next_ns)
+			next_ns = doors->visitors[i].until_ns;
+	return next_ns;
+}
+
+void doors_close(struct doors *doors)
+{
+	for (unsigned i = 0; doors->visitors && i < DOORS_CONNECTIONS; i++)
+		if (doors->visitors[i].used)
+			close(doors->visitors[i].fd);
+	for (unsigned i = 0; i < doors->count; i++)
+		close(doors->fds[i]);
+	if (*doors->path)
+		unlink(doors->path);
+	if (doors->epoll >= 0)
+		close(doors->epoll);
+	free(doors->visitors);
+}

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The doors: sockets at which owsd-web listens. A connection waits here until the head of its
+ * request is whole and right; then libmicrohttpd gets it. Each connection has one request.
+ */
+#ifndef WEB_DOORS_H
+#define WEB_DOORS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <sys/socket.h>
+
+#include "src/config/listen.h"
+
+#define DOORS (LISTEN_MAX + 1)
+#define DOORS_CONNECTIONS 1200
+#define DOORS_PER_PEER 64 /* of one TCP address */
+#define DOORS_IDLE_S 30
+
+struct log;
+struct visitor;
+
+struct doors {
+	int epoll; /* readable when doors_take() has something to do; -1: not open */
+	int fds[DOORS];
+	unsigned count;
+	struct visitor *visitors; /* DOORS_CONNECTIONS */
+	unsigned visitor_count;
+	int64_t paused_ns; /* no descriptor was left: listen again then; 0: it listens */
+	char path[108];    /* of the socket, to remove at the end; "": the manager's */
+	/* Takes a connection and closes it at the end. count: how many it has already. */
+	void (*welcome)(void *ctx, int fd, const struct sockaddr *address, socklen_t len);
+	unsigned (*count_inside)(void *ctx);
+	void *ctx;
+};
+
+/* Before the others; welcome, count_inside and ctx are set. 0 or a negative errno. */
+int doors_open(struct doors *doors);
+/* Listen: at the sockets of LISTEN_FDS (sd_listen_fds(3)); how many, or a negative errno. */
+int doors_inherit(struct doors *doors);
+/* At a path, with mode 0660, in place of a socket that nobody answers. -EADDRINUSE. */
+int doors_socket(struct doors *doors, const char *path);
+/* At an address; *address gets the port that the kernel chose. */
+int doors_address(struct doors *doors, struct listen_address *address);
+/* Accept, read heads, refuse. Never blocks. */
+void doors_take(struct doors *doors, int64_t now_ns);
+/* When doors_take() has to be called at the latest. */
+int64_t doors_next(const struct doors *doors);
+void doors_close(struct doors *doors);
+
+#endif

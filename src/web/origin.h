@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+/* From which page a browser asks, by the headers Host and Origin. Pure functions. */
+#ifndef WEB_ORIGIN_H
+#define WEB_ORIGIN_H
+
+#include <stdbool.h>
+
+/*
+ * May a browser know this machine by that Host? An address: if it is of the loopback, or the local
+ * one of the connection (as inet_ntop() prints it). A name: localhost, that of the machine with or
+ * without its domain, its name in .local, or one of the list. Any other name may be of a page whose
+ * server gave the name this machine's address.
+ */
+bool origin_host(const char *host, const char *local, const char *machine, const char *list);
+/* Is the page of that Origin one of that Host? */
+bool origin_same(const char *origin, const char *host);
+
+#endif

@@ -1,0 +1,389 @@
+/* SPDX-License-Identifier: MIT */
+/* owsd-web: shows the signals of an owsd in a browser. */
+#include <errno.h>
+#include <math.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "hal/bus/bell.h"
+#include "hal/bus/time.h"
+#include "src/face/loop.h"
+#include "src/shm/place.h"
+#include "src/web/api.h"
+#include "src/web/events.h"
+#include "src/web/http.h"
+#include "src/web/stream.h"
+#include "src/web/web.h"
+
+#define DESCRIPTORS (2 * DOORS_CONNECTIONS) /* connections, files that are sent, and a few more */
+#define TICK_NS NS_PER_S
+/* Streams have a pace of their own: that of the face is for what comes in bursts */
+#define PACE_NS (20 * NS_PER_MS)
+#define ENDING_NS (300 * NS_PER_MS) /* slow clients keep no end waiting for longer */
+#define MIX 0x9e3779b97f4a7c15u
+
+static struct web *own(struct face *face)
+{
+	return face->own;
+}
+
+static int64_t earlier(int64_t a, int64_t b)
+{
+	return a < b ? a : b;
+}
+
+static int64_t cpu_ns(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+	return (int64_t)t.tv_sec * NS_PER_S + t.tv_nsec;
+}
+
+/*
+ * Something may have happened: changes go out that are due, libmicrohttpd has its turn, and says
+ * when it wants the next.
+ */
+static void run(struct web *web)
+{
+	int64_t now_ns = ows_now(), begin = cpu_ns();
+
+	if (pace_send(&web->pace, now_ns, web->recent.newest))
+		stream_wake_all(web);
+	http_run(web);
+	pace_spent(&web->pace, cpu_ns() - begin);
+	now_ns = ows_now();
+	web->face->tick_ns = earlier(earlier(now_ns + TICK_NS, pace_due(&web->pace)),
+	                             earlier(http_next(web, now_ns), doors_next(&web->doors)));
+}
+
+/* --- Doors ----------------------------------------------------------------------------------- */
+
+static int open_socket(struct web *web)
+{
+	char path[PLACE_PATH + 128], fault[PLACE_FAULT];
+	struct shm_place place;
+	int err = place_make(&place);
+
+	if (err) {
+		face_complain("owsd-web", "%s", place_fault(&place, err, fault));
+		return err;
+	}
+	snprintf(path, sizeof(path), "%s/%s.web", place.path, web->face->arguments->instance);
+	place_close(&place);
+	err = doors_socket(&web->doors, path);
+	if (err)
+		face_complain("owsd-web", "%s: %s%s", path, strerror(-err),
+		              err == -EADDRINUSE ? "; another owsd-web serves the page there" : "");
+	else
+		log_notice(web->face->log, "the page is at the socket %s", path);
+	return err;
+}
+
+static int open_address(struct web *web, struct listen_address address)
+{
+	const struct config_web *options = &web->face->config->web;
+	int err = doors_address(&web->doors, &address);
+	char text[LISTEN_TEXT_MAX];
+
+	listen_print(&address, text);
+	if (err)
+		face_complain("owsd-web", "%s: %s", text, strerror(-err));
+	else
+		log_at(web->face->log,
+		       listen_is_loopback(&address) ? LOG_LEVEL_NOTICE : LOG_LEVEL_WARNING,
+		       "the page is at http://%s/%s", text,
+		       listen_is_loopback(&address) ? ""
+		       : options->configure         ? ": whoever reaches it may configure"
+		       : options->write             ? ": whoever reaches it may command"
+		                                    : ": whoever reaches it may look");
+	return err;
+}
+
+/* Option -l, else Listen of the block. */
+static int open_addresses(struct web *web)
+{
+	const struct config_web *options = &web->face->config->web;
+	const char *given = web->face->arguments->option, *why = "";
+	struct listen_address addresses[2];
+	int err = 0, n;
+
+	if (!given) {
+		for (unsigned i = 0; i < options->address_count && !err; i++)
+			err = open_address(web, options->addresses[i]);
+		return err;
+	}
+	n = listen_parse(given, strlen(given), addresses, &why);
+	if (n < 0)
+		face_complain("owsd-web", "-l %s: %s", given, why);
+	for (int i = 0; i < n && !err; i++)
+		err = open_address(web, addresses[i]);
+	return n < 0 ? n : err;
+}
+
+static int open_doors(struct web *web)
+{
+	int n = doors_open(&web->doors), err;
+
+	if (!n)
+		n = doors_inherit(&web->doors);
+	if (n < 0) {
+		face_complain("owsd-web", "cannot listen: %s", strerror(-n));
+		return n;
+	}
+	err = n ? 0 : open_socket(web);
+	return err ? err : open_addresses(web);
+}
+
+/* --- The page -------------------------------------------------------------------------------- */
+
+/* Where Files says; else where this program was installed, or where it was built. */
+static void open_files(struct web *web)
+{
+	static const char *const beside[] = {"../share/owsd/web", "../src/web/page"};
+	const char *given = web->face->config->web.files;
+	char path[1024], program[512];
+	ssize_t len = readlink("/proc/self/exe", program, sizeof(program) - 1);
+	int err = -ENOENT;
+
+	program[len > 0 ? len : 0] = '\0';
+	if (strrchr(program, '/'))
+		*strrchr(program, '/') = '\0';
+	if (given) {
+		snprintf(path, sizeof(path), "%s", given);
+		err = files_open(&web->files, path);
+	}
+	for (size_t i = 0; !given && err && i < sizeof(beside) / sizeof(beside[0]); i++) {
+		snprintf(path, sizeof(path), "%s/%s", program, beside[i]);
+		err = files_open(&web->files, path);
+	}
+	if (err)
+		log_warning(web->face->log, "there are no files of the page in %s: %s", path,
+		            strerror(-err));
+}
+
+/* --- The face -------------------------------------------------------------------------------- */
+
+static void raise_limit(void)
+{
+	struct rlimit limit;
+
+	if (getrlimit(RLIMIT_NOFILE, &limit) || limit.rlim_cur >= DESCRIPTORS)
+		return;
+	limit.rlim_cur = limit.rlim_max < DESCRIPTORS ? limit.rlim_max : DESCRIPTORS;
+	setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+static int open_web(struct face *face)
+{
+	static struct web web = {.doors = {.epoll = -1}, .files = {.directory = -1}};
+	int err;
+
+	web.face = face;
+	web.since_ns = ows_now();
+	web.route = api_find;
+	web.admits = api_admits;
+	face->own = &web;
+	face->pace_ns = PACE_NS;
+	face->alarms_after_ns = face->commands_after_ns = face->tick_ns = ows_now();
+	recent_make(&web.recent, 0);
+	events_miss_alarms(&web);
+	raise_limit();
+	err = http_open(&web);
+	if (err)
+		face_complain(face->ops->program, "libmicrohttpd: %s", strerror(-err));
+	if (!err)
+		err = open_doors(&web);
+	if (err)
+		return err;
+	open_files(&web);
+	web.bell = bell_open();
+	if (web.bell >= 0) {
+		web.past = jobs_start(web.bell);
+		web.commands = jobs_start(web.bell);
+		face_watch(face, web.bell, POLLIN);
+	}
+	face_watch(face, web.epoll, POLLIN);
+	face_watch(face, web.doors.epoll, POLLIN);
+	return 0;
+}
+
+/* A number that is another one when the signal has something else to show. */
+static uint64_t mark_of(struct ows *h, int signal, int64_t now_ns)
+{
+	struct ows_value value = {0};
+	uint64_t mark = 0;
+
+	ows_get_signal(h, signal, now_ns, &value);
+	memcpy(&mark, &value.number, sizeof(mark));
+	mark = (mark ^ (uint64_t)value.integer) * MIX;
+	mark = (mark ^ (uint64_t)value.measured_ns) * MIX;
+	/* strings have no number */
+	mark = (mark ^ (value.type == OWS_STRING ? value.count : 0)) * MIX;
+	return (mark ^ ((uint64_t)(uint32_t)value.err << 8 | value.quality)) * MIX;
+}
+
+static void changes(struct face *face, const int *signals, int n)
+{
+	struct web *web = own(face);
+	int64_t now_ns = ows_now();
+	uint64_t before = web->recent.newest;
+
+	for (int i = 0; i < (signals ? n : web->recent.count); i++) {
+		int signal = signals ? signals[i] : i;
+
+		recent_change(&web->recent, signal, mark_of(face->ows, signal, now_ns), now_ns);
+	}
+	web->pace.waits |= web->recent.newest != before;
+	run(web);
+}
+
+/* To look a name up takes long where there are many. */
+static int id_of(struct ows *h, int signal)
+{
+	struct ows_info info;
+
+	if (ows_info(h, signal, &info) ||
+	    (!info.alarm && isnan(info.limit_hh) && isnan(info.limit_h) && isnan(info.limit_l) &&
+	     isnan(info.limit_ll)))
+		return -1;
+	return ows_find(h, info.name);
+}
+
+/* The table of signals is new. */
+static void find(struct web *web)
+{
+	struct ows_daemon daemon = {0};
+	int count = ows_count(web->face->ows);
+
+	ows_daemon(web->face->ows, ows_now(), &daemon);
+	web->generation = daemon.generation;
+	shared_forget(&web->shared);
+	free(web->ids);
+	web->ids = malloc((size_t)(count + 1) * sizeof(*web->ids));
+	if (!web->ids || !recent_make(&web->recent, count)) {
+		log_err(web->face->log, "no memory for %d signals", count);
+		recent_make(&web->recent, 0);
+		return;
+	}
+	for (int i = 0; i < count; i++)
+		web->ids[i] = id_of(web->face->ows, i);
+}
+
+static void event(struct face *face, const struct face_event *event)
+{
+	struct web *web = own(face);
+
+	switch (event->news) {
+	case FACE_FOUND:
+	case FACE_RELOADED:
+		find(web);
+		break;
+	case FACE_ALARM:
+		events_alarm(web, event->alarm);
+		break;
+	case FACE_LOST:
+		break;
+	case FACE_ENTRIES_LOST:
+		events_miss_alarms(web);
+		break;
+	case FACE_OVERRUN:
+	case FACE_COMMAND:
+	case FACE_FILE:
+		return;
+	case FACE_DESCRIPTOR:
+		if (event->fd == web->bell) {
+			bell_clear(web->bell);
+			http_done(web->past);
+			http_done(web->commands);
+			http_done(web->drafts);
+			http_done(web->saves);
+			http_done(web->scans);
+		}
+		if (event->fd == web->doors.epoll)
+			doors_take(&web->doors, ows_now());
+		run(web);
+		return;
+	}
+	stream_wake_all(web);
+	run(web);
+}
+
+static void tick(struct face *face, int64_t now_ns)
+{
+	struct web *web = own(face);
+
+	if (now_ns >= doors_next(&web->doors))
+		doors_take(&web->doors, now_ns);
+	if (now_ns >= web->alive_ns) {
+		web->alive_ns = now_ns + EVENTS_ALIVE_S * NS_PER_S / 5;
+		stream_wake_all(web);
+	}
+	run(web);
+	face_status(face, "%u streams, %d signals%s", web->stream_count, web->recent.count,
+	            face->live ? "" : ", owsd does not run");
+}
+
+static void end_jobs(struct jobs *jobs)
+{
+	if (!jobs)
+		return;
+	jobs_end(jobs);
+	http_done(jobs);
+	jobs_free(jobs);
+}
+
+/* Each stream has a proper end: Cockpit's bridge of Debian 12 would wait for it for ever. */
+static void end_streams(struct web *web)
+{
+	struct pollfd ready = {.fd = web->epoll, .events = POLLIN};
+	int64_t until_ns = ows_now() + ENDING_NS;
+
+	do {
+		stream_wake_all(web);
+		http_run(web);
+	} while (web->streams && ows_now() < until_ns && poll(&ready, 1, 20) >= 0);
+}
+
+static void close_web(struct face *face)
+{
+	struct web *web = own(face);
+
+	web->ends = true;
+	end_jobs(web->past);
+	end_jobs(web->commands);
+	end_jobs(web->drafts);
+	end_jobs(web->saves);
+	end_jobs(web->scans);
+	web->past = web->commands = web->drafts = web->saves = web->scans =
+		NULL; /* a request whose body comes now is refused */
+	doors_close(&web->doors);
+	end_streams(web);
+	http_close(web);
+	events_forget_alarms(web);
+	shared_forget(&web->shared);
+	recent_free(&web->recent);
+	free(web->ids);
+	close(web->bell);
+	files_close(&web->files);
+}
+
+int main(int argc, char **argv)
+{
+	static const struct face_ops ops = {
+		.program = "owsd-web",
+		.option = {'l', "listen", "ADDRESS", "also serve there, in place of Listen"},
+		.open = open_web,
+		.changes = changes,
+		.event = event,
+		.tick = tick,
+		.close = close_web,
+	};
+
+	return face_main(&ops, argc, argv);
+}

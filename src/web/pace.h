@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * When changes of values go out to the streams. The first change after a silence goes at once. The
+ * next ones wait, 20 times as long as the last ones cost in CPU time, but 20 ms at least and 100 ms
+ * at most. So few streams are quick, and many of them cost a twentieth of a processor. All streams
+ * go together: what one gets, the others get too, and it is made once. Times in ns. Pure.
+ */
+#ifndef WEB_PACE_H
+#define WEB_PACE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct pace {
+	bool waits;       /* something changed that has not gone out */
+	int64_t sent_ns;  /* when something went out last; 0: never */
+	int64_t spent_ns; /* CPU time since */
+	uint64_t sent;    /* cursor (recent.h) of what may have gone out */
+};
+
+/* So many ns of CPU time were spent for streams. */
+void pace_spent(struct pace *pace, int64_t cpu_ns);
+/* When what waits is due; INT64_MAX: nothing waits. It may be later when asked again. */
+int64_t pace_due(const struct pace *pace);
+/* True: it is due, and all up to the cursor newest goes out now. */
+bool pace_send(struct pace *pace, int64_t now_ns, uint64_t newest);
+
+#endif

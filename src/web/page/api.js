@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// Asks owsd-web.
+import {way} from "./way.js";
+
+async function ask(path, options) {
+	const {status, text} = await way.ask(path, options);
+	let data = null;
+	try {
+		data = JSON.parse(text);
+	} catch {
+		data = null;
+	}
+	if (status < 200 || status > 299)
+		throw Object.assign(new Error(data?.error || `refused with status ${status}`),
+			{status, data});
+	if (data === null)
+		throw new Error("owsd-web gave an answer that is no JSON");
+	return data;
+}
+
+const query = (values) => new URLSearchParams(
+	Object.entries(values).filter(([, value]) => value !== undefined)).toString();
+
+export const get = (path, values = {}, patience) => {
+	const text = query(values);
+	return ask(`api/${path}${text ? `?${text}` : ""}`, {patience});
+};
+
+/**
+ * patience: ms until the answer has to be there. An error has the status and the data of the
+ * answer, as far as there was one.
+ */
+export const post = (path, body, patience) => ask(`api/${path}`, {
+	method: "POST",
+	headers: {"Content-Type": "application/json", "X-Owsd": "1"},
+	body: JSON.stringify(body), patience,
+});

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// Starts the page: the views, which of them is shown (the address says it), and the state of all.
+import * as about from "./about.js";
+import * as alarms from "./alarms.js";
+import {announce, el, later, mark, put} from "./dom.js";
+import * as live from "./live.js";
+import {store} from "./store.js";
+import {way} from "./way.js";
+import {alarmOf, clock} from "./words.js";
+import * as wire from "./wire.js";
+
+/** A view whose modules are fetched when it is shown: most who look never edit. */
+function fetched(load) {
+	let view = null, place = null, wanted = null;
+	return {
+		build(root) {
+			place = root;
+		},
+		async show(query) {
+			wanted = query;
+			const made = view ?? await load();
+			if (!view) {
+				view = made;
+				view.build(place);
+			}
+			if (wanted !== null)
+				view.show(wanted);
+		},
+		hide() {
+			wanted = null;
+			view?.hide();
+		},
+	};
+}
+
+const config = fetched(() => import("./config.js"));
+const VIEWS = {live, alarms, wire, config, about};
+const $ = (id) => document.getElementById(id);
+let present = null;
+
+function show() {
+	const [name, query] = location.hash.slice(1).split("?");
+	const wanted = VIEWS[name] ? name : "live";
+	for (const link of document.querySelectorAll("nav a")) {
+		if (link.hash === `#${wanted}`)
+			link.setAttribute("aria-current", "page");
+		else
+			link.removeAttribute("aria-current");
+	}
+	for (const key of Object.keys(VIEWS))
+		$(key).hidden = key !== wanted;
+	if (present && present !== wanted)
+		VIEWS[present].hide();
+	if (present && present !== wanted)
+		window.scrollTo(0, 0);
+	present = wanted;
+	const title = $(wanted).querySelector("h1").textContent;
+	document.title = `${title} \u2013 `
+		+ `${store.info?.instance ?? "owsd"}`;
+	VIEWS[wanted].show(query ?? "");
+}
+
+function trust() {
+	const why = store.unknown;
+	mark($("state"), "is-", why ? "unknown" : "good");
+	put($("state-words"), why ? "Values unknown" : "Connected");
+	$("banner").hidden = !why;
+	put($("banner-words"), why ? `${why} All values are unknown since ${clock(store.now())}. `
+		+ "The page tries again by itself." : "");
+	announce(why ? `Values are unknown. ${why}` : "Values are known.");
+}
+
+function renewed() {
+	if (!$("instance").firstElementChild)
+		put($("instance"), store.info?.instance ?? "");
+	$("read-only").hidden = !store.info || store.info.writable
+		|| !store.signals.some((signal) => signal.output);
+	show();
+}
+
+/** Where one way leads to several instances, the name of the present one becomes a choice. */
+async function choose() {
+	const names = await way.instances();
+	if (names.length < 2)
+		return;
+	const present = store.info?.instance;
+	$("instance").replaceChildren(el("select", {"aria-label": "Instance",
+		onchange: (event) => way.choose(event.target.value)},
+	...names.map((name) => el("option", {selected: name === present}, name))));
+}
+
+function count() {
+	const open = store.unknown ? 0
+		: store.signals.filter((signal) => alarmOf(signal.alarm)?.open).length;
+	const badge = $("alarm-count");
+	badge.hidden = !open;
+	put(badge, open ? String(open) : "");
+	badge.setAttribute("aria-label", `${open} not acknowledged`);
+}
+
+for (const [key, view] of Object.entries(VIEWS))
+	view.build($(key));
+store.addEventListener("trust", trust);
+store.addEventListener("signals", renewed);
+store.addEventListener("signals", choose, {once: true});
+store.addEventListener("signals", count);
+store.addEventListener("values", later(count, 200));
+store.addEventListener("trust", count);
+document.querySelector(".skip").addEventListener("click", (event) => {
+	event.preventDefault(); // the part behind # names the view
+	$("main").focus();
+});
+window.addEventListener("hashchange", show);
+show();
+store.start();

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+// Commands an output: a switch or a button in its row, and a dialog that asks before each command.
+import {post} from "./api.js";
+import {announce, el, put} from "./dom.js";
+import {store} from "./store.js";
+import {valueText, withUnit} from "./words.js";
+
+const RESULT_MS = 20000; // so long the result of a command is shown
+
+const RANGES = {byte: [0, 255], short: [-32768, 32767], word: [0, 65535]};
+const WHOLE = ["byte", "short", "long", "word", "dword", "large"];
+
+/** The bounds of a number: of the configuration, else of a small type; null: none. */
+function bounds(signal) {
+	const [least, most] = RANGES[signal.type] ?? [null, null];
+	const min = signal.min ?? least, max = signal.max ?? most;
+	return min === null || max === null ? null : [min, max];
+}
+
+const step = (signal) => WHOLE.includes(signal.type) ? 1
+	: signal.decimals > 0 ? 10 ** -Math.min(signal.decimals, 6) : 0.1;
+
+/** The cell of an output: {node, paint(value)}. */
+export function control(signal) {
+	const result = el("span", {class: "result"});
+	const send = async (value) => {
+		const text = withUnit(signal, valueText(signal, value));
+		say(signal.name, result, "pending", `${text}: pending`);
+		try {
+			const answer = await post("set", {name: signal.name, value});
+			const taken = answer.result !== "pending";
+			say(signal.name, result, taken ? "taken" : "pending",
+				taken ? `${text}: taken` : `${text}: not confirmed yet`);
+		} catch (error) {
+			say(signal.name, result, "refused", error.status
+				? `${text}: refused: ${error.message}`
+				: `${text}: not known whether it was set: ${error.message}`);
+		}
+	};
+	const made = signal.type === "bool" ? switchOf(signal, send) : buttonOf(signal, send);
+	const node = el("div", {class: "control"}, ...made.nodes, result);
+	return {node, paint(value) {
+		const able = Boolean(store.info?.writable) && !store.unknown;
+		for (const one of made.nodes)
+			one.disabled = !able;
+		made.paint(value);
+	}};
+}
+
+function say(name, result, state, text) {
+	result.className = `result is-${state}`;
+	put(result, text);
+	announce(`${name} ${text}`);
+	clearTimeout(result.timer);
+	if (state !== "pending")
+		result.timer = setTimeout(() => put(result, ""), RESULT_MS);
+}
+
+/* A switch shows what is; where that is not known it would lie, and two buttons take its place. */
+function switchOf(signal, send) {
+	const set = async (value) => {
+		if (await confirmed(signal, value))
+			send(value);
+	};
+	const toggle = el("button", {type: "button", role: "switch", class: "switch",
+		"aria-label": signal.name, "aria-checked": "false",
+		onclick: () => set(toggle.getAttribute("aria-checked") !== "true")});
+	const off = el("button", {type: "button", "aria-label": `Set ${signal.name} off`,
+		onclick: () => set(false)}, "Set off");
+	const on = el("button", {type: "button", "aria-label": `Set ${signal.name} on`,
+		onclick: () => set(true)}, "Set on");
+	return {nodes: [toggle, off, on], paint(value) {
+		toggle.hidden = value === null;
+		off.hidden = on.hidden = value !== null;
+		toggle.setAttribute("aria-checked", String(Boolean(Number(value))));
+	}};
+}
+
+function buttonOf(signal, send) {
+	const button = el("button", {type: "button", "aria-label": `Set ${signal.name}`,
+		onclick: async () => {
+			const value = await entered(signal);
+			if (value !== null)
+				send(value);
+		}}, "Set\u2026");
+	return {nodes: [button], paint() {}};
+}
+
+// --- The dialog -----------------------------------------------------------------------------
+
+const dialog = () => document.getElementById("command");
+
+/** Show the dialog with these nodes above its buttons; true: confirmed. */
+export function ask(title, accept, nodes, ready = () => true) {
+	const box = dialog();
+	const yes = el("button", {type: "submit", class: "primary", value: "yes"}, accept);
+	const form = el("form", {method: "dialog"}, el("h2", {id: "command-title"}, title), ...nodes,
+		el("div", {class: "buttons"},
+			el("button", {type: "button", onclick: () => box.close("no")}, "Cancel"), yes));
+	form.addEventListener("submit", (event) => {
+		event.preventDefault();
+		if (ready())
+			box.close("yes");
+	});
+	box.replaceChildren(form);
+	box.returnValue = "no";
+	return new Promise((resolve) => {
+		box.addEventListener("close", () => {
+			box.replaceChildren();
+			resolve(box.returnValue === "yes");
+		}, {once: true});
+		box.showModal();
+	});
+}
+
+const present = (signal) => store.value(signal) === null ? "unknown"
+	: withUnit(signal, valueText(signal, store.value(signal)));
+
+/** Resolves to true; where the configuration wants it, only after the user has confirmed. */
+function confirmed(signal, value) {
+	if (!signal.confirm)
+		return true;
+	const text = valueText(signal, value);
+	return ask(`Set ${signal.name} ${text}?`, `Set ${text}`,
+		[el("p", {}, signal.description || `Path ${signal.path}`),
+			el("p", {}, `It is ${present(signal)} now.`)]);
+}
+
+/** The value that the user enters and confirms; null: none. */
+async function entered(signal) {
+	const range = signal.type === "string" ? null : bounds(signal);
+	const now = store.value(signal);
+	const fault = el("p", {class: "fault", role: "alert"});
+	const field = el("input", {id: "command-value", autocomplete: "off", required: true,
+		type: "text", inputmode: signal.type === "string" ? "text" : "decimal",
+		value: now === null ? "" : valueText(signal, now)});
+	const slider = range && el("input", {type: "range", "aria-label": `${signal.name}, slider`,
+		min: range[0], max: range[1], step: step(signal), value: now ?? range[0],
+		oninput: () => { field.value = valueText(signal, Number(slider.value)); }});
+	field.addEventListener("focus", () => field.select());
+	field.addEventListener("input", () => {
+		put(fault, "");
+		if (slider && field.value.trim() && Number.isFinite(Number(field.value)))
+			slider.value = field.value;
+	});
+	const yes = await ask(`Set ${signal.name}`, "Set", [
+		el("p", {}, signal.description || `Path ${signal.path}`),
+		el("p", {}, `It is ${present(signal)} now.`),
+		el("label", {for: "command-value"},
+			signal.unit ? `New value in ${signal.unit}` : "New value"),
+		field, slider,
+		range ? el("p", {class: "hint"}, `From ${range[0]} to ${range[1]}`) : null,
+		fault], () => {
+		put(fault, wrong(signal, field.value, range));
+		return !fault.textContent;
+	});
+	if (!yes)
+		return null;
+	if (signal.type === "large") // a number of JavaScript has 53 bits
+		return field.value.trim();
+	return signal.type === "string" ? field.value : Number(field.value);
+}
+
+function wrong(signal, text, range) {
+	if (signal.type === "string")
+		return "";
+	const value = Number(text.replace(",", "x"));
+	if (!text.trim() || !Number.isFinite(value))
+		return "Enter a number; the decimal sign is the point.";
+	if (WHOLE.includes(signal.type) && !Number.isInteger(value))
+		return "Enter a whole number.";
+	if (range && (value < range[0] || value > range[1]))
+		return `Enter a number from ${range[0]} to ${range[1]}.`;
+	return "";
+}

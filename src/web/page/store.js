@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: MIT
+// What the page knows: the signals, their last values and a few before them, and whether it may be
+// believed. Events: "signals" (others than before), "values" (detail: a set of signals), "trust"
+// (why values are unknown, or that they are known again), "alarm".
+import {get} from "./api.js";
+import {later} from "./dom.js";
+import {askAll} from "./early.js";
+import {way} from "./way.js";
+import {UNKNOWN, qualityWords} from "./words.js";
+
+const FAILED_MS = 3000; // a connection that has failed for so long makes values unknown
+const SILENT_MS = 5000; // without an event for so long, the page asks whether the server lives
+const DEAD_MS = 35000;  // and after so long believes nothing: owsd-web sends one each 15 s
+const RECENT = 240;     // values of each signal that are kept for its sparkline
+const SLOT_MS = 500;    // what comes within such a time becomes one of them
+
+class Store extends EventTarget {
+	info = null;
+	signals = [];
+	unknown = "The page has no values yet.";
+	skew = 0; // clock of the server less that of the browser, ms
+	#generation = null;
+	#source = null;
+	#after = ""; // where the first stream begins: GENERATION:CURSOR of the signals, if they are there
+	#waiting = []; // events that came while the signals were being fetched
+	#loading = false;
+	#again = false;
+	#heard = 0;
+	#asked = 0;
+	#failed = 0; // timer
+	#lost = null; // why owsd is lost
+	#broken = "The page has no values yet."; // why the connection cannot be trusted
+	#details = later(() => this.#load(), 1000);
+
+	/** The clock of the server, ms. */
+	now() {
+		return Date.now() + this.skew;
+	}
+
+	/** Seconds since the measurement; null: never measured. */
+	age(signal) {
+		return signal.measured === null ? null : (this.now() - signal.measured) / 1000;
+	}
+
+	/** The code of the quality that the user sees. */
+	quality(signal) {
+		return this.unknown ? UNKNOWN : signal.code;
+	}
+
+	value(signal) {
+		return this.unknown || !signal.good ? null : signal.value;
+	}
+
+	find(name) {
+		return this.signals.find((signal) => signal.name === name);
+	}
+
+	async start() {
+		await this.#load();
+		this.#connect();
+		setInterval(() => this.#watch(), 1000);
+		document.addEventListener("visibilitychange", () => this.#watch());
+	}
+
+	#tell(type, detail) {
+		this.dispatchEvent(new CustomEvent(type, {detail}));
+	}
+
+	#trust() {
+		const why = this.#lost || this.#broken;
+		if (why === this.unknown)
+			return;
+		if (why && !this.unknown)
+			for (const signal of this.signals)
+				this.#keep(signal, null, UNKNOWN);
+		this.unknown = why;
+		this.#tell("trust");
+	}
+
+	// --- Connection -------------------------------------------------------------------------
+
+	#connect() {
+		this.#source?.close();
+		const acts = this.#acts();
+		const after = this.#after;
+		const path = after ? `api/events?after=${after}` : "api/events";
+		let complete = Boolean(after); // what the page has, and this stream: nothing is between
+		this.#after = "";
+		const source = way.events(path, Object.keys(acts), {
+			opened: () => {
+				this.#lost = null;
+				this.#heard = Date.now();
+				if (complete)
+					this.#works();
+				else
+					this.#load();
+				complete = false;
+			},
+			failed: (ended, why) => {
+				this.#fail(why ? `The page has ${why}.`
+					: "The connection to owsd-web has failed.");
+				if (ended)
+					setTimeout(() => source === this.#source && this.#connect(), 2000);
+			},
+			event: (type, text, id) => {
+				this.#heard = Date.now();
+				const data = text ? JSON.parse(text) : {};
+				data.generation ??= Number((id || after).split(":")[0]);
+				if (this.#loading)
+					this.#waiting.push(() => acts[type](data));
+				else
+					acts[type](data);
+			},
+		});
+		this.#source = source;
+	}
+
+	/** What each kind of event does. */
+	#acts() {
+		// numbers of signals are those of one table: what is of another comes again with its list
+		const ours = (data) => data.generation === this.#generation;
+		return {
+			values: (data) => ours(data) && this.#changes(data),
+			alarm: (data) => ours(data) && this.#alarm(data),
+			alive: () => {},
+			missed: () => this.#load(), // alarms: the list has how they stand
+			lost: (data) => {
+				this.#lost = `${data.why || "owsd does not run"}.`;
+				this.#trust();
+			},
+			found: ({generation}) => {
+				if (!this.unknown && generation === this.#generation)
+					return; // it was fetched when the connection began
+				this.#lost = null;
+				this.#load();
+			},
+		};
+	}
+
+	#fail(why) {
+		this.#failed ||= setTimeout(() => {
+			this.#broken = why;
+			this.#trust();
+		}, FAILED_MS);
+	}
+
+	#works() {
+		clearTimeout(this.#failed);
+		this.#failed = 0;
+		this.#broken = null;
+	}
+
+	#doubt(why) {
+		this.#heard = Date.now();
+		this.#broken = why;
+		this.#trust();
+		this.#connect();
+	}
+
+	/*
+	 * A connection can be dead without an error: a cable pulled, a machine asleep. That owsd-web
+	 * answers another request proves nothing of the stream.
+	 */
+	async #watch() {
+		const now = Date.now();
+		if (!this.#heard || now - this.#heard < SILENT_MS)
+			return;
+		if (now - this.#heard >= DEAD_MS) {
+			this.#doubt("Nothing came from owsd-web for half a minute.");
+			return;
+		}
+		if (now - this.#asked < SILENT_MS || document.hidden)
+			return;
+		this.#asked = now;
+		try {
+			const {since} = this.info ?? {};
+			this.info = await get("info");
+			// another process answers, and the stream of the one before it may hang
+			if (this.info.since !== since)
+				this.#connect();
+		} catch (error) {
+			this.#doubt(`The page has ${error.message}.`);
+		}
+	}
+
+	// --- Signals and values -----------------------------------------------------------------
+
+	async #load() {
+		if (this.#loading) {
+			this.#again = true;
+			return;
+		}
+		this.#loading = true;
+		try {
+			const [info, list] = await askAll();
+			this.info = info;
+			this.skew = info.now - Date.now();
+			this.#works();
+			this.#take(list);
+			if (!this.#source)
+				this.#after = `${list.generation}:${list.cursor}`;
+		} catch (error) {
+			this.#fail(`The page cannot get the signals: ${error.message}.`);
+			setTimeout(() => this.#load(), 2000);
+		}
+		this.#loading = false;
+		for (const act of this.#waiting.splice(0))
+			act();
+		if (this.#again) {
+			this.#again = false;
+			this.#load();
+		}
+	}
+
+	#take(list) {
+		const now = this.now();
+		const shape = (signals) => JSON.stringify(signals.map((s) => [s.i, s.name, s.type, s.output,
+			s.unit, s.decimals, s.device, s.path, s.description, s.min, s.max]));
+		const same = this.#generation === list.generation
+			|| (this.signals.length === list.signals.length
+				&& shape(this.signals) === shape(list.signals));
+		const old = new Map(this.signals.map((signal) => [signal.name, signal]));
+		const fresh = list.signals.map((given) => {
+			const signal = same ? old.get(given.name) : null;
+			return this.#set(Object.assign(signal ?? {recent: old.get(given.name)?.recent ?? []},
+				{...given, why: given.quality.why, text: given.quality.text}), given.value,
+			given.quality.code, given.quality.good, given.age, now);
+		});
+		this.#generation = list.generation;
+		this.signals = fresh;
+		this.#trust();
+		this.#tell(same ? "values" : "signals", new Set(fresh));
+		if (same)
+			this.#tell("alarm");
+	}
+
+	#set(signal, value, code, good, age, now) {
+		signal.value = value;
+		signal.code = code;
+		signal.good = Boolean(good);
+		signal.measured = age === null || age === undefined ? null : now - age * 1000;
+		this.#keep(signal, good && value !== null ? Number(value) : null, code);
+		return signal;
+	}
+
+	#keep(signal, number, code) {
+		if (signal.type === "string")
+			return;
+		const t = number === null ? this.now() : signal.measured ?? this.now();
+		const last = signal.recent.at(-1);
+		if (last && last.v === number && last.code === code)
+			return;
+		if (last && last.v !== null && number !== null && t < last.t + SLOT_MS) {
+			last.v = number;
+			last.low = Math.min(last.low, number);
+			last.high = Math.max(last.high, number);
+			return;
+		}
+		signal.recent.push({t: Math.max(t, last?.t ?? 0), v: number, low: number, high: number,
+			code});
+		if (signal.recent.length > (signal.watched ? RECENT * 15 : RECENT))
+			signal.recent.shift();
+	}
+
+	#changes({now, v}) {
+		const changed = new Set();
+		// an event that was long under way must not make its values look new
+		this.skew = Math.max(this.skew, now - Date.now());
+		for (const [i, value, code, good, age] of v) {
+			const signal = this.signals[i]?.i === i ? this.signals[i]
+				: this.signals.find((one) => one.i === i);
+			if (!signal)
+				continue;
+			if (signal.code !== code) {
+				signal.text = qualityWords(code);
+				signal.why = null;
+				if (!good)
+					this.#details(); // the reason in words comes with the list
+			}
+			changed.add(this.#set(signal, value, code, good, age, now));
+		}
+		if (changed.size)
+			this.#tell("values", changed);
+	}
+
+	#alarm({i, alarm}) {
+		const signal = this.signals.find((one) => one.i === i);
+		if (signal && alarm !== undefined) {
+			signal.alarm = alarm;
+			this.#tell("values", new Set([signal]));
+		}
+		this.#tell("alarm");
+	}
+}
+
+export const store = new Store();

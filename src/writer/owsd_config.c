@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: MIT */
+/* owsd-config: the one program that may write the configuration of an owsd for others. */
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "hal/bus/time.h"
+#include "src/face/arguments.h"
+#include "src/service/inherited.h"
+#include "src/service/journal.h"
+#include "src/service/notify.h"
+#include "src/service/standard.h"
+#include "src/service/unix_signals.h"
+#include "src/shm/owner.h"
+#include "src/shm/place.h"
+#include "src/text/log.h"
+#include "src/writer/visit.h"
+
+#define PROGRAM "owsd-config"
+#define GROUP "owsd-config"
+#define BACKLOG 16
+#define IDLE_MS 30000 /* then the service manager waits in its place */
+#define PAUSE_NS (200 * NS_PER_MS)
+
+/* A socket for this user alone. */
+static int listen_at(const char *path)
+{
+	struct sockaddr_un address = {.sun_family = AF_UNIX};
+	int fd, err = 0;
+	mode_t mask;
+
+	if (strlen(path) >= sizeof(address.sun_path))
+		return -ENAMETOOLONG;
+	memcpy(address.sun_path, path, strlen(path));
+	if (socket_answers(&address))
+		return -EADDRINUSE;
+	if (unlink(path) && errno != ENOENT)
+		return -errno;
+	fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+	if (fd < 0)
+		return -errno;
+	mask = umask(0177);
+	if (bind(fd, (const struct sockaddr *)&address, sizeof(address)) || listen(fd, BACKLOG))
+		err = -errno;
+	umask(mask);
+	if (!err)
+		return fd;
+	close(fd);
+	return err;
+}
+
+/* The socket NAME.config in this user's place. 0, or a negative errno after reporting why. */
+static int name_socket(const char *instance, char *path, size_t size)
+{
+	struct shm_place place;
+	char fault[PLACE_FAULT];
+	int err = place_make(&place);
+
+	if (err) {
+		face_complain(PROGRAM, "%s", place_fault(&place, err, fault));
+		return err;
+	}
+	snprintf(path, size, "%s/%s.config", place.path, instance);
+	place_close(&place);
+	return 0;
+}
+
+/* The socket of the service manager, path then is ""; else that of -l, or in this user's place. */
+static int open_socket(const struct face_arguments *a, char *path, size_t size)
+{
+	int fd, count = inherited_sockets(&fd, 1);
+
+	*path = '\0';
+	if (count < 0) {
+		face_complain(PROGRAM, "expected one socket of the service manager: %s",
+		              strerror(-count));
+		return count;
+	}
+	if (count)
+		return fd;
+	if (a->option)
+		snprintf(path, size, "%s", a->option);
+	else if (name_socket(a->instance, path, size))
+		return -ENOENT;
+	fd = listen_at(path);
+	if (fd < 0)
+		face_complain(PROGRAM, "%s: %s%s", path, strerror(-fd),
+		              fd == -EADDRINUSE ? "; another " PROGRAM " listens there" : "");
+	return fd;
+}
+
+/* Of a user's own writer the group does not count. */
+static void find_group(struct writer *writer)
+{
+	uid_t uid;
+
+	writer->has_group = (geteuid() == 0 || (owner_user(PROGRAM, &uid) && uid == geteuid())) &&
+	                    owner_group(GROUP, &writer->group);
+}
+
+static void take_one(const struct writer *writer, int listener)
+{
+	const struct timespec pause = {.tv_nsec = PAUSE_NS};
+	int fd = accept4(listener, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
+
+	if (fd < 0) {
+		if (errno == EMFILE || errno == ENFILE || errno == ENOMEM || errno == ENOBUFS)
+			nanosleep(&pause, NULL);
+		return;
+	}
+	visit(writer, fd);
+	close(fd);
+}
+
+/* Until a signal ends it, or nobody has come for a while and the service manager has the socket. */
+static void serve(struct writer *writer, int listener, bool may_leave, struct unix_signals *signals,
+                  int prefix)
+{
+	while (!signals->end) {
+		struct pollfd fds[] = {{.fd = signals->fd, .events = POLLIN},
+		                       {.fd = listener, .events = POLLIN}};
+		int n = poll(fds, 2, may_leave ? IDLE_MS : -1);
+
+		unix_signals_take(signals);
+		if (n == 0)
+			return;
+		if (fds[1].revents && !signals->end) {
+			find_group(writer); /* it may have been made meanwhile */
+			take_one(writer, listener);
+		}
+		log_drain(writer->log, STDERR_FILENO, prefix);
+	}
+}
+
+static int run(const struct face_arguments *a, struct unix_signals *signals)
+{
+	struct writer writer = {.file = a->file, .instance = a->instance};
+	int prefix = journal_is_stderr(), listener;
+	char path[PLACE_PATH + 128];
+	struct notify notify;
+
+	writer.log = log_create(a->level);
+	if (!writer.log) {
+		face_complain(PROGRAM, "no memory or no descriptor for the log");
+		return FACE_EXIT_RUN;
+	}
+	listener = open_socket(a, path, sizeof(path));
+	if (listener < 0) {
+		log_destroy(writer.log);
+		return FACE_EXIT_RUN;
+	}
+	if (notify_open(&notify))
+		log_warning(writer.log, "NOTIFY_SOCKET cannot be used");
+	if (*path)
+		log_notice(writer.log, PROGRAM " %s: %s is written for who asks at %s",
+		           OWSD_VERSION, a->file, path);
+	log_drain(writer.log, STDERR_FILENO, prefix);
+	notify_send(&notify, NOTIFY_READY);
+	serve(&writer, listener, !*path, signals, prefix);
+	notify_send(&notify, NOTIFY_STOPPING);
+	if (*path)
+		unlink(path);
+	close(listener);
+	notify_close(&notify);
+	log_finish(writer.log, STDERR_FILENO, prefix);
+	log_destroy(writer.log);
+	return 0;
+}
+
+int main(int argc, char **argv)
+{
+	static const struct face_option listens = {
+		'l', "listen", "PATH",
+		"the socket, for this user alone (NAME.config in the directory of owsd)"};
+	struct face_arguments a;
+	struct unix_signals signals;
+	int status = standard_open();
+
+	if (status) {
+		face_complain(PROGRAM, "/dev/null: %s", strerror(-status));
+		return FACE_EXIT_RUN;
+	}
+	/* a write beyond the limit of a file then fails, and the file stays as it was */
+	signal(SIGXFSZ, SIG_IGN);
+	status = face_arguments_parse(PROGRAM, &listens, argc, argv, &a);
+	if (status >= 0)
+		return status;
+	status = unix_signals_open(&signals);
+	if (status) {
+		face_complain(PROGRAM, "cannot take signals: %s", strerror(-status));
+		return FACE_EXIT_RUN;
+	}
+	return run(&a, &signals);
+}

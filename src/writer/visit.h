@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A connection to the writer: looks who is there, takes one order, answers, and hangs up.
+ *
+ * Room src/writer: the program owsd-config: replaces the configuration of an instance, and has owsd
+ * reload. Uses src/face, src/host, src/config, src/text, src/libows, src/service, src/shm, hal/bus.
+ */
+#ifndef WRITER_VISIT_H
+#define WRITER_VISIT_H
+
+#include <stdbool.h>
+#include <sys/types.h>
+
+struct log;
+
+struct writer {
+	const char *file, *instance;
+	bool has_group; /* else only root and this user may write */
+	gid_t group;
+	struct log *log;
+};
+
+/*
+ * The connection is not blocking; the caller closes it. Takes ten seconds for the request and ten
+ * for the answer at most, five to lock the file, and half a minute for the reload.
+ */
+void visit(const struct writer *writer, int connection);
+
+#endif

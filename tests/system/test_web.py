@@ -1,0 +1,761 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""owsd-web beside a real owsd: what a browser gets, what it may do, and what is refused."""
+
+import base64
+import contextlib
+import getpass
+import grp
+import http.client
+import json
+import os
+import pathlib
+import re
+import shutil
+import socket
+import subprocess
+import time
+
+import faulty
+import owsdtest
+from owsdtest import BUILD, place, raw, skip, until
+
+WEB = BUILD / "owsd-web"
+SENSOR, RELAY = "/28.A0B1C2000001", "/29.A0B1C2000004"
+STARS = '*"\\/<b>\u00b0'
+
+
+def item(name, path, kind="double", io="input", **more):
+    return dict(Name=name, Path=path, Type=raw(kind), IO=raw(io), **more)
+
+
+ROOM = item("room", SENSOR + "/temperature", LimitH=raw("20"), Unit="\u00b0C")
+RELAYS = item("relays", RELAY + "/PIO.BYTE", "byte", "output")
+
+
+def text(scene, *items, **web):
+    wire = scene.file("house.sim", "chip DS2482-100 0x18\nDS18B20 28.A0B1C2000001 temperature 21.5\n"
+                      "DS2408 29.A0B1C2000004\n")
+    page = scene.path / "page"
+    (page / "deeper" / "more").mkdir(parents=True, exist_ok=True)
+    (page / "index.html").write_text("<!doctype html><title>owsd</title>\n")
+    (page / "deeper" / "plot.js").write_text("export const a = 1;\n")
+    (page / "deeper" / "more" / "no.js").write_text("no\n")
+    (page / ".hidden.js").write_text("no\n")
+    (page / "notes.txt").write_text("no\n")
+    keys = " ".join(f'{k} "{v}"' for k, v in {"Files": page, **web}.items())
+    return owsdtest.rio(f"sim:{wire}", items or (ROOM, RELAYS), Period=0.05, Timeout=3,
+                        Web=raw(f"{{ {keys} }}"))
+
+
+class Page:
+    """An owsd-web, and a client of it."""
+
+    def __init__(self, scene, daemon, *options, env=None, prefix=()):
+        if not WEB.exists():
+            skip("owsd-web is not built: there is no libmicrohttpd")
+        self.port = owsdtest.free_port()
+        self.socket = place() / f"{daemon.name}.web"
+        self.program = scene.start([*prefix, WEB, "-n", daemon.name, "-c", daemon.config,
+                                    "-l", f"127.0.0.1:{self.port}", *options], env)
+        until(lambda: "configuration" in self.program.log(), 20, "it runs")
+
+    def tcp(self):
+        return socket.create_connection(("127.0.0.1", self.port), timeout=owsdtest.PATIENCE)
+
+    def unix(self):
+        s = socket.socket(socket.AF_UNIX)
+        s.settimeout(owsdtest.PATIENCE)
+        s.connect(str(self.socket))
+        return s
+
+    def ask(self, path, method="GET", body=None, unix=False, **headers):
+        """The answer (read), its status and its body."""
+        c = http.client.HTTPConnection("127.0.0.1", self.port, timeout=owsdtest.PATIENCE)
+        if unix:
+            c.sock = self.unix()
+        with contextlib.closing(c):
+            c.request(method, path, body, {k.replace("_", "-"): v for k, v in headers.items()})
+            answer = c.getresponse()
+            return answer, answer.status, answer.read()
+
+    def json(self, path, status=200, **more):
+        answer, got, body = self.ask(path, **more)
+        assert got == status, (path, got, body)
+        assert answer.getheader("Content-Type") == "application/json", answer.getheaders()
+        return json.loads(body)
+
+    def raw(self, data, unix=False):
+        """What comes back for these bytes, up to the end of the connection."""
+        with (self.unix() if unix else self.tcp()) as s:
+            s.sendall(data)
+            got = b""
+            with contextlib.suppress(ConnectionResetError):
+                while more := s.recv(65536):
+                    got += more
+            return got
+
+    def values(self):
+        return {s["name"]: s["value"] for s in self.json("/api/signals")["signals"]}
+
+
+class Events:
+    """A stream, as a browser reads it."""
+
+    def __init__(self, page, last=None, unix=True, after=None):
+        self.socket = page.unix() if unix else page.tcp()
+        again = f"Last-Event-ID: {last}\r\n" if last else ""
+        path = f"/api/events?after={after}" if after else "/api/events"
+        self.socket.sendall(f"GET {path} HTTP/1.1\r\nHost: localhost\r\n{again}\r\n".encode())
+        self.file = self.socket.makefile("rb")
+        self.status = int(self.file.readline().split()[1])
+        self.chunked = False
+        while (line := self.file.readline().strip()):
+            self.chunked |= line.lower() == b"transfer-encoding: chunked"
+        self.id, self.left = last, b""
+
+    def _line(self):
+        while b"\n" not in self.left:
+            if self.chunked:
+                size = int(self.file.readline(), 16)
+                more = self.file.read(size)
+                self.file.readline()
+            else:
+                more = self.file.read1(65536)
+            if not more:
+                raise EOFError
+            self.left += more
+        line, self.left = self.left.split(b"\n", 1)
+        return line.decode()
+
+    def next(self):
+        """(event, data) of the next one."""
+        event, data = None, None
+        while True:
+            line = self._line()
+            if line.startswith("event: "):
+                event = line[7:]
+            elif line.startswith("data: "):
+                data = json.loads(line[6:])
+            elif line.startswith("id: "):
+                self.id = line[4:]
+            elif not line and event:
+                return event, data
+
+    def until(self, wanted, what=lambda data: True):
+        """The data of the next event of that kind for which what() holds."""
+        end = time.monotonic() + owsdtest.PATIENCE
+        seen = []
+        while time.monotonic() < end:
+            event, data = self.next()
+            if event == wanted and what(data):
+                return data
+            seen = [*seen[-8:], (event, data)]
+        raise owsdtest.Late(f"no {wanted}: {seen}")
+
+    def value(self, signal, value):
+        return self.until("values", lambda data: any(row[:2] == [signal, value] for row in data["v"]))
+
+    def close(self):
+        self.file.close()
+        self.socket.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+
+def both(scene, *items, options=(), **web):
+    daemon = scene.owsd(text(scene, *items, **web))
+    page = Page(scene, daemon, *options)
+    until(lambda: page.json("/api/info")["live"], 20, "it has found owsd")
+    return daemon, page
+
+
+def set_relays(scene, daemon, value):
+    done = scene.owsctl(daemon, "set", "-w", "20", "relays", value)
+    assert done.returncode == 0, done
+
+
+def test_the_files_of_the_page_are_served_and_no_others(scene):
+    _, page = both(scene)
+    answer, status, body = page.ask("/")
+    assert status == 200 and b"<title>owsd</title>" in body, body
+    assert answer.getheader("Content-Type") == "text/html; charset=utf-8"
+    policy = answer.getheader("Content-Security-Policy")
+    assert "default-src 'none'" in policy and "unsafe" not in policy, policy
+    assert answer.getheader("X-Content-Type-Options") == "nosniff"
+    assert answer.getheader("Referrer-Policy") == "no-referrer"
+    again = page.ask("/", If_None_Match=answer.getheader("ETag"))
+    assert again[1:] == (304, b""), again
+    answer, status, body = page.ask("/deeper/plot.js")
+    assert (status, body) == (200, b"export const a = 1;\n")
+    assert answer.getheader("Content-Type") == "text/javascript; charset=utf-8"
+    for path in ("/notes.txt", "/.hidden.js", "/deeper/more/no.js", "/deeper", "/deeper/",
+                 "/../house.sim", "/deeper/../index.html", "/%2e%2e/house.sim", "//etc/passwd",
+                 "/api/", "/api/infos"):
+        assert page.json(path, 404)["error"], path
+    assert page.json("/index.html%00.js", 400)["error"]
+    (scene.path / "page" / "index.html").write_text("another\n")
+    assert page.ask("/", If_None_Match=answer.getheader("ETag"))[2] == b"another\n"
+
+
+def test_signals_come_in_the_order_of_the_file_with_all_that_is_known_of_them(scene):
+    odd = item("odd", SENSOR + "/temperature", Description=STARS.replace('"', "").replace("\\", ""),
+               Min=raw("-10"), Max=raw("50"))
+    daemon, page = both(scene, RELAYS, ROOM, odd,
+                        item("gone", "/28.A0B1C20000FF/temperature"), item("text", SENSOR + "/type", "string"))
+    until(lambda: page.values()["room"] == 21.5, 20, "the room is good")
+    until(lambda: page.values()["text"] == "DS18B20", 20, "so is the text")
+    until(lambda: page.json("/api/signals")["signals"][3]["quality"]["code"] == 8, 20, "one is gone")
+    all_of_it = page.json("/api/signals")
+    signals = all_of_it["signals"]
+    assert [(s["i"], s["name"]) for s in signals] == [
+        (0, "relays"), (1, "room"), (2, "odd"), (3, "gone"), (4, "text")], signals
+    room = signals[1]
+    assert room["quality"] == {"good": True, "code": 192, "text": "good", "why": None}, room
+    assert (room["unit"], room["type"], room["output"], room["family"]) == ("\u00b0C", "double", False, "DS18B20")
+    assert room["limits"] == {"hh": None, "h": 20, "l": None, "ll": None} and room["alarm"] == "! high"
+    assert 0 <= room["age"] < 60, room
+    assert (signals[2]["min"], signals[2]["max"], signals[2]["limits"]) == (-10, 50, None), signals[2]
+    assert signals[2]["description"] == "*/<b>\u00b0", signals[2]
+    gone = signals[3]
+    assert gone["value"] is None and not gone["quality"]["good"] and gone["quality"]["why"], gone
+    info = page.json("/api/info")
+    assert info["instance"] == daemon.name and info["signals"] == 5 and info["writable"] is False, info
+    assert info["generation"] == all_of_it["generation"], info
+    uname = os.uname()
+    assert info["kernel"] == f"{uname.sysname} {uname.release} {uname.machine}", info
+    model = pathlib.Path("/proc/device-tree/model")
+    assert info["board"] == (model.read_text().rstrip("\0") if model.exists() else None), info
+    assert abs(info["now"] / 1000 - time.time()) < 60, info
+    assert page.json("/api/info", unix=True)["instance"] == daemon.name
+
+
+def test_a_stream_has_each_change_and_goes_on_where_it_was(scene):
+    daemon, page = both(scene)
+    set_relays(scene, daemon, 1)
+    with Events(page, unix=False) as events:
+        assert events.status == 200
+        event, data = events.next()
+        assert event == "found" and data["generation"] == page.json("/api/info")["generation"]
+        set_relays(scene, daemon, 2)
+        events.value(1, 2)
+        set_relays(scene, daemon, 3)
+        events.value(1, 3)
+        last = events.id
+    set_relays(scene, daemon, 4)
+    # what was missed comes at once, without a new beginning
+    with Events(page, last) as events:
+        event, data = events.next()
+        assert event != "found", data
+        if not any(row[:2] == [1, 4] for row in data.get("v", [])):
+            events.value(1, 4)
+    # another owsd-web of the same owsd understands it too
+    assert page.program.stop() == 0
+    page = Page(scene, daemon)
+    until(lambda: page.json("/api/info")["live"], 20, "it has found owsd")
+    with Events(page, last) as events:
+        event, data = events.next()
+        assert event != "found", data
+        if not any(row[:2] == [1, 4] for row in data.get("v", [])):
+            events.value(1, 4)
+    for wrong in ("1:1", "x", "999999999999:1", f"{last}0", f"{last};", last.split(":")[0]):
+        with Events(page, wrong) as events:
+            assert events.next()[0] == "found", wrong
+
+
+def test_a_stream_begins_after_the_signals_that_were_fetched_before(scene):
+    daemon, page = both(scene)
+    set_relays(scene, daemon, 1)
+    fetched = page.json("/api/signals")
+    after = f"{fetched['generation']}:{fetched['cursor']}"
+    set_relays(scene, daemon, 2)
+    with Events(page, after=after) as events:
+        event, data = events.next()
+        assert event != "found", data
+        if not any(row[:2] == [1, 2] for row in data.get("v", [])):
+            events.value(1, 2)
+        last = events.id
+    set_relays(scene, daemon, 3)
+    # the header is of a later time: a browser that comes back has both
+    with Events(page, last, after="1:1") as events:
+        assert events.next()[0] != "found"
+    with Events(page, after="1:1") as events:
+        assert events.next()[0] == "found"
+
+
+
+def test_the_loss_of_owsd_makes_all_values_unknown_and_its_return_is_told(scene):
+    daemon, page = both(scene)
+    until(lambda: page.values()["room"] == 21.5, 20, "the room is good")
+    with Events(page) as events:
+        first = events.until("found")["generation"]
+        daemon.kill()
+        assert events.until("lost")["why"]
+        last = events.id
+        signals = page.json("/api/signals")["signals"]
+        assert all(s["value"] is None and not s["quality"]["good"] for s in signals), signals
+        assert "start" in signals[0]["quality"]["why"], signals[0]
+        assert page.json("/api/info")["up"] is None
+        # a browser that comes now learns it too
+        with Events(page) as another:
+            assert another.next()[0] == "lost"
+        again = scene.owsd(daemon.config, name=daemon.name)
+        second = events.until("found")["generation"]
+        assert second != first
+        until(lambda: page.values()["room"] == 21.5, 20, "the room is good again")
+    with Events(page, last) as events:
+        assert events.next()[0] == "found"
+    with Events(page) as events:
+        events.until("found")
+        again.signal(owsdtest.signal.SIGHUP)
+        assert events.until("found")["generation"] != second
+
+
+def command(page, path, unix=True, headers=None, status=200, **body):
+    """The answer to a POST as the page of the same origin sends it."""
+    more = {"Content-Type": "application/json", "X-Owsd": "1", "Origin": "http://localhost",
+            "Host": "localhost", **(headers or {})}
+    return page.json(path, status, method="POST", body=json.dumps(body), unix=unix,
+                     **{k: v for k, v in more.items() if v is not None})
+
+
+def test_alarms_journal_and_stats_are_those_of_owsctl(scene):
+    daemon, page = both(scene)
+    until(lambda: page.json("/api/alarms")["alarms"], 20, "the room is in alarm")
+    alarm = page.json("/api/alarms")["alarms"][0]
+    told = json.loads(scene.owsctl(daemon, "--json", "alarms").stdout)[0]
+    same = ("name", "alarm", "state", "device", "polled")
+    assert [alarm[k] for k in same] == [told[k] for k in same], (alarm, told)
+    assert alarm["i"] == 0 and alarm["value"] == 21.5 and alarm["quality"]["good"], alarm
+    for value in (1, 2, 3):
+        set_relays(scene, daemon, value)
+    entries = page.json("/api/journal")["entries"]
+    assert [e["value"] for e in entries if e["journal"] == "commands"] == [3, 2, 1], entries
+    assert entries[0]["by"]["program"] == "owsctl", entries
+    assert [e["event"] for e in entries if e["journal"] == "alarms"] == ["raised"], entries
+    assert len(page.json("/api/journal?n=2")["entries"]) == 2
+    later = int((time.time() + 60) * 1000)
+    assert page.json(f"/api/journal?since={later}")["entries"] == []
+    stats = page.json("/api/stats")
+    told = json.loads(scene.owsctl(daemon, "--json", "stats").stdout)
+    assert stats.keys() == told.keys() and stats["daemon"].keys() == told["daemon"].keys()
+    assert [c["name"] for c in stats["counters"]] == [c["name"] for c in told["counters"]]
+    for wrong in ("n=0", "n=x", "since=-1", "n=99999999999999999999"):
+        assert page.json(f"/api/journal?{wrong}", 400)["error"], wrong
+    lines = page.json("/api/log")["lines"]
+    logged = [line for line in daemon.log().splitlines() if line]
+    assert [line["text"] for line in lines] == logged[-len(lines):], (lines, logged)
+    assert [line["number"] for line in lines] == list(range(1, len(lines) + 1)), lines
+    assert any(line["level"] == "notice" and "target" in line["text"] for line in lines), lines
+    assert abs(lines[-1]["time"] / 1000 - time.time()) < 60, lines[-1]
+    daemon.kill()
+    until(lambda: not page.json("/api/info")["live"], 20, "it is lost")
+    assert "start" in page.json("/api/alarms", 503)["error"]
+    assert page.json("/api/log")["lines"][:len(lines)] == lines, "why it ended may stand there"
+
+
+def test_prometheus_scrapes_what_owsctl_metrics_prints(scene):
+    daemon = scene.owsd(text(scene))
+    page = Page(scene, daemon)
+    until(lambda: page.values().get("room") == 21.5, 20, "room has a value")
+    answer, status, body = page.ask("/metrics")
+    assert status == 200, body
+    assert answer.getheader("Content-Type") == (
+        "application/openmetrics-text; version=1.0.0; charset=utf-8"), answer.getheaders()
+    printed = scene.owsctl(daemon, "metrics").stdout
+    names = [line.split(" ")[0] for line in printed.splitlines() if not line.startswith("#")]
+    served = body.decode()
+    assert [line.split(" ")[0] for line in served.splitlines() if not line.startswith("#")] == names
+    assert served.endswith("# EOF\n"), served[-100:]
+    daemon.kill()
+    until(lambda: "\nows_up{" in (lost := page.ask("/metrics")[2].decode())
+          and 'ows_up{owsd="%s"} 0' % daemon.name in lost and "\nows_value{" not in lost,
+          20, "no value of a lost owsd is left")
+    if not shutil.which("prometheus"):
+        skip("prometheus is not installed")
+    again = scene.owsd(daemon.config, name=daemon.name)
+    port = owsdtest.free_port()
+    scene.file("prometheus.yml", "global: {scrape_interval: 1s}\nscrape_configs:\n"
+               "  - job_name: owsd\n    static_configs:\n"
+               f"      - targets: ['127.0.0.1:{page.port}']\n")
+    scene.start(["prometheus", f"--config.file={scene.path}/prometheus.yml",
+                 f"--storage.tsdb.path={scene.path}/tsdb", f"--web.listen-address=127.0.0.1:{port}"])
+
+    def scraped():
+        with contextlib.suppress(OSError, ValueError), contextlib.closing(  # it starts
+                http.client.HTTPConnection("127.0.0.1", port, timeout=owsdtest.PATIENCE)) as c:
+            c.request("GET", "/api/v1/query?query=ows_value")
+            found = json.loads(c.getresponse().read())["data"]["result"]
+            return {one["metric"]["signal"]: float(one["value"][1]) for one in found}
+
+    until(lambda: (scraped() or {}).get("room") == 21.5, 40, lambda: f"Prometheus has it: {scraped()}")
+    assert again.stop() == 0
+
+
+def test_an_alarm_is_an_event_with_its_entry(scene):
+    limit = item("level", RELAY + "/PIO.BYTE", "byte", "output", Readable=raw("on"), LimitH=raw("5"))
+    daemon, page = both(scene, limit, **{"Write": "on"})
+    with Events(page) as events:
+        events.until("found")
+        assert command(page, "/api/set", name="level", value=9)["result"] == "taken"
+        data = events.until("alarm")
+        assert data["i"] == 0 and data["alarm"] == "! high", data
+        assert data["entry"]["name"] == "level" and data["entry"]["event"] == "raised", data
+        command(page, "/api/alarm", name="level", do="ack")
+        data = events.until("alarm", lambda data: data["entry"]["event"] == "acknowledged")
+        assert data["alarm"] == "high, acknowledged", data
+        command(page, "/api/alarm", name="level", action="shelve", seconds=60, why="test")
+        assert events.until("alarm")["alarm"] == "high, shelved"
+        assert page.json("/api/alarms")["alarms"][0]["why"] == "test"
+        command(page, "/api/alarm", name="level", do="unshelve")
+        events.until("alarm", lambda data: data["entry"]["event"] == "unshelved")
+
+
+def test_writing_is_off_unless_the_block_says_write_on(scene):
+    daemon, page = both(scene)
+    for unix in (False, True):
+        assert "Write" in command(page, "/api/set", unix, status=403, name="relays", value=1)["error"]
+        command(page, "/api/alarm", unix, status=403, name="room", do="ack")
+    assert page.values()["relays"] is None
+    text_on = re.sub(r"(Web +\{)", r"\1 Write on ", daemon.config.read_text())
+    daemon.config.write_text(text_on)
+    page.program.signal(owsdtest.signal.SIGHUP)
+    until(lambda: page.json("/api/info")["writable"], 20, "it has read the file again")
+    for unix, value in ((False, 3), (True, 4)):
+        assert command(page, "/api/set", unix, name="relays", value=value) == {"ok": True, "result": "taken"}
+        assert page.values()["relays"] == value
+    entries = page.json("/api/journal")["entries"]
+    assert [e["by"]["person"] for e in entries if e["journal"] == "commands"] == [
+        getpass.getuser(), "127.0.0.1"], entries
+    assert {e["by"]["program"] for e in entries if e["by"]} == {"owsd-web"}, entries
+    for status, body in ((404, dict(name="nobody", value=1)), (400, dict(name="relays", value=256)),
+                         (400, dict(name="relays", value="x")), (400, dict(name="relays")),
+                         (400, dict(value=1)), (403, dict(name="room", value=1)),
+                         (400, dict(name="relays", value=[1])), (400, dict(name=5, value=1))):
+        assert command(page, "/api/set", status=status, **body)["error"], body
+    for status, body in ((400, dict(name="room", do="dance")), (400, dict(name="room", do="shelve")),
+                         (400, dict(name="relays", do="ack")), (404, dict(name="nobody", do="ack")),
+                         (400, dict(name="room", do="shelve", seconds=0))):
+        assert command(page, "/api/alarm", status=status, **body)["error"], body
+
+
+def test_only_the_proxy_of_the_block_names_a_person(scene):
+    me = getpass.getuser()
+    daemon, page = both(scene, **{"Write": "on", "Proxy": me})
+
+    def person(value, status=200, unix=True, name=None):
+        headers = {"X-Remote-User": name}
+        got = command(page, "/api/set", unix, headers, status, name="relays", value=value)
+        if status != 200:
+            return got["error"]
+        return page.json("/api/journal")["entries"][0]["by"]["person"]
+    assert person(1, name="anna") == "anna"
+    assert person(2, name="J\u00fcrgen".encode()) == "J\u00fcrgen"
+    for name in (None, "", "a" * 32, "a b", b"\xff", "\u202e".encode()):
+        assert "X-Remote-User" in person(3, 403, name=name), name
+    info = page.json("/api/info", unix=True, **{"X-Remote-User": "anna"})
+    assert (info["writable"], info["person"]) == (True, "anna"), info
+    assert page.json("/api/info", unix=True)["writable"] is False
+    # at an address the header means nothing
+    assert person(4, unix=False, name="root") == "127.0.0.1"
+    text_without = re.sub(r'Proxy "[^"]*"', "", daemon.config.read_text())
+    daemon.config.write_text(text_without)
+    page.program.signal(owsdtest.signal.SIGHUP)
+    until(lambda: person(5, name="anna") == me, 20, "without Proxy it means nothing")
+
+
+def nginx_of_the_page():
+    block = re.search(r"```nginx\n(.*?)```", (owsdtest.SOURCE / "docs/web.md").read_text(), re.S)
+    return block[1]
+
+
+def test_the_example_for_nginx_works(scene):
+    nginx = shutil.which("nginx", path=os.environ["PATH"] + ":/usr/sbin")
+    if not nginx:
+        skip("nginx is not installed")
+    me, port = getpass.getuser(), owsdtest.free_port()
+    daemon, page = both(scene, **{"Write": "on", "Proxy": me})
+    users = scene.file("users", "anna:{PLAIN}secret\n")
+    server = re.sub(r"(?m)^ *ssl_.*\n", "", nginx_of_the_page())
+    for old, new in (("listen 443 ssl", f"listen 127.0.0.1:{port}"), ("/run/owsd/OWS.web", str(page.socket)),
+                     ("/etc/nginx/owsd.users", str(users)), ("server_name house.example", "server_name _")):
+        assert old in server, old
+        server = server.replace(old, new)
+    temp = "".join(f"{kind}_temp_path {scene.path}/{kind};\n" for kind in
+                   ("client_body", "proxy", "fastcgi", "uwsgi", "scgi"))
+    conf = scene.file("nginx.conf", f"""
+daemon off; master_process off; pid {scene.path}/nginx.pid; error_log stderr;
+{f"user {me};" if os.geteuid() == 0 else ""}
+events {{}}
+http {{
+{temp} access_log off;
+{server}
+}}
+""")
+    proxy = scene.start([nginx, "-e", "stderr", "-p", scene.path, "-c", conf])
+    host = f"127.0.0.1:{port}"
+    login = {"Authorization": "Basic " + base64.b64encode(b"anna:secret").decode()}
+
+    def ask(path, method="GET", body=None, **headers):
+        c = http.client.HTTPConnection("127.0.0.1", port, timeout=owsdtest.PATIENCE)
+        with contextlib.closing(c):
+            c.request(method, path, body, {**login, **headers})
+            answer = c.getresponse()
+            return answer.status, answer.read()
+
+    def listens():
+        with contextlib.suppress(ConnectionRefusedError), socket.create_connection(("127.0.0.1", port)):
+            return True
+        assert proxy.running(), proxy.log()
+    until(listens, 20, "nginx listens")
+    assert ask("/owsd/api/info", Authorization="Basic eDp5")[0] == 401
+    assert ask("/owsd/")[0] == 200 and json.loads(ask("/owsd/api/info")[1])["instance"] == daemon.name
+    mine = {"Content-Type": "application/json", "X-Owsd": "1", "Origin": f"http://{host}"}
+    # what a client says of itself does not reach owsd-web
+    status, body = ask("/owsd/api/set", "POST", '{"name":"relays","value":6}', **mine, **{"X-Remote-User": "root"})
+    assert status == 200, body
+    assert page.json("/api/journal")["entries"][0]["by"]["person"] == "anna"
+    assert ask("/owsd/api/set", "POST", '{"name":"relays","value":7}', **{**mine, "Origin": "http://evil"})[0] == 403
+    with socket.create_connection(("127.0.0.1", port), timeout=owsdtest.PATIENCE) as s, s.makefile("rb") as file:
+        s.sendall(f"GET /owsd/api/events HTTP/1.1\r\nHost: {host}\r\nAuthorization: {login['Authorization']}\r\n\r\n"
+                  .encode())
+        until(lambda: b"event: found" in file.readline(), 20, "events come through at once", step=0)
+
+
+ASK = """
+import os, socket, sys
+os.setgroups([int(g) for g in sys.argv[2].split(",") if g]); os.setgid(65534); os.setuid(65534)
+s = socket.socket(socket.AF_UNIX); s.connect(sys.argv[1]); s.sendall(sys.argv[3].encode())
+got = b""
+while more := s.recv(65536): got += more
+print(got.decode())
+"""
+
+
+def test_rights_are_those_of_the_peer_on_the_socket(scene):
+    if os.geteuid() != 0:
+        skip("only root can be another user")
+    _, page = both(scene, **{"Write": "on"})
+    body = '{"name":"relays","value":1}'
+    post = ("POST /api/set HTTP/1.1\r\nHost: x\r\nX-Owsd: 1\r\nContent-Type: application/json\r\n"
+            f"X-Remote-User: root\r\nContent-Length: {len(body)}\r\n\r\n{body}")
+    os.chmod(place().parent, 0o755)
+    os.chmod(page.socket, 0o666)  # as if another group might open it
+
+    def ask(groups, text):
+        return subprocess.run(["python3", "-c", ASK, str(page.socket), groups, text], capture_output=True,
+                              text=True, timeout=owsdtest.PATIENCE)
+    get = "GET /api/info HTTP/1.1\r\nHost: x\r\n\r\n"
+    assert status_of(ask("", get).stdout.encode()) == 200
+    refused = ask("", post)
+    assert status_of(refused.stdout.encode()) == 403 and "owsd-control" in refused.stdout, refused
+    with contextlib.suppress(KeyError):
+        assert status_of(ask(str(grp.getgrnam("owsd-control").gr_gid), post).stdout.encode()) == 200
+    os.chmod(page.socket, 0o660)
+    assert "PermissionError" in ask("", get).stderr
+
+
+def test_a_command_of_another_page_is_refused(scene):
+    _, page = both(scene, **{"Write": "on"})
+    host = f"127.0.0.1:{page.port}"
+    good = {"Host": host, "Origin": f"http://{host}"}
+    for unix in (False, True):
+        command(page, "/api/set", unix, good, name="relays", value=1)
+        command(page, "/api/set", unix, {**good, "Origin": None}, name="relays", value=1)
+        for wrong in ({"Origin": "http://evil.example"}, {"Origin": "null"},
+                      {"Origin": f"http://{host}.evil.example"}, {"Origin": f"ftp://{host}"},
+                      {"Origin": "http://127.0.0.1"}, {"X-Owsd": None}, {"X-Owsd": "0"}):
+            assert command(page, "/api/set", unix, {**good, **wrong}, 403, name="relays", value=2), wrong
+        for wrong in ("text/plain", "application/x-www-form-urlencoded", None):
+            command(page, "/api/set", unix, {**good, "Content-Type": wrong}, 415, name="relays", value=2)
+    # nothing but a POST commands, and no preflight is answered with leave
+    assert page.json("/api/set", 404)
+    answer, status, _ = page.ask("/api/set", "OPTIONS", Origin="http://evil.example")
+    assert status == 405 and not answer.getheader("Access-Control-Allow-Origin")
+    assert page.values()["relays"] == 1
+
+
+def test_another_name_than_this_machines_is_refused_at_an_address(scene):
+    _, page = both(scene, Hosts="house.example, other.example")
+    for name in ("localhost", "127.0.0.1", "127.0.0.9", "[::1]", socket.gethostname(), "house.example",
+                 "OTHER.example", "localhost."):
+        for port in ("", f":{page.port}"):
+            page.json("/api/info", 200, Host=name + port)
+    for name in ("evil.example", "localhost.evil.example", "192.168.1.9", "house.example.", "127.0.0.1.nip.io",
+                 "evil.example:80", "localhost:x", "a b", "[::1", "::1", "[evil]"):
+        if name != "house.example.":
+            assert "Hosts" in page.json("/api/info", 421, Host=name)["error"], name
+    # the socket has rights; what the proxy sends as Host is its own
+    page.json("/api/info", unix=True, Host="evil.example")
+
+
+def status_of(answer):
+    return int(answer.split(b" ", 2)[1]) if answer.startswith(b"HTTP/1.1 ") else answer
+
+
+def test_heads_that_a_proxy_could_read_otherwise_are_refused(scene):
+    _, page = both(scene, **{"Write": "on"})
+    head = b"GET /api/info HTTP/1.1\r\nHost: localhost\r\n"
+    inner = b"GET /api/stats HTTP/1.1\r\nHost: localhost\r\n\r\n"
+    post = b"POST /api/set HTTP/1.1\r\nHost: localhost\r\nX-Owsd: 1\r\nContent-Type: application/json\r\n"
+    body = b'{"name":"relays","value":5}'
+    cases = [
+        (200, head + b"\r\n"), (200, head + b"X:\r\nY: \t a b \r\n\r\n"),
+        (400, head + b"Content-Length: 5\r\n\r\nhello"),
+        (400, post + b"Content-Length: 5\r\nContent-Length: 27\r\n\r\n" + body),
+        (400, post + b"Content-Length: 27\r\nContent-Length: 27\r\n\r\n" + body),
+        (400, post + b"Content-Length: 27, 27\r\n\r\n" + body),
+        (400, post + b"Content-Length: +27\r\n\r\n" + body),
+        (400, post + b"Content-Length: 0x1b\r\n\r\n" + body),
+        (400, post + b"Content-Length:\r\n\r\n" + body),
+        (400, post + b"Content-Length : 27\r\n\r\n" + body),
+        (501, post + b"Transfer-Encoding: chunked\r\n\r\n0\r\n\r\n"),
+        (501, post + b"Content-Length: 27\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n"),
+        (501, post + b"transfer-encoding: identity\r\n\r\n"),
+        (413, post + b"Content-Length: 8193\r\n\r\n"),
+        (413, post + b"Content-Length: 99999999999999999999999\r\n\r\n"),
+        (400, head + b"X: a\r\n b\r\n\r\n"), (400, head + b"X: a\r\n\tb\r\n\r\n"),
+        (400, head.replace(b"\r\n", b"\n") + b"\n"), (400, head + b"X: a\nX-Remote-User: root\r\n\r\n"),
+        (400, head + b"X: a\rb\r\n\r\n"), (400, head + b"X: \0\r\n\r\n"), (400, head + b"X\r\n\r\n"),
+        (400, head + b": a\r\n\r\n"), (400, head + b"X(y): a\r\n\r\n"), (400, head + b"Host: b\r\n\r\n"),
+        (400, head + b"X-Remote-User: a\r\nx-remote-user: b\r\n\r\n"),
+        (400, b"GET /api/info HTTP/1.1\r\n\r\n"), (400, b"\r\n" + head + b"\r\n"),
+        (400, b"GET  /api/info HTTP/1.1\r\nHost: localhost\r\n\r\n"),
+        (400, b"GET http://localhost/ HTTP/1.1\r\nHost: localhost\r\n\r\n"),
+        (400, b"GET /a%00b HTTP/1.1\r\nHost: localhost\r\n\r\n"),
+        (400, b"GET /\xff HTTP/1.1\r\nHost: localhost\r\n\r\n"), (400, b"GET /\r\n"),
+        (505, b"GET / HTTP/2.0\r\nHost: localhost\r\n\r\n"), (505, b"GET / HTTP/1.1x\r\nHost: a\r\n\r\n"),
+        (400, b"\x16\x03\x01\x02\x00\x01\x00"), (400, b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"),
+        (431, head + b"X: " + b"a" * 9000 + b"\r\n\r\n"), (431, b"G" * 9000), (431, head + b"X: a\r\n" * 2000),
+        (405, b"DELETE /api/info HTTP/1.1\r\nHost: localhost\r\n\r\n"),
+        (405, b"HEAD / HTTP/1.1\r\nHost: localhost\r\n\r\n"),
+    ]
+    for status, data in cases:
+        for unix in (False, True):
+            got = page.raw(data, unix)
+            assert status_of(got) == status, (data[:200], got)
+            assert got.count(b"HTTP/1.1 ") == 1, got
+    # one request for each connection: what comes after it is never read as another
+    got = page.raw(head + b"\r\n" + inner)
+    assert status_of(got) == 200 and got.count(b"HTTP/1.1 ") == 1 and b"counters" not in got, got
+    got = page.raw(post + b"Content-Length: 2\r\n\r\n{}" + inner)
+    assert status_of(got) == 400 and got.count(b"HTTP/1.1 ") == 1, got
+    assert page.values()["relays"] is None
+
+
+def test_a_head_may_come_in_pieces_and_who_sends_none_holds_up_nobody(scene):
+    _, page = both(scene)
+    with contextlib.ExitStack() as open_ones:
+        for _ in range(40):
+            s = open_ones.enter_context(page.tcp())
+            s.sendall(b"GET /api/info HTTP/1.1\r\nHost: local")
+        page.json("/api/info")
+        with page.unix() as s:
+            for byte in b"GET /api/info HTTP/1.1\r\nHost: localhost\r\n\r\n":
+                s.sendall(bytes([byte]))
+            assert s.recv(100).startswith(b"HTTP/1.1 200 ")
+        # more than one address may have
+        for _ in range(40):
+            open_ones.enter_context(page.tcp()).sendall(b"G")
+        assert status_of(page.raw(b"GET / HTTP/1.1\r\n")) == 503
+        page.json("/api/info", unix=True)
+    until(lambda: status_of(page.raw(b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")) == 200, 20, "they have gone")
+
+
+def test_three_hundred_streams_get_each_change(scene):
+    daemon, page = both(scene)
+    with contextlib.ExitStack() as all_of_them:
+        streams = [all_of_them.enter_context(Events(page)) for _ in range(300)]
+        for stream in streams:
+            assert stream.until("found")
+        for value in (7, 8):
+            set_relays(scene, daemon, value)
+            for stream in streams:
+                stream.value(1, value)
+        assert page.json("/api/info")["signals"] == 2
+    # those that have gone are noticed with the next line for them
+    until(lambda: len(owsdtest.open_files(page.program)) < 60, 60, "they are closed")
+
+
+def test_a_client_that_reads_nothing_gets_the_newest_state_and_costs_no_memory(scene):
+    faulty.not_sanitized("a sanitizer keeps memory that was freed")
+    items = [item(f"relays{i}", RELAY + "/PIO.BYTE", "byte", "input") for i in range(300)]
+    daemon, page = both(scene, RELAYS, *items)
+
+    def resident():
+        with open(f"/proc/{page.program.pid}/statm", encoding="ascii") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    with contextlib.ExitStack() as all_of_them:
+        slow = [all_of_them.enter_context(Events(page)) for _ in range(30)]
+        for s in slow:
+            s.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        with Events(page) as quick:
+            quick.until("found")
+            for value in range(1, 60):
+                set_relays(scene, daemon, value)
+            quick.value(0, 59)
+        assert resident() < 20 << 20, resident()
+        for s in slow:
+            s.value(0, 59)
+
+
+def test_the_page_needs_little_memory(scene):
+    faulty.not_sanitized("a sanitizer has memory of its own")
+    _, page = both(scene)
+    with open(f"/proc/{page.program.pid}/smaps_rollup", encoding="ascii") as file:
+        lines = dict(line.split(":") for line in file.read().splitlines()[1:])
+    own, resident = (int(lines[key].split()[0]) for key in ("Private_Dirty", "Rss"))
+    assert own < 2048, lines
+    assert resident < 5000 or os.uname().machine != "x86_64", lines
+
+
+def test_a_second_owsd_web_is_refused_and_a_stale_socket_is_not(scene):
+    daemon, page = both(scene)
+    second = scene.start([WEB, "-n", daemon.name, "-c", daemon.config])
+    assert second.wait() == 1 and "another owsd-web" in second.log(), second.log()
+    page.json("/api/info", unix=True)
+    page.program.kill()
+    assert page.socket.exists()
+    again = Page(scene, daemon)
+    again.json("/api/info", unix=True)
+    assert oct(again.socket.stat().st_mode & 0o777) == "0o660"
+    assert again.program.stop() == 0 and not again.socket.exists()
+
+
+def test_a_socket_of_the_service_manager_is_taken(scene):
+    if not WEB.exists():
+        skip("owsd-web is not built: there is no libmicrohttpd")
+    daemon = scene.owsd(text(scene))
+    path = str(scene.path / "given")
+    with socket.socket(socket.AF_UNIX) as listener:
+        listener.bind(path)
+        listener.listen()
+        os.dup2(listener.fileno(), 3, inheritable=True) if listener.fileno() != 3 else None
+        started = subprocess.Popen(
+            ["sh", "-c", 'LISTEN_PID=$$ LISTEN_FDS=1 exec "$@"', "sh", str(WEB), "-n", daemon.name,
+             "-c", str(daemon.config)], pass_fds=[3], stdin=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL)
+        try:
+            def asked():
+                c = http.client.HTTPConnection("localhost", timeout=5)
+                c.sock = socket.socket(socket.AF_UNIX)
+                c.sock.settimeout(5)
+                c.sock.connect(path)
+                with contextlib.closing(c):
+                    c.request("GET", "/api/info")
+                    return c.getresponse().status
+            until(lambda: asked() == 200, 20, "it answers")
+            assert not (place() / f"{daemon.name}.web").exists()
+        finally:
+            started.terminate()
+            assert started.wait(owsdtest.PATIENCE) == 0
+            os.close(3)
+    assert os.path.exists(path)
+
+
+if __name__ == "__main__":
+    owsdtest.main()

@@ -1,0 +1,333 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The page of owsd-web in headless Chromium, on a simulated house: each view shows what owsctl
+does, the loss of owsd makes values unknown, commands are confirmed. WRITE=1 writes the pictures of
+the docs."""
+
+import json
+import os
+
+import browser
+import owsdtest
+from owsdtest import SOURCE, until
+from webhouse import (BOILER, CELLS, GONE, RELAY, ROOM, SHOWN, all_unknown, house, item, listed,
+                      plant, serve, shows, text_of, view)
+
+
+# --- Views ----------------------------------------------------------------------------------
+
+
+def test_live_shows_what_owsctl_lists(scene):
+    with plant(scene) as (daemon, _, page):
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 20, "room has its value")
+        until(lambda: page.run(CELLS)["attic"]["quality"] == "device absent", 30,
+              lambda: page.run(CELLS)["attic"])
+        cells, rows = page.run(CELLS), listed(scene, daemon)
+        assert list(cells) != [] and set(cells) == set(rows), cells
+        for name, row in rows.items():
+            cell = cells[name]
+            assert (cell["state"] == "good") == row["good"], (cell, row)
+            assert cell["unit"] == ((row["unit"] or "") if row["good"] else ""), (cell, row)
+            if not row["good"]:
+                assert cell["value"] == "\u2014", cell
+            if row["good"]:
+                assert cell["quality"] == "good, simulated", cell
+        assert cells["kind"]["value"] == "DS18B20" and cells["door"]["value"] in ("on", "off")
+        assert cells["boiler"]["alarm"].startswith("high"), cells["boiler"]
+        assert not page.complaints()
+
+
+def test_a_quality_that_is_not_good_is_explained_with_its_remedy(scene):
+    with plant(scene) as (_, _, page):
+        until(lambda: page.run(CELLS)["attic"]["quality"] == "device absent", 30, "absent")
+        page.click("#live .row.is-bad button.quality")
+        shows(page, "#live .row.is-bad .c-detail", "Remedy:", "pull-up", GONE)
+        assert not page.complaints()
+
+
+def test_the_search_and_the_order_stand_in_the_address(scene):
+    with plant(scene) as (_, web, page):
+        page.type("#search", "relay 29.0")
+        until(lambda: page.run(SHOWN) == [], 10, "no signal matches")
+        page.type("#search", "29.0 output")
+        until(lambda: page.run(SHOWN) == ["light", "pump", "others"], 10,
+              lambda: page.run(SHOWN))
+        page.run("const o = document.querySelector('#order'); o.value = 'name';"
+                 "o.dispatchEvent(new Event('change'))")
+        address = page.run("return location.href")
+        page.go("about:blank")
+        page.go(address)
+        until(lambda: page.run(SHOWN) == ["light", "others", "pump"], 20,
+              lambda: page.run(SHOWN))
+        assert address.startswith(web.address) and not page.complaints()
+
+
+def test_an_age_counts_up_while_nothing_comes(scene):
+    with plant(scene) as (daemon, _, page):
+        scene.owsctl(daemon, "set", "room_RE", "0")
+        until(lambda: page.run(CELLS)["room"]["age"] not in ("now", "1 s", "2 s"), 20,
+              lambda: page.run(CELLS)["room"])
+        cell = page.run(CELLS)["room"]
+        assert cell["value"] == "\u2014" and cell["quality"] == "last usable value", cell
+
+
+def test_an_alarm_is_acknowledged_and_the_journal_says_by_whom(scene):
+    with plant(scene, write=True) as (daemon, _, page):
+        view(page, "alarms")
+        shows(page, "#alarms table", "boiler", "high", "unacknowledged")
+        page.click("[data-action='acknowledge boiler']")
+        shows(page, "#alarms table", "boiler", "acknowledged")
+        page.until("return !document.querySelector(\"[data-action='acknowledge boiler']\")",
+                   "nothing is left to acknowledge")
+        row, = json.loads(scene.owsctl(daemon, "alarms", "--json").stdout)
+        assert row["name"] == "boiler" and row["state"] == "acknowledged", row
+        shows(page, "#alarms table:last-of-type", "Standing")
+        shows(page, "#alarms", "high, acknowledged", "high, raised", "owsd-web")
+        assert not page.complaints()
+
+
+def test_an_alarm_is_shelved_for_a_time_with_a_reason(scene):
+    with plant(scene, write=True) as (daemon, _, page):
+        view(page, "alarms")
+        page.click("[data-action='shelve boiler']")
+        page.type("#shelve-why", "pump is being changed")
+        page.click("dialog button.primary")
+        shows(page, "#alarms table", "shelved", "until", "pump is being changed")
+        row, = json.loads(scene.owsctl(daemon, "alarms", "--json").stdout)
+        assert row["state"] == "shelved" and row["why"] == "pump is being changed", row
+        page.click("[data-action='unshelve boiler']")
+        page.find("[data-action='acknowledge boiler']")
+        assert not page.complaints()
+
+
+def test_wire_names_what_is_wrong_and_what_to_do(scene):
+    with plant(scene) as (daemon, _, page):
+        view(page, "wire")
+        shows(page, "#wire .faults", "device absent: 1 signal", "Remedy:", "attic")
+        target, = json.loads(scene.owsctl(daemon, "stats", "--json").stdout)["targets"]
+        shows(page, "#wire", target["name"], ROOM, BOILER, GONE, "up")
+        page.until("return [...document.querySelectorAll('#wire meter')].some((m) => m.value > 0)",
+                   "the load of the wire")
+        assert not page.complaints()
+
+
+def test_wire_shows_what_each_device_is_and_what_it_costs(scene):
+    with plant(scene) as (daemon, _, page):
+        view(page, "wire")
+        shows(page, "#wire", "Identity", "Power", "Errors", "Retries", "Share of the wire",
+              "external")
+        known = {device["id"]: device for device in
+                 json.loads(scene.owsctl(daemon, "stats", "--json").stdout)["devices"]}
+        row = "[...document.querySelectorAll('#wire tr')].find((r) => " \
+              "r.querySelector('th')?.textContent === arguments[0])"
+        page.until(f"return {row}?.textContent.includes(arguments[1])",
+                   lambda: text_of(page, "#wire"), ROOM, known[ROOM]["identity"])
+        page.until(f"return {row}?.querySelector('meter')?.value > 0", "its share", RELAY)
+        assert page.run(f"return {row}.textContent.includes('%')", RELAY)
+        assert not page.run(f"return Boolean({row}.querySelector('meter'))", GONE)
+        assert not page.complaints()
+
+
+def test_about_shows_the_state_the_log_and_the_counters_of_owsctl_stats(scene):
+    with plant(scene) as (daemon, _, page):
+        view(page, "about")
+        stats = json.loads(scene.owsctl(daemon, "stats", "--json").stdout)
+        shows(page, "#about .facts", daemon.name, str(stats["daemon"]["generation"]))
+        shows(page, "#about [aria-label=Log]", "notice", *daemon.log().splitlines()[:1])
+        shows(page, "#about [aria-label=Counters]", *(counter["name"] for counter in stats["counters"]))
+        assert not page.complaints()
+
+
+def test_of_many_rows_those_on_the_screen_come_first_and_all_are_there_in_the_end(scene):
+    with browser.open_one(scene) as page:
+        scene.file("many.sim", f"chip DS2482-100 0x18\nDS2408 {RELAY}\n")
+        daemon = scene.owsd(owsdtest.rio("sim:many.sim", [
+            item(f"door{n}", f"/{RELAY}/sensed.{n % 8}", "bool", PerFactor=50)
+            for n in range(300)], Period=0.05, Timeout=3))
+        until(lambda: scene.get(daemon, "door299") in ("0", "1"), 30, "the last one has a value")
+        page.devtools("Page.addScriptToEvaluateOnNewDocument", source="""
+            window.counts = [];
+            const look = () => {
+                const n = document.querySelectorAll("#live tbody .row").length;
+                if (n && n !== counts.at(-1))
+                    counts.push(n);
+                requestAnimationFrame(look);
+            };
+            look();""")
+        page.go(serve(scene, daemon).address)
+        until(lambda: len(page.run(CELLS)) == 300, 20, lambda: page.run("return counts"))
+        assert page.run("return counts[0]") < 150, page.run("return counts")
+        until(lambda: {cell["value"] for cell in page.run(CELLS).values()} <= {"on", "off"}, 20,
+              "all have their value")
+        last = "return document.querySelector('#live tbody:last-child .row:last-child')"
+        page.run(f"{last}.scrollIntoView()")
+        page.until(f"return {last[7:]}.getBoundingClientRect().bottom <= innerHeight",
+                   "the last one can be reached")
+        page.type("#search", "door299")
+        until(lambda: page.run(SHOWN) == ["door299"], 10, lambda: page.run(SHOWN))
+        daemon.kill()
+        until(lambda: all_unknown(page), 20, "rows that cannot be seen are unknown too")
+        assert not page.complaints()
+
+
+# --- What may be believed -------------------------------------------------------------------
+
+
+def test_the_loss_of_owsd_makes_every_value_unknown_until_it_is_back(scene):
+    with plant(scene) as (daemon, _, page):
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 20, "room has its value")
+        daemon.kill()
+        until(lambda: all_unknown(page), 20, lambda: page.run(CELLS))
+        shows(page, "#banner", "unknown since")
+        again = house(scene, daemon.name)
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 30, lambda: page.run(CELLS))
+        assert again.running() and not page.run("return document.querySelector('#banner')"
+                                                ".checkVisibility()")
+
+
+def test_the_loss_of_the_connection_makes_every_value_unknown_until_it_is_back(scene):
+    with plant(scene) as (daemon, web, page):
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 20, "room has its value")
+        web.kill()
+        until(lambda: all_unknown(page), 20, lambda: page.run(CELLS))
+        serve(scene, daemon, port=web.port)
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 30, lambda: page.run(CELLS))
+
+
+def test_a_server_that_hangs_makes_every_value_unknown(scene):
+    with plant(scene) as (_, web, page):
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 20, "room has its value")
+        web.freeze()
+        until(lambda: all_unknown(page), 60, lambda: page.run(CELLS))
+        web.thaw()
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 30, lambda: page.run(CELLS))
+
+
+# --- Commands -------------------------------------------------------------------------------
+
+
+def test_a_switch_commands_after_a_confirmation_where_the_file_wants_it(scene):
+    with plant(scene, write=True) as (daemon, _, page):
+        switch = "[role=switch][aria-label=light]"
+        page.click(f"{switch}[aria-checked=false]:enabled")
+        shows(page, "dialog", "Set light on?")
+        page.press("escape")
+        page.until("return !document.querySelector('dialog').open", "the dialog is closed")
+        page.click(switch)
+        page.click("dialog button.primary")
+        shows(page, "#live", "on: taken")
+        page.find(f"{switch}[aria-checked=true]")
+        assert scene.get(daemon, "light") == "1"
+        assert not page.complaints()
+
+
+def test_an_output_that_was_never_written_has_no_switch_that_lies(scene):
+    with plant(scene, write=True) as (daemon, _, page):
+        page.click("[aria-label='Set pump on']:enabled")
+        page.find("[role=switch][aria-label=pump][aria-checked=true]")
+        assert scene.get(daemon, "pump") == "1"
+        assert not page.run("return document.querySelector('dialog').open"), "nobody asked for it"
+
+
+def test_a_fault_of_the_simulation_is_begun_and_ended_on_the_view_wire(scene):
+    with plant(scene, write=True) as (_, _, page):
+        card = "#wire [data-fault=fault_unplug]"
+        until(lambda: page.run(CELLS)["room"]["state"] == "good", 30, lambda: page.run(CELLS))
+        view(page, "wire")
+        shows(page, card, "pulls the thermometer of the room off", "off, no fault",
+              "device absent")
+        page.click(f"{card} [role=switch][aria-checked=false]:enabled")
+        shows(page, card, "on, the fault lasts")
+        until(lambda: page.run(CELLS)["room"]["quality"] == "device absent", 40,
+              lambda: page.run(CELLS)["room"])
+        shows(page, "#wire .faults", "device absent", "room", "attic")
+        assert page.run(CELLS)["boiler"]["state"] == "good", page.run(CELLS)
+        page.click(f"{card} [role=switch][aria-checked=true]")
+        shows(page, card, "off, no fault")
+        until(lambda: page.run(CELLS)["room"]["value"] == "21.5000", 40,
+              lambda: page.run(CELLS)["room"])
+        assert not page.complaints()
+
+
+def test_a_house_without_a_fault_on_demand_shows_no_faults_of_a_simulation(scene):
+    with browser.open_one(scene) as page:
+        scene.file("house.sim", f"chip DS2482-100 0x18\nDS18B20 {ROOM} temperature 21.5\n")
+        daemon = scene.owsd(owsdtest.rio("sim:house.sim", [
+            item("room", f"/{ROOM}/temperature12")], Web=owsdtest.raw("{ Write on }")))
+        page.go(serve(scene, daemon).address)
+        view(page, "wire")
+        shows(page, "#wire", "Targets and wires", ROOM)
+        assert not page.run("return document.querySelector('#wire .simulation').checkVisibility()")
+
+
+def test_a_number_is_entered_by_slider_or_field_and_checked(scene):
+    with plant(scene, write=True) as (daemon, _, page):
+        page.click("[aria-label='Set others']:enabled")
+        assert page.run("return document.querySelector('dialog [type=range]').max") == "200"
+        for wrong, words in (("201", "from 0 to 200"), ("1.5", "whole"), ("x", "number")):
+            page.type("#command-value", wrong)
+            page.press("enter")
+            shows(page, "dialog .fault", words)
+        page.type("#command-value", "36")
+        page.press("enter")
+        shows(page, "#live", "36: taken")
+        assert scene.get(daemon, "others") == "36"
+        assert not page.complaints()
+
+
+def test_a_refusal_is_shown_with_its_reason(scene):
+    with plant(scene, write=True) as (daemon, _, page):
+        page.run("return import('./store.js').then(({store}) => {"
+                 "store.find('others').max = 255; })")  # the page would refuse it first
+        page.click("[aria-label='Set others']:enabled")
+        page.type("#command-value", "250")
+        page.press("enter")
+        shows(page, "#live", "250: refused: ")
+        assert scene.get(daemon, "others") == "0"
+
+
+def test_a_page_without_the_right_to_write_has_its_outputs_disabled(scene):
+    with plant(scene) as (_, _, page):
+        shows(page, "#read-only", "switched off")
+        assert page.run("return [...document.querySelectorAll('.control button')]"
+                        ".every((one) => one.disabled)")
+        view(page, "alarms")
+        page.find("[data-action='acknowledge boiler']:disabled")
+
+
+# --- Pictures -------------------------------------------------------------------------------
+
+
+def write_pictures(scene):
+    with browser.open_one(scene) as page:
+        daemon = house(scene, "demo", True, "sine 24 8 1m",
+                       "at 50s unplug boiler for 15s\n")
+        page.go(serve(scene, daemon).address + "#wire")
+        page.until("return document.querySelector('#live tbody .row')", "the rows")
+        until(lambda: page.run(CELLS)["attic"]["quality"] == "device absent", 30, "absent")
+        scene.owsctl(daemon, "set", "-w", "9", "others", "36")
+        scene.owsctl(daemon, "alarms", "ack", "boiler")
+        for state in ("bad", "good"):
+            page.until("return [...document.querySelectorAll('#live .row')].find((row) => row"
+                       ".textContent.startsWith('boiler')).classList.contains(arguments[0])",
+                       "the boiler is unplugged and back", f"is-{state}", seconds=120)
+        until(lambda: scene.get(daemon, "room_Age") and float(listed(scene, daemon, "boiler")
+              ["boiler"]["value"]) < 56, 120, "the boiler is below its greatest value")
+        for name, width, height, scheme, where in (
+                ("live", 1280, 620, "light", "live"), ("live-dark", 1280, 620, "dark", "live"),
+                ("alarms", 1280, 560, "light", "alarms"),
+                ("wire", 1280, 860, "light", "wire"), ("phone", 360, 740, "light", "live")):
+            page.scheme(scheme)
+            page.size(width, height, mobile=width < 500, scale=2 if width < 500 else 1)
+            view(page, where)
+            page.find(f"#{where} :is(td, canvas)")
+            picture = page.picture()
+            assert len(picture) <= 150_000, (name, len(picture))
+            (SOURCE / f"docs/img/web-{name}.png").write_bytes(picture)
+
+
+if os.environ.get("WRITE") == "1":
+    test_the_pictures_of_the_docs_are_written = write_pictures
+
+if __name__ == "__main__":
+    owsdtest.main(at_once=2)

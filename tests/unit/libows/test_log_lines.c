@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: MIT */
+/* What libows returns of owsd's log, also when the ring has gone round, and after a reload. */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "unity.h"
+
+#include "src/shm/entries.h"
+#include "tests/unit/aid/instance.h"
+
+static const struct instance_signal signals[] = {
+	{"room", "/28.551DDF030000/temperature", OWS_DOUBLE, false, 0, NULL},
+};
+static struct instance in;
+static struct ows *h;
+
+void setUp(void)
+{
+	instance_start(&in, "log", signals, 1);
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_READ, &h));
+}
+
+void tearDown(void)
+{
+	ows_close(h);
+	instance_end(&in);
+}
+
+static void put(uint32_t n)
+{
+	char text[32];
+	int len = snprintf(text, sizeof(text), "line %u and rest", n);
+
+	image_log(&in.image, 1000 + n, 4, text, (size_t)len - strlen(" and rest"));
+}
+
+static void has(uint32_t n)
+{
+	char text[32];
+	struct ows_log_line line;
+
+	snprintf(text, sizeof(text), "line %u", n);
+	TEST_ASSERT_EQUAL(0, ows_log_line(h, n, &line));
+	TEST_ASSERT_EQUAL(n, line.number);
+	TEST_ASSERT_EQUAL(4, line.level);
+	TEST_ASSERT_EQUAL_INT64(1000 + n, line.time_ns);
+	TEST_ASSERT_EQUAL_STRING(text, line.text);
+}
+
+static void test_lines_count_from_one_and_the_newest_are_kept(void)
+{
+	struct ows_log_line line;
+	uint32_t kept = in.image.log_lines;
+
+	TEST_ASSERT_GREATER_THAN(2, kept);
+	TEST_ASSERT_EQUAL(0, ows_log_last(h));
+	TEST_ASSERT_EQUAL(-ENOENT, ows_log_line(h, 0, &line));
+	TEST_ASSERT_EQUAL(-ENOENT, ows_log_line(h, 1, &line));
+	for (uint32_t n = 1; n <= 3 * kept; n++) {
+		put(n);
+		TEST_ASSERT_EQUAL(n, ows_log_last(h));
+		has(n);
+	}
+	has(2 * kept + 1);
+	TEST_ASSERT_EQUAL(-ENOENT, ows_log_line(h, 2 * kept, &line));
+	TEST_ASSERT_EQUAL(-ENOENT, ows_log_line(h, 3 * kept + 1, &line));
+}
+
+static void test_a_long_line_is_cut_and_ends(void)
+{
+	struct ows_log_line line;
+	char big[400];
+
+	memset(big, 'x', sizeof(big));
+	image_log(&in.image, 1, 3, big, sizeof(big));
+	TEST_ASSERT_EQUAL(0, ows_log_line(h, 1, &line));
+	TEST_ASSERT_EQUAL_size_t(sizeof(line.text) - 1, strlen(line.text));
+	memset(in.image.log[1].text, 'y', sizeof(in.image.log[1].text)); /* a lie of the image */
+	TEST_ASSERT_EQUAL(0, ows_log_line(h, 1, &line));
+	TEST_ASSERT_EQUAL_size_t(sizeof(line.text) - 1, strlen(line.text));
+}
+
+static void test_an_entry_that_owsd_died_in_is_skipped(void)
+{
+	struct ows_log_line line;
+
+	put(1);
+	put(2);
+	in.image.log[2].seq++;
+	TEST_ASSERT_EQUAL(-EIO, ows_log_line(h, 2, &line));
+	TEST_ASSERT_EQUAL(1, ows_log_last(h));
+	has(1);
+}
+
+static void test_a_reload_goes_on_with_the_numbers(void)
+{
+	struct instance next;
+
+	put(1);
+	put(2);
+	instance_make(&next, "log_next", 2, in.start_ns, signals, 1);
+	image_carry_log(&next.image, &in.image);
+	image_log(&next.image, 7, 4, "after", 5);
+	TEST_ASSERT_EQUAL(3, next.image.log[3].number);
+	TEST_ASSERT_EQUAL_STRING("line 1", next.image.log[1].text);
+	instance_leave(&next);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_lines_count_from_one_and_the_newest_are_kept);
+	RUN_TEST(test_a_long_line_is_cut_and_ends);
+	RUN_TEST(test_an_entry_that_owsd_died_in_is_skipped);
+	RUN_TEST(test_a_reload_goes_on_with_the_numbers);
+	return UNITY_END();
+}

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: MIT */
+/* The digits of a number that owsctl shows to a person: those of the chip. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "unity.h"
+
+#include "src/engine/table.h"
+#include "src/show/reading.h"
+#include "src/signal/value.h"
+
+static struct reading reading;
+
+void setUp(void)
+{
+}
+void tearDown(void)
+{
+}
+
+/* As reading_get() leaves it. */
+static void be(enum ows_type type, double number)
+{
+	reading.value = (struct ows_value){.type = (uint8_t)type,
+	                                   .quality = OWS_Q_GOOD,
+	                                   .number = number,
+	                                   .integer = (int64_t)number};
+	reading.err = 0;
+	value_to_text(type, value_is_float(type) ? value_of_double(number) : (int64_t)number,
+	              reading.text);
+	reading.len = strlen(reading.text);
+}
+
+/* As the image has them of a signal that is not scaled. */
+static int decimals_of(const char *path)
+{
+	struct config_item item = {.path = path, .type = OWS_DOUBLE, .decimals = -1};
+	struct image_meta meta;
+
+	signal_table_meta(&item, &meta);
+	return (int)meta.decimals;
+}
+
+static void test_a_number_has_the_digits_of_its_chip(void)
+{
+	static const struct {
+		const char *path;
+		double number;
+		const char *text;
+	} rows[] = {
+		{"/26.551DDF030000/humidity", 48.370479432335586, "48.37"},
+		{"/26.551DDF030000/humidity", 48.999, "49"},
+		{"/26.551DDF030000/VDD", 5.0199999999999996, "5.02"},
+		{"/26.551DDF030000/temperature", 21.03125, "21.03125"},
+		{"/28.551DDF030000/temperature", 21.1875, "21.1875"},
+		{"/28.551DDF030000/temperature", 21.5, "21.5"},
+		{"/28.551DDF030000/temperature", -0.0625, "-0.0625"},
+		{"/28.551DDF030000/temperature9", 20, "20"},
+		{"/28.551DDF030000/temperature", 100, "100"},
+		{"/26.551DDF030000/humidity", -0.001, "0"},
+		{"/cellar/humidity", 48.370479432335586, "48.37"},
+		{"/1D.551DDF030000/counters.A", 12000, "12000"},
+		{"/26.551DDF030000/humidity", -0.006, "-0.01"},
+		{"/EF.551DDF030000/odd", 48.370479432335586, "48.370479432335586"},
+	};
+
+	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		be(OWS_DOUBLE, rows[i].number);
+		reading_round(&reading, decimals_of(rows[i].path));
+		TEST_ASSERT_EQUAL_STRING(rows[i].text, reading.text);
+		TEST_ASSERT_EQUAL_size_t(strlen(reading.text), reading.len);
+	}
+}
+
+static void test_integers_strings_and_driver_signals_stay_as_they_are(void)
+{
+	be(OWS_LONG, 21);
+	reading_round(&reading, decimals_of("/28.551DDF030000/temperature"));
+	TEST_ASSERT_EQUAL_STRING("21", reading.text);
+	be(OWS_DOUBLE, 0.123456789);
+	reading_round(&reading, -1);
+	TEST_ASSERT_EQUAL_STRING("0.123456789", reading.text);
+	be(OWS_STRING, 0);
+	strcpy(reading.text, "1.23456789");
+	reading_round(&reading, decimals_of("/26.551DDF030000/VDD"));
+	TEST_ASSERT_EQUAL_STRING("1.23456789", reading.text);
+	be(OWS_DOUBLE, (double)INFINITY);
+	reading_round(&reading, decimals_of("/26.551DDF030000/VDD"));
+	TEST_ASSERT_EQUAL_STRING("inf", reading.text);
+	be(OWS_DOUBLE, 1e300);
+	reading_round(&reading, decimals_of("/26.551DDF030000/VDD"));
+	TEST_ASSERT_DOUBLE_WITHIN(1e285, 1e300, strtod(reading.text, NULL));
+}
+
+/* What a thermometer can say, its digits say exactly. */
+static void test_every_step_of_a_thermometer_reads_back(void)
+{
+	for (int raw = -55 * 16; raw <= 125 * 16; raw++) {
+		be(OWS_DOUBLE, raw / 16.0);
+		reading_round(&reading, decimals_of("/28.551DDF030000/temperature"));
+		TEST_ASSERT_EQUAL_DOUBLE(raw / 16.0, strtod(reading.text, NULL));
+		TEST_ASSERT_LESS_OR_EQUAL_size_t(8, strlen(reading.text));
+	}
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_number_has_the_digits_of_its_chip);
+	RUN_TEST(test_integers_strings_and_driver_signals_stay_as_they_are);
+	RUN_TEST(test_every_step_of_a_thermometer_reads_back);
+	return UNITY_END();
+}
