@@ -4,20 +4,23 @@
 #   make run                      the main job, on a simulated house; no root, nothing else needed
 #   make run TARGET=...           the same on localhost:4304, i2c:/dev/i2c-1, ...; only reads.
 #                                 owserver: on the genuine one, with simulated devices if need be
-#   make test                     unit and system tests (sets up what they need);
-#                                 TESTS='test_run.py test_shm.py' these system tests alone
+#   make test                     unit tests, and the main job by the real programs, in five minutes
+#                                 (sets up what they need); TESTS='test_run.py test_shm.py' these
+#                                 system tests alone
+#   make lint format              the form of all files; what a program can mend of it
+#   make check                    all suites of tests/suites, in forty minutes; goes on where it was
+#                                 broken off. SUITES='kernel gpio' some, AGAIN=1 whatever has passed
+#   make touched                  which of them a change asks for; BASE=main against another commit
+#   make check-all                these and the suites of hours, before a release
 #   make all unit soak system bench install uninstall clean
 #   make bench-page               make bench and bench-kernel into docs/performance.md, with plots
 #   make compare                  what owserver and owsd read of the same simulated devices, and what
 #                                 becomes of what both write, against what is recorded; WRITE=1
 #                                 records it, PARTS='DS2438 DS2450' some
 #   make properties-page          docs/properties.md, of what is recorded
-#   make check-all                every check there is, for hours; .ci/run those that a change can
-#                                 break, within three quarters of an hour of two cores
 #   make clang sanitize m32       a second compiler, its sanitizers, 32 bits
 #   make fuzz                     libFuzzer on what comes from outside; FUZZ=rio one of its targets,
 #                                 FUZZ_SECONDS=60 for each
-#   make format                   all C laid out as .clang-format says; make analyze checks it
 #   make analyze coverage         what gcc's analyzer, clang-tidy and cppcheck find (nothing is to
 #                                 be left); which lines and branches the tests reach
 #   make test-kill KILLS=10000    the writer of the shared memory killed at random points
@@ -45,6 +48,8 @@ DESTDIR  ?=
 LIBDIR   ?= $(PREFIX)/lib
 MANDIR   ?= $(PREFIX)/share/man
 DATADIR  ?= $(PREFIX)/share/owsd
+
+.DEFAULT_GOAL := all
 
 # make takes a name with a blank for two, and clean and uninstall would remove those two
 blank    := $() $()
@@ -209,7 +214,8 @@ LIBRARY  := $(foreach l,$(LIBRARIES),$(B)/$(l).so.$(VERSION) $(B)/$(l).a $(B)/$(
 
 .PHONY: all unit soak system test run bench install uninstall install-service uninstall-service \
         deb test-package test-service test-fresh dist test-dist clean \
-        examples unit-programs benches diagrams compare properties-page check-all FORCE
+        examples unit-programs benches system-programs diagrams compare properties-page check check-all \
+        touched FORCE
 all: $(PROGRAMS) $(LIBRARY) $(B)/core.a $(B)/with/libraries
 
 # Two makes may do this at once
@@ -327,11 +333,26 @@ $(B)/unit/test_endurance: $(patsubst tests/endurance/%.c,$(B)/unit/endurance/%.o
 unit-programs: $(UNIT) replays
 
 # RUNNER runs programs of another architecture: RUNNER=qemu-aarch64-static.
-# UNIT_WITHOUT=test_rio leaves programs out
+# UNIT_WITHOUT=test_rio leaves programs out; ROOMS='shm host' takes those of these rooms alone
 unit: export RUNNER := $(RUNNER)
-UNIT_RUN := $(filter-out $(UNIT_WITHOUT:%=$(B)/unit/%),$(UNIT))
-unit: all $(UNIT_RUN) replays
-	@sh tests/unit/run $(UNIT_RUN) $(REPLAYS)
+OF_ROOMS := $(patsubst %.c,$(B)/unit/%,$(notdir $(wildcard $(ROOMS:%=tests/unit/%/test_*.c))))
+UNIT_RUN := $(filter-out $(UNIT_WITHOUT:%=$(B)/unit/%),$(if $(ROOMS),$(OF_ROOMS),$(UNIT)))
+unit: $(if $(ROOMS),,all replays) $(UNIT_RUN)
+	@sh tests/unit/run $(UNIT_RUN) $(if $(ROOMS),,$(REPLAYS))
+
+# For UNIT_WITHOUT. These compute for minutes, with one thread, and what they say of chips they say
+# with any compiler
+LONG_UNITS := test_native_%truth test_native_truth_% test_native_brownout test_native_noise test_route_soak \
+              test_visit_%
+# In these rooms nothing starts a thread, unless a test of them does itself
+ONE_THREAD_ROOMS := chips config ds2482 engine native sim signal
+ONE_THREAD_UNITS = $(notdir $(basename $(shell grep -L -E '<pthread\.h>|/(control_scene|door|peer)\.h"|_thread\.h"' \
+                   $(wildcard $(ONE_THREAD_ROOMS:%=tests/unit/%/test_*.c)))))
+.PHONY: long-units one-thread-units
+long-units:
+	@echo $(filter $(LONG_UNITS),$(notdir $(UNIT)))
+one-thread-units:
+	@echo $(ONE_THREAD_UNITS) test_endurance
 
 # A month of faults in virtual time on every backend, five minutes of a processor; HOURS=168 is a
 # week in one. SEED=1, WORLD=native for one of them
@@ -356,11 +377,18 @@ $(B)/system/%.so: tests/system/preload/%.c $(B)/with/cc
 system: all examples $(SYSTEM_AIDS)
 	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/run $(TESTS:%=tests/system/%)
 
+system-programs: $(SYSTEM_AIDS)
+
+# The gate's part of the tests, with all processors unless -j says another number. Of the places of a
+# visit one in VISIT_STRIDE is tried, as make unit tries each of them.
 # Tools may be missing before install-deps ran: so make is asked again after it
+test: export VISIT_STRIDE ?= 7
 test:
 	@sh board/install-deps build run test
-	@$(MAKE) --no-print-directory all
-	@$(if $(TESTS),$(MAKE) --no-print-directory system,sh tests/both $(MAKE) --no-print-directory)
+	@case "$$MAKEFLAGS" in *-j*) jobs= ;; *) jobs=-j$$(nproc) ;; esac; \
+	$(MAKE) --no-print-directory $$jobs all && \
+	if [ -n '$(TESTS)' ]; then $(MAKE) --no-print-directory $$jobs system; \
+	else TESTS="$$(python3 tests/check --tests test)" sh tests/both $(MAKE) --no-print-directory $$jobs; fi
 
 # A compiler is enough for the simulation
 run:
@@ -394,9 +422,13 @@ include tests/image/image.mk
 include tests/fuzz/fuzz.mk
 include tests/analyze/analyze.mk
 
-# .ci/run is less than an hour; this goes on for hours, with what is rarely broken
+# --- The ladder: tests/suites has the suites, tests/check runs them ------------------------------
+check:
+	@B=$(B) python3 tests/check $(if $(AGAIN),--again) $(or $(SUITES),--rung check)
 check-all:
-	@bash .ci/run --all
+	@B=$(B) python3 tests/check $(if $(AGAIN),--again) --rung hours
+touched:
+	@python3 tests/check --touched $(BASE)
 
 # --- Diagrams: made of the program's own tables, and kept beside the pages that show them -------
 diagrams:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # What looks at the source and at the tests: other compilers and sanitizers, analyzers, coverage
 
-.PHONY: analyze coverage format clang sanitize asan tsan m32
+.PHONY: analyze coverage lint format syntax clang sanitize asan tsan m32 m32-syntax
 
 # What gcc guesses of values is worse in code that a sanitizer has changed; the plain build is asked
 GUESSES  := -Wno-maybe-uninitialized -Wno-format-truncation
@@ -31,6 +31,16 @@ sanitize:
 	@$(MAKE) --no-print-directory asan
 	@$(MAKE) --no-print-directory tsan
 
+# All C as a compiler reads it, which makes no code of it: make syntax CC=clang WERROR=1. The model and
+# what is preloaded have flags of their own
+SYNTAX := $(sort $(CORE) $(wildcard $(foreach p,owsd/owsd owsctl/owsctl recorder/recorder writer/owsd_config,\
+          src/$p.c) $(filter-out tests/model/%,$(wildcard docs/examples/*.c tests/*/*.c tests/unit/*/*.c))))
+SYNTAX_FLAGS := $(UNITY_FLAGS) -Isrc/libows -Isrc/libhistory -fsyntax-only
+syntax: $(UNITY)/unity.h
+	@printf '%s\n' $(SYNTAX) | xargs -P $$(nproc) -n 16 $(CC) $(ALL_CFLAGS) $(SYNTAX_FLAGS)
+	@$(CXX) $(ALL_CXXFLAGS) $(SYNTAX_FLAGS) $(filter %.cpp,$(EXAMPLES))
+	@echo '$(words $(SYNTAX)) passed, 0 failed'
+
 clang:
 	@$(MAKE) --no-print-directory B=build/clang CC='$(CCACHE)clang' CXX='$(CCACHE)clang++' WERROR=1 \
 	    all examples unit
@@ -44,15 +54,26 @@ m32:
 	    echo "m32: $(CC) cannot link 32-bit programs here (package gcc-12-multilib)"; \
 	    echo '0 passed, 0 failed, 1 skipped'; \
 	fi
+# The layout's assertions and all types of 32 bits, without running anything
+m32-syntax:
+	@if echo '#include <stdint.h>' | $(CC) $(EXTRA_CFLAGS) -x c -fsyntax-only - 2>/dev/null; then \
+	    $(MAKE) --no-print-directory syntax; \
+	else \
+	    echo "m32-syntax: $(CC) has no headers for 32 bits here (package gcc-12-multilib)"; \
+	    echo '0 passed, 0 failed, 1 skipped'; \
+	fi
 # The headers of the kernel are those of this machine; gcc-multilib would link them for -m32
-m32: export EXTRA_CFLAGS := -m32 -msse2 -mfpmath=sse -D_TIME_BITS=64 \
+m32 m32-syntax: export EXTRA_CFLAGS := -m32 -msse2 -mfpmath=sse -D_TIME_BITS=64 \
             -idirafter /usr/include/$(shell $(CC) -print-multiarch 2>/dev/null)
 
-# Lays all C out as .clang-format says; analyze checks it
+# The form of all files, and what a program can mend of it
+lint:
+	@sh board/install-deps lint $(if $(OR_SKIP),|| true)
+	@python3 tests/lint/run
 format:
-	@git ls-files '*.c' '*.h' | grep -E '^(src|hal|tests)/' | xargs clang-format -i
+	@python3 tests/lint/run --mend
 
-# clang-format, gcc -fanalyzer, clang-tidy and cppcheck, a quarter of an hour; TOOLS and FILES narrow
+# gcc -fanalyzer, clang-tidy and cppcheck, a quarter of an hour; TOOLS and FILES narrow
 # it. What was clean and has not changed is not read again; OWSD_ANALYZE_ALL=1 reads all
 analyze:
 	@sh board/install-deps build analyze $(if $(OR_SKIP),|| true)

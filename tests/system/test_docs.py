@@ -375,37 +375,6 @@ def test_the_tests_that_security_md_names_are_there(_scene):
     assert named >= 15, named
 
 
-def test_lines_end_at_100_columns(_scene):
-    """But for the tables of figures that tests/bench/page writes, and the rules of udev."""
-    faults = []
-    for page in PAGES + MANUALS:
-        text = re.sub(r"<!-- figures .*?<!-- end|```udev.*?```", lambda m: "\n" * m[0].count("\n"),
-                      page.read_text(), flags=re.S)
-        faults += [f"{page.name}:{n}: {len(line)}" for n, line in enumerate(text.split("\n"), 1)
-                   if len(line) > 100]
-    assert not faults, faults
-
-
-def test_contributing_names_every_helper_of_the_tests(_scene):
-    text = (SOURCE / "CONTRIBUTING.md").read_text()
-    helpers = [h for h in (SOURCE / "tests/unit/aid").glob("*.h") if "_private" not in h.name]
-    tests = (SOURCE / "tests/system").glob("[!t]*.py")
-    missing = [f.name for f in [*helpers, *tests] if f"| `{f.name}` |" not in text]
-    gone = [n for n in re.findall(r"^\| `(\w+\.(?:h|py))` \|", text, re.M)
-            if not list(SOURCE.glob(f"tests/*/{n}")) + list(SOURCE.glob(f"tests/unit/aid/{n}"))]
-    assert len(helpers) > 20 and not missing and not gone, (missing, gone)
-
-
-def test_manual_pages_are_well_formed(_scene):
-    if not shutil.which("mandoc"):
-        owsdtest.skip("mandoc is not installed")
-    done = subprocess.run(["mandoc", "-T", "lint", "-W", "warning", *map(str, MANUALS)],
-                          capture_output=True, text=True, check=False)
-    # Pages have no date: what they describe has a version
-    faults = [f for f in (done.stdout + done.stderr).splitlines() if "missing date" not in f]
-    assert not faults, faults
-
-
 def test_every_page_can_be_reached_from_the_readme(_scene):
     linked = {target for _, target in handbook.links(SOURCE / "README.md")}
     missing = [p.name for p in (SOURCE / "docs").glob("*.md") if f"docs/{p.name}" not in linked]

@@ -328,14 +328,5 @@ def test_the_sandbox_of_the_first_start_is_as_tight_as_that_of_the_service(scene
     assert done.returncode == 0, done.stdout[-300:] + done.stderr
 
 
-def test_the_scripts_please_shellcheck(scene):
-    program = shutil.which("shellcheck")
-    if not program:
-        owsdtest.skip("shellcheck is not installed")
-    done = sh(scene, program, IMAGE / "setup", IMAGE / "firstboot", IMAGE / "debs",
-              *(IMAGE / "pi-gen").rglob("*.sh"))
-    assert done.returncode == 0, done.stdout
-
-
 if __name__ == "__main__":
     owsdtest.main()

@@ -186,6 +186,14 @@ def test_what_a_change_touches_is_made_again_and_nothing_else(scene):
     assert not (old := differing(plain, tree.made())), f"changed back: as changed in {old}"
 
 
+def test_make_without_a_goal_makes_the_programs(scene):
+    tree = Tree(scene)
+    tree.make(targets=["V=0"])
+    for name in ("owsd", "owsctl", "libows.a"):
+        assert (tree.path / "b" / name).exists(), f"make makes no {name}"
+    assert tree.make(targets=["all"]) == [], "make all makes more"
+
+
 def test_a_warning_that_was_let_through_is_an_error_with_werror(scene):
     tree = Tree(scene)
     (tree.path / "src/shm/warned.c").write_text("int warned(int n);\nint warned(int n) { int x; return 0; }\n")

@@ -11,25 +11,14 @@
 #include "tests/unit/aid/native_scene.h"
 
 /*
- * Of the places where a trouble can happen one in so many is tried; the first always is. Builds
- * with a sanitizer and of 32 bits look for errors of memory and of sizes, in steps that the plain
- * build tries everywhere, and need several times as long. 7 and the 8 bits of a byte have no
- * common factor: one bit of each byte at least is turned over, each bit of a byte in its turn.
+ * Of the places where a trouble can happen one in visit_stride() is tried; the first always is. The
+ * variable VISIT_STRIDE of the environment says how many. Without it each place is tried, and one
+ * in 7 by builds with a sanitizer and of 32 bits: they look for errors of memory and of sizes, in
+ * steps that the plain build tries everywhere, and need several times as long. 7 and the 8 bits of
+ * a byte have no common factor: one bit of each byte at least is turned over, each bit of a byte in
+ * its turn.
  */
-#ifndef VISIT_STRIDE
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define VISIT_STRIDE 7
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || __SIZEOF_POINTER__ < 8
-#undef VISIT_STRIDE
-#define VISIT_STRIDE 7
-#endif
-#ifndef VISIT_STRIDE
-#define VISIT_STRIDE 1
-#endif
-#endif
+unsigned visit_stride(void);
 
 struct visit {
 	const char *chip;
@@ -38,7 +27,7 @@ struct visit {
 	bool parasite;
 	bool turned;     /* the pins are inverted: a DS2405 conducts */
 	double slack;    /* a counting number may exceed the truth by this much */
-	unsigned stride; /* try each stride-th place (times VISIT_STRIDE); 0: each place */
+	unsigned stride; /* try each stride-th place (times visit_stride()); 0: each place */
 };
 
 /*

@@ -132,7 +132,7 @@ static void look(const struct visit *visit, bool measured)
 	double number = strtod(fresh.bytes, NULL);
 	fresh.known &= !measured || (number != 0 && number != 85);
 	visit_end();
-	unsigned n = places, stride = (n / 400 + 1) * VISIT_STRIDE;
+	unsigned n = places, stride = (n / 400 + 1) * visit_stride();
 
 	for (unsigned i = 0; i < n; i += stride) {
 		look_once(visit, place[i], 0);

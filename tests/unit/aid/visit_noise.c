@@ -13,7 +13,7 @@
 #include "tests/unit/aid/visit.h"
 #include "tests/unit/aid/visit_noise.h"
 
-#define READINGS (2500 / VISIT_STRIDE) /* in all */
+#define READINGS (2500 / visit_stride()) /* in all */
 #define NOISE 0.001
 #define CHIPS_MAX 24
 #define READS_MAX 200

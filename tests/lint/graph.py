@@ -1,25 +1,29 @@
 # SPDX-License-Identifier: MIT
-"""The graph of a tree of C sources: which unit includes which, and which calls which.
+"""The graph of a tree of C sources: which unit includes which, and which uses what of which.
 
 A unit is x.c with x.h, or one of them alone; its name is the path without the ending. An arrow
-leads from a unit to one whose header it includes, or whose object defines what it uses: a
-function, or data. Calls through a pointer cannot be seen, and need not be: whoever fills the
-pointer in names the function, and that is an arrow.
+leads from a unit to one whose header it includes, or whose .c defines what it uses: a function, or
+data. It is read from the text, which clang-format has laid out: nothing has to be built. What a
+macro of a header uses, that header uses. Calls through a pointer cannot be seen, and need not be:
+whoever fills the pointer in names the function, and that is an arrow.
 """
 
 import collections
-import concurrent.futures
 import os
-import pathlib
 import re
-import subprocess
-import tempfile
 
 COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
-DECLARED = re.compile(r"^/\* (.*?):(\d+):NC \*/ extern .*?(\w+) \((?!\*)", re.M)
-FLAGS = ["-std=c17", "-D_GNU_SOURCE", "-D_FILE_OFFSET_BITS=64", "-I.", "-Wall", "-Wextra",
-         "-Werror"]
+NOT_CODE = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|^\s*#\s*include[^\n]*', re.S | re.M)
+# What begins in the first column and is no other file's to use, or no name at all
+OWN = r"^(?!static\b|typedef\b|extern\b|return\b|struct \w+ \{|enum\b.*\{|union \w+ \{)"
+FUNCTION = re.compile(OWN + r"[a-z_][\w *]*?\b(\w+)\((?:[^;{}])*\)\n\{", re.M)
+DATA = re.compile(OWN + r"[a-z_][\w *]*?\b(\w+)(?:\[[^\]]*\])*(?: = |;)", re.M)
+POINTER = re.compile(OWN + r"[a-z_][\w *]*?\(\*(\w+)(?:\[[^\]]*\])*\)\([^;{}]*?\)(?: = |;)", re.M)
+PROTOTYPE = re.compile(r"^(?!static\b|typedef\b|#)(?:extern )?[a-z_][\w *]*?\b(\w+)\((?!\*)[^;{}]*\)[\w() ,]*;", re.M)
+EXTERN = re.compile(r"^extern [^;(]*?\b(\w+)(?:\[[^\]]*\])*;|^extern [^;]*?\(\*(\w+)\)\([^;]*;", re.M)
+# Not the member of something, nor the name of a type
+NAME = re.compile(r"(?<![\w.])(?<!->)(?<!struct )(?<!enum )(?<!union )[A-Za-z_]\w*")
 
 
 def unit_of(path):
@@ -31,18 +35,19 @@ def room_of(unit):
 
 
 class Graph:
-    """Of the C files below the folders tops of source, with their objects in build."""
+    """Of the C files of a tree below the folders tops."""
 
-    def __init__(self, source, build, tops):
-        self.source, self.build = source, build
-        self.files = sorted(str(f.relative_to(source)) for top in tops
-                            for f in (source / top).rglob("*.[ch]"))
-        self.text = {f: (source / f).read_text() for f in self.files}
+    def __init__(self, tree, tops):
+        self.files = [f for f in tree.ending(".c", ".h") if f.startswith(tuple(t + "/" for t in tops))]
+        self.text = {f: tree.text(f) for f in self.files}
+        self.code = {f: NOT_CODE.sub(" ", t) for f, t in self.text.items()}
         self.arrows = collections.defaultdict(dict)  # unit -> unit -> reasons, includes first
         self.loose = []  # includes that do not lead from the top of the tree to a file
-        self.defined = {}  # symbol -> the .c whose object defines it
+        self.defined = {}  # symbol -> the .c that defines it
+        self.told_by = {f: self.declarations(f) for f in self.files}
+        self.included = {f: [n for n in INCLUDE.findall(t) if n in self.text] for f, t in self.text.items()}
         self.includes()
-        self.calls()
+        self.uses()
 
     def headers(self):
         return [f for f in self.files if f.endswith(".h")]
@@ -53,30 +58,45 @@ class Graph:
                 if name in self.text:
                     self.arrow(file, name, f"includes {name}")
                 else:
-                    self.loose.append(f"{file} includes {name}")
+                    self.loose.append((file, name))
 
     def arrow(self, here, there, why):
         here, there = unit_of(here), unit_of(there)
-        if here != there:
-            self.arrows[here].setdefault(there, []).append(why)
+        if here != there and why not in self.arrows[here].setdefault(there, []):
+            self.arrows[here][there].append(why)
 
-    def calls(self):
-        """By the objects of the files that are there: the folder may have older ones."""
-        objects = {self.build / f"{unit_of(f)}.o": f for f in self.files if f.endswith(".c")}
-        missing = [str(o) for o in objects if not o.exists()]
-        assert not missing, f"not built: {missing}"
-        needed = []
-        for line in (run(["nm", "-APg", *map(str, objects)]) if objects else "").splitlines():
-            name, symbol, kind = re.match(r"(.*?\.o): (\S+) (\S)", line).groups()
-            file = objects[type(self.build)(name)]
-            if kind in "Uw":
-                needed.append((file, symbol))
-            elif symbol != "main":
-                assert symbol not in self.defined, f"{symbol} in {file}, {self.defined[symbol]}"
-                self.defined[symbol] = file
-        for file, symbol in needed:
-            if symbol in self.defined:
-                self.arrow(file, self.defined[symbol], symbol)
+    def declarations(self, file):
+        """What the file says of what stands elsewhere."""
+        found = {a or b for a, b in EXTERN.findall(self.code[file])}
+        return found | set(PROTOTYPE.findall(self.code[file])) if file.endswith(".h") else found
+
+    def seen(self, file):
+        """What is declared where a file can see it."""
+        done, todo, found = set(), [file], set()
+        while todo:
+            here = todo.pop()
+            if here not in done:
+                done.add(here)
+                found |= self.told_by[here]
+                todo += self.included[here]
+        return found
+
+    def uses(self):
+        for file, code in self.code.items():
+            if file.endswith(".c"):
+                for kind in (FUNCTION, DATA, POINTER):
+                    for name in kind.findall(code):
+                        if name != "main":
+                            self.defined.setdefault(name, file)
+        for file, code in self.code.items():
+            for name in set(NAME.findall(code)) & self.seen(file) & set(self.defined):
+                if file.endswith(".c") or name not in self.told_by[file]:
+                    self.arrow(file, self.defined[name], name)
+
+    def functions(self):
+        """Of each header what it declares: (header, line, function)."""
+        return [(h, self.code[h][:m.start(1)].count("\n") + 1, m[1]) for h in self.headers()
+                for m in PROTOTYPE.finditer(self.code[h])]
 
     def without(self, symbols):
         """The arrows, but those of symbols that this pattern matches."""
@@ -107,23 +127,6 @@ class Graph:
             line += f" -> {self.name(there)} ({arrows[here][there][-1]})"
         return line
 
-    def declared(self, but):
-        """Compile headers alone: what each declares, (header, line, function); what gcc says."""
-        headers = [h for h in self.headers() if h not in but]
-        with concurrent.futures.ThreadPoolExecutor(2) as two:
-            done = list(two.map(self.compile_alone, headers))
-        return [d for found, _ in done for d in found], [e for _, error in done for e in error]
-
-    def compile_alone(self, header):
-        with tempfile.TemporaryDirectory() as folder:
-            info = pathlib.Path(folder, "declared")
-            done = subprocess.run(["gcc", "-fsyntax-only", "-aux-info", info, *FLAGS, header],
-                                  cwd=self.source, capture_output=True, text=True, timeout=60)
-            text = info.read_text() if info.exists() else ""
-        found = [(file, int(line), function) for file, line, function in DECLARED.findall(text)
-                 if file == header]
-        return found, [done.stderr] if done.returncode else []
-
     def umbrellas(self):
         """Headers that only include others."""
         def bare(text):
@@ -133,10 +136,6 @@ class Graph:
                            not re.match(r"#\s*(include|if|endif|else|elif)", line)
                            for line in code)
         return [h for h in self.headers() if bare(self.text[h])]
-
-
-def run(command):
-    return subprocess.run(command, check=True, capture_output=True, text=True, timeout=60).stdout
 
 
 def shortest(arrows, start, among):

@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: MIT
+"""Files as text and as syntax: layout, widths, heads, names, what each language demands."""
+
+import ast
+import collections
+import json
+import re
+import shutil
+import subprocess
+import xml.etree.ElementTree
+
+from tree import Skip, parallel
+
+FORMAT_VERSION = "14"  # another one breaks lines elsewhere
+WIDTH = 100
+# Files that have no place for a licence, or one of others
+UNSIGNED = (".json", ".md", ".rio", ".svg", ".png", ".tsv", ".sim", ".webmanifest", ".txt", ".xml")
+SIGNED = (".c", ".h", ".cpp", ".py", ".mk", ".js", ".css", ".html", ".sh", ".service", ".socket")
+OTHERS = ("src/web/page/uplot/",)
+TOKEN = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|/\*.*?\*/|//[^\n]*', re.S)
+
+
+# --- The layout of C --------------------------------------------------------------------------------
+
+def clang_format():
+    if not shutil.which("clang-format"):
+        raise Skip("clang-format is not installed (sh board/install-deps lint)")
+    about = subprocess.run(["clang-format", "--version"], capture_output=True, text=True,
+                           check=False).stdout.strip()
+    if f"version {FORMAT_VERSION}." not in about:
+        raise Skip(f"{about} is not version {FORMAT_VERSION}")
+
+
+def check_c_is_laid_out_as_clang_format_says(tree):
+    clang_format()
+    for output in parallel(["clang-format", "--dry-run"], tree.c()):
+        for file, line in re.findall(r"^(\S+?):(\d+):\d+: \w+: code should be clang-formatted",
+                                     output, re.M):
+            yield file, int(line), "not laid out as .clang-format says; run make format"
+
+
+def mend(tree):
+    for file in blank_files(tree):
+        mended = re.sub(r"[ \t]+$", "", tree.text(file), flags=re.M).rstrip("\n") + "\n"
+        if mended != tree.text(file):
+            (tree.top / file).write_text(mended)
+    clang_format()
+    parallel(["clang-format", "-i"], tree.c())
+
+
+# --- Lines ------------------------------------------------------------------------------------------
+
+def check_no_comment_in_c_is_wider_than_100_columns(tree):
+    """Code is clang-format's to break, and what it cannot break is no shorter for that."""
+    for file in tree.c():
+        lines = tree.text(file).expandtabs(8).split("\n")
+        if max(map(len, lines)) <= WIDTH:
+            continue
+        for found in TOKEN.finditer(tree.text(file)):
+            if found[0].startswith("/"):
+                first, last = (tree.text(file).count("\n", 0, at) for at in found.span())
+                for n in range(first, last + 1):
+                    if len(lines[n]) > WIDTH:
+                        yield file, n + 1, f"{len(lines[n])} columns; wrap the comment at {WIDTH}"
+
+
+def check_lines_of_pages_end_at_100_columns(tree):
+    """But for the tables of figures that tests/bench/page writes, and the rules of udev."""
+    pages = [f for f in tree.files if re.fullmatch(r"[^/]+\.md|docs/[^/]+\.(md|[1-8])", f)]
+    for page in pages:
+        text = re.sub(r"<!-- figures .*?<!-- end|```udev.*?```", lambda m: "\n" * m[0].count("\n"),
+                      tree.text(page), flags=re.S)
+        for n, line in enumerate(text.split("\n"), 1):
+            if len(line) > WIDTH:
+                yield page, n, f"{len(line)} columns; wrap the line at {WIDTH}"
+
+
+def blank_files(tree):
+    """Code of ours. What a page shows of a program may have blanks at its end."""
+    return [f for f in [*tree.ending(".c", ".h", ".cpp", ".py", ".mk", ".sh"),
+                        *tree.scripts("sh", "bash", "python"), *tree.ending("Makefile")]
+            if not f.startswith(OTHERS)]
+
+
+def check_no_line_ends_with_a_blank_and_each_file_with_a_line(tree):
+    for file in blank_files(tree):
+        text = tree.text(file)
+        for n, line in enumerate(text.split("\n"), 1):
+            if line != line.rstrip(" \t"):
+                yield file, n, "a blank at the end of the line; run make format"
+        if text and (not text.endswith("\n") or text.endswith("\n\n")):
+            yield file, text.count("\n"), "the file has to end with one line end; run make format"
+
+
+# --- Heads ------------------------------------------------------------------------------------------
+
+def check_each_file_of_code_has_one_spdx_line(tree):
+    scripts = set(tree.scripts("sh", "bash", "python"))
+    for file in tree.files:
+        if file.startswith(OTHERS) or file.endswith(UNSIGNED) or "/data/" in file:
+            continue
+        if not (file.endswith(SIGNED) or file in scripts or file in ("Makefile", "tests/suites")):
+            continue
+        head = [n for n, line in enumerate(tree.text(file).split("\n")[:8], 1)
+                if "SPDX-License-Identifier: " in line]
+        if len(head) != 1:
+            yield file, 1, f"{len(head) or 'no'} SPDX lines; begin it with SPDX-License-Identifier: MIT, once"
+
+
+def check_each_c_file_begins_with_a_sentence_of_what_stands_in_it(tree):
+    for file in tree.c():
+        if file.endswith(".c"):
+            lines = tree.text(file).split("\n") + [""]
+            if not (lines[0].startswith("/* SPDX-") and lines[1].startswith("/*")):
+                yield file, 2, "no comment after the SPDX line; say in a sentence what stands in the file"
+
+
+# --- Names ------------------------------------------------------------------------------------------
+
+def check_each_header_has_a_guard_of_its_own(tree):
+    """Another's guard hides the header where both are included."""
+    guards = collections.defaultdict(list)
+    for file in tree.c():
+        if file.endswith(".h"):
+            found = re.search(r"^#ifndef (\w+)\n#define (\w+)$", tree.text(file), re.M)
+            if not found:
+                continue  # a list, which is included more than once
+            if found[1] != found[2]:
+                yield file, tree.line_of(file, found[0]), f"#ifndef {found[1]}, but #define {found[2]}"
+            guards[found[1]].append(file)
+    for guard, files in guards.items():
+        for file in files[1:]:
+            yield file, tree.line_of(file, guard), \
+                f"{guard} is the guard of {files[0]} too; name it by the path of the file"
+
+
+def check_each_unit_test_has_a_program_of_its_own_and_is_named_test(tree):
+    """Programs are named as the files, wherever they stand."""
+    seen = {}
+    for file in tree.c():
+        folders, name = file.split("/")[:-1], file.split("/")[-1]
+        if folders[:2] == ["tests", "unit"] and name.endswith(".c") and "aid" not in folders:
+            if not re.fullmatch(r"test_[a-z0-9_]+\.c", name):
+                yield file, 1, "make unit would not find it; name it test_SOMETHING.c"
+            if name in seen:
+                yield file, 1, f"makes the same program as {seen[name]}; give it another name"
+            seen[name] = file
+
+
+def check_each_unit_test_is_run(tree):
+    for file in tree.c():
+        if re.match(r"tests/unit/.*/test_\w+\.c", file):
+            words = collections.Counter(re.findall(r"\w+", tree.text(file)))
+            for name in re.findall(r"^static void (test_\w+)\(void\)\n\{", tree.text(file), re.M):
+                if words[name] < 2:
+                    yield file, tree.line_of(file, name), f"{name} is not run; add RUN_TEST({name})"
+
+
+def check_contributing_has_a_row_for_each_helper_of_the_tests(tree):
+    page = "CONTRIBUTING.md"
+    if page not in tree.files:
+        return
+    text = tree.text(page)
+    helpers = {f.split("/")[-1]: f for f in tree.files
+               if re.fullmatch(r"tests/unit/aid/\w+\.h", f) and "_private" not in f or
+               re.fullmatch(r"tests/system/[^t/]\w+\.py", f)}
+    for name, file in helpers.items():
+        if f"| `{name}` |" not in text:
+            yield file, 1, f"no row in {page}; add | `{name}` | what it is for |"
+    for name in re.findall(r"^\| `(\w+\.(?:h|py))` \|", text, re.M):
+        if not any(f.endswith("/" + name) and f.startswith("tests/") for f in tree.files):
+            yield page, tree.line_of(page, f"`{name}`"), f"there is no {name}; take the row out"
+
+
+# --- Syntax -----------------------------------------------------------------------------------------
+
+def check_python_is_python_and_no_test_hides_another(tree):
+    for file in sorted({*tree.ending(".py"), *tree.scripts("python")}):
+        try:
+            parsed = ast.parse(tree.text(file), file)
+        except SyntaxError as error:
+            yield file, error.lineno or 1, f"{error.msg}; python3 cannot read it"
+            continue
+        seen = set()
+        for node in parsed.body:
+            if isinstance(node, ast.FunctionDef):
+                if node.name in seen:
+                    yield file, node.lineno, f"{node.name} stands here twice; give it another name"
+                seen.add(node.name)
+
+
+def check_json_and_svg_can_be_read(tree):
+    for file in tree.ending(".json", ".webmanifest"):
+        try:
+            json.loads(tree.bytes(file))
+        except ValueError as error:
+            yield file, getattr(error, "lineno", 1), f"{error}; make it JSON"
+    for file in tree.ending(".svg"):
+        try:
+            xml.etree.ElementTree.fromstring(tree.bytes(file))
+        except xml.etree.ElementTree.ParseError as error:
+            yield file, error.position[0], f"{error}; make it XML"
+
+
+def shells(tree):
+    parts = [f for f in tree.ending(".sh") if not tree.text(f).startswith("#!")]
+    return [("bash", tree.scripts("bash")), ("sh", sorted({*tree.scripts("sh"), *parts}))]
+
+
+def check_shell_scripts_can_be_read(tree):
+    for shell, files in shells(tree):
+        for file in files:
+            done = subprocess.run([shell, "-n", file], capture_output=True, text=True, check=False)
+            if done.returncode:
+                line = re.search(r": (?:line )?(\d+): ", done.stderr)
+                yield file, int(line[1]) if line else 1, f"{done.stderr.strip()}; {shell} cannot read it"
+
+
+# Where all that shellcheck says is followed; of the others, what it calls an error
+STRICT = ("board/image/",)
+
+
+def check_shellcheck_finds_nothing(tree):
+    if not shutil.which("shellcheck"):
+        raise Skip("shellcheck is not installed (sh board/install-deps lint)")
+    for shell, files in shells(tree):
+        strict = [f for f in files if f.startswith(STRICT)]
+        for options, some in ([], strict), (["-S", "error"], [f for f in files if f not in strict]):
+            for output in parallel(["shellcheck", "-f", "gcc", "-s", shell, *options], some):
+                for file, line, text in re.findall(r"^(.+?):(\d+):\d+: (.*)$", output, re.M):
+                    yield file, int(line), text
+
+
+def check_manual_pages_are_well_formed(tree):
+    if not shutil.which("mandoc"):
+        raise Skip("mandoc is not installed (sh board/install-deps lint)")
+    manuals = [f for f in tree.files if re.fullmatch(r"docs/[^/]+\.[1-8]", f)]
+    for output in parallel(["mandoc", "-T", "lint", "-W", "warning"], manuals):
+        for file, line, text in re.findall(r"^mandoc: (.+?):(\d+):\d+: (.*)$", output, re.M):
+            if "missing date" not in text:  # what they describe has a version
+                yield file, int(line), text

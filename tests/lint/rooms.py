@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: MIT
+"""Arrows only go down: no circle between files, no room that uses one above it, small headers; and
+what the engine, the values and the alarm machine keep out.
+
+The rooms, from the top down, and what each may use stand in docs/design.md ("Rooms").
+"""
+
+import functools
+import pathlib
+import re
+
+import graph
+from tree import Skip, parallel
+
+DESIGN = "docs/design.md"
+TOPS = ["src", "hal"]
+# Lists of tables of operations, and the tables in them: backends, families, simulated families. A
+# dispatcher finds in the list what stands above it; that is its purpose, so it is not counted.
+TABLES = r"bus_backends|\w+_bus|family_[0-9a-f]{2}|sim_families|sim_[a-z]+[0-9]\w*" \
+    r"|sim_(hb|inferno)_\w+|sim_(lcd|iblss|example_slave)"
+# The words that owsd and its consumers have in common; it includes nothing
+PUBLIC = "src/libows/ows"
+# Headers whose functions stand in many files, by design: the consumers' headers, and the verbs
+# of owsctl, each in the file of its name
+MANY = {"src/libows/ows.h", "src/libhistory/ows_history.h", "src/owsctl/verbs.h"}
+# Lists that are included where FAMILY or BACKEND is defined: no headers of their own
+PARTS = {"hal/chips/families.h", "hal/bus/schemes.h"}
+FLAGS = ["-std=c17", "-D_GNU_SOURCE", "-D_FILE_OFFSET_BITS=64", "-I.", "-Wall", "-Wextra", "-Werror"]
+ROOM = re.compile(r"^- `([\w/]+)`: .*? Uses (.*?)\.\n(?=- |\n)", re.M | re.S)
+# What the engine and the values may have of the C library: nothing that waits, reads or writes
+PURE = {"assert.h", "errno.h", "float.h", "limits.h", "math.h", "stdbool.h", "stddef.h", "stdint.h",
+        "stdio.h", "stdlib.h", "string.h", "strings.h"}
+STREAMS = re.compile(r"\b(?:v?f?printf|f?puts|f?putc|putchar|perror|f(?:open|close|read|write|flush)|"
+                     r"popen|system|getenv|exit|abort)\(")
+
+
+@functools.cache
+def graph_of(tree):
+    return graph.Graph(tree, TOPS)
+
+
+def section(tree):
+    if DESIGN not in tree.files:
+        raise Skip(f"no {DESIGN}")
+    return tree.text(DESIGN).split("\n## Rooms\n")[1].split("\n## ")[0] + "\n"
+
+
+def allowed(tree):
+    """Of each room, from the top down, the rooms that it may use."""
+    return {room: re.findall(r"`([\w/]+)`", uses) for room, uses in ROOM.findall(section(tree))}
+
+
+def between_rooms(found):
+    """room -> room -> an arrow: the units, the last reason"""
+    rooms = {}
+    for here, to in found.without(TABLES).items():
+        for there, why in to.items():
+            a, b = graph.room_of(here), graph.room_of(there)
+            if a != b and there != PUBLIC:
+                rooms.setdefault(a, {})[b] = here, there, why[-1]
+    return rooms
+
+
+def check_files_use_each_other_in_no_circle(tree):
+    found = graph_of(tree)
+    arrows = found.without(TABLES)
+    for circle in found.circles(arrows):
+        yield found.name(circle[0]), 1, f"a circle: {found.told(arrows, circle)}; take one arrow out"
+
+
+def check_a_room_uses_only_the_rooms_that_the_design_names_and_those_stand_below(tree):
+    may, found = allowed(tree), graph_of(tree)
+    order = list(may)
+    taken = between_rooms(found)
+    rooms = {graph.room_of(graph.unit_of(f)): f for f in found.files}
+    for room in rooms.keys() - may.keys():
+        yield rooms[room], 1, f"{DESIGN} has no room {room}; say there what it is and what it may use"
+    for room, used in may.items():
+        line = tree.line_of(DESIGN, f"- `{room}`: ")
+        if room not in rooms:
+            yield DESIGN, line, f"there is no room {room}; take it out"
+        for other in used:
+            if other not in order or order.index(other) <= order.index(room):
+                yield DESIGN, line, f"{room} may use {other}, which does not stand below it; move one of them"
+            elif other not in taken.get(room, {}):
+                yield DESIGN, line, f"{room} does not use {other}; take that leave out"
+        for other, (here, there, why) in taken.get(room, {}).items():
+            if other not in used:
+                file = found.name(here)
+                yield file, tree.line_of(file, why.removeprefix("includes ")), \
+                    f"{room} may not use {other}: {found.name(there)} ({why}); go another way, or say so in {DESIGN}"
+
+
+def check_the_main_header_of_a_room_says_what_the_room_is(tree):
+    for room, text in re.findall(r"^- `([\w/]+)`: (.*?)\n(?=- |\n)", section(tree) + "\n", re.M | re.S):
+        expected = " ".join(f"Room {room}: {text}".replace("`", "").split())
+        heads = [re.sub(r"\s+\*?\s*", " ", tree.text(f).split("*/")[1]) for f in tree.ending(".c", ".h")
+                 if graph.room_of(f) == room and tree.text(f).count("*/") > 1]
+        if sum(expected in head for head in heads) != 1:
+            yield DESIGN, tree.line_of(DESIGN, f"- `{room}`: "), \
+                f"no head comment of {room}, or several, have this sentence: {expected}"
+
+
+def check_each_header_declares_what_its_file_defines(tree):
+    found = graph_of(tree)
+    for header, line, function in found.functions():
+        home = found.defined.get(function)
+        if home and graph.unit_of(home) != graph.unit_of(header) and header not in MANY:
+            yield header, line, f"{function}() stands in {home}; declare it in the header of that"
+
+
+def check_each_header_compiles_alone(tree):
+    headers = [f for f in tree.ending(".h") if f.startswith(("src/", "hal/")) and f not in PARTS]
+    for output in parallel(["gcc", "-fsyntax-only", *FLAGS], headers):
+        for file, line, text in re.findall(r"^(\S+?):(\d+):\d+: (?:fatal )?error: (.*)$", output, re.M):
+            yield file, int(line), f"{text}; include what the header uses"
+
+
+def check_no_header_only_includes_others_and_every_include_leads_from_the_top(tree):
+    found = graph_of(tree)
+    for header in found.umbrellas():
+        yield header, 1, "only includes other headers; have those who want them include them"
+    for file, name in found.loose:
+        yield file, tree.line_of(file, f'"{name}"'), f"{name} is no path from the top folder; write it so"
+
+
+# --- What the engine keeps out ----------------------------------------------------------------------
+
+def included(tree, file, sign):
+    return re.findall(r'^\s*#\s*include\s+[%s]([^">]+)' % sign, tree.text(file), re.M)
+
+
+def check_the_engine_and_the_values_do_no_input_and_output(tree):
+    for file in tree.ending(".c", ".h"):
+        if graph.room_of(file) in ("src/engine", "src/signal"):
+            for name in set(included(tree, file, "<")) - PURE:
+                yield file, tree.line_of(file, f"<{name}>"), f"<{name}> waits, reads or writes; do that elsewhere"
+            code = re.sub(r'/\*.*?\*/|"(?:\\.|[^"\\])*"', "", tree.text(file), flags=re.S)
+            for call in STREAMS.findall(code):
+                yield file, tree.line_of(file, call), f"{call}...) is input or output; do that elsewhere"
+
+
+def check_the_alarm_machine_is_a_function_of_its_own_header_alone(tree):
+    for file, may in (("src/engine/alarm_fsm.c", ["src/engine/alarm_fsm.h"]), ("src/engine/alarm_fsm.h", [])):
+        for name in included(tree, file, '"') if file in tree.files else []:
+            if name not in may:
+                yield file, tree.line_of(file, f'"{name}"'), f"the alarm machine uses {name}; give it as an argument"
+
+
+def check_the_files_of_the_engine_keep_to_the_stack_that_its_header_shows(tree):
+    main = "src/engine/engine.h"
+    if main not in tree.files:
+        return
+    lines = re.findall(r"^ \*   (\w[\w ,]*?)  +(\S.*)$", tree.text(main).split("*/")[1], re.M)
+    layer = {name.strip(): height for height, (_, files) in enumerate(reversed(lines))
+             for name in re.sub(r"\([^)]*\)", "", files).split(",")}
+    made = {pathlib.Path(f).stem: f for f in tree.ending(".c") if graph.room_of(f) == "src/engine"}
+    for name in layer.keys() - made.keys():
+        yield main, tree.line_of(main, name), f"the stack names {name}, which is not there; take it out"
+    for name in made.keys() - layer.keys():
+        yield made[name], 1, f"the stack in {main} has no {name}; put it there"
+    for file in tree.ending(".c", ".h"):
+        here = pathlib.Path(file).stem
+        for header in included(tree, file, '"') if graph.room_of(file) == "src/engine" else []:
+            there = pathlib.Path(header).stem
+            if graph.room_of(header) == "src/engine" and here in layer and layer.get(there, -1) > layer[here]:
+                yield file, tree.line_of(file, f'"{header}"'), f"uses {there}, which stands above it in {main}"

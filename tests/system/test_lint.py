@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""make lint: its checks on a small tree that has each fault, and on the same tree without."""
+
+import re
+import shutil
+import subprocess
+import sys
+
+import owsdtest
+from owsdtest import SOURCE
+
+MIT = "SPDX-License-Identifier: MIT"
+HEAD = f"/* {MIT} */\n/* Something. */\n"
+DESIGN = """# Design
+
+## Rooms
+
+- `src/a`: first things. Uses `src/b`.
+- `src/b`: second things. Uses nothing.
+- `src/engine`: the engine. Uses nothing.
+
+## More
+"""
+SUITES = """[some]
+rung = check
+why = it is the only one
+run = true
+seconds = 1
+paths = src
+tests = good
+"""
+CLEAN = {
+    "docs/design.md": DESIGN,
+    "tests/suites": f"# {MIT}\n{SUITES}",
+    "tests/system/test_good.py": f"# {MIT}\n",
+    "src/a/a.h": f"/* {MIT} */\n/* Room src/a: first things. Uses src/b. */\n#ifndef SRC_A_A_H\n"
+                 "#define SRC_A_A_H\n\nint a(void);\n\n#endif\n",
+    "src/a/a.c": f'{HEAD}#include "src/a/a.h"\n#include "src/b/b.h"\n\nint a(void)\n{{\n\treturn b();\n}}\n',
+    "src/b/b.h": f"/* {MIT} */\n/* Room src/b: second things. Uses nothing. */\n#ifndef SRC_B_B_H\n"
+                 "#define SRC_B_B_H\n\nint b(void);\n\n#endif\n",
+    "src/b/b.c": f'{HEAD}#include "src/b/b.h"\n\nint b(void)\n{{\n\treturn 1;\n}}\n',
+    "src/engine/e.c": f"/* {MIT} */\n/* Room src/engine: the engine. Uses nothing. */\n\n"
+                      "int e(void);\n\nint e(void)\n{\n\treturn 0;\n}\n",
+}
+# file, its text or what is added to it, and the finding, as a pattern
+LONG = "word " * 20
+FAULTS = [
+    ("src/a/late.c", f'{HEAD}#include "src/a/a.h"\nint late( void );\n', r"src/a/late.c:4: not laid out"),
+    ("src/a/wide.c", f"{HEAD}/* {LONG} */\n", r"src/a/wide.c:3: 10\d columns; wrap the comment"),
+    ("docs/page.md", f"{LONG}x\n", r"docs/page.md:1: 101 columns; wrap the line"),
+    ("docs/blank.py", f"# {MIT}\nx = 1 \n", r"docs/blank.py:2: a blank at the end"),
+    ("docs/bare.py", "x = 1\n", r"docs/bare.py:1: no SPDX lines"),
+    ("src/a/twice.c", f"/* {MIT} */\n{HEAD}", r"src/a/twice.c:1: 2 SPDX lines"),
+    ("src/a/headless.c", f"/* {MIT} */\n\nint x;\n", r"src/a/headless.c:2: no comment after"),
+    ("src/a/guard.h", f"/* {MIT} */\n#ifndef SRC_A_A_H\n#define SRC_A_A_H\nint g(void);\n#endif\n",
+     r"src/a/guard.h:2: SRC_A_A_H is the guard of src/a/a.h too"),
+    ("src/a/unequal.h", f"/* {MIT} */\n#ifndef SRC_A_UNEQUAL_H\n#define SRC_A_EQUAL_H\nint u(void);\n#endif\n",
+     r"src/a/unequal.h:2: #ifndef SRC_A_UNEQUAL_H, but #define SRC_A_EQUAL_H"),
+    ("tests/unit/a/test_x.c", f"{HEAD}\nstatic void test_that(void)\n{{\n}}\n", r"test_x.c:4: test_that is not run"),
+    ("tests/unit/b/test_x.c", HEAD, r"tests/unit/b/test_x.c:1: makes the same program as tests/unit/a/test_x.c"),
+    ("tests/unit/b/x.c", HEAD, r"tests/unit/b/x.c:1: make unit would not find it"),
+    ("docs/syntax.py", f"# {MIT}\nx = = 1\n", r"docs/syntax.py:2: .*python3 cannot read it"),
+    ("docs/two.py", f"# {MIT}\ndef f(): pass\ndef f(): pass\n", r"docs/two.py:3: f stands here twice"),
+    ("docs/bad.json", "{\n1}\n", r"docs/bad.json:2: .*make it JSON"),
+    ("docs/bad.svg", "<svg>\n<g>\n</svg>\n", r"docs/bad.svg:3: .*make it XML"),
+    ("docs/bad.sh", f"#!/bin/sh\n# {MIT}\nif true; then\n", r"docs/bad.sh:\d+: .*sh cannot read it"),
+    ("src/b/up.c", f'{HEAD}#include "src/a/a.h"\n', r"src/b/up.c:3: src/b may not use src/a"),
+    ("src/a/home.h", f"/* {MIT} */\n#ifndef SRC_A_HOME_H\n#define SRC_A_HOME_H\nint a(void);\n#endif\n",
+     r"src/a/home.h:4: a\(\) stands in src/a/a.c"),
+    ("src/a/alone.h", f"/* {MIT} */\n#ifndef SRC_A_ALONE_H\n#define SRC_A_ALONE_H\nuint8_t y(void);\n#endif\n",
+     r"src/a/alone.h:4: .*include what the header uses"),
+    ("src/a/only.h", f'/* {MIT} */\n#ifndef SRC_A_ONLY_H\n#define SRC_A_ONLY_H\n#include "src/a/a.h"\n#endif\n',
+     r"src/a/only.h:1: only includes other headers"),
+    ("src/a/loose.c", f'{HEAD}#include "a.h"\n', r"src/a/loose.c:3: a.h is no path from the top"),
+    ("src/c/new.c", HEAD, r"src/c/new.c:1: docs/design.md has no room src/c"),
+    ("src/engine/talk.c", f'{HEAD}#include <sys/socket.h>\n', r"src/engine/talk.c:3: <sys/socket.h> waits"),
+    ("src/engine/say.c", f'{HEAD}\nint s(void)\n{{\n\treturn printf("x");\n}}\n', r"src/engine/say.c:6: printf\(\.\.\.\) is input or output"),
+    ("tests/system/test_lost.py", f"# {MIT}\n", r"tests/system/test_lost.py:1: no suite runs it"),
+    ("tests/suites", f"# {MIT}\n{SUITES}[odd]\nrung = none\n", r"tests/suites:9: odd stands on no rung"),
+    ("tests/suites", f"# {MIT}\n{SUITES}  gone\n", r"tests/suites:2: some names the test gone"),
+]
+
+
+class Made:
+    """A tree of the test's own."""
+
+    def __init__(self, scene):
+        self.path = scene.path / "tree"
+        for name, text in CLEAN.items():
+            self.write(name, text)
+        shutil.copy(SOURCE / ".clang-format", self.path)
+
+    def write(self, name, text):
+        file = self.path / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+
+    def lint(self, *options):
+        done = subprocess.run([sys.executable, SOURCE / "tests/lint/run", *options, self.path],
+                              capture_output=True, text=True, timeout=owsdtest.PATIENCE)
+        assert not done.stderr, done.stderr
+        return done.stdout, done.returncode
+
+
+def test_a_tree_without_faults_has_no_finding(scene):
+    said, status = Made(scene).lint()
+    assert status == 0 and re.search(r"^\d\d passed, 0 failed(, \d+ skipped)?$", said.splitlines()[-1]), said
+
+
+def test_each_fault_is_found_where_it_is(scene):
+    tree, missing = Made(scene), []
+    for name, text, _ in FAULTS[:-1]:
+        tree.write(name, text)
+    said, status = tree.lint()
+    wanted = [pattern for _, _, pattern in FAULTS[:-1] if pattern]
+    tree.write(*FAULTS[-1][:2])
+    said += tree.lint()[0]
+    for pattern in [*wanted, FAULTS[-1][2]]:
+        skipped = "skip c is laid out" in said and "laid out" in pattern
+        if not skipped and not re.search("^.*" + pattern, said, re.M):
+            missing.append(pattern)
+    assert not missing and status == 1, (missing, said)
+
+
+def test_a_circle_is_told_with_what_makes_it(scene):
+    tree = Made(scene)
+    tree.write("src/b/b.c", CLEAN["src/b/b.c"].replace('"\n\n', '"\n#include "src/a/a.h"\n\n').replace("1;", "a();"))
+    said, status = tree.lint()
+    assert "src/a/a.c:1: a circle: src/a/a.c -> src/b/b.c (b) -> src/a/a.c (a)" in said and status == 1, said
+
+
+def test_data_and_headers_make_circles_too(scene):
+    tree = Made(scene)
+    tree.write("src/b/one.c", f"{HEAD}int shared = 1;\nextern int other;\nint one(void)\n{{\n\treturn other;\n}}\n")
+    tree.write("src/b/two.c", f"{HEAD}int other = 1;\nextern int shared;\nint two(void)\n{{\n\treturn shared;\n}}\n")
+    said, _ = tree.lint()
+    assert "src/b/one.c -> src/b/two.c (other) -> src/b/one.c (shared)" in said, said
+
+
+def test_mend_mends_layout_and_blanks(scene):
+    tree = Made(scene)
+    tree.write("src/b/b.c", CLEAN["src/b/b.c"].replace("\treturn 1;", "  return   1; ") + "\n\n")
+    assert tree.lint()[1] == 1
+    if "skip c is laid out" in tree.lint()[0]:
+        owsdtest.skip("no clang-format of the right version")
+    assert tree.lint("--mend")[1] == 0
+    assert (tree.path / "src/b/b.c").read_text() == CLEAN["src/b/b.c"]
+    assert tree.lint()[1] == 0
+
+
+if __name__ == "__main__":
+    owsdtest.main()
