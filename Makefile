@@ -9,7 +9,7 @@
 #                                 system tests alone
 #   make lint format              the form of all files; what a program can mend of it
 #   make check                    all suites of tests/suites, in forty minutes; goes on where it was
-#                                 broken off. SUITES='kernel gpio' some, AGAIN=1 whatever has passed
+#                                 broken off. SUITES='kernel gpio' some, AGAIN=1 all of them again
 #   make touched                  which of them a change asks for; BASE=main against another commit
 #   make check-all                these and the suites of hours, before a release
 #   make all unit soak system bench install uninstall clean
