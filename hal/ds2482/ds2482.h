@@ -70,11 +70,6 @@ struct ds2482_source {
 struct ds2482_master {
 	struct link_master master; /* first */
 	struct ds2482_source source;
-	/*
-	 * The last rung of the recovery of a link: close the adapter, and open it with the same
-	 * chips.
-	 */
-	int (*reopen)(struct ds2482_master *master);
 	struct i2c_adapter *adapter; /* NULL while closed */
 	int address, channel;        /* only this one; -1: all */
 	bool active_pullup;

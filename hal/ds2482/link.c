@@ -159,17 +159,9 @@ static int link_recover(struct link *base, enum link_rung rung)
 	struct ds2482_chip *chip = link->chip;
 	int err;
 
-	if (!chip->master->adapter && rung != LINK_REOPEN)
+	if (!chip->master->adapter)
 		return -ENODEV;
 	switch (rung) {
-	case LINK_RETRY:
-		/*
-		 * -EIO stands for "no error known": if it comes back, the chip answers and is well
-		 */
-		err = ds2482_diagnose(chip, -EIO);
-		if (err == -EIO)
-			err = ds2482_write_read(chip, DS2482_READ_POINTER, DS2482_AT_STATUS);
-		return err < 0 ? err : 0;
 	case LINK_BUS_RESET:
 		link->speed = LINK_STANDARD;
 		err = link_reset(base);
@@ -182,8 +174,8 @@ static int link_recover(struct link *base, enum link_rung rung)
 		return err ? err : ds2482_setup(chip);
 	case LINK_POWER_CYCLE:
 		return power_cycle(link);
-	case LINK_REOPEN:
-		return chip->master->reopen(chip->master);
+	case LINK_RUNGS:
+		break;
 	}
 	return -EINVAL;
 }

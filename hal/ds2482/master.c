@@ -265,30 +265,6 @@ void ds2482_close(struct link_master *base)
 	ds2482_rest((struct ds2482_master *)base);
 }
 
-/* The links stay the same structs, because others hold them. */
-static int reopen(struct ds2482_master *master)
-{
-	uint8_t address[DS2482_ADDRESSES];
-	unsigned count = master->count;
-	char why[160];
-	int err;
-
-	for (unsigned i = 0; i < count; i++)
-		address[i] = master->chip[i].address;
-	ds2482_close(&master->master);
-	err = ds2482_open(&master->master, why, sizeof(why));
-	if (err)
-		return err;
-	/* the links have to stay the same structs */
-	for (unsigned i = 0; i < count; i++) {
-		if (i >= master->count || master->chip[i].address != address[i])
-			err = -ENXIO;
-	}
-	if (err)
-		ds2482_close(&master->master);
-	return err;
-}
-
 int ds2482_create(const struct link_master_ops *ops, const struct bus_env *env,
                   const struct ds2482_source *source, const char *where, struct link_master **out,
                   char *why, size_t why_size)
@@ -303,7 +279,6 @@ int ds2482_create(const struct link_master_ops *ops, const struct bus_env *env,
 	master->master.ops = ops;
 	master->master.env = env;
 	master->source = *source;
-	master->reopen = reopen;
 	master->active_pullup = true;
 	master->power_off_ns = DS2482_POWER_OFF_NS;
 	err = parse_where(master, where, why, why_size);

@@ -180,11 +180,39 @@ static void power_cycled(struct native *native, unsigned channel)
 	}
 }
 
-static const enum native_count counts[] = {
-	[LINK_RETRY] = COUNT_RETRIES,          [LINK_BUS_RESET] = COUNT_BUS_RESETS,
-	[LINK_CHIP_RESET] = COUNT_CHIP_RESETS, [LINK_POWER_CYCLE] = COUNT_POWER_CYCLES,
-	[LINK_REOPEN] = COUNT_REOPENS,
+/* The recovery ladder (channel.rung): the link's own rungs are between the first and the last. */
+enum { RETRY, OF_LINK, REOPEN = OF_LINK + LINK_RUNGS, GIVE_UP };
+
+static const enum native_count counts[LINK_RUNGS] = {
+	[LINK_BUS_RESET] = COUNT_BUS_RESETS,
+	[LINK_CHIP_RESET] = COUNT_CHIP_RESETS,
+	[LINK_POWER_CYCLE] = COUNT_POWER_CYCLES,
 };
+
+/* Climb rungs of the link until one is done. False: none was. */
+static bool recover_link(struct native *native, unsigned n)
+{
+	struct channel *channel = &native->channel[n];
+	struct link *link = channel->link;
+
+	while (link->ops->recover && channel->rung < REOPEN) {
+		enum link_rung rung = (enum link_rung)(channel->rung++ - OF_LINK);
+		int done = link->ops->recover(link, rung);
+
+		if (done == -EOPNOTSUPP)
+			continue;
+		if (done == -EBUSY)
+			channel->rung = REOPEN;
+		native_count(native, counts[rung]);
+		if (rung >= LINK_CHIP_RESET)
+			convert_again(native);
+		if (done == 0 && rung == LINK_POWER_CYCLE)
+			power_cycled(native, n);
+		if (done == 0 || done == -ECOMM)
+			return true;
+	}
+	return false;
+}
 
 bool master_recover(struct native *native, unsigned n, int err)
 {
@@ -196,32 +224,21 @@ bool master_recover(struct native *native, unsigned n, int err)
 		master_down(native, err, err == -ENODEV ? "the adapter is gone" : "shutting down");
 		return false;
 	}
-	if (err == -ENXIO && channel->rung < LINK_CHIP_RESET)
-		channel->rung = LINK_CHIP_RESET;
-	while (channel->rung <= LINK_POWER_CYCLE) {
-		enum link_rung rung = (enum link_rung)channel->rung++;
-		struct link *link = channel->link;
-		bool skip = rung == LINK_RETRY || !link->ops->recover;
-		int done = skip ? 0 : link->ops->recover(link, rung);
-
-		if (done == -EOPNOTSUPP)
-			continue;
-		if (done == -EBUSY) /* no longer ours: opening it says whose it is */
-			channel->rung = LINK_REOPEN;
-		native_count(native, counts[rung]);
-		if (rung >= LINK_CHIP_RESET)
-			convert_again(native);
-		if (done == 0 && rung == LINK_POWER_CYCLE)
-			power_cycled(native, n);
-		if (done == 0 || done == -ECOMM)
-			return true;
+	if (err == -ENXIO && channel->rung < OF_LINK + LINK_CHIP_RESET)
+		channel->rung = OF_LINK + LINK_CHIP_RESET;
+	if (channel->rung == RETRY) {
+		channel->rung = OF_LINK;
+		native_count(native, COUNT_RETRIES);
+		return true;
 	}
-	if (channel->rung == LINK_REOPEN) {
+	if (recover_link(native, n))
+		return true;
+	if (channel->rung < GIVE_UP) {
 		native_count(native, COUNT_REOPENS);
 		if (!reopen(native))
 			return false;
 		convert_again(native);
-		channel->rung = LINK_REOPEN + 1;
+		native->channel[n].rung = GIVE_UP;
 		return true;
 	}
 	master_down(native, err, "the master chip does not recover");
@@ -230,5 +247,5 @@ bool master_recover(struct native *native, unsigned n, int err)
 
 void master_good(struct native *native, unsigned channel)
 {
-	native->channel[channel].rung = LINK_RETRY;
+	native->channel[channel].rung = RETRY;
 }

@@ -76,8 +76,6 @@ static int bit(struct link *base, bool out, enum link_after after)
 static int recover(struct link *base, enum link_rung rung)
 {
 	switch (rung) {
-	case LINK_RETRY:
-		return 0;
 	case LINK_BUS_RESET: {
 		int err = reset(base);
 
@@ -87,7 +85,7 @@ static int recover(struct link *base, enum link_rung rung)
 	}
 	case LINK_CHIP_RESET:
 	case LINK_POWER_CYCLE:
-	case LINK_REOPEN:
+	case LINK_RUNGS:
 		break;
 	}
 	return -EOPNOTSUPP;

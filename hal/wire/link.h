@@ -48,13 +48,15 @@ static inline bool link_was_late(const uint8_t slots[LINK_LATE])
 
 enum link_speed { LINK_STANDARD, LINK_OVERDRIVE };
 
-/* The recovery ladder; the native bus climbs it and counts each step. */
+/*
+ * What a link can do for a wire that fails. The native bus makes the transaction again first, then
+ * climbs these rungs, and closes and opens the master last (hal/native/master.c).
+ */
 enum link_rung {
-	LINK_RETRY,
 	LINK_BUS_RESET,
 	LINK_CHIP_RESET,  /* device reset and configuration of the master chip */
-	LINK_POWER_CYCLE, /* the supply of the wire off and on; -EOPNOTSUPP without a line for it */
-	LINK_REOPEN,
+	LINK_POWER_CYCLE, /* the supply of the wire off and on, for some hundred ms */
+	LINK_RUNGS,
 };
 
 /* Running totals of one link; the statistics read them. */
@@ -154,6 +156,16 @@ struct link_ops {
 	int (*convert)(struct link *link, const uint8_t *rom, const char *what);
 	/* -EOPNOTSUPP. */
 	int (*speed)(struct link *link, enum link_speed speed);
+	/*
+	 * Climb this rung. What the caller does then:
+	 *   0            makes the transaction again; if it fails again, the next rung is next
+	 *   -ECOMM       the same: the rung is done, and the wire is short
+	 *   -EOPNOTSUPP  goes on with the next rung: this link has no such one
+	 *   -EBUSY       leaves out the rungs between, closes and opens the master: somebody else
+	 *                has the chip, and open() says who
+	 *   others       goes on with the next rung: it did not help
+	 * A link whose master is closed says -ENODEV. NULL: the link has no rungs.
+	 */
 	int (*recover)(struct link *link, enum link_rung rung);
 	void (*cost)(const struct link *link, struct link_cost *cost);
 };

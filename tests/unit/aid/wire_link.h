@@ -26,7 +26,7 @@ struct wire_net {
 	int fault;
 	unsigned fault_count;
 	int fault_until;
-	unsigned recovered[LINK_REOPEN + 1];
+	unsigned recovered[LINK_RUNGS];
 	bool no_power_line;
 	bool passive; /* the links have no strong pull-up */
 	int open_error;

@@ -57,7 +57,6 @@ static void test_a_stuck_chip_is_an_error_in_time_and_a_reset_frees_it(void)
 		begun = ds.host.now;
 		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, ds.wire->ops->reset(ds.wire));
 		TEST_ASSERT_LESS_THAN_INT64(50 * HOST_MS, ds.host.now - begun);
-		TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, ds.wire->ops->recover(ds.wire, LINK_RETRY));
 		TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
 		ds_check_scratchpad();
 		ds_event("jam 0x18");
@@ -136,12 +135,10 @@ static void test_a_refused_call_is_an_error_and_the_next_one_works(void)
 		ds_event("refuse 0x18 for 1ms");
 		TEST_ASSERT_EQUAL_INT(-EIO, ds.wire->ops->reset(ds.wire));
 		ds.host.now += 5 * HOST_MS;
-		TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_RETRY));
 		ds_check_scratchpad();
 		ds_event("refuse-data 0x18 each 15");
 		TEST_ASSERT_EQUAL_INT(-EIO, ds_read_scratchpad("t", scratchpad));
 		ds_event("end refuse-data 0x18");
-		TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_RETRY));
 		ds_check_scratchpad();
 		tearDown();
 	}
@@ -161,9 +158,10 @@ static void test_an_adapter_that_is_gone_comes_back_by_opening_it_again(void)
 	TEST_ASSERT_EQUAL_INT(-ENODEV, ds_read_scratchpad("t", scratchpad));
 	ds.master->ops->close(ds.master);
 	TEST_ASSERT_EQUAL_INT(-ENODEV, ds.wire->ops->reset(ds.wire));
-	TEST_ASSERT_EQUAL_INT(-ENODEV, ds.wire->ops->recover(ds.wire, LINK_REOPEN));
+	TEST_ASSERT_EQUAL_INT(-ENODEV, ds.wire->ops->recover(ds.wire, LINK_CHIP_RESET));
+	TEST_ASSERT_EQUAL_INT(-ENODEV, ds.master->ops->open(ds.master, ds.why, sizeof(ds.why)));
 	ds.host.now += 3 * HOST_S;
-	TEST_ASSERT_EQUAL_INT(0, ds.wire->ops->recover(ds.wire, LINK_REOPEN));
+	TEST_ASSERT_EQUAL_INT(0, ds.master->ops->open(ds.master, ds.why, sizeof(ds.why)));
 	ds_check_scratchpad();
 	ds.wire->ops->cost(ds.wire, &after);
 	ds.master->ops->cost(ds.master, &shared_after);

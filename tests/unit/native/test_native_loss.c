@@ -4,6 +4,7 @@
 
 #include "unity.h"
 
+#include "hal/native/state.h"
 #include "tests/unit/aid/native_scene.h"
 
 void setUp(void)
@@ -80,13 +81,36 @@ static void test_the_ladder_is_climbed_until_the_chip_answers(void)
 	TEST_ASSERT_EQUAL_UINT(1, wire_net.recovered[LINK_CHIP_RESET]);
 	wire_net.fault = -ETIMEDOUT;
 	wire_net.fault_count = 100000;
-	wire_net.fault_until = LINK_REOPEN + 1;
+	wire_net.fault_until = LINK_RUNGS;
 	TEST_ASSERT_EQUAL_INT(-ECONNRESET, result(BUS_READ, of(slave, "power"), NULL));
 	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_DOWN));
 	wire_net.fault_count = 0;
 	host_run(&host, bus, host.now + HOST_S);
 	TEST_ASSERT_EQUAL_UINT(2, host_events(&host, BUS_UP));
 	expect(true, of(slave, "power"), "1");
+}
+
+/* Nothing was done to its devices: none has restarted. */
+static void test_a_wire_without_rungs_is_tried_again_and_then_opened_anew(void)
+{
+	static struct link_ops without;
+
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+	start();
+	expect(true, of(slave, "power"), "1");
+	struct link *link = ((struct native *)bus)->channel[0].link;
+	without = *link->ops;
+	without.recover = NULL;
+	link->ops = &without;
+	wire_net.fault = -ETIMEDOUT;
+	wire_net.fault_count = 1;
+	expect(true, of(slave, "power"), "1");
+	TEST_ASSERT_EQUAL_UINT(1, wire_net.opens);
+	wire_net.fault_count = 2;
+	expect(true, of(slave, "power"), "1");
+	TEST_ASSERT_EQUAL_UINT(2, wire_net.opens);
+	TEST_ASSERT_EQUAL_UINT64(0, counted("devices_restarted"));
 }
 
 static void test_a_suspended_bus_lets_go_and_comes_back(void)
@@ -130,6 +154,7 @@ int main(void)
 	RUN_TEST(test_a_device_that_leaves_is_lost_and_found_again);
 	RUN_TEST(test_the_background_search_sees_devices_come_and_go);
 	RUN_TEST(test_the_ladder_is_climbed_until_the_chip_answers);
+	RUN_TEST(test_a_wire_without_rungs_is_tried_again_and_then_opened_anew);
 	RUN_TEST(test_a_suspended_bus_lets_go_and_comes_back);
 	RUN_TEST(test_a_target_that_does_not_open_is_tried_again_for_ever);
 	return UNITY_END();
