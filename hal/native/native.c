@@ -207,6 +207,23 @@ static bool is_looked_for(const struct job *job)
 	       (!job->begun || job->req->op != BUS_WRITE);
 }
 
+struct link_master *native_master(struct bus *bus)
+{
+	struct native *native = (struct native *)bus;
+
+	return native->up ? native->master : NULL;
+}
+
+void native_look(struct bus *bus, int64_t now)
+{
+	struct native *native = (struct native *)bus;
+
+	for (unsigned n = 0; n < native->channels; n++)
+		native->channel[n].search_ns = now;
+	if (native->grow_ns != INT64_MAX)
+		native->grow_ns = now;
+}
+
 static void expire(struct native *native, int64_t now, int64_t *next)
 {
 	for (unsigned i = 0; i < NATIVE_DEPTH; i++) {

@@ -61,9 +61,15 @@ int64_t native_step(struct bus *bus, int64_t now);
 void native_suspend(struct bus *bus, bool yes);
 int native_there(struct bus *bus);
 const struct bus_counter *native_counters(struct bus *bus, size_t *n);
-#define NATIVE_BUS_SLOTS \
+/* Of a scheme with a step of its own, which calls native_step(). */
+#define NATIVE_BUS_SLOTS_BUT_STEP \
 	.depth = NATIVE_DEPTH, .searches = true, .destroy = native_destroy, \
-	.option = native_option, .submit = native_submit, .step = native_step, \
-	.suspend = native_suspend, .there = native_there, .counters = native_counters
+	.option = native_option, .submit = native_submit, .suspend = native_suspend, \
+	.there = native_there, .counters = native_counters
+#define NATIVE_BUS_SLOTS NATIVE_BUS_SLOTS_BUT_STEP, .step = native_step
+/* For such a step. The master while the bus is up, else NULL. */
+struct link_master *native_master(struct bus *bus);
+/* Of a bus that is up: search all channels now, and let the master grow. */
+void native_look(struct bus *bus, int64_t now);
 
 #endif

@@ -88,17 +88,23 @@ static void add_links(struct w1_netlink *netlink, const uint32_t *numbers, unsig
 	}
 }
 
-unsigned w1_netlink_look(struct w1_netlink *netlink)
+/* The kernel may get more at any time. A master that goes has no devices, and keeps its channel. */
+static int grow(struct link_master *base, char *why, size_t why_size)
 {
-	unsigned before = netlink->count;
+	struct w1_netlink *netlink = (struct w1_netlink *)base;
 	uint32_t numbers[W1_MASTERS];
 
-	if (netlink->refused)
-		return w1_look_for_masters(netlink->sysfs);
-	int n = w1_talk_masters(&netlink->talk, numbers, W1_MASTERS);
-	if (n > 0)
-		add_links(netlink, numbers, (unsigned)n);
-	return netlink->count - before;
+	(void)why;
+	(void)why_size;
+	if (netlink->refused) {
+		w1_look_for_masters(netlink->sysfs);
+	} else {
+		int n = w1_talk_masters(&netlink->talk, numbers, W1_MASTERS);
+
+		if (n > 0)
+			add_links(netlink, numbers, (unsigned)n);
+	}
+	return !netlink->only;
 }
 
 /*
@@ -165,7 +171,6 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 
 	netlink->count = netlink->seen_count = 0;
 	netlink->refused = false;
-	netlink->look_ns = 0;
 	if (n)
 		return n;
 	/* its own search finds devices; nobody would take what the kernel says of them */
@@ -229,6 +234,7 @@ static void cost(const struct link_master *base, struct link_master_cost *cost)
 const struct link_master_ops w1_netlink_master = {
 	.create = create,
 	.open = open_masters,
+	.grow = grow,
 	.close = close_masters,
 	.there = there,
 	.channels = channels,

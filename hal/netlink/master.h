@@ -14,7 +14,5 @@ extern const struct link_master_ops w1_netlink_master;
 
 /* Is it "netlink", "netlink/...", of which this bus is? */
 bool w1_is_netlink(const char *where);
-/* Masters that came since; how many. */
-unsigned w1_netlink_look(struct w1_netlink *netlink);
 
 #endif

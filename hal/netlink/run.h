@@ -50,8 +50,7 @@ struct w1_netlink {
 	struct w1_seen seen[DEVICE_MAX];
 	struct w1_master *sysfs; /* target w1's, in case netlink is refused */
 	bool refused, told;
-	bool answered;   /* once at least */
-	int64_t look_ns; /* when to look for masters that came later */
+	bool answered; /* once at least */
 };
 
 /*

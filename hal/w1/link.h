@@ -28,7 +28,6 @@ struct w1_master {
 	unsigned only; /* w1_bus_masterN; 0: all */
 	unsigned count;
 	struct w1_link links[W1_MASTERS];
-	int64_t look_ns;    /* when to look for masters that came later */
 	int uevents;        /* socket; -1: none */
 	int64_t uevents_ns; /* when to look at it */
 };

@@ -73,9 +73,9 @@ static bool has_link(const struct w1_master *master, unsigned number)
 }
 
 /* The kernel numbers its masters from 1 on and gives the lowest that is free. */
-unsigned w1_look_for_masters(struct w1_master *master)
+void w1_look_for_masters(struct w1_master *master)
 {
-	unsigned first = master->only ? master->only : 1, before = master->count;
+	unsigned first = master->only ? master->only : 1;
 	unsigned last = master->only ? master->only : W1_MASTERS;
 	char name[W1_MASTER_NAME_MAX];
 
@@ -92,7 +92,6 @@ unsigned w1_look_for_masters(struct w1_master *master)
 		                         .bulk = {.number = n, .channel = (uint8_t)master->count}};
 		master->count++;
 	}
-	return master->count - before;
 }
 
 static int open_masters(struct link_master *base, char *why, size_t why_size)
@@ -102,7 +101,8 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 	master->count = 0;
 	master->slaves.count = 0;
 	master->tree.told_rights = false;
-	if (w1_look_for_masters(master)) {
+	w1_look_for_masters(master);
+	if (master->count) {
 		if (strcmp(master->tree.root, W1_ROOT) == 0)
 			master->uevents = w1_uevents_open();
 		return 0;
@@ -114,6 +114,17 @@ static int open_masters(struct link_master *base, char *why, size_t why_size)
 		         "no 1-Wire master in the kernel: modprobe its driver, or "
 		         "dtoverlay=w1-gpio on a Raspberry Pi");
 	return -ENODEV;
+}
+
+/* The kernel may get more at any time. A master that goes has no slaves, and keeps its channel. */
+static int grow(struct link_master *base, char *why, size_t why_size)
+{
+	struct w1_master *master = (struct w1_master *)base;
+
+	(void)why;
+	(void)why_size;
+	w1_look_for_masters(master);
+	return !master->only;
 }
 
 static void close_masters(struct link_master *base)
@@ -153,6 +164,7 @@ static struct link *channel(struct link_master *base, unsigned n)
 const struct link_master_ops w1_master = {
 	.create = create,
 	.open = open_masters,
+	.grow = grow,
 	.close = close_masters,
 	.there = there,
 	.channels = channels,

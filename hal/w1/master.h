@@ -7,7 +7,7 @@
 
 extern const struct link_master_ops w1_master;
 
-/* Takes those that came since; how many. */
-unsigned w1_look_for_masters(struct w1_master *master);
+/* Takes those that came since. */
+void w1_look_for_masters(struct w1_master *master);
 
 #endif

@@ -122,6 +122,7 @@ static void test_a_master_that_comes_later_is_one_more_bus(void)
 	TEST_ASSERT_EQUAL_UINT(0, host_events(&fs.host, BUS_DOWN));
 	fs_lists("/bus.1" BOARD_OW "\n/bus.1/interface\n/bus.1/simultaneous\n/bus.1/alarm\n",
 	         "/bus.1");
+	TEST_ASSERT_EQUAL_UINT(1, ((struct native *)fs.bus)->channel[1].wire);
 }
 
 static void test_slaves_that_come_and_go_are_told(void)
