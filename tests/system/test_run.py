@@ -193,6 +193,13 @@ def test_it_needs_no_owserver_and_shows_good_values_marked_as_simulated(scene):
         scene.until(all_are_good, 20, f"all are good: {rows}")
         assert all(row["simulated"] for row in rows.values()), rows
         assert len(rows) >= 10
+
+        def identities():
+            devices = json.loads(scene.owsctl(terminal.name, "--json", "stats").stdout)["devices"]
+            return {device["id"]: device["identity"] for device in devices}
+        scene.until(lambda: len([i for i in identities() if i.startswith("28.")]) == 5
+                    and all(identities().values()), 20, identities)
+        assert {identities()[i] for i in identities() if i.startswith("28.")} == {"DS18B20"}, identities()
         assert scene.owsctl(terminal.name, "set", "-w", "60", "light", "on").returncode == 0
     finally:
         os.write(terminal.master, b"\x03")
@@ -314,7 +321,7 @@ def test_an_owserver_that_was_there_is_read_and_left_alone(scene):
 
 def test_a_simulated_target_of_ones_own_is_scanned(scene):
     scenario = scene.file("own.sim", "i2c speed 400 combine any\nchip DS2482-100 0x18\n"
-                                     "DS18B20 28.0000000000B1 as boiler temperature 60\n")
+                                     "DS18B20 28.B10000000000 as boiler temperature 60\n")
     terminal = shown(scene, f"sim:{scenario}", says=("write nothing", "VALUES ARE SIMULATED"),
                      row="temperature1")
     os.write(terminal.master, b"\x03")

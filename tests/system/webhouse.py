@@ -16,7 +16,7 @@ import owsdtest
 from owsdtest import BUILD, raw, until
 
 VIEWS = ["live", "alarms", "wire", "config", "about"]
-BOILER, ROOM, RELAY = "28.0000000000B1", "28.0000000000A1", "29.000000000001"
+BOILER, ROOM, RELAY = "28.B10000000000", "28.A10000000000", "29.000000000001"
 GONE = "28.0102030405FF"
 CELLS = """return Object.fromEntries([...document.querySelectorAll("#live tbody .row")].map((row) =>
     [row.querySelector(".name").textContent, {
