@@ -100,6 +100,23 @@ def test_an_alarm_is_shelved_for_a_time_with_a_reason(scene):
         assert not page.complaints()
 
 
+def test_the_outputs_that_disturb_a_simulated_wire_are_a_group_of_their_own(scene):
+    with plant(scene) as (_, _, page):
+        groups = page.run("return [...document.querySelectorAll('#live .group')].map((one) =>"
+                          "one.textContent)")
+        assert groups[-1] == "Simulation" and "Without a device" not in groups, groups
+
+
+def test_an_id_of_a_device_stands_in_one_line(scene):
+    with plant(scene) as (_, _, page):
+        view(page, "wire")
+        page.find("#wire tbody th code")
+        lines = page.until("return [...document.querySelectorAll('#wire tbody th code')].filter((one) =>"
+                           "/^[0-9A-F]{2}[.]/.test(one.textContent)).map((one) => one.offsetHeight"
+                           "/ parseFloat(getComputedStyle(one).fontSize))", "the devices")
+        assert max(lines) < 2, lines
+
+
 def test_wire_names_what_is_wrong_and_what_to_do(scene):
     with plant(scene) as (daemon, _, page):
         view(page, "wire")

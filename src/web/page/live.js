@@ -6,6 +6,9 @@ import {Painter, chunked, fill, fillAll, reserve} from "./rows.js";
 import {store} from "./store.js";
 import {alarmOf, stateOf} from "./words.js";
 
+const SIMULATOR = "/simulator/"; // paths of outputs that disturb a simulated wire
+const OTHERS = {[SIMULATOR]: "Simulation", "": "Without a device"};
+
 const state = {query: "", order: "device"};
 let rows = [];
 const rowOf = new Map(), visible = new Set();
@@ -95,12 +98,12 @@ function groups() {
 	if (state.order === "device") {
 		const found = new Map();
 		for (const row of rows) {
-			const key = row.signal.device || "";
+			const key = row.signal.device || (row.signal.path?.startsWith(SIMULATOR) ? SIMULATOR : "");
 			if (!found.get(key)?.push(row))
 				found.set(key, [row]);
 		}
-		return [...found].map(([device, members]) => ({members, title: device
-			? `${members[0].signal.family || "Device"} ${device}` : "Without a device"}));
+		return [...found].map(([key, members]) => ({members, title: OTHERS[key]
+			?? `${members[0].signal.family || "Device"} ${key}`}));
 	}
 	return [{title: null, members: [...rows].sort(state.order === "name" ? byName
 		: (a, b) => a.urgency - b.urgency || byName(a, b))}];
