@@ -18,6 +18,7 @@ static void print_event(struct watch *watch, enum watch_event event)
 {
 	static const char *const words[] = {
 		[WATCH_RESTARTED] = "restarted",
+		[WATCH_RELOADED] = "reloaded",
 		[WATCH_LOST] = "lost",
 		[WATCH_BACK] = "back",
 	};
@@ -39,8 +40,10 @@ static void print_event(struct watch *watch, enum watch_event event)
 	case WATCH_NOTHING:
 		return;
 	case WATCH_RESTARTED:
-		ctl_fail("owsd %s was started again or has reloaded its file",
-		         watch->ctl->instance);
+		ctl_fail("owsd %s was started again", watch->ctl->instance);
+		return;
+	case WATCH_RELOADED:
+		ctl_fail("owsd %s has reloaded its file", watch->ctl->instance);
 		return;
 	case WATCH_LOST:
 		ctl_alive(watch->ctl, watch->h, ows_now());

@@ -268,8 +268,10 @@ static void on_event(struct screen *screen, enum watch_event event)
 	case WATCH_NOTHING:
 		return;
 	case WATCH_RESTARTED:
+	case WATCH_RELOADED:
 		memset(screen->least, 0, sizeof(screen->least));
-		screen->note = "owsd was started again";
+		screen->note = event == WATCH_RELOADED ? "owsd has reloaded its file"
+		                                       : "owsd was started again";
 		return;
 	case WATCH_LOST:
 		screen->note = "";

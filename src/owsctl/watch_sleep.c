@@ -18,8 +18,10 @@ bool watch_over(const struct watch *watch)
 
 int watch_collect(struct watch *watch, const struct ows_daemon *daemon)
 {
+	bool went_on = daemon->start_ns == watch->start_ns;
 	int count = ows_count(watch->h);
 
+	watch->start_ns = daemon->start_ns;
 	watch->generation = daemon->generation;
 	watch->alive = daemon->alive;
 	watch->changed_count = -1;
@@ -34,7 +36,7 @@ int watch_collect(struct watch *watch, const struct ows_daemon *daemon)
 	for (int i = 0; i < watch->rows.count; i++)
 		if (watch->rows.row[i].signal >= 0)
 			watch->row_of[watch->rows.row[i].signal] = i;
-	return WATCH_RESTARTED;
+	return went_on ? WATCH_RELOADED : WATCH_RESTARTED;
 }
 
 void watch_free(struct watch *watch)

@@ -20,6 +20,7 @@ struct watch {
 	int changed_count;        /* -1: all of them */
 	uint32_t news;            /* counts sleeps that ended with a change */
 	uint32_t generation;
+	int64_t start_ns; /* of the owsd that has it */
 	bool alive;
 	int64_t left;   /* changes to show yet; negative: no limit */
 	int64_t end_ns; /* INT64_MAX: no limit */
@@ -29,10 +30,11 @@ struct watch {
 enum watch_event {
 	WATCH_NOTHING,
 	WATCH_RESTARTED, /* the rows were collected again: all of them changed */
+	WATCH_RELOADED,  /* the same of an owsd that went on */
 	WATCH_LOST,      /* owsd stopped, or its heart does not beat */
 	WATCH_BACK,      /* the heart beats again */
 };
-/* Collect the rows of the present owsd. WATCH_RESTARTED or -ENOMEM. */
+/* Collect the rows of the present owsd. WATCH_RESTARTED, WATCH_RELOADED or -ENOMEM. */
 int watch_collect(struct watch *watch, const struct ows_daemon *daemon);
 /* Free what watch_collect() made. */
 void watch_free(struct watch *watch);

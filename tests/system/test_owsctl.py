@@ -153,6 +153,26 @@ def test_watch_prints_changes_and_follows_a_killed_owsd(scene):
     assert watch.wait(owsdtest.PATIENCE) == 0
 
 
+def test_watch_tells_a_reload_from_a_start(scene):
+    _, daemon, _, _ = house(scene)
+    watch, objects = owsctl(scene, daemon, "watch", "room"), owsctl(scene, daemon, "--json", "watch", "room")
+    lines, said, told = Lines(watch.stdout), Lines(watch.stderr), Lines(objects.stdout)
+    terminal = Terminal(daemon, 24, 120, "watch", "room")
+    lines.until("room 21.5 good")
+    told.until('"room"')
+    terminal.until(lambda s: any(line.startswith("room") for line in s), "the row")
+    assert scene.owsctl(daemon, "reload").returncode == 0
+    said.until("has reloaded its file")
+    told.until('"event": ?"reloaded"')
+    terminal.until(lambda s: any("owsd has reloaded its file" in line for line in s), "the note")
+    assert "started again" not in said.text
+    os.write(terminal.fd, b"q")
+    assert terminal.end() == (0, True)
+    for program in (watch, objects):
+        program.terminate()
+        assert program.wait(owsdtest.PATIENCE) == 0
+
+
 def test_watch_ends_quietly_with_its_reader(scene):
     _, daemon, _, _ = house(scene)
     watch = owsctl(scene, daemon, "watch")
