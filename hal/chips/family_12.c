@@ -154,7 +154,7 @@ static const struct property properties[] = {
 	NOT_THERE("TAI8570/pressure", PRESSURE, VOLATILE, .size = 0),
 	NOT_THERE("TAI8570/sibling", ASCII, STABLE, .size = 16),
 	NOT_THERE("TAI8570/temperature", TEMPERATURE, VOLATILE, .size = 0),
-	PROPERTY("aux", DIRECTORY, VOLATILE, NONE, .size = 8),
+	PROPERTY_BRANCH("aux", .arg = 0),
 	PROPERTY("channels", UNSIGNED, STABLE, READ,
                  FIELD(INFO, .shift = 6, .bits = 1, .offset = 1)),
 	BITS("flipflop", READ, 0, 0),

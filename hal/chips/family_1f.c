@@ -160,13 +160,13 @@ static const struct property_how how[] = {
 	PROPERTY(text, BITS, VOLATILE, access_, AGGREGATE(2, NUMBERS), .how = (way))
 
 static const struct property properties[] = {
-	PROPERTY("aux", DIRECTORY, VOLATILE, NONE, .arg = COUPLER_AUX),
+	PROPERTY_BRANCH("aux", .arg = COUPLER_AUX),
 	PAIR("branch", BOTH, WAY_BRANCH),
 	PROPERTY("clearevent", YESNO, STABLE, WRITE, .how = WAY_CLEAR),
 	PROPERTY("control", UNSIGNED, STABLE, BOTH, .how = WAY_CONTROL),
 	PROPERTY("discharge", YESNO, STABLE, WRITE, .how = WAY_DISCHARGE),
 	PAIR("event", READ, WAY_EVENT),
-	PROPERTY("main", DIRECTORY, VOLATILE, NONE, .arg = COUPLER_MAIN),
+	PROPERTY_BRANCH("main", .arg = COUPLER_MAIN),
 	PAIR("sensed", READ, WAY_SENSED),
 };
 

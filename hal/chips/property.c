@@ -30,6 +30,11 @@ unsigned property_size(const struct property *property)
 	return 0;
 }
 
+bool property_has_entries(const struct property *property)
+{
+	return property->type == PROPERTY_DIRECTORY && !property->size;
+}
+
 int property_refuse(struct txn *txn)
 {
 	(void)txn;

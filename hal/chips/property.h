@@ -84,6 +84,8 @@ struct property_how {
 
 /* Bytes of a whole value, of one element, as owserver states it. */
 unsigned property_size(const struct property *property);
+/* Is it a directory in /structure? */
+bool property_has_entries(const struct property *property);
 
 /* A function that reads or writes nothing: -EOPNOTSUPP. */
 int property_refuse(struct txn *txn);
@@ -103,6 +105,8 @@ int property_text(struct txn *txn, const char *text);
 /* Any number, or any word, stands behind the dot: elements that cannot be counted. */
 #define SPARSE(index_) .array = {0, INDEX_##index_, false}
 #define PROPERTY_DIR(path) PROPERTY(path, DIRECTORY, STATIC, NONE, .hidden = false)
+/* A branch of the wire. /structure has it as a file: OWFS lists nothing below it there. */
+#define PROPERTY_BRANCH(path, ...) PROPERTY(path, DIRECTORY, VOLATILE, NONE, .size = 8, __VA_ARGS__)
 /* clang-format on */
 /* FIELD(REGISTERS, .at = 3, .shift = 2) in a row of a table of properties. */
 #define FIELD(...) .field = {.area = __VA_ARGS__}

@@ -115,13 +115,15 @@ static bool is_offered(struct native *native, const struct device *device,
 	       link->ops->offers(link, device->rom, property->name, extension);
 }
 
+/* /structure shows an array by its first element, as owserver's does. */
 static int add_property(struct native *native, struct job *job, const struct device *device,
                         const char *path, const struct property *property)
 {
+	bool first_alone = !job->path.device.len && !job->table->is_virtual;
 	int first = property->array.index == INDEX_LETTERS ? EXTENSION_LETTERS : 0;
-	int last = property->array.index == INDEX_NONE ? EXTENSION_NONE
-	           : property->array.count             ? first + property->array.count - 1
-	                                               : first;
+	int last = property->array.index == INDEX_NONE     ? EXTENSION_NONE
+	           : property->array.count && !first_alone ? first + property->array.count - 1
+	                                                   : first;
 	char text[8];
 	int err = 0;
 

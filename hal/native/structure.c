@@ -61,7 +61,7 @@ int structure_read(const char *path, size_t len, char *text, size_t room)
 	const struct property *property = family_property(family, NULL, path, name_len);
 	if (!property || !extension_fits(property, extension))
 		return -ENOENT;
-	if (property->type == PROPERTY_DIRECTORY)
+	if (property_has_entries(property))
 		return -EISDIR;
 	char type = property->type == PROPERTY_BITS ? 'y' : (char)property->type;
 	int n = snprintf(text, room, "%c,%.6d,%.6d,%s,%.6u,%c,", type,

@@ -114,7 +114,7 @@ static bool is_file_of_structure(const char *text, size_t len)
 	len -= used + 1;
 	extension_split(text, len, &stem);
 	property = family_property(family, NULL, text, stem);
-	return property && property->type != PROPERTY_DIRECTORY;
+	return property && !property_has_entries(property);
 }
 
 static void take_virtual(struct node *node, const struct path *split)

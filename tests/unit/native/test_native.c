@@ -133,6 +133,40 @@ static void test_structure_states_the_properties(void)
 		(char *)data[id]);
 }
 
+static void test_structure_has_a_branch_as_a_file(void)
+{
+	static const char *const branches[] = {"/structure/12/aux", "/structure/1F/aux",
+	                                       "/structure/1F/main"};
+
+	wire_init(&host, 1, 1);
+	start();
+	for (size_t i = 0; i < sizeof(branches) / sizeof(branches[0]); i++) {
+		expect(true, branches[i], "D,000000,000001,oo,000008,v,");
+		TEST_ASSERT_EQUAL_INT(-ENOTDIR, result(BUS_DIR, branches[i], NULL));
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_PROBE, branches[i], NULL));
+	}
+	TEST_ASSERT_EQUAL_INT(-EISDIR, result(BUS_READ, "/structure/12/TAI8570", NULL));
+}
+
+static void test_structure_lists_the_first_element_of_an_array_and_reads_all(void)
+{
+	wire_init(&host, 1, 1);
+	start();
+	uint32_t id = ask(BUS_DIR, BUS_INPUT, false, "/structure/21/log", NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_EQUAL_STRING("/structure/21/log/date.ALL\n/structure/21/log/date.0\n"
+	                         "/structure/21/log/elements\n/structure/21/log/temperature.ALL\n"
+	                         "/structure/21/log/temperature.0\n/structure/21/log/udate.ALL\n"
+	                         "/structure/21/log/udate.0\n",
+	                         (char *)data[id]);
+	id = ask(BUS_DIR, BUS_INPUT, false, "/structure/12", NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+	TEST_ASSERT_NOT_NULL(strstr((char *)data[id], "PIO.BYTE\n/structure/12/PIO.ALL\n"
+	                                              "/structure/12/PIO.A\n/structure/12/T8A\n"));
+	expect(true, "/structure/21/log/date.2047", "d,002047,002048,ro,000024,v,");
+	expect(true, "/structure/12/PIO.B", "y,000001,000002,rw,000001,s,");
+}
+
 static void test_a_request_past_its_deadline_is_void_or_in_progress(void)
 {
 	wire_init(&host, 1, 1);
@@ -180,6 +214,8 @@ int main(void)
 	RUN_TEST(test_errors_are_those_of_the_contract);
 	RUN_TEST(test_an_alias_names_the_device);
 	RUN_TEST(test_structure_states_the_properties);
+	RUN_TEST(test_structure_has_a_branch_as_a_file);
+	RUN_TEST(test_structure_lists_the_first_element_of_an_array_and_reads_all);
 	RUN_TEST(test_a_request_past_its_deadline_is_void_or_in_progress);
 	RUN_TEST(test_what_channels_share_is_counted_once);
 	RUN_TEST(test_a_target_without_its_file_is_refused_with_the_reason);
