@@ -438,6 +438,7 @@ diagrams:
 # --- The same properties by owserver and by owsd ----------------------------------------------
 compare: all $(SYSTEM_AIDS)
 	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/compare.py $(if $(WRITE),--write) $(PARTS)
+	@$(if $(PARTS),,OWSD_BUILD=$(abspath $(B)) python3 tests/system/compare_virtual.py)
 	@OWSD_BUILD=$(abspath $(B)) python3 tests/system/compare_writes.py $(if $(WRITE),--write) $(PARTS)
 
 properties-page: all

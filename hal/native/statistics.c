@@ -167,6 +167,9 @@ static const struct property properties[] = {
 	TALLY("directory/device/entries", TALLY_DIRECTORY, ENTRIES),
 	VIRTUAL_NUMBER("directory/maxdepth", WAY_ZERO, 0),
 	PROPERTY_DIR("errors"),
+	/* owserver's names, which openHAB asks for: of checksums of 16 bits too */
+	VIRTUAL_NUMBER("errors/CRC8_errors", WAY_COUNT, COUNT_CHECKSUMS),
+	VIRTUAL_NUMBER("errors/CRC8_tries", WAY_COUNT, COUNT_TRANSACTIONS),
 	VIRTUAL_NUMBER("errors/checksum", WAY_COUNT, COUNT_CHECKSUMS),
 	VIRTUAL_NUMBER("errors/link", WAY_COUNT, COUNT_LINK_ERRORS),
 	VIRTUAL("errors/max_delay", PROPERTY_FLOAT, LIFE_VOLATILE, ACCESS_READ, 0, WAY_DELAY),

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The genuine owserver and owsd read, and write, the same simulated devices: compare.py and
-compare_writes.py."""
+"""The genuine owserver and owsd read, and write, the same simulated devices: compare.py,
+compare_virtual.py and compare_writes.py."""
 
 import shutil
 
 import compare
+import compare_virtual
 import compare_writes
 import owsdtest
 from owsdtest import SOURCE
@@ -76,6 +77,18 @@ def test_only_what_runs_may_differ_and_not_by_much(scene):
     assert not compare.same("26", "pages/page.1", page, page[:8] + b"\x88\x09" + page[10:])
     assert not compare.same("26", "pages/page.1", page, bytes(6) + page[6:])
     assert not compare.same("2D", "pages/page.1", page, page[:8] + b"\x0a\x09" + page[10:])
+
+
+def test_structure_settings_and_statistics_are_owservers_but_for_what_is_recorded(scene):
+    if not shutil.which("owserver"):
+        owsdtest.skip("owserver is not installed")
+    pairs, asked = compare_virtual.run(scene)
+    paths = compare_virtual.recorded()
+    fresh = [pair for pair in pairs if not compare_virtual.is_recorded(pair, paths)]
+    for pair in fresh:
+        compare_virtual.show(pair)
+    assert asked > 10000 and not fresh, f"{len(fresh)} answers differ"
+    assert not compare_virtual.unused(pairs, paths), "recorded, and does not differ"
 
 
 # Of what is written a sample: `make compare` has all
