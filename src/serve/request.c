@@ -50,7 +50,13 @@ int request_parse(const uint8_t *bytes, size_t have, struct request *request, si
 		.tokens = bytes + FRAME_HEADER + h.payload,
 		.token_count = tokens_of(&h),
 	};
-	nul = h.payload ? memchr(request->path, '\0', request->payload) : NULL;
+	/* owrust sends no NUL between path and data: the size states where they part */
+	if (h.type == FRAME_WRITE) {
+		request->path_len -= (uint32_t)h.size;
+		request->data = (const uint8_t *)request->path + request->path_len;
+		request->data_len = (uint32_t)h.size;
+	}
+	nul = request->path_len ? memchr(request->path, '\0', request->path_len) : NULL;
 	if (nul) {
 		request->path_len = (uint32_t)(nul - (const uint8_t *)request->path);
 		request->data = nul + 1;

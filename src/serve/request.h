@@ -20,7 +20,7 @@ struct request {
 	uint32_t payload;
 	const char *path; /* path_len bytes, without NUL */
 	uint32_t path_len;
-	const uint8_t *data; /* of a WRITE */
+	const uint8_t *data; /* of a WRITE, at least size bytes */
 	uint32_t data_len;
 	const uint8_t *tokens; /* of the servers that the request came through, 16 bytes each */
 	uint32_t token_count;

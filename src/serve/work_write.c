@@ -140,10 +140,6 @@ void work_write(struct serve *s, struct client *c)
 		refuse(s, c);
 		return;
 	}
-	if (!c->request.data || (uint32_t)c->request.size > c->request.data_len) {
-		answer_code(s, c, CODE_NO_SUCH_PATH);
-		return;
-	}
 	c->request.data_len = (uint32_t)c->request.size;
 	if (work_is_directory(node)) {
 		work_refuse_directory(s, c);

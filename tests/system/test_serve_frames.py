@@ -255,6 +255,11 @@ def test_odd_frames(scene):
     pair.raw("65535 tokens", header(READ, len(path) + 1, size=100, version=0x1FFFF) + path + b"\0")
     pair.raw("more data to write than there are",
              header(WRITE, len(T) + 11, size=500) + T.encode() + b"/templow\x0012")
+    for text, size in ((b"/templow-9", 2), (b"/templow\x0012", 3), (b"/templow", 0),
+                       (b"/templow11", 0)):
+        pair.raw(f"WRITE without NUL, {text}, {size}",
+                 header(WRITE, len(T) + len(text), size=size) + T.encode() + text)
+        pair.same(READ, T + "/templow")
     pair.raw("HTTP", b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
     pair.raw("a huge payload", header(READ, 200000, size=100))
     pair.raw("a huge size", header(READ, len(path) + 1, size=0x7fffffff) + path + b"\0")

@@ -69,6 +69,31 @@ static void test_the_data_of_a_write_stand_behind_its_path(void)
 	TEST_ASSERT_EQUAL_MEMORY("one", request.data, 4);
 }
 
+/* owrust sends it so. Where a NUL stands before the last bytes, the path ends there. */
+static void test_the_size_states_where_a_path_without_nul_ends(void)
+{
+	static const struct {
+		const char *payload;
+		int32_t len, size;
+		uint32_t path_len, data_len;
+		const char *data;
+	} cases[] = {
+		{"/ab-9", 5, 2, 3, 2, "-9"},     {"/ab\0\0", 5, 2, 3, 2, "\0\0"},
+		{"ab", 2, 2, 0, 2, "ab"},        {"/ab\0one\0", 8, 3, 3, 4, "one"},
+		{"/ab\0one", 7, 1, 3, 3, "one"},
+	};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		size_t n = make(0, cases[i].len, FRAME_WRITE, cases[i].size, cases[i].payload,
+		                (size_t)cases[i].len);
+
+		TEST_ASSERT_EQUAL_INT(1, request_parse(bytes, n, &request, &length));
+		TEST_ASSERT_EQUAL_UINT(cases[i].path_len, request.path_len);
+		TEST_ASSERT_EQUAL_UINT(cases[i].data_len, request.data_len);
+		TEST_ASSERT_EQUAL_MEMORY(cases[i].data, request.data, cases[i].data_len);
+	}
+}
+
 static void test_tokens_of_an_owserver_belong_to_its_request(void)
 {
 	make(0x10002, 3, FRAME_READ, 1, "/a", 3);
@@ -150,6 +175,7 @@ int main(void)
 	RUN_TEST(test_a_request_is_whole_at_its_last_byte);
 	RUN_TEST(test_a_path_needs_no_nul);
 	RUN_TEST(test_the_data_of_a_write_stand_behind_its_path);
+	RUN_TEST(test_the_size_states_where_a_path_without_nul_ends);
 	RUN_TEST(test_tokens_of_an_owserver_belong_to_its_request);
 	RUN_TEST(test_what_cannot_be_a_request_is_refused);
 	RUN_TEST(test_random_bytes_never_lead_outside);
