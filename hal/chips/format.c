@@ -244,11 +244,17 @@ static int parse_whole(const char *text, double least, double most, double *numb
 	return *number < least || *number > most ? -EINVAL : 0;
 }
 
-/* Without the blanks around it, and the end of line or of string behind it. */
-static bool copy_trimmed(const char *text, size_t len, char copy[TEXT_ROOM])
+size_t text_end(const char *text, size_t len)
 {
 	while (len && (isspace((unsigned char)text[len - 1]) || text[len - 1] == '\0'))
 		len--;
+	return len;
+}
+
+/* Without the blanks around it, and the end of line or of string behind it. */
+static bool copy_trimmed(const char *text, size_t len, char copy[TEXT_ROOM])
+{
+	len = text_end(text, len);
 	while (len && isspace((unsigned char)*text)) {
 		text++;
 		len--;
@@ -276,13 +282,6 @@ static int parse_unsigned(const struct property *property, const char *text, dou
 	return !property->digits || digits_fit(property->digits, *number) ? 0 : -EINVAL;
 }
 
-static bool is_blank(const char *text, size_t len)
-{
-	while (len && isspace((unsigned char)text[len - 1]))
-		len--;
-	return len == 0;
-}
-
 static int parse_number(const struct property *property, const char *text, size_t len,
                         double *number)
 {
@@ -290,8 +289,7 @@ static int parse_number(const struct property *property, const char *text, size_
 
 	if (!copy_trimmed(text, len, copy)) {
 		/* An empty date is the present time, as in OWFS: so clocks are set by scripts. */
-		bool now = property->type == PROPERTY_DATE && len < TEXT_ROOM &&
-		           is_blank(text, len);
+		bool now = property->type == PROPERTY_DATE && text_end(text, len) == 0;
 
 		return now ? host_clock(number) : -EINVAL;
 	}

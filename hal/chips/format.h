@@ -45,6 +45,8 @@ int format_alone(const struct property *property, int extension, double number, 
 bool format_is_number(const struct property *property, int extension);
 double format_as_number(const struct property *property, int extension, const struct txn *txn);
 
+/* The length without blanks, and the end of line or of string, at the end. */
+size_t text_end(const char *text, size_t len);
 /*
  * The other way. With one element of an aggregate only that element is set: the others have to be
  * in txn. -EINVAL, and txn is as before: the text is not the whole of a value in the range of the

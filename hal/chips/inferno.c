@@ -3,6 +3,7 @@
  * Soft devices of Inferno Embedded. Their answers are read AREA_LOOKS times; what a command does is
  * proved by the device's own answer, for it checks the command.
  */
+#include <ctype.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -244,7 +245,7 @@ static int number(const struct txn *txn, unsigned i, uint32_t most)
 	memcpy(text, part, len);
 	unsigned long value = strtoul(text, &end, 10);
 
-	while (*end == ' ' || *end == '\n')
+	while (isspace((unsigned char)*end))
 		end++;
 	return *end || strchr(text, '-') || value > most ? -EINVAL : (int)value;
 }

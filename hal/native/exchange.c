@@ -33,6 +33,13 @@ static bool is_text(const struct property *property)
 	       property->type == PROPERTY_ALIAS;
 }
 
+/* Is it kept as it is written? Then an end of line or of string behind it is not part of it. */
+static bool is_name(const struct property *property)
+{
+	return property->type == PROPERTY_ALIAS ||
+	       (property->type == PROPERTY_ASCII && property->access == ACCESS_BOTH);
+}
+
 static const struct family *family_of_job(const struct job *job)
 {
 	return job->txn.device ? job->txn.device->family : job->table;
@@ -143,6 +150,10 @@ static int take_value(struct job *job)
 	if (is_text(property)) {
 		size_t skip = all ? job->element * size : 0;
 
+		if (is_name(property)) {
+			len = text_end(text, len);
+			job->taken = job->req->len - len;
+		}
 		if (skip > len)
 			skip = len;
 		txn->at = job->req->offset < size ? job->req->offset : size;

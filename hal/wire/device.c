@@ -107,7 +107,7 @@ int device_set_alias(struct device *device, const char *text, size_t len)
 	char *alias = alias_of(device);
 	uint8_t rom[8];
 
-	while (len && (text[len - 1] == '\n' || text[len - 1] == ' '))
+	for (; len && *text == ' '; text++)
 		len--;
 	if (len > DEVICE_ALIAS_MAX || rom_parse(text, len, rom) != -EINVAL)
 		return -EINVAL;

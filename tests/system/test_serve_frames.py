@@ -154,6 +154,12 @@ def test_writes(scene):
             ("/settings/units/temperature_scale", ("C",)), ("/structure/28/temperature", ("1",))):
         for text in texts:
             pair.same(WRITE, path, data=text.encode())
+    # the end of a line or of a string is none of a value, and blanks before it are not of an alias
+    for path, value in ((T + "/alias", b"  kitchen"), (T + "/templow", b"1"),
+                        (SWITCH + "/PIO.0", b"1"), ("/settings/units/pressure_scale", b"mbar"),
+                        ("/settings/timeout/ftp", b"1")):
+        for end in (b"\0", b"\r\n", b" "):
+            pair.same(WRITE, path, data=value + end)
     pair.same(WRITE, T + "/templow", data=b"10", size=1)
     pair.same(WRITE, T + "/templow", data=b"10", size=0)
     pair.same(WRITE, MEMORY + "/pages/page.0", data=b"hello")

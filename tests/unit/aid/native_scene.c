@@ -38,7 +38,7 @@ void start(void)
 	TEST_ASSERT_EQUAL_UINT8(BUS_UP, host.event[0].news);
 }
 
-uint32_t write_offset;
+uint32_t write_offset, write_nuls;
 
 uint32_t ask(enum bus_op op, enum bus_prio prio, bool fresh, const char *what, const char *text)
 {
@@ -56,7 +56,7 @@ uint32_t ask(enum bus_op op, enum bus_prio prio, bool fresh, const char *what, c
 	                           .deadline_ns = host.now + 20 * HOST_S};
 	memset(data[id], 0, sizeof(data[id]));
 	if (op == BUS_WRITE) {
-		req[id].len = (uint32_t)strlen(text);
+		req[id].len = (uint32_t)strlen(text) + write_nuls;
 		memcpy(data[id], text, strlen(text));
 	}
 	TEST_ASSERT_EQUAL_INT(0, bus_submit(bus, &req[id]));

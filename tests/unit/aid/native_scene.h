@@ -17,6 +17,8 @@ extern uint8_t data[NATIVE_REQUESTS][4096];
 
 /* The offset of writes in their value. */
 extern uint32_t write_offset;
+/* So many NULs stand behind the text of a write. */
+extern uint32_t write_nuls;
 
 /* setUp() and tearDown() */
 void native_begin(void);

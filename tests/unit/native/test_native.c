@@ -116,6 +116,47 @@ static void test_an_alias_names_the_device(void)
 	expect(true, "/boiler/id", "01005DDF0300");
 	TEST_ASSERT_EQUAL_INT(-EINVAL, result(BUS_WRITE, of(slave, "alias"), "a/b"));
 	TEST_ASSERT_EQUAL_INT(-EINVAL, result(BUS_WRITE, of(slave, "alias"), "bus.0"));
+	expect(true, of(slave, "alias"), "boiler");
+}
+
+/* SmartHomeNG ends each with a NUL, a program for Windows with CR LF. */
+static void test_the_end_of_a_line_or_string_behind_a_value_does_not_count(void)
+{
+	static const char *const ends[] = {"", "\n", "\r\n", " "};
+	static const struct {
+		const char *name, *value, *text;
+	} values[] = {
+		{"alias", "boiler", "boiler"},
+		{"alias", "  Bath room", "Bath room"},
+		{"templow", "-9", "          -9"},
+		{"/settings/units/temperature_scale", "F", "F"},
+		{"/settings/units/pressure_scale", "psi", "psi"},
+		{"/settings/timeout/stable", "77", "          77"},
+		{"/settings/alias/unaliased", "1", "1"},
+	};
+
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	start();
+	for (size_t i = 0; i < sizeof(values) / sizeof(values[0]); i++)
+		for (size_t n = 0; n < 2 * sizeof(ends) / sizeof(ends[0]); n++) {
+			const char *path = values[i].name[0] == '/' ? values[i].name
+			                                            : of(slave, values[i].name);
+			char text[40];
+
+			snprintf(text, sizeof(text), "%s%s", values[i].value, ends[n / 2]);
+			write_nuls = n % 2;
+			uint32_t id = ask(BUS_WRITE, BUS_INPUT, true, path, text);
+			TEST_ASSERT_EQUAL_INT_MESSAGE(0, answer_to(id)->err, path);
+			TEST_ASSERT_EQUAL_UINT(strlen(text) + write_nuls, answer_to(id)->len);
+			write_nuls = 0;
+			expect(true, path, values[i].text);
+			forget();
+		}
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(slave, "alias"), " "));
+	expect(true, of(slave, "alias"), "");
+	TEST_ASSERT_EQUAL_INT(-EINVAL, result(BUS_WRITE, of(slave, "alias"), "a\rb"));
 }
 
 static void test_structure_states_the_properties(void)
@@ -213,6 +254,7 @@ int main(void)
 	RUN_TEST(test_the_listing_has_devices_and_directories);
 	RUN_TEST(test_errors_are_those_of_the_contract);
 	RUN_TEST(test_an_alias_names_the_device);
+	RUN_TEST(test_the_end_of_a_line_or_string_behind_a_value_does_not_count);
 	RUN_TEST(test_structure_states_the_properties);
 	RUN_TEST(test_structure_has_a_branch_as_a_file);
 	RUN_TEST(test_structure_lists_the_first_element_of_an_array_and_reads_all);
