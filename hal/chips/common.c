@@ -25,6 +25,8 @@ static int put_hex(struct txn *txn, unsigned first, unsigned n, bool reversed)
 
 static int read_identity(struct txn *txn)
 {
+	const char *type;
+
 	switch (txn->property->arg) {
 	case ADDRESS:
 		return put_hex(txn, 0, 8, false);
@@ -42,7 +44,9 @@ static int read_identity(struct txn *txn)
 		/* What OWFS says of a device without a LinkLocator; these are not asked for. */
 		return property_text(txn, "FFFFFFFFFFFFFFFF");
 	case TYPE:
-		return property_text(txn, family_type(txn->device));
+		/* a driver's chip that cannot be asked is what the driver takes it for */
+		type = family_type(txn->device);
+		return property_text(txn, type ? type : txn->device->family->type);
 	}
 	return -EIO;
 }

@@ -27,7 +27,8 @@ struct family {
 	 * NULL: there is one.
 	 */
 	unsigned (*kind)(const struct device *device);
-	const char *const *types; /* what each kind is called, [0] too */
+	/* What each kind is called. [0] NULL: a request for `type` asks the chip first. */
+	const char *const *types;
 	/*
 	 * Tells which kind it is, before any property of the family (those that every device has
 	 * are none) is read or written: 0 it is known, TXN_MORE or an error. NULL: the functions
@@ -61,7 +62,7 @@ struct family {
 
 #define FAMILY_DOUBT_NS (60 * INT64_C(1000000000))
 
-/* What the chip is called. */
+/* What the chip is called; NULL: it has not said that yet. */
 const char *family_type(const struct device *device);
 /*
  * Which chip it is, by its behaviour where its family code does not decide that; a text that lives
@@ -72,7 +73,7 @@ const char *family_identity(const struct device *device);
 void family_forget(struct device *device);
 /* Is its kind one of family.doubted? */
 bool family_doubts(const struct device *device);
-/* Would a list of its properties not know which chip it is, and can that be asked? */
+/* Would a list of its properties not show which chip it is, and can that be asked? */
 bool family_untold(const struct device *device);
 /* Is the property one that this chip of its family has? Not known which: that all of them have. */
 bool family_has(const struct device *device, const struct property *property);

@@ -168,7 +168,7 @@ static void forget(struct device *device)
 	chip->alerts = alerts;
 }
 
-static const char *const types[] = {"DS2438", "DS2438", "TMP1826", "unknown"};
+static const char *const types[] = {NULL, "DS2438", "TMP1826", "unknown"};
 
 const struct family family_26 = {
 	.code = 0x26,

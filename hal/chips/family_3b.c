@@ -335,7 +335,7 @@ static const struct property properties[] = {
 	FAULT("vdd_short", 2, 4),
 };
 
-static const char *const types[] = {"DS1825", "DS1825", "MAX31826", "MAX31850", "MAX31825"};
+static const char *const types[] = {NULL, "DS1825", "MAX31826", "MAX31850", "MAX31825"};
 
 const struct family family_3b = {
 	.code = 0x3b,

@@ -353,26 +353,40 @@ static void run_again(struct native *native, struct job *job)
 	}
 }
 
+static bool is_type(const struct job *job)
+{
+	return job->req->op == BUS_READ && job->property && job->property->offline &&
+	       strcmp(job->property->name, "type") == 0;
+}
+
 bool job_asks_first(const struct job *job, int64_t now)
 {
 	struct device *device = job->txn.device;
 
-	if (!device || job->req->op != BUS_DIR)
+	if (!device || (job->req->op != BUS_DIR && !is_type(job)))
 		return false;
 	forget_doubtful(device, now);
-	return family_untold(device);
+	return family_untold(device) && (job->req->op == BUS_DIR || !family_type(device));
 }
 
-/* The path may name a directory that such a chip has not. */
-static void answer_list(struct native *native, struct job *job)
+/* The path may name a directory that such a chip does not have. */
+static void answer_asked(struct native *native, struct job *job, int64_t now)
 {
 	int err = resolve(native, job);
 
-	job_answer(native, job, err ? err : listing(native, job));
+	if (!err && job->kind == JOB_PROPERTY) {
+		job_txn(native, job);
+		job_run_property(native, job, now);
+	} else {
+		job_answer(native, job, err ? err : listing(native, job));
+	}
 }
 
-/* It is there, and does not say what it is: the list has what all have that it may be. */
-static void untold(struct native *native, struct job *job, int err)
+/*
+ * It is there, and does not say what it is: the list has what all have that it may be. A type is
+ * not guessed.
+ */
+static void untold(struct native *native, struct job *job, int err, int64_t now)
 {
 	bool silent = job->txn.silent || err == -ENODEV;
 
@@ -382,11 +396,13 @@ static void untold(struct native *native, struct job *job, int err)
 		job_again(native, job);
 	else if (silent && !job->verified)
 		job_missing(native, job, err);
+	else if (job->kind == JOB_PROPERTY && (silent || err == -EBADMSG))
+		job_answer(native, job, silent ? -EIO : err);
 	else
-		answer_list(native, job);
+		answer_asked(native, job, now);
 }
 
-void job_run_listing(struct native *native, struct job *job, int64_t now)
+void job_run_asking(struct native *native, struct job *job, int64_t now)
 {
 	const struct family *family = job->txn.device->family;
 	struct txn *txn = &job->txn;
@@ -397,7 +413,7 @@ void job_run_listing(struct native *native, struct job *job, int64_t now)
 	err = txn_end(txn, (family->identify ? family->identify : family->tell)(txn));
 	job_saw(native, job, err, now);
 	if (err < 0) {
-		untold(native, job, err);
+		untold(native, job, err, now);
 		return;
 	}
 	if (err == TXN_MORE && !family->kind(txn->device)) {
@@ -405,7 +421,7 @@ void job_run_listing(struct native *native, struct job *job, int64_t now)
 		return;
 	}
 	txn->device->told_ns = now;
-	answer_list(native, job);
+	answer_asked(native, job, now);
 }
 
 void job_run_property(struct native *native, struct job *job, int64_t now)

@@ -7,9 +7,12 @@
 
 /* One transaction of it, or the answer. */
 void job_run_property(struct native *native, struct job *job, int64_t now);
-/* A list of a device's properties: has the device to say first which chip of its family it is? */
+/*
+ * A list of a device's properties, or its type: does the device have to say first which chip of its
+ * family it is?
+ */
 bool job_asks_first(const struct job *job, int64_t now);
-/* Then: one transaction of that, or the list. */
-void job_run_listing(struct native *native, struct job *job, int64_t now);
+/* Then: one transaction of that, or the answer. */
+void job_run_asking(struct native *native, struct job *job, int64_t now);
 
 #endif

@@ -107,7 +107,7 @@ void job_look(struct native *native, struct job *job, int64_t now)
 			break;
 		if (job->property->convert && job->req->op == BUS_READ && job->txn.device)
 			convert_early(native, job, now);
-		if (!job->property->offline)
+		if (!job->property->offline || job_asks_first(job, now))
 			return;
 		while (job->req) {
 			job_txn(native, job);
@@ -229,7 +229,8 @@ static void begin_property(struct native *native, struct job *job, bool had_begu
 		locate_wait(native, job, now);
 		return;
 	}
-	if (job->kind == JOB_LISTING && !job_asks_first(job, now)) {
+	bool asks = job_asks_first(job, now);
+	if (job->kind == JOB_LISTING && !asks) {
 		job_answer(native, job, listing(native, job));
 		return;
 	}
@@ -238,9 +239,9 @@ static void begin_property(struct native *native, struct job *job, bool had_begu
 		return;
 	}
 	job_txn(native, job);
-	if (job->kind == JOB_LISTING) {
+	if (asks) {
 		job->state = JOB_RUN;
-		job_run_listing(native, job, now);
+		job_run_asking(native, job, now);
 		return;
 	}
 	if (job->property->convert && job->req->op == BUS_READ) {
@@ -279,8 +280,8 @@ void job_step(struct native *native, struct job *job, int64_t now)
 		job_run_property(native, job, now);
 		return;
 	case JOB_RUN:
-		if (job->kind == JOB_LISTING)
-			job_run_listing(native, job, now);
+		if (job->kind == JOB_LISTING || job->property->offline)
+			job_run_asking(native, job, now);
 		else
 			job_run_property(native, job, now);
 	}

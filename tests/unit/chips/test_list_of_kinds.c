@@ -116,6 +116,52 @@ static void test_a_list_asks_once_and_only_where_it_matters(void)
 	TEST_ASSERT_EQUAL_UINT(3, selected);
 }
 
+/* Home Assistant, FHEM and openHAB ask for it first, once, and keep it. */
+static void test_a_type_is_that_of_the_chip_from_the_first_request_on(void)
+{
+	static const char *const chips[] = {"TMP1826",  "DS2438",   "DS1825",
+	                                    "MAX31850", "MAX31826", "MAX31825"};
+
+	for (unsigned i = 0; i < sizeof(chips) / sizeof(chips[0]); i++) {
+		plug(chips[i]);
+		selected = 0;
+		wire_net.sent = count_selections;
+		expect(false, of(slave, "type"), chips[i]);
+		TEST_ASSERT_GREATER_THAN_UINT(0, selected);
+		selected = 0;
+		expect(false, of(slave, "type"), chips[i]);
+		TEST_ASSERT_EQUAL_UINT_MESSAGE(0, selected, chips[i]);
+		tearDown();
+	}
+	plug("DS18B20");
+	selected = 0;
+	wire_net.sent = count_selections;
+	expect(true, of(slave, "type"), "DS18B20");
+	TEST_ASSERT_EQUAL_UINT(0, selected);
+}
+
+static void test_a_chip_that_does_not_say_what_it_is_has_no_type(void)
+{
+	static const char *const chips[] = {"DS2438", "MAX31850"};
+
+	for (unsigned i = 0; i < sizeof(chips) / sizeof(chips[0]); i++) {
+		plug(chips[i]);
+		slave->corrupt_probability = 1;
+		slave->corrupt_random = 3;
+		TEST_ASSERT_EQUAL_INT(-EBADMSG, result(BUS_READ, of(slave, "type"), NULL));
+		slave->corrupt_probability = 0;
+		expect(false, of(slave, "type"), chips[i]);
+		tearDown();
+		plug(chips[i]);
+		sim_wire_plug(&wire_net.wire[0], slave, false, wire_time());
+		TEST_ASSERT_EQUAL_INT(-ENODEV, result(BUS_READ, of(slave, "type"), NULL));
+		sim_wire_plug(&wire_net.wire[0], slave, true, wire_time());
+		expect(false, of(slave, "type"), chips[i]);
+		tearDown();
+	}
+	plug("DS2438");
+}
+
 static void test_a_directory_below_a_chip_is_there_if_that_chip_has_it(void)
 {
 	plug("DS2438");
@@ -157,6 +203,8 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_the_first_list_of_a_chip_has_what_that_chip_has);
 	RUN_TEST(test_a_list_asks_once_and_only_where_it_matters);
+	RUN_TEST(test_a_type_is_that_of_the_chip_from_the_first_request_on);
+	RUN_TEST(test_a_chip_that_does_not_say_what_it_is_has_no_type);
 	RUN_TEST(test_a_directory_below_a_chip_is_there_if_that_chip_has_it);
 	RUN_TEST(test_a_chip_that_does_not_say_what_it_is_has_what_all_have);
 	RUN_TEST(test_a_chip_that_is_gone_has_no_list);
