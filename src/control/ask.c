@@ -2,8 +2,6 @@
 /* Programs that ask for a reload: how they wait, and the answer. */
 #include <errno.h>
 #include <string.h>
-#include <sys/socket.h>
-#include <sys/uio.h>
 
 #include "hal/bus/bell.h"
 #include "hal/bus/time.h"
@@ -47,11 +45,19 @@ void ask_answer(const struct control *c, const struct control_place *p, int err,
 		.generation = c->layout->generation,
 		.start_id = c->layout->start_id,
 	};
-	char words[OWS_WHY];
-	struct iovec parts[] = {{.iov_base = &answer, .iov_len = sizeof(answer)},
-	                        {.iov_base = words, .iov_len = strnlen(why, sizeof(words))}};
-	struct msghdr message = {.msg_iov = parts, .msg_iovlen = 2};
+	char bytes[sizeof(answer) + OWS_WHY];
+	size_t len = strnlen(why, OWS_WHY);
+	const struct porter_order order = {
+		.what = PORTER_SEND,
+		.count = 1,
+		.keep = 1,
+		.slot = PORTER_NO_SLOT,
+		.fds = {p->fd},
+		.bytes = {bytes, sizeof(answer) + len},
+	};
 
-	memcpy(words, why, parts[1].iov_len);
-	sendmsg(p->fd, &message, MSG_DONTWAIT | MSG_NOSIGNAL);
+	memcpy(bytes, &answer, sizeof(answer));
+	memcpy(bytes + sizeof(answer), why, len);
+	/* as long as the porter has no time the program waits, and asks again at last */
+	porter_give(c->porter, PORTER_AWAY, &order);
 }

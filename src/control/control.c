@@ -18,6 +18,7 @@
 #include "src/control/held.h"
 #include "src/control/private.h"
 #include "src/control/socket.h"
+#include "src/control/welcome.h"
 #include "src/libows/ows.h"
 #include "src/shm/word.h"
 
@@ -75,6 +76,7 @@ int control_create(const struct control_setup *setup, struct control **control, 
 	c->config = setup->config;
 	c->directory = setup->directory;
 	c->log = setup->log;
+	c->porter = setup->porter;
 	c->ring = setup->ring;
 	c->ring_ctx = setup->ring_ctx;
 	c->epoll = c->wake = c->asked = c->listener = -1;
@@ -153,6 +155,17 @@ int control_start(struct control *c, const struct giver_layout *layout)
 	return err;
 }
 
+/*
+ * Connections, and the socket where some wait: what the porter has no time for ends with this
+ * process, in which the kernel then waits for nothing.
+ */
+static void part_with(struct control *c, int *fd)
+{
+	if (*fd >= 0)
+		welcome_end(c, fd, 1, 0, false);
+	*fd = -1;
+}
+
 void control_stop(struct control *c)
 {
 	if (!c)
@@ -168,16 +181,14 @@ void control_stop(struct control *c)
 
 		if (p->now.memory.base)
 			giver_state(&p->now.memory, OWS_STATE_STOPPED);
-		if (__atomic_load_n(&p->state, __ATOMIC_ACQUIRE) != CONTROL_FREE && p->fd >= 0) {
-			close(p->fd);
-			p->fd = -1;
-		}
+		if (__atomic_load_n(&p->state, __ATOMIC_ACQUIRE) != CONTROL_FREE)
+			part_with(c, &p->fd);
 	}
-	if (c->listener >= 0) {
+	if (c->listener >= 0)
 		socket_remove(c->directory, c->name, c->inode);
-		close(c->listener);
-	}
-	c->listener = -1;
+	part_with(c, &c->listener);
+	while (c->away_count)
+		part_with(c, &c->away[--c->away_count]);
 }
 
 void control_destroy(struct control *c)

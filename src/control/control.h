@@ -20,12 +20,14 @@ struct bus_counter;
 struct config;
 struct control;
 struct log;
+struct porter;
 
 struct control_setup {
 	const struct config *config;
 	int directory;        /* owsd's; stays open as long as the control room */
 	const char *instance; /* the caller holds its lock */
 	struct log *log;
+	struct porter *porter;   /* stays as long as the control room */
 	void (*ring)(void *ctx); /* wakes the engine's thread, which then calls control_next() */
 	void *ring_ctx;
 };

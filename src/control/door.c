@@ -2,9 +2,11 @@
 /* Connections: who gets a place, what was sent over them, and how they end. */
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <string.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
+#include <sys/ioctl.h>
 #include <sys/random.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -15,13 +17,19 @@
 #include "src/control/grant.h"
 #include "src/control/held.h"
 #include "src/control/welcome.h"
+#include "src/libows/ows.h"
 
-/* Connections accepted in a row before the givers have their turn again. */
-#define ACCEPTS 16
+/*
+ * owsd accepts for so long, then it rests for so many times as long as it took: connections without
+ * end cost the tenth of a core, porter included. They are taken in bursts, since where the queue of
+ * the socket is full a program that waits for room in it has to find some before those that
+ * hammer.
+ */
+#define BURST_NS (6 * NS_PER_MS)
+#define REST 15
+#define REST_MOST_NS (90 * NS_PER_MS)
 /* A socket holds fewer messages. */
 #define DRAINS 512
-/* How long owsd waits with the next when it has no descriptor for it. */
-#define RETRY_NS (100 * NS_PER_MS)
 
 static void count(struct control *c, enum control_counter what)
 {
@@ -40,30 +48,68 @@ static void close_fd(int *fd)
 	*fd = -1;
 }
 
-static void free_place(struct control *c, struct control_place *p)
+/* How long owsd waits for a porter that has too much to do. */
+#define PORTER_NS (10 * NS_PER_MS)
+
+/* Give away what the place has of the peer's. False: later. */
+static bool let_go(struct control *c, struct control_place *p, bool with_connection)
 {
-	close_fd(&p->fd);
-	bus_count(&c->counters[CONTROL_connections], (uint64_t)-1);
-	__atomic_store_n(&p->state, CONTROL_FREE, __ATOMIC_RELEASE);
+	int *fds[] = {&p->bell, &p->news, &p->news_end, with_connection ? &p->fd : NULL};
+	struct porter_order order = {.slot = PORTER_NO_SLOT};
+
+	if (with_connection && p->fd >= 0)
+		epoll_ctl(c->epoll, EPOLL_CTL_DEL, p->fd, NULL);
+	for (unsigned i = 0; i < 4; i++)
+		if (fds[i] && *fds[i] >= 0)
+			order.fds[order.count++] = *fds[i];
+	if (order.count && porter_give(c->porter, PORTER_AWAY, &order)) {
+		c->later = true;
+		return false;
+	}
+	for (unsigned i = 0; i < 4; i++)
+		if (fds[i])
+			*fds[i] = -1;
+	return true;
+}
+
+static void enter(struct control_place *p, enum control_state state)
+{
+	__atomic_store_n(&p->state, state, __ATOMIC_RELEASE);
+}
+
+/* Once. */
+static void hang_up(struct control *c, struct control_place *p)
+{
+	if (!p->connected || p->fd < 0)
+		return;
+	p->connected = welcome_end(c, &p->fd, 1, p->refused, true) != 0;
+	c->later |= p->connected;
 }
 
 void door_release(struct control *c, struct control_place *p)
 {
+	bool unread;
+
 	held_free(c, p->peer.uid, &p->now);
 	held_free(c, p->peer.uid, &p->next);
 	peer_forget(&p->peer);
 	close_fd(&p->death);
-	close_fd(&p->bell);
-	close_fd(&p->news);
-	close_fd(&p->news_end);
+	hang_up(c, p);
 	/*
 	 * what lies unread in the socket of a living process counts among owsd's descriptors: its
 	 * user has one place less until then
 	 */
-	if (p->sent && welcome_unread(p))
-		__atomic_store_n(&p->state, CONTROL_UNREAD, __ATOMIC_RELEASE);
-	else
-		free_place(c, p);
+	unread = p->sent && welcome_unread(c, p);
+	if (p->connected && p->fd >= 0) {
+		enter(p, CONTROL_LEFT);
+	} else if (!let_go(c, p, !unread)) {
+		enter(p, CONTROL_LEFT);
+	} else if (unread) {
+		enter(p, CONTROL_UNREAD);
+	} else {
+		bus_count(&c->counters[CONTROL_connections], (uint64_t)-1);
+		enter(p, CONTROL_FREE);
+	}
 }
 
 /* --- The end ---------------------------------------------------------------------------------- */
@@ -76,20 +122,8 @@ static void let_engine_look(struct control *c)
 
 static void leave(struct control *c, struct control_place *p)
 {
-	__atomic_store_n(&p->state, CONTROL_LEAVING, __ATOMIC_RELEASE);
+	enter(p, CONTROL_LEAVING);
 	let_engine_look(c);
-}
-
-/*
- * Messages that lie in the socket may have descriptors with them: the other end of it, even. An
- * empty one cannot be told from the end.
- */
-static void drain(int fd)
-{
-	char byte;
-
-	for (int i = 0; i < DRAINS && recv(fd, &byte, 1, MSG_DONTWAIT) >= 0; i++)
-		;
 }
 
 void door_drop(struct control *c, struct control_place *p, enum control_counter why)
@@ -102,8 +136,7 @@ void door_drop(struct control *c, struct control_place *p, enum control_counter 
 	p->leaves = true;
 	if (p->now.memory.base)
 		giver_state(&p->now.memory, OWS_STATE_STOPPED);
-	shutdown(p->fd, SHUT_RDWR);
-	drain(p->fd);
+	hang_up(c, p);
 	if (state_of(p) == CONTROL_HALF || ask_waits(p) ||
 	    __atomic_compare_exchange_n(&p->state, &joining, CONTROL_LEFT, false, __ATOMIC_ACQ_REL,
 	                                __ATOMIC_ACQUIRE))
@@ -123,7 +156,8 @@ void door_died(struct control *c, struct control_place *p)
 
 static void refuse(struct control *c, struct control_place *p, int err, enum control_counter why)
 {
-	welcome_refuse(c, p->fd, &p->peer, err);
+	welcome_report(c, &p->peer, err);
+	p->refused = err;
 	door_drop(c, p, why);
 }
 
@@ -209,7 +243,7 @@ static void join(struct control *c, struct control_place *p, const struct ows_he
 	count(c, CONTROL_joined);
 	log_info(c->log, "giver %s (process %d, user %u) may command %u signals", p->who.name,
 	         (int)p->who.pid, (unsigned)p->who.uid, p->now.allowed);
-	__atomic_store_n(&p->state, CONTROL_JOINING, __ATOMIC_RELEASE);
+	enter(p, CONTROL_JOINING);
 	let_engine_look(c);
 }
 
@@ -231,11 +265,11 @@ static bool may_join(const struct control *c, const struct control_place *p,
 static void take_hello(struct control *c, struct control_place *p)
 {
 	struct ows_hello hello;
-	ssize_t n = recv(p->fd, &hello, sizeof(hello), MSG_DONTWAIT | MSG_TRUNC);
+	ptrdiff_t n = porter_receive(p->fd, &hello, sizeof(hello), false);
 
-	if (n < 0 && (errno == EAGAIN || errno == EINTR))
+	if (n == -EAGAIN || n == -EINTR)
 		return;
-	if (n <= 0)
+	if (n <= 0 && n != -EBADMSG)
 		door_drop(c, p, CONTROL_hung_up);
 	else if (n != (ssize_t)sizeof(hello) || hello.magic != OWS_HELLO_MAGIC ||
 	         hello.major != OWS_LAYOUT_MAJOR)
@@ -252,15 +286,15 @@ static void take_hello(struct control *c, struct control_place *p)
 
 /* --- Connections ------------------------------------------------------------------------------ */
 
-/* A program sends nothing after its hello. */
+/* A program sends nothing after its hello, which lies unread where it came. */
 static void look_for_end(struct control *c, struct control_place *p)
 {
-	char byte;
-	ssize_t n = recv(p->fd, &byte, 1, MSG_DONTWAIT);
+	struct pollfd end = {.fd = p->fd, .events = POLLRDHUP};
+	int bytes = 0;
 
-	if (n > 0)
+	if (ioctl(p->fd, FIONREAD, &bytes) == 0 && bytes > (int)sizeof(struct ows_hello))
 		door_drop(c, p, CONTROL_refused_protocol);
-	else if (n == 0 || (errno != EAGAIN && errno != EINTR))
+	else if (poll(&end, 1, 0) == 1)
 		door_drop(c, p, CONTROL_hung_up);
 }
 
@@ -320,11 +354,19 @@ static void begin_place(struct control_place *p, const struct control_place *fre
 	memcpy((char *)p + from, (const char *)fresh + from, sizeof(*p) - from);
 }
 
+/* Hang up on those that have no place. False: the porter has no time. */
+static bool send_away(struct control *c)
+{
+	if (c->away_count && welcome_end(c, c->away, c->away_count, c->away_err, false))
+		return false;
+	c->away_count = 0;
+	return true;
+}
+
 static void meet(struct control *c, int fd)
 {
 	struct control_place *p;
 	struct peer peer;
-	char byte;
 	int err = peer_look(fd, &peer);
 
 	p = err ? NULL : find_place(c, &peer);
@@ -340,22 +382,26 @@ static void meet(struct control *c, int fd)
 		                                       .news = -1,
 		                                       .news_end = -1,
 		                                       .peer = peer,
+		                                       .connected = true,
 		                                       .who.uid = peer.uid,
 		                                       .until_ns = c->now_ns + CONTROL_HELLO_NS});
 		err = watch(c, p, fd, 0);
 	}
 	if (!err) {
-		__atomic_store_n(&p->state, CONTROL_HALF, __ATOMIC_RELEASE);
+		enter(p, CONTROL_HALF);
 		count(c, CONTROL_connections);
 		return;
 	}
 	count(c, err == -EACCES   ? CONTROL_refused_rights
 	         : err == -ENOSPC ? CONTROL_refused_limits
 	                          : CONTROL_refused_errors);
-	welcome_refuse(c, fd, &peer, err);
+	welcome_report(c, &peer, err);
 	peer_forget(&peer);
-	recv(fd, &byte, 1, MSG_DONTWAIT); /* what is unread at close() is an error to the peer */
-	close(fd);
+	/* door_accept() has seen to it that there is room for one at least */
+	if (c->away_count && c->away_err != err && !send_away(c))
+		err = c->away_err;
+	c->away[c->away_count++] = fd;
+	c->away_err = err;
 }
 
 /* The connection waits in the socket until there is room. */
@@ -370,23 +416,43 @@ static void report_full(struct control *c, int why)
 		            log_others(n, others));
 }
 
-void door_accept(struct control *c)
+static bool has_time(const struct control *c)
 {
-	for (int i = 0; i < ACCEPTS; i++) {
-		int fd = accept4(c->listener, NULL, NULL, SOCK_NONBLOCK | SOCK_CLOEXEC);
+	return ows_now() - c->now_ns < BURST_NS;
+}
 
+/* True: there are more. full: owsd has no room for them. */
+static bool accept_some(struct control *c, bool *full)
+{
+	while (has_time(c)) {
+		int fd;
+
+		if (c->away_count == PORTER_FDS && !send_away(c))
+			break;
+		fd = accept4(c->listener, NULL, NULL, SOCK_NONBLOCK | SOCK_CLOEXEC);
 		if (fd >= 0) {
 			meet(c, fd);
 		} else if (errno == EAGAIN) {
-			c->accepts = false;
-			return;
+			return false;
 		} else if (errno == EMFILE || errno == ENFILE || errno == ENOMEM ||
 		           errno == ENOBUFS) {
-			c->accept_ns = c->now_ns + RETRY_NS;
 			report_full(c, errno);
-			return;
+			*full = true;
+			break;
 		}
 	}
+	return true;
+}
+
+void door_accept(struct control *c)
+{
+	int64_t rest_ns;
+	bool full = false;
+
+	c->accepts = accept_some(c, &full);
+	c->accepts |= !send_away(c);
+	rest_ns = (ows_now() - c->now_ns) * REST;
+	c->accept_ns = c->now_ns + (full || rest_ns > REST_MOST_NS ? REST_MOST_NS : rest_ns);
 }
 
 static void look(struct control *c, struct control_place *p)
@@ -406,15 +472,12 @@ static void look(struct control *c, struct control_place *p)
 	case CONTROL_IN:
 		if (p->leaves)
 			leave(c, p);
-		else if (!p->welcomed && welcome_send(p))
-			door_drop(c, p, CONTROL_hung_up);
+		else if (!p->welcomed)
+			welcome_send(c, p);
 		break;
 	case CONTROL_LEFT:
-		door_release(c, p);
-		break;
 	case CONTROL_UNREAD:
-		if (!welcome_unread(p))
-			free_place(c, p);
+		door_release(c, p);
 		break;
 	default:
 		break;
@@ -425,6 +488,7 @@ int64_t door_look(struct control *c)
 {
 	int64_t next_ns = c->accepts ? c->accept_ns : INT64_MAX;
 
+	c->later = false;
 	for (unsigned i = 0; i < OWS_GIVERS; i++) {
 		struct control_place *p = &c->places[i];
 
@@ -432,5 +496,7 @@ int64_t door_look(struct control *c)
 		if ((state_of(p) == CONTROL_HALF || ask_waits(p)) && p->until_ns < next_ns)
 			next_ns = p->until_ns;
 	}
+	if (c->later && c->now_ns + PORTER_NS < next_ns)
+		next_ns = c->now_ns + PORTER_NS;
 	return next_ns;
 }

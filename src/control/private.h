@@ -9,6 +9,7 @@
 #include "src/control/rights.h"
 #include "src/shm/giver.h"
 #include "src/shm/peer.h"
+#include "src/shm/porter.h"
 #include "src/text/log.h"
 
 /* Limits of a user, which do not hold for root. */
@@ -53,7 +54,7 @@ enum control_state {
 	CONTROL_TAKEN, /* the engine's thread takes it */
 	CONTROL_IN,
 	CONTROL_LEAVING,
-	CONTROL_LEFT,
+	CONTROL_LEFT,   /* until the porter takes what it had */
 	CONTROL_UNREAD, /* left, but for descriptors that lie unread in its socket */
 };
 
@@ -84,6 +85,8 @@ struct control_place {
 	int64_t until_ns; /* of CONTROL_HALF, CONTROL_ASKING, CONTROL_ASKED */
 	bool commands;    /* it wants to, by its hello */
 	bool leaves;      /* door_drop() was there */
+	bool connected;   /* the porter has not been asked to hang up */
+	int refused;      /* with this errno it is; 0: it is not */
 	bool sent;        /* descriptors went over the socket */
 	bool welcomed;    /* all was sent that there is to send */
 	struct control_grant now, next;
@@ -105,7 +108,12 @@ struct control {
 	bool running;
 	uint32_t stop;
 	int epoll, listener, wake;
-	int asked; /* the bell of those that ask for a reload */
+	struct porter *porter;
+	int away[PORTER_FDS]; /* connections without a place that are refused, all with away_err */
+	unsigned away_count;
+	int away_err;
+	bool later; /* the porter had no time for something */
+	int asked;  /* the bell of those that ask for a reload */
 	bool accepts;
 	int64_t now_ns, accept_ns; /* accept_ns: not sooner */
 	uint32_t serial;

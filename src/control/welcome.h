@@ -5,14 +5,19 @@
 
 #include "src/control/private.h"
 
-/* Refuse with err, and log that now and then. Never blocks; what cannot be sent is not sent. */
-void welcome_refuse(struct control *c, int fd, const struct peer *peer, int err);
+/* Log now and then that the peer is refused with err. */
+void welcome_report(struct control *c, const struct peer *peer, int err);
 /*
- * Send the giver its memory, and the first time the bell and the news. 0: done, or later: when the
- * giver has read what was sent before; else a negative errno.
+ * Hang up on so many connections, after a refusal if err is not 0. Returns porter_give(); with keep
+ * the first stays open.
  */
-int welcome_send(struct control_place *p);
-/* Is there something that the giver has not read? */
-bool welcome_unread(const struct control_place *p);
+int welcome_end(struct control *c, const int *fds, unsigned count, int err, bool keep);
+/*
+ * Send the giver its memory, and the first time the bell and the news; or later, when the giver has
+ * read what was sent before.
+ */
+void welcome_send(struct control *c, struct control_place *p);
+/* Is there something that the giver has not read, or that the porter has not sent? */
+bool welcome_unread(struct control *c, const struct control_place *p);
 
 #endif

@@ -64,6 +64,7 @@ static int create_control(struct host *h, const struct config *config, char *why
 		.directory = h->place->fd,
 		.instance = h->instance,
 		.log = h->log,
+		.porter = h->porter,
 		.ring = host_ring,
 		.ring_ctx = h,
 	};
@@ -109,6 +110,7 @@ int host_start(const struct host_setup *setup, struct host **host, char *why, si
 	h->log = setup->log;
 	h->instance = setup->instance;
 	h->place = setup->place;
+	h->porter = setup->porter;
 	err = bells_open(&h->bells);
 	if (err)
 		snprintf(why, why_size, "cannot make the bells of the engine: %s", strerror(-err));

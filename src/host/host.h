@@ -14,13 +14,15 @@
 #include "src/host/memory.h"
 
 struct host;
+struct porter;
 
 struct host_setup {
 	struct config *config; /* the host owns it from here on, also if host_start() fails */
 	const char *instance;
 	const struct shm_place *place; /* stays open as long as the host */
 	struct log *log;
-	int rt_priority; /* 0: ordinary scheduling */
+	struct porter *porter; /* likewise */
+	int rt_priority;       /* 0: ordinary scheduling */
 };
 
 /*

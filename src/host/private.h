@@ -15,6 +15,7 @@
 #define HOST_LOOK_NS NS_PER_MS
 
 struct control;
+struct porter;
 
 struct host {
 	/* The engine's thread exchanges it; else only the supervisor uses it. */
@@ -24,6 +25,7 @@ struct host {
 	/* An engine whose buses have ended, for the engine's thread to abandon. */
 	struct engine *ended;
 	struct log *log;
+	struct porter *porter;
 	const char *instance;
 	const struct shm_place *place;
 	struct serve *serve; /* NULL: the owserver protocol is not served */

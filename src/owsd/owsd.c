@@ -22,6 +22,7 @@
 #include "src/service/notify.h"
 #include "src/service/standard.h"
 #include "src/service/unix_signals.h"
+#include "src/shm/porter.h"
 #include "src/text/log.h"
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -273,13 +274,14 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
 }
 
 static int run(const struct arguments *a, struct config *config, struct instance *instance,
-               struct log *log, struct unix_signals *signals)
+               struct log *log, struct porter *porter, struct unix_signals *signals)
 {
 	struct host_setup setup = {
 		.config = config,
 		.instance = a->instance,
 		.place = &instance->place,
 		.log = log,
+		.porter = porter,
 		.rt_priority = a->rt_priority,
 	};
 	int prefix = journal_is_stderr();
@@ -335,6 +337,7 @@ int main(int argc, char **argv)
 	struct arguments a;
 	struct instance instance;
 	struct unix_signals signals;
+	struct porter *porter;
 	struct log *log;
 	char why[512];
 	int status;
@@ -377,6 +380,12 @@ int main(int argc, char **argv)
 		config_free(config);
 		return finish_output();
 	}
+	/* before the first thread, and before there is anything that only one process may have */
+	status = porter_start(&porter);
+	if (status) {
+		complain("cannot start the process for connections: %s", strerror(-status));
+		return EXIT_RUN;
+	}
 	log = log_create(a.level);
 	if (!log) {
 		complain("no memory or no descriptor for the log");
@@ -392,7 +401,8 @@ int main(int argc, char **argv)
 		complain("%s", why);
 		return EXIT_RUN;
 	}
-	status = run(&a, config, &instance, log, &signals);
+	status = run(&a, config, &instance, log, porter, &signals);
+	porter_end(porter);
 	instance_leave(&instance);
 	log_destroy(log);
 	return status;

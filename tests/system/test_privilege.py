@@ -35,7 +35,7 @@ def programs():
     return PROGRAMS
 
 
-def daemon_of(scene, text=None, name=None, ready=True):
+def daemon_of(scene, text=None, name=None, ready=True, env=None):
     """owsd as its unit starts it: user, groups, no capability, filter, umask."""
     os.chmod(scene.path, 0o777)
     name = name or scene.name()
@@ -47,7 +47,7 @@ def daemon_of(scene, text=None, name=None, ready=True):
     filtered = sandbox.command()
     shutil.copy(filtered[0], programs())
     filtered[0] = str(programs() / "sandbox")
-    daemon = Service(scene, config, name, [], None,
+    daemon = Service(scene, config, name, [], env,
                      [*private.as_user("owsd"), "sh", "-c", 'umask 0077; exec "$@"', "sh", *filtered],
                      program)
     return daemon.ready() if ready else daemon

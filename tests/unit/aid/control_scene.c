@@ -20,6 +20,7 @@
 #include "unity.h"
 
 #include "hal/bus/bus.h"
+#include "src/shm/porter.h"
 #include "tests/unit/aid/control_scene.h"
 
 struct control *control_room;
@@ -32,6 +33,7 @@ static char directory[64];
 static int directory_fd = -1;
 static sem_t bell;
 static pthread_t engine;
+static struct porter *porter;
 static bool engine_ends, reloads, rings_news;
 static struct control_turn turns[OWS_GIVERS];
 static uint32_t serials[OWS_GIVERS]; /* of the givers that are inside: the test looks at them */
@@ -119,6 +121,8 @@ void control_open(void)
 	joined = left = 0;
 	memset(serials, 0, sizeof(serials));
 	engine_ends = reloads = rings_news = false;
+	TEST_ASSERT_EQUAL(0, porter_start(&porter));
+	setup.porter = porter;
 	err = control_create(&setup, &control_room, why, sizeof(why));
 	TEST_ASSERT_EQUAL_INT_MESSAGE(0, err, why);
 	TEST_ASSERT_EQUAL(0, pthread_create(&engine, NULL, run, NULL));
@@ -134,6 +138,7 @@ void control_close(void)
 	pthread_join(engine, NULL);
 	control_destroy(control_room);
 	control_room = NULL;
+	porter_end(porter);
 	giver_layout_free(&layouts[0]);
 	giver_layout_free(&layouts[1]);
 	close(directory_fd);

@@ -1,0 +1,433 @@
+/* SPDX-License-Identifier: MIT */
+/* The porter: the process that sends over, and lets go of, what peers can make slow. */
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "hal/bus/time.h"
+#include "src/shm/porter.h"
+
+/* Younger than the headers of some machines that build owsd. */
+#ifndef SO_PASSRIGHTS
+#define SO_PASSRIGHTS 83
+#endif
+/* Orders that one child carries out, where they have nothing to do with each other. */
+#define BATCH 64
+/* The porter waits so long for a child, then it goes on. */
+#define CHILD_NS (20 * NS_PER_MS)
+/* Children of a lane that hang; with more of them the lane has to wait. */
+#define CHILDREN 12
+/* How often a hanging child is looked for. */
+#define LOOK_MS 20
+#define GIVEN_NS NS_PER_S
+#define END_NS NS_PER_S
+#define DRAINS 512 /* a socket holds fewer messages */
+
+struct order_head {
+	uint32_t sequence, what, slot;
+};
+
+/* Both sides have it. */
+struct shared {
+	uint32_t given[PORTER_LANES]; /* owsd has closed its own copies up to this order */
+	uint32_t carried[PORTER_SLOTS];
+};
+
+struct porter {
+	struct shared *shared;
+	int lanes[PORTER_LANES];
+	uint32_t sequence[PORTER_LANES];
+	uint32_t asked[PORTER_SLOTS];
+	pid_t pid;
+	uint32_t gone;
+};
+
+union attached {
+	struct cmsghdr align;
+	char room[CMSG_SPACE(PORTER_FDS * sizeof(int))];
+};
+
+struct message {
+	struct order_head head;
+	struct iovec parts[2];
+	struct msghdr header;
+};
+
+static void pause_ns(int64_t ns)
+{
+	const struct timespec t = {.tv_sec = (time_t)(ns / NS_PER_S),
+	                           .tv_nsec = (long)(ns % NS_PER_S)};
+
+	nanosleep(&t, NULL);
+}
+
+static void message_lay_out(struct message *m, struct iovec bytes)
+{
+	m->parts[0] = (struct iovec){&m->head, sizeof(m->head)};
+	m->parts[1] = bytes;
+	m->header = (struct msghdr){.msg_iov = m->parts, .msg_iovlen = bytes.iov_len ? 2 : 1};
+}
+
+static void attach(struct msghdr *header, void *room, const int *fds, unsigned count)
+{
+	struct cmsghdr *c = room; /* CMSG_FIRSTHDR(): there is room for one */
+
+	header->msg_control = room;
+	header->msg_controllen = CMSG_SPACE(count * sizeof(int));
+	c->cmsg_level = SOL_SOCKET;
+	c->cmsg_type = SCM_RIGHTS;
+	c->cmsg_len = CMSG_LEN(count * sizeof(int));
+	memcpy(CMSG_DATA(c), fds, count * sizeof(int));
+}
+
+/* --- What a child does ------------------------------------------------------------------------ */
+
+static void send_over(const int *fds, unsigned count, struct iovec bytes)
+{
+	union attached control = {0};
+	struct msghdr header = {.msg_iov = &bytes, .msg_iovlen = 1};
+
+	if (count > 1)
+		attach(&header, &control, fds + 1, count - 1);
+	sendmsg(fds[0], &header, MSG_DONTWAIT | MSG_NOSIGNAL);
+}
+
+/* What is unread at close() is an error to the peer. */
+static void hang_up(int fd)
+{
+	char byte;
+
+	shutdown(fd, SHUT_RDWR);
+	for (int i = 0; i < DRAINS && porter_receive(fd, &byte, 1, true) > 0; i++)
+		;
+}
+
+static void carry_out(unsigned what, const int *fds, unsigned count, struct iovec bytes)
+{
+	unsigned connections = what & PORTER_EACH ? count : 1;
+
+	for (unsigned i = 0; i < connections; i++) {
+		if (what & PORTER_SEND)
+			send_over(fds + i, what & PORTER_EACH ? 1 : count, bytes);
+		if (what & PORTER_HANG_UP)
+			hang_up(fds[i]);
+	}
+}
+
+/* The child has to be the last that lets go. */
+static void wait_until_given(const struct shared *shared, unsigned lane, uint32_t sequence)
+{
+	int64_t left_ns = GIVEN_NS;
+
+	while ((int32_t)(__atomic_load_n(&shared->given[lane], __ATOMIC_ACQUIRE) - sequence) < 0 &&
+	       left_ns > 0) {
+		pause_ns(NS_PER_MS / 10);
+		left_ns -= NS_PER_MS / 10;
+	}
+}
+
+/* Returns whether there was an order. */
+static bool take_order(struct porter *p, unsigned lane)
+{
+	char bytes[PORTER_BYTES];
+	union attached control;
+	struct message m;
+	const struct cmsghdr *c;
+	int fds[PORTER_FDS];
+	unsigned count;
+	ssize_t n;
+
+	message_lay_out(&m, (struct iovec){bytes, sizeof(bytes)});
+	m.header.msg_control = &control;
+	m.header.msg_controllen = sizeof(control);
+	n = recvmsg(p->lanes[lane], &m.header, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+	if (n < (ssize_t)sizeof(m.head))
+		return false;
+	c = CMSG_FIRSTHDR(&m.header);
+	if (c && c->cmsg_type == SCM_RIGHTS) {
+		count = (unsigned)((c->cmsg_len - CMSG_LEN(0)) / sizeof(int));
+		memcpy(fds, CMSG_DATA(c), count * sizeof(int));
+		carry_out(m.head.what, fds, count,
+		          (struct iovec){bytes, (size_t)n - sizeof(m.head)});
+	}
+	if (m.head.slot < PORTER_SLOTS)
+		__atomic_store_n(&p->shared->carried[m.head.slot], m.head.sequence,
+		                 __ATOMIC_RELEASE);
+	wait_until_given(p->shared, lane, m.head.sequence);
+	return true;
+}
+
+/* All that it has received it lets go when it ends: then the kernel waits for no connection. */
+static void be_child(struct porter *p, unsigned lane)
+{
+	int most = lane == PORTER_IN ? 1 : BATCH;
+
+	while (most-- > 0 && take_order(p, lane))
+		;
+	_exit(0);
+}
+
+/* --- The porter ------------------------------------------------------------------------------- */
+
+struct children {
+	pid_t pids[CHILDREN];
+};
+
+static unsigned count_children(struct children *of)
+{
+	unsigned n = 0;
+
+	for (unsigned i = 0; i < CHILDREN; i++) {
+		if (of->pids[i] > 0 && waitpid(of->pids[i], NULL, WNOHANG) != 0)
+			of->pids[i] = 0;
+		n += of->pids[i] > 0;
+	}
+	return n;
+}
+
+/* True: it has ended. */
+static bool wait_for(pid_t pid)
+{
+	const struct timespec most = {.tv_nsec = CHILD_NS};
+	sigset_t set;
+
+	sigemptyset(&set);
+	sigaddset(&set, SIGCHLD);
+	for (;;) {
+		if (waitpid(pid, NULL, WNOHANG) != 0)
+			return true;
+		/* another child may have ended: then look again */
+		if (sigtimedwait(&set, NULL, &most) < 0 && errno != EINTR)
+			return waitpid(pid, NULL, WNOHANG) != 0;
+	}
+}
+
+static void start_child(struct porter *p, unsigned lane, struct children *of)
+{
+	pid_t pid = fork();
+
+	if (pid == 0)
+		be_child(p, lane);
+	if (pid < 0) {
+		pause_ns(LOOK_MS * NS_PER_MS); /* too many processes: the orders wait */
+		return;
+	}
+	if (wait_for(pid))
+		return;
+	for (unsigned i = 0; i < CHILDREN; i++)
+		if (of->pids[i] <= 0) {
+			of->pids[i] = pid;
+			return;
+		}
+}
+
+static bool porter_round(struct porter *p, struct children *children)
+{
+	struct pollfd fds[PORTER_LANES];
+	bool hang = false, any = false;
+	char byte;
+
+	for (unsigned i = 0; i < PORTER_LANES; i++) {
+		unsigned n = count_children(&children[i]);
+
+		hang |= n > 0;
+		fds[i] = (struct pollfd){.fd = p->lanes[i], .events = n < CHILDREN ? POLLIN : 0};
+	}
+	poll(fds, PORTER_LANES, hang ? LOOK_MS : -1);
+	for (unsigned i = 0; i < PORTER_LANES; i++) {
+		/* at the end of owsd what waits for hanging children goes with the porter */
+		if (fds[i].revents & POLLHUP &&
+		    (!fds[i].events || recv(p->lanes[i], &byte, 1, MSG_PEEK | MSG_DONTWAIT) <= 0))
+			p->lanes[i] = -1;
+		else if (fds[i].revents & POLLIN)
+			start_child(p, i, &children[i]);
+		any |= p->lanes[i] >= 0;
+	}
+	return any;
+}
+
+/* Those of owsd, its output among them, are not to stay open for a child that hangs. */
+static void close_others(const struct porter *p)
+{
+	int end = p->lanes[0];
+
+	for (unsigned i = 1; i < PORTER_LANES; i++)
+		end = p->lanes[i] < end ? p->lanes[i] : end;
+	for (int fd = 0; fd < end; fd++)
+		close(fd);
+}
+
+static void be_porter(struct porter *p)
+{
+	struct children children[PORTER_LANES] = {0};
+	sigset_t all;
+
+	close_others(p);
+	sigfillset(&all);
+	sigprocmask(SIG_SETMASK, &all, NULL);
+	signal(SIGCHLD, SIG_DFL);
+	prctl(PR_SET_NAME, "owsd-porter");
+	while (porter_round(p, children))
+		;
+	_exit(0);
+}
+
+/* --- owsd's side ------------------------------------------------------------------------------ */
+
+static void close_lanes(int *lanes)
+{
+	for (unsigned i = 0; i < PORTER_LANES; i++)
+		if (lanes[i] >= 0)
+			close(lanes[i]);
+}
+
+static int open_lanes(int *ours, int *theirs)
+{
+	for (unsigned i = 0; i < PORTER_LANES; i++)
+		ours[i] = theirs[i] = -1;
+	for (unsigned i = 0; i < PORTER_LANES; i++) {
+		int ends[2];
+
+		if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends) < 0)
+			return -errno;
+		ours[i] = ends[0];
+		theirs[i] = ends[1];
+	}
+	return 0;
+}
+
+int porter_start(struct porter **porter)
+{
+	struct porter *p = calloc(1, sizeof(*p));
+	int ours[PORTER_LANES], theirs[PORTER_LANES], err;
+
+	if (!p)
+		return -ENOMEM;
+	err = open_lanes(ours, theirs);
+	p->shared = mmap(NULL, sizeof(*p->shared), PROT_READ | PROT_WRITE,
+	                 MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+	if (p->shared == MAP_FAILED)
+		err = -ENOMEM;
+	p->pid = err ? -1 : fork();
+	if (!err && p->pid < 0)
+		err = -errno;
+	if (p->pid == 0) {
+		close_lanes(ours);
+		memcpy(p->lanes, theirs, sizeof(theirs));
+		be_porter(p);
+	}
+	close_lanes(theirs);
+	if (!err) {
+		memcpy(p->lanes, ours, sizeof(ours));
+		*porter = p;
+		return 0;
+	}
+	close_lanes(ours);
+	if (p->shared != MAP_FAILED)
+		munmap(p->shared, sizeof(*p->shared));
+	free(p);
+	return err;
+}
+
+void porter_end(struct porter *p)
+{
+	int64_t left_ns = END_NS;
+
+	if (!p)
+		return;
+	close_lanes(p->lanes);
+	while (waitpid(p->pid, NULL, WNOHANG) == 0 && left_ns > 0) {
+		pause_ns(NS_PER_MS);
+		left_ns -= NS_PER_MS;
+	}
+	munmap(p->shared, sizeof(*p->shared));
+	free(p);
+}
+
+static void let_go(const struct porter_order *order)
+{
+	for (unsigned i = 0; i < order->count; i++)
+		if (!(order->keep >> i & 1))
+			close(order->fds[i]);
+}
+
+static int carry_here(const struct porter_order *order)
+{
+	carry_out(order->what, order->fds, order->count, order->bytes);
+	let_go(order);
+	return 0;
+}
+
+int porter_give(struct porter *p, enum porter_lane lane, const struct porter_order *order)
+{
+	union attached control = {0};
+	struct message m;
+	uint32_t sequence;
+
+	if (!p)
+		return carry_here(order);
+	sequence = p->sequence[lane] + 1;
+
+	m.head = (struct order_head){sequence, order->what, order->slot};
+	message_lay_out(&m, order->bytes);
+	attach(&m.header, &control, order->fds, order->count);
+	if (sendmsg(p->lanes[lane], &m.header, MSG_DONTWAIT | MSG_NOSIGNAL) < 0) {
+		/* descriptors that are on their way are limited, as the room in the socket is */
+		if (errno != EPIPE && errno != ECONNRESET && errno != ENOTCONN)
+			return -EAGAIN;
+		__atomic_store_n(&p->gone, 1, __ATOMIC_RELAXED);
+		return carry_here(order);
+	}
+	if (order->slot < PORTER_SLOTS)
+		p->asked[order->slot] = sequence;
+	let_go(order);
+	p->sequence[lane] = sequence;
+	__atomic_store_n(&p->shared->given[lane], sequence, __ATOMIC_RELEASE);
+	return 0;
+}
+
+bool porter_is_gone(const struct porter *p)
+{
+	return __atomic_load_n(&p->gone, __ATOMIC_RELAXED);
+}
+
+bool porter_carried(const struct porter *p, uint32_t slot)
+{
+	return !p || porter_is_gone(p) ||
+	       __atomic_load_n(&p->shared->carried[slot], __ATOMIC_ACQUIRE) == p->asked[slot];
+}
+
+/* --- Connections ------------------------------------------------------------------------------ */
+
+void porter_refuse_descriptors(int listener)
+{
+	int none = 0;
+
+	setsockopt(listener, SOL_SOCKET, SO_PASSRIGHTS, &none, sizeof(none));
+}
+
+ptrdiff_t porter_receive(int connection, void *bytes, size_t room, bool take)
+{
+	struct iovec part = {bytes, room};
+	struct msghdr message = {.msg_iov = &part, .msg_iovlen = 1};
+	/* a look closes no descriptor, since the message stays; without room for them it says so */
+	ssize_t n = recvmsg(connection, &message, MSG_PEEK | MSG_DONTWAIT | MSG_TRUNC);
+
+	if (n < 0)
+		return -errno;
+	if (message.msg_flags & MSG_CTRUNC)
+		return -EBADMSG;
+	if (take && n > 0 &&
+	    recv(connection, bytes, (size_t)n < room ? (size_t)n : room, MSG_DONTWAIT) < 0)
+		return -errno;
+	return n;
+}

@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Nobody who is let in, or not let in, costs owsd a thread: while users of every kind do their worst at
+its sockets, others join, a reload is done, SafeValue is in time, and owsd ends. The bounds are
+generous: an attack holds for an hour."""
+
+import shutil
+import signal
+import time
+
+import faulty
+import owsdtest
+import private
+from owsdtest import raw, until
+from test_control import CLIENT, PY, door
+from test_privilege import ctl, daemon_of, good, programs
+
+# What takes this long, though little else runs, waits for an attack
+LONG = 5
+OLD_KERNEL = owsdtest.BUILD / "system" / "old_kernel.so"
+CONTROLLER = """
+import sys, time
+sys.path.insert(0, {path!r})
+import ows
+h = ows.Ows({name!r}, control=True)
+h.beat(600000)
+h.set("relays", 5)
+while h.get("relays").value != 5:
+    time.sleep(0.01)
+print("controls", flush=True)
+while True:
+    time.sleep(0.05)
+    try:
+        if h.stale():
+            h.reopen()
+        h.set("relays", 5)
+    except (FileNotFoundError, ows.Stale):
+        pass
+"""
+
+
+def reached(file):
+    """The same file where every user reaches it."""
+    copy = programs() / file.name
+    if not copy.exists():
+        shutil.copy(file, copy)
+    return copy
+
+
+def kernels():
+    """This one, and one that cannot refuse descriptors."""
+    faulty.not_sanitized("the sanitizer has a library of its own before the program's")
+    return None, {"LD_PRELOAD": str(reached(OLD_KERNEL))}
+
+
+def plant(scene, env=None, **driver):
+    relays = dict(faulty.RELAYS, SafeValue="7", SafeDelay=raw("0"))
+    wire = scene.file("house.sim", faulty.WIRE)
+    daemon = daemon_of(scene, owsdtest.rio(f"sim:{wire}", [faulty.ROOM, relays], Period=0.05,
+                                           **driver), env=env)
+    good(scene, daemon.name)
+    return daemon
+
+
+def attack(scene, who, what, path, number=0):
+    """One that holds; None: the kernel does not let it happen."""
+    enemy = scene.start([*private.as_user(who), reached(owsdtest.BUILD / "system" / "doors"), what, path,
+                         number])
+    until(lambda: enemy.log() or not enemy.running(), 60, f"{what} by {who}")
+    assert enemy.log().strip() in ("ready", "refused"), enemy.log()
+    return enemy if "ready" in enemy.log() else None
+
+
+def controller(scene, daemon):
+    """A program that commands and promises to beat for ten minutes."""
+    reached(owsdtest.SOURCE / "src/libows/ows.py")
+    program = scene.start([*private.as_user("plc"), PY, "-c",
+                           CONTROLLER.format(path=str(programs()), name=daemon.name)])
+    owsdtest.logged(program, "controls")
+    return program
+
+
+def lasts(action, what):
+    begin = time.monotonic()
+    action()
+    took = time.monotonic() - begin
+    assert took < LONG, f"{what} took {took:.1f} s"
+
+
+def join(scene, daemon):
+    said = scene.start([*private.as_user("reader"), PY, "-c", CLIENT + "print(hello(path, 0)[1])",
+                        door(daemon.name)])
+    assert said.wait() == 0 and said.log().strip() == "0", said.log()
+
+
+def unharmed(scene, daemon, plc):
+    """All that a hostile user is not to hold up, in the end the end."""
+    name = daemon.name
+    lasts(lambda: join(scene, daemon), "joining")
+    lasts(lambda: ctl(scene, "plc", name, "set", "-w", "20", "relays", "6"), "a command")
+    reloads = daemon.log().count("reload: 2 signals")
+    daemon.signal(signal.SIGHUP)
+    lasts(lambda: until(lambda: daemon.log().count("reload: 2 signals") > reloads, 20), "a reload")
+    lasts(lambda: join(scene, daemon), "joining after the reload")
+    relays = lambda: ctl(scene, "reader", name, "get", "relays").stdout.strip()
+    lasts(lambda: until(lambda: relays() == "5", 20, "its command"), "its command after the reload")
+    plc.kill()
+    lasts(lambda: until(lambda: relays() == "7", 20, "SafeValue"), "SafeValue")
+    lasts(lambda: daemon.stop(), "the end")
+    assert "did not end" not in daemon.log() and "stuck" not in daemon.log(), daemon.log()
+
+
+def test_descriptors_that_are_slow_to_close_cost_no_thread(scene):
+    for env in kernels():
+        daemon = plant(scene, env)
+        plc = controller(scene, daemon)
+        path = door(daemon.name)
+        held = [attack(scene, "reader", "linger", path, 0), attack(scene, "plc", "linger", path, 1),
+                attack(scene, "stranger", "stranger", path)]
+        assert env is None or all(held), held
+        unharmed(scene, daemon, plc)
+
+
+if __name__ == "__main__":
+    private.main(users=True)
