@@ -44,6 +44,7 @@ static int create_serve(struct host *h, const struct config *config, char *why, 
 		.place = h->place->path,
 		.directory = h->place->fd,
 		.log = h->log,
+		.porter = h->porter,
 		.ring = host_ring,
 		.ring_ctx = h,
 	};

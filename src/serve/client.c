@@ -10,6 +10,7 @@
 #include "hal/owfs/frame.h"
 #include "src/serve/client.h"
 #include "src/serve/directory.h"
+#include "src/shm/porter.h"
 
 #define FIRST_READ AREA_ANSWER
 
@@ -62,6 +63,7 @@ void client_open(struct serve *s, int fd, const struct listener *from,
 	unsigned index = s->free[s->free_count - 1];
 	struct client *c = &s->clients[index];
 	bool queued = c->queued;
+	const int one = 1;
 
 	s->free_count--;
 	if (index >= s->used)
@@ -72,6 +74,9 @@ void client_open(struct serve *s, int fd, const struct listener *from,
 	c->network = from->network;
 	c->own = from->own;
 	c->peer = *peer;
+	/* else a byte out of band leaves the socket unseen, with its descriptors */
+	if (!c->network)
+		setsockopt(fd, SOL_SOCKET, SO_OOBINLINE, &one, sizeof(one));
 	c->readable = true;
 	c->need = FRAME_HEADER;
 	c->area = s->areas + (size_t)index * AREA_SIZE;
@@ -97,13 +102,38 @@ static void release_directory(struct client *c)
 	c->directory = NULL;
 }
 
+void clients_away(struct serve *s)
+{
+	while (s->away_count) {
+		struct porter_order order = {.what = PORTER_EACH | PORTER_HANG_UP,
+		                             .slot = PORTER_NO_SLOT};
+
+		order.count = s->away_count < PORTER_FDS ? s->away_count : PORTER_FDS;
+		memcpy(order.fds, s->away + s->away_count - order.count,
+		       order.count * sizeof(*s->away));
+		if (porter_give(s->porter, PORTER_SERVED, &order))
+			return;
+		s->away_count -= order.count;
+	}
+}
+
+void client_part(struct serve *s, int fd, bool network)
+{
+	if (network)
+		close(fd);
+	else
+		s->away[s->away_count++] = fd;
+}
+
 static void client_close(struct serve *s, struct client *c)
 {
 	bool engine_has_it = c->state == CLIENT_WORKING || c->lent;
 
 	if (c->fd < 0)
 		return;
-	close(c->fd);
+	if (!c->network && c->watched)
+		epoll_ctl(s->epoll_fd, EPOLL_CTL_DEL, c->fd, NULL);
+	client_part(s, c->fd, c->network);
 	c->fd = -1;
 	accept_again(s);
 	count(s, COUNT_clients, (uint64_t)-1);
@@ -327,6 +357,16 @@ void client_send(struct serve *s, struct client *c, const uint8_t *bytes, uint32
 
 /* --- In --------------------------------------------------------------------------------------- */
 
+static ssize_t receive_bytes(const struct client *c, uint8_t *bytes, size_t room)
+{
+	ssize_t n;
+
+	if (!c->network)
+		return porter_receive(c->fd, bytes, room, true);
+	n = recv(c->fd, bytes, room, MSG_DONTWAIT);
+	return n < 0 ? -errno : n;
+}
+
 /* Receive what is there, up to the end of the present request. False: the client has left. */
 static bool receive(struct serve *s, struct client *c)
 {
@@ -334,9 +374,9 @@ static bool receive(struct serve *s, struct client *c)
 	ssize_t n;
 
 	do
-		n = recv(c->fd, c->area + c->have, room, MSG_DONTWAIT);
-	while (n < 0 && errno == EINTR);
-	if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
+		n = receive_bytes(c, c->area + c->have, room);
+	while (n == -EINTR);
+	if (n == -EAGAIN) {
 		c->readable = false;
 		return true;
 	}

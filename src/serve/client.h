@@ -35,4 +35,12 @@ void client_send(struct serve *s, struct client *c, const uint8_t *bytes, uint32
 uint8_t *client_room(struct client *c);
 uint32_t client_room_size(struct client *c);
 
+/*
+ * Close a connection. One of a unix socket the porter closes: what lies unread there may have
+ * descriptors with it.
+ */
+void client_part(struct serve *s, int fd, bool network);
+/* Give the porter those that it has not taken yet. */
+void clients_away(struct serve *s);
+
 #endif

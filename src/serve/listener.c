@@ -16,6 +16,7 @@
 #include "src/serve/client.h"
 #include "src/serve/listener.h"
 #include "src/shm/owner.h"
+#include "src/shm/porter.h"
 #include "src/shm/segment.h"
 
 /* Connections that wait for a place; the kernel's net.core.somaxconn may be less. */
@@ -177,6 +178,7 @@ static int bind_local(struct serve *s, const union address *to, const char *grou
 	fd = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
 	if (fd < 0)
 		return -errno;
+	porter_refuse_descriptors(fd);
 	mask = umask(0177);
 	err = bind(fd, &to->any, sizeof(to->local)) < 0 ? -errno : 0;
 	umask(mask);
@@ -278,7 +280,7 @@ void listeners_close(struct serve *s)
 	char name[SEGMENT_FILE];
 
 	for (unsigned i = 0; i < s->listener_count; i++) {
-		close(s->listeners[i].fd);
+		client_part(s, s->listeners[i].fd, s->listeners[i].network);
 		if (s->listeners[i].own)
 			unlinkat(s->directory, segment_file(s->instance, "sock", name), 0);
 		else if (!s->listeners[i].network)
@@ -286,7 +288,7 @@ void listeners_close(struct serve *s)
 	}
 	s->listener_count = 0;
 	if (s->held.is)
-		close(s->held.fd);
+		client_part(s, s->held.fd, s->held.from.network);
 	s->held.is = false;
 }
 
@@ -380,6 +382,8 @@ bool listeners_accept(struct serve *s)
 		unsigned i = (s->listener_at + k) % s->listener_count;
 
 		for (int n = 0; n < ACCEPTS && !s->held.is && s->waiting >> i & 1; n++) {
+			if (!s->listeners[i].network && s->away_count >= SERVER_CLIENTS)
+				break;
 			union address from = {.any = {.sa_family = AF_UNSPEC}};
 			socklen_t len = sizeof(from);
 			int fd = accept4(s->listeners[i].fd, &from.any, &len,

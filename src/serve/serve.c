@@ -89,6 +89,7 @@ int serve_create(const struct serve_setup *setup, struct serve **serve, char *wh
 	s->place = setup->place;
 	s->directory = setup->directory;
 	s->log = setup->log;
+	s->porter = setup->porter;
 	s->guests.ring = setup->ring;
 	s->guests.ring_ctx = setup->ring_ctx;
 	s->guests.wake_fd = -1;
@@ -186,12 +187,17 @@ static void serve_round(struct serve *s)
 	}
 }
 
+/* How long the server waits for a porter that has too much to do. */
+#define PORTER_NS (10 * NS_PER_MS)
+
 static int wait_ms(struct serve *s)
 {
 	int64_t left = s->look_ns - s->now_ns;
 
 	if (s->round_count || s->accepting || left <= 0 || work_waits(s))
 		return 0;
+	if (s->away_count && left > PORTER_NS)
+		left = PORTER_NS;
 	return left > NS_PER_MS * 60000 ? 60000 : (int)((left + NS_PER_MS - 1) / NS_PER_MS);
 }
 
@@ -238,6 +244,8 @@ static void *run(void *arg)
 			s->accepting = listeners_accept(s);
 		serve_round(s);
 		work_queue(s);
+		if (s->away_count)
+			clients_away(s);
 		if (s->now_ns >= s->look_ns) {
 			work_look(s);
 			clients_look(s);
@@ -307,8 +315,11 @@ void serve_stop(struct serve *s)
 	listeners_close(s);
 	for (unsigned i = 0; i < s->used; i++)
 		if (s->clients[i].state != CLIENT_FREE && s->clients[i].fd >= 0)
-			close(s->clients[i].fd);
+			client_part(s, s->clients[i].fd, s->clients[i].network);
 	s->used = 0;
+	/* what the porter has no time for ends with this process */
+	clients_away(s);
+	s->away_count = 0;
 }
 
 void serve_destroy(struct serve *s)

@@ -17,6 +17,7 @@
 #include "src/shm/image.h"
 #include "src/text/log.h"
 
+struct porter;
 struct serve;
 
 struct serve_setup {
@@ -25,6 +26,7 @@ struct serve_setup {
 	const char *place; /* the directory of its files */
 	int directory;     /* the same, open, where NAME.sock is made; -1: none is made */
 	struct log *log;
+	struct porter *porter;   /* stays as long as the server */
 	void (*ring)(void *ctx); /* wakes the engine, from any thread */
 	void *ring_ctx;
 };

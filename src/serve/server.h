@@ -129,6 +129,10 @@ struct serve {
 	const char *instance, *place;
 	int directory; /* the place, open */
 	struct log *log;
+	struct porter *porter;
+	/* Unix sockets that end, until the porter takes them; owsd accepts none with too many. */
+	int away[2 * SERVER_CLIENTS];
+	unsigned away_count;
 	struct guests guests;
 	struct kept *kept, *prepared; /* prepared: for the next reload */
 	struct serve_next {           /* what a reload hands to the thread */

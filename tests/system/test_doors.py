@@ -93,6 +93,11 @@ def join(scene, daemon):
     assert said.wait() == 0 and said.log().strip() == "0", said.log()
 
 
+def served(scene, daemon, where):
+    done = ctl(scene, "plc", daemon.name, "-t", f"owserver:{where}", "read", "/28.A0B1C2000001/type")
+    assert done.stdout.strip() == "DS18B20", done
+
+
 def unharmed(scene, daemon, plc):
     """All that a hostile user is not to hold up, in the end the end."""
     name = daemon.name
@@ -118,6 +123,19 @@ def test_descriptors_that_are_slow_to_close_cost_no_thread(scene):
         held = [attack(scene, "reader", "linger", path, 0), attack(scene, "plc", "linger", path, 1),
                 attack(scene, "stranger", "stranger", path)]
         assert env is None or all(held), held
+        unharmed(scene, daemon, plc)
+
+
+def test_the_same_at_the_sockets_of_the_served_protocol(scene):
+    for env in kernels():
+        where = scene.path / "served.sock"
+        daemon = plant(scene, env, ListenSocket=str(where))
+        plc = controller(scene, daemon)
+        own = owsdtest.segment(daemon.name, "sock")
+        held = [attack(scene, "plc", "served", where), attack(scene, "owsd", "served", own)]
+        assert env is None or all(held), held
+        for _ in range(5):
+            lasts(lambda: served(scene, daemon, where), "a served reading")
         unharmed(scene, daemon, plc)
 
 
