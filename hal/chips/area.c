@@ -4,10 +4,8 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/chips/area.h"
+#include "hal/chips/family.h"
 #include "hal/wire/crc.h"
-
-#define BLANK_LOOKS 3 /* more */
 
 static unsigned least(unsigned a, unsigned b)
 {
@@ -25,6 +23,11 @@ static unsigned address(uint8_t *command, uint8_t code, const struct area *area,
 	return 1u + area->address_bytes;
 }
 
+static bool is_blank(const uint8_t *bytes, unsigned n)
+{
+	return n && (bytes[0] == 0 || bytes[0] == 0xff) && memcmp(bytes, bytes + 1, n - 1) == 0;
+}
+
 /* The command's own CRC8, then pages with theirs. */
 static int read_pages(struct txn *txn, const struct area *area, const uint8_t *command, size_t len,
                       uint8_t *bytes, unsigned n)
@@ -39,6 +42,7 @@ static int read_pages(struct txn *txn, const struct area *area, const uint8_t *c
 	for (const uint8_t *page = in + 1; n; n -= area->block, page += area->block + 1) {
 		if (onewire_crc8(page, area->block + 1u))
 			return -EBADMSG;
+		txn->blank |= is_blank(page, area->block + 1u);
 		memcpy(bytes, page, area->block);
 		bytes += area->block;
 	}
@@ -51,8 +55,12 @@ int area_fetch(struct txn *txn, const struct area *area, unsigned at, uint8_t *b
 	unsigned len = address(command, area->recall, area, at);
 	int err = 0;
 
-	if (txn_driven(txn))
-		return txn_driver_read(txn, area, at, bytes, n);
+	if (txn_driven(txn)) {
+		err = txn_driver_read(txn, area, at, bytes, n);
+		if (!err && area->check == AREA_UNCHECKED && !area->load)
+			txn->blank |= is_blank(bytes, n);
+		return err;
+	}
 	if (area->recall)
 		err = txn_command(txn, command, len);
 	command[0] = area->read;
@@ -73,6 +81,24 @@ int area_fetch(struct txn *txn, const struct area *area, unsigned at, uint8_t *b
 	return -EIO;
 }
 
+int area_ask_driver(struct txn *txn)
+{
+	const struct family *family = txn->device->family;
+	uint8_t bytes[AREA_UNIT];
+
+	for (unsigned i = 1; i < family->area_count; i++) {
+		const struct area *area = family->areas[i];
+		unsigned n = least(area->size, AREA_UNIT);
+		int err = txn_driver_read(txn, area, 0, bytes, n);
+
+		if (!err && !is_blank(bytes, n))
+			return 1;
+		if (err && err != -ENOENT && err != -EOPNOTSUPP)
+			return err;
+	}
+	return 0;
+}
+
 /* A driver gives an area as it is. */
 static int load(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n)
 {
@@ -80,10 +106,7 @@ static int load(struct txn *txn, const struct area *area, unsigned at, uint8_t *
 	                                      : area_fetch(txn, area, at, bytes, n);
 }
 
-/*
- * To visit->have; TXN_MORE until enough looks agree. So long as nothing but ones is read, perhaps
- * nobody hears: the last look is made again.
- */
+/* To visit->have; TXN_MORE until enough looks agree. */
 static int look(struct txn *txn, const struct area *area, unsigned at, unsigned n)
 {
 	struct area_visit *visit = &txn->area;
@@ -98,12 +121,11 @@ static int look(struct txn *txn, const struct area *area, unsigned at, unsigned 
 	if (area->check == AREA_UNCHECKED && !area->load && !txn_driven(txn)) {
 		if (++visit->looks < AREA_LOOKS)
 			return TXN_MORE;
-		if (txn->silent && ++visit->blanks <= BLANK_LOOKS) {
-			visit->looks--;
-			return TXN_MORE;
-		}
 	}
-	visit->looks = visit->blanks = 0;
+	visit->looks = 0;
+	/* It is read again, or answers nobody: it shows nothing of the chip. */
+	if (txn->blank && !txn->asked)
+		return 0;
 	return area->saw ? area->saw(txn, at, visit->have, n) : 0;
 }
 
@@ -138,7 +160,8 @@ int area_read(struct txn *txn, const struct area *area, unsigned at, uint8_t *by
 	err = look(txn, area, from, len);
 	if (err)
 		return err;
-	txn_share(txn, area, from, visit->have, len, visit->begun_ns);
+	if (!txn->blank || txn->asked)
+		txn_share(txn, area, from, visit->have, len, visit->begun_ns);
 	visit->begun_ns = 0;
 	memcpy(bytes, visit->have + (at - from), n);
 	return 0;

@@ -30,11 +30,16 @@
 
 #include "hal/wire/txn.h"
 
-/* What proves that the bytes are right. */
+/* What proves that the bytes are right, and that this chip has sent them. */
 enum area_check {
-	AREA_UNCHECKED, /* nothing: they are read AREA_LOOKS times, and have to be the same */
-	AREA_CRC8,      /* the last of them is the CRC8 of those before */
-	AREA_CRC16,     /* CRC16 after each block; the first one's covers command and address too */
+	/*
+	 * Nothing in them: they are read AREA_LOOKS times, and have to be the same. Nothing but
+	 * ones, or zeros, is read again between two searches that find the chip by its id
+	 * (PROOF_PRESENCE).
+	 */
+	AREA_UNCHECKED,
+	AREA_CRC8,  /* the last of them is the CRC8 of those before */
+	AREA_CRC16, /* CRC16 after each block; the first one's covers command and address too */
 	AREA_CRC8_PAGES, /* CRC8 of command and address before, and one after each block */
 };
 
@@ -127,6 +132,11 @@ int area_read(struct txn *txn, const struct area *area, unsigned at, uint8_t *by
 int area_read_data(struct txn *txn, const struct area *area, unsigned at, unsigned n);
 /* One transaction: the command and what it gives, its checksum checked. */
 int area_fetch(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n);
+/*
+ * Of a device that somebody else's driver speaks to, which nobody can search for: does it send
+ * anything but ones and zeros in one of its areas? 1, 0 or an error.
+ */
+int area_ask_driver(struct txn *txn);
 /* Of the n bytes from `at` on those bits that are set in mask; mask NULL: all. Several calls. */
 int area_write(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
                const uint8_t *mask, unsigned n);

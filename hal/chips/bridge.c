@@ -360,6 +360,7 @@ int bridges_finish(struct sensor_table *table)
 		qsort(bridge->properties, bridge->family.count, sizeof(*bridge->properties),
 		      by_name);
 		bridge->family.code = bridge->rom[0];
+		bridge->family.proof = PROOF_PRESENCE;
 		bridge->family.type = bridge_type(bridge->rom[0]);
 		bridge->family.properties = bridge->properties;
 		bridge->family.how = how;

@@ -39,9 +39,13 @@ enum step { BEGIN, SET_MARK, FIND_MARK, TAKE };
 static int read_scratchpad(struct txn *txn, unsigned page, uint8_t in[9])
 {
 	uint8_t command[] = {READ_SCRATCHPAD, (uint8_t)page};
+	bool blank = txn->blank;
 	int err = txn_command(txn, command, sizeof(command));
 
-	return err ? err : txn_read_crc8(txn, in, 9);
+	if (!err)
+		err = txn_read_crc8(txn, in, 9);
+	txn->blank = blank; /* ones fail the checksum; that zeros were recalled the mark shows */
+	return err;
 }
 
 static int recall(struct txn *txn, unsigned page, uint8_t in[9])

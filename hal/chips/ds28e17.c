@@ -45,8 +45,9 @@ int ds28e17_exchange(struct txn *txn, const struct i2c_transfer *transfer)
 	err = txn_command(txn, command, len);
 	if (!err)
 		err = await(txn, SLOTS(n + m));
+	/* That the command was right is a zero. */
 	if (!err)
-		err = txn_read(txn, answer, status + m);
+		err = m ? txn_read(txn, answer, status + m) : txn_read_slots(txn, answer, status);
 	if (err)
 		return err;
 	if (answer[0] & BAD_CRC)

@@ -14,8 +14,21 @@
 
 #include "hal/chips/property.h"
 
+/* What shows that it was this chip that answered, now. */
+enum family_proof {
+	PROOF_UNSAID,   /* then nothing but ones, or zeros, is no answer */
+	PROOF_CHECKSUM, /* the same: each answer has a checksum that ones and zeros do not pass */
+	/*
+	 * Some answer has none. If it is nothing but ones, or zeros, as the idle or the short wire
+	 * gives them, the bus reads it again between two searches that find the chip by its id.
+	 */
+	PROOF_PRESENCE,
+	PROOF_NONE_READ, /* nothing is read of it but its id: a search shows that it is there */
+};
+
 struct family {
 	uint8_t code;
+	uint8_t proof;    /* enum family_proof */
 	bool thermometer; /* takes Convert T, has its resolution in the scratchpad */
 	bool fixed;       /* ... but its resolution cannot be changed */
 	bool alarms;      /* answers the conditional search */

@@ -58,7 +58,15 @@ static const struct property properties[] = {
 	SUBKEY("subkey2", 2),
 };
 
-const struct family family_02 = {
-	.code = 0x02, .type = "DS1991", AREAS(areas), HOW(how), PROPERTIES(properties)};
-const struct family family_82 = {
-	.code = 0x82, .type = "DS1425", AREAS(areas), HOW(how), PROPERTIES(properties)};
+const struct family family_02 = {.code = 0x02,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS1991",
+                                 AREAS(areas),
+                                 HOW(how),
+                                 PROPERTIES(properties)};
+const struct family family_82 = {.code = 0x82,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS1425",
+                                 AREAS(areas),
+                                 HOW(how),
+                                 PROPERTIES(properties)};

@@ -249,6 +249,7 @@ static const struct property properties[] = {
 
 const struct family family_04 = {
 	.code = 0x04,
+	.proof = PROOF_PRESENCE,
 	.alarms = true,
 	.type = "DS2404",
 	AREAS(areas),

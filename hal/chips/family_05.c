@@ -102,6 +102,7 @@ static const struct property properties[] = {
 
 const struct family family_05 = {
 	.code = 0x05,
+	.proof = PROOF_PRESENCE,
 	.alarms = true,
 	.type = "DS2405",
 	AREAS(areas),

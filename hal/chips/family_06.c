@@ -25,6 +25,7 @@ enum { MEMORY = 1, PAGE = 32 };
 		AREA_PAGES(MEMORY, (pages), PAGE), \
 	}; \
 	const struct family family_##code_ = {.code = 0x##code_, \
+	                                      .proof = PROOF_PRESENCE, \
 	                                      .type = (part), \
 	                                      AREAS(areas_##code_), \
 	                                      PROPERTIES(properties_##code_)};

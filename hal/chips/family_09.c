@@ -23,5 +23,8 @@ static const struct property properties[] = {
 	AREA_PAGES(MEMORY, 4, 32),
 };
 
-const struct family family_09 = {
-	.code = 0x09, .type = "DS2502", AREAS(areas), PROPERTIES(properties)};
+const struct family family_09 = {.code = 0x09,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS2502",
+                                 AREAS(areas),
+                                 PROPERTIES(properties)};

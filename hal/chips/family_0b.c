@@ -22,7 +22,13 @@ static const struct property properties[] = {
                  .size = 8, FIELD(STATUS)),
 };
 
-const struct family family_0b = {
-	.code = 0x0b, .type = "DS2505", AREAS(areas), PROPERTIES(properties)};
-const struct family family_8b = {
-	.code = 0x8b, .type = "DS1985U", AREAS(areas), PROPERTIES(properties)};
+const struct family family_0b = {.code = 0x0b,
+                                 .proof = PROOF_CHECKSUM,
+                                 .type = "DS2505",
+                                 AREAS(areas),
+                                 PROPERTIES(properties)};
+const struct family family_8b = {.code = 0x8b,
+                                 .proof = PROOF_CHECKSUM,
+                                 .type = "DS1985U",
+                                 AREAS(areas),
+                                 PROPERTIES(properties)};

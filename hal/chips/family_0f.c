@@ -22,7 +22,13 @@ static const struct property properties[] = {
                  .size = 32, FIELD(STATUS)),
 };
 
-const struct family family_0f = {
-	.code = 0x0f, .type = "DS2506", AREAS(areas), PROPERTIES(properties)};
-const struct family family_8f = {
-	.code = 0x8f, .type = "DS1986U", AREAS(areas), PROPERTIES(properties)};
+const struct family family_0f = {.code = 0x0f,
+                                 .proof = PROOF_CHECKSUM,
+                                 .type = "DS2506",
+                                 AREAS(areas),
+                                 PROPERTIES(properties)};
+const struct family family_8f = {.code = 0x8f,
+                                 .proof = PROOF_CHECKSUM,
+                                 .type = "DS1986U",
+                                 AREAS(areas),
+                                 PROPERTIES(properties)};

@@ -27,6 +27,7 @@ static const struct property properties[] = {
 
 const struct family family_10 = {
 	.code = 0x10,
+	.proof = PROOF_PRESENCE,
 	.fixed = true,
 	.type = "DS18S20",
 	THERMOMETER_FAMILY,

@@ -170,6 +170,7 @@ static const struct property properties[] = {
 
 const struct family family_12 = {
 	.code = 0x12,
+	.proof = PROOF_PRESENCE,
 	.alarms = true,
 	.type = "DS2406",
 	AREAS(areas),

@@ -42,5 +42,8 @@ static const struct property properties[] = {
 	PROPERTY("status", UNSIGNED, STABLE, READ, FIELD(STATUS)),
 };
 
-const struct family family_14 = {
-	.code = 0x14, .type = "DS2430A", AREAS(areas), PROPERTIES(properties)};
+const struct family family_14 = {.code = 0x14,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS2430A",
+                                 AREAS(areas),
+                                 PROPERTIES(properties)};

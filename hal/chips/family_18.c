@@ -55,5 +55,9 @@ static const struct property properties[] = {
 	SECRET("password"),
 };
 
-const struct family family_18 = {
-	.code = 0x18, .type = "DS1963S", AREAS(areas), HOW(how), PROPERTIES(properties)};
+const struct family family_18 = {.code = 0x18,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS1963S",
+                                 AREAS(areas),
+                                 HOW(how),
+                                 PROPERTIES(properties)};

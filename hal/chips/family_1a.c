@@ -30,5 +30,9 @@ static const struct property properties[] = {
 	AREA_PAGES(MEMORY, 16, 32),
 };
 
-const struct family family_1a = {
-	.code = 0x1a, .type = "DS1963L", AREAS(areas), HOW(how), PROPERTIES(properties)};
+const struct family family_1a = {.code = 0x1a,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS1963L",
+                                 AREAS(areas),
+                                 HOW(how),
+                                 PROPERTIES(properties)};

@@ -309,6 +309,7 @@ static const struct property properties[] = {
 
 const struct family family_1b = {
 	.code = 0x1b,
+	.proof = PROOF_PRESENCE,
 	.type = "DS2436",
 	AREAS(areas),
 	HOW(how),

@@ -241,6 +241,7 @@ static const struct property properties[] = {
 
 const struct family family_1c = {
 	.code = 0x1c,
+	.proof = PROOF_PRESENCE,
 	.alarms = true,
 	.type = "DS28E04",
 	AREAS(areas),

@@ -65,6 +65,7 @@ static const struct property properties[] = {
 
 const struct family family_1d = {
 	.code = 0x1d,
+	.proof = PROOF_PRESENCE,
 	.type = "DS2423",
 	AREAS(areas),
 	HOW(how),

@@ -39,6 +39,7 @@ static const struct property properties[] = {
 
 const struct family family_1e = {
 	.code = 0x1e,
+	.proof = PROOF_PRESENCE,
 	.type = "DS2437",
 	AREAS(areas),
 	HOW(how),

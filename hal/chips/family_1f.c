@@ -172,6 +172,7 @@ static const struct property properties[] = {
 
 const struct family family_1f = {
 	.code = COUPLER_FAMILY,
+	.proof = PROOF_PRESENCE,
 	.alarms = true,
 	.type = "DS2409",
 	HOW(how),

@@ -349,6 +349,7 @@ static const struct property properties[] = {
 
 const struct family family_20 = {
 	.code = 0x20,
+	.proof = PROOF_CHECKSUM,
 	.alarms = true,
 	.type = "DS2450",
 	AREAS(areas),

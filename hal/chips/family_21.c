@@ -154,6 +154,7 @@ static const struct property properties[] = {
 
 const struct family family_21 = {
 	.code = 0x21,
+	.proof = PROOF_PRESENCE,
 	.alarms = true,
 	.type = "DS1921",
 	AREAS(areas),

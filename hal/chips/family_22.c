@@ -9,6 +9,7 @@ static const struct property properties[] = {THERMOMETER_PROPERTIES};
 
 const struct family family_22 = {
 	.code = 0x22,
+	.proof = PROOF_PRESENCE,
 	.type = "DS1822",
 	THERMOMETER_FAMILY,
 	AREAS(areas),

@@ -24,5 +24,8 @@ static const struct property properties[] = {
 	AREA_PAGES(MEMORY, 16, 32),
 };
 
-const struct family family_23 = {
-	.code = 0x23, .type = "DS2433", AREAS(areas), PROPERTIES(properties)};
+const struct family family_23 = {.code = 0x23,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS2433",
+                                 AREAS(areas),
+                                 PROPERTIES(properties)};

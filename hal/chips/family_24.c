@@ -111,7 +111,15 @@ static const struct property ds2417[] = {
 	TIME("udate", UNSIGNED, SECOND),
 };
 
-const struct family family_24 = {
-	.code = 0x24, .type = "DS2415", AREAS(areas), HOW(how), PROPERTIES(ds2415)};
-const struct family family_27 = {
-	.code = 0x27, .type = "DS2417", AREAS(areas), HOW(how), PROPERTIES(ds2417)};
+const struct family family_24 = {.code = 0x24,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS2415",
+                                 AREAS(areas),
+                                 HOW(how),
+                                 PROPERTIES(ds2415)};
+const struct family family_27 = {.code = 0x27,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS2417",
+                                 AREAS(areas),
+                                 HOW(how),
+                                 PROPERTIES(ds2417)};

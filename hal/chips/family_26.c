@@ -172,6 +172,7 @@ static const char *const types[] = {NULL, "DS2438", "TMP1826", "unknown"};
 
 const struct family family_26 = {
 	.code = 0x26,
+	.proof = PROOF_PRESENCE,
 	.type = "DS2438",
 	.kind = tmp1826_kind,
 	.types = types,
@@ -187,6 +188,7 @@ const struct family family_26 = {
 /* The same chip with a family code that owserver knows besides. */
 const struct family family_a6 = {
 	.code = 0xa6,
+	.proof = PROOF_PRESENCE,
 	.type = "DS2438",
 	AREAS(areas),
 	HOW(how),

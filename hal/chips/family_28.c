@@ -23,6 +23,7 @@ static const struct property properties[] = {
 
 const struct family family_28 = {
 	.code = 0x28,
+	.proof = PROOF_PRESENCE,
 	.type = "DS18B20",
 	.name = clone_name,
 	THERMOMETER_FAMILY,

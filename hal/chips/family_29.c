@@ -96,6 +96,7 @@ static const struct property properties[] = {
 
 const struct family family_29 = {
 	.code = 0x29,
+	.proof = PROOF_PRESENCE,
 	.alarms = true,
 	.type = "DS2408",
 	AREAS(areas),

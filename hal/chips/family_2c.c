@@ -55,5 +55,8 @@ static const struct property properties[] = {
 	PROPERTY("wiper", UNSIGNED, STABLE, BOTH, FIELD(POSITION, .at = 1)),
 };
 
-const struct family family_2c = {
-	.code = 0x2c, .type = "DS2890", AREAS(areas), PROPERTIES(properties)};
+const struct family family_2c = {.code = 0x2c,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS2890",
+                                 AREAS(areas),
+                                 PROPERTIES(properties)};

@@ -25,5 +25,8 @@ static const struct property properties[] = {
 	AREA_PAGES(MEMORY, 4, 32),
 };
 
-const struct family family_2d = {
-	.code = 0x2d, .type = "DS2431", AREAS(areas), PROPERTIES(properties)};
+const struct family family_2d = {.code = 0x2d,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS2431",
+                                 AREAS(areas),
+                                 PROPERTIES(properties)};

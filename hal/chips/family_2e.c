@@ -140,5 +140,9 @@ static const struct property properties[] = {
 	GAUGE_CHARGE("volthours", 1),
 };
 
-const struct family family_2e = {
-	.code = 0x2e, .type = "DS2770", AREAS(areas), HOW(how), PROPERTIES(properties)};
+const struct family family_2e = {.code = 0x2e,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS2770",
+                                 AREAS(areas),
+                                 HOW(how),
+                                 PROPERTIES(properties)};

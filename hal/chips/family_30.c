@@ -88,5 +88,9 @@ static const struct property properties[] = {
 	GAUGE_CHARGE("volthours", 1),
 };
 
-const struct family family_30 = {
-	.code = 0x30, .type = "DS2760", AREAS(areas), HOW(how), PROPERTIES(properties)};
+const struct family family_30 = {.code = 0x30,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS2760",
+                                 AREAS(areas),
+                                 HOW(how),
+                                 PROPERTIES(properties)};

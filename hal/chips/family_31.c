@@ -54,6 +54,7 @@ static const struct property properties[] = {
 
 const struct family family_31 = {
 	.code = 0x31,
+	.proof = PROOF_PRESENCE,
 	.type = "DS2720",
 	AREAS(areas),
 	HOW(how),

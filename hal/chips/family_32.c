@@ -46,5 +46,9 @@ static const struct property properties[] = {
 	GAUGE_CHARGE("volthours", 1),
 };
 
-const struct family family_32 = {
-	.code = 0x32, .type = "DS2780", AREAS(areas), HOW(how), PROPERTIES(properties)};
+const struct family family_32 = {.code = 0x32,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS2780",
+                                 AREAS(areas),
+                                 HOW(how),
+                                 PROPERTIES(properties)};

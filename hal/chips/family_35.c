@@ -51,5 +51,9 @@ static const struct property properties[] = {
 	GAUGE_CHARGE("volthours", 1),
 };
 
-const struct family family_35 = {
-	.code = 0x35, .type = "DS2755", AREAS(areas), HOW(how), PROPERTIES(properties)};
+const struct family family_35 = {.code = 0x35,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS2755",
+                                 AREAS(areas),
+                                 HOW(how),
+                                 PROPERTIES(properties)};

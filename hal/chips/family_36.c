@@ -24,5 +24,8 @@ static const struct property properties[] = {
 	GAUGE_CHARGE("volthours", 1),
 };
 
-const struct family family_36 = {
-	.code = 0x36, .type = "DS2740", AREAS(areas), PROPERTIES(properties)};
+const struct family family_36 = {.code = 0x36,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS2740",
+                                 AREAS(areas),
+                                 PROPERTIES(properties)};

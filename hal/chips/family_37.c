@@ -134,5 +134,9 @@ static const struct property properties[] = {
 	PROPERTY("version", UNSIGNED, STABLE, READ, FIELD(VERSION)),
 };
 
-const struct family family_37 = {
-	.code = 0x37, .type = "DS1977", AREAS(areas), HOW(how), PROPERTIES(properties)};
+const struct family family_37 = {.code = 0x37,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS1977",
+                                 AREAS(areas),
+                                 HOW(how),
+                                 PROPERTIES(properties)};

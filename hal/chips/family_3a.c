@@ -23,6 +23,7 @@ static const struct property properties[] = {
 
 const struct family family_3a = {
 	.code = 0x3a,
+	.proof = PROOF_CHECKSUM,
 	.type = "DS2413",
 	AREAS(areas),
 	HOW(how),

@@ -339,6 +339,7 @@ static const char *const types[] = {NULL, "DS1825", "MAX31826", "MAX31850", "MAX
 
 const struct family family_3b = {
 	.code = 0x3b,
+	.proof = PROOF_CHECKSUM,
 	.type = "DS1825",
 	.kind = kind_of,
 	.tell = identify,

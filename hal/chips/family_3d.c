@@ -47,5 +47,9 @@ static const struct property properties[] = {
 	GAUGE_CHARGE("volthours", 1),
 };
 
-const struct family family_3d = {
-	.code = 0x3d, .type = "DS2781", AREAS(areas), HOW(how), PROPERTIES(properties)};
+const struct family family_3d = {.code = 0x3d,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS2781",
+                                 AREAS(areas),
+                                 HOW(how),
+                                 PROPERTIES(properties)};

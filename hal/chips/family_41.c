@@ -70,6 +70,7 @@ static const struct property properties[] = {
 
 const struct family family_41 = {
 	.code = 0x41,
+	.proof = PROOF_CHECKSUM,
 	.alarms = true,
 	.type = "DS1923",
 	AREAS(areas),

@@ -27,6 +27,7 @@ static const struct property properties[] = {
 
 const struct family family_42 = {
 	.code = 0x42,
+	.proof = PROOF_PRESENCE,
 	.type = "DS28EA00",
 	THERMOMETER_FAMILY,
 	AREAS(areas),

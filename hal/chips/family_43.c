@@ -27,5 +27,8 @@ static const struct property properties[] = {
 	AREA_PAGES(MEMORY, 80, 32),
 };
 
-const struct family family_43 = {
-	.code = 0x43, .type = "DS28EC20", AREAS(areas), PROPERTIES(properties)};
+const struct family family_43 = {.code = 0x43,
+                                 .proof = PROOF_CHECKSUM,
+                                 .type = "DS28EC20",
+                                 AREAS(areas),
+                                 PROPERTIES(properties)};

@@ -39,5 +39,9 @@ static const struct property properties[] = {
 	GAUGE_CHARGE("volthours", 1),
 };
 
-const struct family family_51 = {
-	.code = 0x51, .type = "DS2751", AREAS(areas), HOW(how), PROPERTIES(properties)};
+const struct family family_51 = {.code = 0x51,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS2751",
+                                 AREAS(areas),
+                                 HOW(how),
+                                 PROPERTIES(properties)};

@@ -46,7 +46,7 @@ static int start(struct txn *txn)
 	int err = txn_command(txn, &command, 1);
 
 	if (!err)
-		err = txn_read(txn, crc, txn->link->passive ? 2 : 1);
+		err = txn_read_slots(txn, crc, txn->link->passive ? 2 : 1);
 	for (unsigned i = 0; !err && !txn->link->passive && i < 7; i++) {
 		int bit = txn_bit(txn);
 
@@ -135,6 +135,7 @@ static const struct property properties[] = {
 
 const struct family family_54 = {
 	.code = 0x54,
+	.proof = PROOF_CHECKSUM,
 	.type = "MAX31888",
 	AREAS(areas),
 	HOW(how),

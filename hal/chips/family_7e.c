@@ -241,6 +241,7 @@ static const char *const types[EDS_KINDS] = {
 
 const struct family family_7e = {
 	.code = 0x7e,
+	.proof = PROOF_CHECKSUM,
 	.alarms = true,
 	.type = "EDS",
 	.kind = eds_kind_of,

@@ -25,5 +25,8 @@ static const struct property properties[] = {
 	PROPERTY_DIR("pages"), AREA_PAGES(MEMORY, 4, 32), PART("project", 0, 4),
 };
 
-const struct family family_89 = {
-	.code = 0x89, .type = "DS1982U", AREAS(areas), PROPERTIES(properties)};
+const struct family family_89 = {.code = 0x89,
+                                 .proof = PROOF_PRESENCE,
+                                 .type = "DS1982U",
+                                 AREAS(areas),
+                                 PROPERTIES(properties)};

@@ -25,6 +25,7 @@ static const struct property properties[] = {
 
 const struct family family_a0 = {
 	.code = 0xa0,
+	.proof = PROOF_PRESENCE,
 	.type = "mRS001",
 	AREAS(areas),
 	HOW(how),

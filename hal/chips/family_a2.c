@@ -11,6 +11,7 @@ static const struct property properties[] = {
 
 const struct family family_a2 = {
 	.code = 0xa2,
+	.proof = PROOF_PRESENCE,
 	.type = "mCM001",
 	AREAS(areas),
 	PROPERTIES(properties),

@@ -42,6 +42,7 @@ static const struct property properties[] = {
 
 const struct family family_a5 = {
 	.code = 0xa5,
+	.proof = PROOF_PRESENCE,
 	.type = "mDI001",
 	AREAS(areas),
 	PROPERTIES(properties),

@@ -12,6 +12,7 @@ static const struct property properties[] = {
 
 const struct family family_b2 = {
 	.code = 0xb2,
+	.proof = PROOF_PRESENCE,
 	.type = "mAM001",
 	AREAS(areas),
 	PROPERTIES(properties),

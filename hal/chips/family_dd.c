@@ -52,6 +52,7 @@ static const struct property properties[] = {
 
 const struct family family_dd = {
 	.code = 0xdd,
+	.proof = PROOF_PRESENCE,
 	.type = "Example_slave",
 	HOW(how),
 	PROPERTIES(properties),

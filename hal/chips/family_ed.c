@@ -167,6 +167,7 @@ static const char *const types[] = {"InfernoEmbedded", "InfernoEmbedded", "Infer
 
 const struct family family_ed = {
 	.code = 0xed,
+	.proof = PROOF_PRESENCE,
 	.type = "InfernoEmbedded",
 	.kind = inferno_kind,
 	.tell = inferno_identify,

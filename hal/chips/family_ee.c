@@ -92,6 +92,7 @@ static const char *const types[] = HOBBY_TYPES("HobbyBoards_EE");
 
 const struct family family_ee = {
 	.code = 0xee,
+	.proof = PROOF_PRESENCE,
 	.type = "HobbyBoards_EE",
 	.kind = hobby_kind,
 	.tell = hobby_identify,

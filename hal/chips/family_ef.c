@@ -336,6 +336,7 @@ static const char *const types[] = HOBBY_TYPES("HobbyBoards_EF");
 
 const struct family family_ef = {
 	.code = 0xef,
+	.proof = PROOF_PRESENCE,
 	.type = "HobbyBoards_EF",
 	.kind = hobby_kind,
 	.tell = hobby_identify,

@@ -440,6 +440,7 @@ static const char *const types[] = {"BAE", "BAE", "BAE", "BAE"};
 
 const struct family family_fc = {
 	.code = 0xfc,
+	.proof = PROOF_PRESENCE,
 	.type = "BAE",
 	.kind = bae_kind,
 	.tell = bae_identify,

@@ -206,6 +206,7 @@ static const struct property properties[] = {
 
 const struct family family_fe = {
 	.code = 0xfe,
+	.proof = PROOF_CHECKSUM,
 	.type = "IBLSS",
 	HOW(how),
 	PROPERTIES(properties),

@@ -322,6 +322,7 @@ static const struct property properties[] = {
 
 const struct family family_ff = {
 	.code = 0xff,
+	.proof = PROOF_PRESENCE,
 	.type = "LCD",
 	.forget = forget,
 	AREAS(areas),

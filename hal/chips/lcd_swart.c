@@ -28,7 +28,7 @@ int lcd_swart_fill(struct txn *txn, const uint8_t *bytes, unsigned n)
 	if (!err)
 		err = txn_command(txn, &read, 1);
 	if (!err)
-		err = txn_read(txn, in, sizeof(in));
+		err = txn_read_slots(txn, in, sizeof(in));
 	if (err)
 		return err;
 	return memcmp(in, bytes, n < LCD_PAD ? n : LCD_PAD) == 0 ? 0 : -EBADMSG;

@@ -306,7 +306,7 @@ static int look_at_supply(struct txn *txn, uint8_t *slots)
 		err = txn_driver_read(txn, &supply, 0, slots, 1);
 	} else {
 		err = txn_command(txn, &command, 1);
-		err = err ? err : txn_read(txn, slots, 1);
+		err = err ? err : txn_read_slots(txn, slots, 1);
 	}
 	txn->silent = false;
 	return err;

@@ -63,7 +63,7 @@ static int recall_settings(struct txn *txn, uint8_t scratchpad[9])
 
 	thermometer_of(txn->device)->resolution = 0;
 	for (unsigned i = 0; !err && slots != 0xff && i < RECALL_BYTES; i++)
-		err = txn_read(txn, &slots, 1);
+		err = txn_read_slots(txn, &slots, 1);
 	if (!err && slots != 0xff)
 		err = -EBADMSG;
 	/* Ones are also what a chip gives that did not hear it. */

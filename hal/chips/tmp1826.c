@@ -178,6 +178,8 @@ int tmp1826_read_pad(struct txn *txn, uint8_t pad[PAD])
 		return err;
 	if (rom_crc8(pad, FIRST) || rom_crc8(pad + FIRST, PAD - FIRST) || all_are(pad, PAD, 0))
 		return -EBADMSG;
+	/* The checksum of zeros is zero: so reads a wire that became short in between. */
+	txn->blank |= all_are(pad, FIRST, 0) || all_are(pad + FIRST, PAD - FIRST, 0);
 	tmp1826_of(txn)->alerts |= pad[STATUS] >> ALERT_SHIFT;
 	txn->device->power = pad[STATUS] & FED_BY_BUS ? POWER_PARASITE : POWER_EXTERNAL;
 	return 0;

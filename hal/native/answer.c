@@ -159,6 +159,7 @@ void job_restart(struct native *native, struct job *job)
 	job_unlock(native, job);
 	job->state = JOB_QUEUED;
 	job->merged = false;
+	job->prove = PROVE_NOT;
 	job->txn.wake_ns = 0;
 }
 
@@ -178,6 +179,7 @@ void job_reread(struct native *native, struct job *job)
 {
 	job_count_retry(job);
 	job_unlock(native, job);
+	job->prove = PROVE_NOT;
 	job_txn(native, job);
 	job->state = JOB_CONVERTING;
 	job->ready_ns = native_now(native);

@@ -424,20 +424,82 @@ void job_run_asking(struct native *native, struct job *job, int64_t now)
 	answer_asked(native, job, now);
 }
 
+/*
+ * Does nothing show that this chip has sent what was read? Of a write one search is enough, after
+ * it: what it wrote is not written twice for that.
+ */
+static bool lacks_proof(struct job *job)
+{
+	const struct txn *txn = &job->txn;
+
+	if (!txn->blank || !txn->device || job->property->offline)
+		return false;
+	job->prove = job->req->op == BUS_WRITE || job->prove == PROVE_READ ? PROVE_AFTER
+	                                                                   : PROVE_BEFORE;
+	return true;
+}
+
+/* A checksum would have told ones from an answer. A driver's chip is asked for something else. */
+static int ask_for_chip(struct txn *txn)
+{
+	if (txn->device->family->proof != PROOF_PRESENCE)
+		return -EBADMSG;
+	if (txn_driven(txn)) {
+		int there = area_ask_driver(txn);
+
+		return there ? there : -EIO;
+	}
+	int there = txn_verify(txn, false);
+	return there ? there : -ENODEV;
+}
+
+/* The search before or after a reading. True: the reading is proved. */
+static bool prove(struct native *native, struct job *job, int64_t now)
+{
+	int err = txn_end(&job->txn, ask_for_chip(&job->txn));
+
+	err = err > 0 ? 0 : err;
+	job_saw(native, job, err, now);
+	if (err) {
+		/* What was shared of it is nobody's; nor what it said of the chip. */
+		txn_void(&job->txn);
+		job_failed(native, job, err);
+		return false;
+	}
+	if (job->prove == PROVE_AFTER) {
+		job->prove = PROVE_NOT;
+		return true;
+	}
+	job->prove = PROVE_READ;
+	job->had_ones = job->txn.ones;
+	job_txn(native, job);
+	return false;
+}
+
 void job_run_property(struct native *native, struct job *job, int64_t now)
 {
 	struct txn *txn = &job->txn;
-	int err = txn_end(txn, run_function(job));
+	bool asks = job->prove == PROVE_BEFORE || job->prove == PROVE_AFTER;
 
-	job_saw(native, job, err, now);
-	if (err < 0) {
-		job_failed(native, job, err);
+	if (asks && !prove(native, job, now))
 		return;
+	if (!asks) {
+		int err = txn_end(txn, run_function(job));
+
+		/* A zero that is read as ones the second time has not been heard then. */
+		if (!err && job->prove == PROVE_READ && txn->ones && !job->had_ones)
+			err = -EBADMSG;
+		job_saw(native, job, err, now);
+		if (err < 0) {
+			job_failed(native, job, err);
+			return;
+		}
+		if (err == TXN_MORE || lacks_proof(job)) {
+			run_again(native, job);
+			return;
+		}
 	}
-	if (err == TXN_MORE) {
-		run_again(native, job);
-		return;
-	}
+	job->prove = PROVE_NOT;
 	job_unlock(native, job);
 	if (txn->unheard && job->property->convert && ++job->tries >= TRIES_UNHEARD) {
 		job_answer(native, job, -EBADMSG);

@@ -53,7 +53,8 @@ static void take_limits(const struct native *native, struct job *job)
 	struct txn *txn = &job->txn;
 	int64_t now = native_now(native);
 
-	txn->since_ns = job->failures || job->req->op != BUS_READ ? INT64_MAX : job->since_ns;
+	txn->asked = job->prove == PROVE_READ || job->req->op != BUS_READ;
+	txn->since_ns = job->failures || txn->asked ? INT64_MAX : job->since_ns;
 	txn->oldest_ns = INT64_MAX;
 	if (txn->since_ns == INT64_MAX || !job->property)
 		return;

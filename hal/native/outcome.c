@@ -141,6 +141,8 @@ void job_failed(struct native *native, struct job *job, int err)
 	case -EIO:
 		if (++job->tries < TRIES_DEVICE)
 			job_again(native, job);
+		else if (job->txn.blank && job->txn.device && !job->verified)
+			job_missing(native, job, err);
 		else
 			job_answer(native, job, err);
 		return;

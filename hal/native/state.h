@@ -74,6 +74,14 @@ enum job_again {
 	AGAIN_LAST,   /* for the last time */
 };
 
+/* What the chip has sent could be the idle wire: it is read between two searches for its id. */
+enum job_prove {
+	PROVE_NOT,
+	PROVE_BEFORE, /* the search before the second reading comes next */
+	PROVE_READ,   /* ... that reading */
+	PROVE_AFTER,  /* ... the search after it */
+};
+
 /* Of a job of a thermometer, while wires are searched for the first time (first.h). */
 enum job_first {
 	FIRST_NO,
@@ -86,6 +94,8 @@ struct job {
 	uint8_t kind, state;
 	bool begun, fresh, verified, locks;
 	uint8_t again;              /* enum job_again */
+	uint8_t prove;              /* enum job_prove */
+	bool had_ones;              /* ... and the first reading had ones */
 	bool offered;               /* somebody or something can answer it */
 	bool alone;                 /* its next transaction is made with no others (together.h) */
 	bool sought;                /* LOCATE: the look under way has not decided it yet */

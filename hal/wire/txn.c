@@ -205,9 +205,15 @@ int txn_write_paused(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns
 
 static void hear(struct txn *txn, const uint8_t *bytes, size_t n)
 {
+	bool zeros = n;
+
 	txn->silent = true;
-	for (size_t i = 0; i < n && txn->silent; i++)
-		txn->silent = bytes[i] == 0xff;
+	for (size_t i = 0; i < n && (txn->silent || zeros); i++) {
+		txn->silent &= bytes[i] == 0xff;
+		zeros &= bytes[i] == 0;
+	}
+	txn->blank |= txn->silent || zeros;
+	txn->ones |= txn->silent;
 	txn->heard |= !txn->silent;
 }
 
@@ -224,6 +230,16 @@ int txn_read(struct txn *txn, uint8_t *bytes, size_t n)
 		return err;
 	hear(txn, bytes, n);
 	return 0;
+}
+
+int txn_read_slots(struct txn *txn, uint8_t *bytes, size_t n)
+{
+	bool blank = txn->blank, ones = txn->ones;
+	int err = txn_read(txn, bytes, n);
+
+	txn->blank = blank;
+	txn->ones = ones;
+	return err;
 }
 
 int txn_bit(struct txn *txn)
@@ -249,13 +265,13 @@ int txn_started(struct txn *txn)
 	/* A driver has waited for the end, or tells the error. */
 	if (txn->link->driven)
 		return 0;
-	int err = txn_read(txn, &busy, 1);
+	int err = txn_read_slots(txn, &busy, 1);
 	if (err || !busy)
 		return err;
 	if (!link_may_be_late(busy))
 		return -EBADMSG;
 	memset(late, 0xff, sizeof(late));
-	err = txn_read(txn, late, sizeof(late));
+	err = txn_read_slots(txn, late, sizeof(late));
 	return err ? err : link_was_late(late) ? 0 : -EBADMSG;
 }
 
@@ -304,9 +320,12 @@ int txn_driver_read(struct txn *txn, const struct area *area, unsigned at, uint8
 	const struct link_ops *ops = txn->link->ops;
 	int err = ops->area_read(txn->link, txn->device->rom, area, at, bytes, (unsigned)n);
 
+	bool blank = txn->blank;
+
 	txn->on_wire = true;
 	if (!err)
 		hear(txn, bytes, n);
+	txn->blank = blank; /* of most chips the driver has looked at a checksum: area.c knows */
 	return err;
 }
 

@@ -24,7 +24,7 @@ struct property;
 /* Where area.c is with an area, from call to call; zero: at the beginning. */
 #define AREA_UNIT 32
 struct area_visit {
-	uint8_t step, looks, blanks;
+	uint8_t step, looks;
 	uint8_t ending;   /* the scratchpad's ending offset */
 	uint16_t done;    /* bytes that are written */
 	int64_t begun_ns; /* when reading began */
@@ -70,6 +70,9 @@ struct txn {
 	bool on_wire;   /* something was sent */
 	int link_error; /* the error is the link's, not the device's */
 	bool silent;    /* nothing but ones was read */
+	bool blank;     /* nothing but ones, or nothing but zeros, was read at some time */
+	bool ones;      /* ... and ones at some time */
+	bool asked;     /* the chip was found by its id before this reading, and will be after it */
 	bool heard;     /* the device itself answered */
 	bool restarted; /* the chip lost its state: its power was away */
 	bool unproven;  /* a reading that may be of an older conversion than the last */
@@ -101,6 +104,8 @@ int txn_write_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns
  */
 int txn_write_paused(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns);
 int txn_read(struct txn *txn, uint8_t *bytes, size_t n);
+/* The same of slots that are alike, and mean no value: whether a chip is at work, or done. */
+int txn_read_slots(struct txn *txn, uint8_t *bytes, size_t n);
 /* One read slot: 0 or 1. */
 int txn_bit(struct txn *txn);
 /* One read slot with the strong pull-up after it; as txn_command_strong(). */

@@ -53,6 +53,10 @@ bool trouble_turns(struct trouble *trouble)
 	case TROUBLE_FALSE:
 	case TROUBLE_RESTART:
 		break;
+	case TROUBLE_UNPLUG:
+	case TROUBLE_SHORT:
+		trouble->due = slot == trouble->at;
+		break;
 	case TROUBLE_TURN:
 		return slot >= trouble->at && slot - trouble->at < 8 &&
 		       (trouble->mask >> (slot - trouble->at) & 1);

@@ -17,6 +17,8 @@ enum trouble_kind {
 	TROUBLE_ABSENT,  /* reset at: the chips hear it, the master hears no presence */
 	TROUBLE_FALSE,   /* reset at: the master hears a presence, the chips hear nothing more */
 	TROUBLE_NOISE,   /* each slot is turned over, each presence lost, with this probability */
+	TROUBLE_UNPLUG,  /* at slot at the first chip leaves the wire, for good */
+	TROUBLE_SHORT,   /* from slot at on the wire is short, for good */
 	TROUBLE_RESTART, /* the chips lose power at restart_ns, and every every_ns (0: once) */
 };
 
@@ -29,6 +31,7 @@ struct trouble {
 	int64_t restart_ns, every_ns;
 	/* Counted. */
 	uint32_t slots, resets;
+	bool due;           /* TROUBLE_UNPLUG, TROUBLE_SHORT: it is to happen now */
 	bool deaf, written; /* no chip hears anything now; the master wrote the last slot */
 	uint32_t turned;    /* by noise */
 };

@@ -133,8 +133,8 @@ uint32_t visit_go(const struct visit *visit, const struct trouble *what)
 
 const char *visit_says(const struct visit *visit, const struct trouble *what)
 {
-	static const char *const kinds[] = {"nothing", "turned",         "deaf",
-	                                    "absent",  "false presence", "noise"};
+	static const char *const kinds[] = {"nothing",        "turned", "deaf",      "absent",
+	                                    "false presence", "noise",  "unplugged", "short"};
 	static char text[120];
 
 	snprintf(text, sizeof(text), "%s %s%s%s: %s at %u, mask %02X", visit->chip, visit->property,

@@ -86,11 +86,24 @@ static int wire_reset(struct link *link)
 	return err ? err : presence;
 }
 
+static void break_down(struct sim_wire *wire)
+{
+	struct trouble *trouble = wire_net.trouble;
+
+	trouble->due = false;
+	if (trouble->kind == TROUBLE_UNPLUG)
+		sim_wire_plug(wire, wire->slaves[0], false, wire_time());
+	else
+		wire->shorted = true;
+}
+
 /* A turned bit reaches the chips if the master wrote it, and the master if a chip did. */
 static bool slot(struct link *link, bool out, bool writes)
 {
 	restart();
 	bool turns = wire_net.trouble && trouble_turns(wire_net.trouble);
+	if (wire_net.trouble && wire_net.trouble->due)
+		break_down(wire_of(link));
 	bool sent = out ^ (turns && writes);
 	bool deaf = wire_net.trouble && wire_net.trouble->deaf;
 	bool line = deaf ? sent : sim_wire_slot(wire_of(link), sent, false, wire_time());
