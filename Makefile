@@ -147,6 +147,7 @@ with_cxx := $(CXX): $(call version_of,$(CXX)): $(ALL_CXXFLAGS)
 with_ld  := $(CC): $(ALL_LDFLAGS) $(LIBS)
 with_libraries := libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no) \
     libmicrohttpd $(if $(HTTPD),yes,no owsd-web left-out)
+compiler := $(firstword $(filter-out ccache,$(CC)))
 WITH     := $(patsubst %,$(B)/with/%,cc cxx ld libraries)
 same      = $(and $(findstring x$(1)x,x$(2)x),$(findstring x$(2)x,x$(1)x))
 $(foreach f,$(WITH),$(if $(call same,$(strip $(with_$(notdir $(f)))),$(strip $(file <$(f)))),,$(eval $(f): FORCE)))
@@ -220,6 +221,8 @@ all: $(PROGRAMS) $(LIBRARY) $(B)/core.a $(B)/with/libraries
 
 # Two makes may do this at once
 $(WITH): $(B)/with/%:
+	$(if $(filter cc,$*),@command -v $(compiler) >/dev/null || { \
+	    echo "make: there is no C compiler $(compiler): sh board/install-deps build" >&2; exit 1; })
 	@mkdir -p $(@D)
 	@printf '%s\n' '$(subst ','\'',$(with_$*))' >$@.$$$$ && mv $@.$$$$ $@
 	$(if $(filter libraries,$*),$(if $(quiet),,@sed 's/^/  WITH	/' $@))

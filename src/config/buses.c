@@ -7,6 +7,7 @@
 
 #include "src/config/build.h"
 #include "src/config/buses.h"
+#include "src/config/relative.h"
 #include "src/config/tag.h"
 #include "src/config/targets.h"
 
@@ -15,6 +16,8 @@ static void keep_option(struct build *build, struct config_bus *bus, enum option
 {
 	const char *text = value->text;
 
+	if (option == OPT_BUS_SENSORS)
+		text = relative_file(build, text, 0, &value->node->value_at);
 	/* a backend knows these two words of all that mean them */
 	if (option_table[option].kind == OPTION_FLAG)
 		text = value->number ? "on" : "off";
@@ -32,6 +35,7 @@ static void bus_build(struct build *build, const struct rio_node *block)
 	struct config_bus *bus = &config->buses[config->bus_count];
 	struct option_value values[OPTION_COUNT_ALL];
 	const struct option_value *target = &values[OPT_BUS_TARGET];
+	const char *text;
 
 	options_read(block, PLACE_BUS, values, build->report);
 	if (!target->given || !*target->text) {
@@ -39,12 +43,14 @@ static void bus_build(struct build *build, const struct rio_node *block)
 			report_error(build->report, block->at, "expected a Target in this Bus");
 		return;
 	}
-	if (config_bus(config, target->text)) {
+	text = target_of_file(build, target->text,
+	                      (struct place){.file = target->node->value_at.file});
+	if (config_bus(config, text)) {
 		report_error(build->report, target->node->value_at,
 		             "there is a Bus for \"%s\" already", target->text);
 		return;
 	}
-	bus->target = build_keep(build, target->text, strlen(target->text));
+	bus->target = build_keep(build, text, strlen(text));
 	bus->line = target->node->value_at.line;
 	bus->column = target->node->value_at.column;
 	bus->options = build_take(build, OPTION_COUNT_ALL - OPT_BUS_TARGET, sizeof(*bus->options));

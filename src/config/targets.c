@@ -8,10 +8,12 @@
 #include <strings.h>
 
 #include "src/config/build.h"
+#include "src/config/relative.h"
 #include "src/config/targets.h"
 
 #define DEFAULT_TARGET "localhost:4304"
 #define DEFAULT_PORT "4304"
+#define SIMULATED "sim:"
 
 #define AUTO "auto"
 const char *const config_auto_ways[CONFIG_AUTO_WAYS] = {DEFAULT_TARGET, "i2c:auto", "w1"};
@@ -60,6 +62,14 @@ bool target_same(const char *a, const char *b)
 	return !strcmp(text_a, text_b);
 }
 
+const char *target_of_file(struct build *build, const char *text, struct place place)
+{
+	/* on the command line the working directory counts */
+	if (!place.file || strncmp(text, SIMULATED, strlen(SIMULATED)) != 0)
+		return text;
+	return relative_file(build, text, strlen(SIMULATED), place.line ? &place : NULL);
+}
+
 static void target_add(struct build *build, const char *text, size_t len,
                        enum config_relation relation, struct place place)
 {
@@ -81,10 +91,14 @@ static void target_add(struct build *build, const char *text, size_t len,
 		             (int)len, text, CONFIG_TARGETS_MAX, CONFIG_AUTO_WAYS);
 		return;
 	}
-	target->text = build_keep(build, text, len);
+	target->text = target_of_file(build, build_keep(build, text, len), place);
 	target->relation = config->target_count ? relation : CONFIG_FIRST;
 	target->automatic = false;
 	target->group = 0;
+	if (strlen(target->text) > TARGET_MAX) {
+		report_error(build->report, place, "a target is longer than %d bytes", TARGET_MAX);
+		return;
+	}
 	if (config->target_count)
 		target->group = target[-1].group + (relation == CONFIG_COMMA);
 	for (unsigned i = 0; i < config->target_count; i++)

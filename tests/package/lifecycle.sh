@@ -44,8 +44,8 @@ does 'that owsd takes' owsd --check
 does 'and serves at once' within 90 service owsd status
 does 'a service for systemd is enabled' test -L /etc/systemd/system/owsd.service.wants/owsd@OWS.service
 
-cp house.sim /etc/owsd/house.sim
-sed 's,sim:board/demo/house.sim,sim:/etc/owsd/house.sim,' house.rio >/etc/owsd/OWS.rio
+cp /usr/share/doc/owsd/examples/house.sim /usr/share/doc/owsd/examples/house.rio /etc/owsd
+mv /etc/owsd/house.rio /etc/owsd/OWS.rio
 cp /etc/owsd/OWS.rio /tmp/OWS.rio
 does 'a restart takes another configuration' service owsd restart
 does 'with values' within 90 owsctl get boiler

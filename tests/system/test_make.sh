@@ -66,6 +66,16 @@ if grep -E '^(ccache |gcc |ar |objcopy )|other-(other|ccache)' log; then
 fi
 says "$PWD/cross/src/shm/futex.o" | grep -q '^ccache gcc '
 
+# Without a compiler it is said what installs one, once and before anything else
+for goal in all "$PWD/none/src/shm/futex.o"; do
+	if make -C "$OWSD_SOURCE" --no-print-directory B="$PWD/none" CC=no-such-cc LIBI2C=0 LIBGPIOD=0 "$goal" >log 2>&1; then
+		echo "make $goal needs no compiler"
+		exit 1
+	fi
+	[ "$(grep -c 'no C compiler no-such-cc: sh board/install-deps build' log)" = 1 ] || { cat log; exit 1; }
+	! grep -q 'no-such-cc: not found\|No such file' log || { cat log; exit 1; }
+done
+
 # musl-gcc finds the headers of the kernel
 if command -v musl-gcc >/dev/null; then
 	make -s -C "$OWSD_SOURCE" --no-print-directory B="$PWD/musl" CC=musl-gcc LIBI2C=0 LIBGPIOD=0 \

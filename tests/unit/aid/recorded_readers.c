@@ -11,6 +11,7 @@
 
 #include "src/libows/handle.h"
 #include "src/shm/reader.h"
+#include "tests/unit/aid/needs.h"
 #include "tests/unit/aid/recorded_readers.h"
 #include "tests/unit/aid/recording.h"
 
@@ -254,6 +255,7 @@ const char *python(const char *code)
 {
 	char command[4096];
 
+	needs_python3();
 	snprintf(
 		command, sizeof(command),
 		"PYTHONDONTWRITEBYTECODE=1 PYTHONIOENCODING=utf-8 PYTHONPATH=src/libows python3 -c '"

@@ -2,7 +2,9 @@
 /* Targets, the bars and commas between them, the Bus of each, and those that are refused. */
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "unity.h"
 
@@ -155,6 +157,51 @@ static void test_targets_of_the_command_line_replace_those_of_the_file(void)
 	TEST_ASSERT_EQUAL_INT(CONFIG_COMMA, config->targets[2].relation);
 }
 
+/* Load `folder`/x.rio, whose target and file of sensors are `name`, from another directory. */
+static int load_with(const char *folder, const char *name)
+{
+	char file[64];
+	FILE *out;
+
+	snprintf(file, sizeof(file), "%s/x.rio", folder);
+	out = fopen(file, "w");
+	TEST_ASSERT_NOT_NULL(out);
+	fprintf(out,
+	        "OwsDrv { TargetName \"a | sim:%s:0x18\"\n"
+	        "Bus { Target \"sim:%s:0x18\" Sensors \"%s\" } }\n",
+	        name, name, name);
+	fclose(out);
+	config_free(config);
+	return config_load(file, &report, &config);
+}
+
+static void test_a_relative_file_counts_from_the_folder_of_the_configuration(void)
+{
+	char folder[] = "/tmp/owsd-relative-XXXXXX", whole[64], target[80];
+	const char *const here = "Makefile";
+
+	TEST_ASSERT_NOT_NULL(mkdtemp(folder));
+	/* in neither place, as at --check on another machine */
+	TEST_ASSERT_EQUAL_INT(0, load_with(folder, "house.sim"));
+	snprintf(whole, sizeof(whole), "%s/house.sim", folder);
+	snprintf(target, sizeof(target), "sim:%s:0x18", whole);
+	TEST_ASSERT_EQUAL_STRING("", said);
+	TEST_ASSERT_EQUAL_STRING(target, config->targets[1].text);
+	TEST_ASSERT_EQUAL_STRING(whole, config_bus(config, target)->options[0].text);
+	/* in the working directory alone, as older files mean it */
+	TEST_ASSERT_EQUAL_INT(0, access(here, F_OK));
+	TEST_ASSERT_EQUAL_INT(0, load_with(folder, here));
+	TEST_ASSERT_NOT_NULL(strstr(said, "x.rio:1:21: warning: Makefile:0x18 is taken from the "
+	                                  "working directory; a relative path counts from the "
+	                                  "folder of this file, /tmp/owsd-relative-"));
+	TEST_ASSERT_NOT_NULL(strstr(said, "x.rio:2:42: warning: Makefile is taken"));
+	TEST_ASSERT_EQUAL_STRING("sim:Makefile:0x18", config->targets[1].text);
+	TEST_ASSERT_EQUAL_STRING(here, config_bus(config, "sim:Makefile:0x18")->options[0].text);
+	snprintf(whole, sizeof(whole), "%s/x.rio", folder);
+	unlink(whole);
+	rmdir(folder);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -165,5 +212,6 @@ int main(void)
 	RUN_TEST(test_auto_leaves_out_what_leads_back_to_owsd);
 	RUN_TEST(test_more_than_sixty_four_targets_are_refused);
 	RUN_TEST(test_targets_of_the_command_line_replace_those_of_the_file);
+	RUN_TEST(test_a_relative_file_counts_from_the_folder_of_the_configuration);
 	return UNITY_END();
 }

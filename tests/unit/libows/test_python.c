@@ -15,6 +15,7 @@
 #include "src/signal/value.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/instance.h"
+#include "tests/unit/aid/needs.h"
 
 static const struct instance_signal signals[] = {
 	{"room1", "/28.1/temperature", OWS_DOUBLE, false, 10 * INSTANCE_S, "28.000000000001"},
@@ -35,6 +36,7 @@ void setUp(void)
 	instance_start(&in, "python", signals, COUNT);
 	instance_lives_on(&in);
 	output[0] = '\0';
+	needs_python3();
 }
 
 void tearDown(void)
