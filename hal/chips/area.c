@@ -4,7 +4,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "hal/chips/family.h"
+#include "hal/chips/area.h"
 #include "hal/wire/crc.h"
 
 static unsigned least(unsigned a, unsigned b)
@@ -81,13 +81,12 @@ int area_fetch(struct txn *txn, const struct area *area, unsigned at, uint8_t *b
 	return -EIO;
 }
 
-int area_ask_driver(struct txn *txn)
+int area_ask_driver(struct txn *txn, const struct area *const *areas, unsigned count)
 {
-	const struct family *family = txn->device->family;
 	uint8_t bytes[AREA_UNIT];
 
-	for (unsigned i = 1; i < family->area_count; i++) {
-		const struct area *area = family->areas[i];
+	for (unsigned i = 1; i < count; i++) {
+		const struct area *area = areas[i];
 		unsigned n = least(area->size, AREA_UNIT);
 		int err = txn_driver_read(txn, area, 0, bytes, n);
 

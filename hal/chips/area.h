@@ -134,9 +134,9 @@ int area_read_data(struct txn *txn, const struct area *area, unsigned at, unsign
 int area_fetch(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes, unsigned n);
 /*
  * Of a device that somebody else's driver speaks to, which nobody can search for: does it send
- * anything but ones and zeros in one of its areas? 1, 0 or an error.
+ * anything but ones and zeros in one of its areas? areas[0] is none. 1, 0 or an error.
  */
-int area_ask_driver(struct txn *txn);
+int area_ask_driver(struct txn *txn, const struct area *const *areas, unsigned count);
 /* Of the n bytes from `at` on those bits that are set in mask; mask NULL: all. Several calls. */
 int area_write(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
                const uint8_t *mask, unsigned n);

@@ -445,7 +445,8 @@ static int ask_for_chip(struct txn *txn)
 	if (txn->device->family->proof != PROOF_PRESENCE)
 		return -EBADMSG;
 	if (txn_driven(txn)) {
-		int there = area_ask_driver(txn);
+		int there = area_ask_driver(txn, txn->device->family->areas,
+		                            txn->device->family->area_count);
 
 		return there ? there : -EIO;
 	}

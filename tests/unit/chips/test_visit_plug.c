@@ -109,7 +109,7 @@ static void look(struct visit *visit, const struct property *property)
 	put_back();
 	moves = !get(visit, &again) && !get(visit, &fresh) && !is(visit, &again, &fresh);
 	if (!err && !get(visit, &fresh))
-		for (unsigned i = 0; i < PLACES; i += VISIT_STRIDE) {
+		for (unsigned i = 0; i < PLACES; i += visit_stride()) {
 			uint32_t at = (uint32_t)((uint64_t)slots * (2 * i + 1) / (2 * PLACES));
 
 			try(visit, TROUBLE_UNPLUG, at);
