@@ -10,7 +10,8 @@ struct build;
 /*
  * text, whose first `prefix` bytes precede the name of a file, with that name as it is to be
  * opened. A relative one counts from the folder of the configuration; one that is only in the
- * working directory is taken from there, with a warning at *place unless place is NULL. In the arena.
+ * working directory is taken from there, with a warning at *place unless place is NULL. In the
+ * arena.
  */
 const char *relative_file(struct build *build, const char *text, size_t prefix,
                           const struct place *place);

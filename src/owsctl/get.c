@@ -7,7 +7,6 @@
 
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/meaning.h"
-#include "src/owsctl/seen.h"
 #include "src/owsctl/verbs.h"
 #include "src/show/names.h"
 #include "src/show/reading.h"
@@ -46,7 +45,6 @@ static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struc
 		return ctl_fail("%s can only be set", name);
 	if (!reading_filled(reading))
 		return ctl_fail("%s: %s", name, error_text(reading->err));
-	seen_alarm(ctl, h, name, id, reading);
 	reading_round(reading, names_info(h, ctl->instance, name, &info) ? info.decimals : -1);
 	print_text(reading);
 	if (reading_good(reading))
@@ -73,7 +71,6 @@ static int get_json(const struct ctl *ctl, struct json *json, struct ows *h, con
 		status = id == -ENOENT ? ctl_unknown(h, name) : CTL_FAILED;
 	} else {
 		reading_get(h, id, now->boot, reading);
-		seen_alarm(ctl, h, name, id, reading);
 		if (reading->err == -EACCES)
 			status = ctl_fail("%s can only be set", name);
 		else if (!reading_filled(reading))

@@ -7,7 +7,6 @@
 #include "src/owsctl/condition.h"
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/rows.h"
-#include "src/owsctl/seen.h"
 #include "src/owsctl/verbs.h"
 #include "src/show/names.h"
 
@@ -15,7 +14,6 @@
 #define SLICE (250 * NS_PER_MS) /* an old value or a dead owsd sends no wake-up */
 
 struct waiting {
-	const struct ctl *ctl;
 	struct ows *h;
 	const char *name;
 	int id;
@@ -29,7 +27,6 @@ struct waiting {
 static bool came(struct waiting *waiting)
 {
 	reading_get(waiting->h, waiting->id, ows_now(), waiting->reading);
-	seen_alarm(waiting->ctl, waiting->h, waiting->name, waiting->id, waiting->reading);
 	if (waiting->op)
 		return reading_good(waiting->reading) &&
 		       condition_holds(&waiting->condition, waiting->reading);
@@ -129,7 +126,7 @@ static int parse_limit(struct ctl *ctl, int argc, char **argv, int64_t *limit_ns
 int verb_wait(struct ctl *ctl, int argc, char **argv)
 {
 	static struct reading reading;
-	struct waiting waiting = {.ctl = ctl, .reading = &reading};
+	struct waiting waiting = {.reading = &reading};
 	const char *value = NULL;
 	int64_t limit_ns = NO_LIMIT;
 	int status = parse_limit(ctl, argc, argv, &limit_ns), at = optind;

@@ -86,10 +86,9 @@ void remains_free(struct remains *remains)
 	*remains = (struct remains){0};
 }
 
-/* A start that was killed leaves .new files; owsctl leaves the alarms that its user has seen. */
+/* A start that was killed leaves .new files. */
 static const char *const others[] = {
-	"image",     "command",     "force",     "control", "sock",
-	"image.new", "command.new", "force.new", "seen",
+	"image", "command", "force", "control", "sock", "image.new", "command.new", "force.new",
 };
 #define OTHERS (sizeof(others) / sizeof(others[0]))
 
