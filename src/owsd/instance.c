@@ -11,8 +11,6 @@
 #include "src/owsd/instance.h"
 #include "src/shm/hint.h"
 #include "src/shm/lock.h"
-#include "src/shm/owner.h"
-#include "src/shm/retire.h"
 #include "src/shm/segment.h"
 
 #define LOOK_NS NS_PER_S
@@ -51,15 +49,6 @@ int instance_take(struct instance *instance, const char *name, struct log *log, 
 		snprintf(why, why_size, "%s", place_fault(&instance->place, err, fault));
 		return err;
 	}
-	owner = retire_running(RETIRE_FOLDER, name);
-	if (owner) {
-		snprintf(why, why_size,
-		         "instance %s is already served by process %d, an older owsd; end it or "
-		         "choose another name with -n",
-		         name, (int)owner);
-		place_close(&instance->place);
-		return -EBUSY;
-	}
 	instance->before = look_before(&instance->place, name);
 	lock = segment_lock(&instance->place, name, &owner, &stolen);
 	if (lock >= 0)
@@ -80,25 +69,6 @@ int instance_take(struct instance *instance, const char *name, struct log *log, 
 		return 0;
 	place_close(&instance->place);
 	return lock;
-}
-
-void instance_retire_old(const struct instance *instance, struct log *log)
-{
-	int count = retire_segments(RETIRE_FOLDER, instance->name);
-
-	if (count > 0)
-		log_warning(
-			log,
-			"an older owsd has left segments in " RETIRE_FOLDER
-			": programs with its library have no values and cannot set any more, until "
-			"they are built with the present one");
-	else if (count < 0 && (geteuid() == 0 || owner_is_service()))
-		log_warning(
-			log,
-			"segments that an older owsd has left in " RETIRE_FOLDER
-			" cannot be retired: %s: programs with its library may set outputs into "
-			"the void",
-			strerror(-count));
 }
 
 bool instance_keep(struct instance *instance, struct log *log)

@@ -27,8 +27,6 @@ struct instance {
  */
 int instance_take(struct instance *instance, const char *name, struct log *log, char *why,
                   size_t why_size);
-/* Retire what an owsd of layout 1 has left, and log it; once the new segments are in place. */
-void instance_retire_old(const struct instance *instance, struct log *log);
 /*
  * Check, once a second, that the lock's file still exists, and take the lock again if the file was
  * removed. Returns false, after logging why, when another owsd was first: then this owsd has to

@@ -298,7 +298,6 @@ static int run(const struct arguments *a, struct config *config, struct instance
 		complain("%s", why);
 		return EXIT_RUN;
 	}
-	instance_retire_old(instance, log);
 	host_show_log(host, true);
 	report_served(host, a, log, &notify);
 	notify_send(&notify, NOTIFY_READY);

@@ -301,5 +301,4 @@ void recording_begin(void)
 void recording_end(void)
 {
 	unlink(folder_file(instance, "image"));
-	unlink(folder_file(instance, "command"));
 }

@@ -14,9 +14,8 @@
 #define NOW_NS (1010 * S)
 #define TEXT_CAP 64
 #define SIZE_MAX_ 262144
-/* The files in tests/unit/data: of this major version, and of the one before. */
+/* The file in tests/unit/data. */
 #define RECORDED "image-2.0"
-#define RECORDED_BEFORE "segments-0.1.0."
 #define LONG_TEXT \
 	"K\xc3\xbchlraum 3, Verdampfer \xc2\xb0" \
 	"C: text of sixty-four bytes, all used!"

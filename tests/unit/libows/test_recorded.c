@@ -58,14 +58,16 @@ static void test_todays_writer_lays_the_same_out_in_the_same_way(void)
 	TEST_ASSERT_EQUAL_MEMORY(recorded, image_memory, size);
 }
 
-static void test_todays_readers_refuse_the_layout_of_the_major_version_before(void)
+static void test_todays_readers_refuse_the_layout_of_another_major_version(void)
 {
-	char recorded[SIZE_MAX_], command[512];
+	static _Alignas(8) char recorded[SIZE_MAX_];
+	char command[512];
 	const char *runner = getenv("RUNNER");
+	uint32_t size = read_recording(RECORDED, recorded);
 	struct ows *h;
 
-	show("image", recorded, read_recording(RECORDED_BEFORE "image", recorded));
-	show("command", recorded, read_recording(RECORDED_BEFORE "command", recorded));
+	((struct ows_image_header *)(void *)recorded)->major++;
+	show("image", recorded, size);
 	TEST_ASSERT_EQUAL(-EPROTO, ows_open(instance, OWS_READ, &h));
 	TEST_ASSERT_EQUAL(-EPROTO, ows_open(instance, OWS_CONTROL, &h));
 	TEST_ASSERT_EQUAL_STRING("71\n", python("try: ows.Ows(sys.argv[1])\n"
@@ -150,7 +152,7 @@ int main(int argc, char **argv)
 	}
 	UNITY_BEGIN();
 	RUN_TEST(test_libows_reads_a_recorded_image);
-	RUN_TEST(test_todays_readers_refuse_the_layout_of_the_major_version_before);
+	RUN_TEST(test_todays_readers_refuse_the_layout_of_another_major_version);
 	RUN_TEST(test_python_reads_a_recorded_image);
 	RUN_TEST(test_owsctl_reads_a_recorded_image);
 	RUN_TEST(test_todays_writer_lays_the_same_out_in_the_same_way);
