@@ -9,6 +9,7 @@
 #include "src/engine/alarm_known.h"
 #include "src/engine/alarm_list.h"
 #include "src/engine/publish.h"
+#include "src/engine/schedule.h"
 #include "src/engine/state.h"
 #include "src/text/log.h"
 
@@ -58,7 +59,10 @@ void alarm_take_list(struct alarm_machine *m, struct lane *lane, const char *lis
 	m->list.wait_ns = 0;
 	for (uint32_t k = 0; k < m->count; k++) {
 		struct alarm_item *i = m->items[k];
+		struct signal *s = alarm_signal(lane->engine, i);
 
+		if (s->sample.quality == OWS_Q_SHORT) /* it is no longer */
+			engine_read_now(lane->engine, s);
 		/* unless it is found below */
 		i->asks_por = i->asks_por || (i->restart.known && i->listed);
 		i->listed = false;
@@ -96,6 +100,9 @@ void alarm_list_failed(struct alarm_machine *m, struct lane *lane, int err, int6
 		m->list.wait_ns = LIST_WAIT_MAX;
 	m->list.next_ns = now_ns + m->list.wait_ns;
 	m->position = -1;
+	/* with the wire short no device can say that it is in alarm: no value counts as good on that */
+	for (uint32_t k = 0; k < m->count && err == -ECOMM; k++)
+		engine_read_now(e, alarm_signal(e, m->items[k]));
 }
 
 void alarm_ask_again(struct alarm_machine *m, struct lane *lane, int64_t now_ns)

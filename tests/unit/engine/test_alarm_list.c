@@ -100,6 +100,25 @@ static void test_a_list_that_fails_is_asked_for_ever_more_rarely(void)
 	TEST_ASSERT_INT_WITHIN(2, 20, s.lists);
 }
 
+static void test_a_list_that_finds_the_wire_short_has_its_items_read_at_once(void)
+{
+	figure_3_3(&s);
+	alarm_device(&s, "0", "0");
+	alarm_begin(&s);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+	s.on_read = NULL;
+	scene_put(&s, "/alarm", NULL, -ECOMM);
+	scene_put(&s, D "/sensed.BYTE", NULL, -ECOMM);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_SHORT, scene_sample(&s, 1).quality);
+	scene_run(&s, 5 * SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_SHORT, scene_sample(&s, 1).quality);
+	scene_put(&s, "/alarm", "", 0);
+	scene_put(&s, D "/sensed.BYTE", "255", 0);
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+}
+
 /*
  * A bus of two requests falls silent with both out. The older one takes the target down and the
  * machine begins anew; the list that was asked for later is answered after that.
@@ -144,6 +163,7 @@ int main(void)
 	RUN_TEST(test_a_bus_without_alarm_search_is_asked_again_when_it_comes_back);
 	RUN_TEST(test_a_bus_that_searches_is_asked_for_the_families_of_the_items_only);
 	RUN_TEST(test_a_list_that_fails_is_asked_for_ever_more_rarely);
+	RUN_TEST(test_a_list_that_finds_the_wire_short_has_its_items_read_at_once);
 	RUN_TEST(test_a_list_that_comes_after_the_target_was_given_up_counts_for_nothing);
 	return UNITY_END();
 }
