@@ -331,7 +331,7 @@ int edit_lock(const char *file, struct config_report *report)
 	if (fd == -EBUSY)
 		report_error(report, place, "another program has been editing here for 5 s");
 	else if (fd < 0)
-		report_error(report, place, "its directory cannot be locked: %s", strerror(-fd));
+		report_error(report, place, "cannot be locked: %s", strerror(-fd));
 	return fd;
 }
 

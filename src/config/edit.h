@@ -35,8 +35,8 @@ int edit_count(struct rio **rio);
 extern const char edit_empty[];
 
 /*
- * Lock file against other edits; call it before reading the file. Returns a descriptor, which the
- * caller closes after the commit, or a negative errno (reported). Blocking, five seconds at most.
+ * Lock file against other edits; call it before reading the file. Returns a descriptor for
+ * replace_unlock() after the commit, or a negative errno (reported). Blocking, five seconds at most.
  */
 int edit_lock(const char *file, struct config_report *report);
 

@@ -17,6 +17,8 @@
 #include "src/shm/owner.h"
 
 #define SUFFIX ".XXXXXX"
+#define LOCK_SUFFIX ".lock"
+#define LOCK_PATH (PATH_MAX + sizeof(LOCK_SUFFIX))
 #define LOCK_TRIES 250
 #define LOCK_PAUSE (20 * NS_PER_MS) /* ns: five seconds in all */
 
@@ -198,33 +200,87 @@ int replace_file(const char *file, const char *text, size_t len)
 	return err ? err : replace_commit(&replacement);
 }
 
+/* The name of the file that is locked: beside the one that a link leads to, which may be missing. */
+static int lock_path(const char *file, char path[LOCK_PATH])
+{
+	char real[PATH_MAX];
+
+	if (!realpath(file, real)) {
+		if (errno != ENOENT)
+			return -errno;
+		if (strlen(file) >= sizeof(real))
+			return -ENAMETOOLONG;
+		memcpy(real, file, strlen(file) + 1);
+	}
+	snprintf(path, LOCK_PATH, "%s" LOCK_SUFFIX, real);
+	return 0;
+}
+
+/* Whoever may put files into the directory may lock: its owner, and its group if that may write. */
+static void share(int fd, const char *lock)
+{
+	char path[LOCK_PATH];
+	struct stat st;
+	int folder;
+
+	memcpy(path, lock, LOCK_PATH);
+	folder = open_directory(path);
+	if (folder < 0)
+		return;
+	if (fstat(folder, &st) == 0 && !(st.st_mode & S_ISVTX) &&
+	    fchown(fd, geteuid() == 0 ? st.st_uid : (uid_t)-1, st.st_gid) == 0 &&
+	    (st.st_mode & S_IWGRP))
+		fchmod(fd, 0660);
+	close(folder);
+}
+
+/*
+ * The file, made if need be, with the lock; -EAGAIN: another has it, is making it, or has just
+ * removed it. Only what was made here changes its owner: a name that is there may be a link to
+ * anything.
+ */
+static int try_lock(const char *path)
+{
+	struct stat held, named;
+	int fd = open(path, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+
+	if (fd >= 0)
+		share(fd, path);
+	else if (errno == EEXIST)
+		fd = open(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+	if (fd < 0) {
+		int err = errno;
+
+		return err == ENOENT || (err == EACCES && access(path, F_OK) == 0) ? -EAGAIN : -err;
+	}
+	if (flock(fd, LOCK_EX | LOCK_NB) == 0 && fstat(fd, &held) == 0 && stat(path, &named) == 0 &&
+	    held.st_ino == named.st_ino && held.st_dev == named.st_dev)
+		return fd;
+	close(fd);
+	return -EAGAIN;
+}
+
 int replace_lock(const char *file)
 {
 	const struct timespec pause = {.tv_nsec = LOCK_PAUSE};
-	char path[PATH_MAX];
-	int fd, err;
+	char path[LOCK_PATH];
+	int fd = lock_path(file, path);
 
-	if (!realpath(file, path)) {
-		if (errno != ENOENT)
-			return -errno;
-		if (strlen(file) >= sizeof(path))
-			return -ENAMETOOLONG;
-		memcpy(path, file, strlen(file) + 1);
+	if (fd)
+		return fd;
+	fd = try_lock(path);
+	for (int i = 0; fd == -EAGAIN && i < LOCK_TRIES; i++) {
+		nanosleep(&pause, NULL);
+		fd = try_lock(path);
 	}
-	/*
-	 * Lock the directory: it stays when the file is replaced, and exists before the file does
-	 */
-	fd = open_directory(path);
-	if (fd < 0)
-		return -errno;
-	for (int i = 0; flock(fd, LOCK_EX | LOCK_NB); i++) {
-		err = errno;
-		if ((err == EWOULDBLOCK || err == EINTR) && i < LOCK_TRIES) {
-			nanosleep(&pause, NULL);
-			continue;
-		}
-		close(fd);
-		return err == EWOULDBLOCK ? -EBUSY : -err;
-	}
-	return fd;
+	return fd == -EAGAIN ? -EBUSY : fd;
+}
+
+void replace_unlock(const char *file, int fd)
+{
+	char path[LOCK_PATH];
+
+	if (lock_path(file, path) == 0)
+		unlink(path);
+	close(fd);
 }

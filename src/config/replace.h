@@ -31,10 +31,13 @@ int replace_commit(struct replacement *replacement);
 void replace_abandon(struct replacement *replacement);
 
 /*
- * Lock file against replacement by other processes; it need not exist. The lock lasts until the
- * returned descriptor is closed. -EBUSY: another process held the lock for five seconds; or another
- * negative errno.
+ * Lock file against replacement by other processes; it need not exist. What is locked is file.lock
+ * beside it, which nobody can open but who may replace the file: the owner of the directory, its
+ * group if that may write there, and root. A descriptor for replace_unlock(), which removes the
+ * lock; -EBUSY: another process held it for five seconds; or another negative errno. A process that
+ * is killed leaves the file, and no lock.
  */
 int replace_lock(const char *file);
+void replace_unlock(const char *file, int fd);
 
 #endif

@@ -9,6 +9,7 @@
 
 #include "src/config/edit.h"
 #include "src/config/load.h"
+#include "src/config/replace.h"
 #include "src/config/rio_file.h"
 #include "src/owsctl/config_list.h"
 #include "src/owsctl/property.h"
@@ -132,7 +133,7 @@ static int change(const char *file, const char *action, char **words, unsigned c
 	if (!err)
 		err = edit_commit(rio, file, &report);
 	rio_free(rio);
-	close(lock);
+	replace_unlock(file, lock);
 	if (err == -EFBIG && !report.errors)
 		return ctl_fail("%s would be longer than %u bytes", file, RIO_FILE_MAX);
 	return status_of(err);

@@ -212,7 +212,7 @@ void store_replace(const char *file, const struct order *order, const char *text
 	if (load(file, &present, answer) == 0 && is_base(&present, order, answer))
 		exchange(file, backup, true, &present, text, order->length, answer);
 	forget(&present);
-	close(fd);
+	replace_unlock(file, fd);
 }
 
 void store_restore(const char *file, const struct order *order, struct answer *answer)
@@ -234,5 +234,5 @@ void store_restore(const char *file, const struct order *order, struct answer *a
 out:
 	forget(&present);
 	forget(&before);
-	close(fd);
+	replace_unlock(file, fd);
 }

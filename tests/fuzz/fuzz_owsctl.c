@@ -196,6 +196,13 @@ int __wrap_replace_lock(const char *file)
 	return open("/dev/null", O_RDONLY | O_CLOEXEC);
 }
 
+void __wrap_replace_unlock(const char *file, int fd);
+void __wrap_replace_unlock(const char *file, int fd)
+{
+	(void)file;
+	close(fd);
+}
+
 int __wrap_rio_read(const char *file, struct config_report *report, char **text, size_t *len);
 int __wrap_rio_read(const char *file, struct config_report *report, char **text, size_t *len)
 {

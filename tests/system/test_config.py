@@ -6,6 +6,7 @@ import ctypes
 import fcntl
 import json
 import os
+import pathlib
 import platform
 import signal
 import struct
@@ -45,14 +46,24 @@ def test_edits_at_once_lose_nothing(scene):
 
 def test_an_edit_waits_five_seconds_for_another_and_says_so(scene):
     path = scene.file("house.rio", owsdtest.rio("localhost", []))
-    directory = os.open(scene.path, os.O_RDONLY)
-    try:
-        fcntl.flock(directory, fcntl.LOCK_EX)
+    with open(f"{path}.lock", "w", encoding="ascii") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
         done = scene.owsctl(None, "config", path, "add", "x", "/28.000000000001/temperature")
-    finally:
-        os.close(directory)
     assert done.returncode == 1, done
     assert "house.rio: error: another program has been editing here" in done.stderr, done.stderr
+
+
+def test_nobody_who_can_only_look_at_the_directory_stops_an_edit(scene):
+    path = scene.file("house.rio", owsdtest.rio("localhost", []))
+    held = [os.open(what, os.O_RDONLY) for what in (scene.path, path)]
+    for fd in held:
+        fcntl.flock(fd, fcntl.LOCK_EX)
+    pathlib.Path(f"{path}.lock").touch()  # of an edit that was killed
+    done = scene.owsctl(None, "config", path, "add", "x", "/28.000000000001/temperature")
+    for fd in held:
+        os.close(fd)
+    assert done.returncode == 0, done
+    assert os.listdir(scene.path) == ["house.rio"]
 
 
 def follow(command, stops=None):

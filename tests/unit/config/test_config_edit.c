@@ -393,6 +393,28 @@ static void test_only_plain_files_are_replaced(void)
 	TEST_ASSERT_EQUAL_INT(-ENOENT, replace_file("/nonexistent/dir/x.rio", "x", 1));
 }
 
+static void test_only_who_may_replace_the_file_can_open_its_lock(void)
+{
+	char lock[sizeof(file) + 8];
+	struct stat st;
+	int fd;
+
+	snprintf(lock, sizeof(lock), "%s.lock", file);
+	for (int shared = 0; shared < 2; shared++) {
+		TEST_ASSERT_EQUAL_INT(0, chmod(directory, shared ? 0770 : 0755));
+		fd = edit_lock(file, &report);
+		TEST_ASSERT_GREATER_OR_EQUAL_INT(0, fd);
+		TEST_ASSERT_EQUAL_INT(0, stat(lock, &st));
+		TEST_ASSERT_EQUAL_HEX(S_IFREG | (shared ? 0660 : 0600), st.st_mode);
+		replace_unlock(file, fd);
+		TEST_ASSERT_EQUAL_INT(-1, stat(lock, &st));
+	}
+	/* a name that leads elsewhere is not followed, and what is there keeps its owner */
+	TEST_ASSERT_EQUAL_INT(0, symlink("/dev/null", lock));
+	TEST_ASSERT_EQUAL_INT(-ELOOP, replace_lock(file));
+	TEST_ASSERT_EQUAL_INT(0, unlink(lock));
+}
+
 static void test_a_bus_block_is_made_changed_and_removed_by_its_target(void)
 {
 	static const char made[] = "  Bus {\n"
@@ -498,6 +520,7 @@ int main(void)
 	RUN_TEST(test_a_symbolic_link_stays_and_its_target_is_replaced);
 	RUN_TEST(test_when_writing_fails_the_old_file_stays_and_nothing_is_left_over);
 	RUN_TEST(test_only_plain_files_are_replaced);
+	RUN_TEST(test_only_who_may_replace_the_file_can_open_its_lock);
 	RUN_TEST(test_a_bus_block_is_made_changed_and_removed_by_its_target);
 	RUN_TEST(test_a_replaced_device_changes_the_paths_of_its_items_only);
 	RUN_TEST(test_a_replacement_that_cannot_be_meant_is_refused);
