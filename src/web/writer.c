@@ -296,8 +296,8 @@ int writer_ask(const struct writer_order *order, struct writer_answer *answer)
 
 	*answer = (struct writer_answer){.reload = "none"};
 	err = fd < 0 ? fd : text ? send_order(fd, order, until_ns) : -ENOMEM;
-	if (!err)
-		err = receive_all(fd, text, ANSWER_MAX, &len, until_ns);
+	if (!err && receive_all(fd, text, ANSWER_MAX, &len, until_ns))
+		err = -EINPROGRESS;
 	if (!err)
 		err = writer_parse(text, len, answer);
 	if (err)

@@ -208,6 +208,10 @@ class Fake:
     def _serve(self):
         for answer in self.answers:
             s, _ = self.door.accept()
+            if answer is None:  # it dies with the order
+                s.recv(1)
+                s.close()
+                continue
             data, length = b"", None
             while length is None or len(data) < length:
                 data += s.recv(1 << 20)
@@ -254,7 +258,7 @@ def test_the_writer_is_asked_to_save_and_its_answer_is_passed_on(scene):
                 f"status: conflict\ntag: {new}\nwhy: changed\n\n",
                 "status: invalid\nwhy: errors\nproblem: E 10 3 bad \u202e\nproblem: W 0 0 odd\n\n",
                 "status: refused\nwhy: no right\n\n", "status: error\nwhy: no room\n\n",
-                "nonsense\n\n", "")
+                "nonsense\n\n", "", None)
     (scene.path / (daemon.config.name + ".before")).write_bytes(b"")
     got = page.json("/api/config")
     assert got["writer"] is None and got["backup"]["tag"] == "cbf29ce484222325", got
@@ -274,6 +278,7 @@ def test_the_writer_is_asked_to_save_and_its_answer_is_passed_on(scene):
     assert post(page, "config/save", 500, text="x", base=base)["error"] == "no room"
     for _ in range(2):
         assert "same version" in post(page, "config/save", 502, text="x", base="")["error"]
+    assert "not known whether" in post(page, "config/save", 504, text="x", base="")["error"]
     fake.thread.join(20)
     first, fields, body = fake.orders[0]
     assert first == "owsd-config 1" and body == text, (first, fields)

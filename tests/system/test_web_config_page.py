@@ -468,19 +468,22 @@ window.fetch = async (path, options) => {
         return real(path, options);
     if (arguments[1])
         await real(path, options);
+    if (arguments[2])
+        return new Response("", {status: arguments[2]});
     throw new TypeError("broken");
 }"""
 
 
 def test_what_was_saved_is_not_called_unsaved_when_an_answer_is_lost(scene):
     with dialog(scene) as (daemon, _, page):
-        for path, words, value in (("api/config", "owsd has reloaded", "Hall"),
-                                   ("api/config/save", None, "Bath")):
+        for path, words, value, status in (("api/config", "owsd has reloaded", "Hall", None),
+                                           ("api/config/save", None, "Bath", None),
+                                           ("api/config/save", None, "Cellar", 504)):
             open_item_in(page, "room")
             enter(page, "#item-Description", value)
             part(page, "save")
             page.find("[data-action=save]:enabled")
-            page.run(BREAK, path, words is None)
+            page.run(BREAK, path, words is None, status)
             page.click("[data-action=save]")
             if words:
                 shows(page, "#save-result", words)

@@ -18,6 +18,12 @@ async function ask(path, options) {
 	return data;
 }
 
+/**
+ * May what was asked for have been done nevertheless? No answer came; or a proxy or owsd-web has
+ * waited for one in vain (502, 504).
+ */
+export const isUnknown = ({status}) => !status || status === 502 || status === 504;
+
 const query = (values) => new URLSearchParams(
 	Object.entries(values).filter(([, value]) => value !== undefined)).toString();
 

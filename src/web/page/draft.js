@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The draft: a text of the configuration that is edited in this browser alone, with undo, and the
 // calls that edit, check and save it. Events: "change" (anything below), "go" (show a place of it).
-import {get, post} from "./api.js";
+import {get, isUnknown, post} from "./api.js";
 import {hunks, merge} from "./diff.js";
 
 const STEPS = 200;            // of undo
@@ -197,7 +197,7 @@ class Draft extends EventTarget {
 			try {
 				answer = await post(`config/${what}`, sent, SAVE_MS);
 			} catch (error) {
-				if (error.status === 409 || !error.status)
+				if (error.status === 409 || isUnknown(error))
 					await this.#look().catch(() => {});
 				if (this.disk.text === this.text)
 					this.base = this.disk; // it was saved, by whomever

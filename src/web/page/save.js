@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Before and after saving: problems, the difference to the file, what another has saved meanwhile,
 // the state of the reload, and the way back to the file of before.
+import {isUnknown} from "./api.js";
 import {ask} from "./command.js";
 import {compare} from "./diff.js";
 import {announce, el, put} from "./dom.js";
@@ -138,7 +139,7 @@ async function act(words, call) {
 		if (error.status === 409)
 			announce("Somebody else has saved the file meanwhile. Nothing was saved.");
 		put(fault, error.status === 409 ? "Not saved: somebody else has saved the file meanwhile. "
-			+ "Choose above what to do." : error.status ? `Not saved: ${error.message}`
+			+ "Choose above what to do." : !isUnknown(error) ? `Not saved: ${error.message}`
 			: `It is not known whether that was saved: ${error.message}. Look at the file again.`);
 		if (error.status === 409) {
 			conflict.scrollIntoView();
