@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/config/load.h"
 #include "src/show/json.h"
 #include "src/signal/error.h"
 #include "src/web/body.h"
@@ -15,10 +16,13 @@
 #include "src/web/save.h"
 #include "src/web/writer.h"
 
+#define SAVE_FILES 256 /* the configuration refuses a longer path */
+
 struct save {
 	struct job job;
 	bool restore;
 	char instance[128], person[PERSON];
+	char files[SAVE_FILES]; /* where the files of the page are; "": the program's own place */
 	struct body body;
 };
 
@@ -109,6 +113,23 @@ static void ask(struct save *save, const struct writer_order *order)
 	free(answer);
 }
 
+/*
+ * Would the page then serve the files of another directory? That is for who has the machine: it
+ * would give away what owsd-web may read. A text with errors is the writer's to refuse.
+ */
+static bool moves_files(const struct save *save, const char *text)
+{
+	struct config_report silent = {0};
+	struct config *config;
+	bool moves = false;
+
+	if (config_parse("draft", text, strlen(text), &silent, &config) == 0) {
+		moves = strcmp(config->web.files ? config->web.files : "", save->files) != 0;
+		config_free(config);
+	}
+	return moves;
+}
+
 static void run(struct job *job)
 {
 	struct save *save = (struct save *)job;
@@ -127,6 +148,10 @@ static void run(struct job *job)
 		job_error(job, 400, "expected \"text\": the new configuration");
 	} else if (!save->restore && strlen(text->text) > DRAFT_MAX) {
 		job_error(job, 413, "the text is longer than 1 MiB");
+	} else if (!save->restore && moves_files(save, text->text)) {
+		job_error(job, 403,
+		          "Files of the block Web stays as owsd-web has it: change it on that "
+		          "machine, and reload");
 	} else {
 		order.base = base->text;
 		order.text = save->restore ? NULL : text->text;
@@ -151,6 +176,8 @@ static int give(struct request *request, bool restore)
 	save->restore = restore;
 	snprintf(save->instance, sizeof(save->instance), "%s", web->face->arguments->instance);
 	memcpy(save->person, person, sizeof(person));
+	snprintf(save->files, sizeof(save->files), "%s",
+	         web->face->config->web.files ? web->face->config->web.files : "");
 	return http_defer(request, http_worker(web, &web->saves), &save->job);
 }
 

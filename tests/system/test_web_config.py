@@ -288,6 +288,20 @@ def test_the_writer_is_asked_to_save_and_its_answer_is_passed_on(scene):
     fake.path.unlink()
 
 
+def test_the_page_does_not_choose_the_directory_of_its_files(scene):
+    daemon, page = editor(scene)
+    got, fake = page.json("/api/config"), Fake(daemon, "status: done\ntag: 0123456789abcdef\n\n")
+    for other in ('Files "/etc"', f'Files "{scene.path}"', ""):
+        text = re.sub(r'Files "[^"]*"', other, got["text"])
+        assert text != got["text"]
+        refused = post(page, "config/save", 403, text=text, base=got["tag"])
+        assert "Files of the block Web" in refused["error"], refused
+    assert fake.orders == []
+    assert post(page, "config/save", text=got["text"] + "#\n", base=got["tag"])["reload"] == "none"
+    fake.thread.join(20)
+    fake.path.unlink()
+
+
 def test_what_is_no_order_does_not_reach_the_writer(scene):
     daemon, page = editor(scene)
     fake = Fake(daemon, "status: done\ntag: 0123456789abcdef\n\n")

@@ -6,7 +6,8 @@ import {Field, Form, edits, setter} from "./form.js";
 import {problemsOf} from "./problems.js";
 
 const SINGLE = [["OwsDrv", "driver", "Driver"], ["Web", "web", "Web"]];
-const ELSEWHERE = ["TargetName", "ItemCount", "Version"]; // keys that no field of the driver has
+// Keys without a field here: of the driver, and of Web what only the machine itself may change
+const ELSEWHERE = ["TargetName", "ItemCount", "Version", "Files"];
 
 let root, targets, buses, fault, forms = null, busForms = new Map(), many;
 

@@ -3,7 +3,7 @@
 import {draft} from "./draft.js";
 
 const NAMED = 20;
-const DOORS = ["Listen", "Hosts", "Proxy", "Files"]; // keys of Web that say how the page is reached
+const DOORS = ["Listen", "Hosts", "Proxy"]; // keys of Web that say how the page is reached
 
 /** The signals of the file that the draft has not, in words; "": there are none. */
 export function vanished() {

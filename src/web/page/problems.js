@@ -5,7 +5,7 @@ import {draft} from "./draft.js";
 
 const SHOWN = 50;
 const PLACES = {OwsDrv: "driver", Web: "web"};
-const OWN = ["ItemCount", "Version"]; // keys of the driver that have no field
+const OWN = ["ItemCount", "Version", "Files"]; // keys that have no field
 const BUS = "Bus:";                   // the name of a block Bus is this and its target
 
 const has = (place, key) => draft.options(place).some((option) => option.key === key);
