@@ -12,7 +12,7 @@ TSAN_FLAGS := -fsanitize=thread -fno-omit-frame-pointer -Wno-tsan $(GUESSES)
 
 # Lines are all that a sanitizer names of what -g knows
 asan:
-	@$(MAKE) --no-print-directory B=build/asan all
+	@$(if $(ROOMS),:,$(MAKE) --no-print-directory B=build/asan all)
 	@ASAN_OPTIONS=detect_leaks=1:abort_on_error=0:handle_sigbus=0 UBSAN_OPTIONS=print_stacktrace=1 \
 	    sh tests/both $(MAKE) --no-print-directory B=build/asan
 asan: export EXTRA_CFLAGS := $(ASAN_FLAGS)
@@ -20,7 +20,7 @@ asan: export CFLAGS := -O1 -g1
 
 # Without the address space's randomness: some kernels give more of it than TSan can stand
 tsan:
-	@$(MAKE) --no-print-directory B=build/tsan all
+	@$(if $(ROOMS),:,$(MAKE) --no-print-directory B=build/tsan all)
 	@fixed=; setarch -R true 2>/dev/null && fixed='setarch -R'; \
 	    TSAN_OPTIONS=halt_on_error=1:handle_sigbus=0:suppressions=$(CURDIR)/tests/tsan.supp \
 	    $$fixed sh tests/both $(MAKE) --no-print-directory B=build/tsan
@@ -38,7 +38,7 @@ SYNTAX := $(sort $(CORE) $(wildcard $(foreach p,owsd/owsd owsctl/owsctl recorder
 SYNTAX_FLAGS := $(UNITY_FLAGS) -Isrc/libows -Isrc/libhistory -fsyntax-only
 syntax: $(UNITY)/unity.h
 	@printf '%s\n' $(SYNTAX) | xargs -P $$(nproc) -n 16 $(CC) $(ALL_CFLAGS) $(SYNTAX_FLAGS)
-	@$(CXX) $(ALL_CXXFLAGS) $(SYNTAX_FLAGS) $(filter %.cpp,$(EXAMPLES))
+	@$(if $(filter -m32,$(EXTRA_CFLAGS)),,$(CXX) $(ALL_CXXFLAGS) $(SYNTAX_FLAGS) $(filter %.cpp,$(EXAMPLES)))
 	@echo '$(words $(SYNTAX)) passed, 0 failed'
 
 clang:
@@ -56,7 +56,7 @@ m32:
 	fi
 # The layout's assertions and all types of 32 bits, without running anything
 m32-syntax:
-	@if echo '#include <stdint.h>' | $(CC) $(EXTRA_CFLAGS) -x c -fsyntax-only - 2>/dev/null; then \
+	@if echo '#include <stdint.h>' | $(CC) -D_FILE_OFFSET_BITS=64 $(EXTRA_CFLAGS) -x c -fsyntax-only - 2>/dev/null; then \
 	    $(MAKE) --no-print-directory syntax; \
 	else \
 	    echo "m32-syntax: $(CC) has no headers for 32 bits here (package gcc-12-multilib)"; \
