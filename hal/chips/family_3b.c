@@ -10,8 +10,11 @@
  * nothing is written to it. Like each thermometer it is sent Read Power Supply (B4h) before a
  * conversion, but what it answers to that is not documented: `power` is refused. What it holds
  * after a restart is not documented either: a temperature of 0 is good only near another reading.
+ * The same holds for a MAX31850 whose thermocouple and cold junction are both 0: so it restarts,
+ * and nothing can be written to it as a mark.
  */
 #include <errno.h>
+#include <stdlib.h>
 
 #include "hal/chips/identity.h"
 #include "hal/chips/thermometer.h"
@@ -102,31 +105,59 @@ static int identify(struct txn *txn)
 	return err ? err : TXN_MORE;
 }
 
+#define NEAR_RAW (5 * 16)
+#define NEAR_NS (300 * 1000 * TXN_MS)
+
+/*
+ * raw: what was measured, of several quantities the one that is farthest from 0, in sixteenths of a
+ * degree. A restart leaves 0, which is no measurement unless one near it came not long before.
+ */
+static int restarted(struct txn *txn, int raw)
+{
+	struct thermometer *chip = txn->device->own;
+	bool old = !chip->raw_ns || txn_ended(txn) - chip->raw_ns >= NEAR_NS;
+
+	if (raw == 0 && (old || chip->raw > NEAR_RAW || chip->raw < -NEAR_RAW))
+		return -ERANGE;
+	chip->raw = (int16_t)raw;
+	return 0;
+}
+
+static int thermocouple_raw(const uint8_t bytes[9])
+{
+	return ((int16_t)(bytes[0] | bytes[1] << 8) >> 2) * 4;
+}
+
+static int cold_raw(const uint8_t bytes[9])
+{
+	return (int16_t)(bytes[2] | bytes[3] << 8) >> 4;
+}
+
 /* Of the last conversion, as far as the chip can show that; TXN_MORE: not yet. */
 static int converted(struct txn *txn, uint8_t bytes[9])
 {
 	int err = now(txn, bytes);
 
-	return err ? err : thermometer_ended(txn, bytes, txn_ended(txn));
+	if (!err)
+		err = thermometer_ended(txn, bytes, txn_ended(txn));
+	if (err || kind_of(txn->device) != MAX31850)
+		return err;
+	int hot = thermocouple_raw(bytes), cold = cold_raw(bytes);
+	/* What an open thermocouple shows is near no temperature, and a restart shows no fault. */
+	if (bytes[0] & FAULT_ANY)
+		((struct thermometer *)txn->device->own)->raw = INT16_MAX;
+	return bytes[0] & FAULT_ANY ? 0 : restarted(txn, abs(hot) > abs(cold) ? hot : cold);
 }
-
-#define NEAR_RAW (5 * 16)
-#define NEAR_NS (300 * 1000 * TXN_MS)
 
 static int read_max31825(struct txn *txn)
 {
-	struct thermometer *chip = txn->device->own;
 	uint8_t bytes[9];
 	int err = converted(txn, bytes), raw = (int16_t)(bytes[0] | bytes[1] << 8);
-	int64_t at_ns = txn_ended(txn);
 
-	if (err)
-		return err;
-	if (raw == 0 && (!chip->raw_ns || at_ns - chip->raw_ns >= NEAR_NS || chip->raw > NEAR_RAW ||
-	                 chip->raw < -NEAR_RAW))
-		return -ERANGE;
-	err = thermometer_took(txn, bytes, at_ns);
-	chip->raw = (int16_t)raw;
+	if (!err)
+		err = restarted(txn, raw);
+	if (!err)
+		err = thermometer_took(txn, bytes, txn_ended(txn));
 	txn->number[0] = raw / 16.0;
 	return err;
 }
@@ -146,7 +177,7 @@ static int read_temperature(struct txn *txn)
 	err = converted(txn, bytes);
 	if (err)
 		return err;
-	txn->number[0] = ((int16_t)(bytes[2] | bytes[3] << 8) >> 4) / 16.0;
+	txn->number[0] = cold_raw(bytes) / 16.0;
 	return thermometer_took(txn, bytes, txn_ended(txn));
 }
 
@@ -160,7 +191,7 @@ static int read_thermocouple(struct txn *txn)
 		return err;
 	if (bytes[0] & FAULT_ANY)
 		return -EIO;
-	txn->number[0] = ((int16_t)(bytes[0] | bytes[1] << 8) >> 2) / 4.0;
+	txn->number[0] = thermocouple_raw(bytes) / 16.0;
 	return thermometer_took(txn, bytes, txn_ended(txn));
 }
 
@@ -240,6 +271,9 @@ static int read_flags(struct txn *txn)
 	uint8_t bytes[9];
 	int err = area_read(txn, &scratchpad, 0, bytes, 9);
 
+	if (!err && kind_of(txn->device) == MAX31850 && !thermocouple_raw(bytes) &&
+	    !cold_raw(bytes) && !(bytes[0] & FAULT_ANY))
+		err = restarted(txn, 0);
 	txn->number[0] = (bytes[0] & 1) << 3 | (bytes[2] & 7);
 	return err;
 }

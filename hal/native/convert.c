@@ -136,7 +136,9 @@ static int prepare(struct native *native, struct job *job)
 	struct device *device = job->txn.device;
 
 	if (job->txn.phase == 0 && device->power == POWER_UNKNOWN) {
-		if (!native->channel[job->txn.channel].power_asked)
+		/* To a battery monitor that command is Convert V. */
+		if (!native->channel[job->txn.channel].power_asked &&
+		    !native_at_work(native, job->txn.channel))
 			return supply_ask_all(native, job);
 		int err = thermometer_ask_power(&job->txn);
 		return err < 0 ? err : TXN_MORE;

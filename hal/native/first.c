@@ -355,7 +355,7 @@ static bool end(struct native *native, int64_t now)
 		if (!channel->first.ready_ns)
 			continue;
 		channel->first.ready_ns = 0;
-		bool external = supply_look(native, n) > 0;
+		bool external = !native_at_work(native, n) && supply_look(native, n) > 0;
 		if (!external)
 			know_supply(native, n, POWER_UNKNOWN);
 		channel->power_asked = channel->all_external = external;

@@ -132,15 +132,6 @@ static unsigned channel_of(const struct job *job)
 	return job->txn.device ? job->txn.device->channel : job->bus >= 0 ? (unsigned)job->bus : 0;
 }
 
-/* A chip is at work, and no conversion may cut that off. */
-static bool has_locked(const struct native *native, unsigned channel)
-{
-	for (unsigned i = 0; i < native->table.count; i++)
-		if (native->table.devices[i].channel == channel && native->table.devices[i].locked)
-			return true;
-	return false;
-}
-
 /*
  * A request for all to convert waits until no chip of its channel is at work. So those that came
  * later do not put another one to work before that, but for alarms and outputs.
@@ -151,7 +142,7 @@ static bool waits_for_all(const struct native *native, const struct job *job, un
 
 	return all && all->req && all->kind == JOB_CONVERT && all->state == JOB_QUEUED &&
 	       channel_of(all) == channel && job->req->prio > BUS_OUTPUT && !job->locks &&
-	       (int32_t)(all->order - job->order) < 0 && has_locked(native, channel);
+	       (int32_t)(all->order - job->order) < 0 && native_at_work(native, channel);
 }
 
 bool job_ready(const struct native *native, const struct job *job, int64_t now, int64_t *next)
@@ -166,7 +157,7 @@ bool job_ready(const struct native *native, const struct job *job, int64_t now, 
 		return false;
 	case JOB_QUEUED:
 		if ((device && device->locked) ||
-		    (job->kind == JOB_CONVERT && has_locked(native, channel)) ||
+		    (job->kind == JOB_CONVERT && native_at_work(native, channel)) ||
 		    waits_for_all(native, job, channel))
 			return false;
 		break;

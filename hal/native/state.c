@@ -43,6 +43,14 @@ unsigned native_next(const struct native *native, unsigned n)
 	return n;
 }
 
+bool native_at_work(const struct native *native, unsigned channel)
+{
+	for (unsigned i = 0; i < native->table.count; i++)
+		if (native->table.devices[i].channel == channel && native->table.devices[i].locked)
+			return true;
+	return false;
+}
+
 bool native_held(const struct native *native, unsigned channel, const struct job *job, int64_t now)
 {
 	unsigned chip = native->channel[channel].link->chip % NATIVE_CHANNELS;

@@ -129,6 +129,7 @@ struct visit {
 
 /* Family codes that several chips have. */
 #define VISIT_IDENTITY(X) \
+	X(max31850, "MAX31850", false) \
 	X(tmp1826, "TMP1826", false) \
 	X(tmp1826_fed_by_the_wire, "TMP1826", true) \
 	X(max31825, "MAX31825", false)
