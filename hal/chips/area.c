@@ -7,6 +7,8 @@
 #include "hal/chips/area.h"
 #include "hal/wire/crc.h"
 
+#define BLANK_LOOKS 3 /* more */
+
 static unsigned least(unsigned a, unsigned b)
 {
 	return a < b ? a : b;
@@ -105,7 +107,10 @@ static int load(struct txn *txn, const struct area *area, unsigned at, uint8_t *
 	                                      : area_fetch(txn, area, at, bytes, n);
 }
 
-/* To visit->have; TXN_MORE until enough looks agree. */
+/*
+ * To visit->have; TXN_MORE until enough looks agree. So long as nothing but ones is read, perhaps
+ * nobody hears: of a chip that is there the last look is made again.
+ */
 static int look(struct txn *txn, const struct area *area, unsigned at, unsigned n)
 {
 	struct area_visit *visit = &txn->area;
@@ -120,8 +125,12 @@ static int look(struct txn *txn, const struct area *area, unsigned at, unsigned 
 	if (area->check == AREA_UNCHECKED && !area->load && !txn_driven(txn)) {
 		if (++visit->looks < AREA_LOOKS)
 			return TXN_MORE;
+		if (txn->silent && txn->asked && ++visit->blanks <= BLANK_LOOKS) {
+			visit->looks--;
+			return TXN_MORE;
+		}
 	}
-	visit->looks = 0;
+	visit->looks = visit->blanks = 0;
 	/* It is read again, or answers nobody: it shows nothing of the chip. */
 	if (txn->blank && !txn->asked)
 		return 0;

@@ -21,7 +21,7 @@ int steady(struct txn *txn, const uint8_t *bytes, unsigned n)
 	if (looks->all++ == 0 || memcmp(looks->bytes, bytes, n) != 0)
 		looks->same = 0;
 	memcpy(looks->bytes, bytes, n);
-	if (++looks->same < AREA_LOOKS)
+	if (++looks->same < (txn->silent && txn->asked ? 2 * AREA_LOOKS : AREA_LOOKS))
 		return looks->all < LOOKS_MOST ? TXN_MORE : -EBADMSG;
 	memset(looks, 0, sizeof(*looks));
 	return 0;

@@ -7,8 +7,8 @@
 
 /*
  * Of an area's load, which has read these n bytes (STEADY_MOST at most): 0 when AREA_LOOKS reads in
- * a row gave the same; TXN_MORE: read again. -EBADMSG: they never are the same. It keeps what it
- * knows in txn_own().
+ * a row gave the same, and, of a chip that was asked for, twice as many of nothing but ones;
+ * TXN_MORE: read again. -EBADMSG: they never are the same. It keeps what it knows in txn_own().
  */
 #define STEADY_MOST 8
 int steady(struct txn *txn, const uint8_t *bytes, unsigned n);

@@ -472,7 +472,6 @@ static bool prove(struct native *native, struct job *job, int64_t now)
 		return true;
 	}
 	job->prove = PROVE_READ;
-	job->had_ones = job->txn.ones;
 	job_txn(native, job);
 	return false;
 }
@@ -487,9 +486,6 @@ void job_run_property(struct native *native, struct job *job, int64_t now)
 	if (!asks) {
 		int err = txn_end(txn, run_function(job));
 
-		/* A zero that is read as ones the second time has not been heard then. */
-		if (!err && job->prove == PROVE_READ && txn->ones && !job->had_ones)
-			err = -EBADMSG;
 		job_saw(native, job, err, now);
 		if (err < 0) {
 			job_failed(native, job, err);

@@ -95,7 +95,6 @@ struct job {
 	bool begun, fresh, verified, locks;
 	uint8_t again;              /* enum job_again */
 	uint8_t prove;              /* enum job_prove */
-	bool had_ones;              /* ... and the first reading had ones */
 	bool offered;               /* somebody or something can answer it */
 	bool alone;                 /* its next transaction is made with no others (together.h) */
 	bool sought;                /* LOCATE: the look under way has not decided it yet */

@@ -213,7 +213,6 @@ static void hear(struct txn *txn, const uint8_t *bytes, size_t n)
 		zeros &= bytes[i] == 0;
 	}
 	txn->blank |= txn->silent || zeros;
-	txn->ones |= txn->silent;
 	txn->heard |= !txn->silent;
 }
 
@@ -234,11 +233,10 @@ int txn_read(struct txn *txn, uint8_t *bytes, size_t n)
 
 int txn_read_slots(struct txn *txn, uint8_t *bytes, size_t n)
 {
-	bool blank = txn->blank, ones = txn->ones;
+	bool blank = txn->blank;
 	int err = txn_read(txn, bytes, n);
 
 	txn->blank = blank;
-	txn->ones = ones;
 	return err;
 }
 

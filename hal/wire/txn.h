@@ -24,7 +24,7 @@ struct property;
 /* Where area.c is with an area, from call to call; zero: at the beginning. */
 #define AREA_UNIT 32
 struct area_visit {
-	uint8_t step, looks;
+	uint8_t step, looks, blanks;
 	uint8_t ending;   /* the scratchpad's ending offset */
 	uint16_t done;    /* bytes that are written */
 	int64_t begun_ns; /* when reading began */
@@ -71,7 +71,6 @@ struct txn {
 	int link_error; /* the error is the link's, not the device's */
 	bool silent;    /* nothing but ones was read */
 	bool blank;     /* nothing but ones, or nothing but zeros, was read at some time */
-	bool ones;      /* ... and ones at some time */
 	bool asked;     /* the chip was found by its id before this reading, and will be after it */
 	bool heard;     /* the device itself answered */
 	bool restarted; /* the chip lost its state: its power was away */
