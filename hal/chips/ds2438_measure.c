@@ -7,6 +7,10 @@
 
 #define CURRENT_NS (28 * TXN_MS) /* 36.41 measurements a second */
 
+/* It measures from -55 to 125 degrees, and may be wrong by 3 there. */
+#define LOWEST (-58)
+#define HIGHEST 128
+
 #define CONVERSION(what, code) \
 	{ \
 		.name = (what), .command = {code}, .n = 1, .ns = 10 * TXN_MS \
@@ -27,7 +31,7 @@ static int measure_temperature(struct txn *txn, double *value)
 	if (err)
 		return err;
 	*value = (ds2438_word(bytes + 1) >> 3) / 32.0;
-	return 0;
+	return *value < LOWEST || *value > HIGHEST ? -ERANGE : 0;
 }
 
 /*

@@ -35,6 +35,7 @@ enum { AVERAGES = 0x08 };                                       /* of CONFIG_1 *
 /* What it measures; an offset or noise makes others. */
 #define LOWEST (-55)
 #define HIGHEST 150
+#define END_STOP (2047 / 16.0) /* what 12 bits hold at the most: it may be hotter */
 
 #define CONVERT_NS (8 * TXN_MS)  /* tDELAY and the longest tACT: 6.5 ms */
 #define AVERAGE_NS (55 * TXN_MS) /* eight of them */
@@ -220,7 +221,8 @@ int tmp1826_read_temperature(struct txn *txn)
 		txn->number[0] = tmp1826_celsius(pad, 0);
 		if (!fresh)
 			return -EBADMSG;
-		return txn->number[0] < LOWEST || txn->number[0] > HIGHEST ? -ERANGE : 0;
+		bool most = !(visit->config & TMP1826_PRECISE) && txn->number[0] >= END_STOP;
+		return txn->number[0] < LOWEST || txn->number[0] > HIGHEST || most ? -ERANGE : 0;
 	}
 	visit->config = pad[CONFIG_1];
 	txn->phase = !fresh;

@@ -34,8 +34,11 @@ static const struct {
 	{"\x3b", "thermocouple", {-273.15, 2047.75, 2, false, CELSIUS}},
 	/* DS1921: G -40 to +85 within 1.3, 0.5; H and Z 0.125 */
 	{"\x21", "temperature", {-42, 87, 3, false, CELSIUS}},
-	/* DS2438: -55 to +125 within 2, 0.03125; 10 bits of 10 mV; 10 bits and sign of 0.2441 mV */
-	{"\x26", "temperature", {-58, 128, 5, false, CELSIUS}},
+	/*
+	 * DS2438: -55 to +125 within 2, 0.03125; 10 bits of 10 mV; 10 bits and sign of 0.2441 mV. A
+	 * TMP1826, which has the same code: up to 150.
+	 */
+	{"\x26", "temperature", {-58, 151, 5, false, CELSIUS}},
 	/* the chip runs on its VDD of 2.4 V at least: a 0 is what a restart left */
 	{"\x26", "VDD", {2, 10.23, 2, false, "V"}},
 	{"\x26", "VAD", {0, 10.23, 2, false, "V"}},

@@ -78,6 +78,17 @@ static void test_an_offset_makes_no_temperature_that_the_chip_does_not_measure(v
 	expect(true, of(chip, "temperature"), "       21.75");
 }
 
+static void test_the_end_of_12_bits_is_no_temperature(void)
+{
+	wire_set(chip, "temperature", 127.9375);
+	TEST_ASSERT_EQUAL_INT(-ERANGE, result(BUS_READ, of(chip, "temperature"), NULL));
+	wire_set(chip, "temperature", 127.875);
+	expect(true, of(chip, "temperature"), "     127.875");
+	state->settings[0] |= 0x80;
+	wire_set(chip, "temperature", 140);
+	expect(true, of(chip, "temperature"), "         140");
+}
+
 static void test_limits_of_the_precise_format_have_128_steps_a_degree(void)
 {
 	state->settings[0] |= 0x80;
@@ -280,6 +291,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_limit_is_in_the_chip_and_outlives_a_loss_of_power);
 	RUN_TEST(test_an_offset_makes_no_temperature_that_the_chip_does_not_measure);
+	RUN_TEST(test_the_end_of_12_bits_is_no_temperature);
 	RUN_TEST(test_limits_of_the_precise_format_have_128_steps_a_degree);
 	RUN_TEST(test_the_eeprom_is_written_only_when_the_user_writes_something_new);
 	RUN_TEST(test_a_chip_whose_settings_are_locked_refuses);
