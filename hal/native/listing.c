@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #include "hal/chips/find.h"
 #include "hal/chips/format.h"
@@ -201,7 +202,7 @@ int listing(struct native *native, struct job *job)
 
 	if (job->inside || (!job->table && !name.len))
 		return list_root(native, job);
-	if (!job->path.device.len && name.len >= 9 && memcmp(name.text, "structure", 9) == 0)
+	if (!job->path.device.len && name.len >= 9 && strncasecmp(name.text, "structure", 9) == 0)
 		return list_structure(native, job);
 	if (!job->path.device.len) {
 		/* The first word names the table, the rest is a directory of it. */

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <stddef.h>
 #include <string.h>
+#include <strings.h>
 
 #include "hal/chips/find.h"
 #include "hal/chips/format.h"
@@ -17,7 +18,7 @@ static bool slice_starts(struct path_slice slice, const char *word)
 {
 	size_t n = strlen(word);
 
-	return slice.len >= n && memcmp(slice.text, word, n) == 0 &&
+	return slice.len >= n && strncasecmp(slice.text, word, n) == 0 &&
 	       (slice.len == n || slice.text[n] == '/');
 }
 

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 #include "hal/native/limits.h"
@@ -267,7 +268,7 @@ static const struct {
 const struct family *virtual_family(const char *name, size_t len)
 {
 	for (size_t i = 0; i < sizeof(tables) / sizeof(tables[0]); i++)
-		if (strlen(tables[i].name) == len && memcmp(tables[i].name, name, len) == 0)
+		if (strlen(tables[i].name) == len && strncasecmp(tables[i].name, name, len) == 0)
 			return tables[i].family;
 	return NULL;
 }

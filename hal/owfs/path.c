@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #include "hal/owfs/path.h"
 
@@ -97,9 +98,16 @@ int rom_print(const uint8_t rom[ROM_LEN], enum rom_format format, char text[ROM_
 	return forms[format].len;
 }
 
+/* As owserver compares the words that stand in the place of a device. */
 static bool slice_is(struct path_slice slice, const char *word)
 {
-	return slice.len == strlen(word) && !memcmp(slice.text, word, slice.len);
+	return slice.len == strlen(word) && !strncasecmp(slice.text, word, slice.len);
+}
+
+static bool is_branch(struct path_slice slice)
+{
+	return (slice.len == 4 && !memcmp(slice.text, "main", 4)) ||
+	       (slice.len == 3 && !memcmp(slice.text, "aux", 3));
 }
 
 static bool slice_in(struct path_slice slice, const char *const *words)
@@ -113,7 +121,6 @@ static bool slice_in(struct path_slice slice, const char *const *words)
 /* The entries that OWFS has beside the devices, in the root and below a coupler. */
 static const char *const no_device[] = {"simultaneous", "settings",  "statistics", "structure",
                                         "system",       "interface", NULL};
-static const char *const branches[] = {"main", "aux", NULL};
 #define DS2409_FAMILY 0x1f
 
 /* The component at *pos; moves *pos past the component and its slash. */
@@ -158,7 +165,7 @@ static int bus_number(struct path_slice part)
 {
 	int number = 0;
 
-	if (part.len < 5 || part.len > 8 || memcmp(part.text, "bus.", 4))
+	if (part.len < 5 || part.len > 8 || strncasecmp(part.text, "bus.", 4))
 		return -1;
 	for (size_t i = 4; i < part.len; i++) {
 		if (part.text[i] < '0' || part.text[i] > '9')
@@ -205,7 +212,7 @@ static bool leads_on(const struct path *path, struct path_slice branch, struct p
 {
 	uint8_t rom[ROM_LEN];
 
-	if (!next.len || !slice_in(branch, branches) || slice_in(next, no_device))
+	if (!next.len || !is_branch(branch) || slice_in(next, no_device))
 		return false;
 	if (path->has_rom)
 		return path->rom[0] == DS2409_FAMILY;

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "hal/owfs/path.h"
 #include "hal/wire/device.h"
@@ -114,10 +115,10 @@ int device_set_alias(struct device *device, const char *text, size_t len)
 	for (size_t i = 0; i < len; i++)
 		if (text[i] == '/' || (unsigned char)text[i] < ' ')
 			return -EINVAL;
-	if (len >= 4 && memcmp(text, "bus.", 4) == 0)
+	if (len >= 4 && strncasecmp(text, "bus.", 4) == 0)
 		return -EINVAL;
 	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
-		if (strlen(words[i]) == len && memcmp(words[i], text, len) == 0)
+		if (strlen(words[i]) == len && strncasecmp(words[i], text, len) == 0)
 			return -EINVAL;
 	struct device *other = device_by_alias(device->table, text, len);
 	if (other)

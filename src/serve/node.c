@@ -2,6 +2,7 @@
 /*
  * Parses a client's path: does it name a part of the targets, a signal, a return code, or nothing?
  */
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -120,8 +121,8 @@ static bool is_file_of_structure(const char *text, size_t len)
 static void take_virtual(struct node *node, const struct path *split)
 {
 	static const char codes[] = "settings/return_codes";
-	const char *text = split->property.text, *slash;
-	size_t len = split->property.len, word;
+	const char *text = node->path + node->device_len + 1, *slash;
+	size_t len = strlen(text), word;
 
 	node->every = node->bus < 0;
 	if (((split->alarm || node->bus >= 0) && is_of_the_root(text, len)) ||
@@ -172,6 +173,10 @@ static void print_path(struct node *node, const struct path *split)
 		append(node, &n, split->property.text, split->property.len);
 	}
 	node->path[n] = '\0';
+	/* /Settings is /settings */
+	for (char *word = node->path + node->device_len + 1;
+	     !device.len && word < node->path + n && *word != '/'; word++)
+		*word = (char)tolower((unsigned char)*word);
 }
 
 void node_parse(const char *path, size_t len, struct node *node)

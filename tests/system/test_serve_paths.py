@@ -32,6 +32,14 @@ ODD = ("//", "///", "/bus.1", "/bus.00", "/bus.", "/bus.-1", "/bus.9999999999", 
        "/type", "/28", "/28/temperature", "/structure/2", "/structure/ZZ", "/structure/28.67C6697351FF",
        "/structure/26/HIH4000", "/structure/26/HIH4000/", "/structure/29/PIO", "/structure/29/PIO.7",
        "/structure/29/PIO.8", T + T, T + T + "/type", T + "/type" + T, "/nonsense/")
+# What stands in the place of a device is written in any case, what is behind it is not
+ODD += tuple(path for word in ("Uncached", "BUS.0", "Alarm", "Text", "Uncached/Bus.0", "Bus.0/Alarm")
+             for path in (f"/{word}", f"/{word}{T}/type", f"/{word}{T}/Type"))
+ODD += ("/Settings", "/SETTINGS/units/temperature_scale", "/Settings/Units", "/Structure/28/type",
+        "/Structure/28/Type", "/Structure/29", "/Statistics/read/calls", "/Statistics/Read",
+        "/System/process/pid", "/System/Process", "/Simultaneous", "/Simultaneous/temperature",
+        "/Simultaneous/Temperature", "/bus.0/Interface/settings/name", "/Settings/return_codes/text.1",
+        "/Settings/Return_codes/text.1", "/Bus.0/Simultaneous", "/Interface", "/Alarm/29,12")
 BEHIND = (".ALL", ".BYTE", ".0", ".A", ".ALL.ALL")
 # Where the genuine owserver does not look at what stands behind: there is no such name here
 LAX = re.compile(r"(^|/)(uncached|alarm|bus\.\d+|settings|system|statistics|structure|simultaneous|"

@@ -174,6 +174,31 @@ static void test_structure_states_the_properties(void)
 		(char *)data[id]);
 }
 
+/* Of what stands in the place of a device, and of nothing else. */
+static void test_the_case_of_a_prefix_does_not_count(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+	char path[64];
+
+	start();
+	for (const char *const *prefix =
+	             (const char *const[]){"Uncached", "BUS.0", "Bus.0/UnCached", "Text", "ALARM",
+	                                   NULL};
+	     *prefix; prefix++) {
+		snprintf(path, sizeof(path), "/%s%s", *prefix, of(slave, "type"));
+		expect(true, path, "DS18B20");
+	}
+	expect(true, "/Settings/units/temperature_scale", "C");
+	expect(true, "/STRUCTURE/28/templow", "t,000000,000001,rw,000012,s,");
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_DIR, "/Structure/28", NULL));
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_DIR, "/Bus.0/Interface", NULL));
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, "/Simultaneous/temperature", "1"));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, result(BUS_READ, "/settings/Units/temperature_scale", NULL));
+	TEST_ASSERT_EQUAL_INT(-ENOENT, result(BUS_READ, of(slave, "Type"), NULL));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, result(BUS_WRITE, of(slave, "alias"), "Uncached"));
+}
+
 static void test_structure_has_a_branch_as_a_file(void)
 {
 	static const char *const branches[] = {"/structure/12/aux", "/structure/1F/aux",
@@ -256,6 +281,7 @@ int main(void)
 	RUN_TEST(test_an_alias_names_the_device);
 	RUN_TEST(test_the_end_of_a_line_or_string_behind_a_value_does_not_count);
 	RUN_TEST(test_structure_states_the_properties);
+	RUN_TEST(test_the_case_of_a_prefix_does_not_count);
 	RUN_TEST(test_structure_has_a_branch_as_a_file);
 	RUN_TEST(test_structure_lists_the_first_element_of_an_array_and_reads_all);
 	RUN_TEST(test_a_request_past_its_deadline_is_void_or_in_progress);
