@@ -198,7 +198,8 @@ static void properties(struct sim_slave *slave, struct words *words)
 			words_fail(words, "a %s has no \"%s\"", slave->family->name, name);
 			return;
 		}
-		err = slave->family->option(slave, name, words_number(words, name, -1e9, 1e9));
+		err = slave->family->option(slave, name,
+		                            words_number(words, name, -1e9, UINT32_MAX));
 		if (err)
 			words_fail(words, "%s is out of the range of %s", words->word, name);
 	}

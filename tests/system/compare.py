@@ -59,7 +59,7 @@ COMMON = set("address alias crc8 family id locator r_address r_id r_locator type
 SUMS = {"volthours": 1e-4, "amphours": 4e-3}
 # Clocks go on between the two
 CLOCK_S = 100
-CLOCKS = re.compile(r"(^|/)(u?date|clock|counter/seconds)(\.\w+)?$")
+CLOCKS = re.compile(r"(^|/)(u?date|clock|counter/(seconds|samples))(\.\w+)?$")
 BYTES_RUN = set("04 1E 21 26 2E 30 32 35 36 3D 41 51 7E A6 FC".split())
 BYTES = re.compile(r"(^|/)(memory|pages/page)(\.\w+)?$")
 

@@ -68,6 +68,11 @@ def test_only_what_runs_may_differ_and_not_by_much(scene):
     assert not compare.same("24", "udate", b"  1000000000", b"  1000000300")
     assert compare.same("24", "date", b"Sun Sep  9 01:46:40 2001", b"Sun Sep  9 01:47:00 2001")
     assert not compare.same("24", "date", b"Sun Sep  9 01:46:40 2001", b"Sun Sep  9 02:47:00 2001")
+    # an EDS0072 takes a sample each second
+    for name in ("EDS0071/counter/samples", "EDS0072/counter/samples", "EDS0072/counter/seconds"):
+        assert compare.same("7E", name, b"           1", b"           0"), name
+        assert not compare.same("7E", name, b"           1", b"        2000"), name
+    assert not compare.same("21", "about/samples", b"           1", b"           0")
     assert not compare.same("28", "temperature", b"        20.5", b"     20.5001")
     assert compare.same("30", "volthours", b"    1.25E-05", b"           0")
     assert not compare.same("30", "volthours", b"     0.00125", b"           0")
