@@ -68,10 +68,11 @@ void ctl_options(void)
 static const struct option *longs_of(const char *options)
 {
 	static const struct option longs[] = {
-		{"json", no_argument, NULL, JSON},       {"help", no_argument, NULL, 'h'},
-		{"all", no_argument, NULL, 'a'},         {"rio", no_argument, NULL, 'r'},
-		{"merge", required_argument, NULL, 'M'}, {"replace", required_argument, NULL, 'R'},
-		{"as", required_argument, NULL, 'A'},    {"follow", no_argument, NULL, 'f'},
+		{"json", no_argument, NULL, JSON},         {"help", no_argument, NULL, 'h'},
+		{"all", no_argument, NULL, 'a'},           {"rio", no_argument, NULL, 'r'},
+		{"alias", required_argument, NULL, 'L'},   {"merge", required_argument, NULL, 'M'},
+		{"replace", required_argument, NULL, 'R'}, {"as", required_argument, NULL, 'A'},
+		{"follow", no_argument, NULL, 'f'},
 	};
 	static struct option had[sizeof(longs) / sizeof(longs[0]) + 1];
 	struct option *next = had;

@@ -45,7 +45,7 @@ static const struct verb verbs[] = {
          "[-t TARGET] [-w SECONDS] start [-o] -i SECONDS | stop | status | download DEVICE",
          "the mission of a logger: DS1921, DS1922, DS1923", verb_mission, .opens = true,
          .writes = true},
-	{"scan", "[-t TARGET] [-w SECONDS] [--rio [-i] [--merge FILE [--replace OLD=NEW]...]]",
+	{"scan", "[-t TARGET] [-w SECONDS] [--alias FILE] [--rio [-i] [--merge FILE [--replace OLD=NEW]...]]",
          "list the devices, or print a configuration for them", verb_scan, .opens = true},
 };
 enum { JSON = 256 };

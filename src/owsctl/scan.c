@@ -10,6 +10,7 @@
 #include "hal/chips/family.h"
 #include "hal/chips/find.h"
 #include "src/owsctl/open.h"
+#include "src/owsctl/scan_alias.h"
 #include "src/owsctl/scan_board.h"
 #include "src/owsctl/scan_merge.h"
 #include "src/owsctl/scan_rio.h"
@@ -185,8 +186,8 @@ static int find_devices(struct target *target, struct scan *scan)
 	return err ? ctl_fail("%s does not answer any more", target->name) : CTL_DONE;
 }
 
-static int look(struct ctl *ctl, int64_t timeout_ns, bool rio, bool inputs_only,
-                struct scan_merge *merge)
+static int look(struct ctl *ctl, int64_t timeout_ns, const char *aliases, bool rio,
+                bool inputs_only, struct scan_merge *merge)
 {
 	struct target target;
 	struct served served;
@@ -198,6 +199,8 @@ static int look(struct ctl *ctl, int64_t timeout_ns, bool rio, bool inputs_only,
 		return status;
 	}
 	status = find_devices(&target, &scan);
+	if (!status && aliases)
+		status = scan_aliases(aliases, &scan);
 	if (!status && (scan.count || !rio))
 		status = rio ? print_rio(ctl, &target, &served, &scan, merge, inputs_only)
 		             : show(ctl, &scan);
@@ -218,14 +221,17 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 	int64_t timeout_ns = OPEN_TIMEOUT_NS;
 	bool rio = false, inputs_only = false;
 	struct scan_merge merge = {0};
+	const char *aliases = NULL;
 	int c, status = CTL_DONE;
 
 	ctl_options();
-	while ((c = target_option(ctl, argc, argv, "riM:R:", &timeout_ns)) != -1) {
+	while ((c = target_option(ctl, argc, argv, "riL:M:R:", &timeout_ns)) != -1) {
 		if (c == 'r')
 			rio = true;
 		else if (c == 'i')
 			inputs_only = true;
+		else if (c == 'L')
+			aliases = optarg;
 		else if (c == 'M' && !merge.file)
 			merge.file = optarg;
 		else if (c == 'M')
@@ -250,7 +256,7 @@ int verb_scan(struct ctl *ctl, int argc, char **argv)
 	if (merge.file)
 		status = scan_merge_open(&merge);
 	if (!status)
-		status = look(ctl, timeout_ns, rio, inputs_only, &merge);
+		status = look(ctl, timeout_ns, aliases, rio, inputs_only, &merge);
 	if (status && rio)
 		warn_of_empty_file();
 	scan_merge_close(&merge);

@@ -79,8 +79,28 @@ static unsigned *last_of(struct scan_names *names, const char *word)
 	return &names->word[i].last;
 }
 
+/* A name of the alias, where a line stands for what no name may hold: "Bath_room". */
+static bool choose_alias(const struct scan_names *names, const struct scan_device *device,
+                         const char *word, char *name, size_t room)
+{
+	char number[12] = "";
+
+	if (!device->alias[0])
+		return false;
+	for (unsigned n = 2; n < 100; n++) {
+		snprintf(name, room, "%s%s%s%s", device->alias, number, word ? "_" : "",
+		         word ? word : "");
+		for (char *p = name; (p = strpbrk(p, " \"#{}\\")); p++)
+			*p = '_';
+		if (is_free(names, name))
+			return true;
+		snprintf(number, sizeof(number), "_%u", n);
+	}
+	return false;
+}
+
 /*
- * The name of a signal: the device's alias, with the property's word where it has several; else
+ * The name of a signal: of the device's alias, with the property's word where it has several; else
  * the word with the first number that is free.
  */
 static const char *choose(struct scan_names *names, const struct scan_device *device,
@@ -89,9 +109,7 @@ static const char *choose(struct scan_names *names, const struct scan_device *de
 	bool several = device->kind->property[1].name;
 	char name[SIGNAL_NAME_MAX + SCAN_ALIAS];
 
-	snprintf(name, sizeof(name), "%s%s%s", device->alias, several ? "_" : "",
-	         several ? property->word : "");
-	if (!device->alias[0] || strchr(name, '\\') || !is_free(names, name)) {
+	if (!choose_alias(names, device, several ? property->word : NULL, name, sizeof(name))) {
 		unsigned *last = last_of(names, property->word);
 
 		do
@@ -105,6 +123,9 @@ static const char *choose(struct scan_names *names, const struct scan_device *de
 static void make_item(struct scan_names *names, const struct scan_device *device, unsigned i)
 {
 	const struct scan_property *property = &device->kind->property[i];
+	const char *name = choose(names, device, property);
+	bool named = strncmp(name, device->alias, strlen(device->alias)) == 0;
+	char *described = named ? NULL : rio_quote(device->alias);
 	char rate[48] = "", init[128] = "";
 
 	if (property->per_factor)
@@ -120,14 +141,17 @@ static void make_item(struct scan_names *names, const struct scan_device *device
 	        "  Path                    \"%s/%s\"\n"
 	        "  Type                    \"%s\"\n"
 	        "  IO                      \"%s\"\n"
-	        "%s%s"
+	        "%s%s%s%s%s"
 	        "}",
 	        ftell(names->items) > 0 ? "\n" : "", device->type,
 	        device->location[0] ? " on " : "", device->location,
 	        device->simulated ? " (simulated)" : "",
-	        property->output ? "; its InitValue is what it was set to when found" : "",
-	        choose(names, device, property), device->path, property->name,
-	        value_type_name(property->type), property->output ? "output" : "input", rate, init);
+	        property->output ? "; its InitValue is what it was set to when found" : "", name,
+	        device->path, property->name, value_type_name(property->type),
+	        property->output ? "output" : "input",
+	        described ? "  Description             " : "", described ? described : "",
+	        described ? "\n" : "", rate, init);
+	rio_quote_free(described);
 }
 
 /* Does the property get an item? Prints the reason where the answer is a surprise. */

@@ -343,6 +343,48 @@ def test_an_alias_names_the_signals(scene):
     assert set(rows) == {"living", "air_temperature", "air_humidity", "air_vdd", "air_vad"}
 
 
+def described(text):
+    """{name: description} of the items of a configuration."""
+    items = re.findall(r' Name +"(.*)"\n(?:.*\n){3}(?: +Description +"(.*)"\n)?', text)
+    return dict(items)
+
+
+def test_an_alias_that_is_no_name_makes_one_and_the_description(scene):
+    server = scene.owserver(mock=["28", "28", "1D", "28", "28"])
+    for path, alias in zip(server.devices(), (
+            'Strom "T" #1{a}', "Bath room", "Bath_room", "x" * 63, "Keller")):
+        server.write(path + "/alias", alias)
+    made = ctl(scene, server.target, "scan", "--rio").stdout
+    long = "x" * 63
+    assert described(made) == {
+        "Strom__T___1_a__counter_a": r'Strom \"T\" #1{a}',
+        "Strom__T___1_a__counter_b": r'Strom \"T\" #1{a}', "Bath_room": "Bath room",
+        "Bath_room_2": "", long: "", "Keller": ""}, made
+    runs(scene, made)
+
+
+def test_names_come_from_an_alias_file(scene):
+    server = scene.owserver(mock=["28", "26", "28", "28"])
+    battery, *others = server.devices()
+    server.write(battery + "/alias", "air")
+    server.write(others[0] + "/alias", "old")
+    full = scene.owsctl(None, "-t", server.target, "read", others[2] + "/address").stdout.strip()
+    aliases = scene.file("alias", f"# names\n\n{others[0][1:]} = kitchen\n{others[1]}=bath room\r\n"
+                                  f"  {full} : cellar  \n28.0000000000EE = gone\nnothing = x\n"
+                                  f"{battery[1:]}\n")
+    done = scene.owsctl(None, "-t", server.target, "scan", "--rio", "--alias", aliases)
+    assert done.returncode == 0, done
+    assert set(described(done.stdout)) == {
+        "kitchen", "bath_room", "cellar", "air_temperature", "air_humidity", "air_vdd", "air_vad"}
+    assert [line.split(": ", 2)[2] for line in done.stderr.splitlines()] == [
+        "28.0000000000EE was not found", "nothing is no id of a device",
+        f"{battery[1:]} has no name here"], done.stderr
+    found = json.loads(ctl(scene, server.target, "--json", "scan", "--alias", aliases).stdout)
+    assert {d["alias"] for d in found} == {"air", "kitchen", "bath room", "cellar"}
+    done = scene.owsctl(None, "-t", server.target, "scan", "--alias", "/nowhere/alias")
+    assert done.returncode == 1 and "/nowhere/alias: No such file" in done.stderr, done
+
+
 def test_what_is_wrong_is_said_with_its_status(scene):
     target = sim(scene)
     nobody = f"127.0.0.1:{owsdtest.free_port()}"
