@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include "src/config/check.h"
 #include "src/config/edit.h"
 #include "src/config/edit_block.h"
 #include "src/config/load.h"
@@ -16,10 +18,6 @@
 const char edit_empty[] = "OwsDrv {\n"
 			  "  Version                 1.00\n"
 			  "  TargetName              \"localhost:4304\"\n"
-			  "  MaxConsAlarms           5\n"
-			  "  MaxRetries              3\n"
-			  "  Timeout                 20\n"
-			  "  ItemCount               0\n"
 			  "}\n";
 
 /* The place of errors in edits: the command line, not a place in the file. */
@@ -235,8 +233,21 @@ int edit_count(struct rio **rio)
 	return put_value(rio, driver, OPT_ITEM_COUNT, text);
 }
 
-static char *item_text(const char *name, const char *path)
+/* Are the types of the file written as bits? Then those of a new item are. */
+static bool has_bits(const struct rio_node *driver)
 {
+	for (const struct rio_node *node = driver->first; node; node = node->next)
+		if (node->kind == RIO_BLOCK && rio_child(node, option_table[OPT_IO_TYPE].key))
+			return true;
+	return false;
+}
+
+static char *item_text(const char *name, const char *path, bool bits)
+{
+	static const char as_bits[] = "  IOType                  0x0018\n"
+				      "  InitValue               \"\"\n";
+	static const char as_words[] = "  Type                    \"double\"\n"
+				       "  IO                      \"input\"\n";
 	char *quoted_name = rio_quote(name), *quoted_path = rio_quote(path), *text = NULL;
 
 	if (quoted_name && quoted_path &&
@@ -244,13 +255,10 @@ static char *item_text(const char *name, const char *path)
 	             "%s {\n"
 	             "  %-*s %s\n"
 	             "  %-*s %s\n"
-	             "  %-*s 0x0018\n"
-	             "  %-*s \"\"\n"
-	             "}",
+	             "%s}",
 	             option_table[OPT_ITEM].key, RIO_KEY_WIDTH - 1, option_table[OPT_NAME].key,
 	             quoted_name, RIO_KEY_WIDTH - 1, option_table[OPT_PATH].key, quoted_path,
-	             RIO_KEY_WIDTH - 1, option_table[OPT_IO_TYPE].key, RIO_KEY_WIDTH - 1,
-	             option_table[OPT_INIT_VALUE].key) < 0)
+	             bits ? as_bits : as_words) < 0)
 		text = NULL;
 	rio_quote_free(quoted_name);
 	rio_quote_free(quoted_path);
@@ -278,7 +286,7 @@ int edit_add(struct rio **rio, const char *name, const char *path, const char *c
 		report_error(report, command_line, "control characters are not allowed");
 		return -EINVAL;
 	}
-	text = item_text(name, path);
+	text = item_text(name, path, has_bits(driver));
 	err = text ? rio_add(rio, driver, text) : -ENOMEM;
 	free(text);
 	if (!err && count)
@@ -342,20 +350,23 @@ static bool is_dangling(const char *file)
 	return !lstat(file, &st) && S_ISLNK(st.st_mode) && stat(file, &st) && errno == ENOENT;
 }
 
-int edit_commit(const struct rio *rio, const char *file, struct config_report *report)
+int edit_commit(const struct rio *rio, const char *file, const char *edited,
+                struct config_report *report)
 {
 	struct config *config;
 	int err = config_parse(file, rio->text, rio->len, report, &config);
 
 	if (err)
 		return err;
+	if (edited)
+		config_check_item(config, edited, report);
 	config_free(config);
 	err = replace_file(file, rio->text, rio->len);
 	if (err == -ENOENT && is_dangling(file))
 		report_error(report, (struct place){file, 0, 0},
 		             "is a symbolic link to a file that is not there");
 	else if (err)
-		report_error(report, (struct place){file, 0, 0}, "cannot be replaced: %s",
-		             strerror(-err));
+		report_error(report, (struct place){file, 0, 0}, "cannot be %s: %s",
+		             access(file, F_OK) ? "made" : "replaced", strerror(-err));
 	return err;
 }

@@ -44,8 +44,9 @@ int edit_lock(const char *file, struct config_report *report);
  * Check the document, then put it in the place of file in one step: a temporary file beside it,
  * with the same owner and mode, written out and renamed. A symbolic link stays and its target is
  * replaced. When something fails, the old file is untouched. 0, -EINVAL (the check, reported) or a
- * negative errno (reported). Blocking.
+ * negative errno (reported). Blocking. edited: the item whose warnings are reported (check.h); NULL: none.
  */
-int edit_commit(const struct rio *rio, const char *file, struct config_report *report);
+int edit_commit(const struct rio *rio, const char *file, const char *edited,
+                struct config_report *report);
 
 #endif

@@ -8,6 +8,7 @@
 
 #include "src/config/options.h"
 #include "src/signal/value.h"
+#include "src/text/distance.h"
 
 #define DAY 86400.0
 
@@ -166,46 +167,36 @@ int option_find(enum option_place place, const char *key)
 	return -1;
 }
 
-/* How many letters to change, insert or leave out to get from a to b; case does not count. */
-static unsigned distance(const char *a, const char *b)
-{
-	unsigned row[RIO_KEY_MAX + 1];
-	size_t width = strlen(b);
-
-	for (size_t j = 0; j <= width; j++)
-		row[j] = (unsigned)j;
-	for (size_t i = 1; a[i - 1]; i++) {
-		unsigned diagonal = row[0];
-
-		row[0] = (unsigned)i;
-		for (size_t j = 1; j <= width; j++) {
-			bool same = tolower((unsigned char)a[i - 1]) ==
-			            tolower((unsigned char)b[j - 1]);
-			unsigned best = diagonal + !same;
-
-			diagonal = row[j];
-			if (row[j] + 1 < best)
-				best = row[j] + 1;
-			if (row[j - 1] + 1 < best)
-				best = row[j - 1] + 1;
-			row[j] = best;
-		}
-	}
-	return row[width];
-}
+/* The fields of OwsDrv's dialog whose words are far from those of the keys, as they begin. */
+static const struct {
+	const char *words;
+	enum option option;
+} dialog[] = {
+	{"Target computer", OPT_TARGET_NAME},
+	{"Maximum number of consecutive", OPT_MAX_CONS_ALARMS},
+	{"Maximum number of retries", OPT_MAX_RETRIES},
+	{"Timeout for", OPT_TIMEOUT},
+	{"REX I/O Name", OPT_NAME},
+	{"Sensor/Actuator Path", OPT_PATH},
+	{"Power-on Reset Alarm", OPT_POR_ALARM},
+};
 
 const char *option_nearest(enum option_place place, const char *key)
 {
 	const char *nearest = NULL;
 	unsigned least = 0;
 
+	for (size_t i = 0; i < sizeof(dialog) / sizeof(dialog[0]); i++)
+		if (option_table[dialog[i].option].place == place &&
+		    !strncasecmp(key, dialog[i].words, strlen(dialog[i].words)))
+			return option_table[dialog[i].option].key;
 	for (int i = 0; i < OPTION_COUNT_ALL; i++) {
 		const char *known = option_table[i].key;
 		unsigned d;
 
 		if (option_table[i].place != place)
 			continue;
-		d = distance(key, known);
+		d = text_distance(key, known);
 		if (d <= 1 + strlen(known) / 4 && (!nearest || d < least)) {
 			nearest = known;
 			least = d;
@@ -215,26 +206,44 @@ const char *option_nearest(enum option_place place, const char *key)
 }
 
 /*
- * Does the value look like that of an alarm key? The original's names of these keys are not public.
+ * The alarm key that has such a value, or such a name: the original's names of these keys are not
+ * public. NULL: it is no part of an alarm.
  */
-static bool looks_like_alarm(const struct rio_node *node)
+static const char *alarm_key(const struct rio_node *node)
 {
-	return node->kind == RIO_STRING &&
-	       (strncasecmp(node->value, "latch", 5) == 0 || strchr(node->value, '=') ||
-	        strcasecmp(node->value, "por") == 0 || strncasecmp(node->value, "por.", 4) == 0);
+	const char *value = node->kind == RIO_STRING ? node->value : "";
+	bool sets = strchr(value, '=') && !strpbrk(value, " \t"),
+	     latch = !strncasecmp(value, "latch", 5);
+
+	if (sets)
+		return option_table[latch ? OPT_RESET_LATCH : OPT_SET_ALARM].key;
+	if (latch)
+		return option_table[OPT_LATCH_ALARM].key;
+	if (!strcasecmp(value, "por") || !strncasecmp(value, "por.", 4))
+		return option_table[OPT_POR_ALARM].key;
+	if (!strcasestr(node->key, "alarm"))
+		return NULL;
+	return strcasestr(node->key, "latch")          ? option_table[OPT_LATCH_ALARM].key
+	       : strcasestr(node->key, "por")          ? option_table[OPT_POR_ALARM].key
+	       : strcasestr(node->key, "set")          ? option_table[OPT_SET_ALARM].key
+	       : option_nearest(PLACE_ITEM, node->key) ? option_nearest(PLACE_ITEM, node->key)
+	                                               : option_table[OPT_ALARM].key;
 }
 
-static void warn_unknown(const struct rio_node *node, enum option_place place,
-                         struct config_report *report)
+static void report_unknown(const struct rio_node *node, enum option_place place,
+                           struct config_report *report)
 {
 	const char *nearest = option_nearest(place, node->key);
 
-	if (place == PLACE_ITEM && looks_like_alarm(node))
-		report_warning(
-			report, node->at,
-			"unknown key %s in %s is ignored; \"%s\" looks like part of an alarm: "
-			"the keys are Alarm, LatchAlarm, PorAlarm, SetAlarm, ResetLatch",
-			node->key, place_names[place], node->value);
+	if (place == PLACE_ITEM && alarm_key(node))
+		report_error(report, node->at,
+		             "unknown key %s in %s looks like part of an alarm, which would be "
+		             "off: write %s in its place",
+		             node->key, place_names[place], alarm_key(node));
+	else if (node->kind == RIO_BLOCK && option_find(PLACE_DRIVER, node->key) >= 0)
+		report_warning(report, node->at,
+		               "unknown key %s in %s is ignored; is a '}' missing before line %d?",
+		               node->key, place_names[place], node->at.line);
 	else if (nearest)
 		report_warning(report, node->at, "unknown key %s in %s is ignored; is it %s?",
 		               node->key, place_names[place], nearest);
@@ -389,6 +398,6 @@ void options_read(const struct rio_node *block, enum option_place place,
 		if (option >= 0)
 			read_one(node, &option_table[option], &values[option], report);
 		else if (*node->key)
-			warn_unknown(node, place, report);
+			report_unknown(node, place, report);
 	}
 }

@@ -180,7 +180,17 @@ static void put_serve(FILE *out, const struct config_serve *serve)
 	put_flag(out, 2, OPT_LISTEN_READ_ONLY, serve->read_only);
 }
 
-static void put_item(FILE *out, const struct config_item *item)
+/* A part of an alarm; with `all` it is said that it is not defined. */
+static void put_alarm(FILE *out, enum option option, const char *text, bool all)
+{
+	if (text)
+		put_text(out, 4, option, text);
+	else if (all)
+		fprintf(out, "    # %-*s not defined\n", RIO_KEY_WIDTH - 3,
+		        option_table[option].key);
+}
+
+static void put_item(FILE *out, const struct config_item *item, bool all)
 {
 	fprintf(out, "  %s {\n", option_table[OPT_ITEM].key);
 	put_text(out, 4, OPT_NAME, item->name);
@@ -202,17 +212,18 @@ static void put_item(FILE *out, const struct config_item *item)
 	put_word(out, 4, OPT_PER_FACTOR, "%u", (unsigned)item->per_factor);
 	put_seconds(out, 4, OPT_STALE_AFTER, item->stale_after_ns);
 	put_flag(out, 4, OPT_ALARM, item->alarm);
-	if (item->latch_alarm)
-		put_text(out, 4, OPT_LATCH_ALARM, item->latch_alarm);
-	if (item->por_alarm)
-		put_text(out, 4, OPT_POR_ALARM, item->por_alarm);
-	if (item->set_alarm)
-		put_text(out, 4, OPT_SET_ALARM, item->set_alarm);
-	if (item->reset_latch)
-		put_text(out, 4, OPT_RESET_LATCH, item->reset_latch);
+	put_alarm(out, OPT_LATCH_ALARM, item->latch_alarm, all);
+	put_alarm(out, OPT_POR_ALARM, item->por_alarm, all);
+	put_alarm(out, OPT_SET_ALARM, item->set_alarm, all);
+	put_alarm(out, OPT_RESET_LATCH, item->reset_latch, all);
 	put_limits(out, &item->limits);
 	put_scaling(out, item);
 	fputs("  }\n", out);
+}
+
+void config_print_item(const struct config_item *item, FILE *out)
+{
+	put_item(out, item, true);
 }
 
 void config_print(const struct config *config, FILE *out)
@@ -237,6 +248,6 @@ void config_print(const struct config *config, FILE *out)
 	put_web(out, &config->web);
 	put_word(out, 2, OPT_ITEM_COUNT, "%u", config->item_count);
 	for (unsigned i = 0; i < config->item_count; i++)
-		put_item(out, &config->items[i]);
+		put_item(out, &config->items[i], false);
 	fputs("}\n", out);
 }

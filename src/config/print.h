@@ -9,5 +9,8 @@ struct config;
 
 /* Print the configuration as owsd understands it, for `owsd --check`. */
 void config_print(const struct config *config, FILE *out);
+/* The same of one item, also with what its alarm does not define. */
+struct config_item;
+void config_print_item(const struct config_item *item, FILE *out);
 
 #endif

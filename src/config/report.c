@@ -24,6 +24,9 @@ static void put_line(struct config_report *report, struct place place, bool is_e
 		return;
 	if (report->problem)
 		n = 0;
+	else if (place.file && place.line && !place.column)
+		n = snprintf(message, sizeof(message), "%.200s:%d: %s: ", place.file, place.line,
+		             kind);
 	else if (place.file && place.line)
 		n = snprintf(message, sizeof(message), "%.200s:%d:%d: %s: ", place.file, place.line,
 		             place.column, kind);

@@ -12,7 +12,7 @@
 
 struct place {
 	const char *file; /* NULL: the command line */
-	int line, column; /* from 1; column counts characters; line 0: the file as a whole */
+	int line, column; /* from 1; column counts characters; 0: none. Line 0: all of it */
 };
 
 void report_error(struct config_report *report, struct place place, const char *format, ...)

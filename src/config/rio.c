@@ -333,7 +333,8 @@ static void refuse_here(struct parser *p, struct rio_node *block, int depth)
 	else if ((unsigned char)c >= 0x80)
 		report_error(p->report, place_here(p), "expected a key%s", inside);
 	else
-		report_error(p->report, place_here(p), "expected a key%s, found '%c'", inside, c);
+		report_error(p->report, place_here(p), "expected a key%s, found '%c'%s", inside, c,
+		             c == '/' || c == ';' ? "; comments begin with #" : "");
 	block->broken = true;
 }
 

@@ -13,6 +13,7 @@
 #include "src/show/text.h"
 #include "src/show/who.h"
 #include "src/signal/error.h"
+#include "src/text/distance.h"
 
 struct live {
 	struct ows *h;
@@ -138,7 +139,7 @@ static const char *const words[] = {ALARMS_HISTORY, ALARMS_ACK, ALARMS_SHELVE, A
 static const char *nearest_word(const char *pattern)
 {
 	for (size_t i = 0; i < WORDS; i++)
-		if (names_distance(pattern, words[i]) <= strlen(words[i]) / 3)
+		if (text_distance(pattern, words[i]) <= strlen(words[i]) / 3)
 			return words[i];
 	return NULL;
 }

@@ -9,11 +9,20 @@
 
 #include "src/config/edit.h"
 #include "src/config/load.h"
+#include "src/config/print.h"
+#include "src/config/property.h"
 #include "src/config/replace.h"
 #include "src/config/rio_file.h"
 #include "src/owsctl/config_list.h"
-#include "src/owsctl/property.h"
 #include "src/owsctl/verbs.h"
+
+/* Warnings are the business of owsd --check, unless the file is edited. */
+static void print_errors(void *ctx, bool is_error, const char *message)
+{
+	(void)ctx;
+	if (is_error)
+		fprintf(stderr, "owsctl: %s\n", message);
+}
 
 static void print_report(void *ctx, bool is_error, const char *message)
 {
@@ -32,15 +41,35 @@ static int status_of(int err)
 	return err == -EINVAL ? CTL_USAGE : CTL_FAILED;
 }
 
-static int list(struct ctl *ctl, const char *file, char *const *patterns, int count)
+/* Each item that is named, with all its fields. */
+static int show(const struct config *config, char *const *names, int count)
 {
-	struct config_report report = {.line = print_report};
+	int status = count ? CTL_DONE : ctl_fail("show which item? config FILE list has them");
+
+	for (int k = 0; k < count; k++) {
+		unsigned i = 0;
+
+		while (i < config->item_count && strcmp(config->items[i].name, names[k]) != 0)
+			i++;
+		if (i < config->item_count)
+			config_print_item(&config->items[i], stdout);
+		else
+			status = ctl_fail("there is no item \"%s\"", names[k]);
+	}
+	return status;
+}
+
+/* list and show: both with --json are the same. */
+static int list(struct ctl *ctl, const char *file, bool whole, char *const *patterns, int count)
+{
+	struct config_report report = {.line = print_errors};
 	struct config *config;
 	int err = config_load(file, &report, &config), status;
 
 	if (err)
 		return err == -ENOMEM ? CTL_FAILED : status_of(err);
-	status = config_list(config, patterns, count, ctl->json);
+	status = whole && !ctl->json ? show(config, patterns, count)
+	                             : config_list(config, patterns, count, ctl->json);
 	config_free(config);
 	return status;
 }
@@ -54,8 +83,13 @@ static int open_document(const char *file, bool make, struct config_report *repo
 	int err;
 
 	*rio = NULL;
-	if (make && access(file, F_OK) && errno == ENOENT)
+	if (make && access(file, F_OK) && errno == ENOENT) {
+		fprintf(stderr,
+		        "owsctl: %s is new, with the target localhost:4304: config FILE set OwsDrv "
+		        "TargetName=... changes it\n",
+		        file);
 		return rio_parse(file, edit_empty, strlen(edit_empty), report, rio);
+	}
 	err = rio_read(file, report, &text, &len);
 	if (err)
 		return err == -EFBIG ? -EINVAL : err;
@@ -73,14 +107,10 @@ static int check_path(const char *path)
 {
 	char nearest[PROPERTY_NAME];
 
-	if (property_known(path, nearest))
+	if (property_known(path, nearest) || !*nearest)
 		return 0;
-	if (*nearest) {
-		ctl_fail("%s: its family has no such property; did you mean %s?", path, nearest);
-		return -EINVAL;
-	}
-	ctl_fail("%s: its family has no such property that owsd knows of; it is kept", path);
-	return 0;
+	ctl_fail("%s: its family has no such property; did you mean %s?", path, nearest);
+	return -EINVAL;
 }
 
 static int check_paths(const char *action, char **words, unsigned count)
@@ -131,7 +161,7 @@ static int change(const char *file, const char *action, char **words, unsigned c
 		for (unsigned i = 0; i < count && !err; i++)
 			err = edit_remove(&rio, words[i], &report);
 	if (!err)
-		err = edit_commit(rio, file, &report);
+		err = edit_commit(rio, file, words[0], &report);
 	rio_free(rio);
 	replace_unlock(file, lock);
 	if (err == -EFBIG && !report.errors)
@@ -139,13 +169,13 @@ static int change(const char *file, const char *action, char **words, unsigned c
 	return status_of(err);
 }
 
-/* Run `list`: its options may follow the word `list` too, and patterns. */
+/* Run `list` or `show`: options may follow the word too, and patterns or names. */
 static int list_with(struct ctl *ctl, const char *file, int argc, char **argv)
 {
 	ctl_options();
 	if (ctl_option(ctl, argc, argv, "") != -1)
 		return CTL_USAGE;
-	return list(ctl, file, argv + optind, argc - optind);
+	return list(ctl, file, !strcmp(argv[0], "show"), argv + optind, argc - optind);
 }
 
 int verb_config(struct ctl *ctl, int argc, char **argv)
@@ -155,6 +185,7 @@ int verb_config(struct ctl *ctl, int argc, char **argv)
 		int least;
 	} actions[] = {
 		{"list", "", 0},
+		{"show", "", 0},
 		{"add", " NAME PATH [KEY=VALUE]...", 2},
 		{"set", " NAME KEY=VALUE...", 2},
 		{"unset", " NAME KEY...", 2},
@@ -167,9 +198,15 @@ int verb_config(struct ctl *ctl, int argc, char **argv)
 	ctl_options();
 	if (ctl_option(ctl, argc, argv, "+") != -1)
 		return CTL_USAGE;
+	for (int i = optind; i < argc; i++)
+		if (!strcmp(argv[i], "--help") || !strcmp(argv[i], "-h")) {
+			ctl_help(ctl->verb, stdout);
+			return CTL_DONE;
+		}
 	file = argv[optind];
 	if (argc - optind < 2)
-		return ctl_usage(ctl, "expected a file and list, add, set, unset, remove or move");
+		return ctl_usage(ctl,
+		                 "expected a file and list, show, add, set, unset, remove or move");
 	action = argv[optind + 1];
 	words = argc - optind - 2;
 	for (size_t i = 0; i < sizeof(actions) / sizeof(actions[0]); i++) {

@@ -13,6 +13,7 @@
 #include "hal/bus/time.h"
 #include "src/owsctl/ctl.h"
 #include "src/shm/place.h"
+#include "src/shm/segment.h"
 #include "src/show/names.h"
 #include "src/show/when.h"
 #include "src/text/printable.h"
@@ -84,6 +85,39 @@ static const struct option *longs_of(const char *options)
 	return had;
 }
 
+#define SCREEN 80
+/* A line that is continued with an indentation where it is too wide for the screen. */
+static void print_wrapped(FILE *out, const char *line)
+{
+	size_t room = SCREEN;
+
+	while (strlen(line) > room) {
+		size_t at = room;
+
+		while (at && line[at] != ' ')
+			at--;
+		if (!at)
+			break;
+		fprintf(out, "%.*s\n         ", (int)at, line);
+		line += at + 1;
+		room = SCREEN - 9;
+	}
+	fprintf(out, "%s\n", line);
+}
+
+void ctl_help(const struct verb *verb, FILE *out)
+{
+	char line[256];
+
+	snprintf(line, sizeof(line), "usage: owsctl %s%s%s", verb->name, *verb->usage ? " " : "",
+	         verb->usage);
+	print_wrapped(out, line);
+	fprintf(out, "%s\n%s", verb->brief, verb->options ? verb->options : "");
+	if (verb->example)
+		fprintf(out, "example: owsctl %s\n", verb->example);
+	fputs("man owsctl has more\n", out);
+}
+
 int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
 {
 	const struct option *longs = longs_of(options);
@@ -105,8 +139,7 @@ int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options)
 		}
 	}
 	if (c == 'h') {
-		printf("usage: owsctl %s %s\n%s\n", ctl->verb->name, ctl->verb->usage,
-		       ctl->verb->brief);
+		ctl_help(ctl->verb, stdout);
 		exit(ctl_flush(CTL_DONE));
 	}
 	if (c == ':' || c == '?') {
@@ -183,6 +216,7 @@ int ctl_open(const struct ctl *ctl, enum ows_mode mode, struct ows **h)
 int ctl_open_as(const struct ctl *ctl, enum ows_mode mode, const char *program, struct ows **h)
 {
 	const char *name = ctl->instance;
+	char one[SEGMENT_NAME_MAX + 1], names[400];
 	int err = ows_open_as(name, mode, program, h);
 
 	if (!err)
@@ -193,6 +227,11 @@ int ctl_open_as(const struct ctl *ctl, enum ows_mode mode, const char *program, 
 		return CTL_FAILED;
 	switch (-err) {
 	case ENOENT:
+		if (instances_running(one, names, sizeof(names)))
+			return ctl_fail(
+				"no owsd of the name %s has run here; running: %s (owsctl -n %s "
+				"%s)",
+				name, names, one, ctl->verb->name);
 		return ctl_fail("no owsd of the name %s has run here (-n NAME chooses another)",
 		                name);
 	case EACCES:

@@ -11,6 +11,7 @@
 #define OWSCTL_CTL_H
 
 #include <stdbool.h>
+#include <stdio.h>
 
 #include "src/libows/ows.h"
 
@@ -36,6 +37,9 @@ struct verb {
 	const char *usage; /* what follows the name: "NAME..." */
 	const char *brief; /* one line for the list of verbs */
 	int (*run)(struct ctl *ctl, int argc, char **argv);
+	const char *options; /* a line for each option and sub-verb, indented by two; NULL: none */
+	const char *example; /* a whole use, without the word owsctl in front */
+	bool finds;          /* without -n the one instance that runs is taken */
 	bool opens;  /* the verb opens a target itself, without owsd, and has the option -t */
 	bool writes; /* and writes to it */
 };
@@ -49,6 +53,14 @@ struct verb {
  */
 void ctl_options(void);
 int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options);
+
+/* Print what a verb takes: at most a screen. */
+void ctl_help(const struct verb *verb, FILE *out);
+
+/*
+ * How many instances run here; one of them in `name`, and with `names` all, with commas between.
+ */
+unsigned instances_running(char *name, char *names, size_t size);
 
 /* Print an error on stderr. */
 int ctl_usage(const struct ctl *ctl, const char *format, ...) /* returns CTL_USAGE */

@@ -70,9 +70,10 @@ int verb_dir(struct ctl *ctl, int argc, char **argv)
 	ask.req.data = (uint8_t *)text;
 	ask.req.len = LISTING_MAX;
 	if (target_ask_one(&target, &ask)) {
-		status = ctl_fail("%s: %s", path,
+		status = ctl_fail("%s: %s%s", path,
 		                  ask.answer.err == -ENOENT ? "no such directory"
-		                                            : error_text(ask.answer.err));
+		                                            : error_text(ask.answer.err),
+		                  open_asked(ctl, &target, &served));
 	} else {
 		text[ask.answer.len] = '\0';
 		print(ctl, text, fresh ? "/uncached" : "");

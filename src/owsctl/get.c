@@ -11,6 +11,7 @@
 #include "src/show/names.h"
 #include "src/show/reading.h"
 #include "src/show/text.h"
+#include "src/signal/value.h"
 
 /* Bytes from the bus go to a program as they are, and to a terminal without control characters. */
 static void print_text(const struct reading *reading)
@@ -31,6 +32,26 @@ static int worse(int a, int b)
 	return a == CTL_FAILED || b == CTL_FAILED ? CTL_FAILED : a > b ? a : b;
 }
 
+/* A set takes a moment: say what is on its way, while the value is still the one before. */
+static void say_command(struct ows *h, const char *name, int id, const struct reading *reading)
+{
+	enum ows_type type = (enum ows_type)reading->value.type;
+	char text[VALUE_TEXT_MAX];
+	struct ows_command command;
+	int64_t value;
+
+	if (type == OWS_STRING || ows_command(h, id, &command) || !command.given)
+		return;
+	value = value_is_float(type) ? value_of_double(command.number) : command.integer;
+	if (value_is_float(type) ? command.number == reading->value.number
+	                         : command.integer == reading->value.integer)
+		return;
+	ctl_flush_lines();
+	value_to_text(type, value, text);
+	fprintf(stderr, "owsctl: %s: commanded %s, and the device does not have it yet\n", name,
+	        text);
+}
+
 static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struct reading *reading)
 {
 	char words[READING_WORDS];
@@ -47,6 +68,7 @@ static int get_one(const struct ctl *ctl, struct ows *h, const char *name, struc
 		return ctl_fail("%s: %s", name, error_text(reading->err));
 	reading_round(reading, names_info(h, ctl->instance, name, &info) ? info.decimals : -1);
 	print_text(reading);
+	say_command(h, name, id, reading);
 	if (reading_good(reading))
 		return CTL_DONE;
 	/* keep the order of stderr and stdout where both go to one place */

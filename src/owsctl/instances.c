@@ -288,6 +288,36 @@ static bool is_up(const struct shm_place *place, const char *name, int *pid)
 	return instance_is_up(info.state);
 }
 
+unsigned instances_running(char *name, char *names, size_t size)
+{
+	char paths[PLACES][PLACE_PATH];
+	int places = place_list(paths), pid;
+	unsigned count = 0;
+	size_t used = 0;
+
+	for (int i = 0; i < places; i++) {
+		struct shm_place place;
+		struct remains remains = {0};
+
+		if (place_open(paths[i], &place) != 0)
+			continue;
+		if (remains_list(&place, &remains) != 0)
+			remains.count = 0;
+		for (unsigned k = 0; k < remains.count; k++) {
+			if (!is_up(&place, remains.name[k], &pid))
+				continue;
+			snprintf(name, SEGMENT_NAME_MAX + 1, "%s", remains.name[k]);
+			if (used < size)
+				used += (size_t)snprintf(names + used, size - used, "%s%s",
+				                         count ? ", " : "", name);
+			count++;
+		}
+		remains_free(&remains);
+		place_close(&place);
+	}
+	return count;
+}
+
 /* Remove the instance from the first place that has files of it. */
 static int remove_one(const struct found *found, const char *name, unsigned *files, int *pid)
 {

@@ -11,6 +11,7 @@
 #include "src/owsctl/open.h"
 #include "src/show/when.h"
 
+#define OPEN_ASKED 256
 #define PROGRESS_NS (5 * NS_PER_S) /* the pause between two prints of the count of answers */
 
 /* Returns CTL_DONE; or the status, with the reason in why. */
@@ -68,6 +69,10 @@ int open_target(const struct ctl *ctl, int64_t timeout_ns, struct target *target
 		return CTL_FAILED;
 	if (!name)
 		name = served->target[0] ? served->target : OPEN_DEFAULT_TARGET;
+	if (!ctl->target && !served->target[0] && served->runs)
+		fprintf(stderr,
+		        "owsctl: asked " OPEN_DEFAULT_TARGET ": owsd %s serves no clients\n",
+		        ctl->instance);
 	status = strcmp(name, "auto") ? open_way(target, name, why, sizeof(why))
 	                              : open_auto(target, why, sizeof(why));
 	if (strcmp(name, "auto") == 0)
@@ -80,6 +85,19 @@ int open_target(const struct ctl *ctl, int64_t timeout_ns, struct target *target
 		                             : " (and the owsd that runs here serves no clients: "
 		                               "ListenSocket in its configuration lets it)");
 	return status;
+}
+
+const char *open_asked(const struct ctl *ctl, const struct target *target,
+                       const struct served *served)
+{
+	static char text[OPEN_ASKED];
+
+	*text = '\0';
+	if (!ctl->target && served->target[0])
+		snprintf(text, sizeof(text), " (asked owsd %s)", ctl->instance);
+	else if (!ctl->target)
+		snprintf(text, sizeof(text), " (asked %s)", target->name);
+	return text;
 }
 
 int target_option(struct ctl *ctl, int argc, char **argv, const char *options, int64_t *timeout_ns)

@@ -18,6 +18,10 @@
 int open_target(const struct ctl *ctl, int64_t timeout_ns, struct target *target,
                 struct served *served);
 
+/* " (asked owsd OWS)" for the end of an error; "" if the user named the target. */
+const char *open_asked(const struct ctl *ctl, const struct target *target,
+                       const struct served *served);
+
 /* The option -w of all verbs that open a target; as ctl_option(). */
 int target_option(struct ctl *ctl, int argc, char **argv, const char *options, int64_t *timeout_ns);
 

@@ -3,71 +3,226 @@
 #include <getopt.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "src/owsctl/ctl.h"
 #include "src/owsctl/verbs.h"
 #include "src/service/standard.h"
+#include "src/shm/segment.h"
+#include "src/text/distance.h"
 #include "src/text/refused.h"
 
+static int verb_help(struct ctl *ctl, int argc, char **argv);
+
 static const struct verb verbs[] = {
-	{"list", "[-a] [PATTERN...]", "all signals with value, quality, age and path", verb_list},
-	{"get", "NAME...", "values alone, one line for each name", verb_get},
+	{"list", "[-a] [PATTERN...]", "all signals with value, quality, age and path", verb_list,
+         .options = "  -a  the readable signals of the driver too\n", .example = "list 'temp*'",
+         .finds = true},
+	{"get", "NAME...", "values alone, one line for each name", verb_get, .example = "get room1",
+         .finds = true},
 	{"set", "[-w SECONDS] NAME VALUE [NAME VALUE]...", "set outputs and writable attributes",
-         verb_set},
+         verb_set,
+         .options = "  -w SECONDS  wait until the devices have the values, at most so long\n",
+         .example = "set -w 2 light on"},
 	{"control", "[--as NAME]", "command by lines of standard input, one answer for each",
-         verb_control},
-	{"who", "[PATTERN...]", "programs that may command, and who set each output", verb_who},
+         verb_control,
+         .options = "  --as NAME  the name that owsctl who and owsctl journal show\n"
+                    "  lines: NAME=VALUE, beat MILLISECONDS, for PERSON, ack NAME,\n"
+                    "         shelve NAME SECONDS [WHY], quit\n",
+         .example = "control --as heating"},
+	{"who", "[PATTERN...]", "programs that may command, and who set each output", verb_who,
+         .example = "who", .finds = true},
 	{"watch", "[-al] [-c COUNT] [-t SECONDS] [PATTERN...]", "follow values as they change",
-         verb_watch},
+         verb_watch,
+         .options =
+                 "  -a          the readable signals of the driver too\n"
+                 "  -l          lines, not a table; in a pipe always\n"
+                 "  -c COUNT    end after so many lines\n"
+                 "  -t SECONDS  end after that time\n"
+                 "  keys: arrows and page keys move, / searches, s sorts, !: bad first, q ends\n",
+         .example = "watch -l 'temp*'", .finds = true},
 	{"wait", "[-t SECONDS] NAME [OP VALUE]", "sleep until a value changes or a condition holds",
-         verb_wait},
+         verb_wait,
+         .options = "  -t SECONDS  give up after that time, with status 1\n"
+                    "  OP          = != < <= > >= ; quote it\n",
+         .example = "wait -t 60 door '=' 1", .finds = true},
 	{"alarms", "[PATTERN...] | history | ack | shelve | unshelve ...",
-         "alarms that stand, and those since the start", verb_alarms},
+         "alarms that stand, and those since the start", verb_alarms,
+         .options = "  [PATTERN...]                          the alarms that stand\n"
+                    "  history [PATTERN...]                  those since the start of owsd\n"
+                    "  ack NAME... | -a                      acknowledge limit alarms; -a: all\n"
+                    "  shelve NAME TIME [REASON]             keep one quiet, for 30m, 8h or 2d\n"
+                    "  unshelve NAME...                      end that\n",
+         .example = "alarms ack boiler", .finds = true},
 	{"journal", "[-f] [-c COUNT] [PATTERN...]",
-         "who did what and when: alarms and commands since the start", verb_journal},
-	{"stats", "", "owsd itself, its targets and counters", verb_stats},
+         "who did what and when: alarms and commands since the start", verb_journal,
+         .options = "  -f        follow what comes (--follow)\n"
+                    "  -c COUNT  the last so many\n",
+         .example = "journal -c 20 boiler", .finds = true},
+	{"stats", "", "owsd itself, its targets and counters", verb_stats, .example = "stats",
+         .finds = true},
 	{"metrics", "[-p] [PATTERN...]", "values, quality, targets and counters as OpenMetrics",
-         verb_metrics},
-	{"instances", "", "list the owsd that run here, and those that have run", verb_instances},
-	{"remove", "NAME...", "remove the files of an instance that has ended", verb_remove},
-	{"config", "FILE list | add | set | unset | remove | move ...",
-         "look at a configuration and edit it", verb_config},
+         verb_metrics, .options = "  -p  the older text format of Prometheus\n",
+         .example = "metrics -p", .finds = true},
+	{"instances", "", "list the owsd that run here, and those that have run", verb_instances,
+         .example = "instances"},
+	{"remove", "NAME...", "remove the files of an instance that has ended", verb_remove,
+         .example = "remove demo-sim"},
+	{"config", "FILE list | show | add | set | unset | remove | move ...",
+         "look at a configuration and edit it", verb_config,
+         .options =
+                 "  list [PATTERN...]                     a table of the items\n"
+                 "  show NAME...                          items with all their fields\n"
+                 "  add NAME PATH [KEY=VALUE]...          a new item; makes the file if need be\n"
+                 "  set NAME KEY=VALUE...                 change; the NAME OwsDrv is the driver\n"
+                 "  unset NAME KEY...                     take keys out\n"
+                 "  remove NAME...                        remove items\n"
+                 "  move NAME --before | --after OTHER    change the order\n"
+                 "  owsctl reload has owsd load the file again\n",
+         .example = "config plant.rio set temperature1 Name=kitchen"},
 	{"reload", "[-w SECONDS]", "have owsd load its configuration again, and wait for that",
-         verb_reload},
+         verb_reload, .options = "  -w SECONDS  how long that may take\n", .example = "reload"},
 	{"dir", "[-t TARGET] [-w SECONDS] [PATH]", "list a directory of a target", verb_dir,
-         .opens = true},
+         .options =
+                 "  -t TARGET   localhost:4304, i2c:/dev/i2c-1, w1, ...; default: the owsd that\n"
+                 "              runs, else localhost:4304\n"
+                 "  -w SECONDS  how long an answer may take, 20\n",
+         .example = "dir /28.551DDF030000", .opens = true, .finds = true},
 	{"read", "[-t TARGET] [-w SECONDS] PATH...", "properties of devices, one line for each",
-         verb_read, .opens = true},
+         verb_read,
+         .options =
+                 "  -t TARGET   localhost:4304, i2c:/dev/i2c-1, w1, ...; default: the owsd that\n"
+                 "              runs, else localhost:4304\n"
+                 "  -w SECONDS  how long an answer may take, 20\n",
+         .example = "read /28.551DDF030000/temperature", .opens = true, .finds = true},
 	{"write", "[-t TARGET] [-w SECONDS] PATH VALUE", "write a property of a device", verb_write,
-         .opens = true, .writes = true},
+         .options =
+                 "  -t TARGET   localhost:4304, i2c:/dev/i2c-1, w1, ...; default: the owsd that\n"
+                 "              runs, else localhost:4304\n"
+                 "  -w SECONDS  how long an answer may take, 20\n",
+         .example = "write /29.B89115000000/PIO.0 1", .opens = true, .writes = true},
 	{"mission",
          "[-t TARGET] [-w SECONDS] start [-o] -i SECONDS | stop | status | download DEVICE",
-         "the mission of a logger: DS1921, DS1922, DS1923", verb_mission, .opens = true,
-         .writes = true},
+         "the mission of a logger: DS1921, DS1922, DS1923", verb_mission,
+         .options =
+                 "  -t TARGET   localhost:4304, i2c:/dev/i2c-1, w1, ...; default: the owsd that\n"
+                 "              runs, else localhost:4304\n"
+                 "  -w SECONDS  how long an answer may take, 20\n"
+                 "  start -i SECONDS DEVICE  begin one, a sample every SECONDS; -o: the oldest\n"
+                 "                           samples make room\n"
+                 "  stop, status, download DEVICE\n",
+         .example = "mission download /41.551DDF030000", .opens = true, .writes = true},
 	{"scan", "[-t TARGET] [-w SECONDS] [--alias FILE] [--rio [-i] [--merge FILE [--replace OLD=NEW]...]]",
-         "list the devices, or print a configuration for them", verb_scan, .opens = true},
+         "list the devices, or print a configuration for them", verb_scan,
+         .options =
+                 "  -t TARGET   localhost:4304, i2c:/dev/i2c-1, w1, ...; default: the owsd that\n"
+                 "              runs, else localhost:4304\n"
+                 "  -w SECONDS  how long an answer may take, 20\n"
+                 "  --alias FILE       names from an alias file of OWFS\n"
+                 "  --rio              print a configuration for what is there\n"
+                 "  -i                 with --rio: inputs only, nothing is written\n"
+                 "  --merge FILE       add to that file what it has not; its names stay\n"
+                 "  --replace OLD=NEW  with --merge: NEW takes the place of the device OLD\n",
+         .example = "-t i2c:/dev/i2c-1 scan --rio >plant.rio", .opens = true, .finds = true},
+	{"help", "[VERB]", "this list, or what a verb takes", verb_help, .example = "help watch"},
 };
 enum { JSON = 256 };
-#define USAGE_WIDTH 46 /* a longer usage puts the meaning into the next line */
 #define VERBS (sizeof(verbs) / sizeof(verbs[0]))
 
 static void usage(FILE *out)
 {
 	fputs("usage: owsctl [-n NAME | -t TARGET] [--json] VERB ...\n", out);
 	for (size_t i = 0; i < VERBS; i++)
-		fprintf(out, "  %-9s %-*s%s%*s%s\n", verbs[i].name, USAGE_WIDTH, verbs[i].usage,
-		        strlen(verbs[i].usage) > USAGE_WIDTH ? "\n" : "",
-		        strlen(verbs[i].usage) > USAGE_WIDTH ? USAGE_WIDTH + 13 : 1, "",
-		        verbs[i].brief);
-	fputs("  -n NAME    instance, default OWS\n"
-	      "  -t TARGET  what dir, read, write, mission and scan open; default: the instance where it\n"
-	      "             serves them, else localhost:4304 (owserver)\n"
+		fprintf(out, "  %-9s %s\n", verbs[i].name, verbs[i].brief);
+	fputs("owsctl help VERB shows what a verb takes; before the verb there may be:\n"
+	      "  -n NAME    instance; default: OWS_NAME of the environment, else OWS\n"
+	      "  -t TARGET  what dir, read, write, mission and scan open\n"
 	      "  --json     print JSON\n"
-	      "  -V -h      print the version; this help, with a verb in front: the verb's\n"
+	      "  -V -h      print the version; this help\n"
 	      "exit status: 0 done, 1 failed, 2 wrong usage, 3 a value is not good,\n"
 	      "             4 a scan found nothing\n",
 	      out);
+}
+
+static const struct verb *find_verb(const char *name)
+{
+	for (size_t i = 0; i < VERBS; i++)
+		if (strcmp(verbs[i].name, name) == 0)
+			return &verbs[i];
+	return NULL;
+}
+
+static int no_verb(const char *name)
+{
+	unsigned best = text_too_far(name);
+	const char *nearest = NULL;
+
+	for (size_t i = 0; i < VERBS; i++) {
+		unsigned distance = text_distance(name, verbs[i].name);
+
+		if (distance >= best)
+			continue;
+		best = distance;
+		nearest = verbs[i].name;
+	}
+	ctl_fail("there is no verb %s%s%s%s", ctl_word(name), nearest ? "; did you mean " : "",
+	         nearest ? nearest : "", nearest ? "?" : "");
+	fputs("owsctl --help lists the verbs\n", stderr);
+	return CTL_USAGE;
+}
+
+static int verb_help(struct ctl *ctl, int argc, char **argv)
+{
+	const struct verb *verb;
+
+	ctl_options();
+	if (ctl_option(ctl, argc, argv, "") != -1)
+		return CTL_USAGE;
+	if (optind == argc) {
+		usage(stdout);
+		return CTL_DONE;
+	}
+	verb = find_verb(argv[optind]);
+	if (!verb)
+		return no_verb(argv[optind]);
+	ctl_help(verb, stdout);
+	return CTL_DONE;
+}
+
+/* Does a verb that only looks act all the same, as alarms ack does, or ask what it takes? */
+static bool acts(int argc, char **argv)
+{
+	static const char *const words[] = {"ack", "shelve", "unshelve", "-h", "--help"};
+
+	for (int i = 1; i < argc; i++)
+		for (size_t k = 0; k < sizeof(words) / sizeof(words[0]); k++)
+			if (strcmp(argv[i], words[k]) == 0)
+				return true;
+	return false;
+}
+
+/*
+ * Nobody named an instance and none of the name OWS has run here: the one that runs is meant. It is
+ * said, as the next call may find two.
+ */
+static void find_instance(struct ctl *ctl, int argc, char **argv)
+{
+	static char found[SEGMENT_NAME_MAX + 1];
+	struct ows *h;
+
+	if (ctl->named || ctl->target || acts(argc, argv))
+		return;
+	for (int i = 1; i < argc && ctl->verb->opens; i++)
+		if (strncmp(argv[i], "-t", 2) == 0)
+			return;
+	if (ows_open(ctl->instance, OWS_READ, &h) == 0)
+		ows_close(h);
+	else if (instances_running(found, NULL, 0) == 1) {
+		fprintf(stderr, "owsctl: no %s has run here; this is %s\n", ctl->instance, found);
+		ctl->instance = found;
+		ctl->named = !ctl->verb->opens;
+	}
 }
 
 int main(int argc, char **argv)
@@ -78,7 +233,8 @@ int main(int argc, char **argv)
 		{"version", no_argument, NULL, 'V'},
 		{0},
 	};
-	struct ctl ctl = {.instance = "OWS"};
+	const char *name = getenv("OWS_NAME");
+	struct ctl ctl = {.instance = name && *name ? name : "OWS", .named = name && *name};
 	char why[1024];
 	int c;
 
@@ -124,19 +280,16 @@ int main(int argc, char **argv)
 		usage(stderr);
 		return CTL_USAGE;
 	}
-	for (size_t i = 0; i < VERBS; i++) {
-		if (strcmp(verbs[i].name, argv[optind]) == 0) {
-			ctl.verb = &verbs[i];
-			if (ctl.target && !verbs[i].opens)
-				return ctl_usage(
-					&ctl,
-					"-t TARGET is for dir, read, write, mission and scan; "
-					"%s looks at a running owsd",
-					verbs[i].name);
-			return ctl_flush(verbs[i].run(&ctl, argc - optind, argv + optind));
-		}
-	}
-	ctl_fail("there is no verb %s", ctl_word(argv[optind]));
-	usage(stderr);
-	return CTL_USAGE;
+	ctl.verb = find_verb(argv[optind]);
+	if (!ctl.verb)
+		return no_verb(argv[optind]);
+	if (ctl.target && !ctl.verb->opens)
+		return ctl_usage(
+			&ctl,
+			"-t TARGET is for dir, read, write, mission and scan; %s looks at a "
+			"running owsd",
+			ctl.verb->name);
+	if (ctl.verb->finds)
+		find_instance(&ctl, argc - optind, argv + optind);
+	return ctl_flush(ctl.verb->run(&ctl, argc - optind, argv + optind));
 }

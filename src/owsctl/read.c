@@ -46,7 +46,7 @@ static void print_json(struct json *json, const char *path, const struct bus_ans
 }
 
 static int read_one(const struct ctl *ctl, struct json *json, struct target *target,
-                    const char *given)
+                    const struct served *served, const char *given)
 {
 	char path[256];
 	bool fresh;
@@ -74,7 +74,8 @@ static int read_one(const struct ctl *ctl, struct json *json, struct target *tar
 	/* keep the order of stderr and stdout where both go to one place */
 	if (!ctl->json)
 		fflush(stdout);
-	return ctl_fail("%s: %s", given, error_words(err, words));
+	return ctl_fail("%s: %s%s", given, error_words(err, words),
+	                open_asked(ctl, target, served));
 }
 
 int verb_read(struct ctl *ctl, int argc, char **argv)
@@ -97,7 +98,7 @@ int verb_read(struct ctl *ctl, int argc, char **argv)
 	if (ctl->json)
 		json_array(&json, NULL);
 	for (int i = optind; i < argc; i++)
-		if (read_one(ctl, &json, &target, argv[i]))
+		if (read_one(ctl, &json, &target, &served, argv[i]))
 			status = CTL_FAILED;
 	if (ctl->json) {
 		json_array_end(&json);

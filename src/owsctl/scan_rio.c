@@ -18,7 +18,7 @@ static struct rio_node *driver_of(struct rio *rio)
 static int fill(struct rio **rio, struct scan_names *names, const struct scan *scan,
                 const char *target, bool inputs_only)
 {
-	char count[16], *quoted = rio_quote(target);
+	char *quoted = rio_quote(target);
 	int err = quoted ? rio_set(rio, driver_of(*rio), "TargetName", quoted) : -ENOMEM;
 
 	rio_quote_free(quoted);
@@ -26,8 +26,7 @@ static int fill(struct rio **rio, struct scan_names *names, const struct scan *s
 		scan_make_items(names, &scan->device[i], inputs_only);
 	if (!err)
 		err = scan_add_items(rio, names);
-	snprintf(count, sizeof(count), "%u", names->count);
-	return err ? err : rio_set(rio, driver_of(*rio), "ItemCount", count);
+	return err;
 }
 
 int scan_rio(const struct scan *scan, const char *target, bool several, bool inputs_only)

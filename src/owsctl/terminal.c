@@ -143,37 +143,63 @@ static const struct {
 	{"k", KEY_UP},         {"j", KEY_DOWN},          {"b", KEY_PAGE_UP},
 	{" ", KEY_PAGE_DOWN},  {"g", KEY_FIRST},         {"G", KEY_LAST},
 	{"q", KEY_END},        {"Q", KEY_END},           {"\004", KEY_END},
+	{"/", KEY_SEARCH},     {"s", KEY_SORT},          {"!", KEY_BAD_FIRST},
 };
+
+static struct {
+	char bytes[32];
+	size_t len;
+} typed;
+
+/* Take what was typed since. False: the terminal is gone. */
+static bool take_typed(void)
+{
+	struct pollfd in = {.fd = STDIN_FILENO, .events = POLLIN};
+	ssize_t n;
+
+	if (typed.len == sizeof(typed.bytes) || poll(&in, 1, 0) <= 0)
+		return true;
+	n = read(STDIN_FILENO, typed.bytes + typed.len, sizeof(typed.bytes) - typed.len);
+	if (n > 0)
+		typed.len += (size_t)n;
+	return n > 0 || !(in.revents & POLLHUP);
+}
+
+static void drop_typed(size_t size)
+{
+	typed.len -= size;
+	memmove(typed.bytes, typed.bytes + size, typed.len);
+}
 
 enum terminal_key terminal_key(void)
 {
-	static char typed[32];
-	static size_t len;
-	struct pollfd in = {.fd = STDIN_FILENO, .events = POLLIN};
-
 	if (!terminal.raw)
 		return KEY_NONE;
-	if (len < sizeof(typed) && poll(&in, 1, 0) > 0) {
-		ssize_t n = read(STDIN_FILENO, typed + len, sizeof(typed) - len);
-
-		if (n > 0)
-			len += (size_t)n;
-		else if (in.revents & POLLHUP)
-			return KEY_END;
-	}
-	if (len == 0)
+	if (!take_typed())
+		return KEY_END;
+	if (typed.len == 0)
 		return KEY_NONE;
 	for (size_t i = 0; i < sizeof(keys) / sizeof(keys[0]); i++) {
 		size_t size = strlen(keys[i].bytes);
 
-		if (len >= size && memcmp(typed, keys[i].bytes, size) == 0) {
-			len -= size;
-			memmove(typed, typed + size, len);
+		if (typed.len >= size && memcmp(typed.bytes, keys[i].bytes, size) == 0) {
+			drop_typed(size);
 			return keys[i].key;
 		}
 	}
-	memmove(typed, typed + 1, --len);
+	drop_typed(1);
 	return KEY_OTHER;
+}
+
+char terminal_byte(void)
+{
+	char byte;
+
+	if (!terminal.raw || !take_typed() || typed.len == 0)
+		return '\0';
+	byte = typed.bytes[0];
+	drop_typed(byte == '\033' ? typed.len : 1);
+	return byte;
 }
 
 bool terminal_write(const char *text, size_t len)

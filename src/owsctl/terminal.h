@@ -18,6 +18,9 @@ enum terminal_key {
 	KEY_PAGE_DOWN,
 	KEY_FIRST,
 	KEY_LAST,
+	KEY_SEARCH,
+	KEY_SORT,
+	KEY_BAD_FIRST,
 	KEY_OTHER,
 };
 
@@ -31,12 +34,17 @@ bool terminal_asked_to_end(void);
 void terminal_open(void);
 void terminal_close(void);
 
-/* After Ctrl-Z: give the terminal back, stop, and take it again. Call it in each round. */
+/*
+ * After Ctrl-Z: give the terminal back, stop, and take it again; terminal_size() then says that the
+ * size has changed. Call it in each round.
+ */
 void terminal_suspend_if_asked(void);
 /* Lines and columns, 24 x 80 if unknown. True if the size changed since the last call. */
 bool terminal_size(unsigned *lines, unsigned *columns);
 /* Return the next key that was pressed, without waiting. */
 enum terminal_key terminal_key(void);
+/* The same while a text is typed: the next byte; 0: none. An escape sequence is one '\033'. */
+char terminal_byte(void);
 /* Write a whole picture; false: the terminal is gone. */
 bool terminal_write(const char *text, size_t len);
 

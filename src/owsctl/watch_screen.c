@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The live table of owsctl watch on a terminal. */
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -13,11 +14,11 @@
 #include "src/show/text.h"
 
 #define BETWEEN_KEYS (50 * NS_PER_MS)
-#define BETWEEN_PICTURES (100 * NS_PER_MS)
+#define BETWEEN_PICTURES (250 * NS_PER_MS)
 #define LONGEST_PICTURE NS_PER_S /* ages grow without a wake-up */
 
 static const struct table_column columns[] = {
-	{"NAME"},
+	{"NAME", .shrink = 24},
 	{"VALUE", .right = true, .most = 32},
 	{"UNIT", .drop = 4},
 	{"QUALITY", .shrink = 13}, /* "device absent" */
@@ -39,21 +40,35 @@ struct screen {
 	/* The target of all rows, for the head line; "" when there are several. */
 	char target[200];
 	const char *note; /* what happened to owsd last */
+	int *order;       /* the rows that are shown, as they are sorted; room for all */
+	int count;        /* of them */
+	char search[32];  /* in a name or a path; "": all */
+	bool typing;      /* the search is being typed */
+	enum { SORT_FILE, SORT_NAME, SORT_AGE, SORTS } sort;
+	bool bad_first;
+	char **before; /* the lines on the terminal; NULL: not known */
+	unsigned before_count;
+	unsigned line; /* the next one of the picture */
 };
 
-/* The rows that fit below the two head lines; one line stays free when not all rows fit. */
+/* Is there a line below the rows, with the keys or what was chosen by them? */
+static bool has_foot(const struct screen *screen)
+{
+	return screen->count > (int)screen->lines - 2 || screen->typing || *screen->search ||
+	       screen->sort != SORT_FILE || screen->bad_first;
+}
+
+/* The rows that fit below the two head lines; one line stays free for the foot. */
 static int room(const struct screen *screen)
 {
-	int lines = (int)screen->lines - 2;
+	int lines = (int)screen->lines - 2 - has_foot(screen);
 
-	if (screen->watch->rows.count > lines)
-		lines--;
 	return lines < 0 ? 0 : lines;
 }
 
 static void keep_top_in_range(struct screen *screen)
 {
-	int last = screen->watch->rows.count - room(screen);
+	int last = screen->count - room(screen);
 
 	if (screen->top > last)
 		screen->top = last;
@@ -61,15 +76,42 @@ static void keep_top_in_range(struct screen *screen)
 		screen->top = 0;
 }
 
-static void put_line(FILE *out, const struct screen *screen, const char *style, const char *text)
+/* A line is written only if it is another than the one on the terminal. */
+static void put_line(FILE *out, struct screen *screen, const char *style, const char *text)
 {
-	char cut[1024];
+	char cut[1024], *whole;
+	unsigned line = screen->line++;
 
 	text_clean(text, strlen(text), screen->width, cut, sizeof(cut));
-	fprintf(out, "%s%s\033[0m\033[K", style, cut);
+	if (line >= screen->before_count || asprintf(&whole, "%s%s", style, cut) < 0)
+		return;
+	if (!screen->before[line] || strcmp(screen->before[line], whole) != 0)
+		fprintf(out, "\033[%u;1H%s\033[0m\033[K", line + 1, whole);
+	free(screen->before[line]);
+	screen->before[line] = whole;
 }
 
-static void put_head(FILE *out, const struct screen *screen)
+/* Nothing is known of what is on the terminal: all of it is written again. */
+static bool forget_lines(struct screen *screen)
+{
+	for (unsigned i = 0; i < screen->before_count; i++)
+		free(screen->before[i]);
+	free(screen->before);
+	screen->before = calloc(screen->lines + 1, sizeof(*screen->before));
+	screen->before_count = screen->before ? screen->lines : 0;
+	return screen->before;
+}
+
+/* An age or a time in whole seconds: a picture changes no more often. */
+static const char *whole_seconds(int64_t ns, char text[WHEN_TEXT])
+{
+	if (ns < 0 || ns >= 60 * NS_PER_S)
+		return when_span(ns, text);
+	snprintf(text, WHEN_TEXT, "%ds", (int)(ns / NS_PER_S));
+	return text;
+}
+
+static void put_head(FILE *out, struct screen *screen)
 {
 	struct watch *watch = screen->watch;
 	struct ows_daemon daemon = {0};
@@ -87,14 +129,14 @@ static void put_head(FILE *out, const struct screen *screen)
 		snprintf(text, sizeof(text), "%s  %s  %d signal%s, %d not good%s  up %s%s%s%s%s",
 		         watch->ctl->instance, clock, watch->rows.count,
 		         watch->rows.count == 1 ? "" : "s", screen->not_good, alarms,
-		         when_span(now - daemon.start_ns, span), *screen->note ? "  " : "",
+		         whole_seconds(now - daemon.start_ns, span), *screen->note ? "  " : "",
 		         screen->note, *screen->target ? "  " : "", screen->target);
 	else if (daemon.state == 3)
 		snprintf(text, sizeof(text), "%s  %s  owsd was stopped", watch->ctl->instance,
 		         clock);
 	else
 		snprintf(text, sizeof(text), "%s  %s  owsd is not running: last heartbeat %s ago",
-		         watch->ctl->instance, clock, when_span(daemon.beat_age_ns, span));
+		         watch->ctl->instance, clock, whole_seconds(daemon.beat_age_ns, span));
 	put_line(out, screen, daemon.alive ? "" : "\033[7m", text);
 }
 
@@ -106,7 +148,7 @@ static bool add_row(struct watch *watch, struct table *table, const struct row *
 
 	reading_show(reading, value, sizeof(value));
 	if (reading->value.measured_ns)
-		when_span(reading->value.age_ns, span);
+		whole_seconds(reading->value.age_ns, span);
 	if (row->path)
 		ows_target(watch->h, reading->value.target, &target);
 	return table_add(table, (const char *const[]){row->name, value, row_unit(row),
@@ -137,46 +179,124 @@ static int same_target(struct ows *h, int so_far, const struct row *row,
 	return so_far == -1 || so_far == this ? this : -2;
 }
 
-static bool fill(struct screen *screen, struct table *table, const char **styles)
+static bool is_sought(const struct screen *screen, const struct row *row)
+{
+	return !*screen->search || strcasestr(row->name, screen->search) ||
+	       (row->path && strcasestr(row->path, screen->search));
+}
+
+/* What rows are sorted by: bad ones first, then those in alarm; then name, age or the file. */
+struct sorted {
+	int row, rank;
+	const char *name;
+	int64_t age_ns;
+};
+
+static int compare_rows(const void *a, const void *b)
+{
+	const struct sorted *x = a, *y = b;
+	int names = x->name && y->name ? strcmp(x->name, y->name) : 0;
+
+	if (x->rank != y->rank)
+		return x->rank - y->rank;
+	if (x->age_ns != y->age_ns)
+		return x->age_ns > y->age_ns ? -1 : 1;
+	return names ? names : x->row - y->row;
+}
+
+/* Read all rows: which are shown, in which order, and what the head line says of all. */
+static bool survey(struct screen *screen, struct table *table)
 {
 	struct watch *watch = screen->watch;
-	int shown = room(screen);
+	struct sorted *sorted = calloc((size_t)watch->rows.count + 1, sizeof(*sorted));
+	int *order = realloc(screen->order, ((size_t)watch->rows.count + 1) * sizeof(*order));
 	int64_t now = ows_now();
 	struct ows_target target;
 	int served = -1;
 
-	screen->not_good = screen->in_alarm = 0;
+	screen->order = order ? order : screen->order;
+	screen->count = screen->not_good = screen->in_alarm = 0;
 	screen->alarms = false;
-	for (int i = 0; i < watch->rows.count; i++) {
+	for (int i = 0; sorted && order && i < watch->rows.count; i++) {
 		struct row *row = &watch->rows.row[i];
+		bool good, alarm;
 
 		row_read(watch->h, row, now, watch->reading);
 		reading_round(watch->reading, row_decimals(row));
-		screen->not_good += !reading_good(watch->reading);
-		screen->in_alarm += standing_any(&row->alarms);
+		good = reading_good(watch->reading);
+		alarm = standing_any(&row->alarms);
+		screen->not_good += !good;
+		screen->in_alarm += alarm;
 		screen->alarms |= standing_possible(&row->alarms);
 		served = same_target(watch->h, served, row, watch->reading);
 		if (row_changed(row, watch->reading) && watch->left > 0)
 			watch->left--;
-		if (i < screen->top || i >= screen->top + shown)
-			continue;
-		styles[i - screen->top] = style_of(row, watch->reading);
-		if (!add_row(watch, table, row))
-			return false;
+		if (is_sought(screen, row))
+			sorted[screen->count++] = (struct sorted){
+				.row = i,
+				.rank = !screen->bad_first ? 0
+			                : !good            ? 0
+			                : alarm            ? 1
+			                                   : 2,
+				.name = screen->sort == SORT_NAME ? row->name : NULL,
+				.age_ns = screen->sort == SORT_AGE ? watch->reading->value.age_ns
+			                                           : 0,
+			};
+	}
+	if (sorted && order) {
+		qsort(sorted, (size_t)screen->count, sizeof(*sorted), compare_rows);
+		for (int i = 0; i < screen->count; i++)
+			order[i] = sorted[i].row;
 	}
 	snprintf(screen->target, sizeof(screen->target), "%s",
 	         served >= 0 && ows_target(watch->h, served, &target) == 0 ? target.name : "");
 	table->absent[UNIT] = !rows_have_units(&watch->rows);
 	table->absent[ALARM] = !screen->alarms;
 	table->absent[TARGET] = screen->target[0] != '\0';
+	free(sorted);
+	return sorted && order;
+}
+
+static bool fill(struct screen *screen, struct table *table, const char **styles)
+{
+	struct watch *watch = screen->watch;
+	int shown = room(screen);
+	int64_t now = ows_now();
+
+	for (int i = screen->top; i < screen->count && i < screen->top + shown; i++) {
+		struct row *row = &watch->rows.row[screen->order[i]];
+
+		row_read(watch->h, row, now, watch->reading);
+		reading_round(watch->reading, row_decimals(row));
+		styles[i - screen->top] = style_of(row, watch->reading);
+		if (!add_row(watch, table, row))
+			return false;
+	}
 	return true;
+}
+
+static void put_foot(FILE *out, struct screen *screen, int last)
+{
+	static const char *const sorts[] = {"", "; by name", "; by age"};
+	char text[200];
+
+	if (screen->typing)
+		snprintf(text, sizeof(text), "/%s", screen->search);
+	else
+		snprintf(text, sizeof(text),
+		         "%d to %d of %d%s%s%s%s; / searches, s sorts, ! bad first, q ends",
+		         screen->top + (last > screen->top), last, screen->count,
+		         *screen->search ? " with " : "", screen->search, sorts[screen->sort],
+		         screen->bad_first ? "; bad first" : "");
+	while (screen->line + 1 < screen->lines)
+		put_line(out, screen, "", "");
+	put_line(out, screen, screen->typing ? "" : "\033[2m", text);
 }
 
 static void put_rows(FILE *out, struct screen *screen, struct table *table,
                      const char *const *styles)
 {
-	char line[2048], text[96];
-	int count = screen->watch->rows.count, last;
+	char line[2048];
 
 	memcpy(table->least, screen->least, sizeof(screen->least));
 	table_fit(table, screen->width);
@@ -184,21 +304,16 @@ static void put_rows(FILE *out, struct screen *screen, struct table *table,
 		screen->least[i] = table->natural[i];
 	if (screen->lines > 1) {
 		table_line(table, -1, line, sizeof(line));
-		fputs("\r\n", out);
 		put_line(out, screen, "\033[1m", line);
 	}
 	for (int i = 0; i < (int)table->rows; i++) {
 		table_line(table, i, line, sizeof(line));
-		fputs("\r\n", out);
 		put_line(out, screen, styles[i], line);
 	}
-	last = screen->top + (int)table->rows;
-	if (last - screen->top < count && screen->lines > 2) {
-		snprintf(text, sizeof(text), "%d to %d of %d; arrows and page keys, q ends",
-		         screen->top + (last > screen->top), last, count);
-		fputs("\r\n", out);
-		put_line(out, screen, "\033[2m", text);
-	}
+	if (has_foot(screen) && screen->lines > 2)
+		put_foot(out, screen, screen->top + (int)table->rows);
+	while (screen->line < screen->lines)
+		put_line(out, screen, "", "");
 }
 
 /* One picture, written at once. 0, -ENOMEM, -EPIPE. */
@@ -212,13 +327,14 @@ static int draw(struct screen *screen)
 	int err = -ENOMEM;
 
 	table_init(&table, columns, COLUMNS);
-	keep_top_in_range(screen);
-	if (out && styles && fill(screen, &table, styles)) {
-		fputs("\033[H", out);
+	screen->line = 0;
+	if (out && styles && survey(screen, &table)) {
+		keep_top_in_range(screen);
 		put_head(out, screen);
-		put_rows(out, screen, &table, styles);
-		fputs("\033[J", out);
-		err = 0;
+		if (fill(screen, &table, styles)) {
+			put_rows(out, screen, &table, styles);
+			err = 0;
+		}
 	}
 	if (out && fclose(out) != 0)
 		err = -ENOMEM;
@@ -252,7 +368,18 @@ static bool on_key(struct screen *screen, enum terminal_key key)
 		screen->top = 0;
 		break;
 	case KEY_LAST:
-		screen->top = screen->watch->rows.count;
+		screen->top = screen->count;
+		break;
+	case KEY_SEARCH:
+		screen->typing = true;
+		screen->search[0] = '\0';
+		break;
+	case KEY_SORT:
+		screen->sort = (screen->sort + 1) % SORTS;
+		break;
+	case KEY_BAD_FIRST:
+		screen->bad_first = !screen->bad_first;
+		screen->top = 0;
 		break;
 	case KEY_NONE:
 	case KEY_OTHER:
@@ -260,6 +387,49 @@ static bool on_key(struct screen *screen, enum terminal_key key)
 	}
 	keep_top_in_range(screen);
 	return true;
+}
+
+/* A byte of the search; Enter ends it, and Esc takes it back. */
+static void on_byte(struct screen *screen, char byte)
+{
+	size_t len = strlen(screen->search);
+
+	if (byte == '\r' || byte == '\n' || byte == '\033') {
+		screen->typing = false;
+		if (byte == '\033')
+			screen->search[0] = '\0';
+	} else if (byte == 0x7f || byte == '\b') {
+		screen->search[len ? len - 1 : 0] = '\0';
+	} else if (byte > ' ' && len + 1 < sizeof(screen->search)) {
+		screen->search[len] = byte;
+		screen->search[len + 1] = '\0';
+	}
+	screen->top = 0;
+}
+
+/* All that was typed. 0; 1: something was; -1: the user ends it. */
+static int take_keys(struct screen *screen)
+{
+	int pressed = 0;
+
+	for (;;) {
+		enum terminal_key key;
+		char byte;
+
+		if (screen->typing) {
+			byte = terminal_byte();
+			if (!byte)
+				return pressed;
+			on_byte(screen, byte);
+		} else {
+			key = terminal_key();
+			if (key == KEY_NONE)
+				return pressed;
+			if (!on_key(screen, key))
+				return -1;
+		}
+		pressed = 1;
+	}
 }
 
 static void on_event(struct screen *screen, enum watch_event event)
@@ -289,20 +459,18 @@ static int run(struct screen *screen)
 
 	for (;;) {
 		int64_t now;
-		bool pressed = false;
-		enum terminal_key key;
-		int event, err;
+		int pressed, event, err;
 
 		terminal_suspend_if_asked();
 		if (terminal_size(&screen->lines, &screen->width)) {
 			memset(screen->least, 0, sizeof(screen->least));
+			if (!forget_lines(screen))
+				return -ENOMEM;
 			drawn = 0;
 		}
-		while ((key = terminal_key()) != KEY_NONE) {
-			pressed = true;
-			if (!on_key(screen, key))
-				return 0;
-		}
+		pressed = take_keys(screen);
+		if (pressed < 0)
+			return 0;
 		now = ows_now();
 		if (pressed || drawn == 0 || now - drawn >= LONGEST_PICTURE ||
 		    (news != screen->watch->news && now - drawn >= BETWEEN_PICTURES)) {
@@ -332,5 +500,9 @@ int watch_screen(struct watch *watch)
 	terminal_open();
 	err = run(&screen);
 	terminal_close();
+	screen.lines = 0;
+	forget_lines(&screen);
+	free(screen.before);
+	free(screen.order);
 	return err ? ctl_fail("no memory") : CTL_DONE;
 }

@@ -31,7 +31,8 @@ int verb_write(struct ctl *ctl, int argc, char **argv)
 	ask.req.data = (uint8_t *)argv[optind + 1];
 	ask.req.len = (uint32_t)strlen(argv[optind + 1]);
 	if (target_ask_one(&target, &ask))
-		status = ctl_fail("%s: %s", argv[optind], error_words(ask.answer.err, words));
+		status = ctl_fail("%s: %s%s", argv[optind], error_words(ask.answer.err, words),
+		                  open_asked(ctl, &target, &served));
 	target_close(&target);
 	return status;
 }

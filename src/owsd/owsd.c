@@ -7,6 +7,7 @@
 #include "src/board/look.h"
 #include "src/board/report.h"
 #include "src/config/buses.h"
+#include "src/config/check.h"
 #include "src/config/load.h"
 #include "src/config/own.h"
 #include "src/config/print.h"
@@ -128,6 +129,7 @@ static int load(const struct arguments *a, struct told *told, struct config **co
 	if (!err) {
 		config_hash_files(*config);
 		config_check_buses(*config, &report);
+		config_check_items(*config, &report);
 		return 0;
 	}
 	config_free(*config);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "src/show/names.h"
+#include "src/text/distance.h"
 
 static int find_record(void *ctx, const char *name, size_t len)
 {
@@ -48,34 +49,6 @@ bool names_match(const char *name, char *const *patterns, int count)
 	return count == 0;
 }
 
-static unsigned least(unsigned a, unsigned b)
-{
-	return a < b ? a : b;
-}
-
-unsigned names_distance(const char *a, const char *b)
-{
-	/* three rows of the table of distances between all beginnings of a and of b */
-	unsigned rows[3][NAMES_MAX + 1];
-	size_t la = strnlen(a, NAMES_MAX), lb = strnlen(b, NAMES_MAX);
-
-	for (size_t j = 0; j <= lb; j++)
-		rows[0][j] = (unsigned)j;
-	for (size_t i = 1; i <= la; i++) {
-		unsigned *row = rows[i % 3];
-		const unsigned *above = rows[(i + 2) % 3], *above2 = rows[(i + 1) % 3];
-
-		row[0] = (unsigned)i;
-		for (size_t j = 1; j <= lb; j++) {
-			row[j] = least(least(above[j] + 1, row[j - 1] + 1),
-			               above[j - 1] + (a[i - 1] != b[j - 1]));
-			if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-				row[j] = least(row[j], above2[j - 2] + 1);
-		}
-	}
-	return rows[la % 3][lb];
-}
-
 struct nearest {
 	const char *name;
 	char *best;
@@ -84,7 +57,7 @@ struct nearest {
 
 static void consider(struct nearest *nearest, const char *candidate)
 {
-	unsigned distance = names_distance(nearest->name, candidate);
+	unsigned distance = text_distance(nearest->name, candidate);
 
 	if (distance < nearest->distance) {
 		nearest->distance = distance;
@@ -107,12 +80,9 @@ static void consider_attributes(struct nearest *nearest, const char *signal, boo
 
 bool names_nearest(struct ows *h, const char *name, char best[NAMES_MAX])
 {
-	size_t len = strlen(name);
-	struct nearest nearest = {.name = name, .best = best};
+	struct nearest nearest = {.name = name, .best = best, .distance = text_too_far(name)};
 
-	/* a name with more than a third of its letters wrong is another name */
-	nearest.distance = (unsigned)(len < 3 ? 2 : len / 3 + 1);
-	if (len >= NAMES_MAX)
+	if (strlen(name) >= NAMES_MAX)
 		return false;
 	best[0] = '\0';
 	for (int i = 0; i < ows_count(h); i++) {

@@ -21,11 +21,6 @@ bool names_info(struct ows *h, const char *instance, const char *name, struct ow
 /* Does one of count patterns (fnmatch) match, or is there none? */
 bool names_match(const char *name, char *const *patterns, int count);
 
-/*
- * The least number of insertions, deletions, replacements and swaps of neighbours between two
- * names.
- */
-unsigned names_distance(const char *a, const char *b);
 /* The name that the user probably meant; false if no name is near. */
 bool names_nearest(struct ows *h, const char *name, char nearest[NAMES_MAX]);
 

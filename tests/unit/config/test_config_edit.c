@@ -216,16 +216,40 @@ static void test_an_item_is_added_to_a_configuration_without_items(void)
 	parse(edit_empty);
 	TEST_ASSERT_EQUAL_INT(0, edit_add(&rio, "a", "/x/y", NULL, 0, &report));
 	TEST_ASSERT_EQUAL_INT(0, edit_add(&rio, "b", "/x/z", NULL, 0, &report));
-	TEST_ASSERT_EQUAL_INT(0, edit_commit(rio, file, &report));
+	TEST_ASSERT_EQUAL_INT(0, edit_commit(rio, file, NULL, &report));
 	TEST_ASSERT_EQUAL_STRING("", said);
-	TEST_ASSERT_NOT_NULL(strstr(rio->text, "ItemCount               2\n"));
+	/* in words, and without a count that has to be kept right */
+	TEST_ASSERT_NOT_NULL(strstr(rio->text, "    Path                    \"/x/z\"\n"
+	                                       "    Type                    \"double\"\n"
+	                                       "    IO                      \"input\"\n"
+	                                       "  }\n"));
+	TEST_ASSERT_NULL(strstr(rio->text, "ItemCount"));
+}
+
+static void test_the_words_of_the_dialog_lead_to_the_keys(void)
+{
+	static const char *const words[][2] = {
+		{"Power-on Reset Alarm=por", "PorAlarm"}, {"REX I/O Name=x", "Name"},
+		{"Sensor/Actuator Path=/a/b", "Path"},    {"Latch Alarm=latch", "LatchAlarm"},
+		{"Init. Value=1", "InitValue"},
+	};
+	char expected[64];
+
+	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++) {
+		said_begin();
+		parse(genuine);
+		TEST_ASSERT_EQUAL_INT(-EINVAL, set("room1", words[i][0]));
+		snprintf(expected, sizeof(expected), "; is it %s?", words[i][1]);
+		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, expected), said);
+	}
+	said_begin();
 }
 
 /* Every edit there is, each of which makes lines or takes some out. */
 static void edit_all(const char *text)
 {
 	static const char *const keys[] = {"InitValue"}, *const more[] = {"Type=byte", "IO=output"};
-	char path[100] = "Path=/28.551DDF030000/";
+	char path[100] = "Path=/kitchen/";
 
 	memset(path + strlen(path), 'p', 60);
 	parse(text);
@@ -235,7 +259,7 @@ static void edit_all(const char *text)
 	TEST_ASSERT_EQUAL_INT(0, set("OwsDrv", "Period=0.5"));
 	TEST_ASSERT_EQUAL_INT(0, edit_add(&rio, "b", path + 5, more, 2, &report));
 	TEST_ASSERT_EQUAL_INT(0, edit_remove(&rio, "relay", &report));
-	TEST_ASSERT_EQUAL_INT(0, edit_commit(rio, file, &report));
+	TEST_ASSERT_EQUAL_INT(0, edit_commit(rio, file, NULL, &report));
 	TEST_ASSERT_EQUAL_STRING("", said);
 }
 
@@ -322,7 +346,7 @@ static void test_a_result_that_is_no_configuration_never_reaches_the_file(void)
 	TEST_ASSERT_EQUAL_INT(0, replace_file(file, genuine, strlen(genuine)));
 	parse(genuine);
 	TEST_ASSERT_EQUAL_INT(0, set("relay", "InitValue=256"));
-	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_commit(rio, file, &report));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_commit(rio, file, NULL, &report));
 	TEST_ASSERT_NOT_NULL(strstr(said, "InitValue \"256\": the type byte cannot hold it"));
 	read_back(file, text, sizeof(text));
 	TEST_ASSERT_EQUAL_STRING(genuine, text);
@@ -525,5 +549,6 @@ int main(void)
 	RUN_TEST(test_a_replaced_device_changes_the_paths_of_its_items_only);
 	RUN_TEST(test_a_replacement_that_cannot_be_meant_is_refused);
 	RUN_TEST(test_a_device_with_more_items_than_any_has_is_not_replaced);
+	RUN_TEST(test_the_words_of_the_dialog_lead_to_the_keys);
 	return UNITY_END();
 }

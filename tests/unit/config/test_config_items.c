@@ -107,7 +107,6 @@ static void test_three_items_of_one_name_all_name_the_first(void)
 
 static void test_items_that_can_be_understood_are_only_warned_about(void)
 {
-#define ALARM_KEYS "the keys are Alarm, LatchAlarm, PorAlarm, SetAlarm, ResetLatch\n"
 	static const struct line cases[] = {
 		{"Name x Path /a/b IOType 0x4218",
 	         "f:3:25: warning: IOType 0x4218 has the unknown bits 0x4200, which are ignored\n"},
@@ -116,15 +115,6 @@ static void test_items_that_can_be_understood_are_only_warned_about(void)
 	         "dropped; alarms are chosen by Alarm on\n"},
 		{ITEM "Initvalue \"3\"",
 	         "f:3:28: warning: unknown key Initvalue in Item is ignored; is it InitValue?\n"},
-		{ITEM "Latch \"latch.BYTE\"",
-	         "f:3:28: warning: unknown key Latch in Item is ignored; \"latch.BYTE\" looks like "
-	         "part of an alarm: " ALARM_KEYS},
-		{ITEM "AlarmPOR \"por\"",
-	         "f:3:28: warning: unknown key AlarmPOR in Item is ignored; \"por\" looks like part "
-	         "of an alarm: " ALARM_KEYS},
-		{ITEM "Foo \"set_alarm=133333333\"",
-	         "f:3:28: warning: unknown key Foo in Item is ignored; \"set_alarm=133333333\" looks "
-	         "like part of an alarm: " ALARM_KEYS},
 		{ITEM "Portion \"portion\"",
 	         "f:3:28: warning: unknown key Portion in Item is ignored\n"},
 		{ITEM "SafeValue 3",
@@ -287,6 +277,30 @@ static void test_a_start_value_longer_than_a_string_is_an_error(void)
 	TEST_ASSERT_NOT_NULL(strstr(said, "1024"));
 }
 
+static void test_a_part_of_an_alarm_that_is_not_understood_is_an_error(void)
+{
+#define PART(key, by) \
+	"f:3:28: error: unknown key " key " in Item looks like part of an alarm, which would be " \
+	"off: write " by " in its place\n"
+	static const struct line cases[] = {
+		{ITEM "Latch \"latch.BYTE\"", PART("Latch", "LatchAlarm")},
+		{ITEM "AlarmPOR \"por\"", PART("AlarmPOR", "PorAlarm")},
+		{ITEM "AlarmPor \"x\"", PART("AlarmPor", "PorAlarm")},
+		{ITEM "Foo \"set_alarm=133333333\"", PART("Foo", "SetAlarm")},
+		{ITEM "Foo \"latch.BYTE=0\"", PART("Foo", "ResetLatch")},
+		{ITEM "AlarmOn 1", PART("AlarmOn", "Alarm")},
+	};
+
+	expect_errors(cases, COUNT(cases), parse_item);
+}
+
+static void test_a_forgotten_brace_is_named(void)
+{
+	parse_item(ITEM "\nItem { Name y }");
+	TEST_ASSERT_NOT_NULL(strstr(
+		said, "unknown key Item in Item is ignored; is a '}' missing before line 4?\n"));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -299,5 +313,7 @@ int main(void)
 	RUN_TEST(test_what_an_output_begins_with_and_how_long_it_waits);
 	RUN_TEST(test_an_integer_for_what_has_decimals_is_warned_about);
 	RUN_TEST(test_a_start_value_longer_than_a_string_is_an_error);
+	RUN_TEST(test_a_part_of_an_alarm_that_is_not_understood_is_an_error);
+	RUN_TEST(test_a_forgotten_brace_is_named);
 	return UNITY_END();
 }

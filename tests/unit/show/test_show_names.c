@@ -6,6 +6,7 @@
 #include "unity.h"
 
 #include "src/show/names.h"
+#include "src/text/distance.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal signals[] = {
@@ -86,13 +87,13 @@ static void test_no_pattern_selects_all(void)
 
 static void test_the_distance_counts_mistypings(void)
 {
-	TEST_ASSERT_EQUAL(0, names_distance("room1", "room1"));
-	TEST_ASSERT_EQUAL(1, names_distance("rom1", "room1"));
-	TEST_ASSERT_EQUAL(1, names_distance("room11", "room1"));
-	TEST_ASSERT_EQUAL(1, names_distance("roon1", "room1"));
-	TEST_ASSERT_EQUAL(1, names_distance("romo1", "room1"));
-	TEST_ASSERT_EQUAL(5, names_distance("", "room1"));
-	TEST_ASSERT_EQUAL(3, names_distance("kitten", "sitting"));
+	TEST_ASSERT_EQUAL(0, text_distance("room1", "room1"));
+	TEST_ASSERT_EQUAL(1, text_distance("rom1", "room1"));
+	TEST_ASSERT_EQUAL(1, text_distance("room11", "room1"));
+	TEST_ASSERT_EQUAL(1, text_distance("roon1", "room1"));
+	TEST_ASSERT_EQUAL(1, text_distance("romo1", "room1"));
+	TEST_ASSERT_EQUAL(5, text_distance("", "room1"));
+	TEST_ASSERT_EQUAL(3, text_distance("kitten", "sitting"));
 }
 
 static void test_the_distance_is_the_same_both_ways(void)
@@ -101,8 +102,8 @@ static void test_the_distance_is_the_same_both_ways(void)
 
 	for (size_t i = 0; i < 6; i++)
 		for (size_t j = 0; j < 6; j++)
-			TEST_ASSERT_EQUAL(names_distance(some[i], some[j]),
-			                  names_distance(some[j], some[i]));
+			TEST_ASSERT_EQUAL(text_distance(some[i], some[j]),
+			                  text_distance(some[j], some[i]));
 }
 
 static void nearest_is(const char *expected, const char *name)

@@ -6,7 +6,7 @@
 #include "unity.h"
 
 #include "hal/chips/family.h"
-#include "src/owsctl/property.h"
+#include "src/config/property.h"
 
 static char nearest[PROPERTY_NAME];
 

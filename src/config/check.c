@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: MIT */
+/* Checks paths, properties and directions of the items by the tables of the chip families. */
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hal/chips/find.h"
+#include "hal/owfs/path.h"
+#include "src/config/check.h"
+#include "src/config/config.h"
+#include "src/config/options.h"
+#include "src/config/property.h"
+#include "src/signal/quantity.h"
+
+struct check {
+	struct config_report *report;
+	const struct config_item *item;
+	struct place place;
+	bool tables; /* a Bus names a file of sensors: devices may have more properties */
+};
+
+#define ID_DIGITS 12
+
+/* How many of the first len letters are hexadecimal digits? */
+static size_t digits_of(const char *text, size_t len)
+{
+	size_t n = 0;
+
+	while (n < len && isxdigit((unsigned char)text[n]))
+		n++;
+	return n;
+}
+
+/* Does the component begin as an id does: a family that there is, and a sign? Then text after it. */
+static const char *after_family(const char *text, size_t len, uint8_t *code)
+{
+	char digits[3] = {0};
+
+	if (len < 3 || digits_of(text, 2) != 2 || (text[2] != '.' && text[2] != '-'))
+		return NULL;
+	memcpy(digits, text, 2);
+	*code = (uint8_t)strtoul(digits, NULL, 16);
+	return family_of(*code)->code == *code ? text + 3 : NULL;
+}
+
+/* The id that the kernel spells so: the last byte of the number first. */
+static void from_kernel(uint8_t code, const char *digits, char text[ROM_TEXT_MAX])
+{
+	uint8_t rom[ROM_LEN] = {code};
+
+	for (int i = 0; i < ID_DIGITS / 2; i++) {
+		char byte[3] = {digits[ID_DIGITS - 2 - 2 * i], digits[ID_DIGITS - 1 - 2 * i]};
+
+		rom[1 + i] = (uint8_t)strtoul(byte, NULL, 16);
+	}
+	rom_print(rom, ROM_F_I, text);
+}
+
+/* A component that is no id, but looks like one. */
+static void check_component(const struct check *check, const char *text, size_t len)
+{
+	const char *name = check->item->name;
+	uint8_t rom[ROM_LEN], code = 0;
+	const char *rest = after_family(text, len, &code);
+	size_t left = rest ? len - 3 : 0, digits;
+	char right[ROM_TEXT_MAX];
+
+	if (!rest || rom_parse(text, len, rom) == 0)
+		return;
+	digits = digits_of(rest, left);
+	if (text[2] == '-' && left == ID_DIGITS && digits == left) {
+		from_kernel(code, rest, right);
+		report_warning(check->report, check->place,
+		               "\"%s\": %.*s is the kernel's spelling of a device: write %s", name,
+		               (int)len, text, right);
+	} else if (digits == left && left >= 4) {
+		report_warning(check->report, check->place,
+		               "\"%s\": %.*s has %zu digits after its family and counts as an "
+		               "alias; an id has %d: owsctl scan shows them",
+		               name, (int)len, text, left, ID_DIGITS);
+	} else if (left == ID_DIGITS && text[2] == '.' && digits >= left / 2) {
+		report_warning(check->report, check->place,
+		               "\"%s\": %.*s counts as an alias; an id has no digit '%c', only 0 "
+		               "to 9 and A to F",
+		               name, (int)len, text, rest[digits]);
+	}
+}
+
+static void check_ids(const struct check *check)
+{
+	const char *at = check->item->path;
+
+	while (*at) {
+		size_t len = strcspn(at, "/");
+
+		check_component(check, at, len);
+		at += len + (at[len] == '/');
+	}
+}
+
+/* A property that is named at `what`: "" or the key of an alarm, with a blank behind it. */
+static void check_property(const struct check *check, const char *path, const char *what,
+                           const char *property)
+{
+	struct path_property found = property_look(path);
+
+	if (found.there)
+		return;
+	if (*found.nearest)
+		report_warning(check->report, check->place,
+		               "\"%s\": %sa %s has no %s; did you mean %s?", check->item->name,
+		               what, found.type, property, found.nearest);
+	else if (!check->tables)
+		report_warning(check->report, check->place,
+		               "\"%s\": %sowsd knows no %s of a %s: check its spelling",
+		               check->item->name, what, property, found.type);
+}
+
+/* The property of an alarm key, whose value may be property=value. */
+static void check_alarm(const struct check *check, enum option option, const char *value,
+                        const struct path *path, bool writes)
+{
+	size_t head = path->property.len ? (size_t)(path->property.text - check->item->path) : 0;
+	char text[PATH_LEN_MAX + 64], what[32];
+	int len = value ? (int)strcspn(value, "=") : 0;
+
+	if (!len || !head)
+		return;
+	if ((size_t)snprintf(text, sizeof(text), "%.*s%.*s", (int)head, check->item->path, len,
+	                     value) >= sizeof(text))
+		return;
+	snprintf(what, sizeof(what), "%s: ", option_table[option].key);
+	check_property(check, text, what, text + head);
+	if (writes && !property_look(text).writable)
+		report_warning(check->report, check->place,
+		               "\"%s\": %s%s cannot be written, so the alarm cannot be served",
+		               check->item->name, what, text + head);
+}
+
+static void check_direction(const struct check *check)
+{
+	const struct config_item *item = check->item;
+	struct path_property found = property_look(item->path);
+
+	if (item->output && !found.writable)
+		report_warning(check->report, check->place,
+		               "\"%s\" is an output, but %s cannot be written: write IO input",
+		               item->name, strrchr(item->path, '/') + 1);
+	else if (item->writable && !found.writable)
+		report_warning(check->report, check->place,
+		               "\"%s\" is Writable, but %s cannot be written: write Writable off",
+		               item->name, strrchr(item->path, '/') + 1);
+	else if (item->readable && !found.readable)
+		report_warning(check->report, check->place,
+		               "\"%s\" is read, but %s can only be written: write IO output",
+		               item->name, strrchr(item->path, '/') + 1);
+}
+
+static void check_item(const struct check *check)
+{
+	const struct config_item *item = check->item;
+	struct quantity quantity;
+	struct path path;
+
+	if (path_split(item->path, strlen(item->path), &path))
+		return;
+	check_ids(check);
+	if (path.property.len)
+		check_property(check, item->path, "", path.property.text);
+	check_direction(check);
+	if (item->type == OWS_STRING && quantity_of(item->path, &quantity))
+		report_warning(
+			check->report, check->place,
+			"\"%s\" is a number, and a string shows it as text: write Type double",
+			item->name);
+	if (!item->alarm)
+		return;
+	check_alarm(check, OPT_LATCH_ALARM, item->latch_alarm, &path, false);
+	check_alarm(check, OPT_POR_ALARM, item->por_alarm, &path, true);
+	check_alarm(check, OPT_SET_ALARM, item->set_alarm, &path, true);
+	check_alarm(check, OPT_RESET_LATCH, item->reset_latch, &path, true);
+}
+
+/* name NULL: all items. */
+static void check_items(const struct config *config, const char *name, struct config_report *report)
+{
+	struct check check = {.report = report};
+
+	for (unsigned i = 0; i < config->bus_count; i++)
+		for (unsigned k = 0; k < config->buses[i].option_count; k++)
+			check.tables |= !strcmp(config->buses[i].options[k].key,
+			                        option_table[OPT_BUS_SENSORS].key);
+	for (unsigned i = 0; i < config->item_count; i++) {
+		check.item = &config->items[i];
+		check.place = (struct place){config->file, check.item->line, 0};
+		if (!name || !strcmp(check.item->name, name))
+			check_item(&check);
+	}
+}
+
+void config_check_items(const struct config *config, struct config_report *report)
+{
+	check_items(config, NULL, report);
+}
+
+void config_check_item(const struct config *config, const char *name, struct config_report *report)
+{
+	check_items(config, name, report);
+}

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT */
+/* Looks up the properties that paths name in the tables of the families. */
+#include <stdio.h>
+#include <string.h>
+
+#include "hal/chips/family.h"
+#include "hal/chips/find.h"
+#include "hal/owfs/path.h"
+#include "src/config/property.h"
+#include "src/text/distance.h"
+
+static bool begins(const struct property *property, const char *name, size_t len)
+{
+	return !strncmp(property->name, name, len) && property->name[len] == '/';
+}
+
+/* Is name the property itself, or the directory that it is in? */
+static bool has(const struct family *family, const char *name, size_t len)
+{
+	const struct property *property = NULL;
+
+	if (family_property(family, NULL, name, len))
+		return true;
+	while ((property = family_next(family, NULL, property)))
+		if (begins(property, name, len))
+			return true;
+	return false;
+}
+
+static void find_nearest(const struct family *family, const char *name, const char *extension,
+                         char nearest[PROPERTY_NAME])
+{
+	unsigned best = text_too_far(name);
+	const struct property *property = NULL;
+
+	while ((property = family_next(family, NULL, property))) {
+		unsigned distance = text_distance(name, property->name);
+
+		if (property->type == PROPERTY_DIRECTORY || distance >= best)
+			continue;
+		best = distance;
+		snprintf(nearest, PROPERTY_NAME, "%s%s", property->name, extension);
+	}
+}
+
+static void take_access(const struct property *property, struct path_property *found)
+{
+	if (!property)
+		return;
+	found->readable = property->access & ACCESS_READ;
+	found->writable = property->access & ACCESS_WRITE;
+}
+
+/* Does an element of an array have that name: BYTE, ALL, its number or its letter? */
+static bool is_element(const struct property *property, const char *name)
+{
+	unsigned count = property->array.count, number = 0;
+	const char *p = name;
+
+	if (!count || !strcmp(name, "ALL") || !strcmp(name, "BYTE"))
+		return true;
+	if (property->array.index == INDEX_LETTERS)
+		return *name >= 'A' && (unsigned)(*name - 'A') < count && !name[1];
+	for (; *p >= '0' && *p <= '9' && number < count; p++)
+		number = number * 10 + (unsigned)(*p - '0');
+	return p != name && !*p && number < count;
+}
+
+struct path_property property_look(const char *path)
+{
+	struct path_property found = {.there = true, .readable = true, .writable = true};
+	char name[PATH_LEN_MAX + 1], *dot;
+	const struct property *property;
+	const struct family *family;
+	struct path split;
+
+	if (path_split(path, strlen(path), &split) || !split.has_rom || !split.property.len ||
+	    split.property.len >= sizeof(name))
+		return found;
+	family = family_of(split.rom[0]);
+	if (family->code != split.rom[0])
+		return found;
+	found.type = family->type;
+	memcpy(name, split.property.text, split.property.len);
+	name[split.property.len] = '\0';
+	dot = strrchr(name, '.');
+	property = family_property(family, NULL, name, strlen(name));
+	if (!property && dot)
+		property = family_property(family, NULL, name, (size_t)(dot - name));
+	take_access(property, &found);
+	if (property && dot && property->name[dot - name] == '\0' &&
+	    !is_element(property, dot + 1)) {
+		found.there = false;
+		if (text_distance(dot + 1, "BYTE") < 3)
+			snprintf(found.nearest, PROPERTY_NAME, "%s.BYTE", property->name);
+		return found;
+	}
+	if (property || has(family, name, strlen(name)) ||
+	    (dot && has(family, name, (size_t)(dot - name))))
+		return found;
+	found.there = false;
+	if (dot)
+		*dot = '\0';
+	find_nearest(family, name, dot ? split.property.text + (dot - name) : "", found.nearest);
+	return found;
+}
+
+bool property_known(const char *path, char nearest[PROPERTY_NAME])
+{
+	struct path_property found = property_look(path);
+
+	memcpy(nearest, found.nearest, PROPERTY_NAME);
+	return found.there;
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT */
+/* What the tables of the families say of the property that a path names. */
+#ifndef CONFIG_PROPERTY_H
+#define CONFIG_PROPERTY_H
+
+#include <stdbool.h>
+
+#define PROPERTY_NAME 64
+
+struct path_property {
+	const char *type;            /* of the family, as "DS18B20"; NULL: not known */
+	bool there;                  /* true too where nobody can know */
+	bool readable, writable;     /* true too where nobody can know */
+	char nearest[PROPERTY_NAME]; /* not there: what was probably meant, or "" */
+};
+
+/*
+ * Look up a path. Nobody can know: a path without an id or a property, a family that owsd does not
+ * know.
+ */
+struct path_property property_look(const char *path);
+/* .there of it, and the nearest name. */
+bool property_known(const char *path, char nearest[PROPERTY_NAME]);
+
+#endif

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT */
+/* How near a word is to the one that a user probably meant. */
+#ifndef TEXT_DISTANCE_H
+#define TEXT_DISTANCE_H
+
+/*
+ * The least number of insertions, deletions, replacements and swaps of neighbours between two
+ * words, of each its first TEXT_DISTANCE_MAX letters; case does not count.
+ */
+#define TEXT_DISTANCE_MAX 128
+unsigned text_distance(const char *a, const char *b);
+
+/*
+ * A word with more than a third of its letters wrong is another word: text_distance() to one that
+ * was meant is less.
+ */
+unsigned text_too_far(const char *word);
+
+#endif

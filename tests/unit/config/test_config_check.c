@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: MIT */
+/* What --check says of ids, properties and directions by the tables of the families. */
+#include <stdio.h>
+#include <string.h>
+
+#include "unity.h"
+
+#include "hal/chips/find.h"
+#include "src/config/check.h"
+#include "src/config/load.h"
+#include "tests/unit/aid/config_case.h"
+
+void setUp(void)
+{
+	config_case_begin();
+}
+
+void tearDown(void)
+{
+	config_case_end();
+}
+
+static int check(const char *keys)
+{
+	int err = parse_item(keys);
+
+	if (!err)
+		config_check_items(config, &report);
+	return err;
+}
+
+#define AT "f:2: warning: \"x\""
+static void test_what_cannot_be_meant_is_named_with_its_remedy(void)
+{
+	static const struct line cases[] = {
+		{"Name x Path /28-000003df1d55/temperature Type double", AT
+	         ": 28-000003df1d55 is the kernel's spelling of a device: write 28.551DDF030000\n"},
+		{"Name x Path /sys/bus/w1/devices/28-000003df1d55/w1_slave Type double", AT
+	         ": 28-000003df1d55 is the kernel's spelling of a device: write 28.551DDF030000\n"},
+		{"Name x Path /28.551DDF03000/temperature Type double",
+	         AT ": 28.551DDF03000 has 11 digits after its family and counts as an alias; an id "
+	            "has 12: owsctl scan shows them\n"},
+		{"Name x Path /28.00A1/temperature Type double",
+	         AT ": 28.00A1 has 4 digits after its family and counts as an alias; an id has 12: "
+	            "owsctl scan shows them\n"},
+		{"Name x Path /28.0000000000ZZ/temperature Type double", AT
+	         ": 28.0000000000ZZ counts as an alias; an id has no digit 'Z', only 0 to 9 and A "
+	         "to F\n"},
+		{"Name x Path /28.551DDF030000/temprature12 Type double",
+	         AT ": a DS18B20 has no temprature12; did you mean temperature12?\n"},
+		{"Name x Path /29.B89115000000/PIO.8 Type bool",
+	         AT ": owsd knows no PIO.8 of a DS2408: check its spelling\n"},
+		{"Name x Path /28.551DDF030000/pressure Type double",
+	         AT ": owsd knows no pressure of a DS18B20: check its spelling\n"},
+		{"Name x Path /28.551DDF030000/temperature Type double IO output",
+	         AT " is an output, but temperature cannot be written: write IO input\n"},
+		{"Name x Path /28.551DDF030000/temperature Type double Writable on",
+	         AT " is Writable, but temperature cannot be written: write Writable off\n"},
+		{"Name x Path /28.551DDF030000/temperature Type string",
+	         AT " is a number, and a string shows it as text: write Type double\n"},
+		{"Name x Path /29.B89115000000/sensed.BYTE Type byte Alarm on LatchAlarm \"latch.BYT\" "
+	         "PorAlarm \"porr\" SetAlarm \"set_alarm=1\" ResetLatch \"sensed.BYTE=0\"",
+	         AT ": LatchAlarm: a DS2408 has no latch.BYT; did you mean latch.BYTE?\n" AT
+	            ": PorAlarm: a DS2408 has no porr; did you mean por?\n" AT
+	            ": ResetLatch: sensed.BYTE cannot be written, so the alarm cannot be served\n"},
+	};
+
+	expect_warnings(cases, COUNT(cases), check);
+}
+
+static void test_what_may_be_meant_is_not_mentioned(void)
+{
+	static const struct line cases[] = {
+		{"Name x Path /kitchen/temprature Type double", ""},
+		{"Name x Path /28.kitchen/temperature Type double", ""},
+		{"Name x Path /ab.cdef/temperature Type double", ""},
+		{"Name x Path /28551DDF030000/temperature12 Type double", ""},
+		{"Name x Path /29.B89115000000/PIO.3 Type bool IO output", ""},
+		{"Name x Path /29.B89115000000/PIO.ALL Type string IO output", ""},
+		{"Name x Path /3A.B89115000000/PIO.B Type bool IO output", ""},
+		{"Name x Path /bus.1/1F.551DDF030000/main/28.551DDF030000/temperature Type double",
+	         ""},
+		{"Name x Path /statistics/errors/CRC8_errors Type double", ""},
+		{"Name x Path /gpio/17 Type bool IO output", ""},
+	};
+
+	expect_warnings(cases, COUNT(cases), check);
+}
+
+/* A table of a family that this check contradicts would be found here. */
+static void test_no_property_of_any_family_in_its_own_direction_is_complained_of(void)
+{
+	for (unsigned n = 0; family_nth(n); n++) {
+		const struct property *property = NULL;
+
+		while ((property = family_next(family_nth(n), NULL, property))) {
+			char keys[160];
+
+			if (property->type == PROPERTY_DIRECTORY || !property->access)
+				continue;
+			snprintf(keys, sizeof(keys),
+			         "Name x Path \"/%02X.000000000001/%s\" Type double%s",
+			         family_nth(n)->code, property->name,
+			         property->access & ACCESS_READ ? "" : " IO output");
+			said_begin();
+			TEST_ASSERT_EQUAL_INT(0, check(keys));
+			TEST_ASSERT_NULL_MESSAGE(strstr(said, "cannot be written"), said);
+			TEST_ASSERT_NULL_MESSAGE(strstr(said, "has no "), said);
+			config_free(config);
+			config = NULL;
+		}
+	}
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_what_cannot_be_meant_is_named_with_its_remedy);
+	RUN_TEST(test_what_may_be_meant_is_not_mentioned);
+	RUN_TEST(test_no_property_of_any_family_in_its_own_direction_is_complained_of);
+	return UNITY_END();
+}
