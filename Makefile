@@ -48,6 +48,8 @@ DESTDIR  ?=
 LIBDIR   ?= $(PREFIX)/lib
 MANDIR   ?= $(PREFIX)/share/man
 DATADIR  ?= $(PREFIX)/share/owsd
+BASHDIR  ?= $(PREFIX)/share/bash-completion/completions
+ZSHDIR   ?= $(PREFIX)/share/zsh/site-functions
 
 .DEFAULT_GOAL := all
 
@@ -477,6 +479,9 @@ install: all
 	install -m 644 $(wildcard board/boards/*.board) $(D)$(DATADIR)/boards
 	@set -e; for m in $(MAN); do d=$(D)$(MANDIR)/man$${m##*.}; install -d $$d; \
 	    install -m 644 $$m $$d; done
+	install -d $(D)$(BASHDIR) $(D)$(ZSHDIR)
+	install -m 644 board/completion/owsctl.bash $(D)$(BASHDIR)/owsctl
+	install -m 644 board/completion/_owsctl $(D)$(ZSHDIR)/_owsctl
 	$(if $(D),,-@ldconfig 2>/dev/null || true)
 
 uninstall:
@@ -485,6 +490,7 @@ uninstall:
 	    $(D)$(LIBDIR)/pkgconfig/$(l).pc) \
 	    $(D)$(PREFIX)/include/ows.h $(D)$(PREFIX)/include/ows_layout.h
 	rm -f $(foreach m,$(MAN),$(D)$(MANDIR)/man$(patsubst .%,%,$(suffix $(m)))/$(notdir $(m)))
+	rm -f $(D)$(BASHDIR)/owsctl $(D)$(ZSHDIR)/_owsctl
 	rm -rf $(D)$(DATADIR) $(COCKPIT)
 
 # The service, where systemd and udev look: below PREFIX they do in /usr and /usr/local, else in /etc.

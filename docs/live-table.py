@@ -35,7 +35,6 @@ def record(folder):
     house = (SOURCE / "board/demo/house.sim").read_text()
     (folder / "house.sim").write_text(house + "\nat 6s unplug bedroom\n")
     rio = (SOURCE / "board/demo/house.rio").read_text()
-    rio = rio.replace("sim:board/demo/house.sim", "sim:house.sim")
     rio = re.sub(r"(?<=LimitH) +\d+", " 50", rio)  # the boiler is too hot at once
     (folder / "house.rio").write_text(rio)
     os.environ["OWS_DIR"] = str(folder / "place")
@@ -70,7 +69,7 @@ def on_terminal(command):
             said += os.read(master, 65536)
         except OSError:  # the other side is closed
             break
-        if red_names(said.decode(errors="ignore").rpartition("\x1b[H")[0]) == ["bedroom"]:
+        if red_names(said.decode(errors="ignore")) == ["bedroom"]:
             child.terminate()
     child.wait(PATIENCE)
     os.close(master)
@@ -84,10 +83,12 @@ def red_names(said):
 
 
 def last_screen(said):
-    """The lines of the last whole screen, each a list of (text, attributes)."""
-    screens = [s for s in said.split("\x1b[H") if s.count("\n") > 3]
-    lines = []
-    for line in (screens or [""])[-1].replace("\r", "").split("\n")[:ROWS]:
+    """The lines of the last screen, each a list of (text, attributes): watch writes those that
+    changed, each behind its place."""
+    screen, lines = {}, []
+    for number, text in re.findall(r"\x1b\[(\d+);1H(.*?)(?=\x1b\[\d+;1H|\x1b\[H|$)", said, re.S):
+        screen[int(number)] = text
+    for _, line in sorted(screen.items()):
         runs, attributes = [], ""
         for part in re.split(r"(\x1b\[[0-9;?]*[A-Za-z])", line):
             sgr = re.fullmatch(r"\x1b\[([0-9;]*)m", part)

@@ -99,7 +99,7 @@ int alarms_ack(struct ctl *ctl, int argc, char **argv)
 		all = true;
 	}
 	if (all != (optind == argc))
-		return ctl_usage(ctl, "alarms ack takes names or --all");
+		return ctl_usage(ctl, "alarms ack takes names or -a");
 	status = ctl_open(ctl, OWS_CONTROL, &h);
 	if (status)
 		return status;

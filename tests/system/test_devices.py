@@ -10,7 +10,7 @@ from owsdtest import raw, until
 from test_reload import reload
 
 HOUSE = owsdtest.SOURCE / "board/demo/house.sim"
-CLONE, FED, NOISY = "28.AA3C61551401", "28.0000000000A3", "28.0000000000B2"
+CLONE, FED, NOISY = "28.AA3C61551401", "28.A30000000000", "28.B20000000000"
 RELAYS, GONE = "29.000000000001", "28.0102030405FF"
 
 

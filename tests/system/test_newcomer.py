@@ -6,6 +6,7 @@ import os
 import pty
 import re
 import select
+import shutil
 import subprocess
 import time
 
@@ -165,6 +166,43 @@ def test_watch_writes_what_changes_and_has_search_and_order(scene):
     screen.type("q")
     assert os.waitpid(screen.pid, 0)[1] == 0
     os.close(screen.master)
+
+
+def completed(scene, place, *words):
+    """What bash offers for the last word."""
+    script = (f'. {owsdtest.SOURCE}/board/completion/owsctl.bash; COMP_WORDS=("$@")\n'
+              'COMP_CWORD=$(($# - 1)); _owsctl; printf "%s\\n" "${COMPREPLY[@]}"')
+    done = subprocess.run(["bash", "-c", script, "bash", "owsctl", *words], capture_output=True,
+                          text=True, check=False, cwd=scene.path, timeout=60,
+                          env=dict(os.environ, OWS_DIR=str(place),
+                                   PATH=f"{owsdtest.BUILD}:{os.environ['PATH']}"))
+    assert done.returncode == 0 and not done.stderr, done
+    return done.stdout.split()
+
+
+def test_bash_completes_verbs_signals_and_instances(scene):
+    _, place = alone(scene)
+    for words, expected in ((["wa"], ["watch", "wait"]), (["help", "al"], ["alarms"]),
+                            (["get", "ro"], ["room"]), (["-n", "house", "set", "fa"], ["far"]),
+                            (["-n", ""], ["house"]), (["remove", "h"], ["house"]),
+                            (["watch", "-l"], ["-l"]), (["alarms", "ac"], ["ack"]),
+                            (["config", "wire.s"], ["wire.sim"]), (["config", "x", "mo"], ["move"]),
+                            (["stats", ""], [])):
+        assert sorted(completed(scene, place, *words)) == sorted(expected), words
+
+
+def test_zsh_completes_the_same(scene):
+    if not shutil.which("zsh"):
+        owsdtest.skip("zsh is not installed")
+    _, place = alone(scene)
+    for typed, expected in (("wa", {"watch", "wait"}), ("get ro", {"room"})):
+        script = (f"compadd() {{ print -l -- ${{@:#--}} }}; words=(owsctl {typed}); CURRENT=$#words; "
+                  f". {owsdtest.SOURCE}/board/completion/_owsctl")
+        done = subprocess.run(["zsh", "-fc", script], capture_output=True, text=True, check=False,
+                              cwd=scene.path, timeout=60,
+                              env=dict(os.environ, OWS_DIR=str(place),
+                                       PATH=f"{owsdtest.BUILD}:{os.environ['PATH']}"))
+        assert expected <= set(done.stdout.split()), done
 
 
 def at_name(screen, name):

@@ -221,7 +221,7 @@ class Terminal:
         os.close(begin)
 
     def resize(self, lines, columns):
-        self.columns = columns
+        self.lines, self.columns = lines, columns
         fcntl.ioctl(self.fd, termios.TIOCSWINSZ, struct.pack("4H", lines, columns, 0, 0))
 
     def read(self):
@@ -235,10 +235,14 @@ class Terminal:
 
     def screen(self):
         self.read()
-        pictures = self.output.split(b"\x1b[H")[1:]
-        whole = [p.split(b"\x1b[J")[0] for p in pictures if b"\x1b[J" in p]
-        text = re.sub(r"\x1b\[[0-9;]*[mK]", "", whole[-1].decode()) if whole else ""
-        return text.replace("\r", "").split("\n")
+        lines = {}
+        for number, text in re.findall(r"\x1b\[(\d+);1H(.*?)\x1b\[K", self.output.decode(errors="ignore"),
+                                       re.S):
+            lines[int(number)] = re.sub(r"\x1b\[[0-9;]*m", "", text)
+        shown = [lines.get(n, "") for n in range(1, self.lines + 1)]
+        while len(shown) > 1 and not shown[-1]:
+            shown.pop()
+        return shown
 
     def until(self, condition, what):
         return owsdtest.until(lambda: condition(self.screen()), 10,
