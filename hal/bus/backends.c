@@ -74,7 +74,9 @@ static int no_backend(const char *word, size_t word_len, char *why, size_t why_s
 	size_t used = 0;
 
 	for (const struct bus_ops *const *ops = bus_backends; *ops; ops++) {
-		int n = snprintf(names + used, sizeof(names) - used, " %s:", (*ops)->scheme);
+		int n = (*ops)->testing ? 0
+		                        : snprintf(names + used, sizeof(names) - used,
+		                                   " %s:", (*ops)->scheme);
 
 		if (n < 0 || (size_t)n >= sizeof(names) - used)
 			break;

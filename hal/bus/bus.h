@@ -203,6 +203,7 @@ struct bus_ops {
 	const char *scheme;  /* "owserver": what stands before the colon of a target */
 	const char *summary; /* one line for --version and the manual */
 	unsigned depth;      /* requests it takes before an answer; at least 1 */
+	bool testing;        /* answers without devices: a user is not offered it */
 	bool searches;       /* sends BUS_FOUND and BUS_LOST by itself */
 
 	/*

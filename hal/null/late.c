@@ -265,6 +265,7 @@ static int late_there(struct bus *bus)
 const struct bus_ops late_bus = {
 	.scheme = "late",
 	.summary = "the null bus with answers late, out of order, twice and never",
+	.testing = true,
 	.depth = LATE_DEPTH,
 	.create = late_create,
 	.destroy = late_destroy,

@@ -103,7 +103,7 @@ static void null_exec(struct bus *bus, struct bus_req *req, struct bus_answer *a
 
 /* clang-format off */
 const struct bus_ops null_bus = {
-	.scheme = "null", .summary = "a table in memory: a lesson and a test double", .depth = 1,
+	.scheme = "null", .summary = "a table in memory: a lesson and a test double", .testing = true, .depth = 1,
 	.create = null_create, .destroy = null_destroy, .exec = null_exec,
 };
 /* clang-format on */

@@ -10,7 +10,7 @@ static const struct {
 	const char *text;
 } remedies[] = {
 	{OWS_Q_NO_PROPERTY, "check the path: owsctl dir shows what the device has"},
-	{OWS_Q_TYPE, "choose another Type: the log says which one fits"},
+	{OWS_Q_TYPE, "choose another Type; owsctl read PATH shows the text"},
 	{OWS_Q_ACCESS, "the property can only be read, or only be written"},
 	{OWS_Q_NO_DEVICE, "the device does not answer: look at its plug, its cable and its ID"},
 	{OWS_Q_DEVICE, "the device answers with errors: look at cable length, pull-up and noise"},

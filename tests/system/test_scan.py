@@ -393,6 +393,7 @@ def test_what_is_wrong_is_said_with_its_status(scene):
             (("-t", "sim:/nowhere.sim", "scan"), 2, "/nowhere.sim"),
             (("-t", "i2c:/dev/i2c-nowhere", "scan"), 1, "/dev/i2c-nowhere"),
             (("-t", "none:", "dir"), 2, "unknown kind of target"),
+            (("-t", "none:", "dir"), 2, "gpio:, and HOST, HOST:PORT"),
             (("-t", target, "list"), 2, "-t TARGET is for dir"),
             (("-t", target, "read"), 2, "read what?"),
             (("-t", target, "read", "/" + "x" * 300), 1, "longer than 255"),
