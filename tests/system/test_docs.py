@@ -412,7 +412,7 @@ def test_the_picture_of_the_live_table_can_be_drawn_again(scene):
 # What is wrong, and what is said of it
 PLANTED = [
     ("```sh\nowsctl list --colour\n```", "unknown option: --colour"),
-    ("```sh\nowsctl show room1\n```", "owsctl: there is no verb show\nusage"),
+    ("```sh\nowsctl show room1\n```", "owsctl: there is no verb show\nowsctl --help"),
     ("```sh\nowsd -c plant.rio --daemon\n```", "unknown option: --daemon"),
     ("```sh\nowsctl get room99\n```", "there is no room99"),
     ("```sh\napt-cache policy owsd\n```", "apt-cache: not found"),
