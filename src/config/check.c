@@ -32,7 +32,7 @@ static size_t digits_of(const char *text, size_t len)
 	return n;
 }
 
-/* Does the component begin as an id does: a family that there is, and a sign? Then text after it. */
+/* The text after a family that there is and a sign; NULL where the text is no id, by its begin. */
 static const char *after_family(const char *text, size_t len, uint8_t *code)
 {
 	char digits[3] = {0};

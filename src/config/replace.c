@@ -200,7 +200,7 @@ int replace_file(const char *file, const char *text, size_t len)
 	return err ? err : replace_commit(&replacement);
 }
 
-/* The name of the file that is locked: beside the one that a link leads to, which may be missing. */
+/* The name of the file that is locked: beside the one that a link leads to, which may be away. */
 static int lock_path(const char *file, char path[LOCK_PATH])
 {
 	char real[PATH_MAX];

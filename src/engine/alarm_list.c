@@ -100,7 +100,7 @@ void alarm_list_failed(struct alarm_machine *m, struct lane *lane, int err, int6
 		m->list.wait_ns = LIST_WAIT_MAX;
 	m->list.next_ns = now_ns + m->list.wait_ns;
 	m->position = -1;
-	/* with the wire short no device can say that it is in alarm: no value counts as good on that */
+	/* the wire is short: no device can say that it is in alarm, so no value stays good */
 	for (uint32_t k = 0; k < m->count && err == -ECOMM; k++)
 		engine_read_now(e, alarm_signal(e, m->items[k]));
 }

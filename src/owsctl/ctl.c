@@ -12,6 +12,7 @@
 
 #include "hal/bus/time.h"
 #include "src/owsctl/ctl.h"
+#include "src/owsctl/running.h"
 #include "src/shm/place.h"
 #include "src/shm/segment.h"
 #include "src/show/names.h"

@@ -57,11 +57,6 @@ int ctl_option(struct ctl *ctl, int argc, char **argv, const char *options);
 /* Print what a verb takes: at most a screen. */
 void ctl_help(const struct verb *verb, FILE *out);
 
-/*
- * How many instances run here; one of them in `name`, and with `names` all, with commas between.
- */
-unsigned instances_running(char *name, char *names, size_t size);
-
 /* Print an error on stderr. */
 int ctl_usage(const struct ctl *ctl, const char *format, ...) /* returns CTL_USAGE */
 	__attribute__((format(printf, 2, 3)));

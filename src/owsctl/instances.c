@@ -10,17 +10,14 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "src/libows/open.h"
 #include "src/owsctl/ctl.h"
-#include "src/owsctl/instance_state.h"
+#include "src/owsctl/running.h"
 #include "src/owsctl/table.h"
 #include "src/owsctl/verbs.h"
 #include "src/shm/lock.h"
 #include "src/shm/remains.h"
 #include "src/show/json.h"
 #include "src/show/when.h"
-
-#define FIELD 400
 
 /* clang-format off */
 static const struct table_column columns[] = {
@@ -29,117 +26,6 @@ static const struct table_column columns[] = {
 };
 #define PLACE_COLUMN 6
 /* clang-format on */
-
-struct instance_info {
-	const char *name, *place;
-	enum instance_state state;
-	int pid;                            /* 0: not known */
-	int64_t since_ns;                   /* when this state began; 0: not known */
-	int signals;                        /* -1: not known */
-	char targets[FIELD], config[FIELD]; /* "": not known */
-	const char *why; /* hidden: the reason; up: the fault of its lock; else NULL */
-};
-
-static size_t read_process(int pid, const char *what, char *text, size_t size)
-{
-	char path[48];
-	FILE *file;
-	size_t len = 0;
-
-	snprintf(path, sizeof(path), "/proc/%d/%s", pid, what);
-	file = pid > 0 ? fopen(path, "re") : NULL;
-	if (file) {
-		len = fread(text, 1, size - 1, file);
-		fclose(file);
-	}
-	text[len] = '\0';
-	return len;
-}
-
-static bool is_owsd(int pid)
-{
-	static const char comm[] = " (owsd) ";
-	char stat[128];
-	const char *state;
-
-	read_process(pid, "stat", stat, sizeof(stat));
-	state = strchr(stat, ' ');
-	return state && !strncmp(state, comm, strlen(comm)) && !strchr("ZX", state[strlen(comm)]);
-}
-
-/*
- * The path of the configuration: absolute where the process's directory may be read, else as given.
- */
-static void find_config(struct instance_info *info)
-{
-	char line[4096], path[48], folder[FIELD];
-	const char *config = instance_config_of(
-		line, read_process(info->pid, "cmdline", line, sizeof(line)));
-	ssize_t len = -1;
-
-	if (!config)
-		return;
-	snprintf(path, sizeof(path), "/proc/%d/cwd", info->pid);
-	if (*config != '/')
-		len = readlink(path, folder, sizeof(folder) - 1);
-	if (len > 0 && len + strlen(config) + 2 < sizeof(info->config))
-		snprintf(info->config, sizeof(info->config), "%.*s/%s", (int)len, folder, config);
-	else
-		snprintf(info->config, sizeof(info->config), "%s", config);
-}
-
-static void find_targets(struct ows *h, struct instance_info *info)
-{
-	struct ows_target target;
-	size_t used = 0;
-
-	for (int i = 0; ows_target(h, i, &target) == 0 && used < sizeof(info->targets); i++)
-		used += (size_t)snprintf(info->targets + used, sizeof(info->targets) - used, "%s%s",
-		                         i ? ", " : "", target.name);
-}
-
-static void look(const struct shm_place *place, const char *name, int64_t now_ns,
-                 struct instance_info *info)
-{
-	struct ows_daemon daemon = {0};
-	struct ows *h;
-	pid_t holder = 0;
-	int err = open_in(place->path, name, OWS_READ, "owsctl", &h);
-	int lock = segment_lock_look(place, name, &holder);
-
-	*info = (struct instance_info){
-		.name = name, .place = place->path, .pid = (int)holder, .signals = -1};
-	if (err && err != -ENOENT) {
-		info->state = INSTANCE_HIDDEN;
-		info->why = err == -EACCES  ? "no right to see it: that is for group owsd"
-		            : err == -EPERM ? "it belongs to another user, neither root nor owsd"
-		                            : "of another version of owsd, or not of owsd";
-		return;
-	}
-	if (!err) {
-		ows_daemon(h, now_ns, &daemon);
-		info->pid = daemon.pid;
-		info->signals = ows_count(h);
-		find_targets(h, info);
-		info->since_ns = daemon.alive ? daemon.start_ns : now_ns - daemon.beat_age_ns;
-		ows_close(h);
-		/*
-		 * another owsd holds the lock: a free lock does not show that this owsd has ended
-		 */
-		if (!lock && holder != daemon.pid)
-			lock = -ESTALE;
-	}
-	info->state = instance_state_of(!err, daemon.state, daemon.alive, lock, is_owsd(info->pid));
-	if (info->state == INSTANCE_HIDDEN)
-		info->why = "it is starting, or its files were removed";
-	if (instance_is_up(info->state)) {
-		find_config(info);
-		if (lock < 0 && lock != -EACCES)
-			info->why = "it runs without its lock: the file was removed or replaced";
-	}
-	if (info->state == INSTANCE_LEFT)
-		info->pid = 0;
-}
 
 static bool add_row(struct table *table, const struct instance_info *info, const struct when *now)
 {
@@ -240,7 +126,7 @@ static bool show(const struct found *found, bool as_json)
 		json_array(&json, NULL);
 	for (unsigned k = 0; k < found->count; k++)
 		for (unsigned i = 0; ok && i < found->remains[k].count; i++) {
-			look(&found->place[k], found->remains[k].name[i], now.boot, &info);
+			instance_look(&found->place[k], found->remains[k].name[i], now.boot, &info);
 			if (as_json)
 				add_json(&json, &info, &now);
 			else
@@ -278,46 +164,6 @@ int verb_instances(struct ctl *ctl, int argc, char **argv)
 	return status;
 }
 
-/* Look at the heart and the process too: the lock may have been removed or replaced. */
-static bool is_up(const struct shm_place *place, const char *name, int *pid)
-{
-	struct instance_info info;
-
-	look(place, name, ows_now(), &info);
-	*pid = info.pid;
-	return instance_is_up(info.state);
-}
-
-unsigned instances_running(char *name, char *names, size_t size)
-{
-	char paths[PLACES][PLACE_PATH];
-	int places = place_list(paths), pid;
-	unsigned count = 0;
-	size_t used = 0;
-
-	for (int i = 0; i < places; i++) {
-		struct shm_place place;
-		struct remains remains = {0};
-
-		if (place_open(paths[i], &place) != 0)
-			continue;
-		if (remains_list(&place, &remains) != 0)
-			remains.count = 0;
-		for (unsigned k = 0; k < remains.count; k++) {
-			if (!is_up(&place, remains.name[k], &pid))
-				continue;
-			snprintf(name, SEGMENT_NAME_MAX + 1, "%s", remains.name[k]);
-			if (used < size)
-				used += (size_t)snprintf(names + used, size - used, "%s%s",
-				                         count ? ", " : "", name);
-			count++;
-		}
-		remains_free(&remains);
-		place_close(&place);
-	}
-	return count;
-}
-
 /* Remove the instance from the first place that has files of it. */
 static int remove_one(const struct found *found, const char *name, unsigned *files, int *pid)
 {
@@ -328,7 +174,7 @@ static int remove_one(const struct found *found, const char *name, unsigned *fil
 	for (unsigned i = 0; i < found->count && err == -ENOENT; i++) {
 		pid_t holder = 0;
 
-		if (is_up(&found->place[i], name, pid))
+		if (instance_runs(&found->place[i], name, pid))
 			return -EBUSY;
 		err = remains_remove(&found->place[i], name, &holder, files);
 		if (holder)

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "src/owsctl/ctl.h"
+#include "src/owsctl/running.h"
 #include "src/owsctl/verbs.h"
 #include "src/service/standard.h"
 #include "src/shm/segment.h"
@@ -113,7 +114,8 @@ static const struct verb verbs[] = {
                  "                           samples make room\n"
                  "  stop, status, download DEVICE\n",
          .example = "mission download /41.551DDF030000", .opens = true, .writes = true},
-	{"scan", "[-t TARGET] [-w SECONDS] [--alias FILE] [--rio [-i] [--merge FILE [--replace OLD=NEW]...]]",
+	{"scan",
+         "[-t TARGET] [-w SECONDS] [--alias FILE] [--rio [-i] [--merge FILE [--replace OLD=NEW]...]]",
          "list the devices, or print a configuration for them", verb_scan,
          .options =
                  "  -t TARGET   localhost:4304, i2c:/dev/i2c-1, w1, ...; default: the owsd that\n"

@@ -38,7 +38,8 @@ struct writer_answer {
 /*
  * Ask, and wait for the answer: for 70 s at most. 0 with an answer, whose problems are to be freed;
  * -ENOENT or -ECONNREFUSED: nobody listens there; -EINPROGRESS: it has the order, and no answer
- * came; -EPROTO: it is no answer; or another negative errno, and then the order did not arrive whole.
+ * came; -EPROTO: it is no answer; or another negative errno, and then the order did not arrive
+ * whole.
  */
 int writer_ask(const struct writer_order *order, struct writer_answer *answer);
 /* Is there its socket? */
