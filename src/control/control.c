@@ -16,6 +16,7 @@
 #include "src/control/door.h"
 #include "src/control/grant.h"
 #include "src/control/held.h"
+#include "src/control/news.h"
 #include "src/control/private.h"
 #include "src/control/socket.h"
 #include "src/control/welcome.h"
@@ -60,7 +61,9 @@ static int open_all(struct control *c)
 	c->listener = socket_listen(c->directory, c->name, is_for_all(c), &c->inode);
 	if (c->listener < 0)
 		return c->listener;
-	err = add(c, c->listener, LISTENER);
+	err = news_open(c);
+	if (!err)
+		err = add(c, c->listener, LISTENER);
 	return err ? err : add(c, c->wake, WAKE);
 }
 
@@ -79,7 +82,7 @@ int control_create(const struct control_setup *setup, struct control **control, 
 	c->porter = setup->porter;
 	c->ring = setup->ring;
 	c->ring_ctx = setup->ring_ctx;
-	c->epoll = c->wake = c->asked = c->listener = -1;
+	c->epoll = c->wake = c->asked = c->listener = c->news.bell = -1;
 	c->engine.at = OWS_GIVERS;
 	pthread_mutex_init(&c->lock, NULL);
 	for (int i = 0; i < CONTROL_COUNTER_COUNT; i++)
@@ -152,7 +155,7 @@ int control_start(struct control *c, const struct giver_layout *layout)
 	c->now_ns = ows_now();
 	err = thread_start(&c->thread, "owsd-control", STACK_SIZE, run, c);
 	c->running = !err;
-	return err;
+	return err ? err : news_start(c);
 }
 
 /*
@@ -176,6 +179,7 @@ void control_stop(struct control *c)
 		pthread_join(c->thread, NULL);
 		c->running = false;
 	}
+	news_stop(c);
 	for (unsigned i = 0; i < OWS_GIVERS; i++) {
 		struct control_place *p = &c->places[i];
 
@@ -200,6 +204,7 @@ void control_destroy(struct control *c)
 		if (__atomic_load_n(&c->places[i].state, __ATOMIC_ACQUIRE) != CONTROL_FREE)
 			door_release(c, &c->places[i]);
 	held_forget(c);
+	news_close(c);
 	if (c->asked >= 0)
 		close(c->asked);
 	if (c->wake >= 0)
@@ -267,17 +272,17 @@ void control_done(struct control *c, const struct control_turn *turn)
 	bell_ring(c->wake);
 }
 
-void control_news(struct control *c)
+void control_news(struct control *c, const uint32_t *word)
 {
 	/* news are counted before the look who waits; who waits says so before it looks for news */
 	word_fence(__ATOMIC_SEQ_CST);
 	for (unsigned i = 0; i < c->engine.end; i++) {
 		const struct giver_memory *memory = &c->engine.memories[i];
 
-		/* a full pipe rings already; without a reader the giver is about to leave */
-		if (memory->base && giver_waits(memory) && write(c->places[i].news, "", 1) < 0)
-			continue;
+		if (memory->base && giver_waits(memory))
+			news_due(c, i);
 	}
+	news_ring(c, word);
 }
 
 void control_end(struct control *c)
@@ -341,13 +346,14 @@ void control_answer(struct control *c, int err, const char *why)
 static void prepare(struct control *c, struct control_place *p, const struct giver_layout *layout,
                     const struct rights *rights)
 {
-	size_t has = 0;
+	size_t has = 0, bytes;
 	int err = -ENOSPC;
 
 	for (unsigned i = 0; i < OWS_GIVERS; i++)
 		if (c->places[i].peer.uid == p->peer.uid)
 			has += c->places[i].next.size;
-	if (!p->peer.uid || !has || has + layout->size <= CONTROL_MEMORY)
+	if (!p->peer.uid || ((!has || has + layout->size <= CONTROL_MEMORY) &&
+	                     held_of(c, p->peer.uid, &bytes) < CONTROL_HELD && !held_full(c)))
 		err = grant_make(&p->next, layout, rights, p);
 	if (err)
 		log_warning(c->log, "no memory for giver %s (process %d) after the reload: %s",
@@ -390,10 +396,10 @@ bool control_prepared(struct control *c, unsigned *place, struct control_turn *t
 static void take_next(struct control *c, struct control_place *p)
 {
 	if (__atomic_load_n(&p->state, __ATOMIC_ACQUIRE) != CONTROL_IN) {
-		held_free(c, p->peer.uid, &p->next);
+		held_free(c, p->peer.uid, &p->next, false);
 		return;
 	}
-	held_free(c, p->peer.uid, &p->now);
+	held_free(c, p->peer.uid, &p->now, true);
 	p->now = p->next;
 	p->next = (struct control_grant){.memfd = -1, .own = -1};
 	p->welcomed = false;
@@ -414,10 +420,9 @@ void control_replaced(struct control *c)
 {
 	pthread_mutex_lock(&c->lock);
 	for (unsigned i = 0; i < OWS_GIVERS; i++) {
-		bool is_in = __atomic_load_n(&c->places[i].state, __ATOMIC_ACQUIRE) == CONTROL_IN;
-
-		if (is_in && write(c->places[i].news, "", 1) < 0)
-			continue; /* as in control_news() */
+		if (is(&c->places[i], CONTROL_IN))
+			news_due(c, i);
 	}
+	news_ring(c, NULL);
 	pthread_mutex_unlock(&c->lock);
 }

@@ -60,8 +60,11 @@ struct control_turn {
 /* The next giver that joins or leaves; the caller calls control_done() before the next. */
 bool control_next(struct control *control, struct control_turn *turn);
 void control_done(struct control *control, const struct control_turn *turn);
-/* Ring the news of the givers that wait for it. */
-void control_news(struct control *control);
+/*
+ * Have the news rung of the givers that wait for it, and the sleepers of an image woken, by another
+ * thread; word: of the image, which counts its news; NULL: none.
+ */
+void control_news(struct control *control, const uint32_t *word);
 /* The engine ends: refuse all sets from here on. What was set before, the next step finds. */
 void control_end(struct control *control);
 

@@ -16,6 +16,7 @@
 #include "src/control/door.h"
 #include "src/control/grant.h"
 #include "src/control/held.h"
+#include "src/control/news.h"
 #include "src/control/welcome.h"
 #include "src/libows/ows.h"
 
@@ -48,6 +49,8 @@ static void close_fd(int *fd)
 	*fd = -1;
 }
 
+/* How often owsd looks whether what it gave away is empty. */
+#define HELD_NS (100 * NS_PER_MS)
 /* How long owsd waits for a porter that has too much to do. */
 #define PORTER_NS (10 * NS_PER_MS)
 
@@ -57,6 +60,10 @@ static bool let_go(struct control *c, struct control_place *p, bool with_connect
 	int *fds[] = {&p->bell, &p->news, &p->news_end, with_connection ? &p->fd : NULL};
 	struct porter_order order = {.slot = PORTER_NO_SLOT};
 
+	if (!news_end(p)) {
+		c->later = true;
+		return false;
+	}
 	if (with_connection && p->fd >= 0)
 		epoll_ctl(c->epoll, EPOLL_CTL_DEL, p->fd, NULL);
 	for (unsigned i = 0; i < 4; i++)
@@ -90,8 +97,8 @@ void door_release(struct control *c, struct control_place *p)
 {
 	bool unread;
 
-	held_free(c, p->peer.uid, &p->now);
-	held_free(c, p->peer.uid, &p->next);
+	held_free(c, p->peer.uid, &p->now, false);
+	held_free(c, p->peer.uid, &p->next, false);
 	peer_forget(&p->peer);
 	close_fd(&p->death);
 	hang_up(c, p);
@@ -193,6 +200,7 @@ static int watch(struct control *c, const struct control_place *p, int fd, uint3
 /* 0, -ESRCH: the process has ended, or another negative errno. */
 static int open_descriptors(struct control *c, struct control_place *p)
 {
+	const int least = 0;
 	int ends[2];
 
 	p->death = peer_death(p->fd, &p->peer);
@@ -201,11 +209,18 @@ static int open_descriptors(struct control *c, struct control_place *p)
 	if (p->death >= 0 && watch(c, p, p->death, 1))
 		return -errno;
 	p->bell = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-	if (p->bell < 0 || pipe2(ends, O_CLOEXEC | O_NONBLOCK) < 0)
+	/*
+	 * No pipe: its lock is held while a reader copies, for as long as the memory that it reads
+	 * into may not come. A socket has none for the sender. Its reader sends nothing.
+	 */
+	if (p->bell < 0 ||
+	    socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends) < 0)
 		return -errno;
 	p->news_end = ends[0];
 	p->news = ends[1];
-	fcntl(p->news, F_SETPIPE_SZ, 4096);
+	shutdown(p->news, SHUT_RD);
+	setsockopt(p->news, SOL_SOCKET, SO_SNDBUF, &least, sizeof(least));
+	news_begin(p);
 	return 0;
 }
 
@@ -341,7 +356,7 @@ static struct control_place *find_place(struct control *c, const struct peer *pe
 		taken++;
 		of_user += p->who.uid == peer->uid;
 	}
-	if (taken >= most_places(c, peer))
+	if (taken >= most_places(c, peer) || (peer->uid && held_full(c)))
 		return NULL;
 	return peer->uid && (of_user >= CONTROL_OF_USER || held >= CONTROL_HELD) ? NULL : found;
 }
@@ -489,6 +504,7 @@ int64_t door_look(struct control *c)
 	int64_t next_ns = c->accepts ? c->accept_ns : INT64_MAX;
 
 	c->later = false;
+	held_look(c);
 	for (unsigned i = 0; i < OWS_GIVERS; i++) {
 		struct control_place *p = &c->places[i];
 
@@ -498,5 +514,7 @@ int64_t door_look(struct control *c)
 	}
 	if (c->later && c->now_ns + PORTER_NS < next_ns)
 		next_ns = c->now_ns + PORTER_NS;
+	if (c->held_count && c->now_ns + HELD_NS < next_ns)
+		next_ns = c->now_ns + HELD_NS;
 	return next_ns;
 }

@@ -1,48 +1,87 @@
 /* SPDX-License-Identifier: MIT */
-/* Memories that owsd is done with and somebody else still holds: they count as owsd's memory. */
-#include <unistd.h>
-
-#include "src/control/grant.h"
+/*
+ * Memories that owsd is done with: the porter empties them, and they count as their user's until
+ * they are empty. Whether somebody still has one cannot be known: a descriptor of O_PATH shows
+ * nowhere.
+ */
 #include "src/control/held.h"
+#include "hal/bus/time.h"
+#include "src/control/grant.h"
 #include "src/control/sealed.h"
 
-static void let_go(struct control *c, unsigned i)
+/* Connections without end do not make owsd look more often. */
+#define LOOK_NS (5 * NS_PER_MS)
+/* A giver that has just been sent the next memory still reads in the last one. */
+#define AFTER_RELOAD_NS (2 * NS_PER_S)
+/* A memory that takes longer is locked by somebody; then those of its user wait for it. */
+#define LOCKED_NS (NS_PER_S / 2)
+
+/* Returns porter_give(). */
+static int give(struct control *c, const struct control_held *held, bool empty)
 {
-	close(c->held[i].own);
-	c->held[i] = c->held[--c->held_count];
+	const struct porter_order order = {.what = empty ? PORTER_EMPTY : 0,
+	                                   .count = 1,
+	                                   .keep = empty,
+	                                   .slot = PORTER_NO_SLOT,
+	                                   .fds = {held->own}};
+
+	return porter_give(c->porter, PORTER_MEMORY, &order);
 }
 
-static void look(struct control *c)
+static bool user_has_locked(const struct control *c, uid_t uid)
 {
-	for (unsigned i = c->held_count; i-- > 0;)
-		if (!sealed_is_held(c->held[i].own))
-			let_go(c, i);
+	for (unsigned i = 0; i < c->held_count; i++)
+		if (c->held[i].uid == uid && c->held[i].asked_ns &&
+		    c->now_ns - c->held[i].asked_ns > LOCKED_NS)
+			return true;
+	return false;
 }
 
-void held_free(struct control *c, uid_t uid, struct control_grant *grant)
+static void look(struct control *c, struct control_held *held)
 {
-	const struct control_held held = {grant->own, uid, grant->size};
-
-	if (!grant->memory.base) {
-		grant_free(grant);
+	if (held->asked_ns || c->now_ns < held->until_ns || user_has_locked(c, held->uid))
 		return;
-	}
-	grant->own = -1;
-	grant_free(grant);
-	if (c->held_count == OWS_GIVERS)
-		look(c);
-	/* root has no limit that this could count for */
-	if (!uid || c->held_count == OWS_GIVERS || !sealed_is_held(held.own))
-		close(held.own);
-	else
-		c->held[c->held_count++] = held;
+	if (give(c, held, true) == 0)
+		held->asked_ns = c->now_ns;
 }
 
-unsigned held_of(struct control *c, uid_t uid, size_t *bytes)
+void held_look(struct control *c)
+{
+	if (c->now_ns < c->held_ns)
+		return;
+	c->held_ns = c->now_ns + LOOK_NS;
+	for (unsigned i = c->held_count; i-- > 0;) {
+		look(c, &c->held[i]);
+		/* where its pages come back, they are the user's who touches them */
+		if (c->held[i].asked_ns && sealed_is_empty(c->held[i].own) &&
+		    give(c, &c->held[i], false) == 0)
+			c->held[i] = c->held[--c->held_count];
+	}
+}
+
+bool held_full(const struct control *c)
+{
+	return c->held_count + 2 * OWS_GIVERS > CONTROL_HELD_ALL;
+}
+
+void held_free(struct control *c, uid_t uid, struct control_grant *grant, bool reload)
+{
+	const struct control_held held = {.own = grant->own,
+	                                  .uid = uid,
+	                                  .size = grant->size,
+	                                  .until_ns = reload ? c->now_ns + AFTER_RELOAD_NS : 0};
+
+	if (grant->memory.base && c->held_count < CONTROL_HELD_ALL) {
+		grant->own = -1;
+		c->held[c->held_count++] = held;
+	}
+	grant_free(grant);
+}
+
+unsigned held_of(const struct control *c, uid_t uid, size_t *bytes)
 {
 	unsigned n = 0;
 
-	look(c);
 	*bytes = 0;
 	for (unsigned i = 0; i < c->held_count; i++) {
 		if (c->held[i].uid != uid)
@@ -55,6 +94,7 @@ unsigned held_of(struct control *c, uid_t uid, size_t *bytes)
 
 void held_forget(struct control *c)
 {
+	/* what the porter has no time for ends with this process */
 	while (c->held_count)
-		let_go(c, 0);
+		give(c, &c->held[--c->held_count], false);
 }

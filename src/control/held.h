@@ -1,14 +1,21 @@
 /* SPDX-License-Identifier: MIT */
-/* Memories that owsd is done with and somebody else still holds: they count as owsd's memory. */
+/* Memories that owsd is done with: they count as their user's until they are empty. */
 #ifndef CONTROL_HELD_H
 #define CONTROL_HELD_H
 
 #include "src/control/private.h"
 
-/* Free what that user got; if somebody has its memory, it counts as his until nobody has. */
-void held_free(struct control *c, uid_t uid, struct control_grant *grant);
+/*
+ * Free what that user got; its memory counts as the user's until it is empty. reload: its giver
+ * goes on, and gets another.
+ */
+void held_free(struct control *c, uid_t uid, struct control_grant *grant, bool reload);
+/* Have memories emptied, and let go of those that are. */
+void held_look(struct control *c);
+/* There is no room for more givers. */
+bool held_full(const struct control *c);
 /* How many of that user are held now, and their bytes. */
-unsigned held_of(struct control *c, uid_t uid, size_t *bytes);
+unsigned held_of(const struct control *c, uid_t uid, size_t *bytes);
 /* Let go of all, at the end. */
 void held_forget(struct control *c);
 

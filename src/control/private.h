@@ -19,6 +19,8 @@
 #define CONTROL_KEPT_FROM_READERS 64
 /* A program that stands still at reloads has two: its own, and the next, unread. */
 #define CONTROL_HELD (2 * CONTROL_OF_USER)
+/* Of all users; in the reach of held_full() nobody joins. */
+#define CONTROL_HELD_ALL 1024
 #define CONTROL_MEMORY (64u << 20)
 /* In that time a program that connected has to say who it is. */
 #define CONTROL_HELLO_NS (2 * NS_PER_S)
@@ -68,17 +70,20 @@ struct control_grant {
 	int own;          /* owsd's own descriptor of it; -1 */
 };
 
-/* A memory that its giver has kept beyond the end, or beyond a reload. */
+/* A memory whose giver has left, or got another at a reload. */
 struct control_held {
 	int own;
 	uid_t uid;
 	size_t size;
+	int64_t until_ns; /* it is not emptied before */
+	int64_t asked_ns; /* since when the porter has it to empty; 0: not yet */
 };
 
 struct control_place {
 	uint32_t state;           /* enum control_state */
+	uint32_t news_state;      /* of news.c: who has the socket news */
 	int fd, death;            /* the connection; the process's pidfd, -1 unknown */
-	int bell, news, news_end; /* news: the end to write; news_end: until it is sent */
+	int bell, news, news_end; /* news: owsd's end; news_end: until it is sent */
 	struct peer peer;
 	struct ows_who who;
 	uint8_t token[16];
@@ -91,6 +96,10 @@ struct control_place {
 	bool welcomed;    /* all was sent that there is to send */
 	struct control_grant now, next;
 };
+
+/* The places, and the sleepers of the image. */
+#define NEWS_IMAGE OWS_GIVERS
+#define NEWS_PACES (OWS_GIVERS + 1)
 
 struct control {
 	pthread_mutex_t lock; /* places, but for what belongs to the engine's thread; config */
@@ -118,15 +127,28 @@ struct control {
 	int64_t now_ns, accept_ns; /* accept_ns: not sooner */
 	uint32_t serial;
 	struct control_place places[OWS_GIVERS];
-	struct control_held held[OWS_GIVERS];
+	struct control_held held[CONTROL_HELD_ALL];
 	unsigned held_count;
-	uint32_t turns; /* counts places that are for the engine's thread to look at */
+	int64_t held_ns; /* when to look next */
+	uint32_t turns;  /* counts places that are for the engine's thread to look at */
 	struct {
 		uint32_t seen;
 		unsigned at;
 		unsigned end;                             /* no memory stands at or after it */
 		struct giver_memory memories[OWS_GIVERS]; /* of those that have joined */
 	} engine;                                         /* of the engine's thread */
+	struct {
+		pthread_t thread;
+		bool running;
+		uint32_t stop;
+		int bell;
+		uint32_t due[OWS_GIVERS / 32];
+		const uint32_t *word; /* of an image, that has to be woken; else NULL */
+		unsigned slow;        /* of the thread, and so paces */
+		struct news_pace {
+			int64_t rest_until_ns; /* 0: it is not slow */
+		} paces[NEWS_PACES];
+	} news;
 	struct log_rate refused, full;
 	struct bus_counter counters[CONTROL_COUNTER_COUNT];
 };

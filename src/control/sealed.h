@@ -14,10 +14,10 @@
 int sealed_make(size_t size, char **base, int *own);
 void sealed_unmap(char *base, size_t size);
 /*
- * Whether anybody else still has the memory. owsd asks for nothing more of it: a giver that writes
- * to the file out of memory that never comes holds its inode's lock for ever, and whoever empties
- * the file waits for it, even against SIGKILL.
+ * Has it no pages any more? owsd itself asks for nothing more of a memory that a giver has had: one
+ * that writes to the file out of memory that never comes holds its inode's lock for ever, and
+ * whoever empties the file waits for it, even against SIGKILL.
  */
-bool sealed_is_held(int own);
+bool sealed_is_empty(int own);
 
 #endif

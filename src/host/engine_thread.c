@@ -189,8 +189,7 @@ static void announce(struct host *h)
 	struct image *image = &h->now->memory.image;
 
 	image_news(image);
-	segment_wake(&image->header->news, INT_MAX);
-	control_news(h->control);
+	control_news(h->control, &image->header->news);
 }
 
 static void *engine_main(void *ctx)

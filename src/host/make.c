@@ -22,6 +22,7 @@ int host_make_serving(struct host *h, struct config *config, const struct adopti
 		.instance = h->instance,
 		.place = h->place,
 		.log = h->log,
+		.porter = h->porter,
 		.ring = host_ring,
 		.ring_ctx = h,
 		.guests = h->serve ? serve_guests(h->serve) : NULL,

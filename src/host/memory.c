@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The files of a running owsd that belong to a configuration: made, shown and retired. */
 #include <errno.h>
-#include <limits.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,9 +15,9 @@
 #include "src/host/memory.h"
 #include "src/libows/ows.h"
 #include "src/shm/entries.h"
-#include "src/shm/futex.h"
 #include "src/shm/hint.h"
 #include "src/shm/owner.h"
+#include "src/shm/porter.h"
 #include "src/shm/shelves.h"
 
 #define BOOT_ID "/proc/sys/kernel/random/boot_id"
@@ -243,8 +242,10 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 	struct segment before;
 	int err;
 
-	*m = (struct memory){
-		.instance = setup->instance, .place = setup->place, .config = setup->config};
+	*m = (struct memory){.instance = setup->instance,
+	                     .place = setup->place,
+	                     .config = setup->config,
+	                     .porter = setup->porter};
 	m->image_segment.fd = m->force_segment.fd = m->left_segment.fd = -1;
 	m->start_id = random_id();
 	m->start_ns = setup->before ? setup->before->start_ns : ows_now();
@@ -309,7 +310,20 @@ static bool process_exists(int32_t pid)
 	return pid > 0 && (kill(pid, 0) == 0 || errno != ESRCH);
 }
 
-static void retire_image(struct segment *before, struct log *log)
+/* They may be many, and of others: so it is no work for the thread that reloads. */
+static void wake_sleepers(const struct memory *m, const struct segment *image)
+{
+	const struct porter_order order = {.what = PORTER_WAKE,
+	                                   .count = 1,
+	                                   .keep = 1,
+	                                   .slot = PORTER_NO_SLOT,
+	                                   .fds = {image->fd}};
+
+	/* else they sleep for a second at most */
+	porter_give(m->porter, PORTER_NEWS, &order);
+}
+
+static void retire_image(const struct memory *m, struct segment *before, struct log *log)
 {
 	struct ows_image_header *h = (void *)before->base;
 	uint32_t state = __atomic_load_n(&h->state, __ATOMIC_RELAXED);
@@ -319,7 +333,7 @@ static void retire_image(struct segment *before, struct log *log)
 		           process_exists(h->pid) ? "; there is still a process of that number"
 		                                  : "");
 	image_retire(before->base, before->size);
-	segment_wake(&h->news, INT_MAX);
+	wake_sleepers(m, before);
 }
 
 int memory_show(struct memory *m, struct log *log, char *why, size_t why_size)
@@ -341,7 +355,7 @@ int memory_show(struct memory *m, struct log *log, char *why, size_t why_size)
 	if (!err)
 		report_private(m, log);
 	if (had_before && !err)
-		retire_image(&before, log);
+		retire_image(m, &before, log);
 	if (had_before)
 		segment_close(&before);
 	return err;
@@ -357,7 +371,7 @@ void memory_replaced(struct memory *m)
 	/* an image that had lost its name is not retired yet: its readers would keep it for ever */
 	if (__atomic_load_n(&m->image.header->state, __ATOMIC_RELAXED) != OWS_STATE_RETIRED) {
 		image_retire(m->image_segment.base, m->image_segment.size);
-		segment_wake(&m->image.header->news, INT_MAX);
+		wake_sleepers(m, &m->image_segment);
 	}
 	m->shown = false;
 	memory_end(m);
@@ -368,7 +382,7 @@ void memory_stop(struct memory *m)
 	if (!m->shown)
 		return;
 	image_state(&m->image, OWS_STATE_STOPPED);
-	segment_wake(&m->image.header->news, INT_MAX);
+	wake_sleepers(m, &m->image_segment);
 	m->shown = false;
 }
 

@@ -13,10 +13,13 @@
 #include "src/shm/segment.h"
 #include "src/text/log.h"
 
+struct porter;
+
 struct memory {
 	const char *instance;
 	const struct shm_place *place;
 	const struct config *config;
+	struct porter *porter;
 	struct segment image_segment;
 	struct image image;
 	struct segment force_segment;
@@ -38,6 +41,7 @@ struct memory_setup {
 	const struct image_counter *counters; /* as in struct image_plan */
 	uint32_t counter_count;
 	struct log *log;
+	struct porter *porter;       /* wakes who sleeps on an image that ends */
 	const struct memory *before; /* a reload: what is in use; NULL: a start */
 };
 /*

@@ -125,6 +125,7 @@ static int make_memory(struct serving *s, const struct serving_setup *setup, cha
 				  .counters = plan,
 				  .counter_count = count,
 				  .log = setup->log,
+				  .porter = setup->porter,
 				  .before = setup->before ? &setup->before->memory : NULL,
 			  },
 	                  why, why_size);

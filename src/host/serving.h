@@ -28,11 +28,14 @@ struct serving {
 	uint64_t stalls_before, dropped_before; /* of workers that reloads have ended */
 };
 
+struct porter;
+
 struct serving_setup {
 	struct config *config;
 	const char *instance;
 	const struct shm_place *place;
 	struct log *log;
+	struct porter *porter;
 	void (*ring)(void *ctx); /* wakes the engine; any thread */
 	void *ring_ctx;
 	const struct engine_guests *guests;   /* NULL: none */

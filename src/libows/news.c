@@ -23,7 +23,7 @@ static int await(int fd, int64_t left_ns, bool *gone)
 
 	if (n < 0)
 		return -errno;
-	*gone = n > 0 && !(poll_fd.revents & POLLIN);
+	*gone = n > 0 && (poll_fd.revents & POLLHUP);
 	return n > 0 && !*gone;
 }
 

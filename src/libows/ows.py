@@ -403,13 +403,14 @@ class Door:
         """Sleep until there are news; true: owsd is gone, and nobody wakes this any more."""
         ready = select.poll()
         ready.register(self.news, select.POLLIN)
-        return any(not event & select.POLLIN for _, event in ready.poll(seconds * 1000))
+        return any(event & select.POLLHUP for _, event in ready.poll(seconds * 1000))
 
     def drain(self):
         ready = select.poll()
         ready.register(self.news, select.POLLIN)
         while any(event & select.POLLIN for _, event in ready.poll(0)):
-            os.read(self.news, 64)
+            if not os.read(self.news, 64):
+                break
 
     def close(self):
         self.closed = True

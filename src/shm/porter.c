@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The porter: the process that sends over, and lets go of, what peers can make slow. */
 #include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -8,12 +10,15 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "hal/bus/time.h"
+#include "src/shm/futex.h"
+#include "src/shm/layout.h"
 #include "src/shm/porter.h"
 
 /* Younger than the headers of some machines that build owsd. */
@@ -111,10 +116,35 @@ static void hang_up(int fd)
 		;
 }
 
+static void wake(int image)
+{
+	const struct ows_image_header *h;
+
+	h = mmap(NULL, sizeof(*h), PROT_READ, MAP_SHARED, image, 0);
+	if (h == MAP_FAILED)
+		return;
+	segment_wake(&h->news, INT_MAX);
+	munmap((void *)(uintptr_t)h, sizeof(*h));
+}
+
+static void empty(int file)
+{
+	struct stat st;
+
+	/* a page that the hole does not cover whole stays; beyond the end of the file there is none */
+	if (fstat(file, &st) == 0)
+		fallocate(file, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0,
+		          st.st_size + sysconf(_SC_PAGESIZE));
+}
+
 static void carry_out(unsigned what, const int *fds, unsigned count, struct iovec bytes)
 {
 	unsigned connections = what & PORTER_EACH ? count : 1;
 
+	if (what & PORTER_WAKE)
+		wake(fds[0]);
+	if (what & PORTER_EMPTY)
+		empty(fds[0]);
 	for (unsigned i = 0; i < connections; i++) {
 		if (what & PORTER_SEND)
 			send_over(fds + i, what & PORTER_EACH ? 1 : count, bytes);

@@ -34,6 +34,10 @@ enum porter_what {
 	PORTER_SEND = 1, /* the bytes over fds[0], with copies of the other descriptors */
 	/* shut fds[0] down, and receive what lies there unless it hurts */
 	PORTER_HANG_UP = 2,
+	/* wake all that sleep on the news of the image fds[0] */
+	PORTER_WAKE = 8,
+	/* free the pages of the file fds[0] */
+	PORTER_EMPTY = 16,
 	PORTER_EACH = 4 /* that with each descriptor, as all are connections */
 };
 

@@ -83,7 +83,7 @@ static void publish(uint32_t record, uint32_t reading, bool changed)
 static void wake_all(void)
 {
 	image_news(&many.image);
-	control_news(many.control);
+	control_news(many.control, &many.image.header->news);
 }
 
 static void read_part(uint32_t part, uint32_t reading)

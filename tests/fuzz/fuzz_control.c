@@ -304,7 +304,7 @@ static void happen(int directory)
 		break;
 	case 5:
 		turn_engine(which & 7);
-		control_news(room);
+		control_news(room, NULL);
 		break;
 	case 6:
 		now_ns += what >> 3 & 1 ? which * 10 * NS_PER_MS : 0;

@@ -4,6 +4,7 @@
 its sockets, others join, a reload is done, SafeValue is in time, and owsd ends. The bounds are
 generous: an attack holds for an hour."""
 
+import os
 import shutil
 import signal
 import time
@@ -12,7 +13,7 @@ import faulty
 import owsdtest
 import private
 from owsdtest import raw, until
-from test_control import CLIENT, PY, door
+from test_control import CLIENT, LOCK, PY, door
 from test_privilege import ctl, daemon_of, good, programs
 
 # What takes this long, though little else runs, waits for an attack
@@ -45,6 +46,21 @@ def reached(file):
     if not copy.exists():
         shutil.copy(file, copy)
     return copy
+
+# Reads its news into memory that never comes, and waits for more
+UNREAD = LOCK.split("libc.pwrite")[0] + """
+import select
+libc.read.argtypes = [ctypes.c_int, ctypes.c_void_p, ctypes.c_size_t]
+door, err, fds = hello(path, 0)
+memory = mmap.mmap(fds[0], 0)
+memory[144:148] = struct.pack("<I", 1)
+select.select([fds[2]], [], [])
+threading.Thread(target=lambda: libc.read(fds[2], at, 1), daemon=True).start()
+print("holds", flush=True)
+while True:
+    memory[144:148] = struct.pack("<I", 1)
+    time.sleep(0.001)
+"""
 
 
 def kernels():
@@ -137,6 +153,19 @@ def test_the_same_at_the_sockets_of_the_served_protocol(scene):
         for _ in range(5):
             lasts(lambda: served(scene, daemon, where), "a served reading")
         unharmed(scene, daemon, plc)
+
+
+def test_a_reader_that_never_comes_to_read_its_news_holds_up_nobody(scene):
+    if os.uname().machine != "x86_64":
+        owsdtest.skip("the number of userfaultfd is that of x86-64")
+    daemon = plant(scene)
+    plc = controller(scene, daemon)
+    uid, groups = private.USERS["reader"]
+    enemy = scene.start([PY, "-c", CLIENT + UNREAD.format(uid=uid, groups=list(groups)), door(daemon.name)])
+    until(lambda: "holds" in enemy.log() or "skip" in enemy.log(), 20, enemy.log)
+    if "skip" in enemy.log():
+        owsdtest.skip("no userfaultfd here")
+    unharmed(scene, daemon, plc)
 
 
 if __name__ == "__main__":

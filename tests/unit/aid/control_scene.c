@@ -61,7 +61,7 @@ static void ring_news(void)
 {
 	if (!__atomic_load_n(&rings_news, __ATOMIC_ACQUIRE))
 		return;
-	control_news(control_room);
+	control_news(control_room, NULL);
 	__atomic_store_n(&rings_news, false, __ATOMIC_RELEASE);
 }
 

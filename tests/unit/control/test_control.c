@@ -129,7 +129,7 @@ static void test_a_giver_gets_a_sealed_memory_a_bell_and_news(void)
 	TEST_ASSERT_EQUAL(0, poll(&news, 1, 0));
 	((struct ows_giver_header *)(void *)client.memory)->waits = 1;
 	control_ring_news();
-	TEST_ASSERT_EQUAL(1, poll(&news, 1, 0));
+	TEST_ASSERT_EQUAL(1, poll(&news, 1, CONTROL_SCENE_MS));
 	control_leave(&client);
 }
 

@@ -2,12 +2,15 @@
 /* The limits of the control room: places, places and memory of a user, and crowds. */
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "unity.h"
@@ -63,6 +66,9 @@ static void test_a_place_is_free_again_when_its_giver_has_left(void)
 	control_wait_count("control_connections", 0);
 	TEST_ASSERT_EQUAL_UINT(1000, control_joined());
 	TEST_ASSERT_EQUAL_UINT(1000, control_left());
+	/* the last memories are emptied a moment later */
+	for (int ms = 0; descriptors() != before && ms < CONTROL_SCENE_MS; ms++)
+		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
 	TEST_ASSERT_EQUAL_UINT(before, descriptors());
 }
 
@@ -169,6 +175,26 @@ static void test_many_users_leave_root_a_place(void)
 	control_wait_count("control_connections", 0);
 }
 
+static void test_a_memory_is_emptied_though_its_user_keeps_the_file(void)
+{
+	struct control_client client;
+	struct stat st = {.st_blocks = 1};
+	char path[32];
+	int kept, left_ms = CONTROL_SCENE_MS;
+
+	TEST_ASSERT_EQUAL(0, control_join(&client, 0, "keeper"));
+	snprintf(path, sizeof(path), "/proc/self/fd/%d", client.fds[0]);
+	kept = open(path, O_PATH | O_CLOEXEC);
+	TEST_ASSERT_GREATER_OR_EQUAL(0, kept);
+	TEST_ASSERT_EQUAL(0, fstat(kept, &st));
+	TEST_ASSERT_GREATER_THAN(0, st.st_blocks);
+	control_leave(&client);
+	while (fstat(kept, &st) == 0 && st.st_blocks && left_ms-- > 0)
+		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+	TEST_ASSERT_EQUAL(0, st.st_blocks);
+	close(kept);
+}
+
 static void test_a_thousand_programs_at_once_each_get_an_answer(void)
 {
 	struct rlimit files;
@@ -241,6 +267,7 @@ int main(void)
 	RUN_TEST(test_connections_that_say_nothing_count_too);
 	RUN_TEST(test_many_users_leave_root_a_place);
 	RUN_TEST(test_without_a_descriptor_a_program_waits_until_there_is_one);
+	RUN_TEST(test_a_memory_is_emptied_though_its_user_keeps_the_file);
 	RUN_TEST(test_a_thousand_programs_at_once_each_get_an_answer);
 	return UNITY_END();
 }

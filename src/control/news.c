@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: MIT */
+/* The thread that rings the news of connected programs and wakes the sleepers of the image. */
+#include <errno.h>
+#include <limits.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "hal/bus/bell.h"
+#include "hal/bus/thread.h"
+#include "hal/bus/time.h"
+#include "src/control/news.h"
+#include "src/libows/ows.h"
+#include "src/shm/futex.h"
+
+#define STACK_SIZE (64 * 1024)
+/*
+ * What takes longer is slow, and rests for so many times as long as it took, for each that is slow:
+ * all together they get a twentieth of a core.
+ */
+#define SLOW_NS (NS_PER_MS / 2)
+#define REST 20
+
+enum { NEWS_GONE, NEWS_IDLE, NEWS_BUSY };
+
+int news_open(struct control *c)
+{
+	c->news.bell = bell_open();
+	return c->news.bell < 0 ? c->news.bell : 0;
+}
+
+void news_close(struct control *c)
+{
+	if (c->news.bell >= 0)
+		close(c->news.bell);
+	c->news.bell = -1;
+}
+
+void news_due(struct control *c, unsigned place)
+{
+	__atomic_fetch_or(&c->news.due[place / 32], 1u << place % 32, __ATOMIC_RELEASE);
+}
+
+void news_ring(struct control *c, const uint32_t *word)
+{
+	if (word)
+		__atomic_store_n(&c->news.word, word, __ATOMIC_RELEASE);
+	bell_ring(c->news.bell);
+}
+
+void news_begin(struct control_place *p)
+{
+	__atomic_store_n(&p->news_state, NEWS_IDLE, __ATOMIC_RELEASE);
+}
+
+bool news_end(struct control_place *p)
+{
+	uint32_t idle = NEWS_IDLE;
+
+	return __atomic_compare_exchange_n(&p->news_state, &idle, NEWS_GONE, false,
+	                                   __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE) ||
+	       idle == NEWS_GONE;
+}
+
+/* --- The thread ------------------------------------------------------------------------------- */
+
+/* A socket whose room is full rings already; without a reader the giver is about to leave. */
+static void ring_place(struct control_place *p)
+{
+	uint32_t idle = NEWS_IDLE;
+
+	if (!__atomic_compare_exchange_n(&p->news_state, &idle, NEWS_BUSY, false, __ATOMIC_ACQ_REL,
+	                                 __ATOMIC_ACQUIRE))
+		return;
+	send(p->news, "", 1, MSG_DONTWAIT | MSG_NOSIGNAL);
+	__atomic_store_n(&p->news_state, NEWS_IDLE, __ATOMIC_RELEASE);
+}
+
+/* An image that a reload has unmapped meanwhile is an error to the kernel, and no harm. */
+static void wake_image(struct control *c)
+{
+	const uint32_t *word = __atomic_exchange_n(&c->news.word, NULL, __ATOMIC_ACQUIRE);
+
+	if (word)
+		segment_wake(word, INT_MAX);
+}
+
+static bool is_due(const struct control *c, unsigned i)
+{
+	if (i == NEWS_IMAGE)
+		return __atomic_load_n(&c->news.word, __ATOMIC_ACQUIRE) != NULL;
+	return __atomic_load_n(&c->news.due[i / 32], __ATOMIC_ACQUIRE) >> i % 32 & 1;
+}
+
+static void ring_one(struct control *c, unsigned i)
+{
+	struct news_pace *pace = &c->news.paces[i];
+	bool was_slow = pace->rest_until_ns != 0;
+	int64_t begun_ns = ows_now(), took_ns;
+
+	if (i == NEWS_IMAGE) {
+		wake_image(c);
+	} else {
+		__atomic_fetch_and(&c->news.due[i / 32], ~(1u << i % 32), __ATOMIC_ACQ_REL);
+		ring_place(&c->places[i]);
+	}
+	took_ns = ows_now() - begun_ns;
+	if (was_slow)
+		c->news.slow--;
+	pace->rest_until_ns = 0;
+	if (took_ns < SLOW_NS)
+		return;
+	c->news.slow++;
+	pace->rest_until_ns = begun_ns + took_ns * REST * c->news.slow;
+}
+
+/*
+ * Ring all that are not slow, then at most one that is and has rested; whoever rings meanwhile is
+ * served before the next slow one. Returns how long nothing is due.
+ */
+static int64_t ring_due(struct control *c)
+{
+	int64_t now_ns = ows_now(), next_ns = INT64_MAX;
+	unsigned slow = NEWS_PACES;
+
+	for (unsigned i = 0; i < NEWS_PACES; i++) {
+		const struct news_pace *pace = &c->news.paces[i];
+
+		if (!is_due(c, i))
+			continue;
+		if (!pace->rest_until_ns) {
+			ring_one(c, i);
+			continue;
+		}
+		if (pace->rest_until_ns < next_ns) {
+			next_ns = pace->rest_until_ns;
+			slow = i;
+		}
+	}
+	if (slow == NEWS_PACES || next_ns > now_ns)
+		return next_ns == INT64_MAX ? -1 : next_ns - now_ns;
+	ring_one(c, slow);
+	return 0;
+}
+
+static void *run(void *arg)
+{
+	struct control *c = arg;
+	struct pollfd bell = {.fd = c->news.bell, .events = POLLIN};
+	int64_t left_ns = -1;
+
+	while (!__atomic_load_n(&c->news.stop, __ATOMIC_ACQUIRE)) {
+		poll(&bell, 1, left_ns < 0 ? -1 : (int)((left_ns + NS_PER_MS - 1) / NS_PER_MS));
+		bell_clear(c->news.bell);
+		left_ns = ring_due(c);
+	}
+	return NULL;
+}
+
+int news_start(struct control *c)
+{
+	int err = thread_start(&c->news.thread, "owsd-news", STACK_SIZE, run, c);
+
+	c->news.running = !err;
+	return err;
+}
+
+void news_stop(struct control *c)
+{
+	if (!c->news.running)
+		return;
+	__atomic_store_n(&c->news.stop, 1, __ATOMIC_RELEASE);
+	bell_ring(c->news.bell);
+	pthread_join(c->news.thread, NULL);
+	c->news.running = false;
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * News: whoever writes to a socket or wakes a word walks all watches and sleepers that peers have
+ * put there. So a thread of its own does it, for which the engine only leaves word; what turns out
+ * to be slow is rung less often.
+ */
+#ifndef CONTROL_NEWS_H
+#define CONTROL_NEWS_H
+
+#include "src/control/private.h"
+
+/* 0 or a negative errno. */
+int news_open(struct control *c);
+void news_close(struct control *c);
+int news_start(struct control *c);
+void news_stop(struct control *c);
+/* Any thread: the place is to be rung; news_ring() has to follow. */
+void news_due(struct control *c, unsigned place);
+/* Any thread, never blocks; word: of the image, whose sleepers are to be woken too, or NULL. */
+void news_ring(struct control *c, const uint32_t *word);
+/* The socket at the place may be rung from now on. */
+void news_begin(struct control_place *p);
+/* It is rung no more. False: it is being rung this moment. */
+bool news_end(struct control_place *p);
+
+#endif
