@@ -17,6 +17,7 @@
 #include "src/control/grant.h"
 #include "src/control/held.h"
 #include "src/control/news.h"
+#include "src/control/often.h"
 #include "src/control/welcome.h"
 #include "src/libows/ows.h"
 
@@ -378,6 +379,11 @@ static bool send_away(struct control *c)
 	return true;
 }
 
+static bool comes_too_often(struct control *c, uid_t uid)
+{
+	return uid && uid != c->rights.own && often_is_too(&c->often, uid, c->now_ns);
+}
+
 static void meet(struct control *c, int fd)
 {
 	struct control_place *p;
@@ -388,7 +394,7 @@ static void meet(struct control *c, int fd)
 	if (!err && !rights_set_any(&c->rights, &peer) && !rights_read(&c->rights, &peer) &&
 	    !rights_reload(&c->rights, &peer))
 		err = -EACCES;
-	else if (!err && !p)
+	else if (!err && (!p || comes_too_often(c, peer.uid)))
 		err = -ENOSPC;
 	if (!err) {
 		begin_place(p, &(struct control_place){.fd = fd,

@@ -6,6 +6,7 @@
 #include <pthread.h>
 
 #include "hal/bus/bus.h"
+#include "src/control/often.h"
 #include "src/control/rights.h"
 #include "src/shm/giver.h"
 #include "src/shm/peer.h"
@@ -129,6 +130,7 @@ struct control {
 	struct control_place places[OWS_GIVERS];
 	struct control_held held[CONTROL_HELD_ALL];
 	unsigned held_count;
+	struct often often;
 	int64_t held_ns; /* when to look next */
 	uint32_t turns;  /* counts places that are for the engine's thread to look at */
 	struct {

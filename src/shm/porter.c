@@ -131,7 +131,7 @@ static void empty(int file)
 {
 	struct stat st;
 
-	/* a page that the hole does not cover whole stays; beyond the end of the file there is none */
+	/* a page stays that the hole does not cover whole; it may go beyond the end */
 	if (fstat(file, &st) == 0)
 		fallocate(file, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0,
 		          st.st_size + sysconf(_SC_PAGESIZE));
