@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* The connection to owsd's control socket: connects, says hello, receives welcomes. */
 #include <errno.h>
+#include <fcntl.h>
 #include <poll.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <sys/un.h>
 #include <time.h>
 #include <unistd.h>
@@ -37,20 +39,24 @@ void join_end(struct join *join)
 
 static int connect_to(int directory, const char *file, int *connection)
 {
+	/* the queue of the socket may be full of others: the kernel lets this one wait */
+	const struct timeval most = {.tv_sec = 1};
 	struct sockaddr_un address = {.sun_family = AF_UNIX};
 	int fd, err;
 
 	/* The directory's own path may be longer than an address has room */
 	snprintf(address.sun_path, sizeof(address.sun_path), "/proc/self/fd/%d/%s", directory,
 	         file);
-	fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+	fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
 	if (fd < 0)
 		return -errno;
+	setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &most, sizeof(most));
 	if (connect(fd, (const struct sockaddr *)&address, sizeof(address)) < 0) {
 		err = errno == ECONNREFUSED || errno == EPROTOTYPE ? -ENOENT : -errno;
 		close(fd);
 		return err;
 	}
+	fcntl(fd, F_SETFL, O_NONBLOCK);
 	*connection = fd;
 	return 0;
 }
