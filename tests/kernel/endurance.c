@@ -44,7 +44,8 @@ static long memory_most;
 static int descriptors;
 static unsigned samples;
 
-static void line(const char *what, const char *form, va_list args)
+__attribute__((format(printf, 2, 0))) static void line(const char *what, const char *form,
+                                                       va_list args)
 {
 	char text[300];
 

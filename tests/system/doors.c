@@ -117,7 +117,7 @@ static bool send_fd(int connection, const void *bytes, size_t len, int fd, int f
 static bool send_with(int connection, const void *bytes, size_t len, int flags)
 {
 	struct sockaddr_in to = listen_deaf();
-	int status;
+	int status = -1;
 	pid_t pid = fork();
 
 	if (pid == 0)

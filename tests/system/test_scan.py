@@ -393,7 +393,7 @@ def test_what_is_wrong_is_said_with_its_status(scene):
             (("-t", "sim:/nowhere.sim", "scan"), 2, "/nowhere.sim"),
             (("-t", "i2c:/dev/i2c-nowhere", "scan"), 1, "/dev/i2c-nowhere"),
             (("-t", "none:", "dir"), 2, "unknown kind of target"),
-            (("-t", "none:", "dir"), 2, "gpio:, and HOST, HOST:PORT"),
+            (("-t", "none:", "dir"), 2, "sim:, and HOST, HOST:PORT"),
             (("-t", target, "list"), 2, "-t TARGET is for dir"),
             (("-t", target, "read"), 2, "read what?"),
             (("-t", target, "read", "/" + "x" * 300), 1, "longer than 255"),
@@ -466,7 +466,7 @@ def plant(scene):
     text = ctl(scene, sim(scene, BEFORE), "scan", "--rio").stdout
     text = text.replace('Name                    "temperature1"',
                         '# the living room\n    Name "room"   # mine\n    LimitH 26.50')
-    text = text.replace("Timeout                 20", "Timeout 20.0")
+    text = text.replace("  TargetName", "  Timeout 20.0\n  TargetName", 1)
     assert "room" in text and '"temperature2"' in text and "20.0" in text
     return text
 
