@@ -44,7 +44,7 @@ enum porter_what {
 struct porter_order {
 	unsigned what;  /* bits of enum porter_what; in any case the child lets all go */
 	unsigned count; /* of descriptors, from 1 */
-	unsigned keep;  /* bits of the descriptors that stay open here too */
+	uint64_t keep;  /* bits of the descriptors that stay open here too */
 	uint32_t slot;  /* for porter_carried(); PORTER_NO_SLOT: none */
 	int fds[PORTER_FDS];
 	struct iovec bytes; /* at most PORTER_BYTES */

@@ -153,7 +153,7 @@ static void test_more_askers_than_owsd_lets_wait_are_refused(void)
 	close(fds[0]);
 	control_wait_count("control_connections", ASKERS - 1);
 	fds[0] = ask("again");
-	control_wait_count("control_connections", ASKERS);
+	wait_asked();
 	reload(0, "");
 	for (int i = 0; i < ASKERS; i++)
 		TEST_ASSERT_EQUAL(0, answer_of(fds[i]).welcome.err);
