@@ -285,15 +285,21 @@ static bool porter_round(struct porter *p, struct children *children)
 	return any;
 }
 
-/* Those of owsd, its output among them, are not to stay open for a child that hangs. */
+/*
+ * Those of owsd, its output among them, are not to stay open for a child that hangs. /dev/null
+ * takes the place of the first three: what a library writes there must not reach a peer's file.
+ */
 static void close_others(const struct porter *p)
 {
-	int end = p->lanes[0];
+	int end = p->lanes[0], null = open("/dev/null", O_RDWR | O_CLOEXEC);
 
 	for (unsigned i = 1; i < PORTER_LANES; i++)
 		end = p->lanes[i] < end ? p->lanes[i] : end;
 	for (int fd = 0; fd < end; fd++)
-		close(fd);
+		if (fd > STDERR_FILENO || dup2(null, fd) < 0)
+			close(fd);
+	if (null > end)
+		close(null);
 }
 
 static void be_porter(struct porter *p)

@@ -12,7 +12,7 @@ TSAN_FLAGS := -fsanitize=thread -fno-omit-frame-pointer -Wno-tsan $(GUESSES)
 
 # Lines are all that a sanitizer names of what -g knows
 asan:
-	@$(if $(ROOMS),:,$(MAKE) --no-print-directory B=build/asan all)
+	@$(MAKE) --no-print-directory B=build/asan all
 	@ASAN_OPTIONS=detect_leaks=1:abort_on_error=0:handle_sigbus=0 UBSAN_OPTIONS=print_stacktrace=1 \
 	    sh tests/both $(MAKE) --no-print-directory B=build/asan
 asan: export EXTRA_CFLAGS := $(ASAN_FLAGS)
@@ -20,7 +20,7 @@ asan: export CFLAGS := -O1 -g1
 
 # Without the address space's randomness: some kernels give more of it than TSan can stand
 tsan:
-	@$(if $(ROOMS),:,$(MAKE) --no-print-directory B=build/tsan all)
+	@$(MAKE) --no-print-directory B=build/tsan all
 	@fixed=; setarch -R true 2>/dev/null && fixed='setarch -R'; \
 	    TSAN_OPTIONS=halt_on_error=1:handle_sigbus=0:suppressions=$(CURDIR)/tests/tsan.supp \
 	    $$fixed sh tests/both $(MAKE) --no-print-directory B=build/tsan
