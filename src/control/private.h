@@ -18,8 +18,8 @@
 /* Places that are kept for root and owsd's user, and of the rest for those who may command. */
 #define CONTROL_KEPT 8
 #define CONTROL_KEPT_FROM_READERS 64
-/* A program that stands still at reloads has two: its own, and the next, unread. */
-#define CONTROL_HELD (2 * CONTROL_OF_USER)
+/* A program has, beside its own, for two seconds those of the reloads before. */
+#define CONTROL_HELD (4 * CONTROL_OF_USER)
 /* Of all users; in the reach of held_full() nobody joins. */
 #define CONTROL_HELD_ALL 1024
 #define CONTROL_MEMORY (64u << 20)
